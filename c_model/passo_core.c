@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: MIT
+ * The core: link, registers, tables and channels on one clock. See rtl/passo_core.v.
+ */
+#include "passo_core.h"
+
+#include <string.h>
+
+#include "passo_registers_core.h"
+#include "passo_shapes.h"
+
+static bool in_range(unsigned value, unsigned low, unsigned high) { return value >= low && value <= high; }
+
+bool passo_core_reset(struct passo_core *core, const struct passo_parameters *parameters)
+{
+	if (!in_range(parameters->channels, 1, PASSO_CHANNELS_MAX) || !in_range(parameters->axes, 1, PASSO_AXES_MAX)
+	    || !in_range(parameters->tick_log2, 7, 16) || !in_range(parameters->line_queue_log2, 2, 8)
+	    || !in_range(parameters->ramp_queue_log2, 2, 8))
+		return false;
+	memset(core, 0, sizeof *core);
+	core->parameters = *parameters;
+	core->inputs = (struct passo_inputs){.spi_cs_n = true};
+	core->sync_q = 7;
+	passo_spi_reset(&core->spi);
+	passo_link_reset(&core->link);
+	memcpy(core->tables.points, passo_shapes, sizeof core->tables.points);
+	for (unsigned i = 0; i < parameters->channels; i++)
+		passo_channel_reset(&core->channel[i], parameters, (uint8_t)i);
+	core->outputs.spi_miso = true;
+	return true;
+}
+
+/* At most one of the registers, the tables and the channels is meant; the others answer 0. */
+static struct passo_response respond(const struct passo_core *core, const struct passo_channel_inputs *inputs)
+{
+	const struct passo_bus *bus = &core->link.bus;
+	const unsigned block = bus->address >> 8;
+
+	if ((bus->check || bus->read) && in_range(block, 1, core->parameters.channels))
+		return passo_channel_respond(&core->channel[block - 1u], inputs);
+	return passo_registers_respond(core);
+}
+
+static bool any_incomplete(const struct passo_core *core)
+{
+	for (unsigned i = 0; i < core->parameters.channels; i++)
+		if (passo_channel_incomplete(&core->channel[i]))
+			return true;
+	return false;
+}
+
+static void gather_outputs(struct passo_core *core)
+{
+	struct passo_outputs *outputs = &core->outputs;
+
+	outputs->step = outputs->dir = outputs->enable = 0;
+	outputs->running = 0;
+	for (unsigned i = 0; i < core->parameters.channels; i++) {
+		const struct passo_channel *channel = &core->channel[i];
+		for (unsigned a = 0; a < core->parameters.axes; a++) {
+			const unsigned bit = i * core->parameters.axes + a;
+			outputs->step |= (uint64_t)channel->axis[a].step_pin << bit;
+			outputs->dir |= (uint64_t)channel->axis[a].dir_pin << bit;
+			outputs->enable |= (uint64_t)channel->axis[a].enable_pin << bit;
+		}
+		outputs->running |= (uint8_t)((channel->motion.running ? 1u : 0u) << i);
+	}
+	outputs->spi_miso = core->spi.send >> 31 != 0u;
+}
+
+void passo_core_clock(struct passo_core *core, const struct passo_inputs *inputs)
+{
+	const struct passo_parameters *parameters = &core->parameters;
+	const struct passo_link_wires link_wires = {
+	    .spi = passo_spi_wires(&core->spi),
+	    .word = core->spi.word,
+	    .status = passo_registers_status(core),
+	    .response = core->response,
+	    .incomplete = any_incomplete(core),
+	};
+	const struct passo_bus bus = core->link.bus;
+	struct passo_channel_inputs channel_inputs = {
+	    .parameters = parameters,
+	    .tables = &core->tables,
+	    .bus = &bus,
+	    .sync_edge = (core->sync_q >> 1 & 1u) != 0u && (core->sync_q >> 2 & 1u) == 0u,
+	    .slew_tick = core->slew_tick,
+	    .snapshot = link_wires.spi.frame_start,
+	};
+	const bool irq = passo_registers_any_stopped(core);
+	const struct passo_registers registers = core->registers;
+	const uint32_t reply_word = core->link.reply_word;
+
+	core->response = respond(core, &channel_inputs);
+	passo_registers_clock(core);
+	for (unsigned i = 0; i < parameters->channels; i++) {
+		channel_inputs.run = (registers.run >> i & 1u) != 0u;
+		channel_inputs.wait_sync = (registers.wait_sync >> i & 1u) != 0u;
+		passo_channel_clock(&core->channel[i], &channel_inputs);
+	}
+	passo_link_clock(&core->link, &link_wires);
+	passo_spi_clock(&core->spi, core->inputs.spi_sclk, inputs->spi_sclk, inputs->spi_mosi, inputs->spi_cs_n, reply_word);
+
+	core->tables.slot = (uint8_t)((core->tables.slot + 1u) % (2u * parameters->channels));
+	core->sync_q = (uint8_t)((core->sync_q << 1 | (inputs->sync ? 1 : 0)) & 7);
+	core->slew_tick = core->slew_count == (1u << parameters->tick_log2) - 1u;
+	core->slew_count = (core->slew_count + 1u) & ((1u << parameters->tick_log2) - 1u);
+	core->outputs.irq = irq;
+	core->inputs = *inputs;
+	gather_outputs(core);
+}
+
+const struct passo_outputs *passo_core_outputs(const struct passo_core *core) { return &core->outputs; }
+
+uint64_t passo_core_size(void) { return sizeof(struct passo_core); }

@@ -1,0 +1,125 @@
+/* SPDX-License-Identifier: MIT */
+#include "passo_frame.h"
+
+#include <string.h>
+
+/* The CRC of each 4-bit value: small enough for a microcontroller, eight steps for a word. */
+static const uint32_t crc_of_nibble[16] = {
+    0x00000000u, 0x04C11DB7u, 0x09823B6Eu, 0x0D4326D9u, 0x130476DCu, 0x17C56B6Bu, 0x1A864DB2u, 0x1E475005u,
+    0x2608EDB8u, 0x22C9F00Fu, 0x2F8AD6D6u, 0x2B4BCB61u, 0x350C9B64u, 0x31CD86D3u, 0x3C8EA00Au, 0x384FBDBDu,
+};
+
+uint32_t passo_crc(uint32_t crc, const uint32_t *words, size_t count)
+{
+	for (size_t i = 0; i < count; i++) {
+		crc ^= words[i];
+		for (unsigned nibble = 0; nibble < 8; nibble++)
+			crc = crc << 4 ^ crc_of_nibble[crc >> 28];
+	}
+	return crc;
+}
+
+static uint32_t header(enum passo_operation operation, uint8_t sequence, uint16_t address, size_t length)
+{
+	return (uint32_t)operation << 28 | (uint32_t)sequence << 20 | ((uint32_t)length & 0xFFu) << 12 |
+	       ((uint32_t)address & 0xFFFu);
+}
+
+static size_t build(uint32_t *frame, uint32_t head, const uint32_t *payload, size_t length)
+{
+	frame[0] = head;
+	if (length)
+		memcpy(frame + 1, payload, length * sizeof *payload);
+	frame[length + 1] = passo_crc(PASSO_CRC_START, frame, length + 1);
+	frame[length + 2] = 0;
+	frame[length + 3] = 0;
+	return length + PASSO_FRAME_OVERHEAD;
+}
+
+size_t passo_frame_write(
+    uint32_t *frame, uint8_t sequence, uint16_t address, const uint32_t *payload, size_t length)
+{
+	return build(frame, header(PASSO_OPERATION_WRITE, sequence, address, length), payload, length);
+}
+
+size_t passo_frame_push(
+    uint32_t *frame, uint8_t sequence, uint16_t address, const uint32_t *payload, size_t length)
+{
+	return build(frame, header(PASSO_OPERATION_PUSH, sequence, address, length), payload, length);
+}
+
+size_t passo_frame_read(uint32_t *frame, uint8_t sequence, uint16_t address, size_t length)
+{
+	frame[0] = header(PASSO_OPERATION_READ, sequence, address, length);
+	frame[1] = passo_crc(PASSO_CRC_START, frame, 1);
+	memset(frame + 2, 0, (length + 2) * sizeof *frame);
+	return length + PASSO_FRAME_OVERHEAD;
+}
+
+static bool is_stuck(const uint32_t *miso, size_t count)
+{
+	for (size_t i = 0; i < count; i++) {
+		if (miso[i] != miso[0])
+			return false;
+	}
+	return miso[0] == 0 || miso[0] == UINT32_C(0xFFFFFFFF);
+}
+
+/* The ack, or a refused read's verdict: always the last word. */
+static enum passo_reply read_ack(
+    const uint32_t *mosi, const uint32_t *miso, size_t count, enum passo_verdict *verdict)
+{
+	uint32_t ack = miso[count - 1];
+
+	if (is_stuck(miso, count))
+		return PASSO_REPLY_STUCK;
+	if (ack >> 16 != (~ack & 0xFFFFu))
+		return ack == miso[0] ? PASSO_REPLY_NO_ACK : PASSO_REPLY_DAMAGED;
+	if (ack >> 24 != (mosi[0] >> 20 & 0xFFu))
+		return PASSO_REPLY_SEQUENCE;
+	if ((ack >> 16 & 0xFFu) > PASSO_VERDICT_BAD_VALUE)
+		return PASSO_REPLY_DAMAGED;
+	*verdict = (enum passo_verdict)(ack >> 16 & 0xFFu);
+	return *verdict <= PASSO_VERDICT_DUPLICATE ? PASSO_REPLY_OK : PASSO_REPLY_REFUSED;
+}
+
+enum passo_reply passo_frame_write_reply(
+    const uint32_t *mosi, const uint32_t *miso, size_t count, enum passo_verdict *verdict)
+{
+	return read_ack(mosi, miso, count, verdict);
+}
+
+enum passo_reply passo_frame_read_reply(
+    const uint32_t *mosi, const uint32_t *miso, size_t count, enum passo_verdict *verdict)
+{
+	uint32_t crc = passo_crc(PASSO_CRC_START, mosi, 1);
+
+	crc = passo_crc(crc, miso + PASSO_FRAME_DATA, count - PASSO_FRAME_OVERHEAD);
+	if (crc == miso[count - 1] && !is_stuck(miso, count)) {
+		*verdict = PASSO_VERDICT_OK;
+		return PASSO_REPLY_OK;
+	}
+	/* An ack that says OK is no answer to a read. */
+	enum passo_reply reply = read_ack(mosi, miso, count, verdict);
+	return reply == PASSO_REPLY_OK ? PASSO_REPLY_DAMAGED : reply;
+}
+
+size_t passo_line_words(uint32_t *words, const struct passo_line *line, uint8_t axes)
+{
+	words[0] = (uint32_t)line->last | (uint32_t)line->endless << 1 | (uint32_t)line->directions << 8;
+	words[1] = line->substeps;
+	for (unsigned i = 0; i < axes; i++)
+		words[2 + i] = line->steps[i];
+	return PASSO_LINE_WORDS(axes);
+}
+
+size_t passo_ramp_words(uint32_t *words, const struct passo_ramp *ramp)
+{
+	words[0] = (uint32_t)(ramp->velocity_end >> 32) << 16 | (uint32_t)ramp->last | (uint32_t)ramp->now << 1 |
+	           (uint32_t)ramp->mirror << 2 | (uint32_t)ramp->shape << 4;
+	words[1] = (uint32_t)ramp->velocity_end;
+	words[2] = ramp->ticks;
+	words[3] = (uint32_t)(ramp->progress_step >> 32);
+	words[4] = (uint32_t)ramp->progress_step;
+	return PASSO_RAMP_WORDS;
+}

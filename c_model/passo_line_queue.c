@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: MIT
+ * Line queue. See rtl/passo_line_queue.v.
+ */
+#include "passo_model.h"
+
+enum { INDEX_CONTROL = 0, INDEX_SUBSTEPS = 1, INDEX_STEPS = 2 };
+
+static unsigned depth(const struct passo_parameters *parameters) { return 1u << parameters->line_queue_log2; }
+
+static uint16_t wrap(unsigned line, const struct passo_parameters *parameters)
+{
+	return (uint16_t)(line & (2u * depth(parameters) - 1u));
+}
+
+uint8_t passo_line_queue_refusal(const struct passo_line_queue *queue, const struct passo_parameters *parameters,
+    const struct passo_bus *bus, bool blocked)
+{
+	const uint32_t defined = ((1u << parameters->axes) - 1u) << 8 | 3u;
+
+	if (blocked)
+		return PASSO_VERDICT_BUSY;
+	if (queue->room == queue->checked)
+		return PASSO_VERDICT_QUEUE_FULL;
+	if (queue->index == INDEX_CONTROL && (bus->data & ~defined) != 0u)
+		return PASSO_VERDICT_BAD_VALUE;
+	if (queue->index == INDEX_SUBSTEPS && bus->data == 0u)
+		return PASSO_VERDICT_BAD_VALUE;
+	if (queue->index >= INDEX_STEPS && bus->data > queue->checked_substeps)
+		return PASSO_VERDICT_BAD_VALUE;
+	return PASSO_VERDICT_OK;
+}
+
+static void write_word(struct passo_line *line, unsigned index, uint32_t data)
+{
+	switch (index) {
+	case INDEX_CONTROL:
+		line->last = (data & 1u) != 0u;
+		line->endless = (data & 2u) != 0u;
+		line->directions = (uint8_t)(data >> 8);
+		break;
+	case INDEX_SUBSTEPS:
+		line->substeps = data;
+		break;
+	default:
+		line->steps[index - INDEX_STEPS] = data;
+		break;
+	}
+}
+
+static void clock_writing(struct passo_line_queue *queue, const struct passo_parameters *parameters,
+    const struct passo_bus *bus, bool push)
+{
+	const bool complete = queue->index == parameters->axes + 1u;
+	const uint8_t index = queue->index;
+
+	if (push && (bus->check || bus->write)) {
+		queue->index = complete ? INDEX_CONTROL : (uint8_t)(index + 1u);
+		if (index == INDEX_SUBSTEPS)
+			queue->checked_substeps = bus->data;
+		if (complete && bus->check)
+			queue->checked = wrap(queue->checked + 1u, parameters);
+		if (bus->write)
+			write_word(&queue->lines[queue->write_line & (depth(parameters) - 1u)], index, bus->data);
+		if (complete && bus->write)
+			queue->write_line = wrap(queue->write_line + 1u, parameters);
+	}
+	if (bus->frame) {
+		queue->index = INDEX_CONTROL;
+		queue->checked = 0;
+	}
+}
+
+/* Block RAM: the words at the addresses before the edge, and before the edge's write. */
+static void read_memory(struct passo_line_queue *queue, const struct passo_parameters *parameters)
+{
+	const unsigned mask = depth(parameters) - 1u;
+	const struct passo_line *next = &queue->lines[queue->next_line & mask];
+	const struct passo_line *current = &queue->lines[queue->current_line & mask];
+
+	queue->next_last = next->last;
+	queue->next_endless = next->endless;
+	queue->next_directions = next->directions;
+	queue->next_minus_substeps = 0u - next->substeps;
+	for (unsigned axis = 0; axis < parameters->axes; axis++)
+		queue->steps[axis] = current->steps[axis];
+}
+
+void passo_line_queue_clock(struct passo_line_queue *queue, const struct passo_parameters *parameters,
+    const struct passo_bus *bus, const struct passo_channel_wires *wires)
+{
+	const uint16_t write_line = queue->write_line;
+	const uint16_t current_line = queue->current_line;
+	const uint16_t next_line = queue->next_line;
+	const uint16_t line_after_next = wrap(next_line + 1u, parameters);
+	const bool next_endless = queue->next_endless;
+	const bool next_valid = queue->next_valid;
+
+	read_memory(queue, parameters);
+	clock_writing(queue, parameters, bus, wires->line_push);
+
+	if (wires->take) {
+		queue->current_line = next_line;
+		if (!next_endless)
+			queue->next_line = line_after_next;
+	}
+	if (wires->finished) {
+		/* an ENDLESS line is both current and next */
+		const bool drop_endless = next_valid && next_endless;
+		queue->next_line = drop_endless ? line_after_next : queue->next_line;
+		queue->current_line = drop_endless ? line_after_next : next_line;
+	}
+	queue->next_valid = !wires->take && !wires->finished && !wires->halt && next_line != write_line;
+	queue->room = (uint16_t)(depth(parameters) - wrap((unsigned)write_line - current_line, parameters));
+	if (wires->halt) {
+		queue->next_line = write_line;
+		queue->current_line = write_line;
+	}
+}

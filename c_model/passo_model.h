@@ -1,0 +1,348 @@
+/* SPDX-License-Identifier: MIT
+ * State of the model, one struct and one source file per RTL module, with the names of the RTL.
+ *
+ * All modules change on the same edge. So whoever owns several modules first gathers the wires between them from the
+ * state before the edge, then clocks each module with these wires, in any order.
+ */
+#ifndef PASSO_MODEL_H
+#define PASSO_MODEL_H
+
+#include "passo_command.h"
+#include "passo_registers.h"
+
+#define PASSO_PAYLOAD_MAX 60u
+#define PASSO_LINE_QUEUE_MAX 256u
+#define PASSO_RAMP_QUEUE_MAX 256u
+#define PASSO_TABLE_POINTS 256u
+#define PASSO_RATE_ONE 0x10000u /* UQ1.16 */
+
+struct passo_parameters {
+	uint8_t channels;        /* CHANNELS, 1 .. 8 */
+	uint8_t axes;            /* AXES, 1 .. 8 */
+	uint8_t tick_log2;       /* TICK_LOG2, 7 .. 16 */
+	uint8_t line_queue_log2; /* LINE_QUEUE_LOG2, 2 .. 8 */
+	uint8_t ramp_queue_log2; /* RAMP_QUEUE_LOG2, 2 .. 8 */
+};
+
+/* ---- link side ---------------------------------------------------------------------------------------------- */
+
+struct passo_spi {
+	uint8_t bit_count;
+	uint32_t receive;
+	uint32_t word;
+	bool word_toggle;
+	bool first_word;
+	uint32_t send;
+	uint8_t select_sync;
+	uint8_t toggle_sync;
+};
+
+struct passo_spi_wires {
+	bool frame_start, frame_end, word_valid;
+};
+
+struct passo_spi_wires passo_spi_wires(const struct passo_spi *spi);
+void passo_spi_reset(struct passo_spi *spi);
+/* SCLK edges since the last clock, then the edge of clk. */
+void passo_spi_clock(struct passo_spi *spi, bool sclk_was, bool sclk, bool mosi, bool cs_n, uint32_t reply_word);
+
+struct passo_crc {
+	uint32_t crc;
+	uint32_t word;
+	uint8_t busy; /* clocks until crc includes the word */
+};
+
+void passo_crc_clock(struct passo_crc *crc, bool restart, bool start, uint32_t word);
+
+struct passo_bus {
+	bool frame, check, write, read, push;
+	uint16_t address;
+	uint32_t data;
+};
+
+struct passo_response {
+	bool claim;
+	uint8_t refusal;
+	uint32_t read_data;
+};
+
+enum passo_link_step {
+	PASSO_LINK_IDLE,
+	PASSO_LINK_HEADER,
+	PASSO_LINK_PAYLOAD,
+	PASSO_LINK_CRC,
+	PASSO_LINK_VERDICT,
+	PASSO_LINK_REPLAY,
+	PASSO_LINK_READ,
+	PASSO_LINK_SEND,
+	PASSO_LINK_DONE
+};
+
+struct passo_link {
+	enum passo_link_step step;
+	uint8_t phase;
+	uint32_t header;
+	uint8_t index;
+	bool sequence_known;
+	uint8_t last_sequence;
+	uint8_t verdict;
+	bool answer_due;
+	bool crc_restart, crc_start;
+	uint32_t crc_word;
+	struct passo_crc crc;
+	bool stage_high, stage_low;
+	uint32_t payload[64];
+	uint32_t reply_word;
+	bool refused;
+	uint8_t refused_verdict;
+	struct passo_bus bus;
+};
+
+struct passo_link_wires {
+	struct passo_spi_wires spi;
+	uint32_t word;
+	uint32_t status;
+	struct passo_response response;
+	bool incomplete;
+};
+
+void passo_link_reset(struct passo_link *link);
+void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wires);
+/* Nothing changes in the link until the next word or chip select edge. */
+bool passo_link_quiet(const struct passo_link *link);
+
+struct passo_registers {
+	uint8_t run;
+	uint8_t wait_sync;
+	uint8_t status_channel;
+	uint8_t refusals[8]; /* BAD_CRC first */
+};
+
+/* ---- tables ------------------------------------------------------------------------------------------------- */
+
+struct passo_tables {
+	uint16_t points[3][PASSO_TABLE_POINTS];
+	uint8_t slot; /* 2 * channel + second */
+};
+
+/* ---- channel ------------------------------------------------------------------------------------------------ */
+
+struct passo_line_queue {
+	uint8_t index;
+	uint16_t write_line, next_line, current_line; /* one bit more than the address */
+	uint16_t checked;
+	uint32_t checked_substeps;
+	uint16_t room;
+	bool next_valid;
+	struct passo_line lines[PASSO_LINE_QUEUE_MAX];
+	/* outputs of the block RAM */
+	bool next_last, next_endless;
+	uint8_t next_directions;
+	uint32_t next_minus_substeps;
+	uint32_t steps[PASSO_AXES_MAX];
+};
+
+struct passo_ramp_queue {
+	uint8_t index;
+	uint16_t write_ramp, read_ramp, now_ramp;
+	uint16_t checked;
+	bool velocity_is_max;
+	bool write_low;
+	bool is_now;
+	bool now_pending;
+	uint16_t room;
+	uint32_t words[PASSO_RAMP_QUEUE_MAX][5];
+};
+
+struct passo_timescale {
+	uint32_t rate, goal, slew; /* UQ1.16 */
+	int32_t distance;
+	uint32_t rate_sum;
+	bool enable;
+};
+
+enum passo_ramp_step { PASSO_RAMP_IDLE, PASSO_RAMP_CHOOSE, PASSO_RAMP_LOAD, PASSO_RAMP_WORK };
+
+struct passo_ramp_unit {
+	enum passo_ramp_step step;
+	uint32_t wait; /* clocks until LOAD or WORK (shape and scale) is done */
+	bool take_now;
+	bool last, mirror;
+	enum passo_shape shape;
+	uint64_t v_start, v_end;
+	uint32_t ticks;
+	uint64_t progress, progress_step;
+	uint32_t tick_count;
+	bool ready, ends_next, dry;
+	uint64_t velocity, velocity_next;
+};
+
+struct passo_path {
+	uint32_t phase_low, phase_high, velocity_high_q; /* 24 bits each */
+	bool phase_low_carry;
+	bool advance_q;
+	bool substep;
+};
+
+struct passo_line_unit {
+	bool active, last, endless, ended, underrun;
+	uint32_t minus_substeps;
+	int64_t remaining;
+	bool remaining_bump;
+	uint8_t directions, directions_next;
+	bool slot_add, slot_load, slot_step, slot_load_q;
+};
+
+struct passo_dda {
+	int64_t e_minus_m;
+	int64_t addend;
+};
+
+enum passo_axis_state {
+	PASSO_AXIS_READY,
+	PASSO_AXIS_HIGH,
+	PASSO_AXIS_LOW,
+	PASSO_AXIS_HOLD,
+	PASSO_AXIS_SETUP
+};
+
+struct passo_axis_settings {
+	uint16_t step_high, step_low, dir_setup, dir_hold; /* clocks */
+	bool enable, step_inverted, direction_inverted, enable_inverted, both_edges;
+};
+
+struct passo_axis {
+	struct passo_axis_settings settings;
+	enum passo_axis_state state;
+	uint16_t timer;
+	uint8_t waiting, waiting_count;
+	bool step, dir;
+	bool step_begins_q, dir_q;
+	bool overrun;
+	uint32_t position, position_snapshot;
+	uint8_t lost;
+	bool step_pin, dir_pin, enable_pin;
+};
+
+struct passo_motion {
+	enum passo_state state;
+	enum passo_cause cause;
+	enum passo_cause soft_cause;
+	bool stopping;
+	uint16_t drained;
+	uint8_t count;
+	bool running;
+};
+
+struct passo_channel_registers {
+	uint32_t rate_target, rate_slew, stop_slew; /* UQ1.16 */
+	uint32_t drain_velocity;                    /* UQ0.32 */
+	bool command_stop, command_abort, command_clear, command_zero;
+};
+
+struct passo_channel {
+	uint8_t axes;
+	uint8_t number;
+	struct passo_channel_registers registers;
+	struct passo_line_queue line_queue;
+	struct passo_ramp_queue ramp_queue;
+	struct passo_motion motion;
+	struct passo_timescale timescale;
+	struct passo_ramp_unit ramp;
+	struct passo_path path;
+	struct passo_line_unit line;
+	struct passo_dda dda[PASSO_AXES_MAX];
+	struct passo_axis axis[PASSO_AXES_MAX];
+};
+
+/* What the core gives to a channel. */
+struct passo_channel_inputs {
+	const struct passo_parameters *parameters;
+	const struct passo_tables *tables;
+	const struct passo_bus *bus;
+	bool run, wait_sync, sync_edge, slew_tick, snapshot;
+};
+
+/* The wires of a channel, from the state before the edge. */
+struct passo_channel_wires {
+	bool selected;          /* the bus address is in this channel */
+	uint8_t bus_address;    /* within the channel */
+	bool line_push, ramp_push;
+	bool occupied, moving, counting, drain;
+	bool ramp_valid;
+	bool prepare, begin_profile;
+	bool advance, tick, next, ramp_ended;
+	bool substep_taken, line_done, take;
+	bool overrun;
+	bool finished, halt;
+	enum passo_cause cause;
+};
+
+void passo_line_queue_clock(struct passo_line_queue *queue, const struct passo_parameters *parameters,
+    const struct passo_bus *bus, const struct passo_channel_wires *wires);
+uint8_t passo_line_queue_refusal(const struct passo_line_queue *queue, const struct passo_parameters *parameters,
+    const struct passo_bus *bus, bool blocked);
+
+bool passo_ramp_queue_valid(const struct passo_ramp_queue *queue);
+void passo_ramp_queue_clock(struct passo_ramp_queue *queue, const struct passo_parameters *parameters,
+    const struct passo_bus *bus, const struct passo_channel_wires *wires, bool take, bool take_now);
+uint8_t passo_ramp_queue_refusal(const struct passo_ramp_queue *queue, const struct passo_bus *bus, bool blocked);
+/* The oldest ramp. */
+struct passo_ramp passo_ramp_queue_front(const struct passo_ramp_queue *queue, const struct passo_parameters *parameters);
+
+void passo_timescale_clock(struct passo_timescale *timescale, const struct passo_channel_registers *registers,
+    bool moving, bool stopping, bool slew_tick);
+
+/* s as UQ1.24 for progress u as UQ0.48. */
+uint32_t passo_shape_value(const struct passo_tables *tables, enum passo_shape shape, bool mirror, uint64_t progress);
+/* v_start + floor((v_end - v_start) * s) */
+uint64_t passo_scale_velocity(uint64_t v_start, uint64_t v_end, uint32_t s);
+/* Clocks from STEP_CHOOSE to the clock that makes velocity_next ready. */
+uint32_t passo_ramp_latency(const struct passo_ramp_unit *ramp, const struct passo_tables *tables,
+    const struct passo_parameters *parameters, uint8_t channel);
+/* Makes the velocity of one tick of the present ramp: velocity_next. */
+void passo_ramp_make_velocity(struct passo_ramp_unit *ramp, const struct passo_tables *tables);
+void passo_ramp_clock(struct passo_ramp_unit *ramp, const struct passo_channel *channel,
+    const struct passo_channel_inputs *inputs, const struct passo_channel_wires *wires, bool *take, bool *take_now);
+
+void passo_path_clock(struct passo_path *path, bool restart, bool advance, uint64_t velocity);
+
+int64_t passo_line_broadcast(const struct passo_line_unit *line);
+void passo_line_clock(struct passo_line_unit *line, const struct passo_line_queue *queue,
+    const struct passo_channel_wires *wires);
+
+bool passo_dda_step_request(const struct passo_dda *dda, const struct passo_line_unit *line);
+void passo_dda_clock(struct passo_dda *dda, const struct passo_line_unit *line, uint32_t steps);
+
+struct passo_axis_wires {
+	bool step_request, direction;
+	bool drop, zero, clear, snapshot;
+};
+
+void passo_axis_reset(struct passo_axis *axis);
+void passo_axis_clock(struct passo_axis *axis, const struct passo_axis_wires *wires);
+/* Nothing but the timer moves for so many clocks; 0 if the next clock may change something. */
+uint32_t passo_axis_quiet(const struct passo_axis *axis, bool line_direction);
+void passo_axis_skip(struct passo_axis *axis, uint64_t clocks);
+
+void passo_motion_wires(const struct passo_channel *channel, const struct passo_channel_inputs *inputs,
+    struct passo_channel_wires *wires);
+void passo_motion_clock(
+    struct passo_motion *motion, const struct passo_channel *channel, const struct passo_channel_wires *wires);
+
+/* Answer of a channel to the strobe on the bus. */
+struct passo_response passo_channel_respond(const struct passo_channel *channel, const struct passo_channel_inputs *inputs);
+void passo_channel_registers_reset(struct passo_channel_registers *registers);
+void passo_channel_registers_clock(struct passo_channel_registers *registers, const struct passo_bus *bus, bool selected);
+void passo_axis_registers_write(struct passo_axis_settings *settings, uint8_t address, uint32_t data);
+
+void passo_channel_reset(struct passo_channel *channel, const struct passo_parameters *parameters, uint8_t number);
+void passo_channel_clock(struct passo_channel *channel, const struct passo_channel_inputs *inputs);
+bool passo_channel_stopped(const struct passo_channel *channel);
+bool passo_channel_occupied(const struct passo_channel *channel);
+bool passo_channel_incomplete(const struct passo_channel *channel);
+/* How many clocks may be skipped, up to `limit`, and the skip itself. */
+uint64_t passo_channel_quiet(const struct passo_channel *channel, const struct passo_channel_inputs *inputs, uint64_t limit);
+void passo_channel_skip(struct passo_channel *channel, const struct passo_channel_inputs *inputs, uint64_t clocks);
+
+#endif

@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: MIT
+ * Motion: when a channel starts, ends and stops, and why. See rtl/passo_motion.v.
+ */
+#include "passo_model.h"
+
+enum { SETTLE_LAST = 4, START_LAST = 6 };
+
+static bool stop_now(const struct passo_channel *channel, const struct passo_channel_wires *wires)
+{
+	const bool rate_is_zero = channel->timescale.rate == 0u;
+	return channel->registers.command_abort || (wires->moving && (wires->overrun || channel->line.underrun))
+	       || (channel->motion.stopping && (rate_is_zero || wires->finished || !wires->moving));
+}
+
+static enum passo_cause cause_now(const struct passo_channel *channel, const struct passo_channel_wires *wires)
+{
+	if (channel->registers.command_abort)
+		return PASSO_CAUSE_ABORT;
+	if (wires->moving && wires->overrun)
+		return PASSO_CAUSE_STEP_OVERRUN;
+	if (wires->moving && channel->line.underrun)
+		return PASSO_CAUSE_LINE_UNDERRUN;
+	return channel->motion.soft_cause;
+}
+
+void passo_motion_wires(const struct passo_channel *channel, const struct passo_channel_inputs *inputs,
+    struct passo_channel_wires *wires)
+{
+	const struct passo_motion *motion = &channel->motion;
+	const enum passo_state state = motion->state;
+	const bool line_over = channel->line.ended;
+
+	wires->occupied = state != PASSO_STATE_IDLE && state != PASSO_STATE_STOPPED;
+	wires->moving = state == PASSO_STATE_RUN || state == PASSO_STATE_SETTLE || state == PASSO_STATE_DRAIN;
+	wires->counting = state == PASSO_STATE_RUN || state == PASSO_STATE_DRAIN;
+	wires->drain = state == PASSO_STATE_DRAIN;
+	wires->prepare = state == PASSO_STATE_IDLE && inputs->run && channel->line_queue.next_valid && wires->ramp_valid;
+	wires->begin_profile = (state == PASSO_STATE_PREPARE && channel->ramp.ready && !inputs->wait_sync)
+	                       || (state == PASSO_STATE_ARMED && inputs->sync_edge);
+	wires->finished = (state == PASSO_STATE_SETTLE && motion->count == SETTLE_LAST && (line_over || channel->line.endless))
+	                  || (state == PASSO_STATE_DRAIN && line_over);
+	wires->halt = stop_now(channel, wires) && state != PASSO_STATE_STOPPED;
+	wires->cause = cause_now(channel, wires);
+}
+
+void passo_motion_clock(
+    struct passo_motion *motion, const struct passo_channel *channel, const struct passo_channel_wires *wires)
+{
+	const enum passo_state state = motion->state;
+	const uint8_t count = motion->count;
+	const bool dry = channel->ramp.dry && !channel->line.endless;
+	const struct passo_channel_registers *registers = &channel->registers;
+
+	motion->count = (count + 1u) & 7u;
+	if (wires->prepare)
+		motion->state = PASSO_STATE_PREPARE;
+	if (state == PASSO_STATE_PREPARE && channel->ramp.ready)
+		motion->state = PASSO_STATE_ARMED;
+	if (state == PASSO_STATE_RUN && wires->ramp_ended)
+		motion->state = PASSO_STATE_SETTLE;
+	if (state == PASSO_STATE_SETTLE && count == SETTLE_LAST)
+		motion->state = PASSO_STATE_DRAIN;
+	if (wires->begin_profile)
+		motion->state = wires->ramp_ended ? PASSO_STATE_SETTLE : PASSO_STATE_RUN;
+	if (wires->finished)
+		motion->state = PASSO_STATE_IDLE;
+	if (state != PASSO_STATE_RUN || count == START_LAST)
+		motion->running = wires->moving;
+
+	if (state == PASSO_STATE_RUN && count == START_LAST)
+		motion->count = START_LAST;
+	if (wires->begin_profile || (state == PASSO_STATE_RUN && wires->ramp_ended))
+		motion->count = 0;
+
+	if (wires->drain && channel->path.substep && !channel->line.ended)
+		motion->drained++;
+
+	if (!motion->stopping && state != PASSO_STATE_STOPPED) {
+		if (registers->command_stop)
+			motion->soft_cause = PASSO_CAUSE_STOP;
+		else if (dry)
+			motion->soft_cause = PASSO_CAUSE_RAMP_UNDERRUN;
+		motion->stopping = registers->command_stop || dry;
+	}
+
+	if (state == PASSO_STATE_STOPPED && registers->command_clear) {
+		motion->state = PASSO_STATE_IDLE;
+		motion->cause = PASSO_CAUSE_NONE;
+	}
+	if (wires->halt) {
+		motion->state = PASSO_STATE_STOPPED;
+		motion->cause = wires->cause;
+		motion->stopping = false;
+		motion->running = false;
+	}
+}

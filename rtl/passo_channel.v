@@ -1,0 +1,431 @@
+// SPDX-License-Identifier: MIT
+// Channel: one coordinated group of AXES axes, from the queues to the pins. Wiring only.
+//
+// Promise: a step due n enabled clocks into the profile leaves its pin n clocks after `running` rose.
+`resetall
+`default_nettype none
+
+module passo_channel #(
+  parameter AXES            = 4,
+  parameter TICK_LOG2       = 7,
+  parameter LINE_QUEUE_LOG2 = 8,
+  parameter RAMP_QUEUE_LOG2 = 4
+) (
+  input  wire                     clk,
+  input  wire                     rst,
+  // bus
+  input  wire                     bus_frame,
+  input  wire                     bus_check,
+  input  wire                     bus_write,
+  input  wire                     bus_read,
+  input  wire                     bus_push,
+  input  wire                     select,
+  input  wire [              7:0] bus_address,
+  input  wire [             31:0] bus_data,
+  output reg                      claim,
+  output reg  [              3:0] refusal,
+  output reg  [             31:0] read_data,
+  output wire                     incomplete,
+  // core
+  input  wire                     run,
+  input  wire                     wait_sync,
+  input  wire                     sync_edge,
+  input  wire                     slew_tick,
+  input  wire                     snapshot,
+  output wire                     stopped,
+  output wire                     occupied,
+  output wire [LINE_QUEUE_LOG2:0] line_room,
+  output wire [RAMP_QUEUE_LOG2:0] ramp_room,
+  // tables
+  output wire                     table_request,
+  output wire [              9:0] table_address,
+  input  wire                     table_served,
+  input  wire [             15:0] table_point,
+  input  wire [             15:0] table_point_next,
+  // pins
+  output wire [         AXES-1:0] step,
+  output wire [         AXES-1:0] dir,
+  output wire [         AXES-1:0] enable,
+  output wire                     running
+);
+
+  `include "passo_registers.vh"
+
+  // registers
+  wire            select_line_queue;
+  wire            select_ramp_queue;
+  wire [AXES-1:0] select_axis;
+  wire [AXES-1:0] select_position;
+  wire [    16:0] rate_target;
+  wire [    16:0] rate_slew;
+  wire [    16:0] stop_slew;
+  wire [    31:0] drain_velocity;
+  wire            command_stop;
+  wire            command_abort;
+  wire            command_clear;
+  wire            command_zero;
+
+  // motion
+  wire [ 2:0] state;
+  wire [ 2:0] cause;
+  wire        stopping;
+  wire [15:0] drained;
+  wire        moving;
+  wire        counting;
+  wire        prepare;
+  wire        begin_profile;
+  wire        drain;
+  wire        release_line;
+  wire        halt;
+
+  // when: timescale, ramp, path
+  wire [16:0] rate;
+  wire        enabled;
+  wire        stall;
+  wire        advance = enabled & counting & ~stall;
+  wire        ramp_valid;
+  wire        ramp_now_pending;
+  wire        ramp_take;
+  wire        ramp_take_now;
+  wire [ 3:0] ramp_half_index;
+  wire [15:0] ramp_half;
+  wire        ramp_ready;
+  wire        ramp_ended;
+  wire        ramp_dry;
+  wire [47:0] velocity;
+  wire        substep;
+
+  // where: lines, DDAs
+  wire                      line_valid;
+  wire                      line_last;
+  wire                      line_endless;
+  wire        [   AXES-1:0] line_directions;
+  wire        [       31:0] line_minus_substeps;
+  wire        [AXES*32-1:0] steps;
+  wire                      line_take;
+  wire                      slot_add;
+  wire                      slot_load;
+  wire                      slot_step;
+  wire                      slot_load_q;
+  wire signed [       32:0] broadcast;
+  wire        [   AXES-1:0] directions;
+  wire                      current_endless;
+  wire                      line_ended;
+  wire                      line_underrun;
+
+  // axes
+  wire [   AXES-1:0] overrun;
+  wire [   AXES-1:0] was_overrun;
+  wire [   AXES-1:0] axis_claim;
+  wire [ AXES*4-1:0] axis_refusal;
+  wire [AXES*32-1:0] axis_read_data;
+
+  assign stopped = state == STATE_STOPPED;
+
+  wire        registers_claim;
+  wire [ 3:0] registers_refusal;
+  wire [31:0] registers_read_data;
+  wire [ 3:0] line_refusal;
+  wire [ 3:0] ramp_refusal;
+  wire        line_incomplete;
+  wire        ramp_incomplete;
+
+  assign incomplete = line_incomplete | ramp_incomplete;
+
+  // Whoever is not meant answers 0.
+  integer i;
+  always @* begin
+    claim     = registers_claim | (axis_claim != {AXES{1'b0}});
+    refusal   = registers_refusal | line_refusal | ramp_refusal;
+    read_data = registers_read_data;
+    for (i = 0; i < AXES; i = i + 1) begin
+      refusal   = refusal | axis_refusal[i*4+:4];
+      read_data = read_data | axis_read_data[i*32+:32];
+    end
+  end
+
+  passo_channel_registers #(
+    .AXES           (AXES),
+    .LINE_QUEUE_LOG2(LINE_QUEUE_LOG2),
+    .RAMP_QUEUE_LOG2(RAMP_QUEUE_LOG2)
+  ) u_registers (
+    .clk              (clk),
+    .rst              (rst),
+    .bus_check        (bus_check),
+    .bus_write        (bus_write),
+    .bus_read         (bus_read),
+    .bus_push         (bus_push),
+    .select           (select),
+    .bus_address      (bus_address),
+    .bus_data         (bus_data),
+    .claim            (registers_claim),
+    .refusal          (registers_refusal),
+    .read_data        (registers_read_data),
+    .select_line_queue(select_line_queue),
+    .select_ramp_queue(select_ramp_queue),
+    .select_axis      (select_axis),
+    .select_position  (select_position),
+    .rate_target      (rate_target),
+    .rate_slew        (rate_slew),
+    .stop_slew        (stop_slew),
+    .drain_velocity   (drain_velocity),
+    .command_stop     (command_stop),
+    .command_abort    (command_abort),
+    .command_clear    (command_clear),
+    .command_zero     (command_zero),
+    .occupied         (occupied),
+    .state            (state),
+    .cause            (cause),
+    .stopping         (stopping),
+    .overrun          (was_overrun),
+    .drained          (drained),
+    .rate             (rate),
+    .velocity         (velocity[47:16]),
+    .line_room        (line_room),
+    .ramp_room        (ramp_room)
+  );
+
+  passo_line_queue #(
+    .AXES      (AXES),
+    .DEPTH_LOG2(LINE_QUEUE_LOG2)
+  ) u_line_queue (
+    .clk                (clk),
+    .rst                (rst),
+    .bus_frame          (bus_frame),
+    .bus_check          (bus_check),
+    .bus_write          (bus_write),
+    .select             (select_line_queue),
+    .bus_data           (bus_data),
+    .blocked            (stopped),
+    .refusal            (line_refusal),
+    .incomplete         (line_incomplete),
+    .room               (line_room),
+    .take               (line_take),
+    .release_line       (release_line),
+    .flush              (halt),
+    .next_valid         (line_valid),
+    .next_last          (line_last),
+    .next_endless       (line_endless),
+    .next_directions    (line_directions),
+    .next_minus_substeps(line_minus_substeps),
+    .steps              (steps)
+  );
+
+  passo_ramp_queue #(
+    .DEPTH_LOG2(RAMP_QUEUE_LOG2)
+  ) u_ramp_queue (
+    .clk        (clk),
+    .rst        (rst),
+    .bus_frame  (bus_frame),
+    .bus_check  (bus_check),
+    .bus_write  (bus_write),
+    .select     (select_ramp_queue),
+    .bus_data   (bus_data),
+    .blocked    (stopped),
+    .refusal    (ramp_refusal),
+    .incomplete (ramp_incomplete),
+    .room       (ramp_room),
+    .take       (ramp_take),
+    .take_now   (ramp_take_now),
+    .flush      (halt),
+    .valid      (ramp_valid),
+    .now_pending(ramp_now_pending),
+    .half_index (ramp_half_index),
+    .half       (ramp_half)
+  );
+
+  passo_motion u_motion (
+    .clk          (clk),
+    .rst          (rst),
+    .run          (run),
+    .wait_sync    (wait_sync),
+    .sync_edge    (sync_edge),
+    .command_stop (command_stop),
+    .command_abort(command_abort),
+    .command_clear(command_clear),
+    .state        (state),
+    .cause        (cause),
+    .stopping     (stopping),
+    .drained      (drained),
+    .occupied     (occupied),
+    .moving       (moving),
+    .counting     (counting),
+    .rate_is_zero (rate == 17'd0),
+    .ramp_valid   (ramp_valid),
+    .ramp_ready   (ramp_ready),
+    .ramp_ended   (ramp_ended),
+    .ramp_dry     (ramp_dry),
+    .prepare      (prepare),
+    .begin_profile(begin_profile),
+    .drain        (drain),
+    .line_valid   (line_valid),
+    .line_ended   (line_ended),
+    .line_endless (current_endless),
+    .line_underrun(line_underrun),
+    .substep_made (substep),
+    .step_overrun (overrun != {AXES{1'b0}}),
+    .release_line (release_line),
+    .halt         (halt),
+    .running      (running)
+  );
+
+  passo_timescale u_timescale (
+    .clk        (clk),
+    .rst        (rst),
+    .slew_tick  (slew_tick),
+    .moving     (moving),
+    .stopping   (stopping),
+    .rate_target(rate_target),
+    .rate_slew  (rate_slew),
+    .stop_slew  (stop_slew),
+    .rate       (rate),
+    .enable     (enabled)
+  );
+
+  passo_ramp #(
+    .TICK_LOG2(TICK_LOG2)
+  ) u_ramp (
+    .clk             (clk),
+    .rst             (rst),
+    .prepare         (prepare),
+    .begin_profile   (begin_profile),
+    .halt            (halt),
+    .drain           (drain),
+    .drain_velocity  (drain_velocity),
+    .ready           (ramp_ready),
+    .ended           (ramp_ended),
+    .dry             (ramp_dry),
+    .advance         (advance),
+    .stall           (stall),
+    .velocity        (velocity),
+    .ramp_valid      (ramp_valid),
+    .ramp_now_pending(ramp_now_pending),
+    .ramp_take       (ramp_take),
+    .ramp_take_now   (ramp_take_now),
+    .ramp_half_index (ramp_half_index),
+    .ramp_half       (ramp_half),
+    .table_request   (table_request),
+    .table_address   (table_address),
+    .table_served    (table_served),
+    .table_point     (table_point),
+    .table_point_next(table_point_next)
+  );
+
+  passo_path u_path (
+    .clk     (clk),
+    .rst     (rst),
+    .restart (prepare),
+    .advance (advance),
+    .velocity(velocity),
+    .substep (substep)
+  );
+
+  passo_line #(
+    .AXES(AXES)
+  ) u_line (
+    .clk                (clk),
+    .rst                (rst),
+    .start              (prepare),
+    .stop               (halt),
+    .substep            (substep),
+    .next_valid         (line_valid),
+    .next_last          (line_last),
+    .next_endless       (line_endless),
+    .next_directions    (line_directions),
+    .next_minus_substeps(line_minus_substeps),
+    .take               (line_take),
+    .slot_add           (slot_add),
+    .slot_load          (slot_load),
+    .slot_step          (slot_step),
+    .slot_load_q        (slot_load_q),
+    .broadcast          (broadcast),
+    .directions         (directions),
+    .endless            (current_endless),
+    .ended              (line_ended),
+    .underrun           (line_underrun)
+  );
+
+  genvar axis;
+  generate
+    for (axis = 0; axis < AXES; axis = axis + 1) begin : g_axis
+      wire        step_request;
+      wire [31:0] position;
+      wire [15:0] step_high;
+      wire [15:0] step_low;
+      wire [15:0] dir_setup;
+      wire [15:0] dir_hold;
+      wire        both_edges;
+      wire        step_inverted;
+      wire        direction_inverted;
+      wire        enable_wanted;
+      wire        enable_inverted;
+
+      passo_dda u_dda (
+        .clk         (clk),
+        .slot_add    (slot_add),
+        .slot_load   (slot_load),
+        .slot_step   (slot_step),
+        .slot_load_q (slot_load_q),
+        .broadcast   (broadcast),
+        .steps       (steps[axis*32+:32]),
+        .step_request(step_request)
+      );
+
+      passo_axis u_axis (
+        .clk               (clk),
+        .rst               (rst),
+        .step_request      (step_request),
+        .direction         (directions[axis]),
+        .line_direction    (directions[axis]),
+        .drop              (command_abort),
+        .zero              (command_zero),
+        .overrun           (overrun[axis]),
+        .position          (position),
+        .step_high         (step_high),
+        .step_low          (step_low),
+        .dir_setup         (dir_setup),
+        .dir_hold          (dir_hold),
+        .both_edges        (both_edges),
+        .step_inverted     (step_inverted),
+        .direction_inverted(direction_inverted),
+        .enable            (enable_wanted),
+        .enable_inverted   (enable_inverted),
+        .step_pin          (step[axis]),
+        .dir_pin           (dir[axis]),
+        .enable_pin        (enable[axis])
+      );
+
+      passo_axis_registers u_registers (
+        .clk               (clk),
+        .rst               (rst),
+        .bus_check         (bus_check),
+        .bus_write         (bus_write),
+        .bus_read          (bus_read),
+        .bus_push          (bus_push),
+        .select            (select_axis[axis]),
+        .select_position   (select_position[axis]),
+        .bus_address       (bus_address[2:0]),
+        .bus_data          (bus_data),
+        .claim             (axis_claim[axis]),
+        .refusal           (axis_refusal[axis*4+:4]),
+        .read_data         (axis_read_data[axis*32+:32]),
+        .snapshot          (snapshot),
+        .position          (position),
+        .overrun           (overrun[axis]),
+        .clear             (command_clear),
+        .was_overrun       (was_overrun[axis]),
+        .step_high         (step_high),
+        .step_low          (step_low),
+        .dir_setup         (dir_setup),
+        .dir_hold          (dir_hold),
+        .both_edges        (both_edges),
+        .step_inverted     (step_inverted),
+        .direction_inverted(direction_inverted),
+        .enable            (enable_wanted),
+        .enable_inverted   (enable_inverted)
+      );
+    end
+  endgenerate
+
+endmodule
+`resetall

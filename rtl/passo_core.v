@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: MIT
+// Passo: a step-pulse generator. SPI in, STEP/DIR out, CHANNELS independent groups of AXES coordinated axes. Wiring, and
+// what the channels share: the sync input and the slew tick.
+//
+// Clock: clk at least four times SCLK. Reset: rst synchronous, active high.
+// Latency: a rising edge of `sync` starts the armed channels 3 clocks later.
+`resetall
+`default_nettype none
+
+module passo_core #(
+  parameter CHANNELS        = 1,  // 1 .. 8
+  parameter AXES            = 4,  // per channel, 1 .. 8
+  parameter TICK_LOG2       = 7,  // clocks per tick, 7 .. 16
+  parameter LINE_QUEUE_LOG2 = 8,  // places for lines, 2 .. 8
+  parameter RAMP_QUEUE_LOG2 = 4   // places for ramps, 2 .. 8
+) (
+  input  wire                     clk,
+  input  wire                     rst,
+  // SPI, mode 0
+  input  wire                     spi_sclk,
+  input  wire                     spi_mosi,
+  input  wire                     spi_cs_n,
+  output wire                     spi_miso,
+  output wire                     spi_miso_enable,  // drive the pin
+  // start of several chips on one edge
+  input  wire                     sync,
+  // drives: bit channel * AXES + axis
+  output wire [CHANNELS*AXES-1:0] step,
+  output wire [CHANNELS*AXES-1:0] dir,
+  output wire [CHANNELS*AXES-1:0] enable,
+  // to the host
+  output wire [     CHANNELS-1:0] running,
+  output reg                      irq               // some channel is stopped
+);
+
+  `include "passo_registers.vh"
+
+  generate
+    if (CHANNELS < 1 || CHANNELS > 8) begin : g_bad_channels
+      passo_parameter_CHANNELS_must_be_1_to_8 u_error ();
+    end
+    if (AXES < 1 || AXES > 8) begin : g_bad_axes
+      passo_parameter_AXES_must_be_1_to_8 u_error ();
+    end
+    if (TICK_LOG2 < 7 || TICK_LOG2 > 16) begin : g_bad_tick
+      passo_parameter_TICK_LOG2_must_be_7_to_16 u_error ();
+    end
+    if (LINE_QUEUE_LOG2 < 2 || LINE_QUEUE_LOG2 > 8) begin : g_bad_line_queue
+      passo_parameter_LINE_QUEUE_LOG2_must_be_2_to_8 u_error ();
+    end
+    if (RAMP_QUEUE_LOG2 < 2 || RAMP_QUEUE_LOG2 > 8) begin : g_bad_ramp_queue
+      passo_parameter_RAMP_QUEUE_LOG2_must_be_2_to_8 u_error ();
+    end
+  endgenerate
+
+  // link
+  wire        frame_start;
+  wire        frame_end;
+  wire        word_valid;
+  wire [31:0] word;
+  wire [31:0] reply_word;
+  wire [31:0] status;
+  wire [ 7:0] last_sequence;
+  wire        refused;
+  wire [ 3:0] refused_verdict;
+
+  // bus
+  wire        bus_frame;
+  wire        bus_check;
+  wire        bus_write;
+  wire        bus_read;
+  wire        bus_push;
+  wire [11:0] bus_address;
+  wire [31:0] bus_data;
+  reg         bus_claim;
+  reg  [ 3:0] bus_refusal;
+  reg  [31:0] bus_read_data;
+
+  wire                   registers_claim;
+  wire [            3:0] registers_refusal;
+  wire [           31:0] registers_read_data;
+  wire [            3:0] tables_refusal;
+  reg                    tables_claim;
+  wire [   CHANNELS-1:0] channel_claim;
+  wire [ CHANNELS*4-1:0] channel_refusal;
+  wire [CHANNELS*32-1:0] channel_read_data;
+  wire [   CHANNELS-1:0] channel_incomplete;
+
+  // channels
+  wire [                    CHANNELS-1:0] run;
+  wire [                    CHANNELS-1:0] wait_sync;
+  wire [                    CHANNELS-1:0] stopped;
+  wire [                    CHANNELS-1:0] occupied;
+  wire [CHANNELS*(LINE_QUEUE_LOG2+1)-1:0] line_room;
+  wire [CHANNELS*(RAMP_QUEUE_LOG2+1)-1:0] ramp_room;
+  wire [                    CHANNELS-1:0] table_request;
+  wire [                 CHANNELS*10-1:0] table_address;
+  wire [                    CHANNELS-1:0] table_served;
+  wire [                            15:0] table_point;
+  wire [                            15:0] table_point_next;
+
+  assign spi_miso_enable = ~spi_cs_n;
+
+  // Whoever is not meant answers 0.
+  integer i;
+  always @* begin
+    bus_claim     = registers_claim | tables_claim | (channel_claim != {CHANNELS{1'b0}});
+    bus_refusal   = registers_refusal | tables_refusal;
+    bus_read_data = registers_read_data;
+    for (i = 0; i < CHANNELS; i = i + 1) begin
+      bus_refusal   = bus_refusal | channel_refusal[i*4+:4];
+      bus_read_data = bus_read_data | channel_read_data[i*32+:32];
+    end
+  end
+
+  // Shape banks 1 .. 3 are the last three blocks of 256 addresses.
+  wire select_tables = bus_address[11:10] == ADDRESS_COSINE_BASE[11:10] && bus_address[9:8] != 2'd0;
+
+  reg  [          2:0] sync_q;
+  wire                 sync_edge = sync_q[1] & ~sync_q[2];
+  reg  [TICK_LOG2-1:0] slew_count;
+  reg                  slew_tick;
+
+  always @(posedge clk) begin
+    tables_claim <= select_tables & (bus_check | bus_read);
+    sync_q       <= {sync_q[1:0], sync};
+    slew_count   <= slew_count + 1'b1;
+    slew_tick    <= slew_count == {TICK_LOG2{1'b1}};
+    irq          <= stopped != {CHANNELS{1'b0}};
+    if (rst) begin
+      tables_claim <= 1'b0;
+      sync_q       <= 3'b111;
+      slew_count   <= {TICK_LOG2{1'b0}};
+      slew_tick    <= 1'b0;
+      irq          <= 1'b0;
+    end
+  end
+
+  passo_spi u_spi (
+    .clk        (clk),
+    .rst        (rst),
+    .spi_sclk   (spi_sclk),
+    .spi_mosi   (spi_mosi),
+    .spi_cs_n   (spi_cs_n),
+    .spi_miso   (spi_miso),
+    .frame_start(frame_start),
+    .frame_end  (frame_end),
+    .word_valid (word_valid),
+    .word       (word),
+    .reply_word (reply_word)
+  );
+
+  passo_link u_link (
+    .clk            (clk),
+    .rst            (rst),
+    .frame_start    (frame_start),
+    .frame_end      (frame_end),
+    .word_valid     (word_valid),
+    .word           (word),
+    .reply_word     (reply_word),
+    .status         (status),
+    .last_sequence  (last_sequence),
+    .refused        (refused),
+    .refused_verdict(refused_verdict),
+    .bus_frame      (bus_frame),
+    .bus_check      (bus_check),
+    .bus_write      (bus_write),
+    .bus_read       (bus_read),
+    .bus_push       (bus_push),
+    .bus_address    (bus_address),
+    .bus_data       (bus_data),
+    .bus_claim      (bus_claim),
+    .bus_refusal    (bus_refusal),
+    .bus_read_data  (bus_read_data),
+    .bus_incomplete (channel_incomplete != {CHANNELS{1'b0}})
+  );
+
+  passo_registers #(
+    .CHANNELS       (CHANNELS),
+    .AXES           (AXES),
+    .TICK_LOG2      (TICK_LOG2),
+    .LINE_QUEUE_LOG2(LINE_QUEUE_LOG2),
+    .RAMP_QUEUE_LOG2(RAMP_QUEUE_LOG2)
+  ) u_registers (
+    .clk            (clk),
+    .rst            (rst),
+    .bus_check      (bus_check),
+    .bus_write      (bus_write),
+    .bus_read       (bus_read),
+    .bus_push       (bus_push),
+    .bus_address    (bus_address),
+    .bus_data       (bus_data),
+    .claim          (registers_claim),
+    .refusal        (registers_refusal),
+    .read_data      (registers_read_data),
+    .last_sequence  (last_sequence),
+    .refused        (refused),
+    .refused_verdict(refused_verdict),
+    .status         (status),
+    .run            (run),
+    .wait_sync      (wait_sync),
+    .any_stopped    (stopped != {CHANNELS{1'b0}}),
+    .any_occupied   (occupied != {CHANNELS{1'b0}}),
+    .line_room      (line_room),
+    .ramp_room      (ramp_room)
+  );
+
+  passo_tables #(
+    .CHANNELS(CHANNELS)
+  ) u_tables (
+    .clk        (clk),
+    .rst        (rst),
+    .bus_check  (bus_check),
+    .bus_write  (bus_write),
+    .bus_read   (bus_read),
+    .bus_push   (bus_push),
+    .select     (select_tables),
+    .bus_address(bus_address[9:0]),
+    .bus_data   (bus_data),
+    .occupied   (occupied != {CHANNELS{1'b0}}),
+    .refusal    (tables_refusal),
+    .request    (table_request),
+    .address    (table_address),
+    .served     (table_served),
+    .point      (table_point),
+    .point_next (table_point_next)
+  );
+
+  genvar channel;
+  generate
+    for (channel = 0; channel < CHANNELS; channel = channel + 1) begin : g_channel
+      localparam [3:0] BLOCK = channel + 1;
+
+      passo_channel #(
+        .AXES           (AXES),
+        .TICK_LOG2      (TICK_LOG2),
+        .LINE_QUEUE_LOG2(LINE_QUEUE_LOG2),
+        .RAMP_QUEUE_LOG2(RAMP_QUEUE_LOG2)
+      ) u_channel (
+        .clk             (clk),
+        .rst             (rst),
+        .bus_frame       (bus_frame),
+        .bus_check       (bus_check),
+        .bus_write       (bus_write),
+        .bus_read        (bus_read),
+        .bus_push        (bus_push),
+        .select          (bus_address[11:8] == BLOCK),
+        .bus_address     (bus_address[7:0]),
+        .bus_data        (bus_data),
+        .claim           (channel_claim[channel]),
+        .refusal         (channel_refusal[channel*4+:4]),
+        .read_data       (channel_read_data[channel*32+:32]),
+        .incomplete      (channel_incomplete[channel]),
+        .run             (run[channel]),
+        .wait_sync       (wait_sync[channel]),
+        .sync_edge       (sync_edge),
+        .slew_tick       (slew_tick),
+        .snapshot        (frame_start),
+        .stopped         (stopped[channel]),
+        .occupied        (occupied[channel]),
+        .line_room       (line_room[channel*(LINE_QUEUE_LOG2+1)+:LINE_QUEUE_LOG2+1]),
+        .ramp_room       (ramp_room[channel*(RAMP_QUEUE_LOG2+1)+:RAMP_QUEUE_LOG2+1]),
+        .table_request   (table_request[channel]),
+        .table_address   (table_address[channel*10+:10]),
+        .table_served    (table_served[channel]),
+        .table_point     (table_point),
+        .table_point_next(table_point_next),
+        .step            (step[channel*AXES+:AXES]),
+        .dir             (dir[channel*AXES+:AXES]),
+        .enable          (enable[channel*AXES+:AXES]),
+        .running         (running[channel])
+      );
+    end
+  endgenerate
+
+endmodule
+`resetall

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+// Motion: when a channel starts, ends and stops, and why.
+//
+//   IDLE -> PREPARE -> (ARMED) -> RUN -> SETTLE -> (DRAIN) -> IDLE         anything -> STOPPED -> IDLE
+//
+// Promise: a motion starts when `run` is set and a line and a ramp are there. It ends when its profile has ended and its line has
+// ended (or is ENDLESS); what the line still lacks is drained and counted. A stop is soft (the rate goes to 0 first)
+// for COMMAND.STOP and RAMP_UNDERRUN, else at once. On the same clock ABORT wins, then STEP_OVERRUN, LINE_UNDERRUN,
+// a soft stop; a stop wins over the end of the motion.
+//
+// `running` is the motion as seen at the STEP pins: it rises 7 clocks after RUN begins and falls one clock after SETTLE, so that it
+// is high for as many clocks as the profile has.
+`resetall
+`default_nettype none
+
+module passo_motion (
+  input  wire        clk,
+  input  wire        rst,
+  // host
+  input  wire        run,
+  input  wire        wait_sync,
+  input  wire        sync_edge,
+  input  wire        command_stop,   // strobes
+  input  wire        command_abort,
+  input  wire        command_clear,
+  output reg  [ 2:0] state,
+  output reg  [ 2:0] cause,
+  output reg         stopping,
+  output reg  [15:0] drained,
+  // timescale
+  output wire        occupied,       // a motion is prepared or runs
+  output wire        moving,
+  output wire        counting,       // enabled clocks count: the profile runs, or substeps are drained
+  input  wire        rate_is_zero,
+  // ramp and path
+  input  wire        ramp_valid,
+  input  wire        ramp_ready,
+  input  wire        ramp_ended,
+  input  wire        ramp_dry,
+  output wire        prepare,        // strobe: first line, first velocity
+  output wire        begin_profile,  // strobe
+  output wire        drain,
+  // line
+  input  wire        line_valid,
+  input  wire        line_ended,
+  input  wire        line_endless,
+  input  wire        line_underrun,
+  input  wire        substep_made,
+  // axes
+  input  wire        step_overrun,
+  // queues
+  output wire        release_line,   // strobe: the motion is over
+  output wire        halt,           // strobe: stopped; forget everything
+  output reg         running
+);
+
+  `include "passo_registers.vh"
+
+  localparam [2:0] SETTLE_LAST = 3'd4;  // the last substep reaches the line 2 clocks after the profile's last clock
+  localparam [2:0] START_LAST = 3'd6;  // from RUN to the STEP pin
+
+  reg [2:0] count;
+  reg [2:0] soft_cause;
+
+  assign occupied = state != STATE_IDLE && state != STATE_STOPPED;
+  assign moving   = state == STATE_RUN || state == STATE_SETTLE || state == STATE_DRAIN;
+
+  wire startable = run & line_valid & ramp_valid;
+  wire finished = (state == STATE_SETTLE && count == SETTLE_LAST && (line_ended || line_endless))
+                  || (state == STATE_DRAIN && line_ended);
+  wire dry = ramp_dry & ~line_endless;
+
+  assign prepare = state == STATE_IDLE && startable;
+  assign begin_profile = (state == STATE_PREPARE && ramp_ready && !wait_sync) || (state == STATE_ARMED && sync_edge);
+  assign counting = state == STATE_RUN || state == STATE_DRAIN;
+  assign drain = state == STATE_DRAIN;
+  assign release_line = finished;
+
+  wire stop_now = command_abort | (moving & (step_overrun | line_underrun))
+                  | (stopping & (rate_is_zero | finished | ~moving));
+  wire [2:0] cause_now = command_abort              ? CAUSE_ABORT :
+                         moving & step_overrun   ? CAUSE_STEP_OVERRUN :
+                         moving & line_underrun  ? CAUSE_LINE_UNDERRUN : soft_cause;
+
+  assign halt = stop_now && state != STATE_STOPPED;
+
+  always @(posedge clk) begin
+    count <= count + 3'd1;
+    case (state)
+      STATE_IDLE:    if (startable) state <= STATE_PREPARE;
+      STATE_PREPARE: if (ramp_ready) state <= STATE_ARMED;
+      STATE_RUN:     if (ramp_ended) state <= STATE_SETTLE;
+      STATE_SETTLE:  if (count == SETTLE_LAST) state <= STATE_DRAIN;
+      default:       ;
+    endcase
+    if (begin_profile) state <= ramp_ended ? STATE_SETTLE : STATE_RUN;
+    if (finished) state <= STATE_IDLE;
+    if (state == STATE_RUN && count != START_LAST) running <= running;
+    else running <= moving;
+
+    // count: in RUN up to START_LAST, in SETTLE up to SETTLE_LAST
+    if (state == STATE_RUN && count == START_LAST) count <= START_LAST;
+    if (begin_profile || (state == STATE_RUN && ramp_ended)) count <= 3'd0;
+
+    if (state == STATE_DRAIN && substep_made && !line_ended) drained <= drained + 16'd1;
+
+    if (!stopping && state != STATE_STOPPED) begin
+      if (command_stop) soft_cause <= CAUSE_STOP;
+      else if (dry) soft_cause <= CAUSE_RAMP_UNDERRUN;
+      stopping <= command_stop | dry;
+    end
+
+    if (state == STATE_STOPPED && command_clear) begin
+      state <= STATE_IDLE;
+      cause <= CAUSE_NONE;
+    end
+    if (halt) begin
+      state    <= STATE_STOPPED;
+      cause    <= cause_now;
+      stopping <= 1'b0;
+      running  <= 1'b0;
+    end
+    if (rst) begin
+      state    <= STATE_IDLE;
+      cause    <= CAUSE_NONE;
+      stopping <= 1'b0;
+      drained  <= 16'd0;
+      running  <= 1'b0;
+    end
+  end
+
+endmodule
+`resetall

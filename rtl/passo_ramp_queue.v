@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+// Ramp queue: ramps in half words, 10 in a slot of 16, so that a few ramps take one block RAM.
+//
+// Promise: ramps come out whole and in order. `half` is half word `half_index` of the oldest ramp, one clock after the
+// index; `take` removes that ramp. A ramp with NOW raises `now_pending`; `take_now` drops all ramps before it, so that it is
+// the oldest. `flush` drops everything that is written.
+//
+// A push is checked word by word (`bus_check`): room for it after all ramps of this frame before it, a velocity of
+// at most 1/2, no reserved bits. `refusal` answers one clock later. A word is written in two clocks: upper half first.
+`resetall
+`default_nettype none
+
+module passo_ramp_queue #(
+  parameter DEPTH_LOG2 = 4
+) (
+  input  wire                clk,
+  input  wire                rst,
+  // bus; `select`: a push to this queue
+  input  wire                bus_frame,
+  input  wire                bus_check,
+  input  wire                bus_write,
+  input  wire                select,
+  input  wire [        31:0] bus_data,
+  input  wire                blocked,      // the channel is stopped
+  output reg  [         3:0] refusal,
+  output wire                incomplete,   // the frame so far ends within a ramp
+  output reg  [DEPTH_LOG2:0] room,         // in ramps
+  // to the ramp
+  input  wire                take,
+  input  wire                take_now,
+  input  wire                flush,
+  output wire                valid,
+  output reg                 now_pending,
+  input  wire [         3:0] half_index,
+  output wire [        15:0] half
+);
+
+  `include "passo_registers.vh"
+
+  localparam [2:0] INDEX_CONTROL = 3'd0;  // v_end(47:32), control
+  localparam [2:0] INDEX_STEP_HIGH = 3'd3;  // du(47:32)
+  localparam [2:0] INDEX_LAST = 3'd4;
+  localparam [15:0] CONTROL_DEFINED = 16'h0037;
+  localparam [15:0] VELOCITY_MAX_HIGH = 16'h8000;
+
+  // Writing
+  reg [         2:0] index;
+  reg [DEPTH_LOG2:0] write_ramp;
+  reg [DEPTH_LOG2:0] now_ramp;
+  reg [DEPTH_LOG2:0] checked;  // ramps of this frame
+  reg                velocity_is_max;  // as far as its upper bits tell
+  reg                write_low;  // second clock of a write
+  reg                is_now;
+
+  wire strobe = select & (bus_check | bus_write);
+  wire write_high = select & bus_write;
+
+  assign incomplete = index != INDEX_CONTROL;
+
+  always @(posedge clk) begin
+    write_low <= write_high;
+    if (strobe && index == INDEX_CONTROL) begin
+      velocity_is_max <= bus_data[31:16] == VELOCITY_MAX_HIGH;
+      is_now          <= bus_data[1];
+    end
+    if ((select && bus_check) || write_low) index <= index == INDEX_LAST ? INDEX_CONTROL : index + 3'd1;
+    if (select && bus_check && index == INDEX_LAST) checked <= checked + 1'b1;
+    if (take_now) now_pending <= 1'b0;
+    if (write_low && index == INDEX_LAST) begin
+      write_ramp <= write_ramp + 1'b1;
+      if (is_now) begin
+        now_ramp    <= write_ramp;
+        now_pending <= 1'b1;
+      end
+    end
+    if (rst || bus_frame) begin
+      index   <= INDEX_CONTROL;
+      checked <= {(DEPTH_LOG2 + 1) {1'b0}};
+    end
+    if (flush) now_pending <= 1'b0;
+    if (rst) begin
+      write_ramp  <= {(DEPTH_LOG2 + 1) {1'b0}};
+      write_low   <= 1'b0;
+      now_pending <= 1'b0;
+    end
+  end
+
+  always @(posedge clk) begin
+    refusal <= VERDICT_OK;
+    if (select && bus_check) begin
+      if (blocked) refusal <= VERDICT_BUSY;
+      else if (room == checked) refusal <= VERDICT_QUEUE_FULL;
+      else if (index == INDEX_CONTROL && (bus_data[15:0] & ~CONTROL_DEFINED) != 16'd0)
+        refusal <= VERDICT_BAD_VALUE;
+      else if (index == INDEX_CONTROL && bus_data[31:16] > VELOCITY_MAX_HIGH) refusal <= VERDICT_BAD_VALUE;
+      else if (index == INDEX_CONTROL + 3'd1 && velocity_is_max && bus_data != 32'd0)
+        refusal <= VERDICT_BAD_VALUE;
+      else if (index == INDEX_STEP_HIGH && bus_data[31:16] != 16'd0) refusal <= VERDICT_BAD_VALUE;
+    end
+  end
+
+  // Reading
+  reg [DEPTH_LOG2:0] read_ramp;
+
+  assign valid = read_ramp != write_ramp;
+
+  always @(posedge clk) begin
+    if (take) read_ramp <= read_ramp + 1'b1;
+    if (take_now) read_ramp <= now_ramp;
+    if (flush) read_ramp <= write_ramp;
+    room <= {1'b1, {DEPTH_LOG2{1'b0}}} - (write_ramp - read_ramp);
+    if (rst) read_ramp <= {(DEPTH_LOG2 + 1) {1'b0}};
+  end
+
+  passo_memory #(
+    .WIDTH     (16),
+    .DEPTH_LOG2(DEPTH_LOG2 + 4)
+  ) u_ramps (
+    .clk          (clk),
+    .write        (write_high | write_low),
+    .write_address({write_ramp[DEPTH_LOG2-1:0], index, write_low}),
+    .write_data   (write_low ? bus_data[15:0] : bus_data[31:16]),
+    .read_address ({read_ramp[DEPTH_LOG2-1:0], half_index}),
+    .read_data    (half)
+  );
+
+endmodule
+`resetall

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+// Registers of the core: identification, parameters, RUN, counters of refusals; and the status word.
+//
+// Promise: the answer to a strobe comes one clock later, for one clock; it is 0 unless one of these registers is meant.
+// RUN changes for all channels on the same clock.
+`resetall
+`default_nettype none
+
+module passo_registers #(
+  parameter CHANNELS        = 1,
+  parameter AXES            = 4,
+  parameter TICK_LOG2       = 7,
+  parameter LINE_QUEUE_LOG2 = 8,
+  parameter RAMP_QUEUE_LOG2 = 4
+) (
+  input  wire                                    clk,
+  input  wire                                    rst,
+  // bus
+  input  wire                                    bus_check,
+  input  wire                                    bus_write,
+  input  wire                                    bus_read,
+  input  wire                                    bus_push,
+  input  wire [                            11:0] bus_address,
+  input  wire [                            31:0] bus_data,
+  output reg                                     claim,
+  output reg  [                             3:0] refusal,
+  output reg  [                            31:0] read_data,
+  // link
+  input  wire [                             7:0] last_sequence,
+  input  wire                                    refused,          // strobe with refused_verdict
+  input  wire [                             3:0] refused_verdict,
+  output wire [                            31:0] status,
+  // channels
+  output reg  [                    CHANNELS-1:0] run,
+  output reg  [                    CHANNELS-1:0] wait_sync,
+  input  wire                                    any_stopped,
+  input  wire                                    any_occupied,
+  input  wire [CHANNELS*(LINE_QUEUE_LOG2+1)-1:0] line_room,
+  input  wire [CHANNELS*(RAMP_QUEUE_LOG2+1)-1:0] ramp_room
+);
+
+  `include "passo_registers.vh"
+
+  reg [2:0] status_channel;
+
+  // Room of one channel, 255 = 255 or more
+  wire [LINE_QUEUE_LOG2:0] status_line_room = line_room[status_channel*(LINE_QUEUE_LOG2+1)+:LINE_QUEUE_LOG2+1];
+  wire [RAMP_QUEUE_LOG2:0] status_ramp_room = ramp_room[status_channel*(RAMP_QUEUE_LOG2+1)+:RAMP_QUEUE_LOG2+1];
+  wire [15:0] wide_line_room = {{(15 - LINE_QUEUE_LOG2) {1'b0}}, status_line_room};
+  wire [15:0] wide_ramp_room = {{(15 - RAMP_QUEUE_LOG2) {1'b0}}, status_ramp_room};
+
+  assign status = {
+    2'b10,
+    any_stopped,
+    any_occupied,
+    1'b0,
+    status_channel,
+    last_sequence,
+    wide_line_room > 16'd255 ? 8'd255 : wide_line_room[7:0],
+    wide_ramp_room > 16'd255 ? 8'd255 : wide_ramp_room[7:0]
+  };
+
+  // One counter per refusal, BAD_CRC first
+  reg     [63:0] refusals;
+  integer        i;
+  always @(posedge clk)
+    if (rst) refusals <= 64'd0;
+    else
+      for (i = 0; i < 8; i = i + 1)
+        if (refused && refused_verdict == VERDICT_BAD_CRC + i[3:0])
+          refusals[i*8+:8] <= refusals[i*8+:8] + 8'd1;
+
+  wire [7:0] run_padded = {{(8 - CHANNELS) {1'b0}}, run};
+  wire [7:0] wait_sync_padded = {{(8 - CHANNELS) {1'b0}}, wait_sync};
+  wire is_run = bus_address == ADDRESS_RUN;
+  wire run_beyond = (bus_data[7:0] >> CHANNELS) != 8'd0 || (bus_data[15:8] >> CHANNELS) != 8'd0
+                    || {1'b0, bus_data[18:16]} >= CHANNELS[3:0];
+
+  reg        known;
+  reg [31:0] value;
+
+  always @* begin
+    known = 1'b1;
+    case (bus_address)
+      ADDRESS_IDENTIFICATION: value = IDENTIFICATION_RESET;
+      ADDRESS_VERSION: value = {8'd0, VERSION_MAJOR_RESET, VERSION_MINOR_RESET, VERSION_PATCH_RESET};
+      ADDRESS_PARAMETERS:
+      value = {
+        3'd0, RAMP_QUEUE_LOG2[4:0], 3'd0, LINE_QUEUE_LOG2[4:0], 3'd0, TICK_LOG2[4:0], AXES[3:0], CHANNELS[3:0]
+      };
+      ADDRESS_RUN: value = {13'd0, status_channel, wait_sync_padded, run_padded};
+      ADDRESS_REFUSALS_0: value = refusals[31:0];
+      ADDRESS_REFUSALS_1: value = refusals[63:32];
+      default: begin
+        known = 1'b0;
+        value = 32'd0;
+      end
+    endcase
+  end
+
+  always @(posedge clk) begin
+    claim <= known & (bus_check | bus_read);
+    refusal   <= !(known && bus_check)                             ? VERDICT_OK :
+                 bus_push                                          ? VERDICT_BAD_OPERATION :
+                 !is_run                                           ? VERDICT_READ_ONLY :
+                 (bus_data & ~RUN_DEFINED) != 32'd0 || run_beyond  ? VERDICT_BAD_VALUE : VERDICT_OK;
+    read_data <= bus_read ? value : 32'd0;
+    if (bus_write && is_run) begin
+      run            <= bus_data[CHANNELS-1:0];
+      wait_sync      <= bus_data[8+:CHANNELS];
+      status_channel <= bus_data[18:16];
+    end
+    if (rst) begin
+      claim          <= 1'b0;
+      refusal        <= VERDICT_OK;
+      read_data      <= 32'd0;
+      run            <= RUN_RUN_RESET[CHANNELS-1:0];
+      wait_sync      <= RUN_WAIT_SYNC_RESET[CHANNELS-1:0];
+      status_channel <= RUN_STATUS_CHANNEL_RESET;
+    end
+  end
+
+endmodule
+`resetall

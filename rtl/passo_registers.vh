@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: MIT
+// Generated from registers/passo.rdl by tools/generate_registers.py.
+// Registers of Passo, to be included inside a module. Addresses are word addresses.
+
+// Each module uses its share of these.
+/* verilator lint_off UNUSEDPARAM */
+
+// Core: Identification. Reads as ASCII PASO.
+localparam ADDRESS_IDENTIFICATION = 12'h000;
+localparam IDENTIFICATION_LSB     = 0;
+localparam IDENTIFICATION_BITS    = 32;
+localparam IDENTIFICATION_RESET   = 32'h5041534F;
+
+// Core: Version. Version of the register map and the link.
+localparam ADDRESS_VERSION     = 12'h001;
+localparam VERSION_PATCH_LSB   = 0;
+localparam VERSION_PATCH_BITS  = 8;
+localparam VERSION_PATCH_RESET = 8'h00;
+localparam VERSION_MINOR_LSB   = 8;
+localparam VERSION_MINOR_BITS  = 8;
+localparam VERSION_MINOR_RESET = 8'h01;
+localparam VERSION_MAJOR_LSB   = 16;
+localparam VERSION_MAJOR_BITS  = 8;
+localparam VERSION_MAJOR_RESET = 8'h00;
+
+// Core: Parameters. How the core was built.
+localparam ADDRESS_PARAMETERS              = 12'h002;
+localparam PARAMETERS_CHANNELS_LSB         = 0;
+localparam PARAMETERS_CHANNELS_BITS        = 4;
+localparam PARAMETERS_AXES_LSB             = 4;
+localparam PARAMETERS_AXES_BITS            = 4;
+localparam PARAMETERS_TICK_LOG2_LSB        = 8;
+localparam PARAMETERS_TICK_LOG2_BITS       = 5;
+localparam PARAMETERS_LINE_QUEUE_LOG2_LSB  = 16;
+localparam PARAMETERS_LINE_QUEUE_LOG2_BITS = 5;
+localparam PARAMETERS_RAMP_QUEUE_LOG2_LSB  = 24;
+localparam PARAMETERS_RAMP_QUEUE_LOG2_BITS = 5;
+
+// Core: Run. One bit per channel, all in one register so that several channels start on the same clock.
+localparam ADDRESS_RUN              = 12'h003;
+localparam RUN_RUN_LSB              = 0;
+localparam RUN_RUN_BITS             = 8;
+localparam RUN_RUN_RESET            = 8'h00;
+localparam RUN_WAIT_SYNC_LSB        = 8;
+localparam RUN_WAIT_SYNC_BITS       = 8;
+localparam RUN_WAIT_SYNC_RESET      = 8'h00;
+localparam RUN_STATUS_CHANNEL_LSB   = 16;
+localparam RUN_STATUS_CHANNEL_BITS  = 3;
+localparam RUN_STATUS_CHANNEL_RESET = 3'h0;
+localparam RUN_DEFINED              = 32'h0007FFFF;
+
+// Core: Refusals 0. Counters of refused frames; they wrap.
+localparam ADDRESS_REFUSALS_0               = 12'h004;
+localparam REFUSALS_0_BAD_CRC_LSB           = 0;
+localparam REFUSALS_0_BAD_CRC_BITS          = 8;
+localparam REFUSALS_0_BAD_CRC_RESET         = 8'h00;
+localparam REFUSALS_0_BAD_LENGTH_LSB        = 8;
+localparam REFUSALS_0_BAD_LENGTH_BITS       = 8;
+localparam REFUSALS_0_BAD_LENGTH_RESET      = 8'h00;
+localparam REFUSALS_0_BAD_OPERATION_LSB     = 16;
+localparam REFUSALS_0_BAD_OPERATION_BITS    = 8;
+localparam REFUSALS_0_BAD_OPERATION_RESET   = 8'h00;
+localparam REFUSALS_0_UNKNOWN_ADDRESS_LSB   = 24;
+localparam REFUSALS_0_UNKNOWN_ADDRESS_BITS  = 8;
+localparam REFUSALS_0_UNKNOWN_ADDRESS_RESET = 8'h00;
+
+// Core: Refusals 1. Counters of refused frames; they wrap.
+localparam ADDRESS_REFUSALS_1          = 12'h005;
+localparam REFUSALS_1_READ_ONLY_LSB    = 0;
+localparam REFUSALS_1_READ_ONLY_BITS   = 8;
+localparam REFUSALS_1_READ_ONLY_RESET  = 8'h00;
+localparam REFUSALS_1_QUEUE_FULL_LSB   = 8;
+localparam REFUSALS_1_QUEUE_FULL_BITS  = 8;
+localparam REFUSALS_1_QUEUE_FULL_RESET = 8'h00;
+localparam REFUSALS_1_BUSY_LSB         = 16;
+localparam REFUSALS_1_BUSY_BITS        = 8;
+localparam REFUSALS_1_BUSY_RESET       = 8'h00;
+localparam REFUSALS_1_BAD_VALUE_LSB    = 24;
+localparam REFUSALS_1_BAD_VALUE_BITS   = 8;
+localparam REFUSALS_1_BAD_VALUE_RESET  = 8'h00;
+
+// Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0. Refused with BUSY
+// while a motion runs.
+localparam ADDRESS_COSINE_BASE  = 12'hD00;
+localparam ADDRESS_COSINE_COUNT = 256;
+localparam COSINE_POINT_LSB     = 0;
+localparam COSINE_POINT_BITS    = 16;
+localparam COSINE_DEFINED       = 32'h0000FFFF;
+
+// Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0. Refused with BUSY
+// while a motion runs.
+localparam ADDRESS_SIGMOID_BASE  = 12'hE00;
+localparam ADDRESS_SIGMOID_COUNT = 256;
+localparam SIGMOID_POINT_LSB     = 0;
+localparam SIGMOID_POINT_BITS    = 16;
+localparam SIGMOID_DEFINED       = 32'h0000FFFF;
+
+// Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0. Refused with BUSY
+// while a motion runs.
+localparam ADDRESS_EASE_BASE  = 12'hF00;
+localparam ADDRESS_EASE_COUNT = 256;
+localparam EASE_POINT_LSB     = 0;
+localparam EASE_POINT_BITS    = 16;
+localparam EASE_DEFINED       = 32'h0000FFFF;
+
+// Core: where each channel has its registers.
+localparam ADDRESS_CHANNEL_BASE   = 12'h100;
+localparam ADDRESS_CHANNEL_COUNT  = 8;
+localparam ADDRESS_CHANNEL_STRIDE = 12'h100;
+
+// Channel: Command. Each bit written as 1 is done once.
+localparam CHANNEL_COMMAND             = 8'h00;
+localparam CHANNEL_COMMAND_STOP_LSB    = 0;
+localparam CHANNEL_COMMAND_STOP_BITS   = 1;
+localparam CHANNEL_COMMAND_STOP_RESET  = 1'h0;
+localparam CHANNEL_COMMAND_ABORT_LSB   = 1;
+localparam CHANNEL_COMMAND_ABORT_BITS  = 1;
+localparam CHANNEL_COMMAND_ABORT_RESET = 1'h0;
+localparam CHANNEL_COMMAND_CLEAR_LSB   = 2;
+localparam CHANNEL_COMMAND_CLEAR_BITS  = 1;
+localparam CHANNEL_COMMAND_CLEAR_RESET = 1'h0;
+localparam CHANNEL_COMMAND_ZERO_LSB    = 3;
+localparam CHANNEL_COMMAND_ZERO_BITS   = 1;
+localparam CHANNEL_COMMAND_ZERO_RESET  = 1'h0;
+localparam CHANNEL_COMMAND_DEFINED     = 32'h0000000F;
+
+// Channel: Rate target. Time scale, UQ1.16: 0 = feed hold, 65536 = 1.0 = full speed. Refused with BAD_VALUE
+// above 1.0.
+localparam CHANNEL_RATE_TARGET         = 8'h01;
+localparam CHANNEL_RATE_TARGET_LSB     = 0;
+localparam CHANNEL_RATE_TARGET_BITS    = 17;
+localparam CHANNEL_RATE_TARGET_RESET   = 17'h10000;
+localparam CHANNEL_RATE_TARGET_DEFINED = 32'h0001FFFF;
+
+// Channel: Rate slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1.
+localparam CHANNEL_RATE_SLEW         = 8'h02;
+localparam CHANNEL_RATE_SLEW_LSB     = 0;
+localparam CHANNEL_RATE_SLEW_BITS    = 17;
+localparam CHANNEL_RATE_SLEW_RESET   = 17'h00400;
+localparam CHANNEL_RATE_SLEW_DEFINED = 32'h0001FFFF;
+
+// Channel: Stop slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1.
+localparam CHANNEL_STOP_SLEW         = 8'h03;
+localparam CHANNEL_STOP_SLEW_LSB     = 0;
+localparam CHANNEL_STOP_SLEW_BITS    = 17;
+localparam CHANNEL_STOP_SLEW_RESET   = 17'h00400;
+localparam CHANNEL_STOP_SLEW_DEFINED = 32'h0001FFFF;
+
+// Channel: Drain velocity. Velocity of the substeps that are still missing when the profile has ended.
+localparam CHANNEL_DRAIN_VELOCITY         = 8'h04;
+localparam CHANNEL_DRAIN_VELOCITY_LSB     = 0;
+localparam CHANNEL_DRAIN_VELOCITY_BITS    = 32;
+localparam CHANNEL_DRAIN_VELOCITY_RESET   = 32'h01000000;
+localparam CHANNEL_DRAIN_VELOCITY_DEFINED = 32'hFFFFFFFF;
+
+// Channel: State. What the channel does now.
+localparam CHANNEL_STATE                = 8'h08;
+localparam CHANNEL_STATE_STATE_LSB      = 0;
+localparam CHANNEL_STATE_STATE_BITS     = 3;
+localparam CHANNEL_STATE_STATE_RESET    = 3'h0;
+localparam CHANNEL_STATE_CAUSE_LSB      = 4;
+localparam CHANNEL_STATE_CAUSE_BITS     = 3;
+localparam CHANNEL_STATE_CAUSE_RESET    = 3'h0;
+localparam CHANNEL_STATE_STOPPING_LSB   = 7;
+localparam CHANNEL_STATE_STOPPING_BITS  = 1;
+localparam CHANNEL_STATE_STOPPING_RESET = 1'h0;
+localparam CHANNEL_STATE_OVERRUN_LSB    = 8;
+localparam CHANNEL_STATE_OVERRUN_BITS   = 8;
+localparam CHANNEL_STATE_OVERRUN_RESET  = 8'h00;
+localparam CHANNEL_STATE_DRAINED_LSB    = 16;
+localparam CHANNEL_STATE_DRAINED_BITS   = 16;
+localparam CHANNEL_STATE_DRAINED_RESET  = 16'h0000;
+
+// Channel: Rate. Time scale in force.
+localparam CHANNEL_RATE       = 8'h09;
+localparam CHANNEL_RATE_LSB   = 0;
+localparam CHANNEL_RATE_BITS  = 17;
+localparam CHANNEL_RATE_RESET = 17'h10000;
+
+// Channel: Room. Free places in the queues.
+localparam CHANNEL_ROOM                = 8'h0A;
+localparam CHANNEL_ROOM_RAMP_ROOM_LSB  = 0;
+localparam CHANNEL_ROOM_RAMP_ROOM_BITS = 16;
+localparam CHANNEL_ROOM_LINE_ROOM_LSB  = 16;
+localparam CHANNEL_ROOM_LINE_ROOM_BITS = 16;
+
+// Channel: Velocity. Velocity of the present tick, before the time scale.
+localparam CHANNEL_VELOCITY       = 8'h0B;
+localparam CHANNEL_VELOCITY_LSB   = 0;
+localparam CHANNEL_VELOCITY_BITS  = 32;
+localparam CHANNEL_VELOCITY_RESET = 32'h00000000;
+
+// Channel: Line queue. PUSH only: control, M, N_0 .. N_{AXES-1} for each line.
+localparam CHANNEL_LINE         = 8'h20;
+localparam CHANNEL_LINE_LSB     = 0;
+localparam CHANNEL_LINE_BITS    = 32;
+localparam CHANNEL_LINE_DEFINED = 32'hFFFFFFFF;
+
+// Channel: Ramp queue. PUSH only: 5 words for each ramp: v_end(47:32) (31:16) and LAST (0), NOW (1), mirror
+// (2), shape (5:4); v_end(31:0); T; du(47:32); du(31:0).
+localparam CHANNEL_RAMP         = 8'h21;
+localparam CHANNEL_RAMP_LSB     = 0;
+localparam CHANNEL_RAMP_BITS    = 32;
+localparam CHANNEL_RAMP_DEFINED = 32'hFFFFFFFF;
+
+// Channel: Steps made. Position of an axis in steps, as it was when chip select fell; wraps.
+localparam CHANNEL_POSITION_BASE  = 8'h40;
+localparam CHANNEL_POSITION_COUNT = 8;
+localparam CHANNEL_POSITION_LSB   = 0;
+localparam CHANNEL_POSITION_BITS  = 32;
+localparam CHANNEL_POSITION_RESET = 32'h00000000;
+
+// Channel: where each axis has its registers.
+localparam CHANNEL_AXIS_BASE   = 8'h80;
+localparam CHANNEL_AXIS_COUNT  = 8;
+localparam CHANNEL_AXIS_STRIDE = 8'h08;
+
+// Axis: Pins. Drive enable, polarities and step mode. Change polarities only while the axis stands.
+localparam AXIS_PINS                          = 3'h0;
+localparam AXIS_PINS_ENABLE_LSB               = 0;
+localparam AXIS_PINS_ENABLE_BITS              = 1;
+localparam AXIS_PINS_ENABLE_RESET             = 1'h0;
+localparam AXIS_PINS_STEP_INVERTED_LSB        = 1;
+localparam AXIS_PINS_STEP_INVERTED_BITS       = 1;
+localparam AXIS_PINS_STEP_INVERTED_RESET      = 1'h0;
+localparam AXIS_PINS_DIRECTION_INVERTED_LSB   = 2;
+localparam AXIS_PINS_DIRECTION_INVERTED_BITS  = 1;
+localparam AXIS_PINS_DIRECTION_INVERTED_RESET = 1'h0;
+localparam AXIS_PINS_ENABLE_INVERTED_LSB      = 3;
+localparam AXIS_PINS_ENABLE_INVERTED_BITS     = 1;
+localparam AXIS_PINS_ENABLE_INVERTED_RESET    = 1'h0;
+localparam AXIS_PINS_BOTH_EDGES_LSB           = 4;
+localparam AXIS_PINS_BOTH_EDGES_BITS          = 1;
+localparam AXIS_PINS_BOTH_EDGES_RESET         = 1'h0;
+localparam AXIS_PINS_DEFINED                  = 32'h0000001F;
+
+// Axis: STEP timing. Clocks, 1 .. 65535; 0 counts as 1.
+localparam AXIS_STEP_TIMING                 = 3'h1;
+localparam AXIS_STEP_TIMING_STEP_LOW_LSB    = 0;
+localparam AXIS_STEP_TIMING_STEP_LOW_BITS   = 16;
+localparam AXIS_STEP_TIMING_STEP_LOW_RESET  = 16'h0001;
+localparam AXIS_STEP_TIMING_STEP_HIGH_LSB   = 16;
+localparam AXIS_STEP_TIMING_STEP_HIGH_BITS  = 16;
+localparam AXIS_STEP_TIMING_STEP_HIGH_RESET = 16'h0001;
+localparam AXIS_STEP_TIMING_DEFINED         = 32'hFFFFFFFF;
+
+// Axis: DIR timing. Clocks, 1 .. 65535; 0 counts as 1.
+localparam AXIS_DIR_TIMING                 = 3'h2;
+localparam AXIS_DIR_TIMING_DIR_HOLD_LSB    = 0;
+localparam AXIS_DIR_TIMING_DIR_HOLD_BITS   = 16;
+localparam AXIS_DIR_TIMING_DIR_HOLD_RESET  = 16'h0001;
+localparam AXIS_DIR_TIMING_DIR_SETUP_LSB   = 16;
+localparam AXIS_DIR_TIMING_DIR_SETUP_BITS  = 16;
+localparam AXIS_DIR_TIMING_DIR_SETUP_RESET = 16'h0001;
+localparam AXIS_DIR_TIMING_DEFINED         = 32'hFFFFFFFF;
+
+// Axis: Lost steps. Steps that found the queue of the axis full (STEP_OVERRUN).
+localparam AXIS_LOST_STEPS            = 3'h3;
+localparam AXIS_LOST_STEPS_LOST_LSB   = 0;
+localparam AXIS_LOST_STEPS_LOST_BITS  = 4;
+localparam AXIS_LOST_STEPS_LOST_RESET = 4'h0;
+
+// What a frame asks for.
+localparam OPERATION_READ  = 4'd1; // Read consecutive registers.
+localparam OPERATION_WRITE = 4'd2; // Write consecutive registers.
+localparam OPERATION_PUSH  = 4'd3; // Write every word to the same address: lines and ramps.
+
+// What became of a frame.
+localparam VERDICT_OK              = 4'd0; // Executed.
+localparam VERDICT_DUPLICATE       = 4'd1; // Not executed: its sequence number was accepted before.
+localparam VERDICT_BAD_CRC         = 4'd2; // CRC wrong.
+localparam VERDICT_BAD_LENGTH      = 4'd3; // Length 0 or above 60, or not whole lines or ramps.
+localparam VERDICT_BAD_OPERATION   = 4'd4; // Unknown operation, or one the register does not take.
+localparam VERDICT_UNKNOWN_ADDRESS = 4'd5; // No register at this address.
+localparam VERDICT_READ_ONLY       = 4'd6; // The register cannot be written.
+localparam VERDICT_QUEUE_FULL      = 4'd7; // Not enough room for the whole frame.
+localparam VERDICT_BUSY            = 4'd8; // Channel stopped and not cleared, or shape tables while a motion runs.
+localparam VERDICT_BAD_VALUE       = 4'd9; // M = 0, N_i > M, a velocity above 1/2, reserved bits set.
+
+// What a channel does.
+localparam STATE_IDLE    = 3'd0; // No motion.
+localparam STATE_PREPARE = 3'd1; // First line and first velocity are being made ready.
+localparam STATE_ARMED   = 3'd2; // Ready, waits for the sync input.
+localparam STATE_RUN     = 3'd3; // The profile runs.
+localparam STATE_SETTLE  = 3'd4; // The profile has ended, its last substeps reach the pins.
+localparam STATE_DRAIN   = 3'd5; // Missing substeps of the LAST line are made at drain_velocity.
+localparam STATE_STOPPED = 3'd6; // Stopped by a command or a fault; queues flushed. CLEAR leads back to IDLE.
+
+// Why a channel stopped.
+localparam CAUSE_NONE          = 3'd0; // Not stopped.
+localparam CAUSE_STOP          = 3'd1; // COMMAND.STOP.
+localparam CAUSE_ABORT         = 3'd2; // COMMAND.ABORT.
+localparam CAUSE_LINE_UNDERRUN = 3'd3; // A line ended, was not LAST, and none followed.
+localparam CAUSE_RAMP_UNDERRUN = 3'd4; // The ramps ran out at speed.
+localparam CAUSE_STEP_OVERRUN  = 3'd5; // Steps came faster than the pin timing of an axis allows.
+
+/* verilator lint_on UNUSEDPARAM */

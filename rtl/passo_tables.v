@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+// Shape tables: 3 banks of 256 points, UQ0.16, shared by all channels and writable over the bus while no motion is prepared or runs.
+//
+// Promise: channels are served in turn, two clocks each. A channel that holds `request` with its `address` gets `served` for
+// one clock, with the point at the address on `point` and the point after it on `point_next`; at most 2 * CHANNELS + 3 clocks
+// after its request rose. Address = bank - 1 (9:8) and k (7:0); point_next after k = 255 means nothing.
+`resetall
+`default_nettype none
+
+module passo_tables #(
+  parameter CHANNELS = 1
+) (
+  input  wire                   clk,
+  input  wire                   rst,
+  // bus; `select`: the address is in a table
+  input  wire                   bus_check,
+  input  wire                   bus_write,
+  input  wire                   bus_read,
+  input  wire                   bus_push,
+  input  wire                   select,
+  input  wire [            9:0] bus_address,  // within the tables: bank (9:8), 1 .. 3
+  input  wire [           31:0] bus_data,
+  input  wire                   occupied,     // some channel is
+  output reg  [            3:0] refusal,
+  // channels
+  input  wire [   CHANNELS-1:0] request,
+  input  wire [CHANNELS*10-1:0] address,
+  output reg  [   CHANNELS-1:0] served,
+  output reg  [           15:0] point,
+  output wire [           15:0] point_next
+);
+
+  `include "passo_registers.vh"
+
+  localparam [2:0] CHANNEL_LAST = CHANNELS[2:0] - 3'd1;
+  localparam [CHANNELS-1:0] CHANNEL_0 = 1;
+
+  reg [15:0] points[0:767];
+  `include "passo_shapes.vh"
+
+  always @(posedge clk) begin
+    refusal <= VERDICT_OK;
+    if (select && bus_read) refusal <= VERDICT_BAD_OPERATION;
+    if (select && bus_check)
+      refusal <= bus_push                  ? VERDICT_BAD_OPERATION :
+                 occupied                  ? VERDICT_BUSY :
+                 bus_data[31:16] != 16'd0  ? VERDICT_BAD_VALUE : VERDICT_OK;
+  end
+
+  // One channel after the other; first its point, then the next one
+  reg  [         2:0] channel;
+  reg                 second;
+  reg                 asked;  // the channel asked already when its first point was addressed
+  wire [         9:0] channel_address = address[channel*10+:10];
+  wire [CHANNELS-1:0] channel_mask = CHANNEL_0 << channel;
+  reg  [        15:0] read_data;
+
+  assign point_next = read_data;
+
+  always @(posedge clk) begin
+    if (select && bus_write) points[{bus_address[9:8]-2'd1, bus_address[7:0]}] <= bus_data[15:0];
+    read_data <= points[{channel_address[9:8], channel_address[7:0]+{7'd0, second}}];
+  end
+
+  always @(posedge clk) begin
+    second <= ~second;
+    if (!second) asked <= (request & channel_mask) != {CHANNELS{1'b0}};
+    else channel <= channel == CHANNEL_LAST ? 3'd0 : channel + 3'd1;
+    // read_data holds the point during the second clock, and point_next in the clock after it
+    if (second) point <= read_data;
+    served <= (second && asked) ? channel_mask : {CHANNELS{1'b0}};
+    if (rst) begin
+      channel <= 3'd0;
+      second  <= 1'b0;
+      asked   <= 1'b0;
+      served  <= {CHANNELS{1'b0}};
+    end
+  end
+
+endmodule
+`resetall

@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: MIT
+ * What both engines share: the SPI master and the log of the output pins.
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine_core.h"
+
+/* A run ends at this number of waiting events; a transfer does not. */
+#define LOG_FULL 65536u
+/* Clocks from chip select to the first edge of SCLK and from the last edge to chip select. */
+#define CS_SETUP 4u
+#define CS_HOLD 4u
+
+struct passo_engine {
+	struct engine_core *core;
+	struct engine_inputs inputs;
+	struct engine_outputs outputs;
+	struct passo_pin_event last;
+	uint64_t clock;
+	uint32_t spi_half_period;
+	struct passo_pin_event *log;
+	size_t log_length;
+	size_t log_capacity;
+};
+
+/* Appends the pins to the log if they are not as they were. */
+static void log_pins(struct passo_engine *engine)
+{
+	const struct engine_outputs *outputs = &engine->outputs;
+	struct passo_pin_event *last = &engine->last;
+
+	if (last->step == outputs->step && last->dir == outputs->dir && last->enable == outputs->enable &&
+	    last->running == outputs->running && last->irq == outputs->irq)
+		return;
+	if (engine->log_length == engine->log_capacity) {
+		engine->log_capacity *= 2;
+		engine->log = realloc(engine->log, engine->log_capacity * sizeof *engine->log);
+		if (!engine->log)
+			abort();
+	}
+	*last = (struct passo_pin_event){ .clock = engine->clock, .step = outputs->step, .dir = outputs->dir,
+		.enable = outputs->enable, .running = outputs->running, .irq = outputs->irq };
+	engine->log[engine->log_length++] = *last;
+}
+
+struct passo_engine *passo_engine_create(const struct passo_engine_config *config)
+{
+	struct passo_engine *engine = calloc(1, sizeof *engine);
+
+	if (!engine)
+		return NULL;
+	engine->inputs.spi_cs_n = true;
+	engine->spi_half_period = config->spi_half_period ? config->spi_half_period : 1;
+	engine->log_capacity = LOG_FULL;
+	engine->log = malloc(engine->log_capacity * sizeof *engine->log);
+	engine->core = engine_core_open(config, &engine->inputs, &engine->outputs);
+	if (!engine->core || !engine->log) {
+		passo_engine_destroy(engine);
+		return NULL;
+	}
+	log_pins(engine);
+	return engine;
+}
+
+void passo_engine_destroy(struct passo_engine *engine)
+{
+	if (!engine)
+		return;
+	if (engine->core)
+		engine_core_close(engine->core);
+	free(engine->log);
+	free(engine);
+}
+
+static uint64_t run_to_event(struct passo_engine *engine, uint64_t limit)
+{
+	uint64_t clocks = engine_core_run(engine->core, &engine->inputs, limit, &engine->outputs);
+
+	engine->clock += clocks;
+	log_pins(engine);
+	return clocks;
+}
+
+static void run_all(struct passo_engine *engine, uint64_t clocks)
+{
+	while (clocks)
+		clocks -= run_to_event(engine, clocks);
+}
+
+uint64_t passo_engine_run(struct passo_engine *engine, uint64_t clocks)
+{
+	uint64_t left = clocks;
+
+	while (left && engine->log_length < LOG_FULL)
+		left -= run_to_event(engine, left);
+	return clocks - left;
+}
+
+/* SPI mode 0: MOSI changes on the falling edge, both sides sample on the rising edge. */
+void passo_engine_transfer(
+    struct passo_engine *engine, const uint32_t *mosi, uint32_t *miso, size_t count, uint64_t gap)
+{
+	engine->inputs.spi_cs_n = false;
+	run_all(engine, CS_SETUP);
+	for (size_t i = 0; i < count; i++) {
+		uint32_t received = 0;
+
+		for (unsigned bit = 32; bit-- > 0;) {
+			engine->inputs.spi_mosi = mosi[i] >> bit & 1u;
+			run_all(engine, engine->spi_half_period);
+			received = received << 1 | engine->outputs.spi_miso;
+			engine->inputs.spi_sclk = true;
+			run_all(engine, engine->spi_half_period);
+			engine->inputs.spi_sclk = false;
+		}
+		miso[i] = received;
+	}
+	run_all(engine, CS_HOLD);
+	engine->inputs.spi_cs_n = true;
+	run_all(engine, gap);
+}
+
+void passo_engine_sync(struct passo_engine *engine, bool level)
+{
+	engine->inputs.sync = level;
+}
+
+uint64_t passo_engine_clock(const struct passo_engine *engine)
+{
+	return engine->clock;
+}
+
+size_t passo_engine_drain(struct passo_engine *engine, struct passo_pin_event *events, size_t capacity)
+{
+	size_t count = engine->log_length < capacity ? engine->log_length : capacity;
+
+	memcpy(events, engine->log, count * sizeof *events);
+	memmove(engine->log, engine->log + count, (engine->log_length - count) * sizeof *events);
+	engine->log_length -= count;
+	return count;
+}
+
+bool passo_engine_open_waves(struct passo_engine *engine, const char *path)
+{
+	return engine_core_open_waves(engine->core, path);
+}
+
+void passo_engine_close_waves(struct passo_engine *engine)
+{
+	engine_core_close_waves(engine->core);
+}

@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: MIT
+ * One interface to two engines that execute the core: the C model and the Verilated RTL.
+ *
+ * Both are driven through the same pins by the same SPI master, so that the same calls give both of them the same
+ * waveforms. What comes out of their pins is recorded in the pin log.
+ */
+#ifndef PASSO_ENGINE_H
+#define PASSO_ENGINE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct passo_engine_config {
+	uint32_t channels, axes, tick_log2, line_queue_log2, ramp_queue_log2; /* the parameters of the core */
+	uint32_t clock_hz;        /* time scale of the waves */
+	uint32_t spi_half_period; /* clocks that SCLK stays at each level, at least 1 */
+	uint32_t every_clock;     /* 1: the model executes every clock instead of jumping over quiet time */
+};
+
+/* The output pins from this clock on; clock 1 is the first rising edge after reset. */
+struct passo_pin_event {
+	uint64_t clock, step, dir, enable;
+	uint32_t running, irq;
+};
+
+struct passo_engine;
+
+/* NULL when the memory does not suffice or this library was built for other parameters. */
+struct passo_engine *passo_engine_create(const struct passo_engine_config *config);
+void passo_engine_destroy(struct passo_engine *engine);
+
+/* One chip select: sends and receives `count` words, then waits for `gap` clocks. */
+void passo_engine_transfer(
+    struct passo_engine *engine, const uint32_t *mosi, uint32_t *miso, size_t count, uint64_t gap);
+
+/* Runs for `clocks`, or less when the log fills up; returns how many. */
+uint64_t passo_engine_run(struct passo_engine *engine, uint64_t clocks);
+
+void passo_engine_sync(struct passo_engine *engine, bool level);
+uint64_t passo_engine_clock(const struct passo_engine *engine);
+
+/* Moves up to `capacity` of the oldest events to `events`; returns how many. */
+size_t passo_engine_drain(struct passo_engine *engine, struct passo_pin_event *events, size_t capacity);
+
+/* Waves (FST) of everything inside the core from now on; false when this build has none. */
+bool passo_engine_open_waves(struct passo_engine *engine, const char *path);
+void passo_engine_close_waves(struct passo_engine *engine);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: MIT
+"""The command `passo`."""
+
+import argparse
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+from passo.build import BuildError
+from passo.engine import DifferenceError
+from passo.frame import FrameError
+from passo.host import HostError
+from passo.link import LinkError
+from passo.moves import MoveFileError, read_moves
+from passo.plan import plan_file
+from passo.run import ENGINES, Run, RunError, execute, open_engine, parameters_for
+from passo.toolchain import paths
+
+OK, FAILED, BAD_INPUT = 0, 1, 2
+FAILURES = (BuildError, DifferenceError, FrameError, HostError, LinkError, RunError)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command; return its exit status: 0 all agrees, 1 mismatch or fault, 2 bad input."""
+    options = _parser().parse_args(arguments)
+    try:
+        return options.command(options)
+    except MoveFileError as error:
+        print(error, file=sys.stderr)
+        return BAD_INPUT
+    except FAILURES as error:
+        print(error, file=sys.stderr)
+        return FAILED
+    except KeyboardInterrupt:
+        return 130
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="passo", description="Simulate the Passo step-pulse generator.")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+    run = commands.add_parser("run", help="make the moves of a file and check every edge")
+    run.set_defaults(command=_run)
+    run.add_argument("moves", type=Path, metavar="MOVES.toml", help="the moves")
+    run.add_argument(
+        "--engine",
+        choices=ENGINES,
+        default="both",
+        help="who makes them; both (default): RTL and model, compared edge for edge",
+    )
+    run.add_argument("--out", type=Path, metavar="DIR", help="where the results go (default build/run/NAME)")
+    run.add_argument("--waves", action="store_true", help="write waves.fst (the RTL's inside)")
+    run.add_argument("--plot", action="store_true", help="write motion.png")
+    demo = commands.add_parser("demo", help="make the moves of examples/, with pictures in build/demo")
+    demo.set_defaults(command=_demo)
+    bench = commands.add_parser("bench", help="measure how fast the engines are")
+    bench.set_defaults(command=_bench)
+    return parser
+
+
+def _run(options: argparse.Namespace) -> int:
+    from passo.report import summarize, write_json, write_pulses
+
+    if options.waves and options.engine == "model":
+        raise MoveFileError("--waves needs the RTL: --engine both or rtl")
+    file = read_moves(options.moves)
+    parameters = parameters_for(file.axes)
+    plans = plan_file(file, parameters)
+    out = options.out or paths.build / "run" / file.name
+    with open_engine(options.engine, parameters, file.clock_hz, options.waves) as engine:
+        try:
+            out.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise MoveFileError(f"{out}: {error.strerror}") from None
+        if options.waves:
+            engine.open_waves(out / "waves.fst")
+        try:
+            with progress(file.name, sum(plan.clocks for plan in plans)) as report:
+                run = execute(file, plans, engine, report)
+        except DifferenceError as error:
+            write_json({"name": file.name, "ok": False, "difference": vars(error)}, out / "summary.json")
+            raise
+    write_pulses(run, out / "pulses.csv")
+    write_json(summarize(run, options.engine), out / "summary.json")
+    if options.plot:
+        from passo.plot import plot_motion
+
+        plot_motion(run, out / "motion.png")
+    return _conclude(run, out)
+
+
+def _conclude(run: Run, out: Path) -> int:
+    """Say what came of it."""
+    problems = run.problems()
+    for problem in problems:
+        print(f"{run.file.path}: {problem}", file=sys.stderr)
+    if problems:
+        return FAILED
+    steps = sum(run.commanded(axis)[1] for axis in range(run.file.axes))
+    edges = "" if run.matched_edges is None else f", {run.matched_edges} edges agree"
+    seconds = run.total_clocks / run.file.clock_hz
+    print(f"{run.file.name}: {steps} steps in {run.total_clocks} clocks ({seconds:.6g} s){edges}: {out}")
+    return OK
+
+
+def _demo(options: argparse.Namespace) -> int:
+    from passo.demo import demo
+
+    return OK if demo() else FAILED
+
+
+def _bench(options: argparse.Namespace) -> int:
+    from passo.bench import bench
+
+    bench()
+    return OK
+
+
+@contextmanager
+def progress(name: str, clocks: int) -> Iterator[Callable[[int], None]]:
+    """A progress bar, if there is a terminal to show it."""
+    console = Console()
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.percentage:>3.0f} %"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+        task = bar.add_task(name, total=clocks)
+        yield lambda done: bar.update(task, completed=done)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

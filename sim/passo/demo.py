@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: MIT
+"""The demonstration: all of examples/ on both engines, with pictures, tables and an overview."""
+
+import sys
+
+from rich.console import Console
+from rich.table import Table
+
+from passo.cli import progress
+from passo.moves import read_moves
+from passo.plan import plan_file
+from passo.plot import plot_motion, plot_overview
+from passo.report import summarize, write_json, write_pulses
+from passo.run import execute, open_engine, parameters_for
+from passo.toolchain import paths
+
+FOLDER = paths.build / "demo"
+EXAMPLES = ("three_axes", "cosine", "sigmoid", "triangle", "there_and_back")
+
+
+def demo() -> bool:
+    """Run it; return whether everything agreed."""
+    runs, summaries = {}, {}
+    for name in EXAMPLES:
+        file = read_moves(paths.examples / f"{name}.toml")
+        parameters = parameters_for(file.axes)
+        plans = plan_file(file, parameters)
+        with (
+            open_engine("both", parameters, file.clock_hz) as engine,
+            progress(name, sum(plan.clocks for plan in plans)) as report,
+        ):
+            run = execute(file, plans, engine, report)
+        for problem in run.problems():
+            print(f"{file.path}: {problem}", file=sys.stderr)
+        out = FOLDER / name
+        out.mkdir(parents=True, exist_ok=True)
+        runs[name], summaries[name] = run, summarize(run, "both")
+        write_pulses(run, out / "pulses.csv")
+        write_json(summaries[name], out / "summary.json")
+        plot_motion(run, out / "motion.png")
+    write_json({"ok": all(s["ok"] for s in summaries.values()), "runs": summaries}, FOLDER / "summary.json")
+    plot_overview(runs, FOLDER / "demo.png")
+
+    table = Table(title="RTL and C model, compared edge for edge", title_justify="left")
+    table.add_column("move")
+    for column in ("steps", "time", "edges compared", "largest error", "clocks/s"):
+        table.add_column(column, justify="right")
+    for name, summary in summaries.items():
+        table.add_row(
+            name,
+            f"{sum(axis['pulses'] for axis in summary['axes']):,}",
+            f"{summary['total_seconds']:.4f} s",
+            f"{summary['matched_edges']:,}",
+            f"{max(axis['largest_error_steps'] for axis in summary['axes']):.3f} steps",
+            f"{summary['clocks_per_second'] / 1e6:.2f} M",
+        )
+    console = Console()
+    console.print(table)
+    console.print(f"Pictures and tables: {FOLDER.relative_to(paths.root)}/")
+    return all(summary["ok"] for summary in summaries.values())

@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: MIT
+"""The engines that execute the core: the C model, the Verilated RTL, and both in step with each other."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Self
+
+import numpy as np
+
+from passo.build import Parameters, model_library, rtl_library
+from passo.native import ffi, load
+
+# One row for each clock on which an output pin changes; clock 1 is the first one after reset.
+EVENT = np.dtype(
+    [("clock", "u8"), ("step", "u8"), ("dir", "u8"), ("enable", "u8"), ("running", "u4"), ("irq", "u4")]
+)
+SIGNALS = EVENT.names[1:]
+EVENTS_PER_DRAIN = 65536
+
+
+class DifferenceError(Exception):
+    """RTL and model disagree: `expected` is the model's level or word, `actual` the RTL's."""
+
+    def __init__(self, clock: int, signal: str, index: int, expected: int, actual: int):
+        self.clock, self.signal, self.index = clock, signal, index
+        self.expected, self.actual = expected, actual
+        place = "word" if signal == "miso" else "channel" if signal in ("running", "irq") else "axis"
+        show = hex if signal == "miso" else str
+        super().__init__(
+            f"clock {clock}: {signal} of {place} {index} differs: "
+            f"expected (model) {show(expected)}, actual (rtl) {show(actual)}"
+        )
+
+
+class Engine:
+    """One core behind its pins."""
+
+    def __init__(
+        self,
+        library: Path,
+        parameters: Parameters,
+        clock_hz: int = 100_000_000,
+        spi_half_period: int = 2,
+        every_clock: bool = False,
+    ):
+        self.parameters = parameters
+        self.clock_hz = clock_hz
+        self._c = load(library)
+        config = ffi().new("struct passo_engine_config *")
+        config.channels, config.axes = parameters.channels, parameters.axes
+        config.tick_log2 = parameters.tick_log2
+        config.line_queue_log2 = parameters.line_queue_log2
+        config.ramp_queue_log2 = parameters.ramp_queue_log2
+        config.clock_hz, config.spi_half_period, config.every_clock = clock_hz, spi_half_period, every_clock
+        self._engine = self._c.passo_engine_create(config)
+        if self._engine == ffi().NULL:
+            raise RuntimeError(f"{library} does not take {parameters}")
+
+    def close(self) -> None:
+        """Free the engine; it cannot be used any more."""
+        self._c.passo_engine_destroy(self._engine)
+        self._engine = ffi().NULL
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    @property
+    def clock(self) -> int:
+        """Clocks since reset."""
+        return self._c.passo_engine_clock(self._engine)
+
+    def transfer(self, mosi: Sequence[int], gap: int = 16) -> list[int]:
+        """One chip select: send the words and return those received, then wait for `gap` clocks."""
+        miso = ffi().new("uint32_t[]", len(mosi))
+        self._c.passo_engine_transfer(self._engine, ffi().new("uint32_t[]", mosi), miso, len(mosi), gap)
+        return list(miso)
+
+    def run(self, clocks: int) -> int:
+        """Run for `clocks`, or less when there are many events to drain; return how many."""
+        return self._c.passo_engine_run(self._engine, clocks)
+
+    def sync(self, level: bool) -> None:
+        """Set the sync input."""
+        self._c.passo_engine_sync(self._engine, level)
+
+    def drain(self) -> np.ndarray:
+        """The pin events (EVENT) since the last call."""
+        chunks = []
+        while not chunks or len(chunks[-1]) == EVENTS_PER_DRAIN:
+            chunk = np.empty(EVENTS_PER_DRAIN, EVENT)
+            pointer = ffi().from_buffer("struct passo_pin_event[]", chunk, require_writable=True)
+            chunks.append(chunk[: self._c.passo_engine_drain(self._engine, pointer, len(chunk))])
+        return np.concatenate(chunks)
+
+    def open_waves(self, path: Path) -> None:
+        """Record everything inside the core from now on; only in an engine that was built for it."""
+        if not self._c.passo_engine_open_waves(self._engine, str(path).encode()):
+            raise OSError(f"cannot write waves to {path}")
+
+    def close_waves(self) -> None:
+        """Finish the file of the waves."""
+        self._c.passo_engine_close_waves(self._engine)
+
+
+def model_engine(parameters: Parameters, clock_hz: int = 100_000_000, every_clock: bool = False) -> Engine:
+    """The C model."""
+    return Engine(model_library(), parameters, clock_hz, every_clock=every_clock)
+
+
+def rtl_engine(parameters: Parameters, clock_hz: int = 100_000_000, waves: bool = False) -> Engine:
+    """The Verilated core."""
+    return Engine(rtl_library(parameters, waves), parameters, clock_hz)
+
+
+class PairEngine:
+    """RTL and model with the same waveforms at their inputs; every output of theirs is compared."""
+
+    def __init__(self, rtl: Engine, model: Engine):
+        self.rtl, self.model = rtl, model
+        self.parameters, self.clock_hz = rtl.parameters, rtl.clock_hz
+        self.matched_edges = 0  # edges of STEP, DIR and EN that agree
+        self._last = np.zeros(1, EVENT)
+        self._events: list[np.ndarray] = []
+
+    def close(self) -> None:
+        """Free both engines."""
+        self.rtl.close()
+        self.model.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    @property
+    def clock(self) -> int:
+        """Clocks since reset."""
+        return self.rtl.clock
+
+    def transfer(self, mosi: Sequence[int], gap: int = 16) -> list[int]:
+        """Send the same words to both and compare what they answer."""
+        clock = self.clock
+        actual, expected = self.rtl.transfer(mosi, gap), self.model.transfer(mosi, gap)
+        self._compare()
+        for i, (e, a) in enumerate(zip(expected, actual, strict=True)):
+            if e != a:
+                raise DifferenceError(clock, "miso", i, e, a)
+        return actual
+
+    def run(self, clocks: int) -> int:
+        """Run both and compare their pins."""
+        actual, expected = self.rtl.run(clocks), self.model.run(clocks)
+        self._compare()
+        assert actual == expected  # the same events fill both logs on the same clock
+        return actual
+
+    def sync(self, level: bool) -> None:
+        """Set the sync input of both."""
+        self.rtl.sync(level)
+        self.model.sync(level)
+
+    def drain(self) -> np.ndarray:
+        """The pin events since the last call; they are the same in both."""
+        events, self._events = self._events, []
+        return np.concatenate([np.empty(0, EVENT), *events])
+
+    def open_waves(self, path: Path) -> None:
+        """Record the waves of the RTL."""
+        self.rtl.open_waves(path)
+
+    def close_waves(self) -> None:
+        """Finish the file of the waves."""
+        self.rtl.close_waves()
+
+    def _compare(self) -> None:
+        actual, expected = self.rtl.drain(), self.model.drain()
+        if not np.array_equal(actual, expected):
+            raise first_difference(expected, actual, self._last[0])
+        if len(actual):
+            self.matched_edges += count_edges(np.concatenate([self._last, actual]))
+            self._last = actual[-1:]
+            self._events.append(actual)
+
+
+def count_edges(events: np.ndarray) -> int:
+    """Edges of STEP, DIR and EN from the first event on."""
+    changed = (events[s][1:] ^ events[s][:-1] for s in ("step", "dir", "enable"))
+    return sum(int(np.bitwise_count(bits).sum()) for bits in changed)
+
+
+def first_difference(expected: np.ndarray, actual: np.ndarray, before: np.void) -> DifferenceError:
+    """Where two unequal lists of events, that follow the same event `before`, part."""
+    common = min(len(expected), len(actual))
+    at = int(np.argmax(expected[:common] != actual[:common])) if common else 0
+    if common and expected[at] == actual[at]:
+        at = common
+    last = before if at == 0 else expected[at - 1]
+    e = expected[at] if at < len(expected) else None
+    a = actual[at] if at < len(actual) else None
+    clock = min(int(event["clock"]) for event in (e, a) if event is not None)
+    # The engine whose event comes later still has the pins of before.
+    e = e if e is not None and e["clock"] == clock else last
+    a = a if a is not None and a["clock"] == clock else last
+    signal = next(s for s in SIGNALS if e[s] != a[s])
+    different = int(e[signal]) ^ int(a[signal])
+    bit = (different & -different).bit_length() - 1
+    return DifferenceError(clock, signal, bit, int(e[signal]) >> bit & 1, int(a[signal]) >> bit & 1)

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: MIT
+"""What a host does with one channel of the core."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from passo import frame
+from passo import registers as r
+from passo.build import Parameters
+from passo.link import Link
+from passo.moves import PinTiming
+from passo.registers import Cause, State
+
+RATE_ONE = 1 << 16
+
+
+class HostError(Exception):
+    """This is not the core that the host expects."""
+
+
+@dataclass(frozen=True)
+class ChannelState:
+    """The STATE register."""
+
+    state: State
+    cause: Cause
+    stopping: bool
+    overrun: int
+    drained: int
+
+
+class Channel:
+    """One channel: `AXES` coordinated axes."""
+
+    def __init__(self, link: Link, parameters: Parameters, number: int = 0):
+        self.link, self.parameters, self.number = link, parameters, number
+        self.base = r.ADDRESS_CHANNEL_BASE + number * r.ADDRESS_CHANNEL_STRIDE
+        identification, _, word = link.read(r.ADDRESS_IDENTIFICATION, 3)
+        if identification != r.IDENTIFICATION_RESET:
+            raise HostError(f"no Passo core: it identifies itself as 0x{identification:08X}")
+        actual = Parameters(
+            channels=word & 0xF,
+            axes=word >> r.PARAMETERS_AXES_LSB & 0xF,
+            tick_log2=word >> r.PARAMETERS_TICK_LOG2_LSB & 0x1F,
+            line_queue_log2=word >> r.PARAMETERS_LINE_QUEUE_LOG2_LSB & 0x1F,
+            ramp_queue_log2=word >> r.PARAMETERS_RAMP_QUEUE_LOG2_LSB & 0x1F,
+        )
+        if actual != parameters:
+            raise HostError(f"the core has {actual}, expected {parameters}")
+
+    def configure_axis(self, axis: int, pins: PinTiming, flags: int = 1) -> None:
+        """Set the pins of an axis; `flags` is its PINS register, by default: drive enabled."""
+        address = self.base + r.CHANNEL_AXIS_BASE + axis * r.CHANNEL_AXIS_STRIDE
+        self.link.write(
+            address, flags, pins.step_high << 16 | pins.step_low, pins.dir_setup << 16 | pins.dir_hold
+        )
+
+    def configure_motion(self, rate_slew: int, stop_slew: int, drain_velocity: int) -> None:
+        """Set how holds and stops slow down and how missing substeps are made."""
+        self.link.write(self.base + r.CHANNEL_RATE_SLEW, rate_slew, stop_slew, drain_velocity)
+
+    def room(self) -> tuple[int, int]:
+        """Free places in the queues: lines, ramps."""
+        (word,) = self.link.read(self.base + r.CHANNEL_ROOM, 1)
+        return word >> r.CHANNEL_ROOM_LINE_ROOM_LSB, word & 0xFFFF
+
+    def push_lines(self, lines: Sequence[Any]) -> None:
+        """Queue lines (`struct passo_line`), for which there is room."""
+        axes = self.parameters.axes
+        self._push(r.CHANNEL_LINE, [frame.line_words(line, axes) for line in lines])
+
+    def push_ramps(self, ramps: Sequence[Any]) -> None:
+        """Queue ramps (`struct passo_ramp`), for which there is room."""
+        self._push(r.CHANNEL_RAMP, [frame.ramp_words(ramp) for ramp in ramps])
+
+    def start(self) -> None:
+        """Let the channel start its motion."""
+        self.link.write(r.ADDRESS_RUN, 1 << self.number)
+
+    def set_rate(self, rate: int) -> None:
+        """Set the time scale: 0 holds, RATE_ONE is full speed."""
+        self.link.write(self.base + r.CHANNEL_RATE_TARGET, rate)
+
+    def stop(self) -> None:
+        """Soft stop."""
+        self.link.write(self.base + r.CHANNEL_COMMAND, 1 << r.CHANNEL_COMMAND_STOP_LSB)
+
+    def abort(self) -> None:
+        """Hard stop."""
+        self.link.write(self.base + r.CHANNEL_COMMAND, 1 << r.CHANNEL_COMMAND_ABORT_LSB)
+
+    def clear(self) -> None:
+        """Leave the stopped state."""
+        self.link.write(self.base + r.CHANNEL_COMMAND, 1 << r.CHANNEL_COMMAND_CLEAR_LSB)
+
+    def positions(self) -> list[int]:
+        """Steps made by each axis, all at one moment."""
+        words = self.link.read(self.base + r.CHANNEL_POSITION_BASE, self.parameters.axes)
+        return [word - (word >> 31 << 32) for word in words]
+
+    def state(self) -> ChannelState:
+        """What the channel does."""
+        (word,) = self.link.read(self.base + r.CHANNEL_STATE, 1)
+        return ChannelState(
+            state=State(word & 7),
+            cause=Cause(word >> r.CHANNEL_STATE_CAUSE_LSB & 7),
+            stopping=bool(word >> r.CHANNEL_STATE_STOPPING_LSB & 1),
+            overrun=word >> r.CHANNEL_STATE_OVERRUN_LSB & 0xFF,
+            drained=word >> r.CHANNEL_STATE_DRAINED_LSB & 0xFFFF,
+        )
+
+    def _push(self, register: int, items: list[list[int]]) -> None:
+        """Send whole items, as many in a frame as fit."""
+        per_frame = frame.PAYLOAD_MAX // len(items[0]) if items else 1
+        for i in range(0, len(items), per_frame):
+            words = [word for item in items[i : i + per_frame] for word in item]
+            self.link.push(self.base + register, words)

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: MIT
+"""The C code as Python sees it: its declarations are read from its own headers."""
+
+import re
+import subprocess
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from cffi import FFI
+
+from passo.build import ENGINE, planner_library
+from passo.toolchain import environment, paths
+
+HEADERS = (
+    paths.c_model / "passo_command.h",
+    paths.c_model / "passo_registers.h",
+    paths.c_model / "passo_plan.h",
+    paths.c_model / "passo_frame.h",
+    ENGINE / "passo_engine.h",
+)
+
+
+def _declarations() -> str:
+    """The headers after the preprocessor. cffi knows the standard types, so nothing is included."""
+    text = "\n".join(re.sub(r"(?m)^#include.*$", "", path.read_text()) for path in HEADERS)
+    command = ["cc", "-E", "-P", "-x", "c", "-"]
+    done = subprocess.run(command, input=text, env=environment(), capture_output=True, text=True, check=True)
+    return done.stdout
+
+
+@cache
+def ffi() -> FFI:
+    """All types and functions of the C code."""
+    made = FFI()
+    made.cdef(_declarations())
+    return made
+
+
+@cache
+def load(library: Path) -> Any:
+    """A shared library; it need not have all the functions."""
+    return ffi().dlopen(str(library))
+
+
+def planner() -> Any:
+    """The planner and the frame codec."""
+    return load(planner_library())

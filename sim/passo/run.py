@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: MIT
+"""Execute a planned motion on an engine, the way a host does: over SPI, keeping the queues filled."""
+
+import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from passo.build import Parameters
+from passo.engine import Engine, PairEngine, model_engine, rtl_engine
+from passo.host import RATE_ONE, Channel, ChannelState
+from passo.link import Link
+from passo.moves import MoveFile
+from passo.plan import Plan
+from passo.registers import Cause, State
+
+ENGINES = ("both", "rtl", "model")
+CHUNK = 400_000  # clocks between two looks at the core, at most
+SLEW_SECONDS = 0.05  # a hold from full speed
+AXES_OF_CORES = (4, 8)
+
+# The pins of the one channel, without what stays the same during a motion.
+PINS = np.dtype([("clock", "u8"), ("step", "u1"), ("dir", "u1"), ("running", "?")])
+
+
+class RunError(Exception):
+    """The motion did not end."""
+
+
+@dataclass
+class Run:
+    """What came of a motion."""
+
+    file: MoveFile
+    plans: list[Plan]
+    pins: np.ndarray  # PINS, one row for each clock on which they change
+    state: ChannelState
+    positions: list[int]
+    matched_edges: int | None  # None: there was only one engine
+    clocks: int  # executed in all
+    seconds: float  # that it took
+    start: int = field(init=False)  # clock on which the motion started
+    total_clocks: int = field(init=False)  # clocks that the motion lasted
+
+    def __post_init__(self) -> None:
+        running = np.concatenate([[False], self.pins["running"]])
+        rises = self.pins["clock"][running[1:] & ~running[:-1]]
+        falls = self.pins["clock"][running[:-1] & ~running[1:]]
+        self.start = int(rises[0]) if len(rises) else 0
+        self.total_clocks = int(falls.sum()) - int(rises.sum()) if len(rises) == len(falls) else 0
+
+    def steps(self, axis: int) -> tuple[np.ndarray, np.ndarray]:
+        """Clocks since the start of the motion and directions (1, -1) of all steps of an axis."""
+        level = self.pins["step"] >> axis & 1
+        rising = np.flatnonzero(level & ~np.concatenate([[0], level[:-1]]) & 1)
+        negative = self.pins["dir"][rising] >> axis & 1
+        return self.pins["clock"][rising].astype(np.int64) - self.start, 1 - 2 * negative.astype(np.int8)
+
+    def commanded(self, axis: int) -> tuple[int, int]:
+        """Sum of the steps of all moves, and of their magnitudes."""
+        steps = [move.steps[axis] for move in self.file.moves]
+        return sum(steps), sum(map(abs, steps))
+
+    def problems(self) -> list[str]:
+        """What is not as it should be, in sentences; empty if the motion was made exactly."""
+        found = []
+        if self.state.cause != Cause.NONE:
+            found.append(f"the core stopped: {self.state.cause.name}: {self.state.cause.description}")
+        if self.state.drained:
+            found.append(f"{self.state.drained} substeps were missing at the end of the profile")
+        for axis in range(self.file.axes):
+            expected, pulses = self.commanded(axis)
+            clocks, directions = self.steps(axis)
+            if len(clocks) != pulses or int(directions.sum(dtype=np.int64)) != expected:
+                found.append(f"axis {axis} made {len(clocks)} steps of {pulses}")
+            if self.positions[axis] != (expected + 2**31) % 2**32 - 2**31:
+                found.append(f"axis {axis} is at {self.positions[axis]}, not at {expected}")
+        expected_clocks = sum(plan.clocks for plan in self.plans)
+        if not found and self.total_clocks != expected_clocks:
+            found.append(f"the motion took {self.total_clocks} clocks instead of {expected_clocks}")
+        return found
+
+
+def parameters_for(axes: int) -> Parameters:
+    """The core that is used for so many axes."""
+    return Parameters(axes=next(n for n in AXES_OF_CORES if n >= axes))
+
+
+def open_engine(name: str, parameters: Parameters, clock_hz: int, waves: bool = False) -> Engine | PairEngine:
+    """An engine by its name on the command line."""
+    if name == "model":
+        return model_engine(parameters, clock_hz)
+    rtl = rtl_engine(parameters, clock_hz, waves)
+    return rtl if name == "rtl" else PairEngine(rtl, model_engine(parameters, clock_hz))
+
+
+class Feeder:
+    """Keeps the queues filled with what is still to come."""
+
+    def __init__(self, channel: Channel, plans: list[Plan]):
+        self.channel = channel
+        self._lines = deque(plan.line for plan in plans)
+        self._ramps = deque(ramp for plan in plans for ramp in plan.ramps)
+        self._queued: deque[int] = deque()  # ticks of the ramps that may still be in the queue
+
+    @property
+    def done(self) -> bool:
+        """Everything was sent."""
+        return not self._lines and not self._ramps
+
+    def fill(self) -> None:
+        """Send as much as there is room for."""
+        if self.done:
+            return
+        line_room, ramp_room = self.channel.room()
+        waiting = (1 << self.channel.parameters.ramp_queue_log2) - ramp_room
+        while len(self._queued) > waiting:
+            self._queued.popleft()
+        lines = [self._lines.popleft() for _ in range(min(line_room, len(self._lines)))]
+        ramps = [self._ramps.popleft() for _ in range(min(ramp_room, len(self._ramps)))]
+        self.channel.push_lines(lines)
+        self.channel.push_ramps(ramps)
+        self._queued.extend(ramp.ticks for ramp in ramps)
+
+    def patience(self) -> int:
+        """Clocks that may pass before the queues need another look."""
+        if self.done:
+            return CHUNK
+        tick_log2 = self.channel.parameters.tick_log2
+        return min(CHUNK, max(1, sum(self._queued) // 2) << tick_log2)
+
+
+def execute(
+    file: MoveFile,
+    plans: list[Plan],
+    engine: Engine | PairEngine,
+    progress: Callable[[int], None] = lambda clocks: None,
+) -> Run:
+    """Make the motion; `progress` is told its clocks so far."""
+    channel = Channel(Link(engine), engine.parameters)
+    pins: list[np.ndarray] = []
+
+    def collect() -> None:
+        events = engine.drain()
+        compact = np.empty(len(events), PINS)
+        for name in PINS.names:
+            compact[name] = events[name]
+        pins.append(compact)
+
+    def advance(clocks: int) -> None:
+        while clocks:
+            clocks -= engine.run(clocks)
+            collect()
+
+    for axis in range(file.axes):
+        channel.configure_axis(axis, file.pins)
+    tick = 1 << engine.parameters.tick_log2
+    slew = min(RATE_ONE, max(1, round(RATE_ONE * tick / (SLEW_SECONDS * file.clock_hz))))
+    slowest = min(plan.c.velocity_peak for plan in plans)
+    channel.configure_motion(slew, slew, max(1, slowest >> 16 >> 4))
+
+    planned = sum(plan.clocks for plan in plans)
+    feeder = Feeder(channel, plans)
+    feeder.fill()
+    began, start = time.monotonic(), engine.clock
+    channel.start()
+    state = channel.state()
+    while state.state != State.STOPPED and not (feeder.done and state.state == State.IDLE):
+        left = start + planned - engine.clock
+        if left < -file.clock_hz:
+            raise RunError(f"the motion did not end in time: {state}")
+        advance(min(feeder.patience(), max(left, 16 * tick)))
+        progress(engine.clock - start)
+        feeder.fill()
+        state = channel.state()
+    # The last pulse and a change of direction may still be under way.
+    advance(8 * sum((file.pins.step_high, file.pins.step_low, file.pins.dir_setup, file.pins.dir_hold)))
+    positions = channel.positions()[: file.axes]
+    state = channel.state()
+    collect()
+    return Run(
+        file=file,
+        plans=plans,
+        pins=np.concatenate(pins),
+        state=state,
+        positions=positions,
+        matched_edges=engine.matched_edges if isinstance(engine, PairEngine) else None,
+        clocks=engine.clock - start,
+        seconds=time.monotonic() - began,
+    )

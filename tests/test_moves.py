@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: MIT
+"""Move files: what is right is read exactly, what is wrong is told in one clear line."""
+
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from passo.cli import main
+from passo.moves import MoveBySpeed, MoveFileError, MoveInTime, PinTiming, read_moves
+from passo.toolchain import paths
+
+CLOCK = "clock_hz = 16_000_000\n"
+BY_TIME = '[[move]]\nsteps = [100, -50]\nprofile = "cosine"\ntotal_time = 0.4\nramp_time = 0.1\n'
+BY_SPEED = '[[move]]\nsteps = [100, -50]\nprofile = "linear"\nspeed = 2000\nacceleration = 40000\n'
+GOOD = CLOCK + BY_TIME
+
+
+def write(folder: Path, text: str) -> Path:
+    path = folder / "bad.toml"
+    path.write_text(text)
+    return path
+
+
+def test_both_forms(tmp_path: Path) -> None:
+    file = read_moves(
+        write(tmp_path, CLOCK + "[pins]\nstep_high = 1.01e-6\nstep_low = 0\n" + BY_TIME + BY_SPEED)
+    )
+    assert file.clock_hz == 16_000_000
+    assert file.pins == PinTiming(step_high=17, step_low=1, dir_setup=16, dir_hold=16)
+    assert file.moves == (
+        MoveInTime((100, -50), "cosine", Fraction(2, 5), Fraction(1, 10)),
+        MoveBySpeed(
+            (100, -50),
+            "linear",
+            Fraction(0),
+            Fraction(2000),
+            Fraction(0),
+            Fraction(40000),
+            Fraction(0),
+            Fraction(0),
+        ),
+    )
+    assert file.axes == 2
+    assert file.name == "bad"
+
+
+def test_decimals_are_exact(tmp_path: Path) -> None:
+    text = GOOD.replace("0.4", "0.1234567890123456789").replace("ramp_time = 0.1", "ramp_time = 1e-3")
+    (move,) = read_moves(write(tmp_path, text)).moves
+    assert isinstance(move, MoveInTime)
+    assert move.total_time == Fraction(1234567890123456789, 10**19)
+    assert move.ramp_time == Fraction(1, 1000)
+
+
+BAD = {
+    "clock missing": (BY_TIME, "clock_hz is missing"),
+    "clock zero": (GOOD.replace("16_000_000", "0"), "clock_hz must be 1 to 4294967295"),
+    "clock float": (GOOD.replace("16_000_000", "16e6"), "clock_hz must be a whole number"),
+    "clock true": (GOOD.replace("16_000_000", "true"), "clock_hz must be a whole number, not true"),
+    "syntax": (CLOCK + "[[move\n", "at line 2"),
+    "twice": (CLOCK + GOOD, "Cannot overwrite"),
+    "empty": ("", "clock_hz is missing"),
+    "no moves": (CLOCK, "there are no moves"),
+    "empty list": (CLOCK + "move = []\n", "there are no moves"),
+    "a table": (GOOD.replace("[[move]]", "[move]"), "move must be an array of tables"),
+    "a number": (CLOCK + "move = 3\n", "move must be an array of tables"),
+    "a list of numbers": (CLOCK + "move = [3]\n", "move must be an array of tables"),
+    "unknown key": (CLOCK + "color = 1\n" + BY_TIME, "unknown key 'color'"),
+    "unknown key of a move": (GOOD + "sped = 3\n", "move 1: unknown key 'sped'"),
+    "unknown key of the pins": (CLOCK + "[pins]\nstep = 1\n" + BY_TIME, "pins: unknown key 'step'"),
+    "pins no table": (CLOCK + "pins = 1\n" + BY_TIME, "pins must be a table"),
+    "pin too long": (CLOCK + "[pins]\ndir_hold = 0.005\n" + BY_TIME, "pins: dir_hold is 80000 clocks"),
+    "pin negative": (CLOCK + "[pins]\ndir_hold = -1e-6\n" + BY_TIME, "pins: dir_hold must not be negative"),
+    "pin text": (
+        CLOCK + '[pins]\nstep_low = "1us"\n' + BY_TIME,
+        "pins: step_low must be a number, not '1us'",
+    ),
+    "steps missing": (GOOD.replace("steps = [100, -50]", ""), "move 1: steps is missing"),
+    "steps a number": (GOOD.replace("[100, -50]", "100"), "move 1: steps must be a list"),
+    "steps floats": (GOOD.replace("-50", "-50.0"), "move 1: steps must be a list of whole numbers"),
+    "steps true": (GOOD.replace("-50", "true"), "move 1: steps must be a list of whole numbers"),
+    "steps nested": (GOOD.replace("-50", "[50]"), "move 1: steps must be a list of whole numbers"),
+    "steps empty": (GOOD.replace("[100, -50]", "[]"), "move 1: steps has 0 axes"),
+    "nine axes": (GOOD.replace("-50", "1, 2, 3, 4, 5, 6, 7, 8"), "move 1: steps has 9 axes"),
+    "2^31 steps": (GOOD.replace("-50", "2147483648"), "move 1: axis 1 has too many steps"),
+    "-2^31 steps": (GOOD.replace("-50", "-2147483648"), "move 1: axis 1 has too many steps"),
+    "other length": (GOOD + BY_SPEED.replace("-50", "-50, 1"), "move 2: steps has 3 axes, but move 1 has 2"),
+    "profile missing": (GOOD.replace('profile = "cosine"', ""), "move 1: profile is missing"),
+    "profile unknown": (GOOD.replace("cosine", "cosinus"), "move 1: profile must be one of linear, cosine"),
+    "profile number": (GOOD.replace('"cosine"', "1"), "move 1: profile must be one of"),
+    "profile list": (GOOD.replace('"cosine"', "[]"), "move 1: profile must be one of"),
+    "no ramp time": (GOOD.replace("ramp_time = 0.1", ""), "move 1: ramp_time is missing"),
+    "negative time": (GOOD.replace("0.4", "-0.4"), "move 1: total_time must not be negative"),
+    "infinite time": (GOOD.replace("0.4", "inf"), "move 1: total_time must be finite"),
+    "no number": (GOOD.replace("0.4", "nan"), "move 1: total_time must be finite"),
+    "huge": (GOOD.replace("0.4", "1e999999999"), "move 1: total_time must be at most"),
+    "out of range": (GOOD.replace("0.4", "1e9999999999999999999999"), "out of all range"),
+    "tiny": (GOOD.replace("0.4", "1e-999999999"), "move 1: total_time has more than 30 decimals"),
+    "a date": (GOOD.replace("0.4", "2024-01-01"), "move 1: total_time must be a number"),
+    "very many digits": (GOOD.replace("100", "9" * 5000), "bad.toml: "),
+    "very long number": (GOOD.replace('"cosine"', "0x" + "f" * 9000), "not a very long number"),
+    "deep": (CLOCK + "move = " + "[" * 9000 + "]" * 9000, "bad.toml: "),
+    "both forms": (GOOD + "speed = 3\n", "move 1: total_time and speed exclude each other"),
+    "neither form": (GOOD.replace("total_time = 0.4", ""), "move 1: total_time or speed is missing"),
+    "acceleration and ramp": (CLOCK + BY_SPEED + "ramp_time = 1\n", "acceleration and ramp_time exclude"),
+    "zero acceleration": (CLOCK + BY_SPEED.replace("40000", "0"), "acceleration must be greater than 0"),
+    "zero deceleration": (CLOCK + BY_SPEED + "deceleration = 0\n", "deceleration must be greater than 0"),
+    "only deceleration": (
+        CLOCK + BY_SPEED.replace("acceleration", "deceleration"),
+        "deceleration needs acceleration",
+    ),
+    "negative speed": (CLOCK + BY_SPEED.replace("2000", "-2000"), "move 1: speed must not be negative"),
+    "negative start": (CLOCK + BY_SPEED + "start_speed = -1\n", "move 1: start_speed must not be negative"),
+}
+
+# What only the planner finds.
+UNPLANNABLE = {
+    "no steps": (GOOD.replace("[100, -50]", "[0, 0]"), "move 1: NO_STEPS: "),
+    "no time": (GOOD.replace("0.4", "0").replace("0.1", "0"), "move 1: NO_TIME: "),
+    "long ramp": (GOOD + BY_TIME.replace("0.1", "0.21"), "move 2: RAMP_TOO_LONG: "),
+    "too fast": (GOOD.replace("100", "100_000_000"), "move 1: TOO_FAST: "),
+    "zero speed": (CLOCK + BY_SPEED.replace("2000", "0"), "move 1: NO_SPEED: "),
+    "no acceleration": (CLOCK + BY_SPEED.replace("acceleration = 40000", ""), "move 1: NO_ACCELERATION: "),
+    "fast start": (CLOCK + BY_SPEED + "start_speed = 3000\n", "move 1: START_ABOVE_SPEED: "),
+    "fast stop": (CLOCK + BY_SPEED + "stop_speed = 3000\n", "move 1: STOP_ABOVE_SPEED: "),
+    "pins": (
+        CLOCK + BY_SPEED.replace("100", "1_000_000").replace("2000", "600_000").replace("40000", "4_000_000"),
+        "move 1: PINS_TOO_SLOW: axis 0 reaches 59",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_bad_input(tmp_path: Path, name: str) -> None:
+    text, reason = BAD[name]
+    with pytest.raises(MoveFileError) as caught:
+        read_moves(write(tmp_path, text))
+    message = str(caught.value)
+    assert reason in message
+    assert message.startswith(str(tmp_path / "bad.toml") + ": ")
+    assert "\n" not in message and len(message) < len(str(tmp_path)) + 200
+
+
+@pytest.mark.parametrize("name", ["syntax", "both forms", *UNPLANNABLE])
+def test_exit_status_of_bad_input(tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str) -> None:
+    text, reason = (BAD | UNPLANNABLE)[name]
+    out = tmp_path / "out"
+    assert main(["run", str(write(tmp_path, text)), "--out", str(out)]) == 2
+    captured = capsys.readouterr()
+    assert reason in captured.err
+    assert captured.err.count("\n") == 1
+    assert not out.exists()
+
+
+def test_files_that_cannot_be_read(tmp_path: Path) -> None:
+    with pytest.raises(MoveFileError, match="No such file"):
+        read_moves(tmp_path / "none.toml")
+    with pytest.raises(MoveFileError, match="directory"):
+        read_moves(tmp_path)
+    path = tmp_path / "binary.toml"
+    path.write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(MoveFileError, match="UTF-8"):
+        read_moves(path)
+
+
+@pytest.mark.parametrize("path", sorted(paths.examples.glob("*.toml")), ids=lambda path: path.stem)
+def test_examples_are_good(path: Path) -> None:
+    assert read_moves(path).moves

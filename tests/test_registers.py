@@ -1,0 +1,240 @@
+# SPDX-License-Identifier: MIT
+"""The generated register definitions are fresh, without clashes, alike, and accepted by all tools."""
+
+import re
+import shutil
+import subprocess
+import sys
+from itertools import combinations
+from pathlib import Path
+
+import pytest
+from passo import registers
+from passo.toolchain import environment
+from systemrdl import RDLCompiler
+from systemrdl.node import RegNode
+
+ROOT = Path(__file__).resolve().parents[1]
+SOURCE = "registers/passo.rdl"
+GENERATOR = "tools/generate_registers.py"
+VERILOG = "rtl/passo_registers.vh"
+C = "c_model/passo_registers.h"
+OUTPUTS = [VERILOG, C, "sim/passo/registers.py", "docs/registers.md"]
+ENUMS = [registers.Operation, registers.Verdict, registers.State, registers.Cause]
+
+
+def read(name: str) -> str:
+    return (ROOT / name).read_text(encoding="utf-8")
+
+
+def verilog_constants(text: str) -> dict[str, tuple[int, int]]:
+    """Name to (width, value); numbers without a width have 32 bits."""
+    constants = {}
+    for name, bits, base, number in re.findall(r"^localparam (\w+) *= (?:(\d+)'([hd]))?(\w+);", text, re.M):
+        constants[name] = (int(bits or 32), int(number, 16 if base == "h" else 10))
+    assert len(constants) == len(re.findall("^localparam", text, re.M)), (
+        "a name twice, or a line not understood"
+    )
+    return constants
+
+
+def c_constants(text: str) -> dict[str, int]:
+    found = re.findall(r"^#define PASSO_(\w+) +(\w+)u$", text, re.M)
+    found += re.findall(r"^\tPASSO_(\w+) += (\d+),? +/\*", text, re.M)
+    return {name: int(number, 0) for name, number in found}
+
+
+def fields(verilog: dict[str, tuple[int, int]]) -> dict[str, range]:
+    """Name to bit numbers."""
+    lsbs = {name.removesuffix("_LSB"): lsb for name, (_, lsb) in verilog.items() if name.endswith("_LSB")}
+    return {name: range(lsb, lsb + verilog[f"{name}_BITS"][1]) for name, lsb in lsbs.items()}
+
+
+def word_addresses(verilog: dict[str, tuple[int, int]]) -> list[int]:
+    """Every word address that the constants describe, of all channels and axes."""
+
+    def words(prefix: str) -> list[int]:
+        found = []
+        for name, (_, word) in verilog.items():
+            stem = name.removesuffix("_BASE")
+            if not name.startswith(prefix) or f"{stem}_STRIDE" in verilog:
+                continue
+            if name.endswith("_BASE"):
+                found += range(word, word + verilog[f"{stem}_COUNT"][1])
+            elif not re.search("_(LSB|BITS|RESET|DEFINED|COUNT|STRIDE)$", name):
+                found.append(word)
+        return found
+
+    def bases(name: str) -> list[int]:
+        base, count, stride = (verilog[f"{name}_{part}"][1] for part in ("BASE", "COUNT", "STRIDE"))
+        return [base + n * stride for n in range(count)]
+
+    channel = words("CHANNEL_") + [base + word for base in bases("CHANNEL_AXIS") for word in words("AXIS_")]
+    return words("ADDRESS_") + [base + word for base in bases("ADDRESS_CHANNEL") for word in channel]
+
+
+@pytest.fixture(scope="module")
+def verilog() -> dict[str, tuple[int, int]]:
+    return verilog_constants(read(VERILOG))
+
+
+@pytest.fixture(scope="module")
+def rdl() -> list[RegNode]:
+    """All registers of the source, one by one."""
+    compiler = RDLCompiler()
+    compiler.compile_file(str(ROOT / SOURCE))
+    return [node for node in compiler.elaborate().descendants(unroll=True) if isinstance(node, RegNode)]
+
+
+def run(*command: str | Path, cwd: Path = ROOT) -> subprocess.CompletedProcess:
+    return subprocess.run(
+        command, cwd=cwd, env=environment(), text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
+    )
+
+
+def test_generated_files_are_fresh():
+    result = run(sys.executable, GENERATOR, "--check")
+    assert (result.returncode, result.stdout) == (0, "")
+
+
+@pytest.mark.parametrize("stale", OUTPUTS)
+def test_check_names_stale_files(tmp_path: Path, stale: str):
+    for name in [SOURCE, GENERATOR, *OUTPUTS]:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+    for name in [SOURCE, GENERATOR]:
+        shutil.copy(ROOT / name, tmp_path / name)
+    assert run(sys.executable, GENERATOR, cwd=tmp_path).returncode == 0
+    assert run(sys.executable, GENERATOR, "--check", cwd=tmp_path).returncode == 0
+
+    fresh = (tmp_path / stale).read_text(encoding="utf-8")
+    (tmp_path / stale).write_text(fresh + "\n", encoding="utf-8")
+    for _ in range(2):  # the first one must not have written the file
+        result = run(sys.executable, GENERATOR, "--check", cwd=tmp_path)
+        assert result.returncode == 1
+        assert [name for name in OUTPUTS if name in result.stdout] == [stale]
+
+    assert run(sys.executable, GENERATOR, cwd=tmp_path).returncode == 0
+    assert (tmp_path / stale).read_text(encoding="utf-8") == fresh
+
+
+@pytest.mark.parametrize("name", OUTPUTS)
+def test_generated_files_say_so(name: str):
+    assert f"Generated from {SOURCE} by {GENERATOR}." in "".join(read(name).splitlines(keepends=True)[:3])
+
+
+def test_everything_is_described(rdl: list[RegNode]):
+    for register in rdl:
+        for node in [register, *register.fields()]:
+            assert node.get_property("desc"), node.get_path()
+
+
+def test_addresses_are_unique_and_those_of_the_source(verilog: dict, rdl: list[RegNode]):
+    addresses = word_addresses(verilog)
+    assert len(addresses) == len(set(addresses))
+    assert sorted(addresses) == sorted(register.absolute_address // 4 for register in rdl)
+
+
+def test_addresses_fit_their_widths(verilog: dict):
+    assert max(word_addresses(verilog)) < 1 << verilog["ADDRESS_RUN"][0]
+    for block, offset in [("ADDRESS_CHANNEL", "CHANNEL_STATE"), ("CHANNEL_AXIS", "AXIS_PINS")]:
+        assert verilog[f"{block}_STRIDE"][1] == 1 << verilog[offset][0]
+
+
+def test_values_fit_their_widths(verilog: dict):
+    for name, (bits, value) in verilog.items():
+        assert value < 1 << bits, name
+
+
+def test_fields_do_not_overlap(verilog: dict):
+    for paragraph in read(VERILOG).split("\n\n"):
+        of_register = fields(verilog_constants(paragraph))
+        for name, bits in of_register.items():
+            assert 0 <= bits.start < bits.stop <= 32, name
+        for (one, ones), (other, others) in combinations(of_register.items(), 2):
+            assert not set(ones) & set(others), f"{one}, {other}"
+
+
+def test_resets_have_the_width_of_their_field(verilog: dict):
+    of_field = {name: bits for name, bits in fields(verilog).items() if f"{name}_RESET" in verilog}
+    assert len(of_field) == sum(name.endswith("_RESET") for name in verilog)
+    for name, bits in of_field.items():
+        assert verilog[f"{name}_RESET"][0] == len(bits), name
+
+
+def test_fields_are_those_of_the_source(verilog: dict, rdl: list[RegNode]):
+    of_verilog = fields(verilog)
+    for register in rdl:
+        level = {1: "", 2: "CHANNEL_", 3: "AXIS_"}[register.get_path().count(".")]
+        stem = f"{level}{register.inst_name}".upper()
+        for field in register.fields():
+            long = f"{stem}_{field.inst_name}".upper()
+            name = long if long in of_verilog else stem
+            assert of_verilog[name] == range(field.lsb, field.msb + 1), field.get_path()
+            reset = field.get_property("reset")
+            expected = None if reset is None else (field.width, reset)
+            assert verilog.get(f"{name}_RESET") == expected, field.get_path()
+        writable = sum(((1 << f.width) - 1) << f.lsb for f in register.fields() if f.is_sw_writable)
+        assert verilog.get(f"{stem}_DEFINED", (32, 0)) == (32, writable), register.get_path()
+
+
+@pytest.mark.parametrize(
+    ("name", "width", "value"),
+    [
+        ("ADDRESS_IDENTIFICATION", 12, 0),
+        ("ADDRESS_CHANNEL_BASE", 12, 0x100),
+        ("ADDRESS_EASE_BASE", 12, 0xF00),
+        ("CHANNEL_POSITION_BASE", 8, 0x40),
+        ("CHANNEL_AXIS_BASE", 8, 0x80),
+        ("CHANNEL_RATE_TARGET_RESET", 17, 0x10000),
+        ("AXIS_DIR_TIMING", 3, 2),
+        ("STATE_STOPPED", 3, 6),
+        ("VERDICT_BAD_VALUE", 4, 9),
+        ("OPERATION_PUSH", 4, 3),
+    ],
+)
+def test_some_constants_by_hand(verilog: dict, name: str, width: int, value: int):
+    assert verilog[name] == (width, value)
+
+
+def test_verilog_and_c_agree(verilog: dict):
+    assert c_constants(read(C)) == {name: value for name, (_, value) in verilog.items()}
+
+
+def test_verilog_and_python_agree(verilog: dict):
+    python = {name: value for name, value in vars(registers).items() if name.isupper()}
+    for enum in ENUMS:
+        python |= {f"{enum.__name__}_{member.name}".upper(): int(member) for member in enum}
+        assert all(member.description.endswith(".") for member in enum)
+    assert python == {name: value for name, (_, value) in verilog.items()}
+
+
+def test_verdicts_of_the_architecture_page():
+    section = read("docs/architecture.md").split("| verdict | name | reason |")[1]
+    table = re.findall(r"^\| (\d+) \| `(\w+)` \|", section, re.M)
+    assert [(int(value), name) for value, name in table] == [(v.value, v.name) for v in registers.Verdict]
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "iverilog -g2005 -Wall -t null",
+        "verilator --lint-only -Wall --language 1364-2005",
+    ],
+    ids=lambda command: command.split()[0],
+)
+def test_verilog_is_accepted(tmp_path: Path, command: str):
+    tiny = tmp_path / "tiny.v"
+    tiny.write_text(f'module tiny;\n`include "{Path(VERILOG).name}"\nendmodule\n')
+    result = run(*command.split(), f"-I{ROOT / 'rtl'}", tiny)
+    errors = [line for line in result.stdout.splitlines() if not line.startswith("- ")]
+    assert (result.returncode, errors) == (0, [])
+
+
+@pytest.mark.parametrize("language", ["c", "c++"])
+def test_c_is_accepted(tmp_path: Path, language: str):
+    tiny = tmp_path / "tiny.c"
+    tiny.write_text(f'#include "{Path(C).name}"\n' * 2 + "int main(void) { return PASSO_VERDICT_OK; }\n")
+    result = run(
+        "gcc", "-x", language, "-fsyntax-only", "-Wall", "-Wextra", "-Werror", f"-I{ROOT / 'c_model'}", tiny
+    )
+    assert (result.returncode, result.stdout) == (0, "")

@@ -1,0 +1,141 @@
+#!/usr/bin/env bash
+# Makes the machine ready for every other make target: Debian packages, .venv, Python packages.
+#
+# Safe to run again at any time: it only does what is missing. PYTHON selects the interpreter the
+# environment is made from (default: python3).
+
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+root=$(pwd -P)
+python=${PYTHON:-python3}
+stamp=.venv/.setup-stamp
+
+step() { printf '== %s\n' "$*"; }
+fail() {
+    printf '\nSetup stopped: %s\n' "$1" >&2
+    shift
+    [ $# -eq 0 ] || printf '  %s\n' "$@" >&2
+    exit 1
+}
+
+# Two runs at the same time would spoil each other's .venv.
+exec 9<tools/setup.sh
+flock 9
+
+# --- What is missing -----------------------------------------------------------------------------
+
+# A command that shows whether a Debian package is there. Verilator's driver needs the full Perl
+# (pod2usage comes with it) and the compiler under the name c++.
+tools="iverilog:iverilog c++:g++ make:make pod2usage:perl git:git"
+
+missing_tools() {
+    local tool
+    for tool in $tools; do
+        command -v "${tool%%:*}" >/dev/null || echo "${tool##*:}"
+    done
+}
+
+# What the interpreter lacks: venv needs ensurepip; cffi needs the headers; cocotb loads Python
+# into the simulator, so it needs the shared library, which Debian ships apart from the interpreter.
+missing_python_parts() {
+    if ! command -v "$python" >/dev/null; then
+        echo python3 python3-venv python3-dev
+        return
+    fi
+    "$python" - <<'PYTHON'
+import ctypes, importlib.util, os, sysconfig
+if not importlib.util.find_spec("ensurepip"):
+    print("python3-venv")
+try:
+    ctypes.CDLL(sysconfig.get_config_var("INSTSONAME"))
+    if not os.path.exists(os.path.join(sysconfig.get_path("include"), "Python.h")):
+        print("python3-dev")
+except OSError:
+    print("python3-dev")
+PYTHON
+}
+
+# The absolute path is part of the key because a .venv does not survive being moved.
+key=$(cat requirements.txt pyproject.toml tools/setup.sh - <<<"$root" | sha256sum)
+
+venv_is_current() {
+    [ -f "$stamp" ] && [ "$(<"$stamp")" = "$key" ] && .venv/bin/python -c 'import pip' 2>/dev/null
+}
+
+missing=$(missing_tools)
+if [ -z "$missing" ] && venv_is_current; then
+    step "Setup is complete."
+    exit 0
+fi
+
+case $root in
+    *[[:space:]]*) fail "the path of this folder contains a space:" "$root" \
+        "Verilator's makefiles cannot work there. Move the folder and run 'make setup' again." ;;
+esac
+
+# --- Debian packages -----------------------------------------------------------------------------
+
+install_packages() {
+    local as_root=() install=(apt-get install -y --no-install-recommends "$@")
+    local by_hand="apt-get update && ${install[*]}"
+
+    if ! command -v apt-get >/dev/null; then
+        fail "these Debian packages are needed, but there is no apt-get here: $*" \
+            "Install what your system has in their place, then run 'make setup' again."
+    fi
+    if [ "$(id -u)" -ne 0 ]; then
+        if ! command -v sudo >/dev/null; then
+            fail "these Debian packages are missing: $*" \
+                "An administrator has to run:" "" "    $by_hand" "" "Then run 'make setup' again."
+        fi
+        as_root=(sudo)
+    fi
+
+    step "Installing Debian packages: $*"
+    as_root+=(env DEBIAN_FRONTEND=noninteractive)
+    "${as_root[@]}" apt-get update -q || step "The package lists could not be refreshed; trying without."
+    "${as_root[@]}" "${install[@]}" -q || fail "apt-get could not install: $*" \
+        "Check that the Debian mirror can be reached, or have an administrator run:" "" \
+        "    $by_hand" "" "Then run 'make setup' again."
+}
+
+missing=$(echo $missing $(missing_python_parts))
+if [ -n "$missing" ]; then
+    # Unquoted on purpose: one argument for each package.
+    install_packages $missing
+    missing=$(echo $(missing_python_parts))
+    [ -z "$missing" ] || fail "$(command -v "$python") still lacks what these packages give: $missing" \
+        "It is probably not Debian's own Python. Choose that one with:" "" \
+        "    PYTHON=/usr/bin/python3 make setup"
+fi
+
+# --- Python environment --------------------------------------------------------------------------
+
+"$python" -c 'import sys; sys.exit(sys.version_info < (3, 11))' ||
+    fail "Python 3.11 or newer is needed; $(command -v "$python") is $("$python" -V)." \
+        "Choose another one with PYTHON=... make setup."
+
+# The scripts of a .venv carry its path, so asking pip where it lives finds broken and moved ones.
+if [[ $(.venv/bin/pip --version 2>/dev/null) != *" $root/.venv/"* ]]; then
+    step "Creating .venv with $("$python" -V)"
+    rm -rf .venv
+    "$python" -m venv .venv || fail "$python could not create .venv." \
+        "On Debian, the package python3-venv has to be there."
+fi
+
+pip_install() {
+    .venv/bin/python -m pip install --quiet --no-input --disable-pip-version-check "$@" ||
+        fail "pip could not install the Python packages; its message is above." \
+            "Check the network and pip's own configuration (.venv/bin/pip config list), then run" \
+            "'make setup' again. It goes on from where it stopped."
+}
+
+step "Installing the Python packages of requirements.txt (a minute or two the first time)"
+pip_install -r requirements.txt
+
+step "Installing passo in editable mode"
+pip_install --no-deps --no-build-isolation -e .
+
+echo "$key" >"$stamp"
+step "Setup is complete."
