@@ -341,8 +341,5 @@ void passo_channel_clock(struct passo_channel *channel, const struct passo_chann
 bool passo_channel_stopped(const struct passo_channel *channel);
 bool passo_channel_occupied(const struct passo_channel *channel);
 bool passo_channel_incomplete(const struct passo_channel *channel);
-/* How many clocks may be skipped, up to `limit`, and the skip itself. */
-uint64_t passo_channel_quiet(const struct passo_channel *channel, const struct passo_channel_inputs *inputs, uint64_t limit);
-void passo_channel_skip(struct passo_channel *channel, const struct passo_channel_inputs *inputs, uint64_t clocks);
 
 #endif

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """passo_math against Python's integers, which have no width to overflow."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Generate the pulse shapes: rtl/passo_shapes.vh, c_model/passo_shapes.h and c_model/passo_shapes.c.
 
 A bank has 256 points, point k being shape(k / 256) * 65536 to the nearest integer; point 256, always

@@ -51,7 +51,7 @@ def _shape(ramp: Any, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     if not ramp.mirror:
         return shape(u)
     value, area = shape(1 - u)
-    return 1 - value, u - (shape(np.ones(1))[1] - area)
+    return 1 - value, u - (shape(np.ones_like(u))[1] - area)
 
 
 @dataclass(frozen=True)

@@ -11,10 +11,10 @@ import numpy as np
 from passo.build import Parameters
 from passo.engine import Engine, PairEngine, model_engine, rtl_engine
 from passo.host import RATE_ONE, Channel, ChannelState
-from passo.link import Link
+from passo.link import Link, RefusedError
 from passo.moves import MoveFile
 from passo.plan import Plan
-from passo.registers import Cause, State
+from passo.registers import Cause, State, Verdict
 
 ENGINES = ("both", "rtl", "model")
 CHUNK = 400_000  # clocks between two looks at the core, at most
@@ -120,8 +120,12 @@ class Feeder:
             self._queued.popleft()
         lines = [self._lines.popleft() for _ in range(min(line_room, len(self._lines)))]
         ramps = [self._ramps.popleft() for _ in range(min(ramp_room, len(self._ramps)))]
-        self.channel.push_lines(lines)
-        self.channel.push_ramps(ramps)
+        try:
+            self.channel.push_lines(lines)
+            self.channel.push_ramps(ramps)
+        except RefusedError as error:
+            if error.verdict != Verdict.BUSY:  # the channel has stopped: its state tells why
+                raise
         self._queued.extend(ramp.ticks for ramp in ramps)
 
     def patience(self) -> int:

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: MIT
+"""Builds a Verilog top and runs the cocotb tests of a Python module in it.
+
+Environment variables:
+
+- `PASSO_SEED`: seed of all random cases, default 1; the same seed gives the same run.
+- `PASSO_RTL`: another folder in place of `rtl/`, to see that a fault in the RTL is found.
+- `PASSO_WAVES`: if set, waveforms are written into the test's folder below `build/cocotb`.
+"""
+
+import fcntl
+import hashlib
+import os
+import re
+import shutil
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+
+from cocotb_tools.check_results import get_results
+from cocotb_tools.runner import get_runner
+from passo.toolchain import environment, paths
+
+SIMULATORS = ("verilator", "icarus")
+SEED_VARIABLE = "PASSO_SEED"
+
+_BUILD = paths.build / "cocotb"
+_TOPS = paths.cocotb_tests / "tops"
+
+# What every Verilator build of cocotb compiles anew although it never differs.
+_RUNTIME = ("verilated", "verilated_dpi", "verilated_vpi", "verilated_threads", "verilator")
+
+
+def seed() -> int:
+    """Seed of this run."""
+    return int(os.environ.get(SEED_VARIABLE, "1"))
+
+
+def run(
+    module: str,
+    toplevel: str,
+    parameters: Mapping[str, int] | None = None,
+    simulator: str = "verilator",
+    *,
+    environment_variables: Mapping[str, str] | None = None,
+) -> None:
+    """Run the cocotb tests of `module` in `toplevel`, built with `parameters`; AssertionError if one fails.
+
+    `module` is the `__name__` of the Python module. `toplevel` is a module of `rtl/` or of `cocotb_tests/tops/`; it
+    is built again only when one of the sources below it has changed.
+    """
+    os.environ.update(environment())
+    parameters = dict(parameters or {})
+    rtl = Path(os.environ.get("PASSO_RTL", paths.rtl)).resolve()
+    waves = bool(os.environ.get("PASSO_WAVES"))
+    folder = _BUILD / _folder_name(toplevel, parameters, simulator, rtl, waves)
+    test_folder = folder / module.rpartition(".")[2]
+    test_folder.mkdir(parents=True, exist_ok=True)
+
+    with _lock(folder):
+        _build(simulator, toplevel, parameters, rtl, waves, folder)
+
+    print(f"{SEED_VARIABLE}={seed()}")
+    results = test_folder / "results.xml"
+    results.unlink(missing_ok=True)
+    try:
+        get_runner(simulator).test(
+            test_module=module,
+            hdl_toplevel=toplevel,
+            hdl_toplevel_lang="verilog",
+            build_dir=folder,
+            test_dir=test_folder,
+            results_xml=str(results),
+            seed=seed(),
+            waves=waves,
+            extra_env={SEED_VARIABLE: str(seed()), **(environment_variables or {})},
+        )
+    except SystemExit as error:
+        print(f"the simulator ended with {error.code}")
+    assert results.exists(), f"{module} in {simulator}: no results, the simulator ended early"
+    tests, failed = get_results(results)
+    assert tests > 0, f"{module}: no cocotb test found"
+    assert failed == 0, f"{module} in {simulator}, {SEED_VARIABLE}={seed()}: {failed} of {tests} cocotb tests failed"
+
+
+def _folder_name(toplevel: str, parameters: Mapping[str, int], simulator: str, rtl: Path, waves: bool) -> str:
+    parts = [toplevel, *(f"{name}{value}" for name, value in sorted(parameters.items())), simulator]
+    if waves:
+        parts.append("waves")
+    if rtl != paths.rtl:
+        parts.append(hashlib.sha256(str(rtl).encode()).hexdigest()[:8])
+    return "-".join(parts)
+
+
+@contextmanager
+def _lock(folder: Path) -> Iterator[None]:
+    """Keep parallel test runs from building in the same folder."""
+    with open(folder.with_suffix(".lock"), "w") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        yield
+
+
+def _sources(toplevel: str, rtl: Path) -> list[Path]:
+    """Return the source of `toplevel` and of all modules it mentions, itself last."""
+    found: dict[str, Path] = {}
+
+    def visit(name: str) -> None:
+        path = next((p for p in (_TOPS / f"{name}.v", rtl / f"{name}.v") if p.exists()), None)
+        if path is None or name in found:
+            return
+        found[name] = path
+        for mentioned in re.findall(r"\bpasso_\w+", path.read_text()):
+            visit(mentioned)
+
+    visit(toplevel)
+    assert found, f"no Verilog module {toplevel}"
+    return list(reversed(found.values()))
+
+
+def _build(
+    simulator: str, toplevel: str, parameters: Mapping[str, int], rtl: Path, waves: bool, folder: Path
+) -> None:
+    sources = _sources(toplevel, rtl)
+    digest = hashlib.sha256()
+    for path in [*sources, *sorted(rtl.glob("*.vh"))]:
+        digest.update(str(path).encode() + path.read_bytes())
+    stamp = folder / "built"
+    if stamp.exists() and stamp.read_text() == digest.hexdigest():
+        return
+
+    stamp.unlink(missing_ok=True)
+    runtime = _BUILD / ("verilated-waves" if waves else "verilated")
+    if simulator == "verilator":
+        _copy_runtime(runtime, folder)
+    get_runner(simulator).build(
+        sources=sources,
+        includes=[rtl],
+        hdl_toplevel=toplevel,
+        parameters=parameters,
+        always=True,
+        build_dir=folder,
+        timescale=("1ns", "1ps"),
+        waves=waves,
+    )
+    if simulator == "verilator":
+        _copy_runtime(folder, runtime)
+    stamp.write_text(digest.hexdigest())
+
+
+def _copy_runtime(source: Path, destination: Path) -> None:
+    """Copy the compiled Verilator runtime; make still sees whether it is up to date."""
+    destination.mkdir(parents=True, exist_ok=True)
+    for path in [source / f"{name}.{end}" for name in _RUNTIME for end in ("o", "d")]:
+        target = destination / path.name
+        if path.exists() and not target.exists():
+            part = target.with_suffix(f".{os.getpid()}")
+            shutil.copy2(path, part)
+            part.rename(target)
