@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
 """What the tests of single modules share: the clock and its count, reset, recorders, random numbers.
 
-Conventions. Clock `n` is the n-th rising edge after `Clocks.start`; an output "of clock n" is what a register shows
-after that edge. Tests write inputs and look at outputs on falling edges, so neither side races the rising edge: what is
-written then counts like the output of a register that changed at the rising edge before.
+Conventions. Clock `n` is the n-th rising edge after the clock was started; an output "of clock n" is what a register
+shows after that edge. Tests write inputs and look at outputs on falling edges, so that neither races the rising edge:
+what is written after clock n counts like a register that changed with clock n.
 """
 
-import os
 import random
+from collections.abc import Callable
 
 import cocotb
 from cocotb.clock import Clock
@@ -23,11 +23,11 @@ PERIOD = 10_000  # ps
 
 
 def rng(name: str) -> random.Random:
-    """Random numbers of one test: they depend on PASSO_SEED and its name only."""
+    """Random numbers of one test: they depend on PASSO_SEED and the name only."""
     return random.Random(f"{seed()}/{name}")
 
 
-def value(signal: Signal) -> int:
+def read(signal: Signal) -> int:
     """Value of a signal as unsigned integer; ValueError if a bit is X or Z."""
     return int(signal.value) if isinstance(signal, LogicObject) else signal.value.to_unsigned()
 
@@ -36,15 +36,19 @@ class Clocks:
     """Drives a clock and counts it."""
 
     def __init__(self, clk: LogicObject, period: int = PERIOD) -> None:
-        self.clk = clk
         self.period = period
         self.fall = FallingEdge(clk)
+        self._clock = Clock(clk, period, unit="step", impl="gpi")
         self._origin = 0
 
     def start(self) -> None:
-        """Start the clock; its first rising edge, clock 0, comes one period from now."""
-        self._origin = get_sim_time("step") + self.period
-        Clock(self.clk, self.period, unit="step", impl="gpi", set_action=None).start(start_high=False)
+        """Start the clock low; its first rising edge is clock 0."""
+        self._clock.start(start_high=False)
+        self._origin = get_sim_time("step") + self.period // 2
+
+    def stop(self) -> None:
+        """Stop the clock, so that `begin` can be called again in the same test."""
+        self._clock.stop()
 
     @property
     def now(self) -> int:
@@ -55,23 +59,52 @@ class Clocks:
         """Number of the rising edge that is right now; ValueError at any other time."""
         clock, off = divmod(get_sim_time("step") - self._origin, self.period)
         if off:
-            raise ValueError(f"{off} ps after clock {clock}")
+            raise ValueError(f"change {off} ps after clock {clock}")
         return clock
 
     async def until(self, clock: int) -> None:
-        """Wait for the falling edge after a clock; that of the present one may be over."""
+        """Wait for the falling edge after a clock."""
         while self.now < clock:
             await self.fall
 
+    async def wait(self, clocks: int) -> None:
+        """Wait for as many falling edges."""
+        for _ in range(clocks):
+            await self.fall
 
-async def begin(dut: HierarchyObject, period: int = PERIOD) -> Clocks:
-    """Set all inputs to 0, start the clock and reset; return on the falling edge on which reset ended."""
-    for signal in dut:
-        if isinstance(signal, LogicObject | LogicArrayObject) and signal._name != "clk":
-            pass
+
+async def begin(dut: HierarchyObject, *inputs: str, period: int = PERIOD) -> Clocks:
+    """Set these inputs to 0, start the clock and reset; return on the falling edge on which reset ends."""
+    for name in inputs:
+        getattr(dut, name).value = 0
     clocks = Clocks(dut.clk, period)
     clocks.start()
     dut.rst.value = 1
-    await clocks.until(3)
+    await clocks.wait(3)
     dut.rst.value = 0
     return clocks
+
+
+class Recorder:
+    """Records every change of a signal as (clock, value), from now to the end of the test."""
+
+    def __init__(self, clocks: Clocks, signal: Signal) -> None:
+        self.changes: list[tuple[int, int]] = []
+        self._clocks = clocks
+        self._signal = signal
+        cocotb.start_soon(self._watch())
+
+    async def _watch(self) -> None:
+        change = ValueChange(self._signal)
+        while True:
+            await change
+            self.changes.append((self._clocks.edge(), read(self._signal)))
+
+    def clocks_where(self, condition: Callable[[int], object], last: int) -> list[int]:
+        """Clocks up to `last` after which the value met a condition."""
+        found: list[int] = []
+        ends = [*[clock for clock, _ in self.changes], last + 1][1:]
+        for (clock, value), end in zip(self.changes, ends, strict=True):
+            if condition(value):
+                found.extend(range(clock, end))
+        return found

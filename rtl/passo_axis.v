@@ -108,7 +108,7 @@ module passo_axis (
 
     step_begins_q <= step_begins;
     dir_q         <= dir;
-    if (step_begins_q) position <= dir_q ? position - 32'sd1 : position + 32'sd1;
+    if (step_begins_q) position <= position + (dir_q ? -32'sd1 : 32'sd1);
     step_pin   <= step ^ step_inverted;
     dir_pin    <= dir ^ direction_inverted;
     enable_pin <= enable ^ enable_inverted;

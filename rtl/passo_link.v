@@ -261,7 +261,8 @@ module passo_link (
     endcase
 
     if (frame_start) reply_word <= status;
-    if (step != STEP_REPLAY) begin
+    // chip select does not come between a verdict and what it promises
+    if (step != STEP_REPLAY && !(step == STEP_VERDICT && crc_idle)) begin
       if (frame_end) step <= STEP_IDLE;
       if (frame_start) begin
         step        <= STEP_HEADER;

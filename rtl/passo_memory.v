@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Simple dual-port RAM that maps to block RAM everywhere.
 //
-// Promise: `read_data` is the word at `read_address` one clock ago; a write to the same address on that clock is not
-// seen yet.
+// Promise: `read_data` is the word at `read_address` one clock ago, unless that word was being written on that clock; then it means
+// nothing. Nobody here looks at a word in that clock, so synthesis need not guard against it.
 `resetall
 `default_nettype none
 
@@ -18,6 +18,7 @@ module passo_memory #(
   output reg  [     WIDTH-1:0] read_data
 );
 
+  (* no_rw_check *)
   reg [WIDTH-1:0] words[0:(1<<DEPTH_LOG2)-1];
 
   always @(posedge clk) begin

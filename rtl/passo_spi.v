@@ -9,8 +9,9 @@
 //   MISO  falling edge of SCLK -> shift register -> pin -> master: 27.8 ns until the master's rising edge;
 //         about 3 ns in, 5 ns logic and routing, 6 ns out, 5 ns set-up of an STM32F103 leave 8 ns for the cable.
 //         Oversampling with clk would need 3 clocks = 41.7 ns.
-//   word  crosses by a toggle through two flip-flops, 2 to 3 clocks; it stays for 32 SCLK = 128 clocks.
-//   reply_word  may change from 3 clocks after word_valid until the next word's last rising edge: 120 clocks.
+//   word  crosses by a toggle through two flip-flops, 2 to 3 clocks after the last falling edge; it stays for 31
+//         SCLK = 124 clocks.
+//   reply_word  may change from word_valid until the next word's last falling edge: 125 clocks.
 //   frame_start comes 2 to 3 clocks after chip select falls; reply_word must stand at the first falling edge of
 //         SCLK, so chip select has to fall at least 3 clocks before the first rising edge.
 `resetall
@@ -44,11 +45,12 @@ module passo_spi (
 
   always @(posedge spi_sclk) begin
     receive <= {receive[29:0], spi_mosi};
-    if (bit_count == 5'd31) begin
-      word        <= {receive, spi_mosi};
-      word_toggle <= ~word_toggle;
-    end
+    if (bit_count == 5'd31) word <= {receive, spi_mosi};
   end
+
+  // A word is announced only when the reply to the next one has been taken, on the same falling edge: however slow
+  // SCLK is, whoever sees word_valid may change reply_word.
+  always @(negedge spi_sclk) if (bit_count == 5'd0) word_toggle <= ~word_toggle;
 
   reg        first_word;
   reg [31:0] send;

@@ -35,6 +35,7 @@ module passo_tables #(
   localparam [2:0] CHANNEL_LAST = CHANNELS[2:0] - 3'd1;
   localparam [CHANNELS-1:0] CHANNEL_0 = 1;
 
+  (* no_rw_check *)
   reg [15:0] points[0:767];
   `include "passo_shapes.vh"
 

@@ -12,7 +12,7 @@ import os
 import random
 import subprocess
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cache
 from itertools import product
@@ -30,18 +30,18 @@ ONE = 1 << 48  # velocities and progress
 HALF = 1 << 47
 UNIT = 1 << 32  # speeds and accelerations
 AXES = 8
-PROFILES = ("linear", "cosine", "sigmoid", "jerk")
-LINEAR, COSINE, SIGMOID, JERK = range(4)
-SHAPE_OF_PROFILE = {LINEAR: 0, COSINE: 1, SIGMOID: 2, JERK: 3}
+LINEAR, COSINE, SIGMOID, EASE = range(4)  # shapes
+JERK = 3  # the profile; the others are called like their shapes
+SHAPE_OF_PROFILE = (LINEAR, COSINE, SIGMOID, EASE)
 
 DISTANCE_TOLERANCE = Fraction(1, 5)  # substeps; the core bears 1/4
 LONG_RAMPS = 32  # see progress_bound()
-EXACT_TICKS = 1 << 18  # longer ramps are not summed tick by tick
+EXACT_TICKS = 1 << 21  # longer ramps are not summed tick by tick
 MOVE_CLOCKS = 1 << 44
 PHASE_TICKS = 1 << 32
 
 
-# ------------------------------------------------------------------------------------------------ the planner ----
+# ------------------------------------------------------------------------------------------- the planner ----
 
 
 @pytest.fixture(scope="module")
@@ -145,7 +145,7 @@ def make_plan(c: Any, machine: Machine, move: InTime | BySpeed) -> Plan:
     return Plan(machine, plan)
 
 
-# -------------------------------------------------------------------------------------------- what the core does ----
+# ------------------------------------------------------------------------------------ what the core does ----
 
 
 def load_generator() -> Any:
@@ -163,7 +163,7 @@ def tables() -> list[list[int]]:
 
 def shape(bank: int, x: int) -> int:
     """s for a progress x, both UQ1.24."""
-    if bank == 0:
+    if bank == LINEAR:
         return x
     k, f = x >> 16, x & 0xFFFF
     if k == 256:
@@ -181,9 +181,9 @@ def velocity_of_tick(ramp: Ramp, tick: int) -> int:
     return ramp.velocity_start + ((ramp.velocity_end - ramp.velocity_start) * s >> 24)
 
 
-def velocities_of_ticks(ramp: Ramp) -> np.ndarray:
-    """All of them, in 64-bit integers."""
-    u = (ramp.progress_step >> 1) + np.arange(ramp.ticks, dtype=np.int64) * ramp.progress_step
+def velocities_of_ticks(ramp: Ramp, first: int, last: int) -> np.ndarray:
+    """Those of the ticks from first to before last, in 64-bit integers."""
+    u = (ramp.progress_step >> 1) + np.arange(first, last, dtype=np.int64) * ramp.progress_step
     x = (u + (1 << 23)) >> 24
     if ramp.mirror:
         x = (1 << 24) - x
@@ -197,14 +197,18 @@ def velocities_of_ticks(ramp: Ramp) -> np.ndarray:
     return ramp.velocity_start + (change >> 24) * x + ((change & 0xFFFFFF) * x >> 24)
 
 
-def exact_sum(values: np.ndarray) -> int:
-    return (int((values >> 24).sum()) << 24) + int((values & 0xFFFFFF).sum())
+def sum_of_velocities(ramp: Ramp, chunk: int = 1 << 16) -> int:
+    total = 0
+    for first in range(0, ramp.ticks, chunk):
+        velocities = velocities_of_ticks(ramp, first, min(first + chunk, ramp.ticks))
+        total += (int((velocities >> 24).sum()) << 24) + int((velocities & 0xFFFFFF).sum())
+    return total
 
 
 def mean_shape(ramp: Ramp) -> Fraction:
     """Mean of the ideal shape over the ticks' progress, which ends at c instead of 1."""
     du, ticks = Fraction(ramp.progress_step, ONE), ramp.ticks
-    if ramp.shape < 3:
+    if ramp.shape != EASE:
         return du * ticks / 2
     mean_square = du * du * (Fraction(ticks * ticks, 3) - Fraction(1, 12))
     return du * ticks - mean_square if ramp.mirror else mean_square
@@ -220,11 +224,11 @@ def distance(plan: Plan) -> Fraction:
         if change == 0 or not exact:
             total += ramp.ticks * (ramp.velocity_start + change * (mean_shape(ramp) if ramp.ticks else 0))
         elif ramp.ticks:
-            total += exact_sum(velocities_of_ticks(ramp))
+            total += sum_of_velocities(ramp)
     return total * plan.machine.tick / ONE
 
 
-# -------------------------------------------------------------------------------------------- what a plan must be ----
+# ----------------------------------------------------------------------------------- what a plan must be ----
 
 
 def round_half_up(value: Fraction) -> int:
@@ -256,27 +260,24 @@ def check_structure(plan: Plan, move: InTime | BySpeed) -> None:
             assert ramp.progress_step == min(round_half_up(exact), ONE - 1)
         else:
             assert ramp.progress_step == ONE // ramp.ticks
-        assert ramp.velocity_start != ramp.velocity_end or ramp.shape == 0
 
-    # jump, accelerate, cruise, decelerate, jump
+    def change(start: int, end: int, ticks: int) -> list[tuple[int, int, bool, int]]:
+        if move.profile == JERK:
+            assert ticks % 2 == 0
+            return [(ticks // 2, (start + end) // 2, False, EASE), (ticks // 2, end, True, EASE)]
+        return [(ticks, end, False, SHAPE_OF_PROFILE[move.profile])]
+
     expected = []
     if p.velocity_start:
-        expected.append((0, p.velocity_start, False, 0))
-    middle = [
-        (p.accelerate_ticks, p.velocity_start, p.velocity_peak),
-        (p.cruise_ticks, p.velocity_peak, p.velocity_peak),
-        (p.decelerate_ticks, p.velocity_peak, p.velocity_stop),
-    ]
-    for ticks, start, end in middle:
-        if ticks and start == end and (ticks, start) == middle[1][:2]:
-            expected.append((ticks, end, False, 0))
-        elif ticks and move.profile == JERK:
-            assert ticks % 2 == 0
-            expected += [(ticks // 2, (start + end) // 2, False, 3), (ticks // 2, end, True, 3)]
-        elif ticks:
-            expected.append((ticks, end, False, SHAPE_OF_PROFILE[move.profile]))
+        expected.append((0, p.velocity_start, False, LINEAR))
+    if p.accelerate_ticks:
+        expected += change(p.velocity_start, p.velocity_peak, p.accelerate_ticks)
+    if p.cruise_ticks:
+        expected.append((p.cruise_ticks, p.velocity_peak, False, LINEAR))
+    if p.decelerate_ticks:
+        expected += change(p.velocity_peak, p.velocity_stop, p.decelerate_ticks)
     if p.velocity_stop:
-        expected.append((0, 0, False, 0))
+        expected.append((0, 0, False, LINEAR))
     assert [(ramp.ticks, ramp.velocity_end, ramp.mirror, ramp.shape) for ramp in ramps] == expected
     if p.accelerate_ticks == 0:
         assert p.velocity_start == p.velocity_peak
@@ -377,7 +378,7 @@ def check_by_speed(plan: Plan, move: BySpeed) -> None:
     p, machine = plan.c, plan.machine
     scale = Fraction(p.oversampling * (ONE // UNIT), machine.clock_hz)  # speed -> velocity
 
-    # Speed, start and stop speed are never exceeded; ramps start and end at them but for rounding down to 2^-48.
+    # Speed, start and stop speed are never exceeded; ramps begin and end at them, rounded down to 2^-48.
     assert p.velocity_peak <= move.speed * scale
     for velocity, ticks, limit in (
         (p.velocity_start, p.accelerate_ticks, move.start_speed),
@@ -401,9 +402,21 @@ def check_by_speed(plan: Plan, move: BySpeed) -> None:
             )
             assert p.velocity_peak - velocity < slope * ticks * machine.tick * scale + 1
 
+    # With a clear cruise phase, the ramps are the exact ones, rounded up.
+    ideal = ideal_move(machine, move)
+    if ideal.cruise > 1 + ideal.clocks * 1e-6:
+        for ticks, limit, acceleration in (
+            (p.accelerate_ticks, move.start_speed, move.acceleration),
+            (p.decelerate_ticks, move.stop_speed, move.deceleration or move.acceleration),
+        ):
+            change = move.speed - limit
+            clocks = Fraction(change * machine.clock_hz, acceleration) if acceleration else move.ramp_clocks
+            exact = math.ceil(clocks / Fraction(machine.tick)) if change else 0
+            if ticks or p.velocity_peak >= limit * scale:
+                assert ticks == exact + (exact % 2 if move.profile == JERK else 0)
+
     # As quick as that allows: each phase may lose what rounding up to ticks takes, and a little for rounding.
     # Quicker it can only be by what progress lacks at the end of very long ramps.
-    ideal = ideal_move(machine, move)
     spare = 6 if move.profile == JERK else 4
     lack = max(p.accelerate_ticks, p.decelerate_ticks) / ONE
     assert plan.ticks >= ideal.clocks / machine.tick * (1 - 1e-9 - lack)
@@ -447,7 +460,7 @@ def plan_and_check(c: Any, machine: Machine, move: InTime | BySpeed) -> Fraction
         raise
 
 
-# ---------------------------------------------------------------------------------------------------- random moves ----
+# ------------------------------------------------------------------------------------------ random moves ----
 
 
 def log_uniform(rng: random.Random, low: float, high: float) -> float:
@@ -520,3 +533,419 @@ def test_random_moves(c: Any, form: str) -> None:
     print(f"distance errors of {MOVES} moves in substeps:")
     for part in (50, 90, 99, 99.9, 100):
         print(f"  {part:5} % up to {errors[math.ceil(part / 100 * MOVES) - 1]:.6f}")
+
+
+# ---------------------------------------------------------------------------------------- directed moves ----
+
+
+def q32(value: float) -> int:
+    return round(value * UNIT)
+
+
+def test_ramps_of_half_the_time(c: Any) -> None:
+    """However times and ticks fall, the ramps fit and the time is kept."""
+    machine = Machine()
+    for profile, total in product(range(4), range(machine.tick, 20 * machine.tick, 5)):
+        for ramp in {total // 2, total // 2 - 1, total // 3, 0}:
+            plan_and_check(c, machine, InTime((3,), profile, total, max(0, ramp)))
+
+
+@pytest.mark.parametrize("profile", range(4))
+@pytest.mark.parametrize("ticks", [2**24 - 2, 2**24, 2**24 + 2, 2**25 + 4, 2**32 - 2])
+@pytest.mark.parametrize("steps", [1, 12_345_678])
+def test_long_equal_ramps(c: Any, steps: int, ticks: int, profile: int) -> None:
+    machine = Machine()
+    move = InTime((steps, 1), profile, 3 * ticks * machine.tick, ticks * machine.tick)
+    assert abs(plan_and_check(c, machine, move)) < Fraction(1, 100)
+
+
+@pytest.mark.parametrize("profile", range(4))
+@pytest.mark.parametrize("seconds", [0.01, 0.1, 1.0])
+def test_unequal_ramps(c: Any, seconds: float, profile: int) -> None:
+    """Full speed is half the clock, so the error in substeps is as large as it gets."""
+    machine = Machine()
+    speed = q32(machine.clock_hz / 2 / 2)
+    up, down = int(speed / seconds), int(speed / seconds * 0.7)
+    move = BySpeed((2**30, 1), profile, speed, q32(1000), 0, up, down)
+    error = plan_and_check(c, machine, move)
+    print(f"{seconds} s: {float(error):.6f} substeps")
+
+
+@pytest.mark.parametrize("profile", range(4))
+@pytest.mark.parametrize("steps", [1, 2**31 - 1])
+def test_two_days(c: Any, steps: int, profile: int) -> None:
+    machine = Machine(tick_log2=16)
+    total = MOVE_CLOCKS - machine.tick
+    for ramp in (0, total // 3, total // 2):
+        plan_and_check(c, machine, InTime((steps,), profile, total, ramp))
+
+
+def test_half_the_clock(c: Any) -> None:
+    machine, longest = Machine(), 2**31 - 1
+    jump = InTime((longest, -longest, 1), LINEAR, 2**32, 0)
+    assert abs(plan_and_check(c, machine, jump)) < Fraction(1, 1000)
+    assert make_plan(c, machine, jump).c.oversampling == 1
+    speed = machine.clock_hz * UNIT // 2
+    for profile, start, acceleration in product(range(4), (0, speed // 2, speed), (q32(1e5), q32(4e9))):
+        for steps in (1, 64, 65, 1_000_000, longest):
+            plan_and_check(c, machine, BySpeed((steps,), profile, speed, start, start, acceleration))
+    for steps, name in ((64, ""), (65, "TOO_FAST")):
+        assert refusal(c, machine, InTime((steps,), LINEAR, machine.tick, 0)) == name
+    assert refusal(c, machine, BySpeed((9,), LINEAR, speed + 1, acceleration=1)) == "TOO_FAST"
+
+
+def test_one_step_per_minute(c: Any) -> None:
+    for clock_hz, profile, steps in product((1_000_000, 100_000_000), range(4), (1, 5, 60)):
+        speed = q32(1 / 60)
+        for ends in (0, speed // 2, speed):
+            move = BySpeed((steps, 1, 0), profile, speed, ends, ends, acceleration=q32(1e-3))
+            plan_and_check(c, Machine(clock_hz, 10), move)
+
+
+def test_short_moves(c: Any) -> None:
+    """A few steps, a few ticks: wherever rounding to ticks could turn the ramps upside down."""
+    machine = Machine()
+    seen = set()
+    for profile, speed, acceleration, deceleration in product(
+        range(4),
+        (1_000, 200_000, 30_000_000),
+        (50_000, 10_000_000, 4_000_000_000),
+        (0, 70_000, 4_000_000_000),
+    ):
+        for start, stop, steps in product((0, 1, 0.3, 0.999, 1), (0, 0.5, 1), (1, 2, 3, 7, 20, 100)):
+            ends = q32(speed * start), q32(speed * stop)
+            move = BySpeed((steps,), profile, q32(speed), *ends, q32(acceleration), q32(deceleration))
+            plan = make_plan(c, machine, move)
+            check(plan, move)
+            seen.add(
+                tuple(n > 0 for n in (plan.c.accelerate_ticks, plan.c.cruise_ticks, plan.c.decelerate_ticks))
+            )
+    assert len(seen) == 7, "all phases, alone and together"
+
+
+def test_triangle_has_no_cruise(c: Any) -> None:
+    """f_p^2 = (2 a d L + d f_0^2 + a f_1^2) / (a + d)"""
+    machine, a, d, f0, f1, length = Machine(), 200_000, 100_000, 500, 300, 4_000
+    move = BySpeed((length, 17), COSINE, q32(1e6), q32(f0), q32(f1), q32(a), q32(d))
+    plan = make_plan(c, machine, move)
+    check(plan, move)
+    peak = math.sqrt((2 * a * d * length + d * f0**2 + a * f1**2) / (a + d))
+    assert plan.c.accelerate_ticks == math.ceil((peak - f0) / a * machine.clock_hz / machine.tick)
+    assert plan.c.decelerate_ticks == math.ceil((peak - f1) / d * machine.clock_hz / machine.tick)
+    assert plan.c.cruise_ticks == 0
+
+
+def test_ramp_time_instead_of_acceleration(c: Any) -> None:
+    machine = Machine()
+    speed, ramp = q32(100_000), 3_000_000
+    by_time = BySpeed((50_000,), LINEAR, speed, ramp_clocks=ramp)
+    by_acceleration = BySpeed((50_000,), LINEAR, speed, acceleration=speed * machine.clock_hz // ramp)
+    plans = [make_plan(c, machine, move) for move in (by_time, by_acceleration)]
+    for plan, move in zip(plans, (by_time, by_acceleration), strict=True):
+        check(plan, move)
+    assert plans[0].ramps == plans[1].ramps
+    assert plans[0].c.accelerate_ticks == math.ceil(ramp / machine.tick)
+    # Too short for full ramps: the same acceleration, less of it.
+    short = BySpeed((500,), LINEAR, speed, ramp_clocks=ramp)
+    plan = make_plan(c, machine, short)
+    check(plan, short)
+    assert plan.c.accelerate_ticks < ramp / machine.tick / 2
+
+
+# ------------------------------------------------------------------------------------------------ errors ----
+
+
+def refusal(c: Any, machine: Machine, move: InTime | BySpeed) -> str:
+    """Name of the error, or nothing."""
+    try:
+        make_plan(c, machine, move)
+    except PlanError as error:
+        return str(error)
+    return ""
+
+
+GOOD_IN_TIME = InTime((5, -3), JERK, 100_000, 20_000)
+GOOD_BY_SPEED = BySpeed((500, -3), JERK, q32(1000), q32(100), q32(50), q32(1e5), q32(2e5))
+
+REFUSED = {
+    "BAD_CLOCK": [{"clock_hz": 0}, {"tick_log2": 6}, {"tick_log2": 17}, {"tick_log2": 255}],
+    "BAD_PROFILE": [{"profile": 4}, {"profile": 2**32 - 1}],
+    "NO_STEPS": [{"steps": (0,)}, {"steps": (0,) * 8}],
+    "TOO_MANY_STEPS": [{"steps": (-(2**31),)}, {"steps": (1, -(2**31))}],
+    "NO_TIME": [{"total_clocks": 0, "ramp_clocks": 0}, {"total_clocks": 127, "ramp_clocks": 0}],
+    "RAMP_TOO_LONG": [{"ramp_clocks": 50_001}, {"total_clocks": 2**64 - 1, "ramp_clocks": 2**63}],
+    "TOO_LONG": [
+        {"total_clocks": 2**44, "tick_log2": 16},
+        {"total_clocks": 2**39 + 128, "ramp_clocks": 0},
+        {"total_clocks": 2**64 - 1, "ramp_clocks": 0},
+        {"total_clocks": 2**64 - 1, "ramp_clocks": 2**63 - 1, "tick_log2": 16},
+        {"speed": 1, "start_speed": 0, "stop_speed": 0},
+        {"speed": q32(1 / 60), "start_speed": 0, "stop_speed": 0, "steps": (2**31 - 1,)},
+        {"acceleration": 1, "deceleration": 0},
+        {"deceleration": 1},
+        {"acceleration": 0, "deceleration": 0, "ramp_clocks": 2**64 - 1},
+    ],
+    "TOO_FAST": [{"total_clocks": 128, "ramp_clocks": 0, "steps": (65,)}, {"speed": q32(5e7) + 1}],
+    "NO_SPEED": [{"speed": 0}, {"speed": 0, "start_speed": 0, "stop_speed": 0}],
+    "NO_ACCELERATION": [
+        {"acceleration": 0, "deceleration": 0},
+        {"acceleration": 0, "stop_speed": q32(1000)},
+        {"acceleration": 0, "deceleration": 0, "start_speed": q32(1000)},
+    ],
+    "START_ABOVE_SPEED": [{"start_speed": q32(1000) + 1}, {"start_speed": 2**64 - 1}],
+    "STOP_ABOVE_SPEED": [{"stop_speed": q32(1000) + 1}, {"stop_speed": 2**64 - 1}],
+}
+
+
+def test_good_moves_are_planned(c: Any) -> None:
+    for move in (GOOD_IN_TIME, GOOD_BY_SPEED):
+        plan_and_check(c, Machine(), move)
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_refusals(c: Any, name: str) -> None:
+    """A wish that cannot be met is refused by its own name, in each form in which it can be uttered."""
+    for changes in REFUSED[name]:
+        machine = Machine(**{key: value for key, value in changes.items() if key in vars(Machine())})
+        changes = {key: value for key, value in changes.items() if key not in vars(machine)}
+        form = None
+        if "total_clocks" in changes or name == "RAMP_TOO_LONG":
+            form = InTime
+        elif {"speed", "start_speed", "stop_speed", "acceleration", "deceleration"} & set(changes):
+            form = BySpeed
+        for good in (GOOD_IN_TIME, GOOD_BY_SPEED):
+            if form in (None, type(good)):
+                assert refusal(c, machine, replace(good, **changes)) == name, (machine, good, changes)
+
+
+def test_axes_out_of_range(c: Any) -> None:
+    for axes in (0, 9, 255):
+        machine = ffi().new("struct passo_machine *", (100_000_000, 7, axes))
+        in_time = ffi().new("struct passo_move_in_time *", vars(GOOD_IN_TIME))
+        by_speed = ffi().new("struct passo_move_by_speed *", vars(GOOD_BY_SPEED))
+        assert c.passo_plan_in_time(machine, in_time, ffi().NULL) == c.PASSO_PLAN_BAD_AXES
+        assert c.passo_plan_by_speed(machine, by_speed, ffi().NULL) == c.PASSO_PLAN_BAD_AXES
+
+
+def test_error_names_and_texts(c: Any) -> None:
+    errors = ffi().typeof("enum passo_plan_error").relements
+    tested = {"PASSO_PLAN_" + name for name in [*REFUSED, "BAD_AXES", "OK"]}
+    assert set(errors) == tested, "every error is provoked above"
+    texts = set()
+    for constant, value in errors.items():
+        name = ffi().string(c.passo_plan_error_name(value)).decode()
+        text = ffi().string(c.passo_plan_error_text(value)).decode()
+        assert constant == "PASSO_PLAN_" + name
+        assert text[0].isupper() and text.endswith(".") and len(text) < 80
+        texts.add(text)
+    assert len(texts) == len(errors)
+    for value in (len(errors), 2**32 - 1):
+        assert ffi().string(c.passo_plan_error_name(value)) == b"UNKNOWN"
+        assert ffi().string(c.passo_plan_error_text(value))
+
+
+# -------------------------------------------------------------------------------------------- every step ----
+
+
+def step_substeps(substeps: int, steps: int) -> np.ndarray:
+    """The substeps, 1 .. M, in which an axis makes its steps: closed form of the DDA."""
+    k = np.arange(1, steps + 1, dtype=np.int64)
+    return -((substeps // 2 - k * substeps) // steps)
+
+
+def tick_velocities(plan: Plan) -> np.ndarray:
+    return np.concatenate([velocities_of_ticks(ramp, 0, ramp.ticks) for ramp in plan.ramps if ramp.ticks])
+
+
+def substep_clocks(plan: Plan, substeps: np.ndarray) -> np.ndarray:
+    """The clocks, counted from 1, in which these substeps are made: closed form of the path."""
+    velocities = tick_velocities(plan)
+    moved = velocities << plan.machine.tick_log2
+    upper, lower = np.cumsum(moved >> 24), np.cumsum(moved & 0xFFFFFF)
+    upper, lower = upper + (lower >> 24) + (1 << 22), lower & 0xFFFFFF  # a motion starts with phase 1/4
+    whole, fraction = upper >> 24, (upper & 0xFFFFFF) << 24 | lower
+    tick = np.searchsorted(whole, substeps)
+    assert tick.max() < len(velocities), "substeps are missing"
+    before = np.concatenate(([0], whole))[tick], np.concatenate(([1 << 46], fraction))[tick]
+    missing = ((substeps - before[0]) << 48) - before[1]
+    return (tick << plan.machine.tick_log2) - (-missing // velocities[tick])
+
+
+def run_clock_by_clock(plan: Plan) -> list[list[int]]:
+    """The contract's recurrences, literally: the clocks in which each axis makes its steps."""
+    line = plan.c.line
+    phase, made, clock = ONE // 4, 0, 0
+    errors = [line.substeps // 2] * AXES
+    steps = [[] for _ in range(AXES)]
+    for ramp in plan.ramps:
+        for tick in range(ramp.ticks):
+            velocity = velocity_of_tick(ramp, tick)
+            for _ in range(plan.machine.tick):
+                clock += 1
+                phase += velocity
+                if phase < ONE or made == line.substeps:
+                    continue
+                phase -= ONE
+                made += 1
+                for axis in range(AXES):
+                    errors[axis] += line.steps[axis]
+                    if errors[axis] >= line.substeps:
+                        errors[axis] -= line.substeps
+                        steps[axis].append(clock)
+    assert made == line.substeps
+    assert errors == [line.substeps // 2] * AXES
+    return steps
+
+
+def small_move(rng: random.Random, machine: Machine, ticks: int, steps: int) -> InTime | BySpeed:
+    """A move of up to so many ticks and steps."""
+    if rng.random() < 0.5:
+        total = int(log_uniform(rng, machine.tick, ticks * machine.tick))
+        ramp = rng.choice((0, total // 2, rng.randint(0, total // 2)))
+        longest = max(1, min(int(log_uniform(rng, 1, steps)), (total - ramp - 2 * machine.tick) // 2))
+        return InTime(some_steps(rng, longest), rng.randrange(4), total, ramp)
+    speed = log_uniform(rng, machine.clock_hz / machine.tick / 100, machine.clock_hz / 2)
+    seconds = log_uniform(rng, machine.tick, ticks * machine.tick / 6) / machine.clock_hz
+    longest = max(1, min(steps, int(speed * seconds)))
+    acceleration, deceleration = (q32(speed / seconds * log_uniform(rng, 0.5, 10)) for _ in range(2))
+    ends = (q32(speed * rng.choice((0, rng.random(), 1))) for _ in range(2))
+    ramps = (min(2**64 - 1, n) for n in (acceleration, deceleration))
+    return BySpeed(some_steps(rng, longest), rng.randrange(4), q32(speed), *ends, *ramps)
+
+
+def test_closed_forms_are_the_recurrences(c: Any) -> None:
+    print(f"seed {SEED}")
+    rng = random.Random(f"{SEED} recurrences")
+    for _ in range(60):
+        machine = Machine(100_000_000, rng.choice((7, 8)))
+        move = small_move(rng, machine, ticks=60, steps=2000)
+        plan = make_plan(c, machine, move)
+        check(plan, move)
+        for axis, clocks in enumerate(run_clock_by_clock(plan)):
+            assert len(clocks) == plan.steps[axis]
+            if clocks:
+                closed = substep_clocks(plan, step_substeps(plan.substeps, plan.steps[axis]))
+                assert clocks == closed.tolist(), move
+
+
+def shape_integral(ramp_shape: int, mirror: bool, u: np.ndarray) -> np.ndarray:
+    """Integral of the ideal shape from 0 to u."""
+    if ramp_shape == LINEAR:
+        return u * u / 2
+    if ramp_shape == COSINE:
+        return u / 2 - np.sin(np.pi * u) / (2 * np.pi)
+    if ramp_shape == SIGMOID:
+        a, low, high = 5, 1 / (1 + math.exp(5)), 1 / (1 + math.exp(-5))
+        return (np.logaddexp(0, a * (2 * u - 1)) - np.logaddexp(0, -a)) / (2 * a * (high - low)) - u * low / (
+            high - low
+        )
+    return u - (1 - (1 - u) ** 3) / 3 if mirror else u**3 / 3
+
+
+def ideal_path(plan: Plan, clocks: np.ndarray) -> np.ndarray:
+    """Substeps covered at these times by the ideal curve: no tables, no ticks."""
+    path = np.zeros(len(clocks))
+    start = 0
+    for ramp in plan.ramps:
+        if not ramp.ticks:
+            continue
+        length = ramp.ticks * plan.machine.tick
+        u = np.clip((clocks - start) / length, 0, 1)
+        change = (ramp.velocity_end - ramp.velocity_start) / ONE
+        path += length * (ramp.velocity_start / ONE * u + change * shape_integral(ramp.shape, ramp.mirror, u))
+        start += length
+    return path
+
+
+@cache
+def table_deviation(ramp_shape: int) -> float:
+    """How far the integral of the interpolated table strays from that of its shape."""
+    if ramp_shape == LINEAR:
+        return 0.0
+    fine = 64
+    s = np.interp(np.arange(256 * fine + 1) / fine, np.arange(257), tables()[ramp_shape]) / 65536
+    integral = np.concatenate(([0], np.cumsum((s[1:] + s[:-1]) / 2))) / (256 * fine)
+    return float(
+        np.abs(integral - shape_integral(ramp_shape, False, np.arange(256 * fine + 1) / (256 * fine))).max()
+    )
+
+
+STEEPEST = {LINEAR: 1.0, COSINE: math.pi / 2, SIGMOID: 2.6, EASE: 2.0}
+
+
+def curve_deviation(plan: Plan) -> float:
+    """How far, in substeps, the core's path can stray from the ideal curve.
+
+    Its velocity has ticks, which shows most in the middle of one and hardly at its ends; its shapes have 256
+    points, its progress 24 bits.
+    """
+    total = staircase = 0.0
+    for ramp in plan.ramps:
+        if ramp.ticks:
+            change = abs(ramp.velocity_end - ramp.velocity_start) / ONE
+            staircase = max(staircase, change * plan.machine.tick / ramp.ticks * STEEPEST[ramp.shape] / 6)
+            total += change * ramp.ticks * plan.machine.tick * (table_deviation(ramp.shape) + 2**-24)
+    return total + staircase
+
+
+def test_steps_follow_the_curve(c: Any) -> None:
+    """Each step of each axis is made when the ideal curve has come to the middle between two steps.
+
+    On the longest axis, with an even K, to a quarter of a substep. The other axes' steps wait for the next
+    substep and can be a whole one later; so can all with K = 1, where the middle is half a substep away.
+    """
+    print(f"seed {SEED}")
+    rng = random.Random(f"{SEED} curve")
+    limits = {"longest, K even": (-0.25, 0.25), "longest, K = 1": (0.25, 0.75), "others": (-0.25, 1.25)}
+    found = dict.fromkeys(limits, (math.inf, -math.inf))
+    steps_checked, in_steps = 0, 0.0
+    for _ in range(400):
+        machine = Machine(100_000_000, rng.choice((7, 7, 9)))
+        move = small_move(rng, machine, ticks=1 << 15, steps=20_000)
+        plan = make_plan(c, machine, move)
+        check(plan, move)
+        deviation = curve_deviation(plan) + 0.01  # and rounding of velocities
+        for steps in filter(None, plan.steps):
+            clocks = substep_clocks(plan, step_substeps(plan.substeps, steps))
+            due = (np.arange(1, steps + 1) - 0.5) * plan.substeps / steps
+            late = ideal_path(plan, clocks.astype(float)) - due
+            kind = "others"
+            if steps == max(plan.steps):
+                kind = "longest, K even" if plan.c.oversampling > 1 else "longest, K = 1"
+            low, high = limits[kind]
+            assert low - deviation < late.min() and late.max() < high + deviation, (machine, move)
+            if deviation < 0.1:
+                found[kind] = min(found[kind][0], late.min()), max(found[kind][1], late.max())
+                if kind == "longest, K even":
+                    in_steps = max(in_steps, float(np.abs(late).max()) / plan.c.oversampling)
+            steps_checked += steps
+    print(f"{steps_checked} steps. Where ticks and tables make less than 0.1 substep, substeps late:")
+    for kind, (low, high) in found.items():
+        print(f"  {kind}: {low:.3f} .. {high:.3f}")
+    print(f"  longest, K even: at most {in_steps:.3f} steps")
+
+
+# ------------------------------------------------------------------------------------------ shape tables ----
+
+
+def test_tables_are_fresh() -> None:
+    for path, text in load_generator().files().items():
+        assert path.read_text() == text, f"{path.name} is out of date: run 'make generate'"
+
+
+def test_table_values() -> None:
+    def logistic(x: float) -> float:
+        return 1 / (1 + math.exp(-x))
+
+    low, high = logistic(-5), logistic(5)
+    shapes = {
+        COSINE: lambda u: (1 - math.cos(math.pi * u)) / 2,
+        SIGMOID: lambda u: (logistic(10 * u - 5) - low) / (high - low),
+        EASE: lambda u: u * u,
+    }
+    for bank, function in shapes.items():
+        for k, point in enumerate(tables()[bank]):
+            assert abs(point - function(k / 256) * 65536) <= 0.5 + 1e-9
+    for bank in (COSINE, SIGMOID):
+        t = tables()[bank]
+        assert all(t[k] + t[256 - k] == 65536 for k in range(257))

@@ -134,6 +134,17 @@ def test_many_moves_are_streamed(tmp_path: Path) -> None:
     assert run.problems() == []
 
 
+def test_a_host_that_is_too_slow(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Moves of 0.3 ms, but it takes longer to send one."""
+    move = '[[move]]\nsteps = [3]\nprofile = "cosine"\ntotal_time = 0.0003\nramp_time = 0.0001\n'
+    file = write(tmp_path, f"clock_hz = {CLOCK_HZ}\n" + 30 * move)
+    assert cli.main(["run", str(file), "--out", str(tmp_path / "out")]) == 1
+    assert "RAMP_UNDERRUN" in capsys.readouterr().err
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text())
+    assert not summary["ok"]
+    assert summary["axes"][0]["position"] == len(read_pulses(tmp_path / "out" / "pulses.csv"))
+
+
 class Tampered:
     """An engine that is told another pin timing of axis 1 than the host wanted."""
 

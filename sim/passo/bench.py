@@ -2,14 +2,13 @@
 """How fast the engines are; every figure is measured, and also written to build/bench.json."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
-from rich.table import Table
-
 from passo.build import Parameters
+from passo.console import console, table
 from passo.engine import Engine, model_engine, rtl_engine
 from passo.moves import MoveFile, MoveInTime, PinTiming
 from passo.plan import plan_file
@@ -18,48 +17,74 @@ from passo.run import execute
 from passo.toolchain import paths
 
 CLOCK_HZ = 100_000_000
-STEPS_PER_SECOND = (10_000, 6_000, 4_000, 2_000)
 PARAMETERS = Parameters(axes=4)
 REPORT = paths.build / "bench.json"
 
-# Name, what it is, seconds of motion, engine.
-ENGINES: tuple[tuple[str, str, Fraction, Callable[[], Engine]], ...] = (
-    ("rtl", "Verilated core", Fraction(1, 5), lambda: rtl_engine(PARAMETERS)),
-    ("model", "C model, clock by clock", Fraction(1, 5), lambda: model_engine(PARAMETERS, every_clock=True)),
-    ("advance", "C model, passo_core_advance()", Fraction(20), lambda: model_engine(PARAMETERS)),
+ONE_AXIS = (10_000,)  # steps per second
+FOUR_AXES = (10_000, 6_000, 4_000, 2_000)
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """A motion at constant speed on an engine, for so many seconds of its time."""
+
+    name: str
+    text: str
+    steps_per_second: tuple[int, ...]
+    seconds: Fraction
+    engine: Callable[[], Engine]
+
+    def clocks_per_second(self) -> float:
+        """Speed during the motion, SPI frames and the recording of the pins included."""
+        steps = tuple(int(speed * self.seconds) for speed in self.steps_per_second)
+        move = MoveInTime(steps, "linear", self.seconds, Fraction(0))
+        file = MoveFile(Path(self.name), CLOCK_HZ, PinTiming(), (move,))
+        with self.engine() as engine:
+            run = execute(file, plan_file(file, PARAMETERS), engine)
+        assert not run.problems(), run.problems()
+        return run.clocks / run.seconds
+
+
+def _rtl() -> Engine:
+    return rtl_engine(PARAMETERS)
+
+
+def _model() -> Engine:
+    return model_engine(PARAMETERS, every_clock=True)
+
+
+def _advance() -> Engine:
+    return model_engine(PARAMETERS)
+
+
+MEASUREMENTS = (
+    Measurement("rtl_4_axes", "Verilated core", FOUR_AXES, Fraction(1, 5), _rtl),
+    Measurement("model_4_axes", "C model, clock by clock", FOUR_AXES, Fraction(1, 5), _model),
+    Measurement("advance_4_axes", "C model, passo_core_advance()", FOUR_AXES, Fraction(20), _advance),
+    Measurement("model_1_axis", "C model, clock by clock", ONE_AXIS, Fraction(1, 5), _model),
+    Measurement("advance_1_axis", "C model, passo_core_advance()", ONE_AXIS, Fraction(40), _advance),
 )
 
 
 def bench() -> dict[str, Any]:
     """Measure, print, write the report and return it."""
-    speeds = {name: _clocks_per_second(make, seconds) for name, _, seconds, make in ENGINES}
-    table = Table(title="1 channel, 4 axes at 10, 6, 4 and 2 kHz, 100 MHz clock", title_justify="left")
-    table.add_column("engine")
-    table.add_column("clocks/s", justify="right")
-    table.add_column("real time / simulated time", justify="right")
-    for name, text, _, _ in ENGINES:
-        table.add_row(text, f"{speeds[name] / 1e6:,.2f} M", f"{CLOCK_HZ / speeds[name]:.2g}")
+    shown = table("Core with 1 channel of 4 axes at 100 MHz", "engine", "motion", "clocks/s", "of real time")
+    speeds = {}
+    for m in MEASUREMENTS:
+        speed = speeds[m.name] = m.clocks_per_second()
+        kilohertz = ", ".join(f"{steps / 1000:g}" for steps in m.steps_per_second)
+        shown.add_row(m.text, f"{kilohertz} kHz", f"{speed / 1e6:,.1f} M", f"{speed / CLOCK_HZ:.2g}")
+    ratios = {axes: speeds[f"advance_{axes}"] / speeds[f"model_{axes}"] for axes in ("1_axis", "4_axes")}
     report = {
         "clock_hz": CLOCK_HZ,
-        "steps_per_second": list(STEPS_PER_SECOND),
         "clocks_per_second": {name: round(speed) for name, speed in speeds.items()},
-        "advance_ratio": round(speeds["advance"] / speeds["model"], 1),
+        "advance_ratio": {axes: round(ratio, 1) for axes, ratio in ratios.items()},
     }
     write_json(report, REPORT)
-    console = Console()
-    console.print(table)
-    console.print(f"passo_core_advance() is {report['advance_ratio']} times as fast as clock by clock")
+    console.print(shown)
+    console.print(
+        f"passo_core_advance() against clock by clock: {ratios['1_axis']:.0f} times as fast with one axis,\n"
+        f"{ratios['4_axes']:.0f} times as fast with four"
+    )
     console.print(f"Report: {REPORT.relative_to(paths.root)}")
     return report
-
-
-def _clocks_per_second(make: Callable[[], Engine], seconds: Fraction) -> float:
-    """Speed of an engine during a motion, SPI frames and the recording of the pins included."""
-    steps = tuple(int(speed * seconds) for speed in STEPS_PER_SECOND)
-    file = MoveFile(
-        Path("bench"), CLOCK_HZ, PinTiming(), (MoveInTime(steps, "linear", seconds, Fraction(0)),)
-    )
-    with make() as engine:
-        run = execute(file, plan_file(file, PARAMETERS), engine)
-    assert not run.problems(), run.problems()
-    return run.clocks / run.seconds

@@ -3,14 +3,11 @@
 
 import argparse
 import sys
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from pathlib import Path
 
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
-
 from passo.build import BuildError
+from passo.console import progress
 from passo.engine import DifferenceError
 from passo.frame import FrameError
 from passo.host import HostError
@@ -20,6 +17,7 @@ from passo.plan import plan_file
 from passo.run import ENGINES, Run, RunError, execute, open_engine, parameters_for
 from passo.toolchain import paths
 
+RESULTS = ("pulses.csv", "summary.json", "motion.png", "waves.fst")
 OK, FAILED, BAD_INPUT = 0, 1, 2
 FAILURES = (BuildError, DifferenceError, FrameError, HostError, LinkError, RunError)
 
@@ -73,6 +71,8 @@ def _run(options: argparse.Namespace) -> int:
     with open_engine(options.engine, parameters, file.clock_hz, options.waves) as engine:
         try:
             out.mkdir(parents=True, exist_ok=True)
+            for result in RESULTS:
+                (out / result).unlink(missing_ok=True)
         except OSError as error:
             raise MoveFileError(f"{out}: {error.strerror}") from None
         if options.waves:
@@ -117,21 +117,6 @@ def _bench(options: argparse.Namespace) -> int:
 
     bench()
     return OK
-
-
-@contextmanager
-def progress(name: str, clocks: int) -> Iterator[Callable[[int], None]]:
-    """A progress bar, if there is a terminal to show it."""
-    console = Console()
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.percentage:>3.0f} %"),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
-        task = bar.add_task(name, total=clocks)
-        yield lambda done: bar.update(task, completed=done)
 
 
 if __name__ == "__main__":

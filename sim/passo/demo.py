@@ -3,10 +3,7 @@
 
 import sys
 
-from rich.console import Console
-from rich.table import Table
-
-from passo.cli import progress
+from passo.console import console, progress, table
 from passo.moves import read_moves
 from passo.plan import plan_file
 from passo.plot import plot_motion, plot_overview
@@ -41,20 +38,19 @@ def demo() -> bool:
     write_json({"ok": all(s["ok"] for s in summaries.values()), "runs": summaries}, FOLDER / "summary.json")
     plot_overview(runs, FOLDER / "demo.png")
 
-    table = Table(title="RTL and C model, compared edge for edge", title_justify="left")
-    table.add_column("move")
-    for column in ("steps", "time", "edges compared", "largest error", "clocks/s"):
-        table.add_column(column, justify="right")
+    shown = table(
+        "RTL and C model, compared edge for edge",
+        *("move", "steps", "time", "edges compared", "largest error", "clocks/s"),
+    )
     for name, summary in summaries.items():
-        table.add_row(
+        shown.add_row(
             name,
             f"{sum(axis['pulses'] for axis in summary['axes']):,}",
             f"{summary['total_seconds']:.4f} s",
             f"{summary['matched_edges']:,}",
-            f"{max(axis['largest_error_steps'] for axis in summary['axes']):.3f} steps",
-            f"{summary['clocks_per_second'] / 1e6:.2f} M",
+            f"{max(axis['largest_error_steps'] for axis in summary['axes']):.4f} steps",
+            f"{summary['clocks_per_second'] / 1e6:.1f} M",
         )
-    console = Console()
-    console.print(table)
+    console.print(shown)
     console.print(f"Pictures and tables: {FOLDER.relative_to(paths.root)}/")
     return all(summary["ok"] for summary in summaries.values())

@@ -52,6 +52,7 @@ class Engine:
         config.line_queue_log2 = parameters.line_queue_log2
         config.ramp_queue_log2 = parameters.ramp_queue_log2
         config.clock_hz, config.spi_half_period, config.every_clock = clock_hz, spi_half_period, every_clock
+        self._events = ffi().new("struct passo_pin_event[]", EVENTS_PER_DRAIN)
         self._engine = self._c.passo_engine_create(config)
         if self._engine == ffi().NULL:
             raise RuntimeError(f"{library} does not take {parameters}")
@@ -88,12 +89,14 @@ class Engine:
 
     def drain(self) -> np.ndarray:
         """The pin events (EVENT) since the last call."""
-        chunks = []
-        while not chunks or len(chunks[-1]) == EVENTS_PER_DRAIN:
-            chunk = np.empty(EVENTS_PER_DRAIN, EVENT)
-            pointer = ffi().from_buffer("struct passo_pin_event[]", chunk, require_writable=True)
-            chunks.append(chunk[: self._c.passo_engine_drain(self._engine, pointer, len(chunk))])
-        return np.concatenate(chunks)
+        chunks = [self._drain_some()]
+        while len(chunks[-1]) == EVENTS_PER_DRAIN:
+            chunks.append(self._drain_some())
+        return chunks[0] if len(chunks) == 1 else np.concatenate(chunks)
+
+    def _drain_some(self) -> np.ndarray:
+        count = self._c.passo_engine_drain(self._engine, self._events, EVENTS_PER_DRAIN)
+        return np.frombuffer(ffi().buffer(self._events), EVENT, count).copy()
 
     def open_waves(self, path: Path) -> None:
         """Record everything inside the core from now on; only in an engine that was built for it."""

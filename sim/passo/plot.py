@@ -76,8 +76,12 @@ def plot_overview(runs: dict[str, Run], path: Path) -> None:
             "sigmoid": "Sigmoid, 400 Hz to 5 kHz",
             "there_and_back": "Chained moves with reversal",
         }
-        figure = plt.figure(figsize=(12, 5.2))
-        top, bottom = figure.subfigures(2, 1, height_ratios=[1.15, 1])
+        figure = plt.figure(figsize=(12, 5.6))
+        head, top, bottom = figure.subfigures(3, 1, height_ratios=[0.09, 1.15, 1])
+        caption = (
+            "From the pins of the simulated core: wide lines are ideal curves, thin ones the measured steps."
+        )
+        head.text(0.01, 0.1, caption, color="#57606a")
         for ax, name in zip(np.atleast_1d(top.subplots(1, len(names))), names, strict=True):
             _speed(ax, runs[name], legend=False)
             ax.set_title(titles[name])

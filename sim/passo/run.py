@@ -17,7 +17,7 @@ from passo.plan import Plan
 from passo.registers import Cause, State, Verdict
 
 ENGINES = ("both", "rtl", "model")
-CHUNK = 400_000  # clocks between two looks at the core, at most
+CHUNK = 1_000_000  # clocks between two reports of progress
 SLEW_SECONDS = 0.05  # a hold from full speed
 AXES_OF_CORES = (4, 8)
 
@@ -129,11 +129,8 @@ class Feeder:
         self._queued.extend(ramp.ticks for ramp in ramps)
 
     def patience(self) -> int:
-        """Clocks that may pass before the queues need another look."""
-        if self.done:
-            return CHUNK
-        tick_log2 = self.channel.parameters.tick_log2
-        return min(CHUNK, max(1, sum(self._queued) // 2) << tick_log2)
+        """Clocks that may pass before the queues need another look: half of what they hold."""
+        return max(1, sum(self._queued) // 2) << self.channel.parameters.tick_log2
 
 
 def execute(
@@ -146,17 +143,21 @@ def execute(
     channel = Channel(Link(engine), engine.parameters)
     pins: list[np.ndarray] = []
 
-    def collect() -> None:
+    def collect() -> bool:
+        """Take over what happened at the pins; return whether the core reports a stop."""
         events = engine.drain()
         compact = np.empty(len(events), PINS)
         for name in PINS.names:
             compact[name] = events[name]
         pins.append(compact)
+        return bool(len(events) and events["irq"][-1])
 
     def advance(clocks: int) -> None:
         while clocks:
-            clocks -= engine.run(clocks)
-            collect()
+            clocks -= engine.run(min(clocks, CHUNK))
+            progress(engine.clock - start)
+            if collect():
+                return
 
     for axis in range(file.axes):
         channel.configure_axis(axis, file.pins)
@@ -168,15 +169,15 @@ def execute(
     planned = sum(plan.clocks for plan in plans)
     feeder = Feeder(channel, plans)
     feeder.fill()
-    began, start = time.monotonic(), engine.clock
+    start, began = engine.clock, time.monotonic()
     channel.start()
     state = channel.state()
     while state.state != State.STOPPED and not (feeder.done and state.state == State.IDLE):
         left = start + planned - engine.clock
         if left < -file.clock_hz:
             raise RunError(f"the motion did not end in time: {state}")
-        advance(min(feeder.patience(), max(left, 16 * tick)))
-        progress(engine.clock - start)
+        left = max(left, 16 * tick)
+        advance(left if feeder.done else min(left, feeder.patience()))
         feeder.fill()
         state = channel.state()
     # The last pulse and a change of direction may still be under way.

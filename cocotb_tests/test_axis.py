@@ -1,0 +1,376 @@
+# SPDX-License-Identifier: MIT
+"""passo_axis: pin timings, queue, directions, position."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from random import Random
+
+import cocotb
+from cocotb.handle import HierarchyObject
+
+from cocotb_tests.bench import Clocks, Recorder, begin, read, rng
+from cocotb_tests.checker import PinTiming, PulseChecker
+from cocotb_tests.runner import run
+
+LATENCY = 3  # step_request to STEP
+QUEUE = 4
+
+INPUTS = (
+    "step_request",
+    "direction",
+    "line_direction",
+    "drop",
+    "zero",
+    "step_high",
+    "step_low",
+    "dir_setup",
+    "dir_hold",
+    "both_edges",
+    "step_inverted",
+    "direction_inverted",
+    "enable",
+    "enable_inverted",
+)
+
+Request = tuple[int, int]  # clock, direction: 1 or -1
+
+
+def test_axis(simulator: str) -> None:
+    run(__name__, "passo_axis", simulator=simulator)
+
+
+def expected_steps(
+    timing: PinTiming, requests: Sequence[Request], direction: int
+) -> tuple[list[Request], list[int]]:
+    """Steps as soon as the pin timing allows, and the clocks of the requests that find four waiting.
+
+    The pins stand in `direction` before, and the direction of the line is always that of the last request. Counted
+    in clocks of the pins: a request reaches them after LATENCY, a change of the line's direction after LATENCY - 1,
+    and a step leaves the queue a clock before it is seen.
+    """
+    steps: list[Request] = []
+    lost: list[int] = []
+    waiting: list[Request] = []
+    coming = list(requests)
+    line = [(clock + LATENCY - 1, wanted) for clock, wanted in requests]
+    line_direction = direction
+    active = False
+    step_free = turn_free = set_up = 0
+    clock = requests[0][0]
+    while coming or waiting:
+        clock += 1
+        while line and line[0][0] <= clock:
+            line_direction = line.pop(0)[1]
+        ready = bool(waiting) and waiting[0][0] + LATENCY <= clock
+        wanted = waiting[0][1] if ready else line_direction
+        if wanted != direction:
+            if clock >= turn_free:
+                direction, set_up = wanted, clock + max(1, timing.setup)
+        elif ready and clock >= step_free and clock >= set_up:
+            waiting.pop(0)
+            steps.append((clock, direction))
+            active = not active
+            step_free = clock + (timing.level(active) if timing.both_edges else timing.busy)
+            turn_free = step_free + max(1, timing.hold)
+        while coming and coming[0][0] == clock - 1:
+            request = coming.pop(0)
+            if len(waiting) == QUEUE:
+                lost.append(request[0])
+            else:
+                waiting.append(request)
+    return steps, lost
+
+
+class Axis:
+    """The module under test with its pins watched."""
+
+    def __init__(self, dut: HierarchyObject, clocks: Clocks, timing: PinTiming) -> None:
+        self.dut, self.clocks, self.timing = dut, clocks, timing
+        self.overruns = Recorder(clocks, dut.overrun)
+        self.positions = Recorder(clocks, dut.position)
+        self.checker = PulseChecker(clocks, dut.step_pin, dut.dir_pin, [timing])
+
+    @classmethod
+    async def begin(cls, dut: HierarchyObject, timing: PinTiming) -> "Axis":
+        """Reset with these settings in force."""
+        clocks = await begin(dut, *INPUTS)
+        cls._apply(dut, timing)
+        await clocks.wait(3)
+        return cls(dut, clocks, timing)
+
+    @staticmethod
+    def _apply(dut: HierarchyObject, timing: PinTiming) -> None:
+        dut.step_high.value = timing.high
+        dut.step_low.value = timing.low
+        dut.dir_setup.value = timing.setup
+        dut.dir_hold.value = timing.hold
+        dut.both_edges.value = timing.both_edges
+        dut.step_inverted.value = timing.step_inverted
+        dut.direction_inverted.value = timing.direction_inverted
+
+    async def set_timing(self, timing: PinTiming) -> None:
+        """Change the settings while the axis stands."""
+        self.timing = timing
+        self._apply(self.dut, timing)
+        await self.clocks.wait(3)
+        self.checker.set_timing(0, timing)
+
+    async def request(self, requests: Sequence[Request]) -> None:
+        """Make step requests, line_direction being that of the last one."""
+        negative: int | None = None
+        for clock, direction in requests:
+            if self.clocks.now < clock:
+                self.dut.step_request.value = 0
+                await self.clocks.until(clock)
+            if negative != (direction < 0):
+                negative = direction < 0
+                self.dut.direction.value = negative
+                self.dut.line_direction.value = negative
+            self.dut.step_request.value = 1
+            await self.clocks.fall
+        self.dut.step_request.value = 0
+
+    async def request_and_compare(self, requests: Sequence[Request]) -> None:
+        """Make step requests and compare all edges of the pins with the reference."""
+        before = len(self.checker.steps())
+        position = read_signed(self.dut)
+        steps, lost = expected_steps(self.timing, requests, self.checker.direction())
+        await self.request(requests)
+        settle = sum(max(1, t) for t in (self.timing.high, self.timing.low, self.timing.hold, self.timing.setup))
+        await self.clocks.until(max(steps[-1][0], requests[-1][0]) + settle + 5)
+        made = self.checker.steps()[before:]
+        assert made == steps, first_difference(made, steps)
+        overruns = self.overruns.clocks_where(bool, self.clocks.now)
+        assert [clock for clock in overruns if clock > requests[0][0]] == [clock + 1 for clock in lost]
+        assert read_signed(self.dut) == position + sum(direction for _, direction in steps)
+
+
+def read_signed(dut: HierarchyObject) -> int:
+    """The position."""
+    return dut.position.value.to_signed()
+
+
+def first_difference(actual: Sequence[Request], expected: Sequence[Request]) -> str:
+    """Where two lists of steps begin to differ."""
+    for n, (a, e) in enumerate(zip(actual, expected, strict=False)):
+        if a != e:
+            return f"step {n}: expected {e}, actual {a}"
+    return f"expected {len(expected)} steps, actual {len(actual)}"
+
+
+@cocotb.test()
+async def a_step_leaves_the_pin_after_three_clocks(dut: HierarchyObject) -> None:
+    """STEP rises 3 clocks after the request and the position counts on the same clock."""
+    axis = await Axis.begin(dut, PinTiming(high=4, low=2, setup=3, hold=5))
+    for direction in (1, -1, -1, 1):
+        await axis.clocks.wait(30)
+        dut.line_direction.value = direction < 0
+        await axis.clocks.wait(30)
+        now = axis.clocks.now
+        await axis.request_and_compare([(now, direction)])
+        assert axis.checker.steps()[-1] == (now + LATENCY, direction)
+        assert axis.positions.changes[-1][0] == now + LATENCY
+    dut._log.info(axis.checker.finish())
+
+
+@cocotb.test()
+async def one_and_one_gives_a_step_every_two_clocks(dut: HierarchyObject) -> None:
+    """2000 steps at the highest rate: all made, each with the same latency."""
+    axis = await Axis.begin(dut, PinTiming())
+    first = axis.clocks.now
+    await axis.request_and_compare([(first + 2 * n, 1) for n in range(2000)])
+    assert axis.checker.steps() == [(first + 2 * n + LATENCY, 1) for n in range(2000)]
+    assert axis.checker.turns() == 0
+    dut._log.info(axis.checker.finish())
+
+
+@cocotb.test()
+@cocotb.parametrize(
+    timing=[
+        PinTiming(0, 0, 0, 0),
+        PinTiming(7, 1, 1, 1),
+        PinTiming(1, 7, 1, 1),
+        PinTiming(1, 1, 7, 1),
+        PinTiming(1, 1, 1, 7),
+        PinTiming(2, 2, 2, 2),
+        PinTiming(3, 4, 5, 6),
+        PinTiming(300, 257, 512, 1024),
+        PinTiming(3, 5, 4, 2, both_edges=True),
+        PinTiming(1, 1, 1, 1, both_edges=True),
+        PinTiming(9, 2, 1, 30, both_edges=True),
+    ]
+)
+async def bursts_and_reversals_take_exactly_the_set_times(dut: HierarchyObject, timing: PinTiming) -> None:
+    """Steps that wait follow as soon as the four times allow, in the same and in the other direction."""
+    axis = await Axis.begin(dut, timing)
+    for directions in ([1, 1, 1, 1], [1, 1, -1, -1], [1, -1, 1, -1], [-1, 1, 1, -1], [-1, -1, -1, -1]):
+        now = axis.clocks.now
+        await axis.request_and_compare([(now + n, d) for n, d in enumerate(directions)])
+    dut._log.info(axis.checker.finish())
+
+
+@cocotb.test()
+async def the_longest_times_are_kept(dut: HierarchyObject) -> None:
+    """Each of the four times can be 65535."""
+    axis = await Axis.begin(dut, PinTiming(65535, 1, 1, 1))
+    for name in ("high", "low", "setup", "hold"):
+        await axis.set_timing(replace(PinTiming(), **{name: 65535}))
+        direction = -1 if len(axis.checker.steps()) % 4 == 0 else 1
+        now = axis.clocks.now
+        # the second step waits for all four times
+        await axis.request_and_compare([(now, -direction), (now + 1, direction)])
+    dut._log.info(axis.checker.finish())
+
+
+@cocotb.test()
+async def the_fifth_waiting_step_is_an_overrun(dut: HierarchyObject) -> None:
+    """Four steps wait with their directions; what comes on top raises overrun once each and is not made."""
+    axis = await Axis.begin(dut, PinTiming(high=50, low=20, setup=5, hold=9))
+    now = axis.clocks.now
+    directions = [1, -1, -1, 1, 1, -1, 1, -1]  # the first is under way when the fifth is to wait
+    await axis.request_and_compare([(now, 1)] + [(now + 3 + n, d) for n, d in enumerate(directions)])
+    assert [d for _, d in axis.checker.steps()] == [1, 1, -1, -1, 1]
+    assert len(axis.overruns.clocks_where(bool, axis.clocks.now)) == 4
+    dut._log.info(axis.checker.finish())
+
+
+@cocotb.test()
+async def dir_follows_the_line_while_nothing_waits(dut: HierarchyObject) -> None:
+    """A new line's direction is set up at once, so its first step is not late; a waiting step goes first."""
+    timing = PinTiming(high=6, low=4, setup=20, hold=10)
+    axis = await Axis.begin(dut, timing)
+    turned = Recorder(axis.clocks, dut.dir_pin)
+    now = axis.clocks.now
+    dut.line_direction.value = 1
+    await axis.clocks.until(now + 20)
+    assert turned.changes == [(now + 2, 1)]
+    await axis.request([(axis.clocks.now, -1)])
+    assert len(axis.checker.steps()) == 0
+    await axis.clocks.wait(3)
+    assert axis.checker.steps() == [(now + 20 + LATENCY, -1)]
+
+    # a step of the old line waits when the direction of the line changes
+    await axis.clocks.wait(40)
+    now = axis.clocks.now
+    await axis.request([(now, -1), (now + 1, -1)])
+    dut.line_direction.value = 0
+    await axis.clocks.wait(60)
+    first = now + LATENCY
+    assert axis.checker.steps()[1:] == [(first, -1), (first + timing.busy, -1)]
+    assert turned.changes[1:] == [(first + 2 * timing.busy + timing.hold, 0)]
+    dut._log.info(axis.checker.finish())
+
+
+@cocotb.test()
+async def drop_forgets_what_waits_and_finishes_the_pulse(dut: HierarchyObject) -> None:
+    """After drop no further step is made, and the one under way keeps its length."""
+    axis = await Axis.begin(dut, PinTiming(high=30, low=10, setup=5, hold=5))
+    for at in range(6):
+        now = axis.clocks.now
+        before = len(axis.checker.steps())
+        await axis.request([(now + n, 1) for n in range(4)])
+        await axis.clocks.until(now + 10 + at * 9)
+        dut.drop.value = 1
+        await axis.clocks.wait(1)
+        dut.drop.value = 0
+        await axis.clocks.wait(200)
+        made = len(axis.checker.steps()) - before
+        assert made == (1 if 10 + at * 9 < 30 + 10 + 1 else 2), f"drop {10 + at * 9} clocks after the first request"
+    assert read_signed(dut) == axis.checker.positions[0]
+    dut._log.info(axis.checker.finish())
+
+
+@cocotb.test()
+async def polarities_invert_only_the_pins(dut: HierarchyObject) -> None:
+    """With inverted pins the same edges leave, upside down; EN follows its two bits."""
+    for step_inverted in (False, True):
+        for direction_inverted in (False, True):
+            timing = PinTiming(3, 2, 4, 5, step_inverted=step_inverted, direction_inverted=direction_inverted)
+            axis = await Axis.begin(dut, timing)
+            assert (read(dut.step_pin), read(dut.dir_pin)) == (step_inverted, direction_inverted)
+            now = axis.clocks.now
+            await axis.request_and_compare([(now, 1), (now + 1, -1), (now + 2, -1), (now + 40, 1)])
+            axis.checker.finish()
+            axis.clocks.stop()
+    clocks = await begin(dut, *INPUTS)
+    for enable, inverted in ((1, 0), (1, 1), (0, 1), (0, 0)):
+        dut.enable.value = enable
+        dut.enable_inverted.value = inverted
+        await clocks.wait(2)
+        assert read(dut.enable_pin) == enable ^ inverted
+
+
+@cocotb.test()
+async def zero_sets_the_position(dut: HierarchyObject) -> None:
+    """The position counts down below zero as a signed number, and `zero` sets it to 0."""
+    axis = await Axis.begin(dut, PinTiming())
+    await axis.request_and_compare([(axis.clocks.now + 5 * n, -1) for n in range(9)])
+    assert read_signed(dut) == -9
+    dut.zero.value = 1
+    await axis.clocks.wait(1)
+    dut.zero.value = 0
+    assert read_signed(dut) == 0
+    await axis.request_and_compare([(axis.clocks.now + 5 * n, 1) for n in range(3)])
+    assert read_signed(dut) == 3
+
+
+def random_timing(random: Random) -> PinTiming:
+    """Small times, which meet more often than large ones."""
+    top = random.choice((1, 2, 3, 8, 40))
+    times = [random.randint(0, top) for _ in range(4)]
+    bits = [random.random() < 0.5 for _ in range(3)]
+    return PinTiming(*times, *bits)
+
+
+@cocotb.test()
+async def random_steps_match_the_reference(dut: HierarchyObject) -> None:
+    """Random timings, rates and reversals, overruns included: every edge on the clock the reference says."""
+    random = rng("axis")
+    steps = 0
+    for _ in range(60):
+        timing = random_timing(random)
+        axis = await Axis.begin(dut, timing)
+        clock = axis.clocks.now
+        requests: list[Request] = []
+        direction = 1
+        pace = timing.busy * random.choice((0.4, 0.8, 1, 1.5, 4))
+        for _ in range(60):
+            if random.random() < 0.2:
+                direction = -direction
+            requests.append((clock, direction))
+            clock += max(1, round(random.expovariate(1 / pace)))
+        await axis.request_and_compare(requests)
+        steps += len(axis.checker.steps())
+        axis.checker.finish()
+        axis.clocks.stop()
+    dut._log.info(f"{steps} steps compared")
+
+
+@cocotb.test()
+async def no_change_of_line_direction_harms_the_pins(dut: HierarchyObject) -> None:
+    """The line's direction may change at any time: all timings hold, every accepted step keeps its direction."""
+    random = rng("axis, line direction")
+    for _ in range(20):
+        timing = random_timing(random)
+        axis = await Axis.begin(dut, timing)
+        accepted: list[int] = []
+        for _ in range(600):
+            await axis.clocks.fall
+            request = random.random() < 0.5 / timing.busy
+            direction = random.choice((1, -1))
+            dut.step_request.value = request
+            dut.direction.value = direction < 0
+            if random.random() < 0.2:
+                dut.line_direction.value = random.random() < 0.5
+            if request:
+                accepted.append(direction)
+        await axis.clocks.fall
+        dut.step_request.value = 0
+        await axis.clocks.wait(6 * (timing.busy + timing.setup + timing.hold + 4))
+        lost = len(axis.overruns.clocks_where(bool, axis.clocks.now))
+        made = [direction for _, direction in axis.checker.steps()]
+        assert len(made) + lost == len(accepted)
+        if not lost:
+            assert made == accepted
+        axis.checker.finish()
+        axis.clocks.stop()

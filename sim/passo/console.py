@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: MIT
+"""What the commands show: progress bars and tables."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.table import Table
+
+console = Console()
+
+
+@contextmanager
+def progress(name: str, clocks: int) -> Iterator[Callable[[int], None]]:
+    """A progress bar, if there is a terminal to show it."""
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.percentage:>3.0f} %"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+        task = bar.add_task(name, total=clocks)
+        yield lambda done: bar.update(task, completed=min(done, clocks))
+
+
+def table(title: str, first: str, *columns: str) -> Table:
+    """An empty table with numbers in all columns but the first."""
+    made = Table(title=title, title_justify="left", box=SIMPLE_HEAD, show_edge=False, pad_edge=False)
+    made.add_column(first, no_wrap=True)
+    for column in columns:
+        made.add_column(column, justify="right", no_wrap=True)
+    return made

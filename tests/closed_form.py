@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: MIT
+"""When each step of a motion is due, from the recurrences of docs/architecture.md in Python integers.
+
+For a motion at rate 1.0 whose pins never make a step wait. Nothing here is shared with the C model: the shape
+tables come from their formulas, and a substep's clock is a division instead of a sum clock by clock.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+ONE = 1 << 48
+HALF = 1 << 47
+SHAPE_ONE = 1 << 24
+LINEAR, COSINE, SIGMOID, EASE = range(4)
+SIGMOID_A = 5
+
+
+@dataclass(frozen=True)
+class Line:
+    """`steps` per axis, with sign, while `substeps` pass."""
+
+    substeps: int
+    steps: tuple[int, ...]
+    last: bool = False
+    endless: bool = False
+
+
+@dataclass(frozen=True)
+class Ramp:
+    """The velocity (UQ0.48) goes to `velocity_end` in `ticks`."""
+
+    velocity_end: int
+    ticks: int
+    shape: int = LINEAR
+    mirror: bool = False
+    last: bool = False
+    now: bool = False
+
+    @property
+    def progress_step(self) -> int:
+        """du, as the contract says."""
+        if self.ticks == 0:
+            return 0
+        if self.ticks > SHAPE_ONE:
+            return ONE // self.ticks
+        return min((2 * ONE + self.ticks) // (2 * self.ticks), ONE - 1)
+
+
+def _logistic(x: float) -> float:
+    return 1 / (1 + math.exp(-x))
+
+
+def _sigmoid(u: float) -> float:
+    low, high = _logistic(-SIGMOID_A), _logistic(SIGMOID_A)
+    return (_logistic(SIGMOID_A * (2 * u - 1)) - low) / (high - low)
+
+
+TABLES = {
+    COSINE: [round(32768 * (1 - math.cos(math.pi * k / 256))) for k in range(257)],
+    SIGMOID: [round(65536 * _sigmoid(k / 256)) for k in range(257)],
+    EASE: [k * k for k in range(257)],
+}
+
+
+def shape(number: int, mirror: bool, progress: int) -> int:
+    """s (UQ1.24) for a progress (UQ0.48)."""
+    x = (progress + (1 << 23)) >> 24
+    if number == LINEAR:
+        return x
+    table = TABLES[number]
+
+    def interpolate(x: int) -> int:
+        k, f = divmod(x, 1 << 16)
+        if k == 256:
+            return SHAPE_ONE
+        return (table[k] << 8) + ((table[k + 1] - table[k]) * f + 128 >> 8)
+
+    return SHAPE_ONE - interpolate(SHAPE_ONE - x) if mirror else interpolate(x)
+
+
+def velocities(ramps: Sequence[Ramp]) -> Iterator[int]:
+    """The velocity of each tick."""
+    start = 0
+    for ramp in ramps:
+        for tick in range(ramp.ticks):
+            # u = du / 2 in the first tick, and then a du more in each
+            u = (ramp.progress_step >> 1) + tick * ramp.progress_step
+            yield start + ((ramp.velocity_end - start) * shape(ramp.shape, ramp.mirror, u) >> 24)
+        start = ramp.velocity_end
+
+
+def substep_clocks(ramps: Sequence[Ramp], tick_log2: int) -> list[int]:
+    """For each substep the number of enabled clocks until the phase carries; the first clock is 1."""
+    clocks: list[int] = []
+    phase, length = ONE // 4, 1 << tick_log2
+    for tick, velocity in enumerate(velocities(ramps)):
+        first = len(clocks) + 1
+        carried = (phase + length * velocity) // ONE + len(clocks) - first + 1
+        for k in range(1, carried + 1):
+            clocks.append((tick << tick_log2) - (phase - k * ONE) // velocity)
+        phase += length * velocity - carried * ONE
+    return clocks
+
+
+def line_steps(line: Line, axis: int) -> list[int]:
+    """The substep of the line, from 1, on which each step of the axis is made."""
+    n, m = abs(line.steps[axis]), line.substeps
+    return [-((m // 2 - k * m) // n) for k in range(1, n + 1)]
+
+
+def step_clocks(
+    lines: Sequence[Line], ramps: Sequence[Ramp], tick_log2: int, axis: int
+) -> list[tuple[int, int]]:
+    """All steps of an axis: clocks from the rise of `running` to the rise of STEP, and direction 1 or -1."""
+    clocks = substep_clocks(ramps, tick_log2)
+    steps: list[tuple[int, int]] = []
+    before = 0
+    for line in lines:
+        direction = -1 if line.steps[axis] < 0 else 1
+        for substep in line_steps(line, axis):
+            if before + substep > len(clocks):
+                return steps
+            steps.append((clocks[before + substep - 1], direction))
+        before += line.substeps
+    return steps

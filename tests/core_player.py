@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: MIT
+"""Two C models with the same waveforms at their pins: one goes clock by clock, one with passo_core_advance()."""
+
+import hashlib
+import os
+import random
+import re
+import subprocess
+from collections.abc import Iterator, Sequence
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from cffi import FFI
+from passo.build import Parameters
+from passo.toolchain import environment, paths
+
+HERE = Path(__file__).parent
+HEADERS = [paths.c_model / f"passo_{name}.h" for name in ("command", "registers", "model", "core")]
+SOURCES = [HERE / "core_player.c", *sorted(paths.c_model.glob("*.c"))]
+EVENTS = 1 << 16
+HALF_PERIOD = 2  # clocks that SCLK stays at each level
+
+
+@cache
+def load() -> tuple[FFI, Any]:
+    """All types of the model, and the player."""
+    player = SOURCES[0].read_text().split("static bool look")[0] + "bool player_play("
+    player += SOURCES[0].read_text().split("bool player_play(")[1].split(")")[0] + ");"
+    texts = [*(path.read_text() for path in HEADERS), player]
+    text = "\n".join(re.sub(r"(?m)^#include.*$", "", text) for text in texts)
+    command = ["cc", "-E", "-P", "-x", "c", "-"]
+    done = subprocess.run(command, input=text, env=environment(), capture_output=True, text=True, check=True)
+    ffi = FFI()
+    ffi.cdef(done.stdout)
+    return ffi, ffi.dlopen(str(_library()))
+
+
+def _library() -> Path:
+    inputs = [*SOURCES, *sorted(paths.c_model.glob("*.h"))]
+    digest = hashlib.sha256(b"\0".join(path.read_bytes() for path in inputs)).hexdigest()[:12]
+    library = paths.build / "tests" / f"player-{digest}.so"
+    if not library.exists():
+        library.parent.mkdir(parents=True, exist_ok=True)
+        for stale in library.parent.glob("player-*.so"):
+            stale.unlink(missing_ok=True)
+        made = library.with_suffix(f".{os.getpid()}")
+        flags = ["-std=c11", "-O2", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-fPIC", "-shared"]
+        flags += ["-fno-semantic-interposition", f"-I{paths.c_model}"]
+        subprocess.run(["cc", *flags, *map(str, SOURCES), "-o", str(made)], env=environment(), check=True)
+        made.rename(library)
+    return library
+
+
+class Player:
+    """One model."""
+
+    def __init__(self, parameters: Parameters, advance: bool):
+        ffi, c = load()
+        self.ffi, self.c = ffi, c
+        self.core = ffi.new("struct passo_core *")
+        wanted = (parameters.channels, parameters.axes, parameters.tick_log2)
+        queues = (parameters.line_queue_log2, parameters.ramp_queue_log2)
+        assert c.passo_core_reset(self.core, ffi.new("struct passo_parameters *", (*wanted, *queues)))
+        self.log = ffi.new("struct player_event[]", EVENTS)
+        self.player = ffi.new(
+            "struct player *",
+            {"core": self.core, "advance": advance, "events": self.log, "capacity": EVENTS},
+        )
+
+    def play(self, segments: Sequence[tuple[int, int, int, int, int]]) -> list[int]:
+        """Play (clocks, sclk, mosi, cs_n, sync); return MISO at the end of each."""
+        c_segments = self.ffi.new("struct player_segment[]", [list(segment) for segment in segments])
+        assert self.c.player_play(self.player, c_segments, len(segments)), (
+            "an output changed in a quiet clock"
+        )
+        return [segment.spi_miso for segment in c_segments]
+
+    def events(self) -> bytes:
+        """The pin events since the last call."""
+        count, self.player.count = self.player.count, 0
+        return bytes(self.ffi.buffer(self.log, count * self.ffi.sizeof("struct player_event")))
+
+    def state(self) -> bytes:
+        """The whole `struct passo_core`."""
+        return bytes(self.ffi.buffer(self.core))
+
+
+class PlayerPair:
+    """An engine, as passo.link wants one, that compares both models at random moments."""
+
+    def __init__(self, parameters: Parameters, rng: random.Random):
+        self.parameters = parameters
+        self.rng = rng
+        self.each = Player(parameters, advance=False)
+        self.jump = Player(parameters, advance=True)
+        self.edges = 0
+        self.compared = 0
+        self._sync = 0
+
+    @property
+    def clock(self) -> int:
+        """Clocks since reset."""
+        return self.each.player.clock
+
+    @property
+    def skipped(self) -> int:
+        """Clocks that were jumped over."""
+        return self.jump.player.skipped
+
+    def transfer(self, mosi: Sequence[int], gap: int = 16) -> list[int]:
+        """One chip select, SPI mode 0."""
+        segments = [(4, 0, 0, 0, self._sync)]
+        for word in mosi:
+            for bit in range(31, -1, -1):
+                level = word >> bit & 1
+                segments.append((HALF_PERIOD, 0, level, 0, self._sync))
+                segments.append((HALF_PERIOD, 1, level, 0, self._sync))
+        segments.append((4, 0, 0, 0, self._sync))
+        segments.append((gap, 0, 0, 1, self._sync))
+        miso = self._play(segments)[1:-2:2]
+        return [int("".join(map(str, miso[i : i + 32])), 2) for i in range(0, len(miso), 32)]
+
+    def run(self, clocks: int) -> int:
+        """Nothing at the pins for so long."""
+        self._play([(clocks, 0, 0, 1, self._sync)])
+        return clocks
+
+    def sync(self, level: bool) -> None:
+        """Set the sync input."""
+        self._sync = int(level)
+
+    def _play(self, segments: list[tuple[int, int, int, int, int]]) -> list[int]:
+        """Play segments, cut at random places to compare both models there; return MISO at the end of each."""
+        miso: list[int] = []
+        batch: list[tuple[int, int, int, int, int]] = []
+        for segment in segments:
+            clocks, *pins = segment
+            if self.rng.random() < (0.02 if clocks < 100 else 0.9):
+                first = self.rng.randint(0, clocks)
+                self._both([*batch, (first, *pins)])
+                miso += [m for m in self._last_miso[: len(batch)]]
+                batch = [(clocks - first, *pins)]
+            else:
+                batch.append(segment)
+        self._both(batch)
+        return miso + self._last_miso
+
+    def _both(self, segments: list[tuple[int, int, int, int, int]]) -> None:
+        self._last_miso = self.each.play(segments)
+        assert self.jump.play(segments) == self._last_miso
+        events = self.each.events()
+        self.edges += len(events)
+        self.compared += 1
+        assert self.jump.events() == events, f"pins differ before clock {self.clock}"
+        if self.each.state() != self.jump.state():
+            ffi = self.each.ffi
+            fields = list(
+                differing(ffi, ffi.typeof("struct passo_core"), self.each.core[0], self.jump.core[0])
+            )
+            assert not fields, f"clock {self.clock}: {', '.join(fields[:9])}"
+
+
+def differing(ffi: FFI, kind: Any, a: Any, b: Any, name: str = "core") -> Iterator[str]:
+    """The members in which two structs differ; what lies between members does not count."""
+    if kind.kind == "struct":
+        for member, field in kind.fields:
+            yield from differing(ffi, field.type, getattr(a, member), getattr(b, member), f"{name}.{member}")
+    elif kind.kind == "array":
+        for i in range(kind.length):
+            yield from differing(ffi, kind.item, a[i], b[i], f"{name}[{i}]")
+    elif a != b:
+        yield f"{name} is {a}, with advance {b}"
