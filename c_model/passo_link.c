@@ -194,7 +194,7 @@ void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wi
 
 	if (wires->spi.frame_start)
 		link->reply_word = wires->status;
-	if (was.step != PASSO_LINK_REPLAY) {
+	if (was.step != PASSO_LINK_REPLAY && !(was.step == PASSO_LINK_VERDICT && crc_idle)) {
 		if (wires->spi.frame_end)
 			link->step = PASSO_LINK_IDLE;
 		if (wires->spi.frame_start) {

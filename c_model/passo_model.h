@@ -274,7 +274,7 @@ struct passo_channel_wires {
 	bool advance, tick, next, ramp_ended;
 	bool substep_taken, line_done, take;
 	bool overrun;
-	bool finished, halt;
+	bool finished, halt, flush;
 	enum passo_cause cause;
 };
 

@@ -40,6 +40,7 @@ void passo_motion_wires(const struct passo_channel *channel, const struct passo_
 	wires->finished = (state == PASSO_STATE_SETTLE && motion->count == SETTLE_LAST && (line_over || channel->line.endless))
 	                  || (state == PASSO_STATE_DRAIN && line_over);
 	wires->halt = stop_now(channel, wires) && state != PASSO_STATE_STOPPED;
+	wires->flush = wires->halt || state == PASSO_STATE_STOPPED;
 	wires->cause = cause_now(channel, wires);
 }
 

@@ -216,7 +216,8 @@
 #define PASSO_CHANNEL_AXIS_COUNT  8u
 #define PASSO_CHANNEL_AXIS_STRIDE 0x08u
 
-/* Axis: Pins. Drive enable, polarities and step mode. Change polarities only while the axis stands. */
+/* Axis: Pins. Drive enable, polarities and step mode. Change polarities and step mode only while the axis
+ * stands and STEP is inactive. */
 #define PASSO_AXIS_PINS                          0x0u
 #define PASSO_AXIS_PINS_ENABLE_LSB               0u
 #define PASSO_AXIS_PINS_ENABLE_BITS              1u

@@ -22,16 +22,15 @@ struct passo_spi_wires passo_spi_wires(const struct passo_spi *spi)
 static void rising_sclk(struct passo_spi *spi, bool mosi)
 {
 	spi->receive = spi->receive << 1 | (mosi ? 1u : 0u);
-	if (spi->bit_count == 31u) {
+	if (spi->bit_count == 31u)
 		spi->word = spi->receive;
-		spi->word_toggle = !spi->word_toggle;
-	}
 	spi->bit_count = (spi->bit_count + 1u) & 31u;
 }
 
 static void falling_sclk(struct passo_spi *spi, uint32_t reply_word)
 {
 	if (spi->bit_count == 0u) {
+		spi->word_toggle = !spi->word_toggle;
 		spi->first_word = false;
 		spi->send = reply_word;
 	} else if (spi->first_word && spi->bit_count == 1u) {

@@ -7,7 +7,7 @@ what is written after clock n counts like a register that changed with clock n.
 """
 
 import random
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import cocotb
 from cocotb.clock import Clock
@@ -108,3 +108,53 @@ class Recorder:
             if condition(value):
                 found.extend(range(clock, end))
         return found
+
+
+class PushBus:
+    """The bus of one queue: pushes words as the link does, first to be checked, then to be written."""
+
+    INPUTS = ("bus_frame", "bus_check", "bus_write", "select", "bus_data")
+
+    def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
+        self.dut, self.clocks = dut, clocks
+        self._refusals = Recorder(clocks, dut.refusal)
+
+    async def frame(self) -> None:
+        """Begin a pass over the payload of a frame."""
+        self.dut.bus_frame.value = 1
+        await self.clocks.wait(1)
+        self.dut.bus_frame.value = 0
+        await self.clocks.wait(2)
+
+    async def check(self, words: Sequence[int]) -> list[int]:
+        """Have words checked; return the answer to each, which comes one clock later and for one clock."""
+        answers: list[int] = []
+        for word in words:
+            strobe = self.clocks.now
+            await self._strobe(self.dut.bus_check, word)
+            answers.append(read(self.dut.refusal))
+            await self.clocks.wait(3)
+            late = [n for n, answer in self._refusals.changes if n >= strobe and answer and n != strobe + 1]
+            assert not late, f"an answer {late} without a question"
+        return answers
+
+    async def write(self, words: Sequence[int]) -> None:
+        """Execute words, one every 4 clocks."""
+        for word in words:
+            await self._strobe(self.dut.bus_write, word)
+            await self.clocks.wait(3)
+
+    async def push(self, words: Sequence[int]) -> None:
+        """A good frame: check, then execute."""
+        await self.frame()
+        assert set(await self.check(words)) == {0}
+        await self.frame()
+        await self.write(words)
+
+    async def _strobe(self, signal: Signal, word: int) -> None:
+        # the address stays on the bus between strobes
+        self.dut.select.value = 1
+        self.dut.bus_data.value = word
+        signal.value = 1
+        await self.clocks.wait(1)
+        signal.value = 0

@@ -215,7 +215,8 @@ localparam CHANNEL_AXIS_BASE   = 8'h80;
 localparam CHANNEL_AXIS_COUNT  = 8;
 localparam CHANNEL_AXIS_STRIDE = 8'h08;
 
-// Axis: Pins. Drive enable, polarities and step mode. Change polarities only while the axis stands.
+// Axis: Pins. Drive enable, polarities and step mode. Change polarities and step mode only while the axis
+// stands and STEP is inactive.
 localparam AXIS_PINS                          = 3'h0;
 localparam AXIS_PINS_ENABLE_LSB               = 0;
 localparam AXIS_PINS_ENABLE_BITS              = 1;

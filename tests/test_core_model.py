@@ -26,7 +26,7 @@ AXES = 3
 
 
 def run_motion(engine: Engine, channel: Channel, lines: Sequence[Line], ramps: Sequence[Ramp]) -> np.ndarray:
-    """The pin events of one motion, counted from the rise of `running`; it takes just as long as its profile."""
+    """The pin events of one motion, counted from the rise of `running`. It lasts as long as its profile."""
     clocks = sum(ramp.ticks for ramp in ramps) << engine.parameters.tick_log2
     channel.push_lines([to_line(line) for line in lines])
     channel.push_ramps([to_ramp(ramp) for ramp in ramps])
@@ -72,7 +72,7 @@ def check_motion(lines: Sequence[Line], ramps: Sequence[Ramp], tick_log2: int = 
 
 
 def test_tables() -> None:
-    """The tables of the model are the formulas of the contract; cosine and sigmoid are odd-symmetric to the bit."""
+    """The tables are the formulas of the contract; cosine and sigmoid are odd-symmetric to the bit."""
     numbers = [int(n) for n in re.findall(r"\b(\d+)(?=,)", (paths.c_model / "passo_shapes.c").read_text())]
     assert numbers == [point for bank in (COSINE, SIGMOID, EASE) for point in TABLES[bank][:256]]
     for bank in (COSINE, SIGMOID):
@@ -122,7 +122,7 @@ def test_velocity_zero_in_the_middle() -> None:
 
 
 def test_lines_follow_each_other_without_a_lost_clock() -> None:
-    """Many short lines, each with other directions and ratios, under ramps that do not end where the lines do."""
+    """Many short lines, all different, under ramps that do not end where the lines do."""
     ramps = [Ramp(SLOW, 40, COSINE), Ramp(SLOW, 90), Ramp(0, 40, COSINE, last=True)]
     shares = [(100, 50, -33), (-100, 100, 0), (7, -100, 100), (0, 0, 0), (-1, 99, -100)] * 8
     lines = fill(ramps, shares)

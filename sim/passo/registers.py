@@ -274,7 +274,8 @@ CHANNEL_AXIS_BASE = 0x80
 CHANNEL_AXIS_COUNT = 8
 CHANNEL_AXIS_STRIDE = 0x08
 
-# Axis: Pins. Drive enable, polarities and step mode. Change polarities only while the axis stands.
+# Axis: Pins. Drive enable, polarities and step mode. Change polarities and step mode only while the axis
+# stands and STEP is inactive.
 AXIS_PINS = 0x0
 AXIS_PINS_ENABLE_LSB = 0
 AXIS_PINS_ENABLE_BITS = 1
