@@ -153,6 +153,8 @@ static bool take_to_end(const struct passo_channel *channel, struct progress *pr
 	uint64_t phase_high = path->phase_high;
 	int64_t on_the_way = 0;
 
+	if (!line->active && (line->slot_add || line->slot_step))
+		return false; /* the last substep of the last line */
 	if (path->advance_q)
 		phase_high += path->velocity_high_q + (path->phase_low_carry ? 1u : 0u);
 	progress->phase = (phase_high << 24 & PHASE_MASK) | path->phase_low;

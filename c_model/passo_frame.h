@@ -34,7 +34,7 @@ enum passo_reply {
 	PASSO_REPLY_OK,       /* a write was executed (or is a duplicate), a read brought its data */
 	PASSO_REPLY_REFUSED,  /* the verdict says why */
 	PASSO_REPLY_STUCK,    /* MISO never moved: no core, no power, no connection */
-	PASSO_REPLY_NO_ACK,   /* the core sent its status where the ack should be: it took the frame for unfinished */
+	PASSO_REPLY_NO_ACK,   /* the status stands in place of the ack: the core took the frame for unfinished */
 	PASSO_REPLY_DAMAGED,  /* the ack or the data do not agree with their check */
 	PASSO_REPLY_SEQUENCE  /* the ack of another frame */
 };
@@ -49,8 +49,8 @@ size_t passo_frame_push(
     uint32_t *frame, uint8_t sequence, uint16_t address, const uint32_t *payload, size_t length);
 size_t passo_frame_read(uint32_t *frame, uint8_t sequence, uint16_t address, size_t length);
 
-/* Both judge the reply to a request of `count` words. *verdict is set unless the reply is useless; a read's data
- * are the words from miso[PASSO_FRAME_DATA] on. */
+/* Both judge the reply to a request of `count` words. *verdict is set unless the reply is useless; a read's
+ * data are the words from miso[PASSO_FRAME_DATA] on. */
 enum passo_reply passo_frame_write_reply(
     const uint32_t *mosi, const uint32_t *miso, size_t count, enum passo_verdict *verdict);
 enum passo_reply passo_frame_read_reply(

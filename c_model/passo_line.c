@@ -45,7 +45,7 @@ void passo_line_clock(struct passo_line_unit *line, const struct passo_line_queu
 		line->active = true;
 		line->ended = false;
 	}
-	if (wires->halt) {
+	if (wires->stopped) {
 		line->active = line->ended = line->endless = line->underrun = false;
 		line->slot_add = line->slot_load = line->slot_step = line->slot_load_q = false;
 	}

@@ -109,9 +109,9 @@ void passo_line_queue_clock(struct passo_line_queue *queue, const struct passo_p
 		queue->next_line = drop_endless ? line_after_next : queue->next_line;
 		queue->current_line = drop_endless ? line_after_next : next_line;
 	}
-	queue->next_valid = !wires->take && !wires->finished && !wires->flush && next_line != write_line;
+	queue->next_valid = !wires->take && !wires->finished && !wires->stopped && next_line != write_line;
 	queue->room = (uint16_t)(depth(parameters) - wrap((unsigned)write_line - current_line, parameters));
-	if (wires->flush) {
+	if (wires->stopped) {
 		queue->next_line = write_line;
 		queue->current_line = write_line;
 	}

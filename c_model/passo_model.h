@@ -274,7 +274,8 @@ struct passo_channel_wires {
 	bool advance, tick, next, ramp_ended;
 	bool substep_taken, line_done, take;
 	bool overrun;
-	bool finished, halt, flush;
+	bool finished;
+	bool stop_now, stopped;
 	enum passo_cause cause;
 };
 

@@ -30,7 +30,8 @@ void passo_motion_wires(const struct passo_channel *channel, const struct passo_
 	const enum passo_state state = motion->state;
 	const bool line_over = channel->line.ended;
 
-	wires->occupied = state != PASSO_STATE_IDLE && state != PASSO_STATE_STOPPED;
+	wires->stopped = state == PASSO_STATE_STOPPED;
+	wires->occupied = state != PASSO_STATE_IDLE && !wires->stopped;
 	wires->moving = state == PASSO_STATE_RUN || state == PASSO_STATE_SETTLE || state == PASSO_STATE_DRAIN;
 	wires->counting = state == PASSO_STATE_RUN || state == PASSO_STATE_DRAIN;
 	wires->drain = state == PASSO_STATE_DRAIN;
@@ -39,8 +40,7 @@ void passo_motion_wires(const struct passo_channel *channel, const struct passo_
 	                       || (state == PASSO_STATE_ARMED && inputs->sync_edge);
 	wires->finished = (state == PASSO_STATE_SETTLE && motion->count == SETTLE_LAST && (line_over || channel->line.endless))
 	                  || (state == PASSO_STATE_DRAIN && line_over);
-	wires->halt = stop_now(channel, wires) && state != PASSO_STATE_STOPPED;
-	wires->flush = wires->halt || state == PASSO_STATE_STOPPED;
+	wires->stop_now = stop_now(channel, wires) && !wires->stopped;
 	wires->cause = cause_now(channel, wires);
 }
 
@@ -76,7 +76,7 @@ void passo_motion_clock(
 	if (wires->drain && channel->path.substep && !channel->line.ended)
 		motion->drained++;
 
-	if (!motion->stopping && state != PASSO_STATE_STOPPED) {
+	if (!motion->stopping && !wires->stopped) {
 		if (registers->command_stop)
 			motion->soft_cause = PASSO_CAUSE_STOP;
 		else if (dry)
@@ -84,11 +84,11 @@ void passo_motion_clock(
 		motion->stopping = registers->command_stop || dry;
 	}
 
-	if (state == PASSO_STATE_STOPPED && registers->command_clear) {
+	if (wires->stopped && registers->command_clear) {
 		motion->state = PASSO_STATE_IDLE;
 		motion->cause = PASSO_CAUSE_NONE;
 	}
-	if (wires->halt) {
+	if (wires->stop_now) {
 		motion->state = PASSO_STATE_STOPPED;
 		motion->cause = wires->cause;
 		motion->stopping = false;

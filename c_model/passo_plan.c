@@ -8,14 +8,13 @@
  *   3. peak          the one velocity at which exactly these ticks cover exactly these substeps
  *
  * Step 3 alone decides where the move ends, and it reckons with the numbers the core will use: ticks,
- * velocities and progress as they are after rounding. Nothing before it has to be exact, only on the safe
- * side.
+ * velocities and progress as they are after rounding. What comes before need only be on the safe side.
  *
  * What remains between the distance under the ramps and M, in substeps, for moves of less than 2^44 clocks:
  *
  *   peak to the nearest 2^-48                at most 2^44 / 2 * 2^-48 = 1/32
  *   velocities inside ramps down to 2^-48    at most 2^44     * 2^-48 = 1/16, as a rule half of that
- *   weights of ramps to the nearest 2^-24    at most 2^-9, where a tick has 2^16 clocks
+ *   weights of ramps down to 2^-24           at most 2^-9, where a tick has 2^16 clocks
  *
  * That is less than 0.1 after days and less than 0.001 after minutes. The core bears 1/4: a motion starts
  * with a quarter of a substep in its phase.
@@ -80,7 +79,7 @@ static uint32_t magnitude(int32_t steps)
 /* ----------------------------------------------------------------------------------------- 1. phases ---- */
 
 static enum passo_plan_error start_draft(struct draft *draft, const struct passo_machine *machine,
-                                         const int32_t *steps, enum passo_profile profile)
+    const int32_t *steps, enum passo_profile profile)
 {
 	if (machine->clock_hz == 0 || machine->tick_log2 < 7 || machine->tick_log2 > 16)
 		return PASSO_PLAN_BAD_CLOCK;
@@ -103,7 +102,7 @@ static bool is_too_long(const struct draft *draft)
 {
 	uint64_t ticks = draft->accelerate + draft->cruise + draft->decelerate;
 	return draft->accelerate > UINT32_MAX || draft->cruise > UINT32_MAX || draft->decelerate > UINT32_MAX ||
-	       ticks >> (MOVE_CLOCKS_LOG2 - draft->machine->tick_log2) > 0;
+	    ticks >> (MOVE_CLOCKS_LOG2 - draft->machine->tick_log2) > 0;
 }
 
 static uint64_t nearest_ticks(const struct draft *draft, uint64_t clocks)
@@ -187,7 +186,7 @@ static uint64_t weight_of_end(const struct draft *draft, uint64_t ticks)
 static uint64_t weight_of_peak(const struct draft *draft)
 {
 	return weight_of_end(draft, draft->accelerate) +
-	       ((draft->cruise + draft->decelerate) << WEIGHT_BITS) - weight_of_end(draft, draft->decelerate);
+	    ((draft->cruise + draft->decelerate) << WEIGHT_BITS) - weight_of_end(draft, draft->decelerate);
 }
 
 /* The distance that the peak has to cover: the whole line without what is owed to the start and stop
@@ -199,8 +198,8 @@ static struct passo_u128 distance_of_peak(const struct draft *draft)
 
 	uint64_t start_weight = (draft->accelerate << WEIGHT_BITS) - weight_of_end(draft, draft->accelerate);
 	uint64_t stop_weight = weight_of_end(draft, draft->decelerate);
-	struct passo_u128 ends = passo_u128_add(passo_multiply(draft->start, start_weight),
-	                                        passo_multiply(draft->stop, stop_weight));
+	struct passo_u128 ends =
+	    passo_u128_add(passo_multiply(draft->start, start_weight), passo_multiply(draft->stop, stop_weight));
 
 	return passo_u128_less(line, ends) ? (struct passo_u128){0, 0} : passo_u128_subtract(line, ends);
 }
@@ -215,7 +214,7 @@ static void solve_peak(struct draft *draft)
 /* -------------------------------------------------------------------------------------------- result ---- */
 
 static void add_ramp(struct passo_plan *plan, enum passo_shape shape, bool mirror, uint64_t velocity_end,
-                     uint64_t ticks)
+    uint64_t ticks)
 {
 	plan->ramps[plan->ramp_count++] = (struct passo_ramp){
 	    .mirror = mirror,
@@ -232,7 +231,7 @@ static void add_jump(struct passo_plan *plan, uint64_t velocity)
 }
 
 static void add_change(struct passo_plan *plan, enum passo_profile profile, uint64_t from, uint64_t to,
-                       uint64_t ticks)
+    uint64_t ticks)
 {
 	bool in_halves = profile == PASSO_PROFILE_JERK;
 	if (in_halves) {
@@ -317,7 +316,7 @@ enum passo_plan_error passo_plan_in_time(
 /* The slope between an end's speed and the full speed: given by an acceleration or, where that is 0, by
  * the duration of the ramp. */
 static enum passo_plan_error find_slope(struct slope *slope, const struct passo_move_by_speed *move,
-                                        uint64_t acceleration, uint32_t clock_hz, uint64_t end_speed)
+    uint64_t acceleration, uint32_t clock_hz, uint64_t end_speed)
 {
 	uint64_t change = move->speed - end_speed;
 	if (change == 0)
@@ -341,7 +340,7 @@ static enum passo_plan_error find_slope(struct slope *slope, const struct passo_
  * too, numerator and denominator are multiplied by the limit. Rounded up: too high a peak costs a little
  * time, nothing else. */
 static uint64_t reachable_speed(const struct draft *draft, uint64_t limit, struct slope up, uint64_t start,
-                                struct slope down, uint64_t stop)
+    struct slope down, uint64_t stop)
 {
 	uint64_t length = (uint64_t)draft->longest * draft->machine->clock_hz;
 	struct passo_u128 sum = passo_multiply(length, 2 * PASSO_UNIT_Q32);
@@ -430,14 +429,11 @@ enum passo_plan_error passo_plan_by_speed(
 	draft.start = velocity_of(&draft, move->start_speed);
 	draft.stop = velocity_of(&draft, move->stop_speed);
 	draft.cruise = cruise_ticks(&draft, velocity_of(&draft, peak));
-	if (is_too_long(&draft))
-		return PASSO_PLAN_TOO_LONG;
-
 	do {
+		if (is_too_long(&draft))
+			return PASSO_PLAN_TOO_LONG;
 		solve_peak(&draft);
 	} while (flatten_ramp(&draft));
-	if (is_too_long(&draft))
-		return PASSO_PLAN_TOO_LONG;
 
 	finish_plan(&draft, plan);
 	return PASSO_PLAN_OK;
@@ -449,7 +445,7 @@ static const struct {
 	const char *name, *text;
 } ERRORS[] = {
     [PASSO_PLAN_OK] = {"OK", "The plan is good."},
-    [PASSO_PLAN_BAD_CLOCK] = {"BAD_CLOCK", "The clock must be above 0 Hz, a tick 2^7 to 2^16 clocks."},
+    [PASSO_PLAN_BAD_CLOCK] = {"BAD_CLOCK", "The clock must be above 0 Hz and a tick 2^7 to 2^16 clocks."},
     [PASSO_PLAN_BAD_AXES] = {"BAD_AXES", "A move has 1 to 8 axes."},
     [PASSO_PLAN_BAD_PROFILE] = {"BAD_PROFILE", "The profile must be linear, cosine, sigmoid or jerk."},
     [PASSO_PLAN_NO_STEPS] = {"NO_STEPS", "No axis has a step to make."},
@@ -459,7 +455,7 @@ static const struct {
     [PASSO_PLAN_TOO_LONG] = {"TOO_LONG", "A phase takes 2^32 ticks or more, or the move 2^44 clocks."},
     [PASSO_PLAN_TOO_FAST] = {"TOO_FAST", "The longest axis would make more than a step every two clocks."},
     [PASSO_PLAN_NO_SPEED] = {"NO_SPEED", "The speed is 0."},
-    [PASSO_PLAN_NO_ACCELERATION] = {"NO_ACCELERATION", "A change of speed needs an acceleration or ramp time."},
+    [PASSO_PLAN_NO_ACCELERATION] = {"NO_ACCELERATION", "A change of speed needs acceleration or ramp time."},
     [PASSO_PLAN_START_ABOVE_SPEED] = {"START_ABOVE_SPEED", "The start speed is above the speed."},
     [PASSO_PLAN_STOP_ABOVE_SPEED] = {"STOP_ABOVE_SPEED", "The stop speed is above the speed."},
 };

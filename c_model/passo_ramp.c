@@ -72,7 +72,7 @@ static void choose(struct passo_ramp_unit *ramp, const struct passo_channel *cha
 	}
 }
 
-static void halt(struct passo_ramp_unit *ramp)
+static void stop(struct passo_ramp_unit *ramp)
 {
 	ramp->step = PASSO_RAMP_IDLE;
 	ramp->take_now = false;
@@ -137,6 +137,6 @@ void passo_ramp_clock(struct passo_ramp_unit *ramp, const struct passo_channel *
 		ramp->tick_count = 0;
 	if (wires->drain)
 		ramp->velocity = (uint64_t)channel->registers.drain_velocity << 16;
-	if (wires->halt)
-		halt(ramp);
+	if (wires->stopped)
+		stop(ramp);
 }

@@ -92,7 +92,7 @@ void passo_ramp_queue_clock(struct passo_ramp_queue *queue, const struct passo_p
 		queue->index = INDEX_CONTROL;
 		queue->checked = 0;
 	}
-	if (wires->flush) {
+	if (wires->stopped) {
 		queue->now_pending = false;
 		queue->read_ramp = write_ramp;
 	}

@@ -86,19 +86,27 @@ async def begin(dut: HierarchyObject, *inputs: str, period: int = PERIOD) -> Clo
 
 
 class Recorder:
-    """Records every change of a signal as (clock, value), from now to the end of the test."""
+    """Records every change of a signal as (clock, value), from now to `stop` or the end of the test."""
 
     def __init__(self, clocks: Clocks, signal: Signal) -> None:
         self.changes: list[tuple[int, int]] = []
         self._clocks = clocks
         self._signal = signal
-        cocotb.start_soon(self._watch())
+        self._task = cocotb.start_soon(self._watch())
+
+    def stop(self) -> None:
+        """Record no more."""
+        self._task.cancel()
 
     async def _watch(self) -> None:
         change = ValueChange(self._signal)
         while True:
             await change
-            self.changes.append((self._clocks.edge(), read(self._signal)))
+            clock = self._clocks.edge()
+            # a vector may change bit by bit, at the same time
+            if self.changes and self.changes[-1][0] == clock:
+                self.changes.pop()
+            self.changes.append((clock, read(self._signal)))
 
     def clocks_where(self, condition: Callable[[int], object], last: int) -> list[int]:
         """Clocks up to `last` after which the value met a condition."""

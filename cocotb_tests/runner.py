@@ -109,7 +109,8 @@ def _sources(toplevel: str, rtl: Path) -> list[Path]:
         if path is None or name in found:
             return
         found[name] = path
-        for mentioned in re.findall(r"\bpasso_\w+", path.read_text()):
+        code = re.sub(r"//.*", "", path.read_text())
+        for mentioned in re.findall(r"\bpasso_\w+", code):
             visit(mentioned)
 
     visit(toplevel)

@@ -7,7 +7,7 @@ from random import Random
 
 import cocotb
 from cocotb.handle import HierarchyObject
-from cocotb.triggers import Combine
+from cocotb.triggers import gather
 
 from cocotb_tests.bench import Clocks, PushBus, Recorder, begin, read, rng
 from cocotb_tests.runner import run
@@ -328,7 +328,7 @@ async def random_paths_match_the_formula(dut: HierarchyObject) -> None:
                 slow = len(sequence) > len(ahead) and n + 1 < len(sequence)
                 await lines.make([line], every(2) if not slow else every(2 + 40 // line.substeps))
 
-        await Combine(cocotb.start_soon(feed()), cocotb.start_soon(work()))
+        await gather(feed(), work())
         lines.check_end(ended=True, underruns=0)
         await lines.strobe("release_line")
         await lines.clocks.wait(2)

@@ -76,7 +76,6 @@ module passo_channel #(
   wire        begin_profile;
   wire        drain;
   wire        release_line;
-  wire        halt;
 
   // when: timescale, ramp, path
   wire [16:0] rate;
@@ -119,8 +118,6 @@ module passo_channel #(
   wire [   AXES-1:0] axis_claim;
   wire [ AXES*4-1:0] axis_refusal;
   wire [AXES*32-1:0] axis_read_data;
-
-  assign stopped = state == STATE_STOPPED;
 
   wire        registers_claim;
   wire [ 3:0] registers_refusal;
@@ -202,7 +199,7 @@ module passo_channel #(
     .room               (line_room),
     .take               (line_take),
     .release_line       (release_line),
-    .flush              (halt | stopped),
+    .flush              (stopped),
     .next_valid         (line_valid),
     .next_last          (line_last),
     .next_endless       (line_endless),
@@ -227,7 +224,7 @@ module passo_channel #(
     .room       (ramp_room),
     .take       (ramp_take),
     .take_now   (ramp_take_now),
-    .flush      (halt | stopped),
+    .flush      (stopped),
     .valid      (ramp_valid),
     .now_pending(ramp_now_pending),
     .half_index (ramp_half_index),
@@ -265,7 +262,7 @@ module passo_channel #(
     .substep_made (substep),
     .step_overrun (overrun != {AXES{1'b0}}),
     .release_line (release_line),
-    .halt         (halt),
+    .stopped      (stopped),
     .running      (running)
   );
 
@@ -289,7 +286,7 @@ module passo_channel #(
     .rst             (rst),
     .prepare         (prepare),
     .begin_profile   (begin_profile),
-    .halt            (halt),
+    .stop            (stopped),
     .drain           (drain),
     .drain_velocity  (drain_velocity),
     .ready           (ramp_ready),
@@ -326,7 +323,7 @@ module passo_channel #(
     .clk                (clk),
     .rst                (rst),
     .start              (prepare),
-    .stop               (halt),
+    .stop               (stopped),
     .substep            (substep),
     .next_valid         (line_valid),
     .next_last          (line_last),

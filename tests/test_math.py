@@ -25,7 +25,7 @@ def math_c() -> Iterator[tuple[FFI, object]]:
     library = directory / f"math-{os.getpid()}.so"
     flags = "-std=c11 -O2 -Wall -Wextra -Wconversion -Werror -fPIC -shared -fsanitize=undefined"
     subprocess.run(
-        ["gcc", *flags.split(), "-fno-sanitize-recover=all", "-o", library, paths.c_model / "passo_math.c"],
+        ["cc", *flags.split(), "-fno-sanitize-recover=all", "-o", library, paths.c_model / "passo_math.c"],
         check=True,
     )
     ffi = FFI()

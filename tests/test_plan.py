@@ -52,7 +52,7 @@ def c() -> Iterator[Any]:
     library = directory / f"plan-{os.getpid()}.so"
     flags = "-std=c11 -O2 -Wall -Wextra -Wconversion -Werror -fPIC -shared -fsanitize=undefined"
     sources = [paths.c_model / "passo_plan.c", paths.c_model / "passo_math.c"]
-    subprocess.run(["gcc", *flags.split(), "-fno-sanitize-recover=all", "-o", library, *sources], check=True)
+    subprocess.run(["cc", *flags.split(), "-fno-sanitize-recover=all", "-o", library, *sources], check=True)
     yield load(library)
     library.unlink()
 
@@ -682,7 +682,10 @@ REFUSED = {
         {"speed": 1, "start_speed": 0, "stop_speed": 0},
         {"speed": q32(1 / 60), "start_speed": 0, "stop_speed": 0, "steps": (2**31 - 1,)},
         {"acceleration": 1, "deceleration": 0},
+        {"acceleration": q32(0.01), "steps": (10**9,)},
+        {"deceleration": q32(0.01), "steps": (10**9,)},
         {"deceleration": 1},
+        {"start_speed": q32(1000) - 1, "stop_speed": q32(1000), "acceleration": 46},
         {"acceleration": 0, "deceleration": 0, "ramp_clocks": 2**64 - 1},
     ],
     "TOO_FAST": [{"total_clocks": 128, "ramp_clocks": 0, "steps": (65,)}, {"speed": q32(5e7) + 1}],

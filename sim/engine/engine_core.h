@@ -23,12 +23,12 @@ struct engine_outputs {
 struct engine_core;
 
 /* A core fresh out of reset. */
-struct engine_core *engine_core_open(
-    const struct passo_engine_config *config, const struct engine_inputs *inputs, struct engine_outputs *outputs);
+struct engine_core *engine_core_open(const struct passo_engine_config *config,
+    const struct engine_inputs *inputs, struct engine_outputs *outputs);
 void engine_core_close(struct engine_core *core);
 
-/* Executes up to `limit` (at least 1) clocks, but none after one on which an output other than MISO changes. Returns
- * how many; *outputs are as they stand then. */
+/* Executes up to `limit` (at least 1) clocks, but none after one on which an output other than MISO changes.
+ * Returns how many; *outputs are as they stand then. */
 uint64_t engine_core_run(struct engine_core *core, const struct engine_inputs *inputs, uint64_t limit,
     struct engine_outputs *outputs);
 

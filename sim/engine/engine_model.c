@@ -22,8 +22,8 @@ static bool read_outputs(const struct passo_core *model, struct engine_outputs *
 	return changed;
 }
 
-struct engine_core *engine_core_open(
-    const struct passo_engine_config *config, const struct engine_inputs *inputs, struct engine_outputs *outputs)
+struct engine_core *engine_core_open(const struct passo_engine_config *config,
+    const struct engine_inputs *inputs, struct engine_outputs *outputs)
 {
 	const struct passo_parameters parameters = { .channels = (uint8_t)config->channels,
 		.axes = (uint8_t)config->axes, .tick_log2 = (uint8_t)config->tick_log2,

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * One interface to two engines that execute the core: the C model and the Verilated RTL.
  *
- * Both are driven through the same pins by the same SPI master, so that the same calls give both of them the same
- * waveforms. What comes out of their pins is recorded in the pin log.
+ * Both are driven through the same pins by the same SPI master, so that the same calls give both of them the
+ * same waveforms. What comes out of their pins is recorded in the pin log.
  */
 #ifndef PASSO_ENGINE_H
 #define PASSO_ENGINE_H

@@ -30,7 +30,7 @@ CPP_FLAGS = ("-std=gnu++17", "-O3", "-Wall", "-fPIC", "-fno-gnu-unique", *INCLUD
 VERILATOR_FLAGS = (
     *("--cc", "--build", "-j", "2", "-O3", "--x-assign", "fast", "--x-initial", "fast"),
     *("--no-timing", "--no-assert", "--top-module", "passo_core", "--prefix", "Vpasso_core"),
-    *("-CFLAGS", "-fPIC -fno-gnu-unique", "-MAKEFLAGS", "OPT_FAST=-O3 OPT_SLOW=-O1 OPT_GLOBAL=-O2"),
+    *("-CFLAGS", "-fPIC -fno-gnu-unique"),
 )
 
 
@@ -108,6 +108,9 @@ def _verilated(parameters: Parameters, waves: bool) -> Path:
     """The folder with the C++ that Verilator made of the core, compiled."""
     sources = sorted(paths.rtl.glob("*.v"))
     flags = [*VERILATOR_FLAGS, *(f"-G{name.upper()}={value}" for name, value in asdict(parameters).items())]
+    # Recording the waves takes most of the time, so that optimizing only makes the build slow.
+    optimize = "OPT_FAST=-O1 OPT_SLOW=-O0" if waves else "OPT_FAST=-O3 OPT_SLOW=-O1 OPT_GLOBAL=-O2"
+    flags += ["-MAKEFLAGS", optimize]
     if waves:
         flags.append("--trace-fst")
         if not waves_possible():

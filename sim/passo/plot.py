@@ -59,9 +59,9 @@ def plot_motion(run: Run, path: Path) -> None:
         axes["speed"].set_title("Speed: ideal curve (wide) and the steps at the pins (thin)")
         _position(axes["position"], run)
         _error(axes["error"], run)
-        length = _window(run)
-        _lines(axes["first"], run, 0, length, "The first milliseconds")
-        _lines(axes["last"], run, run.total_clocks - length, run.total_clocks, "The last milliseconds")
+        first, last = _windows(run)
+        _lines(axes["first"], run, 0, first, "The first milliseconds")
+        _lines(axes["last"], run, run.total_clocks - last, run.total_clocks, "The last milliseconds")
         figure.savefig(path, dpi=110)
         plt.close(figure)
 
@@ -120,7 +120,7 @@ def _speed(ax: Axes, run: Run, legend: bool = True) -> None:
     if speeds.min() >= 0:
         ax.set_ylim(bottom=0)
     if legend and run.file.axes > 1:
-        ax.legend(loc="upper right", ncols=min(4, run.file.axes))
+        ax.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=run.file.axes, borderaxespad=0)
 
 
 def _position(ax: Axes, run: Run) -> None:
@@ -155,12 +155,14 @@ def _error(ax: Axes, run: Run) -> None:
     ax.margins(x=0.01)
 
 
-def _window(run: Run) -> int:
-    """Clocks to show at each end: a millisecond, or more when it takes longer for some steps."""
-    everything = np.sort(np.concatenate([run.steps(axis)[0] for axis in range(run.file.axes)]))
-    some = everything[: PULSES_SHOWN * run.file.axes]
-    shown = int(some[-1] * 1.05) if len(some) else 0
-    return min(run.total_clocks, max(run.file.clock_hz // 1000, shown))
+def _windows(run: Run) -> tuple[int, int]:
+    """Clocks to show at the start and at the end: a millisecond, or more to have some steps."""
+    clocks = np.sort(np.concatenate([run.steps(axis)[0] for axis in range(run.file.axes)]))
+    some = min(len(clocks), PULSES_SHOWN * run.file.axes)
+    shown = (clocks[some - 1], run.total_clocks - clocks[-some]) if some else (0, 0)
+    millisecond = run.file.clock_hz // 1000
+    first, last = (min(run.total_clocks, max(millisecond, int(1.05 * length))) for length in shown)
+    return first, last
 
 
 def _lines(ax: Axes, run: Run, begin: int, end: int, title: str, directions: bool = True) -> None:

@@ -1,0 +1,251 @@
+/* SPDX-License-Identifier: MIT
+ * A host that plays frames to the model, good and bad ones, for a build in which every fault is fatal.
+ *
+ * Exits with 0 if the model answered as it should. The moves themselves are checked elsewhere.
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "passo_core.h"
+#include "passo_frame.h"
+#include "passo_plan.h"
+
+static struct passo_core core;
+static uint8_t sequence = 1;
+static uint32_t random_state = 1;
+
+static uint32_t random_word(void)
+{
+	random_state ^= random_state << 13;
+	random_state ^= random_state >> 17;
+	random_state ^= random_state << 5;
+	return random_state;
+}
+
+static void expect(bool good, const char *what)
+{
+	if (good)
+		return;
+	fprintf(stderr, "not so: %s\n", what);
+	exit(1);
+}
+
+/* Runs with these inputs, now and then in jumps. */
+static void run(const struct passo_inputs *inputs, uint64_t clocks)
+{
+	while (clocks != 0u) {
+		const uint64_t jump = (random_word() & 1u) != 0u ? passo_core_advance(&core, inputs, clocks) : 0u;
+		if (jump == 0u)
+			passo_core_clock(&core, inputs);
+		clocks -= jump == 0u ? 1u : jump;
+	}
+}
+
+static void rest(uint64_t clocks)
+{
+	const struct passo_inputs inputs = {.spi_cs_n = true};
+	run(&inputs, clocks);
+}
+
+/* One chip select of so many bits, which need not be whole words. */
+static void transfer_bits(const uint32_t *mosi, uint32_t *miso, size_t bits)
+{
+	struct passo_inputs inputs = {.spi_cs_n = false};
+
+	run(&inputs, 4);
+	for (size_t i = 0; i < bits; i++) {
+		inputs.spi_mosi = (mosi[i / 32] >> (31u - i % 32) & 1u) != 0u;
+		run(&inputs, 2);
+		miso[i / 32] = miso[i / 32] << 1 | (passo_core_outputs(&core)->spi_miso ? 1u : 0u);
+		inputs.spi_sclk = true;
+		run(&inputs, 2);
+		inputs.spi_sclk = false;
+	}
+	run(&inputs, 4);
+	rest(300);
+}
+
+static enum passo_verdict send(const uint32_t *frame, size_t count)
+{
+	uint32_t miso[PASSO_FRAME_WORDS_MAX] = {0};
+	enum passo_verdict verdict = PASSO_VERDICT_OK;
+
+	transfer_bits(frame, miso, count * 32);
+	const enum passo_reply reply = passo_frame_write_reply(frame, miso, count, &verdict);
+	expect(reply == PASSO_REPLY_OK || reply == PASSO_REPLY_REFUSED, "a write is answered");
+	return verdict;
+}
+
+static enum passo_verdict write_words(uint16_t address, const uint32_t *words, size_t count)
+{
+	uint32_t frame[PASSO_FRAME_WORDS_MAX];
+	return send(frame, passo_frame_write(frame, sequence++, address, words, count));
+}
+
+static enum passo_verdict write_word(uint16_t address, uint32_t word) { return write_words(address, &word, 1); }
+
+static void read_words(uint16_t address, uint32_t *words, size_t count)
+{
+	uint32_t frame[PASSO_FRAME_WORDS_MAX];
+	uint32_t miso[PASSO_FRAME_WORDS_MAX] = {0};
+	enum passo_verdict verdict;
+	const size_t length = passo_frame_read(frame, sequence++, address, count);
+
+	transfer_bits(frame, miso, length * 32);
+	expect(passo_frame_read_reply(frame, miso, length, &verdict) == PASSO_REPLY_OK, "a read is answered");
+	memcpy(words, &miso[PASSO_FRAME_DATA], count * sizeof *words);
+}
+
+static uint16_t channel_base(unsigned channel)
+{
+	return (uint16_t)(PASSO_ADDRESS_CHANNEL_BASE + channel * PASSO_ADDRESS_CHANNEL_STRIDE);
+}
+
+static enum passo_verdict push_line(unsigned channel, const struct passo_line *line)
+{
+	uint32_t words[PASSO_FRAME_PAYLOAD_MAX];
+	uint32_t frame[PASSO_FRAME_WORDS_MAX];
+	const size_t count = passo_line_words(words, line, core.parameters.axes);
+	const uint16_t address = (uint16_t)(channel_base(channel) + PASSO_CHANNEL_LINE);
+
+	return send(frame, passo_frame_push(frame, sequence++, address, words, count));
+}
+
+static enum passo_verdict push_ramp(unsigned channel, const struct passo_ramp *ramp)
+{
+	uint32_t words[PASSO_FRAME_PAYLOAD_MAX];
+	uint32_t frame[PASSO_FRAME_WORDS_MAX];
+	const size_t count = passo_ramp_words(words, ramp);
+	const uint16_t address = (uint16_t)(channel_base(channel) + PASSO_CHANNEL_RAMP);
+
+	return send(frame, passo_frame_push(frame, sequence++, address, words, count));
+}
+
+static uint32_t state_of(unsigned channel)
+{
+	uint32_t state;
+	read_words((uint16_t)(channel_base(channel) + PASSO_CHANNEL_STATE), &state, 1);
+	return state;
+}
+
+static void plan(struct passo_plan *made, unsigned axes, enum passo_profile profile)
+{
+	const struct passo_machine machine = {.clock_hz = 1280000, .tick_log2 = core.parameters.tick_log2, .axes = (uint8_t)axes};
+	struct passo_move_in_time move = {.profile = profile, .total_clocks = 40000, .ramp_clocks = 15000};
+
+	for (unsigned axis = 0; axis < axes; axis++)
+		move.steps[axis] = (axis & 1u) != 0u ? -300 - (int32_t)axis : 401;
+	expect(passo_plan_in_time(&machine, &move, made) == PASSO_PLAN_OK, "the move is planned");
+}
+
+static void move_every_channel(enum passo_profile profile)
+{
+	const unsigned channels = core.parameters.channels;
+	const unsigned axes = core.parameters.axes;
+	uint32_t position[PASSO_AXES_MAX];
+	struct passo_plan made;
+
+	plan(&made, axes, profile);
+	for (unsigned i = 0; i < channels; i++) {
+		expect(push_line(i, &made.line) == PASSO_VERDICT_OK, "a line is taken");
+		for (unsigned k = 0; k < made.ramp_count; k++)
+			expect(push_ramp(i, &made.ramps[k]) == PASSO_VERDICT_OK, "a ramp is taken");
+	}
+	expect(write_word(PASSO_ADDRESS_RUN, (1u << channels) - 1u) == PASSO_VERDICT_OK, "all are started");
+	rest(20000);
+	expect(write_word((uint16_t)(channel_base(0) + PASSO_CHANNEL_RATE_TARGET), 0) == PASSO_VERDICT_OK, "one is held");
+	rest(60000);
+	expect(write_word((uint16_t)(channel_base(0) + PASSO_CHANNEL_RATE_TARGET), 0x10000) == PASSO_VERDICT_OK, "and goes on");
+	rest(100000);
+	for (unsigned i = 0; i < channels; i++) {
+		expect(state_of(i) == PASSO_STATE_IDLE, "the motion has ended");
+		read_words((uint16_t)(channel_base(i) + PASSO_CHANNEL_POSITION_BASE), position, axes);
+		expect(position[0] % 401u == 0u && position[0] != 0u, "the steps are made");
+	}
+	expect(write_word(PASSO_ADDRESS_RUN, 0) == PASSO_VERDICT_OK, "all rest");
+}
+
+/* Every end that a motion can take. */
+static void fault_every_way(unsigned channel)
+{
+	const uint16_t base = channel_base(channel);
+	const uint64_t half = PASSO_VELOCITY_MAX;
+	const struct passo_line line = {.substeps = 5000, .steps = {5000}};
+	const struct passo_ramp jump = {.velocity_end = half, .shape = PASSO_SHAPE_COSINE};
+	const struct passo_ramp cruise = {.velocity_end = half, .ticks = 500, .progress_step = PASSO_ONE_Q48 / 500};
+
+	for (unsigned way = 0; way < 5; way++) {
+		const struct passo_line pushed = {.last = way == 3, .endless = way == 2, .substeps = line.substeps, .steps = {5000}};
+		const uint32_t cause[] = {PASSO_CAUSE_STOP, PASSO_CAUSE_ABORT, PASSO_CAUSE_STOP, PASSO_CAUSE_STEP_OVERRUN,
+		    PASSO_CAUSE_LINE_UNDERRUN};
+
+		expect(write_word((uint16_t)(base + PASSO_CHANNEL_AXIS_BASE + PASSO_AXIS_STEP_TIMING), way == 3 ? 0xFFFFFFFFu : 0u)
+		           == PASSO_VERDICT_OK, "the pins are set");
+		expect(push_line(channel, &pushed) == PASSO_VERDICT_OK, "a line is taken");
+		expect(push_ramp(channel, &jump) == PASSO_VERDICT_OK, "a jump is taken");
+		expect(push_ramp(channel, &cruise) == PASSO_VERDICT_OK, "a cruise is taken");
+		expect(write_word(PASSO_ADDRESS_RUN, 1u << channel) == PASSO_VERDICT_OK, "it starts");
+		if (way < 3)
+			write_word((uint16_t)(base + PASSO_CHANNEL_COMMAND), way == 1 ? 2 : 1);
+		rest(30000);
+		expect((state_of(channel) & 0x7Fu) == (cause[way] << PASSO_CHANNEL_STATE_CAUSE_LSB | PASSO_STATE_STOPPED),
+		    "it has stopped, and says why");
+		expect(push_line(channel, &pushed) == PASSO_VERDICT_BUSY, "nothing is taken before it is cleared");
+		expect(write_word((uint16_t)(base + PASSO_CHANNEL_COMMAND), 1u << PASSO_CHANNEL_COMMAND_CLEAR_LSB)
+		           == PASSO_VERDICT_OK, "it is cleared");
+		rest(200000);
+	}
+	expect(write_word((uint16_t)(base + PASSO_CHANNEL_AXIS_BASE + PASSO_AXIS_STEP_TIMING), 0) == PASSO_VERDICT_OK, "pins");
+}
+
+/* Frames with a good CRC and anything in them, and frames of any bits, cut anywhere. */
+static void send_rubbish(unsigned count)
+{
+	uint32_t frame[PASSO_FRAME_WORDS_MAX];
+	uint32_t miso[PASSO_FRAME_WORDS_MAX];
+	uint32_t payload[PASSO_FRAME_PAYLOAD_MAX];
+
+	for (unsigned i = 0; i < count; i++) {
+		const size_t length = 1u + random_word() % PASSO_FRAME_PAYLOAD_MAX;
+		const uint16_t address = (uint16_t)(random_word() % 0x1000u);
+
+		for (size_t k = 0; k < length; k++)
+			payload[k] = random_word() >> random_word() % 32u;
+		memset(miso, 0, sizeof miso);
+		if (i % 4u == 0u) {
+			transfer_bits(payload, miso, 1u + random_word() % (32u * length));
+		} else if (i % 4u == 1u) {
+			transfer_bits(frame, miso, 32u * passo_frame_read(frame, sequence++, address, length));
+		} else if (i % 4u == 2u) {
+			const uint16_t queue = (uint16_t)((address & 0xF00u) | PASSO_CHANNEL_LINE | (address & 1u));
+			transfer_bits(frame, miso, 32u * passo_frame_push(frame, sequence++, queue, payload, length));
+		} else {
+			transfer_bits(frame, miso, 32u * passo_frame_write(frame, sequence++, address, payload, length));
+		}
+	}
+}
+
+int main(void)
+{
+	const struct passo_parameters builds[] = {{1, 4, 7, 8, 4}, {2, 2, 7, 2, 3}, {8, 8, 16, 8, 8}, {3, 1, 9, 4, 3}};
+	const struct passo_parameters bad[] = {{0, 4, 7, 8, 4}, {9, 4, 7, 8, 4}, {1, 0, 7, 8, 4}, {1, 9, 7, 8, 4}, {1, 4, 6, 8, 4},
+	    {1, 4, 17, 8, 4}, {1, 4, 7, 1, 4}, {1, 4, 7, 9, 4}, {1, 4, 7, 8, 1}, {1, 4, 7, 8, 9}};
+
+	for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+		expect(!passo_core_reset(&core, &bad[i]), "parameters out of range are refused");
+	for (size_t i = 0; i < sizeof builds / sizeof *builds; i++) {
+		expect(passo_core_reset(&core, &builds[i]), "the core is reset");
+		rest(10);
+		if (builds[i].tick_log2 < 10)
+			move_every_channel(PASSO_PROFILE_SIGMOID);
+		if (builds[i].tick_log2 < 10)
+			move_every_channel(PASSO_PROFILE_JERK);
+		for (unsigned channel = 0; channel < builds[i].channels && channel < 2u; channel++)
+			fault_every_way(channel);
+		send_rubbish(200);
+		rest(100000);
+	}
+	puts("ok");
+	return 0;
+}

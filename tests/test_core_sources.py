@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: MIT
+"""The model's sources: warnings, sanitizers, and what they do without."""
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+from passo.toolchain import environment, paths
+
+STRICT = ["-std=c11", "-Wall", "-Wextra", "-Wconversion", "-Werror"]
+SANITIZED = ["-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"]
+SOURCES = sorted(paths.c_model.glob("passo_*.c"))
+# What a compiler may call by itself on any target.
+ALLOWED = {"memcpy", "memset", "memmove", "memcmp"}
+
+
+def compile_c(*arguments: object) -> None:
+    """Call the compiler."""
+    subprocess.run(["gcc", *map(str, arguments)], env=environment(), check=True)
+
+
+def test_a_scenario_runs_clean_under_sanitizers(tmp_path: Path) -> None:
+    """Moves, holds, every kind of stop and rubbish on the wire: no fault, and the answers of the contract."""
+    program = tmp_path / "scenario"
+    scenario = paths.tests / "core_scenario.c"
+    compile_c(*STRICT, *SANITIZED, f"-I{paths.c_model}", scenario, *SOURCES, "-o", program)
+    done = subprocess.run([program], capture_output=True, text=True, timeout=300)
+    assert (done.returncode, done.stderr, done.stdout) == (0, "", "ok\n")
+
+
+@pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.stem)
+def test_no_floating_point_and_no_heap(source: Path, tmp_path: Path) -> None:
+    """It compiles without floating-point registers, and calls nothing but itself and the compiler's helpers."""
+    code = re.sub(r"/\*.*?\*/|//[^\n]*", "", source.read_text(), flags=re.S)
+    assert not re.search(r"\b(float|double|malloc|calloc|realloc|free|alloca)\b", code)
+    made = tmp_path / "object.o"
+    compile_c(*STRICT, "-O2", "-fno-stack-protector", "-c", f"-I{paths.c_model}", source, "-o", made)
+    done = subprocess.run(["nm", "--undefined-only", "--format=posix", made], capture_output=True, text=True)
+    names = {line.split()[0] for line in done.stdout.splitlines()} - {"_GLOBAL_OFFSET_TABLE_"}
+    assert {name for name in names if not name.startswith("passo_")} <= ALLOWED
