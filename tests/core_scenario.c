@@ -180,8 +180,9 @@ static void fault_every_way(unsigned channel)
 		const uint32_t cause[] = {PASSO_CAUSE_STOP, PASSO_CAUSE_ABORT, PASSO_CAUSE_STOP, PASSO_CAUSE_STEP_OVERRUN,
 		    PASSO_CAUSE_LINE_UNDERRUN};
 
-		expect(write_word((uint16_t)(base + PASSO_CHANNEL_AXIS_BASE + PASSO_AXIS_STEP_TIMING), way == 3 ? 0xFFFFFFFFu : 0u)
+		expect(write_word((uint16_t)(base + PASSO_CHANNEL_AXIS_BASE + PASSO_AXIS_STEP_TIMING), way == 3 ? 0x03E803E8u : 0u)
 		           == PASSO_VERDICT_OK, "the pins are set");
+		expect(write_word(PASSO_ADDRESS_RUN, 0) == PASSO_VERDICT_OK, "nothing starts yet");
 		expect(push_line(channel, &pushed) == PASSO_VERDICT_OK, "a line is taken");
 		expect(push_ramp(channel, &jump) == PASSO_VERDICT_OK, "a jump is taken");
 		expect(push_ramp(channel, &cruise) == PASSO_VERDICT_OK, "a cruise is taken");

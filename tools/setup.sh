@@ -29,8 +29,14 @@ flock 9
 # (pod2usage comes with it) and the compiler under the name c++.
 tools="iverilog:iverilog c++:g++ make:make pod2usage:perl git:git"
 
+# Headers that Verilator's writer of FST waves includes.
+headers="lz4.h:liblz4-dev zlib.h:zlib1g-dev"
+
 missing_tools() {
-    local tool
+    local tool header
+    for header in $headers; do
+        [ -e "/usr/include/${header%%:*}" ] || echo "${header##*:}"
+    done
     for tool in $tools; do
         command -v "${tool%%:*}" >/dev/null || echo "${tool##*:}"
     done
