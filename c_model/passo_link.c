@@ -78,12 +78,9 @@ static void give_verdict(struct passo_link *link, bool incomplete)
 	}
 }
 
-/* The word on the bus is dealt with: on to the next one. */
 static void next_word(struct passo_link *link, enum passo_link_step step_after_last)
 {
 	link->index++;
-	if (!link->bus.push)
-		link->bus.address = (link->bus.address + 1u) & 0xFFFu;
 	if (link->index == length_of(link->header))
 		link->step = step_after_last;
 }
@@ -108,7 +105,8 @@ void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wi
 	if (was.stage_low)
 		link->payload[link->index & 63u] = was.bus.data;
 
-	link->bus.frame = link->bus.check = link->bus.write = link->bus.read = false;
+	link->bus.frame = link->bus.write = link->bus.read = false;
+	link->bus.check = was.stage_high;
 	link->answer_due = was.bus.check;
 	link->crc_restart = link->crc_start = false;
 	link->stage_high = false;
@@ -117,6 +115,8 @@ void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wi
 
 	if (was.answer_due && link->verdict == PASSO_VERDICT_OK)
 		link->verdict = answer;
+	if ((was.bus.check || was.bus.write) && !was.bus.push)
+		link->bus.address = (was.bus.address + 1u) & 0xFFFu;
 
 	switch (was.step) {
 	case PASSO_LINK_HEADER:
@@ -128,7 +128,6 @@ void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wi
 			next_word(link, PASSO_LINK_CRC);
 		if (wires->spi.word_valid) {
 			link->bus.data = wires->word;
-			link->bus.check = true;
 			link->stage_high = true;
 			link->crc_word = wires->word;
 			link->crc_start = true;
@@ -147,12 +146,12 @@ void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wi
 		break;
 	case PASSO_LINK_REPLAY:
 		link->phase = (was.phase + 1u) & 3u;
-		if (was.phase == 2u) {
+		if (was.phase == 2u)
 			link->bus.data = link->payload[link->index];
+		if (was.phase == 3u) {
 			link->bus.write = true;
-		}
-		if (was.phase == 3u)
 			next_word(link, PASSO_LINK_DONE);
+		}
 		break;
 	case PASSO_LINK_READ:
 		if (was.phase != 3u)

@@ -2,8 +2,8 @@
  * The planner: turns what a user knows into one line and a few ramps, in integers.
  *
  * Every plan starts and ends at rest and is exact twice: the line's steps are the wanted steps, and the
- * distance under the ramps is the line's M substeps to within a few thousandths of a substep (passo_plan.c
- * says what limits this), so the time is the whole number of ticks that the ramps say.
+ * distance under the ramps is the line's M substeps to a small part of a substep (passo_plan.c says how
+ * small), so the time is the whole number of ticks that the ramps say.
  */
 #ifndef PASSO_PLAN_H
 #define PASSO_PLAN_H

@@ -45,4 +45,4 @@ def _interpolate(x: int, table: Sequence[int] | None) -> int:
     if table is None or x == ONE:
         return x
     k, f = divmod(x, 1 << 16)
-    return (table[k] << 8) + (((table[k + 1] - table[k]) * f + (1 << 7)) >> 8)
+    return (table[k] << 8) + (((table[k + 1] - table[k]) * f + (1 << 7) - (k >> 7)) >> 8)

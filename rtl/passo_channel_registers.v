@@ -8,49 +8,49 @@
 `default_nettype none
 
 module passo_channel_registers #(
-  parameter AXES            = 4,
-  parameter LINE_QUEUE_LOG2 = 8,
-  parameter RAMP_QUEUE_LOG2 = 4
+    parameter AXES            = 4,
+    parameter LINE_QUEUE_LOG2 = 8,
+    parameter RAMP_QUEUE_LOG2 = 4
 ) (
-  input  wire                     clk,
-  input  wire                     rst,
-  // bus
-  input  wire                     bus_check,
-  input  wire                     bus_write,
-  input  wire                     bus_read,
-  input  wire                     bus_push,
-  input  wire                     select,
-  input  wire [              7:0] bus_address,        // within the channel
-  input  wire [             31:0] bus_data,
-  output reg                      claim,
-  output reg  [              3:0] refusal,
-  output reg  [             31:0] read_data,
-  // blocks
-  output wire                     select_line_queue,  // a push to it
-  output wire                     select_ramp_queue,
-  output wire [         AXES-1:0] select_axis,
-  output wire [         AXES-1:0] select_position,
-  // settings
-  output reg  [             16:0] rate_target,
-  output reg  [             16:0] rate_slew,
-  output reg  [             16:0] stop_slew,
-  output reg  [             31:0] drain_velocity,
-  // commands
-  output reg                      command_stop,
-  output reg                      command_abort,
-  output reg                      command_clear,
-  output reg                      command_zero,
-  // state
-  input  wire                     occupied,
-  input  wire [              2:0] state,
-  input  wire [              2:0] cause,
-  input  wire                     stopping,
-  input  wire [         AXES-1:0] overrun,
-  input  wire [             15:0] drained,
-  input  wire [             16:0] rate,
-  input  wire [             31:0] velocity,           // upper 32 bits
-  input  wire [LINE_QUEUE_LOG2:0] line_room,
-  input  wire [RAMP_QUEUE_LOG2:0] ramp_room
+    input  wire                     clk,
+    input  wire                     rst,
+    // bus
+    input  wire                     bus_check,
+    input  wire                     bus_write,
+    input  wire                     bus_read,
+    input  wire                     bus_push,
+    input  wire                     select,
+    input  wire [              7:0] bus_address,        // within the channel
+    input  wire [             31:0] bus_data,
+    output reg                      claim,
+    output reg  [              3:0] refusal,
+    output reg  [             31:0] read_data,
+    // blocks
+    output reg                      select_line_queue,  // a push to it
+    output reg                      select_ramp_queue,
+    output reg  [         AXES-1:0] select_axis,
+    output reg  [         AXES-1:0] select_position,
+    // settings
+    output reg  [             16:0] rate_target,
+    output reg  [             16:0] rate_slew,
+    output reg  [             16:0] stop_slew,
+    output reg  [             31:0] drain_velocity,
+    // commands
+    output reg                      command_stop,
+    output reg                      command_abort,
+    output reg                      command_clear,
+    output reg                      command_zero,
+    // state
+    input  wire                     occupied,
+    input  wire [              2:0] state,
+    input  wire [              2:0] cause,
+    input  wire                     stopping,
+    input  wire [         AXES-1:0] overrun,
+    input  wire [             15:0] drained,
+    input  wire [             16:0] rate,
+    input  wire [             31:0] velocity,           // upper 32 bits
+    input  wire [LINE_QUEUE_LOG2:0] line_room,
+    input  wire [RAMP_QUEUE_LOG2:0] ramp_room
 );
 
   `include "passo_registers.vh"
@@ -62,17 +62,21 @@ module passo_channel_registers #(
   wire       is_ramp = bus_address == CHANNEL_RAMP;
   wire [7:0] overrun_padded = {{(8 - AXES) {1'b0}}, overrun};
 
-  assign select_line_queue = select & bus_push & is_line;
-  assign select_ramp_queue = select & bus_push & is_ramp;
-
+  // Known a clock before the strobe, because the address is.
   genvar axis;
   generate
     for (axis = 0; axis < AXES; axis = axis + 1) begin : g_axis
       localparam [2:0] NUMBER = axis;
-      assign select_axis[axis]     = select && bus_address[7:3] == {CHANNEL_AXIS_BASE[7:6], NUMBER};
-      assign select_position[axis] = select && bus_address == CHANNEL_POSITION_BASE + {5'd0, NUMBER};
+      always @(posedge clk) begin
+        select_axis[axis]     <= select && bus_address[7:3] == {CHANNEL_AXIS_BASE[7:6], NUMBER};
+        select_position[axis] <= select && bus_address == CHANNEL_POSITION_BASE + {5'd0, NUMBER};
+      end
     end
   endgenerate
+  always @(posedge clk) begin
+    select_line_queue <= select & bus_push & is_line;
+    select_ramp_queue <= select & bus_push & is_ramp;
+  end
 
   // What a check or a read of this address is answered
   reg        known;

@@ -76,15 +76,22 @@ module passo_line_queue #(
     if (rst) write_line <= {(DEPTH_LOG2 + 1) {1'b0}};
   end
 
+  // what is to be said of the word, a clock before it is asked
+  reg full;
+  reg bad_control;
+  reg bad_substeps;
+  reg bad_steps;
+  wire bad_value = index == INDEX_CONTROL ? bad_control : index == INDEX_SUBSTEPS ? bad_substeps : bad_steps;
+
   always @(posedge clk) begin
-    refusal <= VERDICT_OK;
-    if (select && bus_check) begin
-      if (blocked) refusal <= VERDICT_BUSY;
-      else if (room == checked) refusal <= VERDICT_QUEUE_FULL;
-      else if (index == INDEX_CONTROL && (bus_data & ~CONTROL_DEFINED) != 32'd0) refusal <= VERDICT_BAD_VALUE;
-      else if (index == INDEX_SUBSTEPS && bus_data == 32'd0) refusal <= VERDICT_BAD_VALUE;
-      else if (index >= INDEX_STEPS && bus_data > checked_substeps) refusal <= VERDICT_BAD_VALUE;
-    end
+    full         <= room == checked;
+    bad_control  <= (bus_data & ~CONTROL_DEFINED) != 32'd0;
+    bad_substeps <= bus_data == 32'd0;
+    bad_steps    <= bus_data > checked_substeps;
+    refusal      <= !(select && bus_check) ? VERDICT_OK :
+                    blocked                ? VERDICT_BUSY :
+                    full                   ? VERDICT_QUEUE_FULL :
+                    bad_value              ? VERDICT_BAD_VALUE : VERDICT_OK;
   end
 
   // Reading

@@ -12,8 +12,8 @@
 // than the two words that pass at least until the next header is complete. A frame that begins during a replay is ignored.
 //
 // Verdict: BAD_CRC goes before all others, then the first objection; a duplicate is not asked for objections.
-// Latency: header or payload word to bus_check 1 clock, crc word to ack 35 clocks; a target answers one clock after a
-// strobe with claim (the address is mine), refusal and, to bus_read, data.
+// Latency: payload word to bus_check 2 clocks, crc word to ack 35 clocks. Address and data stand on the bus at least a
+// clock before their strobe; a target answers one clock after it with claim (the address is mine), refusal and, to bus_read, data.
 `resetall
 `default_nettype none
 
@@ -139,7 +139,7 @@ module passo_link (
 
   always @(posedge clk) begin
     bus_frame   <= 1'b0;
-    bus_check   <= 1'b0;
+    bus_check   <= stage_high;
     bus_write   <= 1'b0;
     bus_read    <= 1'b0;
     answer_due  <= bus_check;
@@ -150,6 +150,7 @@ module passo_link (
     refused     <= 1'b0;
 
     if (answer_due && verdict == VERDICT_OK) verdict <= answer;
+    if ((bus_check || bus_write) && !bus_push) bus_address <= bus_address + 12'd1;
 
     case (step)
       STEP_HEADER:
@@ -167,15 +168,13 @@ module passo_link (
       end
 
       STEP_PAYLOAD: begin
-        // the word on the bus was checked and buffered under the old address and index
+        // the word on the bus was buffered under the old index
         if (stage_low) begin
           index <= index + 8'd1;
-          if (~bus_push) bus_address <= bus_address + 12'd1;
           if (last_word) step <= STEP_CRC;
         end
         if (word_valid) begin
           bus_data   <= word;
-          bus_check  <= 1'b1;
           stage_high <= 1'b1;
           crc_word   <= word;
           crc_start  <= 1'b1;
@@ -215,13 +214,10 @@ module passo_link (
       STEP_REPLAY: begin
         phase <= phase + 2'd1;
         if (phase == 2'd1) staged_high <= staged;
-        if (phase == 2'd2) begin
-          bus_data  <= {staged_high, staged};
-          bus_write <= 1'b1;
-        end
+        if (phase == 2'd2) bus_data <= {staged_high, staged};
         if (phase == 2'd3) begin
-          index <= index + 8'd1;
-          if (~bus_push) bus_address <= bus_address + 12'd1;
+          bus_write <= 1'b1;
+          index     <= index + 8'd1;
           if (last_word) step <= STEP_DONE;
         end
       end

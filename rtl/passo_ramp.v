@@ -15,7 +15,7 @@
 // tick: with begin_profile). Ramps that run out at
 // speed raise `dry`, one tick ahead; the velocity then stays, and the next ramp is taken whenever it comes. `stall` holds the
 // enable back at the end of a tick until the next velocity is ready: later, never lost; in a tick of 128 clocks there is time
-// for a ramp and one with T = 0 before it.
+// for a ramp and, on a core of one channel, two with T = 0 before it.
 `resetall
 `default_nettype none
 

@@ -38,6 +38,7 @@ module passo_ramp_queue #(
   `include "passo_registers.vh"
 
   localparam [2:0] INDEX_CONTROL = 3'd0;  // v_end(47:32), control
+  localparam [2:0] INDEX_VELOCITY_LOW = 3'd1;
   localparam [2:0] INDEX_STEP_HIGH = 3'd3;  // du(47:32)
   localparam [2:0] INDEX_LAST = 3'd4;
   localparam [15:0] CONTROL_DEFINED = 16'h0037;
@@ -85,18 +86,23 @@ module passo_ramp_queue #(
     end
   end
 
+  // what is to be said of the word, a clock before it is asked
+  reg full;
+  reg bad_control;
+  reg bad_velocity_low;
+  reg bad_step_high;
+  wire bad_value = (index == INDEX_CONTROL && bad_control) || (index == INDEX_VELOCITY_LOW && bad_velocity_low)
+                   || (index == INDEX_STEP_HIGH && bad_step_high);
+
   always @(posedge clk) begin
-    refusal <= VERDICT_OK;
-    if (select && bus_check) begin
-      if (blocked) refusal <= VERDICT_BUSY;
-      else if (room == checked) refusal <= VERDICT_QUEUE_FULL;
-      else if (index == INDEX_CONTROL && (bus_data[15:0] & ~CONTROL_DEFINED) != 16'd0)
-        refusal <= VERDICT_BAD_VALUE;
-      else if (index == INDEX_CONTROL && bus_data[31:16] > VELOCITY_MAX_HIGH) refusal <= VERDICT_BAD_VALUE;
-      else if (index == INDEX_CONTROL + 3'd1 && velocity_is_max && bus_data != 32'd0)
-        refusal <= VERDICT_BAD_VALUE;
-      else if (index == INDEX_STEP_HIGH && bus_data[31:16] != 16'd0) refusal <= VERDICT_BAD_VALUE;
-    end
+    full             <= room == checked;
+    bad_control      <= (bus_data[15:0] & ~CONTROL_DEFINED) != 16'd0 || bus_data[31:16] > VELOCITY_MAX_HIGH;
+    bad_velocity_low <= velocity_is_max && bus_data != 32'd0;
+    bad_step_high    <= bus_data[31:16] != 16'd0;
+    refusal          <= !(select && bus_check) ? VERDICT_OK :
+                        blocked                ? VERDICT_BUSY :
+                        full                   ? VERDICT_QUEUE_FULL :
+                        bad_value              ? VERDICT_BAD_VALUE : VERDICT_OK;
   end
 
   // Reading

@@ -3,10 +3,10 @@
 //
 //   x = round(progress to 2^-24);  mirror: 1 - shape(1 - x)
 //   linear:  s = x
-//   others:  s = t[k] * 2^8 + floor(((t[k+1] - t[k]) * f + 2^7) / 2^8),  k = x(23:16), f = x(15:0), t[256] = 1.0
+//   others:  s = t[k] * 2^8 + floor(((t[k+1] - t[k]) * f + 2^7 - k[7]) / 2^8),  k = x(23:16), f = x(15:0), t[256] = 1.0
 //
-// Promise: `done` is high for one clock when `s` is ready; s stays until the next start. Rounded to nearest (ties up
-// before mirroring). Latency from `start`: linear 3 clocks; others 21 clocks and the wait for the table, at most 2 *
+// Promise: `done` is high for one clock when `s` is ready; s stays until the next start. Rounded to nearest; ties go up
+// in the lower half of the table and down in the upper, which keeps an odd-symmetric bank symmetric. Latency from `start`: linear 3 clocks; others 21 clocks and the wait for the table, at most 2 *
 // CHANNELS + 3. progress, shape and mirror must stay from start to done.
 `resetall
 `default_nettype none
@@ -51,11 +51,11 @@ module passo_shape (
   reg signed  [17:0] rise;
   reg         [15:0] fraction;
   reg signed  [16:0] product_high;
-  reg         [ 8:0] product_low;  // what is below is only for the floor
+  reg         [ 7:0] product_low;  // what is below is only for the floor
   wire signed [17:0] addend = fraction[0] ? rise : 18'sd0;
   wire signed [17:0] product_sum = product_high + addend;
 
-  wire [24:0] interpolated = {1'b0, point, 8'd0} + {product_high, product_low[8:1]} + {24'd0, product_low[0]};
+  wire [24:0] interpolated = {1'b0, point, 8'd0} + {product_high, product_low};
 
   always @(posedge clk) begin
     done <= 1'b0;
@@ -91,14 +91,14 @@ module passo_shape (
             {2'b00, table_point}
         );
         fraction <= x[15:0];
-        product_high <= 17'sd0;
+        product_high <= x[23] ? 17'sd127 : 17'sd128;  // for rounding
         count <= 4'd15;
         step <= STEP_MULTIPLY;
       end
 
       STEP_MULTIPLY: begin
-        {product_high, product_low[8]} <= product_sum;
-        product_low[7:0]               <= product_low[8:1];
+        {product_high, product_low[7]} <= product_sum;
+        product_low[6:0]               <= product_low[7:1];
         fraction                       <= {1'b0, fraction[15:1]};
         count                          <= count - 4'd1;
         if (count == 4'd0) step <= STEP_SUM;

@@ -33,6 +33,9 @@ module passo_spi (
   input  wire [31:0] reply_word
 );
 
+  // Chip select resets bits and words, and it is also a signal: to the toggle, and to clk behind its own synchroniser.
+  /* verilator lint_off SYNCASYNCNET */
+
   // SCLK domain. The toggle only ever changes at the end of a word, so it needs no reset, just a beginning.
   reg [ 4:0] bit_count;
   reg [30:0] receive;
@@ -50,7 +53,7 @@ module passo_spi (
 
   // A word is announced only when the reply to the next one has been taken, on the same falling edge: however slow
   // SCLK is, whoever sees word_valid may change reply_word.
-  always @(negedge spi_sclk) if (bit_count == 5'd0) word_toggle <= ~word_toggle;
+  always @(negedge spi_sclk) if (!spi_cs_n && bit_count == 5'd0) word_toggle <= ~word_toggle;
 
   reg        first_word;
   reg [31:0] send;
@@ -72,16 +75,15 @@ module passo_spi (
   reg [2:0] toggle_sync;
 
   always @(posedge clk) begin
-    // chip select resets the SCLK domain and is also a signal to this one, behind its own synchroniser
-    /* verilator lint_off SYNCASYNCNET */
     select_sync <= {select_sync[1:0], ~spi_cs_n};
-    /* verilator lint_on SYNCASYNCNET */
     toggle_sync <= {toggle_sync[1:0], word_toggle};
     if (rst) begin
       select_sync <= 3'b000;
       toggle_sync <= {3{word_toggle}};
     end
   end
+
+  /* verilator lint_on SYNCASYNCNET */
 
   assign frame_start = select_sync[1] & ~select_sync[2];
   assign frame_end   = ~select_sync[1] & select_sync[2];

@@ -74,7 +74,7 @@ def shape(number: int, mirror: bool, progress: int) -> int:
         k, f = divmod(x, 1 << 16)
         if k == 256:
             return SHAPE_ONE
-        return (table[k] << 8) + ((table[k + 1] - table[k]) * f + 128 >> 8)
+        return (table[k] << 8) + ((table[k + 1] - table[k]) * f + 128 - (k >> 7) >> 8)
 
     return SHAPE_ONE - interpolate(SHAPE_ONE - x) if mirror else interpolate(x)
 

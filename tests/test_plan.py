@@ -169,7 +169,7 @@ def shape(bank: int, x: int) -> int:
     if k == 256:
         return 1 << 24
     t = tables()[bank]
-    return (t[k] << 8) + (((t[k + 1] - t[k]) * f + 128) >> 8)
+    return (t[k] << 8) + (((t[k + 1] - t[k]) * f + 128 - (k >> 7)) >> 8)
 
 
 def velocity_of_tick(ramp: Ramp, tick: int) -> int:
@@ -190,7 +190,7 @@ def velocities_of_ticks(ramp: Ramp, first: int, last: int) -> np.ndarray:
     if ramp.shape:
         t = np.array([*tables()[ramp.shape], 65536], dtype=np.int64)
         k, f = x >> 16, x & 0xFFFF
-        x = (t[k] << 8) + (((t[k + 1] - t[k]) * f + 128) >> 8)
+        x = (t[k] << 8) + (((t[k + 1] - t[k]) * f + 128 - (k >> 7)) >> 8)
     if ramp.mirror:
         x = (1 << 24) - x
     change = ramp.velocity_end - ramp.velocity_start

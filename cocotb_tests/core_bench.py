@@ -1,0 +1,337 @@
+# SPDX-License-Identifier: MIT
+"""The whole core behind its SPI pins, operated by the host's own code and compared with the C model on every clock.
+
+    @core_test
+    def motion_ends(core: Core) -> None:
+        channel = core.channel()
+        channel.lines(Line(100, (100, -50), last=True))
+        channel.ramps(Ramp(ONE // 16, 13), Ramp(0, 13, last=True))
+        channel.start()
+        core.wait_end()
+
+Such a test is plain code in a thread of its own: passo.link and passo.host are not made of coroutines. Simulated time
+passes only in `run`, `transfer` and what is built on them; each of these compares all pins up to now with the model.
+"""
+
+import functools
+import queue
+import threading
+from asyncio import CancelledError
+from collections.abc import Callable, Coroutine, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+import cocotb
+import numpy as np
+from cocotb.handle import HierarchyObject
+from cocotb.triggers import Timer
+from passo import frame
+from passo import registers as r
+from passo.build import Parameters
+from passo.host import Channel
+from passo.link import Link
+from passo.plan import Plan
+
+from cocotb_tests.bench import PERIOD, Clocks, read
+from cocotb_tests.checker import PinTiming, PulseChecker
+from cocotb_tests.core_judge import COLUMNS, Judge
+from cocotb_tests.ramps import ONE, V_MAX, Ramp
+from cocotb_tests.shapes import Shape
+from cocotb_tests.spi import SpiMaster
+
+__all__ = ["ONE", "V_MAX", "Core", "CoreChannel", "Line", "PinTiming", "Ramp", "Shape", "core_test"]
+
+Result = TypeVar("Result")
+LEAD = 4  # clocks from chip select to SCLK and back
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line command: `steps` per axis, with sign, in `substeps`."""
+
+    substeps: int
+    steps: tuple[int, ...]
+    last: bool = False
+    endless: bool = False
+
+    def words(self) -> list[int]:
+        """What is pushed."""
+        directions = sum((n < 0) << axis for axis, n in enumerate(self.steps))
+        return [self.last | self.endless << 1 | directions << 8, self.substeps, *map(abs, self.steps)]
+
+
+def planned(plan: Plan, axes: int) -> tuple[Line, list[Ramp]]:
+    """A plan as commands."""
+    signs = [-1 if plan.line.directions >> axis & 1 else 1 for axis in range(axes)]
+    steps = tuple(sign * plan.line.steps[axis] for axis, sign in enumerate(signs))
+    ramps = [
+        Ramp(c.velocity_end, c.ticks, Shape(c.shape), c.mirror, c.last, c.now, c.progress_step)
+        for c in plan.ramps
+    ]
+    return Line(plan.line.substeps, steps, plan.line.last), ramps
+
+
+class Thread:
+    """Runs plain code, which can wait for coroutines of the test."""
+
+    def __init__(self) -> None:
+        self._requests: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        self._answers: queue.SimpleQueue[tuple[Any, BaseException | None]] = queue.SimpleQueue()
+
+    def wait(self, coroutine: Coroutine[Any, Any, Result]) -> Result:
+        """In the plain code: wait for a coroutine."""
+        self._requests.put(coroutine)
+        result, error = self._answers.get()
+        if error is not None:
+            raise error
+        return result
+
+    async def run(self, body: Callable[[], None]) -> None:
+        """In the test: run the plain code; the simulator stands still except while that waits."""
+
+        def main() -> None:
+            try:
+                body()
+                self._requests.put(None)
+            except BaseException as error:  # whatever it is, the test has to fail
+                self._requests.put(error)
+
+        threading.Thread(target=main, daemon=True).start()
+        while (request := self._requests.get()) is not None:
+            if isinstance(request, BaseException):
+                raise request
+            try:
+                self._answers.put((await request, None))
+            except CancelledError as error:  # the test is over
+                self._answers.put((None, error))
+                raise
+            except Exception as error:
+                self._answers.put((None, error))
+
+
+class Core:
+    """The core as an engine for passo.link; `parameters` are what the core says of itself."""
+
+    def __init__(self, dut: HierarchyObject, thread: Thread, clocks: Clocks) -> None:
+        self.dut, self.clocks = dut, clocks
+        self.clock_hz = 1_280_000  # of plans: 10000 ticks per second
+        self.checker: PulseChecker | None = None
+        self.half_period, self.sclk_high = 2, 2  # clocks
+        self.corrupt: Callable[[list[int]], list[int]] = list  # what the wire makes of a frame
+        self._thread = thread
+        self._spi = SpiMaster(dut, 2 * PERIOD)
+        self._rows: list[np.ndarray] = []
+        self._unread = ""
+        self._judge: Judge | None = None
+
+    @classmethod
+    async def begin(cls, dut: HierarchyObject, thread: Thread) -> "Core":
+        """Reset; return on the falling edge on which reset ends."""
+        dut.sync.value = 0
+        dut.rst.value = 1
+        clocks = Clocks(dut.clk)
+        clocks.start()
+        core = cls(dut, thread, clocks)
+        # chip select resets the SCLK domain by an edge
+        dut.spi_cs_n.value = 0
+        await clocks.wait(4)
+        dut.spi_cs_n.value = 1
+        await clocks.wait(4)
+        core._log = Path("pins.log").open()
+        core._log.seek(0, 2)  # behind the tests before this one
+        dut.rst.value = 0
+        return core
+
+    def identify(self) -> None:
+        """Learn the parameters from the core and start to compare."""
+        self.link = Link(self)
+        (word,) = self.link.read(r.ADDRESS_PARAMETERS, 1)
+        self.parameters = Parameters(
+            channels=word & 0xF,
+            axes=word >> r.PARAMETERS_AXES_LSB & 0xF,
+            tick_log2=word >> r.PARAMETERS_TICK_LOG2_LSB & 0x1F,
+            line_queue_log2=word >> r.PARAMETERS_LINE_QUEUE_LOG2_LSB & 0x1F,
+            ramp_queue_log2=word >> r.PARAMETERS_RAMP_QUEUE_LOG2_LSB & 0x1F,
+        )
+        self.axes, self.tick = self.parameters.axes, 1 << self.parameters.tick_log2
+        self._judge = Judge(self.parameters)
+        self.compare()
+
+    def channel(self, number: int = 0) -> "CoreChannel":
+        """One channel."""
+        return CoreChannel(self, number)
+
+    # time
+
+    @property
+    def clock(self) -> int:
+        """Clocks since reset."""
+        return read(self.dut.clock)
+
+    def transfer(self, mosi: Sequence[int], gap: int = 16) -> list[int]:
+        """One chip select: send the words and return those received, then wait for `gap` clocks."""
+        bits = self.transfer_bits(mosi, 32 * len(mosi), gap)
+        return [int("".join(map(str, bits[n : n + 32])), 2) for n in range(0, len(bits), 32)]
+
+    def transfer_bits(self, mosi: Sequence[int], count: int, gap: int = 16, cut_high: bool = False) -> list[int]:
+        """One chip select of `count` bits."""
+        spi = self._spi
+        spi.period, spi.high = 2 * self.half_period * PERIOD, self.sclk_high * PERIOD
+        spi.lead = spi.trail = LEAD * PERIOD
+        spi.gap = gap * PERIOD
+        words = self.corrupt(list(mosi))
+        received = self._thread.wait(spi.transfer_bits(words, count, cut_high=cut_high))
+        self.compare()
+        return received
+
+    def run(self, clocks: int) -> int:
+        """Let time pass."""
+        if clocks > 0:
+            self._thread.wait(_wait(clocks * PERIOD))
+        self.compare()
+        return clocks
+
+    def run_until(self, condition: Callable[[], object], limit: int, step: int = 32) -> None:
+        """Let time pass until something is so, which is looked at every `step` clocks."""
+
+        async def poll() -> bool:
+            end = self.clocks.now + limit
+            while not condition():
+                if self.clocks.now > end:
+                    return False
+                await Timer(step * PERIOD, "step")
+            return True
+
+        met = self._thread.wait(poll())
+        self.compare()
+        assert met, f"clock {self.clock}: nothing after {limit} clocks"
+
+    def sync(self, level: bool) -> None:
+        """Set the sync input."""
+
+        async def set_pin() -> None:
+            self.dut.sync.value = int(level)
+
+        self._thread.wait(set_pin())
+
+    def is_running(self, channel: int = 0) -> bool:
+        """Level of the pin `running`."""
+        return bool(read(self.dut.running) >> channel & 1)
+
+    def wait_end(self, channel: int = 0, limit: int = 100_000) -> None:
+        """Wait until a motion, which has been started, has begun and ended."""
+        self.run_until(lambda: self.is_running(channel), 2000)
+        self.run_until(lambda: not self.is_running(channel), limit)
+        self.run(16)
+
+    # comparison
+
+    def compare(self) -> None:
+        """Compare all pins up to now with the model; an error tells the first difference."""
+        if self._judge is None:
+            return
+        text = self._unread + self._log.read()
+        whole = text.rfind("\n") + 1
+        self._unread = text[whole:]
+        rows = np.array(text[:whole].split(), dtype=np.uint64).reshape(-1, len(COLUMNS))
+        self._judge.follow(rows, self.clock)
+        self._rows.append(rows)
+
+    def watch(self, *timings: PinTiming) -> PulseChecker:
+        """From now on check these pin timings, one for each axis of the core, or one for all."""
+
+        async def make() -> PulseChecker:
+            return PulseChecker(self.clocks, self.dut.step, self.dut.dir, timings)
+
+        if len(timings) == 1:
+            timings *= self.axes * self.parameters.channels
+        self.finish_watch()
+        self.checker = self._thread.wait(make())
+        return self.checker
+
+    def finish_watch(self) -> None:
+        """No pulse was too short, none is left unfinished."""
+        if self.checker is not None:
+            self.checker.finish()
+            self.checker = None
+
+    def end(self) -> None:
+        """Compare the rest and tell what was compared."""
+        self.run(200)
+        self.finish_watch()
+        self.dut._log.info(f"{self.clock} clocks compared, {self._judge.summary()}")
+
+    # what was recorded; clocks as after whose rising edge a pin shows it
+
+    def changes(self, signal: str, bit: int, since: int = 0) -> list[tuple[int, int]]:
+        """Clocks and levels of all changes of an output pin after a clock."""
+        rows = np.concatenate(self._rows)
+        levels = (rows[:, COLUMNS.index(signal)] >> np.uint64(bit) & np.uint64(1)).astype(np.int8)
+        clocks = rows[:, 0].astype(np.int64) - 1
+        at = np.flatnonzero(np.diff(levels)) + 1
+        return [(int(clocks[i]), int(levels[i])) for i in at if clocks[i] > since]
+
+    def motions(self, channel: int = 0, since: int = 0) -> list[tuple[int, int]]:
+        """Rise and fall of `running` of each motion."""
+        changes = self.changes("running", channel, since)
+        return [(rise[0], fall[0]) for rise, fall in zip(changes[::2], changes[1::2], strict=True)]
+
+    def steps(self, axis: int = 0, since: int = 0) -> list[int]:
+        """Clocks of the rising edges of STEP of bit `axis`."""
+        return [clock for clock, level in self.changes("step", axis, since) if level]
+
+
+class CoreChannel(Channel):
+    """A channel of the core, which takes lines and ramps as tests have them."""
+
+    def __init__(self, core: Core, number: int):
+        super().__init__(core.link, core.parameters, number)
+        self.core = core
+
+    def lines(self, *lines: Line) -> None:
+        """Push lines."""
+        self._push(r.CHANNEL_LINE, [line.words() for line in lines])
+
+    def ramps(self, *ramps: Ramp) -> None:
+        """Push ramps."""
+        self._push(r.CHANNEL_RAMP, [ramp.words() for ramp in ramps])
+
+    def pins(self, *timings: PinTiming) -> None:
+        """Set the pins of all axes, one timing for each or one for all, with the drives enabled."""
+        if len(timings) == 1:
+            timings *= self.core.axes
+        for axis, timing in enumerate(timings):
+            flags = 1 | timing.step_inverted << 1 | timing.direction_inverted << 2 | timing.both_edges << 4
+            address = self.base + r.CHANNEL_AXIS_BASE + axis * r.CHANNEL_AXIS_STRIDE
+            self.link.write(
+                address, flags, timing.high << 16 | timing.low, timing.setup << 16 | timing.hold
+            )
+        self.core.run(8)
+
+    def rest(self) -> None:
+        """Take the permission to start motions away."""
+        self.link.write(r.ADDRESS_RUN, 0)
+
+
+async def _wait(time: int) -> None:
+    await Timer(time, "step")
+
+
+def core_test(body: Callable[[Core], None]) -> Any:
+    """Make a cocotb test of plain code."""
+
+    async def test(dut: HierarchyObject) -> None:
+        thread = Thread()
+        core = await Core.begin(dut, thread)
+
+        def all_of_it() -> None:
+            core.identify()
+            body(core)
+            core.end()
+
+        await thread.run(all_of_it)
+
+    for name in functools.WRAPPER_ASSIGNMENTS:
+        setattr(test, name, getattr(body, name))
+    return cocotb.test(test)

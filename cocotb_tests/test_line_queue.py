@@ -1,0 +1,253 @@
+# SPDX-License-Identifier: MIT
+"""passo_line_queue: order, refusals, room."""
+
+from collections import deque
+from random import Random
+
+import cocotb
+import pytest
+from cocotb.handle import HierarchyObject
+
+from cocotb_tests.bench import Clocks, PushBus, begin, read, rng
+from cocotb_tests.runner import run
+
+DEPTH_LOG2 = 2
+DEPTH = 1 << DEPTH_LOG2
+QUEUE_FULL, BUSY, BAD_VALUE = 7, 8, 9
+LAST, ENDLESS = 1, 2
+
+
+@pytest.mark.parametrize("axes", [1, 8])
+def test_line_queue(simulator: str, axes: int) -> None:
+    run(__name__, "passo_line_queue", {"AXES": axes, "DEPTH_LOG2": DEPTH_LOG2}, simulator)
+
+
+class Queue:
+    """The module under test."""
+
+    def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
+        self.dut, self.clocks = dut, clocks
+        self.axes = len(dut.steps) // 32
+        self.bus = PushBus(dut, clocks)
+
+    @classmethod
+    async def begin(cls, dut: HierarchyObject) -> "Queue":
+        """Reset."""
+        return cls(dut, await begin(dut, *PushBus.INPUTS, "blocked", "take", "release_line", "flush"))
+
+    def random_line(self, random: Random, control: int | None = None) -> list[int]:
+        """Words of a good line."""
+        m = random.choice((1, (1 << 32) - 1, random.randrange(1, 1 << random.randrange(1, 33))))
+        n = [random.choice((0, m, random.randrange(m + 1))) for _ in range(self.axes)]
+        if control is None:
+            control = random.randrange(1 << self.axes) << 8 | random.choice((0, LAST))
+        return [control, m, *n]
+
+    async def strobe(self, name: str) -> None:
+        """Raise an input for a clock."""
+        getattr(self.dut, name).value = 1
+        await self.clocks.wait(1)
+        getattr(self.dut, name).value = 0
+
+    def check_next(self, line: list[int] | None) -> None:
+        """Check the control and the length of the next line, or that there is none."""
+        assert read(self.dut.next_valid) == (line is not None)
+        if line is not None:
+            assert read(self.dut.next_last) == line[0] & 1
+            assert read(self.dut.next_endless) == line[0] >> 1 & 1
+            assert read(self.dut.next_directions) == line[0] >> 8
+            assert read(self.dut.next_minus_substeps) == -line[1] % (1 << 32)
+
+    def check_current(self, line: list[int]) -> None:
+        """Check the step counts of the current line."""
+        steps = read(self.dut.steps)
+        assert [steps >> 32 * axis & 0xFFFFFFFF for axis in range(self.axes)] == line[2:]
+
+    def check_room(self, room: int) -> None:
+        """Check the free places."""
+        assert read(self.dut.room) == room
+
+
+@cocotb.test()
+async def lines_come_out_whole_and_in_order(dut: HierarchyObject) -> None:
+    """Random pushes and takes, for many rounds of the memory; a place is free when the line after it is taken."""
+    random = rng("line queue")
+    queue = await Queue.begin(dut)
+    waiting: deque[list[int]] = deque()
+    current: list[int] | None = None
+    for _ in range(200):
+        await queue.clocks.wait(4)
+        queue.check_room(DEPTH - len(waiting) - (current is not None))
+        queue.check_next(waiting[0] if waiting else None)
+        if current:
+            queue.check_current(current)
+        if random.random() < 0.55:
+            count = random.randrange(1, DEPTH + 1)
+            if read(dut.room) < count:
+                continue
+            lines = [queue.random_line(random) for _ in range(count)]
+            await queue.bus.push([word for line in lines for word in line])
+            waiting.extend(lines)
+        elif waiting:
+            current = waiting.popleft()
+            await queue.strobe("take")
+            await queue.clocks.wait(1)
+            queue.check_current(current)
+            queue.check_next(waiting[0] if waiting else None)
+        elif current:
+            # the motion is over
+            await queue.strobe("release_line")
+            current = None
+
+
+@cocotb.test()
+async def the_next_line_is_ready_two_clocks_after_a_take(dut: HierarchyObject) -> None:
+    """Takes on every second clock, as lines of one substep make them."""
+    random = rng("line queue, fast")
+    queue = await Queue.begin(dut)
+    lines = [queue.random_line(random) for _ in range(DEPTH)]
+    await queue.bus.push([word for line in lines for word in line])
+    for n, line in enumerate(lines):
+        queue.check_next(line)
+        await queue.strobe("take")
+        await queue.clocks.wait(1)
+        queue.check_current(line)
+        queue.check_room(DEPTH - (DEPTH - n))
+    queue.check_next(None)
+
+
+@cocotb.test()
+async def a_check_changes_nothing(dut: HierarchyObject) -> None:
+    """A frame that is checked and not executed, whole or in part, leaves no trace."""
+    random = rng("line queue, check")
+    queue = await Queue.begin(dut)
+    line = queue.random_line(random)
+    for length in range(1, 2 * len(line)):
+        words = (queue.random_line(random) + queue.random_line(random))[:length]
+        await queue.bus.frame()
+        assert set(await queue.bus.check(words)) == {0}
+        assert read(dut.incomplete) == (length % len(line) != 0)
+        queue.check_next(None)
+        queue.check_room(DEPTH)
+    await queue.bus.push(line)
+    await queue.clocks.wait(2)
+    queue.check_next(line)
+    queue.check_room(DEPTH - 1)
+
+
+@cocotb.test()
+async def bad_values_are_refused(dut: HierarchyObject) -> None:
+    """Every reserved control bit, M = 0, N above M, in the first and in the second line of a frame."""
+    random = rng("line queue, values")
+    queue = await Queue.begin(dut)
+    good = queue.random_line(random)
+    bad: list[tuple[int, list[int]]] = []
+    for bit in range(32):
+        line = [1 << bit, 1000, *[1000] * queue.axes]
+        known = bit < 2 or 8 <= bit < 8 + queue.axes
+        bad.append((-1 if known else 0, line))
+    bad.append((1, [0, 0, *[0] * queue.axes]))
+    for axis in range(queue.axes):
+        for m, n in ((1, 2), (0x7FFFFFFF, 0x80000000), (0xFFFFFFFE, 0xFFFFFFFF), (1000, 1001)):
+            line = [0, m, *[m] * queue.axes]
+            line[2 + axis] = n
+            bad.append((2 + axis, line))
+    for at, line in bad:
+        for before in ([], good):
+            await queue.bus.frame()
+            answers = await queue.bus.check(before + line)
+            expected = [0] * len(before + line)
+            if at >= 0:
+                expected[len(before) + at] = BAD_VALUE
+            assert answers == expected, line
+    queue.check_room(DEPTH)
+
+
+@cocotb.test()
+async def a_frame_needs_room_for_all_its_lines(dut: HierarchyObject) -> None:
+    """QUEUE_FULL from the first word of the line that finds no place; what was checked before counts."""
+    random = rng("line queue, room")
+    queue = await Queue.begin(dut)
+    for room in range(DEPTH, -1, -1):
+        queue.check_room(room)
+        lines = [queue.random_line(random) for _ in range(DEPTH + 1)]
+        for _ in range(2):
+            await queue.bus.frame()
+            answers = await queue.bus.check([word for line in lines for word in line])
+            words = room * len(lines[0])
+            assert answers[:words] == [0] * words
+            assert answers[words] == QUEUE_FULL
+        if room:
+            await queue.bus.push(lines[0])
+            await queue.clocks.wait(2)
+
+
+@cocotb.test()
+async def a_stopped_channel_refuses_lines(dut: HierarchyObject) -> None:
+    """BUSY goes before QUEUE_FULL and BAD_VALUE; other registers are no business of the queue."""
+    queue = await Queue.begin(dut)
+    dut.blocked.value = 1
+    await queue.bus.frame()
+    assert set(await queue.bus.check([0, 5, *[5] * queue.axes])) == {BUSY}
+    assert (await queue.bus.check([0xFFFFFFFF]))[0] == BUSY
+    dut.blocked.value = 0
+    dut.select.value = 0
+    dut.bus_data.value = 0xFFFFFFFF
+    for name in ("bus_check", "bus_write"):
+        await queue.strobe(name)
+        assert read(dut.refusal) == 0
+    await queue.clocks.wait(3)
+    queue.check_room(DEPTH)
+    queue.check_next(None)
+
+
+@cocotb.test()
+async def an_endless_line_stays_the_next_until_it_is_released(dut: HierarchyObject) -> None:
+    """It is both current and next for as long as it is taken; release_line gives its place back."""
+    random = rng("line queue, endless")
+    queue = await Queue.begin(dut)
+    endless, after = queue.random_line(random, ENDLESS), queue.random_line(random, LAST)
+    await queue.bus.push(endless + after)
+    for _ in range(5):
+        await queue.clocks.wait(2)
+        queue.check_next(endless)
+        await queue.strobe("take")
+        await queue.clocks.wait(1)
+        queue.check_current(endless)
+        await queue.clocks.wait(2)
+        queue.check_room(DEPTH - 2)
+    await queue.strobe("release_line")
+    await queue.clocks.wait(2)
+    queue.check_next(after)
+    queue.check_room(DEPTH - 1)
+
+
+@cocotb.test()
+async def flush_empties_the_queue(dut: HierarchyObject) -> None:
+    """For as long as it is high whatever is written is dropped; afterwards lines are as good as ever."""
+    random = rng("line queue, flush")
+    queue = await Queue.begin(dut)
+    for taken in range(3):
+        lines = [queue.random_line(random) for _ in range(3)]
+        await queue.bus.push([word for line in lines for word in line])
+        for _ in range(taken):
+            await queue.strobe("take")
+            await queue.clocks.wait(1)
+        dut.flush.value = 1
+        await queue.clocks.wait(2)
+        # a replay that was under way goes on
+        await queue.bus.frame()
+        await queue.bus.write(queue.random_line(random))
+        dut.flush.value = 0
+        await queue.clocks.wait(2)
+        queue.check_next(None)
+        queue.check_room(DEPTH)
+        line = queue.random_line(random)
+        await queue.bus.push(line)
+        await queue.clocks.wait(2)
+        queue.check_next(line)
+        await queue.strobe("take")
+        await queue.clocks.wait(1)
+        queue.check_current(line)
+        await queue.strobe("release_line")
+        await queue.clocks.wait(2)

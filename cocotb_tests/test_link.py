@@ -1,0 +1,470 @@
+# SPDX-License-Identifier: MIT
+"""passo_spi and passo_link: frames through the pins, verdicts, replies, and what reaches the bus."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from random import Random
+
+import cocotb
+from cocotb.handle import HierarchyObject
+from cocotb.triggers import FallingEdge, RisingEdge, Timer
+
+from cocotb_tests.bench import Clocks, Recorder, begin, read, rng
+from cocotb_tests.runner import run
+from cocotb_tests.spi import SpiMaster, crc_of_words
+
+READ, WRITE, PUSH = 1, 2, 3
+PAYLOAD_MAX = 60
+STATUS = 0xA5C3_1E87
+
+MHZ_72 = 13_888  # clock periods in ps
+MHZ_48 = 20_834
+SCLK_18 = 27_778  # half periods of SCLK
+SCLK_9 = 55_556
+
+
+class Verdict(IntEnum):
+    """What became of a frame."""
+
+    OK = 0
+    DUPLICATE = 1
+    BAD_CRC = 2
+    BAD_LENGTH = 3
+    BAD_OPERATION = 4
+    UNKNOWN_ADDRESS = 5
+    READ_ONLY = 6
+    QUEUE_FULL = 7
+    BUSY = 8
+    BAD_VALUE = 9
+
+
+def test_link(simulator: str) -> None:
+    run(__name__, "passo_link_top", simulator=simulator)
+
+
+def header(operation: int, sequence: int, length: int, address: int) -> int:
+    """First word of a frame."""
+    return operation << 28 | sequence << 20 | length << 12 | address
+
+
+def acknowledge(sequence: int, verdict: int) -> int:
+    """Last word of the reply to a write or push."""
+    upper = sequence << 8 | verdict
+    return upper << 16 | upper ^ 0xFFFF
+
+
+def frame(operation: int, sequence: int, address: int, payload: Sequence[int], length: int | None = None) -> list[int]:
+    """A frame with its CRC and the words that fetch the reply; of a read only the length of `payload` counts."""
+    length = len(payload) if length is None else length
+    request = [header(operation, sequence, length, address), *([] if operation == READ else payload)]
+    trailing = [0] * (2 + (len(payload) if operation == READ else 0))
+    return [*request, crc_of_words(request), *trailing]
+
+
+@dataclass(frozen=True)
+class Write:
+    """A word that was executed."""
+
+    address: int
+    data: int
+    push: bool
+
+
+class Target:
+    """All registers behind the bus: writable where `refusals` has no entry and `known` has the address.
+
+    Answers as the RTL's targets do: one clock after the strobe, for one clock, 0 otherwise.
+    """
+
+    def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
+        self.dut, self.clocks = dut, clocks
+        self.known = set(range(0x100))
+        self.values: dict[int, int] = {}
+        self.refusals: dict[int, Verdict] = {}
+        self.checks: list[Write] = []
+        self.writes: list[Write] = []
+        self.reads: list[int] = []
+        self._last_write = -4
+        for strobe in ("check", "write", "read"):
+            cocotb.start_soon(self._serve(strobe))
+
+    async def _serve(self, strobe: str) -> None:
+        rises = RisingEdge(getattr(self.dut, f"bus_{strobe}"))
+        fall = FallingEdge(self.dut.clk)
+        while True:
+            await rises
+            await fall
+            address = read(self.dut.bus_address)
+            access = Write(address, read(self.dut.bus_data), bool(read(self.dut.bus_push)))
+            if strobe == "write":
+                assert self.clocks.now - self._last_write >= 4
+                self._last_write = self.clocks.now
+                self.writes.append(access)
+                continue
+            await fall
+            self.dut.bus_claim.value = address in self.known
+            self.dut.bus_refusal.value = self.refusals.get(address, 0)
+            if strobe == "read":
+                self.reads.append(address)
+                self.dut.bus_read_data.value = self.values.get(address, 0)
+            else:
+                self.checks.append(access)
+            await fall
+            self.dut.bus_claim.value = 0
+            self.dut.bus_refusal.value = 0
+            self.dut.bus_read_data.value = 0
+
+
+class Bench:
+    """The modules under test between an SPI master and a target."""
+
+    def __init__(self, dut: HierarchyObject, clocks: Clocks, spi: SpiMaster) -> None:
+        self.dut, self.clocks, self.spi = dut, clocks, spi
+        self.target = Target(dut, clocks)
+        self.refused = Recorder(clocks, dut.refused)
+        self.words = Recorder(clocks, dut.word_valid)
+        self.sequence = 0
+
+    @classmethod
+    async def begin(cls, dut: HierarchyObject, half_period: int = SCLK_18, period: int = MHZ_72, **spi: int) -> "Bench":
+        """Reset."""
+        master = SpiMaster(dut, half_period, **spi)
+        inputs = ("bus_claim", "bus_refusal", "bus_read_data", "bus_incomplete")
+        dut.status.value = STATUS
+        return cls(dut, await begin(dut, *inputs, period=period), master)
+
+    @property
+    def refusals(self) -> int:
+        """How often `refused` was raised."""
+        return len(self.refused.clocks_where(bool, self.clocks.now))
+
+    def next_sequence(self) -> int:
+        """A sequence number that was not the last one."""
+        self.sequence = (self.sequence + 1) % 256
+        return self.sequence
+
+    async def shift(self, random: Random) -> None:
+        """Wait for a random part of a clock, so that frames meet all phases."""
+        await Timer(random.randrange(1, 2 * self.clocks.period), "step")
+
+    async def request(
+        self, operation: int, address: int, payload: Sequence[int], sequence: int | None = None
+    ) -> Verdict:
+        """Send a write or push; check the shape of the reply, what is checked and what executed; return the verdict."""
+        sequence = self.next_sequence() if sequence is None else sequence
+        return await self.send(frame(operation, sequence, address, payload))
+
+    async def send(self, words: Sequence[int]) -> Verdict:
+        """Send a frame of which the header is to be believed; like `request`."""
+        target = self.target
+        writes, checks, refusals = len(target.writes), len(target.checks), self.refusals
+        operation, sequence = words[0] >> 28, words[0] >> 20 & 0xFF
+        length, address = words[0] >> 12 & 0xFF, words[0] & 0xFFF
+        reply = await self.spi.transfer(words)
+        assert reply[:-1] == [STATUS] * (len(words) - 1), [hex(word) for word in reply]
+        verdict = Verdict(reply[-1] >> 16 & 0xFF)
+        assert reply[-1] == acknowledge(sequence, verdict)
+        payload = words[1 : 1 + length]
+        push = operation == PUSH
+        accesses = [Write(address if push else address + n, word, push) for n, word in enumerate(payload)]
+        assert target.checks[checks:] == accesses
+        assert target.writes[writes:] == (accesses if verdict == Verdict.OK else [])
+        counted = verdict not in (Verdict.OK, Verdict.DUPLICATE)
+        assert self.refusals - refusals == counted
+        if counted:
+            assert read(self.dut.refused_verdict) == verdict
+        return verdict
+
+    async def read_registers(self, address: int, length: int) -> list[int] | Verdict:
+        """Send a read; return the data, or the verdict when it was refused; checks the reply's CRC."""
+        sequence = self.next_sequence()
+        words = frame(READ, sequence, address, [0] * length)
+        writes, reads, refusals = len(self.target.writes), len(self.target.reads), self.refusals
+        reply = await self.spi.transfer(words)
+        assert len(self.target.writes) == writes
+        assert reply[:3] == [STATUS] * 3
+        data, crc = reply[3:-1], reply[-1]
+        if crc == crc_of_words([words[0], *data]):
+            assert self.target.reads[reads:] == list(range(address, address + length))
+            assert self.refusals == refusals
+            return data
+        verdict = Verdict(crc >> 16 & 0xFF)
+        assert set(reply[3:]) == {acknowledge(sequence, verdict)}, [hex(word) for word in reply]
+        assert self.refusals == refusals + 1
+        return verdict
+
+
+@cocotb.test()
+@cocotb.parametrize(
+    rate=[
+        (MHZ_72, SCLK_18),
+        (MHZ_72, 2 * MHZ_72),  # edges of both clocks together
+        (MHZ_72, 30_000),
+        (MHZ_48, SCLK_9),
+        (MHZ_72, 111_111),
+        (MHZ_72, 500_000),
+        (MHZ_72, 1_300_000),
+        (10_000, SCLK_18),
+    ]
+)
+async def frames_pass_at_every_rate(dut: HierarchyObject, rate: tuple[int, int]) -> None:
+    """Writes, pushes and reads of any data from four clocks per SCLK up to very slow ones, at all phases."""
+    random = rng(f"link, {rate}")
+    period, half_period = rate
+    bench = await Bench.begin(dut, half_period, period)
+    for _ in range(25 if half_period < 200_000 else 4):
+        for operation in (WRITE, PUSH, READ):
+            await bench.shift(random)
+            length = random.choice((1, 1, 2, 3, 5))
+            address = random.randrange(0x100 - length)
+            payload = [random.choice((0, 0xFFFFFFFF, 1, 1 << 31, random.randrange(1 << 32))) for _ in range(length)]
+            if operation == READ:
+                bench.target.values = {address + n: word for n, word in enumerate(payload)}
+                assert await bench.read_registers(address, length) == payload
+            else:
+                assert await bench.request(operation, address, payload) == Verdict.OK
+                assert read(dut.last_sequence) == bench.sequence
+
+
+@cocotb.test()
+@cocotb.parametrize(high=[12_000, 40_000])
+async def sclk_need_not_be_symmetric(dut: HierarchyObject, high: int) -> None:
+    """SCLK high for a fifth or for most of its period."""
+    random = rng("link, duty")
+    bench = await Bench.begin(dut, SCLK_18, high=high)
+    for _ in range(20):
+        await bench.shift(random)
+        bench.target.values = {n: random.randrange(1 << 32) for n in range(2)}
+        assert await bench.read_registers(0, 2) == [bench.target.values[n] for n in range(2)]
+        assert await bench.request(WRITE, 3, [random.randrange(1 << 32)]) == Verdict.OK
+
+
+@cocotb.test()
+async def frames_may_follow_each_other_closely(dut: HierarchyObject) -> None:
+    """Shortest times around chip select, and the longest frames: the replay is over before the next header is in."""
+    random = rng("link, close")
+    bench = await Bench.begin(dut, SCLK_18, lead=3 * MHZ_72 + 100, trail=MHZ_72 + 100, gap=3 * MHZ_72)
+    for length in (PAYLOAD_MAX, PAYLOAD_MAX, 1, PAYLOAD_MAX, 59, 1, 1):
+        payload = [random.randrange(1 << 32) for _ in range(length)]
+        assert await bench.request(random.choice((WRITE, PUSH)), 0x10, payload) == Verdict.OK
+
+
+@cocotb.test()
+async def the_longest_read_is_coherent(dut: HierarchyObject) -> None:
+    """60 registers in one frame, with their CRC."""
+    random = rng("link, long read")
+    bench = await Bench.begin(dut)
+    bench.target.values = {n: random.randrange(1 << 32) for n in range(0x100)}
+    assert await bench.read_registers(0x20, PAYLOAD_MAX) == [bench.target.values[0x20 + n] for n in range(60)]
+
+
+@cocotb.test()
+async def the_status_is_that_of_chip_select(dut: HierarchyObject) -> None:
+    """It may change afterwards: all words of a frame show the same one."""
+    bench = await Bench.begin(dut)
+    for status in (0x80000000, 0xBFFFFFFF, 0x9234ABCD):
+        dut.status.value = status
+
+        async def change(status: int = status) -> None:
+            await Timer(40 * MHZ_72, "step")
+            dut.status.value = ~status & 0x3FFFFFFF | 0x80000000
+
+        cocotb.start_soon(change())
+        sequence = bench.next_sequence()
+        reply = await bench.spi.transfer(frame(WRITE, sequence, 5, [1, 2]))
+        assert reply == [status] * 5 + [acknowledge(sequence, Verdict.OK)]
+
+
+@cocotb.test()
+@cocotb.parametrize(length=[0, 61, 64, 65, 128, 255])
+async def a_bad_length_is_refused(dut: HierarchyObject, length: int) -> None:
+    """0 or above 60 words, in every operation; nothing is executed and the next frame is fine."""
+    bench = await Bench.begin(dut)
+    for operation in (WRITE, PUSH):
+        words = frame(operation, bench.next_sequence(), 0, list(range(length)))
+        assert await bench.send(words) == Verdict.BAD_LENGTH
+        assert await bench.request(WRITE, 0, [1]) == Verdict.OK
+    assert await bench.read_registers(0, length) == Verdict.BAD_LENGTH
+    assert await bench.request(WRITE, 0, [1]) == Verdict.OK
+
+
+@cocotb.test()
+async def an_unknown_operation_is_refused(dut: HierarchyObject) -> None:
+    """All codes but 1, 2 and 3."""
+    bench = await Bench.begin(dut)
+    for operation in (0, *range(4, 16)):
+        words = frame(operation, bench.next_sequence(), 0, [1, 2])
+        assert await bench.send(words) == Verdict.BAD_OPERATION
+
+
+@cocotb.test()
+async def the_first_objection_counts(dut: HierarchyObject) -> None:
+    """Objections to any word refuse the whole frame; an address that nobody claims is one of them."""
+    random = rng("link, objections")
+    bench = await Bench.begin(dut)
+    for _ in range(40):
+        length = random.randrange(1, 7)
+        kinds = [random.choice((None, None, *list(Verdict)[3:])) for _ in range(length)]
+        bench.target.known = {0x10 + n for n, kind in enumerate(kinds) if kind != Verdict.UNKNOWN_ADDRESS}
+        bench.target.refusals = {0x10 + n: kind for n, kind in enumerate(kinds) if kind}
+        expected = next((kind for kind in kinds if kind), Verdict.OK)
+        assert await bench.request(WRITE, 0x10, [random.randrange(1 << 32) for _ in range(length)]) == expected
+        # nobody claims: whatever the refusal lines say
+        read_verdict = await bench.read_registers(0x10, length)
+        assert read_verdict == (kinds[0] or [0] * length)
+
+
+@cocotb.test()
+async def a_payload_that_is_not_whole_is_a_bad_length(dut: HierarchyObject) -> None:
+    """The queues say that the last line or ramp is not complete; an objection to a word goes before."""
+    bench = await Bench.begin(dut)
+    dut.bus_incomplete.value = 1
+    assert await bench.request(PUSH, 0x20, [1, 2, 3]) == Verdict.BAD_LENGTH
+    bench.target.refusals = {0x20: Verdict.QUEUE_FULL}
+    assert await bench.request(PUSH, 0x20, [1, 2, 3]) == Verdict.QUEUE_FULL
+    dut.bus_incomplete.value = 0
+    bench.target.refusals = {}
+    assert await bench.request(PUSH, 0x20, [1, 2, 3]) == Verdict.OK
+
+
+@cocotb.test()
+async def holes_read_as_zero_behind_the_first_address(dut: HierarchyObject) -> None:
+    """Only the first address of a read has to be there."""
+    bench = await Bench.begin(dut)
+    bench.target.known = {0x10, 0x12}
+    bench.target.values = {0x10: 0x11111111, 0x12: 0x22222222}
+    assert await bench.read_registers(0x10, 4) == [0x11111111, 0, 0x22222222, 0]
+    assert await bench.read_registers(0x11, 3) == Verdict.UNKNOWN_ADDRESS
+    assert await bench.read_registers(0x12, 1) == [0x22222222]
+
+
+@cocotb.test()
+async def a_frame_is_executed_only_once(dut: HierarchyObject) -> None:
+    """The sequence number of the last executed frame is a duplicate; refused frames and reads do not count."""
+    bench = await Bench.begin(dut)
+    # nothing was executed yet: even the sequence number that the register shows after reset is new
+    assert await bench.request(WRITE, 1, [5], sequence=0) == Verdict.OK
+    assert await bench.request(WRITE, 1, [5], sequence=0) == Verdict.DUPLICATE
+    assert await bench.request(PUSH, 2, [6, 7], sequence=0) == Verdict.DUPLICATE
+    bench.target.refusals = {9: Verdict.BAD_VALUE}
+    assert await bench.request(WRITE, 9, [1], sequence=0) == Verdict.DUPLICATE
+    assert await bench.request(WRITE, 9, [1], sequence=1) == Verdict.BAD_VALUE
+    bench.target.refusals = {}
+    assert await bench.request(WRITE, 9, [1], sequence=1) == Verdict.OK
+    bench.sequence = 0
+    assert await bench.read_registers(1, 2) == [0, 0]
+    assert bench.sequence == 1 and read(dut.last_sequence) == 1
+    assert await bench.request(WRITE, 9, [1], sequence=0) == Verdict.OK
+    words = frame(WRITE, 0, 9, [1])
+    words[-3] ^= 1
+    assert await bench.send(words) == Verdict.BAD_CRC
+    words = frame(0, 0, 9, [1])
+    assert await bench.send(words) == Verdict.BAD_OPERATION
+
+
+@cocotb.test()
+async def a_wrong_bit_anywhere_executes_nothing(dut: HierarchyObject) -> None:
+    """One bit of header, payload or CRC is wrong: BAD_CRC before all other verdicts, and the next frame is fine."""
+    random = rng("link, bits")
+    bench = await Bench.begin(dut)
+    bench.target.refusals = {0x33: Verdict.BUSY}
+    for n in range(60):
+        words = frame(random.choice((WRITE, PUSH)), bench.next_sequence(), random.choice((0x20, 0x33)), [1, 2, n])
+        at, bit = random.randrange(len(words) - 2), random.randrange(32)
+        if at == 0 and (bit >= 28 or 12 <= bit < 20):
+            # another operation or length: the rest is read differently, but never executed
+            words[0] ^= 1 << bit
+            writes = len(bench.target.writes)
+            await bench.spi.transfer(words)
+            assert len(bench.target.writes) == writes
+        else:
+            words[at] ^= 1 << bit
+            assert await bench.send(words) == Verdict.BAD_CRC
+        assert await bench.request(WRITE, 1, [n]) == Verdict.OK
+    # a read with a wrong CRC is answered by its ack
+    words = frame(READ, 7, 0, [0, 0])
+    words[1] ^= 1 << 9
+    reply = await bench.spi.transfer(words)
+    assert reply[3:] == [acknowledge(7, Verdict.BAD_CRC)] * 3
+
+
+@cocotb.test()
+async def a_frame_that_is_cut_off_executes_nothing(dut: HierarchyObject) -> None:
+    """Chip select rises after any number of bits, SCLK low or high: no execution, and the next frame is fine."""
+    random = rng("link, cut")
+    bench = await Bench.begin(dut)
+    words = frame(PUSH, bench.next_sequence(), 4, [0xFFFFFFFF, 0, 0x55555555])
+    whole = 32 * (len(words) - 2)  # all that is executed
+    for count in [0, 1, 2, 31, 32, 33, whole - 33, whole - 1, *(random.randrange(whole) for _ in range(60))]:
+        for cut_high in (False, True):
+            await bench.shift(random)
+            received = len(bench.words.clocks_where(bool, bench.clocks.now))
+            await bench.spi.transfer_bits(words, count, cut_high=cut_high)
+            assert bench.target.writes == [], f"after {count} bits"
+            received = len(bench.words.clocks_where(bool, bench.clocks.now)) - received
+            # the word that ends with chip select instead of SCLK may count or not
+            assert received in ({count // 32} if count % 32 or not cut_high else {count // 32, count // 32 - 1})
+    assert await bench.send(words) == Verdict.OK
+
+
+@cocotb.test()
+async def an_impatient_master_gets_its_frame_executed_exactly_once(dut: HierarchyObject) -> None:
+    """Chip select rises around the verdict, on every clock: the repeated frame is a duplicate or executed, never lost."""
+    random = rng("link, impatient")
+    bench = await Bench.begin(dut)
+    for clocks in range(1, 70):
+        sequence = bench.next_sequence()
+        words = frame(WRITE, sequence, 8, [clocks, sequence])
+        bench.spi.trail = clocks * MHZ_72 + random.randrange(MHZ_72)
+        bench.spi.gap = 12 * MHZ_72
+        writes = len(bench.target.writes)
+        await bench.spi.transfer(words[:-2])
+        await Timer(100 * MHZ_72, "step")
+        executed = len(bench.target.writes) - writes
+        assert executed in (0, 2)
+        bench.spi.trail = 2 * SCLK_18
+        reply = await bench.spi.transfer(words)
+        assert reply[-1] == acknowledge(sequence, Verdict.DUPLICATE if executed else Verdict.OK), clocks
+        assert len(bench.target.writes) - writes == 2, f"chip select rose {clocks} clocks after the crc"
+
+
+@cocotb.test()
+async def a_frame_that_begins_during_a_replay_is_ignored(dut: HierarchyObject) -> None:
+    """A master that does not wait for the ack of a long frame: the next one is not executed, and not acknowledged."""
+    bench = await Bench.begin(dut, SCLK_18)
+    long = frame(PUSH, bench.next_sequence(), 8, list(range(PAYLOAD_MAX)))
+    bench.spi.trail, bench.spi.gap = 60 * MHZ_72, 3 * MHZ_72
+    await bench.spi.transfer(long[:-2])
+    bench.spi.trail, bench.spi.gap = 2 * SCLK_18, 8 * SCLK_18
+    reply = await bench.spi.transfer(frame(WRITE, bench.next_sequence(), 9, [7]))
+    assert reply == [STATUS] * 5
+    assert [write.data for write in bench.target.writes] == list(range(PAYLOAD_MAX))
+    assert await bench.request(WRITE, 9, [7], sequence=bench.sequence) == Verdict.OK
+
+
+@cocotb.test()
+async def garbage_executes_nothing(dut: HierarchyObject) -> None:
+    """Random bits of any number, headers of good frames among them, and good frames in between."""
+    random = rng("link, garbage")
+    bench = await Bench.begin(dut)
+    for _ in range(60):
+        words = [random.choice((0, 0xFFFFFFFF, random.randrange(1 << 32))) for _ in range(random.randrange(1, 9))]
+        if random.random() < 0.5:
+            words[0] = header(random.choice((READ, WRITE, PUSH)), random.randrange(256), random.randrange(1, 6), 4)
+        writes = len(bench.target.writes)
+        await bench.spi.transfer_bits(words, random.choice((32 * len(words), random.randrange(32 * len(words)))))
+        assert len(bench.target.writes) == writes
+        await bench.shift(random)
+        assert await bench.request(WRITE, 2, [random.randrange(1 << 32)]) == Verdict.OK
+
+
+@cocotb.test()
+async def other_slaves_on_the_bus_do_not_matter(dut: HierarchyObject) -> None:
+    """SCLK and MOSI move while chip select is high: no word arrives, the next frame is fine."""
+    bench = await Bench.begin(dut)
+    for bits in (1, 31, 32, 33, 100):
+        received = len(bench.words.clocks_where(bool, bench.clocks.now))
+        await bench.spi.clock_others(bits)
+        assert len(bench.words.clocks_where(bool, bench.clocks.now)) == received
+        assert await bench.request(WRITE, 2, [bits]) == Verdict.OK
