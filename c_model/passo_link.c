@@ -90,6 +90,7 @@ void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wi
 	const struct passo_link was = {
 	    .step = link->step,
 	    .phase = link->phase,
+	    .frame_waits = link->frame_waits,
 	    .answer_due = link->answer_due,
 	    .crc_restart = link->crc_restart,
 	    .crc_start = link->crc_start,
@@ -150,7 +151,8 @@ void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wi
 			link->bus.data = link->payload[link->index];
 		if (was.phase == 3u) {
 			link->bus.write = true;
-			next_word(link, PASSO_LINK_DONE);
+			next_word(link, was.frame_waits || wires->spi.frame_start ? PASSO_LINK_HEADER : PASSO_LINK_DONE);
+			link->crc_restart = link->step != PASSO_LINK_REPLAY;
 		}
 		break;
 	case PASSO_LINK_READ:
@@ -193,6 +195,7 @@ void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wi
 
 	if (wires->spi.frame_start)
 		link->reply_word = wires->status;
+	link->frame_waits = was.step == PASSO_LINK_REPLAY && (was.frame_waits || wires->spi.frame_start) && !wires->spi.frame_end;
 	if (was.step != PASSO_LINK_REPLAY && !(was.step == PASSO_LINK_VERDICT && crc_idle)) {
 		if (wires->spi.frame_end)
 			link->step = PASSO_LINK_IDLE;

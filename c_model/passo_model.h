@@ -83,6 +83,7 @@ struct passo_link {
 	uint8_t phase;
 	uint32_t header;
 	uint8_t index;
+	bool frame_waits;
 	bool sequence_known;
 	uint8_t last_sequence;
 	uint8_t verdict;

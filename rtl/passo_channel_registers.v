@@ -8,49 +8,49 @@
 `default_nettype none
 
 module passo_channel_registers #(
-    parameter AXES            = 4,
-    parameter LINE_QUEUE_LOG2 = 8,
-    parameter RAMP_QUEUE_LOG2 = 4
+  parameter AXES            = 4,
+  parameter LINE_QUEUE_LOG2 = 8,
+  parameter RAMP_QUEUE_LOG2 = 4
 ) (
-    input  wire                     clk,
-    input  wire                     rst,
-    // bus
-    input  wire                     bus_check,
-    input  wire                     bus_write,
-    input  wire                     bus_read,
-    input  wire                     bus_push,
-    input  wire                     select,
-    input  wire [              7:0] bus_address,        // within the channel
-    input  wire [             31:0] bus_data,
-    output reg                      claim,
-    output reg  [              3:0] refusal,
-    output reg  [             31:0] read_data,
-    // blocks
-    output reg                      select_line_queue,  // a push to it
-    output reg                      select_ramp_queue,
-    output reg  [         AXES-1:0] select_axis,
-    output reg  [         AXES-1:0] select_position,
-    // settings
-    output reg  [             16:0] rate_target,
-    output reg  [             16:0] rate_slew,
-    output reg  [             16:0] stop_slew,
-    output reg  [             31:0] drain_velocity,
-    // commands
-    output reg                      command_stop,
-    output reg                      command_abort,
-    output reg                      command_clear,
-    output reg                      command_zero,
-    // state
-    input  wire                     occupied,
-    input  wire [              2:0] state,
-    input  wire [              2:0] cause,
-    input  wire                     stopping,
-    input  wire [         AXES-1:0] overrun,
-    input  wire [             15:0] drained,
-    input  wire [             16:0] rate,
-    input  wire [             31:0] velocity,           // upper 32 bits
-    input  wire [LINE_QUEUE_LOG2:0] line_room,
-    input  wire [RAMP_QUEUE_LOG2:0] ramp_room
+  input  wire                     clk,
+  input  wire                     rst,
+  // bus
+  input  wire                     bus_check,
+  input  wire                     bus_write,
+  input  wire                     bus_read,
+  input  wire                     bus_push,
+  input  wire                     select,
+  input  wire [              7:0] bus_address,        // within the channel
+  input  wire [             31:0] bus_data,
+  output reg                      claim,
+  output reg  [              3:0] refusal,
+  output reg  [             31:0] read_data,
+  // blocks
+  output reg                      select_line_queue,  // a push to it
+  output reg                      select_ramp_queue,
+  output reg  [         AXES-1:0] select_axis,
+  output reg  [         AXES-1:0] select_position,
+  // settings
+  output reg  [             16:0] rate_target,
+  output reg  [             16:0] rate_slew,
+  output reg  [             16:0] stop_slew,
+  output reg  [             31:0] drain_velocity,
+  // commands
+  output reg                      command_stop,
+  output reg                      command_abort,
+  output reg                      command_clear,
+  output reg                      command_zero,
+  // state
+  input  wire                     occupied,
+  input  wire [              2:0] state,
+  input  wire [              2:0] cause,
+  input  wire                     stopping,
+  input  wire [         AXES-1:0] overrun,
+  input  wire [             15:0] drained,
+  input  wire [             16:0] rate,
+  input  wire [             31:0] velocity,           // upper 32 bits
+  input  wire [LINE_QUEUE_LOG2:0] line_room,
+  input  wire [RAMP_QUEUE_LOG2:0] ramp_room
 );
 
   `include "passo_registers.vh"

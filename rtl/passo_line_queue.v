@@ -77,17 +77,17 @@ module passo_line_queue #(
   end
 
   // what is to be said of the word, a clock before it is asked
-  reg full;
-  reg bad_control;
-  reg bad_substeps;
-  reg bad_steps;
+  reg  full;
+  reg  bad_control;
+  reg  bad_substeps;
+  reg  bad_steps;
   wire bad_value = index == INDEX_CONTROL ? bad_control : index == INDEX_SUBSTEPS ? bad_substeps : bad_steps;
 
   always @(posedge clk) begin
-    full         <= room == checked;
-    bad_control  <= (bus_data & ~CONTROL_DEFINED) != 32'd0;
+    full <= room == checked;
+    bad_control <= (bus_data & ~CONTROL_DEFINED) != 32'd0;
     bad_substeps <= bus_data == 32'd0;
-    bad_steps    <= bus_data > checked_substeps;
+    bad_steps <= bus_data > checked_substeps;
     refusal      <= !(select && bus_check) ? VERDICT_OK :
                     blocked                ? VERDICT_BUSY :
                     full                   ? VERDICT_QUEUE_FULL :

@@ -9,7 +9,7 @@
 // Promise: a frame is executed whole or not at all, and only once. Each payload word goes to the bus as it arrives, only to
 // be checked by its target (`bus_check`), and into a buffer. When the CRC is right, nobody objected and the sequence
 // number is new, the buffer is replayed to the bus (`bus_write`), one word every 4 clocks: at most 240 clocks, less
-// than the two words that pass at least until the next header is complete. A frame that begins during a replay is ignored.
+// than the two words that pass at least until the next header is complete. A frame may begin during a replay.
 //
 // Verdict: BAD_CRC goes before all others, then the first objection; a duplicate is not asked for objections.
 // Latency: payload word to bus_check 2 clocks, crc word to ack 35 clocks. Address and data stand on the bus at least a
@@ -68,6 +68,7 @@ module passo_link (
   wire [ 7:0] sequence_number = header[27:20];
   wire [ 7:0] length = header[19:12];
   reg  [ 7:0] index;  // payload word
+  reg         frame_waits;  // a frame has begun during the replay
 
   wire header_is_read = word[31:28] == OPERATION_READ;
   wire header_is_known = header_is_read | word[31:28] == OPERATION_WRITE | word[31:28] == OPERATION_PUSH;
@@ -218,7 +219,10 @@ module passo_link (
         if (phase == 2'd3) begin
           bus_write <= 1'b1;
           index     <= index + 8'd1;
-          if (last_word) step <= STEP_DONE;
+          if (last_word) begin
+            step        <= (frame_waits || frame_start) ? STEP_HEADER : STEP_DONE;
+            crc_restart <= 1'b1;
+          end
         end
       end
 
@@ -257,6 +261,7 @@ module passo_link (
     endcase
 
     if (frame_start) reply_word <= status;
+    frame_waits <= step == STEP_REPLAY && (frame_waits || frame_start) && !frame_end;
     // chip select does not come between a verdict and what it promises
     if (step != STEP_REPLAY && !(step == STEP_VERDICT && crc_idle)) begin
       if (frame_end) step <= STEP_IDLE;
@@ -274,6 +279,7 @@ module passo_link (
       sequence_known <= 1'b0;
       header         <= 32'd0;
       answer_due     <= 1'b0;
+      frame_waits    <= 1'b0;
       reply_word     <= 32'd0;
     end
   end

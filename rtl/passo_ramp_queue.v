@@ -95,10 +95,10 @@ module passo_ramp_queue #(
                    || (index == INDEX_STEP_HIGH && bad_step_high);
 
   always @(posedge clk) begin
-    full             <= room == checked;
-    bad_control      <= (bus_data[15:0] & ~CONTROL_DEFINED) != 16'd0 || bus_data[31:16] > VELOCITY_MAX_HIGH;
+    full <= room == checked;
+    bad_control <= (bus_data[15:0] & ~CONTROL_DEFINED) != 16'd0 || bus_data[31:16] > VELOCITY_MAX_HIGH;
     bad_velocity_low <= velocity_is_max && bus_data != 32'd0;
-    bad_step_high    <= bus_data[31:16] != 16'd0;
+    bad_step_high <= bus_data[31:16] != 16'd0;
     refusal          <= !(select && bus_check) ? VERDICT_OK :
                         blocked                ? VERDICT_BUSY :
                         full                   ? VERDICT_QUEUE_FULL :
