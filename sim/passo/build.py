@@ -57,15 +57,22 @@ class Parameters:
 
 def planner_library() -> Path:
     """The planner and the frame codec: what runs on a microcontroller as well."""
-    sources = ("passo_plan.c", "passo_math.c", "passo_frame.c")
-    return _c_library("planner", [paths.c_model / name for name in sources])
+    return _c_library("planner", _host_sources())
 
 
 def model_library() -> Path:
     """The engine on the C model, for any parameters."""
-    return _c_library(
-        "model", [*sorted(paths.c_model.glob("*.c")), ENGINE / "engine.c", ENGINE / "engine_model.c"]
-    )
+    sources = sorted({*paths.c_model.glob("*.c")} - {*_host_sources()})
+    return _c_library("model", [*sources, ENGINE / "engine.c", ENGINE / "engine_model.c"])
+
+
+def _host_sources() -> list[Path]:
+    """Sources of the planner and the frame codec; the other half of c_model/ is the model of the core."""
+    return [
+        *sorted(paths.c_model.glob("passo_plan*.c")),
+        paths.c_model / "passo_math.c",
+        paths.c_model / "passo_frame.c",
+    ]
 
 
 def rtl_library(parameters: Parameters, waves: bool = False) -> Path:
