@@ -15,10 +15,12 @@ void passo_crc_clock(struct passo_crc *crc, bool restart, bool start, uint32_t w
 				crc->crc = crc->crc << 1 ^ ((crc->crc >> 31) != 0u ? POLYNOMIAL : 0u);
 		}
 	}
+	if (restart) {
+		crc->crc = 0xFFFFFFFFu;
+		crc->busy = 0;
+	}
 	if (start) {
 		crc->word = word;
 		crc->busy = 32;
 	}
-	if (restart)
-		crc->crc = 0xFFFFFFFFu;
 }

@@ -101,6 +101,7 @@ void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wi
 	    .bus = link->bus,
 	};
 	const bool crc_idle = was.crc.busy == 0u && !was.crc_start;
+	const bool frame_goes_on = (was.frame_waits || wires->spi.frame_start) && !wires->spi.frame_end && !wires->spi.word_valid;
 	const uint8_t answer = wires->response.claim ? wires->response.refusal : PASSO_VERDICT_UNKNOWN_ADDRESS;
 
 	if (was.stage_low)
@@ -151,7 +152,7 @@ void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wi
 			link->bus.data = link->payload[link->index];
 		if (was.phase == 3u) {
 			link->bus.write = true;
-			next_word(link, was.frame_waits || wires->spi.frame_start ? PASSO_LINK_HEADER : PASSO_LINK_DONE);
+			next_word(link, frame_goes_on ? PASSO_LINK_HEADER : PASSO_LINK_DONE);
 			link->crc_restart = link->step != PASSO_LINK_REPLAY;
 		}
 		break;
@@ -195,7 +196,7 @@ void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wi
 
 	if (wires->spi.frame_start)
 		link->reply_word = wires->status;
-	link->frame_waits = was.step == PASSO_LINK_REPLAY && (was.frame_waits || wires->spi.frame_start) && !wires->spi.frame_end;
+	link->frame_waits = was.step == PASSO_LINK_REPLAY && frame_goes_on;
 	if (was.step != PASSO_LINK_REPLAY && !(was.step == PASSO_LINK_VERDICT && crc_idle)) {
 		if (wires->spi.frame_end)
 			link->step = PASSO_LINK_IDLE;

@@ -36,7 +36,10 @@ module passo_crc (
       count     <= 5'd31;
       busy      <= 1'b1;
     end
-    if (restart) crc <= 32'hFFFF_FFFF;
+    if (restart) begin
+      crc  <= 32'hFFFF_FFFF;
+      busy <= start;
+    end
     if (rst) busy <= 1'b0;
   end
 

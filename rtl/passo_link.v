@@ -9,7 +9,8 @@
 // Promise: a frame is executed whole or not at all, and only once. Each payload word goes to the bus as it arrives, only to
 // be checked by its target (`bus_check`), and into a buffer. When the CRC is right, nobody objected and the sequence
 // number is new, the buffer is replayed to the bus (`bus_write`), one word every 4 clocks: at most 240 clocks, less
-// than the two words that pass at least until the next header is complete. A frame may begin during a replay.
+// than the two words that pass at least until the next header is complete. A frame may begin during a replay; it is
+// ignored if its header is complete before the replay has ended.
 //
 // Verdict: BAD_CRC goes before all others, then the first objection; a duplicate is not asked for objections.
 // Latency: payload word to bus_check 2 clocks, crc word to ack 35 clocks. Address and data stand on the bus at least a
@@ -63,12 +64,13 @@ module passo_link (
   reg [1:0] phase;  // clocks within a replayed or fetched word
 
   // header fields
-  reg  [31:0] header;
-  wire [ 3:0] operation = header[31:28];
-  wire [ 7:0] sequence_number = header[27:20];
-  wire [ 7:0] length = header[19:12];
-  reg  [ 7:0] index;  // payload word
-  reg         frame_waits;  // a frame has begun during the replay
+  reg [31:0] header;
+  wire [3:0] operation = header[31:28];
+  wire [7:0] sequence_number = header[27:20];
+  wire [7:0] length = header[19:12];
+  reg [7:0] index;  // payload word
+  reg frame_waits;  // a frame has begun during the replay
+  wire frame_goes_on = (frame_waits || frame_start) && !frame_end && !word_valid;  // has its header to come
 
   wire header_is_read = word[31:28] == OPERATION_READ;
   wire header_is_known = header_is_read | word[31:28] == OPERATION_WRITE | word[31:28] == OPERATION_PUSH;
@@ -220,7 +222,7 @@ module passo_link (
           bus_write <= 1'b1;
           index     <= index + 8'd1;
           if (last_word) begin
-            step        <= (frame_waits || frame_start) ? STEP_HEADER : STEP_DONE;
+            step        <= frame_goes_on ? STEP_HEADER : STEP_DONE;
             crc_restart <= 1'b1;
           end
         end
@@ -261,7 +263,7 @@ module passo_link (
     endcase
 
     if (frame_start) reply_word <= status;
-    frame_waits <= step == STEP_REPLAY && (frame_waits || frame_start) && !frame_end;
+    frame_waits <= step == STEP_REPLAY && frame_goes_on;
     // chip select does not come between a verdict and what it promises
     if (step != STEP_REPLAY && !(step == STEP_VERDICT && crc_idle)) begin
       if (frame_end) step <= STEP_IDLE;
