@@ -110,7 +110,7 @@ static bool motion_settled(const struct passo_channel *channel, const struct pas
 		return false;
 	switch (motion->state) {
 	case PASSO_STATE_IDLE:
-		return !motion->running
+		return !motion->running && !motion->startable
 		       && !(inputs->run && channel->line_queue.next_valid && passo_ramp_queue_valid(&channel->ramp_queue));
 	case PASSO_STATE_PREPARE:
 		return !motion->running && !channel->ramp.ready;

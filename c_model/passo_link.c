@@ -24,7 +24,7 @@ bool passo_link_quiet(const struct passo_link *link)
 {
 	const struct passo_bus *bus = &link->bus;
 	const bool waits = link->step != PASSO_LINK_VERDICT && link->step != PASSO_LINK_REPLAY && link->step != PASSO_LINK_READ;
-	return waits && link->crc.busy == 0u && !link->crc_start && !link->crc_restart && !link->answer_due
+	return waits && link->crc.busy == 0u && !link->crc_start && link->crc_idle_q && !link->crc_restart && !link->answer_due
 	       && !link->stage_high && !link->stage_low && !link->refused
 	       && !bus->frame && !bus->check && !bus->write && !bus->read;
 }
@@ -101,6 +101,7 @@ void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wi
 	    .bus = link->bus,
 	};
 	const bool crc_idle = was.crc.busy == 0u && !was.crc_start;
+	const bool verdict_due = crc_idle && link->crc_idle_q;
 	const bool frame_goes_on = (was.frame_waits || wires->spi.frame_start) && !wires->spi.frame_end && !wires->spi.word_valid;
 	const uint8_t answer = wires->response.claim ? wires->response.refusal : PASSO_VERDICT_UNKNOWN_ADDRESS;
 
@@ -114,6 +115,7 @@ void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wi
 	link->stage_high = false;
 	link->stage_low = was.stage_high;
 	link->refused = false;
+	link->crc_idle_q = crc_idle;
 
 	if (was.answer_due && link->verdict == PASSO_VERDICT_OK)
 		link->verdict = answer;
@@ -143,7 +145,7 @@ void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wi
 		}
 		break;
 	case PASSO_LINK_VERDICT:
-		if (crc_idle)
+		if (verdict_due)
 			give_verdict(link, wires->incomplete);
 		break;
 	case PASSO_LINK_REPLAY:
@@ -197,7 +199,7 @@ void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wi
 	if (wires->spi.frame_start)
 		link->reply_word = wires->status;
 	link->frame_waits = was.step == PASSO_LINK_REPLAY && frame_goes_on;
-	if (was.step != PASSO_LINK_REPLAY && !(was.step == PASSO_LINK_VERDICT && crc_idle)) {
+	if (was.step != PASSO_LINK_REPLAY && !(was.step == PASSO_LINK_VERDICT && verdict_due)) {
 		if (wires->spi.frame_end)
 			link->step = PASSO_LINK_IDLE;
 		if (wires->spi.frame_start) {

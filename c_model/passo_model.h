@@ -88,7 +88,7 @@ struct passo_link {
 	uint8_t last_sequence;
 	uint8_t verdict;
 	bool answer_due;
-	bool crc_restart, crc_start;
+	bool crc_restart, crc_start, crc_idle_q;
 	uint32_t crc_word;
 	struct passo_crc crc;
 	bool stage_high, stage_low;
@@ -232,6 +232,7 @@ struct passo_motion {
 	bool stopping;
 	uint16_t drained;
 	uint8_t count;
+	bool startable;
 	bool running;
 };
 
@@ -271,7 +272,7 @@ struct passo_channel_wires {
 	bool line_push, ramp_push;
 	bool occupied, moving, counting, drain;
 	bool ramp_valid;
-	bool prepare, begin_profile;
+	bool startable, prepare, begin_profile;
 	bool advance, tick, next, ramp_ended;
 	bool substep_taken, line_done, take;
 	bool overrun;

@@ -35,7 +35,8 @@ void passo_motion_wires(const struct passo_channel *channel, const struct passo_
 	wires->moving = state == PASSO_STATE_RUN || state == PASSO_STATE_SETTLE || state == PASSO_STATE_DRAIN;
 	wires->counting = state == PASSO_STATE_RUN || state == PASSO_STATE_DRAIN;
 	wires->drain = state == PASSO_STATE_DRAIN;
-	wires->prepare = state == PASSO_STATE_IDLE && inputs->run && channel->line_queue.next_valid && wires->ramp_valid;
+	wires->startable = state == PASSO_STATE_IDLE && inputs->run && channel->line_queue.next_valid && wires->ramp_valid;
+	wires->prepare = state == PASSO_STATE_IDLE && motion->startable;
 	wires->begin_profile = (state == PASSO_STATE_PREPARE && channel->ramp.ready && !inputs->wait_sync)
 	                       || (state == PASSO_STATE_ARMED && inputs->sync_edge);
 	wires->finished = (state == PASSO_STATE_SETTLE && motion->count == SETTLE_LAST && (line_over || channel->line.endless))
@@ -52,6 +53,7 @@ void passo_motion_clock(
 	const bool dry = channel->ramp.dry && !channel->line.endless;
 	const struct passo_channel_registers *registers = &channel->registers;
 
+	motion->startable = wires->startable;
 	motion->count = (count + 1u) & 7u;
 	if (wires->prepare)
 		motion->state = PASSO_STATE_PREPARE;

@@ -8,12 +8,11 @@
 //
 // Promise: a frame is executed whole or not at all, and only once. Each payload word goes to the bus as it arrives, only to
 // be checked by its target (`bus_check`), and into a buffer. When the CRC is right, nobody objected and the sequence
-// number is new, the buffer is replayed to the bus (`bus_write`), one word every 4 clocks: at most 240 clocks, less
-// than the two words that pass at least until the next header is complete. A frame may begin during a replay; it is
-// ignored if its header is complete before the replay has ended.
+// number is new, the buffer is replayed to the bus (`bus_write`), one word every 4 clocks. A frame may begin meanwhile; it is
+// ignored if its header is complete before the replay has ended, which takes a master that leaves out trailing words.
 //
 // Verdict: BAD_CRC goes before all others, then the first objection; a duplicate is not asked for objections.
-// Latency: payload word to bus_check 2 clocks, crc word to ack 35 clocks. Address and data stand on the bus at least a
+// Latency: payload word to bus_check 2 clocks, crc word to ack 36 clocks. Address and data stand on the bus at least a
 // clock before their strobe; a target answers one clock after it with claim (the address is mine), refusal and, to bus_read, data.
 `resetall
 `default_nettype none
@@ -95,6 +94,9 @@ module passo_link (
   wire [31:0] crc;
   wire        crc_busy;
   wire        crc_idle = ~crc_busy & ~crc_start;
+  reg         crc_idle_q;
+  reg         crc_wrong;
+  wire        verdict_due = crc_idle & crc_idle_q;  // crc_wrong is known
 
   passo_crc u_crc (
     .clk    (clk),
@@ -129,7 +131,7 @@ module passo_link (
   assign stage_half = phase[0];
 
   wire [ 3:0] verdict_final =
-      crc != 32'd0                          ? VERDICT_BAD_CRC :
+      crc_wrong                             ? VERDICT_BAD_CRC :
       verdict != VERDICT_OK                 ? verdict :
       bus_incomplete                        ? VERDICT_BAD_LENGTH : VERDICT_OK;
 
@@ -151,6 +153,8 @@ module passo_link (
     stage_high  <= 1'b0;
     stage_low   <= stage_high;
     refused     <= 1'b0;
+    crc_idle_q  <= crc_idle;
+    crc_wrong   <= crc != 32'd0;
 
     if (answer_due && verdict == VERDICT_OK) verdict <= answer;
     if ((bus_check || bus_write) && !bus_push) bus_address <= bus_address + 12'd1;
@@ -192,7 +196,7 @@ module passo_link (
       end
 
       STEP_VERDICT:
-      if (crc_idle) begin
+      if (verdict_due) begin
         reply_word      <= acknowledge(sequence_number, verdict_final);
         refused         <= verdict_final != VERDICT_OK && verdict_final != VERDICT_DUPLICATE;
         refused_verdict <= verdict_final;
@@ -265,7 +269,7 @@ module passo_link (
     if (frame_start) reply_word <= status;
     frame_waits <= step == STEP_REPLAY && frame_goes_on;
     // chip select does not come between a verdict and what it promises
-    if (step != STEP_REPLAY && !(step == STEP_VERDICT && crc_idle)) begin
+    if (step != STEP_REPLAY && !(step == STEP_VERDICT && verdict_due)) begin
       if (frame_end) step <= STEP_IDLE;
       if (frame_start) begin
         step        <= STEP_HEADER;

@@ -14,44 +14,44 @@
 `default_nettype none
 
 module passo_motion (
-  input  wire        clk,
-  input  wire        rst,
-  // host
-  input  wire        run,
-  input  wire        wait_sync,
-  input  wire        sync_edge,
-  input  wire        command_stop,   // strobes
-  input  wire        command_abort,
-  input  wire        command_clear,
-  output reg  [ 2:0] state,
-  output reg  [ 2:0] cause,
-  output reg         stopping,
-  output reg  [15:0] drained,
-  // timescale
-  output wire        occupied,       // a motion is prepared or runs
-  output wire        moving,
-  output wire        counting,       // enabled clocks count: the profile runs, or substeps are drained
-  input  wire        rate_is_zero,
-  // ramp and path
-  input  wire        ramp_valid,
-  input  wire        ramp_ready,
-  input  wire        ramp_ended,
-  input  wire        ramp_dry,
-  output wire        prepare,        // strobe: first line, first velocity
-  output wire        begin_profile,  // strobe
-  output wire        drain,
-  // line
-  input  wire        line_valid,
-  input  wire        line_ended,
-  input  wire        line_endless,
-  input  wire        line_underrun,
-  input  wire        substep_made,
-  // axes
-  input  wire        step_overrun,
-  // queues
-  output wire        release_line,   // strobe: the motion is over
-  output wire        stopped,        // whoever works for the motion forgets it
-  output reg         running
+    input  wire        clk,
+    input  wire        rst,
+    // host
+    input  wire        run,
+    input  wire        wait_sync,
+    input  wire        sync_edge,
+    input  wire        command_stop,   // strobes
+    input  wire        command_abort,
+    input  wire        command_clear,
+    output reg  [ 2:0] state,
+    output reg  [ 2:0] cause,
+    output reg         stopping,
+    output reg  [15:0] drained,
+    // timescale
+    output wire        occupied,       // a motion is prepared or runs
+    output wire        moving,
+    output wire        counting,       // enabled clocks count: the profile runs, or substeps are drained
+    input  wire        rate_is_zero,
+    // ramp and path
+    input  wire        ramp_valid,
+    input  wire        ramp_ready,
+    input  wire        ramp_ended,
+    input  wire        ramp_dry,
+    output wire        prepare,        // strobe: first line, first velocity
+    output wire        begin_profile,  // strobe
+    output wire        drain,
+    // line
+    input  wire        line_valid,
+    input  wire        line_ended,
+    input  wire        line_endless,
+    input  wire        line_underrun,
+    input  wire        substep_made,
+    // axes
+    input  wire        step_overrun,
+    // queues
+    output wire        release_line,   // strobe: the motion is over
+    output wire        stopped,        // whoever works for the motion forgets it
+    output reg         running
 );
 
   `include "passo_registers.vh"
@@ -61,11 +61,11 @@ module passo_motion (
 
   reg [2:0] count;
   reg [2:0] soft_cause;
+  reg startable;
 
   assign occupied = state != STATE_IDLE && !stopped;
   assign moving   = state == STATE_RUN || state == STATE_SETTLE || state == STATE_DRAIN;
 
-  wire startable = run & line_valid & ramp_valid;
   wire finished = (state == STATE_SETTLE && count == SETTLE_LAST && (line_ended || line_endless))
                   || (state == STATE_DRAIN && line_ended);
   wire dry = ramp_dry & ~line_endless;
@@ -85,6 +85,7 @@ module passo_motion (
   assign stopped = state == STATE_STOPPED;
 
   always @(posedge clk) begin
+    startable <= state == STATE_IDLE && run && line_valid && ramp_valid;
     count <= count + 3'd1;
     case (state)
       STATE_IDLE:    if (startable) state <= STATE_PREPARE;
@@ -125,6 +126,7 @@ module passo_motion (
       cause    <= CAUSE_NONE;
       stopping <= 1'b0;
       drained  <= 16'd0;
+      startable <= 1'b0;
       running  <= 1'b0;
     end
   end
