@@ -115,6 +115,7 @@ static bool motion_settled(const struct passo_channel *channel, const struct pas
 	case PASSO_STATE_PREPARE:
 		return !motion->running && !channel->ramp.ready;
 	case PASSO_STATE_ARMED:
+		return !motion->running && inputs->wait_sync;
 	case PASSO_STATE_STOPPED:
 		return !motion->running;
 	case PASSO_STATE_RUN:
@@ -380,6 +381,7 @@ static struct passo_channel_inputs inputs_of(const struct passo_core *core, unsi
 	    .tables = &core->tables,
 	    .bus = &core->link.bus,
 	    .run = (core->registers.run >> channel & 1u) != 0u,
+	    .wait_sync = (core->registers.wait_sync >> channel & 1u) != 0u,
 	};
 }
 

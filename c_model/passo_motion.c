@@ -37,10 +37,8 @@ void passo_motion_wires(const struct passo_channel *channel, const struct passo_
 	wires->drain = state == PASSO_STATE_DRAIN;
 	wires->startable = state == PASSO_STATE_IDLE && inputs->run && channel->line_queue.next_valid && wires->ramp_valid;
 	wires->prepare = state == PASSO_STATE_IDLE && motion->startable;
-	wires->begin_profile = (state == PASSO_STATE_PREPARE && channel->ramp.ready && !inputs->wait_sync)
-	                       || (state == PASSO_STATE_ARMED && inputs->sync_edge);
-	wires->finished = (state == PASSO_STATE_SETTLE && motion->count == SETTLE_LAST && (line_over || channel->line.endless))
-	                  || (state == PASSO_STATE_DRAIN && line_over);
+	wires->begin_profile = state == PASSO_STATE_ARMED && (inputs->sync_edge || !inputs->wait_sync);
+	wires->finished = state == PASSO_STATE_SETTLE && motion->count == SETTLE_LAST && (line_over || channel->line.endless);
 	wires->stop_now = stop_now(channel, wires) && !wires->stopped;
 	wires->cause = cause_now(channel, wires);
 }
@@ -63,6 +61,8 @@ void passo_motion_clock(
 		motion->state = PASSO_STATE_SETTLE;
 	if (state == PASSO_STATE_SETTLE && count == SETTLE_LAST)
 		motion->state = PASSO_STATE_DRAIN;
+	if (state == PASSO_STATE_DRAIN && channel->line.ended)
+		motion->state = PASSO_STATE_SETTLE;
 	if (wires->begin_profile)
 		motion->state = wires->ramp_ended ? PASSO_STATE_SETTLE : PASSO_STATE_RUN;
 	if (wires->finished)
@@ -72,7 +72,8 @@ void passo_motion_clock(
 
 	if (state == PASSO_STATE_RUN && count == START_LAST)
 		motion->count = START_LAST;
-	if (wires->begin_profile || (state == PASSO_STATE_RUN && wires->ramp_ended))
+	if (wires->begin_profile || (state == PASSO_STATE_RUN && wires->ramp_ended)
+	    || (state == PASSO_STATE_DRAIN && channel->line.ended))
 		motion->count = 0;
 
 	if (wires->drain && channel->path.substep && !channel->line.ended)

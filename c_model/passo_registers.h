@@ -37,7 +37,8 @@
 #define PASSO_PARAMETERS_RAMP_QUEUE_LOG2_LSB  24u
 #define PASSO_PARAMETERS_RAMP_QUEUE_LOG2_BITS 5u
 
-/* Core: Run. One bit per channel, all in one register so that several channels start on the same clock. */
+/* Core: Run. One bit per channel, all in one register: channels that are ARMED start on the same clock when
+ * one write clears their WAIT_SYNC. */
 #define PASSO_ADDRESS_RUN              0x003u
 #define PASSO_RUN_RUN_LSB              0u
 #define PASSO_RUN_RUN_BITS             8u
@@ -287,7 +288,7 @@ enum passo_verdict {
 enum passo_state {
 	PASSO_STATE_IDLE    = 0, /* No motion. */
 	PASSO_STATE_PREPARE = 1, /* First line and first velocity are being made ready. */
-	PASSO_STATE_ARMED   = 2, /* Ready, waits for the sync input. */
+	PASSO_STATE_ARMED   = 2, /* Ready to start; waits while WAIT_SYNC is set. */
 	PASSO_STATE_RUN     = 3, /* The profile runs. */
 	PASSO_STATE_SETTLE  = 4, /* The profile has ended, its last substeps reach the pins. */
 	PASSO_STATE_DRAIN   = 5, /* Missing substeps of the LAST line are made at drain_velocity. */

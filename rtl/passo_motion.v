@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Motion: when a channel starts, ends and stops, and why.
 //
-//   IDLE -> PREPARE -> (ARMED) -> RUN -> SETTLE -> (DRAIN) -> IDLE         anything -> STOPPED -> IDLE
+//   IDLE -> PREPARE -> ARMED -> RUN -> SETTLE -> (DRAIN -> SETTLE) -> IDLE         anything -> STOPPED -> IDLE
 //
-// Promise: a motion starts when `run` is set and a line and a ramp are there. It ends when its profile has ended and its line has
-// ended (or is ENDLESS); what the line still lacks is drained and counted. A stop is soft (the rate goes to 0 first)
-// for COMMAND.STOP and RAMP_UNDERRUN, else at once. On the same clock ABORT wins, then STEP_OVERRUN, LINE_UNDERRUN,
-// a soft stop; a stop wins over the end of the motion.
+// Promise: a motion is prepared when `run` is set and a line and a ramp are there. It starts from ARMED at once or,
+// while wait_sync is set, with a sync edge; so channels that are ARMED start together when one write clears their
+// wait_sync. It ends when its profile has ended and its line has ended (or is ENDLESS); what the line still lacks is
+// drained and counted. A stop is soft (the rate goes to 0 first) for COMMAND.STOP and RAMP_UNDERRUN, else at once. On
+// the same clock ABORT wins, then STEP_OVERRUN, LINE_UNDERRUN, a soft stop; a stop wins over the end of the motion.
 //
-// `running` is the motion as seen at the STEP pins: it rises 7 clocks after RUN begins and falls one clock after SETTLE, so that it
-// is high for as many clocks as the profile has.
+// `running` is the motion as seen at the STEP pins: it rises 7 clocks after RUN begins and falls one clock after
+// SETTLE, so that it is high for as many clocks as the profile has, and until the last drained step has been made.
 `resetall
 `default_nettype none
 
@@ -66,19 +67,19 @@ module passo_motion (
   assign occupied = state != STATE_IDLE && !stopped;
   assign moving   = state == STATE_RUN || state == STATE_SETTLE || state == STATE_DRAIN;
 
-  wire finished = (state == STATE_SETTLE && count == SETTLE_LAST && (line_ended || line_endless))
-                  || (state == STATE_DRAIN && line_ended);
+  wire settled = state == STATE_SETTLE && count == SETTLE_LAST;
+  wire finished = settled && (line_ended || line_endless);
   wire dry = ramp_dry & ~line_endless;
 
   assign prepare = state == STATE_IDLE && startable;
-  assign begin_profile = (state == STATE_PREPARE && ramp_ready && !wait_sync) || (state == STATE_ARMED && sync_edge);
+  assign begin_profile = state == STATE_ARMED && (sync_edge || !wait_sync);
   assign counting = state == STATE_RUN || state == STATE_DRAIN;
   assign drain = state == STATE_DRAIN;
   assign release_line = finished;
 
   wire stop_now = command_abort | (moving & (step_overrun | line_underrun))
                   | (stopping & (rate_is_zero | finished | ~moving));
-  wire [2:0] cause_now = command_abort              ? CAUSE_ABORT :
+  wire [2:0] cause_now = command_abort           ? CAUSE_ABORT :
                          moving & step_overrun   ? CAUSE_STEP_OVERRUN :
                          moving & line_underrun  ? CAUSE_LINE_UNDERRUN : soft_cause;
 
@@ -90,18 +91,19 @@ module passo_motion (
     case (state)
       STATE_IDLE:    if (startable) state <= STATE_PREPARE;
       STATE_PREPARE: if (ramp_ready) state <= STATE_ARMED;
+      STATE_ARMED:   if (begin_profile) state <= ramp_ended ? STATE_SETTLE : STATE_RUN;
       STATE_RUN:     if (ramp_ended) state <= STATE_SETTLE;
-      STATE_SETTLE:  if (count == SETTLE_LAST) state <= STATE_DRAIN;
+      STATE_SETTLE:  if (settled) state <= finished ? STATE_IDLE : STATE_DRAIN;
+      STATE_DRAIN:   if (line_ended) state <= STATE_SETTLE;
       default:       ;
     endcase
-    if (begin_profile) state <= ramp_ended ? STATE_SETTLE : STATE_RUN;
-    if (finished) state <= STATE_IDLE;
     if (state == STATE_RUN && count != START_LAST) running <= running;
     else running <= moving;
 
     // count: in RUN up to START_LAST, in SETTLE up to SETTLE_LAST
     if (state == STATE_RUN && count == START_LAST) count <= START_LAST;
-    if (begin_profile || (state == STATE_RUN && ramp_ended)) count <= 3'd0;
+    if (begin_profile || (state == STATE_RUN && ramp_ended) || (state == STATE_DRAIN && line_ended))
+      count <= 3'd0;
 
     if (state == STATE_DRAIN && substep_made && !line_ended) drained <= drained + 16'd1;
 

@@ -36,7 +36,8 @@ localparam PARAMETERS_LINE_QUEUE_LOG2_BITS = 5;
 localparam PARAMETERS_RAMP_QUEUE_LOG2_LSB  = 24;
 localparam PARAMETERS_RAMP_QUEUE_LOG2_BITS = 5;
 
-// Core: Run. One bit per channel, all in one register so that several channels start on the same clock.
+// Core: Run. One bit per channel, all in one register: channels that are ARMED start on the same clock when
+// one write clears their WAIT_SYNC.
 localparam ADDRESS_RUN              = 12'h003;
 localparam RUN_RUN_LSB              = 0;
 localparam RUN_RUN_BITS             = 8;
@@ -281,7 +282,7 @@ localparam VERDICT_BAD_VALUE       = 4'd9; // M = 0, N_i > M, a velocity above 1
 // What a channel does.
 localparam STATE_IDLE    = 3'd0; // No motion.
 localparam STATE_PREPARE = 3'd1; // First line and first velocity are being made ready.
-localparam STATE_ARMED   = 3'd2; // Ready, waits for the sync input.
+localparam STATE_ARMED   = 3'd2; // Ready to start; waits while WAIT_SYNC is set.
 localparam STATE_RUN     = 3'd3; // The profile runs.
 localparam STATE_SETTLE  = 3'd4; // The profile has ended, its last substeps reach the pins.
 localparam STATE_DRAIN   = 3'd5; // Missing substeps of the LAST line are made at drain_velocity.

@@ -46,7 +46,7 @@ class State(_DescribedEnum):
 
     IDLE = 0, "No motion."
     PREPARE = 1, "First line and first velocity are being made ready."
-    ARMED = 2, "Ready, waits for the sync input."
+    ARMED = 2, "Ready to start; waits while WAIT_SYNC is set."
     RUN = 3, "The profile runs."
     SETTLE = 4, "The profile has ended, its last substeps reach the pins."
     DRAIN = 5, "Missing substeps of the LAST line are made at drain_velocity."
@@ -95,7 +95,8 @@ PARAMETERS_LINE_QUEUE_LOG2_BITS = 5
 PARAMETERS_RAMP_QUEUE_LOG2_LSB = 24
 PARAMETERS_RAMP_QUEUE_LOG2_BITS = 5
 
-# Core: Run. One bit per channel, all in one register so that several channels start on the same clock.
+# Core: Run. One bit per channel, all in one register: channels that are ARMED start on the same clock when
+# one write clears their WAIT_SYNC.
 ADDRESS_RUN = 0x003
 RUN_RUN_LSB = 0
 RUN_RUN_BITS = 8
