@@ -5,13 +5,15 @@
 //   STEP _________/~~~~\______/~~~~\_______________________
 //            |setup|high|  low |    |  low  |  hold  |
 //
-// Promise: STEP is active for exactly step_high and inactive for at least step_low clocks; DIR never changes from dir_setup
-// clocks before an active edge to dir_hold clocks after the low time of the pulse. With high = low = 1 it makes a step every
-// two clocks. A step that must wait keeps its direction in a queue of 4; one that finds the queue full is not
-// made but raises `overrun` for a clock. While nothing waits, DIR follows `line_direction`.
-// With both_edges every edge of STEP is a step, and each level lasts at least step_high or step_low.
-// `drop` empties the queue; a pulse that has begun is finished. A timing of 0 counts as 1.
-// Latency: step_request to STEP 3 clocks. `position` counts on the clock in which the active edge leaves the pin.
+// Promise: STEP is active for exactly step_high and inactive for at least step_low clocks; DIR never changes
+// from dir_setup clocks before an active edge to dir_hold clocks after the low time of the pulse. With high =
+// low = 1 it makes a step every two clocks. A step that must wait keeps its direction in a queue of 4; one
+// that finds the queue full is not made but raises `overrun` for a clock. While nothing waits, DIR follows
+// `line_direction`.
+// With both_edges every edge of STEP is a step, and each level lasts at least step_high or step_low. `drop`
+// empties the queue; a pulse that has begun is finished. A timing of 0 counts as 1.
+// Latency: step_request to STEP 3 clocks. `position` counts on the clock in which the active edge leaves the
+// pin.
 `resetall
 `default_nettype none
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Registers of one axis: its settings (write only), its lost steps and the snapshot of its position.
 //
-// Promise: the answer to a strobe comes one clock later, for one clock; it is 0 unless one of these registers is meant.
-// `select` is the block of this axis, `select_position` its position. The snapshot is taken on `snapshot`.
+// Promise: the answer to a strobe comes one clock later, for one clock; it is 0 unless one of these registers
+// is meant. `select` is the block of this axis, `select_position` its position. The snapshot is taken on
+// `snapshot`.
 `resetall
 `default_nettype none
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Registers of one channel: commands, time scale, drain velocity, state; and which of the channel's blocks an address
-// means.
+// Registers of one channel: commands, time scale, drain velocity, state; and which of the channel's blocks an
+// address means.
 //
-// Promise: the answer to a strobe comes one clock later, for one clock; it is 0 unless one of these registers is meant.
-// A command strobe is high for the clock after its write.
+// Promise: the answer to a strobe comes one clock later, for one clock; it is 0 unless one of these registers
+// is meant. A command strobe is high for the clock after its write.
 `resetall
 `default_nettype none
 

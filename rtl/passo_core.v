@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Passo: a step-pulse generator. SPI in, STEP/DIR out, CHANNELS independent groups of AXES coordinated axes. Wiring, and
-// what the channels share: the sync input and the slew tick.
+// Passo: a step-pulse generator. SPI in, STEP/DIR out, CHANNELS independent groups of AXES coordinated axes.
+// Wiring, and what the channels share: the sync input and the slew tick.
 //
 // Clock: clk at least four times SCLK. Reset: rst synchronous, active high.
 // Latency: a rising edge of `sync` starts the armed channels 3 clocks later.

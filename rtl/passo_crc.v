@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// CRC-32/MPEG-2 over 32-bit words, one bit per clock: polynomial 0x04C11DB7, start 0xFFFFFFFF, MSB first, no final
-// inversion. The CRC unit of an STM32F103 computes the same.
+// CRC-32/MPEG-2 over 32-bit words, one bit per clock: polynomial 0x04C11DB7, start 0xFFFFFFFF, MSB first, no
+// final inversion. The CRC unit of an STM32F103 computes the same.
 //
-// Promise: `start` takes `word`; `busy` is high for the 32 clocks after it, then `crc` includes the word. A word equal to
-// the CRC so far leads to 0. `restart` begins anew and wins over a shift; it may come together with `start`.
+// Promise: `start` takes `word`; `busy` is high for the 32 clocks after it, then `crc` includes the word. A
+// word equal to the CRC so far leads to 0. `restart` begins anew and wins over a shift; it may come together
+// with `start`.
 `resetall
 `default_nettype none
 

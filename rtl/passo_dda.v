@@ -3,8 +3,8 @@
 //
 //   each substep:  e += N;  if e >= M { e -= M; a step }           e = floor(M / 2) when the line starts
 //
-// `e` is kept as e - M, so that the test is a sign bit: clock A adds N, clock B takes M off again when the sign is
-// clear. At the end of a line e is back at its start value, so B loads that of the next line instead.
+// `e` is kept as e - M, so that the test is a sign bit: clock A adds N, clock B takes M off again when the
+// sign is clear. At the end of a line e is back at its start value, so B loads that of the next line instead.
 //
 // Promise: exactly N steps in M substeps, for any 0 <= N <= M. `step_request` is high in clock B.
 `resetall

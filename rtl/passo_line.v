@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Line counter: counts the substeps of the current line, brings in the next one, and leads the DDAs of all axes.
+// Line counter: counts the substeps of the current line, brings in the next one, and leads the DDAs of all
+// axes.
 //
 //   remaining = 1 - M + substeps made;  its sign tells whether more than one substep is to come
 //
-// A substep takes two clocks in the DDAs, A (slot_add) and B; the last substep of a line and the start of a motion load
-// the start value of the line that follows in B (slot_load). `broadcast` is -M in A, and floor(-M / 2) of
-// the new line when slot_load is high.
+// A substep takes two clocks in the DDAs, A (slot_add) and B; the last substep of a line and the start of a
+// motion load the start value of the line that follows in B (slot_load). `broadcast` is -M in A, and floor(-M
+// / 2) of the new line when slot_load is high.
 //
-// Promise: the next line follows without a lost clock, even with M = 1 and a substep every second clock. After the last
-// substep of a LAST line `ended` rises and further substeps are ignored. When a line that is not LAST ends and none
-// follows, `underrun` is high for a clock and further substeps are ignored.
+// Promise: the next line follows without a lost clock, even with M = 1 and a substep every second clock.
+// After the last substep of a LAST line `ended` rises and further substeps are ignored. When a line that is
+// not LAST ends and none follows, `underrun` is high for a clock and further substeps are ignored.
 // Latency: substep to slot_add 1 clock, to slot_step 2 clocks.
 `resetall
 `default_nettype none

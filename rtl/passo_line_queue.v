@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Line queue: lines as they are pushed, one block RAM column for each of their words, so that a whole line is read
-// at once.
+// Line queue: lines as they are pushed, one block RAM column for each of their words, so that a whole line is
+// read at once.
 //
 // Promise: lines come out whole and in order. The next line's control and length are always at the output
-// (`next_valid`); `take` makes it the current line, whose step counts are at the output two clocks later and stay there.
-// An ENDLESS line stays the next line when it is taken. A place is free again when the line after it is taken, or on
-// `release_line`. `flush` drops everything that is written; it stays
-// while the channel is stopped, for a push that was checked before.
+// (`next_valid`); `take` makes it the current line, whose step counts are at the output two clocks later and
+// stay there. An ENDLESS line stays the next line when it is taken. A place is free again when the line after
+// it is taken, or on `release_line`. `flush` drops everything that is written; it stays while the channel is
+// stopped, for a push that was checked before.
 //
-// A push is checked word by word (`bus_check`): room for it after all lines of this frame before it, M not 0, N_i <= M,
-// no reserved bits. `refusal` answers one clock later. The M column holds -M, as the line counter and the DDA want it.
+// A push is checked word by word (`bus_check`): room for it after all lines of this frame before it, M not 0,
+// N_i <= M, no reserved bits. `refusal` answers one clock later. The M column holds -M, as the line counter
+// and the DDA want it.
 `resetall
 `default_nettype none
 

@@ -6,14 +6,16 @@
 //   read         MOSI  header  crc     0       0 x length    0
 //                MISO  status  status  status  data x length  crc
 //
-// Promise: a frame is executed whole or not at all, and only once. Each payload word goes to the bus as it arrives, only to
-// be checked by its target (`bus_check`), and into a buffer. When the CRC is right, nobody objected and the sequence
-// number is new, the buffer is replayed to the bus (`bus_write`), one word every 4 clocks. A frame may begin meanwhile; it is
-// ignored if its header is complete before the replay has ended, which takes a master that leaves out trailing words.
+// Promise: a frame is executed whole or not at all, and only once. Each payload word goes to the bus as it
+// arrives, only to be checked by its target (`bus_check`), and into a buffer. When the CRC is right, nobody
+// objected and the sequence number is new, the buffer is replayed to the bus (`bus_write`), one word every 4
+// clocks. A frame may begin meanwhile; it is ignored if its header is complete before the replay has ended,
+// which takes a master that leaves out trailing words.
 //
 // Verdict: BAD_CRC goes before all others, then the first objection; a duplicate is not asked for objections.
-// Latency: payload word to bus_check 2 clocks, crc word to ack 36 clocks. Address and data stand on the bus at least a
-// clock before their strobe; a target answers one clock after it with claim (the address is mine), refusal and, to bus_read, data.
+// Latency: payload word to bus_check 2 clocks, crc word to ack 36 clocks. Address and data stand on the bus
+// at least a clock before their strobe; a target answers one clock after it with claim (the address is mine),
+// refusal and, to bus_read, data.
 `resetall
 `default_nettype none
 
@@ -108,8 +110,8 @@ module passo_link (
     .busy   (crc_busy)
   );
 
-  // Payload buffer in half words, so that it takes one block RAM. What a frame that is too long overwrites in it does
-  // not matter: that frame is refused.
+  // Payload buffer in half words, so that it takes one block RAM. What a frame that is too long overwrites in
+  // it does not matter: that frame is refused.
   reg         stage_high;
   reg         stage_low;
   wire        stage_half;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Simple dual-port RAM that maps to block RAM everywhere.
 //
-// Promise: `read_data` is the word at `read_address` one clock ago, unless that word was being written on that clock; then it means
-// nothing. Nobody here looks at a word in that clock, so synthesis need not guard against it.
+// Promise: `read_data` is the word at `read_address` one clock ago, unless that word was being written on
+// that clock; then it means nothing. Nobody here looks at a word in that clock, so synthesis need not guard
+// against it.
 `resetall
 `default_nettype none
 

@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: MIT
 // Motion: when a channel starts, ends and stops, and why.
 //
-//   IDLE -> PREPARE -> ARMED -> RUN -> SETTLE -> (DRAIN -> SETTLE) -> IDLE         anything -> STOPPED -> IDLE
+//   IDLE -> PREPARE -> ARMED -> RUN -> SETTLE -> (DRAIN -> SETTLE) -> IDLE;  anything -> STOPPED -> IDLE
 //
-// Promise: a motion is prepared when `run` is set and a line and a ramp are there. It starts from ARMED at once or,
-// while wait_sync is set, with a sync edge; so channels that are ARMED start together when one write clears their
-// wait_sync. It ends when its profile has ended and its line has ended (or is ENDLESS); what the line still lacks is
-// drained and counted. A stop is soft (the rate goes to 0 first) for COMMAND.STOP and RAMP_UNDERRUN, else at once. On
-// the same clock ABORT wins, then STEP_OVERRUN, LINE_UNDERRUN, a soft stop; a stop wins over the end of the motion.
+// Promise: a motion is prepared when `run` is set and a line and a ramp are there. It starts from ARMED at
+// once or, while wait_sync is set, with a sync edge; so channels that are ARMED start together when one write
+// clears their wait_sync. It ends when its profile has ended and its line has ended (or is ENDLESS); what the
+// line still lacks is drained and counted. A stop is soft (the rate goes to 0 first) for COMMAND.STOP and
+// RAMP_UNDERRUN, else at once. On the same clock ABORT wins, then STEP_OVERRUN, LINE_UNDERRUN, a soft stop; a
+// stop wins over the end of the motion.
 //
-// `running` is the motion as seen at the STEP pins: it rises 7 clocks after RUN begins and falls one clock after
-// SETTLE, so that it is high for as many clocks as the profile has, and until the last drained step has been made.
+// `running` is the motion as seen at the STEP pins: it rises 7 clocks after RUN begins and falls one clock
+// after SETTLE, so that it is high for as many clocks as the profile has, and until the last drained step has
+// been made.
 `resetall
 `default_nettype none
 
@@ -57,7 +59,7 @@ module passo_motion (
 
   `include "passo_registers.vh"
 
-  localparam [2:0] SETTLE_LAST = 3'd4;  // the last substep reaches the line 2 clocks after the profile's last clock
+  localparam [2:0] SETTLE_LAST = 3'd4;  // the last substep needs 2 clocks to the line
   localparam [2:0] START_LAST = 3'd6;  // from RUN to the STEP pin
 
   reg [2:0] count;

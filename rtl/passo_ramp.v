@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: MIT
-// Ramp: velocity over time. A tick is 2^TICK_LOG2 enabled clocks; while one tick runs, the velocity of the next is made.
+// Ramp: velocity over time. A tick is 2^TICK_LOG2 enabled clocks; while one tick runs, the velocity of the
+// next is made.
 //
-//   s        = shape(u);  velocity = v_start + floor((v_end - v_start) * s);  u += du      u = du / 2 in the first tick
+//   s        = shape(u);  velocity = v_start + floor((v_end - v_start) * s);  u += du      first u = du / 2
 //   after T ticks the next ramp begins, from exactly v_end; T = 0 sets the velocity at once
 //
 //   velocity   |        ____________
 //              |      /              \            v_start, v_end: of the ramp being made
-//              |    /                  \          velocity: of the running tick, velocity_next: of the one after it
+//              |    /                  \          velocity, velocity_next: of this tick, of the next
 //              |__/_____________________ \__
 //                 ramp   ramp (T ticks)  ramp
 //
-// `prepare` makes the first velocity of a motion, from 0, and raises `ready`; `begin_profile` starts the first tick.
-// Promise: the LAST ramp's end raises `ended`, with the last enabled clock of its last tick (a profile without any
-// tick: with begin_profile). Ramps that run out at
-// speed raise `dry`, one tick ahead; the velocity then stays, and the next ramp is taken whenever it comes. `stall` holds the
-// enable back at the end of a tick until the next velocity is ready: later, never lost; in a tick of 128 clocks there is time
-// for a ramp and, on a core of one channel, two with T = 0 before it.
+// `prepare` makes the first velocity of a motion, from 0, and raises `ready`; `begin_profile` starts the
+// first tick.
+// Promise: the LAST ramp's end raises `ended`, with the last enabled clock of its last tick (a profile
+// without any tick: with begin_profile). Ramps that run out at speed raise `dry`, one tick ahead; the
+// velocity then stays, and the next ramp is taken whenever it comes. `stall` holds the enable back at the end
+// of a tick until the next velocity is ready: later, never lost; in a tick of 128 clocks there is time for a
+// ramp and, on a core of one channel, two with T = 0 before it.
 `resetall
 `default_nettype none
 

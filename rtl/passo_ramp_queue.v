@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Ramp queue: ramps in half words, 10 in a slot of 16, so that a few ramps take one block RAM.
 //
-// Promise: ramps come out whole and in order. `half` is half word `half_index` of the oldest ramp, one clock after the
-// index; `take` removes that ramp. A ramp with NOW raises `now_pending`; `take_now` drops all ramps before it, so that it is
-// the oldest. `flush` drops everything that is written.
+// Promise: ramps come out whole and in order. `half` is half word `half_index` of the oldest ramp, one clock
+// after the index; `take` removes that ramp. A ramp with NOW raises `now_pending`; `take_now` drops all ramps
+// before it, so that it is the oldest. `flush` drops everything that is written.
 //
-// A push is checked word by word (`bus_check`): room for it after all ramps of this frame before it, a velocity of
-// at most 1/2, no reserved bits. `refusal` answers one clock later. A word is written in two clocks: upper half first.
+// A push is checked word by word (`bus_check`): room for it after all ramps of this frame before it, a
+// velocity of at most 1/2, no reserved bits. `refusal` answers one clock later. A word is written in two
+// clocks: upper half first.
 `resetall
 `default_nettype none
 

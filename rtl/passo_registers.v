@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Registers of the core: identification, parameters, RUN, counters of refusals; and the status word.
 //
-// Promise: the answer to a strobe comes one clock later, for one clock; it is 0 unless one of these registers is meant.
-// RUN changes for all channels on the same clock.
+// Promise: the answer to a strobe comes one clock later, for one clock; it is 0 unless one of these registers
+// is meant. RUN changes for all channels on the same clock.
 `resetall
 `default_nettype none
 

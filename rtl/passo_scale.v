@@ -3,11 +3,12 @@
 //
 //   velocity = v_start + floor((v_end - v_start) * s)        s = 1.0 gives v_end
 //
-// The product is made one bit of s after the other, from the lowest; the sum moves right, so dropping its lower bits
-// is the floor. All 48-bit sums go in two halves, the upper one a clock later, so that no carry chain is longer than 26 bits.
+// The product is made one bit of s after the other, from the lowest; the sum moves right, so dropping its
+// lower bits is the floor. All 48-bit sums go in two halves, the upper one a clock later, so that no carry
+// chain is longer than 26 bits.
 //
-// Promise: `done` is high for one clock, 53 clocks after `start`, when `velocity` is ready; it stays until the next start. The
-// inputs must stay from start to done.
+// Promise: `done` is high for one clock, 53 clocks after `start`, when `velocity` is ready; it stays until
+// the next start. The inputs must stay from start to done.
 `resetall
 `default_nettype none
 

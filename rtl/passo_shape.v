@@ -3,10 +3,12 @@
 //
 //   x = round(progress to 2^-24);  mirror: 1 - shape(1 - x)
 //   linear:  s = x
-//   others:  s = t[k] * 2^8 + floor(((t[k+1] - t[k]) * f + 2^7 - k[7]) / 2^8),  k = x(23:16), f = x(15:0), t[256] = 1.0
+//   others:  s = t[k] * 2^8 + floor(((t[k+1] - t[k]) * f + 2^7 - k[7]) / 2^8),
+//            k = x(23:16), f = x(15:0), t[256] = 1.0
 //
-// Promise: `done` is high for one clock when `s` is ready; s stays until the next start. Rounded to nearest; ties go up
-// in the lower half of the table and down in the upper, which keeps an odd-symmetric bank symmetric. Latency from `start`: linear 3 clocks; others 21 clocks and the wait for the table, at most 2 *
+// Promise: `done` is high for one clock when `s` is ready; s stays until the next start. Rounded to nearest;
+// ties go up in the lower half of the table and down in the upper, which keeps an odd-symmetric bank
+// symmetric. Latency from `start`: linear 3 clocks; others 21 clocks and the wait for the table, at most 2 *
 // CHANNELS + 3. progress, shape and mirror must stay from start to done.
 `resetall
 `default_nettype none

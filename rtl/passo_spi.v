@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 // SPI slave, mode 0, MSB first: bits to 32-bit words and back.
 //
-// Promise: `word_valid` is high for one clock after each 32 bits received, with `word` stable until the next word
-// is complete. `reply_word` is sampled at the end of each word, to be sent as the next one; the first word of a
-// frame is `reply_word` as well, except that its top bit is sent as 1 (it is on the wire before the first edge).
+// Promise: `word_valid` is high for one clock after each 32 bits received, with `word` stable until the next
+// word is complete. `reply_word` is sampled at the end of each word, to be sent as the next one; the first
+// word of a frame is `reply_word` as well, except that its top bit is sent as 1 (it is on the wire before the
+// first edge).
 //
-// Everything that touches bits runs on SCLK, and words cross to `clk`. Timing budget at SCLK = 18 MHz, clk = 72 MHz:
+// Everything that touches bits runs on SCLK, and words cross to `clk`. Timing budget at SCLK = 18 MHz, clk =
+// 72 MHz:
 //   MISO  falling edge of SCLK -> shift register -> pin -> master: 27.8 ns until the master's rising edge;
 //         about 3 ns in, 5 ns logic and routing, 6 ns out, 5 ns set-up of an STM32F103 leave 8 ns for the cable.
 //         Oversampling with clk would need 3 clocks = 41.7 ns.
@@ -33,7 +35,8 @@ module passo_spi (
   input  wire [31:0] reply_word
 );
 
-  // Chip select resets bits and words, and it is also a signal: to the toggle, and to clk behind its own synchroniser.
+  // Chip select resets bits and words, and it is also a signal: to the toggle, and to clk behind its own
+  // synchroniser.
   /* verilator lint_off SYNCASYNCNET */
 
   // SCLK domain. The toggle only ever changes at the end of a word, so it needs no reset, just a beginning.
@@ -51,8 +54,8 @@ module passo_spi (
     if (bit_count == 5'd31) word <= {receive, spi_mosi};
   end
 
-  // A word is announced only when the reply to the next one has been taken, on the same falling edge: however slow
-  // SCLK is, whoever sees word_valid may change reply_word.
+  // A word is announced only when the reply to the next one has been taken, on the same falling edge: however
+  // slow SCLK is, whoever sees word_valid may change reply_word.
   always @(negedge spi_sclk) if (!spi_cs_n && bit_count == 5'd0) word_toggle <= ~word_toggle;
 
   reg        first_word;

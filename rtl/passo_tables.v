@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Shape tables: 3 banks of 256 points, UQ0.16, shared by all channels and writable over the bus while no motion is prepared or runs.
+// Shape tables: 3 banks of 256 points, UQ0.16, shared by all channels and writable over the bus while no
+// motion is prepared or runs.
 //
-// Promise: channels are served in turn, two clocks each. A channel that holds `request` with its `address` gets `served` for
-// one clock, with the point at the address on `point` and the point after it on `point_next`; at most 2 * CHANNELS + 3 clocks
-// after its request rose. Address = bank - 1 (9:8) and k (7:0); point_next after k = 255 means nothing.
+// Promise: channels are served in turn, two clocks each. A channel that holds `request` with its `address`
+// gets `served` for one clock, with the point at the address on `point` and the point after it on
+// `point_next`; at most 2 * CHANNELS + 3 clocks after its request rose. Address = bank - 1 (9:8) and k (7:0);
+// point_next after k = 255 means nothing.
 `resetall
 `default_nettype none
 

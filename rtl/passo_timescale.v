@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Time scale: the clock enable of the profile. Feed hold, resume, override and soft stop change only this, so the
-// sequence of pulses is the same under any of them.
+// Time scale: the clock enable of the profile. Feed hold, resume, override and soft stop change only this, so
+// the sequence of pulses is the same under any of them.
 //
 //   rate_sum += rate;  enable = carry out              rate = 1.0 -> every clock, rate = 0 -> none
 //   rate moves toward the goal by the slew every 2^TICK_LOG2 real clocks (`slew_tick`), and onto it when it is nearer
 //   goal = rate_target, or 0 when stopping; both goal and slew are taken over at a slew tick for the next one
 //   outside a motion rate = goal = rate_target
 //
-// Promise: `enable` is registered, low unless `moving`, and a motion begins with an empty rate_sum. A slew of 0 counts as 1.
+// Promise: `enable` is registered, low unless `moving`, and a motion begins with an empty rate_sum. A slew of
+// 0 counts as 1.
 `resetall
 `default_nettype none
 
