@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
  * Jumping over quiet time: passo_core_advance().
  *
- * While a profile runs, a clock is quiet if it moves only counters and sums whose later values can be told at once: the
- * tick counter, the phase, e of each DDA, the substeps of the line, timers. It is not quiet if a step is made, a line or a tick
- * ends, a ramp is chosen, or anything arrives from outside.
+ * While a profile runs, a clock is quiet if it moves only counters and sums whose later values can be told at
+ * once: the tick counter, the phase, e of each DDA, the substeps of the line, timers. It is not quiet if a
+ * step is made, a line or a tick ends, a ramp is chosen, or anything arrives from outside.
  *
- * The pipeline from path to DDA makes this less simple than it sounds: at any time up to three substeps are on their
- * way. So a jump first takes them all to their end (`struct progress`), counts there, and then puts the last
- * ones back on their way: which clocks had a carry follows from the phase alone, as long as the velocity stood still for the last
- * four clocks.
+ * The pipeline from path to DDA makes this less simple than it sounds: at any time up to three substeps are
+ * on their way. So a jump first takes them all to their end (`struct progress`), counts there, and then puts
+ * the last ones back on their way: which clocks had a carry follows from the phase alone, as long as the
+ * velocity stood still for the last four clocks.
  */
 #include "passo_core.h"
 
@@ -29,11 +29,17 @@ struct progress {
 	int64_t e[PASSO_AXES_MAX];
 };
 
-static int64_t minus_m(const struct passo_line_unit *line) { return (int64_t)line->minus_substeps - (INT64_C(1) << 32); }
+static int64_t minus_m(const struct passo_line_unit *line)
+{
+	return (int64_t)line->minus_substeps - (INT64_C(1) << 32);
+}
 
-static uint64_t min_u64(uint64_t a, uint64_t b) { return a < b ? a : b; }
+static uint64_t min_u64(uint64_t a, uint64_t b)
+{
+	return a < b ? a : b;
+}
 
-/* ---- what must stand still ---------------------------------------------------------------------------------- */
+/* ---- what must stand still ---- */
 
 static bool lines_settled(const struct passo_channel *channel, const struct passo_parameters *parameters)
 {
@@ -47,8 +53,8 @@ static bool lines_settled(const struct passo_channel *channel, const struct pass
 		if (queue->steps[i] != current->steps[i])
 			return false;
 	return queue->room == depth - used && queue->next_valid == (queue->next_line != queue->write_line)
-	       && queue->next_minus_substeps == 0u - next->substeps && queue->next_last == next->last
-	       && queue->next_endless == next->endless && queue->next_directions == next->directions;
+	    && queue->next_minus_substeps == 0u - next->substeps && queue->next_last == next->last
+	    && queue->next_endless == next->endless && queue->next_directions == next->directions;
 }
 
 static bool ramps_settled(const struct passo_ramp_queue *queue, const struct passo_parameters *parameters)
@@ -61,7 +67,8 @@ static bool ramps_settled(const struct passo_ramp_queue *queue, const struct pas
 
 static bool commands_settled(const struct passo_channel_registers *registers)
 {
-	return !registers->command_stop && !registers->command_abort && !registers->command_clear && !registers->command_zero;
+	return !registers->command_stop && !registers->command_abort && !registers->command_clear
+	    && !registers->command_zero;
 }
 
 static bool slots_empty(const struct passo_channel *channel)
@@ -84,14 +91,15 @@ static uint64_t timescale_quiet(const struct passo_channel *channel, bool moving
 	if (timescale->rate != timescale->goal || timescale->distance != 0)
 		return 0;
 	if (!moving)
-		return timescale->rate == registers->rate_target && timescale->slew == 1u && timescale->rate_sum == 0u
-		               && !timescale->enable
-		           ? UINT64_MAX
-		           : 0u;
+		return timescale->rate == registers->rate_target && timescale->slew == 1u
+		            && timescale->rate_sum == 0u && !timescale->enable
+		         ? UINT64_MAX
+		         : 0u;
 	const bool steady = timescale->enable ? timescale->rate == PASSO_RATE_ONE : timescale->rate == 0u;
 	if (!steady)
 		return 0;
-	return timescale->goal == registers->rate_target && timescale->slew == slew ? UINT64_MAX : clocks_to_slew;
+	return timescale->goal == registers->rate_target && timescale->slew == slew ? UINT64_MAX
+	                                                                            : clocks_to_slew;
 }
 
 static uint64_t ramp_quiet(const struct passo_ramp_unit *ramp)
@@ -111,7 +119,8 @@ static bool motion_settled(const struct passo_channel *channel, const struct pas
 	switch (motion->state) {
 	case PASSO_STATE_IDLE:
 		return !motion->running && !motion->startable
-		       && !(inputs->run && channel->line_queue.next_valid && passo_ramp_queue_valid(&channel->ramp_queue));
+		    && !(inputs->run && channel->line_queue.next_valid
+		         && passo_ramp_queue_valid(&channel->ramp_queue));
 	case PASSO_STATE_PREPARE:
 		return !motion->running && !channel->ramp.ready;
 	case PASSO_STATE_ARMED:
@@ -132,19 +141,22 @@ static uint64_t surroundings_quiet(
 	const struct passo_line_unit *line = &channel->line;
 	const bool moving = channel->motion.state == PASSO_STATE_RUN;
 
-	if (!motion_settled(channel, inputs) || !commands_settled(&channel->registers)
-	    || line->slot_load || line->slot_load_q || line->remaining_bump || line->underrun
-	    || !ramps_settled(&channel->ramp_queue, inputs->parameters) || !lines_settled(channel, inputs->parameters))
+	if (!motion_settled(channel, inputs) || !commands_settled(&channel->registers) || line->slot_load
+	    || line->slot_load_q || line->remaining_bump || line->underrun
+	    || !ramps_settled(&channel->ramp_queue, inputs->parameters)
+	    || !lines_settled(channel, inputs->parameters))
 		return 0;
-	uint64_t clocks = min_u64(ramp_quiet(&channel->ramp), timescale_quiet(channel, moving, clocks_to_slew));
+	uint64_t clocks =
+	    min_u64(ramp_quiet(&channel->ramp), timescale_quiet(channel, moving, clocks_to_slew));
 	for (unsigned i = 0; i < channel->axes && clocks != 0u; i++) {
-		const uint32_t quiet = passo_axis_quiet(&channel->axis[i], (line->directions >> i & 1u) != 0u);
+		const uint32_t quiet =
+		    passo_axis_quiet(&channel->axis[i], (line->directions >> i & 1u) != 0u);
 		clocks = quiet == UINT32_MAX ? clocks : min_u64(clocks, quiet);
 	}
 	return clocks;
 }
 
-/* ---- the pipeline ------------------------------------------------------------------------------------------- */
+/* ---- the pipeline ---- */
 
 /* Takes all substeps to their end; false if one of them does more than count. */
 static bool take_to_end(const struct passo_channel *channel, struct progress *progress)
@@ -215,7 +227,8 @@ static int64_t sum_phase(struct progress *progress, uint64_t velocity, uint64_t 
 	return (int64_t)(sum >> 48);
 }
 
-/* Puts the substeps of the last clocks back on their way; the velocity has stood for PIPELINE_CLOCKS clocks. */
+/* Puts the substeps of the last clocks back on their way; the velocity has stood for PIPELINE_CLOCKS clocks.
+ */
 static void put_back(struct passo_channel *channel, const struct progress *progress)
 {
 	struct passo_path *path = &channel->path;
@@ -251,7 +264,7 @@ static void put_back(struct passo_channel *channel, const struct progress *progr
 	}
 }
 
-/* ---- a channel ---------------------------------------------------------------------------------------------- */
+/* ---- a channel ---- */
 
 static bool profile_counts(const struct passo_channel *channel)
 {
@@ -259,7 +272,8 @@ static bool profile_counts(const struct passo_channel *channel)
 }
 
 /* Clocks to the next event of a running profile, within its tick. */
-static uint64_t profile_quiet(const struct passo_channel *channel, const struct passo_parameters *parameters, uint64_t limit)
+static uint64_t profile_quiet(
+    const struct passo_channel *channel, const struct passo_parameters *parameters, uint64_t limit)
 {
 	const uint64_t velocity = channel->ramp.velocity;
 	const uint32_t tick_last = (1u << parameters->tick_log2) - 1u;
@@ -323,9 +337,10 @@ static void channel_skip(struct passo_channel *channel, uint64_t clocks)
 	put_back(channel, &progress);
 }
 
-/* Jumps from one place in a tick to the same place in a later one, over ticks without any event; returns the clocks. The place is
- * one at which the next velocity is ready, and the ramp goes on. */
-static uint64_t skip_ticks(struct passo_channel *channel, const struct passo_channel_inputs *inputs, uint64_t limit)
+/* Jumps from one place in a tick to the same place in a later one, over ticks without any event; returns the
+ * clocks. The place is one at which the next velocity is ready, and the ramp goes on. */
+static uint64_t skip_ticks(
+    struct passo_channel *channel, const struct passo_channel_inputs *inputs, uint64_t limit)
 {
 	struct passo_ramp_unit *ramp = &channel->ramp;
 	const uint64_t tick = UINT64_C(1) << inputs->parameters->tick_log2;
@@ -334,7 +349,8 @@ static uint64_t skip_ticks(struct passo_channel *channel, const struct passo_cha
 	uint64_t clocks = 0;
 
 	if (!profile_counts(channel) || ramp->step != PASSO_RAMP_IDLE || !ramp->ready || ramp->ends_next
-	    || place < RAMP_DONE_TICK_COUNT || channel->ramp_queue.now_pending || !take_to_end(channel, &progress))
+	    || place < RAMP_DONE_TICK_COUNT || channel->ramp_queue.now_pending
+	    || !take_to_end(channel, &progress))
 		return 0;
 	while (ramp->ticks != 0u && clocks + tick <= limit) {
 		struct progress then = progress;
@@ -355,11 +371,12 @@ static uint64_t skip_ticks(struct passo_channel *channel, const struct passo_cha
 	return clocks;
 }
 
-/* ---- the core ----------------------------------------------------------------------------------------------- */
+/* ---- the core ---- */
 
 static bool same_inputs(const struct passo_inputs *a, const struct passo_inputs *b)
 {
-	return a->spi_sclk == b->spi_sclk && a->spi_mosi == b->spi_mosi && a->spi_cs_n == b->spi_cs_n && a->sync == b->sync;
+	return a->spi_sclk == b->spi_sclk && a->spi_mosi == b->spi_mosi && a->spi_cs_n == b->spi_cs_n
+	    && a->sync == b->sync;
 }
 
 static bool link_side_quiet(const struct passo_core *core, const struct passo_inputs *inputs)
@@ -368,10 +385,10 @@ static bool link_side_quiet(const struct passo_core *core, const struct passo_in
 	const uint8_t toggled = core->spi.word_toggle ? 7 : 0;
 	const uint8_t synced = inputs->sync ? 7 : 0;
 
-	return same_inputs(inputs, &core->inputs) && core->spi.select_sync == selected && core->spi.toggle_sync == toggled
-	       && core->sync_q == synced && passo_link_quiet(&core->link) && !core->response.claim
-	       && core->response.refusal == 0u && core->response.read_data == 0u
-	       && core->outputs.irq == passo_registers_any_stopped(core);
+	return same_inputs(inputs, &core->inputs) && core->spi.select_sync == selected
+	    && core->spi.toggle_sync == toggled && core->sync_q == synced && passo_link_quiet(&core->link)
+	    && !core->response.claim && core->response.refusal == 0u && core->response.read_data == 0u
+	    && core->outputs.irq == passo_registers_any_stopped(core);
 }
 
 static struct passo_channel_inputs inputs_of(const struct passo_core *core, unsigned channel)
@@ -401,14 +418,16 @@ uint64_t passo_core_advance(struct passo_core *core, const struct passo_inputs *
 			moving = i;
 			continue;
 		}
-		clocks = min_u64(clocks, channel_quiet(&core->channel[i], &channel_inputs, clocks_to_slew, clocks));
+		clocks = min_u64(
+		    clocks, channel_quiet(&core->channel[i], &channel_inputs, clocks_to_slew, clocks));
 		if (clocks == 0u)
 			return 0;
 	}
 	if (moving != channels) {
 		const struct passo_channel_inputs channel_inputs = inputs_of(core, moving);
 		struct passo_channel *channel = &core->channel[moving];
-		const uint64_t quiet = min_u64(clocks, surroundings_quiet(channel, &channel_inputs, clocks_to_slew));
+		const uint64_t quiet =
+		    min_u64(clocks, surroundings_quiet(channel, &channel_inputs, clocks_to_slew));
 		/* the others are quiet within their ticks only, if they move */
 		uint64_t skipped = skip_ticks(channel, &channel_inputs, quiet);
 		if (skipped == 0u) {

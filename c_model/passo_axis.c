@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Axis: STEP and DIR pins of one axis, with all four pin timings. See rtl/passo_axis.v and rtl/passo_axis_registers.v.
+ * Axis: STEP and DIR pins of one axis, with all four pin timings. See rtl/passo_axis.v and
+ * rtl/passo_axis_registers.v.
  */
 #include "passo_model.h"
 
@@ -8,12 +9,13 @@ enum { WAITING_MAX = 4, LOST_MAX = 15 };
 void passo_axis_reset(struct passo_axis *axis)
 {
 	*axis = (struct passo_axis){
-	    .settings = {
-	        .step_high = PASSO_AXIS_STEP_TIMING_STEP_HIGH_RESET,
-	        .step_low = PASSO_AXIS_STEP_TIMING_STEP_LOW_RESET,
-	        .dir_setup = PASSO_AXIS_DIR_TIMING_DIR_SETUP_RESET,
-	        .dir_hold = PASSO_AXIS_DIR_TIMING_DIR_HOLD_RESET,
-	    },
+	    .settings =
+		{
+		    .step_high = PASSO_AXIS_STEP_TIMING_STEP_HIGH_RESET,
+		    .step_low = PASSO_AXIS_STEP_TIMING_STEP_LOW_RESET,
+		    .dir_setup = PASSO_AXIS_DIR_TIMING_DIR_SETUP_RESET,
+		    .dir_hold = PASSO_AXIS_DIR_TIMING_DIR_HOLD_RESET,
+		},
 	};
 }
 
@@ -43,7 +45,10 @@ void passo_axis_registers_write(struct passo_axis_settings *settings, uint8_t ad
 	}
 }
 
-static bool timer_done(const struct passo_axis *axis) { return axis->timer <= 1u; }
+static bool timer_done(const struct passo_axis *axis)
+{
+	return axis->timer <= 1u;
+}
 
 static bool dir_right(const struct passo_axis *axis, bool line_direction)
 {
@@ -75,7 +80,8 @@ void passo_axis_clock(struct passo_axis *axis, const struct passo_axis_wires *wi
 	const bool done = timer_done(axis);
 	const enum passo_axis_state state = axis->state;
 	const bool right = dir_right(axis, wires->direction);
-	const bool free = state == PASSO_AXIS_READY || state == PASSO_AXIS_HOLD || (done && state != PASSO_AXIS_HIGH);
+	const bool free =
+	    state == PASSO_AXIS_READY || state == PASSO_AXIS_HOLD || (done && state != PASSO_AXIS_HIGH);
 	const bool step_begins = free && axis->waiting_count != 0u && right;
 	const bool turn = !right && (state == PASSO_AXIS_READY || (state == PASSO_AXIS_HOLD && done));
 
@@ -128,9 +134,9 @@ uint32_t passo_axis_quiet(const struct passo_axis *axis, bool line_direction)
 {
 	const struct passo_axis_settings *settings = &axis->settings;
 	const bool pins_settled = axis->step_pin == (axis->step != settings->step_inverted)
-	                          && axis->dir_pin == (axis->dir != settings->direction_inverted)
-	                          && axis->enable_pin == (settings->enable != settings->enable_inverted)
-	                          && !axis->step_begins_q && axis->dir_q == axis->dir && !axis->overrun;
+	                       && axis->dir_pin == (axis->dir != settings->direction_inverted)
+	                       && axis->enable_pin == (settings->enable != settings->enable_inverted)
+	                       && !axis->step_begins_q && axis->dir_q == axis->dir && !axis->overrun;
 
 	if (!pins_settled)
 		return 0;

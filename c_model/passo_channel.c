@@ -3,7 +3,10 @@
  */
 #include "passo_model.h"
 
-bool passo_channel_stopped(const struct passo_channel *channel) { return channel->motion.state == PASSO_STATE_STOPPED; }
+bool passo_channel_stopped(const struct passo_channel *channel)
+{
+	return channel->motion.state == PASSO_STATE_STOPPED;
+}
 
 bool passo_channel_occupied(const struct passo_channel *channel)
 {
@@ -15,7 +18,8 @@ bool passo_channel_incomplete(const struct passo_channel *channel)
 	return channel->line_queue.index != 0u || channel->ramp_queue.index != 0u;
 }
 
-void passo_channel_reset(struct passo_channel *channel, const struct passo_parameters *parameters, uint8_t number)
+void passo_channel_reset(
+    struct passo_channel *channel, const struct passo_parameters *parameters, uint8_t number)
 {
 	*channel = (struct passo_channel){.axes = parameters->axes, .number = number};
 	passo_channel_registers_reset(&channel->registers);
@@ -53,7 +57,8 @@ static struct passo_channel_wires gather_wires(
 	const bool more = channel->line.remaining < 0;
 	wires.substep_taken = channel->path.substep && channel->line.active;
 	wires.line_done = wires.substep_taken && !more;
-	wires.take = wires.prepare || (wires.line_done && !channel->line.last && channel->line_queue.next_valid);
+	wires.take =
+	    wires.prepare || (wires.line_done && !channel->line.last && channel->line_queue.next_valid);
 	return wires;
 }
 

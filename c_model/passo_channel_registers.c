@@ -19,10 +19,14 @@ static struct answer write_only(uint8_t check)
 
 static struct answer read_only(uint32_t value)
 {
-	return (struct answer){.known = true, .check = PASSO_VERDICT_READ_ONLY, .read = PASSO_VERDICT_OK, .value = value};
+	return (struct answer){
+	    .known = true, .check = PASSO_VERDICT_READ_ONLY, .read = PASSO_VERDICT_OK, .value = value};
 }
 
-static uint8_t value_check(bool bad) { return bad ? PASSO_VERDICT_BAD_VALUE : PASSO_VERDICT_OK; }
+static uint8_t value_check(bool bad)
+{
+	return bad ? PASSO_VERDICT_BAD_VALUE : PASSO_VERDICT_OK;
+}
 
 static uint8_t command_check(const struct passo_channel *channel, uint32_t data)
 {
@@ -30,7 +34,8 @@ static uint8_t command_check(const struct passo_channel *channel, uint32_t data)
 
 	if ((data & ~PASSO_CHANNEL_COMMAND_DEFINED) != 0u)
 		return PASSO_VERDICT_BAD_VALUE;
-	return passo_channel_occupied(channel) && (data & resting) != 0u ? PASSO_VERDICT_BUSY : PASSO_VERDICT_OK;
+	return passo_channel_occupied(channel) && (data & resting) != 0u ? PASSO_VERDICT_BUSY
+	                                                                 : PASSO_VERDICT_OK;
 }
 
 static uint32_t state_word(const struct passo_channel *channel)
@@ -41,7 +46,7 @@ static uint32_t state_word(const struct passo_channel *channel)
 	for (unsigned axis = 0; axis < channel->axes; axis++)
 		overrun |= (channel->axis[axis].lost != 0u ? 1u : 0u) << axis;
 	return (uint32_t)motion->drained << 16 | overrun << 8 | (motion->stopping ? 0x80u : 0u)
-	       | (uint32_t)motion->cause << 4 | (uint32_t)motion->state;
+	     | (uint32_t)motion->cause << 4 | (uint32_t)motion->state;
 }
 
 static struct answer axis_answer(const struct passo_axis *axis, uint8_t address, uint32_t data)
@@ -85,7 +90,8 @@ static struct answer channel_answer(
 	case PASSO_CHANNEL_VELOCITY:
 		return read_only((uint32_t)(channel->ramp.velocity >> 16));
 	case PASSO_CHANNEL_LINE:
-		return write_only(bus->push ? passo_line_queue_refusal(&channel->line_queue, inputs->parameters, bus, stopped)
+		return write_only(bus->push ? passo_line_queue_refusal(
+						  &channel->line_queue, inputs->parameters, bus, stopped)
 		                            : PASSO_VERDICT_BAD_OPERATION);
 	case PASSO_CHANNEL_RAMP:
 		return write_only(bus->push ? passo_ramp_queue_refusal(&channel->ramp_queue, bus, stopped)
@@ -101,7 +107,8 @@ static struct answer channel_answer(
 	return (struct answer){0};
 }
 
-struct passo_response passo_channel_respond(const struct passo_channel *channel, const struct passo_channel_inputs *inputs)
+struct passo_response passo_channel_respond(
+    const struct passo_channel *channel, const struct passo_channel_inputs *inputs)
 {
 	const struct passo_bus *bus = inputs->bus;
 	const uint8_t address = (uint8_t)bus->address;
@@ -111,8 +118,8 @@ struct passo_response passo_channel_respond(const struct passo_channel *channel,
 	response.claim = answer.known;
 	if (answer.known && bus->check)
 		response.refusal = bus->push && address != PASSO_CHANNEL_LINE && address != PASSO_CHANNEL_RAMP
-		                       ? PASSO_VERDICT_BAD_OPERATION
-		                       : answer.check;
+		                     ? PASSO_VERDICT_BAD_OPERATION
+		                     : answer.check;
 	if (answer.known && bus->read) {
 		response.refusal = answer.read;
 		response.read_data = answer.value;
@@ -130,11 +137,13 @@ void passo_channel_registers_reset(struct passo_channel_registers *registers)
 	};
 }
 
-void passo_channel_registers_clock(struct passo_channel_registers *registers, const struct passo_bus *bus, bool selected)
+void passo_channel_registers_clock(
+    struct passo_channel_registers *registers, const struct passo_bus *bus, bool selected)
 {
 	const uint32_t data = bus->data;
 
-	registers->command_stop = registers->command_abort = registers->command_clear = registers->command_zero = false;
+	registers->command_stop = registers->command_abort = registers->command_clear =
+	    registers->command_zero = false;
 	if (!selected || !bus->write)
 		return;
 	switch ((uint8_t)bus->address) {

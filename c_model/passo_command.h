@@ -29,18 +29,18 @@ enum passo_shape {
 
 /* A line moves axis i by exactly steps[i] steps while `substeps` substeps of path pass. */
 struct passo_line {
-	bool last;                       /* the path may end here */
-	bool endless;                    /* repeat until stopped */
-	uint8_t directions;              /* bit i set: axis i counts down */
-	uint32_t substeps;               /* M, 1 .. 2^32-1 */
-	uint32_t steps[PASSO_AXES_MAX];  /* N_i, 0 .. M */
+	bool last;                      /* the path may end here */
+	bool endless;                   /* repeat until stopped */
+	uint8_t directions;             /* bit i set: axis i counts down */
+	uint32_t substeps;              /* M, 1 .. 2^32-1 */
+	uint32_t steps[PASSO_AXES_MAX]; /* N_i, 0 .. M */
 };
 
 /* A ramp leads the velocity from where it is to velocity_end. */
 struct passo_ramp {
-	bool last;              /* the profile ends with this ramp */
-	bool now;               /* drop the ramps before it, start from the present velocity */
-	bool mirror;            /* 1 - shape(1 - u) instead of shape(u) */
+	bool last;   /* the profile ends with this ramp */
+	bool now;    /* drop the ramps before it, start from the present velocity */
+	bool mirror; /* 1 - shape(1 - u) instead of shape(u) */
 	enum passo_shape shape;
 	uint64_t velocity_end;  /* UQ0.48 substeps per clock, 0 .. 2^47 */
 	uint32_t ticks;         /* T; 0 sets the velocity at once */

@@ -8,13 +8,16 @@
 #include "passo_registers_core.h"
 #include "passo_shapes.h"
 
-static bool in_range(unsigned value, unsigned low, unsigned high) { return value >= low && value <= high; }
+static bool in_range(unsigned value, unsigned low, unsigned high)
+{
+	return value >= low && value <= high;
+}
 
 bool passo_core_reset(struct passo_core *core, const struct passo_parameters *parameters)
 {
-	if (!in_range(parameters->channels, 1, PASSO_CHANNELS_MAX) || !in_range(parameters->axes, 1, PASSO_AXES_MAX)
-	    || !in_range(parameters->tick_log2, 7, 16) || !in_range(parameters->line_queue_log2, 2, 8)
-	    || !in_range(parameters->ramp_queue_log2, 2, 8))
+	if (!in_range(parameters->channels, 1, PASSO_CHANNELS_MAX)
+	    || !in_range(parameters->axes, 1, PASSO_AXES_MAX) || !in_range(parameters->tick_log2, 7, 16)
+	    || !in_range(parameters->line_queue_log2, 2, 8) || !in_range(parameters->ramp_queue_log2, 2, 8))
 		return false;
 	memset(core, 0, sizeof *core);
 	core->parameters = *parameters;
@@ -98,7 +101,8 @@ void passo_core_clock(struct passo_core *core, const struct passo_inputs *inputs
 		passo_channel_clock(&core->channel[i], &channel_inputs);
 	}
 	passo_link_clock(&core->link, &link_wires);
-	passo_spi_clock(&core->spi, core->inputs.spi_sclk, inputs->spi_sclk, inputs->spi_mosi, inputs->spi_cs_n, reply_word);
+	passo_spi_clock(&core->spi, core->inputs.spi_sclk, inputs->spi_sclk, inputs->spi_mosi,
+	    inputs->spi_cs_n, reply_word);
 
 	core->tables.slot = (uint8_t)((core->tables.slot + 1u) % (2u * parameters->channels));
 	core->sync_q = (uint8_t)((core->sync_q << 1 | (inputs->sync ? 1 : 0)) & 7);
@@ -109,6 +113,12 @@ void passo_core_clock(struct passo_core *core, const struct passo_inputs *inputs
 	gather_outputs(core);
 }
 
-const struct passo_outputs *passo_core_outputs(const struct passo_core *core) { return &core->outputs; }
+const struct passo_outputs *passo_core_outputs(const struct passo_core *core)
+{
+	return &core->outputs;
+}
 
-uint64_t passo_core_size(void) { return sizeof(struct passo_core); }
+uint64_t passo_core_size(void)
+{
+	return sizeof(struct passo_core);
+}

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT
  * The reference model of the core: what each clock must do, bit for bit what rtl/passo_core.v does.
  *
- * passo_core_clock() is one rising edge. Pins given to it are the pins as they stand at that edge; outputs are the pins
- * after it. No heap, no floating point; a core is a plain struct that may be copied.
+ * passo_core_clock() is one rising edge. Pins given to it are the pins as they stand at that edge; outputs
+ * are the pins after it. No heap, no floating point; a core is a plain struct that may be copied.
  */
 #ifndef PASSO_CORE_H
 #define PASSO_CORE_H
 
 #include "passo_model.h"
 
-/* Input pins. Each level of spi_sclk must last at least one clock, and chip select must not change together with it. */
+/* Input pins. Each level of spi_sclk must last at least one clock, and chip select must not change together
+ * with it. */
 struct passo_inputs {
 	bool spi_sclk;
 	bool spi_mosi;
@@ -48,9 +49,9 @@ bool passo_core_reset(struct passo_core *core, const struct passo_parameters *pa
 /* One rising edge of the clock. */
 void passo_core_clock(struct passo_core *core, const struct passo_inputs *inputs);
 
-/* Advances over at most `limit` clocks in which no output pin changes, the inputs staying as they are. Returns how many; after 0
- * the next clock may not be quiet: use passo_core_clock(). The core is then in the very state that so many calls of
- * passo_core_clock() would have led to. */
+/* Advances over at most `limit` clocks in which no output pin changes, the inputs staying as they are.
+ * Returns how many; after 0 the next clock may not be quiet: use passo_core_clock(). The core is then in the
+ * very state that so many calls of passo_core_clock() would have led to. */
 uint64_t passo_core_advance(struct passo_core *core, const struct passo_inputs *inputs, uint64_t limit);
 
 const struct passo_outputs *passo_core_outputs(const struct passo_core *core);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * CRC-32/MPEG-2 over 32-bit words. See rtl/passo_crc.v. The 32 shifts are made at once, in the last of their clocks.
+ * CRC-32/MPEG-2 over 32-bit words. See rtl/passo_crc.v. The 32 shifts are made at once, in the last of their
+ * clocks.
  */
 #include "passo_model.h"
 

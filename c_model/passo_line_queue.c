@@ -5,15 +5,18 @@
 
 enum { INDEX_CONTROL = 0, INDEX_SUBSTEPS = 1, INDEX_STEPS = 2 };
 
-static unsigned depth(const struct passo_parameters *parameters) { return 1u << parameters->line_queue_log2; }
+static unsigned depth(const struct passo_parameters *parameters)
+{
+	return 1u << parameters->line_queue_log2;
+}
 
 static uint16_t wrap(unsigned line, const struct passo_parameters *parameters)
 {
 	return (uint16_t)(line & (2u * depth(parameters) - 1u));
 }
 
-uint8_t passo_line_queue_refusal(const struct passo_line_queue *queue, const struct passo_parameters *parameters,
-    const struct passo_bus *bus, bool blocked)
+uint8_t passo_line_queue_refusal(const struct passo_line_queue *queue,
+    const struct passo_parameters *parameters, const struct passo_bus *bus, bool blocked)
 {
 	const uint32_t defined = ((1u << parameters->axes) - 1u) << 8 | 3u;
 
@@ -60,7 +63,8 @@ static void clock_writing(struct passo_line_queue *queue, const struct passo_par
 		if (complete && bus->check)
 			queue->checked = wrap(queue->checked + 1u, parameters);
 		if (bus->write)
-			write_word(&queue->lines[queue->write_line & (depth(parameters) - 1u)], index, bus->data);
+			write_word(
+			    &queue->lines[queue->write_line & (depth(parameters) - 1u)], index, bus->data);
 		if (complete && bus->write)
 			queue->write_line = wrap(queue->write_line + 1u, parameters);
 	}

@@ -3,10 +3,22 @@
  */
 #include "passo_model.h"
 
-static uint8_t operation_of(uint32_t header) { return (uint8_t)(header >> 28); }
-static uint8_t sequence_of(uint32_t header) { return (uint8_t)(header >> 20 & 0xFFu); }
-static uint8_t length_of(uint32_t header) { return (uint8_t)(header >> 12 & 0xFFu); }
-static uint16_t address_of(uint32_t header) { return (uint16_t)(header & 0xFFFu); }
+static uint8_t operation_of(uint32_t header)
+{
+	return (uint8_t)(header >> 28);
+}
+static uint8_t sequence_of(uint32_t header)
+{
+	return (uint8_t)(header >> 20 & 0xFFu);
+}
+static uint8_t length_of(uint32_t header)
+{
+	return (uint8_t)(header >> 12 & 0xFFu);
+}
+static uint16_t address_of(uint32_t header)
+{
+	return (uint16_t)(header & 0xFFFu);
+}
 
 /* Sequence and verdict, and their complement. */
 static uint32_t acknowledge(uint8_t sequence, uint8_t verdict)
@@ -23,17 +35,19 @@ void passo_link_reset(struct passo_link *link)
 bool passo_link_quiet(const struct passo_link *link)
 {
 	const struct passo_bus *bus = &link->bus;
-	const bool waits = link->step != PASSO_LINK_VERDICT && link->step != PASSO_LINK_REPLAY && link->step != PASSO_LINK_READ;
-	return waits && link->crc.busy == 0u && !link->crc_start && link->crc_idle_q && !link->crc_restart && !link->answer_due
-	       && !link->stage_high && !link->stage_low && !link->refused
-	       && !bus->frame && !bus->check && !bus->write && !bus->read;
+	const bool waits = link->step != PASSO_LINK_VERDICT && link->step != PASSO_LINK_REPLAY
+	                && link->step != PASSO_LINK_READ;
+	return waits && link->crc.busy == 0u && !link->crc_start && link->crc_idle_q && !link->crc_restart
+	    && !link->answer_due && !link->stage_high && !link->stage_low && !link->refused && !bus->frame
+	    && !bus->check && !bus->write && !bus->read;
 }
 
 static void take_header(struct passo_link *link, uint32_t word)
 {
 	const uint8_t operation = operation_of(word);
 	const bool is_read = operation == PASSO_OPERATION_READ;
-	const bool is_known = is_read || operation == PASSO_OPERATION_WRITE || operation == PASSO_OPERATION_PUSH;
+	const bool is_known =
+	    is_read || operation == PASSO_OPERATION_WRITE || operation == PASSO_OPERATION_PUSH;
 	const bool fits = length_of(word) != 0u && length_of(word) <= PASSO_PAYLOAD_MAX;
 	const bool repeated = link->sequence_known && !is_read && sequence_of(word) == link->last_sequence;
 
@@ -43,19 +57,19 @@ static void take_header(struct passo_link *link, uint32_t word)
 	link->index = 0;
 	link->crc_word = word;
 	link->crc_start = true;
-	link->verdict = !is_known  ? PASSO_VERDICT_BAD_OPERATION
-	                : !fits    ? PASSO_VERDICT_BAD_LENGTH
-	                : repeated ? PASSO_VERDICT_DUPLICATE
-	                           : PASSO_VERDICT_OK;
+	link->verdict = !is_known ? PASSO_VERDICT_BAD_OPERATION
+	              : !fits     ? PASSO_VERDICT_BAD_LENGTH
+	              : repeated  ? PASSO_VERDICT_DUPLICATE
+	                          : PASSO_VERDICT_OK;
 	link->step = is_read || length_of(word) == 0u ? PASSO_LINK_CRC : PASSO_LINK_PAYLOAD;
 }
 
 static void give_verdict(struct passo_link *link, bool incomplete)
 {
-	const uint8_t verdict = link->crc.crc != 0u                 ? PASSO_VERDICT_BAD_CRC
-	                        : link->verdict != PASSO_VERDICT_OK ? link->verdict
-	                        : incomplete                        ? PASSO_VERDICT_BAD_LENGTH
-	                                                            : PASSO_VERDICT_OK;
+	const uint8_t verdict = link->crc.crc != 0u               ? PASSO_VERDICT_BAD_CRC
+	                      : link->verdict != PASSO_VERDICT_OK ? link->verdict
+	                      : incomplete                        ? PASSO_VERDICT_BAD_LENGTH
+	                                                          : PASSO_VERDICT_OK;
 
 	link->reply_word = acknowledge(sequence_of(link->header), verdict);
 	link->refused = verdict != PASSO_VERDICT_OK && verdict != PASSO_VERDICT_DUPLICATE;
@@ -102,8 +116,10 @@ void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wi
 	};
 	const bool crc_idle = was.crc.busy == 0u && !was.crc_start;
 	const bool verdict_due = crc_idle && link->crc_idle_q;
-	const bool frame_goes_on = (was.frame_waits || wires->spi.frame_start) && !wires->spi.frame_end && !wires->spi.word_valid;
-	const uint8_t answer = wires->response.claim ? wires->response.refusal : PASSO_VERDICT_UNKNOWN_ADDRESS;
+	const bool frame_goes_on =
+	    (was.frame_waits || wires->spi.frame_start) && !wires->spi.frame_end && !wires->spi.word_valid;
+	const uint8_t answer =
+	    wires->response.claim ? wires->response.refusal : PASSO_VERDICT_UNKNOWN_ADDRESS;
 
 	if (was.stage_low)
 		link->payload[link->index & 63u] = was.bus.data;

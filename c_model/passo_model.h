@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * State of the model, one struct and one source file per RTL module, with the names of the RTL.
  *
- * All modules change on the same edge. So whoever owns several modules first gathers the wires between them from the
- * state before the edge, then clocks each module with these wires, in any order.
+ * All modules change on the same edge. So whoever owns several modules first gathers the wires between them
+ * from the state before the edge, then clocks each module with these wires, in any order.
  */
 #ifndef PASSO_MODEL_H
 #define PASSO_MODEL_H
@@ -24,7 +24,7 @@ struct passo_parameters {
 	uint8_t ramp_queue_log2; /* RAMP_QUEUE_LOG2, 2 .. 8 */
 };
 
-/* ---- link side ---------------------------------------------------------------------------------------------- */
+/* ---- link side ---- */
 
 struct passo_spi {
 	uint8_t bit_count;
@@ -44,7 +44,8 @@ struct passo_spi_wires {
 struct passo_spi_wires passo_spi_wires(const struct passo_spi *spi);
 void passo_spi_reset(struct passo_spi *spi);
 /* SCLK edges since the last clock, then the edge of clk. */
-void passo_spi_clock(struct passo_spi *spi, bool sclk_was, bool sclk, bool mosi, bool cs_n, uint32_t reply_word);
+void passo_spi_clock(
+    struct passo_spi *spi, bool sclk_was, bool sclk, bool mosi, bool cs_n, uint32_t reply_word);
 
 struct passo_crc {
 	uint32_t crc;
@@ -119,14 +120,14 @@ struct passo_registers {
 	uint8_t refusals[8]; /* BAD_CRC first */
 };
 
-/* ---- tables ------------------------------------------------------------------------------------------------- */
+/* ---- tables ---- */
 
 struct passo_tables {
 	uint16_t points[3][PASSO_TABLE_POINTS];
 	uint8_t slot; /* 2 * channel + second */
 };
 
-/* ---- channel ------------------------------------------------------------------------------------------------ */
+/* ---- channel ---- */
 
 struct passo_line_queue {
 	uint8_t index;
@@ -267,8 +268,8 @@ struct passo_channel_inputs {
 
 /* The wires of a channel, from the state before the edge. */
 struct passo_channel_wires {
-	bool selected;          /* the bus address is in this channel */
-	uint8_t bus_address;    /* within the channel */
+	bool selected;       /* the bus address is in this channel */
+	uint8_t bus_address; /* within the channel */
 	bool line_push, ramp_push;
 	bool occupied, moving, counting, drain;
 	bool ramp_valid;
@@ -283,21 +284,24 @@ struct passo_channel_wires {
 
 void passo_line_queue_clock(struct passo_line_queue *queue, const struct passo_parameters *parameters,
     const struct passo_bus *bus, const struct passo_channel_wires *wires);
-uint8_t passo_line_queue_refusal(const struct passo_line_queue *queue, const struct passo_parameters *parameters,
-    const struct passo_bus *bus, bool blocked);
+uint8_t passo_line_queue_refusal(const struct passo_line_queue *queue,
+    const struct passo_parameters *parameters, const struct passo_bus *bus, bool blocked);
 
 bool passo_ramp_queue_valid(const struct passo_ramp_queue *queue);
 void passo_ramp_queue_clock(struct passo_ramp_queue *queue, const struct passo_parameters *parameters,
     const struct passo_bus *bus, const struct passo_channel_wires *wires, bool take, bool take_now);
-uint8_t passo_ramp_queue_refusal(const struct passo_ramp_queue *queue, const struct passo_bus *bus, bool blocked);
+uint8_t passo_ramp_queue_refusal(
+    const struct passo_ramp_queue *queue, const struct passo_bus *bus, bool blocked);
 /* The oldest ramp. */
-struct passo_ramp passo_ramp_queue_front(const struct passo_ramp_queue *queue, const struct passo_parameters *parameters);
+struct passo_ramp passo_ramp_queue_front(
+    const struct passo_ramp_queue *queue, const struct passo_parameters *parameters);
 
 void passo_timescale_clock(struct passo_timescale *timescale, const struct passo_channel_registers *registers,
     bool moving, bool stopping, bool slew_tick);
 
 /* s as UQ1.24 for progress u as UQ0.48. */
-uint32_t passo_shape_value(const struct passo_tables *tables, enum passo_shape shape, bool mirror, uint64_t progress);
+uint32_t passo_shape_value(
+    const struct passo_tables *tables, enum passo_shape shape, bool mirror, uint64_t progress);
 /* v_start + floor((v_end - v_start) * s) */
 uint64_t passo_scale_velocity(uint64_t v_start, uint64_t v_end, uint32_t s);
 /* Clocks from STEP_CHOOSE to the clock that makes velocity_next ready. */
@@ -306,7 +310,8 @@ uint32_t passo_ramp_latency(const struct passo_ramp_unit *ramp, const struct pas
 /* Makes the velocity of one tick of the present ramp: velocity_next. */
 void passo_ramp_make_velocity(struct passo_ramp_unit *ramp, const struct passo_tables *tables);
 void passo_ramp_clock(struct passo_ramp_unit *ramp, const struct passo_channel *channel,
-    const struct passo_channel_inputs *inputs, const struct passo_channel_wires *wires, bool *take, bool *take_now);
+    const struct passo_channel_inputs *inputs, const struct passo_channel_wires *wires, bool *take,
+    bool *take_now);
 
 void passo_path_clock(struct passo_path *path, bool restart, bool advance, uint64_t velocity);
 
@@ -330,16 +335,19 @@ void passo_axis_skip(struct passo_axis *axis, uint64_t clocks);
 
 void passo_motion_wires(const struct passo_channel *channel, const struct passo_channel_inputs *inputs,
     struct passo_channel_wires *wires);
-void passo_motion_clock(
-    struct passo_motion *motion, const struct passo_channel *channel, const struct passo_channel_wires *wires);
+void passo_motion_clock(struct passo_motion *motion, const struct passo_channel *channel,
+    const struct passo_channel_wires *wires);
 
 /* Answer of a channel to the strobe on the bus. */
-struct passo_response passo_channel_respond(const struct passo_channel *channel, const struct passo_channel_inputs *inputs);
+struct passo_response passo_channel_respond(
+    const struct passo_channel *channel, const struct passo_channel_inputs *inputs);
 void passo_channel_registers_reset(struct passo_channel_registers *registers);
-void passo_channel_registers_clock(struct passo_channel_registers *registers, const struct passo_bus *bus, bool selected);
+void passo_channel_registers_clock(
+    struct passo_channel_registers *registers, const struct passo_bus *bus, bool selected);
 void passo_axis_registers_write(struct passo_axis_settings *settings, uint8_t address, uint32_t data);
 
-void passo_channel_reset(struct passo_channel *channel, const struct passo_parameters *parameters, uint8_t number);
+void passo_channel_reset(
+    struct passo_channel *channel, const struct passo_parameters *parameters, uint8_t number);
 void passo_channel_clock(struct passo_channel *channel, const struct passo_channel_inputs *inputs);
 bool passo_channel_stopped(const struct passo_channel *channel);
 bool passo_channel_occupied(const struct passo_channel *channel);

@@ -8,11 +8,13 @@ enum { SETTLE_LAST = 4, START_LAST = 6 };
 static bool stop_now(const struct passo_channel *channel, const struct passo_channel_wires *wires)
 {
 	const bool rate_is_zero = channel->timescale.rate == 0u;
-	return channel->registers.command_abort || (wires->moving && (wires->overrun || channel->line.underrun))
-	       || (channel->motion.stopping && (rate_is_zero || wires->finished || !wires->moving));
+	return channel->registers.command_abort
+	    || (wires->moving && (wires->overrun || channel->line.underrun))
+	    || (channel->motion.stopping && (rate_is_zero || wires->finished || !wires->moving));
 }
 
-static enum passo_cause cause_now(const struct passo_channel *channel, const struct passo_channel_wires *wires)
+static enum passo_cause cause_now(
+    const struct passo_channel *channel, const struct passo_channel_wires *wires)
 {
 	if (channel->registers.command_abort)
 		return PASSO_CAUSE_ABORT;
@@ -35,10 +37,12 @@ void passo_motion_wires(const struct passo_channel *channel, const struct passo_
 	wires->moving = state == PASSO_STATE_RUN || state == PASSO_STATE_SETTLE || state == PASSO_STATE_DRAIN;
 	wires->counting = state == PASSO_STATE_RUN || state == PASSO_STATE_DRAIN;
 	wires->drain = state == PASSO_STATE_DRAIN;
-	wires->startable = state == PASSO_STATE_IDLE && inputs->run && channel->line_queue.next_valid && wires->ramp_valid;
+	wires->startable =
+	    state == PASSO_STATE_IDLE && inputs->run && channel->line_queue.next_valid && wires->ramp_valid;
 	wires->prepare = state == PASSO_STATE_IDLE && motion->startable;
 	wires->begin_profile = state == PASSO_STATE_ARMED && (inputs->sync_edge || !inputs->wait_sync);
-	wires->finished = state == PASSO_STATE_SETTLE && motion->count == SETTLE_LAST && (line_over || channel->line.endless);
+	wires->finished = state == PASSO_STATE_SETTLE && motion->count == SETTLE_LAST
+	               && (line_over || channel->line.endless);
 	wires->stop_now = stop_now(channel, wires) && !wires->stopped;
 	wires->cause = cause_now(channel, wires);
 }

@@ -14,7 +14,8 @@ void passo_path_clock(struct passo_path *path, bool restart, bool advance, uint6
 	}
 	path->substep = false;
 	if (path->advance_q) {
-		const uint32_t sum = path->phase_high + path->velocity_high_q + (path->phase_low_carry ? 1u : 0u);
+		const uint32_t sum =
+		    path->phase_high + path->velocity_high_q + (path->phase_low_carry ? 1u : 0u);
 		path->phase_high = sum & HALF_MASK;
 		path->substep = sum > HALF_MASK;
 	}

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Ramp: velocity over time. See rtl/passo_ramp.v.
  *
- * Loading a ramp, and shape and scale, take the same clocks as in the RTL but happen at once, in the last of them.
+ * Loading a ramp, and shape and scale, take the same clocks as in the RTL but happen at once, in the last of
+ * them.
  */
 #include "passo_model.h"
 
@@ -11,9 +12,10 @@ static const uint32_t LOAD_NOW_CLOCKS = 12; /* one more, for the queue to drop w
 uint32_t passo_ramp_latency(const struct passo_ramp_unit *ramp, const struct passo_tables *tables,
     const struct passo_parameters *parameters, uint8_t channel)
 {
-	const uint32_t look_up = 4;      /* from CHOOSE: start, round, mirror, look up */
-	const uint32_t multiply = 21;    /* from the channel's turn at the tables: two reads, 16 bits, sum, mirror */
-	const uint32_t scale = 54;       /* start, difference, 24 bits in two halves each, sum */
+	const uint32_t look_up = 4; /* from CHOOSE: start, round, mirror, look up */
+	const uint32_t multiply =
+	    21; /* from the channel's turn at the tables: two reads, 16 bits, sum, mirror */
+	const uint32_t scale = 54; /* start, difference, 24 bits in two halves each, sum */
 	const uint32_t x = (uint32_t)((ramp->progress + (UINT64_C(1) << 23)) >> 24);
 	const uint32_t x_mirrored = ramp->mirror ? (1u << 24) - x : x;
 
@@ -84,7 +86,8 @@ static void stop(struct passo_ramp_unit *ramp)
 }
 
 void passo_ramp_clock(struct passo_ramp_unit *ramp, const struct passo_channel *channel,
-    const struct passo_channel_inputs *inputs, const struct passo_channel_wires *wires, bool *take, bool *take_now)
+    const struct passo_channel_inputs *inputs, const struct passo_channel_wires *wires, bool *take,
+    bool *take_now)
 {
 	const uint64_t velocity_next = ramp->velocity_next;
 	const bool ends_next = ramp->ends_next;
@@ -100,7 +103,8 @@ void passo_ramp_clock(struct passo_ramp_unit *ramp, const struct passo_channel *
 		break;
 	case PASSO_RAMP_LOAD:
 		if (--ramp->wait == 0u) {
-			const struct passo_ramp front = passo_ramp_queue_front(&channel->ramp_queue, inputs->parameters);
+			const struct passo_ramp front =
+			    passo_ramp_queue_front(&channel->ramp_queue, inputs->parameters);
 			load(ramp, &front);
 			*take = true;
 			ramp->step = PASSO_RAMP_CHOOSE;

@@ -8,16 +8,23 @@ enum { INDEX_CONTROL = 0, INDEX_VELOCITY_LOW = 1, INDEX_TICKS = 2, INDEX_STEP_HI
 static const uint32_t CONTROL_DEFINED = 0x0037u;
 static const uint32_t VELOCITY_MAX_HIGH = 0x8000u;
 
-static unsigned depth(const struct passo_parameters *parameters) { return 1u << parameters->ramp_queue_log2; }
+static unsigned depth(const struct passo_parameters *parameters)
+{
+	return 1u << parameters->ramp_queue_log2;
+}
 
 static uint16_t wrap(unsigned ramp, const struct passo_parameters *parameters)
 {
 	return (uint16_t)(ramp & (2u * depth(parameters) - 1u));
 }
 
-bool passo_ramp_queue_valid(const struct passo_ramp_queue *queue) { return queue->read_ramp != queue->write_ramp; }
+bool passo_ramp_queue_valid(const struct passo_ramp_queue *queue)
+{
+	return queue->read_ramp != queue->write_ramp;
+}
 
-uint8_t passo_ramp_queue_refusal(const struct passo_ramp_queue *queue, const struct passo_bus *bus, bool blocked)
+uint8_t passo_ramp_queue_refusal(
+    const struct passo_ramp_queue *queue, const struct passo_bus *bus, bool blocked)
 {
 	const uint32_t high = bus->data >> 16;
 	const uint32_t low = bus->data & 0xFFFFu;
@@ -28,7 +35,8 @@ uint8_t passo_ramp_queue_refusal(const struct passo_ramp_queue *queue, const str
 		return PASSO_VERDICT_QUEUE_FULL;
 	switch (queue->index) {
 	case INDEX_CONTROL:
-		return (low & ~CONTROL_DEFINED) != 0u || high > VELOCITY_MAX_HIGH ? PASSO_VERDICT_BAD_VALUE : PASSO_VERDICT_OK;
+		return (low & ~CONTROL_DEFINED) != 0u || high > VELOCITY_MAX_HIGH ? PASSO_VERDICT_BAD_VALUE
+		                                                                  : PASSO_VERDICT_OK;
 	case INDEX_VELOCITY_LOW:
 		return queue->velocity_is_max && bus->data != 0u ? PASSO_VERDICT_BAD_VALUE : PASSO_VERDICT_OK;
 	case INDEX_STEP_HIGH:
@@ -38,7 +46,8 @@ uint8_t passo_ramp_queue_refusal(const struct passo_ramp_queue *queue, const str
 	}
 }
 
-struct passo_ramp passo_ramp_queue_front(const struct passo_ramp_queue *queue, const struct passo_parameters *parameters)
+struct passo_ramp passo_ramp_queue_front(
+    const struct passo_ramp_queue *queue, const struct passo_parameters *parameters)
 {
 	const uint32_t *words = queue->words[queue->read_ramp & (depth(parameters) - 1u)];
 
@@ -52,7 +61,10 @@ struct passo_ramp passo_ramp_queue_front(const struct passo_ramp_queue *queue, c
 	};
 }
 
-static uint8_t next_index(uint8_t index) { return index == INDEX_LAST ? INDEX_CONTROL : (uint8_t)(index + 1u); }
+static uint8_t next_index(uint8_t index)
+{
+	return index == INDEX_LAST ? INDEX_CONTROL : (uint8_t)(index + 1u);
+}
 
 void passo_ramp_queue_clock(struct passo_ramp_queue *queue, const struct passo_parameters *parameters,
     const struct passo_bus *bus, const struct passo_channel_wires *wires, bool take, bool take_now)

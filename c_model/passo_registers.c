@@ -1,11 +1,15 @@
 /* SPDX-License-Identifier: MIT
- * Registers of the core and the shape tables' place on the bus. See rtl/passo_registers.v and rtl/passo_tables.v.
+ * Registers of the core and the shape tables' place on the bus. See rtl/passo_registers.v and
+ * rtl/passo_tables.v.
  */
 #include "passo_core.h"
 
 #include "passo_registers_core.h"
 
-static uint8_t at_most_255(uint16_t room) { return (uint8_t)(room > 255u ? 255u : room); }
+static uint8_t at_most_255(uint16_t room)
+{
+	return (uint8_t)(room > 255u ? 255u : room);
+}
 
 static bool any_occupied(const struct passo_core *core)
 {
@@ -27,23 +31,25 @@ uint32_t passo_registers_status(const struct passo_core *core)
 {
 	const struct passo_channel *channel = &core->channel[core->registers.status_channel];
 
-	return 2u << 30 | (passo_registers_any_stopped(core) ? 1u : 0u) << 29 | (any_occupied(core) ? 1u : 0u) << 28
-	       | (uint32_t)core->registers.status_channel << 24 | (uint32_t)core->link.last_sequence << 16
-	       | (uint32_t)at_most_255(channel->line_queue.room) << 8 | at_most_255(channel->ramp_queue.room);
+	return 2u << 30 | (passo_registers_any_stopped(core) ? 1u : 0u) << 29
+	     | (any_occupied(core) ? 1u : 0u) << 28 | (uint32_t)core->registers.status_channel << 24
+	     | (uint32_t)core->link.last_sequence << 16 | (uint32_t)at_most_255(channel->line_queue.room) << 8
+	     | at_most_255(channel->ramp_queue.room);
 }
 
 static uint32_t parameters_word(const struct passo_parameters *parameters)
 {
 	return (uint32_t)parameters->channels << PASSO_PARAMETERS_CHANNELS_LSB
-	       | (uint32_t)parameters->axes << PASSO_PARAMETERS_AXES_LSB
-	       | (uint32_t)parameters->tick_log2 << PASSO_PARAMETERS_TICK_LOG2_LSB
-	       | (uint32_t)parameters->line_queue_log2 << PASSO_PARAMETERS_LINE_QUEUE_LOG2_LSB
-	       | (uint32_t)parameters->ramp_queue_log2 << PASSO_PARAMETERS_RAMP_QUEUE_LOG2_LSB;
+	     | (uint32_t)parameters->axes << PASSO_PARAMETERS_AXES_LSB
+	     | (uint32_t)parameters->tick_log2 << PASSO_PARAMETERS_TICK_LOG2_LSB
+	     | (uint32_t)parameters->line_queue_log2 << PASSO_PARAMETERS_LINE_QUEUE_LOG2_LSB
+	     | (uint32_t)parameters->ramp_queue_log2 << PASSO_PARAMETERS_RAMP_QUEUE_LOG2_LSB;
 }
 
 static uint32_t four_counters(const uint8_t *counters)
 {
-	return (uint32_t)counters[3] << 24 | (uint32_t)counters[2] << 16 | (uint32_t)counters[1] << 8 | counters[0];
+	return (uint32_t)counters[3] << 24 | (uint32_t)counters[2] << 16 | (uint32_t)counters[1] << 8
+	     | counters[0];
 }
 
 static bool register_value(const struct passo_core *core, uint16_t address, uint32_t *value)
@@ -55,15 +61,17 @@ static bool register_value(const struct passo_core *core, uint16_t address, uint
 		*value = PASSO_IDENTIFICATION_RESET;
 		return true;
 	case PASSO_ADDRESS_VERSION:
-		*value = PASSO_VERSION_MAJOR_RESET << PASSO_VERSION_MAJOR_LSB | PASSO_VERSION_MINOR_RESET << PASSO_VERSION_MINOR_LSB
-		         | PASSO_VERSION_PATCH_RESET << PASSO_VERSION_PATCH_LSB;
+		*value = PASSO_VERSION_MAJOR_RESET << PASSO_VERSION_MAJOR_LSB
+		       | PASSO_VERSION_MINOR_RESET << PASSO_VERSION_MINOR_LSB
+		       | PASSO_VERSION_PATCH_RESET << PASSO_VERSION_PATCH_LSB;
 		return true;
 	case PASSO_ADDRESS_PARAMETERS:
 		*value = parameters_word(&core->parameters);
 		return true;
 	case PASSO_ADDRESS_RUN:
 		*value = (uint32_t)registers->status_channel << PASSO_RUN_STATUS_CHANNEL_LSB
-		         | (uint32_t)registers->wait_sync << PASSO_RUN_WAIT_SYNC_LSB | (uint32_t)registers->run << PASSO_RUN_RUN_LSB;
+		       | (uint32_t)registers->wait_sync << PASSO_RUN_WAIT_SYNC_LSB
+		       | (uint32_t)registers->run << PASSO_RUN_RUN_LSB;
 		return true;
 	case PASSO_ADDRESS_REFUSALS_0:
 		*value = four_counters(&registers->refusals[0]);
@@ -80,11 +88,14 @@ static uint8_t run_check(const struct passo_core *core, uint32_t data)
 {
 	const unsigned channels = core->parameters.channels;
 	const bool beyond = (data & 0xFFu) >> channels != 0u || (data >> 8 & 0xFFu) >> channels != 0u
-	                    || (data >> 16 & 7u) >= channels;
+	                 || (data >> 16 & 7u) >= channels;
 	return (data & ~PASSO_RUN_DEFINED) != 0u || beyond ? PASSO_VERDICT_BAD_VALUE : PASSO_VERDICT_OK;
 }
 
-static bool in_tables(uint16_t address) { return address >= PASSO_ADDRESS_COSINE_BASE; }
+static bool in_tables(uint16_t address)
+{
+	return address >= PASSO_ADDRESS_COSINE_BASE;
+}
 
 struct passo_response passo_registers_respond(const struct passo_core *core)
 {
@@ -97,18 +108,18 @@ struct passo_response passo_registers_respond(const struct passo_core *core)
 	if (in_tables(bus->address)) {
 		response.claim = true;
 		if (bus->check)
-			response.refusal = bus->push                ? PASSO_VERDICT_BAD_OPERATION
-			                   : any_occupied(core)     ? PASSO_VERDICT_BUSY
-			                   : bus->data >> 16 != 0u  ? PASSO_VERDICT_BAD_VALUE
-			                                            : PASSO_VERDICT_OK;
+			response.refusal = bus->push             ? PASSO_VERDICT_BAD_OPERATION
+			                 : any_occupied(core)    ? PASSO_VERDICT_BUSY
+			                 : bus->data >> 16 != 0u ? PASSO_VERDICT_BAD_VALUE
+			                                         : PASSO_VERDICT_OK;
 		else
 			response.refusal = PASSO_VERDICT_BAD_OPERATION;
 	} else if (register_value(core, bus->address, &value)) {
 		response.claim = true;
 		if (bus->check)
-			response.refusal = bus->push                             ? PASSO_VERDICT_BAD_OPERATION
-			                   : bus->address != PASSO_ADDRESS_RUN ? PASSO_VERDICT_READ_ONLY
-			                                                         : run_check(core, bus->data);
+			response.refusal = bus->push                         ? PASSO_VERDICT_BAD_OPERATION
+			                 : bus->address != PASSO_ADDRESS_RUN ? PASSO_VERDICT_READ_ONLY
+			                                                     : run_check(core, bus->data);
 		else
 			response.read_data = value;
 	}
@@ -129,6 +140,7 @@ void passo_registers_clock(struct passo_core *core)
 	}
 	if (bus->write && in_tables(bus->address)) {
 		const unsigned place = bus->address - PASSO_ADDRESS_COSINE_BASE;
-		core->tables.points[place / PASSO_TABLE_POINTS][place % PASSO_TABLE_POINTS] = (uint16_t)bus->data;
+		core->tables.points[place / PASSO_TABLE_POINTS][place % PASSO_TABLE_POINTS] =
+		    (uint16_t)bus->data;
 	}
 }

@@ -40,7 +40,8 @@ static void falling_sclk(struct passo_spi *spi, uint32_t reply_word)
 	}
 }
 
-void passo_spi_clock(struct passo_spi *spi, bool sclk_was, bool sclk, bool mosi, bool cs_n, uint32_t reply_word)
+void passo_spi_clock(
+    struct passo_spi *spi, bool sclk_was, bool sclk, bool mosi, bool cs_n, uint32_t reply_word)
 {
 	if (cs_n) {
 		spi->bit_count = 0;
