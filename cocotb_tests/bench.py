@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """What the tests of single modules share: the clock and its count, reset, recorders, random numbers.
 
-Conventions. Clock `n` is the n-th rising edge after the clock was started; an output "of clock n" is what a register
-shows after that edge. Tests write inputs and look at outputs on falling edges, so that neither races the rising edge:
-what is written after clock n counts like a register that changed with clock n.
+Conventions. Clock `n` is the n-th rising edge after the clock was started; an output "of clock n" is what a
+register shows after that edge. Tests write inputs and look at outputs on falling edges, so that neither races
+the rising edge: what is written after clock n counts like a register that changed with clock n.
 """
 
 import random
@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 import cocotb
 from cocotb.clock import Clock
 from cocotb.handle import HierarchyObject, LogicArrayObject, LogicObject
-from cocotb.triggers import FallingEdge, ValueChange
+from cocotb.triggers import FallingEdge, Timer, ValueChange
 from cocotb.utils import get_sim_time
 
 from cocotb_tests.runner import seed
@@ -20,6 +20,7 @@ from cocotb_tests.runner import seed
 Signal = LogicObject | LogicArrayObject
 
 PERIOD = 10_000  # ps
+LIMIT = 3_000_000  # clocks after which a test is taken for endless
 
 
 def rng(name: str) -> random.Random:
@@ -38,17 +39,20 @@ class Clocks:
     def __init__(self, clk: LogicObject, period: int = PERIOD) -> None:
         self.period = period
         self.fall = FallingEdge(clk)
+        self.running = False
         self._clock = Clock(clk, period, unit="step", impl="gpi")
         self._origin = 0
 
     def start(self) -> None:
         """Start the clock low; its first rising edge is clock 0."""
         self._clock.start(start_high=False)
+        self.running = True
         self._origin = get_sim_time("step") + self.period // 2
 
     def stop(self) -> None:
-        """Stop the clock, so that `begin` can be called again in the same test."""
+        """Stop the clock and all recorders, so that `begin` can be called again in the same test."""
         self._clock.stop()
+        self.running = False
 
     @property
     def now(self) -> int:
@@ -79,10 +83,16 @@ async def begin(dut: HierarchyObject, *inputs: str, period: int = PERIOD) -> Clo
         getattr(dut, name).value = 0
     clocks = Clocks(dut.clk, period)
     clocks.start()
+    cocotb.start_soon(_watchdog(clocks))
     dut.rst.value = 1
     await clocks.wait(3)
     dut.rst.value = 0
     return clocks
+
+
+async def _watchdog(clocks: Clocks) -> None:
+    await Timer(LIMIT * clocks.period, "step")
+    assert not clocks.running, f"no end after {LIMIT} clocks"
 
 
 class Recorder:
@@ -102,6 +112,8 @@ class Recorder:
         change = ValueChange(self._signal)
         while True:
             await change
+            if not self._clocks.running:
+                return
             clock = self._clocks.edge()
             # a vector may change bit by bit, at the same time
             if self.changes and self.changes[-1][0] == clock:
@@ -138,10 +150,10 @@ class PushBus:
         """Have words checked; return the answer to each, which comes one clock later and for one clock."""
         answers: list[int] = []
         for word in words:
-            strobe = self.clocks.now
             await self._strobe(self.dut.bus_check, word)
+            strobe = self.clocks.now - 1
             answers.append(read(self.dut.refusal))
-            await self.clocks.wait(3)
+            await self.clocks.wait(2)
             late = [n for n, answer in self._refusals.changes if n >= strobe and answer and n != strobe + 1]
             assert not late, f"an answer {late} without a question"
         return answers
@@ -150,7 +162,7 @@ class PushBus:
         """Execute words, one every 4 clocks."""
         for word in words:
             await self._strobe(self.dut.bus_write, word)
-            await self.clocks.wait(3)
+            await self.clocks.wait(2)
 
     async def push(self, words: Sequence[int]) -> None:
         """A good frame: check, then execute."""
@@ -160,9 +172,10 @@ class PushBus:
         await self.write(words)
 
     async def _strobe(self, signal: Signal, word: int) -> None:
-        # the address stays on the bus between strobes
+        # address and data stand on the bus a clock before the strobe, and stay there
         self.dut.select.value = 1
         self.dut.bus_data.value = word
+        await self.clocks.wait(1)
         signal.value = 1
         await self.clocks.wait(1)
         signal.value = 0

@@ -9,7 +9,7 @@
 It is driven by changes of the pins, so that watching costs nothing while they rest.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import cocotb
@@ -41,59 +41,109 @@ class PinTiming:
 
 
 class PulseError(AssertionError):
-    """A pin broke its timing."""
+    """A pin broke its timing; axis -1 is all pins of one kind."""
 
-    def __init__(self, clock: int, axis: int, signal: str, expected: str, actual: str) -> None:
+    def __init__(self, clock: int, axis: int, signal: str, expected: str, actual: object) -> None:
         super().__init__(f"clock {clock}, axis {axis}, {signal}: expected {expected}, actual {actual}")
         self.clock, self.axis, self.signal = clock, axis, signal
 
 
 @dataclass
-class _Pins:
-    """One axis as seen at its pins; -1 = negative direction."""
+class AxisPins:
+    """The rules for one axis. It is told every change of its pins, and raises PulseError.
 
+    - step_high: STEP is active for exactly so long; with both_edges each active level lasts at least so long
+    - step_low: STEP is inactive for at least so long
+    - dir_setup: DIR has been stable for so long at each step
+    - dir_hold: DIR stays stable until so long after the low time that follows a step; with both_edges after
+      the time of the level that begins with the step
+    """
+
+    axis: int
     timing: PinTiming
     active: bool = False
-    direction: int = 1
-    stepped: int | None = None  # clock of the last step
-    moved: int | None = None  # of the last change of STEP
-    turned: int | None = None  # of the last change of DIR
+    direction: int = 1  # -1 = negative
     turns: int = 0
-    steps: list[tuple[int, int]] = field(default_factory=list)
+    steps: list[tuple[int, int]] = field(default_factory=list)  # clock, direction
+    # clocks of the last step, the last change of STEP and of DIR
+    stepped: int | None = None
+    moved: int | None = None
+    turned: int | None = None
+
+    def step_level(self, bit: int) -> bool:
+        """Whether this level of the STEP pin is the active one."""
+        return bool(bit) != self.timing.step_inverted
+
+    def dir_level(self, bit: int) -> int:
+        """Direction that this level of the DIR pin means."""
+        return -1 if bool(bit) != self.timing.direction_inverted else 1
+
+    def stand(self, timing: PinTiming, step_bit: int, dir_bit: int) -> None:
+        """Begin, or go on with another timing, from pins that stand; what was before counts as long ago."""
+        self.timing = timing
+        self.active = self.step_level(step_bit)
+        self.direction = self.dir_level(dir_bit)
+        self.stepped = self.moved = self.turned = None
+
+    def step_changed(self, clock: int) -> None:
+        """STEP has the other level from this clock on."""
+        lasted = None if self.moved is None else clock - self.moved
+        due = self.timing.level(self.active)
+        if self.active and not self.timing.both_edges:
+            if lasted != due:
+                raise PulseError(clock, self.axis, "STEP step_high", f"exactly {due}", lasted)
+        elif lasted is not None and lasted < due:
+            name = "STEP step_high" if self.active else "STEP step_low"
+            raise PulseError(clock, self.axis, name, f"at least {due}", lasted)
+        self.active = not self.active
+        self.moved = clock
+        if self.active or self.timing.both_edges:
+            setup = max(1, self.timing.setup)
+            if self.turned is not None and clock - self.turned < setup:
+                raise PulseError(clock, self.axis, "DIR dir_setup", f"at least {setup}", clock - self.turned)
+            self.stepped = clock
+            self.steps.append((clock, self.direction))
+
+    def dir_changed(self, clock: int) -> None:
+        """DIR has the other level from this clock on."""
+        if self.stepped is not None:
+            busy = self.timing.level(self.active) if self.timing.both_edges else self.timing.busy
+            hold = max(1, self.timing.hold)
+            if clock - self.stepped < busy + hold:
+                expected = f"at least {busy} + {hold} after the step"
+                raise PulseError(clock, self.axis, "DIR dir_hold", expected, clock - self.stepped)
+        self.direction = -self.direction
+        self.turned = clock
+        self.turns += 1
+
+    def finish(self, clock: int) -> None:
+        """Nothing has changed up to this clock."""
+        due = self.timing.level(True)
+        if self.active and not self.timing.both_edges and (self.moved is None or clock - self.moved >= due):
+            lasts = "longer" if self.moved is None else f"{clock - self.moved} and no end"
+            raise PulseError(clock, self.axis, "STEP step_high", f"exactly {due}", lasts)
 
 
 class PulseChecker:
-    """Checks the pins of any number of axes, from the moment it is made to `finish`.
+    """Watches the pins of any number of axes, from the moment it is made to `finish`.
 
-    A violation raises PulseError inside the simulation, which fails the running test at once. Rules, per axis:
-
-    - `high`: STEP is active for exactly so long; with both_edges each active level lasts at least so long
-    - `low`: STEP is inactive for at least so long
-    - `setup`: DIR has been stable for so long at each step
-    - `hold`: DIR stays stable until so long after the low time that follows a step (with both_edges: after the
-      time of the level that begins with the step)
-    - pins change on rising clock edges only and are never X
-
-    When it is made the pins must stand still; what happened before counts as long ago.
+    `step` and `direction` have one bit per axis, and `timings` is theirs. A violation of the rules of
+    AxisPins raises PulseError inside the simulation, which fails the running test at once; so does a pin that
+    is X or changes off the rising clock edges. The pins have to stand when the checker is made.
     """
 
     def __init__(self, clocks: Clocks, step: Signal, direction: Signal, timings: Sequence[PinTiming]) -> None:
         self._clocks = clocks
-        self._step, self._dir = step, direction
         self._begin = clocks.now
-        self._axes = [_Pins(timing) for timing in timings]
         self._finished = False
-        step_bits, dir_bits = read(step), read(direction)
-        for axis, pins in enumerate(self._axes):
-            pins.active = self._is_active(axis, step_bits)
-            pins.direction = self._direction(axis, dir_bits)
-            if pins.active and not pins.timing.both_edges:
-                raise PulseError(clocks.now, axis, "STEP", "inactive when watching begins", "active")
-        self._step_bits, self._dir_bits = step_bits, dir_bits
-        cocotb.start_soon(self._watch_step())
-        cocotb.start_soon(self._watch_dir())
-
-    # What was seen
+        self._step_bits, self._dir_bits = read(step), read(direction)
+        self._axes = [AxisPins(axis, timing) for axis, timing in enumerate(timings)]
+        for pins, timing in zip(self._axes, timings, strict=True):
+            self.set_timing(pins.axis, timing)
+            if pins.active and not timing.both_edges:
+                raise PulseError(clocks.now, pins.axis, "STEP", "inactive at the beginning", "active")
+        cocotb.start_soon(self._watch(step, "STEP", self._step_changed))
+        cocotb.start_soon(self._watch(direction, "DIR", self._dir_changed))
 
     @property
     def positions(self) -> list[int]:
@@ -114,98 +164,43 @@ class PulseChecker:
 
     def set_timing(self, axis: int, timing: PinTiming) -> None:
         """Go on with another timing; the axis has to stand, and its pins keep their levels."""
-        pins = self._axes[axis]
-        pins.timing = timing
-        pins.active = self._is_active(axis, self._step_bits)
-        pins.direction = self._direction(axis, self._dir_bits)
-        pins.stepped = pins.moved = pins.turned = None
+        self._axes[axis].stand(timing, self._step_bits >> axis & 1, self._dir_bits >> axis & 1)
 
     def finish(self) -> str:
         """Stop watching and tell how much was checked; PulseError if a pulse has not ended in time."""
         self._finished = True
         now = self._clocks.now
-        for axis, pins in enumerate(self._axes):
-            if pins.active and not pins.timing.both_edges and now - pins.moved >= pins.timing.level(True):
-                expected = f"active for {pins.timing.level(True)}"
-                raise PulseError(now, axis, "STEP", expected, f"still active after {now - pins.moved}")
-        steps = ", ".join(
-            f"axis {axis}: {sum(d > 0 for _, d in pins.steps)} up {sum(d < 0 for _, d in pins.steps)} down "
-            f"{pins.turns} turns"
-            for axis, pins in enumerate(self._axes)
-        )
-        return f"pins checked for {now - self._begin} clocks: {steps}"
+        told = []
+        for pins in self._axes:
+            pins.finish(now)
+            up = sum(direction > 0 for _, direction in pins.steps)
+            told.append(f"axis {pins.axis}: {up} up {len(pins.steps) - up} down {pins.turns} turns")
+        return f"pins checked for {now - self._begin} clocks: {', '.join(told)}"
 
-    # Watching
-
-    def _is_active(self, axis: int, bits: int) -> bool:
-        return bool(bits >> axis & 1) != self._axes[axis].timing.step_inverted
-
-    def _direction(self, axis: int, bits: int) -> int:
-        negative = bool(bits >> axis & 1) != self._axes[axis].timing.direction_inverted
-        return -1 if negative else 1
-
-    def _look(self, signal: Signal, name: str) -> tuple[int, int]:
-        """Return clock and value of a signal that has changed."""
-        try:
-            clock = self._clocks.edge()
-        except ValueError as error:
-            raise PulseError(self._clocks.now, -1, name, "change on a rising clock edge", str(error)) from None
-        try:
-            return clock, read(signal)
-        except ValueError:
-            raise PulseError(clock, -1, name, "0 or 1", str(signal.value)) from None
-
-    async def _watch_step(self) -> None:
-        change = ValueChange(self._step)
+    async def _watch(self, signal: Signal, name: str, changed: Callable[[int, int], None]) -> None:
+        change = ValueChange(signal)
         while True:
             await change
             if self._finished:
                 return
-            clock, bits = self._look(self._step, "STEP")
-            changed, self._step_bits = bits ^ self._step_bits, bits
-            for axis, pins in enumerate(self._axes):
-                if changed >> axis & 1:
-                    self._step_changed(clock, axis, pins)
+            try:
+                clock = self._clocks.edge()
+            except ValueError as error:
+                raise PulseError(self._clocks.now, -1, name, "change on a clock edge", error) from None
+            try:
+                bits = read(signal)
+            except ValueError:
+                raise PulseError(clock, -1, name, "0 or 1", signal.value) from None
+            changed(clock, bits)
 
-    async def _watch_dir(self) -> None:
-        change = ValueChange(self._dir)
-        while True:
-            await change
-            if self._finished:
-                return
-            clock, bits = self._look(self._dir, "DIR")
-            changed, self._dir_bits = bits ^ self._dir_bits, bits
-            for axis, pins in enumerate(self._axes):
-                if changed >> axis & 1:
-                    self._dir_changed(clock, axis, pins)
+    def _step_changed(self, clock: int, bits: int) -> None:
+        changed, self._step_bits = bits ^ self._step_bits, bits
+        for pins in self._axes:
+            if changed >> pins.axis & 1:
+                pins.step_changed(clock)
 
-    def _step_changed(self, clock: int, axis: int, pins: _Pins) -> None:
-        timing = pins.timing
-        lasted = None if pins.moved is None else clock - pins.moved
-        least = timing.level(pins.active)
-        name = "step_high" if pins.active else "step_low"
-        if pins.active and not timing.both_edges:
-            if lasted != least:
-                raise PulseError(clock, axis, f"STEP {name}", f"exactly {least}", str(lasted))
-        elif lasted is not None and lasted < least:
-            raise PulseError(clock, axis, f"STEP {name}", f"at least {least}", str(lasted))
-        pins.active = not pins.active
-        pins.moved = clock
-        if pins.active or timing.both_edges:
-            setup = max(1, timing.setup)
-            if pins.turned is not None and clock - pins.turned < setup:
-                raise PulseError(clock, axis, "DIR dir_setup", f"at least {setup}", str(clock - pins.turned))
-            pins.stepped = clock
-            pins.steps.append((clock, pins.direction))
-
-    def _dir_changed(self, clock: int, axis: int, pins: _Pins) -> None:
-        timing = pins.timing
-        if pins.stepped is not None:
-            busy = timing.level(pins.active) if timing.both_edges else timing.busy
-            least = busy + max(1, timing.hold)
-            if clock - pins.stepped < least:
-                expected = f"at least {least} after the step ({busy} + hold {max(1, timing.hold)})"
-                raise PulseError(clock, axis, "DIR dir_hold", expected, str(clock - pins.stepped))
-        pins.direction = -pins.direction
-        pins.turned = clock
-        pins.turns += 1
+    def _dir_changed(self, clock: int, bits: int) -> None:
+        changed, self._dir_bits = bits ^ self._dir_bits, bits
+        for pins in self._axes:
+            if changed >> pins.axis & 1:
+                pins.dir_changed(clock)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The whole core behind its SPI pins, operated by the host's own code and compared with the C model on every clock.
+"""The whole core behind its SPI pins, operated by the host's own code and compared with the C model.
 
     @core_test
     def motion_ends(core: Core) -> None:
@@ -9,24 +9,21 @@
         channel.start()
         core.wait_end()
 
-Such a test is plain code in a thread of its own: passo.link and passo.host are not made of coroutines. Simulated time
-passes only in `run`, `transfer` and what is built on them; each of these compares all pins up to now with the model.
+Such a test is plain code in a thread of its own, as passo.link and passo.host are not made of coroutines.
+Simulated time passes in `run`, `transfer` and what is built on them. Each of these ends with a comparison of
+all pins on all clocks up to now; the first difference is an error.
 """
 
 import functools
-import queue
-import threading
-from asyncio import CancelledError
-from collections.abc import Callable, Coroutine, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import cocotb
 import numpy as np
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import Timer
-from passo import frame
 from passo import registers as r
 from passo.build import Parameters
 from passo.host import Channel
@@ -36,13 +33,13 @@ from passo.plan import Plan
 from cocotb_tests.bench import PERIOD, Clocks, read
 from cocotb_tests.checker import PinTiming, PulseChecker
 from cocotb_tests.core_judge import COLUMNS, Judge
+from cocotb_tests.core_thread import Thread
 from cocotb_tests.ramps import ONE, V_MAX, Ramp
 from cocotb_tests.shapes import Shape
 from cocotb_tests.spi import SpiMaster
 
 __all__ = ["ONE", "V_MAX", "Core", "CoreChannel", "Line", "PinTiming", "Ramp", "Shape", "core_test"]
 
-Result = TypeVar("Result")
 LEAD = 4  # clocks from chip select to SCLK and back
 
 
@@ -72,44 +69,6 @@ def planned(plan: Plan, axes: int) -> tuple[Line, list[Ramp]]:
     return Line(plan.line.substeps, steps, plan.line.last), ramps
 
 
-class Thread:
-    """Runs plain code, which can wait for coroutines of the test."""
-
-    def __init__(self) -> None:
-        self._requests: queue.SimpleQueue[Any] = queue.SimpleQueue()
-        self._answers: queue.SimpleQueue[tuple[Any, BaseException | None]] = queue.SimpleQueue()
-
-    def wait(self, coroutine: Coroutine[Any, Any, Result]) -> Result:
-        """In the plain code: wait for a coroutine."""
-        self._requests.put(coroutine)
-        result, error = self._answers.get()
-        if error is not None:
-            raise error
-        return result
-
-    async def run(self, body: Callable[[], None]) -> None:
-        """In the test: run the plain code; the simulator stands still except while that waits."""
-
-        def main() -> None:
-            try:
-                body()
-                self._requests.put(None)
-            except BaseException as error:  # whatever it is, the test has to fail
-                self._requests.put(error)
-
-        threading.Thread(target=main, daemon=True).start()
-        while (request := self._requests.get()) is not None:
-            if isinstance(request, BaseException):
-                raise request
-            try:
-                self._answers.put((await request, None))
-            except CancelledError as error:  # the test is over
-                self._answers.put((None, error))
-                raise
-            except Exception as error:
-                self._answers.put((None, error))
-
-
 class Core:
     """The core as an engine for passo.link; `parameters` are what the core says of itself."""
 
@@ -121,7 +80,9 @@ class Core:
         self.corrupt: Callable[[list[int]], list[int]] = list  # what the wire makes of a frame
         self._thread = thread
         self._spi = SpiMaster(dut, 2 * PERIOD)
+        self.started = 0  # clock
         self._rows: list[np.ndarray] = []
+        self._running: list[tuple[int, int]] = [(0, 0)]  # clocks and levels of all channels
         self._unread = ""
         self._judge: Judge | None = None
 
@@ -138,10 +99,18 @@ class Core:
         await clocks.wait(4)
         dut.spi_cs_n.value = 1
         await clocks.wait(4)
-        core._log = Path("pins.log").open()
-        core._log.seek(0, 2)  # behind the tests before this one
+        core.open_log()
         dut.rst.value = 0
         return core
+
+    def open_log(self) -> None:
+        """Read what is recorded from now on, not that of the tests before."""
+        self._log = Path("pins.log").open()  # noqa: SIM115
+        self._log.seek(0, 2)
+
+    def close(self) -> None:
+        """Leave the log to the next test."""
+        self._log.close()
 
     def identify(self) -> None:
         """Learn the parameters from the core and start to compare."""
@@ -174,16 +143,26 @@ class Core:
         bits = self.transfer_bits(mosi, 32 * len(mosi), gap)
         return [int("".join(map(str, bits[n : n + 32])), 2) for n in range(0, len(bits), 32)]
 
-    def transfer_bits(self, mosi: Sequence[int], count: int, gap: int = 16, cut_high: bool = False) -> list[int]:
+    def transfer_bits(
+        self, mosi: Sequence[int], count: int, gap: int = 16, cut_high: bool = False
+    ) -> list[int]:
         """One chip select of `count` bits."""
+        words = self.corrupt(list(mosi))
+        received = self._thread.wait(self._master(gap).transfer_bits(words, count, cut_high=cut_high))
+        self.compare()
+        return received
+
+    def clock_others(self, bits: int) -> None:
+        """SCLK and MOSI move for another slave: chip select stays high."""
+        self._thread.wait(self._master(LEAD).clock_others(bits))
+        self.compare()
+
+    def _master(self, gap: int) -> SpiMaster:
         spi = self._spi
         spi.period, spi.high = 2 * self.half_period * PERIOD, self.sclk_high * PERIOD
         spi.lead = spi.trail = LEAD * PERIOD
         spi.gap = gap * PERIOD
-        words = self.corrupt(list(mosi))
-        received = self._thread.wait(spi.transfer_bits(words, count, cut_high=cut_high))
-        self.compare()
-        return received
+        return spi
 
     def run(self, clocks: int) -> int:
         """Let time pass."""
@@ -192,20 +171,12 @@ class Core:
         self.compare()
         return clocks
 
-    def run_until(self, condition: Callable[[], object], limit: int, step: int = 32) -> None:
+    def run_until(self, condition: Callable[[], object], limit: int, step: int = 64) -> None:
         """Let time pass until something is so, which is looked at every `step` clocks."""
-
-        async def poll() -> bool:
-            end = self.clocks.now + limit
-            while not condition():
-                if self.clocks.now > end:
-                    return False
-                await Timer(step * PERIOD, "step")
-            return True
-
-        met = self._thread.wait(poll())
-        self.compare()
-        assert met, f"clock {self.clock}: nothing after {limit} clocks"
+        end = self.clock + limit
+        while not condition():
+            assert self.clock < end, f"clock {self.clock}: nothing after {limit} clocks"
+            self.run(step)
 
     def sync(self, level: bool) -> None:
         """Set the sync input."""
@@ -213,6 +184,7 @@ class Core:
         async def set_pin() -> None:
             self.dut.sync.value = int(level)
 
+        self.started = self.clock
         self._thread.wait(set_pin())
 
     def is_running(self, channel: int = 0) -> bool:
@@ -220,9 +192,8 @@ class Core:
         return bool(read(self.dut.running) >> channel & 1)
 
     def wait_end(self, channel: int = 0, limit: int = 100_000) -> None:
-        """Wait until a motion, which has been started, has begun and ended."""
-        self.run_until(lambda: self.is_running(channel), 2000)
-        self.run_until(lambda: not self.is_running(channel), limit)
+        """Wait until the motion that was started last has ended, and its last pulse too."""
+        self.run_until(lambda: self.motions(channel, self.started), limit)
         self.run(16)
 
     # comparison
@@ -231,12 +202,16 @@ class Core:
         """Compare all pins up to now with the model; an error tells the first difference."""
         if self._judge is None:
             return
-        text = self._unread + self._log.read()
-        whole = text.rfind("\n") + 1
-        self._unread = text[whole:]
-        rows = np.array(text[:whole].split(), dtype=np.uint64).reshape(-1, len(COLUMNS))
+        *lines, self._unread = (self._unread + self._log.read()).split("\n")
+        for line in lines:
+            assert "x" not in line.lower(), f"X at a pin: {dict(zip(COLUMNS, line.split(), strict=True))}"
+        numbers = [int(number) for line in lines for number in line.split()]
+        rows = np.array(numbers, dtype=np.uint64).reshape(-1, len(COLUMNS))
         self._judge.follow(rows, self.clock)
         self._rows.append(rows)
+        for clock, level in rows[:, [0, COLUMNS.index("running")]].tolist():
+            if level != self._running[-1][1]:
+                self._running.append((clock - 1, level))
 
     def watch(self, *timings: PinTiming) -> PulseChecker:
         """From now on check these pin timings, one for each axis of the core, or one for all."""
@@ -262,7 +237,7 @@ class Core:
         self.finish_watch()
         self.dut._log.info(f"{self.clock} clocks compared, {self._judge.summary()}")
 
-    # what was recorded; clocks as after whose rising edge a pin shows it
+    # what was recorded; the clock of a change is the one after whose rising edge the pin shows it
 
     def changes(self, signal: str, bit: int, since: int = 0) -> list[tuple[int, int]]:
         """Clocks and levels of all changes of an output pin after a clock."""
@@ -273,9 +248,21 @@ class Core:
         return [(int(clocks[i]), int(levels[i])) for i in at if clocks[i] > since]
 
     def motions(self, channel: int = 0, since: int = 0) -> list[tuple[int, int]]:
-        """Rise and fall of `running` of each motion."""
-        changes = self.changes("running", channel, since)
-        return [(rise[0], fall[0]) for rise, fall in zip(changes[::2], changes[1::2], strict=True)]
+        """Rise and fall of `running` of each motion that began after a clock and has ended."""
+        found, begin = [], None
+        for clock, levels in self._running:
+            level = levels >> channel & 1
+            if level and begin is None:
+                begin = clock
+            elif not level and begin is not None:
+                if begin > since:
+                    found.append((begin, clock))
+                begin = None
+        return found
+
+    def began(self) -> int:
+        """Clock on which `running` rose last."""
+        return max(clock for clock, level in self._running if level)
 
     def steps(self, axis: int = 0, since: int = 0) -> list[int]:
         """Clocks of the rising edges of STEP of bit `axis`."""
@@ -304,10 +291,13 @@ class CoreChannel(Channel):
         for axis, timing in enumerate(timings):
             flags = 1 | timing.step_inverted << 1 | timing.direction_inverted << 2 | timing.both_edges << 4
             address = self.base + r.CHANNEL_AXIS_BASE + axis * r.CHANNEL_AXIS_STRIDE
-            self.link.write(
-                address, flags, timing.high << 16 | timing.low, timing.setup << 16 | timing.hold
-            )
+            self.link.write(address, flags, timing.high << 16 | timing.low, timing.setup << 16 | timing.hold)
         self.core.run(8)
+
+    def start(self) -> None:
+        """Let the channel start its motion."""
+        self.core.started = self.core.clock
+        super().start()
 
     def rest(self) -> None:
         """Take the permission to start motions away."""
@@ -330,7 +320,10 @@ def core_test(body: Callable[[Core], None]) -> Any:
             body(core)
             core.end()
 
-        await thread.run(all_of_it)
+        try:
+            await thread.run(all_of_it)
+        finally:
+            core.close()
 
     for name in functools.WRAPPER_ASSIGNMENTS:
         setattr(test, name, getattr(body, name))

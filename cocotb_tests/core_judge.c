@@ -6,8 +6,8 @@
 
 #include "passo_core.h"
 
-/* The pins from this clock on: inputs and MISO as they stand at its rising edge, the others as the edge before left
- * them. */
+/* The pins from this clock on: inputs and MISO as they stand at its rising edge, the others as the edge
+ * before left them. */
 struct judge_row {
 	uint64_t clock;
 	uint64_t inputs; /* sclk, mosi, cs_n, sync: bits 3 .. 0 */
@@ -25,12 +25,18 @@ struct judge {
 	uint64_t expected, actual;
 };
 
-uint64_t judge_size(void) { return sizeof(struct judge); }
+uint64_t judge_size(void)
+{
+	return sizeof(struct judge);
+}
 
 bool judge_reset(struct judge *judge, const uint8_t parameters[5])
 {
-	const struct passo_parameters wanted = {.channels = parameters[0], .axes = parameters[1], .tick_log2 = parameters[2],
-	    .line_queue_log2 = parameters[3], .ramp_queue_log2 = parameters[4]};
+	const struct passo_parameters wanted = {.channels = parameters[0],
+	    .axes = parameters[1],
+	    .tick_log2 = parameters[2],
+	    .line_queue_log2 = parameters[3],
+	    .ramp_queue_log2 = parameters[4]};
 
 	memset(judge, 0, sizeof *judge);
 	return passo_core_reset(&judge->core, &wanted);
@@ -58,7 +64,8 @@ static unsigned ones(uint64_t bits)
 static bool compare_outputs(struct judge *judge, const struct judge_row *row)
 {
 	const struct passo_outputs *model = passo_core_outputs(&judge->core);
-	const uint64_t expected[5] = {model->step, model->dir, model->enable, model->running, model->irq ? 1u : 0u};
+	const uint64_t expected[5] = {
+	    model->step, model->dir, model->enable, model->running, model->irq ? 1u : 0u};
 
 	for (uint32_t i = 0; i < 5u; i++)
 		if (differs(judge, judge->clock, i, expected[i], row->outputs[i]))
@@ -83,12 +90,14 @@ bool judge_follow(struct judge *judge, const struct judge_row *rows, size_t coun
 		if (!compare_outputs(judge, now))
 			return false;
 		const struct passo_inputs inputs = {.spi_sclk = (now->inputs >> 3 & 1u) != 0u,
-		    .spi_mosi = (now->inputs >> 2 & 1u) != 0u, .spi_cs_n = (now->inputs >> 1 & 1u) != 0u,
+		    .spi_mosi = (now->inputs >> 2 & 1u) != 0u,
+		    .spi_cs_n = (now->inputs >> 1 & 1u) != 0u,
 		    .sync = (now->inputs & 1u) != 0u};
 		passo_core_clock(&judge->core, &inputs);
 		judge->clock++;
 		/* MISO follows SCLK, not the clock: the model shows it with the edge that sees SCLK. */
-		if (differs(judge, judge->clock, 5, passo_core_outputs(&judge->core)->spi_miso ? 1u : 0u, now->miso))
+		if (differs(judge, judge->clock, 5, passo_core_outputs(&judge->core)->spi_miso ? 1u : 0u,
+			now->miso))
 			return false;
 		judge->matched[5] += inputs.spi_sclk && !sclk_was && !inputs.spi_cs_n ? 1u : 0u;
 	}
@@ -103,4 +112,7 @@ void judge_difference(const struct judge *judge, uint64_t difference[4])
 	difference[3] = judge->actual;
 }
 
-void judge_matched(const struct judge *judge, uint64_t matched[6]) { memcpy(matched, judge->matched, sizeof judge->matched); }
+void judge_matched(const struct judge *judge, uint64_t matched[6])
+{
+	memcpy(matched, judge->matched, sizeof judge->matched);
+}

@@ -46,8 +46,8 @@ def run(
 ) -> None:
     """Run the cocotb tests of `module` in `toplevel`, built with `parameters`; AssertionError if one fails.
 
-    `module` is the `__name__` of the Python module. `toplevel` is a module of `rtl/` or of `cocotb_tests/tops/`; it
-    is built again only when one of the sources below it has changed.
+    `module` is the `__name__` of the Python module. `toplevel` is a module of `rtl/` or `cocotb_tests/tops/`;
+    it is built again only when one of the sources below it has changed.
     """
     os.environ.update(environment())
     parameters = dict(parameters or {})
@@ -80,7 +80,9 @@ def run(
     assert results.exists(), f"{module} in {simulator}: no results, the simulator ended early"
     tests, failed = get_results(results)
     assert tests > 0, f"{module}: no cocotb test found"
-    assert failed == 0, f"{module} in {simulator}, {SEED_VARIABLE}={seed()}: {failed} of {tests} cocotb tests failed"
+    assert failed == 0, (
+        f"{module} in {simulator}, {SEED_VARIABLE}={seed()}: {failed} of {tests} cocotb tests failed"
+    )
 
 
 def _folder_name(toplevel: str, parameters: Mapping[str, int], simulator: str, rtl: Path, waves: bool) -> str:

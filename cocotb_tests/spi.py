@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """SPI master for the pins of the core, and the CRC of its frames.
 
-    spi = SpiMaster(dut, half_period=27_778)
-    miso = await spi.transfer([0x10001000, 0x12345678, 0, 0, 0])
+spi = SpiMaster(dut, half_period=27_778)
+miso = await spi.transfer([0x10001000, 0x12345678, 0, 0, 0])
 """
 
 from collections.abc import Iterable, Sequence
@@ -32,10 +32,10 @@ def crc_of_words(words: Iterable[int]) -> int:
 class SpiMaster:
     """SPI master, mode 0, MSB first, 32-bit words, one frame per chip select.
 
-    Drives `spi_sclk`, `spi_mosi` and `spi_cs_n` of a dut without regard to its clock, and samples `spi_miso` just
-    before each rising edge. All times are in ps. `high` makes SCLK asymmetric: its high time, the low time being the
-    rest of two half periods. `lead` is from chip select to the first rising edge, `trail` from the last falling edge to
-    chip select, `gap` from one frame to the next.
+    Drives `spi_sclk`, `spi_mosi` and `spi_cs_n` of a dut without regard to its clock, and samples `spi_miso`
+    just before each rising edge. All times are in ps. `high` makes SCLK asymmetric: it is the high time, and
+    what is left of two half periods is the low time. `lead` is from chip select to the first rising edge,
+    `trail` from the last falling edge to chip select, `gap` from one frame to the next.
     """
 
     def __init__(

@@ -44,9 +44,9 @@ def expected_steps(
 ) -> tuple[list[Request], list[int]]:
     """Steps as soon as the pin timing allows, and the clocks of the requests that find four waiting.
 
-    The pins stand in `direction` before, and the direction of the line is always that of the last request. Counted
-    in clocks of the pins: a request reaches them after LATENCY, a change of the line's direction after LATENCY - 1,
-    and a step leaves the queue a clock before it is seen.
+    The pins stand in `direction` before, and the direction of the line is always that of the last request.
+    Counted in clocks of the pins: a request reaches them after LATENCY, a change of the line's direction a
+    clock earlier, and a step leaves the queue a clock before it is seen.
     """
     steps: list[Request] = []
     lost: list[int] = []
@@ -136,7 +136,9 @@ class Axis:
         position = read_signed(self.dut)
         steps, lost = expected_steps(self.timing, requests, self.checker.direction())
         await self.request(requests)
-        settle = sum(max(1, t) for t in (self.timing.high, self.timing.low, self.timing.hold, self.timing.setup))
+        settle = sum(
+            max(1, t) for t in (self.timing.high, self.timing.low, self.timing.hold, self.timing.setup)
+        )
         await self.clocks.until(max(steps[-1][0], requests[-1][0]) + settle + 5)
         made = self.checker.steps()[before:]
         assert made == steps, first_difference(made, steps)
@@ -275,7 +277,9 @@ async def drop_forgets_what_waits_and_finishes_the_pulse(dut: HierarchyObject) -
         dut.drop.value = 0
         await axis.clocks.wait(200)
         made = len(axis.checker.steps()) - before
-        assert made == (1 if 10 + at * 9 < 30 + 10 + 1 else 2), f"drop {10 + at * 9} clocks after the first request"
+        assert made == (1 if 10 + at * 9 < 30 + 10 + 1 else 2), (
+            f"drop {10 + at * 9} clocks after the first request"
+        )
     assert read_signed(dut) == axis.checker.positions[0]
     dut._log.info(axis.checker.finish())
 
@@ -348,7 +352,7 @@ async def random_steps_match_the_reference(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def no_change_of_line_direction_harms_the_pins(dut: HierarchyObject) -> None:
-    """The line's direction may change at any time: all timings hold, every accepted step keeps its direction."""
+    """The line's direction may change at any time: timings hold, every step keeps its own direction."""
     random = rng("axis, line direction")
     for _ in range(20):
         timing = random_timing(random)

@@ -75,6 +75,22 @@ async def a_word_equal_to_the_crc_leads_to_zero(dut: HierarchyObject) -> None:
 
 
 @cocotb.test()
+async def restart_ends_a_shift(dut: HierarchyObject) -> None:
+    """A restart in the middle of a word, the next word any time later: as if the first had never been."""
+    clocks = await begin(dut, "restart", "start", "word")
+    for at in range(0, 34):
+        dut.word.value = 0xDEADBEEF
+        dut.start.value = 1
+        await clocks.wait(1)
+        dut.start.value = 0
+        await clocks.wait(at)
+        await restart(dut, clocks)
+        await clocks.wait(at % 5)
+        assert read(dut.crc) == 0xFFFFFFFF
+        assert await add(dut, clocks, [0x12345678]) == 0xDF8A8A2B
+
+
+@cocotb.test()
 async def restart_wins_over_a_shift(dut: HierarchyObject) -> None:
     """A restart and a new start in the middle of a word: as if the word had never been."""
     clocks = await begin(dut, "restart", "start", "word")

@@ -37,7 +37,7 @@ class Line:
         return [self.last | self.endless << 1 | self.negative << 8, self.substeps, *self.steps]
 
     def step_numbers(self, axis: int, until: int) -> set[int]:
-        """Substeps, from 1 up to `until`, that make a step of an axis: the k-th is ceil((k M - M // 2) / N)."""
+        """Substeps, from 1 to `until`, that make a step of an axis: the k-th is ceil((k M - M // 2) / N)."""
         m, n = self.substeps, self.steps[axis]
         if n == 0:
             return set()
@@ -84,7 +84,7 @@ class Lines:
         await self.clocks.wait(10)
 
     async def make(self, lines: Sequence[Line], gaps: Iterator[int], until: int | None = None) -> None:
-        """Make all substeps of some lines (of an endless one `until`), each `gap` clocks after the one before."""
+        """Make all substeps of some lines, or `until` of each, with these distances between them."""
         for line in lines:
             count = line.substeps if until is None else until
             making = [line.step_numbers(axis, count) for axis in range(AXES)]
@@ -94,6 +94,18 @@ class Lines:
                         self.expected.append((self.clocks.now + LATENCY, axis, line.negative >> axis & 1))
                 await self.strobe("substep")
                 await self.clocks.wait(next(gaps) - 1)
+
+    async def make_slowly(self, lines: Sequence[Line]) -> None:
+        """Make all substeps of some lines, in the time that it takes to push as many."""
+        for line in lines:
+            await self.make([line], every(2 + 40 // line.substeps))
+
+    async def feed(self, lines: Sequence[Line]) -> None:
+        """Push lines when there is room, without a check, which the host would have had before."""
+        for line in lines:
+            while read(self.dut.room) == 0:
+                await self.clocks.wait(1)
+            await self.bus.write(line.words())
 
     async def compare(self) -> int:
         """Check all steps so far with their directions; return their number."""
@@ -145,7 +157,7 @@ def gaps(random: Random) -> Iterator[int]:
 async def steps_are_spread_evenly_over_the_substeps(
     dut: HierarchyObject, size: tuple[int, tuple[int, ...]]
 ) -> None:
-    """Exactly N steps in M substeps, the k-th at substep ceil((k M - M // 2) / N), at a substep per two clocks."""
+    """Exactly N steps in M substeps, the k-th at substep ceil((k M - M // 2) / N), at full rate."""
     lines = await Lines.begin(dut)
     m, n = size
     line = Line(m, n, negative=5, last=True)
@@ -174,7 +186,7 @@ async def the_longest_lines_do_not_overflow(dut: HierarchyObject, m: int, n: tup
 
 @cocotb.test()
 async def lines_of_one_substep_follow_each_other_without_a_lost_clock(dut: HierarchyObject) -> None:
-    """As many lines as the queue holds, M = 1 each, directions and axes alternating, a substep per two clocks."""
+    """As many lines as the queue holds, M = 1 each, directions and axes alternating, at full rate."""
     lines = await Lines.begin(dut)
     count = 1 << DEPTH_LOG2
     sequence = [Line(1, (k & 1, k >> 1 & 1, k >> 2 & 1), k * 5 & 7, k == count - 1) for k in range(count)]
@@ -188,7 +200,7 @@ async def lines_of_one_substep_follow_each_other_without_a_lost_clock(dut: Hiera
 
 @cocotb.test()
 async def after_the_last_line_substeps_are_ignored(dut: HierarchyObject) -> None:
-    """The LAST line ends with its last substep although another line waits; that one starts the next motion."""
+    """The LAST line ends with its last substep although another one waits, for the next motion."""
     lines = await Lines.begin(dut)
     first, second = Line(5, (5, 2, 0), 1, last=True), Line(4, (1, 4, 4), 2, last=True)
     await lines.bus.push(first.words() + second.words())
@@ -209,7 +221,7 @@ async def after_the_last_line_substeps_are_ignored(dut: HierarchyObject) -> None
 
 @cocotb.test()
 async def a_missing_line_is_an_underrun(dut: HierarchyObject) -> None:
-    """A line that is not LAST ends and none follows: underrun for one clock, no more steps; stop makes all well."""
+    """A line that is not LAST ends and none follows: underrun for one clock, no more steps until a stop."""
     lines = await Lines.begin(dut)
     line = Line(6, (6, 3, 1))
     for rounds in range(1, 4):
@@ -240,10 +252,14 @@ async def a_line_is_in_time_three_clocks_before_its_predecessor_ends(dut: Hierar
         begun = lines.clocks.now
         end = begun + 2 * (first.substeps - 1)
 
-        async def late_push(end: int = end, early: int = early, lines: Lines = lines, line: Line = second) -> None:
+        async def late_push(
+            end: int = end, early: int = early, lines: Lines = lines, line: Line = second
+        ) -> None:
             words = line.words()
-            await lines.clocks.until(end - early - 4 * (len(words) - 1))
-            assert lines.clocks.now == end - early - 4 * (len(words) - 1)
+            # 4 clocks per word, of which the second has the strobe
+            first_word = end - early - 4 * (len(words) - 1) - 1
+            await lines.clocks.until(first_word)
+            assert lines.clocks.now == first_word
             await lines.bus.write(words)
 
         push = cocotb.start_soon(late_push())
@@ -256,7 +272,7 @@ async def a_line_is_in_time_three_clocks_before_its_predecessor_ends(dut: Hierar
 
 @cocotb.test()
 async def an_endless_line_repeats_until_it_is_released(dut: HierarchyObject) -> None:
-    """The same line again and again, even if others wait; release_line makes place and the next motion takes on."""
+    """The same line again and again, even if others wait; they are for the motion after release_line."""
     lines = await Lines.begin(dut)
     endless, after = Line(7, (3, 7, 1), 2, endless=True), Line(4, (4, 1, 0), 4, last=True)
     await lines.bus.push(endless.words() + after.words())
@@ -305,30 +321,20 @@ def random_line(random: Random, last: bool = False) -> Line:
 
 @cocotb.test()
 async def random_paths_match_the_formula(dut: HierarchyObject) -> None:
-    """Motions of random lines, pushed while others are made: every step on the clock and in the direction due."""
+    """Random lines, pushed while others are made: every step on the clock and in the direction due."""
     random = rng("line")
     lines = await Lines.begin(dut)
     for _ in range(15):
         count = random.randrange(2, 60)
         sequence = [random_line(random, last=k == count - 1) for k in range(count)]
-        ahead = sequence[: 1 << DEPTH_LOG2]
+        ahead, later = sequence[: 1 << DEPTH_LOG2], sequence[1 << DEPTH_LOG2 :]
         for line in ahead:
             await lines.bus.push(line.words())
-
-        async def feed(rest: list[Line] = sequence[len(ahead) :]) -> None:
-            for line in rest:
-                while read(dut.room) == 0:
-                    await lines.clocks.wait(1)
-                await lines.bus.write(line.words())
-
-        async def work(sequence: list[Line] = sequence) -> None:
-            await lines.start()
-            for n, line in enumerate(sequence):
-                # leave the feeder the time that a host has
-                slow = len(sequence) > len(ahead) and n + 1 < len(sequence)
-                await lines.make([line], every(2) if not slow else every(2 + 40 // line.substeps))
-
-        await gather(feed(), work())
+        await lines.start()
+        if later:
+            await gather(lines.feed(later), lines.make_slowly(sequence))
+        else:
+            await lines.make(sequence, gaps(random))
         lines.check_end(ended=True, underruns=0)
         await lines.strobe("release_line")
         await lines.clocks.wait(2)

@@ -70,7 +70,7 @@ class Queue:
 
 @cocotb.test()
 async def lines_come_out_whole_and_in_order(dut: HierarchyObject) -> None:
-    """Random pushes and takes, for many rounds of the memory; a place is free when the line after it is taken."""
+    """Random pushes and takes, many rounds of the memory; a place is free when the next line is taken."""
     random = rng("line queue")
     queue = await Queue.begin(dut)
     waiting: deque[list[int]] = deque()

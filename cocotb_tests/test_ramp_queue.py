@@ -45,7 +45,9 @@ class Queue:
     @classmethod
     async def begin(cls, dut: HierarchyObject) -> "Queue":
         """Reset."""
-        return cls(dut, await begin(dut, *PushBus.INPUTS, "blocked", "take", "take_now", "flush", "half_index"))
+        return cls(
+            dut, await begin(dut, *PushBus.INPUTS, "blocked", "take", "take_now", "flush", "half_index")
+        )
 
     async def strobe(self, name: str) -> None:
         """Raise an input for a clock."""
@@ -54,7 +56,7 @@ class Queue:
         getattr(self.dut, name).value = 0
 
     async def check(self, ramps: deque[list[int]] | list[list[int]], now_pending: bool = False) -> None:
-        """Check room, valid, now_pending, and all half words of the oldest ramp, each a clock after its index."""
+        """Check the outputs, and all half words of the oldest ramp, each a clock after its index."""
         await self.clocks.wait(1)
         dut = self.dut
         assert read(dut.room) == DEPTH - len(ramps)
@@ -157,7 +159,7 @@ async def bad_values_are_refused(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def a_frame_needs_room_for_all_its_ramps(dut: HierarchyObject) -> None:
-    """QUEUE_FULL from the first word of the ramp that finds no place; BUSY of a stopped channel goes before it."""
+    """QUEUE_FULL from the first word of the ramp that finds no place; BUSY of a stopped channel before it."""
     random = rng("ramp queue, room")
     queue = await Queue.begin(dut)
     ramps: list[list[int]] = []

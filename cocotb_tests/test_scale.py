@@ -49,7 +49,7 @@ async def the_ends_are_exact(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def random_scales_match_the_formula(dut: HierarchyObject) -> None:
-    """Velocities and s of all magnitudes, rising and falling; the whole 48 bits, although 1/2 is the highest."""
+    """Velocities and s of all magnitudes, rising and falling; even above 1/2."""
     random = rng("scale")
     clocks = await begin(dut, "start", "v_start", "v_end", "s")
     for _ in range(400):

@@ -1,33 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Plays pin waveforms to the model, clock by clock or with passo_core_advance().
  */
-#include <stddef.h>
-
-#include "passo_core.h"
-
-/* The inputs stay as they are for so many clocks. */
-struct player_segment {
-	uint64_t clocks;
-	uint8_t spi_sclk, spi_mosi, spi_cs_n, sync;
-	uint8_t spi_miso; /* filled in: the level at the end */
-	uint8_t spare[3];
-};
-
-/* The outputs from this clock on. */
-struct player_event {
-	uint64_t clock, step, dir, enable;
-	uint32_t running, irq;
-};
-
-struct player {
-	struct passo_core *core;
-	bool advance;
-	uint64_t clock;
-	uint64_t skipped; /* clocks that passo_core_advance() did */
-	struct player_event last;
-	struct player_event *events;
-	size_t count, capacity;
-};
+#include "core_player.h"
 
 /* False if the outputs changed while `may_change` was false, or if there is no more room for events. */
 static bool look(struct player *player, bool may_change)
@@ -35,11 +9,15 @@ static bool look(struct player *player, bool may_change)
 	const struct passo_outputs *now = passo_core_outputs(player->core);
 	struct player_event *last = &player->last;
 
-	if (now->step == last->step && now->dir == last->dir && now->enable == last->enable && now->running == last->running
-	    && now->irq == (last->irq != 0u))
+	if (now->step == last->step && now->dir == last->dir && now->enable == last->enable
+	    && now->running == last->running && now->irq == (last->irq != 0u))
 		return true;
-	*last = (struct player_event){.clock = player->clock, .step = now->step, .dir = now->dir, .enable = now->enable,
-	    .running = now->running, .irq = now->irq};
+	*last = (struct player_event){.clock = player->clock,
+	    .step = now->step,
+	    .dir = now->dir,
+	    .enable = now->enable,
+	    .running = now->running,
+	    .irq = now->irq};
 	if (!may_change || player->count == player->capacity)
 		return false;
 	player->events[player->count++] = *last;
@@ -51,12 +29,15 @@ bool player_play(struct player *player, struct player_segment *segments, size_t 
 	bool good = true;
 
 	for (size_t i = 0; i < count; i++) {
-		const struct passo_inputs inputs = {.spi_sclk = segments[i].spi_sclk != 0u, .spi_mosi = segments[i].spi_mosi != 0u,
-		    .spi_cs_n = segments[i].spi_cs_n != 0u, .sync = segments[i].sync != 0u};
+		const struct passo_inputs inputs = {.spi_sclk = segments[i].spi_sclk != 0u,
+		    .spi_mosi = segments[i].spi_mosi != 0u,
+		    .spi_cs_n = segments[i].spi_cs_n != 0u,
+		    .sync = segments[i].sync != 0u};
 		uint64_t left = segments[i].clocks;
 
 		while (left != 0u) {
-			const uint64_t quiet = player->advance ? passo_core_advance(player->core, &inputs, left) : 0u;
+			const uint64_t quiet =
+			    player->advance ? passo_core_advance(player->core, &inputs, left) : 0u;
 
 			if (quiet > left)
 				return false;

@@ -16,8 +16,13 @@ from passo.build import Parameters
 from passo.toolchain import environment, paths
 
 HERE = Path(__file__).parent
-HEADERS = [paths.c_model / f"passo_{name}.h" for name in ("command", "registers", "model", "core")]
-SOURCES = [HERE / "core_player.c", *sorted(paths.c_model.glob("*.c"))]
+HEADERS = [
+    *(paths.c_model / f"passo_{name}.h" for name in ("command", "registers", "model", "core")),
+    HERE / "core_player.h",
+]
+HOST = ("passo_plan", "passo_math", "passo_frame")  # the part of c_model/ that is not the model
+MODEL = [path for path in sorted(paths.c_model.glob("*.c")) if not path.stem.startswith(HOST)]
+SOURCES = [HERE / "core_player.c", *MODEL]
 EVENTS = 1 << 16
 HALF_PERIOD = 2  # clocks that SCLK stays at each level
 
@@ -25,10 +30,7 @@ HALF_PERIOD = 2  # clocks that SCLK stays at each level
 @cache
 def load() -> tuple[FFI, Any]:
     """All types of the model, and the player."""
-    player = SOURCES[0].read_text().split("static bool look")[0] + "bool player_play("
-    player += SOURCES[0].read_text().split("bool player_play(")[1].split(")")[0] + ");"
-    texts = [*(path.read_text() for path in HEADERS), player]
-    text = "\n".join(re.sub(r"(?m)^#include.*$", "", text) for text in texts)
+    text = "\n".join(re.sub(r"(?m)^#include.*$", "", path.read_text()) for path in HEADERS)
     command = ["cc", "-E", "-P", "-x", "c", "-"]
     done = subprocess.run(command, input=text, env=environment(), capture_output=True, text=True, check=True)
     ffi = FFI()
@@ -37,7 +39,7 @@ def load() -> tuple[FFI, Any]:
 
 
 def _library() -> Path:
-    inputs = [*SOURCES, *sorted(paths.c_model.glob("*.h"))]
+    inputs = [*SOURCES, *HEADERS, *sorted(paths.c_model.glob("*.h"))]
     digest = hashlib.sha256(b"\0".join(path.read_bytes() for path in inputs)).hexdigest()[:12]
     library = paths.build / "tests" / f"player-{digest}.so"
     if not library.exists():

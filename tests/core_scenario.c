@@ -9,7 +9,6 @@
 
 #include "passo_core.h"
 #include "passo_frame.h"
-#include "passo_plan.h"
 
 static struct passo_core core;
 static uint8_t sequence = 1;
@@ -35,7 +34,8 @@ static void expect(bool good, const char *what)
 static void run(const struct passo_inputs *inputs, uint64_t clocks)
 {
 	while (clocks != 0u) {
-		const uint64_t jump = (random_word() & 1u) != 0u ? passo_core_advance(&core, inputs, clocks) : 0u;
+		const uint64_t jump =
+		    (random_word() & 1u) != 0u ? passo_core_advance(&core, inputs, clocks) : 0u;
 		if (jump == 0u)
 			passo_core_clock(&core, inputs);
 		clocks -= jump == 0u ? 1u : jump;
@@ -83,7 +83,10 @@ static enum passo_verdict write_words(uint16_t address, const uint32_t *words, s
 	return send(frame, passo_frame_write(frame, sequence++, address, words, count));
 }
 
-static enum passo_verdict write_word(uint16_t address, uint32_t word) { return write_words(address, &word, 1); }
+static enum passo_verdict write_word(uint16_t address, uint32_t word)
+{
+	return write_words(address, &word, 1);
+}
 
 static void read_words(uint16_t address, uint32_t *words, size_t count)
 {
@@ -129,39 +132,52 @@ static uint32_t state_of(unsigned channel)
 	return state;
 }
 
-static void plan(struct passo_plan *made, unsigned axes, enum passo_profile profile)
+static struct passo_ramp ramp_of(
+    uint64_t velocity, uint32_t ticks, enum passo_shape shape, bool mirror, bool last)
 {
-	const struct passo_machine machine = {.clock_hz = 1280000, .tick_log2 = core.parameters.tick_log2, .axes = (uint8_t)axes};
-	struct passo_move_in_time move = {.profile = profile, .total_clocks = 40000, .ramp_clocks = 15000};
-
-	for (unsigned axis = 0; axis < axes; axis++)
-		move.steps[axis] = (axis & 1u) != 0u ? -300 - (int32_t)axis : 401;
-	expect(passo_plan_in_time(&machine, &move, made) == PASSO_PLAN_OK, "the move is planned");
+	return (struct passo_ramp){.velocity_end = velocity,
+	    .ticks = ticks,
+	    .shape = shape,
+	    .mirror = mirror,
+	    .last = last,
+	    .progress_step = ticks == 1u ? PASSO_PROGRESS_STEP_MAX : PASSO_ONE_Q48 / ticks};
 }
 
-static void move_every_channel(enum passo_profile profile)
+/* Up, on and down again in a shape, on every channel at once, one of them with a hold. */
+static void move_every_channel(enum passo_shape shape)
 {
 	const unsigned channels = core.parameters.channels;
 	const unsigned axes = core.parameters.axes;
+	const uint64_t velocity = PASSO_ONE_Q48 / 30u;
+	const struct passo_ramp ramps[] = {ramp_of(velocity, 100, shape, false, false),
+	    ramp_of(velocity, 1, shape, true, false), ramp_of(0, 100, shape, true, true)};
+	struct passo_line line = {
+	    .last = true, .directions = (uint8_t)(0xAAu & ((1u << axes) - 1u)), .substeps = 400};
 	uint32_t position[PASSO_AXES_MAX];
-	struct passo_plan made;
 
-	plan(&made, axes, profile);
+	for (unsigned axis = 0; axis < axes; axis++)
+		line.steps[axis] = 400u - 57u * axis;
 	for (unsigned i = 0; i < channels; i++) {
-		expect(push_line(i, &made.line) == PASSO_VERDICT_OK, "a line is taken");
-		for (unsigned k = 0; k < made.ramp_count; k++)
-			expect(push_ramp(i, &made.ramps[k]) == PASSO_VERDICT_OK, "a ramp is taken");
+		expect(push_line(i, &line) == PASSO_VERDICT_OK, "a line is taken");
+		for (size_t k = 0; k < sizeof ramps / sizeof *ramps; k++)
+			expect(push_ramp(i, &ramps[k]) == PASSO_VERDICT_OK, "a ramp is taken");
 	}
 	expect(write_word(PASSO_ADDRESS_RUN, (1u << channels) - 1u) == PASSO_VERDICT_OK, "all are started");
-	rest(20000);
-	expect(write_word((uint16_t)(channel_base(0) + PASSO_CHANNEL_RATE_TARGET), 0) == PASSO_VERDICT_OK, "one is held");
+	rest(5000);
+	expect(write_word((uint16_t)(channel_base(0) + PASSO_CHANNEL_RATE_TARGET), 0) == PASSO_VERDICT_OK,
+	    "one is held");
 	rest(60000);
-	expect(write_word((uint16_t)(channel_base(0) + PASSO_CHANNEL_RATE_TARGET), 0x10000) == PASSO_VERDICT_OK, "and goes on");
-	rest(100000);
+	expect(
+	    write_word((uint16_t)(channel_base(0) + PASSO_CHANNEL_RATE_TARGET), 0x10000) == PASSO_VERDICT_OK,
+	    "and goes on");
+	rest(500000);
 	for (unsigned i = 0; i < channels; i++) {
-		expect(state_of(i) == PASSO_STATE_IDLE, "the motion has ended");
+		expect(state_of(i) % 8u == PASSO_STATE_IDLE, "the motion has ended");
 		read_words((uint16_t)(channel_base(i) + PASSO_CHANNEL_POSITION_BASE), position, axes);
-		expect(position[0] % 401u == 0u && position[0] != 0u, "the steps are made");
+		for (unsigned axis = 0; axis < axes; axis++) {
+			const uint32_t way = (axis & 1u) != 0u ? 0u - position[axis] : position[axis];
+			expect(way != 0u && way % line.steps[axis] == 0u, "the steps are made");
+		}
 	}
 	expect(write_word(PASSO_ADDRESS_RUN, 0) == PASSO_VERDICT_OK, "all rest");
 }
@@ -173,17 +189,22 @@ static void fault_every_way(unsigned channel)
 	const uint64_t half = PASSO_VELOCITY_MAX;
 	const struct passo_line line = {.substeps = 5000, .steps = {5000}};
 	const struct passo_ramp jump = {.velocity_end = half, .shape = PASSO_SHAPE_COSINE};
-	const struct passo_ramp cruise = {.velocity_end = half, .ticks = 500, .progress_step = PASSO_ONE_Q48 / 500};
+	const struct passo_ramp cruise = {
+	    .velocity_end = half, .ticks = 500, .progress_step = PASSO_ONE_Q48 / 500};
 
 	for (unsigned way = 0; way < 5; way++) {
-		const struct passo_line pushed = {.last = way == 3, .endless = way == 2, .substeps = line.substeps, .steps = {5000}};
-		const uint32_t cause[] = {PASSO_CAUSE_STOP, PASSO_CAUSE_ABORT, PASSO_CAUSE_STOP, PASSO_CAUSE_STEP_OVERRUN,
-		    PASSO_CAUSE_LINE_UNDERRUN};
+		const struct passo_line pushed = {
+		    .last = way == 3, .endless = way == 2, .substeps = line.substeps, .steps = {5000}};
+		const uint32_t cause[] = {PASSO_CAUSE_STOP, PASSO_CAUSE_ABORT, PASSO_CAUSE_STOP,
+		    PASSO_CAUSE_STEP_OVERRUN, PASSO_CAUSE_LINE_UNDERRUN};
 
-		expect(write_word((uint16_t)(base + PASSO_CHANNEL_AXIS_BASE + PASSO_AXIS_STEP_TIMING), way == 3 ? 0x03E803E8u : 0u)
-		           == PASSO_VERDICT_OK, "the pins are set");
+		expect(write_word((uint16_t)(base + PASSO_CHANNEL_AXIS_BASE + PASSO_AXIS_STEP_TIMING),
+			   way == 3 ? 0x03E803E8u : 0u)
+		           == PASSO_VERDICT_OK,
+		    "the pins are set");
 		expect(write_word(PASSO_ADDRESS_RUN, 0) == PASSO_VERDICT_OK, "nothing starts yet");
-		expect(write_word((uint16_t)(base + PASSO_CHANNEL_STOP_SLEW), 0x2000) == PASSO_VERDICT_OK, "stops are short");
+		expect(write_word((uint16_t)(base + PASSO_CHANNEL_STOP_SLEW), 0x2000) == PASSO_VERDICT_OK,
+		    "stops are short");
 		expect(push_line(channel, &pushed) == PASSO_VERDICT_OK, "a line is taken");
 		expect(push_ramp(channel, &jump) == PASSO_VERDICT_OK, "a jump is taken");
 		expect(push_ramp(channel, &cruise) == PASSO_VERDICT_OK, "a cruise is taken");
@@ -191,14 +212,20 @@ static void fault_every_way(unsigned channel)
 		if (way < 3)
 			write_word((uint16_t)(base + PASSO_CHANNEL_COMMAND), way == 1 ? 2 : 1);
 		rest(200000);
-		expect((state_of(channel) & 0x7Fu) == (cause[way] << PASSO_CHANNEL_STATE_CAUSE_LSB | PASSO_STATE_STOPPED),
+		expect((state_of(channel) & 0x7Fu)
+		           == (cause[way] << PASSO_CHANNEL_STATE_CAUSE_LSB | PASSO_STATE_STOPPED),
 		    "it has stopped, and says why");
-		expect(push_line(channel, &pushed) == PASSO_VERDICT_BUSY, "nothing is taken before it is cleared");
-		expect(write_word((uint16_t)(base + PASSO_CHANNEL_COMMAND), 1u << PASSO_CHANNEL_COMMAND_CLEAR_LSB)
-		           == PASSO_VERDICT_OK, "it is cleared");
+		expect(push_line(channel, &pushed) == PASSO_VERDICT_BUSY,
+		    "nothing is taken before it is cleared");
+		expect(write_word(
+			   (uint16_t)(base + PASSO_CHANNEL_COMMAND), 1u << PASSO_CHANNEL_COMMAND_CLEAR_LSB)
+		           == PASSO_VERDICT_OK,
+		    "it is cleared");
 		rest(200000);
 	}
-	expect(write_word((uint16_t)(base + PASSO_CHANNEL_AXIS_BASE + PASSO_AXIS_STEP_TIMING), 0) == PASSO_VERDICT_OK, "pins");
+	expect(write_word((uint16_t)(base + PASSO_CHANNEL_AXIS_BASE + PASSO_AXIS_STEP_TIMING), 0)
+	           == PASSO_VERDICT_OK,
+	    "pins");
 }
 
 /* Frames with a good CRC and anything in them, and frames of any bits, cut anywhere. */
@@ -218,21 +245,27 @@ static void send_rubbish(unsigned count)
 		if (i % 4u == 0u) {
 			transfer_bits(payload, miso, 1u + random_word() % (32u * length));
 		} else if (i % 4u == 1u) {
-			transfer_bits(frame, miso, 32u * passo_frame_read(frame, sequence++, address, length));
+			transfer_bits(
+			    frame, miso, 32u * passo_frame_read(frame, sequence++, address, length));
 		} else if (i % 4u == 2u) {
-			const uint16_t queue = (uint16_t)((address & 0xF00u) | PASSO_CHANNEL_LINE | (address & 1u));
-			transfer_bits(frame, miso, 32u * passo_frame_push(frame, sequence++, queue, payload, length));
+			const uint16_t queue =
+			    (uint16_t)((address & 0xF00u) | PASSO_CHANNEL_LINE | (address & 1u));
+			transfer_bits(
+			    frame, miso, 32u * passo_frame_push(frame, sequence++, queue, payload, length));
 		} else {
-			transfer_bits(frame, miso, 32u * passo_frame_write(frame, sequence++, address, payload, length));
+			transfer_bits(frame, miso,
+			    32u * passo_frame_write(frame, sequence++, address, payload, length));
 		}
 	}
 }
 
 int main(void)
 {
-	const struct passo_parameters builds[] = {{1, 4, 7, 8, 4}, {2, 2, 7, 2, 3}, {8, 8, 16, 8, 8}, {3, 1, 9, 4, 3}};
-	const struct passo_parameters bad[] = {{0, 4, 7, 8, 4}, {9, 4, 7, 8, 4}, {1, 0, 7, 8, 4}, {1, 9, 7, 8, 4}, {1, 4, 6, 8, 4},
-	    {1, 4, 17, 8, 4}, {1, 4, 7, 1, 4}, {1, 4, 7, 9, 4}, {1, 4, 7, 8, 1}, {1, 4, 7, 8, 9}};
+	const struct passo_parameters builds[] = {
+	    {1, 4, 7, 8, 4}, {2, 2, 7, 2, 3}, {8, 8, 16, 8, 8}, {3, 1, 9, 4, 3}};
+	const struct passo_parameters bad[] = {{0, 4, 7, 8, 4}, {9, 4, 7, 8, 4}, {1, 0, 7, 8, 4},
+	    {1, 9, 7, 8, 4}, {1, 4, 6, 8, 4}, {1, 4, 17, 8, 4}, {1, 4, 7, 1, 4}, {1, 4, 7, 9, 4},
+	    {1, 4, 7, 8, 1}, {1, 4, 7, 8, 9}};
 
 	for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
 		expect(!passo_core_reset(&core, &bad[i]), "parameters out of range are refused");
@@ -241,8 +274,8 @@ int main(void)
 		rest(10);
 		/* a tick of 2^16 clocks is too long for these */
 		if (builds[i].tick_log2 < 10) {
-			move_every_channel(PASSO_PROFILE_SIGMOID);
-			move_every_channel(PASSO_PROFILE_JERK);
+			move_every_channel(PASSO_SHAPE_SIGMOID);
+			move_every_channel(PASSO_SHAPE_EASE);
 			for (unsigned channel = 0; channel < builds[i].channels && channel < 2u; channel++)
 				fault_every_way(channel);
 		}

@@ -120,7 +120,7 @@ def test_advance_agrees_with_every_clock(number: int) -> None:
     session = Session(BUILDS[number % len(BUILDS)], rng)
     every = (1 << len(session.channels)) - 1
     session.link.write(r.ADDRESS_RUN, every)
-    for _ in range(40):
+    for _ in range(25):
         channel = rng.choice(session.channels)
         if rng.random() < 0.6:
             session.push(channel)

@@ -4,107 +4,107 @@
 `default_nettype none
 
 module passo_line_top #(
-    parameter AXES       = 3,
-    parameter DEPTH_LOG2 = 2
+  parameter AXES       = 3,
+  parameter DEPTH_LOG2 = 2
 ) (
-    input  wire                clk,
-    input  wire                rst,
-    input  wire                bus_frame,
-    input  wire                bus_check,
-    input  wire                bus_write,
-    input  wire                select,
-    input  wire [        31:0] bus_data,
-    input  wire                blocked,
-    output wire [         3:0] refusal,
-    output wire                incomplete,
-    output wire [DEPTH_LOG2:0] room,
-    input  wire                start,
-    input  wire                stop,
-    input  wire                release_line,
-    input  wire                substep,
-    output wire [    AXES-1:0] step_request,
-    output wire [    AXES-1:0] directions,
-    output wire                line_valid,
-    output wire                endless,
-    output wire                ended,
-    output wire                underrun
+  input  wire                clk,
+  input  wire                rst,
+  input  wire                bus_frame,
+  input  wire                bus_check,
+  input  wire                bus_write,
+  input  wire                select,
+  input  wire [        31:0] bus_data,
+  input  wire                blocked,
+  output wire [         3:0] refusal,
+  output wire                incomplete,
+  output wire [DEPTH_LOG2:0] room,
+  input  wire                start,
+  input  wire                stop,
+  input  wire                release_line,
+  input  wire                substep,
+  output wire [    AXES-1:0] step_request,
+  output wire [    AXES-1:0] directions,
+  output wire                line_valid,
+  output wire                endless,
+  output wire                ended,
+  output wire                underrun
 );
 
-  wire next_last;
-  wire next_endless;
-  wire [AXES-1:0] next_directions;
-  wire [31:0] next_minus_substeps;
-  wire [AXES*32-1:0] steps;
-  wire take;
-  wire slot_add;
-  wire slot_load;
-  wire slot_step;
-  wire slot_load_q;
-  wire signed [32:0] broadcast;
+  wire                      next_last;
+  wire                      next_endless;
+  wire        [   AXES-1:0] next_directions;
+  wire        [       31:0] next_minus_substeps;
+  wire        [AXES*32-1:0] steps;
+  wire                      take;
+  wire                      slot_add;
+  wire                      slot_load;
+  wire                      slot_step;
+  wire                      slot_load_q;
+  wire signed [       32:0] broadcast;
 
   passo_line_queue #(
-      .AXES(AXES),
-      .DEPTH_LOG2(DEPTH_LOG2)
+    .AXES      (AXES),
+    .DEPTH_LOG2(DEPTH_LOG2)
   ) u_queue (
-      .clk(clk),
-      .rst(rst),
-      .bus_frame(bus_frame),
-      .bus_check(bus_check),
-      .bus_write(bus_write),
-      .select(select),
-      .bus_data(bus_data),
-      .blocked(blocked),
-      .refusal(refusal),
-      .incomplete(incomplete),
-      .room(room),
-      .take(take),
-      .release_line(release_line),
-      .flush(stop),
-      .next_valid(line_valid),
-      .next_last(next_last),
-      .next_endless(next_endless),
-      .next_directions(next_directions),
-      .next_minus_substeps(next_minus_substeps),
-      .steps(steps)
+    .clk                (clk),
+    .rst                (rst),
+    .bus_frame          (bus_frame),
+    .bus_check          (bus_check),
+    .bus_write          (bus_write),
+    .select             (select),
+    .bus_data           (bus_data),
+    .blocked            (blocked),
+    .refusal            (refusal),
+    .incomplete         (incomplete),
+    .room               (room),
+    .take               (take),
+    .release_line       (release_line),
+    .flush              (stop),
+    .next_valid         (line_valid),
+    .next_last          (next_last),
+    .next_endless       (next_endless),
+    .next_directions    (next_directions),
+    .next_minus_substeps(next_minus_substeps),
+    .steps              (steps)
   );
 
   passo_line #(
-      .AXES(AXES)
+    .AXES(AXES)
   ) u_line (
-      .clk(clk),
-      .rst(rst),
-      .start(start),
-      .stop(stop),
-      .substep(substep),
-      .next_valid(line_valid),
-      .next_last(next_last),
-      .next_endless(next_endless),
-      .next_directions(next_directions),
-      .next_minus_substeps(next_minus_substeps),
-      .take(take),
-      .slot_add(slot_add),
-      .slot_load(slot_load),
-      .slot_step(slot_step),
-      .slot_load_q(slot_load_q),
-      .broadcast(broadcast),
-      .directions(directions),
-      .endless(endless),
-      .ended(ended),
-      .underrun(underrun)
+    .clk                (clk),
+    .rst                (rst),
+    .start              (start),
+    .stop               (stop),
+    .substep            (substep),
+    .next_valid         (line_valid),
+    .next_last          (next_last),
+    .next_endless       (next_endless),
+    .next_directions    (next_directions),
+    .next_minus_substeps(next_minus_substeps),
+    .take               (take),
+    .slot_add           (slot_add),
+    .slot_load          (slot_load),
+    .slot_step          (slot_step),
+    .slot_load_q        (slot_load_q),
+    .broadcast          (broadcast),
+    .directions         (directions),
+    .endless            (endless),
+    .ended              (ended),
+    .underrun           (underrun)
   );
 
   genvar axis;
   generate
     for (axis = 0; axis < AXES; axis = axis + 1) begin : g_axis
       passo_dda u_dda (
-          .clk(clk),
-          .slot_add(slot_add),
-          .slot_load(slot_load),
-          .slot_step(slot_step),
-          .slot_load_q(slot_load_q),
-          .broadcast(broadcast),
-          .steps(steps[axis*32+:32]),
-          .step_request(step_request[axis])
+        .clk         (clk),
+        .slot_add    (slot_add),
+        .slot_load   (slot_load),
+        .slot_step   (slot_step),
+        .slot_load_q (slot_load_q),
+        .broadcast   (broadcast),
+        .steps       (steps[axis*32+:32]),
+        .step_request(step_request[axis])
       );
     end
   endgenerate

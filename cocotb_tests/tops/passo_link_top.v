@@ -4,72 +4,72 @@
 `default_nettype none
 
 module passo_link_top (
-    input  wire        clk,
-    input  wire        rst,
-    input  wire        spi_sclk,
-    input  wire        spi_mosi,
-    input  wire        spi_cs_n,
-    output wire        spi_miso,
-    input  wire [31:0] status,
-    output wire [ 7:0] last_sequence,
-    output wire        refused,
-    output wire [ 3:0] refused_verdict,
-    output wire        word_valid,
-    output wire        bus_frame,
-    output wire        bus_check,
-    output wire        bus_write,
-    output wire        bus_read,
-    output wire        bus_push,
-    output wire [11:0] bus_address,
-    output wire [31:0] bus_data,
-    input  wire        bus_claim,
-    input  wire [ 3:0] bus_refusal,
-    input  wire [31:0] bus_read_data,
-    input  wire        bus_incomplete
+  input  wire        clk,
+  input  wire        rst,
+  input  wire        spi_sclk,
+  input  wire        spi_mosi,
+  input  wire        spi_cs_n,
+  output wire        spi_miso,
+  input  wire [31:0] status,
+  output wire [ 7:0] last_sequence,
+  output wire        refused,
+  output wire [ 3:0] refused_verdict,
+  output wire        word_valid,
+  output wire        bus_frame,
+  output wire        bus_check,
+  output wire        bus_write,
+  output wire        bus_read,
+  output wire        bus_push,
+  output wire [11:0] bus_address,
+  output wire [31:0] bus_data,
+  input  wire        bus_claim,
+  input  wire [ 3:0] bus_refusal,
+  input  wire [31:0] bus_read_data,
+  input  wire        bus_incomplete
 );
 
-  wire frame_start;
-  wire frame_end;
+  wire        frame_start;
+  wire        frame_end;
   wire [31:0] word;
   wire [31:0] reply_word;
 
   passo_spi u_spi (
-      .clk(clk),
-      .rst(rst),
-      .spi_sclk(spi_sclk),
-      .spi_mosi(spi_mosi),
-      .spi_cs_n(spi_cs_n),
-      .spi_miso(spi_miso),
-      .frame_start(frame_start),
-      .frame_end(frame_end),
-      .word_valid(word_valid),
-      .word(word),
-      .reply_word(reply_word)
+    .clk        (clk),
+    .rst        (rst),
+    .spi_sclk   (spi_sclk),
+    .spi_mosi   (spi_mosi),
+    .spi_cs_n   (spi_cs_n),
+    .spi_miso   (spi_miso),
+    .frame_start(frame_start),
+    .frame_end  (frame_end),
+    .word_valid (word_valid),
+    .word       (word),
+    .reply_word (reply_word)
   );
 
   passo_link u_link (
-      .clk(clk),
-      .rst(rst),
-      .frame_start(frame_start),
-      .frame_end(frame_end),
-      .word_valid(word_valid),
-      .word(word),
-      .reply_word(reply_word),
-      .status(status),
-      .last_sequence(last_sequence),
-      .refused(refused),
-      .refused_verdict(refused_verdict),
-      .bus_frame(bus_frame),
-      .bus_check(bus_check),
-      .bus_write(bus_write),
-      .bus_read(bus_read),
-      .bus_push(bus_push),
-      .bus_address(bus_address),
-      .bus_data(bus_data),
-      .bus_claim(bus_claim),
-      .bus_refusal(bus_refusal),
-      .bus_read_data(bus_read_data),
-      .bus_incomplete(bus_incomplete)
+    .clk            (clk),
+    .rst            (rst),
+    .frame_start    (frame_start),
+    .frame_end      (frame_end),
+    .word_valid     (word_valid),
+    .word           (word),
+    .reply_word     (reply_word),
+    .status         (status),
+    .last_sequence  (last_sequence),
+    .refused        (refused),
+    .refused_verdict(refused_verdict),
+    .bus_frame      (bus_frame),
+    .bus_check      (bus_check),
+    .bus_write      (bus_write),
+    .bus_read       (bus_read),
+    .bus_push       (bus_push),
+    .bus_address    (bus_address),
+    .bus_data       (bus_data),
+    .bus_claim      (bus_claim),
+    .bus_refusal    (bus_refusal),
+    .bus_read_data  (bus_read_data),
+    .bus_incomplete (bus_incomplete)
   );
 
 endmodule

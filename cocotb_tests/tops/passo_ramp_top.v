@@ -4,55 +4,55 @@
 `default_nettype none
 
 module passo_ramp_top #(
-    parameter CHANNELS   = 1,
-    parameter DEPTH_LOG2 = 4,
-    parameter TICK_LOG2  = 7
+  parameter CHANNELS   = 1,
+  parameter DEPTH_LOG2 = 4,
+  parameter TICK_LOG2  = 7
 ) (
-    input  wire                clk,
-    input  wire                rst,
-    // ramp queue
-    input  wire                bus_frame,
-    input  wire                bus_check,
-    input  wire                bus_write,
-    input  wire                select,
-    input  wire [        31:0] bus_data,
-    input  wire                blocked,
-    output wire [         3:0] refusal,
-    output wire                incomplete,
-    output wire [DEPTH_LOG2:0] room,
-    output wire                ramp_valid,
-    // ramp
-    input  wire                prepare,
-    input  wire                begin_profile,
-    input  wire                stop,
-    input  wire                drain,
-    input  wire [        31:0] drain_velocity,
-    input  wire                enable,
-    output wire                ready,
-    output reg                 ended_q,
-    output wire                dry,
-    output wire                stall,
-    output wire [        47:0] velocity
+  input  wire                clk,
+  input  wire                rst,
+  // ramp queue
+  input  wire                bus_frame,
+  input  wire                bus_check,
+  input  wire                bus_write,
+  input  wire                select,
+  input  wire [        31:0] bus_data,
+  input  wire                blocked,
+  output wire [         3:0] refusal,
+  output wire                incomplete,
+  output wire [DEPTH_LOG2:0] room,
+  output wire                ramp_valid,
+  // ramp
+  input  wire                prepare,
+  input  wire                begin_profile,
+  input  wire                stop,
+  input  wire                drain,
+  input  wire [        31:0] drain_velocity,
+  input  wire                enable,
+  output wire                ready,
+  output reg                 ended_q,
+  output wire                dry,
+  output wire                stall,
+  output wire [        47:0] velocity
 );
 
-  wire ended;
-  wire ramp_now_pending;
-  wire ramp_take;
-  wire ramp_take_now;
-  wire [3:0] ramp_half_index;
-  wire [15:0] ramp_half;
-  wire table_request;
-  wire [9:0] table_address;
-  wire [CHANNELS-1:0] table_served;
-  wire [15:0] table_point;
-  wire [15:0] table_point_next;
-  wire [CHANNELS-1:0] table_requests;
+  wire                   ended;
+  wire                   ramp_now_pending;
+  wire                   ramp_take;
+  wire                   ramp_take_now;
+  wire [            3:0] ramp_half_index;
+  wire [           15:0] ramp_half;
+  wire                   table_request;
+  wire [            9:0] table_address;
+  wire [   CHANNELS-1:0] table_served;
+  wire [           15:0] table_point;
+  wire [           15:0] table_point_next;
+  wire [   CHANNELS-1:0] table_requests;
   wire [CHANNELS*10-1:0] table_addresses;
 
   genvar channel;
   generate
     for (channel = 0; channel < CHANNELS; channel = channel + 1) begin : g_channel
-      assign table_requests[channel] = channel == CHANNELS - 1 ? table_request : 1'b1;
+      assign table_requests[channel]         = channel == CHANNELS - 1 ? table_request : 1'b1;
       assign table_addresses[channel*10+:10] = channel == CHANNELS - 1 ? table_address : 10'd5;
     end
   endgenerate
@@ -60,76 +60,76 @@ module passo_ramp_top #(
   always @(posedge clk) ended_q <= ended;
 
   passo_ramp_queue #(
-      .DEPTH_LOG2(DEPTH_LOG2)
+    .DEPTH_LOG2(DEPTH_LOG2)
   ) u_queue (
-      .clk(clk),
-      .rst(rst),
-      .bus_frame(bus_frame),
-      .bus_check(bus_check),
-      .bus_write(bus_write),
-      .select(select),
-      .bus_data(bus_data),
-      .blocked(blocked),
-      .refusal(refusal),
-      .incomplete(incomplete),
-      .room(room),
-      .take(ramp_take),
-      .take_now(ramp_take_now),
-      .flush(stop),
-      .valid(ramp_valid),
-      .now_pending(ramp_now_pending),
-      .half_index(ramp_half_index),
-      .half(ramp_half)
+    .clk        (clk),
+    .rst        (rst),
+    .bus_frame  (bus_frame),
+    .bus_check  (bus_check),
+    .bus_write  (bus_write),
+    .select     (select),
+    .bus_data   (bus_data),
+    .blocked    (blocked),
+    .refusal    (refusal),
+    .incomplete (incomplete),
+    .room       (room),
+    .take       (ramp_take),
+    .take_now   (ramp_take_now),
+    .flush      (stop),
+    .valid      (ramp_valid),
+    .now_pending(ramp_now_pending),
+    .half_index (ramp_half_index),
+    .half       (ramp_half)
   );
 
   passo_tables #(
-      .CHANNELS(CHANNELS)
+    .CHANNELS(CHANNELS)
   ) u_tables (
-      .clk(clk),
-      .rst(rst),
-      .bus_check(1'b0),
-      .bus_write(1'b0),
-      .bus_read(1'b0),
-      .bus_push(1'b0),
-      .select(1'b0),
-      .bus_address(10'd0),
-      .bus_data(32'd0),
-      .occupied(1'b0),
-      .refusal(),
-      .request(table_requests),
-      .address(table_addresses),
-      .served(table_served),
-      .point(table_point),
-      .point_next(table_point_next)
+    .clk        (clk),
+    .rst        (rst),
+    .bus_check  (1'b0),
+    .bus_write  (1'b0),
+    .bus_read   (1'b0),
+    .bus_push   (1'b0),
+    .select     (1'b0),
+    .bus_address(10'd0),
+    .bus_data   (32'd0),
+    .occupied   (1'b0),
+    .refusal    (),
+    .request    (table_requests),
+    .address    (table_addresses),
+    .served     (table_served),
+    .point      (table_point),
+    .point_next (table_point_next)
   );
 
   passo_ramp #(
-      .TICK_LOG2(TICK_LOG2)
+    .TICK_LOG2(TICK_LOG2)
   ) u_ramp (
-      .clk(clk),
-      .rst(rst),
-      .prepare(prepare),
-      .begin_profile(begin_profile),
-      .stop(stop),
-      .drain(drain),
-      .drain_velocity(drain_velocity),
-      .ready(ready),
-      .ended(ended),
-      .dry(dry),
-      .advance(enable & ~stall),
-      .stall(stall),
-      .velocity(velocity),
-      .ramp_valid(ramp_valid),
-      .ramp_now_pending(ramp_now_pending),
-      .ramp_take(ramp_take),
-      .ramp_take_now(ramp_take_now),
-      .ramp_half_index(ramp_half_index),
-      .ramp_half(ramp_half),
-      .table_request(table_request),
-      .table_address(table_address),
-      .table_served(table_served[CHANNELS-1]),
-      .table_point(table_point),
-      .table_point_next(table_point_next)
+    .clk             (clk),
+    .rst             (rst),
+    .prepare         (prepare),
+    .begin_profile   (begin_profile),
+    .stop            (stop),
+    .drain           (drain),
+    .drain_velocity  (drain_velocity),
+    .ready           (ready),
+    .ended           (ended),
+    .dry             (dry),
+    .advance         (enable & ~stall),
+    .stall           (stall),
+    .velocity        (velocity),
+    .ramp_valid      (ramp_valid),
+    .ramp_now_pending(ramp_now_pending),
+    .ramp_take       (ramp_take),
+    .ramp_take_now   (ramp_take_now),
+    .ramp_half_index (ramp_half_index),
+    .ramp_half       (ramp_half),
+    .table_request   (table_request),
+    .table_address   (table_address),
+    .table_served    (table_served[CHANNELS-1]),
+    .table_point     (table_point),
+    .table_point_next(table_point_next)
   );
 
 endmodule

@@ -4,19 +4,22 @@
 import argparse
 import sys
 from collections.abc import Sequence
+from itertools import pairwise
 from pathlib import Path
 
 from passo.build import BuildError
 from passo.console import progress
 from passo.engine import DifferenceError
 from passo.frame import FrameError
-from passo.host import HostError
-from passo.link import LinkError
+from passo.host import HostError, load_table
+from passo.link import Link, LinkError
 from passo.moves import MoveFileError, read_moves
-from passo.plan import plan_file
+from passo.plan import plan_file, table_of
 from passo.run import ENGINES, Run, RunError, execute, open_engine, parameters_for
+from passo.shape import ShapeError
 from passo.toolchain import paths
 
+SIGMOID_BANK = 2  # where the tables of moves go
 RESULTS = ("pulses.csv", "summary.json", "motion.png", "waves.fst")
 OK, FAILED, BAD_INPUT = 0, 1, 2
 FAILURES = (BuildError, DifferenceError, FrameError, HostError, LinkError, RunError)
@@ -27,7 +30,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = _parser().parse_args(arguments)
     try:
         return options.command(options)
-    except MoveFileError as error:
+    except (MoveFileError, ShapeError) as error:
         print(error, file=sys.stderr)
         return BAD_INPUT
     except FAILURES as error:
@@ -52,6 +55,13 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--out", type=Path, metavar="DIR", help="where the results go (default build/run/NAME)")
     run.add_argument("--waves", action="store_true", help="write waves.fst (the RTL's inside)")
     run.add_argument("--plot", action="store_true", help="write motion.png")
+    shape = commands.add_parser("shape", help="make and check the table of a shape of your own")
+    shape.set_defaults(command=_shape)
+    source = shape.add_mutually_exclusive_group(required=True)
+    source.add_argument("--formula", metavar="F", help="of u from 0 to 1, such as 'u^2 * (3 - 2 * u)'")
+    source.add_argument("--csv", type=Path, metavar="FILE", help="u,s: a curve; or k,point: a table")
+    shape.add_argument("--out", type=Path, metavar="FILE", help="write the table: FILE.csv or FILE.toml")
+    shape.add_argument("--plot", type=Path, metavar="FILE.png", help="draw it")
     demo = commands.add_parser("demo", help="make the moves of examples/, with pictures in build/demo")
     demo.set_defaults(command=_demo)
     bench = commands.add_parser("bench", help="measure how fast the engines are")
@@ -77,6 +87,8 @@ def _run(options: argparse.Namespace) -> int:
             raise MoveFileError(f"{out}: {error.strerror}") from None
         if options.waves:
             engine.open_waves(out / "waves.fst")
+        if table := table_of(plans):
+            load_table(Link(engine), SIGMOID_BANK, table)
         try:
             with progress(file.name, sum(plan.clocks for plan in plans)) as report:
                 run = execute(file, plans, engine, report)
@@ -103,6 +115,26 @@ def _conclude(run: Run, out: Path) -> int:
     edges = "" if run.matched_edges is None else f", {run.matched_edges} edges agree"
     seconds = run.total_clocks / run.file.clock_hz
     print(f"{run.file.name}: {steps} steps in {run.total_clocks} clocks ({seconds:.6g} s){edges}: {out}")
+    return OK
+
+
+def _shape(options: argparse.Namespace) -> int:
+    from passo import shape
+
+    points = (
+        shape.sample(shape.formula(options.formula)) if options.formula else shape.read_table(options.csv)
+    )
+    facts = shape.check(points)
+    try:
+        if options.out:
+            shape.write_table(points, options.out)
+        if options.plot:
+            shape.plot_table(points, options.plot)
+    except OSError as error:
+        raise ShapeError(f"{error.filename}: {error.strerror}") from None
+    steepest = max(b - a for a, b in pairwise((*points, shape.ONE))) * shape.POINTS / shape.ONE
+    symmetric = "symmetric" if facts.symmetric else "not symmetric"
+    print(f"mean {float(facts.mean):.6f}, {symmetric}, slope at most {steepest:.3f}")
     return OK
 
 

@@ -3,14 +3,17 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from functools import partial
 
 import numpy as np
 
-from passo.plan import Q48, Plan
+from passo.moves import USER
+from passo.plan import ALPHA_ONE, ALPHA_RESET, Q48, Plan
 from passo.run import Run
+from passo.shape import ONE, POINTS
 
-SIGMOID_A = 5.0
+# A shape and its integral from 0 to u.
+Shape = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
 def _logistic(x: np.ndarray) -> np.ndarray:
@@ -25,8 +28,8 @@ def _cosine(u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return (1 - np.cos(np.pi * u)) / 2, u / 2 - np.sin(np.pi * u) / (2 * np.pi)
 
 
-def _sigmoid(u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    a, low = SIGMOID_A, _logistic(-SIGMOID_A)
+def _sigmoid(u: np.ndarray, a: float) -> tuple[np.ndarray, np.ndarray]:
+    low = _logistic(-a)
     height = _logistic(a) - low
     x = a * (2 * u - 1)
     area = (np.logaddexp(0, x) - np.logaddexp(0, -a)) / (2 * a) - low * u
@@ -37,19 +40,24 @@ def _ease(u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return u**2, u**3 / 3
 
 
-# Shape and its integral from 0 to u, by enum passo_shape.
-SHAPES: tuple[Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]], ...] = (
-    _linear,
-    _cosine,
-    _sigmoid,
-    _ease,
-)
+def _table(u: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Straight lines between the points, of which the last is 1."""
+    place = u * POINTS
+    k = np.minimum(place.astype(int), POINTS - 1)
+    areas = np.concatenate([[0], np.cumsum((points[1:] + points[:-1]) / 2)])
+    value = points[k] + (points[k + 1] - points[k]) * (place - k)
+    return value, (areas[k] + (points[k] + value) / 2 * (place - k)) / POINTS
 
 
-def _shape(ramp: Any, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    shape = SHAPES[ramp.shape]
-    if not ramp.mirror:
-        return shape(u)
+def shapes_of(plan: Plan) -> tuple[Shape, ...]:
+    """By enum passo_shape."""
+    sigmoid = partial(_sigmoid, a=(plan.c.sigmoid_alpha or ALPHA_RESET) / ALPHA_ONE)
+    if plan.move.profile == USER:
+        sigmoid = partial(_table, points=np.array([*plan.table, ONE]) / ONE)
+    return _linear, _cosine, sigmoid, _ease
+
+
+def _mirrored(shape: Shape, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     value, area = shape(1 - u)
     return 1 - value, u - (shape(np.ones_like(u))[1] - area)
 
@@ -63,12 +71,12 @@ class Segment:
     distance: float
     velocity: float
     velocity_end: float
-    ramp: Any
+    shape: Shape
 
     def at(self, clocks: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Velocity and distance; beyond its ends as at its ends."""
         u = np.clip((clocks - self.begin) / self.length, 0, 1)
-        value, area = _shape(self.ramp, u)
+        value, area = self.shape(u)
         change = self.velocity_end - self.velocity
         return (
             self.velocity + change * value,
@@ -82,11 +90,13 @@ class Curve:
     def __init__(self, plan: Plan):
         self.clocks = plan.clocks
         self.segments: list[Segment] = []
+        shapes = shapes_of(plan)
         begin = distance = velocity = 0.0
         for ramp in plan.ramps:
             length, velocity_end = float(ramp.ticks << plan.tick_log2), ramp.velocity_end / Q48
             if length:
-                segment = Segment(begin, length, distance, velocity, velocity_end, ramp)
+                shape = partial(_mirrored, shapes[ramp.shape]) if ramp.mirror else shapes[ramp.shape]
+                segment = Segment(begin, length, distance, velocity, velocity_end, shape)
                 self.segments.append(segment)
                 begin += length
                 distance = float(segment.at(np.array(begin))[1])

@@ -19,6 +19,13 @@ class HostError(Exception):
     """This is not the core that the host expects."""
 
 
+def load_table(link: Link, bank: int, points: Sequence[int]) -> None:
+    """Rewrite a shape's bank (1 to 3), while no motion is prepared or runs."""
+    address = r.ADDRESS_COSINE_BASE + (bank - 1) * len(points)
+    for k in range(0, len(points), frame.PAYLOAD_MAX):
+        link.write(address + k, *points[k : k + frame.PAYLOAD_MAX])
+
+
 @dataclass(frozen=True)
 class ChannelState:
     """The STATE register."""

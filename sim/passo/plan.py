@@ -1,16 +1,32 @@
 # SPDX-License-Identifier: MIT
 """The planner (c_model/passo_plan.h) for Python."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from fractions import Fraction
 from typing import Any
 
+from passo import moves as m
 from passo.build import Parameters
-from passo.moves import Move, MoveFile, MoveFileError, MoveInTime
+from passo.moves import Move, MoveFile, MoveFileError, q32
 from passo.native import ffi, planner
+from passo.shape import POINTS
 
-Q32 = 1 << 32
 Q48 = 1 << 48
+ALPHA_ONE = 4096
+ALPHA_RESET = 5 * ALPHA_ONE  # what the sigmoid's table is made for after reset
+
+# Which passo_plan_METHOD() plans a move; its struct is passo_move_METHOD.
+METHODS = {
+    m.MoveInTime: "in_time",
+    m.MoveBySpeed: "by_speed",
+    m.MoveBelowSpeed: "below_speed",
+    m.MoveAtSpeed: "at_speed",
+    m.MoveAxes: "axes",
+    m.MoveTurn: "turn",
+    m.MoveSigmoid: "sigmoid",
+    m.MoveJerk: "jerk",
+    m.MoveStraight: "straight",
+}
 
 
 class PlanError(Exception):
@@ -28,6 +44,7 @@ class Plan:
     move: Move
     c: Any
     tick_log2: int
+    table: m.Table = ()  # what the sigmoid's bank must hold; empty: what is there after reset, or anything
 
     @property
     def line(self) -> Any:
@@ -50,27 +67,53 @@ def plan_move(move: Move, clock_hz: int, parameters: Parameters) -> Plan:
     c = planner()
     machine = ffi().new("struct passo_machine *", (clock_hz, parameters.tick_log2, len(move.steps)))
     plan = ffi().new("struct passo_plan *")
-    profile = getattr(c, f"PASSO_PROFILE_{move.profile.upper()}")
-    if isinstance(move, MoveInTime):
-        fields = {
-            "total_clocks": _clocks(move.total_time, clock_hz),
-            "ramp_clocks": _clocks(move.ramp_time, clock_hz),
-        }
-        wanted = ffi().new("struct passo_move_in_time *", {"profile": profile, **fields})
-        make = c.passo_plan_in_time
+    method, table = METHODS[type(move)], getattr(move, "table", ())
+    wanted = ffi().new(f"struct passo_move_{method} *", _struct_of(move, clock_hz))
+    if table:
+        points = ffi().new("uint16_t[]", table)
+        shape = ffi().new("struct passo_user_shape *", (c.PASSO_SHAPE_SIGMOID, points))
+        error = getattr(c, f"passo_plan_user_{method}")(machine, wanted, shape, plan)
     else:
-        speeds = ("start_speed", "speed", "stop_speed", "acceleration", "deceleration")
-        fields = {name: round(getattr(move, name) * Q32) for name in speeds}
-        fields["ramp_clocks"] = _clocks(move.ramp_time, clock_hz)
-        wanted = ffi().new("struct passo_move_by_speed *", {"profile": profile, **fields})
-        make = c.passo_plan_by_speed
-    for axis, steps in enumerate(move.steps):
-        wanted.steps[axis] = steps
-    error = make(machine, wanted, plan)
+        error = getattr(c, f"passo_plan_{method}")(machine, wanted, plan)
     if error != c.PASSO_PLAN_OK:
-        name, text = c.passo_plan_error_name(error), c.passo_plan_error_text(error)
+        name, text = c.passo_method_error_name(error), c.passo_method_error_text(error)
         raise PlanError(ffi().string(name).decode(), ffi().string(text).decode())
-    return Plan(move, plan, parameters.tick_log2)
+    if plan.sigmoid_alpha not in (0, ALPHA_RESET):
+        table = sigmoid_table(plan.sigmoid_alpha)
+    return Plan(move, plan, parameters.tick_log2, table)
+
+
+def sigmoid_table(alpha: int) -> m.Table:
+    """The points of the sigmoid for an alpha in 1/4096."""
+    table = ffi().new("uint16_t[]", POINTS)
+    if planner().passo_sigmoid_table(alpha, table):
+        raise ValueError(f"alpha {alpha / ALPHA_ONE} is not 3 to 5")
+    return tuple(table)
+
+
+def _struct_of(move: Move, clock_hz: int) -> dict[str, Any]:
+    """A move's fields as its C struct has them: times in clocks, all else in units of 2^-32."""
+    if isinstance(move, m.MoveStraight):
+        limits = zip(move.steps_per_mm, move.speed, move.acceleration, move.jerk, strict=True)
+        return {
+            "distance": [q32(d) for d in move.distance],
+            "limits": [tuple(map(q32, own)) for own in limits],
+            "feed": q32(move.feed),
+        }
+    values: dict[str, Any] = {}
+    known = {name for name, _ in ffi().typeof(f"struct passo_move_{METHODS[type(move)]}").fields}
+    for field in fields(move):
+        name, value = field.name, getattr(move, field.name)
+        if name == "alpha":
+            values[name] = min(round(value * ALPHA_ONE), 2**32 - 1)
+        elif name == "profile":
+            value = "linear" if value == m.USER else value  # not looked at then
+            values[name] = getattr(planner(), f"PASSO_PROFILE_{value.upper()}")
+        elif name.endswith("_time"):
+            values[f"{name.removesuffix('_time')}_clocks"] = round(value * clock_hz)
+        else:
+            values[name] = q32(value) if isinstance(value, Fraction) else value
+    return {name: value for name, value in values.items() if name in known}
 
 
 def plan_file(file: MoveFile, parameters: Parameters) -> list[Plan]:
@@ -83,10 +126,27 @@ def plan_file(file: MoveFile, parameters: Parameters) -> list[Plan]:
         except PlanError as error:
             raise MoveFileError(f"{file.path}: move {number}: {error}") from None
         plans.append(plan)
+    _check_tables(plans, file)
     for plan in plans[:-1]:
         plan.line.last = False
         plan.ramps[-1].last = False
     return plans
+
+
+def table_of(plans: list[Plan]) -> m.Table:
+    """What the sigmoid's bank must hold before this motion; empty: what is there after reset."""
+    return next((plan.table for plan in plans if plan.table), ())
+
+
+def _check_tables(plans: list[Plan], file: MoveFile) -> None:
+    """Raise MoveFileError if two moves need different tables in the one bank there is for them."""
+    users = [(n, plan) for n, plan in enumerate(plans, 1) if plan.table or plan.c.sigmoid_alpha]
+    for number, plan in users[1:]:
+        if plan.table != users[0][1].table:
+            raise MoveFileError(
+                f"{file.path}: move {number}: it needs another table than move {users[0][0]}, "
+                "and tables cannot be loaded during a motion"
+            )
 
 
 def _check_pins(plan: Plan, file: MoveFile) -> None:
@@ -100,7 +160,3 @@ def _check_pins(plan: Plan, file: MoveFile) -> None:
                 "PINS_TOO_SLOW",
                 f"axis {axis} reaches {float(speed):.0f} steps/s, its pin timing allows {limit:.0f}",
             )
-
-
-def _clocks(seconds: Fraction, clock_hz: int) -> int:
-    return round(seconds * clock_hz)

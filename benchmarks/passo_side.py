@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: MIT
+"""The same moves through Passo's planner and the recurrences of docs/architecture.md."""
+
+import hashlib
+import math
+import os
+import subprocess
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from cffi import FFI
+from passo import moves
+from passo.build import Parameters
+from passo.plan import ALPHA_ONE, ALPHA_RESET, Q48, Plan, plan_move
+from passo.toolchain import paths
+
+from benchmarks import sources
+from benchmarks.ideal import Ideal, Phase, by_speed, in_time
+from benchmarks.sources import MILLISECONDS, Cosine, MultiAxis, Pulses, Sigmoid, Trapezoid
+
+CLOCK_HZ = 100_000_000
+PARAMETERS = Parameters(axes=4)
+TICK_SECONDS = (1 << PARAMETERS.tick_log2) / CLOCK_HZ
+
+SHAPES = ("linear", "cosine", "sigmoid", "ease")  # by their numbers
+
+SOURCE = Path(__file__).with_name("steps.c")
+FLAGS = ("-std=gnu11", "-O3", "-Wall", "-Wextra", "-Werror", "-fPIC", "-shared")
+DECLARATIONS = """
+struct ramp { uint64_t velocity_end, progress_step; uint32_t ticks, shape, mirror; };
+uint32_t substep_clocks(const struct ramp *ramps, uint32_t ramp_count, uint32_t tick_log2,
+    const uint32_t tables[][257], const uint64_t *due, uint32_t count, uint64_t *clocks);
+"""
+
+
+# ---------------------------------------------------------------------------------- what the user wants ----
+
+
+def wanted_steps(move: sources.Move) -> tuple[int, ...]:
+    """Steps of each axis; an angle is rounded to the nearest."""
+    if isinstance(move, Trapezoid):
+        return (round(Fraction(move.degrees) * Trapezoid.UPDATES / 2 / 360),)
+    return move.steps if isinstance(move, MultiAxis) else (move.steps,)
+
+
+def wanted_curve(move: sources.Move) -> Ideal:
+    """The curve that the user of a source has in mind."""
+    steps = wanted_steps(move)[0]
+    match move:
+        case Trapezoid():
+            low, high = (rpm * Trapezoid.UPDATES / 2 / 60 for rpm in (move.rpm_min, move.rpm))
+            seconds = (high - low) / (Trapezoid.ACCELERATION / 2)
+            return by_speed(steps, low, high, low, seconds, seconds)
+        case Sigmoid():
+            up, down = move.up_ms / MILLISECONDS, move.down_ms / MILLISECONDS
+            return by_speed(steps, move.start, move.run, move.stop, up, down, ("sigmoid", move.alpha))
+        case MultiAxis():
+            low, high = move.v0 * MILLISECONDS, move.vmax * MILLISECONDS
+            seconds = move.t_acc / MILLISECONDS
+            return by_speed(steps, low, high, low, seconds, seconds)
+        case Cosine():
+            return in_time(steps, move.total_ms / MILLISECONDS, move.ramp_ms / MILLISECONDS, "cosine")
+
+
+def passo_move(move: sources.Move) -> moves.Move:
+    """The move in the planner's form for each method."""
+    steps = wanted_steps(move)
+    match move:
+        case Trapezoid():
+            return moves.MoveTurn(
+                axes=1,
+                axis=0,
+                steps_per_turn=Trapezoid.UPDATES // 2,
+                angle=Fraction(move.degrees),
+                rpm=Fraction(move.rpm),
+                minimum_rpm=Fraction(move.rpm_min),
+                acceleration=Fraction(Trapezoid.ACCELERATION, 2),
+            )
+        case Sigmoid():
+            speeds = (Fraction(hertz) for hertz in (move.start, move.run, move.stop))
+            times = (Fraction(ms, MILLISECONDS) for ms in (move.up_ms, move.down_ms))
+            return moves.MoveSigmoid(steps, *speeds, *times, alpha=Fraction(move.alpha))
+        case MultiAxis():
+            start, speed = (Fraction(pulses * MILLISECONDS) for pulses in (move.v0, move.vmax))
+            return moves.MoveAxes(steps, start, speed, Fraction(move.t_acc, MILLISECONDS))
+        case Cosine():
+            total, ramp = (Fraction(ms, MILLISECONDS) for ms in (move.total_ms, move.ramp_ms))
+            return moves.MoveInTime(steps, "cosine", total, ramp)
+
+
+# ----------------------------------------------------------------------------------- what the core does ----
+
+
+@cache
+def library() -> tuple[FFI, Any]:
+    """steps.c, compiled once for each state of it."""
+    digest = hashlib.sha256(SOURCE.read_bytes() + repr(FLAGS).encode()).hexdigest()[:12]
+    library = paths.build / "accuracy" / f"steps-{digest}.so"
+    if not library.exists():
+        library.parent.mkdir(parents=True, exist_ok=True)
+        partial = library.with_suffix(f".{os.getpid()}")
+        subprocess.run(["cc", *FLAGS, "-o", str(partial), str(SOURCE)], check=True)
+        partial.rename(library)
+    own = FFI()
+    own.cdef(DECLARATIONS)
+    return own, own.dlopen(str(library))
+
+
+def _sigmoid_point(u: float, alpha: float) -> float:
+    def logistic(x: float) -> float:
+        return 1 / (1 + math.exp(-x))
+
+    low, high = logistic(-alpha), logistic(alpha)
+    return (logistic(alpha * (2 * u - 1)) - low) / (high - low)
+
+
+@cache
+def tables(alpha: float) -> np.ndarray:
+    """Banks 1 to 3 as docs/architecture.md defines them, 257 points each; the sigmoid's for any alpha."""
+    u = [k / 256 for k in range(257)]
+    cosine = [round(32768 * (1 - math.cos(math.pi * x))) for x in u]
+    sigmoid = [round(65536 * _sigmoid_point(x, alpha)) for x in u]
+    return np.array([cosine, sigmoid, [k * k for k in range(257)]], dtype=np.uint32)
+
+
+def step_substeps(substeps: int, steps: int) -> np.ndarray:
+    """The substeps, from 1, in which an axis makes its steps: the DDA in closed form."""
+    k = np.arange(1, steps + 1, dtype=np.int64)
+    return -((substeps // 2 - k * substeps) // max(steps, 1))
+
+
+def alpha_of(plan: Plan) -> float:
+    """That the plan's sigmoid is made for."""
+    return (plan.c.sigmoid_alpha or ALPHA_RESET) / ALPHA_ONE
+
+
+def banks_of(plan: Plan) -> np.ndarray:
+    """What the core's banks must hold: the standard shapes, but in place of the sigmoid maybe the user's."""
+    banks = tables(alpha_of(plan))
+    if plan.move.profile == moves.USER:
+        banks = banks.copy()
+        banks[SHAPES.index("sigmoid") - 1] = [*plan.table, 65536]
+    return banks
+
+
+def step_clocks(plan: Plan) -> tuple[list[np.ndarray], int]:
+    """Clocks from the start to each step, for each axis, and how many of the substeps asked for are missing.
+
+    The last substep of the line is asked for as well: with it the line is complete.
+    """
+    own, c = library()
+    ramps = own.new("struct ramp[]", [
+        (ramp.velocity_end, ramp.progress_step, ramp.ticks, ramp.shape, ramp.mirror) for ramp in plan.ramps
+    ])  # fmt: skip
+    substeps = plan.line.substeps
+    axes = [step_substeps(substeps, abs(steps)) for steps in plan.move.steps]
+    due, inverse = np.unique(np.concatenate([*axes, [substeps]]), return_inverse=True)
+    banks = banks_of(plan)
+    due, clocks = due.astype(np.uint64), np.zeros(len(due), np.uint64)
+    made = c.substep_clocks(
+        ramps, len(ramps), plan.tick_log2, own.from_buffer("uint32_t[][257]", banks),
+        own.from_buffer("uint64_t[]", due), len(due), own.from_buffer("uint64_t[]", clocks),
+    )  # fmt: skip
+    every = clocks.astype(np.int64)[inverse]
+    ends = np.cumsum([len(axis) for axis in axes])
+    reached = inverse < made
+    parts = zip(np.split(every, ends)[:-1], np.split(reached, ends)[:-1], strict=True)
+    steps = [part[ok] for part, ok in parts]
+    return steps, len(due) - made
+
+
+# --------------------------------------------------------------------------------------------- and both ----
+
+
+@dataclass(frozen=True)
+class Made:
+    """What the planner and the core make of a move."""
+
+    plan: Plan
+    pulses: Pulses
+    planned: Ideal  # the curve whose phases are whole ticks
+    missing: int  # substeps that the ramps do not reach
+
+
+def planned_curve(plan: Plan, user: str = "") -> Ideal:
+    """What the ramps of a plan mean, without tables and rounding; `user` is the user's own shape."""
+    hertz = CLOCK_HZ / Q48 / plan.c.oversampling
+    phases, velocity = [], 0
+    for ramp in plan.ramps:
+        start, end, shape = velocity * hertz, ramp.velocity_end * hertz, SHAPES[ramp.shape]
+        if shape == "sigmoid" and user:
+            shape = user
+        phases.append(Phase(ramp.ticks * TICK_SECONDS, start, end, shape, alpha_of(plan), ramp.mirror))
+        velocity = ramp.velocity_end
+    return Ideal(*phases)
+
+
+def make(move: sources.Move) -> Made:
+    """Plan a move and make its steps."""
+    plan = plan_move(passo_move(move), CLOCK_HZ, PARAMETERS)
+    clocks, missing = step_clocks(plan)
+    planned = planned_curve(plan)
+    main, *followers = (axis / CLOCK_HZ for axis in clocks)
+    pulses = Pulses(main, plan.clocks / CLOCK_HZ, planned.start, planned.run, planned.stop, tuple(followers))
+    return Made(plan, pulses, planned, missing)

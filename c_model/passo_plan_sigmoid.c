@@ -1,0 +1,87 @@
+/* SPDX-License-Identifier: MIT
+ * Sigmoid S-curves, and the table of the logistic function for any alpha.
+ */
+#include "passo_math.h"
+#include "passo_plan_draft.h"
+
+#define ALPHA_UNIT 4096u
+#define ALPHA_MIN (3u * ALPHA_UNIT)
+#define ALPHA_MAX (5u * ALPHA_UNIT)
+
+/* UQ1.62 */
+#define ONE_Q62 (UINT64_C(1) << 62)
+
+static const uint32_t MIDDLE = PASSO_TABLE_SIZE / 2;
+
+static uint64_t multiply_q62(uint64_t a, uint64_t b)
+{
+	struct passo_u128 product = passo_multiply(a, b);
+	return product.high << 2 | product.low >> 62;
+}
+
+/* exp(-x) for a small x, all in UQ1.62, from its series. */
+static uint64_t exp_minus(uint64_t x)
+{
+	uint64_t sum = ONE_Q62, term = ONE_Q62;
+	for (uint32_t n = 1; term > 0; n++) {
+		term = multiply_q62(term, x) / n;
+		sum = n % 2 > 0 ? sum - term : sum + term;
+	}
+	return sum;
+}
+
+/* (1 - e) / (1 + e) with e = exp(-y), which is tanh(y / 2). */
+static uint64_t tanh_of_half(uint64_t e)
+{
+	return passo_mul_div(ONE_Q62 - e, ONE_Q62, ONE_Q62 + e);
+}
+
+/* With the middle as the origin and d points from it the scaled logistic function is
+ *
+ *   1/2 + tanh(alpha d / 256) / (2 tanh(alpha / 2))
+ *
+ * It is reckoned for the upper half only: the lower half is its mirror image, to the bit. */
+uint32_t passo_sigmoid_table(uint32_t alpha, uint16_t table[PASSO_TABLE_SIZE])
+{
+	if (alpha < ALPHA_MIN || alpha > ALPHA_MAX)
+		return PASSO_METHOD_BAD_ALPHA;
+
+	/* exp(-alpha / 128), of which each point on from the middle is a further power */
+	uint64_t step = exp_minus(ONE_Q62 / ((uint64_t)ALPHA_UNIT * MIDDLE) * alpha);
+	uint64_t last = ONE_Q62;
+	for (uint32_t d = 0; d < MIDDLE; d++)
+		last = multiply_q62(last, step);
+	uint64_t scale = tanh_of_half(last);
+
+	uint64_t e = ONE_Q62;
+	table[0] = 0;
+	for (uint32_t d = 0; d < MIDDLE; d++) {
+		const uint32_t half = 65536 / 2;
+		uint32_t above = ((uint32_t)passo_mul_div(tanh_of_half(e), 65536, scale) + 1) / 2;
+		table[MIDDLE + d] = (uint16_t)(half + above);
+		table[MIDDLE - d] = (uint16_t)(half - above);
+		e = multiply_q62(e, step);
+	}
+	return PASSO_PLAN_OK;
+}
+
+uint32_t passo_plan_sigmoid(
+    const struct passo_machine *machine, const struct passo_move_sigmoid *move, struct passo_plan *plan)
+{
+	struct passo_draft draft;
+	enum passo_plan_error error = passo_draft_start(&draft, machine, move->steps, PASSO_PROFILE_SIGMOID);
+	if (error != PASSO_PLAN_OK)
+		return error;
+	if (move->alpha < ALPHA_MIN || move->alpha > ALPHA_MAX)
+		return PASSO_METHOD_BAD_ALPHA;
+	draft.sigmoid_alpha = move->alpha;
+
+	const struct passo_limits limits = {
+	    .start_speed = move->start_speed,
+	    .speed = move->speed,
+	    .stop_speed = move->stop_speed,
+	    .up = {.ramp_clocks = move->accelerate_clocks},
+	    .down = {.ramp_clocks = move->decelerate_clocks},
+	};
+	return passo_draft_by_speed(&draft, &limits, plan);
+}

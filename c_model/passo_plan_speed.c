@@ -1,0 +1,245 @@
+/* SPDX-License-Identifier: MIT
+ * Moves by speed: slopes of ramps, the speed that a move can reach, and what the ramps leave over.
+ */
+#include <stddef.h>
+
+#include "passo_math.h"
+#include "passo_plan_draft.h"
+
+/* Flattest slope: so long from rest to the full speed. Keeps the sums of reachable_speed() below 2^128. */
+#define SLOPE_CLOCKS_MAX (UINT64_C(1) << 62)
+
+/* How steep a ramp is: it changes the speed by `speed` (UQ32.32 steps/s) in `clocks`. With a jerk (then these
+ * are an acceleration's) the slope takes up to `ease` clocks to build up, and again to cease, which makes the
+ * ramp longer. */
+struct slope {
+	uint64_t clocks, speed, ease, jerk;
+};
+
+/* Any change of speed in no time. */
+static const struct slope VERTICAL = {0, 1, 0, 0};
+
+static uint64_t clocks_floor(struct slope slope, uint64_t change)
+{
+	return passo_mul_div(change, slope.clocks, slope.speed);
+}
+
+static uint64_t clocks_ceil(struct slope slope, uint64_t change)
+{
+	return passo_mul_div_ceil(change, slope.clocks, slope.speed);
+}
+
+/* How long the slope takes to build up, and again to cease, in a change of speed that would take so many
+ * clocks without that: sqrt(change / jerk) if it does not get to its full height. */
+static uint64_t curve_clocks(struct slope slope, uint64_t change, uint64_t clocks)
+{
+	if (slope.ease == 0 || clocks >= slope.ease)
+		return slope.ease;
+	uint64_t square = passo_mul_div_ceil(change, slope.clocks * slope.clocks, slope.jerk);
+	uint64_t root =
+	    square < UINT64_MAX ? passo_isqrt64(square) : passo_isqrt128(passo_multiply(clocks, slope.ease));
+	return passo_smaller(slope.ease, root + 1);
+}
+
+/* Rounded up: a longer ramp is a gentler one. */
+static struct passo_phase ramp_phase(
+    const struct passo_draft *draft, struct slope slope, uint64_t low, uint64_t high)
+{
+	uint64_t clocks = low < high ? clocks_ceil(slope, high - low) : 0;
+	uint64_t ticks = passo_ticks_ceil(draft->machine, clocks);
+	if (slope.ease == 0 || clocks == 0)
+		return (struct passo_phase){passo_draft_halvable(draft, ticks), 0, 0};
+	uint64_t curve = passo_ticks_ceil(draft->machine, curve_clocks(slope, high - low, clocks));
+	uint64_t straight = ticks > curve ? ticks - curve : 0;
+	return (struct passo_phase){2 * curve + straight, straight, 0};
+}
+
+static enum passo_plan_error find_slope(struct slope *slope, const struct passo_draft *draft,
+    const struct passo_rise *rise, uint64_t end_speed, uint64_t speed)
+{
+	uint32_t clock_hz = draft->machine->clock_hz;
+	if (speed == end_speed)
+		*slope = VERTICAL;
+	else if (rise->acceleration > 0)
+		*slope = (struct slope){clock_hz, rise->acceleration, 0, 0};
+	else if (rise->ramp_clocks > 0)
+		*slope = (struct slope){rise->ramp_clocks, speed - end_speed, 0, 0};
+	else
+		return PASSO_PLAN_NO_ACCELERATION;
+	if (rise->jerk > 0 && speed > end_speed) {
+		slope->ease = passo_mul_div_ceil(rise->acceleration, clock_hz, rise->jerk);
+		slope->jerk = rise->jerk;
+	}
+	bool too_long = slope->ease > SLOPE_CLOCKS_MAX || clocks_floor(*slope, speed) > SLOPE_CLOCKS_MAX;
+	return too_long ? PASSO_PLAN_TOO_LONG : PASSO_PLAN_OK;
+}
+
+/* A user's shape whose mean is not in the middle makes the ramps' distance owe more, or less, to the peak. */
+static uint64_t weighted(uint64_t clocks, uint32_t mean)
+{
+	return mean == PASSO_MEAN_HALF ? clocks : passo_mul_div(clocks, mean, PASSO_MEAN_HALF);
+}
+
+/* The highest speed, up to a limit, that a move of this length can reach. With a, d the slopes as
+ * accelerations:
+ *
+ *   length = (peak^2 - start^2) / 2a + (peak^2 - stop^2) / 2d
+ *   peak^2 = (2 length + start * start/a + stop * stop/d) / (1/a + 1/d)
+ *
+ * Any speed divided by an acceleration is a number of clocks. So that 1/a and 1/d are numbers of clocks
+ * too, numerator and denominator are multiplied by the limit. Rounded up: too high a peak costs a little
+ * time, nothing else. */
+static uint64_t reachable_speed(const struct passo_draft *draft, uint64_t limit, struct slope up,
+    uint64_t start, struct slope down, uint64_t stop)
+{
+	uint64_t length = (uint64_t)draft->longest * draft->machine->clock_hz;
+	struct passo_u128 sum = passo_multiply(length, 2 * PASSO_UNIT_Q32);
+	sum = passo_u128_add(sum, passo_multiply(start, passo_smaller(clocks_ceil(up, start), SLOPE_CLOCKS_MAX)));
+	sum = passo_u128_add(sum, passo_multiply(stop, passo_smaller(clocks_ceil(down, stop), SLOPE_CLOCKS_MAX)));
+
+	uint64_t clocks = passo_smaller(clocks_floor(up, limit), SLOPE_CLOCKS_MAX) +
+	    passo_smaller(clocks_floor(down, limit), SLOPE_CLOCKS_MAX);
+	uint64_t quotient = passo_divide(sum, weighted(clocks, draft->mean), NULL);
+	if (quotient >= limit)
+		return limit;
+	return passo_smaller(limit, passo_isqrt128(passo_multiply(quotient + 1, limit)) + 1);
+}
+
+/* The slope without ease that takes as long between these speeds. */
+static struct slope mean_slope(struct slope slope, uint64_t low, uint64_t high)
+{
+	if (low >= high)
+		return VERTICAL;
+	uint64_t clocks = clocks_ceil(slope, high - low);
+	uint64_t curve = curve_clocks(slope, high - low, clocks);
+	return (struct slope){(clocks < curve ? curve : clocks) + curve, high - low, 0, 0};
+}
+
+/* With ease the mean slope grows with the peak. From a peak that is too high comes a slope that is too steep,
+ * and from that a peak that is less too high: the excess, as a factor, shrinks to its fourth root or less
+ * each time. */
+static uint64_t reachable_with_ease(const struct passo_draft *draft, uint64_t limit, struct slope up,
+    uint64_t start, struct slope down, uint64_t stop)
+{
+	if (up.ease == 0 && down.ease == 0)
+		return reachable_speed(draft, limit, up, start, down, stop);
+
+	const uint64_t end = start > stop ? start : stop;
+	uint64_t next = limit, peak, good_enough;
+	int rounds = 12;
+	do {
+		peak = next;
+		struct slope mean_up = mean_slope(up, start, peak), mean_down = mean_slope(down, stop, peak);
+		next = reachable_speed(draft, peak, mean_up, start, mean_down, stop);
+		good_enough = next > end ? (next - end) >> 8 : 0;
+	} while (peak - next > good_enough && --rounds > 0);
+	return next;
+}
+
+/* The distance the ramps leave over, in ticks at a velocity that the peak must not exceed; rounded up. */
+static uint64_t cruise_ticks(const struct passo_draft *draft, uint64_t velocity)
+{
+	uint64_t remainder;
+	uint64_t weight = passo_divide(passo_draft_distance(draft), velocity, &remainder);
+	uint64_t ramps = passo_draft_weight(draft);
+	if (weight < ramps)
+		return 0;
+	uint64_t missing = weight - ramps;
+	uint64_t ticks = missing >> PASSO_WEIGHT_BITS;
+	bool needs_more = ticks << PASSO_WEIGHT_BITS < missing || remainder > 0;
+	bool weightless = ramps == 0 && ticks == 0; /* a user's shape may be 0 in the middle of its only tick */
+	return ticks + (needs_more || weightless);
+}
+
+/* In moves of a few ticks, rounding up to whole ticks can let the peak fall below the start or stop
+ * velocity. Then that ramp's ticks are run at the peak instead. This lifts the peak, but not above the
+ * velocity it was below, so no limit is exceeded if the higher velocity goes first. True if the peak must
+ * be solved anew. */
+static bool flatten_ramp(struct passo_draft *draft)
+{
+	bool below_start = draft->accelerate.ticks > 0 && draft->peak < draft->start;
+	bool below_stop = draft->decelerate.ticks > 0 && draft->peak < draft->stop;
+	struct passo_phase *ramp;
+	if (below_start && (!below_stop || draft->start >= draft->stop))
+		ramp = &draft->accelerate;
+	else if (below_stop)
+		ramp = &draft->decelerate;
+	else
+		return false;
+	draft->cruise += ramp->ticks;
+	*ramp = (struct passo_phase){0, 0, 0};
+	return true;
+}
+
+enum passo_plan_error passo_draft_by_speed(
+    struct passo_draft *draft, const struct passo_limits *limits, struct passo_plan *plan)
+{
+	uint64_t start = limits->start_speed, speed = limits->speed, stop = limits->stop_speed;
+	if (speed == 0)
+		return PASSO_PLAN_NO_SPEED;
+	if (passo_oversampling_at(draft->machine, speed) == 0)
+		return PASSO_PLAN_TOO_FAST;
+	if (start > speed)
+		return PASSO_PLAN_START_ABOVE_SPEED;
+	if (stop > speed)
+		return PASSO_PLAN_STOP_ABOVE_SPEED;
+
+	struct slope up, down;
+	enum passo_plan_error error = find_slope(&up, draft, &limits->up, start, speed);
+	if (error == PASSO_PLAN_OK)
+		error = find_slope(&down, draft, &limits->down, stop, speed);
+	if (error != PASSO_PLAN_OK)
+		return error;
+
+	/* A move too short for its start speed, or for its stop speed, does without that ramp: it jumps to less,
+	 * or from less. It cannot be too short for both, the peak lies above the lower of the two. */
+	uint64_t peak = reachable_with_ease(draft, speed, up, start, down, stop);
+	if (peak < start) {
+		up = VERTICAL;
+		peak = reachable_with_ease(draft, start, up, 0, down, stop);
+	} else if (peak < stop) {
+		down = VERTICAL;
+		peak = reachable_with_ease(draft, stop, up, start, down, 0);
+	}
+	draft->accelerate = ramp_phase(draft, up, start, peak);
+	draft->decelerate = ramp_phase(draft, down, stop, peak);
+	if (passo_draft_is_too_long(draft))
+		return PASSO_PLAN_TOO_LONG;
+	passo_draft_weigh(draft);
+
+	passo_draft_oversample(draft, peak);
+	draft->start = passo_draft_velocity(draft, start);
+	draft->stop = passo_draft_velocity(draft, stop);
+	draft->cruise = cruise_ticks(draft, passo_draft_velocity(draft, peak));
+	do {
+		if (passo_draft_is_too_long(draft))
+			return PASSO_PLAN_TOO_LONG;
+		passo_draft_solve(draft);
+	} while (flatten_ramp(draft));
+
+	passo_draft_finish(draft, plan);
+	return PASSO_PLAN_OK;
+}
+
+struct passo_limits passo_limits_of(const struct passo_move_by_speed *move)
+{
+	uint64_t deceleration = move->deceleration > 0 ? move->deceleration : move->acceleration;
+	return (struct passo_limits){
+	    .start_speed = move->start_speed,
+	    .speed = move->speed,
+	    .stop_speed = move->stop_speed,
+	    .up = {.acceleration = move->acceleration, .ramp_clocks = move->ramp_clocks},
+	    .down = {.acceleration = deceleration, .ramp_clocks = move->ramp_clocks},
+	};
+}
+
+enum passo_plan_error passo_plan_by_speed(
+    const struct passo_machine *machine, const struct passo_move_by_speed *move, struct passo_plan *plan)
+{
+	struct passo_draft draft;
+	enum passo_plan_error error = passo_draft_start(&draft, machine, move->steps, move->profile);
+	if (error != PASSO_PLAN_OK)
+		return error;
+	const struct passo_limits limits = passo_limits_of(move);
+	return passo_draft_by_speed(&draft, &limits, plan);
+}

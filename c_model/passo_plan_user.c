@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: MIT
+ * The user's own shapes: 257 points, the last of which is always 1, and straight lines between them.
+ */
+#include "passo_math.h"
+#include "passo_plan_draft.h"
+
+static const int32_t ONE = 65536;
+
+static int32_t point(const uint16_t table[PASSO_TABLE_SIZE], uint32_t k)
+{
+	return k < PASSO_TABLE_SIZE ? table[k] : ONE;
+}
+
+uint32_t passo_table_check(const uint16_t table[PASSO_TABLE_SIZE], struct passo_table_facts *facts)
+{
+	uint32_t error = table[0] == 0 ? PASSO_PLAN_OK : PASSO_METHOD_TABLE_START;
+	uint32_t sum = 0;
+	*facts = (struct passo_table_facts){.symmetric = true};
+	for (uint32_t k = 1; k <= PASSO_TABLE_SIZE; k++) {
+		/* Each trapezoid between two points has half of both: in units of 2^-16 / 256 / 2. */
+		sum += (uint32_t)(point(table, k - 1) + point(table, k));
+		facts->symmetric &= point(table, k) + point(table, PASSO_TABLE_SIZE - k) == ONE;
+		if (error == PASSO_PLAN_OK && point(table, k) < point(table, k - 1)) {
+			error = PASSO_METHOD_TABLE_FALLS;
+			facts->worst = (uint16_t)k;
+		}
+	}
+	facts->mean = sum / 2;
+	return error;
+}
+
+/* How far the sum over a ramp's ticks, each at its middle, falls short of the shape's mean. Straight lines
+ * sum up exactly; each bend does not, by its change of slope times the square of its distance from the nearest
+ * border between two ticks, halved. Bend k lies k * ticks / 256 ticks into the ramp. In units of 2^-24. */
+static int64_t bends(const uint16_t table[PASSO_TABLE_SIZE], uint64_t ticks)
+{
+	int64_t sum = 0;
+	for (uint32_t k = 1; k < PASSO_TABLE_SIZE; k++) {
+		int32_t bend = point(table, k + 1) - 2 * point(table, k) + point(table, k - 1);
+		uint32_t into = k * (uint32_t)ticks % PASSO_TABLE_SIZE;
+		uint32_t distance = into < PASSO_TABLE_SIZE / 2 ? into : PASSO_TABLE_SIZE - into;
+		sum += (int64_t)bend * (int32_t)(distance * distance);
+	}
+	return sum / (int64_t)(2 * ticks);
+}
+
+/* A mirrored shape has the other mean, and bends the other way. What the end of the progress lacks is missing
+ * from the part above the mean. */
+static uint64_t table_weight(const struct passo_draft *draft, uint64_t ticks, bool mirror)
+{
+	const uint64_t one = UINT64_C(1) << PASSO_WEIGHT_BITS;
+	uint64_t mean = mirror ? one - draft->mean : draft->mean;
+	int64_t above = (int64_t)((one - mean) >> 8);
+	int64_t lacking = passo_lacking_weight(ticks, 2 * ticks) * above / (PASSO_MEAN_HALF >> 8);
+	int64_t bent = bends(draft->table, ticks);
+	return ticks * mean - (uint64_t)(mirror ? -bent : bent) - (uint64_t)lacking;
+}
+
+static uint32_t start_draft(struct passo_draft *draft, const struct passo_machine *machine,
+    const int32_t *steps, const struct passo_user_shape *shape)
+{
+	enum passo_plan_error error = passo_draft_start(draft, machine, steps, PASSO_PROFILE_LINEAR);
+	if (error != PASSO_PLAN_OK)
+		return error;
+	if (shape->bank < PASSO_SHAPE_COSINE || shape->bank > PASSO_SHAPE_EASE)
+		return PASSO_METHOD_BAD_BANK;
+	struct passo_table_facts facts;
+	uint32_t refused = passo_table_check(shape->table, &facts);
+	if (refused != PASSO_PLAN_OK)
+		return refused;
+	draft->shape = shape->bank;
+	draft->table = shape->table;
+	draft->mean = facts.mean;
+	draft->table_weight = table_weight;
+	return PASSO_PLAN_OK;
+}
+
+uint32_t passo_plan_user_in_time(const struct passo_machine *machine, const struct passo_move_in_time *move,
+    const struct passo_user_shape *shape, struct passo_plan *plan)
+{
+	struct passo_draft draft;
+	uint32_t refused = start_draft(&draft, machine, move->steps, shape);
+	if (refused != PASSO_PLAN_OK)
+		return refused;
+	return passo_draft_in_time(&draft, move->total_clocks, move->ramp_clocks, plan);
+}
+
+uint32_t passo_plan_user_by_speed(const struct passo_machine *machine, const struct passo_move_by_speed *move,
+    const struct passo_user_shape *shape, struct passo_plan *plan)
+{
+	struct passo_draft draft;
+	uint32_t refused = start_draft(&draft, machine, move->steps, shape);
+	if (refused != PASSO_PLAN_OK)
+		return refused;
+	const struct passo_limits limits = passo_limits_of(move);
+	return passo_draft_by_speed(&draft, &limits, plan);
+}

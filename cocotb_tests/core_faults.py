@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: MIT
+"""Faults: the channel stops, says why, knows where it is, and goes on after CLEAR."""
+
+import pytest
+from passo import registers as r
+from passo.host import RATE_ONE
+from passo.link import RefusedError
+from passo.registers import Cause, State, Verdict
+
+from cocotb_tests.core_bench import ONE, V_MAX, Core, Line, PinTiming, Ramp, Shape, core_test
+from cocotb_tests.core_expected import due
+from cocotb_tests.core_moves import SLOW, check_stopped, clear_and_move
+
+
+@core_test
+def line_underrun(core: Core) -> None:
+    """A line that ends, is not LAST and has no successor: all its steps were made, and none after."""
+    channel = core.channel()
+    checker = core.watch(PinTiming())
+    line = Line(50, (50, -25, 1)[: core.axes])
+    ramps = [Ramp(SLOW, 0), Ramp(SLOW, 100), Ramp(0, 0, last=True)]
+    channel.lines(line)
+    channel.ramps(*ramps)
+    channel.start()
+    core.run_until(lambda: core.dut.irq.value == 1, 5000)
+    check_stopped(core, channel, Cause.LINE_UNDERRUN)
+    assert checker.positions == list(line.steps)
+    begin = core.motions()[0][0]
+    assert [clock - begin for clock in core.steps(0)] == due([line], ramps, core.tick)[0]
+    clear_and_move(core, channel)
+
+
+@core_test
+def a_line_that_comes_just_in_time(core: Core) -> None:
+    """A line that is in the queue a little before its predecessor ends follows without a lost clock."""
+    channel = core.channel()
+    core.watch(PinTiming())
+    # from chip select to the line in the queue: header, line and crc, and what the link needs to replay them
+    frame = (core.axes + 4) * 128 + 60
+    for early, cause in ((40, Cause.NONE), (-40, Cause.LINE_UNDERRUN)):
+        ramps = [Ramp(SLOW, 0), Ramp(SLOW, 20), Ramp(0, 0, last=True)]
+        lines = [
+            Line(60, (60, -30, 1)[: core.axes]),
+            Line(20, (-20, -10, 1)[: core.axes], last=True),
+        ]
+        expected = due(lines, ramps, core.tick)[0]
+        channel.rest()
+        channel.lines(lines[0])
+        channel.ramps(*ramps)
+        channel.start()
+        core.run_until(core.is_running, 1000)
+        begin = core.began()
+        core.run(begin + expected[59] - early - frame - core.clock)
+        channel.lines(lines[1])
+        core.run_until(lambda: not core.is_running(), 10_000)
+        core.run(50)
+        state = channel.state()
+        assert (state.state, state.cause) == (State.STOPPED if cause else State.IDLE, cause)
+        steps = [clock - begin for clock in core.steps(0, begin)]
+        assert steps == (expected[:60] if cause else expected)
+    channel.clear()
+
+
+@core_test
+def ramp_underrun(core: Core) -> None:
+    """Ramps that run out at speed end in a soft stop by STOP_SLEW; the position is exact."""
+    channel = core.channel()
+    checker = core.watch(PinTiming())
+    channel.link.write(channel.base + r.CHANNEL_STOP_SLEW, RATE_ONE // 8)
+    channel.lines(Line(100_000, (100_000, -50_000, 7)[: core.axes], last=True))
+    channel.ramps(Ramp(SLOW, 3, Shape.COSINE), Ramp(SLOW, 3))
+    channel.start()
+    core.run_until(core.is_running, 2000)
+    begin = core.clock
+    core.run_until(lambda: not core.is_running(), 5000)
+    length = core.clock - begin
+    assert 12 * core.tick < length < 17 * core.tick
+    check_stopped(core, channel, Cause.RAMP_UNDERRUN)
+    # it went on at speed while it slowed down
+    steps = core.steps(0)
+    assert steps[-1] - begin > 10 * core.tick
+    assert checker.positions[0] == len(steps)
+    clear_and_move(core, channel)
+
+
+@core_test
+def an_endless_line_has_no_ramp_underrun(core: Core) -> None:
+    """A jog goes on at its speed when the ramps run out."""
+    channel = core.channel()
+    core.watch(PinTiming())
+    channel.lines(Line(7, (7, -7, 1)[: core.axes], endless=True))
+    channel.ramps(Ramp(SLOW, 2))
+    channel.start()
+    core.run_until(core.is_running, 2000)
+    core.run(20 * core.tick)
+    assert channel.state().state == State.RUN
+    assert len(core.steps(0)) > 60
+    channel.stop()
+    core.run_until(lambda: not core.is_running(), 20_000)
+    check_stopped(core, channel, Cause.STOP)
+    clear_and_move(core, channel)
+
+
+@core_test
+def step_overrun(core: Core) -> None:
+    """Pins that cannot follow: the axis says so and counts, the position is that of the pulses sent."""
+    channel = core.channel()
+    slow_axis = core.axes - 1
+    timings = [PinTiming()] * slow_axis + [PinTiming(30, 20, 4, 4)]
+    channel.pins(*timings)
+    checker = core.watch(*timings)
+    channel.lines(Line(3000, (3000,) * core.axes, last=True))
+    channel.ramps(Ramp(ONE // 20, 6), Ramp(ONE // 20, 100), Ramp(0, 0, last=True))
+    channel.start()
+    core.run_until(lambda: core.dut.irq.value == 1, 10_000)
+    core.run(6 * 50)
+    check_stopped(core, channel, Cause.STEP_OVERRUN)
+    assert channel.state().overrun == 1 << slow_axis
+    lost = [
+        channel.link.read(channel.base + r.CHANNEL_AXIS_BASE + axis * 8 + r.AXIS_LOST_STEPS, 1)[0]
+        for axis in range(core.axes)
+    ]
+    assert lost[:slow_axis] == [0] * slow_axis and lost[slow_axis] == 1
+    # every step is accounted for: made or lost
+    assert checker.positions[slow_axis] + lost[slow_axis] == checker.positions[0]
+    channel.pins(PinTiming())
+    core.watch(PinTiming())
+    clear_and_move(core, channel)
+    assert channel.state().overrun == 0
+
+
+@core_test
+def every_axis_can_overrun_at_once(core: Core) -> None:
+    """At velocity 1/2 with slow pins several steps are lost before the motion stops; all are counted."""
+    channel = core.channel()
+    timing = PinTiming(3, 2, 1, 1)
+    channel.pins(timing)
+    checker = core.watch(timing)
+    channel.lines(Line(3000, (3000, -3000, 3000)[: core.axes], last=True))
+    channel.ramps(Ramp(V_MAX, 0), Ramp(V_MAX, 100), Ramp(0, 0, last=True))
+    channel.start()
+    core.run_until(lambda: core.dut.irq.value == 1, 10_000)
+    check_stopped(core, channel, Cause.STEP_OVERRUN)
+    assert channel.state().overrun == (1 << core.axes) - 1
+    assert {abs(position) for position in checker.positions} == {abs(checker.positions[0])}
+
+
+@core_test
+def a_stopped_channel_is_busy(core: Core) -> None:
+    """Until CLEAR it takes neither lines nor ramps; RUN stays set and starts nothing by itself."""
+    channel = core.channel()
+    core.watch(PinTiming())
+    channel.start()
+    channel.abort()
+    for push in (
+        lambda: channel.lines(Line(1, (1,) * core.axes, last=True)),
+        lambda: channel.ramps(Ramp(0, 1, last=True)),
+    ):
+        with pytest.raises(RefusedError) as refused:
+            push()
+        assert refused.value.verdict == Verdict.BUSY
+    channel.clear()
+    core.run(1000)
+    assert channel.state().state == State.IDLE
+    assert not core.motions()
+    clear_and_move(core, channel)
+
+
+@core_test
+def commands_in_one_write(core: Core) -> None:
+    """CLEAR and ZERO together; ABORT wins over STOP."""
+    channel = core.channel()
+    checker = core.watch(PinTiming())
+    command = channel.base + r.CHANNEL_COMMAND
+    channel.lines(Line(100, (100, -30, 5)[: core.axes], endless=True))
+    channel.ramps(Ramp(SLOW, 2))
+    channel.start()
+    core.run(2000)
+    channel.link.write(command, 1 << r.CHANNEL_COMMAND_STOP_LSB | 1 << r.CHANNEL_COMMAND_ABORT_LSB)
+    check_stopped(core, channel, Cause.ABORT)
+    assert checker.positions[0] > 10
+    channel.link.write(command, 1 << r.CHANNEL_COMMAND_CLEAR_LSB | 1 << r.CHANNEL_COMMAND_ZERO_LSB)
+    assert channel.state().state == State.IDLE
+    assert channel.positions() == [0] * core.axes
+    clear_and_move(core, channel)

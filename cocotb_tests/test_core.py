@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: MIT
+"""The whole core through its SPI pins, compared with the C model on every clock.
+
+core_bench.py is what all of these have in common; PASSO_SEED is the seed of the random ones.
+"""
+
+from cocotb_tests.runner import run
+
+TOP = "passo_core_top"
+ONE_CHANNEL = {"CHANNELS": 1, "AXES": 3, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 5, "RAMP_QUEUE_LOG2": 4}
+TWO_CHANNELS = {"CHANNELS": 2, "AXES": 2, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 2, "RAMP_QUEUE_LOG2": 2}
+
+
+def test_motion(simulator: str) -> None:
+    """Every step on its clock, from the first clock of a motion to the last."""
+    run("cocotb_tests.core_motion", TOP, ONE_CHANNEL, simulator)
+
+
+def test_commands(simulator: str) -> None:
+    """Jog, sync, hold, override, stop, abort."""
+    run("cocotb_tests.core_commands", TOP, ONE_CHANNEL, simulator)
+
+
+def test_faults(simulator: str) -> None:
+    """Underruns and overruns."""
+    run("cocotb_tests.core_faults", TOP, ONE_CHANNEL, simulator)
+
+
+def test_link(simulator: str) -> None:
+    """Duplicates, frames cut short, noise, reads, tables."""
+    run("cocotb_tests.core_link", TOP, ONE_CHANNEL, simulator)
+
+
+def test_refusals(simulator: str) -> None:
+    """Every reason to refuse a frame."""
+    run("cocotb_tests.core_refusals", TOP, TWO_CHANNELS, simulator)
+
+
+def test_channels(simulator: str) -> None:
+    """Two channels at once."""
+    run("cocotb_tests.core_channels", TOP, TWO_CHANNELS, simulator)
+
+
+def test_random_moves(simulator: str) -> None:
+    """Some 170 random moves of one channel."""
+    run("cocotb_tests.core_random", TOP, ONE_CHANNEL, simulator, environment_variables={"SESSIONS": "6"})
+
+
+def test_random_moves_of_two_channels(simulator: str) -> None:
+    """Some 50 random moves of two channels."""
+    run("cocotb_tests.core_random", TOP, TWO_CHANNELS, simulator, environment_variables={"SESSIONS": "2"})

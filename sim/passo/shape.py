@@ -1,0 +1,224 @@
+# SPDX-License-Identifier: MIT
+"""Shapes of the user's own: 256 points, made from a formula or from a file, checked, and written.
+
+A shape leads from 0 to 1 while the progress u goes from 0 to 1, and never falls. Point k is shape(k / 256) in
+units of 2^-16; point 256 is always 1 and is not stored.
+"""
+
+import ast
+import csv
+import math
+import operator
+from bisect import bisect_right
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+from pathlib import Path
+
+POINTS = 256
+ONE = 1 << 16
+HEADER = ("k", "point")
+CURVE_HEADER = ("u", "s")
+
+Points = tuple[int, ...]
+
+
+class ShapeError(ValueError):
+    """This is not a shape; the text is one line that says why."""
+
+
+# --------------------------------------------------------------------------------------------- formulas ----
+
+OPERATORS = {
+    **{ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv},
+    **{ast.Pow: math.pow, ast.USub: operator.neg, ast.UAdd: operator.pos},
+}
+FUNCTIONS: dict[str, Callable[..., float]] = {
+    **{"sin": math.sin, "cos": math.cos, "tan": math.tan, "atan": math.atan, "tanh": math.tanh},
+    **{"exp": math.exp, "log": math.log, "sqrt": math.sqrt, "abs": abs, "min": min, "max": max},
+}
+CONSTANTS = {"pi": math.pi, "e": math.e}
+FORMULA_MAX = 500  # characters
+
+
+def formula(text: str) -> Callable[[float], float]:
+    """A function of u from its text: numbers, u, + - * / **, brackets and the functions above."""
+    if len(text) > FORMULA_MAX:
+        raise ShapeError(f"a formula has at most {FORMULA_MAX} characters")
+    try:
+        tree = ast.parse(text.replace("^", "**").strip(), mode="eval").body
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        raise ShapeError(f"this is not a formula: {text[:60]}") from None
+    _check(tree)
+
+    def evaluate(u: float) -> float:
+        try:
+            value = _value(tree, u)
+        except (ArithmeticError, ValueError, TypeError):
+            raise ShapeError(f"the formula has no value at u = {u:g}") from None
+        if not isinstance(value, float | int) or not math.isfinite(value):
+            raise ShapeError(f"the formula has no value at u = {u:g}")
+        return value
+
+    return evaluate
+
+
+def _check(node: ast.expr) -> None:
+    """Only arithmetic: nothing that could do anything else is evaluated."""
+    match node:
+        case ast.Constant(value=int() | float()) if not isinstance(node.value, bool):
+            pass
+        case ast.Name(id=name) if name == "u" or name in CONSTANTS:
+            pass
+        case ast.BinOp(left=left, op=op, right=right) if type(op) in OPERATORS:
+            _check(left)
+            _check(right)
+        case ast.UnaryOp(op=op, operand=operand) if type(op) in OPERATORS:
+            _check(operand)
+        case ast.Call(func=ast.Name(id=name), args=[_, *_], keywords=[]) if name in FUNCTIONS:
+            for argument in node.args:
+                _check(argument)
+        case _:
+            raise ShapeError(f"a formula cannot contain {ast.unparse(node)[:60]!r}")
+
+
+def _value(node: ast.expr, u: float) -> float:
+    match node:
+        case ast.Constant(value=value):
+            return float(value)
+        case ast.Name(id=name):
+            return u if name == "u" else CONSTANTS[name]
+        case ast.BinOp(left=left, op=op, right=right):
+            return OPERATORS[type(op)](_value(left, u), _value(right, u))
+        case ast.UnaryOp(op=op, operand=operand):
+            return OPERATORS[type(op)](_value(operand, u))
+        case ast.Call(func=ast.Name(id=name), args=arguments):
+            return FUNCTIONS[name](*(_value(argument, u) for argument in arguments))
+    raise AssertionError(node)
+
+
+# ----------------------------------------------------------------------------------------------- tables ----
+
+
+@dataclass(frozen=True)
+class Facts:
+    """What a planner must know of a table."""
+
+    mean: Fraction  # exact, with straight lines between the points
+    symmetric: bool
+
+
+def sample(shape: Callable[[float], float]) -> Points:
+    """A checked table of a function; it is scaled so that it starts at 0 and ends at 1."""
+    values = [shape(k / POINTS) for k in range(POINTS + 1)]
+    first, last = values[0], values[-1]
+    if not last > first:
+        raise ShapeError("a shape must rise: at u = 1 it is not above what it is at u = 0")
+    points = [round((value - first) / (last - first) * ONE) for value in values]
+    # A shape that is 1 before its end stays a unit below, which 16 bits can hold.
+    table = tuple(min(point, ONE - 1) if point <= ONE else point for point in points[:-1])
+    check(table)
+    return table
+
+
+def check(points: Sequence[int]) -> Facts:
+    """Whether a table is a shape; raise ShapeError."""
+    if len(points) != POINTS:
+        raise ShapeError(f"a table has {POINTS} points, not {len(points)}")
+    for k, point in enumerate(points):
+        if not 0 <= point < ONE:
+            raise ShapeError(f"point {k} is {point}, it must be 0 to {ONE - 1}")
+    if points[0]:
+        raise ShapeError(f"a shape must start at 0, not at {points[0]}")
+    whole = [*points, ONE]
+    for k, (point, after) in enumerate(pairwise(whole)):
+        if after < point:
+            raise ShapeError(f"a shape must never fall: point {k} is {point}, point {k + 1} is {after}")
+    mean = Fraction(sum(whole[:-1]) + sum(whole[1:]), 2 * POINTS * ONE)
+    return Facts(mean, all(whole[k] + whole[POINTS - k] == ONE for k in range(POINTS + 1)))
+
+
+def read_table(path: Path) -> Points:
+    """The table in a CSV file: `k,point` with all points, or `u,s` with any number of them on a curve."""
+    try:
+        with path.open(newline="", encoding="utf-8") as file:
+            rows = [[cell.strip() for cell in row] for row in csv.reader(file) if row]
+    except OSError as error:
+        raise ShapeError(f"{path}: {error.strerror}") from None
+    except (UnicodeDecodeError, csv.Error):
+        raise ShapeError(f"{path}: this is not a CSV file") from None
+    header, rows = tuple(rows[0]) if rows else (), rows[1:]
+    if header not in (HEADER, CURVE_HEADER):
+        raise ShapeError(f"{path}: the first line must be k,point or u,s")
+    try:
+        return _points(rows) if header == HEADER else sample(_curve(rows))
+    except ShapeError as error:
+        raise ShapeError(f"{path}: {error}") from None
+    except ValueError:
+        raise ShapeError(f"{path}: a line is not two numbers") from None
+
+
+def _points(rows: list[list[str]]) -> Points:
+    pairs = [(int(k), int(point)) for k, point in rows]
+    if pairs and pairs[-1] == (POINTS, ONE):
+        pairs.pop()
+    if [k for k, _ in pairs] != list(range(POINTS)):
+        raise ShapeError(f"the lines must be the points 0 to {POINTS - 1}")
+    points = tuple(point for _, point in pairs)
+    check(points)
+    return points
+
+
+def _curve(rows: list[list[str]]) -> Callable[[float], float]:
+    """Straight lines between points of a curve."""
+    us, values = (list(column) for column in zip(*((float(u), float(s)) for u, s in rows), strict=True))
+    if len(us) < 2 or us[0] != 0 or us[-1] != 1 or any(b <= a for a, b in pairwise(us)):
+        raise ShapeError("u must go from 0 to 1, always rising")
+    if not all(map(math.isfinite, values)):
+        raise ShapeError("s must be finite")
+
+    def value(u: float) -> float:
+        i = min(bisect_right(us, u), len(us) - 1)
+        part = (u - us[i - 1]) / (us[i] - us[i - 1])
+        return values[i - 1] + (values[i] - values[i - 1]) * part
+
+    return value
+
+
+def write_table(points: Sequence[int], path: Path) -> None:
+    """As CSV or, by the file's name, as TOML."""
+    if path.suffix == ".toml":
+        rows = (points[k : k + 8] for k in range(0, POINTS, 8))
+        lines = "".join(f"    {', '.join(map(str, row))},\n" for row in rows)
+        mean = check(points).mean
+        path.write_text(
+            f"mean = {mean.numerator * (1 << 24) // mean.denominator} # of 2^24\npoints = [\n{lines}]\n"
+        )
+    else:
+        path.write_text("k,point\n" + "".join(f"{k},{point}\n" for k, point in enumerate(points)))
+
+
+def plot_table(points: Sequence[int], path: Path) -> None:
+    """A small picture of the shape and its slope."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    whole = [point / ONE for point in (*points, ONE)]
+    places = [k / POINTS for k in range(POINTS + 1)]
+    slopes = [(b - a) * POINTS for a, b in pairwise(whole)]
+    figure, axes = plt.subplots(figsize=(5, 3.2), layout="constrained")
+    axes.plot(places, whole, color="#0072b2", label="shape: speed")
+    axes.plot([], [], color="#d55e00", label="slope: acceleration")
+    axes.set_xlabel("progress u")
+    axes.set_xlim(0, 1)
+    axes.set_ylim(0, 1)
+    axes.grid(color="#d8dee4", linewidth=0.6)
+    axes.legend(loc="upper left", frameon=False)
+    twin = axes.twinx()
+    twin.stairs(slopes, places, color="#d55e00", linewidth=0.9)
+    twin.set_ylim(0)
+    figure.savefig(path, dpi=110)
+    plt.close(figure)

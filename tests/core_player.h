@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: MIT
+ * Plays pin waveforms to the model, clock by clock or with passo_core_advance().
+ */
+#ifndef CORE_PLAYER_H
+#define CORE_PLAYER_H
+
+#include <stddef.h>
+
+#include "passo_core.h"
+
+/* The inputs stay as they are for so many clocks. */
+struct player_segment {
+	uint64_t clocks;
+	uint8_t spi_sclk, spi_mosi, spi_cs_n, sync;
+	uint8_t spi_miso; /* filled in: the level at the end */
+	uint8_t spare[3];
+};
+
+/* The outputs from this clock on. */
+struct player_event {
+	uint64_t clock, step, dir, enable;
+	uint32_t running, irq;
+};
+
+struct player {
+	struct passo_core *core;
+	bool advance;
+	uint64_t clock;
+	uint64_t skipped; /* clocks that passo_core_advance() did */
+	struct player_event last;
+	struct player_event *events;
+	size_t count, capacity;
+};
+
+/* Plays them all and appends what happens to the events. False if an output changed in a clock that
+ * passo_core_advance() did, or if there is no more room. */
+bool player_play(struct player *player, struct player_segment *segments, size_t count);
+
+#endif

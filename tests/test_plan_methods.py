@@ -1,0 +1,327 @@
+# SPDX-License-Identifier: MIT
+"""The planning methods that are built on the first two forms: exact time with a highest speed, several axes,
+and what all methods refuse. What other tests of methods share is here, too.
+
+Plans are judged in exact fractions; what the core makes of them is summed tick by tick (test_plan.py).
+"""
+
+import math
+import os
+import random
+import subprocess
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+import test_plan as base
+from passo.native import ffi, load
+from passo.toolchain import paths
+from test_plan import JERK, LINEAR, ONE, UNIT, Machine, Plan, PlanError, q32
+
+SEED = int(os.environ.get("PASSO_SEED", "1"))
+MOVES = int(os.environ.get("PASSO_MOVES", "300"))
+ZERO = (0,) * 8
+
+
+# --------------------------------------------------------------------------------------- for all methods ----
+
+
+@cache
+def library() -> Any:
+    """All of the planner, built so that every use of undefined behaviour is fatal."""
+    directory = paths.build / "tests"
+    directory.mkdir(parents=True, exist_ok=True)
+    made = directory / f"plan-methods-{os.getpid()}.so"
+    flags = "-std=c11 -O2 -Wall -Wextra -Wconversion -Werror -fPIC -shared -fsanitize=undefined"
+    sources = [*sorted(paths.c_model.glob("passo_plan*.c")), paths.c_model / "passo_math.c"]
+    subprocess.run(["cc", *flags.split(), "-fno-sanitize-recover=all", "-o", made, *sources], check=True)
+    loaded = load(made)
+    made.unlink()
+    return loaded
+
+
+@pytest.fixture
+def c() -> Any:
+    return library()
+
+
+def make(c: Any, machine: Machine, axes: int, function: str, kind: str, fields: dict, *more: Any) -> Plan:
+    """Call passo_plan_FUNCTION with a struct KIND, and further arguments; raise PlanError."""
+    ours = ffi().new("struct passo_machine *", (machine.clock_hz, machine.tick_log2, axes))
+    plan = ffi().new("struct passo_plan *")
+    size = ffi().sizeof("struct passo_plan")
+    ffi().memmove(plan, b"\xa5" * size, size)
+    error = getattr(c, f"passo_plan_{function}")(ours, ffi().new(f"struct {kind} *", fields), *more, plan)
+    if error:
+        assert bytes(ffi().buffer(plan)) == b"\xa5" * size, "a refused plan was touched"
+        raise PlanError(ffi().string(c.passo_method_error_name(error)).decode())
+    return Plan(machine, plan)
+
+
+def make_move(c: Any, machine: Machine, function: str, fields: dict) -> Plan:
+    """Methods whose struct is called as they are, with steps."""
+    return make(c, machine, len(fields["steps"]), function, f"passo_move_{function}", fields)
+
+
+def speed_of(plan: Plan, velocity: int) -> Fraction:
+    """Steps/s of the longest axis."""
+    return Fraction(velocity * plan.machine.clock_hz, ONE * plan.c.oversampling)
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What test_plan.check_structure() wants to know of a move."""
+
+    steps: tuple[int, ...]
+    profile: int
+
+
+def check_plan(plan: Plan, steps: tuple[int, ...], profile: int = LINEAR) -> Fraction:
+    """Structure and distance; return the error of the distance in substeps."""
+    base.check_structure(plan, Shown(steps, profile))
+    check_steps_to_stop(plan)
+    return base.check_distance(plan)
+
+
+def check_steps_to_stop(plan: Plan) -> None:
+    """The path of the ramps that slow down, in whole steps to the nearest."""
+    ticks, substeps = 0, 0.0
+    for ramp in reversed(plan.ramps):
+        if ticks >= plan.c.decelerate_ticks:
+            break
+        if ramp.ticks:
+            change = ramp.velocity_end - ramp.velocity_start
+            substeps += ramp.ticks * (ramp.velocity_start + change * float(mean_of(ramp)))
+            ticks += ramp.ticks
+    wanted = substeps * plan.machine.tick / ONE / plan.c.oversampling
+    assert abs(plan.c.steps_to_stop - wanted) < 0.5 + 1e-3 + wanted * 1e-9
+
+
+def mean_of(ramp: base.Ramp) -> Fraction:
+    """Mean of the ideal shape of a ramp."""
+    return base.mean_shape(ramp)
+
+
+def step_errors(plan: Plan) -> np.ndarray:
+    """How far the ideal curve is beyond its place when each step of the longest axis is made, in steps."""
+    steps = max(plan.steps)
+    clocks = base.substep_clocks(plan, base.step_substeps(plan.substeps, steps))
+    due = (np.arange(1, steps + 1) - 0.5) * plan.substeps / steps
+    return (base.ideal_path(plan, clocks.astype(float)) - due) / plan.c.oversampling
+
+
+def refused(c: Any, function: Any, *arguments: Any) -> str:
+    """Name of the error, or nothing."""
+    try:
+        function(c, *arguments)
+    except PlanError as error:
+        return str(error)
+    return ""
+
+
+# ---------------------------------------------------------------- exact time and distance, highest speed ----
+
+
+def check_below_speed(plan: Plan, fields: dict) -> None:
+    """t_ramp = t_total - n / f, to the tick, and f never exceeded."""
+    machine, p = plan.machine, plan.c
+    steps = max(map(abs, fields["steps"]))
+    total = base.round_half_up(Fraction(fields["total_clocks"], machine.tick))
+    speed = Fraction(fields["speed"], UNIT)
+    assert plan.ticks == total
+    assert speed_of(plan, p.velocity_peak) <= speed
+    exact = total - Fraction(steps * machine.clock_hz, machine.tick) / speed
+    assert p.accelerate_ticks == p.decelerate_ticks <= exact
+    unit = 2 if fields["profile"] == JERK else 1
+    assert p.accelerate_ticks > min(exact, Fraction(total, 2)) - 2 * unit
+
+
+def check_at_speed(plan: Plan, fields: dict) -> None:
+    """t_total = n / f + t_ramp, to two ticks, and f never exceeded."""
+    machine, p = plan.machine, plan.c
+    steps = max(map(abs, fields["steps"]))
+    speed = Fraction(fields["speed"], UNIT)
+    assert speed_of(plan, p.velocity_peak) <= speed
+    exact = Fraction(steps * machine.clock_hz) / speed + fields["ramp_clocks"]
+    assert exact <= plan.ticks * machine.tick < exact + (3 if fields["profile"] == JERK else 2) * machine.tick
+    assert 0 <= p.accelerate_ticks * machine.tick - fields["ramp_clocks"] < 2 * machine.tick
+
+
+@pytest.mark.parametrize("clock_hz", [16_000_000, 100_000_000])
+def test_longest_ramp(c: Any, clock_hz: int) -> None:
+    """3200 steps in 0.4 s at 19200 Hz leave 0.23 s: more than half, so the ramps are 0.2 s, the peak 16 kHz.
+    In 0.5 s they leave 0.33 s; at 8400 Hz there is a cruise."""
+    machine = Machine(clock_hz)
+    clocks = c.passo_longest_ramp(clock_hz, 3200, clock_hz * 4 // 10, q32(19200))
+    assert 0 <= Fraction(4, 10) - Fraction(3200, 19200) - Fraction(clocks, clock_hz) < Fraction(1, clock_hz)
+    assert c.passo_longest_ramp(clock_hz, 3200, clock_hz // 10, q32(19200)) == 0
+    for seconds, speed in ((0.4, 19200), (0.5, 19200), (0.4, 8400), (0.4, 8000)):
+        for profile in range(4):
+            total = round(seconds * clock_hz)
+            fields = {
+                "steps": (3200, -7),
+                "profile": profile,
+                "total_clocks": total,
+                "speed": q32(speed),
+            }
+            plan = make_move(c, machine, "below_speed", fields)
+            check_below_speed(plan, fields)
+            check_plan(plan, fields["steps"], profile)
+            ramp = min(Fraction(total, clock_hz) - Fraction(3200, speed), Fraction(total, 2 * clock_hz))
+            assert abs(Fraction(plan.c.accelerate_ticks * 128, clock_hz) - ramp) < Fraction(256, clock_hz)
+
+
+@pytest.mark.parametrize("form", ["below_speed", "at_speed"])
+def test_random_times_and_speeds(c: Any, form: str) -> None:
+    print(f"seed {SEED}")
+    rng = random.Random(f"{SEED} {form}")
+    worst = Fraction(0)
+    made = 0
+    while made < MOVES:
+        machine = base.some_machine(rng)
+        flat = base.log_uniform(rng, machine.tick, 2**38)  # clocks at full speed
+        longest = max(1, min(2**31 - 1, int(base.log_uniform(rng, 1, flat / 2 + 1))))
+        speed = int(longest * machine.clock_hz / flat * UNIT * (1 + 2**-30))
+        ramp = rng.choice((0, int(flat), rng.randint(0, int(flat))))
+        fields = {"steps": base.some_steps(rng, longest), "profile": rng.randrange(4), "speed": speed}
+        if form == "below_speed":
+            fields["total_clocks"] = int(flat) + ramp + rng.randint(0, 2 * machine.tick)
+        else:
+            fields["ramp_clocks"] = ramp
+        try:
+            plan = make_move(c, machine, form, fields)
+        except PlanError as error:
+            assert str(error) in ("TOO_LONG", "TOO_FAST", "SPEED_TOO_LOW", "RAMP_TOO_LONG"), fields
+            continue
+        (check_below_speed if form == "below_speed" else check_at_speed)(plan, fields)
+        worst = max(worst, abs(check_plan(plan, fields["steps"], fields["profile"])))
+        made += 1
+    print(f"{made} moves, distance to {float(worst):.6f} substeps")
+
+
+def test_ramps_from_none_to_half(c: Any) -> None:
+    """Any ramp time from 0 to n / f gives that ramp; the curve is kept to a fiftieth of a step."""
+    machine, worst = Machine(16_000_000), 0.0
+    for profile in range(4):
+        for part in (0, 0.001, 0.25, 0.5, 0.999, 1):
+            ramp = int(part * 16_000_000 * 3200 / 20_000)
+            fields = {"steps": (3200,), "profile": profile, "speed": q32(20_000), "ramp_clocks": ramp}
+            plan = make_move(c, machine, "at_speed", fields)
+            check_at_speed(plan, fields)
+            check_plan(plan, (3200,), profile)
+            worst = max(worst, float(np.abs(step_errors(plan)).max()))
+    print(f"curve kept to {worst:.5f} steps")
+    assert worst < 0.02
+
+
+# ------------------------------------------------------------------------------------------ several axes ----
+
+
+def test_fifty_thirty_twenty(c: Any) -> None:
+    """50, 30 and 20 kHz on three axes: at every step of the first, the others are where 5 : 3 : 2 puts them,
+    to half a step; and the speeds are in that ratio exactly."""
+    machine = Machine(16_000_000)
+    fields = {
+        "steps": (50_000, 30_000, -20_000),
+        "start_speed": q32(1000),
+        "speed": q32(50_000),
+        "ramp_clocks": 1_600_000,
+    }
+    plan = make_move(c, machine, "axes", fields)
+    check_plan(plan, fields["steps"])
+    p = plan.c
+    assert p.accelerate_ticks == p.decelerate_ticks == 1_600_000 // 128
+    assert 50_000 * (1 - 1e-4) < speed_of(plan, p.velocity_peak) <= 50_000
+    assert abs(speed_of(plan, p.velocity_start) - 1000) < Fraction(1, 1000)
+    assert p.velocity_start == p.velocity_stop
+    made = [base.step_substeps(plan.substeps, abs(n)) for n in fields["steps"]]
+    for axis, share in ((1, Fraction(3, 5)), (2, Fraction(2, 5))):
+        count = np.searchsorted(made[axis], made[0], side="right")
+        first = np.arange(1, 50_001)
+        assert np.abs(count - (first - 0.5) * float(share)).max() <= 0.5 + 1e-9
+    for start in (0, 12_345, 49_995):  # every five steps of the first
+        window = made[0][start], made[0][start + 4] + plan.c.oversampling
+        inside = [int(((m >= window[0]) & (m < window[1])).sum()) for m in made]
+        assert inside == [5, 3, 2]
+    print(f"start speed {float(speed_of(plan, p.velocity_start) / 1000 - 1) * 1e6:+.4f} ppm,", end=" ")
+    print(f"speed {float(speed_of(plan, p.velocity_peak) / 50_000 - 1) * 1e6:+.4f} ppm")
+
+
+def test_a_short_move_is_a_triangle(c: Any) -> None:
+    """t = (sqrt(4 v0^2 + 4 a L) - 2 v0) / (2 a), with the acceleration of the full ramp."""
+    machine, v0, speed, seconds, length = Machine(), 1000, 50_000, 0.5, 1500
+    a = (speed - v0) / seconds
+    fields = {
+        "steps": (3, -length, 17, 0, 0, 1),
+        "start_speed": q32(v0),
+        "speed": q32(speed),
+        "ramp_clocks": round(seconds * machine.clock_hz),
+    }
+    plan = make_move(c, machine, "axes", fields)
+    check_plan(plan, fields["steps"])
+    up = (math.sqrt(4 * v0**2 + 4 * a * length) - 2 * v0) / (2 * a)
+    assert plan.c.accelerate_ticks == plan.c.decelerate_ticks == math.ceil(up * machine.clock_hz / 128)
+    assert plan.c.cruise_ticks == 0
+    assert abs(step_errors(plan)).max() < 0.01
+
+
+# ------------------------------------------------------------------------------------------------ errors ----
+
+
+GOOD = {
+    "below_speed": {"steps": (5, -3), "profile": 1, "total_clocks": 1_000_000, "speed": q32(1000)},
+    "at_speed": {"steps": (5, -3), "profile": 1, "speed": q32(1000), "ramp_clocks": 1000},
+    "axes": {"steps": (5, -3), "start_speed": 0, "speed": q32(1000), "ramp_clocks": 1000},
+}
+REFUSED = [
+    ("below_speed", {"total_clocks": 400_000}, "SPEED_TOO_LOW"),
+    ("below_speed", {"speed": 1}, "SPEED_TOO_LOW"),
+    ("below_speed", {"speed": 0}, "NO_SPEED"),
+    ("below_speed", {"total_clocks": 127}, "NO_TIME"),
+    ("below_speed", {"total_clocks": 2**64 - 1}, "TOO_LONG"),
+    ("below_speed", {"profile": 4}, "BAD_PROFILE"),
+    ("below_speed", {"steps": (0, 0)}, "NO_STEPS"),
+    ("below_speed", {"steps": (600_000,), "speed": 2**64 - 1}, "TOO_FAST"),
+    ("at_speed", {"speed": 0}, "NO_SPEED"),
+    ("at_speed", {"ramp_clocks": 600_000}, "RAMP_TOO_LONG"),
+    ("at_speed", {"ramp_clocks": 2**64 - 1}, "RAMP_TOO_LONG"),
+    ("at_speed", {"speed": 1}, "TOO_LONG"),
+    ("at_speed", {"speed": 2**64 - 1, "ramp_clocks": 0, "steps": (100,)}, "TOO_FAST"),
+    ("at_speed", {"steps": (-(2**31),)}, "TOO_MANY_STEPS"),
+    ("axes", {"speed": 0}, "NO_SPEED"),
+    ("axes", {"start_speed": q32(1001)}, "START_ABOVE_SPEED"),
+    ("axes", {"ramp_clocks": 0}, "NO_ACCELERATION"),
+    ("axes", {"speed": q32(5e7) + 1}, "TOO_FAST"),
+    ("axes", {"steps": ZERO}, "NO_STEPS"),
+]
+
+
+@pytest.mark.parametrize("method", GOOD)
+def test_good_moves_are_planned(c: Any, method: str) -> None:
+    check_plan(
+        make_move(c, Machine(), method, GOOD[method]), GOOD[method]["steps"], GOOD[method].get("profile", 0)
+    )
+
+
+@pytest.mark.parametrize(("method", "changes", "name"), REFUSED)
+def test_refusals(c: Any, method: str, changes: dict, name: str) -> None:
+    assert refused(c, make_move, Machine(), method, {**GOOD[method], **changes}) == name
+
+
+def test_every_error_has_a_name_and_a_sentence(c: Any) -> None:
+    errors = ffi().typeof("enum passo_method_error").relements
+    end = errors.pop("PASSO_METHOD_ERRORS_END")
+    texts = {ffi().string(c.passo_method_error_text(0))}
+    for constant, value in errors.items():
+        text = ffi().string(c.passo_method_error_text(value)).decode()
+        assert constant == "PASSO_METHOD_" + ffi().string(c.passo_method_error_name(value)).decode()
+        assert text[0].isupper() and text.endswith(".") and len(text) < 80
+        texts.add(text)
+    assert len(texts) == len(errors) + 1
+    for constant, value in ffi().typeof("enum passo_plan_error").relements.items():
+        assert constant == "PASSO_PLAN_" + ffi().string(c.passo_method_error_name(value)).decode()
+    for value in (end, 31, 2**32 - 1):
+        assert ffi().string(c.passo_method_error_name(value)) == b"UNKNOWN"
