@@ -77,7 +77,7 @@ void passo_channel_clock(struct passo_channel *channel, const struct passo_chann
 	for (unsigned i = 0; i < channel->axes; i++) {
 		const struct passo_axis_wires axis_wires = {
 		    .step_request = passo_dda_step_request(&channel->dda[i], &channel->line),
-		    .direction = (channel->line.directions >> i & 1u) != 0u,
+		    .direction = ((uint32_t)channel->line.directions >> i & 1u) != 0u,
 		    .drop = registers.command_abort,
 		    .zero = registers.command_zero,
 		    .clear = registers.command_clear,
