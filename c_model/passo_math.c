@@ -74,7 +74,8 @@ static uint64_t quotient_digit(uint64_t *rest, uint64_t next, uint64_t divisor)
 	uint64_t upper = high_half(divisor);
 	uint64_t digit = *rest / upper;
 	uint64_t left = *rest - digit * upper;
-	while (left <= UINT32_MAX && (digit > UINT32_MAX || digit * low_half(divisor) > (left << 32 | next))) {
+	while (
+	    left <= UINT32_MAX && (digit > UINT32_MAX || digit * low_half(divisor) > (left << 32 | next))) {
 		digit--;
 		left += upper;
 	}

@@ -33,9 +33,11 @@
 enum passo_plan_error passo_draft_in_ticks(
     struct passo_draft *draft, uint64_t total, uint64_t ramp, uint64_t speed_limit, struct passo_plan *plan)
 {
-	/* Ramps of half the time can round to more than half the ticks; less than 2 ticks cannot be halved. */
+	/* Ramps of half the time can round to more than half the ticks; less than 2 ticks cannot be halved.
+	 */
 	bool in_halves = draft->profile == PASSO_PROFILE_JERK;
-	uint64_t ticks = passo_smaller(passo_draft_halvable(draft, ramp), in_halves ? total / 4 * 2 : total / 2);
+	uint64_t ticks =
+	    passo_smaller(passo_draft_halvable(draft, ramp), in_halves ? total / 4 * 2 : total / 2);
 	draft->accelerate = draft->decelerate = (struct passo_phase){ticks, 0, 0};
 	draft->cruise = total - 2 * ticks;
 	if (passo_draft_is_too_long(draft))
@@ -43,8 +45,9 @@ enum passo_plan_error passo_draft_in_ticks(
 	passo_draft_weigh(draft);
 
 	/* M = peak * weight, and the peak is at most 1/2. */
-	passo_draft_oversample_to(draft,
-	    (passo_draft_weight(draft) >> (PASSO_WEIGHT_BITS + 1 - draft->machine->tick_log2)) / draft->longest);
+	passo_draft_oversample_to(
+	    draft, (passo_draft_weight(draft) >> (PASSO_WEIGHT_BITS + 1 - draft->machine->tick_log2))
+	               / draft->longest);
 	if (draft->oversampling == 0)
 		return PASSO_PLAN_TOO_FAST;
 

@@ -24,19 +24,19 @@ enum passo_profile { PASSO_PROFILE_LINEAR, PASSO_PROFILE_COSINE, PASSO_PROFILE_S
 
 enum passo_plan_error {
 	PASSO_PLAN_OK = 0,
-	PASSO_PLAN_BAD_CLOCK,            /* clock_hz is 0 or tick_log2 is not 7 .. 16 */
-	PASSO_PLAN_BAD_AXES,             /* not 1 .. 8 axes */
-	PASSO_PLAN_BAD_PROFILE,          /* unknown profile */
-	PASSO_PLAN_NO_STEPS,             /* all axes have 0 steps */
-	PASSO_PLAN_TOO_MANY_STEPS,       /* an axis has -2^31 steps */
-	PASSO_PLAN_NO_TIME,              /* total time is less than one tick */
-	PASSO_PLAN_RAMP_TOO_LONG,        /* the ramp time is more than half the total time */
-	PASSO_PLAN_TOO_LONG,             /* a phase has 2^32 ticks or more, or the move 2^44 clocks or more */
-	PASSO_PLAN_TOO_FAST,             /* more steps than half the clock allows */
-	PASSO_PLAN_NO_SPEED,             /* speed is 0 */
-	PASSO_PLAN_NO_ACCELERATION,      /* acceleration is 0 and so is the ramp time, but the speed changes */
-	PASSO_PLAN_START_ABOVE_SPEED,    /* start speed is above the speed */
-	PASSO_PLAN_STOP_ABOVE_SPEED      /* stop speed is above the speed */
+	PASSO_PLAN_BAD_CLOCK,         /* clock_hz is 0 or tick_log2 is not 7 .. 16 */
+	PASSO_PLAN_BAD_AXES,          /* not 1 .. 8 axes */
+	PASSO_PLAN_BAD_PROFILE,       /* unknown profile */
+	PASSO_PLAN_NO_STEPS,          /* all axes have 0 steps */
+	PASSO_PLAN_TOO_MANY_STEPS,    /* an axis has -2^31 steps */
+	PASSO_PLAN_NO_TIME,           /* total time is less than one tick */
+	PASSO_PLAN_RAMP_TOO_LONG,     /* the ramp time is more than half the total time */
+	PASSO_PLAN_TOO_LONG,          /* a phase has 2^32 ticks or more, or the move 2^44 clocks or more */
+	PASSO_PLAN_TOO_FAST,          /* more steps than half the clock allows */
+	PASSO_PLAN_NO_SPEED,          /* speed is 0 */
+	PASSO_PLAN_NO_ACCELERATION,   /* acceleration is 0 and so is the ramp time, but the speed changes */
+	PASSO_PLAN_START_ABOVE_SPEED, /* start speed is above the speed */
+	PASSO_PLAN_STOP_ABOVE_SPEED   /* stop speed is above the speed */
 };
 
 /* What the core is: what ticks mean. */
@@ -73,15 +73,15 @@ struct passo_plan {
 	struct passo_line line;
 	struct passo_ramp ramps[PASSO_PLAN_RAMPS_MAX];
 	uint32_t ramp_count;
-	uint32_t oversampling;     /* K = M / max(N): substeps per step of the longest axis; 1 or even */
-	uint64_t velocity_start;   /* jumped to at the start; the peak when there is no accelerate phase */
+	uint32_t oversampling;   /* K = M / max(N): substeps per step of the longest axis; 1 or even */
+	uint64_t velocity_start; /* jumped to at the start; the peak when there is no accelerate phase */
 	uint64_t velocity_peak;
 	uint64_t velocity_stop;    /* jumped from at the end; the peak when there is no decelerate phase */
 	uint32_t accelerate_ticks; /* length of the phases */
 	uint32_t cruise_ticks;
 	uint32_t decelerate_ticks;
-	uint32_t steps_to_stop;    /* steps of the longest axis while it slows down: where that begins */
-	uint32_t sigmoid_alpha;    /* what the core's sigmoid table must be made for; 0: it is not used */
+	uint32_t steps_to_stop; /* steps of the longest axis while it slows down: where that begins */
+	uint32_t sigmoid_alpha; /* what the core's sigmoid table must be made for; 0: it is not used */
 };
 
 /* Both leave *plan untouched unless they return PASSO_PLAN_OK. */
@@ -99,17 +99,17 @@ const char *passo_plan_error_text(enum passo_plan_error error);
  * Each takes what a user knows about one kind of move, and becomes one of the two forms above. They return 0
  * (PASSO_PLAN_OK), one of enum passo_plan_error, or one of these. A refused *plan stays untouched. */
 enum passo_method_error {
-	PASSO_METHOD_SPEED_TOO_LOW = 32,   /* so many steps need more than the highest speed in that time */
-	PASSO_METHOD_BAD_AXIS,             /* the axis is not one of the machine's */
-	PASSO_METHOD_NO_STEPS_PER_TURN,    /* steps per turn is 0 */
-	PASSO_METHOD_MINIMUM_ABOVE_SPEED,  /* the minimum rpm is above the rpm */
-	PASSO_METHOD_BELOW_MINIMUM,        /* turning: the rpm is below the minimum rpm */
-	PASSO_METHOD_ABOVE_TOP,            /* turning: the rpm, or the present velocity, is above the top rpm */
-	PASSO_METHOD_BAD_ALPHA,            /* alpha is not 3 .. 5 */
-	PASSO_METHOD_NO_JERK,              /* jerk is 0 */
-	PASSO_METHOD_NO_FEED,              /* feed is 0 */
-	PASSO_METHOD_NO_SCALE,             /* an axis that moves has 0 steps per millimetre */
-	PASSO_METHOD_NO_AXIS_SPEED,        /* an axis that moves has a largest speed of 0 */
+	PASSO_METHOD_SPEED_TOO_LOW = 32,  /* so many steps need more than the highest speed in that time */
+	PASSO_METHOD_BAD_AXIS,            /* the axis is not one of the machine's */
+	PASSO_METHOD_NO_STEPS_PER_TURN,   /* steps per turn is 0 */
+	PASSO_METHOD_MINIMUM_ABOVE_SPEED, /* the minimum rpm is above the rpm */
+	PASSO_METHOD_BELOW_MINIMUM,       /* turning: the rpm is below the minimum rpm */
+	PASSO_METHOD_ABOVE_TOP,     /* turning: the rpm, or the present velocity, is above the top rpm */
+	PASSO_METHOD_BAD_ALPHA,     /* alpha is not 3 .. 5 */
+	PASSO_METHOD_NO_JERK,       /* jerk is 0 */
+	PASSO_METHOD_NO_FEED,       /* feed is 0 */
+	PASSO_METHOD_NO_SCALE,      /* an axis that moves has 0 steps per millimetre */
+	PASSO_METHOD_NO_AXIS_SPEED, /* an axis that moves has a largest speed of 0 */
 	PASSO_METHOD_NO_AXIS_ACCELERATION, /* an axis that moves has a largest acceleration of 0 */
 	PASSO_METHOD_BAD_BANK,             /* not one of the three banks of tables */
 	PASSO_METHOD_TABLE_START,          /* point 0 of a table is not 0 */
@@ -157,7 +157,7 @@ uint32_t passo_plan_axes(
 struct passo_move_turn {
 	uint8_t axis;
 	uint32_t steps_per_turn;
-	int64_t angle;         /* to the nearest step */
+	int64_t angle; /* to the nearest step */
 	uint64_t rpm;
 	uint64_t minimum_rpm;  /* jumped to from rest, and from to rest */
 	uint64_t acceleration; /* UQ32.32 steps/s^2 */
@@ -173,7 +173,7 @@ struct passo_turning {
 	uint8_t axis;
 	uint32_t steps_per_turn;
 	bool backwards;
-	uint64_t top_rpm;      /* no higher rpm will be asked for */
+	uint64_t top_rpm; /* no higher rpm will be asked for */
 	uint64_t minimum_rpm;
 	uint64_t acceleration; /* UQ32.32 steps/s^2 */
 };
@@ -227,7 +227,7 @@ struct passo_axis_limits {
 struct passo_move_straight {
 	int64_t distance[PASSO_AXES_MAX]; /* to the nearest step */
 	struct passo_axis_limits limits[PASSO_AXES_MAX];
-	uint64_t feed;                    /* mm/s along the path */
+	uint64_t feed; /* mm/s along the path */
 };
 uint32_t passo_plan_straight(
     const struct passo_machine *machine, const struct passo_move_straight *move, struct passo_plan *plan);
@@ -245,9 +245,9 @@ uint32_t passo_plan_user_by_speed(const struct passo_machine *machine, const str
 
 /* Is a table fit to be a shape: it starts at 0 and never falls. */
 struct passo_table_facts {
-	uint32_t mean;       /* with linear interpolation, in units of 2^-24; exact */
-	bool symmetric;      /* table[k] + table[256 - k] is 65536: the mean is 2^23 */
-	uint16_t worst;      /* the point that is wrong, if one is */
+	uint32_t mean;  /* with linear interpolation, in units of 2^-24; exact */
+	bool symmetric; /* table[k] + table[256 - k] is 65536: the mean is 2^23 */
+	uint16_t worst; /* the point that is wrong, if one is */
 };
 uint32_t passo_table_check(const uint16_t table[PASSO_TABLE_SIZE], struct passo_table_facts *facts);
 

@@ -102,9 +102,10 @@ uint32_t passo_plan_straight(
 		uint32_t count = steps[axis] < 0 ? 0u - (uint32_t)steps[axis] : (uint32_t)steps[axis];
 		if (count == 0)
 			continue;
-		speed = passo_smaller(speed, limit_of_lead(own->speed, own->steps_per_mm, draft.longest, count));
-		rise.acceleration = passo_smaller(
-		    rise.acceleration, limit_of_lead(own->acceleration, own->steps_per_mm, draft.longest, count));
+		speed =
+		    passo_smaller(speed, limit_of_lead(own->speed, own->steps_per_mm, draft.longest, count));
+		rise.acceleration = passo_smaller(rise.acceleration,
+		    limit_of_lead(own->acceleration, own->steps_per_mm, draft.longest, count));
 		if (own->jerk == 0)
 			continue;
 		draft.profile = PASSO_PROFILE_JERK;

@@ -55,8 +55,8 @@ enum passo_plan_error passo_draft_start(struct passo_draft *draft, const struct 
 bool passo_draft_is_too_long(const struct passo_draft *draft)
 {
 	uint64_t up = draft->accelerate.ticks, down = draft->decelerate.ticks, cruise = draft->cruise;
-	return up > UINT32_MAX || cruise > UINT32_MAX || down > UINT32_MAX ||
-	    (up + cruise + down) >> (MOVE_CLOCKS_LOG2 - draft->machine->tick_log2) > 0;
+	return up > UINT32_MAX || cruise > UINT32_MAX || down > UINT32_MAX
+	    || (up + cruise + down) >> (MOVE_CLOCKS_LOG2 - draft->machine->tick_log2) > 0;
 }
 
 uint64_t passo_ticks_nearest(const struct passo_machine *machine, uint64_t clocks)
@@ -160,7 +160,8 @@ static uint64_t weight_of_begin(struct passo_phase ramp)
 /* Weight of the peak in the distance of all phases. */
 uint64_t passo_draft_weight(const struct passo_draft *draft)
 {
-	return draft->accelerate.weight + (draft->cruise << PASSO_WEIGHT_BITS) + weight_of_begin(draft->decelerate);
+	return draft->accelerate.weight + (draft->cruise << PASSO_WEIGHT_BITS)
+	     + weight_of_begin(draft->decelerate);
 }
 
 /* The distance that the peak has to cover: the whole line without what is owed to the start and stop
@@ -172,7 +173,7 @@ struct passo_u128 passo_draft_distance(const struct passo_draft *draft)
 
 	struct passo_u128 ends =
 	    passo_u128_add(passo_multiply(draft->start, weight_of_begin(draft->accelerate)),
-	        passo_multiply(draft->stop, draft->decelerate.weight));
+		passo_multiply(draft->stop, draft->decelerate.weight));
 
 	return passo_u128_less(line, ends) ? (struct passo_u128){0, 0} : passo_u128_subtract(line, ends);
 }
@@ -186,8 +187,8 @@ void passo_draft_solve(struct passo_draft *draft)
 
 /* -------------------------------------------------------------------------------------------- result ---- */
 
-void passo_plan_add_ramp(struct passo_plan *plan, enum passo_shape shape, bool mirror, uint64_t velocity_end,
-    uint64_t ticks)
+void passo_plan_add_ramp(
+    struct passo_plan *plan, enum passo_shape shape, bool mirror, uint64_t velocity_end, uint64_t ticks)
 {
 	plan->ramps[plan->ramp_count++] = (struct passo_ramp){
 	    .mirror = mirror,
@@ -218,7 +219,8 @@ static void add_change(struct passo_plan *plan, const struct passo_draft *draft,
 		uint64_t change = from < to ? to - from : from - to;
 		uint64_t share = passo_mul_div(change, curve, 2 * (curve + ramp.straight));
 		uint64_t end = from < to ? to - share : to + share;
-		passo_plan_add_ramp(plan, draft->shape, false, from < to ? from + share : from - share, curve);
+		passo_plan_add_ramp(
+		    plan, draft->shape, false, from < to ? from + share : from - share, curve);
 		passo_plan_add_ramp(plan, PASSO_SHAPE_LINEAR, false, end, ramp.straight);
 	}
 	passo_plan_add_ramp(plan, draft->shape, true, to, curve);
@@ -240,7 +242,7 @@ static uint32_t steps_to_stop(const struct passo_draft *draft)
 {
 	struct passo_u128 distance =
 	    passo_u128_add(passo_multiply(draft->peak, weight_of_begin(draft->decelerate)),
-	        passo_multiply(draft->stop, draft->decelerate.weight));
+		passo_multiply(draft->stop, draft->decelerate.weight));
 
 	/* substeps, below 2^32, with 16 bits of their fraction */
 	const uint32_t surplus = 48 + PASSO_WEIGHT_BITS - 16 - draft->machine->tick_log2;

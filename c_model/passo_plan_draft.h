@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * What the planning methods share; not for the planner's users. passo_plan.c tells how a draft becomes a plan.
+ * What the planning methods share; not for the planner's users. passo_plan.c tells how a draft becomes a
+ * plan.
  */
 #ifndef PASSO_PLAN_DRAFT_H
 #define PASSO_PLAN_DRAFT_H
@@ -41,16 +42,16 @@ struct passo_draft {
 	const struct passo_machine *machine;
 	const int32_t *steps;
 	enum passo_profile profile;
-	enum passo_shape shape;        /* of the ramps */
-	uint32_t sigmoid_alpha;        /* its alpha in 1/4096, if it is a sigmoid */
-	const uint16_t *table;         /* its points, if the user gives them; then slowing down mirrors it */
-	uint32_t mean;                 /* its mean in units of 2^-24: in the middle, but for some tables */
+	enum passo_shape shape; /* of the ramps */
+	uint32_t sigmoid_alpha; /* its alpha in 1/4096, if it is a sigmoid */
+	const uint16_t *table;  /* its points, if the user gives them; then slowing down mirrors it */
+	uint32_t mean;          /* its mean in units of 2^-24: in the middle, but for some tables */
 	uint64_t (*table_weight)(const struct passo_draft *draft, uint64_t ticks, bool mirror);
-	uint32_t longest;              /* steps of the longest axis */
-	uint32_t oversampling;         /* substeps in one of them */
+	uint32_t longest;      /* steps of the longest axis */
+	uint32_t oversampling; /* substeps in one of them */
 	struct passo_phase accelerate, decelerate;
-	uint64_t cruise;               /* ticks */
-	uint64_t start, peak, stop;    /* UQ0.48 substeps per clock */
+	uint64_t cruise;            /* ticks */
+	uint64_t start, peak, stop; /* UQ0.48 substeps per clock */
 };
 
 /* Check machine, steps and profile; begin a draft. */
@@ -92,8 +93,8 @@ uint32_t passo_draft_oversample(struct passo_draft *draft, uint64_t speed);
 uint64_t passo_draft_velocity(const struct passo_draft *draft, uint64_t speed);
 
 /* Append a ramp of a shape, not mirrored unless said so. */
-void passo_plan_add_ramp(struct passo_plan *plan, enum passo_shape shape, bool mirror, uint64_t velocity_end,
-    uint64_t ticks);
+void passo_plan_add_ramp(
+    struct passo_plan *plan, enum passo_shape shape, bool mirror, uint64_t velocity_end, uint64_t ticks);
 
 /* What a symmetric shape's ramp lacks in weight because its progress does not end at exactly 1:
  * ticks^2 * lack / divisor, where the divisor is 2 * ticks for a ramp alone. It can be negative. */

@@ -94,11 +94,13 @@ static uint64_t reachable_speed(const struct passo_draft *draft, uint64_t limit,
 {
 	uint64_t length = (uint64_t)draft->longest * draft->machine->clock_hz;
 	struct passo_u128 sum = passo_multiply(length, 2 * PASSO_UNIT_Q32);
-	sum = passo_u128_add(sum, passo_multiply(start, passo_smaller(clocks_ceil(up, start), SLOPE_CLOCKS_MAX)));
-	sum = passo_u128_add(sum, passo_multiply(stop, passo_smaller(clocks_ceil(down, stop), SLOPE_CLOCKS_MAX)));
+	sum = passo_u128_add(
+	    sum, passo_multiply(start, passo_smaller(clocks_ceil(up, start), SLOPE_CLOCKS_MAX)));
+	sum = passo_u128_add(
+	    sum, passo_multiply(stop, passo_smaller(clocks_ceil(down, stop), SLOPE_CLOCKS_MAX)));
 
-	uint64_t clocks = passo_smaller(clocks_floor(up, limit), SLOPE_CLOCKS_MAX) +
-	    passo_smaller(clocks_floor(down, limit), SLOPE_CLOCKS_MAX);
+	uint64_t clocks = passo_smaller(clocks_floor(up, limit), SLOPE_CLOCKS_MAX)
+	                + passo_smaller(clocks_floor(down, limit), SLOPE_CLOCKS_MAX);
 	uint64_t quotient = passo_divide(sum, weighted(clocks, draft->mean), NULL);
 	if (quotient >= limit)
 		return limit;
@@ -147,7 +149,8 @@ static uint64_t cruise_ticks(const struct passo_draft *draft, uint64_t velocity)
 	uint64_t missing = weight - ramps;
 	uint64_t ticks = missing >> PASSO_WEIGHT_BITS;
 	bool needs_more = ticks << PASSO_WEIGHT_BITS < missing || remainder > 0;
-	bool weightless = ramps == 0 && ticks == 0; /* a user's shape may be 0 in the middle of its only tick */
+	bool weightless =
+	    ramps == 0 && ticks == 0; /* a user's shape may be 0 in the middle of its only tick */
 	return ticks + (needs_more || weightless);
 }
 
@@ -191,8 +194,8 @@ enum passo_plan_error passo_draft_by_speed(
 	if (error != PASSO_PLAN_OK)
 		return error;
 
-	/* A move too short for its start speed, or for its stop speed, does without that ramp: it jumps to less,
-	 * or from less. It cannot be too short for both, the peak lies above the lower of the two. */
+	/* A move too short for its start speed, or for its stop speed, does without that ramp: it jumps to
+	 * less, or from less. It cannot be too short for both, the peak lies above the lower of the two. */
 	uint64_t peak = reachable_with_ease(draft, speed, up, start, down, stop);
 	if (peak < start) {
 		up = VERTICAL;

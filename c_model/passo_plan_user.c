@@ -30,8 +30,9 @@ uint32_t passo_table_check(const uint16_t table[PASSO_TABLE_SIZE], struct passo_
 }
 
 /* How far the sum over a ramp's ticks, each at its middle, falls short of the shape's mean. Straight lines
- * sum up exactly; each bend does not, by its change of slope times the square of its distance from the nearest
- * border between two ticks, halved. Bend k lies k * ticks / 256 ticks into the ramp. In units of 2^-24. */
+ * sum up exactly; each bend does not, by its change of slope times the square of its distance from the
+ * nearest border between two ticks, halved. Bend k lies k * ticks / 256 ticks into the ramp. In units of
+ * 2^-24. */
 static int64_t bends(const uint16_t table[PASSO_TABLE_SIZE], uint64_t ticks)
 {
 	int64_t sum = 0;

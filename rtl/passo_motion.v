@@ -17,44 +17,44 @@
 `default_nettype none
 
 module passo_motion (
-    input  wire        clk,
-    input  wire        rst,
-    // host
-    input  wire        run,
-    input  wire        wait_sync,
-    input  wire        sync_edge,
-    input  wire        command_stop,   // strobes
-    input  wire        command_abort,
-    input  wire        command_clear,
-    output reg  [ 2:0] state,
-    output reg  [ 2:0] cause,
-    output reg         stopping,
-    output reg  [15:0] drained,
-    // timescale
-    output wire        occupied,       // a motion is prepared or runs
-    output wire        moving,
-    output wire        counting,       // enabled clocks count: the profile runs, or substeps are drained
-    input  wire        rate_is_zero,
-    // ramp and path
-    input  wire        ramp_valid,
-    input  wire        ramp_ready,
-    input  wire        ramp_ended,
-    input  wire        ramp_dry,
-    output wire        prepare,        // strobe: first line, first velocity
-    output wire        begin_profile,  // strobe
-    output wire        drain,
-    // line
-    input  wire        line_valid,
-    input  wire        line_ended,
-    input  wire        line_endless,
-    input  wire        line_underrun,
-    input  wire        substep_made,
-    // axes
-    input  wire        step_overrun,
-    // queues
-    output wire        release_line,   // strobe: the motion is over
-    output wire        stopped,        // whoever works for the motion forgets it
-    output reg         running
+  input  wire        clk,
+  input  wire        rst,
+  // host
+  input  wire        run,
+  input  wire        wait_sync,
+  input  wire        sync_edge,
+  input  wire        command_stop,   // strobes
+  input  wire        command_abort,
+  input  wire        command_clear,
+  output reg  [ 2:0] state,
+  output reg  [ 2:0] cause,
+  output reg         stopping,
+  output reg  [15:0] drained,
+  // timescale
+  output wire        occupied,       // a motion is prepared or runs
+  output wire        moving,
+  output wire        counting,       // enabled clocks count: the profile runs, or substeps are drained
+  input  wire        rate_is_zero,
+  // ramp and path
+  input  wire        ramp_valid,
+  input  wire        ramp_ready,
+  input  wire        ramp_ended,
+  input  wire        ramp_dry,
+  output wire        prepare,        // strobe: first line, first velocity
+  output wire        begin_profile,  // strobe
+  output wire        drain,
+  // line
+  input  wire        line_valid,
+  input  wire        line_ended,
+  input  wire        line_endless,
+  input  wire        line_underrun,
+  input  wire        substep_made,
+  // axes
+  input  wire        step_overrun,
+  // queues
+  output wire        release_line,   // strobe: the motion is over
+  output wire        stopped,        // whoever works for the motion forgets it
+  output reg         running
 );
 
   `include "passo_registers.vh"
@@ -64,7 +64,7 @@ module passo_motion (
 
   reg [2:0] count;
   reg [2:0] soft_cause;
-  reg startable;
+  reg       startable;
 
   assign occupied = state != STATE_IDLE && !stopped;
   assign moving   = state == STATE_RUN || state == STATE_SETTLE || state == STATE_DRAIN;
@@ -73,11 +73,11 @@ module passo_motion (
   wire finished = settled && (line_ended || line_endless);
   wire dry = ramp_dry & ~line_endless;
 
-  assign prepare = state == STATE_IDLE && startable;
+  assign prepare       = state == STATE_IDLE && startable;
   assign begin_profile = state == STATE_ARMED && (sync_edge || !wait_sync);
-  assign counting = state == STATE_RUN || state == STATE_DRAIN;
-  assign drain = state == STATE_DRAIN;
-  assign release_line = finished;
+  assign counting      = state == STATE_RUN || state == STATE_DRAIN;
+  assign drain         = state == STATE_DRAIN;
+  assign release_line  = finished;
 
   wire stop_now = command_abort | (moving & (step_overrun | line_underrun))
                   | (stopping & (rate_is_zero | finished | ~moving));
@@ -89,7 +89,7 @@ module passo_motion (
 
   always @(posedge clk) begin
     startable <= state == STATE_IDLE && run && line_valid && ramp_valid;
-    count <= count + 3'd1;
+    count     <= count + 3'd1;
     case (state)
       STATE_IDLE:    if (startable) state <= STATE_PREPARE;
       STATE_PREPARE: if (ramp_ready) state <= STATE_ARMED;
@@ -126,12 +126,12 @@ module passo_motion (
       running  <= 1'b0;
     end
     if (rst) begin
-      state    <= STATE_IDLE;
-      cause    <= CAUSE_NONE;
-      stopping <= 1'b0;
-      drained  <= 16'd0;
+      state     <= STATE_IDLE;
+      cause     <= CAUSE_NONE;
+      stopping  <= 1'b0;
+      drained   <= 16'd0;
       startable <= 1'b0;
-      running  <= 1'b0;
+      running   <= 1'b0;
     end
   end
 

@@ -32,11 +32,16 @@ static uint64_t sized(uint32_t bits)
 {
 	uint64_t value = any() >> (64 - bits) >> below(bits);
 	switch (below(16)) {
-	case 0: return 0;
-	case 1: return UINT64_MAX >> (64 - bits);
-	case 2: return UINT64_C(1) << below(bits);
-	case 3: return (UINT64_C(1) << below(bits)) - 1;
-	default: return value;
+	case 0:
+		return 0;
+	case 1:
+		return UINT64_MAX >> (64 - bits);
+	case 2:
+		return UINT64_C(1) << below(bits);
+	case 3:
+		return (UINT64_C(1) << below(bits)) - 1;
+	default:
+		return value;
 	}
 }
 
@@ -49,10 +54,14 @@ static uint64_t quantity(void)
 static uint64_t up_to(uint64_t speed)
 {
 	switch (below(4)) {
-	case 0: return 0;
-	case 1: return speed;
-	case 2: return speed / (1 + below(1000));
-	default: return quantity();
+	case 0:
+		return 0;
+	case 1:
+		return speed;
+	case 2:
+		return speed / (1 + below(1000));
+	default:
+		return quantity();
 	}
 }
 
@@ -61,10 +70,17 @@ static struct passo_machine some_machine(void)
 	static const uint32_t clocks[] = {1000000, 12000000, 72000000, 100000000, UINT32_MAX};
 	struct passo_machine machine = {clocks[below(5)], (uint8_t)(7 + below(10)), (uint8_t)(1 + below(8))};
 	switch (below(64)) {
-	case 0: machine.clock_hz = (uint32_t)sized(32); break;
-	case 1: machine.tick_log2 = (uint8_t)any(); break;
-	case 2: machine.axes = (uint8_t)any(); break;
-	default: break;
+	case 0:
+		machine.clock_hz = (uint32_t)sized(32);
+		break;
+	case 1:
+		machine.tick_log2 = (uint8_t)any();
+		break;
+	case 2:
+		machine.axes = (uint8_t)any();
+		break;
+	default:
+		break;
 	}
 	return machine;
 }
@@ -96,7 +112,8 @@ static void some_table(uint16_t table[PASSO_TABLE_SIZE])
 		table[below(PASSO_TABLE_SIZE)] = (uint16_t)any();
 }
 
-/* -------------------------------------------------------------------------------------------- the plan ---- */
+/* -------------------------------------------------------------------------------------------- the plan ----
+ */
 
 enum kind { WHOLE, TURNING, RAMPS_ONLY };
 
@@ -129,30 +146,37 @@ static void check_line(const struct passo_plan *plan, uint8_t axes, bool endless
 static void check_ramps(const struct passo_plan *plan, uint8_t tick_log2, enum kind kind)
 {
 	uint64_t ticks = 0;
-	expect(plan->ramp_count >= 1 && plan->ramp_count <= PASSO_PLAN_RAMPS_MAX, "the number of ramps is wrong");
+	expect(plan->ramp_count >= 1 && plan->ramp_count <= PASSO_PLAN_RAMPS_MAX,
+	    "the number of ramps is wrong");
 	for (uint32_t i = 0; i < plan->ramp_count; i++) {
 		const struct passo_ramp *ramp = &plan->ramps[i];
 		const bool final = i + 1 == plan->ramp_count;
 		expect(ramp->velocity_end <= PASSO_VELOCITY_MAX, "a velocity is above 1/2");
-		expect(ramp->velocity_end <= plan->velocity_peak || kind == RAMPS_ONLY, "the peak is not the highest");
+		expect(ramp->velocity_end <= plan->velocity_peak || kind == RAMPS_ONLY,
+		    "the peak is not the highest");
 		expect(ramp->shape <= PASSO_SHAPE_EASE, "there is no such shape");
 		expect(ramp->now == (kind == RAMPS_ONLY && i == 0), "NOW is wrong");
 		if (kind == WHOLE)
-			expect(ramp->last == final && (!final || ramp->velocity_end == 0), "it does not end at rest");
+			expect(ramp->last == final && (!final || ramp->velocity_end == 0),
+			    "it does not end at rest");
 		if (ramp->ticks > 0) {
-			expect(ramp->progress_step > 0 && ramp->progress_step <= PASSO_PROGRESS_STEP_MAX, "du is wrong");
-			uint64_t last = ramp->progress_step / 2 + (ramp->ticks - UINT64_C(1)) * ramp->progress_step;
+			expect(ramp->progress_step > 0 && ramp->progress_step <= PASSO_PROGRESS_STEP_MAX,
+			    "du is wrong");
+			uint64_t last =
+			    ramp->progress_step / 2 + (ramp->ticks - UINT64_C(1)) * ramp->progress_step;
 			expect(last < PASSO_ONE_Q48, "progress goes beyond 1");
 		}
 		ticks += ramp->ticks;
 	}
-	expect(kind == TURNING || ticks >> (44 - tick_log2) == 0 || kind == RAMPS_ONLY, "the move is too long");
+	expect(
+	    kind == TURNING || ticks >> (44 - tick_log2) == 0 || kind == RAMPS_ONLY, "the move is too long");
 	expect(kind != WHOLE || ticks > 0, "the move takes no time");
 	uint64_t phases = (uint64_t)plan->accelerate_ticks + plan->cruise_ticks + plan->decelerate_ticks;
 	expect(ticks == phases, "the phases are not the ramps");
 }
 
-/* ------------------------------------------------------------------------------------------- functions ---- */
+/* ------------------------------------------------------------------------------------------- functions ----
+ */
 
 static uint32_t in_time(const struct passo_machine *machine, struct passo_plan *plan)
 {
@@ -311,7 +335,8 @@ static uint32_t user_by_speed(const struct passo_machine *machine, struct passo_
 {
 	uint16_t table[PASSO_TABLE_SIZE];
 	some_table(table);
-	const struct passo_user_shape shape = {(enum passo_shape)(below(50) > 0 ? 1 + below(3) : any() & 7), table};
+	const struct passo_user_shape shape = {
+	    (enum passo_shape)(below(50) > 0 ? 1 + below(3) : any() & 7), table};
 	struct passo_move_by_speed move = some_by_speed();
 	return passo_plan_user_by_speed(machine, &move, &shape, plan);
 }
@@ -361,12 +386,14 @@ int main(int count, char **arguments)
 			functions[chosen].planned++;
 		} else {
 			expect(memcmp(&plan, &before, sizeof plan) == 0, "a refused plan was touched");
-			expect(strcmp(passo_method_error_name(error), "UNKNOWN") != 0, "an error has no name");
+			expect(
+			    strcmp(passo_method_error_name(error), "UNKNOWN") != 0, "an error has no name");
 			functions[chosen].refused++;
 		}
 		round_number++;
 	}
 	for (size_t i = 0; i < functions_count; i++)
-		printf("%s %" PRIu64 " %" PRIu64 "\n", functions[i].name, functions[i].planned, functions[i].refused);
+		printf("%s %" PRIu64 " %" PRIu64 "\n", functions[i].name, functions[i].planned,
+		    functions[i].refused);
 	return 0;
 }

@@ -30,8 +30,8 @@ static void log_pins(struct passo_engine *engine)
 	const struct engine_outputs *outputs = &engine->outputs;
 	struct passo_pin_event *last = &engine->last;
 
-	if (last->step == outputs->step && last->dir == outputs->dir && last->enable == outputs->enable &&
-	    last->running == outputs->running && last->irq == outputs->irq)
+	if (last->step == outputs->step && last->dir == outputs->dir && last->enable == outputs->enable
+	    && last->running == outputs->running && last->irq == outputs->irq)
 		return;
 	if (engine->log_length == engine->log_capacity) {
 		engine->log_capacity *= 2;
@@ -39,8 +39,12 @@ static void log_pins(struct passo_engine *engine)
 		if (!engine->log)
 			abort();
 	}
-	*last = (struct passo_pin_event){ .clock = engine->clock, .step = outputs->step, .dir = outputs->dir,
-		.enable = outputs->enable, .running = outputs->running, .irq = outputs->irq };
+	*last = (struct passo_pin_event){.clock = engine->clock,
+	    .step = outputs->step,
+	    .dir = outputs->dir,
+	    .enable = outputs->enable,
+	    .running = outputs->running,
+	    .irq = outputs->irq};
 	engine->log[engine->log_length++] = *last;
 }
 

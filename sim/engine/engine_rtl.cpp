@@ -43,8 +43,9 @@ struct engine_core {
 	{
 		const uint64_t step = top.step, dir = top.dir, enable = top.enable;
 		const uint32_t running = top.running, irq = top.irq;
-		const uint64_t difference = (step ^ outputs.step) | (dir ^ outputs.dir) | (enable ^ outputs.enable) |
-		                            (running ^ outputs.running) | (irq ^ outputs.irq);
+		const uint64_t difference = (step ^ outputs.step) | (dir ^ outputs.dir)
+		                          | (enable ^ outputs.enable) | (running ^ outputs.running)
+		                          | (irq ^ outputs.irq);
 		if (!difference)
 			return false;
 		outputs.step = step;
@@ -59,9 +60,9 @@ struct engine_core {
 engine_core *engine_core_open(
     const passo_engine_config *config, const engine_inputs *inputs, engine_outputs *outputs)
 {
-	if (config->channels != PASSO_CHANNELS || config->axes != PASSO_AXES ||
-	    config->tick_log2 != PASSO_TICK_LOG2 || config->line_queue_log2 != PASSO_LINE_QUEUE_LOG2 ||
-	    config->ramp_queue_log2 != PASSO_RAMP_QUEUE_LOG2)
+	if (config->channels != PASSO_CHANNELS || config->axes != PASSO_AXES
+	    || config->tick_log2 != PASSO_TICK_LOG2 || config->line_queue_log2 != PASSO_LINE_QUEUE_LOG2
+	    || config->ramp_queue_log2 != PASSO_RAMP_QUEUE_LOG2)
 		return nullptr;
 	auto *core = new engine_core;
 #ifdef PASSO_WAVES
