@@ -10,10 +10,9 @@ import time
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
-from functools import cache
 from typing import Any
 
-from passo import native, plan
+from passo import native
 from passo.build import model_library
 from passo.console import console, progress
 from passo.report import write_json
@@ -40,12 +39,6 @@ WORKERS = 2
 WIDTH = 118  # of the tables where there is no terminal
 MODEL_MOVES = 25  # of each method, also made by the C model
 FORMS_SHARE = 5  # random moves of each form that no source has: a fifth of those of a method
-
-
-def settle() -> None:
-    """Take the planner as it is now: should its sources change, half of a table would be another's."""
-    plan.planner = cache(native.planner)
-    plan.planner()
 
 
 def measure_some(moves: list[Move]) -> list[Result]:
@@ -75,7 +68,7 @@ def measure_all(cases: int, seed: int) -> Measured:
     checked = [move for method in METHODS for move in random_moves(method, min(cases, MODEL_MOVES), seed)]
     results: list[Result] = []
     with (
-        ProcessPoolExecutor(WORKERS, initializer=settle) as pool,
+        ProcessPoolExecutor(WORKERS, initializer=native.planner) as pool,
         progress("random moves", len(moves)) as report,
     ):
         for some in pool.map(measure_some, portions):
@@ -134,8 +127,7 @@ def gather(measured: Measured, named: list[Result]) -> dict[str, Any]:
 def accuracy(cases: int = CASES, seed: int = SEED) -> dict[str, Any]:
     """Measure, print, write the report, the page and the picture."""
     began = time.monotonic()
-    settle()
-    for build in (model_library, passo_side.library):  # before there are workers
+    for build in (native.planner, model_library, passo_side.library):  # before there are workers
         build()
     named = [measure(case.move) for case in NAMED]
     measured = measure_all(cases, seed)

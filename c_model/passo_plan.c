@@ -78,39 +78,3 @@ enum passo_plan_error passo_plan_in_time(
 		return error;
 	return passo_draft_in_time(&draft, move->total_clocks, move->ramp_clocks, plan);
 }
-
-/* -------------------------------------------------------------------------------------------- errors ---- */
-
-static const struct {
-	const char *name, *text;
-} ERRORS[] = {
-    [PASSO_PLAN_OK] = {"OK", "The plan is good."},
-    [PASSO_PLAN_BAD_CLOCK] = {"BAD_CLOCK", "The clock must be above 0 Hz and a tick 2^7 to 2^16 clocks."},
-    [PASSO_PLAN_BAD_AXES] = {"BAD_AXES", "A move has 1 to 8 axes."},
-    [PASSO_PLAN_BAD_PROFILE] = {"BAD_PROFILE", "The profile must be linear, cosine, sigmoid or jerk."},
-    [PASSO_PLAN_NO_STEPS] = {"NO_STEPS", "No axis has a step to make."},
-    [PASSO_PLAN_TOO_MANY_STEPS] = {"TOO_MANY_STEPS", "An axis can make at most 2^31 - 1 steps in one move."},
-    [PASSO_PLAN_NO_TIME] = {"NO_TIME", "The total time is less than one tick."},
-    [PASSO_PLAN_RAMP_TOO_LONG] = {"RAMP_TOO_LONG", "The ramp time is more than half the total time."},
-    [PASSO_PLAN_TOO_LONG] = {"TOO_LONG", "A phase takes 2^32 ticks or more, or the move 2^44 clocks."},
-    [PASSO_PLAN_TOO_FAST] = {"TOO_FAST", "The longest axis would make more than a step every two clocks."},
-    [PASSO_PLAN_NO_SPEED] = {"NO_SPEED", "The speed is 0."},
-    [PASSO_PLAN_NO_ACCELERATION] = {"NO_ACCELERATION", "A change of speed needs acceleration or ramp time."},
-    [PASSO_PLAN_START_ABOVE_SPEED] = {"START_ABOVE_SPEED", "The start speed is above the speed."},
-    [PASSO_PLAN_STOP_ABOVE_SPEED] = {"STOP_ABOVE_SPEED", "The stop speed is above the speed."},
-};
-
-static bool is_known(enum passo_plan_error error)
-{
-	return (unsigned)error < sizeof(ERRORS) / sizeof(ERRORS[0]);
-}
-
-const char *passo_plan_error_name(enum passo_plan_error error)
-{
-	return is_known(error) ? ERRORS[error].name : "UNKNOWN";
-}
-
-const char *passo_plan_error_text(enum passo_plan_error error)
-{
-	return is_known(error) ? ERRORS[error].text : "This is not a planner error.";
-}

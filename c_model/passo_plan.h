@@ -36,7 +36,23 @@ enum passo_plan_error {
 	PASSO_PLAN_NO_SPEED,          /* speed is 0 */
 	PASSO_PLAN_NO_ACCELERATION,   /* acceleration is 0 and so is the ramp time, but the speed changes */
 	PASSO_PLAN_START_ABOVE_SPEED, /* start speed is above the speed */
-	PASSO_PLAN_STOP_ABOVE_SPEED   /* stop speed is above the speed */
+	PASSO_PLAN_STOP_ABOVE_SPEED,  /* stop speed is above the speed */
+	/* of the further methods */
+	PASSO_PLAN_SPEED_TOO_LOW,        /* so many steps need more than the highest speed in that time */
+	PASSO_PLAN_BAD_AXIS,             /* the axis is not one of the machine's */
+	PASSO_PLAN_NO_STEPS_PER_TURN,    /* steps per turn is 0 */
+	PASSO_PLAN_MINIMUM_ABOVE_SPEED,  /* the minimum rpm is above the rpm */
+	PASSO_PLAN_BELOW_MINIMUM,        /* turning: the rpm is below the minimum rpm */
+	PASSO_PLAN_ABOVE_TOP,            /* turning: the rpm, or the present velocity, is above the top rpm */
+	PASSO_PLAN_BAD_ALPHA,            /* alpha is not 3 .. 5 */
+	PASSO_PLAN_NO_JERK,              /* jerk is 0 */
+	PASSO_PLAN_NO_FEED,              /* feed is 0 */
+	PASSO_PLAN_NO_SCALE,             /* an axis that moves has 0 steps per millimetre */
+	PASSO_PLAN_NO_AXIS_SPEED,        /* an axis that moves has a largest speed of 0 */
+	PASSO_PLAN_NO_AXIS_ACCELERATION, /* an axis that moves has a largest acceleration of 0 */
+	PASSO_PLAN_BAD_BANK,             /* not one of the three banks of tables */
+	PASSO_PLAN_TABLE_START,          /* point 0 of a table is not 0 */
+	PASSO_PLAN_TABLE_FALLS           /* a point of a table is lower than the one before */
 };
 
 /* What the core is: what ticks mean. */
@@ -96,26 +112,8 @@ const char *passo_plan_error_text(enum passo_plan_error error);
 
 /* ------------------------------------------------------------------------------------ further methods ----
  *
- * Each takes what a user knows about one kind of move, and becomes one of the two forms above. They return 0
- * (PASSO_PLAN_OK), one of enum passo_plan_error, or one of these. A refused *plan stays untouched. */
-enum passo_method_error {
-	PASSO_METHOD_SPEED_TOO_LOW = 32,  /* so many steps need more than the highest speed in that time */
-	PASSO_METHOD_BAD_AXIS,            /* the axis is not one of the machine's */
-	PASSO_METHOD_NO_STEPS_PER_TURN,   /* steps per turn is 0 */
-	PASSO_METHOD_MINIMUM_ABOVE_SPEED, /* the minimum rpm is above the rpm */
-	PASSO_METHOD_BELOW_MINIMUM,       /* turning: the rpm is below the minimum rpm */
-	PASSO_METHOD_ABOVE_TOP,     /* turning: the rpm, or the present velocity, is above the top rpm */
-	PASSO_METHOD_BAD_ALPHA,     /* alpha is not 3 .. 5 */
-	PASSO_METHOD_NO_JERK,       /* jerk is 0 */
-	PASSO_METHOD_NO_FEED,       /* feed is 0 */
-	PASSO_METHOD_NO_SCALE,      /* an axis that moves has 0 steps per millimetre */
-	PASSO_METHOD_NO_AXIS_SPEED, /* an axis that moves has a largest speed of 0 */
-	PASSO_METHOD_NO_AXIS_ACCELERATION, /* an axis that moves has a largest acceleration of 0 */
-	PASSO_METHOD_BAD_BANK,             /* not one of the three banks of tables */
-	PASSO_METHOD_TABLE_START,          /* point 0 of a table is not 0 */
-	PASSO_METHOD_TABLE_FALLS,          /* a point of a table is lower than the one before */
-	PASSO_METHOD_ERRORS_END
-};
+ * Each takes what a user knows about one kind of move, and becomes one of the two forms above. A refused
+ * *plan stays untouched. */
 
 /* In a given time, never above a speed: the longest, so the gentlest, ramps that allow it, which is
  * total - n / speed each, at most half the total time (then the speed is not reached). */
@@ -125,7 +123,7 @@ struct passo_move_below_speed {
 	uint64_t total_clocks;
 	uint64_t speed;
 };
-uint32_t passo_plan_below_speed(
+enum passo_plan_error passo_plan_below_speed(
     const struct passo_machine *machine, const struct passo_move_below_speed *move, struct passo_plan *plan);
 
 /* total - n / speed in clocks, rounded down; 0 if there is no time for ramps, or none at all. */
@@ -139,7 +137,7 @@ struct passo_move_at_speed {
 	uint64_t speed;
 	uint64_t ramp_clocks;
 };
-uint32_t passo_plan_at_speed(
+enum passo_plan_error passo_plan_at_speed(
     const struct passo_machine *machine, const struct passo_move_at_speed *move, struct passo_plan *plan);
 
 /* Trapezoid on several axes: from and to the start speed, so long for each full ramp; a triangle of the same
@@ -149,7 +147,7 @@ struct passo_move_axes {
 	uint64_t start_speed, speed;
 	uint64_t ramp_clocks;
 };
-uint32_t passo_plan_axes(
+enum passo_plan_error passo_plan_axes(
     const struct passo_machine *machine, const struct passo_move_axes *move, struct passo_plan *plan);
 
 /* Trapezoid of one axis by angle and speed of turning. Angles (degrees) are Q31.32, their sign is the
@@ -162,7 +160,7 @@ struct passo_move_turn {
 	uint64_t minimum_rpm;  /* jumped to from rest, and from to rest */
 	uint64_t acceleration; /* UQ32.32 steps/s^2 */
 };
-uint32_t passo_plan_turn(
+enum passo_plan_error passo_plan_turn(
     const struct passo_machine *machine, const struct passo_move_turn *move, struct passo_plan *plan);
 
 /* Turning without end. The three plans of it: start with a line without end and a ramp that does not end the
@@ -177,12 +175,12 @@ struct passo_turning {
 	uint64_t minimum_rpm;
 	uint64_t acceleration; /* UQ32.32 steps/s^2 */
 };
-uint32_t passo_plan_turning_start(const struct passo_machine *machine, const struct passo_turning *turning,
-    uint64_t rpm, struct passo_plan *plan);
-uint32_t passo_plan_turning_speed(const struct passo_machine *machine, const struct passo_turning *turning,
-    uint64_t velocity, uint64_t rpm, struct passo_plan *plan);
-uint32_t passo_plan_turning_stop(const struct passo_machine *machine, const struct passo_turning *turning,
-    uint64_t velocity, struct passo_plan *plan);
+enum passo_plan_error passo_plan_turning_start(const struct passo_machine *machine,
+    const struct passo_turning *turning, uint64_t rpm, struct passo_plan *plan);
+enum passo_plan_error passo_plan_turning_speed(const struct passo_machine *machine,
+    const struct passo_turning *turning, uint64_t velocity, uint64_t rpm, struct passo_plan *plan);
+enum passo_plan_error passo_plan_turning_stop(const struct passo_machine *machine,
+    const struct passo_turning *turning, uint64_t velocity, struct passo_plan *plan);
 
 /* Reading back: degrees (Q31.32, saturating) of a position; rpm (UQ32.32) of a velocity of the longest axis
  * in a plan with so much oversampling. 0 if steps per turn is 0. */
@@ -197,13 +195,13 @@ struct passo_move_sigmoid {
 	uint64_t accelerate_clocks, decelerate_clocks;
 	uint32_t alpha; /* 3 .. 5 in units of 1/4096 */
 };
-uint32_t passo_plan_sigmoid(
+enum passo_plan_error passo_plan_sigmoid(
     const struct passo_machine *machine, const struct passo_move_sigmoid *move, struct passo_plan *plan);
 
 /* The points of the sigmoid's bank for an alpha; table[k] + table[256 - k] is 65536. For alpha = 5 they are
  * those after reset. */
 #define PASSO_TABLE_SIZE 256u
-uint32_t passo_sigmoid_table(uint32_t alpha, uint16_t table[PASSO_TABLE_SIZE]);
+enum passo_plan_error passo_sigmoid_table(uint32_t alpha, uint16_t table[PASSO_TABLE_SIZE]);
 
 /* Jerk-limited in up to seven phases: the acceleration grows, stays and ceases, and so does the deceleration;
  * fewer when length, speed or acceleration do not suffice. */
@@ -213,7 +211,7 @@ struct passo_move_jerk {
 	uint64_t acceleration; /* never exceeded, neither speeding up nor slowing down */
 	uint64_t jerk;         /* UQ32.32 steps/s^3; never exceeded */
 };
-uint32_t passo_plan_jerk(
+enum passo_plan_error passo_plan_jerk(
     const struct passo_machine *machine, const struct passo_move_jerk *move, struct passo_plan *plan);
 
 /* Straight line through space in millimetres (degrees where an axis turns), each axis with limits of its own:
@@ -229,7 +227,7 @@ struct passo_move_straight {
 	struct passo_axis_limits limits[PASSO_AXES_MAX];
 	uint64_t feed; /* mm/s along the path */
 };
-uint32_t passo_plan_straight(
+enum passo_plan_error passo_plan_straight(
     const struct passo_machine *machine, const struct passo_move_straight *move, struct passo_plan *plan);
 
 /* The user's own shape: a table that is loaded into one of the banks. Speeding up follows it, slowing down is
@@ -238,10 +236,10 @@ struct passo_user_shape {
 	enum passo_shape bank; /* PASSO_SHAPE_COSINE, SIGMOID or EASE */
 	const uint16_t *table; /* PASSO_TABLE_SIZE points; point 256 is 65536 */
 };
-uint32_t passo_plan_user_in_time(const struct passo_machine *machine, const struct passo_move_in_time *move,
-    const struct passo_user_shape *shape, struct passo_plan *plan);
-uint32_t passo_plan_user_by_speed(const struct passo_machine *machine, const struct passo_move_by_speed *move,
-    const struct passo_user_shape *shape, struct passo_plan *plan);
+enum passo_plan_error passo_plan_user_in_time(const struct passo_machine *machine,
+    const struct passo_move_in_time *move, const struct passo_user_shape *shape, struct passo_plan *plan);
+enum passo_plan_error passo_plan_user_by_speed(const struct passo_machine *machine,
+    const struct passo_move_by_speed *move, const struct passo_user_shape *shape, struct passo_plan *plan);
 
 /* Is a table fit to be a shape: it starts at 0 and never falls. */
 struct passo_table_facts {
@@ -249,10 +247,7 @@ struct passo_table_facts {
 	bool symmetric; /* table[k] + table[256 - k] is 65536: the mean is 2^23 */
 	uint16_t worst; /* the point that is wrong, if one is */
 };
-uint32_t passo_table_check(const uint16_t table[PASSO_TABLE_SIZE], struct passo_table_facts *facts);
-
-/* Name and sentence of what any of the methods returns. */
-const char *passo_method_error_name(uint32_t error);
-const char *passo_method_error_text(uint32_t error);
+enum passo_plan_error passo_table_check(
+    const uint16_t table[PASSO_TABLE_SIZE], struct passo_table_facts *facts);
 
 #endif

@@ -4,7 +4,7 @@
 #include "passo_math.h"
 #include "passo_plan_draft.h"
 
-uint32_t passo_plan_axes(
+enum passo_plan_error passo_plan_axes(
     const struct passo_machine *machine, const struct passo_move_axes *move, struct passo_plan *plan)
 {
 	struct passo_draft draft;
@@ -60,23 +60,23 @@ static uint32_t check_axes(const struct passo_machine *machine, const struct pas
 	if (machine->axes < 1 || machine->axes > PASSO_AXES_MAX)
 		return PASSO_PLAN_BAD_AXES;
 	if (move->feed == 0)
-		return PASSO_METHOD_NO_FEED;
+		return PASSO_PLAN_NO_FEED;
 	for (uint32_t axis = 0; axis < machine->axes; axis++) {
 		if (move->distance[axis] == 0)
 			continue;
 		if (move->limits[axis].steps_per_mm == 0)
-			return PASSO_METHOD_NO_SCALE;
+			return PASSO_PLAN_NO_SCALE;
 		if (move->limits[axis].speed == 0)
-			return PASSO_METHOD_NO_AXIS_SPEED;
+			return PASSO_PLAN_NO_AXIS_SPEED;
 		if (move->limits[axis].acceleration == 0)
-			return PASSO_METHOD_NO_AXIS_ACCELERATION;
+			return PASSO_PLAN_NO_AXIS_ACCELERATION;
 		if (steps_of(absolute(move->distance[axis]), move->limits[axis].steps_per_mm) > INT32_MAX)
 			return PASSO_PLAN_TOO_MANY_STEPS;
 	}
 	return PASSO_PLAN_OK;
 }
 
-uint32_t passo_plan_straight(
+enum passo_plan_error passo_plan_straight(
     const struct passo_machine *machine, const struct passo_move_straight *move, struct passo_plan *plan)
 {
 	uint32_t refused = check_axes(machine, move);
@@ -113,7 +113,7 @@ uint32_t passo_plan_straight(
 	}
 	if (draft.profile == PASSO_PROFILE_JERK) {
 		if (jerk == 0)
-			return PASSO_METHOD_NO_JERK;
+			return PASSO_PLAN_NO_JERK;
 		rise.jerk = jerk;
 		draft.shape = PASSO_SHAPE_EASE;
 	}

@@ -1,43 +1,55 @@
 /* SPDX-License-Identifier: MIT
- * What the further methods refuse, in words.
+ * What the planner refuses, in words.
  */
 #include "passo_plan.h"
 
-enum { FIRST = PASSO_METHOD_SPEED_TOO_LOW, COUNT = PASSO_METHOD_ERRORS_END - FIRST };
-
 static const struct {
 	const char *name, *text;
-} ERRORS[COUNT] = {
-    [PASSO_METHOD_SPEED_TOO_LOW - FIRST] = {"SPEED_TOO_LOW",
+} ERRORS[] = {
+    [PASSO_PLAN_OK] = {"OK", "The plan is good."},
+    [PASSO_PLAN_BAD_CLOCK] = {"BAD_CLOCK", "The clock must be above 0 Hz and a tick 2^7 to 2^16 clocks."},
+    [PASSO_PLAN_BAD_AXES] = {"BAD_AXES", "A move has 1 to 8 axes."},
+    [PASSO_PLAN_BAD_PROFILE] = {"BAD_PROFILE", "The profile must be linear, cosine, sigmoid or jerk."},
+    [PASSO_PLAN_NO_STEPS] = {"NO_STEPS", "No axis has a step to make."},
+    [PASSO_PLAN_TOO_MANY_STEPS] = {"TOO_MANY_STEPS", "An axis can make at most 2^31 - 1 steps in one move."},
+    [PASSO_PLAN_NO_TIME] = {"NO_TIME", "The total time is less than one tick."},
+    [PASSO_PLAN_RAMP_TOO_LONG] = {"RAMP_TOO_LONG", "The ramp time is more than half the total time."},
+    [PASSO_PLAN_TOO_LONG] = {"TOO_LONG", "A phase takes 2^32 ticks or more, or the move 2^44 clocks."},
+    [PASSO_PLAN_TOO_FAST] = {"TOO_FAST", "The longest axis would make more than a step every two clocks."},
+    [PASSO_PLAN_NO_SPEED] = {"NO_SPEED", "The speed is 0."},
+    [PASSO_PLAN_NO_ACCELERATION] = {"NO_ACCELERATION", "A change of speed needs acceleration or ramp time."},
+    [PASSO_PLAN_START_ABOVE_SPEED] = {"START_ABOVE_SPEED", "The start speed is above the speed."},
+    [PASSO_PLAN_STOP_ABOVE_SPEED] = {"STOP_ABOVE_SPEED", "The stop speed is above the speed."},
+    [PASSO_PLAN_SPEED_TOO_LOW] = {"SPEED_TOO_LOW",
 	"At the highest speed so many steps take more than the total time."},
-    [PASSO_METHOD_BAD_AXIS - FIRST] = {"BAD_AXIS", "The axis is not one of the machine's."},
-    [PASSO_METHOD_NO_STEPS_PER_TURN - FIRST] = {"NO_STEPS_PER_TURN", "A turn must have steps."},
-    [PASSO_METHOD_MINIMUM_ABOVE_SPEED - FIRST] = {"MINIMUM_ABOVE_SPEED", "The minimum rpm is above the rpm."},
-    [PASSO_METHOD_BELOW_MINIMUM - FIRST] = {"BELOW_MINIMUM", "The rpm is below the minimum rpm."},
-    [PASSO_METHOD_ABOVE_TOP - FIRST] = {"ABOVE_TOP", "The rpm or the present velocity is above the top rpm."},
-    [PASSO_METHOD_BAD_ALPHA - FIRST] = {"BAD_ALPHA", "Alpha must be 3 to 5."},
-    [PASSO_METHOD_NO_JERK - FIRST] = {"NO_JERK", "The jerk is 0."},
-    [PASSO_METHOD_NO_FEED - FIRST] = {"NO_FEED", "The feed is 0."},
-    [PASSO_METHOD_NO_SCALE - FIRST] = {"NO_SCALE", "An axis that moves has no steps per millimetre."},
-    [PASSO_METHOD_NO_AXIS_SPEED - FIRST] = {"NO_AXIS_SPEED", "The largest speed of an axis that moves is 0."},
-    [PASSO_METHOD_NO_AXIS_ACCELERATION - FIRST] = {"NO_AXIS_ACCELERATION",
+    [PASSO_PLAN_BAD_AXIS] = {"BAD_AXIS", "The axis is not one of the machine's."},
+    [PASSO_PLAN_NO_STEPS_PER_TURN] = {"NO_STEPS_PER_TURN", "A turn must have steps."},
+    [PASSO_PLAN_MINIMUM_ABOVE_SPEED] = {"MINIMUM_ABOVE_SPEED", "The minimum rpm is above the rpm."},
+    [PASSO_PLAN_BELOW_MINIMUM] = {"BELOW_MINIMUM", "The rpm is below the minimum rpm."},
+    [PASSO_PLAN_ABOVE_TOP] = {"ABOVE_TOP", "The rpm or the present velocity is above the top rpm."},
+    [PASSO_PLAN_BAD_ALPHA] = {"BAD_ALPHA", "Alpha must be 3 to 5."},
+    [PASSO_PLAN_NO_JERK] = {"NO_JERK", "The jerk is 0."},
+    [PASSO_PLAN_NO_FEED] = {"NO_FEED", "The feed is 0."},
+    [PASSO_PLAN_NO_SCALE] = {"NO_SCALE", "An axis that moves has no steps per millimetre."},
+    [PASSO_PLAN_NO_AXIS_SPEED] = {"NO_AXIS_SPEED", "The largest speed of an axis that moves is 0."},
+    [PASSO_PLAN_NO_AXIS_ACCELERATION] = {"NO_AXIS_ACCELERATION",
 	"The largest acceleration of an axis that moves is 0."},
-    [PASSO_METHOD_BAD_BANK - FIRST] = {"BAD_BANK", "A table belongs in one of the banks 1 to 3."},
-    [PASSO_METHOD_TABLE_START - FIRST] = {"TABLE_START", "A shape must start at 0."},
-    [PASSO_METHOD_TABLE_FALLS - FIRST] = {"TABLE_FALLS", "A shape must never fall."},
+    [PASSO_PLAN_BAD_BANK] = {"BAD_BANK", "A table belongs in one of the banks 1 to 3."},
+    [PASSO_PLAN_TABLE_START] = {"TABLE_START", "A shape must start at 0."},
+    [PASSO_PLAN_TABLE_FALLS] = {"TABLE_FALLS", "A shape must never fall."},
 };
 
-static bool is_known(uint32_t error)
+static bool is_known(enum passo_plan_error error)
 {
-	return error >= FIRST && error < PASSO_METHOD_ERRORS_END;
+	return (unsigned)error < sizeof(ERRORS) / sizeof(ERRORS[0]);
 }
 
-const char *passo_method_error_name(uint32_t error)
+const char *passo_plan_error_name(enum passo_plan_error error)
 {
-	return is_known(error) ? ERRORS[error - FIRST].name : passo_plan_error_name(error);
+	return is_known(error) ? ERRORS[error].name : "UNKNOWN";
 }
 
-const char *passo_method_error_text(uint32_t error)
+const char *passo_plan_error_text(enum passo_plan_error error)
 {
-	return is_known(error) ? ERRORS[error - FIRST].text : passo_plan_error_text(error);
+	return is_known(error) ? ERRORS[error].text : "This is not a planner error.";
 }

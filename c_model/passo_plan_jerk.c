@@ -3,7 +3,7 @@
  */
 #include "passo_plan_draft.h"
 
-uint32_t passo_plan_jerk(
+enum passo_plan_error passo_plan_jerk(
     const struct passo_machine *machine, const struct passo_move_jerk *move, struct passo_plan *plan)
 {
 	struct passo_draft draft;
@@ -13,7 +13,7 @@ uint32_t passo_plan_jerk(
 	if (move->acceleration == 0)
 		return PASSO_PLAN_NO_ACCELERATION;
 	if (move->jerk == 0)
-		return PASSO_METHOD_NO_JERK;
+		return PASSO_PLAN_NO_JERK;
 
 	const struct passo_rise rise = {.acceleration = move->acceleration, .jerk = move->jerk};
 	const struct passo_limits limits = {

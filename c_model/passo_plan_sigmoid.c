@@ -41,10 +41,10 @@ static uint64_t tanh_of_half(uint64_t e)
  *   1/2 + tanh(alpha d / 256) / (2 tanh(alpha / 2))
  *
  * It is reckoned for the upper half only: the lower half is its mirror image, to the bit. */
-uint32_t passo_sigmoid_table(uint32_t alpha, uint16_t table[PASSO_TABLE_SIZE])
+enum passo_plan_error passo_sigmoid_table(uint32_t alpha, uint16_t table[PASSO_TABLE_SIZE])
 {
 	if (alpha < ALPHA_MIN || alpha > ALPHA_MAX)
-		return PASSO_METHOD_BAD_ALPHA;
+		return PASSO_PLAN_BAD_ALPHA;
 
 	/* exp(-alpha / 128), of which each point on from the middle is a further power */
 	uint64_t step = exp_minus(ONE_Q62 / ((uint64_t)ALPHA_UNIT * MIDDLE) * alpha);
@@ -65,7 +65,7 @@ uint32_t passo_sigmoid_table(uint32_t alpha, uint16_t table[PASSO_TABLE_SIZE])
 	return PASSO_PLAN_OK;
 }
 
-uint32_t passo_plan_sigmoid(
+enum passo_plan_error passo_plan_sigmoid(
     const struct passo_machine *machine, const struct passo_move_sigmoid *move, struct passo_plan *plan)
 {
 	struct passo_draft draft;
@@ -73,7 +73,7 @@ uint32_t passo_plan_sigmoid(
 	if (error != PASSO_PLAN_OK)
 		return error;
 	if (move->alpha < ALPHA_MIN || move->alpha > ALPHA_MAX)
-		return PASSO_METHOD_BAD_ALPHA;
+		return PASSO_PLAN_BAD_ALPHA;
 	draft.sigmoid_alpha = move->alpha;
 
 	const struct passo_limits limits = {

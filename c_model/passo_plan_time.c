@@ -21,7 +21,7 @@ uint64_t passo_longest_ramp(uint32_t clock_hz, uint32_t steps, uint64_t total_cl
 	return flat < total_clocks ? total_clocks - flat : 0;
 }
 
-uint32_t passo_plan_below_speed(
+enum passo_plan_error passo_plan_below_speed(
     const struct passo_machine *machine, const struct passo_move_below_speed *move, struct passo_plan *plan)
 {
 	struct passo_draft draft;
@@ -35,7 +35,7 @@ uint32_t passo_plan_below_speed(
 	if (move->total_clocks >> machine->tick_log2 == 0)
 		return PASSO_PLAN_NO_TIME;
 	if (flat > total)
-		return PASSO_METHOD_SPEED_TOO_LOW;
+		return PASSO_PLAN_SPEED_TOO_LOW;
 
 	/* The two halves of a jerk-limited ramp are equal; rounding it up would take it beyond the limit. */
 	uint64_t ramp = total - flat;
@@ -44,7 +44,7 @@ uint32_t passo_plan_below_speed(
 	return passo_draft_in_ticks(&draft, total, ramp, move->speed, plan);
 }
 
-uint32_t passo_plan_at_speed(
+enum passo_plan_error passo_plan_at_speed(
     const struct passo_machine *machine, const struct passo_move_at_speed *move, struct passo_plan *plan)
 {
 	struct passo_draft draft;

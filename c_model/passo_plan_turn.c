@@ -15,15 +15,15 @@ static uint64_t speed_of(uint64_t rpm, uint32_t steps_per_turn)
 	return passo_mul_div(rpm, steps_per_turn, SECONDS_PER_MINUTE);
 }
 
-uint32_t passo_plan_turn(
+enum passo_plan_error passo_plan_turn(
     const struct passo_machine *machine, const struct passo_move_turn *move, struct passo_plan *plan)
 {
 	if (move->axis >= machine->axes || move->axis >= PASSO_AXES_MAX)
-		return PASSO_METHOD_BAD_AXIS;
+		return PASSO_PLAN_BAD_AXIS;
 	if (move->steps_per_turn == 0)
-		return PASSO_METHOD_NO_STEPS_PER_TURN;
+		return PASSO_PLAN_NO_STEPS_PER_TURN;
 	if (move->minimum_rpm > move->rpm)
-		return PASSO_METHOD_MINIMUM_ABOVE_SPEED;
+		return PASSO_PLAN_MINIMUM_ABOVE_SPEED;
 
 	const uint64_t turn = DEGREES_PER_TURN * PASSO_UNIT_Q32;
 	uint64_t angle = move->angle < 0 ? 0 - (uint64_t)move->angle : (uint64_t)move->angle;
@@ -57,9 +57,9 @@ static uint32_t start_turning(struct passo_draft *draft, int32_t steps[PASSO_AXE
     const struct passo_machine *machine, const struct passo_turning *turning)
 {
 	if (turning->axis >= machine->axes || turning->axis >= PASSO_AXES_MAX)
-		return PASSO_METHOD_BAD_AXIS;
+		return PASSO_PLAN_BAD_AXIS;
 	if (turning->steps_per_turn == 0)
-		return PASSO_METHOD_NO_STEPS_PER_TURN;
+		return PASSO_PLAN_NO_STEPS_PER_TURN;
 	steps[turning->axis] = turning->backwards ? -1 : 1;
 	enum passo_plan_error error = passo_draft_start(draft, machine, steps, PASSO_PROFILE_LINEAR);
 	if (error != PASSO_PLAN_OK)
@@ -103,12 +103,12 @@ static uint32_t check_rpm(const struct passo_turning *turning, uint64_t rpm)
 	if (speed_of(rpm, turning->steps_per_turn) == 0)
 		return PASSO_PLAN_NO_SPEED;
 	if (rpm < turning->minimum_rpm)
-		return PASSO_METHOD_BELOW_MINIMUM;
-	return rpm > turning->top_rpm ? PASSO_METHOD_ABOVE_TOP : PASSO_PLAN_OK;
+		return PASSO_PLAN_BELOW_MINIMUM;
+	return rpm > turning->top_rpm ? PASSO_PLAN_ABOVE_TOP : PASSO_PLAN_OK;
 }
 
-uint32_t passo_plan_turning_start(const struct passo_machine *machine, const struct passo_turning *turning,
-    uint64_t rpm, struct passo_plan *plan)
+enum passo_plan_error passo_plan_turning_start(const struct passo_machine *machine,
+    const struct passo_turning *turning, uint64_t rpm, struct passo_plan *plan)
 {
 	struct passo_draft draft;
 	int32_t steps[PASSO_AXES_MAX] = {0};
@@ -136,8 +136,8 @@ uint32_t passo_plan_turning_start(const struct passo_machine *machine, const str
 	return refused;
 }
 
-uint32_t passo_plan_turning_speed(const struct passo_machine *machine, const struct passo_turning *turning,
-    uint64_t velocity, uint64_t rpm, struct passo_plan *plan)
+enum passo_plan_error passo_plan_turning_speed(const struct passo_machine *machine,
+    const struct passo_turning *turning, uint64_t velocity, uint64_t rpm, struct passo_plan *plan)
 {
 	struct passo_draft draft;
 	int32_t steps[PASSO_AXES_MAX] = {0};
@@ -147,7 +147,7 @@ uint32_t passo_plan_turning_speed(const struct passo_machine *machine, const str
 	if (refused != PASSO_PLAN_OK)
 		return refused;
 	if (velocity > velocity_of(&draft, turning, turning->top_rpm))
-		return PASSO_METHOD_ABOVE_TOP;
+		return PASSO_PLAN_ABOVE_TOP;
 
 	struct passo_plan made = {
 	    .oversampling = draft.oversampling,
@@ -161,8 +161,8 @@ uint32_t passo_plan_turning_speed(const struct passo_machine *machine, const str
 	return refused;
 }
 
-uint32_t passo_plan_turning_stop(const struct passo_machine *machine, const struct passo_turning *turning,
-    uint64_t velocity, struct passo_plan *plan)
+enum passo_plan_error passo_plan_turning_stop(const struct passo_machine *machine,
+    const struct passo_turning *turning, uint64_t velocity, struct passo_plan *plan)
 {
 	struct passo_draft draft;
 	int32_t steps[PASSO_AXES_MAX] = {0};
@@ -170,7 +170,7 @@ uint32_t passo_plan_turning_stop(const struct passo_machine *machine, const stru
 	if (refused != PASSO_PLAN_OK)
 		return refused;
 	if (velocity > velocity_of(&draft, turning, turning->top_rpm))
-		return PASSO_METHOD_ABOVE_TOP;
+		return PASSO_PLAN_ABOVE_TOP;
 
 	struct passo_plan made = {
 	    .oversampling = draft.oversampling,

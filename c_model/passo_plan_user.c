@@ -11,9 +11,10 @@ static int32_t point(const uint16_t table[PASSO_TABLE_SIZE], uint32_t k)
 	return k < PASSO_TABLE_SIZE ? table[k] : ONE;
 }
 
-uint32_t passo_table_check(const uint16_t table[PASSO_TABLE_SIZE], struct passo_table_facts *facts)
+enum passo_plan_error passo_table_check(
+    const uint16_t table[PASSO_TABLE_SIZE], struct passo_table_facts *facts)
 {
-	uint32_t error = table[0] == 0 ? PASSO_PLAN_OK : PASSO_METHOD_TABLE_START;
+	enum passo_plan_error error = table[0] == 0 ? PASSO_PLAN_OK : PASSO_PLAN_TABLE_START;
 	uint32_t sum = 0;
 	*facts = (struct passo_table_facts){.symmetric = true};
 	for (uint32_t k = 1; k <= PASSO_TABLE_SIZE; k++) {
@@ -21,7 +22,7 @@ uint32_t passo_table_check(const uint16_t table[PASSO_TABLE_SIZE], struct passo_
 		sum += (uint32_t)(point(table, k - 1) + point(table, k));
 		facts->symmetric &= point(table, k) + point(table, PASSO_TABLE_SIZE - k) == ONE;
 		if (error == PASSO_PLAN_OK && point(table, k) < point(table, k - 1)) {
-			error = PASSO_METHOD_TABLE_FALLS;
+			error = PASSO_PLAN_TABLE_FALLS;
 			facts->worst = (uint16_t)k;
 		}
 	}
@@ -64,7 +65,7 @@ static uint32_t start_draft(struct passo_draft *draft, const struct passo_machin
 	if (error != PASSO_PLAN_OK)
 		return error;
 	if (shape->bank < PASSO_SHAPE_COSINE || shape->bank > PASSO_SHAPE_EASE)
-		return PASSO_METHOD_BAD_BANK;
+		return PASSO_PLAN_BAD_BANK;
 	struct passo_table_facts facts;
 	uint32_t refused = passo_table_check(shape->table, &facts);
 	if (refused != PASSO_PLAN_OK)
@@ -76,8 +77,8 @@ static uint32_t start_draft(struct passo_draft *draft, const struct passo_machin
 	return PASSO_PLAN_OK;
 }
 
-uint32_t passo_plan_user_in_time(const struct passo_machine *machine, const struct passo_move_in_time *move,
-    const struct passo_user_shape *shape, struct passo_plan *plan)
+enum passo_plan_error passo_plan_user_in_time(const struct passo_machine *machine,
+    const struct passo_move_in_time *move, const struct passo_user_shape *shape, struct passo_plan *plan)
 {
 	struct passo_draft draft;
 	uint32_t refused = start_draft(&draft, machine, move->steps, shape);
@@ -86,8 +87,8 @@ uint32_t passo_plan_user_in_time(const struct passo_machine *machine, const stru
 	return passo_draft_in_time(&draft, move->total_clocks, move->ramp_clocks, plan);
 }
 
-uint32_t passo_plan_user_by_speed(const struct passo_machine *machine, const struct passo_move_by_speed *move,
-    const struct passo_user_shape *shape, struct passo_plan *plan)
+enum passo_plan_error passo_plan_user_by_speed(const struct passo_machine *machine,
+    const struct passo_move_by_speed *move, const struct passo_user_shape *shape, struct passo_plan *plan)
 {
 	struct passo_draft draft;
 	uint32_t refused = start_draft(&draft, machine, move->steps, shape);

@@ -15,10 +15,11 @@ import re
 import shutil
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from importlib.metadata import version
 from pathlib import Path
 
 from cocotb_tools.check_results import get_results
-from cocotb_tools.runner import get_runner
+from cocotb_tools.runner import Verilator, get_runner
 from passo.toolchain import environment, paths
 
 SIMULATORS = ("verilator", "icarus")
@@ -26,9 +27,6 @@ SEED_VARIABLE = "PASSO_SEED"
 
 _BUILD = paths.build / "cocotb"
 _TOPS = paths.cocotb_tests / "tops"
-
-# What every Verilator build of cocotb compiles anew although it never differs.
-_RUNTIME = ("verilated", "verilated_dpi", "verilated_vpi", "verilated_threads", "verilator")
 
 
 def seed() -> int:
@@ -132,10 +130,8 @@ def _build(
         return
 
     stamp.unlink(missing_ok=True)
-    runtime = _BUILD / ("verilated-waves" if waves else "verilated")
-    if simulator == "verilator":
-        _copy_runtime(runtime, folder)
-    get_runner(simulator).build(
+    runner = _Verilator() if simulator == "verilator" else get_runner(simulator)
+    runner.build(
         sources=sources,
         includes=[rtl],
         hdl_toplevel=toplevel,
@@ -145,17 +141,31 @@ def _build(
         timescale=("1ns", "1ps"),
         waves=waves,
     )
-    if simulator == "verilator":
-        _copy_runtime(folder, runtime)
+    if isinstance(runner, _Verilator):
+        runner.keep_runtime()
     stamp.write_text(digest.hexdigest())
 
 
-def _copy_runtime(source: Path, destination: Path) -> None:
-    """Copy the compiled Verilator runtime; make still sees whether it is up to date."""
-    destination.mkdir(parents=True, exist_ok=True)
-    for path in [source / f"{name}.{end}" for name in _RUNTIME for end in ("o", "d")]:
-        target = destination / path.name
-        if path.exists() and not target.exists():
-            part = target.with_suffix(f".{os.getpid()}")
-            shutil.copy2(path, part)
-            part.rename(target)
+class _Verilator(Verilator):
+    """Compiles the Verilator runtime, which takes longer than any of the models, only in the first build."""
+
+    def _runtime(self) -> Path:
+        versions = [f"{package}{version(package)}" for package in ("verilator", "cocotb")]
+        return _BUILD / "-".join(["runtime", *versions, *(["waves"] if self.waves else [])])
+
+    def _build_command(self) -> list[list[str]]:
+        """Put what is there between Verilator's makefile, which it has to be newer than, and make."""
+        verilate, make = super()._build_command()
+        objects = [str(path) for path in self._runtime().glob("*.o")]
+        return [verilate, *([["cp", *objects, str(self.build_dir)]] if objects else []), make]
+
+    def keep_runtime(self) -> None:
+        """Keep the runtime of this build for the next ones."""
+        runtime = self._runtime()
+        runtime.mkdir(exist_ok=True)
+        for name in ("verilated", "verilated_dpi", "verilated_vpi", "verilated_threads", "verilator"):
+            built, kept = self.build_dir / f"{name}.o", runtime / f"{name}.o"
+            if built.exists() and not kept.exists():
+                part = kept.with_suffix(f".{os.getpid()}")
+                shutil.copy(built, part)
+                part.rename(kept)

@@ -178,7 +178,7 @@ static void check_ramps(const struct passo_plan *plan, uint8_t tick_log2, enum k
 /* ------------------------------------------------------------------------------------------- functions ----
  */
 
-static uint32_t in_time(const struct passo_machine *machine, struct passo_plan *plan)
+static enum passo_plan_error in_time(const struct passo_machine *machine, struct passo_plan *plan)
 {
 	struct passo_move_in_time move = {.profile = some_profile(), .total_clocks = sized(46)};
 	some_steps(move.steps);
@@ -198,13 +198,13 @@ static struct passo_move_by_speed some_by_speed(void)
 	return move;
 }
 
-static uint32_t by_speed(const struct passo_machine *machine, struct passo_plan *plan)
+static enum passo_plan_error by_speed(const struct passo_machine *machine, struct passo_plan *plan)
 {
 	struct passo_move_by_speed move = some_by_speed();
 	return passo_plan_by_speed(machine, &move, plan);
 }
 
-static uint32_t below_speed(const struct passo_machine *machine, struct passo_plan *plan)
+static enum passo_plan_error below_speed(const struct passo_machine *machine, struct passo_plan *plan)
 {
 	struct passo_move_below_speed move = {
 	    .profile = some_profile(), .total_clocks = sized(46), .speed = quantity()};
@@ -213,7 +213,7 @@ static uint32_t below_speed(const struct passo_machine *machine, struct passo_pl
 	return passo_plan_below_speed(machine, &move, plan);
 }
 
-static uint32_t at_speed(const struct passo_machine *machine, struct passo_plan *plan)
+static enum passo_plan_error at_speed(const struct passo_machine *machine, struct passo_plan *plan)
 {
 	struct passo_move_at_speed move = {
 	    .profile = some_profile(), .speed = quantity(), .ramp_clocks = sized(45)};
@@ -221,7 +221,7 @@ static uint32_t at_speed(const struct passo_machine *machine, struct passo_plan 
 	return passo_plan_at_speed(machine, &move, plan);
 }
 
-static uint32_t axes(const struct passo_machine *machine, struct passo_plan *plan)
+static enum passo_plan_error axes(const struct passo_machine *machine, struct passo_plan *plan)
 {
 	struct passo_move_axes move = {.speed = quantity(), .ramp_clocks = sized(45)};
 	some_steps(move.steps);
@@ -229,7 +229,7 @@ static uint32_t axes(const struct passo_machine *machine, struct passo_plan *pla
 	return passo_plan_axes(machine, &move, plan);
 }
 
-static uint32_t turn(const struct passo_machine *machine, struct passo_plan *plan)
+static enum passo_plan_error turn(const struct passo_machine *machine, struct passo_plan *plan)
 {
 	struct passo_move_turn move = {
 	    .axis = (uint8_t)below(9),
@@ -258,25 +258,25 @@ static struct passo_turning some_turning(void)
 	return turning;
 }
 
-static uint32_t turning_start(const struct passo_machine *machine, struct passo_plan *plan)
+static enum passo_plan_error turning_start(const struct passo_machine *machine, struct passo_plan *plan)
 {
 	struct passo_turning turning = some_turning();
 	return passo_plan_turning_start(machine, &turning, up_to(turning.top_rpm), plan);
 }
 
-static uint32_t turning_speed(const struct passo_machine *machine, struct passo_plan *plan)
+static enum passo_plan_error turning_speed(const struct passo_machine *machine, struct passo_plan *plan)
 {
 	struct passo_turning turning = some_turning();
 	return passo_plan_turning_speed(machine, &turning, sized(47), up_to(turning.top_rpm), plan);
 }
 
-static uint32_t turning_stop(const struct passo_machine *machine, struct passo_plan *plan)
+static enum passo_plan_error turning_stop(const struct passo_machine *machine, struct passo_plan *plan)
 {
 	struct passo_turning turning = some_turning();
 	return passo_plan_turning_stop(machine, &turning, sized(48), plan);
 }
 
-static uint32_t sigmoid(const struct passo_machine *machine, struct passo_plan *plan)
+static enum passo_plan_error sigmoid(const struct passo_machine *machine, struct passo_plan *plan)
 {
 	struct passo_move_sigmoid move = {
 	    .speed = quantity(),
@@ -293,7 +293,7 @@ static uint32_t sigmoid(const struct passo_machine *machine, struct passo_plan *
 	return passo_plan_sigmoid(machine, &move, plan);
 }
 
-static uint32_t jerk(const struct passo_machine *machine, struct passo_plan *plan)
+static enum passo_plan_error jerk(const struct passo_machine *machine, struct passo_plan *plan)
 {
 	struct passo_move_jerk move = {.speed = quantity(), .acceleration = quantity(), .jerk = quantity()};
 	some_steps(move.steps);
@@ -302,7 +302,7 @@ static uint32_t jerk(const struct passo_machine *machine, struct passo_plan *pla
 	return passo_plan_jerk(machine, &move, plan);
 }
 
-static uint32_t straight(const struct passo_machine *machine, struct passo_plan *plan)
+static enum passo_plan_error straight(const struct passo_machine *machine, struct passo_plan *plan)
 {
 	struct passo_move_straight move = {.feed = quantity()};
 	for (unsigned axis = 0; axis < PASSO_AXES_MAX; axis++) {
@@ -320,7 +320,7 @@ static uint32_t straight(const struct passo_machine *machine, struct passo_plan 
 	return passo_plan_straight(machine, &move, plan);
 }
 
-static uint32_t user_in_time(const struct passo_machine *machine, struct passo_plan *plan)
+static enum passo_plan_error user_in_time(const struct passo_machine *machine, struct passo_plan *plan)
 {
 	uint16_t table[PASSO_TABLE_SIZE];
 	some_table(table);
@@ -331,7 +331,7 @@ static uint32_t user_in_time(const struct passo_machine *machine, struct passo_p
 	return passo_plan_user_in_time(machine, &move, &shape, plan);
 }
 
-static uint32_t user_by_speed(const struct passo_machine *machine, struct passo_plan *plan)
+static enum passo_plan_error user_by_speed(const struct passo_machine *machine, struct passo_plan *plan)
 {
 	uint16_t table[PASSO_TABLE_SIZE];
 	some_table(table);
@@ -343,7 +343,7 @@ static uint32_t user_by_speed(const struct passo_machine *machine, struct passo_
 
 static struct {
 	const char *name;
-	uint32_t (*call)(const struct passo_machine *machine, struct passo_plan *plan);
+	enum passo_plan_error (*call)(const struct passo_machine *machine, struct passo_plan *plan);
 	enum kind kind;
 	uint64_t planned, refused;
 } functions[] = {
@@ -378,7 +378,7 @@ int main(int count, char **arguments)
 		memcpy(&before, &plan, sizeof plan);
 		const struct passo_machine machine = some_machine();
 		function = functions[chosen].name;
-		uint32_t error = functions[chosen].call(&machine, &plan);
+		enum passo_plan_error error = functions[chosen].call(&machine, &plan);
 		if (error == PASSO_PLAN_OK) {
 			if (functions[chosen].kind != RAMPS_ONLY)
 				check_line(&plan, machine.axes, functions[chosen].kind == TURNING);
@@ -386,8 +386,7 @@ int main(int count, char **arguments)
 			functions[chosen].planned++;
 		} else {
 			expect(memcmp(&plan, &before, sizeof plan) == 0, "a refused plan was touched");
-			expect(
-			    strcmp(passo_method_error_name(error), "UNKNOWN") != 0, "an error has no name");
+			expect(strcmp(passo_plan_error_name(error), "UNKNOWN") != 0, "an error has no name");
 			functions[chosen].refused++;
 		}
 		round_number++;

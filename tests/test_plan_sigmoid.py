@@ -66,7 +66,7 @@ def test_tables(c: Any) -> None:
         assert table[0] == 0 and all(a < b for a, b in pairwise(table))
     for alpha in (0, 3 * ALPHA - 1, 5 * ALPHA + 1, 2**32 - 1):
         error = c.passo_sigmoid_table(alpha, ffi().new("uint16_t[256]"))
-        assert ffi().string(c.passo_method_error_name(error)) == b"BAD_ALPHA"
+        assert ffi().string(c.passo_plan_error_name(error)) == b"BAD_ALPHA"
 
 
 def sigmoid(c: Any, machine: Machine, **changes: Any) -> Plan:

@@ -139,7 +139,7 @@ def turning(c: Any, machine: Machine, what: str, *arguments: int, **changes: int
     wanted = ffi().new("struct passo_turning *", {**TURNING, **changes})
     error = getattr(c, f"passo_plan_turning_{what}")(ours, wanted, *arguments, plan)
     if error:
-        raise PlanError(ffi().string(c.passo_method_error_name(error)).decode())
+        raise PlanError(ffi().string(c.passo_plan_error_name(error)).decode())
     return Plan(machine, plan)
 
 

@@ -62,10 +62,10 @@ def test_random_facts(c: Any) -> None:
         table[k] = table[k - 1] - 1 if table[k - 1] else 0
         falls = table[k] < table[k - 1]
         error = c.passo_table_check(table, facts)
-        assert ffi().string(c.passo_method_error_name(error)) == (b"TABLE_FALLS" if falls else b"OK")
+        assert ffi().string(c.passo_plan_error_name(error)) == (b"TABLE_FALLS" if falls else b"OK")
         assert facts.worst == (k if falls else 0)
     error = c.passo_table_check([1, *[5] * 255], facts)
-    assert ffi().string(c.passo_method_error_name(error)) == b"TABLE_START"
+    assert ffi().string(c.passo_plan_error_name(error)) == b"TABLE_START"
 
 
 def plan_user(

@@ -43,6 +43,7 @@ def load(library: Path) -> Any:
     return ffi().dlopen(str(library))
 
 
+@cache
 def planner() -> Any:
     """The planner and the frame codec."""
     return load(planner_library())

@@ -76,7 +76,7 @@ def plan_move(move: Move, clock_hz: int, parameters: Parameters) -> Plan:
     else:
         error = getattr(c, f"passo_plan_{method}")(machine, wanted, plan)
     if error != c.PASSO_PLAN_OK:
-        name, text = c.passo_method_error_name(error), c.passo_method_error_text(error)
+        name, text = c.passo_plan_error_name(error), c.passo_plan_error_text(error)
         raise PlanError(ffi().string(name).decode(), ffi().string(text).decode())
     if plan.sigmoid_alpha not in (0, ALPHA_RESET):
         table = sigmoid_table(plan.sigmoid_alpha)
