@@ -11,15 +11,14 @@ from passo.build import BuildError
 from passo.console import progress
 from passo.engine import DifferenceError
 from passo.frame import FrameError
-from passo.host import HostError, load_table
-from passo.link import Link, LinkError
+from passo.host import HostError
+from passo.link import LinkError
 from passo.moves import MoveFileError, read_moves
-from passo.plan import plan_file, table_of
+from passo.plan import plan_file
 from passo.run import ENGINES, Run, RunError, execute, open_engine, parameters_for
 from passo.shape import ShapeError
 from passo.toolchain import paths
 
-SIGMOID_BANK = 2  # where the tables of moves go
 RESULTS = ("pulses.csv", "summary.json", "motion.png", "waves.fst")
 OK, FAILED, BAD_INPUT = 0, 1, 2
 FAILURES = (BuildError, DifferenceError, FrameError, HostError, LinkError, RunError)
@@ -87,8 +86,6 @@ def _run(options: argparse.Namespace) -> int:
             raise MoveFileError(f"{out}: {error.strerror}") from None
         if options.waves:
             engine.open_waves(out / "waves.fst")
-        if table := table_of(plans):
-            load_table(Link(engine), SIGMOID_BANK, table)
         try:
             with progress(file.name, sum(plan.clocks for plan in plans)) as report:
                 run = execute(file, plans, engine, report)

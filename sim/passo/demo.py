@@ -12,7 +12,10 @@ from passo.run import execute, open_engine, parameters_for
 from passo.toolchain import paths
 
 FOLDER = paths.build / "demo"
-EXAMPLES = ("three_axes", "cosine", "sigmoid", "triangle", "there_and_back")
+EXAMPLES = (
+    *("three_axes", "cosine", "sigmoid", "triangle", "there_and_back"),
+    *("exact_time", "turn", "sigmoid_alpha", "seven_phases", "straight", "user_shape"),
+)
 
 
 def demo() -> bool:

@@ -10,14 +10,15 @@ import numpy as np
 
 from passo.build import Parameters
 from passo.engine import Engine, PairEngine, model_engine, rtl_engine
-from passo.host import RATE_ONE, Channel, ChannelState
+from passo.host import RATE_ONE, Channel, ChannelState, load_table
 from passo.link import Link, RefusedError
 from passo.moves import MoveFile
-from passo.plan import Plan
+from passo.plan import Plan, table_of
 from passo.registers import Cause, State, Verdict
 
 ENGINES = ("both", "rtl", "model")
 CHUNK = 1_000_000  # clocks between two reports of progress
+SIGMOID_BANK = 2  # where the table of a motion goes
 SLEW_SECONDS = 0.05  # a hold from full speed
 AXES_OF_CORES = (4, 8)
 
@@ -140,7 +141,8 @@ def execute(
     progress: Callable[[int], None] = lambda clocks: None,
 ) -> Run:
     """Make the motion; `progress` is told its clocks so far."""
-    channel = Channel(Link(engine), engine.parameters)
+    link = Link(engine)
+    channel = Channel(link, engine.parameters)
     pins: list[np.ndarray] = []
 
     def collect() -> bool:
@@ -161,6 +163,8 @@ def execute(
 
     for axis in range(file.axes):
         channel.configure_axis(axis, file.pins)
+    if table := table_of(plans):
+        load_table(link, SIGMOID_BANK, table)
     tick = 1 << engine.parameters.tick_log2
     slew = min(RATE_ONE, max(1, round(RATE_ONE * tick / (SLEW_SECONDS * file.clock_hz))))
     slowest = min(plan.c.velocity_peak for plan in plans)
