@@ -11,7 +11,8 @@ from collections.abc import Sequence
 
 import numpy as np
 import pytest
-from closed_form import COSINE, EASE, HALF, LINEAR, ONE, SIGMOID, TABLES, Line, Ramp, step_clocks
+from closed_form import COSINE, EASE, HALF, LINEAR, ONE, SIGMOID, TABLES, Line, Ramp, step_clocks, velocities
+from core_player import PlayerPair
 from motions import SLOW, distance, fill, random_motion, to_line, to_ramp
 from passo.build import Parameters
 from passo.engine import Engine, model_engine
@@ -91,6 +92,31 @@ def test_each_shape_up_and_down(shape: int, mirror: bool) -> None:
         Ramp(0, 1, shape, mirror, last=True),
     ]
     assert check_motion(fill(ramps, [(100, -62, 1)]), ramps) > 1000
+
+
+@pytest.mark.parametrize("mirror", [False, True])
+@pytest.mark.parametrize("shape", [LINEAR, COSINE, SIGMOID, EASE])
+def test_velocity_of_every_tick(shape: int, mirror: bool) -> None:
+    """All 48 bits of it, for ramps of many lengths between velocities of all sizes."""
+    rng = random.Random(f"{SEED}/{shape}/{mirror}")
+    parameters = Parameters(axes=1)
+    ramps = [Ramp(HALF, 1, shape, mirror), Ramp(0, 2, shape, mirror), Ramp(HALF - 1, 256, shape, mirror)]
+    ramps += [Ramp(rng.getrandbits(rng.randint(1, 47)), rng.randint(1, 90), shape, mirror) for _ in range(12)]
+    ramps.append(Ramp(0, 1, last=True))
+    player = PlayerPair(parameters, rng)
+    channel = Channel(Link(player), parameters)
+    channel.push_lines([to_line(Line(10**9, (0,), endless=True))])
+    channel.push_ramps([to_ramp(ramp) for ramp in ramps])
+    state = player.each.core.channel[0]
+    while not state.motion.running:
+        if state.motion.state == State.IDLE:
+            channel.start()
+        player.run(1)
+    player.run(60)  # into the middle of a tick
+    for tick, velocity in enumerate(velocities(ramps)):
+        assert state.ramp.velocity == velocity, f"tick {tick}"
+        player.run(128)
+    assert state.motion.state == State.IDLE
 
 
 def test_full_speed_is_a_substep_every_second_clock() -> None:
