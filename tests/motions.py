@@ -56,7 +56,9 @@ def random_motion(
     ramps = []
     for _ in range(rng.randint(1, most_ramps - 2)):
         velocity = rng.choice([0, rng.randrange(SLOW), SLOW, rng.randrange(1 << rng.randint(1, 42))])
-        ticks = rng.choice([0, 1, 2, 3, rng.randint(1, 60)])
+        # more than two that take no time do take some
+        least = int(len(ramps) > 1 and ramps[-1].ticks == ramps[-2].ticks == 0)
+        ticks = rng.choice([least, 1, 2, 3, rng.randint(1, 60)])
         ramps.append(Ramp(velocity, ticks, rng.randrange(4), rng.random() < 0.5))
     ramps.append(Ramp(SLOW, 30, COSINE))
     ramps.append(Ramp(0, rng.randint(0, 40), rng.randrange(4), rng.random() < 0.5, last=True))

@@ -14,6 +14,7 @@ import pytest
 from closed_form import COSINE, EASE, HALF, LINEAR, ONE, SIGMOID, TABLES, Line, Ramp, step_clocks, velocities
 from core_player import PlayerPair
 from motions import SLOW, distance, fill, random_motion, to_line, to_ramp
+from passo import registers as r
 from passo.build import Parameters
 from passo.engine import Engine, model_engine
 from passo.host import Channel
@@ -104,13 +105,15 @@ def test_velocity_of_every_tick(shape: int, mirror: bool) -> None:
     ramps += [Ramp(rng.getrandbits(rng.randint(1, 47)), rng.randint(1, 90), shape, mirror) for _ in range(12)]
     ramps.append(Ramp(0, 1, last=True))
     player = PlayerPair(parameters, rng)
-    channel = Channel(Link(player), parameters)
+    link = Link(player)
+    channel = Channel(link, parameters)
     channel.push_lines([to_line(Line(10**9, (0,), endless=True))])
     channel.push_ramps([to_ramp(ramp) for ramp in ramps])
     state = player.each.core.channel[0]
+    link.write(r.ADDRESS_RUN, 1 << r.RUN_WAIT_SYNC_LSB | 1)
+    assert state.motion.state == State.ARMED
+    player.sync(True)
     while not state.motion.running:
-        if state.motion.state == State.IDLE:
-            channel.start()
         player.run(1)
     player.run(60)  # into the middle of a tick
     for tick, velocity in enumerate(velocities(ramps)):
