@@ -77,7 +77,7 @@ class Target:
     """All registers behind the bus: writable where `refusals` has no entry and `known` has the address.
 
     Answers as the RTL's targets do: one clock after the strobe, for one clock, 0 otherwise. Checks that
-    address and data stand on the bus a clock before their strobe, and data a clock after it.
+    address and data stand on the bus a clock before their strobe, and data to check or write a clock after it.
     """
 
     def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
@@ -112,8 +112,9 @@ class Target:
                 self._last_write = now
                 self.writes.append(access)
             await fall
-            for bus in self._buses:
-                assert not bus.changes or bus.changes[-1][0] < now
+            if strobe != "read":
+                for bus in self._buses:
+                    assert not bus.changes or bus.changes[-1][0] < now
             if strobe == "write":
                 continue
             self.dut.bus_claim.value = address in self.known
@@ -188,7 +189,7 @@ class Bench:
         counted = verdict not in (Verdict.OK, Verdict.DUPLICATE)
         assert self.refusals - refusals == counted
         if counted:
-            assert read(self.dut.refused_verdict) == verdict
+            assert read(self.dut.verdict) == verdict
         return verdict
 
     async def read_registers(self, address: int, length: int) -> list[int] | Verdict:
@@ -441,7 +442,8 @@ async def an_impatient_master_gets_its_frame_executed_exactly_once(dut: Hierarch
     """Chip select rises on any clock around the verdict: the repetition is executed or a duplicate."""
     random = rng("link, impatient")
     bench = await Bench.begin(dut)
-    for clocks in range(1, 70):
+    outcomes: set[int] = set()
+    for clocks in range(1, 100):
         sequence = bench.next_sequence()
         words = frame(WRITE, sequence, 8, [clocks, sequence])
         bench.spi.trail = clocks * MHZ_72 + random.randrange(MHZ_72)
@@ -450,11 +452,12 @@ async def an_impatient_master_gets_its_frame_executed_exactly_once(dut: Hierarch
         await bench.spi.transfer(words[:-2])
         await Timer(100 * MHZ_72, "step")
         executed = len(bench.target.writes) - writes
-        assert executed in (0, 2)
+        outcomes.add(executed)
         bench.spi.trail = 2 * SCLK_18
         reply = await bench.spi.transfer(words)
         assert reply[-1] == acknowledge(sequence, Verdict.DUPLICATE if executed else Verdict.OK), clocks
         assert len(bench.target.writes) - writes == 2, f"chip select rose {clocks} clocks after the crc"
+    assert outcomes == {0, 2}
 
 
 @cocotb.test()
@@ -485,7 +488,7 @@ async def a_frame_whose_header_is_missed_is_ignored(dut: HierarchyObject) -> Non
     for gap in (3, 20, 50, 90, 120, 180):
         bench.target.writes = []
         long = frame(PUSH, bench.next_sequence(), 8, list(range(PAYLOAD_MAX)))
-        bench.spi.trail, bench.spi.gap = 60 * MHZ_72, gap * MHZ_72
+        bench.spi.trail, bench.spi.gap = 90 * MHZ_72, gap * MHZ_72
         await bench.spi.transfer(long[:-2])
         bench.spi.trail, bench.spi.gap = 2 * SCLK_18, 8 * SCLK_18
         early = frame(WRITE, bench.next_sequence(), 9, [7, *inner, *inner, 8])

@@ -56,13 +56,13 @@ module passo_core #(
   // link
   wire        frame_start;
   wire        frame_end;
-  wire        word_valid;
-  wire [31:0] word;
+  wire        half_valid;
+  wire        half_low;
+  wire [15:0] half;
   wire [31:0] reply_word;
-  wire [31:0] status;
   wire [ 7:0] last_sequence;
   wire        refused;
-  wire [ 3:0] refused_verdict;
+  wire [ 3:0] verdict;
 
   // bus
   wire        bus_frame;
@@ -72,6 +72,8 @@ module passo_core #(
   wire        bus_push;
   wire [11:0] bus_address;
   wire [31:0] bus_data;
+  wire [ 4:0] bus_top_bit;
+  wire        bus_lone_bit;
   reg         bus_claim;
   reg  [ 3:0] bus_refusal;
   reg  [31:0] bus_read_data;
@@ -145,8 +147,9 @@ module passo_core #(
     .spi_miso   (spi_miso),
     .frame_start(frame_start),
     .frame_end  (frame_end),
-    .word_valid (word_valid),
-    .word       (word),
+    .half_valid (half_valid),
+    .half_low   (half_low),
+    .half       (half),
     .reply_word (reply_word)
   );
 
@@ -155,13 +158,13 @@ module passo_core #(
     .rst            (rst),
     .frame_start    (frame_start),
     .frame_end      (frame_end),
-    .word_valid     (word_valid),
-    .word           (word),
+    .half_valid     (half_valid),
+    .half_low       (half_low),
+    .half           (half),
     .reply_word     (reply_word),
-    .status         (status),
     .last_sequence  (last_sequence),
     .refused        (refused),
-    .refused_verdict(refused_verdict),
+    .verdict        (verdict),
     .bus_frame      (bus_frame),
     .bus_check      (bus_check),
     .bus_write      (bus_write),
@@ -169,6 +172,8 @@ module passo_core #(
     .bus_push       (bus_push),
     .bus_address    (bus_address),
     .bus_data       (bus_data),
+    .bus_top_bit    (bus_top_bit),
+    .bus_lone_bit   (bus_lone_bit),
     .bus_claim      (bus_claim),
     .bus_refusal    (bus_refusal),
     .bus_read_data  (bus_read_data),
@@ -195,8 +200,7 @@ module passo_core #(
     .read_data      (registers_read_data),
     .last_sequence  (last_sequence),
     .refused        (refused),
-    .refused_verdict(refused_verdict),
-    .status         (status),
+    .verdict        (verdict),
     .run            (run),
     .wait_sync      (wait_sync),
     .any_stopped    (stopped != {CHANNELS{1'b0}}),
@@ -216,7 +220,8 @@ module passo_core #(
     .bus_push   (bus_push),
     .select     (select_tables),
     .bus_address(bus_address[9:0]),
-    .bus_data   (bus_data),
+    .bus_data   (bus_data[15:0]),
+    .bus_top_bit(bus_top_bit),
     .occupied   (occupied != {CHANNELS{1'b0}}),
     .refusal    (tables_refusal),
     .request    (table_request),
@@ -247,6 +252,8 @@ module passo_core #(
         .select          (bus_address[11:8] == BLOCK),
         .bus_address     (bus_address[7:0]),
         .bus_data        (bus_data),
+        .bus_top_bit     (bus_top_bit),
+        .bus_lone_bit    (bus_lone_bit),
         .claim           (channel_claim[channel]),
         .refusal         (channel_refusal[channel*4+:4]),
         .read_data       (channel_read_data[channel*32+:32]),
