@@ -77,7 +77,8 @@ static bool slots_empty(const struct passo_channel *channel)
 	for (unsigned i = 0; i < channel->axes; i++)
 		if (channel->dda[i].addend != (int64_t)channel->line_queue.steps[i])
 			return false;
-	return !channel->path.take_q && !channel->path.advance_q && !channel->path.substep && !line->slot_add && !line->slot_step;
+	return !channel->path.take_q && !channel->path.advance_q && !channel->path.substep && !line->slot_add
+	    && !line->slot_step;
 }
 
 /* Clocks for which the rate stands still: all, or until the next slew tick. */
@@ -120,8 +121,7 @@ static bool motion_settled(const struct passo_channel *channel, const struct pas
 	switch (motion->state) {
 	case PASSO_STATE_IDLE:
 		return !motion->running && !motion->startable
-		    && !(inputs->run && channel->line_queue.next_valid
-		         && channel->ramp_queue.valid);
+		    && !(inputs->run && channel->line_queue.next_valid && channel->ramp_queue.valid);
 	case PASSO_STATE_PREPARE:
 		return !motion->running && !channel->ramp.ready;
 	case PASSO_STATE_ARMED:

@@ -72,8 +72,7 @@ static void choose(struct passo_ramp_unit *ramp, const struct passo_channel *cha
 		ramp->ends_next = true;
 		ramp->ready = true;
 	} else if (wires->ramp_valid) {
-		begin_step(
-		    ramp, PASSO_RAMP_FETCH, front.ticks == 0u ? FETCH_NO_TICKS_CLOCKS : FETCH_CLOCKS);
+		begin_step(ramp, PASSO_RAMP_FETCH, front.ticks == 0u ? FETCH_NO_TICKS_CLOCKS : FETCH_CLOCKS);
 	} else {
 		begin_step(ramp, PASSO_RAMP_WORK, work);
 	}

@@ -30,9 +30,10 @@ void passo_timescale_clock(struct passo_timescale *timescale, const struct passo
 		timescale->rate = moved(timescale->rate, goal, timescale->slew, timescale->down);
 	if (slew_tick)
 		timescale->goal = stopping ? 0u : registers->rate_target;
-	timescale->after = slew_tick ? 1u : timescale->after == 0u || timescale->after == AFTER_LAST
-	                                   ? 0u
-	                                   : (uint8_t)(timescale->after + 1u);
+	timescale->after = slew_tick ? 1u
+	                 : timescale->after == 0u || timescale->after == AFTER_LAST
+	                     ? 0u
+	                     : (uint8_t)(timescale->after + 1u);
 	if (!moving) {
 		if (timescale->still)
 			timescale->rate = goal;

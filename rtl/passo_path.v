@@ -27,14 +27,14 @@ module passo_path (
 
   localparam [23:0] QUARTER = 24'h400000;
 
-  reg  [23:0] velocity_low;
-  reg  [23:0] velocity_high;
-  reg         take_q;
-  reg         drain_q;
-  reg  [23:0] phase_low;
-  reg         phase_low_carry;
-  reg  [23:0] phase_high;
-  reg         advance_q;
+  reg [23:0] velocity_low;
+  reg [23:0] velocity_high;
+  reg        take_q;
+  reg        drain_q;
+  reg [23:0] phase_low;
+  reg        phase_low_carry;
+  reg [23:0] phase_high;
+  reg        advance_q;
 
   wire [24:0] phase_low_sum = {1'b0, phase_low} + {1'b0, velocity_low};
   wire [24:0] phase_high_sum = {1'b0, phase_high} + {1'b0, velocity_high} + {24'd0, phase_low_carry};

@@ -68,9 +68,9 @@ module passo_ramp #(
   localparam [1:0] SHAPE_LINEAR = 2'd0;
   localparam [TICK_LOG2-1:0] TICK_LAST = {TICK_LOG2{1'b1}};
 
-  reg  [2:0] step;
-  reg  [5:0] count;  // clocks of the step, from 1
-  reg        active;
+  reg [2:0] step;
+  reg [5:0] count;  // clocks of the step, from 1
+  reg       active;
 
   // the ramp being made
   reg        loaded;
@@ -92,9 +92,9 @@ module passo_ramp #(
   wire scale = step == STEP_SCALE;
   wire scale_begins = scale && count == 6'd1;
 
-  wire start_bit;
-  wire end_bit;
-  wire interpolated_bit;
+  wire        start_bit;
+  wire        end_bit;
+  wire        interpolated_bit;
   wire [32:0] progress;
 
   passo_ramp_numbers u_numbers (
@@ -154,7 +154,7 @@ module passo_ramp #(
         3'd5:    ramp_half_index = 4'd8;
         default: ramp_half_index = 4'd7;
       endcase
-      STEP_TAKE:  ramp_half_index = count[1:0] == 2'd1 ? 4'd3 : count[1:0] == 2'd2 ? 4'd2 : 4'd0;
+      STEP_TAKE: ramp_half_index = count[1:0] == 2'd1 ? 4'd3 : count[1:0] == 2'd2 ? 4'd2 : 4'd0;
       STEP_SCALE: ramp_half_index = count[5:4] == 2'd0 ? 4'd3 : count[5:4] == 2'd1 ? 4'd2 : 4'd0;
       STEP_STEP:
       case (count[2:0])
@@ -162,7 +162,7 @@ module passo_ramp #(
         3'd2, 3'd5: ramp_half_index = 4'd8;
         default:    ramp_half_index = 4'd7;
       endcase
-      default:    ramp_half_index = 4'd3;
+      default: ramp_half_index = 4'd3;
     endcase
 
   always @(posedge clk) begin

@@ -13,23 +13,23 @@
 
 module passo_ramp_numbers (
   input  wire        clk,
-  input  wire [15:0] half,         // half word of the ramp queue
+  input  wire [15:0] half,             // half word of the ramp queue
   // v_start
-  input  wire        start_copy,   // 24 clocks: from two streams, one for each half
+  input  wire        start_copy,       // 24 clocks: from two streams, one for each half
   input  wire        copy_high,
   input  wire        copy_low,
   input  wire        start_load,
   input  wire        start_turn,
   output wire        start_bit,
   // v_end
-  input  wire [ 3:0] end_index,    // the bit of `half`, counted from 1; 0 is 16
+  input  wire [ 3:0] end_index,        // the bit of `half`, counted from 1; 0 is 16
   output wire        end_bit,
   // u
   input  wire        mirror,
-  input  wire        u_load,       // half word: du / 2 itself
-  input  wire        u_add,        // half word
-  input  wire        u_last,       // the upper of the three
-  output wire [32:0] progress,     // UQ0.33
+  input  wire        u_load,           // half word: du / 2 itself
+  input  wire        u_add,            // half word
+  input  wire        u_last,           // the upper of the three
+  output wire [32:0] progress,         // UQ0.33
   // ticks
   input  wire        ticks_load_low,
   input  wire        ticks_load_high,

@@ -30,7 +30,7 @@ module passo_ramp_queue #(
   input  wire                take,
   input  wire                take_now,
   input  wire                flush,
-  output reg                 valid,         // of two clocks ago
+  output reg                 valid,        // of two clocks ago
   output reg                 now_pending,
   input  wire [         3:0] half_index,
   output wire [        15:0] half
@@ -117,7 +117,7 @@ module passo_ramp_queue #(
     if (take_now) read_ramp <= now_ramp;
     if (flush) read_ramp <= write_ramp;
     valid <= read_ramp != write_ramp;
-    room <= {1'b1, {DEPTH_LOG2{1'b0}}} - (write_ramp - read_ramp);
+    room  <= {1'b1, {DEPTH_LOG2{1'b0}}} - (write_ramp - read_ramp);
     if (rst) begin
       read_ramp <= {(DEPTH_LOG2 + 1) {1'b0}};
       valid     <= 1'b0;

@@ -29,14 +29,14 @@ module passo_timescale (
   reg  [15:0] rate_sum;
   wire [16:0] rate_sum_next = {1'b0, rate_sum} + rate;
 
-  reg  [ 6:1] after;  // clocks since the slew tick
-  reg  [16:0] goal;
-  reg         down;
-  reg  [16:0] change;  // the slew, inverted if down; else 0
-  reg         change_carry;
-  reg  [17:0] not_moved;  // the inverse of rate + change
-  reg         land;
-  reg         still;  // not moving
+  reg [ 6:1] after;  // clocks since the slew tick
+  reg [16:0] goal;
+  reg        down;
+  reg [16:0] change;  // the slew, inverted if down; else 0
+  reg        change_carry;
+  reg [17:0] not_moved;  // the inverse of rate + change
+  reg        land;
+  reg        still;  // not moving
 
   // goal >= rate + change, but for its uppermost bit
   wire [17:0] reach = {1'b0, goal} + {1'b0, not_moved[16:0]} + 18'd1;
@@ -48,9 +48,9 @@ module passo_timescale (
     if (after[2]) change <= (stopping ? stop_slew : rate_slew) ^ {17{down}};
     else if (!after[3]) change <= 17'd0;
     change_carry <= after[3] && (down ^ (change == {17{down}}));
-    if (!after[5]) not_moved <= ~({1'b0, rate} + {after[4] & down, change} + {17'd0, change_carry});
+    if (!after[5]) not_moved <= ~({1'b0, rate} +{after[4] & down, change} +{17'd0, change_carry});
     still <= !moving;
-    land <= !moving || !not_moved[17] || reach[17] == down;
+    land  <= !moving || !not_moved[17] || reach[17] == down;
     if (after[6] || (still && !moving)) rate <= land ? goal : ~not_moved[16:0];
 
     {enable, rate_sum} <= rate_sum_next;
