@@ -121,6 +121,8 @@ module passo_channel #(
   wire [  AXES-1:0] write_pins;
   wire [  AXES-1:0] write_step_timing;
   wire [  AXES-1:0] write_dir_timing;
+  wire              short_upper;
+  wire              short_lower;
   wire [      31:0] position;  // of the axis that is read
   wire              axis_claim;
   wire [       3:0] axis_refusal;
@@ -353,6 +355,10 @@ module passo_channel #(
       wire [15:0] step_low;
       wire [15:0] dir_setup;
       wire [15:0] dir_hold;
+      wire        short_high;
+      wire        short_low;
+      wire        short_setup;
+      wire        short_hold;
       wire        both_edges;
       wire        step_inverted;
       wire        direction_inverted;
@@ -385,6 +391,10 @@ module passo_channel #(
         .step_low          (step_low),
         .dir_setup         (dir_setup),
         .dir_hold          (dir_hold),
+        .short_high        (short_high),
+        .short_low         (short_low),
+        .short_setup       (short_setup),
+        .short_hold        (short_hold),
         .timing_written    (write_step_timing[axis] | write_dir_timing[axis]),
         .both_edges        (both_edges),
         .step_inverted     (step_inverted),
@@ -403,6 +413,12 @@ module passo_channel #(
         .write_step_timing (write_step_timing[axis]),
         .write_dir_timing  (write_dir_timing[axis]),
         .bus_data          (bus_data),
+        .short_upper       (short_upper),
+        .short_lower       (short_lower),
+        .short_high        (short_high),
+        .short_low         (short_low),
+        .short_setup       (short_setup),
+        .short_hold        (short_hold),
         .step_high         (step_high),
         .step_low          (step_low),
         .dir_setup         (dir_setup),
@@ -438,6 +454,8 @@ module passo_channel #(
     .write_pins       (write_pins),
     .write_step_timing(write_step_timing),
     .write_dir_timing (write_dir_timing),
+    .short_upper      (short_upper),
+    .short_lower      (short_lower),
     .lost             (lost)
   );
 
