@@ -236,6 +236,7 @@ struct passo_motion {
 	uint16_t drained;
 	uint8_t count;
 	bool startable;
+	bool rate_was_zero;
 	bool running;
 };
 

@@ -65,30 +65,34 @@ module passo_axis (
   reg         timer_done;
   reg         first;
   // Kept, so that a bit of the choice and of the comparison goes into one LUT.
-  (* keep *)wire [15:0] level_equal = timer ^ ~(step ? step_high : step_low);
-  (* keep *)wire [15:0] dir_equal = timer ^ ~(setup ? dir_setup : dir_hold);
-  wire        level_done = timer_done | (first & (step ? short_high : short_low));
-  wire        dir_done = timer_done | (first & (setup ? short_setup : short_hold));
+  (* keep *)
+  wire [15:0] level_equal;
+  (* keep *)
+  wire [15:0] dir_equal;
+  assign level_equal = timer ^ ~(step ? step_high : step_low);
+  assign dir_equal   = timer ^ ~(setup ? dir_setup : dir_hold);
+  wire level_done = timer_done | (first & (step ? short_high : short_low));
+  wire dir_done = timer_done | (first & (setup ? short_setup : short_hold));
 
   // Steps that wait, as directions, the oldest in bit 0. Free places hold the latest direction.
-  reg  [ 3:0] waiting;
-  reg  [ 3:0] waits;  // which places are taken
-  wire        dir_right = waiting[0] == dir;
-  wire        accepted = step_request & ~waits[3];
+  reg  [3:0] waiting;
+  reg  [3:0] waits;  // which places are taken
+  wire       dir_right = waiting[0] == dir;
+  wire       accepted = step_request & ~waits[3];
 
-  wire        falls = high & level_done;
-  wire        low_over = low & level_done;
-  wire        free = idle | low_over | (setup & dir_done);
-  wire        step_begins = free & waits[0] & dir_right;
-  wire        turn = idle & ~dir_right & (~hold | dir_done);
-  wire        restart = step_begins | turn | falls | low_over | timing_written;
+  wire falls = high & level_done;
+  wire low_over = low & level_done;
+  wire free = idle | low_over | (setup & dir_done);
+  wire step_begins = free & waits[0] & dir_right;
+  wire turn = idle & ~dir_right & (~hold | dir_done);
+  wire restart = step_begins | turn | falls | low_over | timing_written;
 
   assign step_direction = dir;  // does not change in the clock after step_begins
 
   integer i;
   always @(posedge clk) begin
     for (i = 0; i < 4; i = i + 1)
-      if (step_begins || !waits[i]) waiting[i] <= i < 3 && waits[(i+1)%4] ? waiting[(i+1)%4] : direction;
+    if (step_begins || !waits[i]) waiting[i] <= i < 3 && waits[(i+1)%4] ? waiting[(i+1)%4] : direction;
     if (step_begins != accepted) waits <= step_begins ? {1'b0, waits[3:1]} : {waits[2:0], 1'b1};
     overrun <= step_request & waits[3];
     if (overrun && lost != 4'hF) lost <= lost + 4'd1;
@@ -97,13 +101,13 @@ module passo_axis (
     timer_done <= ~restart & (high | low ? &level_equal : &dir_equal);
     first      <= restart;
 
-    high       <= (high & ~falls) | (step_begins & ~both_edges);
-    low        <= (low & ~low_over) | falls | (step_begins & both_edges);
-    setup      <= (setup & ~dir_done) | turn;
-    idle       <= free & ~step_begins & ~turn;
-    hold       <= ((hold & ~dir_done) | low_over) & ~step_begins & ~turn;
-    step       <= step ^ (step_begins | falls);
-    dir        <= dir ^ turn;
+    high  <= (high & ~falls) | (step_begins & ~both_edges);
+    low   <= (low & ~low_over) | falls | (step_begins & both_edges);
+    setup <= (setup & ~dir_done) | turn;
+    idle  <= free & ~step_begins & ~turn;
+    hold  <= ((hold & ~dir_done) | low_over) & ~step_begins & ~turn;
+    step  <= step ^ (step_begins | falls);
+    dir   <= dir ^ turn;
 
     step_made  <= step_begins;
     step_pin   <= step ^ step_inverted;

@@ -32,8 +32,7 @@ module passo_axis_settings (
   `include "passo_registers.vh"
 
   always @(posedge clk) begin
-    if (write_pins)
-      {both_edges, enable_inverted, direction_inverted, step_inverted, enable} <= bus_data[4:0];
+    if (write_pins) {both_edges, enable_inverted, direction_inverted, step_inverted, enable} <= bus_data[4:0];
     if (write_step_timing) begin
       {step_high, step_low}   <= bus_data;
       {short_high, short_low} <= {short_upper, short_lower};
