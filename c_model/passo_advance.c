@@ -116,7 +116,7 @@ static bool motion_settled(const struct passo_channel *channel, const struct pas
 {
 	const struct passo_motion *motion = &channel->motion;
 
-	if (motion->stopping)
+	if (motion->stopping || motion->rate_was_zero != (channel->timescale.rate == 0u))
 		return false;
 	switch (motion->state) {
 	case PASSO_STATE_IDLE:

@@ -45,22 +45,17 @@ void passo_axis_settings_write(struct passo_axis_settings *settings, uint8_t add
 	}
 }
 
-/* The time that the present state lasts. */
+/* The time that the present state lasts; 0 counts as 1. */
 static uint16_t time_of(const struct passo_axis *axis)
 {
 	const struct passo_axis_settings *settings = &axis->settings;
+	uint16_t time;
 
 	if (axis->state == PASSO_AXIS_PULSE)
-		return axis->step ? settings->step_high : settings->step_low;
-	return axis->state == PASSO_AXIS_SETUP ? settings->dir_setup : settings->dir_hold;
-}
-
-/* The timer counts from 1; 0 counts as 1. */
-static bool time_is_over(const struct passo_axis *axis)
-{
-	const unsigned time = time_of(axis);
-	const unsigned timer = axis->timer;
-	return timer >> 1 == time >> 1 && ((timer & 1u) != 0u || (time & 1u) == 0u);
+		time = axis->step ? settings->step_high : settings->step_low;
+	else
+		time = axis->state == PASSO_AXIS_SETUP ? settings->dir_setup : settings->dir_hold;
+	return time == 0u ? 1u : time;
 }
 
 static bool place_is(uint8_t places, unsigned place)
@@ -104,7 +99,7 @@ static void clock_pins(struct passo_axis *axis, bool step_begins)
 void passo_axis_clock(struct passo_axis *axis, const struct passo_axis_wires *wires)
 {
 	const enum passo_axis_state state = axis->state;
-	const bool over = time_is_over(axis);
+	const bool over = axis->timer == time_of(axis); /* counts from 1 */
 	const bool right = place_is(axis->waiting, 0) == axis->dir;
 	const bool level_done = state == PASSO_AXIS_PULSE && over;
 	const bool falls = level_done && axis->step && !axis->settings.both_edges;

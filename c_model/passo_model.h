@@ -216,6 +216,7 @@ struct passo_dda {
 	int64_t addend;
 };
 
+/* READY and HOLD: idle; PULSE: high or low. */
 enum passo_axis_state { PASSO_AXIS_READY, PASSO_AXIS_PULSE, PASSO_AXIS_HOLD, PASSO_AXIS_SETUP };
 
 struct passo_axis_settings {
@@ -250,6 +251,7 @@ struct passo_motion {
 	uint16_t drained;
 	uint8_t count;
 	bool startable;
+	bool rate_was_zero;
 	bool running;
 };
 

@@ -34,6 +34,10 @@ module passo_axis (
   input  wire [15:0] step_low,
   input  wire [15:0] dir_setup,
   input  wire [15:0] dir_hold,
+  input  wire        short_high,          // 1: the time is 0 or 1
+  input  wire        short_low,
+  input  wire        short_setup,
+  input  wire        short_hold,
   input  wire        timing_written,
   input  wire        both_edges,
   input  wire        step_inverted,
@@ -46,57 +50,64 @@ module passo_axis (
   output reg         enable_pin
 );
 
-  localparam [1:0] STATE_READY = 2'd0;
-  localparam [1:0] STATE_PULSE = 2'd1;  // STEP holds its level
-  localparam [1:0] STATE_HOLD = 2'd2;  // a step in the same direction may interrupt it
-  localparam [1:0] STATE_SETUP = 2'd3;
+  // States. With both_edges there is no high, a step leads to low at once.
+  reg high;  // STEP is active for step_high; then it falls
+  reg low;  // STEP keeps its level for step_low or, with both_edges, for the time of that level
+  reg setup;
+  reg idle;  // a step or, unless in hold, a turn may begin
+  reg hold;  // a step in the same direction may interrupt it
+  reg step;
+  reg dir;
 
-  reg [1:0] state;
-  reg       step;
-  reg       dir;
-
-  // Timer: 1 in the first clock of a state. The time is over when they are equal; bit 0 lets 0 count as 1.
+  // The timer tells the number of the next clock of the state. `timer_done` is high in the last clock, but in
+  // the first clock of a state, which is the last one if the time is short, nothing is known yet.
   reg  [15:0] timer;
-  wire [15:0] pulse_time = step ? step_high : step_low;
-  wire [15:0] dir_time = state == STATE_SETUP ? dir_setup : dir_hold;
-  wire        pulse_done = timer[15:1] == pulse_time[15:1] && (timer[0] || !pulse_time[0]);
-  wire        dir_done = timer[15:1] == dir_time[15:1] && (timer[0] || !dir_time[0]);
+  reg         timer_done;
+  reg         first;
+  // Kept, so that a bit of the choice and of the comparison goes into one LUT.
+  (* keep *)
+  wire [15:0] level_equal;
+  (* keep *)
+  wire [15:0] dir_equal;
+  assign level_equal = timer ^ ~(step ? step_high : step_low);
+  assign dir_equal   = timer ^ ~(setup ? dir_setup : dir_hold);
+  wire level_done = timer_done | (first & (step ? short_high : short_low));
+  wire dir_done = timer_done | (first & (setup ? short_setup : short_hold));
 
   // Steps that wait, as directions, the oldest in bit 0. Free places hold the latest direction.
-  reg  [ 3:0] waiting;
-  reg  [ 3:0] waits;  // which places are taken
-  wire        dir_right = waiting[0] == dir;
-  wire        accepted = step_request & ~waits[3];
+  reg  [3:0] waiting;
+  reg  [3:0] waits;  // which places are taken
+  wire       dir_right = waiting[0] == dir;
+  wire       accepted = step_request & ~waits[3];
 
-  wire        level_done = state == STATE_PULSE && pulse_done;
-  wire        falls = level_done && step && !both_edges;
-  wire        free = state == STATE_READY || state == STATE_HOLD || (level_done && !falls)
-                     || (state == STATE_SETUP && dir_done);
-  wire        step_begins = free & waits[0] & dir_right;
-  wire        turn = !dir_right && (state == STATE_READY || (state == STATE_HOLD && dir_done));
+  wire falls = high & level_done;
+  wire low_over = low & level_done;
+  wire free = idle | low_over | (setup & dir_done);
+  wire step_begins = free & waits[0] & dir_right;
+  wire turn = idle & ~dir_right & (~hold | dir_done);
+  wire restart = step_begins | turn | falls | low_over | timing_written;
 
   assign step_direction = dir;  // does not change in the clock after step_begins
 
   integer i;
   always @(posedge clk) begin
     for (i = 0; i < 4; i = i + 1)
-      if (step_begins || !waits[i]) waiting[i] <= i < 3 && waits[(i+1)%4] ? waiting[(i+1)%4] : direction;
+    if (step_begins || !waits[i]) waiting[i] <= i < 3 && waits[(i+1)%4] ? waiting[(i+1)%4] : direction;
     if (step_begins != accepted) waits <= step_begins ? {1'b0, waits[3:1]} : {waits[2:0], 1'b1};
     overrun <= step_request & waits[3];
     if (overrun && lost != 4'hF) lost <= lost + 4'd1;
 
-    timer <= timer + 16'd1;
-    if (step_begins || turn || level_done || timing_written) timer <= 16'd1;
+    timer      <= restart ? 16'd2 : timer + 16'd1;
+    timer_done <= ~restart & (high | low ? &level_equal : &dir_equal);
+    first      <= restart;
 
-    case (state)
-      STATE_PULSE: if (level_done && !falls) state <= STATE_HOLD;
-      STATE_HOLD, STATE_SETUP: if (dir_done) state <= STATE_READY;
-      default: ;
-    endcase
-    if (turn) state <= STATE_SETUP;
-    if (step_begins) state <= STATE_PULSE;
-    step       <= step ^ (step_begins | falls);
-    dir        <= dir ^ turn;
+    high  <= (high & ~falls) | (step_begins & ~both_edges);
+    low   <= (low & ~low_over) | falls | (step_begins & both_edges);
+    setup <= (setup & ~dir_done) | turn;
+    idle  <= free & ~step_begins & ~turn;
+    hold  <= ((hold & ~dir_done) | low_over) & ~step_begins & ~turn;
+    step  <= step ^ (step_begins | falls);
+    dir   <= dir ^ turn;
 
     step_made  <= step_begins;
     step_pin   <= step ^ step_inverted;
@@ -106,7 +117,12 @@ module passo_axis (
     if (drop) waits <= 4'd0;
     if (clear) lost <= 4'd0;
     if (rst) begin
-      state      <= STATE_READY;
+      high       <= 1'b0;
+      low        <= 1'b0;
+      setup      <= 1'b0;
+      idle       <= 1'b1;
+      hold       <= 1'b0;
+      first      <= 1'b0;
       waits      <= 4'd0;
       waiting    <= 4'd0;
       overrun    <= 1'b0;

@@ -29,6 +29,8 @@ module passo_axis_registers #(
   output wire [  AXES-1:0] write_pins,         // strobes with bus_data
   output wire [  AXES-1:0] write_step_timing,
   output wire [  AXES-1:0] write_dir_timing,
+  output reg               short_upper,        // half of bus_data is 0 or 1
+  output reg               short_lower,
   input  wire [AXES*4-1:0] lost
 );
 
@@ -57,6 +59,8 @@ module passo_axis_registers #(
   end
 
   always @(posedge clk) begin
+    short_upper      <= bus_data[31:17] == 15'd0;
+    short_lower      <= bus_data[15:1] == 15'd0;
     undefined        <= (bus_data & ~AXIS_PINS_DEFINED) != 32'd0;
     claim            <= (bus_check | bus_read) & (readable | writable);
     refusal          <= VERDICT_OK;

@@ -126,6 +126,8 @@ module passo_channel #(
   wire [  AXES-1:0] write_pins;
   wire [  AXES-1:0] write_step_timing;
   wire [  AXES-1:0] write_dir_timing;
+  wire              short_upper;
+  wire              short_lower;
   wire [      31:0] position;  // of the axis that is read
   wire              axis_claim;
   wire [       3:0] axis_refusal;
@@ -196,26 +198,26 @@ module passo_channel #(
     .AXES      (AXES),
     .DEPTH_LOG2(LINE_QUEUE_LOG2)
   ) u_line_queue (
-    .clk                (clk),
-    .rst                (rst),
-    .bus_frame          (bus_frame),
-    .bus_check          (bus_check),
-    .bus_write          (bus_write),
-    .select             (select_line_queue),
-    .bus_data           (bus_data),
-    .blocked            (stopped),
-    .refusal            (line_refusal),
-    .incomplete         (line_incomplete),
-    .room               (line_room),
-    .take               (line_take),
-    .release_line       (release_line),
-    .flush              (stopped),
-    .next_valid         (line_valid),
-    .next_last          (line_last),
-    .next_endless       (line_endless),
-    .next_directions    (line_directions),
-    .last_substep       (last_substep),
-    .steps              (steps)
+    .clk            (clk),
+    .rst            (rst),
+    .bus_frame      (bus_frame),
+    .bus_check      (bus_check),
+    .bus_write      (bus_write),
+    .select         (select_line_queue),
+    .bus_data       (bus_data),
+    .blocked        (stopped),
+    .refusal        (line_refusal),
+    .incomplete     (line_incomplete),
+    .room           (line_room),
+    .take           (line_take),
+    .release_line   (release_line),
+    .flush          (stopped),
+    .next_valid     (line_valid),
+    .next_last      (line_last),
+    .next_endless   (line_endless),
+    .next_directions(line_directions),
+    .last_substep   (last_substep),
+    .steps          (steps)
   );
 
   passo_ramp_queue #(
@@ -337,26 +339,26 @@ module passo_channel #(
   passo_line #(
     .AXES(AXES)
   ) u_line (
-    .clk                (clk),
-    .rst                (rst),
-    .start              (prepare),
-    .stop               (stopped),
-    .substep            (substep),
-    .next_valid         (line_valid),
-    .next_last          (line_last),
-    .next_endless       (line_endless),
-    .next_directions    (line_directions),
-    .last_substep       (last_substep),
-    .take               (line_take),
-    .slot_add           (slot_add),
-    .slot_load          (slot_load),
-    .slot_step          (slot_step),
-    .slot_load_q        (slot_load_q),
-    .broadcast          (broadcast),
-    .directions         (directions),
-    .endless            (current_endless),
-    .ended              (line_ended),
-    .underrun           (line_underrun)
+    .clk            (clk),
+    .rst            (rst),
+    .start          (prepare),
+    .stop           (stopped),
+    .substep        (substep),
+    .next_valid     (line_valid),
+    .next_last      (line_last),
+    .next_endless   (line_endless),
+    .next_directions(line_directions),
+    .last_substep   (last_substep),
+    .take           (line_take),
+    .slot_add       (slot_add),
+    .slot_load      (slot_load),
+    .slot_step      (slot_step),
+    .slot_load_q    (slot_load_q),
+    .broadcast      (broadcast),
+    .directions     (directions),
+    .endless        (current_endless),
+    .ended          (line_ended),
+    .underrun       (line_underrun)
   );
 
   genvar axis;
@@ -367,6 +369,10 @@ module passo_channel #(
       wire [15:0] step_low;
       wire [15:0] dir_setup;
       wire [15:0] dir_hold;
+      wire        short_high;
+      wire        short_low;
+      wire        short_setup;
+      wire        short_hold;
       wire        both_edges;
       wire        step_inverted;
       wire        direction_inverted;
@@ -399,6 +405,10 @@ module passo_channel #(
         .step_low          (step_low),
         .dir_setup         (dir_setup),
         .dir_hold          (dir_hold),
+        .short_high        (short_high),
+        .short_low         (short_low),
+        .short_setup       (short_setup),
+        .short_hold        (short_hold),
         .timing_written    (write_step_timing[axis] | write_dir_timing[axis]),
         .both_edges        (both_edges),
         .step_inverted     (step_inverted),
@@ -417,6 +427,12 @@ module passo_channel #(
         .write_step_timing (write_step_timing[axis]),
         .write_dir_timing  (write_dir_timing[axis]),
         .bus_data          (bus_data),
+        .short_upper       (short_upper),
+        .short_lower       (short_lower),
+        .short_high        (short_high),
+        .short_low         (short_low),
+        .short_setup       (short_setup),
+        .short_hold        (short_hold),
         .step_high         (step_high),
         .step_low          (step_low),
         .dir_setup         (dir_setup),
@@ -452,6 +468,8 @@ module passo_channel #(
     .write_pins       (write_pins),
     .write_step_timing(write_step_timing),
     .write_dir_timing (write_dir_timing),
+    .short_upper      (short_upper),
+    .short_lower      (short_lower),
     .lost             (lost)
   );
 

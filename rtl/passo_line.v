@@ -20,25 +20,25 @@ module passo_line #(
 ) (
   input  wire                   clk,
   input  wire                   rst,
-  input  wire                   start,                // take the first line of a motion
-  input  wire                   stop,                 // forget the current line
+  input  wire                   start,            // take the first line of a motion
+  input  wire                   stop,             // forget the current line
   input  wire                   substep,
   // line queue
   input  wire                   next_valid,
   input  wire                   next_last,
   input  wire                   next_endless,
   input  wire        [AXES-1:0] next_directions,
-  input  wire        [    31:0] last_substep,         // M - 1 of the current line, from a clock after take
+  input  wire        [    31:0] last_substep,     // M - 1 of the current line, from a clock after take
   output wire                   take,
   // DDAs
-  output reg                    slot_add,             // A: e += N
-  output reg                    slot_load,            // A: a new line begins
-  output reg                    slot_step,            // B: a step if e >= 0
-  output reg                    slot_load_q,          // B: e = start value
+  output reg                    slot_add,         // A: e += N
+  output reg                    slot_load,        // A: a new line begins
+  output reg                    slot_step,        // B: a step if e >= 0
+  output reg                    slot_load_q,      // B: e = start value
   output wire signed [    32:0] broadcast,
-  output reg         [AXES-1:0] directions,           // of the line whose steps are being made
+  output reg         [AXES-1:0] directions,       // of the line whose steps are being made
   // motion
-  output reg                    endless,              // the current line is ENDLESS
+  output reg                    endless,          // the current line is ENDLESS
   output reg                    ended,
   output reg                    underrun
 );
@@ -46,7 +46,7 @@ module passo_line #(
   reg            active;
   reg            last;
   reg [    31:0] substep_number;
-  reg            on_last;         // the next substep is the last; known two clocks after a substep
+  reg            on_last;  // the next substep is the last; known two clocks after a substep
   reg [AXES-1:0] directions_next;
 
   wire substep_taken = substep & active;
@@ -62,7 +62,7 @@ module passo_line #(
     slot_step   <= slot_add;
     slot_load_q <= slot_load;
 
-    on_last     <= substep_number == last_substep;
+    on_last <= substep_number == last_substep;
     if (substep_taken) substep_number <= substep_number + 32'd1;
     if (take) begin
       substep_number  <= 32'd0;

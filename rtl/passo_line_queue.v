@@ -26,10 +26,10 @@ module passo_line_queue #(
   input  wire                bus_write,
   input  wire                select,
   input  wire [        31:0] bus_data,
-  input  wire                blocked,              // the channel is stopped
+  input  wire                blocked,          // the channel is stopped
   output reg  [         3:0] refusal,
-  output wire                incomplete,           // the frame so far ends within a line
-  output reg  [DEPTH_LOG2:0] room,                 // in lines
+  output wire                incomplete,       // the frame so far ends within a line
+  output reg  [DEPTH_LOG2:0] room,             // in lines
   // to the line counter
   input  wire                take,
   input  wire                release_line,
@@ -89,7 +89,7 @@ module passo_line_queue #(
   reg bad_value;
 
   always @(posedge clk) begin
-    full      <= room == checked;
+    full <= room == checked;
     bad_value <= index[INDEX_CONTROL]  ? (bus_data & ~CONTROL_DEFINED) != 32'd0 :
                  index[INDEX_SUBSTEPS] ? ~difference[32] : difference[32];
     refusal   <= !(select && bus_check) ? VERDICT_OK :

@@ -32,10 +32,10 @@ module passo_positions #(
   wire       upper = slot[2];
   wire [1:0] phase = slot[1:0];
 
-  reg        clear_waits;
-  reg        clears;  // this round sets the positions to 0
-  reg        snapshot_waits;
-  reg        copies;  // this round copies the positions
+  reg clear_waits;
+  reg clears;  // this round sets the positions to 0
+  reg snapshot_waits;
+  reg copies;  // this round copies the positions
 
   // Counters, and their chain to the round
   wire [7:0] captured[0:AXES];
