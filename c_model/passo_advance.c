@@ -398,8 +398,8 @@ static bool link_side_quiet(const struct passo_core *core, const struct passo_in
 
 	return same_inputs(inputs, &core->inputs) && core->spi.select_sync == selected
 	    && core->spi.toggle_sync == toggled && core->sync_q == synced && passo_link_quiet(&core->link)
-	    && !core->response.claim && core->response.refusal == 0u && core->response.read_data == 0u && !core->response.late
-	    && core->outputs.irq == passo_registers_any_stopped(core);
+	    && !core->response.claim && core->response.refusal == 0u && core->response.read_data == 0u
+	    && !core->response.late && core->outputs.irq == passo_registers_any_stopped(core);
 }
 
 static struct passo_channel_inputs inputs_of(const struct passo_core *core, unsigned channel)

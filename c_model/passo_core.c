@@ -51,8 +51,8 @@ static struct passo_response late_answer(const struct passo_core *core)
 	if (response.late) {
 		const unsigned block = response.address >> 8;
 		response.read_data = block == 0u ? passo_registers_value(core, response.address)
-		                                 : passo_channel_registers_value(&core->channel[block - 1u],
-		                                       (uint8_t)response.address);
+		                                 : passo_channel_registers_value(
+						       &core->channel[block - 1u], (uint8_t)response.address);
 	}
 	return response;
 }

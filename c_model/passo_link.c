@@ -68,8 +68,7 @@ static void store(struct passo_link *link, const struct passo_link_wires *wires)
 static uint32_t loaded(const struct passo_link *link)
 {
 	const bool in_payload = link->step == PASSO_LINK_PAYLOAD || link->step == PASSO_LINK_REPLAY;
-	const unsigned otherwise =
-	    link->step == PASSO_LINK_CRC ? PASSO_BUFFER_OTHER : PASSO_BUFFER_HEADER;
+	const unsigned otherwise = link->step == PASSO_LINK_CRC ? PASSO_BUFFER_OTHER : PASSO_BUFFER_HEADER;
 	const uint16_t *word = link->buffer[place(link, in_payload, otherwise)];
 
 	return (uint32_t)word[0] << 16 | word[1];

@@ -77,7 +77,8 @@ class Target:
     """All registers behind the bus: writable where `refusals` has no entry and `known` has the address.
 
     Answers as the RTL's targets do: one clock after the strobe, for one clock, 0 otherwise. Checks that
-    address and data stand on the bus a clock before their strobe, and data to check or write a clock after it.
+    address and data stand on the bus a clock before their strobe, and data to check or write a clock after
+    it; and what the link says of the size of data to check.
     """
 
     def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
@@ -124,6 +125,8 @@ class Target:
                 self.dut.bus_read_data.value = self.values.get(address, 0)
             else:
                 self.checks.append(access)
+                assert read(self.dut.bus_top_bit) == max(access.data.bit_length() - 1, 0)
+                assert read(self.dut.bus_lone_bit) == (access.data.bit_count() <= 1)
             await fall
             self.dut.bus_claim.value = 0
             self.dut.bus_refusal.value = 0

@@ -101,8 +101,8 @@ module passo_channel_registers #(
   wire not_taken = bus_push != in_queues;
 
   always @(posedge clk) begin
-    known     <= in_settings || in_state || in_queues;
-    busy      <= is_command && (bus_data[CHANNEL_COMMAND_CLEAR_LSB] || bus_data[CHANNEL_COMMAND_ZERO_LSB]);
+    known <= in_settings || in_state || in_queues;
+    busy <= is_command && (bus_data[CHANNEL_COMMAND_CLEAR_LSB] || bus_data[CHANNEL_COMMAND_ZERO_LSB]);
     too_large <= in_settings && (is_command        ? bus_top_bit > 5'd3 :
                                  is_drain_velocity ? bus_top_bit == 5'd31 && !bus_lone_bit :
                                                      bus_top_bit > 5'd16 || (bus_top_bit[4] && !bus_lone_bit));
@@ -121,10 +121,12 @@ module passo_channel_registers #(
   end
 
   // Reading
-  reg [3:0] reads;
-  integer   i;
+  reg     [3:0] reads;
+  integer       i;
 
-  always @(posedge clk) for (i = 0; i < 4; i = i + 1) reads[i] <= bus_read && in_state && number[1:0] == i[1:0];
+  always @(posedge clk)
+    for (i = 0; i < 4; i = i + 1)
+      reads[i] <= bus_read && in_state && number[1:0] == i[1:0];
 
   assign read_data =
       (reads[0] ? {drained, overrun_padded, stopping, cause, 1'b0, state} : 32'd0)

@@ -31,23 +31,23 @@ module passo_link (
   input  wire [15:0] half,
   output wire [31:0] reply_word,
   // to the status word and the counters
-  output reg  [ 7:0] last_sequence,   // of the last write or push that was executed
-  output reg         refused,         // strobe: the frame is refused with `verdict`
+  output reg  [ 7:0] last_sequence,  // of the last write or push that was executed
+  output reg         refused,        // strobe: the frame is refused with `verdict`
   output reg  [ 3:0] verdict,
   // bus
-  output reg         bus_frame,       // a pass over a frame's payload begins
-  output reg         bus_check,       // strobes
+  output reg         bus_frame,      // a pass over a frame's payload begins
+  output reg         bus_check,      // strobes
   output reg         bus_write,
   output reg         bus_read,
-  output reg         bus_push,        // the frame is a push
+  output reg         bus_push,       // the frame is a push
   output reg  [11:0] bus_address,
   output wire [31:0] bus_data,
-  output wire [ 4:0] bus_top_bit,     // of the data that are checked: highest bit that is set,
-  output wire        bus_lone_bit,    // and it is the only one
+  output wire [ 4:0] bus_top_bit,    // of the data that are checked: highest bit that is set,
+  output wire        bus_lone_bit,   // and it is the only one
   input  wire        bus_claim,
   input  wire [ 3:0] bus_refusal,
   input  wire [31:0] bus_read_data,
-  input  wire        bus_incomplete   // the payload so far is not whole lines or ramps
+  input  wire        bus_incomplete  // the payload so far is not whole lines or ramps
 );
 
   `include "passo_registers.vh"
@@ -81,28 +81,28 @@ module passo_link (
   wire       word_valid = half_valid & half_low;
 
   // What is kept of the header; all of it stands in the payload buffer, too.
-  reg        is_read;
-  reg  [7:0] length;
-  reg  [7:0] index;  // payload word
-  wire       all_words = index == length;
-  reg        frame_waits;  // a frame has begun during the replay
-  wire       frame_goes_on = (frame_waits || frame_start) && !frame_end && !word_valid;  // has its header to come
+  reg is_read;
+  reg [7:0] length;
+  reg [7:0] index;  // payload word
+  wire all_words = index == length;
+  reg frame_waits;  // a frame has begun during the replay
+  wire frame_goes_on = (frame_waits || frame_start) && !frame_end && !word_valid;  // has its header to come
 
   wire [3:0] operation = bus_data[31:28];
   wire       header_is_read = operation == OPERATION_READ;
   wire       header_is_known = header_is_read || operation == OPERATION_WRITE || operation == OPERATION_PUSH;
   wire       header_fits = bus_data[19:12] != 8'd0 && bus_data[19:12] <= PAYLOAD_MAX;
 
-  reg        sequence_known;  // something was executed since reset
-  wire       repeated = sequence_known && !header_is_read && bus_data[27:20] == last_sequence;
+  reg  sequence_known;  // something was executed since reset
+  wire repeated = sequence_known && !header_is_read && bus_data[27:20] == last_sequence;
 
   // The answer to a strobe arrives one clock after the bus shows the strobe.
   reg        answer_due;
   wire [3:0] answer = bus_claim ? bus_refusal : VERDICT_UNKNOWN_ADDRESS;
 
   // Behind the payload, the buffer has a place for the header and one for whatever is not kept.
-  wire       is_header = step == STEP_HEADER || step == STEP_REPLAY;
-  wire       is_payload = step == STEP_PAYLOAD;
+  wire is_header = step == STEP_HEADER || step == STEP_REPLAY;
+  wire is_payload = step == STEP_PAYLOAD;
 
   passo_payload u_payload (
     .clk       (clk),
@@ -172,13 +172,13 @@ module passo_link (
       STEP_HEADER: begin
         if (word_valid) count <= COUNT_LOAD;
         if (act) begin
-          is_read  <= header_is_read;
+          is_read <= header_is_read;
           bus_push <= operation == OPERATION_PUSH;
-          length   <= bus_data[19:12];
+          length <= bus_data[19:12];
           verdict  <= !header_is_known ? VERDICT_BAD_OPERATION :
                       !header_fits     ? VERDICT_BAD_LENGTH :
                       repeated         ? VERDICT_DUPLICATE : VERDICT_OK;
-          step     <= header_is_read || bus_data[19:12] == 8'd0 ? STEP_CRC : STEP_PAYLOAD;
+          step <= header_is_read || bus_data[19:12] == 8'd0 ? STEP_CRC : STEP_PAYLOAD;
         end
       end
 

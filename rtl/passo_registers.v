@@ -71,8 +71,7 @@ module passo_registers #(
     if (rst) refusals <= 64'd0;
     else
       for (i = 0; i < 8; i = i + 1)
-        if (refused && verdict == VERDICT_BAD_CRC + i[3:0])
-          refusals[i*8+:8] <= refusals[i*8+:8] + 8'd1;
+        if (refused && verdict == VERDICT_BAD_CRC + i[3:0]) refusals[i*8+:8] <= refusals[i*8+:8] + 8'd1;
 
   wire [7:0] run_padded = {{(8 - CHANNELS) {1'b0}}, run};
   wire [7:0] wait_sync_padded = {{(8 - CHANNELS) {1'b0}}, wait_sync};
@@ -80,12 +79,12 @@ module passo_registers #(
                     || {1'b0, bus_data[18:16]} >= CHANNELS[3:0];
 
   // Which register is meant is known a clock before the strobe, because the address is.
-  reg        known;
-  reg        is_run;
-  reg        bad_run;
-  reg  [2:0] number;
-  reg  [5:0] reads;  // registers 0 .. 5
-  reg        reads_status;
+  reg       known;
+  reg       is_run;
+  reg       bad_run;
+  reg [2:0] number;
+  reg [5:0] reads;  // registers 0 .. 5
+  reg       reads_status;
 
   assign read_data =
       (reads_status ? status : 32'd0)
@@ -103,7 +102,7 @@ module passo_registers #(
     bad_run      <= (bus_data & ~RUN_DEFINED) != 32'd0 || run_beyond;
     reads_status <= ~bus_read;
     for (i = 0; i < 6; i = i + 1) reads[i] <= bus_read && known && number == i[2:0];
-    claim   <= known && (bus_check || bus_read);
+    claim <= known && (bus_check || bus_read);
     refusal <= !(known && bus_check)  ? VERDICT_OK :
                bus_push               ? VERDICT_BAD_OPERATION :
                !is_run                ? VERDICT_READ_ONLY :

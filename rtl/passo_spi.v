@@ -52,12 +52,12 @@ module passo_spi (
 
   // One register: the reply leaves it at the top while the word comes in at the bottom. In the first word the
   // reply is one bit ahead, because its top bit has gone by; so the word is one bit behind, by `mosi_late`.
-  reg        first_word;
-  reg [30:0] shift;
-  reg        mosi_late;
-  wire       half_ends = bit_count[3:0] == 4'd0;
-  wire       load_next = bit_count == 5'd0;
-  wire       load_first = first_word && bit_count == 5'd1;
+  reg         first_word;
+  reg  [30:0] shift;
+  reg         mosi_late;
+  wire        half_ends = bit_count[3:0] == 4'd0;
+  wire        load_next = bit_count == 5'd0;
+  wire        load_first = first_word && bit_count == 5'd1;
 
   always @(negedge spi_sclk or posedge spi_cs_n)
     if (spi_cs_n) begin
