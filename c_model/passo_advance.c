@@ -111,7 +111,7 @@ static uint64_t ramp_quiet(const struct passo_ramp_unit *ramp)
 	if (ramp->take_now || ramp->dry || ramp->step == PASSO_RAMP_TAKE)
 		return 0;
 	if (ramp->step == PASSO_RAMP_CHOOSE)
-		return ramp->active && !ramp->ready ? 0u : UINT64_MAX;
+		return !ramp->ready && !ramp->ends_next ? 0u : UINT64_MAX;
 	return ramp->wait - 1u;
 }
 
@@ -335,6 +335,7 @@ static void channel_skip(struct passo_channel *channel, uint64_t clocks)
 	struct progress progress;
 
 	skip_surroundings(channel, clocks);
+	ramp->unready = !ramp->ready;
 	if (ramp->step != PASSO_RAMP_CHOOSE)
 		ramp->wait -= (uint32_t)clocks;
 	if (!profile_counts(channel))
@@ -358,7 +359,7 @@ static uint64_t skip_ticks(
 	struct progress progress;
 	uint64_t clocks = 0;
 
-	if (!profile_counts(channel) || ramp->step != PASSO_RAMP_CHOOSE || !ramp->ready || !ramp->loaded
+	if (!profile_counts(channel) || ramp->step != PASSO_RAMP_CHOOSE || ramp->unready || !ramp->loaded
 	    || place < RAMP_DONE_TICK_COUNT || channel->ramp_queue.now_pending
 	    || !take_to_end(channel, &progress))
 		return 0;

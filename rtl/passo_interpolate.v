@@ -9,17 +9,17 @@
 //   addend:  neither 0,  only b f,  only a 1 - f,  both 1          hence a * (1 - f) + b * f, and no sign
 //
 // While `moving` the bits come in on a_bit and b_bit (while `shaping` they are the points, loaded by
-// `load_points`). A bit is in the sum 2 clocks later. `shift` moves the sum into the result; after n bits and
+// `load_points`). A bit is in the sum 2 clocks later. `result_move` moves the sum into the result, or empties both if `clear`; after n bits and
 // 2 clocks the result is {sum, low}: the integer part from bit 48 - n + 24 on, the fraction below.
 // `load_fraction` takes f for the velocities: progress itself if `linear`, else what lies in the result of the
-// points, rounded to 2^-24. `clear` empties sum and low.
+// points, rounded to 2^-24.
 `resetall
 `default_nettype none
 
 module passo_interpolate (
   input  wire        clk,
   input  wire        clear,
-  input  wire        shift,
+  input  wire        result_move,    // sum and low
   input  wire        moving,
   input  wire        shaping,
   input  wire        load_fraction,
@@ -47,7 +47,7 @@ module passo_interpolate (
   assign result = {sum, low};
 
   always @(posedge clk) begin
-    a_point <= {1'b0, a_point[15:1]};
+    if (moving) a_point <= {1'b0, a_point[15:1]};
     if (load_points) a_point <= point;
     a <= moving & (shaping ? a_point[0] : a_bit);
     b <= moving & (shaping ? low[0] : b_bit);
@@ -56,13 +56,9 @@ module passo_interpolate (
     if (a == b) addend <= 25'd0;
     both <= a & b;
 
-    if (shift) begin
-      sum <= {sum_next[24] | both, sum_next[23:1]};
-      low <= {sum_next[0], low[23:1]};
-    end
-    if (clear) begin
-      sum <= 24'd0;
-      low <= 24'd0;
+    if (result_move) begin
+      sum <= clear ? 24'd0 : {sum_next[24] | both, sum_next[23:1]};
+      low <= clear ? 24'd0 : {sum_next[0], low[23:1]};
     end
     if (load_points) low <= {7'd0, point_is_last, point_is_last ? 16'd0 : point_next};
 
