@@ -77,12 +77,14 @@ static bool commands_settled(const struct passo_channel_registers *registers)
 static bool slots_empty(const struct passo_channel *channel)
 {
 	const struct passo_line_unit *line = &channel->line;
+	const bool stopped = passo_channel_stopped(channel);
 
 	for (unsigned i = 0; i < channel->axes; i++)
 		if (channel->dda[i].addend != (int64_t)channel->line_queue.steps[i])
 			return false;
-	return !channel->path.take_q && !channel->path.advance_q && !channel->path.substep && !line->slot_add
-	    && !line->slot_step;
+	if (channel->path.refresh != stopped || channel->path.take_q != stopped)
+		return false;
+	return !channel->path.advance_q && !channel->path.substep && !line->slot_add && !line->slot_step;
 }
 
 /* Clocks for which the rate stands still: all, or until the next slew tick. */
@@ -292,7 +294,8 @@ static uint64_t profile_quiet(
 	const uint32_t goal = before_place ? RAMP_DONE_TICK_COUNT : tick_last;
 	struct progress progress;
 
-	if (channel->ramp_queue.now_pending || channel->path.take_q || !take_to_end(channel, &progress))
+	if (channel->ramp_queue.now_pending || channel->path.take_q || channel->path.refresh
+	    || !take_to_end(channel, &progress))
 		return 0;
 	uint64_t clocks = min_u64(limit, goal - tick_count);
 	if (channel->line.active && velocity != 0u) {

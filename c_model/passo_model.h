@@ -193,7 +193,7 @@ struct passo_ramp_unit {
 struct passo_path {
 	uint32_t velocity_low, velocity_high, phase_low, phase_high; /* 24 bits each */
 	bool phase_low_carry;
-	bool take_q, drain_q, advance_q;
+	bool refresh, take_q, advance_q;
 	bool substep;
 };
 

@@ -36,13 +36,14 @@ module passo_interpolate (
 );
 
   reg  [15:0] a_point;
-  reg  [23:0] low;  // while shaping the other point moves out below
-  reg  [23:0] sum;
+  reg  [24:0] sum;  // and the bit that fell out
+  reg  [22:0] low;  // while shaping the other point moves out below
   reg         b;
   reg  [24:0] fraction;  // F, r
   reg  [24:0] addend;
   reg         both;
-  wire [24:0] sum_next = {1'b0, sum} + {1'b0, addend[24:1]} + {24'd0, addend[0]};
+  // the lowest bit makes the carry of r
+  wire [25:0] sum_next = {1'b0, sum[24:1], addend[0]} + {1'b0, addend};
 
   assign result = {sum, low};
 
@@ -57,13 +58,13 @@ module passo_interpolate (
     both <= a & b;
 
     if (result_move) begin
-      sum <= clear ? 24'd0 : {sum_next[24] | both, sum_next[23:1]};
-      low <= clear ? 24'd0 : {sum_next[0], low[23:1]};
+      sum <= clear ? 25'd0 : {sum_next[25] | both, sum_next[24:1]};
+      low <= clear ? 23'd0 : {sum[0], low[22:1]};
     end
-    if (load_points) low <= {7'd0, point_is_last, point_is_last ? 16'd0 : point_next};
+    if (load_points) low <= {6'd0, point_is_last, point_is_last ? 16'd0 : point_next};
 
-    // sum(23): the points gave 1.0
-    if (load_fraction) fraction <= linear ? progress[32:8] : {sum[22:0], low[23:22]} | {25{sum[23]}};
+    // sum(24): the points gave 1.0
+    if (load_fraction) fraction <= linear ? progress[32:8] : {sum[23:0], low[22]} | {25{sum[24]}};
   end
 
 endmodule

@@ -13,7 +13,8 @@
 //                 ramp   ramp (T ticks)  ramp
 //
 // `prepare` makes the first velocity of a motion, from 0, and raises `ready`; `begin_profile` starts the
-// first tick. `take_velocity`: velocity_next is that of the tick which begins, `ended`: it is 0.
+// first tick. With that, and with the enabled clock of `tick_last`,
+// velocity_next begins to count; with `ended` 0.
 // Promise: the LAST ramp's end raises `ended`, with the last enabled clock of its last tick (a profile
 // without any tick: with begin_profile). Ramps that run out at speed raise `dry`, in the tick before; the
 // velocity then stays, and the next ramp is taken whenever it comes. `stall` holds the enable back at the end
@@ -38,7 +39,7 @@ module passo_ramp #(
   // timescale and path
   input  wire        advance,           // an enabled clock that counts
   output wire        stall,
-  output wire        take_velocity,
+  output reg         tick_last,
   output reg         ends_next,         // there is no next tick: rest
   output wire [47:0] velocity_next,     // UQ0.48 substeps per clock
   // ramp queue
@@ -74,12 +75,11 @@ module passo_ramp #(
 
   // the tick that runs
   reg [TICK_LOG2-1:0] tick_count;
-  reg                 tick_last;
   reg                 unready;
 
-  assign take_velocity = begin_profile | (advance & tick_last);
-  assign ended         = take_velocity & ends_next;
-  assign stall         = tick_last & unready;
+  wire take_velocity = begin_profile | (advance & tick_last);
+  assign ended = take_velocity & ends_next;
+  assign stall = tick_last & unready;
 
   wire        control_load;
   wire        start_move;

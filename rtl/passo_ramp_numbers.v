@@ -22,8 +22,8 @@ module passo_ramp_numbers (
   input  wire        copy_low,
   output wire        start_bit,
   // v_end
-  input  wire [ 3:0] end_index,        // the bit of `half`, counted from 2, modulo 16
-  output wire        end_bit,
+  input  wire [ 3:0] end_index,        // the bit of `half`, counted from 1, modulo 16
+  output reg         end_bit,
   // u
   input  wire        mirror,
   input  wire        u_move,           // half word
@@ -49,9 +49,9 @@ module passo_ramp_numbers (
                                             {v_start[0], v_start[47:1]};
   end
 
-  wire [15:0] end_bits = {half[13:0], half[15:14]};
+  wire [15:0] end_bits = {half[14:0], half[15]};
 
-  assign end_bit = end_bits[end_index];
+  always @(posedge clk) end_bit <= end_bits[end_index];
 
   reg  [48:0] u;
   reg         u_carry;
@@ -73,7 +73,7 @@ module passo_ramp_numbers (
   wire [16:0] ticks_high_sum = {1'b0, ticks_high} + {16'd0, ticks_carry};
 
   always @(posedge clk) begin
-    ticks_carry <= ticks_low_sum[16];
+    ticks_carry <= ticks_add_low & ticks_low_sum[16];
     if (ticks_load_low) ticks_low <= half;
     else if (ticks_add_low) ticks_low <= ticks_low_sum[15:0];
     if (ticks_load_high) ticks_high <= half;

@@ -36,13 +36,14 @@ module passo_ramp_strobes (
 
   `include "passo_ramp_steps.vh"
 
-  wire fetch = step == STEP_FETCH;
-  wire take = step == STEP_TAKE && count >= 6'd2 && count <= 6'd4;
-  wire copy = step == STEP_COPY;
-  wire shape = step == STEP_SHAPE;
-  wire scale = step == STEP_SCALE;
-  wire scale_begins = scale && count == 6'd1;
-  wire empty = prepare || (step == STEP_LOOK_UP && !table_served) || scale_begins;
+  wire [5:0] count_next = count + 6'd1;
+  wire       fetch = step == STEP_FETCH;
+  wire       take = step == STEP_TAKE && count >= 6'd2 && count <= 6'd4;
+  wire       copy = step == STEP_COPY;
+  wire       shape = step == STEP_SHAPE;
+  wire       scale = step == STEP_SCALE;
+  wire       scale_begins = scale && count == 6'd1;
+  wire       empty = prepare || (step == STEP_LOOK_UP && !table_served) || scale_begins;
 
   always @(posedge clk) begin
     control_load    <= fetch && count == 6'd4;
@@ -63,7 +64,7 @@ module passo_ramp_strobes (
     result_move     <= empty || copy || shape || scale;
   end
 
-  // The first half word of v_end is there when scale begins.
+  // The first half word of v_end is there when scale begins, whatever was before.
   always @(posedge clk)
     case (step)
       STEP_FETCH:
@@ -73,15 +74,17 @@ module passo_ramp_strobes (
         3'd3:    half_index <= 4'd1;  // control
         3'd4:    half_index <= 4'd9;  // du
         3'd5:    half_index <= 4'd8;
-        default: half_index <= 4'd7;
+        3'd6:    half_index <= 4'd7;
+        default: half_index <= 4'd3;
       endcase
       STEP_TAKE: half_index <= count[1:0] == 2'd1 ? 4'd3 : count[1:0] == 2'd2 ? 4'd2 : 4'd0;
-      STEP_SCALE: half_index <= count[5:4] == 2'd0 ? 4'd3 : count[5:4] == 2'd1 ? 4'd2 : 4'd0;
+      STEP_SCALE: half_index <= count_next[5:4] == 2'd0 ? 4'd3 : count_next[5:4] == 2'd1 ? 4'd2 : 4'd0;
       STEP_STEP:
       case (count[2:0])
         3'd1, 3'd4: half_index <= 4'd9;
         3'd2, 3'd5: half_index <= 4'd8;
-        default:    half_index <= 4'd7;
+        3'd3, 3'd6: half_index <= 4'd7;
+        default:    half_index <= 4'd3;
       endcase
       default: half_index <= 4'd3;
     endcase
