@@ -106,8 +106,8 @@ module passo_positions #(
     if (round_ends) begin
       clears         <= clear_waits;
       clear_waits    <= 1'b0;
-      copies_next    <= snapshot_waits & ~clear_waits;
-      snapshot_waits <= snapshot_waits & clear_waits;
+      copies_next    <= snapshot_waits;
+      snapshot_waits <= snapshot_waits & clear_waits;  // copied once more when the positions are cleared
     end
     if (zero) clear_waits <= 1'b1;
     if (snapshot) snapshot_waits <= 1'b1;
