@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Link: words to frames to bus accesses, and the replies. See rtl/passo_link.v, rtl/passo_payload.v and
- * rtl/passo_reply.v. The 32 shifts of a word are made at once, in the last of their clocks.
+ * rtl/passo_reply.v. The 32 shifts of a word are made at once, in the last of their clocks. The
+ * counters of refusals are in passo_registers.c.
  */
 #include "passo_model.h"
 
@@ -98,6 +99,7 @@ static void turned(struct passo_link *link)
 		break;
 	case PASSO_LINK_IDLE:
 	case PASSO_LINK_REPLAY:
+	case PASSO_LINK_COUNT:
 		break;
 	}
 }
@@ -155,6 +157,10 @@ static void end_acknowledge(struct passo_link *link)
 		link->sequence_known = true;
 		link->count = COUNT_LOAD;
 		link->step = PASSO_LINK_REPLAY;
+	}
+	if (link->refused) {
+		link->count = COUNT_LOAD;
+		link->step = PASSO_LINK_COUNT;
 	}
 	begin_pass(link);
 }
@@ -229,6 +235,10 @@ static void do_step(struct passo_link *link, const struct passo_link_wires *wire
 		if (act)
 			link->step = PASSO_LINK_IDLE;
 		break;
+	case PASSO_LINK_COUNT:
+		if (act)
+			link->step = frame_goes_on ? PASSO_LINK_HEADER : PASSO_LINK_IDLE;
+		break;
 	case PASSO_LINK_IDLE:
 		break;
 	}
@@ -274,8 +284,9 @@ void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wi
 
 	if (wires->spi.frame_start)
 		link->reply_word = wires->status;
-	link->frame_waits = was.step == PASSO_LINK_REPLAY && frame_goes_on;
-	if (was.step != PASSO_LINK_REPLAY && !(was.step == PASSO_LINK_ACK && act)) {
+	const bool goes_through = was.step == PASSO_LINK_REPLAY || was.step == PASSO_LINK_COUNT;
+	link->frame_waits = goes_through && frame_goes_on;
+	if (!goes_through && !(was.step == PASSO_LINK_ACK && act)) {
 		if (wires->spi.frame_end)
 			link->step = PASSO_LINK_IDLE;
 		if (wires->spi.frame_start)

@@ -75,7 +75,8 @@ enum passo_link_step {
 	PASSO_LINK_ACK,
 	PASSO_LINK_REPLAY,
 	PASSO_LINK_READ,
-	PASSO_LINK_SUM
+	PASSO_LINK_SUM,
+	PASSO_LINK_COUNT
 };
 
 /* Places of the payload buffer behind the payload. */

@@ -149,7 +149,7 @@ class Bench:
     ) -> "Bench":
         """Reset."""
         master = SpiMaster(dut, half_period, **spi)
-        inputs = ("bus_claim", "bus_refusal", "bus_read_data", "bus_incomplete")
+        inputs = ("bus_claim", "bus_refusal", "bus_read_data", "bus_counters", "bus_incomplete")
         dut.status.value = STATUS
         return cls(dut, await begin(dut, *inputs, period=period), master)
 
@@ -528,6 +528,43 @@ async def garbage_executes_nothing(dut: HierarchyObject) -> None:
         assert len(bench.target.writes) == writes
         await bench.shift(random)
         assert await bench.request(WRITE, 2, [random.randrange(1 << 32)]) == Verdict.OK
+
+
+async def read_counters(bench: Bench) -> dict[Verdict, int]:
+    """The counters of refusals, read at addresses 4 and 5."""
+    bench.dut.bus_counters.value = 1
+    words = await bench.read_registers(4, 2)
+    bench.dut.bus_counters.value = 0
+    assert isinstance(words, list)
+    return {verdict: words[n // 4] >> n % 4 * 8 & 0xFF for n, verdict in enumerate(list(Verdict)[2:])}
+
+
+@cocotb.test()
+async def refusals_are_counted(dut: HierarchyObject) -> None:
+    """Each in its own 8-bit counter, which wraps; reset clears them all."""
+    random = rng("link, counters")
+    bench = await Bench.begin(dut)
+    expected = dict.fromkeys(list(Verdict)[2:], 0)
+    assert await read_counters(bench) == expected
+    for _ in range(60):
+        verdict = random.choice((Verdict.BAD_CRC, *list(Verdict)[4:]))
+        bench.target.refusals = {9: verdict}
+        words = frame(WRITE, bench.next_sequence(), 9, [1])
+        words[2] ^= verdict == Verdict.BAD_CRC
+        assert await bench.send(words) == verdict
+        expected[verdict] += 1
+    assert await read_counters(bench) == expected
+    for _ in range(300):
+        await bench.spi.transfer([header(WRITE, 0, 0, 0), crc_of_words([header(WRITE, 0, 0, 0)]), 0])
+    expected[Verdict.BAD_LENGTH] += 300 - 256
+    assert await read_counters(bench) == expected
+    dut.rst.value = 1
+    await bench.clocks.wait(2)
+    dut.rst.value = 0
+    assert await read_counters(bench) == dict.fromkeys(expected, 0)
+    bench.target.refusals = {9: Verdict.BUSY}
+    assert await bench.request(WRITE, 9, [1]) == Verdict.BUSY
+    assert await read_counters(bench) == {verdict: verdict == Verdict.BUSY for verdict in expected}
 
 
 @cocotb.test()

@@ -61,8 +61,6 @@ module passo_core #(
   wire [15:0] half;
   wire [31:0] reply_word;
   wire [ 7:0] last_sequence;
-  wire        refused;
-  wire [ 3:0] verdict;
 
   // bus
   wire        bus_frame;
@@ -74,6 +72,7 @@ module passo_core #(
   wire [31:0] bus_data;
   wire [ 4:0] bus_top_bit;
   wire        bus_lone_bit;
+  wire        bus_counters;
   reg         bus_claim;
   reg  [ 3:0] bus_refusal;
   reg  [31:0] bus_read_data;
@@ -163,8 +162,6 @@ module passo_core #(
     .half          (half),
     .reply_word    (reply_word),
     .last_sequence (last_sequence),
-    .refused       (refused),
-    .verdict       (verdict),
     .bus_frame     (bus_frame),
     .bus_check     (bus_check),
     .bus_write     (bus_write),
@@ -177,6 +174,7 @@ module passo_core #(
     .bus_claim     (bus_claim),
     .bus_refusal   (bus_refusal),
     .bus_read_data (bus_read_data),
+    .bus_counters  (bus_counters),
     .bus_incomplete(channel_incomplete != {CHANNELS{1'b0}})
   );
 
@@ -198,9 +196,8 @@ module passo_core #(
     .claim        (registers_claim),
     .refusal      (registers_refusal),
     .read_data    (registers_read_data),
+    .is_counters  (bus_counters),
     .last_sequence(last_sequence),
-    .refused      (refused),
-    .verdict      (verdict),
     .run          (run),
     .wait_sync    (wait_sync),
     .any_stopped  (stopped != {CHANNELS{1'b0}}),

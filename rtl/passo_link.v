@@ -30,10 +30,7 @@ module passo_link (
   input  wire        half_low,
   input  wire [15:0] half,
   output wire [31:0] reply_word,
-  // to the status word and the counters
   output reg  [ 7:0] last_sequence,  // of the last write or push that was executed
-  output reg         refused,        // strobe: the frame is refused with `verdict`
-  output reg  [ 3:0] verdict,
   // bus
   output reg         bus_frame,      // a pass over a frame's payload begins
   output reg         bus_check,      // strobes
@@ -47,6 +44,7 @@ module passo_link (
   input  wire        bus_claim,
   input  wire [ 3:0] bus_refusal,
   input  wire [31:0] bus_read_data,
+  input  wire        bus_counters,   // the address is that of counters of refusals, which are kept here
   input  wire        bus_incomplete  // the payload so far is not whole lines or ramps
 );
 
@@ -54,14 +52,15 @@ module passo_link (
 
   localparam [7:0] PAYLOAD_MAX = 8'd60;
 
-  localparam [2:0] STEP_IDLE = 3'd0;  // between frames, or the rest of the frame means nothing
-  localparam [2:0] STEP_HEADER = 3'd1;
-  localparam [2:0] STEP_PAYLOAD = 3'd2;
-  localparam [2:0] STEP_CRC = 3'd3;
-  localparam [2:0] STEP_ACK = 3'd4;
-  localparam [2:0] STEP_REPLAY = 3'd5;
-  localparam [2:0] STEP_READ = 3'd6;  // fetch a word for the reply, wait until it has been taken
-  localparam [2:0] STEP_SUM = 3'd7;  // send the CRC of the reply
+  localparam [3:0] STEP_IDLE = 4'd0;  // between frames, or the rest of the frame means nothing
+  localparam [3:0] STEP_HEADER = 4'd1;
+  localparam [3:0] STEP_PAYLOAD = 4'd2;
+  localparam [3:0] STEP_CRC = 4'd3;
+  localparam [3:0] STEP_ACK = 4'd4;
+  localparam [3:0] STEP_REPLAY = 4'd5;
+  localparam [3:0] STEP_READ = 4'd6;  // fetch a word for the reply, wait until it has been taken
+  localparam [3:0] STEP_SUM = 4'd7;  // send the CRC of the reply
+  localparam [3:0] STEP_COUNT = 4'd8;  // count a refusal
 
   // What is done with a word takes a run of clocks: load it, turn it, act on it, rest.
   localparam [5:0] COUNT_ACT = 6'd0;
@@ -72,7 +71,7 @@ module passo_link (
   localparam [5:0] COUNT_LOADED = 6'd31;
   localparam [5:0] COUNT_TURN = 6'd32;  // .. 63
 
-  reg  [2:0] step;
+  reg  [3:0] step;
   reg  [5:0] count;
   wire       act = count == COUNT_ACT;
   wire       load = count == COUNT_LOAD + 6'd1 || count == COUNT_LOAD + 6'd2;
@@ -100,29 +99,46 @@ module passo_link (
   reg        answer_due;
   wire [3:0] answer = bus_claim ? bus_refusal : VERDICT_UNKNOWN_ADDRESS;
 
-  // Behind the payload, the buffer has a place for the header and one for whatever is not kept.
-  wire is_header = step == STEP_HEADER || step == STEP_REPLAY;
-  wire is_payload = step == STEP_PAYLOAD;
+  // Behind the payload, the buffer has a place for the header, one for whatever is not kept, and two for the
+  // counters of refusals; these read as 0 until one of the word has counted.
+  wire       is_header = step == STEP_HEADER || step == STEP_REPLAY;
+  wire       is_payload = step == STEP_PAYLOAD;
+  wire       is_counting = step == STEP_COUNT;
+  wire       uses_counters = step == STEP_READ || is_counting;
+  reg  [3:0] verdict;
+  reg  [1:0] counted;
+  wire       counters_high = is_counting ? verdict >= VERDICT_READ_ONLY : bus_address[0];
+  wire [1:0] counter = verdict[1:0] - VERDICT_BAD_CRC[1:0];
+  wire [1:0] place = uses_counters ? {1'b1, counters_high} : {1'b0, step == STEP_CRC};
+  wire       refuses = act && step == STEP_ACK && verdict != VERDICT_OK && verdict != VERDICT_DUPLICATE;
 
   passo_payload u_payload (
-    .clk       (clk),
-    .store     (half_valid),
-    .store_word(is_payload ? {1'b0, index[5:0]} : {6'b100000, ~is_header}),
-    .store_low (half_low),
-    .half      (half),
-    .load      (load),
-    .load_word (is_payload || step == STEP_REPLAY ? {1'b0, index[5:0]} : {6'b100000, step == STEP_CRC}),
-    .load_low  (count[0]),
-    .turn      (turn),
-    .turns     (count[4:0]),
-    .data      (bus_data),
-    .top_bit   (bus_top_bit),
-    .lone_bit  (bus_lone_bit)
+    .clk        (clk),
+    .store      (half_valid),
+    .store_word (is_payload ? {1'b0, index[5:0]} : {6'b100000, ~is_header}),
+    .store_low  (half_low),
+    .half       (half),
+    .put        (is_counting && (act || count == COUNT_TURN + 6'd16)),
+    .put_word   ({6'b100001, counters_high}),
+    .put_low    (act),
+    .load       (load),
+    .load_word  (is_payload || step == STEP_REPLAY ? {1'b0, index[5:0]} : {5'b10000, place}),
+    .load_low   (count[0]),
+    .load_zero  (uses_counters && !counted[counters_high]),
+    .turn       (turn),
+    .turns      (count[4:0]),
+    .count      (is_counting),
+    .counter    (counter),
+    .data       (bus_data),
+    .top_bit    (bus_top_bit),
+    .lone_bit   (bus_lone_bit),
+    .counter_bit(counter_bit)
   );
 
   // CRC of the request; that of a read's header goes on as the CRC of the reply
   wire crc_top;
   wire reply_top;
+  wire counter_bit;
   reg  crc_wrong;
 
   passo_crc u_crc (
@@ -146,6 +162,8 @@ module passo_link (
     .verdict    (verdict),
     .crc_next   (step == STEP_SUM),
     .crc_top    (crc_top),
+    .counters   (step == STEP_READ && bus_counters),
+    .counter_bit(counter_bit),
     .word       (reply_word),
     .top        (reply_top)
   );
@@ -162,7 +180,6 @@ module passo_link (
     bus_write  <= count == COUNT_LOADED && step == STEP_REPLAY;
     bus_read   <= count == COUNT_LOAD && step == STEP_READ && !frame_end;
     answer_due <= bus_check;
-    refused    <= act && step == STEP_ACK && verdict != VERDICT_OK && verdict != VERDICT_DUPLICATE;
     crc_wrong  <= step != STEP_HEADER && (crc_wrong || (step == STEP_CRC && turn && crc_top != bus_data[31]));
 
     if (answer_due && verdict == VERDICT_OK) verdict <= answer;
@@ -207,6 +224,10 @@ module passo_link (
           count          <= COUNT_LOAD;
           step           <= STEP_REPLAY;
         end
+        if (refuses) begin
+          count <= COUNT_LOAD;
+          step  <= STEP_COUNT;
+        end
       end
 
       STEP_REPLAY: begin
@@ -239,6 +260,12 @@ module passo_link (
 
       STEP_SUM: if (act) step <= STEP_IDLE;
 
+      STEP_COUNT:
+      if (act) begin
+        counted[counters_high] <= 1'b1;
+        step                   <= frame_goes_on ? STEP_HEADER : STEP_IDLE;
+      end
+
       default: ;
     endcase
 
@@ -248,9 +275,9 @@ module passo_link (
       index       <= 8'd0;
     end
 
-    frame_waits <= step == STEP_REPLAY && frame_goes_on;
+    frame_waits <= (step == STEP_REPLAY || is_counting) && frame_goes_on;
     // chip select does not come between a verdict and what it promises
-    if (step != STEP_REPLAY && !(step == STEP_ACK && act)) begin
+    if (step != STEP_REPLAY && !is_counting && !(step == STEP_ACK && act)) begin
       if (frame_end) step <= STEP_IDLE;
       if (frame_start) step <= STEP_HEADER;
       if (frame_end || frame_start) count <= COUNT_REST;
@@ -261,6 +288,7 @@ module passo_link (
       count          <= COUNT_REST;
       last_sequence  <= 8'd0;
       sequence_known <= 1'b0;
+      counted        <= 2'b00;
       bus_push       <= 1'b0;
       bus_check      <= 1'b0;
       bus_write      <= 1'b0;

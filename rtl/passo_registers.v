@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Registers of the core: identification, parameters, RUN, counters of refusals; and the status word.
+// Registers of the core: identification, parameters, RUN; and the status word. The counters of refusals have
+// their addresses here, but the link keeps them.
 //
 // Promise: the answer to a strobe comes one clock later, for one clock; claim and refusal are 0 unless one of
 // these registers is meant. `read_data` is the status word at all other times. RUN changes for all channels on
@@ -14,29 +15,28 @@ module passo_registers #(
   parameter LINE_QUEUE_LOG2 = 8,
   parameter RAMP_QUEUE_LOG2 = 4
 ) (
-  input  wire                                    clk,
-  input  wire                                    rst,
+  input wire clk,
+  input wire rst,
   // bus
-  input  wire                                    bus_check,
-  input  wire                                    bus_write,
-  input  wire                                    bus_read,
-  input  wire                                    bus_push,
-  input  wire [                            11:0] bus_address,
-  input  wire [                            31:0] bus_data,
-  output reg                                     claim,
-  output reg  [                             3:0] refusal,
-  output wire [                            31:0] read_data,
+  input wire bus_check,
+  input wire bus_write,
+  input wire bus_read,
+  input wire bus_push,
+  input wire [11:0] bus_address,
+  input wire [31:0] bus_data,
+  output reg claim,
+  output reg [3:0] refusal,
+  output wire [31:0] read_data,
   // link
-  input  wire [                             7:0] last_sequence,
-  input  wire                                    refused,        // strobe
-  input  wire [                             3:0] verdict,
+  input wire [7:0] last_sequence,
+  output wire is_counters,  // the address is that of counters of refusals
   // channels
-  output reg  [                    CHANNELS-1:0] run,
-  output reg  [                    CHANNELS-1:0] wait_sync,
-  input  wire                                    any_stopped,
-  input  wire                                    any_occupied,
-  input  wire [CHANNELS*(LINE_QUEUE_LOG2+1)-1:0] line_room,
-  input  wire [CHANNELS*(RAMP_QUEUE_LOG2+1)-1:0] ramp_room
+  output reg [CHANNELS-1:0] run,
+  output reg [CHANNELS-1:0] wait_sync,
+  input wire any_stopped,
+  input wire any_occupied,
+  input wire [CHANNELS*(LINE_QUEUE_LOG2+1)-1:0] line_room,
+  input wire [CHANNELS*(RAMP_QUEUE_LOG2+1)-1:0] ramp_room
 );
 
   `include "passo_registers.vh"
@@ -64,15 +64,6 @@ module passo_registers #(
     wide_ramp_room > 16'd255 ? 8'd255 : wide_ramp_room[7:0]
   };
 
-  // One counter per refusal, BAD_CRC first
-  reg     [63:0] refusals;
-  integer        i;
-  always @(posedge clk)
-    if (rst) refusals <= 64'd0;
-    else
-      for (i = 0; i < 8; i = i + 1)
-        if (refused && verdict == VERDICT_BAD_CRC + i[3:0]) refusals[i*8+:8] <= refusals[i*8+:8] + 8'd1;
-
   wire [7:0] run_padded = {{(8 - CHANNELS) {1'b0}}, run};
   wire [7:0] wait_sync_padded = {{(8 - CHANNELS) {1'b0}}, wait_sync};
   wire run_beyond = (bus_data[7:0] >> CHANNELS) != 8'd0 || (bus_data[15:8] >> CHANNELS) != 8'd0
@@ -83,17 +74,19 @@ module passo_registers #(
   reg       is_run;
   reg       bad_run;
   reg [2:0] number;
-  reg [5:0] reads;  // registers 0 .. 5
+  reg [3:0] reads;  // registers 0 .. 3
   reg       reads_status;
+
+  integer i;
+
+  assign is_counters = known && number[2];
 
   assign read_data =
       (reads_status ? status : 32'd0)
       | (reads[0] ? IDENTIFICATION_RESET : 32'd0)
       | (reads[1] ? {8'd0, VERSION_MAJOR_RESET, VERSION_MINOR_RESET, VERSION_PATCH_RESET} : 32'd0)
       | (reads[2] ? PARAMETERS : 32'd0)
-      | (reads[3] ? {13'd0, status_channel, wait_sync_padded, run_padded} : 32'd0)
-      | (reads[4] ? refusals[31:0] : 32'd0)
-      | (reads[5] ? refusals[63:32] : 32'd0);
+      | (reads[3] ? {13'd0, status_channel, wait_sync_padded, run_padded} : 32'd0);
 
   always @(posedge clk) begin
     known        <= bus_address <= ADDRESS_REFUSALS_1;
@@ -101,7 +94,7 @@ module passo_registers #(
     number       <= bus_address[2:0];
     bad_run      <= (bus_data & ~RUN_DEFINED) != 32'd0 || run_beyond;
     reads_status <= ~bus_read;
-    for (i = 0; i < 6; i = i + 1) reads[i] <= bus_read && known && number == i[2:0];
+    for (i = 0; i < 4; i = i + 1) reads[i] <= bus_read && known && number == i[2:0];
     claim <= known && (bus_check || bus_read);
     refusal <= !(known && bus_check)  ? VERDICT_OK :
                bus_push               ? VERDICT_BAD_OPERATION :

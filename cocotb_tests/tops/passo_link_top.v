@@ -27,6 +27,7 @@ module passo_link_top (
   input  wire        bus_claim,
   input  wire [ 3:0] bus_refusal,
   input  wire [31:0] bus_read_data,
+  input  wire        bus_counters,
   input  wire        bus_incomplete
 );
 
@@ -38,6 +39,8 @@ module passo_link_top (
   wire [31:0] reply_word;
 
   assign word_valid = half_valid & half_low;
+  assign refused    = u_link.refuses;
+  assign verdict    = u_link.verdict;
 
   // the status stands in the place of data, but for the clock after a strobe
   reg answers;
@@ -68,8 +71,6 @@ module passo_link_top (
     .half           (half),
     .reply_word     (reply_word),
     .last_sequence  (last_sequence),
-    .refused        (refused),
-    .verdict        (verdict),
     .bus_frame      (bus_frame),
     .bus_check      (bus_check),
     .bus_write      (bus_write),
@@ -81,6 +82,7 @@ module passo_link_top (
     .bus_lone_bit   (bus_lone_bit),
     .bus_claim      (bus_claim),
     .bus_refusal    (bus_refusal),
+    .bus_counters   (bus_counters),
     .bus_read_data  (answers ? bus_read_data : status),
     .bus_incomplete (bus_incomplete)
   );
