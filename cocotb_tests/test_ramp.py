@@ -333,8 +333,8 @@ async def the_last_ramp_ends_the_profile_and_later_ones_wait(dut: HierarchyObjec
 async def ramps_that_set_the_velocity_fit_into_a_tick_with_another(dut: HierarchyObject) -> None:
     """Ramps of one tick each with T = 0 before them, at full rate: the next velocity is ready in time.
 
-    Three ramps of T = 0 before each on a core of one channel, two on a core of eight, whatever the phase of the
-    tick against the turns of the channels at the tables.
+    Three ramps of T = 0 before each on a core of one channel, two on a core of eight, whatever the phase
+    of the tick against the turns of the channels at the tables.
     """
     bench = await Ramps.begin(dut)
     random = rng("ramp, stall")
@@ -362,7 +362,7 @@ async def what_does_not_fit_into_a_tick_comes_later_but_is_not_lost(dut: Hierarc
 
 @cocotb.test()
 async def drain_sets_its_own_velocity(dut: HierarchyObject) -> None:
-    """While drain is high the velocity is drain_velocity, UQ0.32, and nothing stalls; from the second clock on."""
+    """While drain is high the velocity is drain_velocity, UQ0.32, from the second clock on; no stall."""
     bench = await Ramps.begin(dut)
     await bench.whole([Ramp(V_MAX, 2, last=True)])
     dut.drain.value = 1
