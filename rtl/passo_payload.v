@@ -74,8 +74,9 @@ module passo_payload (
 
   always @(posedge clk) begin
     carry <= !in_counter || (carry && data[31]);
-    if (load || turn) data <= turn ? {data[30:0], data[31] ^ (in_counter && carry)} : {data[15:0], loaded};
     if (load && load_zero) data <= 32'd0;
+    else if (load || turn)
+      data <= turn ? {data[30:0], data[31] ^ (in_counter && carry)} : {data[15:0], loaded};
     if (turn && data[31]) begin
       some_bit <= 1'b1;
       if (some_bit) lone_bit <= 1'b0;
