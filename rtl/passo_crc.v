@@ -44,5 +44,9 @@ module passo_crc (
     if (rst) busy <= 1'b0;
   end
 
+`ifdef FORMAL
+  `include "passo_crc_formal.vh"
+`endif
+
 endmodule
 `resetall

@@ -45,5 +45,9 @@ module passo_path (
     end
   end
 
+`ifdef FORMAL
+  `include "passo_path_formal.vh"
+`endif
+
 endmodule
 `resetall
