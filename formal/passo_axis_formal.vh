@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the axis promises, seen from its ports; included at the end of passo_axis.
 
-// --- Assumptions: the settings stand still (they are registers; the host changes them at rest)
+// --- Assumptions: the settings stand still (they are registers; the host writes them at rest)
 reg f_begun = 1'b0;
 always @(posedge clk) begin
   f_begun <= 1'b1;
@@ -10,6 +10,12 @@ always @(posedge clk) begin
     assume ($stable(step_high) && $stable(step_low) && $stable(dir_setup) && $stable(dir_hold));
     assume ($stable(both_edges) && $stable(step_inverted) && $stable(direction_inverted));
   end
+  assume (!timing_written);
+  assume (short_high == (step_high <= 16'd1) && short_low == (step_low <= 16'd1));
+  assume (short_setup == (dir_setup <= 16'd1) && short_hold == (dir_hold <= 16'd1));
+`ifdef NARROW
+  assume (step_high < 16'd`NARROW && step_low < 16'd`NARROW && dir_setup < 16'd`NARROW && dir_hold < 16'd`NARROW);
+`endif
 `ifdef SMALL
   assume (step_high <= 16'd2 && step_low <= 16'd2 && dir_setup <= 16'd3 && dir_hold <= 16'd2);
 `endif
@@ -93,15 +99,27 @@ always @(posedge clk) begin
   step_not_lost : assert (f_waited <= f_patience);
 end
 
-// --- The position is what left the pins
-reg signed [31:0] f_position_q;
-reg f_zero = 1'b1;
-wire signed [31:0] f_position =
-    f_zero ? 32'sd0 : !f_active ? f_position_q : f_dir ? f_position_q - 32'sd1 : f_position_q + 32'sd1;
+// --- What is counted as made is what leaves the pin one clock later
+always @(posedge clk)
+  if (f_pins_valid) begin
+    made_is_what_leaves : assert ($past(step_made) == f_active);
+    if (f_active) made_with_its_direction : assert ($past(step_direction) == f_dir);
+  end
+
+// --- Lost steps
+reg [3:0] f_lost = 4'd0;
 always @(posedge clk) begin
-  f_zero       <= zero | rst;
-  f_position_q <= f_position;
-  if (f_begun) position_is_steps_sent : assert (position == f_position);
+  f_lost <= clear || rst ? 4'd0 : f_lost + {3'd0, overrun && f_lost != 4'd15};
+  if (f_begun) lost_steps_counted : assert (lost == f_lost);
+end
+
+// --- While nothing waits, DIR goes where the line goes
+reg [19:0] f_still = 20'd0;
+always @(posedge clk) begin
+  f_still <= f_pins_valid && f_waiting_count == 3'd0 && f_request == 2'b00 && !step_request && !f_active
+             && f_direction[0] == direction && f_direction[1] == direction
+             ? (f_still[19] ? f_still : f_still + 20'd1) : 20'd0;
+  if (f_still > f_patience) dir_follows_the_line : assert (f_dir == f_direction[0]);
 end
 
 // --- EN is what the register says
@@ -110,59 +128,71 @@ always @(posedge clk)
 
 `ifdef INVARIANTS
 // --- What holds inside, for the induction
-wire [17:0] f_timer = timer == 16'd0 ? 18'd1 : {2'd0, timer};
+wire [15:0] f_elapsed = timer - 16'd1;  // clocks of the state, this one included
+wire [17:0] f_timer = {2'd0, f_elapsed};
 wire [17:0] f_level = step ? f_high : f_low;
 wire f_step_shown = f_step == step;
 wire f_dir_shown = f_dir == dir;
-wire f_is_high = state == STATE_HIGH;
-wire f_is_low = state == STATE_LOW;
-wire f_is_hold = state == STATE_HOLD;
-wire f_is_setup = state == STATE_SETUP;
-wire f_is_ready = state == STATE_READY;
-wire [18:0] f_timer_19 = {1'b0, f_timer};
-wire [18:0] f_turn_time = dir_right ? 19'd0 : {1'b0, f_setup};
-wire [18:0] f_rank =
-    f_is_high  ? f_timer_19 + {1'b0, f_low} + (dir_right ? 19'd0 : {1'b0, f_hold} + {1'b0, f_setup}) :
-    f_is_low   ? f_timer_19 + (dir_right ? 19'd0 : {1'b0, f_hold} + {1'b0, f_setup}) :
-    f_is_hold  ? (dir_right ? 19'd0 : f_timer_19 + {1'b0, f_setup}) :
-    f_is_setup ? f_timer_19 + (dir_right ? 19'd0 : {1'b0, f_setup} + 19'd1) :
-                 (dir_right ? 19'd0 : {1'b0, f_setup} + 19'd1);
+wire f_is_pulse = high | low;
+wire f_is_hold = hold;
+wire f_is_setup = setup;
+wire f_is_ready = idle & ~hold;
+wire [2:0] f_count = {2'd0, waits[0]} + {2'd0, waits[1]} + {2'd0, waits[2]} + {2'd0, waits[3]};
+// clocks until the next active edge, or until DIR is right
+wire [17:0] f_time = f_is_hold ? f_hold : f_is_setup ? f_setup : f_level;
+wire [19:0] f_left = {2'd0, f_time} - {2'd0, f_timer} + 20'd1;
+wire [19:0] f_turn_time = {2'd0, f_setup} + 20'd1;
+wire [19:0] f_rank =
+    f_is_pulse ? f_left + (step && !both_edges ? {2'd0, f_low} : 20'd0)
+                 + (dir_right ? 20'd0 : {2'd0, f_hold} + f_turn_time) :
+    f_is_hold  ? (dir_right ? 20'd0 : f_left + f_turn_time) :
+    f_is_setup ? f_left + (dir_right ? 20'd0 : f_turn_time) :
+                 (dir_right ? 20'd0 : f_turn_time);
 always @(posedge clk)
   if (f_begun) begin
-    assert (f_is_high || f_is_low || f_is_hold || f_is_setup || f_is_ready);
-    assert (f_pins_valid || (f_is_ready && !step && !dir && !waits && f_waiting_count == 3'd0
+    assert (f_pins_valid || (f_is_ready && !step && !dir && waits == 4'd0 && f_waiting_count == 3'd0
                              && f_request == 2'b00 && f_step_lasted_q == F_EVER && f_dir_lasted_q == F_EVER
-                             && !f_step_q && !f_dir_q && !step_begins_q && position == 32'sd0 && f_zero
-                             && !overrun && f_waited == 20'd0));
-    assert (waiting_count <= 3'd4 && f_waiting_count <= 3'd4);
-    if (!both_edges) assert (step == f_is_high);
-    else assert (!f_is_high);
-    assert (f_timer <= (f_is_hold ? f_hold : f_is_setup ? f_setup : f_level) || f_is_ready);
+                             && !f_step_q && !f_dir_q && !step_made && waiting == 4'd0
+                             && !overrun && f_waited == 20'd0 && f_still == 20'd0));
+    assert (waits == 4'b0000 || waits == 4'b0001 || waits == 4'b0011 || waits == 4'b0111 || waits == 4'b1111);
+    assert (f_waiting_count <= 3'd4);
+    if (!both_edges) assert (step == high);
+    assert ({2'd0, high} + {2'd0, low} + {2'd0, setup} + {2'd0, idle} == 3'd1 && (idle || !hold));
+    assert (!high || (step && !both_edges));
+    if (!f_is_ready) begin
+      assert (f_timer >= 18'd1 && f_timer <= f_time);
+      assert (first == (f_timer == 18'd1));
+      assert (timer_done == (!first && f_timer == f_time));
+    end
     if (!f_step_shown) begin
-      assert (f_is_high || f_is_low);
-      assert (f_timer == f_level);
+      assert (f_is_pulse && f_timer == 18'd1);
       assert (f_step_lasted >= (f_step ? f_high : f_low));
       if (!both_edges && f_step) assert (f_step_lasted == f_high);
     end else begin
-      if (f_is_high || f_is_low) assert (f_step_lasted + f_timer == f_level);
-      if (f_is_hold) assert (f_step_lasted + f_timer == f_level + f_hold);
+      if (f_is_pulse) assert (f_step_lasted + 18'd1 == f_timer);
+      if (f_is_hold) assert (f_step_lasted + 18'd1 == f_level + f_timer);
     end
-    if (f_is_hold || f_is_ready || f_is_setup) assert (f_step_shown);
+    if (!f_is_pulse) assert (f_step_shown);
     if (f_is_ready || f_is_setup) assert (f_step_lasted >= f_level + f_hold);
     if (!f_is_setup) assert (f_dir_shown && f_dir_lasted >= f_setup);
-    else if (!f_dir_shown) assert (f_timer == f_setup);
-    else assert (f_dir_lasted + f_timer == f_setup);
+    else if (!f_dir_shown) assert (f_timer == 18'd1);
+    else assert (f_dir_lasted + 18'd1 == f_timer);
     if (f_pins_valid && $past(f_pins_valid)) begin
-      assert (f_waiting_count == $past(waiting_count, 2));
+      assert (f_waiting_count == $past(f_count, 2));
       if (f_waiting_count > 3'd0) assert (f_waiting[0] == $past(waiting[0], 2));
       if (f_waiting_count > 3'd1) assert (f_waiting[1] == $past(waiting[1], 2));
       if (f_waiting_count > 3'd2) assert (f_waiting[2] == $past(waiting[2], 2));
       if (f_waiting_count > 3'd3) assert (f_waiting[3] == $past(waiting[3], 2));
       assert (f_active == $past(step_begins, 2));
-    end
-    if ($past(f_pins_valid)) begin
-      if (f_waiting_count != 3'd0) assert (f_waited + {1'b0, $past(f_rank, 2)} <= f_patience);
+      assert (f_request[1] == $past(step_request, 2) && f_drop[1] == $past(drop, 2));
+      if (f_waiting_count != 3'd0) assert (f_waited + $past(f_rank, 2) <= f_patience);
       else assert (f_waited == 20'd0);
-    end else assert (f_waited == 20'd0);
+      if (f_still > 20'd2) begin
+        assert (f_waiting_count == 3'd0 && waits == 4'd0);
+        assert ($past(waiting[0], 2) == f_direction[1]);
+        assert (f_still[19] || f_dir == f_direction[1] || f_still + $past(f_rank, 2) <= f_patience);
+        if (f_still[19]) assert (f_dir == f_direction[1]);
+      end
+    end else assert (f_waited == 20'd0 && f_still <= 20'd1);
   end
 `endif
