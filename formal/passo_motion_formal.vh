@@ -37,7 +37,7 @@ always @(posedge clk)
       underrun_is_the_cause : assert (cause == CAUSE_LINE_UNDERRUN);
     if ($past(command_stop) && !$past(stopped)) stop_is_heard : assert (stopping || stopped);
     if ($past(stopping)) stop_is_kept : assert (stopping || stopped);
-    if ($past(stopping && (rate_is_zero || !moving))) stop_ends_in_stopped : assert (stopped);
+    if ($past(stopping) && ($past(!moving) || ($past(rate_is_zero, 2) && $past(f_begun, 2)))) stop_ends_in_stopped : assert (stopped);
     if (stopped && !$past(stopped)) begin
       stopped_for_a_reason : assert ($past(f_stop_hard) || $past(stopping));
       if (!$past(f_stop_hard)) soft_cause_told : assert (cause == CAUSE_STOP || cause == CAUSE_RAMP_UNDERRUN);

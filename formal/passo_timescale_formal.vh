@@ -3,8 +3,8 @@
 
 localparam [16:0] F_ONE = 17'h10000;
 
-// --- Assumptions: rates and slews of at most 1.0 (the registers refuse more), slew ticks some clocks apart,
-// and some clocks of rest before a motion
+// --- Assumptions: rates and slews of at most 1.0 (the registers refuse more), slew ticks at least 8 clocks
+// apart, and some clocks of rest before a motion
 reg       f_begun = 1'b0;
 reg [2:0] f_since_tick = 3'd7;
 reg       f_moved = 1'b0;
@@ -19,18 +19,14 @@ always @(posedge clk) begin
   if (moving) assume (f_moved || f_rest == 2'd3);
 end
 
-// --- What rate and slew a slew tick works with: those of the tick before it
+// --- What a slew tick does: it chooses the goal, then the slew, and 7 clocks later the rate changes
+reg [ 6:1] f_after = 6'd0;
 reg [16:0] f_goal;
 reg [16:0] f_slew;
 always @(posedge clk) begin
-  if (slew_tick) begin
-    f_goal <= stopping ? 17'd0 : rate_target;
-    f_slew <= stopping ? stop_slew : rate_slew;
-  end
-  if (!moving) begin
-    f_goal <= rate_target;
-    f_slew <= 17'd1;
-  end
+  f_after <= moving ? {f_after[5:1], slew_tick} : 6'd0;
+  if (slew_tick) f_goal <= stopping ? 17'd0 : rate_target;
+  if (f_after[2]) f_slew <= stopping ? stop_slew : rate_slew;
 end
 
 reg [16:0] f_rate_q;
@@ -41,7 +37,7 @@ always @(posedge clk) begin
   f_rate_q <= rate;
   f_goal_q <= f_goal;
   f_slew_q <= f_slew == 17'd0 ? 17'd1 : f_slew;
-  f_ticked <= slew_tick & moving & f_begun;
+  f_ticked <= f_after[6] & moving & f_begun;
   f_moved  <= moving;
 end
 wire [16:0] f_change = rate > f_rate_q ? rate - f_rate_q : f_rate_q - rate;
@@ -69,18 +65,20 @@ always @(posedge clk)
       else rate_falls_to_goal : assert (rate <= f_rate_q && rate >= f_goal_q);
       change_is_the_slew : assert (f_change == (f_way < f_slew_q ? f_way : f_slew_q));
     end
-    if ($past(f_begun) && !f_moved) rate_is_target_at_rest : assert (rate == $past(rate_target));
+    if (f_rest == 2'd3) rate_is_target_at_rest : assert (rate == $past(rate_target, 2));
   end
 
 `ifdef INVARIANTS
 always @(posedge clk)
   if (f_begun) begin
-    if ($past(f_begun)) assert (goal == f_goal && goal <= F_ONE && f_slew <= F_ONE);
-    if ($past(f_begun)) assert (slew == (f_slew == 17'd0 ? 17'd1 : f_slew));
+    assert (after == f_after);
+    if (f_after != 6'd0) assert (goal == f_goal);
+    assert (goal <= F_ONE);
     if (f_moved) assert (rate_sum == f_rates[15:0]);
     else assert (f_enables == 16'd0 && f_rates == 32'd0);
     if (!f_moved && $past(f_begun)) assert (rate_sum == 16'd0);
-    if (f_since_tick >= 3'd2 && (f_moved || f_rest >= 2'd3))
-      assert (distance == $signed({1'b0, goal}) - $signed({1'b0, rate}));
+    if (f_since_tick == 3'd7 && f_moved) assert (not_moved == ~{1'b0, rate});
+    if (f_since_tick == 3'd7) assert (f_after == 6'd0);
+    else if (f_after != 6'd0) assert (f_after == 6'd1 << f_since_tick);
   end
 `endif
