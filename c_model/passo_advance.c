@@ -29,11 +29,6 @@ struct progress {
 	int64_t e[PASSO_AXES_MAX];
 };
 
-static int64_t minus_m(const struct passo_line_unit *line)
-{
-	return (int64_t)line->minus_substeps - (INT64_C(1) << 32);
-}
-
 static uint64_t min_u64(uint64_t a, uint64_t b)
 {
 	return a < b ? a : b;
@@ -45,15 +40,14 @@ static bool lines_settled(const struct passo_channel *channel, const struct pass
 {
 	const struct passo_line_queue *queue = &channel->line_queue;
 	const unsigned depth = 1u << parameters->line_queue_log2;
-	const unsigned used = ((unsigned)queue->write_line - queue->current_line) & (2u * depth - 1u);
 	const struct passo_line *next = &queue->lines[queue->next_line & (depth - 1u)];
-	const struct passo_line *current = &queue->lines[queue->current_line & (depth - 1u)];
+	const struct passo_line *current = &queue->lines[queue->current_line];
 
 	for (unsigned i = 0; i < channel->axes; i++)
 		if (queue->steps[i] != current->steps[i])
 			return false;
-	return queue->room == depth - used && queue->next_valid == (queue->next_line != queue->write_line)
-	    && queue->next_minus_substeps == 0u - next->substeps && queue->next_last == next->last
+	return queue->next_valid == (queue->next_line != queue->write_line)
+	    && queue->last_substep == current->substeps - 1u && queue->next_last == next->last
 	    && queue->next_endless == next->endless && queue->next_directions == next->directions;
 }
 
@@ -75,6 +69,8 @@ static bool slots_empty(const struct passo_channel *channel)
 {
 	const struct passo_line_unit *line = &channel->line;
 
+	if (line->on_last != (line->substep_number == channel->line_queue.last_substep))
+		return false;
 	for (unsigned i = 0; i < channel->axes; i++)
 		if (channel->dda[i].addend != (int64_t)channel->line_queue.steps[i])
 			return false;
@@ -114,7 +110,7 @@ static bool motion_settled(const struct passo_channel *channel, const struct pas
 {
 	const struct passo_motion *motion = &channel->motion;
 
-	if (motion->stopping)
+	if (motion->stopping || motion->rate_was_zero != (channel->timescale.rate == 0u))
 		return false;
 	switch (motion->state) {
 	case PASSO_STATE_IDLE:
@@ -141,9 +137,9 @@ static uint64_t surroundings_quiet(
 	const struct passo_line_unit *line = &channel->line;
 	const bool moving = channel->motion.state == PASSO_STATE_RUN;
 
-	if (!motion_settled(channel, inputs) || !commands_settled(&channel->registers) || line->slot_load
-	    || line->slot_load_q || line->remaining_bump || line->underrun
-	    || !ramps_settled(&channel->ramp_queue, inputs->parameters)
+	if (!motion_settled(channel, inputs) || channel->positions.snapshot_waits
+	    || !commands_settled(&channel->registers) || line->slot_load || line->slot_load_q
+	    || line->underrun || !ramps_settled(&channel->ramp_queue, inputs->parameters)
 	    || !lines_settled(channel, inputs->parameters))
 		return 0;
 	uint64_t clocks =
@@ -173,7 +169,8 @@ static bool take_to_end(const struct passo_channel *channel, struct progress *pr
 	progress->phase = (phase_high << 24 & PHASE_MASK) | path->phase_low;
 	if (line->active)
 		on_the_way = (path->substep ? 1 : 0) + (phase_high >> 24 != 0u ? 1 : 0);
-	progress->remaining = line->remaining + on_the_way;
+	progress->remaining =
+	    (int64_t)line->substep_number + on_the_way - (int64_t)channel->line_queue.last_substep;
 	on_the_way += line->slot_add ? 1 : 0;
 	for (unsigned i = 0; i < channel->axes; i++) {
 		const struct passo_dda *dda = &channel->dda[i];
@@ -256,11 +253,13 @@ static void put_back(struct passo_channel *channel, const struct progress *progr
 	line->slot_step = carry[3];
 	const int64_t not_counted = (carry[0] ? 1 : 0) + (carry[1] ? 1 : 0);
 	const int64_t not_added = not_counted + (carry[2] ? 1 : 0);
-	line->remaining = progress->remaining - not_counted;
+	const int64_t last_substep = (int64_t)channel->line_queue.last_substep;
+	line->substep_number = (uint32_t)(progress->remaining + last_substep - not_counted);
+	line->on_last = progress->remaining - not_added == 0;
 	for (unsigned i = 0; i < channel->axes; i++) {
 		const int64_t steps = (int64_t)channel->line_queue.steps[i];
 		channel->dda[i].e_minus_m = progress->e[i] - not_added * steps;
-		channel->dda[i].addend = carry[3] ? minus_m(line) : steps;
+		channel->dda[i].addend = carry[3] ? -1 - last_substep : steps;
 	}
 }
 
@@ -318,6 +317,7 @@ static void skip_surroundings(struct passo_channel *channel, uint64_t clocks)
 		motion->count = (uint8_t)((motion->count + clocks) & 7u);
 	for (unsigned i = 0; i < channel->axes; i++)
 		passo_axis_skip(&channel->axis[i], clocks);
+	passo_positions_skip(&channel->positions, clocks);
 }
 
 static void channel_skip(struct passo_channel *channel, uint64_t clocks)

@@ -28,6 +28,7 @@ void passo_channel_reset(
 	channel->timescale.rate = PASSO_RATE_ONE;
 	for (unsigned axis = 0; axis < parameters->axes; axis++)
 		passo_axis_reset(&channel->axis[axis]);
+	passo_positions_reset(&channel->positions);
 }
 
 static struct passo_channel_wires gather_wires(
@@ -54,9 +55,8 @@ static struct passo_channel_wires gather_wires(
 	wires.next = wires.begin_profile || wires.tick;
 	wires.ramp_ended = wires.next && channel->ramp.ends_next;
 
-	const bool more = channel->line.remaining < 0;
 	wires.substep_taken = channel->path.substep && channel->line.active;
-	wires.line_done = wires.substep_taken && !more;
+	wires.line_done = wires.substep_taken && channel->line.on_last;
 	wires.take =
 	    wires.prepare || (wires.line_done && !channel->line.last && channel->line_queue.next_valid);
 	return wires;
@@ -67,6 +67,11 @@ void passo_channel_clock(struct passo_channel *channel, const struct passo_chann
 	const struct passo_channel_wires wires = gather_wires(channel, inputs);
 	const struct passo_bus *bus = inputs->bus;
 	const unsigned in_axes = (unsigned)wires.bus_address - PASSO_CHANNEL_AXIS_BASE;
+	const unsigned axis_address = in_axes % PASSO_CHANNEL_AXIS_STRIDE;
+	const bool write_axis =
+	    wires.selected && bus->write && in_axes < channel->axes * PASSO_CHANNEL_AXIS_STRIDE;
+	const bool write_timing =
+	    write_axis && (axis_address == PASSO_AXIS_STEP_TIMING || axis_address == PASSO_AXIS_DIR_TIMING);
 	const struct passo_channel_registers registers = channel->registers;
 	const bool stopping = channel->motion.stopping;
 	const uint64_t velocity = channel->ramp.velocity;
@@ -74,6 +79,7 @@ void passo_channel_clock(struct passo_channel *channel, const struct passo_chann
 	bool take_now;
 
 	/* from the pins back to the queues: each module still sees the old state of those that feed it */
+	passo_positions_clock(&channel->positions, channel->axis, registers.command_zero, inputs->snapshot);
 	for (unsigned i = 0; i < channel->axes; i++) {
 		const struct passo_axis_wires axis_wires = {
 		    .step_request = passo_dda_step_request(&channel->dda[i], &channel->line),
@@ -81,14 +87,14 @@ void passo_channel_clock(struct passo_channel *channel, const struct passo_chann
 		    .drop = registers.command_abort,
 		    .zero = registers.command_zero,
 		    .clear = registers.command_clear,
-		    .snapshot = inputs->snapshot,
+		    .timing_written = write_timing && in_axes / PASSO_CHANNEL_AXIS_STRIDE == i,
 		};
 		passo_axis_clock(&channel->axis[i], &axis_wires);
-		passo_dda_clock(&channel->dda[i], &channel->line, channel->line_queue.steps[i]);
+		passo_dda_clock(&channel->dda[i], &channel->line, &channel->line_queue, i);
 	}
-	if (wires.selected && bus->write && in_axes < channel->axes * PASSO_CHANNEL_AXIS_STRIDE)
-		passo_axis_registers_write(&channel->axis[in_axes / PASSO_CHANNEL_AXIS_STRIDE].settings,
-		    (uint8_t)(in_axes % PASSO_CHANNEL_AXIS_STRIDE), bus->data);
+	if (write_axis)
+		passo_axis_settings_write(&channel->axis[in_axes / PASSO_CHANNEL_AXIS_STRIDE].settings,
+		    (uint8_t)axis_address, bus->data);
 
 	passo_motion_clock(&channel->motion, channel, &wires);
 	passo_line_clock(&channel->line, &channel->line_queue, &wires);

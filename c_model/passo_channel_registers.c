@@ -100,7 +100,7 @@ static struct answer channel_answer(
 		break;
 	}
 	if (position < channel->axes)
-		return read_only(channel->axis[position].position_snapshot);
+		return read_only(channel->positions.copies[position]);
 	if (in_axes < channel->axes * PASSO_CHANNEL_AXIS_STRIDE)
 		return axis_answer(&channel->axis[in_axes / PASSO_CHANNEL_AXIS_STRIDE],
 		    (uint8_t)(in_axes % PASSO_CHANNEL_AXIS_STRIDE), bus->data);

@@ -131,7 +131,9 @@ struct passo_tables {
 
 struct passo_line_queue {
 	uint8_t index;
-	uint16_t write_line, next_line, current_line; /* one bit more than the address */
+	uint16_t write_line, next_line; /* one bit more than the address */
+	uint16_t current_line;
+	bool has_place; /* the current line is not the next line */
 	uint16_t checked;
 	uint32_t checked_substeps;
 	uint16_t room;
@@ -140,7 +142,7 @@ struct passo_line_queue {
 	/* outputs of the block RAM */
 	bool next_last, next_endless;
 	uint8_t next_directions;
-	uint32_t next_minus_substeps;
+	uint32_t last_substep; /* M - 1 */
 	uint32_t steps[PASSO_AXES_MAX];
 };
 
@@ -188,9 +190,8 @@ struct passo_path {
 
 struct passo_line_unit {
 	bool active, last, endless, ended, underrun;
-	uint32_t minus_substeps;
-	int64_t remaining;
-	bool remaining_bump;
+	uint32_t substep_number;
+	bool on_last;
 	uint8_t directions, directions_next;
 	bool slot_add, slot_load, slot_step, slot_load_q;
 };
@@ -200,13 +201,8 @@ struct passo_dda {
 	int64_t addend;
 };
 
-enum passo_axis_state {
-	PASSO_AXIS_READY,
-	PASSO_AXIS_HIGH,
-	PASSO_AXIS_LOW,
-	PASSO_AXIS_HOLD,
-	PASSO_AXIS_SETUP
-};
+/* READY and HOLD: idle; PULSE: high or low. */
+enum passo_axis_state { PASSO_AXIS_READY, PASSO_AXIS_PULSE, PASSO_AXIS_HOLD, PASSO_AXIS_SETUP };
 
 struct passo_axis_settings {
 	uint16_t step_high, step_low, dir_setup, dir_hold; /* clocks */
@@ -217,13 +213,19 @@ struct passo_axis {
 	struct passo_axis_settings settings;
 	enum passo_axis_state state;
 	uint16_t timer;
-	uint8_t waiting, waiting_count;
+	uint8_t waiting, waits; /* one bit for each place */
 	bool step, dir;
-	bool step_begins_q, dir_q;
+	bool step_made;
 	bool overrun;
-	uint32_t position, position_snapshot;
+	uint32_t position;
 	uint8_t lost;
 	bool step_pin, dir_pin, enable_pin;
+};
+
+struct passo_positions {
+	uint8_t slot; /* clock of the round */
+	bool clear_waits, snapshot_waits;
+	uint32_t copies[PASSO_AXES_MAX];
 };
 
 struct passo_motion {
@@ -234,6 +236,7 @@ struct passo_motion {
 	uint16_t drained;
 	uint8_t count;
 	bool startable;
+	bool rate_was_zero;
 	bool running;
 };
 
@@ -256,6 +259,7 @@ struct passo_channel {
 	struct passo_line_unit line;
 	struct passo_dda dda[PASSO_AXES_MAX];
 	struct passo_axis axis[PASSO_AXES_MAX];
+	struct passo_positions positions;
 };
 
 /* What the core gives to a channel. */
@@ -315,16 +319,17 @@ void passo_ramp_clock(struct passo_ramp_unit *ramp, const struct passo_channel *
 
 void passo_path_clock(struct passo_path *path, bool restart, bool advance, uint64_t velocity);
 
-int64_t passo_line_broadcast(const struct passo_line_unit *line);
+int64_t passo_line_broadcast(const struct passo_line_unit *line, uint32_t last_substep);
 void passo_line_clock(struct passo_line_unit *line, const struct passo_line_queue *queue,
     const struct passo_channel_wires *wires);
 
 bool passo_dda_step_request(const struct passo_dda *dda, const struct passo_line_unit *line);
-void passo_dda_clock(struct passo_dda *dda, const struct passo_line_unit *line, uint32_t steps);
+void passo_dda_clock(struct passo_dda *dda, const struct passo_line_unit *line,
+    const struct passo_line_queue *queue, unsigned axis);
 
 struct passo_axis_wires {
 	bool step_request, direction;
-	bool drop, zero, clear, snapshot;
+	bool drop, zero, clear, timing_written;
 };
 
 void passo_axis_reset(struct passo_axis *axis);
@@ -332,6 +337,12 @@ void passo_axis_clock(struct passo_axis *axis, const struct passo_axis_wires *wi
 /* Nothing but the timer moves for so many clocks; 0 if the next clock may change something. */
 uint32_t passo_axis_quiet(const struct passo_axis *axis, bool line_direction);
 void passo_axis_skip(struct passo_axis *axis, uint64_t clocks);
+
+void passo_positions_reset(struct passo_positions *positions);
+void passo_positions_clock(
+    struct passo_positions *positions, const struct passo_axis *axes, bool zero, bool snapshot);
+/* Some clocks without `zero` and `snapshot`, while no snapshot waits. */
+void passo_positions_skip(struct passo_positions *positions, uint64_t clocks);
 
 void passo_motion_wires(const struct passo_channel *channel, const struct passo_channel_inputs *inputs,
     struct passo_channel_wires *wires);
@@ -344,7 +355,7 @@ struct passo_response passo_channel_respond(
 void passo_channel_registers_reset(struct passo_channel_registers *registers);
 void passo_channel_registers_clock(
     struct passo_channel_registers *registers, const struct passo_bus *bus, bool selected);
-void passo_axis_registers_write(struct passo_axis_settings *settings, uint8_t address, uint32_t data);
+void passo_axis_settings_write(struct passo_axis_settings *settings, uint8_t address, uint32_t data);
 
 void passo_channel_reset(
     struct passo_channel *channel, const struct passo_parameters *parameters, uint8_t number);

@@ -7,10 +7,10 @@ enum { SETTLE_LAST = 4, START_LAST = 6 };
 
 static bool stop_now(const struct passo_channel *channel, const struct passo_channel_wires *wires)
 {
-	const bool rate_is_zero = channel->timescale.rate == 0u;
 	return channel->registers.command_abort
 	    || (wires->moving && (wires->overrun || channel->line.underrun))
-	    || (channel->motion.stopping && (rate_is_zero || wires->finished || !wires->moving));
+	    || (channel->motion.stopping
+	        && (channel->motion.rate_was_zero || wires->finished || !wires->moving));
 }
 
 static enum passo_cause cause_now(
@@ -57,6 +57,7 @@ void passo_motion_clock(
 
 	motion->startable = wires->startable;
 	motion->count = (count + 1u) & 7u;
+	motion->rate_was_zero = channel->timescale.rate == 0u;
 	if (wires->prepare)
 		motion->state = PASSO_STATE_PREPARE;
 	if (state == PASSO_STATE_PREPARE && channel->ramp.ready)

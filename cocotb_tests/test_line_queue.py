@@ -50,16 +50,16 @@ class Queue:
         getattr(self.dut, name).value = 0
 
     def check_next(self, line: list[int] | None) -> None:
-        """Check the control and the length of the next line, or that there is none."""
+        """Check the control of the next line, or that there is none."""
         assert read(self.dut.next_valid) == (line is not None)
         if line is not None:
             assert read(self.dut.next_last) == line[0] & 1
             assert read(self.dut.next_endless) == line[0] >> 1 & 1
             assert read(self.dut.next_directions) == line[0] >> 8
-            assert read(self.dut.next_minus_substeps) == -line[1] % (1 << 32)
 
     def check_current(self, line: list[int]) -> None:
-        """Check the step counts of the current line."""
+        """Check the length and the step counts of the current line."""
+        assert read(self.dut.last_substep) == line[1] - 1
         steps = read(self.dut.steps)
         assert [steps >> 32 * axis & 0xFFFFFFFF for axis in range(self.axes)] == line[2:]
 

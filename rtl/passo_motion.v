@@ -65,11 +65,12 @@ module passo_motion (
   reg [2:0] count;
   reg [2:0] soft_cause;
   reg       startable;
+  reg       settled;  // in SETTLE, and count has come to SETTLE_LAST
+  reg       rate_was_zero;
 
   assign occupied = state != STATE_IDLE && !stopped;
   assign moving   = state == STATE_RUN || state == STATE_SETTLE || state == STATE_DRAIN;
 
-  wire settled = state == STATE_SETTLE && count == SETTLE_LAST;
   wire finished = settled && (line_ended || line_endless);
   wire dry = ramp_dry & ~line_endless;
 
@@ -80,7 +81,7 @@ module passo_motion (
   assign release_line  = finished;
 
   wire stop_now = command_abort | (moving & (step_overrun | line_underrun))
-                  | (stopping & (rate_is_zero | finished | ~moving));
+                  | (stopping & (rate_was_zero | finished | ~moving));
   wire [2:0] cause_now = command_abort           ? CAUSE_ABORT :
                          moving & step_overrun   ? CAUSE_STEP_OVERRUN :
                          moving & line_underrun  ? CAUSE_LINE_UNDERRUN : soft_cause;
@@ -88,8 +89,10 @@ module passo_motion (
   assign stopped = state == STATE_STOPPED;
 
   always @(posedge clk) begin
-    startable <= state == STATE_IDLE && run && line_valid && ramp_valid;
-    count     <= count + 3'd1;
+    startable     <= state == STATE_IDLE && run && line_valid && ramp_valid;
+    count         <= count + 3'd1;
+    settled       <= state == STATE_SETTLE && count == SETTLE_LAST - 3'd1;
+    rate_was_zero <= rate_is_zero;
     case (state)
       STATE_IDLE:    if (startable) state <= STATE_PREPARE;
       STATE_PREPARE: if (ramp_ready) state <= STATE_ARMED;
@@ -124,6 +127,7 @@ module passo_motion (
       cause    <= cause_now;
       stopping <= 1'b0;
       running  <= 1'b0;
+      settled  <= 1'b0;
     end
     if (rst) begin
       state     <= STATE_IDLE;
@@ -131,6 +135,7 @@ module passo_motion (
       stopping  <= 1'b0;
       drained   <= 16'd0;
       startable <= 1'b0;
+      settled   <= 1'b0;
       running   <= 1'b0;
     end
   end
