@@ -17,7 +17,10 @@
 /* Clocks from the phase to the DDA whose substeps are on their way. */
 enum { PIPELINE_CLOCKS = 4 };
 
-/* A ramp has made the next velocity by then, in any case: see passo_ramp_latency(). */
+/* Clocks from a slew tick until the rate has changed: see passo_timescale_clock(). */
+enum { SLEW_CLOCKS = 6 };
+
+/* A ramp has made the next velocity by then, in any case, and stepped. */
 static const uint32_t RAMP_DONE_TICK_COUNT = 100;
 
 static const uint64_t PHASE_MASK = PASSO_ONE_Q48 - 1u;
@@ -56,7 +59,7 @@ static bool ramps_settled(const struct passo_ramp_queue *queue, const struct pas
 	const unsigned depth = 1u << parameters->ramp_queue_log2;
 	const unsigned used = ((unsigned)queue->write_ramp - queue->read_ramp) & (2u * depth - 1u);
 
-	return !queue->write_low && queue->room == depth - used;
+	return !queue->write_low && queue->room == depth - used && queue->valid == (used != 0u);
 }
 
 static bool commands_settled(const struct passo_channel_registers *registers)
@@ -74,35 +77,38 @@ static bool slots_empty(const struct passo_channel *channel)
 	for (unsigned i = 0; i < channel->axes; i++)
 		if (channel->dda[i].addend != (int64_t)channel->line_queue.steps[i])
 			return false;
-	return !channel->path.advance_q && !channel->path.substep && !line->slot_add && !line->slot_step;
+	return !channel->path.take_q && !channel->path.advance_q && !channel->path.substep && !line->slot_add
+	    && !line->slot_step;
 }
 
 /* Clocks for which the rate stands still: all, or until the next slew tick. */
 static uint64_t timescale_quiet(const struct passo_channel *channel, bool moving, uint64_t clocks_to_slew)
 {
 	const struct passo_timescale *timescale = &channel->timescale;
-	const struct passo_channel_registers *registers = &channel->registers;
-	const uint32_t slew = registers->rate_slew == 0u ? 1u : registers->rate_slew;
+	const uint32_t target = channel->registers.rate_target;
+	const uint32_t slew = channel->registers.rate_slew == 0u ? 1u : channel->registers.rate_slew;
 
-	if (timescale->rate != timescale->goal || timescale->distance != 0)
+	if (timescale->rate != timescale->goal || timescale->after != 0u)
 		return 0;
 	if (!moving)
-		return timescale->rate == registers->rate_target && timescale->slew == 1u
-		            && timescale->rate_sum == 0u && !timescale->enable
+		return timescale->rate == target && timescale->still && timescale->rate_sum == 0u
+		            && !timescale->enable
 		         ? UINT64_MAX
 		         : 0u;
 	const bool steady = timescale->enable ? timescale->rate == PASSO_RATE_ONE : timescale->rate == 0u;
-	if (!steady)
+	if (!steady || timescale->still)
 		return 0;
-	return timescale->goal == registers->rate_target && timescale->slew == slew ? UINT64_MAX
-	                                                                            : clocks_to_slew;
+	return timescale->goal == target && timescale->slew == slew && !timescale->down ? UINT64_MAX
+	                                                                                : clocks_to_slew;
 }
 
 static uint64_t ramp_quiet(const struct passo_ramp_unit *ramp)
 {
-	if (ramp->take_now || ramp->dry || ramp->step == PASSO_RAMP_CHOOSE)
+	if (ramp->take_now || ramp->dry || ramp->step == PASSO_RAMP_TAKE)
 		return 0;
-	return ramp->step == PASSO_RAMP_IDLE ? UINT64_MAX : ramp->wait - 1u;
+	if (ramp->step == PASSO_RAMP_CHOOSE)
+		return ramp->active && !ramp->ready ? 0u : UINT64_MAX;
+	return ramp->wait - 1u;
 }
 
 /* Motions at rest: nothing starts. Motions that run: their pin is up, nothing stops. */
@@ -115,8 +121,7 @@ static bool motion_settled(const struct passo_channel *channel, const struct pas
 	switch (motion->state) {
 	case PASSO_STATE_IDLE:
 		return !motion->running && !motion->startable
-		    && !(inputs->run && channel->line_queue.next_valid
-		         && passo_ramp_queue_valid(&channel->ramp_queue));
+		    && !(inputs->run && channel->line_queue.next_valid && channel->ramp_queue.valid);
 	case PASSO_STATE_PREPARE:
 		return !motion->running && !channel->ramp.ready;
 	case PASSO_STATE_ARMED:
@@ -165,7 +170,7 @@ static bool take_to_end(const struct passo_channel *channel, struct progress *pr
 	if (!line->active && (line->slot_add || line->slot_step))
 		return false; /* the last substep of the last line */
 	if (path->advance_q)
-		phase_high += path->velocity_high_q + (path->phase_low_carry ? 1u : 0u);
+		phase_high += path->velocity_high + (path->phase_low_carry ? 1u : 0u);
 	progress->phase = (phase_high << 24 & PHASE_MASK) | path->phase_low;
 	if (line->active)
 		on_the_way = (path->substep ? 1 : 0) + (phase_high >> 24 != 0u ? 1 : 0);
@@ -214,6 +219,11 @@ static uint64_t substeps_to_event(const struct passo_channel *channel, const str
 	return substeps;
 }
 
+static uint64_t velocity_of(const struct passo_path *path)
+{
+	return (uint64_t)path->velocity_high << 24 | path->velocity_low;
+}
+
 /* Sums the velocity over some clocks of one tick; returns the substeps. */
 static int64_t sum_phase(struct progress *progress, uint64_t velocity, uint64_t clocks)
 {
@@ -230,7 +240,7 @@ static void put_back(struct passo_channel *channel, const struct progress *progr
 {
 	struct passo_path *path = &channel->path;
 	struct passo_line_unit *line = &channel->line;
-	const uint64_t velocity = channel->ramp.velocity;
+	const uint64_t velocity = velocity_of(path);
 	uint64_t phase = progress->phase;
 	bool carry[PIPELINE_CLOCKS]; /* of the last clock, the one before it, ... */
 	uint64_t phase_before_last = 0;
@@ -244,7 +254,6 @@ static void put_back(struct passo_channel *channel, const struct progress *progr
 	path->phase_low = (uint32_t)(progress->phase & 0xFFFFFFu);
 	path->phase_low_carry = path->phase_low < (uint32_t)(velocity & 0xFFFFFFu);
 	path->phase_high = (uint32_t)(phase_before_last >> 24);
-	path->velocity_high_q = (uint32_t)(velocity >> 24);
 	path->advance_q = true;
 	path->substep = carry[1];
 	if (!line->active)
@@ -274,7 +283,7 @@ static bool profile_counts(const struct passo_channel *channel)
 static uint64_t profile_quiet(
     const struct passo_channel *channel, const struct passo_parameters *parameters, uint64_t limit)
 {
-	const uint64_t velocity = channel->ramp.velocity;
+	const uint64_t velocity = velocity_of(&channel->path);
 	const uint32_t tick_last = (1u << parameters->tick_log2) - 1u;
 	const uint32_t tick_count = channel->ramp.tick_count;
 	/* first to the place from which skip_ticks() can go on */
@@ -282,7 +291,7 @@ static uint64_t profile_quiet(
 	const uint32_t goal = before_place ? RAMP_DONE_TICK_COUNT : tick_last;
 	struct progress progress;
 
-	if (channel->ramp_queue.now_pending || !take_to_end(channel, &progress))
+	if (channel->ramp_queue.now_pending || channel->path.take_q || !take_to_end(channel, &progress))
 		return 0;
 	uint64_t clocks = min_u64(limit, goal - tick_count);
 	if (channel->line.active && velocity != 0u) {
@@ -326,12 +335,12 @@ static void channel_skip(struct passo_channel *channel, uint64_t clocks)
 	struct progress progress;
 
 	skip_surroundings(channel, clocks);
-	if (ramp->step != PASSO_RAMP_IDLE)
+	if (ramp->step != PASSO_RAMP_CHOOSE)
 		ramp->wait -= (uint32_t)clocks;
 	if (!profile_counts(channel))
 		return;
 	take_to_end(channel, &progress);
-	const int64_t substeps = sum_phase(&progress, ramp->velocity, clocks);
+	const int64_t substeps = sum_phase(&progress, velocity_of(&channel->path), clocks);
 	count_substeps(channel, &progress, substeps);
 	ramp->tick_count += (uint32_t)clocks;
 	put_back(channel, &progress);
@@ -343,25 +352,27 @@ static uint64_t skip_ticks(
     struct passo_channel *channel, const struct passo_channel_inputs *inputs, uint64_t limit)
 {
 	struct passo_ramp_unit *ramp = &channel->ramp;
+	struct passo_path *path = &channel->path;
 	const uint64_t tick = UINT64_C(1) << inputs->parameters->tick_log2;
 	const uint64_t place = ramp->tick_count;
 	struct progress progress;
 	uint64_t clocks = 0;
 
-	if (!profile_counts(channel) || ramp->step != PASSO_RAMP_IDLE || !ramp->ready || ramp->ends_next
+	if (!profile_counts(channel) || ramp->step != PASSO_RAMP_CHOOSE || !ramp->ready || !ramp->loaded
 	    || place < RAMP_DONE_TICK_COUNT || channel->ramp_queue.now_pending
 	    || !take_to_end(channel, &progress))
 		return 0;
-	while (ramp->ticks != 0u && clocks + tick <= limit) {
+	/* the last velocity of a ramp takes it from the queue */
+	while (ramp->ticks > 1u && clocks + tick <= limit) {
 		struct progress then = progress;
-		int64_t substeps = sum_phase(&then, ramp->velocity, tick - place);
+		int64_t substeps = sum_phase(&then, velocity_of(path), tick - place);
 		substeps += sum_phase(&then, ramp->velocity_next, place);
 		if (!count_substeps(channel, &then, substeps))
 			break;
 		progress = then;
-		ramp->velocity = ramp->velocity_next;
+		path->velocity_low = (uint32_t)(ramp->velocity_next & 0xFFFFFFu);
+		path->velocity_high = (uint32_t)(ramp->velocity_next >> 24);
 		passo_ramp_make_velocity(ramp, inputs->tables);
-		ramp->wait = 0;
 		clocks += tick;
 	}
 	if (clocks != 0u) {
@@ -444,6 +455,11 @@ uint64_t passo_core_advance(struct passo_core *core, const struct passo_inputs *
 
 	core->slew_tick = (core->slew_count + clocks - 1u) % tick == tick - 1u;
 	core->slew_count = (uint32_t)((core->slew_count + clocks) % tick);
+	/* a slew tick on the way is still at work */
+	for (unsigned i = 0; i < channels; i++)
+		if (core->channel[i].motion.state == PASSO_STATE_RUN && core->slew_count <= SLEW_CLOCKS
+		    && core->slew_count <= clocks)
+			core->channel[i].timescale.after = (uint8_t)core->slew_count;
 	core->tables.slot = (uint8_t)((core->tables.slot + clocks) % (2u * channels));
 	return clocks;
 }

@@ -42,7 +42,7 @@ static struct passo_channel_wires gather_wires(
 	wires.bus_address = (uint8_t)bus->address;
 	wires.line_push = wires.selected && bus->push && wires.bus_address == PASSO_CHANNEL_LINE;
 	wires.ramp_push = wires.selected && bus->push && wires.bus_address == PASSO_CHANNEL_RAMP;
-	wires.ramp_valid = passo_ramp_queue_valid(&channel->ramp_queue);
+	wires.ramp_valid = channel->ramp_queue.valid;
 	for (unsigned axis = 0; axis < channel->axes; axis++)
 		wires.overrun = wires.overrun || channel->axis[axis].overrun;
 
@@ -74,7 +74,6 @@ void passo_channel_clock(struct passo_channel *channel, const struct passo_chann
 	    write_axis && (axis_address == PASSO_AXIS_STEP_TIMING || axis_address == PASSO_AXIS_DIR_TIMING);
 	const struct passo_channel_registers registers = channel->registers;
 	const bool stopping = channel->motion.stopping;
-	const uint64_t velocity = channel->ramp.velocity;
 	bool take_ramp;
 	bool take_now;
 
@@ -98,7 +97,7 @@ void passo_channel_clock(struct passo_channel *channel, const struct passo_chann
 
 	passo_motion_clock(&channel->motion, channel, &wires);
 	passo_line_clock(&channel->line, &channel->line_queue, &wires);
-	passo_path_clock(&channel->path, wires.prepare, wires.advance, velocity);
+	passo_path_clock(&channel->path, &channel->ramp, &wires, registers.drain_velocity);
 	passo_ramp_clock(&channel->ramp, channel, inputs, &wires, &take_ramp, &take_now);
 	passo_timescale_clock(&channel->timescale, &registers, wires.moving, stopping, inputs->slew_tick);
 	passo_line_queue_clock(&channel->line_queue, inputs->parameters, bus, &wires);

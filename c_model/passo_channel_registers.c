@@ -88,7 +88,7 @@ static struct answer channel_answer(
 	case PASSO_CHANNEL_ROOM:
 		return read_only((uint32_t)channel->line_queue.room << 16 | channel->ramp_queue.room);
 	case PASSO_CHANNEL_VELOCITY:
-		return read_only((uint32_t)(channel->ramp.velocity >> 16));
+		return read_only(channel->path.velocity_high << 8 | channel->path.velocity_low >> 16);
 	case PASSO_CHANNEL_LINE:
 		return write_only(bus->push ? passo_line_queue_refusal(
 						  &channel->line_queue, inputs->parameters, bus, stopped)

@@ -155,36 +155,48 @@ struct passo_ramp_queue {
 	bool is_now;
 	bool now_pending;
 	uint16_t room;
+	bool valid;
 	uint32_t words[PASSO_RAMP_QUEUE_MAX][5];
 };
 
 struct passo_timescale {
 	uint32_t rate, goal, slew; /* UQ1.16 */
-	int32_t distance;
+	uint8_t after;             /* clocks since the slew tick, until the rate has changed */
+	bool down;
+	bool still;
 	uint32_t rate_sum;
 	bool enable;
 };
 
-enum passo_ramp_step { PASSO_RAMP_IDLE, PASSO_RAMP_CHOOSE, PASSO_RAMP_LOAD, PASSO_RAMP_WORK };
+enum passo_ramp_step {
+	PASSO_RAMP_CHOOSE,
+	PASSO_RAMP_COPY,
+	PASSO_RAMP_FETCH,
+	PASSO_RAMP_TAKE,
+	PASSO_RAMP_WORK, /* look up, shape, scale */
+	PASSO_RAMP_STEP
+};
 
 struct passo_ramp_unit {
 	enum passo_ramp_step step;
-	uint32_t wait; /* clocks until LOAD or WORK (shape and scale) is done */
+	uint32_t wait; /* clocks until the step is done */
+	bool active;
 	bool take_now;
-	bool last, mirror;
+	bool loaded, last, mirror;
 	enum passo_shape shape;
-	uint64_t v_start, v_end;
-	uint32_t ticks;
-	uint64_t progress, progress_step;
+	uint64_t v_start;
+	uint64_t v_end, progress_step; /* the RTL reads them from the queue */
+	uint32_t ticks;                /* still to be made */
+	uint64_t progress;             /* u, UQ0.49 */
 	uint32_t tick_count;
 	bool ready, ends_next, dry;
-	uint64_t velocity, velocity_next;
+	uint64_t velocity_next;
 };
 
 struct passo_path {
-	uint32_t phase_low, phase_high, velocity_high_q; /* 24 bits each */
+	uint32_t velocity_low, velocity_high, phase_low, phase_high; /* 24 bits each */
 	bool phase_low_carry;
-	bool advance_q;
+	bool take_q, drain_q, advance_q;
 	bool substep;
 };
 
@@ -291,7 +303,6 @@ void passo_line_queue_clock(struct passo_line_queue *queue, const struct passo_p
 uint8_t passo_line_queue_refusal(const struct passo_line_queue *queue,
     const struct passo_parameters *parameters, const struct passo_bus *bus, bool blocked);
 
-bool passo_ramp_queue_valid(const struct passo_ramp_queue *queue);
 void passo_ramp_queue_clock(struct passo_ramp_queue *queue, const struct passo_parameters *parameters,
     const struct passo_bus *bus, const struct passo_channel_wires *wires, bool take, bool take_now);
 uint8_t passo_ramp_queue_refusal(
@@ -303,21 +314,18 @@ struct passo_ramp passo_ramp_queue_front(
 void passo_timescale_clock(struct passo_timescale *timescale, const struct passo_channel_registers *registers,
     bool moving, bool stopping, bool slew_tick);
 
-/* s as UQ1.24 for progress u as UQ0.48. */
-uint32_t passo_shape_value(
-    const struct passo_tables *tables, enum passo_shape shape, bool mirror, uint64_t progress);
-/* v_start + floor((v_end - v_start) * s) */
-uint64_t passo_scale_velocity(uint64_t v_start, uint64_t v_end, uint32_t s);
-/* Clocks from STEP_CHOOSE to the clock that makes velocity_next ready. */
-uint32_t passo_ramp_latency(const struct passo_ramp_unit *ramp, const struct passo_tables *tables,
-    const struct passo_parameters *parameters, uint8_t channel);
+/* a + floor((b - a) * f), f as UQ1.24 */
+uint64_t passo_interpolate(uint64_t a, uint64_t b, uint32_t f);
+/* s as UQ1.24 for progress u as UQ0.49. */
+uint32_t passo_shape(const struct passo_tables *tables, enum passo_shape shape, uint64_t progress);
 /* Makes the velocity of one tick of the present ramp: velocity_next. */
 void passo_ramp_make_velocity(struct passo_ramp_unit *ramp, const struct passo_tables *tables);
 void passo_ramp_clock(struct passo_ramp_unit *ramp, const struct passo_channel *channel,
     const struct passo_channel_inputs *inputs, const struct passo_channel_wires *wires, bool *take,
     bool *take_now);
 
-void passo_path_clock(struct passo_path *path, bool restart, bool advance, uint64_t velocity);
+void passo_path_clock(struct passo_path *path, const struct passo_ramp_unit *ramp,
+    const struct passo_channel_wires *wires, uint32_t drain_velocity);
 
 int64_t passo_line_broadcast(const struct passo_line_unit *line, uint32_t last_substep);
 void passo_line_clock(struct passo_line_unit *line, const struct passo_line_queue *queue,

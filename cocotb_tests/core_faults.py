@@ -74,7 +74,7 @@ def ramp_underrun(core: Core) -> None:
     begin = core.clock
     core.run_until(lambda: not core.is_running(), 5000)
     length = core.clock - begin
-    assert 12 * core.tick < length < 17 * core.tick
+    assert 11 * core.tick < length < 14 * core.tick
     check_stopped(core, channel, Cause.RAMP_UNDERRUN)
     # it went on at speed while it slowed down
     steps = core.steps(0)

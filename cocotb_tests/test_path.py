@@ -7,7 +7,7 @@ from itertools import pairwise
 import cocotb
 from cocotb.handle import HierarchyObject
 
-from cocotb_tests.bench import Clocks, Recorder, begin, rng
+from cocotb_tests.bench import Clocks, Recorder, begin, read, rng
 from cocotb_tests.runner import run
 
 LATENCY = 2  # advance to substep
@@ -27,11 +27,13 @@ class Path:
         self.substeps = Recorder(clocks, dut.substep)
         self.expected: list[int] = []
         self.phase = ONE // 4
+        self.velocity = self.coming_high = 0
 
     @classmethod
     async def begin(cls, dut: HierarchyObject) -> "Path":
         """Reset; the reset leaves the phase as restart does."""
-        return cls(dut, await begin(dut, "restart", "advance", "velocity"))
+        inputs = ("stop", "take", "rest", "velocity_next", "drain", "drain_velocity")
+        return cls(dut, await begin(dut, "restart", "advance", *inputs))
 
     async def restart(self) -> None:
         """Begin a motion."""
@@ -39,19 +41,31 @@ class Path:
         self.dut.restart.value = 1
         await self.clocks.wait(1)
         self.dut.restart.value = 0
-        self.phase = ONE // 4
+        self.phase, self.velocity = ONE // 4, 0
+
+    def take(self, velocity: int) -> None:
+        """Take a velocity with the clock to come; its upper half is there only one clock later."""
+        dut = self.dut
+        high, self.coming_high = self.coming_high, velocity >> 24
+        dut.velocity_next.value = high << 24 | velocity & 0xFFFFFF
+        dut.take.value = 1
 
     async def advance(self, velocities: Iterable[int | None]) -> None:
-        """One clock for each velocity; None is a clock without advance, with any velocity."""
-        for velocity in velocities:
+        """One clock for each velocity, taken with the one before; None is a clock without advance."""
+        given = list(velocities)
+        for velocity, following in zip([None, *given], [*given, None], strict=True):
             self.dut.advance.value = velocity is not None
             if velocity is not None:
-                self.dut.velocity.value = velocity
                 carry, self.phase = divmod(self.phase + velocity, ONE)
                 if carry:
                     self.expected.append(self.clocks.now + LATENCY)
+            self.take(self.velocity if following is None else following)
+            self.velocity = self.velocity if following is None else following
             await self.clocks.fall
         self.dut.advance.value = 0
+        self.take(self.velocity)
+        await self.clocks.fall
+        self.dut.take.value = 0
 
     async def compare(self) -> int:
         """Check all substeps so far; return their number."""
@@ -67,7 +81,7 @@ async def half_a_substep_per_clock_is_one_every_second_clock(dut: HierarchyObjec
     """The highest velocity: the quarter substep puts the first carry on the second clock."""
     path = await Path.begin(dut)
     await path.restart()
-    first = path.clocks.now
+    first = path.clocks.now + 1  # the clock before takes the velocity
     await path.advance([HALF] * 3000)
     assert await path.compare() == 1500
     assert path.expected == [first + 1 + 2 * n + LATENCY for n in range(1500)]
@@ -144,3 +158,35 @@ async def random_velocities_and_gaps_match_the_integer_sum(dut: HierarchyObject)
             sequence.append(velocity if random.random() < share else None)
         await path.advance(sequence)
     dut._log.info(f"{await path.compare()} substeps compared")
+
+
+@cocotb.test()
+async def a_velocity_counts_from_the_clock_after_take(dut: HierarchyObject) -> None:
+    """And stays until the next; rest and stop make it 0, drain has its own."""
+    path = await Path.begin(dut)
+    await path.restart()
+    random = rng("path, take")
+    for _ in range(60):
+        velocity, kind = random.randrange(HALF + 1), random.choice(("take", "rest", "stop", "drain"))
+        dut.velocity_next.value = velocity
+        dut.drain_velocity.value = velocity >> 16
+        dut.rest.value = kind == "rest"
+        if kind != "take":
+            velocity = velocity >> 16 << 16 if kind == "drain" else 0
+        strobe = getattr(dut, "take" if kind == "rest" else kind)
+        clocks = random.randrange(2, 40)
+        for clock in range(clocks):
+            counts = kind != "stop" or clock > 0  # a stopped channel does not count
+            if counts:
+                carry, path.phase = divmod(path.phase + path.velocity, ONE)
+                if carry:
+                    path.expected.append(path.clocks.now + LATENCY)
+            dut.advance.value = counts
+            strobe.value = clock == 0 or kind == "drain"
+            path.velocity = velocity
+            await path.clocks.fall
+        strobe.value = 0
+        dut.advance.value = 0
+        await path.clocks.wait(3)
+        assert read(dut.velocity) == velocity >> 16
+    await path.compare()

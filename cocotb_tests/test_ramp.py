@@ -332,7 +332,7 @@ async def the_last_ramp_ends_the_profile_and_later_ones_wait(dut: HierarchyObjec
 async def ramps_that_set_the_velocity_fit_into_a_tick_with_another(dut: HierarchyObject) -> None:
     """Ramps of one tick each with T = 0 before them, at full rate: the next velocity is ready in time.
 
-    Two ramps of T = 0 before each on a core of one channel, one on a core of eight, whatever the phase of the
+    Four ramps of T = 0 before each on a core of one channel, two on a core of eight, whatever the phase of the
     tick against the turns of the channels at the tables.
     """
     bench = await Ramps.begin(dut)
@@ -341,7 +341,7 @@ async def ramps_that_set_the_velocity_fit_into_a_tick_with_another(dut: Hierarch
     for phase in range(2 * channels):
         ramps: list[Ramp] = []
         for _ in range(4):
-            ramps += [Ramp(random.randrange(V_MAX), 0) for _ in range(2 if channels == 1 else 1)]
+            ramps += [Ramp(random.randrange(V_MAX), 0) for _ in range(4 if channels == 1 else 2)]
             ramps.append(Ramp(random.randrange(V_MAX), 1, random.choice(list(Shape)[1:]), phase % 4 < 2))
         ramps[-1] = Ramp(0, 1, Shape.EASE, last=True)
         while bench.clocks.now % (2 * channels) != phase:

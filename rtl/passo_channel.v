@@ -91,7 +91,10 @@ module passo_channel #(
   wire        ramp_ready;
   wire        ramp_ended;
   wire        ramp_dry;
-  wire [47:0] velocity;
+  wire        take_velocity;
+  wire        ends_next;
+  wire [47:0] velocity_next;
+  wire [31:0] velocity;
   wire        substep;
 
   // where: lines, DDAs
@@ -182,7 +185,7 @@ module passo_channel #(
     .overrun          (was_overrun),
     .drained          (drained),
     .rate             (rate),
-    .velocity         (velocity[47:16]),
+    .velocity         (velocity),
     .line_room        (line_room),
     .ramp_room        (ramp_room)
   );
@@ -293,13 +296,14 @@ module passo_channel #(
     .begin_profile   (begin_profile),
     .stop            (stopped),
     .drain           (drain),
-    .drain_velocity  (drain_velocity),
     .ready           (ramp_ready),
     .ended           (ramp_ended),
     .dry             (ramp_dry),
     .advance         (advance),
     .stall           (stall),
-    .velocity        (velocity),
+    .take_velocity   (take_velocity),
+    .ends_next       (ends_next),
+    .velocity_next   (velocity_next),
     .ramp_valid      (ramp_valid),
     .ramp_now_pending(ramp_now_pending),
     .ramp_take       (ramp_take),
@@ -314,12 +318,18 @@ module passo_channel #(
   );
 
   passo_path u_path (
-    .clk     (clk),
-    .rst     (rst),
-    .restart (prepare),
-    .advance (advance),
-    .velocity(velocity),
-    .substep (substep)
+    .clk           (clk),
+    .rst           (rst),
+    .restart       (prepare),
+    .stop          (stopped),
+    .advance       (advance),
+    .take          (take_velocity),
+    .rest          (ends_next),
+    .velocity_next (velocity_next),
+    .drain         (drain),
+    .drain_velocity(drain_velocity),
+    .velocity      (velocity),
+    .substep       (substep)
   );
 
   passo_line #(
