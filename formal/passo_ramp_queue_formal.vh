@@ -3,6 +3,11 @@
 
 // --- Assumptions: the link. A frame is checked, word by word; if nobody objects and it ends with a whole
 // ramp, it may be written, with as many words. Data stand from a clock before their strobe to a clock after it.
+`ifdef SMALL
+localparam [1:0] F_GAP = 2'd2;
+`else
+localparam [1:0] F_GAP = 2'd3;
+`endif
 reg       f_begun = 1'b0;
 reg       f_strobe_q = 1'b0;
 reg [1:0] f_gap = 2'd0;  // clocks since the last strobe or frame, up to 3
@@ -14,6 +19,7 @@ reg       f_select = 1'b0;
 reg [2:0] f_index = 3'd0;  // word of the ramp, 0 .. 4
 reg [2:0] f_since_write = 3'd0;
 (* anyseq *) reg f_go;
+(* anyseq *) reg [DEPTH_LOG2:0] f_short_ramps;
 wire f_strobe = (bus_check | bus_write) & select;
 wire f_last_index = f_index == 3'd4;
 wire f_good = f_checking && !f_refused && refusal == VERDICT_OK && f_index == 3'd0 && f_words != 6'd0;
@@ -23,7 +29,7 @@ always @(posedge clk) begin
   f_gap      <= bus_check | bus_write | bus_frame ? 2'd0 : f_gap == 2'd3 ? 2'd3 : f_gap + 2'd1;
   f_since_write <= bus_write | f_writing ? 3'd0 : f_since_write == 3'd7 ? 3'd7 : f_since_write + 3'd1;
   assume (rst == !f_begun);
-  if (bus_check || bus_write || bus_frame) assume (f_gap == 2'd3);
+  if (bus_check || bus_write || bus_frame) assume (f_gap >= F_GAP);
   assume (bus_check + bus_write + bus_frame <= 2'd1);
   if (bus_check || bus_write || f_strobe_q) assume ($stable(bus_data));
   if (bus_check) assume (f_checking && f_words != 6'd60);
@@ -43,6 +49,15 @@ always @(posedge clk) begin
     f_refused  <= 1'b0;
     f_checking <= !(f_good && f_go);
     f_writing  <= f_good && f_go && f_select;
+`ifdef SMALL
+    // shorter for the search of bugs: a frame that would be good is written without being checked
+    if (f_go && f_short_ramps != 0 && f_short_ramps <= room) begin
+      f_checking <= 1'b0;
+      f_writing  <= 1'b1;
+      f_select   <= 1'b1;
+      f_words    <= 5 * f_short_ramps;
+    end else
+`endif
     if (!(f_good && f_go)) f_words <= 6'd0;
   end
   // ramp and motion: a ramp is taken only if it is there, and not a NOW ramp before take_now
@@ -51,9 +66,6 @@ always @(posedge clk) begin
   if (take_now) assume (now_pending);
   // a channel stays stopped while a frame is written: only another frame can clear it
   if (f_begun && $past(flush) && f_since_write != 3'd7) assume (flush);
-`ifdef SMALL
-  assume (f_go);
-`endif
 end
 
 // --- The queue as it should be

@@ -28,7 +28,10 @@ from passo.toolchain import environment, paths
 HERE = Path(__file__).resolve().parent
 BUILD = paths.build / "formal"
 JOBS = 2
-TIME_LIMIT = 1800  # seconds for one run of the solver
+TIME_LIMIT = 900  # seconds for one run of the solver
+
+
+running: set[int] = set()  # process groups of the solvers, to be ended with this program
 
 
 @dataclass(frozen=True)
@@ -101,16 +104,18 @@ def _fresh_copy(folder: Path) -> None:
 
 
 def plant(promise: Promise, root: Path) -> None:
-    """Replace the promise's line in the copy of the sources under root.
+    """Replace the promise's line in the copy of the sources under root; spaces and line ends do not count.
 
     Raises:
         ValueError: the old text is not there exactly once.
     """
     file = root / promise.file
     text = file.read_text(encoding="utf-8")
-    if text.count(promise.old) != 1:
-        raise ValueError(f"{promise.file} has {text.count(promise.old)} times, not once: {promise.old!r}")
-    file.write_text(text.replace(promise.old, promise.new), encoding="utf-8")
+    old = re.compile(r"\s+".join(re.escape(word) for word in promise.old.split()))
+    found = len(old.findall(text))
+    if found != 1:
+        raise ValueError(f"{promise.file} has {found} times, not once: {promise.old!r}")
+    file.write_text(old.sub(lambda _: promise.new, text), encoding="utf-8")
 
 
 def _sby(proof: Proof, task: str, folder: Path) -> tuple[str, str, float]:
@@ -128,11 +133,13 @@ def _sby(proof: Proof, task: str, folder: Path) -> tuple[str, str, float]:
         stderr=subprocess.DEVNULL,
         start_new_session=True,
     )
+    running.add(process.pid)
     try:
         process.wait(TIME_LIMIT)
     except subprocess.TimeoutExpired:
         os.killpg(process.pid, signal.SIGTERM)
         process.wait()
+    running.discard(process.pid)
     seconds = time.monotonic() - begin
     file = folder / task / "logfile.txt"
     log = file.read_text(encoding="utf-8") if file.exists() else ""
@@ -156,7 +163,10 @@ def catch(proof: Proof, promise: Promise) -> Result:
     """Plant the promise's bug in a copy; the promise must fail."""
     folder = BUILD / f"{proof.name}.{promise.name}"
     _fresh_copy(folder)
-    plant(promise, folder)
+    try:
+        plant(promise, folder)
+    except ValueError as error:
+        return Result(proof.name, promise.name, False, 0.0, f"not planted: {error}")
     verdict, log, seconds = _sby(proof, "bug", folder)
     broken = set(re.findall(r"Assert failed in [\w.]+: (\S+)", log))
     steps = re.findall(r"Checking assertions in step (\d+)\.\.", log)
@@ -179,9 +189,15 @@ def run_all(chosen: Iterable[Proof], jobs: int, show: Callable[[Result], None]) 
         work += [(catch, (proof, promise)) for promise in proof.promises]
     results = []
     with ThreadPoolExecutor(jobs) as pool:
-        for done in as_completed([pool.submit(function, *arguments) for function, arguments in work]):
-            results.append(done.result())
-            show(results[-1])
+        try:
+            for done in as_completed([pool.submit(function, *arguments) for function, arguments in work]):
+                results.append(done.result())
+                show(results[-1])
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            for group in list(running):
+                os.killpg(group, signal.SIGTERM)
+            raise
     return results
 
 
@@ -194,6 +210,7 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=JOBS, help="runs at the same time (default: %(default)s)")
     arguments = parser.parse_args()
 
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
     known = proofs()
     unknown = set(arguments.proof) - {proof.name for proof in known}
     if unknown:
