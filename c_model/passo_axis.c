@@ -60,7 +60,7 @@ static uint16_t time_of(const struct passo_axis *axis)
 
 static bool place_is(uint8_t places, unsigned place)
 {
-	return (places >> place & 1u) != 0u;
+	return ((uint32_t)places >> place & 1u) != 0u;
 }
 
 static void clock_queue(struct passo_axis *axis, bool step_begins, const struct passo_axis_wires *wires)

@@ -223,6 +223,22 @@ async def an_endless_line_stays_the_next_until_it_is_released(dut: HierarchyObje
 
 
 @cocotb.test()
+async def the_end_of_a_motion_leaves_the_next_motion_alone(dut: HierarchyObject) -> None:
+    """release_line gives back the LAST line's place only, although an ENDLESS line waits behind it."""
+    random = rng("line queue, release")
+    queue = await Queue.begin(dut)
+    last, endless = queue.random_line(random, LAST), queue.random_line(random, ENDLESS)
+    await queue.bus.push(last + endless)
+    await queue.clocks.wait(2)
+    await queue.strobe("take")
+    await queue.clocks.wait(3)
+    await queue.strobe("release_line")
+    await queue.clocks.wait(2)
+    queue.check_next(endless)
+    queue.check_room(DEPTH - 1)
+
+
+@cocotb.test()
 async def flush_empties_the_queue(dut: HierarchyObject) -> None:
     """For as long as it is high whatever is written is dropped; afterwards lines are as good as ever."""
     random = rng("line queue, flush")

@@ -85,13 +85,15 @@ module passo_line_queue #(
   end
 
   // what is to be said of the word, a clock before it is asked
-  reg full;
-  reg bad_value;
+  reg  full;
+  reg  bad_control;
+  reg  not_negative;
+  wire bad_value = index[INDEX_CONTROL] ? bad_control : not_negative != index[INDEX_SUBSTEPS];
 
   always @(posedge clk) begin
     full <= room == checked;
-    bad_value <= index[INDEX_CONTROL]  ? (bus_data & ~CONTROL_DEFINED) != 32'd0 :
-                 index[INDEX_SUBSTEPS] ? ~difference[32] : difference[32];
+    bad_control <= (bus_data & ~CONTROL_DEFINED) != 32'd0;
+    not_negative <= difference[32];
     refusal   <= !(select && bus_check) ? VERDICT_OK :
                  blocked                ? VERDICT_BUSY :
                  full                   ? VERDICT_QUEUE_FULL :

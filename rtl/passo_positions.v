@@ -35,7 +35,8 @@ module passo_positions #(
   reg clear_waits;
   reg clears;  // this round sets the positions to 0
   reg snapshot_waits;
-  reg copies;  // this round copies the positions
+  reg copies_next;
+  reg copies;  // this round copies the positions; a clock later, as the last half is
 
   // Counters, and their chain to the round
   wire [7:0] captured[0:AXES];
@@ -55,15 +56,15 @@ module passo_positions #(
     end
   endgenerate
 
-  // One half of a position: read in phase 0, made in phase 1, written in phase 2, copied in phase 3. In phases 1
-  // to 3 the memory is asked for `position`. Bytes 0 and 1 stand in the word the other way round.
+  // One half of a position: read in phase 0, judged in phase 1, made in phase 2, written in phase 3, copied in the
+  // next phase 0. Bytes 0 and 1 stand in the word the other way round. In phases 2 and 3 the memory is asked for
+  // `position`.
   wire [15:0] half;
   reg  [15:0] half_next;
-  reg         carry;
-  reg         borrow;
+  reg         up;
+  reg         down;
+  reg  [ 3:0] place;  // of half_next
   wire [ 7:0] low_byte = captured[0];
-  wire        up = upper ? carry : half[15:14] == 2'b11 && low_byte[7:6] == 2'b00;
-  wire        down = upper ? borrow : half[15:14] == 2'b00 && low_byte[7];
   wire [15:0] sum = half + {16{down}} + {15'd0, up};
   wire        carry_8 = sum[8] ^ half[8] ^ down;
 
@@ -72,24 +73,30 @@ module passo_positions #(
     .DEPTH_LOG2(5)
   ) u_memory (
     .clk          (clk),
-    .write        (phase == 2'd2 || (phase == 2'd3 && copies)),
-    .write_address({phase[0], slot[5:2]}),
+    .write        (phase == 2'd3 || (phase == 2'd0 && copies)),
+    .write_address({~phase[0], place}),
     .write_data   (half_next),
-    .read_address (phase == 2'd0 ? {1'b0, slot[5:2]} : {1'b1, address, upper}),
+    .read_address (phase[1] ? {1'b1, address, upper} : {1'b0, slot[5:2]}),
     .read_data    (half)
   );
 
   always @(posedge clk) begin
-    slot <= slot + 6'd1;
-    if (phase == 2'd1) begin
+    slot   <= slot + 6'd1;
+    place  <= slot[5:2];
+    copies <= copies_next;
+    if (phase == 2'd1 && !upper) begin
+      up   <= half[15:14] == 2'b11 && low_byte[7:6] == 2'b00;
+      down <= half[15:14] == 2'b00 && low_byte[7];
+    end
+    if (phase == 2'd2) begin
       half_next <= upper ? sum : {low_byte, sum[7:0]};
-      carry     <= up & carry_8;
-      borrow    <= down & ~carry_8;
-      if (clears) begin
-        half_next <= 16'd0;
-        carry     <= 1'b0;
-        borrow    <= 1'b0;
-      end
+      up        <= up & carry_8;
+      down      <= down & ~carry_8;
+      if (clears) half_next <= 16'd0;
+    end
+    if (clears) begin
+      up   <= 1'b0;
+      down <= 1'b0;
     end
     if (phase == 2'd3) begin
       if (upper) position[31:16] <= half;
@@ -99,8 +106,8 @@ module passo_positions #(
     if (round_ends) begin
       clears         <= clear_waits;
       clear_waits    <= 1'b0;
-      copies         <= snapshot_waits & ~clear_waits;
-      snapshot_waits <= snapshot_waits & clear_waits;
+      copies_next    <= snapshot_waits;
+      snapshot_waits <= snapshot_waits & clear_waits;  // copied once more when the positions are cleared
     end
     if (zero) clear_waits <= 1'b1;
     if (snapshot) snapshot_waits <= 1'b1;
@@ -109,7 +116,7 @@ module passo_positions #(
       slot           <= 6'd0;
       clears         <= 1'b1;
       clear_waits    <= 1'b0;
-      copies         <= 1'b0;
+      copies_next    <= 1'b0;
       snapshot_waits <= 1'b0;
     end
   end
