@@ -71,14 +71,16 @@ static bool commands_settled(const struct passo_channel_registers *registers)
 static bool slots_empty(const struct passo_channel *channel)
 {
 	const struct passo_line_unit *line = &channel->line;
+	const bool stopped = passo_channel_stopped(channel);
 
 	if (line->on_last != (line->substep_number == channel->line_queue.last_substep))
 		return false;
 	for (unsigned i = 0; i < channel->axes; i++)
 		if (channel->dda[i].addend != (int64_t)channel->line_queue.steps[i])
 			return false;
-	return !channel->path.take_q && !channel->path.advance_q && !channel->path.substep && !line->slot_add
-	    && !line->slot_step;
+	if (channel->path.refresh != stopped || channel->path.take_q != stopped)
+		return false;
+	return !channel->path.advance_q && !channel->path.substep && !line->slot_add && !line->slot_step;
 }
 
 /* Clocks for which the rate stands still: all, or until the next slew tick. */
@@ -107,7 +109,7 @@ static uint64_t ramp_quiet(const struct passo_ramp_unit *ramp)
 	if (ramp->take_now || ramp->dry || ramp->step == PASSO_RAMP_TAKE)
 		return 0;
 	if (ramp->step == PASSO_RAMP_CHOOSE)
-		return ramp->active && !ramp->ready ? 0u : UINT64_MAX;
+		return !ramp->ready && !ramp->ends_next ? 0u : UINT64_MAX;
 	return ramp->wait - 1u;
 }
 
@@ -291,7 +293,8 @@ static uint64_t profile_quiet(
 	const uint32_t goal = before_place ? RAMP_DONE_TICK_COUNT : tick_last;
 	struct progress progress;
 
-	if (channel->ramp_queue.now_pending || channel->path.take_q || !take_to_end(channel, &progress))
+	if (channel->ramp_queue.now_pending || channel->path.take_q || channel->path.refresh
+	    || !take_to_end(channel, &progress))
 		return 0;
 	uint64_t clocks = min_u64(limit, goal - tick_count);
 	if (channel->line.active && velocity != 0u) {
@@ -335,6 +338,7 @@ static void channel_skip(struct passo_channel *channel, uint64_t clocks)
 	struct progress progress;
 
 	skip_surroundings(channel, clocks);
+	ramp->unready = !ramp->ready;
 	if (ramp->step != PASSO_RAMP_CHOOSE)
 		ramp->wait -= (uint32_t)clocks;
 	if (!profile_counts(channel))
@@ -358,7 +362,7 @@ static uint64_t skip_ticks(
 	struct progress progress;
 	uint64_t clocks = 0;
 
-	if (!profile_counts(channel) || ramp->step != PASSO_RAMP_CHOOSE || !ramp->ready || !ramp->loaded
+	if (!profile_counts(channel) || ramp->step != PASSO_RAMP_CHOOSE || ramp->unready || !ramp->loaded
 	    || place < RAMP_DONE_TICK_COUNT || channel->ramp_queue.now_pending
 	    || !take_to_end(channel, &progress))
 		return 0;

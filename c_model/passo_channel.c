@@ -26,6 +26,7 @@ void passo_channel_reset(
 	channel->line_queue.room = (uint16_t)(1u << parameters->line_queue_log2);
 	channel->ramp_queue.room = (uint16_t)(1u << parameters->ramp_queue_log2);
 	channel->timescale.rate = PASSO_RATE_ONE;
+	channel->ramp.ends_next = true;
 	for (unsigned axis = 0; axis < parameters->axes; axis++)
 		passo_axis_reset(&channel->axis[axis]);
 	passo_positions_reset(&channel->positions);
@@ -49,7 +50,7 @@ static struct passo_channel_wires gather_wires(
 	passo_motion_wires(channel, inputs, &wires);
 
 	const bool at_tick_end = channel->ramp.tick_count == tick_last;
-	const bool stall = at_tick_end && !channel->ramp.ready && !wires.drain;
+	const bool stall = at_tick_end && channel->ramp.unready;
 	wires.advance = channel->timescale.enable && wires.counting && !stall;
 	wires.tick = wires.advance && at_tick_end;
 	wires.next = wires.begin_profile || wires.tick;

@@ -180,7 +180,6 @@ enum passo_ramp_step {
 struct passo_ramp_unit {
 	enum passo_ramp_step step;
 	uint32_t wait; /* clocks until the step is done */
-	bool active;
 	bool take_now;
 	bool loaded, last, mirror;
 	enum passo_shape shape;
@@ -189,14 +188,14 @@ struct passo_ramp_unit {
 	uint32_t ticks;                /* still to be made */
 	uint64_t progress;             /* u, UQ0.49 */
 	uint32_t tick_count;
-	bool ready, ends_next, dry;
+	bool ready, unready, ends_next, dry;
 	uint64_t velocity_next;
 };
 
 struct passo_path {
 	uint32_t velocity_low, velocity_high, phase_low, phase_high; /* 24 bits each */
 	bool phase_low_carry;
-	bool take_q, drain_q, advance_q;
+	bool refresh, take_q, advance_q;
 	bool substep;
 };
 

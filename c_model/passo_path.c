@@ -16,6 +16,7 @@ static void add(struct passo_path *path, bool advance)
 		path->substep = sum > HALF_MASK;
 	}
 	path->advance_q = advance;
+	path->phase_low_carry = false;
 	if (advance) {
 		const uint32_t sum = path->phase_low + path->velocity_low;
 		path->phase_low = sum & HALF_MASK;
@@ -26,27 +27,22 @@ static void add(struct passo_path *path, bool advance)
 void passo_path_clock(struct passo_path *path, const struct passo_ramp_unit *ramp,
     const struct passo_channel_wires *wires, uint32_t drain_velocity)
 {
-	const uint64_t velocity_next = ramp->ends_next ? 0u : ramp->velocity_next;
+	const uint64_t drained = (uint64_t)drain_velocity << 16;
+	const uint64_t velocity = wires->drain ? drained : ramp->ends_next ? 0u : ramp->velocity_next;
+	const bool take = wires->next || path->refresh;
 
-	if (wires->prepare) {
-		*path = (struct passo_path){.phase_high = QUARTER};
-		return;
-	}
 	add(path, wires->advance);
-	if (wires->next)
-		path->velocity_low = (uint32_t)velocity_next & HALF_MASK;
+	if (take)
+		path->velocity_low = (uint32_t)velocity & HALF_MASK;
 	if (path->take_q)
-		path->velocity_high = (uint32_t)(velocity_next >> 24);
-	if (wires->drain)
-		path->velocity_low = (drain_velocity & 0xFFu) << 16;
-	if (path->drain_q)
-		path->velocity_high = drain_velocity >> 8;
-	path->take_q = wires->next;
-	path->drain_q = wires->drain;
-	if (wires->stopped) {
-		path->velocity_low = 0;
-		path->velocity_high = 0;
-		path->take_q = false;
-		path->drain_q = false;
+		path->velocity_high = (uint32_t)(velocity >> 24);
+	path->take_q = take;
+	path->refresh = wires->stopped || wires->drain;
+	if (wires->prepare) {
+		path->phase_low = 0;
+		path->phase_low_carry = false;
+		path->phase_high = QUARTER;
+		path->advance_q = false;
+		path->substep = false;
 	}
 }

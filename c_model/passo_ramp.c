@@ -5,7 +5,7 @@
  */
 #include "passo_model.h"
 
-enum { COPY_CLOCKS = 24, FETCH_CLOCKS = 7, FETCH_NO_TICKS_CLOCKS = 5, TAKE_CLOCKS = 4, STEP_CLOCKS = 7 };
+enum { COPY_CLOCKS = 24, FETCH_CLOCKS = 7, FETCH_NO_TICKS_CLOCKS = 6, TAKE_CLOCKS = 5, STEP_CLOCKS = 7 };
 
 static const uint64_t PROGRESS_MASK = (UINT64_C(1) << 49) - 1u;
 
@@ -114,31 +114,27 @@ void passo_ramp_clock(struct passo_ramp_unit *ramp, const struct passo_channel *
     const struct passo_channel_inputs *inputs, const struct passo_channel_wires *wires, bool *take,
     bool *take_now)
 {
-	const bool ends_next = ramp->ends_next;
-
 	*take = ramp->step == PASSO_RAMP_TAKE && ramp->wait == 2u;
 	*take_now = ramp->take_now;
 	ramp->take_now = false;
 	ramp->dry = false;
+	ramp->unready = !ramp->ready && !wires->drain;
 
 	if (ramp->step != PASSO_RAMP_CHOOSE) {
 		if (--ramp->wait == 0u)
 			finish_step(ramp, channel, inputs);
-	} else if (ramp->active && !ramp->ready) {
+	} else if (!ramp->ready && !ramp->ends_next) {
 		choose(ramp, channel, inputs, wires);
 	}
 
 	if (wires->advance)
 		ramp->tick_count = (ramp->tick_count + 1u) & ((1u << inputs->parameters->tick_log2) - 1u);
-	if (wires->next) {
+	if (wires->next)
 		ramp->ready = false;
-		ramp->active = ramp->active && !ends_next;
-	}
 	if (wires->begin_profile)
 		ramp->tick_count = 0;
 	if (wires->prepare) {
 		begin_step(ramp, PASSO_RAMP_COPY, COPY_CLOCKS);
-		ramp->active = true;
 		ramp->ready = false;
 		ramp->ends_next = false;
 		ramp->loaded = false;
@@ -147,9 +143,8 @@ void passo_ramp_clock(struct passo_ramp_unit *ramp, const struct passo_channel *
 	}
 	if (wires->stopped) {
 		ramp->step = PASSO_RAMP_CHOOSE;
-		ramp->active = false;
 		ramp->ready = false;
-		ramp->ends_next = false;
+		ramp->ends_next = true;
 		ramp->take_now = false;
 	}
 }

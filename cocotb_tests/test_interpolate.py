@@ -13,7 +13,7 @@ from cocotb_tests.shapes import ONE, POINTS, PROGRESS_ONE, Shape, evaluate, load
 HALF = 1 << 47
 VELOCITY_BITS, POINT_BITS, PIPELINE = 48, 17, 2
 INPUTS = (
-    "clear", "shift", "moving", "shaping", "load_fraction", "linear", "progress", "load_points", "point",
+    "clear", "result_move", "moving", "shaping", "load_fraction", "linear", "progress", "load_points", "point",
     "point_next", "point_is_last", "a_bit", "b_bit",
 )  # fmt: skip
 
@@ -53,11 +53,11 @@ class Bench:
     async def shape(self, progress: int, table: list[int]) -> None:
         """Interpolate between the points of a table beside a progress (UQ0.49)."""
         k = progress // U_POINT
-        seen = {"shift": 1, "moving": 1, "shaping": 1, "progress": progress >> 16}
+        seen = {"result_move": 1, "moving": 1, "shaping": 1, "progress": progress >> 16}
         # what follows the last point means nothing
         point_next = table[k + 1] if k < POINTS - 1 else 0xA5A5
         await self.clock(
-            clear=1, load_points=1, point=table[k], point_next=point_next, point_is_last=k == POINTS - 1
+            clear=1, result_move=1, load_points=1, point=table[k], point_next=point_next, point_is_last=k == POINTS - 1
         )
         for _ in range(POINT_BITS + PIPELINE):
             await self.clock(**seen)
@@ -67,9 +67,9 @@ class Bench:
         given = {"linear": fraction is not None, "progress": (fraction or 0) << 8}
         for bit in range(VELOCITY_BITS):
             first = {"clear": 1, "load_fraction": 1, **given} if bit == 0 else {}
-            await self.clock(shift=1, moving=1, a_bit=a >> bit & 1, b_bit=b >> bit & 1, **first)
+            await self.clock(result_move=1, moving=1, a_bit=a >> bit & 1, b_bit=b >> bit & 1, **first)
         for _ in range(PIPELINE):
-            await self.clock(shift=1, moving=1)
+            await self.clock(result_move=1, moving=1)
         return read(self.dut.result)
 
     async def check_scale(self, a: int, b: int, fraction: int) -> None:

@@ -32,7 +32,7 @@ class Path:
     @classmethod
     async def begin(cls, dut: HierarchyObject) -> "Path":
         """Reset; the reset leaves the phase as restart does."""
-        inputs = ("stop", "take", "rest", "velocity_next", "drain", "drain_velocity")
+        inputs = ("stop", "begin_profile", "tick_last", "rest", "velocity_next", "drain", "drain_velocity")
         return cls(dut, await begin(dut, "restart", "advance", *inputs))
 
     async def restart(self) -> None:
@@ -48,7 +48,7 @@ class Path:
         dut = self.dut
         high, self.coming_high = self.coming_high, velocity >> 24
         dut.velocity_next.value = high << 24 | velocity & 0xFFFFFF
-        dut.take.value = 1
+        dut.begin_profile.value = 1
 
     async def advance(self, velocities: Iterable[int | None]) -> None:
         """One clock for each velocity, taken with the one before; None is a clock without advance."""
@@ -65,7 +65,7 @@ class Path:
         self.dut.advance.value = 0
         self.take(self.velocity)
         await self.clocks.fall
-        self.dut.take.value = 0
+        self.dut.begin_profile.value = 0
 
     async def compare(self) -> int:
         """Check all substeps so far; return their number."""
@@ -161,32 +161,44 @@ async def random_velocities_and_gaps_match_the_integer_sum(dut: HierarchyObject)
 
 
 @cocotb.test()
-async def a_velocity_counts_from_the_clock_after_take(dut: HierarchyObject) -> None:
-    """And stays until the next; rest and stop make it 0, drain has its own."""
+async def a_tick_begins_with_the_next_velocity(dut: HierarchyObject) -> None:
+    """From the clock after the advance of tick_last; 0 if rest. The host sees it too."""
     path = await Path.begin(dut)
     await path.restart()
-    random = rng("path, take")
-    for _ in range(60):
-        velocity, kind = random.randrange(HALF + 1), random.choice(("take", "rest", "stop", "drain"))
-        dut.velocity_next.value = velocity
-        dut.drain_velocity.value = velocity >> 16
-        dut.rest.value = kind == "rest"
-        if kind != "take":
-            velocity = velocity >> 16 << 16 if kind == "drain" else 0
-        strobe = getattr(dut, "take" if kind == "rest" else kind)
-        clocks = random.randrange(2, 40)
-        for clock in range(clocks):
-            counts = kind != "stop" or clock > 0  # a stopped channel does not count
-            if counts:
-                carry, path.phase = divmod(path.phase + path.velocity, ONE)
-                if carry:
-                    path.expected.append(path.clocks.now + LATENCY)
-            dut.advance.value = counts
-            strobe.value = clock == 0 or kind == "drain"
-            path.velocity = velocity
+    random = rng("path, tick")
+    dut.advance.value = 1
+    for _ in range(100):
+        velocity, rest = random.randrange(HALF + 1), random.random() < 0.3
+        dut.velocity_next.value, dut.rest.value = velocity, rest
+        for clock in range(random.randrange(2, 40)):
+            dut.tick_last.value = clock == 0
+            carry, path.phase = divmod(path.phase + path.velocity, ONE)
+            if carry:
+                path.expected.append(path.clocks.now + LATENCY)
+            path.velocity = 0 if rest else velocity
             await path.clocks.fall
-        strobe.value = 0
-        dut.advance.value = 0
-        await path.clocks.wait(3)
-        assert read(dut.velocity) == velocity >> 16
+        assert read(dut.velocity) == path.velocity >> 16
+    dut.advance.value = 0
+    assert await path.compare() > 100
+
+
+@cocotb.test()
+async def drain_has_its_own_velocity_and_stop_none(dut: HierarchyObject) -> None:
+    """drain_velocity while drain is high, 0 after it and after a stop, each 3 clocks later at the latest."""
+    path = await Path.begin(dut)
+    random = rng("path, drain")
+    for _ in range(30):
+        await path.restart()
+        await path.advance([random.randrange(1, HALF + 1)] * random.randrange(1, 9))
+        dut.rest.value = 1
+        drain_velocity = random.randrange(HALF >> 16)
+        dut.drain_velocity.value = drain_velocity
+        for name, expected in (("drain", drain_velocity), ("stop", 0)):
+            getattr(dut, name).value = 1
+            await path.clocks.wait(3)
+            assert read(dut.velocity) == expected
+            getattr(dut, name).value = 0
+            await path.clocks.wait(3)
+            assert read(dut.velocity) == 0
+        dut.rest.value = 0
     await path.compare()

@@ -91,7 +91,7 @@ module passo_channel #(
   wire        ramp_ready;
   wire        ramp_ended;
   wire        ramp_dry;
-  wire        take_velocity;
+  wire        tick_last;
   wire        ends_next;
   wire [47:0] velocity_next;
   wire [31:0] velocity;
@@ -301,7 +301,7 @@ module passo_channel #(
     .dry             (ramp_dry),
     .advance         (advance),
     .stall           (stall),
-    .take_velocity   (take_velocity),
+    .tick_last       (tick_last),
     .ends_next       (ends_next),
     .velocity_next   (velocity_next),
     .ramp_valid      (ramp_valid),
@@ -322,8 +322,9 @@ module passo_channel #(
     .rst           (rst),
     .restart       (prepare),
     .stop          (stopped),
+    .begin_profile (begin_profile),
     .advance       (advance),
-    .take          (take_velocity),
+    .tick_last     (tick_last),
     .rest          (ends_next),
     .velocity_next (velocity_next),
     .drain         (drain),

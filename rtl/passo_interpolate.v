@@ -9,17 +9,17 @@
 //   addend:  neither 0,  only b f,  only a 1 - f,  both 1          hence a * (1 - f) + b * f, and no sign
 //
 // While `moving` the bits come in on a_bit and b_bit (while `shaping` they are the points, loaded by
-// `load_points`). A bit is in the sum 2 clocks later. `shift` moves the sum into the result; after n bits and
+// `load_points`). A bit is in the sum 2 clocks later. `result_move` moves the sum into the result, or empties both if `clear`; after n bits and
 // 2 clocks the result is {sum, low}: the integer part from bit 48 - n + 24 on, the fraction below.
 // `load_fraction` takes f for the velocities: progress itself if `linear`, else what lies in the result of the
-// points, rounded to 2^-24. `clear` empties sum and low.
+// points, rounded to 2^-24.
 `resetall
 `default_nettype none
 
 module passo_interpolate (
   input  wire        clk,
   input  wire        clear,
-  input  wire        shift,
+  input  wire        result_move,    // sum and low
   input  wire        moving,
   input  wire        shaping,
   input  wire        load_fraction,
@@ -36,18 +36,19 @@ module passo_interpolate (
 );
 
   reg  [15:0] a_point;
-  reg  [23:0] low;  // while shaping the other point moves out below
-  reg  [23:0] sum;
+  reg  [24:0] sum;  // and the bit that fell out
+  reg  [22:0] low;  // while shaping the other point moves out below
   reg         b;
   reg  [24:0] fraction;  // F, r
   reg  [24:0] addend;
   reg         both;
-  wire [24:0] sum_next = {1'b0, sum} + {1'b0, addend[24:1]} + {24'd0, addend[0]};
+  // the lowest bit makes the carry of r
+  wire [25:0] sum_next = {1'b0, sum[24:1], addend[0]} + {1'b0, addend};
 
   assign result = {sum, low};
 
   always @(posedge clk) begin
-    a_point <= {1'b0, a_point[15:1]};
+    if (moving) a_point <= {1'b0, a_point[15:1]};
     if (load_points) a_point <= point;
     a <= moving & (shaping ? a_point[0] : a_bit);
     b <= moving & (shaping ? low[0] : b_bit);
@@ -56,18 +57,14 @@ module passo_interpolate (
     if (a == b) addend <= 25'd0;
     both <= a & b;
 
-    if (shift) begin
-      sum <= {sum_next[24] | both, sum_next[23:1]};
-      low <= {sum_next[0], low[23:1]};
+    if (result_move) begin
+      sum <= clear ? 25'd0 : {sum_next[25] | both, sum_next[24:1]};
+      low <= clear ? 23'd0 : {sum[0], low[22:1]};
     end
-    if (clear) begin
-      sum <= 24'd0;
-      low <= 24'd0;
-    end
-    if (load_points) low <= {7'd0, point_is_last, point_is_last ? 16'd0 : point_next};
+    if (load_points) low <= {6'd0, point_is_last, point_is_last ? 16'd0 : point_next};
 
-    // sum(23): the points gave 1.0
-    if (load_fraction) fraction <= linear ? progress[32:8] : {sum[22:0], low[23:22]} | {25{sum[23]}};
+    // sum(24): the points gave 1.0
+    if (load_fraction) fraction <= linear ? progress[32:8] : {sum[23:0], low[22]} | {25{sum[24]}};
   end
 
 endmodule

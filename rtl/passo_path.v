@@ -5,18 +5,20 @@
 //
 // The 48-bit sum is cut into two halves of 24 bits, the upper one a clock behind, and so is the velocity.
 // Promise: `substep` comes 2 clocks after its `advance`; with velocity <= 1/2 never on two clocks in a row.
-// `take`: velocity_next counts from the next clock on (its upper half is read one clock after take). `rest`
-// instead of it: 0. While `drain` is high drain_velocity counts.
+// `begin_profile` and the advance of `tick_last`: velocity_next counts from the next clock on (its upper half is
+// read one clock later), or 0 if `rest`. While `drain` is high drain_velocity counts, from the second clock on.
+// Rest and `stop`, or the end of drain: 0, 2 clocks later.
 `resetall
 `default_nettype none
 
 module passo_path (
   input  wire        clk,
   input  wire        rst,
-  input  wire        restart,         // velocity 0
-  input  wire        stop,            // velocity 0
+  input  wire        restart,
+  input  wire        stop,
+  input  wire        begin_profile,
   input  wire        advance,         // enabled clock
-  input  wire        take,
+  input  wire        tick_last,
   input  wire        rest,
   input  wire [47:0] velocity_next,   // UQ0.48 substeps per clock, 0 .. 1/2
   input  wire        drain,
@@ -30,7 +32,7 @@ module passo_path (
   reg [23:0] velocity_low;
   reg [23:0] velocity_high;
   reg        take_q;
-  reg        drain_q;
+  reg        refresh;
   reg [23:0] phase_low;
   reg        phase_low_carry;
   reg [23:0] phase_high;
@@ -41,23 +43,18 @@ module passo_path (
 
   assign velocity = {velocity_high, velocity_low[23:16]};
 
+  wire take = begin_profile | (advance & tick_last) | refresh;
+
   always @(posedge clk) begin
+    refresh   <= rst | stop | drain;
     take_q    <= take;
-    drain_q   <= drain;
     advance_q <= advance;
-    if (take) velocity_low <= rest ? 24'd0 : velocity_next[23:0];
-    if (take_q) velocity_high <= rest ? 24'd0 : velocity_next[47:24];
-    if (drain) velocity_low <= {drain_velocity[7:0], 16'd0};
-    if (drain_q) velocity_high <= drain_velocity[31:8];
-    if (advance) {phase_low_carry, phase_low} <= phase_low_sum;
-    substep <= 1'b0;
-    if (advance_q) {substep, phase_high} <= phase_high_sum;
-    if (rst || restart || stop) begin
-      velocity_low  <= 24'd0;
-      velocity_high <= 24'd0;
-      take_q        <= 1'b0;
-      drain_q       <= 1'b0;
-    end
+    if (take) velocity_low <= drain ? {drain_velocity[7:0], 16'd0} : rest ? 24'd0 : velocity_next[23:0];
+    if (take_q) velocity_high <= drain ? drain_velocity[31:8] : rest ? 24'd0 : velocity_next[47:24];
+    if (advance) phase_low <= phase_low_sum[23:0];
+    phase_low_carry <= advance & phase_low_sum[24];
+    if (advance_q) phase_high <= phase_high_sum[23:0];
+    substep <= advance_q & phase_high_sum[24];
     if (rst || restart) begin
       advance_q       <= 1'b0;
       phase_low       <= 24'd0;

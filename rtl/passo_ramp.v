@@ -13,12 +13,13 @@
 //                 ramp   ramp (T ticks)  ramp
 //
 // `prepare` makes the first velocity of a motion, from 0, and raises `ready`; `begin_profile` starts the
-// first tick. `take_velocity`: velocity_next is that of the tick which begins, `ended`: it is 0.
+// first tick. With that, and with the enabled clock of `tick_last`,
+// velocity_next begins to count; with `ended` 0.
 // Promise: the LAST ramp's end raises `ended`, with the last enabled clock of its last tick (a profile
 // without any tick: with begin_profile). Ramps that run out at speed raise `dry`, in the tick before; the
 // velocity then stays, and the next ramp is taken whenever it comes. `stall` holds the enable back at the end
-// of a tick until the next velocity is ready: later, never lost. Clocks of each step: copy 24, fetch 7 (T = 0:
-// 5), take 4, look up 3 .. 2 * CHANNELS + 3, shape 19, scale 50, step 7, and one to choose between them.
+// of a tick until a clock after the next velocity is ready: later, never lost. Clocks of each step: copy 24, fetch 7 (T = 0:
+// 6), take 5, look up 3 .. 2 * CHANNELS + 3, shape 19, scale 50, step 7, and one to choose between them.
 `resetall
 `default_nettype none
 
@@ -32,21 +33,21 @@ module passo_ramp #(
   input  wire        begin_profile,
   input  wire        stop,              // forget everything
   input  wire        drain,             // drain_velocity counts, not the ramps
-  output reg         ready,             // velocity_next is
+  output reg         ready,             // velocity_next will be, a clock later
   output wire        ended,
   output reg         dry,
   // timescale and path
   input  wire        advance,           // an enabled clock that counts
   output wire        stall,
-  output wire        take_velocity,
-  output reg         ends_next,
+  output reg         tick_last,
+  output reg         ends_next,         // there is no next tick: rest
   output wire [47:0] velocity_next,     // UQ0.48 substeps per clock
   // ramp queue
   input  wire        ramp_valid,
   input  wire        ramp_now_pending,
   output reg         ramp_take,
   output reg         ramp_take_now,
-  output reg  [ 3:0] ramp_half_index,
+  output wire [ 3:0] ramp_half_index,
   input  wire [15:0] ramp_half,
   // tables
   output wire        table_request,
@@ -56,21 +57,13 @@ module passo_ramp #(
   input  wire [15:0] table_point_next
 );
 
-  localparam [2:0] STEP_CHOOSE = 3'd0;
-  localparam [2:0] STEP_COPY = 3'd1;  // v_start is the present velocity
-  localparam [2:0] STEP_FETCH = 3'd2;  // the next ramp
-  localparam [2:0] STEP_TAKE = 3'd3;  // v_start is v_end: the ramp is over
-  localparam [2:0] STEP_LOOK_UP = 3'd4;
-  localparam [2:0] STEP_SHAPE = 3'd5;
-  localparam [2:0] STEP_SCALE = 3'd6;
-  localparam [2:0] STEP_STEP = 3'd7;  // u += du
+  `include "passo_ramp_steps.vh"
 
   localparam [1:0] SHAPE_LINEAR = 2'd0;
   localparam [TICK_LOG2-1:0] TICK_LAST = {TICK_LOG2{1'b1}};
 
   reg [2:0] step;
   reg [5:0] count;  // clocks of the step, from 1
-  reg       active;
 
   // the ramp being made
   reg        loaded;
@@ -82,51 +75,88 @@ module passo_ramp #(
 
   // the tick that runs
   reg [TICK_LOG2-1:0] tick_count;
-  reg                 tick_last;
+  reg                 unready;
 
-  assign take_velocity = begin_profile | (advance & tick_last);
-  assign ended         = take_velocity & ends_next;
-  assign stall         = tick_last & ~ready & ~drain;
+  wire take_velocity = begin_profile | (advance & tick_last);
+  assign ended = take_velocity & ends_next;
+  assign stall = tick_last & unready;
 
-  wire fetch = step == STEP_FETCH;
-  wire scale = step == STEP_SCALE;
-  wire scale_begins = scale && count == 6'd1;
-
+  wire        control_load;
+  wire        start_move;
+  wire        start_load;
+  wire        start_copy;
   wire        start_bit;
   wire        end_bit;
-  wire        interpolated_bit;
+  wire        u_move;
+  wire        u_load;
+  wire        u_last;
   wire [32:0] progress;
+  wire        ticks_load_low;
+  wire        ticks_load_high;
+  wire        ticks_add_low;
+  wire        ticks_add_high;
+  wire        moving;
+  wire        shaping;
+  wire        load_fraction;
+  wire        clear;
+  wire        result_move;
+  wire        interpolated_bit;
+
+  passo_ramp_strobes u_strobes (
+    .clk            (clk),
+    .prepare        (prepare),
+    .step           (step),
+    .count          (count),
+    .table_served   (table_served),
+    .half_index     (ramp_half_index),
+    .control_load   (control_load),
+    .start_move     (start_move),
+    .start_load     (start_load),
+    .start_copy     (start_copy),
+    .u_move         (u_move),
+    .u_load         (u_load),
+    .u_last         (u_last),
+    .ticks_load_low (ticks_load_low),
+    .ticks_load_high(ticks_load_high),
+    .ticks_add_low  (ticks_add_low),
+    .ticks_add_high (ticks_add_high),
+    .moving         (moving),
+    .shaping        (shaping),
+    .load_fraction  (load_fraction),
+    .clear          (clear),
+    .result_move    (result_move)
+  );
 
   passo_ramp_numbers u_numbers (
     .clk            (clk),
     .half           (ramp_half),
-    .start_copy     (step == STEP_COPY),
+    .start_move     (start_move),
+    .start_load     (start_load),
+    .start_copy     (start_copy),
     .copy_high      (velocity_next[24]),
     .copy_low       (velocity_next[0]),
-    .start_load     (step == STEP_TAKE && count != 6'd1),
-    .start_turn     (scale && count <= 6'd48),
     .start_bit      (start_bit),
     .end_index      (count[3:0]),
     .end_bit        (end_bit),
     .mirror         (mirror),
-    .u_load         (fetch && count >= 6'd5),
-    .u_add          (step == STEP_STEP && count != 6'd1),
-    .u_last         (count == 6'd4 || count == 6'd7),
+    .u_move         (u_move),
+    .u_load         (u_load),
+    .u_last         (u_last),
     .progress       (progress),
-    .ticks_load_low (fetch && count == 6'd2),
-    .ticks_load_high(fetch && count == 6'd3),
-    .ticks_add_low  ((fetch && count == 6'd3) || scale_begins),
-    .ticks_add_high ((fetch && count == 6'd4) || (scale && count == 6'd2)),
+    .ticks_load_low (ticks_load_low),
+    .ticks_load_high(ticks_load_high),
+    .ticks_add_low  (ticks_add_low),
+    .ticks_add_high (ticks_add_high),
     .over           (over)
   );
 
   passo_interpolate u_interpolate (
     .clk          (clk),
-    .clear        (prepare || step == STEP_LOOK_UP || scale_begins),
-    .shift        (step == STEP_COPY || step == STEP_SHAPE || scale),
-    .moving       (step == STEP_SHAPE || scale),
-    .shaping      (step == STEP_SHAPE),
-    .load_fraction(scale_begins),
+    .clear        (clear),
+    .result_move  (result_move),
+    .moving       (moving),
+    .shaping      (shaping),
+    .load_fraction(load_fraction),
     .linear       (shape == SHAPE_LINEAR),
     .progress     (progress),
     .load_points  (step == STEP_LOOK_UP && table_served),
@@ -142,40 +172,17 @@ module passo_ramp #(
   assign table_request = step == STEP_LOOK_UP;
   assign table_address = {shape - 2'd1, progress[32:25]};
 
-  // Half words come a clock after their index; the first of v_end is there when scale begins.
-  always @*
-    case (step)
-      STEP_FETCH:
-      case (count[2:0])
-        3'd1:    ramp_half_index = 4'd5;  // T
-        3'd2:    ramp_half_index = 4'd4;
-        3'd3:    ramp_half_index = 4'd1;  // control
-        3'd4:    ramp_half_index = 4'd9;  // du
-        3'd5:    ramp_half_index = 4'd8;
-        default: ramp_half_index = 4'd7;
-      endcase
-      STEP_TAKE: ramp_half_index = count[1:0] == 2'd1 ? 4'd3 : count[1:0] == 2'd2 ? 4'd2 : 4'd0;
-      STEP_SCALE: ramp_half_index = count[5:4] == 2'd0 ? 4'd3 : count[5:4] == 2'd1 ? 4'd2 : 4'd0;
-      STEP_STEP:
-      case (count[2:0])
-        3'd1, 3'd4: ramp_half_index = 4'd9;
-        3'd2, 3'd5: ramp_half_index = 4'd8;
-        default:    ramp_half_index = 4'd7;
-      endcase
-      default: ramp_half_index = 4'd3;
-    endcase
-
   always @(posedge clk) begin
-    ramp_take     <= step == STEP_TAKE && count == 6'd2;  // before the step ends, so that ramp_valid is true
+    ramp_take     <= step == STEP_TAKE && count == 6'd3;  // before the step ends, so that ramp_valid is true
     ramp_take_now <= 1'b0;
     dry           <= 1'b0;
-    moves         <= scale && (moves || interpolated_bit);
+    moves         <= step == STEP_SCALE && (moves || interpolated_bit);
     count         <= count + 6'd1;
 
     case (step)
       STEP_CHOOSE: begin
         count <= 6'd1;
-        if (active && !ready) begin
+        if (!ready && !ends_next) begin
           if (ramp_now_pending) begin
             ramp_take_now <= 1'b1;
             loaded        <= 1'b0;
@@ -192,8 +199,7 @@ module passo_ramp #(
       STEP_COPY: if (count == 6'd24) step <= STEP_CHOOSE;
 
       STEP_FETCH: begin
-        if (count == 6'd4) {shape, mirror, last} <= {ramp_half[5:4], ramp_half[2], ramp_half[0]};
-        if (count == 6'd5 && over) begin
+        if (count == 6'd6 && over) begin
           step  <= STEP_TAKE;
           count <= 6'd1;
         end
@@ -204,7 +210,7 @@ module passo_ramp #(
       end
 
       STEP_TAKE:
-      if (count == 6'd4) begin
+      if (count == 6'd5) begin
         loaded <= 1'b0;
         step   <= STEP_CHOOSE;
       end
@@ -223,7 +229,7 @@ module passo_ramp #(
       STEP_SCALE:
       if (count == 6'd50) begin
         ready <= 1'b1;
-        dry   <= !loaded && moves;
+        dry   <= !loaded && (moves || interpolated_bit);
         step  <= !loaded ? STEP_CHOOSE : over ? STEP_TAKE : STEP_STEP;
         count <= 6'd1;
       end
@@ -231,14 +237,14 @@ module passo_ramp #(
       default: if (count == 6'd7) step <= STEP_CHOOSE;
     endcase
 
+    if (control_load) {shape, mirror, last} <= {ramp_half[5:4], ramp_half[2], ramp_half[0]};
+
     if (advance) begin
       tick_count <= tick_count + 1'b1;
       tick_last  <= tick_count == TICK_LAST - 1'b1;
     end
-    if (take_velocity) begin
-      ready <= 1'b0;
-      if (ends_next) active <= 1'b0;
-    end
+    unready <= !ready && !drain;
+    if (take_velocity) ready <= 1'b0;
     if (begin_profile) begin
       tick_count <= {TICK_LOG2{1'b0}};
       tick_last  <= 1'b0;
@@ -247,7 +253,6 @@ module passo_ramp #(
     if (prepare) begin
       step      <= STEP_COPY;
       count     <= 6'd1;
-      active    <= 1'b1;
       ready     <= 1'b0;
       ends_next <= 1'b0;
       loaded    <= 1'b0;
@@ -255,9 +260,8 @@ module passo_ramp #(
     end
     if (rst || stop) begin
       step          <= STEP_CHOOSE;
-      active        <= 1'b0;
       ready         <= 1'b0;
-      ends_next     <= 1'b0;
+      ends_next     <= 1'b1;
       ramp_take     <= 1'b0;
       ramp_take_now <= 1'b0;
       tick_last     <= 1'b0;

@@ -15,19 +15,19 @@ module passo_ramp_numbers (
   input  wire        clk,
   input  wire [15:0] half,             // half word of the ramp queue
   // v_start
+  input  wire        start_move,
+  input  wire        start_load,
   input  wire        start_copy,       // 24 clocks: from two streams, one for each half
   input  wire        copy_high,
   input  wire        copy_low,
-  input  wire        start_load,
-  input  wire        start_turn,
   output wire        start_bit,
   // v_end
-  input  wire [ 3:0] end_index,        // the bit of `half`, counted from 1; 0 is 16
-  output wire        end_bit,
+  input  wire [ 3:0] end_index,        // the bit of `half`, counted from 1, modulo 16
+  output reg         end_bit,
   // u
   input  wire        mirror,
+  input  wire        u_move,           // half word
   input  wire        u_load,           // half word: du / 2 itself
-  input  wire        u_add,            // half word
   input  wire        u_last,           // the upper of the three
   output wire [32:0] progress,         // UQ0.33
   // ticks
@@ -43,14 +43,15 @@ module passo_ramp_numbers (
   assign start_bit = v_start[0];
 
   always @(posedge clk) begin
-    if (start_load) v_start <= {half, v_start[47:16]};
-    else if (start_copy) v_start <= {copy_high, v_start[47:25], copy_low, v_start[23:1]};
-    else if (start_turn) v_start <= {v_start[0], v_start[47:1]};
+    if (start_move)
+      v_start <= start_load ? {half, v_start[47:16]} :
+                               start_copy ? {copy_high, v_start[47:25], copy_low, v_start[23:1]} :
+                                            {v_start[0], v_start[47:1]};
   end
 
   wire [15:0] end_bits = {half[14:0], half[15]};
 
-  assign end_bit = end_bits[end_index];
+  always @(posedge clk) end_bit <= end_bits[end_index];
 
   reg  [48:0] u;
   reg         u_carry;
@@ -59,10 +60,10 @@ module passo_ramp_numbers (
   assign progress = u[48:16];
 
   always @(posedge clk) begin
-    if (u_load || u_add) u[47:0] <= {u_load ? half : u_sum[15:0], u[47:16]};
-    if (u_load) u[48] <= mirror;
-    else if (u_add && u_last) u[48] <= u[48] ^ mirror ^ u_sum[16];
-    u_carry <= u_add && !u_last ? u_sum[16] : mirror;
+    if (u_move) u[47:0] <= {u_load ? half : u_sum[15:0], u[47:16]};
+    if (u_move && u_load) u[48] <= mirror;
+    else if (u_move && u_last) u[48] <= u[48] ^ mirror ^ u_sum[16];
+    u_carry <= u_move && !u_load && !u_last ? u_sum[16] : mirror;
   end
 
   reg  [15:0] ticks_low;
@@ -72,7 +73,7 @@ module passo_ramp_numbers (
   wire [16:0] ticks_high_sum = {1'b0, ticks_high} + {16'd0, ticks_carry};
 
   always @(posedge clk) begin
-    ticks_carry <= ticks_low_sum[16];
+    ticks_carry <= ticks_add_low & ticks_low_sum[16];
     if (ticks_load_low) ticks_low <= half;
     else if (ticks_add_low) ticks_low <= ticks_low_sum[15:0];
     if (ticks_load_high) ticks_high <= half;

@@ -38,19 +38,18 @@ module passo_timescale (
   reg        land;
   reg        still;  // not moving
 
-  // goal >= rate + change, but for its uppermost bit
-  wire [17:0] reach = {1'b0, goal} + {1'b0, not_moved[16:0]} + 18'd1;
+  wire reaches = goal >= ~not_moved[16:0];  // rate + change, but for its uppermost bit
 
   always @(posedge clk) begin
     after <= {after[5:1], slew_tick};
     if (slew_tick || !moving) goal <= stopping && moving ? 17'd0 : rate_target;
-    if (after[1]) down <= !reach[17];
+    if (after[1]) down <= !reaches;
     if (after[2]) change <= (stopping ? stop_slew : rate_slew) ^ {17{down}};
     else if (!after[3]) change <= 17'd0;
     change_carry <= after[3] && (down ^ (change == {17{down}}));
     if (!after[5]) not_moved <= ~({1'b0, rate} +{after[4] & down, change} +{17'd0, change_carry});
     still <= !moving;
-    land  <= !moving || !not_moved[17] || reach[17] == down;
+    land  <= !moving || !not_moved[17] || reaches == down;
     if (after[6] || (still && !moving)) rate <= land ? goal : ~not_moved[16:0];
 
     {enable, rate_sum} <= rate_sum_next;

@@ -37,7 +37,7 @@ module passo_ramp_top #(
 
   wire                   ended;
   wire                   advance = enable & ~stall;
-  wire                   take_velocity;
+  wire                   tick_last;
   wire                   ends_next;
   wire [           47:0] velocity_next;
   wire                   ramp_now_pending;
@@ -121,7 +121,7 @@ module passo_ramp_top #(
     .dry             (dry),
     .advance         (advance),
     .stall           (stall),
-    .take_velocity   (take_velocity),
+    .tick_last       (tick_last),
     .ends_next       (ends_next),
     .velocity_next   (velocity_next),
     .ramp_valid      (ramp_valid),
@@ -142,8 +142,9 @@ module passo_ramp_top #(
     .rst           (rst),
     .restart       (prepare),
     .stop          (stop),
+    .begin_profile (begin_profile),
     .advance       (advance),
-    .take          (take_velocity),
+    .tick_last     (tick_last),
     .rest          (ends_next),
     .velocity_next (velocity_next),
     .drain         (drain),
@@ -154,8 +155,8 @@ module passo_ramp_top #(
 
   // the path's upper half comes a clock late
   assign velocity[23:0] = u_path.velocity_low;
-  assign velocity[47:24] = u_path.drain_q ? drain_velocity[31:8] :
-                           !u_path.take_q ? u_path.velocity_high :
+  assign velocity[47:24] = !u_path.take_q ? u_path.velocity_high :
+                           drain          ? drain_velocity[31:8] :
                            ends_next      ? 24'd0 : velocity_next[47:24];
 
 endmodule
