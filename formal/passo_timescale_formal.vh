@@ -69,16 +69,28 @@ always @(posedge clk)
   end
 
 `ifdef INVARIANTS
+wire [16:0] f_step = f_slew == 17'd0 ? 17'd1 : f_slew;
+wire [17:0] f_moved_rate = down ? {1'b0, rate} - {1'b0, f_step} : {1'b0, rate} + {1'b0, f_step};
 always @(posedge clk)
   if (f_begun) begin
     assert (after == f_after);
-    if (f_after != 6'd0) assert (goal == f_goal);
+    if (f_after != 6'd0) assert (goal == f_goal && f_moved);
     assert (goal <= F_ONE);
     if (f_moved) assert (rate_sum == f_rates[15:0]);
     else assert (f_enables == 16'd0 && f_rates == 32'd0);
     if (!f_moved && $past(f_begun)) assert (rate_sum == 16'd0);
-    if (f_since_tick == 3'd7 && f_moved) assert (not_moved == ~{1'b0, rate});
     if (f_since_tick == 3'd7) assert (f_after == 6'd0);
     else if (f_after != 6'd0) assert (f_after == 6'd1 << f_since_tick);
+    // one after the other: direction, slew, carry, new rate, whether it is beyond the goal
+    if (f_after[3:1] != 3'd0 || (f_moved && f_since_tick == 3'd7)) assert (not_moved == ~{1'b0, rate});
+    if (f_after[4:3] == 2'b00 && f_since_tick != 3'd2 && f_since_tick != 3'd3) assert (change == 17'd0 || f_after == 6'd0);
+    if (f_moved && f_since_tick == 3'd7) assert (change == 17'd0 && !change_carry);
+    if (f_after[1] || f_after[2]) assert (change == 17'd0 && !change_carry);
+    if (f_after[6:2] != 5'd0) assert (down == (goal < rate));
+    if (f_after[3]) assert (change == (f_slew ^ {17{down}}) && !change_carry && f_slew <= F_ONE);
+    if (f_after[4]) assert (change == (f_slew ^ {17{down}}) && change_carry == (down ^ (f_slew == 17'd0)) && f_slew <= F_ONE);
+    if (f_after[5]) assert (not_moved == ~f_moved_rate && change == 17'd0 && !change_carry && f_slew <= F_ONE);
+    if (f_after[6]) assert (not_moved == ~f_moved_rate && change == 17'd0 && !change_carry && f_slew <= F_ONE);
+    if (f_after[6]) assert (land == (down ? f_moved_rate[17] || f_moved_rate <= {1'b0, goal} : f_moved_rate > {1'b0, goal}));
   end
 `endif
