@@ -136,5 +136,9 @@ module passo_axis (
     end
   end
 
+`ifdef FORMAL
+  `include "passo_axis_formal.vh"
+`endif
+
 endmodule
 `resetall

@@ -28,5 +28,9 @@ module passo_crc (
     if (restart) crc <= 32'hFFFF_FFFF;
   end
 
+`ifdef FORMAL
+  `include "passo_crc_formal.vh"
+`endif
+
 endmodule
 `resetall

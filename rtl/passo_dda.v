@@ -32,5 +32,9 @@ module passo_dda (
     else if (slot_add || step_request) e_minus_m <= e_minus_m + addend;
   end
 
+`ifdef FORMAL
+  `include "passo_dda_formal.vh"
+`endif
+
 endmodule
 `resetall

@@ -94,5 +94,9 @@ module passo_line #(
     if (rst) directions <= {AXES{1'b0}};
   end
 
+`ifdef FORMAL
+  `include "passo_line_formal.vh"
+`endif
+
 endmodule
 `resetall

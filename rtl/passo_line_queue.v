@@ -164,5 +164,9 @@ module passo_line_queue #(
     end
   endgenerate
 
+`ifdef FORMAL
+  `include "passo_line_queue_formal.vh"
+`endif
+
 endmodule
 `resetall

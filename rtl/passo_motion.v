@@ -140,5 +140,9 @@ module passo_motion (
     end
   end
 
+`ifdef FORMAL
+  `include "passo_motion_formal.vh"
+`endif
+
 endmodule
 `resetall

@@ -64,5 +64,9 @@ module passo_path (
     end
   end
 
+`ifdef FORMAL
+  `include "passo_path_formal.vh"
+`endif
+
 endmodule
 `resetall

@@ -139,5 +139,9 @@ module passo_ramp_queue #(
     .read_data    (half)
   );
 
+`ifdef FORMAL
+  `include "passo_ramp_queue_formal.vh"
+`endif
+
 endmodule
 `resetall

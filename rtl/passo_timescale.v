@@ -66,5 +66,9 @@ module passo_timescale (
     end
   end
 
+`ifdef FORMAL
+  `include "passo_timescale_formal.vh"
+`endif
+
 endmodule
 `resetall
