@@ -217,6 +217,19 @@ async def the_longest_ramp_keeps_its_precision(dut: HierarchyObject) -> None:
 
 
 @cocotb.test()
+async def progress_steps_by_exactly_du(dut: HierarchyObject) -> None:
+    """To the last of its 49 bits, mirrored and not: s lies just above where it rounds up, or below."""
+    bench = await Ramps.begin(dut)
+    for mirror in (False, True):
+        for edge in (-2, -1, 0, 1):
+            du = (
+                ((1 << 24) + edge) * pow(3, -1, 1 << 25) % (1 << 25)
+            )  # 3 du, in the second tick, is at the edge
+            ramps = [Ramp(V_MAX, 3, Shape.LINEAR, mirror, progress_step=du), Ramp(0, 1, last=True)]
+            await bench.whole(ramps)
+
+
+@cocotb.test()
 async def the_last_ticks_of_a_long_ramp_stay_below_one(dut: HierarchyObject) -> None:
     """A progress step that carries u to just below 1 in the last tick: u never wraps."""
     bench = await Ramps.begin(dut)
