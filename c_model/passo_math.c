@@ -15,17 +15,24 @@ static uint64_t low_half(uint64_t a)
 	return a & UINT32_MAX;
 }
 
-/* Zero bits above the highest one bit: 0 .. 63 for a > 0. */
-static uint32_t leading_zeros(uint64_t a)
+/* Zero bits above the highest one bit: 0 .. 31 for a > 0. */
+static uint32_t leading_zeros32(uint32_t a)
 {
 	uint32_t zeros = 0;
-	for (uint32_t bits = 32; bits > 0; bits /= 2) {
-		if (a >> (64 - bits) == 0) {
+	for (uint32_t bits = 16; bits > 0; bits /= 2) {
+		if (a >> (32 - bits) == 0) {
 			a <<= bits;
 			zeros += bits;
 		}
 	}
 	return zeros;
+}
+
+/* 0 .. 63 for a > 0. */
+static uint32_t leading_zeros(uint64_t a)
+{
+	uint32_t upper = (uint32_t)high_half(a);
+	return upper > 0 ? leading_zeros32(upper) : 32 + leading_zeros32((uint32_t)a);
 }
 
 struct passo_u128 passo_u128_add(struct passo_u128 a, struct passo_u128 b)
@@ -66,16 +73,38 @@ struct passo_u128 passo_multiply(uint64_t a, uint64_t b)
 	};
 }
 
-/* One digit, base 2^32, of a long division: divides rest * 2^32 + next by a divisor whose highest bit is
- * set, where rest < divisor. The estimate from the divisor's upper half is at most 2 too large (Knuth,
- * TAOCP 4.3.1, D3). */
-static uint64_t quotient_digit(uint64_t *rest, uint64_t next, uint64_t divisor)
+/* One digit, base 2^16, of a long division: divides rest * 2^16 + next by a divisor whose highest bit is set,
+ * where rest < divisor. The estimate from the divisor's upper half is at most 2 too large (Knuth,
+ * TAOCP 4.3.1, D3). A 32-bit processor has instructions for all of it. */
+static uint32_t quotient_half_digit(uint32_t *rest, uint32_t next, uint32_t divisor)
 {
-	uint64_t upper = high_half(divisor);
-	uint64_t digit = *rest / upper;
-	uint64_t left = *rest - digit * upper;
-	while (
-	    left <= UINT32_MAX && (digit > UINT32_MAX || digit * low_half(divisor) > (left << 32 | next))) {
+	uint32_t upper = divisor >> 16, lower = divisor & UINT16_MAX;
+	uint32_t digit = *rest / upper;
+	uint32_t left = *rest - digit * upper;
+	while (left <= UINT16_MAX && (digit > UINT16_MAX || digit * lower > (left << 16 | next))) {
+		digit--;
+		left += upper;
+	}
+	*rest = (*rest << 16 | next) - digit * divisor; /* below the divisor, so right modulo 2^32 */
+	return digit;
+}
+
+/* The same in base 2^32; its estimate is a division of the rest by the divisor's upper half. */
+static uint64_t quotient_digit(uint64_t *rest, uint32_t next, uint64_t divisor)
+{
+	if (*rest <= UINT32_MAX && (*rest << 32 | next) < divisor) {
+		*rest = *rest << 32 | next;
+		return 0;
+	}
+	uint32_t upper = (uint32_t)high_half(divisor), lower = (uint32_t)divisor;
+	uint32_t left32 = (uint32_t)high_half(*rest);
+	uint64_t beyond = left32 >= upper; /* then the rest's upper half is the divisor's */
+	left32 -= beyond ? upper : 0;
+	uint64_t digit = (uint64_t)quotient_half_digit(&left32, (uint32_t)*rest >> 16, upper) << 16;
+	digit += quotient_half_digit(&left32, (uint32_t)*rest & UINT16_MAX, upper);
+	digit += beyond << 32;
+	uint64_t left = left32;
+	while (left <= UINT32_MAX && (digit > UINT32_MAX || digit * lower > (left << 32 | next))) {
 		digit--;
 		left += upper;
 	}
@@ -89,11 +118,11 @@ uint64_t passo_divide(struct passo_u128 a, uint64_t divisor, uint64_t *remainder
 	uint64_t rest = 0;
 	if (a.high < divisor) {
 		uint32_t shift = leading_zeros(divisor);
-		a = passo_u128_shift_left(a, shift);
 		divisor <<= shift;
-		rest = a.high;
-		quotient = quotient_digit(&rest, high_half(a.low), divisor) << 32;
-		quotient |= quotient_digit(&rest, low_half(a.low), divisor);
+		rest = a.high << shift | a.low >> 1 >> (63 - shift);
+		a.low <<= shift;
+		quotient = quotient_digit(&rest, (uint32_t)high_half(a.low), divisor) << 32;
+		quotient |= quotient_digit(&rest, (uint32_t)a.low, divisor);
 		rest >>= shift;
 	}
 	if (remainder != NULL)
@@ -101,34 +130,59 @@ uint64_t passo_divide(struct passo_u128 a, uint64_t divisor, uint64_t *remainder
 	return quotient;
 }
 
+uint32_t passo_bits(struct passo_u128 a)
+{
+	if (a.high > 0)
+		return 128 - leading_zeros(a.high);
+	return a.low > 0 ? 64 - leading_zeros(a.low) : 0;
+}
+
 uint64_t passo_mul_div(uint64_t a, uint64_t b, uint64_t divisor)
 {
-	return passo_divide(passo_multiply(a, b), divisor, NULL);
+	return a == 0 && divisor > 0 ? 0 : passo_divide(passo_multiply(a, b), divisor, NULL);
 }
 
 uint64_t passo_mul_div_ceil(uint64_t a, uint64_t b, uint64_t divisor)
 {
+	if (a == 0 && divisor > 0)
+		return 0;
 	uint64_t remainder;
 	uint64_t quotient = passo_divide(passo_multiply(a, b), divisor, &remainder);
 	return remainder > 0 && quotient < UINT64_MAX ? quotient + 1 : quotient;
 }
 
-uint32_t passo_isqrt64(uint64_t a)
+static uint32_t isqrt32(uint32_t a)
 {
-	uint64_t root = 0;
-	for (uint64_t bit = UINT64_C(1) << 62; bit > 0; bit >>= 2) {
-		uint64_t trial = root + bit;
+	uint32_t root = 0;
+	for (uint32_t bit = UINT32_C(1) << 30; bit > 0; bit >>= 2) {
+		uint32_t trial = root + bit;
 		root >>= 1;
 		if (a >= trial) {
 			a -= trial;
 			root += bit;
 		}
 	}
-	return (uint32_t)root;
+	return root;
 }
 
 /* The upper half of the root from the upper half of a, the lower half by one division: with a's highest or
  * second highest bit set the result is at most 1 too large (Zimmermann, "Karatsuba Square Root"). */
+uint32_t passo_isqrt64(uint64_t a)
+{
+	if (high_half(a) == 0)
+		return isqrt32((uint32_t)a);
+	uint32_t shift = leading_zeros(a) & ~UINT32_C(1);
+	a <<= shift;
+	uint32_t upper = isqrt32((uint32_t)high_half(a));
+	uint32_t rest = (uint32_t)high_half(a) - upper * upper;    /* 0 .. 2 * upper */
+	uint32_t lower = (rest << 15 | (uint32_t)a >> 17) / upper; /* 0 .. 2^16 */
+	uint32_t root = upper << 16 | (lower > UINT16_MAX ? UINT16_MAX : lower);
+	if (a < (uint64_t)root * root)
+		root--;
+	return root >> (shift / 2);
+}
+
+/* The same method. */
 uint64_t passo_isqrt128(struct passo_u128 a)
 {
 	if (a.high == 0)

@@ -19,6 +19,9 @@ struct passo_u128 passo_u128_subtract(struct passo_u128 a, struct passo_u128 b);
 struct passo_u128 passo_u128_shift_left(struct passo_u128 a, uint32_t bits);
 bool passo_u128_less(struct passo_u128 a, struct passo_u128 b);
 
+/* Bits of the number: 0 .. 128. */
+uint32_t passo_bits(struct passo_u128 a);
+
 /* a * b, all 128 bits of it. */
 struct passo_u128 passo_multiply(uint64_t a, uint64_t b);
 

@@ -117,24 +117,68 @@ static struct slope mean_slope(struct slope slope, uint64_t low, uint64_t high)
 	return (struct slope){(clocks < curve ? curve : clocks) + curve, high - low, 0, 0};
 }
 
+/* What no peak gets above, because it takes at least 2 sqrt(change / jerk) to get there. For a ramp from
+ * `end`, with x^2 = peak - end:
+ *
+ *   length >= (peak + end) / 2 * 2 sqrt((peak - end) / jerk)
+ *   x^3 + 2 end x <= length sqrt(jerk)
+ *
+ * For two ramps it is half the length, and `end` the higher of their ends: the other ramp may be shorter, but
+ * not by more than a factor of 1.09. Newton's method from above; all speeds in UQ32.32, which makes x the
+ * root of that. */
+static uint64_t highest_with_ease(
+    const struct passo_draft *draft, uint64_t limit, uint64_t jerk, uint64_t end, bool two_ramps)
+{
+	if (limit <= end)
+		return limit;
+	uint64_t half_root = passo_isqrt128((struct passo_u128){jerk, 0}) / 2 + 1;
+	if (two_ramps)
+		half_root = half_root / 2 + half_root / 32 + 1;
+	struct passo_u128 half_right = passo_multiply(half_root, draft->longest);
+	uint32_t bits = (passo_bits(half_right) + 3) / 3;
+	uint64_t x = passo_isqrt64(limit - end) + UINT64_C(1);
+	if (bits < 32)
+		x = passo_smaller(x, UINT64_C(1) << bits);
+	for (int round = 0; round < 6; round++) {
+		uint64_t slope = x * x + x * x / 2 + end;
+		struct passo_u128 sum = passo_u128_add(passo_multiply(x * x, x), half_right);
+		uint64_t next = passo_divide(sum, slope, NULL);
+		if (next >= x - 1)
+			break;
+		x = next + 1;
+	}
+	return passo_smaller(limit, end + x * x);
+}
+
 /* With ease the mean slope grows with the peak. From a peak that is too high comes a slope that is too steep,
- * and from that a peak that is less too high: the excess, as a factor, shrinks to its fourth root or less
- * each time. */
+ * and from that a peak that is less too high: the excess, as a factor, shrinks to its root or less each time.
+ * It shrinks the less the smaller it is, so going on by the ratio of the last two steps (Aitken) does not go
+ * too far. */
 static uint64_t reachable_with_ease(const struct passo_draft *draft, uint64_t limit, struct slope up,
     uint64_t start, struct slope down, uint64_t stop)
 {
 	if (up.ease == 0 && down.ease == 0)
 		return reachable_speed(draft, limit, up, start, down, stop);
 
-	const uint64_t end = start > stop ? start : stop;
-	uint64_t next = limit, peak, good_enough;
+	const bool both = up.ease > 0 && down.ease > 0;
+	const bool alike = both && start == stop && up.speed == down.speed;
+	const uint64_t higher = start > stop ? start : stop;
+	const uint64_t end = both ? higher : up.ease > 0 ? start : stop;
+	const uint64_t jerk = up.ease > 0 ? up.jerk : down.jerk;
+	uint64_t next = highest_with_ease(draft, limit, jerk, end, both);
+	uint64_t peak, step = 0;
 	int rounds = 12;
 	do {
 		peak = next;
-		struct slope mean_up = mean_slope(up, start, peak), mean_down = mean_slope(down, stop, peak);
+		struct slope mean_up = mean_slope(up, start, peak);
+		struct slope mean_down = alike ? mean_up : mean_slope(down, stop, peak);
 		next = reachable_speed(draft, peak, mean_up, start, mean_down, stop);
-		good_enough = next > end ? (next - end) >> 8 : 0;
-	} while (peak - next > good_enough && --rounds > 0);
+		uint64_t step_before = step;
+		step = peak - next;
+		if (next > higher && step < step_before)
+			next -=
+			    passo_smaller(passo_mul_div(step, step, step_before - step), next - higher - 1);
+	} while (next > higher && step > (next - higher) >> 8 && --rounds > 0);
 	return next;
 }
 

@@ -6,27 +6,24 @@
 
 static const int32_t ONE = 65536;
 
-static int32_t point(const uint16_t table[PASSO_TABLE_SIZE], uint32_t k)
-{
-	return k < PASSO_TABLE_SIZE ? table[k] : ONE;
-}
-
 enum passo_plan_error passo_table_check(
     const uint16_t table[PASSO_TABLE_SIZE], struct passo_table_facts *facts)
 {
 	enum passo_plan_error error = table[0] == 0 ? PASSO_PLAN_OK : PASSO_PLAN_TABLE_START;
-	uint32_t sum = 0;
-	*facts = (struct passo_table_facts){.symmetric = true};
-	for (uint32_t k = 1; k <= PASSO_TABLE_SIZE; k++) {
-		/* Each trapezoid between two points has half of both: in units of 2^-16 / 256 / 2. */
-		sum += (uint32_t)(point(table, k - 1) + point(table, k));
-		facts->symmetric &= point(table, k) + point(table, PASSO_TABLE_SIZE - k) == ONE;
-		if (error == PASSO_PLAN_OK && point(table, k) < point(table, k - 1)) {
+	uint32_t sum = table[0];
+	*facts = (struct passo_table_facts){.symmetric = table[0] == 0};
+	for (uint32_t k = 1; k < PASSO_TABLE_SIZE; k++) {
+		sum += table[k];
+		if (table[k] < table[k - 1] && error == PASSO_PLAN_OK) {
 			error = PASSO_PLAN_TABLE_FALLS;
 			facts->worst = (uint16_t)k;
 		}
 	}
-	facts->mean = sum / 2;
+	for (uint32_t k = 1; k <= PASSO_TABLE_SIZE / 2; k++)
+		facts->symmetric &= table[k] + table[PASSO_TABLE_SIZE - k] == ONE;
+	/* The first point and the last, which is 1, belong to one trapezoid, all others to two. In units of
+	 * 2^-16 / 256. */
+	facts->mean = sum + (uint32_t)(ONE - table[0]) / 2;
 	return error;
 }
 
@@ -37,11 +34,14 @@ enum passo_plan_error passo_table_check(
 static int64_t bends(const uint16_t table[PASSO_TABLE_SIZE], uint64_t ticks)
 {
 	int64_t sum = 0;
+	int32_t slope = table[1] - table[0];
+	uint32_t into = 0;
 	for (uint32_t k = 1; k < PASSO_TABLE_SIZE; k++) {
-		int32_t bend = point(table, k + 1) - 2 * point(table, k) + point(table, k - 1);
-		uint32_t into = k * (uint32_t)ticks % PASSO_TABLE_SIZE;
-		uint32_t distance = into < PASSO_TABLE_SIZE / 2 ? into : PASSO_TABLE_SIZE - into;
-		sum += (int64_t)bend * (int32_t)(distance * distance);
+		int32_t next_slope = (k + 1 < PASSO_TABLE_SIZE ? table[k + 1] : ONE) - table[k];
+		into = (into + (uint32_t)ticks) % PASSO_TABLE_SIZE;
+		int32_t distance = ((int32_t)into ^ 128) - 128; /* -128 .. 127 */
+		sum += (int64_t)(next_slope - slope) * (distance * distance);
+		slope = next_slope;
 	}
 	return sum / (int64_t)(2 * ticks);
 }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The model's sources: warnings, sanitizers, and what they do without."""
+"""The sources of model, planner and driver: warnings, sanitizers, and what they do without."""
 
 import re
 import subprocess
@@ -10,11 +10,12 @@ from passo.toolchain import environment, paths
 
 STRICT = ["-std=c11", "-Wall", "-Wextra", "-Wconversion", "-Werror"]
 SANITIZED = ["-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"]
-SOURCES = sorted(paths.c_model.glob("passo_*.c"))
+MODEL_SOURCES = sorted(paths.c_model.glob("passo_*.c"))
+SOURCES = [*MODEL_SOURCES, *sorted(paths.driver.glob("*.c"))]
 # Without the planner, which has its own tests.
 SCENARIO = [
     paths.tests / "core_scenario.c",
-    *(path for path in SOURCES if not path.stem.startswith("passo_plan")),
+    *(path for path in MODEL_SOURCES if not path.stem.startswith("passo_plan")),
 ]
 # What a compiler may call by itself on any target.
 ALLOWED = {"memcpy", "memset", "memmove", "memcmp"}
@@ -46,6 +47,7 @@ def test_no_floating_point_and_no_heap(source: Path, tmp_path: Path) -> None:
         "-fno-stack-protector",
         "-c",
         f"-I{paths.c_model}",
+        f"-I{paths.driver}",
         source,
         "-o",
         made,

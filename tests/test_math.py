@@ -165,3 +165,13 @@ def test_isqrt128(c: MathC) -> None:
     for a in edges(128) + squares + [some(rng, 128) for _ in range(ROUNDS)]:
         if 0 <= a <= MAX128:
             assert c.isqrt128(a) == math.isqrt(a)
+
+
+def test_bits(c: MathC) -> None:
+    for a in [
+        0,
+        *(1 << k for k in range(128)),
+        *((1 << k) - 1 for k in range(129)),
+        *(3 << k for k in range(126)),
+    ]:
+        assert c.lib.passo_bits(c.wide(a)) == a.bit_length()

@@ -156,7 +156,8 @@ class Tampered:
 
     def transfer(self, mosi: Sequence[int], gap: int) -> list[int]:
         pins_of_axis_1 = r.ADDRESS_CHANNEL_BASE + r.CHANNEL_AXIS_BASE + r.CHANNEL_AXIS_STRIDE
-        if mosi[0] >> 28 == r.Operation.WRITE and mosi[0] & 0xFFF == pins_of_axis_1:
+        operation, length, address = mosi[0] >> 28, mosi[0] >> 12 & 0xFF, mosi[0] & 0xFFF
+        if (operation, length, address) == (r.Operation.WRITE, 3, pins_of_axis_1):
             flags, step_timing, dir_timing = mosi[1:4]
             words = (flags, step_timing + (1 << r.AXIS_STEP_TIMING_STEP_HIGH_LSB), dir_timing)
             mosi = frame.write_frame(mosi[0] >> 20 & 0xFF, pins_of_axis_1, words)

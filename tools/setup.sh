@@ -1,7 +1,10 @@
 #!/usr/bin/env bash
 # Makes the machine ready for every other make target: Debian packages, .venv, Python packages.
 #
-# Safe to run again at any time: it only does what is missing. PYTHON selects the interpreter the
+#     tools/setup.sh [SET...]
+#
+# A SET is an optional set of Python packages, of requirements-SET.txt (yosys, fpga ...), installed after all
+# the rest; or `firmware`: Debian's compiler for the STM32. Safe to run again at any time: it only does what is missing. PYTHON selects the interpreter the
 # environment is made from (default: python3).
 
 set -euo pipefail
@@ -31,6 +34,16 @@ tools="iverilog:iverilog c++:g++ make:make pod2usage:perl git:git"
 
 # Headers that Verilator's writer of FST waves includes.
 headers="lz4.h:liblz4-dev zlib.h:zlib1g-dev"
+
+python_sets=()
+for name in "$@"; do
+    if [ "$name" = firmware ]; then
+        tools+=" arm-none-eabi-gcc:gcc-arm-none-eabi"
+        headers+=" newlib/newlib.h:libnewlib-arm-none-eabi"
+    else
+        python_sets+=("$name")
+    fi
+done
 
 missing_tools() {
     local tool header
@@ -69,8 +82,25 @@ venv_is_current() {
     [ -f "$stamp" ] && [ "$(<"$stamp")" = "$key" ] && .venv/bin/python -c 'import pip' 2>/dev/null
 }
 
+# The same of a set; a set may include another one by a line "-r FILE".
+set_key() { cat "requirements-$1.txt" $(sed -n 's/^-r //p' "requirements-$1.txt") - <<<"$key" | sha256sum; }
+
+set_is_current() {
+    [ -f "$stamp-$1" ] && [ "$(<"$stamp-$1")" = "$(set_key "$1")" ]
+}
+
+missing_sets() {
+    local name
+    for name in "$@"; do
+        [ -f "requirements-$name.txt" ] || fail "there is no set '$name'; these are there:" \
+            $(ls requirements-*.txt | sed 's/requirements-\(.*\)\.txt/\1/')
+        set_is_current "$name" || echo "$name"
+    done
+}
+
+sets=$(missing_sets "${python_sets[@]}")
 missing=$(missing_tools)
-if [ -z "$missing" ] && venv_is_current; then
+if [ -z "$missing" ] && [ -z "$sets" ] && venv_is_current; then
     step "Setup is complete."
     exit 0
 fi
@@ -137,11 +167,30 @@ pip_install() {
             "'make setup' again. It goes on from where it stopped."
 }
 
-step "Installing the Python packages of requirements.txt (a minute or two the first time)"
-pip_install -r requirements.txt
+if ! venv_is_current; then
+    step "Installing the Python packages of requirements.txt (a minute or two the first time)"
+    pip_install -r requirements.txt
 
-step "Installing passo in editable mode"
-pip_install --no-deps --no-build-isolation -e .
+    step "Installing passo in editable mode"
+    pip_install --no-deps --no-build-isolation -e .
 
-echo "$key" >"$stamp"
+    echo "$key" >"$stamp"
+fi
+
+# --- Optional sets -------------------------------------------------------------------------------
+
+# Programs that a set or one that it includes names in a line "# warm-up: PROGRAM": they are WebAssembly and are
+# compiled on their first run, which must not be broken off.
+warm_ups() { sed -n 's/^# warm-up: //p' "requirements-$1.txt" $(sed -n 's/^-r //p' "requirements-$1.txt"); }
+
+for name in $sets; do
+    step "Installing the Python packages of requirements-$name.txt"
+    pip_install -r "requirements-$name.txt"
+    for program in $(warm_ups "$name"); do
+        step "Preparing $program (1 to 3 minutes the first time)"
+        ".venv/bin/$program" -V >/dev/null || fail "$program does not run; its message is above."
+    done
+    set_key "$name" >"$stamp-$name"
+done
+
 step "Setup is complete."

@@ -19,6 +19,7 @@ struct passo_engine {
 	struct passo_pin_event last;
 	uint64_t clock;
 	uint32_t spi_half_period;
+	uint64_t tick, clocks, ticks, clock_of_tick_0; /* of the master with a time of its own */
 	struct passo_pin_event *log;
 	size_t log_length;
 	size_t log_capacity;
@@ -56,6 +57,7 @@ struct passo_engine *passo_engine_create(const struct passo_engine_config *confi
 		return NULL;
 	engine->inputs.spi_cs_n = true;
 	engine->spi_half_period = config->spi_half_period ? config->spi_half_period : 1;
+	engine->clocks = engine->ticks = 1;
 	engine->log_capacity = LOG_FULL;
 	engine->log = malloc(engine->log_capacity * sizeof *engine->log);
 	engine->core = engine_core_open(config, &engine->inputs, &engine->outputs);
@@ -99,6 +101,90 @@ uint64_t passo_engine_run(struct passo_engine *engine, uint64_t clocks)
 	while (left && engine->log_length < LOG_FULL)
 		left -= run_to_event(engine, left);
 	return clocks - left;
+}
+
+void passo_engine_pace(struct passo_engine *engine, uint64_t clocks, uint64_t ticks)
+{
+	uint64_t a = clocks, b = ticks;
+
+	/* the greatest common divisor, so that products stay small */
+	while (b) {
+		uint64_t rest = a % b;
+
+		a = b;
+		b = rest;
+	}
+	engine->tick = 0;
+	engine->clock_of_tick_0 = engine->clock;
+	engine->clocks = clocks / a;
+	engine->ticks = ticks / a;
+}
+
+/* Clocks from now to the end of a tick. */
+static uint64_t clocks_to(const struct passo_engine *engine, uint64_t tick)
+{
+	return engine->clock_of_tick_0 + tick * engine->clocks / engine->ticks - engine->clock;
+}
+
+static void wait_ticks(struct passo_engine *engine, uint64_t ticks)
+{
+	engine->tick += ticks;
+	run_all(engine, clocks_to(engine, engine->tick));
+}
+
+uint64_t passo_engine_follow(struct passo_engine *engine, uint64_t tick)
+{
+	const uint32_t irq = engine->outputs.irq;
+	uint64_t left;
+
+	if (tick <= engine->tick)
+		return engine->tick;
+	left = clocks_to(engine, tick);
+	while (left && engine->log_length < LOG_FULL && engine->outputs.irq == irq)
+		left -= run_to_event(engine, left);
+	if (left) {
+		const uint64_t clocks = engine->clock - engine->clock_of_tick_0;
+
+		/* the first tick that ends with this clock, or later */
+		tick = (clocks * engine->ticks + engine->clocks - 1) / engine->clocks;
+		if (tick < engine->tick)
+			tick = engine->tick;
+	}
+	engine->tick = tick;
+	return tick;
+}
+
+void passo_engine_select(struct passo_engine *engine, bool selected)
+{
+	engine->inputs.spi_cs_n = !selected;
+}
+
+void passo_engine_exchange(
+    struct passo_engine *engine, const uint8_t *mosi, uint8_t *miso, size_t count, uint32_t half_period)
+{
+	for (size_t i = 0; i < count; i++) {
+		unsigned received = 0;
+
+		for (unsigned bit = 8; bit-- > 0;) {
+			engine->inputs.spi_mosi = mosi[i] >> bit & 1u;
+			wait_ticks(engine, half_period);
+			received = received << 1 | engine->outputs.spi_miso;
+			engine->inputs.spi_sclk = true;
+			wait_ticks(engine, half_period);
+			engine->inputs.spi_sclk = false;
+		}
+		miso[i] = (uint8_t)received;
+	}
+}
+
+uint32_t passo_engine_irq(const struct passo_engine *engine)
+{
+	return engine->outputs.irq;
+}
+
+uint32_t passo_engine_running(const struct passo_engine *engine)
+{
+	return engine->outputs.running;
 }
 
 /* SPI mode 0: MOSI changes on the falling edge, both sides sample on the rising edge. */

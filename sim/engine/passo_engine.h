@@ -41,6 +41,27 @@ void passo_engine_transfer(
 /* Runs for `clocks`, or less when the log fills up; returns how many. */
 uint64_t passo_engine_run(struct passo_engine *engine, uint64_t clocks);
 
+/* The SPI pins one by one, for a master with a time of its own, which runs in ticks: from here on, `ticks` of
+ * them last as long as `clocks` of the core, and tick t ends with clock floor(t * clocks / ticks). Tick 0 is
+ * now. */
+void passo_engine_pace(struct passo_engine *engine, uint64_t clocks, uint64_t ticks);
+
+/* Runs to the end of a tick (not before the one reached already), or less: to the first tick on whose end irq
+ * has changed, or the log is full. Returns the tick reached. */
+uint64_t passo_engine_follow(struct passo_engine *engine, uint64_t tick);
+
+/* Chip select falls (true) or rises (false) now. */
+void passo_engine_select(struct passo_engine *engine, bool selected);
+
+/* Exchanges bytes beginning now, in mode 0, most significant bit first; SCLK stays `half_period` ticks at
+ * each level. The log may become longer than full. */
+void passo_engine_exchange(
+    struct passo_engine *engine, const uint8_t *mosi, uint8_t *miso, size_t count, uint32_t half_period);
+
+/* Levels of the irq and running pins, one bit per channel. */
+uint32_t passo_engine_irq(const struct passo_engine *engine);
+uint32_t passo_engine_running(const struct passo_engine *engine);
+
 void passo_engine_sync(struct passo_engine *engine, bool level);
 uint64_t passo_engine_clock(const struct passo_engine *engine);
 

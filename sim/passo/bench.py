@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How fast the engines are; every figure is measured, and also written to build/bench.json."""
+"""How fast the engines and the link are; every figure is measured, and also written to build/bench.json."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,6 +10,7 @@ from typing import Any
 from passo.build import Parameters
 from passo.console import console, table
 from passo.engine import Engine, model_engine, rtl_engine
+from passo.link_bench import measure_all
 from passo.moves import MoveFile, MoveInTime, PinTiming
 from passo.plan import plan_file
 from passo.report import write_json
@@ -74,14 +75,27 @@ def bench() -> dict[str, Any]:
         speed = speeds[m.name] = m.clocks_per_second()
         kilohertz = ", ".join(f"{steps / 1000:g}" for steps in m.steps_per_second)
         shown.add_row(m.text, f"{kilohertz} kHz", f"{speed / 1e6:,.1f} M", f"{speed / CLOCK_HZ:.2g}")
+    links = table(
+        "Lines of 4 axes over the link, core at 72 MHz", "SCLK", "the wire's limit", "fed", "without a gap"
+    )
+    rates = measure_all()
+    for rate in rates:
+        links.add_row(
+            f"{rate.sclk_hz / 1e6:g} MHz",
+            f"{rate.limit:,.0f}/s",
+            f"{rate.burst:,.0f}/s ({rate.share:.1%})",
+            f"{rate.sustained:,.0f}/s ({rate.sustained / rate.limit:.1%})",
+        )
     ratios = {axes: speeds[f"advance_{axes}"] / speeds[f"model_{axes}"] for axes in ("1_axis", "4_axes")}
     report = {
         "clock_hz": CLOCK_HZ,
         "clocks_per_second": {name: round(speed) for name, speed in speeds.items()},
         "advance_ratio": {axes: round(ratio, 1) for axes, ratio in ratios.items()},
+        "lines_per_second": {str(rate.sclk_hz): round(rate.sustained) for rate in rates},
     }
     write_json(report, REPORT)
     console.print(shown)
+    console.print(links)
     console.print(
         f"passo_core_advance() against clock by clock: {ratios['1_axis']:.0f} times as fast with one axis,\n"
         f"{ratios['4_axes']:.0f} times as fast with four"

@@ -6,6 +6,7 @@ A library lives in build/lib/NAME-HASH, where HASH covers everything that goes i
 
 import fcntl
 import hashlib
+import importlib.util
 import shutil
 import subprocess
 import tempfile
@@ -13,6 +14,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
+from importlib.metadata import version
 from pathlib import Path
 
 from passo.toolchain import environment, paths
@@ -21,7 +23,7 @@ ENGINE = paths.sim / "engine"
 LIBRARY = "library.so"
 MESSAGE_LINES = 30  # of a compiler's complaints
 
-INCLUDES = (f"-I{paths.c_model}", f"-I{ENGINE}")
+INCLUDES = (f"-I{paths.c_model}", f"-I{paths.driver}", f"-I{ENGINE}")
 C_FLAGS = ("-std=c11", "-O3", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-fPIC", *INCLUDES)
 C_LINK_FLAGS = ("-shared", "-Wl,--no-undefined")
 CPP_FLAGS = ("-std=gnu++17", "-O3", "-Wall", "-fPIC", "-fno-gnu-unique", *INCLUDES)
@@ -56,14 +58,23 @@ class Parameters:
 
 
 def planner_library() -> Path:
-    """The planner and the frame codec: what runs on a microcontroller as well."""
-    return _c_library("planner", _host_sources())
+    """Planner, frame codec, link library and driver: what runs on a microcontroller as well."""
+    shapes = paths.c_model / "passo_shapes.c"
+    return _c_library("planner", [*_host_sources(), shapes, *sorted(paths.driver.glob("*.c"))])
 
 
 def model_library() -> Path:
     """The engine on the C model, for any parameters."""
     sources = sorted({*paths.c_model.glob("*.c")} - {*_host_sources()})
     return _c_library("model", [*sources, ENGINE / "engine.c", ENGINE / "engine_model.c"])
+
+
+def console_library() -> Path:
+    """The console of the STM32 bridge with its driver, as it runs on a microcontroller."""
+    folders = [paths.stm32_bridge / "console", paths.stm32_bridge / "driver"]
+    sources = [path for folder in folders for path in sorted(folder.glob("*.c"))]
+    sources += [ENGINE / "passo_terminal.c", paths.c_model / "passo_shapes.c", *_host_sources()]
+    return _c_library("console", sources, folders)
 
 
 def _host_sources() -> list[Path]:
@@ -73,6 +84,24 @@ def _host_sources() -> list[Path]:
         paths.c_model / "passo_math.c",
         paths.c_model / "passo_frame.c",
     ]
+
+
+def cpu_library() -> Path:
+    """The microcontroller's processor on unicorn."""
+    spec = importlib.util.find_spec("unicorn")
+    if spec is None or spec.origin is None:
+        raise BuildError("the Python package 'unicorn' is missing: run 'make setup'")
+    unicorn = Path(spec.origin).parent
+    library = unicorn / "lib" / "libunicorn.so.2"
+    sources = [ENGINE / "passo_cpu.c"]
+    flags = [*C_FLAGS, f"-isystem{unicorn / 'include'}"]
+
+    def make(folder: Path) -> None:
+        linked = [str(library), f"-Wl,-rpath,{library.parent}"]
+        _call(["cc", "-shared", *flags, *map(str, sources), *linked, "-o", str(folder / LIBRARY)])
+
+    versions = [version("unicorn"), str(library)]
+    return _cached("cpu", [*sources, *_headers()], [*flags, *versions], make) / LIBRARY
 
 
 def rtl_library(parameters: Parameters, waves: bool = False) -> Path:
@@ -102,13 +131,15 @@ def waves_possible() -> bool:
     return subprocess.run(command, env=environment(), capture_output=True).returncode == 0
 
 
-def _c_library(name: str, sources: Sequence[Path]) -> Path:
-    def make(folder: Path) -> None:
-        _call(
-            ["cc", "-shared", "-Wl,--no-undefined", *C_FLAGS, *map(str, sources), "-o", str(folder / LIBRARY)]
-        )
+def _c_library(name: str, sources: Sequence[Path], folders: Sequence[Path] = ()) -> Path:
+    """A library of C sources; `folders` are where else headers are."""
+    flags = [*C_LINK_FLAGS, *C_FLAGS, *(f"-I{folder}" for folder in folders)]
+    headers = [*_headers(), *(path for folder in folders for path in sorted(folder.glob("*.h")))]
 
-    return _cached(name, [*sources, *_headers()], [*C_LINK_FLAGS, *C_FLAGS], make) / LIBRARY
+    def make(folder: Path) -> None:
+        _call(["cc", *flags, *map(str, sources), "-o", str(folder / LIBRARY)])
+
+    return _cached(name, [*sources, *headers], flags, make) / LIBRARY
 
 
 def _verilated(parameters: Parameters, waves: bool) -> Path:
@@ -133,7 +164,8 @@ def _verilated(parameters: Parameters, waves: bool) -> Path:
 
 
 def _headers() -> list[Path]:
-    return [*sorted(paths.c_model.glob("*.h")), *sorted(ENGINE.glob("*.h"))]
+    folders = (paths.c_model, paths.driver, ENGINE)
+    return [header for folder in folders for header in sorted(folder.glob("*.h"))]
 
 
 def _call(command: Sequence[str]) -> None:

@@ -7,13 +7,13 @@ from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 
-from passo.build import BuildError
+from passo.build import BuildError, Parameters
 from passo.console import progress
 from passo.engine import DifferenceError
 from passo.frame import FrameError
 from passo.host import HostError
 from passo.link import LinkError
-from passo.moves import MoveFileError, read_moves
+from passo.moves import AXES_MAX, MoveFileError, read_moves
 from passo.plan import plan_file
 from passo.run import ENGINES, Run, RunError, execute, open_engine, parameters_for
 from passo.shape import ShapeError
@@ -61,6 +61,24 @@ def _parser() -> argparse.ArgumentParser:
     source.add_argument("--csv", type=Path, metavar="FILE", help="u,s: a curve; or k,point: a table")
     shape.add_argument("--out", type=Path, metavar="FILE", help="write the table: FILE.csv or FILE.toml")
     shape.add_argument("--plot", type=Path, metavar="FILE.png", help="draw it")
+    console = commands.add_parser("console", help="talk to a core as to the STM32 board (docs/console.md)")
+    console.set_defaults(command=_console)
+    console.add_argument("--engine", choices=ENGINES, default="rtl", help="the core (default rtl)")
+    console.add_argument("--axes", type=int, default=4, metavar="N", help="axes of the core (default 4)")
+    console.add_argument(
+        "--clock", type=int, default=100_000_000, metavar="HZ", help="clock of the core (default 100000000)"
+    )
+    console.add_argument("--echo", action="store_true", help="show each line before its answer")
+    firmware = commands.add_parser(
+        "firmware",
+        help="type moves at the console of the STM32's firmware, simulated with a core at its pins",
+    )
+    firmware.set_defaults(command=_firmware)
+    firmware.add_argument(
+        "moves", type=Path, nargs="*", metavar="MOVES.toml", help="default: all of examples/"
+    )
+    firmware.add_argument("--engine", choices=("rtl", "model"), default="rtl", help="the core (default rtl)")
+    firmware.add_argument("--table", action="store_true", help="measure the firmware instead")
     demo = commands.add_parser("demo", help="make the moves of examples/, with pictures in build/demo")
     demo.set_defaults(command=_demo)
     bench = commands.add_parser("bench", help="measure how fast the engines are")
@@ -133,6 +151,40 @@ def _shape(options: argparse.Namespace) -> int:
     symmetric = "symmetric" if facts.symmetric else "not symmetric"
     print(f"mean {float(facts.mean):.6f}, {symmetric}, slope at most {steepest:.3f}")
     return OK
+
+
+def _console(options: argparse.Namespace) -> int:
+    from passo.terminal import Terminal, talk
+
+    def write(text: str) -> None:
+        print(text, end="", flush=text.endswith("\n"))
+
+    if not 1 <= options.axes <= AXES_MAX or not 1 <= options.clock < 2**32:
+        raise MoveFileError(f"--axes must be 1 to {AXES_MAX}, --clock 1 to {2**32 - 1}")
+    parameters = Parameters(axes=options.axes)
+    with (
+        open_engine(options.engine, parameters, options.clock) as engine,
+        Terminal(engine, write) as terminal,
+    ):
+        talk(sys.stdin, terminal, write if options.echo else None)
+    return OK
+
+
+def _firmware(options: argparse.Namespace) -> int:
+    from passo.stm32 import MachineError
+
+    try:
+        if options.table:
+            from passo.stm32.bench import bench
+
+            bench()
+            return OK
+        from passo.stm32.demo import demo
+
+        return OK if demo(options.moves, options.engine) else FAILED
+    except (MachineError, TimeoutError) as error:
+        print(error, file=sys.stderr)
+        return FAILED
 
 
 def _demo(options: argparse.Namespace) -> int:

@@ -83,6 +83,34 @@ class Engine:
         """Run for `clocks`, or less when there are many events to drain; return how many."""
         return self._c.passo_engine_run(self._engine, clocks)
 
+    def pace(self, clocks: int, ticks: int) -> None:
+        """Let a master's time run in ticks: `ticks` last as long as `clocks`. Tick 0 is now."""
+        self._c.passo_engine_pace(self._engine, clocks, ticks)
+
+    def follow(self, tick: int) -> int:
+        """Run to the end of a tick, a change of irq or many events to drain; return the tick reached."""
+        return self._c.passo_engine_follow(self._engine, tick)
+
+    def select(self, selected: bool) -> None:
+        """Chip select falls or rises now."""
+        self._c.passo_engine_select(self._engine, selected)
+
+    def exchange(self, mosi: bytes, half_period: int) -> bytes:
+        """Exchange bytes from now on; SCLK stays `half_period` ticks at each level."""
+        miso = ffi().new("uint8_t[]", len(mosi))
+        self._c.passo_engine_exchange(self._engine, mosi, miso, len(mosi), half_period)
+        return bytes(miso)
+
+    @property
+    def irq(self) -> int:
+        """Level of the irq pins, one bit per channel."""
+        return self._c.passo_engine_irq(self._engine)
+
+    @property
+    def running(self) -> int:
+        """Level of the running pins, one bit per channel."""
+        return self._c.passo_engine_running(self._engine)
+
     def sync(self, level: bool) -> None:
         """Set the sync input."""
         self._c.passo_engine_sync(self._engine, level)

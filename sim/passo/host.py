@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a host does with one channel of the core."""
+"""One channel of the core, register by register; passo.driver is what a program uses."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

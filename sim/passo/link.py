@@ -1,19 +1,25 @@
 # SPDX-License-Identifier: MIT
-"""The host's end of the SPI link: sequence numbers, replies and retries."""
+"""The link library (stm32_bridge/driver/passo_host.h) for Python: the host's end of the SPI link."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from typing import Any, Protocol
 
-from passo import frame
-from passo.engine import Engine, PairEngine
+from passo.native import ffi, planner
 from passo.registers import Verdict
 
 # The gap after a frame is the time the core needs to execute it.
 GAP = 64
 TRIES = 4
+MICROSECONDS = 1_000_000
 
 
 class LinkError(Exception):
-    """The link failed for good."""
+    """The link failed for good; `error` is one of enum passo_error, `name` its name."""
+
+    def __init__(self, what: str, error: int = 0):
+        self.error = error
+        self.name = error_name(error)
+        super().__init__(what)
 
 
 class RefusedError(LinkError):
@@ -21,60 +27,115 @@ class RefusedError(LinkError):
 
     def __init__(self, verdict: Verdict, what: str):
         self.verdict = verdict
-        super().__init__(f"{what} was refused: {verdict.name}: {verdict.description}")
+        error = planner().PASSO_ERROR_REFUSED + verdict
+        super().__init__(f"{what} was refused: {verdict.name}: {verdict.description}", error)
+
+
+class Transferring(Protocol):
+    """What the link needs of an engine."""
+
+    def transfer(self, mosi: Sequence[int], gap: int) -> list[int]:
+        """One chip select: send the words and return those received, then wait for `gap` clocks."""
+
+
+def error_name(error: int) -> str:
+    """Name of one of enum passo_error."""
+    return ffi().string(planner().passo_error_name(error)).decode()
+
+
+def error_text(error: int) -> str:
+    """Its sentence."""
+    return ffi().string(planner().passo_error_text(error)).decode()
+
+
+class Hardware:
+    """A `struct passo_hardware` whose functions are an engine's; `check` raises what goes wrong in them."""
+
+    def __init__(self, engine: Any, tries: int = 0, clock_hz: int = 0):
+        """With `clock_hz` there is also a clock, and waiting lets the engine run."""
+        self.engine, self.clock_hz = engine, clock_hz
+        self._raised: BaseException | None = None
+        self.c = ffi().new("struct passo_hardware *", {"tries": tries, "paced": True})
+        # The callbacks live as long as this object.
+        self._callbacks = [
+            ffi().callback("bool(void *, const uint32_t *, uint32_t *, size_t)", self._transfer)
+        ]
+        self.c.transfer = self._callbacks[0]
+        if clock_hz:
+            self._callbacks += [
+                ffi().callback("uint32_t(void *)", self._microseconds),
+                ffi().callback("void(void *, uint32_t)", self._wait),
+            ]
+            self.c.microseconds, self.c.wait = self._callbacks[1:]
+
+    def check(self) -> None:
+        """Raise what the engine raised."""
+        if self._raised is not None:
+            raised, self._raised = self._raised, None
+            raise raised
+
+    def _transfer(self, _: Any, send: Any, receive: Any, words: int) -> bool:
+        try:
+            received = self.engine.transfer(ffi().unpack(send, words), GAP)
+        except BaseException as error:
+            self._raised = error
+            return False
+        receive[0:words] = received
+        return True
+
+    def _microseconds(self, _: Any) -> int:
+        return self.engine.clock * MICROSECONDS // self.clock_hz & 0xFFFFFFFF
+
+    def _wait(self, _: Any, microseconds: int) -> None:
+        try:
+            self.engine.run(microseconds * self.clock_hz // MICROSECONDS + 1)
+        except BaseException as error:
+            self._raised = error
 
 
 class Link:
     """Frames that are executed exactly once, or an exception."""
 
-    def __init__(self, engine: Engine | PairEngine, tries: int = TRIES):
+    def __init__(self, engine: Transferring, tries: int = TRIES):
         self.engine = engine
         self.tries = tries
-        self.retries = 0
-        self.status = 0
-        self._sequence = 0
-        # A write with the sequence number that was accepted last would pass for a duplicate.
-        self.read(0, 1)
-        self._sequence = (self.status >> 16) + 1 & 0xFF
+        self._hardware = Hardware(engine, tries)
+        self._c = planner()
+        self.host = ffi().new("struct passo_host *")
+        self._check(self._c.passo_host_open(self.host, self._hardware.c), "read of 0x000")
+
+    @property
+    def retries(self) -> int:
+        """Frames sent again so far."""
+        return self.host.counters.retries
+
+    @property
+    def status(self) -> int:
+        """The last undamaged status word."""
+        return self.host.status
 
     def write(self, address: int, *words: int) -> None:
-        """Write consecutive registers."""
-        mosi = frame.write_frame(self._next(), address, words)
-        self._send(mosi, frame.write_verdict, f"write to 0x{address:03X}")
+        """Write 1 to 60 consecutive registers."""
+        error = self._c.passo_host_write(self.host, address, words, len(words))
+        self._check(error, f"write to 0x{address:03X}")
 
     def push(self, address: int, words: Sequence[int]) -> None:
-        """Write all words to one register."""
-        mosi = frame.push_frame(self._next(), address, words)
-        self._send(mosi, frame.write_verdict, f"push to 0x{address:03X}")
+        """Write 1 to 60 words to one register."""
+        error = self._c.passo_host_push(self.host, address, list(words), len(words))
+        self._check(error, f"push to 0x{address:03X}")
 
     def read(self, address: int, length: int) -> list[int]:
-        """Read consecutive registers."""
-        mosi = frame.read_frame(self._next(), address, length)
-        miso = self._send(mosi, frame.read_verdict, f"read of 0x{address:03X}")
-        return miso[frame.DATA : frame.DATA + length]
+        """Read 1 to 60 consecutive registers."""
+        words = ffi().new("uint32_t[]", length)
+        self._check(self._c.passo_host_read(self.host, address, words, length), f"read of 0x{address:03X}")
+        return list(words)
 
-    def _next(self) -> int:
-        sequence = self._sequence
-        self._sequence = sequence + 1 & 0xFF
-        return sequence
-
-    def _send(
-        self, mosi: list[int], judge: Callable[[Sequence[int], Sequence[int]], Verdict], what: str
-    ) -> list[int]:
-        """Send until the reply is clear. The sequence number keeps a frame from being executed twice."""
-        problem = ""
-        for attempt in range(self.tries):
-            self.retries += attempt > 0
-            miso = self.engine.transfer(mosi, GAP)
-            try:
-                verdict = judge(mosi, miso)
-            except frame.FrameError as error:
-                problem = str(error)
-                continue
-            self.status = miso[0]
-            if verdict in (Verdict.OK, Verdict.DUPLICATE):
-                return miso
-            if verdict != Verdict.BAD_CRC:
-                raise RefusedError(verdict, what)
-            problem = verdict.description
-        raise LinkError(f"{what} failed {self.tries} times: {problem}")
+    def _check(self, error: int, what: str) -> None:
+        self._hardware.check()
+        if error == self._c.PASSO_OK:
+            return
+        if error >= self._c.PASSO_ERROR_REFUSED:
+            raise RefusedError(Verdict(error - self._c.PASSO_ERROR_REFUSED), what)
+        wire = self._c.PASSO_ERROR_TRANSFER < error <= self._c.PASSO_ERROR_BAD_CRC
+        failed = f"failed {self.tries} times" if wire else "failed"
+        raise LinkError(f"{what} {failed}: {error_text(error)}", error)

@@ -9,7 +9,7 @@ from typing import Any
 
 from cffi import FFI
 
-from passo.build import ENGINE, planner_library
+from passo.build import ENGINE, console_library, cpu_library, planner_library
 from passo.toolchain import environment, paths
 
 HEADERS = (
@@ -17,7 +17,14 @@ HEADERS = (
     paths.c_model / "passo_registers.h",
     paths.c_model / "passo_plan.h",
     paths.c_model / "passo_frame.h",
+    paths.driver / "passo_error.h",
+    paths.driver / "passo_host.h",
+    paths.driver / "passo.h",
+    paths.driver / "passo_motor.h",
     ENGINE / "passo_engine.h",
+    ENGINE / "passo_terminal.h",
+    paths.stm32_bridge / "console" / "passo_decimal.h",
+    ENGINE / "passo_cpu.h",
 )
 
 
@@ -45,5 +52,17 @@ def load(library: Path) -> Any:
 
 @cache
 def planner() -> Any:
-    """The planner and the frame codec."""
+    """The planner, the frame codec, the link library and the driver."""
     return load(planner_library())
+
+
+@cache
+def processor() -> Any:
+    """The microcontroller's processor."""
+    return load(cpu_library())
+
+
+@cache
+def console() -> Any:
+    """The console of the STM32 bridge."""
+    return load(console_library())

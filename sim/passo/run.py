@@ -2,24 +2,23 @@
 """Execute a planned motion on an engine, the way a host does: over SPI, keeping the queues filled."""
 
 import time
-from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from passo.build import Parameters
+from passo.driver import Driver, DriverError, Source
 from passo.engine import Engine, PairEngine, model_engine, rtl_engine
-from passo.host import RATE_ONE, Channel, ChannelState, load_table
-from passo.link import Link, RefusedError
+from passo.host import ChannelState
 from passo.moves import MoveFile
 from passo.plan import Plan, table_of
-from passo.registers import Cause, State, Verdict
+from passo.registers import Cause, State
 
 ENGINES = ("both", "rtl", "model")
 CHUNK = 1_000_000  # clocks between two reports of progress
 SIGMOID_BANK = 2  # where the table of a motion goes
-SLEW_SECONDS = 0.05  # a hold from full speed
+SLEW_MICROSECONDS = 50_000  # a hold from full speed
 AXES_OF_CORES = (4, 8)
 
 # The pins of the one channel, without what stays the same during a motion.
@@ -97,41 +96,12 @@ def open_engine(name: str, parameters: Parameters, clock_hz: int, waves: bool = 
     return rtl if name == "rtl" else PairEngine(rtl, model_engine(parameters, clock_hz))
 
 
-class Feeder:
-    """Keeps the queues filled with what is still to come."""
-
-    def __init__(self, channel: Channel, plans: list[Plan]):
-        self.channel = channel
-        self._lines = deque(plan.line for plan in plans)
-        self._ramps = deque(ramp for plan in plans for ramp in plan.ramps)
-        self._queued: deque[int] = deque()  # ticks of the ramps that may still be in the queue
-
-    @property
-    def done(self) -> bool:
-        """Everything was sent."""
-        return not self._lines and not self._ramps
-
-    def fill(self) -> None:
-        """Send as much as there is room for."""
-        if self.done:
-            return
-        line_room, ramp_room = self.channel.room()
-        waiting = (1 << self.channel.parameters.ramp_queue_log2) - ramp_room
-        while len(self._queued) > waiting:
-            self._queued.popleft()
-        lines = [self._lines.popleft() for _ in range(min(line_room, len(self._lines)))]
-        ramps = [self._ramps.popleft() for _ in range(min(ramp_room, len(self._ramps)))]
-        try:
-            self.channel.push_lines(lines)
-            self.channel.push_ramps(ramps)
-        except RefusedError as error:
-            if error.verdict != Verdict.BUSY:  # the channel has stopped: its state tells why
-                raise
-        self._queued.extend(ramp.ticks for ramp in ramps)
-
-    def patience(self) -> int:
-        """Clocks that may pass before the queues need another look: half of what they hold."""
-        return max(1, sum(self._queued) // 2) << self.channel.parameters.tick_log2
+def patience(driver: Driver, source: Source) -> int:
+    """Clocks that may pass before the queues need another look: half of what they hold."""
+    parameters = driver.engine.parameters
+    waiting = (1 << parameters.ramp_queue_log2) - driver.c.snapshot.ramp_room
+    ticks = sum(source.ticks[-waiting:]) if waiting else 0
+    return max(1, ticks // 2) << parameters.tick_log2
 
 
 def execute(
@@ -141,8 +111,7 @@ def execute(
     progress: Callable[[int], None] = lambda clocks: None,
 ) -> Run:
     """Make the motion; `progress` is told its clocks so far."""
-    link = Link(engine)
-    channel = Channel(link, engine.parameters)
+    driver = Driver(engine, file.clock_hz, engine.parameters)
     pins: list[np.ndarray] = []
 
     def collect() -> bool:
@@ -161,33 +130,47 @@ def execute(
             if collect():
                 return
 
-    for axis in range(file.axes):
-        channel.configure_axis(axis, file.pins)
-    if table := table_of(plans):
-        load_table(link, SIGMOID_BANK, table)
-    tick = 1 << engine.parameters.tick_log2
-    slew = min(RATE_ONE, max(1, round(RATE_ONE * tick / (SLEW_SECONDS * file.clock_hz))))
-    slowest = min(plan.c.velocity_peak for plan in plans)
-    channel.configure_motion(slew, slew, max(1, slowest >> 16 >> 4))
+    def poll() -> bool:
+        """Send what there is to send; return whether all goes well."""
+        try:
+            driver.poll()
+            while driver.idle_microseconds == 0 and driver.is_moving:
+                driver.poll()
+        except DriverError:
+            if not driver.c.fault:
+                raise
+            return False  # the state tells why
+        return True
 
+    for axis in range(file.axes):
+        driver.configure_axis(axis, file.pins)
+    if table := table_of(plans):
+        driver.call("load_table", SIGMOID_BANK, table)
+    slowest = min(plan.c.velocity_peak for plan in plans)
+    driver.call("configure_motion", SLEW_MICROSECONDS, SLEW_MICROSECONDS, max(1, slowest >> 16 >> 4))
+
+    tick = 1 << engine.parameters.tick_log2
     planned = sum(plan.clocks for plan in plans)
-    feeder = Feeder(channel, plans)
-    feeder.fill()
+    source = Source([plan.line for plan in plans], [ramp for plan in plans for ramp in plan.ramps])
+    driver.stream(source)
     start, began = engine.clock, time.monotonic()
-    channel.start()
-    state = channel.state()
-    while state.state != State.STOPPED and not (feeder.done and state.state == State.IDLE):
+    while poll() and driver.is_moving:
         left = start + planned - engine.clock
         if left < -file.clock_hz:
-            raise RunError(f"the motion did not end in time: {state}")
+            raise RunError(f"the motion did not end in time: {driver.state.name}")
         left = max(left, 16 * tick)
-        advance(left if feeder.done else min(left, feeder.patience()))
-        feeder.fill()
-        state = channel.state()
+        advance(min(left, patience(driver, source)) if driver.is_streaming else left)
     # The last pulse and a change of direction may still be under way.
     advance(8 * sum((file.pins.step_high, file.pins.step_low, file.pins.dir_setup, file.pins.dir_hold)))
-    positions = channel.positions()[: file.axes]
-    state = channel.state()
+    positions = driver.positions()[: file.axes]
+    snapshot = driver.snapshot()
+    state = ChannelState(
+        state=State(snapshot.state),
+        cause=Cause(snapshot.cause),
+        stopping=snapshot.stopping,
+        overrun=snapshot.overrun,
+        drained=snapshot.drained,
+    )
     collect()
     return Run(
         file=file,

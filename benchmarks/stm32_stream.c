@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: MIT
+ * How many lines per second the driver brings over the link on an STM32F103, for `passo firmware --table`.
+ *
+ * A path of endlessly many short lines under one long ramp. The bench writes `stream_substeps` and
+ * `stream_fast`, then `stream_go`, and reads at what times how many lines were asked for.
+ */
+#include "board.h"
+#include "passo.h"
+#include "spi.h"
+
+#define CLOCK_HZ 72000000u
+#define HALF_VELOCITY (UINT64_C(1) << 47) /* a substep every two clocks */
+#define AXES 4u
+
+volatile uint32_t stream_go, stream_substeps, stream_fast, stream_asked, stream_error;
+
+static struct passo_host host;
+static struct passo passo;
+
+static uint32_t microseconds(void *context)
+{
+	(void)context;
+	return board_microseconds();
+}
+
+static bool core_calls(void *context)
+{
+	(void)context;
+	return board_core_calls();
+}
+
+static bool next_line(void *context, struct passo_line *line)
+{
+	(void)context;
+	stream_asked++;
+	*line = (struct passo_line){.substeps = stream_substeps};
+	for (unsigned axis = 0; axis < AXES; axis++)
+		line->steps[axis] = 1;
+	return true;
+}
+
+static bool next_ramp(void *context, struct passo_ramp *ramp)
+{
+	static bool begun;
+
+	(void)context;
+	*ramp = (struct passo_ramp){.velocity_end = HALF_VELOCITY};
+	if (begun) {
+		ramp->ticks = UINT32_C(1) << 24;
+		ramp->progress_step = UINT64_C(1) << 24;
+		ramp->last = true;
+	}
+	begun = true;
+	return true;
+}
+
+int main(void)
+{
+	static const struct passo_hardware hardware = {
+	    .transfer = spi_transfer, .microseconds = microseconds, .irq = core_calls};
+	static const struct passo_source source = {.line = next_line, .ramp = next_ramp};
+	const struct passo_options options = {.clock_hz = CLOCK_HZ};
+
+	stream_go = 0;
+	board_start();
+	spi_start();
+	crc_start();
+	while (!stream_go)
+		continue;
+	spi_set_fast(stream_fast != 0u);
+	stream_error = passo_open(&passo, &host, &hardware, &options);
+	if (stream_error == PASSO_OK)
+		stream_error = passo_stream(&passo, &source);
+	while (stream_error == PASSO_OK)
+		stream_error = passo_poll(&passo);
+	for (;;)
+		continue;
+}

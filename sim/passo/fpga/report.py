@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: MIT
+"""`make report`: size and speed of the core on all devices.
+
+A whole report writes build/report.json, docs/report.md and the table between two marks in README.md; a part
+of it (ONLY=, QUICK=1) is printed and written to build/report-part.json. Runs are kept in build/fpga: a report
+that was broken off goes on, and one after a change makes again what the change concerns.
+"""
+
+import argparse
+import statistics
+import sys
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict, dataclass
+from itertools import product
+from typing import Any
+
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+from passo.console import console
+from passo.fpga import pages
+from passo.fpga.devices import DEVICES, SPI_MHZ, Device
+from passo.fpga.flow import Design, Placed, cells, place, synthesize
+from passo.fpga.split import split
+from passo.fpga.tools import ToolError, prepare, versions
+from passo.report import write_json
+from passo.toolchain import paths
+
+REPORT = paths.build / "report.json"
+SEEDS = (1, 2, 3)
+WORKERS = 2
+SIZES = ((1, 1), (1, 2), (1, 4), (1, 6), (1, 8), (2, 1), (2, 2), (4, 1), (4, 2))  # channels, axes
+SPLIT_DEVICES = ("hx8k", "ecp5-25")
+SPLIT_SIZE = (1, 4)
+
+
+@dataclass(frozen=True)
+class Goal:
+    """What a device is to hold: `size` in its own unit, `bram` if limited, at a median clock in MHz."""
+
+    device: str
+    channels: int
+    axes: int
+    mhz: int
+    size: int
+    bram: int | None = None
+
+
+GOALS = (
+    Goal("hx8k", 1, 4, 120, 4000, 16),
+    Goal("up5k", 1, 6, 48, 5280),
+    Goal("ecp5-25", 1, 6, 180, 6000),
+    Goal("gw1nr-9c", 1, 6, 80, 8640),
+)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Return 0 if all runs ended, fitting or not; 2 if there is no such device."""
+    parser = argparse.ArgumentParser(prog="make report", description="Measure size and speed of the core.")
+    parser.add_argument("--only", default="", help=f"devices, with commas between: {','.join(DEVICES)}")
+    parser.add_argument("--quick", action="store_true", help="only the rows of the goals")
+    options = parser.parse_args(arguments)
+    chosen = [name for name in options.only.split(",") if name] or list(DEVICES)
+    if unknown := set(chosen) - set(DEVICES):
+        message = f"there is no device '{min(unknown)}'; choose of {', '.join(DEVICES)}"
+        print(f"make report: {message}", file=sys.stderr)
+        return 2
+    goals = [(DEVICES[goal.device], (goal.channels, goal.axes)) for goal in GOALS if goal.device in chosen]
+    others = [] if options.quick else list(product([DEVICES[name] for name in chosen], SIZES))
+    whole = not options.quick and set(chosen) == set(DEVICES)
+    try:
+        report = measure(list(dict.fromkeys(goals + others)), splits=not options.quick)
+    except ToolError as error:
+        print(error, file=sys.stderr)
+        return 1
+    if whole:
+        write_json(report, REPORT)
+        pages.write(report)
+    else:
+        part = REPORT.with_name("report-part.json")
+        write_json(report, part)
+        console.print(f"a part of the report: {part.relative_to(paths.root)}; docs/report.md is as it was")
+    pages.show(report)
+    return 0
+
+
+def core(device: Device, size: tuple[int, int]) -> Design:
+    """The core alone, with its ports as pins."""
+    channels, axes = size
+    return Design(f"{device.name}-{channels}x{axes}", device, parameters={"CHANNELS": channels, "AXES": axes})
+
+
+def measure(wanted: Sequence[tuple[Device, tuple[int, int]]], splits: bool) -> dict[str, Any]:
+    """Run what is not there yet, two at a time, and gather the figures."""
+    devices = list(dict.fromkeys(device for device, _ in wanted))
+    prepare(dict.fromkeys(program for device in devices for program in device.family.programs))
+    designs = {(device.name, size): core(device, size) for device, size in wanted}
+    hierarchical = {
+        name: Design(
+            f"{name}-split",
+            DEVICES[name],
+            parameters={"CHANNELS": SPLIT_SIZE[0], "AXES": SPLIT_SIZE[1]},
+            flatten=False,
+        )
+        for name in SPLIT_DEVICES
+        if splits and DEVICES[name] in devices
+    }
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=console) as bar, ThreadPoolExecutor(WORKERS) as pool:
+        task = bar.add_task("synthesis", total=len(designs) + len(hierarchical))
+
+        def make(design: Design) -> None:
+            synthesize(design)
+            bar.advance(task)
+
+        list(pool.map(make, [*designs.values(), *hierarchical.values()]))
+        task = bar.add_task("place and route", total=len(designs) * len(SEEDS))
+
+        def run(design: Design, seed: int) -> Placed:
+            bar.update(task, description=f"place and route, {design.name}")
+            placed = _place(design, seed)
+            bar.advance(task)
+            if not console.is_terminal:
+                print(f"{design.name}, seed {seed}: {_words(placed)}", flush=True)
+            return placed
+
+        # the seeds of a design one after the other, because there is one run only of what does not fit
+        def runs(design: Design) -> list[Placed]:
+            first = run(design, SEEDS[0])
+            if not first.fits:
+                bar.advance(task, len(SEEDS) - 1)
+                return [first]
+            return [first, *(run(design, seed) for seed in SEEDS[1:])]
+
+        placed = dict(zip(designs, pool.map(runs, designs.values()), strict=True))
+    return {
+        "seeds": list(SEEDS),
+        "tools": {device.name: versions(device.family.programs) for device in devices},
+        "goals": [asdict(goal) for goal in GOALS if DEVICES[goal.device] in devices],
+        "designs": [_row(designs[key], key, placed[key]) for key in designs],
+        "split": {name: split(design) for name, design in hierarchical.items()},
+        "split_size": list(SPLIT_SIZE),
+    }
+
+
+def _place(design: Design, seed: int) -> Placed:
+    mhz = design.device.target_mhz
+    return place(design, seed, mhz, {"clk": mhz, "spi_sclk": SPI_MHZ})
+
+
+def _words(placed: Placed) -> str:
+    return f"{placed.main_clock[0]:.1f} MHz" if placed.fits else f"{placed.used} do not fit"
+
+
+def _row(design: Design, key: tuple[str, tuple[int, int]], placed: Sequence[Placed]) -> dict[str, Any]:
+    device, (channels, axes) = key
+    made = cells(design)
+    reached = [run.main_clock[0] for run in placed if run.fits]
+    return {
+        "device": device,
+        "channels": channels,
+        "axes": axes,
+        "fits": len(reached) == len(SEEDS),
+        "size": placed[0].used,
+        "capacity": design.device.capacity,
+        "lut": made["LUT"],
+        "ff": made["FF"],
+        "bram": placed[0].bram,
+        "dsp": made["DSP"],
+        "f_max": [round(mhz, 2) for mhz in reached],
+        "f_max_best": round(max(reached), 1) if reached else None,
+        "f_max_median": round(statistics.median(reached), 1) if reached else None,
+    }
+
+
+if __name__ == "__main__":
+    sys.exit(main())

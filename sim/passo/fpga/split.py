@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: MIT
+"""Which module takes how much, of a design whose hierarchy was kept."""
+
+import json
+import re
+from collections import Counter
+from typing import Any
+
+from passo.fpga.flow import CELLS, Design, count, synthesize
+
+# Yosys names a module with parameters $paramod$HASH\name or $paramod\name\PARAMETER=...
+_PLAIN = re.compile(r"^\$paramod(?:\$[0-9a-f]+)?\\([^\\]+)(?:\\.*)?$")
+
+
+def split(design: Design) -> list[dict[str, Any]]:
+    """Cells of all instances of each module, without those of the modules inside it; the largest first."""
+    modules = json.loads((synthesize(design) / CELLS).read_text())["modules"]
+    inside = {name.lstrip("\\"): facts["num_cells_by_type"] for name, facts in modules.items()}
+    instances: Counter[str] = Counter()
+
+    def visit(name: str, times: int) -> None:
+        instances[name] += times
+        for cell, number in inside[name].items():
+            if cell.lstrip("\\") in inside:
+                visit(cell.lstrip("\\"), times * number)
+
+    visit(design.top, 1)
+    rows: dict[str, Counter[str]] = {}
+    for name, times in instances.items():
+        row = rows.setdefault(_plain(name), Counter())
+        row["instances"] += times
+        for column, number in count(design.device, inside[name]).items():
+            row[column] += times * number
+    found = [{"module": name, **row} for name, row in rows.items()]
+    return sorted(found, key=lambda row: -row["LUT"])
+
+
+def _plain(name: str) -> str:
+    found = _PLAIN.match(name)
+    return found.group(1) if found else name

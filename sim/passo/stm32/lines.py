@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: MIT
+"""Move files in the language of the console (docs/console.md)."""
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from passo.shape import read_table
+
+POINTS_PER_LINE = 16
+PIN_KEYS = ("step_high", "step_low", "dir_setup", "dir_hold")
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """A move file with its fractions as they are written."""
+    return tomllib.loads(path.read_text(encoding="utf-8"), parse_float=str)
+
+
+def pin_lines(data: dict[str, Any], axes: int) -> list[str]:
+    """Lines that set the pin timing of a file, if it has one."""
+    pins = data.get("pins", {})
+    keys = " ".join(f"{key}={pins[key]}" for key in PIN_KEYS if key in pins)
+    return [f"config axis={axis} {keys}" for axis in range(axes)] if keys else []
+
+
+def move_lines(data: dict[str, Any], folder: Path) -> list[list[str]]:
+    """For each move its lines: those of its table, if it needs another one, and the move itself."""
+    found, loaded = [], None
+    for move in data["move"]:
+        lines = []
+        table = move.get("table")
+        if table is not None and table != loaded:
+            lines += table_lines(read_table(folder / table))
+            loaded = table
+        found.append([*lines, move_line(move)])
+    return found
+
+
+def move_line(move: dict[str, Any]) -> str:
+    """The line of one move."""
+    words = [f"{key}={_value(value)}" for key, value in move.items() if key != "table"]
+    return " ".join(["move", *words])
+
+
+def table_lines(points: tuple[int, ...]) -> list[str]:
+    """The lines that load a shape."""
+    return [
+        f"table {row} {','.join(map(str, points[row * POINTS_PER_LINE : (row + 1) * POINTS_PER_LINE]))}"
+        for row in range(len(points) // POINTS_PER_LINE)
+    ]
+
+
+def _value(value: Any) -> str:
+    return ",".join(map(str, value)) if isinstance(value, list) else str(value)

@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: MIT
+ * What the sources of the driver share. Not for its users.
+ */
+#ifndef PASSO_DRIVER_H
+#define PASSO_DRIVER_H
+
+#include "passo.h"
+
+/* ARGUMENT or NOT_OPEN if there is no driver to speak of. */
+enum passo_error passo_driver_check(const struct passo *passo);
+bool passo_driver_is_wire(enum passo_error error);
+/* 0 without a clock. */
+uint32_t passo_driver_now(const struct passo *passo);
+
+/* Writes consecutive registers of the channel. */
+enum passo_error passo_driver_write(
+    struct passo *passo, uint16_t address, const uint32_t *words, size_t length);
+enum passo_error passo_driver_command(struct passo *passo, uint32_t bits);
+/* Lets motions start, or not: the word for the RUN register. No frame if it is so already. */
+uint32_t passo_driver_run(const struct passo *passo, enum passo_gate gate);
+enum passo_error passo_driver_gate(struct passo *passo, enum passo_gate gate);
+
+/* Reads the state into the snapshot: `once` with a single try. */
+enum passo_error passo_driver_look(struct passo *passo, bool once);
+enum passo_error passo_driver_positions(struct passo *passo, int32_t *positions, bool once);
+/* As the snapshot says: nothing moves and nothing waits; a motion is under way. */
+bool passo_driver_at_rest(const struct passo *passo);
+bool passo_driver_occupied(const struct passo *passo);
+/* Everything has ended, here: nothing is expected any more. */
+void passo_driver_ended(struct passo *passo, const int32_t *positions);
+/* Flushes the queues of a channel that does not move, clears it, and reads the positions. The snapshot must
+ * be fresh and the gate closed if something waits. */
+enum passo_error passo_driver_take_over(struct passo *passo);
+/* Looks, and tells what speaks against a new motion, first of all `needs_rest`. */
+enum passo_error passo_driver_ready(struct passo *passo, bool needs_rest);
+
+/* Makes sure that the core holds the tables that a plan needs; they are loaded at rest only. */
+enum passo_error passo_driver_tables(
+    struct passo *passo, const struct passo_plan *plan, const struct passo_user_shape *shape);
+/* All banks are as after reset. */
+void passo_driver_tables_fresh(struct passo_host *host);
+
+/* Pushes the ramps of a plan, for which there is room. */
+enum passo_error passo_driver_push_ramps(struct passo *passo, const struct passo_plan *plan);
+/* One more line will be made: where the motion ends. */
+void passo_driver_expect(struct passo *passo, const struct passo_line *line);
+
+/* The stream's share of a poll: at most one frame. *sent: there was one. */
+enum passo_error passo_driver_feed(struct passo *passo, bool *sent);
+/* Commands a soft stop, by the same means. */
+enum passo_error passo_driver_post_stop(struct passo *passo);
+void passo_driver_end_stream(struct passo *passo);
+/* Microseconds between two looks. */
+uint32_t passo_driver_interval(const struct passo *passo);
+
+#endif

@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: MIT
+ * Names and sentences of the errors.
+ */
+#include "passo_error.h"
+
+#include <stddef.h>
+
+#include "passo_plan.h"
+#include "passo_registers.h"
+
+struct words {
+	const char *name, *text;
+};
+
+static const struct words errors[PASSO_ERROR_COUNT] = {
+    [PASSO_OK] = {"OK", "no error"},
+    [PASSO_PENDING] = {"PENDING", "the frame is not settled yet"},
+    [PASSO_ERROR_ARGUMENT] = {"ARGUMENT", "an argument is missing or out of range"},
+    [PASSO_ERROR_NOT_OPEN] = {"NOT_OPEN", "the core has not been opened"},
+    [PASSO_ERROR_UNITS] = {"UNITS", "the axis has no steps per unit, or the position is too far for them"},
+    [PASSO_ERROR_TIMEOUT] = {"TIMEOUT", "the motion did not end in the given time; it goes on"},
+    [PASSO_ERROR_TRANSFER] = {"TRANSFER", "the hardware did not transfer the frame"},
+    [PASSO_ERROR_STUCK_LOW] = {"STUCK_LOW", "MISO stays low: no core, no power or no connection"},
+    [PASSO_ERROR_STUCK_HIGH] = {"STUCK_HIGH", "MISO stays high: no core, no power or no connection"},
+    [PASSO_ERROR_NO_ACK] = {"NO_ACK", "the core took the frame for unfinished"},
+    [PASSO_ERROR_DAMAGED] = {"DAMAGED", "the reply does not agree with its check"},
+    [PASSO_ERROR_SEQUENCE] = {"SEQUENCE", "the reply belongs to another frame"},
+    [PASSO_ERROR_BAD_CRC] = {"BAD_CRC", "the core received damaged frames only"},
+    [PASSO_ERROR_NOT_PASSO] = {"NOT_PASSO", "something else than a Passo core answers"},
+    [PASSO_ERROR_VERSION] = {"VERSION", "the core has another version of the register map"},
+    [PASSO_ERROR_PARAMETERS] = {"PARAMETERS", "the core has other channels, axes or ticks than expected"},
+    [PASSO_ERROR_CORE_RESET] = {"CORE_RESET",
+	"the core was reset, or another host wrote to it: open it again"},
+    [PASSO_ERROR_MOVING] = {"MOVING", "this is only possible at rest"},
+    [PASSO_ERROR_NOT_TURNING] = {"NOT_TURNING", "this is only possible while turning without end"},
+    [PASSO_ERROR_STREAMING] = {"STREAMING", "a stream is being fed"},
+    [PASSO_ERROR_FULL] = {"FULL", "the queues have no room for it now"},
+    [PASSO_ERROR_STOPPED] = {"STOPPED", "the channel is stopped: clear it first"},
+    [PASSO_ERROR_BROKEN] = {"BROKEN", "a command was broken off: stop or abort, then clear"},
+    [PASSO_ERROR_TABLE] = {"TABLE", "it needs another shape table, which can only be loaded at rest"},
+    [PASSO_ERROR_PINS_TOO_SLOW] = {"PINS_TOO_SLOW", "an axis would step faster than its pin timing allows"},
+    [PASSO_ERROR_SUPPLY] = {"SUPPLY", "the source of the stream gave a line or ramp that is not possible"},
+    [PASSO_ERROR_LINE_UNDERRUN] = {"LINE_UNDERRUN", "stopped: a line ended and the next was not there"},
+    [PASSO_ERROR_RAMP_UNDERRUN] = {"RAMP_UNDERRUN", "stopped: the ramps ran out at speed"},
+    [PASSO_ERROR_STEP_OVERRUN] = {"STEP_OVERRUN", "stopped: steps came faster than the pin timing allows"},
+    [PASSO_ERROR_POSITION] = {"POSITION", "the motion ended at another position than commanded"},
+};
+
+static const struct words refusals[PASSO_VERDICT_BAD_VALUE + 1u] = {
+    [PASSO_VERDICT_BAD_CRC] = {"BAD_CRC", "refused: its CRC is wrong"},
+    [PASSO_VERDICT_BAD_LENGTH] = {"BAD_LENGTH", "refused: its length is not possible"},
+    [PASSO_VERDICT_BAD_OPERATION] = {"BAD_OPERATION", "refused: the register does not take this operation"},
+    [PASSO_VERDICT_UNKNOWN_ADDRESS] = {"UNKNOWN_ADDRESS", "refused: no register at this address"},
+    [PASSO_VERDICT_READ_ONLY] = {"READ_ONLY", "refused: the register cannot be written"},
+    [PASSO_VERDICT_QUEUE_FULL] = {"QUEUE_FULL", "refused: not enough room in the queue"},
+    [PASSO_VERDICT_BUSY] = {"BUSY", "refused: the channel is stopped, or a motion runs"},
+    [PASSO_VERDICT_BAD_VALUE] = {"BAD_VALUE", "refused: a value is out of range"},
+};
+
+static const struct words unknown = {"UNKNOWN", "there is no such error"};
+
+static const struct words *find(unsigned code)
+{
+	const struct words *found = &unknown;
+
+	if (code < PASSO_ERROR_COUNT)
+		found = &errors[code];
+	else if (code >= PASSO_ERROR_REFUSED && code - PASSO_ERROR_REFUSED <= PASSO_VERDICT_BAD_VALUE)
+		found = &refusals[code - PASSO_ERROR_REFUSED];
+	return found->name ? found : &unknown;
+}
+
+const char *passo_error_name(enum passo_error error)
+{
+	if (error >= PASSO_ERROR_PLAN)
+		return passo_plan_error_name((enum passo_plan_error)(error - PASSO_ERROR_PLAN));
+	return find((unsigned)error)->name;
+}
+
+const char *passo_error_text(enum passo_error error)
+{
+	if (error >= PASSO_ERROR_PLAN)
+		return passo_plan_error_text((enum passo_plan_error)(error - PASSO_ERROR_PLAN));
+	return find((unsigned)error)->text;
+}

@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: MIT
+ * One chip select: gap, transfer, judgement, and what its status word says about the queues.
+ */
+#include "passo_exchange.h"
+
+#define GAP_CLOCKS 64u         /* the core needs so long after a frame ... */
+#define GAP_CLOCKS_PER_WORD 4u /* ... and this for each word that it executes */
+#define MICROSECONDS 1000000u
+#define SPINS_MAX 100000u /* a clock that stands still must not hang the host */
+#define STATUS_FIXED 0xC8000000u
+#define STATUS_MARK 0x80000000u
+
+bool passo_host_status_of(const uint32_t *miso, size_t count, uint32_t *status)
+{
+	for (size_t i = 0; i < count; i++) {
+		for (size_t k = i + 1; k < count; k++) {
+			if (miso[i] == miso[k] && (miso[i] & STATUS_FIXED) == STATUS_MARK) {
+				*status = miso[i];
+				return true;
+			}
+		}
+	}
+	return false;
+}
+
+static enum passo_error fault_of(struct passo_host *host, enum passo_reply reply, enum passo_verdict verdict)
+{
+	struct passo_counters *counters = &host->counters;
+
+	switch (reply) {
+	case PASSO_REPLY_OK:
+		return PASSO_OK;
+	case PASSO_REPLY_REFUSED:
+		return verdict == PASSO_VERDICT_BAD_CRC
+		         ? PASSO_ERROR_BAD_CRC
+		         : (enum passo_error)((unsigned)PASSO_ERROR_REFUSED + (unsigned)verdict);
+	case PASSO_REPLY_STUCK:
+		counters->stuck++;
+		return host->receive[0] ? PASSO_ERROR_STUCK_HIGH : PASSO_ERROR_STUCK_LOW;
+	case PASSO_REPLY_NO_ACK:
+		counters->no_ack++;
+		return PASSO_ERROR_NO_ACK;
+	case PASSO_REPLY_SEQUENCE:
+		counters->sequence++;
+		return PASSO_ERROR_SEQUENCE;
+	case PASSO_REPLY_DAMAGED:
+		break;
+	}
+	counters->damaged++;
+	return PASSO_ERROR_DAMAGED;
+}
+
+static void keep_gap(const struct passo_host *host)
+{
+	const struct passo_hardware *hardware = &host->hardware;
+
+	if (!hardware->microseconds || !host->clock_hz || hardware->paced)
+		return;
+	for (uint32_t spins = 0; spins < SPINS_MAX; spins++) {
+		if ((int32_t)(host->ready_at - hardware->microseconds(hardware->context)) <= 0)
+			return;
+	}
+}
+
+static void note_gap(struct passo_host *host)
+{
+	const struct passo_hardware *hardware = &host->hardware;
+
+	if (!hardware->microseconds || !host->clock_hz || hardware->paced)
+		return;
+	uint64_t clocks = GAP_CLOCKS + GAP_CLOCKS_PER_WORD * (uint64_t)host->words;
+	uint32_t gap = (uint32_t)((clocks * MICROSECONDS + host->clock_hz - 1u) / host->clock_hz);
+	host->ready_at = hardware->microseconds(hardware->context) + gap;
+}
+
+static bool is_read(const struct passo_host *host)
+{
+	return host->send[0] >> 28 == PASSO_OPERATION_READ;
+}
+
+enum passo_error passo_host_exchange(struct passo_host *host, bool *known)
+{
+	const struct passo_hardware *hardware = &host->hardware;
+	enum passo_verdict verdict = PASSO_VERDICT_OK;
+
+	*known = false;
+	host->counters.frames++;
+	host->counters.retries += host->attempt != 0u;
+	host->attempt++;
+	keep_gap(host);
+	if (!hardware->transfer(hardware->context, host->send, host->receive, host->words))
+		return PASSO_ERROR_TRANSFER;
+	note_gap(host);
+
+	bool read = is_read(host);
+	enum passo_reply reply =
+	    read ? passo_frame_read_reply(host->send, host->receive, host->words, &verdict)
+	         : passo_frame_write_reply(host->send, host->receive, host->words, &verdict);
+	enum passo_error error = fault_of(host, reply, verdict);
+	if (reply == PASSO_REPLY_OK || reply == PASSO_REPLY_REFUSED) {
+		host->counters.refused[verdict] += verdict != PASSO_VERDICT_OK;
+		*known = passo_host_status_of(
+		    host->receive, read ? PASSO_FRAME_DATA : host->words - 1u, &host->status);
+	}
+	return error;
+}
+
+static uint8_t less(uint8_t room, uint32_t count)
+{
+	return (uint8_t)(room > count ? room - count : 0u);
+}
+
+void passo_host_count_room(struct passo_host *host, bool known, bool executed)
+{
+	const uint32_t header = host->send[0];
+	const uint32_t length = header >> 12 & 0xFFu;
+	uint32_t lines = 0, ramps = 0;
+
+	if (known) {
+		host->line_room = less((uint8_t)(host->status >> 8), host->fresh_lines);
+		host->ramp_room = less((uint8_t)host->status, host->fresh_ramps);
+	}
+	if (executed && header >> 28 == PASSO_OPERATION_PUSH) {
+		if ((header & 0xFFu) == PASSO_CHANNEL_LINE)
+			lines = host->axes ? length / PASSO_LINE_WORDS(host->axes) : length;
+		else
+			ramps = length / PASSO_RAMP_WORDS;
+	}
+	host->line_room = less(host->line_room, lines);
+	host->ramp_room = less(host->ramp_room, ramps);
+	host->fresh_lines = (uint8_t)lines;
+	host->fresh_ramps = (uint8_t)ramps;
+}

@@ -1,0 +1,195 @@
+/* SPDX-License-Identifier: MIT
+ * Moves: planned, checked, queued. Ramps go first: the line lets the motion start.
+ */
+#include "passo_driver.h"
+#include "passo_math.h"
+
+#define VELOCITY_BITS 48u
+
+/* Nothing becomes of a plan that an axis' pins cannot follow. */
+static bool pins_suffice(const struct passo *passo, const struct passo_plan *plan)
+{
+	const struct passo_u128 path =
+	    passo_u128_shift_left((struct passo_u128){0, plan->line.substeps}, VELOCITY_BITS);
+
+	for (unsigned i = 0; i < passo->machine.axes; i++) {
+		struct passo_u128 busy = passo_multiply(
+		    plan->velocity_peak, (uint64_t)plan->line.steps[i] * passo->axis[i].shortest_clocks);
+		if (passo_u128_less(path, busy))
+			return false;
+	}
+	return true;
+}
+
+/* The core's answer to a push, in the words of the driver. After an error of the wire it is not known whether
+ * the core executed it. */
+static enum passo_error judge(struct passo *passo, enum passo_error error, bool half_done)
+{
+	if ((unsigned)error == PASSO_ERROR_REFUSED + PASSO_VERDICT_BUSY)
+		return PASSO_ERROR_STOPPED; /* it stopped just now; that flushed the queues */
+	if ((unsigned)error == PASSO_ERROR_REFUSED + PASSO_VERDICT_QUEUE_FULL && !half_done)
+		return PASSO_ERROR_FULL;
+	if (error != PASSO_OK && (half_done || passo_driver_is_wire(error)))
+		passo->broken = true;
+	return error;
+}
+
+enum passo_error passo_driver_push_ramps(struct passo *passo, const struct passo_plan *plan)
+{
+	const uint16_t address = (uint16_t)(passo->base + PASSO_CHANNEL_RAMP);
+	uint32_t words[PASSO_PLAN_RAMPS_MAX * PASSO_RAMP_WORDS];
+	size_t length = 0;
+
+	for (uint32_t i = 0; i < plan->ramp_count; i++)
+		length += passo_ramp_words(words + length, &plan->ramps[i]);
+	return judge(passo, passo_host_push(passo->host, address, words, length), false);
+}
+
+static enum passo_error push_line(struct passo *passo, const struct passo_line *line)
+{
+	const uint16_t address = (uint16_t)(passo->base + PASSO_CHANNEL_LINE);
+	uint32_t words[PASSO_LINE_WORDS(PASSO_AXES_MAX)];
+	size_t length = passo_line_words(words, line, passo->machine.axes);
+
+	return judge(passo, passo_host_push(passo->host, address, words, length), true);
+}
+
+void passo_driver_expect(struct passo *passo, const struct passo_line *line)
+{
+	for (unsigned i = 0; i < passo->machine.axes; i++) {
+		uint32_t steps = (line->directions >> i & 1u) != 0u ? 0u - line->steps[i] : line->steps[i];
+		passo->axis[i].expected = (int32_t)((uint32_t)passo->axis[i].expected + steps);
+	}
+	passo->expecting = true;
+	passo->idle_looks = 0;
+}
+
+enum passo_error passo_move_plan(
+    struct passo *passo, const struct passo_plan *plan, const struct passo_user_shape *shape)
+{
+	enum passo_error error = passo_driver_check(passo);
+
+	if (error != PASSO_OK)
+		return error;
+	if (!plan || plan->ramp_count == 0u || plan->ramp_count > PASSO_PLAN_RAMPS_MAX
+	    || (shape && !shape->table))
+		return PASSO_ERROR_ARGUMENT;
+	if (!pins_suffice(passo, plan))
+		return PASSO_ERROR_PINS_TOO_SLOW;
+	error = passo_driver_ready(passo, plan->line.endless);
+	if (error == PASSO_OK
+	    && (passo->snapshot.line_room == 0u || passo->snapshot.ramp_room < plan->ramp_count))
+		error = PASSO_ERROR_FULL;
+	if (error == PASSO_OK)
+		error = passo_driver_tables(passo, plan, shape);
+	if (error == PASSO_OK)
+		error = passo_driver_gate(passo, passo->gate);
+	if (error == PASSO_OK)
+		error = passo_driver_push_ramps(passo, plan);
+	if (error == PASSO_OK)
+		error = push_line(passo, &plan->line);
+	if (error != PASSO_OK)
+		return error;
+	passo->oversampling = plan->oversampling;
+	passo->velocity_peak = plan->velocity_peak;
+	passo_driver_expect(passo, &plan->line);
+	return PASSO_OK;
+}
+
+/* What all moves have in common once they are planned. */
+static enum passo_error move_planned(struct passo *passo, enum passo_plan_error error,
+    const struct passo_plan *plan, const struct passo_user_shape *shape)
+{
+	if (error != PASSO_PLAN_OK)
+		return (enum passo_error)((unsigned)PASSO_ERROR_PLAN + (unsigned)error);
+	return passo_move_plan(passo, plan, shape);
+}
+
+static enum passo_error check(const struct passo *passo, const void *move)
+{
+	enum passo_error error = passo_driver_check(passo);
+
+	return error == PASSO_OK && !move ? PASSO_ERROR_ARGUMENT : error;
+}
+
+/* Steps of axes that the channel does not have are an error, not a wish to be ignored. */
+static enum passo_error check_steps(const struct passo *passo, const void *move, const int32_t *steps)
+{
+	enum passo_error error = check(passo, move);
+
+	for (unsigned i = error == PASSO_OK ? passo->machine.axes : PASSO_AXES_MAX; i < PASSO_AXES_MAX; i++) {
+		if (steps[i] != 0)
+			return PASSO_ERROR_ARGUMENT;
+	}
+	return error;
+}
+
+/* A move whose steps are in its field `steps`: passo_move_METHOD() by passo_plan_METHOD(). */
+#define MOVE_BY_STEPS(method)                                                                                \
+	enum passo_error passo_move_##method(struct passo *passo, const struct passo_move_##method *move)    \
+	{                                                                                                    \
+		struct passo_plan plan;                                                                      \
+		enum passo_error error = check_steps(passo, move, move ? move->steps : NULL);                \
+		if (error != PASSO_OK)                                                                       \
+			return error;                                                                        \
+		return move_planned(passo, passo_plan_##method(&passo->machine, move, &plan), &plan, NULL);  \
+	}
+
+MOVE_BY_STEPS(in_time)
+MOVE_BY_STEPS(by_speed)
+MOVE_BY_STEPS(below_speed)
+MOVE_BY_STEPS(at_speed)
+MOVE_BY_STEPS(axes)
+MOVE_BY_STEPS(sigmoid)
+MOVE_BY_STEPS(jerk)
+
+enum passo_error passo_move_turn(struct passo *passo, const struct passo_move_turn *move)
+{
+	struct passo_plan plan;
+	enum passo_error error = check(passo, move);
+
+	if (error != PASSO_OK)
+		return error;
+	return move_planned(passo, passo_plan_turn(&passo->machine, move, &plan), &plan, NULL);
+}
+
+enum passo_error passo_move_straight(struct passo *passo, const struct passo_move_straight *move)
+{
+	struct passo_plan plan;
+	enum passo_error error = check(passo, move);
+
+	if (error != PASSO_OK)
+		return error;
+	struct passo_move_straight scaled = *move;
+	for (unsigned i = 0; i < PASSO_AXES_MAX; i++) {
+		if (i >= passo->machine.axes && move->distance[i] != 0)
+			return PASSO_ERROR_ARGUMENT;
+		if (scaled.limits[i].steps_per_mm == 0u)
+			scaled.limits[i].steps_per_mm = passo->axis[i].steps_per_unit;
+	}
+	return move_planned(passo, passo_plan_straight(&passo->machine, &scaled, &plan), &plan, NULL);
+}
+
+enum passo_error passo_move_user_in_time(
+    struct passo *passo, const struct passo_move_in_time *move, const struct passo_user_shape *shape)
+{
+	struct passo_plan plan;
+	enum passo_error error = check_steps(passo, move, move ? move->steps : NULL);
+
+	if (error != PASSO_OK || !shape || !shape->table)
+		return error != PASSO_OK ? error : PASSO_ERROR_ARGUMENT;
+	return move_planned(
+	    passo, passo_plan_user_in_time(&passo->machine, move, shape, &plan), &plan, shape);
+}
+
+enum passo_error passo_move_user_by_speed(
+    struct passo *passo, const struct passo_move_by_speed *move, const struct passo_user_shape *shape)
+{
+	struct passo_plan plan;
+	enum passo_error error = check_steps(passo, move, move ? move->steps : NULL);
+
+	if (error != PASSO_OK || !shape || !shape->table)
+		return error != PASSO_OK ? error : PASSO_ERROR_ARGUMENT;
+	return move_planned(
+	    passo, passo_plan_user_by_speed(&passo->machine, move, shape, &plan), &plan, shape);
+}

@@ -1,0 +1,174 @@
+/* SPDX-License-Identifier: MIT
+ * The main loop's side: feeding, looking, and seeing how motions end.
+ */
+#include "passo_driver.h"
+
+/* Without a clock: so many looks at a resting channel before a wrong position counts. */
+#define IDLE_LOOKS_MAX 64u
+/* Between two motions a channel rests for a few clocks: one look is not enough. */
+#define IDLE_LOOKS_MIN 2u
+
+static enum passo_error tell(struct passo *passo, enum passo_error error)
+{
+	passo->fault = error;
+	return error;
+}
+
+static enum passo_error fault_of(enum passo_cause cause)
+{
+	switch (cause) {
+	case PASSO_CAUSE_LINE_UNDERRUN:
+		return PASSO_ERROR_LINE_UNDERRUN;
+	case PASSO_CAUSE_RAMP_UNDERRUN:
+		return PASSO_ERROR_RAMP_UNDERRUN;
+	case PASSO_CAUSE_STEP_OVERRUN:
+		return PASSO_ERROR_STEP_OVERRUN;
+	case PASSO_CAUSE_NONE:
+	case PASSO_CAUSE_STOP:
+	case PASSO_CAUSE_ABORT:
+		break;
+	}
+	return PASSO_OK;
+}
+
+/* A frame of the main loop failed: only many in a row are told. */
+static enum passo_error miss(struct passo *passo, enum passo_error error)
+{
+	if (error == PASSO_ERROR_CORE_RESET) {
+		passo_driver_end_stream(passo);
+		return tell(passo, error);
+	}
+	if (passo_driver_is_wire(error) && ++passo->misses < passo->host->hardware.tries)
+		return PASSO_OK;
+	passo->misses = 0;
+	return tell(passo, error);
+}
+
+static enum passo_error see_stop(struct passo *passo)
+{
+	const enum passo_error fault = fault_of(passo->snapshot.cause);
+	const bool is_news = !passo->halted || passo->expecting;
+
+	passo_driver_end_stream(passo);
+	passo->expecting = passo->turning_is_on = passo->certain = false;
+	passo->halted = true;
+	passo->idle_looks = 0;
+	return fault != PASSO_OK && is_news ? tell(passo, fault) : PASSO_OK;
+}
+
+static enum passo_error look(struct passo *passo)
+{
+	enum passo_error error = passo_driver_look(passo, true);
+
+	if (error != PASSO_OK)
+		return miss(passo, error);
+	passo->misses = 0;
+	if (passo->snapshot.state == PASSO_STATE_STOPPED)
+		return see_stop(passo);
+	if (!passo_driver_at_rest(passo) || passo->streaming)
+		passo->idle_looks = 0;
+	else if (passo->idle_looks++ == 0u)
+		passo->idle_since = passo->looked_at;
+	return PASSO_OK;
+}
+
+static bool is_at(const struct passo *passo, const int32_t *positions)
+{
+	for (unsigned i = 0; i < passo->machine.axes; i++) {
+		if (positions[i] != passo->axis[i].expected)
+			return false;
+	}
+	return true;
+}
+
+/* The channel rests: is it where it should be? The last pulses may still be under way. */
+static enum passo_error see_end(struct passo *passo)
+{
+	int32_t positions[PASSO_AXES_MAX];
+	enum passo_error error = passo_driver_positions(passo, positions, true);
+	const uint32_t waited = passo_driver_now(passo) - passo->idle_since;
+	const bool has_clock = passo->host->hardware.microseconds != NULL;
+
+	if (error != PASSO_OK)
+		return miss(passo, error);
+	passo->misses = 0;
+	if (!passo->certain || is_at(passo, positions)) {
+		passo_driver_ended(passo, positions);
+		return PASSO_OK;
+	}
+	if (has_clock ? waited <= passo->settle_microseconds : passo->idle_looks <= IDLE_LOOKS_MAX)
+		return look(passo);
+	passo_driver_ended(passo, positions);
+	return tell(passo, PASSO_ERROR_POSITION);
+}
+
+static bool is_due(const struct passo *passo)
+{
+	const struct passo_hardware *hardware = &passo->host->hardware;
+
+	if (hardware->irq && passo->snapshot.state != PASSO_STATE_STOPPED && hardware->irq(hardware->context))
+		return true;
+	return !hardware->microseconds
+	    || passo_driver_now(passo) - passo->looked_at >= passo_driver_interval(passo);
+}
+
+enum passo_error passo_poll(struct passo *passo)
+{
+	enum passo_error error = passo_driver_check(passo);
+	bool sent = false;
+
+	if (error != PASSO_OK)
+		return error;
+	if (passo->host->lost) {
+		passo_driver_end_stream(passo);
+		return tell(passo, PASSO_ERROR_CORE_RESET);
+	}
+	if (passo->stop_due)
+		return passo_driver_post_stop(passo);
+	if (passo->streaming) {
+		error = passo_driver_feed(passo, &sent);
+		if (error != PASSO_OK || sent)
+			return error;
+	}
+	if (passo->expecting && passo->idle_looks >= IDLE_LOOKS_MIN)
+		return see_end(passo);
+	return is_due(passo) || (passo->expecting && passo->idle_looks != 0u) ? look(passo) : PASSO_OK;
+}
+
+bool passo_is_moving(const struct passo *passo)
+{
+	return passo && passo->opened && (passo->expecting || passo->streaming);
+}
+
+const struct passo_snapshot *passo_snapshot(const struct passo *passo)
+{
+	return &passo->snapshot;
+}
+
+enum passo_error passo_fault(const struct passo *passo)
+{
+	return passo ? passo->fault : PASSO_ERROR_ARGUMENT;
+}
+
+enum passo_error passo_wait(struct passo *passo, uint32_t timeout_microseconds)
+{
+	enum passo_error error = passo_driver_check(passo);
+
+	if (error != PASSO_OK)
+		return error;
+	const struct passo_hardware *hardware = &passo->host->hardware;
+	const uint32_t began = passo_driver_now(passo);
+	for (;;) {
+		error = passo_poll(passo);
+		if (error != PASSO_OK || !passo_is_moving(passo))
+			return error;
+		uint32_t idle = passo_idle_time(passo);
+		uint32_t waited = passo_driver_now(passo) - began;
+		if (timeout_microseconds != 0u && waited >= timeout_microseconds)
+			return PASSO_ERROR_TIMEOUT;
+		if (timeout_microseconds != 0u && idle > timeout_microseconds - waited)
+			idle = timeout_microseconds - waited;
+		if (hardware->wait && idle != 0u)
+			hardware->wait(hardware->context, idle);
+	}
+}

@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: MIT
+ * Reading back: state, positions, angles, speeds.
+ */
+#include "passo_driver.h"
+#include "passo_math.h"
+
+enum passo_error passo_read_state(struct passo *passo, struct passo_snapshot *snapshot)
+{
+	enum passo_error error = passo_driver_check(passo);
+
+	if (error != PASSO_OK)
+		return error;
+	if (!snapshot)
+		return PASSO_ERROR_ARGUMENT;
+	error = passo_driver_look(passo, false);
+	if (error == PASSO_OK)
+		*snapshot = passo->snapshot;
+	return error;
+}
+
+enum passo_error passo_positions(struct passo *passo, int32_t *positions)
+{
+	enum passo_error error = passo_driver_check(passo);
+
+	if (error != PASSO_OK)
+		return error;
+	return positions ? passo_driver_positions(passo, positions, false) : PASSO_ERROR_ARGUMENT;
+}
+
+/* The position of one of the channel's axes. */
+static enum passo_error position_of(struct passo *passo, uint8_t axis, const void *result, int32_t *position)
+{
+	int32_t positions[PASSO_AXES_MAX];
+	enum passo_error error = passo_driver_check(passo);
+
+	if (error != PASSO_OK)
+		return error;
+	if (!result || axis >= passo->machine.axes)
+		return PASSO_ERROR_ARGUMENT;
+	error = passo_driver_positions(passo, positions, false);
+	*position = error == PASSO_OK ? positions[axis] : 0;
+	return error;
+}
+
+enum passo_error passo_position_units(struct passo *passo, uint8_t axis, int64_t *units)
+{
+	int32_t position;
+	enum passo_error error = position_of(passo, axis, units, &position);
+
+	if (error != PASSO_OK)
+		return error;
+	const uint64_t scale = passo->axis[axis].steps_per_unit;
+	const uint64_t steps = position < 0 ? 0u - (uint64_t)position : (uint64_t)position;
+	const struct passo_u128 half = {0, scale / 2u};
+	uint64_t size = passo_divide(passo_u128_add((struct passo_u128){steps, 0}, half), scale, NULL);
+	if (scale == 0u || size > INT64_MAX)
+		return PASSO_ERROR_UNITS;
+	*units = position < 0 ? -(int64_t)size : (int64_t)size;
+	return PASSO_OK;
+}
+
+enum passo_error passo_angle(struct passo *passo, uint8_t axis, uint32_t steps_per_turn, int64_t *degrees)
+{
+	int32_t position;
+	enum passo_error error = position_of(passo, axis, degrees, &position);
+
+	if (error != PASSO_OK)
+		return error;
+	if (steps_per_turn == 0u)
+		return PASSO_ERROR_ARGUMENT;
+	*degrees = passo_angle_of(position, steps_per_turn);
+	return PASSO_OK;
+}
+
+enum passo_error passo_rpm(struct passo *passo, uint32_t steps_per_turn, uint64_t *rpm)
+{
+	enum passo_error error = passo_driver_check(passo);
+
+	if (error != PASSO_OK)
+		return error;
+	if (!rpm || steps_per_turn == 0u)
+		return PASSO_ERROR_ARGUMENT;
+	error = passo_driver_look(passo, false);
+	if (error != PASSO_OK)
+		return error;
+	const struct passo_snapshot *snapshot = &passo->snapshot;
+	/* UQ0.32 times UQ1.16: both formats and what they are in UQ0.48 */
+	const uint64_t velocity =
+	    snapshot->state == PASSO_STATE_RUN ? (uint64_t)snapshot->velocity * snapshot->rate : 0u;
+	*rpm = passo->oversampling
+	         ? passo_rpm_of(velocity, passo->oversampling, passo->machine.clock_hz, steps_per_turn)
+	         : 0u;
+	return PASSO_OK;
+}
+
+enum passo_error passo_lost_steps(struct passo *passo, uint8_t axis, uint32_t *lost)
+{
+	enum passo_error error = passo_driver_check(passo);
+
+	if (error != PASSO_OK)
+		return error;
+	if (!lost || axis >= passo->machine.axes)
+		return PASSO_ERROR_ARGUMENT;
+	const unsigned address =
+	    passo->base + PASSO_CHANNEL_AXIS_BASE + axis * PASSO_CHANNEL_AXIS_STRIDE + PASSO_AXIS_LOST_STEPS;
+	return passo_host_read(passo->host, (uint16_t)address, lost, 1);
+}
+
+const char *passo_state_name(enum passo_state state)
+{
+	static const char *const names[] = {
+	    [PASSO_STATE_IDLE] = "IDLE",
+	    [PASSO_STATE_PREPARE] = "PREPARE",
+	    [PASSO_STATE_ARMED] = "ARMED",
+	    [PASSO_STATE_RUN] = "RUN",
+	    [PASSO_STATE_SETTLE] = "SETTLE",
+	    [PASSO_STATE_DRAIN] = "DRAIN",
+	    [PASSO_STATE_STOPPED] = "STOPPED",
+	};
+
+	return (unsigned)state <= PASSO_STATE_STOPPED ? names[state] : "UNKNOWN";
+}
+
+const char *passo_cause_text(enum passo_cause cause)
+{
+	static const char *const texts[] = {
+	    [PASSO_CAUSE_NONE] = "not stopped",
+	    [PASSO_CAUSE_STOP] = "stopped softly by command",
+	    [PASSO_CAUSE_ABORT] = "stopped hard by command",
+	    [PASSO_CAUSE_LINE_UNDERRUN] = "a line ended and the next was not there",
+	    [PASSO_CAUSE_RAMP_UNDERRUN] = "the ramps ran out at speed",
+	    [PASSO_CAUSE_STEP_OVERRUN] = "steps came faster than the pin timing of an axis allows",
+	};
+
+	return (unsigned)cause <= PASSO_CAUSE_STEP_OVERRUN ? texts[cause] : "unknown cause";
+}

@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: MIT
+ * Settings of a channel: pins, units, slews.
+ */
+#include "passo_driver.h"
+
+#define CLOCKS_MAX 65535u
+#define NANOSECONDS UINT64_C(1000000000)
+#define MICROSECONDS UINT64_C(1000000)
+/* At the end of a motion an axis has at most four steps waiting and one under way. */
+#define STEPS_UNDER_WAY 5u
+
+/* A time of the pins in clocks, rounded up; above CLOCKS_MAX if it is too long. */
+static uint64_t clocks_of(const struct passo *passo, const struct passo_axis_config *config, uint32_t time)
+{
+	uint64_t clocks = time;
+
+	if (!config->in_clocks)
+		clocks = ((uint64_t)time * passo->machine.clock_hz + NANOSECONDS - 1u) / NANOSECONDS;
+	return clocks != 0u ? clocks : 1u;
+}
+
+static uint16_t address_of(uint8_t axis, uint16_t reg)
+{
+	return (uint16_t)(PASSO_CHANNEL_AXIS_BASE + axis * PASSO_CHANNEL_AXIS_STRIDE + reg);
+}
+
+static enum passo_error check_axis(const struct passo *passo, uint8_t axis)
+{
+	enum passo_error error = passo_driver_check(passo);
+
+	return error == PASSO_OK && axis >= passo->machine.axes ? PASSO_ERROR_ARGUMENT : error;
+}
+
+enum passo_error passo_configure_axis(
+    struct passo *passo, uint8_t axis, const struct passo_axis_config *config)
+{
+	enum passo_error error = check_axis(passo, axis);
+
+	if (error != PASSO_OK)
+		return error;
+	if (!config)
+		return PASSO_ERROR_ARGUMENT;
+	const uint64_t high = clocks_of(passo, config, config->step_high_ns);
+	const uint64_t low = clocks_of(passo, config, config->step_low_ns);
+	const uint64_t setup = clocks_of(passo, config, config->dir_setup_ns);
+	const uint64_t hold = clocks_of(passo, config, config->dir_hold_ns);
+	if (high > CLOCKS_MAX || low > CLOCKS_MAX || setup > CLOCKS_MAX || hold > CLOCKS_MAX)
+		return PASSO_ERROR_ARGUMENT;
+	error = passo_driver_ready(passo, true);
+	if (error != PASSO_OK)
+		return error;
+
+	struct passo_axis_memory *memory = &passo->axis[axis];
+	const uint32_t pins = (memory->pins & UINT32_C(1) << PASSO_AXIS_PINS_ENABLE_LSB)
+	                    | (uint32_t)config->step_inverted << PASSO_AXIS_PINS_STEP_INVERTED_LSB
+	                    | (uint32_t)config->direction_inverted << PASSO_AXIS_PINS_DIRECTION_INVERTED_LSB
+	                    | (uint32_t)config->enable_inverted << PASSO_AXIS_PINS_ENABLE_INVERTED_LSB
+	                    | (uint32_t)config->both_edges << PASSO_AXIS_PINS_BOTH_EDGES_LSB;
+	const uint32_t words[] = {
+	    pins,
+	    (uint32_t)high << PASSO_AXIS_STEP_TIMING_STEP_HIGH_LSB | (uint32_t)low,
+	    (uint32_t)setup << PASSO_AXIS_DIR_TIMING_DIR_SETUP_LSB | (uint32_t)hold,
+	};
+	error = passo_driver_write(
+	    passo, address_of(axis, PASSO_AXIS_PINS), words, sizeof words / sizeof words[0]);
+	if (error != PASSO_OK)
+		return error;
+	memory->pins = (uint8_t)pins;
+	memory->steps_per_unit = config->steps_per_unit;
+	memory->shortest_clocks = (uint32_t)(config->both_edges ? (high > low ? high : low) : high + low);
+	const uint64_t settle =
+	    STEPS_UNDER_WAY * (high + low + setup + hold) * MICROSECONDS / passo->machine.clock_hz + 1u;
+	if (passo->settle_microseconds < settle)
+		passo->settle_microseconds = settle < UINT32_MAX / 2u ? (uint32_t)settle : UINT32_MAX / 2u;
+	return PASSO_OK;
+}
+
+enum passo_error passo_enable(struct passo *passo, uint8_t axis, bool on)
+{
+	enum passo_error error = check_axis(passo, axis);
+
+	if (error != PASSO_OK)
+		return error;
+	const uint32_t bit = UINT32_C(1) << PASSO_AXIS_PINS_ENABLE_LSB;
+	const uint32_t pins = on ? passo->axis[axis].pins | bit : passo->axis[axis].pins & ~bit;
+	error = passo_driver_write(passo, address_of(axis, PASSO_AXIS_PINS), &pins, 1);
+	if (error == PASSO_OK)
+		passo->axis[axis].pins = (uint8_t)pins;
+	return error;
+}
+
+/* Change of rate in a tick, so that full rate takes so long. */
+static uint32_t slew_of(const struct passo *passo, uint32_t microseconds)
+{
+	const uint64_t clocks = (uint64_t)microseconds * passo->machine.clock_hz;
+	const uint64_t full = ((uint64_t)PASSO_RATE_FULL << passo->machine.tick_log2) * MICROSECONDS;
+	uint64_t slew = clocks != 0u ? full / clocks : PASSO_RATE_FULL;
+
+	if (slew == 0u)
+		slew = 1;
+	return slew < PASSO_RATE_FULL ? (uint32_t)slew : PASSO_RATE_FULL;
+}
+
+enum passo_error passo_configure_motion(
+    struct passo *passo, uint32_t hold_microseconds, uint32_t stop_microseconds, uint32_t drain_velocity)
+{
+	enum passo_error error = passo_driver_check(passo);
+
+	if (error != PASSO_OK)
+		return error;
+	if (drain_velocity > PASSO_VELOCITY_MAX >> 16)
+		return PASSO_ERROR_ARGUMENT;
+	const uint32_t words[] = {
+	    slew_of(passo, hold_microseconds), slew_of(passo, stop_microseconds), drain_velocity};
+	return passo_driver_write(passo, PASSO_CHANNEL_RATE_SLEW, words, drain_velocity != 0u ? 3u : 2u);
+}

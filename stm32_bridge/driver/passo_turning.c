@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: MIT
+ * Turning without end: start, another speed, end.
+ */
+#include "passo_driver.h"
+
+enum passo_error passo_turn_start(struct passo *passo, const struct passo_turning *turning, uint64_t rpm)
+{
+	struct passo_plan plan;
+	enum passo_error error = passo_driver_check(passo);
+
+	if (error != PASSO_OK)
+		return error;
+	if (!turning)
+		return PASSO_ERROR_ARGUMENT;
+	enum passo_plan_error refused = passo_plan_turning_start(&passo->machine, turning, rpm, &plan);
+	if (refused != PASSO_PLAN_OK)
+		return (enum passo_error)((unsigned)PASSO_ERROR_PLAN + (unsigned)refused);
+	error = passo_move_plan(passo, &plan, NULL);
+	if (error != PASSO_OK)
+		return error;
+	passo->turning = *turning;
+	passo->turning_is_on = true;
+	passo->turning_ends = false;
+	passo->certain = false;
+	return PASSO_OK;
+}
+
+/* Another ramp for a motion that turns: to an rpm, or to rest. */
+static enum passo_error turn_on(struct passo *passo, bool stop, uint64_t rpm)
+{
+	struct passo_plan plan;
+	enum passo_plan_error refused;
+	enum passo_error error = passo_driver_check(passo);
+
+	if (error != PASSO_OK)
+		return error;
+	if (passo->broken && !passo->host->lost)
+		return PASSO_ERROR_BROKEN;
+	if (!passo->turning_is_on || passo->turning_ends)
+		return PASSO_ERROR_NOT_TURNING;
+	error = passo_driver_look(passo, false);
+	if (error != PASSO_OK)
+		return error;
+	if (passo->snapshot.state == PASSO_STATE_STOPPED || passo->snapshot.stopping)
+		return PASSO_ERROR_STOPPED;
+
+	/* the register has its upper 32 bits only: at the peak they are replaced by all of them */
+	uint64_t velocity = (uint64_t)passo->snapshot.velocity << 16;
+	if (passo->velocity_peak >> 16 == passo->snapshot.velocity)
+		velocity = passo->velocity_peak;
+	if (stop)
+		refused = passo_plan_turning_stop(&passo->machine, &passo->turning, velocity, &plan);
+	else
+		refused = passo_plan_turning_speed(&passo->machine, &passo->turning, velocity, rpm, &plan);
+	if (refused != PASSO_PLAN_OK)
+		return (enum passo_error)((unsigned)PASSO_ERROR_PLAN + (unsigned)refused);
+	if (passo->snapshot.ramp_room < plan.ramp_count)
+		return PASSO_ERROR_FULL;
+	error = passo_driver_push_ramps(passo, &plan);
+	if (error != PASSO_OK)
+		return error;
+	passo->velocity_peak = plan.velocity_peak;
+	passo->turning_ends = stop;
+	return PASSO_OK;
+}
+
+enum passo_error passo_turn_speed(struct passo *passo, uint64_t rpm)
+{
+	return turn_on(passo, false, rpm);
+}
+
+enum passo_error passo_turn_stop(struct passo *passo)
+{
+	return turn_on(passo, true, 0);
+}

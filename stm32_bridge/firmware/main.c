@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: MIT
+ * One loop: bytes of the serial line go to the console, the console drives the core, the watchdog is fed.
+ */
+#include "board.h"
+#include "passo_console.h"
+#include "spi.h"
+#include "uart.h"
+
+#define BYTES_PER_ROUND 64u /* so that the core is not forgotten over a flood of text */
+
+static struct passo_console console;
+
+static void write_text(void *context, const char *text)
+{
+	(void)context;
+	uart_write(text);
+}
+
+static uint32_t microseconds(void *context)
+{
+	(void)context;
+	return board_microseconds();
+}
+
+static bool core_calls(void *context)
+{
+	(void)context;
+	return board_core_calls();
+}
+
+/* Short pauses are not worth a sleep, which may take a millisecond. */
+static void wait(void *context, uint32_t duration)
+{
+	(void)context;
+	if (duration > 2000u)
+		board_sleep();
+}
+
+static uint32_t lost_bytes(void *context)
+{
+	(void)context;
+	return uart_losses();
+}
+
+static void set_baud(void *context, uint32_t baud)
+{
+	(void)context;
+	uart_set_baud(baud);
+}
+
+static void set_spi_fast(void *context, bool fast)
+{
+	(void)context;
+	spi_set_fast(fast);
+}
+
+/* What led to this start, and what is not as it should be. */
+static void report(const struct passo_sink *sink, bool crystal, bool crc_unit)
+{
+	struct board_fault fault = board_last_fault();
+
+	passo_say(sink, "\nnote: reset by %s\n", board_reset_cause());
+	if (fault.exception != 0u)
+		passo_say(sink, "note: exception %u at 0x%x\n", fault.exception, fault.address);
+	if (!crystal)
+		passo_say(sink, "note: no crystal: 64 MHz from the internal oscillator, all times of this "
+				"board to 1 %%\n");
+	if (!crc_unit)
+		passo_say(sink, "note: the CRC unit does not work: CRCs are made in software\n");
+}
+
+int main(void)
+{
+	static const struct passo_sink sink = {.write = write_text};
+	static const struct passo_hardware hardware = {
+	    .transfer = spi_transfer, .microseconds = microseconds, .wait = wait, .irq = core_calls};
+	static const struct passo_console_board board = {
+	    .set_baud = set_baud, .set_spi_fast = set_spi_fast, .lost_bytes = lost_bytes};
+	bool crystal = board_start();
+
+	board_watchdog_start();
+	uart_start(UART_BAUD_RESET);
+	spi_start();
+	report(&sink, crystal, crc_start());
+	passo_console_start(&console, &sink, &hardware, &board, PASSO_CLOCK_HZ_RESET, UART_BAUD_RESET);
+	for (;;) {
+		char byte;
+		unsigned bytes = 0;
+
+		while (bytes < BYTES_PER_ROUND && uart_read(&byte)) {
+			passo_console_receive(&console, byte);
+			bytes++;
+		}
+		passo_console_poll(&console);
+		board_led(!passo_console_is_well(&console));
+		board_watchdog_feed();
+		if (bytes == 0u)
+			board_sleep();
+	}
+}

@@ -1,0 +1,139 @@
+/* SPDX-License-Identifier: MIT
+ * The SPI sends halfwords, so that the upper half of a word goes first only if the halves change places: on
+ * the way out in a copy, on the way in where the words are.
+ */
+#include "spi.h"
+
+#include "passo_frame.h"
+#include "stm32f103.h"
+
+#define NSS_PIN 4u
+#define SCK_PIN 5u
+#define MISO_PIN 6u
+#define MOSI_PIN 7u
+#define RX_CHANNEL 2u /* of DMA1: those that SPI1 is wired to */
+#define TX_CHANNEL 3u
+#define ROUNDS_MAX 50000u /* of at least 6 clocks: 4 ms, where the longest transfer takes 0.25 */
+
+static uint32_t swapped[PASSO_FRAME_WORDS_MAX];
+static bool crc_unit_is_good;
+
+static uint32_t swap_halves(uint32_t word)
+{
+	return word << 16 | word >> 16;
+}
+
+void spi_set_fast(bool fast)
+{
+	SPI1->cr1 = 0;
+	SPI1->cr1 = SPI_CR1_MSTR | SPI_CR1_SSM | SPI_CR1_SSI | SPI_CR1_DFF_16
+	          | (fast ? SPI_CR1_BR_QUARTER : SPI_CR1_BR_EIGHTH) | SPI_CR1_SPE;
+}
+
+void spi_start(void)
+{
+	RCC->ahbenr |= RCC_AHBENR_DMA1EN;
+	RCC->apb2enr |= RCC_APB2ENR_SPI1EN;
+	GPIOA->bsrr = BIT(NSS_PIN) | BIT(MISO_PIN + 16u);
+	gpio_mode(GPIOA, NSS_PIN, GPIO_OUTPUT_50MHZ);
+	gpio_mode(GPIOA, SCK_PIN, GPIO_FUNCTION_50MHZ);
+	gpio_mode(GPIOA, MISO_PIN, GPIO_INPUT_PULL); /* down: a core that is not there reads as 0 */
+	gpio_mode(GPIOA, MOSI_PIN, GPIO_FUNCTION_50MHZ);
+	DMA1->channel[RX_CHANNEL - 1u].cpar = (uint32_t)(uintptr_t)&SPI1->dr;
+	DMA1->channel[TX_CHANNEL - 1u].cpar = (uint32_t)(uintptr_t)&SPI1->dr;
+	spi_set_fast(true);
+	SPI1->cr2 = SPI_CR2_RXDMAEN | SPI_CR2_TXDMAEN;
+}
+
+/* Receiving goes first: a halfword that nobody fetches would stop everything. */
+static void start_dma(const uint32_t *send, const uint32_t *receive, size_t words)
+{
+	struct dma_channel *rx = &DMA1->channel[RX_CHANNEL - 1u], *tx = &DMA1->channel[TX_CHANNEL - 1u];
+
+	DMA1->ifcr = DMA_IFCR_CGIF(RX_CHANNEL) | DMA_IFCR_CGIF(TX_CHANNEL);
+	rx->cmar = (uint32_t)(uintptr_t)receive;
+	rx->cndtr = (uint32_t)words * 2u;
+	rx->ccr =
+	    DMA_CCR_MINC | DMA_CCR_PSIZE_16 | DMA_CCR_MSIZE_16 | DMA_CCR_PRIORITY_VERY_HIGH | DMA_CCR_EN;
+	tx->cmar = (uint32_t)(uintptr_t)send;
+	tx->cndtr = (uint32_t)words * 2u;
+	tx->ccr = DMA_CCR_FROM_MEMORY | DMA_CCR_MINC | DMA_CCR_PSIZE_16 | DMA_CCR_MSIZE_16
+	        | DMA_CCR_PRIORITY_HIGH | DMA_CCR_EN;
+}
+
+static bool wait_for(const volatile uint32_t *reg, uint32_t mask, uint32_t value)
+{
+	for (uint32_t rounds = 0; rounds < ROUNDS_MAX; rounds++) {
+		if ((*reg & mask) == value)
+			return true;
+	}
+	return false;
+}
+
+/* Until the last halfword has come in, which is after the last one has gone out. */
+static bool wait_for_dma(void)
+{
+	return wait_for(&DMA1->isr, DMA_ISR_TCIF(RX_CHANNEL), DMA_ISR_TCIF(RX_CHANNEL))
+	    && wait_for(&SPI1->sr, SPI_SR_BSY, 0);
+}
+
+bool spi_transfer(void *context, const uint32_t *send, uint32_t *receive, size_t words)
+{
+	bool done;
+
+	(void)context;
+	if (words > PASSO_FRAME_WORDS_MAX)
+		return false;
+	for (size_t i = 0; i < words; i++)
+		swapped[i] = swap_halves(send[i]);
+	GPIOA->bsrr = BIT(NSS_PIN + 16u);
+	start_dma(swapped, receive, words);
+	done = wait_for_dma();
+	GPIOA->bsrr = BIT(NSS_PIN);
+	DMA1->channel[RX_CHANNEL - 1u].ccr = 0;
+	DMA1->channel[TX_CHANNEL - 1u].ccr = 0;
+	__asm volatile("" ::: "memory"); /* the DMA has written */
+	for (size_t i = 0; i < words; i++)
+		receive[i] = swap_halves(receive[i]);
+	return done;
+}
+
+/* ---------------------------------------------------------------------------------------------- CRC ---- */
+
+static uint32_t crc_in_software(uint32_t crc, const uint32_t *words, size_t count)
+{
+	for (size_t i = 0; i < count; i++) {
+		crc ^= words[i];
+		for (unsigned bit = 0; bit < 32u; bit++)
+			crc = crc << 1 ^ ((crc >> 31) != 0u ? UINT32_C(0x04C11DB7) : 0u);
+	}
+	return crc;
+}
+
+/* The unit starts at 0xFFFFFFFF; another start goes into the first word. */
+static uint32_t crc_in_hardware(uint32_t crc, const uint32_t *words, size_t count)
+{
+	if (count == 0u)
+		return crc;
+	CRC->cr = CRC_CR_RESET;
+	CRC->dr = words[0] ^ ~crc;
+	for (size_t i = 1; i < count; i++)
+		CRC->dr = words[i];
+	return CRC->dr;
+}
+
+uint32_t passo_crc(uint32_t crc, const uint32_t *words, size_t count)
+{
+	return crc_unit_is_good ? crc_in_hardware(crc, words, count) : crc_in_software(crc, words, count);
+}
+
+bool crc_start(void)
+{
+	static const uint32_t SAMPLE[] = {0x5041534Fu, 0x00000000u, 0xFFFFFFFFu, 0x12345678u};
+
+	RCC->ahbenr |= RCC_AHBENR_CRCEN;
+	crc_unit_is_good =
+	    crc_in_hardware(PASSO_CRC_START, SAMPLE, 4) == crc_in_software(PASSO_CRC_START, SAMPLE, 4)
+	    && crc_in_hardware(0x89ABCDEFu, SAMPLE, 2) == crc_in_software(0x89ABCDEFu, SAMPLE, 2);
+	return crc_unit_is_good;
+}

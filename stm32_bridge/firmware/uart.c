@@ -1,0 +1,137 @@
+/* SPDX-License-Identifier: MIT
+ * Each ring has one writer and one reader; `head` is the writer's, `tail` the reader's, both count without
+ * end, so that head - tail is what waits.
+ */
+#include "uart.h"
+
+#include "board.h"
+#include "stm32f103.h"
+
+#define TX_PIN 9u
+#define RX_PIN 10u
+#define RING 512u /* a power of two */
+
+struct ring {
+	volatile uint32_t head, tail;
+	volatile uint8_t bytes[RING];
+};
+
+static struct ring received, sending;
+static volatile uint32_t losses;
+static bool lost; /* a mark is due in the ring */
+
+static bool ring_put(struct ring *ring, uint8_t byte)
+{
+	if (ring->head - ring->tail == RING)
+		return false;
+	ring->bytes[ring->head % RING] = byte;
+	ring->head++;
+	return true;
+}
+
+static bool ring_get(struct ring *ring, uint8_t *byte)
+{
+	if (ring->head == ring->tail)
+		return false;
+	*byte = ring->bytes[ring->tail % RING];
+	ring->tail++;
+	return true;
+}
+
+static void set_divider(uint32_t baud)
+{
+	USART1->brr = (board_clock_hz() + baud / 2u) / baud;
+}
+
+void uart_start(uint32_t baud)
+{
+	RCC->apb2enr |= RCC_APB2ENR_USART1EN;
+	GPIOA->bsrr = BIT(RX_PIN);
+	gpio_mode(GPIOA, TX_PIN, GPIO_FUNCTION_50MHZ);
+	gpio_mode(GPIOA, RX_PIN, GPIO_INPUT_PULL);
+	set_divider(baud);
+	USART1->cr1 = USART_CR1_UE | USART_CR1_TE | USART_CR1_RE | USART_CR1_RXNEIE;
+}
+
+void uart_set_baud(uint32_t baud)
+{
+	while (sending.head != sending.tail)
+		wait_for_interrupt();
+	while ((USART1->sr & USART_SR_TC) == 0u)
+		continue;
+	set_divider(baud);
+}
+
+static void note_loss(void)
+{
+	losses++;
+	lost = true;
+}
+
+/* Put a byte, and the mark that is due before it, into the ring. */
+static void keep(uint8_t byte)
+{
+	if (lost) {
+		if (!ring_put(&received, (uint8_t)UART_LOST))
+			return;
+		lost = false;
+	}
+	if (!ring_put(&received, byte))
+		note_loss();
+}
+
+/* Reading SR and then DR clears the errors. A byte after an overrun is good, but the next one was lost. */
+void usart1_handler(void)
+{
+	uint32_t status = USART1->sr;
+	uint8_t byte;
+
+	if ((status & (USART_SR_RXNE | USART_SR_ORE)) != 0u) {
+		byte = (uint8_t)USART1->dr;
+		if ((status & (USART_SR_NE | USART_SR_FE)) != 0u) {
+			note_loss();
+			byte = (uint8_t)UART_LOST;
+		}
+		if ((status & USART_SR_RXNE) != 0u)
+			keep(byte);
+		if ((status & USART_SR_ORE) != 0u)
+			note_loss();
+	}
+	if ((status & USART_SR_TXE) != 0u) {
+		if (ring_get(&sending, &byte))
+			USART1->dr = byte;
+		else
+			USART1->cr1 &= ~USART_CR1_TXEIE;
+	}
+}
+
+bool uart_read(char *byte)
+{
+	uint8_t value;
+
+	if (!ring_get(&received, &value))
+		return false;
+	*byte = (char)value;
+	return true;
+}
+
+/* The interrupt handler changes CR1, too, but only when it finds nothing to send. */
+static void put(uint8_t byte)
+{
+	while (!ring_put(&sending, byte))
+		wait_for_interrupt();
+	irq_disable();
+	USART1->cr1 |= USART_CR1_TXEIE;
+	irq_enable();
+}
+
+void uart_write(const char *text)
+{
+	while (*text != '\0')
+		put((uint8_t)*text++);
+}
+
+uint32_t uart_losses(void)
+{
+	return losses;
+}

@@ -1,0 +1,205 @@
+/* SPDX-License-Identifier: MIT
+ * Random lines for the console over the C model: console_fuzz SEED SECONDS. Every line must get exactly one
+ * answer; the sanitizers watch the rest. Prints how many lines were answered ok and with an error.
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "passo_engine.h"
+#include "passo_terminal.h"
+
+#define CLOCK_HZ 1000000u
+#define ANSWER_MAX 8192u
+#define LINES_PER_CONSOLE 400u
+
+static const char *const WORDS[] = {"move", "turn", "rpm", "hold", "resume", "override", "stop", "abort",
+    "clear", "status", "position", "angle", "enable", "disable", "zero", "sync", "config", "table", "open",
+    "version", "help", "bla", "steps", "profile", "total_time", "ramp_time", "start_speed", "speed",
+    "stop_speed", "acceleration", "deceleration", "jerk", "method", "axis", "axes", "steps_per_turn", "rpm",
+    "top_rpm", "minimum_rpm", "backwards", "distance", "feed", "steps_per_mm", "accelerate_time",
+    "decelerate_time", "alpha", "row", "points", "percent", "step_high", "step_low", "dir_setup", "dir_hold",
+    "both_edges", "steps_per_unit", "clock_hz", "hold_time", "stop_time", "baud", "spi_slow", "on",
+    "command"};
+
+static const char *const VALUES[] = {"0", "1", "-1", "5", "50", "100", "3.5", "0.01", "1e-3", "2us",
+    "7clocks", "10ms", "200,-100", "1,2,3,4", "1,2,3,4,5,6,7,8,9", "20_000", "1e9", "4294967295",
+    "4294967296", "1e99", "0.00000000000000000000000000000001", "linear", "cosine", "sigmoid", "jerk", "user",
+    "in_time", "by_speed", "below_speed", "at_speed", "axes", "turn", "straight", "-2147483648", "2147483647",
+    "", ",", "1,,2", "x", "-", "1e", "0,100,200,300,400,500,600,700,800,900,1000,1100,1200,1300,1400,1500",
+    "1600", "=", "#"};
+
+/* Good lines, so that motions run while the nonsense comes. */
+static const char *const LINES[] = {"move steps=20,-9 profile=cosine total_time=0.02 ramp_time=5ms",
+    "move steps=30 profile=linear speed=2000 acceleration=30000",
+    "turn steps_per_turn=200 rpm=60 acceleration=9999",
+    "move method=sigmoid steps=9,4 speed=900 accelerate_time=0.01 alpha=3.25", "clear", "resume", "rpm 90",
+    "rpm 0", "move method=jerk steps=15 speed=900 acceleration=30000 jerk=9e6",
+    "config stop_time=1ms hold_time=1ms",
+    "move method=straight distance=1,2,3 feed=50 steps_per_mm=9 speed=90 acceleration=900 jerk=9000",
+    "move method=turn steps_per_turn=200 angle=-45.5 rpm=120 acceleration=30000"};
+
+struct bench {
+	struct passo_engine *engine;
+	char said[ANSWER_MAX];
+	size_t length;
+};
+
+static uint64_t state;
+
+static uint32_t draw(uint32_t below)
+{
+	state ^= state << 13;
+	state ^= state >> 7;
+	state ^= state << 17;
+	return (uint32_t)(state >> 32) % below;
+}
+
+#define PICK(list) ((list)[draw(sizeof(list) / sizeof(list)[0])])
+
+static void drain(struct passo_engine *engine)
+{
+	struct passo_pin_event events[256];
+
+	while (passo_engine_drain(engine, events, 256) == 256)
+		continue;
+}
+
+/* Now and then the wire is disturbed. */
+static bool transfer(void *context, const uint32_t *mosi, uint32_t *miso, size_t count)
+{
+	struct bench *bench = context;
+
+	passo_engine_transfer(bench->engine, mosi, miso, count, 64 + 4 * count);
+	if (draw(200) == 0)
+		miso[draw((uint32_t)count)] ^= 1u << draw(32);
+	drain(bench->engine);
+	return draw(2000) != 0;
+}
+
+static uint32_t advance(void *context, uint32_t microseconds)
+{
+	struct bench *bench = context;
+	uint64_t left = (uint64_t)microseconds * CLOCK_HZ / 1000000u;
+
+	while (left) {
+		left -= passo_engine_run(bench->engine, left);
+		drain(bench->engine);
+	}
+	return (uint32_t)(passo_engine_clock(bench->engine) * 1000000u / CLOCK_HZ);
+}
+
+static void keep(void *context, const char *text)
+{
+	struct bench *bench = context;
+	size_t length = strlen(text);
+
+	if (bench->length + length >= ANSWER_MAX) {
+		fprintf(stderr, "an answer is too long\n");
+		exit(1);
+	}
+	memcpy(bench->said + bench->length, text, length + 1);
+	bench->length += length;
+}
+
+/* A line without its end; it may hold any byte but CR and LF. Returns its length. */
+static size_t make_line(char *line)
+{
+	size_t length = 0;
+	uint32_t kind = draw(10);
+
+	if (kind < 3) {
+		length = (size_t)sprintf(line, "%s", PICK(LINES));
+	} else {
+		uint32_t words = draw(8);
+
+		length = (size_t)sprintf(line, "%s", kind < 9 ? WORDS[draw(22)] : "");
+		for (uint32_t i = 0; i < words; i++)
+			length += (size_t)sprintf(
+			    line + length, draw(8) ? " %s=%s" : " %s %s", PICK(WORDS), PICK(VALUES));
+	}
+	for (uint32_t i = draw(12) ? 0 : 1 + draw(3); i > 0 && length > 0; i--) {
+		char byte = (char)draw(256);
+
+		if (byte != '\n' && byte != '\r')
+			line[draw((uint32_t)length)] = byte;
+	}
+	if (draw(60) == 0) {
+		memset(line + length, ' ' + (int)draw(90), 300);
+		length += 300;
+	}
+	return length;
+}
+
+/* One line that begins with ok or error, the last one; no end of a line is missing. Returns whether it is ok.
+ */
+static bool check(const struct bench *bench, const char *line)
+{
+	unsigned answers = 0;
+	bool good = false, last = false;
+
+	for (const char *at = bench->said; *at;) {
+		const char *end = strchr(at, '\n');
+		bool ok = strncmp(at, "ok", 2) == 0 && (at[2] == ' ' || at[2] == '\n');
+
+		last = ok || strncmp(at, "error: ", 7) == 0;
+		answers += last;
+		good = ok;
+		if (!end || (!last && strncmp(at, "  ", 2) != 0 && strncmp(at, "note: ", 6) != 0)) {
+			fprintf(stderr, "to \"%s\" it said: %s\n", line, bench->said);
+			exit(1);
+		}
+		at = end + 1;
+	}
+	if (answers != 1 || !last) {
+		fprintf(stderr, "%u answers to \"%s\": %s\n", answers, line, bench->said);
+		exit(1);
+	}
+	return good;
+}
+
+int main(int count, char **arguments)
+{
+	static struct bench bench;
+	static char line[8192];
+	unsigned long answered[2] = {0, 0};
+	time_t end = time(NULL) + (count > 2 ? atol(arguments[2]) : 5);
+
+	state = (uint64_t)(count > 1 ? atoll(arguments[1]) : 1) * UINT64_C(0x9E3779B97F4A7C15) + 1u;
+	while (time(NULL) < end) {
+		const struct passo_engine_config config = {.channels = 1,
+		    .axes = 1u + draw(8),
+		    .tick_log2 = 7,
+		    .line_queue_log2 = 4,
+		    .ramp_queue_log2 = 4,
+		    .clock_hz = CLOCK_HZ};
+		struct passo_terminal *terminal;
+
+		bench.length = 0;
+		bench.engine = passo_engine_create(&config);
+		terminal = passo_terminal_create(
+		    &(struct passo_terminal_caller){transfer, advance, keep, &bench}, CLOCK_HZ);
+		for (unsigned i = 0; i < LINES_PER_CONSOLE; i++) {
+			size_t length = make_line(line);
+
+			bench.length = 0;
+			bench.said[0] = '\0';
+			passo_terminal_type(terminal, line, length);
+			if (bench.length != 0) {
+				fprintf(stderr, "an answer before the end of the line: %s\n", bench.said);
+				return 1;
+			}
+			passo_terminal_type(terminal, "\n", 1);
+			answered[check(&bench, line)]++;
+			for (uint32_t round = draw(4); round > 0; round--) {
+				passo_terminal_poll(terminal);
+				advance(&bench, draw(8000));
+			}
+		}
+		passo_terminal_destroy(terminal);
+		passo_engine_destroy(bench.engine);
+	}
+	printf("ok %lu\nerror %lu\n", answered[1], answered[0]);
+	return 0;
+}

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: MIT
+"""The driver's sources: sanitizers, the examples for other people's projects, sizes, headers for C++."""
+
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+from passo.build import ENGINE
+from passo.native import ffi, planner
+from passo.toolchain import environment, paths
+from test_core_sources import SANITIZED, STRICT, compile_c
+
+INCLUDES = [f"-I{paths.driver}", f"-I{paths.c_model}"]
+EXAMPLES = paths.driver.parent / "examples"
+STUBS = paths.tests / "stubs"
+CORTEX = ["-mcpu=cortex-m3", "-mthumb", "-std=c11", "-Os"]
+RAM_MAX = 1536  # bytes for one channel of 4 axes
+
+
+def test_a_scenario_runs_clean_under_sanitizers(tmp_path: Path) -> None:
+    """Moves, streams, stops, noise and resets, driver and model in one program: no fault, nothing lost."""
+    program = tmp_path / "scenario"
+    sources = [
+        paths.tests / "driver_scenario.c",
+        *paths.c_model.glob("*.c"),
+        *paths.driver.glob("*.c"),
+        ENGINE / "engine.c",
+        ENGINE / "engine_model.c",
+    ]
+    compile_c(*STRICT, *SANITIZED, *INCLUDES, f"-I{ENGINE}", *sources, "-o", program)
+    done = subprocess.run([program], capture_output=True, text=True, timeout=300)
+    assert (done.returncode, done.stderr, done.stdout) == (0, "", "ok\n")
+
+
+@pytest.mark.parametrize("name", ["hal.c", "libopencm3.c", "arduino.cpp"])
+def test_an_example_compiles(name: str, tmp_path: Path) -> None:
+    """Against headers that declare just what it uses."""
+    standard = ["-std=c11", "-Wconversion"] if name.endswith(".c") else ["-x", "c++", "-std=c++17"]
+    compile_c(
+        *standard,
+        *("-Wall", "-Wextra", "-Werror", "-c"),
+        *INCLUDES,
+        f"-I{STUBS}",
+        EXAMPLES / name,
+        "-o",
+        tmp_path / "example.o",
+    )
+
+
+def test_examples_stand_in_the_documentation() -> None:
+    """docs/driver.md shows the code that is compiled here."""
+    text = (paths.root / "docs" / "driver.md").read_text()
+    for name in ("hal.c", "libopencm3.c", "arduino.cpp"):
+        code = (EXAMPLES / name).read_text()
+        body = code[code.index("static bool transfer") :]
+        assert body in text, f"{name} and docs/driver.md differ"
+
+
+def test_every_function_of_the_headers_exists() -> None:
+    """What the public headers declare can be called."""
+    for header in ("passo.h", "passo_host.h", "passo_motor.h", "passo_error.h"):
+        text = re.sub(r"/\*.*?\*/", "", (paths.driver / header).read_text(), flags=re.S)
+        names = set(re.findall(r"\b(passo_\w+)\(", text))
+        assert names or header == "passo_error.h"
+        for name in names:
+            assert callable(getattr(planner(), name))
+
+
+@pytest.mark.skipif(not shutil.which("arm-none-eabi-gcc"), reason="gcc-arm-none-eabi is not installed")
+def test_it_is_small(tmp_path: Path) -> None:
+    """RAM of one channel, with the link; the deepest frame of the stack; printed with -s."""
+    source = tmp_path / "sizes.c"
+    source.write_text(
+        '#include "passo.h"\n'
+        "const unsigned host_bytes = sizeof(struct passo_host), passo_bytes = sizeof(struct passo);\n"
+        f'_Static_assert(sizeof(struct passo_host) + sizeof(struct passo) <= {RAM_MAX}u, "RAM");\n'
+    )
+    stack = {}
+    for path in [source, *sorted(paths.driver.glob("*.c"))]:
+        made = tmp_path / f"{path.stem}.o"
+        command = ["arm-none-eabi-gcc", *CORTEX, *INCLUDES, "-fstack-usage", "-c", str(path), "-o", str(made)]
+        subprocess.run(command, env=environment(), check=True)
+        for line in made.with_suffix(".su").read_text().splitlines():
+            name, size, kind = line.split("\t")
+            assert kind == "static"
+            stack[name.split(":")[-1]] = int(size)
+    deepest = max(stack, key=lambda name: stack[name])
+    print(f"on this machine: {ffi().sizeof('struct passo_host')} + {ffi().sizeof('struct passo')} bytes")
+    print(f"largest stack frame: {deepest}, {stack[deepest]} bytes")
+    assert stack[deepest] <= 768

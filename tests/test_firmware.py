@@ -1,0 +1,325 @@
+# SPDX-License-Identifier: MIT
+"""Firmware in the loop: the ELF that is flashed to the STM32F103 drives the core.
+
+PASSO_SEED is the seed of the random cases.
+"""
+
+import random
+from pathlib import Path
+
+import pytest
+from passo.build import Parameters
+from passo.engine import Engine, model_engine, rtl_engine
+from passo.stm32.board import START, Board, Motion, env_seed, firmware_elf, motions
+from passo.stm32.bus import TICKS_PER_SECOND
+from passo.stm32.lines import move_line
+from passo.stm32.machine import Machine
+from passo.stm32.play import on_the_model, play, type_move
+from passo.toolchain import paths
+
+from tests.firmware_cases import random_moves
+
+PARAMETERS = Parameters(axes=4)
+HZ = 72_000_000  # of the core; SCLK is 18 MHz
+SLOW_HZ = 36_000_000  # SCLK is 9 MHz
+EXAMPLES = sorted(path.stem for path in paths.examples.glob("*.toml"))
+SHORT_EXAMPLES = (
+    "triangle",
+    "cosine",
+)  # that the Verilated core makes here; the others in make firmware-demo
+MOVE = "move steps=100,-50 profile=linear total_time=0.01 ramp_time=0.002"
+
+
+def model_board(**options: object) -> Board:
+    """The firmware before the C model, which is quick while nothing happens."""
+    return Board(model_engine(PARAMETERS, HZ), **options)
+
+
+def compare(board: Board, lines: list[str], expected: Motion, seconds: float) -> None:
+    """Type the lines of one move; compare its pulses."""
+    made = type_move(board, lines, seconds)
+    assert not (difference := made.same_as(expected)), f"{lines[-1]}: {difference}"
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_examples_by_the_firmware(name: str) -> None:
+    """Each example typed at the console: every edge where the planner on the PC puts it. With the C model."""
+    played, _, _ = play(paths.examples / f"{name}.toml", HZ, "model")
+    assert played and not [move.difference for move in played if move.difference]
+
+
+@pytest.mark.parametrize("name", SHORT_EXAMPLES)
+def test_examples_on_the_verilated_core(name: str) -> None:
+    """The same with the Verilated core."""
+    played, _, _ = play(paths.examples / f"{name}.toml", SLOW_HZ, "rtl")
+    assert played and not [move.difference for move in played if move.difference]
+
+
+@pytest.mark.parametrize(("clock_hz", "count"), [(HZ, 10), (SLOW_HZ, 50)])
+def test_random_moves_on_the_verilated_core(clock_hz: int, count: int, tmp_path: Path) -> None:
+    """Moves of all methods: the pulses of the firmware and the Verilated core are those of PC and C model."""
+    with rtl_engine(PARAMETERS, clock_hz) as engine:
+        board = Board(engine)
+        position = [0] * PARAMETERS.axes
+        for move, file, plan in random_moves(env_seed(), count, clock_hz, PARAMETERS, tmp_path):
+            expected = on_the_model(file, 0, plan, PARAMETERS)
+            compare(board, [move_line(move)], expected, plan.clocks / clock_hz)
+            for axis, steps in enumerate(file.moves[0].steps):
+                position[axis] += steps
+        assert board.positions() == position
+        assert board.resets == [(0, "power")] and not board.faults
+
+
+@pytest.mark.parametrize("clock_hz", [72_000_000, 100_000_000, 123_456_789])
+def test_core_and_processor_do_not_drift(clock_hz: int) -> None:
+    """After a motion and many frames the core has executed just the clocks of the time that has passed."""
+    with model_engine(PARAMETERS, clock_hz) as engine:
+        board = Board(engine)
+        for seconds in (0.1, 0.2337):
+            board.must(MOVE)
+            board.run(seconds)
+            board.run_until(lambda: board.spi.started is None, 0.001)
+            passed = board.now * clock_hz // TICKS_PER_SECOND
+            assert (
+                0 <= passed - engine.clock <= 300 * clock_hz // HZ
+            )  # the core catches up every 256 instructions
+
+
+# ------------------------------------------------------------------------------------------- bad inputs ----
+
+
+REFUSED = [
+    ("mvoe steps=1", "unknown command 'mvoe'"),
+    ("move", "missing"),
+    ("move steps=1,2,3,4,5 profile=linear speed=100 ramp_time=0.01", "5 axes"),
+    ("move steps=99999999999 profile=linear speed=100 ramp_time=0.01", "too many steps"),
+    ("move steps=100 profile=linear speed=1e9 acceleration=1", "TOO_FAST"),
+    ("move steps=100 profile=linear speed=99999999999 acceleration=1", "at most"),
+    ("move steps=100 profile=triangle total_time=1 ramp_time=0", "profile must be one of"),
+    ("move steps=100 profile=linear total_time=0.1 ramp_time=0.2", "RAMP_TOO_LONG"),
+    ("move steps=0,0 profile=linear total_time=0.1 ramp_time=0", "NO_STEPS"),
+    ("move steps=100 profile=linear total_time=-1 ramp_time=0", "must not be negative"),
+    ("move steps=100 profile=linear total_time=0.0000001 ramp_time=0", "NO_TIME"),
+    ("move steps=1,,2 profile=linear total_time=1 ramp_time=0", "whole numbers"),
+    ("move steps=100 steps=100 profile=linear total_time=1 ramp_time=0", "twice"),
+    ("move steps=100 profile=user total_time=0.1 ramp_time=0.02", "table is missing"),
+    ("move steps=2000000000 profile=linear total_time=0.01 ramp_time=0", "TOO_FAST"),
+    ("override 0", "1 to 100"),
+    ("override 101", "1 to 100"),
+    ("config axis=4 step_high=1us", "0 to 3"),
+    ("config axis=0 step_high=1", "at most 65535"),
+    ("config clock_hz=3", "clock_hz must be"),
+    ("table 16 1", "row must be"),
+    ("turn axis=9 steps_per_turn=200 rpm=1 acceleration=1", "0 to 3"),
+    ("rpm 5", "NOT_TURNING"),
+    ("\x01\x02", "not text"),
+    ("x" * 256, "longer than 255"),
+    ("move " + "9" * 3000, "longer than 255"),
+]
+
+
+def test_nonsense_is_refused_and_nothing_happens() -> None:
+    """Each bad line gives one `error:` line that names the reason; then the console works as before."""
+    board = model_board()
+    board.must(MOVE)
+    board.wait_motion(0.1)
+    board.events()
+    for line, reason in REFUSED:
+        answer = board.ask(line, 4.0)
+        assert answer.startswith("error:") and reason in answer, (line[:60], answer)
+    board.run(0.05)
+    assert not len(board.events()), "a refused line made pulses"
+    assert board.positions() == [100, -50, 0, 0]
+    board.must(MOVE)
+    board.wait_motion(0.1)
+    assert board.positions() == [200, -100, 0, 0]
+    assert board.resets == [(0, "power")] and not board.faults
+
+
+@pytest.mark.parametrize("burst", [4, 30])
+def test_line_that_lost_characters_is_refused(burst: int) -> None:
+    """USART overrun: characters come faster than the interrupt takes them. The line, although it still makes
+    sense without them, is not executed."""
+    board = model_board()
+    line, rest = "move steps=", "100,-50 profile=linear total_time=0.01 ramp_time=0.002"
+    since = len(board.output)
+    board.type(line)
+    board.type("0" * burst, baud=150_000_000)
+    board.type(rest + "\r")
+    board.run_until(lambda: board.output[since:].endswith("\n"), 1.0)
+    assert board.output[since:].startswith("error:")
+    board.run(0.05)
+    lost = board.must("status").partition("lost_bytes=")[2]
+    assert int(lost) > 0
+    assert board.positions() == [0, 0, 0, 0]
+    board.must(line + "0" * burst + rest)
+    board.wait_motion(0.1)
+    assert board.positions() == [100, -50, 0, 0]
+
+
+def test_flood_of_lines_loses_no_answer() -> None:
+    """200 lines without a pause at the full baud rate: each is answered, or refused for lost characters."""
+    board = model_board()
+    since = len(board.output)
+    board.type("position\r" * 200)
+    board.run_until(lambda: not board.usart.typing, 2.0)
+    board.run(0.2)
+    answers = [line for line in board.output[since:].splitlines() if line]
+    assert all(line.startswith(("ok position=0,0,0,0", "error:")) for line in answers), answers[:5]
+    lost = int(board.must("status").partition("lost_bytes=")[2])
+    assert len(answers) == 200 or lost
+
+
+def test_core_is_missing() -> None:
+    """The console says so, refuses moves, and finds the core when it is there."""
+    machine = Machine(firmware_elf(), None)
+    machine.run(START)
+    assert "note: STUCK_LOW" in machine.output  # PA6 is pulled down
+    for line in (MOVE, "position", "stop"):
+        assert "error: NOT_OPEN" in machine.command(line, 1.0, "\n"), machine.output
+    machine.run(2.0)
+    assert machine.resets == [(0, "power")]
+
+
+@pytest.mark.parametrize(
+    ("registers", "name"),
+    [
+        ({0: 0x12345678}, "NOT_PASSO"),
+        ({1: 0x00020000}, "VERSION"),
+        ({2: 0x04080000}, "PARAMETERS"),
+    ],
+)
+def test_core_is_another_one(registers: dict[int, int], name: str) -> None:
+    """Something else answers, or a core of another version or with impossible parameters: no move is made."""
+    engine = model_engine(PARAMETERS, HZ)
+    machine = Machine(firmware_elf(), engine)
+    machine.wires.pretend = registers
+    machine.run(START)
+    assert f"note: {name}" in machine.output
+    assert "error:" in machine.command(MOVE, 1.0, "\n")
+    machine.run(0.05)
+    assert not machine.events()["step"].any()
+
+
+@pytest.mark.parametrize(
+    "parameters",
+    [Parameters(axes=8), Parameters(axes=2), Parameters(axes=3, tick_log2=9), Parameters(axes=2, channels=2)],
+)
+def test_core_has_other_parameters(parameters: Parameters) -> None:
+    """The firmware asks the core for its axes, ticks and queues."""
+    board = Board(model_engine(parameters, HZ))
+    board.must(MOVE)
+    board.wait_motion(0.1)
+    assert board.positions() == [100, -50, *[0] * (parameters.axes - 2)]
+    too_many = ",".join(["1"] * (parameters.axes + 1))
+    assert "axes" in board.ask(f"move steps={too_many} profile=linear total_time=0.01 ramp_time=0")
+
+
+@pytest.mark.parametrize(("level", "name"), [(0, "STUCK_LOW"), (1, "STUCK_HIGH")])
+def test_miso_is_stuck(level: int, name: str) -> None:
+    """Each command is refused with the reason; afterwards the position is as it was, and moves are made."""
+    board = model_board()
+    board.must(MOVE)
+    board.wait_motion(0.1)
+    board.wires.stuck = level
+    for line in ("position", MOVE, "stop"):
+        answer = board.ask(line, 2.0)
+        assert answer.startswith("error:") and name in answer, (line, answer)
+    board.events()
+    board.wires.stuck = None
+    board.run(0.6)
+    board.must("open")
+    board.run(0.05)
+    assert not board.events()["step"].any(), "a refused move was made"
+    if board.ask("status").partition("state=")[2].startswith("STOPPED"):
+        board.must("clear")
+    assert board.positions() == [100, -50, 0, 0]
+    board.must(MOVE)
+    board.wait_motion(0.1)
+    assert board.positions() == [200, -100, 0, 0]
+    assert len(board.resets) == 1 and not board.faults
+
+
+def test_every_move_arrives_exactly_once_over_a_noisy_wire() -> None:
+    """1 of 10,000 bits is flipped in both directions: no move is lost, none made twice."""
+    board = model_board(seed=env_seed())
+    board.wires.flip_rate = 1e-4
+    rng = random.Random(env_seed())
+    position = [0] * PARAMETERS.axes
+    for _ in range(100):
+        steps = [rng.randint(-60, 60) or 1 for _ in position]
+        line = f"move steps={','.join(map(str, steps))} profile=cosine total_time=0.004 ramp_time=0.001"
+        while "FULL" in (answer := board.ask(line)):
+            board.run(0.004)
+        assert answer == "ok"
+        position = [p + s for p, s in zip(position, steps, strict=True)]
+    board.run(0.3)
+    assert board.wires.flipped > 20
+    assert board.positions() == position
+    made = motions(board.events())
+    assert len(made) == 100
+    for axis, expected in enumerate(position):
+        assert sum(int(motion.steps(axis)[1].sum()) for motion in made) == expected
+    retries = int(board.must("status").partition("retries=")[2].split()[0])
+    assert retries > 0
+    assert len(board.resets) == 1
+
+
+def test_watchdog_resets_firmware_that_hangs() -> None:
+    """An endless loop in the middle of a motion: the chip is reset, the core ends the motion by itself."""
+    board = model_board()
+    board.must("move steps=1000 profile=linear total_time=1.5 ramp_time=0.1")
+    board.run(0.1)
+    board.hang()
+    began = board.seconds
+    board.run_until(lambda: len(board.resets) > 1, 3.0)
+    (_, _), (_, cause) = board.resets
+    assert cause == "watchdog"
+    assert 0.5 < board.seconds - began < 1.2
+    since = len(board.output)
+    board.baud = 115_200
+    board.expect("note: reset by watchdog", 0.5, since)
+    board.run(1.5)
+    board.ask("open")
+    assert motions(board.events())[0].clocks > 1.4 * HZ
+    board.must(f"config clock_hz={HZ}")
+    assert board.positions() == [1000, 0, 0, 0]
+    board.must(MOVE)
+    board.wait_motion(0.1)
+    assert board.positions() == [1100, -50, 0, 0]
+
+
+def test_fault_of_the_firmware_resets_it() -> None:
+    """A jump to nowhere: the fault handler notes exception and address, and resets."""
+    board = model_board()
+    since = len(board.output)
+    board.jump(0x30000000)
+    board.baud = 115_200
+    board.expect("note: reset by fault", 0.5, since)
+    board.run(0.1)
+    assert "exception 3" in board.output[since:]
+    assert len(board.faults) == 1 and board.resets[-1][1] == "software"
+
+
+def test_crystal_is_broken() -> None:
+    """The firmware says so and works at 64 MHz, with the baud rate as it should be."""
+    board = model_board(crystal=False)
+    assert "note: no crystal" in board.output
+    board.must(MOVE)
+    board.wait_motion(0.1)
+    assert board.positions() == [100, -50, 0, 0]
+
+
+def test_processor_has_little_to_do_during_a_motion() -> None:
+    """A second at a million steps/s on all axes: below 1 % of the processor."""
+    hz = 200_000_000
+    board = Board(model_engine(PARAMETERS, hz))
+    for axis in range(PARAMETERS.axes):
+        board.must(f"config axis={axis} step_high=50clocks step_low=50clocks")
+    board.must("move steps=990000,990000,990000,990000 profile=linear total_time=1 ramp_time=0.01")
+    board.run(0.02)
+    executed, began = board.instructions, board.now
+    board.run(0.9)
+    load = (board.instructions - executed) * board.cpu.step / (board.now - began)
+    assert isinstance(board.wires.core, Engine) and board.wires.core.running
+    assert load < 0.01, f"{100 * load:.2f} %"

@@ -1,0 +1,186 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Worst-case stack, flash and RAM of a Thumb-2 program, out of its ELF file.
+
+Every function is disassembled: what it takes off the stack pointer, and whom it calls. Calls through pointers
+are named in a file ("caller: target target ..."); one that is not named there, recursion, and a change of the
+stack pointer that is not understood are errors. Interrupts that can nest all come on top of the deepest path,
+with 36 bytes that the processor saves for each. The exit status is 1 when something does not fit.
+"""
+
+import argparse
+import re
+import subprocess
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+
+EXCEPTION_BYTES = 36  # 8 words, and one to align them
+FUNCTION = re.compile(r"^([0-9a-f]+) <(.+)>:$")
+TARGET = re.compile(r"([0-9a-f]+) <([^>+]+)>")
+CLONE = re.compile(r"\.(isra|part|constprop|cold|lto_priv)\b.*")
+CONDITIONAL = re.compile(r"b(eq|ne|cs|cc|mi|pl|vs|vc|hi|ls|ge|lt|gt|le)")
+
+
+class StackError(Exception):
+    """The stack cannot be reckoned; the text says why."""
+
+
+@dataclass
+class Function:
+    """A function: bytes of stack for itself, addresses of those it calls."""
+
+    name: str  # without what the compiler appends to the names of parts and clones
+    frame: int = 0
+    calls: set[int] = field(default_factory=set)
+    by_pointer: bool = False
+
+
+def disassemble(elf: Path, cross: str) -> dict[int, Function]:
+    """All functions by their address."""
+    text = _run(f"{cross}objdump", "-d", "--no-show-raw-insn", "-j", ".text", str(elf))
+    functions: dict[int, Function] = {}
+    current, start = None, 0
+    for line in text.splitlines():
+        if match := FUNCTION.match(line):
+            start = int(match[1], 16)
+            current = functions.setdefault(start, Function(CLONE.sub("", match[2])))
+        elif current and "\t" in line:
+            fields = line.split("\t")
+            if len(fields) >= 2:
+                _instruction(
+                    current, start, fields[1].strip(), "\t".join(fields[2:]).split(";")[0].split("@")[0]
+                )
+    return functions
+
+
+def _instruction(function: Function, start: int, operation: str, operands: str) -> None:
+    """Add what one instruction does to the stack and to the calls."""
+    name = operation.removesuffix(".n").removesuffix(".w")
+    operands = operands.strip()
+    if name == "push" or (name == "stmdb" and operands.startswith("sp!")):
+        function.frame += 4 * _registers(operands)
+    elif name in ("str", "strd") and (match := re.search(r"\[sp, #-(\d+)\]!", operands)):
+        function.frame += int(match[1])
+    elif name in ("sub", "subw") and re.match(r"sp\b", operands):
+        match = re.search(r"#(\d+)", operands)
+        if not match:
+            raise StackError(f"{function.name} takes an unknown amount of stack: {operation} {operands}")
+        function.frame += int(match[1])
+    elif name in ("add", "addw", "mov", "ldr") and re.match(r"sp, (?!.*#\d)", operands + " "):
+        # A frame too large for an immediate, or a pointer put back.
+        if not re.match(r"sp, r7", operands):
+            raise StackError(f"{function.name} changes the stack pointer: {operation} {operands}")
+    elif name in ("bl", "b", "cbz", "cbnz") or CONDITIONAL.fullmatch(name):
+        if (match := TARGET.search(operands)) and int(match[1], 16) != start:
+            function.calls.add(int(match[1], 16))
+    elif name == "blx" or (name == "bx" and operands != "lr"):
+        function.by_pointer = True
+
+
+def _registers(operands: str) -> int:
+    """How many registers a list such as {r4, r6-r8, lr} has."""
+    count = 0
+    for item in re.search(r"\{(.*)\}", operands)[1].split(","):
+        low, _, high = item.strip().partition("-")
+        count += int(high[1:]) - int(low[1:]) + 1 if high else 1
+    return count
+
+
+def read_calls(path: Path) -> dict[str, list[str]]:
+    """Who is called through pointers: names by the caller's name."""
+    calls = {}
+    for line in path.read_text().splitlines():
+        line = line.partition("#")[0].strip()
+        if line:
+            caller, _, targets = line.partition(":")
+            calls.setdefault(caller.strip(), []).extend(targets.split())
+    return calls
+
+
+def connect(functions: dict[int, Function], pointers: dict[str, list[str]]) -> dict[str, list[int]]:
+    """Add the calls through pointers; return the addresses by name."""
+    by_name: dict[str, list[int]] = {}
+    for address, function in functions.items():
+        by_name.setdefault(function.name, []).append(address)
+    for function in functions.values():
+        if not function.by_pointer:
+            continue
+        if function.name not in pointers:
+            raise StackError(f"{function.name} calls through a pointer and is not named in the list of calls")
+        for target in pointers[function.name]:
+            if target not in by_name:
+                raise StackError(f"{function.name} is said to call {target}, which is not there")
+            function.calls.update(by_name[target])
+    unused = set(pointers) - {function.name for function in functions.values() if function.by_pointer}
+    if unused:
+        raise StackError(f"these are said to call through pointers, but do not: {', '.join(sorted(unused))}")
+    return by_name
+
+
+def deepest(functions: dict[int, Function], start: int) -> tuple[int, list[str]]:
+    """Bytes of stack of the deepest path from a function, and the path."""
+    known: dict[int, tuple[int, list[str]]] = {}
+
+    def visit(address: int, above: tuple[int, ...]) -> tuple[int, list[str]]:
+        if address in above:
+            raise StackError(f"recursion: {' -> '.join(functions[a].name for a in (*above, address))}")
+        if address not in known:
+            function = functions[address]
+            below = [visit(a, (*above, address)) for a in function.calls if a in functions]
+            depth, path = max(below, default=(0, []), key=lambda item: item[0])
+            known[address] = (function.frame + depth, [f"{function.name} {function.frame}", *path])
+        return known[address]
+
+    return visit(start, ())
+
+
+def sizes(elf: Path, cross: str) -> tuple[int, int]:
+    """Bytes of flash and of RAM, without the stack."""
+    flash = ram = 0
+    for line in _run(f"{cross}size", "-A", str(elf)).splitlines():
+        fields = line.split()
+        if len(fields) == 3 and fields[0] in (".text", ".data", ".bss", ".noinit"):
+            flash += int(fields[1]) * (fields[0] in (".text", ".data"))
+            ram += int(fields[1]) * (fields[0] != ".text")
+    return flash, ram
+
+
+def _run(*command: str) -> str:
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+
+
+def main() -> int:
+    """Print the figures; return 1 if something does not fit or cannot be reckoned."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("elf", type=Path)
+    parser.add_argument("--cross", default="arm-none-eabi-")
+    parser.add_argument("--calls", type=Path, required=True, help="who is called through pointers")
+    parser.add_argument("--flash", type=int, required=True, help="bytes there are")
+    parser.add_argument("--ram", type=int, required=True, help="bytes there are")
+    parser.add_argument("--start", default="reset_handler")
+    parser.add_argument("--interrupt", action="append", default=[], help="a handler that can come on top")
+    options = parser.parse_args()
+    try:
+        functions = disassemble(options.elf, options.cross)
+        by_name = connect(functions, read_calls(options.calls))
+        stack, path = deepest(functions, by_name[options.start][0])
+        for handler in options.interrupt:
+            stack += EXCEPTION_BYTES + deepest(functions, by_name[handler][0])[0]
+    except (StackError, KeyError) as error:
+        print(f"stack_usage: {error}", file=sys.stderr)
+        return 1
+    flash, ram = sizes(options.elf, options.cross)
+    left = options.ram - ram
+    print(f"deepest path: {' > '.join(path)}")
+    print(f"flash {flash} of {options.flash} bytes, {options.flash - flash} left")
+    print(f"RAM   {ram} of {options.ram} bytes, {left} left for the stack")
+    print(f"stack {stack} of {left} bytes at worst, {left - stack} left")
+    if flash > options.flash or stack > left:
+        print("stack_usage: this does not fit", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
