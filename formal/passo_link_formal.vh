@@ -116,7 +116,7 @@ always @(posedge clk)
     assert (!frame_waits || step == STEP_REPLAY || step == STEP_COUNT || step == STEP_HEADER);
     if (frame_waits) assert (f_selected && f_words == 9'd0 && f_checks == 9'd0 && !f_objection);
     assert (answer_due == f_asked);
-    if (step != STEP_READ && step != STEP_SUM) assert (count <= COUNT_REST || count >= COUNT_LOAD);
+    if (f_receives) assert (count <= COUNT_REST || count >= COUNT_LOAD);
     // receiving
     if (f_receives) begin
       assert (f_selected);
@@ -131,7 +131,7 @@ always @(posedge clk)
     if (step == STEP_COUNT) assert (f_busy);
     if (step == STEP_COUNT && frame_waits)
       assert (!f_upper && f_gap < (count == COUNT_ACT ? 7'd36 : {1'b0, count} - 7'd28));
-    if ((step == STEP_HEADER || step == STEP_ACK) && f_loaded) assert (f_held == f_header);
+    if ((step == STEP_HEADER || (step == STEP_ACK && verdict == VERDICT_OK)) && f_loaded) assert (f_held == f_header);
     if (step == STEP_PAYLOAD || step == STEP_CRC || step == STEP_ACK || step == STEP_READ) begin
       assert (f_memory_header == f_header && f_words != 9'd0);
       assert (length == f_length && bus_push == f_is_push && is_read == (f_header[31:28] == OPERATION_READ));
@@ -154,14 +154,7 @@ always @(posedge clk)
       assert (f_busy && f_selected);
       assert (f_upper ? f_c > 7'd50 && f_gap < f_c - 7'd50 : f_gap == (f_c > 7'd51 ? 7'd60 : f_c + 7'd9));
     end
-    if (step == STEP_ACK) assert (f_busy && f_words != 9'd0);
-    if (step == STEP_READ) begin
-      assert (length != 8'd0 && length <= 8'd60 && index <= length && is_read);
-      if (index == 8'd0) begin
-        assert (count >= COUNT_READ || count == COUNT_ACT);
-        assert (f_upper ? f_c > 7'd34 && f_gap < f_c - 7'd34 : f_gap == (f_c > 7'd35 ? 7'd60 : f_c + 7'd25));
-      end else if (count >= COUNT_READ && count < COUNT_TURN) assert (verdict == VERDICT_OK);
-    end
+    if (step == STEP_ACK) assert (f_words != 9'd0);
     // the payload in its place
     if ((step == STEP_PAYLOAD || step == STEP_CRC || step == STEP_ACK) && f_length <= 8'd60 && !is_read
         && (step != STEP_ACK || verdict == VERDICT_OK)) begin
