@@ -397,13 +397,13 @@ static bool same_inputs(const struct passo_inputs *a, const struct passo_inputs 
 static bool link_side_quiet(const struct passo_core *core, const struct passo_inputs *inputs)
 {
 	const uint8_t selected = inputs->spi_cs_n ? 0 : 7;
-	const uint8_t toggled = core->spi.word_toggle ? 7 : 0;
+	const uint8_t toggled = core->spi.half_toggle ? 7 : 0;
 	const uint8_t synced = inputs->sync ? 7 : 0;
 
 	return same_inputs(inputs, &core->inputs) && core->spi.select_sync == selected
 	    && core->spi.toggle_sync == toggled && core->sync_q == synced && passo_link_quiet(&core->link)
 	    && !core->response.claim && core->response.refusal == 0u && core->response.read_data == 0u
-	    && core->outputs.irq == passo_registers_any_stopped(core);
+	    && !core->response.late && core->outputs.irq == passo_registers_any_stopped(core);
 }
 
 static struct passo_channel_inputs inputs_of(const struct passo_core *core, unsigned channel)

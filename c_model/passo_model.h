@@ -28,17 +28,20 @@ struct passo_parameters {
 
 struct passo_spi {
 	uint8_t bit_count;
-	uint32_t receive;
-	uint32_t word;
-	bool word_toggle;
+	bool mosi;
 	bool first_word;
-	uint32_t send;
+	uint32_t shift; /* 31 bits */
+	bool mosi_late;
+	bool half_toggle;
+	bool half_low;
+	uint16_t half;
+	bool miso;
 	uint8_t select_sync;
 	uint8_t toggle_sync;
 };
 
 struct passo_spi_wires {
-	bool frame_start, frame_end, word_valid;
+	bool frame_start, frame_end, half_valid;
 };
 
 struct passo_spi_wires passo_spi_wires(const struct passo_spi *spi);
@@ -47,13 +50,8 @@ void passo_spi_reset(struct passo_spi *spi);
 void passo_spi_clock(
     struct passo_spi *spi, bool sclk_was, bool sclk, bool mosi, bool cs_n, uint32_t reply_word);
 
-struct passo_crc {
-	uint32_t crc;
-	uint32_t word;
-	uint8_t busy; /* clocks until crc includes the word */
-};
-
-void passo_crc_clock(struct passo_crc *crc, bool restart, bool start, uint32_t word);
+/* `crc` with 32 bits more. */
+uint32_t passo_crc_add(uint32_t crc, uint32_t word);
 
 struct passo_bus {
 	bool frame, check, write, read, push;
@@ -65,6 +63,8 @@ struct passo_response {
 	bool claim;
 	uint8_t refusal;
 	uint32_t read_data;
+	bool late;        /* the register shows its value in the clock of the answer, */
+	uint16_t address; /* and this is its address */
 };
 
 enum passo_link_step {
@@ -72,37 +72,41 @@ enum passo_link_step {
 	PASSO_LINK_HEADER,
 	PASSO_LINK_PAYLOAD,
 	PASSO_LINK_CRC,
-	PASSO_LINK_VERDICT,
+	PASSO_LINK_ACK,
 	PASSO_LINK_REPLAY,
 	PASSO_LINK_READ,
-	PASSO_LINK_SEND,
-	PASSO_LINK_DONE
+	PASSO_LINK_SUM,
+	PASSO_LINK_COUNT
 };
+
+/* Places of the payload buffer behind the payload. */
+#define PASSO_BUFFER_HEADER 64u
+#define PASSO_BUFFER_OTHER 65u
+#define PASSO_BUFFER_WORDS 66u
 
 struct passo_link {
 	enum passo_link_step step;
-	uint8_t phase;
-	uint32_t header;
+	uint8_t count;
+	bool is_read;
+	uint8_t length;
 	uint8_t index;
 	bool frame_waits;
 	bool sequence_known;
 	uint8_t last_sequence;
 	uint8_t verdict;
 	bool answer_due;
-	bool crc_restart, crc_start, crc_idle_q;
-	uint32_t crc_word;
-	struct passo_crc crc;
-	bool stage_high, stage_low;
-	uint32_t payload[64];
+	bool crc_wrong;
+	uint32_t crc;
+	uint16_t buffer[PASSO_BUFFER_WORDS][2]; /* upper half first */
 	uint32_t reply_word;
 	bool refused;
-	uint8_t refused_verdict;
 	struct passo_bus bus;
 };
 
 struct passo_link_wires {
 	struct passo_spi_wires spi;
-	uint32_t word;
+	bool half_low;
+	uint16_t half;
 	uint32_t status;
 	struct passo_response response;
 	bool incomplete;
@@ -110,7 +114,7 @@ struct passo_link_wires {
 
 void passo_link_reset(struct passo_link *link);
 void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wires);
-/* Nothing changes in the link until the next word or chip select edge. */
+/* Nothing changes in the link until the next half word or chip select edge. */
 bool passo_link_quiet(const struct passo_link *link);
 
 struct passo_registers {
@@ -359,6 +363,8 @@ void passo_motion_clock(struct passo_motion *motion, const struct passo_channel 
 /* Answer of a channel to the strobe on the bus. */
 struct passo_response passo_channel_respond(
     const struct passo_channel *channel, const struct passo_channel_inputs *inputs);
+/* What stands in a read-only register of the channel itself. */
+uint32_t passo_channel_registers_value(const struct passo_channel *channel, uint8_t address);
 void passo_channel_registers_reset(struct passo_channel_registers *registers);
 void passo_channel_registers_clock(
     struct passo_channel_registers *registers, const struct passo_bus *bus, bool selected);

@@ -2,6 +2,11 @@
 // What the link promises; included at the end of passo_link.
 
 // --- Assumptions: chip select and words as passo_spi gives them. Half words are at least 60 clocks apart.
+`ifdef SMALL
+localparam [6:0] F_GAP = 7'd8;  // the search turns a word in one clock
+`else
+localparam [6:0] F_GAP = 7'd60;
+`endif
 reg       f_begun = 1'b0;
 reg       f_selected = 1'b0;
 reg       f_upper = 1'b0;  // the upper half of a word has come
@@ -15,10 +20,10 @@ always @(posedge clk) begin
   if (frame_end || half_valid) assume (f_selected);
   if (frame_start) f_selected <= 1'b1;
   if (frame_end) f_selected <= 1'b0;
-  if (half_valid) assume (half_low == f_upper && f_gap == 7'd60);
+  if (half_valid) assume (half_low == f_upper && f_gap == F_GAP);
   if (half_valid) f_upper <= !half_low;
   if (frame_start) f_upper <= 1'b0;
-  f_gap <= frame_start || half_valid ? 7'd0 : f_gap == 7'd60 ? 7'd60 : f_gap + 7'd1;
+  f_gap <= frame_start || half_valid ? 7'd0 : f_gap == F_GAP ? F_GAP : f_gap + 7'd1;
 end
 
 // --- The frame that is being received: its words, and what was said of them
@@ -110,7 +115,7 @@ wire f_header_fits = (f_is_push || f_is_write) && f_length != 8'd0 && f_length <
 always @(posedge clk)
   if (f_begun) begin
     assert (step <= STEP_COUNT);
-    assert (f_gap <= 7'd60);
+    assert (f_gap <= F_GAP);
     assert (sequence_known == f_any);
     if (f_any) assert (last_sequence == f_last);
     assert (!frame_waits || step == STEP_REPLAY || step == STEP_COUNT || step == STEP_HEADER);
