@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What the link promises; included at the end of passo_link.
 
+(* anyconst *) reg [5:0] f_watch;  // one word of the payload, any one
+
 // --- Assumptions: chip select and words as passo_spi gives them. Half words are at least 60 clocks apart.
 `ifdef SMALL
 localparam [6:0] F_GAP = 7'd8;  // the search turns a word in one clock
@@ -23,11 +25,16 @@ always @(posedge clk) begin
   if (half_valid) assume (half_low == f_upper && f_gap == F_GAP);
   if (half_valid) f_upper <= !half_low;
   if (frame_start) f_upper <= 1'b0;
+`ifdef SMALL
+  // a few numbers are enough to find a bug: operations 0 .. 3, sequence 0 .. 1, length 0 .. 2, address 0 .. 3
+  if (half_valid && !half_low) assume ((half & 16'hCFEF) == 16'd0);
+  if (half_valid && half_low) assume ((half & 16'hCFFC) == 16'd0 && half[13:12] != 2'd3);
+  assume (f_watch == 6'd0);
+`endif
   f_gap <= frame_start || half_valid ? 7'd0 : f_gap == F_GAP ? F_GAP : f_gap + 7'd1;
 end
 
 // --- The frame that is being received: its words, and what was said of them
-(* anyconst *) reg [5:0] f_watch;  // one word of the payload
 (* keep *) wire [5:0] f_place = f_watch;
 (* keep *) wire [31:0] f_memory_header;
 (* keep *) wire [31:0] f_memory_word;
