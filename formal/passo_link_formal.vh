@@ -5,7 +5,7 @@
 
 // --- Assumptions: chip select and words as passo_spi gives them. Half words are at least 60 clocks apart.
 `ifdef SMALL
-localparam [6:0] F_GAP = 7'd8;  // the search turns a word in one clock
+localparam [6:0] F_GAP = 7'd3;  // the search turns a word in one clock
 `else
 localparam [6:0] F_GAP = 7'd60;
 `endif
@@ -29,7 +29,7 @@ always @(posedge clk) begin
   // a few numbers are enough to find a bug: operations 0 .. 3, sequence 0 .. 1, length 0 .. 2, address 0 .. 3
   if (half_valid && !half_low) assume ((half & 16'hCFEF) == 16'd0);
   if (half_valid && half_low) assume ((half & 16'hCFFC) == 16'd0 && half[13:12] != 2'd3);
-  assume (f_watch == 6'd0);
+  assume (f_watch == 6'd0 && !(half_valid && step == STEP_ACK));
 `endif
   f_gap <= frame_start || half_valid ? 7'd0 : f_gap == F_GAP ? F_GAP : f_gap + 7'd1;
 end

@@ -54,7 +54,7 @@ class Proof:
     name: str
     slow: bool
     promises: tuple[Promise, ...]
-    shorter: Promise | None = None  # a change that makes the search for bugs shorter, planted with each of them
+    shorter: Promise | None = None  # planted with each bug, makes the search shorter
 
     @property
     def sby(self) -> Path:
