@@ -5,9 +5,11 @@
 
 // --- Assumptions: chip select and words as passo_spi gives them. Half words are at least 60 clocks apart.
 `ifdef SMALL
-localparam [6:0] F_GAP = 7'd3;  // the search turns a word in one clock
+localparam [6:0] F_GAP = 7'd7;  // the search turns a word in one clock
+localparam [6:0] F_GAP_LOW = 7'd1;
 `else
 localparam [6:0] F_GAP = 7'd60;
+localparam [6:0] F_GAP_LOW = 7'd60;
 `endif
 reg       f_begun = 1'b0;
 reg       f_selected = 1'b0;
@@ -22,7 +24,7 @@ always @(posedge clk) begin
   if (frame_end || half_valid) assume (f_selected);
   if (frame_start) f_selected <= 1'b1;
   if (frame_end) f_selected <= 1'b0;
-  if (half_valid) assume (half_low == f_upper && f_gap == F_GAP);
+  if (half_valid) assume (half_low == f_upper && f_gap >= (half_low ? F_GAP_LOW : F_GAP));
   if (half_valid) f_upper <= !half_low;
   if (frame_start) f_upper <= 1'b0;
 `ifdef SMALL
