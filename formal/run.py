@@ -54,6 +54,7 @@ class Proof:
     name: str
     slow: bool
     promises: tuple[Promise, ...]
+    shorter: Promise | None = None  # planted with each bug, makes the search shorter
 
     @property
     def sby(self) -> Path:
@@ -92,7 +93,8 @@ def proofs() -> list[Proof]:
         )
         if len({promise.name for promise in promises}) != len(promises):
             raise ValueError(f"{entry['name']}: two promises have the same name")
-        found.append(Proof(entry["name"], entry.get("slow", False), promises))
+        shorter = Promise("shorter", "", (), **entry["shorter"]) if "shorter" in entry else None
+        found.append(Proof(entry["name"], entry.get("slow", False), promises, shorter))
     return found
 
 
@@ -166,6 +168,8 @@ def catch(proof: Proof, promise: Promise) -> Result:
     _fresh_copy(folder)
     try:
         plant(promise, folder)
+        if proof.shorter:
+            plant(proof.shorter, folder)
     except ValueError as error:
         return Result(proof.name, promise.name, False, 0.0, f"not planted: {error}")
     verdict, log, seconds = _sby(proof, "bug", folder)

@@ -63,6 +63,7 @@ module passo_axis (
   // time that is the first one.
   reg  [15:0] timer;
   reg         done;
+  reg         timing_changed;  // times were written in the clock before
   // Kept, so that a bit of the choice and of the comparison goes into one LUT.
   (* keep *)
   wire [15:0] level_equal;
@@ -73,7 +74,7 @@ module passo_axis (
   wire level_short = step ? short_high : short_low;
   wire dir_short = setup ? short_setup : short_hold;
   wire at_level = high | low;
-  wire done_next = timing_written ? (at_level ? level_short : dir_short) : (at_level ? &level_equal : &dir_equal);
+  wire done_next = timing_changed ? (at_level ? level_short : dir_short) : (at_level ? &level_equal : &dir_equal);
 
   // Steps that wait, as directions, the oldest in bit 0. Free places hold the latest direction.
   reg  [3:0] waiting;
@@ -86,7 +87,7 @@ module passo_axis (
   wire free = idle | low_over | (setup & done);
   wire step_begins = free & waits[0] & dir_right;
   wire turn = idle & ~dir_right & (~hold | done);
-  wire restart = step_begins | turn | falls | low_over | timing_written;
+  wire restart = step_begins | turn | falls | low_over | timing_changed;
 
   assign step_direction = dir;  // does not change in the clock after step_begins
 
@@ -103,6 +104,8 @@ module passo_axis (
             falls       ? short_low :
             turn        ? short_setup :
             low_over    ? short_hold : done_next;
+    timing_changed <= timing_written;
+    if (timing_written) done <= 1'b0;
 
     high  <= (high & ~falls) | (step_begins & ~both_edges);
     low   <= (low & ~low_over) | falls | (step_begins & both_edges);
@@ -120,22 +123,23 @@ module passo_axis (
     if (drop) waits <= 4'd0;
     if (clear) lost <= 4'd0;
     if (rst) begin
-      high       <= 1'b0;
-      low        <= 1'b0;
-      setup      <= 1'b0;
-      idle       <= 1'b1;
-      hold       <= 1'b0;
-      done       <= 1'b0;
-      waits      <= 4'd0;
-      waiting    <= 4'd0;
-      overrun    <= 1'b0;
-      lost       <= 4'd0;
-      step       <= 1'b0;
-      dir        <= 1'b0;
-      step_made  <= 1'b0;
-      step_pin   <= 1'b0;
-      dir_pin    <= 1'b0;
-      enable_pin <= 1'b0;
+      high           <= 1'b0;
+      low            <= 1'b0;
+      setup          <= 1'b0;
+      idle           <= 1'b1;
+      hold           <= 1'b0;
+      done           <= 1'b0;
+      timing_changed <= 1'b0;
+      waits          <= 4'd0;
+      waiting        <= 4'd0;
+      overrun        <= 1'b0;
+      lost           <= 4'd0;
+      step           <= 1'b0;
+      dir            <= 1'b0;
+      step_made      <= 1'b0;
+      step_pin       <= 1'b0;
+      dir_pin        <= 1'b0;
+      enable_pin     <= 1'b0;
     end
   end
 

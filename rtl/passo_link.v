@@ -298,5 +298,9 @@ module passo_link (
     end
   end
 
+`ifdef FORMAL
+  `include "passo_link_formal.vh"
+`endif
+
 endmodule
 `resetall
