@@ -20,24 +20,14 @@ struct walk {
 
 static const uint64_t ONE = UINT64_C(1) << 48;
 
-static uint32_t look_up(const uint32_t table[257], uint32_t x)
-{
-	const uint32_t k = x >> 16;
-	if (k == 256)
-		return 1u << 24;
-	const int64_t point = table[k], next = table[k + 1], f = x & 0xFFFFu;
-	/* ties go up in the lower half of the table, down in the upper */
-	const int64_t half = k < 128 ? 128 : 127;
-	return (uint32_t)((point * 65536 + (next - point) * f + half) >> 8);
-}
-
+/* s (UQ1.24) for a progress (UQ0.49) */
 static uint32_t shape(const struct ramp *ramp, const uint32_t tables[][257], uint64_t progress)
 {
-	const uint32_t x = (uint32_t)((progress + (1u << 23)) >> 24);
 	if (ramp->shape == 0)
-		return x;
+		return (uint32_t)((progress + (1u << 24)) >> 25);
 	const uint32_t *table = tables[ramp->shape - 1];
-	return ramp->mirror ? (1u << 24) - look_up(table, (1u << 24) - x) : look_up(table, x);
+	const uint64_t k = progress >> 41, f = ((progress & ((1ull << 41) - 1)) + (1u << 16)) >> 17;
+	return (uint32_t)((table[k] * ((1ull << 24) - f) + table[k + 1] * f + (1u << 15)) >> 16);
 }
 
 /* Go on at a velocity for some clocks. */
@@ -67,19 +57,20 @@ uint32_t substep_clocks(const struct ramp *ramps, uint32_t ramp_count, uint32_t 
 	uint64_t start = 0;
 
 	for (const struct ramp *ramp = ramps; ramp < ramps + ramp_count; ramp++) {
-		const bool up = ramp->velocity_end >= start;
-		const uint64_t change = up ? ramp->velocity_end - start : start - ramp->velocity_end;
-		uint64_t progress = ramp->progress_step >> 1;
+		/* a mirrored ramp runs backwards, from its end to its start */
+		const uint64_t from = ramp->mirror ? ramp->velocity_end : start;
+		const uint64_t to = ramp->mirror ? start : ramp->velocity_end;
+		uint64_t progress = ramp->progress_step; /* du / 2, UQ0.49 */
 
-		if (change == 0)
+		if (from == to)
 			go(&walk, start, ramp->ticks * tick);
-		for (uint32_t i = 0; change > 0 && i < ramp->ticks; i++) {
-			/* floor, of what may be negative */
-			const unsigned __int128 product =
-			    (unsigned __int128)change * shape(ramp, tables, progress);
-			const uint64_t part = (uint64_t)((up ? product : product + (1u << 24) - 1) >> 24);
-			go(&walk, up ? start + part : start - part, tick);
-			progress += ramp->progress_step;
+		for (uint32_t i = 0; from != to && i < ramp->ticks; i++) {
+			const uint64_t s =
+			    shape(ramp, tables, ramp->mirror ? 2 * ONE - 1 - progress : progress);
+			const unsigned __int128 sum =
+			    (unsigned __int128)from * ((1u << 24) - s) + (unsigned __int128)to * s;
+			go(&walk, (uint64_t)(sum >> 24), tick);
+			progress += 2 * ramp->progress_step;
 		}
 		start = ramp->velocity_end;
 	}

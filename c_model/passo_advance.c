@@ -17,7 +17,10 @@
 /* Clocks from the phase to the DDA whose substeps are on their way. */
 enum { PIPELINE_CLOCKS = 4 };
 
-/* A ramp has made the next velocity by then, in any case: see passo_ramp_latency(). */
+/* Clocks from a slew tick until the rate has changed: see passo_timescale_clock(). */
+enum { SLEW_CLOCKS = 6 };
+
+/* A ramp has made the next velocity by then, in any case, and stepped. */
 static const uint32_t RAMP_DONE_TICK_COUNT = 100;
 
 static const uint64_t PHASE_MASK = PASSO_ONE_Q48 - 1u;
@@ -28,11 +31,6 @@ struct progress {
 	int64_t remaining; /* of the line: 1 - M + substeps */
 	int64_t e[PASSO_AXES_MAX];
 };
-
-static int64_t minus_m(const struct passo_line_unit *line)
-{
-	return (int64_t)line->minus_substeps - (INT64_C(1) << 32);
-}
 
 static uint64_t min_u64(uint64_t a, uint64_t b)
 {
@@ -45,15 +43,14 @@ static bool lines_settled(const struct passo_channel *channel, const struct pass
 {
 	const struct passo_line_queue *queue = &channel->line_queue;
 	const unsigned depth = 1u << parameters->line_queue_log2;
-	const unsigned used = ((unsigned)queue->write_line - queue->current_line) & (2u * depth - 1u);
 	const struct passo_line *next = &queue->lines[queue->next_line & (depth - 1u)];
-	const struct passo_line *current = &queue->lines[queue->current_line & (depth - 1u)];
+	const struct passo_line *current = &queue->lines[queue->current_line];
 
 	for (unsigned i = 0; i < channel->axes; i++)
 		if (queue->steps[i] != current->steps[i])
 			return false;
-	return queue->room == depth - used && queue->next_valid == (queue->next_line != queue->write_line)
-	    && queue->next_minus_substeps == 0u - next->substeps && queue->next_last == next->last
+	return queue->next_valid == (queue->next_line != queue->write_line)
+	    && queue->last_substep == current->substeps - 1u && queue->next_last == next->last
 	    && queue->next_endless == next->endless && queue->next_directions == next->directions;
 }
 
@@ -62,7 +59,7 @@ static bool ramps_settled(const struct passo_ramp_queue *queue, const struct pas
 	const unsigned depth = 1u << parameters->ramp_queue_log2;
 	const unsigned used = ((unsigned)queue->write_ramp - queue->read_ramp) & (2u * depth - 1u);
 
-	return !queue->write_low && queue->room == depth - used;
+	return !queue->write_low && queue->room == depth - used && queue->valid == (used != 0u);
 }
 
 static bool commands_settled(const struct passo_channel_registers *registers)
@@ -74,10 +71,15 @@ static bool commands_settled(const struct passo_channel_registers *registers)
 static bool slots_empty(const struct passo_channel *channel)
 {
 	const struct passo_line_unit *line = &channel->line;
+	const bool stopped = passo_channel_stopped(channel);
 
+	if (line->on_last != (line->substep_number == channel->line_queue.last_substep))
+		return false;
 	for (unsigned i = 0; i < channel->axes; i++)
 		if (channel->dda[i].addend != (int64_t)channel->line_queue.steps[i])
 			return false;
+	if (channel->path.refresh != stopped || channel->path.take_q != stopped)
+		return false;
 	return !channel->path.advance_q && !channel->path.substep && !line->slot_add && !line->slot_step;
 }
 
@@ -85,28 +87,30 @@ static bool slots_empty(const struct passo_channel *channel)
 static uint64_t timescale_quiet(const struct passo_channel *channel, bool moving, uint64_t clocks_to_slew)
 {
 	const struct passo_timescale *timescale = &channel->timescale;
-	const struct passo_channel_registers *registers = &channel->registers;
-	const uint32_t slew = registers->rate_slew == 0u ? 1u : registers->rate_slew;
+	const uint32_t target = channel->registers.rate_target;
+	const uint32_t slew = channel->registers.rate_slew == 0u ? 1u : channel->registers.rate_slew;
 
-	if (timescale->rate != timescale->goal || timescale->distance != 0)
+	if (timescale->rate != timescale->goal || timescale->after != 0u)
 		return 0;
 	if (!moving)
-		return timescale->rate == registers->rate_target && timescale->slew == 1u
-		            && timescale->rate_sum == 0u && !timescale->enable
+		return timescale->rate == target && timescale->still && timescale->rate_sum == 0u
+		            && !timescale->enable
 		         ? UINT64_MAX
 		         : 0u;
 	const bool steady = timescale->enable ? timescale->rate == PASSO_RATE_ONE : timescale->rate == 0u;
-	if (!steady)
+	if (!steady || timescale->still)
 		return 0;
-	return timescale->goal == registers->rate_target && timescale->slew == slew ? UINT64_MAX
-	                                                                            : clocks_to_slew;
+	return timescale->goal == target && timescale->slew == slew && !timescale->down ? UINT64_MAX
+	                                                                                : clocks_to_slew;
 }
 
 static uint64_t ramp_quiet(const struct passo_ramp_unit *ramp)
 {
-	if (ramp->take_now || ramp->dry || ramp->step == PASSO_RAMP_CHOOSE)
+	if (ramp->take_now || ramp->dry || ramp->step == PASSO_RAMP_TAKE)
 		return 0;
-	return ramp->step == PASSO_RAMP_IDLE ? UINT64_MAX : ramp->wait - 1u;
+	if (ramp->step == PASSO_RAMP_CHOOSE)
+		return !ramp->ready && !ramp->ends_next ? 0u : UINT64_MAX;
+	return ramp->wait - 1u;
 }
 
 /* Motions at rest: nothing starts. Motions that run: their pin is up, nothing stops. */
@@ -114,13 +118,13 @@ static bool motion_settled(const struct passo_channel *channel, const struct pas
 {
 	const struct passo_motion *motion = &channel->motion;
 
-	if (motion->stopping)
+	if (motion->stopping || motion->settling != 0u
+	    || motion->rate_was_zero != (channel->timescale.rate == 0u))
 		return false;
 	switch (motion->state) {
 	case PASSO_STATE_IDLE:
 		return !motion->running && !motion->startable
-		    && !(inputs->run && channel->line_queue.next_valid
-		         && passo_ramp_queue_valid(&channel->ramp_queue));
+		    && !(inputs->run && channel->line_queue.next_valid && channel->ramp_queue.valid);
 	case PASSO_STATE_PREPARE:
 		return !motion->running && !channel->ramp.ready;
 	case PASSO_STATE_ARMED:
@@ -141,9 +145,9 @@ static uint64_t surroundings_quiet(
 	const struct passo_line_unit *line = &channel->line;
 	const bool moving = channel->motion.state == PASSO_STATE_RUN;
 
-	if (!motion_settled(channel, inputs) || !commands_settled(&channel->registers) || line->slot_load
-	    || line->slot_load_q || line->remaining_bump || line->underrun
-	    || !ramps_settled(&channel->ramp_queue, inputs->parameters)
+	if (!motion_settled(channel, inputs) || channel->positions.snapshot_waits
+	    || !commands_settled(&channel->registers) || line->slot_load || line->slot_load_q
+	    || line->underrun || !ramps_settled(&channel->ramp_queue, inputs->parameters)
 	    || !lines_settled(channel, inputs->parameters))
 		return 0;
 	uint64_t clocks =
@@ -169,11 +173,12 @@ static bool take_to_end(const struct passo_channel *channel, struct progress *pr
 	if (!line->active && (line->slot_add || line->slot_step))
 		return false; /* the last substep of the last line */
 	if (path->advance_q)
-		phase_high += path->velocity_high_q + (path->phase_low_carry ? 1u : 0u);
+		phase_high += path->velocity_high + (path->phase_low_carry ? 1u : 0u);
 	progress->phase = (phase_high << 24 & PHASE_MASK) | path->phase_low;
 	if (line->active)
 		on_the_way = (path->substep ? 1 : 0) + (phase_high >> 24 != 0u ? 1 : 0);
-	progress->remaining = line->remaining + on_the_way;
+	progress->remaining =
+	    (int64_t)line->substep_number + on_the_way - (int64_t)channel->line_queue.last_substep;
 	on_the_way += line->slot_add ? 1 : 0;
 	for (unsigned i = 0; i < channel->axes; i++) {
 		const struct passo_dda *dda = &channel->dda[i];
@@ -217,6 +222,11 @@ static uint64_t substeps_to_event(const struct passo_channel *channel, const str
 	return substeps;
 }
 
+static uint64_t velocity_of(const struct passo_path *path)
+{
+	return (uint64_t)path->velocity_high << 24 | path->velocity_low;
+}
+
 /* Sums the velocity over some clocks of one tick; returns the substeps. */
 static int64_t sum_phase(struct progress *progress, uint64_t velocity, uint64_t clocks)
 {
@@ -233,7 +243,7 @@ static void put_back(struct passo_channel *channel, const struct progress *progr
 {
 	struct passo_path *path = &channel->path;
 	struct passo_line_unit *line = &channel->line;
-	const uint64_t velocity = channel->ramp.velocity;
+	const uint64_t velocity = velocity_of(path);
 	uint64_t phase = progress->phase;
 	bool carry[PIPELINE_CLOCKS]; /* of the last clock, the one before it, ... */
 	uint64_t phase_before_last = 0;
@@ -247,7 +257,6 @@ static void put_back(struct passo_channel *channel, const struct progress *progr
 	path->phase_low = (uint32_t)(progress->phase & 0xFFFFFFu);
 	path->phase_low_carry = path->phase_low < (uint32_t)(velocity & 0xFFFFFFu);
 	path->phase_high = (uint32_t)(phase_before_last >> 24);
-	path->velocity_high_q = (uint32_t)(velocity >> 24);
 	path->advance_q = true;
 	path->substep = carry[1];
 	if (!line->active)
@@ -256,11 +265,13 @@ static void put_back(struct passo_channel *channel, const struct progress *progr
 	line->slot_step = carry[3];
 	const int64_t not_counted = (carry[0] ? 1 : 0) + (carry[1] ? 1 : 0);
 	const int64_t not_added = not_counted + (carry[2] ? 1 : 0);
-	line->remaining = progress->remaining - not_counted;
+	const int64_t last_substep = (int64_t)channel->line_queue.last_substep;
+	line->substep_number = (uint32_t)(progress->remaining + last_substep - not_counted);
+	line->on_last = progress->remaining - not_added == 0;
 	for (unsigned i = 0; i < channel->axes; i++) {
 		const int64_t steps = (int64_t)channel->line_queue.steps[i];
 		channel->dda[i].e_minus_m = progress->e[i] - not_added * steps;
-		channel->dda[i].addend = carry[3] ? minus_m(line) : steps;
+		channel->dda[i].addend = carry[3] ? -1 - last_substep : steps;
 	}
 }
 
@@ -275,7 +286,7 @@ static bool profile_counts(const struct passo_channel *channel)
 static uint64_t profile_quiet(
     const struct passo_channel *channel, const struct passo_parameters *parameters, uint64_t limit)
 {
-	const uint64_t velocity = channel->ramp.velocity;
+	const uint64_t velocity = velocity_of(&channel->path);
 	const uint32_t tick_last = (1u << parameters->tick_log2) - 1u;
 	const uint32_t tick_count = channel->ramp.tick_count;
 	/* first to the place from which skip_ticks() can go on */
@@ -283,7 +294,8 @@ static uint64_t profile_quiet(
 	const uint32_t goal = before_place ? RAMP_DONE_TICK_COUNT : tick_last;
 	struct progress progress;
 
-	if (channel->ramp_queue.now_pending || !take_to_end(channel, &progress))
+	if (channel->ramp_queue.now_pending || channel->path.take_q || channel->path.refresh
+	    || !take_to_end(channel, &progress))
 		return 0;
 	uint64_t clocks = min_u64(limit, goal - tick_count);
 	if (channel->line.active && velocity != 0u) {
@@ -312,12 +324,9 @@ static uint64_t channel_quiet(const struct passo_channel *channel, const struct 
 /* What runs on its own: timers and waits. */
 static void skip_surroundings(struct passo_channel *channel, uint64_t clocks)
 {
-	struct passo_motion *motion = &channel->motion;
-
-	if (motion->state != PASSO_STATE_RUN)
-		motion->count = (uint8_t)((motion->count + clocks) & 7u);
 	for (unsigned i = 0; i < channel->axes; i++)
 		passo_axis_skip(&channel->axis[i], clocks);
+	passo_positions_skip(&channel->positions, clocks);
 }
 
 static void channel_skip(struct passo_channel *channel, uint64_t clocks)
@@ -326,12 +335,13 @@ static void channel_skip(struct passo_channel *channel, uint64_t clocks)
 	struct progress progress;
 
 	skip_surroundings(channel, clocks);
-	if (ramp->step != PASSO_RAMP_IDLE)
+	ramp->unready = !ramp->ready;
+	if (ramp->step != PASSO_RAMP_CHOOSE)
 		ramp->wait -= (uint32_t)clocks;
 	if (!profile_counts(channel))
 		return;
 	take_to_end(channel, &progress);
-	const int64_t substeps = sum_phase(&progress, ramp->velocity, clocks);
+	const int64_t substeps = sum_phase(&progress, velocity_of(&channel->path), clocks);
 	count_substeps(channel, &progress, substeps);
 	ramp->tick_count += (uint32_t)clocks;
 	put_back(channel, &progress);
@@ -343,25 +353,27 @@ static uint64_t skip_ticks(
     struct passo_channel *channel, const struct passo_channel_inputs *inputs, uint64_t limit)
 {
 	struct passo_ramp_unit *ramp = &channel->ramp;
+	struct passo_path *path = &channel->path;
 	const uint64_t tick = UINT64_C(1) << inputs->parameters->tick_log2;
 	const uint64_t place = ramp->tick_count;
 	struct progress progress;
 	uint64_t clocks = 0;
 
-	if (!profile_counts(channel) || ramp->step != PASSO_RAMP_IDLE || !ramp->ready || ramp->ends_next
+	if (!profile_counts(channel) || ramp->step != PASSO_RAMP_CHOOSE || ramp->unready || !ramp->loaded
 	    || place < RAMP_DONE_TICK_COUNT || channel->ramp_queue.now_pending
 	    || !take_to_end(channel, &progress))
 		return 0;
-	while (ramp->ticks != 0u && clocks + tick <= limit) {
+	/* the last velocity of a ramp takes it from the queue */
+	while (ramp->ticks > 1u && clocks + tick <= limit) {
 		struct progress then = progress;
-		int64_t substeps = sum_phase(&then, ramp->velocity, tick - place);
+		int64_t substeps = sum_phase(&then, velocity_of(path), tick - place);
 		substeps += sum_phase(&then, ramp->velocity_next, place);
 		if (!count_substeps(channel, &then, substeps))
 			break;
 		progress = then;
-		ramp->velocity = ramp->velocity_next;
+		path->velocity_low = (uint32_t)(ramp->velocity_next & 0xFFFFFFu);
+		path->velocity_high = (uint32_t)(ramp->velocity_next >> 24);
 		passo_ramp_make_velocity(ramp, inputs->tables);
-		ramp->wait = 0;
 		clocks += tick;
 	}
 	if (clocks != 0u) {
@@ -382,13 +394,13 @@ static bool same_inputs(const struct passo_inputs *a, const struct passo_inputs 
 static bool link_side_quiet(const struct passo_core *core, const struct passo_inputs *inputs)
 {
 	const uint8_t selected = inputs->spi_cs_n ? 0 : 7;
-	const uint8_t toggled = core->spi.word_toggle ? 7 : 0;
+	const uint8_t toggled = core->spi.half_toggle ? 7 : 0;
 	const uint8_t synced = inputs->sync ? 7 : 0;
 
 	return same_inputs(inputs, &core->inputs) && core->spi.select_sync == selected
 	    && core->spi.toggle_sync == toggled && core->sync_q == synced && passo_link_quiet(&core->link)
 	    && !core->response.claim && core->response.refusal == 0u && core->response.read_data == 0u
-	    && core->outputs.irq == passo_registers_any_stopped(core);
+	    && !core->response.late && core->outputs.irq == passo_registers_any_stopped(core);
 }
 
 static struct passo_channel_inputs inputs_of(const struct passo_core *core, unsigned channel)
@@ -444,6 +456,11 @@ uint64_t passo_core_advance(struct passo_core *core, const struct passo_inputs *
 
 	core->slew_tick = (core->slew_count + clocks - 1u) % tick == tick - 1u;
 	core->slew_count = (uint32_t)((core->slew_count + clocks) % tick);
+	/* a slew tick on the way is still at work */
+	for (unsigned i = 0; i < channels; i++)
+		if (core->channel[i].motion.state == PASSO_STATE_RUN && core->slew_count <= SLEW_CLOCKS
+		    && core->slew_count <= clocks)
+			core->channel[i].timescale.after = (uint8_t)core->slew_count;
 	core->tables.slot = (uint8_t)((core->tables.slot + clocks) % (2u * channels));
 	return clocks;
 }

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * Axis: STEP and DIR pins of one axis, with all four pin timings. See rtl/passo_axis.v and
- * rtl/passo_axis_registers.v.
+ * rtl/passo_axis_settings.v.
  */
 #include "passo_model.h"
 
-enum { WAITING_MAX = 4, LOST_MAX = 15 };
+enum { PLACES = 4, LOST_MAX = 15 };
 
 void passo_axis_reset(struct passo_axis *axis)
 {
@@ -19,7 +19,7 @@ void passo_axis_reset(struct passo_axis *axis)
 	};
 }
 
-void passo_axis_registers_write(struct passo_axis_settings *settings, uint8_t address, uint32_t data)
+void passo_axis_settings_write(struct passo_axis_settings *settings, uint8_t address, uint32_t data)
 {
 	const uint16_t high = (uint16_t)(data >> 16);
 	const uint16_t low = (uint16_t)data;
@@ -45,113 +45,119 @@ void passo_axis_registers_write(struct passo_axis_settings *settings, uint8_t ad
 	}
 }
 
-static bool timer_done(const struct passo_axis *axis)
+/* The time that the present state lasts; 0 counts as 1. */
+static uint16_t time_of(const struct passo_axis *axis)
 {
-	return axis->timer <= 1u;
+	const struct passo_axis_settings *settings = &axis->settings;
+	uint16_t time;
+
+	if (axis->state == PASSO_AXIS_PULSE)
+		time = axis->step ? settings->step_high : settings->step_low;
+	else
+		time = axis->state == PASSO_AXIS_SETUP ? settings->dir_setup : settings->dir_hold;
+	return time == 0u ? 1u : time;
 }
 
-static bool dir_right(const struct passo_axis *axis, bool line_direction)
+static bool place_is(uint8_t places, unsigned place)
 {
-	const bool wanted = axis->waiting_count != 0u ? (axis->waiting & 1u) != 0u : line_direction;
-	return wanted == axis->dir;
+	return ((uint32_t)places >> place & 1u) != 0u;
 }
 
 static void clock_queue(struct passo_axis *axis, bool step_begins, const struct passo_axis_wires *wires)
 {
-	const bool full = axis->waiting_count == WAITING_MAX;
+	const uint8_t waits = axis->waits;
+	const bool full = place_is(waits, PLACES - 1);
+	const bool accepted = wires->step_request && !full;
+	const uint8_t behind = (uint8_t)(axis->waiting >> 1 & waits >> 1);
+	const uint8_t latest = wires->direction ? (uint8_t)(0xFu & ~(waits >> 1)) : 0u;
+	const uint8_t moving = step_begins ? 0xFu : (uint8_t)(0xFu & ~waits);
 
-	if (step_begins) {
-		axis->waiting >>= 1;
-		axis->waiting_count--;
-	}
+	/* free places hold the latest direction */
+	axis->waiting = (uint8_t)((axis->waiting & ~moving) | ((behind | latest) & moving));
+	if (step_begins && !accepted)
+		axis->waits = waits >> 1;
+	if (accepted && !step_begins)
+		axis->waits = (uint8_t)(0xFu & (waits << 1 | 1u));
 	axis->overrun = wires->step_request && full;
-	if (wires->step_request && !full) {
-		const uint8_t place = (uint8_t)(1u << axis->waiting_count);
-		axis->waiting = (uint8_t)(wires->direction ? axis->waiting | place : axis->waiting & ~place);
-		axis->waiting_count++;
-	}
 	if (wires->drop)
-		axis->waiting_count = 0;
+		axis->waits = 0;
+}
+
+static void clock_pins(struct passo_axis *axis, bool step_begins)
+{
+	const struct passo_axis_settings *settings = &axis->settings;
+
+	/* pins and position follow a clock later */
+	if (axis->step_made)
+		axis->position += axis->dir ? 0xFFFFFFFFu : 1u;
+	axis->step_made = step_begins;
+	axis->step_pin = axis->step != settings->step_inverted;
+	axis->dir_pin = axis->dir != settings->direction_inverted;
+	axis->enable_pin = settings->enable != settings->enable_inverted;
 }
 
 void passo_axis_clock(struct passo_axis *axis, const struct passo_axis_wires *wires)
 {
-	const struct passo_axis_settings *settings = &axis->settings;
-	const bool done = timer_done(axis);
 	const enum passo_axis_state state = axis->state;
-	const bool right = dir_right(axis, wires->direction);
-	const bool free =
-	    state == PASSO_AXIS_READY || state == PASSO_AXIS_HOLD || (done && state != PASSO_AXIS_HIGH);
-	const bool step_begins = free && axis->waiting_count != 0u && right;
-	const bool turn = !right && (state == PASSO_AXIS_READY || (state == PASSO_AXIS_HOLD && done));
+	const bool over = !axis->timing_changed && axis->timer == time_of(axis); /* counts from 1 */
+	const bool right = place_is(axis->waiting, 0) == axis->dir;
+	const bool level_done = state == PASSO_AXIS_PULSE && over;
+	const bool falls = level_done && axis->step && !axis->settings.both_edges;
+	const bool free = state == PASSO_AXIS_READY || state == PASSO_AXIS_HOLD || (level_done && !falls)
+	               || (state == PASSO_AXIS_SETUP && over);
+	const bool step_begins = free && place_is(axis->waits, 0) && right;
+	const bool turn = !right && (state == PASSO_AXIS_READY || (state == PASSO_AXIS_HOLD && over));
 
-	/* registers */
 	if (axis->overrun && axis->lost != LOST_MAX)
 		axis->lost++;
 	if (wires->clear)
 		axis->lost = 0;
-	if (wires->snapshot)
-		axis->position_snapshot = axis->position;
-
-	/* pins and position follow a clock later */
-	if (axis->step_begins_q)
-		axis->position += axis->dir_q ? 0xFFFFFFFFu : 1u;
+	clock_pins(axis, step_begins);
 	if (wires->zero)
 		axis->position = 0;
-	axis->step_begins_q = step_begins;
-	axis->dir_q = axis->dir;
-	axis->step_pin = axis->step != settings->step_inverted;
-	axis->dir_pin = axis->dir != settings->direction_inverted;
-	axis->enable_pin = settings->enable != settings->enable_inverted;
-
 	clock_queue(axis, step_begins, wires);
 
-	if (!done)
-		axis->timer--;
-	if (state == PASSO_AXIS_HIGH && done) {
-		axis->step = false;
-		axis->timer = settings->step_low;
-		axis->state = PASSO_AXIS_LOW;
-	} else if (state == PASSO_AXIS_LOW && done) {
-		axis->timer = settings->dir_hold;
+	axis->timer++;
+	if (step_begins || turn || level_done || axis->timing_changed)
+		axis->timer = 1;
+	axis->timing_changed = wires->timing_written;
+	if (level_done && !falls)
 		axis->state = PASSO_AXIS_HOLD;
-	} else if ((state == PASSO_AXIS_HOLD || state == PASSO_AXIS_SETUP) && done) {
+	if ((state == PASSO_AXIS_HOLD || state == PASSO_AXIS_SETUP) && over)
 		axis->state = PASSO_AXIS_READY;
-	}
-	if (turn) {
-		axis->dir = !axis->dir;
-		axis->timer = settings->dir_setup;
+	if (turn)
 		axis->state = PASSO_AXIS_SETUP;
-	}
-	if (step_begins) {
-		axis->timer = settings->both_edges && axis->step ? settings->step_low : settings->step_high;
-		axis->state = settings->both_edges ? PASSO_AXIS_LOW : PASSO_AXIS_HIGH;
-		axis->step = !axis->step;
-	}
+	if (step_begins)
+		axis->state = PASSO_AXIS_PULSE;
+	axis->step = axis->step != (step_begins || falls);
+	axis->dir = axis->dir != turn;
 }
 
 uint32_t passo_axis_quiet(const struct passo_axis *axis, bool line_direction)
 {
 	const struct passo_axis_settings *settings = &axis->settings;
-	const bool pins_settled = axis->step_pin == (axis->step != settings->step_inverted)
-	                       && axis->dir_pin == (axis->dir != settings->direction_inverted)
-	                       && axis->enable_pin == (settings->enable != settings->enable_inverted)
-	                       && !axis->step_begins_q && axis->dir_q == axis->dir && !axis->overrun;
+	const uint8_t free_places = (uint8_t)(0xFu & ~axis->waits);
+	const bool settled = axis->step_pin == (axis->step != settings->step_inverted)
+	                  && axis->dir_pin == (axis->dir != settings->direction_inverted)
+	                  && axis->enable_pin == (settings->enable != settings->enable_inverted)
+	                  && !axis->step_made && !axis->overrun && !axis->timing_changed
+	                  && (axis->waiting & free_places) == (line_direction ? free_places : 0u);
+	const bool waits = place_is(axis->waits, 0);
+	const bool right = place_is(axis->waiting, 0) == axis->dir;
 
-	if (!pins_settled)
+	if (!settled)
 		return 0;
 	if (axis->state == PASSO_AXIS_READY)
-		return axis->waiting_count == 0u && dir_right(axis, line_direction) ? UINT32_MAX : 0u;
-	if (axis->state == PASSO_AXIS_HOLD && axis->waiting_count != 0u && dir_right(axis, line_direction))
+		return !waits && right ? UINT32_MAX : 0u;
+	if (axis->state == PASSO_AXIS_HOLD && waits && right)
 		return 0;
-	/* the timer runs down to 1; what follows then happens in the clock that finds it there */
-	return axis->timer <= 1u ? 0u : axis->timer - 1u;
+	/* the timer runs up to the time; what follows then happens in the clock that finds it there */
+	const uint16_t time = time_of(axis);
+	return axis->timer < time ? (uint32_t)time - axis->timer : 0u;
 }
 
 void passo_axis_skip(struct passo_axis *axis, uint64_t clocks)
 {
-	/* in READY the timer runs down, unseen */
-	const uint64_t left = axis->timer > clocks ? axis->timer - clocks : 1u;
-	if (axis->timer > 1u)
-		axis->timer = (uint16_t)left;
+	/* in READY the timer runs on, unseen */
+	axis->timer = (uint16_t)(axis->timer + clocks);
 }

@@ -26,8 +26,10 @@ void passo_channel_reset(
 	channel->line_queue.room = (uint16_t)(1u << parameters->line_queue_log2);
 	channel->ramp_queue.room = (uint16_t)(1u << parameters->ramp_queue_log2);
 	channel->timescale.rate = PASSO_RATE_ONE;
+	channel->ramp.ends_next = true;
 	for (unsigned axis = 0; axis < parameters->axes; axis++)
 		passo_axis_reset(&channel->axis[axis]);
+	passo_positions_reset(&channel->positions);
 }
 
 static struct passo_channel_wires gather_wires(
@@ -41,22 +43,21 @@ static struct passo_channel_wires gather_wires(
 	wires.bus_address = (uint8_t)bus->address;
 	wires.line_push = wires.selected && bus->push && wires.bus_address == PASSO_CHANNEL_LINE;
 	wires.ramp_push = wires.selected && bus->push && wires.bus_address == PASSO_CHANNEL_RAMP;
-	wires.ramp_valid = passo_ramp_queue_valid(&channel->ramp_queue);
+	wires.ramp_valid = channel->ramp_queue.valid;
 	for (unsigned axis = 0; axis < channel->axes; axis++)
 		wires.overrun = wires.overrun || channel->axis[axis].overrun;
 
 	passo_motion_wires(channel, inputs, &wires);
 
 	const bool at_tick_end = channel->ramp.tick_count == tick_last;
-	const bool stall = at_tick_end && !channel->ramp.ready && !wires.drain;
+	const bool stall = at_tick_end && channel->ramp.unready;
 	wires.advance = channel->timescale.enable && wires.counting && !stall;
 	wires.tick = wires.advance && at_tick_end;
 	wires.next = wires.begin_profile || wires.tick;
 	wires.ramp_ended = wires.next && channel->ramp.ends_next;
 
-	const bool more = channel->line.remaining < 0;
 	wires.substep_taken = channel->path.substep && channel->line.active;
-	wires.line_done = wires.substep_taken && !more;
+	wires.line_done = wires.substep_taken && channel->line.on_last;
 	wires.take =
 	    wires.prepare || (wires.line_done && !channel->line.last && channel->line_queue.next_valid);
 	return wires;
@@ -67,13 +68,18 @@ void passo_channel_clock(struct passo_channel *channel, const struct passo_chann
 	const struct passo_channel_wires wires = gather_wires(channel, inputs);
 	const struct passo_bus *bus = inputs->bus;
 	const unsigned in_axes = (unsigned)wires.bus_address - PASSO_CHANNEL_AXIS_BASE;
+	const unsigned axis_address = in_axes % PASSO_CHANNEL_AXIS_STRIDE;
+	const bool write_axis =
+	    wires.selected && bus->write && in_axes < channel->axes * PASSO_CHANNEL_AXIS_STRIDE;
+	const bool write_timing =
+	    write_axis && (axis_address == PASSO_AXIS_STEP_TIMING || axis_address == PASSO_AXIS_DIR_TIMING);
 	const struct passo_channel_registers registers = channel->registers;
 	const bool stopping = channel->motion.stopping;
-	const uint64_t velocity = channel->ramp.velocity;
 	bool take_ramp;
 	bool take_now;
 
 	/* from the pins back to the queues: each module still sees the old state of those that feed it */
+	passo_positions_clock(&channel->positions, channel->axis, registers.command_zero, inputs->snapshot);
 	for (unsigned i = 0; i < channel->axes; i++) {
 		const struct passo_axis_wires axis_wires = {
 		    .step_request = passo_dda_step_request(&channel->dda[i], &channel->line),
@@ -81,18 +87,18 @@ void passo_channel_clock(struct passo_channel *channel, const struct passo_chann
 		    .drop = registers.command_abort,
 		    .zero = registers.command_zero,
 		    .clear = registers.command_clear,
-		    .snapshot = inputs->snapshot,
+		    .timing_written = write_timing && in_axes / PASSO_CHANNEL_AXIS_STRIDE == i,
 		};
 		passo_axis_clock(&channel->axis[i], &axis_wires);
-		passo_dda_clock(&channel->dda[i], &channel->line, channel->line_queue.steps[i]);
+		passo_dda_clock(&channel->dda[i], &channel->line, &channel->line_queue, i);
 	}
-	if (wires.selected && bus->write && in_axes < channel->axes * PASSO_CHANNEL_AXIS_STRIDE)
-		passo_axis_registers_write(&channel->axis[in_axes / PASSO_CHANNEL_AXIS_STRIDE].settings,
-		    (uint8_t)(in_axes % PASSO_CHANNEL_AXIS_STRIDE), bus->data);
+	if (write_axis)
+		passo_axis_settings_write(&channel->axis[in_axes / PASSO_CHANNEL_AXIS_STRIDE].settings,
+		    (uint8_t)axis_address, bus->data);
 
 	passo_motion_clock(&channel->motion, channel, &wires);
 	passo_line_clock(&channel->line, &channel->line_queue, &wires);
-	passo_path_clock(&channel->path, wires.prepare, wires.advance, velocity);
+	passo_path_clock(&channel->path, &channel->ramp, &wires, registers.drain_velocity);
 	passo_ramp_clock(&channel->ramp, channel, inputs, &wires, &take_ramp, &take_now);
 	passo_timescale_clock(&channel->timescale, &registers, wires.moving, stopping, inputs->slew_tick);
 	passo_line_queue_clock(&channel->line_queue, inputs->parameters, bus, &wires);

@@ -10,6 +10,7 @@ struct answer {
 	bool known;
 	uint8_t check, read;
 	uint32_t value;
+	bool late; /* the value is passo_channel_registers_value() in the clock of the answer */
 };
 
 static struct answer write_only(uint8_t check)
@@ -21,6 +22,12 @@ static struct answer read_only(uint32_t value)
 {
 	return (struct answer){
 	    .known = true, .check = PASSO_VERDICT_READ_ONLY, .read = PASSO_VERDICT_OK, .value = value};
+}
+
+static struct answer read_late(void)
+{
+	return (struct answer){
+	    .known = true, .check = PASSO_VERDICT_READ_ONLY, .read = PASSO_VERDICT_OK, .late = true};
 }
 
 static uint8_t value_check(bool bad)
@@ -47,6 +54,22 @@ static uint32_t state_word(const struct passo_channel *channel)
 		overrun |= (channel->axis[axis].lost != 0u ? 1u : 0u) << axis;
 	return (uint32_t)motion->drained << 16 | overrun << 8 | (motion->stopping ? 0x80u : 0u)
 	     | (uint32_t)motion->cause << 4 | (uint32_t)motion->state;
+}
+
+uint32_t passo_channel_registers_value(const struct passo_channel *channel, uint8_t address)
+{
+	switch (address) {
+	case PASSO_CHANNEL_STATE:
+		return state_word(channel);
+	case PASSO_CHANNEL_RATE:
+		return channel->timescale.rate;
+	case PASSO_CHANNEL_ROOM:
+		return (uint32_t)channel->line_queue.room << 16 | channel->ramp_queue.room;
+	case PASSO_CHANNEL_VELOCITY:
+		return channel->path.velocity_high << 8 | channel->path.velocity_low >> 16;
+	default:
+		return 0;
+	}
 }
 
 static struct answer axis_answer(const struct passo_axis *axis, uint8_t address, uint32_t data)
@@ -82,13 +105,10 @@ static struct answer channel_answer(
 	case PASSO_CHANNEL_DRAIN_VELOCITY:
 		return write_only(value_check(bus->data > VELOCITY_MAX));
 	case PASSO_CHANNEL_STATE:
-		return read_only(state_word(channel));
 	case PASSO_CHANNEL_RATE:
-		return read_only(channel->timescale.rate);
 	case PASSO_CHANNEL_ROOM:
-		return read_only((uint32_t)channel->line_queue.room << 16 | channel->ramp_queue.room);
 	case PASSO_CHANNEL_VELOCITY:
-		return read_only((uint32_t)(channel->ramp.velocity >> 16));
+		return read_late();
 	case PASSO_CHANNEL_LINE:
 		return write_only(bus->push ? passo_line_queue_refusal(
 						  &channel->line_queue, inputs->parameters, bus, stopped)
@@ -100,7 +120,7 @@ static struct answer channel_answer(
 		break;
 	}
 	if (position < channel->axes)
-		return read_only(channel->axis[position].position_snapshot);
+		return read_only(channel->positions.copies[position]);
 	if (in_axes < channel->axes * PASSO_CHANNEL_AXIS_STRIDE)
 		return axis_answer(&channel->axis[in_axes / PASSO_CHANNEL_AXIS_STRIDE],
 		    (uint8_t)(in_axes % PASSO_CHANNEL_AXIS_STRIDE), bus->data);
@@ -123,6 +143,8 @@ struct passo_response passo_channel_respond(
 	if (answer.known && bus->read) {
 		response.refusal = answer.read;
 		response.read_data = answer.value;
+		response.late = answer.late;
+		response.address = bus->address;
 	}
 	return response;
 }

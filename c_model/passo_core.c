@@ -43,6 +43,20 @@ static struct passo_response respond(const struct passo_core *core, const struct
 	return passo_registers_respond(core);
 }
 
+/* The answer to the strobe before this clock. */
+static struct passo_response late_answer(const struct passo_core *core)
+{
+	struct passo_response response = core->response;
+
+	if (response.late) {
+		const unsigned block = response.address >> 8;
+		response.read_data = block == 0u ? passo_registers_value(core, response.address)
+		                                 : passo_channel_registers_value(
+						       &core->channel[block - 1u], (uint8_t)response.address);
+	}
+	return response;
+}
+
 static bool any_incomplete(const struct passo_core *core)
 {
 	for (unsigned i = 0; i < core->parameters.channels; i++)
@@ -67,7 +81,7 @@ static void gather_outputs(struct passo_core *core)
 		}
 		outputs->running |= (uint8_t)((channel->motion.running ? 1u : 0u) << i);
 	}
-	outputs->spi_miso = core->spi.send >> 31 != 0u;
+	outputs->spi_miso = core->spi.miso;
 }
 
 void passo_core_clock(struct passo_core *core, const struct passo_inputs *inputs)
@@ -75,9 +89,10 @@ void passo_core_clock(struct passo_core *core, const struct passo_inputs *inputs
 	const struct passo_parameters *parameters = &core->parameters;
 	const struct passo_link_wires link_wires = {
 	    .spi = passo_spi_wires(&core->spi),
-	    .word = core->spi.word,
+	    .half_low = core->spi.half_low,
+	    .half = core->spi.half,
 	    .status = passo_registers_status(core),
-	    .response = core->response,
+	    .response = late_answer(core),
 	    .incomplete = any_incomplete(core),
 	};
 	const struct passo_bus bus = core->link.bus;

@@ -8,12 +8,14 @@ bool passo_dda_step_request(const struct passo_dda *dda, const struct passo_line
 	return line->slot_step && dda->e_minus_m >= 0;
 }
 
-void passo_dda_clock(struct passo_dda *dda, const struct passo_line_unit *line, uint32_t steps)
+void passo_dda_clock(struct passo_dda *dda, const struct passo_line_unit *line,
+    const struct passo_line_queue *queue, unsigned axis)
 {
 	const bool step_request = passo_dda_step_request(dda, line);
 	const int64_t addend = dda->addend;
 
-	dda->addend = line->slot_add || line->slot_load ? passo_line_broadcast(line) : (int64_t)steps;
+	dda->addend = line->slot_add || line->slot_load ? passo_line_broadcast(line, queue->last_substep)
+	                                                : (int64_t)queue->steps[axis];
 	if (line->slot_load_q)
 		dda->e_minus_m = addend;
 	else if (line->slot_add || step_request)

@@ -3,19 +3,15 @@
  */
 #include "passo_model.h"
 
-static const int64_t TWO_TO_32 = INT64_C(1) << 32;
-
-int64_t passo_line_broadcast(const struct passo_line_unit *line)
+int64_t passo_line_broadcast(const struct passo_line_unit *line, uint32_t last_substep)
 {
-	const int64_t minus_m = (int64_t)line->minus_substeps - TWO_TO_32;
-	const int64_t floor_half = -((1 - minus_m) / 2);
-	return line->slot_load ? floor_half : minus_m;
+	const int64_t substeps = (int64_t)last_substep + 1;
+	return line->slot_load ? -((substeps + 1) / 2) : -substeps;
 }
 
 void passo_line_clock(struct passo_line_unit *line, const struct passo_line_queue *queue,
     const struct passo_channel_wires *wires)
 {
-	const bool bump = line->remaining_bump;
 	const bool last = line->last;
 
 	if (line->slot_load_q)
@@ -25,16 +21,15 @@ void passo_line_clock(struct passo_line_unit *line, const struct passo_line_queu
 	line->slot_add = wires->substep_taken;
 	line->slot_load = wires->take;
 
-	line->remaining_bump = wires->take;
+	line->on_last = line->substep_number == queue->last_substep;
 	line->underrun = wires->line_done && !last && !queue->next_valid;
 	if (wires->take) {
-		line->minus_substeps = queue->next_minus_substeps;
-		line->remaining = (int64_t)queue->next_minus_substeps - TWO_TO_32;
+		line->substep_number = 0;
 		line->last = queue->next_last;
 		line->endless = queue->next_endless;
 		line->directions_next = queue->next_directions;
-	} else if (wires->substep_taken || bump) {
-		line->remaining++;
+	} else if (wires->substep_taken) {
+		line->substep_number++;
 	}
 
 	if (wires->line_done && !wires->take)

@@ -51,7 +51,7 @@ static void write_word(struct passo_line *line, unsigned index, uint32_t data)
 }
 
 static void clock_writing(struct passo_line_queue *queue, const struct passo_parameters *parameters,
-    const struct passo_bus *bus, bool push)
+    const struct passo_bus *bus, bool push, bool flush)
 {
 	const bool complete = queue->index == parameters->axes + 1u;
 	const uint8_t index = queue->index;
@@ -65,8 +65,10 @@ static void clock_writing(struct passo_line_queue *queue, const struct passo_par
 		if (bus->write)
 			write_word(
 			    &queue->lines[queue->write_line & (depth(parameters) - 1u)], index, bus->data);
-		if (complete && bus->write)
+		if (complete && bus->write && !flush) {
 			queue->write_line = wrap(queue->write_line + 1u, parameters);
+			queue->room--;
+		}
 	}
 	if (bus->frame) {
 		queue->index = INDEX_CONTROL;
@@ -75,16 +77,15 @@ static void clock_writing(struct passo_line_queue *queue, const struct passo_par
 }
 
 /* Block RAM: the words at the addresses before the edge, and before the edge's write. */
-static void read_memory(struct passo_line_queue *queue, const struct passo_parameters *parameters)
+static void read_memory(struct passo_line_queue *queue, const struct passo_parameters *parameters, bool take)
 {
-	const unsigned mask = depth(parameters) - 1u;
-	const struct passo_line *next = &queue->lines[queue->next_line & mask];
-	const struct passo_line *current = &queue->lines[queue->current_line & mask];
+	const struct passo_line *next = &queue->lines[queue->next_line & (depth(parameters) - 1u)];
+	const struct passo_line *current = &queue->lines[queue->current_line];
 
 	queue->next_last = next->last;
 	queue->next_endless = next->endless;
 	queue->next_directions = next->directions;
-	queue->next_minus_substeps = 0u - next->substeps;
+	queue->last_substep = (take ? next : current)->substeps - 1u;
 	for (unsigned axis = 0; axis < parameters->axes; axis++)
 		queue->steps[axis] = current->steps[axis];
 }
@@ -93,30 +94,27 @@ void passo_line_queue_clock(struct passo_line_queue *queue, const struct passo_p
     const struct passo_bus *bus, const struct passo_channel_wires *wires)
 {
 	const uint16_t write_line = queue->write_line;
-	const uint16_t current_line = queue->current_line;
 	const uint16_t next_line = queue->next_line;
-	const uint16_t line_after_next = wrap(next_line + 1u, parameters);
 	const bool next_endless = queue->next_endless;
-	const bool next_valid = queue->next_valid;
+	const bool has_place = queue->has_place;
 
-	read_memory(queue, parameters);
-	clock_writing(queue, parameters, bus, wires->line_push);
+	read_memory(queue, parameters, wires->take);
+	clock_writing(queue, parameters, bus, wires->line_push, wires->stopped);
 
+	if ((wires->take && has_place) || wires->finished)
+		queue->room++;
 	if (wires->take) {
-		queue->current_line = next_line;
-		if (!next_endless)
-			queue->next_line = line_after_next;
+		queue->current_line = next_line & (uint16_t)(depth(parameters) - 1u);
+		queue->has_place = !next_endless;
 	}
-	if (wires->finished) {
-		/* an ENDLESS line is both current and next */
-		const bool drop_endless = next_valid && next_endless;
-		queue->next_line = drop_endless ? line_after_next : queue->next_line;
-		queue->current_line = drop_endless ? line_after_next : next_line;
-	}
+	if (wires->finished)
+		queue->has_place = false;
+	if ((wires->take && !next_endless) || (wires->finished && !has_place))
+		queue->next_line = wrap(next_line + 1u, parameters);
 	queue->next_valid = !wires->take && !wires->finished && !wires->stopped && next_line != write_line;
-	queue->room = (uint16_t)(depth(parameters) - wrap((unsigned)write_line - current_line, parameters));
 	if (wires->stopped) {
-		queue->next_line = write_line;
-		queue->current_line = write_line;
+		queue->write_line = queue->next_line = 0;
+		queue->has_place = false;
+		queue->room = (uint16_t)depth(parameters);
 	}
 }

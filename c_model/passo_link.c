@@ -1,7 +1,20 @@
 /* SPDX-License-Identifier: MIT
- * Link: words to frames to bus accesses, and the replies. See rtl/passo_link.v.
+ * Link: words to frames to bus accesses, and the replies. See rtl/passo_link.v, rtl/passo_payload.v and
+ * rtl/passo_reply.v. The 32 shifts of a word are made at once, in the last of their clocks. The
+ * counters of refusals are in passo_registers.c.
  */
 #include "passo_model.h"
+
+enum {
+	COUNT_ACT = 0,
+	COUNT_REST = 3,
+	COUNT_READ = 12,
+	COUNT_LOAD = 28,
+	COUNT_ANSWER = 30,
+	COUNT_LOADED = 31,
+	COUNT_TURN = 32,
+	COUNT_TURNED = 63
+};
 
 static uint8_t operation_of(uint32_t header)
 {
@@ -29,200 +42,256 @@ static uint32_t acknowledge(uint8_t sequence, uint8_t verdict)
 
 void passo_link_reset(struct passo_link *link)
 {
-	*link = (struct passo_link){.step = PASSO_LINK_IDLE};
+	*link = (struct passo_link){.step = PASSO_LINK_IDLE, .count = COUNT_REST};
 }
 
 bool passo_link_quiet(const struct passo_link *link)
 {
 	const struct passo_bus *bus = &link->bus;
-	const bool waits = link->step != PASSO_LINK_VERDICT && link->step != PASSO_LINK_REPLAY
-	                && link->step != PASSO_LINK_READ;
-	return waits && link->crc.busy == 0u && !link->crc_start && link->crc_idle_q && !link->crc_restart
-	    && !link->answer_due && !link->stage_high && !link->stage_low && !link->refused && !bus->frame
-	    && !bus->check && !bus->write && !bus->read;
+	return link->count == COUNT_REST && !link->answer_due && !link->refused && !bus->frame && !bus->check
+	    && !bus->write && !bus->read;
 }
 
-static void take_header(struct passo_link *link, uint32_t word)
+static unsigned place(const struct passo_link *link, bool in_payload, unsigned otherwise)
 {
-	const uint8_t operation = operation_of(word);
+	return in_payload ? link->index & 63u : otherwise;
+}
+
+static void store(struct passo_link *link, const struct passo_link_wires *wires)
+{
+	const bool is_header = link->step == PASSO_LINK_HEADER || link->step == PASSO_LINK_REPLAY;
+	const unsigned otherwise = is_header ? PASSO_BUFFER_HEADER : PASSO_BUFFER_OTHER;
+
+	link->buffer[place(link, link->step == PASSO_LINK_PAYLOAD, otherwise)][wires->half_low ? 1 : 0] =
+	    wires->half;
+}
+
+static uint32_t loaded(const struct passo_link *link)
+{
+	const bool in_payload = link->step == PASSO_LINK_PAYLOAD || link->step == PASSO_LINK_REPLAY;
+	const unsigned otherwise = link->step == PASSO_LINK_CRC ? PASSO_BUFFER_OTHER : PASSO_BUFFER_HEADER;
+	const uint16_t *word = link->buffer[place(link, in_payload, otherwise)];
+
+	return (uint32_t)word[0] << 16 | word[1];
+}
+
+/* The word on the bus, the CRC and the reply have turned. */
+static void turned(struct passo_link *link)
+{
+	switch (link->step) {
+	case PASSO_LINK_HEADER:
+		link->crc = passo_crc_add(0xFFFFFFFFu, link->bus.data);
+		break;
+	case PASSO_LINK_PAYLOAD:
+		link->crc = passo_crc_add(link->crc, link->bus.data);
+		break;
+	case PASSO_LINK_CRC:
+		link->crc_wrong = link->crc != link->bus.data;
+		break;
+	case PASSO_LINK_ACK:
+		link->reply_word = acknowledge(sequence_of(link->bus.data), link->verdict);
+		break;
+	case PASSO_LINK_READ:
+		link->crc = passo_crc_add(link->crc, link->reply_word);
+		break;
+	case PASSO_LINK_SUM:
+		link->reply_word = link->crc;
+		break;
+	case PASSO_LINK_IDLE:
+	case PASSO_LINK_REPLAY:
+	case PASSO_LINK_COUNT:
+		break;
+	}
+}
+
+static void begin_pass(struct passo_link *link)
+{
+	link->bus.address = address_of(link->bus.data);
+	link->bus.frame = true;
+	link->index = 0;
+}
+
+static void take_header(struct passo_link *link)
+{
+	const uint32_t header = link->bus.data;
+	const uint8_t operation = operation_of(header);
 	const bool is_read = operation == PASSO_OPERATION_READ;
 	const bool is_known =
 	    is_read || operation == PASSO_OPERATION_WRITE || operation == PASSO_OPERATION_PUSH;
-	const bool fits = length_of(word) != 0u && length_of(word) <= PASSO_PAYLOAD_MAX;
-	const bool repeated = link->sequence_known && !is_read && sequence_of(word) == link->last_sequence;
+	const bool fits = length_of(header) != 0u && length_of(header) <= PASSO_PAYLOAD_MAX;
+	const bool repeated = link->sequence_known && !is_read && sequence_of(header) == link->last_sequence;
 
-	link->header = word;
-	link->bus.address = address_of(word);
-	link->bus.frame = true;
-	link->index = 0;
-	link->crc_word = word;
-	link->crc_start = true;
+	link->is_read = is_read;
+	link->bus.push = operation == PASSO_OPERATION_PUSH;
+	link->length = length_of(header);
 	link->verdict = !is_known ? PASSO_VERDICT_BAD_OPERATION
 	              : !fits     ? PASSO_VERDICT_BAD_LENGTH
 	              : repeated  ? PASSO_VERDICT_DUPLICATE
 	                          : PASSO_VERDICT_OK;
-	link->step = is_read || length_of(word) == 0u ? PASSO_LINK_CRC : PASSO_LINK_PAYLOAD;
+	link->step = is_read || link->length == 0u ? PASSO_LINK_CRC : PASSO_LINK_PAYLOAD;
+	begin_pass(link);
 }
 
 static void give_verdict(struct passo_link *link, bool incomplete)
 {
-	const uint8_t verdict = link->crc.crc != 0u               ? PASSO_VERDICT_BAD_CRC
-	                      : link->verdict != PASSO_VERDICT_OK ? link->verdict
-	                      : incomplete                        ? PASSO_VERDICT_BAD_LENGTH
-	                                                          : PASSO_VERDICT_OK;
-
-	link->reply_word = acknowledge(sequence_of(link->header), verdict);
-	link->refused = verdict != PASSO_VERDICT_OK && verdict != PASSO_VERDICT_DUPLICATE;
-	link->refused_verdict = verdict;
+	if (link->crc_wrong)
+		link->verdict = PASSO_VERDICT_BAD_CRC;
+	else if (link->verdict == PASSO_VERDICT_OK && incomplete)
+		link->verdict = PASSO_VERDICT_BAD_LENGTH;
 	link->index = 0;
-	link->phase = 0;
-	link->bus.address = address_of(link->header);
-	link->bus.frame = true;
-	if (verdict != PASSO_VERDICT_OK) {
-		link->step = PASSO_LINK_DONE;
-	} else if (operation_of(link->header) == PASSO_OPERATION_READ) {
-		link->crc_word = link->header;
-		link->crc_restart = true;
-		link->crc_start = true;
+	if (link->is_read && link->verdict == PASSO_VERDICT_OK) {
+		link->count = COUNT_READ;
 		link->step = PASSO_LINK_READ;
 	} else {
-		link->last_sequence = sequence_of(link->header);
-		link->sequence_known = true;
-		link->step = PASSO_LINK_REPLAY;
+		link->count = COUNT_LOAD;
+		link->step = PASSO_LINK_ACK;
 	}
 }
 
-static void next_word(struct passo_link *link, enum passo_link_step step_after_last)
+static void end_acknowledge(struct passo_link *link)
 {
-	link->index++;
-	if (link->index == length_of(link->header))
-		link->step = step_after_last;
+	link->refused = link->verdict != PASSO_VERDICT_OK && link->verdict != PASSO_VERDICT_DUPLICATE;
+	link->step = PASSO_LINK_IDLE;
+	if (link->verdict == PASSO_VERDICT_OK) {
+		link->last_sequence = sequence_of(link->bus.data);
+		link->sequence_known = true;
+		link->count = COUNT_LOAD;
+		link->step = PASSO_LINK_REPLAY;
+	}
+	if (link->refused) {
+		link->count = COUNT_LOAD;
+		link->step = PASSO_LINK_COUNT;
+	}
+	begin_pass(link);
+}
+
+/* What the clock does in each step. */
+static void do_step(struct passo_link *link, const struct passo_link_wires *wires,
+    const struct passo_link *was, bool word_valid, bool frame_goes_on)
+{
+	const bool act = was->count == COUNT_ACT;
+	const bool all_words = was->index == was->length;
+	const uint8_t answer =
+	    wires->response.claim ? wires->response.refusal : PASSO_VERDICT_UNKNOWN_ADDRESS;
+
+	switch (was->step) {
+	case PASSO_LINK_HEADER:
+		if (word_valid)
+			link->count = COUNT_LOAD;
+		if (act)
+			take_header(link);
+		break;
+	case PASSO_LINK_PAYLOAD:
+		if (word_valid)
+			link->count = COUNT_LOAD;
+		link->bus.check = act;
+		if (act)
+			link->index++;
+		if (all_words)
+			link->step = PASSO_LINK_CRC;
+		break;
+	case PASSO_LINK_CRC:
+		if (word_valid)
+			link->count = COUNT_LOAD;
+		if (act)
+			give_verdict(link, wires->incomplete);
+		break;
+	case PASSO_LINK_ACK:
+		if (act)
+			end_acknowledge(link);
+		break;
+	case PASSO_LINK_REPLAY:
+		if (was->count == COUNT_LOADED) {
+			link->bus.write = true;
+			link->index++;
+			link->count = COUNT_LOAD;
+		}
+		if (all_words) {
+			link->count = COUNT_REST;
+			link->step = frame_goes_on ? PASSO_LINK_HEADER : PASSO_LINK_IDLE;
+		}
+		break;
+	case PASSO_LINK_READ:
+		link->bus.read = was->count == COUNT_LOAD && !wires->spi.frame_end;
+		if (was->count == COUNT_ANSWER) {
+			link->reply_word = wires->response.read_data;
+			if (was->index == 0u && answer != PASSO_VERDICT_OK) {
+				link->verdict = answer;
+				link->count = COUNT_LOAD;
+				link->step = PASSO_LINK_ACK;
+			}
+		}
+		if (act) {
+			link->index++;
+			link->bus.address = (was->bus.address + 1u) & 0xFFFu;
+		}
+		if (word_valid) {
+			link->count = all_words ? COUNT_TURN : COUNT_READ;
+			if (all_words)
+				link->step = PASSO_LINK_SUM;
+		}
+		break;
+	case PASSO_LINK_SUM:
+		if (act)
+			link->step = PASSO_LINK_IDLE;
+		break;
+	case PASSO_LINK_COUNT:
+		if (act)
+			link->step = frame_goes_on ? PASSO_LINK_HEADER : PASSO_LINK_IDLE;
+		break;
+	case PASSO_LINK_IDLE:
+		break;
+	}
 }
 
 void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wires)
 {
+	/* all but the buffer */
 	const struct passo_link was = {
 	    .step = link->step,
-	    .phase = link->phase,
+	    .count = link->count,
+	    .length = link->length,
+	    .index = link->index,
 	    .frame_waits = link->frame_waits,
 	    .answer_due = link->answer_due,
-	    .crc_restart = link->crc_restart,
-	    .crc_start = link->crc_start,
-	    .crc_word = link->crc_word,
-	    .crc = link->crc,
-	    .stage_high = link->stage_high,
-	    .stage_low = link->stage_low,
 	    .bus = link->bus,
 	};
-	const bool crc_idle = was.crc.busy == 0u && !was.crc_start;
-	const bool verdict_due = crc_idle && link->crc_idle_q;
+	const bool act = was.count == COUNT_ACT;
+	const bool word_valid = wires->spi.half_valid && wires->half_low;
 	const bool frame_goes_on =
-	    (was.frame_waits || wires->spi.frame_start) && !wires->spi.frame_end && !wires->spi.word_valid;
+	    (was.frame_waits || wires->spi.frame_start) && !wires->spi.frame_end && !word_valid;
 	const uint8_t answer =
 	    wires->response.claim ? wires->response.refusal : PASSO_VERDICT_UNKNOWN_ADDRESS;
 
-	if (was.stage_low)
-		link->payload[link->index & 63u] = was.bus.data;
-
-	link->bus.frame = link->bus.write = link->bus.read = false;
-	link->bus.check = was.stage_high;
+	if (was.count == COUNT_LOADED - 1)
+		link->bus.data = loaded(link);
+	if (was.count == COUNT_TURNED)
+		turned(link);
+	if (wires->spi.half_valid)
+		store(link, wires);
+	if (was.count != COUNT_REST)
+		link->count = (was.count + 1u) & 63u;
+	link->bus.frame = link->bus.check = link->bus.write = link->bus.read = false;
 	link->answer_due = was.bus.check;
-	link->crc_restart = link->crc_start = false;
-	link->stage_high = false;
-	link->stage_low = was.stage_high;
 	link->refused = false;
-	link->crc_idle_q = crc_idle;
 
 	if (was.answer_due && link->verdict == PASSO_VERDICT_OK)
 		link->verdict = answer;
 	if ((was.bus.check || was.bus.write) && !was.bus.push)
 		link->bus.address = (was.bus.address + 1u) & 0xFFFu;
 
-	switch (was.step) {
-	case PASSO_LINK_HEADER:
-		if (wires->spi.word_valid)
-			take_header(link, wires->word);
-		break;
-	case PASSO_LINK_PAYLOAD:
-		if (was.stage_low)
-			next_word(link, PASSO_LINK_CRC);
-		if (wires->spi.word_valid) {
-			link->bus.data = wires->word;
-			link->stage_high = true;
-			link->crc_word = wires->word;
-			link->crc_start = true;
-		}
-		break;
-	case PASSO_LINK_CRC:
-		if (wires->spi.word_valid) {
-			link->crc_word = wires->word;
-			link->crc_start = true;
-			link->step = PASSO_LINK_VERDICT;
-		}
-		break;
-	case PASSO_LINK_VERDICT:
-		if (verdict_due)
-			give_verdict(link, wires->incomplete);
-		break;
-	case PASSO_LINK_REPLAY:
-		link->phase = (was.phase + 1u) & 3u;
-		if (was.phase == 2u)
-			link->bus.data = link->payload[link->index];
-		if (was.phase == 3u) {
-			link->bus.write = true;
-			next_word(link, frame_goes_on ? PASSO_LINK_HEADER : PASSO_LINK_DONE);
-			link->crc_restart = link->step != PASSO_LINK_REPLAY;
-		}
-		break;
-	case PASSO_LINK_READ:
-		if (was.phase != 3u)
-			link->phase++;
-		if (was.phase == 0u)
-			link->bus.read = true;
-		if (was.phase == 2u) {
-			link->crc_word = wires->response.read_data;
-			if (link->index == 0u && answer != PASSO_VERDICT_OK) {
-				link->reply_word = acknowledge(sequence_of(link->header), answer);
-				link->refused = true;
-				link->refused_verdict = answer;
-				link->step = PASSO_LINK_DONE;
-			}
-		}
-		if (was.phase == 3u && crc_idle) {
-			link->reply_word = was.crc_word;
-			link->crc_start = true;
-			link->phase = 0;
-			link->index++;
-			link->bus.address = (was.bus.address + 1u) & 0xFFFu;
-			link->step = PASSO_LINK_SEND;
-		}
-		break;
-	case PASSO_LINK_SEND:
-		if (wires->spi.word_valid) {
-			if (link->index != length_of(link->header)) {
-				link->step = PASSO_LINK_READ;
-			} else {
-				link->reply_word = was.crc.crc;
-				link->step = PASSO_LINK_DONE;
-			}
-		}
-		break;
-	case PASSO_LINK_IDLE:
-	case PASSO_LINK_DONE:
-		break;
-	}
+	do_step(link, wires, &was, word_valid, frame_goes_on);
 
 	if (wires->spi.frame_start)
 		link->reply_word = wires->status;
-	link->frame_waits = was.step == PASSO_LINK_REPLAY && frame_goes_on;
-	if (was.step != PASSO_LINK_REPLAY && !(was.step == PASSO_LINK_VERDICT && verdict_due)) {
+	const bool goes_through = was.step == PASSO_LINK_REPLAY || was.step == PASSO_LINK_COUNT;
+	link->frame_waits = goes_through && frame_goes_on;
+	if (!goes_through && !(was.step == PASSO_LINK_ACK && act)) {
 		if (wires->spi.frame_end)
 			link->step = PASSO_LINK_IDLE;
-		if (wires->spi.frame_start) {
+		if (wires->spi.frame_start)
 			link->step = PASSO_LINK_HEADER;
-			link->crc_restart = true;
-		}
+		if (wires->spi.frame_end || wires->spi.frame_start)
+			link->count = COUNT_REST;
 	}
-	link->bus.push = operation_of(link->header) == PASSO_OPERATION_PUSH;
-	passo_crc_clock(&link->crc, was.crc_restart, was.crc_start, was.crc_word);
 }

@@ -28,17 +28,20 @@ struct passo_parameters {
 
 struct passo_spi {
 	uint8_t bit_count;
-	uint32_t receive;
-	uint32_t word;
-	bool word_toggle;
+	bool mosi;
 	bool first_word;
-	uint32_t send;
+	uint32_t shift; /* 31 bits */
+	bool mosi_late;
+	bool half_toggle;
+	bool half_low;
+	uint16_t half;
+	bool miso;
 	uint8_t select_sync;
 	uint8_t toggle_sync;
 };
 
 struct passo_spi_wires {
-	bool frame_start, frame_end, word_valid;
+	bool frame_start, frame_end, half_valid;
 };
 
 struct passo_spi_wires passo_spi_wires(const struct passo_spi *spi);
@@ -47,13 +50,8 @@ void passo_spi_reset(struct passo_spi *spi);
 void passo_spi_clock(
     struct passo_spi *spi, bool sclk_was, bool sclk, bool mosi, bool cs_n, uint32_t reply_word);
 
-struct passo_crc {
-	uint32_t crc;
-	uint32_t word;
-	uint8_t busy; /* clocks until crc includes the word */
-};
-
-void passo_crc_clock(struct passo_crc *crc, bool restart, bool start, uint32_t word);
+/* `crc` with 32 bits more. */
+uint32_t passo_crc_add(uint32_t crc, uint32_t word);
 
 struct passo_bus {
 	bool frame, check, write, read, push;
@@ -65,6 +63,8 @@ struct passo_response {
 	bool claim;
 	uint8_t refusal;
 	uint32_t read_data;
+	bool late;        /* the register shows its value in the clock of the answer, */
+	uint16_t address; /* and this is its address */
 };
 
 enum passo_link_step {
@@ -72,37 +72,41 @@ enum passo_link_step {
 	PASSO_LINK_HEADER,
 	PASSO_LINK_PAYLOAD,
 	PASSO_LINK_CRC,
-	PASSO_LINK_VERDICT,
+	PASSO_LINK_ACK,
 	PASSO_LINK_REPLAY,
 	PASSO_LINK_READ,
-	PASSO_LINK_SEND,
-	PASSO_LINK_DONE
+	PASSO_LINK_SUM,
+	PASSO_LINK_COUNT
 };
+
+/* Places of the payload buffer behind the payload. */
+#define PASSO_BUFFER_HEADER 64u
+#define PASSO_BUFFER_OTHER 65u
+#define PASSO_BUFFER_WORDS 66u
 
 struct passo_link {
 	enum passo_link_step step;
-	uint8_t phase;
-	uint32_t header;
+	uint8_t count;
+	bool is_read;
+	uint8_t length;
 	uint8_t index;
 	bool frame_waits;
 	bool sequence_known;
 	uint8_t last_sequence;
 	uint8_t verdict;
 	bool answer_due;
-	bool crc_restart, crc_start, crc_idle_q;
-	uint32_t crc_word;
-	struct passo_crc crc;
-	bool stage_high, stage_low;
-	uint32_t payload[64];
+	bool crc_wrong;
+	uint32_t crc;
+	uint16_t buffer[PASSO_BUFFER_WORDS][2]; /* upper half first */
 	uint32_t reply_word;
 	bool refused;
-	uint8_t refused_verdict;
 	struct passo_bus bus;
 };
 
 struct passo_link_wires {
 	struct passo_spi_wires spi;
-	uint32_t word;
+	bool half_low;
+	uint16_t half;
 	uint32_t status;
 	struct passo_response response;
 	bool incomplete;
@@ -110,7 +114,7 @@ struct passo_link_wires {
 
 void passo_link_reset(struct passo_link *link);
 void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wires);
-/* Nothing changes in the link until the next word or chip select edge. */
+/* Nothing changes in the link until the next half word or chip select edge. */
 bool passo_link_quiet(const struct passo_link *link);
 
 struct passo_registers {
@@ -131,7 +135,9 @@ struct passo_tables {
 
 struct passo_line_queue {
 	uint8_t index;
-	uint16_t write_line, next_line, current_line; /* one bit more than the address */
+	uint16_t write_line, next_line; /* one bit more than the address */
+	uint16_t current_line;
+	bool has_place; /* the current line is not the next line */
 	uint16_t checked;
 	uint32_t checked_substeps;
 	uint16_t room;
@@ -140,7 +146,7 @@ struct passo_line_queue {
 	/* outputs of the block RAM */
 	bool next_last, next_endless;
 	uint8_t next_directions;
-	uint32_t next_minus_substeps;
+	uint32_t last_substep; /* M - 1 */
 	uint32_t steps[PASSO_AXES_MAX];
 };
 
@@ -153,44 +159,54 @@ struct passo_ramp_queue {
 	bool is_now;
 	bool now_pending;
 	uint16_t room;
+	bool valid;
 	uint32_t words[PASSO_RAMP_QUEUE_MAX][5];
 };
 
 struct passo_timescale {
 	uint32_t rate, goal, slew; /* UQ1.16 */
-	int32_t distance;
+	uint8_t after;             /* clocks since the slew tick, until the rate has changed */
+	bool down;
+	bool still;
 	uint32_t rate_sum;
 	bool enable;
 };
 
-enum passo_ramp_step { PASSO_RAMP_IDLE, PASSO_RAMP_CHOOSE, PASSO_RAMP_LOAD, PASSO_RAMP_WORK };
+enum passo_ramp_step {
+	PASSO_RAMP_CHOOSE,
+	PASSO_RAMP_COPY,
+	PASSO_RAMP_FETCH,
+	PASSO_RAMP_TAKE,
+	PASSO_RAMP_WORK, /* look up, shape, scale */
+	PASSO_RAMP_STEP
+};
 
 struct passo_ramp_unit {
 	enum passo_ramp_step step;
-	uint32_t wait; /* clocks until LOAD or WORK (shape and scale) is done */
+	uint32_t wait; /* clocks until the step is done */
 	bool take_now;
-	bool last, mirror;
+	bool loaded, last, mirror;
 	enum passo_shape shape;
-	uint64_t v_start, v_end;
-	uint32_t ticks;
-	uint64_t progress, progress_step;
+	uint64_t v_start;
+	uint64_t v_end, progress_step; /* the RTL reads them from the queue */
+	uint32_t ticks;                /* still to be made */
+	uint64_t progress;             /* u, UQ0.49 */
 	uint32_t tick_count;
-	bool ready, ends_next, dry;
-	uint64_t velocity, velocity_next;
+	bool ready, unready, ends_next, dry;
+	uint64_t velocity_next;
 };
 
 struct passo_path {
-	uint32_t phase_low, phase_high, velocity_high_q; /* 24 bits each */
+	uint32_t velocity_low, velocity_high, phase_low, phase_high; /* 24 bits each */
 	bool phase_low_carry;
-	bool advance_q;
+	bool refresh, take_q, advance_q;
 	bool substep;
 };
 
 struct passo_line_unit {
 	bool active, last, endless, ended, underrun;
-	uint32_t minus_substeps;
-	int64_t remaining;
-	bool remaining_bump;
+	uint32_t substep_number;
+	bool on_last;
 	uint8_t directions, directions_next;
 	bool slot_add, slot_load, slot_step, slot_load_q;
 };
@@ -200,13 +216,8 @@ struct passo_dda {
 	int64_t addend;
 };
 
-enum passo_axis_state {
-	PASSO_AXIS_READY,
-	PASSO_AXIS_HIGH,
-	PASSO_AXIS_LOW,
-	PASSO_AXIS_HOLD,
-	PASSO_AXIS_SETUP
-};
+/* READY and HOLD: idle; PULSE: high or low. */
+enum passo_axis_state { PASSO_AXIS_READY, PASSO_AXIS_PULSE, PASSO_AXIS_HOLD, PASSO_AXIS_SETUP };
 
 struct passo_axis_settings {
 	uint16_t step_high, step_low, dir_setup, dir_hold; /* clocks */
@@ -217,13 +228,20 @@ struct passo_axis {
 	struct passo_axis_settings settings;
 	enum passo_axis_state state;
 	uint16_t timer;
-	uint8_t waiting, waiting_count;
+	uint8_t waiting, waits; /* one bit for each place */
 	bool step, dir;
-	bool step_begins_q, dir_q;
+	bool timing_changed; /* times were written in the clock before */
+	bool step_made;
 	bool overrun;
-	uint32_t position, position_snapshot;
+	uint32_t position;
 	uint8_t lost;
 	bool step_pin, dir_pin, enable_pin;
+};
+
+struct passo_positions {
+	uint8_t slot; /* clock of the round */
+	bool clear_waits, snapshot_waits;
+	uint32_t copies[PASSO_AXES_MAX];
 };
 
 struct passo_motion {
@@ -233,7 +251,10 @@ struct passo_motion {
 	bool stopping;
 	uint16_t drained;
 	uint8_t count;
+	uint8_t settling; /* 3 bits */
+	bool settled;
 	bool startable;
+	bool rate_was_zero;
 	bool running;
 };
 
@@ -256,6 +277,7 @@ struct passo_channel {
 	struct passo_line_unit line;
 	struct passo_dda dda[PASSO_AXES_MAX];
 	struct passo_axis axis[PASSO_AXES_MAX];
+	struct passo_positions positions;
 };
 
 /* What the core gives to a channel. */
@@ -287,7 +309,6 @@ void passo_line_queue_clock(struct passo_line_queue *queue, const struct passo_p
 uint8_t passo_line_queue_refusal(const struct passo_line_queue *queue,
     const struct passo_parameters *parameters, const struct passo_bus *bus, bool blocked);
 
-bool passo_ramp_queue_valid(const struct passo_ramp_queue *queue);
 void passo_ramp_queue_clock(struct passo_ramp_queue *queue, const struct passo_parameters *parameters,
     const struct passo_bus *bus, const struct passo_channel_wires *wires, bool take, bool take_now);
 uint8_t passo_ramp_queue_refusal(
@@ -299,32 +320,30 @@ struct passo_ramp passo_ramp_queue_front(
 void passo_timescale_clock(struct passo_timescale *timescale, const struct passo_channel_registers *registers,
     bool moving, bool stopping, bool slew_tick);
 
-/* s as UQ1.24 for progress u as UQ0.48. */
-uint32_t passo_shape_value(
-    const struct passo_tables *tables, enum passo_shape shape, bool mirror, uint64_t progress);
-/* v_start + floor((v_end - v_start) * s) */
-uint64_t passo_scale_velocity(uint64_t v_start, uint64_t v_end, uint32_t s);
-/* Clocks from STEP_CHOOSE to the clock that makes velocity_next ready. */
-uint32_t passo_ramp_latency(const struct passo_ramp_unit *ramp, const struct passo_tables *tables,
-    const struct passo_parameters *parameters, uint8_t channel);
+/* a + floor((b - a) * f), f as UQ1.24 */
+uint64_t passo_interpolate(uint64_t a, uint64_t b, uint32_t f);
+/* s as UQ1.24 for progress u as UQ0.49. */
+uint32_t passo_shape(const struct passo_tables *tables, enum passo_shape shape, uint64_t progress);
 /* Makes the velocity of one tick of the present ramp: velocity_next. */
 void passo_ramp_make_velocity(struct passo_ramp_unit *ramp, const struct passo_tables *tables);
 void passo_ramp_clock(struct passo_ramp_unit *ramp, const struct passo_channel *channel,
     const struct passo_channel_inputs *inputs, const struct passo_channel_wires *wires, bool *take,
     bool *take_now);
 
-void passo_path_clock(struct passo_path *path, bool restart, bool advance, uint64_t velocity);
+void passo_path_clock(struct passo_path *path, const struct passo_ramp_unit *ramp,
+    const struct passo_channel_wires *wires, uint32_t drain_velocity);
 
-int64_t passo_line_broadcast(const struct passo_line_unit *line);
+int64_t passo_line_broadcast(const struct passo_line_unit *line, uint32_t last_substep);
 void passo_line_clock(struct passo_line_unit *line, const struct passo_line_queue *queue,
     const struct passo_channel_wires *wires);
 
 bool passo_dda_step_request(const struct passo_dda *dda, const struct passo_line_unit *line);
-void passo_dda_clock(struct passo_dda *dda, const struct passo_line_unit *line, uint32_t steps);
+void passo_dda_clock(struct passo_dda *dda, const struct passo_line_unit *line,
+    const struct passo_line_queue *queue, unsigned axis);
 
 struct passo_axis_wires {
 	bool step_request, direction;
-	bool drop, zero, clear, snapshot;
+	bool drop, zero, clear, timing_written;
 };
 
 void passo_axis_reset(struct passo_axis *axis);
@@ -332,6 +351,12 @@ void passo_axis_clock(struct passo_axis *axis, const struct passo_axis_wires *wi
 /* Nothing but the timer moves for so many clocks; 0 if the next clock may change something. */
 uint32_t passo_axis_quiet(const struct passo_axis *axis, bool line_direction);
 void passo_axis_skip(struct passo_axis *axis, uint64_t clocks);
+
+void passo_positions_reset(struct passo_positions *positions);
+void passo_positions_clock(
+    struct passo_positions *positions, const struct passo_axis *axes, bool zero, bool snapshot);
+/* Some clocks without `zero` and `snapshot`, while no snapshot waits. */
+void passo_positions_skip(struct passo_positions *positions, uint64_t clocks);
 
 void passo_motion_wires(const struct passo_channel *channel, const struct passo_channel_inputs *inputs,
     struct passo_channel_wires *wires);
@@ -341,10 +366,12 @@ void passo_motion_clock(struct passo_motion *motion, const struct passo_channel 
 /* Answer of a channel to the strobe on the bus. */
 struct passo_response passo_channel_respond(
     const struct passo_channel *channel, const struct passo_channel_inputs *inputs);
+/* What stands in a read-only register of the channel itself. */
+uint32_t passo_channel_registers_value(const struct passo_channel *channel, uint8_t address);
 void passo_channel_registers_reset(struct passo_channel_registers *registers);
 void passo_channel_registers_clock(
     struct passo_channel_registers *registers, const struct passo_bus *bus, bool selected);
-void passo_axis_registers_write(struct passo_axis_settings *settings, uint8_t address, uint32_t data);
+void passo_axis_settings_write(struct passo_axis_settings *settings, uint8_t address, uint32_t data);
 
 void passo_channel_reset(
     struct passo_channel *channel, const struct passo_parameters *parameters, uint8_t number);

@@ -1,146 +1,150 @@
 /* SPDX-License-Identifier: MIT
- * Ramp: velocity over time. See rtl/passo_ramp.v.
+ * Ramp: velocity over time. See rtl/passo_ramp.v and rtl/passo_ramp_numbers.v.
  *
- * Loading a ramp, and shape and scale, take the same clocks as in the RTL but happen at once, in the last of
- * them.
+ * Each step takes the same clocks as in the RTL but happens at once, in the last of them.
  */
 #include "passo_model.h"
 
-static const uint32_t LOAD_CLOCKS = 11;
-static const uint32_t LOAD_NOW_CLOCKS = 12; /* one more, for the queue to drop what is before it */
+enum { COPY_CLOCKS = 24, FETCH_CLOCKS = 7, FETCH_NO_TICKS_CLOCKS = 6, TAKE_CLOCKS = 5, STEP_CLOCKS = 7 };
 
-uint32_t passo_ramp_latency(const struct passo_ramp_unit *ramp, const struct passo_tables *tables,
+static const uint64_t PROGRESS_MASK = (UINT64_C(1) << 49) - 1u;
+
+static void begin_step(struct passo_ramp_unit *ramp, enum passo_ramp_step step, uint32_t clocks)
+{
+	ramp->step = step;
+	ramp->wait = clocks;
+}
+
+static uint32_t work_clocks(const struct passo_ramp_unit *ramp, const struct passo_tables *tables,
     const struct passo_parameters *parameters, uint8_t channel)
 {
-	const uint32_t look_up = 4; /* from CHOOSE: start, round, mirror, look up */
-	const uint32_t multiply =
-	    21; /* from the channel's turn at the tables: two reads, 16 bits, sum, mirror */
-	const uint32_t scale = 54; /* start, difference, 24 bits in two halves each, sum */
-	const uint32_t x = (uint32_t)((ramp->progress + (UINT64_C(1) << 23)) >> 24);
-	const uint32_t x_mirrored = ramp->mirror ? (1u << 24) - x : x;
+	const uint32_t served = 2; /* from the channel's turn at the tables */
+	const uint32_t shape = 19;
+	const uint32_t scale = 50;
 
-	if (ramp->shape == PASSO_SHAPE_LINEAR || x_mirrored >> 24 != 0u)
-		return look_up + scale;
+	if (!ramp->loaded || ramp->shape == PASSO_SHAPE_LINEAR)
+		return scale;
 	const uint32_t slots = 2u * parameters->channels;
 	const uint32_t turn = 2u * channel;
-	const uint32_t slot_then = (tables->slot + look_up) % slots;
-	const uint32_t wait = (turn + slots - slot_then) % slots;
-	return look_up + wait + multiply + scale;
+	const uint32_t slot_then = (tables->slot + 1u) % slots;
+	const uint32_t wait = 1u + (turn + slots - slot_then) % slots;
+	return wait + served + shape + scale;
 }
 
 void passo_ramp_make_velocity(struct passo_ramp_unit *ramp, const struct passo_tables *tables)
 {
-	const uint32_t s = passo_shape_value(tables, ramp->shape, ramp->mirror, ramp->progress);
+	const uint32_t s = passo_shape(tables, ramp->shape, ramp->progress);
+	const uint64_t a = ramp->mirror ? ramp->v_end : ramp->v_start;
+	const uint64_t b = ramp->mirror ? ramp->v_start : ramp->v_end;
+	const uint64_t step = 2u * ramp->progress_step;
 
-	ramp->velocity_next = passo_scale_velocity(ramp->v_start, ramp->v_end, s);
-	ramp->progress = (ramp->progress + ramp->progress_step) & (PASSO_ONE_Q48 - 1u);
+	ramp->velocity_next = passo_interpolate(a, b, s);
+	ramp->progress = (ramp->mirror ? ramp->progress - step : ramp->progress + step) & PROGRESS_MASK;
 	ramp->ticks--;
-	ramp->ends_next = false;
 	ramp->ready = true;
 }
 
 static void load(struct passo_ramp_unit *ramp, const struct passo_ramp *command)
 {
-	ramp->v_start = ramp->v_end;
 	ramp->v_end = command->velocity_end;
 	ramp->last = command->last;
 	ramp->mirror = command->mirror;
 	ramp->shape = command->shape;
 	ramp->ticks = command->ticks;
 	ramp->progress_step = command->progress_step;
-	ramp->progress = command->progress_step >> 1;
+	ramp->progress = command->mirror ? PROGRESS_MASK - command->progress_step : command->progress_step;
 }
 
 static void choose(struct passo_ramp_unit *ramp, const struct passo_channel *channel,
     const struct passo_channel_inputs *inputs, const struct passo_channel_wires *wires)
 {
+	const struct passo_ramp front = passo_ramp_queue_front(&channel->ramp_queue, inputs->parameters);
+	const uint32_t work = work_clocks(ramp, inputs->tables, inputs->parameters, channel->number);
+
 	if (channel->ramp_queue.now_pending) {
 		ramp->take_now = true;
-		ramp->v_end = ramp->velocity;
-		ramp->step = PASSO_RAMP_LOAD;
-		ramp->wait = LOAD_NOW_CLOCKS;
-	} else if (ramp->ticks != 0u) {
-		ramp->step = PASSO_RAMP_WORK;
-		ramp->wait = passo_ramp_latency(ramp, inputs->tables, inputs->parameters, channel->number);
-	} else if (!ramp->last && wires->ramp_valid) {
-		ramp->step = PASSO_RAMP_LOAD;
-		ramp->wait = LOAD_CLOCKS;
-	} else {
-		ramp->velocity_next = ramp->last ? 0u : ramp->v_end;
-		ramp->ends_next = ramp->last;
-		ramp->dry = !ramp->last && ramp->v_end != 0u;
+		ramp->loaded = false;
+		ramp->last = false;
+		begin_step(ramp, PASSO_RAMP_COPY, COPY_CLOCKS);
+	} else if (ramp->loaded) {
+		begin_step(ramp, PASSO_RAMP_WORK, work);
+	} else if (ramp->last) {
+		ramp->ends_next = true;
 		ramp->ready = true;
-		ramp->step = PASSO_RAMP_IDLE;
+	} else if (wires->ramp_valid) {
+		begin_step(ramp, PASSO_RAMP_FETCH, front.ticks == 0u ? FETCH_NO_TICKS_CLOCKS : FETCH_CLOCKS);
+	} else {
+		begin_step(ramp, PASSO_RAMP_WORK, work);
 	}
 }
 
-static void stop(struct passo_ramp_unit *ramp)
+/* The step is over: what it was for, and the next one. */
+static void finish_step(struct passo_ramp_unit *ramp, const struct passo_channel *channel,
+    const struct passo_channel_inputs *inputs)
 {
-	ramp->step = PASSO_RAMP_IDLE;
-	ramp->take_now = false;
-	ramp->ready = false;
-	ramp->ends_next = false;
-	ramp->velocity = 0;
-	ramp->ticks = 0;
-	ramp->last = false;
+	const enum passo_ramp_step step = ramp->step;
+
+	ramp->step = PASSO_RAMP_CHOOSE;
+	if (step == PASSO_RAMP_COPY) {
+		ramp->v_start = ramp->velocity_next;
+	} else if (step == PASSO_RAMP_FETCH) {
+		const struct passo_ramp front =
+		    passo_ramp_queue_front(&channel->ramp_queue, inputs->parameters);
+		load(ramp, &front);
+		ramp->loaded = ramp->ticks != 0u;
+		if (!ramp->loaded)
+			begin_step(ramp, PASSO_RAMP_TAKE, TAKE_CLOCKS);
+	} else if (step == PASSO_RAMP_TAKE) {
+		ramp->v_start = ramp->v_end;
+		ramp->loaded = false;
+	} else if (step == PASSO_RAMP_WORK && ramp->loaded) {
+		passo_ramp_make_velocity(ramp, inputs->tables);
+		if (ramp->ticks == 0u)
+			begin_step(ramp, PASSO_RAMP_TAKE, TAKE_CLOCKS);
+		else
+			begin_step(ramp, PASSO_RAMP_STEP, STEP_CLOCKS);
+	} else if (step == PASSO_RAMP_WORK) {
+		ramp->velocity_next = ramp->v_start;
+		ramp->dry = ramp->v_start != 0u;
+		ramp->ready = true;
+	}
 }
 
 void passo_ramp_clock(struct passo_ramp_unit *ramp, const struct passo_channel *channel,
     const struct passo_channel_inputs *inputs, const struct passo_channel_wires *wires, bool *take,
     bool *take_now)
 {
-	const uint64_t velocity_next = ramp->velocity_next;
-	const bool ends_next = ramp->ends_next;
-
-	*take = false;
+	*take = ramp->step == PASSO_RAMP_TAKE && ramp->wait == 2u;
 	*take_now = ramp->take_now;
 	ramp->take_now = false;
 	ramp->dry = false;
+	ramp->unready = !ramp->ready && !wires->drain;
 
-	switch (ramp->step) {
-	case PASSO_RAMP_CHOOSE:
+	if (ramp->step != PASSO_RAMP_CHOOSE) {
+		if (--ramp->wait == 0u)
+			finish_step(ramp, channel, inputs);
+	} else if (!ramp->ready && !ramp->ends_next) {
 		choose(ramp, channel, inputs, wires);
-		break;
-	case PASSO_RAMP_LOAD:
-		if (--ramp->wait == 0u) {
-			const struct passo_ramp front =
-			    passo_ramp_queue_front(&channel->ramp_queue, inputs->parameters);
-			load(ramp, &front);
-			*take = true;
-			ramp->step = PASSO_RAMP_CHOOSE;
-		}
-		break;
-	case PASSO_RAMP_WORK:
-		if (--ramp->wait == 0u) {
-			passo_ramp_make_velocity(ramp, inputs->tables);
-			ramp->step = PASSO_RAMP_IDLE;
-		}
-		break;
-	case PASSO_RAMP_IDLE:
-		break;
 	}
 
-	if (wires->prepare) {
-		ramp->v_end = 0;
-		ramp->velocity = 0;
-		ramp->ticks = 0;
-		ramp->last = false;
-		ramp->ready = false;
-		ramp->ends_next = false;
-		ramp->step = PASSO_RAMP_CHOOSE;
-	}
 	if (wires->advance)
 		ramp->tick_count = (ramp->tick_count + 1u) & ((1u << inputs->parameters->tick_log2) - 1u);
-	if (wires->next) {
-		ramp->velocity = velocity_next;
+	if (wires->next)
 		ramp->ready = false;
-		if (!ends_next)
-			ramp->step = PASSO_RAMP_CHOOSE;
-	}
 	if (wires->begin_profile)
 		ramp->tick_count = 0;
-	if (wires->drain)
-		ramp->velocity = (uint64_t)channel->registers.drain_velocity << 16;
-	if (wires->stopped)
-		stop(ramp);
+	if (wires->prepare) {
+		begin_step(ramp, PASSO_RAMP_COPY, COPY_CLOCKS);
+		ramp->ready = false;
+		ramp->ends_next = false;
+		ramp->loaded = false;
+		ramp->last = false;
+		ramp->velocity_next = 0;
+	}
+	if (wires->stopped) {
+		ramp->step = PASSO_RAMP_CHOOSE;
+		ramp->ready = false;
+		ramp->ends_next = true;
+		ramp->take_now = false;
+	}
 }

@@ -18,11 +18,6 @@ static uint16_t wrap(unsigned ramp, const struct passo_parameters *parameters)
 	return (uint16_t)(ramp & (2u * depth(parameters) - 1u));
 }
 
-bool passo_ramp_queue_valid(const struct passo_ramp_queue *queue)
-{
-	return queue->read_ramp != queue->write_ramp;
-}
-
 uint8_t passo_ramp_queue_refusal(
     const struct passo_ramp_queue *queue, const struct passo_bus *bus, bool blocked)
 {
@@ -108,5 +103,6 @@ void passo_ramp_queue_clock(struct passo_ramp_queue *queue, const struct passo_p
 		queue->now_pending = false;
 		queue->read_ramp = write_ramp;
 	}
+	queue->valid = read_ramp != write_ramp;
 	queue->room = (uint16_t)(depth(parameters) - wrap((unsigned)write_ramp - read_ramp, parameters));
 }

@@ -84,6 +84,14 @@ static bool register_value(const struct passo_core *core, uint16_t address, uint
 	}
 }
 
+uint32_t passo_registers_value(const struct passo_core *core, uint16_t address)
+{
+	uint32_t value = 0;
+
+	register_value(core, address, &value);
+	return value;
+}
+
 static uint8_t run_check(const struct passo_core *core, uint32_t data)
 {
 	const unsigned channels = core->parameters.channels;
@@ -120,8 +128,8 @@ struct passo_response passo_registers_respond(const struct passo_core *core)
 			response.refusal = bus->push                         ? PASSO_VERDICT_BAD_OPERATION
 			                 : bus->address != PASSO_ADDRESS_RUN ? PASSO_VERDICT_READ_ONLY
 			                                                     : run_check(core, bus->data);
-		else
-			response.read_data = value;
+		response.late = bus->read;
+		response.address = bus->address;
 	}
 	return response;
 }
@@ -132,7 +140,7 @@ void passo_registers_clock(struct passo_core *core)
 	struct passo_registers *registers = &core->registers;
 
 	if (core->link.refused)
-		registers->refusals[core->link.refused_verdict - PASSO_VERDICT_BAD_CRC]++;
+		registers->refusals[core->link.verdict - PASSO_VERDICT_BAD_CRC]++;
 	if (bus->write && bus->address == PASSO_ADDRESS_RUN) {
 		registers->run = (uint8_t)(bus->data >> PASSO_RUN_RUN_LSB);
 		registers->wait_sync = (uint8_t)(bus->data >> PASSO_RUN_WAIT_SYNC_LSB);

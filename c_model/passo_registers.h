@@ -205,7 +205,7 @@
 #define PASSO_CHANNEL_RAMP_BITS    32u
 #define PASSO_CHANNEL_RAMP_DEFINED 0xFFFFFFFFu
 
-/* Channel: Steps made. Position of an axis in steps, as it was when chip select fell; wraps. */
+/* Channel: Steps made. Position of an axis in steps, as it was soon after chip select fell; wraps. */
 #define PASSO_CHANNEL_POSITION_BASE  0x40u
 #define PASSO_CHANNEL_POSITION_COUNT 8u
 #define PASSO_CHANNEL_POSITION_LSB   0u

@@ -78,15 +78,21 @@ class Clocks:
 
 
 async def begin(dut: HierarchyObject, *inputs: str, period: int = PERIOD) -> Clocks:
-    """Set these inputs to 0, start the clock and reset; return on the falling edge on which reset ends."""
+    """Set these inputs to 0, start the clock and reset; return on the falling edge on which reset ends.
+
+    A module that needs no reset has no `rst`.
+    """
     for name in inputs:
         getattr(dut, name).value = 0
     clocks = Clocks(dut.clk, period)
     clocks.start()
     cocotb.start_soon(_watchdog(clocks))
-    dut.rst.value = 1
-    await clocks.wait(3)
-    dut.rst.value = 0
+    if hasattr(dut, "rst"):
+        dut.rst.value = 1
+        await clocks.wait(3)
+        dut.rst.value = 0
+    else:
+        await clocks.wait(1)
     return clocks
 
 

@@ -105,7 +105,7 @@ def the_next_motion_starts_by_itself(core: Core) -> None:
     """While RUN is set motions follow each other; when it is cleared the running one is finished."""
     channel = core.channel()
     core.watch(PinTiming())
-    lines, ramps = a_motion(core, 15)
+    lines, ramps = a_motion(core, 20)
     channel.lines(*lines)
     channel.ramps(*ramps)
     channel.start()
@@ -126,7 +126,7 @@ def the_next_motion_starts_by_itself(core: Core) -> None:
     channel.start()
     core.wait_end()
     assert channel.positions() == [3 * total for total in totals(lines)]
-    assert [end - begin for begin, end in core.motions()] == [45 * core.tick] * 3
+    assert [end - begin for begin, end in core.motions()] == [60 * core.tick] * 3
 
 
 @core_test

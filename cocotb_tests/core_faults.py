@@ -36,7 +36,7 @@ def a_line_that_comes_just_in_time(core: Core) -> None:
     channel = core.channel()
     core.watch(PinTiming())
     # from chip select to the line in the queue: header, line and crc, and what the link needs to replay them
-    frame = (core.axes + 4) * 128 + 60
+    frame = (core.axes + 4) * 128 + 98
     for early, cause in ((40, Cause.NONE), (-40, Cause.LINE_UNDERRUN)):
         ramps = [Ramp(SLOW, 0), Ramp(SLOW, 20), Ramp(0, 0, last=True)]
         lines = [
@@ -74,7 +74,7 @@ def ramp_underrun(core: Core) -> None:
     begin = core.clock
     core.run_until(lambda: not core.is_running(), 5000)
     length = core.clock - begin
-    assert 12 * core.tick < length < 17 * core.tick
+    assert 11 * core.tick < length < 14 * core.tick
     check_stopped(core, channel, Cause.RAMP_UNDERRUN)
     # it went on at speed while it slowed down
     steps = core.steps(0)

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache
 
-from cocotb_tests.shapes import Shape, evaluate, loaded_table
+from cocotb_tests.shapes import PROGRESS_ONE, Shape, evaluate, loaded_table
 
 V_MAX = 1 << 47  # 1/2 substep per clock
 ONE = 1 << 48
@@ -47,11 +47,13 @@ class Ramp:
 
     def velocities(self, v_start: int) -> Iterator[int]:
         """Velocity of each tick."""
-        u = self.du // 2
+        u = self.du  # half a step, of UQ0.49
         for _ in range(self.ticks):
-            s = evaluate(u, _table(self.shape), self.mirror and self.shape != Shape.LINEAR)
-            yield v_start + ((self.v_end - v_start) * s >> 24)
-            u = (u + self.du) % ONE
+            at, a, b = (
+                (PROGRESS_ONE - 1 - u, self.v_end, v_start) if self.mirror else (u, v_start, self.v_end)
+            )
+            yield a + ((b - a) * evaluate(at, _table(self.shape)) >> 24)
+            u = (u + 2 * self.du) % PROGRESS_ONE
 
 
 @cache

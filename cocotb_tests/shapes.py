@@ -5,7 +5,8 @@ from collections.abc import Sequence
 from enum import IntEnum
 from math import cos, exp, pi
 
-ONE = 1 << 24  # of s and x
+ONE = 1 << 24  # of s
+PROGRESS_ONE = 1 << 49
 POINTS = 256
 
 
@@ -33,16 +34,14 @@ def loaded_table(shape: Shape) -> list[int]:
     return [round(formulas[shape](k / POINTS) * 65536) for k in range(POINTS + 1)]
 
 
-def evaluate(progress: int, table: Sequence[int] | None, mirror: bool) -> int:
-    """s (UQ1.24) for a progress u (UQ0.48); `table` is None for linear."""
-    x = (progress + (1 << 23)) >> 24
-    if mirror:
-        return ONE - _interpolate(ONE - x, table)
-    return _interpolate(x, table)
+def evaluate(progress: int, table: Sequence[int] | None) -> int:
+    """s (UQ1.24) for a progress u (UQ0.49); `table` is None for linear."""
+    if table is None:
+        return _rounded(progress, 25)
+    k, rest = divmod(progress, PROGRESS_ONE // POINTS)
+    return _rounded((table[k] << 24) + (table[k + 1] - table[k]) * _rounded(rest, 17), 16)
 
 
-def _interpolate(x: int, table: Sequence[int] | None) -> int:
-    if table is None or x == ONE:
-        return x
-    k, f = divmod(x, 1 << 16)
-    return (table[k] << 8) + (((table[k + 1] - table[k]) * f + (1 << 7) - (k >> 7)) >> 8)
+def _rounded(number: int, bits: int) -> int:
+    """To the nearest without the lower bits, ties up."""
+    return (number + (1 << bits - 1)) >> bits

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""passo_axis: pin timings, queue, directions, position."""
+"""passo_axis: pin timings, queue, directions, what it counts."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -12,19 +12,20 @@ from cocotb_tests.bench import Clocks, Recorder, begin, read, rng
 from cocotb_tests.checker import PinTiming, PulseChecker
 from cocotb_tests.runner import run
 
-LATENCY = 3  # step_request to STEP
+LATENCY = 3  # step_request to STEP, direction to DIR
 QUEUE = 4
+LOST_MAX = 15
 
 INPUTS = (
     "step_request",
     "direction",
-    "line_direction",
     "drop",
-    "zero",
+    "clear",
     "step_high",
     "step_low",
     "dir_setup",
     "dir_hold",
+    "timing_written",
     "both_edges",
     "step_inverted",
     "direction_inverted",
@@ -36,7 +37,7 @@ Request = tuple[int, int]  # clock, direction: 1 or -1
 
 
 def test_axis(simulator: str) -> None:
-    run(__name__, "passo_axis", simulator=simulator)
+    run(__name__, "passo_axis_top", simulator=simulator)
 
 
 def expected_steps(
@@ -45,14 +46,14 @@ def expected_steps(
     """Steps as soon as the pin timing allows, and the clocks of the requests that find four waiting.
 
     The pins stand in `direction` before, and the direction of the line is always that of the last request.
-    Counted in clocks of the pins: a request reaches them after LATENCY, a change of the line's direction a
-    clock earlier, and a step leaves the queue a clock before it is seen.
+    Counted in clocks of the pins: a request and a change of the line's direction reach them after LATENCY,
+    and a step leaves the queue a clock before it is seen.
     """
     steps: list[Request] = []
     lost: list[int] = []
     waiting: list[Request] = []
     coming = list(requests)
-    line = [(clock + LATENCY - 1, wanted) for clock, wanted in requests]
+    line = [(clock + LATENCY, wanted) for clock, wanted in requests]
     line_direction = direction
     active = False
     step_free = turn_free = set_up = 0
@@ -87,7 +88,8 @@ class Axis:
     def __init__(self, dut: HierarchyObject, clocks: Clocks, timing: PinTiming) -> None:
         self.dut, self.clocks, self.timing = dut, clocks, timing
         self.overruns = Recorder(clocks, dut.overrun)
-        self.positions = Recorder(clocks, dut.position)
+        self.made = Recorder(clocks, dut.step_made)
+        self.directions = Recorder(clocks, dut.step_direction)
         self.checker = PulseChecker(clocks, dut.step_pin, dut.dir_pin, [timing])
 
     @classmethod
@@ -116,7 +118,7 @@ class Axis:
         self.checker.set_timing(0, timing)
 
     async def request(self, requests: Sequence[Request]) -> None:
-        """Make step requests, line_direction being that of the last one."""
+        """Make step requests; the direction of the line is that of the last one."""
         negative: int | None = None
         for clock, direction in requests:
             if self.clocks.now < clock:
@@ -125,7 +127,6 @@ class Axis:
             if negative != (direction < 0):
                 negative = direction < 0
                 self.dut.direction.value = negative
-                self.dut.line_direction.value = negative
             self.dut.step_request.value = 1
             await self.clocks.fall
         self.dut.step_request.value = 0
@@ -133,7 +134,6 @@ class Axis:
     async def request_and_compare(self, requests: Sequence[Request]) -> None:
         """Make step requests and compare all edges of the pins with the reference."""
         before = len(self.checker.steps())
-        position = read_signed(self.dut)
         steps, lost = expected_steps(self.timing, requests, self.checker.direction())
         await self.request(requests)
         settle = sum(
@@ -144,12 +144,15 @@ class Axis:
         assert made == steps, first_difference(made, steps)
         overruns = self.overruns.clocks_where(bool, self.clocks.now)
         assert [clock for clock in overruns if clock > requests[0][0]] == [clock + 1 for clock in lost]
-        assert read_signed(self.dut) == position + sum(direction for _, direction in steps)
+        assert self.counted()[before:] == steps
 
-
-def read_signed(dut: HierarchyObject) -> int:
-    """The position."""
-    return dut.position.value.to_signed()
+    def counted(self) -> list[Request]:
+        """What the axis says of the steps it made, as of the clock on which they leave the pin."""
+        counted: list[Request] = []
+        for clock in self.made.clocks_where(bool, self.clocks.now):
+            negative = next((n for since, n in reversed(self.directions.changes) if since <= clock), 0)
+            counted.append((clock + 1, -1 if negative else 1))
+        return counted
 
 
 def first_difference(actual: Sequence[Request], expected: Sequence[Request]) -> str:
@@ -162,16 +165,15 @@ def first_difference(actual: Sequence[Request], expected: Sequence[Request]) -> 
 
 @cocotb.test()
 async def a_step_leaves_the_pin_after_three_clocks(dut: HierarchyObject) -> None:
-    """STEP rises 3 clocks after the request and the position counts on the same clock."""
+    """STEP rises 3 clocks after the request, and the step is counted on the same clock."""
     axis = await Axis.begin(dut, PinTiming(high=4, low=2, setup=3, hold=5))
     for direction in (1, -1, -1, 1):
         await axis.clocks.wait(30)
-        dut.line_direction.value = direction < 0
+        dut.direction.value = direction < 0
         await axis.clocks.wait(30)
         now = axis.clocks.now
         await axis.request_and_compare([(now, direction)])
         assert axis.checker.steps()[-1] == (now + LATENCY, direction)
-        assert axis.positions.changes[-1][0] == now + LATENCY
     dut._log.info(axis.checker.finish())
 
 
@@ -233,6 +235,7 @@ async def the_fifth_waiting_step_is_an_overrun(dut: HierarchyObject) -> None:
     await axis.request_and_compare([(now, 1)] + [(now + 3 + n, d) for n, d in enumerate(directions)])
     assert [d for _, d in axis.checker.steps()] == [1, 1, -1, -1, 1]
     assert len(axis.overruns.clocks_where(bool, axis.clocks.now)) == 4
+    assert read(dut.lost) == 4
     dut._log.info(axis.checker.finish())
 
 
@@ -243,9 +246,9 @@ async def dir_follows_the_line_while_nothing_waits(dut: HierarchyObject) -> None
     axis = await Axis.begin(dut, timing)
     turned = Recorder(axis.clocks, dut.dir_pin)
     now = axis.clocks.now
-    dut.line_direction.value = 1
+    dut.direction.value = 1
     await axis.clocks.until(now + 20)
-    assert turned.changes == [(now + 2, 1)]
+    assert turned.changes == [(now + LATENCY, 1)]
     await axis.request([(axis.clocks.now, -1)])
     assert len(axis.checker.steps()) == 0
     await axis.clocks.wait(3)
@@ -255,7 +258,7 @@ async def dir_follows_the_line_while_nothing_waits(dut: HierarchyObject) -> None
     await axis.clocks.wait(40)
     now = axis.clocks.now
     await axis.request([(now, -1), (now + 1, -1)])
-    dut.line_direction.value = 0
+    dut.direction.value = 0
     await axis.clocks.wait(60)
     first = now + LATENCY
     assert axis.checker.steps()[1:] == [(first, -1), (first + timing.busy, -1)]
@@ -280,7 +283,7 @@ async def drop_forgets_what_waits_and_finishes_the_pulse(dut: HierarchyObject) -
         assert made == (1 if 10 + at * 9 < 30 + 10 + 1 else 2), (
             f"drop {10 + at * 9} clocks after the first request"
         )
-    assert read_signed(dut) == axis.checker.positions[0]
+    assert axis.counted() == axis.checker.steps()
     dut._log.info(axis.checker.finish())
 
 
@@ -305,17 +308,49 @@ async def polarities_invert_only_the_pins(dut: HierarchyObject) -> None:
 
 
 @cocotb.test()
-async def zero_sets_the_position(dut: HierarchyObject) -> None:
-    """The position counts down below zero as a signed number, and `zero` sets it to 0."""
-    axis = await Axis.begin(dut, PinTiming())
-    await axis.request_and_compare([(axis.clocks.now + 5 * n, -1) for n in range(9)])
-    assert read_signed(dut) == -9
-    dut.zero.value = 1
+async def lost_steps_are_counted_up_to_15(dut: HierarchyObject) -> None:
+    """The count stays at 15, and `clear` sets it to 0."""
+    axis = await Axis.begin(dut, PinTiming(high=100))
+    first = axis.clocks.now
+    for count in range(20):
+        await axis.request([(first + n + 2 * count, 1) for n in range(7 if count == 0 else 1)])
+        await axis.clocks.wait(1)
+        if count:
+            assert read(dut.lost) == min(LOST_MAX, read_lost(axis))
+    assert read(dut.lost) == LOST_MAX
+    dut.clear.value = 1
     await axis.clocks.wait(1)
-    dut.zero.value = 0
-    assert read_signed(dut) == 0
-    await axis.request_and_compare([(axis.clocks.now + 5 * n, 1) for n in range(3)])
-    assert read_signed(dut) == 3
+    dut.clear.value = 0
+    await axis.clocks.wait(1)
+    assert read(dut.lost) == 0
+
+
+def read_lost(axis: Axis) -> int:
+    """Overruns so far that have been counted."""
+    return len(axis.overruns.clocks_where(bool, axis.clocks.now - 1))
+
+
+@cocotb.test()
+@cocotb.parametrize(high=[0, 1, 2, 8, 70])
+async def a_time_that_is_written_begins_anew(dut: HierarchyObject, high: int) -> None:
+    """step_high written at any clock of a pulse: from then on STEP stays active for the new time."""
+    clocks = await begin(dut, *INPUTS)
+    for at in range(LATENCY - 1, LATENCY + 17):
+        dut.step_high.value = 20
+        pins = Recorder(clocks, dut.step_pin)
+        now = clocks.now
+        dut.step_request.value = 1
+        await clocks.fall
+        dut.step_request.value = 0
+        await clocks.until(now + at)
+        dut.timing_written.value = 1
+        await clocks.fall
+        dut.timing_written.value = 0
+        dut.step_high.value = high
+        await clocks.wait(150)
+        # the time begins with the second clock after the write; the pin follows a clock later
+        assert pins.changes == [(now + LATENCY, 1), (now + at + 3 + max(1, high), 0)]
+        pins.stop()
 
 
 def random_timing(random: Random) -> PinTiming:
@@ -358,14 +393,14 @@ async def no_change_of_line_direction_harms_the_pins(dut: HierarchyObject) -> No
         timing = random_timing(random)
         axis = await Axis.begin(dut, timing)
         accepted: list[int] = []
+        direction = 1
         for _ in range(600):
             await axis.clocks.fall
             request = random.random() < 0.5 / timing.busy
-            direction = random.choice((1, -1))
+            if random.random() < 0.3:
+                direction = random.choice((1, -1))
             dut.step_request.value = request
             dut.direction.value = direction < 0
-            if random.random() < 0.2:
-                dut.line_direction.value = random.random() < 0.5
             if request:
                 accepted.append(direction)
         await axis.clocks.fall

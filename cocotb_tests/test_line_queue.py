@@ -50,16 +50,16 @@ class Queue:
         getattr(self.dut, name).value = 0
 
     def check_next(self, line: list[int] | None) -> None:
-        """Check the control and the length of the next line, or that there is none."""
+        """Check the control of the next line, or that there is none."""
         assert read(self.dut.next_valid) == (line is not None)
         if line is not None:
             assert read(self.dut.next_last) == line[0] & 1
             assert read(self.dut.next_endless) == line[0] >> 1 & 1
             assert read(self.dut.next_directions) == line[0] >> 8
-            assert read(self.dut.next_minus_substeps) == -line[1] % (1 << 32)
 
     def check_current(self, line: list[int]) -> None:
-        """Check the step counts of the current line."""
+        """Check the length and the step counts of the current line."""
+        assert read(self.dut.last_substep) == line[1] - 1
         steps = read(self.dut.steps)
         assert [steps >> 32 * axis & 0xFFFFFFFF for axis in range(self.axes)] == line[2:]
 
@@ -219,6 +219,22 @@ async def an_endless_line_stays_the_next_until_it_is_released(dut: HierarchyObje
     await queue.strobe("release_line")
     await queue.clocks.wait(2)
     queue.check_next(after)
+    queue.check_room(DEPTH - 1)
+
+
+@cocotb.test()
+async def the_end_of_a_motion_leaves_the_next_motion_alone(dut: HierarchyObject) -> None:
+    """release_line gives back the LAST line's place only, although an ENDLESS line waits behind it."""
+    random = rng("line queue, release")
+    queue = await Queue.begin(dut)
+    last, endless = queue.random_line(random, LAST), queue.random_line(random, ENDLESS)
+    await queue.bus.push(last + endless)
+    await queue.clocks.wait(2)
+    await queue.strobe("take")
+    await queue.clocks.wait(3)
+    await queue.strobe("release_line")
+    await queue.clocks.wait(2)
+    queue.check_next(endless)
     queue.check_room(DEPTH - 1)
 
 

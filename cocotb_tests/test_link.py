@@ -77,7 +77,8 @@ class Target:
     """All registers behind the bus: writable where `refusals` has no entry and `known` has the address.
 
     Answers as the RTL's targets do: one clock after the strobe, for one clock, 0 otherwise. Checks that
-    address and data stand on the bus a clock before their strobe, and data a clock after it.
+    address and data stand on the bus a clock before their strobe, and data to check or write a clock after
+    it; and what the link says of the size of data to check.
     """
 
     def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
@@ -112,8 +113,9 @@ class Target:
                 self._last_write = now
                 self.writes.append(access)
             await fall
-            for bus in self._buses:
-                assert not bus.changes or bus.changes[-1][0] < now
+            if strobe != "read":
+                for bus in self._buses:
+                    assert not bus.changes or bus.changes[-1][0] < now
             if strobe == "write":
                 continue
             self.dut.bus_claim.value = address in self.known
@@ -123,6 +125,8 @@ class Target:
                 self.dut.bus_read_data.value = self.values.get(address, 0)
             else:
                 self.checks.append(access)
+                assert read(self.dut.bus_top_bit) == max(access.data.bit_length() - 1, 0)
+                assert read(self.dut.bus_lone_bit) == (access.data.bit_count() <= 1)
             await fall
             self.dut.bus_claim.value = 0
             self.dut.bus_refusal.value = 0
@@ -145,7 +149,7 @@ class Bench:
     ) -> "Bench":
         """Reset."""
         master = SpiMaster(dut, half_period, **spi)
-        inputs = ("bus_claim", "bus_refusal", "bus_read_data", "bus_incomplete")
+        inputs = ("bus_claim", "bus_refusal", "bus_read_data", "bus_counters", "bus_incomplete")
         dut.status.value = STATUS
         return cls(dut, await begin(dut, *inputs, period=period), master)
 
@@ -188,7 +192,7 @@ class Bench:
         counted = verdict not in (Verdict.OK, Verdict.DUPLICATE)
         assert self.refusals - refusals == counted
         if counted:
-            assert read(self.dut.refused_verdict) == verdict
+            assert read(self.dut.verdict) == verdict
         return verdict
 
     async def read_registers(self, address: int, length: int) -> list[int] | Verdict:
@@ -441,7 +445,8 @@ async def an_impatient_master_gets_its_frame_executed_exactly_once(dut: Hierarch
     """Chip select rises on any clock around the verdict: the repetition is executed or a duplicate."""
     random = rng("link, impatient")
     bench = await Bench.begin(dut)
-    for clocks in range(1, 70):
+    outcomes: set[int] = set()
+    for clocks in range(1, 100):
         sequence = bench.next_sequence()
         words = frame(WRITE, sequence, 8, [clocks, sequence])
         bench.spi.trail = clocks * MHZ_72 + random.randrange(MHZ_72)
@@ -450,11 +455,12 @@ async def an_impatient_master_gets_its_frame_executed_exactly_once(dut: Hierarch
         await bench.spi.transfer(words[:-2])
         await Timer(100 * MHZ_72, "step")
         executed = len(bench.target.writes) - writes
-        assert executed in (0, 2)
+        outcomes.add(executed)
         bench.spi.trail = 2 * SCLK_18
         reply = await bench.spi.transfer(words)
         assert reply[-1] == acknowledge(sequence, Verdict.DUPLICATE if executed else Verdict.OK), clocks
         assert len(bench.target.writes) - writes == 2, f"chip select rose {clocks} clocks after the crc"
+    assert outcomes == {0, 2}
 
 
 @cocotb.test()
@@ -485,7 +491,7 @@ async def a_frame_whose_header_is_missed_is_ignored(dut: HierarchyObject) -> Non
     for gap in (3, 20, 50, 90, 120, 180):
         bench.target.writes = []
         long = frame(PUSH, bench.next_sequence(), 8, list(range(PAYLOAD_MAX)))
-        bench.spi.trail, bench.spi.gap = 60 * MHZ_72, gap * MHZ_72
+        bench.spi.trail, bench.spi.gap = 90 * MHZ_72, gap * MHZ_72
         await bench.spi.transfer(long[:-2])
         bench.spi.trail, bench.spi.gap = 2 * SCLK_18, 8 * SCLK_18
         early = frame(WRITE, bench.next_sequence(), 9, [7, *inner, *inner, 8])
@@ -522,6 +528,56 @@ async def garbage_executes_nothing(dut: HierarchyObject) -> None:
         assert len(bench.target.writes) == writes
         await bench.shift(random)
         assert await bench.request(WRITE, 2, [random.randrange(1 << 32)]) == Verdict.OK
+
+
+async def read_counters(bench: Bench) -> dict[Verdict, int]:
+    """The counters of refusals, read at addresses 4 and 5."""
+    bench.dut.bus_counters.value = 1
+    words = await bench.read_registers(4, 2)
+    bench.dut.bus_counters.value = 0
+    assert isinstance(words, list)
+    return {verdict: words[n // 4] >> n % 4 * 8 & 0xFF for n, verdict in enumerate(list(Verdict)[2:])}
+
+
+@cocotb.test()
+async def refusals_are_counted(dut: HierarchyObject) -> None:
+    """Each in its own 8-bit counter, which wraps; reset clears them all."""
+    random = rng("link, counters")
+    bench = await Bench.begin(dut)
+    expected = dict.fromkeys(list(Verdict)[2:], 0)
+    assert await read_counters(bench) == expected
+    for _ in range(60):
+        verdict = random.choice((Verdict.BAD_CRC, *list(Verdict)[4:]))
+        bench.target.refusals = {9: verdict}
+        words = frame(WRITE, bench.next_sequence(), 9, [1])
+        words[2] ^= verdict == Verdict.BAD_CRC
+        assert await bench.send(words) == verdict
+        expected[verdict] += 1
+    assert await read_counters(bench) == expected
+    for _ in range(300):
+        await bench.spi.transfer([header(WRITE, 0, 0, 0), crc_of_words([header(WRITE, 0, 0, 0)]), 0])
+    expected[Verdict.BAD_LENGTH] += 300 - 256
+    assert await read_counters(bench) == expected
+    dut.rst.value = 1
+    await bench.clocks.wait(2)
+    dut.rst.value = 0
+    assert await read_counters(bench) == dict.fromkeys(expected, 0)
+    bench.target.refusals = {9: Verdict.BUSY}
+    assert await bench.request(WRITE, 9, [1]) == Verdict.BUSY
+    assert await read_counters(bench) == {verdict: verdict == Verdict.BUSY for verdict in expected}
+
+
+@cocotb.test()
+async def a_refusal_is_counted_whatever_chip_select_does(dut: HierarchyObject) -> None:
+    """From the verdict on, 74 clocks after the CRC, chip select may rise and the next frame begin."""
+    bench = await Bench.begin(dut, lead=3 * MHZ_72 + 100)
+    words = frame(0, 7, 0, [1])[:-2]
+    for n, clocks in enumerate(range(80, 120, 3)):
+        bench.spi.trail, bench.spi.gap = clocks * MHZ_72, 3 * MHZ_72
+        await bench.spi.transfer(words)
+        bench.spi.trail, bench.spi.gap = 2 * SCLK_18, 8 * SCLK_18
+        counters = await read_counters(bench)
+        assert counters[Verdict.BAD_OPERATION] == n + 1, f"chip select rose {clocks} clocks after the crc"
 
 
 @cocotb.test()

@@ -7,7 +7,7 @@ from itertools import pairwise
 import cocotb
 from cocotb.handle import HierarchyObject
 
-from cocotb_tests.bench import Clocks, Recorder, begin, rng
+from cocotb_tests.bench import Clocks, Recorder, begin, read, rng
 from cocotb_tests.runner import run
 
 LATENCY = 2  # advance to substep
@@ -27,11 +27,13 @@ class Path:
         self.substeps = Recorder(clocks, dut.substep)
         self.expected: list[int] = []
         self.phase = ONE // 4
+        self.velocity = self.coming_high = 0
 
     @classmethod
     async def begin(cls, dut: HierarchyObject) -> "Path":
         """Reset; the reset leaves the phase as restart does."""
-        return cls(dut, await begin(dut, "restart", "advance", "velocity"))
+        inputs = ("stop", "begin_profile", "tick_last", "rest", "velocity_next", "drain", "drain_velocity")
+        return cls(dut, await begin(dut, "restart", "advance", *inputs))
 
     async def restart(self) -> None:
         """Begin a motion."""
@@ -39,19 +41,31 @@ class Path:
         self.dut.restart.value = 1
         await self.clocks.wait(1)
         self.dut.restart.value = 0
-        self.phase = ONE // 4
+        self.phase, self.velocity = ONE // 4, 0
+
+    def take(self, velocity: int) -> None:
+        """Take a velocity with the clock to come; its upper half is there only one clock later."""
+        dut = self.dut
+        high, self.coming_high = self.coming_high, velocity >> 24
+        dut.velocity_next.value = high << 24 | velocity & 0xFFFFFF
+        dut.begin_profile.value = 1
 
     async def advance(self, velocities: Iterable[int | None]) -> None:
-        """One clock for each velocity; None is a clock without advance, with any velocity."""
-        for velocity in velocities:
+        """One clock for each velocity, taken with the one before; None is a clock without advance."""
+        given = list(velocities)
+        for velocity, following in zip([None, *given], [*given, None], strict=True):
             self.dut.advance.value = velocity is not None
             if velocity is not None:
-                self.dut.velocity.value = velocity
                 carry, self.phase = divmod(self.phase + velocity, ONE)
                 if carry:
                     self.expected.append(self.clocks.now + LATENCY)
+            self.take(self.velocity if following is None else following)
+            self.velocity = self.velocity if following is None else following
             await self.clocks.fall
         self.dut.advance.value = 0
+        self.take(self.velocity)
+        await self.clocks.fall
+        self.dut.begin_profile.value = 0
 
     async def compare(self) -> int:
         """Check all substeps so far; return their number."""
@@ -67,7 +81,7 @@ async def half_a_substep_per_clock_is_one_every_second_clock(dut: HierarchyObjec
     """The highest velocity: the quarter substep puts the first carry on the second clock."""
     path = await Path.begin(dut)
     await path.restart()
-    first = path.clocks.now
+    first = path.clocks.now + 1  # the clock before takes the velocity
     await path.advance([HALF] * 3000)
     assert await path.compare() == 1500
     assert path.expected == [first + 1 + 2 * n + LATENCY for n in range(1500)]
@@ -144,3 +158,47 @@ async def random_velocities_and_gaps_match_the_integer_sum(dut: HierarchyObject)
             sequence.append(velocity if random.random() < share else None)
         await path.advance(sequence)
     dut._log.info(f"{await path.compare()} substeps compared")
+
+
+@cocotb.test()
+async def a_tick_begins_with_the_next_velocity(dut: HierarchyObject) -> None:
+    """From the clock after the advance of tick_last; 0 if rest. The host sees it too."""
+    path = await Path.begin(dut)
+    await path.restart()
+    random = rng("path, tick")
+    dut.advance.value = 1
+    for _ in range(100):
+        velocity, rest = random.randrange(HALF + 1), random.random() < 0.3
+        dut.velocity_next.value, dut.rest.value = velocity, rest
+        for clock in range(random.randrange(2, 40)):
+            dut.tick_last.value = clock == 0
+            carry, path.phase = divmod(path.phase + path.velocity, ONE)
+            if carry:
+                path.expected.append(path.clocks.now + LATENCY)
+            path.velocity = 0 if rest else velocity
+            await path.clocks.fall
+        assert read(dut.velocity) == path.velocity >> 16
+    dut.advance.value = 0
+    assert await path.compare() > 100
+
+
+@cocotb.test()
+async def drain_has_its_own_velocity_and_stop_none(dut: HierarchyObject) -> None:
+    """drain_velocity while drain is high, 0 after it and after a stop, each 3 clocks later at the latest."""
+    path = await Path.begin(dut)
+    random = rng("path, drain")
+    for _ in range(30):
+        await path.restart()
+        await path.advance([random.randrange(1, HALF + 1)] * random.randrange(1, 9))
+        dut.rest.value = 1
+        drain_velocity = random.randrange(HALF >> 16)
+        dut.drain_velocity.value = drain_velocity
+        for name, expected in (("drain", drain_velocity), ("stop", 0)):
+            getattr(dut, name).value = 1
+            await path.clocks.wait(3)
+            assert read(dut.velocity) == expected
+            getattr(dut, name).value = 0
+            await path.clocks.wait(3)
+            assert read(dut.velocity) == 0
+        dut.rest.value = 0
+    await path.compare()

@@ -14,7 +14,8 @@ DEPTH_LOG2 = 2
 DEPTH = 1 << DEPTH_LOG2
 QUEUE_FULL, BUSY, BAD_VALUE = 7, 8, 9
 WORDS = 5
-NOW = 2
+MIRROR = 4
+UNUSED = 6  # half word
 
 
 def test_ramp_queue(simulator: str) -> None:
@@ -33,6 +34,11 @@ def random_ramp(random: Random, now: bool = False) -> list[int]:
         step >> 32,
         step & 0xFFFFFFFF,
     ]
+
+
+def inverted(ramp: list[int], word: int) -> int:
+    """What the half words of a word are inverted by: T always is, du if the ramp is mirrored."""
+    return 0xFFFF if word == 2 or (word > 2 and ramp[0] & MIRROR) else 0
 
 
 class Queue:
@@ -57,7 +63,7 @@ class Queue:
 
     async def check(self, ramps: deque[list[int]] | list[list[int]], now_pending: bool = False) -> None:
         """Check the outputs, and all half words of the oldest ramp, each a clock after its index."""
-        await self.clocks.wait(1)
+        await self.clocks.wait(2)  # valid is that of two clocks ago
         dut = self.dut
         assert read(dut.room) == DEPTH - len(ramps)
         assert read(dut.valid) == bool(ramps)
@@ -67,7 +73,8 @@ class Queue:
                 dut.half_index.value = index
                 await self.clocks.wait(1)
                 word = ramps[0][index // 2]
-                assert read(dut.half) == (word & 0xFFFF if index % 2 else word >> 16), index
+                half = word & 0xFFFF if index % 2 else word >> 16
+                assert index == UNUSED or read(dut.half) == half ^ inverted(ramps[0], index // 2), index
 
 
 @cocotb.test()

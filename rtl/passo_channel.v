@@ -22,6 +22,8 @@ module passo_channel #(
   input  wire                     select,
   input  wire [              7:0] bus_address,
   input  wire [             31:0] bus_data,
+  input  wire [              4:0] bus_top_bit,
+  input  wire                     bus_lone_bit,
   output reg                      claim,
   output reg  [              3:0] refusal,
   output reg  [             31:0] read_data,
@@ -91,7 +93,10 @@ module passo_channel #(
   wire        ramp_ready;
   wire        ramp_ended;
   wire        ramp_dry;
-  wire [47:0] velocity;
+  wire        tick_last;
+  wire        ends_next;
+  wire [47:0] velocity_next;
+  wire [31:0] velocity;
   wire        substep;
 
   // where: lines, DDAs
@@ -99,7 +104,7 @@ module passo_channel #(
   wire                      line_last;
   wire                      line_endless;
   wire        [   AXES-1:0] line_directions;
-  wire        [       31:0] line_minus_substeps;
+  wire        [       31:0] last_substep;
   wire        [AXES*32-1:0] steps;
   wire                      line_take;
   wire                      slot_add;
@@ -113,11 +118,21 @@ module passo_channel #(
   wire                      line_underrun;
 
   // axes
-  wire [   AXES-1:0] overrun;
-  wire [   AXES-1:0] was_overrun;
-  wire [   AXES-1:0] axis_claim;
-  wire [ AXES*4-1:0] axis_refusal;
-  wire [AXES*32-1:0] axis_read_data;
+  wire [  AXES-1:0] step_made;
+  wire [  AXES-1:0] step_direction;
+  wire [  AXES-1:0] overrun;
+  wire [  AXES-1:0] was_overrun;
+  wire [AXES*4-1:0] lost;
+  wire [  AXES-1:0] write_pins;
+  wire [  AXES-1:0] write_step_timing;
+  wire [  AXES-1:0] write_dir_timing;
+  wire              short_upper;
+  wire              short_lower;
+  wire [      31:0] position;  // of the axis that is read
+  wire              axis_claim;
+  wire [       3:0] axis_refusal;
+  wire [       3:0] axis_read_data;
+  wire              answers_position;
 
   wire        registers_claim;
   wire [ 3:0] registers_refusal;
@@ -130,15 +145,10 @@ module passo_channel #(
   assign incomplete = line_incomplete | ramp_incomplete;
 
   // Whoever is not meant answers 0.
-  integer i;
   always @* begin
-    claim     = registers_claim | (axis_claim != {AXES{1'b0}});
-    refusal   = registers_refusal | line_refusal | ramp_refusal;
-    read_data = registers_read_data;
-    for (i = 0; i < AXES; i = i + 1) begin
-      refusal   = refusal | axis_refusal[i*4+:4];
-      read_data = read_data | axis_read_data[i*32+:32];
-    end
+    claim     = registers_claim | axis_claim;
+    refusal   = registers_refusal | line_refusal | ramp_refusal | axis_refusal;
+    read_data = registers_read_data | {28'd0, axis_read_data} | (position & {32{answers_position}});
   end
 
   passo_channel_registers #(
@@ -155,6 +165,8 @@ module passo_channel #(
     .select           (select),
     .bus_address      (bus_address),
     .bus_data         (bus_data),
+    .bus_top_bit      (bus_top_bit),
+    .bus_lone_bit     (bus_lone_bit),
     .claim            (registers_claim),
     .refusal          (registers_refusal),
     .read_data        (registers_read_data),
@@ -177,7 +189,7 @@ module passo_channel #(
     .overrun          (was_overrun),
     .drained          (drained),
     .rate             (rate),
-    .velocity         (velocity[47:16]),
+    .velocity         (velocity),
     .line_room        (line_room),
     .ramp_room        (ramp_room)
   );
@@ -186,26 +198,26 @@ module passo_channel #(
     .AXES      (AXES),
     .DEPTH_LOG2(LINE_QUEUE_LOG2)
   ) u_line_queue (
-    .clk                (clk),
-    .rst                (rst),
-    .bus_frame          (bus_frame),
-    .bus_check          (bus_check),
-    .bus_write          (bus_write),
-    .select             (select_line_queue),
-    .bus_data           (bus_data),
-    .blocked            (stopped),
-    .refusal            (line_refusal),
-    .incomplete         (line_incomplete),
-    .room               (line_room),
-    .take               (line_take),
-    .release_line       (release_line),
-    .flush              (stopped),
-    .next_valid         (line_valid),
-    .next_last          (line_last),
-    .next_endless       (line_endless),
-    .next_directions    (line_directions),
-    .next_minus_substeps(line_minus_substeps),
-    .steps              (steps)
+    .clk            (clk),
+    .rst            (rst),
+    .bus_frame      (bus_frame),
+    .bus_check      (bus_check),
+    .bus_write      (bus_write),
+    .select         (select_line_queue),
+    .bus_data       (bus_data),
+    .blocked        (stopped),
+    .refusal        (line_refusal),
+    .incomplete     (line_incomplete),
+    .room           (line_room),
+    .take           (line_take),
+    .release_line   (release_line),
+    .flush          (stopped),
+    .next_valid     (line_valid),
+    .next_last      (line_last),
+    .next_endless   (line_endless),
+    .next_directions(line_directions),
+    .last_substep   (last_substep),
+    .steps          (steps)
   );
 
   passo_ramp_queue #(
@@ -288,13 +300,14 @@ module passo_channel #(
     .begin_profile   (begin_profile),
     .stop            (stopped),
     .drain           (drain),
-    .drain_velocity  (drain_velocity),
     .ready           (ramp_ready),
     .ended           (ramp_ended),
     .dry             (ramp_dry),
     .advance         (advance),
     .stall           (stall),
-    .velocity        (velocity),
+    .tick_last       (tick_last),
+    .ends_next       (ends_next),
+    .velocity_next   (velocity_next),
     .ramp_valid      (ramp_valid),
     .ramp_now_pending(ramp_now_pending),
     .ramp_take       (ramp_take),
@@ -309,48 +322,58 @@ module passo_channel #(
   );
 
   passo_path u_path (
-    .clk     (clk),
-    .rst     (rst),
-    .restart (prepare),
-    .advance (advance),
-    .velocity(velocity),
-    .substep (substep)
+    .clk           (clk),
+    .rst           (rst),
+    .restart       (prepare),
+    .stop          (stopped),
+    .begin_profile (begin_profile),
+    .advance       (advance),
+    .tick_last     (tick_last),
+    .rest          (ends_next),
+    .velocity_next (velocity_next),
+    .drain         (drain),
+    .drain_velocity(drain_velocity),
+    .velocity      (velocity),
+    .substep       (substep)
   );
 
   passo_line #(
     .AXES(AXES)
   ) u_line (
-    .clk                (clk),
-    .rst                (rst),
-    .start              (prepare),
-    .stop               (stopped),
-    .substep            (substep),
-    .next_valid         (line_valid),
-    .next_last          (line_last),
-    .next_endless       (line_endless),
-    .next_directions    (line_directions),
-    .next_minus_substeps(line_minus_substeps),
-    .take               (line_take),
-    .slot_add           (slot_add),
-    .slot_load          (slot_load),
-    .slot_step          (slot_step),
-    .slot_load_q        (slot_load_q),
-    .broadcast          (broadcast),
-    .directions         (directions),
-    .endless            (current_endless),
-    .ended              (line_ended),
-    .underrun           (line_underrun)
+    .clk            (clk),
+    .rst            (rst),
+    .start          (prepare),
+    .stop           (stopped),
+    .substep        (substep),
+    .next_valid     (line_valid),
+    .next_last      (line_last),
+    .next_endless   (line_endless),
+    .next_directions(line_directions),
+    .last_substep   (last_substep),
+    .take           (line_take),
+    .slot_add       (slot_add),
+    .slot_load      (slot_load),
+    .slot_step      (slot_step),
+    .slot_load_q    (slot_load_q),
+    .broadcast      (broadcast),
+    .directions     (directions),
+    .endless        (current_endless),
+    .ended          (line_ended),
+    .underrun       (line_underrun)
   );
 
   genvar axis;
   generate
     for (axis = 0; axis < AXES; axis = axis + 1) begin : g_axis
       wire        step_request;
-      wire [31:0] position;
       wire [15:0] step_high;
       wire [15:0] step_low;
       wire [15:0] dir_setup;
       wire [15:0] dir_hold;
+      wire        short_high;
+      wire        short_low;
+      wire        short_setup;
+      wire        short_hold;
       wire        both_edges;
       wire        step_inverted;
       wire        direction_inverted;
@@ -373,15 +396,21 @@ module passo_channel #(
         .rst               (rst),
         .step_request      (step_request),
         .direction         (directions[axis]),
-        .line_direction    (directions[axis]),
         .drop              (command_abort),
-        .zero              (command_zero),
+        .step_made         (step_made[axis]),
+        .step_direction    (step_direction[axis]),
         .overrun           (overrun[axis]),
-        .position          (position),
+        .clear             (command_clear),
+        .lost              (lost[axis*4+:4]),
         .step_high         (step_high),
         .step_low          (step_low),
         .dir_setup         (dir_setup),
         .dir_hold          (dir_hold),
+        .short_high        (short_high),
+        .short_low         (short_low),
+        .short_setup       (short_setup),
+        .short_hold        (short_hold),
+        .timing_written    (write_step_timing[axis] | write_dir_timing[axis]),
         .both_edges        (both_edges),
         .step_inverted     (step_inverted),
         .direction_inverted(direction_inverted),
@@ -392,25 +421,19 @@ module passo_channel #(
         .enable_pin        (enable[axis])
       );
 
-      passo_axis_registers u_registers (
+      passo_axis_settings u_settings (
         .clk               (clk),
         .rst               (rst),
-        .bus_check         (bus_check),
-        .bus_write         (bus_write),
-        .bus_read          (bus_read),
-        .bus_push          (bus_push),
-        .select            (select_axis[axis]),
-        .select_position   (select_position[axis]),
-        .bus_address       (bus_address[2:0]),
+        .write_pins        (write_pins[axis]),
+        .write_step_timing (write_step_timing[axis]),
+        .write_dir_timing  (write_dir_timing[axis]),
         .bus_data          (bus_data),
-        .claim             (axis_claim[axis]),
-        .refusal           (axis_refusal[axis*4+:4]),
-        .read_data         (axis_read_data[axis*32+:32]),
-        .snapshot          (snapshot),
-        .position          (position),
-        .overrun           (overrun[axis]),
-        .clear             (command_clear),
-        .was_overrun       (was_overrun[axis]),
+        .short_upper       (short_upper),
+        .short_lower       (short_lower),
+        .short_high        (short_high),
+        .short_low         (short_low),
+        .short_setup       (short_setup),
+        .short_hold        (short_hold),
         .step_high         (step_high),
         .step_low          (step_low),
         .dir_setup         (dir_setup),
@@ -421,8 +444,48 @@ module passo_channel #(
         .enable            (enable_wanted),
         .enable_inverted   (enable_inverted)
       );
+
+      assign was_overrun[axis] = lost[axis*4+:4] != 4'd0;
     end
   endgenerate
+
+  passo_axis_registers #(
+    .AXES(AXES)
+  ) u_axis_registers (
+    .clk              (clk),
+    .rst              (rst),
+    .bus_check        (bus_check),
+    .bus_write        (bus_write),
+    .bus_read         (bus_read),
+    .bus_push         (bus_push),
+    .select_axis      (select_axis),
+    .select_position  (select_position),
+    .bus_address      (bus_address[2:0]),
+    .bus_data         (bus_data),
+    .claim            (axis_claim),
+    .refusal          (axis_refusal),
+    .read_data        (axis_read_data),
+    .answers_position (answers_position),
+    .write_pins       (write_pins),
+    .write_step_timing(write_step_timing),
+    .write_dir_timing (write_dir_timing),
+    .short_upper      (short_upper),
+    .short_lower      (short_lower),
+    .lost             (lost)
+  );
+
+  passo_positions #(
+    .AXES(AXES)
+  ) u_positions (
+    .clk           (clk),
+    .rst           (rst),
+    .step_made     (step_made),
+    .step_direction(step_direction),
+    .zero          (command_zero),
+    .snapshot      (snapshot),
+    .address       (bus_address[2:0]),
+    .position      (position)
+  );
 
 endmodule
 `resetall

@@ -3,7 +3,8 @@
 // address means.
 //
 // Promise: the answer to a strobe comes one clock later, for one clock; it is 0 unless one of these registers
-// is meant. A command strobe is high for the clock after its write.
+// is meant. A command strobe is high for the clock after its write. `bus_top_bit` and `bus_lone_bit` tell how
+// large the data of a check are.
 `resetall
 `default_nettype none
 
@@ -22,9 +23,11 @@ module passo_channel_registers #(
   input  wire                     select,
   input  wire [              7:0] bus_address,        // within the channel
   input  wire [             31:0] bus_data,
+  input  wire [              4:0] bus_top_bit,
+  input  wire                     bus_lone_bit,
   output reg                      claim,
   output reg  [              3:0] refusal,
-  output reg  [             31:0] read_data,
+  output wire [             31:0] read_data,
   // blocks
   output reg                      select_line_queue,  // a push to it
   output reg                      select_ramp_queue,
@@ -55,9 +58,6 @@ module passo_channel_registers #(
 
   `include "passo_registers.vh"
 
-  localparam [16:0] RATE_ONE = 17'h10000;
-  localparam [31:0] VELOCITY_MAX = 32'h8000_0000;
-
   wire       is_line = bus_address == CHANNEL_LINE;
   wire       is_ramp = bus_address == CHANNEL_RAMP;
   wire [7:0] overrun_padded = {{(8 - AXES) {1'b0}}, overrun};
@@ -78,74 +78,72 @@ module passo_channel_registers #(
     select_ramp_queue <= select & bus_push & is_ramp;
   end
 
-  // What a check or a read of this address is answered
-  reg        known;
-  reg [ 3:0] check_refusal;
-  reg [ 3:0] read_refusal;
-  reg [31:0] value;
-
-  always @* begin
-    known         = 1'b1;
-    check_refusal = VERDICT_OK;
-    read_refusal  = VERDICT_BAD_OPERATION;
-    value         = 32'd0;
-    case (bus_address)
-      CHANNEL_COMMAND: begin
-        if ((bus_data & ~CHANNEL_COMMAND_DEFINED) != 32'd0) check_refusal = VERDICT_BAD_VALUE;
-        else if (occupied && (bus_data[CHANNEL_COMMAND_CLEAR_LSB] || bus_data[CHANNEL_COMMAND_ZERO_LSB]))
-          check_refusal = VERDICT_BUSY;
-      end
-      CHANNEL_RATE_TARGET, CHANNEL_RATE_SLEW, CHANNEL_STOP_SLEW:
-      if (bus_data > {15'd0, RATE_ONE}) check_refusal = VERDICT_BAD_VALUE;
-      CHANNEL_DRAIN_VELOCITY: if (bus_data > VELOCITY_MAX) check_refusal = VERDICT_BAD_VALUE;
-      CHANNEL_STATE: begin
-        check_refusal = VERDICT_READ_ONLY;
-        read_refusal  = VERDICT_OK;
-        value         = {drained, overrun_padded, stopping, cause, 1'b0, state};
-      end
-      CHANNEL_RATE: begin
-        check_refusal = VERDICT_READ_ONLY;
-        read_refusal  = VERDICT_OK;
-        value         = {15'd0, rate};
-      end
-      CHANNEL_ROOM: begin
-        check_refusal = VERDICT_READ_ONLY;
-        read_refusal = VERDICT_OK;
-        value = {{(15 - LINE_QUEUE_LOG2) {1'b0}}, line_room, {(15 - RAMP_QUEUE_LOG2) {1'b0}}, ramp_room};
-      end
-      CHANNEL_VELOCITY: begin
-        check_refusal = VERDICT_READ_ONLY;
-        read_refusal  = VERDICT_OK;
-        value         = velocity;
-      end
-      CHANNEL_LINE, CHANNEL_RAMP: check_refusal = bus_push ? VERDICT_OK : VERDICT_BAD_OPERATION;
-      default: known = 1'b0;
-    endcase
-    if (bus_push && !is_line && !is_ramp) check_refusal = VERDICT_BAD_OPERATION;
-  end
+  // The blocks of write-only and of read-only registers, and the number in the block
+  reg       in_settings;
+  reg       in_state;
+  reg       in_queues;
+  reg [2:0] number;
+  reg       known;
 
   always @(posedge clk) begin
-    claim <= select & known & (bus_check | bus_read);
-    refusal   <= !(select && known) ? VERDICT_OK :
-                 bus_check          ? check_refusal :
-                 bus_read           ? read_refusal : VERDICT_OK;
-    read_data <= (select && bus_read) ? value : 32'd0;
+    in_settings <= select && bus_address <= CHANNEL_DRAIN_VELOCITY;
+    in_state    <= select && bus_address[7:2] == CHANNEL_STATE[7:2];
+    in_queues   <= select && (is_line || is_ramp);
+    number      <= bus_address[2:0];
+  end
 
-    {command_zero, command_clear, command_abort, command_stop} <= 4'd0;
-    if (select && bus_write)
-      case (bus_address)
-        CHANNEL_COMMAND:        {command_zero, command_clear, command_abort, command_stop} <= bus_data[3:0];
-        CHANNEL_RATE_TARGET:    rate_target <= bus_data[16:0];
-        CHANNEL_RATE_SLEW:      rate_slew <= bus_data[16:0];
-        CHANNEL_STOP_SLEW:      stop_slew <= bus_data[16:0];
-        CHANNEL_DRAIN_VELOCITY: drain_velocity <= bus_data;
-        default:                ;
-      endcase
+  wire is_command = in_settings && number == CHANNEL_COMMAND[2:0];
+  wire is_drain_velocity = in_settings && number == CHANNEL_DRAIN_VELOCITY[2:0];
 
+  // What a check is answered. Values: a rate is at most 2^16, a velocity at most 2^31.
+  reg  too_large;
+  reg  busy;
+  wire not_taken = bus_push != in_queues;
+
+  always @(posedge clk) begin
+    known <= in_settings || in_state || in_queues;
+    busy <= is_command && (bus_data[CHANNEL_COMMAND_CLEAR_LSB] || bus_data[CHANNEL_COMMAND_ZERO_LSB]);
+    too_large <= in_settings && (is_command        ? bus_top_bit > 5'd3 :
+                                 is_drain_velocity ? bus_top_bit == 5'd31 && !bus_lone_bit :
+                                                     bus_top_bit > 5'd16 || (bus_top_bit[4] && !bus_lone_bit));
+    claim <= known && (bus_check || bus_read);
+    refusal <= !known    ? VERDICT_OK :
+               bus_read  ? (in_state ? VERDICT_OK : VERDICT_BAD_OPERATION) :
+               !bus_check ? VERDICT_OK :
+               not_taken ? VERDICT_BAD_OPERATION :
+               in_state  ? VERDICT_READ_ONLY :
+               too_large ? VERDICT_BAD_VALUE :
+               busy && occupied ? VERDICT_BUSY : VERDICT_OK;
     if (rst) begin
-      claim                                                      <= 1'b0;
-      refusal                                                    <= VERDICT_OK;
-      read_data                                                  <= 32'd0;
+      claim   <= 1'b0;
+      refusal <= VERDICT_OK;
+    end
+  end
+
+  // Reading
+  reg     [3:0] reads;
+  integer       i;
+
+  always @(posedge clk)
+    for (i = 0; i < 4; i = i + 1)
+      reads[i] <= bus_read && in_state && number[1:0] == i[1:0];
+
+  assign read_data =
+      (reads[0] ? {drained, overrun_padded, stopping, cause, 1'b0, state} : 32'd0)
+      | (reads[1] ? {15'd0, rate} : 32'd0)
+      | (reads[2] ? {{(15 - LINE_QUEUE_LOG2) {1'b0}}, line_room, {(15 - RAMP_QUEUE_LOG2) {1'b0}}, ramp_room} : 32'd0)
+      | (reads[3] ? velocity : 32'd0);
+
+  // Writing
+  wire write = in_settings && bus_write;
+
+  always @(posedge clk) begin
+    {command_zero, command_clear, command_abort, command_stop} <= write && is_command ? bus_data[3:0] : 4'd0;
+    if (write && number == CHANNEL_RATE_TARGET[2:0]) rate_target <= bus_data[16:0];
+    if (write && number == CHANNEL_RATE_SLEW[2:0]) rate_slew <= bus_data[16:0];
+    if (write && number == CHANNEL_STOP_SLEW[2:0]) stop_slew <= bus_data[16:0];
+    if (write && is_drain_velocity) drain_velocity <= bus_data;
+    if (rst) begin
       rate_target                                                <= CHANNEL_RATE_TARGET_RESET;
       rate_slew                                                  <= CHANNEL_RATE_SLEW_RESET;
       stop_slew                                                  <= CHANNEL_STOP_SLEW_RESET;

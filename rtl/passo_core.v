@@ -56,13 +56,11 @@ module passo_core #(
   // link
   wire        frame_start;
   wire        frame_end;
-  wire        word_valid;
-  wire [31:0] word;
+  wire        half_valid;
+  wire        half_low;
+  wire [15:0] half;
   wire [31:0] reply_word;
-  wire [31:0] status;
   wire [ 7:0] last_sequence;
-  wire        refused;
-  wire [ 3:0] refused_verdict;
 
   // bus
   wire        bus_frame;
@@ -72,6 +70,9 @@ module passo_core #(
   wire        bus_push;
   wire [11:0] bus_address;
   wire [31:0] bus_data;
+  wire [ 4:0] bus_top_bit;
+  wire        bus_lone_bit;
+  wire        bus_counters;
   reg         bus_claim;
   reg  [ 3:0] bus_refusal;
   reg  [31:0] bus_read_data;
@@ -145,34 +146,36 @@ module passo_core #(
     .spi_miso   (spi_miso),
     .frame_start(frame_start),
     .frame_end  (frame_end),
-    .word_valid (word_valid),
-    .word       (word),
+    .half_valid (half_valid),
+    .half_low   (half_low),
+    .half       (half),
     .reply_word (reply_word)
   );
 
   passo_link u_link (
-    .clk            (clk),
-    .rst            (rst),
-    .frame_start    (frame_start),
-    .frame_end      (frame_end),
-    .word_valid     (word_valid),
-    .word           (word),
-    .reply_word     (reply_word),
-    .status         (status),
-    .last_sequence  (last_sequence),
-    .refused        (refused),
-    .refused_verdict(refused_verdict),
-    .bus_frame      (bus_frame),
-    .bus_check      (bus_check),
-    .bus_write      (bus_write),
-    .bus_read       (bus_read),
-    .bus_push       (bus_push),
-    .bus_address    (bus_address),
-    .bus_data       (bus_data),
-    .bus_claim      (bus_claim),
-    .bus_refusal    (bus_refusal),
-    .bus_read_data  (bus_read_data),
-    .bus_incomplete (channel_incomplete != {CHANNELS{1'b0}})
+    .clk           (clk),
+    .rst           (rst),
+    .frame_start   (frame_start),
+    .frame_end     (frame_end),
+    .half_valid    (half_valid),
+    .half_low      (half_low),
+    .half          (half),
+    .reply_word    (reply_word),
+    .last_sequence (last_sequence),
+    .bus_frame     (bus_frame),
+    .bus_check     (bus_check),
+    .bus_write     (bus_write),
+    .bus_read      (bus_read),
+    .bus_push      (bus_push),
+    .bus_address   (bus_address),
+    .bus_data      (bus_data),
+    .bus_top_bit   (bus_top_bit),
+    .bus_lone_bit  (bus_lone_bit),
+    .bus_claim     (bus_claim),
+    .bus_refusal   (bus_refusal),
+    .bus_read_data (bus_read_data),
+    .bus_counters  (bus_counters),
+    .bus_incomplete(channel_incomplete != {CHANNELS{1'b0}})
   );
 
   passo_registers #(
@@ -182,27 +185,25 @@ module passo_core #(
     .LINE_QUEUE_LOG2(LINE_QUEUE_LOG2),
     .RAMP_QUEUE_LOG2(RAMP_QUEUE_LOG2)
   ) u_registers (
-    .clk            (clk),
-    .rst            (rst),
-    .bus_check      (bus_check),
-    .bus_write      (bus_write),
-    .bus_read       (bus_read),
-    .bus_push       (bus_push),
-    .bus_address    (bus_address),
-    .bus_data       (bus_data),
-    .claim          (registers_claim),
-    .refusal        (registers_refusal),
-    .read_data      (registers_read_data),
-    .last_sequence  (last_sequence),
-    .refused        (refused),
-    .refused_verdict(refused_verdict),
-    .status         (status),
-    .run            (run),
-    .wait_sync      (wait_sync),
-    .any_stopped    (stopped != {CHANNELS{1'b0}}),
-    .any_occupied   (occupied != {CHANNELS{1'b0}}),
-    .line_room      (line_room),
-    .ramp_room      (ramp_room)
+    .clk          (clk),
+    .rst          (rst),
+    .bus_check    (bus_check),
+    .bus_write    (bus_write),
+    .bus_read     (bus_read),
+    .bus_push     (bus_push),
+    .bus_address  (bus_address),
+    .bus_data     (bus_data),
+    .claim        (registers_claim),
+    .refusal      (registers_refusal),
+    .read_data    (registers_read_data),
+    .is_counters  (bus_counters),
+    .last_sequence(last_sequence),
+    .run          (run),
+    .wait_sync    (wait_sync),
+    .any_stopped  (stopped != {CHANNELS{1'b0}}),
+    .any_occupied (occupied != {CHANNELS{1'b0}}),
+    .line_room    (line_room),
+    .ramp_room    (ramp_room)
   );
 
   passo_tables #(
@@ -216,7 +217,8 @@ module passo_core #(
     .bus_push   (bus_push),
     .select     (select_tables),
     .bus_address(bus_address[9:0]),
-    .bus_data   (bus_data),
+    .bus_data   (bus_data[15:0]),
+    .bus_top_bit(bus_top_bit),
     .occupied   (occupied != {CHANNELS{1'b0}}),
     .refusal    (tables_refusal),
     .request    (table_request),
@@ -247,6 +249,8 @@ module passo_core #(
         .select          (bus_address[11:8] == BLOCK),
         .bus_address     (bus_address[7:0]),
         .bus_data        (bus_data),
+        .bus_top_bit     (bus_top_bit),
+        .bus_lone_bit    (bus_lone_bit),
         .claim           (channel_claim[channel]),
         .refusal         (channel_refusal[channel*4+:4]),
         .read_data       (channel_read_data[channel*32+:32]),

@@ -21,16 +21,22 @@ module passo_dda (
   output wire               step_request
 );
 
-  reg signed [32:0] e_minus_m;
-  reg signed [32:0] addend;
+  reg signed  [32:0] e_minus_m;
+  reg signed  [32:0] addend;
+  reg                below;  // e + N < M
+  wire signed [32:0] sum = e_minus_m + addend;
 
-  assign step_request = slot_step & ~e_minus_m[32];
+  assign step_request = slot_step & ~below;
 
   always @(posedge clk) begin
     addend <= (slot_add || slot_load) ? broadcast : $signed({1'b0, steps});
-    if (slot_load_q) e_minus_m <= addend;
-    else if (slot_add || step_request) e_minus_m <= e_minus_m + addend;
+    below  <= sum[32];
+    if (slot_add || slot_load || slot_load_q || step_request) e_minus_m <= slot_load ? 33'sd0 : sum;
   end
+
+`ifdef FORMAL
+  `include "passo_dda_formal.vh"
+`endif
 
 endmodule
 `resetall

@@ -2,15 +2,15 @@
 // Line queue: lines as they are pushed, one block RAM column for each of their words, so that a whole line is
 // read at once.
 //
-// Promise: lines come out whole and in order. The next line's control and length are always at the output
-// (`next_valid`); `take` makes it the current line, whose step counts are at the output two clocks later and
-// stay there. An ENDLESS line stays the next line when it is taken. A place is free again when the line after
-// it is taken, or on `release_line`. `flush` drops everything that is written; it stays while the channel is
-// stopped, for a push that was checked before.
+// Promise: lines come out whole and in order. The next line's control is always at the output (`next_valid`);
+// `take` makes it the current line, whose last_substep is at the output one clock later, whose step counts two
+// clocks later; they stay there. An ENDLESS line stays the next line when it is taken. A place is free again
+// when the line after it is taken, or on `release_line`. `flush` drops everything that is written; it stays
+// while the channel is stopped, for a push that was checked before.
 //
 // A push is checked word by word (`bus_check`): room for it after all lines of this frame before it, M not 0,
-// N_i <= M, no reserved bits. `refusal` answers one clock later. The M column holds -M, as the line counter
-// and the DDA want it.
+// N_i <= M, no reserved bits. `refusal` answers one clock later. One subtraction serves the checks and makes
+// what is stored of M, which is M - 1, the number of the last substep.
 `resetall
 `default_nettype none
 
@@ -26,10 +26,10 @@ module passo_line_queue #(
   input  wire                bus_write,
   input  wire                select,
   input  wire [        31:0] bus_data,
-  input  wire                blocked,              // the channel is stopped
+  input  wire                blocked,          // the channel is stopped
   output reg  [         3:0] refusal,
-  output wire                incomplete,           // the frame so far ends within a line
-  output reg  [DEPTH_LOG2:0] room,                 // in lines
+  output wire                incomplete,       // the frame so far ends within a line
+  output reg  [DEPTH_LOG2:0] room,             // in lines
   // to the line counter
   input  wire                take,
   input  wire                release_line,
@@ -38,89 +38,90 @@ module passo_line_queue #(
   output wire                next_last,
   output wire                next_endless,
   output wire [    AXES-1:0] next_directions,
-  output wire [        31:0] next_minus_substeps,  // -M
-  output wire [ AXES*32-1:0] steps                 // N_i of the current line
+  output wire [        31:0] last_substep,     // M - 1 of the current line
+  output wire [ AXES*32-1:0] steps             // N_i of the current line
 );
 
   `include "passo_registers.vh"
 
   localparam CONTROL_BITS = 2 + AXES;
   localparam [31:0] CONTROL_DEFINED = (((1 << AXES) - 1) << 8) | 3;
-  localparam [3:0] INDEX_CONTROL = 4'd0;
-  localparam [3:0] INDEX_SUBSTEPS = 4'd1;
-  localparam [3:0] INDEX_STEPS = 4'd2;
-  localparam [3:0] INDEX_LAST = INDEX_STEPS + AXES[3:0] - 4'd1;
+  localparam INDEX_CONTROL = 0;
+  localparam INDEX_SUBSTEPS = 1;
+  localparam INDEX_STEPS = 2;
+  localparam INDEX_LAST = INDEX_STEPS + AXES - 1;
+  localparam [DEPTH_LOG2:0] DEPTH = 1 << DEPTH_LOG2;
 
   // Writing: one word of a line after the other
-  reg [         3:0] index;
+  reg [INDEX_LAST:0] index;  // one bit for each word
   reg [DEPTH_LOG2:0] write_line;
   reg [DEPTH_LOG2:0] checked;  // lines of this frame
-  reg [        31:0] checked_substeps;
 
   wire strobe = select & (bus_check | bus_write);
   wire write = select & bus_write;
-  wire line_complete = index == INDEX_LAST;
+  wire line_complete = index[INDEX_LAST];
+  wire line_written = write & line_complete;
 
-  assign incomplete = index != INDEX_CONTROL;
+  assign incomplete = ~index[INDEX_CONTROL];
+
+  // bus_data - 1 - M, but for M itself bus_data - 1, a clock before it is asked. A carry comes out if that is
+  // not negative, which is right for M and wrong for N_i.
+  reg [31:0] not_substeps;  // ~M; ~0 until M has passed
+  reg [31:0] difference;
+  reg        wrong;
 
   always @(posedge clk) begin
     if (strobe) begin
-      index <= line_complete ? INDEX_CONTROL : index + 4'd1;
-      if (index == INDEX_SUBSTEPS) checked_substeps <= bus_data;
+      index <= {index[INDEX_LAST-1:0], index[INDEX_LAST]};
+      if (index[INDEX_SUBSTEPS]) not_substeps <= ~bus_data;
+      if (line_complete) not_substeps <= ~32'd0;
       if (line_complete && bus_check) checked <= checked + 1'b1;
-      if (line_complete && bus_write) write_line <= write_line + 1'b1;
     end
+    if (line_written) write_line <= write_line + 1'b1;
     if (rst || bus_frame) begin
-      index   <= INDEX_CONTROL;
-      checked <= {(DEPTH_LOG2 + 1) {1'b0}};
+      index        <= {{INDEX_LAST{1'b0}}, 1'b1};
+      not_substeps <= ~32'd0;
+      checked      <= {(DEPTH_LOG2 + 1) {1'b0}};
     end
-    if (rst) write_line <= {(DEPTH_LOG2 + 1) {1'b0}};
+    if (rst || flush) write_line <= {(DEPTH_LOG2 + 1) {1'b0}};
   end
 
   // what is to be said of the word, a clock before it is asked
   reg  full;
   reg  bad_control;
-  reg  bad_substeps;
-  reg  bad_steps;
-  wire bad_value = index == INDEX_CONTROL ? bad_control : index == INDEX_SUBSTEPS ? bad_substeps : bad_steps;
+  wire bad_value = index[INDEX_CONTROL] ? bad_control : wrong;
 
   always @(posedge clk) begin
     full <= room == checked;
     bad_control <= (bus_data & ~CONTROL_DEFINED) != 32'd0;
-    bad_substeps <= bus_data == 32'd0;
-    bad_steps <= bus_data > checked_substeps;
-    refusal      <= !(select && bus_check) ? VERDICT_OK :
-                    blocked                ? VERDICT_BUSY :
-                    full                   ? VERDICT_QUEUE_FULL :
-                    bad_value              ? VERDICT_BAD_VALUE : VERDICT_OK;
+    {wrong, difference} <= {1'b0, bus_data} + {index[INDEX_SUBSTEPS], not_substeps};
+    refusal   <= !(select && bus_check) ? VERDICT_OK :
+                 blocked                ? VERDICT_BUSY :
+                 full                   ? VERDICT_QUEUE_FULL :
+                 bad_value              ? VERDICT_BAD_VALUE : VERDICT_OK;
   end
 
   // Reading
-  reg  [DEPTH_LOG2:0] next_line;
-  reg  [DEPTH_LOG2:0] current_line;  // = next_line when there is none
-  wire [DEPTH_LOG2:0] line_after_next = next_line + 1'b1;
+  reg  [  DEPTH_LOG2:0] next_line;
+  reg  [DEPTH_LOG2-1:0] current_line;
+  reg                   has_place;  // the current line is not the next line
+  wire                  freed = (take & has_place) | release_line;
 
   always @(posedge clk) begin
     if (take) begin
-      current_line <= next_line;
-      if (!next_endless) next_line <= line_after_next;
+      current_line <= next_line[DEPTH_LOG2-1:0];
+      has_place    <= ~next_endless;
     end
-    if (release_line) begin
-      // an ENDLESS line is both current and next
-      if (next_valid && next_endless) next_line <= line_after_next;
-      current_line <= next_valid && next_endless ? line_after_next : next_line;
-    end
+    if (release_line) has_place <= 1'b0;
+    if ((take && !next_endless) || (release_line && !has_place)) next_line <= next_line + 1'b1;
     next_valid <= ~take & ~release_line & ~flush & next_line != write_line;
-    room       <= {1'b1, {DEPTH_LOG2{1'b0}}} - (write_line - current_line);
-    if (flush) begin
-      next_line    <= write_line;
-      current_line <= write_line;
+    if (freed != line_written) room <= room + {{DEPTH_LOG2{line_written}}, 1'b1};
+    if (rst || flush) begin
+      next_line <= {(DEPTH_LOG2 + 1) {1'b0}};
+      has_place <= 1'b0;
+      room      <= DEPTH;
     end
-    if (rst) begin
-      next_line    <= {(DEPTH_LOG2 + 1) {1'b0}};
-      current_line <= {(DEPTH_LOG2 + 1) {1'b0}};
-      next_valid   <= 1'b0;
-    end
+    if (rst) next_valid <= 1'b0;
   end
 
   passo_memory #(
@@ -128,7 +129,7 @@ module passo_line_queue #(
     .DEPTH_LOG2(DEPTH_LOG2)
   ) u_control (
     .clk          (clk),
-    .write        (write && index == INDEX_CONTROL),
+    .write        (write & index[INDEX_CONTROL]),
     .write_address(write_line[DEPTH_LOG2-1:0]),
     .write_data   ({bus_data[8+:AXES], bus_data[1:0]}),
     .read_address (next_line[DEPTH_LOG2-1:0]),
@@ -138,13 +139,13 @@ module passo_line_queue #(
   passo_memory #(
     .WIDTH     (32),
     .DEPTH_LOG2(DEPTH_LOG2)
-  ) u_substeps (
+  ) u_last_substep (
     .clk          (clk),
-    .write        (write && index == INDEX_SUBSTEPS),
+    .write        (write & index[INDEX_SUBSTEPS]),
     .write_address(write_line[DEPTH_LOG2-1:0]),
-    .write_data   (-bus_data),
-    .read_address (next_line[DEPTH_LOG2-1:0]),
-    .read_data    (next_minus_substeps)
+    .write_data   (difference),
+    .read_address (take ? next_line[DEPTH_LOG2-1:0] : current_line),
+    .read_data    (last_substep)
   );
 
   genvar axis;
@@ -155,14 +156,18 @@ module passo_line_queue #(
         .DEPTH_LOG2(DEPTH_LOG2)
       ) u_steps (
         .clk          (clk),
-        .write        (write && index == INDEX_STEPS + axis),
+        .write        (write & index[INDEX_STEPS+axis]),
         .write_address(write_line[DEPTH_LOG2-1:0]),
         .write_data   (bus_data),
-        .read_address (current_line[DEPTH_LOG2-1:0]),
+        .read_address (current_line),
         .read_data    (steps[axis*32+:32])
       );
     end
   endgenerate
+
+`ifdef FORMAL
+  `include "passo_line_queue_formal.vh"
+`endif
 
 endmodule
 `resetall

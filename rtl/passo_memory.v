@@ -27,5 +27,9 @@ module passo_memory #(
     read_data <= words[read_address];
   end
 
+`ifdef FORMAL
+  `include "passo_memory_formal.vh"
+`endif
+
 endmodule
 `resetall

@@ -59,28 +59,30 @@ module passo_motion (
 
   `include "passo_registers.vh"
 
-  localparam [2:0] SETTLE_LAST = 3'd4;  // the last substep needs 2 clocks to the line
   localparam [2:0] START_LAST = 3'd6;  // from RUN to the STEP pin
 
-  reg [2:0] count;
+  reg [2:0] count;  // clocks of RUN, up to START_LAST
+  reg [2:0] settling;  // a bit for each clock of SETTLE so far
+  reg       settled;  // its fifth clock: the last substep needs 2 clocks to the line
+  reg       finished;  // settled, and nothing is missing
   reg [2:0] soft_cause;
-  reg       startable;
+  reg       startable;  // for one clock, and still in IDLE
+  reg       rate_was_zero;
 
   assign occupied = state != STATE_IDLE && !stopped;
   assign moving   = state == STATE_RUN || state == STATE_SETTLE || state == STATE_DRAIN;
 
-  wire settled = state == STATE_SETTLE && count == SETTLE_LAST;
-  wire finished = settled && (line_ended || line_endless);
+  wire settles = state == STATE_SETTLE && settling[2] && !settled;
   wire dry = ramp_dry & ~line_endless;
 
-  assign prepare       = state == STATE_IDLE && startable;
+  assign prepare       = startable;
   assign begin_profile = state == STATE_ARMED && (sync_edge || !wait_sync);
   assign counting      = state == STATE_RUN || state == STATE_DRAIN;
   assign drain         = state == STATE_DRAIN;
   assign release_line  = finished;
 
   wire stop_now = command_abort | (moving & (step_overrun | line_underrun))
-                  | (stopping & (rate_is_zero | finished | ~moving));
+                  | (stopping & (rate_was_zero | finished | ~moving));
   wire [2:0] cause_now = command_abort           ? CAUSE_ABORT :
                          moving & step_overrun   ? CAUSE_STEP_OVERRUN :
                          moving & line_underrun  ? CAUSE_LINE_UNDERRUN : soft_cause;
@@ -88,8 +90,13 @@ module passo_motion (
   assign stopped = state == STATE_STOPPED;
 
   always @(posedge clk) begin
-    startable <= state == STATE_IDLE && run && line_valid && ramp_valid;
-    count     <= count + 3'd1;
+    startable <= state == STATE_IDLE && run && line_valid && ramp_valid && !startable && !stop_now;
+    if (count != START_LAST) count <= count + 3'd1;
+    if (state != STATE_RUN) count <= 3'd0;
+    settling      <= state == STATE_SETTLE ? {settling[1:0], 1'b1} : 3'd0;
+    settled       <= settles;
+    finished      <= settles && (line_ended || line_endless);
+    rate_was_zero <= rate_is_zero;
     case (state)
       STATE_IDLE:    if (startable) state <= STATE_PREPARE;
       STATE_PREPARE: if (ramp_ready) state <= STATE_ARMED;
@@ -101,11 +108,6 @@ module passo_motion (
     endcase
     if (state == STATE_RUN && count != START_LAST) running <= running;
     else running <= moving;
-
-    // count: in RUN up to START_LAST, in SETTLE up to SETTLE_LAST
-    if (state == STATE_RUN && count == START_LAST) count <= START_LAST;
-    if (begin_profile || (state == STATE_RUN && ramp_ended) || (state == STATE_DRAIN && line_ended))
-      count <= 3'd0;
 
     if (state == STATE_DRAIN && substep_made && !line_ended) drained <= drained + 16'd1;
 
@@ -124,6 +126,8 @@ module passo_motion (
       cause    <= cause_now;
       stopping <= 1'b0;
       running  <= 1'b0;
+      settled  <= 1'b0;
+      finished <= 1'b0;
     end
     if (rst) begin
       state     <= STATE_IDLE;
@@ -131,9 +135,15 @@ module passo_motion (
       stopping  <= 1'b0;
       drained   <= 16'd0;
       startable <= 1'b0;
+      settled   <= 1'b0;
+      finished  <= 1'b0;
       running   <= 1'b0;
     end
   end
+
+`ifdef FORMAL
+  `include "passo_motion_formal.vh"
+`endif
 
 endmodule
 `resetall

@@ -3,8 +3,11 @@
 //
 //   every enabled clock:  phase += velocity;  carry out = substep         phase = 1/4 on `restart`
 //
-// The 48-bit sum is cut into two halves of 24 bits, the upper one a clock behind.
+// The 48-bit sum is cut into two halves of 24 bits, the upper one a clock behind, and so is the velocity.
 // Promise: `substep` comes 2 clocks after its `advance`; with velocity <= 1/2 never on two clocks in a row.
+// `begin_profile` and the advance of `tick_last`: velocity_next counts from the next clock on (its upper half is
+// read one clock later), or 0 if `rest`. While `drain` is high drain_velocity counts, from the second clock on.
+// Rest and `stop`, or the end of drain: 0, 2 clocks later.
 `resetall
 `default_nettype none
 
@@ -12,30 +15,46 @@ module passo_path (
   input  wire        clk,
   input  wire        rst,
   input  wire        restart,
-  input  wire        advance,   // enabled clock
-  input  wire [47:0] velocity,  // UQ0.48 substeps per clock, 0 .. 1/2
+  input  wire        stop,
+  input  wire        begin_profile,
+  input  wire        advance,         // enabled clock
+  input  wire        tick_last,
+  input  wire        rest,
+  input  wire [47:0] velocity_next,   // UQ0.48 substeps per clock, 0 .. 1/2
+  input  wire        drain,
+  input  wire [31:0] drain_velocity,  // UQ0.32
+  output wire [31:0] velocity,        // UQ0.32
   output reg         substep
 );
 
   localparam [23:0] QUARTER = 24'h400000;
 
+  reg [23:0] velocity_low;
+  reg [23:0] velocity_high;
+  reg        take_q;
+  reg        refresh;
   reg [23:0] phase_low;
   reg        phase_low_carry;
   reg [23:0] phase_high;
-  reg [23:0] velocity_high_q;
   reg        advance_q;
 
-  wire [24:0] phase_low_sum = {1'b0, phase_low} + {1'b0, velocity[23:0]};
-  wire [24:0] phase_high_sum = {1'b0, phase_high} + {1'b0, velocity_high_q} + {24'd0, phase_low_carry};
+  wire [24:0] phase_low_sum = {1'b0, phase_low} + {1'b0, velocity_low};
+  wire [24:0] phase_high_sum = {1'b0, phase_high} + {1'b0, velocity_high} + {24'd0, phase_low_carry};
+
+  assign velocity = {velocity_high, velocity_low[23:16]};
+
+  wire take = begin_profile | (advance & tick_last) | refresh;
 
   always @(posedge clk) begin
+    refresh   <= rst | stop | drain;
+    take_q    <= take;
     advance_q <= advance;
-    if (advance) begin
-      {phase_low_carry, phase_low} <= phase_low_sum;
-      velocity_high_q              <= velocity[47:24];
-    end
-    substep <= 1'b0;
-    if (advance_q) {substep, phase_high} <= phase_high_sum;
+    if (take) velocity_low <= drain ? {drain_velocity[7:0], 16'd0} : rest ? 24'd0 : velocity_next[23:0];
+    if (take_q) velocity_high <= drain ? drain_velocity[31:8] : rest ? 24'd0 : velocity_next[47:24];
+    if (advance) phase_low <= phase_low_sum[23:0];
+    phase_low_carry <= advance & phase_low_sum[24];
+    if (advance_q) phase_high <= phase_high_sum[23:0];
+    substep <= advance_q & phase_high_sum[24];
     if (rst || restart) begin
       advance_q       <= 1'b0;
       phase_low       <= 24'd0;
@@ -44,6 +63,10 @@ module passo_path (
       substep         <= 1'b0;
     end
   end
+
+`ifdef FORMAL
+  `include "passo_path_formal.vh"
+`endif
 
 endmodule
 `resetall

@@ -3,21 +3,23 @@
 // next is made.
 //
 //   s        = shape(u);  velocity = v_start + floor((v_end - v_start) * s);  u += du      first u = du / 2
+//   mirror:    u runs from 1 to 0, and v_start and v_end change places
 //   after T ticks the next ramp begins, from exactly v_end; T = 0 sets the velocity at once
 //
 //   velocity   |        ____________
 //              |      /              \            v_start, v_end: of the ramp being made
-//              |    /                  \          velocity, velocity_next: of this tick, of the next
+//              |    /                  \          velocity_next: of the tick after this one
 //              |__/_____________________ \__
 //                 ramp   ramp (T ticks)  ramp
 //
 // `prepare` makes the first velocity of a motion, from 0, and raises `ready`; `begin_profile` starts the
-// first tick.
+// first tick. With that, and with the enabled clock of `tick_last`,
+// velocity_next begins to count; with `ended` 0.
 // Promise: the LAST ramp's end raises `ended`, with the last enabled clock of its last tick (a profile
-// without any tick: with begin_profile). Ramps that run out at speed raise `dry`, one tick ahead; the
+// without any tick: with begin_profile). Ramps that run out at speed raise `dry`, in the tick before; the
 // velocity then stays, and the next ramp is taken whenever it comes. `stall` holds the enable back at the end
-// of a tick until the next velocity is ready: later, never lost; in a tick of 128 clocks there is time for a
-// ramp and, on a core of one channel, two with T = 0 before it.
+// of a tick until a clock after the next velocity is ready: later, never lost. Clocks of each step: copy 24, fetch 7 (T = 0:
+// 6), take 5, look up 3 .. 2 * CHANNELS + 3, shape 19, scale 50, step 7, and one to choose between them.
 `resetall
 `default_nettype none
 
@@ -31,20 +33,21 @@ module passo_ramp #(
   input  wire        begin_profile,
   input  wire        stop,              // forget everything
   input  wire        drain,             // drain_velocity counts, not the ramps
-  input  wire [31:0] drain_velocity,    // UQ0.32
-  output reg         ready,             // velocity_next is
+  output reg         ready,             // velocity_next will be, a clock later
   output wire        ended,
   output reg         dry,
   // timescale and path
   input  wire        advance,           // an enabled clock that counts
   output wire        stall,
-  output reg  [47:0] velocity,          // UQ0.48 substeps per clock
+  output reg         tick_last,
+  output reg         ends_next,         // there is no next tick: rest
+  output wire [47:0] velocity_next,     // UQ0.48 substeps per clock
   // ramp queue
   input  wire        ramp_valid,
   input  wire        ramp_now_pending,
   output reg         ramp_take,
   output reg         ramp_take_now,
-  output reg  [ 3:0] ramp_half_index,
+  output wire [ 3:0] ramp_half_index,
   input  wire [15:0] ramp_half,
   // tables
   output wire        table_request,
@@ -54,194 +57,211 @@ module passo_ramp #(
   input  wire [15:0] table_point_next
 );
 
-  localparam [2:0] STEP_IDLE = 3'd0;
-  localparam [2:0] STEP_CHOOSE = 3'd1;
-  localparam [2:0] STEP_LOAD = 3'd2;
-  localparam [2:0] STEP_SHAPE = 3'd3;
-  localparam [2:0] STEP_SCALE = 3'd4;
+  `include "passo_ramp_steps.vh"
 
+  localparam [1:0] SHAPE_LINEAR = 2'd0;
   localparam [TICK_LOG2-1:0] TICK_LAST = {TICK_LOG2{1'b1}};
 
   reg [2:0] step;
+  reg [5:0] count;  // clocks of the step, from 1
 
   // the ramp being made
+  reg        loaded;
   reg        last;
   reg        mirror;
-  reg [ 1:0] shape;
-  reg [47:0] v_start;
-  reg [47:0] v_end;
-  reg [31:0] ticks;  // still to be made
-  reg        ticks_left;
-  reg [47:0] progress;  // u
-  reg        progress_carry;
-  reg [47:0] progress_step;  // du
-  reg [ 3:0] half_index_q;  // of ramp_half
-  reg        half_valid;
+  reg  [1:0] shape;
+  wire       over;
+  reg        moves;  // the velocity is not 0
 
-  // the tick that runs, and the one after it
+  // the tick that runs
   reg [TICK_LOG2-1:0] tick_count;
-  reg                 tick_last;
-  reg                 ends_next;
+  reg                 unready;
 
-  wire tick = advance & tick_last;
-  wire next = begin_profile | tick;
+  wire take_velocity = begin_profile | (advance & tick_last);
+  assign ended = take_velocity & ends_next;
+  assign stall = tick_last & unready;
 
-  assign ended = next & ends_next;
-  assign stall = tick_last & ~ready & ~drain;
+  wire        control_load;
+  wire        start_move;
+  wire        start_load;
+  wire        start_copy;
+  wire        start_bit;
+  wire        end_bit;
+  wire        u_move;
+  wire        u_load;
+  wire        u_last;
+  wire [32:0] progress;
+  wire        ticks_load_low;
+  wire        ticks_load_high;
+  wire        ticks_add_low;
+  wire        ticks_add_high;
+  wire        moving;
+  wire        shaping;
+  wire        load_fraction;
+  wire        clear;
+  wire        result_move;
+  wire        interpolated_bit;
 
-  reg         shape_start;
-  wire        shape_done;
-  wire [24:0] s;
-  reg         scale_start;
-  wire        scale_done;
-  wire [47:0] scale_velocity;
-
-  passo_shape u_shape (
-    .clk             (clk),
-    .rst             (rst | stop),
-    .start           (shape_start),
-    .progress        (progress[47:23]),
-    .shape           (shape),
-    .mirror          (mirror),
-    .done            (shape_done),
-    .s               (s),
-    .table_request   (table_request),
-    .table_address   (table_address),
-    .table_served    (table_served),
-    .table_point     (table_point),
-    .table_point_next(table_point_next)
+  passo_ramp_strobes u_strobes (
+    .clk            (clk),
+    .prepare        (prepare),
+    .step           (step),
+    .count          (count),
+    .table_served   (table_served),
+    .half_index     (ramp_half_index),
+    .control_load   (control_load),
+    .start_move     (start_move),
+    .start_load     (start_load),
+    .start_copy     (start_copy),
+    .u_move         (u_move),
+    .u_load         (u_load),
+    .u_last         (u_last),
+    .ticks_load_low (ticks_load_low),
+    .ticks_load_high(ticks_load_high),
+    .ticks_add_low  (ticks_add_low),
+    .ticks_add_high (ticks_add_high),
+    .moving         (moving),
+    .shaping        (shaping),
+    .load_fraction  (load_fraction),
+    .clear          (clear),
+    .result_move    (result_move)
   );
 
-  passo_scale u_scale (
-    .clk     (clk),
-    .rst     (rst | stop),
-    .start   (scale_start),
-    .v_start (v_start),
-    .v_end   (v_end),
-    .s       (s),
-    .done    (scale_done),
-    .velocity(scale_velocity)
+  passo_ramp_numbers u_numbers (
+    .clk            (clk),
+    .half           (ramp_half),
+    .start_move     (start_move),
+    .start_load     (start_load),
+    .start_copy     (start_copy),
+    .copy_high      (velocity_next[24]),
+    .copy_low       (velocity_next[0]),
+    .start_bit      (start_bit),
+    .end_index      (count[3:0]),
+    .end_bit        (end_bit),
+    .mirror         (mirror),
+    .u_move         (u_move),
+    .u_load         (u_load),
+    .u_last         (u_last),
+    .progress       (progress),
+    .ticks_load_low (ticks_load_low),
+    .ticks_load_high(ticks_load_high),
+    .ticks_add_low  (ticks_add_low),
+    .ticks_add_high (ticks_add_high),
+    .over           (over)
   );
 
-  // The velocity of the next tick
-  reg [47:0] velocity_next;
+  passo_interpolate u_interpolate (
+    .clk          (clk),
+    .clear        (clear),
+    .result_move  (result_move),
+    .moving       (moving),
+    .shaping      (shaping),
+    .load_fraction(load_fraction),
+    .linear       (shape == SHAPE_LINEAR),
+    .progress     (progress),
+    .load_points  (step == STEP_LOOK_UP && table_served),
+    .point        (table_point),
+    .point_next   (table_point_next),
+    .point_is_last(progress[32:25] == 8'hFF),
+    .a_bit        (loaded && mirror ? end_bit : start_bit),
+    .b_bit        (loaded && !mirror ? end_bit : start_bit),
+    .a            (interpolated_bit),
+    .result       (velocity_next)
+  );
+
+  assign table_request = step == STEP_LOOK_UP;
+  assign table_address = {shape - 2'd1, progress[32:25]};
 
   always @(posedge clk) begin
-    shape_start   <= 1'b0;
-    scale_start   <= 1'b0;
-    ramp_take     <= 1'b0;
+    ramp_take     <= step == STEP_TAKE && count == 6'd3;  // before the step ends, so that ramp_valid is true
     ramp_take_now <= 1'b0;
     dry           <= 1'b0;
-    ticks_left    <= ticks != 32'd0;
-    half_index_q  <= ramp_half_index;
-    half_valid    <= 1'b0;
+    moves         <= step == STEP_SCALE && (moves || interpolated_bit);
+    count         <= count + 6'd1;
 
     case (step)
       STEP_CHOOSE: begin
-        ramp_half_index <= 4'd0;
-        if (ramp_now_pending) begin
-          ramp_take_now <= 1'b1;
-          v_end         <= velocity;
-          step          <= STEP_LOAD;
-        end else if (ticks_left) begin
-          shape_start <= 1'b1;
-          step        <= STEP_SHAPE;
-        end else if (!last && ramp_valid) step <= STEP_LOAD;
-        else begin
-          velocity_next <= last ? 48'd0 : v_end;
-          ends_next     <= last;
-          dry           <= !last && v_end != 48'd0;
-          ready         <= 1'b1;
-          step          <= STEP_IDLE;
+        count <= 6'd1;
+        if (!ready && !ends_next) begin
+          if (ramp_now_pending) begin
+            ramp_take_now <= 1'b1;
+            loaded        <= 1'b0;
+            last          <= 1'b0;
+            step          <= STEP_COPY;
+          end else if (loaded) step <= shape == SHAPE_LINEAR ? STEP_SCALE : STEP_LOOK_UP;
+          else if (last) begin
+            ends_next <= 1'b1;
+            ready     <= 1'b1;
+          end else step <= ramp_valid ? STEP_FETCH : STEP_SCALE;
         end
       end
 
-      STEP_LOAD: begin
-        // the first clock lets a take_now reach the queue, the second its memory
-        if (!ramp_take_now && !(half_valid && half_index_q == 4'd9)) begin
-          ramp_half_index <= ramp_half_index + 4'd1;
-          half_valid      <= 1'b1;
+      STEP_COPY: if (count == 6'd24) step <= STEP_CHOOSE;
+
+      STEP_FETCH: begin
+        if (count == 6'd6 && over) begin
+          step  <= STEP_TAKE;
+          count <= 6'd1;
         end
-        if (half_valid)
-          case (half_index_q)
-            4'd0: begin
-              v_start      <= v_end;
-              v_end[47:32] <= ramp_half;
-            end
-            4'd1: {shape, mirror, last} <= {ramp_half[5:4], ramp_half[2], ramp_half[0]};
-            4'd2: v_end[31:16] <= ramp_half;
-            4'd3: v_end[15:0] <= ramp_half;
-            4'd4: ticks[31:16] <= ramp_half;
-            4'd5: ticks[15:0] <= ramp_half;
-            4'd6: ;
-            4'd7: progress_step[47:32] <= ramp_half;
-            4'd8: begin
-              progress_step[31:16] <= ramp_half;
-              ramp_take            <= 1'b1;  // so that ramp_valid is true again in STEP_CHOOSE
-            end
-            default: begin
-              progress_step[15:0] <= ramp_half;
-              progress            <= {1'b0, progress_step[47:16], ramp_half[15:1]};
-              step                <= STEP_CHOOSE;
-            end
-          endcase
+        if (count == 6'd7) begin
+          loaded <= 1'b1;
+          step   <= STEP_CHOOSE;
+        end
+      end
+
+      STEP_TAKE:
+      if (count == 6'd5) begin
+        loaded <= 1'b0;
+        step   <= STEP_CHOOSE;
+      end
+
+      STEP_LOOK_UP: begin
+        count <= 6'd1;
+        if (table_served) step <= STEP_SHAPE;
       end
 
       STEP_SHAPE:
-      if (shape_done) begin
-        scale_start                      <= 1'b1;
-        {progress_carry, progress[23:0]} <= {1'b0, progress[23:0]} + {1'b0, progress_step[23:0]};
-        step                             <= STEP_SCALE;
+      if (count == 6'd19) begin
+        step  <= STEP_SCALE;
+        count <= 6'd1;
       end
 
-      STEP_SCALE: begin
-        if (scale_start) progress[47:24] <= progress[47:24] + progress_step[47:24] + {23'd0, progress_carry};
-        if (scale_done) begin
-          velocity_next <= scale_velocity;
-          ends_next     <= 1'b0;
-          ticks         <= ticks - 32'd1;
-          ready         <= 1'b1;
-          step          <= STEP_IDLE;
-        end
+      STEP_SCALE:
+      if (count == 6'd50) begin
+        ready <= 1'b1;
+        dry   <= !loaded && (moves || interpolated_bit);
+        step  <= !loaded ? STEP_CHOOSE : over ? STEP_TAKE : STEP_STEP;
+        count <= 6'd1;
       end
 
-      default: ;
+      default: if (count == 6'd7) step <= STEP_CHOOSE;
     endcase
 
-    if (prepare) begin
-      v_end     <= 48'd0;
-      velocity  <= 48'd0;
-      ticks     <= 32'd0;
-      last      <= 1'b0;
-      ready     <= 1'b0;
-      ends_next <= 1'b0;
-      step      <= STEP_CHOOSE;
-    end
+    if (control_load) {shape, mirror, last} <= {ramp_half[5:4], ramp_half[2], ramp_half[0]};
 
     if (advance) begin
       tick_count <= tick_count + 1'b1;
       tick_last  <= tick_count == TICK_LAST - 1'b1;
     end
-    if (next) begin
-      velocity <= velocity_next;
-      ready    <= 1'b0;
-      if (!ends_next) step <= STEP_CHOOSE;
-    end
+    unready <= !ready && !drain;
+    if (take_velocity) ready <= 1'b0;
     if (begin_profile) begin
       tick_count <= {TICK_LOG2{1'b0}};
       tick_last  <= 1'b0;
     end
-    if (drain) velocity <= {drain_velocity, 16'd0};
 
+    if (prepare) begin
+      step      <= STEP_COPY;
+      count     <= 6'd1;
+      ready     <= 1'b0;
+      ends_next <= 1'b0;
+      loaded    <= 1'b0;
+      last      <= 1'b0;
+    end
     if (rst || stop) begin
-      step          <= STEP_IDLE;
+      step          <= STEP_CHOOSE;
       ready         <= 1'b0;
-      ends_next     <= 1'b0;
-      velocity      <= 48'd0;
-      ticks         <= 32'd0;
-      last          <= 1'b0;
-      shape_start   <= 1'b0;
-      scale_start   <= 1'b0;
+      ends_next     <= 1'b1;
       ramp_take     <= 1'b0;
       ramp_take_now <= 1'b0;
       tick_last     <= 1'b0;

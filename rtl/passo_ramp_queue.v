@@ -30,7 +30,7 @@ module passo_ramp_queue #(
   input  wire                take,
   input  wire                take_now,
   input  wire                flush,
-  output wire                valid,
+  output reg                 valid,        // of two clocks ago
   output reg                 now_pending,
   input  wire [         3:0] half_index,
   output wire [        15:0] half
@@ -40,6 +40,7 @@ module passo_ramp_queue #(
 
   localparam [2:0] INDEX_CONTROL = 3'd0;  // v_end(47:32), control
   localparam [2:0] INDEX_VELOCITY_LOW = 3'd1;
+  localparam [2:0] INDEX_TICKS = 3'd2;
   localparam [2:0] INDEX_STEP_HIGH = 3'd3;  // du(47:32)
   localparam [2:0] INDEX_LAST = 3'd4;
   localparam [15:0] CONTROL_DEFINED = 16'h0037;
@@ -53,6 +54,7 @@ module passo_ramp_queue #(
   reg                velocity_is_max;  // as far as its upper bits tell
   reg                write_low;  // second clock of a write
   reg                is_now;
+  reg                is_mirror;
 
   wire strobe = select & (bus_check | bus_write);
   wire write_high = select & bus_write;
@@ -64,6 +66,7 @@ module passo_ramp_queue #(
     if (strobe && index == INDEX_CONTROL) begin
       velocity_is_max <= bus_data[31:16] == VELOCITY_MAX_HIGH;
       is_now          <= bus_data[1];
+      is_mirror       <= bus_data[2];
     end
     if ((select && bus_check) || write_low) index <= index == INDEX_LAST ? INDEX_CONTROL : index + 3'd1;
     if (select && bus_check && index == INDEX_LAST) checked <= checked + 1'b1;
@@ -109,15 +112,20 @@ module passo_ramp_queue #(
   // Reading
   reg [DEPTH_LOG2:0] read_ramp;
 
-  assign valid = read_ramp != write_ramp;
-
   always @(posedge clk) begin
     if (take) read_ramp <= read_ramp + 1'b1;
     if (take_now) read_ramp <= now_ramp;
     if (flush) read_ramp <= write_ramp;
-    room <= {1'b1, {DEPTH_LOG2{1'b0}}} - (write_ramp - read_ramp);
-    if (rst) read_ramp <= {(DEPTH_LOG2 + 1) {1'b0}};
+    valid <= read_ramp != write_ramp;
+    room  <= {1'b1, {DEPTH_LOG2{1'b0}}} - (write_ramp - read_ramp);
+    if (rst) begin
+      read_ramp <= {(DEPTH_LOG2 + 1) {1'b0}};
+      valid     <= 1'b0;
+    end
   end
+
+  // as the ramp wants it: T inverted, and du of mirrored ramps
+  wire invert = index == INDEX_TICKS || (is_mirror && (index == INDEX_STEP_HIGH || index == INDEX_LAST));
 
   passo_memory #(
     .WIDTH     (16),
@@ -126,10 +134,14 @@ module passo_ramp_queue #(
     .clk          (clk),
     .write        (write_high | write_low),
     .write_address({write_ramp[DEPTH_LOG2-1:0], index, write_low}),
-    .write_data   (write_low ? bus_data[15:0] : bus_data[31:16]),
+    .write_data   ((write_low ? bus_data[15:0] : bus_data[31:16]) ^ {16{invert}}),
     .read_address ({read_ramp[DEPTH_LOG2-1:0], half_index}),
     .read_data    (half)
   );
+
+`ifdef FORMAL
+  `include "passo_ramp_queue_formal.vh"
+`endif
 
 endmodule
 `resetall

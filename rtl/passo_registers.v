@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Registers of the core: identification, parameters, RUN, counters of refusals; and the status word.
+// Registers of the core: identification, parameters, RUN; and the status word. The counters of refusals have
+// their addresses here, but the link keeps them.
 //
-// Promise: the answer to a strobe comes one clock later, for one clock; it is 0 unless one of these registers
-// is meant. RUN changes for all channels on the same clock.
+// Promise: the answer to a strobe comes one clock later, for one clock; claim and refusal are 0 unless one of
+// these registers is meant. `read_data` is the status word at all other times. RUN changes for all channels on
+// the same clock.
 `resetall
 `default_nettype none
 
@@ -13,33 +15,35 @@ module passo_registers #(
   parameter LINE_QUEUE_LOG2 = 8,
   parameter RAMP_QUEUE_LOG2 = 4
 ) (
-  input  wire                                    clk,
-  input  wire                                    rst,
+  input wire clk,
+  input wire rst,
   // bus
-  input  wire                                    bus_check,
-  input  wire                                    bus_write,
-  input  wire                                    bus_read,
-  input  wire                                    bus_push,
-  input  wire [                            11:0] bus_address,
-  input  wire [                            31:0] bus_data,
-  output reg                                     claim,
-  output reg  [                             3:0] refusal,
-  output reg  [                            31:0] read_data,
+  input wire bus_check,
+  input wire bus_write,
+  input wire bus_read,
+  input wire bus_push,
+  input wire [11:0] bus_address,
+  input wire [31:0] bus_data,
+  output reg claim,
+  output reg [3:0] refusal,
+  output wire [31:0] read_data,
   // link
-  input  wire [                             7:0] last_sequence,
-  input  wire                                    refused,          // strobe with refused_verdict
-  input  wire [                             3:0] refused_verdict,
-  output wire [                            31:0] status,
+  input wire [7:0] last_sequence,
+  output wire is_counters,  // the address is that of counters of refusals
   // channels
-  output reg  [                    CHANNELS-1:0] run,
-  output reg  [                    CHANNELS-1:0] wait_sync,
-  input  wire                                    any_stopped,
-  input  wire                                    any_occupied,
-  input  wire [CHANNELS*(LINE_QUEUE_LOG2+1)-1:0] line_room,
-  input  wire [CHANNELS*(RAMP_QUEUE_LOG2+1)-1:0] ramp_room
+  output reg [CHANNELS-1:0] run,
+  output reg [CHANNELS-1:0] wait_sync,
+  input wire any_stopped,
+  input wire any_occupied,
+  input wire [CHANNELS*(LINE_QUEUE_LOG2+1)-1:0] line_room,
+  input wire [CHANNELS*(RAMP_QUEUE_LOG2+1)-1:0] ramp_room
 );
 
   `include "passo_registers.vh"
+
+  localparam [31:0] PARAMETERS = {
+    3'd0, RAMP_QUEUE_LOG2[4:0], 3'd0, LINE_QUEUE_LOG2[4:0], 3'd0, TICK_LOG2[4:0], AXES[3:0], CHANNELS[3:0]
+  };
 
   reg [2:0] status_channel;
 
@@ -49,7 +53,7 @@ module passo_registers #(
   wire [15:0] wide_line_room = {{(15 - LINE_QUEUE_LOG2) {1'b0}}, status_line_room};
   wire [15:0] wide_ramp_room = {{(15 - RAMP_QUEUE_LOG2) {1'b0}}, status_ramp_room};
 
-  assign status = {
+  wire [31:0] status = {
     2'b10,
     any_stopped,
     any_occupied,
@@ -60,51 +64,42 @@ module passo_registers #(
     wide_ramp_room > 16'd255 ? 8'd255 : wide_ramp_room[7:0]
   };
 
-  // One counter per refusal, BAD_CRC first
-  reg     [63:0] refusals;
-  integer        i;
-  always @(posedge clk)
-    if (rst) refusals <= 64'd0;
-    else
-      for (i = 0; i < 8; i = i + 1)
-        if (refused && refused_verdict == VERDICT_BAD_CRC + i[3:0])
-          refusals[i*8+:8] <= refusals[i*8+:8] + 8'd1;
-
   wire [7:0] run_padded = {{(8 - CHANNELS) {1'b0}}, run};
   wire [7:0] wait_sync_padded = {{(8 - CHANNELS) {1'b0}}, wait_sync};
-  wire is_run = bus_address == ADDRESS_RUN;
   wire run_beyond = (bus_data[7:0] >> CHANNELS) != 8'd0 || (bus_data[15:8] >> CHANNELS) != 8'd0
                     || {1'b0, bus_data[18:16]} >= CHANNELS[3:0];
 
-  reg        known;
-  reg [31:0] value;
+  // Which register is meant is known a clock before the strobe, because the address is.
+  reg       known;
+  reg       is_run;
+  reg       bad_run;
+  reg [2:0] number;
+  reg [3:0] reads;  // registers 0 .. 3
+  reg       reads_status;
 
-  always @* begin
-    known = 1'b1;
-    case (bus_address)
-      ADDRESS_IDENTIFICATION: value = IDENTIFICATION_RESET;
-      ADDRESS_VERSION: value = {8'd0, VERSION_MAJOR_RESET, VERSION_MINOR_RESET, VERSION_PATCH_RESET};
-      ADDRESS_PARAMETERS:
-      value = {
-        3'd0, RAMP_QUEUE_LOG2[4:0], 3'd0, LINE_QUEUE_LOG2[4:0], 3'd0, TICK_LOG2[4:0], AXES[3:0], CHANNELS[3:0]
-      };
-      ADDRESS_RUN: value = {13'd0, status_channel, wait_sync_padded, run_padded};
-      ADDRESS_REFUSALS_0: value = refusals[31:0];
-      ADDRESS_REFUSALS_1: value = refusals[63:32];
-      default: begin
-        known = 1'b0;
-        value = 32'd0;
-      end
-    endcase
-  end
+  integer i;
+
+  assign is_counters = known && number[2];
+
+  assign read_data =
+      (reads_status ? status : 32'd0)
+      | (reads[0] ? IDENTIFICATION_RESET : 32'd0)
+      | (reads[1] ? {8'd0, VERSION_MAJOR_RESET, VERSION_MINOR_RESET, VERSION_PATCH_RESET} : 32'd0)
+      | (reads[2] ? PARAMETERS : 32'd0)
+      | (reads[3] ? {13'd0, status_channel, wait_sync_padded, run_padded} : 32'd0);
 
   always @(posedge clk) begin
-    claim <= known & (bus_check | bus_read);
-    refusal   <= !(known && bus_check)                             ? VERDICT_OK :
-                 bus_push                                          ? VERDICT_BAD_OPERATION :
-                 !is_run                                           ? VERDICT_READ_ONLY :
-                 (bus_data & ~RUN_DEFINED) != 32'd0 || run_beyond  ? VERDICT_BAD_VALUE : VERDICT_OK;
-    read_data <= bus_read ? value : 32'd0;
+    known        <= bus_address <= ADDRESS_REFUSALS_1;
+    is_run       <= bus_address == ADDRESS_RUN;
+    number       <= bus_address[2:0];
+    bad_run      <= (bus_data & ~RUN_DEFINED) != 32'd0 || run_beyond;
+    reads_status <= ~bus_read;
+    for (i = 0; i < 4; i = i + 1) reads[i] <= bus_read && known && number == i[2:0];
+    claim <= known && (bus_check || bus_read);
+    refusal <= !(known && bus_check)  ? VERDICT_OK :
+               bus_push               ? VERDICT_BAD_OPERATION :
+               !is_run                ? VERDICT_READ_ONLY :
+               bad_run                ? VERDICT_BAD_VALUE : VERDICT_OK;
     if (bus_write && is_run) begin
       run            <= bus_data[CHANNELS-1:0];
       wait_sync      <= bus_data[8+:CHANNELS];
@@ -113,7 +108,6 @@ module passo_registers #(
     if (rst) begin
       claim          <= 1'b0;
       refusal        <= VERDICT_OK;
-      read_data      <= 32'd0;
       run            <= RUN_RUN_RESET[CHANNELS-1:0];
       wait_sync      <= RUN_WAIT_SYNC_RESET[CHANNELS-1:0];
       status_channel <= RUN_STATUS_CHANNEL_RESET;

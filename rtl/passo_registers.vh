@@ -204,7 +204,7 @@ localparam CHANNEL_RAMP_LSB     = 0;
 localparam CHANNEL_RAMP_BITS    = 32;
 localparam CHANNEL_RAMP_DEFINED = 32'hFFFFFFFF;
 
-// Channel: Steps made. Position of an axis in steps, as it was when chip select fell; wraps.
+// Channel: Steps made. Position of an axis in steps, as it was soon after chip select fell; wraps.
 localparam CHANNEL_POSITION_BASE  = 8'h40;
 localparam CHANNEL_POSITION_COUNT = 8;
 localparam CHANNEL_POSITION_LSB   = 0;

@@ -21,7 +21,8 @@ module passo_tables #(
   input  wire                   bus_push,
   input  wire                   select,
   input  wire [            9:0] bus_address,  // within the tables: bank (9:8), 1 .. 3
-  input  wire [           31:0] bus_data,
+  input  wire [           15:0] bus_data,
+  input  wire [            4:0] bus_top_bit,  // of the data that are checked: highest bit that is set
   input  wire                   occupied,     // some channel is
   output reg  [            3:0] refusal,
   // channels
@@ -47,7 +48,7 @@ module passo_tables #(
     if (select && bus_check)
       refusal <= bus_push                  ? VERDICT_BAD_OPERATION :
                  occupied                  ? VERDICT_BUSY :
-                 bus_data[31:16] != 16'd0  ? VERDICT_BAD_VALUE : VERDICT_OK;
+                 bus_top_bit > 5'd15  ? VERDICT_BAD_VALUE : VERDICT_OK;
   end
 
   // One channel after the other; first its point, then the next one
@@ -61,7 +62,7 @@ module passo_tables #(
   assign point_next = read_data;
 
   always @(posedge clk) begin
-    if (select && bus_write) points[{bus_address[9:8]-2'd1, bus_address[7:0]}] <= bus_data[15:0];
+    if (select && bus_write) points[{bus_address[9:8]-2'd1, bus_address[7:0]}] <= bus_data;
     read_data <= points[{channel_address[9:8], channel_address[7:0]+{7'd0, second}}];
   end
 

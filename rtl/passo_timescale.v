@@ -4,11 +4,12 @@
 //
 //   rate_sum += rate;  enable = carry out              rate = 1.0 -> every clock, rate = 0 -> none
 //   rate moves toward the goal by the slew every 2^TICK_LOG2 real clocks (`slew_tick`), and onto it when it is nearer
-//   goal = rate_target, or 0 when stopping; both goal and slew are taken over at a slew tick for the next one
-//   outside a motion rate = goal = rate_target
+//   goal = rate_target, or 0 when stopping
+//   outside a motion rate = rate_target, 2 clocks later
 //
 // Promise: `enable` is registered, low unless `moving`, and a motion begins with an empty rate_sum. A slew of
-// 0 counts as 1.
+// 0 counts as 1. The rate changes 7 clocks after the slew tick: goal, direction, slew, the new rate and whether
+// it lies beyond the goal are found one after the other. Slew ticks are at least 8 clocks apart.
 `resetall
 `default_nettype none
 
@@ -28,34 +29,46 @@ module passo_timescale (
   reg  [15:0] rate_sum;
   wire [16:0] rate_sum_next = {1'b0, rate_sum} + rate;
 
-  reg        [16:0] goal;
-  reg        [16:0] slew;
-  reg signed [17:0] distance;  // goal - rate, settled long before the next slew tick
+  reg [ 6:1] after;  // clocks since the slew tick
+  reg [16:0] goal;
+  reg        down;
+  reg [16:0] change;  // the slew, inverted if down; else 0
+  reg        change_carry;
+  reg [17:0] not_moved;  // the inverse of rate + change
+  reg        land;
+  reg        still;  // not moving
 
-  wire        [16:0] slew_chosen = stopping ? stop_slew : rate_slew;
-  wire signed [17:0] slew_signed = {1'b0, slew};
-  wire               near = distance <= slew_signed && distance > ~slew_signed;  // ~x = -x - 1
+  wire reaches = goal >= ~not_moved[16:0];  // rate + change, but for its uppermost bit
 
   always @(posedge clk) begin
+    after <= {after[5:1], slew_tick};
+    if (slew_tick || !moving) goal <= stopping && moving ? 17'd0 : rate_target;
+    if (after[1]) down <= !reaches;
+    if (after[2]) change <= (stopping ? stop_slew : rate_slew) ^ {17{down}};
+    else if (!after[3]) change <= 17'd0;
+    change_carry <= after[3] && (down ^ (change == {17{down}}));
+    if (!after[5]) not_moved <= ~({1'b0, rate} +{after[4] & down, change} +{17'd0, change_carry});
+    still <= !moving;
+    land  <= !moving || !not_moved[17] || reaches == down;
+    if (after[6] || (still && !moving)) rate <= land ? goal : ~not_moved[16:0];
+
     {enable, rate_sum} <= rate_sum_next;
-    distance           <= $signed({1'b0, goal}) - $signed({1'b0, rate});
-    if (slew_tick) begin
-      rate <= near ? goal : distance[17] ? rate - slew : rate + slew;
-      goal <= stopping ? 17'd0 : rate_target;
-      slew <= slew_chosen == 17'd0 ? 17'd1 : slew_chosen;
-    end
     if (!moving) begin
-      rate     <= rate_target;
-      goal     <= rate_target;
-      slew     <= 17'd1;
+      after    <= 6'd0;
       rate_sum <= 16'd0;
       enable   <= 1'b0;
     end
     if (rst) begin
+      after  <= 6'd0;
+      still  <= 1'b0;
       rate   <= 17'h10000;
       enable <= 1'b0;
     end
   end
+
+`ifdef FORMAL
+  `include "passo_timescale_formal.vh"
+`endif
 
 endmodule
 `resetall

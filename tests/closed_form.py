@@ -63,20 +63,14 @@ TABLES = {
 }
 
 
-def shape(number: int, mirror: bool, progress: int) -> int:
-    """s (UQ1.24) for a progress (UQ0.48)."""
-    x = (progress + (1 << 23)) >> 24
+def shape(number: int, progress: int) -> int:
+    """s (UQ1.24) for a progress (UQ0.49)."""
     if number == LINEAR:
-        return x
-    table = TABLES[number]
-
-    def interpolate(x: int) -> int:
-        k, f = divmod(x, 1 << 16)
-        if k == 256:
-            return SHAPE_ONE
-        return (table[k] << 8) + ((table[k + 1] - table[k]) * f + 128 - (k >> 7) >> 8)
-
-    return SHAPE_ONE - interpolate(SHAPE_ONE - x) if mirror else interpolate(x)
+        return (progress + (1 << 24)) >> 25
+    k, rest = progress >> 41, progress & (1 << 41) - 1
+    f = (rest + (1 << 16)) >> 17
+    point, point_next = TABLES[number][k : k + 2]
+    return (point * (SHAPE_ONE - f) + point_next * f + (1 << 15)) >> 16
 
 
 def velocities(ramps: Sequence[Ramp]) -> Iterator[int]:
@@ -84,9 +78,13 @@ def velocities(ramps: Sequence[Ramp]) -> Iterator[int]:
     start = 0
     for ramp in ramps:
         for tick in range(ramp.ticks):
-            # u = du / 2 in the first tick, and then a du more in each
-            u = (ramp.progress_step >> 1) + tick * ramp.progress_step
-            yield start + ((ramp.velocity_end - start) * shape(ramp.shape, ramp.mirror, u) >> 24)
+            # u = du / 2 in the first tick, and then a du more in each; in units of 2^-49
+            u = (2 * tick + 1) * ramp.progress_step
+            if ramp.mirror:
+                back = start - ramp.velocity_end
+                yield ramp.velocity_end + (back * shape(ramp.shape, 2 * ONE - 1 - u) >> 24)
+            else:
+                yield start + ((ramp.velocity_end - start) * shape(ramp.shape, u) >> 24)
         start = ramp.velocity_end
 
 

@@ -161,40 +161,39 @@ def tables() -> list[list[int]]:
     return [[0] * 257, *([*table, 65536] for table in load_generator().banks().values())]
 
 
-def shape(bank: int, x: int) -> int:
-    """s for a progress x, both UQ1.24."""
+def shape(bank: int, u: int) -> int:
+    """s (UQ1.24) for a progress u (UQ0.49)."""
     if bank == LINEAR:
-        return x
-    k, f = x >> 16, x & 0xFFFF
-    if k == 256:
-        return 1 << 24
-    t = tables()[bank]
-    return (t[k] << 8) + (((t[k + 1] - t[k]) * f + 128 - (k >> 7)) >> 8)
+        return (u + (1 << 24)) >> 25
+    k, f = u >> 41, ((u & (1 << 41) - 1) + (1 << 16)) >> 17
+    t = [*tables()[bank], 65536]
+    return (t[k] * ((1 << 24) - f) + t[k + 1] * f + (1 << 15)) >> 16
 
 
 def velocity_of_tick(ramp: Ramp, tick: int) -> int:
     """The ramp recurrence, in plain integers."""
-    u = (ramp.progress_step >> 1) + tick * ramp.progress_step
-    assert u < ONE
-    x = (u + (1 << 23)) >> 24
-    s = (1 << 24) - shape(ramp.shape, (1 << 24) - x) if ramp.mirror else shape(ramp.shape, x)
-    return ramp.velocity_start + ((ramp.velocity_end - ramp.velocity_start) * s >> 24)
+    u = (2 * tick + 1) * ramp.progress_step
+    assert u < 2 * ONE
+    change = ramp.velocity_end - ramp.velocity_start
+    if ramp.mirror:
+        return ramp.velocity_end + (-change * shape(ramp.shape, 2 * ONE - 1 - u) >> 24)
+    return ramp.velocity_start + (change * shape(ramp.shape, u) >> 24)
 
 
 def velocities_of_ticks(ramp: Ramp, first: int, last: int) -> np.ndarray:
     """Those of the ticks from first to before last, in 64-bit integers."""
-    u = (ramp.progress_step >> 1) + np.arange(first, last, dtype=np.int64) * ramp.progress_step
-    x = (u + (1 << 23)) >> 24
+    u = (2 * np.arange(first, last, dtype=np.int64) + 1) * ramp.progress_step
+    start, end = ramp.velocity_start, ramp.velocity_end
     if ramp.mirror:
-        x = (1 << 24) - x
+        u, start, end = 2 * ONE - 1 - u, end, start
     if ramp.shape:
         t = np.array([*tables()[ramp.shape], 65536], dtype=np.int64)
-        k, f = x >> 16, x & 0xFFFF
-        x = (t[k] << 8) + (((t[k + 1] - t[k]) * f + 128 - (k >> 7)) >> 8)
-    if ramp.mirror:
-        x = (1 << 24) - x
-    change = ramp.velocity_end - ramp.velocity_start
-    return ramp.velocity_start + (change >> 24) * x + ((change & 0xFFFFFF) * x >> 24)
+        k, f = u >> 41, ((u & (1 << 41) - 1) + (1 << 16)) >> 17
+        s = (t[k] * ((1 << 24) - f) + t[k + 1] * f + (1 << 15)) >> 16
+    else:
+        s = (u + (1 << 24)) >> 25
+    change = end - start
+    return start + (change >> 24) * s + ((change & 0xFFFFFF) * s >> 24)
 
 
 def sum_of_velocities(ramp: Ramp, chunk: int = 1 << 16) -> int:

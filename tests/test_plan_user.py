@@ -82,20 +82,19 @@ def distance(plan: Plan, table: list[int]) -> Fraction:
     """Substeps under the ramps as the core makes them with this table, summed tick by tick."""
     whole, total = [*table, 65536], 0
 
-    def value(x: int) -> int:
-        if x >> 16 == 256:
-            return 1 << 24
-        k, f = x >> 16, x & 0xFFFF
-        return (whole[k] << 8) + (((whole[k + 1] - whole[k]) * f + 128 - (k >> 7)) >> 8)
+    def value(u: int) -> int:
+        k, f = u >> 41, ((u & (1 << 41) - 1) + (1 << 16)) >> 17
+        return ((whole[k] << 24) + (whole[k + 1] - whole[k]) * f + (1 << 15)) >> 16
 
     for ramp in plan.ramps:
         if ramp.shape == 0:
             total += ramp.ticks * ramp.velocity_end
             continue
         for tick in range(ramp.ticks):
-            x = ((ramp.progress_step >> 1) + tick * ramp.progress_step + (1 << 23)) >> 24
-            s = (1 << 24) - value((1 << 24) - x) if ramp.mirror else value(x)
-            total += ramp.velocity_start + ((ramp.velocity_end - ramp.velocity_start) * s >> 24)
+            u, start, end = (2 * tick + 1) * ramp.progress_step, ramp.velocity_start, ramp.velocity_end
+            if ramp.mirror:
+                u, start, end = (1 << 49) - 1 - u, end, start
+            total += start + ((end - start) * value(u) >> 24)
     return Fraction(total * plan.machine.tick, 1 << 48)
 
 

@@ -33,7 +33,7 @@ module passo_line_top #(
   wire                      next_last;
   wire                      next_endless;
   wire        [   AXES-1:0] next_directions;
-  wire        [       31:0] next_minus_substeps;
+  wire        [       31:0] last_substep;
   wire        [AXES*32-1:0] steps;
   wire                      take;
   wire                      slot_add;
@@ -64,7 +64,7 @@ module passo_line_top #(
     .next_last          (next_last),
     .next_endless       (next_endless),
     .next_directions    (next_directions),
-    .next_minus_substeps(next_minus_substeps),
+    .last_substep(last_substep),
     .steps              (steps)
   );
 
@@ -80,7 +80,7 @@ module passo_line_top #(
     .next_last          (next_last),
     .next_endless       (next_endless),
     .next_directions    (next_directions),
-    .next_minus_substeps(next_minus_substeps),
+    .last_substep(last_substep),
     .take               (take),
     .slot_add           (slot_add),
     .slot_load          (slot_load),

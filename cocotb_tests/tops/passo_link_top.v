@@ -13,7 +13,7 @@ module passo_link_top (
   input  wire [31:0] status,
   output wire [ 7:0] last_sequence,
   output wire        refused,
-  output wire [ 3:0] refused_verdict,
+  output wire [ 3:0] verdict,
   output wire        word_valid,
   output wire        bus_frame,
   output wire        bus_check,
@@ -22,16 +22,29 @@ module passo_link_top (
   output wire        bus_push,
   output wire [11:0] bus_address,
   output wire [31:0] bus_data,
+  output wire [ 4:0] bus_top_bit,
+  output wire        bus_lone_bit,
   input  wire        bus_claim,
   input  wire [ 3:0] bus_refusal,
   input  wire [31:0] bus_read_data,
+  input  wire        bus_counters,
   input  wire        bus_incomplete
 );
 
   wire        frame_start;
   wire        frame_end;
-  wire [31:0] word;
+  wire        half_valid;
+  wire        half_low;
+  wire [15:0] half;
   wire [31:0] reply_word;
+
+  assign word_valid = half_valid & half_low;
+  assign refused    = u_link.refuses;
+  assign verdict    = u_link.verdict;
+
+  // the status stands in the place of data, but for the clock after a strobe
+  reg answers;
+  always @(posedge clk) answers <= bus_read;
 
   passo_spi u_spi (
     .clk        (clk),
@@ -42,8 +55,9 @@ module passo_link_top (
     .spi_miso   (spi_miso),
     .frame_start(frame_start),
     .frame_end  (frame_end),
-    .word_valid (word_valid),
-    .word       (word),
+    .half_valid (half_valid),
+    .half_low   (half_low),
+    .half       (half),
     .reply_word (reply_word)
   );
 
@@ -52,13 +66,11 @@ module passo_link_top (
     .rst            (rst),
     .frame_start    (frame_start),
     .frame_end      (frame_end),
-    .word_valid     (word_valid),
-    .word           (word),
+    .half_valid     (half_valid),
+    .half_low       (half_low),
+    .half           (half),
     .reply_word     (reply_word),
-    .status         (status),
     .last_sequence  (last_sequence),
-    .refused        (refused),
-    .refused_verdict(refused_verdict),
     .bus_frame      (bus_frame),
     .bus_check      (bus_check),
     .bus_write      (bus_write),
@@ -66,9 +78,12 @@ module passo_link_top (
     .bus_push       (bus_push),
     .bus_address    (bus_address),
     .bus_data       (bus_data),
+    .bus_top_bit    (bus_top_bit),
+    .bus_lone_bit   (bus_lone_bit),
     .bus_claim      (bus_claim),
     .bus_refusal    (bus_refusal),
-    .bus_read_data  (bus_read_data),
+    .bus_counters   (bus_counters),
+    .bus_read_data  (answers ? bus_read_data : status),
     .bus_incomplete (bus_incomplete)
   );
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Ramp with its queue and the shape tables, wired as in a channel, the last of CHANNELS; enable and bus come from the test.
+// Ramp with its queue, the shape tables and the path, wired as in a channel, the last of CHANNELS; enable and bus come from the test.
 `resetall
 `default_nettype none
 
@@ -32,10 +32,14 @@ module passo_ramp_top #(
   output reg                 ended_q,
   output wire                dry,
   output wire                stall,
-  output wire [        47:0] velocity
+  output wire [        47:0] velocity        // that counts in this clock
 );
 
   wire                   ended;
+  wire                   advance = enable & ~stall;
+  wire                   tick_last;
+  wire                   ends_next;
+  wire [           47:0] velocity_next;
   wire                   ramp_now_pending;
   wire                   ramp_take;
   wire                   ramp_take_now;
@@ -112,13 +116,14 @@ module passo_ramp_top #(
     .begin_profile   (begin_profile),
     .stop            (stop),
     .drain           (drain),
-    .drain_velocity  (drain_velocity),
     .ready           (ready),
     .ended           (ended),
     .dry             (dry),
-    .advance         (enable & ~stall),
+    .advance         (advance),
     .stall           (stall),
-    .velocity        (velocity),
+    .tick_last       (tick_last),
+    .ends_next       (ends_next),
+    .velocity_next   (velocity_next),
     .ramp_valid      (ramp_valid),
     .ramp_now_pending(ramp_now_pending),
     .ramp_take       (ramp_take),
@@ -131,6 +136,28 @@ module passo_ramp_top #(
     .table_point     (table_point),
     .table_point_next(table_point_next)
   );
+
+  passo_path u_path (
+    .clk           (clk),
+    .rst           (rst),
+    .restart       (prepare),
+    .stop          (stop),
+    .begin_profile (begin_profile),
+    .advance       (advance),
+    .tick_last     (tick_last),
+    .rest          (ends_next),
+    .velocity_next (velocity_next),
+    .drain         (drain),
+    .drain_velocity(drain_velocity),
+    .velocity      (),
+    .substep       ()
+  );
+
+  // the path's upper half comes a clock late
+  assign velocity[23:0] = u_path.velocity_low;
+  assign velocity[47:24] = !u_path.take_q ? u_path.velocity_high :
+                           drain          ? drain_velocity[31:8] :
+                           ends_next      ? 24'd0 : velocity_next[47:24];
 
 endmodule
 `resetall

@@ -263,7 +263,7 @@ CHANNEL_RAMP_LSB = 0
 CHANNEL_RAMP_BITS = 32
 CHANNEL_RAMP_DEFINED = 0xFFFFFFFF
 
-# Channel: Steps made. Position of an axis in steps, as it was when chip select fell; wraps.
+# Channel: Steps made. Position of an axis in steps, as it was soon after chip select fell; wraps.
 CHANNEL_POSITION_BASE = 0x40
 CHANNEL_POSITION_COUNT = 8
 CHANNEL_POSITION_LSB = 0

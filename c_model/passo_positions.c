@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: MIT
+ * Positions of the axes of a channel: when they are copied for the host. See rtl/passo_positions.v.
+ *
+ * Each axis of the model has its whole position, so nothing has to catch up here.
+ */
+#include "passo_model.h"
+
+enum { ROUND_CLOCKS = 64 };
+
+void passo_positions_reset(struct passo_positions *positions)
+{
+	*positions = (struct passo_positions){0};
+}
+
+void passo_positions_clock(
+    struct passo_positions *positions, const struct passo_axis *axes, bool zero, bool snapshot)
+{
+	if (positions->slot == ROUND_CLOCKS - 1) {
+		if (positions->snapshot_waits && !positions->clear_waits) {
+			for (unsigned i = 0; i < PASSO_AXES_MAX; i++)
+				positions->copies[i] = axes[i].position;
+			positions->snapshot_waits = false;
+		}
+		positions->clear_waits = false;
+	}
+	positions->clear_waits = positions->clear_waits || zero;
+	positions->snapshot_waits = positions->snapshot_waits || snapshot;
+	positions->slot = (positions->slot + 1u) % ROUND_CLOCKS;
+}
+
+void passo_positions_skip(struct passo_positions *positions, uint64_t clocks)
+{
+	if (clocks >= (uint64_t)ROUND_CLOCKS - positions->slot)
+		positions->clear_waits = false;
+	positions->slot = (uint8_t)((positions->slot + clocks) % ROUND_CLOCKS);
+}

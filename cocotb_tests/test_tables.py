@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: MIT
+"""passo_tables: what they hold, their bus, and how they serve the channels."""
+
+from random import Random
+
+import cocotb
+import pytest
+from cocotb.handle import HierarchyObject
+
+from cocotb_tests.bench import Clocks, begin, read, rng
+from cocotb_tests.runner import run
+from cocotb_tests.shapes import POINTS, Shape, loaded_table
+
+TABLES = [shape for shape in Shape if shape != Shape.LINEAR]
+INPUTS = (
+    "bus_check", "bus_write", "bus_read", "bus_push", "select", "bus_address", "bus_data", "occupied",
+    "request", "address",
+)  # fmt: skip
+BAD_OPERATION, BUSY, BAD_VALUE = 4, 8, 9
+
+# Only loading the FPGA sets the tables, reset does not: tests that need them fresh come first.
+
+
+@pytest.mark.parametrize("channels", [1, 8])
+def test_tables(simulator: str, channels: int) -> None:
+    run(__name__, "passo_tables", {"CHANNELS": channels}, simulator)
+
+
+class Bench:
+    """The module under test; the last channel is the one that asks."""
+
+    def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
+        self.dut, self.clocks = dut, clocks
+        self.channels = len(dut.served)
+
+    @classmethod
+    async def begin(cls, dut: HierarchyObject) -> "Bench":
+        """Reset."""
+        return cls(dut, await begin(dut, *INPUTS))
+
+    async def fetch(self, shape: Shape, k: int) -> tuple[int, int]:
+        """Ask for a point and get it and the next one."""
+        channel = self.channels - 1
+        self.dut.request.value = 1 << channel
+        self.dut.address.value = (shape - 1 << 8 | k) << 10 * channel
+        asked = self.clocks.now
+        while not read(self.dut.served) >> channel & 1:
+            await self.clocks.fall
+            assert self.clocks.now - asked <= 2 * self.channels + 3
+        points = read(self.dut.point), read(self.dut.point_next)
+        self.dut.request.value = 0
+        await self.clocks.wait(2 * self.channels + 4)  # a second answer to the same question is over
+        return points
+
+    async def check_table(self, shape: Shape, points: list[int], step: int = 1) -> None:
+        """Compare every point, or one in so many; what follows the last one means nothing."""
+        for k in range(0, POINTS, step):
+            point, point_next = await self.fetch(shape, k)
+            assert point == points[k]
+            assert k == POINTS - 1 or point_next == points[k + 1]
+
+    async def write_table(self, shape: Shape, points: list[int]) -> None:
+        """Write a whole table, word by word like the link."""
+        dut = self.dut
+        dut.select.value = 1
+        for k, point in enumerate(points):
+            dut.bus_address.value = shape << 8 | k
+            dut.bus_data.value = point
+            dut.bus_write.value = 1
+            await self.clocks.wait(1)
+            dut.bus_write.value = 0
+            await self.clocks.wait(1)
+        dut.select.value = 0
+
+
+@cocotb.test()
+@cocotb.parametrize(shape=TABLES)
+async def all_points_are_right_after_loading(dut: HierarchyObject, shape: Shape) -> None:
+    """Every point of the table, and the one after it."""
+    bench = await Bench.begin(dut)
+    await bench.check_table(shape, loaded_table(shape))
+
+
+@cocotb.test()
+async def rewritten_tables_are_as_written(dut: HierarchyObject) -> None:
+    """Each bank by itself."""
+    bench = await Bench.begin(dut)
+    random = rng("tables, rewritten")
+    tables = {shape: _random_table(random) for shape in TABLES}
+    for shape in TABLES:
+        await bench.write_table(shape, tables[shape])
+    for shape in TABLES:
+        await bench.check_table(shape, tables[shape], 3)
+
+
+@cocotb.test()
+async def the_tables_bus_refuses_what_it_must(dut: HierarchyObject) -> None:
+    """Refusals come one clock after the strobe; a check changes nothing."""
+    bench = await Bench.begin(dut)
+    tables = {Shape.COSINE: [3 * k for k in range(POINTS)], Shape.EASE: [5 * k for k in range(POINTS)]}
+    for shape, points in tables.items():
+        await bench.write_table(shape, points)
+    cases = [
+        # strobe, occupied, push, data, expected
+        ("bus_check", 0, 0, 0x1234, 0),
+        ("bus_check", 0, 0, 0xFFFF, 0),
+        ("bus_check", 0, 0, 0x10000, BAD_VALUE),
+        ("bus_check", 0, 0, 0x80000000, BAD_VALUE),
+        ("bus_check", 1, 0, 0x1234, BUSY),
+        ("bus_check", 0, 1, 0x1234, BAD_OPERATION),
+        ("bus_read", 0, 0, 0x1234, BAD_OPERATION),
+    ]
+    for strobe, occupied, push, data, expected in cases:
+        for address in (0x100, 0x1FF, 0x300):
+            for selected in (1, 0):
+                dut.select.value = selected
+                dut.bus_address.value = address
+                dut.bus_data.value = data
+                dut.occupied.value = occupied
+                dut.bus_push.value = push
+                getattr(dut, strobe).value = 1
+                await bench.clocks.wait(1)
+                getattr(dut, strobe).value = 0
+                assert read(dut.refusal) == (expected if selected else 0), (strobe, occupied, push, hex(data))
+                await bench.clocks.wait(1)
+                assert read(dut.refusal) == 0
+    for shape, points in tables.items():
+        await bench.check_table(shape, points, 17)
+
+
+@cocotb.test()
+async def every_channel_is_served_in_time_with_its_own_points(dut: HierarchyObject) -> None:
+    """All channels ask at random: each gets its point and the one after it within 2 * CHANNELS + 3 clocks."""
+    bench = await Bench.begin(dut)
+    random = rng("tables, channels")
+    tables = {shape: _random_table(random) for shape in TABLES}
+    for shape in TABLES:
+        await bench.write_table(shape, tables[shape])
+    asked: dict[int, tuple[int, int]] = {}  # channel: clock, address
+    waits: list[int] = []
+    while len(waits) < 500:
+        await bench.clocks.fall
+        now, who = bench.clocks.now, read(dut.served)
+        assert who & (who - 1) == 0
+        for channel in range(bench.channels):
+            if who >> channel & 1 and channel in asked:
+                clock, address = asked.pop(channel)
+                bank, k = divmod(address, POINTS)
+                table = tables[Shape(bank + 1)]
+                assert read(dut.point) == table[k]
+                if k + 1 < POINTS:
+                    assert read(dut.point_next) == table[k + 1]
+                waits.append(now - clock)
+            elif channel not in asked and who == 0 and random.random() < 0.3:
+                # not on the clock after an answer: that may be a late one to the old question
+                asked[channel] = (now, random.randrange(768))
+        dut.request.value = sum(1 << channel for channel in asked)
+        dut.address.value = sum(address << 10 * channel for channel, (_, address) in asked.items())
+        assert all(now - clock <= 2 * bench.channels + 3 for clock, _ in asked.values())
+    assert max(waits) <= 2 * bench.channels + 3
+    dut._log.info(f"{len(waits)} points, after {min(waits)} to {max(waits)} clocks")
+
+
+def _random_table(random: Random) -> list[int]:
+    return [random.choice((0, 65535, random.randrange(65536))) for _ in range(POINTS)]

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// An axis whose times come from the test, which need not say which of them are short.
+`resetall
+`default_nettype none
+
+module passo_axis_top (
+  input  wire        clk,
+  input  wire        rst,
+  input  wire        step_request,
+  input  wire        direction,
+  input  wire        drop,
+  output wire        step_made,
+  output wire        step_direction,
+  output wire        overrun,
+  input  wire        clear,
+  output wire [ 3:0] lost,
+  input  wire [15:0] step_high,
+  input  wire [15:0] step_low,
+  input  wire [15:0] dir_setup,
+  input  wire [15:0] dir_hold,
+  input  wire        timing_written,
+  input  wire        both_edges,
+  input  wire        step_inverted,
+  input  wire        direction_inverted,
+  input  wire        enable,
+  input  wire        enable_inverted,
+  output wire        step_pin,
+  output wire        dir_pin,
+  output wire        enable_pin
+);
+
+  passo_axis u_axis (
+    .clk               (clk),
+    .rst               (rst),
+    .step_request      (step_request),
+    .direction         (direction),
+    .drop              (drop),
+    .step_made         (step_made),
+    .step_direction    (step_direction),
+    .overrun           (overrun),
+    .clear             (clear),
+    .lost              (lost),
+    .step_high         (step_high),
+    .step_low          (step_low),
+    .dir_setup         (dir_setup),
+    .dir_hold          (dir_hold),
+    .short_high        (step_high < 16'd2),
+    .short_low         (step_low < 16'd2),
+    .short_setup       (dir_setup < 16'd2),
+    .short_hold        (dir_hold < 16'd2),
+    .timing_written    (timing_written),
+    .both_edges        (both_edges),
+    .step_inverted     (step_inverted),
+    .direction_inverted(direction_inverted),
+    .enable            (enable),
+    .enable_inverted   (enable_inverted),
+    .step_pin          (step_pin),
+    .dir_pin           (dir_pin),
+    .enable_pin        (enable_pin)
+  );
+
+endmodule
+`resetall

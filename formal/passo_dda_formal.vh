@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+// What the DDA promises; included at the end of passo_dda. The assumptions are what passo_line_formal.vh
+// proves of the line counter, and passo_line_queue_formal.vh of the step counts.
+
+// --- A line as the line counter leads it: M substeps of A and B, the next line is loaded with the last one
+(* anyseq *) reg [31:0] f_m_next;
+reg         f_begun = 1'b0;
+reg         f_line = 1'b0;  // there is a line
+reg  [31:0] f_m;
+reg  [31:0] f_substeps;  // made, in A
+reg         f_add_q = 1'b0;
+reg         f_load_q = 1'b0;
+wire        f_is_last = f_substeps == f_m - 32'd1;
+always @(posedge clk) begin
+  f_begun  <= 1'b1;
+  f_add_q  <= slot_add & f_begun;
+  f_load_q <= slot_load & f_begun;
+  assume (slot_step == f_add_q && slot_load_q == f_load_q);
+  if (!f_begun) assume (!slot_add && !slot_load);
+  if (slot_add || slot_load) assume (!f_add_q && !f_load_q);
+  if (slot_add) assume (f_line);
+  if (slot_load) assume (!f_line || (slot_add && f_is_last));
+  if (slot_add && !slot_load) assume (broadcast == -$signed({1'b0, f_m}));
+  if (slot_load) assume (f_m_next != 32'd0 && $signed({broadcast[32], broadcast}) == -$signed({2'b00, f_m_next}) >>> 1);
+`ifdef NARROW
+  assume (f_m_next < 32'd`NARROW);
+`endif
+  // N is there in B
+  if (f_line) assume (steps <= f_m);
+  if (!f_load_q && f_begun) assume ($stable(steps));
+
+  if (slot_add) f_substeps <= f_substeps + 32'd1;
+  if (slot_add && f_is_last) f_line <= 1'b0;
+  if (slot_load) begin
+    f_line     <= 1'b1;
+    f_m        <= f_m_next;
+    f_substeps <= 32'd0;
+  end
+end
+
+// --- The promise: e as it should be, and e - start = N * substeps made - M * steps made
+// f_balance = N * substeps - M * steps, summed as they come; with 0 <= e, start < M it is less than M, so after
+// M substeps M * (N - steps) lies between -M and M: steps = N. NARROW counts them.
+reg  [31:0] f_e;  // 0 .. M - 1
+reg  [31:0] f_m_q;  // M and N of the substep in B
+reg  [31:0] f_n_q;
+reg         f_last_q = 1'b0;
+reg  signed [33:0] f_balance;
+reg  [31:0] f_steps;  // made
+wire signed [33:0] f_balance_next = f_balance - (step_request ? $signed({2'b00, f_m_q}) : 34'sd0);
+wire signed [33:0] f_start = $signed({3'b000, f_m[31:1]});
+wire signed [33:0] f_start_q = $signed({3'b000, f_m_q[31:1]});
+wire [31:0] f_steps_next = f_steps + {31'd0, step_request};
+wire [32:0] f_e_sum = {1'b0, f_e} + {1'b0, f_n_q};
+wire [32:0] f_e_next = f_e_sum - (step_request ? {1'b0, f_m_q} : 33'd0);
+always @(posedge clk) begin
+  if (slot_add) begin
+    f_m_q    <= f_m;
+    f_n_q    <= steps;
+    f_last_q <= f_is_last;
+    f_balance <= f_balance + $signed({2'b00, steps});
+  end
+  if (slot_step) begin
+    f_e     <= f_e_next[31:0];
+    f_balance <= f_balance_next;
+    f_steps <= f_steps_next;
+    e_stays_in_range : assert (f_e_next < {1'b0, f_m_q});
+    sums_agree : assert ($signed({1'b0, f_e_next}) == f_start_q + f_balance_next);
+`ifdef NARROW
+    if (f_last_q) n_steps_in_m_substeps : assert (f_steps_next == f_n_q);
+    if (f_last_q) e_is_back_at_start : assert (f_e_next == {2'b00, f_m_q[31:1]});
+`endif
+  end else no_step_outside_b : assert (!step_request);
+  if (slot_load_q) begin
+    f_e     <= {1'b0, f_m[31:1]};
+    f_balance <= 34'sd0;
+    f_steps <= 32'd0;
+  end
+end
+
+`ifdef INVARIANTS
+always @(posedge clk) begin
+  if (f_line && !slot_load_q && !slot_step) begin
+    assert (f_e < f_m && e_minus_m == $signed({1'b0, f_e}) - $signed({1'b0, f_m}));
+    assert (addend == $signed({1'b0, steps}));
+    assert ($signed({2'b00, f_e}) == f_start + f_balance);
+  end
+  if (slot_load_q) assert (f_line && f_m != 32'd0 && f_substeps == 32'd0);
+  if (slot_load_q) assert (addend == -$signed({2'b00, f_m}) >>> 1);
+  if (f_line) assert (f_m != 32'd0 && f_substeps < f_m);
+  if (slot_step) begin
+    assert (f_m_q != 32'd0 && f_n_q <= f_m_q && f_e < f_m_q);
+    assert (e_minus_m == $signed({1'b0, f_e}) + $signed({1'b0, f_n_q}) - $signed({1'b0, f_m_q}));
+    if (!slot_load_q) assert (addend == -$signed({1'b0, f_m_q}));
+    if (f_line && !slot_load_q) assert (f_m == f_m_q && f_n_q == steps);
+    assert ($signed({2'b00, f_e}) + $signed({2'b00, f_n_q}) == f_start_q + f_balance);
+    if (!f_last_q) assert (f_line && !slot_load_q);
+    else assert (slot_load_q || !f_line);
+  end
+`ifdef NARROW
+  // the sums are products; with few bits the solver can divide by M
+  if (f_line) assert (f_m < 32'd`NARROW);
+  if (slot_step) assert (f_m_q < 32'd`NARROW && f_steps < f_m_q);
+  if (f_line && !slot_step && !slot_load_q) assert (f_steps <= f_substeps && f_substeps < 32'd`NARROW);
+  if (f_line && !slot_load_q && !slot_step)
+    assert (f_balance == {26'd0, f_substeps[7:0]} * {26'd0, steps[7:0]} - {26'd0, f_steps[7:0]} * {26'd0, f_m[7:0]});
+  if (slot_step)
+    assert (f_balance == {26'd0, f_last_q ? f_m_q[7:0] : f_substeps[7:0]} * {26'd0, f_n_q[7:0]}
+            - {26'd0, f_steps[7:0]} * {26'd0, f_m_q[7:0]});
+`endif
+end
+`endif

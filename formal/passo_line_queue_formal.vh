@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: MIT
+// What the line queue promises; included at the end of passo_line_queue.
+
+// --- Assumptions: the link. A frame is checked, word by word; if nobody objects and it ends with a whole
+// line, it may be written, with as many words. Data stand from a clock before their strobe to a clock after it.
+`ifdef SMALL
+localparam [1:0] F_GAP = 2'd2;
+`else
+localparam [1:0] F_GAP = 2'd3;
+`endif
+reg       f_begun = 1'b0;
+reg       f_strobe_q = 1'b0;
+reg [1:0] f_gap = 2'd0;  // clocks since the last strobe or frame, up to 3
+reg       f_checking = 1'b0;
+reg       f_writing = 1'b0;
+reg       f_refused = 1'b0;
+reg [5:0] f_words = 6'd0;  // checked, and not yet written
+reg       f_select = 1'b0;
+reg [1:0] f_index = 2'd0;  // word of the line, 0 .. AXES + 1
+reg [3:0] f_since_take = 4'd0;
+reg [2:0] f_since_write = 3'd0;
+(* anyseq *) reg f_go;
+(* anyseq *) reg [DEPTH_LOG2:0] f_short_lines;
+wire f_strobe = (bus_check | bus_write) & select;
+wire f_last_index = f_index == AXES + 1;
+wire f_good = f_checking && !f_refused && refusal == VERDICT_OK && f_index == 2'd0 && f_words != 6'd0;
+always @(posedge clk) begin
+  f_begun    <= 1'b1;
+  f_strobe_q <= bus_check | bus_write;
+  f_gap      <= bus_check | bus_write | bus_frame ? 2'd0 : f_gap == 2'd3 ? 2'd3 : f_gap + 2'd1;
+  f_since_take <= take ? 4'd0 : f_since_take == 4'd15 ? 4'd15 : f_since_take + 4'd1;
+  f_since_write <= bus_write | f_writing ? 3'd0 : f_since_write == 3'd7 ? 3'd7 : f_since_write + 3'd1;
+  assume (rst == !f_begun);
+  if (bus_check || bus_write || bus_frame) assume (f_gap >= F_GAP);
+  assume (bus_check + bus_write + bus_frame <= 2'd1);
+  if (bus_check || bus_write || f_strobe_q) assume ($stable(bus_data));
+  if (bus_check) assume (f_checking && f_words != 6'd60);
+  if (bus_write) assume (f_writing == select);
+  if (f_checking && f_words != 6'd0) assume (select == f_select);
+  if (f_writing) assume (!bus_frame || f_words == 6'd0);
+  if (f_strobe) f_index <= f_last_index ? 2'd0 : f_index + 2'd1;
+  if (refusal != VERDICT_OK) f_refused <= 1'b1;
+  if (bus_check) begin
+    f_words  <= f_words + 6'd1;
+    f_select <= select;
+  end
+  if (bus_write && f_writing) f_words <= f_words - 6'd1;
+  if (bus_write && f_writing && f_words == 6'd1) f_writing <= 1'b0;
+  if (bus_frame) begin
+    f_index    <= 2'd0;
+    f_refused  <= 1'b0;
+    f_checking <= !(f_good && f_go);
+    f_writing  <= f_good && f_go && f_select;
+`ifdef SMALL
+    // shorter for the search of bugs: a frame that would be good is written without being checked
+    if (f_go && f_short_lines != 0 && f_short_lines <= room) begin
+      f_checking <= 1'b0;
+      f_writing  <= 1'b1;
+      f_select   <= 1'b1;
+      f_words    <= 3 * f_short_lines;
+    end else
+`endif
+    if (!(f_good && f_go)) f_words <= 6'd0;
+  end
+`ifdef SMALL
+  assume (bus_data[31:10] == 22'd0);
+`endif
+  // line counter and motion
+  assume (blocked == flush);
+  if (take) assume (next_valid && !release_line);
+  if (release_line) assume (f_current != F_NONE && f_since_take >= 4'd4 && !flush);
+  // a channel stays stopped while a frame is written: only another frame can clear it
+  if (f_begun && $past(flush) && f_since_write != 3'd7) assume (flush);
+end
+
+// --- The queue as it should be: lines from the next one on, and what the current line occupies
+localparam [1:0] F_NONE = 2'd0;
+localparam [1:0] F_PLACE = 2'd1;  // the current line has its own place
+localparam [1:0] F_ENDLESS = 2'd2;  // it is the next line as well
+reg  [DEPTH_LOG2:0] f_lines = 0;
+reg  [         1:0] f_current = F_NONE;
+wire f_written = bus_write & select & f_last_index;
+wire f_pop = (take & ~next_endless) | (release_line && f_current == F_ENDLESS);
+reg  [DEPTH_LOG2:0] f_checked = 0;  // lines of this frame
+always @(posedge clk) begin
+  f_lines <= f_lines + f_written - f_pop;
+  if (release_line) f_current <= F_NONE;
+  if (take) f_current <= next_endless ? F_ENDLESS : F_PLACE;
+  if (bus_check && select && f_last_index) f_checked <= f_checked + 1'b1;
+  if (bus_frame) f_checked <= 0;
+  if (rst || flush) begin
+    f_lines   <= 0;
+    f_current <= F_NONE;
+  end
+end
+
+reg [2:0] f_quiet = 3'd0;  // clocks in which nothing was taken, released or flushed
+always @(posedge clk) f_quiet <= take | release_line | flush | rst | f_written ? 3'd0 : f_quiet == 3'd7 ? 3'd7 : f_quiet + 3'd1;
+
+always @(posedge clk)
+  if (f_begun) begin
+    room_is_what_is_free : assert (room == (1 << DEPTH_LOG2) - f_lines - (f_current == F_PLACE));
+    if (next_valid && !flush && !$past(flush)) next_only_if_there : assert (f_lines != 0);
+    if (f_quiet >= 3'd2 && f_lines != 0) line_not_lost : assert (next_valid);
+    if (incomplete != (f_index != 2'd0)) incomplete_told : assert (bus_frame);
+  end
+
+// --- Refusals
+reg [31:0] f_m;
+wire [31:0] f_defined = {{(24 - AXES) {1'b0}}, {AXES{1'b1}}, 6'd0, 2'b11};
+wire f_bad = f_index == 2'd0 ? (bus_data & ~f_defined) != 32'd0 :
+             f_index == 2'd1 ? bus_data == 32'd0 : bus_data > f_m;
+always @(posedge clk) begin
+  if (f_strobe && f_index == 2'd1) f_m <= bus_data;
+  if (f_begun && $past(f_begun)) begin
+    if ($past(!(bus_check && select))) refuses_only_checks : assert (refusal == VERDICT_OK);
+    else if ($past(blocked)) busy_when_stopped : assert (refusal == VERDICT_BUSY);
+    else begin
+      if (refusal == VERDICT_OK && !f_refused) room_for_all_checked : assert ($past(f_checked) < $past(room));
+      if (refusal == VERDICT_QUEUE_FULL) full_only_without_room : assert ($past(f_checked) == $past(room, 2));
+      else bad_value_refused : assert (refusal == ($past(f_bad) ? VERDICT_BAD_VALUE : VERDICT_OK) || f_refused);
+    end
+  end
+end
+
+// --- One line, any one, is watched from its first word on
+(* anyconst *) reg [DEPTH_LOG2-1:0] f_slot;  // its place; the script gives it to the memories
+(* anyseq *) reg f_choose;
+(* keep *) wire [CONTROL_BITS-1:0] f_control_word;
+(* keep *) wire [31:0] f_substep_word;
+(* keep *) wire [31:0] f_steps_word;
+reg f_recording = 1'b0;
+reg f_queued = 1'b0;
+reg f_taken = 1'b0;  // it is the current line
+reg [DEPTH_LOG2:0] f_ahead;  // lines before it
+reg [1:0] f_taken_for = 2'd0;  // clocks, up to 3
+reg [AXES+1:0] f_line_control;
+reg [31:0] f_line_substeps;
+reg [31:0] f_line_steps;
+wire f_watch = !f_recording && !f_queued && !f_taken && f_choose && bus_write && select && f_index == 2'd0
+               && write_line[DEPTH_LOG2-1:0] == f_slot;
+wire f_is_next = f_queued && f_ahead == 0;
+always @(posedge clk) begin
+  if (f_watch) begin
+    f_recording    <= 1'b1;
+    f_line_control <= {bus_data[8+:AXES], bus_data[1:0]};
+  end
+  if (f_recording && f_strobe) begin
+    if (f_index == 2'd1) f_line_substeps <= bus_data;
+    else f_line_steps <= bus_data;
+  end
+  if (f_recording && f_written) begin
+    f_recording <= 1'b0;
+    f_queued    <= 1'b1;
+    f_ahead     <= f_lines - f_pop;
+  end
+  if (f_queued && f_pop) begin
+    if (f_is_next) f_queued <= 1'b0;
+    else f_ahead <= f_ahead - 1'b1;
+  end
+  if (take) f_taken <= f_is_next;
+  f_taken_for <= take ? 2'd0 : f_taken_for == 2'd3 ? 2'd3 : f_taken_for + 2'd1;
+  if (release_line) f_taken <= 1'b0;
+  if (rst || flush) {f_recording, f_queued, f_taken} <= 3'b000;
+
+  if (f_is_next && next_valid)
+    control_as_written : assert ({next_directions, next_endless, next_last} == f_line_control);
+  if (f_taken) substeps_as_written : assert (last_substep == f_line_substeps - 32'd1);
+  if (f_taken && f_taken_for >= 2'd1) steps_as_written : assert (steps == f_line_steps);
+end
+
+`ifdef INVARIANTS
+always @(posedge clk)
+  if (f_begun) begin
+    assert (f_lines <= 1 << DEPTH_LOG2 && f_current <= F_ENDLESS);
+    assert (f_lines + (f_current == F_PLACE) <= 1 << DEPTH_LOG2);
+    assert (f_lines == write_line - next_line);
+    assert (has_place == (f_current == F_PLACE));
+    if (f_current == F_PLACE) assert (current_line == next_line[DEPTH_LOG2-1:0] - 1'b1);
+    if (f_current == F_ENDLESS) assert (current_line == next_line[DEPTH_LOG2-1:0] && f_lines != 0);
+    assert (index == 3'd1 << f_index && f_index <= 2'd2);
+    assert (!(f_checking && f_writing));
+    assert (f_words <= 6'd60);
+    if (f_writing) assert (f_select);
+    if (!f_checking && !f_writing) assert (f_index == 0);
+    if (f_writing || f_checking) assert (checked == f_checked || f_writing);
+    assert (f_index == 0 || (f_words != 0 || f_checking));
+    if (f_checking && (f_words == 0 || !f_select)) assert (f_checked == 0 && f_index == 0);
+    // the words to be written fit
+    if (f_checking && f_select && !f_refused && refusal == VERDICT_OK && f_words != 0) begin
+      assert (f_words == 3 * f_checked + f_index);
+      assert (32'd0 + f_checked + (f_index != 0) <= room);
+    end
+    if (f_writing) assert (32'd0 + f_words + f_index <= 3 * room && (f_words + f_index) % 3 == 0 && f_words != 0);
+    if (f_recording) assert (f_writing && f_index != 0 && write_line[DEPTH_LOG2-1:0] == f_slot && f_ahead == f_ahead);
+    if (f_recording) assert (!f_queued && !f_taken);
+    if (f_recording) assert (f_control_word == f_line_control);
+    if (f_recording && f_index == 2'd2) assert (f_substep_word == f_line_substeps - 32'd1);
+    if (f_queued || f_taken) begin
+      assert (f_control_word == f_line_control);
+      assert (f_substep_word == f_line_substeps - 32'd1);
+      assert (f_steps_word == f_line_steps);
+    end
+    if (f_queued) assert (f_ahead < f_lines && f_slot == next_line[DEPTH_LOG2-1:0] + f_ahead[DEPTH_LOG2-1:0]);
+    if (f_taken) assert (current_line == f_slot && f_current != F_NONE && (f_queued == (f_current == F_ENDLESS)));
+    if (f_taken && f_queued) assert (f_ahead == 0 && f_line_control[1]);
+    if (f_current == F_ENDLESS && f_is_next) assert (f_taken);
+    if (f_index == 2'd2) assert (not_substeps == ~f_m);
+    if (f_index != 2'd2) assert (not_substeps == ~32'd0);
+  end
+`endif

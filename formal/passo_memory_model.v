@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// The memory as a proof sees it, in the place of passo_memory: only one address, `f_address`, keeps its word
+// (`f_word`); every other one, and a word that is being written, reads as anything. Whoever proves something
+// with it chooses the address freely: the script connects `f_address` and `f_word`, by their names.
+`resetall
+`default_nettype none
+
+module passo_memory #(
+  parameter WIDTH      = 16,
+  parameter DEPTH_LOG2 = 8
+) (
+  input  wire                  clk,
+  input  wire                  write,
+  input  wire [DEPTH_LOG2-1:0] write_address,
+  input  wire [     WIDTH-1:0] write_data,
+  input  wire [DEPTH_LOG2-1:0] read_address,
+  output reg  [     WIDTH-1:0] read_data
+);
+
+  (* keep *) wire [DEPTH_LOG2-1:0] f_address;
+  (* keep *) reg [WIDTH-1:0] f_word;
+  (* anyseq *) wire [WIDTH-1:0] f_anything;
+
+  wire f_written = write && write_address == f_address;
+
+  always @(posedge clk) begin
+    if (f_written) f_word <= write_data;
+    read_data <= read_address == f_address && !f_written ? f_word : f_anything;
+  end
+
+endmodule
+`resetall

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+// What the motion states promise; included at the end of passo_motion.
+
+reg f_begun = 1'b0;
+always @(posedge clk) begin
+  f_begun <= 1'b1;
+  assume (rst == !f_begun);
+end
+
+wire f_stop_hard = command_abort | (moving & (step_overrun | line_underrun));
+
+// --- How long RUN has lasted
+reg [3:0] f_run_age;
+always @(posedge clk)
+  f_run_age <= state != STATE_RUN ? 4'd0 : f_run_age == 4'd15 ? 4'd15 : f_run_age + 4'd1;
+
+always @(posedge clk)
+  if (f_begun) begin
+    state_is_one_of_seven : assert (state <= STATE_STOPPED);
+    if (stopped)
+      stopped_stands :
+      assert (!moving && !counting && !prepare && !begin_profile && !drain && !release_line && !running);
+    stopped_is_the_state : assert (stopped == (state == STATE_STOPPED));
+    cause_when_stopped : assert ((cause != CAUSE_NONE) == stopped);
+    if (counting) counts_only_in_motion : assert (moving && occupied);
+    if (begin_profile) begins_only_armed : assert (state == STATE_ARMED && (sync_edge || !wait_sync));
+  end
+
+// --- From one clock to the next
+always @(posedge clk)
+  if (f_begun && $past(f_begun)) begin
+    if ($past(stopped) && !$past(command_clear)) stopped_until_clear : assert (stopped);
+    if ($past(command_abort) && !$past(stopped)) abort_stops_at_once : assert (stopped && cause == CAUSE_ABORT);
+    if ($past(f_stop_hard) && !$past(stopped)) fault_stops_at_once : assert (stopped);
+    if ($past(moving && step_overrun && !command_abort)) overrun_is_the_cause : assert (cause == CAUSE_STEP_OVERRUN);
+    if ($past(moving && line_underrun && !step_overrun && !command_abort))
+      underrun_is_the_cause : assert (cause == CAUSE_LINE_UNDERRUN);
+    if ($past(command_stop) && !$past(stopped)) stop_is_heard : assert (stopping || stopped);
+    if ($past(stopping)) stop_is_kept : assert (stopping || stopped);
+    if ($past(stopping) && ($past(!moving) || ($past(rate_is_zero, 2) && $past(f_begun, 2)))) stop_ends_in_stopped : assert (stopped);
+    if (stopped && !$past(stopped)) begin
+      stopped_for_a_reason : assert ($past(f_stop_hard) || $past(stopping));
+      if (!$past(f_stop_hard)) soft_cause_told : assert (cause == CAUSE_STOP || cause == CAUSE_RAMP_UNDERRUN);
+    end
+    if (state != $past(state) && !stopped)
+      case (state)
+        STATE_IDLE:
+        idle_comes_from :
+        assert ($past(stopped && command_clear) || $past(state == STATE_SETTLE && release_line));
+        STATE_PREPARE: prepare_comes_from : assert ($past(state == STATE_IDLE && prepare));
+        STATE_ARMED: armed_comes_from : assert ($past(state == STATE_PREPARE && ramp_ready));
+        STATE_RUN: run_comes_from : assert ($past(state == STATE_ARMED && begin_profile));
+        STATE_SETTLE:
+        settle_comes_from :
+        assert ($past(begin_profile && ramp_ended) || $past(state == STATE_RUN && ramp_ended)
+                || $past(state == STATE_DRAIN && line_ended));
+        default:
+        drain_comes_from : assert ($past(state == STATE_SETTLE && !line_ended && !line_endless));
+      endcase
+    if ($past(begin_profile) && !$past(command_abort) && !$past(stopping))
+      begins_when_told : assert (state == STATE_RUN || state == STATE_SETTLE);
+    if (prepare) prepared_only_with_both : assert ($past(run && line_valid && ramp_valid && state == STATE_IDLE));
+    if ($past(release_line)) released_at_the_end : assert ($past(line_ended || line_endless));
+    drained_counts :
+    assert (drained == $past(drained) + {15'd0, $past(drain && substep_made && !line_ended)});
+    if ($past(stopped) && $past(state) == STATE_STOPPED) no_move_out_of_stopped : assert (!running);
+    if (state == STATE_RUN && f_run_age < 4'd7 && !$past(running) && $past(state) == STATE_RUN)
+      running_not_before_7 : assert (!running);
+    if (state == STATE_RUN && f_run_age >= 4'd7) running_from_7_on : assert (running);
+    if (!$past(moving)) not_running_at_rest : assert (!running);
+  end
+
+`ifdef INVARIANTS
+always @(posedge clk)
+  if (f_begun) begin
+    assert (soft_cause == CAUSE_STOP || soft_cause == CAUSE_RAMP_UNDERRUN || !stopping);
+    assert (!stopping || !stopped);
+    if (state == STATE_RUN) assert (f_run_age >= 4'd6 ? count == 3'd6 : {1'b0, count} == f_run_age);
+    if (state == STATE_SETTLE) assert (count <= SETTLE_LAST);
+    if (startable) assert ($past(run && line_valid && ramp_valid && state == STATE_IDLE) || !$past(f_begun));
+    if (state == STATE_RUN && f_run_age == 4'd0) assert (!running);
+  end
+`endif

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// Settings of one axis, as they are written, and which of its times are so short that its timer needs to know
+// before it counts.
+`resetall
+`default_nettype none
+
+module passo_axis_settings (
+  input  wire        clk,
+  input  wire        rst,
+  // strobes with bus_data
+  input  wire        write_pins,
+  input  wire        write_step_timing,
+  input  wire        write_dir_timing,
+  input  wire [31:0] bus_data,
+  input  wire        short_upper,         // its upper half is 0 or 1
+  input  wire        short_lower,
+  output reg  [15:0] step_high,
+  output reg  [15:0] step_low,
+  output reg  [15:0] dir_setup,
+  output reg  [15:0] dir_hold,
+  output reg         short_high,          // step_high is 0 or 1
+  output reg         short_low,
+  output reg         short_setup,
+  output reg         short_hold,
+  output reg         both_edges,
+  output reg         step_inverted,
+  output reg         direction_inverted,
+  output reg         enable,
+  output reg         enable_inverted
+);
+
+  `include "passo_registers.vh"
+
+  always @(posedge clk) begin
+    if (write_pins) {both_edges, enable_inverted, direction_inverted, step_inverted, enable} <= bus_data[4:0];
+    if (write_step_timing) begin
+      {step_high, step_low}   <= bus_data;
+      {short_high, short_low} <= {short_upper, short_lower};
+    end
+    if (write_dir_timing) begin
+      {dir_setup, dir_hold}     <= bus_data;
+      {short_setup, short_hold} <= {short_upper, short_lower};
+    end
+
+    if (rst) begin
+      enable             <= AXIS_PINS_ENABLE_RESET;
+      step_inverted      <= AXIS_PINS_STEP_INVERTED_RESET;
+      direction_inverted <= AXIS_PINS_DIRECTION_INVERTED_RESET;
+      enable_inverted    <= AXIS_PINS_ENABLE_INVERTED_RESET;
+      both_edges         <= AXIS_PINS_BOTH_EDGES_RESET;
+      step_high          <= AXIS_STEP_TIMING_STEP_HIGH_RESET;
+      step_low           <= AXIS_STEP_TIMING_STEP_LOW_RESET;
+      dir_setup          <= AXIS_DIR_TIMING_DIR_SETUP_RESET;
+      dir_hold           <= AXIS_DIR_TIMING_DIR_HOLD_RESET;
+      short_high         <= AXIS_STEP_TIMING_STEP_HIGH_RESET < 16'd2;
+      short_low          <= AXIS_STEP_TIMING_STEP_LOW_RESET < 16'd2;
+      short_setup        <= AXIS_DIR_TIMING_DIR_SETUP_RESET < 16'd2;
+      short_hold         <= AXIS_DIR_TIMING_DIR_HOLD_RESET < 16'd2;
+    end
+  end
+
+endmodule
+`resetall

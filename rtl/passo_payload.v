@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// Payload: the words of a frame in half words, so that they take one block RAM; and the word on the bus.
+// Behind them lie two words of 4 counters each, of refused frames.
+//
+// Promise: `store` writes a half word. `load` in the two clocks after `load_low` = 0, then 1 named the halves
+// of a word puts this word into `data`, or 0 with `load_zero`. 32 clocks of `turn` show it at data[31] bit by
+// bit, leave it as it was, and tell what it amounts to: `top_bit` is the number of its highest bit that is set
+// (0 if none is), `lone_bit` says that no other is.
+//
+// Bits go by from the top, but a counter has to be counted from the bottom: in the memory each counter lies
+// the other way round. `count` adds 1 to counter `counter` as the word turns; `put` stores data[15:0], which is
+// the upper half after 16 clocks, the lower after 32, and wins over `store`. `counter_bit` is the bit that
+// goes by when a word of counters is to be shown the right way round.
+`resetall
+`default_nettype none
+
+module passo_payload (
+  input  wire        clk,
+  // in
+  input  wire        store,
+  input  wire [ 6:0] store_word,
+  input  wire        store_low,
+  input  wire [15:0] half,
+  input  wire        put,
+  input  wire [ 6:0] put_word,
+  input  wire        put_low,
+  // out
+  input  wire        load,
+  input  wire [ 6:0] load_word,
+  input  wire        load_low,
+  input  wire        load_zero,
+  input  wire        turn,
+  input  wire [ 4:0] turns,       // 0 .. 31
+  input  wire        count,
+  input  wire [ 1:0] counter,
+  output reg  [31:0] data,
+  output reg  [ 4:0] top_bit,
+  output reg         lone_bit,
+  output reg         counter_bit
+);
+
+  wire [15:0] loaded;
+
+  passo_memory #(
+    .WIDTH     (16),
+    .DEPTH_LOG2(8)
+  ) u_words (
+    .clk          (clk),
+    .write        (store || put),
+    .write_address(put ? {put_word, put_low} : {store_word, store_low}),
+    .write_data   (put ? data[15:0] : half),
+    .read_address ({load_word, load_low}),
+    .read_data    (loaded)
+  );
+
+  // Before the first word it means nothing, but it should be something.
+  initial data = 32'd0;
+
+  reg  some_bit;
+  wire in_counter = count && turns[4:3] == ~counter;
+  reg  carry;
+
+  always @*
+    case (turns[2:0])
+      3'd0: counter_bit = data[24];
+      3'd1: counter_bit = data[26];
+      3'd2: counter_bit = data[28];
+      3'd3: counter_bit = data[30];
+      3'd4: counter_bit = data[0];
+      3'd5: counter_bit = data[2];
+      3'd6: counter_bit = data[4];
+      3'd7: counter_bit = data[6];
+    endcase
+
+  always @(posedge clk) begin
+    carry <= !in_counter || (carry && data[31]);
+    if (load && load_zero) data <= 32'd0;
+    else if (load || turn)
+      data <= turn ? {data[30:0], data[31] ^ (in_counter && carry)} : {data[15:0], loaded};
+    if (turn && data[31]) begin
+      some_bit <= 1'b1;
+      if (some_bit) lone_bit <= 1'b0;
+      else top_bit <= ~turns;
+    end
+    if (load) begin
+      some_bit <= 1'b0;
+      lone_bit <= 1'b1;
+      top_bit  <= 5'd0;
+    end
+  end
+
+endmodule
+`resetall

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+// Positions of the axes of a channel. Each axis counts its steps modulo 256; the whole positions are in a
+// block RAM and catch up in rounds of 64 clocks, axis by axis:
+//
+//   slot = 63      all counters are copied, on one clock (`captured`)
+//   8 slots each   lower half: the captured byte, and a carry or borrow where it has gone past 0 or 255;
+//                  upper half: what is left of the carry or borrow
+//
+// Promise: `snapshot` brings about one round that also copies the positions, as they were in the round's
+// slot 63: they are coherent. It is the next round, or the one after it when the positions are set to 0, which
+// takes a round; the copies are complete 192 clocks after `snapshot`. `position` is the copy of axis `address`
+// when `address` has stood for 12 clocks.
+// An axis makes at most 36 steps in a round, so the way that a counter went is never in doubt.
+`resetall
+`default_nettype none
+
+module passo_positions #(
+  parameter AXES = 4
+) (
+  input  wire            clk,
+  input  wire            rst,
+  input  wire [AXES-1:0] step_made,
+  input  wire [AXES-1:0] step_direction,  // 1 = negative
+  input  wire            zero,            // set all positions to 0
+  input  wire            snapshot,
+  input  wire [     2:0] address,
+  output reg  [    31:0] position
+);
+
+  reg  [5:0] slot;
+  wire       round_ends = slot == 6'd63;
+  wire       upper = slot[2];
+  wire [1:0] phase = slot[1:0];
+
+  reg clear_waits;
+  reg clears;  // this round sets the positions to 0
+  reg snapshot_waits;
+  reg copies_next;
+  reg copies;  // this round copies the positions; a clock later, as the last half is
+
+  // Counters, and their chain to the round
+  wire [7:0] captured[0:AXES];
+  assign captured[AXES] = 8'd0;
+
+  genvar axis;
+  generate
+    for (axis = 0; axis < AXES; axis = axis + 1) begin : g_axis
+      reg [7:0] count;
+      reg [7:0] capture;
+      assign captured[axis] = capture;
+      always @(posedge clk) begin
+        if (step_made[axis]) count <= count + {{7{step_direction[axis]}}, 1'b1};
+        if (rst || zero) count <= 8'd0;
+        if (slot[2:0] == 3'd7) capture <= round_ends ? count : captured[axis+1];
+      end
+    end
+  endgenerate
+
+  // One half of a position: read in phase 0, judged in phase 1, made in phase 2, written in phase 3, copied in the
+  // next phase 0. Bytes 0 and 1 stand in the word the other way round. In phases 2 and 3 the memory is asked for
+  // `position`.
+  wire [15:0] half;
+  reg  [15:0] half_next;
+  reg         up;
+  reg         down;
+  reg  [ 3:0] place;  // of half_next
+  wire [ 7:0] low_byte = captured[0];
+  wire [15:0] sum = half + {16{down}} + {15'd0, up};
+  wire        carry_8 = sum[8] ^ half[8] ^ down;
+
+  passo_memory #(
+    .WIDTH     (16),
+    .DEPTH_LOG2(5)
+  ) u_memory (
+    .clk          (clk),
+    .write        (phase == 2'd3 || (phase == 2'd0 && copies)),
+    .write_address({~phase[0], place}),
+    .write_data   (half_next),
+    .read_address (phase[1] ? {1'b1, address, upper} : {1'b0, slot[5:2]}),
+    .read_data    (half)
+  );
+
+  always @(posedge clk) begin
+    slot   <= slot + 6'd1;
+    place  <= slot[5:2];
+    copies <= copies_next;
+    if (phase == 2'd1 && !upper) begin
+      up   <= half[15:14] == 2'b11 && low_byte[7:6] == 2'b00;
+      down <= half[15:14] == 2'b00 && low_byte[7];
+    end
+    if (phase == 2'd2) begin
+      half_next <= upper ? sum : {low_byte, sum[7:0]};
+      up        <= up & carry_8;
+      down      <= down & ~carry_8;
+      if (clears) half_next <= 16'd0;
+    end
+    if (clears) begin
+      up   <= 1'b0;
+      down <= 1'b0;
+    end
+    if (phase == 2'd3) begin
+      if (upper) position[31:16] <= half;
+      else position[15:0] <= {half[7:0], half[15:8]};
+    end
+
+    if (round_ends) begin
+      clears         <= clear_waits;
+      clear_waits    <= 1'b0;
+      copies_next    <= snapshot_waits;
+      snapshot_waits <= snapshot_waits & clear_waits;  // copied once more when the positions are cleared
+    end
+    if (zero) clear_waits <= 1'b1;
+    if (snapshot) snapshot_waits <= 1'b1;
+
+    if (rst) begin
+      slot           <= 6'd0;
+      clears         <= 1'b1;
+      clear_waits    <= 1'b0;
+      copies_next    <= 1'b0;
+      snapshot_waits <= 1'b0;
+    end
+  end
+
+endmodule
+`resetall

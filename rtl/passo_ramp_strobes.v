@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+// Strobes of the ramp: what moves in which clock of which step.
+//
+// All strobes are registered: they act one clock after the count they belong to. A half word of the queue comes
+// one clock after its index, so a strobe that wants it belongs to the count after that of the index.
+`resetall
+`default_nettype none
+
+module passo_ramp_strobes (
+  input  wire       clk,
+  input  wire       prepare,
+  input  wire [2:0] step,
+  input  wire [5:0] count,            // clocks of the step, from 1
+  input  wire       table_served,
+  // ramp queue
+  output reg  [3:0] half_index,
+  // numbers
+  output reg        control_load,
+  output reg        start_move,
+  output reg        start_load,
+  output reg        start_copy,
+  output reg        u_move,
+  output reg        u_load,
+  output reg        u_last,
+  output reg        ticks_load_low,
+  output reg        ticks_load_high,
+  output reg        ticks_add_low,
+  output reg        ticks_add_high,
+  // interpolation
+  output reg        moving,
+  output reg        shaping,
+  output reg        load_fraction,
+  output reg        clear,
+  output reg        result_move       // moves or is cleared
+);
+
+  `include "passo_ramp_steps.vh"
+
+  wire fetch = step == STEP_FETCH;
+  wire take = step == STEP_TAKE && count >= 6'd2 && count <= 6'd4;
+  wire copy = step == STEP_COPY;
+  wire shape = step == STEP_SHAPE;
+  wire scale = step == STEP_SCALE;
+  wire scale_begins = scale && count == 6'd1;
+  wire empty = prepare || (step == STEP_LOOK_UP && !table_served) || scale_begins;
+
+  always @(posedge clk) begin
+    control_load    <= fetch && count == 6'd4;
+    start_load      <= take;
+    start_copy      <= copy;
+    start_move      <= take || copy || (scale && count <= 6'd48);
+    u_load          <= fetch;
+    u_move          <= (fetch && count >= 6'd5) || (step == STEP_STEP && count != 6'd1);
+    u_last          <= count == 6'd4 || count == 6'd7;
+    ticks_load_low  <= fetch && count == 6'd2;
+    ticks_load_high <= fetch && count == 6'd3;
+    ticks_add_low   <= (fetch && count == 6'd3) || scale_begins;
+    ticks_add_high  <= (fetch && count == 6'd4) || (scale && count == 6'd2);
+    moving          <= shape || scale;
+    shaping         <= shape;
+    load_fraction   <= scale_begins;
+    clear           <= empty;
+    result_move     <= empty || copy || shape || scale;
+  end
+
+  // The first half word of v_end is there when scale begins, whatever was before.
+  always @(posedge clk)
+    case (step)
+      STEP_FETCH:
+      case (count[2:0])
+        3'd1:    half_index <= 4'd5;  // T
+        3'd2:    half_index <= 4'd4;
+        3'd3:    half_index <= 4'd1;  // control
+        3'd4:    half_index <= 4'd9;  // du
+        3'd5:    half_index <= 4'd8;
+        3'd6:    half_index <= 4'd7;
+        default: half_index <= 4'd3;
+      endcase
+      STEP_TAKE: half_index <= count[1:0] == 2'd1 ? 4'd3 : count[1:0] == 2'd2 ? 4'd2 : 4'd0;
+      STEP_SCALE: half_index <= count < 6'd15 ? 4'd3 : count < 6'd31 ? 4'd2 : 4'd0;
+      STEP_STEP:
+      case (count[2:0])
+        3'd1, 3'd4: half_index <= 4'd9;
+        3'd2, 3'd5: half_index <= 4'd8;
+        3'd3, 3'd6: half_index <= 4'd7;
+        default:    half_index <= 4'd3;
+      endcase
+      default: half_index <= 4'd3;
+    endcase
+
+endmodule
+`resetall

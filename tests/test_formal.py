@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: MIT
+"""The quick proofs hold, and each of their promises catches the bug that is planted for it.
+
+``make formal`` runs the others as well; docs/formal.md says what is proved and how.
+"""
+
+import re
+
+import pytest
+
+from formal import run
+
+PROOFS = run.proofs()
+QUICK = [proof for proof in PROOFS if not proof.slow]
+BUGS = [(proof, promise) for proof in QUICK for promise in proof.promises if not promise.slow]
+
+
+def labels(proof: run.Proof) -> set[str]:
+    """The labels of all assertions in the files that the proof reads."""
+    found = set()
+    for name in re.findall(r"^formal/(\S+\.vh)$", proof.sby.read_text(encoding="utf-8"), re.M):
+        text = (run.HERE / name).read_text(encoding="utf-8")
+        found |= set(re.findall(r"(\w+) :\s+assert\b", text))
+    return found
+
+
+@pytest.mark.parametrize("proof", QUICK, ids=lambda proof: proof.name)
+def test_promises_hold(proof):
+    result = run.prove(proof)
+    assert result.good, result.says
+
+
+@pytest.mark.parametrize(("proof", "promise"), BUGS, ids=[f"{a.name}-{b.name}" for a, b in BUGS])
+def test_planted_bug_is_caught(proof, promise):
+    result = run.catch(proof, promise)
+    assert result.good, result.says
+
+
+@pytest.mark.parametrize(
+    ("proof", "promise"),
+    [(proof, promise) for proof in PROOFS for promise in proof.promises],
+    ids=[f"{proof.name}-{promise.name}" for proof in PROOFS for promise in proof.promises],
+)
+def test_every_bug_can_be_planted(proof, promise, tmp_path):
+    file = tmp_path / promise.file
+    file.parent.mkdir()
+    source = run.paths.root / promise.file
+    file.write_bytes(source.read_bytes())
+    run.plant(promise, tmp_path)
+    assert file.read_text(encoding="utf-8") != source.read_text(encoding="utf-8")
+
+
+def test_every_assertion_belongs_to_a_promise():
+    for source in sorted(run.HERE.glob("*.vh")):
+        readers = [proof for proof in PROOFS if source.name in proof.sby.read_text(encoding="utf-8")]
+        stated = {label for proof in readers for promise in proof.promises for label in promise.asserts}
+        there = set().union(*(labels(proof) for proof in readers))
+        assert there == stated, source.name
+
+
+def test_every_proof_has_its_promises():
+    assert {file.stem for file in run.HERE.glob("*.sby")} == {proof.name for proof in PROOFS}
+
+
+def test_the_page_says_every_promise():
+    page = " ".join((run.paths.docs / "formal.md").read_text(encoding="utf-8").split())
+    for proof in PROOFS:
+        for promise in proof.promises:
+            assert promise.says in page, f"docs/formal.md lacks: {promise.says}"
