@@ -118,7 +118,8 @@ static bool motion_settled(const struct passo_channel *channel, const struct pas
 {
 	const struct passo_motion *motion = &channel->motion;
 
-	if (motion->stopping || motion->rate_was_zero != (channel->timescale.rate == 0u))
+	if (motion->stopping || motion->settling != 0u
+	    || motion->rate_was_zero != (channel->timescale.rate == 0u))
 		return false;
 	switch (motion->state) {
 	case PASSO_STATE_IDLE:
@@ -323,10 +324,6 @@ static uint64_t channel_quiet(const struct passo_channel *channel, const struct 
 /* What runs on its own: timers and waits. */
 static void skip_surroundings(struct passo_channel *channel, uint64_t clocks)
 {
-	struct passo_motion *motion = &channel->motion;
-
-	if (motion->state != PASSO_STATE_RUN)
-		motion->count = (uint8_t)((motion->count + clocks) & 7u);
 	for (unsigned i = 0; i < channel->axes; i++)
 		passo_axis_skip(&channel->axis[i], clocks);
 	passo_positions_skip(&channel->positions, clocks);

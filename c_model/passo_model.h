@@ -250,6 +250,8 @@ struct passo_motion {
 	bool stopping;
 	uint16_t drained;
 	uint8_t count;
+	uint8_t settling; /* 3 bits */
+	bool settled;
 	bool startable;
 	bool rate_was_zero;
 	bool running;

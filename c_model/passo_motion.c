@@ -3,7 +3,7 @@
  */
 #include "passo_model.h"
 
-enum { SETTLE_LAST = 4, START_LAST = 6 };
+enum { START_LAST = 6 };
 
 static bool stop_now(const struct passo_channel *channel, const struct passo_channel_wires *wires)
 {
@@ -41,8 +41,7 @@ void passo_motion_wires(const struct passo_channel *channel, const struct passo_
 	    state == PASSO_STATE_IDLE && inputs->run && channel->line_queue.next_valid && wires->ramp_valid;
 	wires->prepare = state == PASSO_STATE_IDLE && motion->startable;
 	wires->begin_profile = state == PASSO_STATE_ARMED && (inputs->sync_edge || !inputs->wait_sync);
-	wires->finished = state == PASSO_STATE_SETTLE && motion->count == SETTLE_LAST
-	               && (line_over || channel->line.endless);
+	wires->finished = motion->settled && (line_over || channel->line.endless);
 	wires->stop_now = stop_now(channel, wires) && !wires->stopped;
 	wires->cause = cause_now(channel, wires);
 }
@@ -52,11 +51,15 @@ void passo_motion_clock(
 {
 	const enum passo_state state = motion->state;
 	const uint8_t count = motion->count;
+	const uint8_t settling = motion->settling;
+	const bool settled = motion->settled;
 	const bool dry = channel->ramp.dry && !channel->line.endless;
 	const struct passo_channel_registers *registers = &channel->registers;
 
 	motion->startable = wires->startable;
-	motion->count = (count + 1u) & 7u;
+	motion->count = state != PASSO_STATE_RUN ? 0u : count == START_LAST ? count : (uint8_t)(count + 1u);
+	motion->settling = state == PASSO_STATE_SETTLE ? (uint8_t)((settling << 1 | 1u) & 7u) : 0u;
+	motion->settled = state == PASSO_STATE_SETTLE && (settling & 4u) != 0u && !settled;
 	motion->rate_was_zero = channel->timescale.rate == 0u;
 	if (wires->prepare)
 		motion->state = PASSO_STATE_PREPARE;
@@ -64,7 +67,7 @@ void passo_motion_clock(
 		motion->state = PASSO_STATE_ARMED;
 	if (state == PASSO_STATE_RUN && wires->ramp_ended)
 		motion->state = PASSO_STATE_SETTLE;
-	if (state == PASSO_STATE_SETTLE && count == SETTLE_LAST)
+	if (state == PASSO_STATE_SETTLE && settled)
 		motion->state = PASSO_STATE_DRAIN;
 	if (state == PASSO_STATE_DRAIN && channel->line.ended)
 		motion->state = PASSO_STATE_SETTLE;
@@ -74,12 +77,6 @@ void passo_motion_clock(
 		motion->state = PASSO_STATE_IDLE;
 	if (state != PASSO_STATE_RUN || count == START_LAST)
 		motion->running = wires->moving;
-
-	if (state == PASSO_STATE_RUN && count == START_LAST)
-		motion->count = START_LAST;
-	if (wires->begin_profile || (state == PASSO_STATE_RUN && wires->ramp_ended)
-	    || (state == PASSO_STATE_DRAIN && channel->line.ended))
-		motion->count = 0;
 
 	if (wires->drain && channel->path.substep && !channel->line.ended)
 		motion->drained++;
@@ -101,5 +98,6 @@ void passo_motion_clock(
 		motion->cause = wires->cause;
 		motion->stopping = false;
 		motion->running = false;
+		motion->settled = false;
 	}
 }

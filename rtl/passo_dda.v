@@ -24,12 +24,22 @@ module passo_dda (
   reg signed [32:0] e_minus_m;
   reg signed [32:0] addend;
 
+  // A cell of the carry chain chooses between sum and addend as well. All but three of them: placers count the
+  // inputs of eight neighbours and the clock enable, and would cut the chain if these were too many.
+  wire [32:0] sum;
+  (* keep *)
+  wire [2:0] sum_apart;
+  wire [32:0] e_next = slot_load_q ? addend : {sum[32:28], sum_apart[2], sum[26:20], sum_apart[1],
+                                               sum[18:12], sum_apart[0], sum[10:0]};
+
+  assign sum       = e_minus_m + addend;
+  assign sum_apart = {sum[27], sum[19], sum[11]};
+
   assign step_request = slot_step & ~e_minus_m[32];
 
   always @(posedge clk) begin
     addend <= (slot_add || slot_load) ? broadcast : $signed({1'b0, steps});
-    if (slot_load_q) e_minus_m <= addend;
-    else if (slot_add || step_request) e_minus_m <= e_minus_m + addend;
+    if (slot_load_q || slot_add || step_request) e_minus_m <= e_next;
   end
 
 `ifdef FORMAL

@@ -59,13 +59,13 @@ module passo_motion (
 
   `include "passo_registers.vh"
 
-  localparam [2:0] SETTLE_LAST = 3'd4;  // the last substep needs 2 clocks to the line
   localparam [2:0] START_LAST = 3'd6;  // from RUN to the STEP pin
 
-  reg [2:0] count;
+  reg [2:0] count;  // clocks of RUN, up to START_LAST
+  reg [2:0] settling;  // a bit for each clock of SETTLE so far
+  reg       settled;  // its fifth clock: the last substep needs 2 clocks to the line
   reg [2:0] soft_cause;
   reg       startable;
-  reg       settled;  // in SETTLE, and count has come to SETTLE_LAST
   reg       rate_was_zero;
 
   assign occupied = state != STATE_IDLE && !stopped;
@@ -89,9 +89,11 @@ module passo_motion (
   assign stopped = state == STATE_STOPPED;
 
   always @(posedge clk) begin
-    startable     <= state == STATE_IDLE && run && line_valid && ramp_valid;
-    count         <= count + 3'd1;
-    settled       <= state == STATE_SETTLE && count == SETTLE_LAST - 3'd1;
+    startable <= state == STATE_IDLE && run && line_valid && ramp_valid;
+    if (count != START_LAST) count <= count + 3'd1;
+    if (state != STATE_RUN) count <= 3'd0;
+    settling      <= state == STATE_SETTLE ? {settling[1:0], 1'b1} : 3'd0;
+    settled       <= state == STATE_SETTLE && settling[2] && !settled;
     rate_was_zero <= rate_is_zero;
     case (state)
       STATE_IDLE:    if (startable) state <= STATE_PREPARE;
@@ -104,11 +106,6 @@ module passo_motion (
     endcase
     if (state == STATE_RUN && count != START_LAST) running <= running;
     else running <= moving;
-
-    // count: in RUN up to START_LAST, in SETTLE up to SETTLE_LAST
-    if (state == STATE_RUN && count == START_LAST) count <= START_LAST;
-    if (begin_profile || (state == STATE_RUN && ramp_ended) || (state == STATE_DRAIN && line_ended))
-      count <= 3'd0;
 
     if (state == STATE_DRAIN && substep_made && !line_ended) drained <= drained + 16'd1;
 
