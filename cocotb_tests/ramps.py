@@ -49,7 +49,9 @@ class Ramp:
         """Velocity of each tick."""
         u = self.du  # half a step, of UQ0.49
         for _ in range(self.ticks):
-            at, a, b = (PROGRESS_ONE - 1 - u, self.v_end, v_start) if self.mirror else (u, v_start, self.v_end)
+            at, a, b = (
+                (PROGRESS_ONE - 1 - u, self.v_end, v_start) if self.mirror else (u, v_start, self.v_end)
+            )
             yield a + ((b - a) * evaluate(at, _table(self.shape)) >> 24)
             u = (u + 2 * self.du) % PROGRESS_ONE
 

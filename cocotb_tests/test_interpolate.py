@@ -13,13 +13,14 @@ from cocotb_tests.shapes import ONE, POINTS, PROGRESS_ONE, Shape, evaluate, load
 HALF = 1 << 47
 VELOCITY_BITS, POINT_BITS, PIPELINE = 48, 17, 2
 INPUTS = (
-    "clear", "result_move", "moving", "shaping", "load_fraction", "linear", "progress", "load_points", "point",
-    "point_next", "point_is_last", "a_bit", "b_bit",
+    "clear", "result_move", "moving", "shaping", "load_fraction", "linear", "progress", "load_points",
+    "point", "point_next", "point_is_last", "a_bit", "b_bit",
 )  # fmt: skip
 
 # u in units of 2^-49: its ends, between two points, and where its fraction rounds up to the next point
 U_POINT = PROGRESS_ONE // POINTS
-EDGES = [0, 1, (1 << 24) - 1, 1 << 24, PROGRESS_ONE - (1 << 24), PROGRESS_ONE - (1 << 16) - 1, PROGRESS_ONE - 1]
+EDGES = [0, 1, (1 << 24) - 1, 1 << 24]
+EDGES += [PROGRESS_ONE - offset for offset in (1 << 24, (1 << 16) + 1, 1)]
 for _k in (1, 2, 41, 127, 128, 129, 200, 254, 255):
     EDGES += [_k * U_POINT + offset for offset in (-(1 << 25), -1, 0, 1 << 16, U_POINT // 2)]
 
@@ -56,9 +57,8 @@ class Bench:
         seen = {"result_move": 1, "moving": 1, "shaping": 1, "progress": progress >> 16}
         # what follows the last point means nothing
         point_next = table[k + 1] if k < POINTS - 1 else 0xA5A5
-        await self.clock(
-            clear=1, result_move=1, load_points=1, point=table[k], point_next=point_next, point_is_last=k == POINTS - 1
-        )
+        points = {"point": table[k], "point_next": point_next, "point_is_last": k == POINTS - 1}
+        await self.clock(clear=1, result_move=1, load_points=1, **points)
         for _ in range(POINT_BITS + PIPELINE):
             await self.clock(**seen)
 

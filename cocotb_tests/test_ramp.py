@@ -217,6 +217,19 @@ async def the_longest_ramp_keeps_its_precision(dut: HierarchyObject) -> None:
 
 
 @cocotb.test()
+async def progress_steps_by_exactly_du(dut: HierarchyObject) -> None:
+    """To the last of its 49 bits, mirrored and not: s lies just above where it rounds up, or below."""
+    bench = await Ramps.begin(dut)
+    for mirror in (False, True):
+        for edge in (-2, -1, 0, 1):
+            du = (
+                ((1 << 24) + edge) * pow(3, -1, 1 << 25) % (1 << 25)
+            )  # 3 du, in the second tick, is at the edge
+            ramps = [Ramp(V_MAX, 3, Shape.LINEAR, mirror, progress_step=du), Ramp(0, 1, last=True)]
+            await bench.whole(ramps)
+
+
+@cocotb.test()
 async def the_last_ticks_of_a_long_ramp_stay_below_one(dut: HierarchyObject) -> None:
     """A progress step that carries u to just below 1 in the last tick: u never wraps."""
     bench = await Ramps.begin(dut)
@@ -333,8 +346,8 @@ async def the_last_ramp_ends_the_profile_and_later_ones_wait(dut: HierarchyObjec
 async def ramps_that_set_the_velocity_fit_into_a_tick_with_another(dut: HierarchyObject) -> None:
     """Ramps of one tick each with T = 0 before them, at full rate: the next velocity is ready in time.
 
-    Three ramps of T = 0 before each on a core of one channel, two on a core of eight, whatever the phase of the
-    tick against the turns of the channels at the tables.
+    Three ramps of T = 0 before each on a core of one channel, two on a core of eight, whatever the phase
+    of the tick against the turns of the channels at the tables.
     """
     bench = await Ramps.begin(dut)
     random = rng("ramp, stall")
@@ -362,7 +375,7 @@ async def what_does_not_fit_into_a_tick_comes_later_but_is_not_lost(dut: Hierarc
 
 @cocotb.test()
 async def drain_sets_its_own_velocity(dut: HierarchyObject) -> None:
-    """While drain is high the velocity is drain_velocity, UQ0.32, and nothing stalls; from the second clock on."""
+    """While drain is high the velocity is drain_velocity, UQ0.32, from the second clock on; no stall."""
     bench = await Ramps.begin(dut)
     await bench.whole([Ramp(V_MAX, 2, last=True)])
     dut.drain.value = 1

@@ -20,7 +20,7 @@ def test_timescale(simulator: str) -> None:
 
 @dataclass
 class Reference:
-    """Rate and enable after each clock; the goal is that of the last slew tick, the slew of 2 clocks later."""
+    """Rate and enable after each clock; the goal is of the last slew tick, the slew of 2 clocks later."""
 
     rate: int = ONE
     goal: int = ONE

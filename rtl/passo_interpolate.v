@@ -43,7 +43,10 @@ module passo_interpolate (
   reg  [24:0] addend;
   reg         both;
   // the lowest bit makes the carry of r
-  wire [25:0] sum_next = {1'b0, sum[24:1], addend[0]} + {1'b0, addend};
+  wire [24:0] sum_next;
+  wire        unused_bit;
+
+  assign {sum_next, unused_bit} = {1'b0, sum[24:1], addend[0]} + {1'b0, addend};
 
   assign result = {sum, low};
 
@@ -58,7 +61,7 @@ module passo_interpolate (
     both <= a & b;
 
     if (result_move) begin
-      sum <= clear ? 25'd0 : {sum_next[25] | both, sum_next[24:1]};
+      sum <= clear ? 25'd0 : {sum_next[24] | both, sum_next[23:0]};
       low <= clear ? 23'd0 : {sum[0], low[22:1]};
     end
     if (load_points) low <= {6'd0, point_is_last, point_is_last ? 16'd0 : point_next};

@@ -36,14 +36,13 @@ module passo_ramp_strobes (
 
   `include "passo_ramp_steps.vh"
 
-  wire [5:0] count_next = count + 6'd1;
-  wire       fetch = step == STEP_FETCH;
-  wire       take = step == STEP_TAKE && count >= 6'd2 && count <= 6'd4;
-  wire       copy = step == STEP_COPY;
-  wire       shape = step == STEP_SHAPE;
-  wire       scale = step == STEP_SCALE;
-  wire       scale_begins = scale && count == 6'd1;
-  wire       empty = prepare || (step == STEP_LOOK_UP && !table_served) || scale_begins;
+  wire fetch = step == STEP_FETCH;
+  wire take = step == STEP_TAKE && count >= 6'd2 && count <= 6'd4;
+  wire copy = step == STEP_COPY;
+  wire shape = step == STEP_SHAPE;
+  wire scale = step == STEP_SCALE;
+  wire scale_begins = scale && count == 6'd1;
+  wire empty = prepare || (step == STEP_LOOK_UP && !table_served) || scale_begins;
 
   always @(posedge clk) begin
     control_load    <= fetch && count == 6'd4;
@@ -78,7 +77,7 @@ module passo_ramp_strobes (
         default: half_index <= 4'd3;
       endcase
       STEP_TAKE: half_index <= count[1:0] == 2'd1 ? 4'd3 : count[1:0] == 2'd2 ? 4'd2 : 4'd0;
-      STEP_SCALE: half_index <= count_next[5:4] == 2'd0 ? 4'd3 : count_next[5:4] == 2'd1 ? 4'd2 : 4'd0;
+      STEP_SCALE: half_index <= count < 6'd15 ? 4'd3 : count < 6'd31 ? 4'd2 : 4'd0;
       STEP_STEP:
       case (count[2:0])
         3'd1, 3'd4: half_index <= 4'd9;
