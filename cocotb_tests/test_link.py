@@ -568,6 +568,19 @@ async def refusals_are_counted(dut: HierarchyObject) -> None:
 
 
 @cocotb.test()
+async def a_refusal_is_counted_whatever_chip_select_does(dut: HierarchyObject) -> None:
+    """From the verdict on, 74 clocks after the CRC, chip select may rise and the next frame begin."""
+    bench = await Bench.begin(dut, lead=3 * MHZ_72 + 100)
+    words = frame(0, 7, 0, [1])[:-2]
+    for n, clocks in enumerate(range(80, 120, 3)):
+        bench.spi.trail, bench.spi.gap = clocks * MHZ_72, 3 * MHZ_72
+        await bench.spi.transfer(words)
+        bench.spi.trail, bench.spi.gap = 2 * SCLK_18, 8 * SCLK_18
+        counters = await read_counters(bench)
+        assert counters[Verdict.BAD_OPERATION] == n + 1, f"chip select rose {clocks} clocks after the crc"
+
+
+@cocotb.test()
 async def other_slaves_on_the_bus_do_not_matter(dut: HierarchyObject) -> None:
     """SCLK and MOSI move while chip select is high: no word arrives, the next frame is fine."""
     bench = await Bench.begin(dut)
