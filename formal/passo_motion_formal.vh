@@ -76,7 +76,7 @@ always @(posedge clk)
     assert (soft_cause == CAUSE_STOP || soft_cause == CAUSE_RAMP_UNDERRUN || !stopping);
     assert (!stopping || !stopped);
     if (state == STATE_RUN) assert (f_run_age >= 4'd6 ? count == 3'd6 : {1'b0, count} == f_run_age);
-    if (state == STATE_SETTLE) assert (count <= SETTLE_LAST);
+    if (settled) assert (state == STATE_SETTLE);
     if (startable) assert ($past(run && line_valid && ramp_valid && state == STATE_IDLE) || !$past(f_begun));
     if (state == STATE_RUN && f_run_age == 4'd0) assert (!running);
   end
