@@ -58,7 +58,7 @@ void passo_motion_clock(
 
 	motion->startable = wires->startable;
 	motion->count = state != PASSO_STATE_RUN ? 0u : count == START_LAST ? count : (uint8_t)(count + 1u);
-	motion->settling = state == PASSO_STATE_SETTLE ? (uint8_t)((settling << 1 | 1u) & 7u) : 0u;
+	motion->settling = (uint8_t)(state == PASSO_STATE_SETTLE ? (settling << 1 | 1u) & 7u : 0u);
 	motion->settled = state == PASSO_STATE_SETTLE && (settling & 4u) != 0u && !settled;
 	motion->rate_was_zero = channel->timescale.rate == 0u;
 	if (wires->prepare)
