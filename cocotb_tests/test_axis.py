@@ -348,8 +348,8 @@ async def a_time_that_is_written_begins_anew(dut: HierarchyObject, high: int) ->
         dut.timing_written.value = 0
         dut.step_high.value = high
         await clocks.wait(150)
-        # the time begins with the clock after the write; the pin follows a clock later
-        assert pins.changes == [(now + LATENCY, 1), (now + at + 2 + max(1, high), 0)]
+        # the time begins with the second clock after the write; the pin follows a clock later
+        assert pins.changes == [(now + LATENCY, 1), (now + at + 3 + max(1, high), 0)]
         pins.stop()
 
 

@@ -12,7 +12,7 @@ import pytest
 from cocotb_tests.runner import NETLIST_VARIABLE, run
 from cocotb_tests.test_core import ONE_CHANNEL, TOP, TWO_CHANNELS
 
-SIMULATOR = "verilator"  # Icarus Verilog needs a quarter of an hour for one of these modules
+SIMULATOR = "verilator"  # Icarus Verilog gives the same, but takes very much longer
 
 every = pytest.mark.skipif(not os.environ.get(NETLIST_VARIABLE), reason="part of 'make netlist'")
 pytestmark = pytest.mark.skipif(

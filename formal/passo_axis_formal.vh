@@ -161,8 +161,7 @@ always @(posedge clk)
     assert (!high || (step && !both_edges));
     if (!f_is_ready) begin
       assert (f_timer >= 18'd1 && f_timer <= f_time);
-      assert (first == (f_timer == 18'd1));
-      assert (timer_done == (!first && f_timer == f_time));
+      assert (done == (f_timer == f_time));
     end
     if (!f_step_shown) begin
       assert (f_is_pulse && f_timer == 18'd1);

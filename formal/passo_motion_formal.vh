@@ -55,12 +55,12 @@ always @(posedge clk)
         assert ($past(begin_profile && ramp_ended) || $past(state == STATE_RUN && ramp_ended)
                 || $past(state == STATE_DRAIN && line_ended));
         default:
-        drain_comes_from : assert ($past(state == STATE_SETTLE && !line_ended && !line_endless));
+        drain_comes_from : assert ($past(state == STATE_SETTLE) && $past(!line_ended && !line_endless, 2));
       endcase
     if ($past(begin_profile) && !$past(command_abort) && !$past(stopping))
       begins_when_told : assert (state == STATE_RUN || state == STATE_SETTLE);
     if (prepare) prepared_only_with_both : assert ($past(run && line_valid && ramp_valid && state == STATE_IDLE));
-    if ($past(release_line)) released_at_the_end : assert ($past(line_ended || line_endless));
+    if (release_line) released_at_the_end : assert ($past(line_ended || line_endless));
     drained_counts :
     assert (drained == $past(drained) + {15'd0, $past(drain && substep_made && !line_ended)});
     if ($past(stopped) && $past(state) == STATE_STOPPED) no_move_out_of_stopped : assert (!running);
@@ -76,8 +76,10 @@ always @(posedge clk)
     assert (soft_cause == CAUSE_STOP || soft_cause == CAUSE_RAMP_UNDERRUN || !stopping);
     assert (!stopping || !stopped);
     if (state == STATE_RUN) assert (f_run_age >= 4'd6 ? count == 3'd6 : {1'b0, count} == f_run_age);
-    if (settled) assert (state == STATE_SETTLE);
-    if (startable) assert ($past(run && line_valid && ramp_valid && state == STATE_IDLE) || !$past(f_begun));
+    assert ((!settled || state == STATE_SETTLE) && (!finished || settled));
+    if (settled && $past(f_begun)) assert (finished == $past(line_ended || line_endless));
+    assert (!settled || $past(f_begun));
+    if (startable) assert (state == STATE_IDLE);
     if (state == STATE_RUN && f_run_age == 4'd0) assert (!running);
   end
 `endif

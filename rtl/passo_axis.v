@@ -59,11 +59,11 @@ module passo_axis (
   reg step;
   reg dir;
 
-  // The timer tells the number of the next clock of the state. `timer_done` is high in the last clock, but in
-  // the first clock of a state, which is the last one if the time is short, nothing is known yet.
+  // The timer tells the number of the next clock of the state. `done` is high in the last clock: of a short
+  // time that is the first one.
   reg  [15:0] timer;
-  reg         timer_done;
-  reg         first;
+  reg         done;
+  reg         timing_changed;  // times were written in the clock before
   // Kept, so that a bit of the choice and of the comparison goes into one LUT.
   (* keep *)
   wire [15:0] level_equal;
@@ -71,8 +71,10 @@ module passo_axis (
   wire [15:0] dir_equal;
   assign level_equal = timer ^ ~(step ? step_high : step_low);
   assign dir_equal   = timer ^ ~(setup ? dir_setup : dir_hold);
-  wire level_done = timer_done | (first & (step ? short_high : short_low));
-  wire dir_done = timer_done | (first & (setup ? short_setup : short_hold));
+  wire level_short = step ? short_high : short_low;
+  wire dir_short = setup ? short_setup : short_hold;
+  wire at_level = high | low;
+  wire done_next = timing_changed ? (at_level ? level_short : dir_short) : (at_level ? &level_equal : &dir_equal);
 
   // Steps that wait, as directions, the oldest in bit 0. Free places hold the latest direction.
   reg  [3:0] waiting;
@@ -80,12 +82,12 @@ module passo_axis (
   wire       dir_right = waiting[0] == dir;
   wire       accepted = step_request & ~waits[3];
 
-  wire falls = high & level_done;
-  wire low_over = low & level_done;
-  wire free = idle | low_over | (setup & dir_done);
+  wire falls = high & done;
+  wire low_over = low & done;
+  wire free = idle | low_over | (setup & done);
   wire step_begins = free & waits[0] & dir_right;
-  wire turn = idle & ~dir_right & (~hold | dir_done);
-  wire restart = step_begins | turn | falls | low_over | timing_written;
+  wire turn = idle & ~dir_right & (~hold | done);
+  wire restart = step_begins | turn | falls | low_over | timing_changed;
 
   assign step_direction = dir;  // does not change in the clock after step_begins
 
@@ -97,15 +99,19 @@ module passo_axis (
     overrun <= step_request & waits[3];
     if (overrun && lost != 4'hF) lost <= lost + 4'd1;
 
-    timer      <= restart ? 16'd2 : timer + 16'd1;
-    timer_done <= ~restart & (high | low ? &level_equal : &dir_equal);
-    first      <= restart;
+    timer <= restart ? 16'd2 : timer + 16'd1;
+    done <= step_begins ? (step ? short_low : short_high) :
+            falls       ? short_low :
+            turn        ? short_setup :
+            low_over    ? short_hold : done_next;
+    timing_changed <= timing_written;
+    if (timing_written) done <= 1'b0;
 
     high  <= (high & ~falls) | (step_begins & ~both_edges);
     low   <= (low & ~low_over) | falls | (step_begins & both_edges);
-    setup <= (setup & ~dir_done) | turn;
+    setup <= (setup & ~done) | turn;
     idle  <= free & ~step_begins & ~turn;
-    hold  <= ((hold & ~dir_done) | low_over) & ~step_begins & ~turn;
+    hold  <= ((hold & ~done) | low_over) & ~step_begins & ~turn;
     step  <= step ^ (step_begins | falls);
     dir   <= dir ^ turn;
 
@@ -117,22 +123,23 @@ module passo_axis (
     if (drop) waits <= 4'd0;
     if (clear) lost <= 4'd0;
     if (rst) begin
-      high       <= 1'b0;
-      low        <= 1'b0;
-      setup      <= 1'b0;
-      idle       <= 1'b1;
-      hold       <= 1'b0;
-      first      <= 1'b0;
-      waits      <= 4'd0;
-      waiting    <= 4'd0;
-      overrun    <= 1'b0;
-      lost       <= 4'd0;
-      step       <= 1'b0;
-      dir        <= 1'b0;
-      step_made  <= 1'b0;
-      step_pin   <= 1'b0;
-      dir_pin    <= 1'b0;
-      enable_pin <= 1'b0;
+      high           <= 1'b0;
+      low            <= 1'b0;
+      setup          <= 1'b0;
+      idle           <= 1'b1;
+      hold           <= 1'b0;
+      done           <= 1'b0;
+      timing_changed <= 1'b0;
+      waits          <= 4'd0;
+      waiting        <= 4'd0;
+      overrun        <= 1'b0;
+      lost           <= 4'd0;
+      step           <= 1'b0;
+      dir            <= 1'b0;
+      step_made      <= 1'b0;
+      step_pin       <= 1'b0;
+      dir_pin        <= 1'b0;
+      enable_pin     <= 1'b0;
     end
   end
 

@@ -21,25 +21,17 @@ module passo_dda (
   output wire               step_request
 );
 
-  reg signed [32:0] e_minus_m;
-  reg signed [32:0] addend;
+  reg signed  [32:0] e_minus_m;
+  reg signed  [32:0] addend;
+  reg                below;  // e + N < M
+  wire signed [32:0] sum = e_minus_m + addend;
 
-  // A cell of the carry chain chooses between sum and addend as well. All but three of them: placers count the
-  // inputs of eight neighbours and the clock enable, and would cut the chain if these were too many.
-  wire [32:0] sum;
-  (* keep *)
-  wire [2:0] sum_apart;
-  wire [32:0] e_next = slot_load_q ? addend : {sum[32:28], sum_apart[2], sum[26:20], sum_apart[1],
-                                               sum[18:12], sum_apart[0], sum[10:0]};
-
-  assign sum       = e_minus_m + addend;
-  assign sum_apart = {sum[27], sum[19], sum[11]};
-
-  assign step_request = slot_step & ~e_minus_m[32];
+  assign step_request = slot_step & ~below;
 
   always @(posedge clk) begin
     addend <= (slot_add || slot_load) ? broadcast : $signed({1'b0, steps});
-    if (slot_load_q || slot_add || step_request) e_minus_m <= e_next;
+    below  <= sum[32];
+    if (slot_add || slot_load || slot_load_q || step_request) e_minus_m <= slot_load ? 33'sd0 : sum;
   end
 
 `ifdef FORMAL

@@ -64,9 +64,11 @@ module passo_line_queue #(
 
   assign incomplete = ~index[INDEX_CONTROL];
 
-  // bus_data - 1 - M, but for M itself bus_data - 1; a carry out if that is not negative
-  reg  [31:0] not_substeps;  // ~M; ~0 until M has passed
-  wire [32:0] difference = {1'b0, bus_data} + {1'b0, not_substeps};
+  // bus_data - 1 - M, but for M itself bus_data - 1, a clock before it is asked. A carry comes out if that is
+  // not negative, which is right for M and wrong for N_i.
+  reg [31:0] not_substeps;  // ~M; ~0 until M has passed
+  reg [31:0] difference;
+  reg        wrong;
 
   always @(posedge clk) begin
     if (strobe) begin
@@ -87,13 +89,12 @@ module passo_line_queue #(
   // what is to be said of the word, a clock before it is asked
   reg  full;
   reg  bad_control;
-  reg  not_negative;
-  wire bad_value = index[INDEX_CONTROL] ? bad_control : not_negative != index[INDEX_SUBSTEPS];
+  wire bad_value = index[INDEX_CONTROL] ? bad_control : wrong;
 
   always @(posedge clk) begin
     full <= room == checked;
     bad_control <= (bus_data & ~CONTROL_DEFINED) != 32'd0;
-    not_negative <= difference[32];
+    {wrong, difference} <= {1'b0, bus_data} + {index[INDEX_SUBSTEPS], not_substeps};
     refusal   <= !(select && bus_check) ? VERDICT_OK :
                  blocked                ? VERDICT_BUSY :
                  full                   ? VERDICT_QUEUE_FULL :
@@ -142,7 +143,7 @@ module passo_line_queue #(
     .clk          (clk),
     .write        (write & index[INDEX_SUBSTEPS]),
     .write_address(write_line[DEPTH_LOG2-1:0]),
-    .write_data   (difference[31:0]),
+    .write_data   (difference),
     .read_address (take ? next_line[DEPTH_LOG2-1:0] : current_line),
     .read_data    (last_substep)
   );

@@ -64,17 +64,18 @@ module passo_motion (
   reg [2:0] count;  // clocks of RUN, up to START_LAST
   reg [2:0] settling;  // a bit for each clock of SETTLE so far
   reg       settled;  // its fifth clock: the last substep needs 2 clocks to the line
+  reg       finished;  // settled, and nothing is missing
   reg [2:0] soft_cause;
-  reg       startable;
+  reg       startable;  // for one clock, and still in IDLE
   reg       rate_was_zero;
 
   assign occupied = state != STATE_IDLE && !stopped;
   assign moving   = state == STATE_RUN || state == STATE_SETTLE || state == STATE_DRAIN;
 
-  wire finished = settled && (line_ended || line_endless);
+  wire settles = state == STATE_SETTLE && settling[2] && !settled;
   wire dry = ramp_dry & ~line_endless;
 
-  assign prepare       = state == STATE_IDLE && startable;
+  assign prepare       = startable;
   assign begin_profile = state == STATE_ARMED && (sync_edge || !wait_sync);
   assign counting      = state == STATE_RUN || state == STATE_DRAIN;
   assign drain         = state == STATE_DRAIN;
@@ -89,11 +90,12 @@ module passo_motion (
   assign stopped = state == STATE_STOPPED;
 
   always @(posedge clk) begin
-    startable <= state == STATE_IDLE && run && line_valid && ramp_valid;
+    startable <= state == STATE_IDLE && run && line_valid && ramp_valid && !startable && !stop_now;
     if (count != START_LAST) count <= count + 3'd1;
     if (state != STATE_RUN) count <= 3'd0;
     settling      <= state == STATE_SETTLE ? {settling[1:0], 1'b1} : 3'd0;
-    settled       <= state == STATE_SETTLE && settling[2] && !settled;
+    settled       <= settles;
+    finished      <= settles && (line_ended || line_endless);
     rate_was_zero <= rate_is_zero;
     case (state)
       STATE_IDLE:    if (startable) state <= STATE_PREPARE;
@@ -125,6 +127,7 @@ module passo_motion (
       stopping <= 1'b0;
       running  <= 1'b0;
       settled  <= 1'b0;
+      finished <= 1'b0;
     end
     if (rst) begin
       state     <= STATE_IDLE;
@@ -133,6 +136,7 @@ module passo_motion (
       drained   <= 16'd0;
       startable <= 1'b0;
       settled   <= 1'b0;
+      finished  <= 1'b0;
       running   <= 1'b0;
     end
   end
