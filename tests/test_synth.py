@@ -123,7 +123,7 @@ def test_boards_are_listed_and_unknown_ones_refused(capsys: pytest.CaptureFixtur
 
 def placed(**clocks: tuple[float, float]) -> Placed:
     """A result with these clocks."""
-    return Placed(True, 100, 1, clocks, Path())
+    return Placed(True, False, 100, 1, clocks, Path())
 
 
 def test_clocks_that_are_not_met_are_told() -> None:

@@ -2,9 +2,6 @@
 // Passo on the iCE40-HX8K Breakout Board: everything on header J2, heartbeat on LED D9.
 //
 // The PLL makes clk of the 12 MHz oscillator: 12 MHz / (DIVR + 1) * (DIVF + 1) / 2^DIVQ.
-//
-// Which of the eight global networks take clk and SCLK is left to nextpnr: it gives resets the even ones without
-// asking whether a pad or the PLL holds one of them already.
 `resetall
 `default_nettype none
 
@@ -32,6 +29,7 @@ module top #(
 
   wire clk;
   wire locked;
+  wire sclk;
   wire miso;
   wire miso_enable;
 
@@ -43,10 +41,18 @@ module top #(
     .FILTER_RANGE (FILTER_RANGE)
   ) u_pll (
     .REFERENCECLK(oscillator),
-    .PLLOUTCORE  (clk),
+    .PLLOUTGLOBAL(clk),
     .LOCK        (locked),
     .RESETB      (1'b1),
     .BYPASS      (1'b0)
+  );
+
+  // from the pad straight to the clock network
+  SB_GB_IO #(
+    .PIN_TYPE(6'b000001)
+  ) u_sclk (
+    .PACKAGE_PIN         (spi_sclk),
+    .GLOBAL_BUFFER_OUTPUT(sclk)
   );
 
   // driven while selected
@@ -64,7 +70,7 @@ module top #(
   ) u_board (
     .clk            (clk),
     .locked         (locked),
-    .spi_sclk       (spi_sclk),
+    .spi_sclk       (sclk),
     .spi_mosi       (spi_mosi),
     .spi_cs_n       (spi_cs_n),
     .spi_miso       (miso),

@@ -3,9 +3,6 @@
 // `running` on the red one.
 //
 // The PLL makes clk of the 12 MHz oscillator: 12 MHz / (DIVR + 1) * (DIVF + 1) / 2^DIVQ.
-//
-// Which of the eight global networks take clk and SCLK is left to nextpnr: it gives resets the even ones without
-// asking whether a pad or the PLL holds one of them already.
 `resetall
 `default_nettype none
 
@@ -33,6 +30,7 @@ module top #(
 
   wire clk;
   wire locked;
+  wire sclk;
   wire miso;
   wire miso_enable;
   wire running;
@@ -45,11 +43,19 @@ module top #(
     .DIVQ         (DIVQ),
     .FILTER_RANGE (FILTER_RANGE)
   ) u_pll (
-    .PACKAGEPIN(oscillator),
-    .PLLOUTCORE(clk),
-    .LOCK      (locked),
-    .RESETB    (1'b1),
-    .BYPASS    (1'b0)
+    .PACKAGEPIN  (oscillator),
+    .PLLOUTGLOBAL(clk),
+    .LOCK        (locked),
+    .RESETB      (1'b1),
+    .BYPASS      (1'b0)
+  );
+
+  // from the pad straight to the clock network
+  SB_GB_IO #(
+    .PIN_TYPE(6'b000001)
+  ) u_sclk (
+    .PACKAGE_PIN         (spi_sclk),
+    .GLOBAL_BUFFER_OUTPUT(sclk)
   );
 
   // driven while selected
@@ -70,7 +76,7 @@ module top #(
   ) u_board (
     .clk            (clk),
     .locked         (locked),
-    .spi_sclk       (spi_sclk),
+    .spi_sclk       (sclk),
     .spi_mosi       (spi_mosi),
     .spi_cs_n       (spi_cs_n),
     .spi_miso       (miso),

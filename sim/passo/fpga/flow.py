@@ -45,11 +45,13 @@ class Design:
 class Placed:
     """What came of place and route.
 
-    `used` is in the family's unit; `fits` is whether the design could be placed and routed. `clocks` are its
-    clocks in MHz, as (achieved, wanted), by the names nextpnr gives them.
+    `used` is in the family's unit; `fits` is whether the design could be placed and routed; if it could not
+    without being too large, another seed may do better. `clocks` are its clocks in MHz, as (achieved,
+    wanted), by the names nextpnr gives them.
     """
 
     fits: bool
+    too_large: bool
     used: int
     bram: int
     clocks: dict[str, tuple[float, float]]
@@ -121,9 +123,7 @@ def place(
         status = run(family.place, arguments, folder, "nextpnr.log", PLACE_SECONDS)
         log = (folder / "nextpnr.log").read_text()
         fits = status == 0
-        if not fits and not (
-            CROWDED.search(log) or any(used > there for used, there in _sites(log).values())
-        ):
+        if not fits and not CROWDED.search(log) and not _too_large(_sites(log)):
             raise failure(family.place, folder / "nextpnr.log")
         (folder / "fits").write_text(str(int(fits)))
 
@@ -187,6 +187,10 @@ def _sites(log: str) -> dict[str, tuple[int, int]]:
     return {name: (int(used), int(available)) for name, used, available in found}
 
 
+def _too_large(sites: Mapping[str, tuple[int, int]]) -> bool:
+    return any(used > there for used, there in sites.values())
+
+
 def _read(device: Device, folder: Path) -> Placed:
     fits = (folder / "fits").read_text() == "1"
     sites = _sites((folder / "nextpnr.log").read_text())
@@ -197,7 +201,7 @@ def _read(device: Device, folder: Path) -> Placed:
         clocks = {name: (mhz["achieved"], mhz["constraint"]) for name, mhz in report["fmax"].items()}
     bram = next((sites[name][0] for name in ("ICESTORM_RAM", "DP16KD", "BSRAM") if name in sites), 0)
     used = sum(sites[name][0] for name in device.family.sites if name in sites)
-    return Placed(fits, used, bram, clocks, folder)
+    return Placed(fits, not fits and _too_large(sites), used, bram, clocks, folder)
 
 
 def kept(
