@@ -4,7 +4,8 @@
 //   each substep:  e += N;  if e >= M { e -= M; a step }           e = floor(M / 2) when the line starts
 //
 // `e` is kept as e - M, so that the test is a sign bit: clock A adds N, clock B takes M off again when the
-// sign is clear. At the end of a line e is back at its start value, so B loads that of the next line instead.
+// sign was clear (`below` keeps it). At the end of a line e would be back at its start value; A leaves 0
+// instead, and B adds the start value of the next line: only e and the addend enter the sum's carry chain.
 //
 // Promise: exactly N steps in M substeps, for any 0 <= N <= M. `step_request` is high in clock B.
 `resetall

@@ -4,8 +4,8 @@
 #     tools/setup.sh [SET...]
 #
 # A SET is an optional set of Python packages, of requirements-SET.txt (yosys, fpga ...), installed after all
-# the rest; or `firmware`: Debian's compiler for the STM32. Safe to run again at any time: it only does what is missing. PYTHON selects the interpreter the
-# environment is made from (default: python3).
+# the rest; or `firmware`: Debian's compiler for the STM32. Safe to run again at any time: it only does what
+# is missing. PYTHON selects the interpreter the environment is made from (default: python3).
 
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

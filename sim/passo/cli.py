@@ -11,7 +11,6 @@ from passo.build import BuildError, Parameters
 from passo.console import progress
 from passo.engine import DifferenceError
 from passo.frame import FrameError
-from passo.host import HostError
 from passo.link import LinkError
 from passo.moves import AXES_MAX, MoveFileError, read_moves
 from passo.plan import plan_file
@@ -21,7 +20,7 @@ from passo.toolchain import paths
 
 RESULTS = ("pulses.csv", "summary.json", "motion.png", "waves.fst")
 OK, FAILED, BAD_INPUT = 0, 1, 2
-FAILURES = (BuildError, DifferenceError, FrameError, HostError, LinkError, RunError)
+FAILURES = (BuildError, DifferenceError, FrameError, LinkError, RunError)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
