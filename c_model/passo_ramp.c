@@ -5,7 +5,10 @@
  */
 #include "passo_model.h"
 
-enum { COPY_CLOCKS = 24, FETCH_CLOCKS = 7, FETCH_NO_TICKS_CLOCKS = 6, TAKE_CLOCKS = 5, STEP_CLOCKS = 7 };
+enum { COPY_CLOCKS = 24, FETCH_CLOCKS = 8, TAKE_CLOCKS = 6, STEP_CLOCKS = 8 };
+
+/* ramp_take comes in this clock of TAKE, counted from the last one. */
+enum { TAKE_WAIT = 3 };
 
 static const uint64_t PROGRESS_MASK = (UINT64_C(1) << 49) - 1u;
 
@@ -58,7 +61,6 @@ static void load(struct passo_ramp_unit *ramp, const struct passo_ramp *command)
 static void choose(struct passo_ramp_unit *ramp, const struct passo_channel *channel,
     const struct passo_channel_inputs *inputs, const struct passo_channel_wires *wires)
 {
-	const struct passo_ramp front = passo_ramp_queue_front(&channel->ramp_queue, inputs->parameters);
 	const uint32_t work = work_clocks(ramp, inputs->tables, inputs->parameters, channel->number);
 
 	if (channel->ramp_queue.now_pending) {
@@ -72,7 +74,7 @@ static void choose(struct passo_ramp_unit *ramp, const struct passo_channel *cha
 		ramp->ends_next = true;
 		ramp->ready = true;
 	} else if (wires->ramp_valid) {
-		begin_step(ramp, PASSO_RAMP_FETCH, front.ticks == 0u ? FETCH_NO_TICKS_CLOCKS : FETCH_CLOCKS);
+		begin_step(ramp, PASSO_RAMP_FETCH, FETCH_CLOCKS);
 	} else {
 		begin_step(ramp, PASSO_RAMP_WORK, work);
 	}
@@ -114,7 +116,7 @@ void passo_ramp_clock(struct passo_ramp_unit *ramp, const struct passo_channel *
     const struct passo_channel_inputs *inputs, const struct passo_channel_wires *wires, bool *take,
     bool *take_now)
 {
-	*take = ramp->step == PASSO_RAMP_TAKE && ramp->wait == 2u;
+	*take = ramp->step == PASSO_RAMP_TAKE && ramp->wait == TAKE_WAIT;
 	*take_now = ramp->take_now;
 	ramp->take_now = false;
 	ramp->dry = false;
