@@ -81,18 +81,18 @@ end
 `ifdef INVARIANTS
 always @(posedge clk) begin
   if (f_line && !slot_load_q && !slot_step) begin
-    assert (f_e < f_m && e_minus_m == $signed({1'b0, f_e}) - $signed({1'b0, f_m}));
-    assert (addend == $signed({1'b0, steps}));
+    assert (f_e < f_m && e_minus_m == f_e - f_m);
+    assert (addend == {1'b0, steps});
     assert ($signed({2'b00, f_e}) == f_start + f_balance);
   end
   if (slot_load_q) assert (f_line && f_m != 32'd0 && f_substeps == 32'd0);
-  if (slot_load_q) assert (e_minus_m == 33'sd0 && addend == -$signed({2'b00, f_m}) >>> 1);
+  if (slot_load_q) assert (e_minus_m == 32'd0 && $signed(addend) == -$signed({2'b00, f_m}) >>> 1);
   if (f_line) assert (f_m != 32'd0 && f_substeps < f_m);
   if (slot_step) begin
     assert (f_m_q != 32'd0 && f_n_q <= f_m_q && f_e < f_m_q);
-    assert (e_minus_m == (slot_load_q ? 33'sd0 : $signed({1'b0, f_e}) + $signed({1'b0, f_n_q}) - $signed({1'b0, f_m_q})));
+    assert (e_minus_m == (slot_load_q ? 32'd0 : f_e + f_n_q - f_m_q));
     assert (below == ({1'b0, f_e} + {1'b0, f_n_q} < {1'b0, f_m_q}));
-    if (!slot_load_q) assert (addend == -$signed({1'b0, f_m_q}));
+    if (!slot_load_q) assert (addend == -{1'b0, f_m_q});
     if (f_line && !slot_load_q) assert (f_m == f_m_q && f_n_q == steps);
     assert ($signed({2'b00, f_e}) + $signed({2'b00, f_n_q}) == f_start_q + f_balance);
     if (!f_last_q) assert (f_line && !slot_load_q);

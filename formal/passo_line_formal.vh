@@ -80,7 +80,7 @@ always @(posedge clk)
 `ifdef INVARIANTS
 always @(posedge clk)
   if (f_begun) begin
-    assert (active == f_active);
+    assert (active == f_active && goes_on == (f_active && !f_last));
     if (f_active) begin
       assert (substep_number == f_number);
       assert (last == f_last && directions_next == f_directions);

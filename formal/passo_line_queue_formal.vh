@@ -2,7 +2,8 @@
 // What the line queue promises; included at the end of passo_line_queue.
 
 // --- Assumptions: the link. A frame is checked, word by word; if nobody objects and it ends with a whole
-// line, it may be written, with as many words. Data stand from a clock before their strobe to a clock after it.
+// line, it may be written, with as many words. Data stand from a clock before their strobe to a clock after it, those
+// that are checked from two clocks before; `bus_top_bit` belongs to them in the strobe and the clock before.
 `ifdef SMALL
 localparam [1:0] F_GAP = 2'd2;
 `else
@@ -23,6 +24,7 @@ reg [2:0] f_since_write = 3'd0;
 (* anyseq *) reg [DEPTH_LOG2:0] f_short_lines;
 wire f_strobe = (bus_check | bus_write) & select;
 wire f_last_index = f_index == AXES + 1;
+wire f_top_bit_right = bus_top_bit == 5'd0 ? bus_data <= 32'd1 : bus_data >> bus_top_bit == 32'd1;
 wire f_good = f_checking && !f_refused && refusal == VERDICT_OK && f_index == 2'd0 && f_words != 6'd0;
 always @(posedge clk) begin
   f_begun    <= 1'b1;
@@ -31,9 +33,11 @@ always @(posedge clk) begin
   f_since_take <= take ? 4'd0 : f_since_take == 4'd15 ? 4'd15 : f_since_take + 4'd1;
   f_since_write <= bus_write | f_writing ? 3'd0 : f_since_write == 3'd7 ? 3'd7 : f_since_write + 3'd1;
   assume (rst == !f_begun);
-  if (bus_check || bus_write || bus_frame) assume (f_gap >= F_GAP);
+  if (bus_write || bus_frame) assume (f_gap >= F_GAP);
+  if (bus_check) assume (f_gap == 2'd3);
   assume (bus_check + bus_write + bus_frame <= 2'd1);
   if (bus_check || bus_write || f_strobe_q) assume ($stable(bus_data));
+  if (bus_check) assume ($past(bus_data, 2) == bus_data && f_top_bit_right && $past(f_top_bit_right));
   if (bus_check) assume (f_checking && f_words != 6'd60);
   if (bus_write) assume (f_writing == select);
   if (f_checking && f_words != 6'd0) assume (select == f_select);
@@ -195,7 +199,7 @@ always @(posedge clk)
     if (f_recording) assert (f_writing && f_index != 0 && write_line[DEPTH_LOG2-1:0] == f_slot && f_ahead == f_ahead);
     if (f_recording) assert (!f_queued && !f_taken);
     if (f_recording) assert (f_control_word == f_line_control);
-    if (f_recording && f_index == 2'd2) assert (f_substep_word == f_line_substeps - 32'd1);
+    if (f_recording && f_index == 2'd2) assert ((write_substeps ? difference : f_substep_word) == f_line_substeps - 32'd1);
     if (f_queued || f_taken) begin
       assert (f_control_word == f_line_control);
       assert (f_substep_word == f_line_substeps - 32'd1);
@@ -205,7 +209,11 @@ always @(posedge clk)
     if (f_taken) assert (current_line == f_slot && f_current != F_NONE && (f_queued == (f_current == F_ENDLESS)));
     if (f_taken && f_queued) assert (f_ahead == 0 && f_line_control[1]);
     if (f_current == F_ENDLESS && f_is_next) assert (f_taken);
-    if (f_index == 2'd2) assert (not_substeps == ~f_m);
-    if (f_index != 2'd2) assert (not_substeps == ~32'd0);
+    if (f_is_next && next_valid) assert (next_last_substep == f_line_substeps - 32'd1);
+    assert (load_substeps == (f_strobe_q && $past(select) && f_index == 2'd2));
+    assert (write_substeps == (load_substeps && $past(bus_write)));
+    if (load_substeps) assert (bus_data == f_m);
+    if (f_index == 2'd2 && !load_substeps) assert (not_substeps == ~f_m);
+    if (f_index == 2'd1 || (f_index == 2'd0 && f_gap != 2'd0 && $past(f_begun))) assert (not_substeps == ~32'd0);
   end
 `endif

@@ -8,6 +8,8 @@ always @(posedge clk) begin
 end
 
 wire f_stop_hard = command_abort | (moving & (step_overrun | line_underrun));
+wire [2:0] f_states = {2'd0, idle} + {2'd0, preparing} + {2'd0, armed} + {2'd0, runs} + {2'd0, settles}
+                      + {2'd0, drains} + {2'd0, stopped};
 
 // --- How long RUN has lasted
 reg [3:0] f_run_age;
@@ -16,32 +18,22 @@ always @(posedge clk)
 
 always @(posedge clk)
   if (f_begun) begin
-    state_is_one_of_seven : assert (state <= STATE_STOPPED);
+    state_is_one_of_seven : assert (f_states == 3'd1 && state <= STATE_STOPPED);
     if (stopped)
       stopped_stands :
       assert (!moving && !counting && !prepare && !begin_profile && !drain && !release_line && !running);
     stopped_is_the_state : assert (stopped == (state == STATE_STOPPED));
     cause_when_stopped : assert ((cause != CAUSE_NONE) == stopped);
     if (counting) counts_only_in_motion : assert (moving && occupied);
-    if (begin_profile) begins_only_armed : assert (state == STATE_ARMED && (sync_edge || !wait_sync));
+    if (begin_profile) begins_only_armed : assert (state == STATE_ARMED && $past(state == STATE_ARMED && (sync_edge || !wait_sync)));
   end
 
 // --- From one clock to the next
 always @(posedge clk)
   if (f_begun && $past(f_begun)) begin
     if ($past(stopped) && !$past(command_clear)) stopped_until_clear : assert (stopped);
-    if ($past(command_abort) && !$past(stopped)) abort_stops_at_once : assert (stopped && cause == CAUSE_ABORT);
-    if ($past(f_stop_hard) && !$past(stopped)) fault_stops_at_once : assert (stopped);
-    if ($past(moving && step_overrun && !command_abort)) overrun_is_the_cause : assert (cause == CAUSE_STEP_OVERRUN);
-    if ($past(moving && line_underrun && !step_overrun && !command_abort))
-      underrun_is_the_cause : assert (cause == CAUSE_LINE_UNDERRUN);
     if ($past(command_stop) && !$past(stopped)) stop_is_heard : assert (stopping || stopped);
     if ($past(stopping)) stop_is_kept : assert (stopping || stopped);
-    if ($past(stopping) && ($past(!moving) || ($past(rate_is_zero, 2) && $past(f_begun, 2)))) stop_ends_in_stopped : assert (stopped);
-    if (stopped && !$past(stopped)) begin
-      stopped_for_a_reason : assert ($past(f_stop_hard) || $past(stopping));
-      if (!$past(f_stop_hard)) soft_cause_told : assert (cause == CAUSE_STOP || cause == CAUSE_RAMP_UNDERRUN);
-    end
     if (state != $past(state) && !stopped)
       case (state)
         STATE_IDLE:
@@ -57,7 +49,7 @@ always @(posedge clk)
         default:
         drain_comes_from : assert ($past(state == STATE_SETTLE) && $past(!line_ended && !line_endless, 2));
       endcase
-    if ($past(begin_profile) && !$past(command_abort) && !$past(stopping))
+    if ($past(begin_profile) && !$past(command_abort, 2) && !$past(stopping, 2))
       begins_when_told : assert (state == STATE_RUN || state == STATE_SETTLE);
     if (prepare) prepared_only_with_both : assert ($past(run && line_valid && ramp_valid && state == STATE_IDLE));
     if (release_line) released_at_the_end : assert ($past(line_ended || line_endless));
@@ -68,6 +60,25 @@ always @(posedge clk)
       running_not_before_7 : assert (!running);
     if (state == STATE_RUN && f_run_age >= 4'd7) running_from_7_on : assert (running);
     if (!$past(moving)) not_running_at_rest : assert (!running);
+  end
+
+// --- From a fault to STOPPED: two clocks. A channel that was stopped in the clock between may be cleared already.
+always @(posedge clk)
+  if (f_begun && $past(f_begun) && $past(f_begun, 2)) begin
+    if (!$past(stopped) && !$past(stopped, 2)) begin
+      if ($past(command_abort, 2)) abort_stops : assert (stopped && cause == CAUSE_ABORT);
+      if ($past(f_stop_hard, 2)) fault_stops : assert (stopped);
+      if ($past(moving && step_overrun && !command_abort, 2))
+        overrun_is_the_cause : assert (cause == CAUSE_STEP_OVERRUN);
+      if ($past(moving && line_underrun && !step_overrun && !command_abort, 2))
+        underrun_is_the_cause : assert (cause == CAUSE_LINE_UNDERRUN);
+      if ($past(stopping, 2) && ($past(!moving, 2) || ($past(rate_is_zero, 3) && $past(f_begun, 3))))
+        stop_ends_in_stopped : assert (stopped);
+    end
+    if (stopped && !$past(stopped)) begin
+      stopped_for_a_reason : assert ($past(f_stop_hard, 2) || $past(stopping, 2));
+      if (!$past(f_stop_hard, 2)) soft_cause_told : assert (cause == CAUSE_STOP || cause == CAUSE_RAMP_UNDERRUN);
+    end
   end
 
 `ifdef INVARIANTS

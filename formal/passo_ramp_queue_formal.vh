@@ -2,7 +2,8 @@
 // What the ramp queue promises; included at the end of passo_ramp_queue.
 
 // --- Assumptions: the link. A frame is checked, word by word; if nobody objects and it ends with a whole
-// ramp, it may be written, with as many words. Data stand from a clock before their strobe to a clock after it.
+// ramp, it may be written, with as many words. Data stand from a clock before their strobe to a clock after it;
+// `bus_top_bit` belongs to those that are checked, in the strobe and the clock before.
 `ifdef SMALL
 localparam [1:0] F_GAP = 2'd2;
 `else
@@ -22,6 +23,7 @@ reg [2:0] f_since_write = 3'd0;
 (* anyseq *) reg [DEPTH_LOG2:0] f_short_ramps;
 wire f_strobe = (bus_check | bus_write) & select;
 wire f_last_index = f_index == 3'd4;
+wire f_top_bit_right = bus_top_bit == 5'd0 ? bus_data <= 32'd1 : bus_data >> bus_top_bit == 32'd1;
 wire f_good = f_checking && !f_refused && refusal == VERDICT_OK && f_index == 3'd0 && f_words != 6'd0;
 always @(posedge clk) begin
   f_begun    <= 1'b1;
@@ -32,6 +34,7 @@ always @(posedge clk) begin
   if (bus_check || bus_write || bus_frame) assume (f_gap >= F_GAP);
   assume (bus_check + bus_write + bus_frame <= 2'd1);
   if (bus_check || bus_write || f_strobe_q) assume ($stable(bus_data));
+  if (bus_check) assume (f_top_bit_right && $past(f_top_bit_right));
   if (bus_check) assume (f_checking && f_words != 6'd60);
   if (bus_write) assume (f_writing == select);
   if (f_checking && f_words != 6'd0) assume (select == f_select);
@@ -131,7 +134,9 @@ reg f_queued = 1'b0;
 reg [DEPTH_LOG2:0] f_ahead;  // ramps before it
 reg f_mirror;
 reg [15:0] f_word;  // the half word as the ramp wants it
-reg f_shown = 1'b0;  // `half` is the watched one
+reg [1:0] f_shown = 2'b00;  // of one and of two clocks ago: the index is that of the watched one
+reg [15:0] f_shown_word;  // what it was then
+reg [15:0] f_shown_word_q;
 wire f_watch = !f_recording && !f_queued && f_choose && bus_write && select && f_index == 3'd0
                && write_ramp[DEPTH_LOG2-1:0] == f_slot;
 wire [15:0] f_data = f_half[0] ? bus_data[15:0] : bus_data[31:16];
@@ -152,10 +157,12 @@ always @(posedge clk) begin
     f_ahead <= f_ahead - f_pops;
     if (f_ahead < f_pops) f_queued <= 1'b0;
   end
-  f_shown <= f_queued && f_ahead == 0 && half_index == f_half;
+  f_shown <= {f_shown[0], f_queued && f_ahead == 0 && half_index == f_half};
+  f_shown_word <= f_word;
+  f_shown_word_q <= f_shown_word;
   if (rst || flush) {f_recording, f_queued} <= 2'b00;
-  if (rst) f_shown <= 1'b0;
-  if (f_shown) half_as_written : assert (half == f_word || f_recording);
+  if (rst) f_shown <= 2'b00;
+  if (f_shown[1]) half_as_written : assert (half == f_shown_word_q);
 end
 
 `ifdef INVARIANTS
@@ -192,6 +199,7 @@ always @(posedge clk)
       assert (f_memory_word == f_word || (f_written && f_half[3:1] == 4));
     if (f_recording && write_low && f_half[3:1] == index && !f_half[0]) assert (f_memory_word == f_word);
     if (f_recording && write_low && f_half[3:1] == index && f_half[0]) assert (f_word == bus_data[15:0] ^ {16{invert}});
+    if (f_shown[0]) assert (word == f_shown_word);
     if (f_queued) begin
       assert (f_memory_word == f_word);
       assert (f_ahead < f_ramps && f_slot == read_ramp[DEPTH_LOG2-1:0] + f_ahead[DEPTH_LOG2-1:0]);
