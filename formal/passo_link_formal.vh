@@ -5,7 +5,7 @@
 
 // --- Assumptions: chip select and words as passo_spi gives them. Half words are at least 60 clocks apart.
 `ifdef SMALL
-localparam [6:0] F_GAP = 7'd7;  // the search turns a word in one clock
+localparam [6:0] F_GAP = 7'd8;  // the search turns a word in one clock
 localparam [6:0] F_GAP_LOW = 7'd1;
 `else
 localparam [6:0] F_GAP = 7'd60;
@@ -47,7 +47,7 @@ reg  [ 8:0] f_words = 9'd0;  // received, the header included; up to 511
 reg  [ 8:0] f_checks = 9'd0;
 reg         f_objection = 1'b0;
 reg         f_asked = 1'b0;  // a check strobe was in the clock before
-reg         f_incomplete;  // when the CRC was there
+reg         f_incomplete;  // when the CRC had turned
 reg  [ 7:0] f_last;  // sequence number of the last frame that was executed
 reg         f_any = 1'b0;  // there is one
 wire [ 7:0] f_length = f_header[19:12];
@@ -70,7 +70,7 @@ always @(posedge clk) begin
   if (f_word_ends && f_words != 9'd511) f_words <= f_words + 9'd1;
   if (bus_check && f_words != 9'd0) f_checks <= f_checks + 9'd1;
   if (f_asked && f_words != 9'd0 && (!bus_claim || bus_refusal != VERDICT_OK)) f_objection <= 1'b1;
-  if (step == STEP_CRC && act) f_incomplete <= bus_incomplete;
+  if (step == STEP_CRC && count == COUNT_ACT - 6'd1) f_incomplete <= bus_incomplete;
   if (frame_start) begin
     f_words     <= 9'd0;
     f_checks    <= 9'd0;
@@ -112,12 +112,16 @@ always @(posedge clk) begin
   if (f_begun && f_any) last_sequence_told : assert (last_sequence == f_last || f_starts);
   if (rst) {f_runs, f_any} <= 2'b00;
   if (f_begun && bus_check && f_words != 9'd0 && f_checks == {3'd0, f_watch} && f_length <= 8'd60) check_as_sent : assert (bus_data == f_word);
+  if (f_begun && (bus_check || bus_write))
+    stands_before_strobe : assert ({bus_address, bus_data} == $past({bus_address, bus_data}));
+  if (f_begun && bus_check) stands_before_check : assert ({bus_address, bus_data} == $past({bus_address, bus_data}, 2));
+  if (f_begun && $past(bus_check || bus_write)) stands_after_strobe : assert (bus_data == $past(bus_data));
 end
 
 `ifdef INVARIANTS
-wire f_busy = count >= COUNT_LOAD || count == COUNT_ACT;  // a word is being handled
-wire [6:0] f_c = {count == COUNT_ACT, count};
-wire f_loaded = count >= COUNT_LOADED || count == COUNT_ACT;
+wire f_busy = count >= COUNT_LOAD || count <= COUNT_ACT;  // a word is being handled
+wire [6:0] f_c = {count <= COUNT_ACT, count};
+wire f_loaded = count >= COUNT_LOADED || count <= COUNT_ACT;
 wire f_receives = step == STEP_HEADER || step == STEP_PAYLOAD || step == STEP_CRC;
 wire f_has_payload = (f_is_push || f_is_write || f_header[31:28] != OPERATION_READ) && f_length != 8'd0;
 wire f_header_fits = (f_is_push || f_is_write) && f_length != 8'd0 && f_length <= 8'd60 && !(f_any && f_header[27:20] == f_last);
@@ -130,11 +134,14 @@ always @(posedge clk)
     assert (!frame_waits || step == STEP_REPLAY || step == STEP_COUNT || step == STEP_HEADER);
     if (frame_waits) assert (f_selected && f_words == 9'd0 && f_checks == 9'd0 && !f_objection);
     assert (answer_due == f_asked);
+    assert (act == (count == COUNT_ACT) || (act && step == STEP_IDLE && count == COUNT_REST));
+    if (step == STEP_IDLE) assert (count > COUNT_ACT && count <= COUNT_REST);
+    if ((f_receives || step == STEP_ACK) && f_busy) assert (!bus_check && !answer_due && !answer_came);
     if (f_receives) assert (count <= COUNT_REST || count >= COUNT_LOAD);
     // receiving
     if (f_receives) begin
       assert (f_selected);
-      if (f_busy) assert (!f_upper && f_gap == (count == COUNT_ACT ? 7'd36 : {1'b0, count} - 7'd28));
+      if (f_busy) assert (!f_upper && f_gap == f_c - 7'd28);
     end
     if (step == STEP_HEADER) begin
       assert (f_words == {8'd0, f_busy} && f_checks == 9'd0 && !f_objection);
@@ -144,21 +151,21 @@ always @(posedge clk)
       assert (f_memory_header[31:16] == f_header[31:16]);
     if (step == STEP_COUNT) assert (f_busy);
     if (step == STEP_COUNT && frame_waits)
-      assert (!f_upper && f_gap < (count == COUNT_ACT ? 7'd36 : {1'b0, count} - 7'd28));
+      assert (!f_upper && f_gap < f_c - 7'd28);
     if ((step == STEP_HEADER || (step == STEP_ACK && verdict == VERDICT_OK)) && f_loaded) assert (f_held == f_header);
     if (step == STEP_PAYLOAD || step == STEP_CRC || step == STEP_ACK || step == STEP_READ) begin
       assert (f_memory_header == f_header && f_words != 9'd0);
       assert (length == f_length && bus_push == f_is_push && is_read == (f_header[31:28] == OPERATION_READ));
     end
     if (step == STEP_PAYLOAD || step == STEP_CRC || step == STEP_ACK)
-      if (verdict == VERDICT_OK) assert (is_read ? f_length != 8'd0 && f_length <= 8'd60 : f_header_fits && !f_objection);
+      if (verdict == VERDICT_OK) assert (is_read ? f_length != 8'd0 && f_length <= 8'd60 : f_header_fits && (!f_objection || (answer_came && answer != VERDICT_OK)));
     if (step == STEP_PAYLOAD) begin
       assert (f_has_payload);
       assert (f_words == {1'b0, index} + 9'd1 + {8'd0, f_busy});
       assert (f_checks + {8'd0, bus_check} == {1'b0, index});
-      assert (index < length || (index == length && count == 6'd1));
+      assert (index < length || (index == length && count == COUNT_ACT + 6'd1));
     end
-    if (bus_check && f_words != 9'd0) assert ((count == 6'd1 && step == STEP_PAYLOAD) || step == STEP_IDLE);
+    if (bus_check && f_words != 9'd0) assert ((count == COUNT_ACT + 6'd1 && step == STEP_PAYLOAD) || step == STEP_IDLE);
     if (step == STEP_CRC && f_has_payload) begin
       assert (f_words == {1'b0, length} + 9'd1 + {8'd0, f_busy} && index == length);
       assert (f_checks == {1'b0, length} && !bus_check);
@@ -166,7 +173,7 @@ always @(posedge clk)
     if (step == STEP_ACK && verdict == VERDICT_OK) begin
       assert (f_words == {1'b0, f_length} + 9'd2 && !crc_wrong && !f_incomplete && f_checks == {1'b0, f_length} && !is_read);
       assert (f_busy && f_selected);
-      assert (f_upper ? f_c > 7'd50 && f_gap < f_c - 7'd50 : f_gap == (f_c > 7'd51 ? 7'd60 : f_c + 7'd9));
+      assert (f_upper ? f_c > 7'd50 && f_gap < f_c - 7'd50 : f_gap == (f_c > 7'd50 ? 7'd60 : f_c + 7'd10));
     end
     if (step == STEP_ACK) assert (f_words != 9'd0);
     // the payload in its place
@@ -175,7 +182,7 @@ always @(posedge clk)
       if (f_words > {3'd0, f_watch} + 9'd1 && {2'd0, f_watch} < f_length) assert (f_memory_word == f_word);
       if (f_words == {3'd0, f_watch} + 9'd1 && f_upper && step == STEP_PAYLOAD) assert (f_memory_word[31:16] == f_word[31:16]);
       if (step == STEP_PAYLOAD && f_loaded && index == {2'd0, f_watch}) assert (f_held == f_word);
-      if (step == STEP_PAYLOAD && count == 6'd1 && index == {2'd0, f_watch} + 8'd1) assert (f_held == f_word);
+      if (step == STEP_PAYLOAD && count == COUNT_ACT + 6'd1 && index == {2'd0, f_watch} + 8'd1) assert (f_held == f_word);
     end
     // executing
     assert (!bus_write || step == STEP_REPLAY);
