@@ -115,7 +115,7 @@ always @(posedge clk) begin
   if (f_begun && (bus_check || bus_write))
     stands_before_strobe : assert ({bus_address, bus_data} == $past({bus_address, bus_data}));
   if (f_begun && bus_check) stands_before_check : assert ({bus_address, bus_data} == $past({bus_address, bus_data}, 2));
-  if (f_begun && $past(bus_check || bus_write)) stands_after_strobe : assert (bus_data == $past(bus_data));
+  if (f_begun && $past(f_begun && (bus_check || bus_write))) stands_after_strobe : assert (bus_data == $past(bus_data));
 end
 
 `ifdef INVARIANTS
@@ -138,6 +138,10 @@ always @(posedge clk)
     if (step == STEP_IDLE) assert (count > COUNT_ACT && count <= COUNT_REST);
     if ((f_receives || step == STEP_ACK) && f_busy) assert (!bus_check && !answer_due && !answer_came);
     if (f_receives) assert (count <= COUNT_REST || count >= COUNT_LOAD);
+    // no word ends while one is fetched for the reply
+    if (step == STEP_READ) assert (count <= COUNT_REST || count >= COUNT_READ);
+    if (step == STEP_READ && (count >= COUNT_READ || count <= COUNT_ACT)) assert (!f_upper || f_gap < f_c - {1'b0, COUNT_READ});
+    if (step == STEP_READ || step == STEP_SUM || step == STEP_ACK) assert (f_selected);
     // receiving
     if (f_receives) begin
       assert (f_selected);
