@@ -49,8 +49,8 @@ static bool lines_settled(const struct passo_channel *channel, const struct pass
 	for (unsigned i = 0; i < channel->axes; i++)
 		if (queue->steps[i] != current->steps[i])
 			return false;
-	return queue->next_valid == (queue->next_line != queue->write_line)
-	    && queue->next_last == next->last && queue->next_endless == next->endless && queue->next_directions == next->directions;
+	return queue->next_valid == (queue->next_line != queue->write_line) && queue->next_last == next->last
+	    && queue->next_endless == next->endless && queue->next_directions == next->directions;
 }
 
 static bool ramps_settled(const struct passo_ramp_queue *queue, const struct passo_parameters *parameters)
@@ -147,8 +147,8 @@ static uint64_t surroundings_quiet(
 	const bool moving = channel->motion.state == PASSO_STATE_RUN;
 
 	if (!motion_settled(channel, inputs) || channel->positions.snapshot_waits
-	    || !commands_settled(channel) || line->slot_load || line->slot_load_q
-	    || line->underrun || !ramps_settled(&channel->ramp_queue, inputs->parameters)
+	    || !commands_settled(channel) || line->slot_load || line->slot_load_q || line->underrun
+	    || !ramps_settled(&channel->ramp_queue, inputs->parameters)
 	    || !lines_settled(channel, inputs->parameters))
 		return 0;
 	uint64_t clocks =

@@ -48,8 +48,8 @@ void passo_link_reset(struct passo_link *link)
 bool passo_link_quiet(const struct passo_link *link)
 {
 	const struct passo_bus *bus = &link->bus;
-	return link->count == COUNT_REST && !link->answer_due && !link->answer_came && !link->refused && !bus->frame && !bus->check
-	    && !bus->write && !bus->read;
+	return link->count == COUNT_REST && !link->answer_due && !link->answer_came && !link->refused
+	    && !bus->frame && !bus->check && !bus->write && !bus->read;
 }
 
 static unsigned place(const struct passo_link *link, bool in_payload, unsigned otherwise)

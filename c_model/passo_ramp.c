@@ -5,10 +5,10 @@
  */
 #include "passo_model.h"
 
-enum { COPY_CLOCKS = 24, FETCH_CLOCKS = 8, TAKE_CLOCKS = 6, STEP_CLOCKS = 8 };
+enum { COPY_CLOCKS = 24, FETCH_CLOCKS = 8, FETCH_NO_TICKS_CLOCKS = 7, TAKE_CLOCKS = 5, STEP_CLOCKS = 8 };
 
 /* ramp_take comes in this clock of TAKE, counted from the last one. */
-enum { TAKE_WAIT = 3 };
+enum { TAKE_WAIT = 2 };
 
 static const uint64_t PROGRESS_MASK = (UINT64_C(1) << 49) - 1u;
 
@@ -61,6 +61,7 @@ static void load(struct passo_ramp_unit *ramp, const struct passo_ramp *command)
 static void choose(struct passo_ramp_unit *ramp, const struct passo_channel *channel,
     const struct passo_channel_inputs *inputs, const struct passo_channel_wires *wires)
 {
+	const struct passo_ramp front = passo_ramp_queue_front(&channel->ramp_queue, inputs->parameters);
 	const uint32_t work = work_clocks(ramp, inputs->tables, inputs->parameters, channel->number);
 
 	if (channel->ramp_queue.now_pending) {
@@ -74,7 +75,7 @@ static void choose(struct passo_ramp_unit *ramp, const struct passo_channel *cha
 		ramp->ends_next = true;
 		ramp->ready = true;
 	} else if (wires->ramp_valid) {
-		begin_step(ramp, PASSO_RAMP_FETCH, FETCH_CLOCKS);
+		begin_step(ramp, PASSO_RAMP_FETCH, front.ticks == 0u ? FETCH_NO_TICKS_CLOCKS : FETCH_CLOCKS);
 	} else {
 		begin_step(ramp, PASSO_RAMP_WORK, work);
 	}

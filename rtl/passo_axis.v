@@ -104,8 +104,8 @@ module passo_axis (
     overrun <= step_request & waits[3];
     if (overrun && lost != 4'hF) lost <= lost + 4'd1;
 
-    timer <= restart ? 16'd2 : timer + 16'd1;
-    done <= restart ? begins_short : reached;
+    timer          <= restart ? 16'd2 : timer + 16'd1;
+    done           <= restart ? begins_short : reached;
     timing_changed <= timing_written;
     if (timing_written) done <= 1'b0;
 

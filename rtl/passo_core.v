@@ -3,7 +3,7 @@
 // Wiring, and what the channels share: the sync input and the slew tick.
 //
 // Clock: clk at least four times SCLK. Reset: rst synchronous, active high.
-// Latency: a rising edge of `sync` starts the armed channels 3 clocks later.
+// Latency: a rising edge of `sync` starts the armed channels 4 clocks later.
 `resetall
 `default_nettype none
 

@@ -8,9 +8,9 @@
 // when the line after it is taken, or on `release_line`. `flush` drops everything that is written; it stays
 // while the channel is stopped, for a push that was checked before.
 //
-// A push is checked word by word (`bus_check`): room for it after all lines of this frame before it, M not 0,
-// N_i <= M, no reserved bits. `refusal` answers one clock later. One subtraction serves the checks and makes
-// what is stored of M, which is M - 1, the number of the last substep.
+// A push is checked word by word (`bus_check`; the word stands two clocks before): room for it after all lines of
+// this frame before it, M not 0, N_i <= M, no reserved bits. `refusal` answers one clock later. One subtraction
+// serves the checks and makes what is stored of M, which is M - 1, the number of the last substep.
 `resetall
 `default_nettype none
 
@@ -83,7 +83,7 @@ module passo_line_queue #(
     write_substeps <= write & index[INDEX_SUBSTEPS];
     if (load_substeps) not_substeps <= ~bus_data;
     if (index[INDEX_CONTROL]) not_substeps <= ~32'd0;
-    {carry, difference[15:0]}  <= {1'b0, bus_data[15:0]} + {1'b0, not_substeps[15:0]};
+    {carry, difference[15:0]} <= {1'b0, bus_data[15:0]} + {1'b0, not_substeps[15:0]};
     {wrong, difference[31:16]} <= {1'b0, bus_data[31:16]} + {index[INDEX_SUBSTEPS], not_substeps[31:16]} + {16'd0, carry};
     if (line_written) write_line <= write_line + 1'b1;
     if (rst || bus_frame) begin

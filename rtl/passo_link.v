@@ -14,8 +14,8 @@
 //
 // Verdict: BAD_CRC goes before all others, then the first objection; a duplicate is not asked for objections.
 // Latency: payload word to bus_check 39 clocks, crc word to ack 75 clocks, to the first word of a read 91
-// clocks. Address and data stand on the bus at least a clock before their strobe, data a clock after it, the
-// address of a read 16 clocks before. A target answers one clock after a strobe with claim (the address is
+// clocks. Address and data stand on the bus at least a clock before their strobe (of a check: two clocks),
+// data a clock after it, the address of a read 16 clocks before. A target answers one clock after a strobe with claim (the address is
 // mine), refusal and, to bus_read, data; at all other times the status stands in the place of data.
 `resetall
 `default_nettype none
@@ -99,11 +99,11 @@ module passo_link (
   reg        header_repeats;
 
   always @(posedge clk) begin
-    header_is_read  <= operation == OPERATION_READ;
+    header_is_read <= operation == OPERATION_READ;
     header_is_known <= operation == OPERATION_READ || operation == OPERATION_WRITE || operation == OPERATION_PUSH;
     header_is_empty <= bus_data[19:12] == 8'd0;
-    header_fits     <= bus_data[19:12] <= PAYLOAD_MAX;
-    header_repeats  <= sequence_known && bus_data[27:20] == last_sequence;
+    header_fits <= bus_data[19:12] <= PAYLOAD_MAX;
+    header_repeats <= sequence_known && bus_data[27:20] == last_sequence;
   end
 
   // The answer to a strobe arrives one clock after the bus shows the strobe, and is judged in the next.
@@ -194,17 +194,17 @@ module passo_link (
 
   always @(posedge clk) begin
     if (count != COUNT_REST) count <= count + 6'd1;
-    act         <= count == COUNT_ACT - 6'd1;
+    act <= count == COUNT_ACT - 6'd1;
     half_turned <= count == COUNT_TURN + 6'd15;
-    replies     <= step == STEP_ACK || step == STEP_READ || step == STEP_SUM;
-    bus_frame  <= act && (step == STEP_HEADER || step == STEP_ACK);
-    bus_check  <= act && step == STEP_PAYLOAD;
-    bus_write  <= count == COUNT_LOADED && step == STEP_REPLAY;
-    bus_read   <= count == COUNT_LOAD && step == STEP_READ && !frame_end;
-    answer_due  <= bus_check;
+    replies <= step == STEP_ACK || step == STEP_READ || step == STEP_SUM;
+    bus_frame <= act && (step == STEP_HEADER || step == STEP_ACK);
+    bus_check <= act && step == STEP_PAYLOAD;
+    bus_write <= count == COUNT_LOADED && step == STEP_REPLAY;
+    bus_read <= count == COUNT_LOAD && step == STEP_READ && !frame_end;
+    answer_due <= bus_check;
     answer_came <= answer_due;
-    answer      <= bus_claim ? bus_refusal : VERDICT_UNKNOWN_ADDRESS;
-    crc_wrong  <= step != STEP_HEADER && (crc_wrong || (step == STEP_CRC && turn && crc_top != bus_data[31]));
+    answer <= bus_claim ? bus_refusal : VERDICT_UNKNOWN_ADDRESS;
+    crc_wrong <= step != STEP_HEADER && (crc_wrong || (step == STEP_CRC && turn && crc_top != bus_data[31]));
 
     if (answer_came && verdict == VERDICT_OK) verdict <= answer;
     if ((bus_check || bus_write) && !bus_push) bus_address <= bus_address + 12'd1;

@@ -90,13 +90,13 @@ module passo_motion (
   wire settled_next = settles & settling[2] & ~settled;
   wire dry = ramp_dry & ~line_endless;
 
-  assign prepare       = startable;
-  assign drain         = drains;
-  assign release_line  = finished;
+  assign prepare      = startable;
+  assign drain        = drains;
+  assign release_line = finished;
 
   // Decided in one clock, done in the next.
-  reg        stop_due;
-  reg  [2:0] cause_due;
+  reg stop_due;
+  reg [2:0] cause_due;
   wire       stop_wanted = command_abort | (moving & (step_overrun | line_underrun))
                   | (stopping & (rate_was_zero | finished | ~moving));
   wire [2:0] cause_wanted = command_abort           ? CAUSE_ABORT :
@@ -133,9 +133,9 @@ module passo_motion (
 
   always @(posedge clk) begin
     begin_profile <= armed && (sync_edge || !wait_sync) && !begin_profile && !stop_now;
-    startable <= idle && run && line_valid && ramp_valid && !startable && !stop_due;
-    stop_due  <= stop_wanted && !stopped;
-    cause_due <= cause_wanted;
+    startable     <= idle && run && line_valid && ramp_valid && !startable && !stop_due;
+    stop_due      <= stop_wanted && !stopped;
+    cause_due     <= cause_wanted;
     if (count != START_LAST) count <= count + 3'd1;
     if (!runs) count <= 3'd0;
     settling      <= settles ? {settling[1:0], 1'b1} : 3'd0;
@@ -159,14 +159,14 @@ module passo_motion (
       finished <= 1'b0;
     end
     if (rst) begin
-      stopping  <= 1'b0;
-      drained   <= 16'd0;
-      startable <= 1'b0;
+      stopping      <= 1'b0;
+      drained       <= 16'd0;
+      startable     <= 1'b0;
       begin_profile <= 1'b0;
-      stop_due  <= 1'b0;
-      settled   <= 1'b0;
-      finished  <= 1'b0;
-      running   <= 1'b0;
+      stop_due      <= 1'b0;
+      settled       <= 1'b0;
+      finished      <= 1'b0;
+      running       <= 1'b0;
     end
   end
 

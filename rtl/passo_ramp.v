@@ -18,8 +18,8 @@
 // Promise: the LAST ramp's end raises `ended`, with the last enabled clock of its last tick (a profile
 // without any tick: with begin_profile). Ramps that run out at speed raise `dry`, in the tick before; the
 // velocity then stays, and the next ramp is taken whenever it comes. `stall` holds the enable back at the end
-// of a tick until a clock after the next velocity is ready: later, never lost. Clocks of each step: copy 24, fetch 8, take 6,
-// look up 3 .. 2 * CHANNELS + 3, shape 19, scale 50, step 8, and one to choose between them.
+// of a tick until a clock after the next velocity is ready: later, never lost. Clocks of each step: copy 24, fetch 8 (T = 0:
+// 7), take 5, look up 3 .. 2 * CHANNELS + 3, shape 19, scale 50, step 8, and one to choose between them.
 `resetall
 `default_nettype none
 
@@ -71,11 +71,13 @@ module passo_ramp #(
     case (step)
       STEP_COPY:             before_end = 6'd23;
       STEP_FETCH, STEP_STEP: before_end = 6'd7;
-      STEP_TAKE:             before_end = 6'd5;
+      STEP_TAKE:             before_end = 6'd4;
       STEP_SHAPE:            before_end = 6'd18;
       STEP_SCALE:            before_end = 6'd49;
       default:               before_end = 6'd0;
     endcase
+
+  wire no_ticks = step == STEP_FETCH && count == 6'd7 && over;
 
   // the ramp being made
   reg        loaded;
@@ -190,7 +192,7 @@ module passo_ramp #(
     dry           <= 1'b0;
     moves         <= step == STEP_SCALE && (moves || interpolated_bit);
     count         <= count + 6'd1;
-    step_ends     <= count == before_end;
+    step_ends     <= count == before_end && !no_ticks;
 
     case (step)
       STEP_CHOOSE: begin
@@ -212,10 +214,12 @@ module passo_ramp #(
       STEP_COPY: if (step_ends) step <= STEP_CHOOSE;
 
       STEP_FETCH:
-      if (step_ends) begin
-        loaded <= !over;
-        step   <= over ? STEP_TAKE : STEP_CHOOSE;
-        count  <= 6'd1;
+      if (no_ticks) begin
+        step  <= STEP_TAKE;
+        count <= 6'd1;
+      end else if (step_ends) begin
+        loaded <= 1'b1;
+        step   <= STEP_CHOOSE;
       end
 
       STEP_TAKE:

@@ -37,7 +37,7 @@ module passo_ramp_strobes (
   `include "passo_ramp_steps.vh"
 
   wire fetch = step == STEP_FETCH;
-  wire take = step == STEP_TAKE && count >= 6'd3 && count <= 6'd5;
+  wire take = step == STEP_TAKE && count >= 6'd2 && count <= 6'd4;
   wire copy = step == STEP_COPY;
   wire shape = step == STEP_SHAPE;
   wire scale = step == STEP_SCALE;
@@ -63,7 +63,7 @@ module passo_ramp_strobes (
     result_move     <= empty || copy || shape || scale;
   end
 
-  // The first half word of v_end is there when scale begins, whatever was before.
+  // The first half word of v_end is there when scale or take begins, whatever was before.
   always @(posedge clk)
     case (step)
       STEP_FETCH:
@@ -76,8 +76,8 @@ module passo_ramp_strobes (
         3'd6:    half_index <= 4'd7;
         default: half_index <= 4'd3;
       endcase
-      STEP_TAKE: half_index <= count[1:0] == 2'd1 ? 4'd3 : count[1:0] == 2'd2 ? 4'd2 : 4'd0;
-      STEP_SCALE: half_index <= count < 6'd14 ? 4'd3 : count < 6'd30 ? 4'd2 : 4'd0;
+      STEP_TAKE: half_index <= count == 6'd1 ? 4'd2 : 4'd0;
+      STEP_SCALE: half_index <= count < 6'd14 ? 4'd3 : count < 6'd30 ? 4'd2 : count < 6'd46 ? 4'd0 : 4'd3;
       STEP_STEP:
       case (count[2:0])
         3'd1, 3'd4: half_index <= 4'd9;
@@ -85,7 +85,7 @@ module passo_ramp_strobes (
         3'd3, 3'd6: half_index <= 4'd7;
         default:    half_index <= 4'd3;
       endcase
-      default:    half_index <= 4'd3;
+      default: half_index <= 4'd3;
     endcase
 
 endmodule
