@@ -24,7 +24,7 @@ always @(posedge clk)
       assert (!moving && !counting && !prepare && !begin_profile && !drain && !release_line && !running);
     stopped_is_the_state : assert (stopped == (state == STATE_STOPPED));
     cause_when_stopped : assert ((cause != CAUSE_NONE) == stopped);
-    if (counting) counts_only_in_motion : assert (moving && occupied);
+    counts_in_run_and_drain : assert (counting == (state == STATE_RUN || state == STATE_DRAIN));
     if (begin_profile) begins_only_armed : assert (state == STATE_ARMED && $past(state == STATE_ARMED && (sync_edge || !wait_sync)));
   end
 
