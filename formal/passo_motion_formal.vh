@@ -31,7 +31,8 @@ always @(posedge clk)
 // --- From one clock to the next
 always @(posedge clk)
   if (f_begun && $past(f_begun)) begin
-    if ($past(stopped) && !$past(command_clear)) stopped_until_clear : assert (stopped);
+    if ($past(stopped)) stopped_until_clear : assert (stopped == !$past(command_clear));
+    if ($past(stopped) && stopped) cause_stays : assert (cause == $past(cause));
     if ($past(command_stop) && !$past(stopped)) stop_is_heard : assert (stopping || stopped);
     if ($past(stopping)) stop_is_kept : assert (stopping || stopped);
     if (state != $past(state) && !stopped)
