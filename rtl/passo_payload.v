@@ -92,5 +92,9 @@ module passo_payload (
     end
   end
 
+`ifdef FORMAL
+  `include "passo_payload_formal.vh"
+`endif
+
 endmodule
 `resetall

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+// What the payload buffer promises; included at the end of passo_payload.
+
+// --- Assumptions: the link. A word turns for 32 clocks or is given up; nothing is loaded or turns in the clock before.
+// There `turns` is 31 and `count` as it will be, if it counts.
+reg       f_begun = 1'b0;
+reg       f_turn_q = 1'b0;
+reg       f_load_q = 1'b0;
+reg       f_fresh = 1'b0;  // loaded, and not yet turned
+reg       f_told = 1'b0;  // the word that turns, or has turned, was fresh
+reg       f_whole = 1'b0;  // 32 turns are over; nothing has been loaded since
+reg [4:0] f_turns_q;
+reg       f_count;
+reg [1:0] f_counter;
+wire      f_first = turn & ~f_turn_q;
+always @(posedge clk) begin
+  f_begun   <= 1'b1;
+  f_turn_q  <= turn & f_begun;
+  f_load_q  <= load & f_begun;
+  f_turns_q <= turns;
+  f_count   <= count;
+  f_counter <= counter;
+  f_fresh   <= f_begun & (load | (f_fresh & ~turn));
+  if (!f_begun) assume (!turn && !load);
+  if (turn) assume (!load && !f_load_q && turns == (f_first ? 5'd0 : f_turns_q + 5'd1) && (f_first || f_turns_q != 5'd31));
+  if (turn && (!f_first || count)) assume (count == f_count && counter == f_counter);
+  if (f_first && count) assume (f_turns_q == 5'd31);
+  f_whole <= (turn && turns == 5'd31) || (f_whole && !turn && !load);
+  if (f_first) f_told <= f_fresh;
+end
+
+// --- The word before its first turn, and as it should be after the last
+function [7:0] f_mirrored(input [7:0] byte_in);
+  f_mirrored = {byte_in[0], byte_in[1], byte_in[2], byte_in[3], byte_in[4], byte_in[5], byte_in[6], byte_in[7]};
+endfunction
+
+reg  [31:0] f_before_q;
+reg  [31:0] f_after_q;
+wire [31:0] f_before = f_first ? data : f_before_q;
+wire [ 7:0] f_old = f_before >> {counter, 3'd0};
+wire [ 7:0] f_new = f_mirrored(f_mirrored(f_old) + 8'd1);
+wire [31:0] f_after = count ? f_before ^ ({24'd0, f_old ^ f_new} << {counter, 3'd0}) : f_before;
+wire [31:0] f_readable = {
+  f_mirrored(f_before[31:24]), f_mirrored(f_before[23:16]), f_mirrored(f_before[15:8]), f_mirrored(f_before[7:0])
+};
+reg         f_counted;
+always @(posedge clk) begin
+  f_before_q <= f_before;
+  if (turn) begin
+    f_after_q <= f_after;
+    f_counted <= count;
+    if (!count) counters_readable : assert (counter_bit == f_readable[~turns]);
+  end
+  if (f_whole) begin
+    if (!f_counted) turning_keeps_the_word : assert (data == f_after_q);
+    else one_counter_counts : assert (data == f_after_q);
+    if (f_told) begin
+      top_bit_told : assert (top_bit == 5'd0 ? f_before_w <= 32'd1 : f_before_w >> top_bit == 32'd1);
+      lone_bit_told : assert (lone_bit == ((f_before_w & (f_before_w - 32'd1)) == 32'd0));
+    end
+  end
+end
+
+// the word that turned last
+reg  [31:0] f_before_w;
+always @(posedge clk) if (turn) f_before_w <= f_before;
+
+// --- One half word in the memory, any one
+(* anyconst *) reg [7:0] f_address;
+(* keep *) wire [15:0] f_memory_word;
+reg  [15:0] f_kept;  // as it was last stored
+reg  [15:0] f_shown_word;
+reg         f_stored = 1'b0;
+reg         f_shown = 1'b0;  // it was named in the clock before
+reg         f_shown_q = 1'b0;  // and loaded
+reg  [15:0] f_shown_word_q;
+wire        f_put = put && {put_word, put_low} == f_address;
+wire        f_store = store && !put && {store_word, store_low} == f_address;
+always @(posedge clk) begin
+  if (f_put) f_kept <= data[15:0];
+  if (f_store) f_kept <= half;
+  f_stored       <= f_begun & (f_stored | f_put | f_store);
+  f_shown        <= f_stored && {load_word, load_low} == f_address && !f_put && !f_store;
+  f_shown_word   <= f_kept;
+  f_shown_q      <= f_shown & load & ~load_zero;
+  f_shown_word_q <= f_shown_word;
+  if (f_shown_q) loaded_as_stored : assert (data[15:0] == f_shown_word_q);
+  if (f_begun && $past(f_begun && load && !load_zero)) upper_half_follows : assert (data[31:16] == $past(data[15:0]));
+  if (f_begun && $past(f_begun && load && load_zero)) zero_loaded : assert (data == 32'd0);
+end
+
+`ifdef INVARIANTS
+wire [31:0] f_passed = ~(32'hFFFFFFFF >> turns);  // bits that have turned
+wire [31:0] f_mixed = (f_after & f_passed) | (f_before & ~f_passed);
+wire [63:0] f_rotated = {f_mixed, f_mixed} << turns;
+wire [31:0] f_seen = f_before & f_passed;
+always @(posedge clk)
+  if (f_begun) begin
+    if (f_stored) assert (f_memory_word == f_kept);
+    if (f_shown) assert (loaded == f_shown_word);
+    if (f_fresh && !(turn && !f_first)) assert (!some_bit && lone_bit && top_bit == 5'd0);
+    assert (!(f_fresh && (f_whole || (turn && !f_first))));
+    if (turn) begin
+      assert (data == f_rotated[63:32]);
+      if (!f_first) assert (f_before_q == f_before_w);
+      if (!f_first) assert (f_counted == count && f_after_q == f_after);
+      if (in_counter) assert (carry == ((f_old | (8'hFF >> turns[2:0])) == 8'hFF));
+      if (!f_first && f_told) begin
+        assert (some_bit == (f_seen != 32'd0));
+        assert (top_bit == 5'd0 ? f_seen <= 32'd1 : f_seen >> top_bit == 32'd1);
+        assert (lone_bit == ((f_seen & (f_seen - 32'd1)) == 32'd0));
+      end
+    end
+  end
+`endif
