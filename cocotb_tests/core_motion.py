@@ -240,3 +240,26 @@ def ramps_run_on_when_the_last_line_has_ended(core: Core) -> None:
     begin = make(core, channel, lines, ramps)
     check_clocks(core, begin, due(lines, ramps, core.tick))
     assert checker.positions == totals(lines)
+
+
+@core_test
+def ramps_that_do_not_fit_into_a_tick_make_the_rest_later(core: Core) -> None:
+    """Ten ramps without ticks in a row hold the profile: the same steps, all after it by the same time later."""
+    channel = core.channel()
+    checker = core.watch(PinTiming())
+    idle = [Ramp(ONE // 9 - n, 0) for n in range(10)]
+    ramps = [Ramp(ONE // 8, 3), *idle, Ramp(ONE // 11, 3, Shape.COSINE), Ramp(0, 0, last=True)]
+    total = distance(ramps, core.tick)
+    lines = [Line(total, (total, -(total // 2), 1)[: core.axes], last=True)]
+    channel.lines(*lines)
+    channel.ramps(*ramps)
+    channel.start()
+    core.wait_end()
+    ((begin, end),) = core.motions()
+    late = end - begin - 6 * core.tick
+    assert 0 < late < core.tick
+    for axis, expected in enumerate(due(lines, ramps, core.tick)):
+        held = [clock if clock < 3 * core.tick else clock + late for clock in expected]
+        assert [clock - begin for clock in core.steps(axis)] == held
+    assert checker.positions == totals(lines)
+    assert channel.state().cause == Cause.NONE

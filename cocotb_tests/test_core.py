@@ -10,6 +10,10 @@ TOP = "passo_core_top"
 ONE_CHANNEL = {"CHANNELS": 1, "AXES": 3, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 5, "RAMP_QUEUE_LOG2": 4}
 TWO_CHANNELS = {"CHANNELS": 2, "AXES": 2, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 2, "RAMP_QUEUE_LOG2": 2}
 
+MOST_CHANNELS = {"CHANNELS": 8, "AXES": 1, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 8, "RAMP_QUEUE_LOG2": 8}
+
+# Icarus Verilog takes very much longer: what is long runs on Verilator only.
+
 
 def test_motion(simulator: str) -> None:
     """Every step on its clock, from the first clock of a motion to the last."""
@@ -39,6 +43,21 @@ def test_refusals(simulator: str) -> None:
 def test_channels(simulator: str) -> None:
     """Two channels at once."""
     run("cocotb_tests.core_channels", TOP, TWO_CHANNELS, simulator)
+
+
+def test_registers(simulator: str) -> None:
+    """Settings and states in all their bits."""
+    run("cocotb_tests.core_registers", TOP, ONE_CHANNEL, simulator)
+
+
+def test_long() -> None:
+    """The longest pin timings, a counter that wraps."""
+    run("cocotb_tests.core_long", TOP, ONE_CHANNEL, "verilator")
+
+
+def test_most_channels() -> None:
+    """As many channels and as deep queues as a core can have."""
+    run("cocotb_tests.core_channels", TOP, MOST_CHANNELS, "verilator")
 
 
 def test_random_moves(simulator: str) -> None:
