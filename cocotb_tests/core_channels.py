@@ -7,6 +7,7 @@ from passo import registers as r
 from passo.host import RATE_ONE
 from passo.registers import Cause, Operation, State, Verdict
 
+from cocotb_tests.bench import read
 from cocotb_tests.core_bench import ONE, V_MAX, Core, Line, PinTiming, Ramp, Shape, core_test
 from cocotb_tests.core_expected import distance, due, totals
 from cocotb_tests.core_frames import GAP, ack, request
@@ -55,7 +56,9 @@ def start_together(core: Core, start: Callable[[], None], first: int) -> None:
     before = [core.channel(number).positions() for number in range(core.parameters.channels)]
     core.link.write(r.ADDRESS_RUN, every(core) << r.RUN_WAIT_SYNC_LSB | every(core))
     shapes = [Shape.COSINE, Shape.LINEAR, Shape.SIGMOID, Shape.EASE] * 3
-    motions = [prepare(core, number, shapes[number + first], ONE // (9 + number)) for number in range(len(before))]
+    motions = [
+        prepare(core, number, shapes[number + first], ONE // (9 + number)) for number in range(len(before))
+    ]
     core.run(300)
     assert {core.channel(number).state().state for number in range(len(before))} == {State.ARMED}
     start()
@@ -164,11 +167,11 @@ def the_status_word_shows_any_channel(core: Core) -> None:
 
 @core_test
 def every_channel_answers_for_itself(core: Core) -> None:
-    """Each refuses what it must, while the others are as they were; each reads its own positions."""
+    """Each refuses what it must; positions and pins are its own."""
     count = core.parameters.channels
+    channels = [core.channel(number) for number in range(count)]
     ramps = [Ramp(V_MAX, 0), Ramp(V_MAX, 1), Ramp(0, 0, last=True)]
-    for number in range(count):
-        channel = core.channel(number)
+    for number, channel in enumerate(channels):
         channel.lines(Line(number + 1, (-number - 1,) * core.axes, last=True))
         channel.ramps(*ramps)
         reasons = (
@@ -180,12 +183,18 @@ def every_channel_answers_for_itself(core: Core) -> None:
             assert ack(core.transfer(write, GAP)) == (0x70 + number, verdict)
     core.link.write(r.ADDRESS_RUN, every(core))
     core.run(3 * core.tick)
-    for number in range(count):
-        assert core.channel(number).positions() == [-number - 1] * core.axes
-    for number in range(count):
-        core.link.write(core.channel(number).base + r.CHANNEL_COMMAND, 1 << r.CHANNEL_COMMAND_ZERO_LSB)
-        positions = [core.channel(other).positions()[0] for other in range(count)]
-        assert positions == [0 if other <= number else -other - 1 for other in range(count)]
+    for number, channel in enumerate(channels):
+        assert channel.positions() == [-number - 1] * core.axes
+    for number, channel in enumerate(channels):
+        core.link.write(channel.base + r.CHANNEL_COMMAND, 1 << r.CHANNEL_COMMAND_ZERO_LSB)
+        assert channel.positions() == [0] * core.axes
+        other = (number + 1) % count
+        assert channels[other].positions() == [0 if other < number else -other - 1] * core.axes
+        pins = channel.base + r.CHANNEL_AXIS_BASE
+        for level in (1, 0):
+            core.link.write(pins, level << r.AXIS_PINS_ENABLE_LSB)
+            core.run(4)
+            assert read(core.dut.enable) == level << number * core.axes
 
 
 @core_test

@@ -14,7 +14,7 @@ COUNTED = 1 << 16  # drained substeps, modulo
 
 @core_test
 def pin_timings_in_all_their_bits(core: Core) -> None:
-    """Each bit of each of the four times of each axis, set and not set: a step and one back take their sum."""
+    """Each bit of each of the four times of each axis, set and not set, at a step and one back."""
     random = rng("pin_timings_in_all_their_bits")
     channel = core.channel()
     numbers = [(random.getrandbits(16), random.getrandbits(16)) for _ in range(core.axes)]

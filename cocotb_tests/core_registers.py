@@ -49,7 +49,7 @@ def rate_slew_in_all_its_bits(core: Core) -> None:
     channel = core.channel()
     core.watch(PinTiming())
     jog(core, channel, V_MAX)
-    for slew in (LOW_BITS, HIGH_BITS, RATE_ONE):
+    for slew in (LOW_BITS, HIGH_BITS):
         core.link.write(channel.base + r.CHANNEL_RATE_SLEW, slew)
         channel.set_rate(0)
         check_slowing(core, channel, slew)
@@ -66,7 +66,7 @@ def stop_slew_in_all_its_bits(core: Core) -> None:
     """The same of a soft stop."""
     channel = core.channel()
     core.watch(PinTiming())
-    for slew in (LOW_BITS, HIGH_BITS, RATE_ONE):
+    for slew in (LOW_BITS, HIGH_BITS):
         core.link.write(channel.base + r.CHANNEL_STOP_SLEW, slew)
         jog(core, channel, V_MAX)
         channel.stop()
@@ -105,7 +105,7 @@ def step_counts_in_all_their_bits(core: Core) -> None:
     channel = core.channel()
     checker = core.watch(PinTiming())
     ramps = [Ramp(ONE // 20, 0), Ramp(ONE // 20, 30), Ramp(0, 0, last=True)]
-    for m, n in ((0xFFFFFFFE, 0x7FFFFFFF), (0xFFFFFFFF, 0x80000000)):
+    for m, n in ((0xFFFFFFFF, 0x80000000), (0xFFFFFFFE, 0x7FFFFFFF)):
         line = Line(m, (n, -n, n)[: core.axes], last=True)
         since = core.clock
         channel.lines(line)

@@ -10,13 +10,19 @@ from cocotb_tests.test_line_queue import ENDLESS, LAST, QUEUE_FULL, Queue
 
 @cocotb.test()
 async def every_place_keeps_its_line(dut: HierarchyObject) -> None:
-    """Filled from any place on, with a frame that has one line too many checked before; twice around."""
+    """Filled from any place on, with a frame that has one line too many checked before; many times around.
+
+    Each place has each kind of line once, so that all bits of its control are set and cleared.
+    """
     random = rng("deep lines")
     queue = await Queue.begin(dut)
     depth = 1 << len(dut.room) - 1
-    for count in (depth // 3, depth, depth):
-        kinds = [0, LAST, ENDLESS] * depth
-        lines = [queue.random_line(random, kinds[n] | random.randrange(2) << 8) for n in range(count)]
+    place = 0
+    for turn, count in enumerate((depth // 3, depth, depth, depth, depth)):
+        places = [(place + n) % depth for n in range(count)]
+        place = (place + count) % depth
+        controls = [(0, LAST, ENDLESS)[(n + turn) % 3] | (n + turn) % 2 << 8 for n in places]
+        lines = [queue.random_line(random, control) for control in controls]
         words = [word for line in lines for word in line]
         await queue.bus.frame()
         if count == depth:

@@ -31,11 +31,10 @@ async def every_place_keeps_its_ramp(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def now_is_found_in_any_place(dut: HierarchyObject) -> None:
-    """Behind 2^k - 1 others it becomes the oldest ramp, from every place of the memory on."""
+    """Behind 2^k - 1 others it becomes the oldest ramp, and in the last and the first place of the memory."""
     random = rng("deep ramps, now")
     queue = await Queue.begin(dut)
-    others = 0
-    while others < queue.depth:
+    for others in (*((1 << k) - 1 for k in range(queue.depth.bit_length())), 0, 0):
         ramps = [random_ramp(random, n == others) for n in range(others + 1)]
         await queue.bus.frame()
         await queue.bus.write([word for ramp in ramps for word in ramp])
@@ -44,4 +43,3 @@ async def now_is_found_in_any_place(dut: HierarchyObject) -> None:
         await queue.check(ramps[-1:])
         await queue.strobe("take")
         await queue.check([])
-        others = 2 * others + 1

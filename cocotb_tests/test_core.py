@@ -4,6 +4,8 @@
 core_bench.py is what all of these have in common; PASSO_SEED is the seed of the random ones.
 """
 
+import pytest
+
 from cocotb_tests.runner import run
 
 TOP = "passo_core_top"
@@ -13,6 +15,7 @@ TWO_CHANNELS = {"CHANNELS": 2, "AXES": 2, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 2, 
 MOST_CHANNELS = {"CHANNELS": 8, "AXES": 1, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 8, "RAMP_QUEUE_LOG2": 8}
 
 # Icarus Verilog takes very much longer: what is long runs on Verilator only.
+verilator_only = pytest.mark.parametrize("simulator", ["verilator"])
 
 
 def test_motion(simulator: str) -> None:
@@ -50,14 +53,16 @@ def test_registers(simulator: str) -> None:
     run("cocotb_tests.core_registers", TOP, ONE_CHANNEL, simulator)
 
 
-def test_long() -> None:
+@verilator_only
+def test_long(simulator: str) -> None:
     """The longest pin timings, a counter that wraps."""
-    run("cocotb_tests.core_long", TOP, ONE_CHANNEL, "verilator")
+    run("cocotb_tests.core_long", TOP, ONE_CHANNEL, simulator)
 
 
-def test_most_channels() -> None:
+@verilator_only
+def test_most_channels(simulator: str) -> None:
     """As many channels and as deep queues as a core can have."""
-    run("cocotb_tests.core_channels", TOP, MOST_CHANNELS, "verilator")
+    run("cocotb_tests.core_channels", TOP, MOST_CHANNELS, simulator)
 
 
 def test_random_moves(simulator: str) -> None:
