@@ -156,6 +156,7 @@ def both_edges_and_polarities(core: Core) -> None:
     ]
     for _ in range(core.axes):
         timings = [*timings[1:], timings[0]]
+        core.finish_watch()
         channel.pins(*timings[: core.axes])
         checker = core.watch(*timings[: core.axes])
         make(core, channel, lines, ramps)

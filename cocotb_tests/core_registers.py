@@ -105,7 +105,7 @@ def step_counts_in_all_their_bits(core: Core) -> None:
     channel = core.channel()
     checker = core.watch(PinTiming())
     ramps = [Ramp(ONE // 20, 0), Ramp(ONE // 20, 30), Ramp(0, 0, last=True)]
-    for m, n in ((0xFFFFFFFF, 0x80000000), (0xFFFFFFFE, 0x7FFFFFFF)):
+    for m, n in ((0xFFFFFFFF, 0x80000000), (0xFFFFFFFE, 0x7FFFFFFF), (0xFFFFFFFF, 0x80000000)):
         line = Line(m, (n, -n, n)[: core.axes], last=True)
         since = core.clock
         channel.lines(line)
