@@ -122,6 +122,11 @@ async def every_check_has_its_answer(dut: HierarchyObject) -> None:
                 assert bench.answer() == expected, f"{address:#x} {data:#x} {push=} {occupied=}"
                 await bench.clocks.wait(1)
                 assert bench.answer() == (0, 0)
+    for command in range(17):
+        for occupied in (False, True):
+            dut.occupied.value = occupied
+            await bench.strobe("bus_check", COMMAND, command)
+            assert bench.answer() == expected_answer(COMMAND, command, False, occupied), command
     dut.select.value = 0
     dut.bus_address.value = RATE_TARGET
     await bench.clocks.wait(2)
