@@ -146,7 +146,7 @@ def every_axis_can_overrun_at_once(core: Core) -> None:
     check_stopped(core, channel, Cause.STEP_OVERRUN)
     assert channel.state().overrun == (1 << core.axes) - 1
     assert {abs(position) for position in checker.positions} == {abs(checker.positions[0])}
-    # a step every second clock, and the line is stopped three clocks after the first one that is lost
+    # a step every second clock, and the line is stopped a few clocks after the first one that is lost
     assert [lost_steps(channel, axis) for axis in range(core.axes)] == [2] * core.axes
     channel.clear()
     assert [lost_steps(channel, axis) for axis in range(core.axes)] == [0] * core.axes

@@ -101,7 +101,8 @@ class Lines:
         dut.u_line.substep_number.value = number
         for axis, n in enumerate(line.steps):
             e = (line.substeps // 2 + number * n) % line.substeps
-            dut.g_axis[axis].u_dda.e_minus_m.value = e - line.substeps
+            e_minus_m = dut.g_axis[axis].u_dda.e_minus_m
+            e_minus_m.value = (e - line.substeps) % (1 << len(e_minus_m))
         await self.clocks.wait(3)
 
     async def make_end(self, line: Line, number: int) -> None:
