@@ -49,8 +49,7 @@ static bool lines_settled(const struct passo_channel *channel, const struct pass
 	for (unsigned i = 0; i < channel->axes; i++)
 		if (queue->steps[i] != current->steps[i])
 			return false;
-	return queue->next_valid == (queue->next_line != queue->write_line)
-	    && queue->last_substep == current->substeps - 1u && queue->next_last == next->last
+	return queue->next_valid == (queue->next_line != queue->write_line) && queue->next_last == next->last
 	    && queue->next_endless == next->endless && queue->next_directions == next->directions;
 }
 
@@ -62,10 +61,12 @@ static bool ramps_settled(const struct passo_ramp_queue *queue, const struct pas
 	return !queue->write_low && queue->room == depth - used && queue->valid == (used != 0u);
 }
 
-static bool commands_settled(const struct passo_channel_registers *registers)
+static bool commands_settled(const struct passo_channel *channel)
 {
+	const struct passo_channel_registers *registers = &channel->registers;
+
 	return !registers->command_stop && !registers->command_abort && !registers->command_clear
-	    && !registers->command_zero;
+	    && !registers->command_zero && !channel->writes_axis;
 }
 
 static bool slots_empty(const struct passo_channel *channel)
@@ -118,7 +119,7 @@ static bool motion_settled(const struct passo_channel *channel, const struct pas
 {
 	const struct passo_motion *motion = &channel->motion;
 
-	if (motion->stopping || motion->settling != 0u
+	if (motion->stopping || motion->stop_due || motion->settling != 0u
 	    || motion->rate_was_zero != (channel->timescale.rate == 0u))
 		return false;
 	switch (motion->state) {
@@ -128,7 +129,7 @@ static bool motion_settled(const struct passo_channel *channel, const struct pas
 	case PASSO_STATE_PREPARE:
 		return !motion->running && !channel->ramp.ready;
 	case PASSO_STATE_ARMED:
-		return !motion->running && inputs->wait_sync;
+		return !motion->running && inputs->wait_sync && !motion->begin_profile;
 	case PASSO_STATE_STOPPED:
 		return !motion->running;
 	case PASSO_STATE_RUN:
@@ -146,8 +147,8 @@ static uint64_t surroundings_quiet(
 	const bool moving = channel->motion.state == PASSO_STATE_RUN;
 
 	if (!motion_settled(channel, inputs) || channel->positions.snapshot_waits
-	    || !commands_settled(&channel->registers) || line->slot_load || line->slot_load_q
-	    || line->underrun || !ramps_settled(&channel->ramp_queue, inputs->parameters)
+	    || !commands_settled(channel) || line->slot_load || line->slot_load_q || line->underrun
+	    || !ramps_settled(&channel->ramp_queue, inputs->parameters)
 	    || !lines_settled(channel, inputs->parameters))
 		return 0;
 	uint64_t clocks =

@@ -68,11 +68,11 @@ void passo_channel_clock(struct passo_channel *channel, const struct passo_chann
 	const struct passo_channel_wires wires = gather_wires(channel, inputs);
 	const struct passo_bus *bus = inputs->bus;
 	const unsigned in_axes = (unsigned)wires.bus_address - PASSO_CHANNEL_AXIS_BASE;
-	const unsigned axis_address = in_axes % PASSO_CHANNEL_AXIS_STRIDE;
-	const bool write_axis =
-	    wires.selected && bus->write && in_axes < channel->axes * PASSO_CHANNEL_AXIS_STRIDE;
+	const unsigned written_axis = channel->written_register / PASSO_CHANNEL_AXIS_STRIDE;
+	const unsigned written_register = channel->written_register % PASSO_CHANNEL_AXIS_STRIDE;
 	const bool write_timing =
-	    write_axis && (axis_address == PASSO_AXIS_STEP_TIMING || axis_address == PASSO_AXIS_DIR_TIMING);
+	    channel->writes_axis
+	    && (written_register == PASSO_AXIS_STEP_TIMING || written_register == PASSO_AXIS_DIR_TIMING);
 	const struct passo_channel_registers registers = channel->registers;
 	const bool stopping = channel->motion.stopping;
 	bool take_ramp;
@@ -87,14 +87,17 @@ void passo_channel_clock(struct passo_channel *channel, const struct passo_chann
 		    .drop = registers.command_abort,
 		    .zero = registers.command_zero,
 		    .clear = registers.command_clear,
-		    .timing_written = write_timing && in_axes / PASSO_CHANNEL_AXIS_STRIDE == i,
+		    .timing_written = write_timing && written_axis == i,
 		};
 		passo_axis_clock(&channel->axis[i], &axis_wires);
 		passo_dda_clock(&channel->dda[i], &channel->line, &channel->line_queue, i);
 	}
-	if (write_axis)
-		passo_axis_settings_write(&channel->axis[in_axes / PASSO_CHANNEL_AXIS_STRIDE].settings,
-		    (uint8_t)axis_address, bus->data);
+	if (channel->writes_axis)
+		passo_axis_settings_write(
+		    &channel->axis[written_axis].settings, (uint8_t)written_register, bus->data);
+	channel->writes_axis =
+	    wires.selected && bus->write && in_axes < channel->axes * PASSO_CHANNEL_AXIS_STRIDE;
+	channel->written_register = (uint8_t)in_axes;
 
 	passo_motion_clock(&channel->motion, channel, &wires);
 	passo_line_clock(&channel->line, &channel->line_queue, &wires);

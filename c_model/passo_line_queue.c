@@ -85,7 +85,8 @@ static void read_memory(struct passo_line_queue *queue, const struct passo_param
 	queue->next_last = next->last;
 	queue->next_endless = next->endless;
 	queue->next_directions = next->directions;
-	queue->last_substep = (take ? next : current)->substeps - 1u;
+	if (take)
+		queue->last_substep = next->substeps - 1u;
 	for (unsigned axis = 0; axis < parameters->axes; axis++)
 		queue->steps[axis] = current->steps[axis];
 }

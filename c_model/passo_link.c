@@ -6,7 +6,7 @@
 #include "passo_model.h"
 
 enum {
-	COUNT_ACT = 0,
+	COUNT_ACT = 1,
 	COUNT_REST = 3,
 	COUNT_READ = 12,
 	COUNT_LOAD = 28,
@@ -48,8 +48,8 @@ void passo_link_reset(struct passo_link *link)
 bool passo_link_quiet(const struct passo_link *link)
 {
 	const struct passo_bus *bus = &link->bus;
-	return link->count == COUNT_REST && !link->answer_due && !link->refused && !bus->frame && !bus->check
-	    && !bus->write && !bus->read;
+	return link->count == COUNT_REST && !link->answer_due && !link->answer_came && !link->refused
+	    && !bus->frame && !bus->check && !bus->write && !bus->read;
 }
 
 static unsigned place(const struct passo_link *link, bool in_payload, unsigned otherwise)
@@ -171,8 +171,6 @@ static void do_step(struct passo_link *link, const struct passo_link_wires *wire
 {
 	const bool act = was->count == COUNT_ACT;
 	const bool all_words = was->index == was->length;
-	const uint8_t answer =
-	    wires->response.claim ? wires->response.refusal : PASSO_VERDICT_UNKNOWN_ADDRESS;
 
 	switch (was->step) {
 	case PASSO_LINK_HEADER:
@@ -213,13 +211,12 @@ static void do_step(struct passo_link *link, const struct passo_link_wires *wire
 		break;
 	case PASSO_LINK_READ:
 		link->bus.read = was->count == COUNT_LOAD && !wires->spi.frame_end;
-		if (was->count == COUNT_ANSWER) {
+		if (was->count == COUNT_ANSWER)
 			link->reply_word = wires->response.read_data;
-			if (was->index == 0u && answer != PASSO_VERDICT_OK) {
-				link->verdict = answer;
-				link->count = COUNT_LOAD;
-				link->step = PASSO_LINK_ACK;
-			}
+		if (was->count == COUNT_LOADED && was->index == 0u && was->answer != PASSO_VERDICT_OK) {
+			link->verdict = was->answer;
+			link->count = COUNT_LOAD;
+			link->step = PASSO_LINK_ACK;
 		}
 		if (act) {
 			link->index++;
@@ -254,14 +251,14 @@ void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wi
 	    .index = link->index,
 	    .frame_waits = link->frame_waits,
 	    .answer_due = link->answer_due,
+	    .answer_came = link->answer_came,
+	    .answer = link->answer,
 	    .bus = link->bus,
 	};
 	const bool act = was.count == COUNT_ACT;
 	const bool word_valid = wires->spi.half_valid && wires->half_low;
 	const bool frame_goes_on =
 	    (was.frame_waits || wires->spi.frame_start) && !wires->spi.frame_end && !word_valid;
-	const uint8_t answer =
-	    wires->response.claim ? wires->response.refusal : PASSO_VERDICT_UNKNOWN_ADDRESS;
 
 	if (was.count == COUNT_LOADED - 1)
 		link->bus.data = loaded(link);
@@ -273,10 +270,12 @@ void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wi
 		link->count = (was.count + 1u) & 63u;
 	link->bus.frame = link->bus.check = link->bus.write = link->bus.read = false;
 	link->answer_due = was.bus.check;
+	link->answer_came = was.answer_due;
+	link->answer = wires->response.claim ? wires->response.refusal : PASSO_VERDICT_UNKNOWN_ADDRESS;
 	link->refused = false;
 
-	if (was.answer_due && link->verdict == PASSO_VERDICT_OK)
-		link->verdict = answer;
+	if (was.answer_came && link->verdict == PASSO_VERDICT_OK)
+		link->verdict = was.answer;
 	if ((was.bus.check || was.bus.write) && !was.bus.push)
 		link->bus.address = (was.bus.address + 1u) & 0xFFFu;
 

@@ -94,7 +94,9 @@ struct passo_link {
 	bool sequence_known;
 	uint8_t last_sequence;
 	uint8_t verdict;
-	bool answer_due;
+	bool answer_due;  /* comes in this clock */
+	bool answer_came; /* stands in `answer` */
+	uint8_t answer;   /* of the clock before */
 	bool crc_wrong;
 	uint32_t crc;
 	uint16_t buffer[PASSO_BUFFER_WORDS][2]; /* upper half first */
@@ -254,6 +256,9 @@ struct passo_motion {
 	uint8_t settling; /* 3 bits */
 	bool settled;
 	bool startable;
+	bool begin_profile;
+	bool stop_due;
+	enum passo_cause cause_due;
 	bool rate_was_zero;
 	bool running;
 };
@@ -278,6 +283,8 @@ struct passo_channel {
 	struct passo_dda dda[PASSO_AXES_MAX];
 	struct passo_axis axis[PASSO_AXES_MAX];
 	struct passo_positions positions;
+	bool writes_axis;         /* the bus strobe came a clock ago */
+	uint8_t written_register; /* within the blocks of the axes */
 };
 
 /* What the core gives to a channel. */
@@ -295,13 +302,12 @@ struct passo_channel_wires {
 	bool line_push, ramp_push;
 	bool occupied, moving, counting, drain;
 	bool ramp_valid;
-	bool startable, prepare, begin_profile;
+	bool startable, prepare, begins_next, begin_profile;
 	bool advance, tick, next, ramp_ended;
 	bool substep_taken, line_done, take;
 	bool overrun;
 	bool finished;
 	bool stop_now, stopped;
-	enum passo_cause cause;
 };
 
 void passo_line_queue_clock(struct passo_line_queue *queue, const struct passo_parameters *parameters,

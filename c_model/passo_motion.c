@@ -5,7 +5,7 @@
 
 enum { START_LAST = 6 };
 
-static bool stop_now(const struct passo_channel *channel, const struct passo_channel_wires *wires)
+static bool stop_wanted(const struct passo_channel *channel, const struct passo_channel_wires *wires)
 {
 	return channel->registers.command_abort
 	    || (wires->moving && (wires->overrun || channel->line.underrun))
@@ -13,7 +13,7 @@ static bool stop_now(const struct passo_channel *channel, const struct passo_cha
 	        && (channel->motion.rate_was_zero || wires->finished || !wires->moving));
 }
 
-static enum passo_cause cause_now(
+static enum passo_cause cause_of_stop(
     const struct passo_channel *channel, const struct passo_channel_wires *wires)
 {
 	if (channel->registers.command_abort)
@@ -40,10 +40,10 @@ void passo_motion_wires(const struct passo_channel *channel, const struct passo_
 	wires->startable =
 	    state == PASSO_STATE_IDLE && inputs->run && channel->line_queue.next_valid && wires->ramp_valid;
 	wires->prepare = state == PASSO_STATE_IDLE && motion->startable;
-	wires->begin_profile = state == PASSO_STATE_ARMED && (inputs->sync_edge || !inputs->wait_sync);
+	wires->begins_next = state == PASSO_STATE_ARMED && (inputs->sync_edge || !inputs->wait_sync);
+	wires->begin_profile = motion->begin_profile;
 	wires->finished = motion->settled && (line_over || channel->line.endless);
-	wires->stop_now = stop_now(channel, wires) && !wires->stopped;
-	wires->cause = cause_now(channel, wires);
+	wires->stop_now = motion->stop_due && !wires->stopped;
 }
 
 void passo_motion_clock(
@@ -54,9 +54,14 @@ void passo_motion_clock(
 	const uint8_t settling = motion->settling;
 	const bool settled = motion->settled;
 	const bool dry = channel->ramp.dry && !channel->line.endless;
+	const bool stop_due = motion->stop_due;
+	const enum passo_cause cause_due = motion->cause_due;
 	const struct passo_channel_registers *registers = &channel->registers;
 
-	motion->startable = wires->startable;
+	motion->startable = wires->startable && !stop_due;
+	motion->begin_profile = wires->begins_next && !wires->begin_profile && !wires->stop_now;
+	motion->stop_due = stop_wanted(channel, wires) && !wires->stopped;
+	motion->cause_due = cause_of_stop(channel, wires);
 	motion->count = state != PASSO_STATE_RUN ? 0u : count == START_LAST ? count : (uint8_t)(count + 1u);
 	motion->settling = (uint8_t)(state == PASSO_STATE_SETTLE ? (settling << 1 | 1u) & 7u : 0u);
 	motion->settled = state == PASSO_STATE_SETTLE && (settling & 4u) != 0u && !settled;
@@ -95,7 +100,7 @@ void passo_motion_clock(
 	}
 	if (wires->stop_now) {
 		motion->state = PASSO_STATE_STOPPED;
-		motion->cause = wires->cause;
+		motion->cause = cause_due;
 		motion->stopping = false;
 		motion->running = false;
 		motion->settled = false;

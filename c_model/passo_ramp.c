@@ -5,7 +5,10 @@
  */
 #include "passo_model.h"
 
-enum { COPY_CLOCKS = 24, FETCH_CLOCKS = 7, FETCH_NO_TICKS_CLOCKS = 6, TAKE_CLOCKS = 5, STEP_CLOCKS = 7 };
+enum { COPY_CLOCKS = 24, FETCH_CLOCKS = 8, FETCH_NO_TICKS_CLOCKS = 7, TAKE_CLOCKS = 5, STEP_CLOCKS = 8 };
+
+/* ramp_take comes in this clock of TAKE, counted from the last one. */
+enum { TAKE_WAIT = 2 };
 
 static const uint64_t PROGRESS_MASK = (UINT64_C(1) << 49) - 1u;
 
@@ -114,7 +117,7 @@ void passo_ramp_clock(struct passo_ramp_unit *ramp, const struct passo_channel *
     const struct passo_channel_inputs *inputs, const struct passo_channel_wires *wires, bool *take,
     bool *take_now)
 {
-	*take = ramp->step == PASSO_RAMP_TAKE && ramp->wait == 2u;
+	*take = ramp->step == PASSO_RAMP_TAKE && ramp->wait == TAKE_WAIT;
 	*take_now = ramp->take_now;
 	ramp->take_now = false;
 	ramp->dry = false;

@@ -139,7 +139,7 @@ class Recorder:
 class PushBus:
     """The bus of one queue: pushes words as the link does, first to be checked, then to be written."""
 
-    INPUTS = ("bus_frame", "bus_check", "bus_write", "select", "bus_data")
+    INPUTS = ("bus_frame", "bus_check", "bus_write", "select", "bus_data", "bus_top_bit")
 
     def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
         self.dut, self.clocks = dut, clocks
@@ -156,7 +156,7 @@ class PushBus:
         """Have words checked; return the answer to each, which comes one clock later and for one clock."""
         answers: list[int] = []
         for word in words:
-            await self._strobe(self.dut.bus_check, word)
+            await self._strobe(self.dut.bus_check, word, before=2)
             strobe = self.clocks.now - 1
             answers.append(read(self.dut.refusal))
             await self.clocks.wait(2)
@@ -167,7 +167,7 @@ class PushBus:
     async def write(self, words: Sequence[int]) -> None:
         """Execute words, one every 4 clocks."""
         for word in words:
-            await self._strobe(self.dut.bus_write, word)
+            await self._strobe(self.dut.bus_write, word, before=1)
             await self.clocks.wait(2)
 
     async def push(self, words: Sequence[int]) -> None:
@@ -177,11 +177,13 @@ class PushBus:
         await self.frame()
         await self.write(words)
 
-    async def _strobe(self, signal: Signal, word: int) -> None:
-        # address and data stand on the bus a clock before the strobe, and stay there
+    async def _strobe(self, signal: Signal, word: int, before: int) -> None:
+        # address and data stand on the bus as many clocks before the strobe, and stay there; only a check
+        # tells the highest bit
         self.dut.select.value = 1
         self.dut.bus_data.value = word
-        await self.clocks.wait(1)
+        self.dut.bus_top_bit.value = max(0, word.bit_length() - 1) if signal is self.dut.bus_check else 0
+        await self.clocks.wait(before)
         signal.value = 1
         await self.clocks.wait(1)
         signal.value = 0

@@ -67,7 +67,7 @@ class Queue:
         getattr(self.dut, name).value = 0
 
     async def check(self, ramps: deque[list[int]] | list[list[int]], now_pending: bool = False) -> None:
-        """Check the outputs, and all half words of the oldest ramp, each a clock after its index."""
+        """Check the outputs, and all half words of the oldest ramp, each two clocks after its index."""
         await self.clocks.wait(2)  # valid is that of two clocks ago
         dut = self.dut
         assert read(dut.room) == self.depth - len(ramps)
@@ -76,7 +76,7 @@ class Queue:
         if ramps:
             for index in range(2 * WORDS):
                 dut.half_index.value = index
-                await self.clocks.wait(1)
+                await self.clocks.wait(2)
                 word = ramps[0][index // 2]
                 half = word & 0xFFFF if index % 2 else word >> 16
                 assert index == UNUSED or read(dut.half) == half ^ inverted(ramps[0], index // 2), index

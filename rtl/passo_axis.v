@@ -74,7 +74,7 @@ module passo_axis (
   wire level_short = step ? short_high : short_low;
   wire dir_short = setup ? short_setup : short_hold;
   wire at_level = high | low;
-  wire done_next = timing_changed ? (at_level ? level_short : dir_short) : (at_level ? &level_equal : &dir_equal);
+  wire reached = at_level ? &level_equal : &dir_equal;
 
   // Steps that wait, as directions, the oldest in bit 0. Free places hold the latest direction.
   reg  [3:0] waiting;
@@ -88,6 +88,11 @@ module passo_axis (
   wire step_begins = free & waits[0] & dir_right;
   wire turn = idle & ~dir_right & (~hold | done);
   wire restart = step_begins | turn | falls | low_over | timing_changed;
+  wire begins_short = step_begins ? (step ? short_low : short_high) :
+                      falls       ? short_low :
+                      turn        ? short_setup :
+                      low_over    ? short_hold :
+                      at_level    ? level_short : dir_short;
 
   assign step_direction = dir;  // does not change in the clock after step_begins
 
@@ -99,11 +104,8 @@ module passo_axis (
     overrun <= step_request & waits[3];
     if (overrun && lost != 4'hF) lost <= lost + 4'd1;
 
-    timer <= restart ? 16'd2 : timer + 16'd1;
-    done <= step_begins ? (step ? short_low : short_high) :
-            falls       ? short_low :
-            turn        ? short_setup :
-            low_over    ? short_hold : done_next;
+    timer          <= restart ? 16'd2 : timer + 16'd1;
+    done           <= restart ? begins_short : reached;
     timing_changed <= timing_written;
     if (timing_written) done <= 1'b0;
 

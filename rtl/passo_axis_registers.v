@@ -21,14 +21,15 @@ module passo_axis_registers #(
   input  wire [  AXES-1:0] select_position,
   input  wire [       2:0] bus_address,        // within the block
   input  wire [      31:0] bus_data,
+  input  wire [       4:0] bus_top_bit,
   output reg               claim,
   output reg  [       3:0] refusal,
   output reg  [       3:0] read_data,
   output reg               answers_position,
   // axes
-  output wire [  AXES-1:0] write_pins,         // strobes with bus_data
-  output wire [  AXES-1:0] write_step_timing,
-  output wire [  AXES-1:0] write_dir_timing,
+  output reg  [  AXES-1:0] write_pins,         // strobes, a clock after the bus's, with bus_data
+  output reg  [  AXES-1:0] write_step_timing,
+  output reg  [  AXES-1:0] write_dir_timing,
   output reg               short_upper,        // half of bus_data is 0 or 1
   output reg               short_lower,
   input  wire [AXES*4-1:0] lost
@@ -36,20 +37,32 @@ module passo_axis_registers #(
 
   `include "passo_registers.vh"
 
-  wire is_pins = bus_address == AXIS_PINS;
-  wire is_step_timing = bus_address == AXIS_STEP_TIMING;
-  wire is_dir_timing = bus_address == AXIS_DIR_TIMING;
-  wire is_lost = bus_address == AXIS_LOST_STEPS;
-
-  assign write_pins        = select_axis & {AXES{bus_write & is_pins}};
-  assign write_step_timing = select_axis & {AXES{bus_write & is_step_timing}};
-  assign write_dir_timing  = select_axis & {AXES{bus_write & is_dir_timing}};
-
-  wire is_position = select_position != {AXES{1'b0}};
+  // Which register is meant is known a clock before the strobe, because the address is.
+  reg  is_pins;
+  reg  is_step_timing;
+  reg  is_dir_timing;
+  reg  is_lost;
+  reg  is_position;
   wire is_axis = select_axis != {AXES{1'b0}};
-  wire readable = is_position || (is_axis && is_lost);
-  wire writable = is_axis && (is_pins || is_step_timing || is_dir_timing);
+  wire readable = is_position | is_lost;
+  wire writable = is_pins | is_step_timing | is_dir_timing;
   reg  undefined;
+
+  always @(posedge clk) begin
+    is_pins           <= is_axis && bus_address == AXIS_PINS;
+    is_step_timing    <= is_axis && bus_address == AXIS_STEP_TIMING;
+    is_dir_timing     <= is_axis && bus_address == AXIS_DIR_TIMING;
+    is_lost           <= is_axis && bus_address == AXIS_LOST_STEPS;
+    is_position       <= select_position != {AXES{1'b0}};
+    write_pins        <= select_axis & {AXES{bus_write & is_pins}};
+    write_step_timing <= select_axis & {AXES{bus_write & is_step_timing}};
+    write_dir_timing  <= select_axis & {AXES{bus_write & is_dir_timing}};
+    if (rst) begin
+      write_pins        <= {AXES{1'b0}};
+      write_step_timing <= {AXES{1'b0}};
+      write_dir_timing  <= {AXES{1'b0}};
+    end
+  end
 
   reg     [3:0] selected_lost;
   integer       i;
@@ -59,9 +72,9 @@ module passo_axis_registers #(
   end
 
   always @(posedge clk) begin
-    short_upper      <= bus_data[31:17] == 15'd0;
-    short_lower      <= bus_data[15:1] == 15'd0;
-    undefined        <= (bus_data & ~AXIS_PINS_DEFINED) != 32'd0;
+    short_upper      <= bus_data[31:16] < 16'd2;
+    short_lower      <= bus_data[15:0] < 16'd2;
+    undefined        <= bus_top_bit > 5'd4;
     claim            <= (bus_check | bus_read) & (readable | writable);
     refusal          <= VERDICT_OK;
     read_data        <= bus_read && is_lost ? selected_lost : 4'd0;

@@ -3,7 +3,7 @@
 // Wiring, and what the channels share: the sync input and the slew tick.
 //
 // Clock: clk at least four times SCLK. Reset: rst synchronous, active high.
-// Latency: a rising edge of `sync` starts the armed channels 3 clocks later.
+// Latency: a rising edge of `sync` starts the armed channels 4 clocks later.
 `resetall
 `default_nettype none
 
@@ -192,7 +192,8 @@ module passo_core #(
     .bus_read     (bus_read),
     .bus_push     (bus_push),
     .bus_address  (bus_address),
-    .bus_data     (bus_data),
+    .bus_data     (bus_data[18:0]),
+    .bus_top_bit  (bus_top_bit),
     .claim        (registers_claim),
     .refusal      (registers_refusal),
     .read_data    (registers_read_data),

@@ -3,9 +3,10 @@
 //
 //   each substep:  e += N;  if e >= M { e -= M; a step }           e = floor(M / 2) when the line starts
 //
-// `e` is kept as e - M, so that the test is a sign bit: clock A adds N, clock B takes M off again when the
-// sign was clear (`below` keeps it). At the end of a line e would be back at its start value; A leaves 0
-// instead, and B adds the start value of the next line: only e and the addend enter the sum's carry chain.
+// `e` is kept as e - M, which is below 0 whenever a substep begins: 32 bits of it are enough. Clock A adds N; if
+// no carry comes out it is still below 0 (`below`), else clock B takes M off again. At the end of a line e would
+// be back at its start value; A leaves 0 instead, and B adds the start value of the next line: only e and the
+// addend enter the sum's carry chain.
 //
 // Promise: exactly N steps in M substeps, for any 0 <= N <= M. `step_request` is high in clock B.
 `resetall
@@ -22,17 +23,17 @@ module passo_dda (
   output wire               step_request
 );
 
-  reg signed  [32:0] e_minus_m;
-  reg signed  [32:0] addend;
-  reg                below;  // e + N < M
-  wire signed [32:0] sum = e_minus_m + addend;
+  reg  [31:0] e_minus_m;
+  reg  [32:0] addend;
+  reg         below;  // e + N < M
+  wire [32:0] sum = {1'b1, e_minus_m} + addend;
 
   assign step_request = slot_step & ~below;
 
   always @(posedge clk) begin
-    addend <= (slot_add || slot_load) ? broadcast : $signed({1'b0, steps});
+    addend <= (slot_add || slot_load) ? broadcast : {1'b0, steps};
     below  <= sum[32];
-    if (slot_add || slot_load || slot_load_q || step_request) e_minus_m <= slot_load ? 33'sd0 : sum;
+    if (slot_add || slot_load || slot_load_q || step_request) e_minus_m <= slot_load ? 32'd0 : sum[31:0];
   end
 
 `ifdef FORMAL

@@ -45,6 +45,7 @@ module passo_line #(
 
   reg            active;
   reg            last;
+  reg            goes_on;  // active, and not last
   reg [    31:0] substep_number;
   reg            on_last;  // the next substep is the last; known two clocks after a substep
   reg [AXES-1:0] directions_next;
@@ -52,7 +53,7 @@ module passo_line #(
   wire substep_taken = substep & active;
   wire line_done = substep_taken & on_last;
 
-  assign take = start | (line_done & ~last & next_valid);
+  assign take = start | (substep & on_last & goes_on & next_valid);
 
   assign broadcast = slot_load ? {2'b11, ~last_substep[31:1]} : {1'b1, ~last_substep};
 
@@ -75,14 +76,16 @@ module passo_line #(
     if (slot_load_q) directions <= directions_next;
 
     underrun <= line_done & ~last & ~next_valid;
-    if (line_done && !take) active <= 1'b0;
+    if (line_done && !take) {active, goes_on} <= 2'b00;
     if (line_done && last) ended <= 1'b1;
+    if (take) goes_on <= ~next_last;
     if (start) begin
       active <= 1'b1;
       ended  <= 1'b0;
     end
     if (rst || stop) begin
       active      <= 1'b0;
+      goes_on     <= 1'b0;
       ended       <= 1'b0;
       endless     <= 1'b0;
       underrun    <= 1'b0;

@@ -8,9 +8,9 @@
 // when the line after it is taken, or on `release_line`. `flush` drops everything that is written; it stays
 // while the channel is stopped, for a push that was checked before.
 //
-// A push is checked word by word (`bus_check`): room for it after all lines of this frame before it, M not 0,
-// N_i <= M, no reserved bits. `refusal` answers one clock later. One subtraction serves the checks and makes
-// what is stored of M, which is M - 1, the number of the last substep.
+// A push is checked word by word (`bus_check`; the word stands two clocks before): room for it after all lines of
+// this frame before it, M not 0, N_i <= M, no reserved bits. `refusal` answers one clock later. One subtraction
+// serves the checks and makes what is stored of M, which is M - 1, the number of the last substep.
 `resetall
 `default_nettype none
 
@@ -26,6 +26,7 @@ module passo_line_queue #(
   input  wire                bus_write,
   input  wire                select,
   input  wire [        31:0] bus_data,
+  input  wire [         4:0] bus_top_bit,
   input  wire                blocked,          // the channel is stopped
   output reg  [         3:0] refusal,
   output wire                incomplete,       // the frame so far ends within a line
@@ -38,14 +39,14 @@ module passo_line_queue #(
   output wire                next_last,
   output wire                next_endless,
   output wire [    AXES-1:0] next_directions,
-  output wire [        31:0] last_substep,     // M - 1 of the current line
+  output reg  [        31:0] last_substep,     // M - 1 of the current line
   output wire [ AXES*32-1:0] steps             // N_i of the current line
 );
 
   `include "passo_registers.vh"
 
   localparam CONTROL_BITS = 2 + AXES;
-  localparam [31:0] CONTROL_DEFINED = (((1 << AXES) - 1) << 8) | 3;
+  localparam [4:0] CONTROL_TOP_BIT = 5'd7 + AXES[4:0];
   localparam INDEX_CONTROL = 0;
   localparam INDEX_SUBSTEPS = 1;
   localparam INDEX_STEPS = 2;
@@ -64,24 +65,30 @@ module passo_line_queue #(
 
   assign incomplete = ~index[INDEX_CONTROL];
 
-  // bus_data - 1 - M, but for M itself bus_data - 1, a clock before it is asked. A carry comes out if that is
-  // not negative, which is right for M and wrong for N_i.
+  // bus_data - 1 - M, but for M itself bus_data - 1. A carry comes out if that is not negative, which is right for
+  // M and wrong for N_i. Upper half a clock behind the lower: M - 1 can be written a clock after its strobe.
   reg [31:0] not_substeps;  // ~M; ~0 until M has passed
   reg [31:0] difference;
+  reg        carry;
   reg        wrong;
+  reg        load_substeps;
+  reg        write_substeps;
 
   always @(posedge clk) begin
     if (strobe) begin
       index <= {index[INDEX_LAST-1:0], index[INDEX_LAST]};
-      if (index[INDEX_SUBSTEPS]) not_substeps <= ~bus_data;
-      if (line_complete) not_substeps <= ~32'd0;
       if (line_complete && bus_check) checked <= checked + 1'b1;
     end
+    load_substeps  <= strobe & index[INDEX_SUBSTEPS];
+    write_substeps <= write & index[INDEX_SUBSTEPS];
+    if (load_substeps) not_substeps <= ~bus_data;
+    if (index[INDEX_CONTROL]) not_substeps <= ~32'd0;
+    {carry, difference[15:0]} <= {1'b0, bus_data[15:0]} + {1'b0, not_substeps[15:0]};
+    {wrong, difference[31:16]} <= {1'b0, bus_data[31:16]} + {index[INDEX_SUBSTEPS], not_substeps[31:16]} + {16'd0, carry};
     if (line_written) write_line <= write_line + 1'b1;
     if (rst || bus_frame) begin
-      index        <= {{INDEX_LAST{1'b0}}, 1'b1};
-      not_substeps <= ~32'd0;
-      checked      <= {(DEPTH_LOG2 + 1) {1'b0}};
+      index   <= {{INDEX_LAST{1'b0}}, 1'b1};
+      checked <= {(DEPTH_LOG2 + 1) {1'b0}};
     end
     if (rst || flush) write_line <= {(DEPTH_LOG2 + 1) {1'b0}};
   end
@@ -93,15 +100,15 @@ module passo_line_queue #(
 
   always @(posedge clk) begin
     full <= room == checked;
-    bad_control <= (bus_data & ~CONTROL_DEFINED) != 32'd0;
-    {wrong, difference} <= {1'b0, bus_data} + {index[INDEX_SUBSTEPS], not_substeps};
-    refusal   <= !(select && bus_check) ? VERDICT_OK :
+    bad_control <= bus_top_bit > CONTROL_TOP_BIT || bus_data[7:2] != 6'd0;
+    refusal     <= !(select && bus_check) ? VERDICT_OK :
                  blocked                ? VERDICT_BUSY :
                  full                   ? VERDICT_QUEUE_FULL :
                  bad_value              ? VERDICT_BAD_VALUE : VERDICT_OK;
   end
 
   // Reading
+  wire [          31:0] next_last_substep;
   reg  [  DEPTH_LOG2:0] next_line;
   reg  [DEPTH_LOG2-1:0] current_line;
   reg                   has_place;  // the current line is not the next line
@@ -110,6 +117,7 @@ module passo_line_queue #(
   always @(posedge clk) begin
     if (take) begin
       current_line <= next_line[DEPTH_LOG2-1:0];
+      last_substep <= next_last_substep;
       has_place    <= ~next_endless;
     end
     if (release_line) has_place <= 1'b0;
@@ -141,11 +149,11 @@ module passo_line_queue #(
     .DEPTH_LOG2(DEPTH_LOG2)
   ) u_last_substep (
     .clk          (clk),
-    .write        (write & index[INDEX_SUBSTEPS]),
+    .write        (write_substeps),
     .write_address(write_line[DEPTH_LOG2-1:0]),
     .write_data   (difference),
-    .read_address (take ? next_line[DEPTH_LOG2-1:0] : current_line),
-    .read_data    (last_substep)
+    .read_address (next_line[DEPTH_LOG2-1:0]),
+    .read_data    (next_last_substep)
   );
 
   genvar axis;

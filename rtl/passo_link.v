@@ -13,9 +13,9 @@
 // before the replay has ended, which takes a master that leaves out trailing words.
 //
 // Verdict: BAD_CRC goes before all others, then the first objection; a duplicate is not asked for objections.
-// Latency: payload word to bus_check 38 clocks, crc word to ack 74 clocks, to the first word of a read 90
-// clocks. Address and data stand on the bus at least a clock before their strobe, data a clock after it, the
-// address of a read 16 clocks before. A target answers one clock after a strobe with claim (the address is
+// Latency: payload word to bus_check 39 clocks, crc word to ack 75 clocks, to the first word of a read 91
+// clocks. Address and data stand on the bus at least a clock before their strobe (of a check: two clocks),
+// data a clock after it, the address of a read 16 clocks before. A target answers one clock after a strobe with claim (the address is
 // mine), refusal and, to bus_read, data; at all other times the status stands in the place of data.
 `resetall
 `default_nettype none
@@ -62,8 +62,8 @@ module passo_link (
   localparam [3:0] STEP_SUM = 4'd7;  // send the CRC of the reply
   localparam [3:0] STEP_COUNT = 4'd8;  // count a refusal
 
-  // What is done with a word takes a run of clocks: load it, turn it, act on it, rest.
-  localparam [5:0] COUNT_ACT = 6'd0;
+  // What is done with a word takes a run of clocks: load it, turn it, judge it, act on it, rest.
+  localparam [5:0] COUNT_ACT = 6'd1;
   localparam [5:0] COUNT_REST = 6'd3;
   localparam [5:0] COUNT_READ = 6'd12;
   localparam [5:0] COUNT_LOAD = 6'd28;
@@ -73,7 +73,9 @@ module passo_link (
 
   reg  [3:0] step;
   reg  [5:0] count;
-  wire       act = count == COUNT_ACT;
+  reg        act;  // in the clock of COUNT_ACT
+  reg        half_turned;
+  reg        replies;  // the reply turns along
   wire       load = count == COUNT_LOAD + 6'd1 || count == COUNT_LOAD + 6'd2;
   wire       answered = step == STEP_READ && count == COUNT_ANSWER;
   wire       turn = count[5];
@@ -87,17 +89,27 @@ module passo_link (
   reg frame_waits;  // a frame has begun during the replay
   wire frame_goes_on = (frame_waits || frame_start) && !frame_end && !word_valid;  // has its header to come
 
+  // What the header amounts to, a clock before it is acted on
   wire [3:0] operation = bus_data[31:28];
-  wire       header_is_read = operation == OPERATION_READ;
-  wire       header_is_known = header_is_read || operation == OPERATION_WRITE || operation == OPERATION_PUSH;
-  wire       header_fits = bus_data[19:12] != 8'd0 && bus_data[19:12] <= PAYLOAD_MAX;
+  reg        sequence_known;  // something was executed since reset
+  reg        header_is_read;
+  reg        header_is_known;
+  reg        header_is_empty;
+  reg        header_fits;
+  reg        header_repeats;
 
-  reg  sequence_known;  // something was executed since reset
-  wire repeated = sequence_known && !header_is_read && bus_data[27:20] == last_sequence;
+  always @(posedge clk) begin
+    header_is_read <= operation == OPERATION_READ;
+    header_is_known <= operation == OPERATION_READ || operation == OPERATION_WRITE || operation == OPERATION_PUSH;
+    header_is_empty <= bus_data[19:12] == 8'd0;
+    header_fits <= bus_data[19:12] <= PAYLOAD_MAX;
+    header_repeats <= sequence_known && bus_data[27:20] == last_sequence;
+  end
 
-  // The answer to a strobe arrives one clock after the bus shows the strobe.
-  reg        answer_due;
-  wire [3:0] answer = bus_claim ? bus_refusal : VERDICT_UNKNOWN_ADDRESS;
+  // The answer to a strobe arrives one clock after the bus shows the strobe, and is judged in the next.
+  reg       answer_due;
+  reg       answer_came;
+  reg [3:0] answer;
 
   // Behind the payload, the buffer has a place for the header, one for whatever is not kept, and two for the
   // counters of refusals; these read as 0 until one of the word has counted.
@@ -118,7 +130,7 @@ module passo_link (
     .store_word (is_payload ? {1'b0, index[5:0]} : {6'b100000, ~is_header}),
     .store_low  (half_low),
     .half       (half),
-    .put        (is_counting && (act || count == COUNT_TURN + 6'd16)),
+    .put        (is_counting && (act || half_turned)),
     .put_word   ({6'b100001, counters_high}),
     .put_low    (act),
     .load       (load),
@@ -154,7 +166,7 @@ module passo_link (
     .clk        (clk),
     .take       (frame_start || answered),
     .data       (bus_read_data),
-    .shift      (turn && (step == STEP_ACK || step == STEP_READ || step == STEP_SUM)),
+    .shift      (turn && replies),
     .turns      (count[4:0]),
     .acknowledge(step == STEP_ACK),
     .header_11  (bus_data[11]),
@@ -168,21 +180,33 @@ module passo_link (
     .top        (reply_top)
   );
 
-  wire [3:0] verdict_final =
-      crc_wrong              ? VERDICT_BAD_CRC :
-      verdict != VERDICT_OK  ? verdict :
-      bus_incomplete         ? VERDICT_BAD_LENGTH : VERDICT_OK;
+  // What the verdict would be now
+  reg [3:0] verdict_final;
+  reg       executes;  // it is OK
+
+  always @(posedge clk) begin
+    verdict_final <=
+        crc_wrong              ? VERDICT_BAD_CRC :
+        verdict != VERDICT_OK  ? verdict :
+        bus_incomplete         ? VERDICT_BAD_LENGTH : VERDICT_OK;
+    executes <= !crc_wrong && verdict == VERDICT_OK && !bus_incomplete;
+  end
 
   always @(posedge clk) begin
     if (count != COUNT_REST) count <= count + 6'd1;
-    bus_frame  <= act && (step == STEP_HEADER || step == STEP_ACK);
-    bus_check  <= act && step == STEP_PAYLOAD;
-    bus_write  <= count == COUNT_LOADED && step == STEP_REPLAY;
-    bus_read   <= count == COUNT_LOAD && step == STEP_READ && !frame_end;
+    act <= count == COUNT_ACT - 6'd1;
+    half_turned <= count == COUNT_TURN + 6'd15;
+    replies <= step == STEP_ACK || step == STEP_READ || step == STEP_SUM;
+    bus_frame <= act && (step == STEP_HEADER || step == STEP_ACK);
+    bus_check <= act && step == STEP_PAYLOAD;
+    bus_write <= count == COUNT_LOADED && step == STEP_REPLAY;
+    bus_read <= count == COUNT_LOAD && step == STEP_READ && !frame_end;
     answer_due <= bus_check;
-    crc_wrong  <= step != STEP_HEADER && (crc_wrong || (step == STEP_CRC && turn && crc_top != bus_data[31]));
+    answer_came <= answer_due;
+    answer <= bus_claim ? bus_refusal : VERDICT_UNKNOWN_ADDRESS;
+    crc_wrong <= step != STEP_HEADER && (crc_wrong || (step == STEP_CRC && turn && crc_top != bus_data[31]));
 
-    if (answer_due && verdict == VERDICT_OK) verdict <= answer;
+    if (answer_came && verdict == VERDICT_OK) verdict <= answer;
     if ((bus_check || bus_write) && !bus_push) bus_address <= bus_address + 12'd1;
 
     case (step)
@@ -192,10 +216,10 @@ module passo_link (
           is_read <= header_is_read;
           bus_push <= operation == OPERATION_PUSH;
           length <= bus_data[19:12];
-          verdict  <= !header_is_known ? VERDICT_BAD_OPERATION :
-                      !header_fits     ? VERDICT_BAD_LENGTH :
-                      repeated         ? VERDICT_DUPLICATE : VERDICT_OK;
-          step <= header_is_read || bus_data[19:12] == 8'd0 ? STEP_CRC : STEP_PAYLOAD;
+          verdict  <= !header_is_known                   ? VERDICT_BAD_OPERATION :
+                      header_is_empty || !header_fits    ? VERDICT_BAD_LENGTH :
+                      header_repeats && !header_is_read  ? VERDICT_DUPLICATE : VERDICT_OK;
+          step <= header_is_read || header_is_empty ? STEP_CRC : STEP_PAYLOAD;
         end
       end
 
@@ -210,8 +234,8 @@ module passo_link (
         if (act) begin
           verdict <= verdict_final;
           index   <= 8'd0;
-          count   <= is_read && verdict_final == VERDICT_OK ? COUNT_READ : COUNT_LOAD;
-          step    <= is_read && verdict_final == VERDICT_OK ? STEP_READ : STEP_ACK;
+          count   <= is_read && executes ? COUNT_READ : COUNT_LOAD;
+          step    <= is_read && executes ? STEP_READ : STEP_ACK;
         end
       end
 
@@ -242,7 +266,7 @@ module passo_link (
       end
 
       STEP_READ: begin
-        if (answered && index == 8'd0 && answer != VERDICT_OK) begin
+        if (count == COUNT_LOADED && index == 8'd0 && answer != VERDICT_OK) begin
           verdict <= answer;
           count   <= COUNT_LOAD;
           step    <= STEP_ACK;
@@ -294,6 +318,7 @@ module passo_link (
       bus_write      <= 1'b0;
       bus_read       <= 1'b0;
       answer_due     <= 1'b0;
+      answer_came    <= 1'b0;
       frame_waits    <= 1'b0;
     end
   end

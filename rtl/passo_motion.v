@@ -26,14 +26,14 @@ module passo_motion (
   input  wire        command_stop,   // strobes
   input  wire        command_abort,
   input  wire        command_clear,
-  output reg  [ 2:0] state,
+  output wire [ 2:0] state,
   output reg  [ 2:0] cause,
   output reg         stopping,
   output reg  [15:0] drained,
   // timescale
   output wire        occupied,       // a motion is prepared or runs
   output wire        moving,
-  output wire        counting,       // enabled clocks count: the profile runs, or substeps are drained
+  output reg         counting,       // enabled clocks count: the profile runs, or substeps are drained
   input  wire        rate_is_zero,
   // ramp and path
   input  wire        ramp_valid,
@@ -41,7 +41,7 @@ module passo_motion (
   input  wire        ramp_ended,
   input  wire        ramp_dry,
   output wire        prepare,        // strobe: first line, first velocity
-  output wire        begin_profile,  // strobe
+  output reg         begin_profile,  // strobe
   output wire        drain,
   // line
   input  wire        line_valid,
@@ -53,7 +53,7 @@ module passo_motion (
   input  wire        step_overrun,
   // queues
   output wire        release_line,   // strobe: the motion is over
-  output wire        stopped,        // whoever works for the motion forgets it
+  output reg         stopped,        // whoever works for the motion forgets it
   output reg         running
 );
 
@@ -69,47 +69,82 @@ module passo_motion (
   reg       startable;  // for one clock, and still in IDLE
   reg       rate_was_zero;
 
-  assign occupied = state != STATE_IDLE && !stopped;
-  assign moving   = state == STATE_RUN || state == STATE_SETTLE || state == STATE_DRAIN;
+  // The states, one bit each
+  reg idle;
+  reg preparing;
+  reg armed;
+  reg runs;
+  reg settles;
+  reg drains;
 
-  wire settles = state == STATE_SETTLE && settling[2] && !settled;
+  assign state = stopped   ? STATE_STOPPED :
+                 preparing ? STATE_PREPARE :
+                 armed     ? STATE_ARMED :
+                 runs      ? STATE_RUN :
+                 settles   ? STATE_SETTLE :
+                 drains    ? STATE_DRAIN : STATE_IDLE;
+
+  assign occupied = ~idle & ~stopped;
+  assign moving   = runs | settles | drains;
+
+  wire settled_next = settles & settling[2] & ~settled;
   wire dry = ramp_dry & ~line_endless;
 
-  assign prepare       = startable;
-  assign begin_profile = state == STATE_ARMED && (sync_edge || !wait_sync);
-  assign counting      = state == STATE_RUN || state == STATE_DRAIN;
-  assign drain         = state == STATE_DRAIN;
-  assign release_line  = finished;
+  assign prepare      = startable;
+  assign drain        = drains;
+  assign release_line = finished;
 
-  wire stop_now = command_abort | (moving & (step_overrun | line_underrun))
+  // Decided in one clock, done in the next.
+  reg stop_due;
+  reg [2:0] cause_due;
+  wire       stop_wanted = command_abort | (moving & (step_overrun | line_underrun))
                   | (stopping & (rate_was_zero | finished | ~moving));
-  wire [2:0] cause_now = command_abort           ? CAUSE_ABORT :
+  wire [2:0] cause_wanted = command_abort           ? CAUSE_ABORT :
                          moving & step_overrun   ? CAUSE_STEP_OVERRUN :
                          moving & line_underrun  ? CAUSE_LINE_UNDERRUN : soft_cause;
 
-  assign stopped = state == STATE_STOPPED;
+  wire stop_now = stop_due & ~stopped;
 
   always @(posedge clk) begin
-    startable <= state == STATE_IDLE && run && line_valid && ramp_valid && !startable && !stop_now;
-    if (count != START_LAST) count <= count + 3'd1;
-    if (state != STATE_RUN) count <= 3'd0;
-    settling      <= state == STATE_SETTLE ? {settling[1:0], 1'b1} : 3'd0;
-    settled       <= settles;
-    finished      <= settles && (line_ended || line_endless);
-    rate_was_zero <= rate_is_zero;
-    case (state)
-      STATE_IDLE:    if (startable) state <= STATE_PREPARE;
-      STATE_PREPARE: if (ramp_ready) state <= STATE_ARMED;
-      STATE_ARMED:   if (begin_profile) state <= ramp_ended ? STATE_SETTLE : STATE_RUN;
-      STATE_RUN:     if (ramp_ended) state <= STATE_SETTLE;
-      STATE_SETTLE:  if (settled) state <= finished ? STATE_IDLE : STATE_DRAIN;
-      STATE_DRAIN:   if (line_ended) state <= STATE_SETTLE;
-      default:       ;
-    endcase
-    if (state == STATE_RUN && count != START_LAST) running <= running;
-    else running <= moving;
+    idle      <= (idle & ~startable) | finished | (stopped & command_clear);
+    preparing <= startable | (preparing & ~ramp_ready);
+    armed     <= (preparing & ramp_ready) | (armed & ~begin_profile);
+    runs      <= (begin_profile | runs) & ~ramp_ended;
+    settles   <= ((begin_profile | runs) & ramp_ended) | (settles & ~settled) | (drains & line_ended);
+    drains    <= (settled & ~finished) | (drains & ~line_ended);
+    counting  <= ((begin_profile | runs) & ~ramp_ended) | (settled & ~finished) | (drains & ~line_ended);
+    if (stopped && command_clear) begin
+      stopped <= 1'b0;
+      cause   <= CAUSE_NONE;
+    end
+    if (stop_now) begin
+      {idle, preparing, armed, runs, settles, drains, counting} <= 7'd0;
 
-    if (state == STATE_DRAIN && substep_made && !line_ended) drained <= drained + 16'd1;
+      stopped <= 1'b1;
+      cause   <= cause_due;
+    end
+    if (rst) begin
+      {preparing, armed, runs, settles, drains, counting, stopped} <= 7'd0;
+
+      idle  <= 1'b1;
+      cause <= CAUSE_NONE;
+    end
+  end
+
+  always @(posedge clk) begin
+    begin_profile <= armed && (sync_edge || !wait_sync) && !begin_profile && !stop_now;
+    startable     <= idle && run && line_valid && ramp_valid && !startable && !stop_due;
+    stop_due      <= stop_wanted && !stopped;
+    cause_due     <= cause_wanted;
+    if (count != START_LAST) count <= count + 3'd1;
+    if (!runs) count <= 3'd0;
+    settling      <= settles ? {settling[1:0], 1'b1} : 3'd0;
+    settled       <= settled_next;
+    finished      <= settled_next && (line_ended || line_endless);
+    rate_was_zero <= rate_is_zero;
+    if (!runs || count == START_LAST) running <= moving;
+
+    if (drains && substep_made && !line_ended) drained <= drained + 16'd1;
 
     if (!stopping && !stopped) begin
       if (command_stop) soft_cause <= CAUSE_STOP;
@@ -117,27 +152,21 @@ module passo_motion (
       stopping <= command_stop | dry;
     end
 
-    if (stopped && command_clear) begin
-      state <= STATE_IDLE;
-      cause <= CAUSE_NONE;
-    end
-    if (stop_now && !stopped) begin
-      state    <= STATE_STOPPED;
-      cause    <= cause_now;
+    if (stop_now) begin
       stopping <= 1'b0;
       running  <= 1'b0;
       settled  <= 1'b0;
       finished <= 1'b0;
     end
     if (rst) begin
-      state     <= STATE_IDLE;
-      cause     <= CAUSE_NONE;
-      stopping  <= 1'b0;
-      drained   <= 16'd0;
-      startable <= 1'b0;
-      settled   <= 1'b0;
-      finished  <= 1'b0;
-      running   <= 1'b0;
+      stopping      <= 1'b0;
+      drained       <= 16'd0;
+      startable     <= 1'b0;
+      begin_profile <= 1'b0;
+      stop_due      <= 1'b0;
+      settled       <= 1'b0;
+      finished      <= 1'b0;
+      running       <= 1'b0;
     end
   end
 

@@ -24,7 +24,7 @@ module passo_path (
   input  wire        drain,
   input  wire [31:0] drain_velocity,  // UQ0.32
   output wire [31:0] velocity,        // UQ0.32
-  output reg         substep
+  output wire        substep
 );
 
   localparam [23:0] QUARTER = 24'h400000;
@@ -37,11 +37,16 @@ module passo_path (
   reg        phase_low_carry;
   reg [23:0] phase_high;
   reg        advance_q;
+  reg        advance_qq;
+  reg        carry;
 
   wire [24:0] phase_low_sum = {1'b0, phase_low} + {1'b0, velocity_low};
-  wire [24:0] phase_high_sum = {1'b0, phase_high} + {1'b0, velocity_high} + {24'd0, phase_low_carry};
+  // restart is low whenever the sum counts; an operand there keeps the carry in the chain
+  wire [24:0] phase_high_sum = {restart, phase_high} + {1'b0, velocity_high} + {24'd0, phase_low_carry};
 
   assign velocity = {velocity_high, velocity_low[23:16]};
+
+  assign substep = carry & advance_qq;
 
   wire take = begin_profile | (advance & tick_last) | refresh;
 
@@ -53,14 +58,15 @@ module passo_path (
     if (take_q) velocity_high <= drain ? drain_velocity[31:8] : rest ? 24'd0 : velocity_next[47:24];
     if (advance) phase_low <= phase_low_sum[23:0];
     phase_low_carry <= advance & phase_low_sum[24];
-    if (advance_q) phase_high <= phase_high_sum[23:0];
-    substep <= advance_q & phase_high_sum[24];
+    if (advance_q) {carry, phase_high} <= phase_high_sum;
+    advance_qq <= advance_q;
     if (rst || restart) begin
       advance_q       <= 1'b0;
       phase_low       <= 24'd0;
       phase_low_carry <= 1'b0;
       phase_high      <= QUARTER;
-      substep         <= 1'b0;
+      advance_qq      <= 1'b0;
+      carry           <= 1'b0;
     end
   end
 

@@ -60,17 +60,20 @@ module passo_payload (
   wire in_counter = count && turns[4:3] == ~counter;
   reg  carry;
 
-  always @*
-    case (turns[2:0])
-      3'd0: counter_bit = data[24];
-      3'd1: counter_bit = data[26];
-      3'd2: counter_bit = data[28];
-      3'd3: counter_bit = data[30];
-      3'd4: counter_bit = data[0];
-      3'd5: counter_bit = data[2];
-      3'd6: counter_bit = data[4];
-      3'd7: counter_bit = data[6];
-    endcase
+  // A clock ahead of the turn that it belongs to, when the bit stands a place lower
+  always @(posedge clk)
+    if (!turn) counter_bit <= data[24];
+    else
+      case (turns[2:0])
+        3'd0: counter_bit <= data[25];
+        3'd1: counter_bit <= data[27];
+        3'd2: counter_bit <= data[29];
+        3'd3: counter_bit <= data[31];
+        3'd4: counter_bit <= data[1];
+        3'd5: counter_bit <= data[3];
+        3'd6: counter_bit <= data[5];
+        3'd7: counter_bit <= data[23];
+      endcase
 
   always @(posedge clk) begin
     carry <= !in_counter || (carry && data[31]);

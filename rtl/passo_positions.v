@@ -8,8 +8,8 @@
 //
 // Promise: `snapshot` brings about one round that also copies the positions, as they were in the round's
 // slot 63: they are coherent. It is the next round, or the one after it when the positions are set to 0, which
-// takes a round; the copies are complete 192 clocks after `snapshot`. `position` is the copy of axis `address`
-// when `address` has stood for 12 clocks.
+// takes a round; the copies are complete 194 clocks after `snapshot`. `position` is the copy of axis `address`
+// when `address` has stood for 13 clocks.
 // An axis makes at most 36 steps in a round, so the way that a counter went is never in doubt.
 `resetall
 `default_nettype none
@@ -36,7 +36,7 @@ module passo_positions #(
   reg clears;  // this round sets the positions to 0
   reg snapshot_waits;
   reg copies_next;
-  reg copies;  // this round copies the positions; a clock later, as the last half is
+  reg copies;  // this round copies the positions; later, as the last half is
 
   // Counters, and their chain to the round
   wire [7:0] captured[0:AXES];
@@ -56,10 +56,11 @@ module passo_positions #(
     end
   endgenerate
 
-  // One half of a position: read in phase 0, judged in phase 1, made in phase 2, written in phase 3, copied in the
-  // next phase 0. Bytes 0 and 1 stand in the word the other way round. In phases 2 and 3 the memory is asked for
+  // One half of a position: read in phase 0, judged in phase 2, made in phase 3, written in the next phase 0, copied
+  // in phase 1. Bytes 0 and 1 stand in the word the other way round. In phases 2 and 3 the memory is asked for
   // `position`.
-  wire [15:0] half;
+  wire [15:0] word;
+  reg  [15:0] half;
   reg  [15:0] half_next;
   reg         up;
   reg         down;
@@ -73,22 +74,23 @@ module passo_positions #(
     .DEPTH_LOG2(5)
   ) u_memory (
     .clk          (clk),
-    .write        (phase == 2'd3 || (phase == 2'd0 && copies)),
-    .write_address({~phase[0], place}),
+    .write        (phase == 2'd0 || (phase == 2'd1 && copies)),
+    .write_address({phase[0], place}),
     .write_data   (half_next),
     .read_address (phase[1] ? {1'b1, address, upper} : {1'b0, slot[5:2]}),
-    .read_data    (half)
+    .read_data    (word)
   );
 
   always @(posedge clk) begin
-    slot   <= slot + 6'd1;
-    place  <= slot[5:2];
-    copies <= copies_next;
-    if (phase == 2'd1 && !upper) begin
+    slot <= slot + 6'd1;
+    half <= word;
+    if (phase == 2'd3) place <= slot[5:2];
+    if (phase == 2'd1) copies <= copies_next;
+    if (phase == 2'd2 && !upper) begin
       up   <= half[15:14] == 2'b11 && low_byte[7:6] == 2'b00;
       down <= half[15:14] == 2'b00 && low_byte[7];
     end
-    if (phase == 2'd2) begin
+    if (phase == 2'd3) begin
       half_next <= upper ? sum : {low_byte, sum[7:0]};
       up        <= up & carry_8;
       down      <= down & ~carry_8;
@@ -98,8 +100,8 @@ module passo_positions #(
       up   <= 1'b0;
       down <= 1'b0;
     end
-    if (phase == 2'd3) begin
-      if (upper) position[31:16] <= half;
+    if (phase == 2'd0) begin
+      if (place[0]) position[31:16] <= half;
       else position[15:0] <= {half[7:0], half[15:8]};
     end
 

@@ -18,8 +18,8 @@
 // Promise: the LAST ramp's end raises `ended`, with the last enabled clock of its last tick (a profile
 // without any tick: with begin_profile). Ramps that run out at speed raise `dry`, in the tick before; the
 // velocity then stays, and the next ramp is taken whenever it comes. `stall` holds the enable back at the end
-// of a tick until a clock after the next velocity is ready: later, never lost. Clocks of each step: copy 24, fetch 7 (T = 0:
-// 6), take 5, look up 3 .. 2 * CHANNELS + 3, shape 19, scale 50, step 7, and one to choose between them.
+// of a tick until a clock after the next velocity is ready: later, never lost. Clocks of each step: copy 24, fetch 8 (T = 0:
+// 7), take 5, look up 3 .. 2 * CHANNELS + 3, shape 19, scale 50, step 8, and one to choose between them.
 `resetall
 `default_nettype none
 
@@ -64,6 +64,20 @@ module passo_ramp #(
 
   reg [2:0] step;
   reg [5:0] count;  // clocks of the step, from 1
+  reg       step_ends;  // it is the last of them
+
+  reg [5:0] before_end;  // count in the last clock but one
+  always @*
+    case (step)
+      STEP_COPY:             before_end = 6'd23;
+      STEP_FETCH, STEP_STEP: before_end = 6'd7;
+      STEP_TAKE:             before_end = 6'd4;
+      STEP_SHAPE:            before_end = 6'd18;
+      STEP_SCALE:            before_end = 6'd49;
+      default:               before_end = 6'd0;
+    endcase
+
+  wire no_ticks = step == STEP_FETCH && count == 6'd7 && over;
 
   // the ramp being made
   reg        loaded;
@@ -178,6 +192,7 @@ module passo_ramp #(
     dry           <= 1'b0;
     moves         <= step == STEP_SCALE && (moves || interpolated_bit);
     count         <= count + 6'd1;
+    step_ends     <= count == before_end && !no_ticks;
 
     case (step)
       STEP_CHOOSE: begin
@@ -196,21 +211,19 @@ module passo_ramp #(
         end
       end
 
-      STEP_COPY: if (count == 6'd24) step <= STEP_CHOOSE;
+      STEP_COPY: if (step_ends) step <= STEP_CHOOSE;
 
-      STEP_FETCH: begin
-        if (count == 6'd6 && over) begin
-          step  <= STEP_TAKE;
-          count <= 6'd1;
-        end
-        if (count == 6'd7) begin
-          loaded <= 1'b1;
-          step   <= STEP_CHOOSE;
-        end
+      STEP_FETCH:
+      if (no_ticks) begin
+        step  <= STEP_TAKE;
+        count <= 6'd1;
+      end else if (step_ends) begin
+        loaded <= 1'b1;
+        step   <= STEP_CHOOSE;
       end
 
       STEP_TAKE:
-      if (count == 6'd5) begin
+      if (step_ends) begin
         loaded <= 1'b0;
         step   <= STEP_CHOOSE;
       end
@@ -221,20 +234,20 @@ module passo_ramp #(
       end
 
       STEP_SHAPE:
-      if (count == 6'd19) begin
+      if (step_ends) begin
         step  <= STEP_SCALE;
         count <= 6'd1;
       end
 
       STEP_SCALE:
-      if (count == 6'd50) begin
+      if (step_ends) begin
         ready <= 1'b1;
         dry   <= !loaded && (moves || interpolated_bit);
         step  <= !loaded ? STEP_CHOOSE : over ? STEP_TAKE : STEP_STEP;
         count <= 6'd1;
       end
 
-      default: if (count == 6'd7) step <= STEP_CHOOSE;
+      default: if (step_ends) step <= STEP_CHOOSE;
     endcase
 
     if (control_load) {shape, mirror, last} <= {ramp_half[5:4], ramp_half[2], ramp_half[0]};

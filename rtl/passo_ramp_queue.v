@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Ramp queue: ramps in half words, 10 in a slot of 16, so that a few ramps take one block RAM.
 //
-// Promise: ramps come out whole and in order. `half` is half word `half_index` of the oldest ramp, one clock
+// Promise: ramps come out whole and in order. `half` is half word `half_index` of the oldest ramp, two clocks
 // after the index; `take` removes that ramp. A ramp with NOW raises `now_pending`; `take_now` drops all ramps
 // before it, so that it is the oldest. `flush` drops everything that is written.
 //
@@ -22,6 +22,7 @@ module passo_ramp_queue #(
   input  wire                bus_write,
   input  wire                select,
   input  wire [        31:0] bus_data,
+  input  wire [         4:0] bus_top_bit,
   input  wire                blocked,      // the channel is stopped
   output reg  [         3:0] refusal,
   output wire                incomplete,   // the frame so far ends within a ramp
@@ -33,7 +34,7 @@ module passo_ramp_queue #(
   output reg                 valid,        // of two clocks ago
   output reg                 now_pending,
   input  wire [         3:0] half_index,
-  output wire [        15:0] half
+  output reg  [        15:0] half
 );
 
   `include "passo_registers.vh"
@@ -101,8 +102,8 @@ module passo_ramp_queue #(
   always @(posedge clk) begin
     full <= room == checked;
     bad_control <= (bus_data[15:0] & ~CONTROL_DEFINED) != 16'd0 || bus_data[31:16] > VELOCITY_MAX_HIGH;
-    bad_velocity_low <= velocity_is_max && bus_data != 32'd0;
-    bad_step_high <= bus_data[31:16] != 16'd0;
+    bad_velocity_low <= velocity_is_max && (bus_top_bit != 5'd0 || bus_data[0]);
+    bad_step_high <= bus_top_bit > 5'd15;
     refusal          <= !(select && bus_check) ? VERDICT_OK :
                         blocked                ? VERDICT_BUSY :
                         full                   ? VERDICT_QUEUE_FULL :
@@ -127,6 +128,10 @@ module passo_ramp_queue #(
   // as the ramp wants it: T inverted, and du of mirrored ramps
   wire invert = index == INDEX_TICKS || (is_mirror && (index == INDEX_STEP_HIGH || index == INDEX_LAST));
 
+  wire [15:0] word;
+
+  always @(posedge clk) half <= word;
+
   passo_memory #(
     .WIDTH     (16),
     .DEPTH_LOG2(DEPTH_LOG2 + 4)
@@ -136,7 +141,7 @@ module passo_ramp_queue #(
     .write_address({write_ramp[DEPTH_LOG2-1:0], index, write_low}),
     .write_data   ((write_low ? bus_data[15:0] : bus_data[31:16]) ^ {16{invert}}),
     .read_address ({read_ramp[DEPTH_LOG2-1:0], half_index}),
-    .read_data    (half)
+    .read_data    (word)
   );
 
 `ifdef FORMAL

@@ -2,7 +2,7 @@
 // Strobes of the ramp: what moves in which clock of which step.
 //
 // All strobes are registered: they act one clock after the count they belong to. A half word of the queue comes
-// one clock after its index, so a strobe that wants it belongs to the count after that of the index.
+// two clocks after its index, so a strobe that wants it belongs to the second count after that of the index.
 `resetall
 `default_nettype none
 
@@ -45,17 +45,17 @@ module passo_ramp_strobes (
   wire empty = prepare || (step == STEP_LOOK_UP && !table_served) || scale_begins;
 
   always @(posedge clk) begin
-    control_load    <= fetch && count == 6'd4;
+    control_load    <= fetch && count == 6'd5;
     start_load      <= take;
     start_copy      <= copy;
     start_move      <= take || copy || (scale && count <= 6'd48);
     u_load          <= fetch;
-    u_move          <= (fetch && count >= 6'd5) || (step == STEP_STEP && count != 6'd1);
-    u_last          <= count == 6'd4 || count == 6'd7;
-    ticks_load_low  <= fetch && count == 6'd2;
-    ticks_load_high <= fetch && count == 6'd3;
-    ticks_add_low   <= (fetch && count == 6'd3) || scale_begins;
-    ticks_add_high  <= (fetch && count == 6'd4) || (scale && count == 6'd2);
+    u_move          <= (fetch && count >= 6'd6) || (step == STEP_STEP && count >= 6'd3);
+    u_last          <= count == 6'd5 || count == 6'd8;
+    ticks_load_low  <= fetch && count == 6'd3;
+    ticks_load_high <= fetch && count == 6'd4;
+    ticks_add_low   <= (fetch && count == 6'd4) || scale_begins;
+    ticks_add_high  <= (fetch && count == 6'd5) || (scale && count == 6'd2);
     moving          <= shape || scale;
     shaping         <= shape;
     load_fraction   <= scale_begins;
@@ -63,7 +63,7 @@ module passo_ramp_strobes (
     result_move     <= empty || copy || shape || scale;
   end
 
-  // The first half word of v_end is there when scale begins, whatever was before.
+  // The first half word of v_end is there when scale or take begins, whatever was before.
   always @(posedge clk)
     case (step)
       STEP_FETCH:
@@ -76,8 +76,8 @@ module passo_ramp_strobes (
         3'd6:    half_index <= 4'd7;
         default: half_index <= 4'd3;
       endcase
-      STEP_TAKE: half_index <= count[1:0] == 2'd1 ? 4'd3 : count[1:0] == 2'd2 ? 4'd2 : 4'd0;
-      STEP_SCALE: half_index <= count < 6'd15 ? 4'd3 : count < 6'd31 ? 4'd2 : 4'd0;
+      STEP_TAKE: half_index <= count == 6'd1 ? 4'd2 : 4'd0;
+      STEP_SCALE: half_index <= count < 6'd14 ? 4'd3 : count < 6'd30 ? 4'd2 : count < 6'd46 ? 4'd0 : 4'd3;
       STEP_STEP:
       case (count[2:0])
         3'd1, 3'd4: half_index <= 4'd9;

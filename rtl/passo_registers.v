@@ -23,7 +23,8 @@ module passo_registers #(
   input wire bus_read,
   input wire bus_push,
   input wire [11:0] bus_address,
-  input wire [31:0] bus_data,
+  input wire [18:0] bus_data,
+  input wire [4:0] bus_top_bit,
   output reg claim,
   output reg [3:0] refusal,
   output wire [31:0] read_data,
@@ -92,7 +93,7 @@ module passo_registers #(
     known        <= bus_address <= ADDRESS_REFUSALS_1;
     is_run       <= bus_address == ADDRESS_RUN;
     number       <= bus_address[2:0];
-    bad_run      <= (bus_data & ~RUN_DEFINED) != 32'd0 || run_beyond;
+    bad_run      <= bus_top_bit > 5'd18 || run_beyond;
     reads_status <= ~bus_read;
     for (i = 0; i < 4; i = i + 1) reads[i] <= bus_read && known && number == i[2:0];
     claim <= known && (bus_check || bus_read);
