@@ -13,7 +13,7 @@ PINS, STEP_TIMING, DIR_TIMING, LOST_STEPS = range(4)
 PINS_MAX = 0x1F
 INPUTS = (
     "bus_check", "bus_write", "bus_read", "bus_push", "select_axis", "select_position", "bus_address",
-    "bus_data", "lost",
+    "bus_data", "bus_top_bit", "lost",
 )  # fmt: skip
 
 
@@ -30,6 +30,7 @@ async def strobe(
         getattr(dut, other).value = 1 << axis if other == block else 0
     dut.bus_address.value = address
     dut.bus_data.value = data
+    dut.bus_top_bit.value = max(0, data.bit_length() - 1)
     await clocks.wait(1)
     getattr(dut, name).value = 1
     await clocks.wait(1)

@@ -15,10 +15,11 @@ AXES, TICK_LOG2, LINE_QUEUE_LOG2, RAMP_QUEUE_LOG2 = 8, 16, 8, 7
 BAD_OPERATION, READ_ONLY, BAD_VALUE = 4, 6, 9
 REGISTERS = range(6)
 RUN = 3
+DATA = 0x7FFFF  # what RUN has; of the rest only the highest bit is known
 ROOM_SHOWN = 255  # at most
 INPUTS = (
-    "bus_check", "bus_write", "bus_read", "bus_push", "bus_address", "bus_data", "last_sequence",
-    "any_stopped", "any_occupied", "line_room", "ramp_room",
+    "bus_check", "bus_write", "bus_read", "bus_push", "bus_address", "bus_data", "bus_top_bit",
+    "last_sequence", "any_stopped", "any_occupied", "line_room", "ramp_room",
 )  # fmt: skip
 
 
@@ -50,7 +51,8 @@ class Bench:
         """Put an access on the bus and raise a strobe for a clock; the answer is there on return."""
         dut = self.dut
         dut.bus_address.value = address
-        dut.bus_data.value = data
+        dut.bus_data.value = data & DATA
+        dut.bus_top_bit.value = max(0, data.bit_length() - 1)
         dut.bus_push.value = push
         await self.clocks.wait(2)
         getattr(dut, name).value = 1
