@@ -25,8 +25,11 @@ def test_netlist_moves() -> None:
     run("cocotb_tests.core_motion", TOP, ONE_CHANNEL, SIMULATOR, netlist=True)
 
 
+ONE_CHANNEL_MODULES = ["core_commands", "core_faults", "core_link", "core_long", "core_registers"]
+
+
 @every
-@pytest.mark.parametrize("module", ["core_commands", "core_faults", "core_link", "core_long", "core_registers"])
+@pytest.mark.parametrize("module", ONE_CHANNEL_MODULES)
 def test_netlist_of_one_channel(module: str) -> None:
     """Commands, faults, the link, the longest times, all bits of the registers."""
     run(f"cocotb_tests.{module}", TOP, ONE_CHANNEL, SIMULATOR, netlist=True)
