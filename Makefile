@@ -83,7 +83,7 @@ netlist: ## Run all tests of the whole core on the synthesised iCE40 netlist.
 	@tools/setup.sh yosys
 	@PASSO_NETLIST=1 $(BIN)/pytest cocotb_tests/test_netlist.py
 
-coverage: setup ## Measure which lines and bits of the RTL the tests reach; writes docs/coverage.md.
+coverage: setup ## Measure what the tests reach of the RTL, lines and bits; a hole is an error; writes docs/coverage.md.
 	@$(BIN)/python -m cocotb_tests.coverage
 
 firmware: ## Build the firmware of the STM32F103C8; prints its flash, RAM and worst-case stack.

@@ -5,11 +5,15 @@ from collections.abc import Callable
 
 from passo import registers as r
 from passo.host import RATE_ONE
-from passo.registers import Cause, State
+from passo.registers import Cause, Operation, State, Verdict
 
+from cocotb_tests.bench import read
 from cocotb_tests.core_bench import ONE, V_MAX, Core, Line, PinTiming, Ramp, Shape, core_test
 from cocotb_tests.core_expected import distance, due, totals
+from cocotb_tests.core_frames import GAP, ack, request
 from cocotb_tests.core_moves import a_motion
+
+ROOM_SHOWN = 255  # at most, in the status word
 
 
 def motion(core: Core, shape: Shape, speed: int, ticks: int) -> tuple[list[Line], list[Ramp]]:
@@ -46,13 +50,15 @@ def every(core: Core) -> int:
     return (1 << core.parameters.channels) - 1
 
 
-def start_together(core: Core, start: Callable[[], None]) -> None:
+def start_together(core: Core, start: Callable[[], None], first: int) -> None:
     """Arm all channels, each with another shape; what starts them starts them on the same clock."""
     since = core.clock
     before = [core.channel(number).positions() for number in range(core.parameters.channels)]
     core.link.write(r.ADDRESS_RUN, every(core) << r.RUN_WAIT_SYNC_LSB | every(core))
-    shapes = [Shape.COSINE, Shape.LINEAR, Shape.SIGMOID, Shape.EASE] * 2
-    motions = [prepare(core, number, shapes[number], ONE // (9 + number)) for number in range(len(before))]
+    shapes = [Shape.COSINE, Shape.LINEAR, Shape.SIGMOID, Shape.EASE] * 3
+    motions = [
+        prepare(core, number, shapes[number + first], ONE // (9 + number)) for number in range(len(before))
+    ]
     core.run(300)
     assert {core.channel(number).state().state for number in range(len(before))} == {State.ARMED}
     start()
@@ -69,8 +75,8 @@ def start_together(core: Core, start: Callable[[], None]) -> None:
 def channels_start_on_the_same_clock(core: Core) -> None:
     """The sync pin, or one write that clears WAIT_SYNC, starts all armed channels together."""
     core.watch(PinTiming())
-    start_together(core, lambda: core.sync(True))
-    start_together(core, lambda: core.link.write(r.ADDRESS_RUN, every(core)))
+    start_together(core, lambda: core.sync(True), 0)
+    start_together(core, lambda: core.link.write(r.ADDRESS_RUN, every(core)), 2)
 
 
 @core_test
@@ -118,7 +124,7 @@ def each_channel_has_its_own_registers(core: Core) -> None:
     for number, room in ((0, depth), (1, depth - 3)):
         core.link.write(r.ADDRESS_RUN, number << r.RUN_STATUS_CHANNEL_LSB)
         core.link.read(0, 1)
-        assert core.link.status >> 8 & 0xFF == room
+        assert core.link.status >> 8 & 0xFF == min(room, ROOM_SHOWN)
         assert core.link.status >> 24 & 7 == number
     channels[0].abort()
     assert channels[0].state().cause == Cause.ABORT
@@ -131,6 +137,64 @@ def each_channel_has_its_own_registers(core: Core) -> None:
     channels[0].clear()
     channels[0].link.write(channels[0].base + r.CHANNEL_COMMAND, 1 << r.CHANNEL_COMMAND_ZERO_LSB)
     assert channels[1].positions() == totals(lines)
+
+
+@core_test
+def the_status_word_shows_any_channel(core: Core) -> None:
+    """Its number, the room in its two queues, 255 for more; RUN and WAIT_SYNC of each are read back."""
+    depths = core.parameters.line_queue_log2, core.parameters.ramp_queue_log2
+    for number in range(core.parameters.channels):
+        channel = core.channel(number)
+        other = (number + 1) % core.parameters.channels
+        run = number << r.RUN_STATUS_CHANNEL_LSB | 1 << r.RUN_WAIT_SYNC_LSB + other | 1 << number
+        core.link.write(r.ADDRESS_RUN, run)
+        assert core.link.read(r.ADDRESS_RUN, 1) == [run]
+        for queued in range(3):
+            if queued == 1:
+                channel.lines(Line(1, (1,) * core.axes), Line(1, (1,) * core.axes))
+            elif queued == 2:
+                core.link.write(r.ADDRESS_RUN, run & ~0xFF)
+                channel.ramps(Ramp(0, 1))
+            core.link.read(0, 1)
+            rooms = [(1 << depths[0]) - 2 * (queued > 0), (1 << depths[1]) - (queued > 1)]
+            assert channel.room() == tuple(rooms)
+            shown = [min(room, ROOM_SHOWN) for room in rooms]
+            assert core.link.status & 0x0700FFFF == number << 24 | shown[0] << 8 | shown[1]
+        channel.abort()
+        channel.clear()
+        assert channel.room() == (1 << depths[0], 1 << depths[1])
+
+
+@core_test
+def every_channel_answers_for_itself(core: Core) -> None:
+    """Each refuses what it must; positions and pins are its own."""
+    count = core.parameters.channels
+    channels = [core.channel(number) for number in range(count)]
+    ramps = [Ramp(V_MAX, 0), Ramp(V_MAX, 1), Ramp(0, 0, last=True)]
+    for number, channel in enumerate(channels):
+        channel.lines(Line(number + 1, (-number - 1,) * core.axes, last=True))
+        channel.ramps(*ramps)
+        reasons = (
+            (Verdict.READ_ONLY, r.CHANNEL_STATE, 0),
+            (Verdict.BAD_VALUE, r.CHANNEL_RATE_TARGET, RATE_ONE + 1),
+        )
+        for verdict, register, word in reasons:
+            write = request(Operation.WRITE, 0x70 + number, 1, channel.base + register, [word])
+            assert ack(core.transfer(write, GAP)) == (0x70 + number, verdict)
+    core.link.write(r.ADDRESS_RUN, every(core))
+    core.run(3 * core.tick)
+    for number, channel in enumerate(channels):
+        assert channel.positions() == [-number - 1] * core.axes
+    for number, channel in enumerate(channels):
+        core.link.write(channel.base + r.CHANNEL_COMMAND, 1 << r.CHANNEL_COMMAND_ZERO_LSB)
+        assert channel.positions() == [0] * core.axes
+        other = (number + 1) % count
+        assert channels[other].positions() == [0 if other < number else -other - 1] * core.axes
+        pins = channel.base + r.CHANNEL_AXIS_BASE
+        for level in (1, 0):
+            core.link.write(pins, level << r.AXIS_PINS_ENABLE_LSB)
+            core.run(4)
+            assert read(core.dut.enable) == level << number * core.axes
 
 
 @core_test

@@ -7,9 +7,15 @@ from passo.host import RATE_ONE
 from passo.link import RefusedError
 from passo.registers import Cause, State, Verdict
 
-from cocotb_tests.core_bench import ONE, V_MAX, Core, Line, PinTiming, Ramp, Shape, core_test
+from cocotb_tests.core_bench import ONE, V_MAX, Core, CoreChannel, Line, PinTiming, Ramp, Shape, core_test
 from cocotb_tests.core_expected import due
 from cocotb_tests.core_moves import SLOW, check_stopped, clear_and_move
+
+
+def lost_steps(channel: CoreChannel, axis: int) -> int:
+    """How many steps found the queue of an axis full."""
+    address = channel.base + r.CHANNEL_AXIS_BASE + axis * r.CHANNEL_AXIS_STRIDE + r.AXIS_LOST_STEPS
+    return channel.link.read(address, 1)[0]
 
 
 @core_test
@@ -116,10 +122,7 @@ def step_overrun(core: Core) -> None:
     core.run(6 * 50)
     check_stopped(core, channel, Cause.STEP_OVERRUN)
     assert channel.state().overrun == 1 << slow_axis
-    lost = [
-        channel.link.read(channel.base + r.CHANNEL_AXIS_BASE + axis * 8 + r.AXIS_LOST_STEPS, 1)[0]
-        for axis in range(core.axes)
-    ]
+    lost = [lost_steps(channel, axis) for axis in range(core.axes)]
     assert lost[:slow_axis] == [0] * slow_axis and lost[slow_axis] == 1
     # every step is accounted for: made or lost
     assert checker.positions[slow_axis] + lost[slow_axis] == checker.positions[0]
@@ -143,6 +146,31 @@ def every_axis_can_overrun_at_once(core: Core) -> None:
     check_stopped(core, channel, Cause.STEP_OVERRUN)
     assert channel.state().overrun == (1 << core.axes) - 1
     assert {abs(position) for position in checker.positions} == {abs(checker.positions[0])}
+    # a step every second clock, and the line is stopped a few clocks after the first one that is lost
+    assert [lost_steps(channel, axis) for axis in range(core.axes)] == [2] * core.axes
+    channel.clear()
+    assert [lost_steps(channel, axis) for axis in range(core.axes)] == [0] * core.axes
+
+
+@core_test
+def the_first_reason_of_a_soft_stop_counts(core: Core) -> None:
+    """STOP and ramps that run out while the channel slows down: the cause is whichever came first."""
+    channel = core.channel()
+    core.watch(PinTiming())
+    line = Line(100_000, (100_000, -50_000, 7)[: core.axes], last=True)
+    ramps = [Ramp(SLOW, 0), Ramp(SLOW, 12)]
+    channel.link.write(channel.base + r.CHANNEL_STOP_SLEW, RATE_ONE // 30)
+    for stop_at, cause in ((3, Cause.STOP), (13, Cause.RAMP_UNDERRUN)):
+        channel.rest()
+        channel.lines(line)
+        channel.ramps(*ramps)
+        channel.start()
+        core.run_until(core.is_running, 1000)
+        core.run(stop_at * core.tick)
+        channel.stop()
+        core.run_until(lambda: not core.is_running(), 50 * core.tick)
+        check_stopped(core, channel, cause)
+        channel.clear()
 
 
 @core_test

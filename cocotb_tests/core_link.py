@@ -90,6 +90,20 @@ def duplicates_are_executed_once(core: Core) -> None:
 
 
 @core_test
+def sequence_numbers_are_compared_in_all_their_bits(core: Core) -> None:
+    """Numbers that differ in one bit are new, the same one again is a duplicate; the status word shows it."""
+    for sequence in [0x55, *(0x55 ^ 1 << bit for bit in range(8)), 0xAA, 0xFF, 0x00]:
+        write = request(Operation.WRITE, sequence, 1, r.ADDRESS_RUN, [0])
+        assert ack(core.transfer(write, GAP)) == (sequence, Verdict.OK)
+        status, *words = core.transfer(write, GAP)
+        assert ack(words) == (sequence, Verdict.DUPLICATE)
+        assert status >> 16 & 0xFF == sequence
+        if sequence.bit_count() != 4:
+            write = request(Operation.WRITE, 0x55, 1, r.ADDRESS_RUN, [0])
+            assert ack(core.transfer(write, GAP)) == (0x55, Verdict.OK)
+
+
+@core_test
 def frames_that_are_cut_short(core: Core) -> None:
     """A frame cut anywhere before its CRC leaves no trace; one cut after its verdict is executed."""
     random = rng("frames_that_are_cut_short")

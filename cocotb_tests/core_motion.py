@@ -145,29 +145,35 @@ def both_edges_and_polarities(core: Core) -> None:
         PinTiming(2, 5, 3, 4, both_edges=True),
         PinTiming(3, 2, 4, 3, step_inverted=True, direction_inverted=True),
         PinTiming(4, 3, 2, 5, both_edges=True, step_inverted=True),
-    ][: core.axes]
-    channel.pins(*timings)
-    checker = core.watch(*timings)
+    ]
     ramps = [Ramp(ONE // 11, 3, Shape.COSINE), Ramp(ONE // 11, 7), Ramp(0, 2, last=True)]
     total = distance(ramps, core.tick)
-    first = total // 2
+    # of even numbers, so that STEP is inactive in the end
+    first, rest = total // 4 * 2, total - total // 4 * 2
     lines = [
-        Line(first, (first, -first // 2, first - 1)[: core.axes]),
-        Line(total - first, (-11, 11, -(total - first))[: core.axes], last=True),
+        Line(first, (first, -(first // 4 * 2), first - 2)[: core.axes]),
+        Line(rest, (-12, 12, -(rest // 2 * 2))[: core.axes], last=True),
     ]
-    make(core, channel, lines, ramps)
-    assert checker.positions == totals(lines)
+    for _ in range(core.axes):
+        timings = [*timings[1:], timings[0]]
+        core.finish_watch()
+        channel.pins(*timings[: core.axes])
+        checker = core.watch(*timings[: core.axes])
+        make(core, channel, lines, ramps)
+        assert checker.positions == totals(lines)
 
 
 @core_test
-def enable_pins_follow_their_registers(core: Core) -> None:
-    """EN is what PINS says, with its polarity."""
+def pins_follow_their_registers(core: Core) -> None:
+    """EN is what PINS says, and each pin of each axis has its own polarity."""
     channel = core.channel()
-    address = channel.base + r.CHANNEL_AXIS_BASE
-    for flags, level in ((1, 1), (0, 0), (8, 1), (9, 0)):
-        core.link.write(address, flags)
-        core.run(4)
-        assert read(core.dut.enable) == level
+    for axis in range(core.axes):
+        address = channel.base + r.CHANNEL_AXIS_BASE + axis * r.CHANNEL_AXIS_STRIDE
+        for flags, pins in ((1, 4), (0, 0), (8, 4), (9, 0), (2, 1), (4, 2), (0xE, 7), (0, 0)):
+            core.link.write(address, flags)
+            core.run(4)
+            levels = [read(signal) for signal in (core.dut.step, core.dut.dir, core.dut.enable)]
+            assert levels == [(pins >> bit & 1) << axis for bit in range(3)]
 
 
 @core_test
@@ -240,3 +246,26 @@ def ramps_run_on_when_the_last_line_has_ended(core: Core) -> None:
     begin = make(core, channel, lines, ramps)
     check_clocks(core, begin, due(lines, ramps, core.tick))
     assert checker.positions == totals(lines)
+
+
+@core_test
+def ramps_that_do_not_fit_into_a_tick_make_the_rest_later(core: Core) -> None:
+    """Ten ramps without ticks in a row hold the profile: the same steps, later by the time of the hold."""
+    channel = core.channel()
+    checker = core.watch(PinTiming())
+    idle = [Ramp(ONE // 9 - n, 0) for n in range(10)]
+    ramps = [Ramp(ONE // 8, 3), *idle, Ramp(ONE // 11, 3, Shape.COSINE), Ramp(0, 0, last=True)]
+    total = distance(ramps, core.tick)
+    lines = [Line(total, (total, -(total // 2), 1)[: core.axes], last=True)]
+    channel.lines(*lines)
+    channel.ramps(*ramps)
+    channel.start()
+    core.wait_end()
+    ((begin, end),) = core.motions()
+    late = end - begin - 6 * core.tick
+    assert 0 < late < core.tick
+    for axis, expected in enumerate(due(lines, ramps, core.tick)):
+        held = [clock if clock < 3 * core.tick else clock + late for clock in expected]
+        assert [clock - begin for clock in core.steps(axis)] == held
+    assert checker.positions == totals(lines)
+    assert channel.state().cause == Cause.NONE

@@ -4,11 +4,18 @@
 core_bench.py is what all of these have in common; PASSO_SEED is the seed of the random ones.
 """
 
+import pytest
+
 from cocotb_tests.runner import run
 
 TOP = "passo_core_top"
 ONE_CHANNEL = {"CHANNELS": 1, "AXES": 3, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 5, "RAMP_QUEUE_LOG2": 4}
 TWO_CHANNELS = {"CHANNELS": 2, "AXES": 2, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 2, "RAMP_QUEUE_LOG2": 2}
+
+MOST_CHANNELS = {"CHANNELS": 8, "AXES": 1, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 8, "RAMP_QUEUE_LOG2": 8}
+
+# Icarus Verilog takes very much longer: what is long runs on Verilator only.
+verilator_only = pytest.mark.parametrize("simulator", ["verilator"])
 
 
 def test_motion(simulator: str) -> None:
@@ -39,6 +46,23 @@ def test_refusals(simulator: str) -> None:
 def test_channels(simulator: str) -> None:
     """Two channels at once."""
     run("cocotb_tests.core_channels", TOP, TWO_CHANNELS, simulator)
+
+
+def test_registers(simulator: str) -> None:
+    """Settings and states in all their bits."""
+    run("cocotb_tests.core_registers", TOP, ONE_CHANNEL, simulator)
+
+
+@verilator_only
+def test_long(simulator: str) -> None:
+    """The longest pin timings, a counter that wraps."""
+    run("cocotb_tests.core_long", TOP, ONE_CHANNEL, simulator)
+
+
+@verilator_only
+def test_most_channels(simulator: str) -> None:
+    """As many channels and as deep queues as a core can have."""
+    run("cocotb_tests.core_channels", TOP, MOST_CHANNELS, simulator)
 
 
 def test_random_moves(simulator: str) -> None:

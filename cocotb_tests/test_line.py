@@ -95,6 +95,26 @@ class Lines:
                 await self.strobe("substep")
                 await self.clocks.wait(next(gaps) - 1)
 
+    async def jump(self, line: Line, number: int) -> None:
+        """Go on as if so many substeps of a line had been made: set the state that they lead to."""
+        dut = self.dut
+        dut.u_line.substep_number.value = number
+        for axis, n in enumerate(line.steps):
+            e = (line.substeps // 2 + number * n) % line.substeps
+            e_minus_m = dut.g_axis[axis].u_dda.e_minus_m
+            e_minus_m.value = (e - line.substeps) % (1 << len(e_minus_m))
+        await self.clocks.wait(3)
+
+    async def make_end(self, line: Line, number: int) -> None:
+        """Make the substeps of a line after so many."""
+        m = line.substeps
+        for at in range(number, m):
+            for axis, n in enumerate(line.steps):
+                if (m // 2 + at * n) // m < (m // 2 + (at + 1) * n) // m:
+                    self.expected.append((self.clocks.now + LATENCY, axis, line.negative >> axis & 1))
+            await self.strobe("substep")
+            await self.clocks.wait(1)
+
     async def make_slowly(self, lines: Sequence[Line]) -> None:
         """Make all substeps of some lines, in the time that it takes to push as many."""
         for line in lines:
@@ -182,6 +202,28 @@ async def the_longest_lines_do_not_overflow(dut: HierarchyObject, m: int, n: tup
     await lines.make([line], every(2), until=300)
     await lines.compare()
     lines.check_end(ended=False, underruns=0)
+
+
+@cocotb.test()
+async def the_longest_lines_end_with_their_last_substep(dut: HierarchyObject) -> None:
+    """The last substeps of lines of every length, as the count goes through 2^k and up to 2^32 - 1."""
+    random = rng("line, end")
+    lines = await Lines.begin(dut)
+    for m in (*((1 << bit) + random.randrange(2, 9) for bit in range(8, 32)), M_MAX):
+        before = 6 if m == M_MAX else m - (1 << m.bit_length() - 1) + 2
+        long = Line(m, (m, m - 1, random.randrange(m)), random.randrange(8))
+        short = Line(3, (3, 1, 2), random.randrange(8), last=True)
+        await lines.bus.push(long.words() + short.words())
+        await lines.start()
+        await lines.jump(long, m - before)
+        await lines.make_end(long, m - before)
+        await lines.make([short], every(2))
+        await lines.clocks.wait(1)
+        lines.check_end(ended=True, underruns=0)
+        await lines.strobe("release_line")
+        await lines.clocks.wait(2)
+        assert read(dut.room) == 1 << DEPTH_LOG2
+    assert await lines.compare() > 200
 
 
 @cocotb.test()

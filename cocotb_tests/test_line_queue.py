@@ -22,6 +22,11 @@ def test_line_queue(simulator: str, axes: int) -> None:
     run(__name__, "passo_line_queue", {"AXES": axes, "DEPTH_LOG2": DEPTH_LOG2}, simulator)
 
 
+@pytest.mark.parametrize("depth_log2", [5, 8])
+def test_deep_line_queue(simulator: str, depth_log2: int) -> None:
+    run("cocotb_tests.deep_lines", "passo_line_queue", {"AXES": 1, "DEPTH_LOG2": depth_log2}, simulator)
+
+
 class Queue:
     """The module under test."""
 

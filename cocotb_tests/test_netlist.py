@@ -25,10 +25,13 @@ def test_netlist_moves() -> None:
     run("cocotb_tests.core_motion", TOP, ONE_CHANNEL, SIMULATOR, netlist=True)
 
 
+ONE_CHANNEL_MODULES = ["core_commands", "core_faults", "core_link", "core_long", "core_registers"]
+
+
 @every
-@pytest.mark.parametrize("module", ["core_commands", "core_faults", "core_link"])
+@pytest.mark.parametrize("module", ONE_CHANNEL_MODULES)
 def test_netlist_of_one_channel(module: str) -> None:
-    """Jog, sync, hold, override, stop, abort; underruns and overruns; duplicates, noise, reads, tables."""
+    """Commands, faults, the link, the longest times, all bits of the registers."""
     run(f"cocotb_tests.{module}", TOP, ONE_CHANNEL, SIMULATOR, netlist=True)
 
 

@@ -22,6 +22,10 @@ def test_ramp_queue(simulator: str) -> None:
     run(__name__, "passo_ramp_queue", {"DEPTH_LOG2": DEPTH_LOG2}, simulator)
 
 
+def test_deep_ramp_queue(simulator: str) -> None:
+    run("cocotb_tests.deep_ramps", "passo_ramp_queue", {"DEPTH_LOG2": 8}, simulator)
+
+
 def random_ramp(random: Random, now: bool = False) -> list[int]:
     """Words of a good ramp."""
     velocity = random.choice((0, 1 << 47, random.randrange(1 << 47)))
@@ -46,6 +50,7 @@ class Queue:
 
     def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
         self.dut, self.clocks = dut, clocks
+        self.depth = 1 << len(dut.room) - 1
         self.bus = PushBus(dut, clocks)
 
     @classmethod
@@ -65,7 +70,7 @@ class Queue:
         """Check the outputs, and all half words of the oldest ramp, each two clocks after its index."""
         await self.clocks.wait(2)  # valid is that of two clocks ago
         dut = self.dut
-        assert read(dut.room) == DEPTH - len(ramps)
+        assert read(dut.room) == self.depth - len(ramps)
         assert read(dut.valid) == bool(ramps)
         assert read(dut.now_pending) == now_pending
         if ramps:

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: MIT
+"""A line queue as deep as it may be: every place, every number of lines."""
+
+import cocotb
+from cocotb.handle import HierarchyObject
+
+from cocotb_tests.bench import read, rng
+from cocotb_tests.test_line_queue import ENDLESS, LAST, QUEUE_FULL, Queue
+
+
+@cocotb.test()
+async def every_place_keeps_its_line(dut: HierarchyObject) -> None:
+    """Filled from any place on, with a frame that has one line too many checked before; many times around.
+
+    Each place has each kind of line once, so that all bits of its control are set and cleared.
+    """
+    random = rng("deep lines")
+    queue = await Queue.begin(dut)
+    depth = 1 << len(dut.room) - 1
+    place = 0
+    for turn, count in enumerate((depth // 3, depth, depth, depth, depth)):
+        places = [(place + n) % depth for n in range(count)]
+        place = (place + count) % depth
+        controls = [(0, LAST, ENDLESS)[(n + turn) % 3] | (n + turn) % 2 << 8 for n in places]
+        lines = [queue.random_line(random, control) for control in controls]
+        words = [word for line in lines for word in line]
+        await queue.bus.frame()
+        if count == depth:
+            answers = await queue.bus.check(words + lines[0])
+            assert answers == [0] * len(words) + [QUEUE_FULL] * len(lines[0])
+            await queue.bus.frame()
+        await queue.bus.write(words)
+        for taken, line in enumerate(lines):
+            await queue.clocks.wait(2)
+            queue.check_room(depth - count + taken)
+            queue.check_next(line)
+            await queue.strobe("take")
+            await queue.clocks.wait(1)
+            queue.check_current(line)
+            await queue.strobe("release_line")
+        await queue.clocks.wait(2)
+        queue.check_next(None)
+        queue.check_room(depth)
+
+
+@cocotb.test()
+async def the_lines_of_a_frame_are_counted_to_the_last_place(dut: HierarchyObject) -> None:
+    """With a room of 2^k places the line after so many finds none."""
+    random = rng("deep lines, room")
+    queue = await Queue.begin(dut)
+    depth = 1 << len(dut.room) - 1
+    room = depth
+    while room > 1:
+        fill = [word for _ in range(room // 2) for word in queue.random_line(random)]
+        await queue.bus.frame()
+        await queue.bus.write(fill)
+        room -= room // 2
+        lines = [queue.random_line(random) for _ in range(room + 1)]
+        await queue.bus.frame()
+        answers = await queue.bus.check([word for line in lines for word in line])
+        words = room * len(lines[0])
+        assert answers == [0] * words + [QUEUE_FULL] * len(lines[0])
+        assert read(dut.room) == room

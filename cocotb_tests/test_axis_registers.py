@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: MIT
+"""passo_axis_registers: which axis is written to, and what the bus is answered."""
+
+import cocotb
+from cocotb.handle import HierarchyObject
+
+from cocotb_tests.bench import Clocks, begin, read, rng
+from cocotb_tests.runner import run
+
+AXES = 8
+BAD_OPERATION, READ_ONLY, BAD_VALUE = 4, 6, 9
+PINS, STEP_TIMING, DIR_TIMING, LOST_STEPS = range(4)
+PINS_MAX = 0x1F
+INPUTS = (
+    "bus_check", "bus_write", "bus_read", "bus_push", "select_axis", "select_position", "bus_address",
+    "bus_data", "bus_top_bit", "lost",
+)  # fmt: skip
+
+
+def test_axis_registers(simulator: str) -> None:
+    run(__name__, "passo_axis_registers", {"AXES": AXES}, simulator)
+
+
+async def strobe(
+    dut: HierarchyObject, clocks: Clocks, name: str, place: tuple[str, int, int], data: int = 0
+) -> None:
+    """Access a register: `place` is the block's input, its axis, the address in it."""
+    block, axis, address = place
+    for other in ("select_axis", "select_position"):
+        getattr(dut, other).value = 1 << axis if other == block else 0
+    dut.bus_address.value = address
+    dut.bus_data.value = data
+    dut.bus_top_bit.value = max(0, data.bit_length() - 1)
+    await clocks.wait(1)
+    getattr(dut, name).value = 1
+    await clocks.wait(1)
+    getattr(dut, name).value = 0
+
+
+def places() -> list[tuple[str, int, int]]:
+    """All registers and holes of all axes, and one of nobody."""
+    found = [("select_axis", axis, address) for axis in range(AXES) for address in range(8)]
+    found += [("select_position", axis, axis) for axis in range(AXES)]
+    return [*found, ("nobody", 0, PINS), ("nobody", 0, LOST_STEPS)]
+
+
+@cocotb.test()
+async def every_check_has_its_answer(dut: HierarchyObject) -> None:
+    """Pushes, read-only registers, undefined bits of PINS; one clock later, for one clock."""
+    random = rng("axis registers, checks")
+    clocks = await begin(dut, *INPUTS)
+    for push in (0, 1):
+        dut.bus_push.value = push
+        for place in places():
+            block, _, address = place
+            data = random.choice((PINS_MAX, 1 << random.randrange(32), random.getrandbits(32)))
+            await strobe(dut, clocks, "bus_check", place, data)
+            readable = block == "select_position" or (block == "select_axis" and address == LOST_STEPS)
+            writable = block == "select_axis" and address < LOST_STEPS
+            expected = 0
+            if readable or writable:
+                bad = address == PINS and data > PINS_MAX
+                expected = BAD_OPERATION if push else READ_ONLY if readable else BAD_VALUE if bad else 0
+            assert (read(dut.claim), read(dut.refusal)) == (readable or writable, expected), (place, data)
+            assert (read(dut.read_data), read(dut.answers_position)) == (0, 0)
+            await clocks.wait(1)
+            assert (read(dut.claim), read(dut.refusal)) == (0, 0)
+
+
+@cocotb.test()
+async def every_read_has_its_answer(dut: HierarchyObject) -> None:
+    """The lost steps of the axis that is meant, all bits of them; that the answer is a position; refusals."""
+    random = rng("axis registers, reads")
+    clocks = await begin(dut, *INPUTS)
+    for _ in range(4):
+        lost = random.getrandbits(4 * AXES)
+        dut.lost.value = lost
+        for place in places():
+            block, axis, address = place
+            await strobe(dut, clocks, "bus_read", place)
+            is_lost = block == "select_axis" and address == LOST_STEPS
+            position = block == "select_position"
+            writable = block == "select_axis" and address < LOST_STEPS
+            assert read(dut.read_data) == (lost >> 4 * axis & 0xF if is_lost else 0), place
+            assert read(dut.answers_position) == position
+            expected = (is_lost or position or writable, BAD_OPERATION if writable else 0)
+            assert (read(dut.claim), read(dut.refusal)) == expected, place
+            await clocks.wait(1)
+            assert (read(dut.read_data), read(dut.answers_position)) == (0, 0)
+
+
+@cocotb.test()
+async def every_write_reaches_its_axis(dut: HierarchyObject) -> None:
+    """A strobe for the axis and the register that are meant; which halves of the data are 0 or 1."""
+    random = rng("axis registers, writes")
+    clocks = await begin(dut, *INPUTS)
+    for place in places() * 2:
+        block, axis, address = place
+        halves = [random.choice((0, 1, 2, 1 << random.randrange(16))) for _ in range(2)]
+        for other in ("select_axis", "select_position"):
+            getattr(dut, other).value = 1 << axis if other == block else 0
+        dut.bus_address.value = address
+        dut.bus_data.value = halves[0] << 16 | halves[1]
+        for level in (0, 1):
+            dut.bus_write.value = level
+            await clocks.wait(1)
+            for register, name in enumerate(("write_pins", "write_step_timing", "write_dir_timing")):
+                meant = level and block == "select_axis" and address == register
+                assert read(getattr(dut, name)) == (1 << axis if meant else 0), place
+        assert (read(dut.short_upper), read(dut.short_lower)) == tuple(half < 2 for half in halves)
+        dut.bus_write.value = 0

@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: MIT
+"""passo_channel_registers: which address means what, what is answered, what is written, what is read."""
+
+from random import Random
+
+import cocotb
+from cocotb.handle import HierarchyObject
+
+from cocotb_tests.bench import Clocks, begin, read, rng
+from cocotb_tests.runner import run
+
+AXES = 8
+LINE_QUEUE_LOG2 = RAMP_QUEUE_LOG2 = 8
+BAD_OPERATION, READ_ONLY, BUSY, BAD_VALUE = 4, 6, 8, 9
+COMMAND, RATE_TARGET, RATE_SLEW, STOP_SLEW, DRAIN_VELOCITY = range(5)
+STATE, RATE, ROOM, VELOCITY = range(8, 12)
+LINE, RAMP, POSITIONS, AXIS = 0x20, 0x21, 0x40, 0x80
+CLEAR_OR_ZERO = 0b1100
+LIMITS = {COMMAND: 15, RATE_TARGET: 1 << 16, RATE_SLEW: 1 << 16, STOP_SLEW: 1 << 16, DRAIN_VELOCITY: 1 << 31}
+SETTINGS = {
+    RATE_TARGET: "rate_target",
+    RATE_SLEW: "rate_slew",
+    STOP_SLEW: "stop_slew",
+    DRAIN_VELOCITY: "drain_velocity",
+}
+COMMANDS = ("command_stop", "command_abort", "command_clear", "command_zero")
+STATES = {
+    "state": 3, "cause": 3, "stopping": 1, "overrun": AXES, "drained": 16, "rate": 17, "velocity": 32,
+    "line_room": LINE_QUEUE_LOG2 + 1, "ramp_room": RAMP_QUEUE_LOG2 + 1,
+}  # fmt: skip
+BUS = (
+    "bus_check", "bus_write", "bus_read", "bus_push", "select", "bus_address", "bus_data", "bus_top_bit",
+    "bus_lone_bit",
+)  # fmt: skip
+
+
+def test_channel_registers(simulator: str) -> None:
+    depths = {"LINE_QUEUE_LOG2": LINE_QUEUE_LOG2, "RAMP_QUEUE_LOG2": RAMP_QUEUE_LOG2}
+    run(__name__, "passo_channel_registers", {"AXES": AXES, **depths}, simulator)
+
+
+class Bench:
+    """The module under test."""
+
+    def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
+        self.dut, self.clocks = dut, clocks
+
+    @classmethod
+    async def begin(cls, dut: HierarchyObject) -> "Bench":
+        """Reset."""
+        return cls(dut, await begin(dut, *BUS, "occupied", *STATES))
+
+    async def strobe(self, name: str, address: int, data: int = 0, push: bool = False) -> None:
+        """Put an access on the bus and raise a strobe for a clock; the answer is there on return."""
+        dut = self.dut
+        dut.select.value = 1
+        dut.bus_address.value = address
+        dut.bus_data.value = data
+        dut.bus_top_bit.value = max(data.bit_length() - 1, 0)
+        dut.bus_lone_bit.value = data.bit_count() <= 1
+        dut.bus_push.value = push
+        await self.clocks.wait(2)
+        getattr(dut, name).value = 1
+        await self.clocks.wait(1)
+        getattr(dut, name).value = 0
+
+    def answer(self) -> tuple[int, int]:
+        """Claim and refusal."""
+        return read(self.dut.claim), read(self.dut.refusal)
+
+
+def expected_answer(address: int, data: int, push: bool, occupied: bool) -> tuple[int, int]:
+    """What a check is answered."""
+    queue = address in (LINE, RAMP)
+    if not queue and address not in LIMITS and address not in (STATE, RATE, ROOM, VELOCITY):
+        return 0, 0
+    if push != queue:
+        return 1, BAD_OPERATION
+    if address >= STATE and not queue:
+        return 1, READ_ONLY
+    if data > LIMITS.get(address, data):
+        return 1, BAD_VALUE
+    return 1, BUSY if address == COMMAND and data & CLEAR_OR_ZERO and occupied else 0
+
+
+def random_data(random: Random) -> int:
+    """Numbers of all magnitudes, and those at the limits."""
+    limit = random.choice(list(LIMITS.values()))
+    return random.choice((limit, limit + 1, limit - 1, random.getrandbits(random.randint(1, 32))))
+
+
+@cocotb.test()
+async def every_address_means_its_block(dut: HierarchyObject) -> None:
+    """One bit for the axis or position that is meant, pushes to a queue, and nothing while not selected."""
+    bench = await Bench.begin(dut)
+    for selected in (1, 0):
+        for address in range(0x100):
+            for push in (0, 1):
+                dut.select.value = selected
+                dut.bus_address.value = address
+                dut.bus_push.value = push
+                await bench.clocks.wait(1)
+                axis, position = address - AXIS >> 3, address - POSITIONS
+                assert read(dut.select_axis) == (selected << axis if 0 <= axis < AXES else 0)
+                assert read(dut.select_position) == (selected << position if 0 <= position < AXES else 0)
+                assert read(dut.select_line_queue) == (selected and push and address == LINE)
+                assert read(dut.select_ramp_queue) == (selected and push and address == RAMP)
+
+
+@cocotb.test()
+async def every_check_has_its_answer(dut: HierarchyObject) -> None:
+    """Every address, written and pushed to, with values around the limits; a clock later, for a clock."""
+    random = rng("channel registers, checks")
+    bench = await Bench.begin(dut)
+    for _ in range(3):
+        for address in (*range(0x30), POSITIONS, AXIS, 0xFF):
+            for push in (False, True):
+                data, occupied = random_data(random), random.random() < 0.5
+                dut.occupied.value = occupied
+                await bench.strobe("bus_check", address, data, push)
+                expected = expected_answer(address, data, push, occupied)
+                assert bench.answer() == expected, f"{address:#x} {data:#x} {push=} {occupied=}"
+                await bench.clocks.wait(1)
+                assert bench.answer() == (0, 0)
+    for command in range(17):
+        for occupied in (False, True):
+            dut.occupied.value = occupied
+            await bench.strobe("bus_check", COMMAND, command)
+            assert bench.answer() == expected_answer(COMMAND, command, False, occupied), command
+    dut.select.value = 0
+    dut.bus_address.value = RATE_TARGET
+    await bench.clocks.wait(2)
+    dut.bus_check.value = 1
+    await bench.clocks.wait(1)
+    assert bench.answer() == (0, 0)
+
+
+@cocotb.test()
+async def what_is_written_stands(dut: HierarchyObject) -> None:
+    """Settings stay as they were written last; a command lasts one clock; no other write does anything."""
+    random = rng("channel registers, writes")
+    bench = await Bench.begin(dut)
+    settings = {RATE_TARGET: 1 << 16, RATE_SLEW: 0x400, STOP_SLEW: 0x400, DRAIN_VELOCITY: 1 << 24}
+    for _ in range(300):
+        address = random.choice((*range(12), LINE, RAMP, POSITIONS + RATE_TARGET, AXIS + RATE_TARGET))
+        data = random.getrandbits(32 if address == DRAIN_VELOCITY else 17)
+        await bench.strobe("bus_write", address, data)
+        if address in settings:
+            settings[address] = data
+        assert {n: read(getattr(dut, name)) for n, name in SETTINGS.items()} == settings
+        for clock in range(2):
+            now = [read(getattr(dut, name)) for name in COMMANDS]
+            wanted = data if address == COMMAND and clock == 0 else 0
+            assert now == [wanted >> bit & 1 for bit in range(4)]
+            await bench.clocks.wait(1)
+
+
+@cocotb.test()
+async def states_are_read_as_they_are(dut: HierarchyObject) -> None:
+    """All bits of all of them, for one clock; a read of anything else is refused or has no answer."""
+    random = rng("channel registers, reads")
+    bench = await Bench.begin(dut)
+    for _ in range(100):
+        values = {
+            name: random.choice((0, (1 << bits) - 1, random.getrandbits(bits)))
+            for name, bits in STATES.items()
+        }
+        for name, value in values.items():
+            getattr(dut, name).value = value
+        v = values
+        words = {
+            STATE: v["drained"] << 16 | v["overrun"] << 8 | v["stopping"] << 7 | v["cause"] << 4 | v["state"],
+            RATE: v["rate"],
+            ROOM: v["line_room"] << 16 | v["ramp_room"],
+            VELOCITY: v["velocity"],
+        }
+        address = random.choice((*words, *words, *range(0x30)))
+        await bench.strobe("bus_read", address)
+        assert read(dut.read_data) == words.get(address, 0)
+        known = expected_answer(address, 0, False, False)[0]
+        assert bench.answer() == (known, BAD_OPERATION if known and address not in words else 0)
+        await bench.clocks.wait(1)
+        assert read(dut.read_data) == 0

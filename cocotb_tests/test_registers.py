@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: MIT
+"""passo_registers: what is answered, RUN of every channel, the status word of any room."""
+
+from random import Random
+
+import cocotb
+import pytest
+from cocotb.handle import HierarchyObject
+from passo import registers as r
+
+from cocotb_tests.bench import Clocks, begin, read, rng
+from cocotb_tests.runner import run
+
+AXES, TICK_LOG2, LINE_QUEUE_LOG2, RAMP_QUEUE_LOG2 = 8, 16, 8, 7
+BAD_OPERATION, READ_ONLY, BAD_VALUE = 4, 6, 9
+REGISTERS = range(6)
+RUN = 3
+DATA = 0x7FFFF  # what RUN has; of the rest only the highest bit is known
+ROOM_SHOWN = 255  # at most
+INPUTS = (
+    "bus_check", "bus_write", "bus_read", "bus_push", "bus_address", "bus_data", "bus_top_bit",
+    "last_sequence", "any_stopped", "any_occupied", "line_room", "ramp_room",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("channels", [1, 8])
+def test_registers(simulator: str, channels: int) -> None:
+    parameters = {
+        "CHANNELS": channels,
+        "AXES": AXES,
+        "TICK_LOG2": TICK_LOG2,
+        "LINE_QUEUE_LOG2": LINE_QUEUE_LOG2,
+        "RAMP_QUEUE_LOG2": RAMP_QUEUE_LOG2,
+    }
+    run(__name__, "passo_registers", parameters, simulator)
+
+
+class Bench:
+    """The module under test."""
+
+    def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
+        self.dut, self.clocks = dut, clocks
+        self.channels = len(dut.run)
+
+    @classmethod
+    async def begin(cls, dut: HierarchyObject) -> "Bench":
+        """Reset."""
+        return cls(dut, await begin(dut, *INPUTS))
+
+    async def strobe(self, name: str, address: int, data: int = 0, push: bool = False) -> None:
+        """Put an access on the bus and raise a strobe for a clock; the answer is there on return."""
+        dut = self.dut
+        dut.bus_address.value = address
+        dut.bus_data.value = data & DATA
+        dut.bus_top_bit.value = max(0, data.bit_length() - 1)
+        dut.bus_push.value = push
+        await self.clocks.wait(2)
+        getattr(dut, name).value = 1
+        await self.clocks.wait(1)
+        getattr(dut, name).value = 0
+
+    def good_run(self, random: Random) -> int:
+        """A word that RUN takes."""
+        bits = [random.getrandbits(self.channels) for _ in range(2)]
+        return random.randrange(self.channels) << 16 | bits[1] << 8 | bits[0]
+
+    def takes(self, word: int) -> bool:
+        """It has bits of channels that are there only."""
+        run, wait, status = word & 0xFF, word >> 8 & 0xFF, word >> 16 & 7
+        return word >> 19 == 0 and max(run, wait) >> self.channels == 0 and status < self.channels
+
+
+@cocotb.test()
+async def every_check_has_its_answer(dut: HierarchyObject) -> None:
+    """Written and pushed to, registers and holes, good words of RUN and those with a bit too many."""
+    random = rng("registers, checks")
+    bench = await Bench.begin(dut)
+    for _ in range(20):
+        for address in (*REGISTERS, 6, 7, 0x13, 0x103, 0xFFF):
+            push = random.random() < 0.2
+            word = bench.good_run(random) ^ random.choice((0, 0, 1 << random.randrange(32)))
+            await bench.strobe("bus_check", address, word, push)
+            known = address in REGISTERS
+            refusal = 0 if bench.takes(word) else BAD_VALUE
+            expected = BAD_OPERATION if push else READ_ONLY if address != RUN else refusal
+            assert (read(dut.claim), read(dut.refusal)) == (known, expected if known else 0), hex(address)
+            await bench.clocks.wait(1)
+            assert (read(dut.claim), read(dut.refusal)) == (0, 0)
+            assert read(dut.is_counters) == (address in (4, 5))
+
+
+@cocotb.test()
+async def run_is_written_and_read(dut: HierarchyObject) -> None:
+    """RUN and WAIT_SYNC of every channel, STATUS_CHANNEL; the other registers are what was built."""
+    random = rng("registers, run")
+    bench = await Bench.begin(dut)
+    parameters = (
+        RAMP_QUEUE_LOG2 << r.PARAMETERS_RAMP_QUEUE_LOG2_LSB
+        | LINE_QUEUE_LOG2 << r.PARAMETERS_LINE_QUEUE_LOG2_LSB
+        | TICK_LOG2 << r.PARAMETERS_TICK_LOG2_LSB
+        | AXES << r.PARAMETERS_AXES_LSB
+        | bench.channels
+    )
+    version = r.VERSION_MAJOR_RESET << 16 | r.VERSION_MINOR_RESET << 8 | r.VERSION_PATCH_RESET
+    for _ in range(60):
+        word = bench.good_run(random)
+        await bench.strobe("bus_write", RUN, word)
+        assert read(dut.run) == word & 0xFF and read(dut.wait_sync) == word >> 8 & 0xFF
+        # of another register nothing is written
+        await bench.strobe("bus_write", random.choice((0, 2, 4, 0x103)), ~word & 0x7FFFF)
+        for address, expected in enumerate((r.IDENTIFICATION_RESET, version, parameters, word)):
+            await bench.strobe("bus_read", address)
+            assert (read(dut.claim), read(dut.refusal), read(dut.read_data)) == (1, 0, expected)
+            await bench.clocks.wait(1)
+            assert read(dut.claim) == 0
+
+
+@cocotb.test()
+async def the_status_word_has_it_all(dut: HierarchyObject) -> None:
+    """Whenever nothing is read: state, sequence, the room of the chosen channel, 255 for more."""
+    random = rng("registers, status")
+    bench = await Bench.begin(dut)
+    for _ in range(200):
+        depths = {"line_room": LINE_QUEUE_LOG2, "ramp_room": RAMP_QUEUE_LOG2}
+        rooms = {
+            name: [random.choice((0, 1 << log2, random.randrange(1 << log2))) for _ in range(bench.channels)]
+            for name, log2 in depths.items()
+        }
+        for name, log2 in depths.items():
+            packed = sum(room << (log2 + 1) * n for n, room in enumerate(rooms[name]))
+            getattr(dut, name).value = packed
+        chosen = random.randrange(bench.channels)
+        stopped, occupied, sequence = random.randrange(2), random.randrange(2), random.randrange(256)
+        dut.any_stopped.value, dut.any_occupied.value = stopped, occupied
+        dut.last_sequence.value = sequence
+        await bench.strobe("bus_write", RUN, chosen << 16)
+        shown = [min(rooms[name][chosen], ROOM_SHOWN) for name in depths]
+        assert read(dut.read_data) == (
+            2 << 30
+            | stopped << 29
+            | occupied << 28
+            | chosen << 24
+            | sequence << 16
+            | shown[0] << 8
+            | shown[1]
+        )
