@@ -7,8 +7,8 @@
 // once or, while wait_sync is set, with a sync edge; so channels that are ARMED start together when one write
 // clears their wait_sync. It ends when its profile has ended and its line has ended (or is ENDLESS); what the
 // line still lacks is drained and counted. A stop is soft (the rate goes to 0 first) for COMMAND.STOP and
-// RAMP_UNDERRUN, else at once. On the same clock ABORT wins, then STEP_OVERRUN, LINE_UNDERRUN, a soft stop; a
-// stop wins over the end of the motion.
+// RAMP_UNDERRUN, else the channel is STOPPED two clocks later. On the same clock ABORT wins, then STEP_OVERRUN,
+// LINE_UNDERRUN, a soft stop; a stop wins over the end of the motion.
 //
 // `running` is the motion as seen at the STEP pins: it rises 7 clocks after RUN begins and falls one clock
 // after SETTLE, so that it is high for as many clocks as the profile has, and until the last drained step has
