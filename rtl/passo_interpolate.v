@@ -70,5 +70,9 @@ module passo_interpolate (
     if (load_fraction) fraction <= linear ? progress[32:8] : {sum[23:0], low[22]} | {25{sum[24]}};
   end
 
+`ifdef FORMAL
+  `include "passo_interpolate_formal.vh"
+`endif
+
 endmodule
 `resetall
