@@ -35,7 +35,6 @@ reg         f_there;
 reg         f_valid;
 reg         f_now;  // a NOW ramp waits ...
 reg         f_oldest_now;  // ... and is the oldest
-reg         f_taken_now;  // and no velocity was made since
 reg  [15:0] f_control;
 reg  [47:0] f_end;
 reg  [31:0] f_ticks;
@@ -58,10 +57,9 @@ always @(posedge clk) begin
   if (f_new_now) f_oldest_now <= (!f_there && !f_take_now) || (f_take && !f_more);
   else if (f_take) f_oldest_now <= f_now & f_more_now;
   else if (f_take_now) f_oldest_now <= 1'b0;
-  f_taken_now <= (f_taken_now | f_take_now) & ~(ready & ~f_ready_q);
   if (f_take && f_now) assume (f_more);
   if (f_take_now) f_there <= 1'b1;
-  if (rst || stop) {f_there, f_now, f_taken_now} <= 3'b000;
+  if (rst || stop) {f_there, f_now} <= 2'b00;
   if (rst) f_valid <= 1'b0;
   case (ramp_half_index)
     4'd0:    f_word <= f_end[47:32];
@@ -76,8 +74,6 @@ always @(posedge clk) begin
   assume (ramp_now_pending == f_now);
   f_half <= f_word;
   assume (ramp_half == f_half);
-  // no NOW ramp until the velocity after the last one is made
-  if (f_taken_now || f_take_now) assume (!f_new_now);
 end
 
 always @(posedge clk)
@@ -204,7 +200,7 @@ always @(posedge clk)
     if (f_motion == F_REST) `HOLDS (f_is_choose && !ready && ends_next || f_stop_q && !$past(f_begun));
     if (f_motion == F_REST && !f_stop_q) `HOLDS (!moving);
     `HOLDS (f_motion <= F_RUNS);
-    if (f_motion == F_REST) `HOLDS (f_made_now == 32'd0 && f_over_for == 4'd0 && !f_last && !f_taken_now);
+    if (f_motion == F_REST) `HOLDS (f_made_now == 32'd0 && f_over_for == 4'd0 && !f_last);
     if (f_now) `HOLDS (f_there);
   end
 always @(posedge clk)
@@ -249,7 +245,6 @@ always @(posedge clk)
     endcase
     // NOW ramps
     if ((loaded && !f_is_take) || f_is_fetch || (f_is_take && count <= 6'd4)) `HOLDS (!(f_now && f_oldest_now));
-    if (f_taken_now) `HOLDS (!f_now && !f_ready_q && !ramp_take_now);
     // ticks
     if (loaded && (f_is_choose || f_is_look_up || f_is_shape || f_is_step || (f_is_scale && count <= 6'd2)))
       `HOLDS (f_counted == {1'b0, f_made_now} + 33'd1 && !over && f_made_now < f_ticks);
@@ -287,21 +282,22 @@ always @(posedge clk)
       `HOLDS (f_bit == (count >= 6'd2 ? count - 6'd2 : 6'd0));
     end
     if (f_is_choose && !ready) `HOLDS (!moving && !interpolated_bit && !f_b);
-    // the present velocity moves to v_start
+    // the present velocity turns once while v_start takes it, in two halves
     if (f_is_copy || (f_is_choose && start_copy)) begin
       `HOLDS (!loaded && !ready);
-      if (!f_taken_now && !ramp_take_now) `HOLDS (f_start == 48'd0 && f_present == 48'd0);
       if (count >= 6'd2) `HOLDS (!moving && !interpolated_bit && !f_b && f_addend == 25'd0 && !f_both);
       if (count == 6'd1) `HOLDS (ramp_take_now ? velocity_next == f_present : clear && result_move && f_start == 48'd0);
       for (k = 0; k <= 23; k = k + 1)
         if (count == k + 2) begin
-          `HOLDS (velocity_next == f_start >> k);
+          `HOLDS (f_start == f_present);
+          `HOLDS (velocity_next[47:24] == (f_start[47:24] >> k | f_start[47:24] << (24 - k)));
+          `HOLDS (velocity_next[23:0] == (f_start[23:0] >> k | f_start[23:0] << (24 - k)));
           `HOLDS ((f_v_start[47:24] ^ (f_start[47:24] << (24 - k))) >> (24 - k) == 24'd0);
           `HOLDS ((f_v_start[23:0] ^ (f_start[23:0] << (24 - k))) >> (24 - k) == 24'd0);
         end
     end
-    if (!ready && !f_taken_now && (f_is_choose || f_is_fetch || f_is_take || f_is_step))
-      `HOLDS (velocity_next == f_present && (!result_move || start_copy));
+    if (!ready && ((f_is_choose && !start_copy) || f_is_fetch || f_is_take || f_is_step))
+      `HOLDS (velocity_next == f_present && !result_move);
     // without a ramp the bits of v_start become the velocity
     if (f_is_scale && !loaded) begin
       if (count == 6'd1) `HOLDS (!moving && !interpolated_bit && !f_b);
