@@ -9,8 +9,9 @@
 //   addend:  neither 0,  only b f,  only a 1 - f,  both 1          hence a * (1 - f) + b * f, and no sign
 //
 // While `moving` the bits come in on a_bit and b_bit (while `shaping` they are the points, loaded by
-// `load_points`). A bit is in the sum 2 clocks later. `result_move` moves the sum into the result, or empties both if `clear`, or turns its halves if nothing is `moving`; after n bits and
-// 2 clocks the result is {sum, low}: the integer part from bit 48 - n + 24 on, the fraction below.
+// `load_points`). A bit is in the sum 2 clocks later. `result_move` moves the sum into the result, or empties
+// both if `clear`, or turns the two halves of the result if nothing is `moving`; after n bits and 2 clocks the
+// result is {sum, low}: the integer part from bit 48 - n + 24 on, the fraction below.
 // `load_fraction` takes f for the velocities: progress itself if `linear`, else what lies in the result of the
 // points, rounded to 2^-24.
 `resetall
