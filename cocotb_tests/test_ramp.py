@@ -328,6 +328,30 @@ async def the_latest_now_wins(dut: HierarchyObject) -> None:
 
 
 @cocotb.test()
+async def a_second_now_ramp_starts_from_the_present_velocity_as_well(dut: HierarchyObject) -> None:
+    """Two ramps with NOW in a row: wherever the tick ends between them, the velocity is not lost."""
+    bench = await Ramps.begin(dut)
+    old = [Ramp(V_MAX, 20), Ramp(0, 9, last=True)]
+    now = [Ramp(V_MAX // 5, 3, Shape.SIGMOID, now=True), Ramp(0, 2, Shape.COSINE, now=True, last=True)]
+    before = list(islice(velocities(old), 7))
+    expected = [*before, *velocities(now[1:], before[-1])]
+    for clock in range(80, 112, 4):
+        await bench.push(*old)
+        await bench.start()
+
+        async def late(clock: int = clock, begun: list[int] = bench.enabled_clocks) -> None:
+            while len(begun) < 5 * TICK + clock:
+                await bench.clocks.wait(1)
+            for ramp in now:
+                await bench.bus.write(ramp.words())
+
+        cocotb.start_soon(late())
+        await bench.advance(len(expected) * TICK)
+        bench.compare(expected)
+        await bench.compare_end()
+
+
+@cocotb.test()
 async def the_last_ramp_ends_the_profile_and_later_ones_wait(dut: HierarchyObject) -> None:
     """What comes after LAST belongs to the next motion, which begins from 0."""
     bench = await Ramps.begin(dut)

@@ -9,8 +9,9 @@
 //   addend:  neither 0,  only b f,  only a 1 - f,  both 1          hence a * (1 - f) + b * f, and no sign
 //
 // While `moving` the bits come in on a_bit and b_bit (while `shaping` they are the points, loaded by
-// `load_points`). A bit is in the sum 2 clocks later. `result_move` moves the sum into the result, or empties both if `clear`; after n bits and
-// 2 clocks the result is {sum, low}: the integer part from bit 48 - n + 24 on, the fraction below.
+// `load_points`). A bit is in the sum 2 clocks later. `result_move` moves the sum into the result, or empties
+// both if `clear`, or turns the two halves of the result if nothing is `moving`; after n bits and 2 clocks the
+// result is {sum, low}: the integer part from bit 48 - n + 24 on, the fraction below.
 // `load_fraction` takes f for the velocities: progress itself if `linear`, else what lies in the result of the
 // points, rounded to 2^-24.
 `resetall
@@ -61,7 +62,8 @@ module passo_interpolate (
     both <= a & b;
 
     if (result_move) begin
-      sum <= clear ? 25'd0 : {sum_next[24] | both, sum_next[23:0]};
+      // while nothing comes in, each half of the result turns: after 24 clocks it stands as before
+      sum <= clear ? 25'd0 : {sum_next[24] | both | (~moving & sum[1]), sum_next[23:1], moving ? sum_next[0] : low[0]};
       low <= clear ? 23'd0 : {sum[0], low[22:1]};
     end
     if (load_points) low <= {6'd0, point_is_last, point_is_last ? 16'd0 : point_next};
@@ -69,6 +71,10 @@ module passo_interpolate (
     // sum(24): the points gave 1.0
     if (load_fraction) fraction <= linear ? progress[32:8] : {sum[23:0], low[22]} | {25{sum[24]}};
   end
+
+`ifdef FORMAL
+  `include "passo_interpolate_formal.vh"
+`endif
 
 endmodule
 `resetall

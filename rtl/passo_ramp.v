@@ -281,5 +281,9 @@ module passo_ramp #(
     end
   end
 
+`ifdef FORMAL
+  `include "passo_ramp_formal.vh"
+`endif
+
 endmodule
 `resetall

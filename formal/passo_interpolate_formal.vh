@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+// What the interpolation promises; included at the end of passo_interpolate.
+
+// --- Assumptions: it is used as the ramp does, first for the points of a table (or not), then for velocities
+localparam [1:0] F_REST = 2'd0;
+localparam [1:0] F_LOADED = 2'd1;  // the points are
+localparam [1:0] F_SHAPE = 2'd2;
+localparam [1:0] F_SCALE = 2'd3;
+localparam [5:0] F_SHAPE_CLOCKS = 6'd19;
+localparam [5:0] F_SCALE_CLOCKS = 6'd50;
+`ifdef SMALL
+reg       f_begun = 1'b1;
+reg [1:0] f_phase;
+reg [1:0] f_rested;  // clocks of rest, up to 3
+`else
+reg       f_begun = 1'b0;
+reg [1:0] f_phase = F_REST;
+reg [1:0] f_rested = 2'd0;
+`endif
+reg [5:0] f_clock;  // of the phase, from 1
+reg       f_shaped;
+(* anyseq *) reg f_go;
+wire f_scale_begins = f_phase == F_SCALE && f_clock == 6'd1;
+always @(posedge clk) begin
+  f_begun   <= 1'b1;
+  f_clock   <= f_clock + 6'd1;
+  f_rested  <= f_phase != F_REST ? 2'd0 : f_rested == 2'd3 ? 2'd3 : f_rested + 2'd1;
+  case (f_phase)
+    F_REST:
+    if (load_points) f_phase <= F_LOADED;
+    else if (f_go && f_rested == 2'd3) begin
+      f_phase  <= F_SCALE;
+      f_clock  <= 6'd1;
+      f_shaped <= 1'b0;
+    end
+    F_LOADED: begin
+      f_phase <= F_SHAPE;
+      f_clock <= 6'd1;
+    end
+    F_SHAPE:
+    if (f_clock == F_SHAPE_CLOCKS) begin
+      f_phase  <= F_SCALE;
+      f_clock  <= 6'd1;
+      f_shaped <= 1'b1;
+    end
+    F_SCALE: if (f_clock == F_SCALE_CLOCKS) f_phase <= F_REST;
+  endcase
+  assume (moving == (f_phase == F_SHAPE || f_phase == F_SCALE));
+  assume (shaping == (f_phase == F_SHAPE));
+  assume (load_fraction == f_scale_begins);
+  if (f_phase != F_REST) assume (clear == f_scale_begins && result_move == moving);
+  if (load_points) assume (f_phase == F_REST && f_rested == 2'd3 && clear && result_move);
+  if (f_phase == F_LOADED || f_phase == F_SHAPE || (f_scale_begins && f_shaped)) assume ($stable(progress));
+  if (f_scale_begins) assume (linear == !f_shaped);
+end
+
+// --- a (1 - f) + b f: the products of the bits of a and b, from the lowest, in exact numbers. After each bit all
+// moves down by one place and nothing is lost; the last of 48 bits stands at 2^(47 + 24).
+reg  [15:0] f_point;
+reg  [16:0] f_next;
+reg  [24:0] f_fraction;  // of velocities, 0 .. 2^24
+wire [24:0] f_at = {1'b0, progress[24:1]} + {24'd0, progress[0]};  // of points
+wire [24:0] f_f = f_phase == F_SHAPE || (f_scale_begins && f_shaped) ? f_at : f_fraction;
+reg         f_a, f_b, f_a_q, f_b_q;  // the bits, one and two clocks ago
+reg  [71:0] f_product;
+wire [24:0] f_bits_product = (f_a_q ? 25'h1000000 - f_f : 25'd0) + (f_b_q ? f_f : 25'd0);
+wire [71:0] f_product_next = {1'b0, f_product[71:1]} + {f_bits_product, 47'd0};
+wire        f_counts = (f_phase == F_SHAPE || f_phase == F_SCALE) && f_clock >= 6'd3;
+always @(posedge clk) begin
+  if (load_points) begin
+    f_point <= point;
+    f_next  <= point_is_last ? 17'h10000 : {1'b0, point_next};
+  end else if (f_phase == F_SHAPE) begin
+    f_point <= f_point >> 1;
+    f_next  <= f_next >> 1;
+  end
+  f_a   <= f_phase == F_SHAPE ? f_point[0] : f_phase == F_SCALE ? a_bit : 1'b0;
+  f_b   <= f_phase == F_SHAPE ? f_next[0] : f_phase == F_SCALE ? b_bit : 1'b0;
+  f_a_q <= f_a;
+  f_b_q <= f_b;
+  f_product <= f_counts ? f_product_next : 72'd0;
+  // rounded to the nearest 2^-24, ties up
+  if (f_scale_begins) f_fraction <= f_shaped ? {1'b0, f_product[71:47]} + f_product[46] : {1'b0, progress[32:9]} + progress[8];
+end
+
+reg f_done;  // the last of 48 bits is in the result
+reg [47:0] f_velocity;
+always @(posedge clk) begin
+  f_done     <= f_phase == F_SCALE && f_clock == F_SCALE_CLOCKS;
+  f_velocity <= f_product_next[71:24];
+  if (f_begun) begin
+    if (f_done && $past(f_begun)) interpolates_exactly : assert (result == f_velocity);
+    if (f_phase == F_SCALE && !f_scale_begins)
+      fraction_as_rounded : assert ({1'b0, fraction[24:1]} + {24'd0, fraction[0]} == f_fraction);
+    if ((f_phase == F_SHAPE || f_phase == F_SCALE) && f_clock >= 6'd2) bit_is_told : assert (a == f_a);
+  end
+end
+
+// --- What the induction needs to know of the circuit. The search for planted bugs begins in any state of which
+// this is true for F_GIVEN clocks.
+`ifdef INVARIANTS
+`define HOLDS assert
+`else
+`define HOLDS if (f_age != F_GIVEN) assume
+`endif
+localparam [2:0] F_GIVEN = 3'd3;  // the depth of the induction
+reg [2:0] f_age = 3'd0;
+always @(posedge clk) if (f_age != F_GIVEN) f_age <= f_age + 3'd1;
+reg f_last_point;
+always @(posedge clk) if (load_points) f_last_point <= point_is_last;
+wire [24:0] f_of_bit = f_phase == F_SHAPE ? progress[24:0] : fraction;
+integer k;
+always @(posedge clk)
+  if (f_begun) begin
+    if (f_phase == F_SHAPE) `HOLDS (f_clock >= 6'd1 && f_clock <= F_SHAPE_CLOCKS);
+    if (f_phase == F_SCALE) `HOLDS (f_clock >= 6'd1 && f_clock <= F_SCALE_CLOCKS);
+    if (f_phase != F_REST || f_rested >= 2'd2) `HOLDS (a == f_a && b == f_b);
+    if (f_phase == F_REST && f_rested >= 2'd2) `HOLDS (!a && !b);
+    if (f_phase == F_REST && f_rested == 2'd3) `HOLDS (addend == 25'd0 && !both);
+    if (f_phase == F_LOADED || (f_phase == F_SHAPE && f_clock == 6'd1) || (f_scale_begins && !f_shaped))
+      `HOLDS (!a && !b && addend == 25'd0 && !both);
+    // points
+    if (f_phase == F_LOADED) `HOLDS (sum == 25'd0 && a_point == f_point && low == {6'd0, f_next});
+    if (f_phase == F_LOADED) `HOLDS (f_last_point ? f_next == 17'h10000 : !f_next[16]);
+    if (f_phase == F_SHAPE) begin
+      `HOLDS (a_point == f_point);
+      if (f_clock <= 6'd3) `HOLDS (sum == 25'd0);
+      if (f_clock == 6'd2) `HOLDS (addend == 25'd0 && !both);
+      for (k = 1; k <= 19; k = k + 1)
+        if (f_clock == k) begin
+          `HOLDS (((low ^ f_next) & ((23'd1 << (24 - k)) - 23'd1)) == 23'd0 || k == 1);
+          `HOLDS (f_point <= 16'hFFFF >> (k - 1));
+          `HOLDS (f_last_point ? f_next == 17'h10000 >> (k - 1) : f_next <= 17'h0FFFF >> (k - 1));
+        end
+      if (f_clock == 6'd1) `HOLDS (low == {6'd0, f_next});
+      if (f_clock >= 6'd2) `HOLDS (f_b == (f_clock == 6'd18) || !f_last_point);
+      if (f_clock >= 6'd3) `HOLDS (f_b_q == (f_clock == 6'd19) || !f_last_point);
+      if (f_clock == 6'd18) `HOLDS (!f_a && f_b == f_last_point);
+      if (f_clock == 6'd19) `HOLDS (!f_a && !f_b && !f_a_q && f_b_q == f_last_point);
+      if (f_clock >= 6'd3) `HOLDS ({sum, low[22]} == f_product[71:46]);
+      if (f_clock >= 6'd3 && f_last_point) `HOLDS (f_product[71:0] <= {25'h1000000 - f_at, 48'd0});
+    end
+    if (f_scale_begins && f_shaped) begin
+      `HOLDS (!a && !b && {sum, low[22]} == f_product[71:46] && (!sum[24] || {sum[23:0], low[22]} == 25'd0));
+    end
+    // velocities
+    if (f_phase == F_SCALE && f_clock == 6'd2) `HOLDS (addend == 25'd0 && !both);
+    if (f_phase == F_SCALE && (f_clock == 6'd2 || f_clock == 6'd3)) `HOLDS (sum == 25'd0);
+    // both
+    if (f_counts) begin
+      `HOLDS (addend == (f_a_q == f_b_q ? 25'd0 : f_of_bit ^ {25{f_a_q}}) && both == (f_a_q && f_b_q));
+      if (f_phase == F_SCALE) `HOLDS (result == f_product[71:24]);
+    end
+  end

@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: MIT
+// What the ramp promises; included at the end of passo_ramp.
+
+// --- Assumptions: motion and timescale
+localparam [1:0] F_REST = 2'd0;
+localparam [1:0] F_PREPARED = 2'd1;  // the first velocity is made, or waits
+localparam [1:0] F_RUNS = 2'd2;
+`ifdef SMALL
+reg       f_begun = 1'b1;
+`else
+reg       f_begun = 1'b0;
+`endif
+reg [1:0] f_motion;
+reg       f_stop_q;
+reg       f_ready_q;
+reg       f_loaded_q;
+always @(posedge clk) begin
+  f_begun    <= 1'b1;
+  f_stop_q   <= rst | stop;
+  f_ready_q  <= ready;
+  f_loaded_q <= loaded;
+  if (prepare) f_motion <= F_PREPARED;
+  if (begin_profile) f_motion <= F_RUNS;
+  if (ended || rst || stop) f_motion <= F_REST;
+  assume (rst == !f_begun);
+  if (rst || stop) assume (!prepare && !begin_profile && !drain && !advance);
+  if (prepare) assume (f_motion == F_REST && !f_stop_q && !drain);
+  if (begin_profile) assume (f_motion == F_PREPARED && f_ready_q);
+  if (drain) assume (f_motion == F_REST);
+  if (advance) assume (!stall && (f_motion == F_RUNS || drain));
+end
+
+// --- Assumptions: the ramp queue, as it promises to be. Of all ramps only the oldest one can be seen.
+reg         f_there;
+reg         f_valid;
+reg         f_now;  // a NOW ramp waits ...
+reg         f_oldest_now;  // ... and is the oldest
+reg  [15:0] f_control;
+reg  [47:0] f_end;
+reg  [31:0] f_ticks;
+reg  [15:0] f_word;
+reg  [15:0] f_half;  // two clocks after its index
+(* anyseq *) reg f_arrives;
+(* anyseq *) reg f_arrives_now;
+(* anyseq *) reg f_more;  // behind the oldest ramp there is another one
+(* anyseq *) reg f_more_now;  // which is the NOW ramp
+(* anyseq *) reg [95:0] f_another;
+(* anyseq *) reg [15:0] f_any_half;
+wire f_take = ramp_take & ~stop;
+wire f_take_now = ramp_take_now & ~stop;
+wire f_new_now = f_arrives & f_arrives_now;
+always @(posedge clk) begin
+  if (!f_there || f_take || f_take_now) {f_control, f_end, f_ticks} <= f_another;
+  f_there <= (f_take ? f_more : f_there) | f_arrives;
+  f_valid <= f_there;
+  f_now   <= (f_now & ~f_take_now) | f_new_now;
+  if (f_new_now) f_oldest_now <= (!f_there && !f_take_now) || (f_take && !f_more);
+  else if (f_take) f_oldest_now <= f_now & f_more_now;
+  else if (f_take_now) f_oldest_now <= 1'b0;
+  if (f_take && f_now) assume (f_more);
+  if (f_take_now) f_there <= 1'b1;
+  if (rst || stop) {f_there, f_now} <= 2'b00;
+  if (rst) f_valid <= 1'b0;
+  case (ramp_half_index)
+    4'd0:    f_word <= f_end[47:32];
+    4'd1:    f_word <= f_control;
+    4'd2:    f_word <= f_end[31:16];
+    4'd3:    f_word <= f_end[15:0];
+    4'd4:    f_word <= ~f_ticks[31:16];
+    4'd5:    f_word <= ~f_ticks[15:0];
+    default: f_word <= f_any_half;
+  endcase
+  assume (ramp_valid == f_valid);
+  assume (ramp_now_pending == f_now);
+  f_half <= f_word;
+  assume (ramp_half == f_half);
+end
+
+always @(posedge clk)
+  if (f_begun) begin
+    if (ramp_take) takes_what_is_there : assert (f_there && !ramp_take_now && !(f_now && f_oldest_now));
+    if (ramp_take_now) takes_now_when_told : assert (f_now);
+  end
+
+// --- Ticks: velocities that were made from the oldest ramp
+reg  [31:0] f_made;
+reg  [ 3:0] f_over_for;  // clocks since the last of them was made, from 1
+wire        f_makes = ready & ~f_ready_q & ~ends_next;  // a velocity becomes ready
+wire [31:0] f_made_now = f_made + {31'd0, f_makes & f_loaded_q};
+wire        f_all_made = f_makes && f_loaded_q && f_made_now == f_ticks;
+always @(posedge clk) begin
+  f_made     <= f_made_now;
+  f_over_for <= f_all_made || (f_over_for != 4'd0 && f_over_for != 4'd15) ? f_over_for + 4'd1 : f_over_for;
+  if (f_take || f_take_now || rst || stop) begin
+    f_made     <= 32'd0;
+    f_over_for <= 4'd0;
+  end
+  if (f_begun) begin
+    if (f_take) ticks_exact : assert (f_made_now == f_ticks);
+    if (f_there && f_motion != F_REST) never_more_ticks : assert (f_made_now <= f_ticks);
+    leaves_when_over : assert (f_over_for < 4'd8);
+  end
+end
+
+// --- Velocities: where the ramps are, and what counts now
+reg  [47:0] f_start;  // v_end of the ramp that left last
+reg  [47:0] f_present;
+reg         f_without;  // the velocity that is ready was made without a ramp
+reg  [ 5:0] f_bit;
+(* keep *) wire f_a_bit;
+(* keep *) wire f_b_bit;
+wire        f_takes_end = loaded & mirror;
+always @(posedge clk) begin
+  if (f_take_now) f_start <= f_present;
+  if (f_take) f_start <= f_end;
+  if (take_velocity) f_present <= velocity_next;
+  if (prepare) begin
+    f_start   <= 48'd0;
+    f_present <= 48'd0;
+  end
+  if (f_makes) f_without <= !f_loaded_q;
+  f_bit <= moving && !shaping ? f_bit + 6'd1 : 6'd0;
+  if (f_begun && f_motion != F_REST) begin
+    if (ready && f_ready_q && !ends_next && f_without) stays_at_the_end : assert (velocity_next == f_start);
+    if (step == STEP_SCALE && moving && !shaping && f_bit < 6'd48) begin
+      first_is_the_start : assert (f_a_bit == (loaded && f_control[2] ? f_end[f_bit] : f_start[f_bit]));
+      second_is_the_end : assert (f_b_bit == (loaded && !f_control[2] ? f_end[f_bit] : f_start[f_bit]));
+    end
+    dry_told : assert (dry == (f_makes && !f_loaded_q && f_start != 48'd0));
+  end
+end
+
+// --- The tick, its end, the end of the profile
+localparam [TICK_LOG2:0] F_TICK_LAST = (1 << TICK_LOG2) - 1;
+reg [TICK_LOG2:0] f_clocks;  // advanced clocks of the tick
+reg               f_due;  // a velocity was made that has not begun
+reg               f_last;  // the LAST ramp has left
+reg         [6:0] f_busy;
+wire              f_running = f_motion == F_RUNS;
+always @(posedge clk) begin
+  if (advance) f_clocks <= f_clocks + 1'b1;
+  if (take_velocity) f_clocks <= 0;
+  f_due <= (f_due | f_makes) & ~take_velocity;
+  if (f_take) f_last <= f_control[0];
+  if (prepare || f_take_now || ended || rst || stop) f_last <= 1'b0;
+  if (prepare || rst || stop) f_due <= 1'b0;
+  f_busy <= rst || prepare || f_motion == F_REST || ready || f_take || f_take_now ? 7'd0 :
+            f_busy + {6'd0, step != STEP_LOOK_UP};
+  if (f_begun && f_motion != F_REST) begin
+    if (f_running && advance) tick_is_whole : assert ((f_clocks == F_TICK_LAST) == take_velocity);
+    if (f_running && stall) stalls_only_there : assert (f_clocks == F_TICK_LAST && !f_ready_q);
+    if (take_velocity) only_ready_is_taken : assert (ready && f_ready_q);
+    if (ended) ended_after_last : assert (take_velocity && f_last && !f_due);
+    if (take_velocity && f_last && !f_due) last_is_told : assert (ended);
+    if (f_last && ready && !f_ready_q) nothing_after_last : assert (ends_next);
+    if ($past(ready && !take_velocity && !stop)) ready_is_kept : assert (ready);
+    if ($past(ready) && $past(f_ready_q)) taken_stands : assert ($stable(velocity_next) && $stable(ends_next));
+    ready_in_time : assert (f_busy <= 7'd105);
+  end
+  if (f_begun && f_motion == F_REST && !drain) not_ended_at_rest : assert (!ended);
+end
+
+// --- What the induction needs to know of the circuit. The search for planted bugs begins in any state of which
+// this is true for F_GIVEN clocks: from reset it would be a hundred clocks to the first velocity.
+`ifdef INVARIANTS
+`define HOLDS assert
+`else
+`define HOLDS if (f_age != F_GIVEN) assume
+`endif
+localparam [2:0] F_GIVEN = 3'd5;  // the depth of the induction
+reg [2:0] f_age = 3'd0;
+always @(posedge clk) if (f_age != F_GIVEN) f_age <= f_age + 3'd1;
+(* keep *) wire [47:0] f_v_start;
+(* keep *) wire [15:0] f_ticks_high;
+(* keep *) wire [15:0] f_ticks_low;
+(* keep *) wire f_b;
+(* keep *) wire f_both;
+(* keep *) wire [24:0] f_addend;
+wire f_is_choose = step == STEP_CHOOSE;
+wire f_is_copy = step == STEP_COPY;
+wire f_is_fetch = step == STEP_FETCH;
+wire f_is_take = step == STEP_TAKE;
+wire f_is_look_up = step == STEP_LOOK_UP;
+wire f_is_shape = step == STEP_SHAPE;
+wire f_is_scale = step == STEP_SCALE;
+wire f_is_step = step == STEP_STEP;
+wire [32:0] f_counted = {over, f_ticks_high, f_ticks_low} - {1'b0, ~f_ticks};  // how often 1 was added
+wire [5:0] f_last_count = f_is_copy ? 6'd24 : f_is_take ? 6'd5 : f_is_shape ? 6'd19 : f_is_scale ? 6'd50 : 6'd8;
+integer k;
+always @(posedge clk)
+  if (f_begun) begin
+    // steps
+    if (f_is_copy) `HOLDS (count >= 6'd1 && count <= 6'd24);
+    if (f_is_fetch || f_is_step) `HOLDS (count >= 6'd1 && count <= 6'd8);
+    if (f_is_take) `HOLDS (count >= 6'd1 && count <= 6'd5);
+    if (f_is_look_up) `HOLDS (count == 6'd1);
+    if (f_is_shape) `HOLDS (count >= 6'd1 && count <= 6'd19);
+    if (f_is_scale) `HOLDS (count >= 6'd1 && count <= 6'd50);
+    if (!f_is_choose && !f_is_look_up) `HOLDS (step_ends == (count == f_last_count));
+    if (f_motion == F_REST) `HOLDS (f_is_choose && !ready && ends_next || f_stop_q && !$past(f_begun));
+    if (f_motion == F_REST && !f_stop_q) `HOLDS (!moving);
+    `HOLDS (f_motion <= F_RUNS);
+    if (f_motion == F_REST) `HOLDS (f_made_now == 32'd0 && f_over_for == 4'd0 && !f_last);
+    if (f_now) `HOLDS (f_there);
+  end
+always @(posedge clk)
+  if (f_begun && f_motion != F_REST) begin
+    if (ready) `HOLDS (f_is_choose || ((f_is_take || f_is_step) && !ends_next));
+    if (ready && f_ready_q) `HOLDS (!result_move);
+    if (ends_next) `HOLDS (ready && f_is_choose && !loaded && last);
+    `HOLDS (f_due == (ready && f_ready_q && !ends_next));
+    `HOLDS (unready == !f_ready_q || $past(f_motion == F_REST));
+    if (f_running) `HOLDS (f_clocks == {1'b0, tick_count} && tick_last == (tick_count == TICK_LAST));
+    `HOLDS (ramp_take == (f_is_take && count == 6'd4));
+    if (ramp_take_now) `HOLDS (f_is_copy && count == 6'd1 && f_now);
+    // the ramp being made
+    if (loaded) `HOLDS (f_there || (f_is_take && count >= 6'd5));
+    if (loaded && !f_is_take)
+      `HOLDS (f_there && mirror == f_control[2] && shape == f_control[5:4] && last == f_control[0]);
+    if (loaded) `HOLDS (!f_is_copy && !f_is_fetch);
+    if (f_is_copy) `HOLDS (!last);
+    if (loaded && !f_is_take || f_is_take && count <= 6'd4 || f_is_scale) `HOLDS (!f_last);
+    if (f_is_look_up || f_is_shape || f_is_step) `HOLDS (loaded);
+    if (!loaded && !ramp_take_now && !f_is_take && !f_is_fetch) `HOLDS (last == f_last);
+    if (!loaded && !ramp_take_now && !f_is_take) `HOLDS (f_made_now == 32'd0);
+    if (f_is_fetch) `HOLDS (f_there && !f_last && (count >= 6'd7 || !last));
+    if (f_is_fetch && count >= 6'd7)
+      `HOLDS (mirror == f_control[2] && shape == f_control[5:4] && last == f_control[0]);
+    if (f_is_scale && !loaded) `HOLDS (!last);
+    if (f_is_take) `HOLDS (last == (count <= 6'd4 ? f_control[0] : f_last));
+    if (f_is_take && count <= 6'd4) `HOLDS (f_there && f_made_now == f_ticks);
+    `HOLDS (f_over_for == 4'd0 || (f_is_take && count <= 6'd4 && f_over_for == count - 6'd1));
+    if (f_is_take && count >= 6'd5) `HOLDS (f_made_now == 32'd0);
+    // clocks since something was done
+    if (!ready || f_ready_q)
+    case (step)
+      STEP_CHOOSE:  `HOLDS (f_busy <= (loaded ? 7'd33 : 7'd24));
+      STEP_COPY:    `HOLDS (f_busy <= (count == 6'd1 ? 7'd34 : count - 7'd1));
+      STEP_FETCH:   `HOLDS (f_busy <= 7'd24 + count);
+      STEP_TAKE:    `HOLDS (f_busy <= (count <= 6'd4 ? 7'd32 + count : count - 7'd5));
+      STEP_LOOK_UP: `HOLDS (f_busy <= 7'd34);
+      STEP_SHAPE:   `HOLDS (f_busy <= 7'd34 + count);
+      STEP_SCALE:   `HOLDS (f_busy <= 7'd53 + count);
+      default:      `HOLDS (f_busy <= {1'b0, count});
+    endcase
+    // NOW ramps
+    if ((loaded && !f_is_take) || f_is_fetch || (f_is_take && count <= 6'd4)) `HOLDS (!(f_now && f_oldest_now));
+    // ticks
+    if (loaded && (f_is_choose || f_is_look_up || f_is_shape || f_is_step || (f_is_scale && count <= 6'd2)))
+      `HOLDS (f_counted == {1'b0, f_made_now} + 33'd1 && !over && f_made_now < f_ticks);
+    if (loaded && f_is_scale) `HOLDS (f_made_now < f_ticks);
+    if (loaded && f_is_scale && count >= 6'd4) `HOLDS (f_counted == {1'b0, f_made_now} + 33'd2);
+    if (f_is_fetch && count == 6'd4) `HOLDS (f_half == ~f_ticks[15:0] && f_word == ~f_ticks[31:16]);
+    if (f_is_fetch && count == 6'd5)
+      `HOLDS (f_ticks_low == ~f_ticks[15:0] && f_half == ~f_ticks[31:16] && f_word == f_control);
+    if (f_is_fetch && count == 6'd6) `HOLDS (f_half == f_control);
+    if (f_is_fetch && count >= 6'd7) `HOLDS (f_counted == 33'd1);
+    if (f_is_fetch && count == 6'd8) `HOLDS (!over);
+  end
+
+// the numbers as they turn
+always @(posedge clk)
+  if (f_begun && f_motion != F_REST) begin
+    if ((f_is_choose && !start_copy) || f_is_fetch || f_is_look_up || f_is_shape || f_is_step) `HOLDS (f_v_start == f_start);
+    if (f_is_take) begin
+      if (count == 6'd1) `HOLDS (ramp_half_index == 4'd3);
+      if (count == 6'd2) `HOLDS (f_word == f_end[15:0] && ramp_half_index == 4'd2);
+      if (count <= 6'd3) `HOLDS (f_v_start == f_start);
+      if (count == 6'd3) `HOLDS (f_half == f_end[15:0] && f_word == f_end[31:16] && ramp_half_index == 4'd0);
+      if (count == 6'd4)
+        `HOLDS (f_v_start[47:32] == f_end[15:0] && f_half == f_end[31:16] && f_word == f_end[47:32]);
+      if (count == 6'd5) `HOLDS (f_v_start[47:16] == f_start[31:0] && f_half == f_start[47:32]);
+    end
+    if ((f_is_fetch || f_is_step) && count == 6'd8) `HOLDS (ramp_half_index == 4'd3);
+    if (loaded && (f_is_choose || f_is_look_up || f_is_shape))
+      `HOLDS (ramp_half_index == 4'd3 && f_word == f_end[15:0]);
+    if (loaded && (f_is_look_up || f_is_shape || (f_is_scale && count <= 6'd2))) `HOLDS (f_half == f_end[15:0]);
+    if (f_is_scale) begin
+      for (k = 0; k <= 48; k = k + 1)
+        if (count == k + 2 || (k == 0 && count == 6'd1)) `HOLDS (f_v_start == ((f_start >> k) | (f_start << (48 - k))));
+      if (count >= 6'd2) `HOLDS (moving && !shaping);
+      `HOLDS (f_bit == (count >= 6'd2 ? count - 6'd2 : 6'd0));
+    end
+    if (f_is_choose && !ready) `HOLDS (!moving && !interpolated_bit && !f_b);
+    // the present velocity turns once while v_start takes it, in two halves
+    if (f_is_copy || (f_is_choose && start_copy)) begin
+      `HOLDS (!loaded && !ready);
+      if (count >= 6'd2) `HOLDS (!moving && !interpolated_bit && !f_b && f_addend == 25'd0 && !f_both);
+      if (count == 6'd1) `HOLDS (ramp_take_now ? velocity_next == f_present : clear && result_move && f_start == 48'd0);
+      for (k = 0; k <= 23; k = k + 1)
+        if (count == k + 2) begin
+          `HOLDS (f_start == f_present);
+          `HOLDS (velocity_next[47:24] == (f_start[47:24] >> k | f_start[47:24] << (24 - k)));
+          `HOLDS (velocity_next[23:0] == (f_start[23:0] >> k | f_start[23:0] << (24 - k)));
+          `HOLDS ((f_v_start[47:24] ^ (f_start[47:24] << (24 - k))) >> (24 - k) == 24'd0);
+          `HOLDS ((f_v_start[23:0] ^ (f_start[23:0] << (24 - k))) >> (24 - k) == 24'd0);
+        end
+    end
+    if (!ready && ((f_is_choose && !start_copy) || f_is_fetch || f_is_take || f_is_step))
+      `HOLDS (velocity_next == f_present && !result_move);
+    // without a ramp the bits of v_start become the velocity
+    if (f_is_scale && !loaded) begin
+      if (count == 6'd1) `HOLDS (!moving && !interpolated_bit && !f_b);
+      if (count == 6'd2) `HOLDS (!interpolated_bit && !f_b && clear && result_move);
+      if (count >= 6'd3) `HOLDS (interpolated_bit == f_start[count - 3] && f_b == interpolated_bit && f_addend == 25'd0 && result_move);
+      if (count == 6'd3) `HOLDS (!f_both && velocity_next == 48'd0);
+      if (count >= 6'd4) `HOLDS (f_both == f_start[count - 4]);
+      for (k = 0; k <= 46; k = k + 1)
+        if (count == k + 4) `HOLDS (velocity_next == f_start << (48 - k));
+    end
+    if (ready && f_ready_q && !ends_next && f_without) `HOLDS (f_is_choose && !loaded);
+    if (f_makes && !f_loaded_q) `HOLDS (f_is_choose && !loaded && velocity_next == f_start << 1 && f_both == f_start[47] && f_addend == 25'd0 && result_move);
+    if (f_is_scale && !loaded && count >= 6'd3)
+      `HOLDS (moves == ((f_start & ((48'd1 << (count - 3)) - 48'd1)) != 48'd0));
+    if (f_is_scale && count == 6'd2 && !loaded) `HOLDS (!moves);
+    if (f_is_scale && count == 6'd1) `HOLDS (!moves);
+  end
