@@ -7,10 +7,10 @@
 
 module top #(
   parameter AXES      = 6,
-  parameter CLOCK_HZ  = 150_000_000,
+  parameter CLOCK_HZ  = 100_000_000,
   parameter CLKI_DIV  = 1,
-  parameter CLKFB_DIV = 6,
-  parameter CLKOP_DIV = 4
+  parameter CLKFB_DIV = 4,
+  parameter CLKOP_DIV = 6
 ) (
   input  wire            oscillator,
   input  wire            spi_sclk,

@@ -8,9 +8,9 @@
 
 module top #(
   parameter AXES      = 6,
-  parameter CLOCK_HZ  = 72_000_000,
-  parameter IDIV_SEL  = 2,
-  parameter FBDIV_SEL = 7,
+  parameter CLOCK_HZ  = 81_000_000,
+  parameter IDIV_SEL  = 0,
+  parameter FBDIV_SEL = 2,
   parameter ODIV_SEL  = 8
 ) (
   input  wire            oscillator,
