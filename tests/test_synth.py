@@ -4,9 +4,10 @@
 import importlib.util
 import re
 from pathlib import Path
+from subprocess import TimeoutExpired
 
 import pytest
-from passo.fpga import pages, report, synth
+from passo.fpga import flow, pages, report, synth
 from passo.fpga.boards import COMMON, Board, boards
 from passo.fpga.devices import DEVICES, ECP5, GOWIN, ICE40
 from passo.fpga.flow import CROWDED, Placed, _sites, count
@@ -210,3 +211,18 @@ def test_unknown_device_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
     """ONLY=..."""
     assert report.main(["--only", "hx1k"]) == 2
     assert "no device 'hx1k'; choose of hx8k" in capsys.readouterr().err
+
+
+def test_seed_that_never_ends_is_given_up(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """It does not fit, is not too large, and another seed may be tried."""
+    (tmp_path / flow.NETLIST).write_text("{}")
+
+    def never_ends(program: str, _: object, folder: Path, log: str, seconds: int) -> int:
+        (folder / log).write_text("Info: routing\n")
+        raise TimeoutExpired(program, seconds)
+
+    monkeypatch.setattr(flow, "synthesize", lambda _: tmp_path)
+    monkeypatch.setattr(flow, "run", never_ends)
+    monkeypatch.setattr(flow, "FOLDER", tmp_path)
+    placed = flow.place(flow.Design("endless", DEVICES["hx8k"]), 1, 120, {})
+    assert not placed.fits and not placed.too_large

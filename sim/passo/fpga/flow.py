@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from pathlib import Path
+from subprocess import TimeoutExpired
 from typing import Any
 
 from passo.fpga.devices import GOWIN, ICE40, Device
@@ -18,7 +19,7 @@ from passo.toolchain import paths
 
 NETLIST, CELLS, PLACED, REPORT = "netlist.json", "cells.json", "placed", "report.json"
 CONSTRAINTS = "clocks.sdc"
-PLACE_SECONDS = 3600
+PLACE_SECONDS = 900  # some seeds never end
 
 # nextpnr says this of a design that it could not place or route although no kind of cell was used up.
 CROWDED = re.compile(r"ERROR: .*([Uu]nable to (find|place|legali)|[Ff]ailed to (place|route|expand)|no Bels)")
@@ -120,11 +121,14 @@ def place(
         if constraints:
             arguments += ["--sdc", CONSTRAINTS]
         arguments += _pin_options(design, netlist, folder, pins)
-        status = run(family.place, arguments, folder, "nextpnr.log", PLACE_SECONDS)
-        log = (folder / "nextpnr.log").read_text()
-        fits = status == 0
-        if not fits and not CROWDED.search(log) and not _too_large(_sites(log)):
-            raise failure(family.place, folder / "nextpnr.log")
+        try:
+            fits = run(family.place, arguments, folder, "nextpnr.log", PLACE_SECONDS) == 0
+        except TimeoutExpired:
+            fits = False
+        else:
+            log = (folder / "nextpnr.log").read_text()
+            if not fits and not CROWDED.search(log) and not _too_large(_sites(log)):
+                raise failure(family.place, folder / "nextpnr.log")
         (folder / "fits").write_text(str(int(fits)))
 
     inputs = [netlist / NETLIST, *([pins] if pins else [])]
