@@ -54,11 +54,10 @@ void passo_motion_clock(
 	const uint8_t settling = motion->settling;
 	const bool settled = motion->settled;
 	const bool dry = channel->ramp.dry && !channel->line.endless;
-	const bool stop_due = motion->stop_due;
 	const enum passo_cause cause_due = motion->cause_due;
 	const struct passo_channel_registers *registers = &channel->registers;
 
-	motion->startable = wires->startable && !stop_due;
+	motion->startable = wires->startable && !motion->stop_due;
 	motion->begin_profile = wires->begins_next && !wires->begin_profile && !wires->stop_now;
 	motion->stop_due = stop_wanted(channel, wires) && !wires->stopped;
 	motion->cause_due = cause_of_stop(channel, wires);

@@ -22,11 +22,7 @@ async def every_place_keeps_its_ramp(dut: HierarchyObject) -> None:
             assert answers == [0] * len(words) + [QUEUE_FULL] * WORDS
             await queue.bus.frame()
         await queue.bus.write(words)
-        while ramps:
-            await queue.check(ramps)
-            await queue.strobe("take")
-            ramps.pop(0)
-        await queue.check([])
+        await queue.take_all(ramps)
 
 
 @cocotb.test()

@@ -129,6 +129,14 @@ class Ramps:
         self.compare(expected)
         await self.compare_end()
 
+    async def write_at(self, enabled: int, ramps: Sequence[Ramp]) -> None:
+        """Write ramps, checked beforehand, after so many enabled clocks of the profile that has begun."""
+        begun = self.enabled_clocks
+        while len(begun) < enabled:
+            await self.clocks.wait(1)
+        for ramp in ramps:
+            await self.bus.write(ramp.words())
+
     async def feed(self, ramps: Sequence[Ramp]) -> None:
         """Push ramps whenever there is room."""
         for ramp in ramps:
@@ -294,15 +302,7 @@ async def now_drops_the_ramps_before_it_and_starts_from_the_present_velocity(
         before = list(islice(velocities(old), 7))
         expected = [*before, *velocities(now, before[-1])]
 
-        async def late(clock: int = clock, now: list[Ramp] = now, bench: Ramps = bench) -> None:
-            begun = bench.enabled_clocks
-            while len(begun) < 5 * TICK + clock:
-                await bench.clocks.wait(1)
-            # checked beforehand
-            for ramp in now:
-                await bench.bus.write(ramp.words())
-
-        cocotb.start_soon(late())
+        cocotb.start_soon(bench.write_at(5 * TICK + clock, now))
         await bench.advance(len(expected) * TICK)
         bench.compare(expected)
         await bench.compare_end()
@@ -339,13 +339,7 @@ async def a_second_now_ramp_starts_from_the_present_velocity_as_well(dut: Hierar
         await bench.push(*old)
         await bench.start()
 
-        async def late(clock: int = clock, begun: list[int] = bench.enabled_clocks) -> None:
-            while len(begun) < 5 * TICK + clock:
-                await bench.clocks.wait(1)
-            for ramp in now:
-                await bench.bus.write(ramp.words())
-
-        cocotb.start_soon(late())
+        cocotb.start_soon(bench.write_at(5 * TICK + clock, now))
         await bench.advance(len(expected) * TICK)
         bench.compare(expected)
         await bench.compare_end()

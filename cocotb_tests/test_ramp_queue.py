@@ -2,6 +2,7 @@
 """passo_ramp_queue: order, refusals, room, NOW."""
 
 from collections import deque
+from collections.abc import Sequence
 from random import Random
 
 import cocotb
@@ -66,7 +67,7 @@ class Queue:
         await self.clocks.wait(1)
         getattr(self.dut, name).value = 0
 
-    async def check(self, ramps: deque[list[int]] | list[list[int]], now_pending: bool = False) -> None:
+    async def check(self, ramps: Sequence[list[int]], now_pending: bool = False) -> None:
         """Check the outputs, and all half words of the oldest ramp, each two clocks after its index."""
         await self.clocks.wait(2)  # valid is that of two clocks ago
         dut = self.dut
@@ -80,6 +81,13 @@ class Queue:
                 word = ramps[0][index // 2]
                 half = word & 0xFFFF if index % 2 else word >> 16
                 assert index == UNUSED or read(dut.half) == half ^ inverted(ramps[0], index // 2), index
+
+    async def take_all(self, ramps: Sequence[list[int]]) -> None:
+        """Take all that are there, one after the other, each checked before."""
+        for taken in range(len(ramps)):
+            await self.check(ramps[taken:])
+            await self.strobe("take")
+        await self.check([])
 
 
 @cocotb.test()
@@ -115,11 +123,7 @@ async def take_now_drops_the_ramps_before_it(dut: HierarchyObject) -> None:
             last_now = max(n for n, now in enumerate(kinds) if now)
             await queue.strobe("take_now")
             ramps = ramps[last_now:]
-        while ramps:
-            await queue.check(ramps)
-            await queue.strobe("take")
-            ramps.pop(0)
-        await queue.check([])
+        await queue.take_all(ramps)
 
 
 @cocotb.test()

@@ -87,6 +87,8 @@ module passo_motion (
   assign occupied = ~idle & ~stopped;
   assign moving   = runs | settles | drains;
 
+  wire runs_next = (begin_profile | runs) & ~ramp_ended;
+  wire drains_next = (settled & ~finished) | (drains & ~line_ended);
   wire settled_next = settles & settling[2] & ~settled;
   wire dry = ramp_dry & ~line_endless;
 
@@ -109,10 +111,10 @@ module passo_motion (
     idle      <= (idle & ~startable) | finished | (stopped & command_clear);
     preparing <= startable | (preparing & ~ramp_ready);
     armed     <= (preparing & ramp_ready) | (armed & ~begin_profile);
-    runs      <= (begin_profile | runs) & ~ramp_ended;
+    runs      <= runs_next;
     settles   <= ((begin_profile | runs) & ramp_ended) | (settles & ~settled) | (drains & line_ended);
-    drains    <= (settled & ~finished) | (drains & ~line_ended);
-    counting  <= ((begin_profile | runs) & ~ramp_ended) | (settled & ~finished) | (drains & ~line_ended);
+    drains    <= drains_next;
+    counting  <= runs_next | drains_next;
     if (stopped && command_clear) begin
       stopped <= 1'b0;
       cause   <= CAUSE_NONE;
