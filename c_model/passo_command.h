@@ -13,6 +13,8 @@
 #define PASSO_CHANNELS_MAX 8u
 #define PASSO_AXES_MAX 8u
 
+/* Longest line: its substeps, and with them the steps of each axis, have 30 bits. */
+#define PASSO_SUBSTEPS_MAX ((UINT32_C(1) << 30) - 1u)
 /* Velocities and progress are UQ0.48: an integer v stands for v / 2^48. */
 #define PASSO_ONE_Q48 (UINT64_C(1) << 48)
 /* Half a substep per clock: the DDA has two clocks for each. */
@@ -32,7 +34,7 @@ struct passo_line {
 	bool last;                      /* the path may end here */
 	bool endless;                   /* repeat until stopped */
 	uint8_t directions;             /* bit i set: axis i counts down */
-	uint32_t substeps;              /* M, 1 .. 2^32-1 */
+	uint32_t substeps;              /* M, 1 .. PASSO_SUBSTEPS_MAX */
 	uint32_t steps[PASSO_AXES_MAX]; /* N_i, 0 .. M */
 };
 

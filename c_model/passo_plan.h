@@ -28,7 +28,7 @@ enum passo_plan_error {
 	PASSO_PLAN_BAD_AXES,          /* not 1 .. 8 axes */
 	PASSO_PLAN_BAD_PROFILE,       /* unknown profile */
 	PASSO_PLAN_NO_STEPS,          /* all axes have 0 steps */
-	PASSO_PLAN_TOO_MANY_STEPS,    /* an axis has -2^31 steps */
+	PASSO_PLAN_TOO_MANY_STEPS,    /* an axis has more than 2^30 - 1 steps, forwards or backwards */
 	PASSO_PLAN_NO_TIME,           /* total time is less than one tick */
 	PASSO_PLAN_RAMP_TOO_LONG,     /* the ramp time is more than half the total time */
 	PASSO_PLAN_TOO_LONG,          /* a phase has 2^32 ticks or more, or the move 2^44 clocks or more */

@@ -70,7 +70,8 @@ static uint32_t check_axes(const struct passo_machine *machine, const struct pas
 			return PASSO_PLAN_NO_AXIS_SPEED;
 		if (move->limits[axis].acceleration == 0)
 			return PASSO_PLAN_NO_AXIS_ACCELERATION;
-		if (steps_of(absolute(move->distance[axis]), move->limits[axis].steps_per_mm) > INT32_MAX)
+		uint32_t steps = steps_of(absolute(move->distance[axis]), move->limits[axis].steps_per_mm);
+		if (steps > PASSO_SUBSTEPS_MAX)
 			return PASSO_PLAN_TOO_MANY_STEPS;
 	}
 	return PASSO_PLAN_OK;

@@ -44,7 +44,7 @@ enum passo_plan_error passo_draft_start(struct passo_draft *draft, const struct 
 	    .mean = PASSO_MEAN_HALF,
 	};
 	for (uint32_t axis = 0; axis < machine->axes; axis++) {
-		if (steps[axis] == INT32_MIN)
+		if (magnitude(steps[axis]) > PASSO_SUBSTEPS_MAX)
 			return PASSO_PLAN_TOO_MANY_STEPS;
 		if (draft->longest < magnitude(steps[axis]))
 			draft->longest = magnitude(steps[axis]);
@@ -78,11 +78,11 @@ uint64_t passo_ticks_ceil(const struct passo_machine *machine, uint64_t clocks)
 
 /* ----------------------------------------------------------------------------------- 2. oversampling ---- */
 
-/* As many substeps per step as `fit` and 32 bits of M allow. An even number, because a line starts in the
+/* As many substeps per step as `fit` and the longest line allow. An even number, because a line starts in the
  * middle between two steps: then each step of the longest axis is due on a whole substep. */
 void passo_draft_oversample_to(struct passo_draft *draft, uint64_t fit)
 {
-	uint32_t oversampling = (uint32_t)passo_smaller(fit, UINT32_MAX / draft->longest);
+	uint32_t oversampling = (uint32_t)passo_smaller(fit, PASSO_SUBSTEPS_MAX / draft->longest);
 	draft->oversampling = oversampling > 1 ? oversampling & ~UINT32_C(1) : oversampling;
 }
 
@@ -244,7 +244,7 @@ static uint32_t steps_to_stop(const struct passo_draft *draft)
 	    passo_u128_add(passo_multiply(draft->peak, weight_of_begin(draft->decelerate)),
 		passo_multiply(draft->stop, draft->decelerate.weight));
 
-	/* substeps, below 2^32, with 16 bits of their fraction */
+	/* substeps, below 2^30, with 16 bits of their fraction */
 	const uint32_t surplus = 48 + PASSO_WEIGHT_BITS - 16 - draft->machine->tick_log2;
 	uint64_t substeps = distance.high << (64 - surplus) | distance.low >> surplus;
 	uint64_t step = (uint64_t)draft->oversampling << 16;

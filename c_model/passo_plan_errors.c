@@ -11,7 +11,7 @@ static const struct {
     [PASSO_PLAN_BAD_AXES] = {"BAD_AXES", "A move has 1 to 8 axes."},
     [PASSO_PLAN_BAD_PROFILE] = {"BAD_PROFILE", "The profile must be linear, cosine, sigmoid or jerk."},
     [PASSO_PLAN_NO_STEPS] = {"NO_STEPS", "No axis has a step to make."},
-    [PASSO_PLAN_TOO_MANY_STEPS] = {"TOO_MANY_STEPS", "An axis can make at most 2^31 - 1 steps in one move."},
+    [PASSO_PLAN_TOO_MANY_STEPS] = {"TOO_MANY_STEPS", "An axis can make at most 2^30 - 1 steps in one move."},
     [PASSO_PLAN_NO_TIME] = {"NO_TIME", "The total time is less than one tick."},
     [PASSO_PLAN_RAMP_TOO_LONG] = {"RAMP_TOO_LONG", "The ramp time is more than half the total time."},
     [PASSO_PLAN_TOO_LONG] = {"TOO_LONG", "A phase takes 2^32 ticks or more, or the move 2^44 clocks."},

@@ -29,7 +29,7 @@ enum passo_plan_error passo_plan_turn(
 	uint64_t angle = move->angle < 0 ? 0 - (uint64_t)move->angle : (uint64_t)move->angle;
 	struct passo_u128 product = passo_multiply(angle, move->steps_per_turn);
 	uint64_t count = passo_divide(passo_u128_add(product, (struct passo_u128){0, turn / 2}), turn, NULL);
-	if (count > INT32_MAX)
+	if (count > PASSO_SUBSTEPS_MAX)
 		return PASSO_PLAN_TOO_MANY_STEPS;
 	int32_t steps[PASSO_AXES_MAX] = {0};
 	steps[move->axis] = move->angle < 0 ? -(int32_t)count : (int32_t)count;
@@ -118,8 +118,8 @@ enum passo_plan_error passo_plan_turning_start(const struct passo_machine *machi
 	if (refused != PASSO_PLAN_OK)
 		return refused;
 
-	/* As many steps as 32 bits of M take, so that the line seldom begins anew. */
-	uint32_t count = UINT32_MAX / draft.oversampling;
+	/* As many steps as the longest line takes, so that it seldom begins anew. */
+	uint32_t count = PASSO_SUBSTEPS_MAX / draft.oversampling;
 	struct passo_plan made = {
 	    .line = {.endless = true, .substeps = count * draft.oversampling},
 	    .oversampling = draft.oversampling,

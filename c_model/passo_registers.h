@@ -281,7 +281,7 @@ enum passo_verdict {
 	PASSO_VERDICT_READ_ONLY       = 6, /* The register cannot be written. */
 	PASSO_VERDICT_QUEUE_FULL      = 7, /* Not enough room for the whole frame. */
 	PASSO_VERDICT_BUSY            = 8, /* Channel stopped and not cleared, or shape tables while a motion runs. */
-	PASSO_VERDICT_BAD_VALUE       = 9  /* M = 0, N_i > M, a velocity above 1/2, reserved bits set. */
+	PASSO_VERDICT_BAD_VALUE       = 9  /* M = 0 or M >= 2^30, N_i > M, a velocity above 1/2, reserved bits set. */
 };
 
 /* What a channel does. */

@@ -277,7 +277,7 @@ localparam VERDICT_UNKNOWN_ADDRESS = 4'd5; // No register at this address.
 localparam VERDICT_READ_ONLY       = 4'd6; // The register cannot be written.
 localparam VERDICT_QUEUE_FULL      = 4'd7; // Not enough room for the whole frame.
 localparam VERDICT_BUSY            = 4'd8; // Channel stopped and not cleared, or shape tables while a motion runs.
-localparam VERDICT_BAD_VALUE       = 4'd9; // M = 0, N_i > M, a velocity above 1/2, reserved bits set.
+localparam VERDICT_BAD_VALUE       = 4'd9; // M = 0 or M >= 2^30, N_i > M, a velocity above 1/2, reserved bits set.
 
 // What a channel does.
 localparam STATE_IDLE    = 3'd0; // No motion.

@@ -88,10 +88,10 @@ static struct passo_machine some_machine(void)
 static void some_steps(int32_t steps[PASSO_AXES_MAX])
 {
 	for (unsigned axis = 0; axis < PASSO_AXES_MAX; axis++) {
-		int64_t count = (int64_t)sized(31);
-		steps[axis] = (int32_t)(below(2) > 0 ? count : -count);
+		int32_t count = (int32_t)(below(1000) > 0 ? sized(30) : PASSO_SUBSTEPS_MAX + 1u);
+		steps[axis] = below(2) > 0 ? count : -count;
 		if (below(1000) == 0)
-			steps[axis] = INT32_MIN;
+			steps[axis] = below(2) > 0 ? INT32_MAX : INT32_MIN;
 	}
 }
 
@@ -138,6 +138,7 @@ static void check_line(const struct passo_plan *plan, uint8_t axes, bool endless
 		longest = longest > line->steps[axis] ? longest : line->steps[axis];
 	}
 	expect(longest > 0 && line->substeps > 0, "the line is empty");
+	expect(line->substeps <= PASSO_SUBSTEPS_MAX, "the line is too long");
 	expect((uint64_t)longest * plan->oversampling == line->substeps, "M is not K * N");
 	expect(plan->oversampling == 1 || plan->oversampling % 2 == 0, "K is odd");
 	expect(line->endless == endless && line->last == !endless, "the line's flags are wrong");

@@ -474,13 +474,15 @@ def test_a_source_that_is_late(driver: Driver) -> None:
     assert driver.positions()[0] == 0
 
 
-@pytest.mark.parametrize("bad", ["substeps", "steps", "axis", "velocity"])
+@pytest.mark.parametrize("bad", ["substeps", "length", "steps", "axis", "velocity"])
 def test_a_source_that_is_wrong(driver: Driver, wire: Wire, bad: str) -> None:
     """Nothing of a frame with an impossible item is sent; the motion is stopped softly."""
     driver.call("configure_motion", 200, 200, 0)
     lines, ramps = path(3000)
     if bad == "substeps":
         lines[1500].substeps = 0
+    elif bad == "length":
+        lines[1500].substeps = 1 << 30
     elif bad == "steps":
         lines[1500].steps[3] = 21
     elif bad == "axis":
@@ -499,6 +501,22 @@ def test_a_source_that_is_wrong(driver: Driver, wire: Wire, bad: str) -> None:
     driver.call("clear")
     driver.call("move_by_speed", by_speed([5, 5, 5, 5]))
     finish(driver)
+    assert not any(driver.counters.refused)
+
+
+def test_the_longest_line(driver: Driver, wire: Wire) -> None:
+    """The core takes it, and makes it until it is told to stop."""
+    driver.call("configure_motion", 1, 1, 0)
+    ramps = path(3000)[1]
+    line = struct("line", substeps=(1 << 30) - 1, steps=[1 << 29], last=True)[0]
+    driver.stream(Source([line], ramps))
+    while driver.snapshot().state != State.RUN:
+        poll(driver)
+        wire.run(100)
+    wire.run(10_000)
+    driver.call("stop")
+    finish(driver)
+    assert driver.positions()[0] == wire.counted()[1][0] > 50
     assert not any(driver.counters.refused)
 
 

@@ -119,10 +119,10 @@ def test_useless_read_replies() -> None:
 
 def test_line_words() -> None:
     line = ffi().new("struct passo_line *")
-    line.last, line.endless, line.directions, line.substeps = True, True, 0x81, 0xFFFFFFFF
+    line.last, line.endless, line.directions, line.substeps = True, True, 0x81, 0x3FFFFFFF
     for axis in range(8):
-        line.steps[axis] = 0x10000000 * axis + 1
-    expected = [0x8103, 0xFFFFFFFF, *(0x10000000 * axis + 1 for axis in range(8))]
+        line.steps[axis] = 0x08000000 * axis + 1
+    expected = [0x8103, 0x3FFFFFFF, *(0x08000000 * axis + 1 for axis in range(8))]
     assert frame.line_words(line[0], 8) == expected
     assert frame.line_words(line[0], 3) == expected[:5]
     line.last = line.endless = False

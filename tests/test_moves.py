@@ -13,6 +13,7 @@ CLOCK = "clock_hz = 16_000_000\n"
 BY_TIME = '[[move]]\nsteps = [100, -50]\nprofile = "cosine"\ntotal_time = 0.4\nramp_time = 0.1\n'
 BY_SPEED = '[[move]]\nsteps = [100, -50]\nprofile = "linear"\nspeed = 2000\nacceleration = 40000\n'
 GOOD = CLOCK + BY_TIME
+MOST = 2**30 - 1  # steps of an axis
 
 
 def write(folder: Path, text: str) -> Path:
@@ -42,6 +43,11 @@ def test_both_forms(tmp_path: Path) -> None:
     )
     assert file.axes == 2
     assert file.name == "bad"
+
+
+def test_the_most_steps(tmp_path: Path) -> None:
+    (move,) = read_moves(write(tmp_path, GOOD.replace("[100, -50]", f"[{MOST}, -{MOST}]"))).moves
+    assert move.steps == (MOST, -MOST)
 
 
 def test_decimals_are_exact(tmp_path: Path) -> None:
@@ -82,7 +88,8 @@ BAD = {
     "steps nested": (GOOD.replace("-50", "[50]"), "move 1: steps must be a list of whole numbers"),
     "steps empty": (GOOD.replace("[100, -50]", "[]"), "move 1: steps has 0 axes"),
     "nine axes": (GOOD.replace("-50", "1, 2, 3, 4, 5, 6, 7, 8"), "move 1: steps has 9 axes"),
-    "2^31 steps": (GOOD.replace("-50", "2147483648"), "move 1: axis 1 has too many steps"),
+    "2^30 steps": (GOOD.replace("-50", f"{MOST + 1}"), f"axis 1 has too many steps, at most {MOST} are"),
+    "-2^30 steps": (GOOD.replace("-50", f"-{MOST + 1}"), "move 1: axis 1 has too many steps"),
     "-2^31 steps": (GOOD.replace("-50", "-2147483648"), "move 1: axis 1 has too many steps"),
     "other length": (GOOD + BY_SPEED.replace("-50", "-50, 1"), "move 2: steps has 3 axes, but move 1 has 2"),
     "profile missing": (GOOD.replace('profile = "cosine"', ""), "move 1: profile is missing"),

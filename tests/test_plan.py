@@ -39,6 +39,7 @@ LONG_RAMPS = 32  # see progress_bound()
 EXACT_TICKS = 1 << 21  # longer ramps are not summed tick by tick
 MOVE_CLOCKS = 1 << 44
 PHASE_TICKS = 1 << 32
+SUBSTEPS_MAX = (1 << 30) - 1  # of a line, and so the steps of an axis
 
 
 # ------------------------------------------------------------------------------------------- the planner ----
@@ -243,7 +244,7 @@ def check_structure(plan: Plan, move: InTime | BySpeed) -> None:
     assert plan.steps == [abs(n) for n in steps]
     assert line.directions == sum(1 << axis for axis, n in enumerate(steps) if n < 0)
     assert p.oversampling == 1 or (p.oversampling > 0 and p.oversampling % 2 == 0)
-    assert line.substeps == p.oversampling * longest < 1 << 32
+    assert line.substeps == p.oversampling * longest <= SUBSTEPS_MAX
 
     assert 1 <= p.ramp_count <= 7
     flags = [(ramp.last, ramp.now) for ramp in p.ramps[0 : p.ramp_count]]
@@ -320,7 +321,7 @@ def check_in_time(plan: Plan, move: InTime) -> None:
 
     clocks = (total - ramp) * machine.tick
     longest = max(map(abs, move.steps))
-    fit = min(clocks // (2 * longest), (2**32 - 1) // longest)
+    fit = min(clocks // (2 * longest), SUBSTEPS_MAX // longest)
     assert p.oversampling == (fit if fit < 2 else fit - fit % 2)
     # f_max = n / (total - ramp), to the nearest 2^-48
     assert abs(p.velocity_peak - Fraction(plan.substeps * ONE, clocks)) <= Fraction(1, 2)
@@ -425,7 +426,7 @@ def check_by_speed(plan: Plan, move: BySpeed) -> None:
     longest = max(map(abs, move.steps))
     highest = ideal.peak * (1 + ideal.peak_tolerance)
     more = p.oversampling + (1 if p.oversampling == 1 else 2)
-    assert more * longest >= 1 << 32 or more * highest / UNIT > machine.clock_hz / 2
+    assert more * longest > SUBSTEPS_MAX or more * highest / UNIT > machine.clock_hz / 2
 
 
 def check(plan: Plan, move: InTime | BySpeed) -> Fraction:
@@ -484,7 +485,7 @@ def some_in_time(rng: random.Random, machine: Machine) -> InTime:
     total = int(log_uniform(rng, machine.tick, min(2**40, MOVE_CLOCKS - 1)))
     ramp = rng.choice((0, total // 2, rng.randint(0, total // 2), int(log_uniform(rng, 1, total + 1)) // 2))
     fastest = max(1, (total - ramp - 2 * machine.tick) // 2)
-    longest = min(2**31 - 1, rng.choice((1, fastest, int(log_uniform(rng, 1, fastest + 1)))))
+    longest = min(SUBSTEPS_MAX, rng.choice((1, fastest, int(log_uniform(rng, 1, fastest + 1)))))
     return InTime(some_steps(rng, longest), rng.randrange(4), total, ramp)
 
 
@@ -501,7 +502,7 @@ def some_by_speed(rng: random.Random, machine: Machine) -> BySpeed:
         return max(1, min(2**64 - 1, int(speed / seconds)))
 
     duration = log_uniform(rng, 1e-6, 1e3)
-    longest = min(2**31 - 1, max(1, int(speed * duration / UNIT)))
+    longest = min(SUBSTEPS_MAX, max(1, int(speed * duration / UNIT)))
     ramps = rng.choice(
         (
             {"acceleration": acceleration()},
@@ -565,13 +566,13 @@ def test_unequal_ramps(c: Any, seconds: float, profile: int) -> None:
     machine = Machine()
     speed = q32(machine.clock_hz / 2 / 2)
     up, down = int(speed / seconds), int(speed / seconds * 0.7)
-    move = BySpeed((2**30, 1), profile, speed, q32(1000), 0, up, down)
+    move = BySpeed((SUBSTEPS_MAX // 2, 1), profile, speed, q32(1000), 0, up, down)
     error = plan_and_check(c, machine, move)
     print(f"{seconds} s: {float(error):.6f} substeps")
 
 
 @pytest.mark.parametrize("profile", range(4))
-@pytest.mark.parametrize("steps", [1, 2**31 - 1])
+@pytest.mark.parametrize("steps", [1, SUBSTEPS_MAX])
 def test_two_days(c: Any, steps: int, profile: int) -> None:
     machine = Machine(tick_log2=16)
     total = MOVE_CLOCKS - machine.tick
@@ -580,8 +581,8 @@ def test_two_days(c: Any, steps: int, profile: int) -> None:
 
 
 def test_half_the_clock(c: Any) -> None:
-    machine, longest = Machine(), 2**31 - 1
-    jump = InTime((longest, -longest, 1), LINEAR, 2**32, 0)
+    machine, longest = Machine(), SUBSTEPS_MAX
+    jump = InTime((longest, -longest, 1), LINEAR, 2**31, 0)
     assert abs(plan_and_check(c, machine, jump)) < Fraction(1, 1000)
     assert make_plan(c, machine, jump).c.oversampling == 1
     speed = machine.clock_hz * UNIT // 2
@@ -670,7 +671,13 @@ REFUSED = {
     "BAD_CLOCK": [{"clock_hz": 0}, {"tick_log2": 6}, {"tick_log2": 17}, {"tick_log2": 255}],
     "BAD_PROFILE": [{"profile": 4}, {"profile": 2**32 - 1}],
     "NO_STEPS": [{"steps": (0,)}, {"steps": (0,) * 8}],
-    "TOO_MANY_STEPS": [{"steps": (-(2**31),)}, {"steps": (1, -(2**31))}],
+    "TOO_MANY_STEPS": [
+        {"steps": (SUBSTEPS_MAX + 1,)},
+        {"steps": (-SUBSTEPS_MAX - 1,)},
+        {"steps": (1, -SUBSTEPS_MAX - 1)},
+        {"steps": (2**31 - 1,)},
+        {"steps": (1, -(2**31))},
+    ],
     "NO_TIME": [{"total_clocks": 0, "ramp_clocks": 0}, {"total_clocks": 127, "ramp_clocks": 0}],
     "RAMP_TOO_LONG": [{"ramp_clocks": 50_001}, {"total_clocks": 2**64 - 1, "ramp_clocks": 2**63}],
     "TOO_LONG": [
@@ -679,7 +686,7 @@ REFUSED = {
         {"total_clocks": 2**64 - 1, "ramp_clocks": 0},
         {"total_clocks": 2**64 - 1, "ramp_clocks": 2**63 - 1, "tick_log2": 16},
         {"speed": 1, "start_speed": 0, "stop_speed": 0},
-        {"speed": q32(1 / 60), "start_speed": 0, "stop_speed": 0, "steps": (2**31 - 1,)},
+        {"speed": q32(1 / 60), "start_speed": 0, "stop_speed": 0, "steps": (SUBSTEPS_MAX,)},
         {"acceleration": 1, "deceleration": 0},
         {"acceleration": q32(0.01), "steps": (10**9,)},
         {"deceleration": q32(0.01), "steps": (10**9,)},

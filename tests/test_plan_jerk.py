@@ -69,7 +69,7 @@ def check_structure(plan: Plan, fields: dict) -> None:
     """Ease, straight and mirrored ease, with equal slopes where they meet; symmetric."""
     p, ramps = plan.c, plan.ramps
     longest = max(map(abs, fields["steps"]))
-    assert p.line.substeps == p.oversampling * longest < 1 << 32
+    assert p.line.substeps == p.oversampling * longest <= base.SUBSTEPS_MAX
     assert plan.steps[: len(fields["steps"])] == [abs(n) for n in fields["steps"]]
     assert 1 <= p.ramp_count <= 9 and ramps[-1].velocity_end == 0
     assert [ramp.last for ramp in p.ramps[0 : p.ramp_count]] == [False] * (p.ramp_count - 1) + [True]
@@ -186,7 +186,7 @@ def test_random_moves(c: Any) -> None:
         speed = base.log_uniform(rng, 1 / 60, machine.clock_hz / 2.01)
         acceleration = speed / base.log_uniform(rng, 1e-5, 1e2)
         jerk_limit = acceleration / base.log_uniform(rng, 1e-5, 1e2)
-        steps = max(1, min(2**31 - 1, int(speed * base.log_uniform(rng, 1e-4, 1e3))))
+        steps = max(1, min(base.SUBSTEPS_MAX, int(speed * base.log_uniform(rng, 1e-4, 1e3))))
         fields = {
             "steps": base.some_steps(rng, steps),
             "start_speed": rng.choice((0, 0, q32(speed), q32(speed * rng.random() ** 3))),

@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: MIT
-"""Long and slow, short and quick: 1 to 2^31 - 1 steps, one step per minute to half the clock, for hours."""
+"""Long and slow, short and quick: 1 to 2^30 - 1 steps, one step per minute to half the clock, for hours."""
 
 from fractions import Fraction
 from typing import Any
 
 import pytest
-from test_plan import Machine, q32
+from test_plan import SUBSTEPS_MAX, Machine, q32
 from test_plan_jerk import check as check_jerk
 from test_plan_methods import check_plan, library, make_move, speed_of
 from test_plan_turn import turn
 
 HOUR = 3600
-STEPS = (1, 2, 3, 1000, 2**20 + 1, 2**31 - 1)
+STEPS = (1, 2, 3, 1000, 2**20 + 1, SUBSTEPS_MAX)
 
 
 @pytest.fixture

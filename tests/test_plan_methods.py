@@ -183,7 +183,7 @@ def test_random_times_and_speeds(c: Any, form: str) -> None:
     while made < MOVES:
         machine = base.some_machine(rng)
         flat = base.log_uniform(rng, machine.tick, 2**38)  # clocks at full speed
-        longest = max(1, min(2**31 - 1, int(base.log_uniform(rng, 1, flat / 2 + 1))))
+        longest = max(1, min(base.SUBSTEPS_MAX, int(base.log_uniform(rng, 1, flat / 2 + 1))))
         speed = int(longest * machine.clock_hz / flat * UNIT * (1 + 2**-30))
         ramp = rng.choice((0, int(flat), rng.randint(0, int(flat))))
         fields = {"steps": base.some_steps(rng, longest), "profile": rng.randrange(4), "speed": speed}
@@ -290,7 +290,9 @@ REFUSED = [
     ("at_speed", {"ramp_clocks": 2**64 - 1}, "RAMP_TOO_LONG"),
     ("at_speed", {"speed": 1}, "TOO_LONG"),
     ("at_speed", {"speed": 2**64 - 1, "ramp_clocks": 0, "steps": (100,)}, "TOO_FAST"),
-    ("at_speed", {"steps": (-(2**31),)}, "TOO_MANY_STEPS"),
+    ("at_speed", {"steps": (-base.SUBSTEPS_MAX - 1,)}, "TOO_MANY_STEPS"),
+    ("below_speed", {"steps": (1, base.SUBSTEPS_MAX + 1)}, "TOO_MANY_STEPS"),
+    ("axes", {"steps": (1, -(2**31))}, "TOO_MANY_STEPS"),
     ("axes", {"speed": 0}, "NO_SPEED"),
     ("axes", {"start_speed": q32(1001)}, "START_ABOVE_SPEED"),
     ("axes", {"ramp_clocks": 0}, "NO_ACCELERATION"),

@@ -139,7 +139,7 @@ def test_random_moves(c: Any) -> None:
         machine = base.some_machine(rng)
         speed = base.log_uniform(rng, 0.1, machine.clock_hz / 2.01)
         up, down = (base.log_uniform(rng, 1e-5, 100) for _ in range(2))
-        steps = max(1, min(2**31 - 1, int(speed * base.log_uniform(rng, 1e-5, 300))))
+        steps = max(1, min(base.SUBSTEPS_MAX, int(speed * base.log_uniform(rng, 1e-5, 300))))
         fields = {
             "steps": base.some_steps(rng, steps),
             "start_speed": rng.choice((0, q32(speed), q32(speed * rng.random()))),

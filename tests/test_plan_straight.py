@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 import test_plan as base
-from test_plan import EASE, UNIT, Machine, Plan, PlanError, q32
+from test_plan import EASE, SUBSTEPS_MAX, UNIT, Machine, Plan, PlanError, q32
 from test_plan_methods import MOVES, SEED, check_steps_to_stop, library, make, refused, speed_of
 
 XY = {"steps_per_mm": q32(80), "speed": q32(500), "acceleration": q32(3000), "jerk": q32(60_000)}
@@ -126,11 +126,18 @@ def test_random_lines(c: Any) -> None:
 
 
 def test_far_and_near(c: Any) -> None:
-    """The largest number of steps, eight axes at once, and a distance below half a step."""
+    """The largest number of steps, eight axes at once, what rounds to one more, and a distance below half a
+    step."""
     machine = Machine(4_000_000_000)
     own = {"steps_per_mm": q32(1), "speed": q32(1e9), "acceleration": q32(4e9), "jerk": 0}
-    fields = {"distance": (2**63 - 2**32,) * 8, "limits": (own,) * 8, "feed": 2**64 - 1}
-    check(straight(c, machine, **fields), fields)
+    too_far = SUBSTEPS_MAX * UNIT + UNIT // 2
+    fields = {"distance": (too_far - 1,) * 8, "limits": (own,) * 8, "feed": 2**64 - 1}
+    plan = straight(c, machine, **fields)
+    check(plan, fields)
+    assert plan.steps == [SUBSTEPS_MAX] * 8
+    for distance in (too_far, -too_far, 2**63 - 2**32):
+        fields["distance"] = (*(UNIT,) * 7, distance)
+        assert refused(c, lambda c: straight(c, machine, **fields)) == "TOO_MANY_STEPS"
     short = {"distance": (q32(100), q32(0.006)), "limits": (XY, XY), "feed": q32(100)}
     plan = straight(c, machine, **short)
     assert plan.steps[:2] == [8000, 0]

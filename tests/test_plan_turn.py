@@ -14,7 +14,7 @@ from passo.host import Channel
 from passo.link import Link
 from passo.moves import PinTiming
 from passo.native import ffi
-from test_plan import ONE, UNIT, Machine, Plan, PlanError, q32
+from test_plan import ONE, SUBSTEPS_MAX, UNIT, Machine, Plan, PlanError, q32
 from test_plan_methods import MOVES, SEED, check_plan, library, make, refused, speed_of, step_errors
 
 # 200 full steps, 8 microsteps
@@ -95,7 +95,7 @@ def test_random_turns(c: Any) -> None:
             plan = turn(c, machine, **fields)
         except PlanError as error:
             assert str(error) in ("TOO_LONG", "TOO_FAST", "NO_STEPS", "TOO_MANY_STEPS", "NO_SPEED"), fields
-            assert (str(error) == "TOO_MANY_STEPS") == (abs(steps) >= 2**31)
+            assert (str(error) == "TOO_MANY_STEPS") == (abs(steps) > SUBSTEPS_MAX)
             assert (str(error) == "NO_STEPS") == (steps == 0)
             continue
         worst = max(worst, abs(float(check_plan(plan, steps_of(fields["axis"], steps)))))
@@ -120,13 +120,25 @@ REFUSED = [
     ({"angle": -(2**63), "steps_per_turn": 2**32 - 1}, "TOO_MANY_STEPS"),
     ({"acceleration": 0}, "NO_ACCELERATION"),
     ({"rpm": 2**64 - 1}, "TOO_FAST"),
-    ({"acceleration": 1, "angle": 2**60}, "TOO_LONG"),
+    ({"acceleration": 1, "angle": 2**59}, "TOO_LONG"),
 ]
 
 
 @pytest.mark.parametrize(("changes", "name"), REFUSED)
 def test_refused_turns(c: Any, changes: dict, name: str) -> None:
     assert refused(c, lambda c, **more: turn(c, Machine(), **changes)) == name
+
+
+def test_as_far_as_a_line_goes(c: Any) -> None:
+    """The largest number of steps, and the angle that rounds to one more."""
+    too_far = SUBSTEPS_MAX * UNIT + UNIT // 2  # degrees, at a step each
+    fast = {"steps_per_turn": 360, "rpm": q32(1e6), "acceleration": q32(1e6)}
+    for sign in (1, -1):
+        fast["angle"] = sign * (too_far - 1)
+        plan = turn(c, Machine(), **fast)
+        check_plan(plan, steps_of(1, sign * SUBSTEPS_MAX))
+        fast["angle"] = sign * too_far
+        assert refused(c, lambda c: turn(c, Machine(), **fast)) == "TOO_MANY_STEPS"
 
 
 # ----------------------------------------------------------------------------------- turning without end ----
@@ -211,7 +223,8 @@ def test_backwards_and_without_minimum(c: Any) -> None:
     plan = turning(c, machine, "start", q32(60), backwards=True, minimum_rpm=0, axis=1)
     line = plan.c.line
     assert line.endless and not line.last and line.directions == 2
-    assert line.steps[1] * plan.c.oversampling == line.substeps > 2**31
+    assert line.steps[1] * plan.c.oversampling == line.substeps <= SUBSTEPS_MAX
+    assert line.substeps > SUBSTEPS_MAX - plan.c.oversampling, "as many steps as a line takes"
     assert [ramp.velocity_end for ramp in plan.ramps] == [plan.c.velocity_peak]
     stop = turning(c, machine, "stop", plan.c.velocity_peak, minimum_rpm=0)
     assert stop.c.ramp_count == 1 and stop.c.ramps[0].now and stop.c.ramps[0].last

@@ -15,7 +15,7 @@ from passo.shape import ShapeError, read_table
 PROFILES = ("linear", "cosine", "sigmoid", "jerk")
 USER = "user"  # the profile that is a table
 AXES_MAX = 8
-STEPS_MAX = 2**31 - 1
+STEPS_MAX = 2**30 - 1  # of an axis, the longest line
 CLOCK_HZ_MAX = 2**32 - 1
 PIN_CLOCKS_MAX = 65535
 PIN_SECONDS = Fraction(1, 1_000_000)  # the default of every pin timing

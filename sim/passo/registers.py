@@ -38,7 +38,7 @@ class Verdict(_DescribedEnum):
     READ_ONLY = 6, "The register cannot be written."
     QUEUE_FULL = 7, "Not enough room for the whole frame."
     BUSY = 8, "Channel stopped and not cleared, or shape tables while a motion runs."
-    BAD_VALUE = 9, "M = 0, N_i > M, a velocity above 1/2, reserved bits set."
+    BAD_VALUE = 9, "M = 0 or M >= 2^30, N_i > M, a velocity above 1/2, reserved bits set."
 
 
 class State(_DescribedEnum):

@@ -8,7 +8,6 @@
 
 #define NUMBER_MAX UINT32_MAX /* s, steps/s, steps/s^2, rpm ... */
 #define SIGNED_MAX INT32_MAX  /* degrees, millimetres */
-#define STEPS_MAX INT32_MAX
 #define PIN_CLOCKS_MAX 65535u
 #define ALPHA_ONE 4096u
 #define POINT_MAX 65535u
@@ -290,9 +289,9 @@ static bool read_steps(
 		struct item item = next_item(&list);
 
 		passo_decimal_read(&number, item.text, item.length, 0);
-		if (number.whole > STEPS_MAX)
+		if (number.whole > PASSO_SUBSTEPS_MAX)
 			return passo_complain(reading->sink,
-			    "axis %u has too many steps, at most %u are possible", axis, (uint32_t)STEPS_MAX);
+			    "axis %u has too many steps, at most %u are possible", axis, PASSO_SUBSTEPS_MAX);
 		steps[axis] = number.negative ? -(int32_t)number.whole : (int32_t)number.whole;
 	}
 	return true;

@@ -54,7 +54,8 @@ uint32_t passo_driver_interval(const struct passo *passo)
 
 static bool is_line(const struct passo *passo, const struct passo_line *line)
 {
-	if (line->substeps == 0u || line->directions >> passo->machine.axes != 0u)
+	if (line->substeps == 0u || line->substeps > PASSO_SUBSTEPS_MAX
+	    || line->directions >> passo->machine.axes != 0u)
 		return false;
 	for (unsigned i = 0; i < passo->machine.axes; i++) {
 		if (line->steps[i] > line->substeps)
