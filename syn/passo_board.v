@@ -7,9 +7,10 @@
 `default_nettype none
 
 module passo_board #(
-  parameter AXES     = 4,
-  parameter CHANNELS = 1,
-  parameter CLOCK_HZ = 100_000_000
+  parameter AXES           = 4,
+  parameter CHANNELS       = 1,
+  parameter CLOCK_HZ       = 100_000_000,
+  parameter STEPS_REGISTER = 0             // of the core
 ) (
   input  wire                     clk,
   input  wire                     locked,           // of the PLL, asynchronous
@@ -55,8 +56,9 @@ module passo_board #(
   assign heartbeat = beat[BEATS-1];
 
   passo_core #(
-    .CHANNELS(CHANNELS),
-    .AXES    (AXES)
+    .CHANNELS      (CHANNELS),
+    .AXES          (AXES),
+    .STEPS_REGISTER(STEPS_REGISTER)
   ) u_core (
     .clk            (clk),
     .rst            (rst),

@@ -64,6 +64,15 @@ def test_top_has_the_parameters_of_its_board(board: Board) -> None:
 
 
 @each_board
+def test_core_gets_the_parameters_of_its_device(board: Board) -> None:
+    """Through the top and what all boards share; and in the report."""
+    for name in board.device.core:
+        assert all(re.search(rf"\.{name}\s*\({name}\)", path.read_text()) for path in (board.top, COMMON))
+    parameters = report.core(board.device, (1, board.axes)).parameters
+    assert parameters == {"CHANNELS": 1, "AXES": board.axes, **board.device.core}
+
+
+@each_board
 def test_pll_makes_the_clock(board: Board) -> None:
     """By the formula in the data sheet of each family, with the oscillator inside within its limits."""
     p, osc = board.pll().parameters, board.oscillator_mhz

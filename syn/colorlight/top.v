@@ -6,11 +6,12 @@
 `default_nettype none
 
 module top #(
-  parameter AXES      = 6,
-  parameter CLOCK_HZ  = 100_000_000,
-  parameter CLKI_DIV  = 1,
-  parameter CLKFB_DIV = 4,
-  parameter CLKOP_DIV = 6
+  parameter AXES           = 6,
+  parameter CLOCK_HZ       = 100_000_000,
+  parameter STEPS_REGISTER = 1,
+  parameter CLKI_DIV       = 1,
+  parameter CLKFB_DIV      = 4,
+  parameter CLKOP_DIV      = 6
 ) (
   input  wire            oscillator,
   input  wire            spi_sclk,
@@ -66,8 +67,9 @@ module top #(
   assign led_n = ~heartbeat;
 
   passo_board #(
-    .AXES    (AXES),
-    .CLOCK_HZ(CLOCK_HZ)
+    .AXES          (AXES),
+    .CLOCK_HZ      (CLOCK_HZ),
+    .STEPS_REGISTER(STEPS_REGISTER)
   ) u_board (
     .clk            (clk),
     .locked         (locked),

@@ -42,7 +42,8 @@ class Board:
     def parameters(self, axes: int | None = None, mhz: float | None = None) -> dict[str, int]:
         """The parameters of its top."""
         pll = self.pll(mhz)
-        return {"AXES": axes or self.axes, "CLOCK_HZ": round(pll.mhz * 1e6), **pll.parameters}
+        clock_hz = round(pll.mhz * 1e6)
+        return {"AXES": axes or self.axes, "CLOCK_HZ": clock_hz, **self.device.core, **pll.parameters}
 
     def design(self, axes: int | None = None, mhz: float | None = None) -> Design:
         """What is to be synthesised."""

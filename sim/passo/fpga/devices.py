@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The FPGAs, and what the tools of each family want to be told."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 # The SPI clock is the host's; 25 MHz is what a clock of 100 MHz allows.
 SPI_MHZ = 25
@@ -86,6 +87,7 @@ class Device:
     capacity: int  # in the family's unit
     target_mhz: int
     pins: tuple[int, ...] = ()  # for the tool that does not choose them by itself; the first two are clocks
+    core: Mapping[str, int] = field(default_factory=dict, hash=False)  # parameters of the core that suit it
 
 
 DEVICES = {
@@ -113,10 +115,11 @@ DEVICES = {
             "ecp5-25",
             "ECP5-25 speed 6",
             ECP5,
-            "synth_ecp5",
-            ("--25k", "--package", "CABGA256", "--speed", "6"),
+            "synth_ecp5 -cmp2softlogic",
+            ("--25k", "--package", "CABGA256", "--speed", "6", "--tmg-ripup"),
             capacity=24288,
             target_mhz=180,
+            core={"STEPS_REGISTER": 1},  # its block RAMs have registers for their outputs
         ),
         Device(
             "gw1nr-9c",

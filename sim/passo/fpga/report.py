@@ -11,7 +11,7 @@ import statistics
 import sys
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from itertools import product
 from typing import Any
 
@@ -87,7 +87,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def core(device: Device, size: tuple[int, int]) -> Design:
     """The core alone, with its ports as pins."""
     channels, axes = size
-    return Design(f"{device.name}-{channels}x{axes}", device, parameters={"CHANNELS": channels, "AXES": axes})
+    parameters = {"CHANNELS": channels, "AXES": axes, **device.core}
+    return Design(f"{device.name}-{channels}x{axes}", device, parameters=parameters)
 
 
 def measure(wanted: Sequence[tuple[Device, tuple[int, int]]], splits: bool) -> dict[str, Any]:
@@ -96,12 +97,7 @@ def measure(wanted: Sequence[tuple[Device, tuple[int, int]]], splits: bool) -> d
     prepare(dict.fromkeys(program for device in devices for program in device.family.programs))
     designs = {(device.name, size): core(device, size) for device, size in wanted}
     hierarchical = {
-        name: Design(
-            f"{name}-split",
-            DEVICES[name],
-            parameters={"CHANNELS": SPLIT_SIZE[0], "AXES": SPLIT_SIZE[1]},
-            flatten=False,
-        )
+        name: replace(core(DEVICES[name], SPLIT_SIZE), name=f"{name}-split", flatten=False)
         for name in SPLIT_DEVICES
         if splits and DEVICES[name] in devices
     }

@@ -9,7 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 from passo.console import console, table
 from passo.fpga.boards import Board, BoardError, board, boards
 from passo.fpga.devices import SPI_MHZ
-from passo.fpga.flow import Placed, cells, pack, place
+from passo.fpga.flow import Placed, cells, moved_registers, pack, place
 from passo.fpga.pll import PllError
 from passo.fpga.tools import ToolError, prepare
 from passo.toolchain import paths
@@ -66,6 +66,8 @@ def make(chosen: Board, axes: int | None = None, mhz: float | None = None) -> bo
     size = f"{used:,} of {capacity:,} {family.size_unit} ({used / capacity:.0%})"
     print(f"{chosen.title}, {design.parameters['AXES']} axes")
     print(f"  size       {size}, {made['FF']:,} FF, {tried[0].bram} BRAM, {made['DSP']} DSP")
+    if moved := moved_registers(design):
+        print(f"  registers  {moved} more in the block RAMs")
     fitting = [each for each in tried if each.fits]
     if not fitting:
         print(f"  does not fit: {tried[0].folder.relative_to(paths.root)}/nextpnr.log")
