@@ -39,18 +39,16 @@ static uint64_t min_u64(uint64_t a, uint64_t b)
 
 /* ---- what must stand still ---- */
 
-static bool lines_settled(const struct passo_channel *channel, const struct passo_parameters *parameters)
+static bool lines_settled(const struct passo_channel *channel)
 {
 	const struct passo_line_queue *queue = &channel->line_queue;
-	const unsigned depth = 1u << parameters->line_queue_log2;
-	const struct passo_line *next = &queue->lines[queue->next_line & (depth - 1u)];
 	const struct passo_line *current = &queue->lines[queue->current_line];
 
 	for (unsigned i = 0; i < channel->axes; i++)
 		if (queue->steps[i] != current->steps[i])
 			return false;
-	return queue->next_valid == (queue->next_line != queue->write_line) && queue->next_last == next->last
-	    && queue->next_endless == next->endless && queue->next_directions == next->directions;
+	return queue->next_valid == (queue->next_line != queue->write_line)
+	    && queue->directions == current->directions;
 }
 
 static bool ramps_settled(const struct passo_ramp_queue *queue, const struct passo_parameters *parameters)
@@ -61,12 +59,13 @@ static bool ramps_settled(const struct passo_ramp_queue *queue, const struct pas
 	return !queue->write_low && queue->room == depth - used && queue->valid == (used != 0u);
 }
 
-static bool commands_settled(const struct passo_channel *channel)
+static bool commands_settled(const struct passo_channel *channel, const struct passo_bus *bus)
 {
 	const struct passo_channel_registers *registers = &channel->registers;
+	const uint8_t in_axes = (uint8_t)((uint8_t)bus->address - PASSO_CHANNEL_AXIS_BASE);
 
 	return !registers->command_stop && !registers->command_abort && !registers->command_clear
-	    && !registers->command_zero && !channel->writes_axis;
+	    && !registers->command_zero && !channel->writes_axis && channel->written_register == in_axes;
 }
 
 static bool slots_empty(const struct passo_channel *channel)
@@ -147,9 +146,9 @@ static uint64_t surroundings_quiet(
 	const bool moving = channel->motion.state == PASSO_STATE_RUN;
 
 	if (!motion_settled(channel, inputs) || channel->positions.snapshot_waits
-	    || !commands_settled(channel) || line->slot_load || line->slot_load_q || line->underrun
-	    || !ramps_settled(&channel->ramp_queue, inputs->parameters)
-	    || !lines_settled(channel, inputs->parameters))
+	    || !commands_settled(channel, inputs->bus) || line->slot_load || line->slot_load_q
+	    || line->underrun || !ramps_settled(&channel->ramp_queue, inputs->parameters)
+	    || !lines_settled(channel))
 		return 0;
 	uint64_t clocks =
 	    min_u64(ramp_quiet(&channel->ramp), timescale_quiet(channel, moving, clocks_to_slew));
@@ -400,8 +399,9 @@ static bool link_side_quiet(const struct passo_core *core, const struct passo_in
 
 	return same_inputs(inputs, &core->inputs) && core->spi.select_sync == selected
 	    && core->spi.toggle_sync == toggled && core->sync_q == synced && passo_link_quiet(&core->link)
-	    && !core->response.claim && core->response.refusal == 0u && core->response.read_data == 0u
-	    && !core->response.late && core->outputs.irq == passo_registers_any_stopped(core);
+	    && core->link.status == passo_registers_status(core) && !core->response.claim
+	    && core->response.refusal == 0u && core->response.read_data == 0u && !core->response.late
+	    && core->outputs.irq == passo_registers_any_stopped(core);
 }
 
 static struct passo_channel_inputs inputs_of(const struct passo_core *core, unsigned channel)

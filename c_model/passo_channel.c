@@ -58,8 +58,10 @@ static struct passo_channel_wires gather_wires(
 
 	wires.substep_taken = channel->path.substep && channel->line.active;
 	wires.line_done = wires.substep_taken && channel->line.on_last;
-	wires.take =
-	    wires.prepare || (wires.line_done && !channel->line.last && channel->line_queue.next_valid);
+	wires.turn = wires.line_done && channel->line_queue.endless && !channel->line_queue.last;
+	wires.take = wires.prepare
+	          || (wires.line_done && !channel->line_queue.endless && !channel->line_queue.last
+	              && channel->line_queue.next_valid);
 	return wires;
 }
 

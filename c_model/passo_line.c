@@ -12,36 +12,31 @@ int64_t passo_line_broadcast(const struct passo_line_unit *line, uint32_t last_s
 void passo_line_clock(struct passo_line_unit *line, const struct passo_line_queue *queue,
     const struct passo_channel_wires *wires)
 {
-	const bool last = line->last;
-
 	if (line->slot_load_q)
-		line->directions = line->directions_next;
+		line->directions = queue->directions;
 	line->slot_step = line->slot_add;
 	line->slot_load_q = line->slot_load;
 	line->slot_add = wires->substep_taken;
-	line->slot_load = wires->take;
+	line->slot_load = wires->take || wires->turn;
 
+	line->endless = queue->endless;
 	line->on_last = line->substep_number == queue->last_substep;
-	line->underrun = wires->line_done && !last && !queue->next_valid;
-	if (wires->take) {
+	line->underrun = false;
+	if (wires->take || wires->turn) {
 		line->substep_number = 0;
-		line->last = queue->next_last;
-		line->endless = queue->next_endless;
-		line->directions_next = queue->next_directions;
+	} else if (wires->line_done) {
+		line->active = false;
+		line->ended = queue->last;
+		line->underrun = !queue->last;
 	} else if (wires->substep_taken) {
 		line->substep_number++;
 	}
-
-	if (wires->line_done && !wires->take)
-		line->active = false;
-	if (wires->line_done && last)
-		line->ended = true;
 	if (wires->prepare) {
 		line->active = true;
 		line->ended = false;
 	}
 	if (wires->stopped) {
-		line->active = line->ended = line->endless = line->underrun = false;
+		line->active = line->ended = line->underrun = false;
 		line->slot_add = line->slot_load = line->slot_step = line->slot_load_q = false;
 	}
 }

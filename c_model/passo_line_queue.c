@@ -26,7 +26,7 @@ uint8_t passo_line_queue_refusal(const struct passo_line_queue *queue,
 		return PASSO_VERDICT_QUEUE_FULL;
 	if (queue->index == INDEX_CONTROL && (bus->data & ~defined) != 0u)
 		return PASSO_VERDICT_BAD_VALUE;
-	if (queue->index == INDEX_SUBSTEPS && bus->data == 0u)
+	if (queue->index == INDEX_SUBSTEPS && (bus->data == 0u || bus->data > PASSO_SUBSTEPS_MAX))
 		return PASSO_VERDICT_BAD_VALUE;
 	if (queue->index >= INDEX_STEPS && bus->data > queue->checked_substeps)
 		return PASSO_VERDICT_BAD_VALUE;
@@ -82,11 +82,12 @@ static void read_memory(struct passo_line_queue *queue, const struct passo_param
 	const struct passo_line *next = &queue->lines[queue->next_line & (depth(parameters) - 1u)];
 	const struct passo_line *current = &queue->lines[queue->current_line];
 
-	queue->next_last = next->last;
-	queue->next_endless = next->endless;
-	queue->next_directions = next->directions;
-	if (take)
+	if (take) {
+		queue->last = next->last;
+		queue->endless = next->endless;
 		queue->last_substep = next->substeps - 1u;
+	}
+	queue->directions = current->directions;
 	for (unsigned axis = 0; axis < parameters->axes; axis++)
 		queue->steps[axis] = current->steps[axis];
 }
@@ -96,23 +97,20 @@ void passo_line_queue_clock(struct passo_line_queue *queue, const struct passo_p
 {
 	const uint16_t write_line = queue->write_line;
 	const uint16_t next_line = queue->next_line;
-	const bool next_endless = queue->next_endless;
-	const bool has_place = queue->has_place;
 
 	read_memory(queue, parameters, wires->take);
 	clock_writing(queue, parameters, bus, wires->line_push, wires->stopped);
 
-	if ((wires->take && has_place) || wires->finished)
+	if ((wires->take && queue->has_place) || wires->finished)
 		queue->room++;
 	if (wires->take) {
 		queue->current_line = next_line & (uint16_t)(depth(parameters) - 1u);
-		queue->has_place = !next_endless;
+		queue->next_line = wrap(next_line + 1u, parameters);
+		queue->has_place = true;
 	}
 	if (wires->finished)
 		queue->has_place = false;
-	if ((wires->take && !next_endless) || (wires->finished && !has_place))
-		queue->next_line = wrap(next_line + 1u, parameters);
-	queue->next_valid = !wires->take && !wires->finished && !wires->stopped && next_line != write_line;
+	queue->next_valid = !wires->take && !wires->stopped && next_line != write_line;
 	if (wires->stopped) {
 		queue->write_line = queue->next_line = 0;
 		queue->has_place = false;

@@ -6,14 +6,15 @@
 #include "passo_model.h"
 
 enum {
-	COUNT_ACT = 1,
-	COUNT_REST = 3,
 	COUNT_READ = 12,
-	COUNT_LOAD = 28,
+	COUNT_LOAD = 27,
+	COUNT_STROBE = 28,
 	COUNT_ANSWER = 30,
-	COUNT_LOADED = 31,
+	COUNT_LOADED = 31, /* of a replay: COUNT_LOAD */
 	COUNT_TURN = 32,
-	COUNT_TURNED = 63
+	COUNT_TURNED = 63,
+	COUNT_ACT = 65,
+	COUNT_REST = 67
 };
 
 static uint8_t operation_of(uint32_t header)
@@ -170,7 +171,6 @@ static void do_step(struct passo_link *link, const struct passo_link_wires *wire
     const struct passo_link *was, bool word_valid, bool frame_goes_on)
 {
 	const bool act = was->count == COUNT_ACT;
-	const bool all_words = was->index == was->length;
 
 	switch (was->step) {
 	case PASSO_LINK_HEADER:
@@ -185,7 +185,7 @@ static void do_step(struct passo_link *link, const struct passo_link_wires *wire
 		link->bus.check = act;
 		if (act)
 			link->index++;
-		if (all_words)
+		if (was->all_words)
 			link->step = PASSO_LINK_CRC;
 		break;
 	case PASSO_LINK_CRC:
@@ -199,18 +199,18 @@ static void do_step(struct passo_link *link, const struct passo_link_wires *wire
 			end_acknowledge(link);
 		break;
 	case PASSO_LINK_REPLAY:
-		if (was->count == COUNT_LOADED) {
-			link->bus.write = true;
+		link->bus.write = was->count == COUNT_LOAD && was->index != 0u;
+		if (was->count == COUNT_LOADED - 1) {
 			link->index++;
 			link->count = COUNT_LOAD;
 		}
-		if (all_words) {
+		if (was->all_words) {
 			link->count = COUNT_REST;
 			link->step = frame_goes_on ? PASSO_LINK_HEADER : PASSO_LINK_IDLE;
 		}
 		break;
 	case PASSO_LINK_READ:
-		link->bus.read = was->count == COUNT_LOAD && !wires->spi.frame_end;
+		link->bus.read = was->count == COUNT_STROBE && !wires->spi.frame_end;
 		if (was->count == COUNT_ANSWER)
 			link->reply_word = wires->response.read_data;
 		if (was->count == COUNT_LOADED && was->index == 0u && was->answer != PASSO_VERDICT_OK) {
@@ -223,8 +223,8 @@ static void do_step(struct passo_link *link, const struct passo_link_wires *wire
 			link->bus.address = (was->bus.address + 1u) & 0xFFFu;
 		}
 		if (word_valid) {
-			link->count = all_words ? COUNT_TURN : COUNT_READ;
-			if (all_words)
+			link->count = was->all_words ? COUNT_TURN : COUNT_READ;
+			if (was->all_words)
 				link->step = PASSO_LINK_SUM;
 		}
 		break;
@@ -249,6 +249,7 @@ void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wi
 	    .count = link->count,
 	    .length = link->length,
 	    .index = link->index,
+	    .all_words = link->all_words,
 	    .frame_waits = link->frame_waits,
 	    .answer_due = link->answer_due,
 	    .answer_came = link->answer_came,
@@ -267,8 +268,9 @@ void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wi
 	if (wires->spi.half_valid)
 		store(link, wires);
 	if (was.count != COUNT_REST)
-		link->count = (was.count + 1u) & 63u;
+		link->count = was.count + 1u;
 	link->bus.frame = link->bus.check = link->bus.write = link->bus.read = false;
+	link->all_words = was.index == was.length && !act;
 	link->answer_due = was.bus.check;
 	link->answer_came = was.answer_due;
 	link->answer = wires->response.claim ? wires->response.refusal : PASSO_VERDICT_UNKNOWN_ADDRESS;
@@ -282,7 +284,8 @@ void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wi
 	do_step(link, wires, &was, word_valid, frame_goes_on);
 
 	if (wires->spi.frame_start)
-		link->reply_word = wires->status;
+		link->reply_word = link->status;
+	link->status = wires->status;
 	const bool goes_through = was.step == PASSO_LINK_REPLAY || was.step == PASSO_LINK_COUNT;
 	link->frame_waits = goes_through && frame_goes_on;
 	if (!goes_through && !(was.step == PASSO_LINK_ACK && act)) {

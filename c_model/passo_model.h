@@ -90,6 +90,7 @@ struct passo_link {
 	bool is_read;
 	uint8_t length;
 	uint8_t index;
+	bool all_words; /* index was length in the clock before */
 	bool frame_waits;
 	bool sequence_known;
 	uint8_t last_sequence;
@@ -100,6 +101,7 @@ struct passo_link {
 	bool crc_wrong;
 	uint32_t crc;
 	uint16_t buffer[PASSO_BUFFER_WORDS][2]; /* upper half first */
+	uint32_t status;                        /* of the clock before */
 	uint32_t reply_word;
 	bool refused;
 	struct passo_bus bus;
@@ -139,16 +141,16 @@ struct passo_line_queue {
 	uint8_t index;
 	uint16_t write_line, next_line; /* one bit more than the address */
 	uint16_t current_line;
-	bool has_place; /* the current line is not the next line */
+	bool has_place; /* a line is the current one */
 	uint16_t checked;
 	uint32_t checked_substeps;
 	uint16_t room;
 	bool next_valid;
 	struct passo_line lines[PASSO_LINE_QUEUE_MAX];
 	/* outputs of the block RAM */
-	bool next_last, next_endless;
-	uint8_t next_directions;
+	bool last, endless;
 	uint32_t last_substep; /* M - 1 */
+	uint8_t directions;
 	uint32_t steps[PASSO_AXES_MAX];
 };
 
@@ -206,10 +208,10 @@ struct passo_path {
 };
 
 struct passo_line_unit {
-	bool active, last, endless, ended, underrun;
+	bool active, endless, ended, underrun;
 	uint32_t substep_number;
 	bool on_last;
-	uint8_t directions, directions_next;
+	uint8_t directions;
 	bool slot_add, slot_load, slot_step, slot_load_q;
 };
 
@@ -304,7 +306,7 @@ struct passo_channel_wires {
 	bool ramp_valid;
 	bool startable, prepare, begins_next, begin_profile;
 	bool advance, tick, next, ramp_ended;
-	bool substep_taken, line_done, take;
+	bool substep_taken, line_done, take, turn;
 	bool overrun;
 	bool finished;
 	bool stop_now, stopped;

@@ -21,7 +21,7 @@ static void begin_step(struct passo_ramp_unit *ramp, enum passo_ramp_step step, 
 static uint32_t work_clocks(const struct passo_ramp_unit *ramp, const struct passo_tables *tables,
     const struct passo_parameters *parameters, uint8_t channel)
 {
-	const uint32_t served = 2; /* from the channel's turn at the tables */
+	const uint32_t served = 3; /* from the channel's turn at the tables */
 	const uint32_t shape = 19;
 	const uint32_t scale = 50;
 

@@ -20,6 +20,7 @@ from cocotb_tests.runner import seed
 Signal = LogicObject | LogicArrayObject
 
 PERIOD = 10_000  # ps
+SUBSTEPS_MAX = (1 << 30) - 1  # of a line
 LIMIT = 3_000_000  # clocks after which a test is taken for endless
 
 

@@ -7,7 +7,7 @@ from passo import frame
 from passo import registers as r
 from passo.registers import Operation, Verdict
 
-from cocotb_tests.bench import rng
+from cocotb_tests.bench import SUBSTEPS_MAX, rng
 from cocotb_tests.core_bench import V_MAX, Core, Line, PinTiming, Ramp, Shape, core_test
 from cocotb_tests.core_expected import due, totals
 from cocotb_tests.core_frames import GAP, ack, everything, frames, refusals, request
@@ -145,6 +145,7 @@ def bad_values(core: Core) -> None:
         line_words(0, 1 << (8 + core.axes)),
         line_words(0, 1 << 31),
         line_words(1, 0),
+        line_words(1, SUBSTEPS_MAX + 1),
         *(line_words(2 + i, 10) for i in range(core.axes)),
         line_words(1 + core.axes, 0xFFFFFFFF),
         [*good.words(), *good.words(), *line_words(2, 10)],
@@ -189,7 +190,7 @@ def bad_values(core: Core) -> None:
 def greatest_values(core: Core) -> None:
     """What is just not too large is taken."""
     channel = core.channel()
-    channel.lines(Line(0xFFFFFFFF, (0xFFFFFFFF, -0xFFFFFFFF, 0)[: core.axes]))
+    channel.lines(Line(SUBSTEPS_MAX, (SUBSTEPS_MAX, -SUBSTEPS_MAX, 0)[: core.axes]))
     channel.ramps(Ramp(V_MAX, 0xFFFFFFFF, Shape.EASE, mirror=True))
     core.link.write(channel.base + r.CHANNEL_RATE_TARGET, 0x10000, 0x10000, 0x10000, 0x80000000)
     channel.start()

@@ -5,6 +5,7 @@ from passo import registers as r
 from passo.host import RATE_ONE
 from passo.registers import Cause
 
+from cocotb_tests.bench import SUBSTEPS_MAX
 from cocotb_tests.core_bench import ONE, V_MAX, Core, CoreChannel, Line, PinTiming, Ramp, core_test
 from cocotb_tests.core_expected import due
 from cocotb_tests.core_moves import check_stopped
@@ -105,7 +106,7 @@ def step_counts_in_all_their_bits(core: Core) -> None:
     channel = core.channel()
     checker = core.watch(PinTiming())
     ramps = [Ramp(ONE // 20, 0), Ramp(ONE // 20, 30), Ramp(0, 0, last=True)]
-    for m, n in ((0xFFFFFFFF, 0x80000000), (0xFFFFFFFE, 0x7FFFFFFF), (0xFFFFFFFF, 0x80000000)):
+    for m, n in ((SUBSTEPS_MAX, 1 << 29), (SUBSTEPS_MAX - 1, (1 << 29) - 1), (SUBSTEPS_MAX, 1 << 29)):
         line = Line(m, (n, -n, n)[: core.axes], last=True)
         since = core.clock
         channel.lines(line)

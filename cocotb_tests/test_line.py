@@ -6,20 +6,22 @@ from dataclasses import dataclass
 from random import Random
 
 import cocotb
+import pytest
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import gather
 
-from cocotb_tests.bench import Clocks, PushBus, Recorder, begin, read, rng
+from cocotb_tests.bench import SUBSTEPS_MAX, Clocks, PushBus, Recorder, begin, read, rng
 from cocotb_tests.runner import run
 
 AXES = 3
 DEPTH_LOG2 = 5
 LATENCY = 2  # substep to step_request
-M_MAX = (1 << 32) - 1
 
 
-def test_line(simulator: str) -> None:
-    run(__name__, "passo_line_top", {"AXES": AXES, "DEPTH_LOG2": DEPTH_LOG2}, simulator)
+@pytest.mark.parametrize("register", [0, 1])
+def test_line(simulator: str, register: int) -> None:
+    parameters = {"AXES": AXES, "DEPTH_LOG2": DEPTH_LOG2, "STEPS_REGISTER": register}
+    run(__name__, "passo_line_top", parameters, simulator)
 
 
 @dataclass(frozen=True)
@@ -190,11 +192,15 @@ async def steps_are_spread_evenly_over_the_substeps(
 
 @cocotb.test()
 @cocotb.parametrize(
-    n=[(M_MAX, M_MAX - 1, M_MAX // 2), (M_MAX // 3, 1 << 31, M_MAX // 7), (1, 0, (1 << 31) + 1)],
-    m=[M_MAX, M_MAX - 1, (1 << 31) + 1],
+    n=[
+        (SUBSTEPS_MAX, SUBSTEPS_MAX - 1, SUBSTEPS_MAX // 2),
+        (SUBSTEPS_MAX // 3, 1 << 29, SUBSTEPS_MAX // 7),
+        (1, 0, (1 << 29) + 1),
+    ],
+    m=[SUBSTEPS_MAX, SUBSTEPS_MAX - 1, (1 << 29) + 1],
 )
 async def the_longest_lines_do_not_overflow(dut: HierarchyObject, m: int, n: tuple[int, ...]) -> None:
-    """M up to 2^32 - 1: the first substeps make the right steps, and the line does not end."""
+    """M up to 2^30 - 1: the first substeps make the right steps, and the line does not end."""
     lines = await Lines.begin(dut)
     line = Line(m, tuple(min(m, steps) for steps in n), last=True)
     await lines.bus.push(line.words())
@@ -206,11 +212,11 @@ async def the_longest_lines_do_not_overflow(dut: HierarchyObject, m: int, n: tup
 
 @cocotb.test()
 async def the_longest_lines_end_with_their_last_substep(dut: HierarchyObject) -> None:
-    """The last substeps of lines of every length, as the count goes through 2^k and up to 2^32 - 1."""
+    """The last substeps of lines of every length, as the count goes through 2^k and up to 2^30 - 1."""
     random = rng("line, end")
     lines = await Lines.begin(dut)
-    for m in (*((1 << bit) + random.randrange(2, 9) for bit in range(8, 32)), M_MAX):
-        before = 6 if m == M_MAX else m - (1 << m.bit_length() - 1) + 2
+    for m in (*((1 << bit) + random.randrange(2, 9) for bit in range(8, 30)), SUBSTEPS_MAX):
+        before = 6 if m == SUBSTEPS_MAX else m - (1 << m.bit_length() - 1) + 2
         long = Line(m, (m, m - 1, random.randrange(m)), random.randrange(8))
         short = Line(3, (3, 1, 2), random.randrange(8), last=True)
         await lines.bus.push(long.words() + short.words())
@@ -314,24 +320,29 @@ async def a_line_is_in_time_three_clocks_before_its_predecessor_ends(dut: Hierar
 
 @cocotb.test()
 async def an_endless_line_repeats_until_it_is_released(dut: HierarchyObject) -> None:
-    """The same line again and again, even if others wait; they are for the motion after release_line."""
+    """The same line again and again, even if others wait; they are for the motion after release_line.
+
+    Long lines and lines of one substep, at full rate.
+    """
     lines = await Lines.begin(dut)
-    endless, after = Line(7, (3, 7, 1), 2, endless=True), Line(4, (4, 1, 0), 4, last=True)
-    await lines.bus.push(endless.words() + after.words())
-    await lines.start()
-    assert read(dut.endless) == 1
-    await lines.make([endless] * 6, every(2))
-    await lines.make([endless], gaps(rng("line, endless")), until=4)
-    assert await lines.compare() > 0
-    lines.check_end(ended=False, underruns=0)
-    await lines.strobe("release_line")
-    await lines.clocks.wait(3)
-    assert read(dut.room) == (1 << DEPTH_LOG2) - 1
-    await lines.start()
-    assert read(dut.endless) == 0
-    await lines.make([after], every(2))
-    await lines.compare()
-    lines.check_end(ended=True, underruns=0)
+    after = Line(4, (4, 1, 0), 4, last=True)
+    for endless in (Line(7, (3, 7, 1), 2, endless=True), Line(1, (1, 0, 1), 1, endless=True)):
+        await lines.bus.push(endless.words() + after.words())
+        await lines.start()
+        assert read(dut.endless) == 1
+        await lines.make([endless] * 6, every(2))
+        await lines.make([endless], gaps(rng("line, endless")), until=4 if endless.substeps > 4 else None)
+        assert await lines.compare() > 0
+        lines.check_end(ended=False, underruns=0)
+        await lines.strobe("release_line")
+        await lines.clocks.wait(3)
+        assert read(dut.room) == (1 << DEPTH_LOG2) - 1
+        await lines.start()
+        assert read(dut.endless) == 0
+        await lines.make([after], every(2))
+        await lines.compare()
+        lines.check_end(ended=True, underruns=0)
+        await lines.strobe("release_line")
 
 
 @cocotb.test()

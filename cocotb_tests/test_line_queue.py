@@ -8,7 +8,7 @@ import cocotb
 import pytest
 from cocotb.handle import HierarchyObject
 
-from cocotb_tests.bench import Clocks, PushBus, begin, read, rng
+from cocotb_tests.bench import SUBSTEPS_MAX, Clocks, PushBus, begin, read, rng
 from cocotb_tests.runner import run
 
 DEPTH_LOG2 = 2
@@ -17,9 +17,11 @@ QUEUE_FULL, BUSY, BAD_VALUE = 7, 8, 9
 LAST, ENDLESS = 1, 2
 
 
+@pytest.mark.parametrize("register", [0, 1])
 @pytest.mark.parametrize("axes", [1, 8])
-def test_line_queue(simulator: str, axes: int) -> None:
-    run(__name__, "passo_line_queue", {"AXES": axes, "DEPTH_LOG2": DEPTH_LOG2}, simulator)
+def test_line_queue(simulator: str, axes: int, register: int) -> None:
+    parameters = {"AXES": axes, "DEPTH_LOG2": DEPTH_LOG2, "STEPS_REGISTER": register}
+    run(__name__, "passo_line_queue", parameters, simulator)
 
 
 @pytest.mark.parametrize("depth_log2", [5, 8])
@@ -32,7 +34,7 @@ class Queue:
 
     def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
         self.dut, self.clocks = dut, clocks
-        self.axes = len(dut.steps) // 32
+        self.axes = len(dut.directions)
         self.bus = PushBus(dut, clocks)
 
     @classmethod
@@ -42,10 +44,12 @@ class Queue:
 
     def random_line(self, random: Random, control: int | None = None) -> list[int]:
         """Words of a good line."""
-        m = random.choice((1, (1 << 32) - 1, random.randrange(1, 1 << random.randrange(1, 33))))
+        m = random.choice((1, SUBSTEPS_MAX, random.randrange(1, 1 << random.randrange(1, 31))))
         n = [random.choice((0, m, random.randrange(m + 1))) for _ in range(self.axes)]
         if control is None:
-            control = random.randrange(1 << self.axes) << 8 | random.choice((0, LAST))
+            control = random.randrange(1 << self.axes) << 8 | random.choice(
+                (0, LAST, ENDLESS, LAST | ENDLESS)
+            )
         return [control, m, *n]
 
     async def strobe(self, name: str) -> None:
@@ -55,18 +59,17 @@ class Queue:
         getattr(self.dut, name).value = 0
 
     def check_next(self, line: list[int] | None) -> None:
-        """Check the control of the next line, or that there is none."""
+        """Check that this line can be taken, or that there is none."""
         assert read(self.dut.next_valid) == (line is not None)
-        if line is not None:
-            assert read(self.dut.next_last) == line[0] & 1
-            assert read(self.dut.next_endless) == line[0] >> 1 & 1
-            assert read(self.dut.next_directions) == line[0] >> 8
 
     def check_current(self, line: list[int]) -> None:
-        """Check the length and the step counts of the current line."""
+        """Check all of the current line."""
+        assert read(self.dut.last) == line[0] & 1
+        assert read(self.dut.endless) == line[0] >> 1 & 1
+        assert read(self.dut.directions) == line[0] >> 8
         assert read(self.dut.last_substep) == line[1] - 1
         steps = read(self.dut.steps)
-        assert [steps >> 32 * axis & 0xFFFFFFFF for axis in range(self.axes)] == line[2:]
+        assert [steps >> 30 * axis & SUBSTEPS_MAX for axis in range(self.axes)] == line[2:]
 
     def check_room(self, room: int) -> None:
         """Check the free places."""
@@ -142,7 +145,7 @@ async def a_check_changes_nothing(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def bad_values_are_refused(dut: HierarchyObject) -> None:
-    """Every reserved control bit, M = 0, N above M, in the first and in the second line of a frame."""
+    """Every reserved control bit, M = 0 or too large, N above M, in a frame's first and second line."""
     random = rng("line queue, values")
     queue = await Queue.begin(dut)
     good = queue.random_line(random)
@@ -151,9 +154,10 @@ async def bad_values_are_refused(dut: HierarchyObject) -> None:
         line = [1 << bit, 1000, *[1000] * queue.axes]
         known = bit < 2 or 8 <= bit < 8 + queue.axes
         bad.append((-1 if known else 0, line))
-    bad.append((1, [0, 0, *[0] * queue.axes]))
+    bad += [(1, [0, m, *[0] * queue.axes]) for m in (0, SUBSTEPS_MAX + 1, 1 << 31, 0xFFFFFFFF)]
     for axis in range(queue.axes):
-        for m, n in ((1, 2), (0x7FFFFFFF, 0x80000000), (0xFFFFFFFE, 0xFFFFFFFF), (1000, 1001)):
+        half, top = 1 << 29, SUBSTEPS_MAX
+        for m, n in ((1, 2), (half - 1, half), (top, top + 1), (top, (1 << 31) + 1), (1000, 1001)):
             line = [0, m, *[m] * queue.axes]
             line[2 + axis] = n
             bad.append((2 + axis, line))
@@ -204,27 +208,6 @@ async def a_stopped_channel_refuses_lines(dut: HierarchyObject) -> None:
     await queue.clocks.wait(3)
     queue.check_room(DEPTH)
     queue.check_next(None)
-
-
-@cocotb.test()
-async def an_endless_line_stays_the_next_until_it_is_released(dut: HierarchyObject) -> None:
-    """It is both current and next for as long as it is taken; release_line gives its place back."""
-    random = rng("line queue, endless")
-    queue = await Queue.begin(dut)
-    endless, after = queue.random_line(random, ENDLESS), queue.random_line(random, LAST)
-    await queue.bus.push(endless + after)
-    for _ in range(5):
-        await queue.clocks.wait(2)
-        queue.check_next(endless)
-        await queue.strobe("take")
-        await queue.clocks.wait(1)
-        queue.check_current(endless)
-        await queue.clocks.wait(2)
-        queue.check_room(DEPTH - 2)
-    await queue.strobe("release_line")
-    await queue.clocks.wait(2)
-    queue.check_next(after)
-    queue.check_room(DEPTH - 1)
 
 
 @cocotb.test()

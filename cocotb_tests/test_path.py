@@ -32,7 +32,7 @@ class Path:
     @classmethod
     async def begin(cls, dut: HierarchyObject) -> "Path":
         """Reset; the reset leaves the phase as restart does."""
-        inputs = ("stop", "begin_profile", "tick_last", "rest", "velocity_next", "drain", "drain_velocity")
+        inputs = ("stop", "begin_profile", "tick", "rest", "velocity_next", "drain", "drain_velocity")
         return cls(dut, await begin(dut, "restart", "advance", *inputs))
 
     async def restart(self) -> None:
@@ -162,7 +162,7 @@ async def random_velocities_and_gaps_match_the_integer_sum(dut: HierarchyObject)
 
 @cocotb.test()
 async def a_tick_begins_with_the_next_velocity(dut: HierarchyObject) -> None:
-    """From the clock after the advance of tick_last; 0 if rest. The host sees it too."""
+    """From the clock after tick; 0 if rest. The host sees it too."""
     path = await Path.begin(dut)
     await path.restart()
     random = rng("path, tick")
@@ -171,7 +171,7 @@ async def a_tick_begins_with_the_next_velocity(dut: HierarchyObject) -> None:
         velocity, rest = random.randrange(HALF + 1), random.random() < 0.3
         dut.velocity_next.value, dut.rest.value = velocity, rest
         for clock in range(random.randrange(2, 40)):
-            dut.tick_last.value = clock == 0
+            dut.tick.value = clock == 0
             carry, path.phase = divmod(path.phase + path.velocity, ONE)
             if carry:
                 path.expected.append(path.clocks.now + LATENCY)

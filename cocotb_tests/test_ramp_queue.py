@@ -77,7 +77,7 @@ class Queue:
         if ramps:
             for index in range(2 * WORDS):
                 dut.half_index.value = index
-                await self.clocks.wait(2)
+                await self.clocks.wait(3)
                 word = ramps[0][index // 2]
                 half = word & 0xFFFF if index % 2 else word >> 16
                 assert index == UNUSED or read(dut.half) == half ^ inverted(ramps[0], index // 2), index

@@ -8,11 +8,10 @@
 // Promise: STEP is active for exactly step_high and inactive for at least step_low clocks; DIR never changes
 // from dir_setup clocks before an active edge to dir_hold clocks after the low time of the pulse. With high =
 // low = 1 it makes a step every two clocks. A step that must wait keeps its direction in a queue of 4; one
-// that finds the queue full is not made but raises `overrun` for a clock and counts in `lost`, which stops at
-// 15. While nothing waits, DIR follows `direction`, that of the line whose steps are being made.
-// With both_edges every edge of STEP is a step, and each level lasts at least step_high or step_low. `drop`
-// empties the queue; a pulse that has begun is finished. A timing of 0 counts as 1. `timing_written` starts
-// the time that runs anew, as the timings change with it.
+// that finds the queue `full` is not made but counts in `lost`, which stops at 15. While nothing waits, DIR
+// follows `direction`, that of the line whose steps are being made. With both_edges every edge of STEP is a
+// step, and each level lasts at least step_high or step_low. `drop` empties the queue; a pulse that has begun is
+// finished. No timing is 0. `timing_written` starts the time that runs anew, as the timings change with it.
 // Latency: step_request to STEP 3 clocks, `direction` to DIR 3 clocks. `step_made`, with `step_direction`, is
 // high in the clock before the active edge leaves the pin.
 `resetall
@@ -26,7 +25,7 @@ module passo_axis (
   input  wire        drop,
   output reg         step_made,
   output wire        step_direction,
-  output reg         overrun,
+  output wire        full,                // no place for a step
   input  wire        clear,               // of `lost`
   output reg  [ 3:0] lost,
   // settings
@@ -34,7 +33,7 @@ module passo_axis (
   input  wire [15:0] step_low,
   input  wire [15:0] dir_setup,
   input  wire [15:0] dir_hold,
-  input  wire        short_high,          // 1: the time is 0 or 1
+  input  wire        short_high,          // 1: the time is 1
   input  wire        short_low,
   input  wire        short_setup,
   input  wire        short_hold,
@@ -59,11 +58,12 @@ module passo_axis (
   reg step;
   reg dir;
 
-  // The timer tells the number of the next clock of the state. `done` is high in the last clock: of a short
-  // time that is the first one.
+  // The timer tells the number of the next clock of the state. `level_done`, or `dir_done` in setup and hold, is
+  // high in the last clock: of a time of 1 that is the first one. Outside these states they stand for the time that
+  // would begin next.
   reg  [15:0] timer;
-  reg         done;
-  reg         timing_changed;  // times were written in the clock before
+  reg         level_done;
+  reg         dir_done;
   // Kept, so that a bit of the choice and of the comparison goes into one LUT.
   (* keep *)
   wire [15:0] level_equal;
@@ -71,50 +71,66 @@ module passo_axis (
   wire [15:0] dir_equal;
   assign level_equal = timer ^ ~(step ? step_high : step_low);
   assign dir_equal   = timer ^ ~(setup ? dir_setup : dir_hold);
-  wire level_short = step ? short_high : short_low;
-  wire dir_short = setup ? short_setup : short_hold;
-  wire at_level = high | low;
-  wire reached = at_level ? &level_equal : &dir_equal;
 
   // Steps that wait, as directions, the oldest in bit 0. Free places hold the latest direction.
   reg  [3:0] waiting;
   reg  [3:0] waits;  // which places are taken
-  wire       dir_right = waiting[0] == dir;
-  wire       accepted = step_request & ~waits[3];
+  reg        waits_up;  // waits[0] & ~waiting[0]
+  reg        waits_down;  // waits[0] & waiting[0]
+  wire       ready = dir ? waits_down : waits_up;
+  wire       wrong = waiting[0] ^ dir;
+  wire       accepted = step_request & ~full;
+  reg        overrun;  // a step was not accepted, a clock ago
 
-  wire falls = high & done;
-  wire low_over = low & done;
-  wire free = idle | low_over | (setup & done);
-  wire step_begins = free & waits[0] & dir_right;
-  wire turn = idle & ~dir_right & (~hold | done);
-  wire restart = step_begins | turn | falls | low_over | timing_changed;
-  wire begins_short = step_begins ? (step ? short_low : short_high) :
-                      falls       ? short_low :
-                      turn        ? short_setup :
-                      low_over    ? short_hold :
-                      at_level    ? level_short : dir_short;
+  assign full = waits[3];
+
+  wire falls = high & level_done;
+  wire low_over = low & level_done;
+  wire free = idle | low_over | (setup & dir_done);
+  wire step_begins = free & ready;
+  wire turn = idle & wrong & (~hold | dir_done);
+  wire edge_begins = step_begins | falls;
+
+  // a time begins, or none runs
+  wire begins = idle  ? ~hold | timing_written | ready | (wrong & dir_done) :
+                        timing_written | (setup ? dir_done : level_done);
 
   assign step_direction = dir;  // does not change in the clock after step_begins
+
+  // What will be the oldest: the second oldest when a step begins. Kept, as a LUT each.
+  (* keep *)
+  wire up_behind, up_here, down_behind, down_here;
+  assign up_behind   = waits[1] ? ~waiting[1] : step_request & ~direction;
+  assign up_here     = waits[0] ? ~waiting[0] : step_request & ~direction;
+  assign down_behind = waits[1] ? waiting[1] : step_request & direction;
+  assign down_here   = waits[0] ? waiting[0] : step_request & direction;
 
   integer i;
   always @(posedge clk) begin
     for (i = 0; i < 4; i = i + 1)
     if (step_begins || !waits[i]) waiting[i] <= i < 3 && waits[(i+1)%4] ? waiting[(i+1)%4] : direction;
     if (step_begins != accepted) waits <= step_begins ? {1'b0, waits[3:1]} : {waits[2:0], 1'b1};
-    overrun <= step_request & waits[3];
+    waits_up   <= step_begins ? up_behind : up_here;
+    waits_down <= step_begins ? down_behind : down_here;
+    overrun    <= step_request & full;
     if (overrun && lost != 4'hF) lost <= lost + 4'd1;
 
-    timer          <= restart ? 16'd2 : timer + 16'd1;
-    done           <= restart ? begins_short : reached;
-    timing_changed <= timing_written;
-    if (timing_written) done <= 1'b0;
+    timer <= !begins ? timer + 16'd1 : timing_written ? 16'd1 : 16'd2;
+    if ((high || low) && !level_done) level_done <= &level_equal;
+    else level_done <= step ? short_low : short_high;
+    if ((setup || hold) && !dir_done) dir_done <= &dir_equal;
+    else dir_done <= low ? short_hold : short_setup;
+    if (timing_written) begin
+      level_done <= 1'b0;
+      dir_done   <= 1'b0;
+    end
 
     high  <= (high & ~falls) | (step_begins & ~both_edges);
     low   <= (low & ~low_over) | falls | (step_begins & both_edges);
-    setup <= (setup & ~done) | turn;
+    setup <= (setup & ~dir_done) | turn;
     idle  <= free & ~step_begins & ~turn;
-    hold  <= ((hold & ~done) | low_over) & ~step_begins & ~turn;
-    step  <= step ^ (step_begins | falls);
+    hold  <= ((hold & ~dir_done) | low_over) & ~step_begins & ~turn;
+    step  <= step ^ edge_begins;
     dir   <= dir ^ turn;
 
     step_made  <= step_begins;
@@ -122,26 +138,32 @@ module passo_axis (
     dir_pin    <= dir ^ direction_inverted;
     enable_pin <= enable ^ enable_inverted;
 
-    if (drop) waits <= 4'd0;
+    if (drop) begin
+      waits      <= 4'd0;
+      waits_up   <= 1'b0;
+      waits_down <= 1'b0;
+    end
     if (clear) lost <= 4'd0;
     if (rst) begin
-      high           <= 1'b0;
-      low            <= 1'b0;
-      setup          <= 1'b0;
-      idle           <= 1'b1;
-      hold           <= 1'b0;
-      done           <= 1'b0;
-      timing_changed <= 1'b0;
-      waits          <= 4'd0;
-      waiting        <= 4'd0;
-      overrun        <= 1'b0;
-      lost           <= 4'd0;
-      step           <= 1'b0;
-      dir            <= 1'b0;
-      step_made      <= 1'b0;
-      step_pin       <= 1'b0;
-      dir_pin        <= 1'b0;
-      enable_pin     <= 1'b0;
+      high       <= 1'b0;
+      low        <= 1'b0;
+      setup      <= 1'b0;
+      idle       <= 1'b1;
+      hold       <= 1'b0;
+      level_done <= 1'b0;
+      dir_done   <= 1'b0;
+      waits      <= 4'd0;
+      waiting    <= 4'd0;
+      waits_up   <= 1'b0;
+      waits_down <= 1'b0;
+      overrun    <= 1'b0;
+      lost       <= 4'd0;
+      step       <= 1'b0;
+      dir        <= 1'b0;
+      step_made  <= 1'b0;
+      step_pin   <= 1'b0;
+      dir_pin    <= 1'b0;
+      enable_pin <= 1'b0;
     end
   end
 

@@ -44,19 +44,22 @@ module passo_axis_registers #(
   reg  is_lost;
   reg  is_position;
   wire is_axis = select_axis != {AXES{1'b0}};
-  wire readable = is_position | is_lost;
-  wire writable = is_pins | is_step_timing | is_dir_timing;
+  reg  readable;
+  reg  writable;
   reg  undefined;
 
   always @(posedge clk) begin
-    is_pins           <= is_axis && bus_address == AXIS_PINS;
-    is_step_timing    <= is_axis && bus_address == AXIS_STEP_TIMING;
-    is_dir_timing     <= is_axis && bus_address == AXIS_DIR_TIMING;
-    is_lost           <= is_axis && bus_address == AXIS_LOST_STEPS;
-    is_position       <= select_position != {AXES{1'b0}};
-    write_pins        <= select_axis & {AXES{bus_write & is_pins}};
+    is_pins <= is_axis && bus_address == AXIS_PINS;
+    is_step_timing <= is_axis && bus_address == AXIS_STEP_TIMING;
+    is_dir_timing <= is_axis && bus_address == AXIS_DIR_TIMING;
+    is_lost <= is_axis && bus_address == AXIS_LOST_STEPS;
+    is_position <= select_position != {AXES{1'b0}};
+    readable <= (is_axis && bus_address == AXIS_LOST_STEPS) || select_position != {AXES{1'b0}};
+    writable          <= is_axis && (bus_address == AXIS_PINS || bus_address == AXIS_STEP_TIMING
+                                     || bus_address == AXIS_DIR_TIMING);
+    write_pins <= select_axis & {AXES{bus_write & is_pins}};
     write_step_timing <= select_axis & {AXES{bus_write & is_step_timing}};
-    write_dir_timing  <= select_axis & {AXES{bus_write & is_dir_timing}};
+    write_dir_timing <= select_axis & {AXES{bus_write & is_dir_timing}};
     if (rst) begin
       write_pins        <= {AXES{1'b0}};
       write_step_timing <= {AXES{1'b0}};

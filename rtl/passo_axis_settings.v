@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Settings of one axis, as they are written, and which of its times are so short that its timer needs to know
-// before it counts.
+// Settings of one axis, as they are written, and which of its times are 1, which its timer needs to know before
+// it counts. A time of 0 counts as 1.
 `resetall
 `default_nettype none
 
@@ -18,7 +18,7 @@ module passo_axis_settings (
   output reg  [15:0] step_low,
   output reg  [15:0] dir_setup,
   output reg  [15:0] dir_hold,
-  output reg         short_high,          // step_high is 0 or 1
+  output reg         short_high,          // step_high is 1
   output reg         short_low,
   output reg         short_setup,
   output reg         short_hold,
@@ -31,14 +31,16 @@ module passo_axis_settings (
 
   `include "passo_registers.vh"
 
+  wire [31:0] times = bus_data | {15'd0, short_upper, 15'd0, short_lower};
+
   always @(posedge clk) begin
     if (write_pins) {both_edges, enable_inverted, direction_inverted, step_inverted, enable} <= bus_data[4:0];
     if (write_step_timing) begin
-      {step_high, step_low}   <= bus_data;
+      {step_high, step_low}   <= times;
       {short_high, short_low} <= {short_upper, short_lower};
     end
     if (write_dir_timing) begin
-      {dir_setup, dir_hold}     <= bus_data;
+      {dir_setup, dir_hold}     <= times;
       {short_setup, short_hold} <= {short_upper, short_lower};
     end
 

@@ -9,7 +9,8 @@ module passo_channel #(
   parameter AXES            = 4,
   parameter TICK_LOG2       = 7,
   parameter LINE_QUEUE_LOG2 = 8,
-  parameter RAMP_QUEUE_LOG2 = 4
+  parameter RAMP_QUEUE_LOG2 = 4,
+  parameter STEPS_REGISTER  = 0
 ) (
   input  wire                     clk,
   input  wire                     rst,
@@ -83,7 +84,9 @@ module passo_channel #(
   wire [16:0] rate;
   wire        enabled;
   wire        stall;
+  wire        tick_ends;
   wire        advance = enabled & counting & ~stall;
+  wire        tick = enabled & counting & tick_ends;
   wire        ramp_valid;
   wire        ramp_now_pending;
   wire        ramp_take;
@@ -93,7 +96,6 @@ module passo_channel #(
   wire        ramp_ready;
   wire        ramp_ended;
   wire        ramp_dry;
-  wire        tick_last;
   wire        ends_next;
   wire [47:0] velocity_next;
   wire [31:0] velocity;
@@ -104,14 +106,14 @@ module passo_channel #(
   wire                      line_last;
   wire                      line_endless;
   wire        [   AXES-1:0] line_directions;
-  wire        [       31:0] last_substep;
-  wire        [AXES*32-1:0] steps;
+  wire        [       29:0] last_substep;
+  wire        [AXES*30-1:0] steps;
   wire                      line_take;
   wire                      slot_add;
   wire                      slot_load;
   wire                      slot_step;
   wire                      slot_load_q;
-  wire signed [       32:0] broadcast;
+  wire signed [       30:0] broadcast;
   wire        [   AXES-1:0] directions;
   wire                      current_endless;
   wire                      line_ended;
@@ -120,7 +122,9 @@ module passo_channel #(
   // axes
   wire [  AXES-1:0] step_made;
   wire [  AXES-1:0] step_direction;
-  wire [  AXES-1:0] overrun;
+  wire [  AXES-1:0] reached;
+  wire [  AXES-1:0] full;
+  reg               step_overrun;
   wire [  AXES-1:0] was_overrun;
   wire [AXES*4-1:0] lost;
   wire [  AXES-1:0] write_pins;
@@ -195,30 +199,31 @@ module passo_channel #(
   );
 
   passo_line_queue #(
-    .AXES      (AXES),
-    .DEPTH_LOG2(LINE_QUEUE_LOG2)
+    .AXES          (AXES),
+    .DEPTH_LOG2    (LINE_QUEUE_LOG2),
+    .STEPS_REGISTER(STEPS_REGISTER)
   ) u_line_queue (
-    .clk            (clk),
-    .rst            (rst),
-    .bus_frame      (bus_frame),
-    .bus_check      (bus_check),
-    .bus_write      (bus_write),
-    .select         (select_line_queue),
-    .bus_data       (bus_data),
-    .bus_top_bit    (bus_top_bit),
-    .blocked        (stopped),
-    .refusal        (line_refusal),
-    .incomplete     (line_incomplete),
-    .room           (line_room),
-    .take           (line_take),
-    .release_line   (release_line),
-    .flush          (stopped),
-    .next_valid     (line_valid),
-    .next_last      (line_last),
-    .next_endless   (line_endless),
-    .next_directions(line_directions),
-    .last_substep   (last_substep),
-    .steps          (steps)
+    .clk         (clk),
+    .rst         (rst),
+    .bus_frame   (bus_frame),
+    .bus_check   (bus_check),
+    .bus_write   (bus_write),
+    .select      (select_line_queue),
+    .bus_data    (bus_data),
+    .bus_top_bit (bus_top_bit),
+    .blocked     (stopped),
+    .refusal     (line_refusal),
+    .incomplete  (line_incomplete),
+    .room        (line_room),
+    .take        (line_take),
+    .release_line(release_line),
+    .flush       (stopped),
+    .next_valid  (line_valid),
+    .last        (line_last),
+    .endless     (line_endless),
+    .last_substep(last_substep),
+    .directions  (line_directions),
+    .steps       (steps)
   );
 
   passo_ramp_queue #(
@@ -274,11 +279,13 @@ module passo_channel #(
     .line_endless (current_endless),
     .line_underrun(line_underrun),
     .substep_made (substep),
-    .step_overrun (overrun != {AXES{1'b0}}),
+    .step_overrun (step_overrun),
     .release_line (release_line),
     .stopped      (stopped),
     .running      (running)
   );
+
+  always @(posedge clk) step_overrun <= ~rst & slot_step & ((reached & full) != {AXES{1'b0}});
 
   passo_timescale u_timescale (
     .clk        (clk),
@@ -306,8 +313,9 @@ module passo_channel #(
     .ended           (ramp_ended),
     .dry             (ramp_dry),
     .advance         (advance),
+    .tick            (tick),
     .stall           (stall),
-    .tick_last       (tick_last),
+    .tick_ends       (tick_ends),
     .ends_next       (ends_next),
     .velocity_next   (velocity_next),
     .ramp_valid      (ramp_valid),
@@ -330,7 +338,7 @@ module passo_channel #(
     .stop          (stopped),
     .begin_profile (begin_profile),
     .advance       (advance),
-    .tick_last     (tick_last),
+    .tick          (tick),
     .rest          (ends_next),
     .velocity_next (velocity_next),
     .drain         (drain),
@@ -342,26 +350,26 @@ module passo_channel #(
   passo_line #(
     .AXES(AXES)
   ) u_line (
-    .clk            (clk),
-    .rst            (rst),
-    .start          (prepare),
-    .stop           (stopped),
-    .substep        (substep),
-    .next_valid     (line_valid),
-    .next_last      (line_last),
-    .next_endless   (line_endless),
-    .next_directions(line_directions),
-    .last_substep   (last_substep),
-    .take           (line_take),
-    .slot_add       (slot_add),
-    .slot_load      (slot_load),
-    .slot_step      (slot_step),
-    .slot_load_q    (slot_load_q),
-    .broadcast      (broadcast),
-    .directions     (directions),
-    .endless        (current_endless),
-    .ended          (line_ended),
-    .underrun       (line_underrun)
+    .clk               (clk),
+    .rst               (rst),
+    .start             (prepare),
+    .stop              (stopped),
+    .substep           (substep),
+    .next_valid        (line_valid),
+    .take              (line_take),
+    .last              (line_last),
+    .endless           (line_endless),
+    .last_substep      (last_substep),
+    .current_directions(line_directions),
+    .slot_add          (slot_add),
+    .slot_load         (slot_load),
+    .slot_step         (slot_step),
+    .slot_load_q       (slot_load_q),
+    .broadcast         (broadcast),
+    .directions        (directions),
+    .current_endless   (current_endless),
+    .ended             (line_ended),
+    .underrun          (line_underrun)
   );
 
   genvar axis;
@@ -389,7 +397,8 @@ module passo_channel #(
         .slot_step   (slot_step),
         .slot_load_q (slot_load_q),
         .broadcast   (broadcast),
-        .steps       (steps[axis*32+:32]),
+        .steps       (steps[axis*30+:30]),
+        .reached     (reached[axis]),
         .step_request(step_request)
       );
 
@@ -401,7 +410,7 @@ module passo_channel #(
         .drop              (command_abort),
         .step_made         (step_made[axis]),
         .step_direction    (step_direction[axis]),
-        .overrun           (overrun[axis]),
+        .full              (full[axis]),
         .clear             (command_clear),
         .lost              (lost[axis*4+:4]),
         .step_high         (step_high),

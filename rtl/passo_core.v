@@ -12,7 +12,8 @@ module passo_core #(
   parameter AXES            = 4,  // per channel, 1 .. 8
   parameter TICK_LOG2       = 7,  // clocks per tick, 7 .. 16
   parameter LINE_QUEUE_LOG2 = 8,  // places for lines, 2 .. 8
-  parameter RAMP_QUEUE_LOG2 = 4   // places for ramps, 2 .. 8
+  parameter RAMP_QUEUE_LOG2 = 4,  // places for ramps, 2 .. 8
+  parameter STEPS_REGISTER  = 0   // 1: where block RAMs have a register behind their data
 ) (
   input  wire                     clk,
   input  wire                     rst,
@@ -76,6 +77,7 @@ module passo_core #(
   reg         bus_claim;
   reg  [ 3:0] bus_refusal;
   reg  [31:0] bus_read_data;
+  reg  [31:0] read_data;
 
   wire                   registers_claim;
   wire [            3:0] registers_refusal;
@@ -105,17 +107,17 @@ module passo_core #(
   // Whoever is not meant answers 0.
   integer i;
   always @* begin
-    bus_claim     = registers_claim | tables_claim | (channel_claim != {CHANNELS{1'b0}});
-    bus_refusal   = registers_refusal | tables_refusal;
-    bus_read_data = registers_read_data;
+    bus_claim   = registers_claim | tables_claim | (channel_claim != {CHANNELS{1'b0}});
+    bus_refusal = registers_refusal | tables_refusal;
+    read_data   = registers_read_data;
     for (i = 0; i < CHANNELS; i = i + 1) begin
-      bus_refusal   = bus_refusal | channel_refusal[i*4+:4];
-      bus_read_data = bus_read_data | channel_read_data[i*32+:32];
+      bus_refusal = bus_refusal | channel_refusal[i*4+:4];
+      read_data   = read_data | channel_read_data[i*32+:32];
     end
   end
 
   // Shape banks 1 .. 3 are the last three blocks of 256 addresses.
-  wire select_tables = bus_address[11:10] == ADDRESS_COSINE_BASE[11:10] && bus_address[9:8] != 2'd0;
+  reg select_tables;  // a clock after the address, which stands a clock before any strobe
 
   reg  [          2:0] sync_q;
   wire                 sync_edge = sync_q[1] & ~sync_q[2];
@@ -123,11 +125,13 @@ module passo_core #(
   reg                  slew_tick;
 
   always @(posedge clk) begin
-    tables_claim <= select_tables & (bus_check | bus_read);
-    sync_q       <= {sync_q[1:0], sync};
-    slew_count   <= slew_count + 1'b1;
-    slew_tick    <= slew_count == {TICK_LOG2{1'b1}};
-    irq          <= stopped != {CHANNELS{1'b0}};
+    bus_read_data <= read_data;
+    select_tables <= bus_address[11:10] == ADDRESS_COSINE_BASE[11:10] && bus_address[9:8] != 2'd0;
+    tables_claim  <= select_tables & (bus_check | bus_read);
+    sync_q        <= {sync_q[1:0], sync};
+    slew_count    <= slew_count + 1'b1;
+    slew_tick     <= slew_count == {TICK_LOG2{1'b1}};
+    irq           <= stopped != {CHANNELS{1'b0}};
     if (rst) begin
       tables_claim <= 1'b0;
       sync_q       <= 3'b111;
@@ -238,7 +242,8 @@ module passo_core #(
         .AXES           (AXES),
         .TICK_LOG2      (TICK_LOG2),
         .LINE_QUEUE_LOG2(LINE_QUEUE_LOG2),
-        .RAMP_QUEUE_LOG2(RAMP_QUEUE_LOG2)
+        .RAMP_QUEUE_LOG2(RAMP_QUEUE_LOG2),
+        .STEPS_REGISTER (STEPS_REGISTER)
       ) u_channel (
         .clk             (clk),
         .rst             (rst),

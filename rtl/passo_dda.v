@@ -3,7 +3,7 @@
 //
 //   each substep:  e += N;  if e >= M { e -= M; a step }           e = floor(M / 2) when the line starts
 //
-// `e` is kept as e - M, which is below 0 whenever a substep begins: 32 bits of it are enough. Clock A adds N; if
+// `e` is kept as e - M, which is below 0 whenever a substep begins: 30 bits of it are enough. Clock A adds N; if
 // no carry comes out it is still below 0 (`below`), else clock B takes M off again. At the end of a line e would
 // be back at its start value; A leaves 0 instead, and B adds the start value of the next line: only e and the
 // addend enter the sum's carry chain.
@@ -18,22 +18,24 @@ module passo_dda (
   input  wire               slot_load,    // clock A when a new line begins
   input  wire               slot_step,    // clock B of a substep
   input  wire               slot_load_q,  // clock B when a new line begins
-  input  wire signed [32:0] broadcast,    // in A: -M, or the start value of the new line
-  input  wire        [31:0] steps,        // N of the current line; in B already that of the new one
+  input  wire signed [30:0] broadcast,    // in A: -M, or the start value of the new line
+  input  wire        [29:0] steps,        // N of the current line; in B already that of the new one
+  output wire               reached,      // e + N >= M: in clock B, a step
   output wire               step_request
 );
 
-  reg  [31:0] e_minus_m;
-  reg  [32:0] addend;
+  reg  [29:0] e_minus_m;
+  reg  [30:0] addend;
   reg         below;  // e + N < M
-  wire [32:0] sum = {1'b1, e_minus_m} + addend;
+  wire [30:0] sum = {1'b1, e_minus_m} + addend;
 
-  assign step_request = slot_step & ~below;
+  assign reached      = ~below;
+  assign step_request = slot_step & reached;
 
   always @(posedge clk) begin
     addend <= (slot_add || slot_load) ? broadcast : {1'b0, steps};
-    below  <= sum[32];
-    if (slot_add || slot_load || slot_load_q || step_request) e_minus_m <= slot_load ? 32'd0 : sum[31:0];
+    below  <= sum[30];
+    if (slot_add || slot_load || slot_load_q || step_request) e_minus_m <= slot_load ? 30'd0 : sum[29:0];
   end
 
 `ifdef FORMAL

@@ -2,21 +2,25 @@
 // Line queue: lines as they are pushed, one block RAM column for each of their words, so that a whole line is
 // read at once.
 //
-// Promise: lines come out whole and in order. The next line's control is always at the output (`next_valid`);
-// `take` makes it the current line, whose last_substep is at the output one clock later, whose step counts two
-// clocks later; they stay there. An ENDLESS line stays the next line when it is taken. A place is free again
-// when the line after it is taken, or on `release_line`. `flush` drops everything that is written; it stays
-// while the channel is stopped, for a push that was checked before.
+// Promise: lines come out whole and in order. While `next_valid` is high there is a next line; `take` makes it
+// the current line, whose length and flags are at the output one clock later, whose steps and directions two
+// clocks later; they stay there. A place is free again when the line after it is taken, or on `release_line`.
+// `flush` drops everything that is written; it stays while the channel is stopped, for a push that was checked
+// before.
 //
 // A push is checked word by word (`bus_check`; the word stands two clocks before): room for it after all lines of
-// this frame before it, M not 0, N_i <= M, no reserved bits. `refusal` answers one clock later. One subtraction
-// serves the checks and makes what is stored of M, which is M - 1, the number of the last substep.
+// this frame before it, M not 0 and below 2^30, N_i <= M, no reserved bits. `refusal` answers one clock later.
+// One subtraction serves the checks and makes what is stored of M, which is M - 1, the number of the last
+// substep. The flags are stored with it, each direction with its N_i.
+//
+// With STEPS_REGISTER the steps wait in a register behind their block RAMs, else the address does before them.
 `resetall
 `default_nettype none
 
 module passo_line_queue #(
-  parameter AXES       = 4,
-  parameter DEPTH_LOG2 = 8
+  parameter AXES           = 4,
+  parameter DEPTH_LOG2     = 8,
+  parameter STEPS_REGISTER = 0   // 1: where block RAMs have a register behind their data
 ) (
   input  wire                clk,
   input  wire                rst,
@@ -27,30 +31,30 @@ module passo_line_queue #(
   input  wire                select,
   input  wire [        31:0] bus_data,
   input  wire [         4:0] bus_top_bit,
-  input  wire                blocked,          // the channel is stopped
+  input  wire                blocked,       // the channel is stopped
   output reg  [         3:0] refusal,
-  output wire                incomplete,       // the frame so far ends within a line
-  output reg  [DEPTH_LOG2:0] room,             // in lines
+  output wire                incomplete,    // the frame so far ends within a line
+  output reg  [DEPTH_LOG2:0] room,          // in lines
   // to the line counter
   input  wire                take,
   input  wire                release_line,
   input  wire                flush,
   output reg                 next_valid,
-  output wire                next_last,
-  output wire                next_endless,
-  output wire [    AXES-1:0] next_directions,
-  output reg  [        31:0] last_substep,     // M - 1 of the current line
-  output wire [ AXES*32-1:0] steps             // N_i of the current line
+  output wire                last,          // the current line
+  output wire                endless,
+  output wire [        29:0] last_substep,  // its M - 1
+  output wire [    AXES-1:0] directions,
+  output wire [ AXES*30-1:0] steps          // its N_i
 );
 
   `include "passo_registers.vh"
 
-  localparam CONTROL_BITS = 2 + AXES;
   localparam [4:0] CONTROL_TOP_BIT = 5'd7 + AXES[4:0];
   localparam INDEX_CONTROL = 0;
   localparam INDEX_SUBSTEPS = 1;
   localparam INDEX_STEPS = 2;
   localparam INDEX_LAST = INDEX_STEPS + AXES - 1;
+  localparam [4:0] COUNT_TOP_BIT = 5'd29;
   localparam [DEPTH_LOG2:0] DEPTH = 1 << DEPTH_LOG2;
 
   // Writing: one word of a line after the other
@@ -65,10 +69,22 @@ module passo_line_queue #(
 
   assign incomplete = ~index[INDEX_CONTROL];
 
+  // The control of the line whose words follow
+  reg            write_last;
+  reg            write_endless;
+  reg [AXES-1:0] write_directions;
+
+  always @(posedge clk)
+    if (strobe && index[INDEX_CONTROL]) begin
+      {write_endless, write_last} <= bus_data[1:0];
+      write_directions            <= bus_data[8+:AXES];
+    end
+
   // bus_data - 1 - M, but for M itself bus_data - 1. A carry comes out if that is not negative, which is right for
   // M and wrong for N_i. Upper half a clock behind the lower: M - 1 can be written a clock after its strobe.
   reg [31:0] not_substeps;  // ~M; ~0 until M has passed
-  reg [31:0] difference;
+  reg [29:0] difference;  // as far as it is stored
+  reg [ 1:0] unused_bits;
   reg        carry;
   reg        wrong;
   reg        load_substeps;
@@ -84,7 +100,8 @@ module passo_line_queue #(
     if (load_substeps) not_substeps <= ~bus_data;
     if (index[INDEX_CONTROL]) not_substeps <= ~32'd0;
     {carry, difference[15:0]} <= {1'b0, bus_data[15:0]} + {1'b0, not_substeps[15:0]};
-    {wrong, difference[31:16]} <= {1'b0, bus_data[31:16]} + {index[INDEX_SUBSTEPS], not_substeps[31:16]} + {16'd0, carry};
+    {wrong, unused_bits, difference[29:16]} <=
+        {1'b0, bus_data[31:16]} + {index[INDEX_SUBSTEPS], not_substeps[31:16]} + {16'd0, carry};
     if (line_written) write_line <= write_line + 1'b1;
     if (rst || bus_frame) begin
       index   <= {{INDEX_LAST{1'b0}}, 1'b1};
@@ -94,35 +111,35 @@ module passo_line_queue #(
   end
 
   // what is to be said of the word, a clock before it is asked
-  reg  full;
-  reg  bad_control;
-  wire bad_value = index[INDEX_CONTROL] ? bad_control : wrong;
+  reg full;
+  reg bad_bits;
 
   always @(posedge clk) begin
     full <= room == checked;
-    bad_control <= bus_top_bit > CONTROL_TOP_BIT || bus_data[7:2] != 6'd0;
-    refusal     <= !(select && bus_check) ? VERDICT_OK :
-                 blocked                ? VERDICT_BUSY :
-                 full                   ? VERDICT_QUEUE_FULL :
-                 bad_value              ? VERDICT_BAD_VALUE : VERDICT_OK;
+    bad_bits <= index[INDEX_CONTROL] ? bus_top_bit > CONTROL_TOP_BIT || bus_data[7:2] != 6'd0
+                                     : bus_top_bit > COUNT_TOP_BIT;
+    refusal  <= !(select && bus_check)                         ? VERDICT_OK :
+                blocked                                        ? VERDICT_BUSY :
+                full                                           ? VERDICT_QUEUE_FULL :
+                bad_bits || (wrong && !index[INDEX_CONTROL])   ? VERDICT_BAD_VALUE : VERDICT_OK;
   end
 
   // Reading
-  wire [          31:0] next_last_substep;
   reg  [  DEPTH_LOG2:0] next_line;
   reg  [DEPTH_LOG2-1:0] current_line;
-  reg                   has_place;  // the current line is not the next line
+  reg                   has_place;  // a line is the current one
+  reg                   taken;
   wire                  freed = (take & has_place) | release_line;
 
   always @(posedge clk) begin
+    taken <= take;
     if (take) begin
       current_line <= next_line[DEPTH_LOG2-1:0];
-      last_substep <= next_last_substep;
-      has_place    <= ~next_endless;
+      next_line    <= next_line + 1'b1;
+      has_place    <= 1'b1;
     end
     if (release_line) has_place <= 1'b0;
-    if ((take && !next_endless) || (release_line && !has_place)) next_line <= next_line + 1'b1;
-    next_valid <= ~take & ~release_line & ~flush & next_line != write_line;
+    next_valid <= ~take & ~flush & next_line != write_line;
     if (freed != line_written) room <= room + {{DEPTH_LOG2{line_written}}, 1'b1};
     if (rst || flush) begin
       next_line <= {(DEPTH_LOG2 + 1) {1'b0}};
@@ -133,42 +150,33 @@ module passo_line_queue #(
   end
 
   passo_memory #(
-    .WIDTH     (CONTROL_BITS),
-    .DEPTH_LOG2(DEPTH_LOG2)
-  ) u_control (
-    .clk          (clk),
-    .write        (write & index[INDEX_CONTROL]),
-    .write_address(write_line[DEPTH_LOG2-1:0]),
-    .write_data   ({bus_data[8+:AXES], bus_data[1:0]}),
-    .read_address (next_line[DEPTH_LOG2-1:0]),
-    .read_data    ({next_directions, next_endless, next_last})
-  );
-
-  passo_memory #(
     .WIDTH     (32),
     .DEPTH_LOG2(DEPTH_LOG2)
-  ) u_last_substep (
+  ) u_substeps (
     .clk          (clk),
     .write        (write_substeps),
     .write_address(write_line[DEPTH_LOG2-1:0]),
-    .write_data   (difference),
+    .write_data   ({write_last, write_endless, difference}),
     .read_address (next_line[DEPTH_LOG2-1:0]),
-    .read_data    (next_last_substep)
+    .load         (take),
+    .read_data    ({last, endless, last_substep})
   );
 
   genvar axis;
   generate
     for (axis = 0; axis < AXES; axis = axis + 1) begin : g_axis
       passo_memory #(
-        .WIDTH     (32),
-        .DEPTH_LOG2(DEPTH_LOG2)
+        .WIDTH        (31),
+        .DEPTH_LOG2   (DEPTH_LOG2),
+        .DATA_REGISTER(STEPS_REGISTER)
       ) u_steps (
         .clk          (clk),
         .write        (write & index[INDEX_STEPS+axis]),
         .write_address(write_line[DEPTH_LOG2-1:0]),
-        .write_data   (bus_data),
-        .read_address (current_line),
-        .read_data    (steps[axis*32+:32])
+        .write_data   ({write_directions[axis], bus_data[29:0]}),
+        .read_address (STEPS_REGISTER != 0 ? next_line[DEPTH_LOG2-1:0] : current_line),
+        .load         (taken),
+        .read_data    ({directions[axis], steps[axis*30+:30]})
       );
     end
   endgenerate

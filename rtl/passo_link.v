@@ -13,10 +13,11 @@
 // before the replay has ended, which takes a master that leaves out trailing words.
 //
 // Verdict: BAD_CRC goes before all others, then the first objection; a duplicate is not asked for objections.
-// Latency: payload word to bus_check 39 clocks, crc word to ack 75 clocks, to the first word of a read 91
+// Latency: payload word to bus_check 40 clocks, crc word to ack 77 clocks, to the first word of a read 91
 // clocks. Address and data stand on the bus at least a clock before their strobe (of a check: two clocks),
-// data a clock after it, the address of a read 16 clocks before. A target answers one clock after a strobe with claim (the address is
-// mine), refusal and, to bus_read, data; at all other times the status stands in the place of data.
+// data a clock after it, the address of a read 16 clocks before. A target answers one clock after a strobe with
+// claim (the address is mine) and refusal, and two clocks after bus_read with data; at all other times the status
+// stands in the place of data.
 `resetall
 `default_nettype none
 
@@ -52,32 +53,40 @@ module passo_link (
 
   localparam [7:0] PAYLOAD_MAX = 8'd60;
 
-  localparam [3:0] STEP_IDLE = 4'd0;  // between frames, or the rest of the frame means nothing
-  localparam [3:0] STEP_HEADER = 4'd1;
-  localparam [3:0] STEP_PAYLOAD = 4'd2;
-  localparam [3:0] STEP_CRC = 4'd3;
-  localparam [3:0] STEP_ACK = 4'd4;
-  localparam [3:0] STEP_REPLAY = 4'd5;
-  localparam [3:0] STEP_READ = 4'd6;  // fetch a word for the reply, wait until it has been taken
-  localparam [3:0] STEP_SUM = 4'd7;  // send the CRC of the reply
-  localparam [3:0] STEP_COUNT = 4'd8;  // count a refusal
+  // Steps, one bit each. Between frames, or when the rest of the frame means nothing, none is set.
+  //
+  //   write, push   header  payload  crc  ack  replay          refused   ack  count
+  //   read          header           crc  read  sum            refused   as above, or read  ack  count
+  reg in_header;
+  reg in_payload;
+  reg in_crc;
+  reg in_ack;
+  reg in_replay;
+  reg in_read;  // fetch a word for the reply, wait until it has been taken
+  reg in_sum;  // send the CRC of the reply
+  reg in_count;  // count a refusal
 
-  // What is done with a word takes a run of clocks: load it, turn it, judge it, act on it, rest.
-  localparam [5:0] COUNT_ACT = 6'd1;
-  localparam [5:0] COUNT_REST = 6'd3;
-  localparam [5:0] COUNT_READ = 6'd12;
-  localparam [5:0] COUNT_LOAD = 6'd28;
-  localparam [5:0] COUNT_ANSWER = 6'd30;
-  localparam [5:0] COUNT_LOADED = 6'd31;
-  localparam [5:0] COUNT_TURN = 6'd32;  // .. 63
+  // What is done with a word takes a run of clocks: load it, turn it, judge it, act on it, rest. A run begins with
+  // a clock of its own, begin_*.
+  localparam [6:0] COUNT_READ = 7'd13;
+  localparam [6:0] COUNT_LOAD = 7'd28;
+  localparam [6:0] COUNT_LOADED = 7'd31;
+  localparam [6:0] COUNT_TURN = 7'd32;  // .. 63
+  localparam [6:0] COUNT_ACT = 7'd65;
+  localparam [6:0] COUNT_REST = 7'd67;
 
-  reg  [3:0] step;
-  reg  [5:0] count;
+  reg  [6:0] count;
+  wire       rests = count[6] & count[1] & count[0];
   reg        act;  // in the clock of COUNT_ACT
-  reg        half_turned;
+  reg        begin_read;
+  reg        begin_load;
+  reg        begin_turn;
+  reg        begin_rest;
+  reg        load_ends;  // in the last clock but one before the word is there
+  reg        load;
+  reg        answered;  // in the clock of COUNT_LOADED
+  reg        put;
   reg        replies;  // the reply turns along
-  wire       load = count == COUNT_LOAD + 6'd1 || count == COUNT_LOAD + 6'd2;
-  wire       answered = step == STEP_READ && count == COUNT_ANSWER;
   wire       turn = count[5];
   wire       word_valid = half_valid & half_low;
 
@@ -85,11 +94,12 @@ module passo_link (
   reg is_read;
   reg [7:0] length;
   reg [7:0] index;  // payload word
-  wire all_words = index == length;
+  reg first_word;  // index is 0, and was
+  reg all_words;  // index is length, and was; not yet in the clock after act
   reg frame_waits;  // a frame has begun during the replay
   wire frame_goes_on = (frame_waits || frame_start) && !frame_end && !word_valid;  // has its header to come
 
-  // What the header amounts to, a clock before it is acted on
+  // What the header amounts to, found out before it turns
   wire [3:0] operation = bus_data[31:28];
   reg        sequence_known;  // something was executed since reset
   reg        header_is_read;
@@ -97,49 +107,57 @@ module passo_link (
   reg        header_is_empty;
   reg        header_fits;
   reg        header_repeats;
+  reg  [3:0] header_verdict;
+  reg        header_ok;
 
   always @(posedge clk) begin
-    header_is_read <= operation == OPERATION_READ;
-    header_is_known <= operation == OPERATION_READ || operation == OPERATION_WRITE || operation == OPERATION_PUSH;
-    header_is_empty <= bus_data[19:12] == 8'd0;
-    header_fits <= bus_data[19:12] <= PAYLOAD_MAX;
-    header_repeats <= sequence_known && bus_data[27:20] == last_sequence;
+    if (!turn) begin
+      header_is_read <= operation == OPERATION_READ;
+      header_is_known <= operation == OPERATION_READ || operation == OPERATION_WRITE || operation == OPERATION_PUSH;
+      header_is_empty <= bus_data[19:12] == 8'd0;
+      header_fits <= bus_data[19:12] <= PAYLOAD_MAX;
+      header_repeats <= sequence_known && bus_data[27:20] == last_sequence;
+    end
+    header_verdict <= !header_is_known                   ? VERDICT_BAD_OPERATION :
+                      header_is_empty || !header_fits    ? VERDICT_BAD_LENGTH :
+                      header_repeats && !header_is_read  ? VERDICT_DUPLICATE : VERDICT_OK;
+    header_ok <= header_is_known && !header_is_empty && header_fits && (!header_repeats || header_is_read);
   end
 
   // The answer to a strobe arrives one clock after the bus shows the strobe, and is judged in the next.
   reg       answer_due;
   reg       answer_came;
   reg [3:0] answer;
+  reg       objects;  // it is not OK
 
   // Behind the payload, the buffer has a place for the header, one for whatever is not kept, and two for the
   // counters of refusals; these read as 0 until one of the word has counted.
-  wire       is_header = step == STEP_HEADER || step == STEP_REPLAY;
-  wire       is_payload = step == STEP_PAYLOAD;
-  wire       is_counting = step == STEP_COUNT;
-  wire       uses_counters = step == STEP_READ || is_counting;
+  wire       uses_counters = in_read | in_count;
   reg  [3:0] verdict;
+  reg        verdict_ok;
+  reg        verdict_high;  // verdict is READ_ONLY or one after it
   reg  [1:0] counted;
-  wire       counters_high = is_counting ? verdict >= VERDICT_READ_ONLY : bus_address[0];
+  reg        counters_high;
   wire [1:0] counter = verdict[1:0] - VERDICT_BAD_CRC[1:0];
-  wire [1:0] place = uses_counters ? {1'b1, counters_high} : {1'b0, step == STEP_CRC};
-  wire       refuses = act && step == STEP_ACK && verdict != VERDICT_OK && verdict != VERDICT_DUPLICATE;
+  wire [1:0] place = uses_counters ? {1'b1, counters_high} : {1'b0, in_crc};
+  wire       refuses = in_ack && act && !verdict_ok && verdict != VERDICT_DUPLICATE;
 
   passo_payload u_payload (
     .clk        (clk),
     .store      (half_valid),
-    .store_word (is_payload ? {1'b0, index[5:0]} : {6'b100000, ~is_header}),
+    .store_word (in_payload ? {1'b0, index[5:0]} : {6'b100000, ~(in_header | in_replay)}),
     .store_low  (half_low),
     .half       (half),
-    .put        (is_counting && (act || half_turned)),
+    .put        (put),
     .put_word   ({6'b100001, counters_high}),
     .put_low    (act),
     .load       (load),
-    .load_word  (is_payload || step == STEP_REPLAY ? {1'b0, index[5:0]} : {5'b10000, place}),
-    .load_low   (count[0]),
+    .load_word  (in_payload || in_replay ? {1'b0, index[5:0]} : {5'b10000, place}),
+    .load_low   (~begin_load & ~count[0]),
     .load_zero  (uses_counters && !counted[counters_high]),
     .turn       (turn),
     .turns      (count[4:0]),
-    .count      (is_counting),
+    .count      (in_count),
     .counter    (counter),
     .data       (bus_data),
     .top_bit    (bus_top_bit),
@@ -155,10 +173,10 @@ module passo_link (
 
   passo_crc u_crc (
     .clk    (clk),
-    .restart(load && step == STEP_HEADER),
+    .restart(load & in_header),
     .shift  (turn),
-    .turn   (step == STEP_CRC || step == STEP_SUM),
-    .data   (step == STEP_READ ? reply_top : bus_data[31]),
+    .turn   (in_crc | in_sum),
+    .data   (in_read ? reply_top : bus_data[31]),
     .top    (crc_top)
   );
 
@@ -168,13 +186,13 @@ module passo_link (
     .data       (bus_read_data),
     .shift      (turn && replies),
     .turns      (count[4:0]),
-    .acknowledge(step == STEP_ACK),
+    .acknowledge(in_ack),
     .header_11  (bus_data[11]),
     .header_27  (bus_data[27]),
     .verdict    (verdict),
-    .crc_next   (step == STEP_SUM),
+    .crc_next   (in_sum),
     .crc_top    (crc_top),
-    .counters   (step == STEP_READ && bus_counters),
+    .counters   (in_read & bus_counters),
     .counter_bit(counter_bit),
     .word       (reply_word),
     .top        (reply_top)
@@ -187,129 +205,100 @@ module passo_link (
   always @(posedge clk) begin
     verdict_final <=
         crc_wrong              ? VERDICT_BAD_CRC :
-        verdict != VERDICT_OK  ? verdict :
+        !verdict_ok            ? verdict :
         bus_incomplete         ? VERDICT_BAD_LENGTH : VERDICT_OK;
-    executes <= !crc_wrong && verdict == VERDICT_OK && !bus_incomplete;
+    verdict_high <= verdict >= VERDICT_READ_ONLY;
+    counters_high <= in_ack | in_count ? verdict_high : bus_address[0];
+    executes <= !crc_wrong && verdict_ok && !bus_incomplete;
+  end
+
+  // Chip select does not come between a verdict and what it promises.
+  wire goes_through = in_replay | in_count | (in_ack & act);
+  wire frame_breaks = (frame_end | frame_start) & ~goes_through;
+  wire reads = is_read & executes;
+  wire objection = answered & first_word & objects;
+  wire reply_taken = in_read & word_valid;  // a word has ended
+
+  always @(posedge clk) begin
+    in_header <= (frame_start & ~goes_through) | (in_header & ~act & ~frame_breaks)
+                 | (frame_goes_on & ((in_replay & all_words) | (in_count & act)));
+    in_payload <= ((in_header & act & ~header_is_read & ~header_is_empty) | (in_payload & ~all_words)) & ~frame_breaks;
+    in_crc <= ((in_header & act & (header_is_read | header_is_empty)) | (in_payload & all_words) | (in_crc & ~act))
+              & ~frame_breaks;
+    in_ack <= ((in_crc & act & ~reads) | (objection & ~(reply_taken & all_words)) | (in_ack & ~act)) & ~frame_breaks;
+    in_replay <= (in_ack & act & verdict_ok) | (in_replay & ~all_words);
+    in_read <= ((in_crc & act & reads) | (in_read & ~objection & ~(reply_taken & all_words))) & ~frame_breaks;
+    in_sum <= ((reply_taken & all_words) | (in_sum & ~act)) & ~frame_breaks;
+    in_count <= refuses | (in_count & ~act);
+    frame_waits <= (in_replay | in_count) & frame_goes_on;
+
+    begin_load <= (word_valid & (in_header | in_payload | in_crc)) | (in_crc & act & ~reads) | objection
+                  | (in_ack & act & verdict != VERDICT_DUPLICATE)
+                  | (in_replay & load_ends);
+    begin_read <= (in_crc & act & reads) | (reply_taken & ~all_words);
+    begin_turn <= reply_taken & all_words;
+    begin_rest <= frame_breaks | (in_replay & all_words);
+
+    if (begin_rest) count <= COUNT_REST;
+    else if (begin_read) count <= COUNT_READ;
+    else if (begin_turn) count <= COUNT_TURN;
+    else if (begin_load) count <= COUNT_LOAD;
+    else if (!rests) count <= count + 7'd1;
+
+    if (rst) begin
+      {in_header, in_payload, in_crc, in_ack, in_replay, in_read, in_sum, in_count} <= 8'd0;
+      {begin_load, begin_read, begin_turn, begin_rest}                              <= 4'd0;
+
+      frame_waits <= 1'b0;
+      count       <= COUNT_REST;
+    end
   end
 
   always @(posedge clk) begin
-    if (count != COUNT_REST) count <= count + 6'd1;
-    act <= count == COUNT_ACT - 6'd1;
-    half_turned <= count == COUNT_TURN + 6'd15;
-    replies <= step == STEP_ACK || step == STEP_READ || step == STEP_SUM;
-    bus_frame <= act && (step == STEP_HEADER || step == STEP_ACK);
-    bus_check <= act && step == STEP_PAYLOAD;
-    bus_write <= count == COUNT_LOADED && step == STEP_REPLAY;
-    bus_read <= count == COUNT_LOAD && step == STEP_READ && !frame_end;
-    answer_due <= bus_check;
+    act         <= count == COUNT_ACT - 7'd1 && !begin_rest && !frame_breaks;
+    load        <= count == COUNT_LOAD || count == COUNT_LOAD + 7'd1;
+    load_ends   <= count == COUNT_LOADED - 7'd2;
+    answered    <= in_read && load_ends && !frame_breaks;
+    first_word  <= index == 8'd0;
+    all_words   <= index == length && !act;
+    put         <= in_count && (count == COUNT_ACT - 7'd1 || count == COUNT_TURN + 7'd15);
+    replies     <= in_ack | in_read | in_sum;
+    bus_frame   <= act & (in_header | in_ack);
+    bus_check   <= act & in_payload;
+    bus_write   <= in_replay && count == COUNT_LOADED;
+    bus_read    <= in_read && count == COUNT_LOAD && !frame_end;
+    answer_due  <= bus_check;
     answer_came <= answer_due;
-    answer <= bus_claim ? bus_refusal : VERDICT_UNKNOWN_ADDRESS;
-    crc_wrong <= step != STEP_HEADER && (crc_wrong || (step == STEP_CRC && turn && crc_top != bus_data[31]));
+    answer      <= bus_claim ? bus_refusal : VERDICT_UNKNOWN_ADDRESS;
+    objects     <= !bus_claim || bus_refusal != VERDICT_OK;
+    crc_wrong   <= !in_header && (crc_wrong || (in_crc && turn && crc_top != bus_data[31]));
 
-    if (answer_came && verdict == VERDICT_OK) verdict <= answer;
-    if ((bus_check || bus_write) && !bus_push) bus_address <= bus_address + 12'd1;
-
-    case (step)
-      STEP_HEADER: begin
-        if (word_valid) count <= COUNT_LOAD;
-        if (act) begin
-          is_read <= header_is_read;
-          bus_push <= operation == OPERATION_PUSH;
-          length <= bus_data[19:12];
-          verdict  <= !header_is_known                   ? VERDICT_BAD_OPERATION :
-                      header_is_empty || !header_fits    ? VERDICT_BAD_LENGTH :
-                      header_repeats && !header_is_read  ? VERDICT_DUPLICATE : VERDICT_OK;
-          step <= header_is_read || header_is_empty ? STEP_CRC : STEP_PAYLOAD;
-        end
-      end
-
-      STEP_PAYLOAD: begin
-        if (word_valid) count <= COUNT_LOAD;
-        if (act) index <= index + 8'd1;
-        if (all_words) step <= STEP_CRC;
-      end
-
-      STEP_CRC: begin
-        if (word_valid) count <= COUNT_LOAD;
-        if (act) begin
-          verdict <= verdict_final;
-          index   <= 8'd0;
-          count   <= is_read && executes ? COUNT_READ : COUNT_LOAD;
-          step    <= is_read && executes ? STEP_READ : STEP_ACK;
-        end
-      end
-
-      STEP_ACK:
-      if (act) begin
-        step <= STEP_IDLE;
-        if (verdict == VERDICT_OK) begin
-          last_sequence  <= bus_data[27:20];
-          sequence_known <= 1'b1;
-          count          <= COUNT_LOAD;
-          step           <= STEP_REPLAY;
-        end
-        if (refuses) begin
-          count <= COUNT_LOAD;
-          step  <= STEP_COUNT;
-        end
-      end
-
-      STEP_REPLAY: begin
-        if (count == COUNT_LOADED) begin
-          index <= index + 8'd1;
-          count <= COUNT_LOAD;
-        end
-        if (all_words) begin
-          count <= COUNT_REST;
-          step  <= frame_goes_on ? STEP_HEADER : STEP_IDLE;
-        end
-      end
-
-      STEP_READ: begin
-        if (count == COUNT_LOADED && index == 8'd0 && answer != VERDICT_OK) begin
-          verdict <= answer;
-          count   <= COUNT_LOAD;
-          step    <= STEP_ACK;
-        end
-        if (act) begin
-          index       <= index + 8'd1;
-          bus_address <= bus_address + 12'd1;
-        end
-        // a word has ended: the reply has been taken
-        if (word_valid) begin
-          count <= all_words ? COUNT_TURN : COUNT_READ;
-          if (all_words) step <= STEP_SUM;
-        end
-      end
-
-      STEP_SUM: if (act) step <= STEP_IDLE;
-
-      STEP_COUNT:
-      if (act) begin
-        counted[counters_high] <= 1'b1;
-        step                   <= frame_goes_on ? STEP_HEADER : STEP_IDLE;
-      end
-
-      default: ;
-    endcase
-
-    // the header has turned: it stands on the bus
-    if (act && (step == STEP_HEADER || step == STEP_ACK)) begin
-      bus_address <= bus_data[11:0];
-      index       <= 8'd0;
+    if (in_header && act) begin
+      is_read  <= header_is_read;
+      bus_push <= operation == OPERATION_PUSH;
+      length   <= bus_data[19:12];
     end
 
-    frame_waits <= (step == STEP_REPLAY || is_counting) && frame_goes_on;
-    // chip select does not come between a verdict and what it promises
-    if (step != STEP_REPLAY && !is_counting && !(step == STEP_ACK && act)) begin
-      if (frame_end) step <= STEP_IDLE;
-      if (frame_start) step <= STEP_HEADER;
-      if (frame_end || frame_start) count <= COUNT_REST;
+    if (in_header && act) {verdict_ok, verdict} <= {header_ok, header_verdict};
+    else if (in_crc && act) {verdict_ok, verdict} <= {executes, verdict_final};
+    else if ((answer_came || objection) && verdict_ok) {verdict_ok, verdict} <= {~objects, answer};
+
+    if (in_ack && act && verdict_ok) begin
+      last_sequence  <= bus_data[27:20];
+      sequence_known <= 1'b1;
     end
+    if (in_count && act) counted[counters_high] <= 1'b1;
+
+    if (act && (in_header || in_crc || in_ack)) index <= 8'd0;
+    else if ((act && (in_payload || in_read)) || (in_replay && load_ends)) index <= index + 8'd1;
+
+    // after header and ack the header has turned: it stands on the bus
+    if (act && (in_header || in_ack)) bus_address <= bus_data[11:0];
+    else if (((bus_check || bus_write) && !bus_push) || (act && in_read)) bus_address <= bus_address + 12'd1;
 
     if (rst) begin
-      step           <= STEP_IDLE;
-      count          <= COUNT_REST;
+      act            <= 1'b0;
+      answered       <= 1'b0;
       last_sequence  <= 8'd0;
       sequence_known <= 1'b0;
       counted        <= 2'b00;
@@ -319,7 +308,6 @@ module passo_link (
       bus_read       <= 1'b0;
       answer_due     <= 1'b0;
       answer_came    <= 1'b0;
-      frame_waits    <= 1'b0;
     end
   end
 

@@ -5,7 +5,7 @@
 //
 // The 48-bit sum is cut into two halves of 24 bits, the upper one a clock behind, and so is the velocity.
 // Promise: `substep` comes 2 clocks after its `advance`; with velocity <= 1/2 never on two clocks in a row.
-// `begin_profile` and the advance of `tick_last`: velocity_next counts from the next clock on (its upper half is
+// `begin_profile` and `tick`: velocity_next counts from the next clock on (its upper half is
 // read one clock later), or 0 if `rest`. While `drain` is high drain_velocity counts, from the second clock on.
 // Rest and `stop`, or the end of drain: 0, 2 clocks later.
 `resetall
@@ -18,13 +18,13 @@ module passo_path (
   input  wire        stop,
   input  wire        begin_profile,
   input  wire        advance,         // enabled clock
-  input  wire        tick_last,
+  input  wire        tick,            // the last one of a tick
   input  wire        rest,
   input  wire [47:0] velocity_next,   // UQ0.48 substeps per clock, 0 .. 1/2
   input  wire        drain,
   input  wire [31:0] drain_velocity,  // UQ0.32
   output wire [31:0] velocity,        // UQ0.32
-  output wire        substep
+  output reg         substep
 );
 
   localparam [23:0] QUARTER = 24'h400000;
@@ -37,8 +37,7 @@ module passo_path (
   reg        phase_low_carry;
   reg [23:0] phase_high;
   reg        advance_q;
-  reg        advance_qq;
-  reg        carry;
+  reg        pauses;  // ~advance_q
 
   wire [24:0] phase_low_sum = {1'b0, phase_low} + {1'b0, velocity_low};
   // restart is low whenever the sum counts; an operand there keeps the carry in the chain
@@ -46,27 +45,28 @@ module passo_path (
 
   assign velocity = {velocity_high, velocity_low[23:16]};
 
-  assign substep = carry & advance_qq;
-
-  wire take = begin_profile | (advance & tick_last) | refresh;
+  wire take = begin_profile | tick | refresh;
+  wire [47:0] velocity_wanted = ({drain_velocity, 16'd0} & {48{drain}}) | (velocity_next & {48{~drain & ~rest}});
 
   always @(posedge clk) begin
     refresh   <= rst | stop | drain;
     take_q    <= take;
     advance_q <= advance;
-    if (take) velocity_low <= drain ? {drain_velocity[7:0], 16'd0} : rest ? 24'd0 : velocity_next[23:0];
-    if (take_q) velocity_high <= drain ? drain_velocity[31:8] : rest ? 24'd0 : velocity_next[47:24];
+    if (take) velocity_low <= velocity_wanted[23:0];
+    if (take_q) velocity_high <= velocity_wanted[47:24];
     if (advance) phase_low <= phase_low_sum[23:0];
     phase_low_carry <= advance & phase_low_sum[24];
-    if (advance_q) {carry, phase_high} <= phase_high_sum;
-    advance_qq <= advance_q;
+    if (advance_q) phase_high <= phase_high_sum[23:0];
+    substep <= phase_high_sum[24];
+    pauses  <= ~advance;
+    if (pauses) substep <= 1'b0;
     if (rst || restart) begin
       advance_q       <= 1'b0;
       phase_low       <= 24'd0;
       phase_low_carry <= 1'b0;
       phase_high      <= QUARTER;
-      advance_qq      <= 1'b0;
-      carry           <= 1'b0;
+      substep         <= 1'b0;
+      pauses          <= 1'b1;
     end
   end
 

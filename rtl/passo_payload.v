@@ -2,7 +2,7 @@
 // Payload: the words of a frame in half words, so that they take one block RAM; and the word on the bus.
 // Behind them lie two words of 4 counters each, of refused frames.
 //
-// Promise: `store` writes a half word. `load` in the two clocks after `load_low` = 0, then 1 named the halves
+// Promise: `store` writes a half word. `load` two clocks after `load_low` = 0, then 1 named the halves
 // of a word puts this word into `data`, or 0 with `load_zero`. 32 clocks of `turn` show it at data[31] bit by
 // bit, leave it as it was, and tell what it amounts to: `top_bit` is the number of its highest bit that is set
 // (0 if none is), `lone_bit` says that no other is.
@@ -50,6 +50,7 @@ module passo_payload (
     .write_address(put ? {put_word, put_low} : {store_word, store_low}),
     .write_data   (put ? data[15:0] : half),
     .read_address ({load_word, load_low}),
+    .load         (1'b1),
     .read_data    (loaded)
   );
 

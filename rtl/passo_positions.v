@@ -28,7 +28,8 @@ module passo_positions #(
 );
 
   reg  [5:0] slot;
-  wire       round_ends = slot == 6'd63;
+  reg        round_ends;  // slot 63
+  reg        axis_ends;  // the last slot of an axis
   wire       upper = slot[2];
   wire [1:0] phase = slot[1:0];
 
@@ -51,7 +52,7 @@ module passo_positions #(
       always @(posedge clk) begin
         if (step_made[axis]) count <= count + {{7{step_direction[axis]}}, 1'b1};
         if (rst || zero) count <= 8'd0;
-        if (slot[2:0] == 3'd7) capture <= round_ends ? count : captured[axis+1];
+        if (axis_ends) capture <= round_ends ? count : captured[axis+1];
       end
     end
   endgenerate
@@ -59,15 +60,16 @@ module passo_positions #(
   // One half of a position: read in phase 0, judged in phase 2, made in phase 3, written in the next phase 0, copied
   // in phase 1. Bytes 0 and 1 stand in the word the other way round. In phases 2 and 3 the memory is asked for
   // `position`.
-  wire [15:0] word;
-  reg  [15:0] half;
+  wire [15:0] half;
+  reg  [15:0] half_q;
   reg  [15:0] half_next;
+  reg         byte_is_first;  // half[7:0] is 0, a clock ago
+  reg         byte_is_last;  // it is 255
   reg         up;
   reg         down;
   reg  [ 3:0] place;  // of half_next
   wire [ 7:0] low_byte = captured[0];
-  wire [15:0] sum = half + {16{down}} + {15'd0, up};
-  wire        carry_8 = sum[8] ^ half[8] ^ down;
+  wire [15:0] sum = half_q + {16{down}} + {15'd0, up};
 
   passo_memory #(
     .WIDTH     (16),
@@ -78,22 +80,27 @@ module passo_positions #(
     .write_address({phase[0], place}),
     .write_data   (half_next),
     .read_address (phase[1] ? {1'b1, address, upper} : {1'b0, slot[5:2]}),
-    .read_data    (word)
+    .load         (1'b1),
+    .read_data    (half)
   );
 
   always @(posedge clk) begin
-    slot <= slot + 6'd1;
-    half <= word;
+    slot       <= slot + 6'd1;
+    round_ends <= slot == 6'd62;
+    axis_ends  <= slot[2:0] == 3'd6;
     if (phase == 2'd3) place <= slot[5:2];
     if (phase == 2'd1) copies <= copies_next;
+    half_q        <= half;
+    byte_is_first <= half[7:0] == 8'd0;
+    byte_is_last  <= half[7:0] == 8'd255;
     if (phase == 2'd2 && !upper) begin
       up   <= half[15:14] == 2'b11 && low_byte[7:6] == 2'b00;
       down <= half[15:14] == 2'b00 && low_byte[7];
     end
     if (phase == 2'd3) begin
       half_next <= upper ? sum : {low_byte, sum[7:0]};
-      up        <= up & carry_8;
-      down      <= down & ~carry_8;
+      up        <= up & byte_is_last;
+      down      <= down & byte_is_first;
       if (clears) half_next <= 16'd0;
     end
     if (clears) begin

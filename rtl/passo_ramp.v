@@ -13,13 +13,13 @@
 //                 ramp   ramp (T ticks)  ramp
 //
 // `prepare` makes the first velocity of a motion, from 0, and raises `ready`; `begin_profile` starts the
-// first tick. With that, and with the enabled clock of `tick_last`,
-// velocity_next begins to count; with `ended` 0.
+// first tick. With that, and with `tick`, velocity_next begins to count; with `ended` 0.
 // Promise: the LAST ramp's end raises `ended`, with the last enabled clock of its last tick (a profile
 // without any tick: with begin_profile). Ramps that run out at speed raise `dry`, in the tick before; the
 // velocity then stays, and the next ramp is taken whenever it comes. `stall` holds the enable back at the end
-// of a tick until a clock after the next velocity is ready: later, never lost. Clocks of each step: copy 24, fetch 8 (T = 0:
-// 7), take 5, look up 3 .. 2 * CHANNELS + 3, shape 19, scale 50, step 8, and one to choose between them.
+// of a tick until a clock after the next velocity is ready: later, never lost. Clocks of each step: copy 24,
+// fetch 8 (T = 0: 7), take 5, look up 4 .. 2 * CHANNELS + 4, shape 19, scale 50, step 8, and one to choose
+// between them.
 `resetall
 `default_nettype none
 
@@ -37,9 +37,10 @@ module passo_ramp #(
   output wire        ended,
   output reg         dry,
   // timescale and path
-  input  wire        advance,           // an enabled clock that counts
-  output wire        stall,
-  output reg         tick_last,
+  input  wire        advance,           // an enabled clock that counts: not while `stall`
+  input  wire        tick,              // it ends a tick: while `tick_ends`
+  output reg         stall,
+  output reg         tick_ends,
   output reg         ends_next,         // there is no next tick: rest
   output wire [47:0] velocity_next,     // UQ0.48 substeps per clock
   // ramp queue
@@ -66,18 +67,19 @@ module passo_ramp #(
   reg [5:0] count;  // clocks of the step, from 1
   reg       step_ends;  // it is the last of them
 
-  reg [5:0] before_end;  // count in the last clock but one
-  always @*
+  reg [5:0] before_end;  // count in the last clock but one; known from the second clock on
+  always @(posedge clk)
     case (step)
-      STEP_COPY:             before_end = 6'd23;
-      STEP_FETCH, STEP_STEP: before_end = 6'd7;
-      STEP_TAKE:             before_end = 6'd4;
-      STEP_SHAPE:            before_end = 6'd18;
-      STEP_SCALE:            before_end = 6'd49;
-      default:               before_end = 6'd0;
+      STEP_COPY:             before_end <= 6'd23;
+      STEP_FETCH, STEP_STEP: before_end <= 6'd7;
+      STEP_TAKE:             before_end <= 6'd4;
+      STEP_SHAPE:            before_end <= 6'd18;
+      STEP_SCALE:            before_end <= 6'd49;
+      default:               before_end <= 6'd0;
     endcase
 
-  wire no_ticks = step == STEP_FETCH && count == 6'd7 && over;
+  reg  ticks_known;  // in the last clock of fetch but one
+  wire no_ticks = ticks_known & over;
 
   // the ramp being made
   reg        loaded;
@@ -89,11 +91,11 @@ module passo_ramp #(
 
   // the tick that runs
   reg [TICK_LOG2-1:0] tick_count;
-  reg                 unready;
+  reg                 tick_last;  // the next clock is the last
 
-  wire take_velocity = begin_profile | (advance & tick_last);
+  wire take_velocity = begin_profile | tick;
+  wire tick_last_next = !begin_profile && (advance ? tick_count == TICK_LAST - 1'b1 : tick_last);
   assign ended = take_velocity & ends_next;
-  assign stall = tick_last & unready;
 
   wire        control_load;
   wire        start_move;
@@ -122,6 +124,9 @@ module passo_ramp #(
     .step           (step),
     .count          (count),
     .table_served   (table_served),
+    .step_ends      (step_ends),
+    .loaded         (loaded),
+    .over           (over),
     .half_index     (ramp_half_index),
     .control_load   (control_load),
     .start_move     (start_move),
@@ -176,12 +181,16 @@ module passo_ramp #(
     .load_points  (step == STEP_LOOK_UP && table_served),
     .point        (table_point),
     .point_next   (table_point_next),
-    .point_is_last(progress[32:25] == 8'hFF),
+    .point_is_last(point_is_last),
     .a_bit        (loaded && mirror ? end_bit : start_bit),
     .b_bit        (loaded && !mirror ? end_bit : start_bit),
     .a            (interpolated_bit),
     .result       (velocity_next)
   );
+
+  reg point_is_last;  // the progress stands still while its points are looked up
+
+  always @(posedge clk) point_is_last <= progress[32:25] == 8'hFF;
 
   assign table_request = step == STEP_LOOK_UP;
   assign table_address = {shape - 2'd1, progress[32:25]};
@@ -192,6 +201,7 @@ module passo_ramp #(
     dry           <= 1'b0;
     moves         <= step == STEP_SCALE && (moves || interpolated_bit);
     count         <= count + 6'd1;
+    ticks_known   <= step == STEP_FETCH && count == 6'd6;
     step_ends     <= count == before_end && !no_ticks;
 
     case (step)
@@ -252,16 +262,12 @@ module passo_ramp #(
 
     if (control_load) {shape, mirror, last} <= {ramp_half[5:4], ramp_half[2], ramp_half[0]};
 
-    if (advance) begin
-      tick_count <= tick_count + 1'b1;
-      tick_last  <= tick_count == TICK_LAST - 1'b1;
-    end
-    unready <= !ready && !drain;
+    if (advance) tick_count <= tick_count + 1'b1;
+    if (begin_profile) tick_count <= {TICK_LOG2{1'b0}};
+    tick_last <= tick_last_next;
+    tick_ends <= tick_last_next && (ready || drain);
+    stall     <= tick_last_next && !(ready || drain);
     if (take_velocity) ready <= 1'b0;
-    if (begin_profile) begin
-      tick_count <= {TICK_LOG2{1'b0}};
-      tick_last  <= 1'b0;
-    end
 
     if (prepare) begin
       step      <= STEP_COPY;
@@ -278,6 +284,9 @@ module passo_ramp #(
       ramp_take     <= 1'b0;
       ramp_take_now <= 1'b0;
       tick_last     <= 1'b0;
+      tick_ends     <= 1'b0;
+      stall         <= 1'b0;
+      ticks_known   <= 1'b0;
     end
   end
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Ramp queue: ramps in half words, 10 in a slot of 16, so that a few ramps take one block RAM.
 //
-// Promise: ramps come out whole and in order. `half` is half word `half_index` of the oldest ramp, two clocks
-// after the index; `take` removes that ramp. A ramp with NOW raises `now_pending`; `take_now` drops all ramps
+// Promise: ramps come out whole and in order. `half` is half word `half_index` of the oldest ramp, three
+// clocks after the index; `take` removes that ramp. A ramp with NOW raises `now_pending`; `take_now` drops all ramps
 // before it, so that it is the oldest. `flush` drops everything that is written.
 //
 // A push is checked word by word (`bus_check`): room for it after all ramps of this frame before it, a
@@ -126,7 +126,10 @@ module passo_ramp_queue #(
   end
 
   // as the ramp wants it: T inverted, and du of mirrored ramps
-  wire invert = index == INDEX_TICKS || (is_mirror && (index == INDEX_STEP_HIGH || index == INDEX_LAST));
+  reg invert;
+
+  always @(posedge clk)
+    invert <= index == INDEX_TICKS || (is_mirror && (index == INDEX_STEP_HIGH || index == INDEX_LAST));
 
   wire [15:0] word;
 
@@ -141,6 +144,7 @@ module passo_ramp_queue #(
     .write_address({write_ramp[DEPTH_LOG2-1:0], index, write_low}),
     .write_data   ((write_low ? bus_data[15:0] : bus_data[31:16]) ^ {16{invert}}),
     .read_address ({read_ramp[DEPTH_LOG2-1:0], half_index}),
+    .load         (1'b1),
     .read_data    (word)
   );
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Strobes of the ramp: what moves in which clock of which step.
 //
-// All strobes are registered: they act one clock after the count they belong to. A half word of the queue comes
-// two clocks after its index, so a strobe that wants it belongs to the second count after that of the index.
+// All strobes are registered: they act one clock after the count they belong to. So is the index of the half word,
+// which comes from the queue three clocks after it: a strobe that wants it belongs to the third count after that of
+// the index. Each step finds the index of its first half word set in the last clock of the step before.
 `resetall
 `default_nettype none
 
@@ -12,6 +13,9 @@ module passo_ramp_strobes (
   input  wire [2:0] step,
   input  wire [5:0] count,            // clocks of the step, from 1
   input  wire       table_served,
+  input  wire       step_ends,        // count is the last one of the step
+  input  wire       loaded,           // a ramp is being made
+  input  wire       over,             // it has no more ticks, in the last clock of fetch and scale
   // ramp queue
   output reg  [3:0] half_index,
   // numbers
@@ -63,30 +67,37 @@ module passo_ramp_strobes (
     result_move     <= empty || copy || shape || scale;
   end
 
-  // The first half word of v_end is there when scale or take begins, whatever was before.
-  always @(posedge clk)
+  // The first half word of v_end is there when scale begins, whatever was before; the next ones follow after 16 bits.
+  reg half_ends;
+
+  always @(posedge clk) begin
+    half_ends <= count[3:0] == 4'd12;
     case (step)
+      STEP_CHOOSE: half_index <= loaded ? 4'd3 : 4'd5;  // of v_end, or T of the next ramp
       STEP_FETCH:
       case (count[2:0])
-        3'd1:    half_index <= 4'd5;  // T
-        3'd2:    half_index <= 4'd4;
-        3'd3:    half_index <= 4'd1;  // control
-        3'd4:    half_index <= 4'd9;  // du
-        3'd5:    half_index <= 4'd8;
-        3'd6:    half_index <= 4'd7;
-        default: half_index <= 4'd3;
+        3'd1:    half_index <= 4'd4;  // T
+        3'd2:    half_index <= 4'd1;  // control
+        3'd3:    half_index <= 4'd9;  // du
+        3'd4:    half_index <= 4'd8;
+        3'd5:    half_index <= 4'd7;
+        3'd6:    half_index <= 4'd3;  // v_end
+        default: half_index <= over ? 4'd2 : 4'd3;
       endcase
-      STEP_TAKE: half_index <= count == 6'd1 ? 4'd2 : 4'd0;
-      STEP_SCALE: half_index <= count < 6'd14 ? 4'd3 : count < 6'd30 ? 4'd2 : count < 6'd46 ? 4'd0 : 4'd3;
+      STEP_TAKE: half_index <= 4'd0;
+      STEP_SCALE:
+      if (step_ends) half_index <= over ? 4'd2 : 4'd9;
+      else if (half_ends) half_index <= half_index == 4'd3 ? 4'd2 : half_index == 4'd2 ? 4'd0 : 4'd3;
       STEP_STEP:
       case (count[2:0])
-        3'd1, 3'd4: half_index <= 4'd9;
-        3'd2, 3'd5: half_index <= 4'd8;
-        3'd3, 3'd6: half_index <= 4'd7;
+        3'd1, 3'd4: half_index <= 4'd8;
+        3'd2, 3'd5: half_index <= 4'd7;
+        3'd3:       half_index <= 4'd9;
         default:    half_index <= 4'd3;
       endcase
       default: half_index <= 4'd3;
     endcase
+  end
 
 endmodule
 `resetall

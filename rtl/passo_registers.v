@@ -90,7 +90,7 @@ module passo_registers #(
       | (reads[3] ? {13'd0, status_channel, wait_sync_padded, run_padded} : 32'd0);
 
   always @(posedge clk) begin
-    known        <= bus_address <= ADDRESS_REFUSALS_1;
+    known        <= bus_address[11:3] == 9'd0 && bus_address[2:0] <= ADDRESS_REFUSALS_1[2:0];
     is_run       <= bus_address == ADDRESS_RUN;
     number       <= bus_address[2:0];
     bad_run      <= bus_top_bit > 5'd18 || run_beyond;

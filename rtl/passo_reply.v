@@ -33,8 +33,12 @@ module passo_reply (
 
   assign top = counters ? counter_bit : word[31];
 
+  // at most one of them
+  wire other = ~acknowledge & ~crc_next;
+  wire next_bit = (acknowledge & acknowledge_bit) | (crc_next & crc_top) | (other & top);
+
   always @(posedge clk) begin
-    if (shift) word <= {word[30:0], acknowledge ? acknowledge_bit : crc_next ? crc_top : top};
+    if (shift) word <= {word[30:0], next_bit};
     if (take) word <= data;
   end
 

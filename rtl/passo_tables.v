@@ -4,7 +4,7 @@
 //
 // Promise: channels are served in turn, two clocks each. A channel that holds `request` with its `address`
 // gets `served` for one clock, with the point at the address on `point` and the point after it on
-// `point_next`; at most 2 * CHANNELS + 3 clocks after its request rose. Address = bank - 1 (9:8) and k (7:0);
+// `point_next`; at most 2 * CHANNELS + 4 clocks after its request rose. Address = bank - 1 (9:8) and k (7:0);
 // point_next after k = 255 means nothing.
 `resetall
 `default_nettype none
@@ -52,31 +52,36 @@ module passo_tables #(
   end
 
   // One channel after the other; first its point, then the next one
-  reg  [         2:0] channel;
-  reg                 second;
-  reg                 asked;  // the channel asked already when its first point was addressed
-  wire [         9:0] channel_address = address[channel*10+:10];
+  reg [2:0] channel;
+  reg second;
+  reg [CHANNELS-1:0] serves;  // a clock before `served`
+  reg asked;  // the channel asked when its first point was addressed, and no answer was on its way
+  wire [9:0] channel_address = address[channel*10+:10];
   wire [CHANNELS-1:0] channel_mask = CHANNEL_0 << channel;
-  reg  [        15:0] read_data;
+  reg [15:0] word;
+  reg [15:0] read_data;
 
   assign point_next = read_data;
 
   always @(posedge clk) begin
     if (select && bus_write) points[{bus_address[9:8]-2'd1, bus_address[7:0]}] <= bus_data;
-    read_data <= points[{channel_address[9:8], channel_address[7:0]+{7'd0, second}}];
+    read_data <= word;
+    word      <= points[{channel_address[9:8], channel_address[7:0]+{7'd0, second}}];
   end
 
   always @(posedge clk) begin
     second <= ~second;
-    if (!second) asked <= (request & channel_mask) != {CHANNELS{1'b0}};
+    if (!second) asked <= (request & channel_mask & ~serves) != {CHANNELS{1'b0}};
     else channel <= channel == CHANNEL_LAST ? 3'd0 : channel + 3'd1;
-    // read_data holds the point during the second clock, and point_next in the clock after it
-    if (second) point <= read_data;
-    served <= (second && asked) ? channel_mask : {CHANNELS{1'b0}};
+    // read_data holds the point in the clock after the second one, and then point_next
+    if (!second) point <= read_data;
+    serves <= (second && asked) ? channel_mask : {CHANNELS{1'b0}};
+    served <= serves;
     if (rst) begin
       channel <= 3'd0;
       second  <= 1'b0;
       asked   <= 1'b0;
+      serves  <= {CHANNELS{1'b0}};
       served  <= {CHANNELS{1'b0}};
     end
   end

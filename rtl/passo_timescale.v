@@ -38,7 +38,10 @@ module passo_timescale (
   reg        land;
   reg        still;  // not moving
 
-  wire reaches = goal >= ~not_moved[16:0];  // rate + change, but for its uppermost bit
+  // goal >= rate + change, but for the uppermost bit of the sum
+  wire        reaches;
+  wire [16:0] unused_sum;
+  assign {reaches, unused_sum} = {1'b0, goal} + {1'b0, not_moved[16:0]} + 18'd1;
 
   always @(posedge clk) begin
     after <= {after[5:1], slew_tick};

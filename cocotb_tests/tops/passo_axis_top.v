@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// An axis whose times come from the test, which need not say which of them are short.
+// An axis whose times come from the test, which need not say which of them are short; 0 counts as 1.
 `resetall
 `default_nettype none
 
@@ -11,7 +11,7 @@ module passo_axis_top (
   input  wire        drop,
   output wire        step_made,
   output wire        step_direction,
-  output wire        overrun,
+  output wire        full,
   input  wire        clear,
   output wire [ 3:0] lost,
   input  wire [15:0] step_high,
@@ -37,13 +37,13 @@ module passo_axis_top (
     .drop              (drop),
     .step_made         (step_made),
     .step_direction    (step_direction),
-    .overrun           (overrun),
+    .full              (full),
     .clear             (clear),
     .lost              (lost),
-    .step_high         (step_high),
-    .step_low          (step_low),
-    .dir_setup         (dir_setup),
-    .dir_hold          (dir_hold),
+    .step_high         (step_high | {15'd0, step_high == 16'd0}),
+    .step_low          (step_low | {15'd0, step_low == 16'd0}),
+    .dir_setup         (dir_setup | {15'd0, dir_setup == 16'd0}),
+    .dir_hold          (dir_hold | {15'd0, dir_hold == 16'd0}),
     .short_high        (step_high < 16'd2),
     .short_low         (step_low < 16'd2),
     .short_setup       (dir_setup < 16'd2),

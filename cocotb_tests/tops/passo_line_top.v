@@ -5,7 +5,8 @@
 
 module passo_line_top #(
   parameter AXES       = 3,
-  parameter DEPTH_LOG2 = 2
+  parameter DEPTH_LOG2 = 2,
+  parameter STEPS_REGISTER = 0
 ) (
   input  wire                clk,
   input  wire                rst,
@@ -31,21 +32,21 @@ module passo_line_top #(
   output wire                underrun
 );
 
-  wire                      next_last;
-  wire                      next_endless;
-  wire        [   AXES-1:0] next_directions;
-  wire        [       31:0] last_substep;
-  wire        [AXES*32-1:0] steps;
+  wire                      last;
+  wire        [   AXES-1:0] current_directions;
+  wire        [       29:0] last_substep;
+  wire        [AXES*30-1:0] steps;
   wire                      take;
   wire                      slot_add;
   wire                      slot_load;
   wire                      slot_step;
   wire                      slot_load_q;
-  wire signed [       32:0] broadcast;
+  wire signed [       30:0] broadcast;
 
   passo_line_queue #(
     .AXES      (AXES),
-    .DEPTH_LOG2(DEPTH_LOG2)
+    .DEPTH_LOG2(DEPTH_LOG2),
+    .STEPS_REGISTER(STEPS_REGISTER)
   ) u_queue (
     .clk                (clk),
     .rst                (rst),
@@ -63,10 +64,10 @@ module passo_line_top #(
     .release_line       (release_line),
     .flush              (stop),
     .next_valid         (line_valid),
-    .next_last          (next_last),
-    .next_endless       (next_endless),
-    .next_directions    (next_directions),
-    .last_substep(last_substep),
+    .last               (last),
+    .endless            (endless),
+    .last_substep       (last_substep),
+    .directions         (current_directions),
     .steps              (steps)
   );
 
@@ -79,18 +80,18 @@ module passo_line_top #(
     .stop               (stop),
     .substep            (substep),
     .next_valid         (line_valid),
-    .next_last          (next_last),
-    .next_endless       (next_endless),
-    .next_directions    (next_directions),
-    .last_substep(last_substep),
     .take               (take),
+    .last               (last),
+    .endless            (endless),
+    .last_substep       (last_substep),
+    .current_directions (current_directions),
     .slot_add           (slot_add),
     .slot_load          (slot_load),
     .slot_step          (slot_step),
     .slot_load_q        (slot_load_q),
     .broadcast          (broadcast),
     .directions         (directions),
-    .endless            (endless),
+    .current_endless    (),
     .ended              (ended),
     .underrun           (underrun)
   );
@@ -105,7 +106,8 @@ module passo_line_top #(
         .slot_step   (slot_step),
         .slot_load_q (slot_load_q),
         .broadcast   (broadcast),
-        .steps       (steps[axis*32+:32]),
+        .steps       (steps[axis*30+:30]),
+        .reached     (),
         .step_request(step_request[axis])
       );
     end

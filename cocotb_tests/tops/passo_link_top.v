@@ -42,9 +42,13 @@ module passo_link_top (
   assign refused    = u_link.refuses;
   assign verdict    = u_link.verdict;
 
-  // the status stands in the place of data, but for the clock after a strobe
+  // the status stands in the place of data, but for the clock after a strobe; a clock later it comes to the link
   reg answers;
-  always @(posedge clk) answers <= bus_read;
+  reg [31:0] read_data;
+  always @(posedge clk) begin
+    answers   <= bus_read;
+    read_data <= answers ? bus_read_data : status;
+  end
 
   passo_spi u_spi (
     .clk        (clk),
@@ -83,7 +87,7 @@ module passo_link_top (
     .bus_claim      (bus_claim),
     .bus_refusal    (bus_refusal),
     .bus_counters   (bus_counters),
-    .bus_read_data  (answers ? bus_read_data : status),
+    .bus_read_data  (read_data),
     .bus_incomplete (bus_incomplete)
   );
 

@@ -38,7 +38,8 @@ module passo_ramp_top #(
 
   wire                   ended;
   wire                   advance = enable & ~stall;
-  wire                   tick_last;
+  wire                   tick_ends;
+  wire                   tick = enable & tick_ends;
   wire                   ends_next;
   wire [           47:0] velocity_next;
   wire                   ramp_now_pending;
@@ -123,8 +124,9 @@ module passo_ramp_top #(
     .ended           (ended),
     .dry             (dry),
     .advance         (advance),
+    .tick            (tick),
     .stall           (stall),
-    .tick_last       (tick_last),
+    .tick_ends       (tick_ends),
     .ends_next       (ends_next),
     .velocity_next   (velocity_next),
     .ramp_valid      (ramp_valid),
@@ -147,7 +149,7 @@ module passo_ramp_top #(
     .stop          (stop),
     .begin_profile (begin_profile),
     .advance       (advance),
-    .tick_last     (tick_last),
+    .tick          (tick),
     .rest          (ends_next),
     .velocity_next (velocity_next),
     .drain         (drain),
