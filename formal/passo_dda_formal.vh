@@ -3,56 +3,61 @@
 // proves of the line counter, and passo_line_queue_formal.vh of the step counts.
 
 // --- A line as the line counter leads it: M substeps of A and B, the next line is loaded with the last one
-(* anyseq *) reg [31:0] f_m_next;
+// (an ENDLESS one: itself). A stop ends the slots at once, and giving back an ENDLESS line ends it anywhere.
+(* anyseq *) reg [29:0] f_m_next;
+(* anyseq *) reg f_stop;
+reg         f_stopped = 1'b0;
 reg         f_begun = 1'b0;
 reg         f_line = 1'b0;  // there is a line
-reg  [31:0] f_m;
-reg  [31:0] f_substeps;  // made, in A
+reg  [29:0] f_m;
+reg  [29:0] f_substeps;  // made, in A
 reg         f_add_q = 1'b0;
 reg         f_load_q = 1'b0;
-wire        f_is_last = f_substeps == f_m - 32'd1;
+wire        f_is_last = f_substeps == f_m - 30'd1;
 always @(posedge clk) begin
   f_begun  <= 1'b1;
-  f_add_q  <= slot_add & f_begun;
-  f_load_q <= slot_load & f_begun;
+  f_stopped <= f_stop;
+  f_add_q  <= slot_add & f_begun & ~f_stop;
+  f_load_q <= slot_load & f_begun & ~f_stop;
   assume (slot_step == f_add_q && slot_load_q == f_load_q);
-  if (!f_begun) assume (!slot_add && !slot_load);
+  if (!f_begun || f_stopped) assume (!slot_add && !slot_load);
   if (slot_add || slot_load) assume (!f_add_q && !f_load_q);
   if (slot_add) assume (f_line);
-  if (slot_load) assume (!f_line || (slot_add && f_is_last));
+  if (slot_load) assume (slot_add ? f_is_last : !f_line);
   if (slot_add && !slot_load) assume (broadcast == -$signed({1'b0, f_m}));
-  if (slot_load) assume (f_m_next != 32'd0 && $signed({broadcast[32], broadcast}) == -$signed({2'b00, f_m_next}) >>> 1);
+  if (slot_load) assume (f_m_next != 30'd0 && $signed({broadcast[30], broadcast}) == -$signed({2'b00, f_m_next}) >>> 1);
 `ifdef NARROW
-  assume (f_m_next < 32'd`NARROW);
+  assume (f_m_next < 30'd`NARROW);
 `endif
   // N is there in B
   if (f_line) assume (steps <= f_m);
-  if (!f_load_q && f_begun) assume ($stable(steps));
+  if (f_line && !f_load_q && f_begun) assume ($stable(steps));
 
-  if (slot_add) f_substeps <= f_substeps + 32'd1;
+  if (slot_add) f_substeps <= f_substeps + 30'd1;
   if (slot_add && f_is_last) f_line <= 1'b0;
   if (slot_load) begin
     f_line     <= 1'b1;
     f_m        <= f_m_next;
-    f_substeps <= 32'd0;
+    f_substeps <= 30'd0;
   end
+  if (f_stop) f_line <= 1'b0;
 end
 
 // --- The promise: e as it should be, and e - start = N * substeps made - M * steps made
 // f_balance = N * substeps - M * steps, summed as they come; with 0 <= e, start < M it is less than M, so after
 // M substeps M * (N - steps) lies between -M and M: steps = N. NARROW counts them.
-reg  [31:0] f_e;  // 0 .. M - 1
-reg  [31:0] f_m_q;  // M and N of the substep in B
-reg  [31:0] f_n_q;
+reg  [29:0] f_e;  // 0 .. M - 1
+reg  [29:0] f_m_q;  // M and N of the substep in B
+reg  [29:0] f_n_q;
 reg         f_last_q = 1'b0;
-reg  signed [33:0] f_balance;
-reg  [31:0] f_steps;  // made
-wire signed [33:0] f_balance_next = f_balance - (step_request ? $signed({2'b00, f_m_q}) : 34'sd0);
-wire signed [33:0] f_start = $signed({3'b000, f_m[31:1]});
-wire signed [33:0] f_start_q = $signed({3'b000, f_m_q[31:1]});
-wire [31:0] f_steps_next = f_steps + {31'd0, step_request};
-wire [32:0] f_e_sum = {1'b0, f_e} + {1'b0, f_n_q};
-wire [32:0] f_e_next = f_e_sum - (step_request ? {1'b0, f_m_q} : 33'd0);
+reg  signed [31:0] f_balance;
+reg  [29:0] f_steps;  // made
+wire signed [31:0] f_balance_next = f_balance - (step_request ? $signed({2'b00, f_m_q}) : 32'sd0);
+wire signed [31:0] f_start = $signed({3'b000, f_m[29:1]});
+wire signed [31:0] f_start_q = $signed({3'b000, f_m_q[29:1]});
+wire [29:0] f_steps_next = f_steps + {29'd0, step_request};
+wire [30:0] f_e_sum = {1'b0, f_e} + {1'b0, f_n_q};
+wire [30:0] f_e_next = f_e_sum - (step_request ? {1'b0, f_m_q} : 31'd0);
 always @(posedge clk) begin
   if (slot_add) begin
     f_m_q    <= f_m;
@@ -61,20 +66,21 @@ always @(posedge clk) begin
     f_balance <= f_balance + $signed({2'b00, steps});
   end
   if (slot_step) begin
-    f_e     <= f_e_next[31:0];
+    f_e     <= f_e_next[29:0];
     f_balance <= f_balance_next;
     f_steps <= f_steps_next;
+    step_if_m_is_reached : assert (reached == (f_e_sum >= {1'b0, f_m_q}) && step_request == reached);
     e_stays_in_range : assert (f_e_next < {1'b0, f_m_q});
     sums_agree : assert ($signed({1'b0, f_e_next}) == f_start_q + f_balance_next);
 `ifdef NARROW
     if (f_last_q) n_steps_in_m_substeps : assert (f_steps_next == f_n_q);
-    if (f_last_q) e_is_back_at_start : assert (f_e_next == {2'b00, f_m_q[31:1]});
+    if (f_last_q) e_is_back_at_start : assert (f_e_next == {2'b00, f_m_q[29:1]});
 `endif
   end else no_step_outside_b : assert (!step_request);
   if (slot_load_q) begin
-    f_e     <= {1'b0, f_m[31:1]};
-    f_balance <= 34'sd0;
-    f_steps <= 32'd0;
+    f_e     <= {1'b0, f_m[29:1]};
+    f_balance <= 32'sd0;
+    f_steps <= 30'd0;
   end
 end
 
@@ -85,12 +91,12 @@ always @(posedge clk) begin
     assert (addend == {1'b0, steps});
     assert ($signed({2'b00, f_e}) == f_start + f_balance);
   end
-  if (slot_load_q) assert (f_line && f_m != 32'd0 && f_substeps == 32'd0);
-  if (slot_load_q) assert (e_minus_m == 32'd0 && $signed(addend) == -$signed({2'b00, f_m}) >>> 1);
-  if (f_line) assert (f_m != 32'd0 && f_substeps < f_m);
+  if (slot_load_q) assert (f_line && f_m != 30'd0 && f_substeps == 30'd0);
+  if (slot_load_q) assert (e_minus_m == 30'd0 && $signed(addend) == -$signed({2'b00, f_m}) >>> 1);
+  if (f_line) assert (f_m != 30'd0 && f_substeps < f_m);
   if (slot_step) begin
-    assert (f_m_q != 32'd0 && f_n_q <= f_m_q && f_e < f_m_q);
-    assert (e_minus_m == (slot_load_q ? 32'd0 : f_e + f_n_q - f_m_q));
+    assert (f_m_q != 30'd0 && f_n_q <= f_m_q && f_e < f_m_q);
+    assert (e_minus_m == (slot_load_q ? 30'd0 : f_e + f_n_q - f_m_q));
     assert (below == ({1'b0, f_e} + {1'b0, f_n_q} < {1'b0, f_m_q}));
     if (!slot_load_q) assert (addend == -{1'b0, f_m_q});
     if (f_line && !slot_load_q) assert (f_m == f_m_q && f_n_q == steps);
@@ -100,14 +106,14 @@ always @(posedge clk) begin
   end
 `ifdef NARROW
   // the sums are products; with few bits the solver can divide by M
-  if (f_line) assert (f_m < 32'd`NARROW);
-  if (slot_step) assert (f_m_q < 32'd`NARROW && f_steps < f_m_q);
-  if (f_line && !slot_step && !slot_load_q) assert (f_steps <= f_substeps && f_substeps < 32'd`NARROW);
+  if (f_line) assert (f_m < 30'd`NARROW);
+  if (slot_step) assert (f_m_q < 30'd`NARROW && f_steps < f_m_q);
+  if (f_line && !slot_step && !slot_load_q) assert (f_steps <= f_substeps && f_substeps < 30'd`NARROW);
   if (f_line && !slot_load_q && !slot_step)
-    assert (f_balance == {26'd0, f_substeps[7:0]} * {26'd0, steps[7:0]} - {26'd0, f_steps[7:0]} * {26'd0, f_m[7:0]});
+    assert (f_balance == {24'd0, f_substeps[7:0]} * {24'd0, steps[7:0]} - {24'd0, f_steps[7:0]} * {24'd0, f_m[7:0]});
   if (slot_step)
-    assert (f_balance == {26'd0, f_last_q ? f_m_q[7:0] : f_substeps[7:0]} * {26'd0, f_n_q[7:0]}
-            - {26'd0, f_steps[7:0]} * {26'd0, f_m_q[7:0]});
+    assert (f_balance == {24'd0, f_last_q ? f_m_q[7:0] : f_substeps[7:0]} * {24'd0, f_n_q[7:0]}
+            - {24'd0, f_steps[7:0]} * {24'd0, f_m_q[7:0]});
 `endif
 end
 `endif

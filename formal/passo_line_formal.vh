@@ -2,93 +2,116 @@
 // What the line counter promises; included at the end of passo_line. passo_dda_formal.vh assumes what is
 // asserted here of the slots and of `broadcast`.
 
-// --- Assumptions: how motion, path and line queue behave
+// --- Assumptions: how motion, path and line queue behave. What the queue says of the current line is chosen freely
+// when the line is taken; flags and M are there a clock later, until the next line is taken, directions two clocks
+// later, while the line is current. The motion gives an ENDLESS line back when it is over; then substeps rest until
+// the next start.
+(* anyseq *) reg f_next_last;
+(* anyseq *) reg f_next_endless;
+(* anyseq *) reg [29:0] f_next_last_substep;
+(* anyseq *) reg [AXES-1:0] f_next_directions;
+(* anyseq *) reg f_release;
+reg f_rests = 1'b1;
 reg f_begun = 1'b0;
 reg f_taken = 1'b0;  // in the clock before
 reg f_substep = 1'b0;
+reg f_shown = 1'b0;  // a line was taken
 always @(posedge clk) begin
   f_begun   <= 1'b1;
-  f_taken   <= take & f_begun;
+  f_taken   <= f_take & f_begun;
   f_substep <= substep;
   assume (rst == !f_begun);
-  if (start) assume (next_valid && !stop && !f_active && !f_ended && !slot_add && !slot_step && !substep);
+  if (start) assume (next_valid && !stop && !(f_active && !f_rests) && !slot_add && !slot_step && !substep);
+  if (f_release) assume (!substep && !f_substep && !slot_step && !f_taken && !start);
+  f_rests <= (f_rests | f_release) & ~start;
+  if (f_rests) assume (!substep);
   if (substep) assume (!f_substep && !(f_taken && !f_substep));
-  if (f_begun && !f_taken) assume ($stable(last_substep));
+  if (f_shown) assume (last == f_last && endless == f_endless && last_substep == f_last_substep);
+  if (f_active && !f_taken && !f_rests) assume (current_directions == f_directions);
   if (!f_begun) assume (!start && !substep);
 `ifdef SMALL
-  assume (last_substep <= 32'd2);
+  assume (f_next_last_substep <= 30'd2);
 `endif
 end
 
-// --- The current line: its substeps so far, and its control
+// --- The current line: what it is, and its substeps so far
 reg            f_active = 1'b0;
 reg            f_ended = 1'b0;
-reg [    31:0] f_number;  // of the next substep
+reg [    29:0] f_number;  // of the next substep
 reg            f_last;
-reg            f_endless = 1'b0;
+reg            f_endless;
+reg [    29:0] f_last_substep;
 reg [AXES-1:0] f_directions;
 reg [AXES-1:0] f_directions_a;  // of the substep in A
 reg [AXES-1:0] f_directions_b;  // of the substep in B
 wire           f_counts = substep & f_active;
-wire           f_done = f_counts && f_number == last_substep;
-wire           f_follows = f_done & ~f_last & next_valid;
+wire           f_done = f_counts && f_number == f_last_substep;
+wire           f_turns = f_done & f_endless & ~f_last;  // it begins anew
+wire           f_needs_next = f_done & ~f_endless & ~f_last;
+wire           f_take = start | (f_needs_next & next_valid);
 always @(posedge clk) begin
   f_directions_a <= f_directions;
   f_directions_b <= f_directions_a;
-  if (f_counts) f_number <= f_number + 32'd1;
-  if (f_done && !f_follows) f_active <= 1'b0;
+  if (f_counts) f_number <= f_number + 30'd1;
+  if (f_done && !f_turns && !f_take) f_active <= 1'b0;
   if (f_done && f_last) f_ended <= 1'b1;
-  if (start || f_follows) begin
-    f_active     <= 1'b1;
-    f_number     <= 32'd0;
-    f_last       <= next_last;
-    f_endless    <= next_endless;
-    f_directions <= next_directions;
+  if (f_turns) f_number <= 30'd0;
+  if (start) f_ended <= 1'b0;
+  if (f_take) begin
+    f_active       <= 1'b1;
+    f_shown        <= 1'b1;
+    f_number       <= 30'd0;
+    f_last         <= f_next_last;
+    f_endless      <= f_next_endless;
+    f_last_substep <= f_next_last_substep;
+    f_directions   <= f_next_directions;
   end
   if (rst || stop) begin
     f_active  <= 1'b0;
     f_ended   <= 1'b0;
-    f_endless <= 1'b0;
   end
 end
 
 reg f_stopped = 1'b1;
 always @(posedge clk) f_stopped <= rst | stop;
 
-wire signed [33:0] f_minus_m = -($signed({2'b00, last_substep}) + 34'sd1);
-wire signed [33:0] f_minus_m_half = f_minus_m >>> 1;  // floor
+wire signed [31:0] f_minus_m = -($signed({2'b00, f_last_substep}) + 32'sd1);
+wire signed [31:0] f_minus_m_half = f_minus_m >>> 1;  // floor
 
 always @(posedge clk)
   if (f_begun) begin
-    line_has_m_substeps : assert (take == (start | f_follows));
-    if (f_active) substep_number_in_line : assert (f_number <= last_substep);
+    line_has_m_substeps : assert (take == f_take);
+    if (f_active) substep_number_in_line : assert (f_number <= f_last_substep);
     if (f_stopped) no_slot_after_stop : assert (!slot_add && !slot_load && !slot_step && !slot_load_q && !underrun);
     else begin
       a_for_each_substep : assert (slot_add == $past(f_counts));
-      a_loads_the_next_line : assert (slot_load == $past(take));
+      a_loads_the_next_line : assert (slot_load == $past(f_take || f_turns));
+      if ($past(f_turns)) endless_begins_anew : assert (slot_add && slot_load);
       b_follows_a : assert (slot_step == $past(slot_add) && slot_load_q == $past(slot_load));
-      underrun_told : assert (underrun == $past(f_done && !f_last && !next_valid));
+      underrun_told : assert (underrun == $past(f_needs_next && !next_valid));
     end
+    if (f_turns) endless_takes_no_other : assert (!take);
     a_and_b_alternate : assert (!(slot_step && slot_add) && !(slot_load_q && slot_load));
-    if (slot_add && !slot_load) adds_minus_m : assert ({broadcast[32], broadcast} == f_minus_m);
-    if (slot_load) loads_half_of_minus_m : assert ({broadcast[32], broadcast} == f_minus_m_half);
+    if (slot_add && !slot_load) adds_minus_m : assert ({broadcast[30], broadcast} == f_minus_m);
+    if (slot_load) loads_half_of_minus_m : assert ({broadcast[30], broadcast} == f_minus_m_half);
     if (slot_step) step_has_its_directions : assert (directions == f_directions_b);
     ended_after_last : assert (ended == f_ended);
-    endless_is_of_the_line : assert (endless == f_endless);
+    if (f_shown && !f_taken) endless_is_of_the_line : assert (current_endless == f_endless);
   end
 
 `ifdef INVARIANTS
 always @(posedge clk)
   if (f_begun) begin
-    assert (active == f_active && goes_on == (f_active && !f_last));
+    assert (active == f_active);
+    if (!f_taken && !f_substep) assert (turns == (f_active && f_endless && !f_last));
+    if (!f_taken && !f_substep) assert (goes_on == (f_active && !f_endless && !f_last));
     if (f_active) begin
-      assert (substep_number == f_number);
-      assert (last == f_last && directions_next == f_directions);
-      if (!f_substep && !f_taken) assert (on_last == (f_number == last_substep));
+      assert (f_shown && substep_number == f_number);
+      if (!f_substep && !f_taken) assert (on_last == (f_number == f_last_substep));
     end
     assert (!(f_ended && f_active));
-    assert (!(slot_add && f_directions_a != directions_next && !slot_load));
     if (slot_add && !slot_load && !slot_load_q) assert (directions == f_directions_a);
-    if (f_active && !slot_load && !slot_load_q) assert (directions == directions_next);
+    if (f_active && !slot_load && !slot_load_q) assert (directions == f_directions);
+    if (slot_add && f_active && !slot_load) assert (f_directions_a == f_directions);
   end
 `endif

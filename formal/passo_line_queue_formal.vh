@@ -2,8 +2,9 @@
 // What the line queue promises; included at the end of passo_line_queue.
 
 // --- Assumptions: the link. A frame is checked, word by word; if nobody objects and it ends with a whole
-// line, it may be written, with as many words. Data stand from a clock before their strobe to a clock after it, those
-// that are checked from two clocks before; `bus_top_bit` belongs to them in the strobe and the clock before.
+// line, it may be written, with as many words, which are those that were checked: good ones. Data stand from a clock
+// before their strobe to a clock after it, those that are checked from two clocks before; `bus_top_bit` belongs to them
+// in the strobe and the clock before.
 `ifdef SMALL
 localparam [1:0] F_GAP = 2'd2;
 `else
@@ -67,55 +68,53 @@ always @(posedge clk) begin
     if (!(f_good && f_go)) f_words <= 6'd0;
   end
 `ifdef SMALL
-  assume (bus_data[31:10] == 22'd0);
+  assume (bus_data[29:10] == 20'd0 && !bus_data[31]);
 `endif
   // line counter and motion
   assume (blocked == flush);
   if (take) assume (next_valid && !release_line);
-  if (release_line) assume (f_current != F_NONE && f_since_take >= 4'd4 && !flush);
+  if (release_line) assume (f_current && f_since_take >= 4'd4 && !flush);
   // a channel stays stopped while a frame is written: only another frame can clear it
   if (f_begun && $past(flush) && f_since_write != 3'd7) assume (flush);
 end
 
-// --- The queue as it should be: lines from the next one on, and what the current line occupies
-localparam [1:0] F_NONE = 2'd0;
-localparam [1:0] F_PLACE = 2'd1;  // the current line has its own place
-localparam [1:0] F_ENDLESS = 2'd2;  // it is the next line as well
+// --- The queue as it should be: lines from the next one on, and the place of the current line
 reg  [DEPTH_LOG2:0] f_lines = 0;
-reg  [         1:0] f_current = F_NONE;
+reg                 f_current = 1'b0;  // there is one, and it has its place
 wire f_written = bus_write & select & f_last_index;
-wire f_pop = (take & ~next_endless) | (release_line && f_current == F_ENDLESS);
 reg  [DEPTH_LOG2:0] f_checked = 0;  // lines of this frame
 always @(posedge clk) begin
-  f_lines <= f_lines + f_written - f_pop;
-  if (release_line) f_current <= F_NONE;
-  if (take) f_current <= next_endless ? F_ENDLESS : F_PLACE;
+  f_lines <= f_lines + f_written - take;
+  if (release_line) f_current <= 1'b0;
+  if (take) f_current <= 1'b1;
   if (bus_check && select && f_last_index) f_checked <= f_checked + 1'b1;
   if (bus_frame) f_checked <= 0;
   if (rst || flush) begin
     f_lines   <= 0;
-    f_current <= F_NONE;
+    f_current <= 1'b0;
   end
 end
 
-reg [2:0] f_quiet = 3'd0;  // clocks in which nothing was taken, released or flushed
-always @(posedge clk) f_quiet <= take | release_line | flush | rst | f_written ? 3'd0 : f_quiet == 3'd7 ? 3'd7 : f_quiet + 3'd1;
+reg [2:0] f_quiet = 3'd0;  // clocks in which nothing was written, taken or flushed
+always @(posedge clk) f_quiet <= take | flush | rst | f_written ? 3'd0 : f_quiet == 3'd7 ? 3'd7 : f_quiet + 3'd1;
 
 always @(posedge clk)
   if (f_begun) begin
-    room_is_what_is_free : assert (room == (1 << DEPTH_LOG2) - f_lines - (f_current == F_PLACE));
+    room_is_what_is_free : assert (room == (1 << DEPTH_LOG2) - f_lines - f_current);
     if (next_valid && !flush && !$past(flush)) next_only_if_there : assert (f_lines != 0);
     if (f_quiet >= 3'd2 && f_lines != 0) line_not_lost : assert (next_valid);
     if (incomplete != (f_index != 2'd0)) incomplete_told : assert (bus_frame);
   end
 
 // --- Refusals
+localparam [31:0] F_M_LIMIT = 32'd1 << 30;
 reg [31:0] f_m;
 wire [31:0] f_defined = {{(24 - AXES) {1'b0}}, {AXES{1'b1}}, 6'd0, 2'b11};
 wire f_bad = f_index == 2'd0 ? (bus_data & ~f_defined) != 32'd0 :
-             f_index == 2'd1 ? bus_data == 32'd0 : bus_data > f_m;
+             f_index == 2'd1 ? bus_data == 32'd0 || bus_data >= F_M_LIMIT : bus_data > f_m;
 always @(posedge clk) begin
   if (f_strobe && f_index == 2'd1) f_m <= bus_data;
+  if (bus_write && select) assume (!f_bad);
   if (f_begun && $past(f_begun)) begin
     if ($past(!(bus_check && select))) refuses_only_checks : assert (refusal == VERDICT_OK);
     else if ($past(blocked)) busy_when_stopped : assert (refusal == VERDICT_BUSY);
@@ -130,24 +129,28 @@ end
 // --- One line, any one, is watched from its first word on
 (* anyconst *) reg [DEPTH_LOG2-1:0] f_slot;  // its place; the script gives it to the memories
 (* anyseq *) reg f_choose;
-(* keep *) wire [CONTROL_BITS-1:0] f_control_word;
 (* keep *) wire [31:0] f_substep_word;
-(* keep *) wire [31:0] f_steps_word;
+(* keep *) wire [30:0] f_steps_word;
 reg f_recording = 1'b0;
 reg f_queued = 1'b0;
-reg f_taken = 1'b0;  // it is the current line
+reg f_shown = 1'b0;  // it was taken last
+reg f_taken = 1'b0;  // it is the current line: shown, and not released or flushed
 reg [DEPTH_LOG2:0] f_ahead;  // lines before it
 reg [1:0] f_taken_for = 2'd0;  // clocks, up to 3
-reg [AXES+1:0] f_line_control;
+reg f_line_last;
+reg f_line_endless;
+reg [AXES-1:0] f_line_directions;
 reg [31:0] f_line_substeps;
 reg [31:0] f_line_steps;
-wire f_watch = !f_recording && !f_queued && !f_taken && f_choose && bus_write && select && f_index == 2'd0
+wire f_watch = !f_recording && !f_queued && !f_shown && f_choose && bus_write && select && f_index == 2'd0
                && write_line[DEPTH_LOG2-1:0] == f_slot;
 wire f_is_next = f_queued && f_ahead == 0;
 always @(posedge clk) begin
   if (f_watch) begin
-    f_recording    <= 1'b1;
-    f_line_control <= {bus_data[8+:AXES], bus_data[1:0]};
+    f_recording       <= 1'b1;
+    f_line_last       <= bus_data[0];
+    f_line_endless    <= bus_data[1];
+    f_line_directions <= bus_data[8+:AXES];
   end
   if (f_recording && f_strobe) begin
     if (f_index == 2'd1) f_line_substeps <= bus_data;
@@ -156,32 +159,37 @@ always @(posedge clk) begin
   if (f_recording && f_written) begin
     f_recording <= 1'b0;
     f_queued    <= 1'b1;
-    f_ahead     <= f_lines - f_pop;
+    f_ahead     <= f_lines - take;
   end
-  if (f_queued && f_pop) begin
+  if (f_queued && take) begin
     if (f_is_next) f_queued <= 1'b0;
     else f_ahead <= f_ahead - 1'b1;
   end
-  if (take) f_taken <= f_is_next;
+  if (take) {f_shown, f_taken} <= {2{f_is_next}};
   f_taken_for <= take ? 2'd0 : f_taken_for == 2'd3 ? 2'd3 : f_taken_for + 2'd1;
   if (release_line) f_taken <= 1'b0;
   if (rst || flush) {f_recording, f_queued, f_taken} <= 3'b000;
+  if (rst) f_shown <= 1'b0;
 
-  if (f_is_next && next_valid)
-    control_as_written : assert ({next_directions, next_endless, next_last} == f_line_control);
-  if (f_taken) substeps_as_written : assert (last_substep == f_line_substeps - 32'd1);
-  if (f_taken && f_taken_for >= 2'd1) steps_as_written : assert (steps == f_line_steps);
+  if (f_shown) begin
+    flags_as_written : assert (last == f_line_last && endless == f_line_endless);
+    substeps_as_written : assert ({2'b00, last_substep} == f_line_substeps - 32'd1);
+  end
+  if (f_taken && f_taken_for >= 2'd1) begin
+    steps_as_written : assert ({2'b00, steps} == f_line_steps);
+    directions_as_written : assert (directions == f_line_directions);
+  end
 end
 
 `ifdef INVARIANTS
+wire [29:0] f_stored_last = f_line_substeps[29:0] - 30'd1;
+wire [31:0] f_stored_substeps = {f_line_last, f_line_endless, f_stored_last};
 always @(posedge clk)
   if (f_begun) begin
-    assert (f_lines <= 1 << DEPTH_LOG2 && f_current <= F_ENDLESS);
-    assert (f_lines + (f_current == F_PLACE) <= 1 << DEPTH_LOG2);
+    assert (f_lines + f_current <= 1 << DEPTH_LOG2);
     assert (f_lines == write_line - next_line);
-    assert (has_place == (f_current == F_PLACE));
-    if (f_current == F_PLACE) assert (current_line == next_line[DEPTH_LOG2-1:0] - 1'b1);
-    if (f_current == F_ENDLESS) assert (current_line == next_line[DEPTH_LOG2-1:0] && f_lines != 0);
+    assert (has_place == f_current);
+    if (f_current) assert (current_line == next_line[DEPTH_LOG2-1:0] - 1'b1);
     assert (index == 3'd1 << f_index && f_index <= 2'd2);
     assert (!(f_checking && f_writing));
     assert (f_words <= 6'd60);
@@ -194,22 +202,29 @@ always @(posedge clk)
     if (f_checking && f_select && !f_refused && refusal == VERDICT_OK && f_words != 0) begin
       assert (f_words == 3 * f_checked + f_index);
       assert (32'd0 + f_checked + (f_index != 0) <= room);
+      if (f_index == 2'd2) assert (f_m != 32'd0 && f_m < F_M_LIMIT);
     end
     if (f_writing) assert (32'd0 + f_words + f_index <= 3 * room && (f_words + f_index) % 3 == 0 && f_words != 0);
     if (f_recording) assert (f_writing && f_index != 0 && write_line[DEPTH_LOG2-1:0] == f_slot && f_ahead == f_ahead);
-    if (f_recording) assert (!f_queued && !f_taken);
-    if (f_recording) assert (f_control_word == f_line_control);
-    if (f_recording && f_index == 2'd2) assert ((write_substeps ? difference : f_substep_word) == f_line_substeps - 32'd1);
+    if (f_recording) assert (!f_queued && !f_shown);
+    if (f_taken) assert (f_shown);
+    if (f_shown) assert (!f_queued);
+    if (f_recording) begin
+      assert (write_last == f_line_last && write_endless == f_line_endless);
+      assert (write_directions == f_line_directions);
+    end
+    if (f_recording && f_index == 2'd2)
+      assert ((write_substeps ? {write_last, write_endless, difference[29:0]} : f_substep_word)
+              == f_stored_substeps && f_line_substeps != 32'd0 && f_line_substeps < F_M_LIMIT && f_m == f_line_substeps);
     if (f_queued || f_taken) begin
-      assert (f_control_word == f_line_control);
-      assert (f_substep_word == f_line_substeps - 32'd1);
-      assert (f_steps_word == f_line_steps);
+      assert (f_substep_word == f_stored_substeps);
+      assert (f_steps_word == {f_line_directions, f_line_steps[29:0]});
+    end
+    if (f_queued || f_shown) begin
+      assert (f_line_substeps != 32'd0 && f_line_substeps < F_M_LIMIT && f_line_steps < F_M_LIMIT);
     end
     if (f_queued) assert (f_ahead < f_lines && f_slot == next_line[DEPTH_LOG2-1:0] + f_ahead[DEPTH_LOG2-1:0]);
-    if (f_taken) assert (current_line == f_slot && f_current != F_NONE && (f_queued == (f_current == F_ENDLESS)));
-    if (f_taken && f_queued) assert (f_ahead == 0 && f_line_control[1]);
-    if (f_current == F_ENDLESS && f_is_next) assert (f_taken);
-    if (f_is_next && next_valid) assert (next_last_substep == f_line_substeps - 32'd1);
+    if (f_taken) assert (current_line == f_slot && f_current);
     assert (load_substeps == (f_strobe_q && $past(select) && f_index == 2'd2));
     assert (write_substeps == (load_substeps && $past(bus_write)));
     if (load_substeps) assert (bus_data == f_m);

@@ -5,7 +5,7 @@
 
 // --- Assumptions: chip select and words as passo_spi gives them. Half words are at least 60 clocks apart.
 `ifdef SMALL
-localparam [6:0] F_GAP = 7'd8;  // the search turns a word in one clock
+localparam [6:0] F_GAP = 7'd9;  // the search turns a word in one clock
 localparam [6:0] F_GAP_LOW = 7'd1;
 `else
 localparam [6:0] F_GAP = 7'd60;
@@ -31,7 +31,7 @@ always @(posedge clk) begin
   // a few numbers are enough to find a bug: operations 0 .. 3, sequence 0 .. 1, length 0 .. 2, address 0 .. 3
   if (half_valid && !half_low) assume ((half & 16'hCFEF) == 16'd0);
   if (half_valid && half_low) assume ((half & 16'hCFFC) == 16'd0 && half[13:12] != 2'd3);
-  assume (f_watch == 6'd0 && !(half_valid && step == STEP_ACK));
+  assume (f_watch == 6'd0 && !(half_valid && in_ack));
 `endif
   f_gap <= frame_start || half_valid ? 7'd0 : f_gap == F_GAP ? F_GAP : f_gap + 7'd1;
 end
@@ -70,7 +70,7 @@ always @(posedge clk) begin
   if (f_word_ends && f_words != 9'd511) f_words <= f_words + 9'd1;
   if (bus_check && f_words != 9'd0) f_checks <= f_checks + 9'd1;
   if (f_asked && f_words != 9'd0 && (!bus_claim || bus_refusal != VERDICT_OK)) f_objection <= 1'b1;
-  if (step == STEP_CRC && count == COUNT_ACT - 6'd1) f_incomplete <= bus_incomplete;
+  if (in_crc && count == COUNT_ACT - 7'd1) f_incomplete <= bus_incomplete;
   if (frame_start) begin
     f_words     <= 9'd0;
     f_checks    <= 9'd0;
@@ -85,10 +85,10 @@ reg [ 7:0] f_written;  // words
 reg [11:0] f_address;
 reg        f_run_push;
 reg [31:0] f_run_word;
-wire       f_starts = f_begun && step == STEP_ACK && act && verdict == VERDICT_OK;
+wire       f_starts = f_begun && in_ack && act && verdict_ok;
 always @(posedge clk) begin
   if (f_starts) begin
-    only_good_frames : assert (f_good);
+    only_good_frames : assert (f_good && verdict == VERDICT_OK);  // which the acknowledgement tells
     f_runs       <= 1'b1;
     f_run_length <= f_length;
     f_run_word   <= f_word;
@@ -105,7 +105,7 @@ always @(posedge clk) begin
     if (f_written == {2'd0, f_watch}) word_as_sent : assert (bus_data == f_run_word);
     f_written <= f_written + 8'd1;
   end
-  if (f_begun && step != STEP_REPLAY && !f_starts && f_runs) begin
+  if (f_begun && !in_replay && !f_starts && f_runs) begin
     every_word_once : assert (f_written + {7'd0, bus_write} == f_run_length);
     f_runs <= bus_write;
   end
@@ -119,90 +119,118 @@ always @(posedge clk) begin
 end
 
 `ifdef INVARIANTS
-wire f_busy = count >= COUNT_LOAD || count <= COUNT_ACT;  // a word is being handled
-wire [6:0] f_c = {count <= COUNT_ACT, count};
-wire f_loaded = count >= COUNT_LOADED || count <= COUNT_ACT;
-wire f_receives = step == STEP_HEADER || step == STEP_PAYLOAD || step == STEP_CRC;
+wire [7:0] f_steps = {in_header, in_payload, in_crc, in_ack, in_replay, in_read, in_sum, in_count};
+wire f_idle = f_steps == 8'd0;
+wire f_busy = !begin_rest && (begin_load || (count >= COUNT_LOAD && count <= COUNT_ACT));  // a word is being handled
+wire f_loaded = !begin_rest && !begin_load && count >= COUNT_LOADED;
+wire f_turns = !begin_rest && !begin_load && count >= COUNT_TURN && count <= COUNT_ACT;
+wire f_receives = in_header || in_payload || in_crc;
 wire f_has_payload = (f_is_push || f_is_write || f_header[31:28] != OPERATION_READ) && f_length != 8'd0;
-wire f_header_fits = (f_is_push || f_is_write) && f_length != 8'd0 && f_length <= 8'd60 && !(f_any && f_header[27:20] == f_last);
+wire f_repeats = f_any && f_header[27:20] == f_last;
+wire f_header_fits = (f_is_push || f_is_write) && f_length != 8'd0 && f_length <= 8'd60 && !f_repeats;
 always @(posedge clk)
   if (f_begun) begin
-    assert (step <= STEP_COUNT);
+    assert ((f_steps & (f_steps - 8'd1)) == 8'd0);
     assert (f_gap <= F_GAP);
     assert (sequence_known == f_any);
     if (f_any) assert (last_sequence == f_last);
-    assert (!frame_waits || step == STEP_REPLAY || step == STEP_COUNT || step == STEP_HEADER);
+    assert (!frame_waits || in_replay || in_count || in_header);
     if (frame_waits) assert (f_selected && f_words == 9'd0 && f_checks == 9'd0 && !f_objection);
     assert (answer_due == f_asked);
-    assert (act == (count == COUNT_ACT) || (act && step == STEP_IDLE && count == COUNT_REST));
-    if (step == STEP_IDLE) assert (count > COUNT_ACT && count <= COUNT_REST);
-    if ((f_receives || step == STEP_ACK) && f_busy) assert (!bus_check && !answer_due && !answer_came);
-    if (f_receives) assert (count <= COUNT_REST || count >= COUNT_LOAD);
+    // the clocks of each step
+    assert (count <= COUNT_REST);
+    if (act) assert (count == COUNT_ACT && !f_idle);
+    if (!f_idle && !begin_rest) assert (act == (count == COUNT_ACT));
+    if (!f_idle && !in_header) assert (!begin_rest);
+    if (!begin_rest) begin
+      if (begin_load) assert (f_receives || in_ack || in_replay || in_count);
+      if (begin_read) assert (in_read);
+      if (begin_turn) assert (in_sum);
+      if (f_idle) assert (count > COUNT_ACT);
+      if (f_receives) assert (count >= COUNT_LOAD);
+      if (in_ack || in_count) assert (begin_load || (count >= COUNT_LOAD && count <= COUNT_ACT));
+      if (in_sum) assert (begin_turn || (count >= COUNT_TURN && count <= COUNT_ACT));
+      if (in_read) assert (count >= COUNT_READ);
+    end
+    if (answered) assert (in_read && count == COUNT_LOADED && !begin_read);
+    if (in_read && load_ends) assert (count == COUNT_LOADED - 7'd1 && !begin_read);
+    if ((f_receives || in_ack) && f_busy) assert (!bus_check && !answer_due && !answer_came);
     // no word ends while one is fetched for the reply
-    if (step == STEP_READ) assert (count <= COUNT_REST || count >= COUNT_READ);
-    if (step == STEP_READ && (count >= COUNT_READ || count <= COUNT_ACT)) assert (!f_upper || f_gap < f_c - {1'b0, COUNT_READ});
-    if (step == STEP_READ || step == STEP_SUM || step == STEP_ACK) assert (f_selected);
+    if (in_read && (begin_read || count <= COUNT_ACT)) assert (!f_upper || (!begin_read && f_gap < count - COUNT_READ));
+    if (in_read || in_sum || in_ack) assert (f_selected);
+    // what is told of the word and of the answer
+    if (!f_idle && !in_header && !in_sum) assert (verdict_ok == (verdict == VERDICT_OK));
     // receiving
     if (f_receives) begin
       assert (f_selected);
-      if (f_busy) assert (!f_upper && f_gap == f_c - 7'd28);
+      if (f_busy) assert (!f_upper && f_gap == (begin_load ? 7'd0 : count - 7'd27));
+      if ((in_payload || in_crc) && count <= COUNT_ACT + 7'd1) assert (begin_load || (!f_upper && f_gap == count - 7'd27));
     end
-    if (step == STEP_HEADER) begin
+    if (in_header) begin
       assert (f_words == {8'd0, f_busy} && f_checks == 9'd0 && !f_objection);
       if (f_words == 9'd1) assert (f_memory_header == f_header);
+      if (f_turns) begin
+        assert (header_is_read == (f_header[31:28] == OPERATION_READ));
+        assert (header_is_known == (header_is_read || f_is_push || f_is_write));
+        assert (header_is_empty == (f_length == 8'd0) && header_fits == (f_length <= 8'd60));
+        assert (header_repeats == f_repeats);
+      end
+      if (f_turns && count > COUNT_TURN) begin
+        assert (header_ok == (header_verdict == VERDICT_OK));
+        if (header_ok) assert (header_is_read ? f_length != 8'd0 && f_length <= 8'd60 : f_header_fits);
+      end
     end
-    if (f_words == 9'd0 && f_upper && f_selected && (step == STEP_HEADER || frame_waits))
+    if (f_words == 9'd0 && f_upper && f_selected && (in_header || frame_waits))
       assert (f_memory_header[31:16] == f_header[31:16]);
-    if (step == STEP_COUNT) assert (f_busy);
-    if (step == STEP_COUNT && frame_waits)
-      assert (!f_upper && f_gap < f_c - 7'd28);
-    if ((step == STEP_HEADER || (step == STEP_ACK && verdict == VERDICT_OK)) && f_loaded) assert (f_held == f_header);
-    if (step == STEP_PAYLOAD || step == STEP_CRC || step == STEP_ACK || step == STEP_READ) begin
+    if (in_count && frame_waits) assert (!begin_load && !f_upper && f_gap <= count - COUNT_LOAD);
+    if ((in_header || (in_ack && verdict_ok)) && f_loaded && f_busy) assert (f_held == f_header);
+    if (in_payload || in_crc || in_ack || in_read) begin
       assert (f_memory_header == f_header && f_words != 9'd0);
       assert (length == f_length && bus_push == f_is_push && is_read == (f_header[31:28] == OPERATION_READ));
     end
-    if (step == STEP_PAYLOAD || step == STEP_CRC || step == STEP_ACK)
-      if (verdict == VERDICT_OK) assert (is_read ? f_length != 8'd0 && f_length <= 8'd60 : f_header_fits && (!f_objection || (answer_came && answer != VERDICT_OK)));
-    if (step == STEP_PAYLOAD) begin
+    if ((in_payload || in_crc || in_ack) && verdict_ok)
+      assert (is_read ? f_length != 8'd0 && f_length <= 8'd60 : f_header_fits && (!f_objection || (answer_came && objects)));
+    if (in_payload) begin
       assert (f_has_payload);
       assert (f_words == {1'b0, index} + 9'd1 + {8'd0, f_busy});
       assert (f_checks + {8'd0, bus_check} == {1'b0, index});
-      assert (index < length || (index == length && count == COUNT_ACT + 6'd1));
+      assert (index < length || (index == length && !f_busy && (count == COUNT_ACT + 7'd1 || all_words)));
+      if (all_words) assert (index == length && count == COUNT_REST && !bus_check);
     end
-    if (bus_check && f_words != 9'd0) assert ((count == COUNT_ACT + 6'd1 && step == STEP_PAYLOAD) || step == STEP_IDLE);
-    if (step == STEP_CRC && f_has_payload) begin
+    if (bus_check && f_words != 9'd0) assert ((count == COUNT_ACT + 7'd1 && in_payload) || f_idle);
+    if (in_crc && f_has_payload) begin
       assert (f_words == {1'b0, length} + 9'd1 + {8'd0, f_busy} && index == length);
       assert (f_checks == {1'b0, length} && !bus_check);
     end
-    if (step == STEP_ACK && verdict == VERDICT_OK) begin
+    if (in_ack && verdict_ok) begin
       assert (f_words == {1'b0, f_length} + 9'd2 && !crc_wrong && !f_incomplete && f_checks == {1'b0, f_length} && !is_read);
-      assert (f_busy && f_selected);
-      assert (f_upper ? f_c > 7'd50 && f_gap < f_c - 7'd50 : f_gap == (f_c > 7'd50 ? 7'd60 : f_c + 7'd10));
+      if (begin_load) assert (!f_upper && f_gap == 7'd39);
+      else assert (f_upper ? count > 7'd48 && f_gap < count - 7'd48 : f_gap == (count > 7'd48 ? 7'd60 : count + 7'd12));
     end
-    if (step == STEP_ACK) assert (f_words != 9'd0);
     // the payload in its place
-    if ((step == STEP_PAYLOAD || step == STEP_CRC || step == STEP_ACK) && f_length <= 8'd60 && !is_read
-        && (step != STEP_ACK || verdict == VERDICT_OK)) begin
+    if ((in_payload || in_crc || (in_ack && verdict_ok)) && f_length <= 8'd60 && !is_read) begin
       if (f_words > {3'd0, f_watch} + 9'd1 && {2'd0, f_watch} < f_length) assert (f_memory_word == f_word);
-      if (f_words == {3'd0, f_watch} + 9'd1 && f_upper && step == STEP_PAYLOAD) assert (f_memory_word[31:16] == f_word[31:16]);
-      if (step == STEP_PAYLOAD && f_loaded && index == {2'd0, f_watch}) assert (f_held == f_word);
-      if (step == STEP_PAYLOAD && count == COUNT_ACT + 6'd1 && index == {2'd0, f_watch} + 8'd1) assert (f_held == f_word);
+      if (f_words == {3'd0, f_watch} + 9'd1 && f_upper && in_payload) assert (f_memory_word[31:16] == f_word[31:16]);
+      if (in_payload && f_loaded && f_busy && index == {2'd0, f_watch}) assert (f_held == f_word);
+      if (in_payload && count == COUNT_ACT + 7'd1 && index == {2'd0, f_watch} + 8'd1) assert (f_held == f_word);
     end
-    // executing
-    assert (!bus_write || step == STEP_REPLAY);
-    if (step == STEP_REPLAY) begin
+    // executing: load in 28 .. 31, the strobe in the next 28
+    assert (!bus_write || in_replay);
+    if (in_replay) begin
       assert (f_runs && f_run_length == length && length != 8'd0 && length <= 8'd60 && bus_push == f_run_push);
-      assert (index <= length && f_written + {7'd0, bus_write} == index);
-      assert (count >= COUNT_LOAD && count <= COUNT_LOADED);
+      if (count == COUNT_ACT + 7'd1) assert (begin_load && index == 8'd0 && !bus_write);
+      else assert (count >= COUNT_LOAD && begin_load == (count == COUNT_LOADED) && count <= COUNT_LOADED);
+      assert (load_ends == (count == COUNT_LOADED - 7'd1));
+      assert (bus_write == (count == COUNT_LOAD && index != 8'd0));
+      assert (index == f_written + {7'd0, bus_write || count == COUNT_LOADED});
+      assert (index < length || (index == length && (bus_write || count == COUNT_LOADED)));
+      assert (all_words == (index == length && bus_write));
       assert (bus_address == f_address + (f_run_push ? 12'd0 : {4'd0, f_written}));
-      if (index == length) assert (count == COUNT_LOAD && bus_write);
-      if (bus_write) assert (count == COUNT_LOAD);
       if ({2'd0, f_watch} < length) assert (f_memory_word == f_run_word);
-      if (count == COUNT_LOADED && index == {2'd0, f_watch}) assert (f_held == f_run_word);
-      if (bus_write && index == {2'd0, f_watch} + 8'd1) assert (f_held == f_run_word);
+      if ((count == COUNT_LOADED || bus_write) && index == {2'd0, f_watch} + 8'd1) assert (f_held == f_run_word);
       if (f_words == 9'd0 && f_selected && f_upper) assert (f_memory_header[31:16] == f_header[31:16]);
       if (!frame_waits) assert (f_words != 9'd0 || !f_selected);
     end
-    if (f_runs && step != STEP_REPLAY) assert (f_written == f_run_length);
+    if (f_runs && !in_replay) assert (f_written == f_run_length);
   end
 `endif

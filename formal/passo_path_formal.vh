@@ -10,7 +10,7 @@ reg  f_live = 1'b0;
 reg  f_known = 1'b0;  // a velocity was taken since reset
 reg  f_drain_q = 1'b0;
 reg  f_refresh = 1'b0;
-wire f_take = begin_profile | (advance & tick_last) | f_refresh;
+wire f_take = begin_profile | tick | f_refresh;
 always @(posedge clk) begin
   f_begun   <= 1'b1;
   f_known   <= (f_known | f_take) & ~rst;
@@ -22,6 +22,7 @@ always @(posedge clk) begin
   if (f_begun && $past(f_take && f_begun)) assume ($stable(velocity_next) && $stable(rest) && $stable(drain_velocity));
   if (!f_live || stop || restart || (f_drain_q && !drain)) assume (!advance);
   if (!f_live || restart) assume (!begin_profile && !drain);
+  if (!advance) assume (!tick);
   if (f_begun && $past(f_take && f_begun) && !f_drain_q) assume (!drain);
 end
 

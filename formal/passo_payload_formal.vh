@@ -69,9 +69,11 @@ always @(posedge clk) if (turn) f_before_w <= f_before;
 (* anyconst *) reg [7:0] f_address;
 (* keep *) wire [15:0] f_memory_word;
 reg  [15:0] f_kept;  // as it was last stored
-reg  [15:0] f_shown_word;
 reg         f_stored = 1'b0;
-reg         f_shown = 1'b0;  // it was named in the clock before
+reg         f_named = 1'b0;  // it was named in the clock before
+reg  [15:0] f_named_word;
+reg         f_shown = 1'b0;  // two clocks before
+reg  [15:0] f_shown_word;
 reg         f_shown_q = 1'b0;  // and loaded
 reg  [15:0] f_shown_word_q;
 wire        f_put = put && {put_word, put_low} == f_address;
@@ -80,8 +82,10 @@ always @(posedge clk) begin
   if (f_put) f_kept <= data[15:0];
   if (f_store) f_kept <= half;
   f_stored       <= f_begun & (f_stored | f_put | f_store);
-  f_shown        <= f_stored && {load_word, load_low} == f_address && !f_put && !f_store;
-  f_shown_word   <= f_kept;
+  f_named        <= f_stored && {load_word, load_low} == f_address && !f_put && !f_store;
+  f_named_word   <= f_kept;
+  f_shown        <= f_named;
+  f_shown_word   <= f_named_word;
   f_shown_q      <= f_shown & load & ~load_zero;
   f_shown_word_q <= f_shown_word;
   if (f_shown_q) loaded_as_stored : assert (data[15:0] == f_shown_word_q);

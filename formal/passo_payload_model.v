@@ -33,6 +33,7 @@ module passo_payload (
   (* keep *) reg [31:0] f_held;
   (* anyseq *) wire [31:0] f_anything;
   (* anyseq *) wire [6:0] f_any_bits;
+  reg [15:0] f_named;
   reg [15:0] loaded;
 
   wire [31:0] f_read = load_word == 7'h40 ? f_header : load_word == {1'b0, f_place} ? f_word : f_anything;
@@ -45,7 +46,8 @@ module passo_payload (
     if (store && store_word == 7'h40 && store_low) f_header[15:0] <= half;
     if (store && store_word == {1'b0, f_place} && !store_low) f_word[31:16] <= half;
     if (store && store_word == {1'b0, f_place} && store_low) f_word[15:0] <= half;
-    loaded <= load_low ? f_read[15:0] : f_read[31:16];
+    f_named <= load_low ? f_read[15:0] : f_read[31:16];
+    loaded  <= f_named;
     if (load) f_held <= load_zero ? 32'd0 : {f_held[15:0], loaded};
   end
 

@@ -28,6 +28,7 @@ always @(posedge clk) begin
   if (begin_profile) assume (f_motion == F_PREPARED && f_ready_q);
   if (drain) assume (f_motion == F_REST);
   if (advance) assume (!stall && (f_motion == F_RUNS || drain));
+  assume (tick == (advance & tick_ends));
 end
 
 // --- Assumptions: the ramp queue, as it promises to be. Of all ramps only the oldest one can be seen.
@@ -39,7 +40,8 @@ reg  [15:0] f_control;
 reg  [47:0] f_end;
 reg  [31:0] f_ticks;
 reg  [15:0] f_word;
-reg  [15:0] f_half;  // two clocks after its index
+reg  [15:0] f_next;
+reg  [15:0] f_half;  // three clocks after its index
 (* anyseq *) reg f_arrives;
 (* anyseq *) reg f_arrives_now;
 (* anyseq *) reg f_more;  // behind the oldest ramp there is another one
@@ -72,7 +74,8 @@ always @(posedge clk) begin
   endcase
   assume (ramp_valid == f_valid);
   assume (ramp_now_pending == f_now);
-  f_half <= f_word;
+  f_next <= f_word;
+  f_half <= f_next;
   assume (ramp_half == f_half);
 end
 
@@ -209,7 +212,8 @@ always @(posedge clk)
     if (ready && f_ready_q) `HOLDS (!result_move);
     if (ends_next) `HOLDS (ready && f_is_choose && !loaded && last);
     `HOLDS (f_due == (ready && f_ready_q && !ends_next));
-    `HOLDS (unready == !f_ready_q || $past(f_motion == F_REST));
+    `HOLDS (stall == (tick_last & ~tick_ends) && (tick_last || !tick_ends));
+    if (tick_last) `HOLDS (stall == !f_ready_q || $past(f_motion == F_REST));
     if (f_running) `HOLDS (f_clocks == {1'b0, tick_count} && tick_last == (tick_count == TICK_LAST));
     `HOLDS (ramp_take == (f_is_take && count == 6'd4));
     if (ramp_take_now) `HOLDS (f_is_copy && count == 6'd1 && f_now);
@@ -250,31 +254,48 @@ always @(posedge clk)
       `HOLDS (f_counted == {1'b0, f_made_now} + 33'd1 && !over && f_made_now < f_ticks);
     if (loaded && f_is_scale) `HOLDS (f_made_now < f_ticks);
     if (loaded && f_is_scale && count >= 6'd4) `HOLDS (f_counted == {1'b0, f_made_now} + 33'd2);
-    if (f_is_fetch && count == 6'd4) `HOLDS (f_half == ~f_ticks[15:0] && f_word == ~f_ticks[31:16]);
+    if (f_is_fetch && count == 6'd1) `HOLDS (ramp_half_index == 4'd5);
+    if (f_is_fetch && count == 6'd2) `HOLDS (f_word == ~f_ticks[15:0] && ramp_half_index == 4'd4);
+    if (f_is_fetch && count == 6'd3)
+      `HOLDS (f_next == ~f_ticks[15:0] && f_word == ~f_ticks[31:16] && ramp_half_index == 4'd1);
+    if (f_is_fetch && count == 6'd4)
+      `HOLDS (f_half == ~f_ticks[15:0] && f_next == ~f_ticks[31:16] && f_word == f_control);
     if (f_is_fetch && count == 6'd5)
-      `HOLDS (f_ticks_low == ~f_ticks[15:0] && f_half == ~f_ticks[31:16] && f_word == f_control);
+      `HOLDS (f_ticks_low == ~f_ticks[15:0] && f_half == ~f_ticks[31:16] && f_next == f_control);
     if (f_is_fetch && count == 6'd6) `HOLDS (f_half == f_control);
     if (f_is_fetch && count >= 6'd7) `HOLDS (f_counted == 33'd1);
     if (f_is_fetch && count == 6'd8) `HOLDS (!over);
   end
+
+// the half word of v_end that scale names in a clock of it; before the first one (counts wrap) the lowest
+function [15:0] f_end_half(input [5:0] clocks);
+  f_end_half = clocks <= 6'd13 || clocks > 6'd45 ? f_end[15:0] : clocks <= 6'd29 ? f_end[31:16] : f_end[47:32];
+endfunction
 
 // the numbers as they turn
 always @(posedge clk)
   if (f_begun && f_motion != F_REST) begin
     if ((f_is_choose && !start_copy) || f_is_fetch || f_is_look_up || f_is_shape || f_is_step) `HOLDS (f_v_start == f_start);
     if (f_is_take) begin
-      if (count == 6'd1) `HOLDS (ramp_half_index == 4'd3);
-      if (count == 6'd2) `HOLDS (f_word == f_end[15:0] && ramp_half_index == 4'd2);
+      if (count == 6'd1) `HOLDS (f_word == f_end[15:0] && ramp_half_index == 4'd2);
+      if (count == 6'd2) `HOLDS (f_next == f_end[15:0] && f_word == f_end[31:16] && ramp_half_index == 4'd0);
       if (count <= 6'd3) `HOLDS (f_v_start == f_start);
-      if (count == 6'd3) `HOLDS (f_half == f_end[15:0] && f_word == f_end[31:16] && ramp_half_index == 4'd0);
+      if (count == 6'd3) `HOLDS (f_half == f_end[15:0] && f_next == f_end[31:16] && f_word == f_end[47:32]);
       if (count == 6'd4)
-        `HOLDS (f_v_start[47:32] == f_end[15:0] && f_half == f_end[31:16] && f_word == f_end[47:32]);
+        `HOLDS (f_v_start[47:32] == f_end[15:0] && f_half == f_end[31:16] && f_next == f_end[47:32]);
       if (count == 6'd5) `HOLDS (f_v_start[47:16] == f_start[31:0] && f_half == f_start[47:32]);
     end
-    if ((f_is_fetch || f_is_step) && count == 6'd8) `HOLDS (ramp_half_index == 4'd3);
+    if ((f_is_fetch || f_is_step) && count >= 6'd7) `HOLDS (ramp_half_index == 4'd3);
+    if ((f_is_fetch || f_is_step) && count == 6'd8) `HOLDS (f_word == f_end[15:0]);
     if (loaded && (f_is_choose || f_is_look_up || f_is_shape))
-      `HOLDS (ramp_half_index == 4'd3 && f_word == f_end[15:0]);
-    if (loaded && (f_is_look_up || f_is_shape || (f_is_scale && count <= 6'd2))) `HOLDS (f_half == f_end[15:0]);
+      `HOLDS (ramp_half_index == 4'd3 && f_word == f_end[15:0] && f_next == f_end[15:0]);
+    if (loaded && (f_is_look_up || f_is_shape)) `HOLDS (f_half == f_end[15:0]);
+    if (loaded && f_is_scale) begin
+      `HOLDS (ramp_half_index == (count <= 6'd13 ? 4'd3 : count <= 6'd29 ? 4'd2 : count <= 6'd45 ? 4'd0 : 4'd3));
+      `HOLDS (f_word == f_end_half(count - 6'd1));
+      `HOLDS (f_next == f_end_half(count - 6'd2));
+      `HOLDS (f_half == f_end_half(count - 6'd3));
+    end
     if (f_is_scale) begin
       for (k = 0; k <= 48; k = k + 1)
         if (count == k + 2 || (k == 0 && count == 6'd1)) `HOLDS (f_v_start == ((f_start >> k) | (f_start << (48 - k))));

@@ -134,9 +134,10 @@ reg f_queued = 1'b0;
 reg [DEPTH_LOG2:0] f_ahead;  // ramps before it
 reg f_mirror;
 reg [15:0] f_word;  // the half word as the ramp wants it
-reg [1:0] f_shown = 2'b00;  // of one and of two clocks ago: the index is that of the watched one
+reg [2:0] f_shown = 3'b000;  // of one, two and three clocks ago: the index is that of the watched one
 reg [15:0] f_shown_word;  // what it was then
 reg [15:0] f_shown_word_q;
+reg [15:0] f_shown_word_qq;
 wire f_watch = !f_recording && !f_queued && f_choose && bus_write && select && f_index == 3'd0
                && write_ramp[DEPTH_LOG2-1:0] == f_slot;
 wire [15:0] f_data = f_half[0] ? bus_data[15:0] : bus_data[31:16];
@@ -157,12 +158,13 @@ always @(posedge clk) begin
     f_ahead <= f_ahead - f_pops;
     if (f_ahead < f_pops) f_queued <= 1'b0;
   end
-  f_shown <= {f_shown[0], f_queued && f_ahead == 0 && half_index == f_half};
+  f_shown <= {f_shown[1:0], f_queued && f_ahead == 0 && half_index == f_half};
   f_shown_word <= f_word;
   f_shown_word_q <= f_shown_word;
+  f_shown_word_qq <= f_shown_word_q;
   if (rst || flush) {f_recording, f_queued} <= 2'b00;
-  if (rst) f_shown <= 2'b00;
-  if (f_shown[1]) half_as_written : assert (half == f_shown_word_q);
+  if (rst) f_shown <= 3'b000;
+  if (f_shown[2]) half_as_written : assert (half == f_shown_word_qq);
 end
 
 `ifdef INVARIANTS
@@ -199,7 +201,8 @@ always @(posedge clk)
       assert (f_memory_word == f_word || (f_written && f_half[3:1] == 4));
     if (f_recording && write_low && f_half[3:1] == index && !f_half[0]) assert (f_memory_word == f_word);
     if (f_recording && write_low && f_half[3:1] == index && f_half[0]) assert (f_word == bus_data[15:0] ^ {16{invert}});
-    if (f_shown[0]) assert (word == f_shown_word);
+    if (f_shown[1]) assert (word == f_shown_word_q);
+    if (write_low) assert (invert == (index == 3'd2 || (is_mirror && index >= 3'd3)));
     if (f_queued) begin
       assert (f_memory_word == f_word);
       assert (f_ahead < f_ramps && f_slot == read_ramp[DEPTH_LOG2-1:0] + f_ahead[DEPTH_LOG2-1:0]);
