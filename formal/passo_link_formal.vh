@@ -189,7 +189,8 @@ always @(posedge clk)
       assert (length == f_length && bus_push == f_is_push && is_read == (f_header[31:28] == OPERATION_READ));
     end
     if ((in_payload || in_crc || in_ack) && verdict_ok)
-      assert (is_read ? f_length != 8'd0 && f_length <= 8'd60 : f_header_fits && (!f_objection || (answer_came && objects)));
+      assert (is_read ? f_length != 8'd0 && f_length <= 8'd60 :
+                        f_header_fits && (!f_objection || (answer_came && objects)));
     if (in_payload) begin
       assert (f_has_payload);
       assert (f_words == {1'b0, index} + 9'd1 + {8'd0, f_busy});
