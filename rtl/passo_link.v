@@ -255,23 +255,23 @@ module passo_link (
   end
 
   always @(posedge clk) begin
-    act         <= count == COUNT_ACT - 7'd1 && !begin_rest && !frame_breaks;
-    load        <= count == COUNT_LOAD || count == COUNT_LOAD + 7'd1;
-    load_ends   <= count == COUNT_LOADED - 7'd2;
-    answered    <= in_read && load_ends && !frame_breaks;
-    first_word  <= index == 8'd0;
-    all_words   <= index == length && !act;
-    put         <= in_count && (count == COUNT_ACT - 7'd1 || count == COUNT_TURN + 7'd15);
-    replies     <= in_ack | in_read | in_sum;
-    bus_frame   <= act & (in_header | in_ack);
-    bus_check   <= act & in_payload;
-    bus_write   <= in_replay && count == COUNT_LOADED;
-    bus_read    <= in_read && count == COUNT_LOAD && !frame_end;
-    answer_due  <= bus_check;
+    act <= count == COUNT_ACT - 7'd1 && !begin_rest && !frame_breaks;
+    load <= (count == COUNT_LOAD && !(in_replay && all_words)) || (count == COUNT_LOAD + 7'd1 && !begin_rest);
+    load_ends <= count == COUNT_LOADED - 7'd2;
+    answered <= in_read && load_ends && !frame_breaks;
+    first_word <= index == 8'd0;
+    all_words <= index == length && !act;
+    put <= in_count && (count == COUNT_ACT - 7'd1 || count == COUNT_TURN + 7'd15);
+    replies <= in_ack | in_read | in_sum;
+    bus_frame <= act & (in_header | in_ack);
+    bus_check <= act & in_payload;
+    bus_write <= in_replay && count == COUNT_LOADED;
+    bus_read <= in_read && count == COUNT_LOAD && !frame_end;
+    answer_due <= bus_check;
     answer_came <= answer_due;
-    answer      <= bus_claim ? bus_refusal : VERDICT_UNKNOWN_ADDRESS;
-    objects     <= !bus_claim || bus_refusal != VERDICT_OK;
-    crc_wrong   <= !in_header && (crc_wrong || (in_crc && turn && crc_top != bus_data[31]));
+    answer <= bus_claim ? bus_refusal : VERDICT_UNKNOWN_ADDRESS;
+    objects <= !bus_claim || bus_refusal != VERDICT_OK;
+    crc_wrong <= !in_header && (crc_wrong || (in_crc && turn && crc_top != bus_data[31]));
 
     if (in_header && act) begin
       is_read  <= header_is_read;
