@@ -57,9 +57,8 @@ module passo_path (
     if (advance) phase_low <= phase_low_sum[23:0];
     phase_low_carry <= advance & phase_low_sum[24];
     if (advance_q) phase_high <= phase_high_sum[23:0];
-    substep <= phase_high_sum[24];
+    substep <= pauses ? 1'b0 : phase_high_sum[24];
     pauses  <= ~advance;
-    if (pauses) substep <= 1'b0;
     if (rst || restart) begin
       advance_q       <= 1'b0;
       phase_low       <= 24'd0;
