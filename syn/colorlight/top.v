@@ -7,11 +7,11 @@
 
 module top #(
   parameter AXES           = 6,
-  parameter CLOCK_HZ       = 100_000_000,
+  parameter CLOCK_HZ       = 150_000_000,
   parameter STEPS_REGISTER = 1,
   parameter CLKI_DIV       = 1,
-  parameter CLKFB_DIV      = 4,
-  parameter CLKOP_DIV      = 6
+  parameter CLKFB_DIV      = 6,
+  parameter CLKOP_DIV      = 4
 ) (
   input  wire            oscillator,
   input  wire            spi_sclk,
