@@ -58,10 +58,10 @@ static struct passo_channel_wires gather_wires(
 
 	wires.substep_taken = channel->path.substep && channel->line.active;
 	wires.line_done = wires.substep_taken && channel->line.on_last;
-	wires.turn = wires.line_done && channel->line_queue.endless && !channel->line_queue.last;
-	wires.take = wires.prepare
-	          || (wires.line_done && !channel->line_queue.endless && !channel->line_queue.last
-	              && channel->line_queue.next_valid);
+	const struct passo_line_queue *queue = &channel->line_queue;
+	const bool goes_on = wires.line_done && !queue->last;
+	wires.turn = goes_on && queue->endless;
+	wires.take = wires.prepare || (goes_on && !queue->endless && queue->next_valid);
 	return wires;
 }
 

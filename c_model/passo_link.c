@@ -10,7 +10,7 @@ enum {
 	COUNT_LOAD = 27,
 	COUNT_STROBE = 28,
 	COUNT_ANSWER = 30,
-	COUNT_LOADED = 31, /* of a replay: COUNT_LOAD */
+	COUNT_LOADED = 31,
 	COUNT_TURN = 32,
 	COUNT_TURNED = 63,
 	COUNT_ACT = 65,
@@ -199,6 +199,7 @@ static void do_step(struct passo_link *link, const struct passo_link_wires *wire
 			end_acknowledge(link);
 		break;
 	case PASSO_LINK_REPLAY:
+		/* a word is there when the next one begins to be loaded */
 		link->bus.write = was->count == COUNT_LOAD && was->index != 0u;
 		if (was->count == COUNT_LOADED - 1) {
 			link->index++;
