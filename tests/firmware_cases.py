@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from passo.build import Parameters
-from passo.moves import MoveFile, read_moves
+from passo.move_file import read_moves
+from passo.moves import MoveFile
 from passo.plan import Plan, PlanError, plan_move
 from passo.stm32.lines import read_toml
 

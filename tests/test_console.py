@@ -16,7 +16,8 @@ import numpy as np
 import pytest
 from passo.build import Parameters
 from passo.engine import model_engine, rtl_engine
-from passo.moves import MoveFile, MoveFileError, q32, read_moves
+from passo.move_file import read_moves
+from passo.moves import MoveFile, MoveFileError, q32
 from passo.native import console, ffi
 from passo.plan import plan_file
 from passo.run import execute, open_engine

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 from passo.cli import main
-from passo.moves import MoveBySpeed, MoveFileError, MoveInTime, PinTiming, read_moves
+from passo.move_file import read_moves
+from passo.moves import MoveBySpeed, MoveFileError, MoveInTime, PinTiming
 from passo.toolchain import paths
 
 CLOCK = "clock_hz = 16_000_000\n"

@@ -6,10 +6,11 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from passo import cli, moves
+from passo import cli, move_file
 from passo.build import Parameters
 from passo.host import load_table
-from passo.moves import MoveFileError, read_moves
+from passo.move_file import read_moves
+from passo.moves import MoveFileError, MoveTurn
 from passo.plan import plan_file, table_of
 from passo.shape import check, sample, write_table
 from passo.toolchain import paths
@@ -40,7 +41,7 @@ def move_of(form: str, more: str = "") -> str:
 
 
 def test_all_forms_are_tried() -> None:
-    assert list(FORMS) == list(moves.FORMS)
+    assert list(FORMS) == list(move_file.FORMS)
 
 
 @pytest.mark.parametrize("form", FORMS)
@@ -59,7 +60,7 @@ def test_every_form_is_planned_and_run(tmp_path: Path, form: str) -> None:
 def test_forms_are_read_exactly(tmp_path: Path) -> None:
     text = CLOCK + move_of("turn") + move_of("sigmoid") + move_of("straight", "jerk = [1, 0.1]\n")
     turn, sigmoid, straight = read_moves(write(tmp_path, text)).moves
-    assert turn == moves.MoveTurn(2, 1, 200, Fraction(-181, 2), Fraction(120), Fraction(0), Fraction(9000))
+    assert turn == MoveTurn(2, 1, 200, Fraction(-181, 2), Fraction(120), Fraction(0), Fraction(9000))
     assert turn.steps == (0, -50) and turn.profile == "linear"
     assert sigmoid.alpha == Fraction(13, 4)
     assert sigmoid.decelerate_time == sigmoid.accelerate_time == Fraction(1, 100)

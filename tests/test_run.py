@@ -15,7 +15,7 @@ from passo import registers as r
 from passo.build import Parameters, waves_possible
 from passo.engine import EVENT, DifferenceError, PairEngine, first_difference, model_engine, rtl_engine
 from passo.link import Link, LinkError, RefusedError
-from passo.moves import read_moves
+from passo.move_file import read_moves
 from passo.plan import plan_file
 from passo.registers import Verdict
 from passo.run import execute, open_engine, parameters_for

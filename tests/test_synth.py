@@ -200,11 +200,12 @@ def test_report_page_and_readme(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr(pages, "README", readme)
     monkeypatch.setattr(pages, "PAGE", page)
     pages.write(made_up(fits=True))
-    assert "A further axis costs 500 LC, 100 FF and 0 BRAM" in page.read_text()
+    costs = "axis 500 LC, 100 FF, 0 BRAM; channel of one axis 500 LC"
+    assert costs in page.read_text() and f"* {DEVICES['hx8k'].title}: {costs}" in readme.read_text()
     assert all(device.title in page.read_text() for device in DEVICES.values())
     text = readme.read_text()
     assert text.startswith(f"before\n{pages.BEGIN}\n| FPGA |") and text.endswith(f"{pages.END}\nafter\n")
-    assert "old" not in text and "100.0 MHz" in text and "| yes |" in text
+    assert "old" not in text and "| 100.0, 90.0, 110.0 | 100.0 MHz |" in text and "| yes |" in text
     pages.write(made_up(fits=False))
     assert "does not fit" in page.read_text() and "does not fit" in readme.read_text()
     assert "| yes |" not in readme.read_text()

@@ -12,7 +12,8 @@ from passo.console import progress
 from passo.engine import DifferenceError
 from passo.frame import FrameError
 from passo.link import LinkError
-from passo.moves import AXES_MAX, MoveFileError, read_moves
+from passo.move_file import read_moves
+from passo.moves import AXES_MAX, MoveFileError
 from passo.plan import plan_file
 from passo.run import ENGINES, Run, RunError, execute, open_engine, parameters_for
 from passo.shape import ShapeError

@@ -4,7 +4,7 @@
 import sys
 
 from passo.console import console, progress, table
-from passo.moves import read_moves
+from passo.move_file import read_moves
 from passo.plan import plan_file
 from passo.plot import plot_motion, plot_overview
 from passo.report import summarize, write_json, write_pulses

@@ -44,7 +44,7 @@ class Plan:
     move: Move
     c: Any
     tick_log2: int
-    table: m.Table = ()  # what the sigmoid's bank must hold; empty: what is there after reset, or anything
+    table: m.Points = ()  # what the sigmoid's bank must hold; empty: what is there after reset, or anything
 
     @property
     def line(self) -> Any:
@@ -83,7 +83,7 @@ def plan_move(move: Move, clock_hz: int, parameters: Parameters) -> Plan:
     return Plan(move, plan, parameters.tick_log2, table)
 
 
-def sigmoid_table(alpha: int) -> m.Table:
+def sigmoid_table(alpha: int) -> m.Points:
     """The points of the sigmoid for an alpha in 1/4096."""
     table = ffi().new("uint16_t[]", POINTS)
     if planner().passo_sigmoid_table(alpha, table):
@@ -133,7 +133,7 @@ def plan_file(file: MoveFile, parameters: Parameters) -> list[Plan]:
     return plans
 
 
-def table_of(plans: list[Plan]) -> m.Table:
+def table_of(plans: list[Plan]) -> m.Points:
     """What the sigmoid's bank must hold before this motion; empty: what is there after reset."""
     return next((plan.table for plan in plans if plan.table), ())
 

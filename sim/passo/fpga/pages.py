@@ -39,7 +39,9 @@ def write(report: dict[str, Any]) -> None:
         ),
     }
     PAGE.write_text(template.format(**parts), encoding="utf-8")
-    README.write_text(_with_block(README.read_text(encoding="utf-8"), parts["goals"]), encoding="utf-8")
+    costs = "\n".join(f"* {DEVICES[name].title}: {_costs(report, name)}." for name in DEVICES)
+    block = f"{parts['goals']}\n\nWhat one more costs:\n\n{costs}"
+    README.write_text(_with_block(README.read_text(encoding="utf-8"), block), encoding="utf-8")
 
 
 def show(report: dict[str, Any]) -> None:
@@ -90,7 +92,7 @@ def _size(row: Row) -> str:
 
 
 def _goals(report: dict[str, Any]) -> tuple[Sequence[str], list[list[str]]]:
-    header = ("FPGA", "axes", "f_max, median of 3", "goal", "size", "goal", "BRAM", "all met")
+    header = ("FPGA", "axes", "MHz by seed", "median", "goal", "size", "goal", "BRAM", "all met")
     rows = []
     for goal in report["goals"]:
         device = DEVICES[goal["device"]]
@@ -104,6 +106,7 @@ def _goals(report: dict[str, Any]) -> tuple[Sequence[str], list[list[str]]]:
             [
                 device.title,
                 str(goal["axes"]),
+                ", ".join(map(_mhz, row["f_max"])) if row["fits"] else NONE,
                 f"{reached:.1f} MHz" if row["fits"] else "does not fit",
                 f"{goal['mhz']} MHz",
                 f"{row['size']:,} {unit}",
@@ -138,22 +141,23 @@ def _sizes(report: dict[str, Any], name: str) -> tuple[Sequence[str], list[list[
 
 
 def _device(report: dict[str, Any], name: str) -> str:
-    device = DEVICES[name]
-    unit = device.family.size_unit
+    sizes = _markdown(*_sizes(report, name))
+    return f"### {DEVICES[name].title}\n\n{sizes}\n\nOne more: {_costs(report, name)}."
+
+
+def _costs(report: dict[str, Any], name: str) -> str:
+    """Of a further axis and of a further channel."""
+    unit = DEVICES[name].family.size_unit
     one, eight = (_find(report, name, 1, axes) for axes in (1, 8))
     four = _find(report, name, 4, 1)
-    costs = (
-        f"A further axis costs {_cost(one, eight, 7, unit)}, a further channel of one axis"
-        f" {_cost(one, four, 3, unit)}."
-    )
-    return f"### {device.title}\n\n{_markdown(*_sizes(report, name))}\n\n{costs}"
+    return f"axis {_cost(one, eight, 7, unit)}; channel of one axis {_cost(one, four, 3, unit)}"
 
 
 def _cost(small: Row, large: Row, steps: int, unit: str) -> str:
     def of(column: str) -> float:
         return (large[column] - small[column]) / steps
 
-    return f"{of('size'):.0f} {unit}, {of('ff'):.0f} FF and {of('bram'):.3g} BRAM"
+    return f"{of('size'):.0f} {unit}, {of('ff'):.0f} FF, {of('bram'):.3g} BRAM"
 
 
 def _split(report: dict[str, Any], name: str) -> str:

@@ -11,7 +11,8 @@ import numpy as np
 
 from passo.build import Parameters
 from passo.engine import EVENT, Engine, model_engine, rtl_engine
-from passo.moves import MoveFile, read_moves
+from passo.move_file import read_moves
+from passo.moves import MoveFile
 from passo.plan import Plan, plan_move
 from passo.run import execute, parameters_for
 from passo.stm32.board import Board, Motion, motions

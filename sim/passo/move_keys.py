@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: MIT
+"""Values in a move file: a reader takes a table and a key and returns the checked value, or BadValueError."""
+
+from collections.abc import Callable
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any
+
+from passo.moves import AXES_MAX, PROFILES, USER, Points
+
+STEPS_MAX = 2**30 - 1  # of an axis, the longest line
+WHOLE_MAX = 2**32 - 1
+NUMBER_MAX = 2**32 - 1  # seconds, steps/s, steps/s^2
+SIGNED_MAX = 2**31 - 1  # degrees, millimetres
+DECIMALS_MAX = 30
+
+Table = dict[str, Any]
+Reader = Callable[[Table, str], Any]
+
+
+class BadValueError(ValueError):
+    """A reason without its place."""
+
+
+def check_known(table: Table, keys: tuple[str, ...]) -> None:
+    """Raise BadValueError if a table has a key that is not one of `keys`."""
+    for key in table:
+        if key not in keys:
+            raise BadValueError(f"unknown key {shown(key)}; known are {', '.join(keys)}")
+
+
+def shown(value: Any) -> str:
+    """A value as an error message can show it: short and on one line."""
+    try:
+        text = str(value).lower() if isinstance(value, bool) else repr(value)
+    except ValueError:  # Python refuses to print very long numbers
+        return "a very long number"
+    return text if len(text) <= 40 else text[:37] + "..."
+
+
+def within(place: str, check: Callable[[], Any]) -> Any:
+    """What `check` returns; its BadValueError is raised with the place."""
+    try:
+        return check()
+    except BadValueError as error:
+        raise BadValueError(f"{place}: {error}") from None
+
+
+def _get(table: Table, key: str) -> Any:
+    if key not in table:
+        raise BadValueError(f"{key} is missing")
+    return table[key]
+
+
+def read_integer(table: Table, key: str, low: int, high: int) -> int:
+    """A whole number, low .. high."""
+    value = _get(table, key)
+    if type(value) is not int:
+        raise BadValueError(f"{key} must be a whole number, not {shown(value)}")
+    if not low <= value <= high:
+        raise BadValueError(f"{key} must be {low} to {high}")
+    return value
+
+
+def read_number(table: Table, key: str, default: Fraction | None = None) -> Fraction:
+    """A number that is not negative, exactly as it is written."""
+    if default is not None and key not in table:
+        return default
+    value = _finite(table, key)
+    if value < 0:
+        raise BadValueError(f"{key} must not be negative")
+    return _fraction(key, value, NUMBER_MAX)
+
+
+def read_signed(table: Table, key: str) -> Fraction:
+    """A number, exactly as it is written."""
+    return _fraction(key, _finite(table, key), SIGNED_MAX)
+
+
+def _finite(table: Table, key: str) -> int | Decimal:
+    value = _get(table, key)
+    if type(value) is not int and type(value) is not Decimal:
+        raise BadValueError(f"{key} must be a number, not {shown(value)}")
+    if type(value) is Decimal and not value.is_finite():
+        raise BadValueError(f"{key} must be finite, not {value}")
+    return value
+
+
+def _fraction(key: str, value: int | Decimal, largest: int) -> Fraction:
+    if value > largest:
+        raise BadValueError(f"{key} must be at most {largest}")
+    if value < -largest:
+        raise BadValueError(f"{key} must be at least -{largest}")
+    if type(value) is Decimal and value.as_tuple().exponent < -DECIMALS_MAX:
+        raise BadValueError(f"{key} has more than {DECIMALS_MAX} decimals")
+    return Fraction(value)
+
+
+def read_number_or(default: int | str) -> Reader:
+    """A number with a default, which may be another key's number."""
+
+    def read(table: Table, key: str) -> Fraction:
+        if key in table or not isinstance(default, str):
+            return read_number(table, key, Fraction(0 if isinstance(default, str) else default))
+        return read_number(table, default)
+
+    return read
+
+
+def read_steps(table: Table, key: str) -> tuple[int, ...]:
+    """Steps of each axis, with the direction as sign."""
+    steps = _get(table, key)
+    if not isinstance(steps, list) or any(type(n) is not int for n in steps):
+        raise BadValueError("steps must be a list of whole numbers, one per axis")
+    if not 1 <= len(steps) <= AXES_MAX:
+        raise BadValueError(f"steps has {len(steps)} axes, 1 to {AXES_MAX} are possible")
+    for axis, n in enumerate(steps):
+        if abs(n) > STEPS_MAX:
+            raise BadValueError(f"axis {axis} has too many steps, at most {STEPS_MAX} are possible")
+    return tuple(steps)
+
+
+def read_profile(table: Table, key: str, profiles: tuple[str, ...] = PROFILES) -> str:
+    """Name of one of the profiles."""
+    profile = _get(table, key)
+    if profile not in profiles:
+        raise BadValueError(f"profile must be one of {', '.join(profiles)}, not {shown(profile)}")
+    return profile
+
+
+def read_profile_or_user(table: Table, key: str) -> str:
+    """Also a shape of the user's own."""
+    return read_profile(table, key, (*PROFILES, USER))
+
+
+def read_table_file(table: Table, key: str) -> str | Points:
+    """Name of the file with a user's shape."""
+    if table.get("profile") != USER:
+        if key in table:
+            raise BadValueError(f'{key} needs profile = "{USER}"')
+        return ()
+    name = _get(table, key)
+    if not isinstance(name, str) or not name:
+        raise BadValueError(f"{key} must be the name of a file, not {shown(name)}")
+    return name
+
+
+def read_axis(table: Table, key: str) -> int:
+    """Number of an axis, 0 by default."""
+    return read_integer(table, key, 0, AXES_MAX - 1) if key in table else 0
+
+
+def read_axes(table: Table, key: str) -> int:
+    """How many axes there are, by default as few as the key `axis` allows."""
+    axis = read_axis(table, "axis")
+    return read_integer(table, key, axis + 1, AXES_MAX) if key in table else axis + 1
+
+
+def read_positive(table: Table, key: str) -> int:
+    """A whole number above 0."""
+    return read_integer(table, key, 1, WHOLE_MAX)
+
+
+def read_per_axis(table: Table, key: str) -> tuple[Fraction, ...]:
+    """One number for all axes, or a list."""
+    axes = len(read_distance(table, "distance"))
+    value = _get(table, key)
+    if not isinstance(value, list):
+        return (read_number(table, key),) * axes
+    if len(value) != axes:
+        raise BadValueError(f"{key} has {len(value)} axes, but distance has {axes}")
+    return tuple(read_number({key: item}, key) for item in value)
+
+
+def read_per_axis_or_0(table: Table, key: str) -> tuple[Fraction, ...]:
+    """The same with 0 as default."""
+    return read_per_axis({key: 0, **table}, key)
+
+
+def read_distance(table: Table, key: str) -> tuple[Fraction, ...]:
+    """Millimetres of each axis."""
+    value = _get(table, key)
+    if not isinstance(value, list) or not 1 <= len(value) <= AXES_MAX:
+        raise BadValueError(f"{key} must be a list of 1 to {AXES_MAX} numbers, one per axis")
+    return tuple(read_signed({key: item}, key) for item in value)
