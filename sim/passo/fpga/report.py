@@ -145,13 +145,15 @@ def _place(design: Design, seed: int) -> Placed:
 
 
 def _words(placed: Placed) -> str:
-    return f"{placed.main_clock[0]:.1f} MHz" if placed.fits else "does not fit"
+    if placed.fits:
+        return f"{placed.main_clock[0]:.1f} MHz"
+    return "does not fit" if placed.too_large else "no place or no route"
 
 
 def _row(design: Design, key: tuple[str, tuple[int, int]], placed: Sequence[Placed]) -> dict[str, Any]:
     device, (channels, axes) = key
     made = cells(design)
-    # a seed with which nextpnr finds no place for some cell counts as 0 MHz
+    # a seed with which nextpnr finds no place for some cell, or no end of routing, counts as 0 MHz
     reached = [run.main_clock[0] if run.fits else 0.0 for run in placed]
     median = statistics.median(reached)
     return {
