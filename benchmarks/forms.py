@@ -15,7 +15,7 @@ from passo.moves import (
     MoveInTime,
     MoveJerk,
     MoveStraight,
-    Table,
+    Points,
 )
 from passo.plan import plan_move
 from passo.shape import sample
@@ -26,7 +26,7 @@ USERS_SHAPE = "quintic"
 MICRO = 1_000_000
 
 
-def quintic() -> Table:
+def quintic() -> Points:
     """The points of the user's shape."""
     return sample(lambda u: 6 * u**5 - 15 * u**4 + 10 * u**3)
 
