@@ -30,7 +30,7 @@ setup: ## Install whatever is missing; every other target calls it by itself.
 
 test: lint ## Check the sources, then run all tests.
 	@tools/setup.sh yosys formal firmware
-	@$(BIN)/pytest
+	@$(BIN)/pytest -n auto --maxprocesses 8
 
 demo: setup ## Run the demonstration.
 	@$(BIN)/passo demo
