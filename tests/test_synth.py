@@ -4,10 +4,9 @@
 import importlib.util
 import re
 from pathlib import Path
-from subprocess import TimeoutExpired
 
 import pytest
-from passo.fpga import flow, pages, report, synth
+from passo.fpga import flow, pages, report, synth, tools
 from passo.fpga.boards import COMMON, Board, boards
 from passo.fpga.devices import DEVICES, ECP5, GOWIN, ICE40
 from passo.fpga.flow import CROWDED, Placed, _sites, count
@@ -223,16 +222,27 @@ def test_unknown_device_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
     assert "no device 'hx1k'; choose of hx8k" in capsys.readouterr().err
 
 
-def test_seed_that_never_ends_is_given_up(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+ROUTING = "Info:    {} |  1430061        938 | 1000     0 |     11633|       0.36     537.78|\n"
+
+
+@pytest.mark.parametrize(
+    ("words", "seconds"),
+    [("Info: placing\n", 0.3), (ROUTING.format(1000) * 99 + ROUTING.format(flow.ROUTER_STEPS + 1), 600)],
+    ids=["time", "router"],
+)
+def test_seed_that_never_ends_is_given_up(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, words: str, seconds: float
+) -> None:
     """It does not fit, is not too large, and another seed may be tried."""
     (tmp_path / flow.NETLIST).write_text("{}")
-
-    def never_ends(program: str, _: object, folder: Path, log: str, seconds: int) -> int:
-        (folder / log).write_text("Info: routing\n")
-        raise TimeoutExpired(program, seconds)
-
+    program = tmp_path / "nextpnr"
+    program.write_text(f"#!/bin/sh\ncat {tmp_path}/words\nexec sleep 600\n")
+    program.chmod(0o755)
+    (tmp_path / "words").write_text(words)
     monkeypatch.setattr(flow, "synthesize", lambda _: tmp_path)
-    monkeypatch.setattr(flow, "run", never_ends)
+    monkeypatch.setattr(flow, "PLACE_SECONDS", seconds)
+    monkeypatch.setattr(tools, "POLL_SECONDS", 0.1)
+    monkeypatch.setattr(tools, "_path", lambda _: str(program))
     monkeypatch.setattr(flow, "versions", lambda _: "")  # the tool need not be there
     monkeypatch.setattr(flow, "FOLDER", tmp_path)
     placed = flow.place(flow.Design("endless", DEVICES["hx8k"]), 1, 120, {})

@@ -6,11 +6,11 @@ import json
 import re
 import shutil
 import tempfile
+import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from pathlib import Path
-from subprocess import TimeoutExpired
 from typing import Any
 
 from passo.fpga import block_ram
@@ -21,7 +21,10 @@ from passo.toolchain import paths
 NETLIST, CELLS, PLACED, REPORT = "netlist.json", "cells.json", "placed", "report.json"
 MOVED = "moved"  # how many registers went into block RAMs
 CONSTRAINTS = "clocks.sdc"
-PLACE_SECONDS = 900  # some seeds never end
+# Some seeds never end: the placer tries all orders, or the router of iCE40 moves one net to and fro for ever.
+PLACE_SECONDS = 900
+ROUTER_STEPS = 200_000  # three times what any routing needed that ended
+LAST_BYTES = 4096  # of a log
 
 # nextpnr says this of a design that it could not place or route although no kind of cell was used up.
 CROWDED = re.compile(r"ERROR: .*([Uu]nable to (find|place|legali)|[Ff]ailed to (place|route|expand)|no Bels)")
@@ -135,15 +138,14 @@ def place(
         if constraints:
             arguments += ["--sdc", CONSTRAINTS]
         arguments += _pin_options(design, netlist, folder, pins)
-        try:
-            fits = run(family.place, arguments, folder, "nextpnr.log", PLACE_SECONDS) == 0
-        except TimeoutExpired:
-            fits = False
-        else:
-            log = (folder / "nextpnr.log").read_text()
-            if not fits and not CROWDED.search(log) and not _too_large(_sites(log)):
-                raise failure(family.place, folder / "nextpnr.log")
-        (folder / "fits").write_text(str(int(fits)))
+        log = folder / "nextpnr.log"
+        deadline = time.monotonic() + PLACE_SECONDS
+        status = run(
+            family.place, arguments, folder, log.name, lambda: time.monotonic() > deadline or _endless(log)
+        )
+        if status and not CROWDED.search(log.read_text()) and not _too_large(_sites(log.read_text())):
+            raise failure(family.place, log)
+        (folder / "fits").write_text(str(int(status == 0)))
 
     inputs = [netlist / NETLIST, *([pins] if pins else [])]
     return _read(device, kept("place", f"{design.name}-seed{seed}", inputs, settings, make))
@@ -203,6 +205,14 @@ def _sites(log: str) -> dict[str, tuple[int, int]]:
     """Used and available places; the last of several tables counts."""
     found = re.findall(r"^Info:\s+(\w+):\s+(\d+)/\s*(\d+)\s+\d+%", log, re.M)
     return {name: (int(used), int(available)) for name, used, available in found}
+
+
+def _endless(log: Path) -> bool:
+    """Whether the router has made more steps than any that ended."""
+    with log.open("rb") as file:
+        file.seek(max(0, log.stat().st_size - LAST_BYTES))
+        steps = re.findall(rb"^Info: +(\d+) \|", file.read(), re.M)
+    return bool(steps) and int(steps[-1]) > ROUTER_STEPS
 
 
 def _too_large(sites: Mapping[str, tuple[int, int]]) -> bool:

@@ -8,7 +8,7 @@ folder of their results and get relative paths only.
 import os
 import subprocess
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
@@ -18,6 +18,7 @@ from passo.toolchain import paths
 
 FOLDER = paths.build / "fpga"
 MESSAGE_LINES = 12  # of a tool's last words
+POLL_SECONDS = 2
 
 # Python package that a program is part of; none of them is there before `tools/setup.sh fpga`.
 PACKAGES = {
@@ -53,21 +54,34 @@ def prepare(programs: Iterable[str]) -> None:
             raise ToolError(f"{program} does not run:\n{done.stderr}")
 
 
-def run(program: str, arguments: Sequence[object], folder: Path, log: str, seconds: int | None = None) -> int:
+def run(
+    program: str,
+    arguments: Sequence[object],
+    folder: Path,
+    log: str,
+    hopeless: Callable[[], bool] = lambda: False,
+) -> int | None:
     """Run a program in `folder` with its words in `log` there; return its exit status.
 
-    Stops it after `seconds` (TimeoutExpired).
+    None if it was stopped, because it did not end and `hopeless`, which is asked every few seconds, said so.
     """
-    with (folder / log).open("w") as file:
-        command = [_path(program), *map(str, arguments)]
-        return subprocess.run(
-            command,
-            cwd=folder,
-            stdout=file,
-            stderr=subprocess.STDOUT,
-            stdin=subprocess.DEVNULL,
-            timeout=seconds,
-        ).returncode
+    command = [_path(program), *map(str, arguments)]
+    with (
+        (folder / log).open("w") as file,
+        subprocess.Popen(
+            command, cwd=folder, stdout=file, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL
+        ) as process,
+    ):
+        try:
+            while process.poll() is None:
+                try:
+                    process.wait(POLL_SECONDS)
+                except subprocess.TimeoutExpired:
+                    if hopeless():
+                        return None
+            return process.returncode
+        finally:
+            process.kill()
 
 
 def check(program: str, arguments: Sequence[object], folder: Path, log: str) -> None:
