@@ -9,7 +9,7 @@ import pytest
 from passo.fpga import flow, pages, report, synth, tools
 from passo.fpga.boards import COMMON, Board, boards
 from passo.fpga.devices import DEVICES, ECP5, GOWIN, ICE40
-from passo.fpga.flow import CROWDED, Placed, _sites, count
+from passo.fpga.flow import CROWDED, Placed, _sites, _too_large, count
 from passo.fpga.pll import PllError, dividers
 from passo.fpga.tools import FOLDER, check, relative
 from passo.toolchain import paths
@@ -149,6 +149,7 @@ def test_what_nextpnr_says_is_understood() -> None:
         "Info: Device utilisation:\nInfo: \t  ICESTORM_LC:  6000/  5280   113%\nInfo: \t SB_IO: 22/ 96 22%\n"
     )
     assert _sites(log) == {"ICESTORM_LC": (6000, 5280), "SB_IO": (22, 96)}
+    assert _too_large(DEVICES["up5k"], _sites(log))
     assert CROWDED.search("ERROR: Unable to place cell 'u_core.x', no BELs remaining to implement")
     assert not CROWDED.search("ERROR: cannot open 'netlist.json'")
 
@@ -225,15 +226,22 @@ def test_unknown_device_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
 ROUTING = "Info:    {} |  1430061        938 | 1000     0 |     11633|       0.36     537.78|\n"
 
 
+SHARED = "Info: \t LUT4:    6736/   8640    77%\nInfo: \t ALU:    2036/   6480    31%\n"
+
+
 @pytest.mark.parametrize(
-    ("words", "seconds"),
-    [("Info: placing\n", 0.3), (ROUTING.format(1000) * 99 + ROUTING.format(flow.ROUTER_STEPS + 1), 600)],
-    ids=["time", "router"],
+    ("device", "words", "seconds", "too_large"),
+    [
+        ("gw1nr-9c", "Info: placing\n", 0.3, False),
+        ("hx8k", ROUTING.format(1000) * 99 + ROUTING.format(flow.ROUTER_STEPS + 1), 600, False),
+        ("gw1nr-9c", SHARED, 600, True),
+    ],
+    ids=["time", "router", "shared_places"],
 )
 def test_seed_that_never_ends_is_given_up(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, words: str, seconds: float
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, device: str, words: str, seconds: float, too_large: bool
 ) -> None:
-    """It does not fit, is not too large, and another seed may be tried."""
+    """It does not fit; another seed may be tried unless the design is too large."""
     (tmp_path / flow.NETLIST).write_text("{}")
     program = tmp_path / "nextpnr"
     program.write_text(f"#!/bin/sh\ncat {tmp_path}/words\nexec sleep 600\n")
@@ -245,5 +253,7 @@ def test_seed_that_never_ends_is_given_up(
     monkeypatch.setattr(tools, "_path", lambda _: str(program))
     monkeypatch.setattr(flow, "versions", lambda _: "")  # the tool need not be there
     monkeypatch.setattr(flow, "FOLDER", tmp_path)
-    placed = flow.place(flow.Design("endless", DEVICES["hx8k"]), 1, 120, {})
-    assert not placed.fits and not placed.too_large
+    pins = tmp_path / "pins"
+    pins.touch()
+    placed = flow.place(flow.Design("endless", DEVICES[device]), 1, 120, {}, pins)
+    assert not placed.fits and placed.too_large == too_large

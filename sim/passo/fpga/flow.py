@@ -24,7 +24,6 @@ CONSTRAINTS = "clocks.sdc"
 # Some seeds never end: the placer tries all orders, or the router of iCE40 moves one net to and fro for ever.
 PLACE_SECONDS = 900
 ROUTER_STEPS = 200_000  # three times what any routing needed that ended
-LAST_BYTES = 4096  # of a log
 
 # nextpnr says this of a design that it could not place or route although no kind of cell was used up.
 CROWDED = re.compile(r"ERROR: .*([Uu]nable to (find|place|legali)|[Ff]ailed to (place|route|expand)|no Bels)")
@@ -140,10 +139,14 @@ def place(
         arguments += _pin_options(design, netlist, folder, pins)
         log = folder / "nextpnr.log"
         deadline = time.monotonic() + PLACE_SECONDS
-        status = run(
-            family.place, arguments, folder, log.name, lambda: time.monotonic() > deadline or _endless(log)
-        )
-        if status and not CROWDED.search(log.read_text()) and not _too_large(_sites(log.read_text())):
+
+        def hopeless() -> bool:
+            words = log.read_text()
+            return time.monotonic() > deadline or _endless(words) or _too_large(device, _sites(words))
+
+        status = run(family.place, arguments, folder, log.name, hopeless)
+        words = log.read_text()
+        if status and not CROWDED.search(words) and not _too_large(device, _sites(words)):
             raise failure(family.place, log)
         (folder / "fits").write_text(str(int(status == 0)))
 
@@ -207,16 +210,20 @@ def _sites(log: str) -> dict[str, tuple[int, int]]:
     return {name: (int(used), int(available)) for name, used, available in found}
 
 
-def _endless(log: Path) -> bool:
+def _endless(log: str) -> bool:
     """Whether the router has made more steps than any that ended."""
-    with log.open("rb") as file:
-        file.seek(max(0, log.stat().st_size - LAST_BYTES))
-        steps = re.findall(rb"^Info: +(\d+) \|", file.read(), re.M)
+    steps = re.findall(r"^Info: +(\d+) \|", log, re.M)
     return bool(steps) and int(steps[-1]) > ROUTER_STEPS
 
 
-def _too_large(sites: Mapping[str, tuple[int, int]]) -> bool:
-    return any(used > there for used, there in sites.values())
+def _used(device: Device, sites: Mapping[str, tuple[int, int]]) -> int:
+    """Of the device's capacity."""
+    return sum(sites[name][0] for name in device.family.sites if name in sites)
+
+
+def _too_large(device: Device, sites: Mapping[str, tuple[int, int]]) -> bool:
+    """Too many of some kind, or of those that share the same places."""
+    return any(used > there for used, there in sites.values()) or _used(device, sites) > device.capacity
 
 
 def _read(device: Device, folder: Path) -> Placed:
@@ -228,8 +235,8 @@ def _read(device: Device, folder: Path) -> Placed:
         sites = {name: (site["used"], site["available"]) for name, site in report["utilization"].items()}
         clocks = {name: (mhz["achieved"], mhz["constraint"]) for name, mhz in report["fmax"].items()}
     bram = next((sites[name][0] for name in ("ICESTORM_RAM", "DP16KD", "BSRAM") if name in sites), 0)
-    used = sum(sites[name][0] for name in device.family.sites if name in sites)
-    return Placed(fits, not fits and _too_large(sites), used, bram, clocks, folder)
+    too_large = not fits and _too_large(device, sites)
+    return Placed(fits, too_large, _used(device, sites), bram, clocks, folder)
 
 
 def kept(
