@@ -224,8 +224,6 @@ def test_unknown_device_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 ROUTING = "Info:    {} |  1430061        938 | 1000     0 |     11633|       0.36     537.78|\n"
-
-
 SHARED = "Info: \t LUT4:    6736/   8640    77%\nInfo: \t ALU:    2036/   6480    31%\n"
 
 

@@ -18,7 +18,6 @@ from passo.move_keys import (
     read_axes,
     read_axis,
     read_distance,
-    read_integer,
     read_number,
     read_number_or,
     read_per_axis,
@@ -35,7 +34,6 @@ from passo.move_keys import (
 from passo.moves import Move, MoveFile, MoveFileError, PinTiming
 from passo.shape import ShapeError, read_table
 
-CLOCK_HZ_MAX = 2**32 - 1
 PIN_CLOCKS_MAX = 65535
 PIN_SECONDS = Fraction(1, 1_000_000)  # the default of every pin timing
 
@@ -65,7 +63,7 @@ def read_moves(path: Path) -> MoveFile:
 
 def _file(path: Path, data: Table) -> MoveFile:
     check_known(data, FILE_KEYS)
-    clock_hz = read_integer(data, "clock_hz", 1, CLOCK_HZ_MAX)
+    clock_hz = read_positive(data, "clock_hz")
     pins = data.get("pins", {})
     if not isinstance(pins, dict):
         raise BadValueError("pins must be a table: [pins]")

@@ -100,9 +100,9 @@ def read_number_or(default: int | str) -> Reader:
     """A number with a default, which may be another key's number."""
 
     def read(table: Table, key: str) -> Fraction:
-        if key in table or not isinstance(default, str):
-            return read_number(table, key, Fraction(0 if isinstance(default, str) else default))
-        return read_number(table, default)
+        if isinstance(default, str):
+            return read_number(table, key if key in table else default)
+        return read_number(table, key, Fraction(default))
 
     return read
 

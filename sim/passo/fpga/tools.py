@@ -73,13 +73,12 @@ def run(
         ) as process,
     ):
         try:
-            while process.poll() is None:
+            while True:
                 try:
-                    process.wait(POLL_SECONDS)
+                    return process.wait(POLL_SECONDS)
                 except subprocess.TimeoutExpired:
                     if hopeless():
                         return None
-            return process.returncode
         finally:
             process.kill()
 
