@@ -47,7 +47,7 @@ static bool lines_settled(const struct passo_channel *channel)
 	for (unsigned i = 0; i < channel->axes; i++)
 		if (queue->steps[i] != current->steps[i])
 			return false;
-	return queue->next_valid == (queue->next_line != queue->write_line)
+	return !queue->freed_late && queue->next_valid == (queue->next_line != queue->write_line)
 	    && queue->directions == current->directions;
 }
 
@@ -100,8 +100,9 @@ static uint64_t timescale_quiet(const struct passo_channel *channel, bool moving
 	const bool steady = timescale->enable ? timescale->rate == PASSO_RATE_ONE : timescale->rate == 0u;
 	if (!steady || timescale->still)
 		return 0;
-	return timescale->goal == target && timescale->slew == slew && !timescale->down ? UINT64_MAX
-	                                                                                : clocks_to_slew;
+	return timescale->goal == target && timescale->slew == slew && !timescale->down && !timescale->stops
+	         ? UINT64_MAX
+	         : clocks_to_slew;
 }
 
 static uint64_t ramp_quiet(const struct passo_ramp_unit *ramp)
@@ -118,7 +119,7 @@ static bool motion_settled(const struct passo_channel *channel, const struct pas
 {
 	const struct passo_motion *motion = &channel->motion;
 
-	if (motion->stopping || motion->stop_due || motion->settling != 0u
+	if (motion->stopping || motion->stop_due || motion->settling != 0u || motion->aborted != 0u
 	    || motion->rate_was_zero != (channel->timescale.rate == 0u))
 		return false;
 	switch (motion->state) {
@@ -138,6 +139,17 @@ static bool motion_settled(const struct passo_channel *channel, const struct pas
 	}
 }
 
+/* Whether the channel is at rest is known. */
+static bool rest_settled(const struct passo_channel *channel)
+{
+	const bool occupied = passo_channel_occupied(channel);
+	bool at_rest = !occupied;
+
+	for (unsigned i = 0; i < channel->axes; i++)
+		at_rest = at_rest && channel->axis[i].quiet;
+	return channel->occupied_before == occupied && channel->at_rest == at_rest;
+}
+
 /* Clocks for which everything in the channel is quiet, but for what a running profile moves. */
 static uint64_t surroundings_quiet(
     const struct passo_channel *channel, const struct passo_channel_inputs *inputs, uint64_t clocks_to_slew)
@@ -145,7 +157,7 @@ static uint64_t surroundings_quiet(
 	const struct passo_line_unit *line = &channel->line;
 	const bool moving = channel->motion.state == PASSO_STATE_RUN;
 
-	if (!motion_settled(channel, inputs) || channel->positions.snapshot_waits
+	if (!motion_settled(channel, inputs) || !rest_settled(channel) || channel->positions.snapshot_waits
 	    || !commands_settled(channel, inputs->bus) || line->slot_load || line->slot_load_q
 	    || line->underrun || !ramps_settled(&channel->ramp_queue, inputs->parameters)
 	    || !lines_settled(channel))
@@ -388,7 +400,7 @@ static uint64_t skip_ticks(
 static bool same_inputs(const struct passo_inputs *a, const struct passo_inputs *b)
 {
 	return a->spi_sclk == b->spi_sclk && a->spi_mosi == b->spi_mosi && a->spi_cs_n == b->spi_cs_n
-	    && a->sync == b->sync;
+	    && a->sync == b->sync && a->rst == b->rst;
 }
 
 static bool link_side_quiet(const struct passo_core *core, const struct passo_inputs *inputs)
@@ -423,7 +435,7 @@ uint64_t passo_core_advance(struct passo_core *core, const struct passo_inputs *
 	unsigned moving = channels; /* the only one that moves */
 	uint64_t clocks = limit;
 
-	if (clocks == 0u || !link_side_quiet(core, inputs))
+	if (clocks == 0u || inputs->rst || !link_side_quiet(core, inputs))
 		return 0;
 	for (unsigned i = 0; i < channels; i++) {
 		const struct passo_channel_inputs channel_inputs = inputs_of(core, i);

@@ -6,17 +6,43 @@
 
 enum { PLACES = 4, LOST_MAX = 15 };
 
-void passo_axis_reset(struct passo_axis *axis)
+void passo_axis_reset(struct passo_axis *axis, bool step, bool dir, bool enable)
 {
 	*axis = (struct passo_axis){
 	    .settings =
 		{
+		    .step_inverted = step,
+		    .direction_inverted = dir,
+		    .enable_inverted = enable,
 		    .step_high = PASSO_AXIS_STEP_TIMING_STEP_HIGH_RESET,
 		    .step_low = PASSO_AXIS_STEP_TIMING_STEP_LOW_RESET,
 		    .dir_setup = PASSO_AXIS_DIR_TIMING_DIR_SETUP_RESET,
 		    .dir_hold = PASSO_AXIS_DIR_TIMING_DIR_HOLD_RESET,
 		},
+	    .step_pin = step,
+	    .dir_pin = dir,
+	    .enable_pin = enable,
 	};
+	const struct passo_axis configured = *axis;
+	passo_axis_restart(axis, &configured);
+}
+
+void passo_axis_restart(struct passo_axis *axis, const struct passo_axis *before)
+{
+	const struct passo_axis_settings *settings = &before->settings;
+
+	*axis = (struct passo_axis){
+	    .settings = *settings,
+	    .state = PASSO_AXIS_PULSE,
+	    .timing_changed = true,
+	    .unsettled = true,
+	    .step = before->step_pin != settings->step_inverted,
+	    .dir = before->dir_pin != settings->direction_inverted,
+	    .step_pin = before->step_pin,
+	    .dir_pin = before->dir_pin,
+	    .enable_pin = settings->enable != settings->enable_inverted,
+	};
+	axis->settings.enable = false;
 }
 
 void passo_axis_settings_write(struct passo_axis_settings *settings, uint8_t address, uint32_t data)
@@ -26,7 +52,7 @@ void passo_axis_settings_write(struct passo_axis_settings *settings, uint8_t add
 
 	switch (address) {
 	case PASSO_AXIS_PINS:
-		settings->enable = (data & 1u) != 0u;
+
 		settings->step_inverted = (data & 2u) != 0u;
 		settings->direction_inverted = (data & 4u) != 0u;
 		settings->enable_inverted = (data & 8u) != 0u;
@@ -39,6 +65,9 @@ void passo_axis_settings_write(struct passo_axis_settings *settings, uint8_t add
 	case PASSO_AXIS_DIR_TIMING:
 		settings->dir_setup = high;
 		settings->dir_hold = low;
+		break;
+	case PASSO_AXIS_ENABLE:
+		settings->enable = (data & 1u) != 0u;
 		break;
 	default:
 		break;
@@ -101,36 +130,45 @@ void passo_axis_clock(struct passo_axis *axis, const struct passo_axis_wires *wi
 	const enum passo_axis_state state = axis->state;
 	const bool over = !axis->timing_changed && axis->timer == time_of(axis); /* counts from 1 */
 	const bool right = place_is(axis->waiting, 0) == axis->dir;
+	const bool settle = axis->settle;
 	const bool level_done = state == PASSO_AXIS_PULSE && over;
 	const bool falls = level_done && axis->step && !axis->settings.both_edges;
 	const bool free = state == PASSO_AXIS_READY || state == PASSO_AXIS_HOLD || (level_done && !falls)
 	               || (state == PASSO_AXIS_SETUP && over);
-	const bool step_begins = free && place_is(axis->waits, 0) && right;
-	const bool turn = !right && (state == PASSO_AXIS_READY || (state == PASSO_AXIS_HOLD && over));
+	const bool waits = place_is(axis->waits, 0);
+	const bool step_begins = free && waits && right && !axis->unsettled;
+	const bool turn =
+	    (!right || axis->unsettled) && (state == PASSO_AXIS_READY || (state == PASSO_AXIS_HOLD && over));
 
 	if (axis->overrun && axis->lost != LOST_MAX)
 		axis->lost++;
 	if (wires->clear)
 		axis->lost = 0;
+	axis->quiet = state == PASSO_AXIS_READY && right && !axis->unsettled && !waits && !wires->step_request
+	           && !wires->pins_written && !settle;
 	clock_pins(axis, step_begins);
 	if (wires->zero)
 		axis->position = 0;
 	clock_queue(axis, step_begins, wires);
 
 	axis->timer++;
-	if (step_begins || turn || level_done || axis->timing_changed)
+	if (step_begins || turn || level_done || axis->timing_changed || settle)
 		axis->timer = 1;
-	axis->timing_changed = wires->timing_written;
+	axis->timing_changed = wires->timing_written || settle;
+	axis->settle = wires->pins_written;
+	axis->unsettled = settle || (axis->unsettled && !turn);
 	if (level_done && !falls)
 		axis->state = PASSO_AXIS_HOLD;
 	if ((state == PASSO_AXIS_HOLD || state == PASSO_AXIS_SETUP) && over)
 		axis->state = PASSO_AXIS_READY;
 	if (turn)
 		axis->state = PASSO_AXIS_SETUP;
-	if (step_begins)
+	if (step_begins || settle)
 		axis->state = PASSO_AXIS_PULSE;
+	if (settle && !axis->settings.both_edges)
+		axis->step = false;
 	axis->step = axis->step != (step_begins || falls);
-	axis->dir = axis->dir != turn;
+	axis->dir = axis->dir != (turn && !right);
 }
 
 uint32_t passo_axis_quiet(const struct passo_axis *axis, bool line_direction)
@@ -140,15 +178,16 @@ uint32_t passo_axis_quiet(const struct passo_axis *axis, bool line_direction)
 	const bool settled = axis->step_pin == (axis->step != settings->step_inverted)
 	                  && axis->dir_pin == (axis->dir != settings->direction_inverted)
 	                  && axis->enable_pin == (settings->enable != settings->enable_inverted)
-	                  && !axis->step_made && !axis->overrun && !axis->timing_changed
+	                  && !axis->step_made && !axis->overrun && !axis->timing_changed && !axis->settle
 	                  && (axis->waiting & free_places) == (line_direction ? free_places : 0u);
 	const bool waits = place_is(axis->waits, 0);
-	const bool right = place_is(axis->waiting, 0) == axis->dir;
+	const bool right = place_is(axis->waiting, 0) == axis->dir && !axis->unsettled;
+	const bool quiet = axis->state == PASSO_AXIS_READY && !waits && right;
 
-	if (!settled)
+	if (!settled || axis->quiet != quiet)
 		return 0;
 	if (axis->state == PASSO_AXIS_READY)
-		return !waits && right ? UINT32_MAX : 0u;
+		return quiet ? UINT32_MAX : 0u;
 	if (axis->state == PASSO_AXIS_HOLD && waits && right)
 		return 0;
 	/* the timer runs up to the time; what follows then happens in the clock that finds it there */

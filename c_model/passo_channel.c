@@ -13,6 +13,11 @@ bool passo_channel_occupied(const struct passo_channel *channel)
 	return channel->motion.state != PASSO_STATE_IDLE && !passo_channel_stopped(channel);
 }
 
+bool passo_channel_quiet(const struct passo_channel *channel)
+{
+	return channel->at_rest && !passo_channel_occupied(channel);
+}
+
 bool passo_channel_incomplete(const struct passo_channel *channel)
 {
 	return channel->line_queue.index != 0u || channel->ramp_queue.index != 0u;
@@ -27,9 +32,20 @@ void passo_channel_reset(
 	channel->ramp_queue.room = (uint16_t)(1u << parameters->ramp_queue_log2);
 	channel->timescale.rate = PASSO_RATE_ONE;
 	channel->ramp.ends_next = true;
-	for (unsigned axis = 0; axis < parameters->axes; axis++)
-		passo_axis_reset(&channel->axis[axis]);
+	for (unsigned axis = 0; axis < parameters->axes; axis++) {
+		const unsigned pin = (unsigned)number * parameters->axes + axis;
+		passo_axis_reset(&channel->axis[axis], (parameters->step_reset >> pin & 1u) != 0u,
+		    (parameters->dir_reset >> pin & 1u) != 0u, (parameters->enable_reset >> pin & 1u) != 0u);
+	}
 	passo_positions_reset(&channel->positions);
+}
+
+void passo_channel_restart(struct passo_channel *channel, const struct passo_channel *before,
+    const struct passo_parameters *parameters)
+{
+	passo_channel_reset(channel, parameters, before->number);
+	for (unsigned axis = 0; axis < parameters->axes; axis++)
+		passo_axis_restart(&channel->axis[axis], &before->axis[axis]);
 }
 
 static struct passo_channel_wires gather_wires(
@@ -47,6 +63,11 @@ static struct passo_channel_wires gather_wires(
 	for (unsigned axis = 0; axis < channel->axes; axis++)
 		wires.overrun = wires.overrun || channel->axis[axis].overrun;
 
+	const bool commit = bus->commit;
+	wires.hold =
+	    commit
+	    && (channel->admission.idle_needed || channel->admission.quiet_needed || inputs->tables_wanted);
+	wires.now_coming = commit && channel->admission.motion_needed;
 	passo_motion_wires(channel, inputs, &wires);
 
 	const bool at_tick_end = channel->ramp.tick_count == tick_last;
@@ -75,10 +96,19 @@ void passo_channel_clock(struct passo_channel *channel, const struct passo_chann
 	const bool write_timing =
 	    channel->writes_axis
 	    && (written_register == PASSO_AXIS_STEP_TIMING || written_register == PASSO_AXIS_DIR_TIMING);
+	const bool write_pins = channel->writes_axis && written_register == PASSO_AXIS_PINS;
+	const struct passo_needs needs = passo_channel_needs(channel, bus);
 	const struct passo_channel_registers registers = channel->registers;
 	const bool stopping = channel->motion.stopping;
 	bool take_ramp;
 	bool take_now;
+	bool axes_quiet = true;
+
+	for (unsigned i = 0; i < channel->axes; i++)
+		axes_quiet = axes_quiet && channel->axis[i].quiet;
+	channel->at_rest = !wires.occupied && !channel->occupied_before && axes_quiet;
+	channel->occupied_before = wires.occupied;
+	passo_admission_clock(&channel->admission, bus, &needs);
 
 	/* from the pins back to the queues: each module still sees the old state of those that feed it */
 	passo_positions_clock(&channel->positions, channel->axis, registers.command_zero, inputs->snapshot);
@@ -86,10 +116,11 @@ void passo_channel_clock(struct passo_channel *channel, const struct passo_chann
 		const struct passo_axis_wires axis_wires = {
 		    .step_request = passo_dda_step_request(&channel->dda[i], &channel->line),
 		    .direction = ((uint32_t)channel->line.directions >> i & 1u) != 0u,
-		    .drop = registers.command_abort,
+		    .drop = wires.drop,
 		    .zero = registers.command_zero,
 		    .clear = registers.command_clear,
 		    .timing_written = write_timing && written_axis == i,
+		    .pins_written = write_pins && written_axis == i,
 		};
 		passo_axis_clock(&channel->axis[i], &axis_wires);
 		passo_dda_clock(&channel->dda[i], &channel->line, &channel->line_queue, i);

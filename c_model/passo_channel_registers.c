@@ -35,14 +35,31 @@ static uint8_t value_check(bool bad)
 	return bad ? PASSO_VERDICT_BAD_VALUE : PASSO_VERDICT_OK;
 }
 
-static uint8_t command_check(const struct passo_channel *channel, uint32_t data)
+/* The bits of a command that count. */
+static uint32_t command_of(uint32_t data)
 {
-	const uint32_t resting = 1u << PASSO_CHANNEL_COMMAND_CLEAR_LSB | 1u << PASSO_CHANNEL_COMMAND_ZERO_LSB;
+	const uint32_t stop = 1u << PASSO_CHANNEL_COMMAND_STOP_LSB;
+	const uint32_t abort = 1u << PASSO_CHANNEL_COMMAND_ABORT_LSB;
 
-	if ((data & ~PASSO_CHANNEL_COMMAND_DEFINED) != 0u)
-		return PASSO_VERDICT_BAD_VALUE;
-	return passo_channel_occupied(channel) && (data & resting) != 0u ? PASSO_VERDICT_BUSY
-	                                                                 : PASSO_VERDICT_OK;
+	return (data & abort) != 0u ? abort : (data & stop) != 0u ? stop : data;
+}
+
+struct passo_needs passo_channel_needs(const struct passo_channel *channel, const struct passo_bus *bus)
+{
+	const uint8_t address = (uint8_t)bus->address;
+	const unsigned in_axes = (unsigned)address - PASSO_CHANNEL_AXIS_BASE;
+	const uint32_t command = address == PASSO_CHANNEL_COMMAND ? command_of(bus->data) : 0u;
+	const bool pins = in_axes < channel->axes * PASSO_CHANNEL_AXIS_STRIDE
+	               && in_axes % PASSO_CHANNEL_AXIS_STRIDE == PASSO_AXIS_PINS;
+
+	if (!bus->check || (bus->address >> 8) != channel->number + 1u)
+		return (struct passo_needs){0};
+	return (struct passo_needs){
+	    .idle = (command >> PASSO_CHANNEL_COMMAND_CLEAR_LSB & 1u) != 0u,
+	    .quiet = pins || (command >> PASSO_CHANNEL_COMMAND_ZERO_LSB & 1u) != 0u,
+	    .motion = bus->push && address == PASSO_CHANNEL_RAMP
+	           && passo_ramp_queue_checks_now(&channel->ramp_queue, bus->data),
+	};
 }
 
 static uint32_t state_word(const struct passo_channel *channel)
@@ -52,8 +69,12 @@ static uint32_t state_word(const struct passo_channel *channel)
 
 	for (unsigned axis = 0; axis < channel->axes; axis++)
 		overrun |= (channel->axis[axis].lost != 0u ? 1u : 0u) << axis;
-	return (uint32_t)motion->drained << 16 | overrun << 8 | (motion->stopping ? 0x80u : 0u)
-	     | (uint32_t)motion->cause << 4 | (uint32_t)motion->state;
+	return (uint32_t)motion->drained << PASSO_CHANNEL_STATE_DRAINED_LSB
+	     | overrun << PASSO_CHANNEL_STATE_OVERRUN_LSB
+	     | (motion->stopping ? 1u : 0u) << PASSO_CHANNEL_STATE_STOPPING_LSB
+	     | (uint32_t)motion->cause << PASSO_CHANNEL_STATE_CAUSE_LSB
+	     | (passo_channel_quiet(channel) ? 1u : 0u) << PASSO_CHANNEL_STATE_QUIET_LSB
+	     | (uint32_t)motion->state << PASSO_CHANNEL_STATE_STATE_LSB;
 }
 
 uint32_t passo_channel_registers_value(const struct passo_channel *channel, uint8_t address)
@@ -77,6 +98,8 @@ static struct answer axis_answer(const struct passo_axis *axis, uint8_t address,
 	switch (address) {
 	case PASSO_AXIS_PINS:
 		return write_only(value_check((data & ~PASSO_AXIS_PINS_DEFINED) != 0u));
+	case PASSO_AXIS_ENABLE:
+		return write_only(value_check((data & ~PASSO_AXIS_ENABLE_DEFINED) != 0u));
 	case PASSO_AXIS_STEP_TIMING:
 	case PASSO_AXIS_DIR_TIMING:
 		return write_only(PASSO_VERDICT_OK);
@@ -97,13 +120,13 @@ static struct answer channel_answer(
 
 	switch (address) {
 	case PASSO_CHANNEL_COMMAND:
-		return write_only(command_check(channel, bus->data));
+		return write_only(value_check((bus->data & ~PASSO_CHANNEL_COMMAND_DEFINED) != 0u));
 	case PASSO_CHANNEL_RATE_TARGET:
 	case PASSO_CHANNEL_RATE_SLEW:
 	case PASSO_CHANNEL_STOP_SLEW:
 		return write_only(value_check(bus->data > PASSO_RATE_ONE));
 	case PASSO_CHANNEL_DRAIN_VELOCITY:
-		return write_only(value_check(bus->data > VELOCITY_MAX));
+		return write_only(value_check(bus->data == 0u || bus->data > VELOCITY_MAX));
 	case PASSO_CHANNEL_STATE:
 	case PASSO_CHANNEL_RATE:
 	case PASSO_CHANNEL_ROOM:
@@ -163,6 +186,7 @@ void passo_channel_registers_clock(
     struct passo_channel_registers *registers, const struct passo_bus *bus, bool selected)
 {
 	const uint32_t data = bus->data;
+	const uint32_t command = command_of(data);
 
 	registers->command_stop = registers->command_abort = registers->command_clear =
 	    registers->command_zero = false;
@@ -170,10 +194,10 @@ void passo_channel_registers_clock(
 		return;
 	switch ((uint8_t)bus->address) {
 	case PASSO_CHANNEL_COMMAND:
-		registers->command_stop = (data >> PASSO_CHANNEL_COMMAND_STOP_LSB & 1u) != 0u;
-		registers->command_abort = (data >> PASSO_CHANNEL_COMMAND_ABORT_LSB & 1u) != 0u;
-		registers->command_clear = (data >> PASSO_CHANNEL_COMMAND_CLEAR_LSB & 1u) != 0u;
-		registers->command_zero = (data >> PASSO_CHANNEL_COMMAND_ZERO_LSB & 1u) != 0u;
+		registers->command_stop = (command >> PASSO_CHANNEL_COMMAND_STOP_LSB & 1u) != 0u;
+		registers->command_abort = (command >> PASSO_CHANNEL_COMMAND_ABORT_LSB & 1u) != 0u;
+		registers->command_clear = (command >> PASSO_CHANNEL_COMMAND_CLEAR_LSB & 1u) != 0u;
+		registers->command_zero = (command >> PASSO_CHANNEL_COMMAND_ZERO_LSB & 1u) != 0u;
 		break;
 	case PASSO_CHANNEL_RATE_TARGET:
 		registers->rate_target = data;

@@ -65,6 +65,14 @@ static bool any_incomplete(const struct passo_core *core)
 	return false;
 }
 
+static bool any_busy(const struct passo_core *core)
+{
+	for (unsigned i = 0; i < core->parameters.channels; i++)
+		if (passo_channel_busy(&core->channel[i]))
+			return true;
+	return core->tables.wanted && passo_registers_any_occupied(core);
+}
+
 static void gather_outputs(struct passo_core *core)
 {
 	struct passo_outputs *outputs = &core->outputs;
@@ -84,7 +92,7 @@ static void gather_outputs(struct passo_core *core)
 	outputs->spi_miso = core->spi.miso;
 }
 
-void passo_core_clock(struct passo_core *core, const struct passo_inputs *inputs)
+static void clock_all(struct passo_core *core, const struct passo_inputs *inputs)
 {
 	const struct passo_parameters *parameters = &core->parameters;
 	const struct passo_link_wires link_wires = {
@@ -94,6 +102,7 @@ void passo_core_clock(struct passo_core *core, const struct passo_inputs *inputs
 	    .status = passo_registers_status(core),
 	    .response = late_answer(core),
 	    .incomplete = any_incomplete(core),
+	    .busy = any_busy(core),
 	};
 	const struct passo_bus bus = core->link.bus;
 	struct passo_channel_inputs channel_inputs = {
@@ -103,6 +112,7 @@ void passo_core_clock(struct passo_core *core, const struct passo_inputs *inputs
 	    .sync_edge = (core->sync_q >> 1 & 1u) != 0u && (core->sync_q >> 2 & 1u) == 0u,
 	    .slew_tick = core->slew_tick,
 	    .snapshot = link_wires.spi.frame_start,
+	    .tables_wanted = core->tables.wanted,
 	};
 	const bool irq = passo_registers_any_stopped(core);
 	const struct passo_registers registers = core->registers;
@@ -125,6 +135,35 @@ void passo_core_clock(struct passo_core *core, const struct passo_inputs *inputs
 	core->slew_count = (core->slew_count + 1u) & ((1u << parameters->tick_log2) - 1u);
 	core->outputs.irq = irq;
 	core->inputs = *inputs;
+}
+
+/* A reset in the clock that has just been made: what it does not touch is the SCLK domain, the tables, and
+ * settings and pins of the axes. */
+static void restart(struct passo_core *core, const struct passo_core *before)
+{
+	const struct passo_parameters parameters = core->parameters;
+	const struct passo_inputs inputs = core->inputs;
+	const struct passo_tables tables = core->tables;
+	struct passo_spi spi = core->spi;
+
+	passo_core_reset(core, &parameters);
+	passo_spi_restart(&spi);
+	core->spi = spi;
+	core->inputs = inputs;
+	memcpy(core->tables.points, tables.points, sizeof core->tables.points);
+	for (unsigned i = 0; i < parameters.channels; i++)
+		passo_channel_restart(&core->channel[i], &before->channel[i], &parameters);
+}
+
+void passo_core_clock(struct passo_core *core, const struct passo_inputs *inputs)
+{
+	if (inputs->rst) {
+		const struct passo_core before = *core;
+		clock_all(core, inputs);
+		restart(core, &before);
+	} else {
+		clock_all(core, inputs);
+	}
 	gather_outputs(core);
 }
 

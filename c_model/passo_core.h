@@ -16,6 +16,7 @@ struct passo_inputs {
 	bool spi_mosi;
 	bool spi_cs_n;
 	bool sync;
+	bool rst;
 };
 
 /* Output pins; bit channel * AXES + axis, or a bit per channel. */
@@ -43,7 +44,8 @@ struct passo_core {
 	struct passo_outputs outputs;
 };
 
-/* Power-on and reset. False if a parameter is out of range; then the core must not be used. */
+/* As it is when the FPGA has been configured and rst has been high. False if a parameter is out of range;
+ * then the core must not be used. */
 bool passo_core_reset(struct passo_core *core, const struct passo_parameters *parameters);
 
 /* One rising edge of the clock. */

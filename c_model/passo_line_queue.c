@@ -51,7 +51,7 @@ static void write_word(struct passo_line *line, unsigned index, uint32_t data)
 }
 
 static void clock_writing(struct passo_line_queue *queue, const struct passo_parameters *parameters,
-    const struct passo_bus *bus, bool push, bool flush)
+    const struct passo_bus *bus, bool push)
 {
 	const bool complete = queue->index == parameters->axes + 1u;
 	const uint8_t index = queue->index;
@@ -65,10 +65,8 @@ static void clock_writing(struct passo_line_queue *queue, const struct passo_par
 		if (bus->write)
 			write_word(
 			    &queue->lines[queue->write_line & (depth(parameters) - 1u)], index, bus->data);
-		if (complete && bus->write && !flush) {
+		if (complete && bus->write)
 			queue->write_line = wrap(queue->write_line + 1u, parameters);
-			queue->room--;
-		}
 	}
 	if (bus->frame) {
 		queue->index = INDEX_CONTROL;
@@ -98,11 +96,16 @@ void passo_line_queue_clock(struct passo_line_queue *queue, const struct passo_p
 	const uint16_t write_line = queue->write_line;
 	const uint16_t next_line = queue->next_line;
 
-	read_memory(queue, parameters, wires->take);
-	clock_writing(queue, parameters, bus, wires->line_push, wires->stopped);
+	const bool reserve = bus->frame && bus->commit;
+	const bool freed = (wires->take && queue->has_place) || wires->finished;
 
-	if ((wires->take && queue->has_place) || wires->finished)
+	if (reserve)
+		queue->room = wrap((unsigned)queue->room - queue->checked, parameters);
+	else if (freed || queue->freed_late)
 		queue->room++;
+	queue->freed_late = freed && reserve;
+	read_memory(queue, parameters, wires->take);
+	clock_writing(queue, parameters, bus, wires->line_push);
 	if (wires->take) {
 		queue->current_line = next_line & (uint16_t)(depth(parameters) - 1u);
 		queue->next_line = wrap(next_line + 1u, parameters);
@@ -113,7 +116,7 @@ void passo_line_queue_clock(struct passo_line_queue *queue, const struct passo_p
 	queue->next_valid = !wires->take && !wires->stopped && next_line != write_line;
 	if (wires->stopped) {
 		queue->write_line = queue->next_line = 0;
-		queue->has_place = false;
+		queue->has_place = queue->freed_late = false;
 		queue->room = (uint16_t)depth(parameters);
 	}
 }

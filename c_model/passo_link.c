@@ -50,7 +50,7 @@ bool passo_link_quiet(const struct passo_link *link)
 {
 	const struct passo_bus *bus = &link->bus;
 	return link->count == COUNT_REST && !link->answer_due && !link->answer_came && !link->refused
-	    && !bus->frame && !bus->check && !bus->write && !bus->read;
+	    && !bus->frame && !bus->commit && !bus->check && !bus->write && !bus->read;
 }
 
 static unsigned place(const struct passo_link *link, bool in_payload, unsigned otherwise)
@@ -108,7 +108,6 @@ static void turned(struct passo_link *link)
 static void begin_pass(struct passo_link *link)
 {
 	link->bus.address = address_of(link->bus.data);
-	link->bus.frame = true;
 	link->index = 0;
 }
 
@@ -130,15 +129,18 @@ static void take_header(struct passo_link *link)
 	              : repeated  ? PASSO_VERDICT_DUPLICATE
 	                          : PASSO_VERDICT_OK;
 	link->step = is_read || link->length == 0u ? PASSO_LINK_CRC : PASSO_LINK_PAYLOAD;
+	link->bus.frame = true;
 	begin_pass(link);
 }
 
-static void give_verdict(struct passo_link *link, bool incomplete)
+static void give_verdict(struct passo_link *link, const struct passo_link_wires *wires)
 {
 	if (link->crc_wrong)
 		link->verdict = PASSO_VERDICT_BAD_CRC;
-	else if (link->verdict == PASSO_VERDICT_OK && incomplete)
+	else if (link->verdict == PASSO_VERDICT_OK && wires->incomplete)
 		link->verdict = PASSO_VERDICT_BAD_LENGTH;
+	else if (link->verdict == PASSO_VERDICT_OK && wires->busy)
+		link->verdict = PASSO_VERDICT_BUSY;
 	link->index = 0;
 	if (link->is_read && link->verdict == PASSO_VERDICT_OK) {
 		link->count = COUNT_READ;
@@ -158,6 +160,7 @@ static void end_acknowledge(struct passo_link *link)
 		link->sequence_known = true;
 		link->count = COUNT_LOAD;
 		link->step = PASSO_LINK_REPLAY;
+		link->bus.frame = true;
 	}
 	if (link->refused) {
 		link->count = COUNT_LOAD;
@@ -192,7 +195,7 @@ static void do_step(struct passo_link *link, const struct passo_link_wires *wire
 		if (word_valid)
 			link->count = COUNT_LOAD;
 		if (act)
-			give_verdict(link, wires->incomplete);
+			give_verdict(link, wires);
 		break;
 	case PASSO_LINK_ACK:
 		if (act)
@@ -276,6 +279,8 @@ void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wi
 	link->answer_came = was.answer_due;
 	link->answer = wires->response.claim ? wires->response.refusal : PASSO_VERDICT_UNKNOWN_ADDRESS;
 	link->refused = false;
+	link->bus.commit = (was.step == PASSO_LINK_CRC && was.count > COUNT_LOAD && was.count != COUNT_REST)
+	                || was.step == PASSO_LINK_ACK || was.step == PASSO_LINK_REPLAY;
 
 	if (was.answer_came && link->verdict == PASSO_VERDICT_OK)
 		link->verdict = was.answer;

@@ -22,6 +22,8 @@ struct passo_parameters {
 	uint8_t tick_log2;       /* TICK_LOG2, 7 .. 16 */
 	uint8_t line_queue_log2; /* LINE_QUEUE_LOG2, 2 .. 8 */
 	uint8_t ramp_queue_log2; /* RAMP_QUEUE_LOG2, 2 .. 8 */
+	/* STEP_RESET, DIR_RESET, ENABLE_RESET: a bit per pin, channel * AXES + axis */
+	uint64_t step_reset, dir_reset, enable_reset;
 };
 
 /* ---- link side ---- */
@@ -46,6 +48,8 @@ struct passo_spi_wires {
 
 struct passo_spi_wires passo_spi_wires(const struct passo_spi *spi);
 void passo_spi_reset(struct passo_spi *spi);
+/* A reset in the clock that has just been made: what runs on SCLK goes on. */
+void passo_spi_restart(struct passo_spi *spi);
 /* SCLK edges since the last clock, then the edge of clk. */
 void passo_spi_clock(
     struct passo_spi *spi, bool sclk_was, bool sclk, bool mosi, bool cs_n, uint32_t reply_word);
@@ -54,7 +58,7 @@ void passo_spi_clock(
 uint32_t passo_crc_add(uint32_t crc, uint32_t word);
 
 struct passo_bus {
-	bool frame, check, write, read, push;
+	bool frame, commit, check, write, read, push;
 	uint16_t address;
 	uint32_t data;
 };
@@ -114,6 +118,7 @@ struct passo_link_wires {
 	uint32_t status;
 	struct passo_response response;
 	bool incomplete;
+	bool busy;
 };
 
 void passo_link_reset(struct passo_link *link);
@@ -133,6 +138,19 @@ struct passo_registers {
 struct passo_tables {
 	uint16_t points[3][PASSO_TABLE_POINTS];
 	uint8_t slot; /* 2 * channel + second */
+	bool wanted;  /* the frame writes points */
+};
+
+/* ---- admission ---- */
+
+/* What the frame on the bus needs of a channel. */
+struct passo_admission {
+	bool idle_needed, quiet_needed, motion_needed;
+};
+
+/* What a word that is checked needs. */
+struct passo_needs {
+	bool idle, quiet, motion;
 };
 
 /* ---- channel ---- */
@@ -141,7 +159,8 @@ struct passo_line_queue {
 	uint8_t index;
 	uint16_t write_line, next_line; /* one bit more than the address */
 	uint16_t current_line;
-	bool has_place; /* a line is the current one */
+	bool has_place;  /* a line is the current one */
+	bool freed_late; /* a place is free, and is counted a clock later */
 	uint16_t checked;
 	uint32_t checked_substeps;
 	uint16_t room;
@@ -156,7 +175,7 @@ struct passo_line_queue {
 
 struct passo_ramp_queue {
 	uint8_t index;
-	uint16_t write_ramp, read_ramp, now_ramp;
+	uint16_t write_ramp, write_end, read_ramp, now_ramp;
 	uint16_t checked;
 	bool velocity_is_max;
 	bool write_low;
@@ -171,6 +190,7 @@ struct passo_timescale {
 	uint32_t rate, goal, slew; /* UQ1.16 */
 	uint8_t after;             /* clocks since the slew tick, until the rate has changed */
 	bool down;
+	bool stops; /* the slew tick found a stop */
 	bool still;
 	uint32_t rate_sum;
 	bool enable;
@@ -235,6 +255,9 @@ struct passo_axis {
 	uint8_t waiting, waits; /* one bit for each place */
 	bool step, dir;
 	bool timing_changed; /* times were written in the clock before */
+	bool settle;         /* polarities and mode were */
+	bool unsettled;      /* since then DIR has had no set-up time */
+	bool quiet;          /* of the clock before */
 	bool step_made;
 	bool overrun;
 	uint32_t position;
@@ -262,6 +285,7 @@ struct passo_motion {
 	bool stop_due;
 	enum passo_cause cause_due;
 	bool rate_was_zero;
+	uint8_t aborted; /* one and two clocks ago */
 	bool running;
 };
 
@@ -275,6 +299,7 @@ struct passo_channel {
 	uint8_t axes;
 	uint8_t number;
 	struct passo_channel_registers registers;
+	struct passo_admission admission;
 	struct passo_line_queue line_queue;
 	struct passo_ramp_queue ramp_queue;
 	struct passo_motion motion;
@@ -285,6 +310,8 @@ struct passo_channel {
 	struct passo_dda dda[PASSO_AXES_MAX];
 	struct passo_axis axis[PASSO_AXES_MAX];
 	struct passo_positions positions;
+	bool occupied_before;     /* in the clock before */
+	bool at_rest;             /* no motion, and no step on its way to the axes */
 	bool writes_axis;         /* the bus strobe came a clock ago */
 	uint8_t written_register; /* within the blocks of the axes */
 };
@@ -295,6 +322,7 @@ struct passo_channel_inputs {
 	const struct passo_tables *tables;
 	const struct passo_bus *bus;
 	bool run, wait_sync, sync_edge, slew_tick, snapshot;
+	bool tables_wanted;
 };
 
 /* The wires of a channel, from the state before the edge. */
@@ -304,13 +332,18 @@ struct passo_channel_wires {
 	bool line_push, ramp_push;
 	bool occupied, moving, counting, drain;
 	bool ramp_valid;
+	bool hold, now_coming; /* of the admission */
 	bool startable, prepare, begins_next, begin_profile;
 	bool advance, tick, next, ramp_ended;
 	bool substep_taken, line_done, take, turn;
 	bool overrun;
 	bool finished;
 	bool stop_now, stopped;
+	bool drop;
 };
+
+void passo_admission_clock(
+    struct passo_admission *admission, const struct passo_bus *bus, const struct passo_needs *needs);
 
 void passo_line_queue_clock(struct passo_line_queue *queue, const struct passo_parameters *parameters,
     const struct passo_bus *bus, const struct passo_channel_wires *wires);
@@ -321,6 +354,8 @@ void passo_ramp_queue_clock(struct passo_ramp_queue *queue, const struct passo_p
     const struct passo_bus *bus, const struct passo_channel_wires *wires, bool take, bool take_now);
 uint8_t passo_ramp_queue_refusal(
     const struct passo_ramp_queue *queue, const struct passo_bus *bus, bool blocked);
+/* The word that is checked is the control of a NOW ramp. */
+bool passo_ramp_queue_checks_now(const struct passo_ramp_queue *queue, uint32_t data);
 /* The oldest ramp. */
 struct passo_ramp passo_ramp_queue_front(
     const struct passo_ramp_queue *queue, const struct passo_parameters *parameters);
@@ -351,10 +386,13 @@ void passo_dda_clock(struct passo_dda *dda, const struct passo_line_unit *line,
 
 struct passo_axis_wires {
 	bool step_request, direction;
-	bool drop, zero, clear, timing_written;
+	bool drop, zero, clear, timing_written, pins_written;
 };
 
-void passo_axis_reset(struct passo_axis *axis);
+/* At configuration: the levels of the three pins. */
+void passo_axis_reset(struct passo_axis *axis, bool step, bool dir, bool enable);
+/* A reset in the clock that has just been made, before which the axis was as `before`. */
+void passo_axis_restart(struct passo_axis *axis, const struct passo_axis *before);
 void passo_axis_clock(struct passo_axis *axis, const struct passo_axis_wires *wires);
 /* Nothing but the timer moves for so many clocks; 0 if the next clock may change something. */
 uint32_t passo_axis_quiet(const struct passo_axis *axis, bool line_direction);
@@ -371,6 +409,8 @@ void passo_motion_wires(const struct passo_channel *channel, const struct passo_
 void passo_motion_clock(struct passo_motion *motion, const struct passo_channel *channel,
     const struct passo_channel_wires *wires);
 
+/* What the strobe on the bus needs of the channel. */
+struct passo_needs passo_channel_needs(const struct passo_channel *channel, const struct passo_bus *bus);
 /* Answer of a channel to the strobe on the bus. */
 struct passo_response passo_channel_respond(
     const struct passo_channel *channel, const struct passo_channel_inputs *inputs);
@@ -383,9 +423,15 @@ void passo_axis_settings_write(struct passo_axis_settings *settings, uint8_t add
 
 void passo_channel_reset(
     struct passo_channel *channel, const struct passo_parameters *parameters, uint8_t number);
+/* A reset in the clock that has just been made, before which the channel was as `before`. */
+void passo_channel_restart(struct passo_channel *channel, const struct passo_channel *before,
+    const struct passo_parameters *parameters);
 void passo_channel_clock(struct passo_channel *channel, const struct passo_channel_inputs *inputs);
 bool passo_channel_stopped(const struct passo_channel *channel);
 bool passo_channel_occupied(const struct passo_channel *channel);
+bool passo_channel_quiet(const struct passo_channel *channel);
+/* The state does not allow the frame on the bus. */
+bool passo_channel_busy(const struct passo_channel *channel);
 bool passo_channel_incomplete(const struct passo_channel *channel);
 
 #endif

@@ -37,13 +37,14 @@ void passo_motion_wires(const struct passo_channel *channel, const struct passo_
 	wires->moving = state == PASSO_STATE_RUN || state == PASSO_STATE_SETTLE || state == PASSO_STATE_DRAIN;
 	wires->counting = state == PASSO_STATE_RUN || state == PASSO_STATE_DRAIN;
 	wires->drain = state == PASSO_STATE_DRAIN;
-	wires->startable =
-	    state == PASSO_STATE_IDLE && inputs->run && channel->line_queue.next_valid && wires->ramp_valid;
+	wires->startable = state == PASSO_STATE_IDLE && inputs->run && channel->line_queue.next_valid
+	                && wires->ramp_valid && !wires->hold;
 	wires->prepare = state == PASSO_STATE_IDLE && motion->startable;
 	wires->begins_next = state == PASSO_STATE_ARMED && (inputs->sync_edge || !inputs->wait_sync);
 	wires->begin_profile = motion->begin_profile;
 	wires->finished = motion->settled && (line_over || channel->line.endless);
 	wires->stop_now = motion->stop_due && !wires->stopped;
+	wires->drop = channel->registers.command_abort || motion->aborted != 0u;
 }
 
 void passo_motion_clock(
@@ -65,6 +66,7 @@ void passo_motion_clock(
 	motion->settling = (uint8_t)(state == PASSO_STATE_SETTLE ? (settling << 1 | 1u) & 7u : 0u);
 	motion->settled = state == PASSO_STATE_SETTLE && (settling & 4u) != 0u && !settled;
 	motion->rate_was_zero = channel->timescale.rate == 0u;
+	motion->aborted = (uint8_t)((motion->aborted << 1 | (registers->command_abort ? 1u : 0u)) & 3u);
 	if (wires->prepare)
 		motion->state = PASSO_STATE_PREPARE;
 	if (state == PASSO_STATE_PREPARE && channel->ramp.ready)

@@ -72,8 +72,8 @@ static void choose(struct passo_ramp_unit *ramp, const struct passo_channel *cha
 	} else if (ramp->loaded) {
 		begin_step(ramp, PASSO_RAMP_WORK, work);
 	} else if (ramp->last) {
-		ramp->ends_next = true;
-		ramp->ready = true;
+		ramp->ends_next = !wires->now_coming;
+		ramp->ready = !wires->now_coming;
 	} else if (wires->ramp_valid) {
 		begin_step(ramp, PASSO_RAMP_FETCH, front.ticks == 0u ? FETCH_NO_TICKS_CLOCKS : FETCH_CLOCKS);
 	} else {

@@ -6,6 +6,7 @@
 enum { INDEX_CONTROL = 0, INDEX_VELOCITY_LOW = 1, INDEX_TICKS = 2, INDEX_STEP_HIGH = 3, INDEX_LAST = 4 };
 
 static const uint32_t CONTROL_DEFINED = 0x0037u;
+static const uint32_t CONTROL_NOW = 0x0002u;
 static const uint32_t VELOCITY_MAX_HIGH = 0x8000u;
 
 static unsigned depth(const struct passo_parameters *parameters)
@@ -41,6 +42,11 @@ uint8_t passo_ramp_queue_refusal(
 	}
 }
 
+bool passo_ramp_queue_checks_now(const struct passo_ramp_queue *queue, uint32_t data)
+{
+	return queue->index == INDEX_CONTROL && (data & CONTROL_NOW) != 0u;
+}
+
 struct passo_ramp passo_ramp_queue_front(
     const struct passo_ramp_queue *queue, const struct passo_parameters *parameters)
 {
@@ -74,7 +80,7 @@ void passo_ramp_queue_clock(struct passo_ramp_queue *queue, const struct passo_p
 	queue->write_low = write_high;
 	if ((check || write_high) && index == INDEX_CONTROL) {
 		queue->velocity_is_max = bus->data >> 16 == VELOCITY_MAX_HIGH;
-		queue->is_now = (bus->data & 2u) != 0u;
+		queue->is_now = (bus->data & CONTROL_NOW) != 0u;
 	}
 	if (check || write_low)
 		queue->index = next_index(index);
@@ -95,14 +101,17 @@ void passo_ramp_queue_clock(struct passo_ramp_queue *queue, const struct passo_p
 			queue->now_pending = true;
 		}
 	}
+	queue->room =
+	    (uint16_t)(depth(parameters) - wrap((unsigned)queue->write_end - read_ramp, parameters));
 	if (bus->frame) {
+		if (bus->commit)
+			queue->write_end = wrap((unsigned)write_ramp + queue->checked, parameters);
 		queue->index = INDEX_CONTROL;
 		queue->checked = 0;
 	}
 	if (wires->stopped) {
 		queue->now_pending = false;
-		queue->read_ramp = write_ramp;
+		queue->read_ramp = queue->write_end = write_ramp;
 	}
 	queue->valid = read_ramp != write_ramp;
-	queue->room = (uint16_t)(depth(parameters) - wrap((unsigned)write_ramp - read_ramp, parameters));
 }

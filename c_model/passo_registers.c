@@ -11,7 +11,7 @@ static uint8_t at_most_255(uint16_t room)
 	return (uint8_t)(room > 255u ? 255u : room);
 }
 
-static bool any_occupied(const struct passo_core *core)
+bool passo_registers_any_occupied(const struct passo_core *core)
 {
 	for (unsigned i = 0; i < core->parameters.channels; i++)
 		if (passo_channel_occupied(&core->channel[i]))
@@ -32,9 +32,9 @@ uint32_t passo_registers_status(const struct passo_core *core)
 	const struct passo_channel *channel = &core->channel[core->registers.status_channel];
 
 	return 2u << 30 | (passo_registers_any_stopped(core) ? 1u : 0u) << 29
-	     | (any_occupied(core) ? 1u : 0u) << 28 | (uint32_t)core->registers.status_channel << 24
-	     | (uint32_t)core->link.last_sequence << 16 | (uint32_t)at_most_255(channel->line_queue.room) << 8
-	     | at_most_255(channel->ramp_queue.room);
+	     | (passo_registers_any_occupied(core) ? 1u : 0u) << 28
+	     | (uint32_t)core->registers.status_channel << 24 | (uint32_t)core->link.last_sequence << 16
+	     | (uint32_t)at_most_255(channel->line_queue.room) << 8 | at_most_255(channel->ramp_queue.room);
 }
 
 static uint32_t parameters_word(const struct passo_parameters *parameters)
@@ -117,7 +117,6 @@ struct passo_response passo_registers_respond(const struct passo_core *core)
 		response.claim = true;
 		if (bus->check)
 			response.refusal = bus->push             ? PASSO_VERDICT_BAD_OPERATION
-			                 : any_occupied(core)    ? PASSO_VERDICT_BUSY
 			                 : bus->data >> 16 != 0u ? PASSO_VERDICT_BAD_VALUE
 			                                         : PASSO_VERDICT_OK;
 		else
@@ -146,6 +145,8 @@ void passo_registers_clock(struct passo_core *core)
 		registers->wait_sync = (uint8_t)(bus->data >> PASSO_RUN_WAIT_SYNC_LSB);
 		registers->status_channel = (uint8_t)(bus->data >> PASSO_RUN_STATUS_CHANNEL_LSB & 7u);
 	}
+	core->tables.wanted =
+	    !(bus->frame && !bus->commit) && (core->tables.wanted || (bus->check && in_tables(bus->address)));
 	if (bus->write && in_tables(bus->address)) {
 		const unsigned place = bus->address - PASSO_ADDRESS_COSINE_BASE;
 		core->tables.points[place / PASSO_TABLE_POINTS][place % PASSO_TABLE_POINTS] =

@@ -8,6 +8,7 @@
 
 uint32_t passo_registers_status(const struct passo_core *core);
 bool passo_registers_any_stopped(const struct passo_core *core);
+bool passo_registers_any_occupied(const struct passo_core *core);
 /* Answer to the strobe on the bus, if a register of the core or a table is meant. */
 struct passo_response passo_registers_respond(const struct passo_core *core);
 /* What stands in a register of the core. */

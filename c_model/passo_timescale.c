@@ -23,13 +23,16 @@ void passo_timescale_clock(struct passo_timescale *timescale, const struct passo
 	if (timescale->after == AFTER_DIRECTION)
 		timescale->down = timescale->rate > goal;
 	if (timescale->after == AFTER_SLEW) {
-		const uint32_t slew = stopping ? registers->stop_slew : registers->rate_slew;
+		const uint32_t slew = timescale->stops ? registers->stop_slew : registers->rate_slew;
 		timescale->slew = slew == 0u ? 1u : slew;
 	}
-	if (timescale->after == AFTER_LAST)
+	/* a change that began before the stop is dropped */
+	if (timescale->after == AFTER_LAST && (timescale->stops || !stopping))
 		timescale->rate = moved(timescale->rate, goal, timescale->slew, timescale->down);
-	if (slew_tick)
+	if (slew_tick) {
 		timescale->goal = stopping ? 0u : registers->rate_target;
+		timescale->stops = stopping;
+	}
 	timescale->after = slew_tick ? 1u
 	                 : timescale->after == 0u || timescale->after == AFTER_LAST
 	                     ? 0u
@@ -38,6 +41,7 @@ void passo_timescale_clock(struct passo_timescale *timescale, const struct passo
 		if (timescale->still)
 			timescale->rate = goal;
 		timescale->goal = registers->rate_target;
+		timescale->stops = false;
 		timescale->after = 0;
 		timescale->rate_sum = 0;
 		timescale->enable = false;

@@ -140,14 +140,15 @@ class Recorder:
 class PushBus:
     """The bus of one queue: pushes words as the link does, first to be checked, then to be written."""
 
-    INPUTS = ("bus_frame", "bus_check", "bus_write", "select", "bus_data", "bus_top_bit")
+    INPUTS = ("bus_frame", "bus_commit", "bus_check", "bus_write", "select", "bus_data", "bus_top_bit")
 
     def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
         self.dut, self.clocks = dut, clocks
         self._refusals = Recorder(clocks, dut.refusal)
 
-    async def frame(self) -> None:
-        """Begin a pass over the payload of a frame."""
+    async def frame(self, commit: bool = False) -> None:
+        """Begin a pass over the payload of a frame: to check it, or to execute it."""
+        self.dut.bus_commit.value = commit
         self.dut.bus_frame.value = 1
         await self.clocks.wait(1)
         self.dut.bus_frame.value = 0
@@ -175,7 +176,7 @@ class PushBus:
         """A good frame: check, then execute."""
         await self.frame()
         assert set(await self.check(words)) == {0}
-        await self.frame()
+        await self.frame(commit=True)
         await self.write(words)
 
     async def _strobe(self, signal: Signal, word: int, before: int) -> None:

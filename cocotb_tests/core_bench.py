@@ -18,7 +18,7 @@ import functools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 import cocotb
 import numpy as np
@@ -69,6 +69,21 @@ def planned(plan: Plan, axes: int) -> tuple[Line, list[Ramp]]:
     return Line(plan.line.substeps, steps, plan.line.last), ramps
 
 
+@dataclass
+class Record:
+    """What is recorded of the pins, and how far it was compared: of all tests of one simulation, because a
+    reset does not touch everything."""
+
+    log: TextIO
+    unread: str = ""
+    judge: Judge | None = None
+
+
+@functools.cache
+def _record() -> Record:
+    return Record(Path("pins.log").open())
+
+
 class Core:
     """The core as an engine for passo.link; `parameters` are what the core says of itself."""
 
@@ -83,8 +98,7 @@ class Core:
         self.started = 0  # clock
         self._rows: list[np.ndarray] = []
         self._running: list[tuple[int, int]] = [(0, 0)]  # clocks and levels of all channels
-        self._unread = ""
-        self._judge: Judge | None = None
+        self._record = _record()
 
     @classmethod
     async def begin(cls, dut: HierarchyObject, thread: Thread) -> "Core":
@@ -99,18 +113,8 @@ class Core:
         await clocks.wait(4)
         dut.spi_cs_n.value = 1
         await clocks.wait(4)
-        core.open_log()
         dut.rst.value = 0
         return core
-
-    def open_log(self) -> None:
-        """Read what is recorded from now on, not that of the tests before."""
-        self._log = Path("pins.log").open()  # noqa: SIM115
-        self._log.seek(0, 2)
-
-    def close(self) -> None:
-        """Leave the log to the next test."""
-        self._log.close()
 
     def identify(self) -> None:
         """Learn the parameters from the core and start to compare."""
@@ -124,7 +128,8 @@ class Core:
             ramp_queue_log2=word >> r.PARAMETERS_RAMP_QUEUE_LOG2_LSB & 0x1F,
         )
         self.axes, self.tick = self.parameters.axes, 1 << self.parameters.tick_log2
-        self._judge = Judge(self.parameters)
+        if self._record.judge is None:
+            self._record.judge = Judge(self.parameters)
         self.compare()
 
     def channel(self, number: int = 0) -> "CoreChannel":
@@ -135,7 +140,7 @@ class Core:
 
     @property
     def clock(self) -> int:
-        """Clocks since reset."""
+        """Clocks since the first reset."""
         return read(self.dut.clock)
 
     def transfer(self, mosi: Sequence[int], gap: int = 16) -> list[int]:
@@ -200,14 +205,15 @@ class Core:
 
     def compare(self) -> None:
         """Compare all pins up to now with the model; an error tells the first difference."""
-        if self._judge is None:
+        record = self._record
+        if record.judge is None:
             return
-        *lines, self._unread = (self._unread + self._log.read()).split("\n")
+        *lines, record.unread = (record.unread + record.log.read()).split("\n")
         for line in lines:
             assert "x" not in line.lower(), f"X at a pin: {dict(zip(COLUMNS, line.split(), strict=True))}"
         numbers = [int(number) for line in lines for number in line.split()]
         rows = np.array(numbers, dtype=np.uint64).reshape(-1, len(COLUMNS))
-        self._judge.follow(rows, self.clock)
+        record.judge.follow(rows, self.clock)
         self._rows.append(rows)
         for clock, level in rows[:, [0, COLUMNS.index("running")]].tolist():
             if level != self._running[-1][1]:
@@ -235,7 +241,7 @@ class Core:
         """Compare the rest and tell what was compared."""
         self.run(200)
         self.finish_watch()
-        self.dut._log.info(f"{self.clock} clocks compared, {self._judge.summary()}")
+        self.dut._log.info(f"{self.clock} clocks compared, {self._record.judge.summary()}")
 
     # what was recorded; the clock of a change is the one after whose rising edge the pin shows it
 
@@ -285,14 +291,24 @@ class CoreChannel(Channel):
         self._push(r.CHANNEL_RAMP, [ramp.words() for ramp in ramps])
 
     def pins(self, *timings: PinTiming) -> None:
-        """Set the pins of all axes, one timing for each or one for all, with the drives enabled."""
-        if len(timings) == 1:
-            timings *= self.core.axes
-        for axis, timing in enumerate(timings):
-            flags = 1 | timing.step_inverted << 1 | timing.direction_inverted << 2 | timing.both_edges << 4
-            address = self.base + r.CHANNEL_AXIS_BASE + axis * r.CHANNEL_AXIS_STRIDE
+        """At rest, set the pins of all axes (one timing for each or one for all) and enable the drives."""
+        for axis, timing in enumerate(self._of_all_axes(timings)):
+            flags = timing.step_inverted << 1 | timing.direction_inverted << 2 | timing.both_edges << 4
+            address = self.axis_base(axis)
             self.link.write(address, flags, timing.high << 16 | timing.low, timing.setup << 16 | timing.hold)
+            self.link.write(address + r.AXIS_ENABLE, 1)
         self.core.run(8)
+        self.core.run_until(lambda: self.state().quiet, 300_000)
+
+    def times(self, *timings: PinTiming) -> None:
+        """Set the four times of the pins, at any time."""
+        for axis, timing in enumerate(self._of_all_axes(timings)):
+            words = timing.high << 16 | timing.low, timing.setup << 16 | timing.hold
+            self.link.write(self.axis_base(axis) + r.AXIS_STEP_TIMING, *words)
+        self.core.run(8)
+
+    def _of_all_axes(self, timings: Sequence[PinTiming]) -> Sequence[PinTiming]:
+        return timings if len(timings) > 1 else [*timings] * self.core.axes
 
     def start(self) -> None:
         """Let the channel start its motion."""
@@ -320,10 +336,7 @@ def core_test(body: Callable[[Core], None]) -> Any:
             body(core)
             core.end()
 
-        try:
-            await thread.run(all_of_it)
-        finally:
-            core.close()
+        await thread.run(all_of_it)
 
     for name in functools.WRAPPER_ASSIGNMENTS:
         setattr(test, name, getattr(body, name))

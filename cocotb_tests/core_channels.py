@@ -190,9 +190,8 @@ def every_channel_answers_for_itself(core: Core) -> None:
         assert channel.positions() == [0] * core.axes
         other = (number + 1) % count
         assert channels[other].positions() == [0 if other < number else -other - 1] * core.axes
-        pins = channel.base + r.CHANNEL_AXIS_BASE
         for level in (1, 0):
-            core.link.write(pins, level << r.AXIS_PINS_ENABLE_LSB)
+            core.link.write(channel.axis_base(0) + r.AXIS_ENABLE, level)
             core.run(4)
             assert read(core.dut.enable) == level << number * core.axes
 

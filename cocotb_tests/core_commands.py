@@ -266,7 +266,7 @@ def abort(core: Core) -> None:
     channel.abort()
     check_stopped(core, channel, Cause.ABORT)
     assert 3 <= channel.positions()[0] < 12
-    channel.pins(PinTiming())
+    channel.times(PinTiming())
     core.watch(PinTiming())
     clear_and_move(core, channel)
     # in IDLE too

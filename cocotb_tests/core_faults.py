@@ -126,7 +126,7 @@ def step_overrun(core: Core) -> None:
     assert lost[:slow_axis] == [0] * slow_axis and lost[slow_axis] == 1
     # every step is accounted for: made or lost
     assert checker.positions[slow_axis] + lost[slow_axis] == checker.positions[0]
-    channel.pins(PinTiming())
+    channel.times(PinTiming())
     core.watch(PinTiming())
     clear_and_move(core, channel)
     assert channel.state().overrun == 0

@@ -10,7 +10,7 @@
  * before left them. */
 struct judge_row {
 	uint64_t clock;
-	uint64_t inputs; /* sclk, mosi, cs_n, sync: bits 3 .. 0 */
+	uint64_t inputs; /* rst, sclk, mosi, cs_n, sync: bits 4 .. 0 */
 	uint64_t miso;
 	uint64_t outputs[5]; /* step, dir, enable, running, irq */
 };
@@ -92,7 +92,8 @@ bool judge_follow(struct judge *judge, const struct judge_row *rows, size_t coun
 		const struct passo_inputs inputs = {.spi_sclk = (now->inputs >> 3 & 1u) != 0u,
 		    .spi_mosi = (now->inputs >> 2 & 1u) != 0u,
 		    .spi_cs_n = (now->inputs >> 1 & 1u) != 0u,
-		    .sync = (now->inputs & 1u) != 0u};
+		    .sync = (now->inputs & 1u) != 0u,
+		    .rst = (now->inputs >> 4 & 1u) != 0u};
 		passo_core_clock(&judge->core, &inputs);
 		judge->clock++;
 		/* MISO follows SCLK, not the clock: the model shows it with the edge that sees SCLK. */

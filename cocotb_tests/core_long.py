@@ -42,7 +42,7 @@ def pin_timings_in_all_their_bits(core: Core) -> None:
             assert falls[0] - first == timing.high
             assert turn - falls[0] == timing.low + timing.hold
             assert second - turn == timing.setup
-        channel.pins(PinTiming())  # the second pulse ends soon
+        channel.times(PinTiming())  # the second pulse ends soon
         core.run(100)
         direction = -direction
     assert channel.positions() == [0] * core.axes

@@ -165,12 +165,27 @@ def both_edges_and_polarities(core: Core) -> None:
 
 @core_test
 def pins_follow_their_registers(core: Core) -> None:
-    """EN is what PINS says, and each pin of each axis has its own polarity."""
+    """EN is what ENABLE says, and each pin of each axis has its own polarity."""
     channel = core.channel()
+    channel.pins(PinTiming())
     for axis in range(core.axes):
-        address = channel.base + r.CHANNEL_AXIS_BASE + axis * r.CHANNEL_AXIS_STRIDE
-        for flags, pins in ((1, 4), (0, 0), (8, 4), (9, 0), (2, 1), (4, 2), (0xE, 7), (0, 0)):
+        core.link.write(channel.axis_base(axis) + r.AXIS_ENABLE, 0)
+    for axis in range(core.axes):
+        address = channel.axis_base(axis)
+        table = (
+            (0, 1, 4),
+            (0, 0, 0),
+            (8, 0, 4),
+            (8, 1, 0),
+            (8, 0, 4),
+            (2, 0, 1),
+            (4, 0, 2),
+            (0xE, 0, 7),
+            (0, 0, 0),
+        )
+        for flags, enable, pins in table:
             core.link.write(address, flags)
+            core.link.write(address + r.AXIS_ENABLE, enable)
             core.run(4)
             levels = [read(signal) for signal in (core.dut.step, core.dut.dir, core.dut.enable)]
             assert levels == [(pins >> bit & 1) << axis for bit in range(3)]

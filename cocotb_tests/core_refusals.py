@@ -69,7 +69,7 @@ def wrong_operations_and_addresses(core: Core) -> None:
     no_axis = axis + core.axes * r.CHANNEL_AXIS_STRIDE
     write, push, read = Operation.WRITE, Operation.PUSH, Operation.READ
     last = r.CHANNEL_DRAIN_VELOCITY
-    holes = (0x006, 0x0FF, channel + 5, channel + 0x22, no_axis, axis + 4, beyond, 0xA00, 0xCFF)
+    holes = (0x006, 0x0FF, channel + 5, channel + 0x22, no_axis, axis + 5, beyond, 0xA00, 0xCFF)
     cases = [
         *((Verdict.BAD_OPERATION, request(number, 100, 1, r.ADDRESS_RUN, [1])) for number in (0, 4, 7, 15)),
         (Verdict.BAD_OPERATION, request(push, 101, 1, r.ADDRESS_RUN, [1])),
@@ -99,7 +99,7 @@ def wrong_operations_and_addresses(core: Core) -> None:
             )
         ),
         # PINS and both timings are good, LOST_STEPS is not
-        (Verdict.READ_ONLY, request(write, 108, 4, axis, [1, 0x50005, 0x50005, 0])),
+        (Verdict.READ_ONLY, request(write, 108, 4, axis, [2, 0x50005, 0x50005, 0])),
         (Verdict.READ_ONLY, request(write, 109, 2, r.ADDRESS_PARAMETERS, [0, 1])),
     ]
     check_refusals(core, cases)
@@ -169,8 +169,12 @@ def bad_values(core: Core) -> None:
         (channel + r.CHANNEL_DRAIN_VELOCITY, [0x80000001]),
         (channel + r.CHANNEL_COMMAND, [1 << 4]),
         (channel + r.CHANNEL_COMMAND, [1 << 31 | 2]),
+        (channel + r.CHANNEL_DRAIN_VELOCITY, [0]),
         (axis, [1 << 5]),
-        (axis, [0x101]),
+        (axis, [1]),
+        (axis, [0x102]),
+        (axis + r.AXIS_ENABLE, [2]),
+        (axis + r.AXIS_ENABLE, [1 << 31]),
         (r.ADDRESS_RUN, [1 << 19]),
         (r.ADDRESS_RUN, [1 << core.parameters.channels]),
         (r.ADDRESS_RUN, [1 << 8 + core.parameters.channels]),
@@ -240,7 +244,7 @@ def full_queues(core: Core) -> None:
 @core_test
 def busy(core: Core) -> None:
     """Queues of a stopped channel; tables, ZERO and CLEAR while a motion runs."""
-    channel, line, ramp, _ = frames(core)
+    channel, line, ramp, axis = frames(core)
     host = core.channel()
     host.abort()
     words = Line(9, (9,) * core.axes).words()
@@ -263,7 +267,10 @@ def busy(core: Core) -> None:
             (Verdict.BUSY, request(write, 152, 1, r.ADDRESS_SIGMOID_BASE, [1])),
             (Verdict.BUSY, request(write, 153, 3, r.ADDRESS_EASE_BASE + 253, [1, 2, 3])),
             (Verdict.BUSY, request(write, 154, 1, channel, [1 << r.CHANNEL_COMMAND_ZERO_LSB])),
-            (Verdict.BUSY, request(write, 155, 1, channel, [1 << r.CHANNEL_COMMAND_CLEAR_LSB | 2])),
+            (Verdict.BUSY, request(write, 155, 1, channel, [1 << r.CHANNEL_COMMAND_CLEAR_LSB])),
+            (Verdict.BUSY, request(write, 156, 1, channel, [0xC])),
+            (Verdict.BUSY, request(write, 157, 1, axis, [0])),
+            (Verdict.BUSY, request(write, 158, 3, axis, [2, 0x50005, 0x50005])),
         ],
     )
     host.abort()

@@ -24,12 +24,11 @@ async def every_place_keeps_its_line(dut: HierarchyObject) -> None:
         controls = [(0, LAST, ENDLESS)[(n + turn) % 3] | (n + turn) % 2 << 8 for n in places]
         lines = [queue.random_line(random, control) for control in controls]
         words = [word for line in lines for word in line]
-        await queue.bus.frame()
         if count == depth:
+            await queue.bus.frame()
             answers = await queue.bus.check(words + lines[0])
             assert answers == [0] * len(words) + [QUEUE_FULL] * len(lines[0])
-            await queue.bus.frame()
-        await queue.bus.write(words)
+        await queue.bus.push(words)
         for taken, line in enumerate(lines):
             await queue.clocks.wait(2)
             queue.check_room(depth - count + taken)
@@ -52,8 +51,7 @@ async def the_lines_of_a_frame_are_counted_to_the_last_place(dut: HierarchyObjec
     room = depth
     while room > 1:
         fill = [word for _ in range(room // 2) for word in queue.random_line(random)]
-        await queue.bus.frame()
-        await queue.bus.write(fill)
+        await queue.bus.push(fill)
         room -= room // 2
         lines = [queue.random_line(random) for _ in range(room + 1)]
         await queue.bus.frame()

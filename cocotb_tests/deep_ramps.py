@@ -16,12 +16,11 @@ async def every_place_keeps_its_ramp(dut: HierarchyObject) -> None:
     for count in (queue.depth // 3, queue.depth, queue.depth):
         ramps = [random_ramp(random) for _ in range(count)]
         words = [word for ramp in ramps for word in ramp]
-        await queue.bus.frame()
         if count == queue.depth:
+            await queue.bus.frame()
             answers = await queue.bus.check(words + ramps[0])
             assert answers == [0] * len(words) + [QUEUE_FULL] * WORDS
-            await queue.bus.frame()
-        await queue.bus.write(words)
+        await queue.bus.push(words)
         await queue.take_all(ramps)
 
 
@@ -32,8 +31,7 @@ async def now_is_found_in_any_place(dut: HierarchyObject) -> None:
     queue = await Queue.begin(dut)
     for others in (*((1 << k) - 1 for k in range(queue.depth.bit_length())), 0, 0):
         ramps = [random_ramp(random, n == others) for n in range(others + 1)]
-        await queue.bus.frame()
-        await queue.bus.write([word for ramp in ramps for word in ramp])
+        await queue.bus.push([word for ramp in ramps for word in ramp])
         await queue.check(ramps, now_pending=True)
         await queue.strobe("take_now")
         await queue.check(ramps[-1:])

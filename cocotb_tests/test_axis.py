@@ -18,6 +18,7 @@ LOST_MAX = 15
 
 INPUTS = (
     "step_request",
+    "pins_written",
     "direction",
     "drop",
     "clear",
@@ -82,6 +83,37 @@ def expected_steps(
     return steps, lost
 
 
+def apply(dut: HierarchyObject, timing: PinTiming) -> None:
+    """Set all settings."""
+    dut.step_high.value = timing.high
+    dut.step_low.value = timing.low
+    dut.dir_setup.value = timing.setup
+    dut.dir_hold.value = timing.hold
+    dut.both_edges.value = timing.both_edges
+    dut.step_inverted.value = timing.step_inverted
+    dut.direction_inverted.value = timing.direction_inverted
+
+
+async def write(dut: HierarchyObject, clocks: Clocks, timing: PinTiming) -> None:
+    """Write pins and timings as the registers do: they change a clock after the strobe."""
+    dut.pins_written.value = 1
+    await clocks.wait(1)
+    dut.pins_written.value = 0
+    apply(dut, timing)
+    await clocks.wait(1)
+    while not read(dut.quiet):
+        await clocks.wait(1)
+
+
+async def prepare(dut: HierarchyObject, timing: PinTiming) -> Clocks:
+    """Reset with these settings in force; the pins stand."""
+    clocks = await begin(dut, *INPUTS)
+    while not read(dut.quiet):
+        await clocks.wait(1)
+    await write(dut, clocks, timing)
+    return clocks
+
+
 class Axis:
     """The module under test with its pins watched."""
 
@@ -95,26 +127,12 @@ class Axis:
     @classmethod
     async def begin(cls, dut: HierarchyObject, timing: PinTiming) -> "Axis":
         """Reset with these settings in force."""
-        clocks = await begin(dut, *INPUTS)
-        cls._apply(dut, timing)
-        await clocks.wait(3)
-        return cls(dut, clocks, timing)
-
-    @staticmethod
-    def _apply(dut: HierarchyObject, timing: PinTiming) -> None:
-        dut.step_high.value = timing.high
-        dut.step_low.value = timing.low
-        dut.dir_setup.value = timing.setup
-        dut.dir_hold.value = timing.hold
-        dut.both_edges.value = timing.both_edges
-        dut.step_inverted.value = timing.step_inverted
-        dut.direction_inverted.value = timing.direction_inverted
+        return cls(dut, await prepare(dut, timing), timing)
 
     async def set_timing(self, timing: PinTiming) -> None:
         """Change the settings while the axis stands."""
         self.timing = timing
-        self._apply(self.dut, timing)
-        await self.clocks.wait(3)
+        await write(self.dut, self.clocks, timing)
         self.checker.set_timing(0, timing)
 
     async def request(self, requests: Sequence[Request]) -> None:
@@ -334,7 +352,7 @@ def read_lost(axis: Axis) -> int:
 @cocotb.parametrize(high=[0, 1, 2, 8, 70])
 async def a_time_that_is_written_begins_anew(dut: HierarchyObject, high: int) -> None:
     """step_high written at any clock of a pulse: from then on STEP stays active for the new time."""
-    clocks = await begin(dut, *INPUTS)
+    clocks = await prepare(dut, PinTiming())
     for at in range(LATENCY - 1, LATENCY + 17):
         dut.step_high.value = 20
         pins = Recorder(clocks, dut.step_pin)
@@ -351,6 +369,83 @@ async def a_time_that_is_written_begins_anew(dut: HierarchyObject, high: int) ->
         # the time begins with the second clock after the write; the pin follows a clock later
         assert pins.changes == [(now + LATENCY, 1), (now + at + 3 + max(1, high), 0)]
         pins.stop()
+
+
+@cocotb.test()
+@cocotb.parametrize(
+    before=[PinTiming(), PinTiming(3, 2, 1, 1, both_edges=True)],
+    after=[
+        PinTiming(2, 1, 9, 1, direction_inverted=True),
+        PinTiming(2, 7, 1, 1, step_inverted=True),
+        PinTiming(1, 5, 3, 2, both_edges=True, step_inverted=True, direction_inverted=True),
+    ],
+)
+async def a_change_of_polarity_is_a_change_of_dir(
+    dut: HierarchyObject, before: PinTiming, after: PinTiming
+) -> None:
+    """From the write on, the low time, DIR hold and set-up are over before the next step."""
+    for steps in (1, 2):
+        for at in range(2, 30):
+            axis = await Axis.begin(dut, before)
+            await axis.request([(axis.clocks.now + 5 * n, 1) for n in range(steps)])
+            await axis.clocks.wait(40)
+            assert read(dut.quiet)
+            step_pin = read(dut.step_pin)
+            axis.checker.finish()
+            dut.pins_written.value = 1
+            written = axis.clocks.now
+            made = Recorder(axis.clocks, dut.step_made)
+            await axis.clocks.fall
+            dut.pins_written.value = 0
+            apply(dut, after)
+            await axis.request([(written + at, 1)])
+            await axis.clocks.wait(60)
+            (step, _), _ = made.changes
+            # both pins have followed three clocks after the strobe at the latest
+            busy = max(1, after.low if not (after.both_edges and steps % 2) else after.high)
+            assert step + 1 - (written + 2) >= max(busy, max(1, after.setup)), (step, written)
+            assert step + 1 - (written + 3) <= busy + max(1, after.hold) + max(1, after.setup) + at + 4
+            # with single edges STEP is inactive again, whatever it was
+            level = read(dut.step_pin) ^ after.step_inverted
+            assert level == (0 if not after.both_edges else (steps * before.both_edges + 1) % 2), step_pin
+            made.stop()
+
+
+@cocotb.test()
+@cocotb.parametrize(
+    timing=[
+        PinTiming(6, 3, 4, 5),
+        PinTiming(6, 3, 4, 5, step_inverted=True, direction_inverted=True),
+        PinTiming(6, 3, 4, 5, both_edges=True),
+    ]
+)
+async def a_reset_makes_no_edge(dut: HierarchyObject, timing: PinTiming) -> None:
+    """At any clock of steps and turns: STEP and DIR stand while it lasts, then a pulse is finished."""
+    for length in (1, 2, 7):
+        for at in range(40):
+            clocks = await prepare(dut, timing)
+            start = clocks.now
+            for clock in range(at + 1):
+                dut.step_request.value = clock < 3
+                dut.direction.value = clock >= 2
+                await clocks.until(start + clock + 1)
+            steps, dirs = Recorder(clocks, dut.step_pin), Recorder(clocks, dut.dir_pin)
+            levels = read(dut.step_pin), read(dut.dir_pin)
+            dut.rst.value = 1
+            dut.step_request.value = dut.direction.value = 0
+            await clocks.wait(length)
+            dut.rst.value = 0
+            assert (read(dut.step_pin), read(dut.dir_pin)) == levels
+            await clocks.wait(80)
+            assert read(dut.quiet)
+            # a pulse that has begun is finished, and lasts its time from the reset on
+            active = levels[0] != timing.step_inverted and not timing.both_edges
+            assert [level for _, level in steps.changes] == [timing.step_inverted] * active
+            assert all(clock >= start + at + 1 + length + timing.high for clock, _ in steps.changes)
+            # then DIR goes back to the direction of no line
+            assert len(dirs.changes) == (levels[1] != timing.direction_inverted)
+            steps.stop()
+            dirs.stop()
 
 
 def random_timing(random: Random) -> PinTiming:

@@ -3,14 +3,21 @@
 
 import cocotb
 from cocotb.handle import HierarchyObject
+from cocotb.triggers import Timer
 
 from cocotb_tests.bench import Clocks, begin, read, rng
 from cocotb_tests.runner import run
 
 AXES = 8
 BAD_OPERATION, READ_ONLY, BAD_VALUE = 4, 6, 9
-PINS, STEP_TIMING, DIR_TIMING, LOST_STEPS = range(4)
-PINS_MAX = 0x1F
+PINS, STEP_TIMING, DIR_TIMING, LOST_STEPS, ENABLE = range(5)
+DEFINED = {PINS: 0x1E, ENABLE: 1}  # bits
+WRITABLE = {
+    PINS: "write_pins",
+    STEP_TIMING: "write_step_timing",
+    DIR_TIMING: "write_dir_timing",
+    ENABLE: "write_enable",
+}
 INPUTS = (
     "bus_check", "bus_write", "bus_read", "bus_push", "select_axis", "select_position", "bus_address",
     "bus_data", "bus_top_bit", "lost",
@@ -53,18 +60,38 @@ async def every_check_has_its_answer(dut: HierarchyObject) -> None:
         dut.bus_push.value = push
         for place in places():
             block, _, address = place
-            data = random.choice((PINS_MAX, 1 << random.randrange(32), random.getrandbits(32)))
+            data = random.choice((DEFINED[PINS], 0, 1 << random.randrange(32), random.getrandbits(32)))
             await strobe(dut, clocks, "bus_check", place, data)
             readable = block == "select_position" or (block == "select_axis" and address == LOST_STEPS)
-            writable = block == "select_axis" and address < LOST_STEPS
+            writable = block == "select_axis" and address in WRITABLE
             expected = 0
             if readable or writable:
-                bad = address == PINS and data > PINS_MAX
+                bad = data & ~DEFINED.get(address, data) != 0
                 expected = BAD_OPERATION if push else READ_ONLY if readable else BAD_VALUE if bad else 0
             assert (read(dut.claim), read(dut.refusal)) == (readable or writable, expected), (place, data)
             assert (read(dut.read_data), read(dut.answers_position)) == (0, 0)
             await clocks.wait(1)
             assert (read(dut.claim), read(dut.refusal)) == (0, 0)
+
+
+@cocotb.test()
+async def pins_need_a_quiet_channel(dut: HierarchyObject) -> None:
+    """Said with the strobe that checks the pins of any axis, and at no other time."""
+    clocks = await begin(dut, *INPUTS)
+    for place in places():
+        for name in ("bus_check", "bus_write", "bus_read"):
+            block, axis, address = place
+            for other in ("select_axis", "select_position"):
+                getattr(dut, other).value = 1 << axis if other == block else 0
+            dut.bus_address.value = address
+            await clocks.wait(1)
+            assert not read(dut.needs_quiet)
+            getattr(dut, name).value = 1
+            await Timer(1, "step")
+            meant = name == "bus_check" and block == "select_axis" and address == PINS
+            assert read(dut.needs_quiet) == meant, (place, name)
+            await clocks.wait(1)
+            getattr(dut, name).value = 0
 
 
 @cocotb.test()
@@ -80,7 +107,7 @@ async def every_read_has_its_answer(dut: HierarchyObject) -> None:
             await strobe(dut, clocks, "bus_read", place)
             is_lost = block == "select_axis" and address == LOST_STEPS
             position = block == "select_position"
-            writable = block == "select_axis" and address < LOST_STEPS
+            writable = block == "select_axis" and address in WRITABLE
             assert read(dut.read_data) == (lost >> 4 * axis & 0xF if is_lost else 0), place
             assert read(dut.answers_position) == position
             expected = (is_lost or position or writable, BAD_OPERATION if writable else 0)
@@ -104,7 +131,7 @@ async def every_write_reaches_its_axis(dut: HierarchyObject) -> None:
         for level in (0, 1):
             dut.bus_write.value = level
             await clocks.wait(1)
-            for register, name in enumerate(("write_pins", "write_step_timing", "write_dir_timing")):
+            for register, name in WRITABLE.items():
                 meant = level and block == "select_axis" and address == register
                 assert read(getattr(dut, name)) == (1 << axis if meant else 0), place
         assert (read(dut.short_upper), read(dut.short_lower)) == tuple(half < 2 for half in halves)

@@ -5,17 +5,18 @@ from random import Random
 
 import cocotb
 from cocotb.handle import HierarchyObject
+from cocotb.triggers import ReadOnly, Timer
 
-from cocotb_tests.bench import Clocks, begin, read, rng
+from cocotb_tests.bench import PERIOD, Clocks, begin, read, rng
 from cocotb_tests.runner import run
 
 AXES = 8
 LINE_QUEUE_LOG2 = RAMP_QUEUE_LOG2 = 8
-BAD_OPERATION, READ_ONLY, BUSY, BAD_VALUE = 4, 6, 8, 9
+BAD_OPERATION, READ_ONLY, BAD_VALUE = 4, 6, 9
 COMMAND, RATE_TARGET, RATE_SLEW, STOP_SLEW, DRAIN_VELOCITY = range(5)
 STATE, RATE, ROOM, VELOCITY = range(8, 12)
 LINE, RAMP, POSITIONS, AXIS = 0x20, 0x21, 0x40, 0x80
-CLEAR_OR_ZERO = 0b1100
+STOP, ABORT, CLEAR, ZERO = (1 << bit for bit in range(4))
 LIMITS = {COMMAND: 15, RATE_TARGET: 1 << 16, RATE_SLEW: 1 << 16, STOP_SLEW: 1 << 16, DRAIN_VELOCITY: 1 << 31}
 SETTINGS = {
     RATE_TARGET: "rate_target",
@@ -25,8 +26,8 @@ SETTINGS = {
 }
 COMMANDS = ("command_stop", "command_abort", "command_clear", "command_zero")
 STATES = {
-    "state": 3, "cause": 3, "stopping": 1, "overrun": AXES, "drained": 16, "rate": 17, "velocity": 32,
-    "line_room": LINE_QUEUE_LOG2 + 1, "ramp_room": RAMP_QUEUE_LOG2 + 1,
+    "state": 3, "quiet": 1, "cause": 3, "stopping": 1, "overrun": AXES, "drained": 16, "rate": 17,
+    "velocity": 32, "line_room": LINE_QUEUE_LOG2 + 1, "ramp_room": RAMP_QUEUE_LOG2 + 1,
 }  # fmt: skip
 BUS = (
     "bus_check", "bus_write", "bus_read", "bus_push", "select", "bus_address", "bus_data", "bus_top_bit",
@@ -48,7 +49,7 @@ class Bench:
     @classmethod
     async def begin(cls, dut: HierarchyObject) -> "Bench":
         """Reset."""
-        return cls(dut, await begin(dut, *BUS, "occupied", *STATES))
+        return cls(dut, await begin(dut, *BUS, *STATES))
 
     async def strobe(self, name: str, address: int, data: int = 0, push: bool = False) -> None:
         """Put an access on the bus and raise a strobe for a clock; the answer is there on return."""
@@ -69,7 +70,12 @@ class Bench:
         return read(self.dut.claim), read(self.dut.refusal)
 
 
-def expected_answer(address: int, data: int, push: bool, occupied: bool) -> tuple[int, int]:
+def command_of(data: int) -> int:
+    """The bits of a command that count."""
+    return ABORT if data & ABORT else STOP if data & STOP else data
+
+
+def expected_answer(address: int, data: int, push: bool) -> tuple[int, int]:
     """What a check is answered."""
     queue = address in (LINE, RAMP)
     if not queue and address not in LIMITS and address not in (STATE, RATE, ROOM, VELOCITY):
@@ -80,7 +86,7 @@ def expected_answer(address: int, data: int, push: bool, occupied: bool) -> tupl
         return 1, READ_ONLY
     if data > LIMITS.get(address, data):
         return 1, BAD_VALUE
-    return 1, BUSY if address == COMMAND and data & CLEAR_OR_ZERO and occupied else 0
+    return 1, BAD_VALUE if address == DRAIN_VELOCITY and data == 0 else 0
 
 
 def random_data(random: Random) -> int:
@@ -115,24 +121,45 @@ async def every_check_has_its_answer(dut: HierarchyObject) -> None:
     for _ in range(3):
         for address in (*range(0x30), POSITIONS, AXIS, 0xFF):
             for push in (False, True):
-                data, occupied = random_data(random), random.random() < 0.5
-                dut.occupied.value = occupied
+                data = random.choice((random_data(random), 0, 1))
                 await bench.strobe("bus_check", address, data, push)
-                expected = expected_answer(address, data, push, occupied)
-                assert bench.answer() == expected, f"{address:#x} {data:#x} {push=} {occupied=}"
+                assert bench.answer() == expected_answer(address, data, push), (
+                    f"{address:#x} {data:#x} {push=}"
+                )
                 await bench.clocks.wait(1)
                 assert bench.answer() == (0, 0)
     for command in range(17):
-        for occupied in (False, True):
-            dut.occupied.value = occupied
-            await bench.strobe("bus_check", COMMAND, command)
-            assert bench.answer() == expected_answer(COMMAND, command, False, occupied), command
+        await bench.strobe("bus_check", COMMAND, command)
+        assert bench.answer() == expected_answer(COMMAND, command, False), command
     dut.select.value = 0
     dut.bus_address.value = RATE_TARGET
     await bench.clocks.wait(2)
     dut.bus_check.value = 1
     await bench.clocks.wait(1)
     assert bench.answer() == (0, 0)
+
+
+@cocotb.test()
+async def commands_say_what_they_need(dut: HierarchyObject) -> None:
+    """With the strobe of the check: CLEAR no motion, ZERO a quiet channel, a stop nothing."""
+    bench = await Bench.begin(dut)
+    for name in ("bus_check", "bus_write", "bus_read"):
+        for address in (COMMAND, RATE_TARGET, STATE, LINE):
+            for command in range(16):
+                needs = []
+
+                async def watch(needs: list[tuple[int, int]] = needs) -> None:
+                    for _ in range(5):
+                        await ReadOnly()
+                        needs.append((read(dut.needs_idle), read(dut.needs_quiet)))
+                        await Timer(PERIOD, "step")
+
+                watching = cocotb.start_soon(watch())
+                await bench.strobe(name, address, command)
+                await watching
+                meant = command_of(command) if (name, address) == ("bus_check", COMMAND) else 0
+                assert needs.count((0, 0)) == 5 - (meant & (CLEAR | ZERO) != 0)
+                assert all(need in ((0, 0), (meant & CLEAR != 0, meant & ZERO != 0)) for need in needs)
 
 
 @cocotb.test()
@@ -150,7 +177,7 @@ async def what_is_written_stands(dut: HierarchyObject) -> None:
         assert {n: read(getattr(dut, name)) for n, name in SETTINGS.items()} == settings
         for clock in range(2):
             now = [read(getattr(dut, name)) for name in COMMANDS]
-            wanted = data if address == COMMAND and clock == 0 else 0
+            wanted = command_of(data) if address == COMMAND and clock == 0 else 0
             assert now == [wanted >> bit & 1 for bit in range(4)]
             await bench.clocks.wait(1)
 
@@ -169,7 +196,12 @@ async def states_are_read_as_they_are(dut: HierarchyObject) -> None:
             getattr(dut, name).value = value
         v = values
         words = {
-            STATE: v["drained"] << 16 | v["overrun"] << 8 | v["stopping"] << 7 | v["cause"] << 4 | v["state"],
+            STATE: v["drained"] << 16
+            | v["overrun"] << 8
+            | v["stopping"] << 7
+            | v["cause"] << 4
+            | v["quiet"] << 3
+            | v["state"],
             RATE: v["rate"],
             ROOM: v["line_room"] << 16 | v["ramp_room"],
             VELOCITY: v["velocity"],
@@ -177,7 +209,7 @@ async def states_are_read_as_they_are(dut: HierarchyObject) -> None:
         address = random.choice((*words, *words, *range(0x30)))
         await bench.strobe("bus_read", address)
         assert read(dut.read_data) == words.get(address, 0)
-        known = expected_answer(address, 0, False, False)[0]
+        known = expected_answer(address, 0, False)[0]
         assert bench.answer() == (known, BAD_OPERATION if known and address not in words else 0)
         await bench.clocks.wait(1)
         assert read(dut.read_data) == 0

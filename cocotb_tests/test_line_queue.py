@@ -192,6 +192,34 @@ async def a_frame_needs_room_for_all_its_lines(dut: HierarchyObject) -> None:
 
 
 @cocotb.test()
+async def room_is_taken_when_a_frame_is_accepted(dut: HierarchyObject) -> None:
+    """For all its lines at once, before the first is written; places that are freed meanwhile count."""
+    random = rng("line queue, accepted")
+    queue = await Queue.begin(dut)
+    await queue.bus.push(queue.random_line(random) + queue.random_line(random))
+    await queue.strobe("take")
+    words = [word for _ in range(2) for word in queue.random_line(random)]
+    for delay in range(-2, 3):
+        room = read(dut.room)
+        await queue.bus.frame()
+        assert set(await queue.bus.check(words)) == {0}
+        queue.check_room(room)
+        accept, free = queue.clocks.now + 3, queue.clocks.now + 3 + delay
+        dut.bus_commit.value = 1
+        for _ in range(8):
+            dut.bus_frame.value = queue.clocks.now == accept
+            dut.take.value = queue.clocks.now == free
+            await queue.clocks.wait(1)
+        queue.check_room(room - 2 + 1)
+        await queue.bus.write(words)
+        queue.check_room(room - 2 + 1)
+        for _ in range(1):
+            await queue.strobe("take")
+            await queue.clocks.wait(2)
+        queue.check_room(room - 2 + 2)
+
+
+@cocotb.test()
 async def a_stopped_channel_refuses_lines(dut: HierarchyObject) -> None:
     """BUSY goes before QUEUE_FULL and BAD_VALUE; other registers are no business of the queue."""
     queue = await Queue.begin(dut)

@@ -149,7 +149,7 @@ class Bench:
     ) -> "Bench":
         """Reset."""
         master = SpiMaster(dut, half_period, **spi)
-        inputs = ("bus_claim", "bus_refusal", "bus_read_data", "bus_counters", "bus_incomplete")
+        inputs = ("bus_claim", "bus_refusal", "bus_read_data", "bus_counters", "bus_incomplete", "bus_busy")
         dut.status.value = STATUS
         return cls(dut, await begin(dut, *inputs, period=period), master)
 

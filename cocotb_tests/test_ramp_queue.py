@@ -8,7 +8,7 @@ from random import Random
 import cocotb
 from cocotb.handle import HierarchyObject
 
-from cocotb_tests.bench import Clocks, PushBus, begin, read, rng
+from cocotb_tests.bench import Clocks, PushBus, Recorder, begin, read, rng
 from cocotb_tests.runner import run
 
 DEPTH_LOG2 = 2
@@ -194,6 +194,39 @@ async def a_frame_needs_room_for_all_its_ramps(dut: HierarchyObject) -> None:
         if room:
             ramps.append(random_ramp(random))
             await queue.bus.push(ramps[-1])
+
+
+@cocotb.test()
+async def room_is_taken_when_a_frame_is_accepted(dut: HierarchyObject) -> None:
+    """For all its ramps at once, before the first is written."""
+    random = rng("ramp queue, accepted")
+    queue = await Queue.begin(dut)
+    ramps = [random_ramp(random) for _ in range(DEPTH)]
+    for count in (1, DEPTH - 1, DEPTH):
+        words = [word for ramp in ramps[:count] for word in ramp]
+        await queue.bus.frame()
+        assert set(await queue.bus.check(words)) == {0}
+        assert read(dut.room) == DEPTH
+        await queue.bus.frame(commit=True)
+        assert read(dut.room) == DEPTH - count
+        await queue.bus.write(words)
+        assert read(dut.room) == DEPTH - count
+        await queue.take_all(ramps[:count])
+
+
+@cocotb.test()
+async def a_ramp_with_now_says_what_it_needs(dut: HierarchyObject) -> None:
+    """With the strobe that checks its control word, and no other."""
+    random = rng("ramp queue, needs")
+    queue = await Queue.begin(dut)
+    needs = Recorder(queue.clocks, dut.needs_motion)
+    for now in (False, True, False, True):
+        await queue.bus.frame()
+        await queue.bus.check(random_ramp(random, now))
+        await queue.clocks.wait(2)
+        rises = [clock for clock, level in needs.changes if level]
+        needs.changes.clear()
+        assert len(rises) == now
 
 
 @cocotb.test()

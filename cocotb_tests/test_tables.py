@@ -2,6 +2,7 @@
 """passo_tables: what they hold, their bus, and how they serve the channels."""
 
 from random import Random
+from typing import Any
 
 import cocotb
 import pytest
@@ -13,10 +14,10 @@ from cocotb_tests.shapes import POINTS, Shape, loaded_table
 
 TABLES = [shape for shape in Shape if shape != Shape.LINEAR]
 INPUTS = (
-    "bus_check", "bus_write", "bus_read", "bus_push", "select", "bus_address", "bus_data", "occupied",
-    "request", "address",
+    "bus_frame", "bus_commit", "bus_check", "bus_write", "bus_read", "bus_push", "select", "bus_address",
+    "bus_data", "request", "address",
 )  # fmt: skip
-BAD_OPERATION, BUSY, BAD_VALUE = 4, 8, 9
+BAD_OPERATION, BAD_VALUE = 4, 9
 
 # Only loading the FPGA sets the tables, reset does not: tests that need them fresh come first.
 
@@ -101,32 +102,54 @@ async def the_tables_bus_refuses_what_it_must(dut: HierarchyObject) -> None:
     for shape, points in tables.items():
         await bench.write_table(shape, points)
     cases = [
-        # strobe, occupied, push, data, expected
-        ("bus_check", 0, 0, 0x1234, 0),
-        ("bus_check", 0, 0, 0xFFFF, 0),
-        ("bus_check", 0, 0, 0x10000, BAD_VALUE),
-        ("bus_check", 0, 0, 0x80000000, BAD_VALUE),
-        ("bus_check", 1, 0, 0x1234, BUSY),
-        ("bus_check", 0, 1, 0x1234, BAD_OPERATION),
-        ("bus_read", 0, 0, 0x1234, BAD_OPERATION),
+        # strobe, push, data, expected
+        ("bus_check", 0, 0x1234, 0),
+        ("bus_check", 0, 0xFFFF, 0),
+        ("bus_check", 0, 0x10000, BAD_VALUE),
+        ("bus_check", 0, 0x80000000, BAD_VALUE),
+        ("bus_check", 1, 0x1234, BAD_OPERATION),
+        ("bus_read", 0, 0x1234, BAD_OPERATION),
     ]
-    for strobe, occupied, push, data, expected in cases:
+    for strobe, push, data, expected in cases:
         for address in (0x100, 0x1FF, 0x300):
             for selected in (1, 0):
                 dut.select.value = selected
                 dut.bus_address.value = address
                 dut.bus_data.value = data & 0xFFFF
                 dut.bus_top_bit.value = max(0, data.bit_length() - 1)
-                dut.occupied.value = occupied
+
                 dut.bus_push.value = push
                 getattr(dut, strobe).value = 1
                 await bench.clocks.wait(1)
                 getattr(dut, strobe).value = 0
-                assert read(dut.refusal) == (expected if selected else 0), (strobe, occupied, push, hex(data))
+                assert read(dut.refusal) == (expected if selected else 0), (strobe, push, hex(data))
                 await bench.clocks.wait(1)
                 assert read(dut.refusal) == 0
     for shape, points in tables.items():
         await bench.check_table(shape, points, 17)
+
+
+@cocotb.test()
+async def a_frame_that_writes_tables_says_so(dut: HierarchyObject) -> None:
+    """From the first check of a point until the next frame begins, also while it is executed."""
+    bench = await Bench.begin(dut)
+
+    async def pulse(signal: Any, selected: int = 1) -> int:
+        dut.select.value = selected
+        signal.value = 1
+        await bench.clocks.wait(1)
+        signal.value = 0
+        await bench.clocks.wait(1)
+        return read(dut.wanted)
+
+    assert not await pulse(dut.bus_check, selected=0)
+    assert not await pulse(dut.bus_read)
+    assert await pulse(dut.bus_check)
+    dut.bus_commit.value = 1
+    assert await pulse(dut.bus_frame)
+    assert await pulse(dut.bus_write)
+    dut.bus_commit.value = 0
+    assert not await pulse(dut.bus_frame)
 
 
 @cocotb.test()

@@ -11,13 +11,20 @@
 // that finds the queue `full` is not made but counts in `lost`, which stops at 15. While nothing waits, DIR
 // follows `direction`, that of the line whose steps are being made. With both_edges every edge of STEP is a
 // step, and each level lasts at least step_high or step_low. `drop` empties the queue; a pulse that has begun is
-// finished. No timing is 0. `timing_written` starts the time that runs anew, as the timings change with it.
+// finished. No timing is 0. `timing_written` restarts the running time, as the timings change with it.
+// `pins_written`, while `quiet`: polarities and mode change with it, the pins follow two clocks later; the next step
+// waits for step_low, dir_hold and dir_setup. So it does after a reset, which leaves STEP and DIR as they are and
+// finishes a pulse that has begun. `quiet`: no step waits or is shaped, no time runs.
 // Latency: step_request to STEP 3 clocks, `direction` to DIR 3 clocks. `step_made`, with `step_direction`, is
 // high in the clock before the active edge leaves the pin.
 `resetall
 `default_nettype none
 
-module passo_axis (
+module passo_axis #(
+  parameter [0:0] STEP_RESET   = 0,  // levels of the pins from configuration on
+  parameter [0:0] DIR_RESET    = 0,
+  parameter [0:0] ENABLE_RESET = 0
+) (
   input  wire        clk,
   input  wire        rst,
   input  wire        step_request,
@@ -26,6 +33,7 @@ module passo_axis (
   output reg         step_made,
   output wire        step_direction,
   output wire        full,                // no place for a step
+  output reg         quiet,               // of a clock ago
   input  wire        clear,               // of `lost`
   output reg  [ 3:0] lost,
   // settings
@@ -38,6 +46,7 @@ module passo_axis (
   input  wire        short_setup,
   input  wire        short_hold,
   input  wire        timing_written,
+  input  wire        pins_written,
   input  wire        both_edges,
   input  wire        step_inverted,
   input  wire        direction_inverted,
@@ -55,6 +64,8 @@ module passo_axis (
   reg setup;
   reg idle;  // a step or, unless in hold, a turn may begin
   reg hold;  // a step in the same direction may interrupt it
+  reg settle;  // polarities and mode have changed
+  reg unsettled;  // since then DIR has had no set-up time
   reg step;
   reg dir;
 
@@ -77,7 +88,7 @@ module passo_axis (
   reg  [3:0] waits;  // which places are taken
   reg        waits_up;  // waits[0] & ~waiting[0]
   reg        waits_down;  // waits[0] & waiting[0]
-  wire       ready = dir ? waits_down : waits_up;
+  wire       ready = ~unsettled & (dir ? waits_down : waits_up);
   wire       wrong = waiting[0] ^ dir;
   wire       accepted = step_request & ~full;
   reg        overrun;  // a step was not accepted, a clock ago
@@ -88,12 +99,16 @@ module passo_axis (
   wire low_over = low & level_done;
   wire free = idle | low_over | (setup & dir_done);
   wire step_begins = free & ready;
-  wire turn = idle & wrong & (~hold | dir_done);
+  wire turns = wrong | unsettled;
+  wire turn = idle & turns & (~hold | dir_done);
   wire edge_begins = step_begins | falls;
 
   // a time begins, or none runs
-  wire begins = idle  ? ~hold | timing_written | ready | (wrong & dir_done) :
-                        timing_written | (setup ? dir_done : level_done);
+  wire restart = timing_written | settle;
+  wire begins = idle  ? ~hold | restart | ready | (turns & dir_done) :
+                        restart | (setup ? dir_done : level_done);
+
+  wire pulse = (step_pin ^ step_inverted) & ~both_edges;  // one is on the pin, and has an end
 
   assign step_direction = dir;  // does not change in the clock after step_begins
 
@@ -115,23 +130,27 @@ module passo_axis (
     overrun    <= step_request & full;
     if (overrun && lost != 4'hF) lost <= lost + 4'd1;
 
-    timer <= !begins ? timer + 16'd1 : timing_written ? 16'd1 : 16'd2;
+    timer <= !begins ? timer + 16'd1 : restart ? 16'd1 : 16'd2;
     if ((high || low) && !level_done) level_done <= &level_equal;
     else level_done <= step ? short_low : short_high;
     if ((setup || hold) && !dir_done) dir_done <= &dir_equal;
     else dir_done <= low ? short_hold : short_setup;
-    if (timing_written) begin
+    if (restart) begin
       level_done <= 1'b0;
       dir_done   <= 1'b0;
     end
 
     high  <= (high & ~falls) | (step_begins & ~both_edges);
-    low   <= (low & ~low_over) | falls | (step_begins & both_edges);
+    low   <= (low & ~low_over) | falls | (step_begins & both_edges) | settle;
     setup <= (setup & ~dir_done) | turn;
-    idle  <= free & ~step_begins & ~turn;
+    idle  <= free & ~step_begins & ~turn & ~settle;
     hold  <= ((hold & ~dir_done) | low_over) & ~step_begins & ~turn;
-    step  <= step ^ edge_begins;
-    dir   <= dir ^ turn;
+    step  <= (step & ~(settle & ~both_edges)) ^ edge_begins;
+    dir   <= dir ^ (turn & wrong);
+
+    settle    <= pins_written;
+    unsettled <= settle | (unsettled & ~turn);
+    quiet     <= idle & ~hold & ~turns & ~waits[0] & ~step_request & ~pins_written & ~settle;
 
     step_made  <= step_begins;
     step_pin   <= step ^ step_inverted;
@@ -145,11 +164,15 @@ module passo_axis (
     end
     if (clear) lost <= 4'd0;
     if (rst) begin
-      high       <= 1'b0;
-      low        <= 1'b0;
+      high       <= pulse;
+      low        <= ~pulse;
       setup      <= 1'b0;
-      idle       <= 1'b1;
+      idle       <= 1'b0;
       hold       <= 1'b0;
+      settle     <= 1'b0;
+      unsettled  <= 1'b1;
+      quiet      <= 1'b0;
+      timer      <= 16'd1;
       level_done <= 1'b0;
       dir_done   <= 1'b0;
       waits      <= 4'd0;
@@ -158,13 +181,18 @@ module passo_axis (
       waits_down <= 1'b0;
       overrun    <= 1'b0;
       lost       <= 4'd0;
-      step       <= 1'b0;
-      dir        <= 1'b0;
+      step       <= step_pin ^ step_inverted;
+      dir        <= dir_pin ^ direction_inverted;
       step_made  <= 1'b0;
-      step_pin   <= 1'b0;
-      dir_pin    <= 1'b0;
-      enable_pin <= 1'b0;
+      step_pin   <= step_pin;
+      dir_pin    <= dir_pin;
     end
+  end
+
+  initial begin
+    step_pin   = STEP_RESET;
+    dir_pin    = DIR_RESET;
+    enable_pin = ENABLE_RESET;
   end
 
 `ifdef FORMAL

@@ -30,8 +30,10 @@ module passo_axis_registers #(
   output reg  [  AXES-1:0] write_pins,         // strobes, a clock after the bus's, with bus_data
   output reg  [  AXES-1:0] write_step_timing,
   output reg  [  AXES-1:0] write_dir_timing,
+  output reg  [  AXES-1:0] write_enable,
   output reg               short_upper,        // half of bus_data is 0 or 1
   output reg               short_lower,
+  output wire              needs_quiet,        // strobe: the pins of an axis are checked
   input  wire [AXES*4-1:0] lost
 );
 
@@ -41,31 +43,38 @@ module passo_axis_registers #(
   reg  is_pins;
   reg  is_step_timing;
   reg  is_dir_timing;
+  reg  is_enable;
   reg  is_lost;
   reg  is_position;
   wire is_axis = select_axis != {AXES{1'b0}};
   reg  readable;
   reg  writable;
-  reg  undefined;
+  reg  not_pins;  // the data have bits that PINS has not
+  reg  not_enable;
 
   always @(posedge clk) begin
     is_pins <= is_axis && bus_address == AXIS_PINS;
     is_step_timing <= is_axis && bus_address == AXIS_STEP_TIMING;
     is_dir_timing <= is_axis && bus_address == AXIS_DIR_TIMING;
+    is_enable <= is_axis && bus_address == AXIS_ENABLE;
     is_lost <= is_axis && bus_address == AXIS_LOST_STEPS;
     is_position <= select_position != {AXES{1'b0}};
     readable <= (is_axis && bus_address == AXIS_LOST_STEPS) || select_position != {AXES{1'b0}};
     writable          <= is_axis && (bus_address == AXIS_PINS || bus_address == AXIS_STEP_TIMING
-                                     || bus_address == AXIS_DIR_TIMING);
+                                     || bus_address == AXIS_DIR_TIMING || bus_address == AXIS_ENABLE);
     write_pins <= select_axis & {AXES{bus_write & is_pins}};
     write_step_timing <= select_axis & {AXES{bus_write & is_step_timing}};
     write_dir_timing <= select_axis & {AXES{bus_write & is_dir_timing}};
+    write_enable <= select_axis & {AXES{bus_write & is_enable}};
     if (rst) begin
       write_pins        <= {AXES{1'b0}};
       write_step_timing <= {AXES{1'b0}};
       write_dir_timing  <= {AXES{1'b0}};
+      write_enable      <= {AXES{1'b0}};
     end
   end
+
+  assign needs_quiet = bus_check & is_pins;
 
   reg     [3:0] selected_lost;
   integer       i;
@@ -77,7 +86,8 @@ module passo_axis_registers #(
   always @(posedge clk) begin
     short_upper      <= bus_data[31:16] < 16'd2;
     short_lower      <= bus_data[15:0] < 16'd2;
-    undefined        <= bus_top_bit > 5'd4;
+    not_pins         <= bus_top_bit > 5'd4 || bus_data[0];
+    not_enable       <= bus_top_bit != 5'd0;
     claim            <= (bus_check | bus_read) & (readable | writable);
     refusal          <= VERDICT_OK;
     read_data        <= bus_read && is_lost ? selected_lost : 4'd0;
@@ -85,7 +95,7 @@ module passo_axis_registers #(
     if (bus_check && (readable || writable))
       refusal <= bus_push             ? VERDICT_BAD_OPERATION :
                  readable             ? VERDICT_READ_ONLY :
-                 is_pins && undefined ? VERDICT_BAD_VALUE : VERDICT_OK;
+                 (is_pins && not_pins) || (is_enable && not_enable) ? VERDICT_BAD_VALUE : VERDICT_OK;
     if (bus_read && writable) refusal <= VERDICT_BAD_OPERATION;
     if (rst) begin
       claim            <= 1'b0;

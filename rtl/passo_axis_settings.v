@@ -1,16 +1,24 @@
 // SPDX-License-Identifier: MIT
 // Settings of one axis, as they are written, and which of its times are 1, which its timer needs to know before
 // it counts. A time of 0 counts as 1.
+//
+// They are configuration: a reset takes only the drive enable away. The polarities begin such that each pin has
+// the level of its parameter until the host has spoken.
 `resetall
 `default_nettype none
 
-module passo_axis_settings (
+module passo_axis_settings #(
+  parameter [0:0] STEP_RESET   = 0,
+  parameter [0:0] DIR_RESET    = 0,
+  parameter [0:0] ENABLE_RESET = 0
+) (
   input  wire        clk,
   input  wire        rst,
   // strobes with bus_data
   input  wire        write_pins,
   input  wire        write_step_timing,
   input  wire        write_dir_timing,
+  input  wire        write_enable,
   input  wire [31:0] bus_data,
   input  wire        short_upper,         // its upper half is 0 or 1
   input  wire        short_lower,
@@ -33,32 +41,34 @@ module passo_axis_settings (
 
   wire [31:0] times = bus_data | {15'd0, short_upper, 15'd0, short_lower};
 
+  initial begin
+    step_inverted      = STEP_RESET;
+    direction_inverted = DIR_RESET;
+    enable_inverted    = ENABLE_RESET;
+    both_edges         = AXIS_PINS_BOTH_EDGES_RESET;
+    enable             = AXIS_ENABLE_RESET;
+    step_high          = AXIS_STEP_TIMING_STEP_HIGH_RESET;
+    step_low           = AXIS_STEP_TIMING_STEP_LOW_RESET;
+    dir_setup          = AXIS_DIR_TIMING_DIR_SETUP_RESET;
+    dir_hold           = AXIS_DIR_TIMING_DIR_HOLD_RESET;
+    short_high         = AXIS_STEP_TIMING_STEP_HIGH_RESET < 16'd2;
+    short_low          = AXIS_STEP_TIMING_STEP_LOW_RESET < 16'd2;
+    short_setup        = AXIS_DIR_TIMING_DIR_SETUP_RESET < 16'd2;
+    short_hold         = AXIS_DIR_TIMING_DIR_HOLD_RESET < 16'd2;
+  end
+
   always @(posedge clk) begin
-    if (write_pins) {both_edges, enable_inverted, direction_inverted, step_inverted, enable} <= bus_data[4:0];
-    if (write_step_timing) begin
+    if (write_pins && !rst) {both_edges, enable_inverted, direction_inverted, step_inverted} <= bus_data[4:1];
+    if (write_step_timing && !rst) begin
       {step_high, step_low}   <= times;
       {short_high, short_low} <= {short_upper, short_lower};
     end
-    if (write_dir_timing) begin
+    if (write_dir_timing && !rst) begin
       {dir_setup, dir_hold}     <= times;
       {short_setup, short_hold} <= {short_upper, short_lower};
     end
-
-    if (rst) begin
-      enable             <= AXIS_PINS_ENABLE_RESET;
-      step_inverted      <= AXIS_PINS_STEP_INVERTED_RESET;
-      direction_inverted <= AXIS_PINS_DIRECTION_INVERTED_RESET;
-      enable_inverted    <= AXIS_PINS_ENABLE_INVERTED_RESET;
-      both_edges         <= AXIS_PINS_BOTH_EDGES_RESET;
-      step_high          <= AXIS_STEP_TIMING_STEP_HIGH_RESET;
-      step_low           <= AXIS_STEP_TIMING_STEP_LOW_RESET;
-      dir_setup          <= AXIS_DIR_TIMING_DIR_SETUP_RESET;
-      dir_hold           <= AXIS_DIR_TIMING_DIR_HOLD_RESET;
-      short_high         <= AXIS_STEP_TIMING_STEP_HIGH_RESET < 16'd2;
-      short_low          <= AXIS_STEP_TIMING_STEP_LOW_RESET < 16'd2;
-      short_setup        <= AXIS_DIR_TIMING_DIR_SETUP_RESET < 16'd2;
-      short_hold         <= AXIS_DIR_TIMING_DIR_HOLD_RESET < 16'd2;
-    end
+    if (write_enable) enable <= bus_data[0];
+    if (rst) enable <= AXIS_ENABLE_RESET;
   end
 
 endmodule

@@ -6,16 +6,20 @@
 `default_nettype none
 
 module passo_channel #(
-  parameter AXES            = 4,
-  parameter TICK_LOG2       = 7,
-  parameter LINE_QUEUE_LOG2 = 8,
-  parameter RAMP_QUEUE_LOG2 = 4,
-  parameter STEPS_REGISTER  = 0
+  parameter            AXES            = 4,
+  parameter            TICK_LOG2       = 7,
+  parameter            LINE_QUEUE_LOG2 = 8,
+  parameter            RAMP_QUEUE_LOG2 = 4,
+  parameter            STEPS_REGISTER  = 0,
+  parameter [AXES-1:0] STEP_RESET      = 0,
+  parameter [AXES-1:0] DIR_RESET       = 0,
+  parameter [AXES-1:0] ENABLE_RESET    = 0
 ) (
   input  wire                     clk,
   input  wire                     rst,
   // bus
   input  wire                     bus_frame,
+  input  wire                     bus_commit,
   input  wire                     bus_check,
   input  wire                     bus_write,
   input  wire                     bus_read,
@@ -29,6 +33,8 @@ module passo_channel #(
   output reg  [              3:0] refusal,
   output reg  [             31:0] read_data,
   output wire                     incomplete,
+  output wire                     busy,
+  input  wire                     tables_wanted,
   // core
   input  wire                     run,
   input  wire                     wait_sync,
@@ -67,6 +73,11 @@ module passo_channel #(
   wire            command_abort;
   wire            command_clear;
   wire            command_zero;
+  wire            command_needs_idle;
+  wire            command_needs_quiet;
+  wire            pins_need_quiet;
+  wire            ramp_needs_motion;
+  wire            hold;
 
   // motion
   wire [ 2:0] state;
@@ -79,6 +90,7 @@ module passo_channel #(
   wire        begin_profile;
   wire        drain;
   wire        release_line;
+  wire        drop;
 
   // when: timescale, ramp, path
   wire [16:0] rate;
@@ -89,6 +101,7 @@ module passo_channel #(
   wire        tick = enabled & counting & tick_ends;
   wire        ramp_valid;
   wire        ramp_now_pending;
+  wire        ramp_now_coming;
   wire        ramp_take;
   wire        ramp_take_now;
   wire [ 3:0] ramp_half_index;
@@ -124,12 +137,16 @@ module passo_channel #(
   wire [  AXES-1:0] step_direction;
   wire [  AXES-1:0] reached;
   wire [  AXES-1:0] full;
+  wire [  AXES-1:0] axis_quiet;
+  reg               at_rest;  // no motion, and no step on its way to the axes
+  wire              quiet = at_rest & ~occupied;
   reg               step_overrun;
   wire [  AXES-1:0] was_overrun;
   wire [AXES*4-1:0] lost;
   wire [  AXES-1:0] write_pins;
   wire [  AXES-1:0] write_step_timing;
   wire [  AXES-1:0] write_dir_timing;
+  wire [  AXES-1:0] write_enable;
   wire              short_upper;
   wire              short_lower;
   wire [      31:0] position;  // of the axis that is read
@@ -186,7 +203,9 @@ module passo_channel #(
     .command_abort    (command_abort),
     .command_clear    (command_clear),
     .command_zero     (command_zero),
-    .occupied         (occupied),
+    .needs_idle       (command_needs_idle),
+    .needs_quiet      (command_needs_quiet),
+    .quiet            (quiet),
     .state            (state),
     .cause            (cause),
     .stopping         (stopping),
@@ -206,6 +225,7 @@ module passo_channel #(
     .clk         (clk),
     .rst         (rst),
     .bus_frame   (bus_frame),
+    .bus_commit  (bus_commit),
     .bus_check   (bus_check),
     .bus_write   (bus_write),
     .select      (select_line_queue),
@@ -229,25 +249,27 @@ module passo_channel #(
   passo_ramp_queue #(
     .DEPTH_LOG2(RAMP_QUEUE_LOG2)
   ) u_ramp_queue (
-    .clk        (clk),
-    .rst        (rst),
-    .bus_frame  (bus_frame),
-    .bus_check  (bus_check),
-    .bus_write  (bus_write),
-    .select     (select_ramp_queue),
-    .bus_data   (bus_data),
-    .bus_top_bit(bus_top_bit),
-    .blocked    (stopped),
-    .refusal    (ramp_refusal),
-    .incomplete (ramp_incomplete),
-    .room       (ramp_room),
-    .take       (ramp_take),
-    .take_now   (ramp_take_now),
-    .flush      (stopped),
-    .valid      (ramp_valid),
-    .now_pending(ramp_now_pending),
-    .half_index (ramp_half_index),
-    .half       (ramp_half)
+    .clk         (clk),
+    .rst         (rst),
+    .bus_frame   (bus_frame),
+    .bus_commit  (bus_commit),
+    .bus_check   (bus_check),
+    .bus_write   (bus_write),
+    .select      (select_ramp_queue),
+    .bus_data    (bus_data),
+    .bus_top_bit (bus_top_bit),
+    .blocked     (stopped),
+    .refusal     (ramp_refusal),
+    .incomplete  (ramp_incomplete),
+    .needs_motion(ramp_needs_motion),
+    .room        (ramp_room),
+    .take        (ramp_take),
+    .take_now    (ramp_take_now),
+    .flush       (stopped),
+    .valid       (ramp_valid),
+    .now_pending (ramp_now_pending),
+    .half_index  (ramp_half_index),
+    .half        (ramp_half)
   );
 
   passo_motion u_motion (
@@ -256,6 +278,7 @@ module passo_channel #(
     .run          (run),
     .wait_sync    (wait_sync),
     .sync_edge    (sync_edge),
+    .hold         (hold),
     .command_stop (command_stop),
     .command_abort(command_abort),
     .command_clear(command_clear),
@@ -280,12 +303,36 @@ module passo_channel #(
     .line_underrun(line_underrun),
     .substep_made (substep),
     .step_overrun (step_overrun),
+    .drop         (drop),
     .release_line (release_line),
     .stopped      (stopped),
     .running      (running)
   );
 
-  always @(posedge clk) step_overrun <= ~rst & slot_step & ((reached & full) != {AXES{1'b0}});
+  reg occupied_q;
+
+  always @(posedge clk) begin
+    step_overrun <= ~rst & slot_step & ((reached & full) != {AXES{1'b0}});
+    occupied_q   <= occupied;
+    at_rest      <= ~rst & ~occupied & ~occupied_q & (axis_quiet == {AXES{1'b1}});
+  end
+
+  passo_admission u_admission (
+    .clk          (clk),
+    .rst          (rst),
+    .bus_frame    (bus_frame),
+    .bus_commit   (bus_commit),
+    .needs_idle   (command_needs_idle),
+    .needs_quiet  (command_needs_quiet | pins_need_quiet),
+    .needs_motion (ramp_needs_motion),
+    .tables_wanted(tables_wanted),
+    .occupied     (occupied),
+    .quiet        (quiet),
+    .takes_now    (~ends_next),
+    .busy         (busy),
+    .hold         (hold),
+    .now_coming   (ramp_now_coming)
+  );
 
   passo_timescale u_timescale (
     .clk        (clk),
@@ -320,6 +367,7 @@ module passo_channel #(
     .velocity_next   (velocity_next),
     .ramp_valid      (ramp_valid),
     .ramp_now_pending(ramp_now_pending),
+    .ramp_now_coming (ramp_now_coming),
     .ramp_take       (ramp_take),
     .ramp_take_now   (ramp_take_now),
     .ramp_half_index (ramp_half_index),
@@ -402,15 +450,20 @@ module passo_channel #(
         .step_request(step_request)
       );
 
-      passo_axis u_axis (
+      passo_axis #(
+        .STEP_RESET  (STEP_RESET[axis]),
+        .DIR_RESET   (DIR_RESET[axis]),
+        .ENABLE_RESET(ENABLE_RESET[axis])
+      ) u_axis (
         .clk               (clk),
         .rst               (rst),
         .step_request      (step_request),
         .direction         (directions[axis]),
-        .drop              (command_abort),
+        .drop              (drop),
         .step_made         (step_made[axis]),
         .step_direction    (step_direction[axis]),
         .full              (full[axis]),
+        .quiet             (axis_quiet[axis]),
         .clear             (command_clear),
         .lost              (lost[axis*4+:4]),
         .step_high         (step_high),
@@ -422,6 +475,7 @@ module passo_channel #(
         .short_setup       (short_setup),
         .short_hold        (short_hold),
         .timing_written    (write_step_timing[axis] | write_dir_timing[axis]),
+        .pins_written      (write_pins[axis]),
         .both_edges        (both_edges),
         .step_inverted     (step_inverted),
         .direction_inverted(direction_inverted),
@@ -432,12 +486,17 @@ module passo_channel #(
         .enable_pin        (enable[axis])
       );
 
-      passo_axis_settings u_settings (
+      passo_axis_settings #(
+        .STEP_RESET  (STEP_RESET[axis]),
+        .DIR_RESET   (DIR_RESET[axis]),
+        .ENABLE_RESET(ENABLE_RESET[axis])
+      ) u_settings (
         .clk               (clk),
         .rst               (rst),
         .write_pins        (write_pins[axis]),
         .write_step_timing (write_step_timing[axis]),
         .write_dir_timing  (write_dir_timing[axis]),
+        .write_enable      (write_enable[axis]),
         .bus_data          (bus_data),
         .short_upper       (short_upper),
         .short_lower       (short_lower),
@@ -481,6 +540,8 @@ module passo_channel #(
     .write_pins       (write_pins),
     .write_step_timing(write_step_timing),
     .write_dir_timing (write_dir_timing),
+    .write_enable     (write_enable),
+    .needs_quiet      (pins_need_quiet),
     .short_upper      (short_upper),
     .short_lower      (short_lower),
     .lost             (lost)

@@ -3,8 +3,9 @@
 // address means.
 //
 // Promise: the answer to a strobe comes one clock later, for one clock; it is 0 unless one of these registers
-// is meant. A command strobe is high for the clock after its write. `bus_top_bit` and `bus_lone_bit` tell how
-// large the data of a check are.
+// is meant. A command strobe is high for the clock after its write. With STOP or ABORT, CLEAR and ZERO in the same
+// word are ignored, and STOP with ABORT: no state refuses them. `bus_top_bit` and `bus_lone_bit` tell how large the
+// data of a check are.
 `resetall
 `default_nettype none
 
@@ -43,8 +44,11 @@ module passo_channel_registers #(
   output reg                      command_abort,
   output reg                      command_clear,
   output reg                      command_zero,
+  // what a command that is checked needs; strobes
+  output wire                     needs_idle,
+  output wire                     needs_quiet,
   // state
-  input  wire                     occupied,
+  input  wire                     quiet,
   input  wire [              2:0] state,
   input  wire [              2:0] cause,
   input  wire                     stopping,
@@ -95,16 +99,23 @@ module passo_channel_registers #(
   wire is_command = in_settings && number == CHANNEL_COMMAND[2:0];
   wire is_drain_velocity = in_settings && number == CHANNEL_DRAIN_VELOCITY[2:0];
 
-  // What a check is answered. Values: a rate is at most 2^16, a velocity at most 2^31.
-  reg  too_large;
-  reg  busy;
+  wire abort = bus_data[CHANNEL_COMMAND_ABORT_LSB];
+  wire stop = bus_data[CHANNEL_COMMAND_STOP_LSB] & ~abort;
+  wire clear = bus_data[CHANNEL_COMMAND_CLEAR_LSB] & ~stop & ~abort;
+  wire zero = bus_data[CHANNEL_COMMAND_ZERO_LSB] & ~stop & ~abort;
+
+  assign needs_idle  = bus_check & is_command & clear;
+  assign needs_quiet = bus_check & is_command & zero;
+
+  // What a check is answered. Values: a rate is at most 2^16, a drain velocity at most 2^31 and not 0.
+  reg  bad_value;
   wire not_taken = bus_push != in_queues;
 
   always @(posedge clk) begin
     known <= in_settings || in_state || in_queues;
-    busy <= is_command && (bus_data[CHANNEL_COMMAND_CLEAR_LSB] || bus_data[CHANNEL_COMMAND_ZERO_LSB]);
-    too_large <= in_settings && (is_command        ? bus_top_bit > 5'd3 :
-                                 is_drain_velocity ? bus_top_bit == 5'd31 && !bus_lone_bit :
+    bad_value <= in_settings && (is_command        ? bus_top_bit > 5'd3 :
+                                 is_drain_velocity ? (bus_top_bit == 5'd31 && !bus_lone_bit)
+                                                     || (bus_top_bit == 5'd0 && !bus_data[0]) :
                                                      bus_top_bit > 5'd16 || (bus_top_bit[4] && !bus_lone_bit));
     claim <= known && (bus_check || bus_read);
     refusal <= !known    ? VERDICT_OK :
@@ -112,8 +123,7 @@ module passo_channel_registers #(
                !bus_check ? VERDICT_OK :
                not_taken ? VERDICT_BAD_OPERATION :
                in_state  ? VERDICT_READ_ONLY :
-               too_large ? VERDICT_BAD_VALUE :
-               busy && occupied ? VERDICT_BUSY : VERDICT_OK;
+               bad_value ? VERDICT_BAD_VALUE : VERDICT_OK;
     if (rst) begin
       claim   <= 1'b0;
       refusal <= VERDICT_OK;
@@ -129,7 +139,7 @@ module passo_channel_registers #(
       reads[i] <= bus_read && in_state && number[1:0] == i[1:0];
 
   assign read_data =
-      (reads[0] ? {drained, overrun_padded, stopping, cause, 1'b0, state} : 32'd0)
+      (reads[0] ? {drained, overrun_padded, stopping, cause, quiet, state} : 32'd0)
       | (reads[1] ? {15'd0, rate} : 32'd0)
       | (reads[2] ? {{(15 - LINE_QUEUE_LOG2) {1'b0}}, line_room, {(15 - RAMP_QUEUE_LOG2) {1'b0}}, ramp_room} : 32'd0)
       | (reads[3] ? velocity : 32'd0);
@@ -138,7 +148,7 @@ module passo_channel_registers #(
   wire write = in_settings && bus_write;
 
   always @(posedge clk) begin
-    {command_zero, command_clear, command_abort, command_stop} <= write && is_command ? bus_data[3:0] : 4'd0;
+    {command_zero, command_clear, command_abort, command_stop} <= {zero, clear, abort, stop} & {4{write & is_command}};
     if (write && number == CHANNEL_RATE_TARGET[2:0]) rate_target <= bus_data[16:0];
     if (write && number == CHANNEL_RATE_SLEW[2:0]) rate_slew <= bus_data[16:0];
     if (write && number == CHANNEL_STOP_SLEW[2:0]) stop_slew <= bus_data[16:0];

@@ -8,12 +8,16 @@
 `default_nettype none
 
 module passo_core #(
-  parameter CHANNELS        = 1,  // 1 .. 8
-  parameter AXES            = 4,  // per channel, 1 .. 8
-  parameter TICK_LOG2       = 7,  // clocks per tick, 7 .. 16
-  parameter LINE_QUEUE_LOG2 = 8,  // places for lines, 2 .. 8
-  parameter RAMP_QUEUE_LOG2 = 4,  // places for ramps, 2 .. 8
-  parameter STEPS_REGISTER  = 0   // 1: where block RAMs have a register behind their data
+  parameter                     CHANNELS        = 1,  // 1 .. 8
+  parameter                     AXES            = 4,  // per channel, 1 .. 8
+  parameter                     TICK_LOG2       = 7,  // clocks per tick, 7 .. 16
+  parameter                     LINE_QUEUE_LOG2 = 8,  // places for lines, 2 .. 8
+  parameter                     RAMP_QUEUE_LOG2 = 4,  // places for ramps, 2 .. 8
+  parameter                     STEPS_REGISTER  = 0,  // 1: where block RAMs have a register behind their data
+  // levels of the pins from configuration on until the host has spoken; bit channel * AXES + axis
+  parameter [CHANNELS*AXES-1:0] STEP_RESET      = 0,
+  parameter [CHANNELS*AXES-1:0] DIR_RESET       = 0,
+  parameter [CHANNELS*AXES-1:0] ENABLE_RESET    = 0
 ) (
   input  wire                     clk,
   input  wire                     rst,
@@ -65,6 +69,7 @@ module passo_core #(
 
   // bus
   wire        bus_frame;
+  wire        bus_commit;
   wire        bus_check;
   wire        bus_write;
   wire        bus_read;
@@ -84,10 +89,12 @@ module passo_core #(
   wire [           31:0] registers_read_data;
   wire [            3:0] tables_refusal;
   reg                    tables_claim;
+  wire                   tables_wanted;
   wire [   CHANNELS-1:0] channel_claim;
   wire [ CHANNELS*4-1:0] channel_refusal;
   wire [CHANNELS*32-1:0] channel_read_data;
   wire [   CHANNELS-1:0] channel_incomplete;
+  wire [   CHANNELS-1:0] channel_busy;
 
   // channels
   wire [                    CHANNELS-1:0] run;
@@ -167,6 +174,7 @@ module passo_core #(
     .reply_word    (reply_word),
     .last_sequence (last_sequence),
     .bus_frame     (bus_frame),
+    .bus_commit    (bus_commit),
     .bus_check     (bus_check),
     .bus_write     (bus_write),
     .bus_read      (bus_read),
@@ -179,7 +187,8 @@ module passo_core #(
     .bus_refusal   (bus_refusal),
     .bus_read_data (bus_read_data),
     .bus_counters  (bus_counters),
-    .bus_incomplete(channel_incomplete != {CHANNELS{1'b0}})
+    .bus_incomplete(channel_incomplete != {CHANNELS{1'b0}}),
+    .bus_busy      (channel_busy != {CHANNELS{1'b0}} || (tables_wanted && occupied != {CHANNELS{1'b0}}))
   );
 
   passo_registers #(
@@ -216,6 +225,8 @@ module passo_core #(
   ) u_tables (
     .clk        (clk),
     .rst        (rst),
+    .bus_frame  (bus_frame),
+    .bus_commit (bus_commit),
     .bus_check  (bus_check),
     .bus_write  (bus_write),
     .bus_read   (bus_read),
@@ -224,8 +235,8 @@ module passo_core #(
     .bus_address(bus_address[9:0]),
     .bus_data   (bus_data[15:0]),
     .bus_top_bit(bus_top_bit),
-    .occupied   (occupied != {CHANNELS{1'b0}}),
     .refusal    (tables_refusal),
+    .wanted     (tables_wanted),
     .request    (table_request),
     .address    (table_address),
     .served     (table_served),
@@ -243,11 +254,15 @@ module passo_core #(
         .TICK_LOG2      (TICK_LOG2),
         .LINE_QUEUE_LOG2(LINE_QUEUE_LOG2),
         .RAMP_QUEUE_LOG2(RAMP_QUEUE_LOG2),
-        .STEPS_REGISTER (STEPS_REGISTER)
+        .STEPS_REGISTER (STEPS_REGISTER),
+        .STEP_RESET     (STEP_RESET[channel*AXES+:AXES]),
+        .DIR_RESET      (DIR_RESET[channel*AXES+:AXES]),
+        .ENABLE_RESET   (ENABLE_RESET[channel*AXES+:AXES])
       ) u_channel (
         .clk             (clk),
         .rst             (rst),
         .bus_frame       (bus_frame),
+        .bus_commit      (bus_commit),
         .bus_check       (bus_check),
         .bus_write       (bus_write),
         .bus_read        (bus_read),
@@ -261,6 +276,8 @@ module passo_core #(
         .refusal         (channel_refusal[channel*4+:4]),
         .read_data       (channel_read_data[channel*32+:32]),
         .incomplete      (channel_incomplete[channel]),
+        .busy            (channel_busy[channel]),
+        .tables_wanted   (tables_wanted),
         .run             (run[channel]),
         .wait_sync       (wait_sync[channel]),
         .sync_edge       (sync_edge),

@@ -5,7 +5,8 @@
 // Promise: lines come out whole and in order. While `next_valid` is high there is a next line; `take` makes it
 // the current line, whose length and flags are at the output one clock later, whose steps and directions two
 // clocks later; they stay there. A place is free again when the line after it is taken, or on `release_line`.
-// `flush` drops everything that is written; it stays while the channel is stopped, for a push that was checked
+// `room` is without all lines of a frame from a clock after its commit begins to write. `flush` drops everything
+// that is written; it stays while the channel is stopped, for a push that was checked
 // before.
 //
 // A push is checked word by word (`bus_check`; the word stands two clocks before): room for it after all lines of
@@ -26,6 +27,7 @@ module passo_line_queue #(
   input  wire                rst,
   // bus; `select`: a push to this queue
   input  wire                bus_frame,
+  input  wire                bus_commit,
   input  wire                bus_check,
   input  wire                bus_write,
   input  wire                select,
@@ -130,6 +132,8 @@ module passo_line_queue #(
   reg                   has_place;  // a line is the current one
   reg                   taken;
   wire                  freed = (take & has_place) | release_line;
+  reg                   freed_late;  // counted a clock later
+  wire                  reserve = bus_frame & bus_commit;
 
   always @(posedge clk) begin
     taken <= take;
@@ -140,11 +144,13 @@ module passo_line_queue #(
     end
     if (release_line) has_place <= 1'b0;
     next_valid <= ~take & ~flush & next_line != write_line;
-    if (freed != line_written) room <= room + {{DEPTH_LOG2{line_written}}, 1'b1};
+    freed_late <= freed & reserve;
+    room       <= room + (~checked & {(DEPTH_LOG2 + 1) {reserve}}) + {{DEPTH_LOG2{1'b0}}, reserve | freed | freed_late};
     if (rst || flush) begin
-      next_line <= {(DEPTH_LOG2 + 1) {1'b0}};
-      has_place <= 1'b0;
-      room      <= DEPTH;
+      next_line  <= {(DEPTH_LOG2 + 1) {1'b0}};
+      has_place  <= 1'b0;
+      freed_late <= 1'b0;
+      room       <= DEPTH;
     end
     if (rst) next_valid <= 1'b0;
   end

@@ -8,11 +8,13 @@
 //
 // Promise: a frame is executed whole or not at all, and only once. Each word goes into the payload buffer and
 // comes out of it onto the bus, where it turns through the CRC and is checked by its target (`bus_check`).
-// When the CRC is right, nobody objected and the sequence number is new, the buffer is replayed to the bus
-// (`bus_write`), one word every 4 clocks. A frame may begin meanwhile; it is ignored if its header is complete
+// When the CRC is right, nobody objected, no state forbids it (`bus_busy`) and the sequence number is new, the buffer is
+// replayed to the bus (`bus_write`), one word every 4 clocks. `bus_commit` is high from 35 clocks before the verdict
+// until a clock after the last word: meanwhile the targets keep `bus_busy` as it is. A frame may begin meanwhile; it is ignored if its header is complete
 // before the replay has ended, which takes a master that leaves out trailing words.
 //
-// Verdict: BAD_CRC goes before all others, then the first objection; a duplicate is not asked for objections.
+// Verdict: BAD_CRC has priority, then the first objection, then BAD_LENGTH of a push that is not whole, then BUSY; a
+// duplicate is not asked for objections.
 // Latency: payload word to bus_check 40 clocks, crc word to ack 77 clocks, to the first word of a read 91
 // clocks. Address and data stand on the bus at least a clock before their strobe (of a check: two clocks),
 // data a clock after it, the address of a read 16 clocks before. A target answers one clock after a strobe with
@@ -22,31 +24,33 @@
 `default_nettype none
 
 module passo_link (
-  input  wire        clk,
-  input  wire        rst,
+  input wire clk,
+  input wire rst,
   // words from and to the SPI
-  input  wire        frame_start,
-  input  wire        frame_end,
-  input  wire        half_valid,
-  input  wire        half_low,
-  input  wire [15:0] half,
+  input wire frame_start,
+  input wire frame_end,
+  input wire half_valid,
+  input wire half_low,
+  input wire [15:0] half,
   output wire [31:0] reply_word,
-  output reg  [ 7:0] last_sequence,  // of the last write or push that was executed
+  output reg [7:0] last_sequence,  // of the last write or push that was executed
   // bus
-  output reg         bus_frame,      // a pass over a frame's payload begins
-  output reg         bus_check,      // strobes
-  output reg         bus_write,
-  output reg         bus_read,
-  output reg         bus_push,       // the frame is a push
-  output reg  [11:0] bus_address,
+  output reg bus_frame,  // a pass over a frame's payload begins: to check or, in a commit, to write it
+  output reg bus_commit,  // the frame is being judged or executed
+  output reg bus_check,  // strobes
+  output reg bus_write,
+  output reg bus_read,
+  output reg bus_push,  // the frame is a push
+  output reg [11:0] bus_address,
   output wire [31:0] bus_data,
-  output wire [ 4:0] bus_top_bit,    // of the data that are checked: highest bit that is set,
-  output wire        bus_lone_bit,   // and it is the only one
-  input  wire        bus_claim,
-  input  wire [ 3:0] bus_refusal,
-  input  wire [31:0] bus_read_data,
-  input  wire        bus_counters,   // the address is that of counters of refusals, which are kept here
-  input  wire        bus_incomplete  // the payload so far is not whole lines or ramps
+  output wire [4:0] bus_top_bit,  // of the data that are checked: highest bit that is set,
+  output wire bus_lone_bit,  // and it is the only one
+  input wire bus_claim,
+  input wire [3:0] bus_refusal,
+  input wire [31:0] bus_read_data,
+  input wire bus_counters,  // the address is that of counters of refusals, which are kept here
+  input wire bus_incomplete,  // the payload so far is not whole lines or ramps
+  input wire bus_busy  // the state of a target does not allow the frame
 );
 
   `include "passo_registers.vh"
@@ -182,6 +186,7 @@ module passo_link (
 
   passo_reply u_reply (
     .clk        (clk),
+    .rst        (rst),
     .take       (frame_start || answered),
     .data       (bus_read_data),
     .shift      (turn && replies),
@@ -206,10 +211,11 @@ module passo_link (
     verdict_final <=
         crc_wrong              ? VERDICT_BAD_CRC :
         !verdict_ok            ? verdict :
-        bus_incomplete         ? VERDICT_BAD_LENGTH : VERDICT_OK;
+        bus_incomplete         ? VERDICT_BAD_LENGTH :
+        bus_busy               ? VERDICT_BUSY : VERDICT_OK;
     verdict_high <= verdict >= VERDICT_READ_ONLY;
     counters_high <= in_ack | in_count ? verdict_high : bus_address[0];
-    executes <= !crc_wrong && verdict_ok && !bus_incomplete;
+    executes <= !crc_wrong && verdict_ok && !bus_incomplete && !bus_busy;
   end
 
   // Chip select does not come between a verdict and what it promises.
@@ -263,7 +269,8 @@ module passo_link (
     all_words <= index == length && !act;
     put <= in_count && (count == COUNT_ACT - 7'd1 || count == COUNT_TURN + 7'd15);
     replies <= in_ack | in_read | in_sum;
-    bus_frame <= act & (in_header | in_ack);
+    bus_frame <= act & (in_header | (in_ack & verdict_ok));
+    bus_commit <= (in_crc & ~rests) | in_ack | in_replay;
     bus_check <= act & in_payload;
     bus_write <= in_replay && count == COUNT_LOADED;
     bus_read <= in_read && count == COUNT_LOAD && !frame_end;
@@ -302,6 +309,8 @@ module passo_link (
       last_sequence  <= 8'd0;
       sequence_known <= 1'b0;
       counted        <= 2'b00;
+      bus_frame      <= 1'b0;
+      bus_commit     <= 1'b0;
       bus_push       <= 1'b0;
       bus_check      <= 1'b0;
       bus_write      <= 1'b0;

@@ -5,10 +5,11 @@
 //
 // Promise: a motion is prepared when `run` is set and a line and a ramp are there. It starts from ARMED at
 // once or, while wait_sync is set, with a sync edge; so channels that are ARMED start together when one write
-// clears their wait_sync. It ends when its profile has ended and its line has ended (or is ENDLESS); what the
+// clears their wait_sync. While `hold` is high none is prepared. It ends when its profile has ended and its line has ended (or is ENDLESS); what the
 // line still lacks is drained and counted. A stop is soft (the rate goes to 0 first) for COMMAND.STOP and
 // RAMP_UNDERRUN, else the channel is STOPPED two clocks later. On the same clock ABORT wins, then STEP_OVERRUN,
-// LINE_UNDERRUN, a soft stop; a stop wins over the end of the motion.
+// LINE_UNDERRUN, a soft stop; a stop wins over the end of the motion. `drop` is high from ABORT until no step is asked
+// for any more.
 //
 // `running` is the motion as seen at the STEP pins: it rises 7 clocks after RUN begins and falls one clock
 // after SETTLE, so that it is high for as many clocks as the profile has, and until the last drained step has
@@ -23,6 +24,7 @@ module passo_motion (
   input  wire        run,
   input  wire        wait_sync,
   input  wire        sync_edge,
+  input  wire        hold,
   input  wire        command_stop,   // strobes
   input  wire        command_abort,
   input  wire        command_clear,
@@ -51,9 +53,10 @@ module passo_motion (
   input  wire        substep_made,
   // axes
   input  wire        step_overrun,
+  output wire        drop,
   // queues
   output wire        release_line,   // strobe: the motion is over
-  output reg         stopped,        // whoever works for the motion forgets it
+  output reg         stopped,        // holds the datapath of the motion in reset
   output reg         running
 );
 
@@ -68,6 +71,7 @@ module passo_motion (
   reg [2:0] soft_cause;
   reg       startable;  // for one clock, and still in IDLE
   reg       rate_was_zero;
+  reg [1:0] aborted;  // one and two clocks ago
 
   // The states, one bit each
   reg idle;
@@ -95,6 +99,7 @@ module passo_motion (
   assign prepare      = startable;
   assign drain        = drains;
   assign release_line = finished;
+  assign drop         = command_abort | (aborted != 2'b00);
 
   // Decided in one clock, done in the next.
   reg stop_due;
@@ -135,7 +140,7 @@ module passo_motion (
 
   always @(posedge clk) begin
     begin_profile <= armed && (sync_edge || !wait_sync) && !begin_profile && !stop_now;
-    startable     <= idle && run && line_valid && ramp_valid && !startable && !stop_due;
+    startable     <= idle && run && line_valid && ramp_valid && !startable && !stop_due && !hold;
     stop_due      <= stop_wanted && !stopped;
     cause_due     <= cause_wanted;
     if (count != START_LAST) count <= count + 3'd1;
@@ -144,6 +149,7 @@ module passo_motion (
     settled       <= settled_next;
     finished      <= settled_next && (line_ended || line_endless);
     rate_was_zero <= rate_is_zero;
+    aborted       <= {aborted[0], command_abort};
     if (!runs || count == START_LAST) running <= moving;
 
     if (drains && substep_made && !line_ended) drained <= drained + 16'd1;
@@ -168,6 +174,7 @@ module passo_motion (
       stop_due      <= 1'b0;
       settled       <= 1'b0;
       finished      <= 1'b0;
+      aborted       <= 2'b00;
       running       <= 1'b0;
     end
   end

@@ -16,7 +16,8 @@
 // first tick. With that, and with `tick`, velocity_next begins to count; with `ended` 0.
 // Promise: the LAST ramp's end raises `ended`, with the last enabled clock of its last tick (a profile
 // without any tick: with begin_profile). Ramps that run out at speed raise `dry`, in the tick before; the
-// velocity then stays, and the next ramp is taken whenever it comes. `stall` holds the enable back at the end
+// velocity then stays, and the next ramp is taken whenever it comes. A NOW ramp that is `coming` keeps the profile from
+// ending until it is there. `stall` holds the enable back at the end
 // of a tick until a clock after the next velocity is ready: later, never lost. Clocks of each step: copy 24,
 // fetch 8 (T = 0: 7), take 5, look up 4 .. 2 * CHANNELS + 4, shape 19, scale 50, step 8, and one to choose
 // between them.
@@ -46,6 +47,7 @@ module passo_ramp #(
   // ramp queue
   input  wire        ramp_valid,
   input  wire        ramp_now_pending,
+  input  wire        ramp_now_coming,   // one will be pending
   output reg         ramp_take,
   output reg         ramp_take_now,
   output wire [ 3:0] ramp_half_index,
@@ -215,8 +217,8 @@ module passo_ramp #(
             step          <= STEP_COPY;
           end else if (loaded) step <= shape == SHAPE_LINEAR ? STEP_SCALE : STEP_LOOK_UP;
           else if (last) begin
-            ends_next <= 1'b1;
-            ready     <= 1'b1;
+            ends_next <= !ramp_now_coming;
+            ready     <= !ramp_now_coming;
           end else step <= ramp_valid ? STEP_FETCH : STEP_SCALE;
         end
       end

@@ -7,7 +7,7 @@
 //
 // A push is checked word by word (`bus_check`): room for it after all ramps of this frame before it, a
 // velocity of at most 1/2, no reserved bits. `refusal` answers one clock later. A word is written in two
-// clocks: upper half first.
+// clocks: upper half first. `room` is without all ramps of a frame from a clock after its commit begins to write.
 `resetall
 `default_nettype none
 
@@ -18,20 +18,22 @@ module passo_ramp_queue #(
   input  wire                rst,
   // bus; `select`: a push to this queue
   input  wire                bus_frame,
+  input  wire                bus_commit,
   input  wire                bus_check,
   input  wire                bus_write,
   input  wire                select,
   input  wire [        31:0] bus_data,
   input  wire [         4:0] bus_top_bit,
-  input  wire                blocked,      // the channel is stopped
+  input  wire                blocked,       // the channel is stopped
   output reg  [         3:0] refusal,
-  output wire                incomplete,   // the frame so far ends within a ramp
-  output reg  [DEPTH_LOG2:0] room,         // in ramps
+  output wire                incomplete,    // the frame so far ends within a ramp
+  output wire                needs_motion,  // strobe: a NOW ramp is checked
+  output reg  [DEPTH_LOG2:0] room,          // in ramps
   // to the ramp
   input  wire                take,
   input  wire                take_now,
   input  wire                flush,
-  output reg                 valid,        // of two clocks ago
+  output reg                 valid,         // of two clocks ago
   output reg                 now_pending,
   input  wire [         3:0] half_index,
   output reg  [        15:0] half
@@ -50,6 +52,7 @@ module passo_ramp_queue #(
   // Writing
   reg [         2:0] index;
   reg [DEPTH_LOG2:0] write_ramp;
+  reg [DEPTH_LOG2:0] write_end;  // write_ramp when the frame will have been written
   reg [DEPTH_LOG2:0] now_ramp;
   reg [DEPTH_LOG2:0] checked;  // ramps of this frame
   reg                velocity_is_max;  // as far as its upper bits tell
@@ -60,7 +63,8 @@ module passo_ramp_queue #(
   wire strobe = select & (bus_check | bus_write);
   wire write_high = select & bus_write;
 
-  assign incomplete = index != INDEX_CONTROL;
+  assign incomplete   = index != INDEX_CONTROL;
+  assign needs_motion = select & bus_check & bus_data[1] & ~incomplete;
 
   always @(posedge clk) begin
     write_low <= write_high;
@@ -79,13 +83,18 @@ module passo_ramp_queue #(
         now_pending <= 1'b1;
       end
     end
+    if (bus_frame && bus_commit) write_end <= write_ramp + checked;
     if (rst || bus_frame) begin
       index   <= INDEX_CONTROL;
       checked <= {(DEPTH_LOG2 + 1) {1'b0}};
     end
-    if (flush) now_pending <= 1'b0;
+    if (flush) begin
+      now_pending <= 1'b0;
+      write_end   <= write_ramp;
+    end
     if (rst) begin
       write_ramp  <= {(DEPTH_LOG2 + 1) {1'b0}};
+      write_end   <= {(DEPTH_LOG2 + 1) {1'b0}};
       write_low   <= 1'b0;
       now_pending <= 1'b0;
     end
@@ -118,7 +127,7 @@ module passo_ramp_queue #(
     if (take_now) read_ramp <= now_ramp;
     if (flush) read_ramp <= write_ramp;
     valid <= read_ramp != write_ramp;
-    room  <= {1'b1, {DEPTH_LOG2{1'b0}}} - (write_ramp - read_ramp);
+    room  <= {1'b1, {DEPTH_LOG2{1'b0}}} - (write_end - read_ramp);
     if (rst) begin
       read_ramp <= {(DEPTH_LOG2 + 1) {1'b0}};
       valid     <= 1'b0;

@@ -109,7 +109,8 @@ localparam ADDRESS_CHANNEL_BASE   = 12'h100;
 localparam ADDRESS_CHANNEL_COUNT  = 8;
 localparam ADDRESS_CHANNEL_STRIDE = 12'h100;
 
-// Channel: Command. Each bit written as 1 is done once.
+// Channel: Command. Each bit written as 1 is done once. With STOP or ABORT, CLEAR and ZERO in the same word
+// are ignored; ABORT wins over STOP.
 localparam CHANNEL_COMMAND             = 8'h00;
 localparam CHANNEL_COMMAND_STOP_LSB    = 0;
 localparam CHANNEL_COMMAND_STOP_BITS   = 1;
@@ -159,6 +160,9 @@ localparam CHANNEL_STATE                = 8'h08;
 localparam CHANNEL_STATE_STATE_LSB      = 0;
 localparam CHANNEL_STATE_STATE_BITS     = 3;
 localparam CHANNEL_STATE_STATE_RESET    = 3'h0;
+localparam CHANNEL_STATE_QUIET_LSB      = 3;
+localparam CHANNEL_STATE_QUIET_BITS     = 1;
+localparam CHANNEL_STATE_QUIET_RESET    = 1'h1;
 localparam CHANNEL_STATE_CAUSE_LSB      = 4;
 localparam CHANNEL_STATE_CAUSE_BITS     = 3;
 localparam CHANNEL_STATE_CAUSE_RESET    = 3'h0;
@@ -178,7 +182,7 @@ localparam CHANNEL_RATE_LSB   = 0;
 localparam CHANNEL_RATE_BITS  = 17;
 localparam CHANNEL_RATE_RESET = 17'h10000;
 
-// Channel: Room. Free places in the queues.
+// Channel: Room. Free places in the queues. A push counts from the moment its frame is accepted.
 localparam CHANNEL_ROOM                = 8'h0A;
 localparam CHANNEL_ROOM_RAMP_ROOM_LSB  = 0;
 localparam CHANNEL_ROOM_RAMP_ROOM_BITS = 16;
@@ -216,12 +220,9 @@ localparam CHANNEL_AXIS_BASE   = 8'h80;
 localparam CHANNEL_AXIS_COUNT  = 8;
 localparam CHANNEL_AXIS_STRIDE = 8'h08;
 
-// Axis: Pins. Drive enable, polarities and step mode. Change polarities and step mode only while the axis
-// stands and STEP is inactive.
+// Axis: Pins. Polarities and step mode. Refused with BUSY unless the channel is quiet. The next step waits
+// for the low time, the DIR hold and the DIR set-up from here on. Kept over a reset of the core.
 localparam AXIS_PINS                          = 3'h0;
-localparam AXIS_PINS_ENABLE_LSB               = 0;
-localparam AXIS_PINS_ENABLE_BITS              = 1;
-localparam AXIS_PINS_ENABLE_RESET             = 1'h0;
 localparam AXIS_PINS_STEP_INVERTED_LSB        = 1;
 localparam AXIS_PINS_STEP_INVERTED_BITS       = 1;
 localparam AXIS_PINS_STEP_INVERTED_RESET      = 1'h0;
@@ -234,9 +235,9 @@ localparam AXIS_PINS_ENABLE_INVERTED_RESET    = 1'h0;
 localparam AXIS_PINS_BOTH_EDGES_LSB           = 4;
 localparam AXIS_PINS_BOTH_EDGES_BITS          = 1;
 localparam AXIS_PINS_BOTH_EDGES_RESET         = 1'h0;
-localparam AXIS_PINS_DEFINED                  = 32'h0000001F;
+localparam AXIS_PINS_DEFINED                  = 32'h0000001E;
 
-// Axis: STEP timing. Clocks, 1 .. 65535; 0 counts as 1.
+// Axis: STEP timing. Clocks, 1 .. 65535; 0 counts as 1. Kept over a reset of the core.
 localparam AXIS_STEP_TIMING                 = 3'h1;
 localparam AXIS_STEP_TIMING_STEP_LOW_LSB    = 0;
 localparam AXIS_STEP_TIMING_STEP_LOW_BITS   = 16;
@@ -246,7 +247,7 @@ localparam AXIS_STEP_TIMING_STEP_HIGH_BITS  = 16;
 localparam AXIS_STEP_TIMING_STEP_HIGH_RESET = 16'h0001;
 localparam AXIS_STEP_TIMING_DEFINED         = 32'hFFFFFFFF;
 
-// Axis: DIR timing. Clocks, 1 .. 65535; 0 counts as 1.
+// Axis: DIR timing. Clocks, 1 .. 65535; 0 counts as 1. Kept over a reset of the core.
 localparam AXIS_DIR_TIMING                 = 3'h2;
 localparam AXIS_DIR_TIMING_DIR_HOLD_LSB    = 0;
 localparam AXIS_DIR_TIMING_DIR_HOLD_BITS   = 16;
@@ -262,6 +263,13 @@ localparam AXIS_LOST_STEPS_LOST_LSB   = 0;
 localparam AXIS_LOST_STEPS_LOST_BITS  = 4;
 localparam AXIS_LOST_STEPS_LOST_RESET = 4'h0;
 
+// Axis: Drive enable. May be written at any time.
+localparam AXIS_ENABLE         = 3'h4;
+localparam AXIS_ENABLE_LSB     = 0;
+localparam AXIS_ENABLE_BITS    = 1;
+localparam AXIS_ENABLE_RESET   = 1'h0;
+localparam AXIS_ENABLE_DEFINED = 32'h00000001;
+
 // What a frame asks for.
 localparam OPERATION_READ  = 4'd1; // Read consecutive registers.
 localparam OPERATION_WRITE = 4'd2; // Write consecutive registers.
@@ -276,8 +284,8 @@ localparam VERDICT_BAD_OPERATION   = 4'd4; // Unknown operation, or one the regi
 localparam VERDICT_UNKNOWN_ADDRESS = 4'd5; // No register at this address.
 localparam VERDICT_READ_ONLY       = 4'd6; // The register cannot be written.
 localparam VERDICT_QUEUE_FULL      = 4'd7; // Not enough room for the whole frame.
-localparam VERDICT_BUSY            = 4'd8; // Channel stopped and not cleared, or shape tables while a motion runs.
-localparam VERDICT_BAD_VALUE       = 4'd9; // M = 0 or M >= 2^30, N_i > M, a velocity above 1/2, reserved bits set.
+localparam VERDICT_BUSY            = 4'd8; // The state of the channel does not allow it (see the register).
+localparam VERDICT_BAD_VALUE       = 4'd9; // M = 0 or M >= 2^30, N_i > M, a velocity above 1/2, drain velocity 0, reserved bits set.
 
 // What a channel does.
 localparam STATE_IDLE    = 3'd0; // No motion.

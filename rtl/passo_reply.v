@@ -11,6 +11,7 @@
 
 module passo_reply (
   input  wire        clk,
+  input  wire        rst,
   input  wire        take,
   input  wire [31:0] data,
   input  wire        shift,
@@ -40,6 +41,7 @@ module passo_reply (
   always @(posedge clk) begin
     if (shift) word <= {word[30:0], next_bit};
     if (take) word <= data;
+    if (rst) word <= 32'd0;
   end
 
 endmodule

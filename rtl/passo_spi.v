@@ -16,6 +16,7 @@
 //   reply_word  may change from half_valid of a second half until the next word's last falling edge: 125 clocks.
 //   frame_start comes 2 to 3 clocks after chip select falls; reply_word must stand at the first falling edge of
 //         SCLK, so chip select has to fall at least 3 clocks before the first rising edge.
+//   chip select must be high for 2 clocks between two frames, or the second one is taken for a part of the first.
 `resetall
 `default_nettype none
 
@@ -88,15 +89,14 @@ module passo_spi (
 
   // clk domain
   reg [2:0] select_sync;
-  reg [2:0] toggle_sync;
+  reg [2:0] toggle_sync;  // follows through a reset, so none looks like a half
+  initial toggle_sync = 3'b000;
 
   always @(posedge clk) begin
     select_sync <= {select_sync[1:0], ~spi_cs_n};
     toggle_sync <= {toggle_sync[1:0], half_toggle};
-    if (rst) begin
-      select_sync <= 3'b000;
-      toggle_sync <= {3{half_toggle}};
-    end
+    // a frame begins when chip select falls after the reset
+    if (rst) select_sync <= 3'b111;
   end
 
   /* verilator lint_on SYNCASYNCNET */

@@ -15,6 +15,8 @@ module passo_tables #(
   input  wire                   clk,
   input  wire                   rst,
   // bus; `select`: the address is in a table
+  input  wire                   bus_frame,
+  input  wire                   bus_commit,
   input  wire                   bus_check,
   input  wire                   bus_write,
   input  wire                   bus_read,
@@ -23,8 +25,8 @@ module passo_tables #(
   input  wire [            9:0] bus_address,  // within the tables: bank (9:8), 1 .. 3
   input  wire [           15:0] bus_data,
   input  wire [            4:0] bus_top_bit,  // of the data that are checked: highest bit that is set
-  input  wire                   occupied,     // some channel is
   output reg  [            3:0] refusal,
+  output reg                    wanted,       // the frame writes points, which needs all channels at rest
   // channels
   input  wire [   CHANNELS-1:0] request,
   input  wire [CHANNELS*10-1:0] address,
@@ -46,10 +48,10 @@ module passo_tables #(
     refusal <= VERDICT_OK;
     if (select && bus_read) refusal <= VERDICT_BAD_OPERATION;
     if (select && bus_check)
-      refusal <= bus_push                  ? VERDICT_BAD_OPERATION :
-                 occupied                  ? VERDICT_BUSY :
-                 bus_top_bit > 5'd15  ? VERDICT_BAD_VALUE : VERDICT_OK;
+      refusal <= bus_push ? VERDICT_BAD_OPERATION : bus_top_bit > 5'd15 ? VERDICT_BAD_VALUE : VERDICT_OK;
   end
+
+  always @(posedge clk) wanted <= ~rst & ~(bus_frame & ~bus_commit) & (wanted | (select & bus_check));
 
   // One channel after the other; first its point, then the next one
   reg [2:0] channel;

@@ -9,7 +9,8 @@
 //
 // Promise: `enable` is registered, low unless `moving`, and a motion begins with an empty rate_sum. A slew of
 // 0 counts as 1. The rate changes 7 clocks after the slew tick: goal, direction, slew, the new rate and whether
-// it lies beyond the goal are found one after the other. Slew ticks are at least 8 clocks apart.
+// it lies beyond the goal are found one after the other. Slew ticks are at least 8 clocks apart. Once `stopping` is
+// high the rate never rises: a change under way when it rises is dropped.
 `resetall
 `default_nettype none
 
@@ -31,6 +32,7 @@ module passo_timescale (
 
   reg [ 6:1] after;  // clocks since the slew tick
   reg [16:0] goal;
+  reg        stops;  // the slew tick found `stopping`
   reg        down;
   reg [16:0] change;  // the slew, inverted if down; else 0
   reg        change_carry;
@@ -45,15 +47,18 @@ module passo_timescale (
 
   always @(posedge clk) begin
     after <= {after[5:1], slew_tick};
-    if (slew_tick || !moving) goal <= stopping && moving ? 17'd0 : rate_target;
+    if (slew_tick || !moving) begin
+      goal  <= stopping && moving ? 17'd0 : rate_target;
+      stops <= stopping && moving;
+    end
     if (after[1]) down <= !reaches;
-    if (after[2]) change <= (stopping ? stop_slew : rate_slew) ^ {17{down}};
+    if (after[2]) change <= (stops ? stop_slew : rate_slew) ^ {17{down}};
     else if (!after[3]) change <= 17'd0;
     change_carry <= after[3] && (down ^ (change == {17{down}}));
     if (!after[5]) not_moved <= ~({1'b0, rate} +{after[4] & down, change} +{17'd0, change_carry});
     still <= !moving;
     land  <= !moving || !not_moved[17] || reaches == down;
-    if (after[6] || (still && !moving)) rate <= land ? goal : ~not_moved[16:0];
+    if ((after[6] && (stops || !stopping)) || (still && !moving)) rate <= land ? goal : ~not_moved[16:0];
 
     {enable, rate_sum} <= rate_sum_next;
     if (!moving) begin

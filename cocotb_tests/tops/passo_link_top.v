@@ -16,6 +16,7 @@ module passo_link_top (
   output wire [ 3:0] verdict,
   output wire        word_valid,
   output wire        bus_frame,
+  output wire        bus_commit,
   output wire        bus_check,
   output wire        bus_write,
   output wire        bus_read,
@@ -28,7 +29,8 @@ module passo_link_top (
   input  wire [ 3:0] bus_refusal,
   input  wire [31:0] bus_read_data,
   input  wire        bus_counters,
-  input  wire        bus_incomplete
+  input  wire        bus_incomplete,
+  input  wire        bus_busy
 );
 
   wire        frame_start;
@@ -76,6 +78,7 @@ module passo_link_top (
     .reply_word     (reply_word),
     .last_sequence  (last_sequence),
     .bus_frame      (bus_frame),
+    .bus_commit     (bus_commit),
     .bus_check      (bus_check),
     .bus_write      (bus_write),
     .bus_read       (bus_read),
@@ -88,7 +91,8 @@ module passo_link_top (
     .bus_refusal    (bus_refusal),
     .bus_counters   (bus_counters),
     .bus_read_data  (read_data),
-    .bus_incomplete (bus_incomplete)
+    .bus_incomplete (bus_incomplete),
+    .bus_busy       (bus_busy)
   );
 
 endmodule

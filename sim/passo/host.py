@@ -32,6 +32,7 @@ class ChannelState:
 
     state: State
     cause: Cause
+    quiet: bool
     stopping: bool
     overrun: int
     drained: int
@@ -56,12 +57,17 @@ class Channel:
         if actual != parameters:
             raise HostError(f"the core has {actual}, expected {parameters}")
 
-    def configure_axis(self, axis: int, pins: PinTiming, flags: int = 1) -> None:
-        """Set the pins of an axis; `flags` is its PINS register, by default: drive enabled."""
-        address = self.base + r.CHANNEL_AXIS_BASE + axis * r.CHANNEL_AXIS_STRIDE
+    def axis_base(self, axis: int) -> int:
+        """Address of the registers of an axis."""
+        return self.base + r.CHANNEL_AXIS_BASE + axis * r.CHANNEL_AXIS_STRIDE
+
+    def configure_axis(self, axis: int, pins: PinTiming, flags: int = 0) -> None:
+        """Set the pins of an axis and enable its drive; `flags` is its PINS register."""
+        address = self.axis_base(axis)
         self.link.write(
             address, flags, pins.step_high << 16 | pins.step_low, pins.dir_setup << 16 | pins.dir_hold
         )
+        self.link.write(address + r.AXIS_ENABLE, 1)
 
     def configure_motion(self, rate_slew: int, stop_slew: int, drain_velocity: int) -> None:
         """Set how holds and stops slow down and how missing substeps are made."""
@@ -112,6 +118,7 @@ class Channel:
         return ChannelState(
             state=State(word & 7),
             cause=Cause(word >> r.CHANNEL_STATE_CAUSE_LSB & 7),
+            quiet=bool(word >> r.CHANNEL_STATE_QUIET_LSB & 1),
             stopping=bool(word >> r.CHANNEL_STATE_STOPPING_LSB & 1),
             overrun=word >> r.CHANNEL_STATE_OVERRUN_LSB & 0xFF,
             drained=word >> r.CHANNEL_STATE_DRAINED_LSB & 0xFFFF,

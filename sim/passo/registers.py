@@ -37,8 +37,8 @@ class Verdict(_DescribedEnum):
     UNKNOWN_ADDRESS = 5, "No register at this address."
     READ_ONLY = 6, "The register cannot be written."
     QUEUE_FULL = 7, "Not enough room for the whole frame."
-    BUSY = 8, "Channel stopped and not cleared, or shape tables while a motion runs."
-    BAD_VALUE = 9, "M = 0 or M >= 2^30, N_i > M, a velocity above 1/2, reserved bits set."
+    BUSY = 8, "The state of the channel does not allow it (see the register)."
+    BAD_VALUE = 9, "M = 0 or M >= 2^30, N_i > M, a velocity above 1/2, drain velocity 0, reserved bits set."
 
 
 class State(_DescribedEnum):
@@ -168,7 +168,8 @@ ADDRESS_CHANNEL_BASE = 0x100
 ADDRESS_CHANNEL_COUNT = 8
 ADDRESS_CHANNEL_STRIDE = 0x100
 
-# Channel: Command. Each bit written as 1 is done once.
+# Channel: Command. Each bit written as 1 is done once. With STOP or ABORT, CLEAR and ZERO in the same word
+# are ignored; ABORT wins over STOP.
 CHANNEL_COMMAND = 0x00
 CHANNEL_COMMAND_STOP_LSB = 0
 CHANNEL_COMMAND_STOP_BITS = 1
@@ -218,6 +219,9 @@ CHANNEL_STATE = 0x08
 CHANNEL_STATE_STATE_LSB = 0
 CHANNEL_STATE_STATE_BITS = 3
 CHANNEL_STATE_STATE_RESET = 0x0
+CHANNEL_STATE_QUIET_LSB = 3
+CHANNEL_STATE_QUIET_BITS = 1
+CHANNEL_STATE_QUIET_RESET = 0x1
 CHANNEL_STATE_CAUSE_LSB = 4
 CHANNEL_STATE_CAUSE_BITS = 3
 CHANNEL_STATE_CAUSE_RESET = 0x0
@@ -237,7 +241,7 @@ CHANNEL_RATE_LSB = 0
 CHANNEL_RATE_BITS = 17
 CHANNEL_RATE_RESET = 0x10000
 
-# Channel: Room. Free places in the queues.
+# Channel: Room. Free places in the queues. A push counts from the moment its frame is accepted.
 CHANNEL_ROOM = 0x0A
 CHANNEL_ROOM_RAMP_ROOM_LSB = 0
 CHANNEL_ROOM_RAMP_ROOM_BITS = 16
@@ -275,12 +279,9 @@ CHANNEL_AXIS_BASE = 0x80
 CHANNEL_AXIS_COUNT = 8
 CHANNEL_AXIS_STRIDE = 0x08
 
-# Axis: Pins. Drive enable, polarities and step mode. Change polarities and step mode only while the axis
-# stands and STEP is inactive.
+# Axis: Pins. Polarities and step mode. Refused with BUSY unless the channel is quiet. The next step waits
+# for the low time, the DIR hold and the DIR set-up from here on. Kept over a reset of the core.
 AXIS_PINS = 0x0
-AXIS_PINS_ENABLE_LSB = 0
-AXIS_PINS_ENABLE_BITS = 1
-AXIS_PINS_ENABLE_RESET = 0x0
 AXIS_PINS_STEP_INVERTED_LSB = 1
 AXIS_PINS_STEP_INVERTED_BITS = 1
 AXIS_PINS_STEP_INVERTED_RESET = 0x0
@@ -293,9 +294,9 @@ AXIS_PINS_ENABLE_INVERTED_RESET = 0x0
 AXIS_PINS_BOTH_EDGES_LSB = 4
 AXIS_PINS_BOTH_EDGES_BITS = 1
 AXIS_PINS_BOTH_EDGES_RESET = 0x0
-AXIS_PINS_DEFINED = 0x0000001F
+AXIS_PINS_DEFINED = 0x0000001E
 
-# Axis: STEP timing. Clocks, 1 .. 65535; 0 counts as 1.
+# Axis: STEP timing. Clocks, 1 .. 65535; 0 counts as 1. Kept over a reset of the core.
 AXIS_STEP_TIMING = 0x1
 AXIS_STEP_TIMING_STEP_LOW_LSB = 0
 AXIS_STEP_TIMING_STEP_LOW_BITS = 16
@@ -305,7 +306,7 @@ AXIS_STEP_TIMING_STEP_HIGH_BITS = 16
 AXIS_STEP_TIMING_STEP_HIGH_RESET = 0x0001
 AXIS_STEP_TIMING_DEFINED = 0xFFFFFFFF
 
-# Axis: DIR timing. Clocks, 1 .. 65535; 0 counts as 1.
+# Axis: DIR timing. Clocks, 1 .. 65535; 0 counts as 1. Kept over a reset of the core.
 AXIS_DIR_TIMING = 0x2
 AXIS_DIR_TIMING_DIR_HOLD_LSB = 0
 AXIS_DIR_TIMING_DIR_HOLD_BITS = 16
@@ -320,3 +321,10 @@ AXIS_LOST_STEPS = 0x3
 AXIS_LOST_STEPS_LOST_LSB = 0
 AXIS_LOST_STEPS_LOST_BITS = 4
 AXIS_LOST_STEPS_LOST_RESET = 0x0
+
+# Axis: Drive enable. May be written at any time.
+AXIS_ENABLE = 0x4
+AXIS_ENABLE_LSB = 0
+AXIS_ENABLE_BITS = 1
+AXIS_ENABLE_RESET = 0x0
+AXIS_ENABLE_DEFINED = 0x00000001

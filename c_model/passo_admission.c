@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: MIT
+ * Admission: whether the state of the channel allows the frame that is about to be executed. See
+ * rtl/passo_admission.v.
+ */
+#include "passo_model.h"
+
+void passo_admission_clock(
+    struct passo_admission *admission, const struct passo_bus *bus, const struct passo_needs *needs)
+{
+	if (bus->frame && !bus->commit) {
+		*admission = (struct passo_admission){0};
+		return;
+	}
+	admission->idle_needed |= needs->idle;
+	admission->quiet_needed |= needs->quiet;
+	admission->motion_needed |= needs->motion;
+}
+
+bool passo_channel_busy(const struct passo_channel *channel)
+{
+	const struct passo_admission *admission = &channel->admission;
+
+	return (admission->idle_needed && passo_channel_occupied(channel))
+	    || (admission->quiet_needed && !passo_channel_quiet(channel))
+	    || (admission->motion_needed && channel->ramp.ends_next);
+}

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// Admission: whether the state of the channel allows the frame that is about to be executed.
+//
+// The checks of a frame's words tell what it needs; that is judged once for the whole frame, in a commit. Promise:
+// from 30 clocks after `bus_commit` rose until it falls, `busy` does not rise, so what is executed meets the state that it
+// was judged by: `hold` lets no motion begin, `now_coming` lets none end.
+`resetall
+`default_nettype none
+
+module passo_admission (
+  input  wire clk,
+  input  wire rst,
+  // bus
+  input  wire bus_frame,
+  input  wire bus_commit,
+  // a word that is checked needs ...
+  input  wire needs_idle,     // ... no motion
+  input  wire needs_quiet,    // ... and no step at the pins
+  input  wire needs_motion,   // ... a motion that can still take a NOW ramp
+  input  wire tables_wanted,  // the frame writes shape tables, which needs no motion in any channel
+  // state
+  input  wire occupied,
+  input  wire quiet,
+  input  wire takes_now,
+  output wire busy,
+  output wire hold,
+  output wire now_coming
+);
+
+  reg idle_needed;
+  reg quiet_needed;
+  reg motion_needed;
+
+  always @(posedge clk) begin
+    idle_needed   <= idle_needed | needs_idle;
+    quiet_needed  <= quiet_needed | needs_quiet;
+    motion_needed <= motion_needed | needs_motion;
+    if (rst || (bus_frame && !bus_commit)) begin
+      idle_needed   <= 1'b0;
+      quiet_needed  <= 1'b0;
+      motion_needed <= 1'b0;
+    end
+  end
+
+  assign busy       = (idle_needed & occupied) | (quiet_needed & ~quiet) | (motion_needed & ~takes_now);
+  assign hold       = bus_commit & (idle_needed | quiet_needed | tables_wanted);
+  assign now_coming = bus_commit & motion_needed;
+
+endmodule
+`resetall
