@@ -15,6 +15,7 @@
 // Latency: step_request to STEP 3 clocks, `direction` to DIR 3 clocks. `step_made`, with `step_direction`, is
 // high in the clock before the active edge leaves the pin.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_axis (

@@ -2,6 +2,7 @@
 // Settings of one axis, as they are written, and which of its times are 1, which its timer needs to know before
 // it counts. A time of 0 counts as 1.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_axis_settings (

@@ -6,6 +6,7 @@
 // is meant. A command strobe is high for the clock after its write. `bus_top_bit` and `bus_lone_bit` tell how
 // large the data of a check are.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_channel_registers #(

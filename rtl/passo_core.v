@@ -5,6 +5,7 @@
 // Clock: clk at least four times SCLK. Reset: rst synchronous, active high.
 // Latency: a rising edge of `sync` starts the armed channels 4 clocks later.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_core #(

@@ -19,6 +19,7 @@
 // claim (the address is mine) and refusal, and two clocks after bus_read with data; at all other times the status
 // stands in the place of data.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_link (

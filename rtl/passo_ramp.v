@@ -21,6 +21,7 @@
 // fetch 8 (T = 0: 7), take 5, look up 4 .. 2 * CHANNELS + 4, shape 19, scale 50, step 8, and one to choose
 // between them.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_ramp #(

@@ -6,6 +6,7 @@
 // these registers is meant. `read_data` is the status word at all other times. RUN changes for all channels on
 // the same clock.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_registers #(

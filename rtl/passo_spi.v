@@ -17,6 +17,7 @@
 //   frame_start comes 2 to 3 clocks after chip select falls; reply_word must stand at the first falling edge of
 //         SCLK, so chip select has to fall at least 3 clocks before the first rising edge.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_spi (

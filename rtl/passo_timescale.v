@@ -11,6 +11,7 @@
 // 0 counts as 1. The rate changes 7 clocks after the slew tick: goal, direction, slew, the new rate and whether
 // it lies beyond the goal are found one after the other. Slew ticks are at least 8 clocks apart.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_timescale (
