@@ -88,7 +88,9 @@ module passo_spi (
     end
 
   // clk domain
+  (* async_reg = "true" *)
   reg [2:0] select_sync;
+  (* async_reg = "true" *)
   reg [2:0] toggle_sync;
 
   always @(posedge clk) begin
