@@ -108,8 +108,9 @@ module passo_axis (
 
   integer i;
   always @(posedge clk) begin
-    for (i = 0; i < 4; i = i + 1)
-    if (step_begins || !waits[i]) waiting[i] <= i < 3 && waits[(i+1)%4] ? waiting[(i+1)%4] : direction;
+    for (i = 0; i < 4; i = i + 1) begin
+      if (step_begins || !waits[i]) waiting[i] <= i < 3 && waits[(i+1)%4] ? waiting[(i+1)%4] : direction;
+    end
     if (step_begins != accepted) waits <= step_begins ? {1'b0, waits[3:1]} : {waits[2:0], 1'b1};
     waits_up   <= step_begins ? up_behind : up_here;
     waits_down <= step_begins ? down_behind : down_here;
