@@ -37,12 +37,7 @@ demo: setup ## Run the demonstration.
 
 lint: setup ## Check Verilog, C and Python for faults and format.
 ifneq ($(VERILOG),)
-	@echo "== verilator --lint-only -Wall"
-	@exports=$$($(BIN)/python -m passo.toolchain); eval "$$exports"; \
-	    verilator --lint-only --quiet -Wall -Irtl --top-module passo_core $(VERILOG)
-	@echo "== iverilog -Wall"
-	@messages=$$(iverilog -Wall -g2005 -Irtl -t null $(VERILOG) 2>&1) && [ -z "$$messages" ] || \
-	    { echo "$$messages"; exit 1; }
+	@$(BIN)/python tools/lint_rtl.py
 	@echo "== verible-verilog-format --verify"
 	@$(VERIBLE_FORMAT) --verify $(VERILOG) $(BOARDS) || { echo "'make format' puts this right."; exit 1; }
 endif

@@ -98,7 +98,7 @@ class Core:
         self.started = 0  # clock
         self._rows: list[np.ndarray] = []
         self._running: list[tuple[int, int]] = [(0, 0)]  # clocks and levels of all channels
-        self._record = _record()
+        self._record: Record
 
     @classmethod
     async def begin(cls, dut: HierarchyObject, thread: Thread) -> "Core":
@@ -113,6 +113,7 @@ class Core:
         await clocks.wait(4)
         dut.spi_cs_n.value = 1
         await clocks.wait(4)
+        core._record = _record()
         dut.rst.value = 0
         return core
 

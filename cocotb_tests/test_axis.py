@@ -440,7 +440,13 @@ async def a_reset_makes_no_edge(dut: HierarchyObject, timing: PinTiming) -> None
             assert read(dut.quiet)
             # a pulse that has begun is finished, and lasts its time from the reset on
             active = levels[0] != timing.step_inverted and not timing.both_edges
-            assert [level for _, level in steps.changes] == [timing.step_inverted] * active
+            assert [level for _, level in steps.changes] == [timing.step_inverted] * active, (
+                length,
+                at,
+                levels,
+                steps.changes,
+                start,
+            )
             assert all(clock >= start + at + 1 + length + timing.high for clock, _ in steps.changes)
             # then DIR goes back to the direction of no line
             assert len(dirs.changes) == (levels[1] != timing.direction_inverted)

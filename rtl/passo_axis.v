@@ -18,6 +18,7 @@
 // Latency: step_request to STEP 3 clocks, `direction` to DIR 3 clocks. `step_made`, with `step_direction`, is
 // high in the clock before the active edge leaves the pin.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_axis #(
@@ -122,8 +123,9 @@ module passo_axis #(
 
   integer i;
   always @(posedge clk) begin
-    for (i = 0; i < 4; i = i + 1)
-    if (step_begins || !waits[i]) waiting[i] <= i < 3 && waits[(i+1)%4] ? waiting[(i+1)%4] : direction;
+    for (i = 0; i < 4; i = i + 1) begin
+      if (step_begins || !waits[i]) waiting[i] <= i < 3 && waits[(i+1)%4] ? waiting[(i+1)%4] : direction;
+    end
     if (step_begins != accepted) waits <= step_begins ? {1'b0, waits[3:1]} : {waits[2:0], 1'b1};
     waits_up   <= step_begins ? up_behind : up_here;
     waits_down <= step_begins ? down_behind : down_here;

@@ -5,6 +5,7 @@
 // is meant. `select_axis` has the bit of the axis whose block is meant, `select_position` that of the axis
 // whose position is. `answers_position` tells that the answer is a position, which this module does not know.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_axis_registers #(

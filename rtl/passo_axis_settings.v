@@ -5,6 +5,7 @@
 // They are configuration: a reset takes only the drive enable away. The polarities begin such that each pin has
 // the level of its parameter until the host has spoken.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_axis_settings #(

@@ -3,6 +3,7 @@
 //
 // Promise: a step due n enabled clocks into the profile leaves its pin n clocks after `running` rose.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_channel #(

@@ -7,6 +7,7 @@
 // word are ignored, and STOP with ABORT: no state refuses them. `bus_top_bit` and `bus_lone_bit` tell how large the
 // data of a check are.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_channel_registers #(

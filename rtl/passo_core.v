@@ -5,6 +5,7 @@
 // Clock: clk at least four times SCLK. Reset: rst synchronous, active high.
 // Latency: a rising edge of `sync` starts the armed channels 4 clocks later.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_core #(
@@ -126,6 +127,7 @@ module passo_core #(
   // Shape banks 1 .. 3 are the last three blocks of 256 addresses.
   reg select_tables;  // a clock after the address, which stands a clock before any strobe
 
+  (* async_reg = "true" *)
   reg  [          2:0] sync_q;
   wire                 sync_edge = sync_q[1] & ~sync_q[2];
   reg  [TICK_LOG2-1:0] slew_count;

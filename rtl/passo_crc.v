@@ -5,6 +5,7 @@
 // Promise: a clock of `shift` adds `data`. With `turn` it turns the CRC by a bit instead, so that 32 clocks
 // show the CRC at `top`, bit by bit, and leave it as it was. `restart` begins anew and wins over a shift.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_crc (

@@ -10,6 +10,7 @@
 //
 // Promise: exactly N steps in M substeps, for any 0 <= N <= M. `step_request` is high in clock B.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_dda (

@@ -15,6 +15,7 @@
 // `load_fraction` takes f for the velocities: progress itself if `linear`, else what lies in the result of the
 // points, rounded to 2^-24.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_interpolate (

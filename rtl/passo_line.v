@@ -14,6 +14,7 @@
 // substeps are ignored.
 // Latency: substep to slot_add 1 clock, to slot_step 2 clocks.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_line #(

@@ -16,6 +16,7 @@
 //
 // With STEPS_REGISTER the steps wait in a register behind their block RAMs, else the address does before them.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_line_queue #(

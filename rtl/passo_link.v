@@ -21,6 +21,7 @@
 // claim (the address is mine) and refusal, and two clocks after bus_read with data; at all other times the status
 // stands in the place of data.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_link (
@@ -144,6 +145,7 @@ module passo_link (
   reg        counters_high;
   wire [1:0] counter = verdict[1:0] - VERDICT_BAD_CRC[1:0];
   wire [1:0] place = uses_counters ? {1'b1, counters_high} : {1'b0, in_crc};
+  wire       counter_bit;
   wire       refuses = in_ack && act && !verdict_ok && verdict != VERDICT_DUPLICATE;
 
   passo_payload u_payload (
@@ -172,7 +174,6 @@ module passo_link (
   // CRC of the request; that of a read's header goes on as the CRC of the reply
   wire crc_top;
   wire reply_top;
-  wire counter_bit;
   reg  crc_wrong;
 
   passo_crc u_crc (

@@ -8,6 +8,7 @@
 //
 // Many block RAMs have such a register of their own and are slow without it; elsewhere it takes cells.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_memory #(

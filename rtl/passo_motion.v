@@ -15,6 +15,7 @@
 // after SETTLE, so that it is high for as many clocks as the profile has, and until the last drained step has
 // been made.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_motion (

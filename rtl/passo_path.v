@@ -9,6 +9,7 @@
 // read one clock later), or 0 if `rest`. While `drain` is high drain_velocity counts, from the second clock on.
 // Rest and `stop`, or the end of drain: 0, 2 clocks later.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_path (

@@ -12,6 +12,7 @@
 // the upper half after 16 clocks, the lower after 32, and wins over `store`. `counter_bit` is the bit that
 // goes by when a word of counters is to be shown the right way round.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_payload (

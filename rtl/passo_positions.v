@@ -12,6 +12,7 @@
 // when `address` has stood for 13 clocks.
 // An axis makes at most 36 steps in a round, so the way that a counter went is never in doubt.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_positions #(

@@ -22,6 +22,7 @@
 // fetch 8 (T = 0: 7), take 5, look up 4 .. 2 * CHANNELS + 4, shape 19, scale 50, step 8, and one to choose
 // between them.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_ramp #(
@@ -80,16 +81,16 @@ module passo_ramp #(
       default:               before_end <= 6'd0;
     endcase
 
+  wire over;
   reg  ticks_known;  // in the last clock of fetch but one
   wire no_ticks = ticks_known & over;
 
   // the ramp being made
-  reg        loaded;
-  reg        last;
-  reg        mirror;
-  reg  [1:0] shape;
-  wire       over;
-  reg        moves;  // the velocity is not 0
+  reg       loaded;
+  reg       last;
+  reg       mirror;
+  reg [1:0] shape;
+  reg       moves;  // the velocity is not 0
 
   // the tick that runs
   reg [TICK_LOG2-1:0] tick_count;
@@ -171,6 +172,10 @@ module passo_ramp #(
     .over           (over)
   );
 
+  reg point_is_last;  // the progress stands still while its points are looked up
+
+  always @(posedge clk) point_is_last <= progress[32:25] == 8'hFF;
+
   passo_interpolate u_interpolate (
     .clk          (clk),
     .clear        (clear),
@@ -189,10 +194,6 @@ module passo_ramp #(
     .a            (interpolated_bit),
     .result       (velocity_next)
   );
-
-  reg point_is_last;  // the progress stands still while its points are looked up
-
-  always @(posedge clk) point_is_last <= progress[32:25] == 8'hFF;
 
   assign table_request = step == STEP_LOOK_UP;
   assign table_address = {shape - 2'd1, progress[32:25]};

@@ -9,6 +9,7 @@
 // The queue holds T inverted, and du inverted if the ramp is mirrored: such a ramp runs from 1 back to 0, and
 // its u is the inverse of the other's, bit by bit.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_ramp_numbers (

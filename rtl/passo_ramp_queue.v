@@ -9,6 +9,7 @@
 // velocity of at most 1/2, no reserved bits. `refusal` answers one clock later. A word is written in two
 // clocks: upper half first. `room` is without all ramps of a frame from a clock after its commit begins to write.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_ramp_queue #(

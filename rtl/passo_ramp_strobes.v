@@ -5,6 +5,7 @@
 // which comes from the queue three clocks after it: a strobe that wants it belongs to the third count after that of
 // the index. Each step finds the index of its first half word set in the last clock of the step before.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_ramp_strobes (

@@ -6,6 +6,7 @@
 // these registers is meant. `read_data` is the status word at all other times. RUN changes for all channels on
 // the same clock.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_registers #(
@@ -67,7 +68,7 @@ module passo_registers #(
 
   wire [7:0] run_padded = {{(8 - CHANNELS) {1'b0}}, run};
   wire [7:0] wait_sync_padded = {{(8 - CHANNELS) {1'b0}}, wait_sync};
-  wire run_beyond = (bus_data[7:0] >> CHANNELS) != 8'd0 || (bus_data[15:8] >> CHANNELS) != 8'd0
+  wire run_beyond = ({1'b0, bus_data[7:0]} >> CHANNELS) != 9'd0 || ({1'b0, bus_data[15:8]} >> CHANNELS) != 9'd0
                     || {1'b0, bus_data[18:16]} >= CHANNELS[3:0];
 
   // Which register is meant is known a clock before the strobe, because the address is.

@@ -7,6 +7,7 @@
 // Acknowledge: sequence (31:24) and verdict (23:16) and their complement. The header turns along; its bits 27
 // and 11 show the sequence, twice.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_reply (

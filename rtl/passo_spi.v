@@ -18,6 +18,7 @@
 //         SCLK, so chip select has to fall at least 3 clocks before the first rising edge.
 //   chip select must be high for 2 clocks between two frames, or the second one is taken for a part of the first.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_spi (
@@ -88,7 +89,9 @@ module passo_spi (
     end
 
   // clk domain
+  (* async_reg = "true" *)
   reg [2:0] select_sync;
+  (* async_reg = "true" *)
   reg [2:0] toggle_sync;  // follows through a reset, so none looks like a half
   initial toggle_sync = 3'b000;
 

@@ -7,6 +7,7 @@
 // `point_next`; at most 2 * CHANNELS + 4 clocks after its request rose. Address = bank - 1 (9:8) and k (7:0);
 // point_next after k = 255 means nothing.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_tables #(

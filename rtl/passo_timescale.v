@@ -12,6 +12,7 @@
 // it lies beyond the goal are found one after the other. Slew ticks are at least 8 clocks apart. Once `stopping` is
 // high the rate never rises: a change under way when it rises is dropped.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_timescale (

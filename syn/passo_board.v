@@ -4,6 +4,7 @@
 // Promise: the core is in reset from configuration until 16 clocks after `locked` rose, and again whenever the PLL
 // loses lock. `heartbeat` changes every half second to second as long as clk runs and the core is out of reset.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_board #(

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // An axis whose times come from the test, which need not say which of them are short; 0 counts as 1.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_axis_top (

@@ -8,6 +8,7 @@
 //
 // in decimal numbers; one with an X in it is not a number.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_core_top #(

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Line queue, line counter and DDAs of a channel, wired as in passo_channel; the bus and the substeps come from the test.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_line_top #(

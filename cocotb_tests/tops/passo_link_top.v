@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // SPI slave and link as in passo_core; the bus and the status come from the test.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_link_top (

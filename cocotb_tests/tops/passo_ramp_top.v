@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Ramp with its queue, the shape tables and the path, wired as in a channel, the last of CHANNELS; enable and bus come from the test.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_ramp_top #(

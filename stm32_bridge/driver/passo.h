@@ -70,7 +70,6 @@ struct passo_axis_memory {
 	uint64_t steps_per_unit;  /* UQ32.32 */
 	uint32_t shortest_clocks; /* of a step */
 	int32_t expected;         /* position when all that is queued has been made */
-	uint8_t pins;             /* PINS register */
 };
 
 /* Whether motions may start. */

@@ -51,8 +51,7 @@ enum passo_error passo_configure_axis(
 		return error;
 
 	struct passo_axis_memory *memory = &passo->axis[axis];
-	const uint32_t pins = (memory->pins & UINT32_C(1) << PASSO_AXIS_PINS_ENABLE_LSB)
-	                    | (uint32_t)config->step_inverted << PASSO_AXIS_PINS_STEP_INVERTED_LSB
+	const uint32_t pins = (uint32_t)config->step_inverted << PASSO_AXIS_PINS_STEP_INVERTED_LSB
 	                    | (uint32_t)config->direction_inverted << PASSO_AXIS_PINS_DIRECTION_INVERTED_LSB
 	                    | (uint32_t)config->enable_inverted << PASSO_AXIS_PINS_ENABLE_INVERTED_LSB
 	                    | (uint32_t)config->both_edges << PASSO_AXIS_PINS_BOTH_EDGES_LSB;
@@ -65,7 +64,6 @@ enum passo_error passo_configure_axis(
 	    passo, address_of(axis, PASSO_AXIS_PINS), words, sizeof words / sizeof words[0]);
 	if (error != PASSO_OK)
 		return error;
-	memory->pins = (uint8_t)pins;
 	memory->steps_per_unit = config->steps_per_unit;
 	memory->shortest_clocks = (uint32_t)(config->both_edges ? (high > low ? high : low) : high + low);
 	const uint64_t settle =
@@ -81,12 +79,8 @@ enum passo_error passo_enable(struct passo *passo, uint8_t axis, bool on)
 
 	if (error != PASSO_OK)
 		return error;
-	const uint32_t bit = UINT32_C(1) << PASSO_AXIS_PINS_ENABLE_LSB;
-	const uint32_t pins = on ? passo->axis[axis].pins | bit : passo->axis[axis].pins & ~bit;
-	error = passo_driver_write(passo, address_of(axis, PASSO_AXIS_PINS), &pins, 1);
-	if (error == PASSO_OK)
-		passo->axis[axis].pins = (uint8_t)pins;
-	return error;
+	const uint32_t word = (uint32_t)on << PASSO_AXIS_ENABLE_LSB;
+	return passo_driver_write(passo, address_of(axis, PASSO_AXIS_ENABLE), &word, 1);
 }
 
 /* Change of rate in a tick, so that full rate takes so long. */

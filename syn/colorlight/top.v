@@ -3,6 +3,7 @@
 //
 // The PLL makes clk of the 25 MHz oscillator: 25 MHz / CLKI_DIV * CLKFB_DIV; inside it runs CLKOP_DIV times faster.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module top #(

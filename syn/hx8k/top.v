@@ -3,6 +3,7 @@
 //
 // The PLL makes clk of the 12 MHz oscillator: 12 MHz / (DIVR + 1) * (DIVF + 1) / 2^DIVQ.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module top #(

@@ -4,6 +4,7 @@
 // The PLL makes clk of the 27 MHz oscillator: 27 MHz / (IDIV_SEL + 1) * (FBDIV_SEL + 1); inside it runs ODIV_SEL
 // times faster.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module top #(

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: MIT
+"""The front ends of `make lint` see what they are there for."""
+
+import re
+import shutil
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+from passo.toolchain import paths
+
+sys.path.insert(0, str(paths.tools))
+import lint_rtl
+
+ALL = tuple(lint_rtl.READERS)
+ANY_VALUE = ("STEPS_REGISTER",)  # is 0 or not
+
+
+@dataclass(frozen=True)
+class Fault:
+    """`new` stands in the file in place of `old`; `seen_by` have to complain of it."""
+
+    file: str
+    old: str
+    new: str
+    seen_by: tuple[str, ...]
+    parameters: lint_rtl.Parameters = field(default_factory=dict)
+
+
+FAULTS = {
+    "name_is_not_declared": Fault("passo_link.v", "  wire crc_top;\n", "", ALL),
+    "port_is_not_there": Fault("passo_link.v", ".restart(", ".begin_again(", ALL),
+    "module_is_not_there": Fault("passo_link.v", "passo_crc u_crc", "passo_crc32 u_crc", ALL),
+    "name_is_used_before_its_declaration": Fault(
+        "passo_link.v", "  passo_crc u_crc", "  assign late = 1'b0;\n  wire late;\n  passo_crc u_crc",
+        ("slang",),
+    ),
+    "time_scale_is_missing": Fault(
+        "passo_crc.v", "`timescale 1ns / 1ps\n", "", ("Icarus Verilog", "slang")
+    ),
+    "widths_differ": Fault("passo_crc.v", "output wire top", "output wire [1:0] top", ("Verilator", "slang")),
+    "only_at_the_end_of_a_parameter": Fault(
+        "passo_registers.v", "({1'b0, bus_data[7:0]} >> CHANNELS) != 9'd0",
+        "(bus_data[7:0] >> CHANNELS) != 8'd0", ("slang",), lint_rtl.HIGHEST,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("fault", "reader"),
+    [(fault, reader) for fault, facts in FAULTS.items() for reader in facts.seen_by],
+)
+def test_fault_is_seen(fault: str, reader: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """By each front end that is relied on for it, with the parameters that show it."""
+    facts = FAULTS[fault]
+    monkeypatch.setattr(lint_rtl, "SURELOG", tmp_path)
+    rtl = tmp_path / "rtl"
+    shutil.copytree(paths.rtl, rtl)
+    source = (rtl / facts.file).read_text()
+    assert facts.old in source
+    (rtl / facts.file).write_text(source.replace(facts.old, facts.new, 1))
+    read, sets = lint_rtl.READERS[reader]
+    assert facts.parameters in sets
+    assert read(rtl, facts.parameters)
+
+
+@pytest.mark.parametrize("name", [name for name in lint_rtl.ENDS if name not in ANY_VALUE])
+def test_corners_are_the_ends_of_the_parameters(name: str) -> None:
+    """The ends are taken; the values beyond them are refused."""
+    low, high = lint_rtl.ENDS[name]
+    taken = [value for value in (low - 1, low, high, high + 1)
+             if not lint_rtl.read_with_slang(paths.rtl, {name: value})]  # fmt: skip
+    assert taken == [low, high]
+
+
+def test_every_number_of_the_core_has_its_corners() -> None:
+    """A parameter that is added to the core is added here."""
+    head = (paths.rtl / "passo_core.v").read_text().partition(") (")[0]
+    assert set(re.findall(r"^ *parameter .*?(\w+) *=", head, re.M)) == set(lint_rtl.ENDS)

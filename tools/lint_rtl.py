@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: MIT
+"""Read the core with four front ends, at the corners of its parameters; whatever one of them says is a fault.
+
+    tools/lint_rtl.py [FOLDER]
+
+FOLDER has the Verilog, rtl/ unless given. Verilator, Icarus Verilog and slang read all corners. Surelog,
+which takes longer, reads the three that are furthest apart. It has a grammar and an elaboration of its own;
+readers that stop at the grammar, such as hdlConvertor or Verible, would miss a name that is not declared or a
+port that is not there.
+"""
+
+import argparse
+import re
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+import surelog
+from passo.toolchain import environment, paths
+from pyslang.driver import Driver
+
+TOP = "passo_core"
+SURELOG = paths.build / "lint" / "surelog"
+
+Parameters = Mapping[str, int]
+Reader = Callable[[Path, Parameters], str]  # returns what it says; "" if it is content
+
+ENDS = {
+    "CHANNELS": (1, 8),
+    "AXES": (1, 8),
+    "TICK_LOG2": (7, 16),
+    "LINE_QUEUE_LOG2": (2, 8),
+    "RAMP_QUEUE_LOG2": (2, 8),
+    "STEPS_REGISTER": (0, 1),
+}
+LOWEST, HIGHEST = ({name: ends[which] for name, ends in ENDS.items()} for which in (0, 1))
+FAR_APART: list[Parameters] = [{}, LOWEST, HIGHEST]
+CORNERS = [*FAR_APART, *({name: value} for name, ends in ENDS.items() for value in ends)]
+
+
+def read_with_verilator(rtl: Path, parameters: Parameters) -> str:
+    """With all warnings."""
+    options = ["--lint-only", "--quiet", "-Wall", f"-I{rtl}", "--top-module", TOP]
+    return _call("verilator", *options, *_set("-G{}={}", parameters), *_sources(rtl))
+
+
+def read_with_icarus(rtl: Path, parameters: Parameters) -> str:
+    """With all warnings."""
+    options = ["-Wall", "-g2005", f"-I{rtl}", "-t", "null", "-s", TOP]
+    return _call("iverilog", *options, *_set(f"-P{TOP}.{{}}={{}}", parameters), *_sources(rtl))
+
+
+def read_with_slang(rtl: Path, parameters: Parameters) -> str:
+    """With all warnings but of constants that a module takes no notice of. It prints them itself."""
+    options = ["--std=1364-2005", "-Wextra", "-Wno-unused-parameter", "-Werror", f"-I{rtl}", "--top", TOP]
+    words = ["slang", *options, *_set("-G{}={}", parameters), *_sources(rtl)]
+    driver = Driver()
+    driver.addStandardArgs()
+    good = driver.parseCommandLine(" ".join(f'"{word}"' for word in words)) and driver.processOptions()
+    good = good and driver.parseAllSources() and driver.runFullCompilation(quiet=True)
+    return "" if good else "slang refuses this"
+
+
+def read_with_surelog(rtl: Path, parameters: Parameters) -> str:
+    """It keeps what it has parsed for the next parameters."""
+    options = ["-parse", "-nouhdm", "-nobuiltin", "-noinfo", "-nonote", f"-I{rtl}", "-top", TOP]
+    program = surelog.get_path() / surelog.get_bin()
+    said = _call(program, *options, *_set("-P{}={}", parameters), *_sources(rtl), folder=SURELOG)
+    counts = re.findall(r"^\[ *(?:FATAL|SYNTAX|ERROR|WARNING)\] : (\d+)$", said, re.M)
+    return said if len(counts) != 4 or set(counts) != {"0"} else ""
+
+
+READERS: dict[str, tuple[Reader, Sequence[Parameters]]] = {
+    "Verilator": (read_with_verilator, CORNERS),
+    "Icarus Verilog": (read_with_icarus, CORNERS),
+    "slang": (read_with_slang, CORNERS),
+    "Surelog": (read_with_surelog, FAR_APART),
+}
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Return 0 if all are content, 1 if one of them said something."""
+    parser = argparse.ArgumentParser(description="Read the core with four front ends.")
+    parser.add_argument("rtl", nargs="?", type=Path, default=paths.rtl, metavar="FOLDER")
+    rtl = parser.parse_args(arguments).rtl.resolve()
+    shutil.rmtree(SURELOG, ignore_errors=True)
+    SURELOG.mkdir(parents=True)
+    return 0 if all([_read_all(name, rtl) for name in READERS]) else 1
+
+
+def _read_all(name: str, rtl: Path) -> bool:
+    """Let one front end read all its sets of parameters; stop at the first that it does not like."""
+    read, sets = READERS[name]
+    began = time.monotonic()
+    for parameters in sets:
+        if said := read(rtl, parameters):
+            chosen = " ".join(f"{key}={value}" for key, value in parameters.items()) or "the defaults"
+            print(f"== {name}, {chosen}:\n{said.rstrip()}", file=sys.stderr)
+            return False
+    print(f"== {name}: {len(sets)} sets of parameters ({time.monotonic() - began:.0f} s)", flush=True)
+    return True
+
+
+def _set(form: str, parameters: Parameters) -> list[str]:
+    return [form.format(name, value) for name, value in parameters.items()]
+
+
+def _sources(rtl: Path) -> list[Path]:
+    return sorted(rtl.glob("*.v"))
+
+
+def _call(*command: str | Path, folder: Path | None = None) -> str:
+    """What a program says, and if it fails silently, that."""
+    done = subprocess.run(
+        list(map(str, command)),
+        cwd=folder,
+        env=environment(),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+    return done.stdout or (f"exit status {done.returncode}" if done.returncode else "")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
