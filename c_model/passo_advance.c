@@ -80,6 +80,8 @@ static bool slots_empty(const struct passo_channel *channel)
 			return false;
 	if (channel->path.refresh != stopped || channel->path.take_q != stopped)
 		return false;
+	if (stopped && (channel->path.velocity_low != 0u || channel->path.velocity_high != 0u))
+		return false;
 	return !channel->path.advance_q && !channel->path.substep && !line->slot_add && !line->slot_step;
 }
 

@@ -165,7 +165,7 @@ void passo_axis_clock(struct passo_axis *axis, const struct passo_axis_wires *wi
 		axis->state = PASSO_AXIS_SETUP;
 	if (step_begins || settle)
 		axis->state = PASSO_AXIS_PULSE;
-	if (settle && !axis->settings.both_edges)
+	if (wires->pins_written && !wires->both_edges_next)
 		axis->step = false;
 	axis->step = axis->step != (step_begins || falls);
 	axis->dir = axis->dir != (turn && !right);

@@ -13,6 +13,25 @@ static bool in_range(unsigned value, unsigned low, unsigned high)
 	return value >= low && value <= high;
 }
 
+static void gather_outputs(struct passo_core *core)
+{
+	struct passo_outputs *outputs = &core->outputs;
+
+	outputs->step = outputs->dir = outputs->enable = 0;
+	outputs->running = 0;
+	for (unsigned i = 0; i < core->parameters.channels; i++) {
+		const struct passo_channel *channel = &core->channel[i];
+		for (unsigned a = 0; a < core->parameters.axes; a++) {
+			const unsigned bit = i * core->parameters.axes + a;
+			outputs->step |= (uint64_t)channel->axis[a].step_pin << bit;
+			outputs->dir |= (uint64_t)channel->axis[a].dir_pin << bit;
+			outputs->enable |= (uint64_t)channel->axis[a].enable_pin << bit;
+		}
+		outputs->running |= (uint8_t)((channel->motion.running ? 1u : 0u) << i);
+	}
+	outputs->spi_miso = core->spi.miso;
+}
+
 bool passo_core_reset(struct passo_core *core, const struct passo_parameters *parameters)
 {
 	if (!in_range(parameters->channels, 1, PASSO_CHANNELS_MAX)
@@ -28,7 +47,7 @@ bool passo_core_reset(struct passo_core *core, const struct passo_parameters *pa
 	memcpy(core->tables.points, passo_shapes, sizeof core->tables.points);
 	for (unsigned i = 0; i < parameters->channels; i++)
 		passo_channel_reset(&core->channel[i], parameters, (uint8_t)i);
-	core->outputs.spi_miso = true;
+	gather_outputs(core);
 	return true;
 }
 
@@ -71,25 +90,6 @@ static bool any_busy(const struct passo_core *core)
 		if (passo_channel_busy(&core->channel[i]))
 			return true;
 	return core->tables.wanted && passo_registers_any_occupied(core);
-}
-
-static void gather_outputs(struct passo_core *core)
-{
-	struct passo_outputs *outputs = &core->outputs;
-
-	outputs->step = outputs->dir = outputs->enable = 0;
-	outputs->running = 0;
-	for (unsigned i = 0; i < core->parameters.channels; i++) {
-		const struct passo_channel *channel = &core->channel[i];
-		for (unsigned a = 0; a < core->parameters.axes; a++) {
-			const unsigned bit = i * core->parameters.axes + a;
-			outputs->step |= (uint64_t)channel->axis[a].step_pin << bit;
-			outputs->dir |= (uint64_t)channel->axis[a].dir_pin << bit;
-			outputs->enable |= (uint64_t)channel->axis[a].enable_pin << bit;
-		}
-		outputs->running |= (uint8_t)((channel->motion.running ? 1u : 0u) << i);
-	}
-	outputs->spi_miso = core->spi.miso;
 }
 
 static void clock_all(struct passo_core *core, const struct passo_inputs *inputs)

@@ -387,6 +387,7 @@ void passo_dda_clock(struct passo_dda *dda, const struct passo_line_unit *line,
 struct passo_axis_wires {
 	bool step_request, direction;
 	bool drop, zero, clear, timing_written, pins_written;
+	bool both_edges_next; /* with pins_written: the mode that is written */
 };
 
 /* At configuration: the levels of the three pins. */

@@ -8,311 +8,309 @@
 
 /* Core: Identification. Reads as ASCII PASO. */
 #define PASSO_ADDRESS_IDENTIFICATION 0x000u
-#define PASSO_IDENTIFICATION_LSB 0u
-#define PASSO_IDENTIFICATION_BITS 32u
-#define PASSO_IDENTIFICATION_RESET 0x5041534Fu
+#define PASSO_IDENTIFICATION_LSB     0u
+#define PASSO_IDENTIFICATION_BITS    32u
+#define PASSO_IDENTIFICATION_RESET   0x5041534Fu
 
 /* Core: Version. Version of the register map and the link. */
-#define PASSO_ADDRESS_VERSION 0x001u
-#define PASSO_VERSION_PATCH_LSB 0u
-#define PASSO_VERSION_PATCH_BITS 8u
+#define PASSO_ADDRESS_VERSION     0x001u
+#define PASSO_VERSION_PATCH_LSB   0u
+#define PASSO_VERSION_PATCH_BITS  8u
 #define PASSO_VERSION_PATCH_RESET 0x00u
-#define PASSO_VERSION_MINOR_LSB 8u
-#define PASSO_VERSION_MINOR_BITS 8u
+#define PASSO_VERSION_MINOR_LSB   8u
+#define PASSO_VERSION_MINOR_BITS  8u
 #define PASSO_VERSION_MINOR_RESET 0x01u
-#define PASSO_VERSION_MAJOR_LSB 16u
-#define PASSO_VERSION_MAJOR_BITS 8u
+#define PASSO_VERSION_MAJOR_LSB   16u
+#define PASSO_VERSION_MAJOR_BITS  8u
 #define PASSO_VERSION_MAJOR_RESET 0x00u
 
 /* Core: Parameters. How the core was built. */
-#define PASSO_ADDRESS_PARAMETERS 0x002u
-#define PASSO_PARAMETERS_CHANNELS_LSB 0u
-#define PASSO_PARAMETERS_CHANNELS_BITS 4u
-#define PASSO_PARAMETERS_AXES_LSB 4u
-#define PASSO_PARAMETERS_AXES_BITS 4u
-#define PASSO_PARAMETERS_TICK_LOG2_LSB 8u
-#define PASSO_PARAMETERS_TICK_LOG2_BITS 5u
-#define PASSO_PARAMETERS_LINE_QUEUE_LOG2_LSB 16u
+#define PASSO_ADDRESS_PARAMETERS              0x002u
+#define PASSO_PARAMETERS_CHANNELS_LSB         0u
+#define PASSO_PARAMETERS_CHANNELS_BITS        4u
+#define PASSO_PARAMETERS_AXES_LSB             4u
+#define PASSO_PARAMETERS_AXES_BITS            4u
+#define PASSO_PARAMETERS_TICK_LOG2_LSB        8u
+#define PASSO_PARAMETERS_TICK_LOG2_BITS       5u
+#define PASSO_PARAMETERS_LINE_QUEUE_LOG2_LSB  16u
 #define PASSO_PARAMETERS_LINE_QUEUE_LOG2_BITS 5u
-#define PASSO_PARAMETERS_RAMP_QUEUE_LOG2_LSB 24u
+#define PASSO_PARAMETERS_RAMP_QUEUE_LOG2_LSB  24u
 #define PASSO_PARAMETERS_RAMP_QUEUE_LOG2_BITS 5u
 
 /* Core: Run. One bit per channel, all in one register: channels that are ARMED start on the same clock when
  * one write clears their WAIT_SYNC. */
-#define PASSO_ADDRESS_RUN 0x003u
-#define PASSO_RUN_RUN_LSB 0u
-#define PASSO_RUN_RUN_BITS 8u
-#define PASSO_RUN_RUN_RESET 0x00u
-#define PASSO_RUN_WAIT_SYNC_LSB 8u
-#define PASSO_RUN_WAIT_SYNC_BITS 8u
-#define PASSO_RUN_WAIT_SYNC_RESET 0x00u
-#define PASSO_RUN_STATUS_CHANNEL_LSB 16u
-#define PASSO_RUN_STATUS_CHANNEL_BITS 3u
+#define PASSO_ADDRESS_RUN              0x003u
+#define PASSO_RUN_RUN_LSB              0u
+#define PASSO_RUN_RUN_BITS             8u
+#define PASSO_RUN_RUN_RESET            0x00u
+#define PASSO_RUN_WAIT_SYNC_LSB        8u
+#define PASSO_RUN_WAIT_SYNC_BITS       8u
+#define PASSO_RUN_WAIT_SYNC_RESET      0x00u
+#define PASSO_RUN_STATUS_CHANNEL_LSB   16u
+#define PASSO_RUN_STATUS_CHANNEL_BITS  3u
 #define PASSO_RUN_STATUS_CHANNEL_RESET 0x0u
-#define PASSO_RUN_DEFINED 0x0007FFFFu
+#define PASSO_RUN_DEFINED              0x0007FFFFu
 
 /* Core: Refusals 0. Counters of refused frames; they wrap. */
-#define PASSO_ADDRESS_REFUSALS_0 0x004u
-#define PASSO_REFUSALS_0_BAD_CRC_LSB 0u
-#define PASSO_REFUSALS_0_BAD_CRC_BITS 8u
-#define PASSO_REFUSALS_0_BAD_CRC_RESET 0x00u
-#define PASSO_REFUSALS_0_BAD_LENGTH_LSB 8u
-#define PASSO_REFUSALS_0_BAD_LENGTH_BITS 8u
-#define PASSO_REFUSALS_0_BAD_LENGTH_RESET 0x00u
-#define PASSO_REFUSALS_0_BAD_OPERATION_LSB 16u
-#define PASSO_REFUSALS_0_BAD_OPERATION_BITS 8u
-#define PASSO_REFUSALS_0_BAD_OPERATION_RESET 0x00u
-#define PASSO_REFUSALS_0_UNKNOWN_ADDRESS_LSB 24u
-#define PASSO_REFUSALS_0_UNKNOWN_ADDRESS_BITS 8u
+#define PASSO_ADDRESS_REFUSALS_0               0x004u
+#define PASSO_REFUSALS_0_BAD_CRC_LSB           0u
+#define PASSO_REFUSALS_0_BAD_CRC_BITS          8u
+#define PASSO_REFUSALS_0_BAD_CRC_RESET         0x00u
+#define PASSO_REFUSALS_0_BAD_LENGTH_LSB        8u
+#define PASSO_REFUSALS_0_BAD_LENGTH_BITS       8u
+#define PASSO_REFUSALS_0_BAD_LENGTH_RESET      0x00u
+#define PASSO_REFUSALS_0_BAD_OPERATION_LSB     16u
+#define PASSO_REFUSALS_0_BAD_OPERATION_BITS    8u
+#define PASSO_REFUSALS_0_BAD_OPERATION_RESET   0x00u
+#define PASSO_REFUSALS_0_UNKNOWN_ADDRESS_LSB   24u
+#define PASSO_REFUSALS_0_UNKNOWN_ADDRESS_BITS  8u
 #define PASSO_REFUSALS_0_UNKNOWN_ADDRESS_RESET 0x00u
 
 /* Core: Refusals 1. Counters of refused frames; they wrap. */
-#define PASSO_ADDRESS_REFUSALS_1 0x005u
-#define PASSO_REFUSALS_1_READ_ONLY_LSB 0u
-#define PASSO_REFUSALS_1_READ_ONLY_BITS 8u
-#define PASSO_REFUSALS_1_READ_ONLY_RESET 0x00u
-#define PASSO_REFUSALS_1_QUEUE_FULL_LSB 8u
-#define PASSO_REFUSALS_1_QUEUE_FULL_BITS 8u
+#define PASSO_ADDRESS_REFUSALS_1          0x005u
+#define PASSO_REFUSALS_1_READ_ONLY_LSB    0u
+#define PASSO_REFUSALS_1_READ_ONLY_BITS   8u
+#define PASSO_REFUSALS_1_READ_ONLY_RESET  0x00u
+#define PASSO_REFUSALS_1_QUEUE_FULL_LSB   8u
+#define PASSO_REFUSALS_1_QUEUE_FULL_BITS  8u
 #define PASSO_REFUSALS_1_QUEUE_FULL_RESET 0x00u
-#define PASSO_REFUSALS_1_BUSY_LSB 16u
-#define PASSO_REFUSALS_1_BUSY_BITS 8u
-#define PASSO_REFUSALS_1_BUSY_RESET 0x00u
-#define PASSO_REFUSALS_1_BAD_VALUE_LSB 24u
-#define PASSO_REFUSALS_1_BAD_VALUE_BITS 8u
-#define PASSO_REFUSALS_1_BAD_VALUE_RESET 0x00u
+#define PASSO_REFUSALS_1_BUSY_LSB         16u
+#define PASSO_REFUSALS_1_BUSY_BITS        8u
+#define PASSO_REFUSALS_1_BUSY_RESET       0x00u
+#define PASSO_REFUSALS_1_BAD_VALUE_LSB    24u
+#define PASSO_REFUSALS_1_BAD_VALUE_BITS   8u
+#define PASSO_REFUSALS_1_BAD_VALUE_RESET  0x00u
 
 /* Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0. Refused with BUSY
  * while a motion runs. */
-#define PASSO_ADDRESS_COSINE_BASE 0xD00u
+#define PASSO_ADDRESS_COSINE_BASE  0xD00u
 #define PASSO_ADDRESS_COSINE_COUNT 256u
-#define PASSO_COSINE_POINT_LSB 0u
-#define PASSO_COSINE_POINT_BITS 16u
-#define PASSO_COSINE_DEFINED 0x0000FFFFu
+#define PASSO_COSINE_POINT_LSB     0u
+#define PASSO_COSINE_POINT_BITS    16u
+#define PASSO_COSINE_DEFINED       0x0000FFFFu
 
 /* Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0. Refused with BUSY
  * while a motion runs. */
-#define PASSO_ADDRESS_SIGMOID_BASE 0xE00u
+#define PASSO_ADDRESS_SIGMOID_BASE  0xE00u
 #define PASSO_ADDRESS_SIGMOID_COUNT 256u
-#define PASSO_SIGMOID_POINT_LSB 0u
-#define PASSO_SIGMOID_POINT_BITS 16u
-#define PASSO_SIGMOID_DEFINED 0x0000FFFFu
+#define PASSO_SIGMOID_POINT_LSB     0u
+#define PASSO_SIGMOID_POINT_BITS    16u
+#define PASSO_SIGMOID_DEFINED       0x0000FFFFu
 
 /* Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0. Refused with BUSY
  * while a motion runs. */
-#define PASSO_ADDRESS_EASE_BASE 0xF00u
+#define PASSO_ADDRESS_EASE_BASE  0xF00u
 #define PASSO_ADDRESS_EASE_COUNT 256u
-#define PASSO_EASE_POINT_LSB 0u
-#define PASSO_EASE_POINT_BITS 16u
-#define PASSO_EASE_DEFINED 0x0000FFFFu
+#define PASSO_EASE_POINT_LSB     0u
+#define PASSO_EASE_POINT_BITS    16u
+#define PASSO_EASE_DEFINED       0x0000FFFFu
 
 /* Core: where each channel has its registers. */
-#define PASSO_ADDRESS_CHANNEL_BASE 0x100u
-#define PASSO_ADDRESS_CHANNEL_COUNT 8u
+#define PASSO_ADDRESS_CHANNEL_BASE   0x100u
+#define PASSO_ADDRESS_CHANNEL_COUNT  8u
 #define PASSO_ADDRESS_CHANNEL_STRIDE 0x100u
 
 /* Channel: Command. Each bit written as 1 is done once. With STOP or ABORT, CLEAR and ZERO in the same word
  * are ignored; ABORT wins over STOP. */
-#define PASSO_CHANNEL_COMMAND 0x00u
-#define PASSO_CHANNEL_COMMAND_STOP_LSB 0u
-#define PASSO_CHANNEL_COMMAND_STOP_BITS 1u
-#define PASSO_CHANNEL_COMMAND_STOP_RESET 0x0u
-#define PASSO_CHANNEL_COMMAND_ABORT_LSB 1u
-#define PASSO_CHANNEL_COMMAND_ABORT_BITS 1u
+#define PASSO_CHANNEL_COMMAND             0x00u
+#define PASSO_CHANNEL_COMMAND_STOP_LSB    0u
+#define PASSO_CHANNEL_COMMAND_STOP_BITS   1u
+#define PASSO_CHANNEL_COMMAND_STOP_RESET  0x0u
+#define PASSO_CHANNEL_COMMAND_ABORT_LSB   1u
+#define PASSO_CHANNEL_COMMAND_ABORT_BITS  1u
 #define PASSO_CHANNEL_COMMAND_ABORT_RESET 0x0u
-#define PASSO_CHANNEL_COMMAND_CLEAR_LSB 2u
-#define PASSO_CHANNEL_COMMAND_CLEAR_BITS 1u
+#define PASSO_CHANNEL_COMMAND_CLEAR_LSB   2u
+#define PASSO_CHANNEL_COMMAND_CLEAR_BITS  1u
 #define PASSO_CHANNEL_COMMAND_CLEAR_RESET 0x0u
-#define PASSO_CHANNEL_COMMAND_ZERO_LSB 3u
-#define PASSO_CHANNEL_COMMAND_ZERO_BITS 1u
-#define PASSO_CHANNEL_COMMAND_ZERO_RESET 0x0u
-#define PASSO_CHANNEL_COMMAND_DEFINED 0x0000000Fu
+#define PASSO_CHANNEL_COMMAND_ZERO_LSB    3u
+#define PASSO_CHANNEL_COMMAND_ZERO_BITS   1u
+#define PASSO_CHANNEL_COMMAND_ZERO_RESET  0x0u
+#define PASSO_CHANNEL_COMMAND_DEFINED     0x0000000Fu
 
 /* Channel: Rate target. Time scale, UQ1.16: 0 = feed hold, 65536 = 1.0 = full speed. Refused with BAD_VALUE
  * above 1.0. */
-#define PASSO_CHANNEL_RATE_TARGET 0x01u
-#define PASSO_CHANNEL_RATE_TARGET_LSB 0u
-#define PASSO_CHANNEL_RATE_TARGET_BITS 17u
-#define PASSO_CHANNEL_RATE_TARGET_RESET 0x10000u
+#define PASSO_CHANNEL_RATE_TARGET         0x01u
+#define PASSO_CHANNEL_RATE_TARGET_LSB     0u
+#define PASSO_CHANNEL_RATE_TARGET_BITS    17u
+#define PASSO_CHANNEL_RATE_TARGET_RESET   0x10000u
 #define PASSO_CHANNEL_RATE_TARGET_DEFINED 0x0001FFFFu
 
 /* Channel: Rate slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1. */
-#define PASSO_CHANNEL_RATE_SLEW 0x02u
-#define PASSO_CHANNEL_RATE_SLEW_LSB 0u
-#define PASSO_CHANNEL_RATE_SLEW_BITS 17u
-#define PASSO_CHANNEL_RATE_SLEW_RESET 0x00400u
+#define PASSO_CHANNEL_RATE_SLEW         0x02u
+#define PASSO_CHANNEL_RATE_SLEW_LSB     0u
+#define PASSO_CHANNEL_RATE_SLEW_BITS    17u
+#define PASSO_CHANNEL_RATE_SLEW_RESET   0x00400u
 #define PASSO_CHANNEL_RATE_SLEW_DEFINED 0x0001FFFFu
 
 /* Channel: Stop slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1. */
-#define PASSO_CHANNEL_STOP_SLEW 0x03u
-#define PASSO_CHANNEL_STOP_SLEW_LSB 0u
-#define PASSO_CHANNEL_STOP_SLEW_BITS 17u
-#define PASSO_CHANNEL_STOP_SLEW_RESET 0x00400u
+#define PASSO_CHANNEL_STOP_SLEW         0x03u
+#define PASSO_CHANNEL_STOP_SLEW_LSB     0u
+#define PASSO_CHANNEL_STOP_SLEW_BITS    17u
+#define PASSO_CHANNEL_STOP_SLEW_RESET   0x00400u
 #define PASSO_CHANNEL_STOP_SLEW_DEFINED 0x0001FFFFu
 
 /* Channel: Drain velocity. Velocity of the substeps that are still missing when the profile has ended. */
-#define PASSO_CHANNEL_DRAIN_VELOCITY 0x04u
-#define PASSO_CHANNEL_DRAIN_VELOCITY_LSB 0u
-#define PASSO_CHANNEL_DRAIN_VELOCITY_BITS 32u
-#define PASSO_CHANNEL_DRAIN_VELOCITY_RESET 0x01000000u
+#define PASSO_CHANNEL_DRAIN_VELOCITY         0x04u
+#define PASSO_CHANNEL_DRAIN_VELOCITY_LSB     0u
+#define PASSO_CHANNEL_DRAIN_VELOCITY_BITS    32u
+#define PASSO_CHANNEL_DRAIN_VELOCITY_RESET   0x01000000u
 #define PASSO_CHANNEL_DRAIN_VELOCITY_DEFINED 0xFFFFFFFFu
 
 /* Channel: State. What the channel does now. */
-#define PASSO_CHANNEL_STATE 0x08u
-#define PASSO_CHANNEL_STATE_STATE_LSB 0u
-#define PASSO_CHANNEL_STATE_STATE_BITS 3u
-#define PASSO_CHANNEL_STATE_STATE_RESET 0x0u
-#define PASSO_CHANNEL_STATE_QUIET_LSB 3u
-#define PASSO_CHANNEL_STATE_QUIET_BITS 1u
-#define PASSO_CHANNEL_STATE_QUIET_RESET 0x1u
-#define PASSO_CHANNEL_STATE_CAUSE_LSB 4u
-#define PASSO_CHANNEL_STATE_CAUSE_BITS 3u
-#define PASSO_CHANNEL_STATE_CAUSE_RESET 0x0u
-#define PASSO_CHANNEL_STATE_STOPPING_LSB 7u
-#define PASSO_CHANNEL_STATE_STOPPING_BITS 1u
+#define PASSO_CHANNEL_STATE                0x08u
+#define PASSO_CHANNEL_STATE_STATE_LSB      0u
+#define PASSO_CHANNEL_STATE_STATE_BITS     3u
+#define PASSO_CHANNEL_STATE_STATE_RESET    0x0u
+#define PASSO_CHANNEL_STATE_QUIET_LSB      3u
+#define PASSO_CHANNEL_STATE_QUIET_BITS     1u
+#define PASSO_CHANNEL_STATE_QUIET_RESET    0x1u
+#define PASSO_CHANNEL_STATE_CAUSE_LSB      4u
+#define PASSO_CHANNEL_STATE_CAUSE_BITS     3u
+#define PASSO_CHANNEL_STATE_CAUSE_RESET    0x0u
+#define PASSO_CHANNEL_STATE_STOPPING_LSB   7u
+#define PASSO_CHANNEL_STATE_STOPPING_BITS  1u
 #define PASSO_CHANNEL_STATE_STOPPING_RESET 0x0u
-#define PASSO_CHANNEL_STATE_OVERRUN_LSB 8u
-#define PASSO_CHANNEL_STATE_OVERRUN_BITS 8u
-#define PASSO_CHANNEL_STATE_OVERRUN_RESET 0x00u
-#define PASSO_CHANNEL_STATE_DRAINED_LSB 16u
-#define PASSO_CHANNEL_STATE_DRAINED_BITS 16u
-#define PASSO_CHANNEL_STATE_DRAINED_RESET 0x0000u
+#define PASSO_CHANNEL_STATE_OVERRUN_LSB    8u
+#define PASSO_CHANNEL_STATE_OVERRUN_BITS   8u
+#define PASSO_CHANNEL_STATE_OVERRUN_RESET  0x00u
+#define PASSO_CHANNEL_STATE_DRAINED_LSB    16u
+#define PASSO_CHANNEL_STATE_DRAINED_BITS   16u
+#define PASSO_CHANNEL_STATE_DRAINED_RESET  0x0000u
 
 /* Channel: Rate. Time scale in force. */
-#define PASSO_CHANNEL_RATE 0x09u
-#define PASSO_CHANNEL_RATE_LSB 0u
-#define PASSO_CHANNEL_RATE_BITS 17u
+#define PASSO_CHANNEL_RATE       0x09u
+#define PASSO_CHANNEL_RATE_LSB   0u
+#define PASSO_CHANNEL_RATE_BITS  17u
 #define PASSO_CHANNEL_RATE_RESET 0x10000u
 
 /* Channel: Room. Free places in the queues. A push counts from the moment its frame is accepted. */
-#define PASSO_CHANNEL_ROOM 0x0Au
-#define PASSO_CHANNEL_ROOM_RAMP_ROOM_LSB 0u
+#define PASSO_CHANNEL_ROOM                0x0Au
+#define PASSO_CHANNEL_ROOM_RAMP_ROOM_LSB  0u
 #define PASSO_CHANNEL_ROOM_RAMP_ROOM_BITS 16u
-#define PASSO_CHANNEL_ROOM_LINE_ROOM_LSB 16u
+#define PASSO_CHANNEL_ROOM_LINE_ROOM_LSB  16u
 #define PASSO_CHANNEL_ROOM_LINE_ROOM_BITS 16u
 
 /* Channel: Velocity. Velocity of the present tick, before the time scale. */
-#define PASSO_CHANNEL_VELOCITY 0x0Bu
-#define PASSO_CHANNEL_VELOCITY_LSB 0u
-#define PASSO_CHANNEL_VELOCITY_BITS 32u
+#define PASSO_CHANNEL_VELOCITY       0x0Bu
+#define PASSO_CHANNEL_VELOCITY_LSB   0u
+#define PASSO_CHANNEL_VELOCITY_BITS  32u
 #define PASSO_CHANNEL_VELOCITY_RESET 0x00000000u
 
 /* Channel: Line queue. PUSH only: control, M, N_0 .. N_{AXES-1} for each line. */
-#define PASSO_CHANNEL_LINE 0x20u
-#define PASSO_CHANNEL_LINE_LSB 0u
-#define PASSO_CHANNEL_LINE_BITS 32u
+#define PASSO_CHANNEL_LINE         0x20u
+#define PASSO_CHANNEL_LINE_LSB     0u
+#define PASSO_CHANNEL_LINE_BITS    32u
 #define PASSO_CHANNEL_LINE_DEFINED 0xFFFFFFFFu
 
 /* Channel: Ramp queue. PUSH only: 5 words for each ramp: v_end(47:32) (31:16) and LAST (0), NOW (1), mirror
  * (2), shape (5:4); v_end(31:0); T; du(47:32); du(31:0). */
-#define PASSO_CHANNEL_RAMP 0x21u
-#define PASSO_CHANNEL_RAMP_LSB 0u
-#define PASSO_CHANNEL_RAMP_BITS 32u
+#define PASSO_CHANNEL_RAMP         0x21u
+#define PASSO_CHANNEL_RAMP_LSB     0u
+#define PASSO_CHANNEL_RAMP_BITS    32u
 #define PASSO_CHANNEL_RAMP_DEFINED 0xFFFFFFFFu
 
 /* Channel: Steps made. Position of an axis in steps, as it was soon after chip select fell; wraps. */
-#define PASSO_CHANNEL_POSITION_BASE 0x40u
+#define PASSO_CHANNEL_POSITION_BASE  0x40u
 #define PASSO_CHANNEL_POSITION_COUNT 8u
-#define PASSO_CHANNEL_POSITION_LSB 0u
-#define PASSO_CHANNEL_POSITION_BITS 32u
+#define PASSO_CHANNEL_POSITION_LSB   0u
+#define PASSO_CHANNEL_POSITION_BITS  32u
 #define PASSO_CHANNEL_POSITION_RESET 0x00000000u
 
 /* Channel: where each axis has its registers. */
-#define PASSO_CHANNEL_AXIS_BASE 0x80u
-#define PASSO_CHANNEL_AXIS_COUNT 8u
+#define PASSO_CHANNEL_AXIS_BASE   0x80u
+#define PASSO_CHANNEL_AXIS_COUNT  8u
 #define PASSO_CHANNEL_AXIS_STRIDE 0x08u
 
 /* Axis: Pins. Polarities and step mode. Refused with BUSY unless the channel is quiet. The next step waits
  * for the low time, the DIR hold and the DIR set-up from here on. Kept over a reset of the core. */
-#define PASSO_AXIS_PINS 0x0u
-#define PASSO_AXIS_PINS_STEP_INVERTED_LSB 1u
-#define PASSO_AXIS_PINS_STEP_INVERTED_BITS 1u
-#define PASSO_AXIS_PINS_STEP_INVERTED_RESET 0x0u
-#define PASSO_AXIS_PINS_DIRECTION_INVERTED_LSB 2u
-#define PASSO_AXIS_PINS_DIRECTION_INVERTED_BITS 1u
+#define PASSO_AXIS_PINS                          0x0u
+#define PASSO_AXIS_PINS_STEP_INVERTED_LSB        1u
+#define PASSO_AXIS_PINS_STEP_INVERTED_BITS       1u
+#define PASSO_AXIS_PINS_STEP_INVERTED_RESET      0x0u
+#define PASSO_AXIS_PINS_DIRECTION_INVERTED_LSB   2u
+#define PASSO_AXIS_PINS_DIRECTION_INVERTED_BITS  1u
 #define PASSO_AXIS_PINS_DIRECTION_INVERTED_RESET 0x0u
-#define PASSO_AXIS_PINS_ENABLE_INVERTED_LSB 3u
-#define PASSO_AXIS_PINS_ENABLE_INVERTED_BITS 1u
-#define PASSO_AXIS_PINS_ENABLE_INVERTED_RESET 0x0u
-#define PASSO_AXIS_PINS_BOTH_EDGES_LSB 4u
-#define PASSO_AXIS_PINS_BOTH_EDGES_BITS 1u
-#define PASSO_AXIS_PINS_BOTH_EDGES_RESET 0x0u
-#define PASSO_AXIS_PINS_DEFINED 0x0000001Eu
+#define PASSO_AXIS_PINS_ENABLE_INVERTED_LSB      3u
+#define PASSO_AXIS_PINS_ENABLE_INVERTED_BITS     1u
+#define PASSO_AXIS_PINS_ENABLE_INVERTED_RESET    0x0u
+#define PASSO_AXIS_PINS_BOTH_EDGES_LSB           4u
+#define PASSO_AXIS_PINS_BOTH_EDGES_BITS          1u
+#define PASSO_AXIS_PINS_BOTH_EDGES_RESET         0x0u
+#define PASSO_AXIS_PINS_DEFINED                  0x0000001Eu
 
 /* Axis: STEP timing. Clocks, 1 .. 65535; 0 counts as 1. Kept over a reset of the core. */
-#define PASSO_AXIS_STEP_TIMING 0x1u
-#define PASSO_AXIS_STEP_TIMING_STEP_LOW_LSB 0u
-#define PASSO_AXIS_STEP_TIMING_STEP_LOW_BITS 16u
-#define PASSO_AXIS_STEP_TIMING_STEP_LOW_RESET 0x0001u
-#define PASSO_AXIS_STEP_TIMING_STEP_HIGH_LSB 16u
-#define PASSO_AXIS_STEP_TIMING_STEP_HIGH_BITS 16u
+#define PASSO_AXIS_STEP_TIMING                 0x1u
+#define PASSO_AXIS_STEP_TIMING_STEP_LOW_LSB    0u
+#define PASSO_AXIS_STEP_TIMING_STEP_LOW_BITS   16u
+#define PASSO_AXIS_STEP_TIMING_STEP_LOW_RESET  0x0001u
+#define PASSO_AXIS_STEP_TIMING_STEP_HIGH_LSB   16u
+#define PASSO_AXIS_STEP_TIMING_STEP_HIGH_BITS  16u
 #define PASSO_AXIS_STEP_TIMING_STEP_HIGH_RESET 0x0001u
-#define PASSO_AXIS_STEP_TIMING_DEFINED 0xFFFFFFFFu
+#define PASSO_AXIS_STEP_TIMING_DEFINED         0xFFFFFFFFu
 
 /* Axis: DIR timing. Clocks, 1 .. 65535; 0 counts as 1. Kept over a reset of the core. */
-#define PASSO_AXIS_DIR_TIMING 0x2u
-#define PASSO_AXIS_DIR_TIMING_DIR_HOLD_LSB 0u
-#define PASSO_AXIS_DIR_TIMING_DIR_HOLD_BITS 16u
-#define PASSO_AXIS_DIR_TIMING_DIR_HOLD_RESET 0x0001u
-#define PASSO_AXIS_DIR_TIMING_DIR_SETUP_LSB 16u
-#define PASSO_AXIS_DIR_TIMING_DIR_SETUP_BITS 16u
+#define PASSO_AXIS_DIR_TIMING                 0x2u
+#define PASSO_AXIS_DIR_TIMING_DIR_HOLD_LSB    0u
+#define PASSO_AXIS_DIR_TIMING_DIR_HOLD_BITS   16u
+#define PASSO_AXIS_DIR_TIMING_DIR_HOLD_RESET  0x0001u
+#define PASSO_AXIS_DIR_TIMING_DIR_SETUP_LSB   16u
+#define PASSO_AXIS_DIR_TIMING_DIR_SETUP_BITS  16u
 #define PASSO_AXIS_DIR_TIMING_DIR_SETUP_RESET 0x0001u
-#define PASSO_AXIS_DIR_TIMING_DEFINED 0xFFFFFFFFu
+#define PASSO_AXIS_DIR_TIMING_DEFINED         0xFFFFFFFFu
 
 /* Axis: Lost steps. Steps that found the queue of the axis full (STEP_OVERRUN). */
-#define PASSO_AXIS_LOST_STEPS 0x3u
-#define PASSO_AXIS_LOST_STEPS_LOST_LSB 0u
-#define PASSO_AXIS_LOST_STEPS_LOST_BITS 4u
+#define PASSO_AXIS_LOST_STEPS            0x3u
+#define PASSO_AXIS_LOST_STEPS_LOST_LSB   0u
+#define PASSO_AXIS_LOST_STEPS_LOST_BITS  4u
 #define PASSO_AXIS_LOST_STEPS_LOST_RESET 0x0u
 
 /* Axis: Drive enable. May be written at any time. */
-#define PASSO_AXIS_ENABLE 0x4u
-#define PASSO_AXIS_ENABLE_LSB 0u
-#define PASSO_AXIS_ENABLE_BITS 1u
-#define PASSO_AXIS_ENABLE_RESET 0x0u
+#define PASSO_AXIS_ENABLE         0x4u
+#define PASSO_AXIS_ENABLE_LSB     0u
+#define PASSO_AXIS_ENABLE_BITS    1u
+#define PASSO_AXIS_ENABLE_RESET   0x0u
 #define PASSO_AXIS_ENABLE_DEFINED 0x00000001u
 
 /* What a frame asks for. */
 enum passo_operation {
-	PASSO_OPERATION_READ = 1,  /* Read consecutive registers. */
+	PASSO_OPERATION_READ  = 1, /* Read consecutive registers. */
 	PASSO_OPERATION_WRITE = 2, /* Write consecutive registers. */
-	PASSO_OPERATION_PUSH = 3   /* Write every word to the same address: lines and ramps. */
+	PASSO_OPERATION_PUSH  = 3  /* Write every word to the same address: lines and ramps. */
 };
 
 /* What became of a frame. */
 enum passo_verdict {
-	PASSO_VERDICT_OK = 0,              /* Executed. */
-	PASSO_VERDICT_DUPLICATE = 1,       /* Not executed: its sequence number was accepted before. */
-	PASSO_VERDICT_BAD_CRC = 2,         /* CRC wrong. */
-	PASSO_VERDICT_BAD_LENGTH = 3,      /* Length 0 or above 60, or not whole lines or ramps. */
-	PASSO_VERDICT_BAD_OPERATION = 4,   /* Unknown operation, or one the register does not take. */
+	PASSO_VERDICT_OK              = 0, /* Executed. */
+	PASSO_VERDICT_DUPLICATE       = 1, /* Not executed: its sequence number was accepted before. */
+	PASSO_VERDICT_BAD_CRC         = 2, /* CRC wrong. */
+	PASSO_VERDICT_BAD_LENGTH      = 3, /* Length 0 or above 60, or not whole lines or ramps. */
+	PASSO_VERDICT_BAD_OPERATION   = 4, /* Unknown operation, or one the register does not take. */
 	PASSO_VERDICT_UNKNOWN_ADDRESS = 5, /* No register at this address. */
-	PASSO_VERDICT_READ_ONLY = 6,       /* The register cannot be written. */
-	PASSO_VERDICT_QUEUE_FULL = 7,      /* Not enough room for the whole frame. */
-	PASSO_VERDICT_BUSY = 8, /* The state of the channel does not allow it (see the register). */
-	PASSO_VERDICT_BAD_VALUE =
-	    9 /* M = 0 or M >= 2^30, N_i > M, a velocity above 1/2, drain velocity 0, reserved bits set. */
+	PASSO_VERDICT_READ_ONLY       = 6, /* The register cannot be written. */
+	PASSO_VERDICT_QUEUE_FULL      = 7, /* Not enough room for the whole frame. */
+	PASSO_VERDICT_BUSY            = 8, /* The state of the channel does not allow it (see the register). */
+	PASSO_VERDICT_BAD_VALUE       = 9  /* M = 0 or M >= 2^30, N_i > M, a velocity above 1/2, drain velocity 0, reserved bits set. */
 };
 
 /* What a channel does. */
 enum passo_state {
-	PASSO_STATE_IDLE = 0,    /* No motion. */
+	PASSO_STATE_IDLE    = 0, /* No motion. */
 	PASSO_STATE_PREPARE = 1, /* First line and first velocity are being made ready. */
-	PASSO_STATE_ARMED = 2,   /* Ready to start; waits while WAIT_SYNC is set. */
-	PASSO_STATE_RUN = 3,     /* The profile runs. */
-	PASSO_STATE_SETTLE = 4,  /* The profile has ended, its last substeps reach the pins. */
-	PASSO_STATE_DRAIN = 5,   /* Missing substeps of the LAST line are made at drain_velocity. */
-	PASSO_STATE_STOPPED =
-	    6 /* Stopped by a command or a fault; queues flushed. CLEAR leads back to IDLE. */
+	PASSO_STATE_ARMED   = 2, /* Ready to start; waits while WAIT_SYNC is set. */
+	PASSO_STATE_RUN     = 3, /* The profile runs. */
+	PASSO_STATE_SETTLE  = 4, /* The profile has ended, its last substeps reach the pins. */
+	PASSO_STATE_DRAIN   = 5, /* Missing substeps of the LAST line are made at drain_velocity. */
+	PASSO_STATE_STOPPED = 6  /* Stopped by a command or a fault; queues flushed. CLEAR leads back to IDLE. */
 };
 
 /* Why a channel stopped. */
 enum passo_cause {
-	PASSO_CAUSE_NONE = 0,          /* Not stopped. */
-	PASSO_CAUSE_STOP = 1,          /* COMMAND.STOP. */
-	PASSO_CAUSE_ABORT = 2,         /* COMMAND.ABORT. */
+	PASSO_CAUSE_NONE          = 0, /* Not stopped. */
+	PASSO_CAUSE_STOP          = 1, /* COMMAND.STOP. */
+	PASSO_CAUSE_ABORT         = 2, /* COMMAND.ABORT. */
 	PASSO_CAUSE_LINE_UNDERRUN = 3, /* A line ended, was not LAST, and none followed. */
 	PASSO_CAUSE_RAMP_UNDERRUN = 4, /* The ramps ran out at speed. */
-	PASSO_CAUSE_STEP_OVERRUN = 5   /* Steps came faster than the pin timing of an axis allows. */
+	PASSO_CAUSE_STEP_OVERRUN  = 5  /* Steps came faster than the pin timing of an axis allows. */
 };
 
 #endif

@@ -99,6 +99,7 @@ class Core:
         self._rows: list[np.ndarray] = []
         self._running: list[tuple[int, int]] = [(0, 0)]  # clocks and levels of all channels
         self._record: Record
+        self._first = 0  # clock
 
     @classmethod
     async def begin(cls, dut: HierarchyObject, thread: Thread) -> "Core":
@@ -114,6 +115,7 @@ class Core:
         dut.spi_cs_n.value = 1
         await clocks.wait(4)
         core._record = _record()
+        core._first = core.clock
         dut.rst.value = 0
         return core
 
@@ -131,7 +133,16 @@ class Core:
         self.axes, self.tick = self.parameters.axes, 1 << self.parameters.tick_log2
         if self._record.judge is None:
             self._record.judge = Judge(self.parameters)
+        else:
+            self._forget_settings()
         self.compare()
+
+    def _forget_settings(self) -> None:
+        """A reset keeps the settings of the pins: as they were before the first test."""
+        for number in range(self.parameters.channels):
+            channel = self.channel(number)
+            channel.times(PinTiming())
+            channel.pins(PinTiming(), enable=False)
 
     def channel(self, number: int = 0) -> "CoreChannel":
         """One channel."""
@@ -215,6 +226,7 @@ class Core:
         numbers = [int(number) for line in lines for number in line.split()]
         rows = np.array(numbers, dtype=np.uint64).reshape(-1, len(COLUMNS))
         record.judge.follow(rows, self.clock)
+        rows = rows[rows[:, 0] > self._first]
         self._rows.append(rows)
         for clock, level in rows[:, [0, COLUMNS.index("running")]].tolist():
             if level != self._running[-1][1]:
@@ -291,13 +303,13 @@ class CoreChannel(Channel):
         """Push ramps."""
         self._push(r.CHANNEL_RAMP, [ramp.words() for ramp in ramps])
 
-    def pins(self, *timings: PinTiming) -> None:
+    def pins(self, *timings: PinTiming, enable: bool = True) -> None:
         """At rest, set the pins of all axes (one timing for each or one for all) and enable the drives."""
         for axis, timing in enumerate(self._of_all_axes(timings)):
             flags = timing.step_inverted << 1 | timing.direction_inverted << 2 | timing.both_edges << 4
             address = self.axis_base(axis)
             self.link.write(address, flags, timing.high << 16 | timing.low, timing.setup << 16 | timing.hold)
-            self.link.write(address + r.AXIS_ENABLE, 1)
+            self.link.write(address + r.AXIS_ENABLE, int(enable))
         self.core.run(8)
         self.core.run_until(lambda: self.state().quiet, 300_000)
 

@@ -48,6 +48,7 @@ module passo_axis #(
   input  wire        short_hold,
   input  wire        timing_written,
   input  wire        pins_written,
+  input  wire        both_edges_next,     // with pins_written: the mode that is written
   input  wire        both_edges,
   input  wire        step_inverted,
   input  wire        direction_inverted,
@@ -147,7 +148,7 @@ module passo_axis #(
     setup <= (setup & ~dir_done) | turn;
     idle  <= free & ~step_begins & ~turn & ~settle;
     hold  <= ((hold & ~dir_done) | low_over) & ~step_begins & ~turn;
-    step  <= (step & ~(settle & ~both_edges)) ^ edge_begins;
+    step  <= (step & ~(pins_written & ~both_edges_next)) ^ edge_begins;
     dir   <= dir ^ (turn & wrong);
 
     settle    <= pins_written;
@@ -155,9 +156,11 @@ module passo_axis #(
     quiet     <= idle & ~hold & ~turns & ~waits[0] & ~step_request & ~pins_written & ~settle;
 
     step_made  <= step_begins;
-    step_pin   <= step ^ step_inverted;
-    dir_pin    <= dir ^ direction_inverted;
     enable_pin <= enable ^ enable_inverted;
+    if (!rst) begin
+      step_pin <= step ^ step_inverted;
+      dir_pin  <= dir ^ direction_inverted;
+    end
 
     if (drop) begin
       waits      <= 4'd0;
@@ -186,8 +189,6 @@ module passo_axis #(
       step       <= step_pin ^ step_inverted;
       dir        <= dir_pin ^ direction_inverted;
       step_made  <= 1'b0;
-      step_pin   <= step_pin;
-      dir_pin    <= dir_pin;
     end
   end
 

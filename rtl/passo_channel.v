@@ -477,6 +477,7 @@ module passo_channel #(
         .short_hold        (short_hold),
         .timing_written    (write_step_timing[axis] | write_dir_timing[axis]),
         .pins_written      (write_pins[axis]),
+        .both_edges_next   (bus_data[AXIS_PINS_BOTH_EDGES_LSB]),
         .both_edges        (both_edges),
         .step_inverted     (step_inverted),
         .direction_inverted(direction_inverted),

@@ -167,6 +167,7 @@ def execute(
     state = ChannelState(
         state=State(snapshot.state),
         cause=Cause(snapshot.cause),
+        quiet=snapshot.quiet,
         stopping=snapshot.stopping,
         overrun=snapshot.overrun,
         drained=snapshot.drained,

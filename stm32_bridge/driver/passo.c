@@ -72,6 +72,7 @@ enum passo_error passo_driver_look(struct passo *passo, bool once)
 	*snapshot = (struct passo_snapshot){
 	    .state = (enum passo_state)(words[0] >> PASSO_CHANNEL_STATE_STATE_LSB & 7u),
 	    .cause = (enum passo_cause)(words[0] >> PASSO_CHANNEL_STATE_CAUSE_LSB & 7u),
+	    .quiet = (words[0] >> PASSO_CHANNEL_STATE_QUIET_LSB & 1u) != 0u,
 	    .stopping = (words[0] >> PASSO_CHANNEL_STATE_STOPPING_LSB & 1u) != 0u,
 	    .overrun = (uint8_t)(words[0] >> PASSO_CHANNEL_STATE_OVERRUN_LSB),
 	    .drained = (uint16_t)(words[0] >> PASSO_CHANNEL_STATE_DRAINED_LSB),

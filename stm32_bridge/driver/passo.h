@@ -48,6 +48,7 @@ struct passo_options {
 struct passo_snapshot {
 	enum passo_state state;
 	enum passo_cause cause;
+	bool quiet;                    /* no motion is prepared or runs, and all steps have left the pins */
 	bool stopping;                 /* a soft stop is under way */
 	uint8_t overrun;               /* bit i: axis i has lost steps */
 	uint16_t drained;              /* substeps made at drain velocity, since reset */

@@ -14,6 +14,10 @@
 
 #define MARK (((UINT32_C(1) << PASSO_REFUSALS_1_READ_ONLY_BITS) - 1u) << PASSO_REFUSALS_1_READ_ONLY_LSB)
 
+/* A refused read repeats its ack. With this sequence it is no ack of the same sequence when a clock was lost
+ * or doubled: shifted by a bit, in either direction, it is another number. */
+#define READ_SEQUENCE 0x55u
+
 /* Sequences are 1 .. 255. */
 static uint8_t sequence_after(uint8_t sequence)
 {
@@ -68,7 +72,7 @@ static enum passo_error read_with(
 {
 	enum passo_error error;
 
-	host->words = passo_frame_read(host->send, 0, address, length);
+	host->words = passo_frame_read(host->send, READ_SEQUENCE, address, length);
 	host->attempt = 0;
 	do
 		error = try_read(host);
