@@ -5,6 +5,7 @@
 // from 30 clocks after `bus_commit` rose until it falls, `busy` does not rise, so what is executed meets the state that it
 // was judged by: `hold` lets no motion begin, `now_coming` lets none end.
 `resetall
+`timescale 1ns / 1ps
 `default_nettype none
 
 module passo_admission (
