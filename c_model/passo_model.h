@@ -48,8 +48,7 @@ struct passo_spi_wires {
 
 struct passo_spi_wires passo_spi_wires(const struct passo_spi *spi);
 void passo_spi_reset(struct passo_spi *spi);
-/* A reset in the clock that has just been made: what runs on SCLK goes on. */
-void passo_spi_restart(struct passo_spi *spi);
+
 /* SCLK edges since the last clock, then the edge of clk. */
 void passo_spi_clock(
     struct passo_spi *spi, bool sclk_was, bool sclk, bool mosi, bool cs_n, uint32_t reply_word);
