@@ -256,10 +256,13 @@ PULL = {  # per file of pins: how a port is pulled up or down
 
 @each_board
 def test_link_is_idle_without_a_host(board: Board) -> None:
-    """Chip select is pulled up, SCLK and sync down; an iCE40 cannot pull down, which docs/fpga.md says."""
+    """Chip select is pulled up, SCLK and sync down; docs/fpga.md says what to fit to an iCE40."""
     pulls, text = PULL[board.pins.suffix[1:]], board.pins.read_text()
+    told = [f"`{board.name}`"]
     for port, pull in (("spi_cs_n", "up"), ("spi_sclk", "down"), ("sync", "down")):
         assert pull not in pulls or re.search(pulls[pull].format(port), text, re.M), port
+        told.append(pull if pull in pulls else "10 kohm to ground")
+    assert f"| {' | '.join(told)} |" in (paths.docs / "fpga.md").read_text()
 
 
 def play_synth(
@@ -412,6 +415,35 @@ def test_report_page_and_readme(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     pages.write(made_up(fits=False))
     assert "does not fit" in page.read_text() and "does not fit" in readme.read_text()
     assert "| yes |" not in readme.read_text()
+
+
+def test_report_tries_more_seeds_where_there_is_a_goal(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """8 instead of 3; one of what is too large; a line for each run; lowest and median of what they reach."""
+    runs: dict[str, list[int]] = {}
+
+    def place(design: flow.Design, seed: int, *_: object) -> Placed:
+        runs.setdefault(design.name, []).append(seed)
+        if design.name == "up5k-4x2":
+            return Placed(False, True, 9000, 1, {}, Path())
+        return placed(clk=(100.0 + seed % 4, 100.0), spi_sclk=(80.0, 25.0))
+
+    monkeypatch.setattr(report, "prepare", lambda programs, tell: None)
+    monkeypatch.setattr(report, "synthesize", lambda design: None)
+    monkeypatch.setattr(report, "place", place)
+    monkeypatch.setattr(report, "cells", lambda design: {"LUT": 1, "FF": 1, "DSP": 0})
+    monkeypatch.setattr(report, "versions", lambda programs: "")
+    goal, other, large = (DEVICES["hx8k"], (1, 4)), (DEVICES["hx8k"], (1, 1)), (DEVICES["up5k"], (4, 2))
+    measured = report.measure([goal, other, large], splits=False)
+    assert runs == {"hx8k-1x4": [*range(1, 9)], "hx8k-1x1": [1, 2, 3], "up5k-4x2": [1]}
+    rows = {(row["device"], row["axes"]): row for row in measured["designs"]}
+    assert (rows["hx8k", 4]["f_max_minimum"], rows["hx8k", 4]["f_max_median"]) == (100.0, 101.5)
+    assert (rows["hx8k", 1]["f_max_minimum"], rows["hx8k", 1]["f_max_median"]) == (101.0, 102.0)
+    assert not rows["up5k", 2]["fits"]
+    said = capsys.readouterr().out
+    assert len(re.findall(r"^\[ *0:00\] place and route \d+ of 14: ", said, re.M)) == 12
+    assert re.search(r"synthesis 3 of 3: ", said) and re.search(r"place and route 14 of 14: ", said)
 
 
 def test_readme_has_the_marks() -> None:
