@@ -53,7 +53,7 @@ enum passo_error passo_driver_gate(struct passo *passo, enum passo_gate gate)
 {
 	const uint32_t word = passo_driver_run(passo, gate);
 
-	if (word == passo->host->run)
+	if (word == passo->host->run && !passo->host->run_due)
 		return PASSO_OK;
 	return passo_host_write(passo->host, PASSO_ADDRESS_RUN, &word, 1);
 }
@@ -121,17 +121,26 @@ void passo_driver_ended(struct passo *passo, const int32_t *positions)
 	passo->idle_looks = 0;
 }
 
+void passo_driver_break(struct passo *passo)
+{
+	passo->broken = passo->expecting = true;
+	passo->certain = false;
+	passo->idle_looks = 0;
+}
+
 enum passo_error passo_driver_ready(struct passo *passo, bool needs_rest)
 {
-	if (passo->host->lost)
-		return PASSO_ERROR_CORE_RESET;
+	enum passo_error error = passo_driver_restrain(passo, PASSO_POST_RUN);
+
+	if (error != PASSO_OK)
+		return error;
 	if (passo->broken)
 		return PASSO_ERROR_BROKEN;
 	if (passo->halted)
 		return PASSO_ERROR_STOPPED;
-	if (passo->streaming)
+	if (passo->stream != PASSO_STREAM_NONE)
 		return PASSO_ERROR_STREAMING;
-	enum passo_error error = passo_driver_look(passo, false);
+	error = passo_driver_look(passo, false);
 	if (error != PASSO_OK)
 		return error;
 	if (passo->snapshot.state == PASSO_STATE_STOPPED || passo->snapshot.stopping)
@@ -185,10 +194,11 @@ static enum passo_error identify(struct passo *passo, const struct passo_options
 
 enum passo_error passo_driver_take_over(struct passo *passo)
 {
-	const uint32_t rate = passo->held ? 0u : passo->rate_target;
+	const uint32_t rate = passo_driver_rate(passo);
 	int32_t positions[PASSO_AXES_MAX];
 	enum passo_error error = PASSO_OK;
 
+	passo->broken = true; /* until it is done */
 	if (passo->snapshot.state == PASSO_STATE_IDLE && !passo_driver_at_rest(passo))
 		error = passo_driver_command(passo, UINT32_C(1) << PASSO_CHANNEL_COMMAND_ABORT_LSB);
 	if (error == PASSO_OK && !passo_driver_at_rest(passo))
@@ -202,7 +212,7 @@ enum passo_error passo_driver_take_over(struct passo *passo)
 	if (error != PASSO_OK)
 		return error;
 	passo_driver_ended(passo, positions);
-	passo->broken = passo->halted = passo->stop_due = false;
+	passo->broken = passo->halted = false;
 	passo->fault = PASSO_OK;
 	return passo_driver_at_rest(passo) ? PASSO_OK : PASSO_ERROR_MOVING;
 }

@@ -12,10 +12,15 @@
  *             passo_poll(&passo); // at most one frame each
  *
  * Every function returns an enum passo_error (passo_error_text() has a sentence for it), checks its
- * arguments, and leaves nothing half done: a move whose error is not one of the wire was not begun. After an
- * error of the wire (or TRANSFER) during a move or a stream the driver is BROKEN: what was queued before may
- * run on, new moves are refused until passo_clear(). No heap, no floating point; RAM is the two structs
- * (passo_host.h).
+ * arguments, and leaves nothing half done: a move whose error is not one of the wire was not begun. No heap,
+ * no floating point; RAM is the two structs (passo_host.h).
+ *
+ * After an error of the wire (or TRANSFER) it is not known whether the core has executed the last frame:
+ *   - a stop or abort is sent again by every passo_poll() until it is acknowledged (NOT_STOPPED until then);
+ *   - hold, resume, override, wait for sync: the slower of before and now is, in the same way (NOT_HELD);
+ *   - during a move or a stream the driver is BROKEN: what was queued before may run on;
+ *   - the pins of an axis are not known (NOT_CONFIGURED) until it is configured again.
+ * New moves are refused with these errors; passo_clear() ends the first three. Nothing else is done later.
  *
  * A call costs one frame (chip select) unless its comment says otherwise; on a disturbed wire up to `tries`.
  * Units: speeds, accelerations, rpm are UQ32.32 (PASSO_UNIT_Q32 is 1); lengths and angles are Q31.32.
@@ -69,9 +74,26 @@ struct passo_source {
 /* What the driver remembers of an axis. */
 struct passo_axis_memory {
 	uint64_t steps_per_unit;  /* UQ32.32 */
-	uint32_t shortest_clocks; /* of a step */
+	uint32_t shortest_clocks; /* of a step; 0: not known */
 	int32_t expected;         /* position when all that is queued has been made */
 };
+
+/* What was commanded and has not been acknowledged, and so is sent by every poll: bits. */
+enum passo_due { PASSO_DUE_RATE = 1, PASSO_DUE_STOP = 2, PASSO_DUE_ABORT = 4 };
+
+/* What the frame is that was posted last, until its result has been seen to. */
+enum passo_post {
+	PASSO_POST_NONE,
+	PASSO_POST_ITEMS, /* of a stream */
+	PASSO_POST_START, /* lets a stream begin */
+	PASSO_POST_RUN,
+	PASSO_POST_RATE,
+	PASSO_POST_STOP,
+	PASSO_POST_ABORT
+};
+
+/* A stream: there is none; its queues are filled behind a closed gate; it runs and is fed. */
+enum passo_stream_phase { PASSO_STREAM_NONE, PASSO_STREAM_FILLS, PASSO_STREAM_RUNS };
 
 /* Whether motions may start. */
 enum passo_gate { PASSO_GATE_OPEN, PASSO_GATE_SYNC, PASSO_GATE_CLOSED };
@@ -86,16 +108,17 @@ struct passo {
 	uint8_t misses; /* looks in a row that failed */
 	bool opened;
 	bool broken;    /* what a command has done is not known: nothing but clear helps */
-	bool halted;    /* a stop was commanded: nothing but clear helps */
-	bool stop_due;  /* the next poll stops the motion */
+	bool halted;    /* it is stopped, or a stop was commanded: nothing but clear helps */
 	bool expecting; /* something was queued, its end has not been seen */
 	bool certain;   /* its end position is known */
 	bool held;
 	bool turning_is_on, turning_ends;
-	bool streaming, starting, lines_done, ramps_done, lines_dry, ramps_dry;
-	bool opening;         /* the posted frame starts the stream */
+	bool lines_done, ramps_done, lines_dry, ramps_dry;
+	uint8_t due; /* bits of enum passo_due */
+	enum passo_stream_phase stream;
 	enum passo_gate gate; /* when no stream is being prepared */
 	enum passo_error fault;
+	enum passo_post post;
 	enum passo_error posted; /* result of the posted frame */
 	struct passo_axis_memory axis[PASSO_AXES_MAX];
 	struct passo_snapshot snapshot; /* its room is never too much */

@@ -56,6 +56,15 @@ static enum passo_error see_stop(struct passo *passo)
 	return fault != PASSO_OK && is_news ? tell(passo, fault) : PASSO_OK;
 }
 
+/* Nothing moves or waits. Ramps that a broken command has left behind do not move without a line. */
+static bool has_ended(const struct passo *passo)
+{
+	if (passo->broken)
+		return passo->snapshot.state == PASSO_STATE_IDLE
+		    && passo->snapshot.line_room == passo->line_places;
+	return passo->stream == PASSO_STREAM_NONE && passo_driver_at_rest(passo);
+}
+
 static enum passo_error look(struct passo *passo)
 {
 	enum passo_error error = passo_driver_look(passo, true);
@@ -65,11 +74,21 @@ static enum passo_error look(struct passo *passo)
 	passo->misses = 0;
 	if (passo->snapshot.state == PASSO_STATE_STOPPED)
 		return see_stop(passo);
-	if (!passo_driver_at_rest(passo) || passo->streaming)
+	if (!has_ended(passo))
 		passo->idle_looks = 0;
 	else if (passo->idle_looks++ == 0u)
 		passo->idle_since = passo->looked_at;
 	return PASSO_OK;
+}
+
+/* As long as it does not get through, that is told after as many tries as other errors of the wire. */
+static enum passo_error insist(struct passo *passo)
+{
+	enum passo_error error = passo_driver_insist(passo);
+
+	if (error == PASSO_OK || error == PASSO_PENDING)
+		return PASSO_OK;
+	return error == PASSO_ERROR_CORE_RESET ? miss(passo, error) : passo_driver_due(passo);
 }
 
 static bool is_at(const struct passo *passo, const int32_t *positions)
@@ -123,9 +142,15 @@ enum passo_error passo_poll(struct passo *passo)
 		passo_driver_end_stream(passo);
 		return tell(passo, PASSO_ERROR_CORE_RESET);
 	}
-	if (passo->stop_due)
-		return passo_driver_post_stop(passo);
-	if (passo->streaming) {
+	if (passo->host->posted && passo->host->posted != &passo->posted) {
+		passo_host_step(passo->host); /* another channel's frame goes first */
+		return PASSO_OK;
+	}
+	if (passo_driver_due(passo) != PASSO_OK || passo->post > PASSO_POST_START)
+		return insist(passo);
+	if (passo_host_is_unsure(passo->host))
+		return look(passo);
+	if (passo->stream != PASSO_STREAM_NONE) {
 		error = passo_driver_feed(passo, &sent);
 		if (error != PASSO_OK || sent)
 			return error;
@@ -137,7 +162,9 @@ enum passo_error passo_poll(struct passo *passo)
 
 bool passo_is_moving(const struct passo *passo)
 {
-	return passo && passo->opened && (passo->expecting || passo->streaming);
+	return passo && passo->opened
+	    && (passo->expecting || passo->stream != PASSO_STREAM_NONE
+	        || passo_driver_due(passo) == PASSO_ERROR_NOT_STOPPED);
 }
 
 const struct passo_snapshot *passo_snapshot(const struct passo *passo)
@@ -147,7 +174,12 @@ const struct passo_snapshot *passo_snapshot(const struct passo *passo)
 
 enum passo_error passo_fault(const struct passo *passo)
 {
-	return passo ? passo->fault : PASSO_ERROR_ARGUMENT;
+	enum passo_error error = passo_driver_check(passo);
+
+	if (error != PASSO_OK)
+		return error;
+	error = passo->host->lost ? PASSO_OK : passo_driver_due(passo);
+	return error != PASSO_OK ? error : passo->fault;
 }
 
 enum passo_error passo_wait(struct passo *passo, uint32_t timeout_microseconds)

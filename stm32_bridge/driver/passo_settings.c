@@ -62,6 +62,8 @@ enum passo_error passo_configure_axis(
 	};
 	error = passo_driver_write(
 	    passo, address_of(axis, PASSO_AXIS_PINS), words, sizeof words / sizeof words[0]);
+	if (passo_driver_is_wire(error))
+		memory->shortest_clocks = 0;
 	if (error != PASSO_OK)
 		return error;
 	memory->steps_per_unit = config->steps_per_unit;
@@ -71,6 +73,15 @@ enum passo_error passo_configure_axis(
 	if (passo->settle_microseconds < settle)
 		passo->settle_microseconds = settle < UINT32_MAX / 2u ? (uint32_t)settle : UINT32_MAX / 2u;
 	return PASSO_OK;
+}
+
+bool passo_driver_pins_known(const struct passo *passo)
+{
+	for (unsigned i = 0; i < passo->machine.axes; i++) {
+		if (passo->axis[i].shortest_clocks == 0u)
+			return false;
+	}
+	return true;
 }
 
 enum passo_error passo_enable(struct passo *passo, uint8_t axis, bool on)
