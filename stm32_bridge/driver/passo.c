@@ -9,6 +9,8 @@
 
 enum { OPEN_WORDS = 4, STATE_WORDS = 4 };
 
+#define SHORTEST_AFTER_RESET (PASSO_AXIS_STEP_TIMING_STEP_HIGH_RESET + PASSO_AXIS_STEP_TIMING_STEP_LOW_RESET)
+
 enum passo_error passo_driver_check(const struct passo *passo)
 {
 	if (!passo)
@@ -231,7 +233,7 @@ enum passo_error passo_open_channel(
 	    (uint16_t)(PASSO_ADDRESS_CHANNEL_BASE + options->channel * PASSO_ADDRESS_CHANNEL_STRIDE);
 	passo->rate_target = PASSO_RATE_FULL;
 	for (unsigned i = 0; i < PASSO_AXES_MAX; i++)
-		passo->axis[i].shortest_clocks = 2;
+		passo->axis[i].shortest_clocks = host->fresh ? SHORTEST_AFTER_RESET : 0u;
 	enum passo_error error = identify(passo, options, &run);
 	if (error != PASSO_OK)
 		return error;

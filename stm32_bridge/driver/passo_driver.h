@@ -44,8 +44,8 @@ void passo_driver_tables_fresh(struct passo_host *host);
 
 /* Pushes the ramps of a plan, for which there is room. */
 enum passo_error passo_driver_push_ramps(struct passo *passo, const struct passo_plan *plan);
-/* No axis was configured without an answer. */
-bool passo_driver_pins_known(const struct passo *passo);
+/* The axes that a line moves are configured. */
+bool passo_driver_pins_known(const struct passo *passo, const struct passo_line *line);
 /* One more line will be made: where the motion ends. */
 void passo_driver_expect(struct passo *passo, const struct passo_line *line);
 

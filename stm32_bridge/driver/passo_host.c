@@ -17,7 +17,8 @@
 /* A refused read repeats its ack. With this sequence it is no ack of the same sequence when a clock was lost
  * or doubled: shifted by a bit, in either direction, it is another number. */
 #define READ_SEQUENCE 0x55u
-#define RUN_BITS       (((UINT32_C(1) << PASSO_RUN_RUN_BITS) - 1u) << PASSO_RUN_RUN_LSB)
+
+#define RUN_BITS (((UINT32_C(1) << PASSO_RUN_RUN_BITS) - 1u) << PASSO_RUN_RUN_LSB)
 #define WAIT_SYNC_BITS (((UINT32_C(1) << PASSO_RUN_WAIT_SYNC_BITS) - 1u) << PASSO_RUN_WAIT_SYNC_LSB)
 
 /* Sequences are 1 .. 255. */
@@ -215,8 +216,8 @@ static enum passo_error send_now(struct passo_host *host, enum passo_operation o
 	uint32_t identification;
 
 	if (error == PASSO_OK && passo_host_is_unsure(host))
-		error = read_with(
-		    host, PASSO_ADDRESS_IDENTIFICATION, &identification, 1, host->hardware.tries);
+		error =
+		    read_with(host, PASSO_ADDRESS_IDENTIFICATION, &identification, 1, host->hardware.tries);
 	if (error != PASSO_OK)
 		return error;
 	begin_write(host, operation, address, words, length);

@@ -7,8 +7,8 @@
  * only once and acknowledges the rest as duplicates. The library needs three things of its surroundings: a
  * function that exchanges words, and optionally a clock and a way to wait.
  *
- * A write that was given up may have been executed, but will not be later: its number is not used again before
- * a clear reply has told which number the core accepted last.
+ * A write that was given up may have been executed, but will not be later: its number is not used again
+ * before a clear reply has told which number the core accepted last.
  *
  *     passo_host_read, _write, _push     blocking: return when the frame is settled
  *     passo_host_post_..., _step         for a main loop: each step is at most one chip select

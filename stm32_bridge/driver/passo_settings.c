@@ -75,10 +75,10 @@ enum passo_error passo_configure_axis(
 	return PASSO_OK;
 }
 
-bool passo_driver_pins_known(const struct passo *passo)
+bool passo_driver_pins_known(const struct passo *passo, const struct passo_line *line)
 {
 	for (unsigned i = 0; i < passo->machine.axes; i++) {
-		if (passo->axis[i].shortest_clocks == 0u)
+		if (line->steps[i] != 0u && passo->axis[i].shortest_clocks == 0u)
 			return false;
 	}
 	return true;

@@ -25,7 +25,8 @@ static uint32_t smaller(uint32_t a, uint32_t b)
  */
 static uint32_t worthwhile(const struct passo *passo, uint32_t words, uint32_t places)
 {
-	return passo->stream == PASSO_STREAM_FILLS ? 1u : smaller(PASSO_FRAME_PAYLOAD_MAX / words, places / 2u);
+	return passo->stream == PASSO_STREAM_FILLS ? 1u
+	                                           : smaller(PASSO_FRAME_PAYLOAD_MAX / words, places / 2u);
 }
 
 static bool wants_lines(const struct passo *passo)
@@ -87,6 +88,8 @@ static enum passo_error take_lines(struct passo *passo, size_t *length)
 		}
 		if (!is_line(passo, &line))
 			return PASSO_ERROR_SUPPLY;
+		if (!passo_driver_pins_known(passo, &line))
+			return PASSO_ERROR_NOT_CONFIGURED;
 		*length += passo_line_words(payload + *length, &line, passo->machine.axes);
 		passo->lines_done = line.last;
 		passo->certain = passo->certain && !line.endless;
@@ -208,7 +211,7 @@ enum passo_error passo_stream(struct passo *passo, const struct passo_source *so
 		return error;
 	if (!source || !source->line || !source->ramp)
 		return PASSO_ERROR_ARGUMENT;
-	error = passo_driver_pins_known(passo) ? passo_driver_ready(passo, true) : PASSO_ERROR_NOT_CONFIGURED;
+	error = passo_driver_ready(passo, true);
 	if (error == PASSO_OK)
 		error = passo_driver_gate(passo, PASSO_GATE_CLOSED);
 	if (error != PASSO_OK)
