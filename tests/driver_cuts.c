@@ -403,6 +403,7 @@ static void start(void)
 
 	memset(&world, 0, sizeof world);
 	passo_core_reset(&world.core, &parameters);
+	rest(1);
 }
 
 static void must(enum passo_error error, const char *what)
@@ -782,7 +783,7 @@ static void play_all(const char *name, void (*prepare)(void), enum passo_error (
 				if (error != wanted)
 					judge(passo_driver_is_wire(error), "an error of the wire");
 				judge_effect(error == wanted ? PASSO_OK : error,
-				    !passo->halted && !after.stopped && !before.stopped && !passo->held);
+				    !is_busy() && !passo->halted && !after.stopped && !before.stopped);
 				judge_recovery();
 				cases++;
 				if (bad)

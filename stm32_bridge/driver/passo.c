@@ -9,7 +9,9 @@
 
 enum { OPEN_WORDS = 4, STATE_WORDS = 4 };
 
-#define SHORTEST_AFTER_RESET (PASSO_AXIS_STEP_TIMING_STEP_HIGH_RESET + PASSO_AXIS_STEP_TIMING_STEP_LOW_RESET)
+/* Four steps that wait and one under way, with four times of at most 65535 clocks each, take no longer than
+ * so many looks: one takes more than 1024 clocks. */
+#define PIN_LOOKS_MAX 1280u
 
 enum passo_error passo_driver_check(const struct passo *passo)
 {
@@ -60,6 +62,15 @@ enum passo_error passo_driver_gate(struct passo *passo, enum passo_gate gate)
 	return passo_host_write(passo->host, PASSO_ADDRESS_RUN, &word, 1);
 }
 
+/* No motion runs or waits; steps may still be at the pins. */
+static bool is_empty(const struct passo *passo)
+{
+	const struct passo_snapshot *snapshot = &passo->snapshot;
+
+	return snapshot->state == PASSO_STATE_IDLE && snapshot->line_room == passo->line_places
+	    && snapshot->ramp_room == passo->ramp_places;
+}
+
 enum passo_error passo_driver_look(struct passo *passo, bool once)
 {
 	const uint16_t address = (uint16_t)(passo->base + PASSO_CHANNEL_STATE);
@@ -86,6 +97,18 @@ enum passo_error passo_driver_look(struct passo *passo, bool once)
 	return PASSO_OK;
 }
 
+enum passo_error passo_driver_look_at_rest(struct passo *passo)
+{
+	const struct passo_snapshot *snapshot = &passo->snapshot;
+	enum passo_error error = passo_driver_look(passo, false);
+
+	for (unsigned looks = 1; error == PASSO_OK && looks < PIN_LOOKS_MAX && !snapshot->quiet
+	                         && (snapshot->state == PASSO_STATE_STOPPED || is_empty(passo));
+	    looks++)
+		error = passo_driver_look(passo, false);
+	return error;
+}
+
 enum passo_error passo_driver_positions(struct passo *passo, int32_t *positions, bool once)
 {
 	const uint16_t address = (uint16_t)(passo->base + PASSO_CHANNEL_POSITION_BASE);
@@ -100,17 +123,16 @@ enum passo_error passo_driver_positions(struct passo *passo, int32_t *positions,
 	return PASSO_OK;
 }
 
-bool passo_driver_occupied(const struct passo *passo)
-{
-	return passo->snapshot.state != PASSO_STATE_IDLE && passo->snapshot.state != PASSO_STATE_STOPPED;
-}
-
 bool passo_driver_at_rest(const struct passo *passo)
 {
-	const struct passo_snapshot *snapshot = &passo->snapshot;
+	return is_empty(passo) && passo->snapshot.quiet;
+}
 
-	return snapshot->state == PASSO_STATE_IDLE && snapshot->line_room == passo->line_places
-	    && snapshot->ramp_room == passo->ramp_places;
+enum passo_error passo_driver_moving(enum passo_error error)
+{
+	const bool is_busy = (unsigned)error == PASSO_ERROR_REFUSED + PASSO_VERDICT_BUSY;
+
+	return is_busy ? PASSO_ERROR_MOVING : error;
 }
 
 void passo_driver_ended(struct passo *passo, const int32_t *positions)
@@ -142,7 +164,7 @@ enum passo_error passo_driver_ready(struct passo *passo, bool needs_rest)
 		return PASSO_ERROR_STOPPED;
 	if (passo->stream != PASSO_STREAM_NONE)
 		return PASSO_ERROR_STREAMING;
-	error = passo_driver_look(passo, false);
+	error = needs_rest ? passo_driver_look_at_rest(passo) : passo_driver_look(passo, false);
 	if (error != PASSO_OK)
 		return error;
 	if (passo->snapshot.state == PASSO_STATE_STOPPED || passo->snapshot.stopping)
@@ -232,8 +254,6 @@ enum passo_error passo_open_channel(
 	passo->base =
 	    (uint16_t)(PASSO_ADDRESS_CHANNEL_BASE + options->channel * PASSO_ADDRESS_CHANNEL_STRIDE);
 	passo->rate_target = PASSO_RATE_FULL;
-	for (unsigned i = 0; i < PASSO_AXES_MAX; i++)
-		passo->axis[i].shortest_clocks = host->fresh ? SHORTEST_AFTER_RESET : 0u;
 	enum passo_error error = identify(passo, options, &run);
 	if (error != PASSO_OK)
 		return error;
@@ -243,10 +263,10 @@ enum passo_error passo_open_channel(
 			passo_driver_tables_fresh(host);
 	}
 	error = passo_driver_look(passo, false);
-	if (error == PASSO_OK && !passo_driver_occupied(passo) && !passo_driver_at_rest(passo))
+	if (error == PASSO_OK && passo->snapshot.quiet && !passo_driver_at_rest(passo))
 		error = passo_driver_gate(passo, PASSO_GATE_CLOSED);
 	passo->broken = true;
-	if (error == PASSO_OK && !passo_driver_occupied(passo))
+	if (error == PASSO_OK && passo->snapshot.quiet)
 		error = passo_driver_take_over(passo);
 	/* what follows a motion of the past is not to start */
 	if (error == PASSO_OK)

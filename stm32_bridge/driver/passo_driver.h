@@ -22,10 +22,15 @@ enum passo_error passo_driver_gate(struct passo *passo, enum passo_gate gate);
 
 /* Reads the state into the snapshot: `once` with a single try. */
 enum passo_error passo_driver_look(struct passo *passo, bool once);
+/* The same, and while nothing but the pins is busy, again: with the last steps, or with the times that begin
+ * anew when an axis is configured. */
+enum passo_error passo_driver_look_at_rest(struct passo *passo);
 enum passo_error passo_driver_positions(struct passo *passo, int32_t *positions, bool once);
-/* As the snapshot says: nothing moves and nothing waits; a motion is under way. */
+/* As the snapshot says: nothing moves and nothing waits. Its room is some hundred clocks younger than its
+ * state: only the second look in a row is sure. */
 bool passo_driver_at_rest(const struct passo *passo);
-bool passo_driver_occupied(const struct passo *passo);
+/* What is only possible at rest was refused because it is not: MOVING. */
+enum passo_error passo_driver_moving(enum passo_error error);
 /* Everything has ended, here: nothing is expected any more. */
 void passo_driver_ended(struct passo *passo, const int32_t *positions);
 /* What a command has done is not known: it may be that something was queued. */

@@ -59,7 +59,7 @@ static const struct words refusals[PASSO_VERDICT_BAD_VALUE + 1u] = {
     [PASSO_VERDICT_UNKNOWN_ADDRESS] = {"UNKNOWN_ADDRESS", "refused: no register at this address"},
     [PASSO_VERDICT_READ_ONLY] = {"READ_ONLY", "refused: the register cannot be written"},
     [PASSO_VERDICT_QUEUE_FULL] = {"QUEUE_FULL", "refused: not enough room in the queue"},
-    [PASSO_VERDICT_BUSY] = {"BUSY", "refused: the channel is stopped, or a motion runs"},
+    [PASSO_VERDICT_BUSY] = {"BUSY", "refused: the state of the channel does not allow it"},
     [PASSO_VERDICT_BAD_VALUE] = {"BAD_VALUE", "refused: a value is out of range"},
 };
 

@@ -117,8 +117,8 @@ void passo_host_count_room(struct passo_host *host, bool known, bool executed)
 	uint32_t lines = 0, ramps = 0;
 
 	if (known) {
-		host->line_room = less((uint8_t)(host->status >> 8), host->fresh_lines);
-		host->ramp_room = less((uint8_t)host->status, host->fresh_ramps);
+		host->line_room = (uint8_t)(host->status >> 8);
+		host->ramp_room = (uint8_t)host->status;
 	}
 	if (executed && header >> 28 == PASSO_OPERATION_PUSH) {
 		if ((header & 0xFFu) == PASSO_CHANNEL_LINE)
@@ -128,6 +128,4 @@ void passo_host_count_room(struct passo_host *host, bool known, bool executed)
 	}
 	host->line_room = less(host->line_room, lines);
 	host->ramp_room = less(host->ramp_room, ramps);
-	host->fresh_lines = (uint8_t)lines;
-	host->fresh_ramps = (uint8_t)ramps;
 }

@@ -88,8 +88,6 @@ struct passo_host {
 	bool proving; /* the present frame was executed, but by which core is still to be proved */
 	/* Free places in the queues of the status channel: never more than there are; 255: or more. */
 	uint8_t line_room, ramp_room;
-	/* Pushed by the last frame: the next status may not know them yet. */
-	uint8_t fresh_lines, fresh_ramps;
 	enum passo_error *posted; /* where the result of the posted frame goes; null: none */
 	uint32_t table[3];        /* what the banks of shapes hold; see passo_table.c */
 	size_t words;             /* of the present frame */

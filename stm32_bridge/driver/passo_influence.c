@@ -96,13 +96,13 @@ enum passo_error passo_clear(struct passo *passo)
 		return error;
 	error = passo_driver_restrain(passo, PASSO_POST_RUN);
 	if (error == PASSO_OK)
-		error = passo_driver_look(passo, false);
+		error = passo_driver_look_at_rest(passo);
 	if (error != PASSO_OK)
 		return error;
 	/* between two motions none runs, but one waits */
 	const bool goes_on = passo->snapshot.state == PASSO_STATE_IDLE && !passo_driver_at_rest(passo)
 	                  && !passo->broken && !passo->halted && passo->stream != PASSO_STREAM_FILLS;
-	if (goes_on || passo_driver_occupied(passo))
+	if (goes_on || !passo->snapshot.quiet)
 		return PASSO_ERROR_MOVING;
 	passo_driver_end_stream(passo);
 	/* what still waits must not start in the meantime */
@@ -110,7 +110,7 @@ enum passo_error passo_clear(struct passo *passo)
 		error = passo_driver_gate(passo, PASSO_GATE_CLOSED);
 	if (error == PASSO_OK)
 		error = passo_driver_look(passo, false);
-	if (error == PASSO_OK && passo_driver_occupied(passo))
+	if (error == PASSO_OK && !passo->snapshot.quiet)
 		error = PASSO_ERROR_MOVING;
 	if (error == PASSO_OK)
 		error = passo_driver_take_over(passo);
@@ -131,7 +131,7 @@ enum passo_error passo_zero(struct passo *passo)
 		passo->expecting = true;
 	}
 	if (error != PASSO_OK)
-		return error;
+		return passo_driver_moving(error);
 	const int32_t zeros[PASSO_AXES_MAX] = {0};
 	passo_driver_ended(passo, zeros);
 	return PASSO_OK;

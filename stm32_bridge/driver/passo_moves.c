@@ -74,11 +74,11 @@ enum passo_error passo_move_plan(
 	if (!plan || plan->ramp_count == 0u || plan->ramp_count > PASSO_PLAN_RAMPS_MAX
 	    || (shape && !shape->table))
 		return PASSO_ERROR_ARGUMENT;
-	if (!passo_driver_pins_known(passo, &plan->line))
-		return PASSO_ERROR_NOT_CONFIGURED;
 	if (!pins_suffice(passo, plan))
 		return PASSO_ERROR_PINS_TOO_SLOW;
 	error = passo_driver_ready(passo, plan->line.endless);
+	if (error == PASSO_OK && !passo_driver_pins_known(passo, &plan->line))
+		error = PASSO_ERROR_NOT_CONFIGURED;
 	if (error == PASSO_OK
 	    && (passo->snapshot.line_room == 0u || passo->snapshot.ramp_room < plan->ramp_count))
 		error = PASSO_ERROR_FULL;

@@ -69,8 +69,8 @@ static bool is_line(const struct passo *passo, const struct passo_line *line)
 
 static bool is_ramp(const struct passo_ramp *ramp)
 {
-	return ramp->velocity_end <= PASSO_VELOCITY_MAX && (unsigned)ramp->shape <= PASSO_SHAPE_EASE
-	    && ramp->progress_step <= PASSO_PROGRESS_STEP_MAX;
+	return !ramp->now && ramp->velocity_end <= PASSO_VELOCITY_MAX
+	    && (unsigned)ramp->shape <= PASSO_SHAPE_EASE && ramp->progress_step <= PASSO_PROGRESS_STEP_MAX;
 }
 
 /* As many lines as there are, are wanted, and have room. */

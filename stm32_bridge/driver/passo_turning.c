@@ -62,6 +62,9 @@ static enum passo_error turn_on(struct passo *passo, bool stop, uint64_t rpm)
 	error = passo_driver_push_ramps(passo, &plan);
 	if (stop && passo_driver_is_wire(error))
 		passo_driver_halt(passo, PASSO_DUE_STOP);
+	if (error == PASSO_ERROR_STOPPED && passo_driver_look(passo, false) == PASSO_OK
+	    && passo->snapshot.state != PASSO_STATE_STOPPED)
+		error = PASSO_ERROR_NOT_TURNING; /* its end was decided already */
 	if (error != PASSO_OK)
 		return error;
 	passo->velocity_peak = plan.velocity_peak;
