@@ -65,7 +65,8 @@ static bool commands_settled(const struct passo_channel *channel, const struct p
 	const uint8_t in_axes = (uint8_t)((uint8_t)bus->address - PASSO_CHANNEL_AXIS_BASE);
 
 	return !registers->command_stop && !registers->command_abort && !registers->command_clear
-	    && !registers->command_zero && !channel->writes_axis && channel->written_register == in_axes;
+	    && !registers->command_zero && !registers->drain_velocity_written && !channel->writes_axis
+	    && channel->written_register == in_axes;
 }
 
 static bool slots_empty(const struct passo_channel *channel)

@@ -291,6 +291,7 @@ struct passo_motion {
 struct passo_channel_registers {
 	uint32_t rate_target, rate_slew, stop_slew; /* UQ1.16 */
 	uint32_t drain_velocity;                    /* UQ0.32 */
+	bool drain_velocity_written;                /* its lower 8 bits, in the clock before */
 	bool command_stop, command_abort, command_clear, command_zero;
 };
 
