@@ -256,10 +256,13 @@ PULL = {  # per file of pins: how a port is pulled up or down
 
 @each_board
 def test_link_is_idle_without_a_host(board: Board) -> None:
-    """Chip select is pulled up, SCLK and sync down; an iCE40 cannot pull down, which docs/fpga.md says."""
+    """Chip select is pulled up, SCLK and sync down; docs/fpga.md says what to fit to an iCE40."""
     pulls, text = PULL[board.pins.suffix[1:]], board.pins.read_text()
+    told = [f"`{board.name}`"]
     for port, pull in (("spi_cs_n", "up"), ("spi_sclk", "down"), ("sync", "down")):
         assert pull not in pulls or re.search(pulls[pull].format(port), text, re.M), port
+        told.append(pull if pull in pulls else "10 kohm to ground")
+    assert f"| {' | '.join(told)} |" in (paths.docs / "fpga.md").read_text()
 
 
 def play_synth(
