@@ -417,6 +417,35 @@ def test_report_page_and_readme(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     assert "| yes |" not in readme.read_text()
 
 
+def test_report_tries_more_seeds_where_there_is_a_goal(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """8 instead of 3; one of what is too large; a line for each run; lowest and median of what they reach."""
+    runs: dict[str, list[int]] = {}
+
+    def place(design: flow.Design, seed: int, *_: object) -> Placed:
+        runs.setdefault(design.name, []).append(seed)
+        if design.name == "up5k-4x2":
+            return Placed(False, True, 9000, 1, {}, Path())
+        return placed(clk=(100.0 + seed % 4, 100.0), spi_sclk=(80.0, 25.0))
+
+    monkeypatch.setattr(report, "prepare", lambda programs, tell: None)
+    monkeypatch.setattr(report, "synthesize", lambda design: None)
+    monkeypatch.setattr(report, "place", place)
+    monkeypatch.setattr(report, "cells", lambda design: {"LUT": 1, "FF": 1, "DSP": 0})
+    monkeypatch.setattr(report, "versions", lambda programs: "")
+    goal, other, large = (DEVICES["hx8k"], (1, 4)), (DEVICES["hx8k"], (1, 1)), (DEVICES["up5k"], (4, 2))
+    measured = report.measure([goal, other, large], splits=False)
+    assert runs == {"hx8k-1x4": [*range(1, 9)], "hx8k-1x1": [1, 2, 3], "up5k-4x2": [1]}
+    rows = {(row["device"], row["axes"]): row for row in measured["designs"]}
+    assert (rows["hx8k", 4]["f_max_minimum"], rows["hx8k", 4]["f_max_median"]) == (100.0, 101.5)
+    assert (rows["hx8k", 1]["f_max_minimum"], rows["hx8k", 1]["f_max_median"]) == (101.0, 102.0)
+    assert not rows["up5k", 2]["fits"]
+    said = capsys.readouterr().out
+    assert len(re.findall(r"^\[ *0:00\] place and route \d+ of 14: ", said, re.M)) == 12
+    assert re.search(r"synthesis 3 of 3: ", said) and re.search(r"place and route 14 of 14: ", said)
+
+
 def test_readme_has_the_marks() -> None:
     """Else `make report` could not write into it."""
     text = (paths.root / "README.md").read_text()

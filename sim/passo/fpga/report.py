@@ -116,19 +116,17 @@ def measure(wanted: Sequence[tuple[Device, tuple[int, int]]], splits: bool) -> d
 
         count = _counter(sum(len(_seeds(key)) for key in designs))
 
-        def run(design: Design, seed: int) -> Placed:
-            placed = _place(design, seed)
-            tell(f"place and route {count()}: {design.name}, seed {seed}: {_words(placed)}")
+        def run(key: Key, seed: int) -> Placed:
+            placed = _place(designs[key], seed)
+            done = count(len(_seeds(key)) if placed.too_large else 1)
+            tell(f"place and route {done}: {designs[key].name}, seed {seed}: {_words(placed)}")
             return placed
 
         # the seeds of a design one after the other, because there is one run only of what is too large
         def runs(key: Key) -> list[Placed]:
-            design, (seed, *seeds) = designs[key], _seeds(key)
-            first = run(design, seed)
-            if first.too_large:
-                count(len(seeds))
-                return [first]
-            return [first, *(run(design, seed) for seed in seeds)]
+            seed, *seeds = _seeds(key)
+            first = run(key, seed)
+            return [first] if first.too_large else [first, *(run(key, seed) for seed in seeds)]
 
         placed = dict(zip(designs, pool.map(runs, designs), strict=True))
     return {
