@@ -6,7 +6,6 @@ import json
 import re
 import shutil
 import tempfile
-import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
@@ -24,7 +23,7 @@ SYNTHESIS_LOG, PLACE_LOG, PACK_LOG = "yosys.log", "nextpnr.log", "pack.log"
 MOVED = "moved"  # how many registers went into block RAMs
 CONSTRAINTS = "clocks.sdc"
 # Some seeds never end: the placer tries all orders, or the router of iCE40 moves one net to and fro for ever.
-PLACE_SECONDS = 900
+PLACE_SECONDS = 900  # on a core
 ROUTER_STEPS = 200_000  # three times what any routing needed that ended
 
 # nextpnr says this of a design that it could not place or route although no kind of cell was used up.
@@ -146,11 +145,10 @@ def place(
             arguments += ["--sdc", CONSTRAINTS]
         arguments += _pin_options(design, netlist, folder, pins)
         log = folder / PLACE_LOG
-        deadline = time.monotonic() + PLACE_SECONDS
 
-        def hopeless() -> bool:
+        def hopeless(seconds: float) -> bool:
             words = log.read_text()
-            return time.monotonic() > deadline or _endless(words) or _too_large(device, _sites(words))
+            return seconds > PLACE_SECONDS or _endless(words) or _too_large(device, _sites(words))
 
         status = run(family.place, arguments, folder, log.name, hopeless)
         words = log.read_text()

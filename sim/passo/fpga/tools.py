@@ -68,11 +68,12 @@ def run(
     arguments: Sequence[object],
     folder: Path,
     log: str,
-    hopeless: Callable[[], bool] = lambda: False,
+    hopeless: Callable[[float], bool] = lambda seconds: False,
 ) -> int | None:
     """Run a program in `folder` with its words in `log` there; return its exit status.
 
-    None if it was stopped, because it did not end and `hopeless`, which is asked every few seconds, said so.
+    None if it was stopped, because it did not end and `hopeless` said so. It is asked every few seconds
+    and gets the seconds that the program has computed.
     """
     command = [_path(program), *map(str, arguments)]
     with (
@@ -86,10 +87,16 @@ def run(
                 try:
                     return process.wait(POLL_SECONDS)
                 except subprocess.TimeoutExpired:
-                    if hopeless():
+                    if hopeless(_computed(process.pid)):
                         return None
         finally:
             process.kill()
+
+
+def _computed(process: int) -> float:
+    """Seconds on a core up to now, whatever else the machine has to do."""
+    facts = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+    return sum(map(int, facts[11:13])) / os.sysconf("SC_CLK_TCK")  # in user and in system mode
 
 
 def check(program: str, arguments: Sequence[object], folder: Path, log: str) -> None:
