@@ -19,7 +19,7 @@ always @(posedge clk) begin
   f_refresh <= rst | stop | drain;
   assume (rst == !f_begun);
   assume (velocity_next <= F_HALF && drain_velocity <= 32'h8000_0000);
-  if (f_begun && $past(f_take && f_begun)) assume ($stable(velocity_next) && $stable(rest) && $stable(drain_velocity));
+  if (f_begun && $past(f_take && f_begun)) assume ($stable(velocity_next) && $stable(rest));
   if (!f_live || stop || restart || (f_drain_q && !drain)) assume (!advance);
   if (!f_live || restart) assume (!begin_profile && !drain);
   if (!advance) assume (!tick);
