@@ -42,6 +42,8 @@ always @(posedge clk) begin
   if (half_valid && !half_low) assume ((half & 16'hCFEF) == 16'd0);
   if (half_valid && half_low) assume ((half & 16'hCFFC) == 16'd0 && half[13:12] != 2'd3);
   assume (f_watch == 6'd0 && !(half_valid && in_ack) && rst == !f_started);
+  if (half_valid) assume (f_framed && f_selected && !frame_end);
+  if (rst) f_selected <= 1'b0;
 `endif
   f_gap <= frame_start || half_valid ? 7'd0 : f_gap >= F_GAP ? F_GAP : f_gap + 7'd1;
 end

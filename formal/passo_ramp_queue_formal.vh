@@ -67,6 +67,7 @@ always @(posedge clk) begin
     assume (32'd0 + checked + f_ramps + f_to_come <= 1 << DEPTH_LOG2 && !bus_check && !bus_frame);
     f_words  <= 5 * checked;
     f_select <= 1'b1;
+    f_gap    <= 2'd0;
 
     f_checking <= 1'b1;
   end
