@@ -310,8 +310,21 @@ always @(posedge clk)
     if (!f_is_setup) assert (f_dir_shown && (unsettled || f_dir_lasted >= f_setup || f_changed));
     else if (!f_dir_shown) assert (f_timer == 18'd1);
     else assert ({1'b0, f_dir_lasted} + 19'd1 >= {1'b0, f_timer});
-    if (f_changed) assert (unsettled && low && f_step_shown);
+`else
+    assert (f_high_q < 18'd16 && f_low_q < 18'd16 && f_setup_q < 18'd16 && f_hold_q < 18'd16);
+    if (!f_timing_written) assert (f_high_q == f_high && f_low_q == f_low && f_setup_q == f_setup && f_hold_q == f_hold);
+    if (!f_step_shown && !settle) assert (f_is_pulse && f_level_over && (f_restarted[0] || f_timer == 18'd1));
+    else begin
+      assert (f_level_over == !f_is_pulse);
+      if (f_is_pulse && f_restarted[1:0] == 2'b00) assert (f_level_run + 18'd1 == f_timer);
+      if (f_is_hold && f_restarted[1:0] == 2'b00) assert (f_hold_run + 18'd1 == f_timer);
+      if (!f_is_pulse) assert (f_hold_over == !f_is_hold);
+    end
+    if (!f_is_setup) assert (f_dir_shown && (unsettled || f_setup_over));
+    else if (!f_dir_shown) assert (f_restarted[0] || f_timer == 18'd1);
+    else if (!f_setup_over && f_restarted[1:0] == 2'b00) assert (f_setup_run + 18'd1 >= f_timer);
 `endif
+    if (f_changed) assert (unsettled && low && f_step_shown);
     if (f_clean) begin
       assert (f_waiting_count == $past(f_count, 2));
       if (f_waiting_count > 3'd0) assert (f_waiting[0] == $past(waiting[0], 2));
