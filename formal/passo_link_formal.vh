@@ -4,8 +4,7 @@
 (* anyconst *) reg [5:0] f_watch;  // one word of the payload, any one
 
 // --- Assumptions: what passo_spi makes of the pins. Half words are at least 60 clocks apart, and as far from the
-// beginning of their frame. `frame_start` and `frame_end` take turns, beginning with frame_end after a reset, whether there was
-// a frame or not. The last half word of a frame may come with frame_end or a clock later, but before the next frame,
+// beginning of their frame. `frame_start` and `frame_end` take turns; after a reset either may be the first. The last half word of a frame may come with frame_end or a clock later, but before the next frame,
 // as chip select is high for two clocks. After a reset the halves of a word may come that has begun before.
 `ifdef SMALL
 localparam [6:0] F_GAP = 7'd9;  // the search turns a word in one clock
@@ -18,7 +17,8 @@ localparam [5:0] F_COMMIT = 6'd35;
 `endif
 reg       f_started = 1'b0;
 wire      f_begun = ~rst;
-reg       f_selected = 1'b1;
+(* anyseq *) reg f_select;
+reg       f_selected;
 reg       f_ended = 1'b0;  // a frame, in the clock before
 reg       f_framed = 1'b0;  // a frame has begun since reset
 reg       f_upper = 1'b0;  // the upper half of a word has come
@@ -29,21 +29,21 @@ always @(posedge clk) begin
   if (frame_start) assume (!f_selected && !half_valid);
   if (frame_end) assume (f_selected);
   if (half_valid) assume (f_selected || f_ended);
-  f_ended <= frame_end & ~rst;
+  f_ended <= frame_end;
   if (frame_start) {f_selected, f_framed} <= 2'b11;
   if (frame_end) f_selected <= 1'b0;
   if (half_valid && f_framed) assume (half_low == f_upper);
   if (half_valid) assume (f_gap >= (half_low ? F_GAP_LOW : F_GAP));
   if (half_valid) f_upper <= !half_low;
   if (frame_start) f_upper <= 1'b0;
-  if (rst) {f_selected, f_framed} <= 2'b10;
+  if (rst) {f_selected, f_framed} <= {f_select, 1'b0};
 `ifdef SMALL
   // a few numbers are enough to find a bug: operations 0 .. 3, sequence 0 .. 1, length 0 .. 2, address 0 .. 3
   if (half_valid && !half_low) assume ((half & 16'hCFEF) == 16'd0);
   if (half_valid && half_low) assume ((half & 16'hCFFC) == 16'd0 && half[13:12] != 2'd3);
   assume (f_watch == 6'd0 && !(half_valid && in_ack) && rst == !f_started);
   if (half_valid) assume (f_framed && f_selected && !frame_end);
-  if (rst) f_selected <= 1'b0;
+  if (rst) assume (!f_select);
 `endif
   f_gap <= frame_start || half_valid ? 7'd0 : f_gap >= F_GAP ? F_GAP : f_gap + 7'd1;
 end
