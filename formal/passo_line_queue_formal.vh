@@ -10,7 +10,8 @@ localparam [1:0] F_GAP = 2'd2;
 `else
 localparam [1:0] F_GAP = 2'd3;
 `endif
-reg       f_begun = 1'b0;
+reg       f_started = 1'b0;
+wire      f_begun = ~rst;
 reg       f_strobe_q = 1'b0;
 reg [1:0] f_gap = 2'd0;  // clocks since the last strobe or frame, up to 3
 reg       f_checking = 1'b0;
@@ -22,21 +23,24 @@ reg [1:0] f_index = 2'd0;  // word of the line, 0 .. AXES + 1
 reg [3:0] f_since_take = 4'd0;
 reg [2:0] f_since_write = 3'd0;
 (* anyseq *) reg f_go;
-(* anyseq *) reg [DEPTH_LOG2:0] f_short_lines;
+`ifdef SMALL
+reg       f_short = 1'b0;
+`endif
 wire f_strobe = (bus_check | bus_write) & select;
 wire f_last_index = f_index == AXES + 1;
 wire f_top_bit_right = bus_top_bit == 5'd0 ? bus_data <= 32'd1 : bus_data >> bus_top_bit == 32'd1;
 wire f_good = f_checking && !f_refused && refusal == VERDICT_OK && f_index == 2'd0 && f_words != 6'd0;
 always @(posedge clk) begin
-  f_begun    <= 1'b1;
-  f_strobe_q <= bus_check | bus_write;
+  f_started  <= 1'b1;
+  f_strobe_q <= (bus_check | bus_write) & ~rst;
   f_gap      <= bus_check | bus_write | bus_frame ? 2'd0 : f_gap == 2'd3 ? 2'd3 : f_gap + 2'd1;
   f_since_take <= take ? 4'd0 : f_since_take == 4'd15 ? 4'd15 : f_since_take + 4'd1;
-  f_since_write <= bus_write | f_writing ? 3'd0 : f_since_write == 3'd7 ? 3'd7 : f_since_write + 3'd1;
-  assume (rst == !f_begun);
+  f_since_write <= bus_write | f_writing | (bus_frame & bus_commit) ? 3'd0 : f_since_write == 3'd7 ? 3'd7 : f_since_write + 3'd1;
+  if (!f_started) assume (rst);
   if (bus_write || bus_frame) assume (f_gap >= F_GAP);
   if (bus_check) assume (f_gap == 2'd3);
   assume (bus_check + bus_write + bus_frame <= 2'd1);
+  if (bus_frame) assume (bus_commit == (f_good && f_go));
   if (bus_check || bus_write || f_strobe_q) assume ($stable(bus_data));
   if (bus_check) assume ($past(bus_data, 2) == bus_data && f_top_bit_right && $past(f_top_bit_right));
   if (bus_check) assume (f_checking && f_words != 6'd60);
@@ -54,18 +58,28 @@ always @(posedge clk) begin
   if (bus_frame) begin
     f_index    <= 2'd0;
     f_refused  <= 1'b0;
-    f_checking <= !(f_good && f_go);
-    f_writing  <= f_good && f_go && f_select;
+    f_checking <= !bus_commit;
+    f_writing  <= bus_commit && f_select;
+    if (!bus_commit) f_words <= 6'd0;
+  end
 `ifdef SMALL
-    // shorter for the search of bugs: a frame that would be good is written without being checked
-    if (f_go && f_short_lines != 0 && f_short_lines <= room) begin
-      f_checking <= 1'b0;
-      f_writing  <= 1'b1;
-      f_select   <= 1'b1;
-      f_words    <= 3 * f_short_lines;
-    end else
+  // shorter for the search of bugs: where a frame may begin, any good number of lines (see `shorter` in
+  // promises.toml) has been checked already
+  assume (rst == !f_started);
+  f_short <= rst | (bus_frame & ~bus_commit) | (bus_write & f_writing & f_words == 6'd1);
+  if (f_short && checked != 0) begin
+    assume (checked <= room && !bus_check && !bus_frame);
+    f_words  <= 3 * checked;
+    f_select <= 1'b1;
+
+    f_checking <= 1'b1;
+  end
 `endif
-    if (!(f_good && f_go)) f_words <= 6'd0;
+  if (rst) begin
+    {f_checking, f_writing, f_refused} <= 3'b000;
+
+    f_index <= 2'd0;
+    f_words <= 6'd0;
   end
 `ifdef SMALL
   assume (bus_data[29:10] == 20'd0 && !bus_data[31]);
@@ -73,9 +87,9 @@ always @(posedge clk) begin
   // line counter and motion
   assume (blocked == flush);
   if (take) assume (next_valid && !release_line);
-  if (release_line) assume (f_current && f_since_take >= 4'd4 && !flush);
+  if (release_line) assume (f_current && f_since_take >= 4'd2 && !flush);
   // a channel stays stopped while a frame is written: only another frame can clear it
-  if (f_begun && $past(flush) && f_since_write != 3'd7) assume (flush);
+  if ($past(flush && !rst) && f_since_write != 3'd7) assume (flush || rst);
 end
 
 // --- The queue as it should be: lines from the next one on, and the place of the current line
@@ -83,13 +97,24 @@ reg  [DEPTH_LOG2:0] f_lines = 0;
 reg                 f_current = 1'b0;  // there is one, and it has its place
 wire f_written = bus_write & select & f_last_index;
 reg  [DEPTH_LOG2:0] f_checked = 0;  // lines of this frame
+reg  [DEPTH_LOG2:0] f_to_come = 0;  // lines of a frame that was accepted, which are still to be written
+reg                 f_freed_then = 1'b0;  // a place became free in the clock in which it was
+wire [DEPTH_LOG2:0] f_free = (1 << DEPTH_LOG2) - f_lines - f_current - f_to_come;
 always @(posedge clk) begin
+  f_freed_then <= bus_frame & bus_commit & ((take & f_current) | release_line) & ~rst & ~flush;
+  if (f_written) f_to_come <= f_to_come - 1'b1;
+  if (bus_frame && bus_commit) f_to_come <= f_checked;
   f_lines <= f_lines + f_written - take;
   if (release_line) f_current <= 1'b0;
   if (take) f_current <= 1'b1;
   if (bus_check && select && f_last_index) f_checked <= f_checked + 1'b1;
   if (bus_frame) f_checked <= 0;
+`ifdef SMALL
+  if (f_short) f_checked <= checked;
+`endif
+  if (rst) f_checked <= 0;
   if (rst || flush) begin
+    f_to_come <= 0;
     f_lines   <= 0;
     f_current <= 1'b0;
   end
@@ -100,8 +125,9 @@ always @(posedge clk) f_quiet <= take | flush | rst | f_written ? 3'd0 : f_quiet
 
 always @(posedge clk)
   if (f_begun) begin
-    room_is_what_is_free : assert (room == (1 << DEPTH_LOG2) - f_lines - f_current);
-    if (next_valid && !flush && !$past(flush)) next_only_if_there : assert (f_lines != 0);
+    room_never_too_large : assert (room <= f_free);
+    if (!f_freed_then) room_is_what_is_free : assert (room == f_free);
+    if (next_valid && !flush && !$past(flush || rst)) next_only_if_there : assert (f_lines != 0);
     if (f_quiet >= 3'd2 && f_lines != 0) line_not_lost : assert (next_valid);
     if (incomplete != (f_index != 2'd0)) incomplete_told : assert (bus_frame);
   end
@@ -186,7 +212,9 @@ wire [29:0] f_stored_last = f_line_substeps[29:0] - 30'd1;
 wire [31:0] f_stored_substeps = {f_line_last, f_line_endless, f_stored_last};
 always @(posedge clk)
   if (f_begun) begin
-    assert (f_lines + f_current <= 1 << DEPTH_LOG2);
+    assert (32'd0 + f_lines + f_current + f_to_come <= 1 << DEPTH_LOG2);
+    assert (room + f_freed_then == f_free && freed_late == f_freed_then);
+    if (!f_writing) assert (f_to_come == 0);
     assert (f_lines == write_line - next_line);
     assert (has_place == f_current);
     if (f_current) assert (current_line == next_line[DEPTH_LOG2-1:0] - 1'b1);
@@ -201,10 +229,11 @@ always @(posedge clk)
     // the words to be written fit
     if (f_checking && f_select && !f_refused && refusal == VERDICT_OK && f_words != 0) begin
       assert (f_words == 3 * f_checked + f_index);
-      assert (32'd0 + f_checked + (f_index != 0) <= room);
+      assert (32'd0 + f_checked + (f_index != 0) <= room + f_freed_then);
       if (f_index == 2'd2) assert (f_m != 32'd0 && f_m < F_M_LIMIT);
     end
-    if (f_writing) assert (32'd0 + f_words + f_index <= 3 * room && (f_words + f_index) % 3 == 0 && f_words != 0);
+    if (f_writing && !flush && f_since_write == 3'd0) assert (32'd0 + f_words + f_index == 3 * f_to_come);
+    if (f_writing) assert ((f_words + f_index) % 3 == 0 && f_words != 0 && f_since_write == 3'd0);
     if (f_recording) assert (f_writing && f_index != 0 && write_line[DEPTH_LOG2-1:0] == f_slot && f_ahead == f_ahead);
     if (f_recording) assert (!f_queued && !f_shown);
     if (f_taken) assert (f_shown);
@@ -225,9 +254,9 @@ always @(posedge clk)
     end
     if (f_queued) assert (f_ahead < f_lines && f_slot == next_line[DEPTH_LOG2-1:0] + f_ahead[DEPTH_LOG2-1:0]);
     if (f_taken) assert (current_line == f_slot && f_current);
-    assert (load_substeps == (f_strobe_q && $past(select) && f_index == 2'd2));
-    assert (write_substeps == (load_substeps && $past(bus_write)));
-    if (load_substeps) assert (bus_data == f_m);
+    if ($past(f_begun)) assert (load_substeps == (f_strobe_q && $past(select) && f_index == 2'd2));
+    if ($past(f_begun)) assert (write_substeps == (load_substeps && $past(bus_write)));
+    if (load_substeps && $past(f_begun)) assert (bus_data == f_m);
     if (f_index == 2'd2 && !load_substeps) assert (not_substeps == ~f_m);
     if (f_index == 2'd1 || (f_index == 2'd0 && f_gap != 2'd0 && $past(f_begun))) assert (not_substeps == ~32'd0);
   end

@@ -3,37 +3,49 @@
 
 (* anyconst *) reg [5:0] f_watch;  // one word of the payload, any one
 
-// --- Assumptions: chip select and words as passo_spi gives them. Half words are at least 60 clocks apart.
+// --- Assumptions: what passo_spi makes of the pins. Half words are at least 60 clocks apart, and as far from the
+// beginning of their frame. `frame_start` and `frame_end` take turns; after a reset either may be the first. The last half word of a frame may come with frame_end or a clock later, but before the next frame,
+// as chip select is high for two clocks. After a reset the halves of a word may come that has begun before.
 `ifdef SMALL
 localparam [6:0] F_GAP = 7'd9;  // the search turns a word in one clock
 localparam [6:0] F_GAP_LOW = 7'd1;
+localparam [5:0] F_COMMIT = 6'd3;
 `else
 localparam [6:0] F_GAP = 7'd60;
 localparam [6:0] F_GAP_LOW = 7'd60;
+localparam [5:0] F_COMMIT = 6'd35;
 `endif
-reg       f_begun = 1'b0;
-reg       f_selected = 1'b0;
+reg       f_started = 1'b0;
+wire      f_begun = ~rst;
+(* anyseq *) reg f_select;
+reg       f_selected;
+reg       f_ended = 1'b0;  // a frame, in the clock before
+reg       f_framed = 1'b0;  // a frame has begun since reset
 reg       f_upper = 1'b0;  // the upper half of a word has come
-reg [6:0] f_gap = 7'd0;  // clocks since the last half word or the start of the frame, up to 60
+reg [6:0] f_gap = F_GAP;  // clocks since the last half word or the start of the frame, up to 60
 always @(posedge clk) begin
-  f_begun <= 1'b1;
-  assume (rst == !f_begun);
-  if (rst) assume (!frame_start && !frame_end && !half_valid);
-  assume (frame_start + frame_end + half_valid <= 2'd1);
-  if (frame_start) assume (!f_selected);
-  if (frame_end || half_valid) assume (f_selected);
-  if (frame_start) f_selected <= 1'b1;
+  f_started <= 1'b1;
+  if (!f_started) assume (rst);
+  if (frame_start) assume (!f_selected && !half_valid);
+  if (frame_end) assume (f_selected);
+  if (half_valid) assume (f_selected || f_ended);
+  f_ended <= frame_end;
+  if (frame_start) {f_selected, f_framed} <= 2'b11;
   if (frame_end) f_selected <= 1'b0;
-  if (half_valid) assume (half_low == f_upper && f_gap >= (half_low ? F_GAP_LOW : F_GAP));
+  if (half_valid && f_framed) assume (half_low == f_upper);
+  if (half_valid) assume (f_gap >= (half_low ? F_GAP_LOW : F_GAP));
   if (half_valid) f_upper <= !half_low;
   if (frame_start) f_upper <= 1'b0;
+  if (rst) {f_selected, f_framed} <= {f_select, 1'b0};
 `ifdef SMALL
   // a few numbers are enough to find a bug: operations 0 .. 3, sequence 0 .. 1, length 0 .. 2, address 0 .. 3
   if (half_valid && !half_low) assume ((half & 16'hCFEF) == 16'd0);
   if (half_valid && half_low) assume ((half & 16'hCFFC) == 16'd0 && half[13:12] != 2'd3);
-  assume (f_watch == 6'd0 && !(half_valid && in_ack));
+  assume (f_watch == 6'd0 && !(half_valid && in_ack) && rst == !f_started);
+  if (half_valid) assume (f_framed && f_selected && !frame_end);
+  if (rst) assume (!f_select);
 `endif
-  f_gap <= frame_start || half_valid ? 7'd0 : f_gap == F_GAP ? F_GAP : f_gap + 7'd1;
+  f_gap <= frame_start || half_valid ? 7'd0 : f_gap >= F_GAP ? F_GAP : f_gap + 7'd1;
 end
 
 // --- The frame that is being received: its words, and what was said of them
@@ -47,13 +59,15 @@ reg  [ 8:0] f_words = 9'd0;  // received, the header included; up to 511
 reg  [ 8:0] f_checks = 9'd0;
 reg         f_objection = 1'b0;
 reg         f_asked = 1'b0;  // a check strobe was in the clock before
-reg         f_incomplete;  // when the CRC had turned
+reg         f_incomplete;  // when the frame was judged
+reg         f_busy_then;
 reg  [ 7:0] f_last;  // sequence number of the last frame that was executed
 reg         f_any = 1'b0;  // there is one
 wire [ 7:0] f_length = f_header[19:12];
 wire        f_is_push = f_header[31:28] == OPERATION_PUSH;
 wire        f_is_write = f_header[31:28] == OPERATION_WRITE;
 wire        f_word_ends = half_valid & half_low;
+wire        f_judged = in_crc && count == COUNT_ACT - 7'd1;
 wire        f_good = f_words == {1'b0, f_length} + 9'd2 && !crc_wrong && !f_objection && !f_incomplete
                      && f_checks == {1'b0, f_length} && (f_is_push || f_is_write)
                      && f_length != 8'd0 && f_length <= 8'd60 && !(f_any && f_header[27:20] == f_last);
@@ -70,7 +84,7 @@ always @(posedge clk) begin
   if (f_word_ends && f_words != 9'd511) f_words <= f_words + 9'd1;
   if (bus_check && f_words != 9'd0) f_checks <= f_checks + 9'd1;
   if (f_asked && f_words != 9'd0 && (!bus_claim || bus_refusal != VERDICT_OK)) f_objection <= 1'b1;
-  if (in_crc && count == COUNT_ACT - 7'd1) f_incomplete <= bus_incomplete;
+  if (f_judged) {f_incomplete, f_busy_then} <= {bus_incomplete, bus_busy};
   if (frame_start) begin
     f_words     <= 9'd0;
     f_checks    <= 9'd0;
@@ -86,9 +100,14 @@ reg [11:0] f_address;
 reg        f_run_push;
 reg [31:0] f_run_word;
 wire       f_starts = f_begun && in_ack && act && verdict_ok;
+reg [ 5:0] f_commit_age = 6'd0;  // clocks of bus_commit before this one, up to 63
+reg        f_commits = 1'b0;  // since a frame was judged
+reg        f_frame_told = 1'b0;  // bus_frame has come for the frame that is received
+reg [ 2:0] f_since_strobe = 3'd7;  // clocks, up to 7
 always @(posedge clk) begin
   if (f_starts) begin
     only_good_frames : assert (f_good && verdict == VERDICT_OK);  // which the acknowledgement tells
+    only_if_not_busy : assert (!f_busy_then);
     f_runs       <= 1'b1;
     f_run_length <= f_length;
     f_run_word   <= f_word;
@@ -118,6 +137,25 @@ always @(posedge clk) begin
   if (f_begun && $past(f_begun && (bus_check || bus_write))) stands_after_strobe : assert (bus_data == $past(bus_data));
 end
 
+// --- The commit, and the beginnings of both passes
+always @(posedge clk) begin
+  f_commit_age   <= !bus_commit || rst ? 6'd0 : f_commit_age == 6'd63 ? 6'd63 : f_commit_age + 6'd1;
+  f_commits      <= (f_judged | f_commits) & bus_commit & ~rst;
+  f_frame_told   <= ((bus_frame & ~bus_commit) | f_frame_told) & ~frame_start & ~rst;
+  f_since_strobe <= bus_check || bus_write || bus_frame ? 3'd0 : f_since_strobe == 3'd7 ? 3'd7 : f_since_strobe + 3'd1;
+  if (f_begun) begin
+    if (f_judged && !is_read) commits_before_the_verdict : assert (bus_commit && f_commit_age >= F_COMMIT);
+    if (f_starts) commits_until_it_runs : assert (f_commits && bus_commit);
+    if (f_runs) commits_while_it_runs : assert (f_commits && bus_commit);
+    if ($past(f_starts)) accepted_is_told : assert (bus_frame && bus_commit);
+    else commits_only_accepted : assert (!bus_frame || !bus_commit);
+    if (bus_check) checks_what_has_begun : assert (f_frame_told);
+    strobes_one_at_a_time : assert (bus_check + bus_write + bus_frame <= 2'd1);
+    if (bus_check || bus_write || bus_frame) strobes_apart : assert (f_since_strobe >= 3'd3);
+    if (f_starts) frames_apart : assert (f_since_strobe == 3'd7);
+  end
+end
+
 `ifdef INVARIANTS
 wire [7:0] f_steps = {in_header, in_payload, in_crc, in_ack, in_replay, in_read, in_sum, in_count};
 wire f_idle = f_steps == 8'd0;
@@ -131,6 +169,21 @@ wire f_header_fits = (f_is_push || f_is_write) && f_length != 8'd0 && f_length <
 always @(posedge clk)
   if (f_begun) begin
     assert ((f_steps & (f_steps - 8'd1)) == 8'd0);
+    if (!f_idle || frame_waits) assert (f_framed);
+    // the commit: from the clock after the CRC word begins to be handled
+    if (in_crc && !begin_load && !begin_rest && count <= COUNT_ACT)
+      assert (bus_commit == (count > COUNT_LOAD) && (!bus_commit || {1'b0, f_commit_age} == count - 7'd29));
+    if (in_ack && verdict_ok) assert (bus_commit && f_commits && !f_busy_then);
+    if (in_crc && count == COUNT_ACT && !begin_load) assert (f_commits);
+    if (in_crc && count == COUNT_ACT && !begin_load) assert (!executes || !f_busy_then);
+    if (in_replay || f_runs) assert (bus_commit && f_commits);
+    if (bus_frame) assert (!bus_check && !bus_write && (count == COUNT_ACT + 7'd1 || f_idle));
+    if ((f_receives || in_ack) && !begin_rest && !begin_load && count >= COUNT_LOAD && count <= COUNT_ACT)
+      assert (f_since_strobe == 3'd7 || {4'd0, f_since_strobe} >= count - COUNT_LOAD);
+    if (in_replay && count != COUNT_LOAD && count <= COUNT_LOADED) assert ({4'd0, f_since_strobe} >= count - 7'd29);
+    if (bus_write) assert (f_since_strobe >= 3'd3);
+    if (in_payload && !bus_frame) assert (f_frame_told);
+    if (bus_check) assert (f_frame_told && f_since_strobe == 3'd7);
     assert (f_gap <= F_GAP);
     assert (sequence_known == f_any);
     if (f_any) assert (last_sequence == f_last);

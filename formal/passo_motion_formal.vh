@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 // What the motion states promise; included at the end of passo_motion.
 
-reg f_begun = 1'b0;
+// --- Assumption: a reset at the beginning; after that, any inputs at all
+reg f_started = 1'b0;
+wire f_begun = ~rst;
 always @(posedge clk) begin
-  f_begun <= 1'b1;
-  assume (rst == !f_begun);
+  f_started <= 1'b1;
+  if (!f_started) motion_reset : assume (rst);
 end
 
 wire f_stop_hard = command_abort | (moving & (step_overrun | line_underrun));
@@ -16,6 +18,28 @@ reg [3:0] f_run_age;
 always @(posedge clk)
   f_run_age <= state != STATE_RUN ? 4'd0 : f_run_age == 4'd15 ? 4'd15 : f_run_age + 4'd1;
 
+// --- How long nothing has counted or moved, up to 7 clocks; and whether that is since a stop or a reset
+reg [2:0] f_uncounted;
+reg [2:0] f_unmoved;
+reg f_stilled;
+reg [2:0] f_settle_age;
+always @(posedge clk) begin
+  f_uncounted  <= counting ? 3'd0 : f_uncounted == 3'd7 ? 3'd7 : f_uncounted + 3'd1;
+  f_unmoved    <= moving ? 3'd0 : f_unmoved == 3'd7 ? 3'd7 : f_unmoved + 3'd1;
+  f_stilled    <= rst | stopped | (f_stilled & ~counting);
+  f_settle_age <= state != STATE_SETTLE ? 3'd0 : f_settle_age == 3'd7 ? 3'd7 : f_settle_age + 3'd1;
+  if (rst) {f_uncounted, f_unmoved} <= 6'd0;
+end
+
+// --- After ABORT the axes may be asked for steps until the clock after `stopped`, which ends the slots of the lines
+reg f_aborted = 1'b0;  // and steps may still come
+reg f_stopped_q = 1'b0;
+wire f_abort_lasts = command_abort | (f_aborted & ~f_stopped_q);
+always @(posedge clk) begin
+  f_aborted   <= f_abort_lasts & ~rst;
+  f_stopped_q <= stopped;
+end
+
 always @(posedge clk)
   if (f_begun) begin
     state_is_one_of_seven : assert (f_states == 3'd1 && state <= STATE_STOPPED);
@@ -25,6 +49,10 @@ always @(posedge clk)
     stopped_is_the_state : assert (stopped == (state == STATE_STOPPED));
     cause_when_stopped : assert ((cause != CAUSE_NONE) == stopped);
     counts_in_run_and_drain : assert (counting == (state == STATE_RUN || state == STATE_DRAIN));
+    if (f_abort_lasts) drops_until_no_step_can_come : assert (drop);
+    if (prepare) nothing_counts_before : assert (f_uncounted >= (f_stilled ? 3'd1 : 3'd5));
+    if (release_line) settled_before_release : assert (f_uncounted >= 3'd4 && f_settle_age >= 3'd4);
+    if (moving && f_unmoved != 3'd0) rests_before_it_moves : assert (f_unmoved >= 3'd3);
     if (begin_profile) begins_only_armed : assert (state == STATE_ARMED && $past(state == STATE_ARMED && (sync_edge || !wait_sync)));
   end
 
@@ -52,6 +80,10 @@ always @(posedge clk)
       endcase
     if ($past(begin_profile) && !$past(command_abort, 2) && !$past(stopping, 2))
       begins_when_told : assert (state == STATE_RUN || state == STATE_SETTLE);
+    if (drop) drops_only_after_abort : assert (command_abort || $past(command_abort) || $past(command_abort, 2));
+    if ($past(hold)) none_prepared_in_hold : assert (!prepare);
+    if ($past(hold) && $past(hold && f_begun, 2) && !$past(occupied)) none_begins_in_hold : assert (!occupied);
+    if (drain && !$past(drain)) drains_after_settling : assert (f_uncounted >= 3'd5);
     if (prepare) prepared_only_with_both : assert ($past(run && line_valid && ramp_valid && state == STATE_IDLE));
     if (release_line) released_at_the_end : assert ($past(line_ended || line_endless));
     drained_counts :
@@ -92,6 +124,17 @@ always @(posedge clk)
     if (settled && $past(f_begun)) assert (finished == $past(line_ended || line_endless));
     assert (!settled || $past(f_begun));
     if (startable) assert (state == STATE_IDLE);
+    if (state == STATE_SETTLE) begin
+      assert (settling == (f_settle_age == 3'd0 ? 3'b000 : f_settle_age == 3'd1 ? 3'b001 : f_settle_age == 3'd2 ? 3'b011 : 3'b111));
+      assert (f_settle_age <= 3'd4 && settled == (f_settle_age == 3'd4) && f_uncounted >= f_settle_age);
+    end
+    if (!moving && !stopped && !f_stilled) assert (f_uncounted >= 3'd5);
+    if (state == STATE_IDLE && startable) assert (f_unmoved >= 3'd1 && f_uncounted >= 3'd1);
+    if (state == STATE_PREPARE) assert (f_unmoved >= 3'd2);
+    if (state == STATE_ARMED) assert (f_unmoved >= 3'd3);
+    if (f_stopped_q) assert (f_stilled);
+    assert (f_aborted ? aborted != 2'b00 || f_stopped_q : 1'b1);
+    if (f_aborted && !f_stopped_q) assert (stopped || (aborted[0] && stop_due));
     if (state == STATE_RUN && f_run_age == 4'd0) assert (!running);
   end
 `endif

@@ -4,26 +4,33 @@
 localparam [47:0] F_HALF = 48'h8000_0000_0000;
 
 // --- Assumptions: velocities are at most 1/2; what is taken stands for two clocks; nothing counts before the
-// first restart, after a stop, when a drain has just ended, or in the clock of a restart
-reg  f_begun = 1'b0;
+// first restart, after a stop, when a drain has just ended, or in the clock of a restart. The drain velocity may be written
+// at any time: its upper 24 bits change a clock after the lower ones.
+reg  f_started = 1'b0;
+wire f_begun = ~rst;
 reg  f_live = 1'b0;
 reg  f_known = 1'b0;  // a velocity was taken since reset
 reg  f_drain_q = 1'b0;
 reg  f_refresh = 1'b0;
 wire f_take = begin_profile | tick | f_refresh;
+(* anyseq *) wire [31:0] f_drain_velocity;  // as it was written
+reg  [31:0] f_drain_velocity_q;
 always @(posedge clk) begin
-  f_begun   <= 1'b1;
+  f_started <= 1'b1;
   f_known   <= (f_known | f_take) & ~rst;
   f_live    <= (f_live | (restart & f_known)) & ~stop & ~rst;
   f_drain_q <= drain & ~rst;
   f_refresh <= rst | stop | drain;
-  assume (rst == !f_begun);
-  assume (velocity_next <= F_HALF && drain_velocity <= 32'h8000_0000);
-  if (f_begun && $past(f_take && f_begun)) assume ($stable(velocity_next) && $stable(rest) && $stable(drain_velocity));
+  f_drain_velocity_q <= f_drain_velocity;
+  if (!f_started) assume (rst);
+  assume (velocity_next <= F_HALF);
+  assume (f_drain_velocity <= 32'h8000_0000 && (f_started || f_drain_velocity_q <= 32'h8000_0000));
+  assume (drain_velocity == {f_drain_velocity_q[31:8], f_drain_velocity[7:0]});
+  if ($past(f_take && f_begun) && f_started) assume ($stable(velocity_next) && $stable(rest));
   if (!f_live || stop || restart || (f_drain_q && !drain)) assume (!advance);
   if (!f_live || restart) assume (!begin_profile && !drain);
   if (!advance) assume (!tick);
-  if (f_begun && $past(f_take && f_begun) && !f_drain_q) assume (!drain);
+  if ($past(f_take && f_begun) && f_started && !f_drain_q) assume (!drain);
 end
 
 // --- Velocity and phase, each in one piece
@@ -33,7 +40,7 @@ reg         f_carry = 1'b0;  // of the clock before
 reg         f_carry_q = 1'b0;
 wire [48:0] f_sum = {1'b0, f_phase} + {1'b0, f_velocity};
 always @(posedge clk) begin
-  if (f_take) f_velocity <= drain ? {drain_velocity, 16'd0} : rest ? 48'd0 : velocity_next;
+  if (f_take) f_velocity <= drain ? {f_drain_velocity, 16'd0} : rest ? 48'd0 : velocity_next;
   if (advance) f_phase <= f_sum[47:0];
   f_carry   <= advance & f_sum[48];
   f_carry_q <= f_carry;

@@ -148,7 +148,7 @@ always @(posedge clk) begin
   if (prepare || f_take_now || ended || rst || stop) f_last <= 1'b0;
   if (prepare || rst || stop) f_due <= 1'b0;
   f_busy <= rst || prepare || f_motion == F_REST || ready || f_take || f_take_now ? 7'd0 :
-            f_busy + {6'd0, step != STEP_LOOK_UP};
+            f_busy + {6'd0, step != STEP_LOOK_UP && !(f_last && ramp_now_coming)};
   if (f_begun && f_motion != F_REST) begin
     if (f_running && advance) tick_is_whole : assert ((f_clocks == F_TICK_LAST) == take_velocity);
     if (f_running && stall) stalls_only_there : assert (f_clocks == F_TICK_LAST && !f_ready_q);
@@ -161,6 +161,8 @@ always @(posedge clk) begin
     ready_in_time : assert (f_busy <= 7'd105);
   end
   if (f_begun && f_motion == F_REST && !drain) not_ended_at_rest : assert (!ended);
+  if (f_begun && f_motion != F_REST && $past(f_motion != F_REST && ramp_now_coming && !prepare))
+    now_is_waited_for : assert (!ends_next || $past(ends_next));
 end
 
 // --- What the induction needs to know of the circuit. The search for planted bugs begins in any state of which

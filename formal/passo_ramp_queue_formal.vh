@@ -9,7 +9,8 @@ localparam [1:0] F_GAP = 2'd2;
 `else
 localparam [1:0] F_GAP = 2'd3;
 `endif
-reg       f_begun = 1'b0;
+reg       f_started = 1'b0;
+wire      f_begun = ~rst;
 reg       f_strobe_q = 1'b0;
 reg [1:0] f_gap = 2'd0;  // clocks since the last strobe or frame, up to 3
 reg       f_checking = 1'b0;
@@ -20,19 +21,22 @@ reg       f_select = 1'b0;
 reg [2:0] f_index = 3'd0;  // word of the ramp, 0 .. 4
 reg [2:0] f_since_write = 3'd0;
 (* anyseq *) reg f_go;
-(* anyseq *) reg [DEPTH_LOG2:0] f_short_ramps;
+`ifdef SMALL
+reg       f_short = 1'b0;
+`endif
 wire f_strobe = (bus_check | bus_write) & select;
 wire f_last_index = f_index == 3'd4;
 wire f_top_bit_right = bus_top_bit == 5'd0 ? bus_data <= 32'd1 : bus_data >> bus_top_bit == 32'd1;
 wire f_good = f_checking && !f_refused && refusal == VERDICT_OK && f_index == 3'd0 && f_words != 6'd0;
 always @(posedge clk) begin
-  f_begun    <= 1'b1;
-  f_strobe_q <= bus_check | bus_write;
+  f_started  <= 1'b1;
+  f_strobe_q <= (bus_check | bus_write) & ~rst;
   f_gap      <= bus_check | bus_write | bus_frame ? 2'd0 : f_gap == 2'd3 ? 2'd3 : f_gap + 2'd1;
-  f_since_write <= bus_write | f_writing ? 3'd0 : f_since_write == 3'd7 ? 3'd7 : f_since_write + 3'd1;
-  assume (rst == !f_begun);
+  f_since_write <= bus_write | f_writing | (bus_frame & bus_commit) ? 3'd0 : f_since_write == 3'd7 ? 3'd7 : f_since_write + 3'd1;
+  if (!f_started) assume (rst);
   if (bus_check || bus_write || bus_frame) assume (f_gap >= F_GAP);
   assume (bus_check + bus_write + bus_frame <= 2'd1);
+  if (bus_frame) assume (bus_commit == (f_good && f_go));
   if (bus_check || bus_write || f_strobe_q) assume ($stable(bus_data));
   if (bus_check) assume (f_top_bit_right && $past(f_top_bit_right));
   if (bus_check) assume (f_checking && f_words != 6'd60);
@@ -50,30 +54,44 @@ always @(posedge clk) begin
   if (bus_frame) begin
     f_index    <= 3'd0;
     f_refused  <= 1'b0;
-    f_checking <= !(f_good && f_go);
-    f_writing  <= f_good && f_go && f_select;
+    f_checking <= !bus_commit;
+    f_writing  <= bus_commit && f_select;
+    if (!bus_commit) f_words <= 6'd0;
+  end
 `ifdef SMALL
-    // shorter for the search of bugs: a frame that would be good is written without being checked
-    if (f_go && f_short_ramps != 0 && f_short_ramps <= room) begin
-      f_checking <= 1'b0;
-      f_writing  <= 1'b1;
-      f_select   <= 1'b1;
-      f_words    <= 5 * f_short_ramps;
-    end else
+  // shorter for the search of bugs: where a frame may begin, any good number of ramps (see `shorter` in
+  // promises.toml) has been checked already
+  assume (rst == !f_started);
+  f_short <= rst | (bus_frame & ~bus_commit) | (bus_write & f_writing & f_words == 6'd1);
+  if (f_short && checked != 0) begin
+    assume (32'd0 + checked + f_ramps + f_to_come <= 1 << DEPTH_LOG2 && !bus_check && !bus_frame);
+    f_words  <= 5 * checked;
+    f_select <= 1'b1;
+    f_gap    <= 2'd0;
+
+    f_checking <= 1'b1;
+  end
 `endif
-    if (!(f_good && f_go)) f_words <= 6'd0;
+  if (rst) begin
+    {f_checking, f_writing, f_refused} <= 3'b000;
+
+    f_index <= 3'd0;
+    f_words <= 6'd0;
   end
   // ramp and motion: a ramp is taken only if it is there, and not a NOW ramp before take_now
   assume (blocked == flush);
   if (take) assume (f_ramps != 0 && !take_now && !(now_pending && f_now_ahead == 0));
   if (take_now) assume (now_pending);
   // a channel stays stopped while a frame is written: only another frame can clear it
-  if (f_begun && $past(flush) && f_since_write != 3'd7) assume (flush);
+  if ($past(flush && !rst) && f_since_write != 3'd7) assume (flush || rst);
 end
 
 // --- The queue as it should be
 reg [DEPTH_LOG2:0] f_ramps = 0;
 reg [DEPTH_LOG2:0] f_ramps_q = 0;
+reg [DEPTH_LOG2:0] f_to_come = 0;  // ramps of a frame that was accepted, which are still to be written
+reg [DEPTH_LOG2:0] f_free_q = 1 << DEPTH_LOG2;  // a clock ago
+reg                f_flush_q = 1'b0;
 reg [DEPTH_LOG2:0] f_now_ahead = 0;  // ramps before the last NOW
 reg                f_now = 1'b0;
 reg                f_is_now = 1'b0;
@@ -81,8 +99,12 @@ reg                f_written = 1'b0;  // a ramp is whole one clock after its las
 reg [DEPTH_LOG2:0] f_checked = 0;  // ramps of this frame
 wire [DEPTH_LOG2:0] f_pops = take_now ? f_now_ahead : {{DEPTH_LOG2{1'b0}}, take};
 always @(posedge clk) begin
-  f_written <= bus_write & select & f_last_index;
+  f_written <= bus_write & select & f_last_index & ~rst;
   f_ramps_q <= rst ? 0 : f_ramps;
+  f_free_q  <= rst ? 1 << DEPTH_LOG2 : (1 << DEPTH_LOG2) - f_ramps - f_to_come;
+  f_flush_q <= flush & ~rst;
+  if (f_written) f_to_come <= f_to_come - 1'b1;
+  if (bus_frame && bus_commit) f_to_come <= f_checked;
   f_ramps   <= f_ramps + f_written - f_pops;
   if (f_strobe && f_index == 3'd0) f_is_now <= bus_data[1];
   f_now_ahead <= f_now_ahead - f_pops;
@@ -92,16 +114,22 @@ always @(posedge clk) begin
     f_now_ahead <= f_ramps - f_pops;
   end
   if (bus_check && select && f_last_index) f_checked <= f_checked + 1'b1;
-  if (bus_frame) f_checked <= 0;
+  if (bus_frame || rst) f_checked <= 0;
+`ifdef SMALL
+  if (f_short) f_checked <= checked;
+`endif
+  if (rst || flush) f_to_come <= 0;
   if (rst || flush) f_ramps <= rst ? 0 : f_written;
   if (rst || flush) f_now <= 1'b0;
 end
 
 always @(posedge clk)
   if (f_begun) begin
-    room_is_what_is_free : assert (room == (1 << DEPTH_LOG2) - f_ramps_q || !$past(f_begun));
+    if ($past(f_begun) && !f_flush_q && !$past(f_flush_q)) room_is_what_is_free : assert (room == f_free_q);
+    if ($past(f_begun) && f_flush_q && $past(f_flush_q)) all_free_when_flushed : assert (room == 1 << DEPTH_LOG2);
     valid_if_there : assert (valid == (f_ramps_q != 0));
     now_told : assert (now_pending == f_now);
+    needs_motion_told : assert (needs_motion == (bus_check && select && f_index == 3'd0 && bus_data[1]));
     if (incomplete != (f_index != 3'd0)) incomplete_told : assert (bus_frame || f_strobe_q);
   end
 
@@ -170,7 +198,10 @@ end
 `ifdef INVARIANTS
 always @(posedge clk)
   if (f_begun) begin
-    assert (f_ramps <= 1 << DEPTH_LOG2);
+    assert (32'd0 + f_ramps + f_to_come <= 1 << DEPTH_LOG2);
+    assert (write_end == write_ramp + f_to_come || f_flush_q);
+    if (!f_writing && !f_written) assert (f_to_come == 0);
+    if (f_flush_q && !flush) assert (f_to_come == 0 && write_end == write_ramp && !f_writing && !f_written);
     assert (f_ramps == write_ramp - read_ramp);
     assert (index == f_index || f_strobe_q && index == (f_index == 0 ? 4 : f_index - 1) || f_index == 0);
     assert (f_index <= 3'd4);
@@ -184,8 +215,9 @@ always @(posedge clk)
       assert (f_words == 5 * f_checked + f_index);
       assert (32'd0 + f_checked + (f_index != 0) <= (1 << DEPTH_LOG2) - f_ramps);
     end
-    if (f_writing) assert (32'd0 + f_words + f_index + (f_written ? 5 : 0) <= 5 * ((1 << DEPTH_LOG2) - f_ramps)
-                           && (f_words + f_index) % 5 == 0 && f_words != 0);
+    if (f_writing && !flush) assert (32'd0 + f_words + f_index + (f_written ? 5 : 0) == 5 * f_to_come);
+    if (f_writing) assert ((f_words + f_index) % 5 == 0 && f_words != 0 && f_since_write == 3'd0);
+    if (f_written) assert (f_since_write <= 3'd1 && (flush || f_to_come != 0));
     if (f_written) assert (f_ramps < 1 << DEPTH_LOG2 && f_index == 0 && f_strobe_q);
     if (f_now) assert (f_now_ahead < f_ramps && now_ramp == read_ramp + f_now_ahead);
     if (write_low) assert (f_strobe_q && index == (f_index == 0 ? 4 : f_index - 1));
