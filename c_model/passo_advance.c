@@ -150,7 +150,7 @@ static bool rest_settled(const struct passo_channel *channel)
 
 	for (unsigned i = 0; i < channel->axes; i++)
 		at_rest = at_rest && channel->axis[i].quiet;
-	return channel->occupied_before == occupied && channel->at_rest == at_rest;
+	return channel->occupied_before == (occupied ? 7u : 0u) && channel->at_rest == at_rest;
 }
 
 /* Clocks for which everything in the channel is quiet, but for what a running profile moves. */

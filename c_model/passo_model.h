@@ -310,7 +310,7 @@ struct passo_channel {
 	struct passo_dda dda[PASSO_AXES_MAX];
 	struct passo_axis axis[PASSO_AXES_MAX];
 	struct passo_positions positions;
-	bool occupied_before;     /* in the clock before */
+	uint8_t occupied_before;  /* in the three clocks before */
 	bool at_rest;             /* no motion, and no step on its way to the axes */
 	bool writes_axis;         /* the bus strobe came a clock ago */
 	uint8_t written_register; /* within the blocks of the axes */

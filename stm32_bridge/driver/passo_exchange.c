@@ -7,14 +7,12 @@
 #define GAP_CLOCKS_PER_WORD 4u /* ... and this for each word that it executes */
 #define MICROSECONDS 1000000u
 #define SPINS_MAX 100000u /* a clock that stands still must not hang the host */
-#define STATUS_FIXED 0xC8000000u
-#define STATUS_MARK 0x80000000u
 
 bool passo_host_status_of(const uint32_t *miso, size_t count, uint32_t *status)
 {
 	for (size_t i = 0; i < count; i++) {
 		for (size_t k = i + 1; k < count; k++) {
-			if (miso[i] == miso[k] && (miso[i] & STATUS_FIXED) == STATUS_MARK) {
+			if (miso[i] == miso[k] && passo_frame_is_status(miso[i])) {
 				*status = miso[i];
 				return true;
 			}
