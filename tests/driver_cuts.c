@@ -668,8 +668,8 @@ static void judge_beliefs(void)
 	    "all is acknowledged");
 	judge((now.run | (uint32_t)now.wait_sync << 8) == (world.host.run & 0xFFFFu), "RUN");
 	judge(passo->halted || passo->broken || !now.stopped, "a stop is known");
-	judge(!passo->halted || now.stopped, "a stop was executed");
-	if (passo->broken && !passo->halted)
+	judge(!passo->halted || passo->broken || now.stopped, "a stop was executed");
+	if (passo->broken)
 		return; /* nothing is claimed */
 	judge(now.rate_target == passo_driver_rate(passo), "rate");
 	judge(passo_is_moving(passo) == is_busy(), "is moving");
@@ -707,6 +707,14 @@ static void judge_effect(enum passo_error error, bool is_motion_free)
 		/* a stream that could not be fed is stopped */
 		if (!passo->broken)
 			JUDGE(stopped);
+	}
+	/* what restrains comes late, what lets go on does not */
+	if (error != PASSO_OK && passo->opened) {
+		judge(
+		    now.rate_target
+		        == (before.rate_target < after.rate_target ? before.rate_target : after.rate_target),
+		    "the slower rate");
+		judge(now.wait_sync == (before.wait_sync | after.wait_sync), "sync");
 	}
 	if (is_motion_free)
 		JUDGE(pulses);
@@ -757,6 +765,7 @@ static enum passo_error play(enum passo_error (*call)(void), const struct cut *c
 	world.frames = 0;
 	world.dead = false;
 	enum passo_error error = call();
+	judge(!passo->opened || !is_busy() || passo_is_moving(passo), "what moves is known");
 	const unsigned frames = world.frames;
 	if (world.dead && cut->death.patience == POLLS)
 		look(DEAD_LOOKS);
@@ -811,6 +820,8 @@ static void play_all(const char *name, void (*prepare)(void), enum passo_error (
 				judge_beliefs();
 				if (error != wanted)
 					judge(passo_driver_is_wire(error), "an error of the wire");
+				if (call == stop || call == hard_stop || call == turn_stop)
+					judge(!is_busy(), "it stops");
 				judge_effect(error == wanted ? PASSO_OK : error,
 				    !is_busy() && !begin.passo.turning_is_on && !passo->halted
 				        && !after.stopped && !before.stopped);

@@ -222,7 +222,6 @@ enum passo_error passo_driver_take_over(struct passo *passo)
 	int32_t positions[PASSO_AXES_MAX];
 	enum passo_error error = PASSO_OK;
 
-	passo->broken = true; /* until it is done */
 	if (passo->snapshot.state == PASSO_STATE_IDLE && !passo_driver_at_rest(passo))
 		error = passo_driver_command(passo, UINT32_C(1) << PASSO_CHANNEL_COMMAND_ABORT_LSB);
 	if (error == PASSO_OK && !passo_driver_at_rest(passo))
@@ -278,7 +277,10 @@ enum passo_error passo_open_channel(
 	if (error != PASSO_OK)
 		return error;
 	passo->opened = true;
-	return passo->broken ? PASSO_ERROR_MOVING : PASSO_OK;
+	if (!passo->broken)
+		return PASSO_OK;
+	passo_driver_break(passo); /* a motion of the past */
+	return PASSO_ERROR_MOVING;
 }
 
 enum passo_error passo_open(struct passo *passo, struct passo_host *host,

@@ -105,6 +105,7 @@ enum passo_error passo_clear(struct passo *passo)
 	if (goes_on || !passo->snapshot.quiet)
 		return PASSO_ERROR_MOVING;
 	passo_driver_end_stream(passo);
+	passo->broken = true; /* until it is done */
 	/* what still waits must not start in the meantime */
 	if (!passo_driver_at_rest(passo))
 		error = passo_driver_gate(passo, PASSO_GATE_CLOSED);
