@@ -11,6 +11,7 @@ import pytest
 from driver_wire import (
     CLOCK_HZ,
     PARAMETERS,
+    Q32,
     Noise,
     Wire,
     by_speed,
@@ -379,6 +380,28 @@ def test_a_stop_that_was_not_acknowledged(wire: Wire, how: str, level: int, cut:
     assert driver.positions()[0] == at + 5
 
 
+@pytest.mark.parametrize("frames", [0, 1])
+def test_an_end_of_turning_that_was_not_acknowledged(wire: Wire, frames: int) -> None:
+    """A soft stop takes its place, at whatever frame the wire died."""
+    driver = open_driver(wire)
+    turning = struct("turning", axis=2, steps_per_turn=3200, backwards=True)
+    turning.top_rpm, turning.acceleration = 1200 * Q32, 5_000_000 * Q32
+    driver.call("turn_start", turning, 600 * Q32)
+    wire.run(CLOCK_HZ // 20)
+    number = wire.frames + frames
+
+    def before(frame: int) -> None:
+        wire.stuck = 0 if frame > number else None
+
+    wire.before_frame = before
+    assert error_of(driver, "turn_stop") == "STUCK_LOW" and driver.fault == "NOT_STOPPED"
+    wire.before_frame, wire.stuck = lambda _: None, None
+    finish(driver)
+    assert driver.state == State.STOPPED
+    driver.call("clear")
+    assert driver.positions() == wire.counted()[1]
+
+
 def test_a_clear_gets_the_stop_through_first(wire: Wire) -> None:
     """No poll is needed between a stop that failed and the clear."""
     driver = open_driver(wire)
@@ -400,14 +423,30 @@ def test_an_abort_takes_the_place_of_a_stop(wire: Wire) -> None:
     driver = open_driver(wire)
     eight_moves(driver, wire)
     wire.stuck = 0
-    for how in ("stop", "abort", "stop"):
-        assert error_of(driver, how) == "STUCK_LOW"
+    for how in ("hold", "stop", "abort", "stop"):
+        assert error_of(driver, how) in ("STUCK_LOW", "NOT_STOPPED")
+        poll(driver)
     wire.stuck = None
     wire.requests.clear()
-    poll(driver)
     finish(driver)
-    commands = [q[1] for q in wire.requests if q[0] >> 28 == r.Operation.WRITE]
-    assert commands == [1 << r.CHANNEL_COMMAND_ABORT_LSB] and driver.cause == Cause.ABORT
+    writes = [(q[0] & 0xF, q[1]) for q in wire.requests if q[0] >> 28 == r.Operation.WRITE]
+    abort = (r.CHANNEL_COMMAND, 1 << r.CHANNEL_COMMAND_ABORT_LSB)
+    assert writes == [abort, (r.CHANNEL_RATE_TARGET, 0)] and driver.cause == Cause.ABORT
+
+
+@pytest.mark.parametrize(("before", "how"), [("hold", "stop"), ("hold", "abort"), ("stop", "abort")])
+def test_the_most_urgent_goes_first(wire: Wire, before: str, how: str) -> None:
+    """Also before a frame that is still being tried."""
+    driver = open_driver(wire)
+    eight_moves(driver, wire)
+    wire.stuck = 0
+    assert error_of(driver, before) == "STUCK_LOW"
+    poll(driver)
+    wire.stuck = None
+    wire.requests.clear()
+    driver.call(how)
+    bit = r.CHANNEL_COMMAND_STOP_LSB if how == "stop" else r.CHANNEL_COMMAND_ABORT_LSB
+    assert wire.requests[0][0] & 0xF == r.CHANNEL_COMMAND and wire.requests[0][1] == 1 << bit
 
 
 def test_a_stop_goes_before_a_frame_of_the_stream(wire: Wire) -> None:

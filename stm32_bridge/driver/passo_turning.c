@@ -25,6 +25,14 @@ enum passo_error passo_turn_start(struct passo *passo, const struct passo_turnin
 	return PASSO_OK;
 }
 
+/* An end that did not get through. */
+static enum passo_error stop_instead(struct passo *passo, enum passo_error error)
+{
+	if (passo_driver_is_wire(error))
+		passo_driver_halt(passo, PASSO_DUE_STOP);
+	return error;
+}
+
 /* Another ramp for a motion that turns: to an rpm, or to rest. */
 static enum passo_error turn_on(struct passo *passo, bool stop, uint64_t rpm)
 {
@@ -43,7 +51,7 @@ static enum passo_error turn_on(struct passo *passo, bool stop, uint64_t rpm)
 		return PASSO_ERROR_NOT_TURNING;
 	error = passo_driver_look(passo, false);
 	if (error != PASSO_OK)
-		return error;
+		return stop ? stop_instead(passo, error) : error;
 	if (passo->snapshot.state == PASSO_STATE_STOPPED || passo->snapshot.stopping)
 		return PASSO_ERROR_STOPPED;
 
@@ -60,13 +68,11 @@ static enum passo_error turn_on(struct passo *passo, bool stop, uint64_t rpm)
 	if (passo->snapshot.ramp_room < plan.ramp_count)
 		return PASSO_ERROR_FULL;
 	error = passo_driver_push_ramps(passo, &plan);
-	if (stop && passo_driver_is_wire(error))
-		passo_driver_halt(passo, PASSO_DUE_STOP);
 	if (error == PASSO_ERROR_STOPPED && passo_driver_look(passo, false) == PASSO_OK
 	    && passo->snapshot.state != PASSO_STATE_STOPPED)
 		error = PASSO_ERROR_NOT_TURNING; /* its end was decided already */
 	if (error != PASSO_OK)
-		return error;
+		return stop ? stop_instead(passo, error) : error;
 	passo->velocity_peak = plan.velocity_peak;
 	passo->turning_ends = stop;
 	return PASSO_OK;
