@@ -378,6 +378,22 @@ def test_steps_that_leave_the_pins_are_waited_for(
     assert driver.positions()[0] == (0 if call == "zero" else -3)
 
 
+def test_a_stop_is_over_when_the_last_step_has_left_the_pins(driver: Driver, wire: Wire) -> None:
+    """Until then it is moving; its positions are final then."""
+    driver.call("configure_axis", 0, struct("axis_config", step_high_ns=1000, dir_setup_ns=900_000))
+    driver.call("move_by_speed", by_speed([-3, 0, 0, 0], 400_000, 4_000_000_000))
+    while driver.snapshot().state != State.IDLE:
+        pass
+    driver.call("stop")
+    while driver.state != State.STOPPED:
+        wire.run(1000)
+        poll(driver)
+    assert wire.counted()[0][0] < 3 and driver.is_moving
+    finish(driver)
+    assert wire.counted()[1] == [-3, 0, 0, 0] == driver.positions()
+    driver.call("clear")
+
+
 def test_a_drive_is_switched_off_at_rest(driver: Driver, wire: Wire) -> None:
     """Not while something moves or waits; after an abort it is at once."""
     driver.call("enable", 0, False)

@@ -471,6 +471,25 @@ def test_a_stop_goes_before_a_frame_of_the_stream(wire: Wire) -> None:
     assert driver.positions() == wire.counted()[1]
 
 
+def test_a_frame_of_a_cleared_stream_is_forgotten(wire: Wire) -> None:
+    """What became of it does not matter to the next stream."""
+    driver = open_driver(wire, tries=3)
+    driver.stream(Source(*path(300)))
+
+    def before(_: int) -> None:
+        wire.stuck = 0 if wire.requests[-1][0] >> 28 == r.Operation.PUSH else None
+
+    wire.before_frame = before
+    while driver.c.post != planner().PASSO_POST_ITEMS:
+        wire.run(CLOCK_HZ // 20_000)
+        poll(driver)
+    driver.call("clear")
+    wire.before_frame = lambda _: None
+    driver.stream(Source(*path(30)))
+    finish(driver)
+    assert wire.counted()[1] == [60, -30, 0, 0] == driver.positions()
+
+
 @pytest.mark.parametrize("cut", ["both ways", "replies"])
 def test_a_hold_that_was_not_acknowledged(wire: Wire, cut: str) -> None:
     """It comes later; a resume takes its place."""
