@@ -212,6 +212,25 @@ def test_turning_without_end(driver: Driver, wire: Wire) -> None:
     assert driver.positions() == [0, 0, 0, 0]
 
 
+def test_a_turn_that_has_ended_takes_no_speed(driver: Driver, wire: Wire) -> None:
+    """Its end came by the link: there is nothing that turns."""
+    turning = struct("turning", axis=2, steps_per_turn=TURN)
+    turning.top_rpm, turning.acceleration = 1200 * Q32, 5_000_000 * Q32
+    driver.call("turn_start", turning, 600 * Q32)
+    wire.run(CLOCK_HZ // 20)
+    last_now = 0b11
+    ramp = ffi().new("uint32_t[]", [last_now, 0, 100, (1 << 48) // 100 >> 32, (1 << 48) // 100 & 0xFFFFFFFF])
+    address = r.ADDRESS_CHANNEL_BASE + r.CHANNEL_RAMP
+    assert planner().passo_host_push(driver.host, address, ramp, 5) == 0
+    wire.run(CLOCK_HZ // 20)
+    for call, arguments in (("turn_speed", (900 * Q32,)), ("turn_stop", ())):
+        assert error_of(driver, call, *arguments) == "NOT_TURNING"
+    finish(driver)
+    assert driver.positions() == wire.counted()[1]
+    driver.call("move_by_speed", by_speed([5, 5, 5, 5]))
+    finish(driver)
+
+
 def test_one_motor(driver: Driver, wire: Wire) -> None:
     """The calls of the first lesson."""
     lib, motor = planner(), struct("motor")
