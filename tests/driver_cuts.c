@@ -41,16 +41,12 @@ struct death {
 
 static const struct death DEATHS[] = {
     {BOTH, false, ONE_FRAME},
-    {BOTH, true, CALL},
     {BOTH, false, POLLS},
     {BOTH, true, POLLS},
     {BOTH_INSIDE, true, CALL},
-    {BOTH_INSIDE, false, POLLS},
     {REPLY, false, ONE_FRAME},
-    {REPLY, true, CALL},
     {REPLY, false, POLLS},
     {REPLY, true, POLLS},
-    {REQUEST, true, ONE_FRAME},
     {REQUEST, false, CALL},
     {REQUEST, true, POLLS},
 };
