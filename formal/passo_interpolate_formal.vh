@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What the interpolation promises; included at the end of passo_interpolate.
 
-// --- Assumptions: it is used as the ramp does, first for the points of a table (or not), then for velocities
+// --- Assumptions: it is used as the ramp does, first for the points of a table (or not), then for velocities; a stop ends
+// that at any time, for 3 clocks at least
 localparam [1:0] F_REST = 2'd0;
 localparam [1:0] F_LOADED = 2'd1;  // the points are
 localparam [1:0] F_SHAPE = 2'd2;
@@ -20,6 +21,7 @@ reg [1:0] f_rested = 2'd0;
 reg [5:0] f_clock;  // of the phase, from 1
 reg       f_shaped;
 (* anyseq *) reg f_go;
+(* anyseq *) reg f_stop;
 wire f_scale_begins = f_phase == F_SCALE && f_clock == 6'd1;
 always @(posedge clk) begin
   f_begun   <= 1'b1;
@@ -45,13 +47,16 @@ always @(posedge clk) begin
     end
     F_SCALE: if (f_clock == F_SCALE_CLOCKS) f_phase <= F_REST;
   endcase
-  assume (moving == (f_phase == F_SHAPE || f_phase == F_SCALE));
-  assume (shaping == (f_phase == F_SHAPE));
-  assume (load_fraction == f_scale_begins);
-  if (f_phase != F_REST) assume (clear == f_scale_begins && result_move == moving);
-  if (load_points) assume (f_phase == F_REST && f_rested == 2'd3 && clear && result_move);
-  if (f_phase == F_LOADED || f_phase == F_SHAPE || (f_scale_begins && f_shaped)) assume ($stable(progress));
-  if (f_scale_begins) assume (linear == !f_shaped);
+  if (f_stop) f_phase <= F_REST;
+  interpolate_moving : assume (moving == (f_phase == F_SHAPE || f_phase == F_SCALE));
+  interpolate_shaping : assume (shaping == (f_phase == F_SHAPE));
+  interpolate_fraction : assume (load_fraction == f_scale_begins);
+  if (f_phase != F_REST) interpolate_clear : assume (clear == f_scale_begins && result_move == moving);
+  if (load_points)
+    interpolate_points : assume (f_phase == F_REST && f_rested == 2'd3 && clear && result_move);
+  if (f_phase == F_LOADED || f_phase == F_SHAPE || (f_scale_begins && f_shaped))
+    interpolate_progress : assume ($stable(progress));
+  if (f_scale_begins) interpolate_linear : assume (linear == !f_shaped);
 end
 
 // --- a (1 - f) + b f: the products of the bits of a and b, from the lowest, in exact numbers. After each bit all

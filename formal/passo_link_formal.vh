@@ -25,25 +25,25 @@ reg       f_upper = 1'b0;  // the upper half of a word has come
 reg [6:0] f_gap = F_GAP;  // clocks since the last half word or the start of the frame, up to 60
 always @(posedge clk) begin
   f_started <= 1'b1;
-  if (!f_started) assume (rst);
-  if (frame_start) assume (!f_selected && !half_valid);
-  if (frame_end) assume (f_selected);
-  if (half_valid) assume (f_selected || f_ended);
+  if (!f_started) link_reset : assume (rst);
+  if (frame_start) link_starts_apart : assume (!f_selected && !half_valid);
+  if (frame_end) link_ends_once : assume (f_selected);
+  if (half_valid) link_halves_in_a_frame : assume (f_selected || f_ended);
   f_ended <= frame_end;
   if (frame_start) {f_selected, f_framed} <= 2'b11;
   if (frame_end) f_selected <= 1'b0;
-  if (half_valid && f_framed) assume (half_low == f_upper);
-  if (half_valid) assume (f_gap >= (half_low ? F_GAP_LOW : F_GAP));
+  if (half_valid && f_framed) link_halves_in_turn : assume (half_low == f_upper);
+  if (half_valid) link_halves_apart : assume (f_gap >= (half_low ? F_GAP_LOW : F_GAP));
   if (half_valid) f_upper <= !half_low;
   if (frame_start) f_upper <= 1'b0;
   if (rst) {f_selected, f_framed} <= {f_select, 1'b0};
 `ifdef SMALL
   // a few numbers are enough to find a bug: operations 0 .. 3, sequence 0 .. 1, length 0 .. 2, address 0 .. 3
-  if (half_valid && !half_low) assume ((half & 16'hCFEF) == 16'd0);
-  if (half_valid && half_low) assume ((half & 16'hCFFC) == 16'd0 && half[13:12] != 2'd3);
-  assume (f_watch == 6'd0 && !(half_valid && in_ack) && rst == !f_started);
-  if (half_valid) assume (f_framed && f_selected && !frame_end);
-  if (rst) assume (!f_select);
+  if (half_valid && !half_low) small_link_upper : assume ((half & 16'hCFEF) == 16'd0);
+  if (half_valid && half_low) small_link_lower : assume ((half & 16'hCFFC) == 16'd0 && half[13:12] != 2'd3);
+  small_link_reset : assume (f_watch == 6'd0 && !(half_valid && in_ack) && rst == !f_started);
+  if (half_valid) small_link_halves : assume (f_framed && f_selected && !frame_end);
+  if (rst) small_link_select : assume (!f_select);
 `endif
   f_gap <= frame_start || half_valid ? 7'd0 : f_gap >= F_GAP ? F_GAP : f_gap + 7'd1;
 end
@@ -150,6 +150,7 @@ always @(posedge clk) begin
     if ($past(f_starts)) accepted_is_told : assert (bus_frame && bus_commit);
     else commits_only_accepted : assert (!bus_frame || !bus_commit);
     if (bus_check) checks_what_has_begun : assert (f_frame_told);
+    if (bus_check) checks_before_commit : assert (!bus_commit);
     strobes_one_at_a_time : assert (bus_check + bus_write + bus_frame <= 2'd1);
     if (bus_check || bus_write || bus_frame) strobes_apart : assert (f_since_strobe >= 3'd3);
     if (f_starts) frames_apart : assert (f_since_strobe == 3'd7);

@@ -6,29 +6,33 @@ localparam [1:0] F_REST = 2'd0;
 localparam [1:0] F_PREPARED = 2'd1;  // the first velocity is made, or waits
 localparam [1:0] F_RUNS = 2'd2;
 `ifdef SMALL
-reg       f_begun = 1'b1;
+reg       f_started = 1'b1;
 `else
-reg       f_begun = 1'b0;
+reg       f_started = 1'b0;
 `endif
+wire      f_begun = ~rst;
 reg [1:0] f_motion;
 reg       f_stop_q;
 reg       f_ready_q;
 reg       f_loaded_q;
 always @(posedge clk) begin
-  f_begun    <= 1'b1;
+  f_started  <= 1'b1;
   f_stop_q   <= rst | stop;
   f_ready_q  <= ready;
   f_loaded_q <= loaded;
   if (prepare) f_motion <= F_PREPARED;
   if (begin_profile) f_motion <= F_RUNS;
   if (ended || rst || stop) f_motion <= F_REST;
-  assume (rst == !f_begun);
-  if (rst || stop) assume (!prepare && !begin_profile && !drain && !advance);
-  if (prepare) assume (f_motion == F_REST && !f_stop_q && !drain);
-  if (begin_profile) assume (f_motion == F_PREPARED && f_ready_q);
-  if (drain) assume (f_motion == F_REST);
-  if (advance) assume (!stall && (f_motion == F_RUNS || drain));
-  assume (tick == (advance & tick_ends));
+  if (!f_started) ramp_reset : assume (rst);
+`ifdef SMALL
+  small_ramp_reset : assume (!rst);
+`endif
+  if (stop && !rst) ramp_stopped_stands : assume (!prepare && !begin_profile && !drain && !advance);
+  if (prepare && !rst) ramp_prepared_at_rest : assume (f_motion == F_REST && !f_stop_q && !drain);
+  if (begin_profile && !rst) ramp_begins_when_ready : assume (f_motion == F_PREPARED && f_ready_q);
+  if (drain && !rst) ramp_drains_at_rest : assume (f_motion == F_REST);
+  if (advance && !rst) ramp_counts_in_motion : assume (!stall && (f_motion == F_RUNS || drain));
+  ramp_ticks : assume (tick == (advance & tick_ends));
 end
 
 // --- Assumptions: the ramp queue, as it promises to be. Of all ramps only the oldest one can be seen.
@@ -59,7 +63,7 @@ always @(posedge clk) begin
   if (f_new_now) f_oldest_now <= (!f_there && !f_take_now) || (f_take && !f_more);
   else if (f_take) f_oldest_now <= f_now & f_more_now;
   else if (f_take_now) f_oldest_now <= 1'b0;
-  if (f_take && f_now) assume (f_more);
+  if (f_take && f_now) ramp_now_waits_behind : assume (f_more);
   if (f_take_now) f_there <= 1'b1;
   if (rst || stop) {f_there, f_now} <= 2'b00;
   if (rst) f_valid <= 1'b0;
@@ -72,11 +76,11 @@ always @(posedge clk) begin
     4'd5:    f_word <= ~f_ticks[15:0];
     default: f_word <= f_any_half;
   endcase
-  assume (ramp_valid == f_valid);
-  assume (ramp_now_pending == f_now);
+  ramp_queue_valid : assume (ramp_valid == f_valid);
+  ramp_queue_now : assume (ramp_now_pending == f_now);
   f_next <= f_word;
   f_half <= f_next;
-  assume (ramp_half == f_half);
+  ramp_queue_half : assume (ramp_half == f_half);
 end
 
 always @(posedge clk)
@@ -160,6 +164,8 @@ always @(posedge clk) begin
     if ($past(ready) && $past(f_ready_q)) taken_stands : assert ($stable(velocity_next) && $stable(ends_next));
     ready_in_time : assert (f_busy <= 7'd105);
   end
+  ticks_only_when_it_counts : assert (!f_begun || f_motion == F_REST || !(stall && tick_ends));
+  if (f_begun && f_motion == F_REST && !f_stop_q) no_next_tick_at_rest : assert (ends_next);
   if (f_begun && f_motion == F_REST && !drain) not_ended_at_rest : assert (!ended);
   if (f_begun && f_motion != F_REST && $past(f_motion != F_REST && ramp_now_coming && !prepare))
     now_is_waited_for : assert (!ends_next || $past(ends_next));
