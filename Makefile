@@ -70,7 +70,7 @@ synth: ## Make the bitstream of a board: BOARD=..., also AXES= and CLOCK= (MHz);
 	@$(BIN)/python -m passo.fpga.synth $(if $(BOARD),--board $(BOARD)) $(if $(AXES),--axes $(AXES)) \
 	    $(if $(CLOCK),--clock $(CLOCK))
 
-report: ## Measure size and speed on all FPGAs (an hour or more); ONLY=hx8k,up5k or QUICK=1 for a part.
+report: ## Measure size and speed on all FPGAs (some hours); ONLY=hx8k,up5k or QUICK=1 for a part.
 	@tools/setup.sh fpga
 	@$(BIN)/python -m passo.fpga.report $(if $(ONLY),--only $(ONLY)) $(if $(QUICK),--quick)
 
@@ -85,7 +85,7 @@ firmware: ## Build the firmware of the STM32F103C8; prints its flash, RAM and wo
 	@tools/setup.sh firmware
 	@$(MAKE) -C stm32_bridge/firmware
 
-firmware-demo: ## Type all examples at the console of the firmware, with the Verilated core at its pins.
+firmware-demo: ## Type examples at the console of the firmware, with the Verilated core at its pins (a minute).
 	@tools/setup.sh firmware
 	@$(BIN)/passo firmware
 

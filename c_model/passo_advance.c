@@ -65,7 +65,8 @@ static bool commands_settled(const struct passo_channel *channel, const struct p
 	const uint8_t in_axes = (uint8_t)((uint8_t)bus->address - PASSO_CHANNEL_AXIS_BASE);
 
 	return !registers->command_stop && !registers->command_abort && !registers->command_clear
-	    && !registers->command_zero && !channel->writes_axis && channel->written_register == in_axes;
+	    && !registers->command_zero && !registers->drain_velocity_written && !channel->writes_axis
+	    && channel->written_register == in_axes;
 }
 
 static bool slots_empty(const struct passo_channel *channel)
@@ -149,7 +150,7 @@ static bool rest_settled(const struct passo_channel *channel)
 
 	for (unsigned i = 0; i < channel->axes; i++)
 		at_rest = at_rest && channel->axis[i].quiet;
-	return channel->occupied_before == occupied && channel->at_rest == at_rest;
+	return channel->occupied_before == (occupied ? 7u : 0u) && channel->at_rest == at_rest;
 }
 
 /* Clocks for which everything in the channel is quiet, but for what a running profile moves. */

@@ -4,6 +4,7 @@
 #include "passo_model.h"
 
 static const uint32_t VELOCITY_MAX = 0x80000000u; /* UQ0.32 */
+static const uint32_t DRAIN_VELOCITY_LOW = 0xFFu;
 
 /* What a register answers: to a check, to a read. */
 struct answer {
@@ -188,6 +189,11 @@ void passo_channel_registers_clock(
 	const uint32_t data = bus->data;
 	const uint32_t command = command_of(data);
 
+	/* the path takes the upper bits a clock after the lower ones */
+	if (registers->drain_velocity_written)
+		registers->drain_velocity =
+		    (data & ~DRAIN_VELOCITY_LOW) | (registers->drain_velocity & DRAIN_VELOCITY_LOW);
+	registers->drain_velocity_written = false;
 	registers->command_stop = registers->command_abort = registers->command_clear =
 	    registers->command_zero = false;
 	if (!selected || !bus->write)
@@ -209,7 +215,9 @@ void passo_channel_registers_clock(
 		registers->stop_slew = data;
 		break;
 	case PASSO_CHANNEL_DRAIN_VELOCITY:
-		registers->drain_velocity = data;
+		registers->drain_velocity =
+		    (registers->drain_velocity & ~DRAIN_VELOCITY_LOW) | (data & DRAIN_VELOCITY_LOW);
+		registers->drain_velocity_written = true;
 		break;
 	default:
 		break;

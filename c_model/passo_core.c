@@ -137,17 +137,17 @@ static void clock_all(struct passo_core *core, const struct passo_inputs *inputs
 	core->inputs = *inputs;
 }
 
-/* A reset in the clock that has just been made: what it does not touch is the SCLK domain, the tables, and
+/* A reset in the clock that has just been made: what it does not touch is the SPI slave, the tables, and
  * settings and pins of the axes. */
 static void restart(struct passo_core *core, const struct passo_core *before)
 {
 	const struct passo_parameters parameters = core->parameters;
 	const struct passo_inputs inputs = core->inputs;
 	const struct passo_tables tables = core->tables;
-	struct passo_spi spi = core->spi;
+	const struct passo_spi spi = core->spi;
 
 	passo_core_reset(core, &parameters);
-	passo_spi_restart(&spi);
+
 	core->spi = spi;
 	core->inputs = inputs;
 	memcpy(core->tables.points, tables.points, sizeof core->tables.points);

@@ -44,8 +44,8 @@ struct passo_core {
 	struct passo_outputs outputs;
 };
 
-/* As it is when the FPGA has been configured and rst has been high. False if a parameter is out of range;
- * then the core must not be used. */
+/* As it is when the FPGA has been configured and rst has been high, chip select too. False if a parameter is
+ * out of range; then the core must not be used. */
 bool passo_core_reset(struct passo_core *core, const struct passo_parameters *parameters);
 
 /* One rising edge of the clock. */

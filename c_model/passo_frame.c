@@ -83,9 +83,15 @@ static bool is_stuck(const uint32_t *miso, size_t count)
 	return miso[0] == 0 || miso[0] == UINT32_C(0xFFFFFFFF);
 }
 
-/* The ack, or a refused read's verdict: always the last word. */
-static enum passo_reply read_ack(
-    const uint32_t *mosi, const uint32_t *miso, size_t count, enum passo_verdict *verdict)
+bool passo_frame_is_status(uint32_t word)
+{
+	return (word & UINT32_C(0xC8000000)) == UINT32_C(0x80000000);
+}
+
+/* The ack, or a refused read's verdict: always the last word. The last status word before it tells a reply
+ * that is shifted by a bit, in which the ack of one verdict looks like that of another. */
+static enum passo_reply read_ack(const uint32_t *mosi, const uint32_t *miso, size_t count,
+    uint32_t last_status, enum passo_verdict *verdict)
 {
 	uint32_t ack = miso[count - 1];
 
@@ -95,7 +101,7 @@ static enum passo_reply read_ack(
 		return ack == miso[0] ? PASSO_REPLY_NO_ACK : PASSO_REPLY_DAMAGED;
 	if (ack >> 24 != (mosi[0] >> 20 & 0xFFu))
 		return PASSO_REPLY_SEQUENCE;
-	if ((ack >> 16 & 0xFFu) > PASSO_VERDICT_BAD_VALUE)
+	if ((ack >> 16 & 0xFFu) > PASSO_VERDICT_BAD_VALUE || !passo_frame_is_status(last_status))
 		return PASSO_REPLY_DAMAGED;
 	*verdict = (enum passo_verdict)(ack >> 16 & 0xFFu);
 	return *verdict <= PASSO_VERDICT_DUPLICATE ? PASSO_REPLY_OK : PASSO_REPLY_REFUSED;
@@ -104,7 +110,7 @@ static enum passo_reply read_ack(
 enum passo_reply passo_frame_write_reply(
     const uint32_t *mosi, const uint32_t *miso, size_t count, enum passo_verdict *verdict)
 {
-	return read_ack(mosi, miso, count, verdict);
+	return read_ack(mosi, miso, count, miso[count - 2], verdict);
 }
 
 enum passo_reply passo_frame_read_reply(
@@ -118,7 +124,7 @@ enum passo_reply passo_frame_read_reply(
 		return PASSO_REPLY_OK;
 	}
 	/* An ack that says OK is no answer to a read. */
-	enum passo_reply reply = read_ack(mosi, miso, count, verdict);
+	enum passo_reply reply = read_ack(mosi, miso, count, miso[PASSO_FRAME_DATA - 1], verdict);
 	return reply == PASSO_REPLY_OK ? PASSO_REPLY_DAMAGED : reply;
 }
 

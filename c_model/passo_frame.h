@@ -52,6 +52,8 @@ size_t passo_frame_write(
 size_t passo_frame_push(
     uint32_t *frame, uint8_t sequence, uint16_t address, const uint32_t *payload, size_t length);
 size_t passo_frame_read(uint32_t *frame, uint8_t sequence, uint16_t address, size_t length);
+/* The bits of a status word that never change are right; shifted by a bit they are not. */
+bool passo_frame_is_status(uint32_t word);
 
 /* Both judge the reply to a request of `count` words. *verdict is set unless the reply is useless; a read's
  * data are the words from miso[PASSO_FRAME_DATA] on. */

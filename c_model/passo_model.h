@@ -48,8 +48,7 @@ struct passo_spi_wires {
 
 struct passo_spi_wires passo_spi_wires(const struct passo_spi *spi);
 void passo_spi_reset(struct passo_spi *spi);
-/* A reset in the clock that has just been made: what runs on SCLK goes on. */
-void passo_spi_restart(struct passo_spi *spi);
+
 /* SCLK edges since the last clock, then the edge of clk. */
 void passo_spi_clock(
     struct passo_spi *spi, bool sclk_was, bool sclk, bool mosi, bool cs_n, uint32_t reply_word);
@@ -292,6 +291,7 @@ struct passo_motion {
 struct passo_channel_registers {
 	uint32_t rate_target, rate_slew, stop_slew; /* UQ1.16 */
 	uint32_t drain_velocity;                    /* UQ0.32 */
+	bool drain_velocity_written;                /* its lower 8 bits, in the clock before */
 	bool command_stop, command_abort, command_clear, command_zero;
 };
 
@@ -310,7 +310,7 @@ struct passo_channel {
 	struct passo_dda dda[PASSO_AXES_MAX];
 	struct passo_axis axis[PASSO_AXES_MAX];
 	struct passo_positions positions;
-	bool occupied_before;     /* in the clock before */
+	uint8_t occupied_before;  /* in the three clocks before */
 	bool at_rest;             /* no motion, and no step on its way to the axes */
 	bool writes_axis;         /* the bus strobe came a clock ago */
 	uint8_t written_register; /* within the blocks of the axes */

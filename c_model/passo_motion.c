@@ -66,7 +66,8 @@ void passo_motion_clock(
 	motion->settling = (uint8_t)(state == PASSO_STATE_SETTLE ? (settling << 1 | 1u) & 7u : 0u);
 	motion->settled = state == PASSO_STATE_SETTLE && (settling & 4u) != 0u && !settled;
 	motion->rate_was_zero = channel->timescale.rate == 0u;
-	motion->aborted = (uint8_t)((motion->aborted << 1 | (registers->command_abort ? 1u : 0u)) & 3u);
+	motion->aborted =
+	    (uint8_t)(((uint32_t)motion->aborted << 1 | (registers->command_abort ? 1u : 0u)) & 3u);
 	if (wires->prepare)
 		motion->state = PASSO_STATE_PREPARE;
 	if (state == PASSO_STATE_PREPARE && channel->ramp.ready)

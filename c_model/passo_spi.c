@@ -6,13 +6,6 @@
 void passo_spi_reset(struct passo_spi *spi)
 {
 	*spi = (struct passo_spi){.first_word = true, .miso = true};
-	passo_spi_restart(spi);
-}
-
-void passo_spi_restart(struct passo_spi *spi)
-{
-	/* a frame begins when chip select falls after the reset */
-	spi->select_sync = 7;
 }
 
 struct passo_spi_wires passo_spi_wires(const struct passo_spi *spi)

@@ -204,6 +204,17 @@ class Core:
         self.started = self.clock
         self._thread.wait(set_pin())
 
+    def reset(self, clocks: int) -> None:
+        """Reset the core, for so many clocks."""
+
+        async def pulse() -> None:
+            self.dut.rst.value = 1
+            await _wait(clocks * PERIOD)
+            self.dut.rst.value = 0
+
+        self._thread.wait(pulse())
+        self.compare()
+
     def is_running(self, channel: int = 0) -> bool:
         """Level of the pin `running`."""
         return bool(read(self.dut.running) >> channel & 1)

@@ -7,8 +7,9 @@ from passo.host import RATE_ONE
 from passo.link import RefusedError
 from passo.registers import Cause, State, Verdict
 
+from cocotb_tests.bench import read, rng
 from cocotb_tests.core_bench import ONE, V_MAX, Core, CoreChannel, Line, PinTiming, Ramp, Shape, core_test
-from cocotb_tests.core_expected import due
+from cocotb_tests.core_expected import distance, due, totals
 from cocotb_tests.core_moves import SLOW, check_stopped, clear_and_move
 
 
@@ -211,3 +212,79 @@ def commands_in_one_write(core: Core) -> None:
     assert channel.state().state == State.IDLE
     assert channel.positions() == [0] * core.axes
     clear_and_move(core, channel)
+
+
+def slow_motion(core: Core, sign: int) -> tuple[Line, list[Ramp]]:
+    """One line, whose first axis makes a step every 128 clocks, the others fewer."""
+    ramps = [Ramp(SLOW, 0), Ramp(SLOW, 8), Ramp(0, 0, last=True)]
+    total = distance(ramps, core.tick)
+    steps = total // 4
+    return Line(total, (sign * steps, -sign * (steps // 2), 1)[: core.axes], last=True), ramps
+
+
+@core_test
+def a_reset_at_any_time(core: Core) -> None:
+    """It makes no step: a pulse that has begun is finished. Settings of the pins stay, all else is reset."""
+    random = rng("a_reset_at_any_time")
+    channel = core.channel()
+    timing = PinTiming(9, 5, 30, 7, step_inverted=True)
+    channel.pins(timing)
+    for _ in range(12):
+        channel.lines(
+            Line(100, (100, -30, 5)[: core.axes]), Line(100, (-100, 30, 5)[: core.axes], endless=True)
+        )
+        channel.ramps(Ramp(ONE // 40, random.randint(0, 3), Shape.COSINE), Ramp(ONE // 60, 1000))
+        channel.start()
+        core.run_until(core.is_running, 2000)
+        core.run(random.randrange(6000))
+        before = core.clock
+        pulse = not read(core.dut.step) & 1
+        core.reset(random.choice((1, 2, 30)))
+        core.run(300)
+        assert len(core.changes("step", 0, before)) == pulse
+        assert not core.is_running() and not read(core.dut.enable) and not read(core.dut.irq)
+        assert channel.state().state == State.IDLE and channel.state().quiet
+        assert channel.positions() == [0] * core.axes
+        assert channel.room() == (1 << core.parameters.line_queue_log2, 1 << core.parameters.ramp_queue_log2)
+        checker = core.watch(timing)
+        line, ramps = slow_motion(core, random.choice((1, -1)))
+        channel.lines(line)
+        channel.ramps(*ramps)
+        channel.start()
+        core.wait_end()
+        core.run(400)
+        assert checker.positions[: core.axes] == channel.positions() == list(line.steps)
+        channel.rest()
+        core.finish_watch()
+
+
+@core_test
+def what_needs_rest_meets_it(core: Core) -> None:
+    """ZERO at any clock around the ends of motions behind one another: refused, or done between them."""
+    channel = core.channel()
+    timing = PinTiming(2, 2, 200, 2)
+    channel.pins(timing)
+    there, ramps = slow_motion(core, 1)
+    back, _ = slow_motion(core, -1)
+    zero = channel.base + r.CHANNEL_COMMAND, 1 << r.CHANNEL_COMMAND_ZERO_LSB
+    verdicts = set()
+    for delay in range(0, 1700, 53):
+        core.link.write(*zero)
+        checker = core.watch(timing)
+        channel.rest()
+        channel.lines(there, back, there)
+        channel.ramps(*ramps, *ramps, *ramps)
+        channel.start()
+        core.run_until(core.is_running, 2000)
+        core.run(delay)
+        try:
+            core.link.write(*zero)
+            verdicts.add(Verdict.OK)
+        except RefusedError as refused:
+            verdicts.add(refused.verdict)
+        core.run_until(lambda: channel.state().quiet and len(core.motions(0, core.started)) == 3, 20_000)
+        rests = [totals([there, back, there][zeroed:]) for zeroed in range(3)]
+        assert checker.positions[: core.axes] == rests[0]
+        assert channel.positions() in [*rests, [0] * core.axes]
+        core.finish_watch()
+    assert Verdict.BUSY in verdicts

@@ -174,12 +174,12 @@ async def what_is_written_stands(dut: HierarchyObject) -> None:
         await bench.strobe("bus_write", address, data)
         if address in settings:
             settings[address] = data
-        assert {n: read(getattr(dut, name)) for n, name in SETTINGS.items()} == settings
         for clock in range(2):
             now = [read(getattr(dut, name)) for name in COMMANDS]
             wanted = command_of(data) if address == COMMAND and clock == 0 else 0
             assert now == [wanted >> bit & 1 for bit in range(4)]
             await bench.clocks.wait(1)
+        assert {n: read(getattr(dut, name)) for n, name in SETTINGS.items()} == settings
 
 
 @cocotb.test()

@@ -357,6 +357,96 @@ async def a_payload_that_is_not_whole_is_a_bad_length(dut: HierarchyObject) -> N
 
 
 @cocotb.test()
+async def a_state_that_does_not_allow_the_frame_is_busy(dut: HierarchyObject) -> None:
+    """Judged once for the whole frame, at its verdict; objections, a wrong CRC and a bad length go before."""
+    bench = await Bench.begin(dut)
+    for at_check in (0, 1):
+        for at_verdict in (0, 1):
+
+            async def change(level: int = at_verdict) -> None:
+                await RisingEdge(dut.bus_commit)
+                dut.bus_busy.value = level
+
+            dut.bus_busy.value = at_check
+            cocotb.start_soon(change())
+            verdict = await bench.request(WRITE, 0x20, [1, 2, 3])
+            assert verdict == (Verdict.BUSY if at_verdict else Verdict.OK)
+    dut.bus_busy.value = 1
+    bench.target.refusals = {0x21: Verdict.BAD_VALUE}
+    assert await bench.request(WRITE, 0x20, [1, 2, 3]) == Verdict.BAD_VALUE
+    bench.target.refusals = {}
+    dut.bus_incomplete.value = 1
+    assert await bench.request(PUSH, 0x20, [1, 2, 3]) == Verdict.BAD_LENGTH
+    dut.bus_incomplete.value = 0
+    words = frame(WRITE, bench.next_sequence(), 0x20, [1, 2, 3])
+    assert await bench.send([*words[:-3], words[-3] ^ 1, *words[-2:]]) == Verdict.BAD_CRC
+
+
+@cocotb.test()
+async def a_commit_covers_the_verdict_and_the_replay(dut: HierarchyObject) -> None:
+    """From 30 clocks before the verdict until a clock after the last word; not while words are checked."""
+    bench = await Bench.begin(dut)
+    commit, verdicts = Recorder(bench.clocks, dut.bus_commit), Recorder(bench.clocks, dut.u_link.in_ack)
+    strobes = {name: Recorder(bench.clocks, getattr(dut, f"bus_{name}")) for name in ("check", "write")}
+    for length in (1, 2, PAYLOAD_MAX):
+        await bench.spi.transfer(frame(PUSH, bench.next_sequence(), 0x20, list(range(length))))
+        await bench.clocks.wait(300)
+        (rise, _), (fall, _) = commit.changes
+        assert rise <= verdicts.changes[0][0] - 30
+        checks, writes = ([n for n, level in strobes[name].changes if level] for name in ("check", "write"))
+        assert len(checks) == len(writes) == length
+        assert checks[-1] < rise and writes[-1] + 1 < fall <= writes[-1] + 3
+        for recorder in (commit, verdicts, *strobes.values()):
+            recorder.changes.clear()
+
+
+@cocotb.test()
+async def chip_select_may_be_high_for_two_clocks(dut: HierarchyObject) -> None:
+    """At all phases: the frame before is complete, the next one begins."""
+    random = rng("link, chip select")
+    bench = await Bench.begin(dut, SCLK_18, lead=3 * MHZ_72 + 100, trail=MHZ_72 + 100, gap=1)
+    for _ in range(60):
+        bench.spi.gap = random.randrange(1, MHZ_72)
+        payload = [random.getrandbits(32)]
+        assert await bench.request(WRITE, 0x30, payload) == Verdict.OK
+        bench.spi.gap = 1  # and SCLK is high for two clocks
+
+
+@cocotb.test()
+async def a_reset_in_a_frame_ends_it(dut: HierarchyObject) -> None:
+    """Wherever it comes, for however long: the rest of the frame is ignored, the next frame is fine."""
+    random = rng("link, reset")
+    bench = await Bench.begin(dut)
+    halves = Recorder(bench.clocks, dut.u_spi.half_valid)
+    for length in (1, 2, 50):
+        for _ in range(25):
+            words = frame(WRITE, bench.next_sequence(), 0x40, [5, 6])
+            bits = 32 * len(words)
+            cut = random.randrange(bits)
+            sending = cocotb.start_soon(bench.spi.transfer_bits(words, random.choice((cut, cut + 1, bits))))
+            # after the frame was seen to begin, and before it is complete
+            await Timer(random.randrange(4 * MHZ_72, 32 * 5 * bench.spi.period), "step")
+            await bench.clocks.fall
+            over = sending.done()
+            dut.rst.value = 1
+            await bench.clocks.wait(length)
+            writes = len(bench.target.writes)
+            halves.changes.clear()
+            dut.rst.value = 0
+            if over:
+                await bench.clocks.wait(20)
+                assert not halves.changes
+            else:
+                await sending
+            await bench.clocks.wait(300)
+            assert len(bench.target.writes) == writes
+            assert await bench.request(WRITE, 0x50, [random.getrandbits(32)]) in (
+                Verdict.OK,
+                Verdict.DUPLICATE,
+            )
+
+
+@cocotb.test()
 async def holes_read_as_zero_behind_the_first_address(dut: HierarchyObject) -> None:
     """Only the first address of a read has to be there."""
     bench = await Bench.begin(dut)

@@ -310,12 +310,12 @@ module passo_channel #(
     .running      (running)
   );
 
-  reg occupied_q;
+  reg [2:0] occupied_q;  // a line that is loaded in the clock of a stop turns DIR up to 4 clocks later
 
   always @(posedge clk) begin
     step_overrun <= ~rst & slot_step & ((reached & full) != {AXES{1'b0}});
-    occupied_q   <= occupied;
-    at_rest      <= ~rst & ~occupied & ~occupied_q & (axis_quiet == {AXES{1'b1}});
+    occupied_q   <= {occupied_q[1:0], occupied};
+    at_rest      <= ~rst & ~occupied & (occupied_q == 3'b000) & (axis_quiet == {AXES{1'b1}});
   end
 
   passo_admission u_admission (

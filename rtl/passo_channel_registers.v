@@ -146,6 +146,7 @@ module passo_channel_registers #(
       | (reads[3] ? velocity : 32'd0);
 
   // Writing
+  reg  drain_velocity_written;
   wire write = in_settings && bus_write;
 
   always @(posedge clk) begin
@@ -153,12 +154,16 @@ module passo_channel_registers #(
     if (write && number == CHANNEL_RATE_TARGET[2:0]) rate_target <= bus_data[16:0];
     if (write && number == CHANNEL_RATE_SLEW[2:0]) rate_slew <= bus_data[16:0];
     if (write && number == CHANNEL_STOP_SLEW[2:0]) stop_slew <= bus_data[16:0];
-    if (write && is_drain_velocity) drain_velocity <= bus_data;
+    // the path takes the upper bits a clock after the lower ones
+    drain_velocity_written <= write && is_drain_velocity;
+    if (write && is_drain_velocity) drain_velocity[7:0] <= bus_data[7:0];
+    if (drain_velocity_written) drain_velocity[31:8] <= bus_data[31:8];
     if (rst) begin
       rate_target                                                <= CHANNEL_RATE_TARGET_RESET;
       rate_slew                                                  <= CHANNEL_RATE_SLEW_RESET;
       stop_slew                                                  <= CHANNEL_STOP_SLEW_RESET;
       drain_velocity                                             <= CHANNEL_DRAIN_VELOCITY_RESET;
+      drain_velocity_written                                     <= 1'b0;
       {command_zero, command_clear, command_abort, command_stop} <= 4'd0;
     end
   end

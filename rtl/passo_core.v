@@ -152,7 +152,6 @@ module passo_core #(
 
   passo_spi u_spi (
     .clk        (clk),
-    .rst        (rst),
     .spi_sclk   (spi_sclk),
     .spi_mosi   (spi_mosi),
     .spi_cs_n   (spi_cs_n),

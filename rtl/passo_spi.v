@@ -23,7 +23,6 @@
 
 module passo_spi (
   input  wire        clk,
-  input  wire        rst,
   // pins
   input  wire        spi_sclk,
   input  wire        spi_mosi,
@@ -88,18 +87,18 @@ module passo_spi (
       half        <= first_word ? {shift[13:0], mosi_late, mosi} : {shift[14:0], mosi};
     end
 
-  // clk domain
+  // clk domain. Both follow through a reset: what does not change after it does not look like a change, so a frame
+  // begins only when chip select falls.
   (* async_reg = "true" *)
   reg [2:0] select_sync;
+  initial select_sync = 3'b111;
   (* async_reg = "true" *)
-  reg [2:0] toggle_sync;  // follows through a reset, so none looks like a half
+  reg [2:0] toggle_sync;
   initial toggle_sync = 3'b000;
 
   always @(posedge clk) begin
     select_sync <= {select_sync[1:0], ~spi_cs_n};
     toggle_sync <= {toggle_sync[1:0], half_toggle};
-    // a frame begins when chip select falls after the reset
-    if (rst) select_sync <= 3'b111;
   end
 
   /* verilator lint_on SYNCASYNCNET */

@@ -2,16 +2,20 @@
 // What all boards share: reset, heartbeat and the core.
 //
 // Promise: the core is in reset from configuration until 16 clocks after `locked` rose, and again whenever the PLL
-// loses lock. `heartbeat` changes every half second to second as long as clk runs and the core is out of reset.
+// loses lock. From configuration on until the host has spoken STEP and DIR are low and EN is high, which is off at
+// the usual drives. `heartbeat` changes every half second to second as long as clk runs and the core is out of reset.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
 
 module passo_board #(
-  parameter AXES           = 4,
-  parameter CHANNELS       = 1,
-  parameter CLOCK_HZ       = 100_000_000,
-  parameter STEPS_REGISTER = 0             // of the core
+  parameter                     AXES           = 4,
+  parameter                     CHANNELS       = 1,
+  parameter                     CLOCK_HZ       = 100_000_000,
+  parameter                     STEPS_REGISTER = 0,                        // of the core, as are these
+  parameter [CHANNELS*AXES-1:0] STEP_RESET     = {CHANNELS * AXES{1'b0}},
+  parameter [CHANNELS*AXES-1:0] DIR_RESET      = {CHANNELS * AXES{1'b0}},
+  parameter [CHANNELS*AXES-1:0] ENABLE_RESET   = {CHANNELS * AXES{1'b1}}
 ) (
   input  wire                     clk,
   input  wire                     locked,           // of the PLL, asynchronous
@@ -59,7 +63,10 @@ module passo_board #(
   passo_core #(
     .CHANNELS      (CHANNELS),
     .AXES          (AXES),
-    .STEPS_REGISTER(STEPS_REGISTER)
+    .STEPS_REGISTER(STEPS_REGISTER),
+    .STEP_RESET    (STEP_RESET),
+    .DIR_RESET     (DIR_RESET),
+    .ENABLE_RESET  (ENABLE_RESET)
   ) u_core (
     .clk            (clk),
     .rst            (rst),

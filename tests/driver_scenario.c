@@ -187,6 +187,20 @@ static bool tables(struct passo *passo)
 	return true;
 }
 
+static bool open_and_configure(
+    struct passo *passo, struct passo_host *host, const struct passo_hardware *hardware)
+{
+	const struct passo_options options = {.clock_hz = CLOCK_HZ, .axes = 4};
+	const struct passo_axis_config pins = {.step_high_ns = 100};
+
+	CHECK(passo_open(passo, host, hardware, &options) == PASSO_OK);
+	for (uint8_t axis = 0; axis < 4; axis++) {
+		CHECK(passo_configure_axis(passo, axis, &pins) == PASSO_OK);
+		CHECK(passo_enable(passo, axis, true) == PASSO_OK);
+	}
+	return true;
+}
+
 static bool scenario(struct wire *wire)
 {
 	static struct passo_host host;
@@ -197,9 +211,8 @@ static bool scenario(struct wire *wire)
 	    .context = wire,
 	    .tries = 40,
 	    .paced = true};
-	const struct passo_options options = {.clock_hz = CLOCK_HZ, .axes = 4};
 
-	CHECK(passo_open(&passo, &host, &hardware, &options) == PASSO_OK);
+	CHECK(open_and_configure(&passo, &host, &hardware));
 	for (unsigned round = 0; round < 2; round++) {
 		CHECK(
 		    random_moves(&passo, wire) && stream(&passo) && turn_and_stop(&passo) && tables(&passo));
@@ -212,7 +225,22 @@ static bool scenario(struct wire *wire)
 	passo_engine_destroy(wire->engine);
 	wire->engine = passo_engine_create(&config);
 	CHECK(passo_resume(&passo) == PASSO_ERROR_CORE_RESET);
-	CHECK(passo_open(&passo, &host, &hardware, &options) == PASSO_OK);
+	CHECK(open_and_configure(&passo, &host, &hardware));
+	CHECK(random_moves(&passo, wire));
+
+	struct passo_move_jerk move = {.steps = {9000},
+	    .speed = 80000 * PASSO_UNIT_Q32,
+	    .acceleration = 20000000 * PASSO_UNIT_Q32,
+	    .jerk = 4000000000 * PASSO_UNIT_Q32};
+	CHECK(passo_move_jerk(&passo, &move) == PASSO_OK);
+	wire->dead = true;
+	CHECK(passo_abort(&passo) == PASSO_ERROR_STUCK_HIGH);
+	CHECK(passo_move_jerk(&passo, &move) == PASSO_ERROR_NOT_STOPPED);
+	wire->dead = false;
+	CHECK(passo_wait(&passo, 1000000) == PASSO_OK);
+	CHECK(passo_clear(&passo) == PASSO_OK);
+	for (uint8_t axis = 0; axis < 4; axis++)
+		CHECK(passo_enable(&passo, axis, false) == PASSO_OK);
 	return random_moves(&passo, wire);
 }
 

@@ -35,6 +35,7 @@ class Wire:
         self.pulses = np.zeros(8, np.int64)
         self.net = np.zeros(8, np.int64)
         self._step = np.uint64(0)
+        self.enable = 0  # levels of the EN pins
 
     @property
     def clock(self) -> int:
@@ -83,6 +84,7 @@ class Wire:
             self.pulses[axis] += at.sum()
             self.net[axis] += at.sum() - 2 * down
         self._step = step[-1]
+        self.enable = int(events["enable"][-1])
 
     def counted(self) -> tuple[list[int], list[int]]:
         """Pulses of each axis so far, and the sum of their directions."""

@@ -648,6 +648,35 @@ def test_a_broken_wire_is_told_once(bench: Bench, monkeypatch: pytest.MonkeyPatc
     assert bench.tell("position")["position"] == "0,0,0,0"
 
 
+@pytest.mark.parametrize("how", ["stop", "abort", "hold"])
+def test_a_stop_that_gets_lost(bench: Bench, monkeypatch: pytest.MonkeyPatch, how: str) -> None:
+    """It is sent again until it is acknowledged; what is wrong meanwhile is said, once."""
+    fault = "NOT_HELD" if how == "hold" else "NOT_STOPPED"
+    for _ in range(4):
+        assert bench.ask(IN_TIME) == "ok"
+    bench.ask("run 0.02")
+    with monkeypatch.context() as patch:
+        patch.setattr(bench.engine, "transfer", lambda mosi, gap: [0] * len(mosi))
+        assert bench.ask(how).startswith("error: STUCK_LOW: ")
+        bench.terminal.line("run 0.01")
+        notes = bench.take().splitlines()
+        assert notes[0].startswith(f"note: {fault}: ") and notes[1:] == ["ok"]
+        assert bench.ask(IN_TIME).startswith(f"error: {fault}: ")
+        assert bench.ask("open").startswith("error: MOVING: ")
+    bench.terminal.line("run 0.4")
+    assert bench.take() == "note: the core answers\nok\n"
+    status = bench.tell("status")
+    assert status["fault"] == "OK" and status["rate"] == ("0.000" if how == "hold" else "100.000")
+    assert status["state"] == ("RUN" if how == "hold" else "STOPPED")
+    assert 0 < int(bench.tell("position")["position"].split(",")[0]) < 400
+    if how == "hold":
+        assert bench.ask("resume") == "ok"
+        assert bench.ask("wait") == "ok"
+        assert bench.tell("position")["position"] == "800,-480,0,0"
+    else:
+        assert bench.ask("clear") == "ok"
+
+
 def test_open_again(bench: Bench) -> None:
     """Positions and settings survive; in motion it is refused."""
     bench.ask("config axis=1 step_high=3us")

@@ -331,9 +331,74 @@ def test_pin_times(driver: Driver, wire: Wire) -> None:
     driver.call("configure_axis", 3, config)
     words = wire.requests[-1]
     assert words[0] & 0xFFF == 0x100 + 0x80 + 3 * 8
-    assert words[1:4] == [0b10101, 1 << 16 | 2, 1 << 16 | 65535]
-    driver.call("enable", 3, False)
-    assert wire.requests[-1][1] == 0b10100
+    assert words[1:4] == [0b10100, 1 << 16 | 2, 1 << 16 | 65535]
+    assert wire.engine.drain()["enable"][-1] == 0b1111
+
+
+def test_an_axis_that_is_not_configured_makes_no_steps(wire: Wire) -> None:
+    """Pin times and polarities cannot be read back, not even after a reset of the core."""
+    driver = Driver(wire)
+    assert error_of(driver, "move_by_speed", by_speed([5, 5, 0, 0])) == "NOT_CONFIGURED"
+    driver.call("configure_axis", 0, struct("axis_config"))
+    assert error_of(driver, "move_by_speed", by_speed([5, 5, 0, 0])) == "NOT_CONFIGURED"
+    driver.call("move_by_speed", by_speed([5, 0, 0, 0]))
+    finish(driver)
+    driver.stream(Source(*path(30)))
+    with pytest.raises(DriverError, match="NOT_CONFIGURED"):
+        finish(driver)
+    finish(driver)
+    driver.call("clear")
+    assert wire.counted()[0] == [5, 0, 0, 0]
+
+
+def enabled(wire: Wire) -> int:
+    """Level of the EN pins."""
+    wire.collect()
+    return wire.enable
+
+
+@pytest.mark.parametrize(
+    ("call", "arguments"),
+    [("enable", (0, False)), ("zero", ()), ("configure_axis", (1, struct("axis_config"))), ("clear", ())],
+)
+def test_steps_that_leave_the_pins_are_waited_for(
+    driver: Driver, wire: Wire, call: str, arguments: tuple
+) -> None:
+    """A channel is IDLE before its last steps have been made."""
+    slow = struct("axis_config", step_high_ns=1000, step_low_ns=1000, dir_setup_ns=900_000)
+    for axis in range(4):
+        driver.call("configure_axis", axis, slow)
+    driver.call("move_by_speed", by_speed([-3, 0, 0, 0], 400_000, 4_000_000_000))
+    while driver.snapshot().state != State.IDLE:
+        pass
+    assert not driver.snapshot().quiet and wire.counted()[0][0] < 3
+    driver.call(call, *arguments)
+    assert wire.counted() == ([3, 0, 0, 0], [-3, 0, 0, 0]) and driver.snapshot().quiet
+    finish(driver)
+    assert driver.positions()[0] == (0 if call == "zero" else -3)
+
+
+def test_a_drive_is_switched_off_at_rest(driver: Driver, wire: Wire) -> None:
+    """Not while something moves or waits; after an abort it is at once."""
+    driver.call("enable", 0, False)
+    assert enabled(wire) == 0b1110
+    driver.call("enable", 0, True)
+    assert enabled(wire) == 0b1111
+
+    driver.call("wait_for_sync", True)
+    driver.call("move_by_speed", LONG)
+    assert error_of(driver, "enable", 2, False) == "MOVING"
+    driver.call("wait_for_sync", False)
+    driver.call("move_by_speed", LONG)
+    wire.run(CLOCK_HZ // 50)
+    assert error_of(driver, "enable", 0, False) == "MOVING"
+    driver.call("enable", 3, True)
+    driver.call("abort")
+    driver.call("enable", 0, False)
+    assert enabled(wire) == 0b1110
+    at = wire.counted()
+    wire.run(CLOCK_HZ // 50)
+    assert wire.counted() == at and driver.positions() == at[1]
 
 
 def test_slews(driver: Driver, wire: Wire) -> None:
@@ -384,6 +449,8 @@ def test_channels() -> None:
     lib, second = planner(), ffi().new("struct passo *")
     options = struct("options", clock_hz=CLOCK_HZ, channel=1)
     assert lib.passo_open_channel(second, first.host, options) == 0
+    for axis in range(2):
+        assert lib.passo_configure_axis(second, axis, struct("axis_config", step_high_ns=1000)) == 0
     options.channel = 2
     assert lib.passo_open_channel(ffi().new("struct passo *"), first.host, options) == (
         lib.PASSO_ERROR_PARAMETERS
@@ -474,7 +541,7 @@ def test_a_source_that_is_late(driver: Driver) -> None:
     assert driver.positions()[0] == 0
 
 
-@pytest.mark.parametrize("bad", ["substeps", "length", "steps", "axis", "velocity"])
+@pytest.mark.parametrize("bad", ["substeps", "length", "steps", "axis", "velocity", "now"])
 def test_a_source_that_is_wrong(driver: Driver, wire: Wire, bad: str) -> None:
     """Nothing of a frame with an impossible item is sent; the motion is stopped softly."""
     driver.call("configure_motion", 200, 200, 0)
@@ -487,6 +554,8 @@ def test_a_source_that_is_wrong(driver: Driver, wire: Wire, bad: str) -> None:
         lines[1500].steps[3] = 21
     elif bad == "axis":
         lines[1500].directions = 16
+    elif bad == "now":
+        ramps[3].now = True
     else:
         ramps[3].velocity_end = (1 << 47) + 1
     driver.stream(Source(lines, ramps))

@@ -19,9 +19,13 @@ from driver_wire import (
     finish,
     open_driver,
     poll,
+    struct,
 )
+from passo import registers as r
+from passo.build import Parameters
 from passo.driver import Driver, DriverError, Source
-from passo.registers import State
+from passo.native import ffi, planner
+from passo.registers import Cause, State
 from test_driver import path
 
 SEED = 1
@@ -276,34 +280,263 @@ def test_a_wrong_position_is_told(wire: Wire) -> None:
 
 
 def test_tries_are_bounded(wire: Wire) -> None:
-    """A frame is sent so often and no more; polls tell after as many misses."""
+    """A frame is sent so often and no more; polls tell after as many misses, and after as many tries."""
     driver = open_driver(wire, tries=5)
     wire.stuck = 0
-    before = wire.frames
-    assert error_of(driver, "hold") == "STUCK_LOW"
-    assert wire.frames == before + 5
-    for _ in range(4):
+
+    def polls_until_told(name: str) -> None:
+        for _ in range(4):
+            wire.run(CLOCK_HZ // 900)
+            poll(driver)
         wire.run(CLOCK_HZ // 900)
-        poll(driver)
-    wire.run(CLOCK_HZ // 900)
-    with pytest.raises(DriverError, match="STUCK_LOW"):
-        poll(driver)
+        with pytest.raises(DriverError, match=name):
+            poll(driver)
+
+    before = wire.frames
+    assert error_of(driver, "resume") == "STUCK_LOW"
+    assert wire.frames == before + 5
+    for _ in range(2):
+        polls_until_told("NOT_HELD")
+    assert wire.frames == before + 15
+    wire.stuck = None
+    poll(driver)
+    wire.stuck = 0
+    polls_until_told("STUCK_LOW")
+    assert wire.frames == before + 21
+    assert driver.counters.failed == 3 and driver.counters.stuck == 20
     wire.stuck = None
     driver.call("hold")
     driver.call("resume")
-    assert driver.counters.failed == 1 and driver.counters.stuck == 10
     assert PARAMETERS.axes == driver.c.machine.axes
 
 
-def test_a_frame_given_up_is_not_made_later(wire: Wire) -> None:
-    """The wire comes back after a failed command: only what is commanded from then on happens."""
-    driver = open_driver(wire, tries=3)
-    driver.call("configure_motion", 0, 0, 0)
-    driver.call("move_by_speed", by_speed([4000, 0, 0, 0]))
+# ----------------------------------------------------------------- what was commanded and did not arrive ----
+
+
+def eight_moves(driver: Driver, wire: Wire, steps: int = 400) -> None:
+    """Eight moves are queued (of at most two ramps each), the first of them runs."""
+    for _ in range(8):
+        move = struct(
+            "move_in_time",
+            steps=[steps, 0, 0, 0],
+            total_clocks=CLOCK_HZ // 50,
+            ramp_clocks=CLOCK_HZ // 100,
+        )
+        driver.call("move_in_time", move)
     wire.run(CLOCK_HZ // 100)
-    wire.there = lambda _: None
-    assert error_of(driver, "hold") == "STUCK_LOW"
-    wire.there = list
-    assert driver.snapshot().rate == 1 << 16
+
+
+def polls(driver: Driver, wire: Wire, count: int) -> None:
+    """Polls of a program that does not look at their errors."""
+    for _ in range(count):
+        error_of(driver, "poll")
+        wire.run(CLOCK_HZ // 5000)
+
+
+@pytest.mark.parametrize("cut", ["both ways", "replies"])
+@pytest.mark.parametrize("level", [0, 1])
+@pytest.mark.parametrize("how", ["stop", "abort"])
+def test_a_stop_that_was_not_acknowledged(wire: Wire, how: str, level: int, cut: str) -> None:
+    """It is sent again by every poll until it is; until then that is what is said."""
+    stuck = "STUCK_HIGH" if level else "STUCK_LOW"
+    driver = open_driver(wire)
+    driver.call("configure_motion", 1000, 1000, 0)
+    eight_moves(driver, wire)
+    if cut == "replies":
+        wire.back = lambda miso: [0xFFFFFFFF * level] * len(miso)
+    else:
+        wire.stuck = level
+    assert error_of(driver, how) == stuck
+    assert driver.fault == "NOT_STOPPED" and driver.is_moving
+    assert driver.idle_microseconds == 0
+    assert error_of(driver, "move_by_speed", by_speed([5])) == "NOT_STOPPED"
+    assert error_of(driver, "clear") == "NOT_STOPPED"
+    for call in ("resume", "zero", "hold"):
+        assert error_of(driver, call) == "NOT_STOPPED"
+    polls(driver, wire, 3)
+    assert driver.fault == "NOT_STOPPED"
+    before = wire.counted()[0][0]
+    assert before < 8 * 400
+
+    wire.stuck, wire.back = None, list
+    wire.requests.clear()
+    poll(driver)
+    assert wire.requests[0][1] == 1 << (r.CHANNEL_COMMAND_ABORT_LSB if how == "abort" else 0)
+    poll(driver)  # the proof that it is the same core
+    assert driver.fault == "NOT_HELD"  # of the hold that came after it
+    poll(driver)
+    assert driver.fault == "OK"
     finish(driver)
-    assert driver.positions()[0] == 4000
+    at = wire.counted()[0][0]
+    assert at <= before + 200 and driver.state == State.STOPPED
+    assert driver.cause == (Cause.ABORT if how == "abort" else Cause.STOP)
+    assert error_of(driver, "move_by_speed", by_speed([5])) == "STOPPED"
+    driver.call("clear")
+    driver.call("resume")
+    assert driver.positions()[0] == at == wire.counted()[0][0]
+    driver.call("move_by_speed", by_speed([5, 0, 0, 0]))
+    finish(driver)
+    assert driver.positions()[0] == at + 5
+
+
+def test_a_clear_gets_the_stop_through_first(wire: Wire) -> None:
+    """No poll is needed between a stop that failed and the clear."""
+    driver = open_driver(wire)
+    eight_moves(driver, wire)
+    wire.stuck = 0
+    assert error_of(driver, "stop") == "STUCK_LOW"
+    wire.stuck = None
+    assert error_of(driver, "clear") in ("OK", "MOVING")
+    finish(driver)
+    driver.call("clear")
+    at = driver.positions()
+    assert 0 < at[0] < 8 * 400 and wire.counted()[1] == at
+    wire.run(CLOCK_HZ // 10)
+    assert wire.counted()[1] == at
+
+
+def test_an_abort_takes_the_place_of_a_stop(wire: Wire) -> None:
+    """Only the abort is sent; a stop does not weaken it."""
+    driver = open_driver(wire)
+    eight_moves(driver, wire)
+    wire.stuck = 0
+    for how in ("stop", "abort", "stop"):
+        assert error_of(driver, how) == "STUCK_LOW"
+    wire.stuck = None
+    wire.requests.clear()
+    poll(driver)
+    finish(driver)
+    commands = [q[1] for q in wire.requests if q[0] >> 28 == r.Operation.WRITE]
+    assert commands == [1 << r.CHANNEL_COMMAND_ABORT_LSB] and driver.cause == Cause.ABORT
+
+
+def test_a_stop_goes_before_a_frame_of_the_stream(wire: Wire) -> None:
+    """A frame that is still being tried is given up for it."""
+    driver = open_driver(wire)
+    driver.stream(Source(*path(3000)))
+    while driver.snapshot().state != State.RUN:
+        poll(driver)
+
+    def before(_: int) -> None:
+        wire.stuck = 0 if wire.requests[-1][0] >> 28 == r.Operation.PUSH else None
+
+    wire.before_frame = before
+    while driver.c.post != planner().PASSO_POST_ITEMS:
+        wire.run(CLOCK_HZ // 20_000)
+        poll(driver)
+    wire.requests.clear()
+    driver.call("stop")
+    assert wire.requests[0][1] == 1 << r.CHANNEL_COMMAND_STOP_LSB and len(wire.requests) == 1
+    finish(driver)
+    driver.call("clear")
+    assert driver.positions() == wire.counted()[1]
+
+
+@pytest.mark.parametrize("cut", ["both ways", "replies"])
+def test_a_hold_that_was_not_acknowledged(wire: Wire, cut: str) -> None:
+    """It comes later; a resume takes its place."""
+    driver = open_driver(wire)
+    driver.call("configure_motion", 0, 0, 0)
+    eight_moves(driver, wire)
+
+    def dead(yes: bool) -> None:
+        wire.back = (lambda miso: [0] * len(miso)) if yes and cut == "replies" else list
+        wire.stuck = 0 if yes and cut == "both ways" else None
+
+    dead(True)
+    assert error_of(driver, "hold") == "STUCK_LOW"
+    assert driver.fault == "NOT_HELD"
+    assert error_of(driver, "move_by_speed", by_speed([5])) == "NOT_HELD"
+    polls(driver, wire, 3)
+    dead(False)
+    poll(driver)
+    poll(driver)
+    assert driver.fault == "OK"
+    wire.run(1000)
+    at = wire.counted()
+    wire.run(CLOCK_HZ // 10)
+    assert wire.counted() == at and at[0][0] < 8 * 400
+    dead(True)
+    assert error_of(driver, "hold") == "STUCK_LOW"
+    dead(False)
+    driver.call("resume")
+    finish(driver)
+    assert driver.positions()[0] == 8 * 400 == wire.counted()[0][0]
+
+
+@pytest.mark.parametrize("cut", ["both ways", "replies"])
+def test_a_resume_that_was_not_acknowledged_is_not_made_later(wire: Wire, cut: str) -> None:
+    """One that got through for a moment is held again. A slower override comes later, a faster does not."""
+    driver = open_driver(wire)
+    driver.call("configure_motion", 0, 0, 0)
+    eight_moves(driver, wire)
+
+    def fails(call: str, *arguments: object) -> int:
+        wire.back = (lambda miso: [0] * len(miso)) if cut == "replies" else list
+        wire.stuck = 0 if cut == "both ways" else None
+        assert error_of(driver, call, *arguments) == "STUCK_LOW"
+        wire.back, wire.stuck = list, None
+        poll(driver)
+        wire.run(1000)
+        return driver.snapshot().rate
+
+    driver.call("override", 50)
+    driver.call("hold")
+    assert fails("resume") == 0
+    driver.call("resume")
+    assert driver.snapshot().rate == 1 << 15
+    assert fails("override", 100) == 1 << 15
+    assert fails("override", 25) == 1 << 14
+    driver.call("override", 100)
+    finish(driver)
+    assert driver.positions()[0] == 8 * 400
+
+
+def test_numbers_of_frames_are_not_used_twice(wire: Wire) -> None:
+    """After as many failures as there are numbers, a command is not taken for a duplicate."""
+    driver = open_driver(wire, tries=2)
+    driver.call("configure_motion", 0, 0, 0)
+    eight_moves(driver, wire)
+    for failures in range(250, 260):
+        wire.stuck = 0
+        for _ in range(failures):
+            assert error_of(driver, "resume") == "STUCK_LOW"
+        wire.stuck = None
+        driver.call("hold")
+        wire.run(1000)
+        assert driver.snapshot().rate == 0
+        driver.call("resume")
+        wire.run(1000)
+        assert driver.snapshot().rate == 1 << 16
+
+
+def test_another_channels_stop_does_not_wait_long() -> None:
+    """Two channels on one dead wire: both stops get through when it is back, at most a frame in a poll."""
+    wire = Wire(Parameters(channels=2, axes=2))
+    first = open_driver(wire, tries=3)
+    second = Driver.__new__(Driver)
+    second.__dict__.update(first.__dict__)
+    second.c = ffi().new("struct passo *")
+    options = struct("options", clock_hz=CLOCK_HZ, channel=1)
+    assert planner().passo_open_channel(second.c, first.host, options) == 0
+    configure(second)
+    for driver in (first, second):
+        driver.call("move_by_speed", by_speed([30_000, 10_000]))
+    wire.run(CLOCK_HZ // 100)
+    wire.stuck = 0
+    for driver in (first, second):
+        assert error_of(driver, "stop") == "STUCK_LOW"
+    for _ in range(4):
+        for driver in (first, second):
+            error_of(driver, "poll")
+    wire.stuck = None
+    for _ in range(3):
+        for driver in (first, second):
+            poll(driver)
+    assert first.fault == second.fault == "OK"
+    wire.run(CLOCK_HZ // 20)
+    at = wire.counted()
+    wire.run(CLOCK_HZ // 20)
+    assert wire.counted() == at and max(at[0]) < 30_000
+    for driver in (first, second):
+        driver.call("clear")

@@ -5,16 +5,18 @@ PASSO_SEED is the seed of the random cases.
 """
 
 import random
+import re
 from pathlib import Path
 
 import pytest
 from passo.build import Parameters
 from passo.engine import Engine, model_engine, rtl_engine
+from passo.stm32 import demo
 from passo.stm32.board import START, Board, Motion, env_seed, firmware_elf, motions
 from passo.stm32.bus import TICKS_PER_SECOND
 from passo.stm32.lines import move_line
 from passo.stm32.machine import Machine
-from passo.stm32.play import on_the_model, play, type_move
+from passo.stm32.play import on_the_model, planned_clocks, play, type_move
 from passo.toolchain import paths
 
 from tests.firmware_cases import random_moves
@@ -23,10 +25,7 @@ PARAMETERS = Parameters(axes=4)
 HZ = 72_000_000  # of the core; SCLK is 18 MHz
 SLOW_HZ = 36_000_000  # SCLK is 9 MHz
 EXAMPLES = sorted(path.stem for path in paths.examples.glob("*.toml"))
-SHORT_EXAMPLES = (
-    "triangle",
-    "cosine",
-)  # that the Verilated core makes here; the others in make firmware-demo
+SHORT_EXAMPLES = ("triangle", "cosine")  # that the Verilated core makes here
 MOVE = "move steps=100,-50 profile=linear total_time=0.01 ramp_time=0.002"
 
 
@@ -53,6 +52,21 @@ def test_examples_on_the_verilated_core(name: str) -> None:
     """The same with the Verilated core."""
     played, _, _ = play(paths.examples / f"{name}.toml", SLOW_HZ, "rtl")
     assert played and not [move.difference for move in played if move.difference]
+
+
+def test_demonstration_tells_what_it_does(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A line before and after each example; its examples are there, and short together."""
+    assert set(demo.EXAMPLES) <= set(EXAMPLES)
+    files = [paths.examples / f"{name}.toml" for name in demo.EXAMPLES]
+    clocks = sum(planned_clocks(file, demo.CLOCK_HZ) for file in files)
+    assert clocks < 1.2 * demo.CLOCK_HZ
+    monkeypatch.setattr(demo, "FOLDER", paths.build / "firmware_demo_test")
+    assert demo.demo([paths.examples / "triangle.toml"], "model")
+    said = capsys.readouterr().out
+    assert re.search(r"^\[ *0:\d\d\] triangle: .* of motion", said, re.M)
+    assert re.search(r"^\[ *0:\d\d\] triangle: 2,500 edges, all as expected$", said, re.M)
 
 
 @pytest.mark.parametrize(("clock_hz", "count"), [(HZ, 10), (SLOW_HZ, 50)])

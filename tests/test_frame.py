@@ -117,6 +117,27 @@ def test_useless_read_replies() -> None:
         frame.read_verdict(mosi, [STATUS] * 3 + [ack(8, Verdict.UNKNOWN_ADDRESS)] * 4)
 
 
+def test_shifted_replies_are_damaged() -> None:
+    """A clock lost or doubled within a frame: the ack of one verdict must not pass for another."""
+    for sequence in range(256):
+        for verdict in Verdict:
+            for shift in (-1, 1):
+                for build, judge in (
+                    (lambda s: frame.write_frame(s, 0x140, [1, 2]), frame.write_verdict),
+                    (lambda s: frame.read_frame(s, 0x140, 2), frame.read_verdict),
+                ):
+                    sent = (sequence << 1 if shift < 0 else sequence >> 1) & 0xFF
+                    mosi = build(sent)
+                    acks = 1 if judge is frame.write_verdict else len(mosi) - frame.DATA
+                    reply = [STATUS | 1] * (len(mosi) - acks) + [ack(sequence, verdict)] * acks
+                    bits = "".join(f"{word:032b}" for word in reply)
+                    bits = bits[1:] + bits[-32] if shift < 0 else bits[0] + bits[:-1]
+                    # the first word is on the wire before the clock that went wrong
+                    words = [reply[0], *(int(bits[n : n + 32], 2) for n in range(32, len(bits), 32))]
+                    with pytest.raises(frame.FrameError):
+                        judge(mosi, words)
+
+
 def test_line_words() -> None:
     line = ffi().new("struct passo_line *")
     line.last, line.endless, line.directions, line.substeps = True, True, 0x81, 0x3FFFFFFF

@@ -77,4 +77,4 @@ def test_corners_are_the_ends_of_the_parameters(name: str) -> None:
 def test_every_number_of_the_core_has_its_corners() -> None:
     """A parameter that is added to the core is added here."""
     head = (paths.rtl / "passo_core.v").read_text().partition(") (")[0]
-    assert set(re.findall(r"^ *parameter .*?(\w+) *=", head, re.M)) == set(lint_rtl.ENDS)
+    assert set(re.findall(r"^ *parameter .*?(\w+) *=", head, re.M)) == {*lint_rtl.ENDS, *lint_rtl.LEVELS}

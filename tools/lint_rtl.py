@@ -25,7 +25,7 @@ from pyslang.driver import Driver
 TOP = "passo_core"
 SURELOG = paths.build / "lint" / "surelog"
 
-Parameters = Mapping[str, int]
+Parameters = Mapping[str, int | str]
 Reader = Callable[[Path, Parameters], str]  # returns what it says; "" if it is content
 
 ENDS = {
@@ -36,9 +36,19 @@ ENDS = {
     "RAMP_QUEUE_LOG2": (2, 8),
     "STEPS_REGISTER": (0, 1),
 }
-LOWEST, HIGHEST = ({name: ends[which] for name, ends in ENDS.items()} for which in (0, 1))
+LEVELS = ("STEP_RESET", "DIR_RESET", "ENABLE_RESET")  # a bit for each axis, 0 unless given
+AXES = 4  # unless given
+
+
+def _high(axes: int) -> Parameters:
+    """All bits of the levels set."""
+    return dict.fromkeys(LEVELS, f"{axes}'h{(1 << axes) - 1:x}")
+
+
+LOWEST: Parameters = {name: low for name, (low, _) in ENDS.items()}
+HIGHEST: Parameters = {name: high for name, (_, high) in ENDS.items()} | _high(8 * 8)
 FAR_APART: list[Parameters] = [{}, LOWEST, HIGHEST]
-CORNERS = [*FAR_APART, *({name: value} for name, ends in ENDS.items() for value in ends)]
+CORNERS = [*FAR_APART, *({name: end} for name, ends in ENDS.items() for end in ends), _high(AXES)]
 
 
 def read_with_verilator(rtl: Path, parameters: Parameters) -> str:

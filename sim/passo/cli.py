@@ -75,7 +75,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     firmware.set_defaults(command=_firmware)
     firmware.add_argument(
-        "moves", type=Path, nargs="*", metavar="MOVES.toml", help="default: all of examples/"
+        "moves", type=Path, nargs="*", metavar="MOVES.toml", help="default: some short ones of examples/"
     )
     firmware.add_argument("--engine", choices=("rtl", "model"), default="rtl", help="the core (default rtl)")
     firmware.add_argument("--table", action="store_true", help="measure the firmware instead")

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What the commands show: progress bars and tables."""
+"""What the commands show: progress bars, stages and tables."""
 
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
@@ -24,6 +25,17 @@ def progress(name: str, clocks: int) -> Iterator[Callable[[int], None]]:
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
         task = bar.add_task(name, total=clocks)
         yield lambda done: bar.update(task, completed=min(done, clocks))
+
+
+def stages() -> Callable[[str], None]:
+    """A function that prints a line, with the time since now in front, wherever the output goes."""
+    began = time.monotonic()
+
+    def tell(words: str) -> None:
+        minutes, seconds = divmod(int(time.monotonic() - began), 60)
+        print(f"[{minutes:3}:{seconds:02}] {words}", flush=True)
+
+    return tell
 
 
 def table(title: str, first: str, *columns: str) -> Table:

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from passo.build import Parameters
-from passo.link import Hardware, LinkError, error_text
+from passo.link import Hardware, LinkError, error_name, error_text
 from passo.moves import PinTiming
 from passo.native import ffi, planner
 from passo.registers import Cause, State
@@ -127,6 +127,11 @@ class Driver:
     def idle_microseconds(self) -> int:
         """Until `poll` has something to do."""
         return self.lib.passo_idle_time(self.c)
+
+    @property
+    def fault(self) -> str:
+        """Name of what is wrong until it is cleared, or gets through: OK, if nothing."""
+        return error_name(self.lib.passo_fault(self.c))
 
     @property
     def counters(self) -> Any:

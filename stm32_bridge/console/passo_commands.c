@@ -304,9 +304,15 @@ enum passo_error passo_commands_open(struct passo_console *console)
 	return error == PASSO_OK ? set_up(console) : error;
 }
 
+/* A core that was reset does not move any more, whatever was queued. */
+static bool is_moving(const struct passo_console *console)
+{
+	return console->opened && !console->host.lost && passo_is_moving(&console->passo);
+}
+
 static bool run_open(const struct call *call)
 {
-	if (call->console->opened && passo_is_moving(&call->console->passo))
+	if (is_moving(call->console))
 		return answer(call, PASSO_ERROR_MOVING);
 	return answer(call, passo_commands_open(call->console));
 }
@@ -354,7 +360,7 @@ static bool config_axis(const struct call *call)
 /* Another clock means that all times are others: the core is opened anew, with the settings of a start. */
 static enum passo_error set_clock(struct passo_console *console, uint32_t clock_hz)
 {
-	if (console->opened && passo_is_moving(&console->passo))
+	if (is_moving(console))
 		return PASSO_ERROR_MOVING;
 	console->clock_hz = clock_hz;
 	passo_commands_reset_axes(console);
@@ -463,7 +469,7 @@ static const struct command COMMANDS[] = {
     {"position", run_position, NULL, 0, 0, "steps made by each axis"},
     {"angle", run_angle, TAKES(ANGLE_KEYS), 1, "degrees of an axis and rpm of the motion"},
     {"enable", run_enable, TAKES(AXIS_KEYS), 1, "switch on the drive of an axis, or all"},
-    {"disable", run_disable, TAKES(AXIS_KEYS), 1, "switch it off"},
+    {"disable", run_disable, TAKES(AXIS_KEYS), 1, "switch it off, at rest or when stopped"},
     {"zero", run_zero, NULL, 0, 0, "call the present positions 0"},
     {"sync", run_sync, TAKES(ON_KEYS), 1, "let motions wait for the sync input, or no longer"},
     {"config", run_config, NULL, 0, 0, "show or change settings; help config lists them"},

@@ -70,6 +70,14 @@ void passo_console_receive(struct passo_console *console, char byte)
 	}
 }
 
+/* A stop or hold that was not acknowledged is being sent again. */
+static bool insists(const struct passo_console *console)
+{
+	const enum passo_error fault = passo_fault(&console->passo);
+
+	return fault == PASSO_ERROR_NOT_STOPPED || fault == PASSO_ERROR_NOT_HELD;
+}
+
 /* While a motion runs there is nothing to do for long; the irq pin tells when it stops. */
 static bool is_time_to_look(struct passo_console *console)
 {
@@ -77,7 +85,7 @@ static bool is_time_to_look(struct passo_console *console)
 	bool runs = passo_snapshot(&console->passo)->state == PASSO_STATE_RUN;
 	uint32_t now = hardware->microseconds ? hardware->microseconds(hardware->context) : 0u;
 
-	if (runs && hardware->irq && !hardware->irq(hardware->context)
+	if (runs && !insists(console) && hardware->irq && !hardware->irq(hardware->context)
 	    && now - console->tried_at < LOOK_MICROSECONDS)
 		return false;
 	console->tried_at = now;
@@ -91,6 +99,12 @@ static uint32_t bad_frames(const struct passo_counters *counters)
 	     + counters->refused[PASSO_VERDICT_BAD_CRC];
 }
 
+static bool is_of_wire(enum passo_error error)
+{
+	return (error >= PASSO_ERROR_TRANSFER && error <= PASSO_ERROR_BAD_CRC)
+	    || error == PASSO_ERROR_NOT_STOPPED || error == PASSO_ERROR_NOT_HELD;
+}
+
 /* A look costs no frame when it is too early for one: that is no news. */
 static void look_at_core(struct passo_console *console)
 {
@@ -102,8 +116,9 @@ static void look_at_core(struct passo_console *console)
 		if (error != console->noted)
 			passo_say_error_note(console, error);
 		console->noted = error;
-	} else if (now->frames != before.frames && bad_frames(now) == bad_frames(&before)) {
-		if (console->noted >= PASSO_ERROR_TRANSFER && console->noted <= PASSO_ERROR_BAD_CRC)
+	} else if (now->frames != before.frames && bad_frames(now) == bad_frames(&before)
+	           && !insists(console)) {
+		if (is_of_wire(console->noted))
 			passo_say(&console->sink, "note: the core answers\n");
 		console->noted = PASSO_OK;
 		if (console->unset && passo_snapshot(&console->passo)->state == PASSO_STATE_IDLE

@@ -9,6 +9,10 @@
 
 enum { OPEN_WORDS = 4, STATE_WORDS = 4 };
 
+/* Four steps that wait and one under way, with four times of at most 65535 clocks each, take no longer than
+ * so many looks: one takes more than 1024 clocks. */
+#define PIN_LOOKS_MAX 1280u
+
 enum passo_error passo_driver_check(const struct passo *passo)
 {
 	if (!passo)
@@ -53,9 +57,18 @@ enum passo_error passo_driver_gate(struct passo *passo, enum passo_gate gate)
 {
 	const uint32_t word = passo_driver_run(passo, gate);
 
-	if (word == passo->host->run)
+	if (word == passo->host->run && !passo->host->run_due)
 		return PASSO_OK;
 	return passo_host_write(passo->host, PASSO_ADDRESS_RUN, &word, 1);
+}
+
+/* No motion runs or waits; steps may still be at the pins. */
+static bool is_empty(const struct passo *passo)
+{
+	const struct passo_snapshot *snapshot = &passo->snapshot;
+
+	return snapshot->state == PASSO_STATE_IDLE && snapshot->line_room == passo->line_places
+	    && snapshot->ramp_room == passo->ramp_places;
 }
 
 enum passo_error passo_driver_look(struct passo *passo, bool once)
@@ -84,6 +97,18 @@ enum passo_error passo_driver_look(struct passo *passo, bool once)
 	return PASSO_OK;
 }
 
+enum passo_error passo_driver_look_at_rest(struct passo *passo)
+{
+	const struct passo_snapshot *snapshot = &passo->snapshot;
+	enum passo_error error = passo_driver_look(passo, false);
+
+	for (unsigned looks = 1; error == PASSO_OK && looks < PIN_LOOKS_MAX && !snapshot->quiet
+	                         && (snapshot->state == PASSO_STATE_STOPPED || is_empty(passo));
+	    looks++)
+		error = passo_driver_look(passo, false);
+	return error;
+}
+
 enum passo_error passo_driver_positions(struct passo *passo, int32_t *positions, bool once)
 {
 	const uint16_t address = (uint16_t)(passo->base + PASSO_CHANNEL_POSITION_BASE);
@@ -98,17 +123,16 @@ enum passo_error passo_driver_positions(struct passo *passo, int32_t *positions,
 	return PASSO_OK;
 }
 
-bool passo_driver_occupied(const struct passo *passo)
-{
-	return passo->snapshot.state != PASSO_STATE_IDLE && passo->snapshot.state != PASSO_STATE_STOPPED;
-}
-
 bool passo_driver_at_rest(const struct passo *passo)
 {
-	const struct passo_snapshot *snapshot = &passo->snapshot;
+	return is_empty(passo) && passo->snapshot.quiet;
+}
 
-	return snapshot->state == PASSO_STATE_IDLE && snapshot->line_room == passo->line_places
-	    && snapshot->ramp_room == passo->ramp_places;
+enum passo_error passo_driver_moving(enum passo_error error)
+{
+	const bool is_busy = (unsigned)error == PASSO_ERROR_REFUSED + PASSO_VERDICT_BUSY;
+
+	return is_busy ? PASSO_ERROR_MOVING : error;
 }
 
 void passo_driver_ended(struct passo *passo, const int32_t *positions)
@@ -121,17 +145,26 @@ void passo_driver_ended(struct passo *passo, const int32_t *positions)
 	passo->idle_looks = 0;
 }
 
+void passo_driver_break(struct passo *passo)
+{
+	passo->broken = passo->expecting = true;
+	passo->certain = false;
+	passo->idle_looks = 0;
+}
+
 enum passo_error passo_driver_ready(struct passo *passo, bool needs_rest)
 {
-	if (passo->host->lost)
-		return PASSO_ERROR_CORE_RESET;
+	enum passo_error error = passo_driver_restrain(passo, PASSO_POST_RUN);
+
+	if (error != PASSO_OK)
+		return error;
 	if (passo->broken)
 		return PASSO_ERROR_BROKEN;
 	if (passo->halted)
 		return PASSO_ERROR_STOPPED;
-	if (passo->streaming)
+	if (passo->stream != PASSO_STREAM_NONE)
 		return PASSO_ERROR_STREAMING;
-	enum passo_error error = passo_driver_look(passo, false);
+	error = needs_rest ? passo_driver_look_at_rest(passo) : passo_driver_look(passo, false);
 	if (error != PASSO_OK)
 		return error;
 	if (passo->snapshot.state == PASSO_STATE_STOPPED || passo->snapshot.stopping)
@@ -185,10 +218,11 @@ static enum passo_error identify(struct passo *passo, const struct passo_options
 
 enum passo_error passo_driver_take_over(struct passo *passo)
 {
-	const uint32_t rate = passo->held ? 0u : passo->rate_target;
+	const uint32_t rate = passo_driver_rate(passo);
 	int32_t positions[PASSO_AXES_MAX];
 	enum passo_error error = PASSO_OK;
 
+	passo->broken = true; /* until it is done */
 	if (passo->snapshot.state == PASSO_STATE_IDLE && !passo_driver_at_rest(passo))
 		error = passo_driver_command(passo, UINT32_C(1) << PASSO_CHANNEL_COMMAND_ABORT_LSB);
 	if (error == PASSO_OK && !passo_driver_at_rest(passo))
@@ -202,7 +236,7 @@ enum passo_error passo_driver_take_over(struct passo *passo)
 	if (error != PASSO_OK)
 		return error;
 	passo_driver_ended(passo, positions);
-	passo->broken = passo->halted = passo->stop_due = false;
+	passo->broken = passo->halted = false;
 	passo->fault = PASSO_OK;
 	return passo_driver_at_rest(passo) ? PASSO_OK : PASSO_ERROR_MOVING;
 }
@@ -220,8 +254,6 @@ enum passo_error passo_open_channel(
 	passo->base =
 	    (uint16_t)(PASSO_ADDRESS_CHANNEL_BASE + options->channel * PASSO_ADDRESS_CHANNEL_STRIDE);
 	passo->rate_target = PASSO_RATE_FULL;
-	for (unsigned i = 0; i < PASSO_AXES_MAX; i++)
-		passo->axis[i].shortest_clocks = 2;
 	enum passo_error error = identify(passo, options, &run);
 	if (error != PASSO_OK)
 		return error;
@@ -231,10 +263,10 @@ enum passo_error passo_open_channel(
 			passo_driver_tables_fresh(host);
 	}
 	error = passo_driver_look(passo, false);
-	if (error == PASSO_OK && !passo_driver_occupied(passo) && !passo_driver_at_rest(passo))
+	if (error == PASSO_OK && passo->snapshot.quiet && !passo_driver_at_rest(passo))
 		error = passo_driver_gate(passo, PASSO_GATE_CLOSED);
 	passo->broken = true;
-	if (error == PASSO_OK && !passo_driver_occupied(passo))
+	if (error == PASSO_OK && passo->snapshot.quiet)
 		error = passo_driver_take_over(passo);
 	/* what follows a motion of the past is not to start */
 	if (error == PASSO_OK)

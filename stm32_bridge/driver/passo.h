@@ -12,10 +12,15 @@
  *             passo_poll(&passo); // at most one frame each
  *
  * Every function returns an enum passo_error (passo_error_text() has a sentence for it), checks its
- * arguments, and leaves nothing half done: a move whose error is not one of the wire was not begun. After an
- * error of the wire (or TRANSFER) during a move or a stream the driver is BROKEN: what was queued before may
- * run on, new moves are refused until passo_clear(). No heap, no floating point; RAM is the two structs
- * (passo_host.h).
+ * arguments, and leaves nothing half done: a move whose error is not one of the wire was not begun. No heap,
+ * no floating point; RAM is the two structs (passo_host.h).
+ *
+ * After an error of the wire (or TRANSFER) it is not known whether the core has executed the last frame:
+ *   - a stop or abort is sent again by every passo_poll() until it is acknowledged (NOT_STOPPED until then);
+ *   - hold, resume, override, wait for sync: the slower of before and now is, in the same way (NOT_HELD);
+ *   - during a move or a stream the driver is BROKEN: what was queued before may run on;
+ *   - the pins of an axis are not known (NOT_CONFIGURED) until it is configured again.
+ * New moves are refused with these errors; passo_clear() ends the first three. Nothing else is done later.
  *
  * A call costs one frame (chip select) unless its comment says otherwise; on a disturbed wire up to `tries`.
  * Units: speeds, accelerations, rpm are UQ32.32 (PASSO_UNIT_Q32 is 1); lengths and angles are Q31.32.
@@ -69,9 +74,26 @@ struct passo_source {
 /* What the driver remembers of an axis. */
 struct passo_axis_memory {
 	uint64_t steps_per_unit;  /* UQ32.32 */
-	uint32_t shortest_clocks; /* of a step */
+	uint32_t shortest_clocks; /* of a step; 0: not known */
 	int32_t expected;         /* position when all that is queued has been made */
 };
+
+/* What was commanded and has not been acknowledged, and so is sent by every poll: bits. */
+enum passo_due { PASSO_DUE_RATE = 1, PASSO_DUE_STOP = 2, PASSO_DUE_ABORT = 4 };
+
+/* What the frame is that was posted last, until its result has been seen to. */
+enum passo_post {
+	PASSO_POST_NONE,
+	PASSO_POST_ITEMS, /* of a stream */
+	PASSO_POST_START, /* lets a stream begin */
+	PASSO_POST_RUN,
+	PASSO_POST_RATE,
+	PASSO_POST_STOP,
+	PASSO_POST_ABORT
+};
+
+/* A stream: there is none; its queues are filled behind a closed gate; it runs and is fed. */
+enum passo_stream_phase { PASSO_STREAM_NONE, PASSO_STREAM_FILLS, PASSO_STREAM_RUNS };
 
 /* Whether motions may start. */
 enum passo_gate { PASSO_GATE_OPEN, PASSO_GATE_SYNC, PASSO_GATE_CLOSED };
@@ -83,27 +105,27 @@ struct passo {
 	uint16_t base; /* address of the channel's registers */
 	uint16_t line_places, ramp_places;
 	uint8_t channel;
-	uint8_t misses; /* looks in a row that failed */
+	uint8_t misses;     /* looks in a row that failed */
+	uint8_t idle_looks; /* in a row that found everything at an end */
 	bool opened;
 	bool broken;    /* what a command has done is not known: nothing but clear helps */
-	bool halted;    /* a stop was commanded: nothing but clear helps */
-	bool stop_due;  /* the next poll stops the motion */
+	bool halted;    /* it is stopped, or a stop was commanded: nothing but clear helps */
 	bool expecting; /* something was queued, its end has not been seen */
 	bool certain;   /* its end position is known */
 	bool held;
 	bool turning_is_on, turning_ends;
-	bool streaming, starting, lines_done, ramps_done, lines_dry, ramps_dry;
-	bool opening;         /* the posted frame starts the stream */
+	bool lines_done, ramps_done, lines_dry, ramps_dry;
+	uint8_t due; /* bits of enum passo_due */
+	enum passo_stream_phase stream;
 	enum passo_gate gate; /* when no stream is being prepared */
 	enum passo_error fault;
+	enum passo_post post;
 	enum passo_error posted; /* result of the posted frame */
 	struct passo_axis_memory axis[PASSO_AXES_MAX];
 	struct passo_snapshot snapshot; /* its room is never too much */
-	uint32_t looked_at, idle_since; /* microseconds */
-	uint32_t idle_looks;
-	uint32_t settle_microseconds; /* the last pulses of a motion need no longer */
-	uint32_t rate_target;         /* UQ1.16: the override, kept over a hold */
-	uint32_t oversampling;        /* of the last plan */
+	uint32_t looked_at;             /* microseconds */
+	uint32_t rate_target;           /* UQ1.16: the override, kept over a hold */
+	uint32_t oversampling;          /* of the last plan */
 	uint64_t velocity_peak;
 	struct passo_turning turning;
 	struct passo_source source;
@@ -133,10 +155,13 @@ struct passo_axis_config {
 	uint64_t steps_per_unit; /* UQ32.32 steps per millimetre, degree ...; 0: none */
 };
 
-/* Sets pins and units of an axis; the drive stays enabled or not. At rest only. Errors: ARGUMENT, MOVING. */
+/* Sets pins and units of an axis; the drive stays enabled or not. Before it, an axis makes no steps. At rest
+ * only: waits for the times of the pins. Errors: ARGUMENT, MOVING. */
 enum passo_error passo_configure_axis(
     struct passo *passo, uint8_t axis, const struct passo_axis_config *config);
-/* Drive enable output. */
+/* Drive enable output. It is switched on at any time; off only at rest or when stopped, after the last step
+ * has left the pins (for which it waits): MOVING while a motion runs or waits. To switch off at once,
+ * passo_abort() first: then that is only a pulse that has begun. One frame, three for off. */
 enum passo_error passo_enable(struct passo *passo, uint8_t axis, bool on);
 /* How long hold and resume, and a soft stop, take from full speed, in microseconds; 0: at once. Both are
  * rounded to what the core can do. And the velocity (UQ0.32 substeps per clock) of substeps
@@ -149,7 +174,8 @@ enum passo_error passo_configure_motion(
 /* Each plans a move, checks it against the pin timing, loads a shape table if it needs one that the core does
  * not hold (five frames and the time to compute it), and queues it: three frames. It starts at once, or after
  * what is queued already. A planner's error is passed on as PASSO_ERROR_PLAN + error. Errors: FULL (try again
- * later), STOPPED, BROKEN, STREAMING, MOVING (while turning without end), TABLE, PINS_TOO_SLOW. */
+ * later), STOPPED, NOT_STOPPED, NOT_HELD, BROKEN, STREAMING, MOVING (while turning without end), TABLE,
+ * NOT_CONFIGURED, PINS_TOO_SLOW. */
 enum passo_error passo_move_in_time(struct passo *passo, const struct passo_move_in_time *move);
 enum passo_error passo_move_by_speed(struct passo *passo, const struct passo_move_by_speed *move);
 enum passo_error passo_move_below_speed(struct passo *passo, const struct passo_move_below_speed *move);
@@ -174,7 +200,8 @@ enum passo_error passo_load_table(struct passo *passo, enum passo_shape bank, co
 /* For the planner's functions: clock, ticks and axes of this channel. */
 const struct passo_machine *passo_machine(const struct passo *passo);
 
-/* Turning without end: start it from rest, change the speed, end it. See passo_plan.h. */
+/* Turning without end: start it from rest, change the speed, end it. See passo_plan.h. If the end is not
+ * acknowledged a soft stop takes its place, as after passo_stop(). */
 enum passo_error passo_turn_start(struct passo *passo, const struct passo_turning *turning, uint64_t rpm);
 enum passo_error passo_turn_speed(struct passo *passo, uint64_t rpm);
 enum passo_error passo_turn_stop(struct passo *passo);
@@ -193,7 +220,9 @@ bool passo_is_streaming(const struct passo *passo);
 /* To be called often: sends what the stream has, looks at the state, at most one frame; without anything to
  * do it looks every millisecond. Errors are told once, by the first call that sees them (CORE_RESET by all),
  * and passo_fault() keeps them: LINE_UNDERRUN, RAMP_UNDERRUN, STEP_OVERRUN, POSITION, SUPPLY, those of the
- * wire. A stream that fails for reasons of the host is stopped softly by the next call. */
+ * wire. A stream that fails for reasons of the host is stopped softly. What was not acknowledged goes first:
+ * as long as a stop or hold does not get through nothing else is done, and NOT_STOPPED or NOT_HELD is told
+ * once in `tries` polls. */
 enum passo_error passo_poll(struct passo *passo);
 /* Microseconds until passo_poll() has something to do; no frame. */
 uint32_t passo_idle_time(const struct passo *passo);
@@ -201,28 +230,34 @@ uint32_t passo_idle_time(const struct passo *passo);
 bool passo_is_moving(const struct passo *passo);
 /* What passo_poll() saw last; no frame. */
 const struct passo_snapshot *passo_snapshot(const struct passo *passo);
-/* The error that passo_poll() has told, until passo_clear(); OK if none. */
+/* NOT_STOPPED or NOT_HELD as long as it is so; the error that passo_poll() has told, until passo_clear(); OK
+ * if none. */
 enum passo_error passo_fault(const struct passo *passo);
 /* Polls until everything has ended. 0: no limit. Errors: TIMEOUT, and those of passo_poll(). */
 enum passo_error passo_wait(struct passo *passo, uint32_t timeout_microseconds);
 
 /* --------------------------------------------------------------------------------------- influence ---- */
 
-/* Feed hold and resume: the same pulses, later. The override is kept over a hold. */
+/* Feed hold and resume: the same pulses, later. The override is kept over a hold. If one of these three is
+ * not acknowledged, the slower of before and now is sent by every poll: a hold that failed comes later, a
+ * resume does not. */
 enum passo_error passo_hold(struct passo *passo);
 enum passo_error passo_resume(struct passo *passo);
 /* Feed override, 1 .. 100 percent, or in UQ1.16, 1 .. PASSO_RATE_FULL. While held it counts after resume. */
 enum passo_error passo_override(struct passo *passo, uint32_t percent);
 enum passo_error passo_override_q16(struct passo *passo, uint32_t rate);
-/* Soft and hard stop. What is queued is thrown away, a stream ends; then passo_clear(). */
+/* Soft and hard stop. What is queued is thrown away, a stream ends; then passo_clear(). After an error of the
+ * wire every poll sends it again before anything else; an abort takes the place of a stop. */
 enum passo_error passo_stop(struct passo *passo);
 enum passo_error passo_abort(struct passo *passo);
-/* Leaves the stopped state with empty queues and reads the positions: about four frames. Errors: MOVING while
+/* Leaves the stopped state with empty queues and reads the positions: about four frames. A stop that was not
+ * acknowledged gets through first, and steps that have not left the pins are waited for. Errors: MOVING while
  * a soft stop is still slowing down, or while a motion that nobody stopped goes on. */
 enum passo_error passo_clear(struct passo *passo);
 /* Sets all positions to 0. At rest only. */
 enum passo_error passo_zero(struct passo *passo);
-/* Motions wait, prepared, until the core's sync input rises or this is taken back. */
+/* Motions wait, prepared, until the core's sync input rises or this is taken back. If it is not acknowledged
+ * they wait, and that is sent by every poll. */
 enum passo_error passo_wait_for_sync(struct passo *passo, bool on);
 
 /* ----------------------------------------------------------------------------------------- reading ---- */

@@ -36,6 +36,12 @@ static const struct words errors[PASSO_ERROR_COUNT] = {
     [PASSO_ERROR_STREAMING] = {"STREAMING", "a stream is being fed"},
     [PASSO_ERROR_FULL] = {"FULL", "the queues have no room for it now"},
     [PASSO_ERROR_STOPPED] = {"STOPPED", "the channel is stopped: clear it first"},
+    [PASSO_ERROR_NOT_STOPPED] = {"NOT_STOPPED",
+	"the stop was not acknowledged; it is sent again until it is"},
+    [PASSO_ERROR_NOT_HELD] = {"NOT_HELD",
+	"hold or speed was not acknowledged; the slower one is sent again until it is"},
+    [PASSO_ERROR_NOT_CONFIGURED] = {"NOT_CONFIGURED",
+	"the pins of an axis are not known: configure it again"},
     [PASSO_ERROR_BROKEN] = {"BROKEN", "a command was broken off: stop or abort, then clear"},
     [PASSO_ERROR_TABLE] = {"TABLE", "it needs another shape table, which can only be loaded at rest"},
     [PASSO_ERROR_PINS_TOO_SLOW] = {"PINS_TOO_SLOW", "an axis would step faster than its pin timing allows"},
@@ -53,7 +59,7 @@ static const struct words refusals[PASSO_VERDICT_BAD_VALUE + 1u] = {
     [PASSO_VERDICT_UNKNOWN_ADDRESS] = {"UNKNOWN_ADDRESS", "refused: no register at this address"},
     [PASSO_VERDICT_READ_ONLY] = {"READ_ONLY", "refused: the register cannot be written"},
     [PASSO_VERDICT_QUEUE_FULL] = {"QUEUE_FULL", "refused: not enough room in the queue"},
-    [PASSO_VERDICT_BUSY] = {"BUSY", "refused: the channel is stopped, or a motion runs"},
+    [PASSO_VERDICT_BUSY] = {"BUSY", "refused: the state of the channel does not allow it"},
     [PASSO_VERDICT_BAD_VALUE] = {"BAD_VALUE", "refused: a value is out of range"},
 };
 

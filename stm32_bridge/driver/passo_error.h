@@ -32,15 +32,18 @@ enum passo_error {
 	PASSO_ERROR_CORE_RESET, /* the core was reset, or another host wrote to it: open it again */
 
 	/* the channel */
-	PASSO_ERROR_MOVING,        /* only possible at rest, but a motion runs or waits */
-	PASSO_ERROR_NOT_TURNING,   /* only possible while turning without end */
-	PASSO_ERROR_STREAMING,     /* a stream is being fed: wait for its end, or stop it */
-	PASSO_ERROR_FULL,          /* the queues have no room for it now: try again later */
-	PASSO_ERROR_STOPPED,       /* the channel is stopped: clear it first */
-	PASSO_ERROR_BROKEN,        /* a link error broke off a command; stop or abort, then clear */
-	PASSO_ERROR_TABLE,         /* it needs another shape table, which can only be loaded at rest */
-	PASSO_ERROR_PINS_TOO_SLOW, /* an axis would make steps faster than its pin timing allows */
-	PASSO_ERROR_SUPPLY,        /* the source of a stream gave a line or ramp that the core would refuse */
+	PASSO_ERROR_MOVING,      /* only possible at rest, but a motion runs or waits */
+	PASSO_ERROR_NOT_TURNING, /* only possible while turning without end */
+	PASSO_ERROR_STREAMING,   /* a stream is being fed: wait for its end, or stop it */
+	PASSO_ERROR_FULL,        /* the queues have no room for it now: try again later */
+	PASSO_ERROR_STOPPED,     /* the channel is stopped: clear it first */
+	PASSO_ERROR_NOT_STOPPED, /* a stop or abort was not acknowledged: every poll sends it again */
+	PASSO_ERROR_NOT_HELD,    /* a hold, resume, override or sync was not: every poll sends the slower */
+	PASSO_ERROR_BROKEN,      /* a link error broke off a command; stop or abort, then clear */
+	PASSO_ERROR_NOT_CONFIGURED, /* the pins of an axis are not known: configure it again */
+	PASSO_ERROR_TABLE,          /* it needs another shape table, which can only be loaded at rest */
+	PASSO_ERROR_PINS_TOO_SLOW,  /* an axis would make steps faster than its pin timing allows */
+	PASSO_ERROR_SUPPLY, /* the source of a stream gave a line or ramp that the core would refuse */
 
 	/* how a motion ended */
 	PASSO_ERROR_LINE_UNDERRUN, /* stopped: a line ended and the next was not there */

@@ -7,14 +7,12 @@
 #define GAP_CLOCKS_PER_WORD 4u /* ... and this for each word that it executes */
 #define MICROSECONDS 1000000u
 #define SPINS_MAX 100000u /* a clock that stands still must not hang the host */
-#define STATUS_FIXED 0xC8000000u
-#define STATUS_MARK 0x80000000u
 
 bool passo_host_status_of(const uint32_t *miso, size_t count, uint32_t *status)
 {
 	for (size_t i = 0; i < count; i++) {
 		for (size_t k = i + 1; k < count; k++) {
-			if (miso[i] == miso[k] && (miso[i] & STATUS_FIXED) == STATUS_MARK) {
+			if (miso[i] == miso[k] && passo_frame_is_status(miso[i])) {
 				*status = miso[i];
 				return true;
 			}
@@ -117,8 +115,8 @@ void passo_host_count_room(struct passo_host *host, bool known, bool executed)
 	uint32_t lines = 0, ramps = 0;
 
 	if (known) {
-		host->line_room = less((uint8_t)(host->status >> 8), host->fresh_lines);
-		host->ramp_room = less((uint8_t)host->status, host->fresh_ramps);
+		host->line_room = (uint8_t)(host->status >> 8);
+		host->ramp_room = (uint8_t)host->status;
 	}
 	if (executed && header >> 28 == PASSO_OPERATION_PUSH) {
 		if ((header & 0xFFu) == PASSO_CHANNEL_LINE)
@@ -128,6 +126,4 @@ void passo_host_count_room(struct passo_host *host, bool known, bool executed)
 	}
 	host->line_room = less(host->line_room, lines);
 	host->ramp_room = less(host->ramp_room, ramps);
-	host->fresh_lines = (uint8_t)lines;
-	host->fresh_ramps = (uint8_t)ramps;
 }

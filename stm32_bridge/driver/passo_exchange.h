@@ -10,7 +10,7 @@
  * undamaged, and now in host->status. */
 enum passo_error passo_host_exchange(struct passo_host *host, bool *known);
 
-/* Room in the queues, from the status at the fall of chip select and what was pushed since. */
+/* Room in the queues, from the status at the fall of chip select and what this frame has pushed. */
 void passo_host_count_room(struct passo_host *host, bool known, bool executed);
 
 #endif

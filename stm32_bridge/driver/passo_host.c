@@ -18,6 +18,9 @@
  * or doubled: shifted by a bit, in either direction, it is another number. */
 #define READ_SEQUENCE 0x55u
 
+#define RUN_BITS (((UINT32_C(1) << PASSO_RUN_RUN_BITS) - 1u) << PASSO_RUN_RUN_LSB)
+#define WAIT_SYNC_BITS (((UINT32_C(1) << PASSO_RUN_WAIT_SYNC_BITS) - 1u) << PASSO_RUN_WAIT_SYNC_LSB)
+
 /* Sequences are 1 .. 255. */
 static uint8_t sequence_after(uint8_t sequence)
 {
@@ -33,6 +36,13 @@ static bool continues(const struct passo_host *host, uint8_t last, uint8_t newes
 	while (sequence != last && sequence != newest)
 		sequence = sequence_after(sequence);
 	return sequence == last;
+}
+
+bool passo_host_is_unsure(const struct passo_host *host)
+{
+	const uint8_t first = host->accepted != 0u ? host->accepted : 1u;
+
+	return sequence_after(host->last_sequence) == first && host->last_sequence != host->accepted;
 }
 
 static enum passo_error lose(struct passo_host *host)
@@ -57,6 +67,8 @@ static enum passo_error try_read(struct passo_host *host)
 	if (host->guarded && !continues(host, last, host->last_sequence))
 		return lose(host);
 	host->accepted = last;
+	if (passo_host_is_unsure(host))
+		host->last_sequence = host->sent_before = last;
 	passo_host_count_room(host, known, false);
 	return error;
 }
@@ -95,10 +107,26 @@ static enum passo_error prove(struct passo_host *host, uint8_t tries)
 	return error;
 }
 
+static bool is_run(const struct passo_host *host)
+{
+	return host->send[0] >> 28 == PASSO_OPERATION_WRITE && (host->send[0] & 0xFFFu) == PASSO_ADDRESS_RUN;
+}
+
+/* It is not known whether the present frame was executed. */
+static void give_up(struct passo_host *host)
+{
+	const uint32_t before = host->run, word = host->send[1];
+
+	if (!is_run(host))
+		return;
+	host->run = (word & ~(RUN_BITS | WAIT_SYNC_BITS)) | (word & before & RUN_BITS)
+	          | ((word | before) & WAIT_SYNC_BITS);
+	host->run_due = true;
+}
+
 /* One try of a write; PENDING: there must be another, or it must be proved. */
 static enum passo_error try_write(struct passo_host *host)
 {
-	const uint32_t header = host->send[0];
 	const bool first = host->attempt == 0u;
 	bool known;
 	enum passo_error error = passo_host_exchange(host, &known);
@@ -110,14 +138,18 @@ static enum passo_error try_write(struct passo_host *host)
 		passo_host_count_room(host, known, error == PASSO_OK);
 	if (error == PASSO_OK) {
 		host->accepted = host->last_sequence;
-		if ((header & 0xFFFu) == PASSO_ADDRESS_RUN && header >> 28 == PASSO_OPERATION_WRITE)
+		if (is_run(host)) {
 			host->run = host->send[1];
+			host->run_due = false;
+		}
 		host->proving = host->guarded && !(known && first);
 		return host->proving ? PASSO_PENDING : PASSO_OK;
 	}
 	if (!is_final(error) && host->attempt != host->hardware.tries)
 		return PASSO_PENDING;
 	host->counters.failed += !is_final(error);
+	if (error < PASSO_ERROR_REFUSED)
+		give_up(host);
 	return error;
 }
 
@@ -169,11 +201,23 @@ enum passo_error passo_host_step(struct passo_host *host)
 	return PASSO_OK;
 }
 
+void passo_host_drop(struct passo_host *host)
+{
+	if (host && host->posted) {
+		give_up(host);
+		host->posted = NULL;
+	}
+}
+
 static enum passo_error send_now(struct passo_host *host, enum passo_operation operation, uint16_t address,
     const uint32_t *words, size_t length)
 {
 	enum passo_error error = make_way(host, words, length);
+	uint32_t identification;
 
+	if (error == PASSO_OK && passo_host_is_unsure(host))
+		error =
+		    read_with(host, PASSO_ADDRESS_IDENTIFICATION, &identification, 1, host->hardware.tries);
 	if (error != PASSO_OK)
 		return error;
 	begin_write(host, operation, address, words, length);
@@ -218,7 +262,8 @@ uint32_t *passo_host_payload(struct passo_host *host)
 static enum passo_error post(struct passo_host *host, enum passo_operation operation, uint16_t address,
     size_t length, enum passo_error *result)
 {
-	if (!host || !result || host->posted || length == 0u || length > PASSO_FRAME_PAYLOAD_MAX)
+	if (!host || !result || host->posted || length == 0u || length > PASSO_FRAME_PAYLOAD_MAX
+	    || passo_host_is_unsure(host))
 		return PASSO_ERROR_ARGUMENT;
 	if (!host->opened)
 		return PASSO_ERROR_NOT_OPEN;

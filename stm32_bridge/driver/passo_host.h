@@ -7,6 +7,9 @@
  * only once and acknowledges the rest as duplicates. The library needs three things of its surroundings: a
  * function that exchanges words, and optionally a clock and a way to wait.
  *
+ * A write that was given up may have been executed, but will not be later: its number is not used again
+ * before a clear reply has told which number the core accepted last.
+ *
  *     passo_host_read, _write, _push     blocking: return when the frame is settled
  *     passo_host_post_..., _step         for a main loop: each step is at most one chip select
  *
@@ -69,6 +72,7 @@ struct passo_host {
 	struct passo_counters counters;
 	uint32_t status;       /* the last undamaged status word */
 	uint32_t run;          /* what was written to the RUN register; 0: nothing */
+	bool run_due;          /* that was not acknowledged: `run` is to be written, see passo_host_write() */
 	uint32_t clock_hz;     /* of the core, for the gap between frames; 0: not known, no gap */
 	uint32_t ready_at;     /* microseconds: when the core has executed the last frame */
 	uint8_t axes;          /* of the core, for counting lines; 0: not known */
@@ -84,8 +88,6 @@ struct passo_host {
 	bool proving; /* the present frame was executed, but by which core is still to be proved */
 	/* Free places in the queues of the status channel: never more than there are; 255: or more. */
 	uint8_t line_room, ramp_room;
-	/* Pushed by the last frame: the next status may not know them yet. */
-	uint8_t fresh_lines, fresh_ramps;
 	enum passo_error *posted; /* where the result of the posted frame goes; null: none */
 	uint32_t table[3];        /* what the banks of shapes hold; see passo_table.c */
 	size_t words;             /* of the present frame */
@@ -104,7 +106,8 @@ enum passo_error passo_host_guard(struct passo_host *host, uint8_t axes, uint32_
 
 /* Reads 1 .. 60 consecutive registers, writes so many, or writes all words to one register. Errors: ARGUMENT,
  * NOT_OPEN, those of the wire, CORE_RESET, REFUSED + verdict. After an error of the wire it is not known
- * whether a write was executed; it will not be executed later. */
+ * whether a write was executed; it will not be executed later. If it was one of RUN, `run` is then what lets
+ * fewer motions start, of this word and the one before, and `run_due` says that it has to be written. */
 enum passo_error passo_host_read(struct passo_host *host, uint16_t address, uint32_t *words, size_t length);
 enum passo_error passo_host_write(
     struct passo_host *host, uint16_t address, const uint32_t *words, size_t length);
@@ -117,7 +120,7 @@ enum passo_error passo_host_read_once(
 
 /* Prepares a push, or a write, whose payload stands already in passo_host_payload(), and sends it in
  * passo_host_step(). *result is PENDING until it is settled; other calls settle it first. Only one frame can
- * be posted. */
+ * be posted, and none before a read while passo_host_is_unsure(): ARGUMENT. */
 uint32_t *passo_host_payload(struct passo_host *host);
 enum passo_error passo_host_post_push(
     struct passo_host *host, uint16_t address, size_t length, enum passo_error *result);
@@ -126,6 +129,11 @@ enum passo_error passo_host_post_write(
 /* At most one chip select for the posted frame; nothing if there is none. Returns PENDING while a frame is
  * posted, otherwise OK: the result is where it was asked for. */
 enum passo_error passo_host_step(struct passo_host *host);
+/* Gives up the posted frame, as after its last try; its result is not told. */
+void passo_host_drop(struct passo_host *host);
+/* So many writes were given up that the next number could pass for a duplicate: there must be a read first.
+ * The blocking calls see to that themselves. */
+bool passo_host_is_unsure(const struct passo_host *host);
 
 /* Copies of the status word that agree, out of the reply's first `count` words; false: too damaged. */
 bool passo_host_status_of(const uint32_t *miso, size_t count, uint32_t *status);

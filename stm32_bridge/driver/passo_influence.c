@@ -5,30 +5,39 @@
 
 #define PERCENT 100u
 
+uint32_t passo_driver_rate(const struct passo *passo)
+{
+	return passo->held ? 0u : passo->rate_target;
+}
+
+/* If it is not acknowledged, the slower one of what was and what shall be is due. */
 static enum passo_error set_rate(struct passo *passo, bool held, uint32_t target)
 {
-	enum passo_error error = passo_driver_check(passo);
-	const uint32_t rate = held ? 0u : target;
+	const bool was_held = passo->held;
+	const uint32_t was_target = passo->rate_target, was = passo_driver_rate(passo);
+	enum passo_error error = passo_driver_restrain(passo, PASSO_POST_STOP);
 
-	if (error != PASSO_OK)
-		return error;
-	if (!passo->held || !held)
-		error = passo_driver_write(passo, PASSO_CHANNEL_RATE_TARGET, &rate, 1);
-	if (error != PASSO_OK)
-		return error;
+	if (passo->post == PASSO_POST_RATE)
+		passo_driver_drop(passo);
 	passo->held = held;
 	passo->rate_target = target;
-	return PASSO_OK;
+	const bool is_slower = passo_driver_rate(passo) <= was;
+	if (error == PASSO_OK || is_slower)
+		passo->due |= PASSO_DUE_RATE;
+	if (error == PASSO_OK)
+		error = passo_driver_insist_on(passo, PASSO_POST_RATE);
+	if (error != PASSO_OK && !is_slower) {
+		passo->held = was_held;
+		passo->rate_target = was_target;
+	}
+	return error;
 }
 
 enum passo_error passo_hold(struct passo *passo)
 {
 	enum passo_error error = passo_driver_check(passo);
 
-	if (error != PASSO_OK)
-		return error;
-	passo->held = false; /* written even if it was held before */
-	return set_rate(passo, true, passo->rate_target);
+	return error != PASSO_OK ? error : set_rate(passo, true, passo->rate_target);
 }
 
 enum passo_error passo_resume(struct passo *passo)
@@ -44,8 +53,12 @@ enum passo_error passo_override_q16(struct passo *passo, uint32_t rate)
 
 	if (error != PASSO_OK)
 		return error;
-	return rate == 0u || rate > PASSO_RATE_FULL ? PASSO_ERROR_ARGUMENT
-	                                            : set_rate(passo, passo->held, rate);
+	if (rate == 0u || rate > PASSO_RATE_FULL)
+		return PASSO_ERROR_ARGUMENT;
+	if (!passo->held)
+		return set_rate(passo, false, rate);
+	passo->rate_target = rate;
+	return PASSO_OK;
 }
 
 enum passo_error passo_override(struct passo *passo, uint32_t percent)
@@ -55,26 +68,24 @@ enum passo_error passo_override(struct passo *passo, uint32_t percent)
 	return passo_override_q16(passo, (percent * PASSO_RATE_FULL + PERCENT / 2u) / PERCENT);
 }
 
-static enum passo_error halt(struct passo *passo, unsigned bit)
+static enum passo_error halt(struct passo *passo, enum passo_due due)
 {
 	enum passo_error error = passo_driver_check(passo);
 
 	if (error != PASSO_OK)
 		return error;
-	passo_driver_end_stream(passo);
-	passo->certain = false;
-	passo->halted = true;
-	return passo_driver_command(passo, UINT32_C(1) << bit);
+	passo_driver_halt(passo, due);
+	return passo_driver_insist_on(passo, PASSO_POST_STOP);
 }
 
 enum passo_error passo_stop(struct passo *passo)
 {
-	return halt(passo, PASSO_CHANNEL_COMMAND_STOP_LSB);
+	return halt(passo, PASSO_DUE_STOP);
 }
 
 enum passo_error passo_abort(struct passo *passo)
 {
-	return halt(passo, PASSO_CHANNEL_COMMAND_ABORT_LSB);
+	return halt(passo, PASSO_DUE_ABORT);
 }
 
 enum passo_error passo_clear(struct passo *passo)
@@ -83,10 +94,15 @@ enum passo_error passo_clear(struct passo *passo)
 
 	if (error != PASSO_OK)
 		return error;
-	error = passo_driver_look(passo, false);
+	error = passo_driver_restrain(passo, PASSO_POST_RUN);
+	if (error == PASSO_OK)
+		error = passo_driver_look_at_rest(passo);
 	if (error != PASSO_OK)
 		return error;
-	if (passo_driver_occupied(passo))
+	/* between two motions none runs, but one waits */
+	const bool goes_on = passo->snapshot.state == PASSO_STATE_IDLE && !passo_driver_at_rest(passo)
+	                  && !passo->broken && !passo->halted && passo->stream != PASSO_STREAM_FILLS;
+	if (goes_on || !passo->snapshot.quiet)
 		return PASSO_ERROR_MOVING;
 	passo_driver_end_stream(passo);
 	/* what still waits must not start in the meantime */
@@ -94,7 +110,7 @@ enum passo_error passo_clear(struct passo *passo)
 		error = passo_driver_gate(passo, PASSO_GATE_CLOSED);
 	if (error == PASSO_OK)
 		error = passo_driver_look(passo, false);
-	if (error == PASSO_OK && passo_driver_occupied(passo))
+	if (error == PASSO_OK && !passo->snapshot.quiet)
 		error = PASSO_ERROR_MOVING;
 	if (error == PASSO_OK)
 		error = passo_driver_take_over(passo);
@@ -107,10 +123,15 @@ enum passo_error passo_zero(struct passo *passo)
 
 	if (error == PASSO_OK)
 		error = passo_driver_ready(passo, true);
-	if (error == PASSO_OK)
-		error = passo_driver_command(passo, UINT32_C(1) << PASSO_CHANNEL_COMMAND_ZERO_LSB);
 	if (error != PASSO_OK)
 		return error;
+	error = passo_driver_command(passo, UINT32_C(1) << PASSO_CHANNEL_COMMAND_ZERO_LSB);
+	if (passo_driver_is_wire(error)) {
+		passo->certain = false; /* the positions are read by the next polls */
+		passo->expecting = true;
+	}
+	if (error != PASSO_OK)
+		return passo_driver_moving(error);
 	const int32_t zeros[PASSO_AXES_MAX] = {0};
 	passo_driver_ended(passo, zeros);
 	return PASSO_OK;
@@ -123,9 +144,12 @@ enum passo_error passo_wait_for_sync(struct passo *passo, bool on)
 	if (error != PASSO_OK)
 		return error;
 	const enum passo_gate gate = on ? PASSO_GATE_SYNC : PASSO_GATE_OPEN;
-	if (!passo->starting)
+	error = passo_driver_restrain(passo, PASSO_POST_STOP);
+	if (passo->post == PASSO_POST_START)
+		passo_driver_drop(passo); /* it would start with the gate as it was */
+	if (error == PASSO_OK && passo->stream != PASSO_STREAM_FILLS)
 		error = passo_driver_gate(passo, gate);
-	if (error == PASSO_OK)
+	if (error == PASSO_OK || (on && passo_driver_is_wire(error)))
 		passo->gate = gate;
 	return error;
 }

@@ -30,7 +30,7 @@ static enum passo_error judge(struct passo *passo, enum passo_error error, bool 
 	if ((unsigned)error == PASSO_ERROR_REFUSED + PASSO_VERDICT_QUEUE_FULL && !half_done)
 		return PASSO_ERROR_FULL;
 	if (error != PASSO_OK && (half_done || passo_driver_is_wire(error)))
-		passo->broken = true;
+		passo_driver_break(passo);
 	return error;
 }
 
@@ -77,6 +77,8 @@ enum passo_error passo_move_plan(
 	if (!pins_suffice(passo, plan))
 		return PASSO_ERROR_PINS_TOO_SLOW;
 	error = passo_driver_ready(passo, plan->line.endless);
+	if (error == PASSO_OK && !passo_driver_pins_known(passo, &plan->line))
+		error = PASSO_ERROR_NOT_CONFIGURED;
 	if (error == PASSO_OK
 	    && (passo->snapshot.line_room == 0u || passo->snapshot.ramp_room < plan->ramp_count))
 		error = PASSO_ERROR_FULL;

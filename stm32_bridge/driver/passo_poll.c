@@ -3,10 +3,8 @@
  */
 #include "passo_driver.h"
 
-/* Without a clock: so many looks at a resting channel before a wrong position counts. */
-#define IDLE_LOOKS_MAX 64u
-/* Between two motions a channel rests for a few clocks: one look is not enough. */
-#define IDLE_LOOKS_MIN 2u
+/* Looks in a row until it is sure that everything has ended. */
+#define IDLE_LOOKS 2u
 
 static enum passo_error tell(struct passo *passo, enum passo_error error)
 {
@@ -50,10 +48,20 @@ static enum passo_error see_stop(struct passo *passo)
 	const bool is_news = !passo->halted || passo->expecting;
 
 	passo_driver_end_stream(passo);
-	passo->expecting = passo->turning_is_on = passo->certain = false;
+	passo->turning_is_on = passo->certain = false;
+	passo->expecting = !passo->snapshot.quiet; /* the last steps leave the pins */
 	passo->halted = true;
 	passo->idle_looks = 0;
-	return fault != PASSO_OK && is_news ? tell(passo, fault) : PASSO_OK;
+	return is_news && fault != PASSO_OK && fault != passo->fault ? tell(passo, fault) : PASSO_OK;
+}
+
+/* Nothing moves or waits. Ramps that a broken command has left behind do not move without a line. */
+static bool has_ended(const struct passo *passo)
+{
+	if (passo->broken)
+		return passo->snapshot.state == PASSO_STATE_IDLE && passo->snapshot.quiet
+		    && passo->snapshot.line_room == passo->line_places;
+	return passo->stream == PASSO_STREAM_NONE && passo_driver_at_rest(passo);
 }
 
 static enum passo_error look(struct passo *passo)
@@ -65,11 +73,21 @@ static enum passo_error look(struct passo *passo)
 	passo->misses = 0;
 	if (passo->snapshot.state == PASSO_STATE_STOPPED)
 		return see_stop(passo);
-	if (!passo_driver_at_rest(passo) || passo->streaming)
+	if (!has_ended(passo))
 		passo->idle_looks = 0;
-	else if (passo->idle_looks++ == 0u)
-		passo->idle_since = passo->looked_at;
+	else if (passo->idle_looks < IDLE_LOOKS)
+		passo->idle_looks++;
 	return PASSO_OK;
+}
+
+/* As long as it does not get through, that is told after as many tries as other errors of the wire. */
+static enum passo_error insist(struct passo *passo)
+{
+	enum passo_error error = passo_driver_insist(passo);
+
+	if (error == PASSO_OK || error == PASSO_PENDING)
+		return PASSO_OK;
+	return error == PASSO_ERROR_CORE_RESET ? miss(passo, error) : passo_driver_due(passo);
 }
 
 static bool is_at(const struct passo *passo, const int32_t *positions)
@@ -81,25 +99,18 @@ static bool is_at(const struct passo *passo, const int32_t *positions)
 	return true;
 }
 
-/* The channel rests: is it where it should be? The last pulses may still be under way. */
+/* The channel rests: is it where it should be? */
 static enum passo_error see_end(struct passo *passo)
 {
 	int32_t positions[PASSO_AXES_MAX];
 	enum passo_error error = passo_driver_positions(passo, positions, true);
-	const uint32_t waited = passo_driver_now(passo) - passo->idle_since;
-	const bool has_clock = passo->host->hardware.microseconds != NULL;
 
 	if (error != PASSO_OK)
 		return miss(passo, error);
 	passo->misses = 0;
-	if (!passo->certain || is_at(passo, positions)) {
-		passo_driver_ended(passo, positions);
-		return PASSO_OK;
-	}
-	if (has_clock ? waited <= passo->settle_microseconds : passo->idle_looks <= IDLE_LOOKS_MAX)
-		return look(passo);
+	const bool is_wrong = passo->certain && !is_at(passo, positions);
 	passo_driver_ended(passo, positions);
-	return tell(passo, PASSO_ERROR_POSITION);
+	return is_wrong ? tell(passo, PASSO_ERROR_POSITION) : PASSO_OK;
 }
 
 static bool is_due(const struct passo *passo)
@@ -123,21 +134,29 @@ enum passo_error passo_poll(struct passo *passo)
 		passo_driver_end_stream(passo);
 		return tell(passo, PASSO_ERROR_CORE_RESET);
 	}
-	if (passo->stop_due)
-		return passo_driver_post_stop(passo);
-	if (passo->streaming) {
+	if (passo->host->posted && passo->host->posted != &passo->posted) {
+		passo_host_step(passo->host); /* another channel's frame goes first */
+		return PASSO_OK;
+	}
+	if (passo_driver_due(passo) != PASSO_OK || passo->post > PASSO_POST_START)
+		return insist(passo);
+	if (passo_host_is_unsure(passo->host))
+		return look(passo);
+	if (passo->stream != PASSO_STREAM_NONE) {
 		error = passo_driver_feed(passo, &sent);
 		if (error != PASSO_OK || sent)
 			return error;
 	}
-	if (passo->expecting && passo->idle_looks >= IDLE_LOOKS_MIN)
+	if (passo->expecting && passo->idle_looks == IDLE_LOOKS)
 		return see_end(passo);
 	return is_due(passo) || (passo->expecting && passo->idle_looks != 0u) ? look(passo) : PASSO_OK;
 }
 
 bool passo_is_moving(const struct passo *passo)
 {
-	return passo && passo->opened && (passo->expecting || passo->streaming);
+	return passo && passo->opened
+	    && (passo->expecting || passo->stream != PASSO_STREAM_NONE
+	        || passo_driver_due(passo) == PASSO_ERROR_NOT_STOPPED);
 }
 
 const struct passo_snapshot *passo_snapshot(const struct passo *passo)
@@ -147,7 +166,12 @@ const struct passo_snapshot *passo_snapshot(const struct passo *passo)
 
 enum passo_error passo_fault(const struct passo *passo)
 {
-	return passo ? passo->fault : PASSO_ERROR_ARGUMENT;
+	enum passo_error error = passo_driver_check(passo);
+
+	if (error != PASSO_OK)
+		return error;
+	error = passo->host->lost ? PASSO_OK : passo_driver_due(passo);
+	return error != PASSO_OK ? error : passo->fault;
 }
 
 enum passo_error passo_wait(struct passo *passo, uint32_t timeout_microseconds)

@@ -6,8 +6,7 @@
 #define CLOCKS_MAX 65535u
 #define NANOSECONDS UINT64_C(1000000000)
 #define MICROSECONDS UINT64_C(1000000)
-/* At the end of a motion an axis has at most four steps waiting and one under way. */
-#define STEPS_UNDER_WAY 5u
+#define LOOKS_AT_REST 2u /* in a row */
 
 /* A time of the pins in clocks, rounded up; above CLOCKS_MAX if it is too long. */
 static uint64_t clocks_of(const struct passo *passo, const struct passo_axis_config *config, uint32_t time)
@@ -62,15 +61,22 @@ enum passo_error passo_configure_axis(
 	};
 	error = passo_driver_write(
 	    passo, address_of(axis, PASSO_AXIS_PINS), words, sizeof words / sizeof words[0]);
+	if (passo_driver_is_wire(error))
+		memory->shortest_clocks = 0;
 	if (error != PASSO_OK)
-		return error;
+		return passo_driver_moving(error);
 	memory->steps_per_unit = config->steps_per_unit;
 	memory->shortest_clocks = (uint32_t)(config->both_edges ? (high > low ? high : low) : high + low);
-	const uint64_t settle =
-	    STEPS_UNDER_WAY * (high + low + setup + hold) * MICROSECONDS / passo->machine.clock_hz + 1u;
-	if (passo->settle_microseconds < settle)
-		passo->settle_microseconds = settle < UINT32_MAX / 2u ? (uint32_t)settle : UINT32_MAX / 2u;
 	return PASSO_OK;
+}
+
+bool passo_driver_pins_known(const struct passo *passo, const struct passo_line *line)
+{
+	for (unsigned i = 0; i < passo->machine.axes; i++) {
+		if (line->steps[i] != 0u && passo->axis[i].shortest_clocks == 0u)
+			return false;
+	}
+	return true;
 }
 
 enum passo_error passo_enable(struct passo *passo, uint8_t axis, bool on)
@@ -79,8 +85,16 @@ enum passo_error passo_enable(struct passo *passo, uint8_t axis, bool on)
 
 	if (error != PASSO_OK)
 		return error;
-	const uint32_t word = (uint32_t)on << PASSO_AXIS_ENABLE_LSB;
-	return passo_driver_write(passo, address_of(axis, PASSO_AXIS_ENABLE), &word, 1);
+	const uint32_t enable = (uint32_t)on << PASSO_AXIS_ENABLE_LSB;
+	for (unsigned looks = 0; !on && looks < LOOKS_AT_REST; looks++) {
+		error = passo_driver_look_at_rest(passo);
+		if (error != PASSO_OK)
+			return error;
+		if (!passo_driver_at_rest(passo)
+		    && !(passo->snapshot.state == PASSO_STATE_STOPPED && passo->snapshot.quiet))
+			return PASSO_ERROR_MOVING;
+	}
+	return passo_driver_write(passo, address_of(axis, PASSO_AXIS_ENABLE), &enable, 1);
 }
 
 /* Change of rate in a tick, so that full rate takes so long. */

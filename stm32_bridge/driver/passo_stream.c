@@ -9,6 +9,7 @@
 #define LOOK_MICROSECONDS_STREAMING 50u
 /* A queue with fewer places may run dry in that time. */
 #define PLACES_FEW 64u
+#define STATUS_CHANNEL_LSB 24u
 
 static uint32_t line_words(const struct passo *passo)
 {
@@ -24,7 +25,8 @@ static uint32_t smaller(uint32_t a, uint32_t b)
  */
 static uint32_t worthwhile(const struct passo *passo, uint32_t words, uint32_t places)
 {
-	return passo->starting ? 1u : smaller(PASSO_FRAME_PAYLOAD_MAX / words, places / 2u);
+	return passo->stream == PASSO_STREAM_FILLS ? 1u
+	                                           : smaller(PASSO_FRAME_PAYLOAD_MAX / words, places / 2u);
 }
 
 static bool wants_lines(const struct passo *passo)
@@ -39,15 +41,16 @@ static bool wants_ramps(const struct passo *passo)
 	    && passo->snapshot.ramp_room >= worthwhile(passo, PASSO_RAMP_WORDS, passo->ramp_places);
 }
 
+/* The stream can begin. */
 static bool is_prepared(const struct passo *passo)
 {
-	return (passo->lines_done || passo->snapshot.line_room == 0u)
+	return passo->stream == PASSO_STREAM_FILLS && (passo->lines_done || passo->snapshot.line_room == 0u)
 	    && (passo->ramps_done || passo->snapshot.ramp_room == 0u);
 }
 
 uint32_t passo_driver_interval(const struct passo *passo)
 {
-	if (!passo->streaming)
+	if (passo->stream == PASSO_STREAM_NONE)
 		return LOOK_MICROSECONDS;
 	return passo->line_places < PLACES_FEW ? 0u : LOOK_MICROSECONDS_STREAMING;
 }
@@ -66,8 +69,8 @@ static bool is_line(const struct passo *passo, const struct passo_line *line)
 
 static bool is_ramp(const struct passo_ramp *ramp)
 {
-	return ramp->velocity_end <= PASSO_VELOCITY_MAX && (unsigned)ramp->shape <= PASSO_SHAPE_EASE
-	    && ramp->progress_step <= PASSO_PROGRESS_STEP_MAX;
+	return !ramp->now && ramp->velocity_end <= PASSO_VELOCITY_MAX
+	    && (unsigned)ramp->shape <= PASSO_SHAPE_EASE && ramp->progress_step <= PASSO_PROGRESS_STEP_MAX;
 }
 
 /* As many lines as there are, are wanted, and have room. */
@@ -85,6 +88,8 @@ static enum passo_error take_lines(struct passo *passo, size_t *length)
 		}
 		if (!is_line(passo, &line))
 			return PASSO_ERROR_SUPPLY;
+		if (!passo_driver_pins_known(passo, &line))
+			return PASSO_ERROR_NOT_CONFIGURED;
 		*length += passo_line_words(payload + *length, &line, passo->machine.axes);
 		passo->lines_done = line.last;
 		passo->certain = passo->certain && !line.endless;
@@ -119,30 +124,30 @@ static enum passo_error take_ramps(struct passo *passo, size_t *length)
 
 void passo_driver_end_stream(struct passo *passo)
 {
-	passo->streaming = passo->starting = false;
+	passo->stream = PASSO_STREAM_NONE;
+	if (passo->post == PASSO_POST_ITEMS || passo->post == PASSO_POST_START)
+		passo_driver_drop(passo);
 }
 
 static enum passo_error fail(struct passo *passo, enum passo_error error)
 {
-	passo_driver_end_stream(passo);
-	passo->broken = passo->stop_due = true;
-	passo->certain = false;
+	passo_driver_halt(passo, PASSO_DUE_STOP);
+	passo->broken = true;
 	passo->fault = error;
 	return error;
 }
 
-/* Takes over what became of the posted frame. */
-static enum passo_error settle(struct passo *passo)
+enum passo_error passo_driver_settle_stream(struct passo *passo)
 {
 	const struct passo_host *host = passo->host;
 	struct passo_snapshot *snapshot = &passo->snapshot;
+	const enum passo_post done = passo->post;
 	const enum passo_error error = passo->posted;
 
-	passo->posted = PASSO_OK;
-	if (passo->opening) {
-		passo->opening = false;
-		passo->starting = error != PASSO_OK;
-		return error != PASSO_OK ? fail(passo, error) : PASSO_OK;
+	passo->post = PASSO_POST_NONE;
+	if (done == PASSO_POST_START && error == PASSO_OK) {
+		passo->stream = PASSO_STREAM_RUNS;
+		return PASSO_OK;
 	}
 	if ((unsigned)error == PASSO_ERROR_REFUSED + PASSO_VERDICT_BUSY) {
 		passo_driver_end_stream(passo); /* it has stopped; the next look tells why */
@@ -150,7 +155,7 @@ static enum passo_error settle(struct passo *passo)
 	}
 	if (error != PASSO_OK)
 		return fail(passo, error);
-	if ((host->run >> PASSO_RUN_STATUS_CHANNEL_LSB & 7u) != passo->channel)
+	if ((host->status >> STATUS_CHANNEL_LSB & 7u) != passo->channel)
 		return PASSO_OK;
 	/* both are never too much */
 	if (snapshot->line_room < host->line_room)
@@ -168,9 +173,7 @@ enum passo_error passo_driver_feed(struct passo *passo, bool *sent)
 
 	*sent = false;
 	passo->lines_dry = passo->ramps_dry = false;
-	if (passo->host->posted && passo->host->posted != &passo->posted)
-		return PASSO_OK; /* another channel's turn */
-	if (passo->posted == PASSO_OK) {
+	if (passo->post == PASSO_POST_NONE) {
 		if (wants_ramps(passo))
 			error = take_ramps(passo, &length);
 		if (error == PASSO_OK && length == 0u && wants_lines(passo)) {
@@ -179,46 +182,25 @@ enum passo_error passo_driver_feed(struct passo *passo, bool *sent)
 		}
 		if (error != PASSO_OK)
 			return fail(passo, error);
-		if (length == 0u && passo->starting && is_prepared(passo)) {
+		if (length == 0u && is_prepared(passo)) {
 			*passo_host_payload(passo->host) = passo_driver_run(passo, passo->gate);
-			passo->opening = true;
-		} else if (length == 0u) {
-			passo->streaming = !passo->lines_done || !passo->ramps_done || passo->starting;
-			return PASSO_OK;
-		}
-		if (passo->opening)
+			passo->post = PASSO_POST_START;
 			error = passo_host_post_write(passo->host, PASSO_ADDRESS_RUN, 1, &passo->posted);
-		else
+		} else if (length == 0u) {
+			if (passo->stream == PASSO_STREAM_RUNS && passo->lines_done && passo->ramps_done)
+				passo->stream = PASSO_STREAM_NONE;
+			return PASSO_OK;
+		} else {
+			passo->post = PASSO_POST_ITEMS;
 			error = passo_host_post_push(
 			    passo->host, (uint16_t)(passo->base + address), length, &passo->posted);
+		}
 		if (error != PASSO_OK)
 			return fail(passo, error);
 	}
 	*sent = true;
 	passo_host_step(passo->host);
-	return passo->posted == PASSO_PENDING ? PASSO_OK : settle(passo);
-}
-
-enum passo_error passo_driver_post_stop(struct passo *passo)
-{
-	if (passo->host->posted && passo->host->posted != &passo->posted)
-		return PASSO_OK;
-	if (passo->posted != PASSO_PENDING && !passo->halted) {
-		const uint16_t address = (uint16_t)(passo->base + PASSO_CHANNEL_COMMAND);
-
-		passo->halted = true;
-		*passo_host_payload(passo->host) = UINT32_C(1) << PASSO_CHANNEL_COMMAND_STOP_LSB;
-		enum passo_error error = passo_host_post_write(passo->host, address, 1, &passo->posted);
-		if (error != PASSO_OK)
-			return error;
-	}
-	passo_host_step(passo->host);
-	if (passo->posted == PASSO_PENDING)
-		return PASSO_OK;
-	enum passo_error error = passo->posted;
-	passo->posted = PASSO_OK;
-	passo->stop_due = false;
-	return error;
+	return passo->posted == PASSO_PENDING ? PASSO_OK : passo_driver_settle_stream(passo);
 }
 
 enum passo_error passo_stream(struct passo *passo, const struct passo_source *source)
@@ -235,10 +217,8 @@ enum passo_error passo_stream(struct passo *passo, const struct passo_source *so
 	if (error != PASSO_OK)
 		return error;
 	passo->source = *source;
-	passo->streaming = passo->starting = true;
+	passo->stream = PASSO_STREAM_FILLS;
 	passo->lines_done = passo->ramps_done = false;
-	passo->posted = PASSO_OK;
-	passo->opening = false;
 	return PASSO_OK;
 }
 
@@ -248,29 +228,31 @@ enum passo_error passo_stream_start(struct passo *passo)
 
 	if (error != PASSO_OK)
 		return error;
-	if (!passo->starting)
+	if (passo->stream != PASSO_STREAM_FILLS)
 		return PASSO_ERROR_ARGUMENT;
+	if (passo->post == PASSO_POST_START)
+		passo_driver_drop(passo);
 	error = passo_driver_gate(passo, passo->gate);
 	if (error != PASSO_OK)
 		return fail(passo, error);
-	passo->starting = false;
+	passo->stream = PASSO_STREAM_RUNS;
 	return PASSO_OK;
 }
 
 bool passo_is_streaming(const struct passo *passo)
 {
-	return passo && passo->streaming;
+	return passo && passo->stream != PASSO_STREAM_NONE;
 }
 
 uint32_t passo_idle_time(const struct passo *passo)
 {
 	if (passo_driver_check(passo) != PASSO_OK)
 		return 0;
-	if (passo->streaming
-	    && (passo->posted == PASSO_PENDING || wants_lines(passo) || wants_ramps(passo)
-	        || (passo->starting && is_prepared(passo))))
+	if (passo->stream != PASSO_STREAM_NONE
+	    && (passo->post != PASSO_POST_NONE || wants_lines(passo) || wants_ramps(passo)
+	        || is_prepared(passo)))
 		return 0;
-	if (passo->stop_due || (passo->expecting && passo->idle_looks != 0u))
+	if (passo_driver_due(passo) != PASSO_OK || (passo->expecting && passo->idle_looks != 0u))
 		return 0;
 	const uint32_t since = passo_driver_now(passo) - passo->looked_at;
 	const uint32_t interval = passo_driver_interval(passo);

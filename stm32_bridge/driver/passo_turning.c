@@ -34,7 +34,10 @@ static enum passo_error turn_on(struct passo *passo, bool stop, uint64_t rpm)
 
 	if (error != PASSO_OK)
 		return error;
-	if (passo->broken && !passo->host->lost)
+	error = passo_driver_restrain(passo, PASSO_POST_RUN);
+	if (error != PASSO_OK)
+		return error;
+	if (passo->broken)
 		return PASSO_ERROR_BROKEN;
 	if (!passo->turning_is_on || passo->turning_ends)
 		return PASSO_ERROR_NOT_TURNING;
@@ -57,6 +60,11 @@ static enum passo_error turn_on(struct passo *passo, bool stop, uint64_t rpm)
 	if (passo->snapshot.ramp_room < plan.ramp_count)
 		return PASSO_ERROR_FULL;
 	error = passo_driver_push_ramps(passo, &plan);
+	if (stop && passo_driver_is_wire(error))
+		passo_driver_halt(passo, PASSO_DUE_STOP);
+	if (error == PASSO_ERROR_STOPPED && passo_driver_look(passo, false) == PASSO_OK
+	    && passo->snapshot.state != PASSO_STATE_STOPPED)
+		error = PASSO_ERROR_NOT_TURNING; /* its end was decided already */
 	if (error != PASSO_OK)
 		return error;
 	passo->velocity_peak = plan.velocity_peak;

@@ -8,9 +8,9 @@
 
 module top #(
   parameter AXES         = 4,
-  parameter CLOCK_HZ     = 120_000_000,
+  parameter CLOCK_HZ     = 108_000_000,
   parameter DIVR         = 0,
-  parameter DIVF         = 79,
+  parameter DIVF         = 71,
   parameter DIVQ         = 3,
   parameter FILTER_RANGE = 1
 ) (

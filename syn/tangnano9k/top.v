@@ -30,6 +30,7 @@ module top #(
 
   wire clk;
   wire locked;
+  wire sclk;
   wire miso;
   wire miso_enable;
   wire heartbeat;
@@ -55,6 +56,11 @@ module top #(
     .FDLY   (4'd0)
   );
 
+  BUFG u_sclk (
+    .I(spi_sclk),
+    .O(sclk)
+  );
+
   // driven while selected
   TBUF u_miso (
     .I  (miso),
@@ -70,7 +76,7 @@ module top #(
   ) u_board (
     .clk            (clk),
     .locked         (locked),
-    .spi_sclk       (spi_sclk),
+    .spi_sclk       (sclk),
     .spi_mosi       (spi_mosi),
     .spi_cs_n       (spi_cs_n),
     .spi_miso       (miso),

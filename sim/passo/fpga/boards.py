@@ -19,7 +19,7 @@ class BoardError(ValueError):
 
 @dataclass(frozen=True)
 class Board:
-    """What board.toml says; `load` is the command that takes a bitstream to the board."""
+    """What board.toml says; `load` is the command that takes a bitstream to the board, `pack` are options."""
 
     name: str
     title: str
@@ -29,6 +29,7 @@ class Board:
     clock_mhz: float
     axes: int
     load: str
+    pack: tuple[str, ...] = ()
 
     @property
     def top(self) -> Path:
@@ -73,4 +74,5 @@ def _read(path: Path) -> Board:
     facts = tomllib.loads(path.read_text())
     facts["device"] = DEVICES[facts["device"]]
     facts["pins"] = path.parent / facts["pins"]
+    facts["pack"] = tuple(facts.get("pack", ()))
     return Board(name=path.parent.name, **facts)

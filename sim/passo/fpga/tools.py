@@ -6,6 +6,7 @@ folder of their results and get relative paths only.
 """
 
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Callable, Iterable, Sequence
@@ -13,12 +14,12 @@ from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
-from passo.console import console
 from passo.toolchain import paths
 
 FOLDER = paths.build / "fpga"
 MESSAGE_LINES = 12  # of a tool's last words
 POLL_SECONDS = 2
+WORKER_BYTES = 3 << 30  # what a tool may take of the memory
 
 # Python package that a program is part of; none of them is there before `tools/setup.sh fpga`.
 PACKAGES = {
@@ -42,13 +43,21 @@ def versions(programs: tuple[str, ...]) -> str:
     return " ".join(f"{name} {version(name)}" for name in dict.fromkeys(PACKAGES[p] for p in programs))
 
 
-def prepare(programs: Iterable[str]) -> None:
+def workers() -> int:
+    """How many tools can run at the same time: one on each core, if the memory holds them."""
+    facts = Path("/proc/meminfo").read_text()
+    found = re.search(r"^MemAvailable: +(\d+) kB", facts, re.M)
+    free = int(found.group(1)) << 10 if found else 0
+    return max(1, min(len(os.sched_getaffinity(0)), free // WORKER_BYTES))
+
+
+def prepare(programs: Iterable[str], tell: Callable[[str], None] = lambda words: None) -> None:
     """Let these programs be compiled, one after the other, where that has not happened yet."""
     for program in programs:
         if not PACKAGES[program].startswith("yowasp"):
             continue
-        with console.status(f"Preparing {program} (1 to 3 minutes the first time)"):
-            done = subprocess.run([_path(program), "-V"], capture_output=True, text=True)
+        tell(f"preparing {program} (1 to 3 minutes the first time)")
+        done = subprocess.run([_path(program), "-V"], capture_output=True, text=True)
         # The packers know no -V and say so; what counts is that they ran.
         if "Traceback" in done.stderr:
             raise ToolError(f"{program} does not run:\n{done.stderr}")
@@ -59,11 +68,12 @@ def run(
     arguments: Sequence[object],
     folder: Path,
     log: str,
-    hopeless: Callable[[], bool] = lambda: False,
+    hopeless: Callable[[float], bool] = lambda seconds: False,
 ) -> int | None:
     """Run a program in `folder` with its words in `log` there; return its exit status.
 
-    None if it was stopped, because it did not end and `hopeless`, which is asked every few seconds, said so.
+    None if it was stopped, because it did not end and `hopeless` said so. It is asked every few seconds
+    and gets the seconds that the program has computed.
     """
     command = [_path(program), *map(str, arguments)]
     with (
@@ -77,10 +87,16 @@ def run(
                 try:
                     return process.wait(POLL_SECONDS)
                 except subprocess.TimeoutExpired:
-                    if hopeless():
+                    if hopeless(_computed(process.pid)):
                         return None
         finally:
             process.kill()
+
+
+def _computed(process: int) -> float:
+    """Seconds on a core up to now, whatever else the machine has to do."""
+    facts = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+    return sum(map(int, facts[11:13])) / os.sysconf("SC_CLK_TCK")  # in user and in system mode
 
 
 def check(program: str, arguments: Sequence[object], folder: Path, log: str) -> None:

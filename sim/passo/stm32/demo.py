@@ -7,8 +7,7 @@ from textwrap import fill
 
 import numpy as np
 
-from passo.console import console, progress, table
-from passo.demo import EXAMPLES
+from passo.console import console, progress, stages, table
 from passo.report import write_json
 from passo.stm32.board import Board
 from passo.stm32.play import Played, planned_clocks, play
@@ -16,13 +15,15 @@ from passo.toolchain import paths
 
 FOLDER = paths.build / "firmware_demo"
 CLOCK_HZ = 36_000_000  # of the core; SCLK is 9 MHz
-PICTURED = ("three_axes", "there_and_back", "straight")
+EXAMPLES = ("three_axes", "cosine", "triangle")  # together about a second of motion, half a minute here
+PICTURED = 3
 LINE_WIDTH = 90  # characters of what was typed
 SHOWN = 0.0006  # seconds of pulses
 
 
 def demo(files: list[Path] | None = None, engine: str = "rtl") -> bool:
     """Run it; return whether every edge was where the C model and the planner on the PC put it."""
+    tell = stages()
     paths_ = files or [paths.examples / f"{name}.toml" for name in EXAMPLES]
     shown = table(
         "Typed at the console of the firmware; compared edge for edge with the C model fed on the PC",
@@ -31,7 +32,9 @@ def demo(files: list[Path] | None = None, engine: str = "rtl") -> bool:
     results, good = {}, True
     pictures: dict[str, tuple[list[Played], Board]] = {}
     for path in paths_:
-        with progress(path.stem, planned_clocks(path, CLOCK_HZ)) as report:
+        clocks = planned_clocks(path, CLOCK_HZ)
+        tell(f"{path.stem}: {clocks / CLOCK_HZ:.3f} s of motion, {clocks:,} clocks")
+        with progress(path.stem, clocks) as report:
             played, board, took = play(path, CLOCK_HZ, engine, report)
         for move in played:
             if move.difference:
@@ -48,6 +51,11 @@ def demo(files: list[Path] | None = None, engine: str = "rtl") -> bool:
             "instructions": board.instructions,
             "awake": awake,
         }
+        wrong = sum(bool(move.difference) for move in played)
+        tell(
+            f"{path.stem}: {results[path.stem]['edges']:,} edges, "
+            + (f"{wrong} moves differ" if wrong else "all as expected")
+        )
         steps = sum(len(move.made.steps(axis)[0]) for move in played for axis in range(8))
         shown.add_row(
             path.stem, f"{steps:,}", f"{sum(move.seconds for move in played):.3f} s",
@@ -57,8 +65,8 @@ def demo(files: list[Path] | None = None, engine: str = "rtl") -> bool:
         pictures[path.stem] = (played, board)
     FOLDER.mkdir(parents=True, exist_ok=True)
     write_json({"ok": good, "runs": results}, FOLDER / "summary.json")
-    names = [name for name in PICTURED if name in pictures] or list(pictures)[:3]
-    draw({name: pictures[name] for name in names}, FOLDER / "firmware.png")
+    draw(dict(list(pictures.items())[:PICTURED]), FOLDER / "firmware.png")
+    tell("picture drawn")
     console.print(shown)
     console.print("awake: the processor, of all the time from its reset on")
     console.print(f"Picture and summary: {FOLDER.relative_to(paths.root)}/")

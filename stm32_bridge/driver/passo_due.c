@@ -1,0 +1,130 @@
+/* SPDX-License-Identifier: MIT
+ * What restrains a motion is sent until it is acknowledged: abort, stop, hold and override, the gate.
+ *
+ * To send one of them again is harmless whether or not it was executed before: each says what shall be.
+ */
+#include "passo_driver.h"
+
+/* The most urgent of what is due. */
+static enum passo_post urgent(const struct passo *passo)
+{
+	if ((passo->due & PASSO_DUE_ABORT) != 0u)
+		return PASSO_POST_ABORT;
+	if ((passo->due & PASSO_DUE_STOP) != 0u)
+		return PASSO_POST_STOP;
+	if ((passo->due & PASSO_DUE_RATE) != 0u)
+		return PASSO_POST_RATE;
+	return passo->host->run_due ? PASSO_POST_RUN : PASSO_POST_NONE;
+}
+
+enum passo_error passo_driver_due(const struct passo *passo)
+{
+	const enum passo_post most = urgent(passo);
+
+	if (most == PASSO_POST_NONE)
+		return PASSO_OK;
+	return most >= PASSO_POST_STOP ? PASSO_ERROR_NOT_STOPPED : PASSO_ERROR_NOT_HELD;
+}
+
+void passo_driver_drop(struct passo *passo)
+{
+	if (passo->host->posted == &passo->posted)
+		passo_host_drop(passo->host);
+	passo->post = PASSO_POST_NONE;
+}
+
+static enum passo_error post(struct passo *passo, enum passo_post most)
+{
+	uint32_t word = passo->host->run;
+	uint16_t address = PASSO_ADDRESS_RUN;
+
+	if (most == PASSO_POST_RATE) {
+		word = passo_driver_rate(passo);
+		address = (uint16_t)(passo->base + PASSO_CHANNEL_RATE_TARGET);
+	} else if (most != PASSO_POST_RUN) {
+		word = UINT32_C(1) << (most == PASSO_POST_ABORT ? PASSO_CHANNEL_COMMAND_ABORT_LSB
+		                                                : PASSO_CHANNEL_COMMAND_STOP_LSB);
+		address = (uint16_t)(passo->base + PASSO_CHANNEL_COMMAND);
+	}
+	*passo_host_payload(passo->host) = word;
+	enum passo_error error = passo_host_post_write(passo->host, address, 1, &passo->posted);
+	if (error == PASSO_OK)
+		passo->post = most;
+	return error;
+}
+
+/* Takes over what became of the posted frame. */
+static enum passo_error settle(struct passo *passo)
+{
+	static const uint8_t DONE[] = {
+	    [PASSO_POST_RATE] = PASSO_DUE_RATE,
+	    [PASSO_POST_STOP] = PASSO_DUE_STOP,
+	    [PASSO_POST_ABORT] = PASSO_DUE_STOP | PASSO_DUE_ABORT,
+	};
+	const enum passo_post done = passo->post;
+	enum passo_error error = passo->posted;
+
+	if (done == PASSO_POST_ITEMS || done == PASSO_POST_START) {
+		error = passo_driver_settle_stream(passo);
+	} else {
+		passo->post = PASSO_POST_NONE;
+		if (error == PASSO_OK)
+			passo->due = (uint8_t)(passo->due & ~DONE[done]);
+	}
+	if (error != PASSO_OK)
+		return error;
+	return urgent(passo) == PASSO_POST_NONE ? PASSO_OK : PASSO_PENDING;
+}
+
+enum passo_error passo_driver_insist(struct passo *passo)
+{
+	struct passo_host *host = passo->host;
+	const enum passo_post most = urgent(passo);
+	enum passo_error error = PASSO_OK;
+
+	/* a stop does not wait for what is still being tried */
+	if (most >= PASSO_POST_STOP && passo->post < most)
+		passo_driver_drop(passo);
+	if (passo->post == PASSO_POST_NONE) {
+		if (most == PASSO_POST_NONE)
+			return PASSO_OK;
+		if (host->posted) { /* another channel's */
+			passo_host_step(host);
+			return PASSO_PENDING;
+		}
+		if (passo_host_is_unsure(host)) {
+			error = passo_driver_look(passo, true);
+			return error == PASSO_OK ? PASSO_PENDING : error;
+		}
+		error = post(passo, most);
+		if (error != PASSO_OK)
+			return error;
+	}
+	passo_host_step(host);
+	return passo->posted == PASSO_PENDING ? PASSO_PENDING : settle(passo);
+}
+
+enum passo_error passo_driver_insist_on(struct passo *passo, enum passo_post least)
+{
+	enum passo_error error = PASSO_PENDING;
+
+	while (error == PASSO_PENDING && urgent(passo) >= least)
+		error = passo_driver_insist(passo);
+	return error == PASSO_PENDING ? PASSO_OK : error;
+}
+
+enum passo_error passo_driver_restrain(struct passo *passo, enum passo_post least)
+{
+	passo_driver_insist_on(passo, least);
+	if (passo->host->lost)
+		return PASSO_ERROR_CORE_RESET;
+	return urgent(passo) >= least ? passo_driver_due(passo) : PASSO_OK;
+}
+
+void passo_driver_halt(struct passo *passo, enum passo_due due)
+{
+	passo_driver_end_stream(passo);
+	passo->certain = false;
+	passo->halted = true;
+	passo->due = (uint8_t)(passo->due | due);
+}
