@@ -133,6 +133,8 @@ always @(posedge clk) begin
   if (f_begun && bus_check && f_words != 9'd0 && f_checks == {3'd0, f_watch} && f_length <= 8'd60) check_as_sent : assert (bus_data == f_word);
   if (f_begun && (bus_check || bus_write))
     stands_before_strobe : assert ({bus_address, bus_data} == $past({bus_address, bus_data}));
+  if (f_begun && (bus_check || bus_write))
+    address_stands_before_strobe : assert ({bus_push, bus_address} == $past({bus_push, bus_address}, 2));
   if (f_begun && bus_check) stands_before_check : assert ({bus_address, bus_data} == $past({bus_address, bus_data}, 2));
   if (f_begun && $past(f_begun && (bus_check || bus_write))) stands_after_strobe : assert (bus_data == $past(bus_data));
 end
