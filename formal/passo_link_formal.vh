@@ -7,7 +7,7 @@
 // beginning of their frame. `frame_start` and `frame_end` take turns; after a reset either may be the first. The last half word of a frame may come with frame_end or a clock later, but before the next frame,
 // as chip select is high for two clocks. After a reset the halves of a word may come that has begun before.
 `ifdef SMALL
-localparam [6:0] F_GAP = 7'd9;  // the search turns a word in one clock
+localparam [6:0] F_GAP = 7'd9;  // the search turns a word in one clock, or looks only at the first one
 localparam [6:0] F_GAP_LOW = 7'd1;
 localparam [5:0] F_COMMIT = 6'd3;
 `else
@@ -158,6 +158,29 @@ always @(posedge clk) begin
     if (f_starts) frames_apart : assert (f_since_strobe == 3'd7);
   end
 end
+
+`ifdef TURNS
+// --- What the payload buffer needs of the words that turn
+reg       f_turn_q = 1'b0;
+reg       f_load_q = 1'b0;
+reg [4:0] f_turns_q;
+reg       f_count_q;
+reg [1:0] f_counter_q;
+wire      f_first_turn = turn & ~f_turn_q;
+always @(posedge clk) begin
+  f_turn_q    <= turn & ~rst;
+  f_load_q    <= load & ~rst;
+  f_turns_q   <= count[4:0];
+  f_count_q   <= in_count;
+  f_counter_q <= counter;
+  if (f_begun && turn) begin
+    turns_whole :
+    assert (!load && !f_load_q && count[4:0] == (f_first_turn ? 5'd0 : f_turns_q + 5'd1) && (f_first_turn || f_turns_q != 5'd31));
+    if (!f_first_turn || in_count) counts_as_told : assert (in_count == f_count_q && counter == f_counter_q);
+    if (f_first_turn && in_count) counts_after_31 : assert (f_turns_q == 5'd31);
+  end
+end
+`endif
 
 `ifdef INVARIANTS
 wire [7:0] f_steps = {in_header, in_payload, in_crc, in_ack, in_replay, in_read, in_sum, in_count};

@@ -26,7 +26,7 @@ always @(posedge clk) begin
   path_velocity : assume (velocity_next <= F_HALF);
   path_drain_velocity :
   assume (f_drain_velocity <= 32'h8000_0000 && (f_started || f_drain_velocity_q <= 32'h8000_0000));
-  path_drain_halves : assume (drain_velocity == {f_drain_velocity_q[31:8], f_drain_velocity[7:0]});
+  path_drain_halves : assume (!f_live || drain_velocity == {f_drain_velocity_q[31:8], f_drain_velocity[7:0]});
   if ($past(f_take && f_begun) && f_started)
     path_taken_stands : assume ($stable(rest) && (rest || drain || $stable(velocity_next)));
   if (!f_live || stop || restart || (f_drain_q && !drain)) path_counts_in_motion : assume (!advance);
