@@ -147,7 +147,7 @@ always @(posedge clk) begin
     else if ($past(blocked)) busy_when_stopped : assert (refusal == VERDICT_BUSY);
     else begin
       if (refusal == VERDICT_OK && !f_refused) room_for_all_checked : assert ($past(f_checked) < $past(room));
-      if (refusal == VERDICT_QUEUE_FULL) full_only_without_room : assert ($past(f_checked) == $past(room, 2));
+      if (refusal == VERDICT_QUEUE_FULL) full_only_without_room : assert ($past(f_checked) == $past(f_free_q, 2));
       else bad_value_refused : assert (refusal == ($past(f_bad) ? VERDICT_BAD_VALUE : VERDICT_OK) || f_refused);
     end
   end
