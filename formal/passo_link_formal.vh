@@ -41,8 +41,11 @@ always @(posedge clk) begin
   // a few numbers are enough to find a bug: operations 0 .. 3, sequence 0 .. 1, length 0 .. 2, address 0 .. 3
   if (half_valid && !half_low) small_link_upper : assume ((half & 16'hCFEF) == 16'd0);
   if (half_valid && half_low) small_link_lower : assume ((half & 16'hCFFC) == 16'd0 && half[13:12] != 2'd3);
-  small_link_reset : assume (f_watch == 6'd0 && !(half_valid && in_ack) && rst == !f_started);
-  if (half_valid) small_link_halves : assume (f_framed && f_selected && !frame_end);
+  small_link_reset : assume (f_watch == 6'd0 && rst == !f_started);
+  // the first frame begins at once, and half words come as soon as they may
+  if (f_started && !f_framed) small_link_start : assume (frame_start);
+  small_link_halves :
+  assume (half_valid == (f_framed && f_selected && !frame_end && !in_ack && f_gap >= (f_upper ? F_GAP_LOW : F_GAP)));
   if (rst) small_link_select : assume (!f_select);
 `endif
   f_gap <= frame_start || half_valid ? 7'd0 : f_gap >= F_GAP ? F_GAP : f_gap + 7'd1;
