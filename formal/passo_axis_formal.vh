@@ -42,7 +42,7 @@ always @(posedge clk) begin
   assume (step_high < 16'd`NARROW && step_low < 16'd`NARROW && dir_setup < 16'd`NARROW && dir_hold < 16'd`NARROW);
 `endif
 `ifdef SMALL
-  small_timings : assume (step_high <= 16'd2 && step_low <= 16'd2 && dir_setup <= 16'd5 && dir_hold <= 16'd2);
+  small_timings : assume (step_high <= 16'd2 && step_low <= 16'd5 && dir_setup <= 16'd5 && dir_hold <= 16'd5);
 `endif
 end
 

@@ -18,12 +18,11 @@ reg [31:0] f_before;
 reg [ 4:0] f_turns = 5'd0;
 
 always @(posedge clk) begin
-  // assumptions: the bits of a word come one after the other, words and turns do not mix
-  if (shift && !turn) assume (data == f_word_now[31] && f_turns == 5'd0);
-  if (shift && turn) assume (f_left == 6'd0);
+  // the bits that come are called a word
+  if (shift && !turn) crc_any_word : assume (data == f_word_now[31]);
 `ifdef SMALL
   // enough to find a bug: no clock is wasted, and only the uppermost bits of a word differ
-  assume (shift && restart == !f_known && f_any_word[27:0] == 28'hFFFFFFF);
+  small_crc : assume (shift && restart == !f_known && f_any_word[27:0] == 28'hFFFFFFF);
 `endif
 
   if (shift && !turn) begin
@@ -39,6 +38,8 @@ always @(posedge clk) begin
       turning_shows_the_crc :
       assert (top == (f_turns == 5'd0 ? crc[31] : f_before[5'd31 - f_turns]));
   end
+  // words and turns that mix make nothing, until the next restart
+  if (shift && (turn ? f_left != 6'd0 : f_turns != 5'd0)) f_known <= 1'b0;
   if (restart) begin
     f_known    <= 1'b1;
     f_standard <= 32'hFFFF_FFFF;

@@ -19,19 +19,21 @@ always @(posedge clk) begin
   f_stopped <= f_stop;
   f_add_q  <= slot_add & f_begun & ~f_stop;
   f_load_q <= slot_load & f_begun & ~f_stop;
-  assume (slot_step == f_add_q && slot_load_q == f_load_q);
-  if (!f_begun || f_stopped) assume (!slot_add && !slot_load);
-  if (slot_add || slot_load) assume (!f_add_q && !f_load_q);
-  if (slot_add) assume (f_line);
-  if (slot_load) assume (slot_add ? f_is_last : !f_line);
-  if (slot_add && !slot_load) assume (broadcast == -$signed({1'b0, f_m}));
-  if (slot_load) assume (f_m_next != 30'd0 && $signed({broadcast[30], broadcast}) == -$signed({2'b00, f_m_next}) >>> 1);
+  dda_b_follows_a : assume (slot_step == f_add_q && slot_load_q == f_load_q);
+  if (!f_begun || f_stopped) dda_no_slot_after_stop : assume (!slot_add && !slot_load);
+  if (slot_add || slot_load) dda_a_and_b_alternate : assume (!f_add_q && !f_load_q);
+  if (slot_add) dda_only_in_a_line : assume (f_line);
+  if (slot_load) dda_loads_with_the_last : assume (slot_add ? f_is_last : !f_line);
+  if (slot_add && !slot_load) dda_adds_minus_m : assume (broadcast == -$signed({1'b0, f_m}));
+  if (slot_load)
+    dda_loads_half_of_minus_m :
+    assume (f_m_next != 30'd0 && $signed({broadcast[30], broadcast}) == -$signed({2'b00, f_m_next}) >>> 1);
 `ifdef NARROW
-  assume (f_m_next < 30'd`NARROW);
+  dda_narrow : assume (f_m_next < 30'd`NARROW);
 `endif
   // N is there in B
-  if (f_line) assume (steps <= f_m);
-  if (f_line && !f_load_q && f_begun) assume ($stable(steps));
+  if (f_line) dda_n_at_most_m : assume (steps <= f_m);
+  if (f_line && !f_load_q && f_begun) dda_n_stands : assume ($stable(steps));
 
   if (slot_add) f_substeps <= f_substeps + 30'd1;
   if (slot_add && f_is_last) f_line <= 1'b0;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What the interpolation promises; included at the end of passo_interpolate.
 
-// --- Assumptions: it is used as the ramp does, first for the points of a table (or not), then for velocities
+// --- Assumptions: it is used as the ramp does, first for the points of a table (or not), then for velocities; a stop ends
+// that at any time, for 3 clocks at least
 localparam [1:0] F_REST = 2'd0;
 localparam [1:0] F_LOADED = 2'd1;  // the points are
 localparam [1:0] F_SHAPE = 2'd2;
@@ -19,7 +20,10 @@ reg [1:0] f_rested = 2'd0;
 `endif
 reg [5:0] f_clock;  // of the phase, from 1
 reg       f_shaped;
+reg       f_same;  // without a ramp: a = b, and any shape
+(* anyseq *) reg f_any_same;
 (* anyseq *) reg f_go;
+(* anyseq *) reg f_stop;
 wire f_scale_begins = f_phase == F_SCALE && f_clock == 6'd1;
 always @(posedge clk) begin
   f_begun   <= 1'b1;
@@ -32,6 +36,7 @@ always @(posedge clk) begin
       f_phase  <= F_SCALE;
       f_clock  <= 6'd1;
       f_shaped <= 1'b0;
+      f_same   <= f_any_same;
     end
     F_LOADED: begin
       f_phase <= F_SHAPE;
@@ -42,16 +47,21 @@ always @(posedge clk) begin
       f_phase  <= F_SCALE;
       f_clock  <= 6'd1;
       f_shaped <= 1'b1;
+      f_same   <= 1'b0;
     end
     F_SCALE: if (f_clock == F_SCALE_CLOCKS) f_phase <= F_REST;
   endcase
-  assume (moving == (f_phase == F_SHAPE || f_phase == F_SCALE));
-  assume (shaping == (f_phase == F_SHAPE));
-  assume (load_fraction == f_scale_begins);
-  if (f_phase != F_REST) assume (clear == f_scale_begins && result_move == moving);
-  if (load_points) assume (f_phase == F_REST && f_rested == 2'd3 && clear && result_move);
-  if (f_phase == F_LOADED || f_phase == F_SHAPE || (f_scale_begins && f_shaped)) assume ($stable(progress));
-  if (f_scale_begins) assume (linear == !f_shaped);
+  if (f_stop) f_phase <= F_REST;
+  interpolate_moving : assume (moving == (f_phase == F_SHAPE || f_phase == F_SCALE));
+  interpolate_shaping : assume (shaping == (f_phase == F_SHAPE));
+  interpolate_fraction : assume (load_fraction == f_scale_begins);
+  if (f_phase != F_REST) interpolate_clear : assume (clear == f_scale_begins && result_move == moving);
+  if (load_points)
+    interpolate_points : assume (f_phase == F_REST && f_rested == 2'd3 && clear && result_move);
+  if (f_phase == F_LOADED || f_phase == F_SHAPE || (f_scale_begins && f_shaped))
+    interpolate_progress : assume ($stable(progress));
+  if (f_scale_begins) interpolate_linear : assume (linear == !f_shaped || f_same);
+  if (f_phase == F_SCALE && f_same) interpolate_same_bits : assume (a_bit == b_bit);
 end
 
 // --- a (1 - f) + b f: the products of the bits of a and b, from the lowest, in exact numbers. After each bit all
@@ -90,7 +100,7 @@ always @(posedge clk) begin
   f_velocity <= f_product_next[71:24];
   if (f_begun) begin
     if (f_done && $past(f_begun)) interpolates_exactly : assert (result == f_velocity);
-    if (f_phase == F_SCALE && !f_scale_begins)
+    if (f_phase == F_SCALE && !f_scale_begins && !f_same)
       fraction_as_rounded : assert ({1'b0, fraction[24:1]} + {24'd0, fraction[0]} == f_fraction);
     if ((f_phase == F_SHAPE || f_phase == F_SCALE) && f_clock >= 6'd2) bit_is_told : assert (a == f_a);
   end
@@ -146,6 +156,8 @@ always @(posedge clk)
     // velocities
     if (f_phase == F_SCALE && f_clock == 6'd2) `HOLDS (addend == 25'd0 && !both);
     if (f_phase == F_SCALE && (f_clock == 6'd2 || f_clock == 6'd3)) `HOLDS (sum == 25'd0);
+    if (f_phase == F_SCALE && f_same && f_clock >= 6'd2) `HOLDS (f_a == f_b);
+    if (f_phase == F_SCALE && f_same && f_clock >= 6'd3) `HOLDS (f_a_q == f_b_q);
     // both
     if (f_counts) begin
       `HOLDS (addend == (f_a_q == f_b_q ? 25'd0 : f_of_bit ^ {25{f_a_q}}) && both == (f_a_q && f_b_q));

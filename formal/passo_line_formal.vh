@@ -12,25 +12,27 @@
 (* anyseq *) reg [AXES-1:0] f_next_directions;
 (* anyseq *) reg f_release;
 reg f_rests = 1'b1;
-reg f_begun = 1'b0;
+reg f_started = 1'b0;
+wire f_begun = ~rst;
 reg f_taken = 1'b0;  // in the clock before
 reg f_substep = 1'b0;
 reg f_shown = 1'b0;  // a line was taken
 always @(posedge clk) begin
-  f_begun   <= 1'b1;
+  f_started <= 1'b1;
   f_taken   <= f_take & f_begun;
-  f_substep <= substep;
-  assume (rst == !f_begun);
-  if (start) assume (next_valid && !stop && !(f_active && !f_rests) && !slot_add && !slot_step && !substep);
-  if (f_release) assume (!substep && !f_substep && !slot_step && !f_taken && !start);
-  f_rests <= (f_rests | f_release) & ~start;
-  if (f_rests) assume (!substep);
-  if (substep) assume (!f_substep && !(f_taken && !f_substep));
-  if (f_shown) assume (last == f_last && endless == f_endless && last_substep == f_last_substep);
-  if (f_active && !f_taken && !f_rests) assume (current_directions == f_directions);
-  if (!f_begun) assume (!start && !substep);
+  f_substep <= substep & ~rst;
+  if (!f_started) line_reset : assume (rst);
+  if (start && !rst)
+    line_starts_at_rest :
+    assume (next_valid && !stop && !(f_active && !f_rests) && !slot_add && !slot_step && !substep);
+  if (f_release) line_released_at_rest : assume (!substep && !f_substep && !slot_step && !f_taken && !start);
+  f_rests <= rst | ((f_rests | f_release) & ~start);
+  if (f_rests) line_rests : assume (!substep);
+  if (substep) line_never_two_in_a_row : assume (!f_substep && !(f_taken && !f_substep));
+  if (f_shown) line_flags_stand : assume (last == f_last && endless == f_endless && last_substep == f_last_substep);
+  if (f_active && !f_taken && !f_rests) line_directions_stand : assume (current_directions == f_directions);
 `ifdef SMALL
-  assume (f_next_last_substep <= 30'd2);
+  small_line : assume (f_next_last_substep <= 30'd2);
 `endif
 end
 
@@ -70,6 +72,7 @@ always @(posedge clk) begin
     f_active  <= 1'b0;
     f_ended   <= 1'b0;
   end
+  if (rst) f_shown <= 1'b0;
 end
 
 reg f_stopped = 1'b1;

@@ -17,7 +17,7 @@ reg [1:0] f_gap = 2'd0;  // clocks since the last strobe or frame, up to 3
 reg       f_checking = 1'b0;
 reg       f_writing = 1'b0;
 reg       f_refused = 1'b0;
-reg [5:0] f_words = 6'd0;  // checked, and not yet written
+reg [7:0] f_words = 8'd0;  // checked, and not yet written
 reg       f_select = 1'b0;
 reg [1:0] f_index = 2'd0;  // word of the line, 0 .. AXES + 1
 reg [3:0] f_since_take = 4'd0;
@@ -29,46 +29,48 @@ reg       f_short = 1'b0;
 wire f_strobe = (bus_check | bus_write) & select;
 wire f_last_index = f_index == AXES + 1;
 wire f_top_bit_right = bus_top_bit == 5'd0 ? bus_data <= 32'd1 : bus_data >> bus_top_bit == 32'd1;
-wire f_good = f_checking && !f_refused && refusal == VERDICT_OK && f_index == 2'd0 && f_words != 6'd0;
+wire f_good = f_checking && !f_refused && refusal == VERDICT_OK && f_index == 2'd0 && f_words != 8'd0;
 always @(posedge clk) begin
   f_started  <= 1'b1;
   f_strobe_q <= (bus_check | bus_write) & ~rst;
   f_gap      <= bus_check | bus_write | bus_frame ? 2'd0 : f_gap == 2'd3 ? 2'd3 : f_gap + 2'd1;
   f_since_take <= take ? 4'd0 : f_since_take == 4'd15 ? 4'd15 : f_since_take + 4'd1;
   f_since_write <= bus_write | f_writing | (bus_frame & bus_commit) ? 3'd0 : f_since_write == 3'd7 ? 3'd7 : f_since_write + 3'd1;
-  if (!f_started) assume (rst);
-  if (bus_write || bus_frame) assume (f_gap >= F_GAP);
-  if (bus_check) assume (f_gap == 2'd3);
-  assume (bus_check + bus_write + bus_frame <= 2'd1);
-  if (bus_frame) assume (bus_commit == (f_good && f_go));
-  if (bus_check || bus_write || f_strobe_q) assume ($stable(bus_data));
-  if (bus_check) assume ($past(bus_data, 2) == bus_data && f_top_bit_right && $past(f_top_bit_right));
-  if (bus_check) assume (f_checking && f_words != 6'd60);
-  if (bus_write) assume (f_writing == select);
-  if (f_checking && f_words != 6'd0) assume (select == f_select);
-  if (f_writing) assume (!bus_frame || f_words == 6'd0);
+  if (!f_started) line_queue_reset : assume (rst);
+  if (bus_write || bus_frame) line_queue_strobes_apart : assume (f_gap >= F_GAP);
+  if (bus_check) line_queue_checks_apart : assume (f_gap == 2'd3);
+  line_queue_one_strobe : assume (bus_check + bus_write + bus_frame <= 2'd1);
+  if (bus_frame) line_queue_commits_good : assume (bus_commit == (f_good && f_go));
+  if (bus_check || bus_write || f_strobe_q) line_queue_data_stand : assume ($stable(bus_data));
+  if (bus_check)
+    line_queue_top_bit :
+    assume ($past(bus_data, 2) == bus_data && f_top_bit_right && $past(f_top_bit_right));
+  if (bus_check) line_queue_frame_has_begun : assume (f_checking);
+  if (bus_write) line_queue_writes_good : assume (f_writing == select);
+  if (f_checking && f_words != 8'd0) line_queue_select_stands : assume (select == f_select);
+  if (f_writing) line_queue_writes_all : assume (!bus_frame || f_words == 8'd0);
   if (f_strobe) f_index <= f_last_index ? 2'd0 : f_index + 2'd1;
   if (refusal != VERDICT_OK) f_refused <= 1'b1;
   if (bus_check) begin
-    f_words  <= f_words + 6'd1;
+    f_words  <= f_words == 8'd255 ? 8'd255 : f_words + 8'd1;
     f_select <= select;
   end
-  if (bus_write && f_writing) f_words <= f_words - 6'd1;
-  if (bus_write && f_writing && f_words == 6'd1) f_writing <= 1'b0;
+  if (bus_write && f_writing) f_words <= f_words - 8'd1;
+  if (bus_write && f_writing && f_words == 8'd1) f_writing <= 1'b0;
   if (bus_frame) begin
     f_index    <= 2'd0;
     f_refused  <= 1'b0;
     f_checking <= !bus_commit;
     f_writing  <= bus_commit && f_select;
-    if (!bus_commit) f_words <= 6'd0;
+    if (!bus_commit) f_words <= 8'd0;
   end
 `ifdef SMALL
   // shorter for the search of bugs: where a frame may begin, any good number of lines (see `shorter` in
   // promises.toml) has been checked already
-  assume (rst == !f_started);
-  f_short <= rst | (bus_frame & ~bus_commit) | (bus_write & f_writing & f_words == 6'd1);
+  small_line_queue_reset : assume (rst == !f_started);
+  f_short <= rst | (bus_frame & ~bus_commit) | (bus_write & f_writing & f_words == 8'd1);
   if (f_short && checked != 0) begin
-    assume (checked <= room && !bus_check && !bus_frame);
+    small_line_queue_checked : assume (checked <= room && !bus_check && !bus_frame);
     f_words  <= 3 * checked;
     f_select <= 1'b1;
 
@@ -79,17 +81,17 @@ always @(posedge clk) begin
     {f_checking, f_writing, f_refused} <= 3'b000;
 
     f_index <= 2'd0;
-    f_words <= 6'd0;
+    f_words <= 8'd0;
   end
 `ifdef SMALL
-  assume (bus_data[29:10] == 20'd0 && !bus_data[31]);
+  small_line_queue_data : assume (bus_data[29:10] == 20'd0 && !bus_data[31]);
 `endif
   // line counter and motion
-  assume (blocked == flush);
-  if (take) assume (next_valid && !release_line);
-  if (release_line) assume (f_current && f_since_take >= 4'd2 && !flush);
+  line_queue_blocked : assume (blocked == flush);
+  if (take) line_queue_takes_the_next : assume (next_valid && !release_line);
+  if (release_line) line_queue_releases_current : assume (f_current && f_since_take >= 4'd2 && !flush);
   // a channel stays stopped while a frame is written: only another frame can clear it
-  if ($past(flush && !rst) && f_since_write != 3'd7) assume (flush || rst);
+  if ($past(flush && !rst) && f_since_write != 3'd7) line_queue_stays_flushed : assume (flush || rst);
 end
 
 // --- The queue as it should be: lines from the next one on, and the place of the current line
@@ -140,13 +142,13 @@ wire f_bad = f_index == 2'd0 ? (bus_data & ~f_defined) != 32'd0 :
              f_index == 2'd1 ? bus_data == 32'd0 || bus_data >= F_M_LIMIT : bus_data > f_m;
 always @(posedge clk) begin
   if (f_strobe && f_index == 2'd1) f_m <= bus_data;
-  if (bus_write && select) assume (!f_bad);
+  if (bus_write && select) line_queue_as_checked : assume (!f_bad);
   if (f_begun && $past(f_begun)) begin
     if ($past(!(bus_check && select))) refuses_only_checks : assert (refusal == VERDICT_OK);
     else if ($past(blocked)) busy_when_stopped : assert (refusal == VERDICT_BUSY);
     else begin
       if (refusal == VERDICT_OK && !f_refused) room_for_all_checked : assert ($past(f_checked) < $past(room));
-      if (refusal == VERDICT_QUEUE_FULL) full_only_without_room : assert ($past(f_checked) == $past(room, 2));
+      if (refusal == VERDICT_QUEUE_FULL) full_only_without_room : assert ($past(f_checked) == $past(f_free, 2));
       else bad_value_refused : assert (refusal == ($past(f_bad) ? VERDICT_BAD_VALUE : VERDICT_OK) || f_refused);
     end
   end
@@ -220,7 +222,6 @@ always @(posedge clk)
     if (f_current) assert (current_line == next_line[DEPTH_LOG2-1:0] - 1'b1);
     assert (index == 3'd1 << f_index && f_index <= 2'd2);
     assert (!(f_checking && f_writing));
-    assert (f_words <= 6'd60);
     if (f_writing) assert (f_select);
     if (!f_checking && !f_writing) assert (f_index == 0);
     if (f_writing || f_checking) assert (checked == f_checked || f_writing);

@@ -7,7 +7,7 @@
 // beginning of their frame. `frame_start` and `frame_end` take turns; after a reset either may be the first. The last half word of a frame may come with frame_end or a clock later, but before the next frame,
 // as chip select is high for two clocks. After a reset the halves of a word may come that has begun before.
 `ifdef SMALL
-localparam [6:0] F_GAP = 7'd9;  // the search turns a word in one clock
+localparam [6:0] F_GAP = 7'd9;  // the search turns a word in one clock, or looks only at the first one
 localparam [6:0] F_GAP_LOW = 7'd1;
 localparam [5:0] F_COMMIT = 6'd3;
 `else
@@ -25,25 +25,28 @@ reg       f_upper = 1'b0;  // the upper half of a word has come
 reg [6:0] f_gap = F_GAP;  // clocks since the last half word or the start of the frame, up to 60
 always @(posedge clk) begin
   f_started <= 1'b1;
-  if (!f_started) assume (rst);
-  if (frame_start) assume (!f_selected && !half_valid);
-  if (frame_end) assume (f_selected);
-  if (half_valid) assume (f_selected || f_ended);
+  if (!f_started) link_reset : assume (rst);
+  if (frame_start) link_starts_apart : assume (!f_selected && !half_valid);
+  if (frame_end) link_ends_once : assume (f_selected);
+  if (half_valid) link_halves_in_a_frame : assume (f_selected || f_ended);
   f_ended <= frame_end;
   if (frame_start) {f_selected, f_framed} <= 2'b11;
   if (frame_end) f_selected <= 1'b0;
-  if (half_valid && f_framed) assume (half_low == f_upper);
-  if (half_valid) assume (f_gap >= (half_low ? F_GAP_LOW : F_GAP));
+  if (half_valid && f_framed) link_halves_in_turn : assume (half_low == f_upper);
+  if (half_valid) link_halves_apart : assume (f_gap >= (half_low ? F_GAP_LOW : F_GAP));
   if (half_valid) f_upper <= !half_low;
   if (frame_start) f_upper <= 1'b0;
   if (rst) {f_selected, f_framed} <= {f_select, 1'b0};
 `ifdef SMALL
   // a few numbers are enough to find a bug: operations 0 .. 3, sequence 0 .. 1, length 0 .. 2, address 0 .. 3
-  if (half_valid && !half_low) assume ((half & 16'hCFEF) == 16'd0);
-  if (half_valid && half_low) assume ((half & 16'hCFFC) == 16'd0 && half[13:12] != 2'd3);
-  assume (f_watch == 6'd0 && !(half_valid && in_ack) && rst == !f_started);
-  if (half_valid) assume (f_framed && f_selected && !frame_end);
-  if (rst) assume (!f_select);
+  if (half_valid && !half_low) small_link_upper : assume ((half & 16'hCFEF) == 16'd0);
+  if (half_valid && half_low) small_link_lower : assume ((half & 16'hCFFC) == 16'd0 && half[13:12] != 2'd3);
+  small_link_reset : assume (f_watch == 6'd0 && rst == !f_started);
+  // the first frame begins at once, and half words come as soon as they may
+  if (f_started && !f_framed) small_link_start : assume (frame_start);
+  small_link_halves :
+  assume (half_valid == (f_framed && f_selected && !frame_end && !in_ack && f_gap >= (f_upper ? F_GAP_LOW : F_GAP)));
+  if (rst) small_link_select : assume (!f_select);
 `endif
   f_gap <= frame_start || half_valid ? 7'd0 : f_gap >= F_GAP ? F_GAP : f_gap + 7'd1;
 end
@@ -133,6 +136,8 @@ always @(posedge clk) begin
   if (f_begun && bus_check && f_words != 9'd0 && f_checks == {3'd0, f_watch} && f_length <= 8'd60) check_as_sent : assert (bus_data == f_word);
   if (f_begun && (bus_check || bus_write))
     stands_before_strobe : assert ({bus_address, bus_data} == $past({bus_address, bus_data}));
+  if (f_begun && (bus_check || bus_write))
+    address_stands_before_strobe : assert ({bus_push, bus_address} == $past({bus_push, bus_address}, 2));
   if (f_begun && bus_check) stands_before_check : assert ({bus_address, bus_data} == $past({bus_address, bus_data}, 2));
   if (f_begun && $past(f_begun && (bus_check || bus_write))) stands_after_strobe : assert (bus_data == $past(bus_data));
 end
@@ -150,11 +155,35 @@ always @(posedge clk) begin
     if ($past(f_starts)) accepted_is_told : assert (bus_frame && bus_commit);
     else commits_only_accepted : assert (!bus_frame || !bus_commit);
     if (bus_check) checks_what_has_begun : assert (f_frame_told);
+    if (bus_check) checks_before_commit : assert (!bus_commit);
     strobes_one_at_a_time : assert (bus_check + bus_write + bus_frame <= 2'd1);
     if (bus_check || bus_write || bus_frame) strobes_apart : assert (f_since_strobe >= 3'd3);
     if (f_starts) frames_apart : assert (f_since_strobe == 3'd7);
   end
 end
+
+`ifdef TURNS
+// --- What the payload buffer needs of the words that turn
+reg       f_turn_q = 1'b0;
+reg       f_load_q = 1'b0;
+reg [4:0] f_turns_q;
+reg       f_count_q;
+reg [1:0] f_counter_q;
+wire      f_first_turn = turn & ~f_turn_q;
+always @(posedge clk) begin
+  f_turn_q    <= turn & ~rst;
+  f_load_q    <= load & ~rst;
+  f_turns_q   <= count[4:0];
+  f_count_q   <= in_count;
+  f_counter_q <= counter;
+  if (f_begun && turn) begin
+    turns_whole :
+    assert (!load && !f_load_q && count[4:0] == (f_first_turn ? 5'd0 : f_turns_q + 5'd1) && (f_first_turn || f_turns_q != 5'd31));
+    if (!f_first_turn || in_count) counts_as_told : assert (in_count == f_count_q && counter == f_counter_q);
+    if (f_first_turn && in_count) counts_after_31 : assert (f_turns_q == 5'd31);
+  end
+end
+`endif
 
 `ifdef INVARIANTS
 wire [7:0] f_steps = {in_header, in_payload, in_crc, in_ack, in_replay, in_read, in_sum, in_count};

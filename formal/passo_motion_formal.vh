@@ -10,8 +10,6 @@ always @(posedge clk) begin
 end
 
 wire f_stop_hard = command_abort | (moving & (step_overrun | line_underrun));
-wire [2:0] f_states = {2'd0, idle} + {2'd0, preparing} + {2'd0, armed} + {2'd0, runs} + {2'd0, settles}
-                      + {2'd0, drains} + {2'd0, stopped};
 
 // --- How long RUN has lasted
 reg [3:0] f_run_age;
@@ -42,11 +40,9 @@ end
 
 always @(posedge clk)
   if (f_begun) begin
-    state_is_one_of_seven : assert (f_states == 3'd1 && state <= STATE_STOPPED);
     if (stopped)
       stopped_stands :
       assert (!moving && !counting && !prepare && !begin_profile && !drain && !release_line && !running);
-    stopped_is_the_state : assert (stopped == (state == STATE_STOPPED));
     cause_when_stopped : assert ((cause != CAUSE_NONE) == stopped);
     counts_in_run_and_drain : assert (counting == (state == STATE_RUN || state == STATE_DRAIN));
     if (f_abort_lasts) drops_until_no_step_can_come : assert (drop);
@@ -115,8 +111,11 @@ always @(posedge clk)
   end
 
 `ifdef INVARIANTS
+wire [2:0] f_states = {2'd0, idle} + {2'd0, preparing} + {2'd0, armed} + {2'd0, runs} + {2'd0, settles}
+                      + {2'd0, drains} + {2'd0, stopped};
 always @(posedge clk)
   if (f_begun) begin
+    assert (f_states == 3'd1);
     assert (soft_cause == CAUSE_STOP || soft_cause == CAUSE_RAMP_UNDERRUN || !stopping);
     assert (!stopping || !stopped);
     if (state == STATE_RUN) assert (f_run_age >= 4'd6 ? count == 3'd6 : {1'b0, count} == f_run_age);

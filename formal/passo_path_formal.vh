@@ -22,15 +22,18 @@ always @(posedge clk) begin
   f_drain_q <= drain & ~rst;
   f_refresh <= rst | stop | drain;
   f_drain_velocity_q <= f_drain_velocity;
-  if (!f_started) assume (rst);
-  assume (velocity_next <= F_HALF);
+  if (!f_started) path_reset : assume (rst);
+  path_velocity : assume (velocity_next <= F_HALF);
+  path_drain_velocity :
   assume (f_drain_velocity <= 32'h8000_0000 && (f_started || f_drain_velocity_q <= 32'h8000_0000));
-  assume (drain_velocity == {f_drain_velocity_q[31:8], f_drain_velocity[7:0]});
-  if ($past(f_take && f_begun) && f_started) assume ($stable(velocity_next) && $stable(rest));
-  if (!f_live || stop || restart || (f_drain_q && !drain)) assume (!advance);
-  if (!f_live || restart) assume (!begin_profile && !drain);
-  if (!advance) assume (!tick);
-  if ($past(f_take && f_begun) && f_started && !f_drain_q) assume (!drain);
+  path_drain_halves : assume (!f_live || drain_velocity == {f_drain_velocity_q[31:8], f_drain_velocity[7:0]});
+  if ($past(f_take && f_begun) && f_started)
+    path_taken_stands : assume ($stable(rest) && (rest || drain || $stable(velocity_next)));
+  if (!f_live || stop || restart || (f_drain_q && !drain)) path_counts_in_motion : assume (!advance);
+  if (!f_live || restart) path_begins_in_motion : assume (!begin_profile && !drain);
+  if (!advance) path_ticks_when_counting : assume (!tick);
+  if ($past(f_take && f_begun) && f_started && !f_drain_q)
+    path_drains_after_settling : assume (!drain);
 end
 
 // --- Velocity and phase, each in one piece

@@ -21,11 +21,12 @@ always @(posedge clk) begin
   f_count   <= count;
   f_counter <= counter;
   f_fresh   <= f_begun & (load | (f_fresh & ~turn));
-  if (!f_begun) assume (!turn && !load);
-  if (turn) assume (!load && !f_load_q && turns == (f_first ? 5'd0 : f_turns_q + 5'd1) && (f_first || f_turns_q != 5'd31));
-  if (turn && (!f_first || count)) assume (count == f_count && counter == f_counter);
-  if (f_first && count) assume (f_turns_q == 5'd31);
-  f_whole <= (turn && turns == 5'd31) || (f_whole && !turn && !load);
+  if (turn)
+    payload_turns_whole :
+    assume (!load && !f_load_q && turns == (f_first ? 5'd0 : f_turns_q + 5'd1) && (f_first || f_turns_q != 5'd31));
+  if (turn && (!f_first || count)) payload_counts_as_told : assume (count == f_count && counter == f_counter);
+  if (f_first && count) payload_counts_after_31 : assume (f_turns_q == 5'd31);
+  f_whole <= f_begun && ((turn && turns == 5'd31) || (f_whole && !turn && !load));
   if (f_first) f_told <= f_fresh;
 end
 
@@ -49,7 +50,7 @@ always @(posedge clk) begin
   if (turn) begin
     f_after_q <= f_after;
     f_counted <= count;
-    if (!count) counters_readable : assert (counter_bit == f_readable[~turns]);
+    if (f_begun && !count) counters_readable : assert (counter_bit == f_readable[~turns]);
   end
   if (f_whole) begin
     if (!f_counted) turning_keeps_the_word : assert (data == f_after_q);

@@ -6,30 +6,38 @@ localparam [1:0] F_REST = 2'd0;
 localparam [1:0] F_PREPARED = 2'd1;  // the first velocity is made, or waits
 localparam [1:0] F_RUNS = 2'd2;
 `ifdef SMALL
-reg       f_begun = 1'b1;
+reg       f_started = 1'b1;
 `else
-reg       f_begun = 1'b0;
+reg       f_started = 1'b0;
 `endif
+wire      f_begun = ~rst;
 reg [1:0] f_motion;
 reg       f_stop_q;
 reg       f_ready_q;
 reg       f_loaded_q;
 always @(posedge clk) begin
-  f_begun    <= 1'b1;
+  f_started  <= 1'b1;
   f_stop_q   <= rst | stop;
   f_ready_q  <= ready;
   f_loaded_q <= loaded;
   if (prepare) f_motion <= F_PREPARED;
   if (begin_profile) f_motion <= F_RUNS;
   if (ended || rst || stop) f_motion <= F_REST;
-  assume (rst == !f_begun);
-  if (rst || stop) assume (!prepare && !begin_profile && !drain && !advance);
-  if (prepare) assume (f_motion == F_REST && !f_stop_q && !drain);
-  if (begin_profile) assume (f_motion == F_PREPARED && f_ready_q);
-  if (drain) assume (f_motion == F_REST);
-  if (advance) assume (!stall && (f_motion == F_RUNS || drain));
-  assume (tick == (advance & tick_ends));
+  if (!f_started) ramp_reset : assume (rst);
+`ifdef SMALL
+  small_ramp_reset : assume (!rst);
+`endif
+  if (stop && !rst) ramp_stopped_stands : assume (!prepare && !begin_profile && !drain && !advance);
+  if (prepare && !rst) ramp_prepared_at_rest : assume (f_motion == F_REST && !f_stop_q && !drain);
+  if (begin_profile && !rst) ramp_begins_when_ready : assume (f_motion == F_PREPARED && f_ready_q);
+  if (drain && !rst) ramp_drains_at_rest : assume (f_motion == F_REST);
+  if (advance && !rst) ramp_counts_in_motion : assume (!stall && (f_motion == F_RUNS || drain));
+  ramp_ticks : assume (tick == (advance & tick_ends));
 end
+
+// --- Assumption: the tables answer later than they are asked
+always @(posedge clk)
+  if (table_served) ramp_served_later : assume (rst || $past(table_request && !rst));
 
 // --- Assumptions: the ramp queue, as it promises to be. Of all ramps only the oldest one can be seen.
 reg         f_there;
@@ -59,7 +67,7 @@ always @(posedge clk) begin
   if (f_new_now) f_oldest_now <= (!f_there && !f_take_now) || (f_take && !f_more);
   else if (f_take) f_oldest_now <= f_now & f_more_now;
   else if (f_take_now) f_oldest_now <= 1'b0;
-  if (f_take && f_now) assume (f_more);
+  if (f_take && f_now) ramp_now_waits_behind : assume (f_more);
   if (f_take_now) f_there <= 1'b1;
   if (rst || stop) {f_there, f_now} <= 2'b00;
   if (rst) f_valid <= 1'b0;
@@ -72,11 +80,11 @@ always @(posedge clk) begin
     4'd5:    f_word <= ~f_ticks[15:0];
     default: f_word <= f_any_half;
   endcase
-  assume (ramp_valid == f_valid);
-  assume (ramp_now_pending == f_now);
+  ramp_queue_valid : assume (ramp_valid == f_valid);
+  ramp_queue_now : assume (ramp_now_pending == f_now);
   f_next <= f_word;
   f_half <= f_next;
-  assume (ramp_half == f_half);
+  ramp_queue_half : assume (ramp_half == f_half);
 end
 
 always @(posedge clk)
@@ -160,9 +168,57 @@ always @(posedge clk) begin
     if ($past(ready) && $past(f_ready_q)) taken_stands : assert ($stable(velocity_next) && $stable(ends_next));
     ready_in_time : assert (f_busy <= 7'd105);
   end
+  ticks_only_when_it_counts : assert (!f_begun || f_motion == F_REST || !(stall && tick_ends));
+  if (f_begun && f_motion == F_REST && !f_stop_q) no_next_tick_at_rest : assert (ends_next);
   if (f_begun && f_motion == F_REST && !drain) not_ended_at_rest : assert (!ended);
   if (f_begun && f_motion != F_REST && $past(f_motion != F_REST && ramp_now_coming && !prepare))
     now_is_waited_for : assert (!ends_next || $past(ends_next));
+end
+
+// --- The interpolation is used as its own proof assumes: for the points of a table, or not, then for the velocities
+localparam [1:0] F_UNUSED = 2'd0;
+localparam [1:0] F_LOADED = 2'd1;
+localparam [1:0] F_SHAPE = 2'd2;
+localparam [1:0] F_SCALE = 2'd3;
+reg  [ 1:0] f_use_q;  // as it goes on if nothing begins and nothing is given up
+reg  [ 5:0] f_use_clock_q;
+reg  [ 1:0] f_unused_for;  // clocks, up to 3
+reg         f_shaped;
+reg  [32:0] f_progress;
+wire        f_scales = f_use_q == F_UNUSED && moving;  // begins to
+wire [ 1:0] f_use = f_scales ? F_SCALE : f_use_q[1] && !moving ? F_UNUSED : f_use_q;
+wire [ 5:0] f_use_clock = f_scales ? 6'd1 : f_use_clock_q;
+wire        f_scale_begins = f_use == F_SCALE && f_use_clock == 6'd1;
+wire        f_loads = step == STEP_LOOK_UP && table_served;
+always @(posedge clk) begin
+  f_use_clock_q <= f_use_clock + 6'd1;
+  f_unused_for  <= f_use != F_UNUSED ? 2'd0 : f_unused_for == 2'd3 ? 2'd3 : f_unused_for + 2'd1;
+  f_progress    <= progress;
+  case (f_use)
+    F_UNUSED: f_use_q <= f_loads ? F_LOADED : F_UNUSED;
+    F_LOADED: begin
+      f_use_q       <= F_SHAPE;
+      f_use_clock_q <= 6'd1;
+    end
+    F_SHAPE:
+    if (f_use_clock == 6'd19) begin
+      f_use_q       <= F_SCALE;
+      f_use_clock_q <= 6'd1;
+    end else f_use_q <= F_SHAPE;
+    default: f_use_q <= f_use_clock == 6'd50 ? F_UNUSED : F_SCALE;
+  endcase
+  if (f_use == F_UNUSED) f_shaped <= 1'b0;
+  if (f_use == F_SHAPE) f_shaped <= 1'b1;
+  if (f_begun && f_motion != F_REST && !f_stop_q) begin
+    if (f_scales) used_after_rest : assert (f_unused_for == 2'd3 && !shaping);
+    moves_when_used : assert (moving == f_use[1] && shaping == (f_use == F_SHAPE));
+    fraction_is_loaded_first : assert (load_fraction == f_scale_begins);
+    if (f_use != F_UNUSED) cleared_first : assert (clear == f_scale_begins && result_move == moving);
+    if (f_loads) points_after_rest : assert (f_use == F_UNUSED && f_unused_for == 2'd3 && clear && result_move);
+    if (f_use == F_LOADED || f_use == F_SHAPE || (f_scale_begins && f_shaped))
+      progress_stands : assert (progress == f_progress);
+    if (f_scale_begins) linear_or_shaped : assert ((shape == SHAPE_LINEAR) == !f_shaped || !loaded);
+  end
 end
 
 // --- What the induction needs to know of the circuit. The search for planted bugs begins in any state of which
@@ -267,6 +323,25 @@ always @(posedge clk)
     if (f_is_fetch && count == 6'd6) `HOLDS (f_half == f_control);
     if (f_is_fetch && count >= 6'd7) `HOLDS (f_counted == 33'd1);
     if (f_is_fetch && count == 6'd8) `HOLDS (!over);
+  end
+
+// the use of the interpolation
+wire f_shapes = loaded && shape != SHAPE_LINEAR;
+always @(posedge clk)
+  if (f_begun && f_motion != F_REST) begin
+    if (f_is_shape) begin
+      `HOLDS (f_use == (count == 6'd1 ? F_LOADED : F_SHAPE) && (count == 6'd1 || f_use_clock == count - 6'd1));
+      `HOLDS (moving == (count != 6'd1) && shaping == moving && f_shapes && !clear && !load_fraction && result_move == moving);
+    end else if (f_is_scale) begin
+      if (count == 6'd1) `HOLDS (f_shapes ? f_use == F_SHAPE && f_use_clock == 6'd19 && shaping && moving && !clear && result_move : f_use == F_UNUSED && f_unused_for >= 2'd2);
+      else `HOLDS (f_use == F_SCALE && f_use_clock == count - 6'd1 && moving && !shaping && f_shaped == f_shapes && result_move);
+      if (count == 6'd1) `HOLDS (!load_fraction);
+      if (count >= 6'd2) `HOLDS (load_fraction == (count == 6'd2) && clear == load_fraction);
+    end else if (f_use != F_UNUSED) `HOLDS (f_use == F_SCALE && f_use_clock == 6'd50 && moving && !shaping && !load_fraction && !clear && result_move && count == 6'd1 && !f_is_look_up);
+    else `HOLDS (!moving && !load_fraction);
+    if (f_is_look_up) `HOLDS (f_use == F_UNUSED && f_unused_for >= 2'd2 && f_shapes);
+    if (f_is_choose && !ready && !ends_next) `HOLDS (f_use == F_UNUSED && f_unused_for >= 2'd1);
+    if (f_is_copy || f_is_fetch) `HOLDS (f_use == F_UNUSED && (f_unused_for >= 2'd1));
   end
 
 // the half word of v_end that scale names in a clock of it; before the first one (counts wrap) the lowest

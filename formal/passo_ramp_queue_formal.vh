@@ -16,7 +16,7 @@ reg [1:0] f_gap = 2'd0;  // clocks since the last strobe or frame, up to 3
 reg       f_checking = 1'b0;
 reg       f_writing = 1'b0;
 reg       f_refused = 1'b0;
-reg [5:0] f_words = 6'd0;  // checked, and not yet written
+reg [7:0] f_words = 8'd0;  // checked, and not yet written
 reg       f_select = 1'b0;
 reg [2:0] f_index = 3'd0;  // word of the ramp, 0 .. 4
 reg [2:0] f_since_write = 3'd0;
@@ -27,43 +27,44 @@ reg       f_short = 1'b0;
 wire f_strobe = (bus_check | bus_write) & select;
 wire f_last_index = f_index == 3'd4;
 wire f_top_bit_right = bus_top_bit == 5'd0 ? bus_data <= 32'd1 : bus_data >> bus_top_bit == 32'd1;
-wire f_good = f_checking && !f_refused && refusal == VERDICT_OK && f_index == 3'd0 && f_words != 6'd0;
+wire f_good = f_checking && !f_refused && refusal == VERDICT_OK && f_index == 3'd0 && f_words != 8'd0;
 always @(posedge clk) begin
   f_started  <= 1'b1;
   f_strobe_q <= (bus_check | bus_write) & ~rst;
   f_gap      <= bus_check | bus_write | bus_frame ? 2'd0 : f_gap == 2'd3 ? 2'd3 : f_gap + 2'd1;
   f_since_write <= bus_write | f_writing | (bus_frame & bus_commit) ? 3'd0 : f_since_write == 3'd7 ? 3'd7 : f_since_write + 3'd1;
-  if (!f_started) assume (rst);
-  if (bus_check || bus_write || bus_frame) assume (f_gap >= F_GAP);
-  assume (bus_check + bus_write + bus_frame <= 2'd1);
-  if (bus_frame) assume (bus_commit == (f_good && f_go));
-  if (bus_check || bus_write || f_strobe_q) assume ($stable(bus_data));
-  if (bus_check) assume (f_top_bit_right && $past(f_top_bit_right));
-  if (bus_check) assume (f_checking && f_words != 6'd60);
-  if (bus_write) assume (f_writing == select);
-  if (f_checking && f_words != 6'd0) assume (select == f_select);
-  if (f_writing) assume (!bus_frame || f_words == 6'd0);
+  if (!f_started) ramp_queue_reset : assume (rst);
+  if (bus_check || bus_write || bus_frame) ramp_queue_strobes_apart : assume (f_gap >= F_GAP);
+  ramp_queue_one_strobe : assume (bus_check + bus_write + bus_frame <= 2'd1);
+  if (bus_frame) ramp_queue_commits_good : assume (bus_commit == (f_good && f_go));
+  if (bus_check || bus_write || f_strobe_q) ramp_queue_data_stand : assume ($stable(bus_data));
+  if (bus_check) ramp_queue_top_bit : assume (f_top_bit_right && $past(f_top_bit_right));
+  if (bus_check) ramp_queue_frame_has_begun : assume (f_checking);
+  if (bus_write) ramp_queue_writes_good : assume (f_writing == select);
+  if (f_checking && f_words != 8'd0) ramp_queue_select_stands : assume (select == f_select);
+  if (f_writing) ramp_queue_writes_all : assume (!bus_frame || f_words == 8'd0);
   if (f_strobe) f_index <= f_last_index ? 3'd0 : f_index + 3'd1;
   if (refusal != VERDICT_OK) f_refused <= 1'b1;
   if (bus_check) begin
-    f_words  <= f_words + 6'd1;
+    f_words  <= f_words == 8'd255 ? 8'd255 : f_words + 8'd1;
     f_select <= select;
   end
-  if (bus_write && f_writing) f_words <= f_words - 6'd1;
-  if (bus_write && f_writing && f_words == 6'd1) f_writing <= 1'b0;
+  if (bus_write && f_writing) f_words <= f_words - 8'd1;
+  if (bus_write && f_writing && f_words == 8'd1) f_writing <= 1'b0;
   if (bus_frame) begin
     f_index    <= 3'd0;
     f_refused  <= 1'b0;
     f_checking <= !bus_commit;
     f_writing  <= bus_commit && f_select;
-    if (!bus_commit) f_words <= 6'd0;
+    if (!bus_commit) f_words <= 8'd0;
   end
 `ifdef SMALL
   // shorter for the search of bugs: where a frame may begin, any good number of ramps (see `shorter` in
   // promises.toml) has been checked already
-  assume (rst == !f_started);
-  f_short <= rst | (bus_frame & ~bus_commit) | (bus_write & f_writing & f_words == 6'd1);
+  small_ramp_queue_reset : assume (rst == !f_started);
+  f_short <= rst | (bus_frame & ~bus_commit) | (bus_write & f_writing & f_words == 8'd1);
   if (f_short && checked != 0) begin
+    small_ramp_queue_checked :
     assume (32'd0 + checked + f_ramps + f_to_come <= 1 << DEPTH_LOG2 && !bus_check && !bus_frame);
     f_words  <= 5 * checked;
     f_select <= 1'b1;
@@ -76,14 +77,15 @@ always @(posedge clk) begin
     {f_checking, f_writing, f_refused} <= 3'b000;
 
     f_index <= 3'd0;
-    f_words <= 6'd0;
+    f_words <= 8'd0;
   end
   // ramp and motion: a ramp is taken only if it is there, and not a NOW ramp before take_now
-  assume (blocked == flush);
-  if (take) assume (f_ramps != 0 && !take_now && !(now_pending && f_now_ahead == 0));
-  if (take_now) assume (now_pending);
+  ramp_queue_blocked : assume (blocked == flush);
+  if (take)
+    ramp_queue_takes_the_oldest : assume (f_ramps != 0 && !take_now && !(now_pending && f_now_ahead == 0));
+  if (take_now) ramp_queue_takes_now_when_pending : assume (now_pending);
   // a channel stays stopped while a frame is written: only another frame can clear it
-  if ($past(flush && !rst) && f_since_write != 3'd7) assume (flush || rst);
+  if ($past(flush && !rst) && f_since_write != 3'd7) ramp_queue_stays_flushed : assume (flush || rst);
 end
 
 // --- The queue as it should be
@@ -145,7 +147,7 @@ always @(posedge clk) begin
     else if ($past(blocked)) busy_when_stopped : assert (refusal == VERDICT_BUSY);
     else begin
       if (refusal == VERDICT_OK && !f_refused) room_for_all_checked : assert ($past(f_checked) < $past(room));
-      if (refusal == VERDICT_QUEUE_FULL) full_only_without_room : assert ($past(f_checked) == $past(room, 2));
+      if (refusal == VERDICT_QUEUE_FULL) full_only_without_room : assert ($past(f_checked) == $past(f_free_q, 2));
       else bad_value_refused : assert (refusal == ($past(f_bad) ? VERDICT_BAD_VALUE : VERDICT_OK) || f_refused);
     end
   end
@@ -171,7 +173,7 @@ wire f_watch = !f_recording && !f_queued && f_choose && bus_write && select && f
 wire [15:0] f_data = f_half[0] ? bus_data[15:0] : bus_data[31:16];
 wire f_inverted = f_index == 3'd2 || (f_mirror && f_index >= 3'd3);  // T always, du if mirrored
 always @(posedge clk) begin
-  assume (f_half <= 4'd9);
+  ramp_queue_any_half : assume (f_half <= 4'd9);
   if (f_watch) begin
     f_recording <= 1'b1;
     f_mirror    <= bus_data[2];
@@ -206,7 +208,6 @@ always @(posedge clk)
     assert (index == f_index || f_strobe_q && index == (f_index == 0 ? 4 : f_index - 1) || f_index == 0);
     assert (f_index <= 3'd4);
     assert (!(f_checking && f_writing));
-    assert (f_words <= 6'd60);
     if (f_writing) assert (f_select);
     if (!f_checking && !f_writing) assert (f_index == 0);
     if (f_checking) assert (checked == f_checked && index == f_index);

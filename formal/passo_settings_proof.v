@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: MIT
+// What the registers of a channel and of its axes promise of settings and commands, seen from their ports.
+`resetall
+`default_nettype none
+
+module passo_settings_proof (
+  input wire        clk,
+  input wire        rst,
+  input wire        bus_check,
+  input wire        bus_write,
+  input wire        bus_read,
+  input wire        bus_push,
+  input wire        select,
+  input wire [ 7:0] bus_address,
+  input wire [31:0] bus_data,
+  input wire [ 4:0] bus_top_bit,
+  input wire        bus_lone_bit
+);
+
+  `include "passo_registers.vh"
+
+  localparam [16:0] F_ONE = 17'h10000;
+  localparam [31:0] F_HALF = 32'h8000_0000;
+
+  wire        claim;
+  wire [ 3:0] refusal;
+  wire        select_axis;
+  wire [16:0] rate_target;
+  wire [16:0] rate_slew;
+  wire [16:0] stop_slew;
+  wire [31:0] drain_velocity;
+  wire        command_stop;
+  wire        command_abort;
+  wire        command_clear;
+  wire        command_zero;
+  wire        needs_idle;
+  wire        needs_quiet;
+
+  passo_channel_registers #(
+    .AXES(1)
+  ) u_registers (
+    .clk           (clk),
+    .rst           (rst),
+    .bus_check     (bus_check),
+    .bus_write     (bus_write),
+    .bus_read      (bus_read),
+    .bus_push      (bus_push),
+    .select        (select),
+    .bus_address   (bus_address),
+    .bus_data      (bus_data),
+    .bus_top_bit   (bus_top_bit),
+    .bus_lone_bit  (bus_lone_bit),
+    .claim         (claim),
+    .refusal       (refusal),
+    .select_axis   (select_axis),
+    .rate_target   (rate_target),
+    .rate_slew     (rate_slew),
+    .stop_slew     (stop_slew),
+    .drain_velocity(drain_velocity),
+    .command_stop  (command_stop),
+    .command_abort (command_abort),
+    .command_clear (command_clear),
+    .command_zero  (command_zero),
+    .needs_idle    (needs_idle),
+    .needs_quiet   (needs_quiet)
+  );
+
+  wire        write_pins;
+  wire        write_step_timing;
+  wire        write_dir_timing;
+  wire        write_enable;
+  wire        short_upper;
+  wire        short_lower;
+  wire        pins_need_quiet;
+  wire [15:0] step_high;
+  wire [15:0] step_low;
+  wire [15:0] dir_setup;
+  wire [15:0] dir_hold;
+  wire        short_high;
+  wire        short_low;
+  wire        short_setup;
+  wire        short_hold;
+  wire        both_edges;
+  wire        step_inverted;
+  wire        direction_inverted;
+
+  passo_axis_registers #(
+    .AXES(1)
+  ) u_axis_registers (
+    .clk              (clk),
+    .rst              (rst),
+    .bus_check        (bus_check),
+    .bus_write        (bus_write),
+    .bus_read         (bus_read),
+    .bus_push         (bus_push),
+    .select_axis      (select_axis),
+    .bus_address      (bus_address[2:0]),
+    .bus_data         (bus_data),
+    .bus_top_bit      (bus_top_bit),
+    .write_pins       (write_pins),
+    .write_step_timing(write_step_timing),
+    .write_dir_timing (write_dir_timing),
+    .write_enable     (write_enable),
+    .needs_quiet      (pins_need_quiet),
+    .short_upper      (short_upper),
+    .short_lower      (short_lower)
+  );
+
+  passo_axis_settings u_settings (
+    .clk               (clk),
+    .rst               (rst),
+    .write_pins        (write_pins),
+    .write_step_timing (write_step_timing),
+    .write_dir_timing  (write_dir_timing),
+    .write_enable      (write_enable),
+    .bus_data          (bus_data),
+    .short_upper       (short_upper),
+    .short_lower       (short_lower),
+    .step_high         (step_high),
+    .step_low          (step_low),
+    .dir_setup         (dir_setup),
+    .dir_hold          (dir_hold),
+    .short_high        (short_high),
+    .short_low         (short_low),
+    .short_setup       (short_setup),
+    .short_hold        (short_hold),
+    .both_edges        (both_edges),
+    .step_inverted     (step_inverted),
+    .direction_inverted(direction_inverted)
+  );
+
+  // --- Which values are bad
+  wire f_is_setting = select && bus_address <= CHANNEL_DRAIN_VELOCITY;
+  wire f_is_command = select && bus_address == CHANNEL_COMMAND;
+  wire f_is_drain_velocity = select && bus_address == CHANNEL_DRAIN_VELOCITY;
+  wire f_bad = f_is_command        ? (bus_data & ~CHANNEL_COMMAND_DEFINED) != 32'd0 :
+               f_is_drain_velocity ? bus_data == 32'd0 || bus_data > F_HALF : bus_data > {15'd0, F_ONE};
+  wire f_stops = bus_data[CHANNEL_COMMAND_STOP_LSB] | bus_data[CHANNEL_COMMAND_ABORT_LSB];
+  wire f_told = bus_top_bit == 5'd0 ? bus_data <= 32'd1 : bus_data >> bus_top_bit == 32'd1;
+  wire f_lone = (bus_data & (bus_data - 32'd1)) == 32'd0;
+
+  // --- Assumptions: the link, and the payload buffer
+  reg        f_started = 1'b0;
+  reg  [1:0] f_reset = 2'b11;  // one and two clocks ago
+  reg        f_strobe = 1'b0;  // in the clock before
+  reg        f_two = 1'b0;  // two clocks have been
+  reg [ 9:0] f_bus_q;
+  reg [ 9:0] f_bus_qq;
+  reg [31:0] f_data_q;
+  reg        f_told_q;
+  wire [9:0] f_bus = {select, bus_push, bus_address};
+  always @(posedge clk) begin
+    f_started <= 1'b1;
+    f_reset   <= {f_reset[0], rst};
+    f_strobe  <= bus_check | bus_write | bus_read;
+    f_two     <= f_started;
+    f_bus_q   <= f_bus;
+    f_bus_qq  <= f_bus_q;
+    f_data_q  <= bus_data;
+    f_told_q  <= f_told && bus_lone_bit == f_lone;
+    if (!f_started) settings_reset : assume (rst);
+    settings_one_strobe : assume (bus_check + bus_write + bus_read <= 2'd1 && !(f_strobe && (bus_check || bus_write || bus_read)));
+    if (bus_check || bus_write || bus_read) 
+      settings_bus_stands : assume (f_two && f_bus == f_bus_q && f_bus == f_bus_qq && bus_data == f_data_q);
+    if (f_strobe) settings_data_stand : assume (bus_data == f_data_q);
+    if (bus_check) settings_told : assume (f_told && bus_lone_bit == f_lone && f_told_q);
+    if (bus_write && f_is_setting) settings_as_checked : assume (!bus_push && !f_bad);
+  end
+
+  reg        f_checked = 1'b0;  // a setting, in the clock before
+  reg        f_checked_bad;
+  reg        f_pushed;
+  reg        f_write_pins = 1'b0;
+  reg        f_write_timing = 1'b0;
+  reg  [7:0] f_drain_low;
+  reg [63:0] f_timings;
+  reg  [2:0] f_pins;
+  wire [63:0] f_timings_now = {step_high, step_low, dir_setup, dir_hold};
+  wire [ 2:0] f_pins_now = {both_edges, step_inverted, direction_inverted};
+  always @(posedge clk) begin
+    f_checked      <= bus_check & f_is_setting & ~rst;
+    f_checked_bad  <= f_bad;
+    f_pushed       <= bus_push;
+    f_write_pins   <= write_pins & ~rst;
+    f_write_timing <= (write_step_timing | write_dir_timing) & ~rst;
+    f_drain_low    <= drain_velocity[7:0];
+    f_timings      <= f_timings_now;
+    f_pins         <= f_pins_now;
+    if (f_started) begin
+      rates_at_most_1 : assert (rate_target <= F_ONE && rate_slew <= F_ONE && stop_slew <= F_ONE);
+      if (f_reset == 2'b00)
+        drain_velocity_in_range :
+        assert ({drain_velocity[31:8], f_drain_low} <= F_HALF && {drain_velocity[31:8], f_drain_low} != 32'd0);
+      if (f_checked)
+        refused_if_bad :
+        assert (claim && refusal == (f_pushed ? VERDICT_BAD_OPERATION : f_checked_bad ? VERDICT_BAD_VALUE : VERDICT_OK));
+      if (bus_check && f_is_command && f_stops) stop_needs_nothing : assert (!needs_idle && !needs_quiet);
+      if (bus_check && f_is_command && !f_stops && bus_data[CHANNEL_COMMAND_CLEAR_LSB])
+        clear_needs_no_motion : assert (needs_idle);
+      if (bus_check && f_is_command && !f_stops && bus_data[CHANNEL_COMMAND_ZERO_LSB])
+        zero_needs_quiet : assert (needs_quiet);
+      if (bus_check && select && bus_address == CHANNEL_AXIS_BASE) pins_need_quiet_channel : assert (pins_need_quiet);
+      if (command_stop || command_abort) stop_is_alone : assert (!command_clear && !command_zero && !(command_stop && command_abort));
+      timings_not_0 : assert (step_high != 16'd0 && step_low != 16'd0 && dir_setup != 16'd0 && dir_hold != 16'd0);
+      short_told :
+      assert (short_high == (step_high == 16'd1) && short_low == (step_low == 16'd1)
+              && short_setup == (dir_setup == 16'd1) && short_hold == (dir_hold == 16'd1));
+      if (!f_write_timing) timings_change_when_written : assert (f_timings_now == f_timings);
+      if (!f_write_pins) pins_change_when_written : assert (f_pins_now == f_pins);
+    end
+  end
+
+endmodule
+`resetall
