@@ -13,7 +13,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from importlib.metadata import version
 from pathlib import Path
 
@@ -49,12 +49,18 @@ class Parameters:
     tick_log2: int = 7
     line_queue_log2: int = 8
     ramp_queue_log2: int = 4
+    # levels of the pins after configuration: the host cannot read them from the core
+    step_reset: int = field(default=0, compare=False)
+    dir_reset: int = field(default=0, compare=False)
+    enable_reset: int = field(default=0, compare=False)
 
     @property
     def name(self) -> str:
         """Part of a file name that tells these parameters from others."""
         queues = f"{self.line_queue_log2}_{self.ramp_queue_log2}"
-        return f"{self.channels}x{self.axes}_{self.tick_log2}_{queues}"
+        levels = (self.step_reset, self.dir_reset, self.enable_reset)
+        reset = "_reset{:x}_{:x}_{:x}".format(*levels) if any(levels) else ""
+        return f"{self.channels}x{self.axes}_{self.tick_log2}_{queues}{reset}"
 
 
 def planner_library() -> Path:
