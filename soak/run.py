@@ -251,10 +251,7 @@ def play_verilator(program: Path, seed: int, histories: int, jobs: int) -> Part:
 def _bench(number: int) -> Path:
     """The player for a set of parameters, compiled by Icarus Verilog."""
     made = BUILD / f"player{number}.vvp"
-    names = ("CHANNELS", "AXES", "TICK_LOG2", "LINE_QUEUE_LOG2", "RAMP_QUEUE_LOG2")
-    names += ("STEP_RESET", "DIR_RESET", "ENABLE_RESET")
-    values = [getattr(SETS[number], name.lower()) for name in names]
-    given = [f"-Psoak_player.{name}={value}" for name, value in zip(names, values, strict=True)]
+    given = [f"-Psoak_player.{name}={value}" for name, value in SETS[number].verilog().items()]
     sources = [HERE / "player.v", *sorted(paths.rtl.glob("*.v"))]
     _run(["iverilog", "-g2005", f"-I{paths.rtl}", *given, "-s", "soak_player", "-o", made, *sources])
     return made

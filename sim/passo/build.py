@@ -62,6 +62,14 @@ class Parameters:
         reset = "_reset{:x}_{:x}_{:x}".format(*levels) if any(levels) else ""
         return f"{self.channels}x{self.axes}_{self.tick_log2}_{queues}{reset}"
 
+    def verilog(self) -> dict[str, str]:
+        """Names and values as the Verilog has them."""
+        pins = self.channels * self.axes
+        return {
+            name.upper(): f"{pins}'h{value:x}" if name.endswith("_reset") else str(value)
+            for name, value in asdict(self).items()
+        }
+
 
 def planner_library() -> Path:
     """Planner, frame codec, link library and driver: what runs on a microcontroller as well."""
@@ -151,7 +159,7 @@ def _c_library(name: str, sources: Sequence[Path], folders: Sequence[Path] = ())
 def _verilated(parameters: Parameters, waves: bool) -> Path:
     """The folder with the C++ that Verilator made of the core, compiled."""
     sources = sorted(paths.rtl.glob("*.v"))
-    flags = [*VERILATOR_FLAGS, *(f"-G{name.upper()}={value}" for name, value in asdict(parameters).items())]
+    flags = [*VERILATOR_FLAGS, *(f"-G{name}={value}" for name, value in parameters.verilog().items())]
     # Recording the waves takes most of the time, so that optimizing only makes the build slow.
     optimize = "OPT_FAST=-O1 OPT_SLOW=-O0" if waves else "OPT_FAST=-O3 OPT_SLOW=-O1 OPT_GLOBAL=-O2"
     flags += ["-MAKEFLAGS", optimize]
