@@ -581,6 +581,18 @@ static void play_death(struct bridge *bridge)
 	check_positions(bridge);
 }
 
+/* An earlier host has left off at any sequence number. */
+static void begin_sequences(struct bridge *bridge)
+{
+	uint32_t mosi[PASSO_FRAME_WORDS_MAX], miso[PASSO_FRAME_WORDS_MAX];
+	const uint32_t nothing = 0;
+	const uint8_t sequence = (uint8_t)plot_draw(bridge->random, 256);
+	const size_t count = passo_frame_write(mosi, sequence, PASSO_ADDRESS_RUN, &nothing, 1);
+
+	world_exchange(bridge->world, mosi, miso, count, 32u * count);
+	world_run(bridge->world, 100);
+}
+
 void bridge_play(struct world *world, const struct world_rtl *rtl, uint64_t seed, uint64_t number,
     FILE *print, struct bridge_counts *counts)
 {
@@ -606,6 +618,7 @@ void bridge_play(struct world *world, const struct world_rtl *rtl, uint64_t seed
 	    .tries = death ? TRIES_DEATH : TRIES_NOISE,
 	    .paced = true};
 	world_run(world, 8);
+	begin_sequences(&bridge);
 	must(&bridge, "open", passo_open(&bridge.passo, &bridge.host, &hardware, &options));
 	if (!world->failed_at)
 		must(&bridge, "configure", configure(&bridge));

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "judge.h"
 
+#include <string.h>
+
 /* Clocks by which what the host knows of the time of a write may be wrong. */
 #define SLACK 3u
 /* Shortest time from the beginning of a motion to `running` and to its first step: nothing may run so soon
@@ -16,6 +18,9 @@
 /* A reset is over at the pins. */
 #define RESET_CLOCKS 4u
 
+/* The shortest of the last ones tells the rate: one may be longer, between two lines or motions. */
+#define GAPS 3u
+
 struct axis {
 	bool step_inverted, direction_inverted, enable_inverted, both_edges, enabled;
 	uint64_t step_high, step_low, dir_setup, dir_hold;
@@ -28,7 +33,7 @@ struct axis {
 	int64_t position, lowest, highest; /* the latter since a read began */
 	int64_t owed, owed_from;           /* steps of the accepted lines, from this position on */
 	unsigned budget;                   /* steps that may still come */
-	uint64_t last_step, gap;
+	uint64_t steps[GAPS + 1u];         /* clocks of the last ones, the latest first; 0: none */
 	uint64_t gap_least;
 };
 
@@ -89,15 +94,14 @@ static uint64_t level_time(const struct axis *axis)
 static void see_gap(struct judge *judge, unsigned c, unsigned a)
 {
 	struct axis *axis = &judge->channel[c].axis[a];
-	const uint64_t gap = judge->now - axis->last_step;
+	const uint64_t gap = judge->now - axis->steps[0];
 
 	if (axis->gap_least != 0u && gap < axis->gap_least)
-		FAIL(judge, "channel %u axis %u: %llu clocks between steps, %llu before the stop allow %llu",
-		    c, a, (unsigned long long)gap, (unsigned long long)axis->gap,
-		    (unsigned long long)axis->gap_least);
+		FAIL(judge, "channel %u axis %u: %llu clocks between steps, the rate at the stop allows %llu",
+		    c, a, (unsigned long long)gap, (unsigned long long)axis->gap_least);
 	judge->counts->gaps += axis->gap_least != 0u ? 1u : 0u;
-	axis->gap = axis->last_step != 0u ? gap : 0u;
-	axis->last_step = judge->now;
+	memmove(&axis->steps[1], &axis->steps[0], GAPS * sizeof axis->steps[0]);
+	axis->steps[0] = judge->now;
 }
 
 static void see_step(struct judge *judge, unsigned c, unsigned a)
@@ -174,6 +178,9 @@ static void see_pins(struct judge *judge, const struct passo_outputs *pins)
 		struct channel *channel = &judge->channel[c];
 		bool moves = (pins->running & ~judge->pins.running & 1u << c) != 0u;
 
+		/* a motion begins at the rate that is its target */
+		for (unsigned a = 0; moves && a < axes; a++)
+			memset(channel->axis[a].steps, 0, sizeof channel->axis[a].steps);
 		for (unsigned a = 0; a < axes; a++) {
 			struct axis *axis = &channel->axis[a];
 			const unsigned bit = c * axes + a;
@@ -236,13 +243,17 @@ static void expect_slowing(struct judge *judge, unsigned c)
 		struct axis *axis = &channel->axis[a];
 		const uint64_t enabled = judge->world->gap_enabled[c][a];
 
-		if (enabled < GAP_MIN || axis->gap == 0u || axis->last_step == 0u)
+		if (enabled < GAP_MIN || axis->steps[GAPS] == 0u)
 			continue;
-		/* rate, UQ32.16: enabled clocks by clocks, and what the slew can have added since */
-		const uint64_t ticks = (axis->gap + judge->now - axis->last_step) / tick + 2u;
-		const uint64_t rate = ((enabled + 2u) << 16) / axis->gap + ticks * channel->rate_slew;
-		const uint64_t least =
-		    ((enabled - 2u) << 16) / (rate < PASSO_RATE_ONE ? rate : PASSO_RATE_ONE);
+		uint64_t gap = axis->steps[0] - axis->steps[1];
+		for (unsigned i = 1; i < GAPS; i++)
+			if (axis->steps[i] - axis->steps[i + 1u] < gap)
+				gap = axis->steps[i] - axis->steps[i + 1u];
+		/* the rate that this gap stands for, UQ48.16, and what the slew can have added since */
+		const uint64_t ticks = (judge->now - axis->steps[GAPS]) / tick + 2u;
+		const uint64_t rate = ((enabled + 2u) << 16) / gap + ticks * channel->rate_slew;
+		const uint64_t most = rate < PASSO_RATE_ONE ? rate : PASSO_RATE_ONE;
+		const uint64_t least = ((enabled - 2u) << 16) / most;
 
 		axis->gap_least = least > 4u ? least - 4u : 0u;
 	}

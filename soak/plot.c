@@ -265,8 +265,8 @@ static void draw_lines(struct plot *plot, struct motion *motion, unsigned channe
 					line->steps[a] = line->substeps;
 		}
 	}
-	motion->lines[motion->line_count - 1u].last = plot_chance(random, 90);
-	motion->lines[motion->line_count - 1u].endless = plot_chance(random, 10);
+	motion->lines[motion->line_count - 1u].last = constant || plot_chance(random, 90);
+	motion->lines[motion->line_count - 1u].endless = !constant && plot_chance(random, 12);
 }
 
 static struct action push_lines(struct plot *plot, unsigned channel, const struct motion *motion)
