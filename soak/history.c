@@ -9,7 +9,7 @@
 /* The model of a position read may be as old. */
 #define POSITION_CLOCKS 140u
 /* Before and after a reset nothing may be written of which it is not certain whether it counts. */
-#define RESET_MARGIN 6u
+#define RESET_MARGIN 3u
 #define ABORT (1u << PASSO_CHANNEL_COMMAND_ABORT_LSB)
 #define STOP (1u << PASSO_CHANNEL_COMMAND_STOP_LSB)
 #define CLEAR (1u << PASSO_CHANNEL_COMMAND_CLEAR_LSB)
@@ -306,7 +306,8 @@ static void play_frame(struct player *player, const struct action *action)
 	player->counts->frames++;
 
 	/* what a reset falls into is lost */
-	const bool lost = world->reset_at != 0u && world->reset_until + RESET_MARGIN > begin;
+	const bool lost = world->reset_at != 0u
+	               && (world->reset_until == UINT64_MAX || world->reset_until + RESET_MARGIN > begin);
 	print_frame(player, action, begin, lost);
 	if (lost) {
 		player->repeat_count = 0;
@@ -591,7 +592,7 @@ static const uint32_t wanted_events[PLOT_KINDS] = {
     [PLOT_RESET] = BIT(STEP) | BIT(DIR) | BIT(WAITS) | BIT(STATE) | BIT(TICK),
     [PLOT_NOW] = BIT(RAMP) | BIT(TICK) | BIT(STATE) | BIT(STOPPING),
     [PLOT_MOTION] = BIT(LINE) | BIT(RAMP) | BIT(STATE) | BIT(STOPPING),
-    [PLOT_TABLE] = BIT(STATE) | BIT(RAMP),
+    [PLOT_TABLE] = BIT(STATE),
     [PLOT_READ] = BIT(STEP) | BIT(STATE) | BIT(QUIET),
     [PLOT_BAD] = BIT(STATE) | BIT(STEP),
 };
@@ -617,8 +618,16 @@ static const struct world_event *choose_event(
 			return &scout->events[i];
 }
 
+/* What is allowed in some states only. */
+static bool kind_is_gated(enum plot_kind kind)
+{
+	return kind == PLOT_CLEAR || kind == PLOT_ZERO || kind == PLOT_COMMAND || kind == PLOT_PINS
+	    || kind == PLOT_TABLE || kind == PLOT_NOW;
+}
+
 /* From the moment of an action that is to fall on the event, to its beginning. */
-static int64_t lead(const struct world *scout, struct plot_random *random, struct action *action)
+static int64_t lead(
+    const struct world *scout, struct plot_random *random, enum plot_kind kind, struct action *action)
 {
 	const unsigned index = plot_draw(random, action->length);
 
@@ -630,7 +639,7 @@ static int64_t lead(const struct world *scout, struct plot_random *random, struc
 		action->point = 's';
 		return (int64_t)plot_draw(random, 140);
 	}
-	if (plot_chance(random, 30)) {
+	if (plot_chance(random, kind_is_gated(kind) ? 60 : 20)) {
 		action->point = 'c';
 		return world_checks(scout, index);
 	}
@@ -651,7 +660,7 @@ static void aim(
 
 		if (!event)
 			break;
-		const int64_t at = (int64_t)event->clock + offset - lead(scout, random, action);
+		const int64_t at = (int64_t)event->clock + offset - lead(scout, random, kind, action);
 		if (at < from + 2)
 			continue;
 		action->at = (uint64_t)at;
@@ -672,6 +681,12 @@ static void open_world(struct world *world, const struct plot *plot, const struc
 	world->setup = plot->setup;
 	memcpy(world->gap_enabled, plot->gap_enabled, sizeof world->gap_enabled);
 	world_run(world, 8);
+}
+
+static void add(struct plot *plot, const struct action *action)
+{
+	if (plot->count < PLOT_ACTIONS_MAX)
+		plot->actions[plot->count++] = *action;
 }
 
 void history_play(struct world *world, const struct world_rtl *rtl, uint64_t seed, uint64_t number,
@@ -695,8 +710,17 @@ void history_play(struct world *world, const struct world_rtl *rtl, uint64_t see
 		play_actions(&player, &plot, plot.prologue + (i == 0u ? 0u : plot.count));
 		world_run(&scout, SCOUT_CLOCKS);
 		aim(&scout, &plot.random, kind, &action);
-		if (plot.count < PLOT_ACTIONS_MAX)
-			plot.actions[plot.count++] = action;
+		add(&plot, &action);
+		if (action.kind == ACTION_RESET && action.clocks > 4u * RESET_MARGIN) {
+			/* a frame that begins within a reset is none */
+			struct action within =
+			    plot_disturbance(&plot, plot_chance(&plot.random, 50) ? PLOT_ENABLE : PLOT_RUN);
+
+			within.at =
+			    action.at + 1u + plot_draw(&plot.random, action.clocks - 2u * RESET_MARGIN);
+			within.clocks = 2;
+			add(&plot, &within);
+		}
 		counts->kinds[kind]++;
 		counts->aimed += action.event < EVENT_KINDS ? 1u : 0u;
 		counts->events[action.event] += action.event < EVENT_KINDS ? 1u : 0u;

@@ -179,8 +179,10 @@ static void see_pins(struct judge *judge, const struct passo_outputs *pins)
 		bool moves = (pins->running & ~judge->pins.running & 1u << c) != 0u;
 
 		/* a motion begins at the rate that is its target */
-		for (unsigned a = 0; moves && a < axes; a++)
+		for (unsigned a = 0; moves && a < axes; a++) {
 			memset(channel->axis[a].steps, 0, sizeof channel->axis[a].steps);
+			channel->axis[a].gap_least = 0;
+		}
 		for (unsigned a = 0; a < axes; a++) {
 			struct axis *axis = &channel->axis[a];
 			const unsigned bit = c * axes + a;

@@ -18,7 +18,7 @@ struct options {
 	uint64_t seed, first, count;
 	const char *library, *folder;
 	unsigned set; /* PLOT_SETS: all */
-	bool print, keep_on, driver, brief;
+	bool print, keep_on, driver, brief, blind;
 };
 
 static bool parse(int argc, char **argv, struct options *options)
@@ -34,6 +34,8 @@ static bool parse(int argc, char **argv, struct options *options)
 			options->print = true;
 		else if (strcmp(argv[i], "--keep-on") == 0)
 			options->keep_on = true;
+		else if (strcmp(argv[i], "--blind") == 0)
+			options->blind = true;
 		else if (strcmp(argv[i], "--short") == 0)
 			options->brief = true;
 		else if (strcmp(argv[i], "--driver") == 0)
@@ -122,6 +124,7 @@ int main(int argc, char **argv)
 	if (options.library && !(rtl = world_load(options.library)))
 		return 2;
 	world.latency = &latency;
+	world.blind = options.blind;
 	for (uint64_t number = options.first; played < options.count; number++) {
 		char path[WORLD_TEXT];
 		FILE *record = NULL;

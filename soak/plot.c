@@ -474,7 +474,7 @@ static const struct {
     [PLOT_RESET] = {"core reset", 6},
     [PLOT_NOW] = {"NOW ramp", 8},
     [PLOT_MOTION] = {"lines or ramps", 6},
-    [PLOT_TABLE] = {"table", 4},
+    [PLOT_TABLE] = {"table", 6},
     [PLOT_READ] = {"read", 4},
     [PLOT_BAD] = {"bad frame", 4},
 };
@@ -664,7 +664,7 @@ struct action plot_disturbance(struct plot *plot, enum plot_kind kind)
 		return write_word(plot,
 		    axis_address(
 			any_channel(plot), plot_draw(random, plot->parameters.axes), PASSO_AXIS_ENABLE),
-		    plot_draw(random, 2));
+		    plot_chance(random, 70) ? 1u : 0u);
 	case PLOT_TIMING:
 		return timings(plot);
 	case PLOT_RUN:
@@ -673,8 +673,10 @@ struct action plot_disturbance(struct plot *plot, enum plot_kind kind)
 		return (struct action){
 		    .kind = ACTION_SYNC, .clocks = 1u + plot_draw(random, 20), .event = EVENT_KINDS};
 	case PLOT_RESET:
-		return (struct action){
-		    .kind = ACTION_RESET, .clocks = 1u + plot_draw(random, 8), .event = EVENT_KINDS};
+		return (struct action){.kind = ACTION_RESET,
+		    .clocks =
+			plot_chance(random, 50) ? 1u + plot_draw(random, 8) : 24u + plot_draw(random, 40),
+		    .event = EVENT_KINDS};
 	case PLOT_NOW:
 		return now_ramp(plot);
 	case PLOT_MOTION:

@@ -15,6 +15,7 @@ import re
 import shutil
 import subprocess
 import sys
+import threading
 import time
 import tomllib
 from collections import Counter
@@ -25,10 +26,12 @@ from pathlib import Path
 from typing import Any
 
 from passo.build import ENGINE, Parameters, rtl_library
-from passo.console import console, table
+from passo.console import console as terminal
+from passo.console import table
 from passo.planted import plant
 from passo.report import write_json
 from passo.toolchain import environment, paths
+from rich.console import Console
 
 HERE = Path(__file__).resolve().parent
 BUILD = paths.build / "soak"
@@ -54,6 +57,8 @@ HISTORIES = {
 }
 PARTS = ("model", "driver", "verilator", "icarus", "defects")
 CHUNK = 50  # histories of one process
+
+console = terminal if terminal.is_terminal else Console(width=118)
 
 
 class SoakError(RuntimeError):
@@ -96,6 +101,7 @@ class Defect:
     edits: tuple[tuple[str, str, str], ...]  # file, old, new
     red: str  # regular expression
     driver: bool = False
+    blind: bool = False  # the rate is judged by the steps alone
     histories: int = 20_000  # within which it must
 
     def folder(self) -> Path:
@@ -135,7 +141,7 @@ def _object(file: Path, root: Path) -> Path:
         digest.update(path.name.encode() + path.read_bytes())
     made = BUILD / "objects" / f"{file.stem}-{digest.hexdigest()[:16]}.o"
     if not made.exists():
-        part = made.with_suffix(f".{os.getpid()}")
+        part = made.with_suffix(f".{os.getpid()}.{threading.get_ident()}")
         includes = [f"-I{root / folder}" for folder in FOLDERS]
         _run(["cc", *FLAGS, *includes, f"-I{ENGINE}", "-c", file, "-o", part])
         part.rename(made)
@@ -310,6 +316,7 @@ def catch(defect: Defect, seed: int) -> Catch:
     except (ValueError, SoakError) as error:
         return Catch(defect, False, -1, time.monotonic() - began, f"not planted: {error}")
     command = [program, str(seed), "0", str(defect.histories), *(["--driver"] if defect.driver else [])]
+    command += ["--blind"] if defect.blind else []
     counts, failures = _play(command, defect.name, seed)
     seconds = time.monotonic() - began
     if not failures:

@@ -112,6 +112,7 @@ struct world {
 	struct passo_outputs recorded_outputs;
 	uint64_t recorded_clocks;
 
+	bool blind;         /* the rate is judged by the steps alone; kept by world_open() */
 	uint64_t failed_at; /* 0: nothing has */
 	char failure[WORLD_TEXT];
 };
