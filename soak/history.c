@@ -16,7 +16,7 @@
 #define ZERO (1u << PASSO_CHANNEL_COMMAND_ZERO_LSB)
 /* Polls until something must have come to an end. */
 #define POLLS_MAX 400u
-#define LAST_MOVE_STEPS 24u
+#define LAST_MOVE_STEPS 8u
 
 struct player {
 	struct world *world;
@@ -505,23 +505,16 @@ static void last_move(struct player *player, struct plot_random *random, unsigne
 	uint32_t words[PASSO_FRAME_PAYLOAD_MAX];
 	struct passo_line line = {
 	    .last = true, .substeps = 2u * LAST_MOVE_STEPS, .directions = (uint8_t)channel};
-	struct passo_ramp ramps[2] = {
-	    {.velocity_end = PASSO_VELOCITY_MAX >> 4}, {.last = true,
-							   .velocity_end = PASSO_VELOCITY_MAX >> 4,
-							   .ticks = 13,
-							   .progress_step = PASSO_ONE_Q48 / 13u}};
+	/* slow enough for all its steps that wait while DIR is set up */
+	const bool slow = plot_chance(random, 20);
+	const uint64_t velocity = PASSO_VELOCITY_MAX >> (slow ? 7 : 4);
+	const uint32_t ticks = slow ? 33 : 5;
+	const struct passo_ramp ramps[2] = {{.velocity_end = velocity},
+	    {.last = true, .velocity_end = velocity, .ticks = ticks, .progress_step = PASSO_ONE_Q48 / ticks}};
 	uint32_t state = 0;
 
-	for (unsigned a = 0; a < axes_of(player); a++) {
-		const uint32_t axis[3] = {plot_draw(random, 16) << 1, 0x40004u, 0x30003u};
-
+	for (unsigned a = 0; a < axes_of(player); a++)
 		line.steps[a] = LAST_MOVE_STEPS - a;
-		if (!send(player, PASSO_OPERATION_WRITE,
-			at_channel(channel, PASSO_CHANNEL_AXIS_BASE + a * PASSO_CHANNEL_AXIS_STRIDE), axis,
-			3))
-			world_fail(world, world->clock, "channel %u: PINS were refused at rest", channel);
-	}
-	write_one(player, PASSO_ADDRESS_RUN, 1u << channel);
 	size_t length = passo_ramp_words(words, &ramps[0]);
 	length += passo_ramp_words(words + length, &ramps[1]);
 	const bool ramps_taken = send(
@@ -531,6 +524,19 @@ static void last_move(struct player *player, struct plot_random *random, unsigne
 		(unsigned)length)
 	    || !ramps_taken)
 		world_fail(world, world->clock, "channel %u: the last move was refused", channel);
+	for (unsigned a = 0; a < axes_of(player); a++) {
+		/* from the change of the polarity to the first step it is less than this set-up */
+		const uint32_t frames = 5u * 64u * world->half_period + world->setup;
+		const uint32_t dir_setup = slow && a + 1u == axes_of(player) ? frames + 400u : 3u;
+		const uint32_t timings[2] = {0x40004u, dir_setup << 16 | 3u};
+		const unsigned place = PASSO_CHANNEL_AXIS_BASE + a * PASSO_CHANNEL_AXIS_STRIDE;
+
+		send(player, PASSO_OPERATION_WRITE, at_channel(channel, place + PASSO_AXIS_STEP_TIMING),
+		    timings, 2);
+		if (!write_one(player, at_channel(channel, place), plot_draw(random, 16) << 1))
+			world_fail(world, world->clock, "channel %u: PINS were refused at rest", channel);
+	}
+	write_one(player, PASSO_ADDRESS_RUN, 1u << channel);
 	for (unsigned i = 0; i < POLLS_MAX && !(state != 0u && is_quiet(state)); i++)
 		state = state_of(player, channel);
 	if ((state & 7u) != PASSO_STATE_IDLE)

@@ -125,7 +125,8 @@ static uint32_t some_step_timing(struct plot *plot)
 
 static uint32_t some_dir_timing(struct plot *plot)
 {
-	const uint32_t setup = some_time(plot);
+	const uint32_t setup =
+	    plot_chance(&plot->random, 10) ? plot_log(&plot->random, 64, 1024) : some_time(plot);
 
 	return setup << 16 | some_time(plot);
 }
@@ -155,10 +156,14 @@ static uint32_t some_drain(struct plot *plot)
 
 /* ---- motions ---- */
 
+/* Of one frame. */
+#define LINES_MAX 20u
+#define RAMPS_MAX 12u
+
 /* A motion drawn so that its lines are about as long as the way under its ramps. */
 struct motion {
-	struct passo_line lines[6];
-	struct passo_ramp ramps[6];
+	struct passo_line lines[LINES_MAX];
+	struct passo_ramp ramps[RAMPS_MAX];
 	unsigned line_count, ramp_count;
 };
 
@@ -291,6 +296,18 @@ static struct action push_ramps(struct plot *plot, unsigned channel, const struc
 	return action;
 }
 
+/* As many lines and ramps as go into a frame and into the queues. */
+static void fill_frames(
+    const struct plot *plot, struct motion *motion, unsigned line_places, unsigned ramp_places)
+{
+	const unsigned fit = PASSO_FRAME_PAYLOAD_MAX / PASSO_LINE_WORDS((unsigned)plot->parameters.axes);
+
+	while (motion->line_count < fit && motion->line_count < LINES_MAX && motion->line_count < line_places)
+		motion->lines[motion->line_count++] = (struct passo_line){.substeps = 9, .steps = {1}};
+	while (motion->ramp_count < RAMPS_MAX && motion->ramp_count < ramp_places)
+		add_ramp(motion, PASSO_VELOCITY_MAX >> 3, 1, PASSO_SHAPE_LINEAR);
+}
+
 /* Several motions behind one another, as far as the queues have room. */
 static void draw_motions(struct plot *plot, unsigned channel, bool constant, const uint32_t *timing)
 {
@@ -318,6 +335,8 @@ static void draw_motions(struct plot *plot, unsigned channel, bool constant, con
 	}
 	if (all.line_count == 0u)
 		return;
+	if (plot_chance(random, 12))
+		fill_frames(plot, &all, line_places, ramp_places);
 	if (plot_chance(random, 3))
 		all.ramps[0].now = true;
 	const struct action lines = push_lines(plot, channel, &all);

@@ -224,6 +224,18 @@ static void compare(struct world *world, const struct passo_outputs *rtl, const 
 	    rtl->spi_miso, model->spi_miso);
 }
 
+static void change_reset(struct world *world)
+{
+	const struct world_fact fact = {
+	    .clock = world->clock + 1u, .kind = world->resets != 0u ? FACT_RESET : FACT_RESET_DONE};
+
+	world_add_fact(world, &fact);
+	world->inputs.rst = world->resets != 0u;
+	if (world->inputs.rst)
+		world->reset_at = fact.clock;
+	world->reset_until = world->inputs.rst ? UINT64_MAX : fact.clock;
+}
+
 static void change_pins(struct world *world)
 {
 	while (
@@ -234,13 +246,11 @@ static void change_pins(struct world *world)
 			world->inputs.sync = pin->level;
 			continue;
 		}
-		const struct world_fact fact = {
-		    .clock = world->clock + 1u, .kind = pin->level ? FACT_RESET : FACT_RESET_DONE};
-		world_add_fact(world, &fact);
-		world->inputs.rst = pin->level;
-		if (pin->level)
-			world->reset_at = world->clock + 1u;
-		world->reset_until = pin->level ? UINT64_MAX : world->clock + 1u;
+		/* resets may overlap */
+		const bool was = world->resets != 0u;
+		world->resets += pin->level ? 1u : UINT32_MAX;
+		if ((world->resets != 0u) != was)
+			change_reset(world);
 	}
 }
 

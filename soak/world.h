@@ -95,6 +95,7 @@ struct world {
 
 	struct world_pin pins[WORLD_PINS_MAX]; /* by clock */
 	size_t pin_count, pin_next;
+	uint32_t resets;                /* that rst is high for */
 	uint64_t reset_at, reset_until; /* of the last reset; 0: none */
 	uint8_t sequence;               /* of the last write */
 	/* Enabled clocks from step to step while the channel moves at constant speed; 0: not known. */
