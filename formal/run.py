@@ -22,6 +22,7 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from passo import planted
 from passo.console import console, table
 from passo.toolchain import environment, paths
 
@@ -107,18 +108,8 @@ def _fresh_copy(folder: Path) -> None:
 
 
 def plant(promise: Promise, root: Path) -> None:
-    """Replace the promise's line in the copy of the sources under root; spaces and line ends do not count.
-
-    Raises:
-        ValueError: the old text is not there exactly once.
-    """
-    file = root / promise.file
-    text = file.read_text(encoding="utf-8")
-    old = re.compile(r"\s+".join(re.escape(word) for word in promise.old.split()))
-    found = len(old.findall(text))
-    if found != 1:
-        raise ValueError(f"{promise.file} has {found} times, not once: {promise.old!r}")
-    file.write_text(old.sub(lambda _: promise.new, text), encoding="utf-8")
+    """Replace the promise's line in the copy of the sources under root (see passo.planted)."""
+    planted.plant(root / promise.file, promise.old, promise.new)
 
 
 def _sby(proof: Proof, task: str, folder: Path) -> tuple[str, str, float]:

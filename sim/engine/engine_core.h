@@ -11,7 +11,7 @@ extern "C" {
 #endif
 
 struct engine_inputs {
-	bool spi_sclk, spi_mosi, spi_cs_n, sync;
+	bool spi_sclk, spi_mosi, spi_cs_n, sync, rst;
 };
 
 struct engine_outputs {
@@ -22,7 +22,7 @@ struct engine_outputs {
 
 struct engine_core;
 
-/* A core fresh out of reset. */
+/* A core fresh out of configuration and reset. */
 struct engine_core *engine_core_open(const struct passo_engine_config *config,
     const struct engine_inputs *inputs, struct engine_outputs *outputs);
 void engine_core_close(struct engine_core *core);

@@ -34,7 +34,10 @@ struct engine_core *engine_core_open(const struct passo_engine_config *config,
 	    .axes = (uint8_t)config->axes,
 	    .tick_log2 = (uint8_t)config->tick_log2,
 	    .line_queue_log2 = (uint8_t)config->line_queue_log2,
-	    .ramp_queue_log2 = (uint8_t)config->ramp_queue_log2};
+	    .ramp_queue_log2 = (uint8_t)config->ramp_queue_log2,
+	    .step_reset = config->step_reset,
+	    .dir_reset = config->dir_reset,
+	    .enable_reset = config->enable_reset};
 	struct engine_core *core = malloc(sizeof *core);
 
 	(void)inputs;
@@ -60,7 +63,8 @@ uint64_t engine_core_run(struct engine_core *core, const struct engine_inputs *i
 	const struct passo_inputs pins = {.spi_sclk = inputs->spi_sclk,
 	    .spi_mosi = inputs->spi_mosi,
 	    .spi_cs_n = inputs->spi_cs_n,
-	    .sync = inputs->sync};
+	    .sync = inputs->sync,
+	    .rst = inputs->rst};
 	uint64_t clocks = 0;
 
 	while (clocks < limit) {

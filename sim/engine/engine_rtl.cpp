@@ -36,6 +36,7 @@ struct engine_core {
 		top.spi_mosi = inputs.spi_mosi;
 		top.spi_cs_n = inputs.spi_cs_n;
 		top.sync = inputs.sync;
+		top.rst = inputs.rst;
 	}
 
 	/* All outputs but MISO are registers of clk: they stand still until the next rising edge. */
@@ -62,7 +63,8 @@ engine_core *engine_core_open(
 {
 	if (config->channels != PASSO_CHANNELS || config->axes != PASSO_AXES
 	    || config->tick_log2 != PASSO_TICK_LOG2 || config->line_queue_log2 != PASSO_LINE_QUEUE_LOG2
-	    || config->ramp_queue_log2 != PASSO_RAMP_QUEUE_LOG2)
+	    || config->ramp_queue_log2 != PASSO_RAMP_QUEUE_LOG2 || config->step_reset != PASSO_STEP_RESET
+	    || config->dir_reset != PASSO_DIR_RESET || config->enable_reset != PASSO_ENABLE_RESET)
 		return nullptr;
 	auto *core = new engine_core;
 #ifdef PASSO_WAVES

@@ -17,9 +17,10 @@ extern "C" {
 
 struct passo_engine_config {
 	uint32_t channels, axes, tick_log2, line_queue_log2, ramp_queue_log2; /* the parameters of the core */
-	uint32_t clock_hz;                                                    /* time scale of the waves */
-	uint32_t spi_half_period; /* clocks that SCLK stays at each level, at least 1 */
-	uint32_t every_clock;     /* 1: the model executes every clock instead of jumping over quiet time */
+	uint64_t step_reset, dir_reset, enable_reset; /* levels of the pins at first */
+	uint32_t clock_hz;                            /* time scale of the waves */
+	uint32_t spi_half_period;                     /* clocks that SCLK stays at each level, at least 1 */
+	uint32_t every_clock; /* 1: the model executes every clock instead of jumping over quiet time */
 };
 
 /* The output pins from this clock on; clock 1 is the first rising edge after reset. */

@@ -13,7 +13,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from importlib.metadata import version
 from pathlib import Path
 
@@ -49,12 +49,26 @@ class Parameters:
     tick_log2: int = 7
     line_queue_log2: int = 8
     ramp_queue_log2: int = 4
+    # levels of the pins after configuration: the host cannot read them from the core
+    step_reset: int = field(default=0, compare=False)
+    dir_reset: int = field(default=0, compare=False)
+    enable_reset: int = field(default=0, compare=False)
 
     @property
     def name(self) -> str:
         """Part of a file name that tells these parameters from others."""
         queues = f"{self.line_queue_log2}_{self.ramp_queue_log2}"
-        return f"{self.channels}x{self.axes}_{self.tick_log2}_{queues}"
+        levels = (self.step_reset, self.dir_reset, self.enable_reset)
+        reset = "_reset{:x}_{:x}_{:x}".format(*levels) if any(levels) else ""
+        return f"{self.channels}x{self.axes}_{self.tick_log2}_{queues}{reset}"
+
+    def verilog(self) -> dict[str, str]:
+        """Names and values as the Verilog has them."""
+        pins = self.channels * self.axes
+        return {
+            name.upper(): f"{pins}'h{value:x}" if name.endswith("_reset") else str(value)
+            for name, value in asdict(self).items()
+        }
 
 
 def planner_library() -> Path:
@@ -145,7 +159,7 @@ def _c_library(name: str, sources: Sequence[Path], folders: Sequence[Path] = ())
 def _verilated(parameters: Parameters, waves: bool) -> Path:
     """The folder with the C++ that Verilator made of the core, compiled."""
     sources = sorted(paths.rtl.glob("*.v"))
-    flags = [*VERILATOR_FLAGS, *(f"-G{name.upper()}={value}" for name, value in asdict(parameters).items())]
+    flags = [*VERILATOR_FLAGS, *(f"-G{name}={value}" for name, value in parameters.verilog().items())]
     # Recording the waves takes most of the time, so that optimizing only makes the build slow.
     optimize = "OPT_FAST=-O1 OPT_SLOW=-O0" if waves else "OPT_FAST=-O3 OPT_SLOW=-O1 OPT_GLOBAL=-O2"
     flags += ["-MAKEFLAGS", optimize]

@@ -51,6 +51,8 @@ class Engine:
         config.tick_log2 = parameters.tick_log2
         config.line_queue_log2 = parameters.line_queue_log2
         config.ramp_queue_log2 = parameters.ramp_queue_log2
+        config.step_reset, config.dir_reset = parameters.step_reset, parameters.dir_reset
+        config.enable_reset = parameters.enable_reset
         config.clock_hz, config.spi_half_period, config.every_clock = clock_hz, spi_half_period, every_clock
         self._events = ffi().new("struct passo_pin_event[]", EVENTS_PER_DRAIN)
         self._engine = self._c.passo_engine_create(config)

@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: MIT
+"""Planted defects: a check that nothing breaks is worth nothing, so each is shown a source that is wrong."""
+
+import re
+from pathlib import Path
+
+
+def plant(file: Path, old: str, new: str) -> None:
+    """Replace a text in a copy of a source; spaces and line ends do not count.
+
+    Raises:
+        ValueError: the old text is not there exactly once.
+    """
+    text = file.read_text(encoding="utf-8")
+    pattern = re.compile(r"\s+".join(re.escape(word) for word in old.split()))
+    found = len(pattern.findall(text))
+    if found != 1:
+        raise ValueError(f"{file.name} has {found} times, not once: {old!r}")
+    file.write_text(pattern.sub(lambda _: new, text), encoding="utf-8")

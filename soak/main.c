@@ -1,0 +1,165 @@
+/* SPDX-License-Identifier: MIT
+ * soak SEED FIRST COUNT [--rtl LIBRARY] [--record FOLDER] [--set N] [--driver] [--short] [--print]
+ *     [--keep-on]
+ *
+ * Plays histories FIRST, FIRST + 1 ...: at the registers, with --set N only those of one set of parameters,
+ * or with --driver through the driver; with --short only up to the rest after them, without another move.
+ * Ends with the first one that fails unless --keep-on is given. Says what came of them, line by line:
+ * "progress HISTORIES", "failed NUMBER CLOCK TEXT", "count NAME VALUE".
+ */
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bridge.h"
+#include "history.h"
+
+struct options {
+	uint64_t seed, first, count;
+	const char *library, *folder;
+	unsigned set; /* PLOT_SETS: all */
+	bool print, keep_on, driver, brief, blind;
+};
+
+static bool parse(int argc, char **argv, struct options *options)
+{
+	if (argc < 4)
+		return false;
+	*options = (struct options){.seed = strtoull(argv[1], NULL, 10),
+	    .first = strtoull(argv[2], NULL, 10),
+	    .count = strtoull(argv[3], NULL, 10),
+	    .set = PLOT_SETS};
+	for (int i = 4; i < argc; i++) {
+		if (strcmp(argv[i], "--print") == 0)
+			options->print = true;
+		else if (strcmp(argv[i], "--keep-on") == 0)
+			options->keep_on = true;
+		else if (strcmp(argv[i], "--blind") == 0)
+			options->blind = true;
+		else if (strcmp(argv[i], "--short") == 0)
+			options->brief = true;
+		else if (strcmp(argv[i], "--driver") == 0)
+			options->driver = true;
+		else if (i + 1 == argc)
+			return false;
+		else if (strcmp(argv[i], "--rtl") == 0)
+			options->library = argv[++i];
+		else if (strcmp(argv[i], "--record") == 0)
+			options->folder = argv[++i];
+		else if (strcmp(argv[i], "--set") == 0)
+			options->set = (unsigned)strtoul(argv[++i], NULL, 10);
+		else
+			return false;
+	}
+	return true;
+}
+
+static void say(const char *name, uint64_t value)
+{
+	printf("count %s %" PRIu64 "\n", name, value);
+}
+
+static void say_counts(const struct history_counts *counts, uint64_t played)
+{
+	say("histories", played);
+	say("clocks", counts->clocks);
+	say("frames", counts->frames);
+	say("refused", counts->refused);
+	say("busy", counts->busy);
+	say("aimed", counts->aimed);
+	say("hit", counts->hit);
+	say("steps", counts->judge.steps);
+	say("turns", counts->judge.turns);
+	say("quiets", counts->judge.quiets);
+	say("positions", counts->judge.positions);
+	say("paths", counts->judge.paths);
+	say("aborts", counts->judge.aborts);
+	say("stops", counts->judge.stops);
+	say("gaps", counts->judge.gaps);
+	say("resets", counts->judge.resets);
+	say("gates", counts->judge.gates);
+	for (unsigned i = 0; i < PLOT_KINDS; i++)
+		printf("count kind:%s %" PRIu64 "\n", plot_kind_name((enum plot_kind)i), counts->kinds[i]);
+	for (unsigned i = 0; i < EVENT_KINDS; i++)
+		printf("count event:%s %" PRIu64 "\n", plot_event_name((enum world_event_kind)i),
+		    counts->events[i]);
+}
+
+static void say_bridge(const struct bridge_counts *counts, uint64_t played)
+{
+	say("histories", played);
+	say("clocks", counts->clocks);
+	say("frames", counts->frames);
+	say("retries", counts->retries);
+	say("flips", counts->flips);
+	say("lost clocks", counts->lost);
+	say("doubled clocks", counts->doubled);
+	say("cuts", counts->cuts);
+	say("deaths", counts->deaths);
+	say("moves", counts->moves);
+	say("lines", counts->lines);
+	say("stops", counts->stops);
+	say("steps", counts->steps);
+	say("errors", counts->errors);
+}
+
+int main(int argc, char **argv)
+{
+	struct options options;
+	struct world_latency latency;
+	static struct world world;
+	const struct world_rtl *rtl = NULL;
+	static struct history_counts counts;
+	static struct bridge_counts bridged;
+	uint64_t played = 0, failures = 0;
+
+	if (!parse(argc, argv, &options)) {
+		fputs("soak SEED FIRST COUNT [options], see main.c\n", stderr);
+		return 2;
+	}
+	if (!world_measure(&latency)) {
+		puts("failed 0 0 writes have no effect at the pins");
+		return 1;
+	}
+	if (options.library && !(rtl = world_load(options.library)))
+		return 2;
+	world.latency = &latency;
+	world.blind = options.blind;
+	for (uint64_t number = options.first; played < options.count; number++) {
+		char path[WORLD_TEXT];
+		FILE *record = NULL;
+
+		if (options.set != PLOT_SETS && number % PLOT_SETS != options.set)
+			continue;
+		if (options.folder) {
+			snprintf(path, sizeof path, "%s/%" PRIu64 ".txt", options.folder, number);
+			record = fopen(path, "w");
+			if (!record)
+				return 2;
+		}
+		FILE *print = options.print ? stdout : NULL;
+		if (options.driver)
+			bridge_play(&world, rtl, options.seed, number, print, &bridged);
+		else
+			history_play(
+			    &world, rtl, options.seed, number, options.brief, record, print, &counts);
+		if (record)
+			fclose(record);
+		played++;
+		if (world.failed_at) {
+			printf("failed %" PRIu64 " %" PRIu64 " %s\n", number, world.failed_at, world.failure);
+			failures++;
+			if (!options.keep_on)
+				break;
+		}
+		if (played % 100u == 0u) {
+			printf("progress %" PRIu64 "\n", played);
+			fflush(stdout);
+		}
+	}
+	if (options.driver)
+		say_bridge(&bridged, played);
+	else
+		say_counts(&counts, played);
+	return failures != 0u;
+}
