@@ -140,6 +140,7 @@ class Recorder:
 class PushBus:
     """The bus of one queue: pushes words as the link does, first to be checked, then to be written."""
 
+    COMMIT_CLOCKS = 3
     INPUTS = ("bus_frame", "bus_commit", "bus_check", "bus_write", "select", "bus_data", "bus_top_bit")
 
     def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
@@ -172,12 +173,20 @@ class PushBus:
             await self._strobe(self.dut.bus_write, word, before=1)
             await self.clocks.wait(2)
 
-    async def push(self, words: Sequence[int]) -> None:
-        """A good frame: check, then execute."""
+    async def accept(self, words: Sequence[int]) -> None:
+        """Check a good frame; `commit` may follow at any time."""
         await self.frame()
         assert set(await self.check(words)) == {0}
+
+    async def commit(self, words: Sequence[int]) -> None:
+        """Execute a frame that was checked; the first word stands on the bus after COMMIT_CLOCKS."""
         await self.frame(commit=True)
         await self.write(words)
+
+    async def push(self, words: Sequence[int]) -> None:
+        """A good frame: check, then execute."""
+        await self.accept(words)
+        await self.commit(words)
 
     async def _strobe(self, signal: Signal, word: int, before: int) -> None:
         # address and data stand on the bus as many clocks before the strobe, and stay there; only a check

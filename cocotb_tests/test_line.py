@@ -120,14 +120,14 @@ class Lines:
     async def make_slowly(self, lines: Sequence[Line]) -> None:
         """Make all substeps of some lines, in the time that it takes to push as many."""
         for line in lines:
-            await self.make([line], every(2 + 40 // line.substeps))
+            await self.make([line], every(2 + 60 // line.substeps))
 
     async def feed(self, lines: Sequence[Line]) -> None:
-        """Push lines when there is room, without a check, which the host would have had before."""
+        """Push lines when there is room."""
         for line in lines:
             while read(self.dut.room) == 0:
                 await self.clocks.wait(1)
-            await self.bus.write(line.words())
+            await self.bus.push(line.words())
 
     async def compare(self) -> int:
         """Check all steps so far with their directions; return their number."""
@@ -296,6 +296,7 @@ async def a_line_is_in_time_three_clocks_before_its_predecessor_ends(dut: Hierar
         lines = await Lines.begin(dut)
         first, second = Line(20, (20, 0, 7), 1), Line(3, (3, 1, 2), 6, last=True)
         await lines.bus.push(first.words())
+        await lines.bus.accept(second.words())
         await lines.start()
         begun = lines.clocks.now
         end = begun + 2 * (first.substeps - 1)
@@ -306,9 +307,8 @@ async def a_line_is_in_time_three_clocks_before_its_predecessor_ends(dut: Hierar
             words = line.words()
             # 4 clocks per word, of which the second has the strobe
             first_word = end - early - 4 * (len(words) - 1) - 1
-            await lines.clocks.until(first_word)
-            assert lines.clocks.now == first_word
-            await lines.bus.write(words)
+            await lines.clocks.until(first_word - PushBus.COMMIT_CLOCKS)
+            await lines.bus.commit(words)
 
         push = cocotb.start_soon(late_push())
         await lines.make([first] if underruns else [first, second], every(2))

@@ -51,6 +51,7 @@ class Ramps:
         inputs = (
             *PushBus.INPUTS,
             "blocked",
+            "ramp_now_coming",
             "prepare",
             "begin_profile",
             "stop",
@@ -131,11 +132,13 @@ class Ramps:
 
     async def write_at(self, enabled: int, ramps: Sequence[Ramp]) -> None:
         """Write ramps, checked beforehand, after so many enabled clocks of the profile that has begun."""
+        words = [word for ramp in ramps for word in ramp.words()]
+        await self.bus.accept(words)
         begun = self.enabled_clocks
-        while len(begun) < enabled:
+        assert len(begun) < enabled - PushBus.COMMIT_CLOCKS
+        while len(begun) < enabled - PushBus.COMMIT_CLOCKS:
             await self.clocks.wait(1)
-        for ramp in ramps:
-            await self.bus.write(ramp.words())
+        await self.bus.commit(words)
 
     async def feed(self, ramps: Sequence[Ramp]) -> None:
         """Push ramps whenever there is room."""
@@ -343,6 +346,34 @@ async def a_second_now_ramp_starts_from_the_present_velocity_as_well(dut: Hierar
         await bench.advance(len(expected) * TICK)
         bench.compare(expected)
         await bench.compare_end()
+
+
+@cocotb.test()
+@cocotb.parametrize(early=[1, 5, 60, 100])
+async def a_now_ramp_that_is_coming_keeps_the_profile_from_ending(dut: HierarchyObject, early: int) -> None:
+    """Said so many clocks before the last tick, written after its end: the tick is longer, no more."""
+    bench = await Ramps.begin(dut)
+    old = [Ramp(V_MAX, 2), Ramp(V_MAX // 2, 2, last=True)]
+    now = [Ramp(V_MAX // 5, 3, Shape.SIGMOID, now=True), Ramp(0, 2, last=True)]
+    before = list(velocities(old))
+    expected = [*before, *velocities(now, before[-1])]
+    await bench.push(*old)
+    await bench.start()
+
+    async def push_late() -> None:
+        while len(bench.enabled_clocks) < 3 * TICK - early:
+            await bench.clocks.wait(1)
+        dut.ramp_now_coming.value = 1
+        while not read(dut.stall):
+            await bench.clocks.wait(1)
+        await bench.push(*now)
+        dut.ramp_now_coming.value = 0
+
+    cocotb.start_soon(push_late())
+    await bench.advance(len(expected) * TICK)
+    assert bench.stalls > 0
+    bench.compare(expected)
+    await bench.compare_end()
 
 
 @cocotb.test()
