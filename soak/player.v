@@ -74,10 +74,10 @@ module soak_player #(
 
   initial begin
     if (!$value$plusargs("record=%s", name)) name = "record.txt";
-    file = $fopen(name, "r");
+    file     = $fopen(name, "r");
     // power-up: chip select rises like a pin with a pull-up
     spi_cs_n = 1'b0;
-    rst = 1'b1;
+    rst      = 1'b1;
     repeat (4) tick;
     spi_cs_n = 1'b1;
     repeat (4) tick;
@@ -87,12 +87,21 @@ module soak_player #(
     found = 8;
     while (same && found == 8) begin
       found = $fscanf(
-          file, "%h %h %h %h %h %h %h %h\n", clocks, pins, step_wanted, dir_wanted, enable_wanted,
-          running_wanted, irq_wanted, miso_wanted);
+          file,
+          "%h %h %h %h %h %h %h %h\n",
+          clocks,
+          pins,
+          step_wanted,
+          dir_wanted,
+          enable_wanted,
+          running_wanted,
+          irq_wanted,
+          miso_wanted
+      );
       if (found == 8) {rst, sync, spi_cs_n, spi_mosi, spi_sclk} = pins;
       while (same && found == 8 && clocks != 32'd0) begin
         tick;
-        clock  = clock + 32'd1;
+        clock = clock + 32'd1;
         clocks = clocks - 32'd1;
         same   = {step, dir, enable, running, irq, spi_miso} === {step_wanted, dir_wanted, enable_wanted,
                                                                 running_wanted, irq_wanted, miso_wanted};
@@ -101,9 +110,21 @@ module soak_player #(
     if (same) $display("same %0d", clock);
     else
       $display(
-          "clock %0d: step %h %h dir %h %h enable %h %h running %h %h irq %b %b miso %b %b", clock, step,
-          step_wanted, dir, dir_wanted, enable, enable_wanted, running, running_wanted, irq, irq_wanted, spi_miso,
-          miso_wanted);
+          "clock %0d: step %h %h dir %h %h enable %h %h running %h %h irq %b %b miso %b %b",
+          clock,
+          step,
+          step_wanted,
+          dir,
+          dir_wanted,
+          enable,
+          enable_wanted,
+          running,
+          running_wanted,
+          irq,
+          irq_wanted,
+          spi_miso,
+          miso_wanted
+      );
     $finish;
   end
 

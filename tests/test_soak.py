@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: MIT
+"""A short form of `make soak`, which plays thousands of histories and puts all defects back."""
+
+import os
+import shutil
+from pathlib import Path
+
+import pytest
+from passo.build import rtl_library
+from passo.planted import plant
+
+from soak import run as soak
+from soak.run import Defect
+
+SEED = int(os.environ.get("PASSO_SEED", "1"))
+JOBS = 1  # pytest uses the other cores
+
+DEFECTS = {defect.name: defect for defect in soak.defects()}
+
+
+@pytest.fixture(scope="module")
+def program() -> Path:
+    """What plays histories."""
+    return soak.build()
+
+
+def check(part: soak.Part, histories: int) -> None:
+    """All of them were played, and no promise was broken."""
+    assert part.counts["histories"] == histories
+    assert not part.failures, [f"{failure.again}: {failure.text}" for failure in part.failures]
+
+
+def test_no_promise_is_broken_in_the_model(program: Path) -> None:
+    """Histories at the registers; the judge had something to judge of every kind."""
+    part = soak.play_model(program, SEED, 300, JOBS)
+    check(part, 300)
+    assert all(part.counts[kind] for kind in soak.JUDGED)
+    assert part.counts["hit"] > 0.8 * part.counts["aimed"] > 0
+
+
+def test_no_promise_is_broken_through_the_driver(program: Path) -> None:
+    """On wires with errors of all kinds."""
+    part = soak.play_driver(program, SEED, 60, JOBS)
+    check(part, 60)
+    for kind in ("flips", "lost clocks", "doubled clocks", "cuts", "deaths", "retries", "lines", "stops"):
+        assert part.counts[kind] > 0, kind
+
+
+def test_no_promise_is_broken_in_verilator(program: Path) -> None:
+    """The core does the same as the model on every clock of a history."""
+    check(soak.play_verilator(program, SEED, 30, JOBS), 30)
+    library = rtl_library(soak.SETS[soak.DRIVER_SET])
+    check(soak.play_driver(program, SEED, 4, JOBS, library), 4)
+
+
+def test_no_promise_is_broken_in_icarus(program: Path) -> None:
+    """The same in another simulator."""
+    check(soak.play_icarus(program, SEED, 9, JOBS), 9)
+
+
+@pytest.mark.parametrize("name", ["abort leaves steps", "a lost stop counts as sent"])
+def test_a_defect_goes_red(name: str) -> None:
+    """One at the registers, one of the driver; `make soak` puts all of them back."""
+    caught = soak.catch(DEFECTS[name], 1)
+    assert caught.good, caught.says
+
+
+@pytest.mark.parametrize("defect", DEFECTS.values(), ids=DEFECTS)
+def test_every_defect_can_be_put_back(defect: Defect, tmp_path: Path) -> None:
+    """Their sources still have what they replace."""
+    for file, old, new in defect.edits:
+        copy = tmp_path / file
+        if not copy.exists():
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(soak.paths.root / file, copy)
+        plant(copy, old, new)
+
+
+def test_a_core_that_differs_from_the_model_goes_red(program: Path, tmp_path: Path, monkeypatch) -> None:
+    """A defect of the RTL alone, in both simulators."""
+    rtl = tmp_path / "rtl"
+    shutil.copytree(soak.paths.rtl, rtl)
+    plant(rtl / "passo_axis.v", "settle <= pins_written;", "settle <= 1'b0;")
+    monkeypatch.setattr(soak.paths, "rtl", rtl)
+    assert soak.play_icarus(program, 1, 60, JOBS).failures
