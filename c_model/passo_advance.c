@@ -39,15 +39,17 @@ static uint64_t min_u64(uint64_t a, uint64_t b)
 
 /* ---- what must stand still ---- */
 
-static bool lines_settled(const struct passo_channel *channel)
+static bool lines_settled(const struct passo_channel *channel, const struct passo_parameters *parameters)
 {
 	const struct passo_line_queue *queue = &channel->line_queue;
 	const struct passo_line *current = &queue->lines[queue->current_line];
+	const unsigned depth = 1u << parameters->line_queue_log2;
+	const unsigned used = ((unsigned)queue->write_line - queue->next_line) & (2u * depth - 1u);
 
 	for (unsigned i = 0; i < channel->axes; i++)
 		if (queue->steps[i] != current->steps[i])
 			return false;
-	return !queue->freed_late && queue->next_valid == (queue->next_line != queue->write_line)
+	return queue->room == depth - used - (queue->has_place ? 1u : 0u) && queue->next_valid == (used != 0u)
 	    && queue->directions == current->directions;
 }
 
@@ -163,7 +165,7 @@ static uint64_t surroundings_quiet(
 	if (!motion_settled(channel, inputs) || !rest_settled(channel) || channel->positions.snapshot_waits
 	    || !commands_settled(channel, inputs->bus) || line->slot_load || line->slot_load_q
 	    || line->underrun || !ramps_settled(&channel->ramp_queue, inputs->parameters)
-	    || !lines_settled(channel))
+	    || !lines_settled(channel, inputs->parameters))
 		return 0;
 	uint64_t clocks =
 	    min_u64(ramp_quiet(&channel->ramp), timescale_quiet(channel, moving, clocks_to_slew));

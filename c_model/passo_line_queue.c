@@ -96,14 +96,11 @@ void passo_line_queue_clock(struct passo_line_queue *queue, const struct passo_p
 	const uint16_t write_line = queue->write_line;
 	const uint16_t next_line = queue->next_line;
 
-	const bool reserve = bus->frame && bus->commit;
-	const bool freed = (wires->take && queue->has_place) || wires->finished;
+	const unsigned occupied = (unsigned)queue->write_end - next_line + (queue->has_place ? 1u : 0u);
 
-	if (reserve)
-		queue->room = wrap((unsigned)queue->room - queue->checked, parameters);
-	else if (freed || queue->freed_late)
-		queue->room++;
-	queue->freed_late = freed && reserve;
+	queue->room = wrap(depth(parameters) - occupied, parameters);
+	if (bus->frame && bus->commit)
+		queue->write_end = wrap((unsigned)write_line + queue->checked, parameters);
 	read_memory(queue, parameters, wires->take);
 	clock_writing(queue, parameters, bus, wires->line_push);
 	if (wires->take) {
@@ -115,8 +112,7 @@ void passo_line_queue_clock(struct passo_line_queue *queue, const struct passo_p
 		queue->has_place = false;
 	queue->next_valid = !wires->take && !wires->stopped && next_line != write_line;
 	if (wires->stopped) {
-		queue->write_line = queue->next_line = 0;
-		queue->has_place = queue->freed_late = false;
-		queue->room = (uint16_t)depth(parameters);
+		queue->write_line = queue->write_end = queue->next_line = 0;
+		queue->has_place = false;
 	}
 }

@@ -157,9 +157,9 @@ struct passo_needs {
 struct passo_line_queue {
 	uint8_t index;
 	uint16_t write_line, next_line; /* one bit more than the address */
+	uint16_t write_end;             /* write_line when the frame will have been written */
 	uint16_t current_line;
-	bool has_place;  /* a line is the current one */
-	bool freed_late; /* a place is free, and is counted a clock later */
+	bool has_place; /* a line is the current one */
 	uint16_t checked;
 	uint32_t checked_substeps;
 	uint16_t room;

@@ -29,6 +29,11 @@ def rng(name: str) -> random.Random:
     return random.Random(f"{seed()}/{name}")
 
 
+def patience(verilator: int, icarus: int) -> int:
+    """A number for each simulator: Icarus Verilog is slow."""
+    return verilator if cocotb.SIM_NAME.lower().startswith("verilator") else icarus
+
+
 def read(signal: Signal) -> int:
     """Value of a signal as unsigned integer; ValueError if a bit is X or Z."""
     return int(signal.value) if isinstance(signal, LogicObject) else signal.value.to_unsigned()

@@ -7,7 +7,7 @@ from passo.host import RATE_ONE
 from passo.link import RefusedError
 from passo.registers import Cause, State, Verdict
 
-from cocotb_tests.bench import read, rng
+from cocotb_tests.bench import patience, read, rng
 from cocotb_tests.core_bench import ONE, V_MAX, Core, CoreChannel, Line, PinTiming, Ramp, Shape, core_test
 from cocotb_tests.core_expected import distance, due, totals
 from cocotb_tests.core_moves import SLOW, check_stopped, clear_and_move
@@ -229,7 +229,7 @@ def a_reset_at_any_time(core: Core) -> None:
     channel = core.channel()
     timing = PinTiming(9, 5, 30, 7, step_inverted=True)
     channel.pins(timing)
-    for _ in range(12):
+    for _ in range(patience(12, 3)):
         channel.lines(
             Line(100, (100, -30, 5)[: core.axes]), Line(100, (-100, 30, 5)[: core.axes], endless=True)
         )
@@ -268,7 +268,7 @@ def what_needs_rest_meets_it(core: Core) -> None:
     back, _ = slow_motion(core, -1)
     zero = channel.base + r.CHANNEL_COMMAND, 1 << r.CHANNEL_COMMAND_ZERO_LSB
     verdicts = set()
-    for delay in range(0, 1700, 53):
+    for delay in range(0, 1700, patience(53, 430)):
         core.link.write(*zero)
         checker = core.watch(timing)
         channel.rest()

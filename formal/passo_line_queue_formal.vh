@@ -70,7 +70,7 @@ always @(posedge clk) begin
   small_line_queue_reset : assume (rst == !f_started);
   f_short <= rst | (bus_frame & ~bus_commit) | (bus_write & f_writing & f_words == 8'd1);
   if (f_short && checked != 0) begin
-    small_line_queue_checked : assume (checked <= room && !bus_check && !bus_frame);
+    small_line_queue_checked : assume (checked <= f_free && !bus_check && !bus_frame);
     f_words  <= 3 * checked;
     f_select <= 1'b1;
 
@@ -100,10 +100,10 @@ reg                 f_current = 1'b0;  // there is one, and it has its place
 wire f_written = bus_write & select & f_last_index;
 reg  [DEPTH_LOG2:0] f_checked = 0;  // lines of this frame
 reg  [DEPTH_LOG2:0] f_to_come = 0;  // lines of a frame that was accepted, which are still to be written
-reg                 f_freed_then = 1'b0;  // a place became free in the clock in which it was
 wire [DEPTH_LOG2:0] f_free = (1 << DEPTH_LOG2) - f_lines - f_current - f_to_come;
+reg  [DEPTH_LOG2:0] f_free_q = 1 << DEPTH_LOG2;  // a clock ago
 always @(posedge clk) begin
-  f_freed_then <= bus_frame & bus_commit & ((take & f_current) | release_line) & ~rst & ~flush;
+  f_free_q <= f_free;
   if (f_written) f_to_come <= f_to_come - 1'b1;
   if (bus_frame && bus_commit) f_to_come <= f_checked;
   f_lines <= f_lines + f_written - take;
@@ -127,8 +127,7 @@ always @(posedge clk) f_quiet <= take | flush | rst | f_written ? 3'd0 : f_quiet
 
 always @(posedge clk)
   if (f_begun) begin
-    room_never_too_large : assert (room <= f_free);
-    if (!f_freed_then) room_is_what_is_free : assert (room == f_free);
+    if ($past(f_begun)) room_is_what_is_free : assert (room == f_free_q);
     if (next_valid && !flush && !$past(flush || rst)) next_only_if_there : assert (f_lines != 0);
     if (f_quiet >= 3'd2 && f_lines != 0) line_not_lost : assert (next_valid);
     if (incomplete != (f_index != 2'd0)) incomplete_told : assert (bus_frame);
@@ -148,7 +147,7 @@ always @(posedge clk) begin
     else if ($past(blocked)) busy_when_stopped : assert (refusal == VERDICT_BUSY);
     else begin
       if (refusal == VERDICT_OK && !f_refused) room_for_all_checked : assert ($past(f_checked) < $past(room));
-      if (refusal == VERDICT_QUEUE_FULL) full_only_without_room : assert ($past(f_checked) == $past(f_free, 2));
+      if (refusal == VERDICT_QUEUE_FULL) full_only_without_room : assert ($past(f_checked) == $past(f_free_q, 2));
       else bad_value_refused : assert (refusal == ($past(f_bad) ? VERDICT_BAD_VALUE : VERDICT_OK) || f_refused);
     end
   end
@@ -215,7 +214,8 @@ wire [31:0] f_stored_substeps = {f_line_last, f_line_endless, f_stored_last};
 always @(posedge clk)
   if (f_begun) begin
     assert (32'd0 + f_lines + f_current + f_to_come <= 1 << DEPTH_LOG2);
-    assert (room + f_freed_then == f_free && freed_late == f_freed_then);
+    if ($past(f_begun)) assert (room == f_free_q);
+    assert (write_end == write_line + f_to_come);
     if (!f_writing) assert (f_to_come == 0);
     assert (f_lines == write_line - next_line);
     assert (has_place == f_current);
@@ -230,7 +230,7 @@ always @(posedge clk)
     // the words to be written fit
     if (f_checking && f_select && !f_refused && refusal == VERDICT_OK && f_words != 0) begin
       assert (f_words == 3 * f_checked + f_index);
-      assert (32'd0 + f_checked + (f_index != 0) <= room + f_freed_then);
+      assert (32'd0 + f_checked + (f_index != 0) <= f_free);
       if (f_index == 2'd2) assert (f_m != 32'd0 && f_m < F_M_LIMIT);
     end
     if (f_writing && !flush && f_since_write == 3'd0) assert (32'd0 + f_words + f_index == 3 * f_to_come);

@@ -5,9 +5,9 @@
 // Promise: lines come out whole and in order. While `next_valid` is high there is a next line; `take` makes it
 // the current line, whose length and flags are at the output one clock later, whose steps and directions two
 // clocks later; they stay there. A place is free again when the line after it is taken, or on `release_line`.
-// `room` is without all lines of a frame from a clock after its commit begins to write. `flush` drops everything
-// that is written; it stays while the channel is stopped, for a push that was checked
-// before.
+// `room` is without all lines of a frame from a clock after its commit begins to write, and follows all else a
+// clock later. `flush` drops everything that is written; it stays while the channel is stopped, for a push that was
+// checked before.
 //
 // A push is checked word by word (`bus_check`; the word stands two clocks before): room for it after all lines of
 // this frame before it, M not 0 and below 2^30, N_i <= M, no reserved bits. `refusal` answers one clock later.
@@ -63,6 +63,7 @@ module passo_line_queue #(
   // Writing: one word of a line after the other
   reg [INDEX_LAST:0] index;  // one bit for each word
   reg [DEPTH_LOG2:0] write_line;
+  reg [DEPTH_LOG2:0] write_end;  // write_line when the frame will have been written
   reg [DEPTH_LOG2:0] checked;  // lines of this frame
 
   wire strobe = select & (bus_check | bus_write);
@@ -106,11 +107,15 @@ module passo_line_queue #(
     {wrong, unused_bits, difference[29:16]} <=
         {1'b0, bus_data[31:16]} + {index[INDEX_SUBSTEPS], not_substeps[31:16]} + {16'd0, carry};
     if (line_written) write_line <= write_line + 1'b1;
+    if (bus_frame && bus_commit) write_end <= write_line + checked;
     if (rst || bus_frame) begin
       index   <= {{INDEX_LAST{1'b0}}, 1'b1};
       checked <= {(DEPTH_LOG2 + 1) {1'b0}};
     end
-    if (rst || flush) write_line <= {(DEPTH_LOG2 + 1) {1'b0}};
+    if (rst || flush) begin
+      write_line <= {(DEPTH_LOG2 + 1) {1'b0}};
+      write_end  <= {(DEPTH_LOG2 + 1) {1'b0}};
+    end
   end
 
   // what is to be said of the word, a clock before it is asked
@@ -132,9 +137,6 @@ module passo_line_queue #(
   reg  [DEPTH_LOG2-1:0] current_line;
   reg                   has_place;  // a line is the current one
   reg                   taken;
-  wire                  freed = (take & has_place) | release_line;
-  reg                   freed_late;  // counted a clock later
-  wire                  reserve = bus_frame & bus_commit;
 
   always @(posedge clk) begin
     taken <= take;
@@ -145,13 +147,10 @@ module passo_line_queue #(
     end
     if (release_line) has_place <= 1'b0;
     next_valid <= ~take & ~flush & next_line != write_line;
-    freed_late <= freed & reserve;
-    room       <= room + (~checked & {(DEPTH_LOG2 + 1) {reserve}}) + {{DEPTH_LOG2{1'b0}}, reserve | freed | freed_late};
+    room       <= (next_line ^ DEPTH) + ~write_end + {{DEPTH_LOG2{1'b0}}, ~has_place};
     if (rst || flush) begin
-      next_line  <= {(DEPTH_LOG2 + 1) {1'b0}};
-      has_place  <= 1'b0;
-      freed_late <= 1'b0;
-      room       <= DEPTH;
+      next_line <= {(DEPTH_LOG2 + 1) {1'b0}};
+      has_place <= 1'b0;
     end
     if (rst) next_valid <= 1'b0;
   end
