@@ -108,6 +108,10 @@ static void clock_queue(struct passo_axis *axis, bool step_begins, const struct 
 	if (accepted && !step_begins)
 		axis->waits = (uint8_t)(0xFu & (waits << 1 | 1u));
 	axis->overrun = wires->step_request && full;
+	if (axis->overrun && axis->lost != LOST_MAX)
+		axis->lost++;
+	if (wires->clear)
+		axis->lost = 0;
 	if (wires->drop)
 		axis->waits = 0;
 }
@@ -140,10 +144,6 @@ void passo_axis_clock(struct passo_axis *axis, const struct passo_axis_wires *wi
 	const bool turn =
 	    (!right || axis->unsettled) && (state == PASSO_AXIS_READY || (state == PASSO_AXIS_HOLD && over));
 
-	if (axis->overrun && axis->lost != LOST_MAX)
-		axis->lost++;
-	if (wires->clear)
-		axis->lost = 0;
 	axis->quiet = state == PASSO_AXIS_READY && right && !axis->unsettled && !waits && !wires->step_request
 	           && !wires->pins_written && !settle;
 	clock_pins(axis, step_begins);

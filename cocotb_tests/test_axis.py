@@ -120,7 +120,7 @@ class Axis:
 
     def __init__(self, dut: HierarchyObject, clocks: Clocks, timing: PinTiming) -> None:
         self.dut, self.clocks, self.timing = dut, clocks, timing
-        self.overruns = Recorder(clocks, dut.u_axis.overrun)
+        self.overruns = Recorder(clocks, dut.overrun)
         self.made = Recorder(clocks, dut.step_made)
         self.directions = Recorder(clocks, dut.step_direction)
         self.checker = PulseChecker(clocks, dut.step_pin, dut.dir_pin, [timing])

@@ -204,11 +204,9 @@ always @(posedge clk)
   end
 
 // --- Lost steps
-reg       f_refused = 1'b0;  // a step, a clock ago
 reg [3:0] f_lost = 4'd0;
 always @(posedge clk) begin
-  f_refused <= step_request & full & ~rst;
-  f_lost <= clear || rst ? 4'd0 : f_lost + {3'd0, f_refused && f_lost != 4'd15};
+  f_lost <= clear || rst ? 4'd0 : f_lost + {3'd0, step_request && full && f_lost != 4'd15};
   if (f_started) lost_steps_counted : assert (lost == f_lost);
 end
 
@@ -290,8 +288,7 @@ always @(posedge clk)
     if (!f_is_pulse && !settle) assert (level_done == ((step ? short_low : short_high) & ~f_restarted[0]));
     if (f_is_ready) assert (dir_done == (short_setup & ~f_restarted[0]));
     assert (waits_up == (waits[0] & ~waiting[0]) && waits_down == (waits[0] & waiting[0]));
-    assert (overrun == f_refused);
-    if (f_reset[0]) assert (f_is_pulse && f_step_shown && f_dir_shown && unsettled && waits == 4'd0 && !step_made && !overrun);
+    if (f_reset[0]) assert (f_is_pulse && f_step_shown && f_dir_shown && unsettled && waits == 4'd0 && !step_made);
 `ifndef WRITTEN
     if (!f_step_shown && !settle) begin
       assert (f_is_pulse && f_timer == 18'd1);

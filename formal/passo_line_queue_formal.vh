@@ -258,7 +258,7 @@ always @(posedge clk)
     if ($past(f_begun)) assert (load_substeps == (f_strobe_q && $past(select) && f_index == 2'd2));
     if ($past(f_begun)) assert (write_substeps == (load_substeps && $past(bus_write)));
     if (load_substeps && $past(f_begun)) assert (bus_data == f_m);
-    if (f_index == 2'd2 && !load_substeps) assert (not_substeps == ~f_m);
-    if (f_index == 2'd1 || (f_index == 2'd0 && f_gap != 2'd0 && $past(f_begun))) assert (not_substeps == ~32'd0);
+    if (f_index == 2'd2 && !load_substeps) assert (not_substeps == ~f_m[29:0]);
+    if (f_index == 2'd1 || (f_index == 2'd0 && f_gap != 2'd0 && $past(f_begun))) assert (not_substeps == ~30'd0);
   end
 `endif

@@ -93,7 +93,6 @@ module passo_axis #(
   wire       ready = ~unsettled & (dir ? waits_down : waits_up);
   wire       wrong = waiting[0] ^ dir;
   wire       accepted = step_request & ~full;
-  reg        overrun;  // a step was not accepted, a clock ago
 
   assign full = waits[3];
 
@@ -130,8 +129,7 @@ module passo_axis #(
     if (step_begins != accepted) waits <= step_begins ? {1'b0, waits[3:1]} : {waits[2:0], 1'b1};
     waits_up   <= step_begins ? up_behind : up_here;
     waits_down <= step_begins ? down_behind : down_here;
-    overrun    <= step_request & full;
-    if (overrun && lost != 4'hF) lost <= lost + 4'd1;
+    if (step_request && full && lost != 4'hF) lost <= lost + 4'd1;
 
     timer <= !begins ? timer + 16'd1 : restart ? 16'd1 : 16'd2;
     if ((high || low) && !level_done) level_done <= &level_equal;
@@ -181,10 +179,8 @@ module passo_axis #(
       level_done <= 1'b0;
       dir_done   <= 1'b0;
       waits      <= 4'd0;
-      waiting    <= 4'd0;
       waits_up   <= 1'b0;
       waits_down <= 1'b0;
-      overrun    <= 1'b0;
       lost       <= 4'd0;
       step       <= step_pin ^ step_inverted;
       dir        <= dir_pin ^ direction_inverted;

@@ -46,12 +46,10 @@ module passo_axis_registers #(
   reg  is_dir_timing;
   reg  is_enable;
   reg  is_lost;
-  reg  is_position;
   wire is_axis = select_axis != {AXES{1'b0}};
-  reg  readable;
+  reg  readable;  // LOST_STEPS or a position
   reg  writable;
-  reg  not_pins;  // the data have bits that PINS has not
-  reg  not_enable;
+  reg  bad_value;  // the data have bits that the register has not
 
   always @(posedge clk) begin
     is_pins <= is_axis && bus_address == AXIS_PINS;
@@ -59,7 +57,6 @@ module passo_axis_registers #(
     is_dir_timing <= is_axis && bus_address == AXIS_DIR_TIMING;
     is_enable <= is_axis && bus_address == AXIS_ENABLE;
     is_lost <= is_axis && bus_address == AXIS_LOST_STEPS;
-    is_position <= select_position != {AXES{1'b0}};
     readable <= (is_axis && bus_address == AXIS_LOST_STEPS) || select_position != {AXES{1'b0}};
     writable          <= is_axis && (bus_address == AXIS_PINS || bus_address == AXIS_STEP_TIMING
                                      || bus_address == AXIS_DIR_TIMING || bus_address == AXIS_ENABLE);
@@ -85,18 +82,18 @@ module passo_axis_registers #(
   end
 
   always @(posedge clk) begin
-    short_upper      <= bus_data[31:16] < 16'd2;
-    short_lower      <= bus_data[15:0] < 16'd2;
-    not_pins         <= bus_top_bit > 5'd4 || bus_data[0];
-    not_enable       <= bus_top_bit != 5'd0;
-    claim            <= (bus_check | bus_read) & (readable | writable);
-    refusal          <= VERDICT_OK;
-    read_data        <= bus_read && is_lost ? selected_lost : 4'd0;
-    answers_position <= bus_read & is_position;
+    short_upper <= bus_data[31:16] < 16'd2;
+    short_lower <= bus_data[15:0] < 16'd2;
+    bad_value        <= bus_address == AXIS_PINS   ? bus_top_bit > 5'd4 || bus_data[0] :
+                        bus_address == AXIS_ENABLE && bus_top_bit != 5'd0;
+    claim <= (bus_check | bus_read) & (readable | writable);
+    refusal <= VERDICT_OK;
+    read_data <= bus_read && is_lost ? selected_lost : 4'd0;
+    answers_position <= bus_read & readable & ~is_lost;
     if (bus_check && (readable || writable))
       refusal <= bus_push             ? VERDICT_BAD_OPERATION :
                  readable             ? VERDICT_READ_ONLY :
-                 (is_pins && not_pins) || (is_enable && not_enable) ? VERDICT_BAD_VALUE : VERDICT_OK;
+                 bad_value            ? VERDICT_BAD_VALUE : VERDICT_OK;
     if (bus_read && writable) refusal <= VERDICT_BAD_OPERATION;
     if (rst) begin
       claim            <= 1'b0;

@@ -86,9 +86,9 @@ module passo_line_queue #(
 
   // bus_data - 1 - M, but for M itself bus_data - 1. A carry comes out if that is not negative, which is right for
   // M and wrong for N_i. Upper half a clock behind the lower: M - 1 can be written a clock after its strobe.
-  reg [31:0] not_substeps;  // ~M; ~0 until M has passed
-  reg [29:0] difference;  // as far as it is stored
-  reg [ 1:0] unused_bits;
+  // Bits 31:30 are not asked: they are 0 or the word is refused.
+  reg [29:0] not_substeps;  // ~M; ~0 until M has passed
+  reg [29:0] difference;
   reg        carry;
   reg        wrong;
   reg        load_substeps;
@@ -101,11 +101,11 @@ module passo_line_queue #(
     end
     load_substeps  <= strobe & index[INDEX_SUBSTEPS];
     write_substeps <= write & index[INDEX_SUBSTEPS];
-    if (load_substeps) not_substeps <= ~bus_data;
-    if (index[INDEX_CONTROL]) not_substeps <= ~32'd0;
+    if (load_substeps) not_substeps <= ~bus_data[29:0];
+    if (index[INDEX_CONTROL]) not_substeps <= ~30'd0;
     {carry, difference[15:0]} <= {1'b0, bus_data[15:0]} + {1'b0, not_substeps[15:0]};
-    {wrong, unused_bits, difference[29:16]} <=
-        {1'b0, bus_data[31:16]} + {index[INDEX_SUBSTEPS], not_substeps[31:16]} + {16'd0, carry};
+    {wrong, difference[29:16]} <=
+        {1'b0, bus_data[29:16]} + {index[INDEX_SUBSTEPS], not_substeps[29:16]} + {14'd0, carry};
     if (line_written) write_line <= write_line + 1'b1;
     if (bus_frame && bus_commit) write_end <= write_line + checked;
     if (rst || bus_frame) begin
@@ -133,10 +133,10 @@ module passo_line_queue #(
   end
 
   // Reading
-  reg  [  DEPTH_LOG2:0] next_line;
-  reg  [DEPTH_LOG2-1:0] current_line;
-  reg                   has_place;  // a line is the current one
-  reg                   taken;
+  reg [  DEPTH_LOG2:0] next_line;
+  reg [DEPTH_LOG2-1:0] current_line;
+  reg                  has_place;  // a line is the current one
+  reg                  taken;
 
   always @(posedge clk) begin
     taken <= take;

@@ -13,6 +13,7 @@ module passo_axis_top (
   output wire        step_made,
   output wire        step_direction,
   output wire        full,
+  output reg         overrun,             // a step was not accepted, a clock ago
   output wire        quiet,
   input  wire        clear,
   output wire [ 3:0] lost,
@@ -32,6 +33,8 @@ module passo_axis_top (
   output wire        dir_pin,
   output wire        enable_pin
 );
+
+  always @(posedge clk) overrun <= step_request & full & ~rst;
 
   passo_axis u_axis (
     .clk               (clk),
