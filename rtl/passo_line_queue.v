@@ -86,13 +86,13 @@ module passo_line_queue #(
 
   // bus_data - 1 - M, but for M itself bus_data - 1. A carry comes out if that is not negative, which is right for
   // M and wrong for N_i. Upper half a clock behind the lower: M - 1 can be written a clock after its strobe.
-  // Bits 31:30 are not asked: they are 0 or the word is refused.
-  reg [29:0] not_substeps;  // ~M; ~0 until M has passed
-  reg [29:0] difference;
-  reg        carry;
-  reg        wrong;
-  reg        load_substeps;
-  reg        write_substeps;
+  reg  [29:0] not_substeps;  // ~M; ~0 until M has passed
+  reg  [29:0] difference;
+  reg         carry;
+  reg         wrong;
+  reg         load_substeps;
+  reg         write_substeps;
+  wire [ 1:0] unused_bits = bus_data[31:30];  // 0, or bus_top_bit tells that the word is bad
 
   always @(posedge clk) begin
     if (strobe) begin
