@@ -17,7 +17,7 @@ from passo.moves import PROFILES, MoveBySpeed, MoveInTime
 from passo.plan import PlanError, plan_move
 from passo.registers import Cause, State
 
-from cocotb_tests.bench import rng
+from cocotb_tests.bench import patience, rng
 from cocotb_tests.core_bench import V_MAX, Core, CoreChannel, Line, PinTiming, Ramp, Shape, core_test, planned
 from cocotb_tests.core_expected import distance
 
@@ -301,7 +301,7 @@ def session(core: Core, number: int) -> None:
     random = rng(f"core_random/{number}")
     host = Session(core, random)
     made = 0
-    while made < MOTIONS:
+    while made < patience(MOTIONS, 10):
         axes = random.choice(host.axes)
         if random.random() < 0.03:
             host.wild(axes)

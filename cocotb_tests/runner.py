@@ -32,6 +32,7 @@ COVERAGE_VARIABLE = "PASSO_COVERAGE"
 
 _BUILD = paths.build / "cocotb"
 _TOPS = paths.cocotb_tests / "tops"
+CORE_TOP = "passo_core_top"
 
 
 def seed() -> int:
@@ -186,12 +187,13 @@ class _Verilator(Verilator):
     def _build_command(self) -> list[list[str]]:
         """Put what is there between Verilator's makefile, which it has to be newer than, and make."""
         verilate, make = super()._build_command()
-        if netlist := [source for source in self.sources if Path(source).name == CELLS]:
-            # Only the pins are to be seen from outside: the many nets inside would take an hour to compile.
+        if self.hdl_toplevel == CORE_TOP and "coverage" not in self.build_dir.name:
+            # Only the pins are to be seen from outside: what is inside takes long to compile, that of a
+            # netlist an hour.
             verilate = [part for part in verilate if part != "--public-flat-rw"]
             pins = self.build_dir / "pins.vlt"
             pins.write_text(f'`verilator_config\npublic_flat_rw -module "{self.hdl_toplevel}" -var "*"\n')
-            verilate.insert(verilate.index(str(netlist[0])), str(pins))
+            verilate.insert(verilate.index(str(self.sources[0])), str(pins))
         objects = [str(path) for path in self._runtime().glob("verilated*.o")]
         return [verilate, *([["cp", *objects, str(self.build_dir)]] if objects else []), make]
 

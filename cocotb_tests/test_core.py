@@ -6,9 +6,9 @@ core_bench.py is what all of these have in common; PASSO_SEED is the seed of the
 
 import pytest
 
+from cocotb_tests.runner import CORE_TOP as TOP
 from cocotb_tests.runner import run
 
-TOP = "passo_core_top"
 ONE_CHANNEL = {"CHANNELS": 1, "AXES": 3, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 5, "RAMP_QUEUE_LOG2": 4}
 TWO_CHANNELS = {"CHANNELS": 2, "AXES": 2, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 2, "RAMP_QUEUE_LOG2": 2}
 

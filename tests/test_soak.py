@@ -55,7 +55,7 @@ def test_no_promise_is_broken_in_verilator(program: Path) -> None:
 
 def test_no_promise_is_broken_in_icarus(program: Path) -> None:
     """The same in another simulator."""
-    check(soak.play_icarus(program, SEED, 9, JOBS), 9)
+    check(soak.play_icarus(program, SEED, 6, JOBS), 6)
 
 
 @pytest.mark.parametrize("name", ["abort leaves steps", "a lost stop counts as sent"])
@@ -77,9 +77,9 @@ def test_every_defect_can_be_put_back(defect: Defect, tmp_path: Path) -> None:
 
 
 def test_a_core_that_differs_from_the_model_goes_red(program: Path, tmp_path: Path, monkeypatch) -> None:
-    """A defect of the RTL alone, in both simulators."""
+    """A defect of the RTL alone."""
     rtl = tmp_path / "rtl"
     shutil.copytree(soak.paths.rtl, rtl)
-    plant(rtl / "passo_axis.v", "settle <= pins_written;", "settle <= 1'b0;")
+    plant(rtl / "passo_axis.v", "restart ? 16'd1 : 16'd2;", "16'd1;")
     monkeypatch.setattr(soak.paths, "rtl", rtl)
-    assert soak.play_icarus(program, 1, 60, JOBS).failures
+    assert soak.play_icarus(program, 1, 3, JOBS).failures
