@@ -134,7 +134,8 @@ struct passo {
 /* Makes contact with the core and takes over a channel: checks identification, version and parameters, throws
  * away what waits in the queues of a channel at rest, clears a stopped one, reads the positions. The position
  * counters are kept. A channel in motion (this host was reset) is left alone: the result is MOVING, and
- * state, positions, hold, stop and abort work; moves do after its end, or stop, and passo_clear(). About
+ * state, positions, hold, stop and abort work; moves do after its end, or stop, and passo_clear(). Each axis
+ * is to be configured before it moves. What a stop had left to do before is forgotten. About
  * ten frames. Errors: ARGUMENT, those of the wire, NOT_PASSO, VERSION, PARAMETERS, MOVING. */
 enum passo_error passo_open(struct passo *passo, struct passo_host *host,
     const struct passo_hardware *hardware, const struct passo_options *options);

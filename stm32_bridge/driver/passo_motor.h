@@ -46,7 +46,8 @@ enum passo_error passo_motor_start_endless(
 /* While turning without end: another speed. Otherwise: the speed of the next start. */
 enum passo_error passo_motor_set_speed(struct passo_motor *motor, uint64_t rpm);
 /* Slows down and stops: a motor that turns without end by its ramp; one on its way to an angle by the soft
- * stop, after which passo_clear() is needed. */
+ * stop, after which passo_clear() is needed. After an error of the wire both are stopped softly: passo_poll()
+ * sends that until it is acknowledged. */
 enum passo_error passo_motor_stop(struct passo_motor *motor);
 /* As far as passo_poll() has seen. */
 bool passo_motor_is_turning(const struct passo_motor *motor);
