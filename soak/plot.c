@@ -715,8 +715,8 @@ struct action plot_disturbance(struct plot *plot, enum plot_kind kind)
 
 const char *plot_event_name(enum world_event_kind kind)
 {
-	static const char *const names[EVENT_KINDS] = {"state", "stop", "slew tick", "rate", "line", "ramp",
-	    "tick", "STEP", "DIR", "waiting step", "quiet"};
+	static const char *const names[EVENT_KINDS] = {"state", "gap", "stop", "slew tick", "rate", "line",
+	    "ramp", "tick", "STEP", "DIR", "waiting step", "quiet"};
 
 	return kind < EVENT_KINDS ? names[kind] : "nothing";
 }

@@ -13,6 +13,7 @@ import hashlib
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import threading
@@ -160,12 +161,32 @@ def build(root: Path = paths.root, program: Path = BUILD / "soak") -> Path:
 # ---- playing ----
 
 
+playing: set[subprocess.Popen] = set()  # to be ended with this program
+
+
+def _say(command: Sequence[str | Path]) -> tuple[int, str, str]:
+    """Run a program to its end: exit status, and what it said."""
+    process = subprocess.Popen(
+        [*map(str, command)], env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    playing.add(process)
+    said, complaints = process.communicate()
+    playing.discard(process)
+    return process.returncode, said, complaints
+
+
+def _end(*_: object) -> None:
+    for process in list(playing):
+        process.terminate()
+    sys.exit(1)
+
+
 def _play(command: Sequence[str | Path], part: str, seed: int) -> tuple[Counter[str], list[Failure]]:
-    """Run the program and read what it says."""
-    done = subprocess.run([*map(str, command)], capture_output=True, text=True)
+    """Play histories and read what came of them."""
+    status, said, complaints = _say(command)
     counts: Counter[str] = Counter()
     failures = []
-    for line in done.stdout.splitlines():
+    for line in said.splitlines():
         word, _, rest = line.partition(" ")
         if word == "count":
             name, _, value = rest.rpartition(" ")
@@ -173,8 +194,8 @@ def _play(command: Sequence[str | Path], part: str, seed: int) -> tuple[Counter[
         elif word == "failed":
             history, clock, text = rest.split(" ", 2)
             failures.append(Failure(part, seed, int(history), int(clock), text))
-    if done.returncode not in (0, 1) or (done.returncode == 1) != bool(failures):
-        raise SoakError(f"{' '.join(map(str, command))}: exit status {done.returncode}\n{done.stderr}")
+    if status not in (0, 1) or (status == 1) != bool(failures):
+        raise SoakError(f"{' '.join(map(str, command))}: exit status {status}\n{complaints}")
     return counts, failures
 
 
@@ -275,7 +296,7 @@ def play_icarus(program: Path, seed: int, histories: int, jobs: int) -> Part:
         command = [program, str(seed), str(history), "1", "--record", folder, "--short"]
         counts, failures = _play(command, "icarus", seed)
         bench = ["vvp", str(benches[history % len(SETS)]), f"+record={record}"]
-        said = subprocess.run(bench, env=environment(), capture_output=True, text=True).stdout.strip()
+        said = _say(bench)[1].strip()
         record.unlink()
         if not re.fullmatch(r"same [1-9]\d*", said):
             clock = re.match(r"clock (\d+)", said)
@@ -476,6 +497,7 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     arguments = parser.parse_args()
 
+    signal.signal(signal.SIGTERM, _end)
     only = arguments.only.split(",")
     if unknown := set(only) - set(PARTS):
         parser.error(f"no such part: {', '.join(sorted(unknown))}")

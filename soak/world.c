@@ -9,6 +9,8 @@
 /* Clocks from the last edge of SCLK to chip select. */
 #define HOLD 3u
 #define ROWS_FIRST 4096u
+/* A channel rests so long between two motions that are queued behind one another. */
+#define GAP_CLOCKS 4u
 
 struct world_rtl {
 	struct engine_core *(*open)(const struct passo_engine_config *config,
@@ -149,6 +151,11 @@ static void note_events(struct world *world, const struct before *before, const 
 
 		if (was->state != now.state)
 			add_event(world, EVENT_STATE, i);
+		if (was->state == PASSO_STATE_IDLE && now.state == PASSO_STATE_PREPARE
+		    && world->clock <= world->idle_since[i] + GAP_CLOCKS)
+			add_event(world, EVENT_GAP, i);
+		if (was->state != PASSO_STATE_IDLE && now.state == PASSO_STATE_IDLE)
+			world->idle_since[i] = world->clock;
 		if (was->stopping != now.stopping)
 			add_event(world, EVENT_STOPPING, i);
 		if (world->model.slew_tick && now.state >= PASSO_STATE_RUN && now.state <= PASSO_STATE_DRAIN)

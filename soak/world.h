@@ -47,6 +47,7 @@ struct world_fact {
 /* Clocks at which something changes, as the model has them. What is aimed at them is judged without. */
 enum world_event_kind {
 	EVENT_STATE,    /* state of the motion */
+	EVENT_GAP,      /* a motion has ended, and the next one is prepared at once */
 	EVENT_STOPPING, /* a soft stop begins */
 	EVENT_SLEW,     /* slew tick while something moves */
 	EVENT_RATE,     /* the rate changes */
@@ -108,6 +109,7 @@ struct world {
 	struct world_event *events; /* recorded from `events_from` on */
 	size_t event_count, event_room;
 	uint64_t events_from;
+	uint64_t idle_since[PASSO_CHANNELS_MAX];
 	FILE *record; /* for the bench that plays it; NULL: none */
 	struct passo_inputs recorded_inputs;
 	struct passo_outputs recorded_outputs;
