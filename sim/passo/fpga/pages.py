@@ -22,7 +22,7 @@ Row = dict[str, Any]
 
 
 def write(report: dict[str, Any]) -> None:
-    """Write the page and the block of README.md."""
+    """Write the page, and the goals in README.md."""
     template = TEMPLATE.read_text(encoding="utf-8")
     parts = {
         "goals": _markdown(*_goals(report)),
@@ -41,8 +41,12 @@ def write(report: dict[str, Any]) -> None:
         ),
     }
     PAGE.write_text(template.format(**parts), encoding="utf-8")
-    costs = "\n".join(f"* {DEVICES[name].title}: {_costs(report, name)}." for name in DEVICES)
-    block = f"{parts['goals']}\n\nWhat one more costs:\n\n{costs}"
+    write_goals(report)
+
+
+def write_goals(report: dict[str, Any]) -> None:
+    """Write the goals in README.md."""
+    block = _markdown(*_goals(report))
     README.write_text(_with_block(README.read_text(encoding="utf-8"), block), encoding="utf-8")
 
 
