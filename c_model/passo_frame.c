@@ -89,7 +89,8 @@ bool passo_frame_is_status(uint32_t word)
 }
 
 /* The ack, or a refused read's verdict: always the last word. The last status word before it tells a reply
- * that is shifted by a bit, in which the ack of one verdict looks like that of another. */
+ * that is shifted by a bit, in which the ack of one verdict looks like that of another. If it is the ack
+ * itself, the core took the request for a read. */
 static enum passo_reply read_ack(const uint32_t *mosi, const uint32_t *miso, size_t count,
     uint32_t last_status, enum passo_verdict *verdict)
 {
@@ -101,7 +102,8 @@ static enum passo_reply read_ack(const uint32_t *mosi, const uint32_t *miso, siz
 		return ack == miso[0] ? PASSO_REPLY_NO_ACK : PASSO_REPLY_DAMAGED;
 	if (ack >> 24 != (mosi[0] >> 20 & 0xFFu))
 		return PASSO_REPLY_SEQUENCE;
-	if ((ack >> 16 & 0xFFu) > PASSO_VERDICT_BAD_VALUE || !passo_frame_is_status(last_status))
+	if ((ack >> 16 & 0xFFu) > PASSO_VERDICT_BAD_VALUE || !passo_frame_is_status(last_status)
+	    || last_status == ack)
 		return PASSO_REPLY_DAMAGED;
 	*verdict = (enum passo_verdict)(ack >> 16 & 0xFFu);
 	return *verdict <= PASSO_VERDICT_DUPLICATE ? PASSO_REPLY_OK : PASSO_REPLY_REFUSED;
