@@ -11,8 +11,8 @@
 #define TRIES_DEATH 4u
 #define HOLD_MICROSECONDS 600u
 #define STOP_MICROSECONDS 900u
-/* A queue of moves is over by then. */
-#define WAIT_MICROSECONDS 400000u
+/* A queue of moves is over by then, even if each of its frames takes a hundred tries. */
+#define WAIT_MICROSECONDS 4000000u
 #define POLLS 50u
 #define POLL_CLOCKS 150u
 

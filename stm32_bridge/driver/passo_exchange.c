@@ -8,17 +8,26 @@
 #define MICROSECONDS 1000000u
 #define SPINS_MAX 100000u /* a clock that stands still must not hang the host */
 
+/* Words of a reply that must agree before its status is believed: the same bit may flip in two. */
+#define STATUS_WORDS 3u
+
 bool passo_host_status_of(const uint32_t *miso, size_t count, uint32_t *status)
 {
+	size_t lead = 0, same = 0;
+	uint32_t word = 0;
+
+	/* the only word that can be more than half of them */
 	for (size_t i = 0; i < count; i++) {
-		for (size_t k = i + 1; k < count; k++) {
-			if (miso[i] == miso[k] && passo_frame_is_status(miso[i])) {
-				*status = miso[i];
-				return true;
-			}
-		}
+		if (lead == 0u)
+			word = miso[i];
+		lead = miso[i] == word ? lead + 1u : lead - 1u;
 	}
-	return false;
+	for (size_t i = 0; i < count; i++)
+		same += miso[i] == word ? 1u : 0u;
+	if (same < STATUS_WORDS || 2u * same <= count || !passo_frame_is_status(word))
+		return false;
+	*status = word;
+	return true;
 }
 
 static enum passo_error fault_of(struct passo_host *host, enum passo_reply reply, enum passo_verdict verdict)

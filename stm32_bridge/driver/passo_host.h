@@ -135,7 +135,8 @@ void passo_host_drop(struct passo_host *host);
  * The blocking calls see to that themselves. */
 bool passo_host_is_unsure(const struct passo_host *host);
 
-/* Copies of the status word that agree, out of the reply's first `count` words; false: too damaged. */
+/* The status word, of which at least three and more than half of the first `count` words of a reply are
+ * copies; false: too damaged. */
 bool passo_host_status_of(const uint32_t *miso, size_t count, uint32_t *status);
 
 #ifdef __cplusplus
