@@ -6,7 +6,7 @@ from itertools import product
 
 import pytest
 from passo import frame
-from passo.native import ffi
+from passo.native import ffi, planner
 from passo.registers import Operation, Verdict
 
 RANDOM = random.Random(1)
@@ -140,6 +140,28 @@ def test_shifted_replies_are_damaged() -> None:
         words = [reply[0], *(int(bits[n : n + 32], 2) for n in range(32, len(bits), 32))]
         with pytest.raises(frame.FrameError):
             judge(mosi, words)
+
+
+def status_of(reply: list[int]) -> int | None:
+    status = ffi().new("uint32_t *")
+    return status[0] if planner().passo_host_status_of(reply, len(reply), status) else None
+
+
+@pytest.mark.parametrize("count", range(1, 8))
+def test_status_is_what_most_words_repeat(count: int) -> None:
+    """Replies with damage in any of their words: three must be alike, and more than half."""
+    for damaged in product((False, True), repeat=count):
+        alike = [STATUS ^ 4 if bad else STATUS for bad in damaged]
+        good, bad = damaged.count(False), damaged.count(True)
+        believed = STATUS if good > bad else STATUS ^ 4
+        assert status_of(alike) == (believed if 2 * max(good, bad) > count and max(good, bad) >= 3 else None)
+        each_its_own = [STATUS ^ 1 << place if bad else STATUS for place, bad in enumerate(damaged)]
+        assert status_of(each_its_own) == (STATUS if 2 * good > count and good >= 3 else None)
+
+
+@pytest.mark.parametrize("word", [0, 0xFFFFFFFF, STATUS & ~(1 << 31)])
+def test_what_is_no_status_is_not_believed(word: int) -> None:
+    assert status_of([word] * 7) is None
 
 
 def test_line_words() -> None:
