@@ -21,7 +21,6 @@ module passo_dda (
   input  wire               slot_load_q,  // clock B when a new line begins
   input  wire signed [30:0] broadcast,    // in A: -M, or the start value of the new line
   input  wire        [29:0] steps,        // N of the current line; in B already that of the new one
-  output wire               reached,      // e + N >= M: in clock B, a step
   output wire               step_request
 );
 
@@ -30,8 +29,7 @@ module passo_dda (
   reg         below;  // e + N < M
   wire [30:0] sum = {1'b1, e_minus_m} + addend;
 
-  assign reached      = ~below;
-  assign step_request = slot_step & reached;
+  assign step_request = slot_step & ~below;
 
   always @(posedge clk) begin
     addend <= (slot_add || slot_load) ? broadcast : {1'b0, steps};

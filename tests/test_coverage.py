@@ -35,7 +35,7 @@ def toggles(name: str, rises: int, falls: int) -> str:
 def modules(tmp_path: Path) -> dict[str, Module]:
     """Two runs: a[0] rises in one and falls in the other, a[1] only rises, b does nothing."""
     first, second = tmp_path / "1.dat", tmp_path / "2.dat"
-    top = paths.cocotb_tests / "tops" / "passo_line_top.v"
+    top = paths.cocotb_tests / "tops" / "passo_link_top.v"
     first.write_text(
         "# SystemC::Coverage-3\n"
         + toggles("a[0]", 1, 0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""passo_line and passo_dda behind passo_line_queue: which substep makes a step of which axis."""
+"""passo_lines: which substep makes a step of which axis."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -19,9 +19,9 @@ LATENCY = 2  # substep to step_request
 
 
 @pytest.mark.parametrize("register", [0, 1])
-def test_line(simulator: str, register: int) -> None:
+def test_lines(simulator: str, register: int) -> None:
     parameters = {"AXES": AXES, "DEPTH_LOG2": DEPTH_LOG2, "STEPS_REGISTER": register}
-    run(__name__, "passo_line_top", parameters, simulator)
+    run(__name__, "passo_lines", parameters, simulator)
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class Lines:
     @classmethod
     async def begin(cls, dut: HierarchyObject) -> "Lines":
         """Reset."""
-        inputs = (*PushBus.INPUTS, "blocked", "start", "stop", "release_line", "substep")
+        inputs = (*PushBus.INPUTS, "start", "stopped", "release_line", "substep")
         return cls(dut, await begin(dut, *inputs))
 
     async def strobe(self, name: str) -> None:
@@ -81,7 +81,7 @@ class Lines:
     async def start(self) -> None:
         """Take the first line, and give it the time that a motion gives it."""
         await self.clocks.wait(4)
-        assert read(self.dut.line_valid) == 1
+        assert read(self.dut.valid) == 1
         await self.strobe("start")
         await self.clocks.wait(10)
 
@@ -284,9 +284,9 @@ async def a_missing_line_is_an_underrun(dut: HierarchyObject) -> None:
             await lines.clocks.wait(2)
         await lines.compare()
         lines.check_end(ended=False, underruns=rounds)
-        await lines.strobe("stop")
+        await lines.strobe("stopped")
         await lines.clocks.wait(3)
-        assert (read(dut.room), read(dut.line_valid)) == (1 << DEPTH_LOG2, 0)
+        assert (read(dut.room), read(dut.valid)) == (1 << DEPTH_LOG2, 0)
 
 
 @cocotb.test()
@@ -357,7 +357,7 @@ async def stop_forgets_the_line_and_the_next_motion_is_clean(dut: HierarchyObjec
         await lines.start()
         await lines.make([first], gaps(random), until=random.randrange(first.substeps))
         await lines.clocks.wait(LATENCY)
-        await lines.strobe("stop")
+        await lines.strobe("stopped")
         await lines.clocks.wait(2)
         await lines.bus.push(second.words())
         await lines.start()

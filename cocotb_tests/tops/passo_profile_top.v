@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Ramp with its queue, the shape tables and the path, wired as in a channel, the last of CHANNELS; enable and bus come from the test.
+// Profile of a channel, the last of CHANNELS, with the shape tables; enable and bus come from the test.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
 
-module passo_ramp_top #(
+module passo_profile_top #(
   parameter CHANNELS   = 1,
   parameter DEPTH_LOG2 = 4,
   parameter TICK_LOG2  = 7
 ) (
   input  wire                clk,
   input  wire                rst,
-  // ramp queue
   input  wire                bus_frame,
   input  wire                bus_commit,
   input  wire                bus_check,
@@ -19,38 +18,27 @@ module passo_ramp_top #(
   input  wire                select,
   input  wire [        31:0] bus_data,
   input  wire [         4:0] bus_top_bit,
-  input  wire                blocked,
   output wire [         3:0] refusal,
   output wire                incomplete,
   output wire                needs_motion,
   output wire [DEPTH_LOG2:0] room,
-  output wire                ramp_valid,
-  input  wire                ramp_now_coming,
-  // ramp
   input  wire                prepare,
   input  wire                begin_profile,
-  input  wire                stop,
+  input  wire                stopped,
   input  wire                drain,
   input  wire [        31:0] drain_velocity,
+  input  wire                now_coming,
   input  wire                enable,
+  output wire                valid,
   output wire                ready,
-  output reg                 ended_q,
   output wire                dry,
   output wire                stall,
-  output wire [        47:0] velocity        // that counts in this clock
+  output reg                 ended_q,
+  output wire [        47:0] velocity         // that counts in this clock
 );
 
   wire                   ended;
-  wire                   advance = enable & ~stall;
-  wire                   tick_ends;
-  wire                   tick = enable & tick_ends;
   wire                   ends_next;
-  wire [           47:0] velocity_next;
-  wire                   ramp_now_pending;
-  wire                   ramp_take;
-  wire                   ramp_take_now;
-  wire [            3:0] ramp_half_index;
-  wire [           15:0] ramp_half;
   wire                   table_request;
   wire [            9:0] table_address;
   wire [   CHANNELS-1:0] table_served;
@@ -59,6 +47,7 @@ module passo_ramp_top #(
   wire [   CHANNELS-1:0] table_requests;
   wire [CHANNELS*10-1:0] table_addresses;
 
+  // the other channels always ask
   genvar channel;
   generate
     for (channel = 0; channel < CHANNELS; channel = channel + 1) begin : g_channel
@@ -68,32 +57,6 @@ module passo_ramp_top #(
   endgenerate
 
   always @(posedge clk) ended_q <= ended;
-
-  passo_ramp_queue #(
-    .DEPTH_LOG2(DEPTH_LOG2)
-  ) u_queue (
-    .clk        (clk),
-    .rst        (rst),
-    .bus_frame  (bus_frame),
-    .bus_commit (bus_commit),
-    .bus_check  (bus_check),
-    .bus_write  (bus_write),
-    .select     (select),
-    .bus_data   (bus_data),
-    .bus_top_bit(bus_top_bit),
-    .blocked    (blocked),
-    .refusal    (refusal),
-    .incomplete (incomplete),
-    .needs_motion(needs_motion),
-    .room       (room),
-    .take       (ramp_take),
-    .take_now   (ramp_take_now),
-    .flush      (stop),
-    .valid      (ramp_valid),
-    .now_pending(ramp_now_pending),
-    .half_index (ramp_half_index),
-    .half       (ramp_half)
-  );
 
   passo_tables #(
     .CHANNELS(CHANNELS)
@@ -119,59 +82,50 @@ module passo_ramp_top #(
     .point_next (table_point_next)
   );
 
-  passo_ramp #(
-    .TICK_LOG2(TICK_LOG2)
-  ) u_ramp (
+  passo_profile #(
+    .TICK_LOG2 (TICK_LOG2),
+    .DEPTH_LOG2(DEPTH_LOG2)
+  ) u_profile (
     .clk             (clk),
     .rst             (rst),
+    .bus_frame       (bus_frame),
+    .bus_commit      (bus_commit),
+    .bus_check       (bus_check),
+    .bus_write       (bus_write),
+    .select          (select),
+    .bus_data        (bus_data),
+    .bus_top_bit     (bus_top_bit),
+    .refusal         (refusal),
+    .incomplete      (incomplete),
+    .needs_motion    (needs_motion),
+    .room            (room),
     .prepare         (prepare),
     .begin_profile   (begin_profile),
-    .stop            (stop),
+    .stopped         (stopped),
     .drain           (drain),
+    .drain_velocity  (drain_velocity),
+    .now_coming      (now_coming),
+    .valid           (valid),
     .ready           (ready),
     .ended           (ended),
     .dry             (dry),
-    .advance         (advance),
-    .tick            (tick),
-    .stall           (stall),
-    .tick_ends       (tick_ends),
     .ends_next       (ends_next),
-    .velocity_next   (velocity_next),
-    .ramp_valid      (ramp_valid),
-    .ramp_now_pending(ramp_now_pending),
-    .ramp_now_coming (ramp_now_coming),
-    .ramp_take       (ramp_take),
-    .ramp_take_now   (ramp_take_now),
-    .ramp_half_index (ramp_half_index),
-    .ramp_half       (ramp_half),
+    .enable          (enable),
     .table_request   (table_request),
     .table_address   (table_address),
     .table_served    (table_served[CHANNELS-1]),
     .table_point     (table_point),
-    .table_point_next(table_point_next)
+    .table_point_next(table_point_next),
+    .velocity        (),
+    .substep         ()
   );
 
-  passo_path u_path (
-    .clk           (clk),
-    .rst           (rst),
-    .restart       (prepare),
-    .stop          (stop),
-    .begin_profile (begin_profile),
-    .advance       (advance),
-    .tick          (tick),
-    .rest          (ends_next),
-    .velocity_next (velocity_next),
-    .drain         (drain),
-    .drain_velocity(drain_velocity),
-    .velocity      (),
-    .substep       ()
-  );
-
+  assign stall           = u_profile.stall;
   // the path's upper half comes a clock late
-  assign velocity[23:0] = u_path.velocity_low;
-  assign velocity[47:24] = !u_path.take_q ? u_path.velocity_high :
-                           drain          ? drain_velocity[31:8] :
-                           ends_next      ? 24'd0 : velocity_next[47:24];
+  assign velocity[23:0]  = u_profile.u_path.velocity_low;
+  assign velocity[47:24] = !u_profile.u_path.take_q ? u_profile.u_path.velocity_high :
+                           drain                    ? drain_velocity[31:8] :
+                           ends_next                ? 24'd0 : u_profile.velocity_next[47:24];
 
 endmodule
 `resetall

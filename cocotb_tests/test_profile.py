@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""passo_ramp with passo_ramp_queue and passo_tables: the velocity of every tick."""
+"""passo_profile with passo_tables: the velocity of every tick."""
 
 from collections.abc import Callable, Iterator, Sequence
 from itertools import islice, pairwise
@@ -23,9 +23,9 @@ Enable = Callable[[], bool]
 
 
 @pytest.mark.parametrize("channels", [1, 8])
-def test_ramp(simulator: str, channels: int) -> None:
+def test_profile(simulator: str, channels: int) -> None:
     parameters = {"CHANNELS": channels, "DEPTH_LOG2": DEPTH_LOG2, "TICK_LOG2": TICK_LOG2}
-    run(__name__, "passo_ramp_top", parameters, simulator)
+    run(__name__, "passo_profile_top", parameters, simulator)
 
 
 def always() -> bool:
@@ -50,11 +50,10 @@ class Ramps:
         """Reset."""
         inputs = (
             *PushBus.INPUTS,
-            "blocked",
-            "ramp_now_coming",
+            "now_coming",
             "prepare",
             "begin_profile",
-            "stop",
+            "stopped",
             "drain",
             "drain_velocity",
             "enable",
@@ -223,7 +222,7 @@ async def the_longest_ramp_keeps_its_precision(dut: HierarchyObject) -> None:
             await bench.start()
             await bench.advance(6 * TICK)
             bench.compare(list(islice(ramp.velocities(V_MAX // 2), 6)))
-            await bench.strobe("stop")
+            await bench.strobe("stopped")
     assert not bench.ended.clocks_where(bool, bench.clocks.now)
 
 
@@ -309,7 +308,7 @@ async def now_drops_the_ramps_before_it_and_starts_from_the_present_velocity(
         await bench.advance(len(expected) * TICK)
         bench.compare(expected)
         await bench.compare_end()
-        assert (read(dut.room), read(dut.ramp_valid)) == (DEPTH, 0)
+        assert (read(dut.room), read(dut.valid)) == (DEPTH, 0)
 
 
 @cocotb.test()
@@ -363,11 +362,11 @@ async def a_now_ramp_that_is_coming_keeps_the_profile_from_ending(dut: Hierarchy
     async def push_late() -> None:
         while len(bench.enabled_clocks) < 3 * TICK - early:
             await bench.clocks.wait(1)
-        dut.ramp_now_coming.value = 1
+        dut.now_coming.value = 1
         while not read(dut.stall):
             await bench.clocks.wait(1)
         await bench.push(*now)
-        dut.ramp_now_coming.value = 0
+        dut.now_coming.value = 0
 
     cocotb.start_soon(push_late())
     await bench.advance(len(expected) * TICK)
@@ -451,7 +450,7 @@ async def stop_forgets_everything(dut: HierarchyObject) -> None:
         await bench.push(*ramps)
         await bench.start()
         await bench.advance(random.randrange(1, 4 * TICK))
-        await bench.strobe("stop")
+        await bench.strobe("stopped")
         await bench.clocks.wait(2)
         assert (read(dut.velocity), read(dut.ready), read(dut.room)) == (0, 0, DEPTH)
         await bench.clocks.wait(random.randrange(150))

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: MIT
+// Axes: how the steps leave. Pins, settings and positions of all axes of a channel; wiring only.
+//
+// Promise: step requests become legal pins, as each axis is set; positions are the number of active edges. `quiet`:
+// no step waits or is shaped at any axis, a clock ago.
+// Latency: step_request to STEP 3 clocks, to step_overrun 1 clock.
+`resetall
+`timescale 1ns / 1ps
+`default_nettype none
+
+module passo_axes #(
+  parameter            AXES         = 4,
+  parameter [AXES-1:0] STEP_RESET   = 0,
+  parameter [AXES-1:0] DIR_RESET    = 0,
+  parameter [AXES-1:0] ENABLE_RESET = 0
+) (
+  input  wire            clk,
+  input  wire            rst,
+  // bus
+  input  wire            bus_check,
+  input  wire            bus_write,
+  input  wire            bus_read,
+  input  wire            bus_push,
+  input  wire [AXES-1:0] select_axis,
+  input  wire [AXES-1:0] select_position,
+  input  wire [     2:0] bus_address,      // within the block
+  input  wire [    31:0] bus_data,
+  input  wire [     4:0] bus_top_bit,
+  output wire            claim,
+  output wire [     3:0] refusal,
+  output wire [    31:0] read_data,
+  output wire            needs_quiet,      // strobe: the pins of an axis are checked
+  // lines
+  input  wire [AXES-1:0] step_request,
+  input  wire [AXES-1:0] directions,
+  // motion
+  input  wire            drop,             // forget the steps that wait
+  input  wire            clear,            // of the lost steps
+  input  wire            zero,             // of the positions
+  input  wire            snapshot,         // of the positions, for the frame that begins
+  output wire            quiet,
+  output reg             step_overrun,     // strobe: a step was lost
+  output wire [AXES-1:0] lost_steps,       // since `clear`, a bit for each axis
+  // pins
+  output wire [AXES-1:0] step,
+  output wire [AXES-1:0] dir,
+  output wire [AXES-1:0] enable
+);
+
+  `include "passo_registers.vh"
+
+  wire [  AXES-1:0] step_made;
+  wire [  AXES-1:0] step_direction;
+  wire [  AXES-1:0] full;
+  wire [  AXES-1:0] axis_quiet;
+  wire [AXES*4-1:0] lost;
+  wire [  AXES-1:0] write_pins;
+  wire [  AXES-1:0] write_step_timing;
+  wire [  AXES-1:0] write_dir_timing;
+  wire [  AXES-1:0] write_enable;
+  wire              short_upper;
+  wire              short_lower;
+  wire [       3:0] lost_read;
+  wire              answers_position;
+  wire [      31:0] position;
+
+  assign quiet     = axis_quiet == {AXES{1'b1}};
+  assign read_data = {28'd0, lost_read} | (position & {32{answers_position}});
+
+  always @(posedge clk) step_overrun <= ~rst & ((step_request & full) != {AXES{1'b0}});
+
+  genvar axis;
+  generate
+    for (axis = 0; axis < AXES; axis = axis + 1) begin : g_axis
+      wire [15:0] step_high;
+      wire [15:0] step_low;
+      wire [15:0] dir_setup;
+      wire [15:0] dir_hold;
+      wire        short_high;
+      wire        short_low;
+      wire        short_setup;
+      wire        short_hold;
+      wire        both_edges;
+      wire        step_inverted;
+      wire        direction_inverted;
+      wire        enable_wanted;
+      wire        enable_inverted;
+
+      assign lost_steps[axis] = lost[axis*4+:4] != 4'd0;
+
+      passo_axis #(
+        .STEP_RESET  (STEP_RESET[axis]),
+        .DIR_RESET   (DIR_RESET[axis]),
+        .ENABLE_RESET(ENABLE_RESET[axis])
+      ) u_axis (
+        .clk               (clk),
+        .rst               (rst),
+        .step_request      (step_request[axis]),
+        .direction         (directions[axis]),
+        .drop              (drop),
+        .step_made         (step_made[axis]),
+        .step_direction    (step_direction[axis]),
+        .full              (full[axis]),
+        .quiet             (axis_quiet[axis]),
+        .clear             (clear),
+        .lost              (lost[axis*4+:4]),
+        .step_high         (step_high),
+        .step_low          (step_low),
+        .dir_setup         (dir_setup),
+        .dir_hold          (dir_hold),
+        .short_high        (short_high),
+        .short_low         (short_low),
+        .short_setup       (short_setup),
+        .short_hold        (short_hold),
+        .timing_written    (write_step_timing[axis] | write_dir_timing[axis]),
+        .pins_written      (write_pins[axis]),
+        .both_edges_next   (bus_data[AXIS_PINS_BOTH_EDGES_LSB]),
+        .both_edges        (both_edges),
+        .step_inverted     (step_inverted),
+        .direction_inverted(direction_inverted),
+        .enable            (enable_wanted),
+        .enable_inverted   (enable_inverted),
+        .step_pin          (step[axis]),
+        .dir_pin           (dir[axis]),
+        .enable_pin        (enable[axis])
+      );
+
+      passo_axis_settings #(
+        .STEP_RESET  (STEP_RESET[axis]),
+        .DIR_RESET   (DIR_RESET[axis]),
+        .ENABLE_RESET(ENABLE_RESET[axis])
+      ) u_settings (
+        .clk               (clk),
+        .rst               (rst),
+        .write_pins        (write_pins[axis]),
+        .write_step_timing (write_step_timing[axis]),
+        .write_dir_timing  (write_dir_timing[axis]),
+        .write_enable      (write_enable[axis]),
+        .bus_data          (bus_data),
+        .short_upper       (short_upper),
+        .short_lower       (short_lower),
+        .short_high        (short_high),
+        .short_low         (short_low),
+        .short_setup       (short_setup),
+        .short_hold        (short_hold),
+        .step_high         (step_high),
+        .step_low          (step_low),
+        .dir_setup         (dir_setup),
+        .dir_hold          (dir_hold),
+        .both_edges        (both_edges),
+        .step_inverted     (step_inverted),
+        .direction_inverted(direction_inverted),
+        .enable            (enable_wanted),
+        .enable_inverted   (enable_inverted)
+      );
+    end
+  endgenerate
+
+  passo_axis_registers #(
+    .AXES(AXES)
+  ) u_registers (
+    .clk              (clk),
+    .rst              (rst),
+    .bus_check        (bus_check),
+    .bus_write        (bus_write),
+    .bus_read         (bus_read),
+    .bus_push         (bus_push),
+    .select_axis      (select_axis),
+    .select_position  (select_position),
+    .bus_address      (bus_address),
+    .bus_data         (bus_data),
+    .bus_top_bit      (bus_top_bit),
+    .claim            (claim),
+    .refusal          (refusal),
+    .read_data        (lost_read),
+    .answers_position (answers_position),
+    .write_pins       (write_pins),
+    .write_step_timing(write_step_timing),
+    .write_dir_timing (write_dir_timing),
+    .write_enable     (write_enable),
+    .needs_quiet      (needs_quiet),
+    .short_upper      (short_upper),
+    .short_lower      (short_lower),
+    .lost             (lost)
+  );
+
+  passo_positions #(
+    .AXES(AXES)
+  ) u_positions (
+    .clk           (clk),
+    .rst           (rst),
+    .step_made     (step_made),
+    .step_direction(step_direction),
+    .zero          (zero),
+    .snapshot      (snapshot),
+    .address       (bus_address),
+    .position      (position)
+  );
+
+endmodule
+`resetall

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+// Lines: where the axes go. Line queue, line counter and the DDA of each axis; wiring only.
+//
+// Promise: while M substeps pass, axis i gets exactly N_i step requests, spread evenly, for each line in the order
+// in which they were pushed, without a lost clock between lines.
+// Latency: substep to step_request 2 clocks.
+`resetall
+`timescale 1ns / 1ps
+`default_nettype none
+
+module passo_lines #(
+  parameter AXES           = 4,
+  parameter DEPTH_LOG2     = 8,
+  parameter STEPS_REGISTER = 0   // 1: where block RAMs have a register behind their data
+) (
+  input  wire                clk,
+  input  wire                rst,
+  // bus; `select`: a push to the line queue
+  input  wire                bus_frame,
+  input  wire                bus_commit,
+  input  wire                bus_check,
+  input  wire                bus_write,
+  input  wire                select,
+  input  wire [        31:0] bus_data,
+  input  wire [         4:0] bus_top_bit,
+  output wire [         3:0] refusal,
+  output wire                incomplete,
+  output wire [DEPTH_LOG2:0] room,
+  // motion
+  input  wire                start,         // take the first line
+  input  wire                stopped,       // forget all lines
+  input  wire                release_line,  // the motion is over
+  output wire                valid,         // a line waits
+  output wire                endless,       // the current line repeats
+  output wire                ended,         // the LAST line has
+  output wire                underrun,      // strobe: no line follows one that is not LAST
+  // profile
+  input  wire                substep,
+  // axes
+  output wire [    AXES-1:0] step_request,
+  output wire [    AXES-1:0] directions     // of the line whose steps are being made
+);
+
+  wire                      take;
+  wire                      last;
+  wire                      next_endless;
+  wire        [   AXES-1:0] current_directions;
+  wire        [       29:0] last_substep;
+  wire        [AXES*30-1:0] steps;
+  wire                      slot_add;
+  wire                      slot_load;
+  wire                      slot_step;
+  wire                      slot_load_q;
+  wire signed [       30:0] broadcast;
+
+  passo_line_queue #(
+    .AXES          (AXES),
+    .DEPTH_LOG2    (DEPTH_LOG2),
+    .STEPS_REGISTER(STEPS_REGISTER)
+  ) u_queue (
+    .clk         (clk),
+    .rst         (rst),
+    .bus_frame   (bus_frame),
+    .bus_commit  (bus_commit),
+    .bus_check   (bus_check),
+    .bus_write   (bus_write),
+    .select      (select),
+    .bus_data    (bus_data),
+    .bus_top_bit (bus_top_bit),
+    .blocked     (stopped),
+    .refusal     (refusal),
+    .incomplete  (incomplete),
+    .room        (room),
+    .take        (take),
+    .release_line(release_line),
+    .flush       (stopped),
+    .next_valid  (valid),
+    .last        (last),
+    .endless     (next_endless),
+    .last_substep(last_substep),
+    .directions  (current_directions),
+    .steps       (steps)
+  );
+
+  passo_line #(
+    .AXES(AXES)
+  ) u_line (
+    .clk               (clk),
+    .rst               (rst),
+    .start             (start),
+    .stop              (stopped),
+    .substep           (substep),
+    .next_valid        (valid),
+    .take              (take),
+    .last              (last),
+    .endless           (next_endless),
+    .last_substep      (last_substep),
+    .current_directions(current_directions),
+    .slot_add          (slot_add),
+    .slot_load         (slot_load),
+    .slot_step         (slot_step),
+    .slot_load_q       (slot_load_q),
+    .broadcast         (broadcast),
+    .directions        (directions),
+    .current_endless   (endless),
+    .ended             (ended),
+    .underrun          (underrun)
+  );
+
+  genvar axis;
+  generate
+    for (axis = 0; axis < AXES; axis = axis + 1) begin : g_axis
+      passo_dda u_dda (
+        .clk         (clk),
+        .slot_add    (slot_add),
+        .slot_load   (slot_load),
+        .slot_step   (slot_step),
+        .slot_load_q (slot_load_q),
+        .broadcast   (broadcast),
+        .steps       (steps[axis*30+:30]),
+        .step_request(step_request[axis])
+      );
+    end
+  endgenerate
+
+endmodule
+`resetall
