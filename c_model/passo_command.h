@@ -10,6 +10,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "passo_registers.h"
+
 #define PASSO_CHANNELS_MAX 8u
 #define PASSO_AXES_MAX 8u
 
@@ -21,13 +23,6 @@
 #define PASSO_VELOCITY_MAX (UINT64_C(1) << 47)
 /* Longest progress step: a ramp of one tick. */
 #define PASSO_PROGRESS_STEP_MAX (PASSO_ONE_Q48 - 1u)
-
-enum passo_shape {
-	PASSO_SHAPE_LINEAR = 0,  /* s = u, no table */
-	PASSO_SHAPE_COSINE = 1,  /* (1 - cos(pi u)) / 2 */
-	PASSO_SHAPE_SIGMOID = 2, /* logistic function over -5 .. 5, scaled to start at 0 and end at 1 */
-	PASSO_SHAPE_EASE = 3     /* u^2 */
-};
 
 /* A line moves axis i by exactly steps[i] steps while `substeps` substeps of path pass. */
 struct passo_line {

@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#include "passo_words.h"
+
 #ifndef PASSO_CRC_EXTERNAL
 
 /* The CRC of each 4-bit value: small enough for a microcontroller, eight steps for a word. */
@@ -39,8 +41,8 @@ uint32_t passo_crc(uint32_t crc, const uint32_t *words, size_t count)
 
 static uint32_t header(enum passo_operation operation, uint8_t sequence, uint16_t address, size_t length)
 {
-	return (uint32_t)operation << 28 | (uint32_t)sequence << 20 | ((uint32_t)length & 0xFFu) << 12
-	     | ((uint32_t)address & 0xFFFu);
+	return passo_pack_header(&(struct passo_header){
+	    .operation = operation, .sequence = sequence, .length = (uint8_t)length, .address = address});
 }
 
 static size_t build(uint32_t *frame, uint32_t head, const uint32_t *payload, size_t length)
@@ -85,7 +87,9 @@ static bool is_stuck(const uint32_t *miso, size_t count)
 
 bool passo_frame_is_status(uint32_t word)
 {
-	return (word & UINT32_C(0xC8000000)) == UINT32_C(0x80000000);
+	const struct passo_status status = passo_unpack_status(word);
+
+	return status.marker == PASSO_STATUS_MARKER_RESET && !status.zero;
 }
 
 /* The ack, or a refused read's verdict: always the last word. The last status word before it tells a reply
@@ -94,18 +98,19 @@ bool passo_frame_is_status(uint32_t word)
 static enum passo_reply read_ack(const uint32_t *mosi, const uint32_t *miso, size_t count,
     uint32_t last_status, enum passo_verdict *verdict)
 {
-	uint32_t ack = miso[count - 1];
+	const uint32_t word = miso[count - 1];
+	const struct passo_ack ack = passo_unpack_ack(word);
 
 	if (is_stuck(miso, count))
 		return PASSO_REPLY_STUCK;
-	if (ack >> 16 != (~ack & 0xFFFFu))
-		return ack == miso[0] ? PASSO_REPLY_NO_ACK : PASSO_REPLY_DAMAGED;
-	if (ack >> 24 != (mosi[0] >> 20 & 0xFFu))
+	if (word >> 16 != (~word & 0xFFFFu))
+		return word == miso[0] ? PASSO_REPLY_NO_ACK : PASSO_REPLY_DAMAGED;
+	if (ack.sequence != passo_unpack_header(mosi[0]).sequence)
 		return PASSO_REPLY_SEQUENCE;
-	if ((ack >> 16 & 0xFFu) > PASSO_VERDICT_BAD_VALUE || !passo_frame_is_status(last_status)
-	    || last_status == ack)
+	if (ack.verdict > PASSO_VERDICT_BAD_VALUE || !passo_frame_is_status(last_status)
+	    || last_status == word)
 		return PASSO_REPLY_DAMAGED;
-	*verdict = (enum passo_verdict)(ack >> 16 & 0xFFu);
+	*verdict = ack.verdict;
 	return *verdict <= PASSO_VERDICT_DUPLICATE ? PASSO_REPLY_OK : PASSO_REPLY_REFUSED;
 }
 
@@ -132,7 +137,8 @@ enum passo_reply passo_frame_read_reply(
 
 size_t passo_line_words(uint32_t *words, const struct passo_line *line, uint8_t axes)
 {
-	words[0] = (uint32_t)line->last | (uint32_t)line->endless << 1 | (uint32_t)line->directions << 8;
+	words[0] = passo_pack_line_control(&(struct passo_line_control){
+	    .last = line->last, .endless = line->endless, .directions = line->directions});
 	words[1] = line->substeps;
 	for (unsigned i = 0; i < axes; i++)
 		words[2 + i] = line->steps[i];
@@ -141,8 +147,12 @@ size_t passo_line_words(uint32_t *words, const struct passo_line *line, uint8_t 
 
 size_t passo_ramp_words(uint32_t *words, const struct passo_ramp *ramp)
 {
-	words[0] = (uint32_t)(ramp->velocity_end >> 32) << 16 | (uint32_t)ramp->last
-	         | (uint32_t)ramp->now << 1 | (uint32_t)ramp->mirror << 2 | (uint32_t)ramp->shape << 4;
+	words[0] = passo_pack_ramp_control(
+	    &(struct passo_ramp_control){.velocity_high = (uint16_t)(ramp->velocity_end >> 32),
+		.last = ramp->last,
+		.now = ramp->now,
+		.mirror = ramp->mirror,
+		.shape = ramp->shape});
 	words[1] = (uint32_t)ramp->velocity_end;
 	words[2] = ramp->ticks;
 	words[3] = (uint32_t)(ramp->progress_step >> 32);

@@ -6,6 +6,67 @@
 #ifndef PASSO_REGISTERS_H
 #define PASSO_REGISTERS_H
 
+/* Word: Header. First word of a request. */
+#define PASSO_HEADER_ADDRESS_LSB    0u
+#define PASSO_HEADER_ADDRESS_BITS   12u
+#define PASSO_HEADER_LENGTH_LSB     12u
+#define PASSO_HEADER_LENGTH_BITS    8u
+#define PASSO_HEADER_SEQUENCE_LSB   20u
+#define PASSO_HEADER_SEQUENCE_BITS  8u
+#define PASSO_HEADER_OPERATION_LSB  28u
+#define PASSO_HEADER_OPERATION_BITS 4u
+
+/* Word: Ack. Last word of the reply to a write or push, and to a read that was refused. */
+#define PASSO_ACK_NOT_VERDICT_LSB   0u
+#define PASSO_ACK_NOT_VERDICT_BITS  8u
+#define PASSO_ACK_NOT_SEQUENCE_LSB  8u
+#define PASSO_ACK_NOT_SEQUENCE_BITS 8u
+#define PASSO_ACK_VERDICT_LSB       16u
+#define PASSO_ACK_VERDICT_BITS      8u
+#define PASSO_ACK_SEQUENCE_LSB      24u
+#define PASSO_ACK_SEQUENCE_BITS     8u
+
+/* Word: Status. What stands in a reply before the ack or the data, as it was when chip select fell. */
+#define PASSO_STATUS_RAMP_ROOM_LSB     0u
+#define PASSO_STATUS_RAMP_ROOM_BITS    8u
+#define PASSO_STATUS_LINE_ROOM_LSB     8u
+#define PASSO_STATUS_LINE_ROOM_BITS    8u
+#define PASSO_STATUS_SEQUENCE_LSB      16u
+#define PASSO_STATUS_SEQUENCE_BITS     8u
+#define PASSO_STATUS_CHANNEL_LSB       24u
+#define PASSO_STATUS_CHANNEL_BITS      3u
+#define PASSO_STATUS_ZERO_LSB          27u
+#define PASSO_STATUS_ZERO_BITS         1u
+#define PASSO_STATUS_ZERO_RESET        0x0u
+#define PASSO_STATUS_ANY_OCCUPIED_LSB  28u
+#define PASSO_STATUS_ANY_OCCUPIED_BITS 1u
+#define PASSO_STATUS_ANY_STOPPED_LSB   29u
+#define PASSO_STATUS_ANY_STOPPED_BITS  1u
+#define PASSO_STATUS_MARKER_LSB        30u
+#define PASSO_STATUS_MARKER_BITS       2u
+#define PASSO_STATUS_MARKER_RESET      0x2u
+
+/* Word: Line control. First word of a line; then M and N_0 .. N_{AXES-1}. */
+#define PASSO_LINE_CONTROL_LAST_LSB        0u
+#define PASSO_LINE_CONTROL_LAST_BITS       1u
+#define PASSO_LINE_CONTROL_ENDLESS_LSB     1u
+#define PASSO_LINE_CONTROL_ENDLESS_BITS    1u
+#define PASSO_LINE_CONTROL_DIRECTIONS_LSB  8u
+#define PASSO_LINE_CONTROL_DIRECTIONS_BITS 8u
+
+/* Word: Ramp control. First word of a ramp; then the lower bits of v_end, T, and the progress step in two
+ * words. */
+#define PASSO_RAMP_CONTROL_LAST_LSB           0u
+#define PASSO_RAMP_CONTROL_LAST_BITS          1u
+#define PASSO_RAMP_CONTROL_NOW_LSB            1u
+#define PASSO_RAMP_CONTROL_NOW_BITS           1u
+#define PASSO_RAMP_CONTROL_MIRROR_LSB         2u
+#define PASSO_RAMP_CONTROL_MIRROR_BITS        1u
+#define PASSO_RAMP_CONTROL_SHAPE_LSB          4u
+#define PASSO_RAMP_CONTROL_SHAPE_BITS         2u
+#define PASSO_RAMP_CONTROL_VELOCITY_HIGH_LSB  16u
+#define PASSO_RAMP_CONTROL_VELOCITY_HIGH_BITS 16u
+
 /* Core: Identification. Reads as ASCII PASO. */
 #define PASSO_ADDRESS_IDENTIFICATION 0x000u
 #define PASSO_IDENTIFICATION_LSB     0u
@@ -311,6 +372,14 @@ enum passo_cause {
 	PASSO_CAUSE_LINE_UNDERRUN = 3, /* A line ended, was not LAST, and none followed. */
 	PASSO_CAUSE_RAMP_UNDERRUN = 4, /* The ramps ran out at speed. */
 	PASSO_CAUSE_STEP_OVERRUN  = 5  /* Steps came faster than the pin timing of an axis allows. */
+};
+
+/* How a ramp leads the velocity: s for a progress u, both 0 .. 1. */
+enum passo_shape {
+	PASSO_SHAPE_LINEAR  = 0, /* s = u, no table. */
+	PASSO_SHAPE_COSINE  = 1, /* (1 - cos(pi u)) / 2. */
+	PASSO_SHAPE_SIGMOID = 2, /* Logistic function over -5 .. 5, scaled to begin at 0 and end at 1. */
+	PASSO_SHAPE_EASE    = 3  /* u^2. */
 };
 
 #endif

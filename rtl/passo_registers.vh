@@ -5,6 +5,67 @@
 // Each module uses its share of these.
 /* verilator lint_off UNUSEDPARAM */
 
+// Word: Header. First word of a request.
+localparam HEADER_ADDRESS_LSB    = 0;
+localparam HEADER_ADDRESS_BITS   = 12;
+localparam HEADER_LENGTH_LSB     = 12;
+localparam HEADER_LENGTH_BITS    = 8;
+localparam HEADER_SEQUENCE_LSB   = 20;
+localparam HEADER_SEQUENCE_BITS  = 8;
+localparam HEADER_OPERATION_LSB  = 28;
+localparam HEADER_OPERATION_BITS = 4;
+
+// Word: Ack. Last word of the reply to a write or push, and to a read that was refused.
+localparam ACK_NOT_VERDICT_LSB   = 0;
+localparam ACK_NOT_VERDICT_BITS  = 8;
+localparam ACK_NOT_SEQUENCE_LSB  = 8;
+localparam ACK_NOT_SEQUENCE_BITS = 8;
+localparam ACK_VERDICT_LSB       = 16;
+localparam ACK_VERDICT_BITS      = 8;
+localparam ACK_SEQUENCE_LSB      = 24;
+localparam ACK_SEQUENCE_BITS     = 8;
+
+// Word: Status. What stands in a reply before the ack or the data, as it was when chip select fell.
+localparam STATUS_RAMP_ROOM_LSB     = 0;
+localparam STATUS_RAMP_ROOM_BITS    = 8;
+localparam STATUS_LINE_ROOM_LSB     = 8;
+localparam STATUS_LINE_ROOM_BITS    = 8;
+localparam STATUS_SEQUENCE_LSB      = 16;
+localparam STATUS_SEQUENCE_BITS     = 8;
+localparam STATUS_CHANNEL_LSB       = 24;
+localparam STATUS_CHANNEL_BITS      = 3;
+localparam STATUS_ZERO_LSB          = 27;
+localparam STATUS_ZERO_BITS         = 1;
+localparam STATUS_ZERO_RESET        = 1'h0;
+localparam STATUS_ANY_OCCUPIED_LSB  = 28;
+localparam STATUS_ANY_OCCUPIED_BITS = 1;
+localparam STATUS_ANY_STOPPED_LSB   = 29;
+localparam STATUS_ANY_STOPPED_BITS  = 1;
+localparam STATUS_MARKER_LSB        = 30;
+localparam STATUS_MARKER_BITS       = 2;
+localparam STATUS_MARKER_RESET      = 2'h2;
+
+// Word: Line control. First word of a line; then M and N_0 .. N_{AXES-1}.
+localparam LINE_CONTROL_LAST_LSB        = 0;
+localparam LINE_CONTROL_LAST_BITS       = 1;
+localparam LINE_CONTROL_ENDLESS_LSB     = 1;
+localparam LINE_CONTROL_ENDLESS_BITS    = 1;
+localparam LINE_CONTROL_DIRECTIONS_LSB  = 8;
+localparam LINE_CONTROL_DIRECTIONS_BITS = 8;
+
+// Word: Ramp control. First word of a ramp; then the lower bits of v_end, T, and the progress step in two
+// words.
+localparam RAMP_CONTROL_LAST_LSB           = 0;
+localparam RAMP_CONTROL_LAST_BITS          = 1;
+localparam RAMP_CONTROL_NOW_LSB            = 1;
+localparam RAMP_CONTROL_NOW_BITS           = 1;
+localparam RAMP_CONTROL_MIRROR_LSB         = 2;
+localparam RAMP_CONTROL_MIRROR_BITS        = 1;
+localparam RAMP_CONTROL_SHAPE_LSB          = 4;
+localparam RAMP_CONTROL_SHAPE_BITS         = 2;
+localparam RAMP_CONTROL_VELOCITY_HIGH_LSB  = 16;
+localparam RAMP_CONTROL_VELOCITY_HIGH_BITS = 16;
+
 // Core: Identification. Reads as ASCII PASO.
 localparam ADDRESS_IDENTIFICATION = 12'h000;
 localparam IDENTIFICATION_LSB     = 0;
@@ -303,5 +364,11 @@ localparam CAUSE_ABORT         = 3'd2; // COMMAND.ABORT.
 localparam CAUSE_LINE_UNDERRUN = 3'd3; // A line ended, was not LAST, and none followed.
 localparam CAUSE_RAMP_UNDERRUN = 3'd4; // The ramps ran out at speed.
 localparam CAUSE_STEP_OVERRUN  = 3'd5; // Steps came faster than the pin timing of an axis allows.
+
+// How a ramp leads the velocity: s for a progress u, both 0 .. 1.
+localparam SHAPE_LINEAR  = 2'd0; // s = u, no table.
+localparam SHAPE_COSINE  = 2'd1; // (1 - cos(pi u)) / 2.
+localparam SHAPE_SIGMOID = 2'd2; // Logistic function over -5 .. 5, scaled to begin at 0 and end at 1.
+localparam SHAPE_EASE    = 2'd3; // u^2.
 
 /* verilator lint_on UNUSEDPARAM */

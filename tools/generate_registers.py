@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Generate the register definitions of RTL, C and Python and their documentation from registers/passo.rdl.
+"""Generate the definitions of registers and words of RTL, C and Python and their documentation.
+
+Their source is registers/passo.rdl.
 
 Names are the same in all languages; C puts PASSO_ in front:
 
@@ -11,6 +13,10 @@ Names are the same in all languages; C puts PASSO_ in front:
     CHANNEL_ROOM_..._LSB    the same for the field of a channel's register
     RUN_DEFINED             the bits of a register that may be written
     VERDICT_OK              an enumeration's value; Verdict.OK in Python
+    HEADER_SEQUENCE_LSB     the field of a word that is no register
+
+Each register of several fields, and each word, also has a struct passo_<name> with passo_pack_<name>() and
+passo_unpack_<name>() in C, and a class with pack() and unpack() in Python.
 
 A field that is alone in its register and has its name does not repeat it: CHANNEL_RATE_TARGET_LSB.
 """
@@ -19,7 +25,7 @@ import argparse
 import re
 import sys
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
@@ -38,6 +44,7 @@ ENUMS = {
     "verdict": (4, "What became of a frame."),
     "state": (3, "What a channel does."),
     "cause": (3, "Why a channel stopped."),
+    "shape": (2, "How a ramp leads the velocity: s for a progress u, both 0 .. 1."),
 }
 
 
@@ -171,16 +178,37 @@ def read_block(node: AddressableNode, name: str) -> Block:
     )
 
 
-def read_source() -> tuple[Block, list[Enum]]:
-    """Compile the source; return the core and the enumerations."""
+@dataclass(frozen=True)
+class Source:
+    """What is in the source: the registers, the words that are none, the enumerations."""
+
+    core: Block
+    words: tuple[Register, ...]
+    enums: tuple[Enum, ...]
+
+    def layouts(self) -> Iterator[tuple[str, Register]]:
+        """Name and fields of all that is packed: each word, and each register of several fields."""
+        for word in self.words:
+            yield word.name, word
+        for block in self.core.walk():
+            for register in block.registers:
+                if len(register.fields) > 1:
+                    yield block.field_prefix + register.name, register
+
+
+def read_source() -> Source:
+    """Compile the source."""
     compiler = RDLCompiler()
     compiler.compile_file(str(ROOT / SOURCE))
-    core = read_block(compiler.elaborate().top, "CORE")
+    words = read_block(compiler.elaborate(top_def_name="words").top, "WORDS")
+    compiler = RDLCompiler()
+    compiler.compile_file(str(ROOT / SOURCE))
+    core = read_block(compiler.elaborate(top_def_name="passo").top, "CORE")
     enums = []
     for name, (bits, text) in ENUMS.items():
         members = compiler.namespace.lookup_type(f"{name}_e")
         enums.append(Enum(name, bits, text, tuple((m.name, m.value, m.rdl_desc) for m in members)))
-    return core, enums
+    return Source(core, words.registers, tuple(enums))
 
 
 # --- From plain data to constants -----------------------------------------------------------------
@@ -199,11 +227,7 @@ def register_constants(block: Block, register: Register) -> Iterator[Constant]:
     else:
         yield Constant(address, register.word, block.address_bits)
     for field in register.fields:
-        name = field_name(block, register, field)
-        yield Constant(f"{name}_LSB", field.lsb)
-        yield Constant(f"{name}_BITS", field.bits)
-        if field.reset is not None:
-            yield Constant(f"{name}_RESET", field.reset, field.bits)
+        yield from field_constants(field_name(block, register, field), field)
     if register.defined:
         yield Constant(f"{block.field_prefix}{register.name}_DEFINED", register.defined, 32)
 
@@ -215,9 +239,20 @@ def block_constants(outer: Block, block: Block) -> Iterator[Constant]:
     yield Constant(f"{name}_STRIDE", block.stride, outer.address_bits)
 
 
-def constant_groups(core: Block) -> list[tuple[str, list[Constant]]]:
+def field_constants(name: str, field: Field) -> Iterator[Constant]:
+    yield Constant(f"{name}_LSB", field.lsb)
+    yield Constant(f"{name}_BITS", field.bits)
+    if field.reset is not None:
+        yield Constant(f"{name}_RESET", field.reset, field.bits)
+
+
+def constant_groups(source: Source) -> list[tuple[str, list[Constant]]]:
     """All constants in groups, each with a comment."""
+    core = source.core
     groups = []
+    for word in source.words:
+        fields = [field_constants(f"{word.name}_{field.name}", field) for field in word.fields]
+        groups.append((f"Word: {word.title}. {word.text}", [c for constants in fields for c in constants]))
     for block in core.walk():
         level = block.name.capitalize()
         for register in block.registers:
@@ -241,7 +276,7 @@ def aligned(rows: list[tuple[str, ...]]) -> list[str]:
     return [" ".join(map(str.ljust, row, widths)).rstrip() for row in rows]
 
 
-def write_verilog(core: Block, enums: list[Enum]) -> str:
+def write_verilog(source: Source) -> str:
     lines = [
         "// SPDX-License-Identifier: MIT",
         f"// {GENERATED}",
@@ -250,11 +285,11 @@ def write_verilog(core: Block, enums: list[Enum]) -> str:
         "// Each module uses its share of these.",
         "/* verilator lint_off UNUSEDPARAM */",
     ]
-    for comment, constants in constant_groups(core):
+    for comment, constants in constant_groups(source):
         lines += ["", *(f"// {line}" for line in wrap(comment, 105))]
         rows = [(f"localparam {c.name}", "= " + c.literal(f"{c.bits}'h") + ";") for c in constants]
         lines += aligned(rows)
-    for enum in enums:
+    for enum in source.enums:
         lines += ["", f"// {enum.text}"]
         rows = [
             (f"localparam {enum.name.upper()}_{name}", f"= {enum.bits}'d{value};", f"// {text}")
@@ -264,7 +299,7 @@ def write_verilog(core: Block, enums: list[Enum]) -> str:
     return "\n".join([*lines, "", "/* verilator lint_on UNUSEDPARAM */", ""])
 
 
-def write_c(core: Block, enums: list[Enum]) -> str:
+def write_c(source: Source) -> str:
     lines = [
         "/* SPDX-License-Identifier: MIT",
         f" * {GENERATED}",
@@ -274,10 +309,10 @@ def write_c(core: Block, enums: list[Enum]) -> str:
         "#ifndef PASSO_REGISTERS_H",
         "#define PASSO_REGISTERS_H",
     ]
-    for comment, constants in constant_groups(core):
+    for comment, constants in constant_groups(source):
         lines += ["", "/* " + "\n * ".join(wrap(comment, 105)) + " */"]
         lines += aligned([(f"#define PASSO_{c.name}", c.literal("0x") + "u") for c in constants])
-    for enum in enums:
+    for enum in source.enums:
         last = enum.members[-1]
         rows = [
             (f"PASSO_{enum.name.upper()}_{m[0]}", f"= {m[1]}{',' if m != last else ''}", f"/* {m[2]} */")
@@ -288,13 +323,77 @@ def write_c(core: Block, enums: list[Enum]) -> str:
     return "\n".join([*lines, "", "#endif", ""])
 
 
+def c_type(field: Field) -> str:
+    if field.enum:
+        return f"enum passo_{field.enum}"
+    if field.bits == 1:
+        return "bool"
+    return f"uint{next(bits for bits in (8, 16, 32) if bits >= field.bits)}_t"
+
+
+def c_layout(name: str, register: Register) -> list[str]:
+    """A struct of the fields of a word, and the functions between it and the word."""
+    name, struct = name.lower(), f"struct passo_{name.lower()}"
+    fields = list(reversed(register.fields))
+    rows = [(c_type(f), f"{f.name.lower()};", f"/* {f.text} */") for f in fields]
+    packed, unpacked = [], []
+    for f in fields:
+        member, mask = f.name.lower(), f"0x{(1 << f.bits) - 1:X}u"
+        place = f"(uint32_t)word->{member} & {mask}"
+        packed.append(f"({place}) << {f.lsb}" if f.lsb else f"({place})")
+        value = f"(word >> {f.lsb} & {mask})" if f.lsb else f"(word & {mask})"
+        value = f"{value} != 0u" if f.bits == 1 else f"({c_type(f)}){value}"
+        unpacked.append(f"\t    .{member} = {value},")
+    return [
+        "",
+        f"/* {register.title}. {register.text} */",
+        f"{struct} {{",
+        *(f"\t{row}" for row in aligned(rows)),
+        "};",
+        "",
+        f"static inline uint32_t passo_pack_{name}(const {struct} *word)",
+        "{",
+        "\treturn " + "\n\t     | ".join(packed) + ";",
+        "}",
+        "",
+        f"static inline {struct} passo_unpack_{name}(uint32_t word)",
+        "{",
+        f"\treturn ({struct}){{",
+        *unpacked,
+        "\t};",
+        "}",
+    ]
+
+
+def write_c_words(source: Source) -> str:
+    lines = [
+        "/* SPDX-License-Identifier: MIT",
+        f" * {GENERATED}",
+        " *",
+        " * The fields of words: what a frame has beside its payload, what is pushed, some registers.",
+        " * What does not fit into a field is cut off.",
+        " */",
+        "#ifndef PASSO_WORDS_H",
+        "#define PASSO_WORDS_H",
+        "",
+        "#include <stdbool.h>",
+        "#include <stdint.h>",
+        "",
+        '#include "passo_registers.h"',
+    ]
+    for name, register in source.layouts():
+        lines += c_layout(name, register)
+    return "\n".join([*lines, "", "#endif", ""])
+
+
 PYTHON_HEAD = f"""\
 # SPDX-License-Identifier: MIT
 # {GENERATED}
 \"\"\"Registers of Passo: word addresses, fields, reset values, enumerations.\"\"\"
 
+from dataclasses import dataclass
 from enum import IntEnum
-from typing import Self
+from typing import ClassVar, Self
 
 
 class _DescribedEnum(IntEnum):
@@ -307,15 +406,68 @@ class _DescribedEnum(IntEnum):
         member._value_ = value
         member.description = description
         return member
+
+
+class _Word:
+    \"\"\"A word by its fields; PLACES has the lowest bit, the width and the type of each.\"\"\"
+
+    PLACES: ClassVar[dict[str, tuple[int, int, type]]]
+
+    def pack(self) -> int:
+        \"\"\"The word. ValueError if a field is too large.\"\"\"
+        word = 0
+        for name, (lsb, bits, _) in self.PLACES.items():
+            value = int(getattr(self, name))
+            if value >> bits:
+                raise ValueError(f"{{type(self).__name__}}.{{name}}: {{value}} has more than {{bits}} bits")
+            word |= value << lsb
+        return word
+
+    @classmethod
+    def unpack(cls, word: int) -> Self:
+        \"\"\"The fields of a word. ValueError if an enumeration has no such value.\"\"\"
+        return cls(
+            **{{name: kind(word >> lsb & (1 << bits) - 1) for name, (lsb, bits, kind) in cls.PLACES.items()}}
+        )
 """
 
 
-def write_python(core: Block, enums: list[Enum]) -> str:
-    lines = [PYTHON_HEAD]
+def python_type(field: Field) -> str:
+    return field.enum.capitalize() if field.enum else "bool" if field.bits == 1 else "int"
+
+
+def python_default(field: Field, enums: Sequence[Enum]) -> str:
+    """The reset value as a default, if there is one."""
+    if field.reset is None:
+        return ""
     for enum in enums:
+        if enum.name == field.enum:
+            (name,) = (name for name, value, _ in enum.members if value == field.reset)
+            return f" = {python_type(field)}.{name}"
+    return f" = {bool(field.reset) if field.bits == 1 else field.reset}"
+
+
+def python_layout(name: str, register: Register, enums: Sequence[Enum]) -> list[str]:
+    """A class of the fields of a word; those with a reset value need not be given."""
+    fields = sorted(reversed(register.fields), key=lambda field: field.reset is not None)
+    lines = ["", "@dataclass(frozen=True)", f"class {name.title().replace('_', '')}Word(_Word):"]
+    lines += [f'    """{register.title}."""', ""]
+    for field in fields:
+        lines += [f"    # {line}" for line in wrap(field.text, 104)]
+        lines.append(f"    {field.name.lower()}: {python_type(field)}{python_default(field, enums)}")
+    lines += ["", "    PLACES: ClassVar = {"]
+    lines += [f'        "{f.name.lower()}": ({f.lsb}, {f.bits}, {python_type(f)}),' for f in register.fields]
+    return [*lines, "    }", ""]
+
+
+def write_python(source: Source) -> str:
+    lines = [PYTHON_HEAD]
+    for enum in source.enums:
         lines += ["", f"class {enum.name.capitalize()}(_DescribedEnum):", f'    """{enum.text}"""', ""]
         lines += [f'    {name} = {value}, "{text}"' for name, value, text in enum.members] + [""]
-    for comment, constants in constant_groups(core):
+    for name, register in source.layouts():
+        lines += python_layout(name, register, source.enums)
+    for comment, constants in constant_groups(source):
         lines += ["", *(f"# {line}" for line in wrap(comment, 105))]
         lines += [f"{c.name} = {c.literal('0x')}" for c in constants]
     return "\n".join([*lines, ""])
@@ -348,8 +500,9 @@ def field_row(field: Field, enums: list[Enum]) -> list[str]:
     return [bits, f"`{field.name}`", ACCESS[field.access], reset, meaning]
 
 
-def write_markdown(core: Block, enums: list[Enum]) -> str:
+def write_markdown(source: Source) -> str:
     """The same for people: an overview, then every field, then the enumerations."""
+    core, enums = source.core, list(source.enums)
     overview, details = [], []
     for block in core.walk():
         level = block.name.lower()
@@ -372,6 +525,17 @@ def write_markdown(core: Block, enums: list[Enum]) -> str:
             details += table(["bits", "field", "access", "reset", "meaning"], field_rows)
         where = "address" if block is core else "offset"
         overview += table([where, "register", "access", "what it is"], rows)
+    details += [
+        "",
+        "## Words",
+        "",
+        "What a frame has beside its payload, and the first words of what is pushed.",
+    ]
+    for word in source.words:
+        details += ["", f"### {word.title}", "", word.text]
+        rows = [field_row(field, enums) for field in reversed(word.fields)]
+        rows = [[bits, name, meaning] for bits, name, _, _, meaning in rows]
+        details += table(["bits", "field", "meaning"], rows)
     for enum in enums:
         details += ["", f"## {enum.name.capitalize()}s", "", enum.text]
         rows = [[f"{value}", f"`{name}`", text] for name, value, text in enum.members]
@@ -392,6 +556,7 @@ def write_markdown(core: Block, enums: list[Enum]) -> str:
 OUTPUTS = {
     "rtl/passo_registers.vh": write_verilog,
     "c_model/passo_registers.h": write_c,
+    "c_model/passo_words.h": write_c_words,
     "sim/passo/registers.py": write_python,
     "docs/registers.md": write_markdown,
 }
@@ -402,10 +567,10 @@ def main() -> int:
     parser.add_argument("--check", action="store_true", help="only tell which files are not up to date")
     check = parser.parse_args().check
 
-    core, enums = read_source()
+    source = read_source()
     stale = []
     for name, write in OUTPUTS.items():
-        path, text = ROOT / name, write(core, enums)
+        path, text = ROOT / name, write(source)
         if path.exists() and path.read_text(encoding="utf-8") == text:
             continue
         stale.append(name)

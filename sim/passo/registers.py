@@ -2,8 +2,9 @@
 # Generated from registers/passo.rdl by tools/generate_registers.py.
 """Registers of Passo: word addresses, fields, reset values, enumerations."""
 
+from dataclasses import dataclass
 from enum import IntEnum
-from typing import Self
+from typing import ClassVar, Self
 
 
 class _DescribedEnum(IntEnum):
@@ -16,6 +17,29 @@ class _DescribedEnum(IntEnum):
         member._value_ = value
         member.description = description
         return member
+
+
+class _Word:
+    """A word by its fields; PLACES has the lowest bit, the width and the type of each."""
+
+    PLACES: ClassVar[dict[str, tuple[int, int, type]]]
+
+    def pack(self) -> int:
+        """The word. ValueError if a field is too large."""
+        word = 0
+        for name, (lsb, bits, _) in self.PLACES.items():
+            value = int(getattr(self, name))
+            if value >> bits:
+                raise ValueError(f"{type(self).__name__}.{name}: {value} has more than {bits} bits")
+            word |= value << lsb
+        return word
+
+    @classmethod
+    def unpack(cls, word: int) -> Self:
+        """The fields of a word. ValueError if an enumeration has no such value."""
+        return cls(
+            **{name: kind(word >> lsb & (1 << bits) - 1) for name, (lsb, bits, kind) in cls.PLACES.items()}
+        )
 
 
 class Operation(_DescribedEnum):
@@ -63,6 +87,409 @@ class Cause(_DescribedEnum):
     RAMP_UNDERRUN = 4, "The ramps ran out at speed."
     STEP_OVERRUN = 5, "Steps came faster than the pin timing of an axis allows."
 
+
+class Shape(_DescribedEnum):
+    """How a ramp leads the velocity: s for a progress u, both 0 .. 1."""
+
+    LINEAR = 0, "s = u, no table."
+    COSINE = 1, "(1 - cos(pi u)) / 2."
+    SIGMOID = 2, "Logistic function over -5 .. 5, scaled to begin at 0 and end at 1."
+    EASE = 3, "u^2."
+
+
+@dataclass(frozen=True)
+class HeaderWord(_Word):
+    """Header."""
+
+    # What the frame asks for.
+    operation: Operation
+    # Differs from that of the write or push before it.
+    sequence: int
+    # Words of payload or data, 1 .. 60.
+    length: int
+    # Address of the first register.
+    address: int
+
+    PLACES: ClassVar = {
+        "address": (0, 12, int),
+        "length": (12, 8, int),
+        "sequence": (20, 8, int),
+        "operation": (28, 4, Operation),
+    }
+
+
+@dataclass(frozen=True)
+class AckWord(_Word):
+    """Ack."""
+
+    # That of the request.
+    sequence: int
+    # What became of the frame.
+    verdict: Verdict
+    # The same, inverted.
+    not_sequence: int
+    # The same, inverted.
+    not_verdict: int
+
+    PLACES: ClassVar = {
+        "not_verdict": (0, 8, int),
+        "not_sequence": (8, 8, int),
+        "verdict": (16, 8, Verdict),
+        "sequence": (24, 8, int),
+    }
+
+
+@dataclass(frozen=True)
+class StatusWord(_Word):
+    """Status."""
+
+    # Some channel is STOPPED.
+    any_stopped: bool
+    # Some channel prepares or makes a motion.
+    any_occupied: bool
+    # RUN.STATUS_CHANNEL: the channel whose room follows.
+    channel: int
+    # Of the last write or push that was executed.
+    sequence: int
+    # Free places for lines, 255 = 255 or more.
+    line_room: int
+    # Free places for ramps, 255 = 255 or more.
+    ramp_room: int
+    # Always 2.
+    marker: int = 2
+    # Always 0.
+    zero: bool = False
+
+    PLACES: ClassVar = {
+        "ramp_room": (0, 8, int),
+        "line_room": (8, 8, int),
+        "sequence": (16, 8, int),
+        "channel": (24, 3, int),
+        "zero": (27, 1, bool),
+        "any_occupied": (28, 1, bool),
+        "any_stopped": (29, 1, bool),
+        "marker": (30, 2, int),
+    }
+
+
+@dataclass(frozen=True)
+class LineControlWord(_Word):
+    """Line control."""
+
+    # Axis i counts down: bit i.
+    directions: int
+    # Begin anew until the motion ends.
+    endless: bool
+    # The path may end here.
+    last: bool
+
+    PLACES: ClassVar = {
+        "last": (0, 1, bool),
+        "endless": (1, 1, bool),
+        "directions": (8, 8, int),
+    }
+
+
+@dataclass(frozen=True)
+class RampControlWord(_Word):
+    """Ramp control."""
+
+    # v_end, UQ0.48, bits 47:32.
+    velocity_high: int
+    # How the velocity goes.
+    shape: Shape
+    # 1 - shape(1 - u) instead of shape(u).
+    mirror: bool
+    # Drop the ramps before it, begin at the present velocity.
+    now: bool
+    # The profile ends with this ramp.
+    last: bool
+
+    PLACES: ClassVar = {
+        "last": (0, 1, bool),
+        "now": (1, 1, bool),
+        "mirror": (2, 1, bool),
+        "shape": (4, 2, Shape),
+        "velocity_high": (16, 16, int),
+    }
+
+
+@dataclass(frozen=True)
+class VersionWord(_Word):
+    """Version."""
+
+    # Major.
+    major: int = 0
+    # Minor.
+    minor: int = 1
+    # Patch.
+    patch: int = 0
+
+    PLACES: ClassVar = {
+        "patch": (0, 8, int),
+        "minor": (8, 8, int),
+        "major": (16, 8, int),
+    }
+
+
+@dataclass(frozen=True)
+class ParametersWord(_Word):
+    """Parameters."""
+
+    # RAMP_QUEUE_LOG2.
+    ramp_queue_log2: int
+    # LINE_QUEUE_LOG2.
+    line_queue_log2: int
+    # TICK_LOG2.
+    tick_log2: int
+    # AXES per channel.
+    axes: int
+    # CHANNELS.
+    channels: int
+
+    PLACES: ClassVar = {
+        "channels": (0, 4, int),
+        "axes": (4, 4, int),
+        "tick_log2": (8, 5, int),
+        "line_queue_log2": (16, 5, int),
+        "ramp_queue_log2": (24, 5, int),
+    }
+
+
+@dataclass(frozen=True)
+class RunWord(_Word):
+    """Run."""
+
+    # Channel whose queue room stands in the status word.
+    status_channel: int = 0
+    # A prepared motion stays ARMED until a rising edge of the sync input, or until this bit is cleared.
+    wait_sync: int = 0
+    # Channel may start motions. Clearing it lets a running motion finish.
+    run: int = 0
+
+    PLACES: ClassVar = {
+        "run": (0, 8, int),
+        "wait_sync": (8, 8, int),
+        "status_channel": (16, 3, int),
+    }
+
+
+@dataclass(frozen=True)
+class Refusals0Word(_Word):
+    """Refusals 0."""
+
+    # UNKNOWN_ADDRESS.
+    unknown_address: int = 0
+    # BAD_OPERATION.
+    bad_operation: int = 0
+    # BAD_LENGTH.
+    bad_length: int = 0
+    # BAD_CRC.
+    bad_crc: int = 0
+
+    PLACES: ClassVar = {
+        "bad_crc": (0, 8, int),
+        "bad_length": (8, 8, int),
+        "bad_operation": (16, 8, int),
+        "unknown_address": (24, 8, int),
+    }
+
+
+@dataclass(frozen=True)
+class Refusals1Word(_Word):
+    """Refusals 1."""
+
+    # BAD_VALUE.
+    bad_value: int = 0
+    # BUSY.
+    busy: int = 0
+    # QUEUE_FULL.
+    queue_full: int = 0
+    # READ_ONLY.
+    read_only: int = 0
+
+    PLACES: ClassVar = {
+        "read_only": (0, 8, int),
+        "queue_full": (8, 8, int),
+        "busy": (16, 8, int),
+        "bad_value": (24, 8, int),
+    }
+
+
+@dataclass(frozen=True)
+class ChannelCommandWord(_Word):
+    """Command."""
+
+    # Set the positions of the channel's axes to 0. Refused with BUSY unless the channel is quiet.
+    zero: bool = False
+    # Clear cause and lost steps and leave STOPPED. Refused with BUSY while a motion runs.
+    clear: bool = False
+    # Hard stop: STOPPED at once, waiting steps dropped, no new pulse begins.
+    abort: bool = False
+    # Soft stop: rate to 0 by STOP_SLEW, then STOPPED. In IDLE, PREPARE and ARMED: STOPPED at once.
+    stop: bool = False
+
+    PLACES: ClassVar = {
+        "stop": (0, 1, bool),
+        "abort": (1, 1, bool),
+        "clear": (2, 1, bool),
+        "zero": (3, 1, bool),
+    }
+
+
+@dataclass(frozen=True)
+class ChannelStateWord(_Word):
+    """State."""
+
+    # Substeps drained since reset; wraps.
+    drained: int = 0
+    # Axes that had a STEP_OVERRUN.
+    overrun: int = 0
+    # A soft stop is under way.
+    stopping: bool = False
+    # Why it stopped.
+    cause: Cause = Cause.NONE
+    # Quiet: no motion is prepared or runs, and no step waits or is shaped at any axis.
+    quiet: bool = True
+    # State of the motion.
+    state: State = State.IDLE
+
+    PLACES: ClassVar = {
+        "state": (0, 3, State),
+        "quiet": (3, 1, bool),
+        "cause": (4, 3, Cause),
+        "stopping": (7, 1, bool),
+        "overrun": (8, 8, int),
+        "drained": (16, 16, int),
+    }
+
+
+@dataclass(frozen=True)
+class ChannelRoomWord(_Word):
+    """Room."""
+
+    # Lines.
+    line_room: int
+    # Ramps.
+    ramp_room: int
+
+    PLACES: ClassVar = {
+        "ramp_room": (0, 16, int),
+        "line_room": (16, 16, int),
+    }
+
+
+@dataclass(frozen=True)
+class AxisPinsWord(_Word):
+    """Pins."""
+
+    # 1: every edge of STEP is a step.
+    both_edges: bool = False
+    # 1: EN is active low. From configuration on: parameter ENABLE_RESET.
+    enable_inverted: bool = False
+    # 1: DIR is high for the positive direction. From configuration on: parameter DIR_RESET.
+    direction_inverted: bool = False
+    # 1: STEP is active low. From configuration on: parameter STEP_RESET.
+    step_inverted: bool = False
+
+    PLACES: ClassVar = {
+        "step_inverted": (1, 1, bool),
+        "direction_inverted": (2, 1, bool),
+        "enable_inverted": (3, 1, bool),
+        "both_edges": (4, 1, bool),
+    }
+
+
+@dataclass(frozen=True)
+class AxisStepTimingWord(_Word):
+    """STEP timing."""
+
+    # How long STEP stays active.
+    step_high: int = 1
+    # How long STEP stays inactive at least.
+    step_low: int = 1
+
+    PLACES: ClassVar = {
+        "step_low": (0, 16, int),
+        "step_high": (16, 16, int),
+    }
+
+
+@dataclass(frozen=True)
+class AxisDirTimingWord(_Word):
+    """DIR timing."""
+
+    # DIR change to the next active edge of STEP.
+    dir_setup: int = 1
+    # End of step_low to the next change of DIR.
+    dir_hold: int = 1
+
+    PLACES: ClassVar = {
+        "dir_hold": (0, 16, int),
+        "dir_setup": (16, 16, int),
+    }
+
+
+# Word: Header. First word of a request.
+HEADER_ADDRESS_LSB = 0
+HEADER_ADDRESS_BITS = 12
+HEADER_LENGTH_LSB = 12
+HEADER_LENGTH_BITS = 8
+HEADER_SEQUENCE_LSB = 20
+HEADER_SEQUENCE_BITS = 8
+HEADER_OPERATION_LSB = 28
+HEADER_OPERATION_BITS = 4
+
+# Word: Ack. Last word of the reply to a write or push, and to a read that was refused.
+ACK_NOT_VERDICT_LSB = 0
+ACK_NOT_VERDICT_BITS = 8
+ACK_NOT_SEQUENCE_LSB = 8
+ACK_NOT_SEQUENCE_BITS = 8
+ACK_VERDICT_LSB = 16
+ACK_VERDICT_BITS = 8
+ACK_SEQUENCE_LSB = 24
+ACK_SEQUENCE_BITS = 8
+
+# Word: Status. What stands in a reply before the ack or the data, as it was when chip select fell.
+STATUS_RAMP_ROOM_LSB = 0
+STATUS_RAMP_ROOM_BITS = 8
+STATUS_LINE_ROOM_LSB = 8
+STATUS_LINE_ROOM_BITS = 8
+STATUS_SEQUENCE_LSB = 16
+STATUS_SEQUENCE_BITS = 8
+STATUS_CHANNEL_LSB = 24
+STATUS_CHANNEL_BITS = 3
+STATUS_ZERO_LSB = 27
+STATUS_ZERO_BITS = 1
+STATUS_ZERO_RESET = 0x0
+STATUS_ANY_OCCUPIED_LSB = 28
+STATUS_ANY_OCCUPIED_BITS = 1
+STATUS_ANY_STOPPED_LSB = 29
+STATUS_ANY_STOPPED_BITS = 1
+STATUS_MARKER_LSB = 30
+STATUS_MARKER_BITS = 2
+STATUS_MARKER_RESET = 0x2
+
+# Word: Line control. First word of a line; then M and N_0 .. N_{AXES-1}.
+LINE_CONTROL_LAST_LSB = 0
+LINE_CONTROL_LAST_BITS = 1
+LINE_CONTROL_ENDLESS_LSB = 1
+LINE_CONTROL_ENDLESS_BITS = 1
+LINE_CONTROL_DIRECTIONS_LSB = 8
+LINE_CONTROL_DIRECTIONS_BITS = 8
+
+# Word: Ramp control. First word of a ramp; then the lower bits of v_end, T, and the progress step in two
+# words.
+RAMP_CONTROL_LAST_LSB = 0
+RAMP_CONTROL_LAST_BITS = 1
+RAMP_CONTROL_NOW_LSB = 1
+RAMP_CONTROL_NOW_BITS = 1
+RAMP_CONTROL_MIRROR_LSB = 2
+RAMP_CONTROL_MIRROR_BITS = 1
+RAMP_CONTROL_SHAPE_LSB = 4
+RAMP_CONTROL_SHAPE_BITS = 2
+RAMP_CONTROL_VELOCITY_HIGH_LSB = 16
+RAMP_CONTROL_VELOCITY_HIGH_BITS = 16
 
 # Core: Identification. Reads as ASCII PASO.
 ADDRESS_IDENTIFICATION = 0x000

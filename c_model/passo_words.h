@@ -1,0 +1,428 @@
+/* SPDX-License-Identifier: MIT
+ * Generated from registers/passo.rdl by tools/generate_registers.py.
+ *
+ * The fields of words: what a frame has beside its payload, what is pushed, some registers.
+ * What does not fit into a field is cut off.
+ */
+#ifndef PASSO_WORDS_H
+#define PASSO_WORDS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "passo_registers.h"
+
+/* Header. First word of a request. */
+struct passo_header {
+	enum passo_operation operation; /* What the frame asks for. */
+	uint8_t              sequence;  /* Differs from that of the write or push before it. */
+	uint8_t              length;    /* Words of payload or data, 1 .. 60. */
+	uint16_t             address;   /* Address of the first register. */
+};
+
+static inline uint32_t passo_pack_header(const struct passo_header *word)
+{
+	return ((uint32_t)word->operation & 0xFu) << 28
+	     | ((uint32_t)word->sequence & 0xFFu) << 20
+	     | ((uint32_t)word->length & 0xFFu) << 12
+	     | ((uint32_t)word->address & 0xFFFu);
+}
+
+static inline struct passo_header passo_unpack_header(uint32_t word)
+{
+	return (struct passo_header){
+	    .operation = (enum passo_operation)(word >> 28 & 0xFu),
+	    .sequence = (uint8_t)(word >> 20 & 0xFFu),
+	    .length = (uint8_t)(word >> 12 & 0xFFu),
+	    .address = (uint16_t)(word & 0xFFFu),
+	};
+}
+
+/* Ack. Last word of the reply to a write or push, and to a read that was refused. */
+struct passo_ack {
+	uint8_t            sequence;     /* That of the request. */
+	enum passo_verdict verdict;      /* What became of the frame. */
+	uint8_t            not_sequence; /* The same, inverted. */
+	uint8_t            not_verdict;  /* The same, inverted. */
+};
+
+static inline uint32_t passo_pack_ack(const struct passo_ack *word)
+{
+	return ((uint32_t)word->sequence & 0xFFu) << 24
+	     | ((uint32_t)word->verdict & 0xFFu) << 16
+	     | ((uint32_t)word->not_sequence & 0xFFu) << 8
+	     | ((uint32_t)word->not_verdict & 0xFFu);
+}
+
+static inline struct passo_ack passo_unpack_ack(uint32_t word)
+{
+	return (struct passo_ack){
+	    .sequence = (uint8_t)(word >> 24 & 0xFFu),
+	    .verdict = (enum passo_verdict)(word >> 16 & 0xFFu),
+	    .not_sequence = (uint8_t)(word >> 8 & 0xFFu),
+	    .not_verdict = (uint8_t)(word & 0xFFu),
+	};
+}
+
+/* Status. What stands in a reply before the ack or the data, as it was when chip select fell. */
+struct passo_status {
+	uint8_t marker;       /* Always 2. */
+	bool    any_stopped;  /* Some channel is STOPPED. */
+	bool    any_occupied; /* Some channel prepares or makes a motion. */
+	bool    zero;         /* Always 0. */
+	uint8_t channel;      /* RUN.STATUS_CHANNEL: the channel whose room follows. */
+	uint8_t sequence;     /* Of the last write or push that was executed. */
+	uint8_t line_room;    /* Free places for lines, 255 = 255 or more. */
+	uint8_t ramp_room;    /* Free places for ramps, 255 = 255 or more. */
+};
+
+static inline uint32_t passo_pack_status(const struct passo_status *word)
+{
+	return ((uint32_t)word->marker & 0x3u) << 30
+	     | ((uint32_t)word->any_stopped & 0x1u) << 29
+	     | ((uint32_t)word->any_occupied & 0x1u) << 28
+	     | ((uint32_t)word->zero & 0x1u) << 27
+	     | ((uint32_t)word->channel & 0x7u) << 24
+	     | ((uint32_t)word->sequence & 0xFFu) << 16
+	     | ((uint32_t)word->line_room & 0xFFu) << 8
+	     | ((uint32_t)word->ramp_room & 0xFFu);
+}
+
+static inline struct passo_status passo_unpack_status(uint32_t word)
+{
+	return (struct passo_status){
+	    .marker = (uint8_t)(word >> 30 & 0x3u),
+	    .any_stopped = (word >> 29 & 0x1u) != 0u,
+	    .any_occupied = (word >> 28 & 0x1u) != 0u,
+	    .zero = (word >> 27 & 0x1u) != 0u,
+	    .channel = (uint8_t)(word >> 24 & 0x7u),
+	    .sequence = (uint8_t)(word >> 16 & 0xFFu),
+	    .line_room = (uint8_t)(word >> 8 & 0xFFu),
+	    .ramp_room = (uint8_t)(word & 0xFFu),
+	};
+}
+
+/* Line control. First word of a line; then M and N_0 .. N_{AXES-1}. */
+struct passo_line_control {
+	uint8_t directions; /* Axis i counts down: bit i. */
+	bool    endless;    /* Begin anew until the motion ends. */
+	bool    last;       /* The path may end here. */
+};
+
+static inline uint32_t passo_pack_line_control(const struct passo_line_control *word)
+{
+	return ((uint32_t)word->directions & 0xFFu) << 8
+	     | ((uint32_t)word->endless & 0x1u) << 1
+	     | ((uint32_t)word->last & 0x1u);
+}
+
+static inline struct passo_line_control passo_unpack_line_control(uint32_t word)
+{
+	return (struct passo_line_control){
+	    .directions = (uint8_t)(word >> 8 & 0xFFu),
+	    .endless = (word >> 1 & 0x1u) != 0u,
+	    .last = (word & 0x1u) != 0u,
+	};
+}
+
+/* Ramp control. First word of a ramp; then the lower bits of v_end, T, and the progress step in two words. */
+struct passo_ramp_control {
+	uint16_t         velocity_high; /* v_end, UQ0.48, bits 47:32. */
+	enum passo_shape shape;         /* How the velocity goes. */
+	bool             mirror;        /* 1 - shape(1 - u) instead of shape(u). */
+	bool             now;           /* Drop the ramps before it, begin at the present velocity. */
+	bool             last;          /* The profile ends with this ramp. */
+};
+
+static inline uint32_t passo_pack_ramp_control(const struct passo_ramp_control *word)
+{
+	return ((uint32_t)word->velocity_high & 0xFFFFu) << 16
+	     | ((uint32_t)word->shape & 0x3u) << 4
+	     | ((uint32_t)word->mirror & 0x1u) << 2
+	     | ((uint32_t)word->now & 0x1u) << 1
+	     | ((uint32_t)word->last & 0x1u);
+}
+
+static inline struct passo_ramp_control passo_unpack_ramp_control(uint32_t word)
+{
+	return (struct passo_ramp_control){
+	    .velocity_high = (uint16_t)(word >> 16 & 0xFFFFu),
+	    .shape = (enum passo_shape)(word >> 4 & 0x3u),
+	    .mirror = (word >> 2 & 0x1u) != 0u,
+	    .now = (word >> 1 & 0x1u) != 0u,
+	    .last = (word & 0x1u) != 0u,
+	};
+}
+
+/* Version. Version of the register map and the link. */
+struct passo_version {
+	uint8_t major; /* Major. */
+	uint8_t minor; /* Minor. */
+	uint8_t patch; /* Patch. */
+};
+
+static inline uint32_t passo_pack_version(const struct passo_version *word)
+{
+	return ((uint32_t)word->major & 0xFFu) << 16
+	     | ((uint32_t)word->minor & 0xFFu) << 8
+	     | ((uint32_t)word->patch & 0xFFu);
+}
+
+static inline struct passo_version passo_unpack_version(uint32_t word)
+{
+	return (struct passo_version){
+	    .major = (uint8_t)(word >> 16 & 0xFFu),
+	    .minor = (uint8_t)(word >> 8 & 0xFFu),
+	    .patch = (uint8_t)(word & 0xFFu),
+	};
+}
+
+/* Parameters. How the core was built. */
+struct passo_parameters {
+	uint8_t ramp_queue_log2; /* RAMP_QUEUE_LOG2. */
+	uint8_t line_queue_log2; /* LINE_QUEUE_LOG2. */
+	uint8_t tick_log2;       /* TICK_LOG2. */
+	uint8_t axes;            /* AXES per channel. */
+	uint8_t channels;        /* CHANNELS. */
+};
+
+static inline uint32_t passo_pack_parameters(const struct passo_parameters *word)
+{
+	return ((uint32_t)word->ramp_queue_log2 & 0x1Fu) << 24
+	     | ((uint32_t)word->line_queue_log2 & 0x1Fu) << 16
+	     | ((uint32_t)word->tick_log2 & 0x1Fu) << 8
+	     | ((uint32_t)word->axes & 0xFu) << 4
+	     | ((uint32_t)word->channels & 0xFu);
+}
+
+static inline struct passo_parameters passo_unpack_parameters(uint32_t word)
+{
+	return (struct passo_parameters){
+	    .ramp_queue_log2 = (uint8_t)(word >> 24 & 0x1Fu),
+	    .line_queue_log2 = (uint8_t)(word >> 16 & 0x1Fu),
+	    .tick_log2 = (uint8_t)(word >> 8 & 0x1Fu),
+	    .axes = (uint8_t)(word >> 4 & 0xFu),
+	    .channels = (uint8_t)(word & 0xFu),
+	};
+}
+
+/* Run. One bit per channel, all in one register: channels that are ARMED start on the same clock when one write clears their WAIT_SYNC. */
+struct passo_run {
+	uint8_t status_channel; /* Channel whose queue room stands in the status word. */
+	uint8_t wait_sync;      /* A prepared motion stays ARMED until a rising edge of the sync input, or until this bit is cleared. */
+	uint8_t run;            /* Channel may start motions. Clearing it lets a running motion finish. */
+};
+
+static inline uint32_t passo_pack_run(const struct passo_run *word)
+{
+	return ((uint32_t)word->status_channel & 0x7u) << 16
+	     | ((uint32_t)word->wait_sync & 0xFFu) << 8
+	     | ((uint32_t)word->run & 0xFFu);
+}
+
+static inline struct passo_run passo_unpack_run(uint32_t word)
+{
+	return (struct passo_run){
+	    .status_channel = (uint8_t)(word >> 16 & 0x7u),
+	    .wait_sync = (uint8_t)(word >> 8 & 0xFFu),
+	    .run = (uint8_t)(word & 0xFFu),
+	};
+}
+
+/* Refusals 0. Counters of refused frames; they wrap. */
+struct passo_refusals_0 {
+	uint8_t unknown_address; /* UNKNOWN_ADDRESS. */
+	uint8_t bad_operation;   /* BAD_OPERATION. */
+	uint8_t bad_length;      /* BAD_LENGTH. */
+	uint8_t bad_crc;         /* BAD_CRC. */
+};
+
+static inline uint32_t passo_pack_refusals_0(const struct passo_refusals_0 *word)
+{
+	return ((uint32_t)word->unknown_address & 0xFFu) << 24
+	     | ((uint32_t)word->bad_operation & 0xFFu) << 16
+	     | ((uint32_t)word->bad_length & 0xFFu) << 8
+	     | ((uint32_t)word->bad_crc & 0xFFu);
+}
+
+static inline struct passo_refusals_0 passo_unpack_refusals_0(uint32_t word)
+{
+	return (struct passo_refusals_0){
+	    .unknown_address = (uint8_t)(word >> 24 & 0xFFu),
+	    .bad_operation = (uint8_t)(word >> 16 & 0xFFu),
+	    .bad_length = (uint8_t)(word >> 8 & 0xFFu),
+	    .bad_crc = (uint8_t)(word & 0xFFu),
+	};
+}
+
+/* Refusals 1. Counters of refused frames; they wrap. */
+struct passo_refusals_1 {
+	uint8_t bad_value;  /* BAD_VALUE. */
+	uint8_t busy;       /* BUSY. */
+	uint8_t queue_full; /* QUEUE_FULL. */
+	uint8_t read_only;  /* READ_ONLY. */
+};
+
+static inline uint32_t passo_pack_refusals_1(const struct passo_refusals_1 *word)
+{
+	return ((uint32_t)word->bad_value & 0xFFu) << 24
+	     | ((uint32_t)word->busy & 0xFFu) << 16
+	     | ((uint32_t)word->queue_full & 0xFFu) << 8
+	     | ((uint32_t)word->read_only & 0xFFu);
+}
+
+static inline struct passo_refusals_1 passo_unpack_refusals_1(uint32_t word)
+{
+	return (struct passo_refusals_1){
+	    .bad_value = (uint8_t)(word >> 24 & 0xFFu),
+	    .busy = (uint8_t)(word >> 16 & 0xFFu),
+	    .queue_full = (uint8_t)(word >> 8 & 0xFFu),
+	    .read_only = (uint8_t)(word & 0xFFu),
+	};
+}
+
+/* Command. Each bit written as 1 is done once. With STOP or ABORT, CLEAR and ZERO in the same word are ignored; ABORT wins over STOP. */
+struct passo_channel_command {
+	bool zero;  /* Set the positions of the channel's axes to 0. Refused with BUSY unless the channel is quiet. */
+	bool clear; /* Clear cause and lost steps and leave STOPPED. Refused with BUSY while a motion runs. */
+	bool abort; /* Hard stop: STOPPED at once, waiting steps dropped, no new pulse begins. */
+	bool stop;  /* Soft stop: rate to 0 by STOP_SLEW, then STOPPED. In IDLE, PREPARE and ARMED: STOPPED at once. */
+};
+
+static inline uint32_t passo_pack_channel_command(const struct passo_channel_command *word)
+{
+	return ((uint32_t)word->zero & 0x1u) << 3
+	     | ((uint32_t)word->clear & 0x1u) << 2
+	     | ((uint32_t)word->abort & 0x1u) << 1
+	     | ((uint32_t)word->stop & 0x1u);
+}
+
+static inline struct passo_channel_command passo_unpack_channel_command(uint32_t word)
+{
+	return (struct passo_channel_command){
+	    .zero = (word >> 3 & 0x1u) != 0u,
+	    .clear = (word >> 2 & 0x1u) != 0u,
+	    .abort = (word >> 1 & 0x1u) != 0u,
+	    .stop = (word & 0x1u) != 0u,
+	};
+}
+
+/* State. What the channel does now. */
+struct passo_channel_state {
+	uint16_t         drained;  /* Substeps drained since reset; wraps. */
+	uint8_t          overrun;  /* Axes that had a STEP_OVERRUN. */
+	bool             stopping; /* A soft stop is under way. */
+	enum passo_cause cause;    /* Why it stopped. */
+	bool             quiet;    /* Quiet: no motion is prepared or runs, and no step waits or is shaped at any axis. */
+	enum passo_state state;    /* State of the motion. */
+};
+
+static inline uint32_t passo_pack_channel_state(const struct passo_channel_state *word)
+{
+	return ((uint32_t)word->drained & 0xFFFFu) << 16
+	     | ((uint32_t)word->overrun & 0xFFu) << 8
+	     | ((uint32_t)word->stopping & 0x1u) << 7
+	     | ((uint32_t)word->cause & 0x7u) << 4
+	     | ((uint32_t)word->quiet & 0x1u) << 3
+	     | ((uint32_t)word->state & 0x7u);
+}
+
+static inline struct passo_channel_state passo_unpack_channel_state(uint32_t word)
+{
+	return (struct passo_channel_state){
+	    .drained = (uint16_t)(word >> 16 & 0xFFFFu),
+	    .overrun = (uint8_t)(word >> 8 & 0xFFu),
+	    .stopping = (word >> 7 & 0x1u) != 0u,
+	    .cause = (enum passo_cause)(word >> 4 & 0x7u),
+	    .quiet = (word >> 3 & 0x1u) != 0u,
+	    .state = (enum passo_state)(word & 0x7u),
+	};
+}
+
+/* Room. Free places in the queues. A push counts from the moment its frame is accepted. */
+struct passo_channel_room {
+	uint16_t line_room; /* Lines. */
+	uint16_t ramp_room; /* Ramps. */
+};
+
+static inline uint32_t passo_pack_channel_room(const struct passo_channel_room *word)
+{
+	return ((uint32_t)word->line_room & 0xFFFFu) << 16
+	     | ((uint32_t)word->ramp_room & 0xFFFFu);
+}
+
+static inline struct passo_channel_room passo_unpack_channel_room(uint32_t word)
+{
+	return (struct passo_channel_room){
+	    .line_room = (uint16_t)(word >> 16 & 0xFFFFu),
+	    .ramp_room = (uint16_t)(word & 0xFFFFu),
+	};
+}
+
+/* Pins. Polarities and step mode. Refused with BUSY unless the channel is quiet. The next step waits for the low time, the DIR hold and the DIR set-up from here on. Kept over a reset of the core. */
+struct passo_axis_pins {
+	bool both_edges;         /* 1: every edge of STEP is a step. */
+	bool enable_inverted;    /* 1: EN is active low. From configuration on: parameter ENABLE_RESET. */
+	bool direction_inverted; /* 1: DIR is high for the positive direction. From configuration on: parameter DIR_RESET. */
+	bool step_inverted;      /* 1: STEP is active low. From configuration on: parameter STEP_RESET. */
+};
+
+static inline uint32_t passo_pack_axis_pins(const struct passo_axis_pins *word)
+{
+	return ((uint32_t)word->both_edges & 0x1u) << 4
+	     | ((uint32_t)word->enable_inverted & 0x1u) << 3
+	     | ((uint32_t)word->direction_inverted & 0x1u) << 2
+	     | ((uint32_t)word->step_inverted & 0x1u) << 1;
+}
+
+static inline struct passo_axis_pins passo_unpack_axis_pins(uint32_t word)
+{
+	return (struct passo_axis_pins){
+	    .both_edges = (word >> 4 & 0x1u) != 0u,
+	    .enable_inverted = (word >> 3 & 0x1u) != 0u,
+	    .direction_inverted = (word >> 2 & 0x1u) != 0u,
+	    .step_inverted = (word >> 1 & 0x1u) != 0u,
+	};
+}
+
+/* STEP timing. Clocks, 1 .. 65535; 0 counts as 1. Kept over a reset of the core. */
+struct passo_axis_step_timing {
+	uint16_t step_high; /* How long STEP stays active. */
+	uint16_t step_low;  /* How long STEP stays inactive at least. */
+};
+
+static inline uint32_t passo_pack_axis_step_timing(const struct passo_axis_step_timing *word)
+{
+	return ((uint32_t)word->step_high & 0xFFFFu) << 16
+	     | ((uint32_t)word->step_low & 0xFFFFu);
+}
+
+static inline struct passo_axis_step_timing passo_unpack_axis_step_timing(uint32_t word)
+{
+	return (struct passo_axis_step_timing){
+	    .step_high = (uint16_t)(word >> 16 & 0xFFFFu),
+	    .step_low = (uint16_t)(word & 0xFFFFu),
+	};
+}
+
+/* DIR timing. Clocks, 1 .. 65535; 0 counts as 1. Kept over a reset of the core. */
+struct passo_axis_dir_timing {
+	uint16_t dir_setup; /* DIR change to the next active edge of STEP. */
+	uint16_t dir_hold;  /* End of step_low to the next change of DIR. */
+};
+
+static inline uint32_t passo_pack_axis_dir_timing(const struct passo_axis_dir_timing *word)
+{
+	return ((uint32_t)word->dir_setup & 0xFFFFu) << 16
+	     | ((uint32_t)word->dir_hold & 0xFFFFu);
+}
+
+static inline struct passo_axis_dir_timing passo_unpack_axis_dir_timing(uint32_t word)
+{
+	return (struct passo_axis_dir_timing){
+	    .dir_setup = (uint16_t)(word >> 16 & 0xFFFFu),
+	    .dir_hold = (uint16_t)(word & 0xFFFFu),
+	};
+}
+
+#endif
