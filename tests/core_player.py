@@ -17,7 +17,7 @@ from passo.toolchain import environment, paths
 
 HERE = Path(__file__).parent
 HEADERS = [
-    *(paths.c_model / f"passo_{name}.h" for name in ("command", "registers", "model", "core")),
+    *(paths.c_model / f"passo_{name}.h" for name in ("registers", "command", "model", "core")),
     HERE / "core_player.h",
 ]
 HOST = ("passo_plan", "passo_math", "passo_frame")  # the part of c_model/ that is not the model

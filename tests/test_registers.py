@@ -19,8 +19,8 @@ SOURCE = "registers/passo.rdl"
 GENERATOR = "tools/generate_registers.py"
 VERILOG = "rtl/passo_registers.vh"
 C = "c_model/passo_registers.h"
-OUTPUTS = [VERILOG, C, "sim/passo/registers.py", "docs/registers.md"]
-ENUMS = [registers.Operation, registers.Verdict, registers.State, registers.Cause]
+OUTPUTS = [VERILOG, C, "c_model/passo_words.h", "sim/passo/registers.py", "docs/registers.md"]
+ENUMS = [registers.Operation, registers.Verdict, registers.State, registers.Cause, registers.Shape]
 
 
 def read(name: str) -> str:

@@ -13,8 +13,8 @@ from passo.build import ENGINE, console_library, cpu_library, planner_library
 from passo.toolchain import environment, paths
 
 HEADERS = (
-    paths.c_model / "passo_command.h",
     paths.c_model / "passo_registers.h",
+    paths.c_model / "passo_command.h",
     paths.c_model / "passo_plan.h",
     paths.c_model / "passo_frame.h",
     paths.driver / "passo_error.h",
