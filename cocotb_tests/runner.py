@@ -33,6 +33,8 @@ COVERAGE_VARIABLE = "PASSO_COVERAGE"
 _BUILD = paths.build / "cocotb"
 _TOPS = paths.cocotb_tests / "tops"
 CORE_TOP = "passo_core_top"
+DOORS = ("passo_wishbone", "passo_axi_lite")
+WHOLE_CORES = (CORE_TOP, *DOORS)
 
 
 def seed() -> int:
@@ -187,7 +189,7 @@ class _Verilator(Verilator):
     def _build_command(self) -> list[list[str]]:
         """Put what is there between Verilator's makefile, which it has to be newer than, and make."""
         verilate, make = super()._build_command()
-        if self.hdl_toplevel == CORE_TOP and "coverage" not in self.build_dir.name:
+        if self.hdl_toplevel in WHOLE_CORES and "coverage" not in self.build_dir.name:
             # Only the pins are to be seen from outside: what is inside takes long to compile, that of a
             # netlist an hour.
             verilate = [part for part in verilate if part != "--public-flat-rw"]

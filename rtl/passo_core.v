@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Passo: a step-pulse generator. SPI in, STEP/DIR out, CHANNELS independent groups of AXES coordinated axes.
-// Wiring, and what the channels share: the sync input and the slew tick.
+// Passo: a step-pulse generator behind a front door. Frames in, STEP/DIR out, CHANNELS independent groups of
+// AXES coordinated axes. Wiring, and what the channels share: the sync input and the slew tick.
 //
-// Clock: clk at least four times SCLK. Reset: rst synchronous, active high.
+// The front door brings the words of a frame in halves of 16 bits and takes the words of the reply: passo_spi over
+// SPI, passo_words for a bus in the same FPGA. Instantiate a top: passo_spi_top, passo_wishbone, passo_axi_lite.
+//
+// Reset: rst synchronous, active high.
 // Latency: a rising edge of `sync` starts the armed channels 4 clocks later.
 `resetall
 `timescale 1ns / 1ps
@@ -22,12 +25,13 @@ module passo_core #(
 ) (
   input  wire                     clk,
   input  wire                     rst,
-  // SPI, mode 0
-  input  wire                     spi_sclk,
-  input  wire                     spi_mosi,
-  input  wire                     spi_cs_n,
-  output wire                     spi_miso,
-  output wire                     spi_miso_enable,  // drive the pin
+  // front door
+  input  wire                     frame_start,  // strobes
+  input  wire                     frame_end,
+  input  wire                     half_valid,
+  input  wire                     half_low,     // it is the lower half of a word
+  input  wire [             15:0] half,
+  output wire [             31:0] reply_word,
   // start of several chips on one edge
   input  wire                     sync,
   // drives: bit channel * AXES + axis
@@ -36,7 +40,7 @@ module passo_core #(
   output wire [CHANNELS*AXES-1:0] enable,
   // to the host
   output wire [     CHANNELS-1:0] running,
-  output reg                      irq               // some channel is stopped
+  output reg                      irq           // some channel is stopped
 );
 
   `include "passo_registers.vh"
@@ -59,16 +63,8 @@ module passo_core #(
     end
   endgenerate
 
-  // link
-  wire        frame_start;
-  wire        frame_end;
-  wire        half_valid;
-  wire        half_low;
-  wire [15:0] half;
-  wire [31:0] reply_word;
-  wire [ 7:0] last_sequence;
-
   // bus
+  wire [ 7:0] last_sequence;
   wire        bus_frame;
   wire        bus_commit;
   wire        bus_check;
@@ -110,9 +106,7 @@ module passo_core #(
   wire [                            15:0] table_point;
   wire [                            15:0] table_point_next;
 
-  assign spi_miso_enable = ~spi_cs_n;
-
-  // Whoever is not meant answers 0.
+  // Unselected targets drive 0.
   integer i;
   always @* begin
     bus_claim   = registers_claim | tables_claim | (channel_claim != {CHANNELS{1'b0}});
@@ -149,20 +143,6 @@ module passo_core #(
       irq          <= 1'b0;
     end
   end
-
-  passo_spi u_spi (
-    .clk        (clk),
-    .spi_sclk   (spi_sclk),
-    .spi_mosi   (spi_mosi),
-    .spi_cs_n   (spi_cs_n),
-    .spi_miso   (spi_miso),
-    .frame_start(frame_start),
-    .frame_end  (frame_end),
-    .half_valid (half_valid),
-    .half_low   (half_low),
-    .half       (half),
-    .reply_word (reply_word)
-  );
 
   passo_link u_link (
     .clk           (clk),

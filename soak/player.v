@@ -39,7 +39,7 @@ module soak_player #(
   reg irq_wanted, miso_wanted;
   reg same;
 
-  passo_core #(
+  passo_spi_top #(
     .CHANNELS       (CHANNELS),
     .AXES           (AXES),
     .TICK_LOG2      (TICK_LOG2),

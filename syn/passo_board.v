@@ -60,7 +60,7 @@ module passo_board #(
 
   assign heartbeat = beat[BEATS-1];
 
-  passo_core #(
+  passo_spi_top #(
     .CHANNELS      (CHANNELS),
     .AXES          (AXES),
     .STEPS_REGISTER(STEPS_REGISTER),

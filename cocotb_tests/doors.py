@@ -1,0 +1,314 @@
+# SPDX-License-Identifier: MIT
+"""A front door for a CPU in the same FPGA, behind a bus master that others have written.
+
+The judges are the driver library, which believes no reply that is not right; the C model behind its SPI pins,
+which gives the same replies to the same frames and makes the same pulses; and the rules of passo_words.
+"""
+
+import functools
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+from typing import Any, Protocol
+
+import cocotb
+import numpy as np
+from cocotb.handle import HierarchyObject
+from cocotb.triggers import RisingEdge, Timer
+from cocotbext.axi import AxiLiteBus, AxiLiteMaster, AxiResp
+from cocotbext.wishbone.driver import WBOp, WishboneMaster
+from passo.build import Parameters
+from passo.driver import Driver
+from passo.engine import Engine, model_engine
+from passo.native import ffi
+from passo.registers import Operation
+
+from cocotb_tests import core_frames as frames
+from cocotb_tests.bench import PERIOD, Clocks, Recorder, begin, patience, read, rng
+from cocotb_tests.core_thread import Thread
+
+PARAMETERS = Parameters(1, 2, 7, 5, 4)
+CLOCK_HZ = 10_000_000  # of plans
+SELECT, WORD = 0, 4  # addresses
+WAIT = 128  # clocks after a word or a change of SELECT
+ALL_LANES = 0xF
+Q32 = 1 << 32
+MOVES = ((30, -17), (-5, 0), (1, 40), (-26, -23))
+
+
+class Bus(Protocol):
+    """What a CPU can do; both return None instead of what they should if the access is an error."""
+
+    async def read(self, address: int) -> int | None:
+        """Read a register."""
+
+    async def write(self, address: int, value: int, lanes: int = ALL_LANES) -> bool | None:
+        """Write bytes of a register."""
+
+
+class Wishbone:
+    """Classic cycles."""
+
+    INPUTS = ("wb_cyc_i", "wb_stb_i", "wb_we_i", "wb_adr_i")  # before the master takes them over
+
+    def __init__(self, dut: HierarchyObject):
+        names = ("cyc", "stb", "we", "adr", "sel", "ack", "err")
+        signals = {n: f"{n}_{'o' if n in ('ack', 'err') else 'i'}" for n in names}
+        signals |= {"datwr": "dat_i", "datrd": "dat_o"}
+        self._master = WishboneMaster(dut, "wb", dut.clk, signals_dict=signals, timeout=4 * WAIT)
+
+    async def _access(self, operation: WBOp) -> int | None:
+        (result,) = await self._master.send_cycle([operation])
+        return result.datrd.to_unsigned() if result.ack == 1 else None
+
+    async def read(self, address: int) -> int | None:
+        return await self._access(WBOp(address))
+
+    async def write(self, address: int, value: int, lanes: int = ALL_LANES) -> bool | None:
+        return None if await self._access(WBOp(address, value, sel=lanes)) is None else True
+
+
+class AxiLite:
+    """Address and data of a write come in the order that the master chooses."""
+
+    INPUTS = ()
+
+    def __init__(self, dut: HierarchyObject):
+        self._master = AxiLiteMaster(AxiLiteBus.from_prefix(dut, "s_axil"), dut.clk, dut.rst)
+
+    async def read(self, address: int) -> int | None:
+        answer = await self._master.read(address, 4)
+        return int.from_bytes(answer.data, "little") if answer.resp == AxiResp.OKAY else None
+
+    async def write(self, address: int, value: int, lanes: int = ALL_LANES) -> bool | None:
+        # bytes that follow each other: the master has no other way to say which
+        first = (lanes & -lanes).bit_length() - 1
+        data = value.to_bytes(4, "little")[first : first + lanes.bit_count()]
+        answer = await self._master.write(address + first, data)
+        return True if answer.resp == AxiResp.OKAY else None
+
+
+class Door:
+    """The core behind its door, as an engine for passo.driver."""
+
+    clock_hz = CLOCK_HZ
+
+    def __init__(self, dut: HierarchyObject, thread: Thread, clocks: Clocks, bus: Bus):
+        self.dut, self.clocks, self.bus = dut, clocks, bus
+        self._thread = thread
+        self.changes = [Recorder(clocks, signal) for signal in (dut.running, dut.step, dut.dir)]
+
+    @property
+    def clock(self) -> int:
+        """Clocks up to now."""
+        return self.clocks.now
+
+    def read(self, address: int) -> int | None:
+        """Read a register; None: error."""
+        return self._thread.wait(self.bus.read(address))
+
+    def write(self, address: int, value: int, lanes: int = ALL_LANES) -> bool | None:
+        """Write a register; None: error."""
+        return self._thread.wait(self.bus.write(address, value, lanes))
+
+    def transfer(self, mosi: Sequence[int], gap: int = frames.GAP) -> list[int]:
+        """One frame, as stm32_bridge/examples/soft_cpu.c exchanges it; then `gap` clocks."""
+        miso = []
+        assert self.write(SELECT, 1)
+        for word in mosi:
+            miso.append(self.read(WORD))
+            assert self.write(WORD, word)
+        assert self.write(SELECT, 0)
+        self.run(gap)
+        return miso
+
+    def run(self, clocks: int) -> int:
+        """Let time pass."""
+        if clocks:
+            self._thread.wait(_wait(clocks))
+        return clocks
+
+    def pulses(self) -> list[tuple[int, int, int]]:
+        """All edges of STEP, as `motion_edges` has them."""
+        return motion_edges([recorder.changes for recorder in self.changes])
+
+
+async def _wait(clocks: int) -> None:
+    await Timer(clocks * PERIOD, "step")
+
+
+def motion_edges(signals: Sequence[Sequence[tuple[int, int]]]) -> list[tuple[int, int, int]]:
+    """Of changes of running, step and dir (clock, level), those of step: (clock in the motion, step, dir)."""
+    running, step, direction = signals
+    made = []
+    for clock, level in step:
+        (began, _) = max((begin, on) for begin, on in running if on and begin <= clock)
+        made.append((clock - began, level, max(((0, 0), *((c, d) for c, d in direction if c <= clock)))[1]))
+    return made
+
+
+def door_test(body: Callable[[Door], None]) -> Any:
+    """Make a cocotb test of plain code."""
+
+    async def test(dut: HierarchyObject) -> None:
+        thread = Thread()
+        master = Wishbone if hasattr(dut, "wb_cyc_i") else AxiLite
+        clocks = await begin(dut, "sync", *master.INPUTS)
+        door = Door(dut, thread, clocks, master(dut))
+        await RisingEdge(dut.clk)
+        await thread.run(lambda: body(door))
+
+    for name in functools.WRAPPER_ASSIGNMENTS:
+        setattr(test, name, getattr(body, name))
+    return cocotb.test(test)
+
+
+def moves() -> Sequence[tuple[int, ...]]:
+    """Steps of the axes."""
+    return MOVES[: patience(verilator=len(MOVES), icarus=1)]
+
+
+def drive(engine: Any) -> list[int]:
+    """Some moves, by the driver library; the positions after them."""
+    driver = Driver(engine, CLOCK_HZ, PARAMETERS)
+    config = {"step_high_ns": 1000, "step_low_ns": 1000, "dir_setup_ns": 500, "dir_hold_ns": 500}
+    for axis in range(PARAMETERS.axes):
+        driver.call("configure_axis", axis, ffi().new("struct passo_axis_config *", config))
+        driver.call("enable", axis, True)
+    for profile, steps in enumerate(moves()):
+        fields = {"speed": 60_000 * Q32, "acceleration": 40_000_000 * Q32, "profile": profile % 3}
+        move = ffi().new("struct passo_move_by_speed *", {"steps": list(steps), **fields})
+        driver.call("move_by_speed", move)
+        driver.wait(1)
+        engine.run(400)  # the last pulse
+    assert driver.counters.retries == 0
+    return driver.positions()
+
+
+@door_test
+def the_driver_moves(door: Door) -> None:
+    """Pulses, on their clocks, and positions are those of the C model behind SPI."""
+    positions = drive(door)
+    assert positions == [sum(steps) for steps in zip(*moves(), strict=True)]
+    assert read(door.dut.enable) == 3
+    with model_engine(PARAMETERS, CLOCK_HZ) as engine:
+        assert drive(engine) == positions
+        expected = engine_edges(engine)
+    made = door.pulses()
+    levels = [0, *(step for _, step, _ in made)]
+    rises = [now & ~before for before, now in pairwise(levels)]
+    pulses = [sum(rise >> axis & 1 for rise in rises) for axis in range(PARAMETERS.axes)]
+    assert pulses == [sum(map(abs, steps)) for steps in zip(*moves(), strict=True)]
+    differ = [pair for pair in zip(made, expected, strict=True) if pair[0] != pair[1]]
+    assert not differ, differ[:4]
+
+
+def engine_edges(engine: Engine) -> list[tuple[int, int, int]]:
+    """`motion_edges` of what an engine has recorded."""
+    events = engine.drain()
+    signals = []
+    for name in ("running", "step", "dir"):
+        levels = events[name]
+        at = np.flatnonzero(levels[1:] != levels[:-1]) + 1
+        signals.append([(int(events["clock"][i]), int(levels[i])) for i in at])
+    return motion_edges(signals)
+
+
+@door_test
+def replies_are_those_over_spi(door: Door) -> None:
+    """Good frames, refused ones, duplicates, frames that are cut short or damaged: word by word."""
+    random = rng("replies_are_those_over_spi")
+    channel = 0x100
+    sent = [
+        frames.request(Operation.READ, 1, 20, 0),
+        frames.request(Operation.WRITE, 2, 1, 0, [0]),
+        frames.request(Operation.PUSH, 3, 4, channel, [0, 5, 1, 2]),
+        frames.request(5, 4, 1, 0, [1]),
+        frames.request(Operation.READ, 5, 61, 0),
+    ]
+    for sequence in range(6, 6 + patience(verilator=20, icarus=5)):
+        operation = random.choice([Operation.READ, Operation.WRITE, Operation.PUSH])
+        address = random.choice([0, 1, channel, channel + 1, channel + 0x20, 0x500])
+        payload = [random.getrandbits(32) for _ in range(random.randrange(1, 9))]
+        words = frames.request(operation, sequence, len(payload), address, payload)
+        if random.random() < 0.2:
+            words[random.randrange(len(words))] ^= 1 << random.randrange(32)
+        sent += [words] if random.random() < 0.8 else [words, words]
+        if random.random() < 0.2:
+            sent.append(words[: random.randrange(1, len(words))])
+    sent.append(frames.request(Operation.READ, 99, 20, 0))
+    gap = 8 * WAIT
+    with model_engine(PARAMETERS, CLOCK_HZ) as engine:
+        for words in sent:
+            assert door.transfer(words, gap) == engine.transfer(words, gap), [hex(word) for word in words]
+
+
+@door_test
+def an_access_waits_for_the_one_before(door: Door) -> None:
+    """For 128 clocks after a word or a change of SELECT, except reading SELECT."""
+    few, enough = 20, WAIT - 20
+
+    def clocks_of(access: Callable[[], object]) -> int:
+        before = door.clock
+        assert access() is not None
+        return door.clock - before
+
+    status = frames.request(Operation.READ, 1, 1, 0)
+    assert clocks_of(lambda: door.write(SELECT, 0)) < few
+    assert clocks_of(lambda: door.write(SELECT, 1)) < few
+    assert clocks_of(lambda: door.read(SELECT)) < few
+    assert door.read(SELECT) == 1
+    assert clocks_of(lambda: door.read(WORD)) > enough - 3 * few
+    assert door.read(SELECT) == 3
+    for word in status:
+        assert clocks_of(lambda word=word: door.write(WORD, word)) < few
+        assert door.read(SELECT) == 1
+        assert clocks_of(lambda: door.read(WORD)) > enough - 2 * few
+        assert clocks_of(lambda: door.read(WORD)) < few
+    assert clocks_of(lambda: door.write(SELECT, 1)) < few
+    assert door.read(SELECT) == 3
+    door.write(WORD, 0)
+    assert clocks_of(lambda: door.write(WORD, 0)) > enough
+    assert clocks_of(lambda: door.write(SELECT, 0)) > enough
+    assert door.read(SELECT) == 0
+
+
+@door_test
+def what_is_an_error(door: Door) -> None:
+    """WORD written while no frame is open, and bytes; they leave no trace."""
+    assert door.write(WORD, 0x12345678) is None
+    assert door.read(SELECT) == 2
+    for lanes in (1, 2, 4, 8, 3, 6, 12, 7, 14):
+        assert door.write(SELECT, 0xFFFFFFFF, lanes) is None
+        assert door.read(SELECT) == 2
+    door.write(SELECT, 1)
+    first = door.read(WORD)
+    for lanes in (1, 3, 7, 14):
+        assert door.write(WORD, 0, lanes) is None
+    assert door.read(WORD) == first
+    door.write(SELECT, 0)
+    # nothing of it came to the core
+    with model_engine(PARAMETERS, CLOCK_HZ) as engine:
+        words = frames.request(Operation.READ, 1, 20, 0)
+        assert door.transfer(words) == engine.transfer(words)
+
+
+@door_test
+def a_reset_closes_the_frame(door: Door) -> None:
+    """In the middle of a word, too."""
+
+    async def reset() -> None:
+        door.dut.rst.value = 1
+        await _wait(3)
+        door.dut.rst.value = 0
+        await _wait(3)
+
+    with model_engine(PARAMETERS, CLOCK_HZ) as engine:
+        words = frames.request(Operation.READ, 1, 20, 0)
+        expected = engine.transfer(words)
+    for clocks in (0, 64, 65, 66, 127, 128)[: patience(verilator=6, icarus=2)]:
+        door.write(SELECT, 1)
+        door.write(WORD, words[0])
+        door.run(clocks)
+        door._thread.wait(reset())
+        assert door.read(SELECT) == 2
+        assert door.transfer(words) == expected

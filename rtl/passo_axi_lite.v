@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+// Passo behind AXI4-Lite: for a CPU in the same FPGA.
+//
+// The two registers of passo_words; what is an error there is answered with SLVERR. One access at a time: a write is
+// taken when its address and its data are there, a read when no write is; each is answered before the next is taken.
+`resetall
+`timescale 1ns / 1ps
+`default_nettype none
+
+module passo_axi_lite #(
+  parameter                     CHANNELS        = 1,  // 1 .. 8
+  parameter                     AXES            = 4,  // per channel, 1 .. 8
+  parameter                     TICK_LOG2       = 7,  // clocks per tick, 7 .. 16
+  parameter                     LINE_QUEUE_LOG2 = 8,  // places for lines, 2 .. 8
+  parameter                     RAMP_QUEUE_LOG2 = 4,  // places for ramps, 2 .. 8
+  parameter                     STEPS_REGISTER  = 0,  // 1: where block RAMs have a register behind their data
+  // levels of the pins from configuration on until the host has spoken; bit channel * AXES + axis
+  parameter [CHANNELS*AXES-1:0] STEP_RESET      = 0,
+  parameter [CHANNELS*AXES-1:0] DIR_RESET       = 0,
+  parameter [CHANNELS*AXES-1:0] ENABLE_RESET    = 0
+) (
+  input  wire                     clk,
+  input  wire                     rst,
+  // AXI4-Lite slave, byte addresses; their lowest bits and the protection do not matter
+  /* verilator lint_off UNUSEDSIGNAL */
+  input  wire [              2:0] s_axil_awaddr,
+  input  wire [              2:0] s_axil_awprot,
+  input  wire                     s_axil_awvalid,
+  output wire                     s_axil_awready,
+  input  wire [             31:0] s_axil_wdata,
+  input  wire [              3:0] s_axil_wstrb,
+  input  wire                     s_axil_wvalid,
+  output wire                     s_axil_wready,
+  output wire [              1:0] s_axil_bresp,
+  output reg                      s_axil_bvalid,
+  input  wire                     s_axil_bready,
+  input  wire [              2:0] s_axil_araddr,
+  input  wire [              2:0] s_axil_arprot,
+  input  wire                     s_axil_arvalid,
+  output wire                     s_axil_arready,
+  output wire [             31:0] s_axil_rdata,
+  output wire [              1:0] s_axil_rresp,
+  output reg                      s_axil_rvalid,
+  input  wire                     s_axil_rready,
+  /* verilator lint_on UNUSEDSIGNAL */
+  // start of several chips on one edge
+  input  wire                     sync,
+  // drives: bit channel * AXES + axis
+  output wire [CHANNELS*AXES-1:0] step,
+  output wire [CHANNELS*AXES-1:0] dir,
+  output wire [CHANNELS*AXES-1:0] enable,
+  // to the host
+  output wire [     CHANNELS-1:0] running,
+  output wire                     irq              // some channel is stopped
+);
+
+  wire        frame_start;
+  wire        frame_end;
+  wire        half_valid;
+  wire        half_low;
+  wire [15:0] half;
+  wire [31:0] reply_word;
+
+  wire done;
+  wire error;
+  wire write = s_axil_awvalid & s_axil_wvalid;
+  reg  write_q;  // which of the two is done
+  wire answering = s_axil_bvalid | s_axil_rvalid;
+
+  assign s_axil_awready = done & write_q;
+  assign s_axil_wready  = done & write_q;
+  assign s_axil_arready = done & ~write_q;
+  assign s_axil_bresp   = {error, 1'b0};
+  assign s_axil_rresp   = {error, 1'b0};
+
+  always @(posedge clk) begin
+    write_q       <= write;
+    s_axil_bvalid <= s_axil_bvalid ? ~s_axil_bready : s_axil_awready;
+    s_axil_rvalid <= s_axil_rvalid ? ~s_axil_rready : s_axil_arready;
+    if (rst) begin
+      s_axil_bvalid <= 1'b0;
+      s_axil_rvalid <= 1'b0;
+    end
+  end
+
+  passo_words u_words (
+    .clk        (clk),
+    .rst        (rst),
+    .request    ((write | s_axil_arvalid) & ~answering),
+    .write      (write),
+    .address    (write ? s_axil_awaddr[2] : s_axil_araddr[2]),
+    .lanes      (write ? s_axil_wstrb : 4'hF),
+    .write_data (s_axil_wdata),
+    .done       (done),
+    .error      (error),
+    .read_data  (s_axil_rdata),
+    .frame_start(frame_start),
+    .frame_end  (frame_end),
+    .half_valid (half_valid),
+    .half_low   (half_low),
+    .half       (half),
+    .reply_word (reply_word)
+  );
+
+  passo_core #(
+    .CHANNELS       (CHANNELS),
+    .AXES           (AXES),
+    .TICK_LOG2      (TICK_LOG2),
+    .LINE_QUEUE_LOG2(LINE_QUEUE_LOG2),
+    .RAMP_QUEUE_LOG2(RAMP_QUEUE_LOG2),
+    .STEPS_REGISTER (STEPS_REGISTER),
+    .STEP_RESET     (STEP_RESET),
+    .DIR_RESET      (DIR_RESET),
+    .ENABLE_RESET   (ENABLE_RESET)
+  ) u_core (
+    .clk        (clk),
+    .rst        (rst),
+    .frame_start(frame_start),
+    .frame_end  (frame_end),
+    .half_valid (half_valid),
+    .half_low   (half_low),
+    .half       (half),
+    .reply_word (reply_word),
+    .sync       (sync),
+    .step       (step),
+    .dir        (dir),
+    .enable     (enable),
+    .running    (running),
+    .irq        (irq)
+  );
+
+endmodule
+`resetall

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// Passo behind SPI: for a microcontroller beside the FPGA.
+//
+// Clock: clk at least four times SCLK. Reset: rst synchronous, active high.
+`resetall
+`timescale 1ns / 1ps
+`default_nettype none
+
+module passo_spi_top #(
+  parameter                     CHANNELS        = 1,  // 1 .. 8
+  parameter                     AXES            = 4,  // per channel, 1 .. 8
+  parameter                     TICK_LOG2       = 7,  // clocks per tick, 7 .. 16
+  parameter                     LINE_QUEUE_LOG2 = 8,  // places for lines, 2 .. 8
+  parameter                     RAMP_QUEUE_LOG2 = 4,  // places for ramps, 2 .. 8
+  parameter                     STEPS_REGISTER  = 0,  // 1: where block RAMs have a register behind their data
+  // levels of the pins from configuration on until the host has spoken; bit channel * AXES + axis
+  parameter [CHANNELS*AXES-1:0] STEP_RESET      = 0,
+  parameter [CHANNELS*AXES-1:0] DIR_RESET       = 0,
+  parameter [CHANNELS*AXES-1:0] ENABLE_RESET    = 0
+) (
+  input  wire                     clk,
+  input  wire                     rst,
+  // SPI, mode 0
+  input  wire                     spi_sclk,
+  input  wire                     spi_mosi,
+  input  wire                     spi_cs_n,
+  output wire                     spi_miso,
+  output wire                     spi_miso_enable,  // drive the pin
+  // start of several chips on one edge
+  input  wire                     sync,
+  // drives: bit channel * AXES + axis
+  output wire [CHANNELS*AXES-1:0] step,
+  output wire [CHANNELS*AXES-1:0] dir,
+  output wire [CHANNELS*AXES-1:0] enable,
+  // to the host
+  output wire [     CHANNELS-1:0] running,
+  output wire                     irq               // some channel is stopped
+);
+
+  wire        frame_start;
+  wire        frame_end;
+  wire        half_valid;
+  wire        half_low;
+  wire [15:0] half;
+  wire [31:0] reply_word;
+
+  assign spi_miso_enable = ~spi_cs_n;
+
+  passo_spi u_spi (
+    .clk        (clk),
+    .spi_sclk   (spi_sclk),
+    .spi_mosi   (spi_mosi),
+    .spi_cs_n   (spi_cs_n),
+    .spi_miso   (spi_miso),
+    .frame_start(frame_start),
+    .frame_end  (frame_end),
+    .half_valid (half_valid),
+    .half_low   (half_low),
+    .half       (half),
+    .reply_word (reply_word)
+  );
+
+  passo_core #(
+    .CHANNELS       (CHANNELS),
+    .AXES           (AXES),
+    .TICK_LOG2      (TICK_LOG2),
+    .LINE_QUEUE_LOG2(LINE_QUEUE_LOG2),
+    .RAMP_QUEUE_LOG2(RAMP_QUEUE_LOG2),
+    .STEPS_REGISTER (STEPS_REGISTER),
+    .STEP_RESET     (STEP_RESET),
+    .DIR_RESET      (DIR_RESET),
+    .ENABLE_RESET   (ENABLE_RESET)
+  ) u_core (
+    .clk        (clk),
+    .rst        (rst),
+    .frame_start(frame_start),
+    .frame_end  (frame_end),
+    .half_valid (half_valid),
+    .half_low   (half_low),
+    .half       (half),
+    .reply_word (reply_word),
+    .sync       (sync),
+    .step       (step),
+    .dir        (dir),
+    .enable     (enable),
+    .running    (running),
+    .irq        (irq)
+  );
+
+endmodule
+`resetall

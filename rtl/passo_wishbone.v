@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+// Passo behind Wishbone B4 (classic cycles, 32 bits): for a CPU in the same FPGA.
+//
+// The two registers of passo_words. A cycle that is an error there ends with ERR. ACK or ERR comes a clock after STB;
+// an access that has to wait for the word before takes up to 128 clocks.
+`resetall
+`timescale 1ns / 1ps
+`default_nettype none
+
+module passo_wishbone #(
+  parameter                     CHANNELS        = 1,  // 1 .. 8
+  parameter                     AXES            = 4,  // per channel, 1 .. 8
+  parameter                     TICK_LOG2       = 7,  // clocks per tick, 7 .. 16
+  parameter                     LINE_QUEUE_LOG2 = 8,  // places for lines, 2 .. 8
+  parameter                     RAMP_QUEUE_LOG2 = 4,  // places for ramps, 2 .. 8
+  parameter                     STEPS_REGISTER  = 0,  // 1: where block RAMs have a register behind their data
+  // levels of the pins from configuration on until the host has spoken; bit channel * AXES + axis
+  parameter [CHANNELS*AXES-1:0] STEP_RESET      = 0,
+  parameter [CHANNELS*AXES-1:0] DIR_RESET       = 0,
+  parameter [CHANNELS*AXES-1:0] ENABLE_RESET    = 0
+) (
+  input  wire                     clk,
+  input  wire                     rst,
+  // Wishbone slave, byte addresses; their lowest bits do not matter
+  /* verilator lint_off UNUSEDSIGNAL */
+  input  wire                     wb_cyc_i,
+  input  wire                     wb_stb_i,
+  input  wire                     wb_we_i,
+  input  wire [              2:0] wb_adr_i,
+  input  wire [              3:0] wb_sel_i,
+  input  wire [             31:0] wb_dat_i,
+  output wire [             31:0] wb_dat_o,
+  output wire                     wb_ack_o,
+  output wire                     wb_err_o,
+  /* verilator lint_on UNUSEDSIGNAL */
+  // start of several chips on one edge
+  input  wire                     sync,
+  // drives: bit channel * AXES + axis
+  output wire [CHANNELS*AXES-1:0] step,
+  output wire [CHANNELS*AXES-1:0] dir,
+  output wire [CHANNELS*AXES-1:0] enable,
+  // to the host
+  output wire [     CHANNELS-1:0] running,
+  output wire                     irq        // some channel is stopped
+);
+
+  wire        frame_start;
+  wire        frame_end;
+  wire        half_valid;
+  wire        half_low;
+  wire [15:0] half;
+  wire [31:0] reply_word;
+
+  wire request = wb_cyc_i & wb_stb_i;
+  wire address = wb_adr_i[2];
+  wire done;
+  wire error;
+
+  assign wb_ack_o = done & ~error;
+  assign wb_err_o = done & error;
+
+  passo_words u_words (
+    .clk        (clk),
+    .rst        (rst),
+    .request    (request),
+    .write      (wb_we_i),
+    .address    (address),
+    .lanes      (wb_sel_i),
+    .write_data (wb_dat_i),
+    .done       (done),
+    .error      (error),
+    .read_data  (wb_dat_o),
+    .frame_start(frame_start),
+    .frame_end  (frame_end),
+    .half_valid (half_valid),
+    .half_low   (half_low),
+    .half       (half),
+    .reply_word (reply_word)
+  );
+
+  passo_core #(
+    .CHANNELS       (CHANNELS),
+    .AXES           (AXES),
+    .TICK_LOG2      (TICK_LOG2),
+    .LINE_QUEUE_LOG2(LINE_QUEUE_LOG2),
+    .RAMP_QUEUE_LOG2(RAMP_QUEUE_LOG2),
+    .STEPS_REGISTER (STEPS_REGISTER),
+    .STEP_RESET     (STEP_RESET),
+    .DIR_RESET      (DIR_RESET),
+    .ENABLE_RESET   (ENABLE_RESET)
+  ) u_core (
+    .clk        (clk),
+    .rst        (rst),
+    .frame_start(frame_start),
+    .frame_end  (frame_end),
+    .half_valid (half_valid),
+    .half_low   (half_low),
+    .half       (half),
+    .reply_word (reply_word),
+    .sync       (sync),
+    .step       (step),
+    .dir        (dir),
+    .enable     (enable),
+    .running    (running),
+    .irq        (irq)
+  );
+
+endmodule
+`resetall
