@@ -178,7 +178,7 @@ static inline struct passo_version passo_unpack_version(uint32_t word)
 }
 
 /* Parameters. How the core was built. */
-struct passo_parameters {
+struct passo_parameters_word {
 	uint8_t ramp_queue_log2; /* RAMP_QUEUE_LOG2. */
 	uint8_t line_queue_log2; /* LINE_QUEUE_LOG2. */
 	uint8_t tick_log2;       /* TICK_LOG2. */
@@ -186,7 +186,7 @@ struct passo_parameters {
 	uint8_t channels;        /* CHANNELS. */
 };
 
-static inline uint32_t passo_pack_parameters(const struct passo_parameters *word)
+static inline uint32_t passo_pack_parameters(const struct passo_parameters_word *word)
 {
 	return ((uint32_t)word->ramp_queue_log2 & 0x1Fu) << 24
 	     | ((uint32_t)word->line_queue_log2 & 0x1Fu) << 16
@@ -195,9 +195,9 @@ static inline uint32_t passo_pack_parameters(const struct passo_parameters *word
 	     | ((uint32_t)word->channels & 0xFu);
 }
 
-static inline struct passo_parameters passo_unpack_parameters(uint32_t word)
+static inline struct passo_parameters_word passo_unpack_parameters(uint32_t word)
 {
-	return (struct passo_parameters){
+	return (struct passo_parameters_word){
 	    .ramp_queue_log2 = (uint8_t)(word >> 24 & 0x1Fu),
 	    .line_queue_log2 = (uint8_t)(word >> 16 & 0x1Fu),
 	    .tick_log2 = (uint8_t)(word >> 8 & 0x1Fu),

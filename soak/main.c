@@ -8,6 +8,7 @@
  * "progress HISTORIES", "failed NUMBER CLOCK TEXT", "count NAME VALUE".
  */
 #include <inttypes.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -59,25 +60,39 @@ static void say(const char *name, uint64_t value)
 	printf("count %s %" PRIu64 "\n", name, value);
 }
 
-static void say_counts(const struct history_counts *counts, uint64_t played)
+/* A count of a struct of counts. */
+struct said {
+	const char *name;
+	size_t offset;
+};
+
+static void say_all(const struct said *table, size_t count, const void *counts, uint64_t played)
 {
 	say("histories", played);
-	say("clocks", counts->clocks);
-	say("frames", counts->frames);
-	say("refused", counts->refused);
-	say("busy", counts->busy);
-	say("aimed", counts->aimed);
-	say("hit", counts->hit);
-	say("steps", counts->judge.steps);
-	say("turns", counts->judge.turns);
-	say("quiets", counts->judge.quiets);
-	say("positions", counts->judge.positions);
-	say("paths", counts->judge.paths);
-	say("aborts", counts->judge.aborts);
-	say("stops", counts->judge.stops);
-	say("gaps", counts->judge.gaps);
-	say("resets", counts->judge.resets);
-	say("gates", counts->judge.gates);
+	for (size_t i = 0; i < count; i++) {
+		uint64_t value;
+
+		memcpy(&value, (const char *)counts + table[i].offset, sizeof value);
+		say(table[i].name, value);
+	}
+}
+
+#define COUNT(table) (sizeof(table) / sizeof(table)[0])
+
+static void say_history(const struct history_counts *counts, uint64_t played)
+{
+#define SAID(member) {#member, offsetof(struct history_counts, member)}
+#define JUDGED(member)                                                                                       \
+	{                                                                                                    \
+		#member, offsetof(struct history_counts, judge.member)                                       \
+	}
+	static const struct said table[] = {SAID(clocks), SAID(frames), SAID(refused), SAID(busy),
+	    SAID(aimed), SAID(hit), JUDGED(steps), JUDGED(turns), JUDGED(quiets), JUDGED(positions),
+	    JUDGED(paths), JUDGED(aborts), JUDGED(stops), JUDGED(gaps), JUDGED(resets), JUDGED(gates)};
+#undef JUDGED
+#undef SAID
+
+	say_all(table, COUNT(table), counts, played);
 	for (unsigned i = 0; i < PLOT_KINDS; i++)
 		printf("count kind:%s %" PRIu64 "\n", plot_kind_name((enum plot_kind)i), counts->kinds[i]);
 	for (unsigned i = 0; i < EVENT_KINDS; i++)
@@ -87,20 +102,17 @@ static void say_counts(const struct history_counts *counts, uint64_t played)
 
 static void say_bridge(const struct bridge_counts *counts, uint64_t played)
 {
-	say("histories", played);
-	say("clocks", counts->clocks);
-	say("frames", counts->frames);
-	say("retries", counts->retries);
-	say("flips", counts->flips);
-	say("lost clocks", counts->lost);
-	say("doubled clocks", counts->doubled);
-	say("cuts", counts->cuts);
-	say("deaths", counts->deaths);
-	say("moves", counts->moves);
-	say("lines", counts->lines);
-	say("stops", counts->stops);
-	say("steps", counts->steps);
-	say("errors", counts->errors);
+#define SAID(name, member)                                                                                   \
+	{                                                                                                    \
+		name, offsetof(struct bridge_counts, member)                                                 \
+	}
+	static const struct said table[] = {SAID("clocks", clocks), SAID("frames", frames),
+	    SAID("retries", retries), SAID("flips", flips), SAID("lost clocks", lost),
+	    SAID("doubled clocks", doubled), SAID("cuts", cuts), SAID("deaths", deaths), SAID("moves", moves),
+	    SAID("lines", lines), SAID("stops", stops), SAID("steps", steps), SAID("errors", errors)};
+#undef SAID
+
+	say_all(table, COUNT(table), counts, played);
 }
 
 int main(int argc, char **argv)
@@ -160,6 +172,6 @@ int main(int argc, char **argv)
 	if (options.driver)
 		say_bridge(&bridged, played);
 	else
-		say_counts(&counts, played);
+		say_history(&counts, played);
 	return failures != 0u;
 }

@@ -82,6 +82,8 @@ struct passo_parameters plot_parameters(unsigned set);
 
 /* Set-up and motions. */
 void plot_begin(struct plot *plot, uint64_t seed, uint64_t number);
+/* One more action, if there is room. */
+void plot_add(struct plot *plot, const struct action *action);
 /* A disturbance; not yet in the list. */
 struct action plot_disturbance(struct plot *plot, enum plot_kind kind);
 enum plot_kind plot_kind(struct plot *plot);

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "address.h"
+
 /* Clocks from the last edge of SCLK to chip select. */
 #define HOLD 3u
 #define ROWS_FIRST 4096u
@@ -438,12 +440,11 @@ static int64_t first_change(uint16_t address, uint32_t value)
 
 bool world_measure(struct world_latency *latency)
 {
-	const uint16_t axis = PASSO_ADDRESS_CHANNEL_BASE + PASSO_CHANNEL_AXIS_BASE;
-
-	latency->pins = first_change(axis + PASSO_AXIS_PINS, 1u << PASSO_AXIS_PINS_STEP_INVERTED_LSB);
-	latency->enable = first_change(axis + PASSO_AXIS_ENABLE, 1u << PASSO_AXIS_ENABLE_LSB);
-	latency->command = first_change(
-	    PASSO_ADDRESS_CHANNEL_BASE + PASSO_CHANNEL_COMMAND, 1u << PASSO_CHANNEL_COMMAND_ABORT_LSB);
+	latency->pins =
+	    first_change(axis_address(0, 0, PASSO_AXIS_PINS), 1u << PASSO_AXIS_PINS_STEP_INVERTED_LSB);
+	latency->enable = first_change(axis_address(0, 0, PASSO_AXIS_ENABLE), 1u << PASSO_AXIS_ENABLE_LSB);
+	latency->command =
+	    first_change(channel_address(0, PASSO_CHANNEL_COMMAND), 1u << PASSO_CHANNEL_COMMAND_ABORT_LSB);
 	latency->check = 40;
 	return latency->pins > 0 && latency->enable > 0 && latency->command > 0;
 }

@@ -637,7 +637,7 @@ static void judge(bool good, const char *what)
 
 static bool is_known(void)
 {
-	return passo->opened && !passo->broken && !passo->halted;
+	return passo->belief == PASSO_BELIEF_READY;
 }
 
 /* The driver believes what the core has. */
@@ -658,14 +658,14 @@ static void judge_beliefs(void)
 		                && memcmp(now.points[bank], after.points[bank], sizeof now.points[bank]) == 0,
 		    "tables");
 	}
-	if (!passo->opened)
+	if (passo->belief == PASSO_BELIEF_NOT_OPEN)
 		return;
 	judge(passo_fault(passo) != PASSO_ERROR_NOT_STOPPED && passo_fault(passo) != PASSO_ERROR_NOT_HELD,
 	    "all is acknowledged");
 	judge((now.run | (uint32_t)now.wait_sync << 8) == (world.host.run & 0xFFFFu), "RUN");
-	judge(passo->halted || passo->broken || !now.stopped, "a stop is known");
-	judge(!passo->halted || passo->broken || now.stopped, "a stop was executed");
-	if (passo->broken)
+	judge(!is_known() || !now.stopped, "a stop is known");
+	judge(passo->belief != PASSO_BELIEF_STOPPED || now.stopped, "a stop was executed");
+	if (passo_driver_is_broken(passo))
 		return; /* nothing is claimed */
 	judge(now.rate_target == passo_driver_rate(passo), "rate");
 	judge(passo_is_moving(passo) == is_busy(), "is moving");
@@ -675,7 +675,7 @@ static void judge_beliefs(void)
 		judge(axis->shortest_clocks == 0u
 		          || axis->shortest_clocks == (uint32_t)(now.times[i][0] + now.times[i][1]),
 		    "pin times");
-		judge(passo_is_moving(passo) || passo->halted
+		judge(passo_is_moving(passo) || passo_driver_is_stopped(passo)
 		          || axis->expected == (int32_t)channel->axis[i].position,
 		    "expected position");
 	}
@@ -701,11 +701,11 @@ static void judge_effect(enum passo_error error, bool is_motion_free)
 		JUDGE(wait_sync);
 		JUDGE(points);
 		/* a stream that could not be fed is stopped */
-		if (!passo->broken)
+		if (!passo_driver_is_broken(passo))
 			JUDGE(stopped);
 	}
 	/* what restrains comes late, what lets go on does not */
-	if (error != PASSO_OK && passo->opened) {
+	if (error != PASSO_OK && passo->belief != PASSO_BELIEF_NOT_OPEN) {
 		judge(
 		    now.rate_target
 		        == (before.rate_target < after.rate_target ? before.rate_target : after.rate_target),
@@ -725,18 +725,18 @@ static void judge_recovery(void)
 	int32_t net[AXES];
 	enum passo_error error = PASSO_OK;
 
-	if (!passo->opened)
+	if (passo->belief == PASSO_BELIEF_NOT_OPEN)
 		error = open_passo();
 	judge(error == PASSO_OK || error == PASSO_ERROR_MOVING, "open again");
-	if (passo->broken || passo->halted) {
+	if (!is_known()) {
 		if (passo_clear(passo) == PASSO_ERROR_MOVING) {
 			judge(passo_stop(passo) == PASSO_OK, "stop");
 			look_long();
 		}
-		judge(passo->broken || passo->halted ? passo_clear(passo) == PASSO_OK : true, "clear");
+		judge(is_known() || passo_clear(passo) == PASSO_OK, "clear");
 	}
 	judge(sync_off() == PASSO_OK && faster() == PASSO_OK && resume() == PASSO_OK, "resume");
-	if (passo->turning_is_on)
+	if (passo_driver_is_turning(passo))
 		passo_turn_stop(passo);
 	if (passo->stream == PASSO_STREAM_FILLS)
 		poll_stream();
@@ -761,7 +761,8 @@ static enum passo_error play(enum passo_error (*call)(void), const struct cut *c
 	world.frames = 0;
 	world.dead = false;
 	enum passo_error error = call();
-	judge(!passo->opened || !is_busy() || passo_is_moving(passo), "what moves is known");
+	judge(passo->belief == PASSO_BELIEF_NOT_OPEN || !is_busy() || passo_is_moving(passo),
+	    "what moves is known");
 	const unsigned frames = world.frames;
 	if (world.dead && cut->death.patience == POLLS)
 		look(DEAD_LOOKS);
@@ -819,8 +820,9 @@ static void play_all(const char *name, void (*prepare)(void), enum passo_error (
 				if (call == stop || call == hard_stop || call == turn_stop)
 					judge(!is_busy(), "it stops");
 				judge_effect(error == wanted ? PASSO_OK : error,
-				    !is_busy() && !begin.passo.turning_is_on && !passo->halted
-				        && !after.stopped && !before.stopped);
+				    !is_busy() && !passo_driver_is_turning(&begin.passo)
+				        && !passo_driver_is_stopped(passo) && !after.stopped
+				        && !before.stopped);
 				judge_recovery();
 				cases++;
 				if (bad)

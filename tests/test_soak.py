@@ -8,23 +8,26 @@ from pathlib import Path
 import pytest
 from passo.build import rtl_library
 from passo.planted import plant
+from passo.toolchain import paths
 
-from soak import run as soak
-from soak.run import Defect
+from soak import defects, parts
+from soak.defects import Defect
+from soak.program import build
+from soak.run import JUDGED
 
 SEED = int(os.environ.get("PASSO_SEED", "1"))
 JOBS = 1  # pytest uses the other cores
 
-DEFECTS = {defect.name: defect for defect in soak.defects()}
+DEFECTS = {defect.name: defect for defect in defects.defects()}
 
 
 @pytest.fixture(scope="module")
 def program() -> Path:
     """What plays histories."""
-    return soak.build()
+    return build()
 
 
-def check(part: soak.Part, histories: int) -> None:
+def check(part: parts.Part, histories: int) -> None:
     """All of them were played, and no promise was broken."""
     assert part.counts["histories"] == histories
     assert not part.failures, [f"{failure.again}: {failure.text}" for failure in part.failures]
@@ -32,15 +35,15 @@ def check(part: soak.Part, histories: int) -> None:
 
 def test_no_promise_is_broken_in_the_model(program: Path) -> None:
     """Histories at the registers; the judge had something to judge of every kind."""
-    part = soak.play_model(program, SEED, 300, JOBS)
+    part = parts.play_model(program, SEED, 300, JOBS)
     check(part, 300)
-    assert all(part.counts[kind] for kind in soak.JUDGED)
+    assert all(part.counts[kind] for kind in JUDGED)
     assert part.counts["hit"] > 0.8 * part.counts["aimed"] > 0
 
 
 def test_no_promise_is_broken_through_the_driver(program: Path) -> None:
     """On wires with errors of all kinds."""
-    part = soak.play_driver(program, SEED, 60, JOBS)
+    part = parts.play_driver(program, SEED, 60, JOBS)
     check(part, 60)
     for kind in ("flips", "lost clocks", "doubled clocks", "cuts", "deaths", "retries", "lines", "stops"):
         assert part.counts[kind] > 0, kind
@@ -48,20 +51,20 @@ def test_no_promise_is_broken_through_the_driver(program: Path) -> None:
 
 def test_no_promise_is_broken_in_verilator(program: Path) -> None:
     """The core does the same as the model on every clock of a history."""
-    check(soak.play_verilator(program, SEED, 30, JOBS), 30)
-    library = rtl_library(soak.SETS[soak.DRIVER_SET])
-    check(soak.play_driver(program, SEED, 4, JOBS, library), 4)
+    check(parts.play_verilator(program, SEED, 30, JOBS), 30)
+    library = rtl_library(parts.SETS[parts.DRIVER_SET])
+    check(parts.play_driver(program, SEED, 4, JOBS, library), 4)
 
 
 def test_no_promise_is_broken_in_icarus(program: Path) -> None:
     """The same in another simulator."""
-    check(soak.play_icarus(program, SEED, 6, JOBS), 6)
+    check(parts.play_icarus(program, SEED, 6, JOBS), 6)
 
 
 @pytest.mark.parametrize("name", ["abort leaves steps", "a lost stop counts as sent"])
 def test_a_defect_goes_red(name: str) -> None:
     """One at the registers, one of the driver; `make soak` puts all of them back."""
-    caught = soak.catch(DEFECTS[name], 1)
+    caught = defects.catch(DEFECTS[name], 1)
     assert caught.good, caught.says
 
 
@@ -72,14 +75,14 @@ def test_every_defect_can_be_put_back(defect: Defect, tmp_path: Path) -> None:
         copy = tmp_path / file
         if not copy.exists():
             copy.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy(soak.paths.root / file, copy)
+            shutil.copy(paths.root / file, copy)
         plant(copy, old, new)
 
 
 def test_a_core_that_differs_from_the_model_goes_red(program: Path, tmp_path: Path, monkeypatch) -> None:
     """A defect of the RTL alone."""
     rtl = tmp_path / "rtl"
-    shutil.copytree(soak.paths.rtl, rtl)
+    shutil.copytree(paths.rtl, rtl)
     plant(rtl / "passo_axis.v", "restart ? 16'd1 : 16'd2;", "16'd1;")
-    monkeypatch.setattr(soak.paths, "rtl", rtl)
-    assert soak.play_icarus(program, 1, 3, JOBS).failures
+    monkeypatch.setattr(paths, "rtl", rtl)
+    assert parts.play_icarus(program, 1, 3, JOBS).failures

@@ -331,9 +331,14 @@ def c_type(field: Field) -> str:
     return f"uint{next(bits for bits in (8, 16, 32) if bits >= field.bits)}_t"
 
 
+# Structs whose names the model has for something else.
+C_STRUCTS = {"parameters": "parameters_word"}
+
+
 def c_layout(name: str, register: Register) -> list[str]:
     """A struct of the fields of a word, and the functions between it and the word."""
-    name, struct = name.lower(), f"struct passo_{name.lower()}"
+    name = name.lower()
+    struct = f"struct passo_{C_STRUCTS.get(name, name)}"
     fields = list(reversed(register.fields))
     rows = [(c_type(f), f"{f.name.lower()};", f"/* {f.text} */") for f in fields]
     packed, unpacked = [], []

@@ -78,8 +78,26 @@ struct passo_axis_memory {
 	int32_t expected;         /* position when all that is queued has been made */
 };
 
-/* What was commanded and has not been acknowledged, and so is sent by every poll: bits. */
-enum passo_due { PASSO_DUE_RATE = 1, PASSO_DUE_STOP = 2, PASSO_DUE_ABORT = 4 };
+/* What the driver believes of the channel. docs/driver.md shows what leads from state to state. */
+enum passo_belief {
+	PASSO_BELIEF_NOT_OPEN,
+	PASSO_BELIEF_READY,         /* it takes moves */
+	PASSO_BELIEF_STOPPED,       /* it is stopped, or a stop was commanded: nothing but clear helps */
+	PASSO_BELIEF_BROKEN,        /* what a command has done is not known: nothing but clear helps */
+	PASSO_BELIEF_BROKEN_STOPPED /* both */
+};
+
+/* What is still to be seen of what was queued. */
+enum passo_expectation {
+	PASSO_EXPECT_NOTHING,
+	PASSO_EXPECT_POSITIONS, /* an end, where the axes are at the positions expected of them */
+	PASSO_EXPECT_END,       /* an end; nobody knows where */
+	PASSO_EXPECT_TURNING,   /* turning without end, until a speed or the end is commanded */
+	PASSO_EXPECT_TURN_END   /* the end of it, which is queued */
+};
+
+/* The stop that was commanded and has not been acknowledged, and so is sent by every poll. */
+enum passo_due { PASSO_DUE_NOTHING, PASSO_DUE_STOP, PASSO_DUE_ABORT };
 
 /* What the frame is that was posted last, until its result has been seen to. */
 enum passo_post {
@@ -95,6 +113,9 @@ enum passo_post {
 /* A stream: there is none; its queues are filled behind a closed gate; it runs and is fed. */
 enum passo_stream_phase { PASSO_STREAM_NONE, PASSO_STREAM_FILLS, PASSO_STREAM_RUNS };
 
+/* What a stream's source has of lines, and of ramps: more, nothing at the moment, nothing any more. */
+enum passo_supply { PASSO_SUPPLY_MORE, PASSO_SUPPLY_DRY, PASSO_SUPPLY_DONE };
+
 /* Whether motions may start. */
 enum passo_gate { PASSO_GATE_OPEN, PASSO_GATE_SYNC, PASSO_GATE_CLOSED };
 
@@ -107,17 +128,14 @@ struct passo {
 	uint8_t channel;
 	uint8_t misses;     /* looks in a row that failed */
 	uint8_t idle_looks; /* in a row that found everything at an end */
-	bool opened;
-	bool broken;    /* what a command has done is not known: nothing but clear helps */
-	bool halted;    /* it is stopped, or a stop was commanded: nothing but clear helps */
-	bool expecting; /* something was queued, its end has not been seen */
-	bool certain;   /* its end position is known */
-	bool held;
-	bool turning_is_on, turning_ends;
-	bool lines_done, ramps_done, lines_dry, ramps_dry;
-	uint8_t due; /* bits of enum passo_due */
+	bool held;          /* the rate is 0, whatever the override */
+	bool rate_due;      /* the rate has not been acknowledged, and so is sent by every poll */
+	enum passo_due stop_due;
+	enum passo_belief belief;
+	enum passo_expectation expects;
 	enum passo_stream_phase stream;
-	enum passo_gate gate; /* when no stream is being prepared */
+	enum passo_supply lines : 8, ramps : 8; /* of the stream */
+	enum passo_gate gate;                   /* when no stream is being prepared */
 	enum passo_error fault;
 	enum passo_post post;
 	enum passo_error posted; /* result of the posted frame */

@@ -8,11 +8,9 @@
 /* The most urgent of what is due. */
 static enum passo_post urgent(const struct passo *passo)
 {
-	if ((passo->due & PASSO_DUE_ABORT) != 0u)
-		return PASSO_POST_ABORT;
-	if ((passo->due & PASSO_DUE_STOP) != 0u)
-		return PASSO_POST_STOP;
-	if ((passo->due & PASSO_DUE_RATE) != 0u)
+	if (passo->stop_due != PASSO_DUE_NOTHING)
+		return passo->stop_due == PASSO_DUE_ABORT ? PASSO_POST_ABORT : PASSO_POST_STOP;
+	if (passo->rate_due)
 		return PASSO_POST_RATE;
 	return passo->host->run_due ? PASSO_POST_RUN : PASSO_POST_NONE;
 }
@@ -42,8 +40,8 @@ static enum passo_error post(struct passo *passo, enum passo_post most)
 		word = passo_driver_rate(passo);
 		address = (uint16_t)(passo->base + PASSO_CHANNEL_RATE_TARGET);
 	} else if (most != PASSO_POST_RUN) {
-		word = UINT32_C(1) << (most == PASSO_POST_ABORT ? PASSO_CHANNEL_COMMAND_ABORT_LSB
-		                                                : PASSO_CHANNEL_COMMAND_STOP_LSB);
+		word = passo_pack_channel_command(&(struct passo_channel_command){
+		    .abort = most == PASSO_POST_ABORT, .stop = most == PASSO_POST_STOP});
 		address = (uint16_t)(passo->base + PASSO_CHANNEL_COMMAND);
 	}
 	*passo_host_payload(passo->host) = word;
@@ -53,14 +51,18 @@ static enum passo_error post(struct passo *passo, enum passo_post most)
 	return error;
 }
 
+/* What restrains was executed. An abort that is due has dropped a posted stop. */
+static void acknowledge(struct passo *passo, enum passo_post done)
+{
+	if (done == PASSO_POST_RATE)
+		passo->rate_due = false;
+	else if (done >= PASSO_POST_STOP)
+		passo->stop_due = PASSO_DUE_NOTHING;
+}
+
 /* Takes over what became of the posted frame. */
 static enum passo_error settle(struct passo *passo)
 {
-	static const uint8_t DONE[] = {
-	    [PASSO_POST_RATE] = PASSO_DUE_RATE,
-	    [PASSO_POST_STOP] = PASSO_DUE_STOP,
-	    [PASSO_POST_ABORT] = PASSO_DUE_STOP | PASSO_DUE_ABORT,
-	};
 	const enum passo_post done = passo->post;
 	enum passo_error error = passo->posted;
 
@@ -69,7 +71,7 @@ static enum passo_error settle(struct passo *passo)
 	} else {
 		passo->post = PASSO_POST_NONE;
 		if (error == PASSO_OK)
-			passo->due = (uint8_t)(passo->due & ~DONE[done]);
+			acknowledge(passo, done);
 	}
 	if (error != PASSO_OK)
 		return error;
@@ -124,7 +126,9 @@ enum passo_error passo_driver_restrain(struct passo *passo, enum passo_post leas
 void passo_driver_halt(struct passo *passo, enum passo_due due)
 {
 	passo_driver_end_stream(passo);
-	passo->certain = false;
-	passo->halted = true;
-	passo->due = (uint8_t)(passo->due | due);
+	if (passo->expects == PASSO_EXPECT_POSITIONS)
+		passo->expects = PASSO_EXPECT_END;
+	passo_driver_doubt(passo, PASSO_BELIEF_STOPPED);
+	if (passo->stop_due < due)
+		passo->stop_due = due;
 }

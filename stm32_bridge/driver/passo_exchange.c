@@ -3,10 +3,15 @@
  */
 #include "passo_exchange.h"
 
+#include "passo_words.h"
+
 #define GAP_CLOCKS 64u         /* the core needs so long after a frame ... */
 #define GAP_CLOCKS_PER_WORD 4u /* ... and this for each word that it executes */
 #define MICROSECONDS 1000000u
 #define SPINS_MAX 100000u /* a clock that stands still must not hang the host */
+
+/* Of an address, the register within its channel. */
+#define PLACE (PASSO_ADDRESS_CHANNEL_STRIDE - 1u)
 
 /* Words of a reply that must agree before its status is believed: the same bit may flip in two. */
 #define STATUS_WORDS 3u
@@ -82,7 +87,7 @@ static void note_gap(struct passo_host *host)
 
 static bool is_read(const struct passo_host *host)
 {
-	return host->send[0] >> 28 == PASSO_OPERATION_READ;
+	return passo_unpack_header(host->send[0]).operation == PASSO_OPERATION_READ;
 }
 
 enum passo_error passo_host_exchange(struct passo_host *host, bool *known)
@@ -119,19 +124,19 @@ static uint8_t less(uint8_t room, uint32_t count)
 
 void passo_host_count_room(struct passo_host *host, bool known, bool executed)
 {
-	const uint32_t header = host->send[0];
-	const uint32_t length = header >> 12 & 0xFFu;
+	const struct passo_header header = passo_unpack_header(host->send[0]);
+	const struct passo_status status = passo_unpack_status(host->status);
 	uint32_t lines = 0, ramps = 0;
 
 	if (known) {
-		host->line_room = (uint8_t)(host->status >> 8);
-		host->ramp_room = (uint8_t)host->status;
+		host->line_room = status.line_room;
+		host->ramp_room = status.ramp_room;
 	}
-	if (executed && header >> 28 == PASSO_OPERATION_PUSH) {
-		if ((header & 0xFFu) == PASSO_CHANNEL_LINE)
-			lines = host->axes ? length / PASSO_LINE_WORDS(host->axes) : length;
+	if (executed && header.operation == PASSO_OPERATION_PUSH) {
+		if ((header.address & PLACE) == PASSO_CHANNEL_LINE)
+			lines = host->axes ? header.length / PASSO_LINE_WORDS(host->axes) : header.length;
 		else
-			ramps = length / PASSO_RAMP_WORDS;
+			ramps = header.length / PASSO_RAMP_WORDS;
 	}
 	host->line_room = less(host->line_room, lines);
 	host->ramp_room = less(host->ramp_room, ramps);

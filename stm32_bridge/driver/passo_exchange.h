@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * One chip select, for passo_host.c.
+ * One chip select, for passo_tries.c.
  */
 #ifndef PASSO_EXCHANGE_H
 #define PASSO_EXCHANGE_H

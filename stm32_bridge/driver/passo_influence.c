@@ -23,7 +23,7 @@ static enum passo_error set_rate(struct passo *passo, bool held, uint32_t target
 	passo->rate_target = target;
 	const bool is_slower = passo_driver_rate(passo) <= was;
 	if (error == PASSO_OK || is_slower)
-		passo->due |= PASSO_DUE_RATE;
+		passo->rate_due = true;
 	if (error == PASSO_OK)
 		error = passo_driver_insist_on(passo, PASSO_POST_RATE);
 	if (error != PASSO_OK && !is_slower) {
@@ -101,11 +101,11 @@ enum passo_error passo_clear(struct passo *passo)
 		return error;
 	/* between two motions none runs, but one waits */
 	const bool goes_on = passo->snapshot.state == PASSO_STATE_IDLE && !passo_driver_at_rest(passo)
-	                  && !passo->broken && !passo->halted && passo->stream != PASSO_STREAM_FILLS;
+	                  && passo->belief == PASSO_BELIEF_READY && passo->stream != PASSO_STREAM_FILLS;
 	if (goes_on || !passo->snapshot.quiet)
 		return PASSO_ERROR_MOVING;
 	passo_driver_end_stream(passo);
-	passo->broken = true; /* until it is done */
+	passo_driver_doubt(passo, PASSO_BELIEF_BROKEN); /* until it is done */
 	/* what still waits must not start in the meantime */
 	if (!passo_driver_at_rest(passo))
 		error = passo_driver_gate(passo, PASSO_GATE_CLOSED);
@@ -126,11 +126,9 @@ enum passo_error passo_zero(struct passo *passo)
 		error = passo_driver_ready(passo, true);
 	if (error != PASSO_OK)
 		return error;
-	error = passo_driver_command(passo, UINT32_C(1) << PASSO_CHANNEL_COMMAND_ZERO_LSB);
-	if (passo_driver_is_wire(error)) {
-		passo->certain = false; /* the positions are read by the next polls */
-		passo->expecting = true;
-	}
+	error = passo_driver_command(passo, (struct passo_channel_command){.zero = true});
+	if (passo_driver_is_wire(error))
+		passo->expects = PASSO_EXPECT_END; /* the positions are read by the next polls */
 	if (error != PASSO_OK)
 		return passo_driver_moving(error);
 	const int32_t zeros[PASSO_AXES_MAX] = {0};

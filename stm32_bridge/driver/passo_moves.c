@@ -54,16 +54,6 @@ static enum passo_error push_line(struct passo *passo, const struct passo_line *
 	return judge(passo, passo_host_push(passo->host, address, words, length), true);
 }
 
-void passo_driver_expect(struct passo *passo, const struct passo_line *line)
-{
-	for (unsigned i = 0; i < passo->machine.axes; i++) {
-		uint32_t steps = (line->directions >> i & 1u) != 0u ? 0u - line->steps[i] : line->steps[i];
-		passo->axis[i].expected = (int32_t)((uint32_t)passo->axis[i].expected + steps);
-	}
-	passo->expecting = true;
-	passo->idle_looks = 0;
-}
-
 enum passo_error passo_move_plan(
     struct passo *passo, const struct passo_plan *plan, const struct passo_user_shape *shape)
 {

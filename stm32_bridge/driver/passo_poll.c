@@ -45,12 +45,12 @@ static enum passo_error miss(struct passo *passo, enum passo_error error)
 static enum passo_error see_stop(struct passo *passo)
 {
 	const enum passo_error fault = fault_of(passo->snapshot.cause);
-	const bool is_news = !passo->halted || passo->expecting;
+	const bool is_news = !passo_driver_is_stopped(passo) || passo->expects != PASSO_EXPECT_NOTHING;
 
 	passo_driver_end_stream(passo);
-	passo->turning_is_on = passo->certain = false;
-	passo->expecting = !passo->snapshot.quiet; /* the last steps leave the pins */
-	passo->halted = true;
+	/* the last steps leave the pins */
+	passo->expects = passo->snapshot.quiet ? PASSO_EXPECT_NOTHING : PASSO_EXPECT_END;
+	passo_driver_doubt(passo, PASSO_BELIEF_STOPPED);
 	passo->idle_looks = 0;
 	return is_news && fault != PASSO_OK && fault != passo->fault ? tell(passo, fault) : PASSO_OK;
 }
@@ -58,7 +58,7 @@ static enum passo_error see_stop(struct passo *passo)
 /* Nothing moves or waits. Ramps that a broken command has left behind do not move without a line. */
 static bool has_ended(const struct passo *passo)
 {
-	if (passo->broken)
+	if (passo_driver_is_broken(passo))
 		return passo->snapshot.state == PASSO_STATE_IDLE && passo->snapshot.quiet
 		    && passo->snapshot.line_room == passo->line_places;
 	return passo->stream == PASSO_STREAM_NONE && passo_driver_at_rest(passo);
@@ -108,7 +108,7 @@ static enum passo_error see_end(struct passo *passo)
 	if (error != PASSO_OK)
 		return miss(passo, error);
 	passo->misses = 0;
-	const bool is_wrong = passo->certain && !is_at(passo, positions);
+	const bool is_wrong = passo->expects == PASSO_EXPECT_POSITIONS && !is_at(passo, positions);
 	passo_driver_ended(passo, positions);
 	return is_wrong ? tell(passo, PASSO_ERROR_POSITION) : PASSO_OK;
 }
@@ -147,15 +147,16 @@ enum passo_error passo_poll(struct passo *passo)
 		if (error != PASSO_OK || sent)
 			return error;
 	}
-	if (passo->expecting && passo->idle_looks == IDLE_LOOKS)
+	const bool expects = passo->expects != PASSO_EXPECT_NOTHING;
+	if (expects && passo->idle_looks == IDLE_LOOKS)
 		return see_end(passo);
-	return is_due(passo) || (passo->expecting && passo->idle_looks != 0u) ? look(passo) : PASSO_OK;
+	return is_due(passo) || (expects && passo->idle_looks != 0u) ? look(passo) : PASSO_OK;
 }
 
 bool passo_is_moving(const struct passo *passo)
 {
-	return passo && passo->opened
-	    && (passo->expecting || passo->stream != PASSO_STREAM_NONE
+	return passo && passo->belief != PASSO_BELIEF_NOT_OPEN
+	    && (passo->expects != PASSO_EXPECT_NOTHING || passo->stream != PASSO_STREAM_NONE
 	        || passo_driver_due(passo) == PASSO_ERROR_NOT_STOPPED);
 }
 

@@ -50,15 +50,14 @@ enum passo_error passo_configure_axis(
 		return error;
 
 	struct passo_axis_memory *memory = &passo->axis[axis];
-	const uint32_t pins = (uint32_t)config->step_inverted << PASSO_AXIS_PINS_STEP_INVERTED_LSB
-	                    | (uint32_t)config->direction_inverted << PASSO_AXIS_PINS_DIRECTION_INVERTED_LSB
-	                    | (uint32_t)config->enable_inverted << PASSO_AXIS_PINS_ENABLE_INVERTED_LSB
-	                    | (uint32_t)config->both_edges << PASSO_AXIS_PINS_BOTH_EDGES_LSB;
-	const uint32_t words[] = {
-	    pins,
-	    (uint32_t)high << PASSO_AXIS_STEP_TIMING_STEP_HIGH_LSB | (uint32_t)low,
-	    (uint32_t)setup << PASSO_AXIS_DIR_TIMING_DIR_SETUP_LSB | (uint32_t)hold,
-	};
+	const struct passo_axis_pins pins = {.step_inverted = config->step_inverted,
+	    .direction_inverted = config->direction_inverted,
+	    .enable_inverted = config->enable_inverted,
+	    .both_edges = config->both_edges};
+	const struct passo_axis_step_timing step = {.step_high = (uint16_t)high, .step_low = (uint16_t)low};
+	const struct passo_axis_dir_timing dir = {.dir_setup = (uint16_t)setup, .dir_hold = (uint16_t)hold};
+	const uint32_t words[] = {passo_pack_axis_pins(&pins), passo_pack_axis_step_timing(&step),
+	    passo_pack_axis_dir_timing(&dir)};
 	error = passo_driver_write(
 	    passo, address_of(axis, PASSO_AXIS_PINS), words, sizeof words / sizeof words[0]);
 	if (passo_driver_is_wire(error))

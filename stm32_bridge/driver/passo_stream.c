@@ -9,43 +9,13 @@
 #define LOOK_MICROSECONDS_STREAMING 50u
 /* A queue with fewer places may run dry in that time. */
 #define PLACES_FEW 64u
-#define STATUS_CHANNEL_LSB 24u
-
-static uint32_t line_words(const struct passo *passo)
-{
-	return PASSO_LINE_WORDS((uint32_t)passo->machine.axes);
-}
-
-static uint32_t smaller(uint32_t a, uint32_t b)
-{
-	return a < b ? a : b;
-}
-
-/* So many at a time are worth a frame: as many as fit, half a small queue; anything while nothing moves yet.
- */
-static uint32_t worthwhile(const struct passo *passo, uint32_t words, uint32_t places)
-{
-	return passo->stream == PASSO_STREAM_FILLS ? 1u
-	                                           : smaller(PASSO_FRAME_PAYLOAD_MAX / words, places / 2u);
-}
-
-static bool wants_lines(const struct passo *passo)
-{
-	return !passo->lines_done && !passo->lines_dry
-	    && passo->snapshot.line_room >= worthwhile(passo, line_words(passo), passo->line_places);
-}
-
-static bool wants_ramps(const struct passo *passo)
-{
-	return !passo->ramps_done && !passo->ramps_dry
-	    && passo->snapshot.ramp_room >= worthwhile(passo, PASSO_RAMP_WORDS, passo->ramp_places);
-}
 
 /* The stream can begin. */
 static bool is_prepared(const struct passo *passo)
 {
-	return passo->stream == PASSO_STREAM_FILLS && (passo->lines_done || passo->snapshot.line_room == 0u)
-	    && (passo->ramps_done || passo->snapshot.ramp_room == 0u);
+	return passo->stream == PASSO_STREAM_FILLS
+	    && (passo->lines == PASSO_SUPPLY_DONE || passo->snapshot.line_room == 0u)
+	    && (passo->ramps == PASSO_SUPPLY_DONE || passo->snapshot.ramp_room == 0u);
 }
 
 uint32_t passo_driver_interval(const struct passo *passo)
@@ -53,73 +23,6 @@ uint32_t passo_driver_interval(const struct passo *passo)
 	if (passo->stream == PASSO_STREAM_NONE)
 		return LOOK_MICROSECONDS;
 	return passo->line_places < PLACES_FEW ? 0u : LOOK_MICROSECONDS_STREAMING;
-}
-
-static bool is_line(const struct passo *passo, const struct passo_line *line)
-{
-	if (line->substeps == 0u || line->substeps > PASSO_SUBSTEPS_MAX
-	    || line->directions >> passo->machine.axes != 0u)
-		return false;
-	for (unsigned i = 0; i < passo->machine.axes; i++) {
-		if (line->steps[i] > line->substeps)
-			return false;
-	}
-	return true;
-}
-
-static bool is_ramp(const struct passo_ramp *ramp)
-{
-	return !ramp->now && ramp->velocity_end <= PASSO_VELOCITY_MAX
-	    && (unsigned)ramp->shape <= PASSO_SHAPE_EASE && ramp->progress_step <= PASSO_PROGRESS_STEP_MAX;
-}
-
-/* As many lines as there are, are wanted, and have room. */
-static enum passo_error take_lines(struct passo *passo, size_t *length)
-{
-	const uint32_t most = smaller(passo->snapshot.line_room, PASSO_FRAME_PAYLOAD_MAX / line_words(passo));
-	uint32_t *payload = passo_host_payload(passo->host);
-	uint32_t count = 0;
-
-	while (count < most && !passo->lines_done) {
-		struct passo_line line = {0};
-		if (!passo->source.line(passo->source.context, &line)) {
-			passo->lines_dry = true;
-			break;
-		}
-		if (!is_line(passo, &line))
-			return PASSO_ERROR_SUPPLY;
-		if (!passo_driver_pins_known(passo, &line))
-			return PASSO_ERROR_NOT_CONFIGURED;
-		*length += passo_line_words(payload + *length, &line, passo->machine.axes);
-		passo->lines_done = line.last;
-		passo->certain = passo->certain && !line.endless;
-		passo_driver_expect(passo, &line);
-		count++;
-	}
-	passo->snapshot.line_room = (uint16_t)(passo->snapshot.line_room - count);
-	return PASSO_OK;
-}
-
-static enum passo_error take_ramps(struct passo *passo, size_t *length)
-{
-	const uint32_t most = smaller(passo->snapshot.ramp_room, PASSO_FRAME_PAYLOAD_MAX / PASSO_RAMP_WORDS);
-	uint32_t *payload = passo_host_payload(passo->host);
-	uint32_t count = 0;
-
-	while (count < most && !passo->ramps_done) {
-		struct passo_ramp ramp = {0};
-		if (!passo->source.ramp(passo->source.context, &ramp)) {
-			passo->ramps_dry = true;
-			break;
-		}
-		if (!is_ramp(&ramp))
-			return PASSO_ERROR_SUPPLY;
-		*length += passo_ramp_words(payload + *length, &ramp);
-		passo->ramps_done = ramp.last;
-		count++;
-	}
-	passo->snapshot.ramp_room = (uint16_t)(passo->snapshot.ramp_room - count);
-	return PASSO_OK;
 }
 
 void passo_driver_end_stream(struct passo *passo)
@@ -132,7 +35,7 @@ void passo_driver_end_stream(struct passo *passo)
 static enum passo_error fail(struct passo *passo, enum passo_error error)
 {
 	passo_driver_halt(passo, PASSO_DUE_STOP);
-	passo->broken = true;
+	passo_driver_doubt(passo, PASSO_BELIEF_BROKEN);
 	passo->fault = error;
 	return error;
 }
@@ -155,7 +58,7 @@ enum passo_error passo_driver_settle_stream(struct passo *passo)
 	}
 	if (error != PASSO_OK)
 		return fail(passo, error);
-	if ((host->status >> STATUS_CHANNEL_LSB & 7u) != passo->channel)
+	if (passo_unpack_status(host->status).channel != passo->channel)
 		return PASSO_OK;
 	/* both are never too much */
 	if (snapshot->line_room < host->line_room)
@@ -172,13 +75,13 @@ enum passo_error passo_driver_feed(struct passo *passo, bool *sent)
 	size_t length = 0;
 
 	*sent = false;
-	passo->lines_dry = passo->ramps_dry = false;
+	passo_driver_ask_again(passo);
 	if (passo->post == PASSO_POST_NONE) {
-		if (wants_ramps(passo))
-			error = take_ramps(passo, &length);
-		if (error == PASSO_OK && length == 0u && wants_lines(passo)) {
+		if (passo_driver_wants_ramps(passo))
+			error = passo_driver_take_ramps(passo, &length);
+		if (error == PASSO_OK && length == 0u && passo_driver_wants_lines(passo)) {
 			address = PASSO_CHANNEL_LINE;
-			error = take_lines(passo, &length);
+			error = passo_driver_take_lines(passo, &length);
 		}
 		if (error != PASSO_OK)
 			return fail(passo, error);
@@ -187,7 +90,8 @@ enum passo_error passo_driver_feed(struct passo *passo, bool *sent)
 			passo->post = PASSO_POST_START;
 			error = passo_host_post_write(passo->host, PASSO_ADDRESS_RUN, 1, &passo->posted);
 		} else if (length == 0u) {
-			if (passo->stream == PASSO_STREAM_RUNS && passo->lines_done && passo->ramps_done)
+			if (passo->stream == PASSO_STREAM_RUNS && passo->lines == PASSO_SUPPLY_DONE
+			    && passo->ramps == PASSO_SUPPLY_DONE)
 				passo->stream = PASSO_STREAM_NONE;
 			return PASSO_OK;
 		} else {
@@ -218,7 +122,7 @@ enum passo_error passo_stream(struct passo *passo, const struct passo_source *so
 		return error;
 	passo->source = *source;
 	passo->stream = PASSO_STREAM_FILLS;
-	passo->lines_done = passo->ramps_done = false;
+	passo->lines = passo->ramps = PASSO_SUPPLY_MORE;
 	return PASSO_OK;
 }
 
@@ -249,10 +153,11 @@ uint32_t passo_idle_time(const struct passo *passo)
 	if (passo_driver_check(passo) != PASSO_OK)
 		return 0;
 	if (passo->stream != PASSO_STREAM_NONE
-	    && (passo->post != PASSO_POST_NONE || wants_lines(passo) || wants_ramps(passo)
-	        || is_prepared(passo)))
+	    && (passo->post != PASSO_POST_NONE || passo_driver_wants_lines(passo)
+	        || passo_driver_wants_ramps(passo) || is_prepared(passo)))
 		return 0;
-	if (passo_driver_due(passo) != PASSO_OK || (passo->expecting && passo->idle_looks != 0u))
+	if (passo_driver_due(passo) != PASSO_OK
+	    || (passo->expects != PASSO_EXPECT_NOTHING && passo->idle_looks != 0u))
 		return 0;
 	const uint32_t since = passo_driver_now(passo) - passo->looked_at;
 	const uint32_t interval = passo_driver_interval(passo);

@@ -11,7 +11,6 @@
 #define HOLDS_UNKNOWN 0u
 #define HOLDS_RESET 1u
 #define HOLDS_USER UINT32_C(0x80000000)
-#define STATUS_MOTION (UINT32_C(1) << 28) /* of any channel */
 #define BLOCK PASSO_FRAME_PAYLOAD_MAX
 
 void passo_driver_tables_fresh(struct passo_host *host)
@@ -69,7 +68,7 @@ static enum passo_error make_hold(struct passo *passo, unsigned bank, uint32_t a
 
 	if (*holds == wanted)
 		return PASSO_OK;
-	if (!passo_driver_at_rest(passo) || (passo->host->status & STATUS_MOTION) != 0u)
+	if (!passo_driver_at_rest(passo) || passo_unpack_status(passo->host->status).any_occupied)
 		return PASSO_ERROR_TABLE;
 	*holds = HOLDS_UNKNOWN;
 	if (user)

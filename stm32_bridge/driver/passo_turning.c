@@ -19,16 +19,14 @@ enum passo_error passo_turn_start(struct passo *passo, const struct passo_turnin
 	if (error != PASSO_OK)
 		return error;
 	passo->turning = *turning;
-	passo->turning_is_on = true;
-	passo->turning_ends = false;
-	passo->certain = false;
+	passo->expects = PASSO_EXPECT_TURNING;
 	return PASSO_OK;
 }
 
-/* An end that did not get through. */
-static enum passo_error stop_instead(struct passo *passo, enum passo_error error)
+/* An end that does not get through becomes a stop. */
+static enum passo_error fail(struct passo *passo, enum passo_error error, bool stop)
 {
-	if (passo_driver_is_wire(error))
+	if (stop && passo_driver_is_wire(error))
 		passo_driver_halt(passo, PASSO_DUE_STOP);
 	return error;
 }
@@ -45,13 +43,13 @@ static enum passo_error turn_on(struct passo *passo, bool stop, uint64_t rpm)
 	error = passo_driver_restrain(passo, PASSO_POST_RUN);
 	if (error != PASSO_OK)
 		return error;
-	if (passo->broken)
+	if (passo_driver_is_broken(passo))
 		return PASSO_ERROR_BROKEN;
-	if (!passo->turning_is_on || passo->turning_ends)
+	if (passo->expects != PASSO_EXPECT_TURNING)
 		return PASSO_ERROR_NOT_TURNING;
 	error = passo_driver_look(passo, false);
 	if (error != PASSO_OK)
-		return stop ? stop_instead(passo, error) : error;
+		return fail(passo, error, stop);
 	if (passo->snapshot.state == PASSO_STATE_STOPPED || passo->snapshot.stopping)
 		return PASSO_ERROR_STOPPED;
 
@@ -72,9 +70,10 @@ static enum passo_error turn_on(struct passo *passo, bool stop, uint64_t rpm)
 	    && passo->snapshot.state != PASSO_STATE_STOPPED)
 		error = PASSO_ERROR_NOT_TURNING; /* its end was decided already */
 	if (error != PASSO_OK)
-		return stop ? stop_instead(passo, error) : error;
+		return fail(passo, error, stop);
 	passo->velocity_peak = plan.velocity_peak;
-	passo->turning_ends = stop;
+	if (stop)
+		passo->expects = PASSO_EXPECT_TURN_END;
 	return PASSO_OK;
 }
 

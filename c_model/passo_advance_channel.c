@@ -1,0 +1,242 @@
+/* SPDX-License-Identifier: MIT
+ * Jumping over quiet time in a channel whose profile may run. See passo_advance.c.
+ *
+ * The pipeline from path to DDA makes this less simple than it sounds: at any time up to three substeps are
+ * on their way. So a jump first takes them all to their end (`struct progress`), counts there, and then puts
+ * the last ones back on their way: which clocks had a carry follows from the phase alone, as long as the
+ * velocity stood still for the last four clocks.
+ */
+#include "passo_advance.h"
+
+/* Clocks from the phase to the DDA whose substeps are on their way. */
+enum { PIPELINE_CLOCKS = 4 };
+
+/* A ramp has made the next velocity by then, in any case, and stepped. */
+static const uint32_t RAMP_DONE_TICK_COUNT = 100;
+
+static const uint64_t PHASE_MASK = PASSO_ONE_Q48 - 1u;
+
+/* Path, line and DDAs as if every substep so far had arrived. */
+struct progress {
+	uint64_t phase;    /* UQ0.48 */
+	int64_t remaining; /* of the line: 1 - M + substeps */
+	int64_t e[PASSO_AXES_MAX];
+};
+
+/* Takes all substeps to their end; false if one of them does more than count. */
+static bool take_to_end(const struct passo_channel *channel, struct progress *progress)
+{
+	const struct passo_path *path = &channel->path;
+	const struct passo_line_unit *line = &channel->line;
+	uint64_t phase_high = path->phase_high;
+	int64_t on_the_way = 0;
+
+	if (!line->active && (line->slot_add || line->slot_step))
+		return false; /* the last substep of the last line */
+	if (path->advance_q)
+		phase_high += path->velocity_high + (path->phase_low_carry ? 1u : 0u);
+	progress->phase = (phase_high << 24 & PHASE_MASK) | path->phase_low;
+	if (line->active)
+		on_the_way = (path->substep ? 1 : 0) + (phase_high >> 24 != 0u ? 1 : 0);
+	progress->remaining =
+	    (int64_t)line->substep_number + on_the_way - (int64_t)channel->line_queue.last_substep;
+	on_the_way += line->slot_add ? 1 : 0;
+	for (unsigned i = 0; i < channel->axes; i++) {
+		const struct passo_dda *dda = &channel->dda[i];
+		const int64_t steps = (int64_t)channel->line_queue.steps[i];
+		if ((line->slot_step && dda->e_minus_m >= 0) || (!line->slot_step && dda->addend != steps))
+			return false;
+		progress->e[i] = dda->e_minus_m + on_the_way * steps;
+		if (line->active && progress->e[i] >= 0)
+			return false;
+	}
+	return !line->active || progress->remaining <= 0;
+}
+
+/* Substeps of an active line, if none of them ends it or makes a step. */
+static bool count_substeps(const struct passo_channel *channel, struct progress *progress, int64_t substeps)
+{
+	if (!channel->line.active)
+		return true;
+	if (progress->remaining + substeps > 0)
+		return false;
+	for (unsigned i = 0; i < channel->axes; i++)
+		if (progress->e[i] + substeps * (int64_t)channel->line_queue.steps[i] >= 0)
+			return false;
+	progress->remaining += substeps;
+	for (unsigned i = 0; i < channel->axes; i++)
+		progress->e[i] += substeps * (int64_t)channel->line_queue.steps[i];
+	return true;
+}
+
+/* How many substeps may follow before one ends the line or makes a step. */
+static uint64_t substeps_to_event(const struct passo_channel *channel, const struct progress *progress)
+{
+	uint64_t substeps = (uint64_t)-progress->remaining;
+
+	for (unsigned i = 0; i < channel->axes; i++) {
+		const uint64_t steps = channel->line_queue.steps[i];
+		const uint64_t distance = (uint64_t)(-progress->e[i] - 1);
+		if (steps != 0u && distance / steps < substeps)
+			substeps = distance / steps;
+	}
+	return substeps;
+}
+
+static uint64_t velocity_of(const struct passo_path *path)
+{
+	return (uint64_t)path->velocity_high << 24 | path->velocity_low;
+}
+
+/* Sums the velocity over some clocks of one tick; returns the substeps. */
+static int64_t sum_phase(struct progress *progress, uint64_t velocity, uint64_t clocks)
+{
+	/* at most 2^16 clocks at 1/2: 2^15 substeps, 63 bits */
+	const uint64_t sum = progress->phase + velocity * clocks;
+
+	progress->phase = sum & PHASE_MASK;
+	return (int64_t)(sum >> 48);
+}
+
+/* Puts the substeps of the last clocks back on their way; the velocity has stood for PIPELINE_CLOCKS clocks.
+ */
+static void put_back(struct passo_channel *channel, const struct progress *progress)
+{
+	struct passo_path *path = &channel->path;
+	struct passo_line_unit *line = &channel->line;
+	const uint64_t velocity = velocity_of(path);
+	uint64_t phase = progress->phase;
+	bool carry[PIPELINE_CLOCKS]; /* of the last clock, the one before it, ... */
+	uint64_t phase_before_last = 0;
+
+	for (unsigned i = 0; i < PIPELINE_CLOCKS; i++) {
+		carry[i] = phase < velocity;
+		phase = (phase - velocity) & PHASE_MASK;
+		if (i == 0u)
+			phase_before_last = phase;
+	}
+	path->phase_low = (uint32_t)(progress->phase & 0xFFFFFFu);
+	path->phase_low_carry = path->phase_low < (uint32_t)(velocity & 0xFFFFFFu);
+	path->phase_high = (uint32_t)(phase_before_last >> 24);
+	path->advance_q = true;
+	path->substep = carry[1];
+	if (!line->active)
+		return;
+	line->slot_add = carry[2];
+	line->slot_step = carry[3];
+	const int64_t not_counted = (carry[0] ? 1 : 0) + (carry[1] ? 1 : 0);
+	const int64_t not_added = not_counted + (carry[2] ? 1 : 0);
+	const int64_t last_substep = (int64_t)channel->line_queue.last_substep;
+	line->substep_number = (uint32_t)(progress->remaining + last_substep - not_counted);
+	line->on_last = progress->remaining - not_added == 0;
+	for (unsigned i = 0; i < channel->axes; i++) {
+		const int64_t steps = (int64_t)channel->line_queue.steps[i];
+		channel->dda[i].e_minus_m = progress->e[i] - not_added * steps;
+		channel->dda[i].addend = carry[3] ? -1 - last_substep : steps;
+	}
+}
+
+bool passo_advance_profile_counts(const struct passo_channel *channel)
+{
+	return channel->motion.state == PASSO_STATE_RUN && channel->timescale.enable;
+}
+
+uint64_t passo_advance_profile_quiet(
+    const struct passo_channel *channel, const struct passo_parameters *parameters, uint64_t limit)
+{
+	const uint64_t velocity = velocity_of(&channel->path);
+	const uint32_t tick_last = (1u << parameters->tick_log2) - 1u;
+	const uint32_t tick_count = channel->ramp.tick_count;
+	/* first to the place from which passo_advance_skip_ticks() can go on */
+	const bool before_place = channel->ramp.ready && tick_count < RAMP_DONE_TICK_COUNT;
+	const uint32_t goal = before_place ? RAMP_DONE_TICK_COUNT : tick_last;
+	struct progress progress;
+
+	if (channel->ramp_queue.now_pending || channel->path.take_q || channel->path.refresh
+	    || !take_to_end(channel, &progress))
+		return 0;
+	uint64_t clocks = passo_advance_least(limit, goal - tick_count);
+	if (channel->line.active && velocity != 0u) {
+		struct progress then = progress;
+		const int64_t substeps = sum_phase(&then, velocity, clocks);
+		if (!count_substeps(channel, &then, substeps)) {
+			const uint64_t allowed = substeps_to_event(channel, &progress);
+			clocks = passo_advance_least(
+			    clocks, (((allowed + 1u) << 48) - 1u - progress.phase) / velocity);
+		}
+	}
+	return clocks < PIPELINE_CLOCKS ? 0u : clocks;
+}
+
+uint64_t passo_advance_channel_quiet(const struct passo_channel *channel,
+    const struct passo_channel_inputs *inputs, uint64_t clocks_to_slew, uint64_t limit)
+{
+	const uint64_t clocks =
+	    passo_advance_least(limit, passo_advance_surroundings_quiet(channel, inputs, clocks_to_slew));
+
+	if (clocks == 0u)
+		return 0;
+	if (passo_advance_profile_counts(channel))
+		return passo_advance_profile_quiet(channel, inputs->parameters, clocks);
+	return passo_advance_slots_empty(channel) ? clocks : 0u;
+}
+
+/* What runs on its own: timers and waits. */
+static void skip_surroundings(struct passo_channel *channel, uint64_t clocks)
+{
+	for (unsigned i = 0; i < channel->axes; i++)
+		passo_axis_skip(&channel->axis[i], clocks);
+	passo_positions_skip(&channel->positions, clocks);
+}
+
+void passo_advance_channel_skip(struct passo_channel *channel, uint64_t clocks)
+{
+	struct passo_ramp_unit *ramp = &channel->ramp;
+	struct progress progress;
+
+	skip_surroundings(channel, clocks);
+	ramp->unready = !ramp->ready;
+	if (ramp->step != PASSO_RAMP_CHOOSE)
+		ramp->wait -= (uint32_t)clocks;
+	if (!passo_advance_profile_counts(channel))
+		return;
+	take_to_end(channel, &progress);
+	const int64_t substeps = sum_phase(&progress, velocity_of(&channel->path), clocks);
+	count_substeps(channel, &progress, substeps);
+	ramp->tick_count += (uint32_t)clocks;
+	put_back(channel, &progress);
+}
+
+uint64_t passo_advance_skip_ticks(
+    struct passo_channel *channel, const struct passo_channel_inputs *inputs, uint64_t limit)
+{
+	struct passo_ramp_unit *ramp = &channel->ramp;
+	struct passo_path *path = &channel->path;
+	const uint64_t tick = UINT64_C(1) << inputs->parameters->tick_log2;
+	const uint64_t place = ramp->tick_count;
+	struct progress progress;
+	uint64_t clocks = 0;
+
+	if (!passo_advance_profile_counts(channel) || ramp->step != PASSO_RAMP_CHOOSE || ramp->unready
+	    || !ramp->loaded || place < RAMP_DONE_TICK_COUNT || channel->ramp_queue.now_pending
+	    || !take_to_end(channel, &progress))
+		return 0;
+	/* the last velocity of a ramp takes it from the queue */
+	while (ramp->ticks > 1u && clocks + tick <= limit) {
+		struct progress then = progress;
+		int64_t substeps = sum_phase(&then, velocity_of(path), tick - place);
+		substeps += sum_phase(&then, ramp->velocity_next, place);
+		if (!count_substeps(channel, &then, substeps))
+			break;
+		progress = then;
+		path->velocity_low = (uint32_t)(ramp->velocity_next & 0xFFFFFFu);
+		path->velocity_high = (uint32_t)(ramp->velocity_next >> 24);
+		passo_ramp_make_velocity(ramp, inputs->tables);
+		clocks += tick;
+	}
+	if (clocks != 0u) {
+		skip_surroundings(channel, clocks);
+		put_back(channel, &progress);
+	}
+	return clocks;
+}

@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: MIT
+ * What must stand still in a channel while time is jumped over. See passo_advance.c.
+ */
+#include "passo_advance.h"
+
+/* Of a queue whose places are counted modulo twice its depth. */
+static unsigned used_places(unsigned write, unsigned read, unsigned depth)
+{
+	return (write - read) & (2u * depth - 1u);
+}
+
+static bool lines_settled(const struct passo_channel *channel, const struct passo_parameters *parameters)
+{
+	const struct passo_line_queue *queue = &channel->line_queue;
+	const struct passo_line *current = &queue->lines[queue->current_line];
+	const unsigned depth = 1u << parameters->line_queue_log2;
+	const unsigned used = used_places(queue->write_line, queue->next_line, depth);
+
+	for (unsigned i = 0; i < channel->axes; i++)
+		if (queue->steps[i] != current->steps[i])
+			return false;
+	return queue->room == depth - used - (queue->has_place ? 1u : 0u) && queue->next_valid == (used != 0u)
+	    && queue->directions == current->directions;
+}
+
+static bool ramps_settled(const struct passo_ramp_queue *queue, const struct passo_parameters *parameters)
+{
+	const unsigned depth = 1u << parameters->ramp_queue_log2;
+	const unsigned used = used_places(queue->write_ramp, queue->read_ramp, depth);
+
+	return !queue->write_low && queue->room == depth - used && queue->valid == (used != 0u);
+}
+
+static bool commands_settled(const struct passo_channel *channel, const struct passo_bus *bus)
+{
+	const struct passo_channel_registers *registers = &channel->registers;
+	const uint8_t in_axes = (uint8_t)((uint8_t)bus->address - PASSO_CHANNEL_AXIS_BASE);
+
+	return !registers->command_stop && !registers->command_abort && !registers->command_clear
+	    && !registers->command_zero && !registers->drain_velocity_written && !channel->writes_axis
+	    && channel->written_register == in_axes;
+}
+
+bool passo_advance_slots_empty(const struct passo_channel *channel)
+{
+	const struct passo_line_unit *line = &channel->line;
+	const bool stopped = passo_channel_stopped(channel);
+
+	if (line->on_last != (line->substep_number == channel->line_queue.last_substep))
+		return false;
+	for (unsigned i = 0; i < channel->axes; i++)
+		if (channel->dda[i].addend != (int64_t)channel->line_queue.steps[i])
+			return false;
+	if (channel->path.refresh != stopped || channel->path.take_q != stopped)
+		return false;
+	if (stopped && (channel->path.velocity_low != 0u || channel->path.velocity_high != 0u))
+		return false;
+	return !channel->path.advance_q && !channel->path.substep && !line->slot_add && !line->slot_step;
+}
+
+/* Clocks for which the rate stands still: all, or until the next slew tick. */
+static uint64_t timescale_quiet(const struct passo_channel *channel, bool moving, uint64_t clocks_to_slew)
+{
+	const struct passo_timescale *timescale = &channel->timescale;
+	const uint32_t target = channel->registers.rate_target;
+	const uint32_t slew = channel->registers.rate_slew == 0u ? 1u : channel->registers.rate_slew;
+
+	if (timescale->rate != timescale->goal || timescale->after != 0u)
+		return 0;
+	if (!moving)
+		return timescale->rate == target && timescale->still && timescale->rate_sum == 0u
+		            && !timescale->enable
+		         ? UINT64_MAX
+		         : 0u;
+	const bool steady = timescale->enable ? timescale->rate == PASSO_RATE_ONE : timescale->rate == 0u;
+	if (!steady || timescale->still)
+		return 0;
+	return timescale->goal == target && timescale->slew == slew && !timescale->down && !timescale->stops
+	         ? UINT64_MAX
+	         : clocks_to_slew;
+}
+
+static uint64_t ramp_quiet(const struct passo_ramp_unit *ramp)
+{
+	if (ramp->take_now || ramp->dry || ramp->step == PASSO_RAMP_TAKE)
+		return 0;
+	if (ramp->step == PASSO_RAMP_CHOOSE)
+		return !ramp->ready && !ramp->ends_next ? 0u : UINT64_MAX;
+	return ramp->wait - 1u;
+}
+
+/* Motions at rest: nothing starts. Motions that run: their pin is up, nothing stops. */
+static bool motion_settled(const struct passo_channel *channel, const struct passo_channel_inputs *inputs)
+{
+	const struct passo_motion *motion = &channel->motion;
+
+	if (motion->stopping || motion->stop_due || motion->settling != 0u || motion->aborted != 0u
+	    || motion->rate_was_zero != (channel->timescale.rate == 0u))
+		return false;
+	switch (motion->state) {
+	case PASSO_STATE_IDLE:
+		return !motion->running && !motion->startable
+		    && !(inputs->run && channel->line_queue.next_valid && channel->ramp_queue.valid);
+	case PASSO_STATE_PREPARE:
+		return !motion->running && !channel->ramp.ready;
+	case PASSO_STATE_ARMED:
+		return !motion->running && inputs->wait_sync && !motion->begin_profile;
+	case PASSO_STATE_STOPPED:
+		return !motion->running;
+	case PASSO_STATE_RUN:
+		return motion->running && motion->count == 6u;
+	default:
+		return false;
+	}
+}
+
+/* Whether the channel is at rest is known. */
+static bool rest_settled(const struct passo_channel *channel)
+{
+	const bool occupied = passo_channel_occupied(channel);
+	bool at_rest = !occupied;
+
+	for (unsigned i = 0; i < channel->axes; i++)
+		at_rest = at_rest && channel->axis[i].quiet;
+	return channel->occupied_before == (occupied ? 7u : 0u) && channel->at_rest == at_rest;
+}
+
+uint64_t passo_advance_surroundings_quiet(
+    const struct passo_channel *channel, const struct passo_channel_inputs *inputs, uint64_t clocks_to_slew)
+{
+	const struct passo_line_unit *line = &channel->line;
+	const bool moving = channel->motion.state == PASSO_STATE_RUN;
+
+	if (!motion_settled(channel, inputs) || !rest_settled(channel) || channel->positions.snapshot_waits
+	    || !commands_settled(channel, inputs->bus) || line->slot_load || line->slot_load_q
+	    || line->underrun || !ramps_settled(&channel->ramp_queue, inputs->parameters)
+	    || !lines_settled(channel, inputs->parameters))
+		return 0;
+	uint64_t clocks =
+	    passo_advance_least(ramp_quiet(&channel->ramp), timescale_quiet(channel, moving, clocks_to_slew));
+	for (unsigned i = 0; i < channel->axes && clocks != 0u; i++) {
+		const uint32_t quiet =
+		    passo_axis_quiet(&channel->axis[i], (line->directions >> i & 1u) != 0u);
+		clocks = quiet == UINT32_MAX ? clocks : passo_advance_least(clocks, quiet);
+	}
+	return clocks;
+}

@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: MIT
+"""Histories on the model, through the driver, on Verilator and on Icarus Verilog."""
+
+import re
+import shutil
+import time
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from passo.build import Parameters, rtl_library
+from passo.console import console as terminal
+from passo.toolchain import paths
+from rich.console import Console
+
+from soak.program import BUILD, HERE, Failure, play_program, run, say
+
+# The same as plot_parameters() in plot.c.
+SETS = (
+    Parameters(1, 1, 7, 5, 3),
+    Parameters(1, 3, 7, 2, 2, step_reset=5, dir_reset=3, enable_reset=6),
+    Parameters(2, 2, 7, 3, 4, step_reset=1, dir_reset=4, enable_reset=15),
+)
+DRIVER_SET = 2  # the same as BRIDGE_SET in bridge.h
+
+CHUNK = 50  # histories of one process
+
+
+console = terminal if terminal.is_terminal else Console(width=118)
+
+
+@dataclass
+class Part:
+    """What came of the histories of a part."""
+
+    name: str
+    seconds: float = 0
+    counts: Counter[str] = field(default_factory=Counter)
+    failures: list[Failure] = field(default_factory=list)
+
+
+Work = Callable[[], tuple[Counter[str], list[Failure]]]
+
+
+def _all(part: Part, wanted: int, work: Iterable[Work], jobs: int) -> Part:
+    """Do the work on so many cores, and say how far it is."""
+    began = last = time.monotonic()
+    waiting: Iterator[Work] = iter(work)
+    with ThreadPoolExecutor(jobs) as pool:
+        running = {pool.submit(task) for _, task in zip(range(2 * jobs), waiting, strict=False)}
+        while running:
+            done, running = wait(running, return_when=FIRST_COMPLETED)
+            for future in done:
+                counts, failures = future.result()
+                part.counts += counts
+                part.failures += failures
+                if (task := next(waiting, None)) is not None:
+                    running.add(pool.submit(task))
+            now = time.monotonic()
+            if now - last > 10 or not running:
+                last = now
+                console.print(
+                    f"{part.name}: {part.counts['histories']:,} of {wanted:,} histories, "
+                    f"{len(part.failures)} failed, {now - began:.0f} s",
+                    highlight=False,
+                )
+    part.seconds = time.monotonic() - began
+    for failure in part.failures[:10]:
+        console.print(
+            f"  FAIL {failure.again}: clock {failure.clock}: {failure.text}", style="red", highlight=False
+        )
+    return part
+
+
+def _chunks(histories: int) -> Iterator[tuple[int, int]]:
+    """First history and number of each chunk."""
+    return ((first, min(CHUNK, histories - first)) for first in range(0, histories, CHUNK))
+
+
+def play_model(program: Path, seed: int, histories: int, jobs: int) -> Part:
+    """Histories at the registers, on the C model."""
+
+    def task(first: int, count: int) -> Work:
+        return lambda: play_program([program, str(seed), str(first), str(count), "--keep-on"], "model", seed)
+
+    return _all(Part("model"), histories, (task(*chunk) for chunk in _chunks(histories)), jobs)
+
+
+def play_driver(program: Path, seed: int, histories: int, jobs: int, library: Path | None = None) -> Part:
+    """Histories through the driver over a bad wire, on the C model or also the Verilated core."""
+    name = "driver on verilator" if library else "driver"
+    more = ["--rtl", library] if library else []
+
+    def task(first: int, count: int) -> Work:
+        command = [program, str(seed), str(first), str(count), "--driver", "--keep-on", *more]
+        return lambda: play_program(command, name, seed)
+
+    return _all(Part(name), histories, (task(*chunk) for chunk in _chunks(histories)), jobs)
+
+
+def play_verilator(program: Path, seed: int, histories: int, jobs: int) -> Part:
+    """The same histories on the Verilated core, compared with the model on every clock."""
+    libraries = [rtl_library(parameters) for parameters in SETS]
+
+    def task(number: int, first: int, count: int) -> Work:
+        command = [program, str(seed), str(first), str(count), "--set", str(number), "--keep-on"]
+        return lambda: play_program([*command, "--rtl", libraries[number]], "verilator", seed)
+
+    share = -(-histories // len(SETS))
+    work = (
+        task(number, first * len(SETS) + number, count)
+        for first, count in _chunks(share)
+        for number in range(len(SETS))
+    )
+    return _all(Part("verilator"), share * len(SETS), work, jobs)
+
+
+def _bench(number: int) -> Path:
+    """The player for a set of parameters, compiled by Icarus Verilog."""
+    made = BUILD / f"player{number}.vvp"
+    given = [f"-Psoak_player.{name}={value}" for name, value in SETS[number].verilog().items()]
+    sources = [HERE / "player.v", *sorted(paths.rtl.glob("*.v"))]
+    run(["iverilog", "-g2005", f"-I{paths.rtl}", *given, "-s", "soak_player", "-o", made, *sources])
+    return made
+
+
+def play_icarus(program: Path, seed: int, histories: int, jobs: int) -> Part:
+    """Histories recorded from the judged model and played to the core on Icarus Verilog."""
+    benches = [_bench(number) for number in range(len(SETS))]
+    folder = BUILD / "records"
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+
+    def play(history: int) -> tuple[Counter[str], list[Failure]]:
+        record = folder / f"{history}.txt"
+        command = [program, str(seed), str(history), "1", "--record", folder, "--short"]
+        counts, failures = play_program(command, "icarus", seed)
+        bench = ["vvp", str(benches[history % len(SETS)]), f"+record={record}"]
+        said = say(bench)[1].strip()
+        record.unlink()
+        if not re.fullmatch(r"same [1-9]\d*", said):
+            clock = re.match(r"clock (\d+)", said)
+            failures.append(Failure("icarus", seed, history, int(clock[1]) if clock else 0, said))
+        return counts, failures
+
+    return _all(
+        Part("icarus"),
+        histories,
+        ((lambda history=history: play(history)) for history in range(histories)),
+        jobs,
+    )

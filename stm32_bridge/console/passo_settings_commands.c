@@ -1,0 +1,221 @@
+/* SPDX-License-Identifier: MIT
+ * Commands that open the core and set it up.
+ */
+#include <string.h>
+
+#include "passo_call.h"
+#include "passo_commands.h"
+
+#define BAUD_MIN 115200u
+#define BAUD_MAX 1000000u
+#define CLOCK_HZ_MIN 1000000u
+
+static const struct passo_key CONFIG_AXIS_KEYS[] = {
+    PASSO_VALUE("axis", axis, AXIS, NULL),
+    PASSO_VALUE("step_high", config.step_high_ns, PIN_TIME, ""),
+    PASSO_VALUE("step_low", config.step_low_ns, PIN_TIME, ""),
+    PASSO_VALUE("dir_setup", config.dir_setup_ns, PIN_TIME, ""),
+    PASSO_VALUE("dir_hold", config.dir_hold_ns, PIN_TIME, ""),
+    PASSO_VALUE("step_inverted", config.step_inverted, FLAG, ""),
+    PASSO_VALUE("direction_inverted", config.direction_inverted, FLAG, ""),
+    PASSO_VALUE("enable_inverted", config.enable_inverted, FLAG, ""),
+    PASSO_VALUE("both_edges", config.both_edges, FLAG, ""),
+    PASSO_VALUE("steps_per_unit", config.steps_per_unit, NUMBER, ""),
+};
+static const struct passo_key CONFIG_KEYS[] = {
+    PASSO_WHOLE("clock_hz", clock_hz, CLOCK_HZ_MIN, UINT32_MAX, ""),
+    PASSO_VALUE("hold_time", hold_microseconds, MICROSECONDS, ""),
+    PASSO_VALUE("stop_time", stop_microseconds, MICROSECONDS, ""),
+    PASSO_WHOLE("baud", baud, BAUD_MIN, BAUD_MAX, ""),
+    PASSO_VALUE("spi_slow", on, FLAG, ""),
+};
+
+void passo_commands_reset_axes(struct passo_console *console)
+{
+	uint32_t clocks = (console->clock_hz + 999999u) / 1000000u;
+
+	for (unsigned axis = 0; axis < PASSO_AXES_MAX; axis++)
+		console->axis[axis] = (struct passo_axis_config){.in_clocks = true,
+		    .step_high_ns = clocks,
+		    .step_low_ns = clocks,
+		    .dir_setup_ns = clocks,
+		    .dir_hold_ns = clocks};
+}
+
+/* Give the core the settings. */
+static enum passo_error set_up(struct passo_console *console)
+{
+	struct passo *passo = &console->passo;
+	enum passo_error error =
+	    passo_configure_motion(passo, console->hold_microseconds, console->stop_microseconds, 0);
+
+	for (uint8_t axis = 0; axis < passo_machine(passo)->axes && error == PASSO_OK; axis++)
+		error = passo_configure_axis(passo, axis, &console->axis[axis]);
+	console->unset = error != PASSO_OK;
+	return error;
+}
+
+enum passo_error passo_commands_open(struct passo_console *console)
+{
+	const struct passo_options options = {.clock_hz = console->clock_hz};
+	enum passo_error error = passo_open(&console->passo, &console->host, &console->hardware, &options);
+
+	console->opened = error == PASSO_OK || error == PASSO_ERROR_MOVING;
+	console->unset = true;
+	console->noted = PASSO_OK;
+	return error == PASSO_OK ? set_up(console) : error;
+}
+
+/* A core that was reset does not move any more, whatever was queued. */
+static bool is_moving(const struct passo_console *console)
+{
+	return console->opened && !console->host.lost && passo_is_moving(&console->passo);
+}
+
+bool passo_run_open(const struct passo_call *call)
+{
+	if (is_moving(call->console))
+		return passo_answer(call, PASSO_ERROR_MOVING);
+	return passo_answer(call, passo_commands_open(call->console));
+}
+
+bool passo_run_clear(const struct passo_call *call)
+{
+	enum passo_error error = passo_clear(&call->console->passo);
+
+	if (error == PASSO_OK && call->console->unset)
+		error = set_up(call->console);
+	return passo_answer(call, error);
+}
+
+/* Only what is given changes. */
+static bool config_axis(const struct passo_call *call)
+{
+	struct passo_console *console = call->console;
+	struct passo_axis_config *config = &call->values->config;
+	uint8_t axis;
+
+	if (!passo_keys_check(call->reading, CONFIG_AXIS_KEYS, PASSO_COUNT(CONFIG_AXIS_KEYS), 0, call->words)
+	    || !passo_keys_read(call->reading, CONFIG_AXIS_KEYS, 1, call->words, call->values))
+		return false;
+	axis = call->values->axis;
+	*config = console->axis[axis];
+	if (!passo_keys_read(
+		call->reading, CONFIG_AXIS_KEYS, PASSO_COUNT(CONFIG_AXIS_KEYS), call->words, call->values))
+		return false;
+	if (call->words->count > 1u) {
+		if (console->opened
+		    && !passo_answer(call, passo_configure_axis(&console->passo, axis, config)))
+			return false;
+		console->axis[axis] = *config;
+		return console->opened || passo_answer(call, PASSO_OK);
+	}
+	passo_say(&console->sink, "ok axis=%u step_high=%uclocks step_low=%uclocks dir_setup=%uclocks",
+	    (uint32_t)axis, config->step_high_ns, config->step_low_ns, config->dir_setup_ns);
+	passo_say(&console->sink, " dir_hold=%uclocks step_inverted=%u direction_inverted=%u",
+	    config->dir_hold_ns, (uint32_t)config->step_inverted, (uint32_t)config->direction_inverted);
+	passo_say(&console->sink, " enable_inverted=%u both_edges=%u steps_per_unit=%m",
+	    (uint32_t)config->enable_inverted, (uint32_t)config->both_edges,
+	    passo_thousandths((int64_t)config->steps_per_unit));
+	return true;
+}
+
+/* Another clock means that all times are others: the core is opened anew, with the settings of a start. */
+static enum passo_error set_clock(struct passo_console *console, uint32_t clock_hz)
+{
+	if (is_moving(console))
+		return PASSO_ERROR_MOVING;
+	console->clock_hz = clock_hz;
+	passo_commands_reset_axes(console);
+	return passo_commands_open(console);
+}
+
+static bool config_board(const struct passo_call *call)
+{
+	struct passo_console *console = call->console;
+	const struct passo_console_board *board = &console->board;
+	bool has_clock = passo_words_find(call->words, "clock_hz") != NULL;
+	bool has_baud = passo_words_find(call->words, "baud") != NULL;
+	bool has_spi = passo_words_find(call->words, "spi_slow") != NULL;
+	struct passo_values *values = call->values;
+	enum passo_error error = PASSO_OK;
+
+	values->hold_microseconds = console->hold_microseconds;
+	values->stop_microseconds = console->stop_microseconds;
+	if (!passo_keys_check(call->reading, CONFIG_KEYS, PASSO_COUNT(CONFIG_KEYS), 0, call->words)
+	    || !passo_keys_read(call->reading, CONFIG_KEYS, PASSO_COUNT(CONFIG_KEYS), call->words, values))
+		return false;
+	if ((has_baud && board->set_baud == NULL) || (has_spi && board->set_spi_fast == NULL))
+		return passo_complain(&console->sink, "there is no board whose lines could be set");
+	if (has_clock)
+		error = set_clock(console, values->clock_hz);
+	if (error == PASSO_OK && console->opened)
+		error = passo_configure_motion(
+		    &console->passo, values->hold_microseconds, values->stop_microseconds, 0);
+	if (!passo_answer(call, error))
+		return false;
+	console->hold_microseconds = values->hold_microseconds;
+	console->stop_microseconds = values->stop_microseconds;
+	if (has_spi) {
+		console->spi_slow = values->on;
+		board->set_spi_fast(board->context, !values->on);
+	}
+	if (has_baud) {
+		console->baud = values->baud;
+		passo_say(&console->sink, "\n"); /* before the other speed */
+		board->set_baud(board->context, values->baud);
+	}
+	return !has_baud;
+}
+
+bool passo_run_config(const struct passo_call *call)
+{
+	struct passo_console *console = call->console;
+
+	if (passo_words_find(call->words, "axis") != NULL)
+		return config_axis(call);
+	if (call->words->count > 0u)
+		return config_board(call);
+	passo_say(&console->sink, "ok clock_hz=%u hold_time=%uus stop_time=%uus", console->clock_hz,
+	    console->hold_microseconds, console->stop_microseconds);
+	if (console->board.set_baud)
+		passo_say(&console->sink, " baud=%u spi_slow=%u", console->baud, (uint32_t)console->spi_slow);
+	return true;
+}
+
+void passo_config_help(const struct passo_sink *sink)
+{
+	passo_say(sink, "  config");
+	passo_keys_help(sink, CONFIG_AXIS_KEYS, PASSO_COUNT(CONFIG_AXIS_KEYS));
+	passo_say(sink, "\n  config");
+	passo_keys_help(sink, CONFIG_KEYS, PASSO_COUNT(CONFIG_KEYS));
+	passo_say(sink, "\n");
+}
+
+/* Load a row, or tell what the table is. */
+bool passo_run_table(const struct passo_call *call)
+{
+	struct passo_loaded_table *table = &call->console->table;
+	const struct passo_sink *sink = &call->console->sink;
+	uint32_t row = call->values->number;
+	struct passo_table_facts facts;
+	enum passo_plan_error error;
+
+	if (call->reading->given == 1u || call->reading->given == 2u)
+		return passo_complain(sink, "row and points belong together");
+	if (call->reading->given != 0u) {
+		memcpy(table->points + row * PASSO_POINTS_PER_LINE, call->values->points,
+		    sizeof call->values->points);
+		table->loaded |= (uint16_t)(1u << row);
+		return passo_answer(call, PASSO_OK);
+	}
+	if (table->loaded != PASSO_TABLE_LOADED)
+		return passo_complain(sink, "table is missing");
+	error = passo_table_check(table->points, &facts);
+	if (error != PASSO_PLAN_OK)
+		return passo_complain(sink, "%s: point %u: %s", passo_plan_error_name(error),
+		    (uint32_t)facts.worst, passo_plan_error_text(error));
+	passo_say(
+	    sink, "ok mean=%m symmetric=%u", (int64_t)facts.mean * 1000 >> 24, (uint32_t)facts.symmetric);
+	return true;
+}

@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: MIT
+ * What the driver believes of the channel and expects of it, and whether a motion may begin.
+ */
+#include "passo_driver.h"
+
+bool passo_driver_is_broken(const struct passo *passo)
+{
+	return passo->belief >= PASSO_BELIEF_BROKEN;
+}
+
+bool passo_driver_is_stopped(const struct passo *passo)
+{
+	return passo->belief == PASSO_BELIEF_STOPPED || passo->belief == PASSO_BELIEF_BROKEN_STOPPED;
+}
+
+bool passo_driver_is_turning(const struct passo *passo)
+{
+	return passo->expects >= PASSO_EXPECT_TURNING;
+}
+
+void passo_driver_doubt(struct passo *passo, enum passo_belief worse)
+{
+	if (passo->belief == PASSO_BELIEF_READY)
+		passo->belief = worse;
+	else if (passo->belief != worse)
+		passo->belief = PASSO_BELIEF_BROKEN_STOPPED;
+}
+
+void passo_driver_break(struct passo *passo)
+{
+	passo_driver_doubt(passo, PASSO_BELIEF_BROKEN);
+	if (!passo_driver_is_turning(passo))
+		passo->expects = PASSO_EXPECT_END;
+	passo->idle_looks = 0;
+}
+
+void passo_driver_expect(struct passo *passo, const struct passo_line *line)
+{
+	for (unsigned i = 0; i < passo->machine.axes; i++) {
+		uint32_t steps = (line->directions >> i & 1u) != 0u ? 0u - line->steps[i] : line->steps[i];
+		passo->axis[i].expected = (int32_t)((uint32_t)passo->axis[i].expected + steps);
+	}
+	if (passo->expects == PASSO_EXPECT_NOTHING)
+		passo->expects = PASSO_EXPECT_POSITIONS;
+	passo->idle_looks = 0;
+}
+
+void passo_driver_ended(struct passo *passo, const int32_t *positions)
+{
+	for (unsigned i = 0; i < passo->machine.axes; i++)
+		passo->axis[i].expected = positions[i];
+	passo->expects = PASSO_EXPECT_NOTHING;
+	passo->idle_looks = 0;
+}
+
+enum passo_error passo_driver_take_over(struct passo *passo)
+{
+	const uint32_t rate = passo_driver_rate(passo);
+	int32_t positions[PASSO_AXES_MAX];
+	enum passo_error error = PASSO_OK;
+
+	if (passo->snapshot.state == PASSO_STATE_IDLE && !passo_driver_at_rest(passo))
+		error = passo_driver_command(passo, (struct passo_channel_command){.abort = true});
+	if (error == PASSO_OK && !passo_driver_at_rest(passo))
+		error = passo_driver_command(passo, (struct passo_channel_command){.clear = true});
+	if (error == PASSO_OK)
+		error = passo_driver_write(passo, PASSO_CHANNEL_RATE_TARGET, &rate, 1);
+	if (error == PASSO_OK)
+		error = passo_driver_look(passo, false);
+	if (error == PASSO_OK)
+		error = passo_driver_positions(passo, positions, false);
+	if (error != PASSO_OK)
+		return error;
+	passo_driver_ended(passo, positions);
+	passo->belief = PASSO_BELIEF_READY;
+	passo->fault = PASSO_OK;
+	return passo_driver_at_rest(passo) ? PASSO_OK : PASSO_ERROR_MOVING;
+}
+
+enum passo_error passo_driver_ready(struct passo *passo, bool needs_rest)
+{
+	enum passo_error error = passo_driver_restrain(passo, PASSO_POST_RUN);
+
+	if (error != PASSO_OK)
+		return error;
+	if (passo_driver_is_broken(passo))
+		return PASSO_ERROR_BROKEN;
+	if (passo_driver_is_stopped(passo))
+		return PASSO_ERROR_STOPPED;
+	if (passo->stream != PASSO_STREAM_NONE)
+		return PASSO_ERROR_STREAMING;
+	error = needs_rest ? passo_driver_look_at_rest(passo) : passo_driver_look(passo, false);
+	if (error != PASSO_OK)
+		return error;
+	if (passo->snapshot.state == PASSO_STATE_STOPPED || passo->snapshot.stopping)
+		return PASSO_ERROR_STOPPED;
+	if (passo_driver_is_turning(passo) && passo_driver_at_rest(passo)) {
+		int32_t positions[PASSO_AXES_MAX];
+		error = passo_driver_positions(passo, positions, false);
+		if (error != PASSO_OK)
+			return error;
+		passo_driver_ended(passo, positions);
+	}
+	if (passo_driver_is_turning(passo) || (needs_rest && !passo_driver_at_rest(passo)))
+		return PASSO_ERROR_MOVING;
+	return PASSO_OK;
+}

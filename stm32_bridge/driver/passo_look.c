@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: MIT
+ * Looking: state and positions of the channel, and whether it rests.
+ */
+#include "passo_driver.h"
+
+#define STATE_WORDS 4u
+
+/* Four steps that wait and one under way, with four times of at most 65535 clocks each, take no longer than
+ * so many looks: one takes more than 1024 clocks. */
+#define PIN_LOOKS_MAX 1280u
+
+/* No motion runs or waits; steps may still be at the pins. */
+static bool is_empty(const struct passo *passo)
+{
+	const struct passo_snapshot *snapshot = &passo->snapshot;
+
+	return snapshot->state == PASSO_STATE_IDLE && snapshot->line_room == passo->line_places
+	    && snapshot->ramp_room == passo->ramp_places;
+}
+
+enum passo_error passo_driver_look(struct passo *passo, bool once)
+{
+	const uint16_t address = (uint16_t)(passo->base + PASSO_CHANNEL_STATE);
+	struct passo_snapshot *snapshot = &passo->snapshot;
+	uint32_t words[STATE_WORDS]; /* STATE, RATE, ROOM, VELOCITY */
+	enum passo_error error = once ? passo_host_read_once(passo->host, address, words, STATE_WORDS)
+	                              : passo_host_read(passo->host, address, words, STATE_WORDS);
+
+	passo->looked_at = passo_driver_now(passo);
+	if (error != PASSO_OK)
+		return error;
+	const struct passo_channel_state state = passo_unpack_channel_state(words[0]);
+	const struct passo_channel_room room = passo_unpack_channel_room(words[2]);
+	*snapshot = (struct passo_snapshot){
+	    .state = state.state,
+	    .cause = state.cause,
+	    .quiet = state.quiet,
+	    .stopping = state.stopping,
+	    .overrun = state.overrun,
+	    .drained = state.drained,
+	    .rate = words[1],
+	    .line_room = room.line_room,
+	    .ramp_room = room.ramp_room,
+	    .velocity = words[3],
+	};
+	return PASSO_OK;
+}
+
+enum passo_error passo_driver_look_at_rest(struct passo *passo)
+{
+	const struct passo_snapshot *snapshot = &passo->snapshot;
+	enum passo_error error = passo_driver_look(passo, false);
+
+	for (unsigned looks = 1; error == PASSO_OK && looks < PIN_LOOKS_MAX && !snapshot->quiet
+	                         && (snapshot->state == PASSO_STATE_STOPPED || is_empty(passo));
+	    looks++)
+		error = passo_driver_look(passo, false);
+	return error;
+}
+
+enum passo_error passo_driver_positions(struct passo *passo, int32_t *positions, bool once)
+{
+	const uint16_t address = (uint16_t)(passo->base + PASSO_CHANNEL_POSITION_BASE);
+	uint32_t words[PASSO_AXES_MAX];
+	enum passo_error error = once ? passo_host_read_once(passo->host, address, words, passo->machine.axes)
+	                              : passo_host_read(passo->host, address, words, passo->machine.axes);
+
+	if (error != PASSO_OK)
+		return error;
+	for (unsigned i = 0; i < passo->machine.axes; i++)
+		positions[i] = (int32_t)words[i];
+	return PASSO_OK;
+}
+
+bool passo_driver_at_rest(const struct passo *passo)
+{
+	return is_empty(passo) && passo->snapshot.quiet;
+}

@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: MIT
+ * Opening a channel.
+ */
+#include <string.h>
+
+#include "passo_driver.h"
+
+#define OPEN_WORDS 4u
+
+static bool fits(uint32_t actual, uint8_t expected)
+{
+	return expected == 0u || actual == expected;
+}
+
+/* What the core is, against what is expected. */
+static enum passo_error identify(struct passo *passo, const struct passo_options *options, uint32_t *run)
+{
+	uint32_t words[OPEN_WORDS]; /* IDENTIFICATION, VERSION, PARAMETERS, RUN */
+	enum passo_error error =
+	    passo_host_read(passo->host, PASSO_ADDRESS_IDENTIFICATION, words, OPEN_WORDS);
+
+	if (error != PASSO_OK)
+		return error;
+	if (words[0] != PASSO_IDENTIFICATION_RESET)
+		return PASSO_ERROR_NOT_PASSO;
+	const struct passo_version version = passo_unpack_version(words[1]);
+	if (version.major != PASSO_VERSION_MAJOR_RESET || version.minor != PASSO_VERSION_MINOR_RESET)
+		return PASSO_ERROR_VERSION;
+
+	const struct passo_parameters_word core = passo_unpack_parameters(words[2]);
+	if (!fits(core.channels, options->channels) || !fits(core.axes, options->axes)
+	    || !fits(core.tick_log2, options->tick_log2) || options->channel >= core.channels
+	    || core.axes == 0u || core.axes > PASSO_AXES_MAX)
+		return PASSO_ERROR_PARAMETERS;
+	passo->machine = (struct passo_machine){
+	    .clock_hz = options->clock_hz, .tick_log2 = core.tick_log2, .axes = core.axes};
+	passo->line_places = (uint16_t)(1u << core.line_queue_log2);
+	passo->ramp_places = (uint16_t)(1u << core.ramp_queue_log2);
+	*run = words[3];
+	return PASSO_OK;
+}
+
+/* Identifies the core and takes over the channel, but leaves one in motion alone. */
+static enum passo_error make_contact(struct passo *passo, const struct passo_options *options)
+{
+	struct passo_host *host = passo->host;
+	uint32_t run;
+	enum passo_error error = identify(passo, options, &run);
+
+	if (error != PASSO_OK)
+		return error;
+	if (!host->guarded) {
+		host->run = run;
+		if (host->fresh && run == 0u)
+			passo_driver_tables_fresh(host);
+	}
+	error = passo_driver_look(passo, false);
+	const bool is_quiet = passo->snapshot.quiet;
+	if (error == PASSO_OK && is_quiet && !passo_driver_at_rest(passo))
+		error = passo_driver_gate(passo, PASSO_GATE_CLOSED);
+	if (error == PASSO_OK && is_quiet)
+		error = passo_driver_take_over(passo);
+	/* what follows a motion of the past is not to start */
+	if (error == PASSO_OK)
+		error = passo_driver_gate(passo, is_quiet ? PASSO_GATE_OPEN : PASSO_GATE_CLOSED);
+	if (error == PASSO_OK && !host->guarded)
+		error = passo_host_guard(host, passo->machine.axes, options->clock_hz);
+	return error;
+}
+
+enum passo_error passo_open_channel(
+    struct passo *passo, struct passo_host *host, const struct passo_options *options)
+{
+	if (!passo || !host || !options || options->clock_hz == 0u || options->channel >= PASSO_CHANNELS_MAX)
+		return PASSO_ERROR_ARGUMENT;
+	memset(passo, 0, sizeof *passo);
+	passo->host = host;
+	passo->channel = options->channel;
+	passo->base =
+	    (uint16_t)(PASSO_ADDRESS_CHANNEL_BASE + options->channel * PASSO_ADDRESS_CHANNEL_STRIDE);
+	passo->rate_target = PASSO_RATE_FULL;
+	enum passo_error error = make_contact(passo, options);
+	passo->belief = error == PASSO_OK ? PASSO_BELIEF_READY : PASSO_BELIEF_NOT_OPEN;
+	if (error != PASSO_OK || passo->snapshot.quiet)
+		return error;
+	passo_driver_break(passo); /* a motion of the past */
+	return PASSO_ERROR_MOVING;
+}
+
+enum passo_error passo_open(struct passo *passo, struct passo_host *host,
+    const struct passo_hardware *hardware, const struct passo_options *options)
+{
+	if (!passo || !options || options->clock_hz == 0u || options->channel >= PASSO_CHANNELS_MAX)
+		return PASSO_ERROR_ARGUMENT;
+	passo->belief = PASSO_BELIEF_NOT_OPEN;
+	enum passo_error error = passo_host_open(host, hardware);
+	return error != PASSO_OK ? error : passo_open_channel(passo, host, options);
+}

@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: MIT
+ * What the source of a stream gives: when it is asked, and what is taken of it.
+ */
+#include "passo_driver.h"
+
+static uint32_t line_words(const struct passo *passo)
+{
+	return PASSO_LINE_WORDS((uint32_t)passo->machine.axes);
+}
+
+static uint32_t smaller(uint32_t a, uint32_t b)
+{
+	return a < b ? a : b;
+}
+
+/* So many at a time are worth a frame: as many as fit, half a small queue; anything while nothing moves yet.
+ */
+static uint32_t worthwhile(const struct passo *passo, uint32_t words, uint32_t places)
+{
+	return passo->stream == PASSO_STREAM_FILLS ? 1u
+	                                           : smaller(PASSO_FRAME_PAYLOAD_MAX / words, places / 2u);
+}
+
+bool passo_driver_wants_lines(const struct passo *passo)
+{
+	return passo->lines == PASSO_SUPPLY_MORE
+	    && passo->snapshot.line_room >= worthwhile(passo, line_words(passo), passo->line_places);
+}
+
+bool passo_driver_wants_ramps(const struct passo *passo)
+{
+	return passo->ramps == PASSO_SUPPLY_MORE
+	    && passo->snapshot.ramp_room >= worthwhile(passo, PASSO_RAMP_WORDS, passo->ramp_places);
+}
+
+/* A source that had nothing may have something now. */
+static enum passo_supply ask_again(enum passo_supply supply)
+{
+	return supply == PASSO_SUPPLY_DRY ? PASSO_SUPPLY_MORE : supply;
+}
+
+void passo_driver_ask_again(struct passo *passo)
+{
+	passo->lines = ask_again(passo->lines);
+	passo->ramps = ask_again(passo->ramps);
+}
+
+static bool is_line(const struct passo *passo, const struct passo_line *line)
+{
+	if (line->substeps == 0u || line->substeps > PASSO_SUBSTEPS_MAX
+	    || line->directions >> passo->machine.axes != 0u)
+		return false;
+	for (unsigned i = 0; i < passo->machine.axes; i++) {
+		if (line->steps[i] > line->substeps)
+			return false;
+	}
+	return true;
+}
+
+static bool is_ramp(const struct passo_ramp *ramp)
+{
+	return !ramp->now && ramp->velocity_end <= PASSO_VELOCITY_MAX
+	    && (unsigned)ramp->shape <= PASSO_SHAPE_EASE && ramp->progress_step <= PASSO_PROGRESS_STEP_MAX;
+}
+
+enum passo_error passo_driver_take_lines(struct passo *passo, size_t *length)
+{
+	const uint32_t most = smaller(passo->snapshot.line_room, PASSO_FRAME_PAYLOAD_MAX / line_words(passo));
+	uint32_t *payload = passo_host_payload(passo->host);
+	uint32_t count = 0;
+
+	while (count < most && passo->lines != PASSO_SUPPLY_DONE) {
+		struct passo_line line = {0};
+		if (!passo->source.line(passo->source.context, &line)) {
+			passo->lines = PASSO_SUPPLY_DRY;
+			break;
+		}
+		if (!is_line(passo, &line))
+			return PASSO_ERROR_SUPPLY;
+		if (!passo_driver_pins_known(passo, &line))
+			return PASSO_ERROR_NOT_CONFIGURED;
+		*length += passo_line_words(payload + *length, &line, passo->machine.axes);
+		if (line.last)
+			passo->lines = PASSO_SUPPLY_DONE;
+		passo_driver_expect(passo, &line);
+		if (line.endless)
+			passo->expects = PASSO_EXPECT_END;
+		count++;
+	}
+	passo->snapshot.line_room = (uint16_t)(passo->snapshot.line_room - count);
+	return PASSO_OK;
+}
+
+enum passo_error passo_driver_take_ramps(struct passo *passo, size_t *length)
+{
+	const uint32_t most = smaller(passo->snapshot.ramp_room, PASSO_FRAME_PAYLOAD_MAX / PASSO_RAMP_WORDS);
+	uint32_t *payload = passo_host_payload(passo->host);
+	uint32_t count = 0;
+
+	while (count < most && passo->ramps != PASSO_SUPPLY_DONE) {
+		struct passo_ramp ramp = {0};
+		if (!passo->source.ramp(passo->source.context, &ramp)) {
+			passo->ramps = PASSO_SUPPLY_DRY;
+			break;
+		}
+		if (!is_ramp(&ramp))
+			return PASSO_ERROR_SUPPLY;
+		*length += passo_ramp_words(payload + *length, &ramp);
+		if (ramp.last)
+			passo->ramps = PASSO_SUPPLY_DONE;
+		count++;
+	}
+	passo->snapshot.ramp_room = (uint16_t)(passo->snapshot.ramp_room - count);
+	return PASSO_OK;
+}

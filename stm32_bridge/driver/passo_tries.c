@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: MIT
+ * Tries of a frame, until it is known what became of it. See passo_host.h.
+ *
+ * How a reset of the core is noticed: status words carry the sequence that the core accepted last. A reply to
+ * the first try of a frame must show one that this host has sent; a core after reset shows 0, which is never
+ * sent. When the first reply was not clear, the frame itself may have changed that number already: then a
+ * counter of refusals is read, which the host has made other than 0, and which is 0 after reset.
+ */
+#include "passo_tries.h"
+
+#include <string.h>
+
+#include "passo_exchange.h"
+#include "passo_words.h"
+
+/* A refused read repeats its ack. With this sequence it is no ack of the same sequence when a clock was lost
+ * or doubled: shifted by a bit, in either direction, it is another number. */
+#define READ_SEQUENCE 0x55u
+
+/* Sequences are 1 .. 255. */
+static uint8_t sequence_after(uint8_t sequence)
+{
+	return sequence == 255u ? 1u : (uint8_t)(sequence + 1u);
+}
+
+/* Is this the core that this host knows: what it accepted last is one of those sent since the last one that
+ * it is known to have accepted, up to `newest`. */
+static bool continues(const struct passo_host *host, uint8_t last, uint8_t newest)
+{
+	uint8_t sequence = host->accepted;
+
+	while (sequence != last && sequence != newest)
+		sequence = sequence_after(sequence);
+	return sequence == last;
+}
+
+bool passo_host_is_unsure(const struct passo_host *host)
+{
+	const uint8_t first = host->accepted != 0u ? host->accepted : 1u;
+
+	return sequence_after(host->last_sequence) == first && host->last_sequence != host->accepted;
+}
+
+static enum passo_error lose(struct passo_host *host)
+{
+	host->lost = true;
+	return PASSO_ERROR_CORE_RESET;
+}
+
+/* One try of a read. */
+static enum passo_error try_read(struct passo_host *host)
+{
+	bool known;
+	enum passo_error error = passo_host_exchange(host, &known);
+
+	if (error == PASSO_OK && !known) {
+		host->counters.damaged++;
+		return PASSO_ERROR_DAMAGED;
+	}
+	if (!known)
+		return error;
+	uint8_t last = passo_unpack_status(host->status).sequence;
+	if (host->guarded && !continues(host, last, host->last_sequence))
+		return lose(host);
+	host->accepted = last;
+	if (passo_host_is_unsure(host))
+		host->last_sequence = host->sent_before = last;
+	passo_host_count_room(host, known, false);
+	return error;
+}
+
+static bool is_final(enum passo_error error)
+{
+	return error == PASSO_OK || error == PASSO_ERROR_TRANSFER || error == PASSO_ERROR_CORE_RESET
+	    || error >= PASSO_ERROR_REFUSED;
+}
+
+enum passo_error passo_host_read_with(
+    struct passo_host *host, uint16_t address, uint32_t *words, size_t length, uint8_t tries)
+{
+	enum passo_error error;
+
+	host->words = passo_frame_read(host->send, READ_SEQUENCE, address, length);
+	host->attempt = 0;
+	do
+		error = try_read(host);
+	while (!is_final(error) && host->attempt < tries);
+	if (error == PASSO_OK)
+		memcpy(words, host->receive + PASSO_FRAME_DATA, length * sizeof *words);
+	else if (!is_final(error) && tries > 1u)
+		host->counters.failed++;
+	return error;
+}
+
+enum passo_error passo_host_prove(struct passo_host *host, uint8_t tries)
+{
+	uint32_t refusals;
+	enum passo_error error = passo_host_read_with(host, PASSO_ADDRESS_REFUSALS_1, &refusals, 1, tries);
+
+	if (error == PASSO_OK && passo_unpack_refusals_1(refusals).read_only == 0u)
+		return lose(host);
+	return error;
+}
+
+static bool is_run(const struct passo_host *host)
+{
+	const struct passo_header header = passo_unpack_header(host->send[0]);
+
+	return header.operation == PASSO_OPERATION_WRITE && header.address == PASSO_ADDRESS_RUN;
+}
+
+void passo_host_give_up(struct passo_host *host)
+{
+	const struct passo_run before = passo_unpack_run(host->run);
+	struct passo_run run = passo_unpack_run(host->send[1]);
+
+	if (!is_run(host))
+		return;
+	run.run &= before.run;
+	run.wait_sync |= before.wait_sync;
+	host->run = passo_pack_run(&run);
+	host->run_due = true;
+}
+
+/* One try of a write; PENDING: there must be another, or it must be proved. */
+static enum passo_error try_write(struct passo_host *host)
+{
+	const bool first = host->attempt == 0u;
+	bool known;
+	enum passo_error error = passo_host_exchange(host, &known);
+
+	if (known && first && host->guarded
+	    && !continues(host, passo_unpack_status(host->status).sequence, host->sent_before))
+		return lose(host);
+	if (error == PASSO_OK || error >= PASSO_ERROR_REFUSED)
+		passo_host_count_room(host, known, error == PASSO_OK);
+	if (error == PASSO_OK) {
+		host->accepted = host->last_sequence;
+		if (is_run(host)) {
+			host->run = host->send[1];
+			host->run_due = false;
+		}
+		host->proving = host->guarded && !(known && first);
+		return host->proving ? PASSO_PENDING : PASSO_OK;
+	}
+	if (!is_final(error) && host->attempt != host->hardware.tries)
+		return PASSO_PENDING;
+	host->counters.failed += !is_final(error);
+	if (error < PASSO_ERROR_REFUSED)
+		passo_host_give_up(host);
+	return error;
+}
+
+enum passo_error passo_host_step_write(struct passo_host *host)
+{
+	if (!host->proving)
+		return try_write(host);
+	enum passo_error error = passo_host_prove(host, 1);
+	host->proofs++;
+	return is_final(error) || host->proofs == host->hardware.tries ? error : PASSO_PENDING;
+}
+
+void passo_host_begin_write(struct passo_host *host, enum passo_operation operation, uint16_t address,
+    const uint32_t *words, size_t length)
+{
+	host->sent_before = host->last_sequence;
+	host->last_sequence = sequence_after(host->last_sequence);
+	host->words = operation == PASSO_OPERATION_PUSH
+	                ? passo_frame_push(host->send, host->last_sequence, address, words, length)
+	                : passo_frame_write(host->send, host->last_sequence, address, words, length);
+	host->attempt = host->proofs = 0;
+	host->proving = false;
+}
