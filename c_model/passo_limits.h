@@ -40,7 +40,7 @@
 #define PASSO_UNIT_Q32 UINT64_C(4294967296)
 
 /* A sigmoid's alpha is in units of 1 / 4096. */
-#define PASSO_ALPHA_UNIT 4096u
+#define PASSO_ALPHA_ONE 4096u
 
 /* Smallest alpha. */
 #define PASSO_ALPHA_MIN       3u

@@ -17,7 +17,7 @@
 #define PASSO_PLAN_RAMPS_MAX 9u
 
 /* The core's table is made for this alpha after reset. */
-#define PASSO_SIGMOID_ALPHA_RESET (PASSO_ALPHA_RESET * PASSO_ALPHA_UNIT)
+#define PASSO_SIGMOID_ALPHA_RESET (PASSO_ALPHA_RESET * PASSO_ALPHA_ONE)
 
 enum passo_plan_error {
 	PASSO_PLAN_OK = 0,

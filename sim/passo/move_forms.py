@@ -21,7 +21,7 @@ DECIMALS_MAX = 30
 # Speeds and their like are UQ32.32, with a sign Q31.32: an integer x stands for x / 2^32.
 UNIT_Q32 = 4294967296
 # A sigmoid's alpha is in units of 1 / 4096.
-ALPHA_UNIT = 4096
+ALPHA_ONE = 4096
 # Smallest alpha.
 ALPHA_MIN = 3
 # Largest alpha.
@@ -150,7 +150,7 @@ FORMS = {
             Key("stop_speed", "number", "stop_speed", factor=UNIT_Q32, default=0),
             Key("accelerate_time", "time", "accelerate_clocks", factor="clock_hz"),
             Key("decelerate_time", "time", "decelerate_clocks", factor="clock_hz", default="accelerate_time"),
-            Key("alpha", "alpha", "alpha", factor=ALPHA_UNIT, default=5),
+            Key("alpha", "alpha", "alpha", factor=ALPHA_ONE, default=5),
         ),
     ),
     "jerk": Form(

@@ -28,7 +28,7 @@ enum passo_reader {
 	PASSO_READ_TIME,         /* uint64_t clocks, to the nearest */
 	PASSO_READ_PIN_TIME,     /* uint32_t clocks, rounded up, 1 .. PASSO_PIN_CLOCKS_MAX */
 	PASSO_READ_MICROSECONDS, /* uint32_t, to the nearest, saturates */
-	PASSO_READ_ALPHA,        /* uint32_t in 1/PASSO_ALPHA_UNIT */
+	PASSO_READ_ALPHA,        /* uint32_t in 1/PASSO_ALPHA_ONE */
 	PASSO_READ_DISTANCE,     /* int64_t[] Q31.32, one per axis */
 	PASSO_READ_PER_AXIS,     /* uint64_t in each passo_axis_limits: one number for all axes, or a list */
 	PASSO_READ_PROFILE,      /* enum passo_profile */

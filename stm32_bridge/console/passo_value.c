@@ -177,7 +177,7 @@ bool passo_value_read(
 	case PASSO_READ_PIN_TIME:
 		return passo_number_pin_time(reading, key, text, place);
 	case PASSO_READ_ALPHA:
-		if (!passo_number_read(reading, key, all, PASSO_ALPHA_UNIT, &wide))
+		if (!passo_number_read(reading, key, all, PASSO_ALPHA_ONE, &wide))
 			return false;
 		*(uint32_t *)place = wide > UINT32_MAX ? UINT32_MAX : (uint32_t)wide;
 		return true;
