@@ -27,11 +27,12 @@ def main() -> int:
 
     try:
         schema = read(ROOT)
+        made = {name: write(schema) for name, write in OUTPUTS.items()}
+        for name in PAGES:
+            made[name] = docs.fill(schema, name, (ROOT / name).read_text(encoding="utf-8"))
     except SchemaError as error:
         print(f"{SOURCE}: {error}", file=sys.stderr)
         return 2
-    made = {name: write(schema) for name, write in OUTPUTS.items()}
-    made |= {name: docs.fill(schema, (ROOT / name).read_text(encoding="utf-8")) for name in PAGES}
     stale = []
     for name, text in made.items():
         path = ROOT / name

@@ -12,14 +12,17 @@ A marker is <!-- moves: WHAT -->...<!-- /moves -->, where WHAT is one of
 
 import re
 
-from moves.schema import Form, Key, Schema
+from moves.schema import Form, Key, Schema, SchemaError
 
 MARKER = re.compile(r"(<!-- moves: ([\w ]+) -->)(.*?)(<!-- /moves -->)", re.DOTALL)
 
 
-def fill(schema: Schema, text: str) -> str:
-    """A page with everything between its markers made anew."""
-    return MARKER.sub(lambda found: found[1] + _between(schema, found[2]) + found[4], text)
+def fill(schema: Schema, page: str, text: str) -> str:
+    """A page with everything between its markers made anew; raise SchemaError."""
+    try:
+        return MARKER.sub(lambda found: found[1] + _between(schema, found[2]) + found[4], text)
+    except KeyError as error:
+        raise SchemaError(f"{page}: there is no {error.args[0]}") from None
 
 
 def _between(schema: Schema, what: str) -> str:
@@ -65,7 +68,22 @@ def _default(schema: Schema, key: Key) -> str:
         return f"only with profile `{schema.user_name}`"
     if key.default in schema.constants or key.default is None:
         return key.optional_says
-    return key.default_says or key.default
+    if key.default_says:
+        return key.default_says
+    return key.default if key.default.isdigit() else f"`{key.default}`"
+
+
+RULES = {
+    "excludes": "`{key}` and `{other}` exclude each other",
+    "needs": "`{key}` needs `{other}`",
+    "above_zero": "`{key}` is above 0 if it is given",
+}
+
+
+def _rules(form: Form) -> str:
+    """What is checked when all keys are read."""
+    said = [RULES[rule.kind].format(key=rule.key, other=rule.other) for rule in form.rules]
+    return f"{'; '.join(said)}.\n\n" if said else ""
 
 
 def _in_c(key: Key) -> str:
@@ -91,7 +109,8 @@ def _keys(schema: Schema, forms: list[Form]) -> str:
             ]
             rows.append([f"`{form.name}`", *row] if len(forms) > 1 else row)
     columns = ["key", "is", "unit", "range", "default", "in C"]
-    return _table(["form", *columns] if len(forms) > 1 else columns, rows)
+    table = _table(["form", *columns] if len(forms) > 1 else columns, rows)
+    return table + "".join(map(_rules, forms))
 
 
 def _console(schema: Schema) -> str:
