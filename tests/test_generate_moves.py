@@ -9,10 +9,12 @@ from pathlib import Path
 
 import pytest
 from passo import move_forms
+from passo.move_file import read_moves
 from passo.move_forms import FORMS, PROFILES
 from passo.move_keys import READERS
 from passo.moves import MOVES
 from passo.native import ffi, planner
+from passo.plan import struct_of
 from passo.toolchain import environment, paths
 
 SOURCE = "schema/moves.toml"
@@ -160,6 +162,57 @@ def test_units_are_those_that_the_names_say() -> None:
         for row in rows:
             form, name, _, shown = row[:4] if " " in forms else (forms, *row[:3])
             assert shown == unit(form, name), (form, name)
+
+
+VALUES = {
+    "by_speed": (
+        'profile = "jerk"\nsteps = [7, -3]\nstart_speed = 2.5\nspeed = 9\nstop_speed = 1\nacceleration = 4\n',
+        {"profile": 3, "start_speed": 5 << 31, "speed": 9 << 32, "stop_speed": 1 << 32}
+        | {"acceleration": 4 << 32, "deceleration": 0, "ramp_clocks": 0},
+    ),
+    "at_speed": (
+        'profile = "cosine"\nsteps = [1]\nspeed = 9\nramp_time = 0.25\n',
+        {"profile": 1, "speed": 9 << 32, "ramp_clocks": 250},
+    ),
+    "turn": (
+        "axis = 1\nsteps_per_turn = 200\nangle = -0.5\nrpm = 3\nacceleration = 4\n",
+        {"axis": 1, "steps_per_turn": 200, "angle": -(1 << 31), "rpm": 3 << 32, "acceleration": 4 << 32},
+    ),
+    "sigmoid": (
+        "steps = [1]\nspeed = 9\naccelerate_time = 0.5\n",
+        {"start_speed": 0, "accelerate_clocks": 500, "decelerate_clocks": 500, "alpha": 5 * 4096},
+    ),
+    "jerk": (
+        "steps = [1]\nspeed = 9\nacceleration = 4\njerk = 2\n",
+        {"acceleration": 4 << 32, "jerk": 2 << 32},
+    ),
+}
+
+
+@pytest.mark.parametrize("name", VALUES)
+def test_values_in_the_struct_by_hand(tmp_path: Path, name: str) -> None:
+    """Of a clock of 1 kHz: what a move file says in the units of the planner."""
+    text, wanted = VALUES[name]
+    path = tmp_path / "moves.toml"
+    path.write_text(f'clock_hz = 1000\n[[move]]\nmethod = "{name}"\n{text}')
+    made = struct_of(read_moves(path).moves[0], 1000)
+    assert {key: getattr(made, key) for key in wanted} == wanted
+
+
+def test_limits_of_axes_by_hand(tmp_path: Path) -> None:
+    path = tmp_path / "moves.toml"
+    path.write_text(
+        'clock_hz = 1000\n[[move]]\nmethod = "straight"\ndistance = [1, -2.5]\nfeed = 3\n'
+        "steps_per_mm = 80\nspeed = [4, 5]\nacceleration = 6\njerk = [0, 7]\n"
+    )
+    made = struct_of(read_moves(path).moves[0], 1000)
+    assert (list(made.distance)[:3], made.feed) == ([1 << 32, -(5 << 31), 0], 3 << 32)
+    limits = [(own.steps_per_mm, own.speed, own.acceleration, own.jerk) for own in made.limits]
+    assert limits[:3] == [
+        (80 << 32, 4 << 32, 6 << 32, 0),
+        (80 << 32, 5 << 32, 6 << 32, 7 << 32),
+        (0, 0, 0, 0),
+    ]
 
 
 # ---------------------------------------------------------------------------------------------- changes ----

@@ -55,7 +55,7 @@ def plan_move(move: Move, clock_hz: int, parameters: Parameters) -> Plan:
     machine = ffi().new("struct passo_machine *", (clock_hz, parameters.tick_log2, len(move.steps)))
     plan = ffi().new("struct passo_plan *")
     method, table = move.form.name, getattr(move, "table", ())
-    wanted = ffi().new(f"struct passo_move_{method} *", _struct_of(move, clock_hz))
+    wanted = struct_of(move, clock_hz)
     if table:
         points = ffi().new("uint16_t[]", table)
         shape = ffi().new("struct passo_user_shape *", (int(USER_BANK), points))
@@ -78,8 +78,8 @@ def sigmoid_table(alpha: int) -> Points:
     return tuple(table)
 
 
-def _struct_of(move: Move, clock_hz: int) -> dict[str, Any]:
-    """A move's fields as its C struct has them."""
+def struct_of(move: Move, clock_hz: int) -> Any:
+    """A move's C struct, in the units of the planner."""
     values: dict[str, Any] = {}
     for key in move.form.keys:
         value = getattr(move, key.name)
@@ -94,7 +94,7 @@ def _struct_of(move: Move, clock_hz: int) -> dict[str, Any]:
             values[key.member] = [_number(key, number, clock_hz) for number in value]
         elif key.member:
             values[key.member] = _number(key, value, clock_hz) if key.factor else value
-    return values
+    return ffi().new(f"struct passo_move_{move.form.name} *", values)
 
 
 def _number(key: Key, value: Fraction, clock_hz: int) -> int:
