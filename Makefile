@@ -7,7 +7,8 @@ VERILOG     := $(wildcard rtl/*.v)
 BOARDS      := $(wildcard syn/*.v syn/*/*.v)
 BENCHES     := $(wildcard soak/*.v)
 # the generated ones are as their generators make them
-C_SOURCES   := $(filter-out c_model/passo_registers.h c_model/passo_words.h c_model/passo_shapes.%, \
+C_SOURCES   := $(filter-out c_model/passo_registers.h c_model/passo_words.h c_model/passo_shapes.% \
+    c_model/passo_limits.h c_model/passo_moves.h stm32_bridge/console/passo_form_tables.c, \
     $(wildcard $(foreach dir,c_model sim/engine benchmarks cocotb_tests tests soak stm32_bridge/*,$(dir)/*.[ch] $(dir)/*.cpp)))
 PYTHON_DIRS := $(wildcard sim tools benchmarks cocotb_tests tests formal soak)
 
@@ -56,8 +57,9 @@ endif
 	@$(BIN)/ruff check --fix $(PYTHON_DIRS)
 	@$(BIN)/ruff format $(PYTHON_DIRS)
 
-generate: setup ## Regenerate the generated files: register definitions and pulse shapes.
+generate: setup ## Regenerate the generated files: registers, forms of moves, pulse shapes.
 	@$(BIN)/python tools/generate_registers.py
+	@$(BIN)/python tools/generate_moves.py
 	@$(BIN)/python tools/generate_shapes.py
 
 bench: setup ## Measure how fast the models run.

@@ -6,16 +6,14 @@ from collections.abc import Callable
 from fractions import Fraction
 
 import numpy as np
+from passo.move_forms import PROFILES, USER, Points
 from passo.moves import (
-    PROFILES,
-    USER,
     Move,
     MoveAtSpeed,
     MoveBelowSpeed,
     MoveInTime,
     MoveJerk,
     MoveStraight,
-    Points,
 )
 from passo.plan import plan_move
 from passo.shape import sample

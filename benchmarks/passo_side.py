@@ -15,6 +15,7 @@ import numpy as np
 from cffi import FFI
 from passo import moves
 from passo.build import Parameters
+from passo.move_forms import USER
 from passo.plan import ALPHA_ONE, ALPHA_RESET, Q48, Plan, plan_move
 from passo.toolchain import paths
 
@@ -141,7 +142,7 @@ def alpha_of(plan: Plan) -> float:
 def banks_of(plan: Plan) -> np.ndarray:
     """What the core's banks must hold: the standard shapes, but in place of the sigmoid maybe the user's."""
     banks = tables(alpha_of(plan))
-    if plan.move.profile == moves.USER:
+    if plan.move.profile == USER:
         banks = banks.copy()
         banks[SHAPES.index("sigmoid") - 1] = [*plan.table, 65536]
     return banks

@@ -10,13 +10,12 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "passo_limits.h"
 #include "passo_registers.h"
 
-#define PASSO_CHANNELS_MAX 8u
-#define PASSO_AXES_MAX 8u
+#define PASSO_CHANNELS_MAX PASSO_ADDRESS_CHANNEL_COUNT
+#define PASSO_AXES_MAX PASSO_CHANNEL_AXIS_COUNT
 
-/* Longest line: its substeps, and with them the steps of each axis, have 30 bits. */
-#define PASSO_SUBSTEPS_MAX ((UINT32_C(1) << 30) - 1u)
 /* Velocities and progress are UQ0.48: an integer v stands for v / 2^48. */
 #define PASSO_ONE_Q48 (UINT64_C(1) << 48)
 /* Half a substep per clock: the DDA has two clocks for each. */

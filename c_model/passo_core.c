@@ -35,7 +35,8 @@ static void gather_outputs(struct passo_core *core)
 bool passo_core_reset(struct passo_core *core, const struct passo_parameters *parameters)
 {
 	if (!in_range(parameters->channels, 1, PASSO_CHANNELS_MAX)
-	    || !in_range(parameters->axes, 1, PASSO_AXES_MAX) || !in_range(parameters->tick_log2, 7, 16)
+	    || !in_range(parameters->axes, 1, PASSO_AXES_MAX)
+	    || !in_range(parameters->tick_log2, PASSO_TICK_LOG2_MIN, PASSO_TICK_LOG2_MAX)
 	    || !in_range(parameters->line_queue_log2, 2, 8) || !in_range(parameters->ramp_queue_log2, 2, 8))
 		return false;
 	memset(core, 0, sizeof *core);

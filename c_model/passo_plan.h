@@ -8,32 +8,29 @@
 #ifndef PASSO_PLAN_H
 #define PASSO_PLAN_H
 
-#include "passo_command.h"
+#include "passo_moves.h"
 
-/* Speeds (steps/s) and accelerations (steps/s^2) are UQ32.32: an integer x stands for x / 2^32.
- * They belong to the longest axis; the other axes follow in proportion. */
-#define PASSO_UNIT_Q32 (UINT64_C(1) << 32)
+/* What a move is asked for with stands in passo_moves.h, one struct for each form. Speeds and accelerations
+ * belong to the longest axis; the other axes follow in proportion. */
 
 /* Jump to the start speed, three parts of a jerk-limited ramp, cruise, three parts, jump to 0. */
 #define PASSO_PLAN_RAMPS_MAX 9u
 
-/* A sigmoid's alpha is in units of 1/4096. The core's table is made for this one after reset. */
-#define PASSO_SIGMOID_ALPHA_RESET (5u * 4096u)
-
-enum passo_profile { PASSO_PROFILE_LINEAR, PASSO_PROFILE_COSINE, PASSO_PROFILE_SIGMOID, PASSO_PROFILE_JERK };
+/* The core's table is made for this alpha after reset. */
+#define PASSO_SIGMOID_ALPHA_RESET (PASSO_ALPHA_RESET * PASSO_ALPHA_ONE)
 
 enum passo_plan_error {
 	PASSO_PLAN_OK = 0,
-	PASSO_PLAN_BAD_CLOCK,         /* clock_hz is 0 or tick_log2 is not 7 .. 16 */
-	PASSO_PLAN_BAD_AXES,          /* not 1 .. 8 axes */
-	PASSO_PLAN_BAD_PROFILE,       /* unknown profile */
-	PASSO_PLAN_NO_STEPS,          /* all axes have 0 steps */
-	PASSO_PLAN_TOO_MANY_STEPS,    /* an axis has more than 2^30 - 1 steps, forwards or backwards */
-	PASSO_PLAN_NO_TIME,           /* total time is less than one tick */
-	PASSO_PLAN_RAMP_TOO_LONG,     /* the ramp time is more than half the total time */
-	PASSO_PLAN_TOO_LONG,          /* a phase has 2^32 ticks or more, or the move 2^44 clocks or more */
-	PASSO_PLAN_TOO_FAST,          /* more steps than half the clock allows */
-	PASSO_PLAN_NO_SPEED,          /* speed is 0 */
+	PASSO_PLAN_BAD_CLOCK,      /* clock_hz is 0 or tick_log2 is out of its limits */
+	PASSO_PLAN_BAD_AXES,       /* not 1 .. PASSO_AXES_MAX axes */
+	PASSO_PLAN_BAD_PROFILE,    /* unknown profile */
+	PASSO_PLAN_NO_STEPS,       /* all axes have 0 steps */
+	PASSO_PLAN_TOO_MANY_STEPS, /* an axis has more than PASSO_SUBSTEPS_MAX steps, forwards or backwards */
+	PASSO_PLAN_NO_TIME,        /* total time is less than one tick */
+	PASSO_PLAN_RAMP_TOO_LONG,  /* the ramp time is more than half the total time */
+	PASSO_PLAN_TOO_LONG,       /* a phase has 2^32 ticks or more, or the move is too long in clocks */
+	PASSO_PLAN_TOO_FAST,       /* more steps than half the clock allows */
+	PASSO_PLAN_NO_SPEED,       /* speed is 0 */
 	PASSO_PLAN_NO_ACCELERATION,   /* acceleration is 0 and so is the ramp time, but the speed changes */
 	PASSO_PLAN_START_ABOVE_SPEED, /* start speed is above the speed */
 	PASSO_PLAN_STOP_ABOVE_SPEED,  /* stop speed is above the speed */
@@ -44,7 +41,7 @@ enum passo_plan_error {
 	PASSO_PLAN_MINIMUM_ABOVE_SPEED,  /* the minimum rpm is above the rpm */
 	PASSO_PLAN_BELOW_MINIMUM,        /* turning: the rpm is below the minimum rpm */
 	PASSO_PLAN_ABOVE_TOP,            /* turning: the rpm, or the present velocity, is above the top rpm */
-	PASSO_PLAN_BAD_ALPHA,            /* alpha is not 3 .. 5 */
+	PASSO_PLAN_BAD_ALPHA,            /* alpha is out of its limits */
 	PASSO_PLAN_NO_JERK,              /* jerk is 0 */
 	PASSO_PLAN_NO_FEED,              /* feed is 0 */
 	PASSO_PLAN_NO_SCALE,             /* an axis that moves has 0 steps per millimetre */
@@ -59,29 +56,7 @@ enum passo_plan_error {
 struct passo_machine {
 	uint32_t clock_hz;
 	uint8_t tick_log2; /* TICK_LOG2 of the core */
-	uint8_t axes;      /* axes in the moves below, 1 .. 8 */
-};
-
-/* A move in a given total time: from rest to rest. f_max = n / (total - ramp), both rounded to ticks. */
-struct passo_move_in_time {
-	int32_t steps[PASSO_AXES_MAX];
-	enum passo_profile profile;
-	uint64_t total_clocks;
-	uint64_t ramp_clocks; /* speeding up, and again slowing down; 0 .. total_clocks / 2 */
-};
-
-/* A move by speeds of the longest axis. Start and stop speed are what the drive can jump to from rest, and
- * from to rest; a move too short for them jumps to less. Phases are rounded up to ticks, so no limit is
- * ever exceeded. */
-struct passo_move_by_speed {
-	int32_t steps[PASSO_AXES_MAX];
-	enum passo_profile profile;
-	uint64_t start_speed;  /* 0 .. speed */
-	uint64_t speed;        /* never exceeded; not reached when the move is too short */
-	uint64_t stop_speed;   /* 0 .. speed */
-	uint64_t acceleration; /* mean acceleration of the ramp; never exceeded */
-	uint64_t deceleration; /* 0: the same as acceleration */
-	uint64_t ramp_clocks;  /* instead of acceleration, when that is 0: duration of each full ramp */
+	uint8_t axes;      /* axes in the moves below, 1 .. PASSO_AXES_MAX */
 };
 
 /* A finished plan. Velocities in UQ0.48 substeps per clock. */
@@ -115,51 +90,18 @@ const char *passo_plan_error_text(enum passo_plan_error error);
  * Each takes what a user knows about one kind of move, and becomes one of the two forms above. A refused
  * *plan stays untouched. */
 
-/* In a given time, never above a speed: the longest, so the gentlest, ramps that allow it, which is
- * total - n / speed each, at most half the total time (then the speed is not reached). */
-struct passo_move_below_speed {
-	int32_t steps[PASSO_AXES_MAX];
-	enum passo_profile profile;
-	uint64_t total_clocks;
-	uint64_t speed;
-};
 enum passo_plan_error passo_plan_below_speed(
     const struct passo_machine *machine, const struct passo_move_below_speed *move, struct passo_plan *plan);
 
 /* total - n / speed in clocks, rounded down; 0 if there is no time for ramps, or none at all. */
 uint64_t passo_longest_ramp(uint32_t clock_hz, uint32_t steps, uint64_t total_clocks, uint64_t speed);
 
-/* With a given speed and ramp time: it takes n / speed + ramp, rounded up to ticks. The ramp time is at most
- * n / speed, half the total time. */
-struct passo_move_at_speed {
-	int32_t steps[PASSO_AXES_MAX];
-	enum passo_profile profile;
-	uint64_t speed;
-	uint64_t ramp_clocks;
-};
 enum passo_plan_error passo_plan_at_speed(
     const struct passo_machine *machine, const struct passo_move_at_speed *move, struct passo_plan *plan);
 
-/* Trapezoid on several axes: from and to the start speed, so long for each full ramp; a triangle of the same
- * acceleration when it is too short. The axis with the most steps leads. */
-struct passo_move_axes {
-	int32_t steps[PASSO_AXES_MAX];
-	uint64_t start_speed, speed;
-	uint64_t ramp_clocks;
-};
 enum passo_plan_error passo_plan_axes(
     const struct passo_machine *machine, const struct passo_move_axes *move, struct passo_plan *plan);
 
-/* Trapezoid of one axis by angle and speed of turning. Angles (degrees) are Q31.32, their sign is the
- * direction; rpm are UQ32.32. A turn is full steps times microsteps. */
-struct passo_move_turn {
-	uint8_t axis;
-	uint32_t steps_per_turn;
-	int64_t angle; /* to the nearest step */
-	uint64_t rpm;
-	uint64_t minimum_rpm;  /* jumped to from rest, and from to rest */
-	uint64_t acceleration; /* UQ32.32 steps/s^2 */
-};
 enum passo_plan_error passo_plan_turn(
     const struct passo_machine *machine, const struct passo_move_turn *move, struct passo_plan *plan);
 
@@ -187,46 +129,17 @@ enum passo_plan_error passo_plan_turning_stop(const struct passo_machine *machin
 int64_t passo_angle_of(int32_t position, uint32_t steps_per_turn);
 uint64_t passo_rpm_of(uint64_t velocity, uint32_t oversampling, uint32_t clock_hz, uint32_t steps_per_turn);
 
-/* Sigmoid S-curve by three frequencies and two ramp times, those of full ramps: a move too short for them
- * keeps their mean accelerations. plan.steps_to_stop is where slowing down begins. */
-struct passo_move_sigmoid {
-	int32_t steps[PASSO_AXES_MAX];
-	uint64_t start_speed, speed, stop_speed;
-	uint64_t accelerate_clocks, decelerate_clocks;
-	uint32_t alpha; /* 3 .. 5 in units of 1/4096 */
-};
 enum passo_plan_error passo_plan_sigmoid(
     const struct passo_machine *machine, const struct passo_move_sigmoid *move, struct passo_plan *plan);
 
 /* The points of the sigmoid's bank for an alpha; table[k] + table[256 - k] is 65536. For alpha = 5 they are
  * those after reset. */
-#define PASSO_TABLE_SIZE 256u
+#define PASSO_TABLE_SIZE PASSO_ADDRESS_SIGMOID_COUNT
 enum passo_plan_error passo_sigmoid_table(uint32_t alpha, uint16_t table[PASSO_TABLE_SIZE]);
 
-/* Jerk-limited in up to seven phases: the acceleration grows, stays and ceases, and so does the deceleration;
- * fewer when length, speed or acceleration do not suffice. */
-struct passo_move_jerk {
-	int32_t steps[PASSO_AXES_MAX];
-	uint64_t start_speed, speed, stop_speed;
-	uint64_t acceleration; /* never exceeded, neither speeding up nor slowing down */
-	uint64_t jerk;         /* UQ32.32 steps/s^3; never exceeded */
-};
 enum passo_plan_error passo_plan_jerk(
     const struct passo_machine *machine, const struct passo_move_jerk *move, struct passo_plan *plan);
 
-/* Straight line through space in millimetres (degrees where an axis turns), each axis with limits of its own:
- * the path is as quick as the tightest of them allows. All UQ32.32 but the distance, which is Q31.32. */
-struct passo_axis_limits {
-	uint64_t steps_per_mm;
-	uint64_t speed;        /* mm/s */
-	uint64_t acceleration; /* mm/s^2 */
-	uint64_t jerk;         /* mm/s^3; 0: without limit */
-};
-struct passo_move_straight {
-	int64_t distance[PASSO_AXES_MAX]; /* to the nearest step */
-	struct passo_axis_limits limits[PASSO_AXES_MAX];
-	uint64_t feed; /* mm/s along the path */
-};
 enum passo_plan_error passo_plan_straight(
     const struct passo_machine *machine, const struct passo_move_straight *move, struct passo_plan *plan);
 

@@ -7,15 +7,11 @@
 
 #include "passo_math.h"
 
-/* Longest move, two days at 100 MHz; passo_plan.c tells why. */
-#define MOVE_CLOCKS_LOG2 44u
-
 /* The profiles' shapes. A jerk-limited ramp eases in and, mirrored, out. */
 static const enum passo_shape SHAPES[] = {
-    [PASSO_PROFILE_LINEAR] = PASSO_SHAPE_LINEAR,
-    [PASSO_PROFILE_COSINE] = PASSO_SHAPE_COSINE,
-    [PASSO_PROFILE_SIGMOID] = PASSO_SHAPE_SIGMOID,
-    [PASSO_PROFILE_JERK] = PASSO_SHAPE_EASE,
+#define SHAPE(profile, shape, name) [PASSO_PROFILE_##profile] = (shape),
+    PASSO_PROFILES(SHAPE)
+#undef SHAPE
 };
 
 static uint32_t magnitude(int32_t steps)
@@ -28,11 +24,12 @@ static uint32_t magnitude(int32_t steps)
 enum passo_plan_error passo_draft_start(struct passo_draft *draft, const struct passo_machine *machine,
     const int32_t *steps, enum passo_profile profile)
 {
-	if (machine->clock_hz == 0 || machine->tick_log2 < 7 || machine->tick_log2 > 16)
+	if (machine->clock_hz == 0 || machine->tick_log2 < PASSO_TICK_LOG2_MIN
+	    || machine->tick_log2 > PASSO_TICK_LOG2_MAX)
 		return PASSO_PLAN_BAD_CLOCK;
 	if (machine->axes < 1 || machine->axes > PASSO_AXES_MAX)
 		return PASSO_PLAN_BAD_AXES;
-	if ((unsigned)profile > PASSO_PROFILE_JERK)
+	if ((unsigned)profile >= PASSO_PROFILE_COUNT)
 		return PASSO_PLAN_BAD_PROFILE;
 
 	*draft = (struct passo_draft){
@@ -56,7 +53,7 @@ bool passo_draft_is_too_long(const struct passo_draft *draft)
 {
 	uint64_t up = draft->accelerate.ticks, down = draft->decelerate.ticks, cruise = draft->cruise;
 	return up > UINT32_MAX || cruise > UINT32_MAX || down > UINT32_MAX
-	    || (up + cruise + down) >> (MOVE_CLOCKS_LOG2 - draft->machine->tick_log2) > 0;
+	    || (up + cruise + down) >> (PASSO_MOVE_CLOCKS_LOG2 - draft->machine->tick_log2) > 0;
 }
 
 uint64_t passo_ticks_nearest(const struct passo_machine *machine, uint64_t clocks)

@@ -3,18 +3,24 @@
  */
 #include "passo_plan.h"
 
+_Static_assert(PASSO_AXES_MAX == 8u, "a sentence below says so");
+
 static const struct {
 	const char *name, *text;
 } ERRORS[] = {
     [PASSO_PLAN_OK] = {"OK", "The plan is good."},
-    [PASSO_PLAN_BAD_CLOCK] = {"BAD_CLOCK", "The clock must be above 0 Hz and a tick 2^7 to 2^16 clocks."},
+    [PASSO_PLAN_BAD_CLOCK] = {"BAD_CLOCK",
+	"The clock must be above 0 Hz and a tick 2^" PASSO_TICK_LOG2_MIN_WORDS
+	" to 2^" PASSO_TICK_LOG2_MAX_WORDS " clocks."},
     [PASSO_PLAN_BAD_AXES] = {"BAD_AXES", "A move has 1 to 8 axes."},
-    [PASSO_PLAN_BAD_PROFILE] = {"BAD_PROFILE", "The profile must be linear, cosine, sigmoid or jerk."},
+    [PASSO_PLAN_BAD_PROFILE] = {"BAD_PROFILE", "The profile must be " PASSO_PROFILES_WORDS "."},
     [PASSO_PLAN_NO_STEPS] = {"NO_STEPS", "No axis has a step to make."},
-    [PASSO_PLAN_TOO_MANY_STEPS] = {"TOO_MANY_STEPS", "An axis can make at most 2^30 - 1 steps in one move."},
+    [PASSO_PLAN_TOO_MANY_STEPS] = {"TOO_MANY_STEPS",
+	"An axis can make at most " PASSO_SUBSTEPS_MAX_WORDS " steps in one move."},
     [PASSO_PLAN_NO_TIME] = {"NO_TIME", "The total time is less than one tick."},
     [PASSO_PLAN_RAMP_TOO_LONG] = {"RAMP_TOO_LONG", "The ramp time is more than half the total time."},
-    [PASSO_PLAN_TOO_LONG] = {"TOO_LONG", "A phase takes 2^32 ticks or more, or the move 2^44 clocks."},
+    [PASSO_PLAN_TOO_LONG] = {"TOO_LONG",
+	"A phase takes 2^32 ticks or more, or the move 2^" PASSO_MOVE_CLOCKS_LOG2_WORDS " clocks."},
     [PASSO_PLAN_TOO_FAST] = {"TOO_FAST", "The longest axis would make more than a step every two clocks."},
     [PASSO_PLAN_NO_SPEED] = {"NO_SPEED", "The speed is 0."},
     [PASSO_PLAN_NO_ACCELERATION] = {"NO_ACCELERATION", "A change of speed needs acceleration or ramp time."},
@@ -27,7 +33,8 @@ static const struct {
     [PASSO_PLAN_MINIMUM_ABOVE_SPEED] = {"MINIMUM_ABOVE_SPEED", "The minimum rpm is above the rpm."},
     [PASSO_PLAN_BELOW_MINIMUM] = {"BELOW_MINIMUM", "The rpm is below the minimum rpm."},
     [PASSO_PLAN_ABOVE_TOP] = {"ABOVE_TOP", "The rpm or the present velocity is above the top rpm."},
-    [PASSO_PLAN_BAD_ALPHA] = {"BAD_ALPHA", "Alpha must be 3 to 5."},
+    [PASSO_PLAN_BAD_ALPHA] = {"BAD_ALPHA",
+	"Alpha must be " PASSO_ALPHA_MIN_WORDS " to " PASSO_ALPHA_MAX_WORDS "."},
     [PASSO_PLAN_NO_JERK] = {"NO_JERK", "The jerk is 0."},
     [PASSO_PLAN_NO_FEED] = {"NO_FEED", "The feed is 0."},
     [PASSO_PLAN_NO_SCALE] = {"NO_SCALE", "An axis that moves has no steps per millimetre."},

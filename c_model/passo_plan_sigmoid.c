@@ -4,9 +4,8 @@
 #include "passo_math.h"
 #include "passo_plan_draft.h"
 
-#define ALPHA_UNIT 4096u
-#define ALPHA_MIN (3u * ALPHA_UNIT)
-#define ALPHA_MAX (5u * ALPHA_UNIT)
+#define ALPHA_MIN (PASSO_ALPHA_MIN * PASSO_ALPHA_ONE)
+#define ALPHA_MAX (PASSO_ALPHA_MAX * PASSO_ALPHA_ONE)
 
 /* UQ1.62 */
 #define ONE_Q62 (UINT64_C(1) << 62)
@@ -47,7 +46,7 @@ enum passo_plan_error passo_sigmoid_table(uint32_t alpha, uint16_t table[PASSO_T
 		return PASSO_PLAN_BAD_ALPHA;
 
 	/* exp(-alpha / 128), of which each point on from the middle is a further power */
-	uint64_t step = exp_minus(ONE_Q62 / ((uint64_t)ALPHA_UNIT * MIDDLE) * alpha);
+	uint64_t step = exp_minus(ONE_Q62 / ((uint64_t)PASSO_ALPHA_ONE * MIDDLE) * alpha);
 	uint64_t last = ONE_Q62;
 	for (uint32_t d = 0; d < MIDDLE; d++)
 		last = multiply_q62(last, step);

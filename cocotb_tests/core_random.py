@@ -13,7 +13,8 @@ from random import Random
 from passo import registers as r
 from passo.host import RATE_ONE
 from passo.link import RefusedError
-from passo.moves import PROFILES, MoveBySpeed, MoveInTime
+from passo.move_forms import PROFILES
+from passo.moves import MoveBySpeed, MoveInTime
 from passo.plan import PlanError, plan_move
 from passo.registers import Cause, State
 

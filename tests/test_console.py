@@ -17,6 +17,7 @@ import pytest
 from passo.build import Parameters
 from passo.engine import model_engine, rtl_engine
 from passo.move_file import read_moves
+from passo.move_forms import FORMS
 from passo.moves import MoveFile, MoveFileError, q32
 from passo.native import console, ffi
 from passo.plan import plan_file
@@ -614,6 +615,21 @@ def test_help_knows_every_command(bench: Bench) -> None:
         bench.terminal.line(f"help {name}")
         assert bench.take().startswith(f"  {name}")
     assert bench.ask("help nothing") == "error: unknown command 'nothing'"
+
+
+def test_help_shows_every_key_of_every_form(bench: Bench) -> None:
+    """In brackets what need not be given; a file's own keys are not there."""
+    bench.terminal.line("help move")
+    lines = bench.take().splitlines()
+    assert len(lines) == len(FORMS) + 1
+    for line, form in zip(lines, FORMS.values(), strict=False):
+        assert line.startswith(
+            f"  move [method={form.name}] " if form.told_by else f"  move method={form.name} "
+        )
+        shown = re.findall(r" (\[?)(\w+)=", line)[1:]
+        assert [key for _, key in shown] == [key.name for key in form.keys if not key.file_only]
+        may_miss = {key for bracket, key in shown if bracket}
+        assert may_miss >= {key.name for key in form.keys if key.default is not None}
 
 
 def test_a_motion_outlives_the_console(bench: Bench) -> None:

@@ -60,7 +60,15 @@ def test_every_form_is_planned_and_run(tmp_path: Path, form: str) -> None:
 def test_forms_are_read_exactly(tmp_path: Path) -> None:
     text = CLOCK + move_of("turn") + move_of("sigmoid") + move_of("straight", "jerk = [1, 0.1]\n")
     turn, sigmoid, straight = read_moves(write(tmp_path, text)).moves
-    assert turn == MoveTurn(2, 1, 200, Fraction(-181, 2), Fraction(120), Fraction(0), Fraction(9000))
+    assert turn == MoveTurn(
+        axis=1,
+        axes=2,
+        steps_per_turn=200,
+        angle=Fraction(-181, 2),
+        rpm=Fraction(120),
+        minimum_rpm=Fraction(0),
+        acceleration=Fraction(9000),
+    )
     assert turn.steps == (0, -50) and turn.profile == "linear"
     assert sigmoid.alpha == Fraction(13, 4)
     assert sigmoid.decelerate_time == sigmoid.accelerate_time == Fraction(1, 100)

@@ -8,6 +8,7 @@ With ``--check`` nothing is written; the exit status is 1 if a committed file di
 
 import argparse
 import sys
+import tomllib
 from collections.abc import Callable
 from decimal import ROUND_HALF_EVEN, Decimal, localcontext
 from itertools import pairwise
@@ -18,7 +19,9 @@ ROOT = Path(__file__).resolve().parents[1]
 POINTS = 256
 ONE = 1 << 16
 DIGITS = 50
-SIGMOID_A = 5  # the sigmoid shape is the logistic function over -5 .. 5
+# The sigmoid shape is the logistic function over -a .. a.
+MOVES = tomllib.loads((ROOT / "schema" / "moves.toml").read_text(encoding="utf-8"))
+SIGMOID_A = MOVES["constants"]["alpha_reset"]["value"]
 
 # 60 digits of pi.
 PI = Decimal("3.14159265358979323846264338327950288419716939937510582097494")

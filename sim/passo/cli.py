@@ -13,6 +13,7 @@ from passo.engine import DifferenceError
 from passo.frame import FrameError
 from passo.link import LinkError
 from passo.move_file import read_moves
+from passo.move_forms import WHOLE_MAX
 from passo.moves import AXES_MAX, MoveFileError
 from passo.plan import plan_file
 from passo.run import ENGINES, Run, RunError, execute, open_engine, parameters_for
@@ -159,8 +160,8 @@ def _console(options: argparse.Namespace) -> int:
     def write(text: str) -> None:
         print(text, end="", flush=text.endswith("\n"))
 
-    if not 1 <= options.axes <= AXES_MAX or not 1 <= options.clock < 2**32:
-        raise MoveFileError(f"--axes must be 1 to {AXES_MAX}, --clock 1 to {2**32 - 1}")
+    if not 1 <= options.axes <= AXES_MAX or not 1 <= options.clock <= WHOLE_MAX:
+        raise MoveFileError(f"--axes must be 1 to {AXES_MAX}, --clock 1 to {WHOLE_MAX}")
     parameters = Parameters(axes=options.axes)
     with (
         open_engine(options.engine, parameters, options.clock) as engine,

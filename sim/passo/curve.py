@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from passo.moves import USER
+from passo.move_forms import USER
 from passo.plan import ALPHA_ONE, ALPHA_RESET, Q48, Plan
 from passo.run import Run
 from passo.shape import ONE, POINTS

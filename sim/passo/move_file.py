@@ -3,42 +3,29 @@
 
 import math
 import tomllib
-from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import fields
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
 
-from passo import moves as m
+from passo.move_forms import FORMS, Form
 from passo.move_keys import (
     BadValueError,
-    Reader,
     Table,
     check_known,
-    read_axes,
-    read_axis,
-    read_distance,
+    read_key,
     read_number,
-    read_number_or,
-    read_per_axis,
-    read_per_axis_or_0,
     read_positive,
-    read_profile,
-    read_profile_or_user,
-    read_signed,
-    read_steps,
-    read_table_file,
     shown,
     within,
 )
-from passo.moves import Move, MoveFile, MoveFileError, PinTiming
+from passo.moves import MOVES, PIN_CLOCKS_MAX, Move, MoveFile, MoveFileError, PinTiming
 from passo.shape import ShapeError, read_table
 
-PIN_CLOCKS_MAX = 65535
 PIN_SECONDS = Fraction(1, 1_000_000)  # the default of every pin timing
 
 FILE_KEYS = ("clock_hz", "pins", "move")
-PIN_KEYS = ("step_high", "step_low", "dir_setup", "dir_hold")
+PIN_KEYS = tuple(field.name for field in fields(PinTiming))
 
 
 def read_moves(path: Path) -> MoveFile:
@@ -95,100 +82,51 @@ def _pins(table: Table, clock_hz: int) -> PinTiming:
 
 
 def _move(table: Table, folder: Path) -> Move:
-    form = FORMS[_form(table)]
-    values = {key: read(table, key) for key, read in form.keys.items()}
-    form.check(table)
+    form = _form(table)
+    values = {key.name: read_key(table, key) for key in form.keys}
+    _check_rules(form, table)
     if values.get("table"):
         try:
             values["table"] = read_table(folder / values["table"])
         except ShapeError as error:
             raise BadValueError(f"table: {error}") from None
-    return form.make(**values)
+    return MOVES[form.name](**values)
 
 
-def _form(table: Table) -> str:
+def _names(form: Form) -> list[str]:
+    return [key.name for key in form.keys]
+
+
+def _form(table: Table) -> Form:
     """The form by its name or, for the first two, by what is given."""
     if "method" in table:
         method = table["method"]
         if not isinstance(method, str) or method not in FORMS:
             raise BadValueError(f"method must be one of {', '.join(FORMS)}, not {shown(method)}")
-        check_known(table, ("method", *FORMS[method].keys))
-        return method
-    in_time, by_speed = FORMS["in_time"].keys, FORMS["by_speed"].keys
-    check_known(table, tuple(dict.fromkeys(("method", *in_time, *by_speed))))
-    of_time = [key for key in table if key in in_time and key not in by_speed]
-    of_speed = [key for key in table if key in by_speed and key not in in_time]
+        check_known(table, ("method", *_names(FORMS[method])))
+        return FORMS[method]
+    by_time, by_speed = FORMS["in_time"], FORMS["by_speed"]
+    time_keys, speed_keys = _names(by_time), _names(by_speed)
+    check_known(table, tuple(dict.fromkeys(("method", *time_keys, *speed_keys))))
+    of_time = [key for key in table if key not in speed_keys]
+    of_speed = [key for key in table if key not in time_keys]
     if of_time and of_speed:
         raise BadValueError(
             f"{of_time[0]} and {of_speed[0]} exclude each other: a move goes by time or by speed"
         )
-    if not of_time and "speed" not in table:
-        raise BadValueError("total_time or speed is missing")
-    return "in_time" if of_time else "by_speed"
+    if not of_time and by_speed.told_by not in table:
+        raise BadValueError(f"{by_time.told_by} or {by_speed.told_by} is missing")
+    return by_time if of_time else by_speed
 
 
-# ----------------------------------------------------------------------------------------------- forms ----
-
-
-def _check_by_speed(table: Table) -> None:
-    if "ramp_time" in table and "acceleration" in table:
-        raise BadValueError("acceleration and ramp_time exclude each other")
-    if "deceleration" in table and "acceleration" not in table:
-        raise BadValueError("deceleration needs acceleration")
-    for key in ("acceleration", "deceleration"):
-        if key in table and read_number(table, key) == 0:
-            raise BadValueError(f"{key} must be greater than 0")
-
-
-@dataclass(frozen=True)
-class Form:
-    """A form of a move: what it becomes, and who reads each of its keys."""
-
-    make: type
-    keys: dict[str, Reader]
-    check: Callable[[Table], None] = lambda table: None
-
-
-OR_0 = read_number_or(0)
-SHAPED = {"steps": read_steps, "profile": read_profile}
-SHAPED_OR_USER = {"steps": read_steps, "profile": read_profile_or_user, "table": read_table_file}
-SPEEDS = {"start_speed": OR_0, "speed": read_number, "stop_speed": OR_0}
-
-# By the name of the method. The first two are also found by their keys.
-FORMS = {
-    "in_time": Form(m.MoveInTime, {**SHAPED_OR_USER, "total_time": read_number, "ramp_time": read_number}),
-    "by_speed": Form(
-        m.MoveBySpeed,
-        {**SHAPED_OR_USER, **SPEEDS, "acceleration": OR_0, "deceleration": OR_0, "ramp_time": OR_0},
-        _check_by_speed,
-    ),
-    "below_speed": Form(m.MoveBelowSpeed, {**SHAPED, "total_time": read_number, "speed": read_number}),
-    "at_speed": Form(m.MoveAtSpeed, {**SHAPED, "speed": read_number, "ramp_time": read_number}),
-    "axes": Form(
-        m.MoveAxes, {"steps": read_steps, "start_speed": OR_0, "speed": read_number, "ramp_time": read_number}
-    ),
-    "turn": Form(
-        m.MoveTurn,
-        {
-            **{"axes": read_axes, "axis": read_axis, "steps_per_turn": read_positive},
-            **{"angle": read_signed, "rpm": read_number, "minimum_rpm": OR_0, "acceleration": read_number},
-        },
-    ),
-    "sigmoid": Form(
-        m.MoveSigmoid,
-        {
-            **{"steps": read_steps, **SPEEDS, "accelerate_time": read_number},
-            **{"decelerate_time": read_number_or("accelerate_time"), "alpha": read_number_or(5)},
-        },
-    ),
-    "jerk": Form(
-        m.MoveJerk, {"steps": read_steps, **SPEEDS, "acceleration": read_number, "jerk": read_number}
-    ),
-    "straight": Form(
-        m.MoveStraight,
-        {
-            **{"distance": read_distance, "feed": read_number, "steps_per_mm": read_per_axis},
-            **{"speed": read_per_axis, "acceleration": read_per_axis, "jerk": read_per_axis_or_0},
-        },
-    ),
-}
+def _check_rules(form: Form, table: Table) -> None:
+    """Raise BadValueError if the keys of a move do not fit together."""
+    for rule in form.rules:
+        if rule.key not in table:
+            continue
+        if rule.kind == "excludes" and rule.other in table:
+            raise BadValueError(f"{rule.key} and {rule.other} exclude each other")
+        if rule.kind == "needs" and rule.other not in table:
+            raise BadValueError(f"{rule.key} needs {rule.other}")
+        if rule.kind == "above_zero" and table[rule.key] == 0:
+            raise BadValueError(f"{rule.key} must be greater than 0")

@@ -6,16 +6,20 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
-from passo.moves import AXES_MAX, PROFILES, USER, Points
-
-STEPS_MAX = 2**30 - 1  # of an axis, the longest line
-WHOLE_MAX = 2**32 - 1
-NUMBER_MAX = 2**32 - 1  # seconds, steps/s, steps/s^2
-SIGNED_MAX = 2**31 - 1  # degrees, millimetres
-DECIMALS_MAX = 30
+from passo.move_forms import (
+    DECIMALS_MAX,
+    NUMBER_MAX,
+    PROFILES,
+    SIGNED_MAX,
+    SUBSTEPS_MAX,
+    USER,
+    WHOLE_MAX,
+    Key,
+    Points,
+)
+from passo.moves import AXES_MAX
 
 Table = dict[str, Any]
-Reader = Callable[[Table, str], Any]
 
 
 class BadValueError(ValueError):
@@ -96,17 +100,6 @@ def _fraction(key: str, value: int | Decimal, largest: int) -> Fraction:
     return Fraction(value)
 
 
-def read_number_or(default: int | str) -> Reader:
-    """A number with a default, which may be another key's number."""
-
-    def read(table: Table, key: str) -> Fraction:
-        if isinstance(default, str):
-            return read_number(table, key if key in table else default)
-        return read_number(table, key, Fraction(default))
-
-    return read
-
-
 def read_steps(table: Table, key: str) -> tuple[int, ...]:
     """Steps of each axis, with the direction as sign."""
     steps = _get(table, key)
@@ -115,8 +108,8 @@ def read_steps(table: Table, key: str) -> tuple[int, ...]:
     if not 1 <= len(steps) <= AXES_MAX:
         raise BadValueError(f"steps has {len(steps)} axes, 1 to {AXES_MAX} are possible")
     for axis, n in enumerate(steps):
-        if abs(n) > STEPS_MAX:
-            raise BadValueError(f"axis {axis} has too many steps, at most {STEPS_MAX} are possible")
+        if abs(n) > SUBSTEPS_MAX:
+            raise BadValueError(f"axis {axis} has too many steps, at most {SUBSTEPS_MAX} are possible")
     return tuple(steps)
 
 
@@ -126,11 +119,6 @@ def read_profile(table: Table, key: str, profiles: tuple[str, ...] = PROFILES) -
     if profile not in profiles:
         raise BadValueError(f"profile must be one of {', '.join(profiles)}, not {shown(profile)}")
     return profile
-
-
-def read_profile_or_user(table: Table, key: str) -> str:
-    """Also a shape of the user's own."""
-    return read_profile(table, key, (*PROFILES, USER))
 
 
 def read_table_file(table: Table, key: str) -> str | Points:
@@ -145,15 +133,10 @@ def read_table_file(table: Table, key: str) -> str | Points:
     return name
 
 
-def read_axis(table: Table, key: str) -> int:
-    """Number of an axis, 0 by default."""
-    return read_integer(table, key, 0, AXES_MAX - 1) if key in table else 0
-
-
 def read_axes(table: Table, key: str) -> int:
     """How many axes there are, by default as few as the key `axis` allows."""
-    axis = read_axis(table, "axis")
-    return read_integer(table, key, axis + 1, AXES_MAX) if key in table else axis + 1
+    least = table.get("axis", 0) + 1
+    return read_integer(table, key, least, AXES_MAX) if key in table else least
 
 
 def read_positive(table: Table, key: str) -> int:
@@ -172,14 +155,35 @@ def read_per_axis(table: Table, key: str) -> tuple[Fraction, ...]:
     return tuple(read_number({key: item}, key) for item in value)
 
 
-def read_per_axis_or_0(table: Table, key: str) -> tuple[Fraction, ...]:
-    """The same with 0 as default."""
-    return read_per_axis({key: 0, **table}, key)
-
-
 def read_distance(table: Table, key: str) -> tuple[Fraction, ...]:
     """Millimetres of each axis."""
     value = _get(table, key)
     if not isinstance(value, list) or not 1 <= len(value) <= AXES_MAX:
         raise BadValueError(f"{key} must be a list of 1 to {AXES_MAX} numbers, one per axis")
     return tuple(read_signed({key: item}, key) for item in value)
+
+
+# By the kind of a key.
+READERS: dict[str, Callable[[Table, Key], Any]] = {
+    "steps": lambda table, key: read_steps(table, key.name),
+    "profile": lambda table, key: read_profile(table, key.name),
+    "shape": lambda table, key: read_profile(table, key.name, (*PROFILES, USER)),
+    "table": lambda table, key: read_table_file(table, key.name),
+    "time": lambda table, key: read_number(table, key.name),
+    "number": lambda table, key: read_number(table, key.name),
+    "signed": lambda table, key: read_signed(table, key.name),
+    "alpha": lambda table, key: read_number(table, key.name),
+    "whole": lambda table, key: read_integer(table, key.name, key.low, key.high),
+    "axis": lambda table, key: read_integer(table, key.name, 0, AXES_MAX - 1),
+    "axes": lambda table, key: read_axes(table, key.name),
+    "distance": lambda table, key: read_distance(table, key.name),
+    "per_axis": lambda table, key: read_per_axis(table, key.name),
+}
+
+
+def read_key(table: Table, key: Key) -> Any:
+    """The value of a key of a form; its default if it is not given."""
+    if key.default is not None and key.name not in table:
+        default = table[key.default] if isinstance(key.default, str) else key.default
+        table = {**table, key.name: default}
+    return READERS[key.kind](table, key)

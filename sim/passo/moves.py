@@ -1,15 +1,26 @@
 # SPDX-License-Identifier: MIT
 """Moves: what the planner is asked for, one class for each of its methods."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
+from typing import get_args
 
-PROFILES = ("linear", "cosine", "sigmoid", "jerk")
-USER = "user"  # the profile that is a table
-AXES_MAX = 8
+from passo import move_forms
+from passo.move_forms import (
+    UNIT_Q32,
+    MoveAtSpeed,
+    MoveAxes,
+    MoveBelowSpeed,
+    MoveBySpeed,
+    MoveInTime,
+    MoveJerk,
+    MoveSigmoid,
+)
+from passo.registers import AXIS_STEP_TIMING_STEP_HIGH_BITS, CHANNEL_AXIS_COUNT
 
-Q32 = 1 << 32  # the planner's numbers have 32 binary places
+AXES_MAX = CHANNEL_AXIS_COUNT
+PIN_CLOCKS_MAX = (1 << AXIS_STEP_TIMING_STEP_HIGH_BITS) - 1
 
 
 class MoveFileError(ValueError):
@@ -18,7 +29,7 @@ class MoveFileError(ValueError):
 
 @dataclass(frozen=True)
 class PinTiming:
-    """Pin timing of an axis in clocks, 1 .. 65535 each."""
+    """Pin timing of an axis in clocks, 1 .. PIN_CLOCKS_MAX each."""
 
     step_high: int = 1
     step_low: int = 1
@@ -26,123 +37,18 @@ class PinTiming:
     dir_hold: int = 1
 
 
-Points = tuple[int, ...]  # the points of a user's shape; empty with any other profile
-
-
-@dataclass(frozen=True)
-class MoveInTime:
-    """A move from rest to rest in a given time (seconds)."""
-
-    steps: tuple[int, ...]
-    profile: str
-    total_time: Fraction
-    ramp_time: Fraction
-    table: Points = ()
-
-
-@dataclass(frozen=True)
-class MoveBySpeed:
-    """A move by speeds (steps/s) of its longest axis; acceleration 0 means: by ramp time."""
-
-    steps: tuple[int, ...]
-    profile: str
-    start_speed: Fraction
-    speed: Fraction
-    stop_speed: Fraction
-    acceleration: Fraction
-    deceleration: Fraction
-    ramp_time: Fraction
-    table: Points = ()
-
-
-@dataclass(frozen=True)
-class MoveBelowSpeed:
-    """A move in a given time with the longest ramps that keep a highest speed."""
-
-    steps: tuple[int, ...]
-    profile: str
-    total_time: Fraction
-    speed: Fraction
-
-
-@dataclass(frozen=True)
-class MoveAtSpeed:
-    """A move with a given speed and ramp time, from rest to rest."""
-
-    steps: tuple[int, ...]
-    profile: str
-    speed: Fraction
-    ramp_time: Fraction
-
-
-@dataclass(frozen=True)
-class MoveAxes:
-    """A trapezoid of the axis with the most steps, from and to the start speed; the others follow."""
-
-    steps: tuple[int, ...]
-    start_speed: Fraction
-    speed: Fraction
-    ramp_time: Fraction
-    profile: str = field(default="linear", init=False)
-
-
-@dataclass(frozen=True)
-class MoveTurn:
-    """A turn of one axis by degrees and rpm; acceleration in steps/s^2."""
-
-    axes: int
-    axis: int
-    steps_per_turn: int
-    angle: Fraction
-    rpm: Fraction
-    minimum_rpm: Fraction
-    acceleration: Fraction
-    profile: str = field(default="linear", init=False)
+class MoveTurn(move_forms.MoveTurn):
+    """A turn of one axis by degrees and rpm."""
 
     @property
     def steps(self) -> tuple[int, ...]:
         """To the nearest step, as the planner reckons."""
-        count = (q32(abs(self.angle)) * self.steps_per_turn + 180 * Q32) // (360 * Q32)
+        count = (q32(abs(self.angle)) * self.steps_per_turn + 180 * UNIT_Q32) // (360 * UNIT_Q32)
         return tuple((count if self.angle > 0 else -count) * (i == self.axis) for i in range(self.axes))
 
 
-@dataclass(frozen=True)
-class MoveSigmoid:
-    """A sigmoid S-curve by three frequencies and the times of two full ramps."""
-
-    steps: tuple[int, ...]
-    start_speed: Fraction
-    speed: Fraction
-    stop_speed: Fraction
-    accelerate_time: Fraction
-    decelerate_time: Fraction
-    alpha: Fraction
-    profile: str = field(default="sigmoid", init=False)
-
-
-@dataclass(frozen=True)
-class MoveJerk:
-    """A jerk-limited move in up to seven phases; jerk in steps/s^3."""
-
-    steps: tuple[int, ...]
-    start_speed: Fraction
-    speed: Fraction
-    stop_speed: Fraction
-    acceleration: Fraction
-    jerk: Fraction
-    profile: str = field(default="jerk", init=False)
-
-
-@dataclass(frozen=True)
-class MoveStraight:
-    """A straight line in millimetres with limits of its own for each axis; a jerk of 0 is without limit."""
-
-    distance: tuple[Fraction, ...]
-    feed: Fraction
-    steps_per_mm: tuple[Fraction, ...]
-    speed: tuple[Fraction, ...]
-    acceleration: tuple[Fraction, ...]
-    jerk: tuple[Fraction, ...]
+class MoveStraight(move_forms.MoveStraight):
+    """A straight line in millimetres with limits of its own for each axis."""
 
     @property
     def profile(self) -> str:
@@ -171,10 +77,13 @@ Move = (
     | MoveStraight
 )
 
+# By the name of the form.
+MOVES: dict[str, type[Move]] = {move.form.name: move for move in get_args(Move)}
+
 
 def q32(value: Fraction) -> int:
     """The planner's number that is nearest."""
-    return round(value * Q32)
+    return round(value * UNIT_Q32)
 
 
 @dataclass(frozen=True)

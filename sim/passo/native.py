@@ -14,7 +14,9 @@ from passo.toolchain import environment, paths
 
 HEADERS = (
     paths.c_model / "passo_registers.h",
+    paths.c_model / "passo_limits.h",
     paths.c_model / "passo_command.h",
+    paths.c_model / "passo_moves.h",
     paths.c_model / "passo_plan.h",
     paths.c_model / "passo_frame.h",
     paths.driver / "passo_error.h",

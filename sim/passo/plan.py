@@ -1,32 +1,19 @@
 # SPDX-License-Identifier: MIT
 """The planner (c_model/passo_plan.h) for Python."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from passo import moves as m
+from passo import move_forms
 from passo.build import Parameters
-from passo.moves import Move, MoveFile, MoveFileError, q32
+from passo.move_forms import ALPHA_MAX, ALPHA_MIN, ALPHA_ONE, USER, USER_BANK, WHOLE_MAX, Key, Points
+from passo.moves import Move, MoveFile, MoveFileError
 from passo.native import ffi, planner
 from passo.shape import POINTS
 
 Q48 = 1 << 48
-ALPHA_ONE = 4096
-ALPHA_RESET = 5 * ALPHA_ONE  # what the sigmoid's table is made for after reset
-
-# Which passo_plan_METHOD() plans a move; its struct is passo_move_METHOD.
-METHODS = {
-    m.MoveInTime: "in_time",
-    m.MoveBySpeed: "by_speed",
-    m.MoveBelowSpeed: "below_speed",
-    m.MoveAtSpeed: "at_speed",
-    m.MoveAxes: "axes",
-    m.MoveTurn: "turn",
-    m.MoveSigmoid: "sigmoid",
-    m.MoveJerk: "jerk",
-    m.MoveStraight: "straight",
-}
+ALPHA_RESET = move_forms.ALPHA_RESET * ALPHA_ONE  # what the sigmoid's table is made for after reset
 
 
 class PlanError(Exception):
@@ -44,7 +31,7 @@ class Plan:
     move: Move
     c: Any
     tick_log2: int
-    table: m.Points = ()  # what the sigmoid's bank must hold; empty: what is there after reset, or anything
+    table: Points = ()  # what the sigmoid's bank must hold; empty: what is there after reset, or anything
 
     @property
     def line(self) -> Any:
@@ -67,11 +54,11 @@ def plan_move(move: Move, clock_hz: int, parameters: Parameters) -> Plan:
     c = planner()
     machine = ffi().new("struct passo_machine *", (clock_hz, parameters.tick_log2, len(move.steps)))
     plan = ffi().new("struct passo_plan *")
-    method, table = METHODS[type(move)], getattr(move, "table", ())
-    wanted = ffi().new(f"struct passo_move_{method} *", _struct_of(move, clock_hz))
+    method, table = move.form.name, getattr(move, "table", ())
+    wanted = struct_of(move, clock_hz)
     if table:
         points = ffi().new("uint16_t[]", table)
-        shape = ffi().new("struct passo_user_shape *", (c.PASSO_SHAPE_SIGMOID, points))
+        shape = ffi().new("struct passo_user_shape *", (int(USER_BANK), points))
         error = getattr(c, f"passo_plan_user_{method}")(machine, wanted, shape, plan)
     else:
         error = getattr(c, f"passo_plan_{method}")(machine, wanted, plan)
@@ -83,37 +70,37 @@ def plan_move(move: Move, clock_hz: int, parameters: Parameters) -> Plan:
     return Plan(move, plan, parameters.tick_log2, table)
 
 
-def sigmoid_table(alpha: int) -> m.Points:
+def sigmoid_table(alpha: int) -> Points:
     """The points of the sigmoid for an alpha in 1/4096."""
     table = ffi().new("uint16_t[]", POINTS)
     if planner().passo_sigmoid_table(alpha, table):
-        raise ValueError(f"alpha {alpha / ALPHA_ONE} is not 3 to 5")
+        raise ValueError(f"alpha {alpha / ALPHA_ONE} is not {ALPHA_MIN} to {ALPHA_MAX}")
     return tuple(table)
 
 
-def _struct_of(move: Move, clock_hz: int) -> dict[str, Any]:
-    """A move's fields as its C struct has them: times in clocks, all else in units of 2^-32."""
-    if isinstance(move, m.MoveStraight):
-        limits = zip(move.steps_per_mm, move.speed, move.acceleration, move.jerk, strict=True)
-        return {
-            "distance": [q32(d) for d in move.distance],
-            "limits": [tuple(map(q32, own)) for own in limits],
-            "feed": q32(move.feed),
-        }
+def struct_of(move: Move, clock_hz: int) -> Any:
+    """A move's C struct, in the units of the planner."""
     values: dict[str, Any] = {}
-    known = {name for name, _ in ffi().typeof(f"struct passo_move_{METHODS[type(move)]}").fields}
-    for field in fields(move):
-        name, value = field.name, getattr(move, field.name)
-        if name == "alpha":
-            values[name] = min(round(value * ALPHA_ONE), 2**32 - 1)
-        elif name == "profile":
-            value = "linear" if value == m.USER else value  # not looked at then
-            values[name] = getattr(planner(), f"PASSO_PROFILE_{value.upper()}")
-        elif name.endswith("_time"):
-            values[f"{name.removesuffix('_time')}_clocks"] = round(value * clock_hz)
-        else:
-            values[name] = q32(value) if isinstance(value, Fraction) else value
-    return {name: value for name, value in values.items() if name in known}
+    for key in move.form.keys:
+        value = getattr(move, key.name)
+        if key.kind == "per_axis":
+            limits = values.setdefault("limits", [{} for _ in value])
+            for own, number in zip(limits, value, strict=True):
+                own[key.member] = _number(key, number, clock_hz)
+        elif key.kind in ("profile", "shape"):
+            name = "linear" if value == USER else value  # not looked at then
+            values[key.member] = getattr(planner(), f"PASSO_PROFILE_{name.upper()}")
+        elif key.member and key.factor and isinstance(value, tuple):
+            values[key.member] = [_number(key, number, clock_hz) for number in value]
+        elif key.member:
+            values[key.member] = _number(key, value, clock_hz) if key.factor else value
+    return ffi().new(f"struct passo_move_{move.form.name} *", values)
+
+
+def _number(key: Key, value: Fraction, clock_hz: int) -> int:
+    """To the nearest, in units of the struct; an alpha has 32 bits there."""
+    number = round(value * (clock_hz if key.factor == "clock_hz" else key.factor))
+    return min(number, WHOLE_MAX) if key.kind == "alpha" else number
 
 
 def plan_file(file: MoveFile, parameters: Parameters) -> list[Plan]:
@@ -133,7 +120,7 @@ def plan_file(file: MoveFile, parameters: Parameters) -> list[Plan]:
     return plans
 
 
-def table_of(plans: list[Plan]) -> m.Points:
+def table_of(plans: list[Plan]) -> Points:
     """What the sigmoid's bank must hold before this motion; empty: what is there after reset."""
     return next((plan.table for plan in plans if plan.table), ())
 

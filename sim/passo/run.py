@@ -11,13 +11,13 @@ from passo.build import Parameters
 from passo.driver import Driver, DriverError, Source
 from passo.engine import Engine, PairEngine, model_engine, rtl_engine
 from passo.host import ChannelState
+from passo.move_forms import USER_BANK
 from passo.moves import MoveFile
 from passo.plan import Plan, table_of
 from passo.registers import Cause, State
 
 ENGINES = ("both", "rtl", "model")
 CHUNK = 1_000_000  # clocks between two reports of progress
-SIGMOID_BANK = 2  # where the table of a motion goes
 SLEW_MICROSECONDS = 50_000  # a hold from full speed
 AXES_OF_CORES = (4, 8)
 
@@ -145,7 +145,7 @@ def execute(
     for axis in range(file.axes):
         driver.configure_axis(axis, file.pins)
     if table := table_of(plans):
-        driver.call("load_table", SIGMOID_BANK, table)
+        driver.call("load_table", USER_BANK, table)
     slowest = min(plan.c.velocity_peak for plan in plans)
     driver.call("configure_motion", SLEW_MICROSECONDS, SLEW_MICROSECONDS, max(1, slowest >> 16 >> 4))
 

@@ -16,7 +16,9 @@ from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path
 
-POINTS = 256
+from passo.registers import ADDRESS_SIGMOID_COUNT
+
+POINTS = ADDRESS_SIGMOID_COUNT
 ONE = 1 << 16
 HEADER = ("k", "point")
 CURVE_HEADER = ("u", "s")

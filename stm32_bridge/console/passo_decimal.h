@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define PASSO_DECIMALS_MAX 30u
+#include "passo_limits.h"
 
 /* The absolute value is whole + 0.digits. */
 struct passo_decimal {

@@ -26,11 +26,11 @@ enum passo_reader {
 	PASSO_READ_NUMBER,       /* uint64_t UQ32.32 */
 	PASSO_READ_SIGNED,       /* int64_t Q31.32 */
 	PASSO_READ_TIME,         /* uint64_t clocks, to the nearest */
-	PASSO_READ_PIN_TIME,     /* uint32_t clocks, rounded up, 1 .. 65535 */
+	PASSO_READ_PIN_TIME,     /* uint32_t clocks, rounded up, 1 .. PASSO_PIN_CLOCKS_MAX */
 	PASSO_READ_MICROSECONDS, /* uint32_t, to the nearest, saturates */
-	PASSO_READ_ALPHA,        /* uint32_t in 1/4096 */
+	PASSO_READ_ALPHA,        /* uint32_t in 1/PASSO_ALPHA_ONE */
 	PASSO_READ_DISTANCE,     /* int64_t[] Q31.32, one per axis */
-	PASSO_READ_PER_AXIS,     /* uint64_t in every `stride` bytes: one number for all axes, or a list */
+	PASSO_READ_PER_AXIS,     /* uint64_t in each passo_axis_limits: one number for all axes, or a list */
 	PASSO_READ_PROFILE,      /* enum passo_profile */
 	PASSO_READ_SHAPE,        /* the same, or the user's own */
 	PASSO_READ_POINTS        /* uint16_t[16] */
@@ -38,13 +38,12 @@ enum passo_reader {
 
 struct passo_key {
 	const char *name;
-	enum passo_reader reader;
 	/* What stands for a missing value: null: it must be given; "": the value stays as it is; the name of
 	 * another key: its value; otherwise a text to read. */
 	const char *otherwise;
 	uint32_t low, high; /* of a whole number */
 	uint16_t offset;    /* where the value goes in the struct that is read into */
-	uint16_t stride;
+	enum passo_reader reader;
 };
 
 #define PASSO_POINTS_PER_LINE 16u

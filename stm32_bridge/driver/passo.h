@@ -163,7 +163,9 @@ enum passo_error passo_open_channel(
 
 /* ---------------------------------------------------------------------------------------- settings ---- */
 
-/* Pins of an axis. Times are rounded up to clocks, at least one, at most 65535. */
+/* Longest time of the pins in clocks. */
+#define PASSO_PIN_CLOCKS_MAX ((UINT32_C(1) << PASSO_AXIS_STEP_TIMING_STEP_HIGH_BITS) - 1u)
+/* Pins of an axis. Times are rounded up to clocks, at least one, at most PASSO_PIN_CLOCKS_MAX. */
 struct passo_axis_config {
 	uint32_t step_high_ns, step_low_ns; /* STEP active, and inactive before the next step */
 	uint32_t dir_setup_ns;              /* DIR change to the active edge of STEP */

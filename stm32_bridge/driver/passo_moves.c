@@ -116,8 +116,8 @@ static enum passo_error check_steps(const struct passo *passo, const void *move,
 	return error;
 }
 
-/* A move whose steps are in its field `steps`: passo_move_METHOD() by passo_plan_METHOD(). */
-#define MOVE_BY_STEPS(method)                                                                                \
+/* passo_move_METHOD() by passo_plan_METHOD(). */
+#define MOVE_BY_STEPS(method, METHOD)                                                                        \
 	enum passo_error passo_move_##method(struct passo *passo, const struct passo_move_##method *move)    \
 	{                                                                                                    \
 		struct passo_plan plan;                                                                      \
@@ -126,14 +126,21 @@ static enum passo_error check_steps(const struct passo *passo, const void *move,
 			return error;                                                                        \
 		return move_planned(passo, passo_plan_##method(&passo->machine, move, &plan), &plan, NULL);  \
 	}
+PASSO_MOVES_BY_STEPS(MOVE_BY_STEPS)
 
-MOVE_BY_STEPS(in_time)
-MOVE_BY_STEPS(by_speed)
-MOVE_BY_STEPS(below_speed)
-MOVE_BY_STEPS(at_speed)
-MOVE_BY_STEPS(axes)
-MOVE_BY_STEPS(sigmoid)
-MOVE_BY_STEPS(jerk)
+/* passo_move_user_METHOD() by passo_plan_user_METHOD(). */
+#define MOVE_BY_SHAPE(method, METHOD)                                                                        \
+	enum passo_error passo_move_user_##method(struct passo *passo,                                       \
+	    const struct passo_move_##method *move, const struct passo_user_shape *shape)                    \
+	{                                                                                                    \
+		struct passo_plan plan;                                                                      \
+		enum passo_error error = check_steps(passo, move, move ? move->steps : NULL);                \
+		if (error != PASSO_OK || !shape || !shape->table)                                            \
+			return error != PASSO_OK ? error : PASSO_ERROR_ARGUMENT;                             \
+		return move_planned(                                                                         \
+		    passo, passo_plan_user_##method(&passo->machine, move, shape, &plan), &plan, shape);     \
+	}
+PASSO_MOVES_BY_SHAPE(MOVE_BY_SHAPE)
 
 enum passo_error passo_move_turn(struct passo *passo, const struct passo_move_turn *move)
 {
@@ -160,28 +167,4 @@ enum passo_error passo_move_straight(struct passo *passo, const struct passo_mov
 			scaled.limits[i].steps_per_mm = passo->axis[i].steps_per_unit;
 	}
 	return move_planned(passo, passo_plan_straight(&passo->machine, &scaled, &plan), &plan, NULL);
-}
-
-enum passo_error passo_move_user_in_time(
-    struct passo *passo, const struct passo_move_in_time *move, const struct passo_user_shape *shape)
-{
-	struct passo_plan plan;
-	enum passo_error error = check_steps(passo, move, move ? move->steps : NULL);
-
-	if (error != PASSO_OK || !shape || !shape->table)
-		return error != PASSO_OK ? error : PASSO_ERROR_ARGUMENT;
-	return move_planned(
-	    passo, passo_plan_user_in_time(&passo->machine, move, shape, &plan), &plan, shape);
-}
-
-enum passo_error passo_move_user_by_speed(
-    struct passo *passo, const struct passo_move_by_speed *move, const struct passo_user_shape *shape)
-{
-	struct passo_plan plan;
-	enum passo_error error = check_steps(passo, move, move ? move->steps : NULL);
-
-	if (error != PASSO_OK || !shape || !shape->table)
-		return error != PASSO_OK ? error : PASSO_ERROR_ARGUMENT;
-	return move_planned(
-	    passo, passo_plan_user_by_speed(&passo->machine, move, shape, &plan), &plan, shape);
 }

@@ -3,12 +3,11 @@
  */
 #include "passo_driver.h"
 
-#define CLOCKS_MAX 65535u
 #define NANOSECONDS UINT64_C(1000000000)
 #define MICROSECONDS UINT64_C(1000000)
 #define LOOKS_AT_REST 2u /* in a row */
 
-/* A time of the pins in clocks, rounded up; above CLOCKS_MAX if it is too long. */
+/* A time of the pins in clocks, rounded up; above PASSO_PIN_CLOCKS_MAX if it is too long. */
 static uint64_t clocks_of(const struct passo *passo, const struct passo_axis_config *config, uint32_t time)
 {
 	uint64_t clocks = time;
@@ -43,7 +42,8 @@ enum passo_error passo_configure_axis(
 	const uint64_t low = clocks_of(passo, config, config->step_low_ns);
 	const uint64_t setup = clocks_of(passo, config, config->dir_setup_ns);
 	const uint64_t hold = clocks_of(passo, config, config->dir_hold_ns);
-	if (high > CLOCKS_MAX || low > CLOCKS_MAX || setup > CLOCKS_MAX || hold > CLOCKS_MAX)
+	if (high > PASSO_PIN_CLOCKS_MAX || low > PASSO_PIN_CLOCKS_MAX || setup > PASSO_PIN_CLOCKS_MAX
+	    || hold > PASSO_PIN_CLOCKS_MAX)
 		return PASSO_ERROR_ARGUMENT;
 	error = passo_driver_ready(passo, true);
 	if (error != PASSO_OK)

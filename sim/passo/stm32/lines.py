@@ -5,10 +5,12 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
+from passo.move_file import PIN_KEYS
+from passo.move_forms import FORMS
 from passo.shape import read_table
 
 POINTS_PER_LINE = 16
-PIN_KEYS = ("step_high", "step_low", "dir_setup", "dir_hold")
+FILE_ONLY = {key.name for form in FORMS.values() for key in form.keys if key.file_only}
 
 
 def read_toml(path: Path) -> dict[str, Any]:
@@ -38,7 +40,7 @@ def move_lines(data: dict[str, Any], folder: Path) -> list[list[str]]:
 
 def move_line(move: dict[str, Any]) -> str:
     """The line of one move."""
-    words = [f"{key}={_value(value)}" for key, value in move.items() if key != "table"]
+    words = [f"{key}={_value(value)}" for key, value in move.items() if key not in FILE_ONLY]
     return " ".join(["move", *words])
 
 

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: MIT
+"""The forms of a move for move files."""
+
+from textwrap import wrap
+
+from moves.schema import CLOCK, GENERATED, Form, Key, Schema
+
+WIDTH = 110
+
+HEAD = f'''\
+# SPDX-License-Identifier: MIT
+# {GENERATED}
+"""Forms of a move: their keys, what their values become, and the limits of values."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import ClassVar
+
+from passo.registers import Shape
+'''
+
+CLASSES = '''
+Points = tuple[int, ...]  # the points of a user's shape; empty with any other profile
+
+
+@dataclass(frozen=True)
+class Key:
+    """A key of a form, and what its value becomes in the struct of the planner."""
+
+    name: str
+    kind: str
+    member: str | None  # of the struct
+    factor: int | str | None = None  # "clock_hz": times the clock; none: as it is
+    default: int | str | None = None  # a number, or the name of another key
+    low: int = 0  # of a whole number
+    high: int = 0
+    file_only: bool = False
+
+
+@dataclass(frozen=True)
+class Rule:
+    """What is checked when all keys are read: `key` excludes the other, needs it, or is above zero."""
+
+    kind: str
+    key: str
+    other: str
+
+
+@dataclass(frozen=True)
+class Form:
+    """A form of a move: passo_plan_NAME() plans it."""
+
+    name: str
+    keys: tuple[Key, ...]
+    rules: tuple[Rule, ...] = ()
+    told_by: str | None = None  # the key that tells it, so that `method` need not
+'''
+
+
+def _call(prefix: str, cells: list[str], indent: int, suffix: str = "") -> list[str]:
+    """A call, broken as the formatter breaks it."""
+    blanks = " " * indent
+    if len(line := f"{blanks}{prefix}({', '.join(cells)}){suffix}") <= WIDTH:
+        return [line]
+    if len(line := f"{blanks}    {', '.join(cells)}") <= WIDTH:
+        return [f"{blanks}{prefix}(", line, f"{blanks}){suffix}"]
+    return [f"{blanks}{prefix}(", *(f"{blanks}    {cell}," for cell in cells), f"{blanks}){suffix}"]
+
+
+def _quoted(text: str) -> str:
+    return f'"{text}"'
+
+
+def _key(schema: Schema, key: Key) -> list[str]:
+    member = _quoted(key.member) if key.kind.c else "None"
+    cells = [_quoted(key.name), _quoted(key.kind.name), member]
+    if key.kind.factor:
+        factor = _quoted(CLOCK) if key.kind.factor == CLOCK else key.kind.factor.upper()
+        cells.append(f"factor={factor}")
+    if key.default is not None:
+        cells.append(f"default={key.default if key.default.isdigit() else _quoted(key.default)}")
+    if key.kind.name == "whole":
+        low, high = (end.upper() if isinstance(end, str) else str(end) for end in key.range)
+        cells += [f"low={low}", f"high={high}"]
+    if key.file_only:
+        cells.append("file_only=True")
+    return _call("Key", cells, 12, ",")
+
+
+def _form(schema: Schema, form: Form) -> list[str]:
+    lines = [f'    "{form.name}": Form(', f'        "{form.name}",', "        ("]
+    for key in form.keys:
+        lines += _key(schema, key)
+    lines.append("        ),")
+    if form.rules:
+        lines.append("        (")
+        for rule in form.rules:
+            lines += _call("Rule", [_quoted(rule.kind), _quoted(rule.key), _quoted(rule.other)], 12, ",")
+        lines.append("        ),")
+    if form.told_by:
+        lines.append(f'        told_by="{form.told_by}",')
+    return [*lines, "    ),"]
+
+
+def _class(form: Form) -> list[str]:
+    """What a move of the form is asked for with."""
+    name = "Move" + form.name.title().replace("_", "")
+    lines = ["", "", "@dataclass(frozen=True)", f"class {name}:", f'    """{form.summary}"""', ""]
+    for key in sorted(form.keys, key=lambda key: key.file_only):
+        lines.append(f"    {key.name}: {key.kind.python}{' = ()' if key.file_only else ''}")
+    lines += ["", f'    form: ClassVar[Form] = FORMS["{form.name}"]']
+    if form.profile:
+        lines.append(f'    profile: ClassVar[str] = "{form.profile}"')
+    return lines
+
+
+def module(schema: Schema) -> str:
+    """sim/passo/move_forms.py"""
+    lines = [HEAD]
+    for constant in schema.constants.values():
+        if constant.c_only:
+            continue
+        lines += [f"# {line}" for line in wrap(constant.text, 105)]
+        lines.append(f"{constant.name.upper()} = {constant.value}")
+    names = ", ".join(map(_quoted, schema.profiles))
+    lines += ["", f"PROFILES = ({names})", f'USER = "{schema.user_name}"  # the profile that is a table']
+    lines += [f"USER_BANK = Shape.{schema.user_bank.upper()}  # where that table goes", CLASSES, ""]
+    lines.append("FORMS = {")
+    for form in schema.forms:
+        lines += _form(schema, form)
+    lines.append("}")
+    for form in schema.forms:
+        lines += _class(form)
+    return "\n".join([*lines, ""])
