@@ -15,7 +15,7 @@ from passo.toolchain import environment, paths
 
 SIGNALS = ("step", "dir", "enable", "running", "irq", "miso")
 COLUMNS = ("clock", "inputs", "pin_miso", *SIGNALS[:-1])
-HOST = ("passo_plan", "passo_math", "passo_frame")  # the part of c_model/ that is not the model
+FOLDERS = (paths.model, paths.protocol)
 FLAGS = ("-std=c11", "-O2", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-fPIC", "-shared")
 
 DECLARATIONS = """
@@ -83,15 +83,15 @@ def _load() -> tuple[FFI, Any]:
 
 def _library() -> Path:
     """The model and the judge; compiled when a source has changed."""
-    model = (path for path in sorted(paths.c_model.glob("*.c")) if not path.stem.startswith(HOST))
+    model = (path for folder in FOLDERS for path in sorted(folder.glob("*.c")))
     sources = [Path(__file__).with_suffix(".c"), *model]
-    inputs = [*sources, *sorted(paths.c_model.glob("*.h"))]
+    inputs = [*sources, *(path for folder in FOLDERS for path in sorted(folder.glob("*.h")))]
     digest = hashlib.sha256(b"\0".join(path.read_bytes() for path in inputs)).hexdigest()[:12]
     library = paths.build / "cocotb" / f"judge-{digest}.so"
     if not library.exists():
         library.parent.mkdir(parents=True, exist_ok=True)
         made = library.with_suffix(f".{os.getpid()}")
-        command = ["cc", *FLAGS, f"-I{paths.c_model}", *map(str, sources), "-o", str(made)]
+        command = ["cc", *FLAGS, *(f"-I{folder}" for folder in FOLDERS), *map(str, sources), "-o", str(made)]
         subprocess.run(command, env=environment(), check=True)
         made.rename(library)
     return library

@@ -38,7 +38,13 @@ HERE = Path(__file__).resolve().parent
 BUILD = paths.build / "soak"
 REPORT = paths.build / "soak.json"
 FLAGS = ("-std=gnu11", "-O2", "-Wall", "-Wextra", "-Wconversion", "-Werror")
-FOLDERS = {"c_model": paths.c_model, "stm32_bridge/driver": paths.driver, "soak": HERE}
+FOLDERS = {
+    "model": paths.model,
+    "planner": paths.planner,
+    "protocol": paths.protocol,
+    "stm32_bridge/driver": paths.driver,
+    "soak": HERE,
+}
 
 # The same as plot_parameters() in plot.c.
 SETS = (

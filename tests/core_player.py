@@ -17,11 +17,12 @@ from passo.toolchain import environment, paths
 
 HERE = Path(__file__).parent
 HEADERS = [
-    *(paths.c_model / f"passo_{name}.h" for name in ("registers", "command", "model", "core")),
+    *(paths.protocol / f"passo_{name}.h" for name in ("registers", "command")),
+    *(paths.model / f"passo_{name}.h" for name in ("model", "core")),
     HERE / "core_player.h",
 ]
-HOST = ("passo_plan", "passo_math", "passo_frame")  # the part of c_model/ that is not the model
-MODEL = [path for path in sorted(paths.c_model.glob("*.c")) if not path.stem.startswith(HOST)]
+FOLDERS = (paths.model, paths.protocol)
+MODEL = [path for folder in FOLDERS for path in sorted(folder.glob("*.c"))]
 SOURCES = [HERE / "core_player.c", *MODEL]
 EVENTS = 1 << 16
 HALF_PERIOD = 2  # clocks that SCLK stays at each level
@@ -39,7 +40,7 @@ def load() -> tuple[FFI, Any]:
 
 
 def _library() -> Path:
-    inputs = [*SOURCES, *HEADERS, *sorted(paths.c_model.glob("*.h"))]
+    inputs = [*SOURCES, *HEADERS, *(path for folder in FOLDERS for path in sorted(folder.glob("*.h")))]
     digest = hashlib.sha256(b"\0".join(path.read_bytes() for path in inputs)).hexdigest()[:12]
     library = paths.build / "tests" / f"player-{digest}.so"
     if not library.exists():
@@ -48,7 +49,7 @@ def _library() -> Path:
             stale.unlink(missing_ok=True)
         made = library.with_suffix(f".{os.getpid()}")
         flags = ["-std=c11", "-O2", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-fPIC", "-shared"]
-        flags += ["-fno-semantic-interposition", f"-I{paths.c_model}"]
+        flags += ["-fno-semantic-interposition", *(f"-I{folder}" for folder in FOLDERS)]
         subprocess.run(["cc", *flags, *map(str, SOURCES), "-o", str(made)], env=environment(), check=True)
         made.rename(library)
     return library

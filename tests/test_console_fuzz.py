@@ -16,7 +16,8 @@ FLAGS = "-std=c11 -O1 -g -Wall -Wextra -Wconversion -Werror -fsanitize=address,u
 def test_every_line_gets_one_answer(tmp_path: Path) -> None:
     """Whatever is typed, whatever the core does: one `ok` or `error:`, no undefined behaviour."""
     program = tmp_path / "fuzz"
-    folders = [paths.c_model, ENGINE, paths.stm32_bridge / "console", paths.stm32_bridge / "driver"]
+    folders = [paths.model, paths.planner, paths.protocol, ENGINE]
+    folders += [paths.stm32_bridge / "console", paths.driver]
     sources = [
         path for folder in folders for path in sorted(folder.glob("*.c")) if path.name != "passo_cpu.c"
     ]

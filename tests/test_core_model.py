@@ -75,7 +75,7 @@ def check_motion(lines: Sequence[Line], ramps: Sequence[Ramp], tick_log2: int = 
 
 def test_tables() -> None:
     """The tables are the formulas of the contract; cosine and sigmoid are odd-symmetric to the bit."""
-    numbers = [int(n) for n in re.findall(r"\b(\d+)(?=,)", (paths.c_model / "passo_shapes.c").read_text())]
+    numbers = [int(n) for n in re.findall(r"\b(\d+)(?=,)", (paths.protocol / "passo_shapes.c").read_text())]
     assert numbers == [point for bank in (COSINE, SIGMOID, EASE) for point in TABLES[bank][:256]]
     for bank in (COSINE, SIGMOID):
         assert all(TABLES[bank][k] + TABLES[bank][256 - k] == 65536 for k in range(257))

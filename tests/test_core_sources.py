@@ -10,13 +10,9 @@ from passo.toolchain import environment, paths
 
 STRICT = ["-std=c11", "-Wall", "-Wextra", "-Wconversion", "-Werror"]
 SANITIZED = ["-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"]
-MODEL_SOURCES = sorted(paths.c_model.glob("passo_*.c"))
-SOURCES = [*MODEL_SOURCES, *sorted(paths.driver.glob("*.c"))]
-# Without the planner, which has its own tests.
-SCENARIO = [
-    paths.tests / "core_scenario.c",
-    *(path for path in MODEL_SOURCES if not path.stem.startswith("passo_plan")),
-]
+MODEL = [*sorted(paths.model.glob("*.c")), *sorted(paths.protocol.glob("*.c"))]
+SOURCES = [*MODEL, *sorted(paths.planner.glob("*.c")), *sorted(paths.driver.glob("*.c"))]
+INCLUDES = [f"-I{folder}" for folder in (paths.model, paths.planner, paths.protocol, paths.driver)]
 # What a compiler may call by itself on any target.
 ALLOWED = {"memcpy", "memset", "memmove", "memcmp"}
 
@@ -29,7 +25,7 @@ def compile_c(*arguments: object) -> None:
 def test_a_scenario_runs_clean_under_sanitizers(tmp_path: Path) -> None:
     """Moves, holds, every kind of stop and rubbish on the wire: no fault, and the answers of the contract."""
     program = tmp_path / "scenario"
-    compile_c(*STRICT, *SANITIZED, f"-I{paths.c_model}", *SCENARIO, "-o", program)
+    compile_c(*STRICT, *SANITIZED, *INCLUDES, paths.tests / "core_scenario.c", *MODEL, "-o", program)
     done = subprocess.run([program], capture_output=True, text=True, timeout=300)
     assert (done.returncode, done.stderr, done.stdout) == (0, "", "ok\n")
 
@@ -46,8 +42,7 @@ def test_no_floating_point_and_no_heap(source: Path, tmp_path: Path) -> None:
         "-mgeneral-regs-only",
         "-fno-stack-protector",
         "-c",
-        f"-I{paths.c_model}",
-        f"-I{paths.driver}",
+        *INCLUDES,
         source,
         "-o",
         made,

@@ -9,14 +9,15 @@ from passo.toolchain import paths
 from test_core_sources import compile_c
 
 PARTS = 8
-SOURCES = [paths.tests / "driver_cuts.c", *paths.c_model.glob("*.c"), *paths.driver.glob("*.c")]
+FOLDERS = (paths.model, paths.planner, paths.protocol, paths.driver)
+SOURCES = [paths.tests / "driver_cuts.c", *(path for folder in FOLDERS for path in folder.glob("*.c"))]
 
 
 @pytest.fixture(scope="module")
 def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
     made = tmp_path_factory.mktemp("cuts") / "driver_cuts"
     warnings = ["-std=c11", "-Wall", "-Wextra", "-Werror"]
-    compile_c(*warnings, "-O3", f"-I{paths.driver}", f"-I{paths.c_model}", *SOURCES, "-o", made)
+    compile_c(*warnings, "-O3", *(f"-I{folder}" for folder in FOLDERS), *SOURCES, "-o", made)
     return made
 
 

@@ -12,7 +12,7 @@ from passo.native import ffi, planner
 from passo.toolchain import environment, paths
 from test_core_sources import SANITIZED, STRICT, compile_c
 
-INCLUDES = [f"-I{paths.driver}", f"-I{paths.c_model}"]
+INCLUDES = [f"-I{folder}" for folder in (paths.driver, paths.planner, paths.protocol)]
 EXAMPLES = paths.driver.parent / "examples"
 STUBS = paths.tests / "stubs"
 CORTEX = ["-mcpu=cortex-m3", "-mthumb", "-std=c11", "-Os"]
@@ -24,12 +24,12 @@ def test_a_scenario_runs_clean_under_sanitizers(tmp_path: Path) -> None:
     program = tmp_path / "scenario"
     sources = [
         paths.tests / "driver_scenario.c",
-        *paths.c_model.glob("*.c"),
+        *(path for folder in (paths.model, paths.planner, paths.protocol) for path in folder.glob("*.c")),
         *paths.driver.glob("*.c"),
         ENGINE / "engine.c",
         ENGINE / "engine_model.c",
     ]
-    compile_c(*STRICT, *SANITIZED, *INCLUDES, f"-I{ENGINE}", *sources, "-o", program)
+    compile_c(*STRICT, *SANITIZED, *INCLUDES, f"-I{paths.model}", f"-I{ENGINE}", *sources, "-o", program)
     done = subprocess.run([program], capture_output=True, text=True, timeout=300)
     assert (done.returncode, done.stderr, done.stdout) == (0, "", "ok\n")
 

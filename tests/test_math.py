@@ -25,11 +25,11 @@ def math_c() -> Iterator[tuple[FFI, object]]:
     library = directory / f"math-{os.getpid()}.so"
     flags = "-std=c11 -O2 -Wall -Wextra -Wconversion -Werror -fPIC -shared -fsanitize=undefined"
     subprocess.run(
-        ["cc", *flags.split(), "-fno-sanitize-recover=all", "-o", library, paths.c_model / "passo_math.c"],
+        ["cc", *flags.split(), "-fno-sanitize-recover=all", "-o", library, paths.planner / "passo_math.c"],
         check=True,
     )
     ffi = FFI()
-    header = (paths.c_model / "passo_math.h").read_text()
+    header = (paths.planner / "passo_math.h").read_text()
     ffi.cdef("\n".join(line for line in header.splitlines() if not line.startswith("#")))
     yield ffi, ffi.dlopen(str(library))
     library.unlink()

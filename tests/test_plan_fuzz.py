@@ -16,8 +16,9 @@ FLAGS = "-std=c11 -O1 -g -Wall -Wextra -Wconversion -Werror -fsanitize=address,u
 def test_no_argument_breaks_the_planner(tmp_path: Path) -> None:
     """No undefined behaviour, no plan that the core would not take, no refusal that touches the plan."""
     program = tmp_path / "fuzz"
-    sources = [*sorted(paths.c_model.glob("passo_plan*.c")), paths.c_model / "passo_math.c"]
-    command = ["gcc", *FLAGS.split(), "-fno-sanitize-recover=all", f"-I{paths.c_model}"]
+    sources = sorted(paths.planner.glob("*.c"))
+    command = ["gcc", *FLAGS.split(), "-fno-sanitize-recover=all"]
+    command += [f"-I{paths.planner}", f"-I{paths.protocol}"]
     target = paths.tests / "plan_fuzz.c"
     subprocess.run([*command, target, *sources, "-o", program], env=environment(), check=True)
     done = subprocess.run([program, SEED, SECONDS], capture_output=True, text=True, timeout=600)
@@ -30,4 +31,4 @@ def test_no_argument_breaks_the_planner(tmp_path: Path) -> None:
 
 
 def header() -> str:
-    return (paths.c_model / "passo_plan.h").read_text()
+    return (paths.planner / "passo_plan.h").read_text()

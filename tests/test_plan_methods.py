@@ -36,7 +36,7 @@ def library() -> Any:
     directory.mkdir(parents=True, exist_ok=True)
     made = directory / f"plan-methods-{os.getpid()}.so"
     flags = "-std=c11 -O2 -Wall -Wextra -Wconversion -Werror -fPIC -shared -fsanitize=undefined"
-    sources = [*sorted(paths.c_model.glob("passo_plan*.c")), paths.c_model / "passo_math.c"]
+    sources = [f"-I{paths.protocol}", *sorted(paths.planner.glob("*.c"))]
     subprocess.run(["cc", *flags.split(), "-fno-sanitize-recover=all", "-o", made, *sources], check=True)
     loaded = load(made)
     made.unlink()

@@ -18,8 +18,8 @@ ROOT = Path(__file__).resolve().parents[1]
 SOURCE = "registers/passo.rdl"
 GENERATOR = "tools/generate_registers.py"
 VERILOG = "rtl/passo_registers.vh"
-C = "c_model/passo_registers.h"
-OUTPUTS = [VERILOG, C, "c_model/passo_words.h", "sim/passo/registers.py", "docs/registers.md"]
+C = "protocol/passo_registers.h"
+OUTPUTS = [VERILOG, C, "protocol/passo_words.h", "sim/passo/registers.py", "docs/registers.md"]
 ENUMS = [registers.Operation, registers.Verdict, registers.State, registers.Cause, registers.Shape]
 
 
@@ -235,6 +235,6 @@ def test_c_is_accepted(tmp_path: Path, language: str):
     tiny = tmp_path / "tiny.c"
     tiny.write_text(f'#include "{Path(C).name}"\n' * 2 + "int main(void) { return PASSO_VERDICT_OK; }\n")
     result = run(
-        "gcc", "-x", language, "-fsyntax-only", "-Wall", "-Wextra", "-Werror", f"-I{ROOT / 'c_model'}", tiny
+        "gcc", "-x", language, "-fsyntax-only", "-Wall", "-Wextra", "-Werror", f"-I{ROOT / 'protocol'}", tiny
     )
     assert (result.returncode, result.stdout) == (0, "")

@@ -23,7 +23,8 @@ ENGINE = paths.sim / "engine"
 LIBRARY = "library.so"
 MESSAGE_LINES = 30  # of a compiler's complaints
 
-INCLUDES = (f"-I{paths.c_model}", f"-I{paths.driver}", f"-I{ENGINE}")
+FOLDERS = (paths.protocol, paths.planner, paths.model, paths.driver, ENGINE)  # of headers
+INCLUDES = tuple(f"-I{folder}" for folder in FOLDERS)
 C_FLAGS = ("-std=c11", "-O3", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-fPIC", *INCLUDES)
 C_LINK_FLAGS = ("-shared", "-Wl,--no-undefined")
 CPP_FLAGS = ("-std=gnu++17", "-O3", "-Wall", "-fPIC", "-fno-gnu-unique", *INCLUDES)
@@ -73,31 +74,24 @@ class Parameters:
 
 def planner_library() -> Path:
     """Planner, frame codec, link library and driver: what runs on a microcontroller as well."""
-    shapes = paths.c_model / "passo_shapes.c"
-    return _c_library("planner", [*_host_sources(), shapes, *sorted(paths.driver.glob("*.c"))])
+    return _c_library("planner", _sources(paths.planner, paths.protocol, paths.driver))
 
 
 def model_library() -> Path:
     """The engine on the C model, for any parameters."""
-    sources = sorted({*paths.c_model.glob("*.c")} - {*_host_sources()})
+    sources = _sources(paths.model, paths.protocol)
     return _c_library("model", [*sources, ENGINE / "engine.c", ENGINE / "engine_model.c"])
 
 
 def console_library() -> Path:
     """The console of the STM32 bridge with its driver, as it runs on a microcontroller."""
-    folders = [paths.stm32_bridge / "console", paths.stm32_bridge / "driver"]
-    sources = [path for folder in folders for path in sorted(folder.glob("*.c"))]
-    sources += [ENGINE / "passo_terminal.c", paths.c_model / "passo_shapes.c", *_host_sources()]
-    return _c_library("console", sources, folders)
+    console = paths.stm32_bridge / "console"
+    sources = _sources(console, paths.driver, paths.planner, paths.protocol)
+    return _c_library("console", [*sources, ENGINE / "passo_terminal.c"], [console])
 
 
-def _host_sources() -> list[Path]:
-    """Sources of the planner and the frame codec; the other half of c_model/ is the model of the core."""
-    return [
-        *sorted(paths.c_model.glob("passo_plan*.c")),
-        paths.c_model / "passo_math.c",
-        paths.c_model / "passo_frame.c",
-    ]
+def _sources(*folders: Path) -> list[Path]:
+    return [path for folder in folders for path in sorted(folder.glob("*.c"))]
 
 
 def cpu_library() -> Path:
@@ -178,8 +172,7 @@ def _verilated(parameters: Parameters, waves: bool) -> Path:
 
 
 def _headers() -> list[Path]:
-    folders = (paths.c_model, paths.driver, ENGINE)
-    return [header for folder in folders for header in sorted(folder.glob("*.h"))]
+    return [header for folder in FOLDERS for header in sorted(folder.glob("*.h"))]
 
 
 def _call(command: Sequence[str]) -> None:

@@ -13,10 +13,11 @@ from passo.build import ENGINE, console_library, cpu_library, planner_library
 from passo.toolchain import environment, paths
 
 HEADERS = (
-    paths.c_model / "passo_registers.h",
-    paths.c_model / "passo_command.h",
-    paths.c_model / "passo_plan.h",
-    paths.c_model / "passo_frame.h",
+    paths.protocol / "passo_registers.h",
+    paths.protocol / "passo_command.h",
+    paths.protocol / "passo_crc.h",
+    paths.planner / "passo_plan.h",
+    paths.protocol / "passo_frame.h",
     paths.driver / "passo_error.h",
     paths.driver / "passo_host.h",
     paths.driver / "passo.h",

@@ -150,10 +150,9 @@ def stream_elf() -> Path:
     sources = [
         STREAM_SOURCE,
         *(path for path in sorted(FIRMWARE.glob("*.c")) if path.name != "main.c"),
-        *sorted((paths.stm32_bridge / "driver").glob("*.c")),
-        *sorted(paths.c_model.glob("passo_plan*.c")),
-        *(paths.c_model / name for name in ("passo_math.c", "passo_frame.c", "passo_shapes.c")),
     ]
+    for part in (paths.driver, paths.planner, paths.protocol):
+        sources += sorted(part.glob("*.c"))
     elf = folder / "passo.elf"
     make_firmware(f"OUT={folder}", f"SOURCES={' '.join(map(str, sources))}", str(elf))
     return elf

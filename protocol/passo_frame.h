@@ -15,6 +15,7 @@
 #include <stdint.h>
 
 #include "passo_command.h"
+#include "passo_crc.h"
 #include "passo_registers.h"
 
 #define PASSO_FRAME_PAYLOAD_MAX 60u
@@ -27,8 +28,6 @@
 #define PASSO_LINE_WORDS(axes) ((axes) + 2u)
 #define PASSO_RAMP_WORDS 5u
 
-#define PASSO_CRC_START UINT32_C(0xFFFFFFFF)
-
 /* What a reply tells. Only after PASSO_REPLY_OK and PASSO_REPLY_REFUSED is the frame's fate certain. */
 enum passo_reply {
 	PASSO_REPLY_OK,      /* a write was executed (or is a duplicate), a read brought its data */
@@ -39,11 +38,6 @@ enum passo_reply {
 	PASSO_REPLY_DAMAGED, /* the ack or the data do not agree with their check */
 	PASSO_REPLY_SEQUENCE /* the ack of another frame */
 };
-
-/* CRC-32/MPEG-2 over words; begin with PASSO_CRC_START. Compiled with PASSO_CRC_EXTERNAL the codec leaves
- * this function to the program: the CRC unit of an STM32F103, reset and given words[0] ^ ~crc, then the other
- * words, computes it. */
-uint32_t passo_crc(uint32_t crc, const uint32_t *words, size_t count);
 
 /* Each builds a frame of length + PASSO_FRAME_OVERHEAD words and returns that number. The payload may stand
  * at frame + 1 already. */

@@ -53,9 +53,6 @@ void passo_spi_reset(struct passo_spi *spi);
 void passo_spi_clock(
     struct passo_spi *spi, bool sclk_was, bool sclk, bool mosi, bool cs_n, uint32_t reply_word);
 
-/* `crc` with 32 bits more. */
-uint32_t passo_crc_add(uint32_t crc, uint32_t word);
-
 struct passo_bus {
 	bool frame, commit, check, write, read, push;
 	uint16_t address;

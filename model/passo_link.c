@@ -3,6 +3,7 @@
  * rtl/passo_reply.v. The 32 shifts of a word are made at once, in the last of their clocks. The
  * counters of refusals are in passo_registers.c.
  */
+#include "passo_crc.h"
 #include "passo_model.h"
 
 enum {
@@ -81,10 +82,10 @@ static void turned(struct passo_link *link)
 {
 	switch (link->step) {
 	case PASSO_LINK_HEADER:
-		link->crc = passo_crc_add(0xFFFFFFFFu, link->bus.data);
+		link->crc = passo_crc(PASSO_CRC_START, &link->bus.data, 1);
 		break;
 	case PASSO_LINK_PAYLOAD:
-		link->crc = passo_crc_add(link->crc, link->bus.data);
+		link->crc = passo_crc(link->crc, &link->bus.data, 1);
 		break;
 	case PASSO_LINK_CRC:
 		link->crc_wrong = link->crc != link->bus.data;
@@ -93,7 +94,7 @@ static void turned(struct passo_link *link)
 		link->reply_word = acknowledge(sequence_of(link->bus.data), link->verdict);
 		break;
 	case PASSO_LINK_READ:
-		link->crc = passo_crc_add(link->crc, link->reply_word);
+		link->crc = passo_crc(link->crc, &link->reply_word, 1);
 		break;
 	case PASSO_LINK_SUM:
 		link->reply_word = link->crc;
