@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Compares the recorded pins of the core with the C model on every clock; a difference is an error."""
 
-import hashlib
-import os
-import subprocess
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -11,12 +8,12 @@ from typing import Any
 import numpy as np
 from cffi import FFI
 from passo.build import Parameters
-from passo.toolchain import environment, paths
+from passo.compiler import library, sources
+from passo.toolchain import paths
 
 SIGNALS = ("step", "dir", "enable", "running", "irq", "miso")
 COLUMNS = ("clock", "inputs", "pin_miso", *SIGNALS[:-1])
 FOLDERS = (paths.model, paths.protocol)
-FLAGS = ("-std=c11", "-O2", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-fPIC", "-shared")
 
 DECLARATIONS = """
 uint64_t judge_size(void);
@@ -76,22 +73,8 @@ class Judge:
 
 @cache
 def _load() -> tuple[FFI, Any]:
+    """The model and the judge."""
     ffi = FFI()
     ffi.cdef(DECLARATIONS)
-    return ffi, ffi.dlopen(str(_library()))
-
-
-def _library() -> Path:
-    """The model and the judge; compiled when a source has changed."""
-    model = (path for folder in FOLDERS for path in sorted(folder.glob("*.c")))
-    sources = [Path(__file__).with_suffix(".c"), *model]
-    inputs = [*sources, *(path for folder in FOLDERS for path in sorted(folder.glob("*.h")))]
-    digest = hashlib.sha256(b"\0".join(path.read_bytes() for path in inputs)).hexdigest()[:12]
-    library = paths.build / "cocotb" / f"judge-{digest}.so"
-    if not library.exists():
-        library.parent.mkdir(parents=True, exist_ok=True)
-        made = library.with_suffix(f".{os.getpid()}")
-        command = ["cc", *FLAGS, *(f"-I{folder}" for folder in FOLDERS), *map(str, sources), "-o", str(made)]
-        subprocess.run(command, env=environment(), check=True)
-        made.rename(library)
-    return library
+    files = [Path(__file__).with_suffix(".c"), *sources(*FOLDERS)]
+    return ffi, ffi.dlopen(str(library("judge", FOLDERS, files, "-O2")))

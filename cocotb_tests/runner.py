@@ -23,21 +23,16 @@ from pathlib import Path
 from cocotb_tools.check_results import get_results
 from cocotb_tools.runner import Verilator, get_runner
 from passo.fpga.netlist import CELLS, netlist_folder
+from passo.random_cases import SEED_VARIABLE, seed
 from passo.toolchain import environment, paths
 
 SIMULATORS = ("verilator", "icarus")
-SEED_VARIABLE = "PASSO_SEED"
 NETLIST_VARIABLE = "PASSO_NETLIST"
 COVERAGE_VARIABLE = "PASSO_COVERAGE"
 
 _BUILD = paths.build / "cocotb"
 _TOPS = paths.cocotb_tests / "tops"
 CORE_TOP = "passo_core_top"
-
-
-def seed() -> int:
-    """Seed of this run."""
-    return int(os.environ.get(SEED_VARIABLE, "1"))
 
 
 def run(

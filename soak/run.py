@@ -9,14 +9,12 @@ one prints a single history. docs/soak.md says what is played and what is judged
 """
 
 import argparse
-import hashlib
 import os
 import re
 import shutil
 import signal
 import subprocess
 import sys
-import threading
 import time
 import tomllib
 from collections import Counter
@@ -26,7 +24,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from passo.build import ENGINE, Parameters, rtl_library
+from passo.build import Parameters, rtl_library
+from passo.compiler import STRICT, BuildError, call, compile_to, headers, includes, kept, sources
 from passo.console import console as terminal
 from passo.console import table
 from passo.planted import plant
@@ -37,7 +36,7 @@ from rich.console import Console
 HERE = Path(__file__).resolve().parent
 BUILD = paths.build / "soak"
 REPORT = paths.build / "soak.json"
-FLAGS = ("-std=gnu11", "-O2", "-Wall", "-Wextra", "-Wconversion", "-Werror")
+FLAGS = (*STRICT, "-std=gnu11", "-O2")
 FOLDERS = {
     "model": paths.model,
     "planner": paths.planner,
@@ -69,7 +68,7 @@ console = terminal if terminal.is_terminal else Console(width=118)
 
 
 class SoakError(RuntimeError):
-    """Something could not be built or played."""
+    """Something could not be played."""
 
 
 @dataclass(frozen=True)
@@ -130,38 +129,18 @@ class Catch:
 # ---- building ----
 
 
-def _run(command: Sequence[str | Path]) -> None:
-    done = subprocess.run([*map(str, command)], env=environment(), capture_output=True, text=True)
-    if done.returncode:
-        raise SoakError(f"{command[0]} failed:\n{done.stderr or done.stdout}")
-
-
-def _sources(root: Path) -> list[Path]:
-    return [file for folder in FOLDERS for file in sorted((root / folder).glob("*.c"))]
-
-
-def _object(file: Path, root: Path) -> Path:
-    """A source of root, compiled; only once for the same sources."""
-    digest = hashlib.sha256(" ".join(FLAGS).encode())
-    headers = [*ENGINE.glob("*.h"), *(path for folder in FOLDERS for path in (root / folder).glob("*.h"))]
-    for path in [file, *sorted(headers)]:
-        digest.update(path.name.encode() + path.read_bytes())
-    made = BUILD / "objects" / f"{file.stem}-{digest.hexdigest()[:16]}.o"
-    if not made.exists():
-        part = made.with_suffix(f".{os.getpid()}.{threading.get_ident()}")
-        includes = [f"-I{root / folder}" for folder in FOLDERS]
-        _run(["cc", *FLAGS, *includes, f"-I{ENGINE}", "-c", file, "-o", part])
-        part.rename(made)
-    return made
+def _object(file: Path, folders: Sequence[Path]) -> Path:
+    """A source, compiled with the headers of folders."""
+    made = BUILD / "objects" / f"{file.stem}.o"
+    return kept(made, [file, *headers(*folders)], FLAGS, *includes(*folders), "-c", file)
 
 
 def build(root: Path = paths.root, program: Path = BUILD / "soak") -> Path:
     """The program that plays histories, of the sources under root."""
-    (BUILD / "objects").mkdir(parents=True, exist_ok=True)
+    folders = [root / folder for folder in FOLDERS]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        objects = list(pool.map(lambda file: _object(file, root), _sources(root)))
-    _run(["cc", *objects, "-ldl", "-o", program])
-    return program
+        objects = list(pool.map(lambda file: _object(file, [*folders, paths.engine]), sources(*folders)))
+    return compile_to(program, *objects, "-ldl")
 
 
 # ---- playing ----
@@ -286,7 +265,7 @@ def _bench(number: int) -> Path:
     made = BUILD / f"player{number}.vvp"
     given = [f"-Psoak_player.{name}={value}" for name, value in SETS[number].verilog().items()]
     sources = [HERE / "player.v", *sorted(paths.rtl.glob("*.v"))]
-    _run(["iverilog", "-g2005", f"-I{paths.rtl}", *given, "-s", "soak_player", "-o", made, *sources])
+    call(["iverilog", "-g2005", f"-I{paths.rtl}", *given, "-s", "soak_player", "-o", made, *sources])
     return made
 
 
@@ -340,7 +319,7 @@ def catch(defect: Defect, seed: int) -> Catch:
         for file, old, new in defect.edits:
             plant(root / file, old, new)
         program = build(root, root / "program")
-    except (ValueError, SoakError) as error:
+    except (ValueError, BuildError) as error:
         return Catch(defect, False, -1, time.monotonic() - began, f"not planted: {error}")
     command = [program, str(seed), "0", str(defect.histories), *(["--driver"] if defect.driver else [])]
     command += ["--blind"] if defect.blind else []

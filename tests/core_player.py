@@ -1,11 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Two C models with the same pin waveforms: one goes clock by clock, one with passo_core_advance()."""
 
-import hashlib
-import os
 import random
-import re
-import subprocess
 from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
@@ -13,7 +9,8 @@ from typing import Any
 
 from cffi import FFI
 from passo.build import Parameters
-from passo.toolchain import environment, paths
+from passo.compiler import declarations, library, sources
+from passo.toolchain import paths
 
 HERE = Path(__file__).parent
 HEADERS = [
@@ -22,8 +19,6 @@ HEADERS = [
     HERE / "core_player.h",
 ]
 FOLDERS = (paths.model, paths.protocol)
-MODEL = [path for folder in FOLDERS for path in sorted(folder.glob("*.c"))]
-SOURCES = [HERE / "core_player.c", *MODEL]
 EVENTS = 1 << 16
 HALF_PERIOD = 2  # clocks that SCLK stays at each level
 
@@ -31,28 +26,11 @@ HALF_PERIOD = 2  # clocks that SCLK stays at each level
 @cache
 def load() -> tuple[FFI, Any]:
     """All types of the model, and the player."""
-    text = "\n".join(re.sub(r"(?m)^#include.*$", "", path.read_text()) for path in HEADERS)
-    command = ["cc", "-E", "-P", "-x", "c", "-"]
-    done = subprocess.run(command, input=text, env=environment(), capture_output=True, text=True, check=True)
     ffi = FFI()
-    ffi.cdef(done.stdout)
-    return ffi, ffi.dlopen(str(_library()))
-
-
-def _library() -> Path:
-    inputs = [*SOURCES, *HEADERS, *(path for folder in FOLDERS for path in sorted(folder.glob("*.h")))]
-    digest = hashlib.sha256(b"\0".join(path.read_bytes() for path in inputs)).hexdigest()[:12]
-    library = paths.build / "tests" / f"player-{digest}.so"
-    if not library.exists():
-        library.parent.mkdir(parents=True, exist_ok=True)
-        for stale in library.parent.glob("player-*.so"):
-            stale.unlink(missing_ok=True)
-        made = library.with_suffix(f".{os.getpid()}")
-        flags = ["-std=c11", "-O2", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-fPIC", "-shared"]
-        flags += ["-fno-semantic-interposition", *(f"-I{folder}" for folder in FOLDERS)]
-        subprocess.run(["cc", *flags, *map(str, SOURCES), "-o", str(made)], env=environment(), check=True)
-        made.rename(library)
-    return library
+    ffi.cdef(declarations(HEADERS))
+    files = [HERE / "core_player.c", *sources(*FOLDERS)]
+    player = library("player", (HERE, *FOLDERS), files, "-O2", "-fno-semantic-interposition")
+    return ffi, ffi.dlopen(str(player))
 
 
 class Player:

@@ -4,7 +4,6 @@
 PASSO_SEED is the seed of the random motions.
 """
 
-import os
 import random
 import re
 from collections.abc import Sequence
@@ -14,6 +13,7 @@ import pytest
 from closed_form import COSINE, EASE, HALF, LINEAR, ONE, SIGMOID, TABLES, Line, Ramp, step_clocks, velocities
 from core_player import PlayerPair
 from motions import SLOW, distance, fill, random_motion, to_line, to_ramp
+from passo import random_cases
 from passo import registers as r
 from passo.build import Parameters
 from passo.engine import Engine, model_engine
@@ -23,7 +23,7 @@ from passo.moves import PinTiming
 from passo.registers import Cause, State
 from passo.toolchain import paths
 
-SEED = int(os.environ.get("PASSO_SEED", "1"))
+SEED = random_cases.seed()
 AXES = 3
 
 

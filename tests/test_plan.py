@@ -8,10 +8,7 @@ be is worked out in exact fractions. PASSO_SEED is the seed of the random moves,
 
 import importlib.util
 import math
-import os
 import random
-import subprocess
-from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cache
@@ -20,11 +17,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from passo import random_cases
+from passo.compiler import DEFINED, library, sources
 from passo.native import ffi, load
 from passo.toolchain import paths
 
-SEED = int(os.environ.get("PASSO_SEED", "1"))
-MOVES = int(os.environ.get("PASSO_MOVES", "2000"))
+SEED = random_cases.seed()
+MOVES = random_cases.moves(2000)
 
 ONE = 1 << 48  # velocities and progress
 HALF = 1 << 47
@@ -46,16 +45,9 @@ SUBSTEPS_MAX = (1 << 30) - 1  # of a line, and so the steps of an axis
 
 
 @pytest.fixture(scope="module")
-def c() -> Iterator[Any]:
+def c() -> Any:
     """The planner, built so that every use of undefined behaviour is fatal."""
-    directory = paths.build / "tests"
-    directory.mkdir(parents=True, exist_ok=True)
-    library = directory / f"plan-{os.getpid()}.so"
-    flags = "-std=c11 -O2 -Wall -Wextra -Wconversion -Werror -fPIC -shared -fsanitize=undefined"
-    sources = [f"-I{paths.protocol}", *sorted(paths.planner.glob("*.c"))]
-    subprocess.run(["cc", *flags.split(), "-fno-sanitize-recover=all", "-o", library, *sources], check=True)
-    yield load(library)
-    library.unlink()
+    return load(library("checked_planner", (paths.planner, paths.protocol), sources(paths.planner), *DEFINED))
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,7 @@ Plans are judged in exact fractions; what the core makes of them is summed tick 
 """
 
 import math
-import os
 import random
-import subprocess
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
@@ -17,12 +15,13 @@ from typing import Any
 import numpy as np
 import pytest
 import test_plan as base
+from passo import compiler, random_cases
 from passo.native import ffi, load
 from passo.toolchain import paths
 from test_plan import JERK, LINEAR, ONE, UNIT, Machine, Plan, PlanError, q32
 
-SEED = int(os.environ.get("PASSO_SEED", "1"))
-MOVES = int(os.environ.get("PASSO_MOVES", "300"))
+SEED = random_cases.seed()
+MOVES = random_cases.moves(300)
 ZERO = (0,) * 8
 
 
@@ -32,15 +31,14 @@ ZERO = (0,) * 8
 @cache
 def library() -> Any:
     """All of the planner, built so that every use of undefined behaviour is fatal."""
-    directory = paths.build / "tests"
-    directory.mkdir(parents=True, exist_ok=True)
-    made = directory / f"plan-methods-{os.getpid()}.so"
-    flags = "-std=c11 -O2 -Wall -Wextra -Wconversion -Werror -fPIC -shared -fsanitize=undefined"
-    sources = [f"-I{paths.protocol}", *sorted(paths.planner.glob("*.c"))]
-    subprocess.run(["cc", *flags.split(), "-fno-sanitize-recover=all", "-o", made, *sources], check=True)
-    loaded = load(made)
-    made.unlink()
-    return loaded
+    return load(
+        compiler.library(
+            "checked_planner",
+            (paths.planner, paths.protocol),
+            compiler.sources(paths.planner),
+            *compiler.DEFINED,
+        )
+    )
 
 
 @pytest.fixture

@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: MIT
 """A short form of `make soak`, which plays thousands of histories and puts all defects back."""
 
-import os
 import shutil
 from pathlib import Path
 
 import pytest
+from passo import random_cases
 from passo.build import rtl_library
 from passo.planted import plant
 
 from soak import run as soak
 from soak.run import Defect
 
-SEED = int(os.environ.get("PASSO_SEED", "1"))
+SEED = random_cases.seed()
 JOBS = 1  # pytest uses the other cores
 
 DEFECTS = {defect.name: defect for defect in soak.defects()}

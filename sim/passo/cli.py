@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 
-from passo.build import BuildError, Parameters
+from passo.build import Parameters
+from passo.compiler import BuildError
 from passo.console import progress
 from passo.engine import DifferenceError
 from passo.frame import FrameError

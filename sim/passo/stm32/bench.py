@@ -5,9 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from passo.build import Parameters
+from passo.compiler import sources
 from passo.console import console
 from passo.engine import model_engine
-from passo.stm32.board import FIRMWARE, Board, make_firmware
+from passo.stm32.board import Board, make_firmware
 from passo.stm32.bus import TICKS_PER_SECOND
 from passo.stm32.machine import Machine
 from passo.toolchain import paths
@@ -147,14 +148,13 @@ def stream_elf() -> Path:
     """The driver with a main loop that streams."""
     folder = paths.build / "firmware_stream"
     folder.mkdir(parents=True, exist_ok=True)
-    sources = [
+    files = [
         STREAM_SOURCE,
-        *(path for path in sorted(FIRMWARE.glob("*.c")) if path.name != "main.c"),
+        *(path for path in sources(paths.firmware) if path.name != "main.c"),
+        *sources(paths.driver, paths.planner, paths.protocol),
     ]
-    for part in (paths.driver, paths.planner, paths.protocol):
-        sources += sorted(part.glob("*.c"))
     elf = folder / "passo.elf"
-    make_firmware(f"OUT={folder}", f"SOURCES={' '.join(map(str, sources))}", str(elf))
+    make_firmware(f"OUT={folder}", f"SOURCES={' '.join(map(str, files))}", str(elf))
     return elf
 
 

@@ -2,20 +2,18 @@
 """The board: the firmware's own ELF on the machine, a core at its pins, a person at its terminal."""
 
 import fcntl
-import os
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from passo.build import BuildError
+from passo.compiler import BuildError
 from passo.engine import Engine
 from passo.stm32.machine import Machine
 from passo.stm32.wires import CorePins
 from passo.toolchain import environment, paths
 
-FIRMWARE = paths.stm32_bridge / "firmware"
 ELF = paths.build / "firmware" / "passo.elf"
 ANSWERS = ("ok", "error:")
 FAST_SCLK_HZ = 18_000_000
@@ -31,7 +29,7 @@ def make_firmware(*arguments: str) -> str:
     quiet = {k: v for k, v in environment().items() if k not in ("MAKEFLAGS", "MAKELEVEL")}
     with open(paths.build / "firmware.lock", "w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        command = ["make", "-C", str(FIRMWARE), *arguments]
+        command = ["make", "-C", str(paths.firmware), *arguments]
         done = subprocess.run(command, env=quiet, capture_output=True, text=True)
     if done.returncode:
         raise BuildError(done.stderr or done.stdout)
@@ -165,8 +163,3 @@ class Board(Machine):
         self._drain()
         events = self._events
         return bool(events) and not events[-1]["running"][-1] and any(e["running"].any() for e in events)
-
-
-def env_seed() -> int:
-    """Seed of random cases: PASSO_SEED, default 1."""
-    return int(os.environ.get("PASSO_SEED", "1"))
