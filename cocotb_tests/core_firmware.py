@@ -17,7 +17,7 @@ from passo.stm32.machine import Machine
 
 from cocotb_tests.bench import PERIOD, read, seed
 from cocotb_tests.core_bench import Core, PinTiming, core_test, planned
-from tests.firmware_cases import random_moves
+from tests.helpers.firmware_cases import random_moves
 
 STEP_PER_SECOND = 10**12  # of the simulator
 HZ = STEP_PER_SECOND // PERIOD  # what the console assumes by itself

@@ -264,8 +264,8 @@ def _bench(number: int) -> Path:
     """The player for a set of parameters, compiled by Icarus Verilog."""
     made = BUILD / f"player{number}.vvp"
     given = [f"-Psoak_player.{name}={value}" for name, value in SETS[number].verilog().items()]
-    sources = [HERE / "player.v", *sorted(paths.rtl.glob("*.v"))]
-    call(["iverilog", "-g2005", f"-I{paths.rtl}", *given, "-s", "soak_player", "-o", made, *sources])
+    files = [HERE / "player.v", *sorted(paths.rtl.glob("*.v"))]
+    call(["iverilog", "-g2005", f"-I{paths.rtl}", *given, "-s", "soak_player", "-o", made, *files])
     return made
 
 

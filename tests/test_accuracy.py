@@ -7,7 +7,6 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from closed_form import Ramp, substep_clocks
 from passo import random_cases
 from passo.moves import MoveBelowSpeed, MoveInTime
 from passo.plan import ALPHA_ONE, plan_move, sigmoid_table
@@ -21,6 +20,7 @@ from benchmarks.measure import Result, check_with_model, measure
 from benchmarks.passo_side import CLOCK_HZ, PARAMETERS
 from benchmarks.sources import Cosine, MultiAxis, Sigmoid, Trapezoid
 from benchmarks.tables import number, page, relative
+from tests.helpers.closed_form import Ramp, substep_clocks
 
 SEED = random_cases.seed()
 MOVES = 200  # of each method

@@ -10,9 +10,6 @@ from contextlib import suppress
 from dataclasses import replace
 
 import pytest
-from closed_form import COSINE, HALF, ONE, SIGMOID, Line, Ramp
-from core_player import PlayerPair
-from motions import SLOW, fill, random_motion, to_line, to_ramp
 from passo import random_cases
 from passo import registers as r
 from passo.build import Parameters
@@ -20,6 +17,10 @@ from passo.host import RATE_ONE, Channel
 from passo.link import Link, RefusedError
 from passo.moves import PinTiming
 from passo.registers import State
+
+from tests.helpers.closed_form import COSINE, HALF, ONE, SIGMOID, Line, Ramp
+from tests.helpers.core_player import PlayerPair
+from tests.helpers.motions import SLOW, fill, random_motion, to_line, to_ramp
 
 SEED = random_cases.seed()
 

@@ -10,9 +10,6 @@ from collections.abc import Sequence
 
 import numpy as np
 import pytest
-from closed_form import COSINE, EASE, HALF, LINEAR, ONE, SIGMOID, TABLES, Line, Ramp, step_clocks, velocities
-from core_player import PlayerPair
-from motions import SLOW, distance, fill, random_motion, to_line, to_ramp
 from passo import random_cases
 from passo import registers as r
 from passo.build import Parameters
@@ -22,6 +19,22 @@ from passo.link import Link
 from passo.moves import PinTiming
 from passo.registers import Cause, State
 from passo.toolchain import paths
+
+from tests.helpers.closed_form import (
+    COSINE,
+    EASE,
+    HALF,
+    LINEAR,
+    ONE,
+    SIGMOID,
+    TABLES,
+    Line,
+    Ramp,
+    step_clocks,
+    velocities,
+)
+from tests.helpers.core_player import PlayerPair
+from tests.helpers.motions import SLOW, distance, fill, random_motion, to_line, to_ramp
 
 SEED = random_cases.seed()
 AXES = 3

@@ -20,7 +20,7 @@ from passo.stm32.machine import Machine
 from passo.stm32.play import on_the_model, planned_clocks, play, type_move
 from passo.toolchain import paths
 
-from tests.firmware_cases import random_moves
+from tests.helpers.firmware_cases import random_moves
 
 PARAMETERS = Parameters(axes=4)
 HZ = 72_000_000  # of the core; SCLK is 18 MHz

@@ -9,8 +9,10 @@ from typing import Any
 import pytest
 from cffi import FFI
 from passo import random_cases
-from passo.compiler import DEFINED, declarations, library, sources
+from passo.compiler import declarations
 from passo.toolchain import paths
+
+from tests.helpers.plans import checked_library
 
 SEED = random_cases.seed()
 ROUNDS = 20_000
@@ -23,8 +25,7 @@ def math_c() -> tuple[FFI, Any]:
     """The planner with passo_math.c, every use of undefined behaviour being fatal."""
     ffi = FFI()
     ffi.cdef(declarations([paths.planner / "passo_math.h"]))
-    planner = library("checked_planner", (paths.planner, paths.protocol), sources(paths.planner), *DEFINED)
-    return ffi, ffi.dlopen(str(planner))
+    return ffi, ffi.dlopen(str(checked_library()))
 
 
 class MathC:

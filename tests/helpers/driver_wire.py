@@ -205,3 +205,18 @@ def error_of(driver: Driver, call: str, *arguments: Any) -> str:
     except DriverError as error:
         return error.name
     return "OK"
+
+
+def path(count: int, clocks: int = 72) -> tuple[list, list]:
+    """Short lines: 2 steps of axis 0, one back of axis 1 each, at so many clocks a substep, under 8 ramps."""
+    lines = [
+        struct("line", substeps=20, steps=[2, 1], directions=2, last=n == count - 1)[0] for n in range(count)
+    ]
+    velocity = (1 << 48) // clocks
+    ticks = count * 20 * clocks // 128
+    cruise = [ticks // 7] * 6 + [ticks - 6 * (ticks // 7)]
+    ramps = [struct("ramp", velocity_end=velocity)[0]]
+    for n, length in enumerate(cruise):
+        step = min(2**48 - 1, round(2**48 / length))
+        ramps.append(struct("ramp", velocity_end=velocity, ticks=length, progress_step=step, last=n == 6)[0])
+    return lines, ramps

@@ -5,8 +5,9 @@ import random
 from collections.abc import Sequence
 from typing import Any
 
-from closed_form import COSINE, ONE, Line, Ramp, substep_clocks
 from passo.native import ffi
+
+from tests.helpers.closed_form import COSINE, ONE, Line, Ramp, substep_clocks
 
 SLOW = ONE // 40  # with the shortest pin timings no step has to wait then, not even for DIR
 
