@@ -10,10 +10,10 @@ from pathlib import Path
 from cocotb.triggers import First, Timer, ValueChange
 from cocotb.utils import get_sim_time
 from passo.plan import plan_move
-from passo.stm32.board import START, firmware_elf
-from passo.stm32.bus import TICKS_PER_SECOND
-from passo.stm32.lines import move_line
-from passo.stm32.machine import Machine
+from passo_stm32.board import START, firmware_elf
+from passo_stm32.bus import TICKS_PER_SECOND
+from passo_stm32.lines import move_line
+from passo_stm32.machine import Machine
 
 from cocotb_tests.bench import PERIOD, read, seed
 from cocotb_tests.core_bench import Core, PinTiming, core_test, planned
@@ -27,7 +27,7 @@ MOVES = 2
 
 
 class SimulatedPins:
-    """The pins of the dut for the machine (passo.stm32.wires.CorePins)."""
+    """The pins of the dut for the machine (passo_stm32.wires.CorePins)."""
 
     def __init__(self, core: Core) -> None:
         self._core, self._dut = core, core.dut

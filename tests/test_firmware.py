@@ -12,13 +12,13 @@ import pytest
 from passo import random_cases
 from passo.build import Parameters
 from passo.engine import Engine, model_engine, rtl_engine
-from passo.stm32 import demo
-from passo.stm32.board import START, Board, Motion, firmware_elf, motions
-from passo.stm32.bus import TICKS_PER_SECOND
-from passo.stm32.lines import move_line
-from passo.stm32.machine import Machine
-from passo.stm32.play import on_the_model, planned_clocks, play, type_move
 from passo.toolchain import paths
+from passo_stm32 import demo
+from passo_stm32.board import START, Board, Motion, firmware_elf, motions
+from passo_stm32.bus import TICKS_PER_SECOND
+from passo_stm32.lines import move_line
+from passo_stm32.machine import Machine
+from passo_stm32.play import on_the_model, planned_clocks, play, type_move
 
 from tests.helpers.firmware_cases import random_moves
 

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 from passo.compiler import CORTEX_M3, headers, includes, kept
-from passo.stm32 import Machine, MachineError
-from passo.stm32.bus import TICKS_PER_SECOND
 from passo.toolchain import paths
+from passo_stm32 import Machine, MachineError
+from passo_stm32.bus import TICKS_PER_SECOND
 
 FOLDER = paths.tests / "stm32"
 MEMORIES = FOLDER / "machine.ld"

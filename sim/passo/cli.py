@@ -172,15 +172,15 @@ def _console(options: argparse.Namespace) -> int:
 
 
 def _firmware(options: argparse.Namespace) -> int:
-    from passo.stm32 import MachineError
+    from passo_stm32 import MachineError
 
     try:
         if options.table:
-            from passo.stm32.bench import bench
+            from passo_stm32.bench import bench
 
             bench()
             return OK
-        from passo.stm32.demo import demo
+        from passo_stm32.demo import demo
 
         return OK if demo(options.moves, options.engine) else FAILED
     except (MachineError, TimeoutError) as error:

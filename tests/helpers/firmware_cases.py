@@ -10,7 +10,7 @@ from passo.build import Parameters
 from passo.move_file import read_moves
 from passo.moves import MoveFile
 from passo.plan import Plan, PlanError, plan_move
-from passo.stm32.lines import read_toml
+from passo_stm32.lines import read_toml
 
 
 def _steps(rng: random.Random, most: int) -> list[int]:

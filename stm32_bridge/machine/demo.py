@@ -6,12 +6,11 @@ from pathlib import Path
 from textwrap import fill
 
 import numpy as np
-
 from passo.console import console, progress, stages, table
 from passo.report import write_json
-from passo.stm32.board import Board
-from passo.stm32.play import Played, planned_clocks, play
 from passo.toolchain import paths
+from passo_stm32.board import Board
+from passo_stm32.play import Played, planned_clocks, play
 
 FOLDER = paths.build / "firmware_demo"
 CLOCK_HZ = 36_000_000  # of the core; SCLK is 9 MHz
@@ -79,7 +78,6 @@ def draw(pictures: dict[str, tuple[list[Played], Board]], path: Path) -> None:
 
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
-
     from passo.plot import COLORS, STYLE
 
     with plt.rc_context(STYLE):

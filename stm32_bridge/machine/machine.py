@@ -6,20 +6,19 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-
 from passo.engine import EVENT, Engine
-from passo.stm32.bus import TICKS_PER_SECOND, Bus, MachineError, Peripheral
-from passo.stm32.crc import Crc
-from passo.stm32.dma import Dma
-from passo.stm32.gpio import ALTERNATE_PUSH_PULL, PORTS, Afio, Exti, Gpio
-from passo.stm32.iwdg import Debug, Iwdg
-from passo.stm32.nvic import HARD_FAULT, SUPERVISOR_CALL, Exceptions, Nvic, SystemControl
-from passo.stm32.processor import FLASH, FLASH_SIZE, Processor
-from passo.stm32.rcc import ENABLES, Clocks, Flash, Rcc
-from passo.stm32.spi import RECEIVE_CHANNEL, Spi
-from passo.stm32.systick import SysTick
-from passo.stm32.usart import Usart
-from passo.stm32.wires import CorePins, Wires
+from passo_stm32.bus import TICKS_PER_SECOND, Bus, MachineError, Peripheral
+from passo_stm32.crc import Crc
+from passo_stm32.dma import Dma
+from passo_stm32.gpio import ALTERNATE_PUSH_PULL, PORTS, Afio, Exti, Gpio
+from passo_stm32.iwdg import Debug, Iwdg
+from passo_stm32.nvic import HARD_FAULT, SUPERVISOR_CALL, Exceptions, Nvic, SystemControl
+from passo_stm32.processor import FLASH, FLASH_SIZE, Processor
+from passo_stm32.rcc import ENABLES, Clocks, Flash, Rcc
+from passo_stm32.spi import RECEIVE_CHANNEL, Spi
+from passo_stm32.systick import SysTick
+from passo_stm32.usart import Usart
+from passo_stm32.wires import CorePins, Wires
 
 SLICE = 256  # instructions after which the core catches up, while the processor is awake
 HANG = FLASH_SIZE - 2  # where the endless loop of `hang` is

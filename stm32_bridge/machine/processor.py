@@ -6,10 +6,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-
 from passo.native import ffi, processor
-from passo.stm32.bus import MachineError
-from passo.stm32.elf import Elf
+from passo_stm32.bus import MachineError
+from passo_stm32.elf import Elf
 
 FLASH, FLASH_SIZE = 0x08000000, 64 << 10
 RAM, RAM_SIZE = 0x20000000, 20 << 10

@@ -3,7 +3,7 @@
 
 from dataclasses import dataclass
 
-from passo.stm32.bus import NEVER, TICKS_PER_SECOND, MachineError, Peripheral, Register
+from passo_stm32.bus import NEVER, TICKS_PER_SECOND, MachineError, Peripheral, Register
 
 HSI_HZ = 8_000_000
 CRYSTAL_HZ = 8_000_000

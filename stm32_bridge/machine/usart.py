@@ -3,7 +3,7 @@
 
 from collections import deque
 
-from passo.stm32.bus import NEVER, TICKS_PER_SECOND, MachineError, Peripheral, Register
+from passo_stm32.bus import NEVER, TICKS_PER_SECOND, MachineError, Peripheral, Register
 
 INTERRUPT, TRANSMIT_CHANNEL, RECEIVE_CHANNEL = 37, 4, 5
 FRAMING, OVERRUN, RECEIVED, COMPLETE, EMPTY = 1, 3, 5, 6, 7

@@ -3,10 +3,10 @@
 
 from typing import TYPE_CHECKING
 
-from passo.stm32.bus import Peripheral, Register
+from passo_stm32.bus import Peripheral, Register
 
 if TYPE_CHECKING:
-    from passo.stm32.machine import Machine
+    from passo_stm32.machine import Machine
 
 OUTPUT_PUSH_PULL, ALTERNATE_PUSH_PULL = 0, 2
 INPUT_ANALOG, INPUT_FLOATING, INPUT_PULLED = 0, 1, 2

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """SPI1 as a master in mode 0, full duplex, 8 or 16 bits, by program, interrupt or DMA."""
 
-from passo.stm32.bus import NEVER, MachineError, Peripheral, Register
+from passo_stm32.bus import NEVER, MachineError, Peripheral, Register
 
 RECEIVE_CHANNEL, TRANSMIT_CHANNEL, INTERRUPT = 2, 3, 35
 PHASE, POLARITY, MASTER, ENABLE, LSB_FIRST, SELECT_LEVEL, SELECT_BY_SOFTWARE, WIDE = 0, 1, 2, 6, 7, 8, 9, 11

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """DMA1: a request of a peripheral moves one item between its data register and memory, without delay."""
 
-from passo.stm32.bus import MachineError, Peripheral, Register
+from passo_stm32.bus import MachineError, Peripheral, Register
 
 CHANNELS = 7
 ENABLE, COMPLETE_INTERRUPT, HALF_INTERRUPT, ERROR_INTERRUPT, FROM_MEMORY, CIRCULAR = range(6)

@@ -8,15 +8,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-
 from passo.build import Parameters
 from passo.engine import EVENT, Engine, model_engine, rtl_engine
 from passo.move_file import read_moves
 from passo.moves import MoveFile
 from passo.plan import Plan, plan_move
 from passo.run import execute, parameters_for
-from passo.stm32.board import Board, Motion, motions
-from passo.stm32.lines import move_lines, pin_lines, read_toml
+from passo_stm32.board import Board, Motion, motions
+from passo_stm32.lines import move_lines, pin_lines, read_toml
 
 
 @dataclass

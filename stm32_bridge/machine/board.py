@@ -7,12 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-
 from passo.compiler import BuildError
 from passo.engine import Engine
-from passo.stm32.machine import Machine
-from passo.stm32.wires import CorePins
 from passo.toolchain import environment, paths
+from passo_stm32.machine import Machine
+from passo_stm32.wires import CorePins
 
 ELF = paths.build / "firmware" / "passo.elf"
 ANSWERS = ("ok", "error:")

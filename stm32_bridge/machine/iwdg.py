@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The independent watchdog, on an internal oscillator of exactly 40 kHz, and the debug unit's freeze bits."""
 
-from passo.stm32.bus import NEVER, TICKS_PER_SECOND, MachineError, Peripheral, Register
+from passo_stm32.bus import NEVER, TICKS_PER_SECOND, MachineError, Peripheral, Register
 
 LSI = TICKS_PER_SECOND // 40_000
 UPDATE = 5 * LSI  # how long a new PR or RLR is on its way

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Nested interrupts: which exception is taken when, and the registers of NVIC and system control block."""
 
-from passo.stm32.bus import MachineError, Peripheral, Register
+from passo_stm32.bus import MachineError, Peripheral, Register
 
 RESET, NMI, HARD_FAULT, SUPERVISOR_CALL, PEND_SV, SYS_TICK, INTERRUPT_0 = 1, 2, 3, 11, 14, 15, 16
 INTERRUPTS = 43  # of a medium-density STM32F103

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from passo.stm32.machine import Machine
+    from passo_stm32.machine import Machine
 
 TICKS_PER_SECOND = 576_000_000
 NEVER = 1 << 63  # ticks

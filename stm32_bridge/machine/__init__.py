@@ -5,7 +5,7 @@
 clocks of all usual frequencies are whole multiples.
 """
 
-from passo.stm32.bus import MachineError
-from passo.stm32.machine import Machine
+from passo_stm32.bus import MachineError
+from passo_stm32.machine import Machine
 
 __all__ = ["Machine", "MachineError"]

@@ -8,10 +8,10 @@ from passo.build import Parameters
 from passo.compiler import sources
 from passo.console import console
 from passo.engine import model_engine
-from passo.stm32.board import Board, make_firmware
-from passo.stm32.bus import TICKS_PER_SECOND
-from passo.stm32.machine import Machine
 from passo.toolchain import paths
+from passo_stm32.board import Board, make_firmware
+from passo_stm32.bus import TICKS_PER_SECOND
+from passo_stm32.machine import Machine
 
 REPORT = paths.docs / "firmware_report.md"
 PAGE = paths.root / "benchmarks" / "firmware_page.md"

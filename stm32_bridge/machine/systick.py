@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """SysTick: counts down from LOAD to 0, one exception per LOAD + 1 clocks."""
 
-from passo.stm32.bus import NEVER, Peripheral, Register
-from passo.stm32.nvic import SYS_TICK
+from passo_stm32.bus import NEVER, Peripheral, Register
+from passo_stm32.nvic import SYS_TICK
 
 ENABLE, INTERRUPT, SOURCE, COUNTED = 0, 1, 2, 16
 

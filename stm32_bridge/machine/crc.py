@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The CRC unit: CRC-32/MPEG-2 over words."""
 
-from passo.stm32.bus import WORD, Peripheral, Register
+from passo_stm32.bus import WORD, Peripheral, Register
 
 POLYNOMIAL = 0x04C11DB7
 
