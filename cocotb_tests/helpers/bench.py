@@ -15,7 +15,7 @@ from cocotb.handle import HierarchyObject, LogicArrayObject, LogicObject
 from cocotb.triggers import FallingEdge, Timer, ValueChange
 from cocotb.utils import get_sim_time
 
-from cocotb_tests.runner import seed
+from cocotb_tests.helpers.runner import seed
 
 Signal = LogicObject | LogicArrayObject
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 import cocotb
 from cocotb.triggers import ValueChange
 
-from cocotb_tests.bench import Clocks, Signal, read
+from cocotb_tests.helpers.bench import Clocks, Signal, read
 
 
 @dataclass(frozen=True)

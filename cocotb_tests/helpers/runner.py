@@ -33,6 +33,8 @@ COVERAGE_VARIABLE = "PASSO_COVERAGE"
 _BUILD = paths.build / "cocotb"
 _TOPS = paths.cocotb_tests / "tops"
 CORE_TOP = "passo_core_top"
+ONE_CHANNEL = {"CHANNELS": 1, "AXES": 3, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 5, "RAMP_QUEUE_LOG2": 4}
+TWO_CHANNELS = {"CHANNELS": 2, "AXES": 2, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 2, "RAMP_QUEUE_LOG2": 2}
 
 
 def run(

@@ -7,7 +7,7 @@ from passo import frame
 from passo import registers as r
 from passo.registers import Operation, Verdict
 
-from cocotb_tests.core_bench import Core
+from cocotb_tests.helpers.core_bench import Core
 
 GAP = 64
 COUNTED = [verdict for verdict in Verdict if verdict not in (Verdict.OK, Verdict.DUPLICATE)]

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache
 
-from cocotb_tests.shapes import PROGRESS_ONE, Shape, evaluate, loaded_table
+from cocotb_tests.helpers.shapes import PROGRESS_ONE, Shape, evaluate, loaded_table
 
 V_MAX = 1 << 47  # 1/2 substep per clock
 ONE = 1 << 48

@@ -30,13 +30,13 @@ from passo.host import Channel
 from passo.link import Link
 from passo.plan import Plan
 
-from cocotb_tests.bench import PERIOD, Clocks, read
-from cocotb_tests.checker import PinTiming, PulseChecker
-from cocotb_tests.core_judge import COLUMNS, Judge
-from cocotb_tests.core_thread import Thread
-from cocotb_tests.ramps import ONE, V_MAX, Ramp
-from cocotb_tests.shapes import Shape
-from cocotb_tests.spi import SpiMaster
+from cocotb_tests.helpers.bench import PERIOD, Clocks, read
+from cocotb_tests.helpers.checker import PinTiming, PulseChecker
+from cocotb_tests.helpers.core_judge import COLUMNS, Judge
+from cocotb_tests.helpers.core_thread import Thread
+from cocotb_tests.helpers.ramps import ONE, V_MAX, Ramp
+from cocotb_tests.helpers.shapes import Shape
+from cocotb_tests.helpers.spi import SpiMaster
 
 __all__ = ["ONE", "V_MAX", "Core", "CoreChannel", "Line", "PinTiming", "Ramp", "Shape", "core_test"]
 

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import Timer
 
-from cocotb_tests.bench import read
+from cocotb_tests.helpers.bench import read
 
 POLYNOMIAL = 0x04C11DB7
 

@@ -3,8 +3,8 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from cocotb_tests.core_bench import ONE, Line, Ramp
-from cocotb_tests.ramps import velocities
+from cocotb_tests.helpers.core_bench import ONE, Line, Ramp
+from cocotb_tests.helpers.ramps import velocities
 
 
 def substeps(ramps: Iterable[Ramp], tick: int) -> Iterator[int]:

@@ -3,8 +3,8 @@
 
 from passo.registers import Cause, State
 
-from cocotb_tests.core_bench import ONE, Core, CoreChannel, Line, Ramp, Shape
-from cocotb_tests.core_expected import distance, totals
+from cocotb_tests.helpers.core_bench import ONE, Core, CoreChannel, Line, Ramp, Shape
+from cocotb_tests.helpers.core_expected import distance, totals
 
 SLOW = ONE // 32  # velocity
 
