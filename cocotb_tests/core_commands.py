@@ -7,10 +7,10 @@ from passo import registers as r
 from passo.host import RATE_ONE
 from passo.registers import Cause, State
 
-from cocotb_tests.bench import read
-from cocotb_tests.core_bench import ONE, Core, CoreChannel, Line, PinTiming, Ramp, Shape, core_test
-from cocotb_tests.core_expected import distance, due, totals
-from cocotb_tests.core_moves import SLOW, a_motion, check_stopped, clear_and_move, pulse_groups
+from cocotb_tests.helpers.bench import read
+from cocotb_tests.helpers.core_bench import ONE, Core, CoreChannel, Line, PinTiming, Ramp, Shape, core_test
+from cocotb_tests.helpers.core_expected import distance, due, totals
+from cocotb_tests.helpers.core_moves import SLOW, a_motion, check_stopped, clear_and_move, pulse_groups
 
 AT_ONCE = RATE_ONE
 

@@ -7,10 +7,20 @@ from passo.host import RATE_ONE
 from passo.link import RefusedError
 from passo.registers import Cause, State, Verdict
 
-from cocotb_tests.bench import patience, read, rng
-from cocotb_tests.core_bench import ONE, V_MAX, Core, CoreChannel, Line, PinTiming, Ramp, Shape, core_test
-from cocotb_tests.core_expected import distance, due, totals
-from cocotb_tests.core_moves import SLOW, check_stopped, clear_and_move
+from cocotb_tests.helpers.bench import patience, read, rng
+from cocotb_tests.helpers.core_bench import (
+    ONE,
+    V_MAX,
+    Core,
+    CoreChannel,
+    Line,
+    PinTiming,
+    Ramp,
+    Shape,
+    core_test,
+)
+from cocotb_tests.helpers.core_expected import distance, due, totals
+from cocotb_tests.helpers.core_moves import SLOW, check_stopped, clear_and_move
 
 
 def lost_steps(channel: CoreChannel, axis: int) -> int:

@@ -10,14 +10,14 @@ from pathlib import Path
 from cocotb.triggers import First, Timer, ValueChange
 from cocotb.utils import get_sim_time
 from passo.plan import plan_move
-from passo.stm32.board import START, firmware_elf
-from passo.stm32.bus import TICKS_PER_SECOND
-from passo.stm32.lines import move_line
-from passo.stm32.machine import Machine
+from passo_stm32.board import START, firmware_elf
+from passo_stm32.bus import TICKS_PER_SECOND
+from passo_stm32.lines import move_line
+from passo_stm32.machine import Machine
 
-from cocotb_tests.bench import PERIOD, read, seed
-from cocotb_tests.core_bench import Core, PinTiming, core_test, planned
-from tests.firmware_cases import random_moves
+from cocotb_tests.helpers.bench import PERIOD, read, seed
+from cocotb_tests.helpers.core_bench import Core, PinTiming, core_test, planned
+from tests.helpers.firmware_cases import random_moves
 
 STEP_PER_SECOND = 10**12  # of the simulator
 HZ = STEP_PER_SECOND // PERIOD  # what the console assumes by itself
@@ -27,7 +27,7 @@ MOVES = 2
 
 
 class SimulatedPins:
-    """The pins of the dut for the machine (passo.stm32.wires.CorePins)."""
+    """The pins of the dut for the machine (passo_stm32.wires.CorePins)."""
 
     def __init__(self, core: Core) -> None:
         self._core, self._dut = core, core.dut

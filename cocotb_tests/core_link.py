@@ -7,12 +7,12 @@ from passo import registers as r
 from passo.link import Link, LinkError
 from passo.registers import Operation, Verdict
 
-from cocotb_tests.bench import rng
-from cocotb_tests.core_bench import V_MAX, Core, CoreChannel, Line, PinTiming, Ramp, Shape, core_test
-from cocotb_tests.core_expected import due, totals
-from cocotb_tests.core_frames import GAP, ack, everything, frames, refusals, request
-from cocotb_tests.core_moves import a_motion
-from cocotb_tests.shapes import loaded_table
+from cocotb_tests.helpers.bench import rng
+from cocotb_tests.helpers.core_bench import V_MAX, Core, CoreChannel, Line, PinTiming, Ramp, Shape, core_test
+from cocotb_tests.helpers.core_expected import due, totals
+from cocotb_tests.helpers.core_frames import GAP, ack, everything, frames, refusals, request
+from cocotb_tests.helpers.core_moves import a_motion
+from cocotb_tests.helpers.shapes import loaded_table
 
 SNAPSHOT_CLOCKS = 68  # at most, from the fall of chip select to the clock that the positions are of
 

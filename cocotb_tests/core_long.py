@@ -4,9 +4,9 @@
 from passo import registers as r
 from passo.registers import Cause, State
 
-from cocotb_tests.bench import rng
-from cocotb_tests.core_bench import V_MAX, Core, Line, PinTiming, Ramp, core_test
-from cocotb_tests.core_expected import distance
+from cocotb_tests.helpers.bench import rng
+from cocotb_tests.helpers.core_bench import V_MAX, Core, Line, PinTiming, Ramp, core_test
+from cocotb_tests.helpers.core_expected import distance
 
 TIME_MAX = 0xFFFF
 COUNTED = 1 << 16  # drained substeps, modulo

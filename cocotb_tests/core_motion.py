@@ -7,10 +7,20 @@ from itertools import pairwise
 from passo import registers as r
 from passo.registers import Cause, State
 
-from cocotb_tests.bench import read
-from cocotb_tests.core_bench import ONE, V_MAX, Core, CoreChannel, Line, PinTiming, Ramp, Shape, core_test
-from cocotb_tests.core_expected import distance, due, totals
-from cocotb_tests.core_moves import SLOW
+from cocotb_tests.helpers.bench import read
+from cocotb_tests.helpers.core_bench import (
+    ONE,
+    V_MAX,
+    Core,
+    CoreChannel,
+    Line,
+    PinTiming,
+    Ramp,
+    Shape,
+    core_test,
+)
+from cocotb_tests.helpers.core_expected import distance, due, totals
+from cocotb_tests.helpers.core_moves import SLOW
 
 FAST = (Ramp(V_MAX, 0), Ramp(V_MAX, 6), Ramp(0, 0, last=True))  # 6 ticks of a substep every second clock
 

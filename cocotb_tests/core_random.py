@@ -18,9 +18,19 @@ from passo.moves import MoveBySpeed, MoveInTime
 from passo.plan import PlanError, plan_move
 from passo.registers import Cause, State
 
-from cocotb_tests.bench import patience, rng
-from cocotb_tests.core_bench import V_MAX, Core, CoreChannel, Line, PinTiming, Ramp, Shape, core_test, planned
-from cocotb_tests.core_expected import distance
+from cocotb_tests.helpers.bench import patience, rng
+from cocotb_tests.helpers.core_bench import (
+    V_MAX,
+    Core,
+    CoreChannel,
+    Line,
+    PinTiming,
+    Ramp,
+    Shape,
+    core_test,
+    planned,
+)
+from cocotb_tests.helpers.core_expected import distance
 
 SESSIONS = int(os.environ.get("SESSIONS", "4"))
 MOTIONS = 25

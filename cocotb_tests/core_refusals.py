@@ -7,11 +7,11 @@ from passo import frame
 from passo import registers as r
 from passo.registers import Operation, Verdict
 
-from cocotb_tests.bench import SUBSTEPS_MAX, rng
-from cocotb_tests.core_bench import V_MAX, Core, Line, PinTiming, Ramp, Shape, core_test
-from cocotb_tests.core_expected import due, totals
-from cocotb_tests.core_frames import GAP, ack, everything, frames, refusals, request
-from cocotb_tests.core_moves import a_motion
+from cocotb_tests.helpers.bench import SUBSTEPS_MAX, rng
+from cocotb_tests.helpers.core_bench import V_MAX, Core, Line, PinTiming, Ramp, Shape, core_test
+from cocotb_tests.helpers.core_expected import due, totals
+from cocotb_tests.helpers.core_frames import GAP, ack, everything, frames, refusals, request
+from cocotb_tests.helpers.core_moves import a_motion
 
 
 def refuse(core: Core, mosi: Sequence[int], verdict: Verdict) -> None:

@@ -5,10 +5,10 @@ from passo import registers as r
 from passo.host import RATE_ONE
 from passo.registers import Cause
 
-from cocotb_tests.bench import SUBSTEPS_MAX
-from cocotb_tests.core_bench import ONE, V_MAX, Core, CoreChannel, Line, PinTiming, Ramp, core_test
-from cocotb_tests.core_expected import due
-from cocotb_tests.core_moves import check_stopped
+from cocotb_tests.helpers.bench import SUBSTEPS_MAX
+from cocotb_tests.helpers.core_bench import ONE, V_MAX, Core, CoreChannel, Line, PinTiming, Ramp, core_test
+from cocotb_tests.helpers.core_expected import due
+from cocotb_tests.helpers.core_moves import check_stopped
 
 LOW_BITS = 0x07FF  # of a slew: it takes so many ticks that the rate can be read on its way
 HIGH_BITS = 0xF800  # two ticks, seen in the pulses

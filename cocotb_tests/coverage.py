@@ -29,7 +29,7 @@ from cocotb_tests.coverage_points import (
     read_exclusions,
     wrong_exclusions,
 )
-from cocotb_tests.runner import COVERAGE_VARIABLE
+from cocotb_tests.helpers.runner import COVERAGE_VARIABLE
 
 PAGE = paths.docs / "coverage.md"
 DATA = "coverage.dat"

@@ -4,8 +4,8 @@
 import cocotb
 from cocotb.handle import HierarchyObject
 
-from cocotb_tests.bench import read, rng
-from cocotb_tests.test_line_queue import ENDLESS, LAST, QUEUE_FULL, Queue
+from cocotb_tests.helpers.bench import read, rng
+from cocotb_tests.helpers.line_queue import ENDLESS, LAST, QUEUE_FULL, Queue
 
 
 @cocotb.test()

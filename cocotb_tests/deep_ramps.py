@@ -4,8 +4,8 @@
 import cocotb
 from cocotb.handle import HierarchyObject
 
-from cocotb_tests.bench import rng
-from cocotb_tests.test_ramp_queue import QUEUE_FULL, WORDS, Queue, random_ramp
+from cocotb_tests.helpers.bench import rng
+from cocotb_tests.helpers.ramp_queue import QUEUE_FULL, WORDS, Queue, random_ramp
 
 
 @cocotb.test()

@@ -22,9 +22,9 @@ from passo.engine import Engine, model_engine
 from passo.native import ffi
 from passo.registers import Operation
 
-from cocotb_tests import core_frames as frames
-from cocotb_tests.bench import PERIOD, Clocks, Recorder, begin, patience, read, rng
-from cocotb_tests.core_thread import Thread
+from cocotb_tests.helpers import core_frames as frames
+from cocotb_tests.helpers.bench import PERIOD, Clocks, Recorder, begin, patience, read, rng
+from cocotb_tests.helpers.core_thread import Thread
 
 PARAMETERS = Parameters(1, 2, 7, 5, 4)
 CLOCK_HZ = 10_000_000  # of plans

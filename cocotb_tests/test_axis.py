@@ -8,9 +8,9 @@ from random import Random
 import cocotb
 from cocotb.handle import HierarchyObject
 
-from cocotb_tests.bench import Clocks, Recorder, begin, read, rng
-from cocotb_tests.checker import PinTiming, PulseChecker
-from cocotb_tests.runner import run
+from cocotb_tests.helpers.bench import Clocks, Recorder, begin, read, rng
+from cocotb_tests.helpers.checker import PinTiming, PulseChecker
+from cocotb_tests.helpers.runner import run
 
 LATENCY = 3  # step_request to STEP, direction to DIR
 QUEUE = 4

@@ -5,8 +5,8 @@ import cocotb
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import Timer
 
-from cocotb_tests.bench import Clocks, begin, read, rng
-from cocotb_tests.runner import run
+from cocotb_tests.helpers.bench import Clocks, begin, read, rng
+from cocotb_tests.helpers.runner import run
 
 AXES = 8
 BAD_OPERATION, READ_ONLY, BAD_VALUE = 4, 6, 9

@@ -7,8 +7,8 @@ import cocotb
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import ReadOnly, Timer
 
-from cocotb_tests.bench import PERIOD, Clocks, begin, read, rng
-from cocotb_tests.runner import run
+from cocotb_tests.helpers.bench import PERIOD, Clocks, begin, read, rng
+from cocotb_tests.helpers.runner import run
 
 AXES = 8
 LINE_QUEUE_LOG2 = RAMP_QUEUE_LOG2 = 8

@@ -1,16 +1,13 @@
 # SPDX-License-Identifier: MIT
 """The whole core through its SPI pins, compared with the C model on every clock.
 
-core_bench.py is what all of these have in common; PASSO_SEED is the seed of the random ones.
+helpers/core_bench.py is what all of these have in common; PASSO_SEED is the seed of the random ones.
 """
 
 import pytest
 
-from cocotb_tests.runner import CORE_TOP as TOP
-from cocotb_tests.runner import run
-
-ONE_CHANNEL = {"CHANNELS": 1, "AXES": 3, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 5, "RAMP_QUEUE_LOG2": 4}
-TWO_CHANNELS = {"CHANNELS": 2, "AXES": 2, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 2, "RAMP_QUEUE_LOG2": 2}
+from cocotb_tests.helpers.runner import CORE_TOP as TOP
+from cocotb_tests.helpers.runner import ONE_CHANNEL, TWO_CHANNELS, run
 
 MOST_CHANNELS = {"CHANNELS": 8, "AXES": 1, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 8, "RAMP_QUEUE_LOG2": 8}
 

@@ -7,9 +7,9 @@ from random import Random
 import cocotb
 from cocotb.handle import HierarchyObject
 
-from cocotb_tests.bench import Clocks, begin, read, rng
-from cocotb_tests.runner import run
-from cocotb_tests.spi import crc_of_bytes, crc_of_words
+from cocotb_tests.helpers.bench import Clocks, begin, read, rng
+from cocotb_tests.helpers.runner import run
+from cocotb_tests.helpers.spi import crc_of_bytes, crc_of_words
 
 
 def test_crc(simulator: str) -> None:

@@ -3,7 +3,7 @@
 
 import pytest
 
-from cocotb_tests.runner import DOORS, run
+from cocotb_tests.helpers.runner import DOORS, run
 
 PARAMETERS = {"CHANNELS": 1, "AXES": 2, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 5, "RAMP_QUEUE_LOG2": 4}
 

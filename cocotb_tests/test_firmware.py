@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The STM32's firmware drives the simulated core through its SPI pins, once, on Icarus Verilog."""
 
-from cocotb_tests.runner import run
-from cocotb_tests.test_core import ONE_CHANNEL, TOP
+from cocotb_tests.helpers.runner import CORE_TOP as TOP
+from cocotb_tests.helpers.runner import ONE_CHANNEL, run
 
 
 def test_firmware() -> None:

@@ -6,9 +6,9 @@ from itertools import product
 import cocotb
 from cocotb.handle import HierarchyObject
 
-from cocotb_tests.bench import Clocks, read, rng
-from cocotb_tests.runner import run
-from cocotb_tests.shapes import ONE, POINTS, PROGRESS_ONE, Shape, evaluate, loaded_table
+from cocotb_tests.helpers.bench import Clocks, read, rng
+from cocotb_tests.helpers.runner import run
+from cocotb_tests.helpers.shapes import ONE, POINTS, PROGRESS_ONE, Shape, evaluate, loaded_table
 
 HALF = 1 << 47
 VELOCITY_BITS, POINT_BITS, PIPELINE = 48, 17, 2

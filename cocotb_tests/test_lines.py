@@ -10,8 +10,8 @@ import pytest
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import gather
 
-from cocotb_tests.bench import SUBSTEPS_MAX, Clocks, PushBus, Recorder, begin, read, rng
-from cocotb_tests.runner import run
+from cocotb_tests.helpers.bench import SUBSTEPS_MAX, Clocks, PushBus, Recorder, begin, read, rng
+from cocotb_tests.helpers.runner import run
 
 AXES = 3
 DEPTH_LOG2 = 5

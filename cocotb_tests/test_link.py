@@ -10,9 +10,9 @@ import cocotb
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import FallingEdge, RisingEdge, Timer
 
-from cocotb_tests.bench import Clocks, Recorder, begin, read, rng
-from cocotb_tests.runner import run
-from cocotb_tests.spi import SpiMaster, crc_of_words
+from cocotb_tests.helpers.bench import Clocks, Recorder, begin, read, rng
+from cocotb_tests.helpers.runner import run
+from cocotb_tests.helpers.spi import SpiMaster, crc_of_words
 
 READ, WRITE, PUSH = 1, 2, 3
 PAYLOAD_MAX = 60

@@ -9,8 +9,8 @@ import os
 
 import pytest
 
-from cocotb_tests.runner import NETLIST_VARIABLE, run
-from cocotb_tests.test_core import ONE_CHANNEL, TOP, TWO_CHANNELS
+from cocotb_tests.helpers.runner import CORE_TOP as TOP
+from cocotb_tests.helpers.runner import NETLIST_VARIABLE, ONE_CHANNEL, TWO_CHANNELS, run
 
 SIMULATOR = "verilator"  # Icarus Verilog gives the same, but takes very much longer
 

@@ -7,8 +7,8 @@ from itertools import pairwise
 import cocotb
 from cocotb.handle import HierarchyObject
 
-from cocotb_tests.bench import Clocks, Recorder, begin, read, rng
-from cocotb_tests.runner import run
+from cocotb_tests.helpers.bench import Clocks, Recorder, begin, read, rng
+from cocotb_tests.helpers.runner import run
 
 LATENCY = 2  # advance to substep
 ONE = 1 << 48

@@ -7,8 +7,8 @@ import cocotb
 import pytest
 from cocotb.handle import HierarchyObject
 
-from cocotb_tests.bench import Clocks, begin, read, rng
-from cocotb_tests.runner import run
+from cocotb_tests.helpers.bench import Clocks, begin, read, rng
+from cocotb_tests.helpers.runner import run
 
 INPUTS = ("step_made", "step_direction", "zero", "snapshot", "address")
 ROUND = 64  # clocks

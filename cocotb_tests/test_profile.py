@@ -9,10 +9,10 @@ import cocotb
 import pytest
 from cocotb.handle import HierarchyObject
 
-from cocotb_tests.bench import Clocks, PushBus, Recorder, begin, read, rng
-from cocotb_tests.ramps import V_MAX, Ramp, velocities
-from cocotb_tests.runner import run
-from cocotb_tests.shapes import Shape
+from cocotb_tests.helpers.bench import Clocks, PushBus, Recorder, begin, read, rng
+from cocotb_tests.helpers.ramps import V_MAX, Ramp, velocities
+from cocotb_tests.helpers.runner import run
+from cocotb_tests.helpers.shapes import Shape
 
 TICK_LOG2 = 7
 TICK = 1 << TICK_LOG2

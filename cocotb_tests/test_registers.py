@@ -8,8 +8,8 @@ import pytest
 from cocotb.handle import HierarchyObject
 from passo import registers as r
 
-from cocotb_tests.bench import Clocks, begin, read, rng
-from cocotb_tests.runner import run
+from cocotb_tests.helpers.bench import Clocks, begin, read, rng
+from cocotb_tests.helpers.runner import run
 
 AXES, TICK_LOG2, LINE_QUEUE_LOG2, RAMP_QUEUE_LOG2 = 8, 16, 8, 7
 BAD_OPERATION, READ_ONLY, BAD_VALUE = 4, 6, 9

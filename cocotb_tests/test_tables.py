@@ -8,9 +8,9 @@ import cocotb
 import pytest
 from cocotb.handle import HierarchyObject
 
-from cocotb_tests.bench import Clocks, begin, read, rng
-from cocotb_tests.runner import run
-from cocotb_tests.shapes import POINTS, Shape, loaded_table
+from cocotb_tests.helpers.bench import Clocks, begin, read, rng
+from cocotb_tests.helpers.runner import run
+from cocotb_tests.helpers.shapes import POINTS, Shape, loaded_table
 
 TABLES = [shape for shape in Shape if shape != Shape.LINEAR]
 INPUTS = (

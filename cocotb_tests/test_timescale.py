@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 import cocotb
 from cocotb.handle import HierarchyObject
 
-from cocotb_tests.bench import Clocks, begin, read, rng
-from cocotb_tests.runner import run
+from cocotb_tests.helpers.bench import Clocks, begin, read, rng
+from cocotb_tests.helpers.runner import run
 
 ONE = 1 << 16
 LATENCY = 7  # slew tick to rate

@@ -9,10 +9,11 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
+from passo.compiler import BuildError
 from passo.planted import plant
 
 from soak.parts import console
-from soak.program import BUILD, FOLDERS, HERE, SoakError, build, play_program
+from soak.program import BUILD, FOLDERS, HERE, build, play_program
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,7 @@ def catch(defect: Defect, seed: int) -> Catch:
         for file, old, new in defect.edits:
             plant(root / file, old, new)
         program = build(root, root / "program")
-    except (ValueError, SoakError) as error:
+    except (ValueError, BuildError) as error:
         return Catch(defect, False, -1, time.monotonic() - began, f"not planted: {error}")
     command = [program, str(seed), "0", str(defect.histories), *(["--driver"] if defect.driver else [])]
     command += ["--blind"] if defect.blind else []

@@ -11,11 +11,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from passo.build import Parameters, rtl_library
+from passo.compiler import call
 from passo.console import console as terminal
 from passo.toolchain import paths
 from rich.console import Console
 
-from soak.program import BUILD, HERE, Failure, play_program, run, say
+from soak.program import BUILD, HERE, Failure, play_program, say
 
 # The same as plot_parameters() in plot.c.
 SETS = (
@@ -122,7 +123,7 @@ def _bench(number: int) -> Path:
     made = BUILD / f"player{number}.vvp"
     given = [f"-Psoak_player.{name}={value}" for name, value in SETS[number].verilog().items()]
     sources = [HERE / "player.v", *sorted(paths.rtl.glob("*.v"))]
-    run(["iverilog", "-g2005", f"-I{paths.rtl}", *given, "-s", "soak_player", "-o", made, *sources])
+    call(["iverilog", "-g2005", f"-I{paths.rtl}", *given, "-s", "soak_player", "-o", made, *sources])
     return made
 
 

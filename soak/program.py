@@ -1,27 +1,31 @@
 # SPDX-License-Identifier: MIT
 """The program that plays histories: building it, running it, and reading what it says."""
 
-import hashlib
 import os
 import subprocess
-import threading
 from collections import Counter
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
-from passo.build import ENGINE
+from passo.compiler import STRICT, compile_to, headers, includes, kept, sources
 from passo.toolchain import environment, paths
 
 HERE = Path(__file__).resolve().parent
 BUILD = paths.build / "soak"
-FLAGS = ("-std=gnu11", "-O2", "-Wall", "-Wextra", "-Wconversion", "-Werror")
-FOLDERS = {"c_model": paths.c_model, "stm32_bridge/driver": paths.driver, "soak": HERE}
+FLAGS = (*STRICT, "-std=gnu11", "-O2")
+FOLDERS = {
+    "model": paths.model,
+    "planner": paths.planner,
+    "protocol": paths.protocol,
+    "stm32_bridge/driver": paths.driver,
+    "soak": HERE,
+}
 
 
 class SoakError(RuntimeError):
-    """Something could not be built or played."""
+    """Something could not be played."""
 
 
 @dataclass(frozen=True)
@@ -41,39 +45,18 @@ class Failure:
         return f"make soak SEED={self.seed} HISTORY={self.history}{driver}"
 
 
-def run(command: Sequence[str | Path]) -> None:
-    """Run a tool that must succeed."""
-    done = subprocess.run([*map(str, command)], env=environment(), capture_output=True, text=True)
-    if done.returncode:
-        raise SoakError(f"{command[0]} failed:\n{done.stderr or done.stdout}")
-
-
-def _sources(root: Path) -> list[Path]:
-    return [file for folder in FOLDERS for file in sorted((root / folder).glob("*.c"))]
-
-
-def _object(file: Path, root: Path) -> Path:
-    """A source of root, compiled; only once for the same sources."""
-    digest = hashlib.sha256(" ".join(FLAGS).encode())
-    headers = [*ENGINE.glob("*.h"), *(path for folder in FOLDERS for path in (root / folder).glob("*.h"))]
-    for path in [file, *sorted(headers)]:
-        digest.update(path.name.encode() + path.read_bytes())
-    made = BUILD / "objects" / f"{file.stem}-{digest.hexdigest()[:16]}.o"
-    if not made.exists():
-        part = made.with_suffix(f".{os.getpid()}.{threading.get_ident()}")
-        includes = [f"-I{root / folder}" for folder in FOLDERS]
-        run(["cc", *FLAGS, *includes, f"-I{ENGINE}", "-c", file, "-o", part])
-        part.rename(made)
-    return made
+def _object(file: Path, folders: Sequence[Path]) -> Path:
+    """A source, compiled with the headers of folders."""
+    made = BUILD / "objects" / f"{file.stem}.o"
+    return kept(made, [file, *headers(*folders)], FLAGS, *includes(*folders), "-c", file)
 
 
 def build(root: Path = paths.root, program: Path = BUILD / "soak") -> Path:
     """The program that plays histories, of the sources under root."""
-    (BUILD / "objects").mkdir(parents=True, exist_ok=True)
+    folders = [root / folder for folder in FOLDERS]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        objects = list(pool.map(lambda file: _object(file, root), _sources(root)))
-    run(["cc", *objects, "-ldl", "-o", program])
-    return program
+        objects = list(pool.map(lambda file: _object(file, [*folders, paths.engine]), sources(*folders)))
+    return compile_to(program, *objects, "-ldl")
 
 
 playing: set[subprocess.Popen] = set()  # to be ended with this program

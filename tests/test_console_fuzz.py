@@ -1,28 +1,23 @@
 # SPDX-License-Identifier: MIT
 """Random lines for the console, under the sanitizers (console_fuzz.c)."""
 
-import os
 import subprocess
 from pathlib import Path
 
-from passo.build import ENGINE
-from passo.toolchain import environment, paths
+from passo import random_cases
+from passo.compiler import SANITIZED, STRICT, compile_to, includes, sources
+from passo.toolchain import paths
 
-SEED = os.environ.get("PASSO_SEED", "1")
-SECONDS = os.environ.get("PASSO_FUZZ_SECONDS", "5")
-FLAGS = "-std=c11 -O1 -g -Wall -Wextra -Wconversion -Werror -fsanitize=address,undefined"
+SEED = str(random_cases.seed())
+SECONDS = str(random_cases.fuzz_seconds())
+FOLDERS = (paths.model, paths.planner, paths.protocol, paths.engine, paths.console, paths.driver)
 
 
 def test_every_line_gets_one_answer(tmp_path: Path) -> None:
     """Whatever is typed, whatever the core does: one `ok` or `error:`, no undefined behaviour."""
-    program = tmp_path / "fuzz"
-    folders = [paths.c_model, ENGINE, paths.stm32_bridge / "console", paths.stm32_bridge / "driver"]
-    sources = [
-        path for folder in folders for path in sorted(folder.glob("*.c")) if path.name != "passo_cpu.c"
-    ]
-    command = ["gcc", *FLAGS.split(), "-fno-sanitize-recover=all", *(f"-I{folder}" for folder in folders)]
-    target = paths.tests / "console_fuzz.c"
-    subprocess.run([*command, target, *sources, "-o", program], env=environment(), check=True)
+    files = [path for path in sources(*FOLDERS) if path.name != "passo_cpu.c"]
+    flags = (*STRICT, *SANITIZED, *includes(*FOLDERS))
+    program = compile_to(tmp_path / "fuzz", *flags, paths.tests / "console_fuzz.c", *files)
     done = subprocess.run([program, SEED, SECONDS], capture_output=True, text=True, timeout=600)
     print(f"seed {SEED}, {SECONDS} s\n{done.stdout}")
     assert (done.returncode, done.stderr) == (0, "")

@@ -4,16 +4,13 @@
 PASSO_SEED is the seed of the random motions.
 """
 
-import os
 import random
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 
 import pytest
-from closed_form import COSINE, HALF, ONE, SIGMOID, Line, Ramp
-from core_player import PlayerPair
-from motions import SLOW, fill, random_motion, to_line, to_ramp
+from passo import random_cases
 from passo import registers as r
 from passo.build import Parameters
 from passo.host import RATE_ONE, Channel
@@ -21,7 +18,11 @@ from passo.link import Link, RefusedError
 from passo.moves import PinTiming
 from passo.registers import State
 
-SEED = int(os.environ.get("PASSO_SEED", "1"))
+from tests.helpers.closed_form import COSINE, HALF, ONE, SIGMOID, Line, Ramp
+from tests.helpers.core_player import PlayerPair
+from tests.helpers.motions import SLOW, fill, random_motion, to_line, to_ramp
+
+SEED = random_cases.seed()
 
 BUILDS = [
     Parameters(channels=1, axes=3),

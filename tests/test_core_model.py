@@ -4,16 +4,13 @@
 PASSO_SEED is the seed of the random motions.
 """
 
-import os
 import random
 import re
 from collections.abc import Sequence
 
 import numpy as np
 import pytest
-from closed_form import COSINE, EASE, HALF, LINEAR, ONE, SIGMOID, TABLES, Line, Ramp, step_clocks, velocities
-from core_player import PlayerPair
-from motions import SLOW, distance, fill, random_motion, to_line, to_ramp
+from passo import random_cases
 from passo import registers as r
 from passo.build import Parameters
 from passo.engine import Engine, model_engine
@@ -23,7 +20,23 @@ from passo.moves import PinTiming
 from passo.registers import Cause, State
 from passo.toolchain import paths
 
-SEED = int(os.environ.get("PASSO_SEED", "1"))
+from tests.helpers.closed_form import (
+    COSINE,
+    EASE,
+    HALF,
+    LINEAR,
+    ONE,
+    SIGMOID,
+    TABLES,
+    Line,
+    Ramp,
+    step_clocks,
+    velocities,
+)
+from tests.helpers.core_player import PlayerPair
+from tests.helpers.motions import SLOW, distance, fill, random_motion, to_line, to_ramp
+
+SEED = random_cases.seed()
 AXES = 3
 
 
@@ -75,7 +88,7 @@ def check_motion(lines: Sequence[Line], ramps: Sequence[Ramp], tick_log2: int = 
 
 def test_tables() -> None:
     """The tables are the formulas of the contract; cosine and sigmoid are odd-symmetric to the bit."""
-    numbers = [int(n) for n in re.findall(r"\b(\d+)(?=,)", (paths.c_model / "passo_shapes.c").read_text())]
+    numbers = [int(n) for n in re.findall(r"\b(\d+)(?=,)", (paths.protocol / "passo_shapes.c").read_text())]
     assert numbers == [point for bank in (COSINE, SIGMOID, EASE) for point in TABLES[bank][:256]]
     for bank in (COSINE, SIGMOID):
         assert all(TABLES[bank][k] + TABLES[bank][256 - k] == 65536 for k in range(257))

@@ -2,7 +2,15 @@
 """The driver (stm32_bridge/driver/passo.h) against the C model: every call, and what it refuses."""
 
 import pytest
-from driver_wire import (
+from passo import frame
+from passo import registers as r
+from passo.build import Parameters
+from passo.driver import Driver, DriverError, Source
+from passo.native import ffi, planner
+from passo.plan import sigmoid_table
+from passo.registers import Cause, State, Verdict
+
+from tests.helpers.driver_wire import (
     CLOCK_HZ,
     PARAMETERS,
     Q32,
@@ -13,16 +21,10 @@ from driver_wire import (
     error_of,
     finish,
     open_driver,
+    path,
     poll,
     struct,
 )
-from passo import frame
-from passo import registers as r
-from passo.build import Parameters
-from passo.driver import Driver, DriverError, Source
-from passo.native import ffi, planner
-from passo.plan import sigmoid_table
-from passo.registers import Cause, State, Verdict
 
 TURN = 3200
 LONG = by_speed([40_000, 0, 0, 0])
@@ -505,21 +507,6 @@ def test_channels() -> None:
 
 
 # ----------------------------------------------------------------------------------------------- streams ----
-
-
-def path(count: int, clocks: int = 72) -> tuple[list, list]:
-    """Short lines: 2 steps of axis 0, one back of axis 1 each, at so many clocks a substep, under 8 ramps."""
-    lines = [
-        struct("line", substeps=20, steps=[2, 1], directions=2, last=n == count - 1)[0] for n in range(count)
-    ]
-    velocity = (1 << 48) // clocks
-    ticks = count * 20 * clocks // 128
-    cruise = [ticks // 7] * 6 + [ticks - 6 * (ticks // 7)]
-    ramps = [struct("ramp", velocity_end=velocity)[0]]
-    for n, length in enumerate(cruise):
-        step = min(2**48 - 1, round(2**48 / length))
-        ramps.append(struct("ramp", velocity_end=velocity, ticks=length, progress_step=step, last=n == 6)[0])
-    return lines, ramps
 
 
 @pytest.mark.parametrize("parameters", [PARAMETERS, Parameters(line_queue_log2=2, ramp_queue_log2=2)])

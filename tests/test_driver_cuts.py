@@ -5,19 +5,18 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from passo.compiler import STRICT, compile_to, includes, sources
 from passo.toolchain import paths
-from test_core_sources import compile_c
 
 PARTS = 8
-SOURCES = [paths.tests / "driver_cuts.c", *paths.c_model.glob("*.c"), *paths.driver.glob("*.c")]
+FOLDERS = (paths.model, paths.planner, paths.protocol, paths.driver)
 
 
 @pytest.fixture(scope="module")
 def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
     made = tmp_path_factory.mktemp("cuts") / "driver_cuts"
-    warnings = ["-std=c11", "-Wall", "-Wextra", "-Werror"]
-    compile_c(*warnings, "-O3", f"-I{paths.driver}", f"-I{paths.c_model}", *SOURCES, "-o", made)
-    return made
+    files = [paths.tests / "driver_cuts.c", *sources(*FOLDERS)]
+    return compile_to(made, *STRICT, "-O3", *includes(*FOLDERS), *files)
 
 
 @pytest.mark.parametrize("part", range(PARTS))

@@ -8,7 +8,13 @@ import random
 from typing import Any
 
 import pytest
-from driver_wire import (
+from passo import registers as r
+from passo.build import Parameters
+from passo.driver import Driver, DriverError, Source
+from passo.native import ffi, planner
+from passo.registers import Cause, State
+
+from tests.helpers.driver_wire import (
     CLOCK_HZ,
     PARAMETERS,
     Q32,
@@ -19,15 +25,10 @@ from driver_wire import (
     error_of,
     finish,
     open_driver,
+    path,
     poll,
     struct,
 )
-from passo import registers as r
-from passo.build import Parameters
-from passo.driver import Driver, DriverError, Source
-from passo.native import ffi, planner
-from passo.registers import Cause, State
-from test_driver import path
 
 SEED = 1
 MOVES = 220

@@ -7,29 +7,23 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from passo.build import ENGINE
+from passo.compiler import CORTEX_M3, SANITIZED, STRICT, call, compile_to, includes, sources
 from passo.native import ffi, planner
-from passo.toolchain import environment, paths
-from test_core_sources import SANITIZED, STRICT, compile_c
+from passo.toolchain import paths
 
-INCLUDES = [f"-I{paths.driver}", f"-I{paths.c_model}"]
+DRIVER = (paths.driver, paths.planner, paths.protocol)
 EXAMPLES = paths.driver.parent / "examples"
 STUBS = paths.tests / "stubs"
-CORTEX = ["-mcpu=cortex-m3", "-mthumb", "-std=c11", "-Os"]
 RAM_MAX = 1536  # bytes for one channel of 4 axes
 
 
 def test_a_scenario_runs_clean_under_sanitizers(tmp_path: Path) -> None:
     """Moves, streams, stops, noise and resets, driver and model in one program: no fault, nothing lost."""
-    program = tmp_path / "scenario"
-    sources = [
-        paths.tests / "driver_scenario.c",
-        *paths.c_model.glob("*.c"),
-        *paths.driver.glob("*.c"),
-        ENGINE / "engine.c",
-        ENGINE / "engine_model.c",
-    ]
-    compile_c(*STRICT, *SANITIZED, *INCLUDES, f"-I{ENGINE}", *sources, "-o", program)
+    folders = (*DRIVER, paths.model)
+    files = [paths.tests / "driver_scenario.c", *sources(*folders)]
+    files += [paths.engine / "engine.c", paths.engine / "engine_model.c"]
+    flags = [*STRICT, *SANITIZED, *includes(*folders, paths.engine)]
+    program = compile_to(tmp_path / "scenario", *flags, *files)
     done = subprocess.run([program], capture_output=True, text=True, timeout=300)
     assert (done.returncode, done.stderr, done.stdout) == (0, "", "ok\n")
 
@@ -38,15 +32,8 @@ def test_a_scenario_runs_clean_under_sanitizers(tmp_path: Path) -> None:
 def test_an_example_compiles(name: str, tmp_path: Path) -> None:
     """Against headers that declare just what it uses."""
     standard = ["-std=c11", "-Wconversion"] if name.endswith(".c") else ["-x", "c++", "-std=c++17"]
-    compile_c(
-        *standard,
-        *("-Wall", "-Wextra", "-Werror", "-c"),
-        *INCLUDES,
-        f"-I{STUBS}",
-        EXAMPLES / name,
-        "-o",
-        tmp_path / "example.o",
-    )
+    flags = (*standard, "-Wall", "-Wextra", "-Werror", "-c", *includes(*DRIVER, STUBS))
+    compile_to(tmp_path / "example.o", *flags, EXAMPLES / name)
 
 
 def test_examples_stand_in_the_documentation() -> None:
@@ -78,10 +65,9 @@ def test_it_is_small(tmp_path: Path) -> None:
         f'_Static_assert(sizeof(struct passo_host) + sizeof(struct passo) <= {RAM_MAX}u, "RAM");\n'
     )
     stack = {}
-    for path in [source, *sorted(paths.driver.glob("*.c"))]:
+    for path in [source, *sources(paths.driver)]:
         made = tmp_path / f"{path.stem}.o"
-        command = ["arm-none-eabi-gcc", *CORTEX, *INCLUDES, "-fstack-usage", "-c", str(path), "-o", str(made)]
-        subprocess.run(command, env=environment(), check=True)
+        call([*CORTEX_M3, *includes(*DRIVER), "-fstack-usage", "-c", path, "-o", made])
         for line in made.with_suffix(".su").read_text().splitlines():
             name, size, kind = line.split("\t")
             assert kind == "static"

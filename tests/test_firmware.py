@@ -9,17 +9,18 @@ import re
 from pathlib import Path
 
 import pytest
+from passo import random_cases
 from passo.build import Parameters
 from passo.engine import Engine, model_engine, rtl_engine
-from passo.stm32 import demo
-from passo.stm32.board import START, Board, Motion, env_seed, firmware_elf, motions
-from passo.stm32.bus import TICKS_PER_SECOND
-from passo.stm32.lines import move_line
-from passo.stm32.machine import Machine
-from passo.stm32.play import on_the_model, planned_clocks, play, type_move
 from passo.toolchain import paths
+from passo_stm32 import demo
+from passo_stm32.board import START, Board, Motion, firmware_elf, motions
+from passo_stm32.bus import TICKS_PER_SECOND
+from passo_stm32.lines import move_line
+from passo_stm32.machine import Machine
+from passo_stm32.play import on_the_model, planned_clocks, play, type_move
 
-from tests.firmware_cases import random_moves
+from tests.helpers.firmware_cases import random_moves
 
 PARAMETERS = Parameters(axes=4)
 HZ = 72_000_000  # of the core; SCLK is 18 MHz
@@ -75,7 +76,7 @@ def test_random_moves_on_the_verilated_core(clock_hz: int, count: int, tmp_path:
     with rtl_engine(PARAMETERS, clock_hz) as engine:
         board = Board(engine)
         position = [0] * PARAMETERS.axes
-        for move, file, plan in random_moves(env_seed(), count, clock_hz, PARAMETERS, tmp_path):
+        for move, file, plan in random_moves(random_cases.seed(), count, clock_hz, PARAMETERS, tmp_path):
             expected = on_the_model(file, 0, plan, PARAMETERS)
             compare(board, [move_line(move)], expected, plan.clocks / clock_hz)
             for axis, steps in enumerate(file.moves[0].steps):
@@ -258,9 +259,9 @@ def test_miso_is_stuck(level: int, name: str) -> None:
 
 def test_every_move_arrives_exactly_once_over_a_noisy_wire() -> None:
     """1 of 10,000 bits is flipped in both directions: no move is lost, none made twice."""
-    board = model_board(seed=env_seed())
+    board = model_board(seed=random_cases.seed())
     board.wires.flip_rate = 1e-4
-    rng = random.Random(env_seed())
+    rng = random.Random(random_cases.seed())
     position = [0] * PARAMETERS.axes
     for _ in range(100):
         steps = [rng.randint(-60, 60) or 1 for _ in position]

@@ -19,7 +19,7 @@ from passo.toolchain import environment, paths
 
 SOURCE = "schema/moves.toml"
 GENERATOR = "tools/generate_moves.py"
-LIMITS, STRUCTS = "c_model/passo_limits.h", "c_model/passo_moves.h"
+LIMITS, STRUCTS = "protocol/passo_limits.h", "planner/passo_moves.h"
 TABLES = "stm32_bridge/console/passo_form_tables.c"
 PYTHON = "sim/passo/move_forms.py"
 PLANNING, CONSOLE = "docs/planning.md", "docs/console.md"

@@ -2,37 +2,30 @@
 """passo_math against Python's integers, which have no width to overflow."""
 
 import math
-import os
 import random
-import subprocess
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 from cffi import FFI
+from passo import random_cases
+from passo.compiler import declarations
 from passo.toolchain import paths
 
-SEED = int(os.environ.get("PASSO_SEED", "1"))
+from tests.helpers.plans import checked_library
+
+SEED = random_cases.seed()
 ROUNDS = 20_000
 MAX64 = 2**64 - 1
 MAX128 = 2**128 - 1
 
 
 @pytest.fixture(scope="module")
-def math_c() -> Iterator[tuple[FFI, object]]:
-    """Build passo_math.c, with every use of undefined behaviour being fatal."""
-    directory = paths.build / "tests"
-    directory.mkdir(parents=True, exist_ok=True)
-    library = directory / f"math-{os.getpid()}.so"
-    flags = "-std=c11 -O2 -Wall -Wextra -Wconversion -Werror -fPIC -shared -fsanitize=undefined"
-    subprocess.run(
-        ["cc", *flags.split(), "-fno-sanitize-recover=all", "-o", library, paths.c_model / "passo_math.c"],
-        check=True,
-    )
+def math_c() -> tuple[FFI, Any]:
+    """The planner with passo_math.c, every use of undefined behaviour being fatal."""
     ffi = FFI()
-    header = (paths.c_model / "passo_math.h").read_text()
-    ffi.cdef("\n".join(line for line in header.splitlines() if not line.startswith("#")))
-    yield ffi, ffi.dlopen(str(library))
-    library.unlink()
+    ffi.cdef(declarations([paths.planner / "passo_math.h"]))
+    return ffi, ffi.dlopen(str(checked_library()))
 
 
 class MathC:
@@ -74,7 +67,7 @@ class MathC:
 
 
 @pytest.fixture(scope="module")
-def c(math_c: tuple[FFI, object]) -> MathC:
+def c(math_c: tuple[FFI, Any]) -> MathC:
     return MathC(*math_c)
 
 

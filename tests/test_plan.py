@@ -1,311 +1,60 @@
 # SPDX-License-Identifier: MIT
 """The planner against an independent derivation.
 
-What the core makes of a plan is worked out here from the recurrences of docs/architecture.md: in Python
-integers, in numpy's 64-bit integers or, where ramps have millions of ticks, in closed form. What a plan must
-be is worked out in exact fractions. PASSO_SEED is the seed of the random moves, PASSO_MOVES their number.
+What the core makes of a plan is worked out in helpers/core_steps.py, what a plan must be in exact fractions
+here and in helpers/plan_checks.py. PASSO_SEED is the seed of the random moves, PASSO_MOVES their number.
 """
 
-import importlib.util
 import math
-import os
 import random
-import subprocess
-from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cache
 from itertools import product
 from typing import Any
 
 import numpy as np
 import pytest
-from passo.native import ffi, load
-from passo.toolchain import paths
+from passo import random_cases
+from passo.native import ffi
 
-SEED = int(os.environ.get("PASSO_SEED", "1"))
-MOVES = int(os.environ.get("PASSO_MOVES", "2000"))
+from tests.helpers.core_steps import (
+    curve_deviation,
+    ideal_path,
+    load_generator,
+    run_clock_by_clock,
+    step_substeps,
+    substep_clocks,
+    tables,
+)
+from tests.helpers.plan_checks import check_distance, check_structure, round_half_up
+from tests.helpers.plans import (
+    COSINE,
+    EASE,
+    GOOD_BY_SPEED,
+    GOOD_IN_TIME,
+    JERK,
+    LINEAR,
+    MOVE_CLOCKS,
+    ONE,
+    SIGMOID,
+    SUBSTEPS_MAX,
+    UNIT,
+    BySpeed,
+    InTime,
+    Machine,
+    Plan,
+    PlanError,
+    make_plan,
+    q32,
+    refused,
+)
+from tests.helpers.random_plans import SEED, log_uniform, some_machine, some_steps
 
-ONE = 1 << 48  # velocities and progress
-HALF = 1 << 47
-UNIT = 1 << 32  # speeds and accelerations
-AXES = 8
-LINEAR, COSINE, SIGMOID, EASE = range(4)  # shapes
-JERK = 3  # the profile; the others are called like their shapes
-SHAPE_OF_PROFILE = (LINEAR, COSINE, SIGMOID, EASE)
-
-DISTANCE_TOLERANCE = Fraction(1, 5)  # substeps; the core bears 1/4
-LONG_RAMPS = 32  # see progress_bound()
-EXACT_TICKS = 1 << 21  # longer ramps are not summed tick by tick
-MOVE_CLOCKS = 1 << 44
+MOVES = random_cases.moves(2000)
 PHASE_TICKS = 1 << 32
-SUBSTEPS_MAX = (1 << 30) - 1  # of a line, and so the steps of an axis
-
-
-# ------------------------------------------------------------------------------------------- the planner ----
-
-
-@pytest.fixture(scope="module")
-def c() -> Iterator[Any]:
-    """The planner, built so that every use of undefined behaviour is fatal."""
-    directory = paths.build / "tests"
-    directory.mkdir(parents=True, exist_ok=True)
-    library = directory / f"plan-{os.getpid()}.so"
-    flags = "-std=c11 -O2 -Wall -Wextra -Wconversion -Werror -fPIC -shared -fsanitize=undefined"
-    sources = [*sorted(paths.c_model.glob("passo_plan*.c")), paths.c_model / "passo_math.c"]
-    subprocess.run(["cc", *flags.split(), "-fno-sanitize-recover=all", "-o", library, *sources], check=True)
-    yield load(library)
-    library.unlink()
-
-
-@dataclass(frozen=True)
-class Machine:
-    clock_hz: int = 100_000_000
-    tick_log2: int = 7
-
-    @property
-    def tick(self) -> int:
-        return 1 << self.tick_log2
-
-
-@dataclass(frozen=True)
-class InTime:
-    steps: tuple[int, ...]
-    profile: int
-    total_clocks: int
-    ramp_clocks: int
-
-
-@dataclass(frozen=True)
-class BySpeed:
-    """Speeds and accelerations in UQ32.32."""
-
-    steps: tuple[int, ...]
-    profile: int
-    speed: int
-    start_speed: int = 0
-    stop_speed: int = 0
-    acceleration: int = 0
-    deceleration: int = 0
-    ramp_clocks: int = 0
-
-
-@dataclass(frozen=True)
-class Ramp:
-    ticks: int
-    shape: int
-    mirror: bool
-    velocity_start: int
-    velocity_end: int
-    progress_step: int
-
-
-@dataclass(frozen=True)
-class Plan:
-    machine: Machine
-    c: Any = field(repr=False)
-
-    @property
-    def substeps(self) -> int:
-        return self.c.line.substeps
-
-    @property
-    def steps(self) -> list[int]:
-        return list(self.c.line.steps)
-
-    @property
-    def ticks(self) -> int:
-        return self.c.accelerate_ticks + self.c.cruise_ticks + self.c.decelerate_ticks
-
-    @property
-    def ramps(self) -> list[Ramp]:
-        """The ramps with the velocities they start from."""
-        result, velocity = [], 0
-        for ramp in self.c.ramps[0 : self.c.ramp_count]:
-            end = ramp.velocity_end
-            result.append(Ramp(ramp.ticks, ramp.shape, ramp.mirror, velocity, end, ramp.progress_step))
-            velocity = end
-        return result
-
-
-class PlanError(Exception):
-    """The planner refused; the text is the error's name."""
-
-
-def make_plan(c: Any, machine: Machine, move: InTime | BySpeed) -> Plan:
-    ours = ffi().new("struct passo_machine *", (machine.clock_hz, machine.tick_log2, len(move.steps)))
-    kind = "in_time" if isinstance(move, InTime) else "by_speed"
-    values = {**vars(move), "steps": list(move.steps)}
-    plan = ffi().new("struct passo_plan *")
-    size = ffi().sizeof("struct passo_plan")
-    ffi().memmove(plan, b"\xa5" * size, size)
-    error = getattr(c, f"passo_plan_{kind}")(ours, ffi().new(f"struct passo_move_{kind} *", values), plan)
-    if error:
-        assert bytes(ffi().buffer(plan)) == b"\xa5" * size, "a refused plan was touched"
-        raise PlanError(ffi().string(c.passo_plan_error_name(error)).decode())
-    return Plan(machine, plan)
-
-
-# ------------------------------------------------------------------------------------ what the core does ----
-
-
-def load_generator() -> Any:
-    spec = importlib.util.spec_from_file_location("generate_shapes", paths.tools / "generate_shapes.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-@cache
-def tables() -> list[list[int]]:
-    """Points of banks 0 .. 3, 0 .. 256; bank 0 is not used."""
-    return [[0] * 257, *([*table, 65536] for table in load_generator().banks().values())]
-
-
-def shape(bank: int, u: int) -> int:
-    """s (UQ1.24) for a progress u (UQ0.49)."""
-    if bank == LINEAR:
-        return (u + (1 << 24)) >> 25
-    k, f = u >> 41, ((u & (1 << 41) - 1) + (1 << 16)) >> 17
-    t = [*tables()[bank], 65536]
-    return (t[k] * ((1 << 24) - f) + t[k + 1] * f + (1 << 15)) >> 16
-
-
-def velocity_of_tick(ramp: Ramp, tick: int) -> int:
-    """The ramp recurrence, in plain integers."""
-    u = (2 * tick + 1) * ramp.progress_step
-    assert u < 2 * ONE
-    change = ramp.velocity_end - ramp.velocity_start
-    if ramp.mirror:
-        return ramp.velocity_end + (-change * shape(ramp.shape, 2 * ONE - 1 - u) >> 24)
-    return ramp.velocity_start + (change * shape(ramp.shape, u) >> 24)
-
-
-def velocities_of_ticks(ramp: Ramp, first: int, last: int) -> np.ndarray:
-    """Those of the ticks from first to before last, in 64-bit integers."""
-    u = (2 * np.arange(first, last, dtype=np.int64) + 1) * ramp.progress_step
-    start, end = ramp.velocity_start, ramp.velocity_end
-    if ramp.mirror:
-        u, start, end = 2 * ONE - 1 - u, end, start
-    if ramp.shape:
-        t = np.array([*tables()[ramp.shape], 65536], dtype=np.int64)
-        k, f = u >> 41, ((u & (1 << 41) - 1) + (1 << 16)) >> 17
-        s = (t[k] * ((1 << 24) - f) + t[k + 1] * f + (1 << 15)) >> 16
-    else:
-        s = (u + (1 << 24)) >> 25
-    change = end - start
-    return start + (change >> 24) * s + ((change & 0xFFFFFF) * s >> 24)
-
-
-def sum_of_velocities(ramp: Ramp, chunk: int = 1 << 16) -> int:
-    total = 0
-    for first in range(0, ramp.ticks, chunk):
-        velocities = velocities_of_ticks(ramp, first, min(first + chunk, ramp.ticks))
-        total += (int((velocities >> 24).sum()) << 24) + int((velocities & 0xFFFFFF).sum())
-    return total
-
-
-def mean_shape(ramp: Ramp) -> Fraction:
-    """Mean of the ideal shape over the ticks' progress, which ends at c instead of 1."""
-    du, ticks = Fraction(ramp.progress_step, ONE), ramp.ticks
-    if ramp.shape != EASE:
-        return du * ticks / 2
-    mean_square = du * du * (Fraction(ticks * ticks, 3) - Fraction(1, 12))
-    return du * ticks - mean_square if ramp.mirror else mean_square
-
-
-def distance(plan: Plan) -> Fraction:
-    """Substeps under the ramps, summed tick by tick unless ramps are very long."""
-    ramps = plan.ramps
-    exact = all(ramp.ticks <= EXACT_TICKS or ramp.velocity_start == ramp.velocity_end for ramp in ramps)
-    total = Fraction(0)
-    for ramp in ramps:
-        change = ramp.velocity_end - ramp.velocity_start
-        if change == 0 or not exact:
-            total += ramp.ticks * (ramp.velocity_start + change * (mean_shape(ramp) if ramp.ticks else 0))
-        elif ramp.ticks:
-            total += sum_of_velocities(ramp)
-    return total * plan.machine.tick / ONE
 
 
 # ----------------------------------------------------------------------------------- what a plan must be ----
-
-
-def round_half_up(value: Fraction) -> int:
-    return math.floor(value + Fraction(1, 2))
-
-
-def check_structure(plan: Plan, move: InTime | BySpeed) -> None:
-    """Line, K, order and completeness of the ramps; every number in its range."""
-    p, line, ramps = plan.c, plan.c.line, plan.ramps
-    steps = [*move.steps, *[0] * (AXES - len(move.steps))]
-    longest = max(map(abs, steps))
-    assert line.last and not line.endless
-    assert plan.steps == [abs(n) for n in steps]
-    assert line.directions == sum(1 << axis for axis, n in enumerate(steps) if n < 0)
-    assert p.oversampling == 1 or (p.oversampling > 0 and p.oversampling % 2 == 0)
-    assert line.substeps == p.oversampling * longest <= SUBSTEPS_MAX
-
-    assert 1 <= p.ramp_count <= 7
-    flags = [(ramp.last, ramp.now) for ramp in p.ramps[0 : p.ramp_count]]
-    assert flags == [(False, False)] * (p.ramp_count - 1) + [(True, False)]
-    assert ramps[-1].velocity_end == 0
-    assert max(ramp.velocity_end for ramp in ramps) == p.velocity_peak <= HALF
-    assert sum(ramp.ticks for ramp in ramps) == plan.ticks > 0
-    for ramp in ramps:
-        if ramp.ticks == 0:
-            assert (ramp.shape, ramp.mirror) == (0, False)
-        elif ramp.ticks <= 1 << 24:
-            exact = Fraction(ONE, ramp.ticks)
-            assert ramp.progress_step == min(round_half_up(exact), ONE - 1)
-        else:
-            assert ramp.progress_step == ONE // ramp.ticks
-
-    def change(start: int, end: int, ticks: int) -> list[tuple[int, int, bool, int]]:
-        if move.profile == JERK:
-            assert ticks % 2 == 0
-            return [(ticks // 2, (start + end) // 2, False, EASE), (ticks // 2, end, True, EASE)]
-        return [(ticks, end, False, SHAPE_OF_PROFILE[move.profile])]
-
-    expected = []
-    if p.velocity_start:
-        expected.append((0, p.velocity_start, False, LINEAR))
-    if p.accelerate_ticks:
-        expected += change(p.velocity_start, p.velocity_peak, p.accelerate_ticks)
-    if p.cruise_ticks:
-        expected.append((p.cruise_ticks, p.velocity_peak, False, LINEAR))
-    if p.decelerate_ticks:
-        expected += change(p.velocity_peak, p.velocity_stop, p.decelerate_ticks)
-    if p.velocity_stop:
-        expected.append((0, 0, False, LINEAR))
-    assert [(ramp.ticks, ramp.velocity_end, ramp.mirror, ramp.shape) for ramp in ramps] == expected
-    if p.accelerate_ticks == 0:
-        assert p.velocity_start == p.velocity_peak
-    if p.decelerate_ticks == 0:
-        assert p.velocity_stop == p.velocity_peak
-
-
-def progress_bound(plan: Plan) -> Fraction:
-    """How far the core's 24 bits of progress and of shape can move the end, in substeps.
-
-    Equal ramps cancel out. Others need hundreds of millions of clocks at full velocity to get beyond the
-    tolerance, even though this bound, 2^-24 in every tick, does so earlier.
-    """
-    p = plan.c
-    up, down = p.velocity_peak - p.velocity_start, p.velocity_peak - p.velocity_stop
-    if p.accelerate_ticks == p.decelerate_ticks:
-        sensitive = p.accelerate_ticks * abs(up - down)
-    else:
-        sensitive = p.accelerate_ticks * up + p.decelerate_ticks * down
-    return Fraction(sensitive * plan.machine.tick, ONE << 24)
-
-
-def check_distance(plan: Plan) -> Fraction:
-    """The ramps cover M substeps; return the error."""
-    error = distance(plan) - plan.substeps
-    long = progress_bound(plan) > LONG_RAMPS * DISTANCE_TOLERANCE
-    assert abs(error) < (progress_bound(plan) if long else DISTANCE_TOLERANCE)
-    return error
 
 
 def check_in_time(plan: Plan, move: InTime) -> None:
@@ -463,24 +212,6 @@ def plan_and_check(c: Any, machine: Machine, move: InTime | BySpeed) -> Fraction
 # ------------------------------------------------------------------------------------------ random moves ----
 
 
-def log_uniform(rng: random.Random, low: float, high: float) -> float:
-    return math.exp(rng.uniform(math.log(low), math.log(high)))
-
-
-def some_machine(rng: random.Random) -> Machine:
-    clock_hz = rng.choice(
-        (72_000_000, 100_000_000, 50_000_000, 12_000_000, 99_999_989, 1_000_000, 4_294_967_295)
-    )
-    return Machine(clock_hz, rng.choice((7, 7, 7, 8, 10, 12, 16)))
-
-
-def some_steps(rng: random.Random, longest: int) -> tuple[int, ...]:
-    axes = rng.randint(1, AXES)
-    steps = [rng.choice((0, 1, longest, int(log_uniform(rng, 1, longest + 1)))) for _ in range(axes)]
-    steps[rng.randrange(axes)] = longest
-    return tuple(min(n, longest) * rng.choice((1, -1)) for n in steps)
-
-
 def some_in_time(rng: random.Random, machine: Machine) -> InTime:
     total = int(log_uniform(rng, machine.tick, min(2**40, MOVE_CLOCKS - 1)))
     ramp = rng.choice((0, total // 2, rng.randint(0, total // 2), int(log_uniform(rng, 1, total + 1)) // 2))
@@ -538,10 +269,6 @@ def test_random_moves(c: Any, form: str) -> None:
 # ---------------------------------------------------------------------------------------- directed moves ----
 
 
-def q32(value: float) -> int:
-    return round(value * UNIT)
-
-
 def test_ramps_of_half_the_time(c: Any) -> None:
     """However times and ticks fall, the ramps fit and the time is kept."""
     machine = Machine()
@@ -590,8 +317,8 @@ def test_half_the_clock(c: Any) -> None:
         for steps in (1, 64, 65, 1_000_000, longest):
             plan_and_check(c, machine, BySpeed((steps,), profile, speed, start, start, acceleration))
     for steps, name in ((64, ""), (65, "TOO_FAST")):
-        assert refusal(c, machine, InTime((steps,), LINEAR, machine.tick, 0)) == name
-    assert refusal(c, machine, BySpeed((9,), LINEAR, speed + 1, acceleration=1)) == "TOO_FAST"
+        assert refused(c, make_plan, machine, InTime((steps,), LINEAR, machine.tick, 0)) == name
+    assert refused(c, make_plan, machine, BySpeed((9,), LINEAR, speed + 1, acceleration=1)) == "TOO_FAST"
 
 
 def test_one_step_per_minute(c: Any) -> None:
@@ -655,18 +382,6 @@ def test_ramp_time_instead_of_acceleration(c: Any) -> None:
 # ------------------------------------------------------------------------------------------------ errors ----
 
 
-def refusal(c: Any, machine: Machine, move: InTime | BySpeed) -> str:
-    """Name of the error, or nothing."""
-    try:
-        make_plan(c, machine, move)
-    except PlanError as error:
-        return str(error)
-    return ""
-
-
-GOOD_IN_TIME = InTime((5, -3), JERK, 100_000, 20_000)
-GOOD_BY_SPEED = BySpeed((500, -3), JERK, q32(1000), q32(100), q32(50), q32(1e5), q32(2e5))
-
 REFUSED = {
     "BAD_CLOCK": [{"clock_hz": 0}, {"tick_log2": 6}, {"tick_log2": 17}, {"tick_log2": 255}],
     "BAD_PROFILE": [{"profile": 4}, {"profile": 2**32 - 1}],
@@ -724,7 +439,11 @@ def test_refusals(c: Any, name: str) -> None:
             form = BySpeed
         for good in (GOOD_IN_TIME, GOOD_BY_SPEED):
             if form in (None, type(good)):
-                assert refusal(c, machine, replace(good, **changes)) == name, (machine, good, changes)
+                assert refused(c, make_plan, machine, replace(good, **changes)) == name, (
+                    machine,
+                    good,
+                    changes,
+                )
 
 
 def test_axes_out_of_range(c: Any) -> None:
@@ -756,56 +475,6 @@ def test_error_names_and_texts(c: Any) -> None:
 # -------------------------------------------------------------------------------------------- every step ----
 
 
-def step_substeps(substeps: int, steps: int) -> np.ndarray:
-    """The substeps, 1 .. M, in which an axis makes its steps: closed form of the DDA."""
-    k = np.arange(1, steps + 1, dtype=np.int64)
-    return -((substeps // 2 - k * substeps) // steps)
-
-
-def tick_velocities(plan: Plan) -> np.ndarray:
-    return np.concatenate([velocities_of_ticks(ramp, 0, ramp.ticks) for ramp in plan.ramps if ramp.ticks])
-
-
-def substep_clocks(plan: Plan, substeps: np.ndarray) -> np.ndarray:
-    """The clocks, counted from 1, in which these substeps are made: closed form of the path."""
-    velocities = tick_velocities(plan)
-    moved = velocities << plan.machine.tick_log2
-    upper, lower = np.cumsum(moved >> 24), np.cumsum(moved & 0xFFFFFF)
-    upper, lower = upper + (lower >> 24) + (1 << 22), lower & 0xFFFFFF  # a motion starts with phase 1/4
-    whole, fraction = upper >> 24, (upper & 0xFFFFFF) << 24 | lower
-    tick = np.searchsorted(whole, substeps)
-    assert tick.max() < len(velocities), "substeps are missing"
-    before = np.concatenate(([0], whole))[tick], np.concatenate(([1 << 46], fraction))[tick]
-    missing = ((substeps - before[0]) << 48) - before[1]
-    return (tick << plan.machine.tick_log2) - (-missing // velocities[tick])
-
-
-def run_clock_by_clock(plan: Plan) -> list[list[int]]:
-    """The contract's recurrences, literally: the clocks in which each axis makes its steps."""
-    line = plan.c.line
-    phase, made, clock = ONE // 4, 0, 0
-    errors = [line.substeps // 2] * AXES
-    steps = [[] for _ in range(AXES)]
-    for ramp in plan.ramps:
-        for tick in range(ramp.ticks):
-            velocity = velocity_of_tick(ramp, tick)
-            for _ in range(plan.machine.tick):
-                clock += 1
-                phase += velocity
-                if phase < ONE or made == line.substeps:
-                    continue
-                phase -= ONE
-                made += 1
-                for axis in range(AXES):
-                    errors[axis] += line.steps[axis]
-                    if errors[axis] >= line.substeps:
-                        errors[axis] -= line.substeps
-                        steps[axis].append(clock)
-    assert made == line.substeps
-    assert errors == [line.substeps // 2] * AXES
-    return steps
-
-
 def small_move(rng: random.Random, machine: Machine, ticks: int, steps: int) -> InTime | BySpeed:
     """A move of up to so many ticks and steps."""
     if rng.random() < 0.5:
@@ -835,66 +504,6 @@ def test_closed_forms_are_the_recurrences(c: Any) -> None:
             if clocks:
                 closed = substep_clocks(plan, step_substeps(plan.substeps, plan.steps[axis]))
                 assert clocks == closed.tolist(), move
-
-
-def shape_integral(ramp_shape: int, mirror: bool, u: np.ndarray) -> np.ndarray:
-    """Integral of the ideal shape from 0 to u."""
-    if ramp_shape == LINEAR:
-        return u * u / 2
-    if ramp_shape == COSINE:
-        return u / 2 - np.sin(np.pi * u) / (2 * np.pi)
-    if ramp_shape == SIGMOID:
-        a, low, high = 5, 1 / (1 + math.exp(5)), 1 / (1 + math.exp(-5))
-        return (np.logaddexp(0, a * (2 * u - 1)) - np.logaddexp(0, -a)) / (2 * a * (high - low)) - u * low / (
-            high - low
-        )
-    return u - (1 - (1 - u) ** 3) / 3 if mirror else u**3 / 3
-
-
-def ideal_path(plan: Plan, clocks: np.ndarray) -> np.ndarray:
-    """Substeps covered at these times by the ideal curve: no tables, no ticks."""
-    path = np.zeros(len(clocks))
-    start = 0
-    for ramp in plan.ramps:
-        if not ramp.ticks:
-            continue
-        length = ramp.ticks * plan.machine.tick
-        u = np.clip((clocks - start) / length, 0, 1)
-        change = (ramp.velocity_end - ramp.velocity_start) / ONE
-        path += length * (ramp.velocity_start / ONE * u + change * shape_integral(ramp.shape, ramp.mirror, u))
-        start += length
-    return path
-
-
-@cache
-def table_deviation(ramp_shape: int) -> float:
-    """How far the integral of the interpolated table strays from that of its shape."""
-    if ramp_shape == LINEAR:
-        return 0.0
-    fine = 64
-    s = np.interp(np.arange(256 * fine + 1) / fine, np.arange(257), tables()[ramp_shape]) / 65536
-    integral = np.concatenate(([0], np.cumsum((s[1:] + s[:-1]) / 2))) / (256 * fine)
-    return float(
-        np.abs(integral - shape_integral(ramp_shape, False, np.arange(256 * fine + 1) / (256 * fine))).max()
-    )
-
-
-STEEPEST = {LINEAR: 1.0, COSINE: math.pi / 2, SIGMOID: 2.6, EASE: 2.0}
-
-
-def curve_deviation(plan: Plan) -> float:
-    """How far, in substeps, the core's path can stray from the ideal curve.
-
-    Its velocity has ticks, which shows most in the middle of one and hardly at its ends; its shapes have 256
-    points, its progress 24 bits.
-    """
-    total = staircase = 0.0
-    for ramp in plan.ramps:
-        if ramp.ticks:
-            change = abs(ramp.velocity_end - ramp.velocity_start) / ONE
-            staircase = max(staircase, change * plan.machine.tick / ramp.ticks * STEEPEST[ramp.shape] / 6)
-            total += change * ramp.ticks * plan.machine.tick * (table_deviation(ramp.shape) + 2**-24)
-    return total + staircase
 
 
 def test_steps_follow_the_curve(c: Any) -> None:

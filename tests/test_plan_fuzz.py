@@ -1,25 +1,23 @@
 # SPDX-License-Identifier: MIT
 """All planning functions with arguments of all sizes, under the sanitizers (plan_fuzz.c)."""
 
-import os
 import re
 import subprocess
 from pathlib import Path
 
-from passo.toolchain import environment, paths
+from passo import random_cases
+from passo.compiler import SANITIZED, STRICT, compile_to, includes, sources
+from passo.toolchain import paths
 
-SEED = os.environ.get("PASSO_SEED", "1")
-SECONDS = os.environ.get("PASSO_FUZZ_SECONDS", "5")
-FLAGS = "-std=c11 -O1 -g -Wall -Wextra -Wconversion -Werror -fsanitize=address,undefined"
+SEED = str(random_cases.seed())
+SECONDS = str(random_cases.fuzz_seconds())
 
 
 def test_no_argument_breaks_the_planner(tmp_path: Path) -> None:
     """No undefined behaviour, no plan that the core would not take, no refusal that touches the plan."""
-    program = tmp_path / "fuzz"
-    sources = [*sorted(paths.c_model.glob("passo_plan*.c")), paths.c_model / "passo_math.c"]
-    command = ["gcc", *FLAGS.split(), "-fno-sanitize-recover=all", f"-I{paths.c_model}"]
-    target = paths.tests / "plan_fuzz.c"
-    subprocess.run([*command, target, *sources, "-o", program], env=environment(), check=True)
+    flags = (*STRICT, *SANITIZED, *includes(paths.planner, paths.protocol))
+    files = [paths.tests / "plan_fuzz.c", *sources(paths.planner)]
+    program = compile_to(tmp_path / "fuzz", *flags, *files)
     done = subprocess.run([program, SEED, SECONDS], capture_output=True, text=True, timeout=600)
     print(f"seed {SEED}, {SECONDS} s\n{done.stdout}")
     assert (done.returncode, done.stderr) == (0, "")
@@ -30,4 +28,4 @@ def test_no_argument_breaks_the_planner(tmp_path: Path) -> None:
 
 
 def header() -> str:
-    return (paths.c_model / "passo_plan.h").read_text()
+    return (paths.planner / "passo_plan.h").read_text()

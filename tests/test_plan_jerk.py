@@ -3,23 +3,25 @@
 
 import math
 import random
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
 import pytest
-import test_plan as base
-from test_plan import EASE, LINEAR, UNIT, Machine, Plan, PlanError, q32
-from test_plan_methods import (
-    MOVES,
-    SEED,
-    check_steps_to_stop,
-    library,
+
+from tests.helpers.core_steps import step_errors
+from tests.helpers.jerk_checks import check_jerk, ramp_parts
+from tests.helpers.plans import (
+    SUBSTEPS_MAX,
+    UNIT,
+    Machine,
+    Plan,
+    PlanError,
     make_move,
+    q32,
     refused,
     speed_of,
-    step_errors,
 )
+from tests.helpers.random_plans import MOVES, SEED, log_uniform, some_machine, some_steps
 
 GOOD = {
     "steps": (200_000, -3),
@@ -31,74 +33,8 @@ GOOD = {
 }
 
 
-@pytest.fixture
-def c() -> Any:
-    return library()
-
-
 def jerk(c: Any, machine: Machine, **changes: Any) -> Plan:
     return make_move(c, machine, "jerk", {**GOOD, **changes})
-
-
-def ramp_parts(plan: Plan) -> tuple[list[base.Ramp], list[base.Ramp]]:
-    """The parts that speed up, and those that slow down."""
-    moving = [ramp for ramp in plan.ramps if ramp.ticks and ramp.velocity_start != ramp.velocity_end]
-    up = [ramp for ramp in moving if ramp.velocity_end > ramp.velocity_start]
-    return up, [ramp for ramp in moving if ramp.velocity_end < ramp.velocity_start]
-
-
-def check_limits(plan: Plan, fields: dict) -> None:
-    """Speed, acceleration and jerk in exact fractions; velocities are rounded to 2^-48, which may add it."""
-    p, clock_hz = plan.c, plan.machine.clock_hz
-    acceleration, jerk = (Fraction(fields[name], UNIT) for name in ("acceleration", "jerk"))
-    assert speed_of(plan, p.velocity_peak) <= Fraction(fields["speed"], UNIT)
-    unit = speed_of(plan, 2)
-    for ramp in plan.ramps:
-        if not ramp.ticks:
-            continue
-        change = speed_of(plan, abs(ramp.velocity_end - ramp.velocity_start))
-        seconds = Fraction(ramp.ticks * plan.machine.tick, clock_hz)
-        if ramp.shape == EASE:  # v = j t^2 / 2
-            assert 2 * (change - unit) <= acceleration * seconds
-            assert 2 * (change - unit) <= jerk * seconds**2
-        else:
-            assert change - unit <= acceleration * seconds
-
-
-def check_structure(plan: Plan, fields: dict) -> None:
-    """Ease, straight and mirrored ease, with equal slopes where they meet; symmetric."""
-    p, ramps = plan.c, plan.ramps
-    longest = max(map(abs, fields["steps"]))
-    assert p.line.substeps == p.oversampling * longest <= base.SUBSTEPS_MAX
-    assert plan.steps[: len(fields["steps"])] == [abs(n) for n in fields["steps"]]
-    assert 1 <= p.ramp_count <= 9 and ramps[-1].velocity_end == 0
-    assert [ramp.last for ramp in p.ramps[0 : p.ramp_count]] == [False] * (p.ramp_count - 1) + [True]
-    assert sum(ramp.ticks for ramp in ramps) == plan.ticks
-    velocity = max(ramp.velocity_end for ramp in ramps)
-    assert velocity == p.velocity_peak <= base.HALF
-    for parts, ticks in zip(ramp_parts(plan), (p.accelerate_ticks, p.decelerate_ticks), strict=True):
-        if not parts:
-            continue
-        assert sum(part.ticks for part in parts) == ticks or len(parts) < 2
-        if len(parts) == 3:
-            assert [(part.shape, part.mirror) for part in parts] == [(EASE, 0), (LINEAR, 0), (EASE, 1)]
-            first, middle, last = (abs(part.velocity_end - part.velocity_start) for part in parts)
-            assert first == last and parts[0].ticks == parts[2].ticks
-            # the slope at the end of an ease is twice its mean
-            slope = Fraction(middle, parts[1].ticks)
-            assert abs(Fraction(2 * first, parts[0].ticks) - slope) <= Fraction(4, parts[0].ticks) + Fraction(
-                4, parts[1].ticks
-            )
-        elif len(parts) == 2:
-            assert [(part.shape, part.mirror) for part in parts] == [(EASE, 0), (EASE, 1)]
-            assert parts[0].ticks == parts[1].ticks
-    check_steps_to_stop(plan)
-
-
-def check(plan: Plan, fields: dict) -> float:
-    check_structure(plan, fields)
-    check_limits(plan, fields)
-    return float(abs(base.check_distance(plan)))
 
 
 def ramp_seconds(change: float, acceleration: float, jerk: float) -> float:
@@ -136,7 +72,7 @@ def test_seven_phases(c: Any) -> None:
     """t_j = a / j, t_total = dv / a + a / j, in whole ticks; the curve is kept."""
     machine = Machine(16_000_000)
     plan = jerk(c, machine)
-    check(plan, GOOD)
+    check_jerk(plan, GOOD)
     up, down = ramp_parts(plan)
     assert len(up) == len(down) == 3 and plan.c.ramp_count == 9 and plan.c.cruise_ticks > 0
     ease = math.ceil(200_000 / 4_000_000 * machine.clock_hz / 128)
@@ -167,7 +103,7 @@ def test_seven_phases(c: Any) -> None:
 def test_fewer_phases(c: Any, changes: dict, parts: tuple[int, int], cruise: bool) -> None:
     machine, fields = Machine(16_000_000), {**GOOD, **changes}
     plan = jerk(c, machine, **changes)
-    check(plan, fields)
+    check_jerk(plan, fields)
     assert tuple(map(len, ramp_parts(plan))) == parts
     if cruise:
         assert plan.c.cruise_ticks > 0
@@ -182,13 +118,13 @@ def test_random_moves(c: Any) -> None:
     rng = random.Random(f"{SEED} jerk")
     worst, slowest, made, kinds = 0.0, 0.0, 0, set()
     while made < 3 * MOVES:
-        machine = base.some_machine(rng)
-        speed = base.log_uniform(rng, 1 / 60, machine.clock_hz / 2.01)
-        acceleration = speed / base.log_uniform(rng, 1e-5, 1e2)
-        jerk_limit = acceleration / base.log_uniform(rng, 1e-5, 1e2)
-        steps = max(1, min(base.SUBSTEPS_MAX, int(speed * base.log_uniform(rng, 1e-4, 1e3))))
+        machine = some_machine(rng)
+        speed = log_uniform(rng, 1 / 60, machine.clock_hz / 2.01)
+        acceleration = speed / log_uniform(rng, 1e-5, 1e2)
+        jerk_limit = acceleration / log_uniform(rng, 1e-5, 1e2)
+        steps = max(1, min(SUBSTEPS_MAX, int(speed * log_uniform(rng, 1e-4, 1e3))))
         fields = {
-            "steps": base.some_steps(rng, steps),
+            "steps": some_steps(rng, steps),
             "start_speed": rng.choice((0, 0, q32(speed), q32(speed * rng.random() ** 3))),
             "speed": q32(speed),
             "stop_speed": rng.choice((0, 0, q32(speed), q32(speed * rng.random() ** 3))),
@@ -201,7 +137,7 @@ def test_random_moves(c: Any) -> None:
             assert str(error) == "TOO_LONG", fields
             continue
         try:
-            worst = max(worst, check(plan, fields))
+            worst = max(worst, check_jerk(plan, fields))
             ideal = quickest(fields)
             seconds = plan.ticks * machine.tick / machine.clock_hz
             if not math.isnan(ideal):

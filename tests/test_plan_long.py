@@ -5,18 +5,13 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from test_plan import SUBSTEPS_MAX, Machine, q32
-from test_plan_jerk import check as check_jerk
-from test_plan_methods import check_plan, library, make_move, speed_of
-from test_plan_turn import turn
+
+from tests.helpers.jerk_checks import check_jerk
+from tests.helpers.plan_checks import check_plan
+from tests.helpers.plans import SUBSTEPS_MAX, Machine, make_move, q32, speed_of
 
 HOUR = 3600
 STEPS = (1, 2, 3, 1000, 2**20 + 1, SUBSTEPS_MAX)
-
-
-@pytest.fixture
-def c() -> Any:
-    return library()
 
 
 @pytest.mark.parametrize("steps", STEPS)
@@ -62,11 +57,3 @@ def test_half_the_clock(c: Any, steps: int) -> None:
     jerk = {"steps": (steps,), "start_speed": 0, "speed": speed, "stop_speed": speed // 3}
     jerk |= {"acceleration": q32(4e9), "jerk": 2**64 - 1}
     check_jerk(make_move(c, machine, "jerk", jerk), jerk)
-
-
-def test_a_telescope(c: Any) -> None:
-    """A turn of the sky: 360 degrees in a sidereal day, 6 million steps."""
-    rpm = round(2**32 / (86164.0905 / 60))
-    plan = turn(c, Machine(100_000_000, 12), steps_per_turn=6_000_000, angle=q32(360), rpm=rpm, minimum_rpm=0)
-    check_plan(plan, (0, 6_000_000, 0))
-    assert abs(plan.ticks * 4096 / 1e8 - 86164.0905) < 1

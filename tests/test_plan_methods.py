@@ -1,125 +1,36 @@
 # SPDX-License-Identifier: MIT
 """The planning methods that are built on the first two forms: exact time with a highest speed, several axes,
-and what all methods refuse. What other tests of methods share is here, too.
+and what all methods refuse.
 
-Plans are judged in exact fractions; what the core makes of them is summed tick by tick (test_plan.py).
+Plans are judged in exact fractions; what the core makes of them is summed tick by tick.
 """
 
 import math
-import os
 import random
-import subprocess
-from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache
 from typing import Any
 
 import numpy as np
 import pytest
-import test_plan as base
-from passo.native import ffi, load
-from passo.toolchain import paths
-from test_plan import JERK, LINEAR, ONE, UNIT, Machine, Plan, PlanError, q32
+from passo.native import ffi
 
-SEED = int(os.environ.get("PASSO_SEED", "1"))
-MOVES = int(os.environ.get("PASSO_MOVES", "300"))
+from tests.helpers.core_steps import step_errors, step_substeps
+from tests.helpers.plan_checks import check_plan, round_half_up
+from tests.helpers.plans import (
+    JERK,
+    SUBSTEPS_MAX,
+    UNIT,
+    Machine,
+    Plan,
+    PlanError,
+    make_move,
+    q32,
+    refused,
+    speed_of,
+)
+from tests.helpers.random_plans import MOVES, SEED, log_uniform, some_machine, some_steps
+
 ZERO = (0,) * 8
-
-
-# --------------------------------------------------------------------------------------- for all methods ----
-
-
-@cache
-def library() -> Any:
-    """All of the planner, built so that every use of undefined behaviour is fatal."""
-    directory = paths.build / "tests"
-    directory.mkdir(parents=True, exist_ok=True)
-    made = directory / f"plan-methods-{os.getpid()}.so"
-    flags = "-std=c11 -O2 -Wall -Wextra -Wconversion -Werror -fPIC -shared -fsanitize=undefined"
-    sources = [*sorted(paths.c_model.glob("passo_plan*.c")), paths.c_model / "passo_math.c"]
-    subprocess.run(["cc", *flags.split(), "-fno-sanitize-recover=all", "-o", made, *sources], check=True)
-    loaded = load(made)
-    made.unlink()
-    return loaded
-
-
-@pytest.fixture
-def c() -> Any:
-    return library()
-
-
-def make(c: Any, machine: Machine, axes: int, function: str, kind: str, fields: dict, *more: Any) -> Plan:
-    """Call passo_plan_FUNCTION with a struct KIND, and further arguments; raise PlanError."""
-    ours = ffi().new("struct passo_machine *", (machine.clock_hz, machine.tick_log2, axes))
-    plan = ffi().new("struct passo_plan *")
-    size = ffi().sizeof("struct passo_plan")
-    ffi().memmove(plan, b"\xa5" * size, size)
-    error = getattr(c, f"passo_plan_{function}")(ours, ffi().new(f"struct {kind} *", fields), *more, plan)
-    if error:
-        assert bytes(ffi().buffer(plan)) == b"\xa5" * size, "a refused plan was touched"
-        raise PlanError(ffi().string(c.passo_plan_error_name(error)).decode())
-    return Plan(machine, plan)
-
-
-def make_move(c: Any, machine: Machine, function: str, fields: dict) -> Plan:
-    """Methods whose struct is called as they are, with steps."""
-    return make(c, machine, len(fields["steps"]), function, f"passo_move_{function}", fields)
-
-
-def speed_of(plan: Plan, velocity: int) -> Fraction:
-    """Steps/s of the longest axis."""
-    return Fraction(velocity * plan.machine.clock_hz, ONE * plan.c.oversampling)
-
-
-@dataclass(frozen=True)
-class Shown:
-    """What test_plan.check_structure() wants to know of a move."""
-
-    steps: tuple[int, ...]
-    profile: int
-
-
-def check_plan(plan: Plan, steps: tuple[int, ...], profile: int = LINEAR) -> Fraction:
-    """Structure and distance; return the error of the distance in substeps."""
-    base.check_structure(plan, Shown(steps, profile))
-    check_steps_to_stop(plan)
-    return base.check_distance(plan)
-
-
-def check_steps_to_stop(plan: Plan) -> None:
-    """The path of the ramps that slow down, in whole steps to the nearest."""
-    ticks, substeps = 0, 0.0
-    for ramp in reversed(plan.ramps):
-        if ticks >= plan.c.decelerate_ticks:
-            break
-        if ramp.ticks:
-            change = ramp.velocity_end - ramp.velocity_start
-            substeps += ramp.ticks * (ramp.velocity_start + change * float(mean_of(ramp)))
-            ticks += ramp.ticks
-    wanted = substeps * plan.machine.tick / ONE / plan.c.oversampling
-    assert abs(plan.c.steps_to_stop - wanted) < 0.5 + 1e-3 + wanted * 1e-9
-
-
-def mean_of(ramp: base.Ramp) -> Fraction:
-    """Mean of the ideal shape of a ramp."""
-    return base.mean_shape(ramp)
-
-
-def step_errors(plan: Plan) -> np.ndarray:
-    """How far the ideal curve is beyond its place when each step of the longest axis is made, in steps."""
-    steps = max(plan.steps)
-    clocks = base.substep_clocks(plan, base.step_substeps(plan.substeps, steps))
-    due = (np.arange(1, steps + 1) - 0.5) * plan.substeps / steps
-    return (base.ideal_path(plan, clocks.astype(float)) - due) / plan.c.oversampling
-
-
-def refused(c: Any, function: Any, *arguments: Any) -> str:
-    """Name of the error, or nothing."""
-    try:
-        function(c, *arguments)
-    except PlanError as error:
-        return str(error)
-    return ""
 
 
 # ---------------------------------------------------------------- exact time and distance, highest speed ----
@@ -129,7 +40,7 @@ def check_below_speed(plan: Plan, fields: dict) -> None:
     """t_ramp = t_total - n / f, to the tick, and f never exceeded."""
     machine, p = plan.machine, plan.c
     steps = max(map(abs, fields["steps"]))
-    total = base.round_half_up(Fraction(fields["total_clocks"], machine.tick))
+    total = round_half_up(Fraction(fields["total_clocks"], machine.tick))
     speed = Fraction(fields["speed"], UNIT)
     assert plan.ticks == total
     assert speed_of(plan, p.velocity_peak) <= speed
@@ -181,12 +92,12 @@ def test_random_times_and_speeds(c: Any, form: str) -> None:
     worst = Fraction(0)
     made = 0
     while made < MOVES:
-        machine = base.some_machine(rng)
-        flat = base.log_uniform(rng, machine.tick, 2**38)  # clocks at full speed
-        longest = max(1, min(base.SUBSTEPS_MAX, int(base.log_uniform(rng, 1, flat / 2 + 1))))
+        machine = some_machine(rng)
+        flat = log_uniform(rng, machine.tick, 2**38)  # clocks at full speed
+        longest = max(1, min(SUBSTEPS_MAX, int(log_uniform(rng, 1, flat / 2 + 1))))
         speed = int(longest * machine.clock_hz / flat * UNIT * (1 + 2**-30))
         ramp = rng.choice((0, int(flat), rng.randint(0, int(flat))))
-        fields = {"steps": base.some_steps(rng, longest), "profile": rng.randrange(4), "speed": speed}
+        fields = {"steps": some_steps(rng, longest), "profile": rng.randrange(4), "speed": speed}
         if form == "below_speed":
             fields["total_clocks"] = int(flat) + ramp + rng.randint(0, 2 * machine.tick)
         else:
@@ -237,7 +148,7 @@ def test_fifty_thirty_twenty(c: Any) -> None:
     assert 50_000 * (1 - 1e-4) < speed_of(plan, p.velocity_peak) <= 50_000
     assert abs(speed_of(plan, p.velocity_start) - 1000) < Fraction(1, 1000)
     assert p.velocity_start == p.velocity_stop
-    made = [base.step_substeps(plan.substeps, abs(n)) for n in fields["steps"]]
+    made = [step_substeps(plan.substeps, abs(n)) for n in fields["steps"]]
     for axis, share in ((1, Fraction(3, 5)), (2, Fraction(2, 5))):
         count = np.searchsorted(made[axis], made[0], side="right")
         first = np.arange(1, 50_001)
@@ -290,8 +201,8 @@ REFUSED = [
     ("at_speed", {"ramp_clocks": 2**64 - 1}, "RAMP_TOO_LONG"),
     ("at_speed", {"speed": 1}, "TOO_LONG"),
     ("at_speed", {"speed": 2**64 - 1, "ramp_clocks": 0, "steps": (100,)}, "TOO_FAST"),
-    ("at_speed", {"steps": (-base.SUBSTEPS_MAX - 1,)}, "TOO_MANY_STEPS"),
-    ("below_speed", {"steps": (1, base.SUBSTEPS_MAX + 1)}, "TOO_MANY_STEPS"),
+    ("at_speed", {"steps": (-SUBSTEPS_MAX - 1,)}, "TOO_MANY_STEPS"),
+    ("below_speed", {"steps": (1, SUBSTEPS_MAX + 1)}, "TOO_MANY_STEPS"),
     ("axes", {"steps": (1, -(2**31))}, "TOO_MANY_STEPS"),
     ("axes", {"speed": 0}, "NO_SPEED"),
     ("axes", {"start_speed": q32(1001)}, "START_ABOVE_SPEED"),

@@ -10,10 +10,23 @@ from typing import Any
 
 import numpy as np
 import pytest
-import test_plan as base
 from passo.native import ffi
-from test_plan import SIGMOID, Machine, Plan, PlanError, q32
-from test_plan_methods import MOVES, SEED, check_plan, library, make_move, refused, speed_of, step_errors
+
+from tests.helpers import core_steps
+from tests.helpers.core_steps import step_errors
+from tests.helpers.plan_checks import check_plan
+from tests.helpers.plans import (
+    SIGMOID,
+    SUBSTEPS_MAX,
+    Machine,
+    Plan,
+    PlanError,
+    make_move,
+    q32,
+    refused,
+    speed_of,
+)
+from tests.helpers.random_plans import MOVES, SEED, log_uniform, some_machine, some_steps
 
 ALPHA = 4096
 GOOD = {
@@ -25,11 +38,6 @@ GOOD = {
     "decelerate_clocks": 16_000_000,
     "alpha": 5 * ALPHA,
 }
-
-
-@pytest.fixture
-def c() -> Any:
-    return library()
 
 
 def table_of(c: Any, alpha: int) -> list[int]:
@@ -56,7 +64,7 @@ def test_tables(c: Any) -> None:
     """Every point of every alpha is the nearest integer, and the table is symmetric to the bit; alpha 5 is
     the core's own after reset."""
     rng = random.Random(f"{SEED} alpha")
-    assert table_of(c, 5 * ALPHA) == base.tables()[SIGMOID][:256]
+    assert table_of(c, 5 * ALPHA) == core_steps.tables()[SIGMOID][:256]
     for alpha in {3 * ALPHA, 4 * ALPHA, 5 * ALPHA, *(rng.randint(3 * ALPHA, 5 * ALPHA) for _ in range(40))}:
         table = [*table_of(c, alpha), 65536]
         assert table[:256] == exact_table(alpha), alpha
@@ -80,12 +88,12 @@ def test_400_hz_to_5_khz_and_back(c: Any, monkeypatch: pytest.MonkeyPatch, alpha
     plan = sigmoid(c, machine, alpha=alpha)
     assert plan.c.sigmoid_alpha == alpha
     with monkeypatch.context() as patched:
-        tables = list(base.tables())
+        tables = list(core_steps.tables())
         tables[SIGMOID] = [*table_of(c, alpha), 65536]
-        patched.setattr(base, "tables", lambda: tables)
-        original = base.shape_integral
+        patched.setattr(core_steps, "tables", lambda: tables)
+        original = core_steps.shape_integral
         patched.setattr(
-            base,
+            core_steps,
             "shape_integral",
             lambda s, m, u: integral(alpha / ALPHA, u) if s == SIGMOID else original(s, m, u),
         )
@@ -136,12 +144,12 @@ def test_random_moves(c: Any) -> None:
     rng = random.Random(f"{SEED} sigmoid")
     worst, made, short = 0.0, 0, 0
     while made < MOVES:
-        machine = base.some_machine(rng)
-        speed = base.log_uniform(rng, 0.1, machine.clock_hz / 2.01)
-        up, down = (base.log_uniform(rng, 1e-5, 100) for _ in range(2))
-        steps = max(1, min(base.SUBSTEPS_MAX, int(speed * base.log_uniform(rng, 1e-5, 300))))
+        machine = some_machine(rng)
+        speed = log_uniform(rng, 0.1, machine.clock_hz / 2.01)
+        up, down = (log_uniform(rng, 1e-5, 100) for _ in range(2))
+        steps = max(1, min(SUBSTEPS_MAX, int(speed * log_uniform(rng, 1e-5, 300))))
         fields = {
-            "steps": base.some_steps(rng, steps),
+            "steps": some_steps(rng, steps),
             "start_speed": rng.choice((0, q32(speed), q32(speed * rng.random()))),
             "speed": q32(speed),
             "stop_speed": rng.choice((0, q32(speed), q32(speed * rng.random()))),

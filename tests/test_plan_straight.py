@@ -7,18 +7,25 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-import test_plan as base
-from test_plan import EASE, SUBSTEPS_MAX, UNIT, Machine, Plan, PlanError, q32
-from test_plan_methods import MOVES, SEED, check_steps_to_stop, library, make, refused, speed_of
+
+from tests.helpers.plan_checks import check_distance, check_steps_to_stop, round_half_up
+from tests.helpers.plans import (
+    EASE,
+    SUBSTEPS_MAX,
+    UNIT,
+    Machine,
+    Plan,
+    PlanError,
+    make,
+    q32,
+    refused,
+    speed_of,
+)
+from tests.helpers.random_plans import MOVES, SEED, log_uniform, some_machine
 
 XY = {"steps_per_mm": q32(80), "speed": q32(500), "acceleration": q32(3000), "jerk": q32(60_000)}
 Z = {"steps_per_mm": q32(400), "speed": q32(12), "acceleration": q32(100), "jerk": q32(2000)}
 GOOD = {"distance": (q32(100), q32(-40), q32(1)), "limits": (XY, XY, Z), "feed": q32(150)}
-
-
-@pytest.fixture
-def c() -> Any:
-    return library()
 
 
 def straight(c: Any, machine: Machine, **changes: Any) -> Plan:
@@ -30,7 +37,7 @@ def check(plan: Plan, fields: dict) -> float:
     """Steps to the nearest; each axis within its own limits and the path within the feed, in fractions."""
     p, machine = plan.c, plan.machine
     steps = [
-        base.round_half_up(Fraction(abs(d) * own["steps_per_mm"], UNIT**2))
+        round_half_up(Fraction(abs(d) * own["steps_per_mm"], UNIT**2))
         for d, own in zip(fields["distance"], fields["limits"], strict=True)
     ]
     assert plan.steps[: len(steps)] == steps
@@ -56,7 +63,7 @@ def check(plan: Plan, fields: dict) -> float:
             if own["jerk"] and ramp.shape == EASE:
                 assert slope * change <= own["jerk"] * scale * seconds**2
     check_steps_to_stop(plan)
-    return float(abs(base.check_distance(plan)))
+    return float(abs(check_distance(plan)))
 
 
 def test_the_tightest_axis_decides(c: Any) -> None:
@@ -96,20 +103,20 @@ def test_random_lines(c: Any) -> None:
     rng = random.Random(f"{SEED} straight")
     worst, made, errors = 0.0, 0, set()
     while made < MOVES:
-        machine = base.some_machine(rng)
+        machine = some_machine(rng)
         axes = rng.randint(1, 8)
         limits = []
         for _ in range(axes):
-            speed = base.log_uniform(rng, 0.01, 10_000)
-            acceleration = speed / base.log_uniform(rng, 1e-3, 10)
-            jerk = rng.choice((0, acceleration / base.log_uniform(rng, 1e-3, 10)))
-            own = {"steps_per_mm": q32(base.log_uniform(rng, 0.01, 10_000)), "speed": q32(speed)}
+            speed = log_uniform(rng, 0.01, 10_000)
+            acceleration = speed / log_uniform(rng, 1e-3, 10)
+            jerk = rng.choice((0, acceleration / log_uniform(rng, 1e-3, 10)))
+            own = {"steps_per_mm": q32(log_uniform(rng, 0.01, 10_000)), "speed": q32(speed)}
             limits.append({**own, "acceleration": q32(acceleration), "jerk": q32(jerk)})
         distance = [
-            rng.choice((0, 1, 1, 1)) * rng.choice((1, -1)) * q32(base.log_uniform(rng, 0.001, 10_000))
+            rng.choice((0, 1, 1, 1)) * rng.choice((1, -1)) * q32(log_uniform(rng, 0.001, 10_000))
             for _ in range(axes)
         ]
-        fields = {"distance": distance, "limits": limits, "feed": q32(base.log_uniform(rng, 0.01, 20_000))}
+        fields = {"distance": distance, "limits": limits, "feed": q32(log_uniform(rng, 0.01, 20_000))}
         try:
             plan = straight(c, machine, **fields)
         except PlanError as error:

@@ -7,15 +7,28 @@ from typing import Any
 
 import numpy as np
 import pytest
-import test_plan as base
 from passo.build import Parameters
 from passo.engine import Engine, model_engine
 from passo.host import Channel
 from passo.link import Link
 from passo.moves import PinTiming
 from passo.native import ffi
-from test_plan import ONE, SUBSTEPS_MAX, UNIT, Machine, Plan, PlanError, q32
-from test_plan_methods import MOVES, SEED, check_plan, library, make, refused, speed_of, step_errors
+
+from tests.helpers.core_steps import step_errors
+from tests.helpers.plan_checks import check_plan, round_half_up
+from tests.helpers.plans import (
+    ONE,
+    SUBSTEPS_MAX,
+    UNIT,
+    Machine,
+    Plan,
+    PlanError,
+    make,
+    q32,
+    refused,
+    speed_of,
+)
+from tests.helpers.random_plans import MOVES, SEED, log_uniform, some_machine
 
 # 200 full steps, 8 microsteps
 GOOD = {
@@ -30,11 +43,6 @@ TURNING = {"axis": 0, "steps_per_turn": 1600, "top_rpm": q32(300), "minimum_rpm"
     "acceleration": q32(20_000),
     "backwards": False,
 }
-
-
-@pytest.fixture
-def c() -> Any:
-    return library()
 
 
 def turn(c: Any, machine: Machine, axes: int = 3, **changes: int) -> Plan:
@@ -82,15 +90,15 @@ def test_random_turns(c: Any) -> None:
     rng = random.Random(f"{SEED} turn")
     worst, made = 0.0, 0
     while made < MOVES:
-        machine = base.some_machine(rng)
-        per_turn = int(base.log_uniform(rng, 1, 2**20))
-        angle = int(base.log_uniform(rng, 0.01, 2**30) * UNIT) * rng.choice((1, -1))
-        rpm = int(base.log_uniform(rng, 0.01, 10_000) * UNIT)
+        machine = some_machine(rng)
+        per_turn = int(log_uniform(rng, 1, 2**20))
+        angle = int(log_uniform(rng, 0.01, 2**30) * UNIT) * rng.choice((1, -1))
+        rpm = int(log_uniform(rng, 0.01, 10_000) * UNIT)
         minimum = rng.choice((0, rpm, rng.randint(0, rpm)))
-        acceleration = int(base.log_uniform(rng, 1, 1e9) * UNIT)
+        acceleration = int(log_uniform(rng, 1, 1e9) * UNIT)
         fields = {"axis": rng.randrange(3), "steps_per_turn": per_turn, "angle": angle, "rpm": rpm}
         fields |= {"minimum_rpm": minimum, "acceleration": acceleration}
-        steps = base.round_half_up(Fraction(abs(angle) * per_turn, 360 * UNIT)) * (1 if angle > 0 else -1)
+        steps = round_half_up(Fraction(abs(angle) * per_turn, 360 * UNIT)) * (1 if angle > 0 else -1)
         try:
             plan = turn(c, machine, **fields)
         except PlanError as error:
@@ -107,6 +115,14 @@ def test_random_turns(c: Any) -> None:
             assert rise * machine.clock_hz <= Fraction(acceleration * p.accelerate_ticks * machine.tick, UNIT)
         made += 1
     print(f"{made} turns, distance to {worst:.6f} substeps")
+
+
+def test_a_telescope(c: Any) -> None:
+    """A turn of the sky: 360 degrees in a sidereal day, 6 million steps."""
+    rpm = round(2**32 / (86164.0905 / 60))
+    plan = turn(c, Machine(100_000_000, 12), steps_per_turn=6_000_000, angle=q32(360), rpm=rpm, minimum_rpm=0)
+    check_plan(plan, (0, 6_000_000, 0))
+    assert abs(plan.ticks * 4096 / 1e8 - 86164.0905) < 1
 
 
 REFUSED = [

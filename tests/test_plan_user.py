@@ -8,10 +8,27 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-import test_plan as base
 from passo.native import ffi
-from test_plan import COSINE, EASE, SIGMOID, UNIT, BySpeed, InTime, Machine, Plan, q32
-from test_plan_methods import MOVES, SEED, library, make, refused, speed_of
+
+from tests.helpers.plan_checks import DISTANCE_TOLERANCE
+from tests.helpers.plans import (
+    COSINE,
+    EASE,
+    GOOD_BY_SPEED,
+    GOOD_IN_TIME,
+    HALF,
+    SIGMOID,
+    UNIT,
+    BySpeed,
+    InTime,
+    Machine,
+    Plan,
+    make,
+    q32,
+    refused,
+    speed_of,
+)
+from tests.helpers.random_plans import MOVES, SEED, log_uniform, some_steps
 
 SHAPES: dict[str, Callable[[float], float]] = {
     "linear": lambda u: u,
@@ -23,11 +40,6 @@ SHAPES: dict[str, Callable[[float], float]] = {
     "step": lambda u: float(u > 0.3),
     "stairs": lambda u: math.floor(5 * u) / 5,
 }
-
-
-@pytest.fixture
-def c() -> Any:
-    return library()
 
 
 def points(shape: Callable[[float], float]) -> list[int]:
@@ -105,9 +117,9 @@ def check(plan: Plan, table: list[int], bank: int = SIGMOID) -> float:
         change = ramp.velocity_end - ramp.velocity_start
         assert ramp.mirror == (ramp.shape != 0 and change < 0)
         assert ramp.shape == (bank if ramp.ticks and change else ramp.shape)
-    assert max(ramp.velocity_end for ramp in plan.ramps) == p.velocity_peak <= base.HALF
+    assert max(ramp.velocity_end for ramp in plan.ramps) == p.velocity_peak <= HALF
     error = abs(distance(plan, table) - plan.substeps)
-    assert error < base.DISTANCE_TOLERANCE, float(error)
+    assert error < DISTANCE_TOLERANCE, float(error)
     return float(error)
 
 
@@ -151,11 +163,11 @@ def test_random_moves_by_speed(c: Any) -> None:
         if rng.random() < 0.5:
             table = [0, *sorted(rng.randrange(65536) for _ in range(255))]
         bank = rng.choice((COSINE, SIGMOID, EASE))
-        speed = base.log_uniform(rng, 1000, 4e7)
+        speed = log_uniform(rng, 1000, 4e7)
         ends = [q32(speed * rng.choice((0, 0.1, rng.random(), 1))) for _ in range(2)]
-        ramp = int(base.log_uniform(rng, 100, 400_000))
-        steps = max(1, int(speed * base.log_uniform(rng, 1e-6, 2e-2)))
-        move = BySpeed(base.some_steps(rng, steps), 0, q32(speed), *ends, ramp_clocks=ramp)
+        ramp = int(log_uniform(rng, 100, 400_000))
+        steps = max(1, int(speed * log_uniform(rng, 1e-6, 2e-2)))
+        move = BySpeed(some_steps(rng, steps), 0, q32(speed), *ends, ramp_clocks=ramp)
         plan = plan_user(c, machine, move, table, bank)
         try:
             worst = max(worst, check(plan, table, bank))
@@ -176,7 +188,7 @@ def test_random_moves_by_speed(c: Any) -> None:
     ],
 )
 def test_refusals(c: Any, bank: int, table: list[int], name: str) -> None:
-    for move in (base.GOOD_IN_TIME, base.GOOD_BY_SPEED):
+    for move in (GOOD_IN_TIME, GOOD_BY_SPEED):
         assert refused(c, lambda c, move=move: plan_user(c, Machine(), move, table, bank)) == name
 
 

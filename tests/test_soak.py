@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 """A short form of `make soak`, which plays thousands of histories and puts all defects back."""
 
-import os
 import shutil
 from pathlib import Path
 
 import pytest
+from passo import random_cases
 from passo.build import rtl_library
 from passo.planted import plant
 from passo.toolchain import paths
@@ -15,7 +15,7 @@ from soak.defects import Defect
 from soak.program import build
 from soak.run import JUDGED
 
-SEED = int(os.environ.get("PASSO_SEED", "1"))
+SEED = random_cases.seed()
 JOBS = 1  # pytest uses the other cores
 
 DEFECTS = {defect.name: defect for defect in defects.defects()}

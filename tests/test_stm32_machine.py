@@ -1,57 +1,41 @@
 # SPDX-License-Identifier: MIT
 """The models of processor and peripherals, tried by small programs (tests/stm32/*.c)."""
 
-import hashlib
 import struct
-import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from passo.stm32 import Machine, MachineError
-from passo.stm32.bus import TICKS_PER_SECOND
+from passo.compiler import CORTEX_M3, headers, includes, kept
 from passo.toolchain import paths
+from passo_stm32 import Machine, MachineError
+from passo_stm32.bus import TICKS_PER_SECOND
 
 FOLDER = paths.tests / "stm32"
-COMPILER = [
-    "arm-none-eabi-gcc",
-    "-mcpu=cortex-m3",
-    "-mthumb",
-    "-Os",
-    "-std=c11",
-    "-ffreestanding",
-    "-nostdlib",
-]
-STRICT = ["-Wall", "-Wextra", "-Werror"]
+MEMORIES = FOLDER / "machine.ld"
+FLAGS = ("-ffreestanding", "-nostdlib", "-Wall", "-Wextra", "-Werror")
 
 Program = Callable[[str], Path]
 
 
-def compile_program(sources: list[Path], *flags: str) -> Path:
+def compile_program(source: Path) -> Path:
     """Compile once for each state of the sources."""
-    command = [*COMPILER, *STRICT, *flags, f"-T{FOLDER / 'machine.ld'}", *map(str, sources)]
-    digest = hashlib.sha256(repr(command).encode())
-    for path in (*sources, FOLDER / "machine.h", FOLDER / "machine.ld"):
-        digest.update(path.read_bytes())
-    elf = paths.build / "tests" / "stm32" / f"{sources[-1].stem}-{digest.hexdigest()[:12]}.elf"
-    if not elf.exists():
-        elf.parent.mkdir(parents=True, exist_ok=True)
-        part = elf.with_suffix(".part")
-        subprocess.run([*command, "-o", str(part)], check=True)
-        part.rename(elf)
-    return elf
+    files = [FOLDER / "start.c", source]
+    elf = paths.build / "tests" / "stm32" / f"{source.stem}.elf"
+    inputs = [*files, *headers(FOLDER), MEMORIES]
+    return kept(elf, inputs, FLAGS, f"-T{MEMORIES}", *includes(FOLDER), *files, compiler=CORTEX_M3)
 
 
 def program(name: str) -> Path:
     """One of the programs of tests/stm32."""
-    return compile_program([FOLDER / "start.c", FOLDER / f"{name}.c"])
+    return compile_program(FOLDER / f"{name}.c")
 
 
 def snippet(folder: Path, code: str) -> Path:
     """A program whose main() is `code`."""
     source = folder / "snippet.c"
     source.write_text(f'#include "machine.h"\nint main(void)\n{{\n{code}\nreturn 0;\n}}\n')
-    return compile_program([FOLDER / "start.c", source], f"-I{FOLDER}")
+    return compile_program(source)
 
 
 def words(machine: Machine, name: str, count: int = 1) -> list[int]:

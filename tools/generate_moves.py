@@ -11,8 +11,8 @@ from moves.schema import SOURCE, SchemaError, read
 ROOT = Path(__file__).resolve().parent.parent
 
 OUTPUTS = {
-    "c_model/passo_limits.h": c.limits,
-    "c_model/passo_moves.h": c.moves,
+    "protocol/passo_limits.h": c.limits,
+    "planner/passo_moves.h": c.moves,
     "stm32_bridge/console/passo_form_tables.c": c.tables,
     "sim/passo/move_forms.py": python.module,
 }

@@ -560,8 +560,8 @@ def write_markdown(source: Source) -> str:
 
 OUTPUTS = {
     "rtl/passo_registers.vh": write_verilog,
-    "c_model/passo_registers.h": write_c,
-    "c_model/passo_words.h": write_c_words,
+    "protocol/passo_registers.h": write_c,
+    "protocol/passo_words.h": write_c_words,
     "sim/passo/registers.py": write_python,
     "docs/registers.md": write_markdown,
 }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Generate the pulse shapes: rtl/passo_shapes.vh, c_model/passo_shapes.h and c_model/passo_shapes.c.
+"""Generate the pulse shapes: rtl/passo_shapes.vh, protocol/passo_shapes.h and protocol/passo_shapes.c.
 
 A bank has 256 points, point k being shape(k / 256) * 65536 to the nearest integer; point 256, always
 65536, is not stored. The values come from 50-digit decimals, so they are the same on every machine.
@@ -103,7 +103,7 @@ def verilog() -> str:
 
 
 def c_header() -> str:
-    """Return the text of c_model/passo_shapes.h."""
+    """Return the text of protocol/passo_shapes.h."""
     return """\
 /* SPDX-License-Identifier: MIT
  * Pulse shapes as the core has them after reset. Made by tools/generate_shapes.py.
@@ -121,7 +121,7 @@ extern const uint16_t passo_shapes[3][256];
 
 
 def c_source() -> str:
-    """Return the text of c_model/passo_shapes.c."""
+    """Return the text of protocol/passo_shapes.c."""
     lines = [
         "/* SPDX-License-Identifier: MIT",
         " * Pulse shapes as the core has them after reset. Made by tools/generate_shapes.py.",
@@ -142,8 +142,8 @@ def files() -> dict[Path, str]:
     """Return every generated file with its text."""
     return {
         ROOT / "rtl" / "passo_shapes.vh": verilog(),
-        ROOT / "c_model" / "passo_shapes.h": c_header(),
-        ROOT / "c_model" / "passo_shapes.c": c_source(),
+        ROOT / "protocol" / "passo_shapes.h": c_header(),
+        ROOT / "protocol" / "passo_shapes.c": c_source(),
     }
 
 

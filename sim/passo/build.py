@@ -1,32 +1,28 @@
 # SPDX-License-Identifier: MIT
-"""Compile the C code and the Verilated core into shared libraries, once for each state of the sources.
+"""The C code and the Verilated core as shared libraries, compiled once for each state of the sources."""
 
-A library lives in build/lib/NAME-HASH, where HASH covers everything that goes into it.
-"""
-
-import fcntl
-import hashlib
 import importlib.util
-import shutil
-import subprocess
-import tempfile
-import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from importlib.metadata import version
 from pathlib import Path
 
+from passo.compiler import (
+    CC,
+    CXX,
+    LIBRARY,
+    STRICT,
+    BuildError,
+    cached,
+    call,
+    headers,
+    includes,
+    library,
+    sources,
+)
 from passo.toolchain import environment, paths
 
-ENGINE = paths.sim / "engine"
-LIBRARY = "library.so"
-MESSAGE_LINES = 30  # of a compiler's complaints
-
-INCLUDES = (f"-I{paths.c_model}", f"-I{paths.driver}", f"-I{ENGINE}")
-C_FLAGS = ("-std=c11", "-O3", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-fPIC", *INCLUDES)
-C_LINK_FLAGS = ("-shared", "-Wl,--no-undefined")
-CPP_FLAGS = ("-std=gnu++17", "-O3", "-Wall", "-fPIC", "-fno-gnu-unique", *INCLUDES)
+ENGINE_FLAGS = (*STRICT, "-O3", "-fPIC", *includes(paths.engine))
+CPP_FLAGS = ("-std=gnu++17", "-O3", "-Wall", "-fPIC", "-fno-gnu-unique", *includes(paths.engine))
 
 # Every register of the core has a reset, so nothing depends on what an X becomes.
 VERILATOR_FLAGS = (
@@ -34,10 +30,6 @@ VERILATOR_FLAGS = (
     *("--no-timing", "--no-assert", "--top-module", "passo_spi_top", "--prefix", "Vpasso_spi_top"),
     *("-CFLAGS", "-fPIC -fno-gnu-unique"),
 )
-
-
-class BuildError(RuntimeError):
-    """A compiler failed; the text is what it said."""
 
 
 @dataclass(frozen=True)
@@ -73,31 +65,22 @@ class Parameters:
 
 def planner_library() -> Path:
     """Planner, frame codec, link library and driver: what runs on a microcontroller as well."""
-    shapes = paths.c_model / "passo_shapes.c"
-    return _c_library("planner", [*_host_sources(), shapes, *sorted(paths.driver.glob("*.c"))])
+    folders = (paths.planner, paths.protocol, paths.driver)
+    return library("planner", folders, sources(*folders), "-O3")
 
 
 def model_library() -> Path:
     """The engine on the C model, for any parameters."""
-    sources = sorted({*paths.c_model.glob("*.c")} - {*_host_sources()})
-    return _c_library("model", [*sources, ENGINE / "engine.c", ENGINE / "engine_model.c"])
+    folders = (paths.model, paths.protocol)
+    engine = [paths.engine / "engine.c", paths.engine / "engine_model.c"]
+    return library("model", [*folders, paths.engine], [*sources(*folders), *engine], "-O3")
 
 
 def console_library() -> Path:
     """The console of the STM32 bridge with its driver, as it runs on a microcontroller."""
-    folders = [paths.stm32_bridge / "console", paths.stm32_bridge / "driver"]
-    sources = [path for folder in folders for path in sorted(folder.glob("*.c"))]
-    sources += [ENGINE / "passo_terminal.c", paths.c_model / "passo_shapes.c", *_host_sources()]
-    return _c_library("console", sources, folders)
-
-
-def _host_sources() -> list[Path]:
-    """Sources of the planner and the frame codec; the other half of c_model/ is the model of the core."""
-    return [
-        *sorted(paths.c_model.glob("passo_plan*.c")),
-        paths.c_model / "passo_math.c",
-        paths.c_model / "passo_frame.c",
-    ]
+    folders = (paths.console, paths.driver, paths.planner, paths.protocol)
+    files = [*sources(*folders), paths.engine / "passo_terminal.c"]
+    return library("console", [*folders, paths.engine], files, "-O3")
 
 
 def cpu_library() -> Path:
@@ -106,23 +89,18 @@ def cpu_library() -> Path:
     if spec is None or spec.origin is None:
         raise BuildError("the Python package 'unicorn' is missing: run 'make setup'")
     unicorn = Path(spec.origin).parent
-    library = unicorn / "lib" / "libunicorn.so.2"
-    sources = [ENGINE / "passo_cpu.c"]
-    flags = [*C_FLAGS, f"-isystem{unicorn / 'include'}"]
-
-    def make(folder: Path) -> None:
-        linked = [str(library), f"-Wl,-rpath,{library.parent}"]
-        _call(["cc", "-shared", *flags, *map(str, sources), *linked, "-o", str(folder / LIBRARY)])
-
-    versions = [version("unicorn"), str(library)]
-    return _cached("cpu", [*sources, *_headers()], [*flags, *versions], make) / LIBRARY
+    linked = unicorn / "lib" / "libunicorn.so.2"
+    flags = [f"-isystem{unicorn / 'include'}", str(linked), f"-Wl,-rpath,{linked.parent}"]
+    return library(
+        f"cpu_unicorn{version('unicorn')}", [paths.engine], [paths.engine / "passo_cpu.c"], "-O3", *flags
+    )
 
 
 def rtl_library(parameters: Parameters, waves: bool = False) -> Path:
     """The engine on the Verilated core."""
     verilated = _verilated(parameters, waves)
     include = Path(environment()["VERILATOR_ROOT"]) / "include"
-    sources = [ENGINE / "engine.c", ENGINE / "engine_rtl.cpp"]
+    c_part, cpp_part = paths.engine / "engine.c", paths.engine / "engine_rtl.cpp"
     defines = [f"-DPASSO_{name.upper()}={value}" for name, value in asdict(parameters).items()]
     flags = [*CPP_FLAGS, *defines, f"-I{verilated}", f"-isystem{include}", f"-isystem{include / 'vltstd'}"]
     archives = [str(verilated / "Vpasso_spi_top__ALL.a"), str(verilated / "libverilated.a"), "-pthread"]
@@ -131,34 +109,26 @@ def rtl_library(parameters: Parameters, waves: bool = False) -> Path:
         archives += ["-llz4", "-lz"]
 
     def make(folder: Path) -> None:
-        _call(["cc", *C_FLAGS, "-c", str(sources[0]), "-o", str(folder / "engine.o")])
-        objects = [str(sources[1]), str(folder / "engine.o")]
-        _call(["c++", "-shared", *flags, *objects, *archives, "-o", str(folder / LIBRARY)])
+        call([CC, *ENGINE_FLAGS, "-c", c_part, "-o", folder / "engine.o"])
+        call([CXX, "-shared", *flags, cpp_part, folder / "engine.o", *archives, "-o", folder / LIBRARY])
 
     name = f"rtl_{parameters.name}{'_waves' if waves else ''}"
-    return _cached(name, [*sources, *_headers()], [*flags, *archives], make) / LIBRARY
+    inputs = [c_part, cpp_part, *headers(paths.engine)]
+    return cached(name, inputs, [*ENGINE_FLAGS, *flags, *archives], make) / LIBRARY
 
 
 def waves_possible() -> bool:
     """Verilator's FST writer needs two libraries."""
-    command = ["c++", "-E", "-include", "lz4.h", "-include", "zlib.h", "-x", "c++", "/dev/null"]
-    return subprocess.run(command, env=environment(), capture_output=True).returncode == 0
-
-
-def _c_library(name: str, sources: Sequence[Path], folders: Sequence[Path] = ()) -> Path:
-    """A library of C sources; `folders` are where else headers are."""
-    flags = [*C_LINK_FLAGS, *C_FLAGS, *(f"-I{folder}" for folder in folders)]
-    headers = [*_headers(), *(path for folder in folders for path in sorted(folder.glob("*.h")))]
-
-    def make(folder: Path) -> None:
-        _call(["cc", *flags, *map(str, sources), "-o", str(folder / LIBRARY)])
-
-    return _cached(name, [*sources, *headers], flags, make) / LIBRARY
+    try:
+        call([CXX, "-E", "-include", "lz4.h", "-include", "zlib.h", "-x", "c++", "/dev/null"])
+    except BuildError:
+        return False
+    return True
 
 
 def _verilated(parameters: Parameters, waves: bool) -> Path:
     """The folder with the C++ that Verilator made of the core, compiled."""
-    sources = sorted(paths.rtl.glob("*.v"))
+    modules = sorted(paths.rtl.glob("*.v"))
     flags = [*VERILATOR_FLAGS, *(f"-G{name}={value}" for name, value in parameters.verilog().items())]
     # Recording the waves takes most of the time, so that optimizing only makes the build slow.
     optimize = "OPT_FAST=-O1 OPT_SLOW=-O0" if waves else "OPT_FAST=-O3 OPT_SLOW=-O1 OPT_GLOBAL=-O2"
@@ -171,56 +141,7 @@ def _verilated(parameters: Parameters, waves: bool) -> Path:
             )
 
     def make(folder: Path) -> None:
-        _call(["verilator", *flags, f"-I{paths.rtl}", "--Mdir", str(folder), *map(str, sources)])
+        call(["verilator", *flags, f"-I{paths.rtl}", "--Mdir", folder, *modules])
 
     name = f"verilated_{parameters.name}{'_waves' if waves else ''}"
-    return _cached(name, [*sources, *sorted(paths.rtl.glob("*.vh"))], flags, make)
-
-
-def _headers() -> list[Path]:
-    folders = (paths.c_model, paths.driver, ENGINE)
-    return [header for folder in folders for header in sorted(folder.glob("*.h"))]
-
-
-def _call(command: Sequence[str]) -> None:
-    done = subprocess.run(command, env=environment(), capture_output=True, text=True)
-    if done.returncode:
-        said = (done.stderr or done.stdout).splitlines()
-        raise BuildError("\n".join([f"{command[0]} failed:", *said[:MESSAGE_LINES]]))
-
-
-def _cached(name: str, inputs: Iterable[Path], flags: Sequence[str], make: Callable[[Path], None]) -> Path:
-    """The folder that `make` fills from these inputs; made only if it is not there yet."""
-    digest = hashlib.sha256(repr(list(flags)).encode())
-    for path in inputs:
-        digest.update(f"\0{path.name}\0".encode() + path.read_bytes())
-    libraries = paths.build / "lib"
-    folder = libraries / f"{name}-{digest.hexdigest()[:12]}"
-    if folder.exists():
-        return folder
-    libraries.mkdir(parents=True, exist_ok=True)
-    with _lock(libraries / f"{name}.lock"):
-        if not folder.exists():
-            print(f"Building {name} ...", end="", flush=True)
-            began = time.monotonic()
-            with tempfile.TemporaryDirectory(prefix=f"{name}.", dir=libraries) as temporary:
-                work = Path(temporary) / "work"
-                work.mkdir()
-                try:
-                    make(work)
-                except BuildError:
-                    print(" failed", flush=True)
-                    raise
-                for stale in libraries.glob(f"{name}-*"):
-                    shutil.rmtree(stale)
-                work.rename(folder)
-            print(f" {time.monotonic() - began:.1f} s", flush=True)
-    return folder
-
-
-@contextmanager
-def _lock(path: Path) -> Iterator[None]:
-    """Only one process at a time makes the same folder."""
-    with path.open("w") as file:
-        fcntl.flock(file, fcntl.LOCK_EX)
-        yield
+    return cached(name, [*modules, *sorted(paths.rtl.glob("*.vh"))], flags, make)

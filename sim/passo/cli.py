@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 
-from passo.build import BuildError, Parameters
+from passo.build import Parameters
+from passo.compiler import BuildError
 from passo.console import progress
 from passo.engine import DifferenceError
 from passo.frame import FrameError
@@ -172,15 +173,15 @@ def _console(options: argparse.Namespace) -> int:
 
 
 def _firmware(options: argparse.Namespace) -> int:
-    from passo.stm32 import MachineError
+    from passo_stm32 import MachineError
 
     try:
         if options.table:
-            from passo.stm32.bench import bench
+            from passo_stm32.bench import bench
 
             bench()
             return OK
-        from passo.stm32.demo import demo
+        from passo_stm32.demo import demo
 
         return OK if demo(options.moves, options.engine) else FAILED
     except (MachineError, TimeoutError) as error:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The frame codec (c_model/passo_frame.h) for Python."""
+"""The frame codec (protocol/passo_frame.h) for Python."""
 
 from collections.abc import Sequence
 from typing import Any

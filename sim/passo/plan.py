@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The planner (c_model/passo_plan.h) for Python."""
+"""The planner (planner/passo_plan.h) for Python."""
 
 from dataclasses import dataclass
 from fractions import Fraction

@@ -29,7 +29,7 @@ def _literal(constant: Constant) -> str:
 
 
 def limits(schema: Schema) -> str:
-    """c_model/passo_limits.h"""
+    """protocol/passo_limits.h"""
     lines = ["#include <stdint.h>"]
     for constant in schema.constants.values():
         rows = [(f"#define PASSO_{constant.name.upper()}", _literal(constant))]
@@ -73,7 +73,7 @@ def _structs(form: Form) -> list[str]:
 
 
 def moves(schema: Schema) -> str:
-    """c_model/passo_moves.h"""
+    """planner/passo_moves.h"""
     names = list(schema.profiles)
     several = ", ".join(names[:-1]) + f" or {names[-1]}"
     lines = ['#include "passo_command.h"']

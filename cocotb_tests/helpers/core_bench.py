@@ -1,0 +1,367 @@
+# SPDX-License-Identifier: MIT
+"""The whole core behind its SPI pins, operated by the host's own code and compared with the C model.
+
+    @core_test
+    def motion_ends(core: Core) -> None:
+        channel = core.channel()
+        channel.lines(Line(100, (100, -50), last=True))
+        channel.ramps(Ramp(ONE // 16, 13), Ramp(0, 13, last=True))
+        channel.start()
+        core.wait_end()
+
+Such a test is plain code in a thread of its own, as passo.link and passo.host are not made of coroutines.
+Simulated time passes in `run`, `transfer` and what is built on them. Each of these ends with a comparison of
+all pins on all clocks up to now; the first difference is an error.
+"""
+
+import functools
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TextIO
+
+import cocotb
+import numpy as np
+from cocotb.handle import HierarchyObject
+from cocotb.triggers import Timer
+from passo import registers as r
+from passo.build import Parameters
+from passo.host import Channel
+from passo.link import Link
+from passo.plan import Plan
+
+from cocotb_tests.helpers.bench import PERIOD, Clocks, read
+from cocotb_tests.helpers.checker import PinTiming, PulseChecker
+from cocotb_tests.helpers.core_judge import COLUMNS, Judge
+from cocotb_tests.helpers.core_thread import Thread
+from cocotb_tests.helpers.ramps import ONE, V_MAX, Ramp
+from cocotb_tests.helpers.shapes import Shape
+from cocotb_tests.helpers.spi import SpiMaster
+
+__all__ = ["ONE", "V_MAX", "Core", "CoreChannel", "Line", "PinTiming", "Ramp", "Shape", "core_test"]
+
+LEAD = 4  # clocks from chip select to SCLK and back
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line command: `steps` per axis, with sign, in `substeps`."""
+
+    substeps: int
+    steps: tuple[int, ...]
+    last: bool = False
+    endless: bool = False
+
+    def words(self) -> list[int]:
+        """What is pushed."""
+        directions = sum((n < 0) << axis for axis, n in enumerate(self.steps))
+        return [self.last | self.endless << 1 | directions << 8, self.substeps, *map(abs, self.steps)]
+
+
+def planned(plan: Plan, axes: int) -> tuple[Line, list[Ramp]]:
+    """A plan as commands."""
+    signs = [-1 if plan.line.directions >> axis & 1 else 1 for axis in range(axes)]
+    steps = tuple(sign * plan.line.steps[axis] for axis, sign in enumerate(signs))
+    ramps = [
+        Ramp(c.velocity_end, c.ticks, Shape(c.shape), c.mirror, c.last, c.now, c.progress_step)
+        for c in plan.ramps
+    ]
+    return Line(plan.line.substeps, steps, plan.line.last), ramps
+
+
+@dataclass
+class Record:
+    """What is recorded of the pins, and how far it was compared: of all tests of one simulation, because a
+    reset does not touch everything."""
+
+    log: TextIO
+    unread: str = ""
+    judge: Judge | None = None
+
+
+@functools.cache
+def _record() -> Record:
+    return Record(Path("pins.log").open())
+
+
+class Core:
+    """The core as an engine for passo.link; `parameters` are what the core says of itself."""
+
+    def __init__(self, dut: HierarchyObject, thread: Thread, clocks: Clocks) -> None:
+        self.dut, self.clocks = dut, clocks
+        self.clock_hz = 1_280_000  # of plans: 10000 ticks per second
+        self.checker: PulseChecker | None = None
+        self.half_period, self.sclk_high = 2, 2  # clocks
+        self.corrupt: Callable[[list[int]], list[int]] = list  # what the wire makes of a frame
+        self._thread = thread
+        self._spi = SpiMaster(dut, 2 * PERIOD)
+        self.started = 0  # clock
+        self._rows: list[np.ndarray] = []
+        self._running: list[tuple[int, int]] = [(0, 0)]  # clocks and levels of all channels
+        self._record: Record
+        self._first = 0  # clock
+
+    @classmethod
+    async def begin(cls, dut: HierarchyObject, thread: Thread) -> "Core":
+        """Reset; return on the falling edge on which reset ends."""
+        dut.sync.value = 0
+        dut.rst.value = 1
+        clocks = Clocks(dut.clk)
+        clocks.start()
+        core = cls(dut, thread, clocks)
+        # chip select resets the SCLK domain by an edge
+        dut.spi_cs_n.value = 0
+        await clocks.wait(4)
+        dut.spi_cs_n.value = 1
+        await clocks.wait(4)
+        core._record = _record()
+        core._first = core.clock
+        dut.rst.value = 0
+        return core
+
+    def identify(self) -> None:
+        """Learn the parameters from the core and start to compare."""
+        self.link = Link(self)
+        (word,) = self.link.read(r.ADDRESS_PARAMETERS, 1)
+        self.parameters = Parameters(
+            channels=word & 0xF,
+            axes=word >> r.PARAMETERS_AXES_LSB & 0xF,
+            tick_log2=word >> r.PARAMETERS_TICK_LOG2_LSB & 0x1F,
+            line_queue_log2=word >> r.PARAMETERS_LINE_QUEUE_LOG2_LSB & 0x1F,
+            ramp_queue_log2=word >> r.PARAMETERS_RAMP_QUEUE_LOG2_LSB & 0x1F,
+        )
+        self.axes, self.tick = self.parameters.axes, 1 << self.parameters.tick_log2
+        if self._record.judge is None:
+            self._record.judge = Judge(self.parameters)
+        else:
+            self._forget_settings()
+        self.compare()
+
+    def _forget_settings(self) -> None:
+        """A reset keeps the settings of the pins: as they were before the first test."""
+        for number in range(self.parameters.channels):
+            channel = self.channel(number)
+            channel.times(PinTiming())
+            channel.pins(PinTiming(), enable=False)
+
+    def channel(self, number: int = 0) -> "CoreChannel":
+        """One channel."""
+        return CoreChannel(self, number)
+
+    # time
+
+    @property
+    def clock(self) -> int:
+        """Clocks since the first reset."""
+        return read(self.dut.clock)
+
+    def transfer(self, mosi: Sequence[int], gap: int = 16) -> list[int]:
+        """One chip select: send the words and return those received, then wait for `gap` clocks."""
+        bits = self.transfer_bits(mosi, 32 * len(mosi), gap)
+        return [int("".join(map(str, bits[n : n + 32])), 2) for n in range(0, len(bits), 32)]
+
+    def transfer_bits(
+        self, mosi: Sequence[int], count: int, gap: int = 16, cut_high: bool = False
+    ) -> list[int]:
+        """One chip select of `count` bits."""
+        words = self.corrupt(list(mosi))
+        received = self._thread.wait(self._master(gap).transfer_bits(words, count, cut_high=cut_high))
+        self.compare()
+        return received
+
+    def clock_others(self, bits: int) -> None:
+        """SCLK and MOSI move for another slave: chip select stays high."""
+        self._thread.wait(self._master(LEAD).clock_others(bits))
+        self.compare()
+
+    def _master(self, gap: int) -> SpiMaster:
+        spi = self._spi
+        spi.period, spi.high = 2 * self.half_period * PERIOD, self.sclk_high * PERIOD
+        spi.lead = spi.trail = LEAD * PERIOD
+        spi.gap = gap * PERIOD
+        return spi
+
+    def run(self, clocks: int) -> int:
+        """Let time pass."""
+        if clocks > 0:
+            self._thread.wait(_wait(clocks * PERIOD))
+        self.compare()
+        return clocks
+
+    def run_until(self, condition: Callable[[], object], limit: int, step: int = 64) -> None:
+        """Let time pass until something is so, which is looked at every `step` clocks."""
+        end = self.clock + limit
+        while not condition():
+            assert self.clock < end, f"clock {self.clock}: nothing after {limit} clocks"
+            self.run(step)
+
+    def sync(self, level: bool) -> None:
+        """Set the sync input."""
+
+        async def set_pin() -> None:
+            self.dut.sync.value = int(level)
+
+        self.started = self.clock
+        self._thread.wait(set_pin())
+
+    def reset(self, clocks: int) -> None:
+        """Reset the core, for so many clocks."""
+
+        async def pulse() -> None:
+            self.dut.rst.value = 1
+            await _wait(clocks * PERIOD)
+            self.dut.rst.value = 0
+
+        self._thread.wait(pulse())
+        self.compare()
+
+    def is_running(self, channel: int = 0) -> bool:
+        """Level of the pin `running`."""
+        return bool(read(self.dut.running) >> channel & 1)
+
+    def wait_end(self, channel: int = 0, limit: int = 100_000) -> None:
+        """Wait until the motion that was started last has ended, and its last pulse too."""
+        self.run_until(lambda: self.motions(channel, self.started), limit)
+        self.run(16)
+
+    # comparison
+
+    def compare(self) -> None:
+        """Compare all pins up to now with the model; an error tells the first difference."""
+        record = self._record
+        if record.judge is None:
+            return
+        *lines, record.unread = (record.unread + record.log.read()).split("\n")
+        for line in lines:
+            assert "x" not in line.lower(), f"X at a pin: {dict(zip(COLUMNS, line.split(), strict=True))}"
+        numbers = [int(number) for line in lines for number in line.split()]
+        rows = np.array(numbers, dtype=np.uint64).reshape(-1, len(COLUMNS))
+        record.judge.follow(rows, self.clock)
+        rows = rows[rows[:, 0] > self._first]
+        self._rows.append(rows)
+        for clock, level in rows[:, [0, COLUMNS.index("running")]].tolist():
+            if level != self._running[-1][1]:
+                self._running.append((clock - 1, level))
+
+    def watch(self, *timings: PinTiming) -> PulseChecker:
+        """From now on check these pin timings, one for each axis of the core, or one for all."""
+
+        async def make() -> PulseChecker:
+            return PulseChecker(self.clocks, self.dut.step, self.dut.dir, timings)
+
+        if len(timings) == 1:
+            timings *= self.axes * self.parameters.channels
+        self.finish_watch()
+        self.checker = self._thread.wait(make())
+        return self.checker
+
+    def finish_watch(self) -> None:
+        """No pulse was too short, none is left unfinished."""
+        if self.checker is not None:
+            self.checker.finish()
+            self.checker = None
+
+    def end(self) -> None:
+        """Compare the rest and tell what was compared."""
+        self.run(200)
+        self.finish_watch()
+        self.dut._log.info(f"{self.clock} clocks compared, {self._record.judge.summary()}")
+
+    # what was recorded; the clock of a change is the one after whose rising edge the pin shows it
+
+    def changes(self, signal: str, bit: int, since: int = 0) -> list[tuple[int, int]]:
+        """Clocks and levels of all changes of an output pin after a clock."""
+        rows = np.concatenate(self._rows)
+        levels = (rows[:, COLUMNS.index(signal)] >> np.uint64(bit) & np.uint64(1)).astype(np.int8)
+        clocks = rows[:, 0].astype(np.int64) - 1
+        at = np.flatnonzero(np.diff(levels)) + 1
+        return [(int(clocks[i]), int(levels[i])) for i in at if clocks[i] > since]
+
+    def motions(self, channel: int = 0, since: int = 0) -> list[tuple[int, int]]:
+        """Rise and fall of `running` of each motion that began after a clock and has ended."""
+        found, begin = [], None
+        for clock, levels in self._running:
+            level = levels >> channel & 1
+            if level and begin is None:
+                begin = clock
+            elif not level and begin is not None:
+                if begin > since:
+                    found.append((begin, clock))
+                begin = None
+        return found
+
+    def began(self) -> int:
+        """Clock on which `running` rose last."""
+        return max(clock for clock, level in self._running if level)
+
+    def steps(self, axis: int = 0, since: int = 0) -> list[int]:
+        """Clocks of the rising edges of STEP of bit `axis`."""
+        return [clock for clock, level in self.changes("step", axis, since) if level]
+
+
+class CoreChannel(Channel):
+    """A channel of the core, which takes lines and ramps as tests have them."""
+
+    def __init__(self, core: Core, number: int):
+        super().__init__(core.link, core.parameters, number)
+        self.core = core
+
+    def lines(self, *lines: Line) -> None:
+        """Push lines."""
+        self._push(r.CHANNEL_LINE, [line.words() for line in lines])
+
+    def ramps(self, *ramps: Ramp) -> None:
+        """Push ramps."""
+        self._push(r.CHANNEL_RAMP, [ramp.words() for ramp in ramps])
+
+    def pins(self, *timings: PinTiming, enable: bool = True) -> None:
+        """At rest, set the pins of all axes (one timing for each or one for all) and enable the drives."""
+        for axis, timing in enumerate(self._of_all_axes(timings)):
+            flags = timing.step_inverted << 1 | timing.direction_inverted << 2 | timing.both_edges << 4
+            address = self.axis_base(axis)
+            self.link.write(address, flags, timing.high << 16 | timing.low, timing.setup << 16 | timing.hold)
+            self.link.write(address + r.AXIS_ENABLE, int(enable))
+        self.core.run(8)
+        self.core.run_until(lambda: self.state().quiet, 300_000)
+
+    def times(self, *timings: PinTiming) -> None:
+        """Set the four times of the pins, at any time."""
+        for axis, timing in enumerate(self._of_all_axes(timings)):
+            words = timing.high << 16 | timing.low, timing.setup << 16 | timing.hold
+            self.link.write(self.axis_base(axis) + r.AXIS_STEP_TIMING, *words)
+        self.core.run(8)
+
+    def _of_all_axes(self, timings: Sequence[PinTiming]) -> Sequence[PinTiming]:
+        return timings if len(timings) > 1 else [*timings] * self.core.axes
+
+    def start(self) -> None:
+        """Let the channel start its motion."""
+        self.core.started = self.core.clock
+        super().start()
+
+    def rest(self) -> None:
+        """Take the permission to start motions away."""
+        self.link.write(r.ADDRESS_RUN, 0)
+
+
+async def _wait(time: int) -> None:
+    await Timer(time, "step")
+
+
+def core_test(body: Callable[[Core], None]) -> Any:
+    """Make a cocotb test of plain code."""
+
+    async def test(dut: HierarchyObject) -> None:
+        thread = Thread()
+        core = await Core.begin(dut, thread)
+
+        def all_of_it() -> None:
+            core.identify()
+            body(core)
+            core.end()
+
+        await thread.run(all_of_it)
+
+    for name in functools.WRAPPER_ASSIGNMENTS:
+        setattr(test, name, getattr(body, name))
+    return cocotb.test(test)

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: MIT
+"""Compares the recorded pins of the core with the C model on every clock; a difference is an error."""
+
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from cffi import FFI
+from passo.build import Parameters
+from passo.compiler import library, sources
+from passo.toolchain import paths
+
+SIGNALS = ("step", "dir", "enable", "running", "irq", "miso")
+COLUMNS = ("clock", "inputs", "pin_miso", *SIGNALS[:-1])
+FOLDERS = (paths.model, paths.protocol)
+
+DECLARATIONS = """
+uint64_t judge_size(void);
+bool judge_reset(void *judge, const uint8_t parameters[5]);
+bool judge_follow(void *judge, const void *rows, size_t count, uint64_t until);
+void judge_difference(const void *judge, uint64_t difference[4]);
+void judge_matched(const void *judge, uint64_t matched[6]);
+"""
+
+
+class DifferenceError(AssertionError):
+    """The pins are not what the model says."""
+
+
+class Judge:
+    """The C model, fed with the waveforms at the inputs of the core."""
+
+    def __init__(self, parameters: Parameters):
+        self.parameters = parameters
+        self._ffi, self._c = _load()
+        self._judge = self._ffi.new("uint64_t[]", self._c.judge_size() // 8 + 1)
+        names = ("channels", "axes", "tick_log2", "line_queue_log2", "ramp_queue_log2")
+        assert self._c.judge_reset(self._judge, [getattr(parameters, name) for name in names])
+
+    def follow(self, rows: np.ndarray, until: int) -> None:
+        """Go on to a clock; `rows` (COLUMNS) are those that were recorded since the last call."""
+        rows = np.ascontiguousarray(rows, np.uint64)
+        pointer = self._ffi.from_buffer(rows)
+        if not self._c.judge_follow(self._judge, pointer, len(rows), until):
+            raise DifferenceError(self._difference())
+
+    def _difference(self) -> str:
+        found = self._ffi.new("uint64_t[4]")
+        self._c.judge_difference(self._judge, found)
+        clock, signal, expected, actual = found
+        different = expected ^ actual
+        bit = (different & -different).bit_length() - 1
+        name = SIGNALS[signal]
+        place = ""
+        if name == "running":
+            place = f" of channel {bit}"
+        elif name in ("step", "dir", "enable"):
+            channel, axis = divmod(bit, self.parameters.axes)
+            place = f" of channel {channel}, axis {axis}"
+        return (
+            f"clock {clock}: {name}{place} (bit {bit}) differs: "
+            f"expected {expected >> bit & 1} (model), actual {actual >> bit & 1} (RTL)"
+        )
+
+    def summary(self) -> str:
+        """How much agreed."""
+        matched = self._ffi.new("uint64_t[6]")
+        self._c.judge_matched(self._judge, matched)
+        edges = ", ".join(f"{name} {n}" for name, n in zip(SIGNALS, matched, strict=True) if name != "miso")
+        return f"edges that agree: {edges}; bits of MISO that agree: {matched[5]}"
+
+
+@cache
+def _load() -> tuple[FFI, Any]:
+    """The model and the judge."""
+    ffi = FFI()
+    ffi.cdef(DECLARATIONS)
+    files = [Path(__file__).with_suffix(".c"), *sources(*FOLDERS)]
+    return ffi, ffi.dlopen(str(library("judge", FOLDERS, files, "-O2")))

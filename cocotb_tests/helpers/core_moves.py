@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: MIT
+"""A motion to try things with, and what has to be so after a stop."""
+
+from passo.registers import Cause, State
+
+from cocotb_tests.helpers.core_bench import ONE, Core, CoreChannel, Line, Ramp, Shape
+from cocotb_tests.helpers.core_expected import distance, totals
+
+SLOW = ONE // 32  # velocity
+
+
+def a_motion(core: Core, ticks: int = 5) -> tuple[list[Line], list[Ramp]]:
+    """Up, on and down again, over three lines."""
+    ramps = [
+        Ramp(ONE // 10, ticks, Shape.COSINE),
+        Ramp(ONE // 10, ticks),
+        Ramp(0, ticks, Shape.COSINE, last=True),
+    ]
+    total = distance(ramps, core.tick)
+    first, second = total // 3, total // 4
+    rest = total - first - second
+    return [
+        Line(first, (first, -7, first - 1)[: core.axes]),
+        Line(second, (-second // 3, -second, 0)[: core.axes]),
+        Line(rest, (5, rest // 2, -rest)[: core.axes], last=True),
+    ], ramps
+
+
+def pulse_groups(core: Core, since: int) -> list[tuple[int, ...]]:
+    """The rising edges of STEP in their order; those of the same clock are together."""
+    clocks: dict[int, list[int]] = {}
+    for axis in range(core.axes):
+        for clock in core.steps(axis, since):
+            clocks.setdefault(clock, []).append(axis)
+    return [tuple(clocks[clock]) for clock in sorted(clocks)]
+
+
+def check_stopped(core: Core, channel: CoreChannel, cause: Cause) -> None:
+    """Stopped for this cause, with the position of the pins and nothing in the queues."""
+    core.run(200)
+    state = channel.state()
+    assert (state.state, state.cause, state.stopping) == (State.STOPPED, cause, False)
+    assert core.dut.irq.value == 1
+    assert not core.is_running()
+    assert core.checker is not None and channel.positions() == core.checker.positions
+    assert channel.room() == (
+        1 << core.parameters.line_queue_log2,
+        1 << core.parameters.ramp_queue_log2,
+    )
+    pulses = len(pulse_groups(core, 0))
+    core.run(300)
+    assert len(pulse_groups(core, 0)) == pulses
+
+
+def clear_and_move(core: Core, channel: CoreChannel) -> None:
+    """After CLEAR the channel makes a motion as if nothing had been."""
+    channel.clear()
+    channel.rest()
+    before = channel.positions()
+    lines, ramps = a_motion(core, 2)
+    since = core.clock
+    channel.lines(*lines)
+    channel.ramps(*ramps)
+    channel.start()
+    core.wait_end()
+    core.run(100)
+    assert core.dut.irq.value == 0
+    ((begin, end),) = core.motions(0, since)
+    assert end - begin == 6 * core.tick
+    assert [a - b for a, b in zip(channel.positions(), before, strict=True)] == totals(lines)
+    assert channel.state().cause == Cause.NONE

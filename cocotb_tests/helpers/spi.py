@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: MIT
+"""SPI master for the pins of the core, and the CRC of its frames.
+
+spi = SpiMaster(dut, half_period=27_778)
+miso = await spi.transfer([0x10001000, 0x12345678, 0, 0, 0])
+"""
+
+from collections.abc import Iterable, Sequence
+
+from cocotb.handle import HierarchyObject
+from cocotb.triggers import Timer
+
+from cocotb_tests.helpers.bench import read
+
+POLYNOMIAL = 0x04C11DB7
+
+
+def crc_of_bytes(data: bytes, crc: int = 0xFFFFFFFF) -> int:
+    """CRC-32/MPEG-2 over bytes."""
+    for byte in data:
+        crc ^= byte << 24
+        for _ in range(8):
+            crc = (crc << 1 ^ POLYNOMIAL if crc >> 31 else crc << 1) & 0xFFFFFFFF
+    return crc
+
+
+def crc_of_words(words: Iterable[int]) -> int:
+    """CRC-32/MPEG-2 over 32-bit words."""
+    return crc_of_bytes(b"".join(word.to_bytes(4, "big") for word in words))
+
+
+class SpiMaster:
+    """SPI master, mode 0, MSB first, 32-bit words, one frame per chip select.
+
+    Drives `spi_sclk`, `spi_mosi` and `spi_cs_n` of a dut without regard to its clock, and samples `spi_miso`
+    just before each rising edge. All times are in ps. `high` makes SCLK asymmetric: it is the high time, and
+    what is left of two half periods is the low time. `lead` is from chip select to the first rising edge,
+    `trail` from the last falling edge to chip select, `gap` from one frame to the next.
+    """
+
+    def __init__(
+        self,
+        dut: HierarchyObject,
+        half_period: int,
+        *,
+        high: int | None = None,
+        lead: int | None = None,
+        trail: int | None = None,
+        gap: int | None = None,
+    ) -> None:
+        self.dut = dut
+        self.period = 2 * half_period
+        self.high = half_period if high is None else high
+        self.lead = 4 * half_period if lead is None else lead
+        self.trail = 2 * half_period if trail is None else trail
+        self.gap = 8 * half_period if gap is None else gap
+        dut.spi_sclk.value = 0
+        dut.spi_mosi.value = 0
+        dut.spi_cs_n.value = 1
+
+    async def transfer(self, words: Sequence[int]) -> list[int]:
+        """One frame; return the words received."""
+        bits = await self.transfer_bits(words, 32 * len(words))
+        return [int("".join(map(str, bits[n : n + 32])), 2) for n in range(0, len(bits), 32)]
+
+    async def transfer_bits(self, words: Sequence[int], count: int, *, cut_high: bool = False) -> list[int]:
+        """One frame that ends after `count` bits; return the bits received.
+
+        With `cut_high` chip select rises while SCLK is still high in the last bit.
+        """
+        dut = self.dut
+        low, high = Timer(self.period - self.high, "step"), Timer(self.high, "step")
+        received: list[int] = []
+        dut.spi_cs_n.value = 0
+        wait = Timer(self.lead, "step")
+        for n in range(count):
+            dut.spi_mosi.value = words[n // 32] >> (31 - n % 32) & 1
+            await wait
+            wait = low
+            received.append(read(dut.spi_miso))
+            dut.spi_sclk.value = 1
+            await high
+            if not (cut_high and n == count - 1):
+                dut.spi_sclk.value = 0
+        await Timer(self.trail, "step")
+        dut.spi_cs_n.value = 1
+        await high
+        dut.spi_sclk.value = 0
+        await Timer(self.gap, "step")
+        return received
+
+    async def clock_others(self, bits: int) -> None:
+        """SCLK and MOSI move for another slave: chip select stays high."""
+        half = Timer(self.period // 2, "step")
+        for n in range(bits):
+            self.dut.spi_mosi.value = n & 1
+            await half
+            self.dut.spi_sclk.value = 1
+            await half
+            self.dut.spi_sclk.value = 0
+        await Timer(self.gap, "step")

@@ -1,0 +1,306 @@
+/* SPDX-License-Identifier: MIT
+ * Link: words to frames to bus accesses, and the replies. See rtl/passo_link.v, rtl/passo_payload.v and
+ * rtl/passo_reply.v. The 32 shifts of a word are made at once, in the last of their clocks. The
+ * counters of refusals are in passo_registers.c.
+ */
+#include "passo_crc.h"
+#include "passo_model.h"
+
+enum {
+	COUNT_READ = 12,
+	COUNT_LOAD = 27,
+	COUNT_STROBE = 28,
+	COUNT_ANSWER = 30,
+	COUNT_LOADED = 31,
+	COUNT_TURN = 32,
+	COUNT_TURNED = 63,
+	COUNT_ACT = 65,
+	COUNT_REST = 67
+};
+
+static uint8_t operation_of(uint32_t header)
+{
+	return (uint8_t)(header >> 28);
+}
+static uint8_t sequence_of(uint32_t header)
+{
+	return (uint8_t)(header >> 20 & 0xFFu);
+}
+static uint8_t length_of(uint32_t header)
+{
+	return (uint8_t)(header >> 12 & 0xFFu);
+}
+static uint16_t address_of(uint32_t header)
+{
+	return (uint16_t)(header & 0xFFFu);
+}
+
+/* Sequence and verdict, and their complement. */
+static uint32_t acknowledge(uint8_t sequence, uint8_t verdict)
+{
+	const uint32_t half = (uint32_t)sequence << 8 | verdict;
+	return half << 16 | (~half & 0xFFFFu);
+}
+
+void passo_link_reset(struct passo_link *link)
+{
+	*link = (struct passo_link){.step = PASSO_LINK_IDLE, .count = COUNT_REST};
+}
+
+bool passo_link_quiet(const struct passo_link *link)
+{
+	const struct passo_bus *bus = &link->bus;
+	return link->count == COUNT_REST && !link->answer_due && !link->answer_came && !link->refused
+	    && !bus->frame && !bus->commit && !bus->check && !bus->write && !bus->read;
+}
+
+static unsigned place(const struct passo_link *link, bool in_payload, unsigned otherwise)
+{
+	return in_payload ? link->index & 63u : otherwise;
+}
+
+static void store(struct passo_link *link, const struct passo_link_wires *wires)
+{
+	const bool is_header = link->step == PASSO_LINK_HEADER || link->step == PASSO_LINK_REPLAY;
+	const unsigned otherwise = is_header ? PASSO_BUFFER_HEADER : PASSO_BUFFER_OTHER;
+
+	link->buffer[place(link, link->step == PASSO_LINK_PAYLOAD, otherwise)][wires->half_low ? 1 : 0] =
+	    wires->half;
+}
+
+static uint32_t loaded(const struct passo_link *link)
+{
+	const bool in_payload = link->step == PASSO_LINK_PAYLOAD || link->step == PASSO_LINK_REPLAY;
+	const unsigned otherwise = link->step == PASSO_LINK_CRC ? PASSO_BUFFER_OTHER : PASSO_BUFFER_HEADER;
+	const uint16_t *word = link->buffer[place(link, in_payload, otherwise)];
+
+	return (uint32_t)word[0] << 16 | word[1];
+}
+
+/* The word on the bus, the CRC and the reply have turned. */
+static void turned(struct passo_link *link)
+{
+	switch (link->step) {
+	case PASSO_LINK_HEADER:
+		link->crc = passo_crc(PASSO_CRC_START, &link->bus.data, 1);
+		break;
+	case PASSO_LINK_PAYLOAD:
+		link->crc = passo_crc(link->crc, &link->bus.data, 1);
+		break;
+	case PASSO_LINK_CRC:
+		link->crc_wrong = link->crc != link->bus.data;
+		break;
+	case PASSO_LINK_ACK:
+		link->reply_word = acknowledge(sequence_of(link->bus.data), link->verdict);
+		break;
+	case PASSO_LINK_READ:
+		link->crc = passo_crc(link->crc, &link->reply_word, 1);
+		break;
+	case PASSO_LINK_SUM:
+		link->reply_word = link->crc;
+		break;
+	case PASSO_LINK_IDLE:
+	case PASSO_LINK_REPLAY:
+	case PASSO_LINK_COUNT:
+		break;
+	}
+}
+
+static void begin_pass(struct passo_link *link)
+{
+	link->bus.address = address_of(link->bus.data);
+	link->index = 0;
+}
+
+static void take_header(struct passo_link *link)
+{
+	const uint32_t header = link->bus.data;
+	const uint8_t operation = operation_of(header);
+	const bool is_read = operation == PASSO_OPERATION_READ;
+	const bool is_known =
+	    is_read || operation == PASSO_OPERATION_WRITE || operation == PASSO_OPERATION_PUSH;
+	const bool fits = length_of(header) != 0u && length_of(header) <= PASSO_PAYLOAD_MAX;
+	const bool repeated = link->sequence_known && !is_read && sequence_of(header) == link->last_sequence;
+
+	link->is_read = is_read;
+	link->bus.push = operation == PASSO_OPERATION_PUSH;
+	link->length = length_of(header);
+	link->verdict = !is_known ? PASSO_VERDICT_BAD_OPERATION
+	              : !fits     ? PASSO_VERDICT_BAD_LENGTH
+	              : repeated  ? PASSO_VERDICT_DUPLICATE
+	                          : PASSO_VERDICT_OK;
+	link->step = is_read || link->length == 0u ? PASSO_LINK_CRC : PASSO_LINK_PAYLOAD;
+	link->bus.frame = true;
+	begin_pass(link);
+}
+
+static void give_verdict(struct passo_link *link, const struct passo_link_wires *wires)
+{
+	if (link->crc_wrong)
+		link->verdict = PASSO_VERDICT_BAD_CRC;
+	else if (link->verdict == PASSO_VERDICT_OK && wires->incomplete)
+		link->verdict = PASSO_VERDICT_BAD_LENGTH;
+	else if (link->verdict == PASSO_VERDICT_OK && wires->busy)
+		link->verdict = PASSO_VERDICT_BUSY;
+	link->index = 0;
+	if (link->is_read && link->verdict == PASSO_VERDICT_OK) {
+		link->count = COUNT_READ;
+		link->step = PASSO_LINK_READ;
+	} else {
+		link->count = COUNT_LOAD;
+		link->step = PASSO_LINK_ACK;
+	}
+}
+
+static void end_acknowledge(struct passo_link *link)
+{
+	link->refused = link->verdict != PASSO_VERDICT_OK && link->verdict != PASSO_VERDICT_DUPLICATE;
+	link->step = PASSO_LINK_IDLE;
+	if (link->verdict == PASSO_VERDICT_OK) {
+		link->last_sequence = sequence_of(link->bus.data);
+		link->sequence_known = true;
+		link->count = COUNT_LOAD;
+		link->step = PASSO_LINK_REPLAY;
+		link->bus.frame = true;
+	}
+	if (link->refused) {
+		link->count = COUNT_LOAD;
+		link->step = PASSO_LINK_COUNT;
+	}
+	begin_pass(link);
+}
+
+/* What the clock does in each step. */
+static void do_step(struct passo_link *link, const struct passo_link_wires *wires,
+    const struct passo_link *was, bool word_valid, bool frame_goes_on)
+{
+	const bool act = was->count == COUNT_ACT;
+
+	switch (was->step) {
+	case PASSO_LINK_HEADER:
+		if (word_valid)
+			link->count = COUNT_LOAD;
+		if (act)
+			take_header(link);
+		break;
+	case PASSO_LINK_PAYLOAD:
+		if (word_valid)
+			link->count = COUNT_LOAD;
+		link->bus.check = act;
+		if (act)
+			link->index++;
+		if (was->all_words)
+			link->step = PASSO_LINK_CRC;
+		break;
+	case PASSO_LINK_CRC:
+		if (word_valid)
+			link->count = COUNT_LOAD;
+		if (act)
+			give_verdict(link, wires);
+		break;
+	case PASSO_LINK_ACK:
+		if (act)
+			end_acknowledge(link);
+		break;
+	case PASSO_LINK_REPLAY:
+		/* a word is there when the next one begins to be loaded */
+		link->bus.write = was->count == COUNT_LOAD && was->index != 0u;
+		if (was->count == COUNT_LOADED - 1) {
+			link->index++;
+			link->count = COUNT_LOAD;
+		}
+		if (was->all_words) {
+			link->count = COUNT_REST;
+			link->step = frame_goes_on ? PASSO_LINK_HEADER : PASSO_LINK_IDLE;
+		}
+		break;
+	case PASSO_LINK_READ:
+		link->bus.read = was->count == COUNT_STROBE && !wires->spi.frame_end;
+		if (was->count == COUNT_ANSWER)
+			link->reply_word = wires->response.read_data;
+		if (was->count == COUNT_LOADED && was->index == 0u && was->answer != PASSO_VERDICT_OK) {
+			link->verdict = was->answer;
+			link->count = COUNT_LOAD;
+			link->step = PASSO_LINK_ACK;
+		}
+		if (act) {
+			link->index++;
+			link->bus.address = (was->bus.address + 1u) & 0xFFFu;
+		}
+		if (word_valid) {
+			link->count = was->all_words ? COUNT_TURN : COUNT_READ;
+			if (was->all_words)
+				link->step = PASSO_LINK_SUM;
+		}
+		break;
+	case PASSO_LINK_SUM:
+		if (act)
+			link->step = PASSO_LINK_IDLE;
+		break;
+	case PASSO_LINK_COUNT:
+		if (act)
+			link->step = frame_goes_on ? PASSO_LINK_HEADER : PASSO_LINK_IDLE;
+		break;
+	case PASSO_LINK_IDLE:
+		break;
+	}
+}
+
+void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wires)
+{
+	/* all but the buffer */
+	const struct passo_link was = {
+	    .step = link->step,
+	    .count = link->count,
+	    .length = link->length,
+	    .index = link->index,
+	    .all_words = link->all_words,
+	    .frame_waits = link->frame_waits,
+	    .answer_due = link->answer_due,
+	    .answer_came = link->answer_came,
+	    .answer = link->answer,
+	    .bus = link->bus,
+	};
+	const bool act = was.count == COUNT_ACT;
+	const bool word_valid = wires->spi.half_valid && wires->half_low;
+	const bool frame_goes_on =
+	    (was.frame_waits || wires->spi.frame_start) && !wires->spi.frame_end && !word_valid;
+
+	if (was.count == COUNT_LOADED - 1)
+		link->bus.data = loaded(link);
+	if (was.count == COUNT_TURNED)
+		turned(link);
+	if (wires->spi.half_valid)
+		store(link, wires);
+	if (was.count != COUNT_REST)
+		link->count = was.count + 1u;
+	link->bus.frame = link->bus.check = link->bus.write = link->bus.read = false;
+	link->all_words = was.index == was.length && !act;
+	link->answer_due = was.bus.check;
+	link->answer_came = was.answer_due;
+	link->answer = wires->response.claim ? wires->response.refusal : PASSO_VERDICT_UNKNOWN_ADDRESS;
+	link->refused = false;
+	link->bus.commit = (was.step == PASSO_LINK_CRC && was.count > COUNT_LOAD && was.count != COUNT_REST)
+	                || was.step == PASSO_LINK_ACK || was.step == PASSO_LINK_REPLAY;
+
+	if (was.answer_came && link->verdict == PASSO_VERDICT_OK)
+		link->verdict = was.answer;
+	if ((was.bus.check || was.bus.write) && !was.bus.push)
+		link->bus.address = (was.bus.address + 1u) & 0xFFFu;
+
+	do_step(link, wires, &was, word_valid, frame_goes_on);
+
+	if (wires->spi.frame_start)
+		link->reply_word = link->status;
+	link->status = wires->status;
+	const bool goes_through = was.step == PASSO_LINK_REPLAY || was.step == PASSO_LINK_COUNT;
+	link->frame_waits = goes_through && frame_goes_on;
+	if (!goes_through && !(was.step == PASSO_LINK_ACK && act)) {
+		if (wires->spi.frame_end)
+			link->step = PASSO_LINK_IDLE;
+		if (wires->spi.frame_start)
+			link->step = PASSO_LINK_HEADER;
+		if (wires->spi.frame_end || wires->spi.frame_start)
+			link->count = COUNT_REST;
+	}
+}

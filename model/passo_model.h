@@ -1,0 +1,435 @@
+/* SPDX-License-Identifier: MIT
+ * State of the model, one struct and one source file per RTL module, with the names of the RTL.
+ *
+ * All modules change on the same edge. So whoever owns several modules first gathers the wires between them
+ * from the state before the edge, then clocks each module with these wires, in any order.
+ */
+#ifndef PASSO_MODEL_H
+#define PASSO_MODEL_H
+
+#include "passo_command.h"
+#include "passo_registers.h"
+
+#define PASSO_PAYLOAD_MAX 60u
+#define PASSO_LINE_QUEUE_MAX 256u
+#define PASSO_RAMP_QUEUE_MAX 256u
+#define PASSO_TABLE_POINTS 256u
+#define PASSO_RATE_ONE 0x10000u /* UQ1.16 */
+
+struct passo_parameters {
+	uint8_t channels;        /* CHANNELS, 1 .. 8 */
+	uint8_t axes;            /* AXES, 1 .. 8 */
+	uint8_t tick_log2;       /* TICK_LOG2, 7 .. 16 */
+	uint8_t line_queue_log2; /* LINE_QUEUE_LOG2, 2 .. 8 */
+	uint8_t ramp_queue_log2; /* RAMP_QUEUE_LOG2, 2 .. 8 */
+	/* STEP_RESET, DIR_RESET, ENABLE_RESET: a bit per pin, channel * AXES + axis */
+	uint64_t step_reset, dir_reset, enable_reset;
+};
+
+/* ---- link side ---- */
+
+struct passo_spi {
+	uint8_t bit_count;
+	bool mosi;
+	bool first_word;
+	uint32_t shift; /* 31 bits */
+	bool mosi_late;
+	bool half_toggle;
+	bool half_low;
+	uint16_t half;
+	bool miso;
+	uint8_t select_sync;
+	uint8_t toggle_sync;
+};
+
+struct passo_spi_wires {
+	bool frame_start, frame_end, half_valid;
+};
+
+struct passo_spi_wires passo_spi_wires(const struct passo_spi *spi);
+void passo_spi_reset(struct passo_spi *spi);
+
+/* SCLK edges since the last clock, then the edge of clk. */
+void passo_spi_clock(
+    struct passo_spi *spi, bool sclk_was, bool sclk, bool mosi, bool cs_n, uint32_t reply_word);
+
+struct passo_bus {
+	bool frame, commit, check, write, read, push;
+	uint16_t address;
+	uint32_t data;
+};
+
+struct passo_response {
+	bool claim;
+	uint8_t refusal;
+	uint32_t read_data;
+	bool late;        /* the register shows its value in the clock of the answer, */
+	uint16_t address; /* and this is its address */
+};
+
+enum passo_link_step {
+	PASSO_LINK_IDLE,
+	PASSO_LINK_HEADER,
+	PASSO_LINK_PAYLOAD,
+	PASSO_LINK_CRC,
+	PASSO_LINK_ACK,
+	PASSO_LINK_REPLAY,
+	PASSO_LINK_READ,
+	PASSO_LINK_SUM,
+	PASSO_LINK_COUNT
+};
+
+/* Places of the payload buffer behind the payload. */
+#define PASSO_BUFFER_HEADER 64u
+#define PASSO_BUFFER_OTHER 65u
+#define PASSO_BUFFER_WORDS 66u
+
+struct passo_link {
+	enum passo_link_step step;
+	uint8_t count;
+	bool is_read;
+	uint8_t length;
+	uint8_t index;
+	bool all_words; /* index was length in the clock before */
+	bool frame_waits;
+	bool sequence_known;
+	uint8_t last_sequence;
+	uint8_t verdict;
+	bool answer_due;  /* comes in this clock */
+	bool answer_came; /* stands in `answer` */
+	uint8_t answer;   /* of the clock before */
+	bool crc_wrong;
+	uint32_t crc;
+	uint16_t buffer[PASSO_BUFFER_WORDS][2]; /* upper half first */
+	uint32_t status;                        /* of the clock before */
+	uint32_t reply_word;
+	bool refused;
+	struct passo_bus bus;
+};
+
+struct passo_link_wires {
+	struct passo_spi_wires spi;
+	bool half_low;
+	uint16_t half;
+	uint32_t status;
+	struct passo_response response;
+	bool incomplete;
+	bool busy;
+};
+
+void passo_link_reset(struct passo_link *link);
+void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wires);
+/* Nothing changes in the link until the next half word or chip select edge. */
+bool passo_link_quiet(const struct passo_link *link);
+
+struct passo_registers {
+	uint8_t run;
+	uint8_t wait_sync;
+	uint8_t status_channel;
+	uint8_t refusals[8]; /* BAD_CRC first */
+};
+
+/* ---- tables ---- */
+
+struct passo_tables {
+	uint16_t points[3][PASSO_TABLE_POINTS];
+	uint8_t slot; /* 2 * channel + second */
+	bool wanted;  /* the frame writes points */
+};
+
+/* ---- admission ---- */
+
+/* What the frame on the bus needs of a channel. */
+struct passo_admission {
+	bool idle_needed, quiet_needed, motion_needed;
+};
+
+/* What a word that is checked needs. */
+struct passo_needs {
+	bool idle, quiet, motion;
+};
+
+/* ---- channel ---- */
+
+struct passo_line_queue {
+	uint8_t index;
+	uint16_t write_line, next_line; /* one bit more than the address */
+	uint16_t write_end;             /* write_line when the frame will have been written */
+	uint16_t current_line;
+	bool has_place; /* a line is the current one */
+	uint16_t checked;
+	uint32_t checked_substeps;
+	uint16_t room;
+	bool next_valid;
+	struct passo_line lines[PASSO_LINE_QUEUE_MAX];
+	/* outputs of the block RAM */
+	bool last, endless;
+	uint32_t last_substep; /* M - 1 */
+	uint8_t directions;
+	uint32_t steps[PASSO_AXES_MAX];
+};
+
+struct passo_ramp_queue {
+	uint8_t index;
+	uint16_t write_ramp, write_end, read_ramp, now_ramp;
+	uint16_t checked;
+	bool velocity_is_max;
+	bool write_low;
+	bool is_now;
+	bool now_pending;
+	uint16_t room;
+	bool valid;
+	uint32_t words[PASSO_RAMP_QUEUE_MAX][5];
+};
+
+struct passo_timescale {
+	uint32_t rate, goal, slew; /* UQ1.16 */
+	uint8_t after;             /* clocks since the slew tick, until the rate has changed */
+	bool down;
+	bool stops; /* the slew tick found a stop */
+	bool still;
+	uint32_t rate_sum;
+	bool enable;
+};
+
+enum passo_ramp_step {
+	PASSO_RAMP_CHOOSE,
+	PASSO_RAMP_COPY,
+	PASSO_RAMP_FETCH,
+	PASSO_RAMP_TAKE,
+	PASSO_RAMP_WORK, /* look up, shape, scale */
+	PASSO_RAMP_STEP
+};
+
+struct passo_ramp_unit {
+	enum passo_ramp_step step;
+	uint32_t wait; /* clocks until the step is done */
+	bool take_now;
+	bool loaded, last, mirror;
+	enum passo_shape shape;
+	uint64_t v_start;
+	uint64_t v_end, progress_step; /* the RTL reads them from the queue */
+	uint32_t ticks;                /* still to be made */
+	uint64_t progress;             /* u, UQ0.49 */
+	uint32_t tick_count;
+	bool ready, unready, ends_next, dry;
+	uint64_t velocity_next;
+};
+
+struct passo_path {
+	uint32_t velocity_low, velocity_high, phase_low, phase_high; /* 24 bits each */
+	bool phase_low_carry;
+	bool refresh, take_q, advance_q;
+	bool substep;
+};
+
+struct passo_line_unit {
+	bool active, endless, ended, underrun;
+	uint32_t substep_number;
+	bool on_last;
+	uint8_t directions;
+	bool slot_add, slot_load, slot_step, slot_load_q;
+};
+
+struct passo_dda {
+	int64_t e_minus_m;
+	int64_t addend;
+};
+
+/* READY and HOLD: idle; PULSE: high or low. */
+enum passo_axis_state { PASSO_AXIS_READY, PASSO_AXIS_PULSE, PASSO_AXIS_HOLD, PASSO_AXIS_SETUP };
+
+struct passo_axis_settings {
+	uint16_t step_high, step_low, dir_setup, dir_hold; /* clocks */
+	bool enable, step_inverted, direction_inverted, enable_inverted, both_edges;
+};
+
+struct passo_axis {
+	struct passo_axis_settings settings;
+	enum passo_axis_state state;
+	uint16_t timer;
+	uint8_t waiting, waits; /* one bit for each place */
+	bool step, dir;
+	bool timing_changed; /* times were written in the clock before */
+	bool settle;         /* polarities and mode were */
+	bool unsettled;      /* since then DIR has had no set-up time */
+	bool quiet;          /* of the clock before */
+	bool step_made;
+	bool overrun;
+	uint32_t position;
+	uint8_t lost;
+	bool step_pin, dir_pin, enable_pin;
+};
+
+struct passo_positions {
+	uint8_t slot; /* clock of the round */
+	bool clear_waits, snapshot_waits;
+	uint32_t copies[PASSO_AXES_MAX];
+};
+
+struct passo_motion {
+	enum passo_state state;
+	enum passo_cause cause;
+	enum passo_cause soft_cause;
+	bool stopping;
+	uint16_t drained;
+	uint8_t count;
+	uint8_t settling; /* 3 bits */
+	bool settled;
+	bool startable;
+	bool begin_profile;
+	bool stop_due;
+	enum passo_cause cause_due;
+	bool rate_was_zero;
+	uint8_t aborted; /* one and two clocks ago */
+	bool running;
+};
+
+struct passo_channel_registers {
+	uint32_t rate_target, rate_slew, stop_slew; /* UQ1.16 */
+	uint32_t drain_velocity;                    /* UQ0.32 */
+	bool drain_velocity_written;                /* its lower 8 bits, in the clock before */
+	bool command_stop, command_abort, command_clear, command_zero;
+};
+
+struct passo_channel {
+	uint8_t axes;
+	uint8_t number;
+	struct passo_channel_registers registers;
+	struct passo_admission admission;
+	struct passo_line_queue line_queue;
+	struct passo_ramp_queue ramp_queue;
+	struct passo_motion motion;
+	struct passo_timescale timescale;
+	struct passo_ramp_unit ramp;
+	struct passo_path path;
+	struct passo_line_unit line;
+	struct passo_dda dda[PASSO_AXES_MAX];
+	struct passo_axis axis[PASSO_AXES_MAX];
+	struct passo_positions positions;
+	uint8_t occupied_before;  /* in the three clocks before */
+	bool at_rest;             /* no motion, and no step on its way to the axes */
+	bool writes_axis;         /* the bus strobe came a clock ago */
+	uint8_t written_register; /* within the blocks of the axes */
+};
+
+/* What the core gives to a channel. */
+struct passo_channel_inputs {
+	const struct passo_parameters *parameters;
+	const struct passo_tables *tables;
+	const struct passo_bus *bus;
+	bool run, wait_sync, sync_edge, slew_tick, snapshot;
+	bool tables_wanted;
+};
+
+/* The wires of a channel, from the state before the edge. */
+struct passo_channel_wires {
+	bool selected;       /* the bus address is in this channel */
+	uint8_t bus_address; /* within the channel */
+	bool line_push, ramp_push;
+	bool occupied, moving, counting, drain;
+	bool ramp_valid;
+	bool hold, now_coming; /* of the admission */
+	bool startable, prepare, begins_next, begin_profile;
+	bool advance, tick, next, ramp_ended;
+	bool substep_taken, line_done, take, turn;
+	bool overrun;
+	bool finished;
+	bool stop_now, stopped;
+	bool drop;
+};
+
+void passo_admission_clock(
+    struct passo_admission *admission, const struct passo_bus *bus, const struct passo_needs *needs);
+
+void passo_line_queue_clock(struct passo_line_queue *queue, const struct passo_parameters *parameters,
+    const struct passo_bus *bus, const struct passo_channel_wires *wires);
+uint8_t passo_line_queue_refusal(const struct passo_line_queue *queue,
+    const struct passo_parameters *parameters, const struct passo_bus *bus, bool blocked);
+
+void passo_ramp_queue_clock(struct passo_ramp_queue *queue, const struct passo_parameters *parameters,
+    const struct passo_bus *bus, const struct passo_channel_wires *wires, bool take, bool take_now);
+uint8_t passo_ramp_queue_refusal(
+    const struct passo_ramp_queue *queue, const struct passo_bus *bus, bool blocked);
+/* The word that is checked is the control of a NOW ramp. */
+bool passo_ramp_queue_checks_now(const struct passo_ramp_queue *queue, uint32_t data);
+/* The oldest ramp. */
+struct passo_ramp passo_ramp_queue_front(
+    const struct passo_ramp_queue *queue, const struct passo_parameters *parameters);
+
+void passo_timescale_clock(struct passo_timescale *timescale, const struct passo_channel_registers *registers,
+    bool moving, bool stopping, bool slew_tick);
+
+/* a + floor((b - a) * f), f as UQ1.24 */
+uint64_t passo_interpolate(uint64_t a, uint64_t b, uint32_t f);
+/* s as UQ1.24 for progress u as UQ0.49. */
+uint32_t passo_shape(const struct passo_tables *tables, enum passo_shape shape, uint64_t progress);
+/* Makes the velocity of one tick of the present ramp: velocity_next. */
+void passo_ramp_make_velocity(struct passo_ramp_unit *ramp, const struct passo_tables *tables);
+void passo_ramp_clock(struct passo_ramp_unit *ramp, const struct passo_channel *channel,
+    const struct passo_channel_inputs *inputs, const struct passo_channel_wires *wires, bool *take,
+    bool *take_now);
+
+void passo_path_clock(struct passo_path *path, const struct passo_ramp_unit *ramp,
+    const struct passo_channel_wires *wires, uint32_t drain_velocity);
+
+int64_t passo_line_broadcast(const struct passo_line_unit *line, uint32_t last_substep);
+void passo_line_clock(struct passo_line_unit *line, const struct passo_line_queue *queue,
+    const struct passo_channel_wires *wires);
+
+bool passo_dda_step_request(const struct passo_dda *dda, const struct passo_line_unit *line);
+void passo_dda_clock(struct passo_dda *dda, const struct passo_line_unit *line,
+    const struct passo_line_queue *queue, unsigned axis);
+
+struct passo_axis_wires {
+	bool step_request, direction;
+	bool drop, zero, clear, timing_written, pins_written;
+	bool both_edges_next; /* with pins_written: the mode that is written */
+};
+
+/* At configuration: the levels of the three pins. */
+void passo_axis_reset(struct passo_axis *axis, bool step, bool dir, bool enable);
+/* A reset in the clock that has just been made, before which the axis was as `before`. */
+void passo_axis_restart(struct passo_axis *axis, const struct passo_axis *before);
+void passo_axis_clock(struct passo_axis *axis, const struct passo_axis_wires *wires);
+/* Nothing but the timer moves for so many clocks; 0 if the next clock may change something. */
+uint32_t passo_axis_quiet(const struct passo_axis *axis, bool line_direction);
+void passo_axis_skip(struct passo_axis *axis, uint64_t clocks);
+
+void passo_positions_reset(struct passo_positions *positions);
+void passo_positions_clock(
+    struct passo_positions *positions, const struct passo_axis *axes, bool zero, bool snapshot);
+/* Some clocks without `zero` and `snapshot`, while no snapshot waits. */
+void passo_positions_skip(struct passo_positions *positions, uint64_t clocks);
+
+void passo_motion_wires(const struct passo_channel *channel, const struct passo_channel_inputs *inputs,
+    struct passo_channel_wires *wires);
+void passo_motion_clock(struct passo_motion *motion, const struct passo_channel *channel,
+    const struct passo_channel_wires *wires);
+
+/* What the strobe on the bus needs of the channel. */
+struct passo_needs passo_channel_needs(const struct passo_channel *channel, const struct passo_bus *bus);
+/* Answer of a channel to the strobe on the bus. */
+struct passo_response passo_channel_respond(
+    const struct passo_channel *channel, const struct passo_channel_inputs *inputs);
+/* What stands in a read-only register of the channel itself. */
+uint32_t passo_channel_registers_value(const struct passo_channel *channel, uint8_t address);
+void passo_channel_registers_reset(struct passo_channel_registers *registers);
+void passo_channel_registers_clock(
+    struct passo_channel_registers *registers, const struct passo_bus *bus, bool selected);
+void passo_axis_settings_write(struct passo_axis_settings *settings, uint8_t address, uint32_t data);
+
+void passo_channel_reset(
+    struct passo_channel *channel, const struct passo_parameters *parameters, uint8_t number);
+/* A reset in the clock that has just been made, before which the channel was as `before`. */
+void passo_channel_restart(struct passo_channel *channel, const struct passo_channel *before,
+    const struct passo_parameters *parameters);
+void passo_channel_clock(struct passo_channel *channel, const struct passo_channel_inputs *inputs);
+bool passo_channel_stopped(const struct passo_channel *channel);
+bool passo_channel_occupied(const struct passo_channel *channel);
+bool passo_channel_quiet(const struct passo_channel *channel);
+/* The state does not allow the frame on the bus. */
+bool passo_channel_busy(const struct passo_channel *channel);
+bool passo_channel_incomplete(const struct passo_channel *channel);
+
+#endif

@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: MIT
+"""Compilers: their flags, and what they make, kept as long as everything that went into it stays the same."""
+
+import fcntl
+import hashlib
+import re
+import shutil
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+from passo.toolchain import environment, paths
+
+CC = "cc"
+CXX = "c++"
+CORTEX_M3 = ("arm-none-eabi-gcc", "-mcpu=cortex-m3", "-mthumb", "-Os", "-std=c11")
+
+STRICT = ("-std=c11", "-Wall", "-Wextra", "-Wconversion", "-Werror")
+SHARED = ("-fPIC", "-shared", "-Wl,--no-undefined")
+# Every fault is fatal. The address sanitizer has to be in the program itself, so a library for Python has
+# only the other one.
+SANITIZED = ("-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+DEFINED = ("-O2", "-fsanitize=undefined", "-fno-sanitize-recover=all")
+
+LIBRARY = "library.so"
+MESSAGE_LINES = 30  # of a compiler's complaints
+
+
+class BuildError(RuntimeError):
+    """A compiler failed; the text is what it said."""
+
+
+def sources(*folders: Path) -> list[Path]:
+    """All C sources of folders."""
+    return [path for folder in folders for path in sorted(folder.glob("*.c"))]
+
+
+def headers(*folders: Path) -> list[Path]:
+    """All headers of folders."""
+    return [path for folder in folders for path in sorted(folder.glob("*.h"))]
+
+
+def includes(*folders: Path) -> list[str]:
+    """The flags with which a compiler finds the headers of folders."""
+    return [f"-I{folder}" for folder in folders]
+
+
+def call(command: Sequence[str | Path], text: str | None = None) -> str:
+    """Run a compiler, with a text as its input; return what it prints.
+
+    Raises:
+        BuildError: it failed.
+    """
+    words = [str(word) for word in command]
+    done = subprocess.run(words, env=environment(), input=text, capture_output=True, text=True)
+    if done.returncode:
+        said = (done.stderr or done.stdout).splitlines()
+        raise BuildError("\n".join([f"{words[0]} failed:", *said[:MESSAGE_LINES]]))
+    return done.stdout
+
+
+def compile_to(made: Path, *arguments: str | Path, compiler: Sequence[str] = (CC,)) -> Path:
+    """Compile to a file, which is only there when it is whole."""
+    made.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix=f"{made.stem}.", dir=made.parent) as folder:
+        part = Path(folder) / made.name
+        call([*compiler, *arguments, "-o", part])
+        part.rename(made)
+    return made
+
+
+def kept(
+    made: Path,
+    inputs: Iterable[Path],
+    flags: Sequence[str],
+    *rest: str | Path,
+    compiler: Sequence[str] = (CC,),
+) -> Path:
+    """The same, only once for the same inputs and flags: the file's name gets a hash of them.
+
+    The rest of the arguments says only where the inputs are.
+    """
+    made = made.with_name(f"{made.stem}-{_hash(inputs, [*compiler, *flags])}{made.suffix}")
+    return made if made.exists() else compile_to(made, *flags, *rest, compiler=compiler)
+
+
+def library(name: str, folders: Sequence[Path], files: Sequence[Path], *flags: str) -> Path:
+    """A shared library of C sources, with the headers of folders."""
+    flags = (*STRICT, *SHARED, *includes(*folders), *flags)
+
+    def make(folder: Path) -> None:
+        call([CC, *files, *flags, "-o", folder / LIBRARY])
+
+    return cached(name, [*files, *headers(*folders)], flags, make) / LIBRARY
+
+
+def cached(name: str, inputs: Iterable[Path], flags: Sequence[str], make: Callable[[Path], None]) -> Path:
+    """The folder build/lib/NAME-HASH that `make` fills from these inputs; made only if it is not there yet.
+
+    Of each name only the newest folder stays.
+    """
+    libraries = paths.build / "lib"
+    folder = libraries / f"{name}-{_hash(inputs, flags)}"
+    if folder.exists():
+        return folder
+    libraries.mkdir(parents=True, exist_ok=True)
+    with _lock(libraries / f"{name}.lock"):
+        if not folder.exists():
+            print(f"Building {name} ...", end="", flush=True)
+            began = time.monotonic()
+            with tempfile.TemporaryDirectory(prefix=f"{name}.", dir=libraries) as temporary:
+                work = Path(temporary) / "work"
+                work.mkdir()
+                try:
+                    make(work)
+                except BuildError:
+                    print(" failed", flush=True)
+                    raise
+                for stale in libraries.glob(f"{name}-*"):
+                    shutil.rmtree(stale)
+                work.rename(folder)
+            print(f" {time.monotonic() - began:.1f} s", flush=True)
+    return folder
+
+
+def declarations(files: Iterable[Path]) -> str:
+    """Headers after the preprocessor, for cffi. It knows the standard types, so nothing is included."""
+    text = "\n".join(re.sub(r"(?m)^#include.*$", "", path.read_text()) for path in files)
+    return call([CC, "-E", "-P", "-x", "c", "-"], text)
+
+
+def _hash(inputs: Iterable[Path], flags: Sequence[str]) -> str:
+    digest = hashlib.sha256(repr(list(flags)).encode())
+    for path in inputs:
+        digest.update(f"\0{path.name}\0".encode() + path.read_bytes())
+    return digest.hexdigest()[:12]
+
+
+@contextmanager
+def _lock(path: Path) -> Iterator[None]:
+    """Only one process at a time makes the same folder."""
+    with path.open("w") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        yield

@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: MIT
+"""The board: the firmware's own ELF on the machine, a core at its pins, a person at its terminal."""
+
+import fcntl
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from passo.compiler import BuildError
+from passo.engine import Engine
+from passo.toolchain import environment, paths
+from passo_stm32.machine import Machine
+from passo_stm32.wires import CorePins
+
+ELF = paths.build / "firmware" / "passo.elf"
+ANSWERS = ("ok", "error:")
+FAST_SCLK_HZ = 18_000_000
+CLOCKS_PER_SCLK = 4  # of the core's clock, at least
+FAST_BAUD = 1_000_000
+START = 0.3  # seconds until the console has greeted, even without a crystal
+LATENCY = 0.001  # seconds
+
+
+def make_firmware(*arguments: str) -> str:
+    """Run the firmware's makefile; return what it says, or raise BuildError."""
+    paths.build.mkdir(parents=True, exist_ok=True)
+    quiet = {k: v for k, v in environment().items() if k not in ("MAKEFLAGS", "MAKELEVEL")}
+    with open(paths.build / "firmware.lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        command = ["make", "-C", str(paths.firmware), *arguments]
+        done = subprocess.run(command, env=quiet, capture_output=True, text=True)
+    if done.returncode:
+        raise BuildError(done.stderr or done.stdout)
+    return done.stdout
+
+
+def firmware_elf() -> Path:
+    """Build the firmware if it is not up to date; return what would be flashed."""
+    make_firmware(f"OUT={ELF.parent}", str(ELF))
+    return ELF
+
+
+@dataclass(frozen=True)
+class Motion:
+    """The pulses of one motion: from the rise of `running` on, and a little after its fall."""
+
+    start: int  # clock
+    clocks: int  # that `running` was high
+    step: np.ndarray  # rows of clock since the start and levels of all STEP pins, one for each change
+    dir: np.ndarray  # levels of the DIR pins at each of these rows
+
+    def same_as(self, other: "Motion") -> str:
+        """What is different, in a sentence; empty if nothing is."""
+        if self.clocks != other.clocks:
+            return f"{self.clocks} clocks long instead of {other.clocks}"
+        common = min(len(self.step), len(other.step))
+        wrong = np.flatnonzero((self.step[:common] != other.step[:common]).any(axis=1))
+        at = int(wrong[0]) if len(wrong) else common
+        if at < max(len(self.step), len(other.step)):
+            return f"edge {at} of {len(self.step)} and {len(other.step)} differs"
+        rising = self.rising()
+        if not np.array_equal(self.dir[rising], other.dir[rising]):
+            return "DIR differs at a step"
+        return ""
+
+    def rising(self) -> np.ndarray:
+        """The rows on which a STEP pin rises."""
+        before = np.concatenate([[0], self.step[:-1, 1]]) if len(self.step) else np.empty(0, np.int64)
+        return np.flatnonzero(self.step[:, 1] & ~before)
+
+    def steps(self, axis: int) -> tuple[np.ndarray, np.ndarray]:
+        """Clocks and directions (1, -1) of the steps of an axis."""
+        level = self.step[:, 1] >> axis & 1
+        rows = np.flatnonzero(level & ~np.concatenate([[0], level[:-1]]) & 1)
+        return self.step[rows, 0], 1 - 2 * (self.dir[rows] >> axis & 1)
+
+
+def motions(events: np.ndarray) -> list[Motion]:
+    """All motions in the events of a core (passo.engine.EVENT) of one channel, if its last one has ended."""
+    running = events["running"] & 1
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], running]).astype(np.int8)))
+    starts, ends = edges[::2], edges[1::2]
+    found = []
+    for begin, end, stop in zip(starts, ends, [*starts[1:], len(events)], strict=False):
+        part = events[begin:stop]
+        levels = part["step"].astype(np.int64)
+        changed = np.flatnonzero(np.diff(np.concatenate([[0], levels])))
+        start = int(events["clock"][begin])
+        clocks = part["clock"][changed].astype(np.int64) - start
+        found.append(
+            Motion(
+                start=start,
+                clocks=int(events["clock"][end]) - start,
+                step=np.stack([clocks, levels[changed]], axis=1),
+                dir=part["dir"][changed].astype(np.int64),
+            )
+        )
+    return found
+
+
+class Board(Machine):
+    """The machine with the firmware, and who types at its console."""
+
+    def __init__(
+        self, core: CorePins | None, *, fast: bool = True, elf: Path | None = None, **options: object
+    ):
+        super().__init__(elf or firmware_elf(), core, **options)
+        self.expect("help lists the commands\n", START)
+        self.run(LATENCY)
+        if isinstance(core, Engine):
+            if core.clock_hz < CLOCKS_PER_SCLK * FAST_SCLK_HZ:
+                self.ask("config spi_slow=1")
+            self.must(f"config clock_hz={core.clock_hz}")
+        if fast:
+            self.set_baud(FAST_BAUD)
+
+    def ask(self, line: str, seconds: float = 1.0) -> str:
+        """Type a line; return its answer, the line that begins with ok or error:."""
+        since = len(self.output)
+        self.type(line + "\r")
+        self.run_until(lambda: self._answer(since), seconds)
+        return self._answer(since)
+
+    def _answer(self, since: int) -> str:
+        if not self.output.endswith("\n"):
+            return ""
+        lines = self.output[since:].splitlines()
+        return next((line for line in lines if line.startswith(ANSWERS)), "")
+
+    def must(self, line: str, seconds: float = 1.0) -> str:
+        """Type a line that has to succeed; return its answer."""
+        answer = self.ask(line, seconds)
+        if not answer.startswith("ok"):
+            raise AssertionError(f"{line!r} is answered with {answer!r}")
+        return answer
+
+    def set_baud(self, baud: int) -> None:
+        """Both ends change their baud rate; an empty line shows that they understand each other again."""
+        since = len(self.output)
+        self.type(f"config baud={baud}\r")
+        self.expect("ok", 1.0, since)
+        self.run(0.002)
+        self.baud = baud
+        self.must("")
+
+    def positions(self) -> list[int]:
+        """What the console says of the positions."""
+        answer = self.must("position")
+        return [int(number) for number in answer.partition("position=")[2].split(",")]
+
+    def wait_motion(self, seconds: float) -> None:
+        """Run until a motion of which `events` has not told yet has begun and ended, with its last pulse."""
+        end = self.seconds + seconds + LATENCY
+        while not self._motion_ended():
+            if self.seconds > end:
+                raise TimeoutError(f"no motion within {seconds} s")
+            self.run(LATENCY)
+        self.run(LATENCY)
+
+    def _motion_ended(self) -> bool:
+        self._drain()
+        events = self._events
+        return bool(events) and not events[-1]["running"][-1] and any(e["running"].any() for e in events)

@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: MIT
+"""Peripherals and their registers. What is not modelled is an error, never a guess."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from passo_stm32.machine import Machine
+
+TICKS_PER_SECOND = 576_000_000
+NEVER = 1 << 63  # ticks
+BLOCK_LOG2 = 8  # a peripheral owns whole blocks of 256 bytes
+WORD = 0xFFFFFFFF
+
+
+class MachineError(Exception):
+    """The firmware does what the machine cannot do, or what the microcontroller forbids."""
+
+
+@dataclass(frozen=True)
+class Register:
+    """A register: its value after reset, and which bits of it software may write."""
+
+    name: str
+    offset: int
+    writable: int = 0
+    reset: int = 0
+
+
+class Peripheral:
+    """Registers at an address. A subclass adds `read_NAME` and `write_NAME` where there is more to do."""
+
+    name: str
+    base: int
+    size = 0x400
+    registers: Sequence[Register] = ()
+    due = NEVER  # tick at which `advance` has something to do
+
+    def __init__(self, machine: "Machine"):
+        self.machine = machine
+        self._at = {register.offset: register for register in self.registers}
+        self._readers = {r.offset: getattr(self, f"read_{r.name.lower()}", None) for r in self.registers}
+        self._writers = {r.offset: getattr(self, f"write_{r.name.lower()}", None) for r in self.registers}
+        self.value: dict[str, int] = {}
+        self.reset()
+
+    def reset(self) -> None:
+        """As after a reset of the chip."""
+        self.value = {register.name: register.reset for register in self.registers}
+        self.due = NEVER
+
+    def advance(self, now: int) -> None:
+        """Do what is due."""
+
+    def clock_changed(self) -> None:
+        """The bus has another frequency now."""
+
+    def read(self, offset: int) -> int:
+        """Read the register at an offset."""
+        register = self._at.get(offset)
+        if register is None:
+            raise MachineError(f"read of an unmodelled register: {self.name} + 0x{offset:02X}")
+        reader = self._readers[offset]
+        return reader() if reader else self.value[register.name]
+
+    def write(self, offset: int, value: int) -> None:
+        """Write the register at an offset."""
+        register = self._at.get(offset)
+        if register is None:
+            raise MachineError(f"write to an unmodelled register: {self.name} + 0x{offset:02X} = 0x{value:X}")
+        fixed = ~register.writable & WORD
+        if (value ^ self.value[register.name]) & fixed & value:
+            bits = (value ^ self.value[register.name]) & fixed & value
+            raise MachineError(f"{self.name}.{register.name}: bits 0x{bits:X} are not modelled")
+        value = (value & register.writable) | (self.value[register.name] & fixed)
+        writer = self._writers[offset]
+        if writer:
+            writer(value)
+        else:
+            self.value[register.name] = value
+
+    def bit(self, register: str, number: int) -> int:
+        """A bit of a register."""
+        return self.value[register] >> number & 1
+
+    def set_bit(self, register: str, number: int, level: object) -> None:
+        """Change a bit of a register."""
+        mask = 1 << number
+        self.value[register] = self.value[register] | mask if level else self.value[register] & ~mask
+
+
+class Bus:
+    """Finds the peripheral of an address."""
+
+    def __init__(self) -> None:
+        self._blocks: dict[int, Peripheral] = {}
+
+    def add(self, peripheral: Peripheral) -> None:
+        """Map a peripheral."""
+        first = peripheral.base >> BLOCK_LOG2
+        for block in range(first, first + max(1, peripheral.size >> BLOCK_LOG2)):
+            self._blocks[block] = peripheral
+
+    def find(self, address: int) -> Peripheral:
+        """The peripheral at an address; MachineError if there is none."""
+        peripheral = self._blocks.get(address >> BLOCK_LOG2)
+        if peripheral is None:
+            raise MachineError(f"there is no model of what is at 0x{address:08X}")
+        return peripheral

@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: MIT
+"""The demonstration of the firmware: moves typed at its console, pulses out of the core."""
+
+import sys
+from pathlib import Path
+from textwrap import fill
+
+import numpy as np
+from passo.console import console, progress, stages, table
+from passo.report import write_json
+from passo.toolchain import paths
+from passo_stm32.board import Board
+from passo_stm32.play import Played, planned_clocks, play
+
+FOLDER = paths.build / "firmware_demo"
+CLOCK_HZ = 36_000_000  # of the core; SCLK is 9 MHz
+EXAMPLES = ("three_axes", "cosine", "triangle")  # together about a second of motion, half a minute here
+PICTURED = 3
+LINE_WIDTH = 90  # characters of what was typed
+SHOWN = 0.0006  # seconds of pulses
+
+
+def demo(files: list[Path] | None = None, engine: str = "rtl") -> bool:
+    """Run it; return whether every edge was where the C model and the planner on the PC put it."""
+    tell = stages()
+    paths_ = files or [paths.examples / f"{name}.toml" for name in EXAMPLES]
+    shown = table(
+        "Typed at the console of the firmware; compared edge for edge with the C model fed on the PC",
+        *("moves", "steps", "time", "edges", "frames", "awake", "took"),
+    )
+    results, good = {}, True
+    pictures: dict[str, tuple[list[Played], Board]] = {}
+    for path in paths_:
+        clocks = planned_clocks(path, CLOCK_HZ)
+        tell(f"{path.stem}: {clocks / CLOCK_HZ:.3f} s of motion, {clocks:,} clocks")
+        with progress(path.stem, clocks) as report:
+            played, board, took = play(path, CLOCK_HZ, engine, report)
+        for move in played:
+            if move.difference:
+                good = False
+                print(f"{path}: {move.line}: {move.difference}", file=sys.stderr)
+        awake = 1 - board.asleep_ticks / board.now
+        results[path.stem] = {
+            "ok": not any(move.difference for move in played),
+            "lines": [move.line for move in played],
+            "steps": [len(move.made.rising()) for move in played],
+            "edges": sum(len(move.made.step) for move in played),
+            "clocks": [move.made.clocks for move in played],
+            "frames": board.wires.frames,
+            "instructions": board.instructions,
+            "awake": awake,
+        }
+        wrong = sum(bool(move.difference) for move in played)
+        tell(
+            f"{path.stem}: {results[path.stem]['edges']:,} edges, "
+            + (f"{wrong} moves differ" if wrong else "all as expected")
+        )
+        steps = sum(len(move.made.steps(axis)[0]) for move in played for axis in range(8))
+        shown.add_row(
+            path.stem, f"{steps:,}", f"{sum(move.seconds for move in played):.3f} s",
+            f"{results[path.stem]['edges']:,}", f"{board.wires.frames:,}", f"{100 * awake:.1f} %",
+            f"{took:.0f} s",
+        )  # fmt: skip
+        pictures[path.stem] = (played, board)
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    write_json({"ok": good, "runs": results}, FOLDER / "summary.json")
+    draw(dict(list(pictures.items())[:PICTURED]), FOLDER / "firmware.png")
+    tell("picture drawn")
+    console.print(shown)
+    console.print("awake: the processor, of all the time from its reset on")
+    console.print(f"Picture and summary: {FOLDER.relative_to(paths.root)}/")
+    return good
+
+
+def draw(pictures: dict[str, tuple[list[Played], Board]], path: Path) -> None:
+    """For each file what was typed, the speeds at the pins, and the first pulses of its first move."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    from passo.plot import COLORS, STYLE
+
+    with plt.rc_context(STYLE):
+        figure, rows = plt.subplots(
+            len(pictures), 2, figsize=(12, 3.1 * len(pictures)), width_ratios=[1.3, 1], squeeze=False
+        )
+        figure.suptitle(
+            "Typed at the console of the STM32 firmware, made by the simulated core", x=0.01, ha="left",
+            fontsize=13, fontweight="bold",
+        )  # fmt: skip
+        for (speed, pulses), (name, (played, _)) in zip(rows, pictures.items(), strict=True):
+            origin = 0.0
+            for move in played:
+                for axis in range(len(move.plan.move.steps)):
+                    clocks, directions = move.made.steps(axis)
+                    same = directions[1:] == directions[:-1]
+                    times = origin + (clocks[1:] + clocks[:-1])[same] / 2 / CLOCK_HZ
+                    values = (directions[1:] / np.maximum(np.diff(clocks), 1))[same] * CLOCK_HZ / 1e3
+                    speed.plot(times, values, color=COLORS[axis], linewidth=1.1)
+                origin += move.seconds
+            typed = "\n".join(fill(f"> {move.line}", LINE_WIDTH) for move in played)
+            speed.set_title(f"{name}\n" + typed, fontsize=7.5, family="DejaVu Sans Mono")
+            speed.set_xlabel("s, pauses between the moves left out")
+            speed.set_ylabel("kHz")
+            speed.margins(x=0.01)
+            _first_pulses(pulses, played[0])
+        figure.savefig(path, dpi=100)
+        plt.close(figure)
+
+
+def _first_pulses(ax: object, move: Played) -> None:
+    """STEP of each axis from its first step on."""
+    from passo.plot import COLORS
+
+    axes = len(move.plan.move.steps)
+    first = int(move.made.step[0, 0])
+    some = np.sort(np.concatenate([move.made.steps(axis)[0] for axis in range(axes)]))
+    end = max(first + SHOWN * CLOCK_HZ, int(some[min(len(some) - 1, 10 * axes)]))
+    inside = move.made.step[move.made.step[:, 0] <= end]
+    for axis in range(axes):
+        clocks = np.concatenate([[0], inside[:, 0], [end]]) / CLOCK_HZ * 1e3
+        levels = np.concatenate([[0], inside[:, 1] >> axis & 1])
+        levels = np.concatenate([levels, levels[-1:]])
+        ax.step(clocks, levels - 1.5 * axis, where="post", color=COLORS[axis], linewidth=1)
+    ax.set_yticks([0.5 - 1.5 * axis for axis in range(axes)], [f"STEP {axis}" for axis in range(axes)])
+    for axis, label in enumerate(ax.get_yticklabels()):
+        label.set_color(COLORS[axis])  # also in the speeds
+    ax.grid(visible=False, axis="y")
+    ax.set_title("The first pulses of the first move")
+    ax.set_xlabel("ms since the start of the motion")
+    ax.margins(x=0)

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: MIT
+"""Move files typed at the console of the firmware, and the same moves planned on the PC for the C model."""
+
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from passo.build import Parameters
+from passo.engine import EVENT, Engine, model_engine, rtl_engine
+from passo.move_file import read_moves
+from passo.moves import MoveFile
+from passo.plan import Plan, plan_move
+from passo.run import execute, parameters_for
+from passo_stm32.board import Board, Motion, motions
+from passo_stm32.lines import move_lines, pin_lines, read_toml
+
+
+@dataclass
+class Played:
+    """What came of one move."""
+
+    line: str
+    plan: Plan
+    made: Motion
+    expected: Motion
+    seconds: float  # of the core's clock: 1 / clock_hz times the clocks
+
+    @property
+    def difference(self) -> str:
+        """Empty if every edge is where it is expected."""
+        return self.made.same_as(self.expected)
+
+
+def with_clock(path: Path, clock_hz: int, folder: Path) -> Path:
+    """A copy of a move file with another clock, and of the tables beside it."""
+    copy = folder / path.name
+    lines = path.read_text(encoding="utf-8").splitlines()
+    lines = [f"clock_hz = {clock_hz}" if line.startswith("clock_hz") else line for line in lines]
+    copy.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    for table in path.parent.glob("*.csv"):
+        (folder / table.name).write_bytes(table.read_bytes())
+    return copy
+
+
+def on_the_model(file: MoveFile, number: int, plan: Plan, parameters: Parameters) -> Motion:
+    """The pulses of one move of a file when the PC's planner feeds the C model."""
+    one = replace(file, moves=(file.moves[number],))
+    with model_engine(parameters, file.clock_hz) as engine:
+        run = execute(one, [plan], engine)
+    if problems := run.problems():
+        raise AssertionError(problems[0])
+    events = np.zeros(len(run.pins), EVENT)
+    for name in ("clock", "step", "dir", "running"):
+        events[name] = run.pins[name]
+    (motion,) = motions(events)
+    return motion
+
+
+def type_move(board: Board, lines: list[str], seconds: float) -> Motion:
+    """Type the lines of one move; return its pulses."""
+    board.events()
+    for line in lines:
+        board.must(line)
+    board.wait_motion(seconds)
+    (motion,) = motions(board.events())
+    return motion
+
+
+def play(
+    path: Path,
+    clock_hz: int,
+    engine: str = "rtl",
+    progress: Callable[[int], None] = lambda clocks: None,
+) -> tuple[list[Played], Board, float]:
+    """All moves of a file, each typed when the one before has ended; the board, and how long it took."""
+    began = time.monotonic()
+    data = read_toml(path)
+    with tempfile.TemporaryDirectory() as folder:
+        file = read_moves(with_clock(path, clock_hz, Path(folder)))
+    parameters = parameters_for(file.axes)
+    core: Engine = rtl_engine(parameters, clock_hz) if engine == "rtl" else model_engine(parameters, clock_hz)
+    board = Board(core)
+    for line in pin_lines(data, file.axes):
+        board.must(line)
+    played, clocks = [], 0
+    for number, lines in enumerate(move_lines(data, path.parent)):
+        plan = plan_move(file.moves[number], clock_hz, parameters)
+        made = type_move(board, lines, plan.clocks / clock_hz)
+        expected = on_the_model(file, number, plan, parameters)
+        played.append(Played(lines[-1], plan, made, expected, plan.clocks / clock_hz))
+        clocks += plan.clocks
+        progress(clocks)
+    return played, board, time.monotonic() - began
+
+
+def planned_clocks(path: Path, clock_hz: int) -> int:
+    """Length of all moves of a file."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = read_moves(with_clock(path, clock_hz, Path(folder)))
+    return sum(plan_move(move, clock_hz, parameters_for(file.axes)).clocks for move in file.moves)

@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: MIT
+"""Two C models with the same pin waveforms: one goes clock by clock, one with passo_core_advance()."""
+
+import random
+from collections.abc import Iterator, Sequence
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from cffi import FFI
+from passo.build import Parameters
+from passo.compiler import declarations, library, sources
+from passo.toolchain import paths
+
+HERE = Path(__file__).parent
+HEADERS = [
+    *(paths.protocol / f"passo_{name}.h" for name in ("registers", "command")),
+    *(paths.model / f"passo_{name}.h" for name in ("model", "core")),
+    HERE / "core_player.h",
+]
+FOLDERS = (paths.model, paths.protocol)
+EVENTS = 1 << 16
+HALF_PERIOD = 2  # clocks that SCLK stays at each level
+
+
+@cache
+def load() -> tuple[FFI, Any]:
+    """All types of the model, and the player."""
+    ffi = FFI()
+    ffi.cdef(declarations(HEADERS))
+    files = [HERE / "core_player.c", *sources(*FOLDERS)]
+    player = library("player", (HERE, *FOLDERS), files, "-O2", "-fno-semantic-interposition")
+    return ffi, ffi.dlopen(str(player))
+
+
+class Player:
+    """One model."""
+
+    def __init__(self, parameters: Parameters, advance: bool):
+        ffi, c = load()
+        self.ffi, self.c = ffi, c
+        self.core = ffi.new("struct passo_core *")
+        wanted = (parameters.channels, parameters.axes, parameters.tick_log2)
+        queues = (parameters.line_queue_log2, parameters.ramp_queue_log2)
+        assert c.passo_core_reset(self.core, ffi.new("struct passo_parameters *", (*wanted, *queues)))
+        self.log = ffi.new("struct player_event[]", EVENTS)
+        self.player = ffi.new(
+            "struct player *",
+            {"core": self.core, "advance": advance, "events": self.log, "capacity": EVENTS},
+        )
+
+    def play(self, segments: Sequence[tuple[int, int, int, int, int]]) -> list[int]:
+        """Play (clocks, sclk, mosi, cs_n, sync); return MISO at the end of each."""
+        c_segments = self.ffi.new("struct player_segment[]", [list(segment) for segment in segments])
+        assert self.c.player_play(self.player, c_segments, len(segments)), (
+            "an output changed in a quiet clock"
+        )
+        return [segment.spi_miso for segment in c_segments]
+
+    def events(self) -> bytes:
+        """The pin events since the last call."""
+        count, self.player.count = self.player.count, 0
+        return bytes(self.ffi.buffer(self.log, count * self.ffi.sizeof("struct player_event")))
+
+    def state(self) -> bytes:
+        """The whole `struct passo_core`."""
+        return bytes(self.ffi.buffer(self.core))
+
+
+class PlayerPair:
+    """An engine, as passo.link wants one, that compares both models at random moments."""
+
+    def __init__(self, parameters: Parameters, rng: random.Random):
+        self.ffi, self.c = load()
+        self.parameters = parameters
+        self.rng = rng
+        self.each = Player(parameters, advance=False)
+        self.jump = Player(parameters, advance=True)
+        self.events = 0
+        self.compared = 0
+        self._sync = 0
+
+    @property
+    def clock(self) -> int:
+        """Clocks since reset."""
+        return self.each.player.clock
+
+    @property
+    def skipped(self) -> int:
+        """Clocks that were jumped over."""
+        return self.jump.player.skipped
+
+    def transfer(self, mosi: Sequence[int], gap: int = 16) -> list[int]:
+        """One chip select, SPI mode 0."""
+        segments = [(4, 0, 0, 0, self._sync)]
+        for word in mosi:
+            for bit in range(31, -1, -1):
+                level = word >> bit & 1
+                segments.append((HALF_PERIOD, 0, level, 0, self._sync))
+                segments.append((HALF_PERIOD, 1, level, 0, self._sync))
+        segments.append((4, 0, 0, 0, self._sync))
+        segments.append((gap, 0, 0, 1, self._sync))
+        miso = self._play(segments)[1:-2:2]
+        return [int("".join(map(str, miso[i : i + 32])), 2) for i in range(0, len(miso), 32)]
+
+    def run(self, clocks: int) -> int:
+        """Nothing at the pins for so long."""
+        self._play([(clocks, 0, 0, 1, self._sync)])
+        return clocks
+
+    def sync(self, level: bool) -> None:
+        """Set the sync input."""
+        self._sync = int(level)
+
+    def _play(self, segments: list[tuple[int, int, int, int, int]]) -> list[int]:
+        """Play segments, cut at random places to compare there; return MISO at the end of each."""
+        miso: list[int] = []
+        batch: list[tuple[int, int, int, int, int]] = []
+        for segment in segments:
+            clocks, *pins = segment
+            if self.rng.random() < (0.02 if clocks < 100 else 0.9):
+                first = self.rng.randint(0, clocks)
+                self._both([*batch, (first, *pins)])
+                miso += [m for m in self._last_miso[: len(batch)]]
+                batch = [(clocks - first, *pins)]
+            else:
+                batch.append(segment)
+        self._both(batch)
+        return miso + self._last_miso
+
+    def _both(self, segments: list[tuple[int, int, int, int, int]]) -> None:
+        before = self.each.state()
+        clock = self.clock
+        self._last_miso = self.each.play(segments)
+        miso = self.jump.play(segments)
+        events = self.each.events()
+        self.events += len(events) // self.ffi.sizeof("struct player_event")
+        self.compared += 1
+        if self.jump.events() != events or miso != self._last_miso or self.each.state() != self.jump.state():
+            self._find_difference(before, clock, segments)
+
+    def _find_difference(
+        self, before: bytes, clock: int, segments: list[tuple[int, int, int, int, int]]
+    ) -> None:
+        """Play once more, each jump by itself, up to the first after which the models are not the same."""
+        for player in (self.each, self.jump):
+            self.ffi.buffer(player.core)[:] = before
+        for clocks, *pins in segments:
+            inputs = self.ffi.new("struct passo_inputs *", pins)
+            left = clocks
+            while left:
+                jump = self.c.passo_core_advance(self.jump.core, inputs, left)
+                if not jump:
+                    self.c.passo_core_clock(self.jump.core, inputs)
+                for _ in range(jump or 1):
+                    self.c.passo_core_clock(self.each.core, inputs)
+                clock, left = clock + (jump or 1), left - (jump or 1)
+                if self.each.state() != self.jump.state():
+                    kind = self.ffi.typeof("struct passo_core")
+                    fields = list(differing(kind, self.each.core[0], self.jump.core[0]))
+                    # what lies between members does not count
+                    assert not fields, f"clock {clock}, after a jump of {jump}: {'; '.join(fields[:12])}"
+
+
+def differing(kind: Any, a: Any, b: Any, name: str = "core") -> Iterator[str]:
+    """The members in which two structs differ."""
+    if kind.kind == "struct":
+        for member, field in kind.fields:
+            yield from differing(field.type, getattr(a, member), getattr(b, member), f"{name}.{member}")
+    elif kind.kind == "array":
+        for i in range(kind.length):
+            yield from differing(kind.item, a[i], b[i], f"{name}[{i}]")
+    elif a != b:
+        yield f"{name} is {a}, with advance {b}"

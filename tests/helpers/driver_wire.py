@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: MIT
+"""What the tests of the driver share: a core behind a wire that can fail in every way, and a pulse count."""
+
+import random
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from passo import frame
+from passo.build import Parameters
+from passo.driver import Driver, DriverError
+from passo.engine import Engine, model_engine
+from passo.native import ffi
+from passo.registers import Operation
+
+CLOCK_HZ = 72_000_000
+PARAMETERS = Parameters()
+Q32 = 1 << 32
+
+
+class Wire:
+    """The C model behind SPI; an engine for passo.link."""
+
+    def __init__(self, parameters: Parameters = PARAMETERS, clock_hz: int = CLOCK_HZ):
+        self.parameters, self.clock_hz = parameters, clock_hz
+        self.engine: Engine = model_engine(parameters, clock_hz)
+        self.before = 0  # clocks of cores before their reset
+        self.frames = 0
+        self.requests: list[list[int]] = []
+        self.stuck: int | None = None  # level of MISO; then nothing arrives at the core either
+        # What the wire makes of a request (None: nothing arrives) and of its reply.
+        self.there: Callable[[list[int]], list[int] | None] = list
+        self.back: Callable[[list[int]], list[int]] = list
+        self.before_frame: Callable[[int], None] = lambda _: None
+        self.pulses = np.zeros(8, np.int64)
+        self.net = np.zeros(8, np.int64)
+        self._step = np.uint64(0)
+        self.enable = 0  # levels of the EN pins
+
+    @property
+    def clock(self) -> int:
+        """Clocks since the beginning, resets of the core included."""
+        return self.before + self.engine.clock
+
+    def transfer(self, mosi: Sequence[int], gap: int = 64) -> list[int]:
+        """One chip select."""
+        self.frames += 1
+        self.requests.append(list(mosi))
+        self.before_frame(self.frames)
+        sent = None if self.stuck is not None else self.there(list(mosi))
+        if sent is None:
+            self.engine.run(128 * len(mosi) + gap)
+            return [0xFFFFFFFF * (self.stuck or 0)] * len(mosi)
+        miso = self.engine.transfer(sent, gap)
+        miso += [0xFFFFFFFF] * (len(mosi) - len(miso))
+        return self.back(miso)
+
+    def run(self, clocks: int) -> int:
+        """Let time pass."""
+        done = 0
+        while done < clocks:
+            done += self.engine.run(clocks - done)
+            self.collect()
+        return clocks
+
+    def reset_core(self) -> None:
+        """The core loses all it knew."""
+        self.collect()
+        self.before += self.engine.clock
+        self.engine.close()
+        self.engine = model_engine(self.parameters, self.clock_hz)
+        self._step = np.uint64(0)
+
+    def collect(self) -> None:
+        """Count the pulses at the pins so far: all active edges are rising ones."""
+        events = self.engine.drain()
+        if not len(events):
+            return
+        step = np.concatenate([[self._step], events["step"]])
+        rising = ~step[:-1] & step[1:]
+        for axis in range(8):
+            at = rising >> np.uint64(axis) & np.uint64(1) != 0
+            down = int((events["dir"][at] >> np.uint64(axis) & np.uint64(1)).sum())
+            self.pulses[axis] += at.sum()
+            self.net[axis] += at.sum() - 2 * down
+        self._step = step[-1]
+        self.enable = int(events["enable"][-1])
+
+    def counted(self) -> tuple[list[int], list[int]]:
+        """Pulses of each axis so far, and the sum of their directions."""
+        self.collect()
+        axes = self.parameters.axes
+        return self.pulses[:axes].tolist(), self.net[:axes].tolist()
+
+
+class Noise:
+    """Flips each bit with a probability, and now and then does worse."""
+
+    def __init__(self, rng: random.Random, rate: float, worse: float = 0):
+        self.rng, self.rate, self.worse = rng, rate, worse
+        self.flips = self.bursts = self.cuts = 0
+
+    def bits(self, words: list[int]) -> list[int]:
+        """Independent flips; the gaps between them are drawn."""
+        at = int(self.rng.expovariate(self.rate))
+        while at < 32 * len(words):
+            words[at // 32] ^= 1 << at % 32
+            self.flips += 1
+            at += 1 + int(self.rng.expovariate(self.rate))
+        return words
+
+    def there(self, words: list[int]) -> list[int]:
+        """Of a request: also bursts, and words that are missing."""
+        words = self.bits(words)
+        if self.rng.random() < self.worse:
+            if self.rng.random() < 0.5:
+                self.bursts += 1
+                first = self.rng.randrange(len(words))
+                for i in range(first, min(len(words), first + self.rng.randrange(1, 5))):
+                    words[i] = self.rng.getrandbits(32)
+            else:
+                self.cuts += 1
+                words = words[: self.rng.randrange(1, len(words))]
+        return words
+
+    def back(self, words: list[int]) -> list[int]:
+        """Of a reply: also bursts."""
+        words = self.bits(words)
+        if self.rng.random() < self.worse:
+            self.bursts += 1
+            first = self.rng.randrange(len(words))
+            for i in range(first, min(len(words), first + self.rng.randrange(1, 5))):
+                words[i] = self.rng.getrandbits(32)
+        return words
+
+    def on(self, wire: Wire) -> None:
+        """Disturb a wire."""
+        wire.there, wire.back = self.there, self.back
+
+
+def answer_reads(wire: Wire, change: Callable[[int, int], int]) -> None:
+    """Change what the registers read as: change(address, word); replies stay undamaged."""
+
+    def back(miso: list[int]) -> list[int]:
+        request = wire.requests[-1]
+        if request[0] >> 28 == Operation.READ:
+            data = range(frame.DATA, len(miso) - 1)
+            for i in data:
+                miso[i] = change((request[0] & 0xFFF) + i - frame.DATA, miso[i])
+            miso[-1] = frame.crc([request[0], *(miso[i] for i in data)])
+        return miso
+
+    wire.back = back
+
+
+def open_driver(wire: Wire, **options: Any) -> Driver:
+    """A driver with its axes configured: 1 us high, 1 us low."""
+    driver = Driver(wire, **options)
+    configure(driver)
+    return driver
+
+
+def configure(driver: Driver) -> None:
+    """Pins of all axes."""
+    for axis in range(driver.c.machine.axes):
+        config = {"step_high_ns": 1000, "step_low_ns": 1000, "dir_setup_ns": 500, "dir_hold_ns": 500}
+        driver.call("configure_axis", axis, ffi().new("struct passo_axis_config *", config))
+        driver.call("enable", axis, True)
+
+
+def struct(name: str, **fields: Any) -> Any:
+    """A new C struct."""
+    return ffi().new(f"struct passo_{name} *", fields)
+
+
+def by_speed(steps: Sequence[int], speed: int = 100_000, acceleration: int = 20_000_000) -> Any:
+    """A quick move."""
+    return struct(
+        "move_by_speed", steps=list(steps), speed=speed * Q32, acceleration=acceleration * Q32, profile=0
+    )
+
+
+def poll(driver: Driver) -> None:
+    """One poll; it is at most one frame."""
+    before = driver.engine.frames
+    driver.poll()
+    assert driver.engine.frames - before <= 1
+
+
+def finish(driver: Driver, seconds: float = 2) -> None:
+    """Poll until all has ended, as a main loop does."""
+    wire = driver.engine
+    end = wire.clock + int(seconds * wire.clock_hz)
+    while driver.is_moving:
+        assert wire.clock < end, "it does not end"
+        poll(driver)
+        if idle := driver.idle_microseconds:
+            wire.run(min(idle, 300) * (wire.clock_hz // 1_000_000))
+
+
+def error_of(driver: Driver, call: str, *arguments: Any) -> str:
+    """Name of the error of a call: OK, if none."""
+    try:
+        driver.call(call, *arguments)
+    except DriverError as error:
+        return error.name
+    return "OK"
+
+
+def path(count: int, clocks: int = 72) -> tuple[list, list]:
+    """Short lines: 2 steps of axis 0, one back of axis 1 each, at so many clocks a substep, under 8 ramps."""
+    lines = [
+        struct("line", substeps=20, steps=[2, 1], directions=2, last=n == count - 1)[0] for n in range(count)
+    ]
+    velocity = (1 << 48) // clocks
+    ticks = count * 20 * clocks // 128
+    cruise = [ticks // 7] * 6 + [ticks - 6 * (ticks // 7)]
+    ramps = [struct("ramp", velocity_end=velocity)[0]]
+    for n, length in enumerate(cruise):
+        step = min(2**48 - 1, round(2**48 / length))
+        ramps.append(struct("ramp", velocity_end=velocity, ticks=length, progress_step=step, last=n == 6)[0])
+    return lines, ramps
