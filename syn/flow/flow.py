@@ -12,11 +12,11 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
-from passo.fpga import block_ram
-from passo.fpga.complaints import complaints, packer_complaints
-from passo.fpga.devices import ECP5, GOWIN, ICE40, Device
-from passo.fpga.tools import FOLDER, check, failure, relative, run, versions
 from passo.toolchain import paths
+from passo_fpga import block_ram
+from passo_fpga.complaints import complaints, packer_complaints
+from passo_fpga.devices import ECP5, GOWIN, ICE40, Device
+from passo_fpga.tools import FOLDER, check, failure, relative, run, versions
 
 NETLIST, CELLS, PLACED, REPORT = "netlist.json", "cells.json", "placed", "report.json"
 SYNTHESIS_LOG, PLACE_LOG, PACK_LOG = "yosys.log", "nextpnr.log", "pack.log"

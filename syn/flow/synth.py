@@ -7,13 +7,13 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 
 from passo.console import console, stages, table
-from passo.fpga.boards import Board, BoardError, board, boards
-from passo.fpga.complaints import gowin_functions, held_pins
-from passo.fpga.devices import GOWIN, SPI_MHZ
-from passo.fpga.flow import Design, Placed, cells, moved_registers, pack, place, synthesis_complaints
-from passo.fpga.pll import PllError
-from passo.fpga.tools import ToolError, prepare, relative, workers
 from passo.toolchain import paths
+from passo_fpga.boards import Board, BoardError, board, boards
+from passo_fpga.complaints import gowin_functions, held_pins
+from passo_fpga.devices import GOWIN, SPI_MHZ
+from passo_fpga.flow import Design, Placed, cells, moved_registers, pack, place, synthesis_complaints
+from passo_fpga.pll import PllError
+from passo_fpga.tools import ToolError, prepare, relative, workers
 
 OUT = paths.build / "synth"
 SEEDS = range(1, 9)

@@ -5,10 +5,10 @@ import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
-from passo.fpga.devices import DEVICES, Device
-from passo.fpga.flow import Design
-from passo.fpga.pll import Pll, dividers
 from passo.toolchain import paths
+from passo_fpga.devices import DEVICES, Device
+from passo_fpga.flow import Design
+from passo_fpga.pll import Pll, dividers
 
 COMMON = paths.syn / "passo_board.v"
 

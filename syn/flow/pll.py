@@ -5,7 +5,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from passo.fpga.devices import ECP5, GOWIN, ICE40, Family
+from passo_fpga.devices import ECP5, GOWIN, ICE40, Family
 
 
 @dataclass(frozen=True)
