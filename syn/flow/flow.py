@@ -32,19 +32,27 @@ CROWDED = re.compile(r"ERROR: .*([Uu]nable to (find|place|legali)|[Ff]ailed to (
 
 @dataclass(frozen=True)
 class Design:
-    """What to make: a top with parameters on a device."""
+    """What to make: a top with parameters on a device, without the outputs in `left_out`."""
 
     name: str
     device: Device
     top: str = "passo_core"
     parameters: Mapping[str, int | str] = field(default_factory=dict)
     flatten: bool = True
+    left_out: tuple[str, ...] = ()
     extra_sources: tuple[Path, ...] = ()
 
     @property
     def sources(self) -> list[Path]:
         """Verilog files; all modules of the core are read, whatever they are called."""
         return [*sorted(paths.rtl.glob("*.v")), *self.extra_sources]
+
+    @property
+    def elaboration(self) -> list[str]:
+        """Commands of Yosys for all that was read."""
+        parameters = " ".join(f"-chparam {name} {value}" for name, value in self.parameters.items())
+        left_out = [f"delete -output {self.top}/{port}" for port in self.left_out]
+        return [f"hierarchy -top {self.top} {parameters}", *left_out]
 
 
 @dataclass(frozen=True)
@@ -75,10 +83,9 @@ def synthesize(design: Design) -> Path:
     """The folder with NETLIST, CELLS, logs, and MOVED for an ECP5."""
     device = design.device
     options = "" if design.flatten else " -noflatten"
-    parameters = " ".join(f"-chparam {name} {value}" for name, value in design.parameters.items())
     checks = ["check -assert", f"tee -q -o {CELLS} stat -json"]
     steps = [
-        f"hierarchy -top {design.top} {parameters}",
+        *design.elaboration,
         f"{device.synthesis}{options} -top {design.top} -json {NETLIST}",
         *checks,
     ]
