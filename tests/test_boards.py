@@ -277,6 +277,18 @@ def test_board_is_added_by_a_table(made_up: Path, capsys: pytest.CaptureFixture[
     assert ".PAD(1)" in pll_file(chosen)
 
 
+def test_tables_of_the_docs_are_good(made_up: Path) -> None:
+    """That of another board, and that of an FPGA that devices.py does not have."""
+    table, device = re.findall(r"^```toml\n(.*?)^```", (paths.docs / "fpga.md").read_text(), re.M | re.S)
+    made_up.write_text(table)
+    chosen = board("made_up")
+    assert chosen.axes == 2 and chosen.left_out == ("led",)
+    assert (chosen.reset["step"], chosen.reset["dir"], chosen.reset["enable"]) == ((0, 0), (0, 0), (1, 1))
+    made_up.write_text(re.sub("^(device|pll) = .*\n", "", table, flags=re.M) + device)
+    assert board("made_up").device.capacity == 83640
+    assert board("made_up").parameters()["STEPS_REGISTER"] == 1
+
+
 @needs_yosys
 @pytest.mark.parametrize("axes", [1, 2])
 def test_added_board_elaborates(made_up: Path, axes: int) -> None:
