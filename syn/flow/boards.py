@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from passo.toolchain import paths
 from passo_fpga.devices import DEVICES, GOWIN, Device, Family
 from passo_fpga.pll import Pll, PllError, dividers
-from passo_fpga.table import BoardError, Table
+from passo_fpga.table import BoardError, Table, TableError
 
 FOLDER = paths.syn
 TABLE = "board.toml"
@@ -72,7 +72,7 @@ class Board:
         try:
             return dividers(self.device.family, self.oscillator_mhz, self.clock_mhz)
         except PllError as error:
-            raise BoardError(self.name, "clock.mhz", str(error)) from None
+            raise TableError(self.name, "clock.mhz", str(error)) from None
 
     def parameters(self, axes: int | None = None, mhz: float | None = None) -> dict[str, int]:
         """The parameters of the top."""
@@ -93,7 +93,7 @@ class Board:
         chosen = self.axes if axes is None else axes
         if not 1 <= chosen <= self.axes:
             reason = f"{chosen} are wanted, and the table has pins for {self.axes}"
-            raise BoardError(self.name, "axes", reason)
+            raise TableError(self.name, "axes", reason)
         return chosen
 
 
@@ -103,14 +103,14 @@ def names() -> list[str]:
 
 
 def boards() -> dict[str, Board]:
-    """All boards by name; BoardError if a table is bad."""
+    """All boards by name; TableError if a table is bad."""
     return {name: board(name) for name in names()}
 
 
 def board(name: str) -> Board:
-    """One board; BoardError if its table is bad, or if it is none of those that are there."""
+    """One board; TableError if its table is bad, BoardError names those that are there."""
     if name not in names():
-        raise BoardError(name, "", f"there is no such board; choose one of {', '.join(names())}")
+        raise BoardError(f"there is no board '{name}'; choose one of {', '.join(names())}")
     table = Table.read(name, FOLDER / name / TABLE)
     title = table.text("title")
     device = _device(table, title)
@@ -186,5 +186,5 @@ def _refuse_pins_used_twice(name: str, pins: Mapping[str, Pin], axes: list[dict[
     users: dict[str, str] = {}
     for key, pin in keys.items():
         if pin.pin in users:
-            raise BoardError(name, key, f"pin {pin.pin} is that of {users[pin.pin]} already")
+            raise TableError(name, key, f"pin {pin.pin} is that of {users[pin.pin]} already")
         users[pin.pin] = key

@@ -13,8 +13,12 @@ _NEEDED: Any = object()  # the default of a key that must be there
 class BoardError(ValueError):
     """There is no such board, or its table is bad."""
 
+
+class TableError(BoardError):
+    """What is wrong with a table, or what it does not have."""
+
     def __init__(self, board: str, key: str, reason: str) -> None:
-        super().__init__(": ".join(filter(None, [f"board '{board}'", key, reason])))
+        super().__init__(f"board '{board}': {key}: {reason}")
 
 
 class Table:
@@ -32,11 +36,11 @@ class Table:
         try:
             return cls(board, "", tomllib.loads(path.read_text(encoding="utf-8")))
         except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-            raise BoardError(board, path.name, str(error)) from None
+            raise TableError(board, path.name, str(error)) from None
 
-    def error(self, key: str, reason: str) -> BoardError:
+    def error(self, key: str, reason: str) -> TableError:
         """What is wrong with the value of a key."""
-        return BoardError(self.board, self._path(key), reason)
+        return TableError(self.board, self._path(key), reason)
 
     def has(self, key: str) -> bool:
         """Whether it is there."""
