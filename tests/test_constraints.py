@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from passo.fpga.tools import FOLDER, check, relative
 from passo.toolchain import paths
+from passo_fpga.tools import FOLDER, check, relative
 
 SDC, XDC = (paths.syn / "constraints" / f"passo.{suffix}" for suffix in ("sdc", "xdc"))
 NETLIST = "netlist.json"

@@ -22,9 +22,9 @@ from pathlib import Path
 
 from cocotb_tools.check_results import get_results
 from cocotb_tools.runner import Verilator, get_runner
-from passo.fpga.netlist import CELLS, netlist_folder
 from passo.random_cases import SEED_VARIABLE, seed
 from passo.toolchain import environment, paths
+from passo_fpga.netlist import CELLS, netlist_folder
 
 SIMULATORS = ("verilator", "icarus")
 NETLIST_VARIABLE = "PASSO_NETLIST"

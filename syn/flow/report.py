@@ -18,13 +18,13 @@ from threading import Lock
 from typing import Any
 
 from passo.console import console, stages
-from passo.fpga import pages
-from passo.fpga.devices import DEVICES, SPI_MHZ, Device
-from passo.fpga.flow import Design, Placed, cells, place, synthesize
-from passo.fpga.split import split
-from passo.fpga.tools import ToolError, prepare, versions, workers
 from passo.report import write_json
 from passo.toolchain import paths
+from passo_fpga import pages
+from passo_fpga.devices import DEVICES, SPI_MHZ, Device
+from passo_fpga.flow import Design, Placed, cells, place, synthesize
+from passo_fpga.split import split
+from passo_fpga.tools import ToolError, prepare, versions, workers
 
 REPORT = paths.build / "report.json"
 SEEDS = range(1, 4)

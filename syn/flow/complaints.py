@@ -4,7 +4,6 @@
 import re
 from collections.abc import Collection, Mapping
 from importlib.resources import as_file, files
-from pathlib import Path
 
 # Yosys and nextpnr say "Warning", nextpnr also of clocks that are missed, which are judged by their figures.
 # As mere information it says that a file of pins names what is not there; the memory in the package
@@ -45,11 +44,11 @@ def gowin_functions() -> dict[str, list[str]]:
 
 
 def held_pins(
-    constraints: Path, functions: Mapping[str, Collection[str]], options: Collection[str]
+    pins: Mapping[str, str], functions: Mapping[str, Collection[str]], options: Collection[str]
 ) -> tuple[str, ...]:
-    """Ports in a Gowin's file of pins that its configuration does not set free with these packer options."""
+    """Ports at pins of a Gowin that its configuration does not set free with these packer options."""
     held = []
-    for port, pin in re.findall(r'^IO_LOC "(\S+)" (\w+);', constraints.read_text(), re.M):
+    for port, pin in pins.items():
         missing = {_RELEASES[function] for function in functions.get(pin, ()) if function in _RELEASES}
         held += [f"{port}: pin {pin} is not free without {option}" for option in sorted(missing - {*options})]
     return tuple(held)

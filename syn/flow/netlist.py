@@ -6,9 +6,9 @@ import json
 from collections.abc import Mapping
 from pathlib import Path
 
-from passo.fpga.devices import DEVICES
-from passo.fpga.flow import NETLIST, Design, kept, synthesize
-from passo.fpga.tools import check, prepare, relative, versions
+from passo_fpga.devices import DEVICES
+from passo_fpga.flow import NETLIST, Design, kept, synthesize
+from passo_fpga.tools import check, prepare, relative, versions
 
 MODULE = "passo_netlist"
 SHIM, CELLS = "passo_spi_top.v", "cells_sim.v"

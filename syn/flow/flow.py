@@ -12,11 +12,12 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
-from passo.fpga import block_ram
-from passo.fpga.complaints import complaints, packer_complaints
-from passo.fpga.devices import ECP5, GOWIN, ICE40, Device
-from passo.fpga.tools import FOLDER, check, failure, relative, run, versions
 from passo.toolchain import paths
+from passo_fpga import block_ram
+from passo_fpga.complaints import complaints, packer_complaints
+from passo_fpga.constraints import any_pins, clock_constraints
+from passo_fpga.devices import ECP5, GOWIN, ICE40, Device
+from passo_fpga.tools import FOLDER, check, failure, relative, run, versions
 
 NETLIST, CELLS, PLACED, REPORT = "netlist.json", "cells.json", "placed", "report.json"
 SYNTHESIS_LOG, PLACE_LOG, PACK_LOG = "yosys.log", "nextpnr.log", "pack.log"
@@ -32,19 +33,27 @@ CROWDED = re.compile(r"ERROR: .*([Uu]nable to (find|place|legali)|[Ff]ailed to (
 
 @dataclass(frozen=True)
 class Design:
-    """What to make: a top with parameters on a device."""
+    """What to make: a top with parameters on a device, without the outputs in `left_out`."""
 
     name: str
     device: Device
     top: str = "passo_spi_top"
     parameters: Mapping[str, int | str] = field(default_factory=dict)
     flatten: bool = True
+    left_out: tuple[str, ...] = ()
     extra_sources: tuple[Path, ...] = ()
 
     @property
     def sources(self) -> list[Path]:
         """Verilog files; all modules of the core are read, whatever they are called."""
         return [*sorted(paths.rtl.glob("*.v")), *self.extra_sources]
+
+    @property
+    def elaboration(self) -> list[str]:
+        """Commands of Yosys for all that was read."""
+        parameters = " ".join(f"-chparam {name} {value}" for name, value in self.parameters.items())
+        left_out = [f"delete -output {self.top}/{port}" for port in self.left_out]
+        return [f"hierarchy -top {self.top} {parameters}", *left_out]
 
 
 @dataclass(frozen=True)
@@ -75,10 +84,9 @@ def synthesize(design: Design) -> Path:
     """The folder with NETLIST, CELLS, logs, and MOVED for an ECP5."""
     device = design.device
     options = "" if design.flatten else " -noflatten"
-    parameters = " ".join(f"-chparam {name} {value}" for name, value in design.parameters.items())
     checks = ["check -assert", f"tee -q -o {CELLS} stat -json"]
     steps = [
-        f"hierarchy -top {design.top} {parameters}",
+        *design.elaboration,
         f"{device.synthesis}{options} -top {design.top} -json {NETLIST}",
         *checks,
     ]
@@ -134,7 +142,8 @@ def place(
     """Place and route for a clock of `mhz`; `clock_ports` come in by pins; without `pins` any pin will do."""
     device, family = design.device, design.device.family
     netlist = synthesize(design)
-    constraints = _constraints(design, netlist, clock_ports)
+    module = _module(design, netlist) if family is GOWIN else {}
+    constraints = clock_constraints(family, module, clock_ports)
     settings = [repr(device.part), constraints, f"seed {seed}", f"{mhz} MHz", versions(family.programs)]
 
     def make(folder: Path) -> None:
@@ -176,28 +185,8 @@ def pack(design: Design, placed: Placed, options: Sequence[str], path: Path) -> 
     return complained
 
 
-def _constraints(design: Design, netlist: Path, ports: Mapping[str, float]) -> str:
-    """Periods in ns of the clocks that come in by ports."""
-    clocks = {f"get_ports {name}": mhz for name, mhz in ports.items()}
-    if design.device.family is GOWIN:  # nextpnr forgets the clock of a port there
-        clocks = {
-            f"get_nets {{{_clock_net(_module(design, netlist), name)}}}": mhz for name, mhz in ports.items()
-        }
-    return "".join(f"create_clock -period {1000 / mhz:.4f} [{what}]\n" for what, mhz in clocks.items())
-
-
 def _module(design: Design, netlist: Path) -> dict[str, Any]:
     return json.loads((netlist / NETLIST).read_text())["modules"][design.top]
-
-
-def _clock_net(module: Mapping[str, Any], port: str) -> str:
-    """The net behind a Gowin's port, its input buffer and its clock buffer."""
-    (bit,) = module["ports"][port]["bits"]
-    for buffer in ("IBUF", "BUFG"):
-        pins = [cell["connections"] for cell in module["cells"].values() if cell["type"] == buffer]
-        bit = next((pin["O"][0] for pin in pins if pin["I"] == [bit]), bit)
-    names = [name for name, net in module["netnames"].items() if net["bits"] == [bit]]
-    return min(names, key=lambda name: (name.count("."), len(name)))
 
 
 def _pin_options(design: Design, netlist: Path, folder: Path, pins: Path | None) -> Sequence[str]:
@@ -208,24 +197,10 @@ def _pin_options(design: Design, netlist: Path, folder: Path, pins: Path | None)
     if family is GOWIN:
         if pins is None:
             pins = folder / "pins.cst"
-            pins.write_text(_any_pins(design, netlist))
+            pins.write_text(any_pins(design.device, _module(design, netlist)))
         return ["--vopt", f"cst={relative(pins, folder)}", "--write", PLACED]
     named = ["--lpf", relative(pins, folder)] if pins else ["--lpf-allow-unconstrained"]
     return [*named, "--textcfg", PLACED]
-
-
-def _any_pins(design: Design, netlist: Path) -> str:
-    """Some pin for each port, for the tool that does not choose one; SCLK on the clock network."""
-    module = _module(design, netlist)
-    first, second, *others = design.device.pins
-    fixed, rest = {"clk": first, "spi_sclk": second}, iter(others)
-    lines = []
-    for name, port in module["ports"].items():
-        width = len(port["bits"])
-        for bit in range(width):
-            pin = fixed.get(name) or next(rest)
-            lines.append(f'IO_LOC "{name}{f"[{bit}]" if width > 1 else ""}" {pin};\n')
-    return "".join([*lines, f'CLOCK_LOC "{_clock_net(module, "spi_sclk")}" BUFG;\n'])
 
 
 def _sites(log: str) -> dict[str, tuple[int, int]]:

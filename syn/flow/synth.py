@@ -5,15 +5,18 @@ import argparse
 import sys
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 from passo.console import console, stages, table
-from passo.fpga.boards import Board, BoardError, board, boards
-from passo.fpga.complaints import gowin_functions, held_pins
-from passo.fpga.devices import GOWIN, SPI_MHZ
-from passo.fpga.flow import Design, Placed, cells, moved_registers, pack, place, synthesis_complaints
-from passo.fpga.pll import PllError
-from passo.fpga.tools import ToolError, prepare, relative, workers
 from passo.toolchain import paths
+from passo_fpga.boards import OSCILLATOR, Board, board, boards
+from passo_fpga.complaints import gowin_functions, held_pins
+from passo_fpga.devices import GOWIN, SPI_MHZ
+from passo_fpga.flow import Design, Placed, cells, moved_registers, pack, place, synthesis_complaints
+from passo_fpga.generate import generate
+from passo_fpga.pll import PllError
+from passo_fpga.table import BoardError
+from passo_fpga.tools import ToolError, prepare, relative, workers
 
 OUT = paths.build / "synth"
 SEEDS = range(1, 9)
@@ -21,7 +24,7 @@ COMPLAINTS_SHOWN = 3  # of a seed
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Return 0 if the bitstream is there and all clocks are met, 1 if not, 2 if the board is unknown."""
+    """Return 0 if the bitstream is there and all clocks are met, 1 if not, 2 if there is no such board."""
     parser = argparse.ArgumentParser(prog="make synth", description="Make the bitstream of a board.")
     parser.add_argument("--board", default="", help="one of the folders in syn/")
     parser.add_argument("--axes", type=int, help="another number of axes")
@@ -51,7 +54,7 @@ def _list() -> None:
 def make(chosen: Board, axes: int | None = None, mhz: float | None = None) -> bool:
     """Make the bitstream of the first seed that will do, tell what came of it, return whether it is there."""
     tell = stages()
-    design, pll = chosen.design(axes, mhz), chosen.pll(mhz)
+    (design, pins), pll = generate(chosen, OUT / chosen.name, axes, mhz), chosen.pll(mhz)
     family = chosen.device.family
     OUT.mkdir(parents=True, exist_ok=True)
     bitstream = OUT / f"{chosen.name}.{family.suffix}"
@@ -62,8 +65,9 @@ def make(chosen: Board, axes: int | None = None, mhz: float | None = None) -> bo
     made = cells(design)
     problems = synthesis_complaints(design)
     if family is GOWIN:
-        problems += held_pins(chosen.pins, gowin_functions(), chosen.pack)
-    tried = {} if problems else _try_seeds(chosen, design, pll.mhz, tell)
+        at = {port: pin.pin for port, pin in chosen.ports(axes).items()}
+        problems += held_pins(at, gowin_functions(), chosen.pack)
+    tried = {} if problems else _try_seeds(chosen, design, pins, pll.mhz, tell)
     good = next((seed for seed, placed in tried.items() if not _problems(placed, pll.mhz)), None)
     if good is not None:
         tell("bitstream")
@@ -92,14 +96,16 @@ def make(chosen: Board, axes: int | None = None, mhz: float | None = None) -> bo
     return True
 
 
-def _try_seeds(chosen: Board, design: Design, mhz: float, tell: Callable[[str], None]) -> dict[int, Placed]:
+def _try_seeds(
+    chosen: Board, design: Design, pins: Path, mhz: float, tell: Callable[[str], None]
+) -> dict[int, Placed]:
     """Place and route, as many at a time as the machine can, until one of the seeds will do."""
-    ports = {"oscillator": chosen.oscillator_mhz, "spi_sclk": SPI_MHZ}
+    ports = {OSCILLATOR: chosen.oscillator_mhz, "spi_sclk": SPI_MHZ}
     tried: dict[int, Placed] = {}
 
     def run(seed: int) -> Placed:
         tell(f"{chosen.name}: place and route, seed {seed}")
-        placed = place(design, seed, mhz, ports, chosen.pins)
+        placed = place(design, seed, mhz, ports, pins)
         problems = _problems(placed, mhz)
         tell(f"{chosen.name}: seed {seed}: {'; '.join(problems) or f'{placed.main_clock[0]:.1f} MHz'}")
         return placed

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Dividers of the PLLs for a wanted clock, as the parameters that the tops of the boards take."""
+"""Dividers of the PLLs for a wanted clock, as the parameters of passo_pll in syn/families/."""
 
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from passo.fpga.devices import ECP5, GOWIN, ICE40, Family
+from passo_fpga.devices import ECP5, GOWIN, ICE40, Family
 
 
 @dataclass(frozen=True)
@@ -13,7 +13,7 @@ class Pll:
     """A clock in MHz and the parameters that make it."""
 
     mhz: float
-    parameters: dict[str, int]
+    parameters: dict[str, int | str]
 
 
 class PllError(ValueError):
@@ -28,7 +28,7 @@ def dividers(family: Family, oscillator_mhz: float, mhz: float) -> Pll:
     search, lowest, highest = _PLLS[family.place]
     middle = math.sqrt(lowest * highest)
 
-    def distance(possible: tuple[float, float, dict[str, int]]) -> tuple[float, float]:
+    def distance(possible: tuple[float, float, dict[str, int | str]]) -> tuple[float, float]:
         made, inside, _ = possible
         return round(abs(made - mhz), 6), abs(math.log(inside / middle))
 
@@ -40,7 +40,7 @@ def dividers(family: Family, oscillator_mhz: float, mhz: float) -> Pll:
 
 
 # clock, oscillator inside, parameters
-Possible = Iterator[tuple[float, float, dict[str, int]]]
+Possible = Iterator[tuple[float, float, dict[str, int | str]]]
 
 
 def _ice40(oscillator: float) -> Possible:
@@ -71,6 +71,7 @@ def _ecp5(oscillator: float) -> Possible:
 
 def _gowin(oscillator: float) -> Possible:
     """GW1NR-9C C6/I5: phase detector 3 to 400 MHz, output 3.125 to 600 MHz."""
+    fclkin = f"{oscillator:g}"
     for idiv in range(1, 65):
         reference = oscillator / idiv
         if reference < 3:
@@ -79,7 +80,8 @@ def _gowin(oscillator: float) -> Possible:
             made = reference * fbdiv
             for odiv in (2, 4, 8, 16, 32, 48, 64, 80, 96, 112, 128):
                 if 3.125 <= made <= 600:
-                    yield made, made * odiv, {"IDIV_SEL": idiv - 1, "FBDIV_SEL": fbdiv - 1, "ODIV_SEL": odiv}
+                    dividers = {"IDIV_SEL": idiv - 1, "FBDIV_SEL": fbdiv - 1, "ODIV_SEL": odiv}
+                    yield made, made * odiv, {"FCLKIN": fclkin, **dividers}
 
 
 # Per family: what is possible, and the limits of the oscillator inside.

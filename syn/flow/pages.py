@@ -5,11 +5,10 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
-
 from passo.console import console, table
-from passo.fpga.devices import DEVICES
 from passo.toolchain import paths
+from passo_fpga.devices import DEVICES
+from rich.console import Console
 
 PAGE = paths.docs / "report.md"
 TEMPLATE = Path(__file__).with_name("page.md")

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// The cells of a GW1NR-9C that a board needs.
+`resetall
+`timescale 1ns / 1ps
+`default_nettype none
+
+// clk = oscillator / (IDIV_SEL + 1) * (FBDIV_SEL + 1); inside the PLL runs ODIV_SEL times faster.
+module passo_pll #(
+  parameter FCLKIN    = "27",  // MHz of the oscillator
+  parameter IDIV_SEL  = 0,
+  parameter FBDIV_SEL = 0,
+  parameter ODIV_SEL  = 8
+) (
+  input  wire oscillator,
+  output wire clk,
+  output wire locked
+);
+
+  rPLL #(
+    .FCLKIN   (FCLKIN),
+    .DEVICE   ("GW1NR-9C"),
+    .IDIV_SEL (IDIV_SEL),
+    .FBDIV_SEL(FBDIV_SEL),
+    .ODIV_SEL (ODIV_SEL)
+  ) u_pll (
+    .CLKIN  (oscillator),
+    .CLKOUT (clk),
+    .LOCK   (locked),
+    .RESET  (1'b0),
+    .RESET_P(1'b0),
+    .CLKFB  (1'b0),
+    .IDSEL  (6'd0),
+    .FBDSEL (6'd0),
+    .ODSEL  (6'd0),
+    .PSDA   (4'd0),
+    .DUTYDA (4'd0),
+    .FDLY   (4'd0)
+  );
+
+endmodule
+
+// From the pin to the clock network.
+module passo_clock_pin (
+  input  wire pin,
+  output wire clk
+);
+
+  BUFG u_buffer (
+    .I(pin),
+    .O(clk)
+  );
+
+endmodule
+
+// Driven while enabled.
+module passo_tristate_pin (
+  input  wire data,
+  input  wire enable,
+  output wire pin
+);
+
+  TBUF u_pin (
+    .I  (data),
+    .OEN(~enable),
+    .O  (pin)
+  );
+
+endmodule
+`resetall

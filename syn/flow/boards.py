@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: MIT
+"""The boards: a folder in syn/ with a table board.toml for each. docs/fpga.md tells what a table has."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from passo.toolchain import paths
+from passo_fpga.devices import DEVICES, GOWIN, Device, Family
+from passo_fpga.pll import Pll, PllError, dividers
+from passo_fpga.table import BoardError, Table, TableError
+
+FOLDER = paths.syn
+TABLE = "board.toml"
+
+OSCILLATOR = "oscillator"
+NEEDED = ("spi_sclk", "spi_mosi", "spi_cs_n", "spi_miso", "sync")
+OPTIONAL = ("running", "irq", "led")  # outputs that a board may do without, or have inverted
+OF_AXIS = ("step", "dir", "enable")
+
+
+@dataclass(frozen=True)
+class Pin:
+    """Where a port is; `io_type` and `options` are words of the file of pins."""
+
+    pin: str
+    pull: str = ""  # up, down or none
+    inverted: bool = False
+    io_type: str = ""
+    options: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Board:
+    """What a table says; `reset` has the levels that differ from those of passo_board.v, by axis."""
+
+    name: str
+    title: str
+    device: Device
+    load: str  # the command that takes a bitstream to the board
+    pack: tuple[str, ...]  # options of the packer
+    oscillator_mhz: float
+    clock_mhz: float
+    pll_kind: str
+    pins: Mapping[str, Pin]  # but for those of the axes
+    axis_pins: tuple[Mapping[str, Pin], ...]
+    reset: Mapping[str, tuple[int, ...]]
+
+    @property
+    def axes(self) -> int:
+        """How many it has pins for."""
+        return len(self.axis_pins)
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """Ports that it has no pin for."""
+        return tuple(port for port in OPTIONAL if port not in self.pins)
+
+    def ports(self, axes: int | None = None) -> dict[str, Pin]:
+        """The pin of each port, bit by bit. A port of one bit has no index."""
+        chosen = self._axes(axes)
+        of_axes = {
+            f"{port}[{axis}]" if chosen > 1 else port: pin
+            for axis, pins in enumerate(self.axis_pins[:chosen])
+            for port, pin in pins.items()
+        }
+        return {**self.pins, **of_axes}
+
+    def pll(self, mhz: float | None = None) -> Pll:
+        """The PLL for its own clock or another one."""
+        if mhz is not None:
+            return dividers(self.device.family, self.oscillator_mhz, mhz)
+        try:
+            return dividers(self.device.family, self.oscillator_mhz, self.clock_mhz)
+        except PllError as error:
+            raise TableError(self.name, "clock.mhz", str(error)) from None
+
+    def parameters(self, axes: int | None = None, mhz: float | None = None) -> dict[str, int]:
+        """The parameters of the top."""
+        chosen = self._axes(axes)
+        inverted = [port for port in OPTIONAL if port in self.pins and self.pins[port].inverted]
+        return {
+            "AXES": chosen,
+            "CLOCK_HZ": round(self.pll(mhz).mhz * 1e6),
+            **self.device.core,
+            **{f"{port.upper()}_INVERTED": 1 for port in inverted},
+            **{
+                f"{port.upper()}_RESET": sum(level << axis for axis, level in enumerate(levels[:chosen]))
+                for port, levels in self.reset.items()
+            },
+        }
+
+    def _axes(self, axes: int | None) -> int:
+        chosen = self.axes if axes is None else axes
+        if not 1 <= chosen <= self.axes:
+            reason = f"{chosen} are wanted, and the table has pins for {self.axes}"
+            raise TableError(self.name, "axes", reason)
+        return chosen
+
+
+def names() -> list[str]:
+    """Of all boards."""
+    return [path.parent.name for path in sorted(FOLDER.glob(f"*/{TABLE}"))]
+
+
+def boards() -> dict[str, Board]:
+    """All boards by name; TableError if a table is bad."""
+    return {name: board(name) for name in names()}
+
+
+def board(name: str) -> Board:
+    """One board; TableError if its table is bad, BoardError names those that are there."""
+    if name not in names():
+        raise BoardError(f"there is no board '{name}'; choose one of {', '.join(names())}")
+    table = Table.read(name, FOLDER / name / TABLE)
+    title = table.text("title")
+    device = _device(table, title)
+    family = device.family
+    load, pack = table.text("load"), table.texts("pack", ())
+
+    clock = table.table("clock")
+    pll_kind = clock.choice("pll", family.plls) if family.plls else ""
+    oscillator_mhz, clock_mhz = clock.number("oscillator_mhz"), clock.number("mhz")
+    oscillator = _pin(clock, "pin", family)
+    clock.end()
+
+    there = table.table("pins")
+    pins = {OSCILLATOR: oscillator}
+    pins |= {port: _pin(there, port, family) for port in NEEDED}
+    pins |= {port: _pin(there, port, family, invertible=True) for port in OPTIONAL if there.has(port)}
+    there.end()
+
+    axis_pins = []
+    for axis in table.tables("axes"):
+        axis_pins.append({port: _pin(axis, port, family) for port in OF_AXIS})
+        axis.end()
+
+    reset = {}
+    levels = table.table("reset", {})
+    for port in OF_AXIS:
+        if levels.has(port):
+            reset[port] = levels.levels(port, len(axis_pins))
+    levels.end()
+    table.end()
+
+    _refuse_pins_used_twice(name, pins, axis_pins)
+    return Board(
+        name, title, device, load, pack, oscillator_mhz, clock_mhz, pll_kind, pins, tuple(axis_pins), reset
+    )
+
+
+def _device(table: Table, title: str) -> Device:
+    """One of devices.py, or a relative of one of them that the table describes."""
+    if not table.is_table("device"):
+        return DEVICES[table.choice("device", tuple(DEVICES))]
+    facts = table.table("device")
+    like = DEVICES[facts.choice("like", tuple(DEVICES))]
+    if like.family is GOWIN:
+        raise facts.error("like", "the flow knows one Gowin only")
+    capacity = facts.number("capacity")
+    part, synthesis = facts.texts("part"), facts.text("synthesis", like.synthesis)
+    facts.end()
+    return Device(
+        table.board, title, like.family, synthesis, part, int(capacity), like.target_mhz, core=like.core
+    )
+
+
+def _pin(table: Table, key: str, family: Family, invertible: bool = False) -> Pin:
+    """Its name or number, or a table with that and more."""
+    if not table.is_table(key):
+        return Pin(table.pin(key), io_type=family.io_type)
+    facts = table.table(key)
+    found = Pin(
+        facts.pin("pin"),
+        facts.choice("pull", family.pulls, ""),
+        facts.flag("inverted") if invertible else False,
+        facts.text("io_type", family.io_type) if family.io_type else "",
+        facts.texts("options", ()) if family.io_type else (),
+    )
+    facts.end()
+    return found
+
+
+def _refuse_pins_used_twice(name: str, pins: Mapping[str, Pin], axes: list[dict[str, Pin]]) -> None:
+    keys = {"clock.pin" if port == OSCILLATOR else f"pins.{port}": pin for port, pin in pins.items()}
+    keys |= {f"axes[{axis}].{port}": pin for axis, of in enumerate(axes) for port, pin in of.items()}
+    users: dict[str, str] = {}
+    for key, pin in keys.items():
+        if pin.pin in users:
+            raise TableError(name, key, f"pin {pin.pin} is that of {users[pin.pin]} already")
+        users[pin.pin] = key

