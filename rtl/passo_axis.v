@@ -104,11 +104,6 @@ module passo_axis #(
   wire turn = idle & turns & (~hold | dir_done);
   wire edge_begins = step_begins | falls;
 
-  // STEP without an edge: a reset leaves the pin alone. Kept, as it is known early.
-  (* keep *)
-  wire step_stays;
-  assign step_stays = rst ? step_pin ^ step_inverted : step & ~(pins_written & ~both_edges_next);
-
   // a time begins, or none runs
   wire restart = timing_written | settle;
   wire begins = idle  ? ~hold | restart | ready | (turns & dir_done) :
@@ -151,7 +146,7 @@ module passo_axis #(
     setup <= (setup & ~dir_done) | turn;
     idle  <= free & ~step_begins & ~turn & ~settle;
     hold  <= ((hold & ~dir_done) | low_over) & ~step_begins & ~turn;
-    step  <= step_stays ^ (edge_begins & ~rst);
+    step  <= (step & ~(pins_written & ~both_edges_next)) ^ edge_begins;
     dir   <= dir ^ (turn & wrong);
 
     settle    <= pins_written;
@@ -187,6 +182,7 @@ module passo_axis #(
       waits_up   <= 1'b0;
       waits_down <= 1'b0;
       lost       <= 4'd0;
+      step       <= step_pin ^ step_inverted;
       dir        <= dir_pin ^ direction_inverted;
       step_made  <= 1'b0;
     end
