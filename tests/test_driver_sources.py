@@ -28,7 +28,7 @@ def test_a_scenario_runs_clean_under_sanitizers(tmp_path: Path) -> None:
     assert (done.returncode, done.stderr, done.stdout) == (0, "", "ok\n")
 
 
-@pytest.mark.parametrize("name", ["hal.c", "libopencm3.c", "arduino.cpp"])
+@pytest.mark.parametrize("name", ["hal.c", "libopencm3.c", "arduino.cpp", "soft_cpu.c"])
 def test_an_example_compiles(name: str, tmp_path: Path) -> None:
     """Against headers that declare just what it uses."""
     standard = ["-std=c11", "-Wconversion"] if name.endswith(".c") else ["-x", "c++", "-std=c++17"]
@@ -39,7 +39,7 @@ def test_an_example_compiles(name: str, tmp_path: Path) -> None:
 def test_examples_stand_in_the_documentation() -> None:
     """docs/driver.md shows the code that is compiled here."""
     text = (paths.root / "docs" / "driver.md").read_text()
-    for name in ("hal.c", "libopencm3.c", "arduino.cpp"):
+    for name in ("hal.c", "libopencm3.c", "arduino.cpp", "soft_cpu.c"):
         code = (EXAMPLES / name).read_text()
         body = code[code.index("static bool transfer") :]
         assert body in text, f"{name} and docs/driver.md differ"

@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: MIT
+ * The driver's hardware on a CPU in the same FPGA, behind passo_wishbone or passo_axi_lite; its counter of
+ * cycles is the clock.
+ */
+#include "passo.h"
+
+#define DOOR_ADDRESS 0x40000000u /* where your bus has it */
+#define CLOCK_HZ 100000000u      /* of CPU and core */
+
+uint32_t cycle_count(void); /* of your CPU, as mcycle of a RISC-V */
+
+/* See rtl/passo_words.v. An access waits until the word before it has gone. */
+struct door {
+	volatile uint32_t select; /* 1: a frame is open */
+	volatile uint32_t word;   /* written: the next word; read: the word that is exchanged for it */
+};
+
+static bool transfer(void *context, const uint32_t *send, uint32_t *receive, size_t words)
+{
+	struct door *door = context;
+
+	door->select = 1;
+	for (size_t i = 0; i < words; i++) {
+		receive[i] = door->word;
+		door->word = send[i];
+	}
+	door->select = 0;
+	return true;
+}
+
+/* The counter of cycles wraps at 2^32; microseconds have to do so too. */
+static uint32_t microseconds(void *context)
+{
+	static uint32_t cycles, now;
+	const uint32_t passed = (cycle_count() - cycles) / (CLOCK_HZ / 1000000u);
+
+	(void)context;
+	cycles += passed * (CLOCK_HZ / 1000000u);
+	now += passed;
+	return now;
+}
+
+enum passo_error open_passo(struct passo *passo, struct passo_host *host)
+{
+	const struct passo_hardware hardware = {
+	    .transfer = transfer, .microseconds = microseconds, .context = (void *)(uintptr_t)DOOR_ADDRESS};
+	const struct passo_options options = {.clock_hz = CLOCK_HZ};
+
+	return passo_open(passo, host, &hardware, &options);
+}
