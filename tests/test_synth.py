@@ -314,7 +314,7 @@ def test_seed_that_never_ends_is_given_up(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, device: str, words: str, seconds: float, too_large: bool
 ) -> None:
     """It does not fit; another seed may be tried unless the design is too large."""
-    (tmp_path / flow.NETLIST).write_text('{"modules": {"passo_core": {}}}')
+    (tmp_path / flow.NETLIST).write_text('{"modules": {"passo_spi_top": {}}}')
     program = tmp_path / "nextpnr"
     program.write_text(f"#!/bin/sh\ncat {tmp_path}/words\nwhile :; do :; done\n")
     program.chmod(0o755)
