@@ -3,6 +3,15 @@
 
 (* anyconst *) reg [5:0] f_watch;  // one word of the payload, any one
 
+// --- What goes on in the rooms
+(* keep *) wire f_in_crc_wrong;
+(* keep *) wire f_in_answer_due;
+(* keep *) wire f_in_answer_came;
+(* keep *) wire f_in_objects;
+(* keep *) wire f_in_header_is_known;
+(* keep *) wire f_in_header_fits;
+(* keep *) wire f_in_header_repeats;
+
 // --- Assumptions: what passo_spi makes of the pins. Half words are at least 60 clocks apart, and as far from the
 // beginning of their frame. `frame_start` and `frame_end` take turns; after a reset either may be the first. The last half word of a frame may come with frame_end or a clock later, but before the next frame,
 // as chip select is high for two clocks. After a reset the halves of a word may come that has begun before.
@@ -71,7 +80,7 @@ wire        f_is_push = f_header[31:28] == OPERATION_PUSH;
 wire        f_is_write = f_header[31:28] == OPERATION_WRITE;
 wire        f_word_ends = half_valid & half_low;
 wire        f_judged = in_crc && count == COUNT_ACT - 7'd1;
-wire        f_good = f_words == {1'b0, f_length} + 9'd2 && !crc_wrong && !f_objection && !f_incomplete
+wire        f_good = f_words == {1'b0, f_length} + 9'd2 && !f_in_crc_wrong && !f_objection && !f_incomplete
                      && f_checks == {1'b0, f_length} && (f_is_push || f_is_write)
                      && f_length != 8'd0 && f_length <= 8'd60 && !(f_any && f_header[27:20] == f_last);
 always @(posedge clk) begin
@@ -218,7 +227,7 @@ always @(posedge clk)
     if (f_any) assert (last_sequence == f_last);
     assert (!frame_waits || in_replay || in_count || in_header);
     if (frame_waits) assert (f_selected && f_words == 9'd0 && f_checks == 9'd0 && !f_objection);
-    assert (answer_due == f_asked);
+    assert (f_in_answer_due == f_asked);
     // the clocks of each step
     assert (count <= COUNT_REST);
     if (act) assert (count == COUNT_ACT && !f_idle);
@@ -236,7 +245,7 @@ always @(posedge clk)
     end
     if (answered) assert (in_read && count == COUNT_LOADED && !begin_read);
     if (in_read && load_ends) assert (count == COUNT_LOADED - 7'd1 && !begin_read);
-    if ((f_receives || in_ack) && f_busy) assert (!bus_check && !answer_due && !answer_came);
+    if ((f_receives || in_ack) && f_busy) assert (!bus_check && !f_in_answer_due && !f_in_answer_came);
     // no word ends while one is fetched for the reply
     if (in_read && (begin_read || count <= COUNT_ACT)) assert (!f_upper || (!begin_read && f_gap < count - COUNT_READ));
     if (in_read || in_sum || in_ack) assert (f_selected);
@@ -253,9 +262,9 @@ always @(posedge clk)
       if (f_words == 9'd1) assert (f_memory_header == f_header);
       if (f_turns) begin
         assert (header_is_read == (f_header[31:28] == OPERATION_READ));
-        assert (header_is_known == (header_is_read || f_is_push || f_is_write));
-        assert (header_is_empty == (f_length == 8'd0) && header_fits == (f_length <= 8'd60));
-        assert (header_repeats == f_repeats);
+        assert (f_in_header_is_known == (header_is_read || f_is_push || f_is_write));
+        assert (header_is_empty == (f_length == 8'd0) && f_in_header_fits == (f_length <= 8'd60));
+        assert (f_in_header_repeats == f_repeats);
       end
       if (f_turns && count > COUNT_TURN) begin
         assert (header_ok == (header_verdict == VERDICT_OK));
@@ -272,7 +281,7 @@ always @(posedge clk)
     end
     if ((in_payload || in_crc || in_ack) && verdict_ok)
       assert (is_read ? f_length != 8'd0 && f_length <= 8'd60 :
-                        f_header_fits && (!f_objection || (answer_came && objects)));
+                        f_header_fits && (!f_objection || (f_in_answer_came && f_in_objects)));
     if (in_payload) begin
       assert (f_has_payload);
       assert (f_words == {1'b0, index} + 9'd1 + {8'd0, f_busy});
@@ -286,7 +295,7 @@ always @(posedge clk)
       assert (f_checks == {1'b0, length} && !bus_check);
     end
     if (in_ack && verdict_ok) begin
-      assert (f_words == {1'b0, f_length} + 9'd2 && !crc_wrong && !f_incomplete && f_checks == {1'b0, f_length} && !is_read);
+      assert (f_words == {1'b0, f_length} + 9'd2 && !f_in_crc_wrong && !f_incomplete && f_checks == {1'b0, f_length} && !is_read);
       if (begin_load) assert (!f_upper && f_gap == 7'd39);
       else assert (f_upper ? count > 7'd48 && f_gap < count - 7'd48 : f_gap == (count > 7'd48 ? 7'd60 : count + 7'd12));
     end

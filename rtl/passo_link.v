@@ -8,13 +8,12 @@
 //
 // Promise: a frame is executed whole or not at all, and only once. Each word goes into the payload buffer and
 // comes out of it onto the bus, where it turns through the CRC and is checked by its target (`bus_check`).
-// When the CRC is right, nobody objected, no state forbids it (`bus_busy`) and the sequence number is new, the buffer is
-// replayed to the bus (`bus_write`), one word every 4 clocks. `bus_commit` is high from 35 clocks before the verdict
-// until a clock after the last word: meanwhile the targets keep `bus_busy` as it is. A frame may begin meanwhile; it is ignored if its header is complete
-// before the replay has ended, which takes a master that leaves out trailing words.
+// When the CRC matches, no target objected, no state forbids the frame (`bus_busy`) and its sequence number is new, the
+// buffer is replayed to the bus (`bus_write`), one word every 4 clocks. `bus_commit` is high from 35 clocks before the
+// verdict until a clock after the last word; meanwhile the targets hold `bus_busy`. A frame may begin meanwhile. It is
+// ignored if its header is complete before the replay has ended, which takes a master that omits trailing words.
 //
-// Verdict: BAD_CRC has priority, then the first objection, then BAD_LENGTH of a push that is not whole, then BUSY; a
-// duplicate is not asked for objections.
+// Rooms: passo_header decodes the header, passo_verdict judges the frame, passo_link_schedule times each word.
 // Latency: payload word to bus_check 40 clocks, crc word to ack 77 clocks, to the first word of a read 91
 // clocks. Address and data stand on the bus at least a clock before their strobe (of a check: two clocks),
 // data a clock after it, the address of a read 16 clocks before. A target answers one clock after a strobe with
@@ -55,8 +54,7 @@ module passo_link (
 );
 
   `include "passo_registers.vh"
-
-  localparam [7:0] PAYLOAD_MAX = 8'd60;
+  `include "passo_link_schedule.vh"
 
   // Steps, one bit each. Between frames, or when the rest of the frame means nothing, none is set.
   //
@@ -71,28 +69,21 @@ module passo_link (
   reg in_sum;  // send the CRC of the reply
   reg in_count;  // count a refusal
 
-  // What is done with a word takes a run of clocks: load it, turn it, judge it, act on it, rest. A run begins with
-  // a clock of its own, begin_*.
-  localparam [6:0] COUNT_READ = 7'd13;
-  localparam [6:0] COUNT_LOAD = 7'd28;
-  localparam [6:0] COUNT_LOADED = 7'd31;
-  localparam [6:0] COUNT_TURN = 7'd32;  // .. 63
-  localparam [6:0] COUNT_ACT = 7'd65;
-  localparam [6:0] COUNT_REST = 7'd67;
-
-  reg  [6:0] count;
-  wire       rests = count[6] & count[1] & count[0];
-  reg        act;  // in the clock of COUNT_ACT
+  // Each word follows a fixed clock schedule.
+  wire [6:0] count;
+  wire       rests;
+  wire       turn;
+  wire       load;
+  wire       load_ends;
+  wire       act;
+  wire       halves_turn;
   reg        begin_read;
   reg        begin_load;
   reg        begin_turn;
   reg        begin_rest;
-  reg        load_ends;  // in the last clock but one before the word is there
-  reg        load;
-  reg        answered;  // in the clock of COUNT_LOADED
+  reg        answered;  // in the clock of COUNT_LOADED of a read
   reg        put;
   reg        replies;  // the reply turns along
-  wire       turn = count[5];
   wire       word_valid = half_valid & half_low;
 
   // What is kept of the header; all of it stands in the payload buffer, too.
@@ -104,42 +95,33 @@ module passo_link (
   reg frame_waits;  // a frame has begun during the replay
   wire frame_goes_on = (frame_waits || frame_start) && !frame_end && !word_valid;  // has its header to come
 
-  // What the header amounts to, found out before it turns
-  wire [3:0] operation = bus_data[31:28];
+  // Header decode
   reg        sequence_known;  // something was executed since reset
-  reg        header_is_read;
-  reg        header_is_known;
-  reg        header_is_empty;
-  reg        header_fits;
-  reg        header_repeats;
-  reg  [3:0] header_verdict;
-  reg        header_ok;
+  wire       header_is_read;
+  wire       header_is_empty;
+  wire       header_ok;
+  wire [3:0] header_verdict;
 
-  always @(posedge clk) begin
-    if (!turn) begin
-      header_is_read <= operation == OPERATION_READ;
-      header_is_known <= operation == OPERATION_READ || operation == OPERATION_WRITE || operation == OPERATION_PUSH;
-      header_is_empty <= bus_data[19:12] == 8'd0;
-      header_fits <= bus_data[19:12] <= PAYLOAD_MAX;
-      header_repeats <= sequence_known && bus_data[27:20] == last_sequence;
-    end
-    header_verdict <= !header_is_known                   ? VERDICT_BAD_OPERATION :
-                      header_is_empty || !header_fits    ? VERDICT_BAD_LENGTH :
-                      header_repeats && !header_is_read  ? VERDICT_DUPLICATE : VERDICT_OK;
-    header_ok <= header_is_known && !header_is_empty && header_fits && (!header_repeats || header_is_read);
-  end
+  passo_header u_header (
+    .clk           (clk),
+    .hold          (turn),
+    .data          (bus_data[31:12]),
+    .sequence_known(sequence_known),
+    .last_sequence (last_sequence),
+    .is_read       (header_is_read),
+    .is_empty      (header_is_empty),
+    .ok            (header_ok),
+    .verdict       (header_verdict)
+  );
 
-  // The answer to a strobe arrives one clock after the bus shows the strobe, and is judged in the next.
-  reg       answer_due;
-  reg       answer_came;
-  reg [3:0] answer;
-  reg       objects;  // it is not OK
+  wire [3:0] verdict;
+  wire       verdict_ok;
+  wire       executes;
+  wire       objection;
 
   // Behind the payload, the buffer has a place for the header, one for whatever is not kept, and two for the
   // counters of refusals; these read as 0 until one of the word has counted.
   wire       uses_counters = in_read | in_count;
-  reg  [3:0] verdict;
-  reg        verdict_ok;
   reg        verdict_high;  // verdict is READ_ONLY or one after it
   reg  [1:0] counted;
   reg        counters_high;
@@ -174,7 +156,6 @@ module passo_link (
   // CRC of the request; that of a read's header goes on as the CRC of the reply
   wire crc_top;
   wire reply_top;
-  reg  crc_wrong;
 
   passo_crc u_crc (
     .clk    (clk),
@@ -204,27 +185,50 @@ module passo_link (
     .top        (reply_top)
   );
 
-  // What the verdict would be now
-  reg [3:0] verdict_final;
-  reg       executes;  // it is OK
+  passo_verdict u_verdict (
+    .clk           (clk),
+    .rst           (rst),
+    .header        (in_header & act),
+    .header_ok     (header_ok),
+    .header_verdict(header_verdict),
+    .in_header     (in_header),
+    .crc_differs   (in_crc & turn & (crc_top != bus_data[31])),
+    .conclude      (in_crc & act),
+    .read_answered (answered & first_word),
+    .bus_check     (bus_check),
+    .bus_claim     (bus_claim),
+    .bus_refusal   (bus_refusal),
+    .bus_incomplete(bus_incomplete),
+    .bus_busy      (bus_busy),
+    .verdict       (verdict),
+    .verdict_ok    (verdict_ok),
+    .executes      (executes),
+    .objection     (objection)
+  );
 
-  always @(posedge clk) begin
-    verdict_final <=
-        crc_wrong              ? VERDICT_BAD_CRC :
-        !verdict_ok            ? verdict :
-        bus_incomplete         ? VERDICT_BAD_LENGTH :
-        bus_busy               ? VERDICT_BUSY : VERDICT_OK;
-    verdict_high <= verdict >= VERDICT_READ_ONLY;
-    counters_high <= in_ack | in_count ? verdict_high : bus_address[0];
-    executes <= !crc_wrong && verdict_ok && !bus_incomplete && !bus_busy;
-  end
-
-  // Chip select does not come between a verdict and what it promises.
+  // A committed frame ignores chip select.
   wire goes_through = in_replay | in_count | (in_ack & act);
   wire frame_breaks = (frame_end | frame_start) & ~goes_through;
   wire reads = is_read & executes;
-  wire objection = answered & first_word & objects;
   wire reply_taken = in_read & word_valid;  // a word has ended
+
+  passo_link_schedule u_schedule (
+    .clk        (clk),
+    .rst        (rst),
+    .begin_read (begin_read),
+    .begin_load (begin_load),
+    .begin_turn (begin_turn),
+    .begin_rest (begin_rest),
+    .over       (in_replay & all_words),
+    .breaks     (frame_breaks),
+    .count      (count),
+    .turn       (turn),
+    .rests      (rests),
+    .load       (load),
+    .load_ends  (load_ends),
+    .act        (act),
+    .halves_turn(halves_turn)
+  );
 
   always @(posedge clk) begin
     in_header <= (frame_start & ~goes_through) | (in_header & ~act & ~frame_breaks)
@@ -246,50 +250,33 @@ module passo_link (
     begin_turn <= reply_taken & all_words;
     begin_rest <= frame_breaks | (in_replay & all_words);
 
-    if (begin_rest) count <= COUNT_REST;
-    else if (begin_read) count <= COUNT_READ;
-    else if (begin_turn) count <= COUNT_TURN;
-    else if (begin_load) count <= COUNT_LOAD;
-    else if (!rests) count <= count + 7'd1;
-
     if (rst) begin
       {in_header, in_payload, in_crc, in_ack, in_replay, in_read, in_sum, in_count} <= 8'd0;
       {begin_load, begin_read, begin_turn, begin_rest}                              <= 4'd0;
 
       frame_waits <= 1'b0;
-      count       <= COUNT_REST;
     end
   end
 
   always @(posedge clk) begin
-    act <= count == COUNT_ACT - 7'd1 && !begin_rest && !frame_breaks;
-    load <= (count == COUNT_LOAD && !(in_replay && all_words)) || (count == COUNT_LOAD + 7'd1 && !begin_rest);
-    load_ends <= count == COUNT_LOADED - 7'd2;
-    answered <= in_read && load_ends && !frame_breaks;
-    first_word <= index == 8'd0;
-    all_words <= index == length && !act;
-    put <= in_count && (count == COUNT_ACT - 7'd1 || count == COUNT_TURN + 7'd15);
-    replies <= in_ack | in_read | in_sum;
-    bus_frame <= act & (in_header | (in_ack & verdict_ok));
-    bus_commit <= (in_crc & ~rests) | in_ack | in_replay;
-    bus_check <= act & in_payload;
-    bus_write <= in_replay && count == COUNT_LOADED;
-    bus_read <= in_read && count == COUNT_LOAD && !frame_end;
-    answer_due <= bus_check;
-    answer_came <= answer_due;
-    answer <= bus_claim ? bus_refusal : VERDICT_UNKNOWN_ADDRESS;
-    objects <= !bus_claim || bus_refusal != VERDICT_OK;
-    crc_wrong <= !in_header && (crc_wrong || (in_crc && turn && crc_top != bus_data[31]));
+    answered      <= in_read && load_ends && !frame_breaks;
+    first_word    <= index == 8'd0;
+    verdict_high  <= verdict >= VERDICT_READ_ONLY;
+    counters_high <= in_ack | in_count ? verdict_high : bus_address[0];
+    all_words     <= index == length && !act;
+    put           <= in_count && halves_turn;
+    replies       <= in_ack | in_read | in_sum;
+    bus_frame     <= act & (in_header | (in_ack & verdict_ok));
+    bus_commit    <= (in_crc & ~rests) | in_ack | in_replay;
+    bus_check     <= act & in_payload;
+    bus_write     <= in_replay && count == COUNT_LOADED;
+    bus_read      <= in_read && count == COUNT_LOAD && !frame_end;
 
     if (in_header && act) begin
       is_read  <= header_is_read;
-      bus_push <= operation == OPERATION_PUSH;
+      bus_push <= bus_data[HEADER_OPERATION_LSB+:HEADER_OPERATION_BITS] == OPERATION_PUSH;
       length   <= bus_data[19:12];
     end
-
-    if (in_header && act) {verdict_ok, verdict} <= {header_ok, header_verdict};
-    else if (in_crc && act) {verdict_ok, verdict} <= {executes, verdict_final};
-    else if ((answer_came || objection) && verdict_ok) {verdict_ok, verdict} <= {~objects, answer};
 
     if (in_ack && act && verdict_ok) begin
       last_sequence  <= bus_data[27:20];
@@ -305,7 +292,6 @@ module passo_link (
     else if (((bus_check || bus_write) && !bus_push) || (act && in_read)) bus_address <= bus_address + 12'd1;
 
     if (rst) begin
-      act            <= 1'b0;
       answered       <= 1'b0;
       last_sequence  <= 8'd0;
       sequence_known <= 1'b0;
@@ -316,8 +302,6 @@ module passo_link (
       bus_check      <= 1'b0;
       bus_write      <= 1'b0;
       bus_read       <= 1'b0;
-      answer_due     <= 1'b0;
-      answer_came    <= 1'b0;
     end
   end
 

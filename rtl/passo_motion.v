@@ -102,7 +102,7 @@ module passo_motion (
   assign release_line = finished;
   assign drop         = command_abort | (aborted != 2'b00);
 
-  // Decided in one clock, done in the next.
+  // Registered stop decision.
   reg stop_due;
   reg [2:0] cause_due;
   wire       stop_wanted = command_abort | (moving & (step_overrun | line_underrun))

@@ -4,8 +4,8 @@
 //
 // Promise: `store` writes a half word. `load` two clocks after `load_low` = 0, then 1 named the halves
 // of a word puts this word into `data`, or 0 with `load_zero`. 32 clocks of `turn` show it at data[31] bit by
-// bit, leave it as it was, and tell what it amounts to: `top_bit` is the number of its highest bit that is set
-// (0 if none is), `lone_bit` says that no other is.
+// bit, leave it as it was, and decode it: `top_bit` is the index of its highest set bit
+// (0 if none is set), `lone_bit` says that it is the only one.
 //
 // Bits go by from the top, but a counter has to be counted from the bottom: in the memory each counter lies
 // the other way round. `count` adds 1 to counter `counter` as the word turns; `put` stores data[15:0], which is

@@ -44,9 +44,9 @@ extern "C" {
 struct passo_options {
 	uint32_t clock_hz; /* of the core; cannot be read from it, must be given */
 	uint8_t channel;   /* which one this driver is for */
-	uint8_t channels;  /* of the core: 0, or it must have just so many */
-	uint8_t axes;      /* of each channel: 0, or it must have just so many */
-	uint8_t tick_log2; /* 0, or it must have just this */
+	uint8_t channels;  /* of the core: 0: any number; otherwise it must match */
+	uint8_t axes;      /* of each channel: 0: any number; otherwise it must match */
+	uint8_t tick_log2; /* 0: any; otherwise it must match */
 };
 
 /* What passo_poll() saw last. */

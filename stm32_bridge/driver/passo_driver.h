@@ -48,7 +48,7 @@ void passo_driver_ended(struct passo *passo, const int32_t *positions);
 /* Flushes the queues of a channel that does not move, clears it, and reads the positions. The snapshot must
  * be fresh and the gate closed if something waits. */
 enum passo_error passo_driver_take_over(struct passo *passo);
-/* Looks, and tells what speaks against a new motion, first of all `needs_rest`. */
+/* Looks, and tells why a new motion cannot start, `needs_rest` first. */
 enum passo_error passo_driver_ready(struct passo *passo, bool needs_rest);
 
 /* Makes sure that the core holds the tables that a plan needs; they are loaded at rest only. */

@@ -6,7 +6,7 @@
 
 #define VELOCITY_BITS 48u
 
-/* Nothing becomes of a plan that an axis' pins cannot follow. */
+/* Rejects plans that exceed the pin timing of an axis. */
 static bool pins_suffice(const struct passo *passo, const struct passo_plan *plan)
 {
 	const struct passo_u128 path =
