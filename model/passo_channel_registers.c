@@ -2,6 +2,7 @@
  * Registers of one channel and its axes. See rtl/passo_channel_registers.v and rtl/passo_axis_registers.v.
  */
 #include "passo_model.h"
+#include "passo_words.h"
 
 static const uint32_t VELOCITY_MAX = 0x80000000u; /* UQ0.32 */
 static const uint32_t DRAIN_VELOCITY_LOW = 0xFFu;
@@ -70,12 +71,14 @@ static uint32_t state_word(const struct passo_channel *channel)
 
 	for (unsigned axis = 0; axis < channel->axes; axis++)
 		overrun |= (channel->axis[axis].lost != 0u ? 1u : 0u) << axis;
-	return (uint32_t)motion->drained << PASSO_CHANNEL_STATE_DRAINED_LSB
-	     | overrun << PASSO_CHANNEL_STATE_OVERRUN_LSB
-	     | (motion->stopping ? 1u : 0u) << PASSO_CHANNEL_STATE_STOPPING_LSB
-	     | (uint32_t)motion->cause << PASSO_CHANNEL_STATE_CAUSE_LSB
-	     | (passo_channel_quiet(channel) ? 1u : 0u) << PASSO_CHANNEL_STATE_QUIET_LSB
-	     | (uint32_t)motion->state << PASSO_CHANNEL_STATE_STATE_LSB;
+	return passo_pack_channel_state(&(struct passo_channel_state){
+	    .drained = motion->drained,
+	    .overrun = (uint8_t)overrun,
+	    .stopping = motion->stopping,
+	    .cause = (enum passo_cause)motion->cause,
+	    .quiet = passo_channel_quiet(channel),
+	    .state = (enum passo_state)motion->state,
+	});
 }
 
 uint32_t passo_channel_registers_value(const struct passo_channel *channel, uint8_t address)
@@ -86,7 +89,8 @@ uint32_t passo_channel_registers_value(const struct passo_channel *channel, uint
 	case PASSO_CHANNEL_RATE:
 		return channel->timescale.rate;
 	case PASSO_CHANNEL_ROOM:
-		return (uint32_t)channel->line_queue.room << 16 | channel->ramp_queue.room;
+		return passo_pack_channel_room(&(struct passo_channel_room){
+		    .line_room = channel->line_queue.room, .ramp_room = channel->ramp_queue.room});
 	case PASSO_CHANNEL_VELOCITY:
 		return channel->path.velocity_high << 8 | channel->path.velocity_low >> 16;
 	default:

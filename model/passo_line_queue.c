@@ -2,6 +2,7 @@
  * Line queue. See rtl/passo_line_queue.v.
  */
 #include "passo_model.h"
+#include "passo_words.h"
 
 enum { INDEX_CONTROL = 0, INDEX_SUBSTEPS = 1, INDEX_STEPS = 2 };
 
@@ -18,7 +19,8 @@ static uint16_t wrap(unsigned line, const struct passo_parameters *parameters)
 uint8_t passo_line_queue_refusal(const struct passo_line_queue *queue,
     const struct passo_parameters *parameters, const struct passo_bus *bus, bool blocked)
 {
-	const uint32_t defined = ((1u << parameters->axes) - 1u) << 8 | 3u;
+	const uint32_t defined = passo_pack_line_control(&(struct passo_line_control){
+	    .directions = (uint8_t)((1u << parameters->axes) - 1u), .endless = true, .last = true});
 
 	if (blocked)
 		return PASSO_VERDICT_BUSY;
@@ -35,11 +37,13 @@ uint8_t passo_line_queue_refusal(const struct passo_line_queue *queue,
 
 static void write_word(struct passo_line *line, unsigned index, uint32_t data)
 {
+	const struct passo_line_control control = passo_unpack_line_control(data);
+
 	switch (index) {
 	case INDEX_CONTROL:
-		line->last = (data & 1u) != 0u;
-		line->endless = (data & 2u) != 0u;
-		line->directions = (uint8_t)(data >> 8);
+		line->last = control.last;
+		line->endless = control.endless;
+		line->directions = control.directions;
 		break;
 	case INDEX_SUBSTEPS:
 		line->substeps = data;

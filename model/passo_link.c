@@ -5,6 +5,7 @@
  */
 #include "passo_crc.h"
 #include "passo_model.h"
+#include "passo_words.h"
 
 enum {
 	COUNT_READ = 12,
@@ -18,28 +19,15 @@ enum {
 	COUNT_REST = 67
 };
 
-static uint8_t operation_of(uint32_t header)
-{
-	return (uint8_t)(header >> 28);
-}
-static uint8_t sequence_of(uint32_t header)
-{
-	return (uint8_t)(header >> 20 & 0xFFu);
-}
-static uint8_t length_of(uint32_t header)
-{
-	return (uint8_t)(header >> 12 & 0xFFu);
-}
-static uint16_t address_of(uint32_t header)
-{
-	return (uint16_t)(header & 0xFFFu);
-}
-
 /* Sequence and verdict, and their complement. */
 static uint32_t acknowledge(uint8_t sequence, uint8_t verdict)
 {
-	const uint32_t half = (uint32_t)sequence << 8 | verdict;
-	return half << 16 | (~half & 0xFFFFu);
+	return passo_pack_ack(&(struct passo_ack){
+	    .sequence = sequence,
+	    .verdict = (enum passo_verdict)verdict,
+	    .not_sequence = (uint8_t)~sequence,
+	    .not_verdict = (uint8_t)~verdict,
+	});
 }
 
 void passo_link_reset(struct passo_link *link)
@@ -91,7 +79,7 @@ static void turned(struct passo_link *link)
 		link->crc_wrong = link->crc != link->bus.data;
 		break;
 	case PASSO_LINK_ACK:
-		link->reply_word = acknowledge(sequence_of(link->bus.data), link->verdict);
+		link->reply_word = acknowledge(passo_unpack_header(link->bus.data).sequence, link->verdict);
 		break;
 	case PASSO_LINK_READ:
 		link->crc = passo_crc(link->crc, &link->reply_word, 1);
@@ -108,23 +96,22 @@ static void turned(struct passo_link *link)
 
 static void begin_pass(struct passo_link *link)
 {
-	link->bus.address = address_of(link->bus.data);
+	link->bus.address = passo_unpack_header(link->bus.data).address;
 	link->index = 0;
 }
 
 static void take_header(struct passo_link *link)
 {
-	const uint32_t header = link->bus.data;
-	const uint8_t operation = operation_of(header);
-	const bool is_read = operation == PASSO_OPERATION_READ;
-	const bool is_known =
-	    is_read || operation == PASSO_OPERATION_WRITE || operation == PASSO_OPERATION_PUSH;
-	const bool fits = length_of(header) != 0u && length_of(header) <= PASSO_PAYLOAD_MAX;
-	const bool repeated = link->sequence_known && !is_read && sequence_of(header) == link->last_sequence;
+	const struct passo_header header = passo_unpack_header(link->bus.data);
+	const bool is_read = header.operation == PASSO_OPERATION_READ;
+	const bool is_push = header.operation == PASSO_OPERATION_PUSH;
+	const bool is_known = is_read || is_push || header.operation == PASSO_OPERATION_WRITE;
+	const bool fits = header.length != 0u && header.length <= PASSO_PAYLOAD_MAX;
+	const bool repeated = link->sequence_known && !is_read && header.sequence == link->last_sequence;
 
 	link->is_read = is_read;
-	link->bus.push = operation == PASSO_OPERATION_PUSH;
-	link->length = length_of(header);
+	link->bus.push = is_push;
+	link->length = header.length;
 	link->verdict = !is_known ? PASSO_VERDICT_BAD_OPERATION
 	              : !fits     ? PASSO_VERDICT_BAD_LENGTH
 	              : repeated  ? PASSO_VERDICT_DUPLICATE
@@ -157,7 +144,7 @@ static void end_acknowledge(struct passo_link *link)
 	link->refused = link->verdict != PASSO_VERDICT_OK && link->verdict != PASSO_VERDICT_DUPLICATE;
 	link->step = PASSO_LINK_IDLE;
 	if (link->verdict == PASSO_VERDICT_OK) {
-		link->last_sequence = sequence_of(link->bus.data);
+		link->last_sequence = passo_unpack_header(link->bus.data).sequence;
 		link->sequence_known = true;
 		link->count = COUNT_LOAD;
 		link->step = PASSO_LINK_REPLAY;

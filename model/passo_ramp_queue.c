@@ -2,11 +2,10 @@
  * Ramp queue. See rtl/passo_ramp_queue.v.
  */
 #include "passo_model.h"
+#include "passo_words.h"
 
 enum { INDEX_CONTROL = 0, INDEX_VELOCITY_LOW = 1, INDEX_TICKS = 2, INDEX_STEP_HIGH = 3, INDEX_LAST = 4 };
 
-static const uint32_t CONTROL_DEFINED = 0x0037u;
-static const uint32_t CONTROL_NOW = 0x0002u;
 static const uint32_t VELOCITY_MAX_HIGH = 0x8000u;
 
 static unsigned depth(const struct passo_parameters *parameters)
@@ -23,7 +22,6 @@ uint8_t passo_ramp_queue_refusal(
     const struct passo_ramp_queue *queue, const struct passo_bus *bus, bool blocked)
 {
 	const uint32_t high = bus->data >> 16;
-	const uint32_t low = bus->data & 0xFFFFu;
 
 	if (blocked)
 		return PASSO_VERDICT_BUSY;
@@ -31,8 +29,9 @@ uint8_t passo_ramp_queue_refusal(
 		return PASSO_VERDICT_QUEUE_FULL;
 	switch (queue->index) {
 	case INDEX_CONTROL:
-		return (low & ~CONTROL_DEFINED) != 0u || high > VELOCITY_MAX_HIGH ? PASSO_VERDICT_BAD_VALUE
-		                                                                  : PASSO_VERDICT_OK;
+		return (bus->data & ~PASSO_RAMP_CONTROL_DEFINED) != 0u || high > VELOCITY_MAX_HIGH
+		         ? PASSO_VERDICT_BAD_VALUE
+		         : PASSO_VERDICT_OK;
 	case INDEX_VELOCITY_LOW:
 		return queue->velocity_is_max && bus->data != 0u ? PASSO_VERDICT_BAD_VALUE : PASSO_VERDICT_OK;
 	case INDEX_STEP_HIGH:
@@ -44,19 +43,20 @@ uint8_t passo_ramp_queue_refusal(
 
 bool passo_ramp_queue_checks_now(const struct passo_ramp_queue *queue, uint32_t data)
 {
-	return queue->index == INDEX_CONTROL && (data & CONTROL_NOW) != 0u;
+	return queue->index == INDEX_CONTROL && passo_unpack_ramp_control(data).now;
 }
 
 struct passo_ramp passo_ramp_queue_front(
     const struct passo_ramp_queue *queue, const struct passo_parameters *parameters)
 {
 	const uint32_t *words = queue->words[queue->read_ramp & (depth(parameters) - 1u)];
+	const struct passo_ramp_control control = passo_unpack_ramp_control(words[0]);
 
 	return (struct passo_ramp){
-	    .last = (words[0] & 1u) != 0u,
-	    .mirror = (words[0] & 4u) != 0u,
-	    .shape = (enum passo_shape)(words[0] >> 4 & 3u),
-	    .velocity_end = (uint64_t)(words[0] >> 16) << 32 | words[1],
+	    .last = control.last,
+	    .mirror = control.mirror,
+	    .shape = control.shape,
+	    .velocity_end = (uint64_t)control.velocity_high << 32 | words[1],
 	    .ticks = words[2],
 	    .progress_step = (uint64_t)words[3] << 32 | words[4],
 	};
@@ -80,7 +80,7 @@ void passo_ramp_queue_clock(struct passo_ramp_queue *queue, const struct passo_p
 	queue->write_low = write_high;
 	if ((check || write_high) && index == INDEX_CONTROL) {
 		queue->velocity_is_max = bus->data >> 16 == VELOCITY_MAX_HIGH;
-		queue->is_now = (bus->data & CONTROL_NOW) != 0u;
+		queue->is_now = passo_unpack_ramp_control(bus->data).now;
 	}
 	if (check || write_low)
 		queue->index = next_index(index);

@@ -5,6 +5,7 @@
 #include "passo_core.h"
 
 #include "passo_registers_core.h"
+#include "passo_words.h"
 
 static uint8_t at_most_255(uint16_t room)
 {
@@ -31,19 +32,26 @@ uint32_t passo_registers_status(const struct passo_core *core)
 {
 	const struct passo_channel *channel = &core->channel[core->registers.status_channel];
 
-	return 2u << 30 | (passo_registers_any_stopped(core) ? 1u : 0u) << 29
-	     | (passo_registers_any_occupied(core) ? 1u : 0u) << 28
-	     | (uint32_t)core->registers.status_channel << 24 | (uint32_t)core->link.last_sequence << 16
-	     | (uint32_t)at_most_255(channel->line_queue.room) << 8 | at_most_255(channel->ramp_queue.room);
+	return passo_pack_status(&(struct passo_status){
+	    .marker = PASSO_STATUS_MARKER_RESET,
+	    .any_stopped = passo_registers_any_stopped(core),
+	    .any_occupied = passo_registers_any_occupied(core),
+	    .channel = core->registers.status_channel,
+	    .sequence = core->link.last_sequence,
+	    .line_room = at_most_255(channel->line_queue.room),
+	    .ramp_room = at_most_255(channel->ramp_queue.room),
+	});
 }
 
 static uint32_t parameters_word(const struct passo_parameters *parameters)
 {
-	return (uint32_t)parameters->channels << PASSO_PARAMETERS_CHANNELS_LSB
-	     | (uint32_t)parameters->axes << PASSO_PARAMETERS_AXES_LSB
-	     | (uint32_t)parameters->tick_log2 << PASSO_PARAMETERS_TICK_LOG2_LSB
-	     | (uint32_t)parameters->line_queue_log2 << PASSO_PARAMETERS_LINE_QUEUE_LOG2_LSB
-	     | (uint32_t)parameters->ramp_queue_log2 << PASSO_PARAMETERS_RAMP_QUEUE_LOG2_LSB;
+	return passo_pack_parameters(&(struct passo_parameters_word){
+	    .channels = parameters->channels,
+	    .axes = parameters->axes,
+	    .tick_log2 = parameters->tick_log2,
+	    .line_queue_log2 = parameters->line_queue_log2,
+	    .ramp_queue_log2 = parameters->ramp_queue_log2,
+	});
 }
 
 static uint32_t four_counters(const uint8_t *counters)
@@ -61,17 +69,21 @@ static bool register_value(const struct passo_core *core, uint16_t address, uint
 		*value = PASSO_IDENTIFICATION_RESET;
 		return true;
 	case PASSO_ADDRESS_VERSION:
-		*value = PASSO_VERSION_MAJOR_RESET << PASSO_VERSION_MAJOR_LSB
-		       | PASSO_VERSION_MINOR_RESET << PASSO_VERSION_MINOR_LSB
-		       | PASSO_VERSION_PATCH_RESET << PASSO_VERSION_PATCH_LSB;
+		*value = passo_pack_version(&(struct passo_version){
+		    .major = PASSO_VERSION_MAJOR_RESET,
+		    .minor = PASSO_VERSION_MINOR_RESET,
+		    .patch = PASSO_VERSION_PATCH_RESET,
+		});
 		return true;
 	case PASSO_ADDRESS_PARAMETERS:
 		*value = parameters_word(&core->parameters);
 		return true;
 	case PASSO_ADDRESS_RUN:
-		*value = (uint32_t)registers->status_channel << PASSO_RUN_STATUS_CHANNEL_LSB
-		       | (uint32_t)registers->wait_sync << PASSO_RUN_WAIT_SYNC_LSB
-		       | (uint32_t)registers->run << PASSO_RUN_RUN_LSB;
+		*value = passo_pack_run(&(struct passo_run){
+		    .status_channel = registers->status_channel,
+		    .wait_sync = registers->wait_sync,
+		    .run = registers->run,
+		});
 		return true;
 	case PASSO_ADDRESS_REFUSALS_0:
 		*value = four_counters(&registers->refusals[0]);
@@ -95,8 +107,9 @@ uint32_t passo_registers_value(const struct passo_core *core, uint16_t address)
 static uint8_t run_check(const struct passo_core *core, uint32_t data)
 {
 	const unsigned channels = core->parameters.channels;
-	const bool beyond = (data & 0xFFu) >> channels != 0u || (data >> 8 & 0xFFu) >> channels != 0u
-	                 || (data >> 16 & 7u) >= channels;
+	const struct passo_run word = passo_unpack_run(data);
+	const bool beyond =
+	    word.run >> channels != 0 || word.wait_sync >> channels != 0 || word.status_channel >= channels;
 	return (data & ~PASSO_RUN_DEFINED) != 0u || beyond ? PASSO_VERDICT_BAD_VALUE : PASSO_VERDICT_OK;
 }
 
@@ -141,9 +154,10 @@ void passo_registers_clock(struct passo_core *core)
 	if (core->link.refused)
 		registers->refusals[core->link.verdict - PASSO_VERDICT_BAD_CRC]++;
 	if (bus->write && bus->address == PASSO_ADDRESS_RUN) {
-		registers->run = (uint8_t)(bus->data >> PASSO_RUN_RUN_LSB);
-		registers->wait_sync = (uint8_t)(bus->data >> PASSO_RUN_WAIT_SYNC_LSB);
-		registers->status_channel = (uint8_t)(bus->data >> PASSO_RUN_STATUS_CHANNEL_LSB & 7u);
+		const struct passo_run word = passo_unpack_run(bus->data);
+		registers->run = word.run;
+		registers->wait_sync = word.wait_sync;
+		registers->status_channel = word.status_channel;
 	}
 	core->tables.wanted =
 	    !(bus->frame && !bus->commit) && (core->tables.wanted || (bus->check && in_tables(bus->address)));

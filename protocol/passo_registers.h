@@ -15,6 +15,7 @@
 #define PASSO_HEADER_SEQUENCE_BITS  8u
 #define PASSO_HEADER_OPERATION_LSB  28u
 #define PASSO_HEADER_OPERATION_BITS 4u
+#define PASSO_HEADER_DEFINED        0xFFFFFFFFu
 
 /* Word: Ack. Last word of the reply to a write or push, and to a read that was refused. */
 #define PASSO_ACK_NOT_VERDICT_LSB   0u
@@ -25,6 +26,7 @@
 #define PASSO_ACK_VERDICT_BITS      8u
 #define PASSO_ACK_SEQUENCE_LSB      24u
 #define PASSO_ACK_SEQUENCE_BITS     8u
+#define PASSO_ACK_DEFINED           0xFFFFFFFFu
 
 /* Word: Status. What stands in a reply before the ack or the data, as it was when chip select fell. */
 #define PASSO_STATUS_RAMP_ROOM_LSB     0u
@@ -45,6 +47,7 @@
 #define PASSO_STATUS_MARKER_LSB        30u
 #define PASSO_STATUS_MARKER_BITS       2u
 #define PASSO_STATUS_MARKER_RESET      0x2u
+#define PASSO_STATUS_DEFINED           0xFFFFFFFFu
 
 /* Word: Line control. First word of a line; then M and N_0 .. N_{AXES-1}. */
 #define PASSO_LINE_CONTROL_LAST_LSB        0u
@@ -53,6 +56,7 @@
 #define PASSO_LINE_CONTROL_ENDLESS_BITS    1u
 #define PASSO_LINE_CONTROL_DIRECTIONS_LSB  8u
 #define PASSO_LINE_CONTROL_DIRECTIONS_BITS 8u
+#define PASSO_LINE_CONTROL_DEFINED         0x0000FF03u
 
 /* Word: Ramp control. First word of a ramp; then the lower bits of v_end, T, and the progress step in two
  * words. */
@@ -66,6 +70,7 @@
 #define PASSO_RAMP_CONTROL_SHAPE_BITS         2u
 #define PASSO_RAMP_CONTROL_VELOCITY_HIGH_LSB  16u
 #define PASSO_RAMP_CONTROL_VELOCITY_HIGH_BITS 16u
+#define PASSO_RAMP_CONTROL_DEFINED            0xFFFF0037u
 
 /* Core: Identification. Reads as ASCII PASO. */
 #define PASSO_ADDRESS_IDENTIFICATION 0x000u

@@ -80,8 +80,9 @@ module passo_line_queue #(
 
   always @(posedge clk)
     if (strobe && index[INDEX_CONTROL]) begin
-      {write_endless, write_last} <= bus_data[1:0];
-      write_directions            <= bus_data[8+:AXES];
+      write_endless    <= bus_data[LINE_CONTROL_ENDLESS_LSB];
+      write_last       <= bus_data[LINE_CONTROL_LAST_LSB];
+      write_directions <= bus_data[LINE_CONTROL_DIRECTIONS_LSB+:AXES];
     end
 
   // bus_data - 1 - M, but for M itself bus_data - 1. A carry comes out if that is not negative, which is right for

@@ -275,11 +275,11 @@ module passo_link (
     if (in_header && act) begin
       is_read  <= header_is_read;
       bus_push <= bus_data[HEADER_OPERATION_LSB+:HEADER_OPERATION_BITS] == OPERATION_PUSH;
-      length   <= bus_data[19:12];
+      length   <= bus_data[HEADER_LENGTH_LSB+:HEADER_LENGTH_BITS];
     end
 
     if (in_ack && act && verdict_ok) begin
-      last_sequence  <= bus_data[27:20];
+      last_sequence  <= bus_data[HEADER_SEQUENCE_LSB+:HEADER_SEQUENCE_BITS];
       sequence_known <= 1'b1;
     end
     if (in_count && act) counted[counters_high] <= 1'b1;
@@ -288,7 +288,7 @@ module passo_link (
     else if ((act && (in_payload || in_read)) || (in_replay && load_ends)) index <= index + 8'd1;
 
     // after header and ack the header has turned: it stands on the bus
-    if (act && (in_header || in_ack)) bus_address <= bus_data[11:0];
+    if (act && (in_header || in_ack)) bus_address <= bus_data[HEADER_ADDRESS_LSB+:HEADER_ADDRESS_BITS];
     else if (((bus_check || bus_write) && !bus_push) || (act && in_read)) bus_address <= bus_address + 12'd1;
 
     if (rst) begin

@@ -61,9 +61,9 @@ module passo_ramp #(
   input  wire [15:0] table_point_next
 );
 
+  `include "passo_registers.vh"
   `include "passo_ramp_steps.vh"
 
-  localparam [1:0] SHAPE_LINEAR = 2'd0;
   localparam [TICK_LOG2-1:0] TICK_LAST = {TICK_LOG2{1'b1}};
 
   reg [2:0] step;
@@ -263,7 +263,11 @@ module passo_ramp #(
       default: if (step_ends) step <= STEP_CHOOSE;
     endcase
 
-    if (control_load) {shape, mirror, last} <= {ramp_half[5:4], ramp_half[2], ramp_half[0]};
+    if (control_load) begin
+      shape  <= ramp_half[RAMP_CONTROL_SHAPE_LSB+:RAMP_CONTROL_SHAPE_BITS];
+      mirror <= ramp_half[RAMP_CONTROL_MIRROR_LSB];
+      last   <= ramp_half[RAMP_CONTROL_LAST_LSB];
+    end
 
     if (advance) tick_count <= tick_count + 1'b1;
     if (begin_profile) tick_count <= {TICK_LOG2{1'b0}};

@@ -47,7 +47,6 @@ module passo_ramp_queue #(
   localparam [2:0] INDEX_TICKS = 3'd2;
   localparam [2:0] INDEX_STEP_HIGH = 3'd3;  // du(47:32)
   localparam [2:0] INDEX_LAST = 3'd4;
-  localparam [15:0] CONTROL_DEFINED = 16'h0037;
   localparam [15:0] VELOCITY_MAX_HIGH = 16'h8000;
 
   // Writing
@@ -65,14 +64,14 @@ module passo_ramp_queue #(
   wire write_high = select & bus_write;
 
   assign incomplete   = index != INDEX_CONTROL;
-  assign needs_motion = select & bus_check & bus_data[1] & ~incomplete;
+  assign needs_motion = select & bus_check & bus_data[RAMP_CONTROL_NOW_LSB] & ~incomplete;
 
   always @(posedge clk) begin
     write_low <= write_high;
     if (strobe && index == INDEX_CONTROL) begin
       velocity_is_max <= bus_data[31:16] == VELOCITY_MAX_HIGH;
-      is_now          <= bus_data[1];
-      is_mirror       <= bus_data[2];
+      is_now          <= bus_data[RAMP_CONTROL_NOW_LSB];
+      is_mirror       <= bus_data[RAMP_CONTROL_MIRROR_LSB];
     end
     if ((select && bus_check) || write_low) index <= index == INDEX_LAST ? INDEX_CONTROL : index + 3'd1;
     if (select && bus_check && index == INDEX_LAST) checked <= checked + 1'b1;
@@ -111,7 +110,7 @@ module passo_ramp_queue #(
 
   always @(posedge clk) begin
     full <= room == checked;
-    bad_control <= (bus_data[15:0] & ~CONTROL_DEFINED) != 16'd0 || bus_data[31:16] > VELOCITY_MAX_HIGH;
+    bad_control <= (bus_data & ~RAMP_CONTROL_DEFINED) != 32'd0 || bus_data[31:16] > VELOCITY_MAX_HIGH;
     bad_velocity_low <= velocity_is_max && (bus_top_bit != 5'd0 || bus_data[0]);
     bad_step_high <= bus_top_bit > 5'd15;
     refusal          <= !(select && bus_check) ? VERDICT_OK :

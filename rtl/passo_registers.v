@@ -55,16 +55,15 @@ module passo_registers #(
   wire [15:0] wide_line_room = {{(15 - LINE_QUEUE_LOG2) {1'b0}}, status_line_room};
   wire [15:0] wide_ramp_room = {{(15 - RAMP_QUEUE_LOG2) {1'b0}}, status_ramp_room};
 
-  wire [31:0] status = {
-    2'b10,
-    any_stopped,
-    any_occupied,
-    1'b0,
-    status_channel,
-    last_sequence,
-    wide_line_room > 16'd255 ? 8'd255 : wide_line_room[7:0],
-    wide_ramp_room > 16'd255 ? 8'd255 : wide_ramp_room[7:0]
-  };
+  wire [31:0] status;
+  assign status[STATUS_MARKER_LSB+:STATUS_MARKER_BITS] = STATUS_MARKER_RESET;
+  assign status[STATUS_ANY_STOPPED_LSB] = any_stopped;
+  assign status[STATUS_ANY_OCCUPIED_LSB] = any_occupied;
+  assign status[STATUS_ZERO_LSB] = STATUS_ZERO_RESET;
+  assign status[STATUS_CHANNEL_LSB+:STATUS_CHANNEL_BITS] = status_channel;
+  assign status[STATUS_SEQUENCE_LSB+:STATUS_SEQUENCE_BITS] = last_sequence;
+  assign status[STATUS_LINE_ROOM_LSB+:STATUS_LINE_ROOM_BITS] = wide_line_room > 16'd255 ? 8'd255 : wide_line_room[7:0];
+  assign status[STATUS_RAMP_ROOM_LSB+:STATUS_RAMP_ROOM_BITS] = wide_ramp_room > 16'd255 ? 8'd255 : wide_ramp_room[7:0];
 
   wire [7:0] run_padded = {{(8 - CHANNELS) {1'b0}}, run};
   wire [7:0] wait_sync_padded = {{(8 - CHANNELS) {1'b0}}, wait_sync};

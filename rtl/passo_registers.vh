@@ -14,6 +14,7 @@ localparam HEADER_SEQUENCE_LSB   = 20;
 localparam HEADER_SEQUENCE_BITS  = 8;
 localparam HEADER_OPERATION_LSB  = 28;
 localparam HEADER_OPERATION_BITS = 4;
+localparam HEADER_DEFINED        = 32'hFFFFFFFF;
 
 // Word: Ack. Last word of the reply to a write or push, and to a read that was refused.
 localparam ACK_NOT_VERDICT_LSB   = 0;
@@ -24,6 +25,7 @@ localparam ACK_VERDICT_LSB       = 16;
 localparam ACK_VERDICT_BITS      = 8;
 localparam ACK_SEQUENCE_LSB      = 24;
 localparam ACK_SEQUENCE_BITS     = 8;
+localparam ACK_DEFINED           = 32'hFFFFFFFF;
 
 // Word: Status. What stands in a reply before the ack or the data, as it was when chip select fell.
 localparam STATUS_RAMP_ROOM_LSB     = 0;
@@ -44,6 +46,7 @@ localparam STATUS_ANY_STOPPED_BITS  = 1;
 localparam STATUS_MARKER_LSB        = 30;
 localparam STATUS_MARKER_BITS       = 2;
 localparam STATUS_MARKER_RESET      = 2'h2;
+localparam STATUS_DEFINED           = 32'hFFFFFFFF;
 
 // Word: Line control. First word of a line; then M and N_0 .. N_{AXES-1}.
 localparam LINE_CONTROL_LAST_LSB        = 0;
@@ -52,6 +55,7 @@ localparam LINE_CONTROL_ENDLESS_LSB     = 1;
 localparam LINE_CONTROL_ENDLESS_BITS    = 1;
 localparam LINE_CONTROL_DIRECTIONS_LSB  = 8;
 localparam LINE_CONTROL_DIRECTIONS_BITS = 8;
+localparam LINE_CONTROL_DEFINED         = 32'h0000FF03;
 
 // Word: Ramp control. First word of a ramp; then the lower bits of v_end, T, and the progress step in two
 // words.
@@ -65,6 +69,7 @@ localparam RAMP_CONTROL_SHAPE_LSB          = 4;
 localparam RAMP_CONTROL_SHAPE_BITS         = 2;
 localparam RAMP_CONTROL_VELOCITY_HIGH_LSB  = 16;
 localparam RAMP_CONTROL_VELOCITY_HIGH_BITS = 16;
+localparam RAMP_CONTROL_DEFINED            = 32'hFFFF0037;
 
 // Core: Identification. Reads as ASCII PASO.
 localparam ADDRESS_IDENTIFICATION = 12'h000;

@@ -25,7 +25,7 @@ import argparse
 import re
 import sys
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
@@ -61,6 +61,11 @@ class Field:
     enum: str | None
 
 
+def bits_of(fields: Iterable["Field"]) -> int:
+    """All bits of fields."""
+    return sum(((1 << field.bits) - 1) << field.lsb for field in fields)
+
+
 @dataclass(frozen=True)
 class Register:
     """One word, or `count` words in a row."""
@@ -78,7 +83,7 @@ class Register:
 
     @property
     def defined(self) -> int:
-        return sum(((1 << f.bits) - 1) << f.lsb for f in self.fields if "w" in f.access)
+        return bits_of(field for field in self.fields if "w" in field.access)
 
 
 @dataclass(frozen=True)
@@ -252,7 +257,9 @@ def constant_groups(source: Source) -> list[tuple[str, list[Constant]]]:
     groups = []
     for word in source.words:
         fields = [field_constants(f"{word.name}_{field.name}", field) for field in word.fields]
-        groups.append((f"Word: {word.title}. {word.text}", [c for constants in fields for c in constants]))
+        constants = [constant for of_field in fields for constant in of_field]
+        constants.append(Constant(f"{word.name}_DEFINED", bits_of(word.fields), 32))
+        groups.append((f"Word: {word.title}. {word.text}", constants))
     for block in core.walk():
         level = block.name.capitalize()
         for register in block.registers:

@@ -439,6 +439,7 @@ HEADER_SEQUENCE_LSB = 20
 HEADER_SEQUENCE_BITS = 8
 HEADER_OPERATION_LSB = 28
 HEADER_OPERATION_BITS = 4
+HEADER_DEFINED = 0xFFFFFFFF
 
 # Word: Ack. Last word of the reply to a write or push, and to a read that was refused.
 ACK_NOT_VERDICT_LSB = 0
@@ -449,6 +450,7 @@ ACK_VERDICT_LSB = 16
 ACK_VERDICT_BITS = 8
 ACK_SEQUENCE_LSB = 24
 ACK_SEQUENCE_BITS = 8
+ACK_DEFINED = 0xFFFFFFFF
 
 # Word: Status. What stands in a reply before the ack or the data, as it was when chip select fell.
 STATUS_RAMP_ROOM_LSB = 0
@@ -469,6 +471,7 @@ STATUS_ANY_STOPPED_BITS = 1
 STATUS_MARKER_LSB = 30
 STATUS_MARKER_BITS = 2
 STATUS_MARKER_RESET = 0x2
+STATUS_DEFINED = 0xFFFFFFFF
 
 # Word: Line control. First word of a line; then M and N_0 .. N_{AXES-1}.
 LINE_CONTROL_LAST_LSB = 0
@@ -477,6 +480,7 @@ LINE_CONTROL_ENDLESS_LSB = 1
 LINE_CONTROL_ENDLESS_BITS = 1
 LINE_CONTROL_DIRECTIONS_LSB = 8
 LINE_CONTROL_DIRECTIONS_BITS = 8
+LINE_CONTROL_DEFINED = 0x0000FF03
 
 # Word: Ramp control. First word of a ramp; then the lower bits of v_end, T, and the progress step in two
 # words.
@@ -490,6 +494,7 @@ RAMP_CONTROL_SHAPE_LSB = 4
 RAMP_CONTROL_SHAPE_BITS = 2
 RAMP_CONTROL_VELOCITY_HIGH_LSB = 16
 RAMP_CONTROL_VELOCITY_HIGH_BITS = 16
+RAMP_CONTROL_DEFINED = 0xFFFF0037
 
 # Core: Identification. Reads as ASCII PASO.
 ADDRESS_IDENTIFICATION = 0x000
