@@ -99,7 +99,7 @@ always @(posedge clk) begin
   if (slot_step) begin
     assert (f_m_q != 30'd0 && f_n_q <= f_m_q && f_e < f_m_q);
     assert (e_minus_m == (slot_load_q ? 30'd0 : f_e + f_n_q - f_m_q));
-    assert (below == ({1'b0, f_e} + {1'b0, f_n_q} < {1'b0, f_m_q}));
+    assert (reached == ({1'b0, f_e} + {1'b0, f_n_q} >= {1'b0, f_m_q}));
     if (!slot_load_q) assert (addend == -{1'b0, f_m_q});
     if (f_line && !slot_load_q) assert (f_m == f_m_q && f_n_q == steps);
     assert ($signed({2'b00, f_e}) + $signed({2'b00, f_n_q}) == f_start_q + f_balance);

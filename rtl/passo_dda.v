@@ -26,14 +26,16 @@ module passo_dda (
 
   reg  [29:0] e_minus_m;
   reg  [30:0] addend;
-  reg         below;  // e + N < M
-  wire [30:0] sum = {1'b1, e_minus_m} + addend;
+  // e + N >= M: the carry of the sum, if N is the addend. With an operand in its place that is not constant, LUT and
+  // flip-flop of the carry stay in the chain.
+  reg         reached;
+  wire [30:0] sum = {addend[30], e_minus_m} + addend;
 
-  assign step_request = slot_step & ~below;
+  assign step_request = slot_step & reached;
 
   always @(posedge clk) begin
-    addend <= (slot_add || slot_load) ? broadcast : {1'b0, steps};
-    below  <= sum[30];
+    addend  <= (slot_add || slot_load) ? broadcast : {1'b0, steps};
+    reached <= sum[30];
     if (slot_add || slot_load || slot_load_q || step_request) e_minus_m <= slot_load ? 30'd0 : sum[29:0];
   end
 
