@@ -32,7 +32,7 @@ setup: ## Install whatever is missing; every other target calls it by itself.
 
 test: lint ## Check the sources, then run all tests.
 	@tools/setup.sh yosys formal firmware
-	@$(BIN)/pytest -n auto --maxprocesses 8
+	@$(BIN)/pytest -n auto --maxprocesses 8 --dist worksteal
 
 demo: setup ## Run the demonstration.
 	@$(BIN)/passo demo

@@ -19,19 +19,19 @@ from cocotbext.wishbone.driver import WBOp, WishboneMaster
 from passo.build import Parameters
 from passo.driver import Driver
 from passo.engine import Engine, model_engine
-from passo.native import ffi
 from passo.registers import Operation
 
 from cocotb_tests.helpers import core_frames as frames
 from cocotb_tests.helpers.bench import PERIOD, Clocks, Recorder, begin, patience, read, rng
 from cocotb_tests.helpers.core_thread import Thread
+from cocotb_tests.helpers.runner import DOOR_CORE
+from tests.helpers.driver_wire import by_speed, configure
 
-PARAMETERS = Parameters(1, 2, 7, 5, 4)
+PARAMETERS = Parameters(**{name.lower(): value for name, value in DOOR_CORE.items()})
 CLOCK_HZ = 10_000_000  # of plans
 SELECT, WORD = 0, 4  # addresses
 WAIT = 128  # clocks after a word or a change of SELECT
 ALL_LANES = 0xF
-Q32 = 1 << 32
 MOVES = ((30, -17), (-5, 0), (1, 40), (-26, -23))
 
 
@@ -170,13 +170,10 @@ def moves() -> Sequence[tuple[int, ...]]:
 def drive(engine: Any) -> list[int]:
     """Some moves, by the driver library; the positions after them."""
     driver = Driver(engine, CLOCK_HZ, PARAMETERS)
-    config = {"step_high_ns": 1000, "step_low_ns": 1000, "dir_setup_ns": 500, "dir_hold_ns": 500}
-    for axis in range(PARAMETERS.axes):
-        driver.call("configure_axis", axis, ffi().new("struct passo_axis_config *", config))
-        driver.call("enable", axis, True)
+    configure(driver)
     for profile, steps in enumerate(moves()):
-        fields = {"speed": 60_000 * Q32, "acceleration": 40_000_000 * Q32, "profile": profile % 3}
-        move = ffi().new("struct passo_move_by_speed *", {"steps": list(steps), **fields})
+        move = by_speed(steps, 60_000, 40_000_000)
+        move.profile = profile % 3
         driver.call("move_by_speed", move)
         driver.wait(1)
         engine.run(400)  # the last pulse

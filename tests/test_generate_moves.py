@@ -19,6 +19,7 @@ from passo.toolchain import environment, paths
 
 SOURCE = "schema/moves.toml"
 GENERATOR = "tools/generate_moves.py"
+HELPER = "tools/generated.py"
 LIMITS, STRUCTS = "protocol/passo_limits.h", "planner/passo_moves.h"
 TABLES = "stm32_bridge/console/passo_form_tables.c"
 PYTHON = "sim/passo/move_forms.py"
@@ -45,9 +46,9 @@ def generate(folder: Path, *options: str) -> subprocess.CompletedProcess:
 @pytest.fixture
 def tree(tmp_path: Path) -> Path:
     """The generator with all that it reads."""
-    for name in [SOURCE, GENERATOR, *MADE, *PAGES]:
+    for name in [SOURCE, GENERATOR, HELPER, *MADE, *PAGES]:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-    for name in [SOURCE, GENERATOR, *PAGES]:
+    for name in [SOURCE, GENERATOR, HELPER, *PAGES]:
         shutil.copy(paths.root / name, tmp_path / name)
     shutil.copytree(paths.tools / "moves", tmp_path / "tools" / "moves")
     return tmp_path

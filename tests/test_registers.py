@@ -18,6 +18,7 @@ from systemrdl.node import RegNode
 ROOT = Path(__file__).resolve().parents[1]
 SOURCE = "registers/passo.rdl"
 GENERATOR = "tools/generate_registers.py"
+HELPER = "tools/generated.py"
 VERILOG = "rtl/passo_registers.vh"
 C = "protocol/passo_registers.h"
 OUTPUTS = [VERILOG, C, "protocol/passo_words.h", "sim/passo/registers.py", "docs/registers.md"]
@@ -100,9 +101,9 @@ def test_generated_files_are_fresh():
 
 @pytest.mark.parametrize("stale", OUTPUTS)
 def test_check_names_stale_files(tmp_path: Path, stale: str):
-    for name in [SOURCE, GENERATOR, *OUTPUTS]:
+    for name in [SOURCE, GENERATOR, HELPER, *OUTPUTS]:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-    for name in [SOURCE, GENERATOR]:
+    for name in [SOURCE, GENERATOR, HELPER]:
         shutil.copy(ROOT / name, tmp_path / name)
     assert run(sys.executable, GENERATOR, cwd=tmp_path).returncode == 0
     assert run(sys.executable, GENERATOR, "--check", cwd=tmp_path).returncode == 0

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Generate the forms of a move, in C, in Python and in the documentation, from schema/moves.toml."""
 
-import argparse
 import sys
 from pathlib import Path
 
+from generated import is_check, keep
 from moves import c, docs, python
 from moves.schema import SOURCE, SchemaError, read
 
@@ -21,10 +21,7 @@ PAGES = ("docs/planning.md", "docs/console.md")
 
 def main() -> int:
     """Write the files, or compare them."""
-    parser = argparse.ArgumentParser(description=f"Generate the forms of a move from {SOURCE}.")
-    parser.add_argument("--check", action="store_true", help="only tell which files are not up to date")
-    check = parser.parse_args().check
-
+    check = is_check(f"Generate the forms of a move from {SOURCE}.")
     try:
         schema = read(ROOT)
         made = {name: write(schema) for name, write in OUTPUTS.items()}
@@ -33,17 +30,7 @@ def main() -> int:
     except SchemaError as error:
         print(f"{SOURCE}: {error}", file=sys.stderr)
         return 2
-    stale = []
-    for name, text in made.items():
-        path = ROOT / name
-        if path.exists() and path.read_text(encoding="utf-8") == text:
-            continue
-        stale.append(name)
-        if not check:
-            path.write_text(text, encoding="utf-8")
-    for name in stale:
-        print(f"{name} is stale: run 'make generate'" if check else f"wrote {name}")
-    return int(check and bool(stale))
+    return keep(ROOT, made, check)
 
 
 if __name__ == "__main__":

@@ -21,7 +21,6 @@ passo_unpack_<name>() in C, and a class with pack() and unpack() in Python.
 A field that is alone in its register and has its name does not repeat it: CHANNEL_RATE_TARGET_LSB.
 """
 
-import argparse
 import re
 import sys
 from collections import Counter
@@ -31,6 +30,7 @@ from itertools import groupby
 from pathlib import Path
 from textwrap import wrap
 
+from generated import is_check, keep
 from systemrdl import RDLCompiler
 from systemrdl.node import AddressableNode, FieldNode, RegNode
 
@@ -575,22 +575,9 @@ OUTPUTS = {
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=f"Generate the register definitions from {SOURCE}.")
-    parser.add_argument("--check", action="store_true", help="only tell which files are not up to date")
-    check = parser.parse_args().check
-
+    check = is_check(f"Generate the register definitions from {SOURCE}.")
     source = read_source()
-    stale = []
-    for name, write in OUTPUTS.items():
-        path, text = ROOT / name, write(source)
-        if path.exists() and path.read_text(encoding="utf-8") == text:
-            continue
-        stale.append(name)
-        if not check:
-            path.write_text(text, encoding="utf-8")
-    for name in stale:
-        print(f"{name} is stale: run 'make generate'" if check else f"wrote {name}")
-    return int(check and bool(stale))
+    return keep(ROOT, {name: write(source) for name, write in OUTPUTS.items()}, check)
 
 
 if __name__ == "__main__":

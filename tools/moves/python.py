@@ -16,44 +16,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import ClassVar
 
+from passo.form_table import Form, Key, Points, Rule
 from passo.registers import Shape
-'''
-
-CLASSES = '''
-Points = tuple[int, ...]  # the points of a user's shape; empty with any other profile
-
-
-@dataclass(frozen=True)
-class Key:
-    """A key of a form, and what its value becomes in the struct of the planner."""
-
-    name: str
-    kind: str
-    member: str | None  # of the struct
-    factor: int | str | None = None  # "clock_hz": times the clock; none: as it is
-    default: int | str | None = None  # a number, or the name of another key
-    low: int = 0  # of a whole number
-    high: int = 0
-    file_only: bool = False
-
-
-@dataclass(frozen=True)
-class Rule:
-    """What is checked when all keys are read: `key` excludes the other, needs it, or is above zero."""
-
-    kind: str
-    key: str
-    other: str
-
-
-@dataclass(frozen=True)
-class Form:
-    """A form of a move: passo_plan_NAME() plans it."""
-
-    name: str
-    keys: tuple[Key, ...]
-    rules: tuple[Rule, ...] = ()
-    told_by: str | None = None  # the key that tells it, so that `method` need not
 '''
 
 
@@ -124,7 +88,7 @@ def module(schema: Schema) -> str:
         lines.append(f"{constant.name.upper()} = {constant.value}")
     names = ", ".join(map(_quoted, schema.profiles))
     lines += ["", f"PROFILES = ({names})", f'USER = "{schema.user_name}"  # the profile that is a table']
-    lines += [f"USER_BANK = Shape.{schema.user_bank.upper()}  # where that table goes", CLASSES, ""]
+    lines += [f"USER_BANK = Shape.{schema.user_bank.upper()}  # where that table goes", ""]
     lines.append("FORMS = {")
     for form in schema.forms:
         lines += _form(schema, form)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from passo.form_table import Rule
 from passo.registers import CHANNEL_AXIS_COUNT, Shape
 
 SOURCE = "schema/moves.toml"
@@ -74,15 +75,6 @@ class Key:
         if self.console_default is not None:
             return self.console_default
         return "" if self.optional else self.default
-
-
-@dataclass(frozen=True)
-class Rule:
-    """What is checked when all keys are read."""
-
-    kind: str
-    key: str
-    other: str
 
 
 @dataclass(frozen=True)
