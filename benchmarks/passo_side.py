@@ -14,6 +14,7 @@ from passo import compiler, moves
 from passo.build import Parameters
 from passo.move_forms import USER
 from passo.plan import ALPHA_ONE, ALPHA_RESET, Q48, Plan, plan_move
+from passo.registers import Shape
 
 from benchmarks import sources
 from benchmarks.ideal import Ideal, Phase, by_speed, in_time
@@ -23,7 +24,7 @@ CLOCK_HZ = 100_000_000
 PARAMETERS = Parameters(axes=4)
 TICK_SECONDS = (1 << PARAMETERS.tick_log2) / CLOCK_HZ
 
-SHAPES = ("linear", "cosine", "sigmoid", "ease")  # by their numbers
+SHAPES = [shape.name.lower() for shape in Shape]  # by their numbers
 
 SOURCE = Path(__file__).with_name("steps.c")
 DECLARATIONS = """

@@ -47,7 +47,7 @@ enum passo_plan_error {
 	PASSO_PLAN_NO_SCALE,             /* an axis that moves has 0 steps per millimetre */
 	PASSO_PLAN_NO_AXIS_SPEED,        /* an axis that moves has a largest speed of 0 */
 	PASSO_PLAN_NO_AXIS_ACCELERATION, /* an axis that moves has a largest acceleration of 0 */
-	PASSO_PLAN_BAD_BANK,             /* not one of the three banks of tables */
+	PASSO_PLAN_BAD_BANK,             /* not one of the banks of tables */
 	PASSO_PLAN_TABLE_START,          /* point 0 of a table is not 0 */
 	PASSO_PLAN_TABLE_FALLS           /* a point of a table is lower than the one before */
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Pulse shapes, 256 points each, bank 1 first; bank 0, linear, needs no table.
-// Made by tools/generate_shapes.py; to be included where `reg [15:0] points [0:767]` is declared.
+// Made by tools/generate_shapes.py; to be included where `points` is declared.
 
 initial begin
   // 1: cosine

@@ -89,7 +89,7 @@ def verilog() -> str:
     lines = [
         "// SPDX-License-Identifier: MIT",
         "// Pulse shapes, 256 points each, bank 1 first; bank 0, linear, needs no table.",
-        "// Made by tools/generate_shapes.py; to be included where `reg [15:0] points [0:767]` is declared.",
+        "// Made by tools/generate_shapes.py; to be included where `points` is declared.",
         "",
         "initial begin",
     ]
@@ -104,7 +104,8 @@ def verilog() -> str:
 
 def c_header() -> str:
     """Return the text of protocol/passo_shapes.h."""
-    return """\
+    names = banks()
+    return f"""\
 /* SPDX-License-Identifier: MIT
  * Pulse shapes as the core has them after reset. Made by tools/generate_shapes.py.
  */
@@ -113,11 +114,30 @@ def c_header() -> str:
 
 #include <stdint.h>
 
-/* Banks 1 to 3: cosine, sigmoid, ease. Point k is shape(k / 256) * 65536; point 256 is always 65536. */
-extern const uint16_t passo_shapes[3][256];
+#define PASSO_BANKS {len(names)}u
+#define PASSO_BANK_POINTS {POINTS}u
+
+/* Banks 1 to {len(names)}: {", ".join(names)}.
+ * Point k is shape(k / 256) * 65536; point 256 is always 65536. */
+extern const uint16_t passo_shapes[PASSO_BANKS][PASSO_BANK_POINTS];
+/* Where their points are written. */
+extern const uint16_t passo_shape_addresses[PASSO_BANKS];
+
+/* The bank that has a point at an address, 1 to {len(names)}, or 0. */
+unsigned passo_bank_at(uint32_t address);
 
 #endif
 """
+
+
+BANK_AT = """\
+unsigned passo_bank_at(uint32_t address)
+{
+	for (unsigned bank = 1; bank <= PASSO_BANKS; bank++)
+		if (address - passo_shape_addresses[bank - 1u] < PASSO_BANK_POINTS)
+			return bank;
+	return 0;
+}""".splitlines()
 
 
 def c_source() -> str:
@@ -128,13 +148,17 @@ def c_source() -> str:
         " */",
         '#include "passo_shapes.h"',
         "",
-        "const uint16_t passo_shapes[3][256] = {",
+        '#include "passo_registers.h"',
+        "",
+        "const uint16_t passo_shapes[PASSO_BANKS][PASSO_BANK_POINTS] = {",
     ]
     for name, table in banks().items():
         lines.append(f"\t{{ /* {name} */")
         lines += _rows([f"{value:5}," for value in table], 12, "\t\t")
         lines.append("\t},")
-    lines.append("};")
+    lines += ["};", "", "const uint16_t passo_shape_addresses[PASSO_BANKS] = {"]
+    lines += [f"\tPASSO_ADDRESS_{name.upper()}_BASE," for name in banks()]
+    lines += ["};", "", *BANK_AT]
     return "\n".join(lines) + "\n"
 
 

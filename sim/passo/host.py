@@ -20,8 +20,8 @@ class HostError(Exception):
 
 
 def load_table(link: Link, bank: int, points: Sequence[int]) -> None:
-    """Rewrite a shape's bank (1 to 3), while no motion is prepared or runs."""
-    address = r.ADDRESS_COSINE_BASE + (bank - 1) * len(points)
+    """Rewrite a shape's bank (from 1), while no motion is prepared or runs."""
+    address = getattr(r, f"ADDRESS_{r.Shape(bank).name}_BASE")
     for k in range(0, len(points), frame.PAYLOAD_MAX):
         link.write(address + k, *points[k : k + frame.PAYLOAD_MAX])
 

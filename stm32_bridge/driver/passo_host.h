@@ -28,6 +28,7 @@ extern "C" {
 
 #include "passo_error.h"
 #include "passo_frame.h"
+#include "passo_shapes.h"
 
 /* Tries of a frame, the first included, unless the hardware says otherwise. */
 #define PASSO_TRIES 8u
@@ -88,9 +89,9 @@ struct passo_host {
 	bool proving; /* the present frame was executed, but by which core is still to be proved */
 	/* Free places in the queues of the status channel: never more than there are; 255: or more. */
 	uint8_t line_room, ramp_room;
-	enum passo_error *posted; /* where the result of the posted frame goes; null: none */
-	uint32_t table[3];        /* what the banks of shapes hold; see passo_table.c */
-	size_t words;             /* of the present frame */
+	enum passo_error *posted;    /* where the result of the posted frame goes; null: none */
+	uint32_t table[PASSO_BANKS]; /* what the banks of shapes hold; see passo_table.c */
+	size_t words;                /* of the present frame */
 	uint32_t send[PASSO_FRAME_WORDS_MAX], receive[PASSO_FRAME_WORDS_MAX];
 };
 
