@@ -151,9 +151,7 @@ def bad_values(core: Core) -> None:
         [*good.words(), *good.words(), *line_words(2, 10)],
     ]
     ramps = [
-        [1 << 3, 0, 1, 0, 1],
-        [1 << 6, 0, 1, 0, 1],
-        [1 << 15, 0, 1, 0, 1],
+        *([1 << bit, 0, 1, 0, 1] for bit in range(16) if not r.RAMP_CONTROL_DEFINED >> bit & 1),
         [0x8000 << 16, 1, 1, 0, 1],
         [0x8001 << 16, 0, 1, 0, 1],
         [0xFFFF << 16, 0, 1, 0, 1],

@@ -385,7 +385,7 @@ def test_ramp_time_instead_of_acceleration(c: Any) -> None:
 
 REFUSED = {
     "BAD_CLOCK": [{"clock_hz": 0}, {"tick_log2": 6}, {"tick_log2": 17}, {"tick_log2": 255}],
-    "BAD_PROFILE": [{"profile": 4}, {"profile": 2**32 - 1}],
+    "BAD_PROFILE": [{"profile": len(PROFILES)}, {"profile": 2**32 - 1}],
     "NO_STEPS": [{"steps": (0,)}, {"steps": (0,) * 8}],
     "TOO_MANY_STEPS": [
         {"steps": (SUBSTEPS_MAX + 1,)},

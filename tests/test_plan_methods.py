@@ -194,7 +194,7 @@ REFUSED = [
     ("below_speed", {"speed": 0}, "NO_SPEED"),
     ("below_speed", {"total_clocks": 127}, "NO_TIME"),
     ("below_speed", {"total_clocks": 2**64 - 1}, "TOO_LONG"),
-    ("below_speed", {"profile": 4}, "BAD_PROFILE"),
+    ("below_speed", {"profile": len(PROFILES)}, "BAD_PROFILE"),
     ("below_speed", {"steps": (0, 0)}, "NO_STEPS"),
     ("below_speed", {"steps": (600_000,), "speed": 2**64 - 1}, "TOO_FAST"),
     ("at_speed", {"speed": 0}, "NO_SPEED"),

@@ -72,7 +72,7 @@ def banks() -> dict[str, list[int]]:
 
     for name, table in result.items():
         whole = [*table, ONE]
-        assert whole[0] == 0 and all(low <= high for low, high in pairwise(whole)), name
+        assert whole[0] == 0 and all(low <= high for low, high in pairwise(whole)) and table[-1] < ONE, name
         # What makes a ramp of these two shapes cover exactly the mean of its ends.
         if name != "ease":
             assert all(whole[k] + whole[POINTS - k] == ONE for k in range(POINTS + 1)), name

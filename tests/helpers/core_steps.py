@@ -4,9 +4,9 @@
 """
 
 import importlib.util
-import math
 from fractions import Fraction
 from functools import cache
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,7 @@ from passo.registers import Shape
 from passo.toolchain import paths
 
 from benchmarks.ideal import shape_area
-from tests.helpers.plans import AXES, COSINE, EASE, LINEAR, ONE, SIGMOID, Plan, Ramp
+from tests.helpers.plans import AXES, EASE, LINEAR, ONE, Plan, Ramp
 
 SIGMOID_ALPHA = 5
 EXACT_TICKS = 1 << 21  # longer ramps are not summed tick by tick
@@ -185,7 +185,11 @@ def table_deviation(ramp_shape: int) -> float:
     )
 
 
-STEEPEST = {LINEAR: 1.0, COSINE: math.pi / 2, SIGMOID: 2.6, EASE: 2.0}
+@cache
+def steepest(ramp_shape: int) -> float:
+    """The steepest that a shape may be, by its table, whose points are rounded."""
+    points = tables()[ramp_shape]
+    return 1.0 if ramp_shape == LINEAR else max(b - a + 1 for a, b in pairwise(points)) / 256
 
 
 def curve_deviation(plan: Plan) -> float:
@@ -198,7 +202,7 @@ def curve_deviation(plan: Plan) -> float:
     for ramp in plan.ramps:
         if ramp.ticks:
             change = abs(ramp.velocity_end - ramp.velocity_start) / ONE
-            staircase = max(staircase, change * plan.machine.tick / ramp.ticks * STEEPEST[ramp.shape] / 6)
+            staircase = max(staircase, change * plan.machine.tick / ramp.ticks * steepest(ramp.shape) / 6)
             total += change * ramp.ticks * plan.machine.tick * (table_deviation(ramp.shape) + 2**-24)
     return total + staircase
 
