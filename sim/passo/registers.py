@@ -504,7 +504,8 @@ IDENTIFICATION_LSB = 0
 IDENTIFICATION_BITS = 32
 IDENTIFICATION_RESET = 0x5041534F
 
-# Core: Version. Version of the register map and the link.
+# Core: Version. Version of the register map and the link. That of the release is in the file VERSION of
+# the repository.
 ADDRESS_VERSION = 0x001
 VERSION_PATCH_LSB = 0
 VERSION_PATCH_BITS = 8

@@ -11,8 +11,6 @@
 #include "passo.h"
 #include "passo_forms.h"
 
-#define PASSO_CONSOLE_VERSION "0.1.0"
-
 /* Characters of a line, its end not counted. */
 #define PASSO_LINE_MAX 255u
 
