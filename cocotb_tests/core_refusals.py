@@ -69,7 +69,8 @@ def wrong_operations_and_addresses(core: Core) -> None:
     no_axis = axis + core.axes * r.CHANNEL_AXIS_STRIDE
     write, push, read = Operation.WRITE, Operation.PUSH, Operation.READ
     last = r.CHANNEL_DRAIN_VELOCITY
-    holes = (0x006, 0x0FF, channel + 5, channel + 0x22, no_axis, axis + 5, beyond, 0xA00, 0xCFF)
+    before_tables = min(register.word for register in r.TABLE if register.count == 256) - 1
+    holes = (0x006, 0x0FF, channel + 5, channel + 0x22, no_axis, axis + 5, beyond, 0xA00, before_tables)
     cases = [
         *((Verdict.BAD_OPERATION, request(number, 100, 1, r.ADDRESS_RUN, [1])) for number in (0, 4, 7, 15)),
         (Verdict.BAD_OPERATION, request(push, 101, 1, r.ADDRESS_RUN, [1])),

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The file list and the FuseSoC core name the sources that are there, and work; there is one version."""
 
+import os
 import re
 import shutil
 import subprocess
@@ -10,6 +11,7 @@ from pathlib import Path
 
 import passo
 import pytest
+import yaml
 from passo.toolchain import environment, paths
 from passo_fpga.devices import DEVICES
 from passo_fpga.flow import Design
@@ -149,6 +151,14 @@ def test_the_bench_sees_faults(tmp_path: Path, fault: str) -> None:
     assert call("iverilog", *built, "-c", "rtl/passo.f", cwd=paths.root).returncode == 0
     output = call("vvp", tmp_path / "bench", cwd=tmp_path).stdout
     assert f"FAILED: {said}" in output and "passed" not in output
+
+
+def test_the_workflow_calls_what_is_there() -> None:
+    """By fixed versions of what others wrote."""
+    job = yaml.safe_load((paths.root / ".github/workflows/ci.yml").read_text())["jobs"]["test"]
+    assert all(re.search("@[0-9a-f]{40}$", step["uses"]) for step in job["steps"] if "uses" in step)
+    (command,) = (step["run"] for step in job["steps"] if "run" in step)
+    assert os.access(paths.root / command, os.X_OK)
 
 
 def test_the_release_is_the_same_everywhere() -> None:
