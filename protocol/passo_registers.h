@@ -344,6 +344,11 @@ enum passo_operation {
 	PASSO_OPERATION_WRITE = 2, /* Write consecutive registers. */
 	PASSO_OPERATION_PUSH  = 3  /* Write every word to the same address: lines and ramps. */
 };
+/* Their names. */
+#define PASSO_OPERATIONS(EACH) \
+	EACH(READ) \
+	EACH(WRITE) \
+	EACH(PUSH)
 
 /* What became of a frame. */
 enum passo_verdict {
@@ -358,6 +363,18 @@ enum passo_verdict {
 	PASSO_VERDICT_BUSY            = 8, /* The state of the channel does not allow it (see the register). */
 	PASSO_VERDICT_BAD_VALUE       = 9  /* M = 0 or M >= 2^30, N_i > M, a velocity above 1/2, drain velocity 0, reserved bits set. */
 };
+/* Their names. */
+#define PASSO_VERDICTS(EACH) \
+	EACH(OK) \
+	EACH(DUPLICATE) \
+	EACH(BAD_CRC) \
+	EACH(BAD_LENGTH) \
+	EACH(BAD_OPERATION) \
+	EACH(UNKNOWN_ADDRESS) \
+	EACH(READ_ONLY) \
+	EACH(QUEUE_FULL) \
+	EACH(BUSY) \
+	EACH(BAD_VALUE)
 
 /* What a channel does. */
 enum passo_state {
@@ -369,6 +386,15 @@ enum passo_state {
 	PASSO_STATE_DRAIN   = 5, /* Missing substeps of the LAST line are made at drain_velocity. */
 	PASSO_STATE_STOPPED = 6  /* Stopped by a command or a fault; queues flushed. CLEAR leads back to IDLE. */
 };
+/* Their names. */
+#define PASSO_STATES(EACH) \
+	EACH(IDLE) \
+	EACH(PREPARE) \
+	EACH(ARMED) \
+	EACH(RUN) \
+	EACH(SETTLE) \
+	EACH(DRAIN) \
+	EACH(STOPPED)
 
 /* Why a channel stopped. */
 enum passo_cause {
@@ -379,6 +405,14 @@ enum passo_cause {
 	PASSO_CAUSE_RAMP_UNDERRUN = 4, /* The ramps ran out at speed. */
 	PASSO_CAUSE_STEP_OVERRUN  = 5  /* Steps came faster than the pin timing of an axis allows. */
 };
+/* Their names. */
+#define PASSO_CAUSES(EACH) \
+	EACH(NONE) \
+	EACH(STOP) \
+	EACH(ABORT) \
+	EACH(LINE_UNDERRUN) \
+	EACH(RAMP_UNDERRUN) \
+	EACH(STEP_OVERRUN)
 
 /* How a ramp leads the velocity: s for a progress u, both 0 .. 1. */
 enum passo_shape {
@@ -387,5 +421,11 @@ enum passo_shape {
 	PASSO_SHAPE_SIGMOID = 2, /* Logistic function over -5 .. 5, scaled to begin at 0 and end at 1. */
 	PASSO_SHAPE_EASE    = 3  /* u^2. */
 };
+/* Their names. */
+#define PASSO_SHAPES(EACH) \
+	EACH(LINEAR) \
+	EACH(COSINE) \
+	EACH(SIGMOID) \
+	EACH(EASE)
 
 #endif

@@ -182,6 +182,13 @@ def test_drives_are_off_from_configuration_on(tmp_path: Path, parameters: str, l
     assert said.count("\n") > 200 and set(said.split()) == {*levels.split()}
 
 
+@each_board
+def test_board_is_on_the_pages(board: Board) -> None:
+    """docs/fpga.md leads to its table, README.md has its name."""
+    assert f"[{board.name}](../syn/{board.name}/board.toml)" in (paths.docs / "fpga.md").read_text()
+    assert f"`{board.name}`" in (paths.root / "README.md").read_text().replace("BOARD=", "`")
+
+
 def test_boards_are_listed_and_unknown_ones_refused(capsys: pytest.CaptureFixture[str]) -> None:
     """`make synth` without a board tells which there are; so does the error."""
     assert synth.main([]) == 0

@@ -328,6 +328,8 @@ def write_c(source: Source) -> str:
         ]
         lines += ["", f"/* {enum.text} */", f"enum passo_{enum.name} {{"]
         lines += [f"\t{row}" for row in aligned(rows)] + ["};"]
+        listed = " \\\n".join(f"\tEACH({name})" for name, _, _ in enum.members)
+        lines += ["/* Their names. */", f"#define PASSO_{enum.name.upper()}S(EACH) \\\n{listed}"]
     return "\n".join([*lines, "", "#endif", ""])
 
 
