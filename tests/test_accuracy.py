@@ -8,14 +8,16 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from passo import random_cases
+from passo.curve import shapes_of
 from passo.moves import MoveBelowSpeed, MoveInTime
 from passo.plan import ALPHA_ONE, plan_move, sigmoid_table
+from passo.registers import Shape
 
 from benchmarks import passo_side, sources
 from benchmarks.accuracy import Measured, gather
 from benchmarks.cases import METHODS, NAMED, Method, method_of, random_moves
 from benchmarks.forms import FORMS, measure_form, measure_forms
-from benchmarks.ideal import Phase, by_speed, in_time
+from benchmarks.ideal import Phase, by_speed, in_time, shape_area, shape_value
 from benchmarks.measure import Result, check_with_model, measure
 from benchmarks.passo_side import CLOCK_HZ, PARAMETERS
 from benchmarks.sources import Cosine, MultiAxis, Sigmoid, Trapezoid
@@ -58,6 +60,16 @@ def test_ideal_in_time() -> None:
     assert curve.position(np.array([0.1, 0.2, 0.3, 0.4])) == pytest.approx(
         [6400 / 6, 3200, 6400 * 5 / 6, 6400]
     )
+
+
+@pytest.mark.parametrize("shape", Shape, ids=lambda shape: shape.name.lower())
+def test_plots_follow_the_same_shapes(shape: Shape) -> None:
+    """With an integral that is that of the shape."""
+    move = MoveInTime((100,), "linear", Fraction(1, 10), Fraction(1, 20))
+    u = np.linspace(0, 1, 257)
+    value, area = shapes_of(plan_move(move, CLOCK_HZ, PARAMETERS))[shape](u)
+    name = shape.name.lower()
+    assert value == pytest.approx(shape_value(name, 5, u)) and area == pytest.approx(shape_area(name, 5, u))
 
 
 @pytest.mark.parametrize("shape", ("linear", "cosine", "sigmoid", "ease", "quintic"))
