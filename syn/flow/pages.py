@@ -26,7 +26,12 @@ def write(report: dict[str, Any]) -> None:
     parts = {
         "goals": _markdown(*_goals(report)),
         "devices": "\n\n".join(_device(report, name) for name in DEVICES),
-        "split": "\n\n".join(_split(report, name) for name in report["split"]),
+        "doors": _markdown(*_doors(report)),
+        "split": "\n\n".join(
+            f"### {DEVICES[name].title}\n\n{_modules(rows)}" for name, rows in report["split"].items()
+        ),
+        "channel": _modules(report["channel"]),
+        "channel_device": DEVICES[report["channel_device"]].title,
         "split_size": "{} channel, {} axes".format(*report["split_size"]),
         "by_seed": "\n".join(f"* {line}" for line in _by_seed(report)),
         "seeds": str(len(report["seeds"])),
@@ -175,15 +180,23 @@ def _cost(small: Row, large: Row, steps: int, unit: str) -> str:
     return f"{of('size'):.0f} {unit}, {of('ff'):.0f} FF, {of('bram'):.3g} BRAM"
 
 
-def _split(report: dict[str, Any], name: str) -> str:
-    header = ("module", "instances", "LUT", "FF", "carry", "BRAM")
+def _doors(report: dict[str, Any]) -> tuple[Sequence[str], list[list[str]]]:
+    header = ("FPGA", "top", "size", "lowest MHz", "median MHz")
     rows = [
         [
-            f"`{row['module']}`",
-            *(f"{row[column]:,}" for column in ("instances", "LUT", "FF", "carry", "BRAM")),
+            DEVICES[row["device"]].title,
+            f"`{row['top']}`",
+            f"{row['size']:,} {DEVICES[row['device']].family.size_unit}",
+            _mhz(row["f_max_minimum"]),
+            _mhz(row["f_max_median"]),
         ]
-        for row in report["split"][name]
+        for row in sorted(report["doors"], key=lambda row: list(DEVICES).index(row["device"]))
     ]
-    total = [f"{sum(row[column] for row in report['split'][name]):,}" for column in header[2:]]
-    rows.append(["all", "", *total])
-    return f"### {DEVICES[name].title}\n\n{_markdown(header, rows)}"
+    return header, rows
+
+
+def _modules(modules: Sequence[Row]) -> str:
+    columns = ("instances", "LUT", "FF", "carry", "BRAM")
+    rows = [[f"`{row['module']}`", *(f"{row[column]:,}" for column in columns)] for row in modules]
+    total = [f"{sum(row[column] for row in modules):,}" for column in columns[1:]]
+    return _markdown(("module", *columns), [*rows, ["all", "", *total]])

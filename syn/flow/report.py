@@ -23,7 +23,7 @@ from passo.toolchain import paths
 from passo_fpga import pages
 from passo_fpga.devices import DEVICES, SPI_MHZ, Device
 from passo_fpga.flow import Design, Placed, cells, place, synthesize
-from passo_fpga.split import split
+from passo_fpga.split import difference, split
 from passo_fpga.tools import ToolError, prepare, versions, workers
 
 REPORT = paths.build / "report.json"
@@ -32,8 +32,12 @@ GOAL_SEEDS = range(1, 9)  # of the designs that have a goal
 SIZES = ((1, 1), (1, 2), (1, 4), (1, 6), (1, 8), (2, 1), (2, 2), (4, 1), (4, 2))  # channels, axes
 SPLIT_DEVICES = ("hx8k", "ecp5-25")
 SPLIT_SIZE = (1, 4)
+CHANNEL_DEVICE = "hx8k"  # of the price of a further channel, module by module
+SPI = "passo_spi_top"
+BUS_DOORS = ("passo_wishbone", "passo_axi_lite")
+DOOR_SIZE = (1, 4)
 
-Key = tuple[str, tuple[int, int]]  # device, (channels, axes)
+Key = tuple[str, str, tuple[int, int]]  # device, top, (channels, axes)
 
 
 @dataclass(frozen=True)
@@ -68,11 +72,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         message = f"there is no device '{min(unknown)}'; choose of {', '.join(DEVICES)}"
         print(f"make report: {message}", file=sys.stderr)
         return 2
-    goals = [(DEVICES[goal.device], (goal.channels, goal.axes)) for goal in GOALS if goal.device in chosen]
-    others = [] if options.quick else list(product([DEVICES[name] for name in chosen], SIZES))
+    goals = [(goal.device, SPI, (goal.channels, goal.axes)) for goal in GOALS if goal.device in chosen]
+    others = (
+        [] if options.quick else [*product(chosen, (SPI,), SIZES), *product(chosen, BUS_DOORS, (DOOR_SIZE,))]
+    )
     whole = not options.quick and set(chosen) == set(DEVICES)
     try:
-        report = measure(list(dict.fromkeys(goals + others)), splits=not options.quick)
+        report = measure(
+            list(dict.fromkeys(goals if options.quick else goals + others)), splits=not options.quick
+        )
     except ToolError as error:
         print(error, file=sys.stderr)
         return 1
@@ -89,32 +97,31 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 0
 
 
-def core(device: Device, size: tuple[int, int]) -> Design:
-    """The core alone, with its ports as pins."""
+def core(device: Device, size: tuple[int, int], top: str = SPI) -> Design:
+    """The core alone behind one of its front doors, with its ports as pins."""
     channels, axes = size
     parameters = {"CHANNELS": channels, "AXES": axes, **device.core}
-    return Design(f"{device.name}-{channels}x{axes}", device, parameters=parameters)
+    door = "" if top == SPI else f"-{top.removeprefix('passo_')}"
+    return Design(f"{device.name}-{channels}x{axes}{door}", device, top, parameters)
 
 
-def measure(wanted: Sequence[tuple[Device, tuple[int, int]]], splits: bool) -> dict[str, Any]:
+def measure(wanted: Sequence[Key], splits: bool) -> dict[str, Any]:
     """Run what is not there yet, as many at a time as the machine can, and gather the figures."""
     tell = stages()
-    devices = list(dict.fromkeys(device for device, _ in wanted))
+    devices = list(dict.fromkeys(DEVICES[name] for name, _, _ in wanted))
     prepare(dict.fromkeys(program for device in devices for program in device.family.programs), tell)
-    designs = {(device.name, size): core(device, size) for device, size in wanted}
-    hierarchical = {
-        name: replace(core(DEVICES[name], SPLIT_SIZE), name=f"{name}-split", flatten=False)
-        for name in SPLIT_DEVICES
-        if splits and DEVICES[name] in devices
-    }
+    designs = {key: core(DEVICES[key[0]], key[2], key[1]) for key in wanted}
+    named = {device.name for device in devices} if splits else set()
+    hierarchical = {name: _hierarchical(name, SPLIT_SIZE) for name in SPLIT_DEVICES if name in named}
+    channels = [_hierarchical(CHANNEL_DEVICE, (number, 1)) for number in (1, 2) if CHANNEL_DEVICE in named]
     with ThreadPoolExecutor(workers()) as pool:
-        count = _counter(len(designs) + len(hierarchical))
+        count = _counter(len(designs) + len(hierarchical) + len(channels))
 
         def make(design: Design) -> None:
             synthesize(design)
             tell(f"synthesis {count()}: {design.name}")
 
-        list(pool.map(make, [*designs.values(), *hierarchical.values()]))
+        list(pool.map(make, [*designs.values(), *hierarchical.values(), *channels]))
 
         count = _counter(sum(len(_seeds(key)) for key in designs))
 
@@ -136,14 +143,22 @@ def measure(wanted: Sequence[tuple[Device, tuple[int, int]]], splits: bool) -> d
         "goal_seeds": list(GOAL_SEEDS),
         "tools": {device.name: versions(device.family.programs) for device in devices},
         "goals": [asdict(goal) for goal in GOALS if DEVICES[goal.device] in devices],
-        "designs": [_row(designs[key], key, placed[key]) for key in designs],
+        "designs": [_row(designs[key], key, placed[key]) for key in designs if key[1] == SPI],
+        "doors": [_row(designs[key], key, placed[key]) for key in designs if key[2] == DOOR_SIZE],
         "split": {name: split(design) for name, design in hierarchical.items()},
         "split_size": list(SPLIT_SIZE),
+        "channel_device": CHANNEL_DEVICE,
+        "channel": difference(*map(split, channels)) if channels else [],
     }
 
 
+def _hierarchical(name: str, size: tuple[int, int]) -> Design:
+    design = core(DEVICES[name], size)
+    return replace(design, name=f"{design.name}-split", flatten=False)
+
+
 def _seeds(key: Key) -> Sequence[int]:
-    goals = [(goal.device, (goal.channels, goal.axes)) for goal in GOALS]
+    goals = [(goal.device, SPI, (goal.channels, goal.axes)) for goal in GOALS]
     return GOAL_SEEDS if key in goals else SEEDS
 
 
@@ -163,7 +178,8 @@ def _counter(total: int) -> Callable[..., str]:
 
 def _place(design: Design, seed: int) -> Placed:
     mhz = design.device.target_mhz
-    return place(design, seed, mhz, {"clk": mhz, "spi_sclk": SPI_MHZ})
+    clocks = {"clk": mhz, "spi_sclk": SPI_MHZ} if design.top == SPI else {"clk": mhz}
+    return place(design, seed, mhz, clocks)
 
 
 def _words(placed: Placed) -> str:
@@ -173,13 +189,14 @@ def _words(placed: Placed) -> str:
 
 
 def _row(design: Design, key: Key, placed: Sequence[Placed]) -> dict[str, Any]:
-    device, (channels, axes) = key
+    device, top, (channels, axes) = key
     made = cells(design)
     # a seed with which nextpnr finds no place for some cell, or no end of routing, counts as 0 MHz
     reached = [run.main_clock[0] if run.fits else 0.0 for run in placed]
     median = statistics.median(reached)
     return {
         "device": device,
+        "top": top,
         "channels": channels,
         "axes": axes,
         "fits": median > 0,

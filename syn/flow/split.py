@@ -35,6 +35,21 @@ def split(design: Design) -> list[dict[str, Any]]:
     return sorted(found, key=lambda row: -row["LUT"])
 
 
+def difference(small: list[dict[str, Any]], large: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """What a larger design has more of each module; the largest first, without modules it has no more of."""
+    before = {row["module"]: _counts(row) for row in small}
+    more = []
+    for row in large:
+        counts = _counts(row)
+        counts.subtract(before.get(row["module"], Counter()))
+        more.append({"module": row["module"], **counts})
+    return sorted((row for row in more if row["instances"]), key=lambda row: -row["LUT"])
+
+
+def _counts(row: dict[str, Any]) -> Counter[str]:
+    return Counter({column: number for column, number in row.items() if column != "module"})
+
+
 def _plain(name: str) -> str:
     found = _PLAIN.match(name)
     return found.group(1) if found else name
