@@ -227,7 +227,7 @@ end
 `ifdef INVARIANTS
 `define HOLDS assert
 `else
-`define HOLDS if (f_age != F_GIVEN) assume
+`define HOLDS if (f_age == F_GIVEN) begin end else assume
 `endif
 localparam [2:0] F_GIVEN = 3'd5;  // the depth of the induction
 reg [2:0] f_age = 3'd0;
