@@ -78,8 +78,8 @@ struct passo_move_by_speed {
 	uint64_t           ramp_clocks;           /* clocks: of each full ramp, instead of accelerations */
 };
 
-/* In a given time, never above a speed, with the longest and so the gentlest ramps that allow it: total - n
- * / speed each, at most half the total time (then the speed is not reached). */
+/* In a given time, never above a speed. Its ramps are the longest, so the gentlest, that allow it: total -
+ * n / speed each, at most half the total time (then the speed is not reached). */
 struct passo_move_below_speed {
 	int32_t            steps[PASSO_AXES_MAX]; /* per axis; the sign is the direction */
 	enum passo_profile profile;               /* shape of the ramps */
@@ -96,8 +96,8 @@ struct passo_move_at_speed {
 	uint64_t           ramp_clocks;           /* clocks: of each of the two ramps; 0 to steps / speed */
 };
 
-/* Trapezoid on several axes, from and to the start speed; a triangle of the same acceleration if the move
- * is too short. The axis with the most steps leads. */
+/* Trapezoid on several axes, from and to the start speed. A move too short for it is a triangle of the same
+ * acceleration. The axis with the most steps leads. */
 struct passo_move_axes {
 	int32_t  steps[PASSO_AXES_MAX]; /* per axis; the sign is the direction */
 	uint64_t start_speed;           /* UQ32.32 steps/s: the move starts at and stops from this speed */

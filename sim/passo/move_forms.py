@@ -175,7 +175,7 @@ class MoveBySpeed:
 
 @dataclass(frozen=True)
 class MoveBelowSpeed:
-    """In a given time, never above a speed, with the longest and so the gentlest ramps that allow it: total - n / speed each, at most half the total time (then the speed is not reached)."""
+    """In a given time, never above a speed."""
 
     steps: tuple[int, ...]
     profile: str
@@ -199,7 +199,7 @@ class MoveAtSpeed:
 
 @dataclass(frozen=True)
 class MoveAxes:
-    """Trapezoid on several axes, from and to the start speed; a triangle of the same acceleration if the move is too short."""
+    """Trapezoid on several axes, from and to the start speed."""
 
     steps: tuple[int, ...]
     start_speed: Fraction
