@@ -38,10 +38,10 @@ WIDTH = 118  # of the tables where there is no terminal
 
 HEAD = """# Coverage
 
-Written by `make coverage`: lines and bits of the RTL that the cocotb tests reach on Verilator. A line is reached
-if each of its branches was taken in some instance of its module, a bit if it rose and fell in one. Bits that
-cannot toggle are constant by construction. They are listed below with the reason, and checked: a listed bit that
-does not exist or does toggle is an error, as is any other unreached bit or line.
+Written by `make coverage`: lines and bits of the RTL that the cocotb tests reach on Verilator. A line is
+reached if each of its branches was taken in some instance of its module, a bit if it rose and fell in one.
+Bits that cannot toggle are constant by construction. They are listed below with the reason, and checked: a
+listed bit that does not exist or does toggle is an error, as is any other unreached bit or line.
 
 """
 HEADER = ("file", "lines", "reached", "bits", "constant", "reached")
