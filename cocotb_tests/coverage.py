@@ -38,10 +38,10 @@ WIDTH = 118  # of the tables where there is no terminal
 
 HEAD = """# Coverage
 
-`make coverage` writes this page: lines and bits of the RTL that the cocotb tests reach on Verilator. A line
-is reached if each of its branches was taken in some instance of its module, a bit if it rose and fell in one.
-Bits that cannot are constant by construction; they are listed below with the reason, and checked: one that
-does not exist or rises and falls after all is an error, as is any other bit or line that is not reached.
+Written by `make coverage`: lines and bits of the RTL that the cocotb tests reach on Verilator. A line is
+reached if each of its branches was taken in some instance of its module, a bit if it rose and fell in one.
+Bits that cannot toggle are constant by construction. They are listed below with the reason, and checked: a
+listed bit that does not exist or does toggle is an error, as is any other unreached bit or line.
 
 """
 HEADER = ("file", "lines", "reached", "bits", "constant", "reached")
@@ -135,9 +135,9 @@ def page(modules: Modules, exclusions: Exclusions) -> str:
     bits = [f"* `{name}`: {_names(bits)}" for name, bits in missed_bits(modules, exclusions).items()]
     constant = [f"* `{e.file}`: {_names(e.bits)}. {e.reason}" for e in exclusions]
     sections = {
-        "Lines that no test reaches": lines,
-        "Bits that no test makes rise and fall": bits,
-        "Bits that are constant": constant,
+        "Unreached lines": lines,
+        "Bits that never toggle": bits,
+        "Constant bits": constant,
     }
     parts = [HEAD.rstrip(), "", *rows, ""]
     for title, items in sections.items():

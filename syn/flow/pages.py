@@ -26,7 +26,7 @@ def write(report: dict[str, Any]) -> None:
     parts = {
         "goals": _markdown(*_goals(report)),
         "devices": "\n\n".join(_device(report, name) for name in DEVICES),
-        "doors": _markdown(*_doors(report)),
+        "tops": _markdown(*_tops(report)),
         "split": "\n\n".join(
             f"### {DEVICES[name].title}\n\n{_modules(rows)}" for name, rows in report["split"].items()
         ),
@@ -162,7 +162,7 @@ def _sizes(report: dict[str, Any], name: str) -> tuple[Sequence[str], list[list[
 
 def _device(report: dict[str, Any], name: str) -> str:
     sizes = _markdown(*_sizes(report, name))
-    return f"### {DEVICES[name].title}\n\n{sizes}\n\nOne more: {_costs(report, name)}."
+    return f"### {DEVICES[name].title}\n\n{sizes}\n\nCost of one more: {_costs(report, name)}."
 
 
 def _costs(report: dict[str, Any], name: str) -> str:
@@ -180,7 +180,7 @@ def _cost(small: Row, large: Row, steps: int, unit: str) -> str:
     return f"{of('size'):.0f} {unit}, {of('ff'):.0f} FF, {of('bram'):.3g} BRAM"
 
 
-def _doors(report: dict[str, Any]) -> tuple[Sequence[str], list[list[str]]]:
+def _tops(report: dict[str, Any]) -> tuple[Sequence[str], list[list[str]]]:
     header = ("FPGA", "top", "size", "lowest MHz", "median MHz")
     rows = [
         [
@@ -190,7 +190,7 @@ def _doors(report: dict[str, Any]) -> tuple[Sequence[str], list[list[str]]]:
             _mhz(row["f_max_minimum"]),
             _mhz(row["f_max_median"]),
         ]
-        for row in sorted(report["doors"], key=lambda row: list(DEVICES).index(row["device"]))
+        for row in sorted(report["tops"], key=lambda row: list(DEVICES).index(row["device"]))
     ]
     return header, rows
 

@@ -34,8 +34,8 @@ SPLIT_DEVICES = ("hx8k", "ecp5-25")
 SPLIT_SIZE = (1, 4)
 CHANNEL_DEVICE = "hx8k"  # of the price of a further channel, module by module
 SPI = "passo_spi_top"
-BUS_DOORS = ("passo_wishbone", "passo_axi_lite")
-DOOR_SIZE = (1, 4)
+BUS_TOPS = ("passo_wishbone", "passo_axi_lite")
+TOP_SIZE = (1, 4)
 
 Key = tuple[str, str, tuple[int, int]]  # device, top, (channels, axes)
 
@@ -74,7 +74,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 2
     goals = [(goal.device, SPI, (goal.channels, goal.axes)) for goal in GOALS if goal.device in chosen]
     others = (
-        [] if options.quick else [*product(chosen, (SPI,), SIZES), *product(chosen, BUS_DOORS, (DOOR_SIZE,))]
+        [] if options.quick else [*product(chosen, (SPI,), SIZES), *product(chosen, BUS_TOPS, (TOP_SIZE,))]
     )
     whole = not options.quick and set(chosen) == set(DEVICES)
     try:
@@ -98,11 +98,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def core(device: Device, size: tuple[int, int], top: str = SPI) -> Design:
-    """The core alone behind one of its front doors, with its ports as pins."""
+    """The core alone behind one of its host interfaces, with its ports as pins."""
     channels, axes = size
     parameters = {"CHANNELS": channels, "AXES": axes, **device.core}
-    door = "" if top == SPI else f"-{top.removeprefix('passo_')}"
-    return Design(f"{device.name}-{channels}x{axes}{door}", device, top, parameters)
+    suffix = "" if top == SPI else f"-{top.removeprefix('passo_')}"
+    return Design(f"{device.name}-{channels}x{axes}{suffix}", device, top, parameters)
 
 
 def measure(wanted: Sequence[Key], splits: bool) -> dict[str, Any]:
@@ -144,7 +144,7 @@ def measure(wanted: Sequence[Key], splits: bool) -> dict[str, Any]:
         "tools": {device.name: versions(device.family.programs) for device in devices},
         "goals": [asdict(goal) for goal in GOALS if DEVICES[goal.device] in devices],
         "designs": [_row(designs[key], key, placed[key]) for key in designs if key[1] == SPI],
-        "doors": [_row(designs[key], key, placed[key]) for key in designs if key[2] == DOOR_SIZE],
+        "tops": [_row(designs[key], key, placed[key]) for key in designs if key[2] == TOP_SIZE],
         "split": {name: split(design) for name, design in hierarchical.items()},
         "split_size": list(SPLIT_SIZE),
         "channel_device": CHANNEL_DEVICE,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A front door for a CPU in the same FPGA, behind a bus master that others have written.
+"""A host interface for a CPU in the same FPGA, behind a bus master that others have written.
 
 The judges are the driver library, which believes no reply that is not right; the C model behind its SPI pins,
 which gives the same replies to the same frames and makes the same pulses; and the rules of passo_words.
@@ -24,10 +24,10 @@ from passo.registers import Operation
 from cocotb_tests.helpers import core_frames as frames
 from cocotb_tests.helpers.bench import PERIOD, Clocks, Recorder, begin, patience, read, rng
 from cocotb_tests.helpers.core_thread import Thread
-from cocotb_tests.helpers.runner import DOOR_CORE
+from cocotb_tests.helpers.runner import BUS_CORE
 from tests.helpers.driver_wire import by_speed, configure
 
-PARAMETERS = Parameters(**{name.lower(): value for name, value in DOOR_CORE.items()})
+PARAMETERS = Parameters(**{name.lower(): value for name, value in BUS_CORE.items()})
 CLOCK_HZ = 10_000_000  # of plans
 SELECT, WORD = 0, 4  # addresses
 WAIT = 128  # clocks after a word or a change of SELECT
