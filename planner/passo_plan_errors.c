@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * What the planner refuses, in words.
+ * Names and descriptions of the planner's errors.
  */
 #include "passo_plan.h"
 
-_Static_assert(PASSO_AXES_MAX == 8u, "a sentence below says so");
+_Static_assert(PASSO_AXES_MAX == 8u, "BAD_AXES states the limit");
 
 static const struct {
 	const char *name, *text;

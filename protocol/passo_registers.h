@@ -17,7 +17,7 @@
 #define PASSO_HEADER_OPERATION_BITS 4u
 #define PASSO_HEADER_DEFINED        0xFFFFFFFFu
 
-/* Word: Ack. Last word of the reply to a write or push, and to a read that was refused. */
+/* Word: Ack. Last word of the reply to a write, a push or a refused read. */
 #define PASSO_ACK_NOT_VERDICT_LSB   0u
 #define PASSO_ACK_NOT_VERDICT_BITS  8u
 #define PASSO_ACK_NOT_SEQUENCE_LSB  8u
@@ -28,7 +28,7 @@
 #define PASSO_ACK_SEQUENCE_BITS     8u
 #define PASSO_ACK_DEFINED           0xFFFFFFFFu
 
-/* Word: Status. What stands in a reply before the ack or the data, as it was when chip select fell. */
+/* Word: Status. Fills a reply up to the ack or the data; sampled when chip select falls. */
 #define PASSO_STATUS_RAMP_ROOM_LSB     0u
 #define PASSO_STATUS_RAMP_ROOM_BITS    8u
 #define PASSO_STATUS_LINE_ROOM_LSB     8u
@@ -49,7 +49,7 @@
 #define PASSO_STATUS_MARKER_RESET      0x2u
 #define PASSO_STATUS_DEFINED           0xFFFFFFFFu
 
-/* Word: Line control. First word of a line; then M and N_0 .. N_{AXES-1}. */
+/* Word: Line control. First word of a line; M and N_0 .. N_{AXES-1} follow. */
 #define PASSO_LINE_CONTROL_LAST_LSB        0u
 #define PASSO_LINE_CONTROL_LAST_BITS       1u
 #define PASSO_LINE_CONTROL_ENDLESS_LSB     1u
@@ -58,8 +58,7 @@
 #define PASSO_LINE_CONTROL_DIRECTIONS_BITS 8u
 #define PASSO_LINE_CONTROL_DEFINED         0x0000FF03u
 
-/* Word: Ramp control. First word of a ramp; then the lower bits of v_end, T, and the progress step in two
- * words. */
+/* Word: Ramp control. First word of a ramp; v_end(31:0), T and the two words of the progress step follow. */
 #define PASSO_RAMP_CONTROL_LAST_LSB           0u
 #define PASSO_RAMP_CONTROL_LAST_BITS          1u
 #define PASSO_RAMP_CONTROL_NOW_LSB            1u
@@ -90,7 +89,7 @@
 #define PASSO_VERSION_MAJOR_BITS  8u
 #define PASSO_VERSION_MAJOR_RESET 0x00u
 
-/* Core: Parameters. How the core was built. */
+/* Core: Parameters. Build parameters of the core. */
 #define PASSO_ADDRESS_PARAMETERS              0x002u
 #define PASSO_PARAMETERS_CHANNELS_LSB         0u
 #define PASSO_PARAMETERS_CHANNELS_BITS        4u
@@ -103,8 +102,8 @@
 #define PASSO_PARAMETERS_RAMP_QUEUE_LOG2_LSB  24u
 #define PASSO_PARAMETERS_RAMP_QUEUE_LOG2_BITS 5u
 
-/* Core: Run. One bit per channel, all in one register: channels that are ARMED start on the same clock when
- * one write clears their WAIT_SYNC. */
+/* Core: Run. One bit per channel; ARMED channels start on the same clock when one write clears their
+ * WAIT_SYNC. */
 #define PASSO_ADDRESS_RUN              0x003u
 #define PASSO_RUN_RUN_LSB              0u
 #define PASSO_RUN_RUN_BITS             8u
@@ -171,13 +170,13 @@
 #define PASSO_EASE_POINT_BITS    16u
 #define PASSO_EASE_DEFINED       0x0000FFFFu
 
-/* Core: where each channel has its registers. */
+/* Core: location of the registers of each channel. */
 #define PASSO_ADDRESS_CHANNEL_BASE   0x100u
 #define PASSO_ADDRESS_CHANNEL_COUNT  8u
 #define PASSO_ADDRESS_CHANNEL_STRIDE 0x100u
 
-/* Channel: Command. Each bit written as 1 is done once. With STOP or ABORT, CLEAR and ZERO in the same word
- * are ignored; ABORT wins over STOP. */
+/* Channel: Command. Each bit written as 1 triggers its command once. STOP and ABORT override CLEAR and ZERO
+ * in the same word; ABORT overrides STOP. */
 #define PASSO_CHANNEL_COMMAND             0x00u
 #define PASSO_CHANNEL_COMMAND_STOP_LSB    0u
 #define PASSO_CHANNEL_COMMAND_STOP_BITS   1u
@@ -201,28 +200,28 @@
 #define PASSO_CHANNEL_RATE_TARGET_RESET   0x10000u
 #define PASSO_CHANNEL_RATE_TARGET_DEFINED 0x0001FFFFu
 
-/* Channel: Rate slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1. */
+/* Channel: Rate slew. Change of rate per 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1. */
 #define PASSO_CHANNEL_RATE_SLEW         0x02u
 #define PASSO_CHANNEL_RATE_SLEW_LSB     0u
 #define PASSO_CHANNEL_RATE_SLEW_BITS    17u
 #define PASSO_CHANNEL_RATE_SLEW_RESET   0x00400u
 #define PASSO_CHANNEL_RATE_SLEW_DEFINED 0x0001FFFFu
 
-/* Channel: Stop slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1. */
+/* Channel: Stop slew. Change of rate per 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1. */
 #define PASSO_CHANNEL_STOP_SLEW         0x03u
 #define PASSO_CHANNEL_STOP_SLEW_LSB     0u
 #define PASSO_CHANNEL_STOP_SLEW_BITS    17u
 #define PASSO_CHANNEL_STOP_SLEW_RESET   0x00400u
 #define PASSO_CHANNEL_STOP_SLEW_DEFINED 0x0001FFFFu
 
-/* Channel: Drain velocity. Velocity of the substeps that are still missing when the profile has ended. */
+/* Channel: Drain velocity. Velocity of the substeps that remain when the profile has ended. */
 #define PASSO_CHANNEL_DRAIN_VELOCITY         0x04u
 #define PASSO_CHANNEL_DRAIN_VELOCITY_LSB     0u
 #define PASSO_CHANNEL_DRAIN_VELOCITY_BITS    32u
 #define PASSO_CHANNEL_DRAIN_VELOCITY_RESET   0x01000000u
 #define PASSO_CHANNEL_DRAIN_VELOCITY_DEFINED 0xFFFFFFFFu
 
-/* Channel: State. What the channel does now. */
+/* Channel: State. Present state of the channel. */
 #define PASSO_CHANNEL_STATE                0x08u
 #define PASSO_CHANNEL_STATE_STATE_LSB      0u
 #define PASSO_CHANNEL_STATE_STATE_BITS     3u
@@ -249,7 +248,7 @@
 #define PASSO_CHANNEL_RATE_BITS  17u
 #define PASSO_CHANNEL_RATE_RESET 0x10000u
 
-/* Channel: Room. Free places in the queues. A push counts from the moment its frame is accepted. */
+/* Channel: Room. Free queue entries. A push counts as soon as its frame is accepted. */
 #define PASSO_CHANNEL_ROOM                0x0Au
 #define PASSO_CHANNEL_ROOM_RAMP_ROOM_LSB  0u
 #define PASSO_CHANNEL_ROOM_RAMP_ROOM_BITS 16u
@@ -275,20 +274,20 @@
 #define PASSO_CHANNEL_RAMP_BITS    32u
 #define PASSO_CHANNEL_RAMP_DEFINED 0xFFFFFFFFu
 
-/* Channel: Steps made. Position of an axis in steps, as it was soon after chip select fell; wraps. */
+/* Channel: Steps made. Position of an axis in steps, sampled just after chip select falls; wraps. */
 #define PASSO_CHANNEL_POSITION_BASE  0x40u
 #define PASSO_CHANNEL_POSITION_COUNT 8u
 #define PASSO_CHANNEL_POSITION_LSB   0u
 #define PASSO_CHANNEL_POSITION_BITS  32u
 #define PASSO_CHANNEL_POSITION_RESET 0x00000000u
 
-/* Channel: where each axis has its registers. */
+/* Channel: location of the registers of each axis. */
 #define PASSO_CHANNEL_AXIS_BASE   0x80u
 #define PASSO_CHANNEL_AXIS_COUNT  8u
 #define PASSO_CHANNEL_AXIS_STRIDE 0x08u
 
 /* Axis: Pins. Polarities and step mode. Refused with BUSY unless the channel is quiet. The next step waits
- * for the low time, the DIR hold and the DIR set-up from here on. Kept over a reset of the core. */
+ * for the low time, the DIR hold and the DIR setup, counted from this write. Not affected by a core reset. */
 #define PASSO_AXIS_PINS                          0x0u
 #define PASSO_AXIS_PINS_STEP_INVERTED_LSB        1u
 #define PASSO_AXIS_PINS_STEP_INVERTED_BITS       1u
@@ -304,7 +303,7 @@
 #define PASSO_AXIS_PINS_BOTH_EDGES_RESET         0x0u
 #define PASSO_AXIS_PINS_DEFINED                  0x0000001Eu
 
-/* Axis: STEP timing. Clocks, 1 .. 65535; 0 counts as 1. Kept over a reset of the core. */
+/* Axis: STEP timing. In clocks, 1 .. 65535; 0 counts as 1. Not affected by a core reset. */
 #define PASSO_AXIS_STEP_TIMING                 0x1u
 #define PASSO_AXIS_STEP_TIMING_STEP_LOW_LSB    0u
 #define PASSO_AXIS_STEP_TIMING_STEP_LOW_BITS   16u
@@ -314,7 +313,7 @@
 #define PASSO_AXIS_STEP_TIMING_STEP_HIGH_RESET 0x0001u
 #define PASSO_AXIS_STEP_TIMING_DEFINED         0xFFFFFFFFu
 
-/* Axis: DIR timing. Clocks, 1 .. 65535; 0 counts as 1. Kept over a reset of the core. */
+/* Axis: DIR timing. In clocks, 1 .. 65535; 0 counts as 1. Not affected by a core reset. */
 #define PASSO_AXIS_DIR_TIMING                 0x2u
 #define PASSO_AXIS_DIR_TIMING_DIR_HOLD_LSB    0u
 #define PASSO_AXIS_DIR_TIMING_DIR_HOLD_BITS   16u
@@ -324,7 +323,7 @@
 #define PASSO_AXIS_DIR_TIMING_DIR_SETUP_RESET 0x0001u
 #define PASSO_AXIS_DIR_TIMING_DEFINED         0xFFFFFFFFu
 
-/* Axis: Lost steps. Steps that found the queue of the axis full (STEP_OVERRUN). */
+/* Axis: Lost steps. Steps dropped because the axis queue was full (STEP_OVERRUN). */
 #define PASSO_AXIS_LOST_STEPS            0x3u
 #define PASSO_AXIS_LOST_STEPS_LOST_LSB   0u
 #define PASSO_AXIS_LOST_STEPS_LOST_BITS  4u
@@ -337,20 +336,20 @@
 #define PASSO_AXIS_ENABLE_RESET   0x0u
 #define PASSO_AXIS_ENABLE_DEFINED 0x00000001u
 
-/* What a frame asks for. */
+/* Operation of a frame. */
 enum passo_operation {
 	PASSO_OPERATION_READ  = 1, /* Read consecutive registers. */
 	PASSO_OPERATION_WRITE = 2, /* Write consecutive registers. */
 	PASSO_OPERATION_PUSH  = 3  /* Write every word to the same address: lines and ramps. */
 };
 
-/* What became of a frame. */
+/* Result of a frame. */
 enum passo_verdict {
 	PASSO_VERDICT_OK              = 0, /* Executed. */
-	PASSO_VERDICT_DUPLICATE       = 1, /* Not executed: its sequence number was accepted before. */
+	PASSO_VERDICT_DUPLICATE       = 1, /* Not executed again: this sequence number has been accepted already. */
 	PASSO_VERDICT_BAD_CRC         = 2, /* CRC wrong. */
 	PASSO_VERDICT_BAD_LENGTH      = 3, /* Length 0 or above 60, or not whole lines or ramps. */
-	PASSO_VERDICT_BAD_OPERATION   = 4, /* Unknown operation, or one the register does not take. */
+	PASSO_VERDICT_BAD_OPERATION   = 4, /* Unknown operation, or one the register does not support. */
 	PASSO_VERDICT_UNKNOWN_ADDRESS = 5, /* No register at this address. */
 	PASSO_VERDICT_READ_ONLY       = 6, /* The register cannot be written. */
 	PASSO_VERDICT_QUEUE_FULL      = 7, /* Not enough room for the whole frame. */
@@ -358,32 +357,32 @@ enum passo_verdict {
 	PASSO_VERDICT_BAD_VALUE       = 9  /* M = 0 or M >= 2^30, N_i > M, a velocity above 1/2, drain velocity 0, reserved bits set. */
 };
 
-/* What a channel does. */
+/* State of a channel. */
 enum passo_state {
 	PASSO_STATE_IDLE    = 0, /* No motion. */
-	PASSO_STATE_PREPARE = 1, /* First line and first velocity are being made ready. */
+	PASSO_STATE_PREPARE = 1, /* The first line and the first velocity are being prepared. */
 	PASSO_STATE_ARMED   = 2, /* Ready to start; waits while WAIT_SYNC is set. */
 	PASSO_STATE_RUN     = 3, /* The profile runs. */
-	PASSO_STATE_SETTLE  = 4, /* The profile has ended, its last substeps reach the pins. */
-	PASSO_STATE_DRAIN   = 5, /* Missing substeps of the LAST line are made at drain_velocity. */
-	PASSO_STATE_STOPPED = 6  /* Stopped by a command or a fault; queues flushed. CLEAR leads back to IDLE. */
+	PASSO_STATE_SETTLE  = 4, /* The profile has ended; its last substeps are on their way to the pins. */
+	PASSO_STATE_DRAIN   = 5, /* The remaining substeps of the LAST line are made at drain_velocity. */
+	PASSO_STATE_STOPPED = 6  /* Stopped by a command or a fault; queues flushed. CLEAR returns to IDLE. */
 };
 
-/* Why a channel stopped. */
+/* Cause of a stop. */
 enum passo_cause {
 	PASSO_CAUSE_NONE          = 0, /* Not stopped. */
 	PASSO_CAUSE_STOP          = 1, /* COMMAND.STOP. */
 	PASSO_CAUSE_ABORT         = 2, /* COMMAND.ABORT. */
 	PASSO_CAUSE_LINE_UNDERRUN = 3, /* A line ended, was not LAST, and none followed. */
-	PASSO_CAUSE_RAMP_UNDERRUN = 4, /* The ramps ran out at speed. */
+	PASSO_CAUSE_RAMP_UNDERRUN = 4, /* The ramp queue ran empty at a velocity above 0. */
 	PASSO_CAUSE_STEP_OVERRUN  = 5  /* Steps came faster than the pin timing of an axis allows. */
 };
 
-/* How a ramp leads the velocity: s for a progress u, both 0 .. 1. */
+/* Shape of a ramp: s as a function of the progress u, both 0 .. 1. */
 enum passo_shape {
 	PASSO_SHAPE_LINEAR  = 0, /* s = u, no table. */
 	PASSO_SHAPE_COSINE  = 1, /* (1 - cos(pi u)) / 2. */
-	PASSO_SHAPE_SIGMOID = 2, /* Logistic function over -5 .. 5, scaled to begin at 0 and end at 1. */
+	PASSO_SHAPE_SIGMOID = 2, /* Logistic function over -5 .. 5, scaled to start at 0 and end at 1. */
 	PASSO_SHAPE_EASE    = 3  /* u^2. */
 };
 

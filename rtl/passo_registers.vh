@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Generated from registers/passo.rdl by tools/generate_registers.py.
-// Registers of Passo, to be included inside a module. Addresses are word addresses.
+// Registers of Passo; include it inside a module. Addresses are word addresses.
 
-// Each module uses its share of these.
+// No module uses all of them.
 /* verilator lint_off UNUSEDPARAM */
 
 // Word: Header. First word of a request.
@@ -16,7 +16,7 @@ localparam HEADER_OPERATION_LSB  = 28;
 localparam HEADER_OPERATION_BITS = 4;
 localparam HEADER_DEFINED        = 32'hFFFFFFFF;
 
-// Word: Ack. Last word of the reply to a write or push, and to a read that was refused.
+// Word: Ack. Last word of the reply to a write, a push or a refused read.
 localparam ACK_NOT_VERDICT_LSB   = 0;
 localparam ACK_NOT_VERDICT_BITS  = 8;
 localparam ACK_NOT_SEQUENCE_LSB  = 8;
@@ -27,7 +27,7 @@ localparam ACK_SEQUENCE_LSB      = 24;
 localparam ACK_SEQUENCE_BITS     = 8;
 localparam ACK_DEFINED           = 32'hFFFFFFFF;
 
-// Word: Status. What stands in a reply before the ack or the data, as it was when chip select fell.
+// Word: Status. Fills a reply up to the ack or the data; sampled when chip select falls.
 localparam STATUS_RAMP_ROOM_LSB     = 0;
 localparam STATUS_RAMP_ROOM_BITS    = 8;
 localparam STATUS_LINE_ROOM_LSB     = 8;
@@ -48,7 +48,7 @@ localparam STATUS_MARKER_BITS       = 2;
 localparam STATUS_MARKER_RESET      = 2'h2;
 localparam STATUS_DEFINED           = 32'hFFFFFFFF;
 
-// Word: Line control. First word of a line; then M and N_0 .. N_{AXES-1}.
+// Word: Line control. First word of a line; M and N_0 .. N_{AXES-1} follow.
 localparam LINE_CONTROL_LAST_LSB        = 0;
 localparam LINE_CONTROL_LAST_BITS       = 1;
 localparam LINE_CONTROL_ENDLESS_LSB     = 1;
@@ -57,8 +57,7 @@ localparam LINE_CONTROL_DIRECTIONS_LSB  = 8;
 localparam LINE_CONTROL_DIRECTIONS_BITS = 8;
 localparam LINE_CONTROL_DEFINED         = 32'h0000FF03;
 
-// Word: Ramp control. First word of a ramp; then the lower bits of v_end, T, and the progress step in two
-// words.
+// Word: Ramp control. First word of a ramp; v_end(31:0), T and the two words of the progress step follow.
 localparam RAMP_CONTROL_LAST_LSB           = 0;
 localparam RAMP_CONTROL_LAST_BITS          = 1;
 localparam RAMP_CONTROL_NOW_LSB            = 1;
@@ -89,7 +88,7 @@ localparam VERSION_MAJOR_LSB   = 16;
 localparam VERSION_MAJOR_BITS  = 8;
 localparam VERSION_MAJOR_RESET = 8'h00;
 
-// Core: Parameters. How the core was built.
+// Core: Parameters. Build parameters of the core.
 localparam ADDRESS_PARAMETERS              = 12'h002;
 localparam PARAMETERS_CHANNELS_LSB         = 0;
 localparam PARAMETERS_CHANNELS_BITS        = 4;
@@ -102,8 +101,8 @@ localparam PARAMETERS_LINE_QUEUE_LOG2_BITS = 5;
 localparam PARAMETERS_RAMP_QUEUE_LOG2_LSB  = 24;
 localparam PARAMETERS_RAMP_QUEUE_LOG2_BITS = 5;
 
-// Core: Run. One bit per channel, all in one register: channels that are ARMED start on the same clock when
-// one write clears their WAIT_SYNC.
+// Core: Run. One bit per channel; ARMED channels start on the same clock when one write clears their
+// WAIT_SYNC.
 localparam ADDRESS_RUN              = 12'h003;
 localparam RUN_RUN_LSB              = 0;
 localparam RUN_RUN_BITS             = 8;
@@ -170,13 +169,13 @@ localparam EASE_POINT_LSB     = 0;
 localparam EASE_POINT_BITS    = 16;
 localparam EASE_DEFINED       = 32'h0000FFFF;
 
-// Core: where each channel has its registers.
+// Core: location of the registers of each channel.
 localparam ADDRESS_CHANNEL_BASE   = 12'h100;
 localparam ADDRESS_CHANNEL_COUNT  = 8;
 localparam ADDRESS_CHANNEL_STRIDE = 12'h100;
 
-// Channel: Command. Each bit written as 1 is done once. With STOP or ABORT, CLEAR and ZERO in the same word
-// are ignored; ABORT wins over STOP.
+// Channel: Command. Each bit written as 1 triggers its command once. STOP and ABORT override CLEAR and ZERO
+// in the same word; ABORT overrides STOP.
 localparam CHANNEL_COMMAND             = 8'h00;
 localparam CHANNEL_COMMAND_STOP_LSB    = 0;
 localparam CHANNEL_COMMAND_STOP_BITS   = 1;
@@ -200,28 +199,28 @@ localparam CHANNEL_RATE_TARGET_BITS    = 17;
 localparam CHANNEL_RATE_TARGET_RESET   = 17'h10000;
 localparam CHANNEL_RATE_TARGET_DEFINED = 32'h0001FFFF;
 
-// Channel: Rate slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1.
+// Channel: Rate slew. Change of rate per 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1.
 localparam CHANNEL_RATE_SLEW         = 8'h02;
 localparam CHANNEL_RATE_SLEW_LSB     = 0;
 localparam CHANNEL_RATE_SLEW_BITS    = 17;
 localparam CHANNEL_RATE_SLEW_RESET   = 17'h00400;
 localparam CHANNEL_RATE_SLEW_DEFINED = 32'h0001FFFF;
 
-// Channel: Stop slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1.
+// Channel: Stop slew. Change of rate per 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1.
 localparam CHANNEL_STOP_SLEW         = 8'h03;
 localparam CHANNEL_STOP_SLEW_LSB     = 0;
 localparam CHANNEL_STOP_SLEW_BITS    = 17;
 localparam CHANNEL_STOP_SLEW_RESET   = 17'h00400;
 localparam CHANNEL_STOP_SLEW_DEFINED = 32'h0001FFFF;
 
-// Channel: Drain velocity. Velocity of the substeps that are still missing when the profile has ended.
+// Channel: Drain velocity. Velocity of the substeps that remain when the profile has ended.
 localparam CHANNEL_DRAIN_VELOCITY         = 8'h04;
 localparam CHANNEL_DRAIN_VELOCITY_LSB     = 0;
 localparam CHANNEL_DRAIN_VELOCITY_BITS    = 32;
 localparam CHANNEL_DRAIN_VELOCITY_RESET   = 32'h01000000;
 localparam CHANNEL_DRAIN_VELOCITY_DEFINED = 32'hFFFFFFFF;
 
-// Channel: State. What the channel does now.
+// Channel: State. Present state of the channel.
 localparam CHANNEL_STATE                = 8'h08;
 localparam CHANNEL_STATE_STATE_LSB      = 0;
 localparam CHANNEL_STATE_STATE_BITS     = 3;
@@ -248,7 +247,7 @@ localparam CHANNEL_RATE_LSB   = 0;
 localparam CHANNEL_RATE_BITS  = 17;
 localparam CHANNEL_RATE_RESET = 17'h10000;
 
-// Channel: Room. Free places in the queues. A push counts from the moment its frame is accepted.
+// Channel: Room. Free queue entries. A push counts as soon as its frame is accepted.
 localparam CHANNEL_ROOM                = 8'h0A;
 localparam CHANNEL_ROOM_RAMP_ROOM_LSB  = 0;
 localparam CHANNEL_ROOM_RAMP_ROOM_BITS = 16;
@@ -274,20 +273,20 @@ localparam CHANNEL_RAMP_LSB     = 0;
 localparam CHANNEL_RAMP_BITS    = 32;
 localparam CHANNEL_RAMP_DEFINED = 32'hFFFFFFFF;
 
-// Channel: Steps made. Position of an axis in steps, as it was soon after chip select fell; wraps.
+// Channel: Steps made. Position of an axis in steps, sampled just after chip select falls; wraps.
 localparam CHANNEL_POSITION_BASE  = 8'h40;
 localparam CHANNEL_POSITION_COUNT = 8;
 localparam CHANNEL_POSITION_LSB   = 0;
 localparam CHANNEL_POSITION_BITS  = 32;
 localparam CHANNEL_POSITION_RESET = 32'h00000000;
 
-// Channel: where each axis has its registers.
+// Channel: location of the registers of each axis.
 localparam CHANNEL_AXIS_BASE   = 8'h80;
 localparam CHANNEL_AXIS_COUNT  = 8;
 localparam CHANNEL_AXIS_STRIDE = 8'h08;
 
 // Axis: Pins. Polarities and step mode. Refused with BUSY unless the channel is quiet. The next step waits
-// for the low time, the DIR hold and the DIR set-up from here on. Kept over a reset of the core.
+// for the low time, the DIR hold and the DIR setup, counted from this write. Not affected by a core reset.
 localparam AXIS_PINS                          = 3'h0;
 localparam AXIS_PINS_STEP_INVERTED_LSB        = 1;
 localparam AXIS_PINS_STEP_INVERTED_BITS       = 1;
@@ -303,7 +302,7 @@ localparam AXIS_PINS_BOTH_EDGES_BITS          = 1;
 localparam AXIS_PINS_BOTH_EDGES_RESET         = 1'h0;
 localparam AXIS_PINS_DEFINED                  = 32'h0000001E;
 
-// Axis: STEP timing. Clocks, 1 .. 65535; 0 counts as 1. Kept over a reset of the core.
+// Axis: STEP timing. In clocks, 1 .. 65535; 0 counts as 1. Not affected by a core reset.
 localparam AXIS_STEP_TIMING                 = 3'h1;
 localparam AXIS_STEP_TIMING_STEP_LOW_LSB    = 0;
 localparam AXIS_STEP_TIMING_STEP_LOW_BITS   = 16;
@@ -313,7 +312,7 @@ localparam AXIS_STEP_TIMING_STEP_HIGH_BITS  = 16;
 localparam AXIS_STEP_TIMING_STEP_HIGH_RESET = 16'h0001;
 localparam AXIS_STEP_TIMING_DEFINED         = 32'hFFFFFFFF;
 
-// Axis: DIR timing. Clocks, 1 .. 65535; 0 counts as 1. Kept over a reset of the core.
+// Axis: DIR timing. In clocks, 1 .. 65535; 0 counts as 1. Not affected by a core reset.
 localparam AXIS_DIR_TIMING                 = 3'h2;
 localparam AXIS_DIR_TIMING_DIR_HOLD_LSB    = 0;
 localparam AXIS_DIR_TIMING_DIR_HOLD_BITS   = 16;
@@ -323,7 +322,7 @@ localparam AXIS_DIR_TIMING_DIR_SETUP_BITS  = 16;
 localparam AXIS_DIR_TIMING_DIR_SETUP_RESET = 16'h0001;
 localparam AXIS_DIR_TIMING_DEFINED         = 32'hFFFFFFFF;
 
-// Axis: Lost steps. Steps that found the queue of the axis full (STEP_OVERRUN).
+// Axis: Lost steps. Steps dropped because the axis queue was full (STEP_OVERRUN).
 localparam AXIS_LOST_STEPS            = 3'h3;
 localparam AXIS_LOST_STEPS_LOST_LSB   = 0;
 localparam AXIS_LOST_STEPS_LOST_BITS  = 4;
@@ -336,44 +335,44 @@ localparam AXIS_ENABLE_BITS    = 1;
 localparam AXIS_ENABLE_RESET   = 1'h0;
 localparam AXIS_ENABLE_DEFINED = 32'h00000001;
 
-// What a frame asks for.
+// Operation of a frame.
 localparam OPERATION_READ  = 4'd1; // Read consecutive registers.
 localparam OPERATION_WRITE = 4'd2; // Write consecutive registers.
 localparam OPERATION_PUSH  = 4'd3; // Write every word to the same address: lines and ramps.
 
-// What became of a frame.
+// Result of a frame.
 localparam VERDICT_OK              = 4'd0; // Executed.
-localparam VERDICT_DUPLICATE       = 4'd1; // Not executed: its sequence number was accepted before.
+localparam VERDICT_DUPLICATE       = 4'd1; // Not executed again: this sequence number has been accepted already.
 localparam VERDICT_BAD_CRC         = 4'd2; // CRC wrong.
 localparam VERDICT_BAD_LENGTH      = 4'd3; // Length 0 or above 60, or not whole lines or ramps.
-localparam VERDICT_BAD_OPERATION   = 4'd4; // Unknown operation, or one the register does not take.
+localparam VERDICT_BAD_OPERATION   = 4'd4; // Unknown operation, or one the register does not support.
 localparam VERDICT_UNKNOWN_ADDRESS = 4'd5; // No register at this address.
 localparam VERDICT_READ_ONLY       = 4'd6; // The register cannot be written.
 localparam VERDICT_QUEUE_FULL      = 4'd7; // Not enough room for the whole frame.
 localparam VERDICT_BUSY            = 4'd8; // The state of the channel does not allow it (see the register).
 localparam VERDICT_BAD_VALUE       = 4'd9; // M = 0 or M >= 2^30, N_i > M, a velocity above 1/2, drain velocity 0, reserved bits set.
 
-// What a channel does.
+// State of a channel.
 localparam STATE_IDLE    = 3'd0; // No motion.
-localparam STATE_PREPARE = 3'd1; // First line and first velocity are being made ready.
+localparam STATE_PREPARE = 3'd1; // The first line and the first velocity are being prepared.
 localparam STATE_ARMED   = 3'd2; // Ready to start; waits while WAIT_SYNC is set.
 localparam STATE_RUN     = 3'd3; // The profile runs.
-localparam STATE_SETTLE  = 3'd4; // The profile has ended, its last substeps reach the pins.
-localparam STATE_DRAIN   = 3'd5; // Missing substeps of the LAST line are made at drain_velocity.
-localparam STATE_STOPPED = 3'd6; // Stopped by a command or a fault; queues flushed. CLEAR leads back to IDLE.
+localparam STATE_SETTLE  = 3'd4; // The profile has ended; its last substeps are on their way to the pins.
+localparam STATE_DRAIN   = 3'd5; // The remaining substeps of the LAST line are made at drain_velocity.
+localparam STATE_STOPPED = 3'd6; // Stopped by a command or a fault; queues flushed. CLEAR returns to IDLE.
 
-// Why a channel stopped.
+// Cause of a stop.
 localparam CAUSE_NONE          = 3'd0; // Not stopped.
 localparam CAUSE_STOP          = 3'd1; // COMMAND.STOP.
 localparam CAUSE_ABORT         = 3'd2; // COMMAND.ABORT.
 localparam CAUSE_LINE_UNDERRUN = 3'd3; // A line ended, was not LAST, and none followed.
-localparam CAUSE_RAMP_UNDERRUN = 3'd4; // The ramps ran out at speed.
+localparam CAUSE_RAMP_UNDERRUN = 3'd4; // The ramp queue ran empty at a velocity above 0.
 localparam CAUSE_STEP_OVERRUN  = 3'd5; // Steps came faster than the pin timing of an axis allows.
 
-// How a ramp leads the velocity: s for a progress u, both 0 .. 1.
+// Shape of a ramp: s as a function of the progress u, both 0 .. 1.
 localparam SHAPE_LINEAR  = 2'd0; // s = u, no table.
 localparam SHAPE_COSINE  = 2'd1; // (1 - cos(pi u)) / 2.
-localparam SHAPE_SIGMOID = 2'd2; // Logistic function over -5 .. 5, scaled to begin at 0 and end at 1.
+localparam SHAPE_SIGMOID = 2'd2; // Logistic function over -5 .. 5, scaled to start at 0 and end at 1.
 localparam SHAPE_EASE    = 2'd3; // u^2.
 
 /* verilator lint_on UNUSEDPARAM */

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Generate the definitions of registers and words of RTL, C and Python and their documentation.
+"""Generate the register and word definitions of RTL, C and Python, and their documentation.
 
-Their source is registers/passo.rdl.
+The source is registers/passo.rdl.
 
-Names are the same in all languages; C puts PASSO_ in front:
+Names are the same in all languages; C adds the prefix PASSO_:
 
     ADDRESS_RUN             word address of a register of the core
     CHANNEL_ROOM            word offset of a register in its channel
@@ -11,14 +11,14 @@ Names are the same in all languages; C puts PASSO_ in front:
     ..._BASE, _COUNT        first word and length of an array; arrays of blocks also have a _STRIDE
     RUN_WAIT_SYNC_LSB       lowest bit of the field WAIT_SYNC of RUN; _BITS: width, _RESET: reset value
     CHANNEL_ROOM_..._LSB    the same for the field of a channel's register
-    RUN_DEFINED             the bits of a register that may be written
-    VERDICT_OK              an enumeration's value; Verdict.OK in Python
-    HEADER_SEQUENCE_LSB     the field of a word that is no register
+    RUN_DEFINED             mask of the writable bits of a register
+    VERDICT_OK              value of an enumeration; Verdict.OK in Python
+    HEADER_SEQUENCE_LSB     field of a word that is not a register
 
-Each register of several fields, and each word, also has a struct passo_<name> with passo_pack_<name>() and
+Each register with several fields, and each word, also has a struct passo_<name> with passo_pack_<name>() and
 passo_unpack_<name>() in C, and a class with pack() and unpack() in Python.
 
-A field that is alone in its register and has its name does not repeat it: CHANNEL_RATE_TARGET_LSB.
+The only field of a register does not repeat a name it shares with it: CHANNEL_RATE_TARGET_LSB.
 """
 
 import re
@@ -38,19 +38,19 @@ ROOT = Path(__file__).resolve().parent.parent
 SOURCE = "registers/passo.rdl"
 GENERATED = f"Generated from {SOURCE} by tools/generate_registers.py."
 
-# Bits and meaning of the enumerations, of which the compiler keeps only the values.
+# Width and meaning of the enumerations; the compiler keeps only their values.
 ENUMS = {
-    "operation": (4, "What a frame asks for."),
-    "verdict": (4, "What became of a frame."),
-    "state": (3, "What a channel does."),
-    "cause": (3, "Why a channel stopped."),
-    "shape": (2, "How a ramp leads the velocity: s for a progress u, both 0 .. 1."),
+    "operation": (4, "Operation of a frame."),
+    "verdict": (4, "Result of a frame."),
+    "state": (3, "State of a channel."),
+    "cause": (3, "Cause of a stop."),
+    "shape": (2, "Shape of a ramp: s as a function of the progress u, both 0 .. 1."),
 }
 
 
 @dataclass(frozen=True)
 class Field:
-    """Some bits of a register."""
+    """A bit field of a register."""
 
     name: str
     lsb: int
@@ -62,13 +62,13 @@ class Field:
 
 
 def bits_of(fields: Iterable["Field"]) -> int:
-    """All bits of fields."""
+    """Mask of all bits of the fields."""
     return sum(((1 << field.bits) - 1) << field.lsb for field in fields)
 
 
 @dataclass(frozen=True)
 class Register:
-    """One word, or `count` words in a row."""
+    """One word, or an array of `count` words."""
 
     name: str
     word: int
@@ -88,7 +88,7 @@ class Register:
 
 @dataclass(frozen=True)
 class Block:
-    """The core, its channels or their axes: `count` times the same registers, every `stride` words."""
+    """The core, its channels or their axes: `count` copies of the same registers, `stride` words apart."""
 
     name: str
     word: int
@@ -127,7 +127,7 @@ class Enum:
 
 @dataclass(frozen=True)
 class Constant:
-    """A number with a name; without a width it is a count of something, otherwise bits in hardware."""
+    """A named number: a hardware value if it has a width in bits, otherwise a plain count."""
 
     name: str
     value: int
@@ -185,14 +185,14 @@ def read_block(node: AddressableNode, name: str) -> Block:
 
 @dataclass(frozen=True)
 class Source:
-    """What is in the source: the registers, the words that are none, the enumerations."""
+    """Contents of the source: registers, words that are not registers, enumerations."""
 
     core: Block
     words: tuple[Register, ...]
     enums: tuple[Enum, ...]
 
     def layouts(self) -> Iterator[tuple[str, Register]]:
-        """Name and fields of all that is packed: each word, and each register of several fields."""
+        """Name and fields of everything with pack functions: each word, each register with several fields."""
         for word in self.words:
             yield word.name, word
         for block in self.core.walk():
@@ -252,7 +252,7 @@ def field_constants(name: str, field: Field) -> Iterator[Constant]:
 
 
 def constant_groups(source: Source) -> list[tuple[str, list[Constant]]]:
-    """All constants in groups, each with a comment."""
+    """All constants, in groups with a comment each."""
     core = source.core
     groups = []
     for word in source.words:
@@ -266,11 +266,11 @@ def constant_groups(source: Source) -> list[tuple[str, list[Constant]]]:
             comment = f"{level}: {register.title}. {register.text}"
             groups.append((comment, list(register_constants(block, register))))
         for inner in block.blocks:
-            comment = f"{level}: where each {inner.name.lower()} has its registers."
+            comment = f"{level}: location of the registers of each {inner.name.lower()}."
             groups.append((comment, list(block_constants(block, inner))))
     count = Counter(constant.name for _, constants in groups for constant in constants)
     if clashes := [name for name, times in count.items() if times > 1]:
-        raise ValueError(f"more than one meaning: {', '.join(clashes)}")
+        raise ValueError(f"defined more than once: {', '.join(clashes)}")
     return groups
 
 
@@ -278,7 +278,7 @@ def constant_groups(source: Source) -> list[tuple[str, list[Constant]]]:
 
 
 def aligned(rows: list[tuple[str, ...]]) -> list[str]:
-    """Join the cells of each row so that they stand below each other."""
+    """Join the cells of each row, padded into columns."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return [" ".join(map(str.ljust, row, widths)).rstrip() for row in rows]
 
@@ -287,9 +287,9 @@ def write_verilog(source: Source) -> str:
     lines = [
         "// SPDX-License-Identifier: MIT",
         f"// {GENERATED}",
-        "// Registers of Passo, to be included inside a module. Addresses are word addresses.",
+        "// Registers of Passo; include it inside a module. Addresses are word addresses.",
         "",
-        "// Each module uses its share of these.",
+        "// No module uses all of them.",
         "/* verilator lint_off UNUSEDPARAM */",
     ]
     for comment, constants in constant_groups(source):
@@ -338,12 +338,12 @@ def c_type(field: Field) -> str:
     return f"uint{next(bits for bits in (8, 16, 32) if bits >= field.bits)}_t"
 
 
-# Structs whose names the model has for something else.
+# Structs renamed because the model uses the name for something else.
 C_STRUCTS = {"parameters": "parameters_word"}
 
 
 def c_layout(name: str, register: Register) -> list[str]:
-    """A struct of the fields of a word, and the functions between it and the word."""
+    """A struct with the fields of a word, and the functions that pack and unpack it."""
     name = name.lower()
     struct = f"struct passo_{C_STRUCTS.get(name, name)}"
     fields = list(reversed(register.fields))
@@ -382,8 +382,8 @@ def write_c_words(source: Source) -> str:
         "/* SPDX-License-Identifier: MIT",
         f" * {GENERATED}",
         " *",
-        " * The fields of words: what a frame has beside its payload, what is pushed, some registers.",
-        " * What does not fit into a field is cut off.",
+        " * Fields of the frame words, of line and ramp control words, and of registers with several fields.",
+        " * Packing truncates a value that does not fit into its field.",
         " */",
         "#ifndef PASSO_WORDS_H",
         "#define PASSO_WORDS_H",
@@ -409,7 +409,7 @@ from typing import ClassVar, Self
 
 
 class _DescribedEnum(IntEnum):
-    \"\"\"Numbers with a name and a description.\"\"\"
+    \"\"\"Named numbers with a description.\"\"\"
 
     description: str
 
@@ -421,12 +421,12 @@ class _DescribedEnum(IntEnum):
 
 
 class _Word:
-    \"\"\"A word by its fields; PLACES has the lowest bit, the width and the type of each.\"\"\"
+    \"\"\"A word as its fields; PLACES maps each to its lowest bit, width and type.\"\"\"
 
     PLACES: ClassVar[dict[str, tuple[int, int, type]]]
 
     def pack(self) -> int:
-        \"\"\"The word. ValueError if a field is too large.\"\"\"
+        \"\"\"Pack the fields into a word; ValueError if one is too large.\"\"\"
         word = 0
         for name, (lsb, bits, _) in self.PLACES.items():
             value = int(getattr(self, name))
@@ -437,7 +437,7 @@ class _Word:
 
     @classmethod
     def unpack(cls, word: int) -> Self:
-        \"\"\"The fields of a word. ValueError if an enumeration has no such value.\"\"\"
+        \"\"\"Unpack a word; ValueError if a value is not in its enumeration.\"\"\"
         return cls(
             **{{name: kind(word >> lsb & (1 << bits) - 1) for name, (lsb, bits, kind) in cls.PLACES.items()}}
         )
@@ -449,7 +449,7 @@ def python_type(field: Field) -> str:
 
 
 def python_default(field: Field, enums: Sequence[Enum]) -> str:
-    """The reset value as a default, if there is one."""
+    """The reset value as the default of a field, if it has one."""
     if field.reset is None:
         return ""
     for enum in enums:
@@ -460,7 +460,7 @@ def python_default(field: Field, enums: Sequence[Enum]) -> str:
 
 
 def python_layout(name: str, register: Register, enums: Sequence[Enum]) -> list[str]:
-    """A class of the fields of a word; those with a reset value need not be given."""
+    """A class with the fields of a word; fields with a reset value have it as their default."""
     fields = sorted(reversed(register.fields), key=lambda field: field.reset is not None)
     lines = ["", "@dataclass(frozen=True)", f"class {name.title().replace('_', '')}Word(_Word):"]
     lines += [f'    """{register.title}."""', ""]
@@ -513,7 +513,7 @@ def field_row(field: Field, enums: list[Enum]) -> list[str]:
 
 
 def write_markdown(source: Source) -> str:
-    """The same for people: an overview, then every field, then the enumerations."""
+    """The documentation: an overview, then every field, then the enumerations."""
     core, enums = source.core, list(source.enums)
     overview, details = [], []
     for block in core.walk():
@@ -522,8 +522,8 @@ def write_markdown(source: Source) -> str:
         details += ["", f"## Fields of the {level} registers"]
         if block is not core:
             where = f"`0x{block.word:X} + 0x{block.stride:X} * n`"
-            whose = "" if block in core.blocks else ", counted from the first word of its channel"
-            overview += ["", f"{level.capitalize()} n = 0 .. {block.count - 1} begins at {where}{whose}."]
+            whose = "" if block in core.blocks else ", relative to the first word of its channel"
+            overview += ["", f"{level.capitalize()} n = 0 .. {block.count - 1} starts at {where}{whose}."]
         rows = []
         for (title, text, fields), alike in groupby(block.registers, lambda r: (r.title, r.text, r.fields)):
             registers = list(alike)
@@ -541,7 +541,7 @@ def write_markdown(source: Source) -> str:
         "",
         "## Words",
         "",
-        "What a frame has beside its payload, and the first words of what is pushed.",
+        "The words of a frame other than its payload, and the first words of lines and ramps.",
     ]
     for word in source.words:
         details += ["", f"### {word.title}", "", word.text]
@@ -559,8 +559,8 @@ def write_markdown(source: Source) -> str:
         "# Registers",
         "",
         "A register is a 32-bit word; addresses count words. Unused bits read as 0 and must be written as 0.",
-        "A field without a reset value shows how the core was built or what happens now, or is not stored.",
-        "[How Passo works](architecture.md) tells what the registers are for and how the link carries them.",
+        "A field without a reset value shows a build parameter or live state, or is not stored.",
+        "[How Passo works](architecture.md) explains the purpose of the registers and the link.",
     ]
     return "\n".join([*head, *overview, *details, ""])
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # Generated from schema/moves.toml by tools/generate_moves.py.
-"""Forms of a move: their keys, what their values become, and the limits of values."""
+"""Move forms: their keys, how values are converted, and the limits of values."""
 
 from dataclasses import dataclass
 from fractions import Fraction
@@ -9,30 +9,30 @@ from typing import ClassVar
 from passo.form_table import Form, Key, Points, Rule
 from passo.registers import Shape
 
-# Longest line: its substeps, and with them the steps of each axis, have 30 bits.
+# Longest line, in substeps (30 bits); also the limit of the steps of each axis.
 SUBSTEPS_MAX = 1073741823
-# Largest number without a sign, in its unit.
+# Largest unsigned number, in its unit.
 NUMBER_MAX = 4294967295
-# Largest number with a sign, in its unit.
+# Largest signed number, in its unit.
 SIGNED_MAX = 2147483647
-# Largest whole number.
+# Largest integer.
 WHOLE_MAX = 4294967295
-# Digits behind the point of a number.
+# Most decimal places of a number.
 DECIMALS_MAX = 30
-# Speeds and their like are UQ32.32, with a sign Q31.32: an integer x stands for x / 2^32.
+# Speeds and other fractions are UQ32.32, signed ones Q31.32: an integer x means x / 2^32.
 UNIT_Q32 = 4294967296
-# A sigmoid's alpha is in units of 1 / 4096.
+# One unit of a sigmoid's alpha, which has a resolution of 1 / 4096.
 ALPHA_ONE = 4096
 # Smallest alpha.
 ALPHA_MIN = 3
 # Largest alpha.
 ALPHA_MAX = 5
-# The alpha that the core's table is made for after reset.
+# Alpha of the core's sigmoid table after reset.
 ALPHA_RESET = 5
 
 PROFILES = ("linear", "cosine", "sigmoid", "jerk")
-USER = "user"  # the profile that is a table
-USER_BANK = Shape.SIGMOID  # where that table goes
+USER = "user"  # the profile given by a table
+USER_BANK = Shape.SIGMOID  # the bank of that table
 
 FORMS = {
     "in_time": Form(
@@ -145,7 +145,7 @@ FORMS = {
 
 @dataclass(frozen=True)
 class MoveInTime:
-    """A move in a given total time, from rest to rest."""
+    """A move from rest to rest in a given total time."""
 
     steps: tuple[int, ...]
     profile: str
@@ -175,7 +175,7 @@ class MoveBySpeed:
 
 @dataclass(frozen=True)
 class MoveBelowSpeed:
-    """In a given time, never above a speed."""
+    """A move in a given time that stays below a speed."""
 
     steps: tuple[int, ...]
     profile: str
@@ -187,7 +187,7 @@ class MoveBelowSpeed:
 
 @dataclass(frozen=True)
 class MoveAtSpeed:
-    """With a given speed and ramp time."""
+    """A move with a given speed and ramp time."""
 
     steps: tuple[int, ...]
     profile: str
@@ -212,7 +212,7 @@ class MoveAxes:
 
 @dataclass(frozen=True)
 class MoveTurn:
-    """Trapezoid of one axis by angle and speed of turning."""
+    """Rotates one axis by an angle, with a trapezoid."""
 
     axis: int
     axes: int
@@ -244,7 +244,7 @@ class MoveSigmoid:
 
 @dataclass(frozen=True)
 class MoveJerk:
-    """Jerk-limited in up to seven phases."""
+    """Jerk-limited move in up to seven phases."""
 
     steps: tuple[int, ...]
     start_speed: Fraction
@@ -259,7 +259,7 @@ class MoveJerk:
 
 @dataclass(frozen=True)
 class MoveStraight:
-    """Straight line through space, in millimetres or, where an axis turns, degrees."""
+    """Straight line in space, in millimetres (degrees for a rotary axis)."""
 
     distance: tuple[Fraction, ...]
     feed: Fraction

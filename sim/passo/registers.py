@@ -8,7 +8,7 @@ from typing import ClassVar, Self
 
 
 class _DescribedEnum(IntEnum):
-    """Numbers with a name and a description."""
+    """Named numbers with a description."""
 
     description: str
 
@@ -20,12 +20,12 @@ class _DescribedEnum(IntEnum):
 
 
 class _Word:
-    """A word by its fields; PLACES has the lowest bit, the width and the type of each."""
+    """A word as its fields; PLACES maps each to its lowest bit, width and type."""
 
     PLACES: ClassVar[dict[str, tuple[int, int, type]]]
 
     def pack(self) -> int:
-        """The word. ValueError if a field is too large."""
+        """Pack the fields into a word; ValueError if one is too large."""
         word = 0
         for name, (lsb, bits, _) in self.PLACES.items():
             value = int(getattr(self, name))
@@ -36,14 +36,14 @@ class _Word:
 
     @classmethod
     def unpack(cls, word: int) -> Self:
-        """The fields of a word. ValueError if an enumeration has no such value."""
+        """Unpack a word; ValueError if a value is not in its enumeration."""
         return cls(
             **{name: kind(word >> lsb & (1 << bits) - 1) for name, (lsb, bits, kind) in cls.PLACES.items()}
         )
 
 
 class Operation(_DescribedEnum):
-    """What a frame asks for."""
+    """Operation of a frame."""
 
     READ = 1, "Read consecutive registers."
     WRITE = 2, "Write consecutive registers."
@@ -51,13 +51,13 @@ class Operation(_DescribedEnum):
 
 
 class Verdict(_DescribedEnum):
-    """What became of a frame."""
+    """Result of a frame."""
 
     OK = 0, "Executed."
-    DUPLICATE = 1, "Not executed: its sequence number was accepted before."
+    DUPLICATE = 1, "Not executed again: this sequence number has been accepted already."
     BAD_CRC = 2, "CRC wrong."
     BAD_LENGTH = 3, "Length 0 or above 60, or not whole lines or ramps."
-    BAD_OPERATION = 4, "Unknown operation, or one the register does not take."
+    BAD_OPERATION = 4, "Unknown operation, or one the register does not support."
     UNKNOWN_ADDRESS = 5, "No register at this address."
     READ_ONLY = 6, "The register cannot be written."
     QUEUE_FULL = 7, "Not enough room for the whole frame."
@@ -66,34 +66,34 @@ class Verdict(_DescribedEnum):
 
 
 class State(_DescribedEnum):
-    """What a channel does."""
+    """State of a channel."""
 
     IDLE = 0, "No motion."
-    PREPARE = 1, "First line and first velocity are being made ready."
+    PREPARE = 1, "The first line and the first velocity are being prepared."
     ARMED = 2, "Ready to start; waits while WAIT_SYNC is set."
     RUN = 3, "The profile runs."
-    SETTLE = 4, "The profile has ended, its last substeps reach the pins."
-    DRAIN = 5, "Missing substeps of the LAST line are made at drain_velocity."
-    STOPPED = 6, "Stopped by a command or a fault; queues flushed. CLEAR leads back to IDLE."
+    SETTLE = 4, "The profile has ended; its last substeps are on their way to the pins."
+    DRAIN = 5, "The remaining substeps of the LAST line are made at drain_velocity."
+    STOPPED = 6, "Stopped by a command or a fault; queues flushed. CLEAR returns to IDLE."
 
 
 class Cause(_DescribedEnum):
-    """Why a channel stopped."""
+    """Cause of a stop."""
 
     NONE = 0, "Not stopped."
     STOP = 1, "COMMAND.STOP."
     ABORT = 2, "COMMAND.ABORT."
     LINE_UNDERRUN = 3, "A line ended, was not LAST, and none followed."
-    RAMP_UNDERRUN = 4, "The ramps ran out at speed."
+    RAMP_UNDERRUN = 4, "The ramp queue ran empty at a velocity above 0."
     STEP_OVERRUN = 5, "Steps came faster than the pin timing of an axis allows."
 
 
 class Shape(_DescribedEnum):
-    """How a ramp leads the velocity: s for a progress u, both 0 .. 1."""
+    """Shape of a ramp: s as a function of the progress u, both 0 .. 1."""
 
     LINEAR = 0, "s = u, no table."
     COSINE = 1, "(1 - cos(pi u)) / 2."
-    SIGMOID = 2, "Logistic function over -5 .. 5, scaled to begin at 0 and end at 1."
+    SIGMOID = 2, "Logistic function over -5 .. 5, scaled to start at 0 and end at 1."
     EASE = 3, "u^2."
 
 
@@ -101,11 +101,11 @@ class Shape(_DescribedEnum):
 class HeaderWord(_Word):
     """Header."""
 
-    # What the frame asks for.
+    # Requested operation.
     operation: Operation
-    # Differs from that of the write or push before it.
+    # Must differ from that of the previous write or push.
     sequence: int
-    # Words of payload or data, 1 .. 60.
+    # Number of payload or data words, 1 .. 60.
     length: int
     # Address of the first register.
     address: int
@@ -122,13 +122,13 @@ class HeaderWord(_Word):
 class AckWord(_Word):
     """Ack."""
 
-    # That of the request.
+    # Sequence number of the request.
     sequence: int
-    # What became of the frame.
+    # Result of the frame.
     verdict: Verdict
-    # The same, inverted.
+    # Sequence number, inverted.
     not_sequence: int
-    # The same, inverted.
+    # Verdict, inverted.
     not_verdict: int
 
     PLACES: ClassVar = {
@@ -143,17 +143,17 @@ class AckWord(_Word):
 class StatusWord(_Word):
     """Status."""
 
-    # Some channel is STOPPED.
+    # At least one channel is STOPPED.
     any_stopped: bool
-    # Some channel prepares or makes a motion.
+    # At least one channel prepares or runs a motion.
     any_occupied: bool
-    # RUN.STATUS_CHANNEL: the channel whose room follows.
+    # RUN.STATUS_CHANNEL: the channel that line_room and ramp_room refer to.
     channel: int
-    # Of the last write or push that was executed.
+    # Sequence number of the last accepted write or push.
     sequence: int
-    # Free places for lines, 255 = 255 or more.
+    # Free entries of the line queue; 255: 255 or more.
     line_room: int
-    # Free places for ramps, 255 = 255 or more.
+    # Free entries of the ramp queue; 255: 255 or more.
     ramp_room: int
     # Always 2.
     marker: int = 2
@@ -176,9 +176,9 @@ class StatusWord(_Word):
 class LineControlWord(_Word):
     """Line control."""
 
-    # Axis i counts down: bit i.
+    # Bit i: axis i counts down.
     directions: int
-    # Begin anew until the motion ends.
+    # Repeat until the motion ends.
     endless: bool
     # The path may end here.
     last: bool
@@ -196,11 +196,11 @@ class RampControlWord(_Word):
 
     # v_end, UQ0.48, bits 47:32.
     velocity_high: int
-    # How the velocity goes.
+    # Shape of the velocity over time.
     shape: Shape
     # 1 - shape(1 - u) instead of shape(u).
     mirror: bool
-    # Drop the ramps before it, begin at the present velocity.
+    # Drop the ramps queued before it and start from the present velocity.
     now: bool
     # The profile ends with this ramp.
     last: bool
@@ -260,11 +260,11 @@ class ParametersWord(_Word):
 class RunWord(_Word):
     """Run."""
 
-    # Channel whose queue room stands in the status word.
+    # Channel whose queue room the status word shows.
     status_channel: int = 0
     # A prepared motion stays ARMED until a rising edge of the sync input, or until this bit is cleared.
     wait_sync: int = 0
-    # Channel may start motions. Clearing it lets a running motion finish.
+    # The channel may start motions. Clearing the bit lets a running motion finish.
     run: int = 0
 
     PLACES: ClassVar = {
@@ -324,9 +324,9 @@ class ChannelCommandWord(_Word):
     zero: bool = False
     # Clear cause and lost steps and leave STOPPED. Refused with BUSY while a motion runs.
     clear: bool = False
-    # Hard stop: STOPPED at once, waiting steps dropped, no new pulse begins.
+    # Hard stop: STOPPED at once; queued steps are dropped and no new pulse starts.
     abort: bool = False
-    # Soft stop: rate to 0 by STOP_SLEW, then STOPPED. In IDLE, PREPARE and ARMED: STOPPED at once.
+    # Soft stop: slew the rate to 0 with STOP_SLEW, then STOPPED. In IDLE, PREPARE and ARMED: STOPPED at once.
     stop: bool = False
 
     PLACES: ClassVar = {
@@ -343,13 +343,13 @@ class ChannelStateWord(_Word):
 
     # Substeps drained since reset; wraps.
     drained: int = 0
-    # Axes that had a STEP_OVERRUN.
+    # Axes with a STEP_OVERRUN, one bit each.
     overrun: int = 0
-    # A soft stop is under way.
+    # A soft stop is in progress.
     stopping: bool = False
-    # Why it stopped.
+    # Cause of the stop.
     cause: Cause = Cause.NONE
-    # Quiet: no motion is prepared or runs, and no step waits or is shaped at any axis.
+    # Quiet: no motion is prepared or running, and no axis has a queued or active step.
     quiet: bool = True
     # State of the motion.
     state: State = State.IDLE
@@ -385,11 +385,11 @@ class AxisPinsWord(_Word):
 
     # 1: every edge of STEP is a step.
     both_edges: bool = False
-    # 1: EN is active low. From configuration on: parameter ENABLE_RESET.
+    # 1: EN is active low. Initial value: parameter ENABLE_RESET.
     enable_inverted: bool = False
-    # 1: DIR is high for the positive direction. From configuration on: parameter DIR_RESET.
+    # 1: DIR is high for the positive direction. Initial value: parameter DIR_RESET.
     direction_inverted: bool = False
-    # 1: STEP is active low. From configuration on: parameter STEP_RESET.
+    # 1: STEP is active low. Initial value: parameter STEP_RESET.
     step_inverted: bool = False
 
     PLACES: ClassVar = {
@@ -404,9 +404,9 @@ class AxisPinsWord(_Word):
 class AxisStepTimingWord(_Word):
     """STEP timing."""
 
-    # How long STEP stays active.
+    # Time STEP is active.
     step_high: int = 1
-    # How long STEP stays inactive at least.
+    # Minimum time STEP is inactive.
     step_low: int = 1
 
     PLACES: ClassVar = {
@@ -419,9 +419,9 @@ class AxisStepTimingWord(_Word):
 class AxisDirTimingWord(_Word):
     """DIR timing."""
 
-    # DIR change to the next active edge of STEP.
+    # Minimum time from a DIR change to the next active edge of STEP.
     dir_setup: int = 1
-    # End of step_low to the next change of DIR.
+    # Minimum time from the end of step_low to the next DIR change.
     dir_hold: int = 1
 
     PLACES: ClassVar = {
@@ -441,7 +441,7 @@ HEADER_OPERATION_LSB = 28
 HEADER_OPERATION_BITS = 4
 HEADER_DEFINED = 0xFFFFFFFF
 
-# Word: Ack. Last word of the reply to a write or push, and to a read that was refused.
+# Word: Ack. Last word of the reply to a write, a push or a refused read.
 ACK_NOT_VERDICT_LSB = 0
 ACK_NOT_VERDICT_BITS = 8
 ACK_NOT_SEQUENCE_LSB = 8
@@ -452,7 +452,7 @@ ACK_SEQUENCE_LSB = 24
 ACK_SEQUENCE_BITS = 8
 ACK_DEFINED = 0xFFFFFFFF
 
-# Word: Status. What stands in a reply before the ack or the data, as it was when chip select fell.
+# Word: Status. Fills a reply up to the ack or the data; sampled when chip select falls.
 STATUS_RAMP_ROOM_LSB = 0
 STATUS_RAMP_ROOM_BITS = 8
 STATUS_LINE_ROOM_LSB = 8
@@ -473,7 +473,7 @@ STATUS_MARKER_BITS = 2
 STATUS_MARKER_RESET = 0x2
 STATUS_DEFINED = 0xFFFFFFFF
 
-# Word: Line control. First word of a line; then M and N_0 .. N_{AXES-1}.
+# Word: Line control. First word of a line; M and N_0 .. N_{AXES-1} follow.
 LINE_CONTROL_LAST_LSB = 0
 LINE_CONTROL_LAST_BITS = 1
 LINE_CONTROL_ENDLESS_LSB = 1
@@ -482,8 +482,7 @@ LINE_CONTROL_DIRECTIONS_LSB = 8
 LINE_CONTROL_DIRECTIONS_BITS = 8
 LINE_CONTROL_DEFINED = 0x0000FF03
 
-# Word: Ramp control. First word of a ramp; then the lower bits of v_end, T, and the progress step in two
-# words.
+# Word: Ramp control. First word of a ramp; v_end(31:0), T and the two words of the progress step follow.
 RAMP_CONTROL_LAST_LSB = 0
 RAMP_CONTROL_LAST_BITS = 1
 RAMP_CONTROL_NOW_LSB = 1
@@ -514,7 +513,7 @@ VERSION_MAJOR_LSB = 16
 VERSION_MAJOR_BITS = 8
 VERSION_MAJOR_RESET = 0x00
 
-# Core: Parameters. How the core was built.
+# Core: Parameters. Build parameters of the core.
 ADDRESS_PARAMETERS = 0x002
 PARAMETERS_CHANNELS_LSB = 0
 PARAMETERS_CHANNELS_BITS = 4
@@ -527,8 +526,8 @@ PARAMETERS_LINE_QUEUE_LOG2_BITS = 5
 PARAMETERS_RAMP_QUEUE_LOG2_LSB = 24
 PARAMETERS_RAMP_QUEUE_LOG2_BITS = 5
 
-# Core: Run. One bit per channel, all in one register: channels that are ARMED start on the same clock when
-# one write clears their WAIT_SYNC.
+# Core: Run. One bit per channel; ARMED channels start on the same clock when one write clears their
+# WAIT_SYNC.
 ADDRESS_RUN = 0x003
 RUN_RUN_LSB = 0
 RUN_RUN_BITS = 8
@@ -595,13 +594,13 @@ EASE_POINT_LSB = 0
 EASE_POINT_BITS = 16
 EASE_DEFINED = 0x0000FFFF
 
-# Core: where each channel has its registers.
+# Core: location of the registers of each channel.
 ADDRESS_CHANNEL_BASE = 0x100
 ADDRESS_CHANNEL_COUNT = 8
 ADDRESS_CHANNEL_STRIDE = 0x100
 
-# Channel: Command. Each bit written as 1 is done once. With STOP or ABORT, CLEAR and ZERO in the same word
-# are ignored; ABORT wins over STOP.
+# Channel: Command. Each bit written as 1 triggers its command once. STOP and ABORT override CLEAR and ZERO
+# in the same word; ABORT overrides STOP.
 CHANNEL_COMMAND = 0x00
 CHANNEL_COMMAND_STOP_LSB = 0
 CHANNEL_COMMAND_STOP_BITS = 1
@@ -625,28 +624,28 @@ CHANNEL_RATE_TARGET_BITS = 17
 CHANNEL_RATE_TARGET_RESET = 0x10000
 CHANNEL_RATE_TARGET_DEFINED = 0x0001FFFF
 
-# Channel: Rate slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1.
+# Channel: Rate slew. Change of rate per 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1.
 CHANNEL_RATE_SLEW = 0x02
 CHANNEL_RATE_SLEW_LSB = 0
 CHANNEL_RATE_SLEW_BITS = 17
 CHANNEL_RATE_SLEW_RESET = 0x00400
 CHANNEL_RATE_SLEW_DEFINED = 0x0001FFFF
 
-# Channel: Stop slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1.
+# Channel: Stop slew. Change of rate per 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1.
 CHANNEL_STOP_SLEW = 0x03
 CHANNEL_STOP_SLEW_LSB = 0
 CHANNEL_STOP_SLEW_BITS = 17
 CHANNEL_STOP_SLEW_RESET = 0x00400
 CHANNEL_STOP_SLEW_DEFINED = 0x0001FFFF
 
-# Channel: Drain velocity. Velocity of the substeps that are still missing when the profile has ended.
+# Channel: Drain velocity. Velocity of the substeps that remain when the profile has ended.
 CHANNEL_DRAIN_VELOCITY = 0x04
 CHANNEL_DRAIN_VELOCITY_LSB = 0
 CHANNEL_DRAIN_VELOCITY_BITS = 32
 CHANNEL_DRAIN_VELOCITY_RESET = 0x01000000
 CHANNEL_DRAIN_VELOCITY_DEFINED = 0xFFFFFFFF
 
-# Channel: State. What the channel does now.
+# Channel: State. Present state of the channel.
 CHANNEL_STATE = 0x08
 CHANNEL_STATE_STATE_LSB = 0
 CHANNEL_STATE_STATE_BITS = 3
@@ -673,7 +672,7 @@ CHANNEL_RATE_LSB = 0
 CHANNEL_RATE_BITS = 17
 CHANNEL_RATE_RESET = 0x10000
 
-# Channel: Room. Free places in the queues. A push counts from the moment its frame is accepted.
+# Channel: Room. Free queue entries. A push counts as soon as its frame is accepted.
 CHANNEL_ROOM = 0x0A
 CHANNEL_ROOM_RAMP_ROOM_LSB = 0
 CHANNEL_ROOM_RAMP_ROOM_BITS = 16
@@ -699,20 +698,20 @@ CHANNEL_RAMP_LSB = 0
 CHANNEL_RAMP_BITS = 32
 CHANNEL_RAMP_DEFINED = 0xFFFFFFFF
 
-# Channel: Steps made. Position of an axis in steps, as it was soon after chip select fell; wraps.
+# Channel: Steps made. Position of an axis in steps, sampled just after chip select falls; wraps.
 CHANNEL_POSITION_BASE = 0x40
 CHANNEL_POSITION_COUNT = 8
 CHANNEL_POSITION_LSB = 0
 CHANNEL_POSITION_BITS = 32
 CHANNEL_POSITION_RESET = 0x00000000
 
-# Channel: where each axis has its registers.
+# Channel: location of the registers of each axis.
 CHANNEL_AXIS_BASE = 0x80
 CHANNEL_AXIS_COUNT = 8
 CHANNEL_AXIS_STRIDE = 0x08
 
 # Axis: Pins. Polarities and step mode. Refused with BUSY unless the channel is quiet. The next step waits
-# for the low time, the DIR hold and the DIR set-up from here on. Kept over a reset of the core.
+# for the low time, the DIR hold and the DIR setup, counted from this write. Not affected by a core reset.
 AXIS_PINS = 0x0
 AXIS_PINS_STEP_INVERTED_LSB = 1
 AXIS_PINS_STEP_INVERTED_BITS = 1
@@ -728,7 +727,7 @@ AXIS_PINS_BOTH_EDGES_BITS = 1
 AXIS_PINS_BOTH_EDGES_RESET = 0x0
 AXIS_PINS_DEFINED = 0x0000001E
 
-# Axis: STEP timing. Clocks, 1 .. 65535; 0 counts as 1. Kept over a reset of the core.
+# Axis: STEP timing. In clocks, 1 .. 65535; 0 counts as 1. Not affected by a core reset.
 AXIS_STEP_TIMING = 0x1
 AXIS_STEP_TIMING_STEP_LOW_LSB = 0
 AXIS_STEP_TIMING_STEP_LOW_BITS = 16
@@ -738,7 +737,7 @@ AXIS_STEP_TIMING_STEP_HIGH_BITS = 16
 AXIS_STEP_TIMING_STEP_HIGH_RESET = 0x0001
 AXIS_STEP_TIMING_DEFINED = 0xFFFFFFFF
 
-# Axis: DIR timing. Clocks, 1 .. 65535; 0 counts as 1. Kept over a reset of the core.
+# Axis: DIR timing. In clocks, 1 .. 65535; 0 counts as 1. Not affected by a core reset.
 AXIS_DIR_TIMING = 0x2
 AXIS_DIR_TIMING_DIR_HOLD_LSB = 0
 AXIS_DIR_TIMING_DIR_HOLD_BITS = 16
@@ -748,7 +747,7 @@ AXIS_DIR_TIMING_DIR_SETUP_BITS = 16
 AXIS_DIR_TIMING_DIR_SETUP_RESET = 0x0001
 AXIS_DIR_TIMING_DEFINED = 0xFFFFFFFF
 
-# Axis: Lost steps. Steps that found the queue of the axis full (STEP_OVERRUN).
+# Axis: Lost steps. Steps dropped because the axis queue was full (STEP_OVERRUN).
 AXIS_LOST_STEPS = 0x3
 AXIS_LOST_STEPS_LOST_LSB = 0
 AXIS_LOST_STEPS_LOST_BITS = 4

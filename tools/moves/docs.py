@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""The forms of a move in the documentation: what stands between markers.
+"""The move forms in the documentation: the text between markers.
 
 A marker is <!-- moves: WHAT -->...<!-- /moves -->, where WHAT is one of
 
-    forms               the table of the forms
-    keys FORM ...       the table of the keys of a form, or of some forms
-    console             the table of the forms on the console
+    forms               table of the forms
+    keys FORM ...       table of the keys of one or several forms
+    console             table of the forms on the console
     CONSTANT            a constant
     profiles            the names of the profiles
 """
@@ -18,7 +18,7 @@ MARKER = re.compile(r"(<!-- moves: ([\w ]+) -->)(.*?)(<!-- /moves -->)", re.DOTA
 
 
 def fill(schema: Schema, page: str, text: str) -> str:
-    """A page with everything between its markers made anew; raise SchemaError."""
+    """A page with the text between its markers regenerated; raises SchemaError."""
     try:
         return MARKER.sub(lambda found: found[1] + _between(schema, found[2]) + found[4], text)
     except KeyError as error:
@@ -61,7 +61,7 @@ def _range(schema: Schema, key: Key) -> str:
 
 
 def _default(schema: Schema, key: Key) -> str:
-    """What counts if it is not given; empty: it must be."""
+    """Default of a key in words; empty: the key is required."""
     if key.console_default is not None:
         return f"on the console: {key.console_default_says}"
     if key.kind.name == "table":
@@ -76,18 +76,18 @@ def _default(schema: Schema, key: Key) -> str:
 RULES = {
     "excludes": "`{key}` and `{other}` exclude each other",
     "needs": "`{key}` needs `{other}`",
-    "above_zero": "`{key}` is above 0 if it is given",
+    "above_zero": "`{key}` must be above 0 if given",
 }
 
 
 def _rules(form: Form) -> str:
-    """What is checked when all keys are read."""
+    """The rules between keys, checked after all of them are read."""
     said = [RULES[rule.kind].format(key=rule.key, other=rule.other) for rule in form.rules]
     return f"{'; '.join(said)}.\n\n" if said else ""
 
 
 def _in_c(key: Key) -> str:
-    """Its place in the struct, and what it is there."""
+    """Member and format of a key in the struct of its form."""
     if not key.kind.c:
         return ""
     member = f"limits[].{key.member}" if key.shared else key.member + ("[]" if key.kind.list else "")
@@ -95,7 +95,7 @@ def _in_c(key: Key) -> str:
 
 
 def _keys(schema: Schema, forms: list[Form]) -> str:
-    """One row for each key; of several forms with the names of those that have it."""
+    """One row per key; for several forms, with the name of the form."""
     rows = []
     for form in forms:
         for key in form.keys:
