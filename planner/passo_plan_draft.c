@@ -202,8 +202,8 @@ static void add_jump(struct passo_plan *plan, uint64_t velocity)
 	passo_plan_add_ramp(plan, PASSO_SHAPE_LINEAR, false, velocity, 0);
 }
 
-/* Adds the ramp between two velocities; in a jerk-limited ramp both curves take the same share of the change.
- * */
+/* Adds the ramp between two velocities; in a jerk-limited ramp both curves take the same share of the
+ * change. */
 static void add_change(struct passo_plan *plan, const struct passo_draft *draft, struct passo_phase ramp,
     uint64_t from, uint64_t to)
 {

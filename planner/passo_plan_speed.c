@@ -198,8 +198,8 @@ static uint64_t cruise_ticks(const struct passo_draft *draft, uint64_t velocity)
 
 /* In moves of a few ticks, rounding up can make the peak lower than the start or stop velocity. That ramp
  * then becomes part of the cruise phase. This raises the peak, but not above the velocity it was below, so no
- * limit is exceeded if the higher velocity is handled first. Returns true if the peak has to be solved again.
- * */
+ * limit is exceeded if the higher velocity is handled first. Returns true if the peak has to be solved
+ * again. */
 static bool flatten_ramp(struct passo_draft *draft)
 {
 	bool below_start = draft->accelerate.ticks > 0 && draft->peak < draft->start;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Names and sentences of the errors.
+ * Names and descriptions of the errors.
  */
 #include "passo_error.h"
 
