@@ -88,9 +88,9 @@ def _verdict(judge: Any, mosi: Sequence[int], miso: Sequence[int]) -> Verdict:
     if reply == c.PASSO_REPLY_STUCK:
         raise NoAnswerError(f"MISO stays {'high' if miso[0] else 'low'}")
     if reply == c.PASSO_REPLY_NO_ACK:
-        raise NoAckError("the core took the frame for unfinished")
+        raise NoAckError("the core saw an incomplete frame")
     if reply == c.PASSO_REPLY_DAMAGED:
-        raise DamagedReplyError("the reply does not agree with its check")
+        raise DamagedReplyError("the reply failed its check")
     if reply == c.PASSO_REPLY_SEQUENCE:
         raise WrongSequenceError(f"sequence {miso[-1] >> 24} instead of {mosi[0] >> 20 & 0xFF}")
     return Verdict(verdict[0])

@@ -125,10 +125,10 @@ const char *passo_cause_text(enum passo_cause cause)
 {
 	static const char *const texts[] = {
 	    [PASSO_CAUSE_NONE] = "not stopped",
-	    [PASSO_CAUSE_STOP] = "stopped softly by command",
-	    [PASSO_CAUSE_ABORT] = "stopped hard by command",
-	    [PASSO_CAUSE_LINE_UNDERRUN] = "a line ended and the next was not there",
-	    [PASSO_CAUSE_RAMP_UNDERRUN] = "the ramps ran out at speed",
+	    [PASSO_CAUSE_STOP] = "soft stop by command",
+	    [PASSO_CAUSE_ABORT] = "hard stop by command",
+	    [PASSO_CAUSE_LINE_UNDERRUN] = "a line ended and none was queued",
+	    [PASSO_CAUSE_RAMP_UNDERRUN] = "ran out of ramps at speed",
 	    [PASSO_CAUSE_STEP_OVERRUN] = "steps came faster than the pin timing of an axis allows",
 	};
 
