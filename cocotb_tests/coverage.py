@@ -34,7 +34,7 @@ from cocotb_tests.helpers.runner import COVERAGE_VARIABLE
 PAGE = paths.docs / "coverage.md"
 DATA = "coverage.dat"
 SELECTION = "verilator and not netlist"
-WIDTH = 118  # of the tables where there is no terminal
+WIDTH = 118  # of the tables without a terminal
 
 HEAD = """# Coverage
 

@@ -251,7 +251,11 @@ WRONG = {
     "no unit": ('"signed", unit = "degrees"', '"signed"', "the unit of signed is not ''"),
     "kind": ('kind = "signed", unit', 'kind = "sign", unit', "form turn: angle: unknown kind sign"),
     "attribute": ('"signed", unit', '"signed", units', "form turn: angle: unknown units"),
-    "no text": (', text = "rounded to the nearest step" }', " }", "missing 1 required positional argument: 'text'"),
+    "no text": (
+        ', text = "rounded to the nearest step" }',
+        " }",
+        "missing 1 required positional argument: 'text'",
+    ),
     "default": ('default = "accelerate_time"', 'default = "jerk"', "jerk is no key before it"),
     "rule": ('excludes = "ramp_time"', 'excludes = "jerk"', "a rule for a key that is not there"),
     "rule kind": ('needs = "acceleration"', 'wants = "acceleration"', "unknown rule wants"),
