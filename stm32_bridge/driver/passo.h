@@ -16,8 +16,8 @@
  *
  * After a link error it is unknown whether the core has executed the last frame:
  *   - a stop or abort is resent by every passo_poll() until it is acknowledged (NOT_STOPPED until then);
- *   - for hold, resume, override and wait for sync, the slower of the old and the new setting is resent in
- * the same way (NOT_HELD until then);
+ *   - for hold, resume, override and wait for sync, the slower of the old and the new setting is resent
+ *     in the same way (NOT_HELD until then);
  *   - during a move or a stream the driver becomes BROKEN: motions that were queued before may continue;
  *   - the pin settings of an axis are unknown (NOT_CONFIGURED) until it is configured again.
  * New moves are refused with these errors; passo_clear() ends the first three. No other command is resent.
