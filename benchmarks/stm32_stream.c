@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * How many lines per second the driver brings over the link on an STM32F103, for `passo firmware --table`.
+ * Measures the lines per second of the driver on an STM32F103, for `passo firmware --table`.
  *
- * A path of endlessly many short lines under one long ramp. The bench writes `stream_substeps` and
- * `stream_fast`, then `stream_go`, and reads at what times how many lines were asked for.
+ * Streams an endless path of short lines under one long ramp. The bench writes `stream_substeps` and
+ * `stream_fast`, then `stream_go`, and reads the number of lines requested over time.
  */
 #include "board.h"
 #include "passo.h"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""passo_axis: pin timings, queue, directions, what it counts."""
+"""passo_axis: pin timings, queue, directions, counters."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -44,11 +44,11 @@ def test_axis(simulator: str) -> None:
 def expected_steps(
     timing: PinTiming, requests: Sequence[Request], direction: int
 ) -> tuple[list[Request], list[int]]:
-    """Steps as soon as the pin timing allows, and the clocks of the requests that find four waiting.
+    """Reference: steps as early as the pin timing allows, and the clocks of requests to a full queue.
 
-    The pins stand in `direction` before, and the direction of the line is always that of the last request.
-    Counted in clocks of the pins: a request and a change of the line's direction reach them after LATENCY,
-    and a step leaves the queue a clock before it is seen.
+    DIR has `direction` initially, and the direction of the line is always that of the last request. Clocks
+    are those at the pins: a request and a change of the line's direction reach them after LATENCY, and a step
+    leaves the queue one clock before it is seen.
     """
     steps: list[Request] = []
     lost: list[int] = []
@@ -95,7 +95,7 @@ def apply(dut: HierarchyObject, timing: PinTiming) -> None:
 
 
 async def write(dut: HierarchyObject, clocks: Clocks, timing: PinTiming) -> None:
-    """Write pins and timings as the registers do: they change a clock after the strobe."""
+    """Write pins and timings as the registers do: they change one clock after the strobe."""
     dut.pins_written.value = 1
     dut.both_edges_next.value = timing.both_edges
     await clocks.wait(1)
@@ -107,7 +107,7 @@ async def write(dut: HierarchyObject, clocks: Clocks, timing: PinTiming) -> None
 
 
 async def prepare(dut: HierarchyObject, timing: PinTiming) -> Clocks:
-    """Reset with these settings in force; the pins stand."""
+    """Reset with these settings; the pins are idle."""
     clocks = await begin(dut, *INPUTS)
     while not read(dut.quiet):
         await clocks.wait(1)
@@ -166,7 +166,7 @@ class Axis:
         assert self.counted()[before:] == steps
 
     def counted(self) -> list[Request]:
-        """What the axis says of the steps it made, as of the clock on which they leave the pin."""
+        """The steps that the axis counts, by the clock on which they leave the pin."""
         counted: list[Request] = []
         for clock in self.made.clocks_where(bool, self.clocks.now):
             negative = next((n for since, n in reversed(self.directions.changes) if since <= clock), 0)
@@ -175,7 +175,7 @@ class Axis:
 
 
 def first_difference(actual: Sequence[Request], expected: Sequence[Request]) -> str:
-    """Where two lists of steps begin to differ."""
+    """The first difference between two lists of steps."""
     for n, (a, e) in enumerate(zip(actual, expected, strict=False)):
         if a != e:
             return f"step {n}: expected {e}, actual {a}"
@@ -224,7 +224,7 @@ async def one_and_one_gives_a_step_every_two_clocks(dut: HierarchyObject) -> Non
     ]
 )
 async def bursts_and_reversals_take_exactly_the_set_times(dut: HierarchyObject, timing: PinTiming) -> None:
-    """Steps that wait follow as soon as the four times allow, in the same and in the other direction."""
+    """Queued steps follow as early as the four times allow, in the same and in the other direction."""
     axis = await Axis.begin(dut, timing)
     for directions in ([1, 1, 1, 1], [1, 1, -1, -1], [1, -1, 1, -1], [-1, 1, 1, -1], [-1, -1, -1, -1]):
         now = axis.clocks.now
@@ -247,7 +247,7 @@ async def the_longest_times_are_kept(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def the_fifth_waiting_step_is_an_overrun(dut: HierarchyObject) -> None:
-    """Four steps wait with their directions; what comes on top raises overrun once each and is not made."""
+    """Four steps are queued with their directions; each further one raises overrun once and is dropped."""
     axis = await Axis.begin(dut, PinTiming(high=50, low=20, setup=5, hold=9))
     now = axis.clocks.now
     directions = [1, -1, -1, 1, 1, -1, 1, -1]  # the first is under way when the fifth is to wait
@@ -260,7 +260,7 @@ async def the_fifth_waiting_step_is_an_overrun(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def dir_follows_the_line_while_nothing_waits(dut: HierarchyObject) -> None:
-    """A new line's direction is set up at once, so its first step is not late; a waiting step goes first."""
+    """DIR follows a new line at once, so its first step is not late; a queued step goes first."""
     timing = PinTiming(high=6, low=4, setup=20, hold=10)
     axis = await Axis.begin(dut, timing)
     turned = Recorder(axis.clocks, dut.dir_pin)
@@ -287,7 +287,7 @@ async def dir_follows_the_line_while_nothing_waits(dut: HierarchyObject) -> None
 
 @cocotb.test()
 async def drop_forgets_what_waits_and_finishes_the_pulse(dut: HierarchyObject) -> None:
-    """After drop no further step is made, and the one under way keeps its length."""
+    """After drop no further step is made, and a pulse in progress keeps its length."""
     axis = await Axis.begin(dut, PinTiming(high=30, low=10, setup=5, hold=5))
     for at in range(6):
         now = axis.clocks.now
@@ -308,7 +308,7 @@ async def drop_forgets_what_waits_and_finishes_the_pulse(dut: HierarchyObject) -
 
 @cocotb.test()
 async def polarities_invert_only_the_pins(dut: HierarchyObject) -> None:
-    """With inverted pins the same edges leave, upside down; EN follows its two bits."""
+    """Inverted pins have the same edges with inverted levels; EN follows its two bits."""
     for step_inverted in (False, True):
         for direction_inverted in (False, True):
             timing = PinTiming(3, 2, 4, 5, step_inverted=step_inverted, direction_inverted=direction_inverted)
@@ -352,7 +352,7 @@ def read_lost(axis: Axis) -> int:
 @cocotb.test()
 @cocotb.parametrize(high=[0, 1, 2, 8, 70])
 async def a_time_that_is_written_begins_anew(dut: HierarchyObject, high: int) -> None:
-    """step_high written at any clock of a pulse: from then on STEP stays active for the new time."""
+    """step_high written at any clock of a pulse: STEP stays active for the new time from then on."""
     clocks = await prepare(dut, PinTiming())
     for at in range(LATENCY - 1, LATENCY + 17):
         dut.step_high.value = 20
@@ -384,7 +384,7 @@ async def a_time_that_is_written_begins_anew(dut: HierarchyObject, high: int) ->
 async def a_change_of_polarity_is_a_change_of_dir(
     dut: HierarchyObject, before: PinTiming, after: PinTiming
 ) -> None:
-    """From the write on, the low time, DIR hold and set-up are over before the next step."""
+    """After the write, low time, DIR hold and DIR setup elapse before the next step."""
     for steps in (1, 2):
         for at in range(2, 30):
             axis = await Axis.begin(dut, before)
@@ -425,7 +425,7 @@ async def a_change_of_polarity_is_a_change_of_dir(
     ]
 )
 async def a_reset_makes_no_edge(dut: HierarchyObject, timing: PinTiming) -> None:
-    """At any clock of steps and turns: STEP and DIR stand while it lasts, then a pulse is finished."""
+    """At any clock of steps and reversals: STEP and DIR do not change; a pulse is completed after it."""
     for length in (1, 2, 7):
         for at in range(40):
             clocks = await prepare(dut, timing)

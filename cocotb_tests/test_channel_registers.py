@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""passo_channel_registers: which address means what, what is answered, what is written, what is read."""
+"""passo_channel_registers: address decoding, responses, writes and reads."""
 
 from random import Random
 
@@ -71,12 +71,12 @@ class Bench:
 
 
 def command_of(data: int) -> int:
-    """The bits of a command that count."""
+    """The effective bits of a command."""
     return ABORT if data & ABORT else STOP if data & STOP else data
 
 
 def expected_answer(address: int, data: int, push: bool) -> tuple[int, int]:
-    """What a check is answered."""
+    """Expected response to a check."""
     queue = address in (LINE, RAMP)
     if not queue and address not in LIMITS and address not in (STATE, RATE, ROOM, VELOCITY):
         return 0, 0
@@ -97,7 +97,7 @@ def random_data(random: Random) -> int:
 
 @cocotb.test()
 async def every_address_means_its_block(dut: HierarchyObject) -> None:
-    """One bit for the axis or position that is meant, pushes to a queue, and nothing while not selected."""
+    """One bit for the addressed axis or position, pushes to a queue, and nothing while not selected."""
     bench = await Bench.begin(dut)
     for selected in (1, 0):
         for address in range(0x100):
@@ -115,7 +115,7 @@ async def every_address_means_its_block(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def every_check_has_its_answer(dut: HierarchyObject) -> None:
-    """Every address, written and pushed to, with values around the limits; a clock later, for a clock."""
+    """Every address, written and pushed to, with values around the limits; one clock later, for one clock."""
     random = rng("channel registers, checks")
     bench = await Bench.begin(dut)
     for _ in range(3):
@@ -141,7 +141,7 @@ async def every_check_has_its_answer(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def commands_say_what_they_need(dut: HierarchyObject) -> None:
-    """With the strobe of the check: CLEAR no motion, ZERO a quiet channel, a stop nothing."""
+    """With the strobe of the check: CLEAR requires no motion, ZERO a quiet channel, a stop nothing."""
     bench = await Bench.begin(dut)
     for name in ("bus_check", "bus_write", "bus_read"):
         for address in (COMMAND, RATE_TARGET, STATE, LINE):
@@ -164,7 +164,7 @@ async def commands_say_what_they_need(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def what_is_written_stands(dut: HierarchyObject) -> None:
-    """Settings stay as they were written last; a command lasts one clock; no other write does anything."""
+    """Settings keep the last value written; a command lasts one clock; other writes have no effect."""
     random = rng("channel registers, writes")
     bench = await Bench.begin(dut)
     settings = {RATE_TARGET: 1 << 16, RATE_SLEW: 0x400, STOP_SLEW: 0x400, DRAIN_VELOCITY: 1 << 24}
@@ -184,7 +184,7 @@ async def what_is_written_stands(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def states_are_read_as_they_are(dut: HierarchyObject) -> None:
-    """All bits of all of them, for one clock; a read of anything else is refused or has no answer."""
+    """All bits of all states, for one clock; reads of other addresses are refused or not answered."""
     random = rng("channel registers, reads")
     bench = await Bench.begin(dut)
     for _ in range(100):

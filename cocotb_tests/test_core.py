@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The whole core through its SPI pins, compared with the C model on every clock.
 
-helpers/core_bench.py is what all of these have in common; PASSO_SEED is the seed of the random ones.
+They share helpers/core_bench.py; PASSO_SEED is the seed of the random tests.
 """
 
 import pytest
@@ -11,8 +11,8 @@ from cocotb_tests.helpers.runner import ONE_CHANNEL, TWO_CHANNELS, run
 
 MOST_CHANNELS = {"CHANNELS": 8, "AXES": 1, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 8, "RAMP_QUEUE_LOG2": 8}
 
-# Icarus Verilog takes very much longer: what is long runs on Verilator only, and of the random moves it gets
-# fewer. `make soak` plays it a thousand histories more.
+# Icarus Verilog is much slower: long tests run only on Verilator, and Icarus gets fewer random moves. `make
+# soak` plays a thousand more histories on it.
 verilator_only = pytest.mark.parametrize("simulator", ["verilator"])
 
 

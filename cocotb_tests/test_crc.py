@@ -53,7 +53,7 @@ async def turn(dut: HierarchyObject, clocks: Clocks, random: Random) -> int:
 
 @cocotb.test()
 async def known_values_come_out(dut: HierarchyObject) -> None:
-    """What the CRC unit of an STM32 gives, and the check value of the catalogue for the reference."""
+    """Results of the CRC unit of an STM32, and the catalogue check value for the reference."""
     random = rng("crc, known")
     assert crc_of_bytes(b"123456789") == 0x0376E6E7
     clocks = await begin(dut, "restart", "shift", "turn", "data")
@@ -71,7 +71,7 @@ async def known_values_come_out(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def it_goes_on_after_it_was_shown(dut: HierarchyObject) -> None:
-    """Any words with any pauses; a turn leaves the CRC as it was."""
+    """Any words with any pauses; shifting the CRC out does not change it."""
     random = rng("crc")
     clocks = await begin(dut, "restart", "shift", "turn", "data")
     for _ in range(30):
@@ -85,7 +85,7 @@ async def it_goes_on_after_it_was_shown(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def restart_wins_over_a_shift(dut: HierarchyObject) -> None:
-    """A restart in the middle of a word, or together with a bit: as if nothing had been before."""
+    """A restart within a word, or together with a bit, discards everything before."""
     random = rng("crc, restart")
     clocks = await begin(dut, "restart", "shift", "turn", "data")
     for at in range(32):

@@ -98,7 +98,7 @@ class Lines:
                 await self.clocks.wait(next(gaps) - 1)
 
     async def jump(self, line: Line, number: int) -> None:
-        """Go on as if so many substeps of a line had been made: set the state that they lead to."""
+        """Set the state after a number of substeps of a line, to skip them."""
         dut = self.dut
         dut.u_line.substep_number.value = number
         for axis, n in enumerate(line.steps):
@@ -108,7 +108,7 @@ class Lines:
         await self.clocks.wait(3)
 
     async def make_end(self, line: Line, number: int) -> None:
-        """Make the substeps of a line after so many."""
+        """Make the remaining substeps of a line after a number of them."""
         m = line.substeps
         for at in range(number, m):
             for axis, n in enumerate(line.steps):

@@ -38,7 +38,7 @@ class Positions:
         return cls(dut, await begin(dut, *INPUTS))
 
     async def clock(self, steps: list[int], zero: bool = False, snapshot: bool = False) -> None:
-        """One clock with these steps, each -1, 0 or 1; not more of an axis than it can make in a round."""
+        """One clock with these steps, each -1, 0 or 1, limited to what an axis can make in a round."""
         if read(self.dut.slot) == ROUND - 1:
             self.at_round_end = list(self.now)
             self._steps = [0] * self.axes
@@ -128,7 +128,7 @@ async def zero_sets_all_positions(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def a_snapshot_waits_for_a_zero(dut: HierarchyObject) -> None:
-    """Right after ZERO the snapshot is that of the round after the one that clears."""
+    """Right after ZERO, the snapshot is taken in the round after the one that clears."""
     random = rng("positions, zero and snapshot")
     positions = await Positions.begin(dut)
     for at in range(0, ROUND, 5):

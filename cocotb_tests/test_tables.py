@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""passo_tables: what they hold, their bus, and how they serve the channels."""
+"""passo_tables: contents, bus accesses, and service of the channels."""
 
 from random import Random
 from typing import Any
@@ -19,7 +19,8 @@ INPUTS = (
 )  # fmt: skip
 BAD_OPERATION, BAD_VALUE = 4, 9
 
-# Only loading the FPGA sets the tables, reset does not: tests that need them fresh come first.
+# Only configuration of the FPGA initializes the tables, not reset: tests that need the initial contents come
+# first.
 
 
 @pytest.mark.parametrize("channels", [1, 8])
@@ -54,7 +55,7 @@ class Bench:
         return points
 
     async def check_table(self, shape: Shape, points: list[int], step: int = 1) -> None:
-        """Compare every point, or one in so many; what follows the last one means nothing."""
+        """Compare every `step`-th point; the point after the last one is undefined."""
         for k in range(0, POINTS, step):
             point, point_next = await self.fetch(shape, k)
             assert point == points[k]

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * DDA of one axis: spreads the N steps of a line evenly over its M substeps. See rtl/passo_dda.v.
+ * DDA of one axis: distributes the N steps of a line evenly over its M substeps. See rtl/passo_dda.v.
  */
 #include "passo_model.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Line counter: counts the substeps of the current line and leads the DDAs. See rtl/passo_line.v.
+ * Line counter: counts the substeps of the current line and controls the DDAs. See rtl/passo_line.v.
  */
 #include "passo_model.h"
 

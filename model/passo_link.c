@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Link: words to frames to bus accesses, and the replies. See rtl/passo_link.v, rtl/passo_payload.v and
- * rtl/passo_reply.v. The 32 shifts of a word are made at once, in the last of their clocks. The
- * counters of refusals are in passo_registers.c.
+ * rtl/passo_reply.v. The 32 shifts of a word are done at once, in the last of their clocks. The refusal
+ * counters are in passo_registers.c.
  */
 #include "passo_crc.h"
 #include "passo_model.h"
@@ -65,7 +65,7 @@ static uint32_t loaded(const struct passo_link *link)
 	return (uint32_t)word[0] << 16 | word[1];
 }
 
-/* The word on the bus, the CRC and the reply have turned. */
+/* The 32 clocks of a bus word, CRC or reply word have passed: apply their result. */
 static void turned(struct passo_link *link)
 {
 	switch (link->step) {
@@ -157,7 +157,7 @@ static void end_acknowledge(struct passo_link *link)
 	begin_pass(link);
 }
 
-/* What the clock does in each step. */
+/* Behaviour of each step. */
 static void do_step(struct passo_link *link, const struct passo_link_wires *wires,
     const struct passo_link *was, bool word_valid, bool frame_goes_on)
 {
@@ -190,7 +190,7 @@ static void do_step(struct passo_link *link, const struct passo_link_wires *wire
 			end_acknowledge(link);
 		break;
 	case PASSO_LINK_REPLAY:
-		/* a word is there when the next one begins to be loaded */
+		/* a word is complete when loading of the next one starts */
 		link->bus.write = was->count == COUNT_LOAD && was->index != 0u;
 		if (was->count == COUNT_LOADED - 1) {
 			link->index++;
@@ -235,7 +235,7 @@ static void do_step(struct passo_link *link, const struct passo_link_wires *wire
 
 void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wires)
 {
-	/* all but the buffer */
+	/* without the buffer */
 	const struct passo_link was = {
 	    .step = link->step,
 	    .count = link->count,

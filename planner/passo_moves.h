@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
  * Generated from schema/moves.toml by tools/generate_moves.py.
  *
- * What a move is asked for with: profiles, and a struct for each form.
+ * Parameters of moves: the profiles, and a struct for each form.
  */
 #ifndef PASSO_MOVES_H
 #define PASSO_MOVES_H
 
 #include "passo_command.h"
 
-/* Each profile with its shape and its name. */
+/* X macro of the profiles: EACH(NAME, shape of the core, name). */
 #define PASSO_PROFILES(EACH) \
 	EACH(LINEAR, PASSO_SHAPE_LINEAR, "linear") \
 	EACH(COSINE, PASSO_SHAPE_COSINE, "cosine") \
@@ -26,11 +26,11 @@ enum passo_profile {
 #define PASSO_PROFILES_WORDS "linear, cosine, sigmoid or jerk"
 #define PASSO_PROFILES_CHOICE "linear|cosine|sigmoid|jerk"
 
-/* The user's own shape: what stands in the place of a profile, where its table goes. */
+/* User-defined shape: the name that replaces a profile, and the bank of its table. */
 #define PASSO_USER_PROFILE "user"
 #define PASSO_USER_BANK    PASSO_SHAPE_SIGMOID
 
-/* Each form. */
+/* X macros: EACH(name, NAME) for each form ... */
 #define PASSO_MOVES(EACH) \
 	EACH(in_time, IN_TIME) \
 	EACH(by_speed, BY_SPEED) \
@@ -42,7 +42,7 @@ enum passo_profile {
 	EACH(jerk, JERK) \
 	EACH(straight, STRAIGHT)
 
-/* Those whose steps are in their field `steps`. */
+/* ... for those with a member `steps` ... */
 #define PASSO_MOVES_BY_STEPS(EACH) \
 	EACH(in_time, IN_TIME) \
 	EACH(by_speed, BY_SPEED) \
@@ -52,7 +52,7 @@ enum passo_profile {
 	EACH(sigmoid, SIGMOID) \
 	EACH(jerk, JERK)
 
-/* Those that can follow a shape of the user's own. */
+/* ... and for those that accept a user-defined shape. */
 #define PASSO_MOVES_BY_SHAPE(EACH) \
 	EACH(in_time, IN_TIME) \
 	EACH(by_speed, BY_SPEED)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Generated from schema/moves.toml by tools/generate_moves.py.
  *
- * Limits of moves and of the numbers that ask for them.
+ * Limits of moves and of their parameters.
  */
 #ifndef PASSO_LIMITS_H
 #define PASSO_LIMITS_H

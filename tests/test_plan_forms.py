@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The further methods as forms of a move file: read exactly, refused in one line, and run."""
+"""The further methods as forms of a move file: read exactly, rejected in one line, and run."""
 
 import json
 from fractions import Fraction
@@ -46,7 +46,7 @@ def test_all_forms_are_tried() -> None:
 
 @pytest.mark.parametrize("form", FORMS)
 def test_every_form_is_planned_and_run(tmp_path: Path, form: str) -> None:
-    """The steps that the file says are those of the plan, and those that the model makes."""
+    """File, plan and model have the same steps."""
     path = write(tmp_path, CLOCK + move_of(form))
     (move,) = read_moves(path).moves
     (plan,) = plan_file(read_moves(path), Parameters())
@@ -135,7 +135,7 @@ def test_bad_moves(tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]
 
 @pytest.mark.parametrize("name", NEW_EXAMPLES)
 def test_examples_run(tmp_path: Path, name: str) -> None:
-    """Exact counts, exact times, and every step within a hundredth of its place."""
+    """Exact counts, exact times, and every step within a hundredth of its ideal position."""
     path = paths.examples / f"{name}.toml"
     assert cli.main(["run", str(path), "--engine", "model", "--out", str(tmp_path)]) == 0
     summary = json.loads((tmp_path / "summary.json").read_text())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`passo shape`: tables from formulas and files, and what is not a shape."""
+"""`passo shape`: tables from formulas and files, and invalid shapes."""
 
 import math
 import tomllib

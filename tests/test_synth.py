@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is read out of the tools and shown; the tools themselves run in `make synth`."""
+"""Parsing and presentation of tool output; the tools themselves run in `make synth`."""
 
 import importlib.util
 import re
@@ -25,7 +25,7 @@ def placed(**clocks: tuple[float, float]) -> Placed:
 
 
 def test_what_is_wrong_with_a_result_is_told() -> None:
-    """Clocks missed or missing, a PLL with another clock than was asked for, complaints of nextpnr."""
+    """Clocks missed or absent, a PLL with the wrong clock, complaints of nextpnr."""
     assert synth._problems(placed(clk=(100.5, 100.0), spi_sclk=(80.0, 25.0)), 100) == ()
     assert "clk: 99.9 MHz" in synth._problems(placed(clk=(99.9, 100.0), spi_sclk=(80.0, 25.0)), 100)[0]
     assert "sclk: 24.0 MHz" in synth._problems(placed(clk=(100.5, 100.0), spi_sclk=(24.0, 25.0)), 100)[0]
@@ -38,7 +38,7 @@ def test_what_is_wrong_with_a_result_is_told() -> None:
     assert synth._problems(replace(complained, fits=False), 100) == ("no place or no route",)
 
 
-# What the tools said of boards; of the second to the last with a fault in the file of pins or of clocks.
+# Output of the tools for boards; from the second on with an error in the pin file or the clock constraints.
 COMPLAINTS = (
     "Warning: Failed to route net 'u_board.spi_sclk' from X28Y28/F6 to X40Y7/CLK2 using dedicated routing.",
     "Warning: unmatched constraint 'syncc' (on line 9)",
@@ -66,7 +66,7 @@ def test_complaint_is_found_among_what_tools_say(complaint: str) -> None:
 
 
 def test_every_word_of_a_packer_is_a_complaint() -> None:
-    """They are silent when all is well."""
+    """They print nothing on success."""
     assert packer_complaints("\n") == ()
     assert packer_complaints("XXX IO: add PULL key handle\n") == ("XXX IO: add PULL key handle",)
 
@@ -95,7 +95,7 @@ def test_pins_of_the_configuration_are_released() -> None:
 
 @pytest.mark.skipif(importlib.util.find_spec("apycula") is None, reason="needs 'tools/setup.sh fpga'")
 def test_functions_of_pins_are_those_of_the_database() -> None:
-    """What the test above takes for granted."""
+    """Assumed by the test above."""
     functions = gowin_functions()
     assert {pin: functions[pin] for pin in GOWIN_FUNCTIONS} == GOWIN_FUNCTIONS
 
@@ -140,7 +140,7 @@ def with_clk(mhz: float) -> Placed:
 def test_first_seed_that_will_do_is_taken(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Seeds are tried until one reaches the clock; which it was is said, and a line of each stage."""
+    """Seeds are tried until one reaches the clock; prints which one, and a line for each stage."""
     results = {1: with_clk(9), 2: with_clk(9), 3: replace(with_clk(90), complaints=("odd",)), 4: with_clk(70)}
     assert play_synth(monkeypatch, tmp_path, results)
     said = capsys.readouterr().out
@@ -169,7 +169,7 @@ def test_no_bitstream_with_anything_wrong(
     results: Mapping[int, Placed],
     messages: Mapping[str, tuple[str, ...]],
 ) -> None:
-    """Not even an old one is left; the reason is said."""
+    """An old bitstream is deleted as well; the reason is printed."""
     assert not play_synth(monkeypatch, tmp_path, results, **messages)
     said = capsys.readouterr().out
     assert all(message in said for words in messages.values() for message in words)

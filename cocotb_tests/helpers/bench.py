@@ -184,7 +184,7 @@ class PushBus:
         assert set(await self.check(words)) == {0}
 
     async def commit(self, words: Sequence[int]) -> None:
-        """Execute a frame that was checked; the first word stands on the bus after COMMIT_CLOCKS."""
+        """Execute a checked frame; its first word is on the bus after COMMIT_CLOCKS."""
         await self.frame(commit=True)
         await self.write(words)
 

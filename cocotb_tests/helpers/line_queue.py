@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""passo_line_queue, driven and looked at."""
+"""Test bench of passo_line_queue."""
 
 from random import Random
 

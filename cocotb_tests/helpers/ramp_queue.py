@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""passo_ramp_queue, driven and looked at."""
+"""Test bench of passo_ramp_queue."""
 
 from collections.abc import Sequence
 from random import Random

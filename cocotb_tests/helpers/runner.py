@@ -4,7 +4,7 @@
 Environment variables:
 
 - `PASSO_SEED`: seed of all random cases, default 1; the same seed gives the same run.
-- `PASSO_RTL`: another folder in place of `rtl/`, to see that a fault in the RTL is found.
+- `PASSO_RTL`: another folder instead of `rtl/`, to test that a fault in the RTL is found.
 - `PASSO_WAVES`: if set, waveforms are written into the test's folder below `build/cocotb`.
 - `PASSO_NETLIST`: if set, all tests of the whole core run on the netlist, not just some (test_netlist.py).
 - `PASSO_COVERAGE`: if set, Verilator writes coverage.dat into the test's folder below `build/cocotb`.

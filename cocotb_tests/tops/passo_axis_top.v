@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// An axis whose times come from the test, which need not say which of them are short; 0 counts as 1.
+// An axis with times from the test; which of them are short is derived here; 0 counts as 1.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -13,7 +13,7 @@ module passo_axis_top (
   output wire        step_made,
   output wire        step_direction,
   output wire        full,
-  output reg         overrun,             // a step was not accepted, a clock ago
+  output reg         overrun,             // a step was not accepted in the previous clock
   output wire        quiet,
   input  wire        clear,
   output wire [ 3:0] lost,

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The core, and a recorder of its pins.
+// Clock 1 is the first rising edge without rst. Whenever a pin changes, a row is written to pins.log:
+//   clock; rst, sclk, mosi, cs_n, sync as bits 4 .. 0 and miso, all sampled at its rising edge;
+//   step, dir, enable, running, irq after the previous rising edge
 //
-// Clock 1 is the first rising edge ever without rst. Whenever a pin is not as it was a clock before, a row goes to pins.log:
-//
-//   clock; rst, sclk, mosi, cs_n, sync as bits 4 .. 0 and miso, all as they stand at its rising edge;
-//   step, dir, enable, running, irq as the rising edge before left them
-//
-// in decimal numbers; one with an X in it is not a number.
+// in decimal; a value with an X is not a number.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none

@@ -45,7 +45,7 @@ module passo_link_top (
   assign refused    = u_link.refuses;
   assign verdict    = u_link.verdict;
 
-  // the status stands in the place of data, but for the clock after a strobe; a clock later it comes to the link
+  // the status replaces the data except in the clock after a strobe; it reaches the link one clock later
   reg answers;
   reg [31:0] read_data;
   always @(posedge clk) begin

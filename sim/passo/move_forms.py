@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # Generated from schema/moves.toml by tools/generate_moves.py.
-"""Forms of a move: their keys, what their values become, and the limits of values."""
+"""Move forms: their keys, how values are converted, and the limits of values."""
 
 from dataclasses import dataclass
 from fractions import Fraction
@@ -31,8 +31,8 @@ ALPHA_MAX = 5
 ALPHA_RESET = 5
 
 PROFILES = ("linear", "cosine", "sigmoid", "jerk")
-USER = "user"  # the profile that is a table
-USER_BANK = Shape.SIGMOID  # where that table goes
+USER = "user"  # the profile given by a table
+USER_BANK = Shape.SIGMOID  # the bank of that table
 
 FORMS = {
     "in_time": Form(

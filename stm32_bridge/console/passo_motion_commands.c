@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Commands that move the axes, and that read where they are.
+ * Commands for motion and readings.
  */
 #include "passo_call.h"
 #include "passo_words.h"
@@ -68,7 +68,7 @@ bool passo_run_zero(const struct passo_call *call)
 	return passo_answer(call, passo_zero(&call->console->passo));
 }
 
-/* Of one axis, or of all. */
+/* For one axis, or for all. */
 bool passo_run_enable(const struct passo_call *call)
 {
 	enum passo_error error = PASSO_OK;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the report shows: tables for the terminal, docs/report.md, and the goals in README.md."""
+"""Output of the report: tables for the terminal, docs/report.md, and the goals in README.md."""
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -14,7 +14,7 @@ PAGE = paths.docs / "report.md"
 TEMPLATE = Path(__file__).with_name("page.md")
 README = paths.root / "README.md"
 BEGIN, END = "<!-- report: make report writes from here -->", "<!-- to here -->"
-WIDTH = 118  # of the tables where there is no terminal
+WIDTH = 118  # of the tables without a terminal
 NONE = "–"
 
 Row = dict[str, Any]
@@ -71,7 +71,7 @@ def show(report: dict[str, Any]) -> None:
 
 
 def _with_block(text: str, block: str) -> str:
-    """README.md with another table between the marks."""
+    """README.md with a new table between the marks."""
     before, _, rest = text.partition(BEGIN)
     _, _, after = rest.partition(END)
     if not rest or END not in rest:
@@ -130,7 +130,7 @@ def _goals(report: dict[str, Any]) -> tuple[Sequence[str], list[list[str]]]:
 
 
 def _by_seed(report: dict[str, Any]) -> list[str]:
-    """The speeds of the designs with goals, seed by seed."""
+    """The speeds of the designs with goals, by seed."""
     rows = [(goal, _find(report, goal["device"], goal["channels"], goal["axes"])) for goal in report["goals"]]
     return [
         f"{DEVICES[goal['device']].title}, {goal['axes']} axes: {', '.join(map(_mhz, row['f_max'])) or NONE}"
@@ -166,7 +166,7 @@ def _device(report: dict[str, Any], name: str) -> str:
 
 
 def _costs(report: dict[str, Any], name: str) -> str:
-    """Of a further axis and of a further channel."""
+    """Cost of a further axis and of a further channel."""
     unit = DEVICES[name].family.size_unit
     one, eight = (_find(report, name, 1, axes) for axes in (1, 8))
     four = _find(report, name, 4, 1)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """`make report`: size and speed of the core on all devices.
 
-A whole report writes build/report.json, docs/report.md and the goals between two marks in README.md, QUICK=1
-the goals alone. A part (ONLY=, QUICK=1) is printed and written to build/report-part.json. Each run of a
-netlist with a seed is kept in build/fpga: a report that was broken off goes on, and one after a change makes
-again what the change concerns.
+A full report writes build/report.json, docs/report.md and the goals between two marks in README.md; QUICK=1
+writes only the goals. A partial report (ONLY=, QUICK=1) is printed and written to build/report-part.json.
+Each run of a netlist with a seed is cached in build/fpga: an interrupted report resumes, and after a change
+only the affected runs are repeated.
 """
 
 import argparse
@@ -42,7 +42,7 @@ Key = tuple[str, str, tuple[int, int]]  # device, top, (channels, axes)
 
 @dataclass(frozen=True)
 class Goal:
-    """What a device is to hold: `size` in its own unit, `bram` if limited; and MHz over the seeds."""
+    """Goal for a device: `size` in its unit, `bram` if limited, and the clocks in MHz over the seeds."""
 
     device: str
     channels: int
@@ -62,7 +62,7 @@ GOALS = (
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Return 0 if all runs ended, fitting or not; 2 if there is no such device."""
+    """Return 0 if all runs ended, whether they fit or not; 2 for an unknown device."""
     parser = argparse.ArgumentParser(prog="make report", description="Measure size and speed of the core.")
     parser.add_argument("--only", default="", help=f"devices, with commas between: {','.join(DEVICES)}")
     parser.add_argument("--quick", action="store_true", help="only the rows of the goals")
@@ -98,7 +98,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def core(device: Device, size: tuple[int, int], top: str = SPI) -> Design:
-    """The core alone behind one of its host interfaces, with its ports as pins."""
+    """The design of the core alone behind one of its host interfaces, with its ports as pins."""
     channels, axes = size
     parameters = {"CHANNELS": channels, "AXES": axes, **device.core}
     suffix = "" if top == SPI else f"-{top.removeprefix('passo_')}"
@@ -106,7 +106,7 @@ def core(device: Device, size: tuple[int, int], top: str = SPI) -> Design:
 
 
 def measure(wanted: Sequence[Key], splits: bool) -> dict[str, Any]:
-    """Run what is not there yet, as many at a time as the machine can, and gather the figures."""
+    """Run what is not cached, in parallel, and collect the figures."""
     tell = stages()
     devices = list(dict.fromkeys(DEVICES[name] for name, _, _ in wanted))
     prepare(dict.fromkeys(program for device in devices for program in device.family.programs), tell)
@@ -131,7 +131,7 @@ def measure(wanted: Sequence[Key], splits: bool) -> dict[str, Any]:
             tell(f"place and route {done}: {designs[key].name}, seed {seed}: {_words(placed)}")
             return placed
 
-        # the seeds of a design one after the other, because there is one run only of what is too large
+        # the seeds of a design run in sequence, because a design that is too large is run only once
         def runs(key: Key) -> list[Placed]:
             seed, *seeds = _seeds(key)
             first = run(key, seed)
@@ -163,7 +163,7 @@ def _seeds(key: Key) -> Sequence[int]:
 
 
 def _counter(total: int) -> Callable[..., str]:
-    """A function that counts one more, or several, and says how many of all that is."""
+    """A function that adds to a count and returns it as text."""
     done = 0
     lock = Lock()
 
@@ -191,7 +191,7 @@ def _words(placed: Placed) -> str:
 def _row(design: Design, key: Key, placed: Sequence[Placed]) -> dict[str, Any]:
     device, top, (channels, axes) = key
     made = cells(design)
-    # a seed with which nextpnr finds no place for some cell, or no end of routing, counts as 0 MHz
+    # a seed that nextpnr cannot place or route counts as 0 MHz
     reached = [run.main_clock[0] if run.fits else 0.0 for run in placed]
     median = statistics.median(reached)
     return {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Which module takes how much, of a design whose hierarchy was kept."""
+"""Size of each module, from a synthesis that keeps the hierarchy."""
 
 import json
 import re
@@ -13,7 +13,7 @@ _PLAIN = re.compile(r"^\$paramod(?:\$[0-9a-f]+)?\\([^\\]+)(?:\\.*)?$")
 
 
 def split(design: Design) -> list[dict[str, Any]]:
-    """Cells of all instances of each module, without those of the modules inside it; the largest first."""
+    """Cells of all instances of each module, without their submodules; largest first."""
     modules = json.loads((synthesize(design) / CELLS).read_text())["modules"]
     inside = {name.lstrip("\\"): facts["num_cells_by_type"] for name, facts in modules.items()}
     instances: Counter[str] = Counter()
