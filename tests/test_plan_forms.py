@@ -106,7 +106,7 @@ BAD = {
     ),
 }
 UNPLANNABLE = {
-    "slow": (move_of("below_speed").replace("2000", "100"), "move 1: SPEED_TOO_LOW: At the highest"),
+    "slow": (move_of("below_speed").replace("2000", "100"), "move 1: SPEED_TOO_LOW: The steps take"),
     "alpha": (move_of("sigmoid").replace("3.25", "5.001"), "move 1: BAD_ALPHA: Alpha must be 3 to 5."),
     "jerk": (move_of("jerk").replace("5_000_000", "0"), "move 1: NO_JERK: "),
     "minimum": (move_of("turn", "minimum_rpm = 200\n"), "move 1: MINIMUM_ABOVE_SPEED: "),

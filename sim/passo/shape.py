@@ -139,7 +139,7 @@ def check(points: Sequence[int]) -> Facts:
     whole = [*points, ONE]
     for k, (point, after) in enumerate(pairwise(whole)):
         if after < point:
-            raise ShapeError(f"a shape must never fall: point {k} is {point}, point {k + 1} is {after}")
+            raise ShapeError(f"a shape must not decrease: point {k} is {point}, point {k + 1} is {after}")
     mean = Fraction(sum(whole[:-1]) + sum(whole[1:]), 2 * POINTS * ONE)
     return Facts(mean, all(whole[k] + whole[POINTS - k] == ONE for k in range(POINTS + 1)))
 
