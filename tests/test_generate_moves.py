@@ -252,7 +252,7 @@ WRONG = {
     "kind": ('kind = "signed", unit', 'kind = "sign", unit', "form turn: angle: unknown kind sign"),
     "attribute": ('"signed", unit', '"signed", units', "form turn: angle: unknown units"),
     "no text": (
-        ', text = "rounded to the nearest step" }',
+        ', text = "to the nearest step" }',
         " }",
         "missing 1 required positional argument: 'text'",
     ),
