@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Compares what was recorded of the core's pins (tops/passo_core_top.v) with the C model, on every clock.
+ * Compares what was recorded of the core's pins (probes/passo_spi_top.vh) with the C model, on every clock.
  */
 #include <stddef.h>
 #include <string.h>
