@@ -4,17 +4,12 @@
 `default_nettype none
 
 module passo_settings_proof (
-  input wire        clk,
-  input wire        rst,
-  input wire        bus_check,
-  input wire        bus_write,
-  input wire        bus_read,
-  input wire        bus_push,
-  input wire        select,
-  input wire [ 7:0] bus_address,
+  input wire clk, rst,
+  input wire bus_check, bus_write, bus_read, bus_push, select,
+  input wire [7:0] bus_address,
   input wire [31:0] bus_data,
-  input wire [ 4:0] bus_top_bit,
-  input wire        bus_lone_bit
+  input wire [4:0] bus_top_bit,
+  input wire bus_lone_bit
 );
 
   `include "passo_registers.vh"
