@@ -32,7 +32,21 @@ class DifferenceError(Exception):
         )
 
 
-class Engine:
+class _Closed:
+    """Closes itself at the end of a with statement."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Free what it has."""
+        raise NotImplementedError
+
+
+class Engine(_Closed):
     """One core behind its pins."""
 
     def __init__(
@@ -63,12 +77,6 @@ class Engine:
         """Free the engine; it cannot be used any more."""
         self._c.passo_engine_destroy(self._engine)
         self._engine = ffi().NULL
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     @property
     def clock(self) -> int:
@@ -148,7 +156,7 @@ def rtl_engine(parameters: Parameters, clock_hz: int = 100_000_000, waves: bool 
     return Engine(rtl_library(parameters, waves), parameters, clock_hz)
 
 
-class PairEngine:
+class PairEngine(_Closed):
     """RTL and model with the same waveforms at their inputs; every output of theirs is compared."""
 
     def __init__(self, rtl: Engine, model: Engine):
@@ -162,12 +170,6 @@ class PairEngine:
         """Free both engines."""
         self.rtl.close()
         self.model.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     @property
     def clock(self) -> int:

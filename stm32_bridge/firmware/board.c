@@ -133,8 +133,9 @@ uint32_t board_milliseconds(void)
 }
 
 /* The tick may come between the two readings: then both are taken again. Not for interrupt handlers. */
-uint32_t board_microseconds(void)
+uint32_t board_microseconds(void *context)
 {
+	(void)context;
 	uint32_t before, left;
 
 	do {
@@ -203,8 +204,9 @@ void exti0_handler(void)
 	EXTI->pr = BIT(CORE_PIN); /* that it has woken the main loop is enough */
 }
 
-bool board_core_calls(void)
+bool board_core_calls(void *context)
 {
+	(void)context;
 	return (GPIOB->idr & BIT(CORE_PIN)) != 0u;
 }
 

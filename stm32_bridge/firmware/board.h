@@ -14,9 +14,9 @@ bool board_start(void);
 /* The clock of the CPU and of SPI1 and USART1. */
 uint32_t board_clock_hz(void);
 
-/* Time since the start; both wrap at 2^32. */
+/* Time since the start; both wrap at 2^32. The second one is called as struct passo_hardware has it. */
 uint32_t board_milliseconds(void);
-uint32_t board_microseconds(void);
+uint32_t board_microseconds(void *context);
 
 /* Why the board has started: one word ("power", "pin", "watchdog", "software" ...); after a fault "fault". */
 const char *board_reset_cause(void);
@@ -40,8 +40,8 @@ void board_watchdog_feed(void);
 /* LED: a short flash each second, or fast blinking. */
 void board_led(bool fault);
 
-/* Level of the core's interrupt line. When it rises board_sleep() ends. */
-bool board_core_calls(void);
+/* Level of the core's interrupt line, as struct passo_hardware has it. When it rises board_sleep() ends. */
+bool board_core_calls(void *context);
 
 /* Sleep until something interrupts; at most a millisecond. */
 void board_sleep(void);
