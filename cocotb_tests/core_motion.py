@@ -55,6 +55,12 @@ def check_clocks(core: Core, begin: int, expected: Sequence[Sequence[int]], fact
         assert actual == [factor * clock for clock in clocks], f"axis {axis}"
 
 
+def make_on_time(core: Core, channel: CoreChannel, lines: Sequence[Line], ramps: Sequence[Ramp]) -> None:
+    """Make a motion whose every step leaves its pin on the clock on which it is due."""
+    begin = make(core, channel, lines, ramps)
+    check_clocks(core, begin, due(lines, ramps, core.tick))
+
+
 @core_test
 def every_step_leaves_its_pin_on_its_clock(core: Core) -> None:
     """Four shapes, up and down, mirrored and not, over lines that end in the middle of ramps."""
@@ -76,8 +82,7 @@ def every_step_leaves_its_pin_on_its_clock(core: Core) -> None:
     lines = [
         Line(m, tuple(m * share // 100 for share in shares[i]), last=i == 4) for i, m in enumerate(lengths)
     ]
-    begin = make(core, channel, lines, ramps)
-    check_clocks(core, begin, due(lines, ramps, core.tick))
+    make_on_time(core, channel, lines, ramps)
     assert checker.positions == totals(lines)
 
 
@@ -268,8 +273,7 @@ def ramps_run_on_when_the_last_line_has_ended(core: Core) -> None:
     checker = core.watch(PinTiming())
     ramps = [Ramp(SLOW, 4), Ramp(SLOW, 4), Ramp(0, 4, last=True)]
     lines = [Line(20, (20, -10, 1)[: core.axes], last=True)]
-    begin = make(core, channel, lines, ramps)
-    check_clocks(core, begin, due(lines, ramps, core.tick))
+    make_on_time(core, channel, lines, ramps)
     assert checker.positions == totals(lines)
 
 

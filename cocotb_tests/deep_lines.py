@@ -32,14 +32,9 @@ async def every_place_keeps_its_line(dut: HierarchyObject) -> None:
         for taken, line in enumerate(lines):
             await queue.clocks.wait(2)
             queue.check_room(depth - count + taken)
-            queue.check_next(line)
-            await queue.strobe("take")
-            await queue.clocks.wait(1)
-            queue.check_current(line)
+            await queue.take(line)
             await queue.strobe("release_line")
-        await queue.clocks.wait(2)
-        queue.check_next(None)
-        queue.check_room(depth)
+        await queue.check_settled(None, depth)
 
 
 @cocotb.test()

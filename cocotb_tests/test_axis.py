@@ -22,10 +22,6 @@ INPUTS = (
     "direction",
     "drop",
     "clear",
-    "step_high",
-    "step_low",
-    "dir_setup",
-    "dir_hold",
     "timing_written",
     "both_edges",
     "step_inverted",
@@ -38,7 +34,7 @@ Request = tuple[int, int]  # clock, direction: 1 or -1
 
 
 def test_axis(simulator: str) -> None:
-    run(__name__, "passo_axis_top", simulator=simulator)
+    run(__name__, "passo_axis", simulator=simulator)
 
 
 def expected_steps(
@@ -83,12 +79,18 @@ def expected_steps(
     return steps, lost
 
 
+def set_time(dut: HierarchyObject, name: str, clocks: int) -> None:
+    """Set one of the four times and tell whether it is short; 0 counts as 1."""
+    getattr(dut, name).value = max(1, clocks)
+    getattr(dut, f"short_{name.partition('_')[2]}").value = clocks < 2
+
+
 def apply(dut: HierarchyObject, timing: PinTiming) -> None:
     """Set all settings."""
-    dut.step_high.value = timing.high
-    dut.step_low.value = timing.low
-    dut.dir_setup.value = timing.setup
-    dut.dir_hold.value = timing.hold
+    set_time(dut, "step_high", timing.high)
+    set_time(dut, "step_low", timing.low)
+    set_time(dut, "dir_setup", timing.setup)
+    set_time(dut, "dir_hold", timing.hold)
     dut.both_edges.value = timing.both_edges
     dut.step_inverted.value = timing.step_inverted
     dut.direction_inverted.value = timing.direction_inverted
@@ -108,6 +110,7 @@ async def write(dut: HierarchyObject, clocks: Clocks, timing: PinTiming) -> None
 
 async def prepare(dut: HierarchyObject, timing: PinTiming) -> Clocks:
     """Reset with these settings; the pins are idle."""
+    apply(dut, PinTiming())
     clocks = await begin(dut, *INPUTS)
     while not read(dut.quiet):
         await clocks.wait(1)
@@ -318,6 +321,7 @@ async def polarities_invert_only_the_pins(dut: HierarchyObject) -> None:
             await axis.request_and_compare([(now, 1), (now + 1, -1), (now + 2, -1), (now + 40, 1)])
             axis.checker.finish()
             axis.clocks.stop()
+    apply(dut, PinTiming())
     clocks = await begin(dut, *INPUTS)
     for enable, inverted in ((1, 0), (1, 1), (0, 1), (0, 0)):
         dut.enable.value = enable
@@ -355,7 +359,7 @@ async def a_time_that_is_written_begins_anew(dut: HierarchyObject, high: int) ->
     """step_high written at any clock of a pulse: STEP stays active for the new time from then on."""
     clocks = await prepare(dut, PinTiming())
     for at in range(LATENCY - 1, LATENCY + 17):
-        dut.step_high.value = 20
+        set_time(dut, "step_high", 20)
         pins = Recorder(clocks, dut.step_pin)
         now = clocks.now
         dut.step_request.value = 1
@@ -365,7 +369,7 @@ async def a_time_that_is_written_begins_anew(dut: HierarchyObject, high: int) ->
         dut.timing_written.value = 1
         await clocks.fall
         dut.timing_written.value = 0
-        dut.step_high.value = high
+        set_time(dut, "step_high", high)
         await clocks.wait(150)
         # the time begins with the second clock after the write; the pin follows a clock later
         assert pins.changes == [(now + LATENCY, 1), (now + at + 3 + max(1, high), 0)]

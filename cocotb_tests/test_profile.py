@@ -9,7 +9,7 @@ import cocotb
 import pytest
 from cocotb.handle import HierarchyObject
 
-from cocotb_tests.helpers.bench import Clocks, PushBus, Recorder, begin, read, rng
+from cocotb_tests.helpers.bench import Bench, Clocks, PushBus, Recorder, read, rng
 from cocotb_tests.helpers.ramps import V_MAX, Ramp, velocities
 from cocotb_tests.helpers.runner import run
 from cocotb_tests.helpers.shapes import Shape
@@ -33,11 +33,16 @@ def always() -> bool:
     return True
 
 
-class Ramps:
+class Ramps(Bench):
     """The modules under test; `seen` has the velocity of every enabled clock of the profile."""
 
+    INPUTS = (
+        *PushBus.INPUTS, "now_coming", "prepare", "begin_profile", "stopped", "drain", "drain_velocity",
+        "enable",
+    )  # fmt: skip
+
     def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
-        self.dut, self.clocks = dut, clocks
+        super().__init__(dut, clocks)
         self.bus = PushBus(dut, clocks)
         self.dry = Recorder(clocks, dut.dry)
         self.ended = Recorder(clocks, dut.ended_q)
@@ -45,31 +50,10 @@ class Ramps:
         self.enabled_clocks: list[int] = []
         self.stalls = 0
 
-    @classmethod
-    async def begin(cls, dut: HierarchyObject) -> "Ramps":
-        """Reset."""
-        inputs = (
-            *PushBus.INPUTS,
-            "now_coming",
-            "prepare",
-            "begin_profile",
-            "stopped",
-            "drain",
-            "drain_velocity",
-            "enable",
-        )
-        return cls(dut, await begin(dut, *inputs))
-
     async def push(self, *ramps: Ramp) -> None:
         """Push ramps, one frame each, as the link does."""
         for ramp in ramps:
             await self.bus.push(ramp.words())
-
-    async def strobe(self, name: str) -> None:
-        """Raise an input for a clock."""
-        getattr(self.dut, name).value = 1
-        await self.clocks.wait(1)
-        getattr(self.dut, name).value = 0
 
     async def start(self) -> None:
         """Prepare a motion and begin its profile."""

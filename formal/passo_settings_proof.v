@@ -4,17 +4,12 @@
 `default_nettype none
 
 module passo_settings_proof (
-  input wire        clk,
-  input wire        rst,
-  input wire        bus_check,
-  input wire        bus_write,
-  input wire        bus_read,
-  input wire        bus_push,
-  input wire        select,
-  input wire [ 7:0] bus_address,
+  input wire clk, rst,
+  input wire bus_check, bus_write, bus_read, bus_push, select,
+  input wire [7:0] bus_address,
   input wire [31:0] bus_data,
-  input wire [ 4:0] bus_top_bit,
-  input wire        bus_lone_bit
+  input wire [4:0] bus_top_bit,
+  input wire bus_lone_bit
 );
 
   `include "passo_registers.vh"
@@ -22,111 +17,55 @@ module passo_settings_proof (
   localparam [16:0] F_ONE = 17'h10000;
   localparam [31:0] F_HALF = 32'h8000_0000;
 
-  wire        claim;
+  wire        claim, select_axis;
   wire [ 3:0] refusal;
-  wire        select_axis;
-  wire [16:0] rate_target;
-  wire [16:0] rate_slew;
-  wire [16:0] stop_slew;
+  wire [16:0] rate_target, rate_slew, stop_slew;
   wire [31:0] drain_velocity;
-  wire        command_stop;
-  wire        command_abort;
-  wire        command_clear;
-  wire        command_zero;
-  wire        needs_idle;
-  wire        needs_quiet;
+  wire        command_stop, command_abort, command_clear, command_zero;
+  wire        needs_idle, needs_quiet, pins_need_quiet;
+  wire        write_pins, write_step_timing, write_dir_timing, write_enable;
+  wire        short_upper, short_lower;
+  wire [15:0] step_high, step_low, dir_setup, dir_hold;
+  wire        short_high, short_low, short_setup, short_hold;
+  wire        both_edges, step_inverted, direction_inverted;
+
+  // of the state nothing is promised
+  wire        quiet, stopping, overrun;
+  wire [ 2:0] state, cause;
+  wire [15:0] drained;
+  wire [16:0] rate;
+  wire [31:0] velocity;
+  wire [ 8:0] line_room;
+  wire [ 4:0] ramp_room;
+  wire [ 3:0] lost;
 
   passo_channel_registers #(
     .AXES(1)
   ) u_registers (
-    .clk           (clk),
-    .rst           (rst),
-    .bus_check     (bus_check),
-    .bus_write     (bus_write),
-    .bus_read      (bus_read),
-    .bus_push      (bus_push),
-    .select        (select),
-    .bus_address   (bus_address),
-    .bus_data      (bus_data),
-    .bus_top_bit   (bus_top_bit),
-    .bus_lone_bit  (bus_lone_bit),
-    .claim         (claim),
-    .refusal       (refusal),
-    .select_axis   (select_axis),
-    .rate_target   (rate_target),
-    .rate_slew     (rate_slew),
-    .stop_slew     (stop_slew),
-    .drain_velocity(drain_velocity),
-    .command_stop  (command_stop),
-    .command_abort (command_abort),
-    .command_clear (command_clear),
-    .command_zero  (command_zero),
-    .needs_idle    (needs_idle),
-    .needs_quiet   (needs_quiet)
+    .*,
+    .read_data        (),
+    .select_line_queue(),
+    .select_ramp_queue(),
+    .select_position  ()
   );
-
-  wire        write_pins;
-  wire        write_step_timing;
-  wire        write_dir_timing;
-  wire        write_enable;
-  wire        short_upper;
-  wire        short_lower;
-  wire        pins_need_quiet;
-  wire [15:0] step_high;
-  wire [15:0] step_low;
-  wire [15:0] dir_setup;
-  wire [15:0] dir_hold;
-  wire        short_high;
-  wire        short_low;
-  wire        short_setup;
-  wire        short_hold;
-  wire        both_edges;
-  wire        step_inverted;
-  wire        direction_inverted;
 
   passo_axis_registers #(
     .AXES(1)
   ) u_axis_registers (
-    .clk              (clk),
-    .rst              (rst),
-    .bus_check        (bus_check),
-    .bus_write        (bus_write),
-    .bus_read         (bus_read),
-    .bus_push         (bus_push),
-    .select_axis      (select_axis),
-    .bus_address      (bus_address[2:0]),
-    .bus_data         (bus_data),
-    .bus_top_bit      (bus_top_bit),
-    .write_pins       (write_pins),
-    .write_step_timing(write_step_timing),
-    .write_dir_timing (write_dir_timing),
-    .write_enable     (write_enable),
-    .needs_quiet      (pins_need_quiet),
-    .short_upper      (short_upper),
-    .short_lower      (short_lower)
+    .*,
+    .select_position (),
+    .bus_address     (bus_address[2:0]),
+    .claim           (),
+    .refusal         (),
+    .read_data       (),
+    .answers_position(),
+    .needs_quiet     (pins_need_quiet)
   );
 
   passo_axis_settings u_settings (
-    .clk               (clk),
-    .rst               (rst),
-    .write_pins        (write_pins),
-    .write_step_timing (write_step_timing),
-    .write_dir_timing  (write_dir_timing),
-    .write_enable      (write_enable),
-    .bus_data          (bus_data),
-    .short_upper       (short_upper),
-    .short_lower       (short_lower),
-    .step_high         (step_high),
-    .step_low          (step_low),
-    .dir_setup         (dir_setup),
-    .dir_hold          (dir_hold),
-    .short_high        (short_high),
-    .short_low         (short_low),
-    .short_setup       (short_setup),
-    .short_hold        (short_hold),
-    .both_edges        (both_edges),
-    .step_inverted     (step_inverted),
-    .direction_inverted(direction_inverted)
+    .*,
+    .enable         (),
+    .enable_inverted()
   );
 
   // --- Which values are bad

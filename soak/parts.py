@@ -122,7 +122,7 @@ def _bench(number: int) -> Path:
     made = BUILD / f"player{number}.vvp"
     given = [f"-Psoak_player.{name}={value}" for name, value in SETS[number].verilog().items()]
     sources = [HERE / "player.v", *sorted(paths.rtl.glob("*.v"))]
-    call(["iverilog", "-g2005", f"-I{paths.rtl}", *given, "-s", "soak_player", "-o", made, *sources])
+    call(["iverilog", "-g2012", f"-I{paths.rtl}", *given, "-s", "soak_player", "-o", made, *sources])
     return made
 
 

@@ -49,19 +49,7 @@ module soak_player #(
     .DIR_RESET      (DIR_RESET),
     .ENABLE_RESET   (ENABLE_RESET)
   ) u_core (
-    .clk            (clk),
-    .rst            (rst),
-    .spi_sclk       (spi_sclk),
-    .spi_mosi       (spi_mosi),
-    .spi_cs_n       (spi_cs_n),
-    .spi_miso       (spi_miso),
-    .spi_miso_enable(spi_miso_enable),
-    .sync           (sync),
-    .step           (step),
-    .dir            (dir),
-    .enable         (enable),
-    .running        (running),
-    .irq            (irq)
+    .*
   );
 
   // Inputs change between two rising edges; outputs are compared before that.

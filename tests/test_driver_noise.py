@@ -455,12 +455,8 @@ def test_the_most_urgent_goes_first(wire: Wire, before: str, how: str) -> None:
     assert wire.requests[0][0] & 0xF == r.CHANNEL_COMMAND and wire.requests[0][1] == 1 << bit
 
 
-def test_a_stop_goes_before_a_frame_of_the_stream(wire: Wire) -> None:
-    """A frame that is being retried is abandoned for it."""
-    driver = open_driver(wire)
-    driver.stream(Source(*path(3000)))
-    while driver.snapshot().state != State.RUN:
-        poll(driver)
+def fail_pushes(driver: Driver, wire: Wire) -> None:
+    """From now on pushes fail; returns while a frame of the stream is being retried."""
 
     def before(_: int) -> None:
         wire.stuck = 0 if wire.requests[-1][0] >> 28 == r.Operation.PUSH else None
@@ -469,6 +465,16 @@ def test_a_stop_goes_before_a_frame_of_the_stream(wire: Wire) -> None:
     while driver.c.post != planner().PASSO_POST_ITEMS:
         wire.run(CLOCK_HZ // 20_000)
         poll(driver)
+
+
+def test_a_stop_goes_before_a_frame_of_the_stream(wire: Wire) -> None:
+    """A frame that is being retried is abandoned for it."""
+    driver = open_driver(wire)
+    driver.stream(Source(*path(3000)))
+    while driver.snapshot().state != State.RUN:
+        poll(driver)
+
+    fail_pushes(driver, wire)
     wire.requests.clear()
     driver.call("stop")
     assert wire.requests[0][1] == 1 << r.CHANNEL_COMMAND_STOP_LSB and len(wire.requests) == 1
@@ -482,13 +488,7 @@ def test_a_frame_of_a_cleared_stream_is_forgotten(wire: Wire) -> None:
     driver = open_driver(wire, tries=3)
     driver.stream(Source(*path(300)))
 
-    def before(_: int) -> None:
-        wire.stuck = 0 if wire.requests[-1][0] >> 28 == r.Operation.PUSH else None
-
-    wire.before_frame = before
-    while driver.c.post != planner().PASSO_POST_ITEMS:
-        wire.run(CLOCK_HZ // 20_000)
-        poll(driver)
+    fail_pushes(driver, wire)
     driver.call("clear")
     wire.before_frame = lambda _: None
     driver.stream(Source(*path(30)))

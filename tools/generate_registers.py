@@ -404,43 +404,9 @@ PYTHON_HEAD = f"""\
 \"\"\"Registers of Passo: word addresses, fields, reset values, enumerations.\"\"\"
 
 from dataclasses import dataclass
-from enum import IntEnum
-from typing import ClassVar, Self
+from typing import ClassVar
 
-
-class _DescribedEnum(IntEnum):
-    \"\"\"Numbers with a name and a description.\"\"\"
-
-    description: str
-
-    def __new__(cls, value: int, description: str) -> Self:
-        member = int.__new__(cls, value)
-        member._value_ = value
-        member.description = description
-        return member
-
-
-class _Word:
-    \"\"\"A word by its fields; PLACES has the lowest bit, the width and the type of each.\"\"\"
-
-    PLACES: ClassVar[dict[str, tuple[int, int, type]]]
-
-    def pack(self) -> int:
-        \"\"\"The word. ValueError if a field is too large.\"\"\"
-        word = 0
-        for name, (lsb, bits, _) in self.PLACES.items():
-            value = int(getattr(self, name))
-            if value >> bits:
-                raise ValueError(f"{{type(self).__name__}}.{{name}}: {{value}} has more than {{bits}} bits")
-            word |= value << lsb
-        return word
-
-    @classmethod
-    def unpack(cls, word: int) -> Self:
-        \"\"\"The fields of a word. ValueError if an enumeration has no such value.\"\"\"
-        return cls(
-            **{{name: kind(word >> lsb & (1 << bits) - 1) for name, (lsb, bits, kind) in cls.PLACES.items()}}
-        )
+from passo.register_word import DescribedEnum, Word
 """
 
 
@@ -462,7 +428,7 @@ def python_default(field: Field, enums: Sequence[Enum]) -> str:
 def python_layout(name: str, register: Register, enums: Sequence[Enum]) -> list[str]:
     """A class of the fields of a word; those with a reset value need not be given."""
     fields = sorted(reversed(register.fields), key=lambda field: field.reset is not None)
-    lines = ["", "@dataclass(frozen=True)", f"class {name.title().replace('_', '')}Word(_Word):"]
+    lines = ["", "@dataclass(frozen=True)", f"class {name.title().replace('_', '')}Word(Word):"]
     lines += [f'    """{register.title}."""', ""]
     for field in fields:
         lines += [f"    # {line}" for line in wrap(field.text, 104)]
@@ -475,7 +441,7 @@ def python_layout(name: str, register: Register, enums: Sequence[Enum]) -> list[
 def write_python(source: Source) -> str:
     lines = [PYTHON_HEAD]
     for enum in source.enums:
-        lines += ["", f"class {enum.name.capitalize()}(_DescribedEnum):", f'    """{enum.text}"""', ""]
+        lines += ["", f"class {enum.name.capitalize()}(DescribedEnum):", f'    """{enum.text}"""', ""]
         lines += [f'    {name} = {value}, "{text}"' for name, value, text in enum.members] + [""]
     for name, register in source.layouts():
         lines += python_layout(name, register, source.enums)

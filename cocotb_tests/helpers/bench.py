@@ -8,6 +8,7 @@ the rising edge: what is written after clock n counts like a register that chang
 
 import random
 from collections.abc import Callable, Sequence
+from typing import ClassVar, Self
 
 import cocotb
 from cocotb.clock import Clock
@@ -105,6 +106,26 @@ async def begin(dut: HierarchyObject, *inputs: str, period: int = PERIOD) -> Clo
 async def _watchdog(clocks: Clocks) -> None:
     await Timer(LIMIT * clocks.period, "step")
     assert not clocks.running, f"no end after {LIMIT} clocks"
+
+
+class Bench:
+    """A module under test and its clock; INPUTS are 0 until a test says otherwise."""
+
+    INPUTS: ClassVar[tuple[str, ...]] = ()
+
+    def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
+        self.dut, self.clocks = dut, clocks
+
+    @classmethod
+    async def begin(cls, dut: HierarchyObject) -> Self:
+        """Reset."""
+        return cls(dut, await begin(dut, *cls.INPUTS))
+
+    async def strobe(self, name: str) -> None:
+        """Raise an input for a clock."""
+        getattr(self.dut, name).value = 1
+        await self.clocks.wait(1)
+        getattr(self.dut, name).value = 0
 
 
 class Recorder:

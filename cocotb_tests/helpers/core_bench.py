@@ -37,20 +37,15 @@ from cocotb_tests.helpers.core_thread import Thread
 from cocotb_tests.helpers.ramps import ONE, V_MAX, Ramp
 from cocotb_tests.helpers.shapes import Shape
 from cocotb_tests.helpers.spi import SpiMaster
+from tests.helpers import closed_form
 
 __all__ = ["ONE", "V_MAX", "Core", "CoreChannel", "Line", "PinTiming", "Ramp", "Shape", "core_test"]
 
 LEAD = 4  # clocks from chip select to SCLK and back
 
 
-@dataclass(frozen=True)
-class Line:
-    """A line command: `steps` per axis, with sign, in `substeps`."""
-
-    substeps: int
-    steps: tuple[int, ...]
-    last: bool = False
-    endless: bool = False
+class Line(closed_form.Line):
+    """A line command."""
 
     def words(self) -> list[int]:
         """What is pushed."""

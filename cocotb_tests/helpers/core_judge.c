@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Compares the recorded pins of the core (tops/passo_core_top.v) with the C model on every clock.
+ * Compares the recorded pins of the core (probes/passo_spi_top.vh) with the C model on every clock.
  */
 #include <stddef.h>
 #include <string.h>

@@ -33,7 +33,21 @@ class DifferenceError(Exception):
         )
 
 
-class Engine:
+class _Closed:
+    """Closes itself at the end of a with statement."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Free what it has."""
+        raise NotImplementedError
+
+
+class Engine(_Closed):
     """A core that is accessed through its pins; see sim/engine/passo_engine.h."""
 
     def __init__(
@@ -64,12 +78,6 @@ class Engine:
         """Free the engine; it cannot be used any more."""
         self._c.passo_engine_destroy(self._engine)
         self._engine = ffi().NULL
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     @property
     def clock(self) -> int:
@@ -149,7 +157,7 @@ def rtl_engine(parameters: Parameters, clock_hz: int = 100_000_000, waves: bool 
     return Engine(rtl_library(parameters, waves), parameters, clock_hz)
 
 
-class PairEngine:
+class PairEngine(_Closed):
     """RTL and model with the same input waveforms; all outputs are compared, see DifferenceError."""
 
     def __init__(self, rtl: Engine, model: Engine):
@@ -163,12 +171,6 @@ class PairEngine:
         """Free both engines."""
         self.rtl.close()
         self.model.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     @property
     def clock(self) -> int:

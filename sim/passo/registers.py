@@ -3,46 +3,12 @@
 """Registers of Passo: word addresses, fields, reset values, enumerations."""
 
 from dataclasses import dataclass
-from enum import IntEnum
-from typing import ClassVar, Self
+from typing import ClassVar
+
+from passo.register_word import DescribedEnum, Word
 
 
-class _DescribedEnum(IntEnum):
-    """Numbers with a name and a description."""
-
-    description: str
-
-    def __new__(cls, value: int, description: str) -> Self:
-        member = int.__new__(cls, value)
-        member._value_ = value
-        member.description = description
-        return member
-
-
-class _Word:
-    """A word by its fields; PLACES has the lowest bit, the width and the type of each."""
-
-    PLACES: ClassVar[dict[str, tuple[int, int, type]]]
-
-    def pack(self) -> int:
-        """The word. ValueError if a field is too large."""
-        word = 0
-        for name, (lsb, bits, _) in self.PLACES.items():
-            value = int(getattr(self, name))
-            if value >> bits:
-                raise ValueError(f"{type(self).__name__}.{name}: {value} has more than {bits} bits")
-            word |= value << lsb
-        return word
-
-    @classmethod
-    def unpack(cls, word: int) -> Self:
-        """The fields of a word. ValueError if an enumeration has no such value."""
-        return cls(
-            **{name: kind(word >> lsb & (1 << bits) - 1) for name, (lsb, bits, kind) in cls.PLACES.items()}
-        )
-
-
-class Operation(_DescribedEnum):
+class Operation(DescribedEnum):
     """Operation of a frame."""
 
     READ = 1, "Read consecutive registers."
@@ -50,7 +16,7 @@ class Operation(_DescribedEnum):
     PUSH = 3, "Write every word to the same address: lines and ramps."
 
 
-class Verdict(_DescribedEnum):
+class Verdict(DescribedEnum):
     """Outcome of a frame."""
 
     OK = 0, "Executed."
@@ -65,7 +31,7 @@ class Verdict(_DescribedEnum):
     BAD_VALUE = 9, "M = 0 or M >= 2^30, N_i > M, a velocity above 1/2, drain velocity 0, reserved bits set."
 
 
-class State(_DescribedEnum):
+class State(DescribedEnum):
     """State of a channel."""
 
     IDLE = 0, "No motion."
@@ -77,7 +43,7 @@ class State(_DescribedEnum):
     STOPPED = 6, "Stopped by a command or a fault; queues flushed. CLEAR leads back to IDLE."
 
 
-class Cause(_DescribedEnum):
+class Cause(DescribedEnum):
     """Why a channel has stopped."""
 
     NONE = 0, "Not stopped."
@@ -88,7 +54,7 @@ class Cause(_DescribedEnum):
     STEP_OVERRUN = 5, "Steps came faster than the pin timing of an axis allows."
 
 
-class Shape(_DescribedEnum):
+class Shape(DescribedEnum):
     """Shape of a ramp: s as a function of the progress u, both 0 .. 1."""
 
     LINEAR = 0, "s = u, no table."
@@ -98,7 +64,7 @@ class Shape(_DescribedEnum):
 
 
 @dataclass(frozen=True)
-class HeaderWord(_Word):
+class HeaderWord(Word):
     """Header."""
 
     # Requested operation.
@@ -119,7 +85,7 @@ class HeaderWord(_Word):
 
 
 @dataclass(frozen=True)
-class AckWord(_Word):
+class AckWord(Word):
     """Ack."""
 
     # Sequence number of the request.
@@ -140,7 +106,7 @@ class AckWord(_Word):
 
 
 @dataclass(frozen=True)
-class StatusWord(_Word):
+class StatusWord(Word):
     """Status."""
 
     # At least one channel is STOPPED.
@@ -173,7 +139,7 @@ class StatusWord(_Word):
 
 
 @dataclass(frozen=True)
-class LineControlWord(_Word):
+class LineControlWord(Word):
     """Line control."""
 
     # Bit i: axis i counts down.
@@ -191,7 +157,7 @@ class LineControlWord(_Word):
 
 
 @dataclass(frozen=True)
-class RampControlWord(_Word):
+class RampControlWord(Word):
     """Ramp control."""
 
     # v_end, UQ0.48, bits 47:32.
@@ -215,7 +181,7 @@ class RampControlWord(_Word):
 
 
 @dataclass(frozen=True)
-class VersionWord(_Word):
+class VersionWord(Word):
     """Version."""
 
     # Major.
@@ -233,7 +199,7 @@ class VersionWord(_Word):
 
 
 @dataclass(frozen=True)
-class ParametersWord(_Word):
+class ParametersWord(Word):
     """Parameters."""
 
     # RAMP_QUEUE_LOG2.
@@ -257,7 +223,7 @@ class ParametersWord(_Word):
 
 
 @dataclass(frozen=True)
-class RunWord(_Word):
+class RunWord(Word):
     """Run."""
 
     # Channel whose queue room the status word reports.
@@ -275,7 +241,7 @@ class RunWord(_Word):
 
 
 @dataclass(frozen=True)
-class Refusals0Word(_Word):
+class Refusals0Word(Word):
     """Refusals 0."""
 
     # UNKNOWN_ADDRESS.
@@ -296,7 +262,7 @@ class Refusals0Word(_Word):
 
 
 @dataclass(frozen=True)
-class Refusals1Word(_Word):
+class Refusals1Word(Word):
     """Refusals 1."""
 
     # BAD_VALUE.
@@ -317,7 +283,7 @@ class Refusals1Word(_Word):
 
 
 @dataclass(frozen=True)
-class ChannelCommandWord(_Word):
+class ChannelCommandWord(Word):
     """Command."""
 
     # Set the positions of the channel's axes to 0. Refused with BUSY unless the channel is quiet.
@@ -338,7 +304,7 @@ class ChannelCommandWord(_Word):
 
 
 @dataclass(frozen=True)
-class ChannelStateWord(_Word):
+class ChannelStateWord(Word):
     """State."""
 
     # Substeps drained since reset; wraps.
@@ -365,7 +331,7 @@ class ChannelStateWord(_Word):
 
 
 @dataclass(frozen=True)
-class ChannelRoomWord(_Word):
+class ChannelRoomWord(Word):
     """Room."""
 
     # Lines.
@@ -380,7 +346,7 @@ class ChannelRoomWord(_Word):
 
 
 @dataclass(frozen=True)
-class AxisPinsWord(_Word):
+class AxisPinsWord(Word):
     """Pins."""
 
     # 1: every edge of STEP is a step.
@@ -401,7 +367,7 @@ class AxisPinsWord(_Word):
 
 
 @dataclass(frozen=True)
-class AxisStepTimingWord(_Word):
+class AxisStepTimingWord(Word):
     """STEP timing."""
 
     # Time that STEP is active.
@@ -416,7 +382,7 @@ class AxisStepTimingWord(_Word):
 
 
 @dataclass(frozen=True)
-class AxisDirTimingWord(_Word):
+class AxisDirTimingWord(Word):
     """DIR timing."""
 
     # DIR change to the next active edge of STEP.

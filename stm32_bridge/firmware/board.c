@@ -133,8 +133,9 @@ uint32_t board_milliseconds(void)
 }
 
 /* Reads again if a tick comes between the two readings. Not for interrupt handlers. */
-uint32_t board_microseconds(void)
+uint32_t board_microseconds(void *context)
 {
+	(void)context;
 	uint32_t before, left;
 
 	do {
@@ -203,8 +204,9 @@ void exti0_handler(void)
 	EXTI->pr = BIT(CORE_PIN); /* its only purpose is to wake the main loop */
 }
 
-bool board_core_calls(void)
+bool board_core_calls(void *context)
 {
+	(void)context;
 	return (GPIOB->idr & BIT(CORE_PIN)) != 0u;
 }
 

@@ -14,9 +14,9 @@ bool board_start(void);
 /* Clock of the CPU, SPI1 and USART1. */
 uint32_t board_clock_hz(void);
 
-/* Time since start; both wrap at 2^32. */
+/* Time since start; both wrap at 2^32. The second one fits struct passo_hardware. */
 uint32_t board_milliseconds(void);
-uint32_t board_microseconds(void);
+uint32_t board_microseconds(void *context);
 
 /* Cause of the last reset ("power", "pin", "watchdog", "software", ...), or "fault". */
 const char *board_reset_cause(void);
@@ -41,8 +41,8 @@ void board_watchdog_feed(void);
 /* LED: one short flash per second, or fast blinking for a fault. Call it continuously. */
 void board_led(bool fault);
 
-/* Level of the core's irq line. Its rising edge ends board_sleep(). */
-bool board_core_calls(void);
+/* Level of the core's irq line, for struct passo_hardware. Its rising edge ends board_sleep(). */
+bool board_core_calls(void *context);
 
 /* Sleeps until the next interrupt; at most a millisecond. */
 void board_sleep(void);

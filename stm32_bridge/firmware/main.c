@@ -16,18 +16,6 @@ static void write_text(void *context, const char *text)
 	uart_write(text);
 }
 
-static uint32_t microseconds(void *context)
-{
-	(void)context;
-	return board_microseconds();
-}
-
-static bool core_calls(void *context)
-{
-	(void)context;
-	return board_core_calls();
-}
-
 /* A sleep can take a millisecond, so it is used only for longer waits. */
 static void wait(void *context, uint32_t duration)
 {
@@ -72,8 +60,10 @@ static void report(const struct passo_sink *sink, bool crystal, bool crc_unit)
 int main(void)
 {
 	static const struct passo_sink sink = {.write = write_text};
-	static const struct passo_hardware hardware = {
-	    .transfer = spi_transfer, .microseconds = microseconds, .wait = wait, .irq = core_calls};
+	static const struct passo_hardware hardware = {.transfer = spi_transfer,
+	    .microseconds = board_microseconds,
+	    .wait = wait,
+	    .irq = board_core_calls};
 	static const struct passo_console_board board = {
 	    .set_baud = set_baud, .set_spi_fast = set_spi_fast, .lost_bytes = lost_bytes};
 	bool crystal = board_start();

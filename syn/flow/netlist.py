@@ -44,7 +44,8 @@ def _shim(module: dict, parameters: Mapping[str, int]) -> str:
     for name, value in parameters.items():
         heads.append(f"  parameter {name} = {value}")
     for name, port in module["ports"].items():
-        ports.append(f"  {port['direction']} wire [{len(port['bits']) - 1}:0] {name}")
+        width = f"[{len(port['bits']) - 1}:0] " if len(port["bits"]) > 1 else ""
+        ports.append(f"  {port['direction']} wire {width}{name}")
         pins.append(f"    .{name}({name})")
     wrong = " || ".join(f"{name} != {value}" for name, value in parameters.items())
     return "\n".join(
