@@ -30,8 +30,8 @@ STATES = {
     "velocity": 32, "line_room": LINE_QUEUE_LOG2 + 1, "ramp_room": RAMP_QUEUE_LOG2 + 1,
 }  # fmt: skip
 BUS = (
-    "bus_check", "bus_write", "bus_read", "bus_push", "select", "bus_address", "bus_data", "bus_top_bit",
-    "bus_lone_bit",
+    "bus_check", "bus_write", "bus_read", "bus_push", "select", "bus_address", "bus_data", "bus_msb",
+    "bus_one_hot",
 )  # fmt: skip
 
 
@@ -57,8 +57,8 @@ class Bench:
         dut.select.value = 1
         dut.bus_address.value = address
         dut.bus_data.value = data
-        dut.bus_top_bit.value = max(data.bit_length() - 1, 0)
-        dut.bus_lone_bit.value = data.bit_count() <= 1
+        dut.bus_msb.value = max(data.bit_length() - 1, 0)
+        dut.bus_one_hot.value = data.bit_count() <= 1
         dut.bus_push.value = push
         await self.clocks.wait(2)
         getattr(dut, name).value = 1

@@ -35,8 +35,8 @@ always @(posedge clk) begin
   axis_no_timing_written : assume (!timing_written);
 `endif
   axis_timings_not_0 : assume (step_high != 16'd0 && step_low != 16'd0 && dir_setup != 16'd0 && dir_hold != 16'd0);
-  axis_short_steps : assume (short_high == (step_high == 16'd1) && short_low == (step_low == 16'd1));
-  axis_short_turns : assume (short_setup == (dir_setup == 16'd1) && short_hold == (dir_hold == 16'd1));
+  axis_minimal_step_times : assume (high_is_minimal == (step_high == 16'd1) && low_is_minimal == (step_low == 16'd1));
+  axis_minimal_dir_times : assume (setup_is_minimal == (dir_setup == 16'd1) && hold_is_minimal == (dir_hold == 16'd1));
 `ifdef NARROW
   axis_narrow :
   assume (step_high < 16'd`NARROW && step_low < 16'd`NARROW && dir_setup < 16'd`NARROW && dir_hold < 16'd`NARROW);
@@ -63,10 +63,10 @@ reg f_dir_q = 1'b0;
 wire f_step = step_pin ^ f_step_inverted;
 wire f_dir = dir_pin ^ f_direction_inverted;
 wire f_pin_edge = f_started && step_pin != f_step_pin_q;
-wire f_pin_turn = f_started && dir_pin != f_dir_pin_q;
+wire f_pin_dir_change = f_started && dir_pin != f_dir_pin_q;
 wire f_changed = f_pins[1];  // polarities and mode, at the pins
 wire f_edge = f_pin_edge | f_changed | (f_started & f_reset[0] & (f_step != f_step_q));
-wire f_turn = f_pin_turn | f_changed | (f_started & f_reset[0] & (f_dir != f_dir_q));
+wire f_dir_change = f_pin_dir_change | f_changed | (f_started & f_reset[0] & (f_dir != f_dir_q));
 wire f_active = f_pin_edge & ~f_changed & (f_both | f_step);  // makes a step
 always @(posedge clk) begin
   f_step_pin_q         <= step_pin;
@@ -80,7 +80,7 @@ end
 
 always @(posedge clk)
   if (f_started && f_reset[0])
-    reset_moves_no_pin : assert (!f_pin_edge && !f_pin_turn);
+    reset_moves_no_pin : assert (!f_pin_edge && !f_pin_dir_change);
 
 `ifndef WRITTEN
 // --- How long the levels have lasted, this clock included; before the first change: for ever
@@ -91,7 +91,7 @@ reg f_was_reset_q = 1'b1;
 wire f_was_reset = f_was_reset_q & ~f_active;  // in this pulse
 reg [17:0] f_since_reset = 18'd0;
 wire [17:0] f_step_lasted = f_edge ? 18'd1 : f_step_lasted_q == F_EVER ? F_EVER : f_step_lasted_q + 18'd1;
-wire [17:0] f_dir_lasted = f_turn ? 18'd1 : f_dir_lasted_q == F_EVER ? F_EVER : f_dir_lasted_q + 18'd1;
+wire [17:0] f_dir_lasted = f_dir_change ? 18'd1 : f_dir_lasted_q == F_EVER ? F_EVER : f_dir_lasted_q + 18'd1;
 always @(posedge clk) begin
   f_step_lasted_q <= f_step_lasted;
   f_dir_lasted_q  <= f_dir_lasted;
@@ -106,10 +106,10 @@ always @(posedge clk)
       high_exact : assert (f_was_reset ? f_step_lasted_q >= f_high : f_step_lasted_q == f_high);
     if (!f_both && f_step) high_ends : assert (f_was_reset ? f_since_reset <= f_high + 18'd1 : f_step_lasted <= f_high);
     if (!f_both && f_active) low_kept : assert (f_step_lasted_q >= f_low);
-    if (!f_both && f_pin_turn) dir_turns_at_low : assert (!f_step && (!f_step_q || f_changed));
+    if (!f_both && f_pin_dir_change) dir_changes_at_low : assert (!f_step && (!f_step_q || f_changed));
     if (f_both && f_active) both_levels_kept : assert (f_step_lasted_q >= f_level_q);
-    if (f_active) setup_kept : assert (!f_turn && f_dir_lasted_q >= f_setup);
-    if (f_pin_turn) hold_kept : assert ((!f_edge || f_changed) && f_step_lasted_q >= f_level_q + f_hold);
+    if (f_active) setup_kept : assert (!f_dir_change && f_dir_lasted_q >= f_setup);
+    if (f_pin_dir_change) hold_kept : assert ((!f_edge || f_changed) && f_step_lasted_q >= f_level_q + f_hold);
   end
 `else
 // --- The times as they run on the pins, and which of them are over after this clock. One that runs begins anew three
@@ -128,7 +128,7 @@ reg f_setup_over_q = 1'b0;
 wire f_anew = f_restarted[2];
 wire f_may_end = ~f_restarted[1] & ~f_changed & ~f_reset[0];
 wire f_level_begins = f_edge | f_reset[0];
-wire f_setup_begins = f_turn | f_reset[0];
+wire f_setup_begins = f_dir_change | f_reset[0];
 wire [17:0] f_level_run = f_level_begins || (f_anew && !f_level_over_q) ? 18'd1 : f_level_run_q + 18'd1;
 wire f_level_over = (f_level_over_q & ~f_level_begins) | (f_level_run >= (f_step ? f_high_q : f_low_q) && f_may_end);
 wire f_hold_runs = f_level_over_q & ~f_level_begins;
@@ -151,9 +151,9 @@ always @(posedge clk) begin
   if (f_started) begin
     if (!f_both && f_step_q && !f_changed && !f_reset[0]) high_ends_when_over : assert (f_edge == f_level_over_q);
     else if (f_pin_edge && !f_changed) level_ends_when_over : assert (f_level_over_q);
-    if (f_active) step_when_setup_over : assert (!f_turn && f_setup_over_q);
-    if (f_pin_turn)
-      turn_when_hold_over : assert ((!f_edge || f_changed) && f_hold_over_q && (f_both || !f_step || f_changed));
+    if (f_active) step_when_setup_over : assert (!f_dir_change && f_setup_over_q);
+    if (f_pin_dir_change)
+      dir_changes_when_hold_over : assert ((!f_edge || f_changed) && f_hold_over_q && (f_both || !f_step || f_changed));
   end
 end
 `endif
@@ -226,7 +226,7 @@ always @(posedge clk) begin
   f_quiet_q <= quiet & ~rst;
   if (f_started && quiet) 
     nothing_waits_when_quiet : assert (!f_request[0] && (f_drop[1] || (f_waiting_count == 3'd0 && !f_request[1])));
-  if (f_started && (quiet || f_quiet_q)) pins_stand_when_quiet : assert (!f_pin_edge && !f_pin_turn);
+  if (f_started && (quiet || f_quiet_q)) pins_stand_when_quiet : assert (!f_pin_edge && !f_pin_dir_change);
   if (f_quiet_q && !f_request[0] && !f_pins[0] && f_direction[1] == $past(direction, 3))
     quiet_until_asked : assert (quiet);
 end
@@ -255,17 +255,17 @@ wire [2:0] f_count = {2'd0, waits[0]} + {2'd0, waits[1]} + {2'd0, waits[2]} + {2
 // clocks until the next active edge, or until DIR is right
 wire [17:0] f_time = f_is_hold ? f_hold : f_is_setup ? f_setup : f_level;
 wire [19:0] f_left = {2'd0, f_time} - {2'd0, f_timer} + 20'd1;
-wire [19:0] f_turn_time = {2'd0, f_setup} + 20'd1;
+wire [19:0] f_setup_time = {2'd0, f_setup} + 20'd1;
 wire [19:0] f_rank =
     f_is_pulse ? f_left + (step && !both_edges ? {2'd0, f_low} : 20'd0)
-                 + (f_dir_right ? 20'd0 : {2'd0, f_hold} + f_turn_time) :
-    f_is_hold  ? (f_dir_right ? 20'd0 : f_left + f_turn_time) :
-    f_is_setup ? f_left + (f_dir_right ? 20'd0 : f_turn_time) :
-                 (f_dir_right ? 20'd0 : f_turn_time);
-wire [19:0] f_turn_left = f_dir_right ? 20'd0 : f_turn_time;
+                 + (f_dir_right ? 20'd0 : {2'd0, f_hold} + f_setup_time) :
+    f_is_hold  ? (f_dir_right ? 20'd0 : f_left + f_setup_time) :
+    f_is_setup ? f_left + (f_dir_right ? 20'd0 : f_setup_time) :
+                 (f_dir_right ? 20'd0 : f_setup_time);
+wire [19:0] f_setup_left = f_dir_right ? 20'd0 : f_setup_time;
 wire [19:0] f_until_quiet =
-    f_is_pulse ? f_left + (step && !both_edges ? {2'd0, f_low} : 20'd0) + {2'd0, f_hold} + f_turn_left :
-    f_is_ready ? f_turn_left : f_left + f_turn_left;
+    f_is_pulse ? f_left + (step && !both_edges ? {2'd0, f_low} : 20'd0) + {2'd0, f_hold} + f_setup_left :
+    f_is_ready ? f_setup_left : f_left + f_setup_left;
 always @(posedge clk)
   if (f_started) begin
     assert (waits == 4'b0000 || waits == 4'b0001 || waits == 4'b0011 || waits == 4'b0111 || waits == 4'b1111);
@@ -285,8 +285,8 @@ always @(posedge clk)
       assert ((f_is_pulse ? level_done : dir_done) == (f_timer == f_time));
     end
     // the time that would begin next
-    if (!f_is_pulse && !settle) assert (level_done == ((step ? short_low : short_high) & ~f_restarted[0]));
-    if (f_is_ready) assert (dir_done == (short_setup & ~f_restarted[0]));
+    if (!f_is_pulse && !settle) assert (level_done == ((step ? low_is_minimal : high_is_minimal) & ~f_restarted[0]));
+    if (f_is_ready) assert (dir_done == (setup_is_minimal & ~f_restarted[0]));
     assert (waits_up == (waits[0] & ~waiting[0]) && waits_down == (waits[0] & waiting[0]));
     if (f_reset[0]) assert (f_is_pulse && f_step_shown && f_dir_shown && unsettled && waits == 4'd0 && !step_made);
 `ifndef WRITTEN

@@ -3,7 +3,7 @@
 
 // --- Assumptions: the link. A frame is checked, word by word; if nobody objects and it ends with a whole
 // line, it may be written, with as many words, which are those that were checked: good ones. Data stand from a clock
-// before their strobe to a clock after it, those that are checked from two clocks before; `bus_top_bit` belongs to them
+// before their strobe to a clock after it, those that are checked from two clocks before; `bus_msb` belongs to them
 // in the strobe and the clock before.
 `ifdef SMALL
 localparam [1:0] F_GAP = 2'd2;
@@ -28,7 +28,7 @@ reg       f_short = 1'b0;
 `endif
 wire f_strobe = (bus_check | bus_write) & select;
 wire f_last_index = f_index == AXES + 1;
-wire f_top_bit_right = bus_top_bit == 5'd0 ? bus_data <= 32'd1 : bus_data >> bus_top_bit == 32'd1;
+wire f_msb_right = bus_msb == 5'd0 ? bus_data <= 32'd1 : bus_data >> bus_msb == 32'd1;
 wire f_good = f_checking && !f_refused && refusal == VERDICT_OK && f_index == 2'd0 && f_words != 8'd0;
 always @(posedge clk) begin
   f_started  <= 1'b1;
@@ -43,8 +43,8 @@ always @(posedge clk) begin
   if (bus_frame) line_queue_commits_good : assume (bus_commit == (f_good && f_go));
   if (bus_check || bus_write || f_strobe_q) line_queue_data_stand : assume ($stable(bus_data));
   if (bus_check)
-    line_queue_top_bit :
-    assume ($past(bus_data, 2) == bus_data && f_top_bit_right && $past(f_top_bit_right));
+    line_queue_msb :
+    assume ($past(bus_data, 2) == bus_data && f_msb_right && $past(f_msb_right));
   if (bus_check) line_queue_frame_has_begun : assume (f_checking);
   if (bus_write) line_queue_writes_good : assume (f_writing == select);
   if (f_checking && f_words != 8'd0) line_queue_select_stands : assume (select == f_select);

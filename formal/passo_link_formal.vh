@@ -10,7 +10,7 @@
 (* keep *) wire [7:0] f_index;
 (* keep *) wire f_frame_waits;
 (* keep *) wire f_begin_read;
-(* keep *) wire f_begin_turn;
+(* keep *) wire f_begin_rotate;
 (* keep *) wire f_begin_rest;
 (* keep *) wire f_in_crc_wrong;
 (* keep *) wire f_in_answer_due;
@@ -179,42 +179,42 @@ always @(posedge clk) begin
   end
 end
 
-`ifdef TURNS
+`ifdef ROTATE
 // --- What the payload buffer needs of the words that turn
-reg       f_turn_q = 1'b0;
+reg       f_rotate_q = 1'b0;
 reg       f_load_q = 1'b0;
-reg [4:0] f_turns_q;
+reg [4:0] f_bit_index_q;
 reg       f_count_q;
 reg [1:0] f_counter_q;
-wire      f_first_turn = turn & ~f_turn_q;
+wire      f_first_rotation = rotate & ~f_rotate_q;
 always @(posedge clk) begin
-  f_turn_q    <= turn & ~rst;
+  f_rotate_q    <= rotate & ~rst;
   f_load_q    <= load & ~rst;
-  f_turns_q   <= count[4:0];
+  f_bit_index_q   <= count[4:0];
   f_count_q   <= in_count;
   f_counter_q <= counter;
-  if (f_begun && turn) begin
-    turns_whole :
-    assert (!load && !f_load_q && count[4:0] == (f_first_turn ? 5'd0 : f_turns_q + 5'd1) && (f_first_turn || f_turns_q != 5'd31));
-    if (!f_first_turn || in_count) counts_as_told : assert (in_count == f_count_q && counter == f_counter_q);
-    if (f_first_turn && in_count) counts_after_31 : assert (f_turns_q == 5'd31);
+  if (f_begun && rotate) begin
+    rotates_whole :
+    assert (!load && !f_load_q && count[4:0] == (f_first_rotation ? 5'd0 : f_bit_index_q + 5'd1) && (f_first_rotation || f_bit_index_q != 5'd31));
+    if (!f_first_rotation || in_count) counts_as_told : assert (in_count == f_count_q && counter == f_counter_q);
+    if (f_first_rotation && in_count) counts_after_31 : assert (f_bit_index_q == 5'd31);
   end
 end
 `endif
 
 `ifdef INVARIANTS
-wire [7:0] f_steps = {in_header, in_payload, in_crc, in_ack, in_replay, in_read, in_sum, in_count};
-wire f_idle = f_steps == 8'd0;
+wire [7:0] f_states = {in_header, in_payload, in_crc, in_ack, in_replay, in_read, in_sum, in_count};
+wire f_idle = f_states == 8'd0;
 wire f_busy = !f_begin_rest && (begin_load || (count >= COUNT_LOAD && count <= COUNT_ACT));  // a word is being handled
 wire f_loaded = !f_begin_rest && !begin_load && count >= COUNT_LOADED;
-wire f_turns = !f_begin_rest && !begin_load && count >= COUNT_TURN && count <= COUNT_ACT;
+wire f_rotates = !f_begin_rest && !begin_load && count >= COUNT_ROTATE && count <= COUNT_ACT;
 wire f_receives = in_header || in_payload || in_crc;
 wire f_has_payload = (f_is_push || f_is_write || f_header[31:28] != OPERATION_READ) && f_length != 8'd0;
 wire f_repeats = f_any && f_header[27:20] == f_last;
 wire f_header_fits = (f_is_push || f_is_write) && f_length != 8'd0 && f_length <= 8'd60 && !f_repeats;
 always @(posedge clk)
   if (f_begun) begin
-    assert ((f_steps & (f_steps - 8'd1)) == 8'd0);
+    assert ((f_states & (f_states - 8'd1)) == 8'd0);
     if (!f_idle || f_frame_waits) assert (f_framed);
     // the commit: from the clock after the CRC word begins to be handled
     if (in_crc && !begin_load && !f_begin_rest && count <= COUNT_ACT)
@@ -244,11 +244,11 @@ always @(posedge clk)
     if (f_begin_rest == 1'b0) begin
       if (begin_load) assert (f_receives || in_ack || in_replay || in_count);
       assert (!f_begin_read || in_read);
-      assert (!f_begin_turn || in_sum);
+      assert (!f_begin_rotate || in_sum);
       if (f_idle) assert (count > COUNT_ACT);
       if (f_receives) assert (count >= COUNT_LOAD);
       if (in_ack || in_count) assert (begin_load || (count >= COUNT_LOAD && count <= COUNT_ACT));
-      if (in_sum) assert (f_begin_turn || (count >= COUNT_TURN && count <= COUNT_ACT));
+      if (in_sum) assert (f_begin_rotate || (count >= COUNT_ROTATE && count <= COUNT_ACT));
       if (in_read) assert (count >= COUNT_READ);
     end
     if (answered) assert (in_read && count == COUNT_LOADED && !f_begin_read);
@@ -268,13 +268,13 @@ always @(posedge clk)
     if (in_header) begin
       assert (f_words == {8'd0, f_busy} && f_checks == 9'd0 && !f_objection);
       if (f_words == 9'd1) assert (f_memory_header == f_header);
-      if (f_turns) begin
+      if (f_rotates) begin
         assert (header_is_read == (f_header[31:28] == OPERATION_READ));
         assert (f_in_header_is_known == (header_is_read || f_is_push || f_is_write));
         assert (header_is_empty == (f_length == 8'd0) && f_in_header_fits == (f_length <= 8'd60));
         assert (f_in_header_repeats == f_repeats);
       end
-      if (f_turns && count > COUNT_TURN) begin
+      if (f_rotates && count > COUNT_ROTATE) begin
         assert (header_ok == (header_verdict == VERDICT_OK));
         if (header_ok) assert (header_is_read ? f_length != 8'd0 && f_length <= 8'd60 : f_header_fits);
       end

@@ -7,7 +7,7 @@ module passo_crc (
   input  wire clk,
   input  wire restart,
   input  wire shift,
-  input  wire turn,
+  input  wire rotate,
   input  wire data,
   output wire top
 );
@@ -20,7 +20,7 @@ module passo_reply (
   input  wire        take,
   input  wire [31:0] data,
   input  wire        shift,
-  input  wire [ 4:0] turns,
+  input  wire [ 4:0] bit_index,
   input  wire        acknowledge,
   input  wire        header_11,
   input  wire        header_27,

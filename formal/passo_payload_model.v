@@ -17,13 +17,13 @@ module passo_payload (
   input  wire [ 6:0] load_word,
   input  wire        load_low,
   input  wire        load_zero,
-  input  wire        turn,
-  input  wire [ 4:0] turns,
+  input  wire        rotate,
+  input  wire [ 4:0] bit_index,
   input  wire        count,
   input  wire [ 1:0] counter,
   output wire [31:0] data,
-  output wire [ 4:0] top_bit,
-  output wire        lone_bit,
+  output wire [ 4:0] msb,
+  output wire        one_hot,
   output wire        counter_bit
 );
 
@@ -38,8 +38,8 @@ module passo_payload (
 
   wire [31:0] f_read = load_word == 7'h40 ? f_header : load_word == {1'b0, f_place} ? f_word : f_anything;
 
-  assign {top_bit, lone_bit, counter_bit} = f_any_bits;
-  assign data = turn ? f_anything : f_held;
+  assign {msb, one_hot, counter_bit} = f_any_bits;
+  assign data = rotate ? f_anything : f_held;
 
   always @(posedge clk) begin
     if (store && store_word == 7'h40 && !store_low) f_header[31:16] <= half;

@@ -42,10 +42,10 @@ module passo_axis #(
   input  wire [15:0] step_low,
   input  wire [15:0] dir_setup,
   input  wire [15:0] dir_hold,
-  input  wire        short_high,          // 1: the time is 1
-  input  wire        short_low,
-  input  wire        short_setup,
-  input  wire        short_hold,
+  input  wire        high_is_minimal,     // 1: the time is 1
+  input  wire        low_is_minimal,
+  input  wire        setup_is_minimal,
+  input  wire        hold_is_minimal,
   input  wire        timing_written,
   input  wire        pins_written,
   input  wire        both_edges_next,     // with pins_written: the mode that is written
@@ -100,13 +100,13 @@ module passo_axis #(
   wire low_over = low & level_done;
   wire free = idle | low_over | (setup & dir_done);
   wire step_begins = free & ready;
-  wire turns = wrong | unsettled;
-  wire turn = idle & turns & (~hold | dir_done);
+  wire needs_setup = wrong | unsettled;
+  wire setup_begins = idle & needs_setup & (~hold | dir_done);
   wire edge_begins = step_begins | falls;
 
   // a time begins, or none runs
   wire restart = timing_written | settle;
-  wire begins = idle  ? ~hold | restart | ready | (turns & dir_done) :
+  wire begins = idle  ? ~hold | restart | ready | (needs_setup & dir_done) :
                         restart | (setup ? dir_done : level_done);
 
   wire pulse = (step_pin ^ step_inverted) & ~both_edges;  // one is on the pin, and has an end
@@ -133,9 +133,9 @@ module passo_axis #(
 
     timer <= !begins ? timer + 16'd1 : restart ? 16'd1 : 16'd2;
     if ((high || low) && !level_done) level_done <= &level_equal;
-    else level_done <= step ? short_low : short_high;
+    else level_done <= step ? low_is_minimal : high_is_minimal;
     if ((setup || hold) && !dir_done) dir_done <= &dir_equal;
-    else dir_done <= low ? short_hold : short_setup;
+    else dir_done <= low ? hold_is_minimal : setup_is_minimal;
     if (restart) begin
       level_done <= 1'b0;
       dir_done   <= 1'b0;
@@ -143,15 +143,15 @@ module passo_axis #(
 
     high  <= (high & ~falls) | (step_begins & ~both_edges);
     low   <= (low & ~low_over) | falls | (step_begins & both_edges) | settle;
-    setup <= (setup & ~dir_done) | turn;
-    idle  <= free & ~step_begins & ~turn & ~settle;
-    hold  <= ((hold & ~dir_done) | low_over) & ~step_begins & ~turn;
+    setup <= (setup & ~dir_done) | setup_begins;
+    idle  <= free & ~step_begins & ~setup_begins & ~settle;
+    hold  <= ((hold & ~dir_done) | low_over) & ~step_begins & ~setup_begins;
     step  <= (step & ~(pins_written & ~both_edges_next)) ^ edge_begins;
-    dir   <= dir ^ (turn & wrong);
+    dir   <= dir ^ (setup_begins & wrong);
 
     settle    <= pins_written;
-    unsettled <= settle | (unsettled & ~turn);
-    quiet     <= idle & ~hold & ~turns & ~waits[0] & ~step_request & ~pins_written & ~settle;
+    unsettled <= settle | (unsettled & ~setup_begins);
+    quiet     <= idle & ~hold & ~needs_setup & ~waits[0] & ~step_request & ~pins_written & ~settle;
 
     step_made  <= step_begins;
     enable_pin <= enable ^ enable_inverted;

@@ -22,7 +22,7 @@ module passo_axis_registers #(
   input  wire [  AXES-1:0] select_position,
   input  wire [       2:0] bus_address,        // within the block
   input  wire [      31:0] bus_data,
-  input  wire [       4:0] bus_top_bit,
+  input  wire [       4:0] bus_msb,
   output reg               claim,
   output reg  [       3:0] refusal,
   output reg  [       3:0] read_data,
@@ -32,8 +32,8 @@ module passo_axis_registers #(
   output reg  [  AXES-1:0] write_step_timing,
   output reg  [  AXES-1:0] write_dir_timing,
   output reg  [  AXES-1:0] write_enable,
-  output reg               short_upper,        // half of bus_data is 0 or 1
-  output reg               short_lower,
+  output reg               upper_is_minimal,   // half of bus_data is 0 or 1
+  output reg               lower_is_minimal,
   output wire              needs_quiet,        // strobe: the pins of an axis are checked
   input  wire [AXES*4-1:0] lost
 );
@@ -82,10 +82,10 @@ module passo_axis_registers #(
   end
 
   always @(posedge clk) begin
-    short_upper <= bus_data[31:16] < 16'd2;
-    short_lower <= bus_data[15:0] < 16'd2;
-    bad_value        <= bus_address == AXIS_PINS   ? bus_top_bit > 5'd4 || bus_data[0] :
-                        bus_address == AXIS_ENABLE && bus_top_bit != 5'd0;
+    upper_is_minimal <= bus_data[31:16] < 16'd2;
+    lower_is_minimal <= bus_data[15:0] < 16'd2;
+    bad_value        <= bus_address == AXIS_PINS   ? bus_msb > 5'd4 || bus_data[0] :
+                        bus_address == AXIS_ENABLE && bus_msb != 5'd0;
     claim <= (bus_check | bus_read) & (readable | writable);
     refusal <= VERDICT_OK;
     read_data <= bus_read && is_lost ? selected_lost : 4'd0;

@@ -4,7 +4,7 @@
 //
 // Promise: the answer to a strobe comes one clock later, for one clock; it is 0 unless one of these registers
 // is meant. A command strobe is high for the clock after its write. With STOP or ABORT, CLEAR and ZERO in the same
-// word are ignored, and STOP with ABORT: no state refuses them. `bus_top_bit` and `bus_lone_bit` tell how large the
+// word are ignored, and STOP with ABORT: no state refuses them. `bus_msb` and `bus_one_hot` tell how large the
 // data of a check are.
 `resetall
 `timescale 1ns / 1ps
@@ -25,8 +25,8 @@ module passo_channel_registers #(
   input  wire                     select,
   input  wire [              7:0] bus_address,        // within the channel
   input  wire [             31:0] bus_data,
-  input  wire [              4:0] bus_top_bit,
-  input  wire                     bus_lone_bit,
+  input  wire [              4:0] bus_msb,
+  input  wire                     bus_one_hot,
   output reg                      claim,
   output reg  [              3:0] refusal,
   output wire [             31:0] read_data,
@@ -114,10 +114,10 @@ module passo_channel_registers #(
 
   always @(posedge clk) begin
     known <= in_settings || in_state || in_queues;
-    bad_value <= in_settings && (is_command        ? bus_top_bit > 5'd3 :
-                                 is_drain_velocity ? (bus_top_bit == 5'd31 && !bus_lone_bit)
-                                                     || (bus_top_bit == 5'd0 && !bus_data[0]) :
-                                                     bus_top_bit > 5'd16 || (bus_top_bit[4] && !bus_lone_bit));
+    bad_value <= in_settings && (is_command        ? bus_msb > 5'd3 :
+                                 is_drain_velocity ? (bus_msb == 5'd31 && !bus_one_hot)
+                                                     || (bus_msb == 5'd0 && !bus_data[0]) :
+                                                     bus_msb > 5'd16 || (bus_msb[4] && !bus_one_hot));
     claim <= known && (bus_check || bus_read);
     refusal <= !known    ? VERDICT_OK :
                bus_read  ? (in_state ? VERDICT_OK : VERDICT_BAD_OPERATION) :

@@ -73,8 +73,8 @@ module passo_core #(
   wire        bus_push;
   wire [11:0] bus_address;
   wire [31:0] bus_data;
-  wire [ 4:0] bus_top_bit;
-  wire        bus_lone_bit;
+  wire [ 4:0] bus_msb;
+  wire        bus_one_hot;
   wire        bus_counters;
   reg         bus_claim;
   reg  [ 3:0] bus_refusal;
@@ -162,8 +162,8 @@ module passo_core #(
     .bus_push      (bus_push),
     .bus_address   (bus_address),
     .bus_data      (bus_data),
-    .bus_top_bit   (bus_top_bit),
-    .bus_lone_bit  (bus_lone_bit),
+    .bus_msb       (bus_msb),
+    .bus_one_hot   (bus_one_hot),
     .bus_claim     (bus_claim),
     .bus_refusal   (bus_refusal),
     .bus_read_data (bus_read_data),
@@ -187,7 +187,7 @@ module passo_core #(
     .bus_push     (bus_push),
     .bus_address  (bus_address),
     .bus_data     (bus_data[18:0]),
-    .bus_top_bit  (bus_top_bit),
+    .bus_msb      (bus_msb),
     .claim        (registers_claim),
     .refusal      (registers_refusal),
     .read_data    (registers_read_data),
@@ -215,7 +215,7 @@ module passo_core #(
     .select     (select_tables),
     .bus_address(bus_address[9:0]),
     .bus_data   (bus_data[15:0]),
-    .bus_top_bit(bus_top_bit),
+    .bus_msb    (bus_msb),
     .refusal    (tables_refusal),
     .wanted     (tables_wanted),
     .request    (table_request),
@@ -251,8 +251,8 @@ module passo_core #(
         .select          (bus_address[11:8] == BLOCK),
         .bus_address     (bus_address[7:0]),
         .bus_data        (bus_data),
-        .bus_top_bit     (bus_top_bit),
-        .bus_lone_bit    (bus_lone_bit),
+        .bus_msb         (bus_msb),
+        .bus_one_hot     (bus_one_hot),
         .claim           (channel_claim[channel]),
         .refusal         (channel_refusal[channel*4+:4]),
         .read_data       (channel_read_data[channel*32+:32]),

@@ -15,12 +15,12 @@
 
 module passo_dda (
   input  wire               clk,
-  input  wire               slot_add,     // clock A of a substep
-  input  wire               slot_load,    // clock A when a new line begins
-  input  wire               slot_step,    // clock B of a substep
-  input  wire               slot_load_q,  // clock B when a new line begins
-  input  wire signed [30:0] broadcast,    // in A: -M, or the start value of the new line
-  input  wire        [29:0] steps,        // N of the current line; in B already that of the new one
+  input  wire               add_n,         // clock A of a substep
+  input  wire               load_start,    // clock A when a new line begins
+  input  wire               decide_step,   // clock B of a substep
+  input  wire               load_start_q,  // clock B when a new line begins
+  input  wire signed [30:0] line_addend,   // in A: -M, or the start value of the new line
+  input  wire        [29:0] steps,         // N of the current line; in B already that of the new one
   output wire               step_request
 );
 
@@ -31,12 +31,12 @@ module passo_dda (
   reg         reached;
   wire [30:0] sum = {addend[30], e_minus_m} + addend;
 
-  assign step_request = slot_step & reached;
+  assign step_request = decide_step & reached;
 
   always @(posedge clk) begin
-    addend  <= (slot_add || slot_load) ? broadcast : {1'b0, steps};
+    addend  <= (add_n || load_start) ? line_addend : {1'b0, steps};
     reached <= sum[30];
-    if (slot_add || slot_load || slot_load_q || step_request) e_minus_m <= slot_load ? 30'd0 : sum[29:0];
+    if (add_n || load_start || load_start_q || step_request) e_minus_m <= load_start ? 30'd0 : sum[29:0];
   end
 
 `ifdef FORMAL

@@ -33,7 +33,7 @@ module passo_line_queue #(
   input  wire                bus_write,
   input  wire                select,
   input  wire [        31:0] bus_data,
-  input  wire [         4:0] bus_top_bit,
+  input  wire [         4:0] bus_msb,
   input  wire                blocked,       // the channel is stopped
   output reg  [         3:0] refusal,
   output wire                incomplete,    // the frame so far ends within a line
@@ -52,12 +52,12 @@ module passo_line_queue #(
 
   `include "passo_registers.vh"
 
-  localparam [4:0] CONTROL_TOP_BIT = 5'd7 + AXES[4:0];
+  localparam [4:0] CONTROL_MSB = 5'd7 + AXES[4:0];
   localparam INDEX_CONTROL = 0;
   localparam INDEX_SUBSTEPS = 1;
   localparam INDEX_STEPS = 2;
   localparam INDEX_LAST = INDEX_STEPS + AXES - 1;
-  localparam [4:0] COUNT_TOP_BIT = 5'd29;
+  localparam [4:0] COUNT_MSB = 5'd29;
   localparam [DEPTH_LOG2:0] DEPTH = 1 << DEPTH_LOG2;
 
   // Writing: one word of a line after the other
@@ -125,8 +125,7 @@ module passo_line_queue #(
 
   always @(posedge clk) begin
     full <= room == checked;
-    bad_bits <= index[INDEX_CONTROL] ? bus_top_bit > CONTROL_TOP_BIT || bus_data[7:2] != 6'd0
-                                     : bus_top_bit > COUNT_TOP_BIT;
+    bad_bits <= index[INDEX_CONTROL] ? bus_msb > CONTROL_MSB || bus_data[7:2] != 6'd0 : bus_msb > COUNT_MSB;
     refusal  <= !(select && bus_check)                         ? VERDICT_OK :
                 blocked                                        ? VERDICT_BUSY :
                 full                                           ? VERDICT_QUEUE_FULL :

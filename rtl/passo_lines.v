@@ -22,7 +22,7 @@ module passo_lines #(
   input  wire                bus_write,
   input  wire                select,
   input  wire [        31:0] bus_data,
-  input  wire [         4:0] bus_top_bit,
+  input  wire [         4:0] bus_msb,
   output wire [         3:0] refusal,
   output wire                incomplete,
   output wire [DEPTH_LOG2:0] room,
@@ -47,11 +47,11 @@ module passo_lines #(
   wire        [   AXES-1:0] current_directions;
   wire        [       29:0] last_substep;
   wire        [AXES*30-1:0] steps;
-  wire                      slot_add;
-  wire                      slot_load;
-  wire                      slot_step;
-  wire                      slot_load_q;
-  wire signed [       30:0] broadcast;
+  wire                      add_n;
+  wire                      load_start;
+  wire                      decide_step;
+  wire                      load_start_q;
+  wire signed [       30:0] line_addend;
 
   passo_line_queue #(
     .AXES          (AXES),
@@ -66,7 +66,7 @@ module passo_lines #(
     .bus_write   (bus_write),
     .select      (select),
     .bus_data    (bus_data),
-    .bus_top_bit (bus_top_bit),
+    .bus_msb     (bus_msb),
     .blocked     (stopped),
     .refusal     (refusal),
     .incomplete  (incomplete),
@@ -96,11 +96,11 @@ module passo_lines #(
     .endless           (next_endless),
     .last_substep      (last_substep),
     .current_directions(current_directions),
-    .slot_add          (slot_add),
-    .slot_load         (slot_load),
-    .slot_step         (slot_step),
-    .slot_load_q       (slot_load_q),
-    .broadcast         (broadcast),
+    .add_n             (add_n),
+    .load_start        (load_start),
+    .decide_step       (decide_step),
+    .load_start_q      (load_start_q),
+    .line_addend       (line_addend),
     .directions        (directions),
     .current_endless   (endless),
     .ended             (ended),
@@ -112,11 +112,11 @@ module passo_lines #(
     for (axis = 0; axis < AXES; axis = axis + 1) begin : g_axis
       passo_dda u_dda (
         .clk         (clk),
-        .slot_add    (slot_add),
-        .slot_load   (slot_load),
-        .slot_step   (slot_step),
-        .slot_load_q (slot_load_q),
-        .broadcast   (broadcast),
+        .add_n       (add_n),
+        .load_start  (load_start),
+        .decide_step (decide_step),
+        .load_start_q(load_start_q),
+        .line_addend (line_addend),
         .steps       (steps[axis*30+:30]),
         .step_request(step_request[axis])
       );

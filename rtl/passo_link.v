@@ -44,8 +44,8 @@ module passo_link (
   output wire bus_push,  // the frame is a push
   output wire [11:0] bus_address,
   output wire [31:0] bus_data,
-  output wire [4:0] bus_top_bit,  // of the data that are checked: highest bit that is set,
-  output wire bus_lone_bit,  // and it is the only one
+  output wire [4:0] bus_msb,  // of the data that are checked: highest bit that is set,
+  output wire bus_one_hot,  // and it is the only one
   input wire bus_claim,
   input wire [3:0] bus_refusal,
   input wire [31:0] bus_read_data,
@@ -68,13 +68,13 @@ module passo_link (
   wire frame_breaks;
 
   wire [6:0] count;  // clocks of the word
-  wire       turn;
+  wire       rotate;
   wire       rests;
   wire       begin_load;
   wire       load;
   wire       load_ends;
   wire       act;
-  wire       halves_turn;
+  wire       half_rotated;
 
   wire       header_is_read;
   wire       header_is_empty;
@@ -92,7 +92,7 @@ module passo_link (
   wire       all_words;
   wire       sequence_known;
 
-  passo_link_steps u_steps (
+  passo_link_states u_states (
     .clk            (clk),
     .rst            (rst),
     .frame_start    (frame_start),
@@ -115,13 +115,13 @@ module passo_link (
     .in_count       (in_count),
     .frame_breaks   (frame_breaks),
     .count          (count),
-    .turn           (turn),
+    .rotate         (rotate),
     .rests          (rests),
     .begin_load     (begin_load),
     .load           (load),
     .load_ends      (load_ends),
     .act            (act),
-    .halves_turn    (halves_turn)
+    .half_rotated   (half_rotated)
   );
 
   passo_link_bus u_bus (
@@ -157,7 +157,7 @@ module passo_link (
 
   passo_header u_header (
     .clk           (clk),
-    .hold          (turn),
+    .hold          (rotate),
     .data          (bus_data[31:12]),
     .sequence_known(sequence_known),
     .last_sequence (last_sequence),
@@ -191,13 +191,13 @@ module passo_link (
     .load_word  (in_payload || in_replay ? {1'b0, index} : {5'b10000, place}),
     .load_low   (~begin_load & ~count[0]),
     .load_zero  (uses_counters && !counted[counters_high]),
-    .turn       (turn),
-    .turns      (count[4:0]),
+    .rotate     (rotate),
+    .bit_index  (count[4:0]),
     .count      (in_count),
     .counter    (counter),
     .data       (bus_data),
-    .top_bit    (bus_top_bit),
-    .lone_bit   (bus_lone_bit),
+    .msb        (bus_msb),
+    .one_hot    (bus_one_hot),
     .counter_bit(counter_bit)
   );
 
@@ -211,8 +211,8 @@ module passo_link (
   passo_crc u_crc (
     .clk    (clk),
     .restart(load & in_header),
-    .shift  (turn),
-    .turn   (in_crc | in_sum),
+    .shift  (rotate),
+    .rotate (in_crc | in_sum),
     .data   (in_read ? reply_top : bus_data[31]),
     .top    (crc_top)
   );
@@ -222,8 +222,8 @@ module passo_link (
     .rst        (rst),
     .take       (frame_start || answered),
     .data       (bus_read_data),
-    .shift      (turn && replies),
-    .turns      (count[4:0]),
+    .shift      (rotate && replies),
+    .bit_index  (count[4:0]),
     .acknowledge(in_ack),
     .header_11  (bus_data[11]),
     .header_27  (bus_data[27]),
@@ -243,7 +243,7 @@ module passo_link (
     .header_ok     (header_ok),
     .header_verdict(header_verdict),
     .in_header     (in_header),
-    .crc_differs   (in_crc & turn & (crc_top != bus_data[31])),
+    .crc_differs   (in_crc & rotate & (crc_top != bus_data[31])),
     .conclude      (in_crc & act),
     .read_answered (answered & first_word),
     .bus_check     (bus_check),
@@ -260,7 +260,7 @@ module passo_link (
   always @(posedge clk) begin
     answered      <= in_read && load_ends && !frame_breaks;
     replies       <= in_ack | in_read | in_sum;
-    put           <= in_count && halves_turn;
+    put           <= in_count && half_rotated;
     verdict_high  <= verdict >= VERDICT_READ_ONLY;
     counters_high <= in_ack | in_count ? verdict_high : bus_address[0];
     if (in_count && act) counted[counters_high] <= 1'b1;

@@ -20,7 +20,7 @@ module passo_profile #(
   input  wire                bus_write,
   input  wire                select,
   input  wire [        31:0] bus_data,
-  input  wire [         4:0] bus_top_bit,
+  input  wire [         4:0] bus_msb,
   output wire [         3:0] refusal,
   output wire                incomplete,
   output wire                needs_motion,      // strobe: a NOW ramp is checked
@@ -72,7 +72,7 @@ module passo_profile #(
     .bus_write   (bus_write),
     .select      (select),
     .bus_data    (bus_data),
-    .bus_top_bit (bus_top_bit),
+    .bus_msb     (bus_msb),
     .blocked     (stopped),
     .refusal     (refusal),
     .incomplete  (incomplete),

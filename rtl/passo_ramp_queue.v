@@ -24,7 +24,7 @@ module passo_ramp_queue #(
   input  wire                bus_write,
   input  wire                select,
   input  wire [        31:0] bus_data,
-  input  wire [         4:0] bus_top_bit,
+  input  wire [         4:0] bus_msb,
   input  wire                blocked,       // the channel is stopped
   output reg  [         3:0] refusal,
   output wire                incomplete,    // the frame so far ends within a ramp
@@ -111,8 +111,8 @@ module passo_ramp_queue #(
   always @(posedge clk) begin
     full <= room == checked;
     bad_control <= (bus_data & ~RAMP_CONTROL_DEFINED) != 32'd0 || bus_data[31:16] > VELOCITY_MAX_HIGH;
-    bad_velocity_low <= velocity_is_max && (bus_top_bit != 5'd0 || bus_data[0]);
-    bad_step_high <= bus_top_bit > 5'd15;
+    bad_velocity_low <= velocity_is_max && (bus_msb != 5'd0 || bus_data[0]);
+    bad_step_high <= bus_msb > 5'd15;
     refusal          <= !(select && bus_check) ? VERDICT_OK :
                         blocked                ? VERDICT_BUSY :
                         full                   ? VERDICT_QUEUE_FULL :

@@ -25,7 +25,7 @@ module passo_registers #(
   input wire bus_push,
   input wire [11:0] bus_address,
   input wire [18:0] bus_data,
-  input wire [4:0] bus_top_bit,
+  input wire [4:0] bus_msb,
   output reg claim,
   output reg [3:0] refusal,
   output wire [31:0] read_data,
@@ -93,7 +93,7 @@ module passo_registers #(
     known        <= bus_address[11:3] == 9'd0 && bus_address[2:0] <= ADDRESS_REFUSALS_1[2:0];
     is_run       <= bus_address == ADDRESS_RUN;
     number       <= bus_address[2:0];
-    bad_run      <= bus_top_bit > 5'd18 || run_beyond;
+    bad_run      <= bus_msb > 5'd18 || run_beyond;
     reads_status <= ~bus_read;
     for (i = 0; i < 4; i = i + 1) reads[i] <= bus_read && known && number == i[2:0];
     claim <= known && (bus_check || bus_read);

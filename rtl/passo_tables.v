@@ -25,7 +25,7 @@ module passo_tables #(
   input  wire                   select,
   input  wire [            9:0] bus_address,  // within the tables: bank (9:8), 1 .. 3
   input  wire [           15:0] bus_data,
-  input  wire [            4:0] bus_top_bit,  // of the data that are checked: highest bit that is set
+  input  wire [            4:0] bus_msb,      // of the data that are checked: highest bit that is set
   output reg  [            3:0] refusal,
   output reg                    wanted,       // the frame writes points, which needs all channels at rest
   // channels
@@ -49,7 +49,7 @@ module passo_tables #(
     refusal <= VERDICT_OK;
     if (select && bus_read) refusal <= VERDICT_BAD_OPERATION;
     if (select && bus_check)
-      refusal <= bus_push ? VERDICT_BAD_OPERATION : bus_top_bit > 5'd15 ? VERDICT_BAD_VALUE : VERDICT_OK;
+      refusal <= bus_push ? VERDICT_BAD_OPERATION : bus_msb > 5'd15 ? VERDICT_BAD_VALUE : VERDICT_OK;
   end
 
   always @(posedge clk) wanted <= ~rst & ~(bus_frame & ~bus_commit) & (wanted | (select & bus_check));

@@ -10,7 +10,7 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-module passo_link_steps (
+module passo_link_states (
   input  wire       clk,
   input  wire       rst,
   // words from the SPI
@@ -37,18 +37,18 @@ module passo_link_steps (
   output wire       frame_breaks,     // the frame is given up
   // clocks of the word
   output wire [6:0] count,
-  output wire       turn,
+  output wire       rotate,
   output wire       rests,
   output reg        begin_load,
   output wire       load,
   output wire       load_ends,
   output wire       act,
-  output wire       halves_turn
+  output wire       half_rotated
 );
 
   reg frame_waits;
   reg begin_read;
-  reg begin_turn;
+  reg begin_rotate;
   reg begin_rest;
 
   wire reply_taken = in_read & word_valid;
@@ -59,21 +59,21 @@ module passo_link_steps (
   assign frame_breaks = (frame_end | frame_start) & ~goes_through;
 
   passo_link_schedule u_schedule (
-    .clk        (clk),
-    .rst        (rst),
-    .begin_read (begin_read),
-    .begin_load (begin_load),
-    .begin_turn (begin_turn),
-    .begin_rest (begin_rest),
-    .over       (in_replay & all_words),
-    .breaks     (frame_breaks),
-    .count      (count),
-    .turn       (turn),
-    .rests      (rests),
-    .load       (load),
-    .load_ends  (load_ends),
-    .act        (act),
-    .halves_turn(halves_turn)
+    .clk         (clk),
+    .rst         (rst),
+    .begin_read  (begin_read),
+    .begin_load  (begin_load),
+    .begin_rotate(begin_rotate),
+    .begin_rest  (begin_rest),
+    .over        (in_replay & all_words),
+    .breaks      (frame_breaks),
+    .count       (count),
+    .rotate      (rotate),
+    .rests       (rests),
+    .load        (load),
+    .load_ends   (load_ends),
+    .act         (act),
+    .half_rotated(half_rotated)
   );
 
   always @(posedge clk) begin
@@ -92,12 +92,12 @@ module passo_link_steps (
     begin_load <= (word_valid & (in_header | in_payload | in_crc)) | (in_crc & act & ~reads) | objection
                   | (in_ack & act & ~is_duplicate) | (in_replay & load_ends);
     begin_read <= (in_crc & act & reads) | (reply_taken & ~all_words);
-    begin_turn <= last_taken;
+    begin_rotate <= last_taken;
     begin_rest <= frame_breaks | (in_replay & all_words);
 
     if (rst) begin
       {in_header, in_payload, in_crc, in_ack, in_replay, in_read, in_sum, in_count} <= 8'd0;
-      {begin_load, begin_read, begin_turn, begin_rest}                              <= 4'd0;
+      {begin_load, begin_read, begin_rotate, begin_rest}                            <= 4'd0;
 
       frame_waits <= 1'b0;
     end
