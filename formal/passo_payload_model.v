@@ -27,19 +27,19 @@ module passo_payload (
   output wire        counter_bit
 );
 
-  (* keep *) wire [5:0] f_place;
-  (* keep *) reg [31:0] f_header;
-  (* keep *) reg [31:0] f_word;
-  (* keep *) reg [31:0] f_held;
-  (* anyseq *) wire [31:0] f_anything;
-  (* anyseq *) wire [6:0] f_any_bits;
-  reg [15:0] f_named;
-  reg [15:0] loaded;
+  (* keep *)wire [ 5:0] f_place;
+  (* keep *)reg  [31:0] f_header;
+  (* keep *)reg  [31:0] f_word;
+  (* keep *)reg  [31:0] f_held;
+  (* anyseq *)wire [31:0] f_anything;
+  (* anyseq *)wire [ 6:0] f_any_bits;
+  reg  [15:0] f_named;
+  reg  [15:0] loaded;
 
   wire [31:0] f_read = load_word == 7'h40 ? f_header : load_word == {1'b0, f_place} ? f_word : f_anything;
 
   assign {msb, one_hot, counter_bit} = f_any_bits;
-  assign data = rotate ? f_anything : f_held;
+  assign data                        = rotate ? f_anything : f_held;
 
   always @(posedge clk) begin
     if (store && store_word == 7'h40 && !store_low) f_header[31:16] <= half;

@@ -48,8 +48,8 @@ module passo_settings_proof (
     .select        (select),
     .bus_address   (bus_address),
     .bus_data      (bus_data),
-    .bus_msb   (bus_msb),
-    .bus_one_hot  (bus_one_hot),
+    .bus_msb       (bus_msb),
+    .bus_one_hot   (bus_one_hot),
     .claim         (claim),
     .refusal       (refusal),
     .select_axis   (select_axis),
@@ -96,14 +96,14 @@ module passo_settings_proof (
     .select_axis      (select_axis),
     .bus_address      (bus_address[2:0]),
     .bus_data         (bus_data),
-    .bus_msb      (bus_msb),
+    .bus_msb          (bus_msb),
     .write_pins       (write_pins),
     .write_step_timing(write_step_timing),
     .write_dir_timing (write_dir_timing),
     .write_enable     (write_enable),
     .needs_quiet      (pins_need_quiet),
-    .upper_is_minimal      (upper_is_minimal),
-    .lower_is_minimal      (lower_is_minimal)
+    .upper_is_minimal (upper_is_minimal),
+    .lower_is_minimal (lower_is_minimal)
   );
 
   passo_axis_settings u_settings (
@@ -114,16 +114,16 @@ module passo_settings_proof (
     .write_dir_timing  (write_dir_timing),
     .write_enable      (write_enable),
     .bus_data          (bus_data),
-    .upper_is_minimal       (upper_is_minimal),
-    .lower_is_minimal       (lower_is_minimal),
+    .upper_is_minimal  (upper_is_minimal),
+    .lower_is_minimal  (lower_is_minimal),
     .step_high         (step_high),
     .step_low          (step_low),
     .dir_setup         (dir_setup),
     .dir_hold          (dir_hold),
-    .high_is_minimal        (high_is_minimal),
-    .low_is_minimal         (low_is_minimal),
-    .setup_is_minimal       (setup_is_minimal),
-    .hold_is_minimal        (hold_is_minimal),
+    .high_is_minimal   (high_is_minimal),
+    .low_is_minimal    (low_is_minimal),
+    .setup_is_minimal  (setup_is_minimal),
+    .hold_is_minimal   (hold_is_minimal),
     .both_edges        (both_edges),
     .step_inverted     (step_inverted),
     .direction_inverted(direction_inverted)
@@ -140,15 +140,15 @@ module passo_settings_proof (
   wire f_one_hot = (bus_data & (bus_data - 32'd1)) == 32'd0;
 
   // --- Assumptions: the link, and the payload buffer
-  reg        f_started = 1'b0;
-  reg  [1:0] f_reset = 2'b11;  // one and two clocks ago
-  reg        f_strobe = 1'b0;  // in the clock before
-  reg        f_two = 1'b0;  // two clocks have been
-  reg [ 9:0] f_bus_q;
-  reg [ 9:0] f_bus_qq;
-  reg [31:0] f_data_q;
-  reg        f_told_q;
-  wire [9:0] f_bus = {select, bus_push, bus_address};
+  reg         f_started = 1'b0;
+  reg  [ 1:0] f_reset = 2'b11;  // one and two clocks ago
+  reg         f_strobe = 1'b0;  // in the clock before
+  reg         f_two = 1'b0;  // two clocks have been
+  reg  [ 9:0] f_bus_q;
+  reg  [ 9:0] f_bus_qq;
+  reg  [31:0] f_data_q;
+  reg         f_told_q;
+  wire [ 9:0] f_bus = {select, bus_push, bus_address};
   always @(posedge clk) begin
     f_started <= 1'b1;
     f_reset   <= {f_reset[0], rst};
@@ -159,22 +159,23 @@ module passo_settings_proof (
     f_data_q  <= bus_data;
     f_told_q  <= f_told && bus_one_hot == f_one_hot;
     if (!f_started) settings_reset : assume (rst);
-    settings_one_strobe : assume (bus_check + bus_write + bus_read <= 2'd1 && !(f_strobe && (bus_check || bus_write || bus_read)));
-    if (bus_check || bus_write || bus_read) 
+    settings_one_strobe :
+    assume (bus_check + bus_write + bus_read <= 2'd1 && !(f_strobe && (bus_check || bus_write || bus_read)));
+    if (bus_check || bus_write || bus_read)
       settings_bus_stands : assume (f_two && f_bus == f_bus_q && f_bus == f_bus_qq && bus_data == f_data_q);
     if (f_strobe) settings_data_stand : assume (bus_data == f_data_q);
     if (bus_check) settings_told : assume (f_told && bus_one_hot == f_one_hot && f_told_q);
     if (bus_write && f_is_setting) settings_as_checked : assume (!bus_push && !f_bad);
   end
 
-  reg        f_checked = 1'b0;  // a setting, in the clock before
-  reg        f_checked_bad;
-  reg        f_pushed;
-  reg        f_write_pins = 1'b0;
-  reg        f_write_timing = 1'b0;
-  reg  [7:0] f_drain_low;
-  reg [63:0] f_timings;
-  reg  [2:0] f_pins;
+  reg         f_checked = 1'b0;  // a setting, in the clock before
+  reg         f_checked_bad;
+  reg         f_pushed;
+  reg         f_write_pins = 1'b0;
+  reg         f_write_timing = 1'b0;
+  reg  [ 7:0] f_drain_low;
+  reg  [63:0] f_timings;
+  reg  [ 2:0] f_pins;
   wire [63:0] f_timings_now = {step_high, step_low, dir_setup, dir_hold};
   wire [ 2:0] f_pins_now = {both_edges, step_inverted, direction_inverted};
   always @(posedge clk) begin
@@ -199,9 +200,12 @@ module passo_settings_proof (
         clear_needs_no_motion : assert (needs_idle);
       if (bus_check && f_is_command && !f_stops && bus_data[CHANNEL_COMMAND_ZERO_LSB])
         zero_needs_quiet : assert (needs_quiet);
-      if (bus_check && select && bus_address == CHANNEL_AXIS_BASE) pins_need_quiet_channel : assert (pins_need_quiet);
-      if (command_stop || command_abort) stop_is_alone : assert (!command_clear && !command_zero && !(command_stop && command_abort));
-      timings_not_0 : assert (step_high != 16'd0 && step_low != 16'd0 && dir_setup != 16'd0 && dir_hold != 16'd0);
+      if (bus_check && select && bus_address == CHANNEL_AXIS_BASE)
+        pins_need_quiet_channel : assert (pins_need_quiet);
+      if (command_stop || command_abort)
+        stop_is_alone : assert (!command_clear && !command_zero && !(command_stop && command_abort));
+      timings_not_0 :
+      assert (step_high != 16'd0 && step_low != 16'd0 && dir_setup != 16'd0 && dir_hold != 16'd0);
       minimal_told :
       assert (high_is_minimal == (step_high == 16'd1) && low_is_minimal == (step_low == 16'd1)
               && setup_is_minimal == (dir_setup == 16'd1) && hold_is_minimal == (dir_hold == 16'd1));

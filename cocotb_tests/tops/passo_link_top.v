@@ -46,7 +46,7 @@ module passo_link_top (
   assign verdict    = u_link.verdict;
 
   // the status stands in the place of data, but for the clock after a strobe; a clock later it comes to the link
-  reg answers;
+  reg        answers;
   reg [31:0] read_data;
   always @(posedge clk) begin
     answers   <= bus_read;
@@ -68,31 +68,31 @@ module passo_link_top (
   );
 
   passo_link u_link (
-    .clk            (clk),
-    .rst            (rst),
-    .frame_start    (frame_start),
-    .frame_end      (frame_end),
-    .half_valid     (half_valid),
-    .half_low       (half_low),
-    .half           (half),
-    .reply_word     (reply_word),
-    .last_sequence  (last_sequence),
-    .bus_frame      (bus_frame),
-    .bus_commit     (bus_commit),
-    .bus_check      (bus_check),
-    .bus_write      (bus_write),
-    .bus_read       (bus_read),
-    .bus_push       (bus_push),
-    .bus_address    (bus_address),
-    .bus_data       (bus_data),
-    .bus_msb    (bus_msb),
+    .clk           (clk),
+    .rst           (rst),
+    .frame_start   (frame_start),
+    .frame_end     (frame_end),
+    .half_valid    (half_valid),
+    .half_low      (half_low),
+    .half          (half),
+    .reply_word    (reply_word),
+    .last_sequence (last_sequence),
+    .bus_frame     (bus_frame),
+    .bus_commit    (bus_commit),
+    .bus_check     (bus_check),
+    .bus_write     (bus_write),
+    .bus_read      (bus_read),
+    .bus_push      (bus_push),
+    .bus_address   (bus_address),
+    .bus_data      (bus_data),
+    .bus_msb       (bus_msb),
     .bus_one_hot   (bus_one_hot),
-    .bus_claim      (bus_claim),
-    .bus_refusal    (bus_refusal),
-    .bus_counters   (bus_counters),
-    .bus_read_data  (read_data),
-    .bus_incomplete (bus_incomplete),
-    .bus_busy       (bus_busy)
+    .bus_claim     (bus_claim),
+    .bus_refusal   (bus_refusal),
+    .bus_counters  (bus_counters),
+    .bus_read_data (read_data),
+    .bus_incomplete(bus_incomplete),
+    .bus_busy      (bus_busy)
   );
 
 endmodule

@@ -72,7 +72,7 @@ module passo_profile_top #(
     .select     (1'b0),
     .bus_address(10'd0),
     .bus_data   (16'd0),
-    .bus_msb(5'd0),
+    .bus_msb    (5'd0),
     .refusal    (),
     .wanted     (),
     .request    (table_requests),
@@ -94,7 +94,7 @@ module passo_profile_top #(
     .bus_write       (bus_write),
     .select          (select),
     .bus_data        (bus_data),
-    .bus_msb     (bus_msb),
+    .bus_msb         (bus_msb),
     .refusal         (refusal),
     .incomplete      (incomplete),
     .needs_motion    (needs_motion),
@@ -120,9 +120,9 @@ module passo_profile_top #(
     .substep         ()
   );
 
-  assign stall           = u_profile.stall;
+  assign stall = u_profile.stall;
   // the path's upper half comes a clock late
-  assign velocity[23:0]  = u_profile.u_path.velocity_low;
+  assign velocity[23:0] = u_profile.u_path.velocity_low;
   assign velocity[47:24] = !u_profile.u_path.take_q ? u_profile.u_path.velocity_high :
                            drain                    ? drain_velocity[31:8] :
                            ends_next                ? 24'd0 : u_profile.velocity_next[47:24];
