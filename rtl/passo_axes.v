@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Axes: how the steps leave. Pins, settings and positions of all axes of a channel; wiring only.
+// Axes: pins, settings and positions of all axes of a channel. Wiring only.
 //
-// Promise: step requests become legal pins, as each axis is set; positions are the number of active edges. `quiet`:
-// no step waits or is shaped at any axis, a clock ago.
+// Promise: step requests become legal pin waveforms, by the settings of each axis; positions count active edges.
+// `quiet`, one clock late: no step waits or is in progress at any axis.
 // Latency: step_request to STEP 3 clocks, to step_overrun 1 clock.
 `resetall
 `timescale 1ns / 1ps
@@ -29,18 +29,18 @@ module passo_axes #(
   output wire            claim,
   output wire [     3:0] refusal,
   output wire [    31:0] read_data,
-  output wire            needs_quiet,      // strobe: the pins of an axis are checked
+  output wire            needs_quiet,      // strobe: PINS of an axis is being checked
   // lines
   input  wire [AXES-1:0] step_request,
   input  wire [AXES-1:0] directions,
   // motion
-  input  wire            drop,             // forget the steps that wait
-  input  wire            clear,            // of the lost steps
-  input  wire            zero,             // of the positions
-  input  wire            snapshot,         // of the positions, for the frame that begins
+  input  wire            drop,             // drop the waiting steps
+  input  wire            clear,            // clears lost_steps
+  input  wire            zero,             // zeroes the positions
+  input  wire            snapshot,         // copies the positions for the new frame
   output wire            quiet,
   output reg             step_overrun,     // strobe: a step was lost
-  output wire [AXES-1:0] lost_steps,       // since `clear`, a bit for each axis
+  output wire [AXES-1:0] lost_steps,       // since `clear`, one bit per axis
   // pins
   output wire [AXES-1:0] step,
   output wire [AXES-1:0] dir,

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Settings of one axis, as they are written, and which of its times are 1, which its timer needs to know before
-// it counts. A time of 0 counts as 1.
+// Settings of one axis as written, and which of its timings are one clock: the timer needs to know before it counts.
+// A time of 0 counts as 1.
 //
-// They are configuration: a reset takes only the drive enable away. The polarities begin such that each pin has
-// the level of its parameter until the host has spoken.
+// They are configuration: a reset only clears the drive enable. Until the host writes others, the polarities give
+// each pin the level of its parameter.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -21,7 +21,7 @@ module passo_axis_settings #(
   input  wire        write_dir_timing,
   input  wire        write_enable,
   input  wire [31:0] bus_data,
-  input  wire        upper_is_minimal,    // its upper half is 0 or 1
+  input  wire        upper_is_minimal,    // upper half is 0 or 1
   input  wire        lower_is_minimal,
   output reg  [15:0] step_high,
   output reg  [15:0] step_low,

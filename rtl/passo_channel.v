@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Channel: one coordinated group of AXES axes. Lines say where, the profile says when, axes shape the pins; the
-// motion leads them. Wiring, but for what is quiet.
+// Channel: one coordinated group of AXES axes. Lines say where, the profile says when, the axes drive the pins, the
+// motion controls them. Wiring, except for `quiet`.
 //
 // Promise: a step due n enabled clocks into the profile leaves its pin n clocks after `running` rose.
 `resetall
@@ -137,8 +137,8 @@ module passo_channel #(
     read_data = registers_read_data | axes_read_data;
   end
 
-  reg  [2:0] occupied_q;  // a line that is loaded in the clock of a stop turns DIR up to 4 clocks later
-  reg        at_rest;  // no motion, and no step on its way to the axes
+  reg  [2:0] occupied_q;  // a line loaded in the clock of a stop changes DIR up to 4 clocks later
+  reg        at_rest;  // no motion, and no step in flight to the axes
   wire       quiet = at_rest & ~occupied;
 
   always @(posedge clk) begin

@@ -2,8 +2,8 @@
 // CRC-32/MPEG-2, one bit per clock: polynomial 0x04C11DB7, start 0xFFFFFFFF, MSB first, no final inversion.
 // The CRC unit of an STM32F103 computes the same over 32-bit words.
 //
-// Promise: a clock of `shift` adds `data`. With `rotate` it turns the CRC by a bit instead, so that 32 clocks
-// show the CRC at `top`, bit by bit, and leave it as it was. `restart` begins anew and wins over a shift.
+// Promise: a clock of `shift` takes in `data`. With `rotate` it rotates the CRC by one bit instead, so that 32 clocks
+// show the CRC at `top`, bit by bit, and leave it unchanged. `restart` starts over and has priority over a shift.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Lines: where the axes go. Line queue, line counter and the DDA of each axis; wiring only.
+// Lines: where the axes go. Line queue, line counter and one DDA per axis. Wiring only.
 //
-// Promise: while M substeps pass, axis i gets exactly N_i step requests, spread evenly, for each line in the order
-// in which they were pushed, without a lost clock between lines.
+// Promise: in the M substeps of each line, axis i gets exactly N_i step requests, evenly spread; lines follow in the
+// order of their pushes, without a lost clock in between.
 // Latency: substep to step_request 2 clocks.
 `resetall
 `timescale 1ns / 1ps
@@ -11,7 +11,7 @@
 module passo_lines #(
   parameter AXES           = 4,
   parameter DEPTH_LOG2     = 8,
-  parameter STEPS_REGISTER = 0   // 1: where block RAMs have a register behind their data
+  parameter STEPS_REGISTER = 0   // 1: block RAMs have an output register
 ) (
   input  wire                clk,
   input  wire                rst,
@@ -28,12 +28,12 @@ module passo_lines #(
   output wire [DEPTH_LOG2:0] room,
   // motion
   input  wire                start,         // take the first line
-  input  wire                stopped,       // forget all lines
+  input  wire                stopped,       // drop all lines
   input  wire                release_line,  // the motion is over
-  output wire                valid,         // a line waits
+  output wire                valid,         // a line is queued
   output wire                endless,       // the current line repeats
-  output wire                ended,         // the LAST line has
-  output wire                underrun,      // strobe: no line follows one that is not LAST
+  output wire                ended,         // the LAST line has ended
+  output wire                underrun,      // strobe: a line that is not LAST has no successor
   // profile
   input  wire                substep,
   // axes

@@ -6,20 +6,20 @@
 //   read         MOSI  header  crc     0       0 x length    0
 //                MISO  status  status  status  data x length  crc
 //
-// Promise: a frame is executed whole or not at all, and only once. Each word goes into the payload buffer and
-// comes out of it onto the bus, where it turns through the CRC and is checked by its target (`bus_check`).
-// When the CRC matches, no target objected, no state forbids the frame (`bus_busy`) and its sequence number is new, the
-// buffer is replayed to the bus (`bus_write`), one word every 4 clocks. `bus_commit` is high from 35 clocks before the
-// verdict until a clock after the last word; meanwhile the targets hold `bus_busy`. A frame may begin meanwhile. It is
-// ignored if its header is complete before the replay has ended, which takes a master that omits trailing words.
+// Promise: a frame is executed whole or not at all, and only once. Each word is stored in the payload buffer and
+// loaded from it onto the bus, where it rotates through the CRC and is checked by its target (`bus_check`). If the
+// CRC matches, no target objects, no state forbids the frame (`bus_busy`) and its sequence number is new, the buffer
+// is replayed to the bus (`bus_write`), one word every 4 clocks. `bus_commit` is high from 35 clocks before the
+// verdict until one clock after the last word; meanwhile the targets hold `bus_busy`. A frame may begin meanwhile;
+// it is ignored if its header is complete before the replay ends, as happens if the master omits trailing words.
 //
-// Rooms: passo_link_steps leads through the frame and times each word, passo_header decodes the header, passo_link_bus
+// Blocks: passo_link_states sequences the frame and times each word, passo_header decodes the header, passo_link_bus
 // makes the bus accesses, passo_verdict judges the frame.
-// Latency: payload word to bus_check 40 clocks, crc word to ack 77 clocks, to the first word of a read 91
-// clocks. Address and data stand on the bus at least a clock before their strobe (of a check: two clocks),
-// data a clock after it, the address of a read 16 clocks before. A target answers one clock after a strobe with
-// claim (the address is mine) and refusal, and two clocks after bus_read with data; at all other times the status
-// stands in the place of data.
+// Latency: payload word to bus_check 40 clocks, crc word to ack 77 clocks, to the first word of a read 91 clocks.
+// Address and data are stable on the bus from one clock before their strobe (of a check: two clocks), data to one
+// clock after it, the address of a read from 16 clocks before. A target answers one clock after a strobe with claim
+// (address match) and refusal, and two clocks after bus_read with data; at all other times the read lines carry the
+// status word.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -27,16 +27,16 @@
 module passo_link (
   input wire clk,
   input wire rst,
-  // words from and to the SPI
+  // host interface
   input wire frame_start,
   input wire frame_end,
   input wire half_valid,
   input wire half_low,
   input wire [15:0] half,
   output wire [31:0] reply_word,
-  output wire [7:0] last_sequence,  // of the last write or push that was executed
+  output wire [7:0] last_sequence,  // of the last executed write or push
   // bus
-  output wire bus_frame,  // a pass over a frame's payload begins: to check or, in a commit, to write it
+  output wire bus_frame,  // strobe: a pass over the payload begins, to check or, in a commit, to write it
   output wire bus_commit,  // the frame is being judged or executed
   output wire bus_check,  // strobes
   output wire bus_write,
@@ -44,14 +44,14 @@ module passo_link (
   output wire bus_push,  // the frame is a push
   output wire [11:0] bus_address,
   output wire [31:0] bus_data,
-  output wire [4:0] bus_msb,  // of the data that are checked: highest bit that is set,
-  output wire bus_one_hot,  // and it is the only one
+  output wire [4:0] bus_msb,  // of checked data: index of the highest set bit
+  output wire bus_one_hot,  // no other bit is set
   input wire bus_claim,
   input wire [3:0] bus_refusal,
   input wire [31:0] bus_read_data,
-  input wire bus_counters,  // the address is that of counters of refusals, which are kept here
+  input wire bus_counters,  // the address is that of refusal counters, which are kept here
   input wire bus_incomplete,  // the payload so far is not whole lines or ramps
-  input wire bus_busy  // the state of a target does not allow the frame
+  input wire bus_busy  // the state of a target forbids the frame
 );
 
   `include "passo_registers.vh"
@@ -67,7 +67,7 @@ module passo_link (
   wire in_count;
   wire frame_breaks;
 
-  wire [6:0] count;  // clocks of the word
+  wire [6:0] count;  // clock of the word
   wire       rotate;
   wire       rests;
   wire       begin_load;
@@ -167,11 +167,11 @@ module passo_link (
     .verdict       (header_verdict)
   );
 
-  // Behind the payload, the buffer has a place for the header, one for whatever is not kept, and two for the
-  // counters of refusals; these read as 0 until one of the word has counted.
+  // Behind the payload the buffer holds the header, one scratch word (also the CRC), and two words of refusal
+  // counters, each of which reads as 0 until one of its counters has counted.
   reg        put;
   wire       uses_counters = in_read | in_count;
-  reg        verdict_high;  // verdict is READ_ONLY or one after it
+  reg        verdict_high;  // verdict >= READ_ONLY
   reg  [1:0] counted;
   reg        counters_high;
   wire [1:0] counter = verdict[1:0] - VERDICT_BAD_CRC[1:0];
@@ -201,10 +201,10 @@ module passo_link (
     .counter_bit(counter_bit)
   );
 
-  reg answered;  // in the clock of COUNT_LOADED of a read
-  reg replies;  // the reply turns along
+  reg answered;  // high in COUNT_LOADED of a read
+  reg replies;  // the reply rotates, too
 
-  // CRC of the request; that of a read's header goes on as the CRC of the reply
+  // CRC of the request; that of a read's header continues as the CRC of the reply
   wire crc_top;
   wire reply_top;
 

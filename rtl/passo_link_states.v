@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Link steps: which part of a frame the link is at, one bit each, and the clock schedule of its word. Between frames,
-// or when the rest of the frame means nothing, no bit is set.
+// Link states: which part of a frame the link is at, one-hot, and the clock schedule of its word. Between frames, or
+// when the rest of the frame is ignored, no bit is set.
 //
 //   write, push   header  payload  crc  ack  replay          refused   ack  count
 //   read          header           crc  read  sum            refused   as above, or read  ack  count
 //
-// A committed frame ignores chip select; a frame that begins meanwhile `waits` for its turn.
+// A committed frame ignores chip select; a frame that begins meanwhile waits (`frame_waits`).
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -13,7 +13,7 @@
 module passo_link_states (
   input  wire       clk,
   input  wire       rst,
-  // words from the SPI
+  // host interface
   input  wire       frame_start,
   input  wire       frame_end,
   input  wire       word_valid,
@@ -25,17 +25,17 @@ module passo_link_states (
   input  wire       objection,
   input  wire       verdict_ok,
   input  wire       is_duplicate,
-  // steps
+  // states
   output reg        in_header,
   output reg        in_payload,
   output reg        in_crc,
   output reg        in_ack,
   output reg        in_replay,
-  output reg        in_read,          // fetch a word for the reply, wait until it has been taken
+  output reg        in_read,          // fetch a word for the reply, wait until it is taken
   output reg        in_sum,           // send the CRC of the reply
   output reg        in_count,         // count a refusal
-  output wire       frame_breaks,     // the frame is given up
-  // clocks of the word
+  output wire       frame_breaks,     // the frame is abandoned
+  // clock of the word
   output wire [6:0] count,
   output wire       rotate,
   output wire       rests,
@@ -54,7 +54,7 @@ module passo_link_states (
   wire reply_taken = in_read & word_valid;
   wire last_taken = reply_taken & all_words;  // the CRC of the reply follows
   wire goes_through = in_replay | in_count | (in_ack & act);
-  wire header_comes = (frame_waits || frame_start) && !frame_end && !word_valid;  // of the frame that waits
+  wire header_comes = (frame_waits || frame_start) && !frame_end && !word_valid;  // of the waiting frame
 
   assign frame_breaks = (frame_end | frame_start) & ~goes_through;
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Payload: the words of a frame in half words, so that they take one block RAM; and the word on the bus.
-// Behind them lie two words of 4 counters each, of refused frames.
+// Payload: the words of a frame, as half-words so that they take one block RAM, and the word on the bus. Behind them
+// are two words of 4 counters each, of refused frames.
 //
-// Promise: `store` writes a half word. `load` two clocks after `load_low` = 0, then 1 named the halves
-// of a word puts this word into `data`, or 0 with `load_zero`. 32 clocks of `rotate` show it at data[31] bit by
-// bit, leave it as it was, and decode it: `msb` is the index of its highest set bit
-// (0 if none is set), `one_hot` says that it is the only one.
+// Promise: `store` writes a half-word. `load`, two clocks after `load_low` = 0, then 1 selected the halves of a word,
+// puts this word into `data`, or 0 with `load_zero`. 32 clocks of `rotate` show it at data[31] bit by bit, leave it
+// unchanged, and decode it: `msb` is the index of its highest set bit (0 if none is set), `one_hot` says that no
+// other bit is set.
 //
-// Bits go by from the top, but a counter has to be counted from the bottom: in the memory each counter lies
-// the other way round. `count` adds 1 to counter `counter` as the word turns; `put` stores data[15:0], which is
-// the upper half after 16 clocks, the lower after 32, and wins over `store`. `counter_bit` is the bit that
-// goes by when a word of counters is to be shown the right way round.
+// Bits pass MSB first, but counting starts at the LSB: each counter is stored bit-reversed. `count` adds 1 to counter
+// `counter` as the word rotates; `put` stores data[15:0], which is the upper half after 16 clocks, the lower after
+// 32, and has priority over `store`. `counter_bit` is the bit to pass if a word of counters is shown in normal bit
+// order.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -31,7 +31,7 @@ module passo_payload (
   input  wire        load_low,
   input  wire        load_zero,
   input  wire        rotate,
-  input  wire [ 4:0] bit_index,   // 0 .. 31
+  input  wire [ 4:0] bit_index,   // rotations so far, 0 .. 31
   input  wire        count,
   input  wire [ 1:0] counter,
   output reg  [31:0] data,
@@ -55,14 +55,14 @@ module passo_payload (
     .read_data    (loaded)
   );
 
-  // Before the first word it means nothing, but it should be something.
+  // Meaningless before the first word, but defined.
   initial data = 32'd0;
 
   reg  some_bit;
   wire in_counter = count && bit_index[4:3] == ~counter;
   reg  carry;
 
-  // A clock ahead of the turn that it belongs to, when the bit stands a place lower
+  // One clock ahead of its rotation, while the bit is one place lower
   always @(posedge clk)
     if (!rotate) counter_bit <= data[24];
     else
