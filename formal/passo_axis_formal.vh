@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// What the axis promises, seen from its ports; included at the end of passo_axis.
+// Promises of the axis, at its ports; included at the end of passo_axis.v.
 
-// --- Assumptions: a reset at the beginning, and any time. Polarities and mode change a clock after `pins_written`, which
-// comes only while `quiet`, with no step asked for and no change of direction around it. With WRITTEN the timings
-// change at any time, a clock after `timing_written`; else they stand still.
+// --- Assumptions: a reset at the beginning and at any time. Polarities and mode change one clock after
+// `pins_written`, which comes only while `quiet`, with no step request and no change of direction around it. With
+// WRITTEN the timings change at any time, one clock after `timing_written`; else they are constant.
 reg f_started = 1'b0;
 reg [2:0] f_pins = 3'b000;  // pins_written one, two and three clocks ago
 reg [2:0] f_reset = 3'b000;
-reg [2:0] f_restarted = 3'b000;  // the running time began anew, likewise: a timing was written, polarities and mode changed, or reset
+reg [2:0] f_restarted = 3'b000;  // likewise: timing written, pins changed, or reset
 reg f_timing_written = 1'b0;
 reg f_mode;  // as written
 wire f_disturbed = timing_written | pins_written | (f_restarted[1:0] != 2'b00) | (f_pins[1:0] != 2'b00);
@@ -51,8 +51,8 @@ wire [17:0] f_low = {2'd0, step_low};
 wire [17:0] f_setup = {2'd0, dir_setup};
 wire [17:0] f_hold = {2'd0, dir_hold};
 
-// --- The pins, and what they mean: with the polarities of a clock ago, which made them. A change of polarity or mode counts as
-// a change of both pins.
+// --- The pins, interpreted with the polarities of the clock before, which produced them. A change of polarity or
+// mode counts as a change of both pins.
 reg f_step_pin_q;
 reg f_dir_pin_q;
 reg f_step_inverted = 1'b0;
@@ -64,7 +64,7 @@ wire f_step = step_pin ^ f_step_inverted;
 wire f_dir = dir_pin ^ f_direction_inverted;
 wire f_pin_edge = f_started && step_pin != f_step_pin_q;
 wire f_pin_dir_change = f_started && dir_pin != f_dir_pin_q;
-wire f_changed = f_pins[1];  // polarities and mode, at the pins
+wire f_changed = f_pins[1];  // polarities and mode have, at the pins
 wire f_edge = f_pin_edge | f_changed | (f_started & f_reset[0] & (f_step != f_step_q));
 wire f_dir_change = f_pin_dir_change | f_changed | (f_started & f_reset[0] & (f_dir != f_dir_q));
 wire f_active = f_pin_edge & ~f_changed & (f_both | f_step);  // makes a step
@@ -83,12 +83,12 @@ always @(posedge clk)
     reset_moves_no_pin : assert (!f_pin_edge && !f_pin_dir_change);
 
 `ifndef WRITTEN
-// --- How long the levels have lasted, this clock included; before the first change: for ever
+// --- How long the levels have lasted, this clock included; before the first change: F_EVER
 localparam [17:0] F_EVER = 18'h3FFFF;
 reg [17:0] f_step_lasted_q = F_EVER;
 reg [17:0] f_dir_lasted_q = F_EVER;
 reg f_was_reset_q = 1'b1;
-wire f_was_reset = f_was_reset_q & ~f_active;  // in this pulse
+wire f_was_reset = f_was_reset_q & ~f_active;  // there was a reset in this pulse
 reg [17:0] f_since_reset = 18'd0;
 wire [17:0] f_step_lasted = f_edge ? 18'd1 : f_step_lasted_q == F_EVER ? F_EVER : f_step_lasted_q + 18'd1;
 wire [17:0] f_dir_lasted = f_dir_change ? 18'd1 : f_dir_lasted_q == F_EVER ? F_EVER : f_dir_lasted_q + 18'd1;
@@ -98,7 +98,7 @@ always @(posedge clk) begin
   f_was_reset_q   <= rst | f_was_reset;
   f_since_reset   <= rst ? 18'd0 : f_since_reset == F_EVER ? F_EVER : f_since_reset + 18'd1;
 end
-wire [17:0] f_level_q = f_step_q ? f_high : f_low;  // how long the level before this clock had to last
+wire [17:0] f_level_q = f_step_q ? f_high : f_low;  // minimum of the level before this clock
 
 always @(posedge clk)
   if (f_started) begin
@@ -112,9 +112,9 @@ always @(posedge clk)
     if (f_pin_dir_change) hold_kept : assert ((!f_edge || f_changed) && f_step_lasted_q >= f_level_q + f_hold);
   end
 `else
-// --- The times as they run on the pins, and which of them are over after this clock. One that runs begins anew three
-// clocks after a write (the pins are two clocks late), with the new timing; the timings of the clock before count, as
-// the next change of the pins was decided then. After a change of polarity or mode they begin two clocks later.
+// --- The timings as they run at the pins, and which are over after this clock. A running one restarts three clocks
+// after a write (the pins are two clocks late), with the new value; the values of the clock before count, as the next
+// pin change was decided then. After a change of polarity or mode they start two clocks later.
 reg [17:0] f_high_q;
 reg [17:0] f_low_q;
 reg [17:0] f_setup_q;
@@ -141,7 +141,7 @@ always @(posedge clk) begin
   f_low_q        <= f_low;
   f_setup_q      <= f_setup;
   f_hold_q       <= f_hold;
-  // what has run once is over; the counters need not go on
+  // a timing that is over stays over: its counter may stop
   f_level_run_q  <= f_level_over ? 18'd0 : f_level_run;
   f_hold_run_q   <= f_hold_over ? 18'd0 : f_hold_run;
   f_setup_run_q  <= f_setup_over ? 18'd0 : f_setup_run;
@@ -158,7 +158,7 @@ always @(posedge clk) begin
 end
 `endif
 
-// --- The queue: four directions, seen two clocks late, as the pins show it
+// --- The queue: four directions, two clocks late, as seen at the pins
 reg [3:0] f_waiting;
 reg [2:0] f_waiting_count = 3'd0;
 reg [1:0] f_request = 2'b00;  // of one and of two clocks ago
@@ -188,7 +188,7 @@ always @(posedge clk) begin
   end
 end
 
-// a step that waits leaves within the time of a pulse and a turn (of two turns, when one has just begun)
+// a waiting step leaves within the time of a pulse and a direction change (two, if one has just begun)
 reg [19:0] f_waited = 20'd0;
 wire [19:0] f_patience = {2'd0, f_high} + {2'd0, f_low} + {2'd0, f_hold} + {1'b0, f_setup, 1'b0} + 20'd4;
 always @(posedge clk) begin
@@ -196,7 +196,7 @@ always @(posedge clk) begin
   if (f_started) step_not_lost : assert (f_waited <= f_patience);
 end
 
-// --- What is counted as made is what leaves the pin one clock later
+// --- `step_made` is what leaves the pin one clock later
 always @(posedge clk)
   if (f_started && !f_reset[0]) begin
     made_is_what_leaves : assert ($past(step_made) == f_active);
@@ -210,7 +210,7 @@ always @(posedge clk) begin
   if (f_started) lost_steps_counted : assert (lost == f_lost);
 end
 
-// --- While nothing waits, DIR goes where the line goes, and then it is quiet
+// --- While nothing waits, DIR follows the line, and then `quiet` rises
 reg [19:0] f_still = 20'd0;
 always @(posedge clk) begin
   f_still <= f_started && !rst && !f_disturbed && f_waiting_count == 3'd0 && f_request == 2'b00 && !step_request && !f_active
@@ -220,7 +220,7 @@ always @(posedge clk) begin
   if (f_still > f_patience) quiet_comes : assert (quiet);
 end
 
-// --- Quiet: nothing waits or is shaped, the pins stand, and so they will
+// --- Quiet: nothing waits or is in progress, the pins are stable and stay so
 reg f_quiet_q = 1'b0;
 always @(posedge clk) begin
   f_quiet_q <= quiet & ~rst;
@@ -231,7 +231,7 @@ always @(posedge clk) begin
     quiet_until_asked : assert (quiet);
 end
 
-// --- EN is what the register says
+// --- EN follows its register
 reg f_enable_q;
 always @(posedge clk) begin
   f_enable_q <= enable ^ enable_inverted;
@@ -239,7 +239,7 @@ always @(posedge clk) begin
 end
 
 `ifdef INVARIANTS
-// --- What holds inside, for the induction
+// --- Invariants, for the induction
 wire [15:0] f_elapsed = timer - 16'd1;  // clocks of the state, this one included
 wire [17:0] f_timer = {2'd0, f_elapsed};
 wire [17:0] f_level = step ? f_high : f_low;
@@ -284,7 +284,7 @@ always @(posedge clk)
       assert (f_restarted[0] ? f_elapsed == 16'd0 : f_timer >= 18'd1 && f_timer <= f_time);
       assert ((f_is_pulse ? level_done : dir_done) == (f_timer == f_time));
     end
-    // the time that would begin next
+    // the timing that would begin next
     if (!f_is_pulse && !settle) assert (level_done == ((step ? low_is_minimal : high_is_minimal) & ~f_restarted[0]));
     if (f_is_ready) assert (dir_done == (setup_is_minimal & ~f_restarted[0]));
     assert (waits_up == (waits[0] & ~waiting[0]) && waits_down == (waits[0] & waiting[0]));

@@ -1,27 +1,27 @@
 // SPDX-License-Identifier: MIT
-// What the CRC unit promises; included at the end of passo_crc.
+// Promises of the CRC unit; included at the end of passo_crc.v.
 
 localparam [31:0] F_POLYNOMIAL = 32'h04C11DB7;
 
-// --- The standard: the CRC of a word is (CRC xor word), shifted 32 times with zeros behind it
+// --- The standard: the CRC of a word is (CRC xor word), shifted 32 times with zeros following
 reg        f_known = 1'b0;  // there has been a restart
 reg [31:0] f_standard;
-reg [31:0] f_word;  // bits that are still to come, from the top
+reg [31:0] f_word;  // bits still to come, MSB first
 reg [ 5:0] f_left = 6'd0;  // their number; 0: between words
 reg        f_is_own;  // the word equals the CRC before it
 (* anyseq *) reg [31:0] f_any_word;
 wire [31:0] f_word_now = f_left == 6'd0 ? f_any_word : f_word;
 wire [31:0] f_standard_now = f_left == 6'd0 ? f_standard ^ f_any_word : f_standard;
 
-// --- Turning: the CRC before, and how often it was turned
+// --- Rotation: the CRC before, and the rotations so far
 reg [31:0] f_before;
 reg [ 4:0] f_rotations = 5'd0;
 
 always @(posedge clk) begin
-  // the bits that come are called a word
+  // the incoming bits form a word
   if (shift && !rotate) crc_any_word : assume (data == f_word_now[31]);
 `ifdef SMALL
-  // enough to find a bug: no clock is wasted, and only the uppermost bits of a word differ
+  // enough to find a bug: no clock is wasted, and only the top bits of a word vary
   small_crc : assume (shift && restart == !f_known && f_any_word[27:0] == 28'hFFFFFFF);
 `endif
 
@@ -38,7 +38,7 @@ always @(posedge clk) begin
       rotation_shows_the_crc :
       assert (top == (f_rotations == 5'd0 ? crc[31] : f_before[5'd31 - f_rotations]));
   end
-  // words and turns that mix make nothing, until the next restart
+  // a mix of words and rotations means nothing, until the next restart
   if (shift && (rotate ? f_left != 6'd0 : f_rotations != 5'd0)) f_known <= 1'b0;
   if (restart) begin
     f_known    <= 1'b1;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What the DDA promises; included at the end of passo_dda. The assumptions are what passo_line_formal.vh
-// proves of the line counter, and passo_line_queue_formal.vh of the step counts.
+// Promises of the DDA; included at the end of passo_dda.v. Its assumptions are proved of the line counter in
+// passo_line_formal.vh, of the step counts in passo_line_queue_formal.vh.
 
-// --- A line as the line counter leads it: M substeps of A and B, the next line is loaded with the last one
-// (an ENDLESS one: itself). A stop ends the slots at once, and giving back an ENDLESS line ends it anywhere.
+// --- A line as driven by the line counter: M substeps of A and B; the next line (an ENDLESS one: itself) is loaded
+// with the last one. A stop ends A and B at once; the release of an ENDLESS line ends it anywhere.
 (* anyseq *) reg [29:0] f_m_next;
 (* anyseq *) reg f_stop;
 reg         f_stopped = 1'b0;
@@ -31,7 +31,7 @@ always @(posedge clk) begin
 `ifdef NARROW
   dda_narrow : assume (f_m_next < 30'd`NARROW);
 `endif
-  // N is there in B
+  // N is valid in B
   if (f_line) dda_n_at_most_m : assume (steps <= f_m);
   if (f_line && !f_load_q && f_begun) dda_n_stands : assume ($stable(steps));
 
@@ -46,7 +46,7 @@ always @(posedge clk) begin
 end
 
 // --- The promise: e as it should be, and e - start = N * substeps made - M * steps made
-// f_balance = N * substeps - M * steps, summed as they come; with 0 <= e, start < M it is less than M, so after
+// f_balance = N * substeps - M * steps, accumulated; with 0 <= e, start < M it is less than M, so after
 // M substeps M * (N - steps) lies between -M and M: steps = N. NARROW counts them.
 reg  [29:0] f_e;  // 0 .. M - 1
 reg  [29:0] f_m_q;  // M and N of the substep in B

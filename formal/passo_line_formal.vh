@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What the line counter promises; included at the end of passo_line. passo_dda_formal.vh assumes what is
-// asserted here of the slots and of `line_addend`.
+// Promises of the line counter; included at the end of passo_line.v. passo_dda_formal.vh assumes what is asserted
+// here of A, B and `line_addend`.
 
-// --- Assumptions: how motion, path and line queue behave. What the queue says of the current line is chosen freely
-// when the line is taken; flags and M are there a clock later, until the next line is taken, directions two clocks
-// later, while the line is current. The motion gives an ENDLESS line back when it is over; then substeps rest until
-// the next start.
+// --- Assumptions: motion, path and line queue. The contents of a line are chosen freely when it is taken; flags and
+// M are valid from one clock later until the next line is taken, directions from two clocks later while the line is
+// current. The motion releases an ENDLESS line when it is over; then no substep comes until the next start.
 (* anyseq *) reg f_next_last;
 (* anyseq *) reg f_next_endless;
 (* anyseq *) reg [29:0] f_next_last_substep;
@@ -36,7 +35,7 @@ always @(posedge clk) begin
 `endif
 end
 
-// --- The current line: what it is, and its substeps so far
+// --- The current line: its contents, and its substeps so far
 reg            f_active = 1'b0;
 reg            f_ended = 1'b0;
 reg [    29:0] f_number;  // of the next substep
@@ -48,7 +47,7 @@ reg [AXES-1:0] f_directions_a;  // of the substep in A
 reg [AXES-1:0] f_directions_b;  // of the substep in B
 wire           f_counts = substep & f_active;
 wire           f_done = f_counts && f_number == f_last_substep;
-wire           f_repeats = f_done & f_endless & ~f_last;  // it begins anew
+wire           f_repeats = f_done & f_endless & ~f_last;  // it repeats
 wire           f_needs_next = f_done & ~f_endless & ~f_last;
 wire           f_take = start | (f_needs_next & next_valid);
 always @(posedge clk) begin

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What the link promises; included at the end of passo_link.
+// Promises of the link; included at the end of passo_link.v.
 
-(* anyconst *) reg [5:0] f_watch;  // one word of the payload, any one
+(* anyconst *) reg [5:0] f_watch;  // any one word of the payload
 
 `include "passo_link_schedule.vh"
 
-// --- What goes on in the rooms
+// --- Signals of the blocks
 (* keep *) wire [7:0] f_kept_length;
 (* keep *) wire [7:0] f_index;
 (* keep *) wire f_frame_waits;
@@ -20,11 +20,12 @@
 (* keep *) wire f_in_header_fits;
 (* keep *) wire f_in_header_repeats;
 
-// --- Assumptions: what passo_spi makes of the pins. Half words are at least 60 clocks apart, and as far from the
-// beginning of their frame. `frame_start` and `frame_end` take turns; after a reset either may be the first. The last half word of a frame may come with frame_end or a clock later, but before the next frame,
-// as chip select is high for two clocks. After a reset the halves of a word may come that has begun before.
+// --- Assumptions: passo_spi. Half-words are at least 60 clocks apart, and as far from the start of their frame.
+// `frame_start` and `frame_end` alternate; after a reset either may come first. The last half-word of a frame may
+// come with frame_end or one clock later, but before the next frame, as chip select is high for two clocks. After a
+// reset the halves of a word begun before it may still come.
 `ifdef SMALL
-localparam [6:0] F_GAP = 7'd9;  // the search turns a word in one clock, or looks only at the first one
+localparam [6:0] F_GAP = 7'd9;  // the search rotates a word in one clock, or looks only at the first one
 localparam [6:0] F_GAP_LOW = 7'd1;
 localparam [5:0] F_COMMIT = 6'd3;
 `else
@@ -39,7 +40,7 @@ reg       f_selected;
 reg       f_ended = 1'b0;  // a frame, in the clock before
 reg       f_framed = 1'b0;  // a frame has begun since reset
 reg       f_upper = 1'b0;  // the upper half of a word has come
-reg [6:0] f_gap = F_GAP;  // clocks since the last half word or the start of the frame, up to 60
+reg [6:0] f_gap = F_GAP;  // clocks since the last half-word or the start of the frame, up to 60
 always @(posedge clk) begin
   f_started <= 1'b1;
   if (!f_started) link_reset : assume (rst);
@@ -59,7 +60,7 @@ always @(posedge clk) begin
   if (half_valid && !half_low) small_link_upper : assume ((half & 16'hCFEF) == 16'd0);
   if (half_valid && half_low) small_link_lower : assume ((half & 16'hCFFC) == 16'd0 && half[13:12] != 2'd3);
   small_link_reset : assume (f_watch == 6'd0 && rst == !f_started);
-  // the first frame begins at once, and half words come as soon as they may
+  // the first frame begins at once, and half-words come as soon as they may
   if (f_started && !f_framed) small_link_start : assume (frame_start);
   small_link_halves :
   assume (half_valid == (f_framed && f_selected && !frame_end && !in_ack && f_gap >= (f_upper ? F_GAP_LOW : F_GAP)));
@@ -68,7 +69,7 @@ always @(posedge clk) begin
   f_gap <= frame_start || half_valid ? 7'd0 : f_gap >= F_GAP ? F_GAP : f_gap + 7'd1;
 end
 
-// --- The frame that is being received: its words, and what was said of them
+// --- The frame being received: its words, and the answers to them
 (* keep *) wire [5:0] f_place = f_watch;
 (* keep *) wire [31:0] f_memory_header;
 (* keep *) wire [31:0] f_memory_word;
@@ -81,7 +82,7 @@ reg         f_objection = 1'b0;
 reg         f_asked = 1'b0;  // a check strobe was in the clock before
 reg         f_incomplete;  // when the frame was judged
 reg         f_busy_then;
-reg  [ 7:0] f_last;  // sequence number of the last frame that was executed
+reg  [ 7:0] f_last;  // sequence number of the last frame executed
 reg         f_any = 1'b0;  // there is one
 wire [ 7:0] f_length = f_header[19:12];
 wire        f_is_push = f_header[31:28] == OPERATION_PUSH;
@@ -122,11 +123,11 @@ reg [31:0] f_run_word;
 wire       f_starts = f_begun && in_ack && act && verdict_ok;
 reg [ 5:0] f_commit_age = 6'd0;  // clocks of bus_commit before this one, up to 63
 reg        f_commits = 1'b0;  // since a frame was judged
-reg        f_frame_told = 1'b0;  // bus_frame has come for the frame that is received
+reg        f_frame_told = 1'b0;  // bus_frame has come for the frame being received
 reg [ 2:0] f_since_strobe = 3'd7;  // clocks, up to 7
 always @(posedge clk) begin
   if (f_starts) begin
-    only_good_frames : assert (f_good && verdict == VERDICT_OK);  // which the acknowledgement tells
+    only_good_frames : assert (f_good && verdict == VERDICT_OK);  // as acknowledged
     only_if_not_busy : assert (!f_busy_then);
     f_runs       <= 1'b1;
     f_run_length <= f_length;
@@ -159,7 +160,7 @@ always @(posedge clk) begin
   if (f_begun && $past(f_begun && (bus_check || bus_write))) stands_after_strobe : assert (bus_data == $past(bus_data));
 end
 
-// --- The commit, and the beginnings of both passes
+// --- The commit, and the start of both passes
 always @(posedge clk) begin
   f_commit_age   <= !bus_commit || rst ? 6'd0 : f_commit_age == 6'd63 ? 6'd63 : f_commit_age + 6'd1;
   f_commits      <= (f_judged | f_commits) & bus_commit & ~rst;
@@ -180,7 +181,7 @@ always @(posedge clk) begin
 end
 
 `ifdef ROTATE
-// --- What the payload buffer needs of the words that turn
+// --- What the payload buffer requires of rotating words
 reg       f_rotate_q = 1'b0;
 reg       f_load_q = 1'b0;
 reg [4:0] f_bit_index_q;
@@ -205,7 +206,7 @@ end
 `ifdef INVARIANTS
 wire [7:0] f_states = {in_header, in_payload, in_crc, in_ack, in_replay, in_read, in_sum, in_count};
 wire f_idle = f_states == 8'd0;
-wire f_busy = !f_begin_rest && (begin_load || (count >= COUNT_LOAD && count <= COUNT_ACT));  // a word is being handled
+wire f_busy = !f_begin_rest && (begin_load || (count >= COUNT_LOAD && count <= COUNT_ACT));  // a word is in progress
 wire f_loaded = !f_begin_rest && !begin_load && count >= COUNT_LOADED;
 wire f_rotates = !f_begin_rest && !begin_load && count >= COUNT_ROTATE && count <= COUNT_ACT;
 wire f_receives = in_header || in_payload || in_crc;
@@ -236,7 +237,7 @@ always @(posedge clk)
     assert (!f_frame_waits || in_replay || in_count || in_header);
     assert (!f_frame_waits || f_selected && f_words == 9'd0 && f_checks == 9'd0 && !f_objection);
     assert (f_in_answer_due == f_asked);
-    // the clocks of each step
+    // the clocks of each state
     assert (count <= COUNT_REST);
     if (act) assert (count == COUNT_ACT && !f_idle);
     if (!f_idle && !f_begin_rest) assert (act == (count == COUNT_ACT));
@@ -257,7 +258,7 @@ always @(posedge clk)
     // no word ends while one is fetched for the reply
     if (in_read && (f_begin_read || count <= COUNT_ACT)) assert (!f_upper || (!f_begin_read && f_gap < count - COUNT_READ));
     if (in_read || in_sum || in_ack) assert (f_selected);
-    // what is told of the word and of the answer
+    // the verdict so far
     if (!f_idle && !in_header && !in_sum) assert (verdict_ok == (verdict == VERDICT_OK));
     // receiving
     if (f_receives) begin

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// CRC and reply as the proof of the link sees them: their outputs are anything.
+// CRC and reply as modelled in the proof of the link: their outputs are anything.
 `resetall
 `default_nettype none
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The memory as a proof sees it, in the place of passo_memory: only one address, `f_address`, keeps its word
-// (`f_word`); every other one, and a word that is being written, reads as anything. Whoever proves something
-// with it chooses the address freely: the script connects `f_address` and `f_word`, by their names.
+// Model of passo_memory for proofs: only one address, `f_address`, keeps its word (`f_word`); every other one, and a
+// word being written, reads as anything. A proof leaves the address free: its script connects `f_address` and
+// `f_word` by name.
 `resetall
 `default_nettype none
 

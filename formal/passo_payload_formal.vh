@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// What the payload buffer promises; included at the end of passo_payload.
+// Promises of the payload buffer; included at the end of passo_payload.v.
 
-// --- Assumptions: the link. A word turns for 32 clocks or is given up; nothing is loaded or turns in the clock before.
-// There `bit_index` is 31 and `count` as it will be, if it counts.
+// --- Assumptions: the link. A word rotates for 32 clocks or is abandoned; in the clock before, nothing is loaded or
+// rotates and, if the word counts, `bit_index` is 31 and `count` already set.
 reg       f_begun = 1'b0;
 reg       f_rotate_q = 1'b0;
 reg       f_load_q = 1'b0;
-reg       f_fresh = 1'b0;  // loaded, and not yet turned
-reg       f_told = 1'b0;  // the word that turns, or has turned, was fresh
-reg       f_whole = 1'b0;  // 32 turns are over; nothing has been loaded since
+reg       f_fresh = 1'b0;  // loaded, and not yet rotated
+reg       f_told = 1'b0;  // the word that rotates, or last rotated, was fresh
+reg       f_whole = 1'b0;  // 32 rotations are over; nothing has been loaded since
 reg [4:0] f_bit_index_q;
 reg       f_count;
 reg [1:0] f_counter;
@@ -30,7 +30,7 @@ always @(posedge clk) begin
   if (f_first) f_told <= f_fresh;
 end
 
-// --- The word before its first turn, and as it should be after the last
+// --- The word before its first rotation, and as it should be after the last
 function [7:0] f_mirrored(input [7:0] byte_in);
   f_mirrored = {byte_in[0], byte_in[1], byte_in[2], byte_in[3], byte_in[4], byte_in[5], byte_in[6], byte_in[7]};
 endfunction
@@ -62,16 +62,16 @@ always @(posedge clk) begin
   end
 end
 
-// the word that turned last
+// the word that rotated last
 reg  [31:0] f_before_w;
 always @(posedge clk) if (rotate) f_before_w <= f_before;
 
-// --- One half word in the memory, any one
+// --- Any one half-word in the memory
 (* anyconst *) reg [7:0] f_address;
 (* keep *) wire [15:0] f_memory_word;
 reg  [15:0] f_kept;  // as it was last stored
 reg         f_stored = 1'b0;
-reg         f_named = 1'b0;  // it was named in the clock before
+reg         f_named = 1'b0;  // it was selected in the clock before
 reg  [15:0] f_named_word;
 reg         f_shown = 1'b0;  // two clocks before
 reg  [15:0] f_shown_word;
@@ -95,7 +95,7 @@ always @(posedge clk) begin
 end
 
 `ifdef INVARIANTS
-wire [31:0] f_passed = ~(32'hFFFFFFFF >> bit_index);  // bits that have turned
+wire [31:0] f_passed = ~(32'hFFFFFFFF >> bit_index);  // bits rotated so far
 wire [31:0] f_mixed = (f_after & f_passed) | (f_before & ~f_passed);
 wire [63:0] f_rotated = {f_mixed, f_mixed} << bit_index;
 wire [31:0] f_seen = f_before & f_passed;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The payload buffer as the proof of the link sees it, in the place of passo_payload: it keeps the header and
-// one word of the payload, any one (`f_place`); every other word, and a word that turns, is anything.
+// Model of passo_payload for the proof of the link: it keeps the header and any one word of the payload (`f_place`);
+// every other word, and a rotating word, is anything.
 `resetall
 `default_nettype none
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the registers of a channel and of its axes promise of settings and commands, seen from their ports.
+// Promises of the registers of a channel and of its axes about settings and commands, at their ports.
 `resetall
 `default_nettype none
 
@@ -143,7 +143,7 @@ module passo_settings_proof (
   reg         f_started = 1'b0;
   reg  [ 1:0] f_reset = 2'b11;  // one and two clocks ago
   reg         f_strobe = 1'b0;  // in the clock before
-  reg         f_two = 1'b0;  // two clocks have been
+  reg         f_two = 1'b0;  // two clocks have passed
   reg  [ 9:0] f_bus_q;
   reg  [ 9:0] f_bus_qq;
   reg  [31:0] f_data_q;
