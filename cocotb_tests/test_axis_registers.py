@@ -20,7 +20,7 @@ WRITABLE = {
 }
 INPUTS = (
     "bus_check", "bus_write", "bus_read", "bus_push", "select_axis", "select_position", "bus_address",
-    "bus_data", "bus_top_bit", "lost",
+    "bus_data", "bus_msb", "lost",
 )  # fmt: skip
 
 
@@ -37,7 +37,7 @@ async def strobe(
         getattr(dut, other).value = 1 << axis if other == block else 0
     dut.bus_address.value = address
     dut.bus_data.value = data
-    dut.bus_top_bit.value = max(0, data.bit_length() - 1)
+    dut.bus_msb.value = max(0, data.bit_length() - 1)
     await clocks.wait(1)
     getattr(dut, name).value = 1
     await clocks.wait(1)
@@ -134,5 +134,5 @@ async def every_write_reaches_its_axis(dut: HierarchyObject) -> None:
             for register, name in WRITABLE.items():
                 meant = level and block == "select_axis" and address == register
                 assert read(getattr(dut, name)) == (1 << axis if meant else 0), place
-        assert (read(dut.short_upper), read(dut.short_lower)) == tuple(half < 2 for half in halves)
+        assert (read(dut.upper_is_minimal), read(dut.lower_is_minimal)) == tuple(half < 2 for half in halves)
         dut.bus_write.value = 0

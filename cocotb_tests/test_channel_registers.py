@@ -40,8 +40,8 @@ class Registers(Bench):
     """The module under test."""
 
     INPUTS = (
-        "bus_check", "bus_write", "bus_read", "bus_push", "select", "bus_address", "bus_data", "bus_top_bit",
-        "bus_lone_bit", *STATES,
+        "bus_check", "bus_write", "bus_read", "bus_push", "select", "bus_address", "bus_data", "bus_msb",
+        "bus_one_hot", *STATES,
     )  # fmt: skip
 
     async def access(self, name: str, address: int, data: int = 0, push: bool = False) -> None:
@@ -50,8 +50,8 @@ class Registers(Bench):
         dut.select.value = 1
         dut.bus_address.value = address
         dut.bus_data.value = data
-        dut.bus_top_bit.value = max(data.bit_length() - 1, 0)
-        dut.bus_lone_bit.value = data.bit_count() <= 1
+        dut.bus_msb.value = max(data.bit_length() - 1, 0)
+        dut.bus_one_hot.value = data.bit_count() <= 1
         dut.bus_push.value = push
         await self.clocks.wait(2)
         await self.strobe(name)

@@ -125,8 +125,8 @@ class Target:
                 self.dut.bus_read_data.value = self.values.get(address, 0)
             else:
                 self.checks.append(access)
-                assert read(self.dut.bus_top_bit) == max(access.data.bit_length() - 1, 0)
-                assert read(self.dut.bus_lone_bit) == (access.data.bit_count() <= 1)
+                assert read(self.dut.bus_msb) == max(access.data.bit_length() - 1, 0)
+                assert read(self.dut.bus_one_hot) == (access.data.bit_count() <= 1)
             await fall
             self.dut.bus_claim.value = 0
             self.dut.bus_refusal.value = 0

@@ -35,7 +35,7 @@ class Registers(Bench):
     """The module under test."""
 
     INPUTS = (
-        "bus_check", "bus_write", "bus_read", "bus_push", "bus_address", "bus_data", "bus_top_bit",
+        "bus_check", "bus_write", "bus_read", "bus_push", "bus_address", "bus_data", "bus_msb",
         "last_sequence", "any_stopped", "any_occupied", "line_room", "ramp_room",
     )  # fmt: skip
 
@@ -48,7 +48,7 @@ class Registers(Bench):
         dut = self.dut
         dut.bus_address.value = address
         dut.bus_data.value = data & DATA
-        dut.bus_top_bit.value = max(0, data.bit_length() - 1)
+        dut.bus_msb.value = max(0, data.bit_length() - 1)
         dut.bus_push.value = push
         await self.clocks.wait(2)
         await self.strobe(name)

@@ -118,7 +118,7 @@ async def the_tables_bus_refuses_what_it_must(dut: HierarchyObject) -> None:
                 dut.select.value = selected
                 dut.bus_address.value = address
                 dut.bus_data.value = data & 0xFFFF
-                dut.bus_top_bit.value = max(0, data.bit_length() - 1)
+                dut.bus_msb.value = max(0, data.bit_length() - 1)
 
                 dut.bus_push.value = push
                 getattr(dut, strobe).value = 1

@@ -22,4 +22,4 @@ always @(posedge clk) begin
   f_loaded <= f_named;
   if (load) f_held <= load_zero ? 32'd0 : {f_held[15:0], f_loaded};
 end
-always @* if (!turn) payload_as_stored : assume (data == f_held);
+always @* if (!rotate) payload_as_stored : assume (data == f_held);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What the ramp promises; included at the end of passo_ramp.
+// Promises of the ramp; included at the end of passo_ramp.v.
 
 // --- Assumptions: motion and timescale
 localparam [1:0] F_REST = 2'd0;
-localparam [1:0] F_PREPARED = 2'd1;  // the first velocity is made, or waits
+localparam [1:0] F_PREPARED = 2'd1;  // the first velocity is being computed, or ready
 localparam [1:0] F_RUNS = 2'd2;
 `ifdef SMALL
 reg       f_started = 1'b1;
@@ -35,11 +35,11 @@ always @(posedge clk) begin
   ramp_ticks : assume (tick == (advance & tick_ends));
 end
 
-// --- Assumption: the tables answer later than they are asked
+// --- Assumption: the tables answer after the request
 always @(posedge clk)
   if (table_served) ramp_served_later : assume (rst || $past(table_request && !rst));
 
-// --- Assumptions: the ramp queue, as it promises to be. Of all ramps only the oldest one can be seen.
+// --- Assumptions: the ramp queue, as its proof promises. Only the oldest ramp is visible.
 reg         f_there;
 reg         f_valid;
 reg         f_now;  // a NOW ramp waits ...
@@ -93,9 +93,9 @@ always @(posedge clk)
     if (ramp_take_now) takes_now_when_told : assert (f_now);
   end
 
-// --- Ticks: velocities that were made from the oldest ramp
+// --- Ticks: velocities computed from the oldest ramp
 reg  [31:0] f_made;
-reg  [ 3:0] f_over_for;  // clocks since the last of them was made, from 1
+reg  [ 3:0] f_over_for;  // clocks since the last of them was ready, from 1
 wire        f_makes = ready & ~f_ready_q & ~ends_next;  // a velocity becomes ready
 wire [31:0] f_made_now = f_made + {31'd0, f_makes & f_loaded_q};
 wire        f_all_made = f_makes && f_loaded_q && f_made_now == f_ticks;
@@ -113,11 +113,11 @@ always @(posedge clk) begin
   end
 end
 
-// --- Velocities: where the ramps are, and what counts now
+// --- Velocities: where the ramps are, and the present one
 reg  [47:0] f_start;  // v_end of the ramp that left last
 reg  [47:0] f_present;
-wire        f_takes = begin_profile | tick;  // what is ready counts from the next clock on
-reg         f_without;  // the velocity that is ready was made without a ramp
+wire        f_takes = begin_profile | tick;  // what is ready takes effect in the next clock
+reg         f_without;  // the ready velocity was computed without a ramp
 reg  [ 5:0] f_bit;
 (* keep *) wire f_a_bit;
 (* keep *) wire f_b_bit;
@@ -144,8 +144,8 @@ end
 
 // --- The tick, its end, the end of the profile
 localparam [TICK_LOG2:0] F_TICK_LAST = (1 << TICK_LOG2) - 1;
-reg [TICK_LOG2:0] f_clocks;  // advanced clocks of the tick
-reg               f_due;  // a velocity was made that has not begun
+reg [TICK_LOG2:0] f_clocks;  // enabled clocks of the tick
+reg               f_due;  // a velocity is ready and has not taken effect
 reg               f_last;  // the LAST ramp has left
 reg         [6:0] f_busy;
 wire              f_running = f_motion == F_RUNS;
@@ -181,7 +181,7 @@ localparam [1:0] F_UNUSED = 2'd0;
 localparam [1:0] F_LOADED = 2'd1;
 localparam [1:0] F_SHAPE = 2'd2;
 localparam [1:0] F_SCALE = 2'd3;
-reg  [ 1:0] f_use_q;  // as it goes on if nothing begins and nothing is given up
+reg  [ 1:0] f_use_q;  // the next use, unless one begins or is abandoned
 reg  [ 5:0] f_use_clock_q;
 reg  [ 1:0] f_unused_for;  // clocks, up to 3
 reg         f_shaped;
@@ -222,8 +222,8 @@ always @(posedge clk) begin
   end
 end
 
-// --- What the induction needs to know of the circuit. The search for planted bugs begins in any state of which
-// this is true for F_GIVEN clocks: from reset it would be a hundred clocks to the first velocity.
+// --- Invariants, for the induction. The search for planted bugs starts in any state in which they have held for
+// F_GIVEN clocks: from reset the first velocity would take a hundred clocks.
 `ifdef INVARIANTS
 `define HOLDS assert
 `else
@@ -297,7 +297,7 @@ always @(posedge clk)
     if (f_is_take && count <= 6'd4) `HOLDS (f_there && f_made_now == f_ticks);
     `HOLDS (f_over_for == 4'd0 || (f_is_take && count <= 6'd4 && f_over_for == count - 6'd1));
     if (f_is_take && count >= 6'd5) `HOLDS (f_made_now == 32'd0);
-    // clocks since something was done
+    // clocks since progress was made
     if (!ready || f_ready_q)
     case (stage)
       STAGE_CHOOSE:  `HOLDS (f_busy <= (loaded ? 7'd33 : 7'd24));
@@ -348,12 +348,12 @@ always @(posedge clk)
     if (f_is_copy || f_is_fetch) `HOLDS (f_use == F_UNUSED && (f_unused_for >= 2'd1));
   end
 
-// the half word of v_end that scale names in a clock of it; before the first one (counts wrap) the lowest
+// the half-word of v_end that SCALE selects in each clock; before the first one (counts wrap) the lowest
 function [15:0] f_end_half(input [5:0] clocks);
   f_end_half = clocks <= 6'd13 || clocks > 6'd45 ? f_end[15:0] : clocks <= 6'd29 ? f_end[31:16] : f_end[47:32];
 endfunction
 
-// the numbers as they turn
+// the numbers as they rotate
 always @(posedge clk)
   if (f_begun && f_motion != F_REST) begin
     if ((f_is_choose && !start_copy) || f_is_fetch || f_is_look_up || f_is_shape || f_is_advance) `HOLDS (f_v_start == f_start);
@@ -384,7 +384,7 @@ always @(posedge clk)
       `HOLDS (f_bit == (count >= 6'd2 ? count - 6'd2 : 6'd0));
     end
     if (f_is_choose && !ready) `HOLDS (!moving && !velocity_bit && !f_b);
-    // the present velocity turns once while v_start takes it, in two halves
+    // the present velocity rotates once while v_start copies it, in two halves
     if (f_is_copy || (f_is_choose && start_copy)) begin
       `HOLDS (!loaded && !ready);
       if (count >= 6'd2) `HOLDS (!moving && !velocity_bit && !f_b && f_addend == 25'd0 && !f_both);

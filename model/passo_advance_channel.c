@@ -30,7 +30,7 @@ static bool take_to_end(const struct passo_channel *channel, struct progress *pr
 	uint64_t phase_high = path->phase_high;
 	int64_t on_the_way = 0;
 
-	if (!line->active && (line->slot_add || line->slot_step))
+	if (!line->active && (line->add_n || line->decide_step))
 		return false; /* the last substep of the last line */
 	if (path->advance_q)
 		phase_high += path->velocity_high + (path->phase_low_carry ? 1u : 0u);
@@ -39,11 +39,12 @@ static bool take_to_end(const struct passo_channel *channel, struct progress *pr
 		on_the_way = (path->substep ? 1 : 0) + (phase_high >> 24 != 0u ? 1 : 0);
 	progress->remaining =
 	    (int64_t)line->substep_number + on_the_way - (int64_t)channel->line_queue.last_substep;
-	on_the_way += line->slot_add ? 1 : 0;
+	on_the_way += line->add_n ? 1 : 0;
 	for (unsigned i = 0; i < channel->axes; i++) {
 		const struct passo_dda *dda = &channel->dda[i];
 		const int64_t steps = (int64_t)channel->line_queue.steps[i];
-		if ((line->slot_step && dda->e_minus_m >= 0) || (!line->slot_step && dda->addend != steps))
+		if ((line->decide_step && dda->e_minus_m >= 0)
+		    || (!line->decide_step && dda->addend != steps))
 			return false;
 		progress->e[i] = dda->e_minus_m + on_the_way * steps;
 		if (line->active && progress->e[i] >= 0)
@@ -121,8 +122,8 @@ static void put_back(struct passo_channel *channel, const struct progress *progr
 	path->substep = carry[1];
 	if (!line->active)
 		return;
-	line->slot_add = carry[2];
-	line->slot_step = carry[3];
+	line->add_n = carry[2];
+	line->decide_step = carry[3];
 	const int64_t not_counted = (carry[0] ? 1 : 0) + (carry[1] ? 1 : 0);
 	const int64_t not_added = not_counted + (carry[2] ? 1 : 0);
 	const int64_t last_substep = (int64_t)channel->line_queue.last_substep;

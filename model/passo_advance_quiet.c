@@ -55,7 +55,7 @@ bool passo_advance_slots_empty(const struct passo_channel *channel)
 		return false;
 	if (stopped && (channel->path.velocity_low != 0u || channel->path.velocity_high != 0u))
 		return false;
-	return !channel->path.advance_q && !channel->path.substep && !line->slot_add && !line->slot_step;
+	return !channel->path.advance_q && !channel->path.substep && !line->add_n && !line->decide_step;
 }
 
 /* Clocks for which the rate is constant: unlimited, or until the next slew tick. */
@@ -132,7 +132,7 @@ uint64_t passo_advance_surroundings_quiet(
 	const bool moving = channel->motion.state == PASSO_STATE_RUN;
 
 	if (!motion_settled(channel, inputs) || !rest_settled(channel) || channel->positions.snapshot_waits
-	    || !commands_settled(channel, inputs->bus) || line->slot_load || line->slot_load_q
+	    || !commands_settled(channel, inputs->bus) || line->load_start || line->load_start_q
 	    || line->underrun || !ramps_settled(&channel->ramp_queue, inputs->parameters)
 	    || !lines_settled(channel, inputs->parameters))
 		return 0;

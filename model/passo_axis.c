@@ -140,7 +140,7 @@ void passo_axis_clock(struct passo_axis *axis, const struct passo_axis_wires *wi
 	               || (state == PASSO_AXIS_SETUP && over);
 	const bool waits = place_is(axis->waits, 0);
 	const bool step_begins = free && waits && right && !axis->unsettled;
-	const bool turn =
+	const bool setup_begins =
 	    (!right || axis->unsettled) && (state == PASSO_AXIS_READY || (state == PASSO_AXIS_HOLD && over));
 
 	axis->quiet = state == PASSO_AXIS_READY && right && !axis->unsettled && !waits && !wires->step_request
@@ -151,23 +151,23 @@ void passo_axis_clock(struct passo_axis *axis, const struct passo_axis_wires *wi
 	clock_queue(axis, step_begins, wires);
 
 	axis->timer++;
-	if (step_begins || turn || level_done || axis->timing_changed || settle)
+	if (step_begins || setup_begins || level_done || axis->timing_changed || settle)
 		axis->timer = 1;
 	axis->timing_changed = wires->timing_written || settle;
 	axis->settle = wires->pins_written;
-	axis->unsettled = settle || (axis->unsettled && !turn);
+	axis->unsettled = settle || (axis->unsettled && !setup_begins);
 	if (level_done && !falls)
 		axis->state = PASSO_AXIS_HOLD;
 	if ((state == PASSO_AXIS_HOLD || state == PASSO_AXIS_SETUP) && over)
 		axis->state = PASSO_AXIS_READY;
-	if (turn)
+	if (setup_begins)
 		axis->state = PASSO_AXIS_SETUP;
 	if (step_begins || settle)
 		axis->state = PASSO_AXIS_PULSE;
 	if (wires->pins_written && !wires->both_edges_next)
 		axis->step = false;
 	axis->step = axis->step != (step_begins || falls);
-	axis->dir = axis->dir != (turn && !right);
+	axis->dir = axis->dir != (setup_begins && !right);
 }
 
 uint32_t passo_axis_quiet(const struct passo_axis *axis, bool line_direction)

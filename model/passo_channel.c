@@ -81,7 +81,7 @@ static struct passo_channel_wires gather_wires(
 	wires.line_done = wires.substep_taken && channel->line.on_last;
 	const struct passo_line_queue *queue = &channel->line_queue;
 	const bool goes_on = wires.line_done && !queue->last;
-	wires.turn = goes_on && queue->endless;
+	wires.repeats = goes_on && queue->endless;
 	wires.take = wires.prepare || (goes_on && !queue->endless && queue->next_valid);
 	return wires;
 }

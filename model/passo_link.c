@@ -13,8 +13,8 @@ enum {
 	COUNT_STROBE = 28,
 	COUNT_ANSWER = 30,
 	COUNT_LOADED = 31,
-	COUNT_TURN = 32,
-	COUNT_TURNED = 63,
+	COUNT_ROTATE = 32,
+	COUNT_ROTATED = 63,
 	COUNT_ACT = 65,
 	COUNT_REST = 67
 };
@@ -66,7 +66,7 @@ static uint32_t loaded(const struct passo_link *link)
 }
 
 /* The 32 clocks of a bus word, CRC or reply word have passed: apply their result. */
-static void turned(struct passo_link *link)
+static void rotated(struct passo_link *link)
 {
 	switch (link->step) {
 	case PASSO_LINK_HEADER:
@@ -215,7 +215,7 @@ static void do_step(struct passo_link *link, const struct passo_link_wires *wire
 			link->bus.address = (was->bus.address + 1u) & 0xFFFu;
 		}
 		if (word_valid) {
-			link->count = was->all_words ? COUNT_TURN : COUNT_READ;
+			link->count = was->all_words ? COUNT_ROTATE : COUNT_READ;
 			if (was->all_words)
 				link->step = PASSO_LINK_SUM;
 		}
@@ -255,8 +255,8 @@ void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wi
 
 	if (was.count == COUNT_LOADED - 1)
 		link->bus.data = loaded(link);
-	if (was.count == COUNT_TURNED)
-		turned(link);
+	if (was.count == COUNT_ROTATED)
+		rotated(link);
 	if (wires->spi.half_valid)
 		store(link, wires);
 	if (was.count != COUNT_REST)

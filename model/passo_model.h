@@ -228,7 +228,7 @@ struct passo_line_unit {
 	uint32_t substep_number;
 	bool on_last;
 	uint8_t directions;
-	bool slot_add, slot_load, slot_step, slot_load_q;
+	bool add_n, load_start, decide_step, load_start_q;
 };
 
 struct passo_dda {
@@ -332,7 +332,7 @@ struct passo_channel_wires {
 	bool hold, now_coming; /* from the admission */
 	bool startable, prepare, begins_next, begin_profile;
 	bool advance, tick, next, ramp_ended;
-	bool substep_taken, line_done, take, turn;
+	bool substep_taken, line_done, take, repeats;
 	bool overrun;
 	bool finished;
 	bool stop_now, stopped;
@@ -373,7 +373,7 @@ void passo_ramp_clock(struct passo_ramp_unit *ramp, const struct passo_channel *
 void passo_path_clock(struct passo_path *path, const struct passo_ramp_unit *ramp,
     const struct passo_channel_wires *wires, uint32_t drain_velocity);
 
-int64_t passo_line_broadcast(const struct passo_line_unit *line, uint32_t last_substep);
+int64_t passo_line_addend(const struct passo_line_unit *line, uint32_t last_substep);
 void passo_line_clock(struct passo_line_unit *line, const struct passo_line_queue *queue,
     const struct passo_channel_wires *wires);
 

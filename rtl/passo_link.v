@@ -6,20 +6,20 @@
 //   read         MOSI  header  crc     0       0 x length    0
 //                MISO  status  status  status  data x length  crc
 //
-// Promise: a frame is executed whole or not at all, and only once. Each word goes into the payload buffer and
-// comes out of it onto the bus, where it turns through the CRC and is checked by its target (`bus_check`).
-// When the CRC matches, no target objected, no state forbids the frame (`bus_busy`) and its sequence number is new, the
-// buffer is replayed to the bus (`bus_write`), one word every 4 clocks. `bus_commit` is high from 35 clocks before the
-// verdict until a clock after the last word; meanwhile the targets hold `bus_busy`. A frame may begin meanwhile. It is
-// ignored if its header is complete before the replay has ended, which takes a master that omits trailing words.
+// Promise: a frame is executed whole or not at all, and only once. Each word is stored in the payload buffer and
+// loaded from it onto the bus, where it rotates through the CRC and is checked by its target (`bus_check`). If the
+// CRC matches, no target objects, no state forbids the frame (`bus_busy`) and its sequence number is new, the buffer
+// is replayed to the bus (`bus_write`), one word every 4 clocks. `bus_commit` is high from 35 clocks before the
+// verdict until one clock after the last word; meanwhile the targets hold `bus_busy`. A frame may begin meanwhile;
+// it is ignored if its header is complete before the replay ends, as happens if the master omits trailing words.
 //
-// Rooms: passo_link_steps leads through the frame and times each word, passo_header decodes the header, passo_link_bus
+// Blocks: passo_link_states sequences the frame and times each word, passo_header decodes the header, passo_link_bus
 // makes the bus accesses, passo_verdict judges the frame.
-// Latency: payload word to bus_check 40 clocks, crc word to ack 77 clocks, to the first word of a read 91
-// clocks. Address and data stand on the bus at least a clock before their strobe (of a check: two clocks),
-// data a clock after it, the address of a read 16 clocks before. A target answers one clock after a strobe with
-// claim (the address is mine) and refusal, and two clocks after bus_read with data; at all other times the status
-// stands in the place of data.
+// Latency: payload word to bus_check 40 clocks, crc word to ack 77 clocks, to the first word of a read 91 clocks.
+// Address and data are stable on the bus from one clock before their strobe (of a check: two clocks), data to one
+// clock after it, the address of a read from 16 clocks before. A target answers one clock after a strobe with claim
+// (address match) and refusal, and two clocks after bus_read with data; at all other times the read lines carry the
+// status word.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -27,16 +27,16 @@
 module passo_link (
   input wire clk,
   input wire rst,
-  // words from and to the SPI
+  // host interface
   input wire frame_start,
   input wire frame_end,
   input wire half_valid,
   input wire half_low,
   input wire [15:0] half,
   output wire [31:0] reply_word,
-  output wire [7:0] last_sequence,  // of the last write or push that was executed
+  output wire [7:0] last_sequence,  // of the last executed write or push
   // bus
-  output wire bus_frame,  // a pass over a frame's payload begins: to check or, in a commit, to write it
+  output wire bus_frame,  // strobe: a pass over the payload begins, to check or, in a commit, to write it
   output wire bus_commit,  // the frame is being judged or executed
   output wire bus_check,  // strobes
   output wire bus_write,
@@ -44,14 +44,14 @@ module passo_link (
   output wire bus_push,  // the frame is a push
   output wire [11:0] bus_address,
   output wire [31:0] bus_data,
-  output wire [4:0] bus_top_bit,  // of the data that are checked: highest bit that is set,
-  output wire bus_lone_bit,  // and it is the only one
+  output wire [4:0] bus_msb,  // of checked data: index of the highest set bit
+  output wire bus_one_hot,  // no other bit is set
   input wire bus_claim,
   input wire [3:0] bus_refusal,
   input wire [31:0] bus_read_data,
-  input wire bus_counters,  // the address is that of counters of refusals, which are kept here
+  input wire bus_counters,  // the address is that of refusal counters, which are kept here
   input wire bus_incomplete,  // the payload so far is not whole lines or ramps
-  input wire bus_busy  // the state of a target does not allow the frame
+  input wire bus_busy  // the state of a target forbids the frame
 );
 
   `include "passo_registers.vh"
@@ -67,14 +67,14 @@ module passo_link (
   wire in_count;
   wire frame_breaks;
 
-  wire [6:0] count;  // clocks of the word
-  wire       turn;
+  wire [6:0] count;  // clock of the word
+  wire       rotate;
   wire       rests;
   wire       begin_load;
   wire       load;
   wire       load_ends;
   wire       act;
-  wire       halves_turn;
+  wire       half_rotated;
 
   wire       header_is_read;
   wire       header_is_empty;
@@ -92,7 +92,7 @@ module passo_link (
   wire       all_words;
   wire       sequence_known;
 
-  passo_link_steps u_steps (
+  passo_link_states u_states (
     .clk            (clk),
     .rst            (rst),
     .frame_start    (frame_start),
@@ -115,13 +115,13 @@ module passo_link (
     .in_count       (in_count),
     .frame_breaks   (frame_breaks),
     .count          (count),
-    .turn           (turn),
+    .rotate         (rotate),
     .rests          (rests),
     .begin_load     (begin_load),
     .load           (load),
     .load_ends      (load_ends),
     .act            (act),
-    .halves_turn    (halves_turn)
+    .half_rotated   (half_rotated)
   );
 
   passo_link_bus u_bus (
@@ -157,7 +157,7 @@ module passo_link (
 
   passo_header u_header (
     .clk           (clk),
-    .hold          (turn),
+    .hold          (rotate),
     .data          (bus_data[31:12]),
     .sequence_known(sequence_known),
     .last_sequence (last_sequence),
@@ -167,11 +167,11 @@ module passo_link (
     .verdict       (header_verdict)
   );
 
-  // Behind the payload, the buffer has a place for the header, one for whatever is not kept, and two for the
-  // counters of refusals; these read as 0 until one of the word has counted.
+  // Behind the payload the buffer holds the header, one scratch word (also the CRC), and two words of refusal
+  // counters, each of which reads as 0 until one of its counters has counted.
   reg        put;
   wire       uses_counters = in_read | in_count;
-  reg        verdict_high;  // verdict is READ_ONLY or one after it
+  reg        verdict_high;  // verdict >= READ_ONLY
   reg  [1:0] counted;
   reg        counters_high;
   wire [1:0] counter = verdict[1:0] - VERDICT_BAD_CRC[1:0];
@@ -191,28 +191,28 @@ module passo_link (
     .load_word  (in_payload || in_replay ? {1'b0, index} : {5'b10000, place}),
     .load_low   (~begin_load & ~count[0]),
     .load_zero  (uses_counters && !counted[counters_high]),
-    .turn       (turn),
-    .turns      (count[4:0]),
+    .rotate     (rotate),
+    .bit_index  (count[4:0]),
     .count      (in_count),
     .counter    (counter),
     .data       (bus_data),
-    .top_bit    (bus_top_bit),
-    .lone_bit   (bus_lone_bit),
+    .msb        (bus_msb),
+    .one_hot    (bus_one_hot),
     .counter_bit(counter_bit)
   );
 
-  reg answered;  // in the clock of COUNT_LOADED of a read
-  reg replies;  // the reply turns along
+  reg answered;  // high in COUNT_LOADED of a read
+  reg replies;  // the reply rotates, too
 
-  // CRC of the request; that of a read's header goes on as the CRC of the reply
+  // CRC of the request; that of a read's header continues as the CRC of the reply
   wire crc_top;
   wire reply_top;
 
   passo_crc u_crc (
     .clk    (clk),
     .restart(load & in_header),
-    .shift  (turn),
-    .turn   (in_crc | in_sum),
+    .shift  (rotate),
+    .rotate (in_crc | in_sum),
     .data   (in_read ? reply_top : bus_data[31]),
     .top    (crc_top)
   );
@@ -222,8 +222,8 @@ module passo_link (
     .rst        (rst),
     .take       (frame_start || answered),
     .data       (bus_read_data),
-    .shift      (turn && replies),
-    .turns      (count[4:0]),
+    .shift      (rotate && replies),
+    .bit_index  (count[4:0]),
     .acknowledge(in_ack),
     .header_11  (bus_data[11]),
     .header_27  (bus_data[27]),
@@ -243,7 +243,7 @@ module passo_link (
     .header_ok     (header_ok),
     .header_verdict(header_verdict),
     .in_header     (in_header),
-    .crc_differs   (in_crc & turn & (crc_top != bus_data[31])),
+    .crc_differs   (in_crc & rotate & (crc_top != bus_data[31])),
     .conclude      (in_crc & act),
     .read_answered (answered & first_word),
     .bus_check     (bus_check),
@@ -260,7 +260,7 @@ module passo_link (
   always @(posedge clk) begin
     answered      <= in_read && load_ends && !frame_breaks;
     replies       <= in_ack | in_read | in_sum;
-    put           <= in_count && halves_turn;
+    put           <= in_count && half_rotated;
     verdict_high  <= verdict >= VERDICT_READ_ONLY;
     counters_high <= in_ack | in_count ? verdict_high : bus_address[0];
     if (in_count && act) counted[counters_high] <= 1'b1;

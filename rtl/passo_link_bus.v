@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Link bus: the words of the frame as bus accesses. Counts them, addresses them, and makes the strobes.
+// Link bus: the words of the frame as bus accesses. Counts and addresses them, and makes the strobes.
 //
-// While a header or an ack has just turned (`act`), the header stands on `data`: what is kept of it is taken then.
+// When a header or an ack has rotated (`act`), the header is on `data`: its fields are latched then.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -9,7 +9,7 @@
 module passo_link_bus (
   input  wire        clk,
   input  wire        rst,
-  // steps of the frame, clocks of the word
+  // state of the frame, clock of the word
   input  wire        in_header,
   input  wire        in_payload,
   input  wire        in_crc,
@@ -26,9 +26,9 @@ module passo_link_bus (
   // the frame
   output reg         is_read,
   output wire [ 5:0] index,           // payload word
-  output reg         first_word,      // it is 0, and was
-  output reg         all_words,       // it is length, and was; not yet in the clock after act
-  output reg         sequence_known,  // something was executed since reset
+  output reg         first_word,      // it is 0, registered
+  output reg         all_words,       // it is length, registered; low in the clock after act
+  output reg         sequence_known,  // a frame was executed since reset
   output reg  [ 7:0] last_sequence,
   // bus
   output reg         bus_frame,

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Ramp: velocity over time. A tick is 2^TICK_LOG2 enabled clocks; while one tick runs, the velocity of the
-// next is made.
+// Ramp: velocity over time. A tick is 2^TICK_LOG2 enabled clocks; during one tick the velocity of the next is
+// computed.
 //
 //   s        = shape(u);  velocity = v_start + floor((v_end - v_start) * s);  u += du      first u = du / 2
-//   mirror:    u runs from 1 to 0, and v_start and v_end change places
+//   mirror:    u runs from 1 to 0, v_start and v_end are swapped
 //   after T ticks the next ramp begins, from exactly v_end; T = 0 sets the velocity at once
 //
 //   velocity   |        ____________
@@ -12,15 +12,15 @@
 //              |__/_____________________ \__
 //                 ramp   ramp (T ticks)  ramp
 //
-// `prepare` makes the first velocity of a motion, from 0, and raises `ready`; `begin_profile` starts the first tick. With
-// that, and with `tick`, velocity_next takes effect; with `ended`, 0.
-// Promise: the end of the LAST ramp raises `ended` in the last enabled clock of its last tick (a profile without ticks:
-// with begin_profile). If the ramps run out at speed, `dry` says so a tick earlier; the velocity then stays, and the
-// next ramp is taken whenever it comes. A NOW ramp that is `coming` keeps the profile from ending until it is there.
-// `stall` holds the enable back at the end of a tick until the next velocity is ready: later, never lost.
+// `prepare` computes the first velocity of a motion, from 0, and raises `ready`; `begin_profile` starts the first
+// tick. On begin_profile and on `tick` velocity_next takes effect; with `ended`, 0.
+// Promise: the end of the LAST ramp raises `ended` in the last enabled clock of its last tick (a profile without
+// ticks: with begin_profile). If the ramps run out at speed, `dry` says so a tick earlier; the velocity then stays,
+// and the next ramp is taken whenever it comes. A NOW ramp that is `coming` keeps the profile from ending until it is
+// queued. `stall` holds back the enable at the end of a tick until the next velocity is ready: late, never lost.
 //
-// Rooms: passo_ramp_schedule says what is done when, passo_ramp_strobes in which clock, passo_ramp_numbers and
-// passo_interpolate hold and move the numbers, passo_ramp_tick hands out the velocities.
+// Blocks: passo_ramp_schedule decides what is done when, passo_ramp_strobes in which clock; passo_ramp_numbers and
+// passo_interpolate hold and shift the numbers; passo_ramp_tick hands out the velocities.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -33,22 +33,22 @@ module passo_ramp #(
   // motion
   input  wire        prepare,
   input  wire        begin_profile,
-  input  wire        stop,              // forget everything
-  input  wire        drain,             // drain_velocity counts, not the ramps
-  output wire        ready,             // velocity_next will be, a clock later
+  input  wire        stop,              // drop everything
+  input  wire        drain,             // drain_velocity is used, not the ramps
+  output wire        ready,             // velocity_next is valid one clock later
   output wire        ended,
   output reg         dry,
   // timescale and path
-  input  wire        advance,           // an enabled clock that counts: not while `stall`
+  input  wire        advance,           // enabled clock: not while `stall`
   input  wire        tick,              // it ends a tick: while `tick_ends`
   output wire        stall,
   output wire        tick_ends,
-  output wire        ends_next,         // there is no next tick: rest
+  output wire        ends_next,         // no next tick: rest
   output wire [47:0] velocity_next,     // UQ0.48 substeps per clock
   // ramp queue
   input  wire        ramp_valid,
   input  wire        ramp_now_pending,
-  input  wire        ramp_now_coming,   // one will be pending
+  input  wire        ramp_now_coming,   // one is in flight
   output wire        ramp_take,
   output wire        ramp_take_now,
   output wire [ 3:0] ramp_half_index,
@@ -97,7 +97,7 @@ module passo_ramp #(
   wire        start_bit;
   wire        end_bit;
   wire [32:0] progress;
-  wire        velocity_bit;  // 48 of them, from the lowest
+  wire        velocity_bit;  // 48 of them, LSB first
 
   // the ramp being made
   reg        mirror;
@@ -203,7 +203,7 @@ module passo_ramp #(
     .over           (over)
   );
 
-  reg point_is_last;  // the progress stands still while its points are looked up
+  reg point_is_last;  // the progress is stable while its points are looked up
 
   always @(posedge clk) point_is_last <= progress[32:25] == 8'hFF;
 
@@ -229,7 +229,7 @@ module passo_ramp #(
   assign table_request = stage == STAGE_LOOK_UP;
   assign table_address = {shape - 2'd1, progress[32:25]};
 
-  reg not_zero;  // a bit of the velocity so far was 1
+  reg not_zero;  // a bit of the velocity so far is 1
 
   always @(posedge clk) begin
     not_zero <= stage == STAGE_SCALE && (not_zero || velocity_bit);

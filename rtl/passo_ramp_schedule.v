@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Ramp schedule: the stages in which the next velocity is made, and the clocks of each.
+// Ramp schedule: the stages in which the next velocity is computed, and the clocks of each.
 //
 //   stage    clocks        what happens                            next stage
 //   CHOOSE   while `waits` nothing                                 NOW ramp pending: COPY; a ramp is loaded: LOOK_UP,
 //            then 1                                                LINEAR: SCALE; a ramp waits: FETCH; none: SCALE
-//   COPY     24            v_start = the velocity that counts      CHOOSE
+//   COPY     24            v_start = present velocity              CHOOSE
 //   FETCH    8; T = 0: 7   ticks, control word, u = du / 2         CHOOSE; T = 0: TAKE
 //   LOOK_UP  until served  two points of the table                 SHAPE
 //   SHAPE    19            s = shape(u)                            SCALE
-//   SCALE    50            v_start + (v_end - v_start) s is made   ADVANCE; after T ticks: TAKE; no ramp: CHOOSE
+//   SCALE    50            v_start + (v_end - v_start) s           ADVANCE; after T ticks: TAKE; no ramp: CHOOSE
 //   ADVANCE  8             u += du                                 CHOOSE
 //   TAKE     5             v_start = v_end, the ramp leaves        CHOOSE
 //
@@ -22,13 +22,13 @@ module passo_ramp_schedule (
   input wire clk,
   input wire rst,
   input wire prepare,  // a motion begins: COPY
-  input wire waits,  // no velocity is wanted
+  input wire waits,  // no velocity is needed
   // ramp being made
   input wire control_load,
   input wire control_last,  // LAST of its control word
   input wire linear,
-  input wire over,  // it has no more ticks: in the last clock of FETCH but one, and of SCALE
-  output reg loaded,  // there is one
+  input wire over,  // no more ticks; valid in the last clock but one of FETCH, the last of SCALE
+  output reg loaded,  // a ramp is being made
   // ramp queue
   input wire ramp_valid,
   input wire ramp_now_pending,
@@ -39,15 +39,15 @@ module passo_ramp_schedule (
   input wire table_served,
   // stages
   output reg [2:0] stage,
-  output reg [5:0] count,  // clocks of the stage, from 1
-  output reg stage_ends,  // it is the last of them
+  output reg [5:0] count,  // clock of the stage, from 1
+  output reg stage_ends,  // it is the last one
   output wire velocity_made,
   output wire profile_over
 );
 
   `include "passo_ramp_stages.vh"
 
-  reg [5:0] before_end;  // count in the last clock but one; known from the second clock on
+  reg [5:0] before_end;  // count in the last clock but one; valid from the second clock on
   always @(posedge clk)
     case (stage)
       STAGE_COPY:                 before_end <= COPY_CLOCKS - 6'd1;
@@ -59,7 +59,7 @@ module passo_ramp_schedule (
     endcase
 
   reg  last;
-  reg  ticks_known;  // in the last clock of FETCH but one
+  reg  ticks_known;  // in the last clock but one of FETCH
   wire no_ticks = ticks_known & over;
 
   wire chooses = stage == STAGE_CHOOSE && !waits;
@@ -73,7 +73,7 @@ module passo_ramp_schedule (
     count <= count + 6'd1;
     stage_ends <= count == before_end && !no_ticks;
     ticks_known <= stage == STAGE_FETCH && count == FETCH_CLOCKS - 6'd2;
-    ramp_take <= stage == STAGE_TAKE && count == 6'd3;  // before the stage ends, so that ramp_valid is true
+    ramp_take <= stage == STAGE_TAKE && count == 6'd3;  // early enough for ramp_valid to be up to date in CHOOSE
     ramp_take_now <= copies;
 
     case (stage)

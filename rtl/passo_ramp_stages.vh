@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stages of passo_ramp, and the clocks that each lasts; see passo_ramp_schedule.v.
+// Stages of passo_ramp, and the clocks of each; see passo_ramp_schedule.v.
 
 /* verilator lint_off UNUSEDPARAM */
 localparam [2:0] STAGE_CHOOSE = 3'd0;

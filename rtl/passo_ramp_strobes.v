@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Ramp strobes: what moves in which clock of which stage.
+// Ramp strobes: what shifts in which clock of which stage.
 //
-// Strobes and half word index are registered: they act one clock after their count. The half word comes from the queue
-// three clocks after its index, so the strobe that uses it stands three counts after the index. The last clock of each stage sets
-// the index for the first clock of the next.
+// Strobes and half-word index are registered: they act one clock after their count. A half-word comes from the queue
+// three clocks after its index, so the strobe that uses it is three counts after the index. The last clock of each
+// stage sets the index for the first clock of the next.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -12,11 +12,11 @@ module passo_ramp_strobes (
   input  wire       clk,
   input  wire       prepare,
   input  wire [2:0] stage,
-  input  wire [5:0] count,            // clocks of the stage, from 1
+  input  wire [5:0] count,            // clock of the stage, from 1
   input  wire       table_served,
-  input  wire       stage_ends,       // count is the last one of the stage
+  input  wire       stage_ends,       // it is the last one
   input  wire       loaded,           // a ramp is being made
-  input  wire       over,             // it has no more ticks, in the last clock of fetch and scale
+  input  wire       over,             // no more ticks; valid in the last clock of FETCH and SCALE
   // ramp queue
   output reg  [3:0] half_index,
   // numbers
@@ -36,7 +36,7 @@ module passo_ramp_strobes (
   output reg        shaping,
   output reg        load_fraction,
   output reg        clear,
-  output reg        result_move       // moves or is cleared
+  output reg        result_move       // shifts or is cleared
 );
 
   `include "passo_ramp_stages.vh"
@@ -68,7 +68,7 @@ module passo_ramp_strobes (
     result_move     <= empty || copy || shape || scale;
   end
 
-  // The first half word of v_end is there when scale begins, whatever was before; the next ones follow after 16 bits.
+  // The first half-word of v_end is ready when SCALE begins, after any stage; the next ones follow every 16 bits.
   reg half_ends;
 
   always @(posedge clk) begin

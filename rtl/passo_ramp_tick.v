@@ -5,7 +5,7 @@
 //   tick_ends      ________________|---|_____|---|____      in the last clock of the tick, if a velocity is ready
 //   stall          _____________________|----|________      in the last clock, while none is: nothing is lost
 //
-// A velocity that was made is `ready` until it is taken: by begin_profile, then at the end of each tick. After
+// A computed velocity is `ready` until it is taken: by begin_profile, then at the end of each tick. After
 // `profile_over` the next one taken is the end of the profile (`ends_next`, `ended`).
 `resetall
 `timescale 1ns / 1ps
@@ -19,12 +19,12 @@ module passo_ramp_tick #(
   input  wire prepare,
   input  wire begin_profile,
   input  wire drain,          // does not wait for velocities
-  input  wire advance,        // a clock that counts: not while `stall`
+  input  wire advance,        // enabled clock: not while `stall`
   input  wire tick,           // the last one of a tick: while `tick_ends`
   input  wire velocity_made,
   input  wire profile_over,
-  output reg  ready,          // velocity_next will be, a clock later
-  output reg  ends_next,      // there is no next tick: rest
+  output reg  ready,          // velocity_next is valid one clock later
+  output reg  ends_next,      // no next tick: rest
   output wire ended,
   output reg  tick_ends,
   output reg  stall
@@ -33,7 +33,7 @@ module passo_ramp_tick #(
   localparam [TICK_LOG2-1:0] TICK_LAST = {TICK_LOG2{1'b1}};
 
   reg [TICK_LOG2-1:0] tick_count;
-  reg tick_last;  // the next clock that counts is the last
+  reg tick_last;  // the next enabled clock is the last
   wire tick_last_next = !begin_profile && (advance ? tick_count == TICK_LAST - 1'b1 : tick_last);
   wire take_velocity = begin_profile | tick;
 

@@ -167,7 +167,7 @@ class PushBus:
     """The bus of one queue: pushes words as the link does, first to be checked, then to be written."""
 
     COMMIT_CLOCKS = 3
-    INPUTS = ("bus_frame", "bus_commit", "bus_check", "bus_write", "select", "bus_data", "bus_top_bit")
+    INPUTS = ("bus_frame", "bus_commit", "bus_check", "bus_write", "select", "bus_data", "bus_msb")
 
     def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
         self.dut, self.clocks = dut, clocks
@@ -219,7 +219,7 @@ class PushBus:
         # tells the highest bit
         self.dut.select.value = 1
         self.dut.bus_data.value = word
-        self.dut.bus_top_bit.value = max(0, word.bit_length() - 1) if signal is self.dut.bus_check else 0
+        self.dut.bus_msb.value = max(0, word.bit_length() - 1) if signal is self.dut.bus_check else 0
         await self.clocks.wait(before)
         signal.value = 1
         await self.clocks.wait(1)

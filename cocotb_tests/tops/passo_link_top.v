@@ -18,10 +18,10 @@ module passo_link_top;
   wire [15:0] half;
   wire [31:0] reply_word;
   wire [7:0] last_sequence;
-  wire bus_frame, bus_commit, bus_check, bus_write, bus_read, bus_push, bus_lone_bit;
+  wire bus_frame, bus_commit, bus_check, bus_write, bus_read, bus_push, bus_one_hot;
   wire [11:0] bus_address;
   wire [31:0] bus_data;
-  wire [4:0] bus_top_bit;
+  wire [4:0] bus_msb;
 
   wire word_valid = half_valid & half_low;
   wire refused = u_link.refuses;

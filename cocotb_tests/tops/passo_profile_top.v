@@ -14,7 +14,7 @@ module passo_profile_top #(
   reg clk, rst;
   reg bus_frame, bus_commit, bus_check, bus_write, select;
   reg [31:0] bus_data;
-  reg [4:0] bus_top_bit;
+  reg [4:0] bus_msb;
   reg prepare, begin_profile, stopped, now_coming, enable;
   reg drain;
   reg [31:0] drain_velocity;
@@ -53,7 +53,7 @@ module passo_profile_top #(
     .select     (1'b0),
     .bus_address(10'd0),
     .bus_data   (16'd0),
-    .bus_top_bit(5'd0),
+    .bus_msb(5'd0),
     .refusal    (),
     .wanted     (),
     .request    (table_requests),
