@@ -343,6 +343,8 @@ enum passo_operation {
 	PASSO_OPERATION_WRITE = 2, /* Write consecutive registers. */
 	PASSO_OPERATION_PUSH  = 3  /* Write every word to the same address: lines and ramps. */
 };
+#define PASSO_OPERATION_NAMES \
+	{[1] = "READ", [2] = "WRITE", [3] = "PUSH"}
 
 /* Outcome of a frame. */
 enum passo_verdict {
@@ -357,6 +359,10 @@ enum passo_verdict {
 	PASSO_VERDICT_BUSY            = 8, /* The state of the channel does not allow it (see the register). */
 	PASSO_VERDICT_BAD_VALUE       = 9  /* M = 0 or M >= 2^30, N_i > M, a velocity above 1/2, drain velocity 0, reserved bits set. */
 };
+#define PASSO_VERDICT_NAMES \
+	{[0] = "OK", [1] = "DUPLICATE", [2] = "BAD_CRC", [3] = "BAD_LENGTH", [4] = "BAD_OPERATION", \
+	 [5] = "UNKNOWN_ADDRESS", [6] = "READ_ONLY", [7] = "QUEUE_FULL", [8] = "BUSY", [9] = \
+	 "BAD_VALUE"}
 
 /* State of a channel. */
 enum passo_state {
@@ -368,6 +374,9 @@ enum passo_state {
 	PASSO_STATE_DRAIN   = 5, /* Missing substeps of the LAST line are made at drain_velocity. */
 	PASSO_STATE_STOPPED = 6  /* Stopped by a command or a fault; queues flushed. CLEAR leads back to IDLE. */
 };
+#define PASSO_STATE_NAMES \
+	{[0] = "IDLE", [1] = "PREPARE", [2] = "ARMED", [3] = "RUN", [4] = "SETTLE", [5] = "DRAIN", \
+	 [6] = "STOPPED"}
 
 /* Why a channel has stopped. */
 enum passo_cause {
@@ -378,6 +387,9 @@ enum passo_cause {
 	PASSO_CAUSE_RAMP_UNDERRUN = 4, /* The ramps ran out at speed. */
 	PASSO_CAUSE_STEP_OVERRUN  = 5  /* Steps came faster than the pin timing of an axis allows. */
 };
+#define PASSO_CAUSE_NAMES \
+	{[0] = "NONE", [1] = "STOP", [2] = "ABORT", [3] = "LINE_UNDERRUN", [4] = "RAMP_UNDERRUN", \
+	 [5] = "STEP_OVERRUN"}
 
 /* Shape of a ramp: s as a function of the progress u, both 0 .. 1. */
 enum passo_shape {
@@ -386,5 +398,7 @@ enum passo_shape {
 	PASSO_SHAPE_SIGMOID = 2, /* Logistic function over -5 .. 5, scaled to begin at 0 and end at 1. */
 	PASSO_SHAPE_EASE    = 3  /* u^2. */
 };
+#define PASSO_SHAPE_NAMES \
+	{[0] = "LINEAR", [1] = "COSINE", [2] = "SIGMOID", [3] = "EASE"}
 
 #endif

@@ -167,6 +167,13 @@ static struct action set_run(struct plot *plot)
 	        | status << PASSO_RUN_STATUS_CHANNEL_LSB);
 }
 
+/* With a CLEAR in one of five. */
+static struct action command_perhaps_clear(struct plot *plot, uint32_t bit)
+{
+	return command(
+	    plot, bit | (plot_chance(&plot->random, 20) ? 1u << PASSO_CHANNEL_COMMAND_CLEAR_LSB : 0u));
+}
+
 /* After some disturbances the gaps between steps are unknown. */
 static void forget_gaps(struct plot *plot, enum plot_kind kind)
 {
@@ -185,15 +192,11 @@ struct action plot_disturbance(struct plot *plot, enum plot_kind kind)
 	case PLOT_STOP:
 		return command(plot, 1u << PASSO_CHANNEL_COMMAND_STOP_LSB);
 	case PLOT_ABORT:
-		return command(
-		    plot, 1u << PASSO_CHANNEL_COMMAND_ABORT_LSB
-		              | (plot_chance(random, 20) ? 1u << PASSO_CHANNEL_COMMAND_CLEAR_LSB : 0u));
+		return command_perhaps_clear(plot, 1u << PASSO_CHANNEL_COMMAND_ABORT_LSB);
 	case PLOT_CLEAR:
 		return command(plot, 1u << PASSO_CHANNEL_COMMAND_CLEAR_LSB);
 	case PLOT_ZERO:
-		return command(
-		    plot, 1u << PASSO_CHANNEL_COMMAND_ZERO_LSB
-		              | (plot_chance(random, 20) ? 1u << PASSO_CHANNEL_COMMAND_CLEAR_LSB : 0u));
+		return command_perhaps_clear(plot, 1u << PASSO_CHANNEL_COMMAND_ZERO_LSB);
 	case PLOT_COMMAND:
 		return command(plot, plot_draw(random, 16));
 	case PLOT_RATE:

@@ -327,6 +327,8 @@ def write_c(source: Source) -> str:
         ]
         lines += ["", f"/* {enum.text} */", f"enum passo_{enum.name} {{"]
         lines += [f"\t{row}" for row in aligned(rows)] + ["};"]
+        names = wrap(", ".join(f'[{value}] = "{name}"' for name, value, _ in enum.members), 90)
+        lines += [f"#define PASSO_{enum.name.upper()}_NAMES \\", "\t{" + " \\\n\t ".join(names) + "}"]
     return "\n".join([*lines, "", "#endif", ""])
 
 

@@ -88,14 +88,7 @@ bool passo_run_disable(const struct passo_call *call)
 
 bool passo_run_status(const struct passo_call *call)
 {
-	static const char *const CAUSES[] = {
-	    [PASSO_CAUSE_NONE] = "NONE",
-	    [PASSO_CAUSE_STOP] = "STOP",
-	    [PASSO_CAUSE_ABORT] = "ABORT",
-	    [PASSO_CAUSE_LINE_UNDERRUN] = "LINE_UNDERRUN",
-	    [PASSO_CAUSE_RAMP_UNDERRUN] = "RAMP_UNDERRUN",
-	    [PASSO_CAUSE_STEP_OVERRUN] = "STEP_OVERRUN",
-	};
+	static const char *const CAUSES[] = PASSO_CAUSE_NAMES;
 	struct passo_console *console = call->console;
 	struct passo_snapshot now;
 

@@ -108,15 +108,7 @@ enum passo_error passo_lost_steps(struct passo *passo, uint8_t axis, uint32_t *l
 
 const char *passo_state_name(enum passo_state state)
 {
-	static const char *const names[] = {
-	    [PASSO_STATE_IDLE] = "IDLE",
-	    [PASSO_STATE_PREPARE] = "PREPARE",
-	    [PASSO_STATE_ARMED] = "ARMED",
-	    [PASSO_STATE_RUN] = "RUN",
-	    [PASSO_STATE_SETTLE] = "SETTLE",
-	    [PASSO_STATE_DRAIN] = "DRAIN",
-	    [PASSO_STATE_STOPPED] = "STOPPED",
-	};
+	static const char *const names[] = PASSO_STATE_NAMES;
 
 	return (unsigned)state <= PASSO_STATE_STOPPED ? names[state] : "UNKNOWN";
 }
