@@ -4,16 +4,17 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 
-def _logistic(x: float) -> float:
-    return 1 / (1 + math.exp(-x))
+def _logistic(x: np.ndarray | float) -> Any:
+    return 1 / (1 + np.exp(-x))
 
 
-def shape_area(shape: str, alpha: float, u: np.ndarray) -> np.ndarray:
-    """Integral from 0 to u of a curve that rises from 0 to 1 over 0 .. 1.
+def shape_value(shape: str, alpha: float, u: np.ndarray) -> np.ndarray:
+    """A curve that rises from 0 to 1 over 0 .. 1.
 
     linear    u
     cosine    (1 - cos(pi u)) / 2
@@ -21,6 +22,20 @@ def shape_area(shape: str, alpha: float, u: np.ndarray) -> np.ndarray:
     ease      u^2, half of a jerk-limited ramp; the other half is its mirror image
     quintic   6 u^5 - 15 u^4 + 10 u^3, an example of a user-defined shape
     """
+    if shape == "linear":
+        return u
+    if shape == "cosine":
+        return (1 - np.cos(np.pi * u)) / 2
+    if shape == "ease":
+        return u * u
+    if shape == "quintic":
+        return 6 * u**5 - 15 * u**4 + 10 * u**3
+    low, high = _logistic(-alpha), _logistic(alpha)
+    return (_logistic(alpha * (2 * u - 1)) - low) / (high - low)
+
+
+def shape_area(shape: str, alpha: float, u: np.ndarray) -> np.ndarray:
+    """Its integral from 0 to u."""
     if shape == "linear":
         return u * u / 2
     if shape == "cosine":

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The same moves with Passo's planner and the recurrences of docs/architecture.md."""
 
-import math
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
@@ -14,16 +13,17 @@ from passo import compiler, moves
 from passo.build import Parameters
 from passo.move_forms import USER
 from passo.plan import ALPHA_ONE, ALPHA_RESET, Q48, Plan, plan_move
+from passo.registers import Shape
 
 from benchmarks import sources
-from benchmarks.ideal import Ideal, Phase, by_speed, in_time
+from benchmarks.ideal import Ideal, Phase, by_speed, in_time, shape_value
 from benchmarks.sources import MILLISECONDS, Cosine, MultiAxis, Pulses, Sigmoid, Trapezoid
 
 CLOCK_HZ = 100_000_000
 PARAMETERS = Parameters(axes=4)
 TICK_SECONDS = (1 << PARAMETERS.tick_log2) / CLOCK_HZ
 
-SHAPES = ("linear", "cosine", "sigmoid", "ease")  # by enum passo_shape
+SHAPES = [shape.name.lower() for shape in Shape]  # by enum passo_shape
 
 SOURCE = Path(__file__).with_name("steps.c")
 DECLARATIONS = """
@@ -99,21 +99,11 @@ def library() -> tuple[FFI, Any]:
     return own, own.dlopen(str(compiler.library("steps", (), [SOURCE], "-std=gnu11", "-O3")))
 
 
-def _sigmoid_point(u: float, alpha: float) -> float:
-    def logistic(x: float) -> float:
-        return 1 / (1 + math.exp(-x))
-
-    low, high = logistic(-alpha), logistic(alpha)
-    return (logistic(alpha * (2 * u - 1)) - low) / (high - low)
-
-
 @cache
 def tables(alpha: float) -> np.ndarray:
     """Banks 1 to 3 as defined in docs/architecture.md, 257 points each; the sigmoid for any alpha."""
-    u = [k / 256 for k in range(257)]
-    cosine = [round(32768 * (1 - math.cos(math.pi * x))) for x in u]
-    sigmoid = [round(65536 * _sigmoid_point(x, alpha)) for x in u]
-    return np.array([cosine, sigmoid, [k * k for k in range(257)]], dtype=np.uint32)
+    u = np.arange(257) / 256
+    return np.array([np.rint(65536 * shape_value(name, alpha, u)) for name in SHAPES[1:]], dtype=np.uint32)
 
 
 def step_substeps(substeps: int, steps: int) -> np.ndarray:

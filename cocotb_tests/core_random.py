@@ -153,7 +153,7 @@ class Session:
         end = random.choice(
             [velocity, random.randint(0, velocity), random.getrandbits(random.randint(1, 40))]
         )
-        shape = Shape(random.randrange(4))
+        shape = random.choice(tuple(Shape))
         return Ramp(min(velocity, end), ticks, shape, random.random() < 0.5)
 
     def _steps(self, substeps: int) -> int:

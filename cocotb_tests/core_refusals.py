@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Refused frames: each verdict has its cause and is counted, and nothing else changes."""
 
+import itertools
 from collections.abc import Sequence
 
 from passo import frame
@@ -60,6 +61,13 @@ def damaged_frames(core: Core) -> None:
     check_refusals(core, cases)
 
 
+def hole(block: str, first: int) -> int:
+    """The first word of a block, from one on, that is no register."""
+    registers = [register for register in r.TABLE if register.block == block]
+    words = {register.word + n for register in registers for n in range(register.count)}
+    return next(word for word in itertools.count(first) if word not in words)
+
+
 @core_test
 def wrong_operations_and_addresses(core: Core) -> None:
     """Unknown operations, operations that a register does not support, holes, read-only registers."""
@@ -69,7 +77,11 @@ def wrong_operations_and_addresses(core: Core) -> None:
     no_axis = axis + core.axes * r.CHANNEL_AXIS_STRIDE
     write, push, read = Operation.WRITE, Operation.PUSH, Operation.READ
     last = r.CHANNEL_DRAIN_VELOCITY
-    holes = (0x006, 0x0FF, channel + 5, channel + 0x22, no_axis, axis + 5, beyond, 0xA00, 0xCFF)
+    before_tables = min(register.word for register in r.TABLE if register.count == 256) - 1
+    holes = (
+        *(hole("CORE", 0), 0x0FF, channel + hole("CHANNEL", 0), channel + hole("CHANNEL", r.CHANNEL_RAMP)),
+        *(no_axis, axis + hole("AXIS", 0), beyond, 0xA00, before_tables),
+    )
     cases = [
         *((Verdict.BAD_OPERATION, request(number, 100, 1, r.ADDRESS_RUN, [1])) for number in (0, 4, 7, 15)),
         (Verdict.BAD_OPERATION, request(push, 101, 1, r.ADDRESS_RUN, [1])),
@@ -83,7 +95,7 @@ def wrong_operations_and_addresses(core: Core) -> None:
             for address in (channel, channel + r.CHANNEL_STOP_SLEW, line, ramp, axis, r.ADDRESS_EASE_BASE)
         ),
         *((Verdict.UNKNOWN_ADDRESS, request(write, 104, 1, address, [0])) for address in holes),
-        (Verdict.UNKNOWN_ADDRESS, request(read, 105, 1, channel + 0x0C)),
+        (Verdict.UNKNOWN_ADDRESS, request(read, 105, 1, channel + hole("CHANNEL", r.CHANNEL_STATE))),
         (Verdict.UNKNOWN_ADDRESS, request(push, 105, 5, ramp + 1, Ramp(0, 1).words())),
         # the last of several words has no register
         (Verdict.UNKNOWN_ADDRESS, request(write, 106, 2, channel + last, [77, 77])),
@@ -151,9 +163,7 @@ def bad_values(core: Core) -> None:
         [*good.words(), *good.words(), *line_words(2, 10)],
     ]
     ramps = [
-        [1 << 3, 0, 1, 0, 1],
-        [1 << 6, 0, 1, 0, 1],
-        [1 << 15, 0, 1, 0, 1],
+        *([1 << bit, 0, 1, 0, 1] for bit in range(16) if not r.RAMP_CONTROL_DEFINED >> bit & 1),
         [0x8000 << 16, 1, 1, 0, 1],
         [0x8001 << 16, 0, 1, 0, 1],
         [0xFFFF << 16, 0, 1, 0, 1],

@@ -7,6 +7,7 @@ from typing import Any
 import cocotb
 import pytest
 from cocotb.handle import HierarchyObject
+from passo import registers as r
 
 from cocotb_tests.helpers.bench import Bench, Clocks, read, rng
 from cocotb_tests.helpers.runner import run
@@ -60,9 +61,10 @@ class Tables(Bench):
     async def write_table(self, shape: Shape, points: list[int]) -> None:
         """Write a whole table, word by word like the link."""
         dut = self.dut
+        first = getattr(r, f"ADDRESS_{shape.name}_BASE") % (1 << len(dut.bus_address))
         dut.select.value = 1
         for k, point in enumerate(points):
-            dut.bus_address.value = shape << 8 | k
+            dut.bus_address.value = first + k
             dut.bus_data.value = point
             dut.bus_write.value = 1
             await self.clocks.wait(1)
@@ -177,7 +179,7 @@ async def every_channel_is_served_in_time_with_its_own_points(dut: HierarchyObje
                 waits.append(now - clock)
             elif channel not in asked and who == 0 and random.random() < 0.3:
                 # not on the clock after an answer: that may be a late one to the old question
-                asked[channel] = (now, random.randrange(768))
+                asked[channel] = (now, random.randrange(len(TABLES) * POINTS))
         dut.request.value = sum(1 << channel for channel in asked)
         dut.address.value = sum(address << 10 * channel for channel, (_, address) in asked.items())
         assert all(now - clock <= 2 * bench.channels + 4 for clock, _ in asked.values())

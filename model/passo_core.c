@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "passo_registers_core.h"
-#include "passo_shapes.h"
 
 static bool in_range(unsigned value, unsigned low, unsigned high)
 {

@@ -21,7 +21,7 @@ uint32_t passo_shape(const struct passo_tables *tables, enum passo_shape shape, 
 	const uint32_t k = (uint32_t)(progress >> 41);
 	const uint64_t f = ((progress & ((UINT64_C(1) << 41) - 1u)) + (1u << 16)) >> 17;
 	const uint64_t point = points[k];
-	const uint64_t point_next = k == PASSO_TABLE_POINTS - 1u ? 65536u : points[k + 1u];
+	const uint64_t point_next = k == PASSO_BANK_POINTS - 1u ? 65536u : points[k + 1u];
 	/* UQ1.40, exact */
 	const uint64_t s = point * ((UINT64_C(1) << 24) - f) + point_next * f;
 

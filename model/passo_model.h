@@ -9,11 +9,11 @@
 
 #include "passo_command.h"
 #include "passo_registers.h"
+#include "passo_shapes.h"
 
 #define PASSO_PAYLOAD_MAX 60u
 #define PASSO_LINE_QUEUE_MAX 256u
 #define PASSO_RAMP_QUEUE_MAX 256u
-#define PASSO_TABLE_POINTS 256u
 #define PASSO_RATE_ONE 0x10000u /* UQ1.16 */
 
 struct passo_parameters {
@@ -132,7 +132,7 @@ struct passo_registers {
 /* ---- tables ---- */
 
 struct passo_tables {
-	uint16_t points[3][PASSO_TABLE_POINTS];
+	uint16_t points[PASSO_BANKS][PASSO_BANK_POINTS];
 	uint8_t slot; /* 2 * channel + second */
 	bool wanted;  /* the current frame writes points */
 };

@@ -113,11 +113,6 @@ static uint8_t run_check(const struct passo_core *core, uint32_t data)
 	return (data & ~PASSO_RUN_DEFINED) != 0u || beyond ? PASSO_VERDICT_BAD_VALUE : PASSO_VERDICT_OK;
 }
 
-static bool in_tables(uint16_t address)
-{
-	return address >= PASSO_ADDRESS_COSINE_BASE;
-}
-
 struct passo_response passo_registers_respond(const struct passo_core *core)
 {
 	const struct passo_bus *bus = &core->link.bus;
@@ -126,7 +121,7 @@ struct passo_response passo_registers_respond(const struct passo_core *core)
 
 	if (!bus->check && !bus->read)
 		return response;
-	if (in_tables(bus->address)) {
+	if (passo_bank_at(bus->address) != 0u) {
 		response.claim = true;
 		if (bus->check)
 			response.refusal = bus->push             ? PASSO_VERDICT_BAD_OPERATION
@@ -159,11 +154,9 @@ void passo_registers_clock(struct passo_core *core)
 		registers->wait_sync = word.wait_sync;
 		registers->status_channel = word.status_channel;
 	}
+	const unsigned bank = bus->check || bus->write ? passo_bank_at(bus->address) : 0u;
 	core->tables.wanted =
-	    !(bus->frame && !bus->commit) && (core->tables.wanted || (bus->check && in_tables(bus->address)));
-	if (bus->write && in_tables(bus->address)) {
-		const unsigned place = bus->address - PASSO_ADDRESS_COSINE_BASE;
-		core->tables.points[place / PASSO_TABLE_POINTS][place % PASSO_TABLE_POINTS] =
-		    (uint16_t)bus->data;
-	}
+	    !(bus->frame && !bus->commit) && (core->tables.wanted || (bus->check && bank != 0u));
+	if (bus->write && bank != 0u)
+		core->tables.points[bank - 1u][bus->address % PASSO_BANK_POINTS] = (uint16_t)bus->data;
 }

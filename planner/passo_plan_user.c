@@ -3,6 +3,7 @@
  */
 #include "passo_math.h"
 #include "passo_plan_draft.h"
+#include "passo_shapes.h"
 
 static const int32_t ONE = 65536;
 
@@ -62,7 +63,7 @@ static uint32_t start_draft(struct passo_draft *draft, const struct passo_machin
 	enum passo_plan_error error = passo_draft_start(draft, machine, steps, PASSO_PROFILE_LINEAR);
 	if (error != PASSO_PLAN_OK)
 		return error;
-	if (shape->bank < PASSO_SHAPE_COSINE || shape->bank > PASSO_SHAPE_EASE)
+	if (shape->bank == PASSO_SHAPE_LINEAR || (unsigned)shape->bank > PASSO_BANKS)
 		return PASSO_PLAN_BAD_BANK;
 	struct passo_table_facts facts;
 	uint32_t refused = passo_table_check(shape->table, &facts);

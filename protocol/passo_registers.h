@@ -78,7 +78,8 @@
 #define PASSO_IDENTIFICATION_BITS    32u
 #define PASSO_IDENTIFICATION_RESET   0x5041534Fu
 
-/* Core: Version. Version of the register map and the link. */
+/* Core: Version. Version of the register map and the link. That of the release is in the file VERSION of
+ * the repository. */
 #define PASSO_ADDRESS_VERSION     0x001u
 #define PASSO_VERSION_PATCH_LSB   0u
 #define PASSO_VERSION_PATCH_BITS  8u

@@ -3,7 +3,9 @@
  */
 #include "passo_shapes.h"
 
-const uint16_t passo_shapes[3][256] = {
+#include "passo_registers.h"
+
+const uint16_t passo_shapes[PASSO_BANKS][PASSO_BANK_POINTS] = {
 	{ /* cosine */
 		    0,     2,    10,    22,    39,    62,    89,   121,   158,   200,   246,   298,
 		  355,   416,   482,   554,   630,   710,   796,   887,   982,  1082,  1187,  1297,
@@ -77,3 +79,17 @@ const uint16_t passo_shapes[3][256] = {
 		63504, 64009, 64516, 65025,
 	},
 };
+
+const uint16_t passo_shape_addresses[PASSO_BANKS] = {
+	PASSO_ADDRESS_COSINE_BASE,
+	PASSO_ADDRESS_SIGMOID_BASE,
+	PASSO_ADDRESS_EASE_BASE,
+};
+
+unsigned passo_bank_at(uint32_t address)
+{
+	for (unsigned bank = 1; bank <= PASSO_BANKS; bank++)
+		if (address - passo_shape_addresses[bank - 1u] < PASSO_BANK_POINTS)
+			return bank;
+	return 0;
+}

@@ -6,8 +6,16 @@
 
 #include <stdint.h>
 
-/* Points of banks 1 to 3 (cosine, sigmoid, ease) in UQ0.16: point k is shape(k / 256) * 65536, rounded. Point
- * 256 is always 65536 and not stored. */
-extern const uint16_t passo_shapes[3][256];
+#define PASSO_BANKS 3u
+#define PASSO_BANK_POINTS 256u
+
+/* Points of banks 1 to 3 (cosine, sigmoid, ease) in UQ0.16: point k is shape(k / 256) * 65536,
+ * rounded. Point 256 is always 65536 and not stored. */
+extern const uint16_t passo_shapes[PASSO_BANKS][PASSO_BANK_POINTS];
+/* Address of the first point of each. */
+extern const uint16_t passo_shape_addresses[PASSO_BANKS];
+
+/* Returns the bank with a point at an address, 1 to 3, or 0. */
+unsigned passo_bank_at(uint32_t address);
 
 #endif

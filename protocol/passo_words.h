@@ -154,7 +154,7 @@ static inline struct passo_ramp_control passo_unpack_ramp_control(uint32_t word)
 	};
 }
 
-/* Version. Version of the register map and the link. */
+/* Version. Version of the register map and the link. That of the release is in the file VERSION of the repository. */
 struct passo_version {
 	uint8_t major; /* Major. */
 	uint8_t minor; /* Minor. */

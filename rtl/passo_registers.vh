@@ -77,7 +77,8 @@ localparam IDENTIFICATION_LSB     = 0;
 localparam IDENTIFICATION_BITS    = 32;
 localparam IDENTIFICATION_RESET   = 32'h5041534F;
 
-// Core: Version. Version of the register map and the link.
+// Core: Version. Version of the register map and the link. That of the release is in the file VERSION of
+// the repository.
 localparam ADDRESS_VERSION     = 12'h001;
 localparam VERSION_PATCH_LSB   = 0;
 localparam VERSION_PATCH_BITS  = 8;

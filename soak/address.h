@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #include "passo_registers.h"
+#include "passo_shapes.h"
 
 static inline uint16_t channel_address(unsigned channel, unsigned place)
 {
@@ -21,7 +22,8 @@ static inline uint16_t axis_address(unsigned channel, unsigned axis, unsigned pl
 
 static inline bool in_channel(uint32_t address)
 {
-	return address >= PASSO_ADDRESS_CHANNEL_BASE && address < PASSO_ADDRESS_COSINE_BASE;
+	return address >= PASSO_ADDRESS_CHANNEL_BASE
+	    && address < channel_address(PASSO_ADDRESS_CHANNEL_COUNT, 0);
 }
 
 /* Channel of a register; 0 for other registers. */

@@ -83,7 +83,7 @@ static void note_status(struct player *player, uint64_t begin)
 /* Whether a frame may be refused as BUSY: it requires rest, or a channel that is not stopped. */
 static bool may_be_busy(const struct action *action)
 {
-	if (action->operation == PASSO_OPERATION_PUSH || action->address >= PASSO_ADDRESS_COSINE_BASE)
+	if (action->operation == PASSO_OPERATION_PUSH || passo_bank_at(action->address) != 0u)
 		return true;
 	for (unsigned i = 0; i < action->length && in_channel(action->address); i++) {
 		const unsigned place = place_of(action->address) + i;

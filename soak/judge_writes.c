@@ -114,7 +114,7 @@ void judge_write(struct judge *judge, const struct world_fact *fact, const struc
 
 	if (address == PASSO_ADDRESS_RUN)
 		do_run(judge, value);
-	if (address >= PASSO_ADDRESS_COSINE_BASE)
+	if (passo_bank_at(address) != 0u)
 		for (unsigned i = 0; i < judge_channels(judge); i++)
 			judge_gate(judge, i, false);
 	if (!in_channel(address))

@@ -113,9 +113,10 @@ static struct action more_motion(struct plot *plot)
 
 static struct action table_points(struct plot *plot)
 {
-	const unsigned place = plot_draw(&plot->random, 3u * PASSO_TABLE_POINTS - 4u);
+	const unsigned place = plot_draw(&plot->random, PASSO_BANKS * PASSO_BANK_POINTS - 4u);
+	const unsigned first = passo_shape_addresses[place / PASSO_BANK_POINTS];
 	struct action action =
-	    plot_frame(plot, PASSO_OPERATION_WRITE, (uint16_t)(PASSO_ADDRESS_COSINE_BASE + place));
+	    plot_frame(plot, PASSO_OPERATION_WRITE, (uint16_t)(first + place % PASSO_BANK_POINTS));
 	const unsigned count = 1u + plot_draw(&plot->random, 4);
 
 	/* with any table a ramp stays between its ends */

@@ -43,8 +43,8 @@ void plot_draw_ramps(struct plot *plot, struct motion *motion, bool constant, un
 		for (unsigned i = 0; i < count; i++) {
 			const uint64_t end =
 			    plot_chance(random, 25) ? 0u : velocity - (velocity >> 3) * plot_draw(random, 6);
-			plot_add_ramp(
-			    motion, end, plot_draw(random, 7), (enum passo_shape)plot_draw(random, 4));
+			plot_add_ramp(motion, end, plot_draw(random, 7),
+			    (enum passo_shape)plot_draw(random, PASSO_BANKS + 1u));
 			motion->ramps[i].mirror = plot_chance(random, 20);
 		}
 	}

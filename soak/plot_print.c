@@ -19,7 +19,7 @@ static const char *register_name(uint16_t address)
 	static const char *const of_axis[] = {"PINS", "STEP_TIMING", "DIR_TIMING", "LOST_STEPS", "ENABLE"};
 	const unsigned place = place_of(address);
 
-	if (address >= PASSO_ADDRESS_COSINE_BASE)
+	if (passo_bank_at(address) != 0u)
 		return "TABLE";
 	if (address < PASSO_ADDRESS_CHANNEL_BASE)
 		return address == PASSO_ADDRESS_RUN ? "RUN" : "";

@@ -590,7 +590,7 @@ struct effect {
 	uint16_t times[AXES][4];
 	uint8_t pins[AXES];
 	uint64_t enable;
-	uint16_t points[3][PASSO_TABLE_POINTS];
+	uint16_t points[PASSO_BANKS][PASSO_BANK_POINTS];
 	uint32_t held_tables[3]; /* as the host believes */
 	uint32_t pulses[AXES];
 	bool stopped;

@@ -155,7 +155,7 @@ static void check_ramps(const struct passo_plan *plan, uint8_t tick_log2, enum k
 		expect(ramp->velocity_end <= PASSO_VELOCITY_MAX, "a velocity is above 1/2");
 		expect(ramp->velocity_end <= plan->velocity_peak || kind == RAMPS_ONLY,
 		    "the peak is not the highest");
-		expect(ramp->shape <= PASSO_SHAPE_EASE, "there is no such shape");
+		expect((unsigned)ramp->shape <= PASSO_BANKS, "there is no such shape");
 		expect(ramp->now == (kind == RAMPS_ONLY && i == 0), "NOW is wrong");
 		if (kind == WHOLE)
 			expect(ramp->last == final && (!final || ramp->velocity_end == 0),

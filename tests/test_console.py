@@ -13,7 +13,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import passo
 import pytest
+from passo import registers as r
 from passo.build import Parameters
 from passo.engine import model_engine, rtl_engine
 from passo.move_file import read_moves
@@ -573,6 +575,14 @@ def test_another_clock(bench: Bench) -> None:
     assert bench.ask("config clock_hz=4000000").startswith("error: MOVING: ")
     bench.ask("wait")
     assert lasted(bench) == pytest.approx([0.05 * 2_000_000], abs=64)
+
+
+def test_versions(bench: Bench) -> None:
+    """The console has that of the release, the core that of its register map and link."""
+    told = bench.tell("version")
+    assert told["console"] == passo.__version__
+    register_map = (r.VERSION_MAJOR_RESET, r.VERSION_MINOR_RESET, r.VERSION_PATCH_RESET)
+    assert told["core"] == "{}.{}.{}".format(*register_map)
 
 
 def test_table_is_checked(bench: Bench) -> None:

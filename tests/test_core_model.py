@@ -24,8 +24,8 @@ from tests.helpers.closed_form import (
     COSINE,
     EASE,
     HALF,
-    LINEAR,
     ONE,
+    SHAPES,
     SIGMOID,
     TABLES,
     Line,
@@ -89,13 +89,13 @@ def check_motion(lines: Sequence[Line], ramps: Sequence[Ramp], tick_log2: int = 
 def test_tables() -> None:
     """The tables are the formulas of the contract; cosine and sigmoid are odd-symmetric to the bit."""
     numbers = [int(n) for n in re.findall(r"\b(\d+)(?=,)", (paths.protocol / "passo_shapes.c").read_text())]
-    assert numbers == [point for bank in (COSINE, SIGMOID, EASE) for point in TABLES[bank][:256]]
+    assert numbers == [point for table in TABLES.values() for point in table[:256]]
     for bank in (COSINE, SIGMOID):
         assert all(TABLES[bank][k] + TABLES[bank][256 - k] == 65536 for k in range(257))
 
 
 @pytest.mark.parametrize("mirror", [False, True])
-@pytest.mark.parametrize("shape", [LINEAR, COSINE, SIGMOID, EASE])
+@pytest.mark.parametrize("shape", SHAPES)
 def test_each_shape_up_and_down(shape: int, mirror: bool) -> None:
     """A ramp up, a cruise and a ramp down in one shape."""
     top = ONE // 9 + 12345
@@ -109,7 +109,7 @@ def test_each_shape_up_and_down(shape: int, mirror: bool) -> None:
 
 
 @pytest.mark.parametrize("mirror", [False, True])
-@pytest.mark.parametrize("shape", [LINEAR, COSINE, SIGMOID, EASE])
+@pytest.mark.parametrize("shape", SHAPES)
 def test_velocity_of_every_tick(shape: int, mirror: bool) -> None:
     """All 48 bits of it, for ramps of many lengths between velocities of all sizes."""
     rng = random.Random(f"{SEED}/{shape}/{mirror}")

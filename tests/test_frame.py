@@ -7,7 +7,7 @@ from itertools import product
 import pytest
 from passo import frame
 from passo.native import ffi, planner
-from passo.registers import Operation, Verdict
+from passo.registers import Operation, Shape, Verdict
 
 RANDOM = random.Random(1)
 
@@ -182,7 +182,7 @@ def test_ramp_words() -> None:
     for last in (0, 1):
         for now in (0, 1):
             for mirror in (0, 1):
-                for shape in range(4):
+                for shape in Shape:
                     ramp.last, ramp.now, ramp.mirror, ramp.shape = last, now, mirror, shape
                     control = 0x7FFF0000 | shape << 4 | mirror << 2 | now << 1 | last
                     expected = [control, 0x12345678, 0xFEDCBA98, 0x0000FFFF, 0x89ABCDEF]

@@ -37,6 +37,7 @@ from tests.helpers.plans import (
     LINEAR,
     MOVE_CLOCKS,
     ONE,
+    PROFILES,
     SIGMOID,
     SUBSTEPS_MAX,
     UNIT,
@@ -218,7 +219,7 @@ def some_in_time(rng: random.Random, machine: Machine) -> InTime:
     ramp = rng.choice((0, total // 2, rng.randint(0, total // 2), int(log_uniform(rng, 1, total + 1)) // 2))
     fastest = max(1, (total - ramp - 2 * machine.tick) // 2)
     longest = min(SUBSTEPS_MAX, rng.choice((1, fastest, int(log_uniform(rng, 1, fastest + 1)))))
-    return InTime(some_steps(rng, longest), rng.randrange(4), total, ramp)
+    return InTime(some_steps(rng, longest), rng.choice(PROFILES), total, ramp)
 
 
 def some_by_speed(rng: random.Random, machine: Machine) -> BySpeed:
@@ -243,7 +244,7 @@ def some_by_speed(rng: random.Random, machine: Machine) -> BySpeed:
             {"ramp_clocks": int(log_uniform(rng, 1, 1e3 * machine.clock_hz)), "deceleration": acceleration()},
         )
     )
-    profile = rng.randrange(4)
+    profile = rng.choice(PROFILES)
     return BySpeed(some_steps(rng, longest), profile, speed, end_speed(), end_speed(), **ramps)
 
 
@@ -273,12 +274,12 @@ def test_random_moves(c: Any, form: str) -> None:
 def test_ramps_of_half_the_time(c: Any) -> None:
     """For any times and ticks, the ramps fit and the time is exact."""
     machine = Machine()
-    for profile, total in product(range(4), range(machine.tick, 20 * machine.tick, 5)):
+    for profile, total in product(PROFILES, range(machine.tick, 20 * machine.tick, 5)):
         for ramp in {total // 2, total // 2 - 1, total // 3, 0}:
             plan_and_check(c, machine, InTime((3,), profile, total, max(0, ramp)))
 
 
-@pytest.mark.parametrize("profile", range(4))
+@pytest.mark.parametrize("profile", PROFILES)
 @pytest.mark.parametrize("ticks", [2**24 - 2, 2**24, 2**24 + 2, 2**25 + 4, 2**32 - 2])
 @pytest.mark.parametrize("steps", [1, 12_345_678])
 def test_long_equal_ramps(c: Any, steps: int, ticks: int, profile: int) -> None:
@@ -287,7 +288,7 @@ def test_long_equal_ramps(c: Any, steps: int, ticks: int, profile: int) -> None:
     assert abs(plan_and_check(c, machine, move)) < Fraction(1, 100)
 
 
-@pytest.mark.parametrize("profile", range(4))
+@pytest.mark.parametrize("profile", PROFILES)
 @pytest.mark.parametrize("seconds", [0.01, 0.1, 1.0])
 def test_unequal_ramps(c: Any, seconds: float, profile: int) -> None:
     """Full speed is half the clock, so the error in substeps is as large as it gets."""
@@ -299,7 +300,7 @@ def test_unequal_ramps(c: Any, seconds: float, profile: int) -> None:
     print(f"{seconds} s: {float(error):.6f} substeps")
 
 
-@pytest.mark.parametrize("profile", range(4))
+@pytest.mark.parametrize("profile", PROFILES)
 @pytest.mark.parametrize("steps", [1, SUBSTEPS_MAX])
 def test_two_days(c: Any, steps: int, profile: int) -> None:
     machine = Machine(tick_log2=16)
@@ -314,7 +315,7 @@ def test_half_the_clock(c: Any) -> None:
     assert abs(plan_and_check(c, machine, jump)) < Fraction(1, 1000)
     assert make_plan(c, machine, jump).c.oversampling == 1
     speed = machine.clock_hz * UNIT // 2
-    for profile, start, acceleration in product(range(4), (0, speed // 2, speed), (q32(1e5), q32(4e9))):
+    for profile, start, acceleration in product(PROFILES, (0, speed // 2, speed), (q32(1e5), q32(4e9))):
         for steps in (1, 64, 65, 1_000_000, longest):
             plan_and_check(c, machine, BySpeed((steps,), profile, speed, start, start, acceleration))
     for steps, name in ((64, ""), (65, "TOO_FAST")):
@@ -323,7 +324,7 @@ def test_half_the_clock(c: Any) -> None:
 
 
 def test_one_step_per_minute(c: Any) -> None:
-    for clock_hz, profile, steps in product((1_000_000, 100_000_000), range(4), (1, 5, 60)):
+    for clock_hz, profile, steps in product((1_000_000, 100_000_000), PROFILES, (1, 5, 60)):
         speed = q32(1 / 60)
         for ends in (0, speed // 2, speed):
             move = BySpeed((steps, 1, 0), profile, speed, ends, ends, acceleration=q32(1e-3))
@@ -335,7 +336,7 @@ def test_short_moves(c: Any) -> None:
     machine = Machine()
     seen = set()
     for profile, speed, acceleration, deceleration in product(
-        range(4),
+        PROFILES,
         (1_000, 200_000, 30_000_000),
         (50_000, 10_000_000, 4_000_000_000),
         (0, 70_000, 4_000_000_000),
@@ -385,7 +386,7 @@ def test_ramp_time_instead_of_acceleration(c: Any) -> None:
 
 REFUSED = {
     "BAD_CLOCK": [{"clock_hz": 0}, {"tick_log2": 6}, {"tick_log2": 17}, {"tick_log2": 255}],
-    "BAD_PROFILE": [{"profile": 4}, {"profile": 2**32 - 1}],
+    "BAD_PROFILE": [{"profile": len(PROFILES)}, {"profile": 2**32 - 1}],
     "NO_STEPS": [{"steps": (0,)}, {"steps": (0,) * 8}],
     "TOO_MANY_STEPS": [
         {"steps": (SUBSTEPS_MAX + 1,)},
@@ -482,14 +483,14 @@ def small_move(rng: random.Random, machine: Machine, ticks: int, steps: int) -> 
         total = int(log_uniform(rng, machine.tick, ticks * machine.tick))
         ramp = rng.choice((0, total // 2, rng.randint(0, total // 2)))
         longest = max(1, min(int(log_uniform(rng, 1, steps)), (total - ramp - 2 * machine.tick) // 2))
-        return InTime(some_steps(rng, longest), rng.randrange(4), total, ramp)
+        return InTime(some_steps(rng, longest), rng.choice(PROFILES), total, ramp)
     speed = log_uniform(rng, machine.clock_hz / machine.tick / 100, machine.clock_hz / 2)
     seconds = log_uniform(rng, machine.tick, ticks * machine.tick / 6) / machine.clock_hz
     longest = max(1, min(steps, int(speed * seconds)))
     acceleration, deceleration = (q32(speed / seconds * log_uniform(rng, 0.5, 10)) for _ in range(2))
     ends = (q32(speed * rng.choice((0, rng.random(), 1))) for _ in range(2))
     ramps = (min(2**64 - 1, n) for n in (acceleration, deceleration))
-    return BySpeed(some_steps(rng, longest), rng.randrange(4), q32(speed), *ends, *ramps)
+    return BySpeed(some_steps(rng, longest), rng.choice(PROFILES), q32(speed), *ends, *ramps)
 
 
 def test_closed_forms_are_the_recurrences(c: Any) -> None:

@@ -18,6 +18,7 @@ from tests.helpers.core_steps import step_errors, step_substeps
 from tests.helpers.plan_checks import check_plan, round_half_up
 from tests.helpers.plans import (
     JERK,
+    PROFILES,
     SUBSTEPS_MAX,
     UNIT,
     Machine,
@@ -70,7 +71,7 @@ def test_longest_ramp(c: Any, clock_hz: int) -> None:
     assert 0 <= Fraction(4, 10) - Fraction(3200, 19200) - Fraction(clocks, clock_hz) < Fraction(1, clock_hz)
     assert c.passo_longest_ramp(clock_hz, 3200, clock_hz // 10, q32(19200)) == 0
     for seconds, speed in ((0.4, 19200), (0.5, 19200), (0.4, 8400), (0.4, 8000)):
-        for profile in range(4):
+        for profile in PROFILES:
             total = round(seconds * clock_hz)
             fields = {
                 "steps": (3200, -7),
@@ -97,7 +98,7 @@ def test_random_times_and_speeds(c: Any, form: str) -> None:
         longest = max(1, min(SUBSTEPS_MAX, int(log_uniform(rng, 1, flat / 2 + 1))))
         speed = int(longest * machine.clock_hz / flat * UNIT * (1 + 2**-30))
         ramp = rng.choice((0, int(flat), rng.randint(0, int(flat))))
-        fields = {"steps": some_steps(rng, longest), "profile": rng.randrange(4), "speed": speed}
+        fields = {"steps": some_steps(rng, longest), "profile": rng.choice(PROFILES), "speed": speed}
         if form == "below_speed":
             fields["total_clocks"] = int(flat) + ramp + rng.randint(0, 2 * machine.tick)
         else:
@@ -116,7 +117,7 @@ def test_random_times_and_speeds(c: Any, form: str) -> None:
 def test_ramps_from_none_to_half(c: Any) -> None:
     """Any ramp time from 0 to n / f gives that ramp; the curve is kept to a fiftieth of a step."""
     machine, worst = Machine(16_000_000), 0.0
-    for profile in range(4):
+    for profile in PROFILES:
         for part in (0, 0.001, 0.25, 0.5, 0.999, 1):
             ramp = int(part * 16_000_000 * 3200 / 20_000)
             fields = {"steps": (3200,), "profile": profile, "speed": q32(20_000), "ramp_clocks": ramp}
@@ -193,7 +194,7 @@ REFUSED = [
     ("below_speed", {"speed": 0}, "NO_SPEED"),
     ("below_speed", {"total_clocks": 127}, "NO_TIME"),
     ("below_speed", {"total_clocks": 2**64 - 1}, "TOO_LONG"),
-    ("below_speed", {"profile": 4}, "BAD_PROFILE"),
+    ("below_speed", {"profile": len(PROFILES)}, "BAD_PROFILE"),
     ("below_speed", {"steps": (0, 0)}, "NO_STEPS"),
     ("below_speed", {"steps": (600_000,), "speed": 2**64 - 1}, "TOO_FAST"),
     ("at_speed", {"speed": 0}, "NO_SPEED"),

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 from passo.native import ffi
+from passo.registers import Shape
 
 from tests.helpers.plan_checks import DISTANCE_TOLERANCE
 from tests.helpers.plans import (
@@ -182,7 +183,7 @@ def test_random_moves_by_speed(c: Any) -> None:
     ("bank", "table", "name"),
     [
         (0, points(SHAPES["cubic"]), "BAD_BANK"),
-        (4, points(SHAPES["cubic"]), "BAD_BANK"),
+        (len(Shape), points(SHAPES["cubic"]), "BAD_BANK"),
         (2, [1] * 256, "TABLE_START"),
         (2, [0, 2, 1, *[5] * 253], "TABLE_FALLS"),
     ],

@@ -203,7 +203,7 @@ def test_verilog_and_c_agree(verilog: dict):
 
 
 def test_verilog_and_python_agree(verilog: dict):
-    python = {name: value for name, value in vars(registers).items() if name.isupper()}
+    python = {n: value for n, value in vars(registers).items() if n.isupper() and isinstance(value, int)}
     for enum in ENUMS:
         python |= {f"{enum.__name__}_{member.name}".upper(): int(member) for member in enum}
         assert all(member.description.endswith(".") for member in enum)

@@ -16,7 +16,8 @@ Names are the same in all languages; C puts PASSO_ in front:
     HEADER_SEQUENCE_LSB     the field of a word that is no register
 
 Each register of several fields, and each word, also has a struct passo_<name> with passo_pack_<name>() and
-passo_unpack_<name>() in C, and a class with pack() and unpack() in Python.
+passo_unpack_<name>() in C, and a class with pack() and unpack() in Python. Python also has the TABLE of all
+registers.
 
 A field that is alone in its register and has its name does not repeat it: CHANNEL_RATE_TARGET_LSB.
 """
@@ -408,8 +409,24 @@ PYTHON_HEAD = f"""\
 from dataclasses import dataclass
 from typing import ClassVar
 
+from passo.register_table import Field, Register
 from passo.register_word import DescribedEnum, Word
 """
+
+
+def python_table(core: Block) -> list[str]:
+    """All registers of all blocks."""
+    lines = ["", "# All registers, once each.", "# fmt: off", "TABLE = ("]
+    for block in core.walk():
+        for register in block.registers:
+            name, word = block.field_prefix + register.name, digits(register.word, block.address_bits)
+            lines.append(f'    Register("{name}", "{block.name}", 0x{word}, {register.count or 1}, (')
+            for field in register.fields:
+                reset = None if field.reset is None else f"0x{digits(field.reset, field.bits)}"
+                arguments = f'"{field.name}", {field.lsb}, {field.bits}, "{field.access}", {reset}'
+                lines.append(f"        Field({arguments}),")
+            lines.append("    )),")
+    return [*lines, ")", "# fmt: on"]
 
 
 def python_type(field: Field) -> str:
@@ -450,6 +467,7 @@ def write_python(source: Source) -> str:
     for comment, constants in constant_groups(source):
         lines += ["", *(f"# {line}" for line in wrap(comment, 105))]
         lines += [f"{c.name} = {c.literal('0x')}" for c in constants]
+    lines += python_table(source.core)
     return "\n".join([*lines, ""])
 
 

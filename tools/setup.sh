@@ -75,7 +75,7 @@ PYTHON
 }
 
 # The absolute path is part of the key because a .venv does not survive being moved.
-key=$(cat requirements.txt pyproject.toml tools/setup.sh - <<<"$root" | sha256sum)
+key=$(cat requirements.txt pyproject.toml VERSION tools/setup.sh - <<<"$root" | sha256sum)
 
 venv_is_current() {
     [ -f "$stamp" ] && [ "$(<"$stamp")" = "$key" ] && .venv/bin/python -c 'import pip' 2>/dev/null

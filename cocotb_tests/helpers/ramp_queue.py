@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from random import Random
 
 from cocotb.handle import HierarchyObject
+from passo.registers import Shape
 
 from cocotb_tests.helpers.bench import Bench, Clocks, PushBus, read
 
@@ -17,7 +18,7 @@ UNUSED = 6  # half word
 def random_ramp(random: Random, now: bool = False) -> list[int]:
     """Words of a good ramp."""
     velocity = random.choice((0, 1 << 47, random.randrange(1 << 47)))
-    control = random.choice((0, 1)) | now << 1 | random.randrange(2) << 2 | random.randrange(4) << 4
+    control = random.choice((0, 1)) | now << 1 | random.randrange(2) << 2 | random.choice(tuple(Shape)) << 4
     step = random.randrange(1 << 48)
     return [
         velocity >> 32 << 16 | control,

@@ -2,21 +2,13 @@
 """Shapes in integers, from the formulas of docs/architecture.md."""
 
 from collections.abc import Sequence
-from enum import IntEnum
 from math import cos, exp, pi
+
+from passo.registers import Shape
 
 ONE = 1 << 24  # of s
 PROGRESS_ONE = 1 << 49
 POINTS = 256
-
-
-class Shape(IntEnum):
-    """Numbers of the shapes."""
-
-    LINEAR = 0
-    COSINE = 1
-    SIGMOID = 2
-    EASE = 3
 
 
 def _logistic(x: float) -> float:

@@ -1,3 +1,5 @@
 """Simulation package of the Passo step-pulse generator core."""
 
-__version__ = "0.1.0"
+from pathlib import Path
+
+__version__ = (Path(__file__).parents[2] / "VERSION").read_text(encoding="utf-8").strip()

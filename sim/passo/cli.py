@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 
+from passo import __version__
 from passo.build import Parameters
 from passo.compiler import BuildError
 from passo.console import progress
@@ -43,6 +44,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="passo", description="Simulate the Passo step-pulse generator.")
+    parser.add_argument("--version", action="version", version=f"passo {__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     run = commands.add_parser("run", help="run the moves of a file and check every edge")
     run.set_defaults(command=_run)

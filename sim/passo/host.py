@@ -20,8 +20,8 @@ class HostError(Exception):
 
 
 def load_table(link: Link, bank: int, points: Sequence[int]) -> None:
-    """Load a table into a bank (1 to 3); no motion may be prepared or running."""
-    address = r.ADDRESS_COSINE_BASE + (bank - 1) * len(points)
+    """Load a table into a bank (from 1); no motion may be prepared or running."""
+    address = getattr(r, f"ADDRESS_{r.Shape(bank).name}_BASE")
     for k in range(0, len(points), frame.PAYLOAD_MAX):
         link.write(address + k, *points[k : k + frame.PAYLOAD_MAX])
 

@@ -13,6 +13,7 @@ from passo.toolchain import paths
 
 HEADERS = (
     paths.protocol / "passo_registers.h",
+    paths.protocol / "passo_shapes.h",
     paths.protocol / "passo_limits.h",
     paths.protocol / "passo_command.h",
     paths.protocol / "passo_crc.h",

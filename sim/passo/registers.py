@@ -5,6 +5,7 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
+from passo.register_table import Field, Register
 from passo.register_word import DescribedEnum, Word
 
 
@@ -468,7 +469,8 @@ IDENTIFICATION_LSB = 0
 IDENTIFICATION_BITS = 32
 IDENTIFICATION_RESET = 0x5041534F
 
-# Core: Version. Version of the register map and the link.
+# Core: Version. Version of the register map and the link. That of the release is in the file VERSION of
+# the repository.
 ADDRESS_VERSION = 0x001
 VERSION_PATCH_LSB = 0
 VERSION_PATCH_BITS = 8
@@ -726,3 +728,115 @@ AXIS_ENABLE_LSB = 0
 AXIS_ENABLE_BITS = 1
 AXIS_ENABLE_RESET = 0x0
 AXIS_ENABLE_DEFINED = 0x00000001
+
+# All registers, once each.
+# fmt: off
+TABLE = (
+    Register("IDENTIFICATION", "CORE", 0x000, 1, (
+        Field("IDENTIFICATION", 0, 32, "r", 0x5041534F),
+    )),
+    Register("VERSION", "CORE", 0x001, 1, (
+        Field("PATCH", 0, 8, "r", 0x00),
+        Field("MINOR", 8, 8, "r", 0x01),
+        Field("MAJOR", 16, 8, "r", 0x00),
+    )),
+    Register("PARAMETERS", "CORE", 0x002, 1, (
+        Field("CHANNELS", 0, 4, "r", None),
+        Field("AXES", 4, 4, "r", None),
+        Field("TICK_LOG2", 8, 5, "r", None),
+        Field("LINE_QUEUE_LOG2", 16, 5, "r", None),
+        Field("RAMP_QUEUE_LOG2", 24, 5, "r", None),
+    )),
+    Register("RUN", "CORE", 0x003, 1, (
+        Field("RUN", 0, 8, "rw", 0x00),
+        Field("WAIT_SYNC", 8, 8, "rw", 0x00),
+        Field("STATUS_CHANNEL", 16, 3, "rw", 0x0),
+    )),
+    Register("REFUSALS_0", "CORE", 0x004, 1, (
+        Field("BAD_CRC", 0, 8, "r", 0x00),
+        Field("BAD_LENGTH", 8, 8, "r", 0x00),
+        Field("BAD_OPERATION", 16, 8, "r", 0x00),
+        Field("UNKNOWN_ADDRESS", 24, 8, "r", 0x00),
+    )),
+    Register("REFUSALS_1", "CORE", 0x005, 1, (
+        Field("READ_ONLY", 0, 8, "r", 0x00),
+        Field("QUEUE_FULL", 8, 8, "r", 0x00),
+        Field("BUSY", 16, 8, "r", 0x00),
+        Field("BAD_VALUE", 24, 8, "r", 0x00),
+    )),
+    Register("COSINE", "CORE", 0xD00, 256, (
+        Field("POINT", 0, 16, "w", None),
+    )),
+    Register("SIGMOID", "CORE", 0xE00, 256, (
+        Field("POINT", 0, 16, "w", None),
+    )),
+    Register("EASE", "CORE", 0xF00, 256, (
+        Field("POINT", 0, 16, "w", None),
+    )),
+    Register("CHANNEL_COMMAND", "CHANNEL", 0x00, 1, (
+        Field("STOP", 0, 1, "w", 0x0),
+        Field("ABORT", 1, 1, "w", 0x0),
+        Field("CLEAR", 2, 1, "w", 0x0),
+        Field("ZERO", 3, 1, "w", 0x0),
+    )),
+    Register("CHANNEL_RATE_TARGET", "CHANNEL", 0x01, 1, (
+        Field("RATE_TARGET", 0, 17, "w", 0x10000),
+    )),
+    Register("CHANNEL_RATE_SLEW", "CHANNEL", 0x02, 1, (
+        Field("RATE_SLEW", 0, 17, "w", 0x00400),
+    )),
+    Register("CHANNEL_STOP_SLEW", "CHANNEL", 0x03, 1, (
+        Field("STOP_SLEW", 0, 17, "w", 0x00400),
+    )),
+    Register("CHANNEL_DRAIN_VELOCITY", "CHANNEL", 0x04, 1, (
+        Field("DRAIN_VELOCITY", 0, 32, "w", 0x01000000),
+    )),
+    Register("CHANNEL_STATE", "CHANNEL", 0x08, 1, (
+        Field("STATE", 0, 3, "r", 0x0),
+        Field("QUIET", 3, 1, "r", 0x1),
+        Field("CAUSE", 4, 3, "r", 0x0),
+        Field("STOPPING", 7, 1, "r", 0x0),
+        Field("OVERRUN", 8, 8, "r", 0x00),
+        Field("DRAINED", 16, 16, "r", 0x0000),
+    )),
+    Register("CHANNEL_RATE", "CHANNEL", 0x09, 1, (
+        Field("RATE", 0, 17, "r", 0x10000),
+    )),
+    Register("CHANNEL_ROOM", "CHANNEL", 0x0A, 1, (
+        Field("RAMP_ROOM", 0, 16, "r", None),
+        Field("LINE_ROOM", 16, 16, "r", None),
+    )),
+    Register("CHANNEL_VELOCITY", "CHANNEL", 0x0B, 1, (
+        Field("VELOCITY", 0, 32, "r", 0x00000000),
+    )),
+    Register("CHANNEL_LINE", "CHANNEL", 0x20, 1, (
+        Field("LINE", 0, 32, "w", None),
+    )),
+    Register("CHANNEL_RAMP", "CHANNEL", 0x21, 1, (
+        Field("RAMP", 0, 32, "w", None),
+    )),
+    Register("CHANNEL_POSITION", "CHANNEL", 0x40, 8, (
+        Field("POSITION", 0, 32, "r", 0x00000000),
+    )),
+    Register("AXIS_PINS", "AXIS", 0x0, 1, (
+        Field("STEP_INVERTED", 1, 1, "w", 0x0),
+        Field("DIRECTION_INVERTED", 2, 1, "w", 0x0),
+        Field("ENABLE_INVERTED", 3, 1, "w", 0x0),
+        Field("BOTH_EDGES", 4, 1, "w", 0x0),
+    )),
+    Register("AXIS_STEP_TIMING", "AXIS", 0x1, 1, (
+        Field("STEP_LOW", 0, 16, "w", 0x0001),
+        Field("STEP_HIGH", 16, 16, "w", 0x0001),
+    )),
+    Register("AXIS_DIR_TIMING", "AXIS", 0x2, 1, (
+        Field("DIR_HOLD", 0, 16, "w", 0x0001),
+        Field("DIR_SETUP", 16, 16, "w", 0x0001),
+    )),
+    Register("AXIS_LOST_STEPS", "AXIS", 0x3, 1, (
+        Field("LOST", 0, 4, "r", 0x0),
+    )),
+    Register("AXIS_ENABLE", "AXIS", 0x4, 1, (
+        Field("ENABLE", 0, 1, "w", 0x0),
+    )),
+)
+# fmt: on

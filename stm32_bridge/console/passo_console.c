@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "passo_commands.h"
+#include "passo_release.h"
 
 #define BACKSPACE '\b'
 #define DELETE 0x7F
@@ -27,7 +28,7 @@ void passo_console_start(struct passo_console *console, const struct passo_sink 
 	console->baud = baud;
 	console->hold_microseconds = console->stop_microseconds = HOLD_MICROSECONDS;
 	passo_commands_reset_axes(console);
-	passo_say(sink, "note: Passo console " PASSO_CONSOLE_VERSION "; help lists the commands\n");
+	passo_say(sink, "note: Passo console " PASSO_RELEASE "; help lists the commands\n");
 	passo_say_error_note(console, passo_commands_open(console));
 }
 

@@ -11,8 +11,6 @@
 #include "passo.h"
 #include "passo_forms.h"
 
-#define PASSO_CONSOLE_VERSION "0.1.0"
-
 /* Maximum length of a line, without its end. */
 #define PASSO_LINE_MAX 255u
 

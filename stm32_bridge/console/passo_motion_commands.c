@@ -2,6 +2,7 @@
  * Commands for motion and readings.
  */
 #include "passo_call.h"
+#include "passo_release.h"
 #include "passo_words.h"
 
 bool passo_run_move(const struct passo_call *call)
@@ -142,7 +143,7 @@ bool passo_run_version(const struct passo_call *call)
 	if (!passo_answer(call, passo_host_read(&console->host, PASSO_ADDRESS_VERSION, &word, 1)))
 		return false;
 	const struct passo_version core = passo_unpack_version(word);
-	passo_say(&console->sink, " console=" PASSO_CONSOLE_VERSION " core=%u.%u.%u axes=%u clock_hz=%u",
+	passo_say(&console->sink, " console=" PASSO_RELEASE " core=%u.%u.%u axes=%u clock_hz=%u",
 	    (uint32_t)core.major, (uint32_t)core.minor, (uint32_t)core.patch, (uint32_t)call->reading->axes,
 	    console->clock_hz);
 	return true;

@@ -27,6 +27,7 @@ extern "C" {
 
 #include "passo_error.h"
 #include "passo_frame.h"
+#include "passo_shapes.h"
 
 /* Default number of tries of a frame, including the first. */
 #define PASSO_TRIES 8u
@@ -85,9 +86,9 @@ struct passo_host {
 	bool proving; /* the current frame was executed; verifying that the core has not been reset */
 	/* Free queue entries of the status channel, a lower bound; 255: 255 or more. */
 	uint8_t line_room, ramp_room;
-	enum passo_error *posted; /* destination of the posted frame's result; null: none */
-	uint32_t table[3];        /* contents of the table banks; see passo_table.c */
-	size_t words;             /* length of the current frame */
+	enum passo_error *posted;    /* destination of the posted frame's result; null: none */
+	uint32_t table[PASSO_BANKS]; /* contents of the table banks; see passo_table.c */
+	size_t words;                /* length of the current frame */
 	uint32_t send[PASSO_FRAME_WORDS_MAX], receive[PASSO_FRAME_WORDS_MAX];
 };
 

@@ -59,8 +59,8 @@ static bool is_line(const struct passo *passo, const struct passo_line *line)
 
 static bool is_ramp(const struct passo_ramp *ramp)
 {
-	return !ramp->now && ramp->velocity_end <= PASSO_VELOCITY_MAX
-	    && (unsigned)ramp->shape <= PASSO_SHAPE_EASE && ramp->progress_step <= PASSO_PROGRESS_STEP_MAX;
+	return !ramp->now && ramp->velocity_end <= PASSO_VELOCITY_MAX && (unsigned)ramp->shape <= PASSO_BANKS
+	    && ramp->progress_step <= PASSO_PROGRESS_STEP_MAX;
 }
 
 enum passo_error passo_driver_take_lines(struct passo *passo, size_t *length)

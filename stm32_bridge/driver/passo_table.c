@@ -5,7 +5,6 @@
  * unknown.
  */
 #include "passo_driver.h"
-#include "passo_shapes.h"
 
 /* Contents of a bank: unknown, the points after reset, an alpha (below 2^31), or the CRC of user-defined
  * points. */
@@ -16,7 +15,7 @@
 
 void passo_driver_tables_fresh(struct passo_host *host)
 {
-	for (unsigned bank = 0; bank < 3u; bank++)
+	for (unsigned bank = 0; bank < PASSO_BANKS; bank++)
 		host->table[bank] = HOLDS_RESET;
 }
 
@@ -33,7 +32,7 @@ static uint32_t user_id(const uint16_t *points)
 
 static enum passo_error load(struct passo_host *host, unsigned bank, const uint16_t *points)
 {
-	const uint16_t address = (uint16_t)(PASSO_ADDRESS_COSINE_BASE + (bank - 1u) * PASSO_TABLE_SIZE);
+	const uint16_t address = passo_shape_addresses[bank - 1u];
 	uint32_t words[BLOCK];
 
 	for (unsigned k = 0; k < PASSO_TABLE_SIZE; k += BLOCK) {
@@ -105,7 +104,7 @@ enum passo_error passo_load_table(struct passo *passo, enum passo_shape bank, co
 
 	if (error != PASSO_OK)
 		return error;
-	if (bank != PASSO_SHAPE_COSINE && bank != PASSO_SHAPE_SIGMOID && bank != PASSO_SHAPE_EASE)
+	if (bank == PASSO_SHAPE_LINEAR || (unsigned)bank > PASSO_BANKS)
 		return PASSO_ERROR_ARGUMENT;
 	if (points && passo_table_check(points, &facts) != PASSO_PLAN_OK)
 		return PASSO_ERROR_ARGUMENT;

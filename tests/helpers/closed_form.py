@@ -5,15 +5,17 @@ For a motion at rate 1.0 whose pins never make a step wait. Nothing here is shar
 tables come from their formulas, and a substep's clock is a division instead of a sum clock by clock.
 """
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+
+from passo.registers import Shape
+
+from cocotb_tests.helpers.shapes import loaded_table
 
 ONE = 1 << 48
 HALF = 1 << 47
 SHAPE_ONE = 1 << 24
-LINEAR, COSINE, SIGMOID, EASE = range(4)
-SIGMOID_A = 5
+LINEAR, COSINE, SIGMOID, EASE = Shape.LINEAR, Shape.COSINE, Shape.SIGMOID, Shape.EASE
 
 
 @dataclass(frozen=True)
@@ -47,20 +49,8 @@ class Ramp:
         return min((2 * ONE + self.ticks) // (2 * self.ticks), ONE - 1)
 
 
-def _logistic(x: float) -> float:
-    return 1 / (1 + math.exp(-x))
-
-
-def _sigmoid(u: float) -> float:
-    low, high = _logistic(-SIGMOID_A), _logistic(SIGMOID_A)
-    return (_logistic(SIGMOID_A * (2 * u - 1)) - low) / (high - low)
-
-
-TABLES = {
-    COSINE: [round(32768 * (1 - math.cos(math.pi * k / 256))) for k in range(257)],
-    SIGMOID: [round(65536 * _sigmoid(k / 256)) for k in range(257)],
-    EASE: [k * k for k in range(257)],
-}
+SHAPES = tuple(Shape)
+TABLES = {shape: loaded_table(shape) for shape in SHAPES if shape != LINEAR}
 
 
 def shape(number: int, progress: int) -> int:

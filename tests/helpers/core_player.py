@@ -14,7 +14,7 @@ from passo.toolchain import paths
 
 HERE = Path(__file__).parent
 HEADERS = [
-    *(paths.protocol / f"passo_{name}.h" for name in ("registers", "command")),
+    *(paths.protocol / f"passo_{name}.h" for name in ("registers", "shapes", "command")),
     *(paths.model / f"passo_{name}.h" for name in ("model", "core")),
     HERE / "core_player.h",
 ]

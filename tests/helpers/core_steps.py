@@ -4,16 +4,19 @@
 """
 
 import importlib.util
-import math
 from fractions import Fraction
 from functools import cache
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from passo.registers import Shape
 from passo.toolchain import paths
 
-from tests.helpers.plans import AXES, COSINE, EASE, LINEAR, ONE, SIGMOID, Plan, Ramp
+from benchmarks.ideal import shape_area
+from tests.helpers.plans import AXES, EASE, LINEAR, ONE, Plan, Ramp
 
+SIGMOID_ALPHA = 5
 EXACT_TICKS = 1 << 21  # longer ramps are not summed tick by tick
 
 
@@ -148,16 +151,10 @@ def run_clock_by_clock(plan: Plan) -> list[list[int]]:
 
 def shape_integral(ramp_shape: int, mirror: bool, u: np.ndarray) -> np.ndarray:
     """Integral of the ideal shape from 0 to u."""
-    if ramp_shape == LINEAR:
-        return u * u / 2
-    if ramp_shape == COSINE:
-        return u / 2 - np.sin(np.pi * u) / (2 * np.pi)
-    if ramp_shape == SIGMOID:
-        a, low, high = 5, 1 / (1 + math.exp(5)), 1 / (1 + math.exp(-5))
-        return (np.logaddexp(0, a * (2 * u - 1)) - np.logaddexp(0, -a)) / (2 * a * (high - low)) - u * low / (
-            high - low
-        )
-    return u - (1 - (1 - u) ** 3) / 3 if mirror else u**3 / 3
+    name = Shape(ramp_shape).name.lower()
+    if not mirror:
+        return shape_area(name, SIGMOID_ALPHA, u)
+    return u - (shape_area(name, SIGMOID_ALPHA, np.ones_like(u)) - shape_area(name, SIGMOID_ALPHA, 1 - u))
 
 
 def ideal_path(plan: Plan, clocks: np.ndarray) -> np.ndarray:
@@ -188,7 +185,11 @@ def table_deviation(ramp_shape: int) -> float:
     )
 
 
-STEEPEST = {LINEAR: 1.0, COSINE: math.pi / 2, SIGMOID: 2.6, EASE: 2.0}
+@cache
+def steepest(ramp_shape: int) -> float:
+    """The steepest that a shape may be, by its table, whose points are rounded."""
+    points = tables()[ramp_shape]
+    return 1.0 if ramp_shape == LINEAR else max(b - a + 1 for a, b in pairwise(points)) / 256
 
 
 def curve_deviation(plan: Plan) -> float:
@@ -201,7 +202,7 @@ def curve_deviation(plan: Plan) -> float:
     for ramp in plan.ramps:
         if ramp.ticks:
             change = abs(ramp.velocity_end - ramp.velocity_start) / ONE
-            staircase = max(staircase, change * plan.machine.tick / ramp.ticks * STEEPEST[ramp.shape] / 6)
+            staircase = max(staircase, change * plan.machine.tick / ramp.ticks * steepest(ramp.shape) / 6)
             total += change * ramp.ticks * plan.machine.tick * (table_deviation(ramp.shape) + 2**-24)
     return total + staircase
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from passo.native import ffi
 
-from tests.helpers.closed_form import COSINE, ONE, Line, Ramp, substep_clocks
+from tests.helpers.closed_form import COSINE, ONE, SHAPES, Line, Ramp, substep_clocks
 
 SLOW = ONE // 40  # with the shortest pin timings no step has to wait then, not even for DIR
 
@@ -60,8 +60,8 @@ def random_motion(
         # more than two that take no time do take some
         least = int(len(ramps) > 1 and ramps[-1].ticks == ramps[-2].ticks == 0)
         ticks = rng.choice([least, 1, 2, 3, rng.randint(1, 60)])
-        ramps.append(Ramp(velocity, ticks, rng.randrange(4), rng.random() < 0.5))
+        ramps.append(Ramp(velocity, ticks, rng.choice(SHAPES), rng.random() < 0.5))
     ramps.append(Ramp(SLOW, 30, COSINE))
-    ramps.append(Ramp(0, rng.randint(0, 40), rng.randrange(4), rng.random() < 0.5, last=True))
+    ramps.append(Ramp(0, rng.randint(0, 40), rng.choice(SHAPES), rng.random() < 0.5, last=True))
     shares = [tuple(rng.randint(-100, 100) for _ in range(axes)) for _ in range(rng.randint(1, most_lines))]
     return fill(ramps, shares), ramps

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Test interface of the planner: machines, moves and plans; velocities are UQ0.48, speeds UQ32.32."""
 
+import tomllib
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cache
@@ -9,15 +10,18 @@ from typing import Any
 
 from passo import compiler
 from passo.native import ffi, load
+from passo.registers import Shape
 from passo.toolchain import paths
 
+SCHEMA = tomllib.loads((paths.root / "schema" / "moves.toml").read_text())
 ONE = 1 << 48  # velocities and progress
 HALF = 1 << 47
 UNIT = 1 << 32  # speeds and accelerations
 AXES = 8
-LINEAR, COSINE, SIGMOID, EASE = range(4)  # shapes
+LINEAR, COSINE, SIGMOID, EASE = Shape.LINEAR, Shape.COSINE, Shape.SIGMOID, Shape.EASE
 JERK = 3  # the profile; the others are called like their shapes
-SHAPE_OF_PROFILE = (LINEAR, COSINE, SIGMOID, EASE)
+SHAPE_OF_PROFILE = tuple(Shape[shape.upper()] for shape in SCHEMA["profiles"].values())
+PROFILES = range(len(SHAPE_OF_PROFILE))
 MOVE_CLOCKS = 1 << 44
 SUBSTEPS_MAX = (1 << 30) - 1  # of a line, and so the steps of an axis
 
