@@ -24,7 +24,7 @@ module passo_link_top;
   wire [4:0] bus_msb;
 
   wire word_valid = half_valid & half_low;
-  wire refused = u_link.refuses;
+  wire refused = u_link.in_ack & u_link.act & ~u_link.verdict_ok & ~u_link.u_states.is_duplicate;
   wire [3:0] verdict = u_link.verdict;
 
   // the status replaces the data except in the clock after a strobe; it reaches the link one clock later
