@@ -42,7 +42,7 @@ module passo_link_top (
   wire [31:0] reply_word;
 
   assign word_valid = half_valid & half_low;
-  assign refused    = u_link.refuses;
+  assign refused    = u_link.in_ack & u_link.act & ~u_link.verdict_ok & ~u_link.u_states.is_duplicate;
   assign verdict    = u_link.verdict;
 
   // the status stands in the place of data, but for the clock after a strobe; a clock later it comes to the link
