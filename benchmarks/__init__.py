@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Passo against published ways of making step pulses with a microcontroller's timers."""
+"""Passo compared with published methods of making step pulses with microcontroller timers."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How accurate Passo is beside four published microcontroller methods: `make accuracy`.
+"""Accuracy of Passo compared with four published microcontroller methods: `make accuracy`.
 
 Prints a table and writes build/accuracy.json, docs/accuracy.md and docs/images/accuracy.png.
 """
@@ -36,24 +36,24 @@ CASES = 10_000  # random moves of each method
 SEED = 1
 CHUNK = 100
 WORKERS = 2
-WIDTH = 118  # of the tables where there is no terminal
-MODEL_MOVES = 25  # of each method, also made by the C model
-FORMS_SHARE = 5  # random moves of each form that no source has: a fifth of those of a method
+WIDTH = 118  # of the tables without a terminal
+MODEL_MOVES = 25  # of each method, also executed on the C model
+FORMS_SHARE = 5  # forms without a published counterpart get a fifth of the random moves
 
 
 def measure_some(moves: list[Move]) -> list[Result]:
-    """One portion of a worker's."""
+    """Measure a batch of moves in a worker."""
     return [measure(move) for move in moves]
 
 
 def check_some(moves: list[Move]) -> int:
-    """Make these with the C model; return how many steps were compared."""
+    """Execute moves on the C model; return the number of steps compared."""
     return sum(check_with_model(passo_side.make(move).plan) for move in moves)
 
 
 @dataclass
 class Measured:
-    """Everything about random moves."""
+    """Results of all random moves."""
 
     results: list[Result]
     forms: dict[str, list[dict[str, float]]]
@@ -62,7 +62,7 @@ class Measured:
 
 
 def measure_all(cases: int, seed: int) -> Measured:
-    """The random moves of all methods and forms, some of them with the C model."""
+    """Measure random moves of all methods and forms, some of them also on the C model."""
     moves = [move for method in METHODS for move in random_moves(method, cases, seed)]
     portions = [moves[i : i + CHUNK] for i in range(0, len(moves), CHUNK)]
     checked = [move for method in METHODS for move in random_moves(method, min(cases, MODEL_MOVES), seed)]
@@ -86,12 +86,12 @@ def groups(results: list[Result]) -> Iterator[tuple[str, list[Result]]]:
 
 
 def present(errors: dict[str, float]) -> dict[str, float]:
-    """The quantities that a move has."""
+    """The quantities that are defined for a move."""
     return {name: value for name, value in errors.items() if not math.isnan(value)}
 
 
 def gather(measured: Measured, named: list[Result]) -> dict[str, Any]:
-    """Everything the tables show."""
+    """All data of the report."""
     return {
         "clock_hz": CLOCK_HZ,
         "tick_clocks": 1 << PARAMETERS.tick_log2,
@@ -127,7 +127,7 @@ def gather(measured: Measured, named: list[Result]) -> dict[str, Any]:
 def accuracy(cases: int = CASES, seed: int = SEED) -> dict[str, Any]:
     """Measure, print, write the report, the page and the picture."""
     began = time.monotonic()
-    for build in (native.planner, model_library, passo_side.library):  # before there are workers
+    for build in (native.planner, model_library, passo_side.library):  # before workers start
         build()
     named = [measure(case.move) for case in NAMED]
     measured = measure_all(cases, seed)
@@ -149,7 +149,7 @@ def accuracy(cases: int = CASES, seed: int = SEED) -> dict[str, Any]:
 
 
 def main() -> None:
-    """Take the command line."""
+    """Parse the command line and run."""
     parser = argparse.ArgumentParser(prog="benchmarks.accuracy", description=__doc__.splitlines()[0])
     parser.add_argument("--cases", type=int, default=CASES, help="random moves of each method")
     parser.add_argument("--seed", type=int, default=SEED, help="of the random moves")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The moves that are compared: those of the publications, and random ones of the same kinds."""
+"""The moves compared: those of the publications, and random ones of the same kinds."""
 
 import math
 import random
@@ -11,7 +11,7 @@ from benchmarks.sources import MILLISECONDS, Cosine, Move, MultiAxis, Sigmoid, T
 
 @dataclass(frozen=True)
 class Named:
-    """A move of a publication, or typical of it, and the time (s) that the publication reports."""
+    """A move of a publication, or typical for it, and the time (s) that it reports."""
 
     text: str
     move: Move
@@ -21,7 +21,7 @@ class Named:
 def sigmoid_move(
     run_steps: int, start: int, run: int, stop: int, up_ms: int, down_ms: int, alpha: float
 ) -> Sigmoid:
-    """A move with so many steps, or one more, between its ramps."""
+    """A move with a given number of steps, or one more, between its ramps."""
     ramps = ((start + run) * up_ms + (run + stop) * down_ms) / 2 / MILLISECONDS
     return Sigmoid(math.ceil(ramps) + run_steps, start, run, stop, up_ms, down_ms, alpha)
 
@@ -96,17 +96,17 @@ METHODS = (
 
 
 def method_of(move: Move) -> Method:
-    """Whose move it is."""
+    """The method of a move."""
     return next(method for method in METHODS if isinstance(move, method.kind))
 
 
 def group_of(move: Move) -> str:
-    """Where a move is counted: moves too short for their speed have a line of their own."""
+    """Group of a move in the statistics; moves too short for their speed form separate groups."""
     triangle = isinstance(move, Trapezoid | MultiAxis) and not move.cruises
     return method_of(move).key + (" short" if triangle else "")
 
 
 def random_moves(method: Method, count: int, seed: int) -> list[Move]:
-    """The same for the same seed."""
+    """Reproducible random moves."""
     rng = random.Random(f"{seed} {method.key}")
     return [method.random_move(rng) for _ in range(count)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The planner's forms that no source has: random moves, measured against their own plan and wanted time."""
+"""Forms without a published counterpart: random moves, measured against their plan and requested time."""
 
 import random
 from collections.abc import Callable
@@ -25,7 +25,7 @@ MICRO = 1_000_000
 
 
 def quintic() -> Points:
-    """The points of the user's shape."""
+    """The points of the user-defined shape."""
     return sample(lambda u: 6 * u**5 - 15 * u**4 + 10 * u**3)
 
 
@@ -98,7 +98,7 @@ FORMS: dict[str, Callable[[random.Random], Move]] = {
 
 
 def wanted_seconds(move: Move) -> float:
-    """The total time that was asked for; not a number where there is no simple formula."""
+    """The requested total time; NaN if there is no simple formula."""
     match move:
         case MoveInTime() | MoveBelowSpeed():
             return float(move.total_time)
@@ -108,7 +108,7 @@ def wanted_seconds(move: Move) -> float:
 
 
 def measure_form(move: Move) -> dict[str, float]:
-    """Plan it, make the steps, compare."""
+    """Plan a move, compute its steps and compare."""
     plan = plan_move(move, CLOCK_HZ, PARAMETERS)
     clocks, missing = step_clocks(plan)
     longest = max(range(len(move.steps)), key=lambda axis: abs(move.steps[axis]))
@@ -123,6 +123,6 @@ def measure_form(move: Move) -> dict[str, float]:
 
 
 def measure_forms(name: str, count: int, seed: int) -> list[dict[str, float]]:
-    """So many random moves in a form."""
+    """Measure random moves of a form."""
     rng = random.Random(f"{seed} {name}")
     return [measure_form(FORMS[name](rng)) for _ in range(count)]

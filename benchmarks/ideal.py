@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The motion that a user has in mind: a speed curve in real numbers, and how far pulses are from it."""
+"""The ideal motion: a speed curve in real numbers, and the distance of pulses from it."""
 
 import math
 from collections.abc import Sequence
@@ -20,7 +20,7 @@ def shape_value(shape: str, alpha: float, u: np.ndarray) -> np.ndarray:
     cosine    (1 - cos(pi u)) / 2
     sigmoid   (g(alpha (2u - 1)) - g(-alpha)) / (g(alpha) - g(-alpha)), g(x) = 1 / (1 + exp(-x))
     ease      u^2, half of a jerk-limited ramp; the other half is its mirror image
-    quintic   6 u^5 - 15 u^4 + 10 u^3, as an example of a user's own
+    quintic   6 u^5 - 15 u^4 + 10 u^3, an example of a user-defined shape
     """
     if shape == "linear":
         return u
@@ -51,7 +51,7 @@ def shape_area(shape: str, alpha: float, u: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Phase:
-    """The speed (Hz) goes from `start` to `end` in `seconds`."""
+    """A change of speed (Hz) from `start` to `end` in `seconds`."""
 
     seconds: float
     start: float
@@ -62,11 +62,11 @@ class Phase:
 
     @property
     def steps(self) -> float:
-        """Its length."""
+        """Length in steps."""
         return float(self.position(np.array([self.seconds]))[0])
 
     def position(self, seconds: np.ndarray) -> np.ndarray:
-        """Steps made since the phase began."""
+        """Steps made since the start of the phase."""
         if self.start == self.end:
             return self.start * seconds
         u = seconds / self.seconds
@@ -79,7 +79,7 @@ class Phase:
 
 
 class Ideal:
-    """Phases, one after the other; they may be empty."""
+    """A sequence of phases, some of which may be empty."""
 
     def __init__(self, *phases: Phase):
         self.phases = [phase for phase in phases if phase.seconds > 0]
@@ -91,7 +91,7 @@ class Ideal:
         self.steps = float(self.bases[-1])
 
     def position(self, times: np.ndarray) -> np.ndarray:
-        """Steps at these times (s, ascending); after the end all of them."""
+        """Steps made at these times (s, ascending), constant after the end."""
         bounds = np.searchsorted(times, self.begins)
         position = np.full(len(times), self.steps)
         for i, phase in enumerate(self.phases):
@@ -100,9 +100,9 @@ class Ideal:
         return position
 
     def distances(self, times: np.ndarray, share: float = 1.0) -> np.ndarray:
-        """How far, in steps, the ideal curve is beyond each pulse; `share` is that of a follower.
+        """Lead of the ideal curve over each pulse in steps; `share` is the ratio of a follower.
 
-        Pulse q (from 0) stands for the way from q to q + 1, so its place is in the middle of that.
+        Pulse q (from 0) covers the distance q to q + 1, so it belongs at q + 1/2.
         """
         return self.position(times) * share - (np.arange(len(times)) + 0.5)
 
@@ -110,9 +110,9 @@ class Ideal:
 def by_speed(
     steps: float, start: float, run: float, stop: float, up: float, down: float, shape: Sequence = ("linear",)
 ) -> Ideal:
-    """A move over `steps` in which full ramps take `up` and `down` seconds, cruising for what remains.
+    """A move over `steps` whose full ramps take `up` and `down` seconds, with cruise in between.
 
-    A linear one too short for `run` becomes a triangle of the same slopes; others must be long enough.
+    A linear move too short for `run` becomes a triangle with the same slopes; others must be long enough.
     """
     up_way, down_way = up * (start + run) / 2, down * (run + stop) / 2
     if up_way + down_way > steps:
@@ -127,6 +127,6 @@ def by_speed(
 
 
 def in_time(steps: float, seconds: float, ramp: float, shape: str) -> Ideal:
-    """A move from rest to rest over `steps` in `seconds`, of which each ramp takes `ramp`."""
+    """A move from rest to rest over `steps` in `seconds`, with ramps of `ramp` seconds each."""
     run = steps / (seconds - ramp)
     return Ideal(Phase(ramp, 0, run, shape), Phase(seconds - 2 * ramp, run, run), Phase(ramp, run, 0, shape))

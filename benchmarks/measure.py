@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is compared, for a move and for many."""
+"""Quantities compared, for a move and for many."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,17 +18,17 @@ from benchmarks.ideal import Ideal
 from benchmarks.passo_side import CLOCK_HZ, PARAMETERS, TICK_SECONDS
 from benchmarks.sources import Move, Pulses
 
-# All are magnitudes; not a number where a move does not have them.
+# All are magnitudes; NaN if not defined for a move.
 QUANTITIES = (
-    *("steps", "time", "distance", "start", "run", "stop", "followers"),  # against the wish
-    *("ticks", "planned", "missing"),  # Passo only: time in ticks, and against its plan
+    *("steps", "time", "distance", "start", "run", "stop", "followers"),  # against the ideal curve
+    *("ticks", "planned", "missing"),  # Passo only: time in ticks, and deviation from the plan
 )
 NAN = float("nan")
 SIGMOID = passo_side.SHAPES.index("sigmoid")
 
 
 def compare(pulses: Pulses, wish: Ideal, steps: tuple[int, ...]) -> dict[str, float]:
-    """Pulses against a curve; time and frequencies in parts of 1, distances in steps."""
+    """Compare pulses with a curve: relative errors of time and frequencies, distances in steps."""
     followers = [
         np.abs(wish.distances(times, count / steps[0])).max(initial=0)
         for times, count in zip(pulses.followers, steps[1:], strict=True)
@@ -48,7 +48,7 @@ def compare(pulses: Pulses, wish: Ideal, steps: tuple[int, ...]) -> dict[str, fl
 
 @dataclass(frozen=True)
 class Result:
-    """A move, measured."""
+    """Measurements of a move."""
 
     move: Move
     source: dict[str, float]
@@ -59,12 +59,12 @@ class Result:
 
     @property
     def group(self) -> str:
-        """Where it is counted."""
+        """Group in the statistics."""
         return group_of(self.move)
 
 
 def measure(move: Move) -> Result:
-    """The source and Passo against what the user wants."""
+    """Measure a published method and Passo against the ideal curve."""
     wish, steps = passo_side.wanted_curve(move), passo_side.wanted_steps(move)
     pulses, made = sources.simulate(move), passo_side.make(move)
     passo = compare(made.pulses, wish, steps)
@@ -77,7 +77,7 @@ def measure(move: Move) -> Result:
 
 
 def statistics(errors: list[dict[str, float]]) -> dict[str, dict[str, float]]:
-    """Median, 99 % and worst of each quantity that the moves have."""
+    """Median, 99th percentile and worst of each quantity that the moves have."""
     made = {}
     for name in QUANTITIES:
         values = np.array([error.get(name, NAN) for error in errors], dtype=float)
@@ -89,9 +89,9 @@ def statistics(errors: list[dict[str, float]]) -> dict[str, dict[str, float]]:
 
 
 def check_with_model(plan: Plan) -> int:
-    """Make a move with the C model, over SPI and out of its pins; return how many steps were compared.
+    """Execute a move on the C model, from SPI to pins; return the number of steps compared.
 
-    Each must leave its pin on the clock that steps.c gives.
+    Each step must leave its pin on the clock computed by steps.c.
     """
     file = MoveFile(Path("accuracy"), CLOCK_HZ, PinTiming(), (plan.move,))
     with model_engine(PARAMETERS, CLOCK_HZ) as engine:

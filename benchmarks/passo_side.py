@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The same moves through Passo's planner and the recurrences of docs/architecture.md."""
+"""The same moves with Passo's planner and the recurrences of docs/architecture.md."""
 
 from dataclasses import dataclass
 from fractions import Fraction
@@ -23,7 +23,7 @@ CLOCK_HZ = 100_000_000
 PARAMETERS = Parameters(axes=4)
 TICK_SECONDS = (1 << PARAMETERS.tick_log2) / CLOCK_HZ
 
-SHAPES = [shape.name.lower() for shape in Shape]  # by their numbers
+SHAPES = [shape.name.lower() for shape in Shape]  # by enum passo_shape
 
 SOURCE = Path(__file__).with_name("steps.c")
 DECLARATIONS = """
@@ -33,18 +33,18 @@ uint32_t substep_clocks(const struct ramp *ramps, uint32_t ramp_count, uint32_t 
 """
 
 
-# ---------------------------------------------------------------------------------- what the user wants ----
+# ------------------------------------------------------------------------------------- the ideal motion ----
 
 
 def wanted_steps(move: sources.Move) -> tuple[int, ...]:
-    """Steps of each axis; an angle is rounded to the nearest."""
+    """Steps of each axis; an angle is rounded to nearest."""
     if isinstance(move, Trapezoid):
         return (round(Fraction(move.degrees) * Trapezoid.UPDATES / 2 / 360),)
     return move.steps if isinstance(move, MultiAxis) else (move.steps,)
 
 
 def wanted_curve(move: sources.Move) -> Ideal:
-    """The curve that the user of a source has in mind."""
+    """The ideal curve of a move."""
     steps = wanted_steps(move)[0]
     match move:
         case Trapezoid():
@@ -63,7 +63,7 @@ def wanted_curve(move: sources.Move) -> Ideal:
 
 
 def passo_move(move: sources.Move) -> moves.Move:
-    """The move in the planner's form for each method."""
+    """The move in the corresponding form of the planner."""
     steps = wanted_steps(move)
     match move:
         case Trapezoid():
@@ -88,12 +88,12 @@ def passo_move(move: sources.Move) -> moves.Move:
             return moves.MoveInTime(steps, "cosine", total, ramp)
 
 
-# ----------------------------------------------------------------------------------- what the core does ----
+# --------------------------------------------------------------------------------------------- the core ----
 
 
 @cache
 def library() -> tuple[FFI, Any]:
-    """steps.c, compiled once for each state of it."""
+    """steps.c, compiled once per version."""
     own = FFI()
     own.cdef(DECLARATIONS)
     return own, own.dlopen(str(compiler.library("steps", (), [SOURCE], "-std=gnu11", "-O3")))
@@ -101,24 +101,24 @@ def library() -> tuple[FFI, Any]:
 
 @cache
 def tables(alpha: float) -> np.ndarray:
-    """The banks as docs/architecture.md defines them, 257 points each; the sigmoid's for any alpha."""
+    """Banks 1 to 3 as defined in docs/architecture.md, 257 points each; the sigmoid for any alpha."""
     u = np.arange(257) / 256
     return np.array([np.rint(65536 * shape_value(name, alpha, u)) for name in SHAPES[1:]], dtype=np.uint32)
 
 
 def step_substeps(substeps: int, steps: int) -> np.ndarray:
-    """The substeps, from 1, in which an axis makes its steps: the DDA in closed form."""
+    """The substeps, from 1, on which an axis makes its steps: the DDA in closed form."""
     k = np.arange(1, steps + 1, dtype=np.int64)
     return -((substeps // 2 - k * substeps) // max(steps, 1))
 
 
 def alpha_of(plan: Plan) -> float:
-    """That the plan's sigmoid is made for."""
+    """Alpha of the plan's sigmoid."""
     return (plan.c.sigmoid_alpha or ALPHA_RESET) / ALPHA_ONE
 
 
 def banks_of(plan: Plan) -> np.ndarray:
-    """What the core's banks must hold: the standard shapes, but in place of the sigmoid maybe the user's."""
+    """Contents of the banks for a plan: the standard shapes, or a user-defined one in the sigmoid bank."""
     banks = tables(alpha_of(plan))
     if plan.move.profile == USER:
         banks = banks.copy()
@@ -127,9 +127,9 @@ def banks_of(plan: Plan) -> np.ndarray:
 
 
 def step_clocks(plan: Plan) -> tuple[list[np.ndarray], int]:
-    """Clocks from the start to each step, for each axis, and how many of the substeps asked for are missing.
+    """Clocks from the start to each step, for each axis, and the number of missing substeps.
 
-    The last substep of the line is asked for as well: with it the line is complete.
+    Includes the last substep of the line, which completes it.
     """
     own, c = library()
     ramps = own.new("struct ramp[]", [
@@ -152,21 +152,21 @@ def step_clocks(plan: Plan) -> tuple[list[np.ndarray], int]:
     return steps, len(due) - made
 
 
-# --------------------------------------------------------------------------------------------- and both ----
+# --------------------------------------------------------------------------------------------- combined ----
 
 
 @dataclass(frozen=True)
 class Made:
-    """What the planner and the core make of a move."""
+    """A move as planned and executed."""
 
     plan: Plan
     pulses: Pulses
-    planned: Ideal  # the curve whose phases are whole ticks
+    planned: Ideal  # the curve with phases of whole ticks
     missing: int  # substeps that the ramps do not reach
 
 
 def planned_curve(plan: Plan, user: str = "") -> Ideal:
-    """What the ramps of a plan mean, without tables and rounding; `user` is the user's own shape."""
+    """The curve of a plan's ramps without tables and rounding; `user` names a user-defined shape."""
     hertz = CLOCK_HZ / Q48 / plan.c.oversampling
     phases, velocity = [], 0
     for ramp in plan.ramps:
@@ -179,7 +179,7 @@ def planned_curve(plan: Plan, user: str = "") -> Ideal:
 
 
 def make(move: sources.Move) -> Made:
-    """Plan a move and make its steps."""
+    """Plan a move and compute its steps."""
     plan = plan_move(passo_move(move), CLOCK_HZ, PARAMETERS)
     clocks, missing = step_clocks(plan)
     planned = planned_curve(plan)

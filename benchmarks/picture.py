@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A picture: how far a move of each method is from the wanted curve, over time."""
+"""Plot of the distance from the ideal curve over time, for a move of each method."""
 
 from pathlib import Path
 
@@ -27,11 +27,11 @@ SHOWN = (
 SOURCE, PASSO = COLORS[1], COLORS[0]
 FLOOR, CEILING = 1e-5, 1e3
 TICKS = (0.0001, 0.001, 0.01, 0.1, 1, 10, 100)
-POINTS = 240  # of an envelope
+POINTS = 240  # per envelope
 
 
 def plot_accuracy(path: Path) -> None:
-    """Distances have a logarithmic scale: there is no other on which both can be seen."""
+    """Write the plot; the logarithmic scale shows both sides."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with plt.rc_context(STYLE):
         figure, axes = plt.subplots(2, 2, figsize=(11, 7), sharey=True)
@@ -46,7 +46,7 @@ def plot_accuracy(path: Path) -> None:
 
 
 def _distances(ax: Axes, case: Named) -> None:
-    """The source above, Passo below; what is between them is gained."""
+    """Plot the distances of a published method and of Passo."""
     wish = passo_side.wanted_curve(case.move)
     pulses, made = sources.simulate(case.move), passo_side.make(case.move)
     for name, times, color in (
@@ -86,7 +86,7 @@ def _distances(ax: Axes, case: Named) -> None:
 
 
 def envelope(times: np.ndarray, distances: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The largest distance in each of some equal parts of the time that has pulses."""
+    """The largest distance in each of POINTS equal intervals with pulses."""
     edges = np.linspace(times[0], times[-1], POINTS + 1)
     parts = np.clip(np.searchsorted(edges, times, side="right") - 1, 0, POINTS - 1)
     largest = np.zeros(POINTS)

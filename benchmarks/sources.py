@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Four published ways of making step pulses with the timers of an STM32, with their arithmetic as published.
+"""Four published methods of making step pulses with the timers of an STM32, with their original arithmetic.
 
-Divisions of integers truncate, as in C, and slips are kept. Where a publication leaves something open, the
-reading that favours it is taken, and the docstring says so. One reading is common to all: a pulse is in the
-middle of its period, which is where it belongs on the ideal curve.
+Integer divisions truncate, as in C, and errors of the publications are kept. Where a publication leaves
+something open, the interpretation that favours it is used and documented. Common to all: a pulse is placed in
+the middle of its period, where it belongs on the ideal curve.
 """
 
 import math
@@ -17,7 +17,7 @@ MILLISECONDS = 1000  # in a second
 
 @dataclass(frozen=True)
 class Pulses:
-    """What came of a move. Frequencies (Hz) are the timer's, when it starts, runs and stops."""
+    """Pulses of a move. Frequencies (Hz) are those of the timer at the start, in cruise and at the end."""
 
     times: np.ndarray  # of each pulse, in seconds since the start
     seconds: float

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * When substeps are made: the recurrences of docs/architecture.md, a tick at a time, in nothing but integers.
- * Shares no code with the C model; parts of constant velocity are one division each.
+ * Clocks of substeps by the recurrences of docs/architecture.md, tick by tick in integers. Shares no code
+ * with the C model; intervals of constant velocity take one division each.
  */
 #include <stdbool.h>
 #include <stdint.h>
@@ -11,11 +11,11 @@ struct ramp {
 };
 
 struct walk {
-	uint64_t substeps, phase; /* made, and the fraction of the next, UQ0.48 */
+	uint64_t substeps, phase; /* number made, and fraction of the next, UQ0.48 */
 	uint64_t clock;
-	const uint64_t *due; /* the substeps that are asked for, ascending, and how many of them are left */
-	uint64_t *clocks;    /* where to write the clocks, from 1, on which they are made */
-	uint32_t left;
+	const uint64_t *due; /* requested substeps, ascending */
+	uint64_t *clocks;    /* output: the clocks, from 1, on which they are made */
+	uint32_t left;       /* number of requested substeps left */
 };
 
 static const uint64_t ONE = UINT64_C(1) << 48;
@@ -30,7 +30,7 @@ static uint32_t shape(const struct ramp *ramp, const uint32_t tables[][257], uin
 	return (uint32_t)((table[k] * ((1ull << 24) - f) + table[k + 1] * f + (1u << 15)) >> 16);
 }
 
-/* Go on at a velocity for some clocks. */
+/* Advances at a velocity for some clocks. */
 static void go(struct walk *walk, uint64_t velocity, uint64_t clocks)
 {
 	const unsigned __int128 end = (unsigned __int128)velocity * clocks + walk->phase;
@@ -48,7 +48,7 @@ static void go(struct walk *walk, uint64_t velocity, uint64_t clocks)
 	walk->clock += clocks;
 }
 
-/* Write the clocks of the `count` substeps `due` and return how many of them the ramps reach. */
+/* Writes the clocks of the `count` substeps `due`; returns how many of them the ramps reach. */
 uint32_t substep_clocks(const struct ramp *ramps, uint32_t ramp_count, uint32_t tick_log2,
     const uint32_t tables[][257], const uint64_t *due, uint32_t count, uint64_t *clocks)
 {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * How many lines per second the driver brings over the link on an STM32F103, for `passo firmware --table`.
+ * Measures the lines per second of the driver on an STM32F103, for `passo firmware --table`.
  *
- * A path of endlessly many short lines under one long ramp. The bench writes `stream_substeps` and
- * `stream_fast`, then `stream_go`, and reads at what times how many lines were asked for.
+ * Streams an endless path of short lines under one long ramp. The bench writes `stream_substeps` and
+ * `stream_fast`, then `stream_go`, and reads the number of lines requested over time.
  */
 #include "board.h"
 #include "passo.h"
@@ -16,18 +16,6 @@ volatile uint32_t stream_go, stream_substeps, stream_fast, stream_asked, stream_
 
 static struct passo_host host;
 static struct passo passo;
-
-static uint32_t microseconds(void *context)
-{
-	(void)context;
-	return board_microseconds();
-}
-
-static bool core_calls(void *context)
-{
-	(void)context;
-	return board_core_calls();
-}
 
 static bool next_line(void *context, struct passo_line *line)
 {
@@ -57,7 +45,7 @@ static bool next_ramp(void *context, struct passo_ramp *ramp)
 int main(void)
 {
 	static const struct passo_hardware hardware = {
-	    .transfer = spi_transfer, .microseconds = microseconds, .irq = core_calls};
+	    .transfer = spi_transfer, .microseconds = board_microseconds, .irq = board_core_calls};
 	static const struct passo_source source = {.line = next_line, .ramp = next_ramp};
 	const struct passo_options options = {.clock_hz = CLOCK_HZ};
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is shown: tables for the terminal and the page for readers."""
+"""Tables for the terminal, and the page docs/accuracy.md."""
 
 from pathlib import Path
 from typing import Any
@@ -15,7 +15,7 @@ TEMPLATE = Path(__file__).with_name("page.md")
 TITLES = {method.key: method.title for method in METHODS}
 SIDES = {"source": "as published", "passo": "Passo"}
 
-# Quantities of the table, each with its heading; `time` and frequencies are relative, the others are steps.
+# Quantities with their headings; `time` and frequencies are relative, the others are in steps.
 COLUMNS = {
     "steps": "wrong steps",
     "time": "total time",
@@ -30,7 +30,7 @@ NONE = "–"
 
 
 def number(value: float) -> str:
-    """Three digits, and never an exponent."""
+    """Three significant digits without exponent."""
     if value == 0:
         return "0"
     if value < 1e-5:
@@ -43,27 +43,27 @@ def number(value: float) -> str:
 
 
 def relative(value: float) -> str:
-    """In percent, or in ppm where that is too little."""
+    """In percent, or in ppm if small."""
     if value < 5e-10:  # less than 0.0005 ppm: nothing but rounding of 48-bit velocities
         return "0"
     return f"{number(value * 1e6)} ppm" if value < 1e-3 else f"{number(value * 100)} %"
 
 
 def show(name: str, value: float | None) -> str:
-    """A value of a quantity."""
+    """Text of a value of a quantity."""
     if value is None:
         return NONE
     return relative(value) if name in RELATIVE else number(value)
 
 
 def title_of(group: str) -> str:
-    """Of a group of random moves; too short are those that cannot reach their speed."""
+    """Title of a group of random moves; too short: the speed cannot be reached."""
     key, _, short = group.partition(" ")
     return f"{key}  the same, too short" if short else f"{key}  {TITLES[key]}"
 
 
 def rows(report: dict[str, Any], wanted: tuple[str, ...]) -> list[tuple[str, str, list[str]]]:
-    """Group, side and cells; several statistics are put into one cell."""
+    """Rows as group, side and cells; a cell can have several statistics."""
     made = []
     for group, data in report["random"].items():
         for side in SIDES:
@@ -77,7 +77,7 @@ def rows(report: dict[str, Any], wanted: tuple[str, ...]) -> list[tuple[str, str
 
 
 def random_table(report: dict[str, Any]) -> Table:
-    """The worst of all random moves, for the terminal."""
+    """Worst values of all random moves, for the terminal."""
     made = table(f"Worst of {report['cases']:,} random moves of each method", "", *COLUMNS.values())
     for group, side, cells in rows(report, ("worst",)):
         if side == "source":
@@ -87,7 +87,7 @@ def random_table(report: dict[str, Any]) -> Table:
 
 
 def named_rows(report: dict[str, Any]) -> list[list[str]]:
-    """The single moves: times, and largest distances from the curve."""
+    """The named moves: times, and largest distances from the curve."""
     made = []
     for case in report["named"]:
         published = case["published_seconds"]
@@ -107,7 +107,7 @@ NAMED_COLUMNS = ("", "wanted", "reported", "source", "Passo", "source off", "Pas
 
 
 def named_table(report: dict[str, Any]) -> Table:
-    """The single moves, for the terminal."""
+    """The named moves, for the terminal."""
     made = table(
         "Moves of the publications: total time (s), and largest distance from the curve (steps)",
         *NAMED_COLUMNS,
@@ -118,7 +118,7 @@ def named_table(report: dict[str, Any]) -> Table:
 
 
 def markdown(head: tuple[str, ...], body: list[list[str]]) -> str:
-    """A table of a page; all columns but the first are numbers."""
+    """A Markdown table; all columns except the first are numbers."""
     lines = [head, ("---", *["---:"] * (len(head) - 1)), *body]
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
@@ -127,7 +127,7 @@ PLAN_COLUMNS = ("", "moves", "wrong steps", "missing", "time, ticks", "steps off
 
 
 def plan_rows(report: dict[str, Any]) -> list[list[str]]:
-    """Passo against its own plan, in all forms."""
+    """Passo against its own plan, for all forms."""
     made = []
     for group, data in (report["random"] | report["forms"]).items():
         passo = data["passo"]

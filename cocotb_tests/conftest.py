@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Every test of this folder runs once per simulator: `pytest cocotb_tests -k icarus` takes one of them."""
+"""Every test of this folder runs once per simulator; `pytest cocotb_tests -k icarus` selects one."""
 
 import pytest
 
@@ -8,5 +8,5 @@ from cocotb_tests.helpers.runner import SIMULATORS
 
 @pytest.fixture(params=SIMULATORS)
 def simulator(request: pytest.FixtureRequest) -> str:
-    """Name of a simulator, as `run` wants it."""
+    """Name of a simulator for `run`."""
     return request.param

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Several channels: started together, otherwise nothing to do with each other."""
+"""Several channels: started together, otherwise independent."""
 
 from collections.abc import Callable
 
@@ -28,7 +28,7 @@ def motion(core: Core, shape: Shape, speed: int, ticks: int) -> tuple[list[Line]
 
 
 def check_steps(core: Core, channel: int, lines: list[Line], ramps: list[Ramp], begin: int) -> None:
-    """The steps of a channel come on their clocks, whatever the others do."""
+    """Check that the steps of a channel come on their clocks, whatever the others do."""
     for axis, clocks in enumerate(due(lines, ramps, core.tick)):
         steps = [clock - begin for clock in core.steps(channel * core.axes + axis, begin)]
         assert steps == clocks
@@ -46,12 +46,12 @@ def prepare(
 
 
 def every(core: Core) -> int:
-    """A bit per channel."""
+    """Mask with a bit per channel."""
     return (1 << core.parameters.channels) - 1
 
 
 def start_together(core: Core, start: Callable[[], None], first: int) -> None:
-    """Arm all channels, each with another shape; what starts them starts them on the same clock."""
+    """Arm all channels, each with a different shape; `start` must start them on the same clock."""
     since = core.clock
     before = [core.channel(number).positions() for number in range(core.parameters.channels)]
     core.link.write(r.ADDRESS_RUN, every(core) << r.RUN_WAIT_SYNC_LSB | every(core))
@@ -81,7 +81,7 @@ def channels_start_on_the_same_clock(core: Core) -> None:
 
 @core_test
 def channels_do_not_disturb_each_other(core: Core) -> None:
-    """All shapes at once, all tables in use; one channel is held or stops, and the other goes on."""
+    """All shapes and tables at once; one channel is held or stopped, and the other continues."""
     core.watch(PinTiming())
     first, second = core.channel(0), core.channel(1)
     first.link.write(first.base + r.CHANNEL_RATE_SLEW, RATE_ONE)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a host can do while a motion is prepared or runs: jog, wait, chain, hold, override, stop."""
+"""Commands while a motion is prepared or running: jog, sync, chaining, hold, override, stop."""
 
 from itertools import pairwise
 
@@ -16,13 +16,13 @@ AT_ONCE = RATE_ONE
 
 
 def set_slews(channel: CoreChannel, rate_slew: int, stop_slew: int = AT_ONCE) -> None:
-    """How fast holds and stops are, per tick."""
+    """Set the slews of hold and stop, per tick."""
     channel.link.write(channel.base + r.CHANNEL_RATE_SLEW, rate_slew, stop_slew)
 
 
 @core_test
 def jog(core: Core) -> None:
-    """An ENDLESS line runs on after its ramps; NOW changes the speed at once, LAST and NOW end it."""
+    """An ENDLESS line continues after its ramps; NOW changes the speed at once, LAST and NOW end it."""
     channel = core.channel()
     checker = core.watch(PinTiming())
     channel.lines(Line(10, (10, -5, 1)[: core.axes], endless=True))
@@ -78,7 +78,7 @@ def sync_starts_an_armed_channel(core: Core) -> None:
 
 @core_test
 def a_motion_without_ramps_at_velocity_0_waits(core: Core) -> None:
-    """Nothing is lost, nothing is a fault: the next ramp goes on."""
+    """No step is lost and there is no fault: the next ramp continues."""
     channel = core.channel()
     core.watch(PinTiming())
     ramps = [Ramp(SLOW, 2), Ramp(0, 2), Ramp(SLOW, 2), Ramp(0, 2, last=True)]
@@ -102,7 +102,7 @@ def a_motion_without_ramps_at_velocity_0_waits(core: Core) -> None:
 
 @core_test
 def the_next_motion_starts_by_itself(core: Core) -> None:
-    """While RUN is set motions follow each other; when it is cleared the running one is finished."""
+    """While RUN is set, motions follow each other; when it is cleared, the running one finishes."""
     channel = core.channel()
     core.watch(PinTiming())
     lines, ramps = a_motion(core, 20)
@@ -195,7 +195,7 @@ def a_constant_rate_stretches_every_clock(core: Core) -> None:
 
 @core_test
 def soft_stop(core: Core) -> None:
-    """COMMAND.STOP slows down by STOP_SLEW; the position is exact, and after CLEAR all goes on."""
+    """COMMAND.STOP slows down with STOP_SLEW; the position is exact, and CLEAR allows new motions."""
     channel = core.channel()
     core.watch(PinTiming())
     set_slews(channel, AT_ONCE, RATE_ONE // 8)
@@ -251,7 +251,7 @@ def soft_stop_in_a_hold_and_before_the_start(core: Core) -> None:
 
 @core_test
 def abort(core: Core) -> None:
-    """A pulse that has begun is finished, waiting steps are dropped, the position is what was sent."""
+    """A pulse in progress is completed, queued steps are dropped, the position counts the steps made."""
     channel = core.channel()
     timing = PinTiming(300, 2, 3, 2)
     channel.pins(timing)

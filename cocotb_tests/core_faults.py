@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Faults: the channel stops, says why, knows where it is, and goes on after CLEAR."""
+"""Faults: the channel stops, shows the cause, has the exact position, and works after CLEAR."""
 
 import pytest
 from passo import registers as r
@@ -24,14 +24,14 @@ from cocotb_tests.helpers.core_moves import SLOW, check_stopped, clear_and_move
 
 
 def lost_steps(channel: CoreChannel, axis: int) -> int:
-    """How many steps found the queue of an axis full."""
+    """Read the number of lost steps of an axis."""
     address = channel.base + r.CHANNEL_AXIS_BASE + axis * r.CHANNEL_AXIS_STRIDE + r.AXIS_LOST_STEPS
     return channel.link.read(address, 1)[0]
 
 
 @core_test
 def line_underrun(core: Core) -> None:
-    """A line that ends, is not LAST and has no successor: all its steps were made, and none after."""
+    """A line ends, is not LAST and has no successor: all its steps were made, and none after."""
     channel = core.channel()
     checker = core.watch(PinTiming())
     line = Line(50, (50, -25, 1)[: core.axes])
@@ -49,7 +49,7 @@ def line_underrun(core: Core) -> None:
 
 @core_test
 def a_line_that_comes_just_in_time(core: Core) -> None:
-    """A line that is in the queue a little before its predecessor ends follows without a lost clock."""
+    """A line queued shortly before its predecessor ends follows without a lost clock."""
     channel = core.channel()
     core.watch(PinTiming())
     # from chip select to the line in the queue: header, line and crc, and what the link needs to replay them
@@ -80,7 +80,7 @@ def a_line_that_comes_just_in_time(core: Core) -> None:
 
 @core_test
 def ramp_underrun(core: Core) -> None:
-    """Ramps that run out at speed end in a soft stop by STOP_SLEW; the position is exact."""
+    """Ramps that run out at speed cause a soft stop with STOP_SLEW; the position is exact."""
     channel = core.channel()
     checker = core.watch(PinTiming())
     channel.link.write(channel.base + r.CHANNEL_STOP_SLEW, RATE_ONE // 8)
@@ -102,7 +102,7 @@ def ramp_underrun(core: Core) -> None:
 
 @core_test
 def an_endless_line_has_no_ramp_underrun(core: Core) -> None:
-    """A jog goes on at its speed when the ramps run out."""
+    """A jog keeps its speed when the ramps run out."""
     channel = core.channel()
     core.watch(PinTiming())
     channel.lines(Line(7, (7, -7, 1)[: core.axes], endless=True))
@@ -120,7 +120,7 @@ def an_endless_line_has_no_ramp_underrun(core: Core) -> None:
 
 @core_test
 def step_overrun(core: Core) -> None:
-    """Pins that cannot follow: the axis says so and counts, the position is that of the pulses sent."""
+    """Pins that cannot follow: the axis reports and counts overruns; the position counts the pulses made."""
     channel = core.channel()
     slow_axis = core.axes - 1
     timings = [PinTiming()] * slow_axis + [PinTiming(30, 20, 4, 4)]
@@ -165,7 +165,7 @@ def every_axis_can_overrun_at_once(core: Core) -> None:
 
 @core_test
 def the_first_reason_of_a_soft_stop_counts(core: Core) -> None:
-    """STOP and ramps that run out while the channel slows down: the cause is whichever came first."""
+    """STOP, and ramps that run out during the soft stop: the cause is whichever came first."""
     channel = core.channel()
     core.watch(PinTiming())
     line = Line(100_000, (100_000, -50_000, 7)[: core.axes], last=True)
@@ -186,7 +186,7 @@ def the_first_reason_of_a_soft_stop_counts(core: Core) -> None:
 
 @core_test
 def a_stopped_channel_is_busy(core: Core) -> None:
-    """Until CLEAR it takes neither lines nor ramps; RUN stays set and starts nothing by itself."""
+    """Until CLEAR it accepts neither lines nor ramps; RUN stays set and starts nothing by itself."""
     channel = core.channel()
     core.watch(PinTiming())
     channel.start()
@@ -207,7 +207,7 @@ def a_stopped_channel_is_busy(core: Core) -> None:
 
 @core_test
 def commands_in_one_write(core: Core) -> None:
-    """CLEAR and ZERO together; ABORT wins over STOP."""
+    """CLEAR and ZERO together; ABORT overrides STOP."""
     channel = core.channel()
     checker = core.watch(PinTiming())
     command = channel.base + r.CHANNEL_COMMAND
@@ -234,7 +234,7 @@ def slow_motion(core: Core, sign: int) -> tuple[Line, list[Ramp]]:
 
 @core_test
 def a_reset_at_any_time(core: Core) -> None:
-    """It makes no step: a pulse that has begun is finished. Settings of the pins stay, all else is reset."""
+    """It causes no step: a pulse in progress is completed. Pin settings are kept, all else is reset."""
     random = rng("a_reset_at_any_time")
     channel = core.channel()
     timing = PinTiming(9, 5, 30, 7, step_inverted=True)

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""The STM32's firmware at the SPI pins of the simulated core: processor and core take turns.
+"""The STM32 firmware at the SPI pins of the simulated core, in co-simulation.
 
-While the machine executes instructions the simulator stands still; then the core's time catches up. While the
-core rests, without chip select or motion, its time is left out: waiting for a serial line would cost hours.
+While the emulated machine executes instructions the simulator is paused; then the core catches up. Time in
+which the core is at rest, without chip select or motion, is skipped: waiting for the serial line would take
+hours.
 """
 
 from pathlib import Path
@@ -20,8 +21,8 @@ from cocotb_tests.helpers.core_bench import Core, PinTiming, core_test, planned
 from tests.helpers.firmware_cases import random_moves
 
 STEP_PER_SECOND = 10**12  # of the simulator
-HZ = STEP_PER_SECOND // PERIOD  # what the console assumes by itself
-TYPING = 2_000_000  # baud; the core's time is dear
+HZ = STEP_PER_SECOND // PERIOD  # the default of the console
+TYPING = 2_000_000  # baud; high, to save simulation time
 AWAKE = TICKS_PER_SECOND // 100_000  # 10 us, after a frame or a motion
 MOVES = 2
 
@@ -52,7 +53,7 @@ class SimulatedPins:
             await First(Timer(time, "step"), *changes)
 
     def follow(self, tick: int) -> int:
-        """Simulate up to a tick, or a change of irq; leave out the rest when the core has come to rest."""
+        """Simulate up to a tick, or a change of irq; skip time when the core is at rest."""
         before = self.irq
         if self._selected or read(self._dut.running):
             self._awake_until = tick + AWAKE
@@ -91,7 +92,7 @@ class SimulatedPins:
 
 @core_test
 def moves_of_the_firmware(core: Core) -> None:
-    """Lines typed at the console: pulses as planned on the PC, and on every clock those of the C model."""
+    """Lines typed at the console: pulses as planned on the PC, and equal to the C model on every clock."""
     core.watch(PinTiming(100, 100, 100, 100))
     machine = Machine(firmware_elf(), SimulatedPins(core))
     machine.expect("help lists the commands\n", START)

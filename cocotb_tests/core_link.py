@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Frames at the pins: good ones are executed once, whatever the wire does."""
+"""Frames at the pins: valid ones are executed exactly once, whatever happens on the link."""
 
 from dataclasses import replace
 
@@ -19,7 +19,7 @@ SNAPSHOT_CLOCKS = 68  # at most, from the fall of chip select to the clock that 
 
 @core_test
 def reads(core: Core) -> None:
-    """Holes in a read are 0; the status word tells of the queues, the state and the sequence."""
+    """Holes in a read are 0; the status word shows queues, state and sequence number."""
     depth = 1 << core.parameters.line_queue_log2, 1 << core.parameters.ramp_queue_log2
     words = core.link.read(0, 20)
     assert words[0] == r.IDENTIFICATION_RESET
@@ -49,7 +49,7 @@ def reads(core: Core) -> None:
 
 @core_test
 def positions_are_of_one_moment(core: Core) -> None:
-    """All positions of a read are of one clock soon after the fall of chip select, while the axes step on."""
+    """All positions of a read are sampled on one clock shortly after chip select falls, during motion."""
     channel = core.channel()
     core.watch(PinTiming())
     channel.lines(Line(7, (7, -7, 7)[: core.axes], endless=True))
@@ -68,7 +68,7 @@ def positions_are_of_one_moment(core: Core) -> None:
 
 @core_test
 def duplicates_are_executed_once(core: Core) -> None:
-    """A write or push with the sequence number of the last accepted one is acknowledged and not executed."""
+    """A write or push with the sequence number of the last accepted one is acknowledged but not executed."""
     _, line, ramp, _ = frames(core)
     words = Line(5, (1,) * core.axes).words()
     host = core.channel()
@@ -105,7 +105,7 @@ def sequence_numbers_are_compared_in_all_their_bits(core: Core) -> None:
 
 @core_test
 def frames_that_are_cut_short(core: Core) -> None:
-    """A frame cut anywhere before its CRC leaves no trace; one cut after its verdict is executed."""
+    """A frame cut anywhere before its CRC has no effect; one cut after its verdict is executed."""
     random = rng("frames_that_are_cut_short")
     _, line, _, _ = frames(core)
     host = core.channel()
@@ -143,7 +143,7 @@ def every_shape_of_sclk(core: Core) -> None:
 
 @core_test
 def tables_can_be_rewritten(core: Core) -> None:
-    """A ramp follows the points that were written, and the shape of before when they are written back."""
+    """A ramp follows rewritten points, and the original shape after they are restored."""
     channel = core.channel()
     core.watch(PinTiming())
     lines, ramps = a_motion(core, 3)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What takes hundreds of thousands of clocks: the longest pin timings and a counter that wraps."""
+"""Tests that take hundreds of thousands of clocks: the longest pin timings and a counter that wraps."""
 
 from passo import registers as r
 from passo.registers import Cause, State
@@ -50,7 +50,7 @@ def pin_timings_in_all_their_bits(core: Core) -> None:
 
 @core_test
 def drained_substeps_are_counted_modulo_65536(core: Core) -> None:
-    """A line that lacks so many: all are made at drain_velocity, every second clock, and its steps too."""
+    """A line that lacks this many: all are made at drain_velocity, every second clock, with their steps."""
     channel = core.channel()
     core.watch(PinTiming())
     core.link.write(channel.base + r.CHANNEL_DRAIN_VELOCITY, 1 << 31)

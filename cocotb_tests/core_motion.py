@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Motions from their first clock to their last: what is promised of lines, ramps, axes and `running`."""
+"""Motions from first to last clock: lines, ramps, axes and `running`."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -26,10 +26,10 @@ FAST = (Ramp(V_MAX, 0), Ramp(V_MAX, 6), Ramp(0, 0, last=True))  # 6 ticks of a s
 
 
 def make(core: Core, channel: CoreChannel, lines: Sequence[Line], ramps: Sequence[Ramp]) -> int:
-    """Make a motion at rate 1.0 and check everything but its steps; return the clock of its beginning."""
+    """Make a motion at rate 1.0 and check everything except its steps; return the clock of its start."""
     since = core.clock
     before = channel.positions()
-    channel.rest()  # all of it has to be there before it starts
+    channel.rest()  # everything must be queued before it starts
     channel.lines(*lines)
     channel.ramps(*ramps)
     channel.start()
@@ -49,10 +49,16 @@ def make(core: Core, channel: CoreChannel, lines: Sequence[Line], ramps: Sequenc
 
 
 def check_clocks(core: Core, begin: int, expected: Sequence[Sequence[int]], factor: int = 1) -> None:
-    """Each step leaves its pin so many clocks after `running` rose as it is due."""
+    """Check that each step leaves its pin as many clocks after `running` rose as it is due."""
     for axis, clocks in enumerate(expected):
         actual = [clock - begin for clock in core.steps(axis, begin)]
         assert actual == [factor * clock for clock in clocks], f"axis {axis}"
+
+
+def make_on_time(core: Core, channel: CoreChannel, lines: Sequence[Line], ramps: Sequence[Ramp]) -> None:
+    """Make a motion whose every step leaves its pin on the clock on which it is due."""
+    begin = make(core, channel, lines, ramps)
+    check_clocks(core, begin, due(lines, ramps, core.tick))
 
 
 @core_test
@@ -76,8 +82,7 @@ def every_step_leaves_its_pin_on_its_clock(core: Core) -> None:
     lines = [
         Line(m, tuple(m * share // 100 for share in shares[i]), last=i == 4) for i, m in enumerate(lengths)
     ]
-    begin = make(core, channel, lines, ramps)
-    check_clocks(core, begin, due(lines, ramps, core.tick))
+    make_on_time(core, channel, lines, ramps)
     assert checker.positions == totals(lines)
 
 
@@ -96,7 +101,7 @@ def short_lines_follow_each_other_without_a_lost_clock(core: Core) -> None:
 
 @core_test
 def lines_of_one_substep_turn_the_axes(core: Core) -> None:
-    """Each line another direction; the last one is followed by as much as the profile still has."""
+    """Each line reverses; the profile continues after the last one."""
     channel = core.channel()
     checker = core.watch(PinTiming())
     ramps = [Ramp(ONE // 7, 0), Ramp(ONE // 7, 3), Ramp(0, 0, last=True)]
@@ -113,7 +118,7 @@ def lines_of_one_substep_turn_the_axes(core: Core) -> None:
 
 @core_test
 def every_axis_steps_every_second_clock(core: Core) -> None:
-    """N = M at velocity 1/2 with high = low = 1: none of thousands of steps is lost or late."""
+    """N = M at velocity 1/2 with step_high = step_low = 1: none of thousands of steps is lost or late."""
     channel = core.channel()
     channel.pins(PinTiming())
     checker = core.watch(PinTiming())
@@ -126,7 +131,7 @@ def every_axis_steps_every_second_clock(core: Core) -> None:
 
 @core_test
 def reversals_keep_all_pin_timings(core: Core) -> None:
-    """Steps that must wait for DIR are made later, in order, each with its own direction."""
+    """Steps that have to wait for DIR are made later, in order, each with its own direction."""
     channel = core.channel()
     timings = [PinTiming(3, 4, 7, 5), PinTiming(1, 9, 2, 11), PinTiming(10, 1, 20, 1)][: core.axes]
     channel.pins(*timings)
@@ -203,7 +208,7 @@ def pins_follow_their_registers(core: Core) -> None:
 
 @core_test
 def axes_without_steps_stand(core: Core) -> None:
-    """A line without steps takes its time and moves nothing; one step comes in the middle of its line."""
+    """A line without steps takes its time and moves nothing; a single step is in the middle of its line."""
     channel = core.channel()
     checker = core.watch(PinTiming())
     ramps = [Ramp(SLOW, 0), Ramp(SLOW, 8), Ramp(0, 0, last=True)]
@@ -268,14 +273,13 @@ def ramps_run_on_when_the_last_line_has_ended(core: Core) -> None:
     checker = core.watch(PinTiming())
     ramps = [Ramp(SLOW, 4), Ramp(SLOW, 4), Ramp(0, 4, last=True)]
     lines = [Line(20, (20, -10, 1)[: core.axes], last=True)]
-    begin = make(core, channel, lines, ramps)
-    check_clocks(core, begin, due(lines, ramps, core.tick))
+    make_on_time(core, channel, lines, ramps)
     assert checker.positions == totals(lines)
 
 
 @core_test
 def ramps_that_do_not_fit_into_a_tick_make_the_rest_later(core: Core) -> None:
-    """Ten ramps without ticks in a row hold the profile: the same steps, later by the time of the hold."""
+    """Ten consecutive ramps without ticks stall the profile: the same steps, delayed by the stall."""
     channel = core.channel()
     checker = core.watch(PinTiming())
     idle = [Ramp(ONE // 9 - n, 0) for n in range(10)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Random moves, planned and raw, on random pins, chained, held and stretched: all steps, and in time.
+"""Random moves, planned and raw, with random pins, chained, held and overridden: all steps, in time.
 
 PASSO_SEED is the seed, SESSIONS the number of sessions of 25 motions.
 """
@@ -39,7 +39,7 @@ MANY = 24  # substeps of a line, so that it lasts until the next one has arrived
 
 @dataclass
 class Motion:
-    """Lines and ramps of a motion, and what has to come of it."""
+    """Lines and ramps of a motion, and its expected result."""
 
     lines: list[Line]
     ramps: list[Ramp]
@@ -66,7 +66,7 @@ class Axes:
     drained: int = 0
 
     def has_room_for(self, motion: Motion) -> bool:
-        """The queues can take it, whatever of the motions before is still in them."""
+        """Whether the queues can accept it, whatever is still in them."""
         parameters = self.channel.parameters
         motions = [*self.pending, motion]
         lines = sum(len(each.lines) for each in motions)
@@ -208,7 +208,7 @@ class Session:
     # making them
 
     def make(self, axes: Axes, motion: Motion) -> None:
-        """Send a motion; it starts when the one before has ended. Then perhaps interfere."""
+        """Send a motion, which starts when the previous one has ended. Then sometimes interfere."""
         axes.channel.ramps(*motion.ramps)
         axes.channel.lines(*motion.lines)
         axes.pending.append(motion)
@@ -233,7 +233,7 @@ class Session:
         axes.channel.set_rate(RATE_ONE)
 
     def settle(self) -> None:
-        """Wait for the end of all motions, and check what came of them."""
+        """Wait for the end of all motions, and check their results."""
         core = self.core
         for number, axes in enumerate(self.axes):
 
@@ -259,12 +259,12 @@ class Session:
         self.batch = core.clock
 
     def positions(self, number: int) -> list[int]:
-        """Where the pins have brought the axes of a channel."""
+        """Positions of the axes of a channel according to the pins."""
         axes = self.core.axes
         return self.checker.positions[number * axes : (number + 1) * axes]
 
     def wild(self, axes: Axes) -> None:
-        """What does not fit together: whatever comes of it, the position is that of the pulses."""
+        """Inconsistent lines and ramps: whatever happens, the position equals the pulses."""
         random, core = self.random, self.core
         self.settle()
         number = axes.channel.number

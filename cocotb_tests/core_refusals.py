@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Refused frames: each verdict for its reason, counted, and nothing else changes."""
+"""Refused frames: each verdict has its cause and is counted, and nothing else changes."""
 
 import itertools
 from collections.abc import Sequence
@@ -16,13 +16,13 @@ from cocotb_tests.helpers.core_moves import a_motion
 
 
 def refuse(core: Core, mosi: Sequence[int], verdict: Verdict) -> None:
-    """Send a frame that is refused for this reason."""
+    """Send a frame and check that it is refused with this verdict."""
     miso = core.transfer(mosi, GAP)
     assert ack(miso) == (mosi[0] >> 20 & 0xFF, verdict), f"{mosi[0]:08X}"
 
 
 def check_refusals(core: Core, cases: Sequence[tuple[Verdict, list[int]]]) -> None:
-    """Each is refused for its reason and counted; altogether they change nothing."""
+    """Check that each frame is refused with its verdict and counted, and that nothing else changes."""
     before, counts = everything(core), refusals(core)
     for verdict, mosi in cases:
         refuse(core, mosi, verdict)
@@ -33,7 +33,7 @@ def check_refusals(core: Core, cases: Sequence[tuple[Verdict, list[int]]]) -> No
 
 @core_test
 def damaged_frames(core: Core) -> None:
-    """A bit wrong anywhere is BAD_CRC, whatever else is wrong; impossible lengths are BAD_LENGTH."""
+    """A bit error anywhere is BAD_CRC, whatever else is wrong; invalid lengths are BAD_LENGTH."""
     random = rng("damaged_frames")
     channel, line, ramp, _ = frames(core)
     good = request(Operation.PUSH, 200, core.axes + 2, line, Line(9, (9,) * core.axes).words())
@@ -70,7 +70,7 @@ def hole(block: str, first: int) -> int:
 
 @core_test
 def wrong_operations_and_addresses(core: Core) -> None:
-    """Unknown operations, operations that a register does not take, holes, read-only registers."""
+    """Unknown operations, operations that a register does not support, holes, read-only registers."""
     channel, line, ramp, axis = frames(core)
     words = Line(9, (9,) * core.axes).words()
     beyond = r.ADDRESS_CHANNEL_BASE + core.parameters.channels * r.ADDRESS_CHANNEL_STRIDE
@@ -115,14 +115,14 @@ def wrong_operations_and_addresses(core: Core) -> None:
         (Verdict.READ_ONLY, request(write, 109, 2, r.ADDRESS_PARAMETERS, [0, 1])),
     ]
     check_refusals(core, cases)
-    # the first objection counts
+    # the first refusal counts
     both = request(write, 110, 2, channel + last, [1 << 31 | 1, 0])
     refuse(core, both, Verdict.BAD_VALUE)
     check_pins_are_as_after_reset(core)
 
 
 def check_pins_are_as_after_reset(core: Core) -> None:
-    """A motion shows the settings that cannot be read."""
+    """Check by a motion the settings that cannot be read."""
     channel = core.channel()
     checker = core.watch(PinTiming())
     lines, ramps = a_motion(core, 2)
@@ -139,7 +139,7 @@ def check_pins_are_as_after_reset(core: Core) -> None:
 
 @core_test
 def bad_values(core: Core) -> None:
-    """Whatever a register or a queue cannot take; a bad word at the end of a frame spoils the whole of it."""
+    """Invalid values of registers and queues; an invalid last word makes the whole frame refused."""
     channel, line, ramp, axis = frames(core)
     good = Line(9, (9,) * core.axes)
     write, push = Operation.WRITE, Operation.PUSH
@@ -202,7 +202,7 @@ def bad_values(core: Core) -> None:
 
 @core_test
 def greatest_values(core: Core) -> None:
-    """What is just not too large is taken."""
+    """The largest valid values are accepted."""
     channel = core.channel()
     channel.lines(Line(SUBSTEPS_MAX, (SUBSTEPS_MAX, -SUBSTEPS_MAX, 0)[: core.axes]))
     channel.ramps(Ramp(V_MAX, 0xFFFFFFFF, Shape.EASE, mirror=True))
@@ -215,7 +215,7 @@ def greatest_values(core: Core) -> None:
 
 @core_test
 def full_queues(core: Core) -> None:
-    """A frame for which there is not enough room is refused as a whole; what is taken is what fits."""
+    """A frame without enough room is refused as a whole; one that just fits is accepted."""
     _, line, ramp, _ = frames(core)
     host = core.channel()
     words = Line(9, (9,) * core.axes).words()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Registers of a channel in all their bits, seen by what the motion makes of them and by reading."""
+"""All bits of the registers of a channel, verified by their effect on motion and by reading."""
 
 from passo import registers as r
 from passo.host import RATE_ONE
@@ -15,7 +15,7 @@ HIGH_BITS = 0xF800  # two ticks, seen in the pulses
 
 
 def jog(core: Core, channel: CoreChannel, velocity: int) -> None:
-    """Start to run at a velocity, without an end."""
+    """Start an endless motion at a velocity."""
     channel.rest()
     channel.lines(Line(1, (1, -1, 0)[: core.axes], endless=True))
     channel.ramps(Ramp(velocity, 0))
@@ -29,7 +29,7 @@ def read_word(channel: CoreChannel, register: int) -> int:
 
 
 def check_slowing(core: Core, channel: CoreChannel, slew: int) -> None:
-    """The rate goes down by whole slews, one per slew tick; it is read on its way when there is time."""
+    """Check that the rate decreases by one slew per slew tick; it is read on the way if there is time."""
     begin, seen = core.clock, RATE_ONE
     while seen > 12 * slew:
         before = core.clock
@@ -78,7 +78,7 @@ def stop_slew_in_all_its_bits(core: Core) -> None:
 
 @core_test
 def rate_and_velocity_are_read_in_all_their_bits(core: Core) -> None:
-    """What is in force, at once and to the last bit that the register has."""
+    """The present values, to the last bit of the register."""
     channel = core.channel()
     core.watch(PinTiming())
     core.link.write(channel.base + r.CHANNEL_RATE_SLEW, RATE_ONE)

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Which lines and bits of the RTL the cocotb tests reach: `make coverage`.
+"""Line and toggle coverage of the RTL by the cocotb tests: `make coverage`.
 
-Runs the tests on Verilator with its line and toggle coverage, adds up what all of them reached, prints a
-table and writes docs/coverage.md. A line is reached if each of its branches was taken in some instance of the
-module, a bit if it rose and fell somewhere. That says what was exercised; what was right, the tests say.
+Runs the tests on Verilator with its line and toggle coverage, merges the results, prints a table and writes
+docs/coverage.md. A line is covered if each of its branches was taken in some instance of the module, a bit if
+it rose and fell in some instance.
 
-Fails if a test does, if a line or a bit is not reached that coverage_exclusions.toml does not list, or if
-that list is not right.
+Fails if a test fails, if a line or a bit is not covered and not listed in coverage_exclusions.toml, or if an
+entry of that list is wrong.
 """
 
 import os
@@ -34,14 +34,14 @@ from cocotb_tests.helpers.runner import COVERAGE_VARIABLE
 PAGE = paths.docs / "coverage.md"
 DATA = "coverage.dat"
 SELECTION = "verilator and not netlist"
-WIDTH = 118  # of the tables where there is no terminal
+WIDTH = 118  # of the tables without a terminal
 
 HEAD = """# Coverage
 
-`make coverage` writes this page: lines and bits of the RTL that the cocotb tests reach on Verilator. A line
-is reached if each of its branches was taken in some instance of its module, a bit if it rose and fell in one.
-Bits that cannot are constant by construction; they are listed below with the reason, and checked: one that
-does not exist or rises and falls after all is an error, as is any other bit or line that is not reached.
+Written by `make coverage`: lines and bits of the RTL that the cocotb tests reach on Verilator. A line is
+reached if each of its branches was taken in some instance of its module, a bit if it rose and fell in one.
+Bits that cannot toggle are constant by construction. They are listed below with the reason, and checked: a
+listed bit that does not exist or does toggle is an error, as is any other unreached bit or line.
 
 """
 HEADER = ("file", "lines", "reached", "bits", "constant", "reached")
@@ -51,18 +51,18 @@ Exclusions = Sequence[Exclusion]
 
 
 def run_tests() -> int:
-    """Run the tests with coverage; return pytest's status."""
+    """Run the tests with coverage; return the exit status of pytest."""
     command = [sys.executable, "-m", "pytest", "cocotb_tests", "-k", SELECTION, "-q"]
     return subprocess.run(command, cwd=paths.root, env={**os.environ, COVERAGE_VARIABLE: "1"}).returncode
 
 
 def data_files() -> list[Path]:
-    """What the tests left."""
+    """Coverage data files of the tests."""
     return sorted((paths.build / "cocotb").glob(f"*-coverage/*/{DATA}"))
 
 
 def missed_lines(modules: Modules) -> list[tuple[str, int, str]]:
-    """File, number and text of the lines that no test reaches."""
+    """File, number and text of the uncovered lines."""
     found = []
     for name, module in sorted(modules.items()):
         text = (paths.rtl / name).read_text().splitlines()
@@ -71,7 +71,7 @@ def missed_lines(modules: Modules) -> list[tuple[str, int, str]]:
 
 
 def missed_bits(modules: Modules, exclusions: Exclusions) -> dict[str, list[str]]:
-    """By file the bits that never rose and fell and are not on the list."""
+    """By file: uncovered bits that are not on the list."""
     found = {}
     for name, module in sorted(modules.items()):
         constant = excluded(exclusions, name)
@@ -115,7 +115,7 @@ def _row(name: str, n: Mapping[str, int]) -> list[str]:
 
 
 def show(modules: Modules, exclusions: Exclusions) -> None:
-    """Print the table and what no test reached."""
+    """Print the table and everything that is not covered."""
     screen = console if console.is_terminal else Console(width=WIDTH)
     shown = table("coverage of rtl/", *HEADER)
     for row in _rows(modules, exclusions):
@@ -135,9 +135,9 @@ def page(modules: Modules, exclusions: Exclusions) -> str:
     bits = [f"* `{name}`: {_names(bits)}" for name, bits in missed_bits(modules, exclusions).items()]
     constant = [f"* `{e.file}`: {_names(e.bits)}. {e.reason}" for e in exclusions]
     sections = {
-        "Lines that no test reaches": lines,
-        "Bits that no test makes rise and fall": bits,
-        "Bits that are constant": constant,
+        "Unreached lines": lines,
+        "Bits that never toggle": bits,
+        "Constant bits": constant,
     }
     parts = [HEAD.rstrip(), "", *rows, ""]
     for title, items in sections.items():

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Lines and bits of the RTL that Verilator counted, and the bits that cannot rise and fall by construction.
+"""Coverage points of the RTL as counted by Verilator, and the bits that are constant by construction.
 
-These are listed with their reasons in coverage_exclusions.toml, which has to be right: a bit that is listed
-and is not there, or rises and falls after all, is an error.
+The constant bits are listed with reasons in coverage_exclusions.toml. A listed bit that does not exist, or
+that toggles, is an error.
 """
 
 import re
@@ -51,7 +51,7 @@ def _natural(name: str) -> list[tuple[int, str]]:
 
 
 def read(files: Iterable[Path]) -> dict[str, Module]:
-    """Add up what Verilator wrote; files of rtl/ by name."""
+    """Merge Verilator's data files; modules of rtl/ by file name."""
     modules: dict[str, Module] = {}
     for path in files:
         for line in path.read_text().splitlines():
@@ -114,7 +114,7 @@ def ranges(bits: Iterable[str]) -> list[str]:
 
 
 def read_exclusions(path: Path = EXCLUSIONS) -> list[Exclusion]:
-    """The list of a file; ValueError if an entry has no reason."""
+    """Read the list; raises ValueError if an entry has no reason."""
     found = []
     for entry in tomllib.loads(path.read_text())["bits"]:
         if not entry["reason"].strip():
@@ -130,7 +130,7 @@ def excluded(exclusions: Iterable[Exclusion], file: str) -> set[str]:
 
 
 def wrong_exclusions(modules: Mapping[str, Module], exclusions: Sequence[Exclusion]) -> list[str]:
-    """What is wrong with the list, a sentence each."""
+    """Errors in the list, one sentence each."""
     wrong = []
     seen: set[tuple[str, str]] = set()
     for exclusion in exclusions:

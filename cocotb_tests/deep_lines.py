@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A line queue as deep as it may be: every place, every number of lines."""
+"""A line queue of maximum depth: every entry, every number of lines."""
 
 import cocotb
 from cocotb.handle import HierarchyObject
@@ -10,9 +10,9 @@ from cocotb_tests.helpers.line_queue import ENDLESS, LAST, QUEUE_FULL, Queue
 
 @cocotb.test()
 async def every_place_keeps_its_line(dut: HierarchyObject) -> None:
-    """Filled from any place on, with a frame that has one line too many checked before; many times around.
+    """Filled from any entry on, after checking a frame with one line too many; many times around.
 
-    Each place has each kind of line once, so that all bits of its control are set and cleared.
+    Each entry has each kind of line once, so that all bits of its control word are set and cleared.
     """
     random = rng("deep lines")
     queue = await Queue.begin(dut)
@@ -32,19 +32,14 @@ async def every_place_keeps_its_line(dut: HierarchyObject) -> None:
         for taken, line in enumerate(lines):
             await queue.clocks.wait(2)
             queue.check_room(depth - count + taken)
-            queue.check_next(line)
-            await queue.strobe("take")
-            await queue.clocks.wait(1)
-            queue.check_current(line)
+            await queue.take(line)
             await queue.strobe("release_line")
-        await queue.clocks.wait(2)
-        queue.check_next(None)
-        queue.check_room(depth)
+        await queue.check_settled(None, depth)
 
 
 @cocotb.test()
 async def the_lines_of_a_frame_are_counted_to_the_last_place(dut: HierarchyObject) -> None:
-    """With a room of 2^k places the line after so many finds none."""
+    """With 2^k free entries, the line after 2^k is refused."""
     random = rng("deep lines, room")
     queue = await Queue.begin(dut)
     depth = 1 << len(dut.room) - 1

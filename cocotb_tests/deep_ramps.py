@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A ramp queue as deep as it may be: every place, every number of ramps, NOW in any of them."""
+"""A ramp queue of maximum depth: every entry, every number of ramps, NOW in any of them."""
 
 import cocotb
 from cocotb.handle import HierarchyObject
@@ -10,7 +10,7 @@ from cocotb_tests.helpers.ramp_queue import QUEUE_FULL, WORDS, Queue, random_ram
 
 @cocotb.test()
 async def every_place_keeps_its_ramp(dut: HierarchyObject) -> None:
-    """Filled from any place on, with a frame that has one ramp too many checked before; twice around."""
+    """Filled from any entry on, after checking a frame with one ramp too many; twice around."""
     random = rng("deep ramps")
     queue = await Queue.begin(dut)
     for count in (queue.depth // 3, queue.depth, queue.depth):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""passo_axis: pin timings, queue, directions, what it counts."""
+"""passo_axis: pin timings, queue, directions, counters."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -22,10 +22,6 @@ INPUTS = (
     "direction",
     "drop",
     "clear",
-    "step_high",
-    "step_low",
-    "dir_setup",
-    "dir_hold",
     "timing_written",
     "both_edges",
     "step_inverted",
@@ -38,17 +34,17 @@ Request = tuple[int, int]  # clock, direction: 1 or -1
 
 
 def test_axis(simulator: str) -> None:
-    run(__name__, "passo_axis_top", simulator=simulator)
+    run(__name__, "passo_axis", simulator=simulator)
 
 
 def expected_steps(
     timing: PinTiming, requests: Sequence[Request], direction: int
 ) -> tuple[list[Request], list[int]]:
-    """Steps as soon as the pin timing allows, and the clocks of the requests that find four waiting.
+    """Reference: steps as early as the pin timing allows, and the clocks of requests to a full queue.
 
-    The pins stand in `direction` before, and the direction of the line is always that of the last request.
-    Counted in clocks of the pins: a request and a change of the line's direction reach them after LATENCY,
-    and a step leaves the queue a clock before it is seen.
+    DIR has `direction` initially, and the direction of the line is always that of the last request. Clocks
+    are those at the pins: a request and a change of the line's direction reach them after LATENCY, and a step
+    leaves the queue one clock before it is seen.
     """
     steps: list[Request] = []
     lost: list[int] = []
@@ -83,19 +79,25 @@ def expected_steps(
     return steps, lost
 
 
+def set_time(dut: HierarchyObject, name: str, clocks: int) -> None:
+    """Set one of the four times and tell whether it is short; 0 counts as 1."""
+    getattr(dut, name).value = max(1, clocks)
+    getattr(dut, f"short_{name.partition('_')[2]}").value = clocks < 2
+
+
 def apply(dut: HierarchyObject, timing: PinTiming) -> None:
     """Set all settings."""
-    dut.step_high.value = timing.high
-    dut.step_low.value = timing.low
-    dut.dir_setup.value = timing.setup
-    dut.dir_hold.value = timing.hold
+    set_time(dut, "step_high", timing.high)
+    set_time(dut, "step_low", timing.low)
+    set_time(dut, "dir_setup", timing.setup)
+    set_time(dut, "dir_hold", timing.hold)
     dut.both_edges.value = timing.both_edges
     dut.step_inverted.value = timing.step_inverted
     dut.direction_inverted.value = timing.direction_inverted
 
 
 async def write(dut: HierarchyObject, clocks: Clocks, timing: PinTiming) -> None:
-    """Write pins and timings as the registers do: they change a clock after the strobe."""
+    """Write pins and timings as the registers do: they change one clock after the strobe."""
     dut.pins_written.value = 1
     dut.both_edges_next.value = timing.both_edges
     await clocks.wait(1)
@@ -107,7 +109,8 @@ async def write(dut: HierarchyObject, clocks: Clocks, timing: PinTiming) -> None
 
 
 async def prepare(dut: HierarchyObject, timing: PinTiming) -> Clocks:
-    """Reset with these settings in force; the pins stand."""
+    """Reset with these settings; the pins are idle."""
+    apply(dut, PinTiming())
     clocks = await begin(dut, *INPUTS)
     while not read(dut.quiet):
         await clocks.wait(1)
@@ -166,7 +169,7 @@ class Axis:
         assert self.counted()[before:] == steps
 
     def counted(self) -> list[Request]:
-        """What the axis says of the steps it made, as of the clock on which they leave the pin."""
+        """The steps that the axis counts, by the clock on which they leave the pin."""
         counted: list[Request] = []
         for clock in self.made.clocks_where(bool, self.clocks.now):
             negative = next((n for since, n in reversed(self.directions.changes) if since <= clock), 0)
@@ -175,7 +178,7 @@ class Axis:
 
 
 def first_difference(actual: Sequence[Request], expected: Sequence[Request]) -> str:
-    """Where two lists of steps begin to differ."""
+    """The first difference between two lists of steps."""
     for n, (a, e) in enumerate(zip(actual, expected, strict=False)):
         if a != e:
             return f"step {n}: expected {e}, actual {a}"
@@ -224,7 +227,7 @@ async def one_and_one_gives_a_step_every_two_clocks(dut: HierarchyObject) -> Non
     ]
 )
 async def bursts_and_reversals_take_exactly_the_set_times(dut: HierarchyObject, timing: PinTiming) -> None:
-    """Steps that wait follow as soon as the four times allow, in the same and in the other direction."""
+    """Queued steps follow as early as the four times allow, in the same and in the other direction."""
     axis = await Axis.begin(dut, timing)
     for directions in ([1, 1, 1, 1], [1, 1, -1, -1], [1, -1, 1, -1], [-1, 1, 1, -1], [-1, -1, -1, -1]):
         now = axis.clocks.now
@@ -247,7 +250,7 @@ async def the_longest_times_are_kept(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def the_fifth_waiting_step_is_an_overrun(dut: HierarchyObject) -> None:
-    """Four steps wait with their directions; what comes on top raises overrun once each and is not made."""
+    """Four steps are queued with their directions; each further one raises overrun once and is dropped."""
     axis = await Axis.begin(dut, PinTiming(high=50, low=20, setup=5, hold=9))
     now = axis.clocks.now
     directions = [1, -1, -1, 1, 1, -1, 1, -1]  # the first is under way when the fifth is to wait
@@ -260,7 +263,7 @@ async def the_fifth_waiting_step_is_an_overrun(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def dir_follows_the_line_while_nothing_waits(dut: HierarchyObject) -> None:
-    """A new line's direction is set up at once, so its first step is not late; a waiting step goes first."""
+    """DIR follows a new line at once, so its first step is not late; a queued step goes first."""
     timing = PinTiming(high=6, low=4, setup=20, hold=10)
     axis = await Axis.begin(dut, timing)
     turned = Recorder(axis.clocks, dut.dir_pin)
@@ -287,7 +290,7 @@ async def dir_follows_the_line_while_nothing_waits(dut: HierarchyObject) -> None
 
 @cocotb.test()
 async def drop_forgets_what_waits_and_finishes_the_pulse(dut: HierarchyObject) -> None:
-    """After drop no further step is made, and the one under way keeps its length."""
+    """After drop no further step is made, and a pulse in progress keeps its length."""
     axis = await Axis.begin(dut, PinTiming(high=30, low=10, setup=5, hold=5))
     for at in range(6):
         now = axis.clocks.now
@@ -308,7 +311,7 @@ async def drop_forgets_what_waits_and_finishes_the_pulse(dut: HierarchyObject) -
 
 @cocotb.test()
 async def polarities_invert_only_the_pins(dut: HierarchyObject) -> None:
-    """With inverted pins the same edges leave, upside down; EN follows its two bits."""
+    """Inverted pins have the same edges with inverted levels; EN follows its two bits."""
     for step_inverted in (False, True):
         for direction_inverted in (False, True):
             timing = PinTiming(3, 2, 4, 5, step_inverted=step_inverted, direction_inverted=direction_inverted)
@@ -318,6 +321,7 @@ async def polarities_invert_only_the_pins(dut: HierarchyObject) -> None:
             await axis.request_and_compare([(now, 1), (now + 1, -1), (now + 2, -1), (now + 40, 1)])
             axis.checker.finish()
             axis.clocks.stop()
+    apply(dut, PinTiming())
     clocks = await begin(dut, *INPUTS)
     for enable, inverted in ((1, 0), (1, 1), (0, 1), (0, 0)):
         dut.enable.value = enable
@@ -352,10 +356,10 @@ def read_lost(axis: Axis) -> int:
 @cocotb.test()
 @cocotb.parametrize(high=[0, 1, 2, 8, 70])
 async def a_time_that_is_written_begins_anew(dut: HierarchyObject, high: int) -> None:
-    """step_high written at any clock of a pulse: from then on STEP stays active for the new time."""
+    """step_high written at any clock of a pulse: STEP stays active for the new time from then on."""
     clocks = await prepare(dut, PinTiming())
     for at in range(LATENCY - 1, LATENCY + 17):
-        dut.step_high.value = 20
+        set_time(dut, "step_high", 20)
         pins = Recorder(clocks, dut.step_pin)
         now = clocks.now
         dut.step_request.value = 1
@@ -365,7 +369,7 @@ async def a_time_that_is_written_begins_anew(dut: HierarchyObject, high: int) ->
         dut.timing_written.value = 1
         await clocks.fall
         dut.timing_written.value = 0
-        dut.step_high.value = high
+        set_time(dut, "step_high", high)
         await clocks.wait(150)
         # the time begins with the second clock after the write; the pin follows a clock later
         assert pins.changes == [(now + LATENCY, 1), (now + at + 3 + max(1, high), 0)]
@@ -384,7 +388,7 @@ async def a_time_that_is_written_begins_anew(dut: HierarchyObject, high: int) ->
 async def a_change_of_polarity_is_a_change_of_dir(
     dut: HierarchyObject, before: PinTiming, after: PinTiming
 ) -> None:
-    """From the write on, the low time, DIR hold and set-up are over before the next step."""
+    """After the write, low time, DIR hold and DIR setup elapse before the next step."""
     for steps in (1, 2):
         for at in range(2, 30):
             axis = await Axis.begin(dut, before)
@@ -425,7 +429,7 @@ async def a_change_of_polarity_is_a_change_of_dir(
     ]
 )
 async def a_reset_makes_no_edge(dut: HierarchyObject, timing: PinTiming) -> None:
-    """At any clock of steps and turns: STEP and DIR stand while it lasts, then a pulse is finished."""
+    """At any clock of steps and reversals: STEP and DIR do not change; a pulse is completed after it."""
     for length in (1, 2, 7):
         for at in range(40):
             clocks = await prepare(dut, timing)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""passo_axis_registers: which axis is written to, and what the bus is answered."""
+"""passo_axis_registers: selection of the axis, and responses on the bus."""
 
 import cocotb
 from cocotb.handle import HierarchyObject
@@ -20,7 +20,7 @@ WRITABLE = {
 }
 INPUTS = (
     "bus_check", "bus_write", "bus_read", "bus_push", "select_axis", "select_position", "bus_address",
-    "bus_data", "bus_top_bit", "lost",
+    "bus_data", "bus_msb", "lost",
 )  # fmt: skip
 
 
@@ -37,7 +37,7 @@ async def strobe(
         getattr(dut, other).value = 1 << axis if other == block else 0
     dut.bus_address.value = address
     dut.bus_data.value = data
-    dut.bus_top_bit.value = max(0, data.bit_length() - 1)
+    dut.bus_msb.value = max(0, data.bit_length() - 1)
     await clocks.wait(1)
     getattr(dut, name).value = 1
     await clocks.wait(1)
@@ -45,7 +45,7 @@ async def strobe(
 
 
 def places() -> list[tuple[str, int, int]]:
-    """All registers and holes of all axes, and one of nobody."""
+    """All registers and holes of all axes, and an address outside."""
     found = [("select_axis", axis, address) for axis in range(AXES) for address in range(8)]
     found += [("select_position", axis, axis) for axis in range(AXES)]
     return [*found, ("nobody", 0, PINS), ("nobody", 0, LOST_STEPS)]
@@ -76,7 +76,7 @@ async def every_check_has_its_answer(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def pins_need_a_quiet_channel(dut: HierarchyObject) -> None:
-    """Said with the strobe that checks the pins of any axis, and at no other time."""
+    """Asserted with the strobe that checks the pins of any axis, and at no other time."""
     clocks = await begin(dut, *INPUTS)
     for place in places():
         for name in ("bus_check", "bus_write", "bus_read"):
@@ -96,7 +96,7 @@ async def pins_need_a_quiet_channel(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def every_read_has_its_answer(dut: HierarchyObject) -> None:
-    """The lost steps of the axis that is meant, all bits of them; that the answer is a position; refusals."""
+    """The lost steps of the addressed axis, all bits; whether the response is a position; refusals."""
     random = rng("axis registers, reads")
     clocks = await begin(dut, *INPUTS)
     for _ in range(4):
@@ -118,7 +118,7 @@ async def every_read_has_its_answer(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def every_write_reaches_its_axis(dut: HierarchyObject) -> None:
-    """A strobe for the axis and the register that are meant; which halves of the data are 0 or 1."""
+    """A strobe for the addressed axis and register; which halves of the data are 0 or 1."""
     random = rng("axis registers, writes")
     clocks = await begin(dut, *INPUTS)
     for place in places() * 2:
@@ -134,5 +134,5 @@ async def every_write_reaches_its_axis(dut: HierarchyObject) -> None:
             for register, name in WRITABLE.items():
                 meant = level and block == "select_axis" and address == register
                 assert read(getattr(dut, name)) == (1 << axis if meant else 0), place
-        assert (read(dut.short_upper), read(dut.short_lower)) == tuple(half < 2 for half in halves)
+        assert (read(dut.upper_is_minimal), read(dut.lower_is_minimal)) == tuple(half < 2 for half in halves)
         dut.bus_write.value = 0

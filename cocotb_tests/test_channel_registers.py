@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""passo_channel_registers: which address means what, what is answered, what is written, what is read."""
+"""passo_channel_registers: address decoding, responses, writes and reads."""
 
 from random import Random
 
@@ -7,7 +7,7 @@ import cocotb
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import ReadOnly, Timer
 
-from cocotb_tests.helpers.bench import PERIOD, Clocks, begin, read, rng
+from cocotb_tests.helpers.bench import PERIOD, Bench, read, rng
 from cocotb_tests.helpers.runner import run
 
 AXES = 8
@@ -29,10 +29,6 @@ STATES = {
     "state": 3, "quiet": 1, "cause": 3, "stopping": 1, "overrun": AXES, "drained": 16, "rate": 17,
     "velocity": 32, "line_room": LINE_QUEUE_LOG2 + 1, "ramp_room": RAMP_QUEUE_LOG2 + 1,
 }  # fmt: skip
-BUS = (
-    "bus_check", "bus_write", "bus_read", "bus_push", "select", "bus_address", "bus_data", "bus_top_bit",
-    "bus_lone_bit",
-)  # fmt: skip
 
 
 def test_channel_registers(simulator: str) -> None:
@@ -40,30 +36,25 @@ def test_channel_registers(simulator: str) -> None:
     run(__name__, "passo_channel_registers", {"AXES": AXES, **depths}, simulator)
 
 
-class Bench:
+class Registers(Bench):
     """The module under test."""
 
-    def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
-        self.dut, self.clocks = dut, clocks
+    INPUTS = (
+        "bus_check", "bus_write", "bus_read", "bus_push", "select", "bus_address", "bus_data", "bus_msb",
+        "bus_one_hot", *STATES,
+    )  # fmt: skip
 
-    @classmethod
-    async def begin(cls, dut: HierarchyObject) -> "Bench":
-        """Reset."""
-        return cls(dut, await begin(dut, *BUS, *STATES))
-
-    async def strobe(self, name: str, address: int, data: int = 0, push: bool = False) -> None:
+    async def access(self, name: str, address: int, data: int = 0, push: bool = False) -> None:
         """Put an access on the bus and raise a strobe for a clock; the answer is there on return."""
         dut = self.dut
         dut.select.value = 1
         dut.bus_address.value = address
         dut.bus_data.value = data
-        dut.bus_top_bit.value = max(data.bit_length() - 1, 0)
-        dut.bus_lone_bit.value = data.bit_count() <= 1
+        dut.bus_msb.value = max(data.bit_length() - 1, 0)
+        dut.bus_one_hot.value = data.bit_count() <= 1
         dut.bus_push.value = push
         await self.clocks.wait(2)
-        getattr(dut, name).value = 1
-        await self.clocks.wait(1)
-        getattr(dut, name).value = 0
+        await self.strobe(name)
 
     def answer(self) -> tuple[int, int]:
         """Claim and refusal."""
@@ -71,12 +62,12 @@ class Bench:
 
 
 def command_of(data: int) -> int:
-    """The bits of a command that count."""
+    """The effective bits of a command."""
     return ABORT if data & ABORT else STOP if data & STOP else data
 
 
 def expected_answer(address: int, data: int, push: bool) -> tuple[int, int]:
-    """What a check is answered."""
+    """Expected response to a check."""
     queue = address in (LINE, RAMP)
     if not queue and address not in LIMITS and address not in (STATE, RATE, ROOM, VELOCITY):
         return 0, 0
@@ -97,8 +88,8 @@ def random_data(random: Random) -> int:
 
 @cocotb.test()
 async def every_address_means_its_block(dut: HierarchyObject) -> None:
-    """One bit for the axis or position that is meant, pushes to a queue, and nothing while not selected."""
-    bench = await Bench.begin(dut)
+    """One bit for the addressed axis or position, pushes to a queue, and nothing while not selected."""
+    bench = await Registers.begin(dut)
     for selected in (1, 0):
         for address in range(0x100):
             for push in (0, 1):
@@ -115,21 +106,21 @@ async def every_address_means_its_block(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def every_check_has_its_answer(dut: HierarchyObject) -> None:
-    """Every address, written and pushed to, with values around the limits; a clock later, for a clock."""
+    """Every address, written and pushed to, with values around the limits; one clock later, for one clock."""
     random = rng("channel registers, checks")
-    bench = await Bench.begin(dut)
+    bench = await Registers.begin(dut)
     for _ in range(3):
         for address in (*range(0x30), POSITIONS, AXIS, 0xFF):
             for push in (False, True):
                 data = random.choice((random_data(random), 0, 1))
-                await bench.strobe("bus_check", address, data, push)
+                await bench.access("bus_check", address, data, push)
                 assert bench.answer() == expected_answer(address, data, push), (
                     f"{address:#x} {data:#x} {push=}"
                 )
                 await bench.clocks.wait(1)
                 assert bench.answer() == (0, 0)
     for command in range(17):
-        await bench.strobe("bus_check", COMMAND, command)
+        await bench.access("bus_check", COMMAND, command)
         assert bench.answer() == expected_answer(COMMAND, command, False), command
     dut.select.value = 0
     dut.bus_address.value = RATE_TARGET
@@ -141,8 +132,8 @@ async def every_check_has_its_answer(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def commands_say_what_they_need(dut: HierarchyObject) -> None:
-    """With the strobe of the check: CLEAR no motion, ZERO a quiet channel, a stop nothing."""
-    bench = await Bench.begin(dut)
+    """With the strobe of the check: CLEAR requires no motion, ZERO a quiet channel, a stop nothing."""
+    bench = await Registers.begin(dut)
     for name in ("bus_check", "bus_write", "bus_read"):
         for address in (COMMAND, RATE_TARGET, STATE, LINE):
             for command in range(16):
@@ -155,7 +146,7 @@ async def commands_say_what_they_need(dut: HierarchyObject) -> None:
                         await Timer(PERIOD, "step")
 
                 watching = cocotb.start_soon(watch())
-                await bench.strobe(name, address, command)
+                await bench.access(name, address, command)
                 await watching
                 meant = command_of(command) if (name, address) == ("bus_check", COMMAND) else 0
                 assert needs.count((0, 0)) == 5 - (meant & (CLEAR | ZERO) != 0)
@@ -164,14 +155,14 @@ async def commands_say_what_they_need(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def what_is_written_stands(dut: HierarchyObject) -> None:
-    """Settings stay as they were written last; a command lasts one clock; no other write does anything."""
+    """Settings keep the last value written; a command lasts one clock; other writes have no effect."""
     random = rng("channel registers, writes")
-    bench = await Bench.begin(dut)
+    bench = await Registers.begin(dut)
     settings = {RATE_TARGET: 1 << 16, RATE_SLEW: 0x400, STOP_SLEW: 0x400, DRAIN_VELOCITY: 1 << 24}
     for _ in range(300):
         address = random.choice((*range(12), LINE, RAMP, POSITIONS + RATE_TARGET, AXIS + RATE_TARGET))
         data = random.getrandbits(32 if address == DRAIN_VELOCITY else 17)
-        await bench.strobe("bus_write", address, data)
+        await bench.access("bus_write", address, data)
         if address in settings:
             settings[address] = data
         for clock in range(2):
@@ -184,9 +175,9 @@ async def what_is_written_stands(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def states_are_read_as_they_are(dut: HierarchyObject) -> None:
-    """All bits of all of them, for one clock; a read of anything else is refused or has no answer."""
+    """All bits of all states, for one clock; reads of other addresses are refused or not answered."""
     random = rng("channel registers, reads")
-    bench = await Bench.begin(dut)
+    bench = await Registers.begin(dut)
     for _ in range(100):
         values = {
             name: random.choice((0, (1 << bits) - 1, random.getrandbits(bits)))
@@ -207,7 +198,7 @@ async def states_are_read_as_they_are(dut: HierarchyObject) -> None:
             VELOCITY: v["velocity"],
         }
         address = random.choice((*words, *words, *range(0x30)))
-        await bench.strobe("bus_read", address)
+        await bench.access("bus_read", address)
         assert read(dut.read_data) == words.get(address, 0)
         known = expected_answer(address, 0, False)[0]
         assert bench.answer() == (known, BAD_OPERATION if known and address not in words else 0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The pulse checker itself: it accepts what just fits and names what does not. Without a simulator."""
+"""Tests of the pulse checker: it accepts limit cases and reports violations. Without a simulator."""
 
 from dataclasses import replace
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The whole core through its SPI pins, compared with the C model on every clock.
 
-helpers/core_bench.py is what all of these have in common; PASSO_SEED is the seed of the random ones.
+They share helpers/core_bench.py; PASSO_SEED is the seed of the random tests.
 """
 
 import pytest
@@ -11,44 +11,25 @@ from cocotb_tests.helpers.runner import ONE_CHANNEL, TWO_CHANNELS, run
 
 MOST_CHANNELS = {"CHANNELS": 8, "AXES": 1, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 8, "RAMP_QUEUE_LOG2": 8}
 
-# Icarus Verilog takes very much longer: what is long runs on Verilator only, and of the random moves it gets
-# fewer. `make soak` plays it a thousand histories more.
+# Icarus Verilog is much slower: long tests run only on Verilator, and Icarus gets fewer random moves. `make
+# soak` plays a thousand more histories on it.
 verilator_only = pytest.mark.parametrize("simulator", ["verilator"])
 
 
-def test_motion(simulator: str) -> None:
-    """Every step on its clock, from the first clock of a motion to the last."""
-    run("cocotb_tests.core_motion", TOP, ONE_CHANNEL, simulator)
+MODULES = {
+    "core_motion": ONE_CHANNEL,  # every step on its clock, from the first clock of a motion to the last
+    "core_commands": ONE_CHANNEL,  # jog, sync, hold, override, stop, abort
+    "core_faults": ONE_CHANNEL,  # underruns and overruns
+    "core_link": ONE_CHANNEL,  # duplicates, frames cut short, noise, reads, tables
+    "core_refusals": TWO_CHANNELS,  # every reason to refuse a frame
+    "core_channels": TWO_CHANNELS,  # two channels at once
+    "core_registers": ONE_CHANNEL,  # settings and states in all their bits
+}
 
 
-def test_commands(simulator: str) -> None:
-    """Jog, sync, hold, override, stop, abort."""
-    run("cocotb_tests.core_commands", TOP, ONE_CHANNEL, simulator)
-
-
-def test_faults(simulator: str) -> None:
-    """Underruns and overruns."""
-    run("cocotb_tests.core_faults", TOP, ONE_CHANNEL, simulator)
-
-
-def test_link(simulator: str) -> None:
-    """Duplicates, frames cut short, noise, reads, tables."""
-    run("cocotb_tests.core_link", TOP, ONE_CHANNEL, simulator)
-
-
-def test_refusals(simulator: str) -> None:
-    """Every reason to refuse a frame."""
-    run("cocotb_tests.core_refusals", TOP, TWO_CHANNELS, simulator)
-
-
-def test_channels(simulator: str) -> None:
-    """Two channels at once."""
-    run("cocotb_tests.core_channels", TOP, TWO_CHANNELS, simulator)
-
-
-def test_registers(simulator: str) -> None:
-    """Settings and states in all their bits."""
-    run("cocotb_tests.core_registers", TOP, ONE_CHANNEL, simulator)
+@pytest.mark.parametrize("module", MODULES)
+def test_core(simulator: str, module: str) -> None:
+    run(f"cocotb_tests.{module}", TOP, MODULES[module], simulator)
 
 
 @verilator_only

@@ -37,26 +37,26 @@ async def add(dut: HierarchyObject, clocks: Clocks, words: Iterable[int], pause:
     dut.shift.value = 0
 
 
-async def turn(dut: HierarchyObject, clocks: Clocks, random: Random) -> int:
-    """Return the CRC as 32 clocks of `turn` show it; `data` does not matter meanwhile."""
+async def rotate(dut: HierarchyObject, clocks: Clocks, random: Random) -> int:
+    """Return the CRC as 32 clocks of `rotate` show it; `data` does not matter meanwhile."""
     crc = 0
-    dut.turn.value = 1
+    dut.rotate.value = 1
     dut.shift.value = 1
     for _ in range(32):
         crc = crc << 1 | read(dut.top)
         dut.data.value = random.randrange(2)
         await clocks.wait(1)
-    dut.turn.value = 0
+    dut.rotate.value = 0
     dut.shift.value = 0
     return crc
 
 
 @cocotb.test()
 async def known_values_come_out(dut: HierarchyObject) -> None:
-    """What the CRC unit of an STM32 gives, and the check value of the catalogue for the reference."""
+    """Results of the CRC unit of an STM32, and the catalogue check value for the reference."""
     random = rng("crc, known")
     assert crc_of_bytes(b"123456789") == 0x0376E6E7
-    clocks = await begin(dut, "restart", "shift", "turn", "data")
+    clocks = await begin(dut, "restart", "shift", "rotate", "data")
     for words, expected in (
         ([], 0xFFFFFFFF),
         ([0x00000000], 0xC704DD7B),
@@ -66,36 +66,36 @@ async def known_values_come_out(dut: HierarchyObject) -> None:
     ):
         await restart(dut, clocks)
         await add(dut, clocks, words)
-        assert await turn(dut, clocks, random) == expected == crc_of_words(words)
+        assert await rotate(dut, clocks, random) == expected == crc_of_words(words)
 
 
 @cocotb.test()
 async def it_goes_on_after_it_was_shown(dut: HierarchyObject) -> None:
-    """Any words with any pauses; a turn leaves the CRC as it was."""
+    """Any words with any pauses; shifting the CRC out does not change it."""
     random = rng("crc")
-    clocks = await begin(dut, "restart", "shift", "turn", "data")
+    clocks = await begin(dut, "restart", "shift", "rotate", "data")
     for _ in range(30):
         await restart(dut, clocks)
         words: list[int] = []
         for _ in range(random.randrange(1, 6)):
             words.append(random.randrange(1 << 32))
             await add(dut, clocks, words[-1:], pause=random.randrange(3))
-            assert await turn(dut, clocks, random) == crc_of_words(words)
+            assert await rotate(dut, clocks, random) == crc_of_words(words)
 
 
 @cocotb.test()
 async def restart_wins_over_a_shift(dut: HierarchyObject) -> None:
-    """A restart in the middle of a word, or together with a bit: as if nothing had been before."""
+    """A restart within a word, or together with a bit, discards everything before."""
     random = rng("crc, restart")
-    clocks = await begin(dut, "restart", "shift", "turn", "data")
+    clocks = await begin(dut, "restart", "shift", "rotate", "data")
     for at in range(32):
         for _ in range(at):
             dut.shift.value = 1
             dut.data.value = random.randrange(2)
             await clocks.wait(1)
         dut.shift.value = at % 2
-        dut.turn.value = at % 3 == 0
+        dut.rotate.value = at % 3 == 0
         await restart(dut, clocks)
-        dut.turn.value = 0
+        dut.rotate.value = 0
         await add(dut, clocks, [0x12345678])
-        assert await turn(dut, clocks, random) == 0xDF8A8A2B
+        assert await rotate(dut, clocks, random) == 0xDF8A8A2B

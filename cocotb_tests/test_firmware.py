@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The STM32's firmware drives the simulated core through its SPI pins, once, on Icarus Verilog."""
+"""The STM32 firmware drives the simulated core through its SPI pins, on Icarus Verilog only."""
 
 from cocotb_tests.helpers.runner import CORE_TOP as TOP
 from cocotb_tests.helpers.runner import ONE_CHANNEL, run

@@ -67,10 +67,7 @@ async def the_next_line_is_ready_two_clocks_after_a_take(dut: HierarchyObject) -
     lines = [queue.random_line(random) for _ in range(DEPTH)]
     await queue.bus.push([word for line in lines for word in line])
     for n, line in enumerate(lines):
-        queue.check_next(line)
-        await queue.strobe("take")
-        await queue.clocks.wait(1)
-        queue.check_current(line)
+        await queue.take(line)
         queue.check_room(DEPTH - (DEPTH - n))
     queue.check_next(None)
 
@@ -88,9 +85,7 @@ async def a_check_changes_nothing(dut: HierarchyObject) -> None:
         queue.check_next(None)
         queue.check_room(DEPTH)
     await queue.bus.push(line)
-    await queue.clocks.wait(2)
-    queue.check_next(line)
-    queue.check_room(DEPTH - 1)
+    await queue.check_settled(line, DEPTH - 1)
 
 
 @cocotb.test()
@@ -197,9 +192,7 @@ async def the_end_of_a_motion_leaves_the_next_motion_alone(dut: HierarchyObject)
     await queue.strobe("take")
     await queue.clocks.wait(3)
     await queue.strobe("release_line")
-    await queue.clocks.wait(2)
-    queue.check_next(endless)
-    queue.check_room(DEPTH - 1)
+    await queue.check_settled(endless, DEPTH - 1)
 
 
 @cocotb.test()
@@ -219,15 +212,10 @@ async def flush_empties_the_queue(dut: HierarchyObject) -> None:
         await queue.bus.frame()
         await queue.bus.write(queue.random_line(random))
         dut.flush.value = 0
-        await queue.clocks.wait(2)
-        queue.check_next(None)
-        queue.check_room(DEPTH)
+        await queue.check_settled(None, DEPTH)
         line = queue.random_line(random)
         await queue.bus.push(line)
         await queue.clocks.wait(2)
-        queue.check_next(line)
-        await queue.strobe("take")
-        await queue.clocks.wait(1)
-        queue.check_current(line)
+        await queue.take(line)
         await queue.strobe("release_line")
         await queue.clocks.wait(2)

@@ -10,7 +10,7 @@ import pytest
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import gather
 
-from cocotb_tests.helpers.bench import SUBSTEPS_MAX, Clocks, PushBus, Recorder, begin, read, rng
+from cocotb_tests.helpers.bench import SUBSTEPS_MAX, Bench, Clocks, PushBus, Recorder, read, rng
 from cocotb_tests.helpers.runner import run
 
 AXES = 3
@@ -55,28 +55,18 @@ class Line:
 Step = tuple[int, int, int]  # clock, axis, direction bit
 
 
-class Lines:
+class Lines(Bench):
     """The module under test, what it made and what it should have made."""
 
+    INPUTS = (*PushBus.INPUTS, "start", "stopped", "release_line", "substep")
+
     def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
-        self.dut, self.clocks = dut, clocks
+        super().__init__(dut, clocks)
         self.bus = PushBus(dut, clocks)
         self.requests = Recorder(clocks, dut.step_request)
         self.underruns = Recorder(clocks, dut.underrun)
         self.directions = Recorder(clocks, dut.directions)
         self.expected: list[Step] = []
-
-    @classmethod
-    async def begin(cls, dut: HierarchyObject) -> "Lines":
-        """Reset."""
-        inputs = (*PushBus.INPUTS, "start", "stopped", "release_line", "substep")
-        return cls(dut, await begin(dut, *inputs))
-
-    async def strobe(self, name: str) -> None:
-        """Raise an input for a clock."""
-        getattr(self.dut, name).value = 1
-        await self.clocks.wait(1)
-        getattr(self.dut, name).value = 0
 
     async def start(self) -> None:
         """Take the first line, and give it the time that a motion gives it."""
@@ -98,7 +88,7 @@ class Lines:
                 await self.clocks.wait(next(gaps) - 1)
 
     async def jump(self, line: Line, number: int) -> None:
-        """Go on as if so many substeps of a line had been made: set the state that they lead to."""
+        """Set the state after a number of substeps of a line, to skip them."""
         dut = self.dut
         dut.u_line.substep_number.value = number
         for axis, n in enumerate(line.steps):
@@ -108,7 +98,7 @@ class Lines:
         await self.clocks.wait(3)
 
     async def make_end(self, line: Line, number: int) -> None:
-        """Make the substeps of a line after so many."""
+        """Make the remaining substeps of a line after a number of them."""
         m = line.substeps
         for at in range(number, m):
             for axis, n in enumerate(line.steps):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""passo_spi and passo_link: frames through the pins, verdicts, replies, and what reaches the bus."""
+"""passo_spi and passo_link: frames at the pins, verdicts, replies and bus accesses."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ SCLK_9 = 55_556
 
 
 class Verdict(IntEnum):
-    """What became of a frame."""
+    """Result of a frame."""
 
     OK = 0
     DUPLICATE = 1
@@ -57,7 +57,7 @@ def acknowledge(sequence: int, verdict: int) -> int:
 def frame(
     operation: int, sequence: int, address: int, payload: Sequence[int], length: int | None = None
 ) -> list[int]:
-    """A frame with the words that fetch its reply; of a read only the length of `payload` counts."""
+    """A frame with the words that clock out its reply; for a read only the length of `payload` matters."""
     length = len(payload) if length is None else length
     request = [header(operation, sequence, length, address), *([] if operation == READ else payload)]
     trailing = [0] * (2 + (len(payload) if operation == READ else 0))
@@ -66,7 +66,7 @@ def frame(
 
 @dataclass(frozen=True)
 class Write:
-    """A word that was executed."""
+    """An executed word."""
 
     address: int
     data: int
@@ -125,8 +125,8 @@ class Target:
                 self.dut.bus_read_data.value = self.values.get(address, 0)
             else:
                 self.checks.append(access)
-                assert read(self.dut.bus_top_bit) == max(access.data.bit_length() - 1, 0)
-                assert read(self.dut.bus_lone_bit) == (access.data.bit_count() <= 1)
+                assert read(self.dut.bus_msb) == max(access.data.bit_length() - 1, 0)
+                assert read(self.dut.bus_one_hot) == (access.data.bit_count() <= 1)
             await fall
             self.dut.bus_claim.value = 0
             self.dut.bus_refusal.value = 0
@@ -155,7 +155,7 @@ class Bench:
 
     @property
     def refusals(self) -> int:
-        """How often `refused` was raised."""
+        """Number of times `refused` was raised."""
         return len(self.refused.clocks_where(bool, self.clocks.now))
 
     def next_sequence(self) -> int:
@@ -287,7 +287,7 @@ async def the_longest_read_is_coherent(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def the_status_is_that_of_chip_select(dut: HierarchyObject) -> None:
-    """It may change afterwards: all words of a frame show the same one."""
+    """It may change afterwards; all words of a frame show the same value."""
     bench = await Bench.begin(dut)
     for status in (0x80000000, 0xBFFFFFFF, 0x9234ABCD):
         dut.status.value = status
@@ -326,7 +326,7 @@ async def an_unknown_operation_is_refused(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def the_first_objection_counts(dut: HierarchyObject) -> None:
-    """Objections to any word refuse the whole frame; an address that nobody claims is one of them."""
+    """A refusal of any word refuses the whole frame, as does an unclaimed address."""
     random = rng("link, objections")
     bench = await Bench.begin(dut)
     for _ in range(40):
@@ -448,7 +448,7 @@ async def a_reset_in_a_frame_ends_it(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def holes_read_as_zero_behind_the_first_address(dut: HierarchyObject) -> None:
-    """Only the first address of a read has to be there."""
+    """Only the first address of a read must exist."""
     bench = await Bench.begin(dut)
     bench.target.known = {0x10, 0x12}
     bench.target.values = {0x10: 0x11111111, 0x12: 0x22222222}
@@ -483,7 +483,7 @@ async def a_frame_is_executed_only_once(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def a_wrong_bit_anywhere_executes_nothing(dut: HierarchyObject) -> None:
-    """One wrong bit in header, payload or CRC: BAD_CRC before all other verdicts; the next frame is fine."""
+    """A bit error in header, payload or CRC: BAD_CRC has priority; the next frame works."""
     random = rng("link, bits")
     bench = await Bench.begin(dut)
     bench.target.refusals = {0x33: Verdict.BUSY}
@@ -571,9 +571,9 @@ async def a_frame_may_begin_during_a_replay(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def a_frame_whose_header_is_missed_is_ignored(dut: HierarchyObject) -> None:
-    """A master leaves out the words behind the CRC of a long frame: the next one comes too early.
+    """A master omits the words after the CRC of a long frame, so the next one comes too early.
 
-    Its payload may look like a frame: neither the frame nor a part of it is executed or acknowledged.
+    Neither that frame nor a part of its payload that looks like a frame is executed or acknowledged.
     """
     bench = await Bench.begin(dut, SCLK_18)
     inner = frame(WRITE, 199, 0x40, [1])[:-2]

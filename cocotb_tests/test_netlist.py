@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The synthesised core: iCE40 cells instead of rtl/, pulse for pulse what the C model says.
+"""The synthesized core: an iCE40 netlist instead of rtl/, compared pulse for pulse with the C model.
 
-The tests are those of the whole core. Every run has one of the modules below; `make netlist` has all.
+The tests are those of the whole core. `make test` runs one of the modules below, `make netlist` all of them.
 """
 
 import importlib.util
@@ -12,7 +12,7 @@ import pytest
 from cocotb_tests.helpers.runner import CORE_TOP as TOP
 from cocotb_tests.helpers.runner import NETLIST_VARIABLE, ONE_CHANNEL, TWO_CHANNELS, run
 
-SIMULATOR = "verilator"  # Icarus Verilog gives the same, but takes very much longer
+SIMULATOR = "verilator"  # Icarus Verilog gives the same results, but is much slower
 
 every = pytest.mark.skipif(not os.environ.get(NETLIST_VARIABLE), reason="part of 'make netlist'")
 pytestmark = pytest.mark.skipif(

@@ -7,7 +7,7 @@ from itertools import pairwise
 import cocotb
 from cocotb.handle import HierarchyObject
 
-from cocotb_tests.helpers.bench import Clocks, Recorder, begin, read, rng
+from cocotb_tests.helpers.bench import Bench, Clocks, Recorder, read, rng
 from cocotb_tests.helpers.runner import run
 
 LATENCY = 2  # advance to substep
@@ -19,28 +19,26 @@ def test_path(simulator: str) -> None:
     run(__name__, "passo_path", simulator=simulator)
 
 
-class Path:
+class Path(Bench):
     """The module under test with the sum it has to follow."""
 
+    # the reset leaves the phase as restart does
+    INPUTS = (
+        "restart", "advance", "stop", "begin_profile", "tick", "rest", "velocity_next", "drain",
+        "drain_velocity",
+    )  # fmt: skip
+
     def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
-        self.dut, self.clocks = dut, clocks
+        super().__init__(dut, clocks)
         self.substeps = Recorder(clocks, dut.substep)
         self.expected: list[int] = []
         self.phase = ONE // 4
         self.velocity = self.coming_high = 0
 
-    @classmethod
-    async def begin(cls, dut: HierarchyObject) -> "Path":
-        """Reset; the reset leaves the phase as restart does."""
-        inputs = ("stop", "begin_profile", "tick", "rest", "velocity_next", "drain", "drain_velocity")
-        return cls(dut, await begin(dut, "restart", "advance", *inputs))
-
     async def restart(self) -> None:
         """Begin a motion."""
         await self.clocks.wait(3)
-        self.dut.restart.value = 1
-        await self.clocks.wait(1)
-        self.dut.restart.value = 0
+        await self.strobe("restart")
         self.phase, self.velocity = ONE // 4, 0
 
     def take(self, velocity: int) -> None:

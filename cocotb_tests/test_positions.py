@@ -7,10 +7,9 @@ import cocotb
 import pytest
 from cocotb.handle import HierarchyObject
 
-from cocotb_tests.helpers.bench import Clocks, begin, read, rng
+from cocotb_tests.helpers.bench import Bench, Clocks, read, rng
 from cocotb_tests.helpers.runner import run
 
-INPUTS = ("step_made", "step_direction", "zero", "snapshot", "address")
 ROUND = 64  # clocks
 STEPS = 36  # at most, of an axis in a round
 COMPLETE = 3 * ROUND  # snapshot to copies
@@ -22,23 +21,20 @@ def test_positions(simulator: str, axes: int) -> None:
     run(__name__, "passo_positions", {"AXES": axes}, simulator)
 
 
-class Positions:
+class Positions(Bench):
     """The module under test, and what its positions should be."""
 
+    INPUTS = ("step_made", "step_direction", "zero", "snapshot", "address")
+
     def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
-        self.dut, self.clocks = dut, clocks
+        super().__init__(dut, clocks)
         self.axes = len(dut.step_made)
         self.now = [0] * self.axes
         self.at_round_end = list(self.now)
         self._steps = [0] * self.axes  # in this round
 
-    @classmethod
-    async def begin(cls, dut: HierarchyObject) -> "Positions":
-        """Reset."""
-        return cls(dut, await begin(dut, *INPUTS))
-
     async def clock(self, steps: list[int], zero: bool = False, snapshot: bool = False) -> None:
-        """One clock with these steps, each -1, 0 or 1; not more of an axis than it can make in a round."""
+        """One clock with these steps, each -1, 0 or 1, limited to what an axis can make in a round."""
         if read(self.dut.slot) == ROUND - 1:
             self.at_round_end = list(self.now)
             self._steps = [0] * self.axes
@@ -128,7 +124,7 @@ async def zero_sets_all_positions(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def a_snapshot_waits_for_a_zero(dut: HierarchyObject) -> None:
-    """Right after ZERO the snapshot is that of the round after the one that clears."""
+    """Right after ZERO, the snapshot is taken in the round after the one that clears."""
     random = rng("positions, zero and snapshot")
     positions = await Positions.begin(dut)
     for at in range(0, ROUND, 5):

@@ -9,7 +9,7 @@ import cocotb
 import pytest
 from cocotb.handle import HierarchyObject
 
-from cocotb_tests.helpers.bench import Clocks, PushBus, Recorder, begin, read, rng
+from cocotb_tests.helpers.bench import Bench, Clocks, PushBus, Recorder, read, rng
 from cocotb_tests.helpers.ramps import V_MAX, Ramp, velocities
 from cocotb_tests.helpers.runner import run
 from cocotb_tests.helpers.shapes import Shape
@@ -33,11 +33,16 @@ def always() -> bool:
     return True
 
 
-class Ramps:
+class Ramps(Bench):
     """The modules under test; `seen` has the velocity of every enabled clock of the profile."""
 
+    INPUTS = (
+        *PushBus.INPUTS, "now_coming", "prepare", "begin_profile", "stopped", "drain", "drain_velocity",
+        "enable",
+    )  # fmt: skip
+
     def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
-        self.dut, self.clocks = dut, clocks
+        super().__init__(dut, clocks)
         self.bus = PushBus(dut, clocks)
         self.dry = Recorder(clocks, dut.dry)
         self.ended = Recorder(clocks, dut.ended_q)
@@ -45,31 +50,10 @@ class Ramps:
         self.enabled_clocks: list[int] = []
         self.stalls = 0
 
-    @classmethod
-    async def begin(cls, dut: HierarchyObject) -> "Ramps":
-        """Reset."""
-        inputs = (
-            *PushBus.INPUTS,
-            "now_coming",
-            "prepare",
-            "begin_profile",
-            "stopped",
-            "drain",
-            "drain_velocity",
-            "enable",
-        )
-        return cls(dut, await begin(dut, *inputs))
-
     async def push(self, *ramps: Ramp) -> None:
         """Push ramps, one frame each, as the link does."""
         for ramp in ramps:
             await self.bus.push(ramp.words())
-
-    async def strobe(self, name: str) -> None:
-        """Raise an input for a clock."""
-        getattr(self.dut, name).value = 1
-        await self.clocks.wait(1)
-        getattr(self.dut, name).value = 0
 
     async def start(self) -> None:
         """Prepare a motion and begin its profile."""
@@ -84,7 +68,7 @@ class Ramps:
         await self.strobe("begin_profile")
 
     async def advance(self, clocks: int, enable: Enable = always) -> None:
-        """Run until there were so many more enabled clocks."""
+        """Run for a number of enabled clocks."""
         dut = self.dut
         while clocks:
             enabled = enable()
@@ -130,7 +114,7 @@ class Ramps:
         await self.compare_end()
 
     async def write_at(self, enabled: int, ramps: Sequence[Ramp]) -> None:
-        """Write ramps, checked beforehand, after so many enabled clocks of the profile that has begun."""
+        """Write ramps, which are checked before, after a number of enabled clocks of the profile."""
         words = [word for ramp in ramps for word in ramp.words()]
         await self.bus.accept(words)
         begun = self.enabled_clocks
@@ -275,7 +259,7 @@ async def ramps_that_run_out_at_speed_raise_dry_a_tick_ahead(dut: HierarchyObjec
 
 @cocotb.test()
 async def ramps_that_run_out_at_velocity_zero_just_wait(dut: HierarchyObject) -> None:
-    """No dry at velocity 0; the next ramp goes on from there."""
+    """No dry at velocity 0; the next ramp continues from there."""
     bench = await Ramps.begin(dut)
     first, late = [Ramp(V_MAX, 2), Ramp(0, 2)], Ramp(V_MAX, 2, last=True)
     await bench.push(*first)
@@ -350,7 +334,7 @@ async def a_second_now_ramp_starts_from_the_present_velocity_as_well(dut: Hierar
 @cocotb.test()
 @cocotb.parametrize(early=[1, 5, 60, 100])
 async def a_now_ramp_that_is_coming_keeps_the_profile_from_ending(dut: HierarchyObject, early: int) -> None:
-    """Said so many clocks before the last tick, written after its end: the tick is longer, no more."""
+    """Announced before the last tick, written after its end: the tick is only extended."""
     bench = await Ramps.begin(dut)
     old = [Ramp(V_MAX, 2), Ramp(V_MAX // 2, 2, last=True)]
     now = [Ramp(V_MAX // 5, 3, Shape.SIGMOID, now=True), Ramp(0, 2, last=True)]
@@ -377,7 +361,7 @@ async def a_now_ramp_that_is_coming_keeps_the_profile_from_ending(dut: Hierarchy
 
 @cocotb.test()
 async def the_last_ramp_ends_the_profile_and_later_ones_wait(dut: HierarchyObject) -> None:
-    """What comes after LAST belongs to the next motion, which begins from 0."""
+    """Ramps after LAST belong to the next motion, which starts from 0."""
     bench = await Ramps.begin(dut)
     first = [Ramp(V_MAX, 1), Ramp(V_MAX, 1, last=True)]
     second = [Ramp(V_MAX // 2, 2), Ramp(0, 0, last=True)]
@@ -414,7 +398,7 @@ async def ramps_that_set_the_velocity_fit_into_a_tick_with_another(dut: Hierarch
 
 @cocotb.test()
 async def what_does_not_fit_into_a_tick_comes_later_but_is_not_lost(dut: HierarchyObject) -> None:
-    """Ten ramps of no ticks in a row hold the enable back at the end of the tick, and no more."""
+    """Ten consecutive ramps without ticks only stall the profile at the end of the tick."""
     bench = await Ramps.begin(dut)
     ramps = [Ramp(V_MAX, 2), *[Ramp(V_MAX - n, 0) for n in range(10)], Ramp(5, 3, Shape.COSINE, last=True)]
     await bench.whole(ramps)

@@ -108,7 +108,7 @@ async def bad_values_are_refused(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def a_frame_needs_room_for_all_its_ramps(dut: HierarchyObject) -> None:
-    """QUEUE_FULL from the first word of the ramp that finds no place; BUSY of a stopped channel before it."""
+    """QUEUE_FULL from the first word of a ramp without room; BUSY of a stopped channel has priority."""
     random = rng("ramp queue, room")
     queue = await Queue.begin(dut)
     ramps: list[list[int]] = []
@@ -148,7 +148,7 @@ async def room_is_taken_when_a_frame_is_accepted(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def a_ramp_with_now_says_what_it_needs(dut: HierarchyObject) -> None:
-    """With the strobe that checks its control word, and no other."""
+    """Asserted only with the strobe that checks its control word."""
     random = rng("ramp queue, needs")
     queue = await Queue.begin(dut)
     for now in (False, True, False, True):

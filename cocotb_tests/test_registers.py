@@ -8,7 +8,7 @@ import pytest
 from cocotb.handle import HierarchyObject
 from passo import registers as r
 
-from cocotb_tests.helpers.bench import Clocks, begin, read, rng
+from cocotb_tests.helpers.bench import Bench, Clocks, read, rng
 from cocotb_tests.helpers.runner import run
 
 AXES, TICK_LOG2, LINE_QUEUE_LOG2, RAMP_QUEUE_LOG2 = 8, 16, 8, 7
@@ -17,10 +17,6 @@ REGISTERS = range(6)
 RUN = 3
 DATA = 0x7FFFF  # what RUN has; of the rest only the highest bit is known
 ROOM_SHOWN = 255  # at most
-INPUTS = (
-    "bus_check", "bus_write", "bus_read", "bus_push", "bus_address", "bus_data", "bus_top_bit",
-    "last_sequence", "any_stopped", "any_occupied", "line_room", "ramp_room",
-)  # fmt: skip
 
 
 @pytest.mark.parametrize("channels", [1, 8])
@@ -35,29 +31,27 @@ def test_registers(simulator: str, channels: int) -> None:
     run(__name__, "passo_registers", parameters, simulator)
 
 
-class Bench:
+class Registers(Bench):
     """The module under test."""
 
+    INPUTS = (
+        "bus_check", "bus_write", "bus_read", "bus_push", "bus_address", "bus_data", "bus_msb",
+        "last_sequence", "any_stopped", "any_occupied", "line_room", "ramp_room",
+    )  # fmt: skip
+
     def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
-        self.dut, self.clocks = dut, clocks
+        super().__init__(dut, clocks)
         self.channels = len(dut.run)
 
-    @classmethod
-    async def begin(cls, dut: HierarchyObject) -> "Bench":
-        """Reset."""
-        return cls(dut, await begin(dut, *INPUTS))
-
-    async def strobe(self, name: str, address: int, data: int = 0, push: bool = False) -> None:
+    async def access(self, name: str, address: int, data: int = 0, push: bool = False) -> None:
         """Put an access on the bus and raise a strobe for a clock; the answer is there on return."""
         dut = self.dut
         dut.bus_address.value = address
         dut.bus_data.value = data & DATA
-        dut.bus_top_bit.value = max(0, data.bit_length() - 1)
+        dut.bus_msb.value = max(0, data.bit_length() - 1)
         dut.bus_push.value = push
         await self.clocks.wait(2)
-        getattr(dut, name).value = 1
-        await self.clocks.wait(1)
-        getattr(dut, name).value = 0
+        await self.strobe(name)
 
     def good_run(self, random: Random) -> int:
         """A word that RUN takes."""
@@ -74,12 +68,12 @@ class Bench:
 async def every_check_has_its_answer(dut: HierarchyObject) -> None:
     """Written and pushed to, registers and holes, good words of RUN and those with a bit too many."""
     random = rng("registers, checks")
-    bench = await Bench.begin(dut)
+    bench = await Registers.begin(dut)
     for _ in range(20):
         for address in (*REGISTERS, 6, 7, 0x13, 0x103, 0xFFF):
             push = random.random() < 0.2
             word = bench.good_run(random) ^ random.choice((0, 0, 1 << random.randrange(32)))
-            await bench.strobe("bus_check", address, word, push)
+            await bench.access("bus_check", address, word, push)
             known = address in REGISTERS
             refusal = 0 if bench.takes(word) else BAD_VALUE
             expected = BAD_OPERATION if push else READ_ONLY if address != RUN else refusal
@@ -93,7 +87,7 @@ async def every_check_has_its_answer(dut: HierarchyObject) -> None:
 async def run_is_written_and_read(dut: HierarchyObject) -> None:
     """RUN and WAIT_SYNC of every channel, STATUS_CHANNEL; the other registers are what was built."""
     random = rng("registers, run")
-    bench = await Bench.begin(dut)
+    bench = await Registers.begin(dut)
     parameters = (
         RAMP_QUEUE_LOG2 << r.PARAMETERS_RAMP_QUEUE_LOG2_LSB
         | LINE_QUEUE_LOG2 << r.PARAMETERS_LINE_QUEUE_LOG2_LSB
@@ -104,12 +98,12 @@ async def run_is_written_and_read(dut: HierarchyObject) -> None:
     version = r.VERSION_MAJOR_RESET << 16 | r.VERSION_MINOR_RESET << 8 | r.VERSION_PATCH_RESET
     for _ in range(60):
         word = bench.good_run(random)
-        await bench.strobe("bus_write", RUN, word)
+        await bench.access("bus_write", RUN, word)
         assert read(dut.run) == word & 0xFF and read(dut.wait_sync) == word >> 8 & 0xFF
         # of another register nothing is written
-        await bench.strobe("bus_write", random.choice((0, 2, 4, 0x103)), ~word & 0x7FFFF)
+        await bench.access("bus_write", random.choice((0, 2, 4, 0x103)), ~word & 0x7FFFF)
         for address, expected in enumerate((r.IDENTIFICATION_RESET, version, parameters, word)):
-            await bench.strobe("bus_read", address)
+            await bench.access("bus_read", address)
             assert (read(dut.claim), read(dut.refusal), read(dut.read_data)) == (1, 0, expected)
             await bench.clocks.wait(1)
             assert read(dut.claim) == 0
@@ -119,7 +113,7 @@ async def run_is_written_and_read(dut: HierarchyObject) -> None:
 async def the_status_word_has_it_all(dut: HierarchyObject) -> None:
     """Whenever nothing is read: state, sequence, the room of the chosen channel, 255 for more."""
     random = rng("registers, status")
-    bench = await Bench.begin(dut)
+    bench = await Registers.begin(dut)
     for _ in range(200):
         depths = {"line_room": LINE_QUEUE_LOG2, "ramp_room": RAMP_QUEUE_LOG2}
         rooms = {
@@ -133,7 +127,7 @@ async def the_status_word_has_it_all(dut: HierarchyObject) -> None:
         stopped, occupied, sequence = random.randrange(2), random.randrange(2), random.randrange(256)
         dut.any_stopped.value, dut.any_occupied.value = stopped, occupied
         dut.last_sequence.value = sequence
-        await bench.strobe("bus_write", RUN, chosen << 16)
+        await bench.access("bus_write", RUN, chosen << 16)
         shown = [min(rooms[name][chosen], ROOM_SHOWN) for name in depths]
         assert read(dut.read_data) == (
             2 << 30

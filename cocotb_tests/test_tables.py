@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""passo_tables: what they hold, their bus, and how they serve the channels."""
+"""passo_tables: contents, bus accesses, and service of the channels."""
 
 from random import Random
 from typing import Any
@@ -9,18 +9,15 @@ import pytest
 from cocotb.handle import HierarchyObject
 from passo import registers as r
 
-from cocotb_tests.helpers.bench import Clocks, begin, read, rng
+from cocotb_tests.helpers.bench import Bench, Clocks, read, rng
 from cocotb_tests.helpers.runner import run
 from cocotb_tests.helpers.shapes import POINTS, Shape, loaded_table
 
 TABLES = [shape for shape in Shape if shape != Shape.LINEAR]
-INPUTS = (
-    "bus_frame", "bus_commit", "bus_check", "bus_write", "bus_read", "bus_push", "select", "bus_address",
-    "bus_data", "request", "address",
-)  # fmt: skip
 BAD_OPERATION, BAD_VALUE = 4, 9
 
-# Only loading the FPGA sets the tables, reset does not: tests that need them fresh come first.
+# Only configuration of the FPGA initializes the tables, not reset: tests that need the initial contents come
+# first.
 
 
 @pytest.mark.parametrize("channels", [1, 8])
@@ -28,17 +25,17 @@ def test_tables(simulator: str, channels: int) -> None:
     run(__name__, "passo_tables", {"CHANNELS": channels}, simulator)
 
 
-class Bench:
+class Tables(Bench):
     """The module under test; the last channel is the one that asks."""
 
-    def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
-        self.dut, self.clocks = dut, clocks
-        self.channels = len(dut.served)
+    INPUTS = (
+        "bus_frame", "bus_commit", "bus_check", "bus_write", "bus_read", "bus_push", "select", "bus_address",
+        "bus_data", "request", "address",
+    )  # fmt: skip
 
-    @classmethod
-    async def begin(cls, dut: HierarchyObject) -> "Bench":
-        """Reset."""
-        return cls(dut, await begin(dut, *INPUTS))
+    def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
+        super().__init__(dut, clocks)
+        self.channels = len(dut.served)
 
     async def fetch(self, shape: Shape, k: int) -> tuple[int, int]:
         """Ask for a point and get it and the next one."""
@@ -55,7 +52,7 @@ class Bench:
         return points
 
     async def check_table(self, shape: Shape, points: list[int], step: int = 1) -> None:
-        """Compare every point, or one in so many; what follows the last one means nothing."""
+        """Compare every `step`-th point; the point after the last one is undefined."""
         for k in range(0, POINTS, step):
             point, point_next = await self.fetch(shape, k)
             assert point == points[k]
@@ -75,23 +72,28 @@ class Bench:
             await self.clocks.wait(1)
         dut.select.value = 0
 
+    async def write_random_tables(self, random: Random) -> dict[Shape, list[int]]:
+        """Write all tables; return their points."""
+        tables = {shape: _random_table(random) for shape in TABLES}
+        for shape, points in tables.items():
+            await self.write_table(shape, points)
+        return tables
+
 
 @cocotb.test()
 @cocotb.parametrize(shape=TABLES)
 async def all_points_are_right_after_loading(dut: HierarchyObject, shape: Shape) -> None:
     """Every point of the table, and the one after it."""
-    bench = await Bench.begin(dut)
+    bench = await Tables.begin(dut)
     await bench.check_table(shape, loaded_table(shape))
 
 
 @cocotb.test()
 async def rewritten_tables_are_as_written(dut: HierarchyObject) -> None:
     """Each bank by itself."""
-    bench = await Bench.begin(dut)
+    bench = await Tables.begin(dut)
     random = rng("tables, rewritten")
-    tables = {shape: _random_table(random) for shape in TABLES}
-    for shape in TABLES:
-        await bench.write_table(shape, tables[shape])
+    tables = await bench.write_random_tables(random)
     for shape in TABLES:
         await bench.check_table(shape, tables[shape], 3)
 
@@ -99,7 +101,7 @@ async def rewritten_tables_are_as_written(dut: HierarchyObject) -> None:
 @cocotb.test()
 async def the_tables_bus_refuses_what_it_must(dut: HierarchyObject) -> None:
     """Refusals come one clock after the strobe; a check changes nothing."""
-    bench = await Bench.begin(dut)
+    bench = await Tables.begin(dut)
     tables = {Shape.COSINE: [3 * k for k in range(POINTS)], Shape.EASE: [5 * k for k in range(POINTS)]}
     for shape, points in tables.items():
         await bench.write_table(shape, points)
@@ -118,7 +120,7 @@ async def the_tables_bus_refuses_what_it_must(dut: HierarchyObject) -> None:
                 dut.select.value = selected
                 dut.bus_address.value = address
                 dut.bus_data.value = data & 0xFFFF
-                dut.bus_top_bit.value = max(0, data.bit_length() - 1)
+                dut.bus_msb.value = max(0, data.bit_length() - 1)
 
                 dut.bus_push.value = push
                 getattr(dut, strobe).value = 1
@@ -134,7 +136,7 @@ async def the_tables_bus_refuses_what_it_must(dut: HierarchyObject) -> None:
 @cocotb.test()
 async def a_frame_that_writes_tables_says_so(dut: HierarchyObject) -> None:
     """From the first check of a point until the next frame begins, also while it is executed."""
-    bench = await Bench.begin(dut)
+    bench = await Tables.begin(dut)
 
     async def pulse(signal: Any, selected: int = 1) -> int:
         dut.select.value = selected
@@ -157,11 +159,9 @@ async def a_frame_that_writes_tables_says_so(dut: HierarchyObject) -> None:
 @cocotb.test()
 async def every_channel_is_served_in_time_with_its_own_points(dut: HierarchyObject) -> None:
     """All channels ask at random: each gets its point and the one after it within 2 * CHANNELS + 4 clocks."""
-    bench = await Bench.begin(dut)
+    bench = await Tables.begin(dut)
     random = rng("tables, channels")
-    tables = {shape: _random_table(random) for shape in TABLES}
-    for shape in TABLES:
-        await bench.write_table(shape, tables[shape])
+    tables = await bench.write_random_tables(random)
     asked: dict[int, tuple[int, int]] = {}  # channel: clock, address
     waits: list[int] = []
     while len(waits) < 500:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""passo_timescale: the pattern of the enable, and how the rate slews."""
+"""passo_timescale: pattern of the clock enable, and slewing of the rate."""
 
 from dataclasses import dataclass, field
 

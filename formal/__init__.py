@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Proofs of what the Verilog promises, and the program that runs them."""
+"""Formal proofs of the RTL, and the program that runs them."""

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the admission promises, seen from its ports.
+// Promises of the admission, at its ports.
 `resetall
 `default_nettype none
 
@@ -15,7 +15,7 @@ module passo_admission_proof (
   input wire occupied,
   input wire quiet,
   input wire takes_now,
-  input wire stopped,        // the motion was
+  input wire stopped,        // the motion is stopped
   input wire pins_written
 );
 
@@ -46,7 +46,7 @@ module passo_admission_proof (
   reg f_hold = 1'b0;  // one and two clocks ago
   reg f_hold_q = 1'b0;
   reg f_now_coming = 1'b0;
-  reg f_executed = 1'b0;  // the frame is
+  reg f_executed = 1'b0;  // the frame is being executed
   always @(posedge clk) begin
     f_started    <= 1'b1;
     f_reset      <= rst;

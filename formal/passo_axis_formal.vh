@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// What the axis promises, seen from its ports; included at the end of passo_axis.
+// Promises of the axis, at its ports; included at the end of passo_axis.v.
 
-// --- Assumptions: a reset at the beginning, and any time. Polarities and mode change a clock after `pins_written`, which
-// comes only while `quiet`, with no step asked for and no change of direction around it. With WRITTEN the timings
-// change at any time, a clock after `timing_written`; else they stand still.
+// --- Assumptions: a reset at the beginning and at any time. Polarities and mode change one clock after
+// `pins_written`, which comes only while `quiet`, with no step request and no change of direction around it. With
+// WRITTEN the timings change at any time, one clock after `timing_written`; else they are constant.
 reg f_started = 1'b0;
 reg [2:0] f_pins = 3'b000;  // pins_written one, two and three clocks ago
 reg [2:0] f_reset = 3'b000;
-reg [2:0] f_restarted = 3'b000;  // the running time began anew, likewise: a timing was written, polarities and mode changed, or reset
+reg [2:0] f_restarted = 3'b000;  // likewise: timing written, pins changed, or reset
 reg f_timing_written = 1'b0;
 reg f_mode;  // as written
 wire f_disturbed = timing_written | pins_written | (f_restarted[1:0] != 2'b00) | (f_pins[1:0] != 2'b00);
@@ -35,8 +35,8 @@ always @(posedge clk) begin
   axis_no_timing_written : assume (!timing_written);
 `endif
   axis_timings_not_0 : assume (step_high != 16'd0 && step_low != 16'd0 && dir_setup != 16'd0 && dir_hold != 16'd0);
-  axis_short_steps : assume (short_high == (step_high == 16'd1) && short_low == (step_low == 16'd1));
-  axis_short_turns : assume (short_setup == (dir_setup == 16'd1) && short_hold == (dir_hold == 16'd1));
+  axis_minimal_step_times : assume (high_is_minimal == (step_high == 16'd1) && low_is_minimal == (step_low == 16'd1));
+  axis_minimal_dir_times : assume (setup_is_minimal == (dir_setup == 16'd1) && hold_is_minimal == (dir_hold == 16'd1));
 `ifdef NARROW
   axis_narrow :
   assume (step_high < 16'd`NARROW && step_low < 16'd`NARROW && dir_setup < 16'd`NARROW && dir_hold < 16'd`NARROW);
@@ -51,8 +51,8 @@ wire [17:0] f_low = {2'd0, step_low};
 wire [17:0] f_setup = {2'd0, dir_setup};
 wire [17:0] f_hold = {2'd0, dir_hold};
 
-// --- The pins, and what they mean: with the polarities of a clock ago, which made them. A change of polarity or mode counts as
-// a change of both pins.
+// --- The pins, interpreted with the polarities of the clock before, which produced them. A change of polarity or
+// mode counts as a change of both pins.
 reg f_step_pin_q;
 reg f_dir_pin_q;
 reg f_step_inverted = 1'b0;
@@ -63,10 +63,10 @@ reg f_dir_q = 1'b0;
 wire f_step = step_pin ^ f_step_inverted;
 wire f_dir = dir_pin ^ f_direction_inverted;
 wire f_pin_edge = f_started && step_pin != f_step_pin_q;
-wire f_pin_turn = f_started && dir_pin != f_dir_pin_q;
-wire f_changed = f_pins[1];  // polarities and mode, at the pins
+wire f_pin_dir_change = f_started && dir_pin != f_dir_pin_q;
+wire f_changed = f_pins[1];  // polarities and mode have, at the pins
 wire f_edge = f_pin_edge | f_changed | (f_started & f_reset[0] & (f_step != f_step_q));
-wire f_turn = f_pin_turn | f_changed | (f_started & f_reset[0] & (f_dir != f_dir_q));
+wire f_dir_change = f_pin_dir_change | f_changed | (f_started & f_reset[0] & (f_dir != f_dir_q));
 wire f_active = f_pin_edge & ~f_changed & (f_both | f_step);  // makes a step
 always @(posedge clk) begin
   f_step_pin_q         <= step_pin;
@@ -80,25 +80,25 @@ end
 
 always @(posedge clk)
   if (f_started && f_reset[0])
-    reset_moves_no_pin : assert (!f_pin_edge && !f_pin_turn);
+    reset_moves_no_pin : assert (!f_pin_edge && !f_pin_dir_change);
 
 `ifndef WRITTEN
-// --- How long the levels have lasted, this clock included; before the first change: for ever
+// --- How long the levels have lasted, this clock included; before the first change: F_EVER
 localparam [17:0] F_EVER = 18'h3FFFF;
 reg [17:0] f_step_lasted_q = F_EVER;
 reg [17:0] f_dir_lasted_q = F_EVER;
 reg f_was_reset_q = 1'b1;
-wire f_was_reset = f_was_reset_q & ~f_active;  // in this pulse
+wire f_was_reset = f_was_reset_q & ~f_active;  // there was a reset in this pulse
 reg [17:0] f_since_reset = 18'd0;
 wire [17:0] f_step_lasted = f_edge ? 18'd1 : f_step_lasted_q == F_EVER ? F_EVER : f_step_lasted_q + 18'd1;
-wire [17:0] f_dir_lasted = f_turn ? 18'd1 : f_dir_lasted_q == F_EVER ? F_EVER : f_dir_lasted_q + 18'd1;
+wire [17:0] f_dir_lasted = f_dir_change ? 18'd1 : f_dir_lasted_q == F_EVER ? F_EVER : f_dir_lasted_q + 18'd1;
 always @(posedge clk) begin
   f_step_lasted_q <= f_step_lasted;
   f_dir_lasted_q  <= f_dir_lasted;
   f_was_reset_q   <= rst | f_was_reset;
   f_since_reset   <= rst ? 18'd0 : f_since_reset == F_EVER ? F_EVER : f_since_reset + 18'd1;
 end
-wire [17:0] f_level_q = f_step_q ? f_high : f_low;  // how long the level before this clock had to last
+wire [17:0] f_level_q = f_step_q ? f_high : f_low;  // minimum of the level before this clock
 
 always @(posedge clk)
   if (f_started) begin
@@ -106,15 +106,15 @@ always @(posedge clk)
       high_exact : assert (f_was_reset ? f_step_lasted_q >= f_high : f_step_lasted_q == f_high);
     if (!f_both && f_step) high_ends : assert (f_was_reset ? f_since_reset <= f_high + 18'd1 : f_step_lasted <= f_high);
     if (!f_both && f_active) low_kept : assert (f_step_lasted_q >= f_low);
-    if (!f_both && f_pin_turn) dir_turns_at_low : assert (!f_step && (!f_step_q || f_changed));
+    if (!f_both && f_pin_dir_change) dir_changes_at_low : assert (!f_step && (!f_step_q || f_changed));
     if (f_both && f_active) both_levels_kept : assert (f_step_lasted_q >= f_level_q);
-    if (f_active) setup_kept : assert (!f_turn && f_dir_lasted_q >= f_setup);
-    if (f_pin_turn) hold_kept : assert ((!f_edge || f_changed) && f_step_lasted_q >= f_level_q + f_hold);
+    if (f_active) setup_kept : assert (!f_dir_change && f_dir_lasted_q >= f_setup);
+    if (f_pin_dir_change) hold_kept : assert ((!f_edge || f_changed) && f_step_lasted_q >= f_level_q + f_hold);
   end
 `else
-// --- The times as they run on the pins, and which of them are over after this clock. One that runs begins anew three
-// clocks after a write (the pins are two clocks late), with the new timing; the timings of the clock before count, as
-// the next change of the pins was decided then. After a change of polarity or mode they begin two clocks later.
+// --- The timings as they run at the pins, and which are over after this clock. A running one restarts three clocks
+// after a write (the pins are two clocks late), with the new value; the values of the clock before count, as the next
+// pin change was decided then. After a change of polarity or mode they start two clocks later.
 reg [17:0] f_high_q;
 reg [17:0] f_low_q;
 reg [17:0] f_setup_q;
@@ -128,7 +128,7 @@ reg f_setup_over_q = 1'b0;
 wire f_anew = f_restarted[2];
 wire f_may_end = ~f_restarted[1] & ~f_changed & ~f_reset[0];
 wire f_level_begins = f_edge | f_reset[0];
-wire f_setup_begins = f_turn | f_reset[0];
+wire f_setup_begins = f_dir_change | f_reset[0];
 wire [17:0] f_level_run = f_level_begins || (f_anew && !f_level_over_q) ? 18'd1 : f_level_run_q + 18'd1;
 wire f_level_over = (f_level_over_q & ~f_level_begins) | (f_level_run >= (f_step ? f_high_q : f_low_q) && f_may_end);
 wire f_hold_runs = f_level_over_q & ~f_level_begins;
@@ -141,7 +141,7 @@ always @(posedge clk) begin
   f_low_q        <= f_low;
   f_setup_q      <= f_setup;
   f_hold_q       <= f_hold;
-  // what has run once is over; the counters need not go on
+  // a timing that is over stays over: its counter may stop
   f_level_run_q  <= f_level_over ? 18'd0 : f_level_run;
   f_hold_run_q   <= f_hold_over ? 18'd0 : f_hold_run;
   f_setup_run_q  <= f_setup_over ? 18'd0 : f_setup_run;
@@ -151,14 +151,14 @@ always @(posedge clk) begin
   if (f_started) begin
     if (!f_both && f_step_q && !f_changed && !f_reset[0]) high_ends_when_over : assert (f_edge == f_level_over_q);
     else if (f_pin_edge && !f_changed) level_ends_when_over : assert (f_level_over_q);
-    if (f_active) step_when_setup_over : assert (!f_turn && f_setup_over_q);
-    if (f_pin_turn)
-      turn_when_hold_over : assert ((!f_edge || f_changed) && f_hold_over_q && (f_both || !f_step || f_changed));
+    if (f_active) step_when_setup_over : assert (!f_dir_change && f_setup_over_q);
+    if (f_pin_dir_change)
+      dir_changes_when_hold_over : assert ((!f_edge || f_changed) && f_hold_over_q && (f_both || !f_step || f_changed));
   end
 end
 `endif
 
-// --- The queue: four directions, seen two clocks late, as the pins show it
+// --- The queue: four directions, two clocks late, as seen at the pins
 reg [3:0] f_waiting;
 reg [2:0] f_waiting_count = 3'd0;
 reg [1:0] f_request = 2'b00;  // of one and of two clocks ago
@@ -188,7 +188,7 @@ always @(posedge clk) begin
   end
 end
 
-// a step that waits leaves within the time of a pulse and a turn (of two turns, when one has just begun)
+// a waiting step leaves within the time of a pulse and a direction change (two, if one has just begun)
 reg [19:0] f_waited = 20'd0;
 wire [19:0] f_patience = {2'd0, f_high} + {2'd0, f_low} + {2'd0, f_hold} + {1'b0, f_setup, 1'b0} + 20'd4;
 always @(posedge clk) begin
@@ -196,7 +196,7 @@ always @(posedge clk) begin
   if (f_started) step_not_lost : assert (f_waited <= f_patience);
 end
 
-// --- What is counted as made is what leaves the pin one clock later
+// --- `step_made` is what leaves the pin one clock later
 always @(posedge clk)
   if (f_started && !f_reset[0]) begin
     made_is_what_leaves : assert ($past(step_made) == f_active);
@@ -210,7 +210,7 @@ always @(posedge clk) begin
   if (f_started) lost_steps_counted : assert (lost == f_lost);
 end
 
-// --- While nothing waits, DIR goes where the line goes, and then it is quiet
+// --- While nothing waits, DIR follows the line, and then `quiet` rises
 reg [19:0] f_still = 20'd0;
 always @(posedge clk) begin
   f_still <= f_started && !rst && !f_disturbed && f_waiting_count == 3'd0 && f_request == 2'b00 && !step_request && !f_active
@@ -220,18 +220,18 @@ always @(posedge clk) begin
   if (f_still > f_patience) quiet_comes : assert (quiet);
 end
 
-// --- Quiet: nothing waits or is shaped, the pins stand, and so they will
+// --- Quiet: nothing waits or is in progress, the pins are stable and stay so
 reg f_quiet_q = 1'b0;
 always @(posedge clk) begin
   f_quiet_q <= quiet & ~rst;
   if (f_started && quiet) 
     nothing_waits_when_quiet : assert (!f_request[0] && (f_drop[1] || (f_waiting_count == 3'd0 && !f_request[1])));
-  if (f_started && (quiet || f_quiet_q)) pins_stand_when_quiet : assert (!f_pin_edge && !f_pin_turn);
+  if (f_started && (quiet || f_quiet_q)) pins_stand_when_quiet : assert (!f_pin_edge && !f_pin_dir_change);
   if (f_quiet_q && !f_request[0] && !f_pins[0] && f_direction[1] == $past(direction, 3))
     quiet_until_asked : assert (quiet);
 end
 
-// --- EN is what the register says
+// --- EN follows its register
 reg f_enable_q;
 always @(posedge clk) begin
   f_enable_q <= enable ^ enable_inverted;
@@ -239,7 +239,7 @@ always @(posedge clk) begin
 end
 
 `ifdef INVARIANTS
-// --- What holds inside, for the induction
+// --- Invariants, for the induction
 wire [15:0] f_elapsed = timer - 16'd1;  // clocks of the state, this one included
 wire [17:0] f_timer = {2'd0, f_elapsed};
 wire [17:0] f_level = step ? f_high : f_low;
@@ -255,17 +255,17 @@ wire [2:0] f_count = {2'd0, waits[0]} + {2'd0, waits[1]} + {2'd0, waits[2]} + {2
 // clocks until the next active edge, or until DIR is right
 wire [17:0] f_time = f_is_hold ? f_hold : f_is_setup ? f_setup : f_level;
 wire [19:0] f_left = {2'd0, f_time} - {2'd0, f_timer} + 20'd1;
-wire [19:0] f_turn_time = {2'd0, f_setup} + 20'd1;
+wire [19:0] f_setup_time = {2'd0, f_setup} + 20'd1;
 wire [19:0] f_rank =
     f_is_pulse ? f_left + (step && !both_edges ? {2'd0, f_low} : 20'd0)
-                 + (f_dir_right ? 20'd0 : {2'd0, f_hold} + f_turn_time) :
-    f_is_hold  ? (f_dir_right ? 20'd0 : f_left + f_turn_time) :
-    f_is_setup ? f_left + (f_dir_right ? 20'd0 : f_turn_time) :
-                 (f_dir_right ? 20'd0 : f_turn_time);
-wire [19:0] f_turn_left = f_dir_right ? 20'd0 : f_turn_time;
+                 + (f_dir_right ? 20'd0 : {2'd0, f_hold} + f_setup_time) :
+    f_is_hold  ? (f_dir_right ? 20'd0 : f_left + f_setup_time) :
+    f_is_setup ? f_left + (f_dir_right ? 20'd0 : f_setup_time) :
+                 (f_dir_right ? 20'd0 : f_setup_time);
+wire [19:0] f_setup_left = f_dir_right ? 20'd0 : f_setup_time;
 wire [19:0] f_until_quiet =
-    f_is_pulse ? f_left + (step && !both_edges ? {2'd0, f_low} : 20'd0) + {2'd0, f_hold} + f_turn_left :
-    f_is_ready ? f_turn_left : f_left + f_turn_left;
+    f_is_pulse ? f_left + (step && !both_edges ? {2'd0, f_low} : 20'd0) + {2'd0, f_hold} + f_setup_left :
+    f_is_ready ? f_setup_left : f_left + f_setup_left;
 always @(posedge clk)
   if (f_started) begin
     assert (waits == 4'b0000 || waits == 4'b0001 || waits == 4'b0011 || waits == 4'b0111 || waits == 4'b1111);
@@ -284,9 +284,9 @@ always @(posedge clk)
       assert (f_restarted[0] ? f_elapsed == 16'd0 : f_timer >= 18'd1 && f_timer <= f_time);
       assert ((f_is_pulse ? level_done : dir_done) == (f_timer == f_time));
     end
-    // the time that would begin next
-    if (!f_is_pulse && !settle) assert (level_done == ((step ? short_low : short_high) & ~f_restarted[0]));
-    if (f_is_ready) assert (dir_done == (short_setup & ~f_restarted[0]));
+    // the timing that would begin next
+    if (!f_is_pulse && !settle) assert (level_done == ((step ? low_is_minimal : high_is_minimal) & ~f_restarted[0]));
+    if (f_is_ready) assert (dir_done == (setup_is_minimal & ~f_restarted[0]));
     assert (waits_up == (waits[0] & ~waiting[0]) && waits_down == (waits[0] & waiting[0]));
     if (f_reset[0]) assert (f_is_pulse && f_step_shown && f_dir_shown && unsettled && waits == 4'd0 && !step_made);
 `ifndef WRITTEN

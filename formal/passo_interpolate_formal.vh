@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What the interpolation promises; included at the end of passo_interpolate.
+// Promises of the interpolation; included at the end of passo_interpolate.v.
 
-// --- Assumptions: it is used as the ramp does, first for the points of a table (or not), then for velocities; a stop ends
-// that at any time, for 3 clocks at least
+// --- Assumptions: it is used as by the ramp, first for the points of a table (or not), then for velocities; a stop
+// ends this at any time, for at least 3 clocks
 localparam [1:0] F_REST = 2'd0;
-localparam [1:0] F_LOADED = 2'd1;  // the points are
+localparam [1:0] F_LOADED = 2'd1;  // the points are loaded
 localparam [1:0] F_SHAPE = 2'd2;
 localparam [1:0] F_SCALE = 2'd3;
 localparam [5:0] F_SHAPE_CLOCKS = 6'd19;
@@ -64,8 +64,8 @@ always @(posedge clk) begin
   if (f_phase == F_SCALE && f_same) interpolate_same_bits : assume (a_bit == b_bit);
 end
 
-// --- a (1 - f) + b f: the products of the bits of a and b, from the lowest, in exact numbers. After each bit all
-// moves down by one place and nothing is lost; the last of 48 bits stands at 2^(47 + 24).
+// --- a (1 - f) + b f: the products of the bits of a and b, LSB first, exact. After each bit everything shifts down
+// by one place and nothing is lost; the last of 48 bits is at 2^(47 + 24).
 reg  [15:0] f_point;
 reg  [16:0] f_next;
 reg  [24:0] f_fraction;  // of velocities, 0 .. 2^24
@@ -106,12 +106,12 @@ always @(posedge clk) begin
   end
 end
 
-// --- What the induction needs to know of the circuit. The search for planted bugs begins in any state of which
-// this is true for F_GIVEN clocks.
+// --- Invariants, for the induction. The search for planted bugs starts in any state in which they have held for
+// F_GIVEN clocks.
 `ifdef INVARIANTS
 `define HOLDS assert
 `else
-`define HOLDS if (f_age != F_GIVEN) assume
+`define HOLDS if (f_age == F_GIVEN) begin end else assume
 `endif
 localparam [2:0] F_GIVEN = 3'd3;  // the depth of the induction
 reg [2:0] f_age = 3'd0;

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What the line queue promises; included at the end of passo_line_queue.
+// Promises of the line queue; included at the end of passo_line_queue.v.
 
-// --- Assumptions: the link. A frame is checked, word by word; if nobody objects and it ends with a whole
-// line, it may be written, with as many words, which are those that were checked: good ones. Data stand from a clock
-// before their strobe to a clock after it, those that are checked from two clocks before; `bus_top_bit` belongs to them
-// in the strobe and the clock before.
+// --- Assumptions: the link. A frame is checked word by word; if no word is refused and it ends with a whole line, it
+// may be written: as many words, the checked and valid ones. Data are stable from one clock before their strobe to
+// one clock after it, checked data from two clocks before; `bus_msb` is valid in the strobe and the clock before.
 `ifdef SMALL
 localparam [1:0] F_GAP = 2'd2;
 `else
@@ -28,7 +27,7 @@ reg       f_short = 1'b0;
 `endif
 wire f_strobe = (bus_check | bus_write) & select;
 wire f_last_index = f_index == AXES + 1;
-wire f_top_bit_right = bus_top_bit == 5'd0 ? bus_data <= 32'd1 : bus_data >> bus_top_bit == 32'd1;
+wire f_msb_right = bus_msb == 5'd0 ? bus_data <= 32'd1 : bus_data >> bus_msb == 32'd1;
 wire f_good = f_checking && !f_refused && refusal == VERDICT_OK && f_index == 2'd0 && f_words != 8'd0;
 always @(posedge clk) begin
   f_started  <= 1'b1;
@@ -43,8 +42,8 @@ always @(posedge clk) begin
   if (bus_frame) line_queue_commits_good : assume (bus_commit == (f_good && f_go));
   if (bus_check || bus_write || f_strobe_q) line_queue_data_stand : assume ($stable(bus_data));
   if (bus_check)
-    line_queue_top_bit :
-    assume ($past(bus_data, 2) == bus_data && f_top_bit_right && $past(f_top_bit_right));
+    line_queue_msb :
+    assume ($past(bus_data, 2) == bus_data && f_msb_right && $past(f_msb_right));
   if (bus_check) line_queue_frame_has_begun : assume (f_checking);
   if (bus_write) line_queue_writes_good : assume (f_writing == select);
   if (f_checking && f_words != 8'd0) line_queue_select_stands : assume (select == f_select);
@@ -65,8 +64,8 @@ always @(posedge clk) begin
     if (!bus_commit) f_words <= 8'd0;
   end
 `ifdef SMALL
-  // shorter for the search of bugs: where a frame may begin, any good number of lines (see `shorter` in
-  // promises.toml) has been checked already
+  // shorter searches for bugs: where a frame may begin, any valid number of lines may have been checked already (see
+  // `shorter` in promises.toml)
   small_line_queue_reset : assume (rst == !f_started);
   f_short <= rst | (bus_frame & ~bus_commit) | (bus_write & f_writing & f_words == 8'd1);
   if (f_short && checked != 0) begin
@@ -94,12 +93,12 @@ always @(posedge clk) begin
   if ($past(flush && !rst) && f_since_write != 3'd7) line_queue_stays_flushed : assume (flush || rst);
 end
 
-// --- The queue as it should be: lines from the next one on, and the place of the current line
+// --- Reference queue: lines from the next one on, and the place of the current line
 reg  [DEPTH_LOG2:0] f_lines = 0;
-reg                 f_current = 1'b0;  // there is one, and it has its place
+reg                 f_current = 1'b0;  // there is one, and it occupies a place
 wire f_written = bus_write & select & f_last_index;
 reg  [DEPTH_LOG2:0] f_checked = 0;  // lines of this frame
-reg  [DEPTH_LOG2:0] f_to_come = 0;  // lines of a frame that was accepted, which are still to be written
+reg  [DEPTH_LOG2:0] f_to_come = 0;  // lines of an accepted frame, still to be written
 wire [DEPTH_LOG2:0] f_free = (1 << DEPTH_LOG2) - f_lines - f_current - f_to_come;
 reg  [DEPTH_LOG2:0] f_free_q = 1 << DEPTH_LOG2;  // a clock ago
 always @(posedge clk) begin
@@ -153,8 +152,8 @@ always @(posedge clk) begin
   end
 end
 
-// --- One line, any one, is watched from its first word on
-(* anyconst *) reg [DEPTH_LOG2-1:0] f_slot;  // its place; the script gives it to the memories
+// --- Any one line is tracked from its first word on
+(* anyconst *) reg [DEPTH_LOG2-1:0] f_slot;  // its place; the script connects it to the memories
 (* anyseq *) reg f_choose;
 (* keep *) wire [31:0] f_substep_word;
 (* keep *) wire [30:0] f_steps_word;

@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: MIT
-// What the link promises; included at the end of passo_link.
+// Promises of the link; included at the end of passo_link.v.
 
-(* anyconst *) reg [5:0] f_watch;  // one word of the payload, any one
+(* anyconst *) reg [5:0] f_watch;  // any one word of the payload
 
-// --- What goes on in the rooms
+`include "passo_link_schedule.vh"
+
+// --- Signals of the blocks
+(* keep *) wire [7:0] f_kept_length;
+(* keep *) wire [7:0] f_index;
+(* keep *) wire f_frame_waits;
+(* keep *) wire f_begin_read;
+(* keep *) wire f_begin_rotate;
+(* keep *) wire f_begin_rest;
 (* keep *) wire f_in_crc_wrong;
 (* keep *) wire f_in_answer_due;
 (* keep *) wire f_in_answer_came;
@@ -12,11 +20,12 @@
 (* keep *) wire f_in_header_fits;
 (* keep *) wire f_in_header_repeats;
 
-// --- Assumptions: what passo_spi makes of the pins. Half words are at least 60 clocks apart, and as far from the
-// beginning of their frame. `frame_start` and `frame_end` take turns; after a reset either may be the first. The last half word of a frame may come with frame_end or a clock later, but before the next frame,
-// as chip select is high for two clocks. After a reset the halves of a word may come that has begun before.
+// --- Assumptions: passo_spi. Half-words are at least 60 clocks apart, and as far from the start of their frame.
+// `frame_start` and `frame_end` alternate; after a reset either may come first. The last half-word of a frame may
+// come with frame_end or one clock later, but before the next frame, as chip select is high for two clocks. After a
+// reset the halves of a word begun before it may still come.
 `ifdef SMALL
-localparam [6:0] F_GAP = 7'd9;  // the search turns a word in one clock, or looks only at the first one
+localparam [6:0] F_GAP = 7'd9;  // the search rotates a word in one clock, or looks only at the first one
 localparam [6:0] F_GAP_LOW = 7'd1;
 localparam [5:0] F_COMMIT = 6'd3;
 `else
@@ -31,7 +40,7 @@ reg       f_selected;
 reg       f_ended = 1'b0;  // a frame, in the clock before
 reg       f_framed = 1'b0;  // a frame has begun since reset
 reg       f_upper = 1'b0;  // the upper half of a word has come
-reg [6:0] f_gap = F_GAP;  // clocks since the last half word or the start of the frame, up to 60
+reg [6:0] f_gap = F_GAP;  // clocks since the last half-word or the start of the frame, up to 60
 always @(posedge clk) begin
   f_started <= 1'b1;
   if (!f_started) link_reset : assume (rst);
@@ -51,7 +60,7 @@ always @(posedge clk) begin
   if (half_valid && !half_low) small_link_upper : assume ((half & 16'hCFEF) == 16'd0);
   if (half_valid && half_low) small_link_lower : assume ((half & 16'hCFFC) == 16'd0 && half[13:12] != 2'd3);
   small_link_reset : assume (f_watch == 6'd0 && rst == !f_started);
-  // the first frame begins at once, and half words come as soon as they may
+  // the first frame begins at once, and half-words come as soon as they may
   if (f_started && !f_framed) small_link_start : assume (frame_start);
   small_link_halves :
   assume (half_valid == (f_framed && f_selected && !frame_end && !in_ack && f_gap >= (f_upper ? F_GAP_LOW : F_GAP)));
@@ -60,7 +69,7 @@ always @(posedge clk) begin
   f_gap <= frame_start || half_valid ? 7'd0 : f_gap >= F_GAP ? F_GAP : f_gap + 7'd1;
 end
 
-// --- The frame that is being received: its words, and what was said of them
+// --- The frame being received: its words, and the answers to them
 (* keep *) wire [5:0] f_place = f_watch;
 (* keep *) wire [31:0] f_memory_header;
 (* keep *) wire [31:0] f_memory_word;
@@ -73,7 +82,7 @@ reg         f_objection = 1'b0;
 reg         f_asked = 1'b0;  // a check strobe was in the clock before
 reg         f_incomplete;  // when the frame was judged
 reg         f_busy_then;
-reg  [ 7:0] f_last;  // sequence number of the last frame that was executed
+reg  [ 7:0] f_last;  // sequence number of the last frame executed
 reg         f_any = 1'b0;  // there is one
 wire [ 7:0] f_length = f_header[19:12];
 wire        f_is_push = f_header[31:28] == OPERATION_PUSH;
@@ -114,11 +123,11 @@ reg [31:0] f_run_word;
 wire       f_starts = f_begun && in_ack && act && verdict_ok;
 reg [ 5:0] f_commit_age = 6'd0;  // clocks of bus_commit before this one, up to 63
 reg        f_commits = 1'b0;  // since a frame was judged
-reg        f_frame_told = 1'b0;  // bus_frame has come for the frame that is received
+reg        f_frame_told = 1'b0;  // bus_frame has come for the frame being received
 reg [ 2:0] f_since_strobe = 3'd7;  // clocks, up to 7
 always @(posedge clk) begin
   if (f_starts) begin
-    only_good_frames : assert (f_good && verdict == VERDICT_OK);  // which the acknowledgement tells
+    only_good_frames : assert (f_good && verdict == VERDICT_OK);  // as acknowledged
     only_if_not_busy : assert (!f_busy_then);
     f_runs       <= 1'b1;
     f_run_length <= f_length;
@@ -151,7 +160,7 @@ always @(posedge clk) begin
   if (f_begun && $past(f_begun && (bus_check || bus_write))) stands_after_strobe : assert (bus_data == $past(bus_data));
 end
 
-// --- The commit, and the beginnings of both passes
+// --- The commit, and the start of both passes
 always @(posedge clk) begin
   f_commit_age   <= !bus_commit || rst ? 6'd0 : f_commit_age == 6'd63 ? 6'd63 : f_commit_age + 6'd1;
   f_commits      <= (f_judged | f_commits) & bus_commit & ~rst;
@@ -171,52 +180,52 @@ always @(posedge clk) begin
   end
 end
 
-`ifdef TURNS
-// --- What the payload buffer needs of the words that turn
-reg       f_turn_q = 1'b0;
+`ifdef ROTATE
+// --- What the payload buffer requires of rotating words
+reg       f_rotate_q = 1'b0;
 reg       f_load_q = 1'b0;
-reg [4:0] f_turns_q;
+reg [4:0] f_bit_index_q;
 reg       f_count_q;
 reg [1:0] f_counter_q;
-wire      f_first_turn = turn & ~f_turn_q;
+wire      f_first_rotation = rotate & ~f_rotate_q;
 always @(posedge clk) begin
-  f_turn_q    <= turn & ~rst;
+  f_rotate_q    <= rotate & ~rst;
   f_load_q    <= load & ~rst;
-  f_turns_q   <= count[4:0];
+  f_bit_index_q   <= count[4:0];
   f_count_q   <= in_count;
   f_counter_q <= counter;
-  if (f_begun && turn) begin
-    turns_whole :
-    assert (!load && !f_load_q && count[4:0] == (f_first_turn ? 5'd0 : f_turns_q + 5'd1) && (f_first_turn || f_turns_q != 5'd31));
-    if (!f_first_turn || in_count) counts_as_told : assert (in_count == f_count_q && counter == f_counter_q);
-    if (f_first_turn && in_count) counts_after_31 : assert (f_turns_q == 5'd31);
+  if (f_begun && rotate) begin
+    rotates_whole :
+    assert (!load && !f_load_q && count[4:0] == (f_first_rotation ? 5'd0 : f_bit_index_q + 5'd1) && (f_first_rotation || f_bit_index_q != 5'd31));
+    if (!f_first_rotation || in_count) counts_as_told : assert (in_count == f_count_q && counter == f_counter_q);
+    if (f_first_rotation && in_count) counts_after_31 : assert (f_bit_index_q == 5'd31);
   end
 end
 `endif
 
 `ifdef INVARIANTS
-wire [7:0] f_steps = {in_header, in_payload, in_crc, in_ack, in_replay, in_read, in_sum, in_count};
-wire f_idle = f_steps == 8'd0;
-wire f_busy = !begin_rest && (begin_load || (count >= COUNT_LOAD && count <= COUNT_ACT));  // a word is being handled
-wire f_loaded = !begin_rest && !begin_load && count >= COUNT_LOADED;
-wire f_turns = !begin_rest && !begin_load && count >= COUNT_TURN && count <= COUNT_ACT;
+wire [7:0] f_states = {in_header, in_payload, in_crc, in_ack, in_replay, in_read, in_sum, in_count};
+wire f_idle = f_states == 8'd0;
+wire f_busy = !f_begin_rest && (begin_load || (count >= COUNT_LOAD && count <= COUNT_ACT));  // a word is in progress
+wire f_loaded = !f_begin_rest && !begin_load && count >= COUNT_LOADED;
+wire f_rotates = !f_begin_rest && !begin_load && count >= COUNT_ROTATE && count <= COUNT_ACT;
 wire f_receives = in_header || in_payload || in_crc;
 wire f_has_payload = (f_is_push || f_is_write || f_header[31:28] != OPERATION_READ) && f_length != 8'd0;
 wire f_repeats = f_any && f_header[27:20] == f_last;
 wire f_header_fits = (f_is_push || f_is_write) && f_length != 8'd0 && f_length <= 8'd60 && !f_repeats;
 always @(posedge clk)
   if (f_begun) begin
-    assert ((f_steps & (f_steps - 8'd1)) == 8'd0);
-    if (!f_idle || frame_waits) assert (f_framed);
+    assert ((f_states & (f_states - 8'd1)) == 8'd0);
+    if (!f_idle || f_frame_waits) assert (f_framed);
     // the commit: from the clock after the CRC word begins to be handled
-    if (in_crc && !begin_load && !begin_rest && count <= COUNT_ACT)
+    if (in_crc && !begin_load && !f_begin_rest && count <= COUNT_ACT)
       assert (bus_commit == (count > COUNT_LOAD) && (!bus_commit || {1'b0, f_commit_age} == count - 7'd29));
     if (in_ack && verdict_ok) assert (bus_commit && f_commits && !f_busy_then);
     if (in_crc && count == COUNT_ACT && !begin_load) assert (f_commits);
     if (in_crc && count == COUNT_ACT && !begin_load) assert (!executes || !f_busy_then);
     if (in_replay || f_runs) assert (bus_commit && f_commits);
     if (bus_frame) assert (!bus_check && !bus_write && (count == COUNT_ACT + 7'd1 || f_idle));
-    if ((f_receives || in_ack) && !begin_rest && !begin_load && count >= COUNT_LOAD && count <= COUNT_ACT)
+    if ((f_receives || in_ack) && !f_begin_rest && !begin_load && count >= COUNT_LOAD && count <= COUNT_ACT)
       assert (f_since_strobe == 3'd7 || {4'd0, f_since_strobe} >= count - COUNT_LOAD);
     if (in_replay && count != COUNT_LOAD && count <= COUNT_LOADED) assert ({4'd0, f_since_strobe} >= count - 7'd29);
     if (bus_write) assert (f_since_strobe >= 3'd3);
@@ -225,31 +234,31 @@ always @(posedge clk)
     assert (f_gap <= F_GAP);
     assert (sequence_known == f_any);
     if (f_any) assert (last_sequence == f_last);
-    assert (!frame_waits || in_replay || in_count || in_header);
-    if (frame_waits) assert (f_selected && f_words == 9'd0 && f_checks == 9'd0 && !f_objection);
+    assert (!f_frame_waits || in_replay || in_count || in_header);
+    assert (!f_frame_waits || f_selected && f_words == 9'd0 && f_checks == 9'd0 && !f_objection);
     assert (f_in_answer_due == f_asked);
-    // the clocks of each step
+    // the clocks of each state
     assert (count <= COUNT_REST);
     if (act) assert (count == COUNT_ACT && !f_idle);
-    if (!f_idle && !begin_rest) assert (act == (count == COUNT_ACT));
-    if (!f_idle && !in_header) assert (!begin_rest);
-    if (!begin_rest) begin
+    if (!f_idle && !f_begin_rest) assert (act == (count == COUNT_ACT));
+    if (!f_idle && !in_header) assert (!f_begin_rest);
+    if (f_begin_rest == 1'b0) begin
       if (begin_load) assert (f_receives || in_ack || in_replay || in_count);
-      if (begin_read) assert (in_read);
-      if (begin_turn) assert (in_sum);
+      assert (!f_begin_read || in_read);
+      assert (!f_begin_rotate || in_sum);
       if (f_idle) assert (count > COUNT_ACT);
       if (f_receives) assert (count >= COUNT_LOAD);
       if (in_ack || in_count) assert (begin_load || (count >= COUNT_LOAD && count <= COUNT_ACT));
-      if (in_sum) assert (begin_turn || (count >= COUNT_TURN && count <= COUNT_ACT));
+      if (in_sum) assert (f_begin_rotate || (count >= COUNT_ROTATE && count <= COUNT_ACT));
       if (in_read) assert (count >= COUNT_READ);
     end
-    if (answered) assert (in_read && count == COUNT_LOADED && !begin_read);
-    if (in_read && load_ends) assert (count == COUNT_LOADED - 7'd1 && !begin_read);
+    if (answered) assert (in_read && count == COUNT_LOADED && !f_begin_read);
+    if (in_read && load_ends) assert (count == COUNT_LOADED - 7'd1 && !f_begin_read);
     if ((f_receives || in_ack) && f_busy) assert (!bus_check && !f_in_answer_due && !f_in_answer_came);
     // no word ends while one is fetched for the reply
-    if (in_read && (begin_read || count <= COUNT_ACT)) assert (!f_upper || (!begin_read && f_gap < count - COUNT_READ));
+    if (in_read && (f_begin_read || count <= COUNT_ACT)) assert (!f_upper || (!f_begin_read && f_gap < count - COUNT_READ));
     if (in_read || in_sum || in_ack) assert (f_selected);
-    // what is told of the word and of the answer
+    // the verdict so far
     if (!f_idle && !in_header && !in_sum) assert (verdict_ok == (verdict == VERDICT_OK));
     // receiving
     if (f_receives) begin
@@ -260,39 +269,39 @@ always @(posedge clk)
     if (in_header) begin
       assert (f_words == {8'd0, f_busy} && f_checks == 9'd0 && !f_objection);
       if (f_words == 9'd1) assert (f_memory_header == f_header);
-      if (f_turns) begin
+      if (f_rotates) begin
         assert (header_is_read == (f_header[31:28] == OPERATION_READ));
         assert (f_in_header_is_known == (header_is_read || f_is_push || f_is_write));
         assert (header_is_empty == (f_length == 8'd0) && f_in_header_fits == (f_length <= 8'd60));
         assert (f_in_header_repeats == f_repeats);
       end
-      if (f_turns && count > COUNT_TURN) begin
+      if (f_rotates && count > COUNT_ROTATE) begin
         assert (header_ok == (header_verdict == VERDICT_OK));
         if (header_ok) assert (header_is_read ? f_length != 8'd0 && f_length <= 8'd60 : f_header_fits);
       end
     end
-    if (f_words == 9'd0 && f_upper && f_selected && (in_header || frame_waits))
+    if (f_words == 9'd0 && f_upper && f_selected && (in_header || f_frame_waits))
       assert (f_memory_header[31:16] == f_header[31:16]);
-    if (in_count && frame_waits) assert (!begin_load && !f_upper && f_gap <= count - COUNT_LOAD);
+    if (in_count && f_frame_waits) assert (!begin_load && !f_upper && f_gap <= count - COUNT_LOAD);
     if ((in_header || (in_ack && verdict_ok)) && f_loaded && f_busy) assert (f_held == f_header);
     if (in_payload || in_crc || in_ack || in_read) begin
       assert (f_memory_header == f_header && f_words != 9'd0);
-      assert (length == f_length && bus_push == f_is_push && is_read == (f_header[31:28] == OPERATION_READ));
+      assert (f_kept_length == f_length && bus_push == f_is_push && is_read == (f_header[31:28] == OPERATION_READ));
     end
     if ((in_payload || in_crc || in_ack) && verdict_ok)
       assert (is_read ? f_length != 8'd0 && f_length <= 8'd60 :
                         f_header_fits && (!f_objection || (f_in_answer_came && f_in_objects)));
     if (in_payload) begin
       assert (f_has_payload);
-      assert (f_words == {1'b0, index} + 9'd1 + {8'd0, f_busy});
-      assert (f_checks + {8'd0, bus_check} == {1'b0, index});
-      assert (index < length || (index == length && !f_busy && (count == COUNT_ACT + 7'd1 || all_words)));
-      if (all_words) assert (index == length && count == COUNT_REST && !bus_check);
+      assert (f_words == {1'b0, f_index} + 9'd1 + {8'd0, f_busy});
+      assert (f_checks + {8'd0, bus_check} == {1'b0, f_index});
+      assert (f_index < f_kept_length || (f_index == f_kept_length && !f_busy && (count == COUNT_ACT + 7'd1 || all_words)));
+      if (all_words) assert (f_index == f_kept_length && count == COUNT_REST && !bus_check);
     end
     if (bus_check && f_words != 9'd0) assert ((count == COUNT_ACT + 7'd1 && in_payload) || f_idle);
     if (in_crc && f_has_payload) begin
-      assert (f_words == {1'b0, length} + 9'd1 + {8'd0, f_busy} && index == length);
-      assert (f_checks == {1'b0, length} && !bus_check);
+      assert (f_words == {1'b0, f_kept_length} + 9'd1 + {8'd0, f_busy} && f_index == f_kept_length);
+      assert (f_checks == {1'b0, f_kept_length} && !bus_check);
     end
     if (in_ack && verdict_ok) begin
       assert (f_words == {1'b0, f_length} + 9'd2 && !f_in_crc_wrong && !f_incomplete && f_checks == {1'b0, f_length} && !is_read);
@@ -303,25 +312,25 @@ always @(posedge clk)
     if ((in_payload || in_crc || (in_ack && verdict_ok)) && f_length <= 8'd60 && !is_read) begin
       if (f_words > {3'd0, f_watch} + 9'd1 && {2'd0, f_watch} < f_length) assert (f_memory_word == f_word);
       if (f_words == {3'd0, f_watch} + 9'd1 && f_upper && in_payload) assert (f_memory_word[31:16] == f_word[31:16]);
-      if (in_payload && f_loaded && f_busy && index == {2'd0, f_watch}) assert (f_held == f_word);
-      if (in_payload && count == COUNT_ACT + 7'd1 && index == {2'd0, f_watch} + 8'd1) assert (f_held == f_word);
+      if (in_payload && f_loaded && f_busy && f_index == {2'd0, f_watch}) assert (f_held == f_word);
+      if (in_payload && count == COUNT_ACT + 7'd1 && f_index == {2'd0, f_watch} + 8'd1) assert (f_held == f_word);
     end
     // executing: load in 28 .. 31, the strobe in the next 28
     assert (!bus_write || in_replay);
     if (in_replay) begin
-      assert (f_runs && f_run_length == length && length != 8'd0 && length <= 8'd60 && bus_push == f_run_push);
-      if (count == COUNT_ACT + 7'd1) assert (begin_load && index == 8'd0 && !bus_write);
+      assert (f_runs && f_run_length == f_kept_length && f_kept_length != 8'd0 && f_kept_length <= 8'd60 && bus_push == f_run_push);
+      if (count == COUNT_ACT + 7'd1) assert (begin_load && f_index == 8'd0 && !bus_write);
       else assert (count >= COUNT_LOAD && begin_load == (count == COUNT_LOADED) && count <= COUNT_LOADED);
       assert (load_ends == (count == COUNT_LOADED - 7'd1));
-      assert (bus_write == (count == COUNT_LOAD && index != 8'd0));
-      assert (index == f_written + {7'd0, bus_write || count == COUNT_LOADED});
-      assert (index < length || (index == length && (bus_write || count == COUNT_LOADED)));
-      assert (all_words == (index == length && bus_write));
+      assert (bus_write == (count == COUNT_LOAD && f_index != 8'd0));
+      assert (f_index == f_written + {7'd0, bus_write || count == COUNT_LOADED});
+      assert (f_index < f_kept_length || (f_index == f_kept_length && (bus_write || count == COUNT_LOADED)));
+      assert (all_words == (f_index == f_kept_length && bus_write));
       assert (bus_address == f_address + (f_run_push ? 12'd0 : {4'd0, f_written}));
-      if ({2'd0, f_watch} < length) assert (f_memory_word == f_run_word);
-      if ((count == COUNT_LOADED || bus_write) && index == {2'd0, f_watch} + 8'd1) assert (f_held == f_run_word);
+      if ({2'd0, f_watch} < f_kept_length) assert (f_memory_word == f_run_word);
+      if ((count == COUNT_LOADED || bus_write) && f_index == {2'd0, f_watch} + 8'd1) assert (f_held == f_run_word);
       if (f_words == 9'd0 && f_selected && f_upper) assert (f_memory_header[31:16] == f_header[31:16]);
-      if (!frame_waits) assert (f_words != 9'd0 || !f_selected);
+      assert (f_frame_waits || f_words != 9'd0 || !f_selected);
     end
     if (f_runs && !in_replay) assert (f_written == f_run_length);
   end

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What the memory promises; included at the end of passo_memory.
+// Promises of the memory; included at the end of passo_memory.v.
 
-// --- One address, any one, is watched
+// --- Any one address is tracked
 (* anyconst *) reg [DEPTH_LOG2-1:0] f_address;
 reg             f_written = 1'b0;
 reg [WIDTH-1:0] f_word;
-reg             f_read = 1'b0;  // the clock before read the watched address, and nothing was written to it
+reg             f_read = 1'b0;  // the clock before read this address and did not write it
 reg [WIDTH-1:0] f_read_word;
 reg             f_loaded = 1'b0;  // the last `load` found it
 reg [WIDTH-1:0] f_loaded_word;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What the motion states promise; included at the end of passo_motion.
+// Promises of the motion states; included at the end of passo_motion.v.
 
-// --- Assumption: a reset at the beginning; after that, any inputs at all
+// --- Assumption: a reset at the beginning, then any inputs
 reg f_started = 1'b0;
 wire f_begun = ~rst;
 always @(posedge clk) begin
@@ -29,7 +29,7 @@ always @(posedge clk) begin
   if (rst) {f_uncounted, f_unmoved} <= 6'd0;
 end
 
-// --- After ABORT the axes may be asked for steps until the clock after `stopped`, which ends the slots of the lines
+// --- After ABORT steps may be requested until the clock after `stopped`, which ends the substeps in flight
 reg f_aborted = 1'b0;  // and steps may still come
 reg f_stopped_q = 1'b0;
 wire f_abort_lasts = command_abort | (f_aborted & ~f_stopped_q);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What the path promises; included at the end of passo_path.
+// Promises of the path; included at the end of passo_path.v.
 
 localparam [47:0] F_HALF = 48'h8000_0000_0000;
 
-// --- Assumptions: velocities are at most 1/2; what is taken stands for two clocks; nothing counts before the
-// first restart, after a stop, when a drain has just ended, or in the clock of a restart. The drain velocity may be written
-// at any time: its upper 24 bits change a clock after the lower ones.
+// --- Assumptions: velocities are at most 1/2; a velocity that is taken is stable for two clocks; no clock counts
+// before the first restart, after a stop, when a drain has just ended, or in the clock of a restart. The drain
+// velocity may be written at any time: its upper 24 bits change one clock after the lower ones.
 reg  f_started = 1'b0;
 wire f_begun = ~rst;
 reg  f_live = 1'b0;
@@ -36,7 +36,7 @@ always @(posedge clk) begin
     path_drains_after_settling : assume (!drain);
 end
 
-// --- Velocity and phase, each in one piece
+// --- Velocity and phase, not split into halves
 reg  [47:0] f_velocity;
 reg  [47:0] f_phase;
 reg         f_carry = 1'b0;  // of the clock before

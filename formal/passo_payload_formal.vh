@@ -1,36 +1,36 @@
 // SPDX-License-Identifier: MIT
-// What the payload buffer promises; included at the end of passo_payload.
+// Promises of the payload buffer; included at the end of passo_payload.v.
 
-// --- Assumptions: the link. A word turns for 32 clocks or is given up; nothing is loaded or turns in the clock before.
-// There `turns` is 31 and `count` as it will be, if it counts.
+// --- Assumptions: the link. A word rotates for 32 clocks or is abandoned; in the clock before, nothing is loaded or
+// rotates and, if the word counts, `bit_index` is 31 and `count` already set.
 reg       f_begun = 1'b0;
-reg       f_turn_q = 1'b0;
+reg       f_rotate_q = 1'b0;
 reg       f_load_q = 1'b0;
-reg       f_fresh = 1'b0;  // loaded, and not yet turned
-reg       f_told = 1'b0;  // the word that turns, or has turned, was fresh
-reg       f_whole = 1'b0;  // 32 turns are over; nothing has been loaded since
-reg [4:0] f_turns_q;
+reg       f_fresh = 1'b0;  // loaded, and not yet rotated
+reg       f_told = 1'b0;  // the word that rotates, or last rotated, was fresh
+reg       f_whole = 1'b0;  // 32 rotations are over; nothing has been loaded since
+reg [4:0] f_bit_index_q;
 reg       f_count;
 reg [1:0] f_counter;
-wire      f_first = turn & ~f_turn_q;
+wire      f_first = rotate & ~f_rotate_q;
 always @(posedge clk) begin
   f_begun   <= 1'b1;
-  f_turn_q  <= turn & f_begun;
+  f_rotate_q  <= rotate & f_begun;
   f_load_q  <= load & f_begun;
-  f_turns_q <= turns;
+  f_bit_index_q <= bit_index;
   f_count   <= count;
   f_counter <= counter;
-  f_fresh   <= f_begun & (load | (f_fresh & ~turn));
-  if (turn)
-    payload_turns_whole :
-    assume (!load && !f_load_q && turns == (f_first ? 5'd0 : f_turns_q + 5'd1) && (f_first || f_turns_q != 5'd31));
-  if (turn && (!f_first || count)) payload_counts_as_told : assume (count == f_count && counter == f_counter);
-  if (f_first && count) payload_counts_after_31 : assume (f_turns_q == 5'd31);
-  f_whole <= f_begun && ((turn && turns == 5'd31) || (f_whole && !turn && !load));
+  f_fresh   <= f_begun & (load | (f_fresh & ~rotate));
+  if (rotate)
+    payload_rotates_whole :
+    assume (!load && !f_load_q && bit_index == (f_first ? 5'd0 : f_bit_index_q + 5'd1) && (f_first || f_bit_index_q != 5'd31));
+  if (rotate && (!f_first || count)) payload_counts_as_told : assume (count == f_count && counter == f_counter);
+  if (f_first && count) payload_counts_after_31 : assume (f_bit_index_q == 5'd31);
+  f_whole <= f_begun && ((rotate && bit_index == 5'd31) || (f_whole && !rotate && !load));
   if (f_first) f_told <= f_fresh;
 end
 
-// --- The word before its first turn, and as it should be after the last
+// --- The word before its first rotation, and as it should be after the last
 function [7:0] f_mirrored(input [7:0] byte_in);
   f_mirrored = {byte_in[0], byte_in[1], byte_in[2], byte_in[3], byte_in[4], byte_in[5], byte_in[6], byte_in[7]};
 endfunction
@@ -47,31 +47,31 @@ wire [31:0] f_readable = {
 reg         f_counted;
 always @(posedge clk) begin
   f_before_q <= f_before;
-  if (turn) begin
+  if (rotate) begin
     f_after_q <= f_after;
     f_counted <= count;
-    if (f_begun && !count) counters_readable : assert (counter_bit == f_readable[~turns]);
+    if (f_begun && !count) counters_readable : assert (counter_bit == f_readable[~bit_index]);
   end
   if (f_whole) begin
-    if (!f_counted) turning_keeps_the_word : assert (data == f_after_q);
+    if (!f_counted) rotation_keeps_the_word : assert (data == f_after_q);
     else one_counter_counts : assert (data == f_after_q);
     if (f_told) begin
-      top_bit_told : assert (top_bit == 5'd0 ? f_before_w <= 32'd1 : f_before_w >> top_bit == 32'd1);
-      lone_bit_told : assert (lone_bit == ((f_before_w & (f_before_w - 32'd1)) == 32'd0));
+      msb_told : assert (msb == 5'd0 ? f_before_w <= 32'd1 : f_before_w >> msb == 32'd1);
+      one_hot_told : assert (one_hot == ((f_before_w & (f_before_w - 32'd1)) == 32'd0));
     end
   end
 end
 
-// the word that turned last
+// the word that rotated last
 reg  [31:0] f_before_w;
-always @(posedge clk) if (turn) f_before_w <= f_before;
+always @(posedge clk) if (rotate) f_before_w <= f_before;
 
-// --- One half word in the memory, any one
+// --- Any one half-word in the memory
 (* anyconst *) reg [7:0] f_address;
 (* keep *) wire [15:0] f_memory_word;
 reg  [15:0] f_kept;  // as it was last stored
 reg         f_stored = 1'b0;
-reg         f_named = 1'b0;  // it was named in the clock before
+reg         f_named = 1'b0;  // it was selected in the clock before
 reg  [15:0] f_named_word;
 reg         f_shown = 1'b0;  // two clocks before
 reg  [15:0] f_shown_word;
@@ -95,25 +95,25 @@ always @(posedge clk) begin
 end
 
 `ifdef INVARIANTS
-wire [31:0] f_passed = ~(32'hFFFFFFFF >> turns);  // bits that have turned
+wire [31:0] f_passed = ~(32'hFFFFFFFF >> bit_index);  // bits rotated so far
 wire [31:0] f_mixed = (f_after & f_passed) | (f_before & ~f_passed);
-wire [63:0] f_rotated = {f_mixed, f_mixed} << turns;
+wire [63:0] f_rotated = {f_mixed, f_mixed} << bit_index;
 wire [31:0] f_seen = f_before & f_passed;
 always @(posedge clk)
   if (f_begun) begin
     if (f_stored) assert (f_memory_word == f_kept);
     if (f_shown) assert (loaded == f_shown_word);
-    if (f_fresh && !(turn && !f_first)) assert (!some_bit && lone_bit && top_bit == 5'd0);
-    assert (!(f_fresh && (f_whole || (turn && !f_first))));
-    if (turn) begin
+    if (f_fresh && !(rotate && !f_first)) assert (!some_bit && one_hot && msb == 5'd0);
+    assert (!(f_fresh && (f_whole || (rotate && !f_first))));
+    if (rotate) begin
       assert (data == f_rotated[63:32]);
       if (!f_first) assert (f_before_q == f_before_w);
       if (!f_first) assert (f_counted == count && f_after_q == f_after);
-      if (in_counter) assert (carry == ((f_old | (8'hFF >> turns[2:0])) == 8'hFF));
+      if (in_counter) assert (carry == ((f_old | (8'hFF >> bit_index[2:0])) == 8'hFF));
       if (!f_first && f_told) begin
         assert (some_bit == (f_seen != 32'd0));
-        assert (top_bit == 5'd0 ? f_seen <= 32'd1 : f_seen >> top_bit == 32'd1);
-        assert (lone_bit == ((f_seen & (f_seen - 32'd1)) == 32'd0));
+        assert (msb == 5'd0 ? f_seen <= 32'd1 : f_seen >> msb == 32'd1);
+        assert (one_hot == ((f_seen & (f_seen - 32'd1)) == 32'd0));
       end
     end
   end

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What the ramp promises; included at the end of passo_ramp.
+// Promises of the ramp; included at the end of passo_ramp.v.
 
 // --- Assumptions: motion and timescale
 localparam [1:0] F_REST = 2'd0;
-localparam [1:0] F_PREPARED = 2'd1;  // the first velocity is made, or waits
+localparam [1:0] F_PREPARED = 2'd1;  // the first velocity is being computed, or ready
 localparam [1:0] F_RUNS = 2'd2;
 `ifdef SMALL
 reg       f_started = 1'b1;
@@ -35,11 +35,11 @@ always @(posedge clk) begin
   ramp_ticks : assume (tick == (advance & tick_ends));
 end
 
-// --- Assumption: the tables answer later than they are asked
+// --- Assumption: the tables answer after the request
 always @(posedge clk)
   if (table_served) ramp_served_later : assume (rst || $past(table_request && !rst));
 
-// --- Assumptions: the ramp queue, as it promises to be. Of all ramps only the oldest one can be seen.
+// --- Assumptions: the ramp queue, as its proof promises. Only the oldest ramp is visible.
 reg         f_there;
 reg         f_valid;
 reg         f_now;  // a NOW ramp waits ...
@@ -93,9 +93,9 @@ always @(posedge clk)
     if (ramp_take_now) takes_now_when_told : assert (f_now);
   end
 
-// --- Ticks: velocities that were made from the oldest ramp
+// --- Ticks: velocities computed from the oldest ramp
 reg  [31:0] f_made;
-reg  [ 3:0] f_over_for;  // clocks since the last of them was made, from 1
+reg  [ 3:0] f_over_for;  // clocks since the last of them was ready, from 1
 wire        f_makes = ready & ~f_ready_q & ~ends_next;  // a velocity becomes ready
 wire [31:0] f_made_now = f_made + {31'd0, f_makes & f_loaded_q};
 wire        f_all_made = f_makes && f_loaded_q && f_made_now == f_ticks;
@@ -113,10 +113,11 @@ always @(posedge clk) begin
   end
 end
 
-// --- Velocities: where the ramps are, and what counts now
+// --- Velocities: where the ramps are, and the present one
 reg  [47:0] f_start;  // v_end of the ramp that left last
 reg  [47:0] f_present;
-reg         f_without;  // the velocity that is ready was made without a ramp
+wire        f_takes = begin_profile | tick;  // what is ready takes effect in the next clock
+reg         f_without;  // the ready velocity was computed without a ramp
 reg  [ 5:0] f_bit;
 (* keep *) wire f_a_bit;
 (* keep *) wire f_b_bit;
@@ -124,7 +125,7 @@ wire        f_takes_end = loaded & mirror;
 always @(posedge clk) begin
   if (f_take_now) f_start <= f_present;
   if (f_take) f_start <= f_end;
-  if (take_velocity) f_present <= velocity_next;
+  if (f_takes) f_present <= velocity_next;
   if (prepare) begin
     f_start   <= 48'd0;
     f_present <= 48'd0;
@@ -133,7 +134,7 @@ always @(posedge clk) begin
   f_bit <= moving && !shaping ? f_bit + 6'd1 : 6'd0;
   if (f_begun && f_motion != F_REST) begin
     if (ready && f_ready_q && !ends_next && f_without) stays_at_the_end : assert (velocity_next == f_start);
-    if (step == STEP_SCALE && moving && !shaping && f_bit < 6'd48) begin
+    if (stage == STAGE_SCALE && moving && !shaping && f_bit < 6'd48) begin
       first_is_the_start : assert (f_a_bit == (loaded && f_control[2] ? f_end[f_bit] : f_start[f_bit]));
       second_is_the_end : assert (f_b_bit == (loaded && !f_control[2] ? f_end[f_bit] : f_start[f_bit]));
     end
@@ -143,28 +144,28 @@ end
 
 // --- The tick, its end, the end of the profile
 localparam [TICK_LOG2:0] F_TICK_LAST = (1 << TICK_LOG2) - 1;
-reg [TICK_LOG2:0] f_clocks;  // advanced clocks of the tick
-reg               f_due;  // a velocity was made that has not begun
+reg [TICK_LOG2:0] f_clocks;  // enabled clocks of the tick
+reg               f_due;  // a velocity is ready and has not taken effect
 reg               f_last;  // the LAST ramp has left
 reg         [6:0] f_busy;
 wire              f_running = f_motion == F_RUNS;
 always @(posedge clk) begin
   if (advance) f_clocks <= f_clocks + 1'b1;
-  if (take_velocity) f_clocks <= 0;
-  f_due <= (f_due | f_makes) & ~take_velocity;
+  if (f_takes) f_clocks <= 0;
+  f_due <= (f_due | f_makes) & ~f_takes;
   if (f_take) f_last <= f_control[0];
   if (prepare || f_take_now || ended || rst || stop) f_last <= 1'b0;
   if (prepare || rst || stop) f_due <= 1'b0;
   f_busy <= rst || prepare || f_motion == F_REST || ready || f_take || f_take_now ? 7'd0 :
-            f_busy + {6'd0, step != STEP_LOOK_UP && !(f_last && ramp_now_coming)};
+            f_busy + {6'd0, stage != STAGE_LOOK_UP && !(f_last && ramp_now_coming)};
   if (f_begun && f_motion != F_REST) begin
-    if (f_running && advance) tick_is_whole : assert ((f_clocks == F_TICK_LAST) == take_velocity);
+    if (f_running && advance) tick_is_whole : assert ((f_clocks == F_TICK_LAST) == f_takes);
     if (f_running && stall) stalls_only_there : assert (f_clocks == F_TICK_LAST && !f_ready_q);
-    if (take_velocity) only_ready_is_taken : assert (ready && f_ready_q);
-    if (ended) ended_after_last : assert (take_velocity && f_last && !f_due);
-    if (take_velocity && f_last && !f_due) last_is_told : assert (ended);
+    if (f_takes) only_ready_is_taken : assert (ready && f_ready_q);
+    if (ended) ended_after_last : assert (f_takes && f_last && !f_due);
+    if (f_takes && f_last && !f_due) last_is_told : assert (ended);
     if (f_last && ready && !f_ready_q) nothing_after_last : assert (ends_next);
-    if ($past(ready && !take_velocity && !stop)) ready_is_kept : assert (ready);
+    if ($past(ready && !f_takes && !stop)) ready_is_kept : assert (ready);
     if ($past(ready) && $past(f_ready_q)) taken_stands : assert ($stable(velocity_next) && $stable(ends_next));
     ready_in_time : assert (f_busy <= 7'd105);
   end
@@ -180,7 +181,7 @@ localparam [1:0] F_UNUSED = 2'd0;
 localparam [1:0] F_LOADED = 2'd1;
 localparam [1:0] F_SHAPE = 2'd2;
 localparam [1:0] F_SCALE = 2'd3;
-reg  [ 1:0] f_use_q;  // as it goes on if nothing begins and nothing is given up
+reg  [ 1:0] f_use_q;  // the next use, unless one begins or is abandoned
 reg  [ 5:0] f_use_clock_q;
 reg  [ 1:0] f_unused_for;  // clocks, up to 3
 reg         f_shaped;
@@ -189,7 +190,7 @@ wire        f_scales = f_use_q == F_UNUSED && moving;  // begins to
 wire [ 1:0] f_use = f_scales ? F_SCALE : f_use_q[1] && !moving ? F_UNUSED : f_use_q;
 wire [ 5:0] f_use_clock = f_scales ? 6'd1 : f_use_clock_q;
 wire        f_scale_begins = f_use == F_SCALE && f_use_clock == 6'd1;
-wire        f_loads = step == STEP_LOOK_UP && table_served;
+wire        f_loads = stage == STAGE_LOOK_UP && table_served;
 always @(posedge clk) begin
   f_use_clock_q <= f_use_clock + 6'd1;
   f_unused_for  <= f_use != F_UNUSED ? 2'd0 : f_unused_for == 2'd3 ? 2'd3 : f_unused_for + 2'd1;
@@ -221,43 +222,46 @@ always @(posedge clk) begin
   end
 end
 
-// --- What the induction needs to know of the circuit. The search for planted bugs begins in any state of which
-// this is true for F_GIVEN clocks: from reset it would be a hundred clocks to the first velocity.
+// --- Invariants, for the induction. The search for planted bugs starts in any state in which they have held for
+// F_GIVEN clocks: from reset the first velocity would take a hundred clocks.
 `ifdef INVARIANTS
 `define HOLDS assert
 `else
-`define HOLDS if (f_age != F_GIVEN) assume
+`define HOLDS if (f_age == F_GIVEN) begin end else assume
 `endif
 localparam [2:0] F_GIVEN = 3'd5;  // the depth of the induction
 reg [2:0] f_age = 3'd0;
 always @(posedge clk) if (f_age != F_GIVEN) f_age <= f_age + 3'd1;
 (* keep *) wire [47:0] f_v_start;
+(* keep *) wire [TICK_LOG2-1:0] f_tick_count;
+(* keep *) wire f_tick_last;
+(* keep *) wire f_is_last;
 (* keep *) wire [15:0] f_ticks_high;
 (* keep *) wire [15:0] f_ticks_low;
 (* keep *) wire f_b;
 (* keep *) wire f_both;
 (* keep *) wire [24:0] f_addend;
-wire f_is_choose = step == STEP_CHOOSE;
-wire f_is_copy = step == STEP_COPY;
-wire f_is_fetch = step == STEP_FETCH;
-wire f_is_take = step == STEP_TAKE;
-wire f_is_look_up = step == STEP_LOOK_UP;
-wire f_is_shape = step == STEP_SHAPE;
-wire f_is_scale = step == STEP_SCALE;
-wire f_is_step = step == STEP_STEP;
+wire f_is_choose = stage == STAGE_CHOOSE;
+wire f_is_copy = stage == STAGE_COPY;
+wire f_is_fetch = stage == STAGE_FETCH;
+wire f_is_take = stage == STAGE_TAKE;
+wire f_is_look_up = stage == STAGE_LOOK_UP;
+wire f_is_shape = stage == STAGE_SHAPE;
+wire f_is_scale = stage == STAGE_SCALE;
+wire f_is_advance = stage == STAGE_ADVANCE;
 wire [32:0] f_counted = {over, f_ticks_high, f_ticks_low} - {1'b0, ~f_ticks};  // how often 1 was added
 wire [5:0] f_last_count = f_is_copy ? 6'd24 : f_is_take ? 6'd5 : f_is_shape ? 6'd19 : f_is_scale ? 6'd50 : 6'd8;
 integer k;
 always @(posedge clk)
   if (f_begun) begin
-    // steps
+    // stages
     if (f_is_copy) `HOLDS (count >= 6'd1 && count <= 6'd24);
-    if (f_is_fetch || f_is_step) `HOLDS (count >= 6'd1 && count <= 6'd8);
+    if (f_is_fetch || f_is_advance) `HOLDS (count >= 6'd1 && count <= 6'd8);
     if (f_is_take) `HOLDS (count >= 6'd1 && count <= 6'd5);
     if (f_is_look_up) `HOLDS (count == 6'd1);
     if (f_is_shape) `HOLDS (count >= 6'd1 && count <= 6'd19);
     if (f_is_scale) `HOLDS (count >= 6'd1 && count <= 6'd50);
-    if (!f_is_choose && !f_is_look_up) `HOLDS (step_ends == (count == f_last_count));
+    if (!f_is_choose && !f_is_look_up) `HOLDS (stage_ends == (count == f_last_count));
     if (f_motion == F_REST) `HOLDS (f_is_choose && !ready && ends_next || f_stop_q && !$past(f_begun));
     if (f_motion == F_REST && !f_stop_q) `HOLDS (!moving);
     `HOLDS (f_motion <= F_RUNS);
@@ -266,49 +270,49 @@ always @(posedge clk)
   end
 always @(posedge clk)
   if (f_begun && f_motion != F_REST) begin
-    if (ready) `HOLDS (f_is_choose || ((f_is_take || f_is_step) && !ends_next));
+    if (ready) `HOLDS (f_is_choose || ((f_is_take || f_is_advance) && !ends_next));
     if (ready && f_ready_q) `HOLDS (!result_move);
-    if (ends_next) `HOLDS (ready && f_is_choose && !loaded && last);
+    if (ends_next) `HOLDS (ready && f_is_choose && !loaded && f_is_last);
     `HOLDS (f_due == (ready && f_ready_q && !ends_next));
-    `HOLDS (stall == (tick_last & ~tick_ends) && (tick_last || !tick_ends));
-    if (tick_last) `HOLDS (stall == !f_ready_q || $past(f_motion == F_REST));
-    if (f_running) `HOLDS (f_clocks == {1'b0, tick_count} && tick_last == (tick_count == TICK_LAST));
+    `HOLDS (stall == (f_tick_last & ~tick_ends) && (f_tick_last || !tick_ends));
+    `HOLDS (!f_tick_last || stall == !f_ready_q || $past(f_motion == F_REST));
+    if (f_running) `HOLDS (f_clocks == {1'b0, f_tick_count} && f_tick_last == (f_tick_count == F_TICK_LAST[TICK_LOG2-1:0]));
     `HOLDS (ramp_take == (f_is_take && count == 6'd4));
     if (ramp_take_now) `HOLDS (f_is_copy && count == 6'd1 && f_now);
     // the ramp being made
     if (loaded) `HOLDS (f_there || (f_is_take && count >= 6'd5));
     if (loaded && !f_is_take)
-      `HOLDS (f_there && mirror == f_control[2] && shape == f_control[5:4] && last == f_control[0]);
+      `HOLDS (f_there && mirror == f_control[2] && shape == f_control[5:4] && f_is_last == f_control[0]);
     if (loaded) `HOLDS (!f_is_copy && !f_is_fetch);
-    if (f_is_copy) `HOLDS (!last);
+    if (f_is_copy) `HOLDS (!f_is_last);
     if (loaded && !f_is_take || f_is_take && count <= 6'd4 || f_is_scale) `HOLDS (!f_last);
-    if (f_is_look_up || f_is_shape || f_is_step) `HOLDS (loaded);
-    if (!loaded && !ramp_take_now && !f_is_take && !f_is_fetch) `HOLDS (last == f_last);
+    if (f_is_look_up || f_is_shape || f_is_advance) `HOLDS (loaded);
+    if (!loaded && !ramp_take_now && !f_is_take && !f_is_fetch) `HOLDS (f_is_last == f_last);
     if (!loaded && !ramp_take_now && !f_is_take) `HOLDS (f_made_now == 32'd0);
-    if (f_is_fetch) `HOLDS (f_there && !f_last && (count >= 6'd7 || !last));
+    if (f_is_fetch) `HOLDS (f_there && !f_last && (count >= 6'd7 || !f_is_last));
     if (f_is_fetch && count >= 6'd7)
-      `HOLDS (mirror == f_control[2] && shape == f_control[5:4] && last == f_control[0]);
-    if (f_is_scale && !loaded) `HOLDS (!last);
-    if (f_is_take) `HOLDS (last == (count <= 6'd4 ? f_control[0] : f_last));
+      `HOLDS (mirror == f_control[2] && shape == f_control[5:4] && f_is_last == f_control[0]);
+    if (f_is_scale && !loaded) `HOLDS (!f_is_last);
+    if (f_is_take) `HOLDS (f_is_last == (count <= 6'd4 ? f_control[0] : f_last));
     if (f_is_take && count <= 6'd4) `HOLDS (f_there && f_made_now == f_ticks);
     `HOLDS (f_over_for == 4'd0 || (f_is_take && count <= 6'd4 && f_over_for == count - 6'd1));
     if (f_is_take && count >= 6'd5) `HOLDS (f_made_now == 32'd0);
-    // clocks since something was done
+    // clocks since progress was made
     if (!ready || f_ready_q)
-    case (step)
-      STEP_CHOOSE:  `HOLDS (f_busy <= (loaded ? 7'd33 : 7'd24));
-      STEP_COPY:    `HOLDS (f_busy <= (count == 6'd1 ? 7'd34 : count - 7'd1));
-      STEP_FETCH:   `HOLDS (f_busy <= 7'd24 + count);
-      STEP_TAKE:    `HOLDS (f_busy <= (count <= 6'd4 ? 7'd32 + count : count - 7'd5));
-      STEP_LOOK_UP: `HOLDS (f_busy <= 7'd34);
-      STEP_SHAPE:   `HOLDS (f_busy <= 7'd34 + count);
-      STEP_SCALE:   `HOLDS (f_busy <= 7'd53 + count);
+    case (stage)
+      STAGE_CHOOSE:  `HOLDS (f_busy <= (loaded ? 7'd33 : 7'd24));
+      STAGE_COPY:    `HOLDS (f_busy <= (count == 6'd1 ? 7'd34 : count - 7'd1));
+      STAGE_FETCH:   `HOLDS (f_busy <= 7'd24 + count);
+      STAGE_TAKE:    `HOLDS (f_busy <= (count <= 6'd4 ? 7'd32 + count : count - 7'd5));
+      STAGE_LOOK_UP: `HOLDS (f_busy <= 7'd34);
+      STAGE_SHAPE:   `HOLDS (f_busy <= 7'd34 + count);
+      STAGE_SCALE:   `HOLDS (f_busy <= 7'd53 + count);
       default:      `HOLDS (f_busy <= {1'b0, count});
     endcase
     // NOW ramps
     if ((loaded && !f_is_take) || f_is_fetch || (f_is_take && count <= 6'd4)) `HOLDS (!(f_now && f_oldest_now));
     // ticks
-    if (loaded && (f_is_choose || f_is_look_up || f_is_shape || f_is_step || (f_is_scale && count <= 6'd2)))
+    if (loaded && (f_is_choose || f_is_look_up || f_is_shape || f_is_advance || (f_is_scale && count <= 6'd2)))
       `HOLDS (f_counted == {1'b0, f_made_now} + 33'd1 && !over && f_made_now < f_ticks);
     if (loaded && f_is_scale) `HOLDS (f_made_now < f_ticks);
     if (loaded && f_is_scale && count >= 6'd4) `HOLDS (f_counted == {1'b0, f_made_now} + 33'd2);
@@ -344,15 +348,15 @@ always @(posedge clk)
     if (f_is_copy || f_is_fetch) `HOLDS (f_use == F_UNUSED && (f_unused_for >= 2'd1));
   end
 
-// the half word of v_end that scale names in a clock of it; before the first one (counts wrap) the lowest
+// the half-word of v_end that SCALE selects in each clock; before the first one (counts wrap) the lowest
 function [15:0] f_end_half(input [5:0] clocks);
   f_end_half = clocks <= 6'd13 || clocks > 6'd45 ? f_end[15:0] : clocks <= 6'd29 ? f_end[31:16] : f_end[47:32];
 endfunction
 
-// the numbers as they turn
+// the numbers as they rotate
 always @(posedge clk)
   if (f_begun && f_motion != F_REST) begin
-    if ((f_is_choose && !start_copy) || f_is_fetch || f_is_look_up || f_is_shape || f_is_step) `HOLDS (f_v_start == f_start);
+    if ((f_is_choose && !start_copy) || f_is_fetch || f_is_look_up || f_is_shape || f_is_advance) `HOLDS (f_v_start == f_start);
     if (f_is_take) begin
       if (count == 6'd1) `HOLDS (f_word == f_end[15:0] && ramp_half_index == 4'd2);
       if (count == 6'd2) `HOLDS (f_next == f_end[15:0] && f_word == f_end[31:16] && ramp_half_index == 4'd0);
@@ -362,8 +366,8 @@ always @(posedge clk)
         `HOLDS (f_v_start[47:32] == f_end[15:0] && f_half == f_end[31:16] && f_next == f_end[47:32]);
       if (count == 6'd5) `HOLDS (f_v_start[47:16] == f_start[31:0] && f_half == f_start[47:32]);
     end
-    if ((f_is_fetch || f_is_step) && count >= 6'd7) `HOLDS (ramp_half_index == 4'd3);
-    if ((f_is_fetch || f_is_step) && count == 6'd8) `HOLDS (f_word == f_end[15:0]);
+    if ((f_is_fetch || f_is_advance) && count >= 6'd7) `HOLDS (ramp_half_index == 4'd3);
+    if ((f_is_fetch || f_is_advance) && count == 6'd8) `HOLDS (f_word == f_end[15:0]);
     if (loaded && (f_is_choose || f_is_look_up || f_is_shape))
       `HOLDS (ramp_half_index == 4'd3 && f_word == f_end[15:0] && f_next == f_end[15:0]);
     if (loaded && (f_is_look_up || f_is_shape)) `HOLDS (f_half == f_end[15:0]);
@@ -379,11 +383,11 @@ always @(posedge clk)
       if (count >= 6'd2) `HOLDS (moving && !shaping);
       `HOLDS (f_bit == (count >= 6'd2 ? count - 6'd2 : 6'd0));
     end
-    if (f_is_choose && !ready) `HOLDS (!moving && !interpolated_bit && !f_b);
-    // the present velocity turns once while v_start takes it, in two halves
+    if (f_is_choose && !ready) `HOLDS (!moving && !velocity_bit && !f_b);
+    // the present velocity rotates once while v_start copies it, in two halves
     if (f_is_copy || (f_is_choose && start_copy)) begin
       `HOLDS (!loaded && !ready);
-      if (count >= 6'd2) `HOLDS (!moving && !interpolated_bit && !f_b && f_addend == 25'd0 && !f_both);
+      if (count >= 6'd2) `HOLDS (!moving && !velocity_bit && !f_b && f_addend == 25'd0 && !f_both);
       if (count == 6'd1) `HOLDS (ramp_take_now ? velocity_next == f_present : clear && result_move && f_start == 48'd0);
       for (k = 0; k <= 23; k = k + 1)
         if (count == k + 2) begin
@@ -394,13 +398,13 @@ always @(posedge clk)
           `HOLDS ((f_v_start[23:0] ^ (f_start[23:0] << (24 - k))) >> (24 - k) == 24'd0);
         end
     end
-    if (!ready && ((f_is_choose && !start_copy) || f_is_fetch || f_is_take || f_is_step))
+    if (!ready && ((f_is_choose && !start_copy) || f_is_fetch || f_is_take || f_is_advance))
       `HOLDS (velocity_next == f_present && !result_move);
     // without a ramp the bits of v_start become the velocity
     if (f_is_scale && !loaded) begin
-      if (count == 6'd1) `HOLDS (!moving && !interpolated_bit && !f_b);
-      if (count == 6'd2) `HOLDS (!interpolated_bit && !f_b && clear && result_move);
-      if (count >= 6'd3) `HOLDS (interpolated_bit == f_start[count - 3] && f_b == interpolated_bit && f_addend == 25'd0 && result_move);
+      if (count == 6'd1) `HOLDS (!moving && !velocity_bit && !f_b);
+      if (count == 6'd2) `HOLDS (!velocity_bit && !f_b && clear && result_move);
+      if (count >= 6'd3) `HOLDS (velocity_bit == f_start[count - 3] && f_b == velocity_bit && f_addend == 25'd0 && result_move);
       if (count == 6'd3) `HOLDS (!f_both && velocity_next == 48'd0);
       if (count >= 6'd4) `HOLDS (f_both == f_start[count - 4]);
       for (k = 0; k <= 46; k = k + 1)
@@ -409,7 +413,7 @@ always @(posedge clk)
     if (ready && f_ready_q && !ends_next && f_without) `HOLDS (f_is_choose && !loaded);
     if (f_makes && !f_loaded_q) `HOLDS (f_is_choose && !loaded && velocity_next == f_start << 1 && f_both == f_start[47] && f_addend == 25'd0 && result_move);
     if (f_is_scale && !loaded && count >= 6'd3)
-      `HOLDS (moves == ((f_start & ((48'd1 << (count - 3)) - 48'd1)) != 48'd0));
-    if (f_is_scale && count == 6'd2 && !loaded) `HOLDS (!moves);
-    if (f_is_scale && count == 6'd1) `HOLDS (!moves);
+      `HOLDS (not_zero == ((f_start & ((48'd1 << (count - 3)) - 48'd1)) != 48'd0));
+    if (f_is_scale && count == 6'd2 && !loaded) `HOLDS (!not_zero);
+    if (f_is_scale && count == 6'd1) `HOLDS (!not_zero);
   end

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What the ramp queue promises; included at the end of passo_ramp_queue.
+// Promises of the ramp queue; included at the end of passo_ramp_queue.v.
 
-// --- Assumptions: the link. A frame is checked, word by word; if nobody objects and it ends with a whole
-// ramp, it may be written, with as many words. Data stand from a clock before their strobe to a clock after it;
-// `bus_top_bit` belongs to those that are checked, in the strobe and the clock before.
+// --- Assumptions: the link. A frame is checked word by word; if no word is refused and it ends with a whole ramp, it
+// may be written, with as many words. Data are stable from one clock before their strobe to one clock after it;
+// `bus_msb` of checked data is valid in the strobe and the clock before.
 `ifdef SMALL
 localparam [1:0] F_GAP = 2'd2;
 `else
@@ -26,7 +26,7 @@ reg       f_short = 1'b0;
 `endif
 wire f_strobe = (bus_check | bus_write) & select;
 wire f_last_index = f_index == 3'd4;
-wire f_top_bit_right = bus_top_bit == 5'd0 ? bus_data <= 32'd1 : bus_data >> bus_top_bit == 32'd1;
+wire f_msb_right = bus_msb == 5'd0 ? bus_data <= 32'd1 : bus_data >> bus_msb == 32'd1;
 wire f_good = f_checking && !f_refused && refusal == VERDICT_OK && f_index == 3'd0 && f_words != 8'd0;
 always @(posedge clk) begin
   f_started  <= 1'b1;
@@ -38,7 +38,7 @@ always @(posedge clk) begin
   ramp_queue_one_strobe : assume (bus_check + bus_write + bus_frame <= 2'd1);
   if (bus_frame) ramp_queue_commits_good : assume (bus_commit == (f_good && f_go));
   if (bus_check || bus_write || f_strobe_q) ramp_queue_data_stand : assume ($stable(bus_data));
-  if (bus_check) ramp_queue_top_bit : assume (f_top_bit_right && $past(f_top_bit_right));
+  if (bus_check) ramp_queue_msb : assume (f_msb_right && $past(f_msb_right));
   if (bus_check) ramp_queue_frame_has_begun : assume (f_checking);
   if (bus_write) ramp_queue_writes_good : assume (f_writing == select);
   if (f_checking && f_words != 8'd0) ramp_queue_select_stands : assume (select == f_select);
@@ -59,8 +59,8 @@ always @(posedge clk) begin
     if (!bus_commit) f_words <= 8'd0;
   end
 `ifdef SMALL
-  // shorter for the search of bugs: where a frame may begin, any good number of ramps (see `shorter` in
-  // promises.toml) has been checked already
+  // shorter searches for bugs: where a frame may begin, any valid number of ramps may have been checked already (see
+  // `shorter` in promises.toml)
   small_ramp_queue_reset : assume (rst == !f_started);
   f_short <= rst | (bus_frame & ~bus_commit) | (bus_write & f_writing & f_words == 8'd1);
   if (f_short && checked != 0) begin
@@ -88,10 +88,10 @@ always @(posedge clk) begin
   if ($past(flush && !rst) && f_since_write != 3'd7) ramp_queue_stays_flushed : assume (flush || rst);
 end
 
-// --- The queue as it should be
+// --- Reference queue
 reg [DEPTH_LOG2:0] f_ramps = 0;
 reg [DEPTH_LOG2:0] f_ramps_q = 0;
-reg [DEPTH_LOG2:0] f_to_come = 0;  // ramps of a frame that was accepted, which are still to be written
+reg [DEPTH_LOG2:0] f_to_come = 0;  // ramps of an accepted frame, still to be written
 reg [DEPTH_LOG2:0] f_free_q = 1 << DEPTH_LOG2;  // a clock ago
 reg                f_flush_q = 1'b0;
 reg [DEPTH_LOG2:0] f_now_ahead = 0;  // ramps before the last NOW
@@ -153,7 +153,7 @@ always @(posedge clk) begin
   end
 end
 
-// --- One half word of one ramp, any one, is watched from its first word on
+// --- Any one half-word of any one ramp is tracked from its first word on
 (* anyconst *) reg [DEPTH_LOG2-1:0] f_slot;  // its place
 (* anyconst *) reg [3:0] f_half;  // 0 .. 9
 (* anyseq *) reg f_choose;
@@ -163,8 +163,8 @@ reg f_recording = 1'b0;
 reg f_queued = 1'b0;
 reg [DEPTH_LOG2:0] f_ahead;  // ramps before it
 reg f_mirror;
-reg [15:0] f_word;  // the half word as the ramp wants it
-reg [2:0] f_shown = 3'b000;  // of one, two and three clocks ago: the index is that of the watched one
+reg [15:0] f_word;  // the half-word as the ramp needs it
+reg [2:0] f_shown = 3'b000;  // one, two and three clocks ago: the index was that of the tracked one
 reg [15:0] f_shown_word;  // what it was then
 reg [15:0] f_shown_word_q;
 reg [15:0] f_shown_word_qq;

@@ -4,17 +4,12 @@
 `default_nettype none
 
 module passo_settings_proof (
-  input wire        clk,
-  input wire        rst,
-  input wire        bus_check,
-  input wire        bus_write,
-  input wire        bus_read,
-  input wire        bus_push,
-  input wire        select,
-  input wire [ 7:0] bus_address,
+  input wire clk, rst,
+  input wire bus_check, bus_write, bus_read, bus_push, select,
+  input wire [7:0] bus_address,
   input wire [31:0] bus_data,
-  input wire [ 4:0] bus_top_bit,
-  input wire        bus_lone_bit
+  input wire [4:0] bus_msb,
+  input wire bus_one_hot
 );
 
   `include "passo_registers.vh"
@@ -22,111 +17,55 @@ module passo_settings_proof (
   localparam [16:0] F_ONE = 17'h10000;
   localparam [31:0] F_HALF = 32'h8000_0000;
 
-  wire        claim;
+  wire        claim, select_axis;
   wire [ 3:0] refusal;
-  wire        select_axis;
-  wire [16:0] rate_target;
-  wire [16:0] rate_slew;
-  wire [16:0] stop_slew;
+  wire [16:0] rate_target, rate_slew, stop_slew;
   wire [31:0] drain_velocity;
-  wire        command_stop;
-  wire        command_abort;
-  wire        command_clear;
-  wire        command_zero;
-  wire        needs_idle;
-  wire        needs_quiet;
+  wire        command_stop, command_abort, command_clear, command_zero;
+  wire        needs_idle, needs_quiet, pins_need_quiet;
+  wire        write_pins, write_step_timing, write_dir_timing, write_enable;
+  wire        upper_is_minimal, lower_is_minimal;
+  wire [15:0] step_high, step_low, dir_setup, dir_hold;
+  wire        high_is_minimal, low_is_minimal, setup_is_minimal, hold_is_minimal;
+  wire        both_edges, step_inverted, direction_inverted;
+
+  // of the state nothing is promised
+  wire        quiet, stopping, overrun;
+  wire [ 2:0] state, cause;
+  wire [15:0] drained;
+  wire [16:0] rate;
+  wire [31:0] velocity;
+  wire [ 8:0] line_room;
+  wire [ 4:0] ramp_room;
+  wire [ 3:0] lost;
 
   passo_channel_registers #(
     .AXES(1)
   ) u_registers (
-    .clk           (clk),
-    .rst           (rst),
-    .bus_check     (bus_check),
-    .bus_write     (bus_write),
-    .bus_read      (bus_read),
-    .bus_push      (bus_push),
-    .select        (select),
-    .bus_address   (bus_address),
-    .bus_data      (bus_data),
-    .bus_top_bit   (bus_top_bit),
-    .bus_lone_bit  (bus_lone_bit),
-    .claim         (claim),
-    .refusal       (refusal),
-    .select_axis   (select_axis),
-    .rate_target   (rate_target),
-    .rate_slew     (rate_slew),
-    .stop_slew     (stop_slew),
-    .drain_velocity(drain_velocity),
-    .command_stop  (command_stop),
-    .command_abort (command_abort),
-    .command_clear (command_clear),
-    .command_zero  (command_zero),
-    .needs_idle    (needs_idle),
-    .needs_quiet   (needs_quiet)
+    .*,
+    .read_data        (),
+    .select_line_queue(),
+    .select_ramp_queue(),
+    .select_position  ()
   );
-
-  wire        write_pins;
-  wire        write_step_timing;
-  wire        write_dir_timing;
-  wire        write_enable;
-  wire        short_upper;
-  wire        short_lower;
-  wire        pins_need_quiet;
-  wire [15:0] step_high;
-  wire [15:0] step_low;
-  wire [15:0] dir_setup;
-  wire [15:0] dir_hold;
-  wire        short_high;
-  wire        short_low;
-  wire        short_setup;
-  wire        short_hold;
-  wire        both_edges;
-  wire        step_inverted;
-  wire        direction_inverted;
 
   passo_axis_registers #(
     .AXES(1)
   ) u_axis_registers (
-    .clk              (clk),
-    .rst              (rst),
-    .bus_check        (bus_check),
-    .bus_write        (bus_write),
-    .bus_read         (bus_read),
-    .bus_push         (bus_push),
-    .select_axis      (select_axis),
-    .bus_address      (bus_address[2:0]),
-    .bus_data         (bus_data),
-    .bus_top_bit      (bus_top_bit),
-    .write_pins       (write_pins),
-    .write_step_timing(write_step_timing),
-    .write_dir_timing (write_dir_timing),
-    .write_enable     (write_enable),
-    .needs_quiet      (pins_need_quiet),
-    .short_upper      (short_upper),
-    .short_lower      (short_lower)
+    .*,
+    .select_position (),
+    .bus_address     (bus_address[2:0]),
+    .claim           (),
+    .refusal         (),
+    .read_data       (),
+    .answers_position(),
+    .needs_quiet     (pins_need_quiet)
   );
 
   passo_axis_settings u_settings (
-    .clk               (clk),
-    .rst               (rst),
-    .write_pins        (write_pins),
-    .write_step_timing (write_step_timing),
-    .write_dir_timing  (write_dir_timing),
-    .write_enable      (write_enable),
-    .bus_data          (bus_data),
-    .short_upper       (short_upper),
-    .short_lower       (short_lower),
-    .step_high         (step_high),
-    .step_low          (step_low),
-    .dir_setup         (dir_setup),
-    .dir_hold          (dir_hold),
-    .short_high        (short_high),
-    .short_low         (short_low),
-    .short_setup       (short_setup),
-    .short_hold        (short_hold),
-    .both_edges        (both_edges),
-    .step_inverted     (step_inverted),
-    .direction_inverted(direction_inverted)
+    .*,
+    .enable         (),
+    .enable_inverted()
   );
 
   // --- Which values are bad
@@ -136,8 +75,8 @@ module passo_settings_proof (
   wire f_bad = f_is_command        ? (bus_data & ~CHANNEL_COMMAND_DEFINED) != 32'd0 :
                f_is_drain_velocity ? bus_data == 32'd0 || bus_data > F_HALF : bus_data > {15'd0, F_ONE};
   wire f_stops = bus_data[CHANNEL_COMMAND_STOP_LSB] | bus_data[CHANNEL_COMMAND_ABORT_LSB];
-  wire f_told = bus_top_bit == 5'd0 ? bus_data <= 32'd1 : bus_data >> bus_top_bit == 32'd1;
-  wire f_lone = (bus_data & (bus_data - 32'd1)) == 32'd0;
+  wire f_told = bus_msb == 5'd0 ? bus_data <= 32'd1 : bus_data >> bus_msb == 32'd1;
+  wire f_one_hot = (bus_data & (bus_data - 32'd1)) == 32'd0;
 
   // --- Assumptions: the link, and the payload buffer
   reg        f_started = 1'b0;
@@ -157,13 +96,13 @@ module passo_settings_proof (
     f_bus_q   <= f_bus;
     f_bus_qq  <= f_bus_q;
     f_data_q  <= bus_data;
-    f_told_q  <= f_told && bus_lone_bit == f_lone;
+    f_told_q  <= f_told && bus_one_hot == f_one_hot;
     if (!f_started) settings_reset : assume (rst);
     settings_one_strobe : assume (bus_check + bus_write + bus_read <= 2'd1 && !(f_strobe && (bus_check || bus_write || bus_read)));
     if (bus_check || bus_write || bus_read) 
       settings_bus_stands : assume (f_two && f_bus == f_bus_q && f_bus == f_bus_qq && bus_data == f_data_q);
     if (f_strobe) settings_data_stand : assume (bus_data == f_data_q);
-    if (bus_check) settings_told : assume (f_told && bus_lone_bit == f_lone && f_told_q);
+    if (bus_check) settings_told : assume (f_told && bus_one_hot == f_one_hot && f_told_q);
     if (bus_write && f_is_setting) settings_as_checked : assume (!bus_push && !f_bad);
   end
 
@@ -202,9 +141,9 @@ module passo_settings_proof (
       if (bus_check && select && bus_address == CHANNEL_AXIS_BASE) pins_need_quiet_channel : assert (pins_need_quiet);
       if (command_stop || command_abort) stop_is_alone : assert (!command_clear && !command_zero && !(command_stop && command_abort));
       timings_not_0 : assert (step_high != 16'd0 && step_low != 16'd0 && dir_setup != 16'd0 && dir_hold != 16'd0);
-      short_told :
-      assert (short_high == (step_high == 16'd1) && short_low == (step_low == 16'd1)
-              && short_setup == (dir_setup == 16'd1) && short_hold == (dir_hold == 16'd1));
+      minimal_told :
+      assert (high_is_minimal == (step_high == 16'd1) && low_is_minimal == (step_low == 16'd1)
+              && setup_is_minimal == (dir_setup == 16'd1) && hold_is_minimal == (dir_hold == 16'd1));
       if (!f_write_timing) timings_change_when_written : assert (f_timings_now == f_timings);
       if (!f_write_pins) pins_change_when_written : assert (f_pins_now == f_pins);
     end

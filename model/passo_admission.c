@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Admission: whether the state of the channel allows the frame that is about to be executed. See
+ * Admission: checks that the state of the channel allows the frame to be executed. See
  * rtl/passo_admission.v.
  */
 #include "passo_model.h"

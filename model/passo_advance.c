@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT
- * Jumping over quiet time: passo_core_advance().
+ * Skipping quiet time: passo_core_advance().
  *
- * While a profile runs, a clock is quiet if it moves only counters and sums whose later values can be told at
- * once: the tick counter, the phase, e of each DDA, the substeps of the line, timers. It is not quiet if a
- * step is made, a line or a tick ends, a ramp is chosen, or anything arrives from outside.
+ * While a profile runs, a clock is quiet if it only changes counters and sums whose later values can be
+ * computed directly: the tick counter, the phase, e of each DDA, the substep count of the line, timers. It is
+ * not quiet if a step is made, a line or a tick ends, a ramp is chosen, or an input changes.
  */
 #include "passo_advance.h"
 
 #include "passo_registers_core.h"
 
-/* Clocks from a slew tick until the rate has changed: see passo_timescale_clock(). */
+/* Latency from a slew tick to the change of rate; see passo_timescale_clock(). */
 enum { SLEW_CLOCKS = 6 };
 
 static bool same_inputs(const struct passo_inputs *a, const struct passo_inputs *b)
@@ -47,7 +47,7 @@ uint64_t passo_core_advance(struct passo_core *core, const struct passo_inputs *
 	const uint32_t tick = 1u << core->parameters.tick_log2;
 	const uint64_t clocks_to_slew = core->slew_tick ? 0u : tick - core->slew_count;
 	const unsigned channels = core->parameters.channels;
-	unsigned moving = channels; /* the only one that moves */
+	unsigned moving = channels; /* the first moving channel; `channels`: none */
 	uint64_t clocks = limit;
 
 	if (clocks == 0u || inputs->rst || !link_side_quiet(core, inputs))
@@ -68,7 +68,7 @@ uint64_t passo_core_advance(struct passo_core *core, const struct passo_inputs *
 		struct passo_channel *channel = &core->channel[moving];
 		const uint64_t quiet = passo_advance_least(
 		    clocks, passo_advance_surroundings_quiet(channel, &channel_inputs, clocks_to_slew));
-		/* the others are quiet within their ticks only, if they move */
+		/* other moving channels are only skipped within their ticks */
 		uint64_t skipped = passo_advance_skip_ticks(channel, &channel_inputs, quiet);
 		if (skipped == 0u) {
 			skipped =
@@ -85,7 +85,7 @@ uint64_t passo_core_advance(struct passo_core *core, const struct passo_inputs *
 
 	core->slew_tick = (core->slew_count + clocks - 1u) % tick == tick - 1u;
 	core->slew_count = (uint32_t)((core->slew_count + clocks) % tick);
-	/* a slew tick on the way is still at work */
+	/* a skipped slew tick may still be in progress */
 	for (unsigned i = 0; i < channels; i++)
 		if (core->channel[i].motion.state == PASSO_STATE_RUN && core->slew_count <= SLEW_CLOCKS
 		    && core->slew_count <= clocks)

@@ -1,29 +1,28 @@
 /* SPDX-License-Identifier: MIT
- * Jumping over quiet time in a channel whose profile may run. See passo_advance.c.
+ * Skipping quiet time in a channel with a running profile. See passo_advance.c.
  *
- * The pipeline from path to DDA makes this less simple than it sounds: at any time up to three substeps are
- * on their way. So a jump first takes them all to their end (`struct progress`), counts there, and then puts
- * the last ones back on their way: which clocks had a carry follows from the phase alone, as long as the
- * velocity stood still for the last four clocks.
+ * The pipeline from path to DDA can hold up to three substeps in flight. A skip therefore first completes
+ * them all (`struct progress`), advances the counts, and then refills the pipeline: the phase alone
+ * determines which clocks had a carry, provided that the velocity was constant for the last four clocks.
  */
 #include "passo_advance.h"
 
-/* Clocks from the phase to the DDA whose substeps are on their way. */
+/* Latency from phase to DDA. */
 enum { PIPELINE_CLOCKS = 4 };
 
-/* A ramp has made the next velocity by then, in any case, and stepped. */
+/* By then a ramp has always computed the next velocity and advanced. */
 static const uint32_t RAMP_DONE_TICK_COUNT = 100;
 
 static const uint64_t PHASE_MASK = PASSO_ONE_Q48 - 1u;
 
-/* Path, line and DDAs as if every substep so far had arrived. */
+/* State of path, line and DDAs with all substeps completed. */
 struct progress {
 	uint64_t phase;    /* UQ0.48 */
 	int64_t remaining; /* of the line: 1 - M + substeps */
 	int64_t e[PASSO_AXES_MAX];
 };
 
-/* Takes all substeps to their end; false if one of them does more than count. */
+/* Completes all substeps in flight; false if one of them has an effect other than counting. */
 static bool take_to_end(const struct passo_channel *channel, struct progress *progress)
 {
 	const struct passo_path *path = &channel->path;
@@ -31,7 +30,7 @@ static bool take_to_end(const struct passo_channel *channel, struct progress *pr
 	uint64_t phase_high = path->phase_high;
 	int64_t on_the_way = 0;
 
-	if (!line->active && (line->slot_add || line->slot_step))
+	if (!line->active && (line->add_n || line->decide_step))
 		return false; /* the last substep of the last line */
 	if (path->advance_q)
 		phase_high += path->velocity_high + (path->phase_low_carry ? 1u : 0u);
@@ -40,11 +39,12 @@ static bool take_to_end(const struct passo_channel *channel, struct progress *pr
 		on_the_way = (path->substep ? 1 : 0) + (phase_high >> 24 != 0u ? 1 : 0);
 	progress->remaining =
 	    (int64_t)line->substep_number + on_the_way - (int64_t)channel->line_queue.last_substep;
-	on_the_way += line->slot_add ? 1 : 0;
+	on_the_way += line->add_n ? 1 : 0;
 	for (unsigned i = 0; i < channel->axes; i++) {
 		const struct passo_dda *dda = &channel->dda[i];
 		const int64_t steps = (int64_t)channel->line_queue.steps[i];
-		if ((line->slot_step && dda->e_minus_m >= 0) || (!line->slot_step && dda->addend != steps))
+		if ((line->decide_step && dda->e_minus_m >= 0)
+		    || (!line->decide_step && dda->addend != steps))
 			return false;
 		progress->e[i] = dda->e_minus_m + on_the_way * steps;
 		if (line->active && progress->e[i] >= 0)
@@ -53,7 +53,7 @@ static bool take_to_end(const struct passo_channel *channel, struct progress *pr
 	return !line->active || progress->remaining <= 0;
 }
 
-/* Substeps of an active line, if none of them ends it or makes a step. */
+/* Counts substeps of an active line; false if one of them ends it or makes a step. */
 static bool count_substeps(const struct passo_channel *channel, struct progress *progress, int64_t substeps)
 {
 	if (!channel->line.active)
@@ -69,7 +69,7 @@ static bool count_substeps(const struct passo_channel *channel, struct progress 
 	return true;
 }
 
-/* How many substeps may follow before one ends the line or makes a step. */
+/* Number of substeps before one ends the line or makes a step. */
 static uint64_t substeps_to_event(const struct passo_channel *channel, const struct progress *progress)
 {
 	uint64_t substeps = (uint64_t)-progress->remaining;
@@ -88,7 +88,7 @@ static uint64_t velocity_of(const struct passo_path *path)
 	return (uint64_t)path->velocity_high << 24 | path->velocity_low;
 }
 
-/* Sums the velocity over some clocks of one tick; returns the substeps. */
+/* Integrates the velocity over clocks of one tick; returns the substeps. */
 static int64_t sum_phase(struct progress *progress, uint64_t velocity, uint64_t clocks)
 {
 	/* at most 2^16 clocks at 1/2: 2^15 substeps, 63 bits */
@@ -98,8 +98,8 @@ static int64_t sum_phase(struct progress *progress, uint64_t velocity, uint64_t 
 	return (int64_t)(sum >> 48);
 }
 
-/* Puts the substeps of the last clocks back on their way; the velocity has stood for PIPELINE_CLOCKS clocks.
- */
+/* Refills the pipeline with the substeps of the last clocks; the velocity must have been constant for
+ * PIPELINE_CLOCKS clocks. */
 static void put_back(struct passo_channel *channel, const struct progress *progress)
 {
 	struct passo_path *path = &channel->path;
@@ -122,8 +122,8 @@ static void put_back(struct passo_channel *channel, const struct progress *progr
 	path->substep = carry[1];
 	if (!line->active)
 		return;
-	line->slot_add = carry[2];
-	line->slot_step = carry[3];
+	line->add_n = carry[2];
+	line->decide_step = carry[3];
 	const int64_t not_counted = (carry[0] ? 1 : 0) + (carry[1] ? 1 : 0);
 	const int64_t not_added = not_counted + (carry[2] ? 1 : 0);
 	const int64_t last_substep = (int64_t)channel->line_queue.last_substep;
@@ -147,7 +147,7 @@ uint64_t passo_advance_profile_quiet(
 	const uint64_t velocity = velocity_of(&channel->path);
 	const uint32_t tick_last = (1u << parameters->tick_log2) - 1u;
 	const uint32_t tick_count = channel->ramp.tick_count;
-	/* first to the place from which passo_advance_skip_ticks() can go on */
+	/* first to the point from which passo_advance_skip_ticks() can continue */
 	const bool before_place = channel->ramp.ready && tick_count < RAMP_DONE_TICK_COUNT;
 	const uint32_t goal = before_place ? RAMP_DONE_TICK_COUNT : tick_last;
 	struct progress progress;
@@ -181,7 +181,7 @@ uint64_t passo_advance_channel_quiet(const struct passo_channel *channel,
 	return passo_advance_slots_empty(channel) ? clocks : 0u;
 }
 
-/* What runs on its own: timers and waits. */
+/* Timers and waits that run independently of the profile. */
 static void skip_surroundings(struct passo_channel *channel, uint64_t clocks)
 {
 	for (unsigned i = 0; i < channel->axes; i++)
@@ -221,7 +221,7 @@ uint64_t passo_advance_skip_ticks(
 	    || !ramp->loaded || place < RAMP_DONE_TICK_COUNT || channel->ramp_queue.now_pending
 	    || !take_to_end(channel, &progress))
 		return 0;
-	/* the last velocity of a ramp takes it from the queue */
+	/* stop before the last tick of the ramp, which takes the ramp from the queue */
 	while (ramp->ticks > 1u && clocks + tick <= limit) {
 		struct progress then = progress;
 		int64_t substeps = sum_phase(&then, velocity_of(path), tick - place);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * What must stand still in a channel while time is jumped over. See passo_advance.c.
+ * Conditions for a channel to be quiet. See passo_advance.c.
  */
 #include "passo_advance.h"
 
-/* Of a queue whose places are counted modulo twice its depth. */
+/* Used entries of a queue whose pointers count modulo twice its depth. */
 static unsigned used_places(unsigned write, unsigned read, unsigned depth)
 {
 	return (write - read) & (2u * depth - 1u);
@@ -55,10 +55,10 @@ bool passo_advance_slots_empty(const struct passo_channel *channel)
 		return false;
 	if (stopped && (channel->path.velocity_low != 0u || channel->path.velocity_high != 0u))
 		return false;
-	return !channel->path.advance_q && !channel->path.substep && !line->slot_add && !line->slot_step;
+	return !channel->path.advance_q && !channel->path.substep && !line->add_n && !line->decide_step;
 }
 
-/* Clocks for which the rate stands still: all, or until the next slew tick. */
+/* Clocks for which the rate is constant: unlimited, or until the next slew tick. */
 static uint64_t timescale_quiet(const struct passo_channel *channel, bool moving, uint64_t clocks_to_slew)
 {
 	const struct passo_timescale *timescale = &channel->timescale;
@@ -89,7 +89,7 @@ static uint64_t ramp_quiet(const struct passo_ramp_unit *ramp)
 	return ramp->wait - 1u;
 }
 
-/* Motions at rest: nothing starts. Motions that run: their pin is up, nothing stops. */
+/* At rest, nothing is about to start. In a motion, the running pin is high and nothing is about to stop. */
 static bool motion_settled(const struct passo_channel *channel, const struct passo_channel_inputs *inputs)
 {
 	const struct passo_motion *motion = &channel->motion;
@@ -114,7 +114,7 @@ static bool motion_settled(const struct passo_channel *channel, const struct pas
 	}
 }
 
-/* Whether the channel is at rest is known. */
+/* Whether at_rest has reached its final value. */
 static bool rest_settled(const struct passo_channel *channel)
 {
 	const bool occupied = passo_channel_occupied(channel);
@@ -132,7 +132,7 @@ uint64_t passo_advance_surroundings_quiet(
 	const bool moving = channel->motion.state == PASSO_STATE_RUN;
 
 	if (!motion_settled(channel, inputs) || !rest_settled(channel) || channel->positions.snapshot_waits
-	    || !commands_settled(channel, inputs->bus) || line->slot_load || line->slot_load_q
+	    || !commands_settled(channel, inputs->bus) || line->load_start || line->load_start_q
 	    || line->underrun || !ramps_settled(&channel->ramp_queue, inputs->parameters)
 	    || !lines_settled(channel, inputs->parameters))
 		return 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Axis: STEP and DIR pins of one axis, with all four pin timings. See rtl/passo_axis.v and
+ * Axis: STEP and DIR pins of one axis with the four pin timings. See rtl/passo_axis.v and
  * rtl/passo_axis_settings.v.
  */
 #include "passo_model.h"
@@ -52,7 +52,6 @@ void passo_axis_settings_write(struct passo_axis_settings *settings, uint8_t add
 
 	switch (address) {
 	case PASSO_AXIS_PINS:
-
 		settings->step_inverted = (data & 2u) != 0u;
 		settings->direction_inverted = (data & 4u) != 0u;
 		settings->enable_inverted = (data & 8u) != 0u;
@@ -74,7 +73,7 @@ void passo_axis_settings_write(struct passo_axis_settings *settings, uint8_t add
 	}
 }
 
-/* The time that the present state lasts; 0 counts as 1. */
+/* Duration of the present state in clocks; 0 counts as 1. */
 static uint16_t time_of(const struct passo_axis *axis)
 {
 	const struct passo_axis_settings *settings = &axis->settings;
@@ -101,7 +100,7 @@ static void clock_queue(struct passo_axis *axis, bool step_begins, const struct 
 	const uint8_t latest = wires->direction ? (uint8_t)(0xFu & ~(waits >> 1)) : 0u;
 	const uint8_t moving = step_begins ? 0xFu : (uint8_t)(0xFu & ~waits);
 
-	/* free places hold the latest direction */
+	/* free entries hold the latest direction */
 	axis->waiting = (uint8_t)((axis->waiting & ~moving) | ((behind | latest) & moving));
 	if (step_begins && !accepted)
 		axis->waits = waits >> 1;
@@ -120,7 +119,7 @@ static void clock_pins(struct passo_axis *axis, bool step_begins)
 {
 	const struct passo_axis_settings *settings = &axis->settings;
 
-	/* pins and position follow a clock later */
+	/* pins and position are registered one clock later */
 	if (axis->step_made)
 		axis->position += axis->dir ? 0xFFFFFFFFu : 1u;
 	axis->step_made = step_begins;
@@ -141,7 +140,7 @@ void passo_axis_clock(struct passo_axis *axis, const struct passo_axis_wires *wi
 	               || (state == PASSO_AXIS_SETUP && over);
 	const bool waits = place_is(axis->waits, 0);
 	const bool step_begins = free && waits && right && !axis->unsettled;
-	const bool turn =
+	const bool setup_begins =
 	    (!right || axis->unsettled) && (state == PASSO_AXIS_READY || (state == PASSO_AXIS_HOLD && over));
 
 	axis->quiet = state == PASSO_AXIS_READY && right && !axis->unsettled && !waits && !wires->step_request
@@ -152,23 +151,23 @@ void passo_axis_clock(struct passo_axis *axis, const struct passo_axis_wires *wi
 	clock_queue(axis, step_begins, wires);
 
 	axis->timer++;
-	if (step_begins || turn || level_done || axis->timing_changed || settle)
+	if (step_begins || setup_begins || level_done || axis->timing_changed || settle)
 		axis->timer = 1;
 	axis->timing_changed = wires->timing_written || settle;
 	axis->settle = wires->pins_written;
-	axis->unsettled = settle || (axis->unsettled && !turn);
+	axis->unsettled = settle || (axis->unsettled && !setup_begins);
 	if (level_done && !falls)
 		axis->state = PASSO_AXIS_HOLD;
 	if ((state == PASSO_AXIS_HOLD || state == PASSO_AXIS_SETUP) && over)
 		axis->state = PASSO_AXIS_READY;
-	if (turn)
+	if (setup_begins)
 		axis->state = PASSO_AXIS_SETUP;
 	if (step_begins || settle)
 		axis->state = PASSO_AXIS_PULSE;
 	if (wires->pins_written && !wires->both_edges_next)
 		axis->step = false;
 	axis->step = axis->step != (step_begins || falls);
-	axis->dir = axis->dir != (turn && !right);
+	axis->dir = axis->dir != (setup_begins && !right);
 }
 
 uint32_t passo_axis_quiet(const struct passo_axis *axis, bool line_direction)
@@ -190,13 +189,13 @@ uint32_t passo_axis_quiet(const struct passo_axis *axis, bool line_direction)
 		return quiet ? UINT32_MAX : 0u;
 	if (axis->state == PASSO_AXIS_HOLD && waits && right)
 		return 0;
-	/* the timer runs up to the time; what follows then happens in the clock that finds it there */
+	/* the timer counts up to the time; the next event is in the clock that finds it there */
 	const uint16_t time = time_of(axis);
 	return axis->timer < time ? (uint32_t)time - axis->timer : 0u;
 }
 
 void passo_axis_skip(struct passo_axis *axis, uint64_t clocks)
 {
-	/* in READY the timer runs on, unseen */
+	/* in READY the timer keeps counting without effect */
 	axis->timer = (uint16_t)(axis->timer + clocks);
 }

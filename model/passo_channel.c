@@ -81,7 +81,7 @@ static struct passo_channel_wires gather_wires(
 	wires.line_done = wires.substep_taken && channel->line.on_last;
 	const struct passo_line_queue *queue = &channel->line_queue;
 	const bool goes_on = wires.line_done && !queue->last;
-	wires.turn = goes_on && queue->endless;
+	wires.repeats = goes_on && queue->endless;
 	wires.take = wires.prepare || (goes_on && !queue->endless && queue->next_valid);
 	return wires;
 }
@@ -106,13 +106,13 @@ void passo_channel_clock(struct passo_channel *channel, const struct passo_chann
 
 	for (unsigned i = 0; i < channel->axes; i++)
 		axes_quiet = axes_quiet && channel->axis[i].quiet;
-	/* a line that is loaded in the clock of a stop turns DIR up to 4 clocks later */
+	/* a line loaded in the clock of a stop changes DIR up to 4 clocks later */
 	channel->at_rest = !wires.occupied && channel->occupied_before == 0u && axes_quiet;
 	channel->occupied_before =
 	    (uint8_t)(((uint32_t)channel->occupied_before << 1 | (wires.occupied ? 1u : 0u)) & 7u);
 	passo_admission_clock(&channel->admission, bus, &needs);
 
-	/* from the pins back to the queues: each module still sees the old state of those that feed it */
+	/* from the pins back to the queues, so that each module sees the old state of those that feed it */
 	passo_positions_clock(&channel->positions, channel->axis, registers.command_zero, inputs->snapshot);
 	for (unsigned i = 0; i < channel->axes; i++) {
 		const struct passo_axis_wires axis_wires = {

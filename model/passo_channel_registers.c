@@ -7,12 +7,12 @@
 static const uint32_t VELOCITY_MAX = 0x80000000u; /* UQ0.32 */
 static const uint32_t DRAIN_VELOCITY_LOW = 0xFFu;
 
-/* What a register answers: to a check, to a read. */
+/* Response of a register to a check and to a read. */
 struct answer {
 	bool known;
 	uint8_t check, read;
 	uint32_t value;
-	bool late; /* the value is passo_channel_registers_value() in the clock of the answer */
+	bool late; /* the value is passo_channel_registers_value(), sampled in the clock of the response */
 };
 
 static struct answer write_only(uint8_t check)
@@ -37,7 +37,7 @@ static uint8_t value_check(bool bad)
 	return bad ? PASSO_VERDICT_BAD_VALUE : PASSO_VERDICT_OK;
 }
 
-/* The bits of a command that count. */
+/* The effective bits of a command. */
 static uint32_t command_of(uint32_t data)
 {
 	const uint32_t stop = 1u << PASSO_CHANNEL_COMMAND_STOP_LSB;
@@ -193,7 +193,7 @@ void passo_channel_registers_clock(
 	const uint32_t data = bus->data;
 	const uint32_t command = command_of(data);
 
-	/* the path takes the upper bits a clock after the lower ones */
+	/* the upper bits are written one clock after the lower ones */
 	if (registers->drain_velocity_written)
 		registers->drain_velocity =
 		    (data & ~DRAIN_VELOCITY_LOW) | (registers->drain_velocity & DRAIN_VELOCITY_LOW);

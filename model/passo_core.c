@@ -51,7 +51,7 @@ bool passo_core_reset(struct passo_core *core, const struct passo_parameters *pa
 	return true;
 }
 
-/* At most one of the registers, the tables and the channels is meant; the others answer 0. */
+/* Registers, tables or one channel respond; unselected targets drive 0. */
 static struct passo_response respond(const struct passo_core *core, const struct passo_channel_inputs *inputs)
 {
 	const struct passo_bus *bus = &core->link.bus;
@@ -62,7 +62,7 @@ static struct passo_response respond(const struct passo_core *core, const struct
 	return passo_registers_respond(core);
 }
 
-/* The answer to the strobe before this clock. */
+/* The response to the strobe of the previous clock. */
 static struct passo_response late_answer(const struct passo_core *core)
 {
 	struct passo_response response = core->response;
@@ -137,7 +137,7 @@ static void clock_all(struct passo_core *core, const struct passo_inputs *inputs
 	core->inputs = *inputs;
 }
 
-/* A reset in the clock that has just been made: what it does not touch is the SPI slave, the tables, and
+/* Synchronous reset in the clock just simulated. It does not affect the SPI slave, the tables, and the
  * settings and pins of the axes. */
 static void restart(struct passo_core *core, const struct passo_core *before)
 {

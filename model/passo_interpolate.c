@@ -3,7 +3,7 @@
  */
 #include "passo_model.h"
 
-/* The RTL runs over the bits of a and b; here the product comes in two parts, without 128 bits. */
+/* The RTL is bit-serial over a and b; here the product is computed in two halves to avoid 128 bits. */
 uint64_t passo_interpolate(uint64_t a, uint64_t b, uint32_t f)
 {
 	const uint32_t not_f = (1u << 24) - f;

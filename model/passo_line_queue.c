@@ -78,7 +78,7 @@ static void clock_writing(struct passo_line_queue *queue, const struct passo_par
 	}
 }
 
-/* Block RAM: the words at the addresses before the edge, and before the edge's write. */
+/* Synchronous read of the block RAM: addresses and contents before the edge. */
 static void read_memory(struct passo_line_queue *queue, const struct passo_parameters *parameters, bool take)
 {
 	const struct passo_line *next = &queue->lines[queue->next_line & (depth(parameters) - 1u)];

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Link: words to frames to bus accesses, and the replies. See rtl/passo_link.v, rtl/passo_payload.v and
- * rtl/passo_reply.v. The 32 shifts of a word are made at once, in the last of their clocks. The
- * counters of refusals are in passo_registers.c.
+ * rtl/passo_reply.v. The 32 shifts of a word are done at once, in the last of their clocks. The refusal
+ * counters are in passo_registers.c.
  */
 #include "passo_crc.h"
 #include "passo_model.h"
@@ -13,8 +13,8 @@ enum {
 	COUNT_STROBE = 28,
 	COUNT_ANSWER = 30,
 	COUNT_LOADED = 31,
-	COUNT_TURN = 32,
-	COUNT_TURNED = 63,
+	COUNT_ROTATE = 32,
+	COUNT_ROTATED = 63,
 	COUNT_ACT = 65,
 	COUNT_REST = 67
 };
@@ -65,8 +65,8 @@ static uint32_t loaded(const struct passo_link *link)
 	return (uint32_t)word[0] << 16 | word[1];
 }
 
-/* The word on the bus, the CRC and the reply have turned. */
-static void turned(struct passo_link *link)
+/* The 32 clocks of a bus word, CRC or reply word have passed: apply their result. */
+static void rotated(struct passo_link *link)
 {
 	switch (link->step) {
 	case PASSO_LINK_HEADER:
@@ -157,7 +157,7 @@ static void end_acknowledge(struct passo_link *link)
 	begin_pass(link);
 }
 
-/* What the clock does in each step. */
+/* Behaviour of each step. */
 static void do_step(struct passo_link *link, const struct passo_link_wires *wires,
     const struct passo_link *was, bool word_valid, bool frame_goes_on)
 {
@@ -190,7 +190,7 @@ static void do_step(struct passo_link *link, const struct passo_link_wires *wire
 			end_acknowledge(link);
 		break;
 	case PASSO_LINK_REPLAY:
-		/* a word is there when the next one begins to be loaded */
+		/* a word is complete when loading of the next one starts */
 		link->bus.write = was->count == COUNT_LOAD && was->index != 0u;
 		if (was->count == COUNT_LOADED - 1) {
 			link->index++;
@@ -215,7 +215,7 @@ static void do_step(struct passo_link *link, const struct passo_link_wires *wire
 			link->bus.address = (was->bus.address + 1u) & 0xFFFu;
 		}
 		if (word_valid) {
-			link->count = was->all_words ? COUNT_TURN : COUNT_READ;
+			link->count = was->all_words ? COUNT_ROTATE : COUNT_READ;
 			if (was->all_words)
 				link->step = PASSO_LINK_SUM;
 		}
@@ -235,7 +235,7 @@ static void do_step(struct passo_link *link, const struct passo_link_wires *wire
 
 void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wires)
 {
-	/* all but the buffer */
+	/* without the buffer */
 	const struct passo_link was = {
 	    .step = link->step,
 	    .count = link->count,
@@ -255,8 +255,8 @@ void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wi
 
 	if (was.count == COUNT_LOADED - 1)
 		link->bus.data = loaded(link);
-	if (was.count == COUNT_TURNED)
-		turned(link);
+	if (was.count == COUNT_ROTATED)
+		rotated(link);
 	if (wires->spi.half_valid)
 		store(link, wires);
 	if (was.count != COUNT_REST)

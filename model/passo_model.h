@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * State of the model, one struct and one source file per RTL module, with the names of the RTL.
+ * Internal state of the model: one struct and one source file per RTL module, with the names of the RTL.
  *
- * All modules change on the same edge. So whoever owns several modules first gathers the wires between them
- * from the state before the edge, then clocks each module with these wires, in any order.
+ * All modules change on the same edge. A parent therefore first gathers the wires between its modules from
+ * the state before the edge and then clocks each module with these wires, in any order.
  */
 #ifndef PASSO_MODEL_H
 #define PASSO_MODEL_H
@@ -22,7 +22,7 @@ struct passo_parameters {
 	uint8_t tick_log2;       /* TICK_LOG2, 7 .. 16 */
 	uint8_t line_queue_log2; /* LINE_QUEUE_LOG2, 2 .. 8 */
 	uint8_t ramp_queue_log2; /* RAMP_QUEUE_LOG2, 2 .. 8 */
-	/* STEP_RESET, DIR_RESET, ENABLE_RESET: a bit per pin, channel * AXES + axis */
+	/* STEP_RESET, DIR_RESET, ENABLE_RESET: initial pin levels, bit channel * AXES + axis */
 	uint64_t step_reset, dir_reset, enable_reset;
 };
 
@@ -49,7 +49,7 @@ struct passo_spi_wires {
 struct passo_spi_wires passo_spi_wires(const struct passo_spi *spi);
 void passo_spi_reset(struct passo_spi *spi);
 
-/* SCLK edges since the last clock, then the edge of clk. */
+/* The SCLK edge since the last clock, then the edge of clk. */
 void passo_spi_clock(
     struct passo_spi *spi, bool sclk_was, bool sclk, bool mosi, bool cs_n, uint32_t reply_word);
 
@@ -63,8 +63,8 @@ struct passo_response {
 	bool claim;
 	uint8_t refusal;
 	uint32_t read_data;
-	bool late;        /* the register shows its value in the clock of the answer, */
-	uint16_t address; /* and this is its address */
+	bool late;        /* the value is sampled in the clock of the response ... */
+	uint16_t address; /* ... from this register */
 };
 
 enum passo_link_step {
@@ -79,7 +79,7 @@ enum passo_link_step {
 	PASSO_LINK_COUNT
 };
 
-/* Places of the payload buffer behind the payload. */
+/* Entries of the payload buffer after the payload. */
 #define PASSO_BUFFER_HEADER 64u
 #define PASSO_BUFFER_OTHER 65u
 #define PASSO_BUFFER_WORDS 66u
@@ -90,18 +90,18 @@ struct passo_link {
 	bool is_read;
 	uint8_t length;
 	uint8_t index;
-	bool all_words; /* index was length in the clock before */
+	bool all_words; /* index was length in the previous clock */
 	bool frame_waits;
 	bool sequence_known;
 	uint8_t last_sequence;
 	uint8_t verdict;
-	bool answer_due;  /* comes in this clock */
-	bool answer_came; /* stands in `answer` */
-	uint8_t answer;   /* of the clock before */
+	bool answer_due;  /* the response comes in this clock */
+	bool answer_came; /* `answer` holds it */
+	uint8_t answer;   /* of the previous clock */
 	bool crc_wrong;
 	uint32_t crc;
 	uint16_t buffer[PASSO_BUFFER_WORDS][2]; /* upper half first */
-	uint32_t status;                        /* of the clock before */
+	uint32_t status;                        /* of the previous clock */
 	uint32_t reply_word;
 	bool refused;
 	struct passo_bus bus;
@@ -119,14 +119,14 @@ struct passo_link_wires {
 
 void passo_link_reset(struct passo_link *link);
 void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wires);
-/* Nothing changes in the link until the next half word or chip select edge. */
+/* Whether nothing changes in the link until the next half word or chip select edge. */
 bool passo_link_quiet(const struct passo_link *link);
 
 struct passo_registers {
 	uint8_t run;
 	uint8_t wait_sync;
 	uint8_t status_channel;
-	uint8_t refusals[8]; /* BAD_CRC first */
+	uint8_t refusals[8]; /* counters, BAD_CRC first */
 };
 
 /* ---- tables ---- */
@@ -134,17 +134,17 @@ struct passo_registers {
 struct passo_tables {
 	uint16_t points[PASSO_BANKS][PASSO_BANK_POINTS];
 	uint8_t slot; /* 2 * channel + second */
-	bool wanted;  /* the frame writes points */
+	bool wanted;  /* the current frame writes points */
 };
 
 /* ---- admission ---- */
 
-/* What the frame on the bus needs of a channel. */
+/* State of the channel that the frame on the bus requires. */
 struct passo_admission {
 	bool idle_needed, quiet_needed, motion_needed;
 };
 
-/* What a word that is checked needs. */
+/* State of the channel that a checked word requires. */
 struct passo_needs {
 	bool idle, quiet, motion;
 };
@@ -153,10 +153,10 @@ struct passo_needs {
 
 struct passo_line_queue {
 	uint8_t index;
-	uint16_t write_line, next_line; /* one bit more than the address */
-	uint16_t write_end;             /* write_line when the frame will have been written */
+	uint16_t write_line, next_line; /* one bit wider than the address */
+	uint16_t write_end;             /* write_line after the current frame */
 	uint16_t current_line;
-	bool has_place; /* a line is the current one */
+	bool has_place; /* the current line occupies an entry */
 	uint16_t checked;
 	uint32_t checked_substeps;
 	uint16_t room;
@@ -184,9 +184,9 @@ struct passo_ramp_queue {
 
 struct passo_timescale {
 	uint32_t rate, goal, slew; /* UQ1.16 */
-	uint8_t after;             /* clocks since the slew tick, until the rate has changed */
+	uint8_t after;             /* clocks since the slew tick, until the rate changes; else 0 */
 	bool down;
-	bool stops; /* the slew tick found a stop */
+	bool stops; /* a stop was in progress at the slew tick */
 	bool still;
 	uint32_t rate_sum;
 	bool enable;
@@ -203,13 +203,13 @@ enum passo_ramp_step {
 
 struct passo_ramp_unit {
 	enum passo_ramp_step step;
-	uint32_t wait; /* clocks until the step is done */
+	uint32_t wait; /* clocks until the step is complete */
 	bool take_now;
 	bool loaded, last, mirror;
 	enum passo_shape shape;
 	uint64_t v_start;
 	uint64_t v_end, progress_step; /* the RTL reads them from the queue */
-	uint32_t ticks;                /* still to be made */
+	uint32_t ticks;                /* remaining */
 	uint64_t progress;             /* u, UQ0.49 */
 	uint32_t tick_count;
 	bool ready, unready, ends_next, dry;
@@ -228,7 +228,7 @@ struct passo_line_unit {
 	uint32_t substep_number;
 	bool on_last;
 	uint8_t directions;
-	bool slot_add, slot_load, slot_step, slot_load_q;
+	bool add_n, load_start, decide_step, load_start_q;
 };
 
 struct passo_dda {
@@ -236,7 +236,7 @@ struct passo_dda {
 	int64_t addend;
 };
 
-/* READY and HOLD: idle; PULSE: high or low. */
+/* READY and HOLD: idle; PULSE: STEP is active or in its low time. */
 enum passo_axis_state { PASSO_AXIS_READY, PASSO_AXIS_PULSE, PASSO_AXIS_HOLD, PASSO_AXIS_SETUP };
 
 struct passo_axis_settings {
@@ -248,12 +248,12 @@ struct passo_axis {
 	struct passo_axis_settings settings;
 	enum passo_axis_state state;
 	uint16_t timer;
-	uint8_t waiting, waits; /* one bit for each place */
+	uint8_t waiting, waits; /* queue: direction, and occupied; one bit per entry */
 	bool step, dir;
-	bool timing_changed; /* times were written in the clock before */
-	bool settle;         /* polarities and mode were */
-	bool unsettled;      /* since then DIR has had no set-up time */
-	bool quiet;          /* of the clock before */
+	bool timing_changed; /* the timing was written in the previous clock */
+	bool settle;         /* PINS was written in the previous clock */
+	bool unsettled;      /* no DIR setup time has elapsed since */
+	bool quiet;          /* of the previous clock */
 	bool step_made;
 	bool overrun;
 	uint32_t position;
@@ -262,7 +262,7 @@ struct passo_axis {
 };
 
 struct passo_positions {
-	uint8_t slot; /* clock of the round */
+	uint8_t slot; /* clock within the round */
 	bool clear_waits, snapshot_waits;
 	uint32_t copies[PASSO_AXES_MAX];
 };
@@ -281,14 +281,14 @@ struct passo_motion {
 	bool stop_due;
 	enum passo_cause cause_due;
 	bool rate_was_zero;
-	uint8_t aborted; /* one and two clocks ago */
+	uint8_t aborted; /* bits 0 and 1: one and two clocks ago */
 	bool running;
 };
 
 struct passo_channel_registers {
 	uint32_t rate_target, rate_slew, stop_slew; /* UQ1.16 */
 	uint32_t drain_velocity;                    /* UQ0.32 */
-	bool drain_velocity_written;                /* its lower 8 bits, in the clock before */
+	bool drain_velocity_written;                /* its lower 8 bits, in the previous clock */
 	bool command_stop, command_abort, command_clear, command_zero;
 };
 
@@ -307,13 +307,13 @@ struct passo_channel {
 	struct passo_dda dda[PASSO_AXES_MAX];
 	struct passo_axis axis[PASSO_AXES_MAX];
 	struct passo_positions positions;
-	uint8_t occupied_before;  /* in the three clocks before */
-	bool at_rest;             /* no motion, and no step on its way to the axes */
-	bool writes_axis;         /* the bus strobe came a clock ago */
-	uint8_t written_register; /* within the blocks of the axes */
+	uint8_t occupied_before;  /* in the previous three clocks */
+	bool at_rest;             /* no motion, and no step in flight to the axes */
+	bool writes_axis;         /* bus write strobe for the axes, one clock late */
+	uint8_t written_register; /* its address within the axis blocks */
 };
 
-/* What the core gives to a channel. */
+/* Signals from the core to a channel. */
 struct passo_channel_inputs {
 	const struct passo_parameters *parameters;
 	const struct passo_tables *tables;
@@ -329,10 +329,10 @@ struct passo_channel_wires {
 	bool line_push, ramp_push;
 	bool occupied, moving, counting, drain;
 	bool ramp_valid;
-	bool hold, now_coming; /* of the admission */
+	bool hold, now_coming; /* from the admission */
 	bool startable, prepare, begins_next, begin_profile;
 	bool advance, tick, next, ramp_ended;
-	bool substep_taken, line_done, take, turn;
+	bool substep_taken, line_done, take, repeats;
 	bool overrun;
 	bool finished;
 	bool stop_now, stopped;
@@ -351,9 +351,9 @@ void passo_ramp_queue_clock(struct passo_ramp_queue *queue, const struct passo_p
     const struct passo_bus *bus, const struct passo_channel_wires *wires, bool take, bool take_now);
 uint8_t passo_ramp_queue_refusal(
     const struct passo_ramp_queue *queue, const struct passo_bus *bus, bool blocked);
-/* The word that is checked is the control of a NOW ramp. */
+/* Whether the checked word is the control word of a NOW ramp. */
 bool passo_ramp_queue_checks_now(const struct passo_ramp_queue *queue, uint32_t data);
-/* The oldest ramp. */
+/* The oldest ramp in the queue. */
 struct passo_ramp passo_ramp_queue_front(
     const struct passo_ramp_queue *queue, const struct passo_parameters *parameters);
 
@@ -364,7 +364,7 @@ void passo_timescale_clock(struct passo_timescale *timescale, const struct passo
 uint64_t passo_interpolate(uint64_t a, uint64_t b, uint32_t f);
 /* s as UQ1.24 for progress u as UQ0.49. */
 uint32_t passo_shape(const struct passo_tables *tables, enum passo_shape shape, uint64_t progress);
-/* Makes the velocity of one tick of the present ramp: velocity_next. */
+/* Computes velocity_next, the velocity of the next tick of the present ramp. */
 void passo_ramp_make_velocity(struct passo_ramp_unit *ramp, const struct passo_tables *tables);
 void passo_ramp_clock(struct passo_ramp_unit *ramp, const struct passo_channel *channel,
     const struct passo_channel_inputs *inputs, const struct passo_channel_wires *wires, bool *take,
@@ -373,7 +373,7 @@ void passo_ramp_clock(struct passo_ramp_unit *ramp, const struct passo_channel *
 void passo_path_clock(struct passo_path *path, const struct passo_ramp_unit *ramp,
     const struct passo_channel_wires *wires, uint32_t drain_velocity);
 
-int64_t passo_line_broadcast(const struct passo_line_unit *line, uint32_t last_substep);
+int64_t passo_line_addend(const struct passo_line_unit *line, uint32_t last_substep);
 void passo_line_clock(struct passo_line_unit *line, const struct passo_line_queue *queue,
     const struct passo_channel_wires *wires);
 
@@ -384,22 +384,22 @@ void passo_dda_clock(struct passo_dda *dda, const struct passo_line_unit *line,
 struct passo_axis_wires {
 	bool step_request, direction;
 	bool drop, zero, clear, timing_written, pins_written;
-	bool both_edges_next; /* with pins_written: the mode that is written */
+	bool both_edges_next; /* with pins_written: the value written */
 };
 
-/* At configuration: the levels of the three pins. */
+/* State after configuration, with the levels of the three pins. */
 void passo_axis_reset(struct passo_axis *axis, bool step, bool dir, bool enable);
-/* A reset in the clock that has just been made, before which the axis was as `before`. */
+/* Synchronous reset in the clock just simulated; `before` is the state before that clock. */
 void passo_axis_restart(struct passo_axis *axis, const struct passo_axis *before);
 void passo_axis_clock(struct passo_axis *axis, const struct passo_axis_wires *wires);
-/* Nothing but the timer moves for so many clocks; 0 if the next clock may change something. */
+/* Clocks for which only the timer changes; 0 if the next clock may change something else. */
 uint32_t passo_axis_quiet(const struct passo_axis *axis, bool line_direction);
 void passo_axis_skip(struct passo_axis *axis, uint64_t clocks);
 
 void passo_positions_reset(struct passo_positions *positions);
 void passo_positions_clock(
     struct passo_positions *positions, const struct passo_axis *axes, bool zero, bool snapshot);
-/* Some clocks without `zero` and `snapshot`, while no snapshot waits. */
+/* Skips clocks without `zero` and `snapshot`; no snapshot may be pending. */
 void passo_positions_skip(struct passo_positions *positions, uint64_t clocks);
 
 void passo_motion_wires(const struct passo_channel *channel, const struct passo_channel_inputs *inputs,
@@ -407,12 +407,12 @@ void passo_motion_wires(const struct passo_channel *channel, const struct passo_
 void passo_motion_clock(struct passo_motion *motion, const struct passo_channel *channel,
     const struct passo_channel_wires *wires);
 
-/* What the strobe on the bus needs of the channel. */
+/* State of the channel that the bus strobe requires. */
 struct passo_needs passo_channel_needs(const struct passo_channel *channel, const struct passo_bus *bus);
-/* Answer of a channel to the strobe on the bus. */
+/* Response of a channel to the bus strobe. */
 struct passo_response passo_channel_respond(
     const struct passo_channel *channel, const struct passo_channel_inputs *inputs);
-/* What stands in a read-only register of the channel itself. */
+/* Value of a read-only register of the channel. */
 uint32_t passo_channel_registers_value(const struct passo_channel *channel, uint8_t address);
 void passo_channel_registers_reset(struct passo_channel_registers *registers);
 void passo_channel_registers_clock(
@@ -421,14 +421,14 @@ void passo_axis_settings_write(struct passo_axis_settings *settings, uint8_t add
 
 void passo_channel_reset(
     struct passo_channel *channel, const struct passo_parameters *parameters, uint8_t number);
-/* A reset in the clock that has just been made, before which the channel was as `before`. */
+/* Synchronous reset in the clock just simulated; `before` is the state before that clock. */
 void passo_channel_restart(struct passo_channel *channel, const struct passo_channel *before,
     const struct passo_parameters *parameters);
 void passo_channel_clock(struct passo_channel *channel, const struct passo_channel_inputs *inputs);
 bool passo_channel_stopped(const struct passo_channel *channel);
 bool passo_channel_occupied(const struct passo_channel *channel);
 bool passo_channel_quiet(const struct passo_channel *channel);
-/* The state does not allow the frame on the bus. */
+/* Whether the state of the channel does not allow the frame on the bus. */
 bool passo_channel_busy(const struct passo_channel *channel);
 bool passo_channel_incomplete(const struct passo_channel *channel);
 

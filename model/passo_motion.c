@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Motion: when a channel starts, ends and stops, and why. See rtl/passo_motion.v.
+ * Motion: start, end, stops and faults of a channel. See rtl/passo_motion.v.
  */
 #include "passo_model.h"
 

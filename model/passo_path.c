@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
- * Path: sums the velocity; each carry is a substep. See rtl/passo_path.v.
+ * Path: accumulates the velocity; each carry is a substep. See rtl/passo_path.v.
  */
 #include "passo_model.h"
 
 static const uint32_t QUARTER = 0x400000u;
-static const uint32_t HALF_MASK = 0xFFFFFFu; /* phase and velocity are kept in two halves of 24 bits */
+static const uint32_t HALF_MASK = 0xFFFFFFu; /* phase and velocity are stored in two 24-bit halves */
 
 static void add(struct passo_path *path, bool advance)
 {

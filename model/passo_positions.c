@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Positions of the axes of a channel: when they are copied for the host. See rtl/passo_positions.v.
+ * Snapshot of the positions of a channel for the host. See rtl/passo_positions.v.
  *
- * Each axis of the model has its whole position, so nothing has to catch up here.
+ * In the model each axis has its full position, so only the time of the snapshot matters here.
  */
 #include "passo_model.h"
 

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT
  * Ramp: velocity over time. See rtl/passo_ramp.v and rtl/passo_ramp_numbers.v.
- *
- * Each step takes the same clocks as in the RTL but happens at once, in the last of them.
+ * Each step takes as many clocks as in the RTL; its effect takes place in the last of them.
  */
 #include "passo_model.h"
 
 enum { COPY_CLOCKS = 24, FETCH_CLOCKS = 8, FETCH_NO_TICKS_CLOCKS = 7, TAKE_CLOCKS = 5, STEP_CLOCKS = 8 };
 
-/* ramp_take comes in this clock of TAKE, counted from the last one. */
+/* ramp_take is asserted in this clock of TAKE, counted from the last one. */
 enum { TAKE_WAIT = 2 };
 
 static const uint64_t PROGRESS_MASK = (UINT64_C(1) << 49) - 1u;
@@ -21,7 +20,7 @@ static void begin_step(struct passo_ramp_unit *ramp, enum passo_ramp_step step, 
 static uint32_t work_clocks(const struct passo_ramp_unit *ramp, const struct passo_tables *tables,
     const struct passo_parameters *parameters, uint8_t channel)
 {
-	const uint32_t served = 3; /* from the channel's turn at the tables */
+	const uint32_t served = 3; /* from the channel's slot at the tables */
 	const uint32_t shape = 19;
 	const uint32_t scale = 50;
 
@@ -81,7 +80,7 @@ static void choose(struct passo_ramp_unit *ramp, const struct passo_channel *cha
 	}
 }
 
-/* The step is over: what it was for, and the next one. */
+/* Applies the effect of a completed step and chooses the next one. */
 static void finish_step(struct passo_ramp_unit *ramp, const struct passo_channel *channel,
     const struct passo_channel_inputs *inputs)
 {

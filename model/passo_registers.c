@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Registers of the core and the shape tables' place on the bus. See rtl/passo_registers.v and
+ * Registers of the core, and the bus interface of the shape tables. See rtl/passo_registers.v and
  * rtl/passo_tables.v.
  */
 #include "passo_core.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * SPI slave: bits to half words and back. See rtl/passo_spi.v.
+ * SPI slave: converts between bits and half words. See rtl/passo_spi.v.
  */
 #include "passo_model.h"
 

@@ -26,7 +26,7 @@ void passo_timescale_clock(struct passo_timescale *timescale, const struct passo
 		const uint32_t slew = timescale->stops ? registers->stop_slew : registers->rate_slew;
 		timescale->slew = slew == 0u ? 1u : slew;
 	}
-	/* a change that began before the stop is dropped */
+	/* a change that started before the stop is dropped */
 	if (timescale->after == AFTER_LAST && (timescale->stops || !stopping))
 		timescale->rate = moved(timescale->rate, goal, timescale->slew, timescale->down);
 	if (slew_tick) {

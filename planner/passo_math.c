@@ -15,7 +15,7 @@ static uint64_t low_half(uint64_t a)
 	return a & UINT32_MAX;
 }
 
-/* Zero bits above the highest one bit: 0 .. 31 for a > 0. */
+/* 0 .. 31 for a > 0. */
 static uint32_t leading_zeros32(uint32_t a)
 {
 	uint32_t zeros = 0;
@@ -73,9 +73,9 @@ struct passo_u128 passo_multiply(uint64_t a, uint64_t b)
 	};
 }
 
-/* One digit, base 2^16, of a long division: divides rest * 2^16 + next by a divisor whose highest bit is set,
- * where rest < divisor. The estimate from the divisor's upper half is at most 2 too large (Knuth,
- * TAOCP 4.3.1, D3). A 32-bit processor has instructions for all of it. */
+/* One digit of a long division in base 2^16: divides rest * 2^16 + next by a normalized divisor, with rest <
+ * divisor. The estimate from the divisor's upper half is at most 2 too large (Knuth, TAOCP 4.3.1, step D3).
+ * Uses 32-bit operations only. */
 static uint32_t quotient_half_digit(uint32_t *rest, uint32_t next, uint32_t divisor)
 {
 	uint32_t upper = divisor >> 16, lower = divisor & UINT16_MAX;
@@ -85,11 +85,11 @@ static uint32_t quotient_half_digit(uint32_t *rest, uint32_t next, uint32_t divi
 		digit--;
 		left += upper;
 	}
-	*rest = (*rest << 16 | next) - digit * divisor; /* below the divisor, so right modulo 2^32 */
+	*rest = (*rest << 16 | next) - digit * divisor; /* below the divisor, so exact modulo 2^32 */
 	return digit;
 }
 
-/* The same in base 2^32; its estimate is a division of the rest by the divisor's upper half. */
+/* The same in base 2^32. The estimate divides the remainder by the divisor's upper half. */
 static uint64_t quotient_digit(uint64_t *rest, uint32_t next, uint64_t divisor)
 {
 	if (*rest <= UINT32_MAX && (*rest << 32 | next) < divisor) {
@@ -98,7 +98,7 @@ static uint64_t quotient_digit(uint64_t *rest, uint32_t next, uint64_t divisor)
 	}
 	uint32_t upper = (uint32_t)high_half(divisor), lower = (uint32_t)divisor;
 	uint32_t left32 = (uint32_t)high_half(*rest);
-	uint64_t beyond = left32 >= upper; /* then the rest's upper half is the divisor's */
+	uint64_t beyond = left32 >= upper; /* then the upper halves are equal */
 	left32 -= beyond ? upper : 0;
 	uint64_t digit = (uint64_t)quotient_half_digit(&left32, (uint32_t)*rest >> 16, upper) << 16;
 	digit += quotient_half_digit(&left32, (uint32_t)*rest & UINT16_MAX, upper);
@@ -108,7 +108,7 @@ static uint64_t quotient_digit(uint64_t *rest, uint32_t next, uint64_t divisor)
 		digit--;
 		left += upper;
 	}
-	*rest = (*rest << 32 | next) - digit * divisor; /* below the divisor, so right modulo 2^64 */
+	*rest = (*rest << 32 | next) - digit * divisor; /* below the divisor, so exact modulo 2^64 */
 	return digit;
 }
 
@@ -165,8 +165,8 @@ static uint32_t isqrt32(uint32_t a)
 	return root;
 }
 
-/* The upper half of the root from the upper half of a, the lower half by one division: with a's highest or
- * second highest bit set the result is at most 1 too large (Zimmermann, "Karatsuba Square Root"). */
+/* The upper half of the root comes from the upper half of a, the lower half from one division. With one of
+ * the two highest bits of a set, the result is at most 1 too large (Zimmermann, "Karatsuba Square Root"). */
 uint32_t passo_isqrt64(uint64_t a)
 {
 	if (high_half(a) == 0)

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
  * Generated from schema/moves.toml by tools/generate_moves.py.
  *
- * What a move is asked for with: profiles, and a struct for each form.
+ * Parameters of moves: the profiles, and a struct for each form.
  */
 #ifndef PASSO_MOVES_H
 #define PASSO_MOVES_H
 
 #include "passo_command.h"
 
-/* Each profile with its shape and its name. */
+/* X macro of the profiles: EACH(NAME, shape of the core, name). */
 #define PASSO_PROFILES(EACH) \
 	EACH(LINEAR, PASSO_SHAPE_LINEAR, "linear") \
 	EACH(COSINE, PASSO_SHAPE_COSINE, "cosine") \
@@ -26,11 +26,11 @@ enum passo_profile {
 #define PASSO_PROFILES_WORDS "linear, cosine, sigmoid or jerk"
 #define PASSO_PROFILES_CHOICE "linear|cosine|sigmoid|jerk"
 
-/* The user's own shape: what stands in the place of a profile, where its table goes. */
+/* User-defined shape: the name that replaces a profile, and the bank of its table. */
 #define PASSO_USER_PROFILE "user"
 #define PASSO_USER_BANK    PASSO_SHAPE_SIGMOID
 
-/* Each form. */
+/* X macros: EACH(name, NAME) for each form ... */
 #define PASSO_MOVES(EACH) \
 	EACH(in_time, IN_TIME) \
 	EACH(by_speed, BY_SPEED) \
@@ -42,7 +42,7 @@ enum passo_profile {
 	EACH(jerk, JERK) \
 	EACH(straight, STRAIGHT)
 
-/* Those whose steps are in their field `steps`. */
+/* ... for those with a member `steps` ... */
 #define PASSO_MOVES_BY_STEPS(EACH) \
 	EACH(in_time, IN_TIME) \
 	EACH(by_speed, BY_SPEED) \
@@ -52,105 +52,104 @@ enum passo_profile {
 	EACH(sigmoid, SIGMOID) \
 	EACH(jerk, JERK)
 
-/* Those that can follow a shape of the user's own. */
+/* ... and for those that accept a user-defined shape. */
 #define PASSO_MOVES_BY_SHAPE(EACH) \
 	EACH(in_time, IN_TIME) \
 	EACH(by_speed, BY_SPEED)
 
 /* A move in a given total time, from rest to rest. f_max = n / (total - ramp), both rounded to ticks. */
 struct passo_move_in_time {
-	int32_t            steps[PASSO_AXES_MAX]; /* of each axis, with the direction as sign */
+	int32_t            steps[PASSO_AXES_MAX]; /* per axis; the sign is the direction */
 	enum passo_profile profile;               /* shape of the ramps */
 	uint64_t           total_clocks;          /* clocks: from start to end */
-	uint64_t           ramp_clocks;           /* clocks: speeding up, and again slowing down; 0 to half of the total time */
+	uint64_t           ramp_clocks;           /* clocks: of each of the two ramps; 0 to half of the total time */
 };
 
-/* A move by speeds of the longest axis. Start and stop speed are what the drive can jump to from rest, and
- * from to rest; a move too short for them jumps to less. Phases are rounded up to ticks, so no limit is
- * ever exceeded. */
+/* A move by speeds of the longest axis. Start and stop speed are what the drive can start at and stop from;
+ * a move too short for them uses less. Phases are rounded up to ticks, so no limit is ever exceeded. */
 struct passo_move_by_speed {
-	int32_t            steps[PASSO_AXES_MAX]; /* of each axis, with the direction as sign */
+	int32_t            steps[PASSO_AXES_MAX]; /* per axis; the sign is the direction */
 	enum passo_profile profile;               /* shape of the ramps */
-	uint64_t           start_speed;           /* UQ32.32 steps/s: jumped to from rest, 0 .. speed */
+	uint64_t           start_speed;           /* UQ32.32 steps/s: the move starts at this speed, 0 .. speed */
 	uint64_t           speed;                 /* UQ32.32 steps/s: never exceeded; not reached when the move is too short */
-	uint64_t           stop_speed;            /* UQ32.32 steps/s: jumped from to rest, 0 .. speed */
+	uint64_t           stop_speed;            /* UQ32.32 steps/s: the move stops from this speed, 0 .. speed */
 	uint64_t           acceleration;          /* UQ32.32 steps/s^2: mean of the ramp; never exceeded */
-	uint64_t           deceleration;          /* UQ32.32 steps/s^2: the same of slowing down; 0 in C: as acceleration */
+	uint64_t           deceleration;          /* UQ32.32 steps/s^2: mean of the ramp down; never exceeded; 0 in C: as acceleration */
 	uint64_t           ramp_clocks;           /* clocks: of each full ramp, instead of accelerations */
 };
 
 /* In a given time, never above a speed. Its ramps are the longest, so the gentlest, that allow it: total -
  * n / speed each, at most half the total time (then the speed is not reached). */
 struct passo_move_below_speed {
-	int32_t            steps[PASSO_AXES_MAX]; /* of each axis, with the direction as sign */
+	int32_t            steps[PASSO_AXES_MAX]; /* per axis; the sign is the direction */
 	enum passo_profile profile;               /* shape of the ramps */
 	uint64_t           total_clocks;          /* clocks: from start to end */
 	uint64_t           speed;                 /* UQ32.32 steps/s: never exceeded */
 };
 
-/* With a given speed and ramp time. It takes n / speed + ramp, rounded up to ticks. The ramp time is at
- * most n / speed, half the total time. */
+/* With a given speed and ramp time. Takes n / speed + ramp, rounded up to ticks. The ramp time is at most n
+ * / speed, half the total time. */
 struct passo_move_at_speed {
-	int32_t            steps[PASSO_AXES_MAX]; /* of each axis, with the direction as sign */
+	int32_t            steps[PASSO_AXES_MAX]; /* per axis; the sign is the direction */
 	enum passo_profile profile;               /* shape of the ramps */
 	uint64_t           speed;                 /* UQ32.32 steps/s: between the ramps */
-	uint64_t           ramp_clocks;           /* clocks: speeding up, and again slowing down; 0 to steps / speed */
+	uint64_t           ramp_clocks;           /* clocks: of each of the two ramps; 0 to steps / speed */
 };
 
-/* Trapezoid on several axes, from and to the start speed. A triangle of the same acceleration when it is
- * too short. The axis with the most steps leads. */
+/* Trapezoid on several axes, from and to the start speed. A move too short for it is a triangle of the same
+ * acceleration. The axis with the most steps leads. */
 struct passo_move_axes {
-	int32_t  steps[PASSO_AXES_MAX]; /* of each axis, with the direction as sign */
-	uint64_t start_speed;           /* UQ32.32 steps/s: jumped to from rest, and from to rest */
+	int32_t  steps[PASSO_AXES_MAX]; /* per axis; the sign is the direction */
+	uint64_t start_speed;           /* UQ32.32 steps/s: the move starts at and stops from this speed */
 	uint64_t speed;                 /* UQ32.32 steps/s: never exceeded; not reached when the move is too short */
 	uint64_t ramp_clocks;           /* clocks: of each full ramp */
 };
 
-/* Trapezoid of one axis by angle and speed of turning. The sign of the angle is the direction. A turn is
- * full steps times microsteps. */
+/* Trapezoid on one axis by angle and rpm. The sign of the angle is the direction. Steps per turn are full
+ * steps times microsteps. */
 struct passo_move_turn {
-	uint8_t  axis;           /* that turns */
+	uint8_t  axis;           /* axis to rotate */
 	uint32_t steps_per_turn; /* full steps times microsteps */
 	int64_t  angle;          /* Q31.32 degrees: to the nearest step */
-	uint64_t rpm;            /* UQ32.32 rpm: speed; not reached when the turn is too short */
-	uint64_t minimum_rpm;    /* UQ32.32 rpm: jumped to from rest, and from to rest */
-	uint64_t acceleration;   /* UQ32.32 steps/s^2: never exceeded, neither speeding up nor slowing down */
+	uint64_t rpm;            /* UQ32.32 rpm: speed; not reached when the move is too short */
+	uint64_t minimum_rpm;    /* UQ32.32 rpm: the move starts at and stops from this speed */
+	uint64_t acceleration;   /* UQ32.32 steps/s^2: never exceeded, accelerating or decelerating */
 };
 
 /* Sigmoid S-curve by three frequencies and two ramp times. A move too short for full ramps keeps their mean
- * accelerations. plan.steps_to_stop is where slowing down begins. */
+ * accelerations. plan.steps_to_stop is where deceleration begins. */
 struct passo_move_sigmoid {
-	int32_t  steps[PASSO_AXES_MAX]; /* of each axis, with the direction as sign */
-	uint64_t start_speed;           /* UQ32.32 steps/s: jumped to from rest, 0 .. speed */
+	int32_t  steps[PASSO_AXES_MAX]; /* per axis; the sign is the direction */
+	uint64_t start_speed;           /* UQ32.32 steps/s: the move starts at this speed, 0 .. speed */
 	uint64_t speed;                 /* UQ32.32 steps/s: never exceeded; not reached when the move is too short */
-	uint64_t stop_speed;            /* UQ32.32 steps/s: jumped from to rest, 0 .. speed */
+	uint64_t stop_speed;            /* UQ32.32 steps/s: the move stops from this speed, 0 .. speed */
 	uint64_t accelerate_clocks;     /* clocks: of a full ramp up */
 	uint64_t decelerate_clocks;     /* clocks: of a full ramp down */
-	uint32_t alpha;                 /* 1/4096: how steep: the logistic function over -alpha .. alpha */
+	uint32_t alpha;                 /* 1/4096: steepness: the logistic function over -alpha .. alpha */
 };
 
-/* Jerk-limited in up to seven phases. The acceleration grows, stays and ceases, and so does the
- * deceleration; there are fewer phases when length, speed or acceleration do not suffice. */
+/* Jerk-limited in up to seven phases. The acceleration rises, stays constant and falls, and so does the
+ * deceleration; phases drop out where length, speed or acceleration do not reach them. */
 struct passo_move_jerk {
-	int32_t  steps[PASSO_AXES_MAX]; /* of each axis, with the direction as sign */
-	uint64_t start_speed;           /* UQ32.32 steps/s: jumped to from rest, 0 .. speed */
+	int32_t  steps[PASSO_AXES_MAX]; /* per axis; the sign is the direction */
+	uint64_t start_speed;           /* UQ32.32 steps/s: the move starts at this speed, 0 .. speed */
 	uint64_t speed;                 /* UQ32.32 steps/s: never exceeded; not reached when the move is too short */
-	uint64_t stop_speed;            /* UQ32.32 steps/s: jumped from to rest, 0 .. speed */
-	uint64_t acceleration;          /* UQ32.32 steps/s^2: never exceeded, neither speeding up nor slowing down */
+	uint64_t stop_speed;            /* UQ32.32 steps/s: the move stops from this speed, 0 .. speed */
+	uint64_t acceleration;          /* UQ32.32 steps/s^2: never exceeded, accelerating or decelerating */
 	uint64_t jerk;                  /* UQ32.32 steps/s^3: never exceeded */
 };
 
 struct passo_axis_limits {
-	uint64_t steps_per_mm; /* UQ32.32 steps/mm: scale of each axis */
-	uint64_t speed;        /* UQ32.32 mm/s: largest of each axis */
-	uint64_t acceleration; /* UQ32.32 mm/s^2: largest of each axis */
-	uint64_t jerk;         /* UQ32.32 mm/s^3: largest of each axis; 0 in C: without limit */
+	uint64_t steps_per_mm; /* UQ32.32 steps/mm: scale of the axis */
+	uint64_t speed;        /* UQ32.32 mm/s: limit of the axis */
+	uint64_t acceleration; /* UQ32.32 mm/s^2: limit of the axis */
+	uint64_t jerk;         /* UQ32.32 mm/s^3: limit of the axis; 0 in C: no limit */
 };
 
-/* Straight line through space, in millimetres or, where an axis turns, degrees. Each axis has limits of its
- * own: the path is as quick as the tightest of them allows. */
+/* Straight line through space, in millimetres or, for rotary axes, degrees. Each axis has its own limits;
+ * the tightest one sets the speed of the path. */
 struct passo_move_straight {
-	int64_t  distance[PASSO_AXES_MAX]; /* Q31.32 mm: of each axis, to the nearest step */
+	int64_t  distance[PASSO_AXES_MAX]; /* Q31.32 mm: per axis, to the nearest step */
 	uint64_t feed;                     /* UQ32.32 mm/s: along the path */
 	struct passo_axis_limits limits[PASSO_AXES_MAX];
 };

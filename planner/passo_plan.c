@@ -1,28 +1,28 @@
 /* SPDX-License-Identifier: MIT
  * The planner: from a move to one line and a few ramps.
  *
- * Every plan is made in the same order:
+ * Every plan is made in three stages:
  *
- *   1. phases        how many ticks the move speeds up, keeps its speed and slows down
- *   2. oversampling  how many substeps a step is worth: as many as the highest velocity allows
- *   3. peak          the one velocity at which exactly these ticks cover exactly these substeps
+ *   1. phases        ticks of acceleration, cruise and deceleration
+ *   2. oversampling  substeps per step: as many as the peak velocity allows
+ *   3. peak          the velocity at which exactly these ticks cover exactly these substeps
  *
- * Step 3 alone decides where the move ends, and it reckons with the numbers the core will use: ticks,
- * velocities and progress as they are after rounding. What comes before need only be on the safe side.
+ * Only stage 3 determines where the move ends. It uses the numbers of the core: ticks, velocities and
+ * progress after rounding. Stages 1 and 2 only have to be conservative.
  *
- * What remains between the distance under the ramps and M, in substeps, for moves of less than 2^44 clocks:
+ * Remaining difference between the area under the ramps and M, in substeps, for moves below 2^44 clocks:
  *
- *   peak to the nearest 2^-48                at most 2^44 / 2 * 2^-48 = 1/32
- *   velocities inside ramps down to 2^-48    at most 2^44     * 2^-48 = 1/16, as a rule half of that
- *   weights of ramps down to 2^-24           at most 2^-9, where a tick has 2^16 clocks
+ *   peak rounded to the nearest 2^-48             at most 2^44 / 2 * 2^-48 = 1/32
+ *   velocities in ramps rounded down to 2^-48     at most 2^44     * 2^-48 = 1/16, typically half of that
+ *   weights of ramps rounded down to 2^-24        at most 2^-9, with ticks of 2^16 clocks
  *
- * That is less than 0.1 after days and less than 0.001 after minutes. The core bears 1/4: a motion starts
- * with a quarter of a substep in its phase.
+ * That is less than 0.1 after days and less than 0.001 after minutes. The core tolerates 1/4, because a
+ * motion starts with a quarter substep in its phase.
  *
- * One thing is out of the planner's reach. The core knows progress to 24 bits, so a ramp can come out longer
- * or shorter by up to 2^-24 (as a rule below 2^-30) of ticks * change of velocity. Where both ramps have the
- * same ticks and speeds the second takes back what the first has added; otherwise it can show in ramps of
- * some ten seconds. No step is lost by it: the core makes missing substeps at the end, and none beyond M.
+ * One error is not compensated. The core resolves progress to 24 bits, so the distance of a ramp can deviate
+ * by up to 2^-24 (typically below 2^-30) of ticks * change of velocity. It cancels if both ramps have the
+ * same ticks and speeds; otherwise it can show in ramps of more than about ten seconds. No step is lost: the
+ * core makes missing substeps at the end, and never more than M.
  */
 #include "passo_plan.h"
 
@@ -33,8 +33,7 @@
 enum passo_plan_error passo_draft_in_ticks(
     struct passo_draft *draft, uint64_t total, uint64_t ramp, uint64_t speed_limit, struct passo_plan *plan)
 {
-	/* Ramps of half the time can round to more than half the ticks; less than 2 ticks cannot be halved.
-	 */
+	/* Rounding can make a ramp of half the time longer than half the ticks. */
 	bool in_halves = draft->profile == PASSO_PROFILE_JERK;
 	uint64_t ticks =
 	    passo_smaller(passo_draft_halvable(draft, ramp), in_halves ? total / 4 * 2 : total / 2);
@@ -44,7 +43,7 @@ enum passo_plan_error passo_draft_in_ticks(
 		return PASSO_PLAN_TOO_LONG;
 	passo_draft_weigh(draft);
 
-	/* M = peak * weight, and the peak is at most 1/2. */
+	/* M = peak * weight, with peak <= 1/2 */
 	passo_draft_oversample_to(
 	    draft, (passo_draft_weight(draft) >> (PASSO_WEIGHT_BITS + 1 - draft->machine->tick_log2))
 	               / draft->longest);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Moves of several axes: trapezoid of the leading axis, and straight lines within each axis' own limits.
+ * Moves of several axes: a trapezoid of the axis with the most steps, and straight lines within the limits of
+ * each axis.
  */
 #include "passo_math.h"
 #include "passo_plan_draft.h"
@@ -28,7 +29,7 @@ static uint64_t absolute(int64_t value)
 	return value < 0 ? 0 - (uint64_t)value : (uint64_t)value;
 }
 
-/* To the nearest; UINT32_MAX stands for all that is too many. */
+/* Rounded to nearest; saturates at UINT32_MAX. */
 static uint32_t steps_of(uint64_t distance, uint64_t steps_per_mm)
 {
 	struct passo_u128 steps = passo_multiply(distance, steps_per_mm); /* UQ64.64, below 2^63 */
@@ -39,7 +40,7 @@ static uint32_t steps_of(uint64_t distance, uint64_t steps_per_mm)
 /* Length of the path in millimetres, UQ32.32, rounded up to a few units; saturates. */
 static uint64_t length_of(const struct passo_machine *machine, const int64_t *distance)
 {
-	/* Two bits less, so that eight squares have room. */
+	/* Two bits fewer, so that the sum of eight squares does not overflow. */
 	struct passo_u128 sum = {0, 0};
 	for (uint32_t axis = 0; axis < machine->axes; axis++) {
 		uint64_t quarter = (absolute(distance[axis]) + 3) / 4;
@@ -49,7 +50,7 @@ static uint64_t length_of(const struct passo_machine *machine, const int64_t *di
 	return root < UINT64_MAX / 4 ? root * 4 : UINT64_MAX;
 }
 
-/* What the leading axis may do so that another, with fewer steps, does not exceed its limit. */
+/* Converts the limit of an axis into a limit of the axis with the most steps. */
 static uint64_t limit_of_lead(uint64_t limit, uint64_t steps_per_mm, uint32_t lead, uint32_t steps)
 {
 	return passo_mul_div(passo_mul_div(limit, steps_per_mm, PASSO_UNIT_Q32), lead, steps);

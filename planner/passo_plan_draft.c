@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * From a draft to a plan: the steps that all methods share; passo_plan.c tells their order.
+ * From a draft to a plan: the stages shared by all methods; see passo_plan.c.
  */
 #include "passo_plan_draft.h"
 
@@ -7,7 +7,8 @@
 
 #include "passo_math.h"
 
-/* The profiles' shapes. A jerk-limited ramp eases in and, mirrored, out. */
+/* Shape of each profile. A jerk-limited ramp uses its shape for the first curve and, mirrored, for the
+ * second. */
 static const enum passo_shape SHAPES[] = {
 #define SHAPE(profile, shape, name) [PASSO_PROFILE_##profile] = (shape),
     PASSO_PROFILES(SHAPE)
@@ -61,7 +62,7 @@ uint64_t passo_ticks_nearest(const struct passo_machine *machine, uint64_t clock
 	return (clocks >> machine->tick_log2) + (clocks >> (machine->tick_log2 - 1) & 1);
 }
 
-/* The two halves of a jerk-limited ramp are equal, which makes its mean speed exactly that of its ends. */
+/* Equal halves give a jerk-limited ramp exactly the mean speed of its ends. */
 uint64_t passo_draft_halvable(const struct passo_draft *draft, uint64_t ticks)
 {
 	return draft->profile == PASSO_PROFILE_JERK ? ticks + (ticks & 1) : ticks;
@@ -75,15 +76,15 @@ uint64_t passo_ticks_ceil(const struct passo_machine *machine, uint64_t clocks)
 
 /* ----------------------------------------------------------------------------------- 2. oversampling ---- */
 
-/* As many substeps per step as `fit` and the longest line allow. An even number, because a line starts in the
- * middle between two steps: then each step of the longest axis is due on a whole substep. */
+/* As many substeps per step as `fit` and the longest line allow. The number is even because a line starts
+ * midway between two steps: each step of the longest axis then falls on a whole substep. */
 void passo_draft_oversample_to(struct passo_draft *draft, uint64_t fit)
 {
 	uint32_t oversampling = (uint32_t)passo_smaller(fit, PASSO_SUBSTEPS_MAX / draft->longest);
 	draft->oversampling = oversampling > 1 ? oversampling & ~UINT32_C(1) : oversampling;
 }
 
-/* Substeps per step that make at most half a substep per clock at this speed (UQ32.32 steps/s). */
+/* Highest oversampling at this speed (UQ32.32 steps/s): at most half a substep per clock. */
 uint64_t passo_oversampling_at(const struct passo_machine *machine, uint64_t speed)
 {
 	return PASSO_UNIT_Q32 / 2 * machine->clock_hz / speed;
@@ -103,7 +104,7 @@ uint64_t passo_draft_velocity(const struct passo_draft *draft, uint64_t speed)
 
 /* ------------------------------------------------------------------------------------------- 3. peak ---- */
 
-/* Rounding to the nearest would take very long ramps' progress beyond 1. */
+/* Very long ramps round down: rounding to nearest would take their progress beyond 1. */
 static uint64_t progress_step(uint64_t ticks)
 {
 	if (ticks == 0)
@@ -123,10 +124,10 @@ int64_t passo_lacking_weight(uint64_t ticks, uint64_t divisor)
 	return beyond ? -(int64_t)weight : (int64_t)weight;
 }
 
-/* How much a ramp's distance owes to the velocity it leads to; the rest of its ticks count at the velocity
- * it comes from. All shapes but the user's are symmetric, so it is half the ticks but for the rounding of
- * progress_step(). In a jerk-limited ramp the change of velocity is shared between its curves and its
- * straight part as curve/2 : straight : curve/2, so that the slope has no leap where they meet. */
+/* Weight of a ramp's end velocity in its distance; the rest of the ticks is the weight of its start velocity.
+ * All built-in shapes are symmetric, so it is half the ticks except for the rounding of progress_step(). A
+ * jerk-limited ramp divides its change of velocity as curve/2 : straight : curve/2, which makes the
+ * acceleration continuous where the parts meet. */
 static uint64_t weight_of_end(const struct passo_draft *draft, struct passo_phase ramp, bool mirror)
 {
 	if (ramp.ticks == 0)
@@ -148,21 +149,21 @@ void passo_draft_weigh(struct passo_draft *draft)
 	draft->decelerate.weight = weight_of_end(draft, draft->decelerate, true);
 }
 
-/* How much a ramp's distance owes to the velocity it comes from. */
+/* Weight of a ramp's start velocity in its distance. */
 static uint64_t weight_of_begin(struct passo_phase ramp)
 {
 	return (ramp.ticks << PASSO_WEIGHT_BITS) - ramp.weight;
 }
 
-/* Weight of the peak in the distance of all phases. */
+/* Weight of the peak in the total distance. */
 uint64_t passo_draft_weight(const struct passo_draft *draft)
 {
 	return draft->accelerate.weight + (draft->cruise << PASSO_WEIGHT_BITS)
 	     + weight_of_begin(draft->decelerate);
 }
 
-/* The distance that the peak has to cover: the whole line without what is owed to the start and stop
- * velocities. In units of velocity times weight. */
+/* Distance that the peak has to cover: the line minus the share of the start and stop velocities. In units of
+ * velocity times weight. */
 struct passo_u128 passo_draft_distance(const struct passo_draft *draft)
 {
 	struct passo_u128 line = {0, (uint64_t)draft->longest * draft->oversampling};
@@ -201,7 +202,8 @@ static void add_jump(struct passo_plan *plan, uint64_t velocity)
 	passo_plan_add_ramp(plan, PASSO_SHAPE_LINEAR, false, velocity, 0);
 }
 
-/* The curves of a jerk-limited ramp take their share of the change at both ends alike. */
+/* Adds the ramp between two velocities; in a jerk-limited ramp both curves take the same share of the
+ * change. */
 static void add_change(struct passo_plan *plan, const struct passo_draft *draft, struct passo_phase ramp,
     uint64_t from, uint64_t to)
 {
@@ -234,14 +236,14 @@ static struct passo_line line_of(const struct passo_draft *draft)
 	return line;
 }
 
-/* Whole steps of the longest axis, to the nearest, in the phase that slows down. */
+/* Steps of the longest axis during deceleration, rounded to nearest. */
 static uint32_t steps_to_stop(const struct passo_draft *draft)
 {
 	struct passo_u128 distance =
 	    passo_u128_add(passo_multiply(draft->peak, weight_of_begin(draft->decelerate)),
 		passo_multiply(draft->stop, draft->decelerate.weight));
 
-	/* substeps, below 2^30, with 16 bits of their fraction */
+	/* below 2^30 substeps, with a 16-bit fraction */
 	const uint32_t surplus = 48 + PASSO_WEIGHT_BITS - 16 - draft->machine->tick_log2;
 	uint64_t substeps = distance.high << (64 - surplus) | distance.low >> surplus;
 	uint64_t step = (uint64_t)draft->oversampling << 16;

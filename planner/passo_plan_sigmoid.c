@@ -38,14 +38,13 @@ static uint64_t tanh_of_half(uint64_t e)
 /* With the middle as the origin and d points from it the scaled logistic function is
  *
  *   1/2 + tanh(alpha d / 256) / (2 tanh(alpha / 2))
- *
- * It is reckoned for the upper half only: the lower half is its mirror image, to the bit. */
+ * Only the upper half is computed; the lower half is its exact mirror image. */
 enum passo_plan_error passo_sigmoid_table(uint32_t alpha, uint16_t table[PASSO_TABLE_SIZE])
 {
 	if (alpha < ALPHA_MIN || alpha > ALPHA_MAX)
 		return PASSO_PLAN_BAD_ALPHA;
 
-	/* exp(-alpha / 128), of which each point on from the middle is a further power */
+	/* exp(-alpha / 128): multiplied once more for each point from the middle */
 	uint64_t step = exp_minus(ONE_Q62 / ((uint64_t)PASSO_ALPHA_ONE * MIDDLE) * alpha);
 	uint64_t last = ONE_Q62;
 	for (uint32_t d = 0; d < MIDDLE; d++)

@@ -1,22 +1,21 @@
 /* SPDX-License-Identifier: MIT
- * Moves by speed: slopes of ramps, the speed that a move can reach, and what the ramps leave over.
+ * Moves by speed: slope of the ramps, reachable speed, and cruise phase.
  */
 #include <stddef.h>
 
 #include "passo_math.h"
 #include "passo_plan_draft.h"
 
-/* Flattest slope: so long from rest to the full speed. Keeps the sums of reachable_speed() below 2^128. */
+/* Longest ramp from rest to the full speed. Keeps the sums in reachable_speed() below 2^128. */
 #define SLOPE_CLOCKS_MAX (UINT64_C(1) << 62)
 
-/* How steep a ramp is: it changes the speed by `speed` (UQ32.32 steps/s) in `clocks`. With a jerk (then these
- * are an acceleration's) the slope takes up to `ease` clocks to build up, and again to cease, which makes the
- * ramp longer. */
+/* Slope of a ramp: the speed changes by `speed` (UQ32.32 steps/s) in `clocks`. With a jerk limit, the
+ * acceleration takes up to `ease` clocks to build up, and again to fall, which makes the ramp longer. */
 struct slope {
 	uint64_t clocks, speed, ease, jerk;
 };
 
-/* Any change of speed in no time. */
+/* Any change of speed at once. */
 static const struct slope VERTICAL = {0, 1, 0, 0};
 
 static uint64_t clocks_floor(struct slope slope, uint64_t change)
@@ -29,8 +28,8 @@ static uint64_t clocks_ceil(struct slope slope, uint64_t change)
 	return passo_mul_div_ceil(change, slope.clocks, slope.speed);
 }
 
-/* How long the slope takes to build up, and again to cease, in a change of speed that would take so many
- * clocks without that: sqrt(change / jerk) if it does not get to its full height. */
+/* Duration of each curve in a change of speed that takes `clocks` without a jerk limit: sqrt(change / jerk)
+ * if the full acceleration is not reached. */
 static uint64_t curve_clocks(struct slope slope, uint64_t change, uint64_t clocks)
 {
 	if (slope.ease == 0 || clocks >= slope.ease)
@@ -41,7 +40,7 @@ static uint64_t curve_clocks(struct slope slope, uint64_t change, uint64_t clock
 	return passo_smaller(slope.ease, root + 1);
 }
 
-/* Rounded up: a longer ramp is a gentler one. */
+/* Rounded up, so the ramp is never steeper than its slope. */
 static struct passo_phase ramp_phase(
     const struct passo_draft *draft, struct slope slope, uint64_t low, uint64_t high)
 {
@@ -74,21 +73,20 @@ static enum passo_plan_error find_slope(struct slope *slope, const struct passo_
 	return too_long ? PASSO_PLAN_TOO_LONG : PASSO_PLAN_OK;
 }
 
-/* A user's shape whose mean is not in the middle makes the ramps' distance owe more, or less, to the peak. */
+/* Scales the ramp time by the mean of a user-defined shape, which is the weight of the peak in the ramps. */
 static uint64_t weighted(uint64_t clocks, uint32_t mean)
 {
 	return mean == PASSO_MEAN_HALF ? clocks : passo_mul_div(clocks, mean, PASSO_MEAN_HALF);
 }
 
-/* The highest speed, up to a limit, that a move of this length can reach. With a, d the slopes as
- * accelerations:
+/* The highest speed, up to a limit, that a move of this length can reach. With acceleration a and
+ * deceleration d:
  *
  *   length = (peak^2 - start^2) / 2a + (peak^2 - stop^2) / 2d
  *   peak^2 = (2 length + start * start/a + stop * stop/d) / (1/a + 1/d)
- *
- * Any speed divided by an acceleration is a number of clocks. So that 1/a and 1/d are numbers of clocks
- * too, numerator and denominator are multiplied by the limit. Rounded up: too high a peak costs a little
- * time, nothing else. */
+ * A speed divided by an acceleration is a number of clocks. Numerator and denominator are multiplied by the
+ * limit, which turns 1/a and 1/d into numbers of clocks as well. Rounded up: a peak that is slightly too high
+ * only costs a little time. */
 static uint64_t reachable_speed(const struct passo_draft *draft, uint64_t limit, struct slope up,
     uint64_t start, struct slope down, uint64_t stop)
 {
@@ -107,7 +105,7 @@ static uint64_t reachable_speed(const struct passo_draft *draft, uint64_t limit,
 	return passo_smaller(limit, passo_isqrt128(passo_multiply(quotient + 1, limit)) + 1);
 }
 
-/* The slope without ease that takes as long between these speeds. */
+/* The slope of constant acceleration that takes equally long between these speeds. */
 static struct slope mean_slope(struct slope slope, uint64_t low, uint64_t high)
 {
 	if (low >= high)
@@ -117,15 +115,14 @@ static struct slope mean_slope(struct slope slope, uint64_t low, uint64_t high)
 	return (struct slope){(clocks < curve ? curve : clocks) + curve, high - low, 0, 0};
 }
 
-/* What no peak gets above, because it takes at least 2 sqrt(change / jerk) to get there. For a ramp from
- * `end`, with x^2 = peak - end:
+/* Upper bound of the peak: a change of speed takes at least 2 sqrt(change / jerk). For a ramp from `end`,
+ * with x^2 = peak - end:
  *
  *   length >= (peak + end) / 2 * 2 sqrt((peak - end) / jerk)
  *   x^3 + 2 end x <= length sqrt(jerk)
- *
- * For two ramps it is half the length, and `end` the higher of their ends: the other ramp may be shorter, but
- * not by more than a factor of 1.09. Newton's method from above; all speeds in UQ32.32, which makes x the
- * root of that. */
+ * Two ramps have half the length each, with `end` the higher of their ends: the other ramp can be shorter,
+ * but only by a factor of up to 1.09. Solved by Newton's method from above. Speeds are UQ32.32, so x is
+ * UQ16.16. */
 static uint64_t highest_with_ease(
     const struct passo_draft *draft, uint64_t limit, uint64_t jerk, uint64_t end, bool two_ramps)
 {
@@ -150,10 +147,10 @@ static uint64_t highest_with_ease(
 	return passo_smaller(limit, end + x * x);
 }
 
-/* With ease the mean slope grows with the peak. From a peak that is too high comes a slope that is too steep,
- * and from that a peak that is less too high: the excess, as a factor, shrinks to its root or less each time.
- * It shrinks the less the smaller it is, so going on by the ratio of the last two steps (Aitken) does not go
- * too far. */
+/* With a jerk limit the mean slope grows with the peak. A peak that is too high gives a slope that is too
+ * steep, and that gives a peak that is closer: each iteration reduces the excess factor to its square root or
+ * less. Convergence slows down as the excess shrinks, so extrapolation by the ratio of the last two steps
+ * (Aitken) does not overshoot. */
 static uint64_t reachable_with_ease(const struct passo_draft *draft, uint64_t limit, struct slope up,
     uint64_t start, struct slope down, uint64_t stop)
 {
@@ -182,7 +179,8 @@ static uint64_t reachable_with_ease(const struct passo_draft *draft, uint64_t li
 	return next;
 }
 
-/* The distance the ramps leave over, in ticks at a velocity that the peak must not exceed; rounded up. */
+/* Ticks of the cruise phase: the distance that the ramps do not cover, at the highest velocity allowed;
+ * rounded up. */
 static uint64_t cruise_ticks(const struct passo_draft *draft, uint64_t velocity)
 {
 	uint64_t remainder;
@@ -194,14 +192,14 @@ static uint64_t cruise_ticks(const struct passo_draft *draft, uint64_t velocity)
 	uint64_t ticks = missing >> PASSO_WEIGHT_BITS;
 	bool needs_more = ticks << PASSO_WEIGHT_BITS < missing || remainder > 0;
 	bool weightless =
-	    ramps == 0 && ticks == 0; /* a user's shape may be 0 in the middle of its only tick */
+	    ramps == 0 && ticks == 0; /* a user-defined shape may be 0 in the middle of its only tick */
 	return ticks + (needs_more || weightless);
 }
 
-/* In moves of a few ticks, rounding up to whole ticks can let the peak fall below the start or stop
- * velocity. Then that ramp's ticks are run at the peak instead. This lifts the peak, but not above the
- * velocity it was below, so no limit is exceeded if the higher velocity goes first. True if the peak must
- * be solved anew. */
+/* In moves of a few ticks, rounding up can make the peak lower than the start or stop velocity. That ramp
+ * then becomes part of the cruise phase. This raises the peak, but not above the velocity it was below, so no
+ * limit is exceeded if the higher velocity is handled first. Returns true if the peak has to be solved
+ * again. */
 static bool flatten_ramp(struct passo_draft *draft)
 {
 	bool below_start = draft->accelerate.ticks > 0 && draft->peak < draft->start;
@@ -238,8 +236,8 @@ enum passo_plan_error passo_draft_by_speed(
 	if (error != PASSO_PLAN_OK)
 		return error;
 
-	/* A move too short for its start speed, or for its stop speed, does without that ramp: it jumps to
-	 * less, or from less. It cannot be too short for both, the peak lies above the lower of the two. */
+	/* A move too short for its start or stop speed omits that ramp and starts or stops at the peak. It
+	 * cannot be too short for both: the peak is above the lower of the two. */
 	uint64_t peak = reachable_with_ease(draft, speed, up, start, down, stop);
 	if (peak < start) {
 		up = VERTICAL;

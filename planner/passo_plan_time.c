@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: MIT
- * Moves in exact time and distance, with the highest speed given:
+ * Moves in exact time and distance with a given speed:
  *
  *   steps = speed * (total - ramp)
- *
- * holds for every symmetric shape, so each of total and ramp follows from the other.
+ * holds for every symmetric shape, so either of total and ramp determines the other.
  */
 #include "passo_math.h"
 #include "passo_plan_draft.h"
 
-/* Clocks in which so many steps are made at this speed; rounded up, so that it is not exceeded. */
+/* Duration of the steps at this speed, in clocks; rounded up so that the speed is not exceeded. */
 static uint64_t clocks_at_speed(uint32_t clock_hz, uint32_t steps, uint64_t speed)
 {
 	return passo_mul_div_ceil(steps, (uint64_t)clock_hz << 32, speed);
@@ -20,7 +19,7 @@ uint64_t passo_longest_ramp(uint32_t clock_hz, uint32_t steps, uint64_t total_cl
 	return flat < total_clocks ? total_clocks - flat : 0;
 }
 
-/* Begins a draft; *flat is its ticks at the given speed. */
+/* Initializes a draft; *flat is its duration at constant speed, in ticks. */
 static enum passo_plan_error start_at_speed(struct passo_draft *draft, uint64_t *flat,
     const struct passo_machine *machine, const int32_t *steps, enum passo_profile profile, uint64_t speed)
 {
@@ -48,7 +47,7 @@ enum passo_plan_error passo_plan_below_speed(
 	if (flat > total)
 		return PASSO_PLAN_SPEED_TOO_LOW;
 
-	/* The two halves of a jerk-limited ramp are equal; rounding it up would take it beyond the limit. */
+	/* A jerk-limited ramp has two equal halves; rounding it up would exceed the speed. */
 	uint64_t ramp = total - flat;
 	if (move->profile == PASSO_PROFILE_JERK)
 		ramp &= ~UINT64_C(1);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Turning one axis by angle and rpm: once, or without end.
+ * Rotation of one axis by angle and rpm, and continuous rotation.
  */
 #include <stddef.h>
 
@@ -9,7 +9,7 @@
 #define DEGREES_PER_TURN 360u
 #define SECONDS_PER_MINUTE 60u
 
-/* Rounded down: no speed is above the rpm it stands for. */
+/* Steps per second, rounded down so that the rpm is not exceeded. */
 static uint64_t speed_of(uint64_t rpm, uint32_t steps_per_turn)
 {
 	return passo_mul_div(rpm, steps_per_turn, SECONDS_PER_MINUTE);
@@ -50,9 +50,9 @@ enum passo_plan_error passo_plan_turn(
 	return passo_draft_by_speed(&draft, &limits, plan);
 }
 
-/* ------------------------------------------------------------------------------- turning without end ---- */
+/* ------------------------------------------------------------------------------- continuous rotation ---- */
 
-/* Everything the three plans check; the draft's only step is the one in which its substeps are reckoned. */
+/* Checks common to the three plans. The draft has a single step, which defines its oversampling. */
 static uint32_t start_turning(struct passo_draft *draft, int32_t steps[PASSO_AXES_MAX],
     const struct passo_machine *machine, const struct passo_turning *turning)
 {
@@ -78,7 +78,7 @@ static uint64_t velocity_of(
 	return passo_draft_velocity(draft, speed_of(rpm, turning->steps_per_turn));
 }
 
-/* Add the ramp between two velocities; rounded up to ticks. */
+/* Adds the ramp between two velocities; its time is rounded up to ticks. */
 static uint32_t add_change(struct passo_plan *plan, const struct passo_draft *draft,
     const struct passo_turning *turning, uint64_t from, uint64_t to)
 {
@@ -118,7 +118,7 @@ enum passo_plan_error passo_plan_turning_start(const struct passo_machine *machi
 	if (refused != PASSO_PLAN_OK)
 		return refused;
 
-	/* As many steps as the longest line takes, so that it seldom begins anew. */
+	/* the longest line possible, so that it seldom repeats */
 	uint32_t count = PASSO_SUBSTEPS_MAX / draft.oversampling;
 	struct passo_plan made = {
 	    .line = {.endless = true, .substeps = count * draft.oversampling},
@@ -189,7 +189,7 @@ enum passo_plan_error passo_plan_turning_stop(const struct passo_machine *machin
 	return refused;
 }
 
-/* -------------------------------------------------------------------------------------- reading back ---- */
+/* -------------------------------------------------------------------------------------- conversion ---- */
 
 int64_t passo_angle_of(int32_t position, uint32_t steps_per_turn)
 {

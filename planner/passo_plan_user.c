@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The user's own shapes: 257 points, the last of which is always 1, and straight lines between them.
+ * User-defined shapes: 257 points, the last of which is always 1, with linear interpolation.
  */
 #include "passo_math.h"
 #include "passo_plan_draft.h"
@@ -22,16 +22,14 @@ enum passo_plan_error passo_table_check(
 	}
 	for (uint32_t k = 1; k <= PASSO_TABLE_SIZE / 2; k++)
 		facts->symmetric &= table[k] + table[PASSO_TABLE_SIZE - k] == ONE;
-	/* The first point and the last, which is 1, belong to one trapezoid, all others to two. In units of
-	 * 2^-16 / 256. */
+	/* Trapezoidal rule, in units of 2^-16 / 256: the first point and the last, which is 1, count half. */
 	facts->mean = sum + (uint32_t)(ONE - table[0]) / 2;
 	return error;
 }
 
-/* How far the sum over a ramp's ticks, each at its middle, falls short of the shape's mean. Straight lines
- * sum up exactly; each bend does not, by its change of slope times the square of its distance from the
- * nearest border between two ticks, halved. Bend k lies k * ticks / 256 ticks into the ramp. In units of
- * 2^-24. */
+/* Error of the midpoint sum over a ramp's ticks against the mean of its shape, in units of 2^-24. Straight
+ * lines are summed exactly; each bend adds half its change of slope times the square of its distance from the
+ * nearest tick boundary. Bend k is k * ticks / 256 ticks into the ramp. */
 static int64_t bends(const uint16_t table[PASSO_TABLE_SIZE], uint64_t ticks)
 {
 	int64_t sum = 0;
@@ -47,8 +45,8 @@ static int64_t bends(const uint16_t table[PASSO_TABLE_SIZE], uint64_t ticks)
 	return sum / (int64_t)(2 * ticks);
 }
 
-/* A mirrored shape has the other mean, and bends the other way. What the end of the progress lacks is missing
- * from the part above the mean. */
+/* A mirrored shape has the complementary mean and bends in the other direction. The missing end of the
+ * progress reduces the part above the mean. */
 static uint64_t table_weight(const struct passo_draft *draft, uint64_t ticks, bool mirror)
 {
 	const uint64_t one = UINT64_C(1) << PASSO_WEIGHT_BITS;

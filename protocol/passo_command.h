@@ -18,12 +18,12 @@
 
 /* Velocities and progress are UQ0.48: an integer v stands for v / 2^48. */
 #define PASSO_ONE_Q48 (UINT64_C(1) << 48)
-/* Half a substep per clock: the DDA has two clocks for each. */
+/* Highest velocity: half a substep per clock, because the DDA takes two clocks per substep. */
 #define PASSO_VELOCITY_MAX (UINT64_C(1) << 47)
-/* Longest progress step: a ramp of one tick. */
+/* Largest progress step: that of a ramp of one tick. */
 #define PASSO_PROGRESS_STEP_MAX (PASSO_ONE_Q48 - 1u)
 
-/* A line moves axis i by exactly steps[i] steps while `substeps` substeps of path pass. */
+/* A line moves axis i by exactly steps[i] steps over `substeps` substeps of path. */
 struct passo_line {
 	bool last;                      /* the path may end here */
 	bool endless;                   /* repeat until stopped */
@@ -32,10 +32,10 @@ struct passo_line {
 	uint32_t steps[PASSO_AXES_MAX]; /* N_i, 0 .. M */
 };
 
-/* A ramp leads the velocity from where it is to velocity_end. */
+/* A ramp takes the velocity from its present value to velocity_end. */
 struct passo_ramp {
 	bool last;   /* the profile ends with this ramp */
-	bool now;    /* drop the ramps before it, start from the present velocity */
+	bool now;    /* drop the ramps queued before it and start from the present velocity */
 	bool mirror; /* 1 - shape(1 - u) instead of shape(u) */
 	enum passo_shape shape;
 	uint64_t velocity_end;  /* UQ0.48 substeps per clock, 0 .. 2^47 */

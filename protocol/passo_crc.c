@@ -3,7 +3,7 @@
 
 #ifndef PASSO_CRC_EXTERNAL
 
-/* The CRC of each 4-bit value: small enough for a microcontroller, eight steps for a word. */
+/* CRC of each 4-bit value: a small table for microcontrollers, eight look-ups per word. */
 static const uint32_t crc_of_nibble[16] = {
     0x00000000u,
     0x04C11DB7u,

@@ -58,9 +58,9 @@ bool passo_frame_is_status(uint32_t word)
 	return status.marker == PASSO_STATUS_MARKER_RESET && !status.zero;
 }
 
-/* The ack, or a refused read's verdict: always the last word. The last status word before it tells a reply
- * that is shifted by a bit, in which the ack of one verdict looks like that of another. If it is the ack
- * itself, the core took the request for a read. */
+/* The ack of a write or of a refused read: always the last word. The status word before it exposes a reply
+ * that is shifted by a bit, in which the ack of one verdict can look like that of another. If it equals the
+ * ack, the core decoded the request as a read. */
 static enum passo_reply read_ack(const uint32_t *mosi, const uint32_t *miso, size_t count,
     uint32_t last_status, enum passo_verdict *verdict)
 {
@@ -96,7 +96,7 @@ enum passo_reply passo_frame_read_reply(
 		*verdict = PASSO_VERDICT_OK;
 		return PASSO_REPLY_OK;
 	}
-	/* An ack that says OK is no answer to a read. */
+	/* A read is never answered with an ack that says OK. */
 	enum passo_reply reply = read_ack(mosi, miso, count, miso[PASSO_FRAME_DATA - 1], verdict);
 	return reply == PASSO_REPLY_OK ? PASSO_REPLY_DAMAGED : reply;
 }

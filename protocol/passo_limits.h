@@ -1,27 +1,27 @@
 /* SPDX-License-Identifier: MIT
  * Generated from schema/moves.toml by tools/generate_moves.py.
  *
- * Limits of moves and of the numbers that ask for them.
+ * Limits of moves and of their parameters.
  */
 #ifndef PASSO_LIMITS_H
 #define PASSO_LIMITS_H
 
 #include <stdint.h>
 
-/* Longest line: its substeps, and with them the steps of each axis, have 30 bits. */
+/* Longest line: its substeps, and so the steps of each axis, have 30 bits. */
 #define PASSO_SUBSTEPS_MAX       1073741823u
 #define PASSO_SUBSTEPS_MAX_WORDS "2^30 - 1"
 
-/* Largest number without a sign, in its unit. */
+/* Largest unsigned number, in its unit. */
 #define PASSO_NUMBER_MAX 4294967295u
 
-/* Largest number with a sign, in its unit. */
+/* Largest signed number, in its unit. */
 #define PASSO_SIGNED_MAX 2147483647u
 
 /* Largest whole number. */
 #define PASSO_WHOLE_MAX 4294967295u
 
-/* Digits behind the point of a number. */
+/* Digits after the decimal point. */
 #define PASSO_DECIMALS_MAX 30u
 
 /* Shortest tick, as a power of two clocks. */
@@ -32,11 +32,11 @@
 #define PASSO_TICK_LOG2_MAX       16u
 #define PASSO_TICK_LOG2_MAX_WORDS "16"
 
-/* Longest move, as a power of two clocks: two days at 100 MHz; passo_plan.c tells why. */
+/* Longest move, as a power of two clocks: two days at 100 MHz; see passo_plan.c. */
 #define PASSO_MOVE_CLOCKS_LOG2       44u
 #define PASSO_MOVE_CLOCKS_LOG2_WORDS "44"
 
-/* Speeds and their like are UQ32.32, with a sign Q31.32: an integer x stands for x / 2^32. */
+/* Speeds and similar quantities are UQ32.32, signed ones Q31.32: an integer x stands for x / 2^32. */
 #define PASSO_UNIT_Q32 UINT64_C(4294967296)
 
 /* A sigmoid's alpha is in units of 1 / 4096. */
@@ -50,7 +50,7 @@
 #define PASSO_ALPHA_MAX       5u
 #define PASSO_ALPHA_MAX_WORDS "5"
 
-/* The alpha that the core's table is made for after reset. */
+/* The alpha of the core's table after configuration. */
 #define PASSO_ALPHA_RESET 5u
 
 #endif

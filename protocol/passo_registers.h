@@ -17,7 +17,7 @@
 #define PASSO_HEADER_OPERATION_BITS 4u
 #define PASSO_HEADER_DEFINED        0xFFFFFFFFu
 
-/* Word: Ack. Last word of the reply to a write or push, and to a read that was refused. */
+/* Word: Ack. Last word of the reply to a write or push, and to a refused read. */
 #define PASSO_ACK_NOT_VERDICT_LSB   0u
 #define PASSO_ACK_NOT_VERDICT_BITS  8u
 #define PASSO_ACK_NOT_SEQUENCE_LSB  8u
@@ -28,7 +28,7 @@
 #define PASSO_ACK_SEQUENCE_BITS     8u
 #define PASSO_ACK_DEFINED           0xFFFFFFFFu
 
-/* Word: Status. What stands in a reply before the ack or the data, as it was when chip select fell. */
+/* Word: Status. Sent in a reply before the ack or the data; sampled when chip select fell. */
 #define PASSO_STATUS_RAMP_ROOM_LSB     0u
 #define PASSO_STATUS_RAMP_ROOM_BITS    8u
 #define PASSO_STATUS_LINE_ROOM_LSB     8u
@@ -177,8 +177,8 @@
 #define PASSO_ADDRESS_CHANNEL_COUNT  8u
 #define PASSO_ADDRESS_CHANNEL_STRIDE 0x100u
 
-/* Channel: Command. Each bit written as 1 is done once. With STOP or ABORT, CLEAR and ZERO in the same word
- * are ignored; ABORT wins over STOP. */
+/* Channel: Command. Each bit written as 1 takes effect once. STOP and ABORT override CLEAR and ZERO in the
+ * same word; ABORT has priority over STOP. */
 #define PASSO_CHANNEL_COMMAND             0x00u
 #define PASSO_CHANNEL_COMMAND_STOP_LSB    0u
 #define PASSO_CHANNEL_COMMAND_STOP_BITS   1u
@@ -216,14 +216,14 @@
 #define PASSO_CHANNEL_STOP_SLEW_RESET   0x00400u
 #define PASSO_CHANNEL_STOP_SLEW_DEFINED 0x0001FFFFu
 
-/* Channel: Drain velocity. Velocity of the substeps that are still missing when the profile has ended. */
+/* Channel: Drain velocity. Velocity of the substeps still missing when the profile has ended. */
 #define PASSO_CHANNEL_DRAIN_VELOCITY         0x04u
 #define PASSO_CHANNEL_DRAIN_VELOCITY_LSB     0u
 #define PASSO_CHANNEL_DRAIN_VELOCITY_BITS    32u
 #define PASSO_CHANNEL_DRAIN_VELOCITY_RESET   0x01000000u
 #define PASSO_CHANNEL_DRAIN_VELOCITY_DEFINED 0xFFFFFFFFu
 
-/* Channel: State. What the channel does now. */
+/* Channel: State. State of the channel. */
 #define PASSO_CHANNEL_STATE                0x08u
 #define PASSO_CHANNEL_STATE_STATE_LSB      0u
 #define PASSO_CHANNEL_STATE_STATE_BITS     3u
@@ -276,7 +276,7 @@
 #define PASSO_CHANNEL_RAMP_BITS    32u
 #define PASSO_CHANNEL_RAMP_DEFINED 0xFFFFFFFFu
 
-/* Channel: Steps made. Position of an axis in steps, as it was soon after chip select fell; wraps. */
+/* Channel: Steps made. Position of an axis in steps, sampled soon after chip select fell; wraps. */
 #define PASSO_CHANNEL_POSITION_BASE  0x40u
 #define PASSO_CHANNEL_POSITION_COUNT 8u
 #define PASSO_CHANNEL_POSITION_LSB   0u
@@ -288,8 +288,8 @@
 #define PASSO_CHANNEL_AXIS_COUNT  8u
 #define PASSO_CHANNEL_AXIS_STRIDE 0x08u
 
-/* Axis: Pins. Polarities and step mode. Refused with BUSY unless the channel is quiet. The next step waits
- * for the low time, the DIR hold and the DIR set-up from here on. Kept over a reset of the core. */
+/* Axis: Pins. Polarities and step mode. Refused with BUSY unless the channel is quiet. From the write on,
+ * the next step waits for the low time, the DIR hold and the DIR setup. Kept through a reset of the core. */
 #define PASSO_AXIS_PINS                          0x0u
 #define PASSO_AXIS_PINS_STEP_INVERTED_LSB        1u
 #define PASSO_AXIS_PINS_STEP_INVERTED_BITS       1u
@@ -325,7 +325,7 @@
 #define PASSO_AXIS_DIR_TIMING_DIR_SETUP_RESET 0x0001u
 #define PASSO_AXIS_DIR_TIMING_DEFINED         0xFFFFFFFFu
 
-/* Axis: Lost steps. Steps that found the queue of the axis full (STEP_OVERRUN). */
+/* Axis: Lost steps. Steps lost because the queue of the axis was full (STEP_OVERRUN). */
 #define PASSO_AXIS_LOST_STEPS            0x3u
 #define PASSO_AXIS_LOST_STEPS_LOST_LSB   0u
 #define PASSO_AXIS_LOST_STEPS_LOST_BITS  4u
@@ -338,19 +338,16 @@
 #define PASSO_AXIS_ENABLE_RESET   0x0u
 #define PASSO_AXIS_ENABLE_DEFINED 0x00000001u
 
-/* What a frame asks for. */
+/* Operation of a frame. */
 enum passo_operation {
 	PASSO_OPERATION_READ  = 1, /* Read consecutive registers. */
 	PASSO_OPERATION_WRITE = 2, /* Write consecutive registers. */
 	PASSO_OPERATION_PUSH  = 3  /* Write every word to the same address: lines and ramps. */
 };
-/* Their names. */
-#define PASSO_OPERATIONS(EACH) \
-	EACH(READ) \
-	EACH(WRITE) \
-	EACH(PUSH)
+#define PASSO_OPERATION_NAMES \
+	{[1] = "READ", [2] = "WRITE", [3] = "PUSH"}
 
-/* What became of a frame. */
+/* Outcome of a frame. */
 enum passo_verdict {
 	PASSO_VERDICT_OK              = 0, /* Executed. */
 	PASSO_VERDICT_DUPLICATE       = 1, /* Not executed: its sequence number was accepted before. */
@@ -363,40 +360,26 @@ enum passo_verdict {
 	PASSO_VERDICT_BUSY            = 8, /* The state of the channel does not allow it (see the register). */
 	PASSO_VERDICT_BAD_VALUE       = 9  /* M = 0 or M >= 2^30, N_i > M, a velocity above 1/2, drain velocity 0, reserved bits set. */
 };
-/* Their names. */
-#define PASSO_VERDICTS(EACH) \
-	EACH(OK) \
-	EACH(DUPLICATE) \
-	EACH(BAD_CRC) \
-	EACH(BAD_LENGTH) \
-	EACH(BAD_OPERATION) \
-	EACH(UNKNOWN_ADDRESS) \
-	EACH(READ_ONLY) \
-	EACH(QUEUE_FULL) \
-	EACH(BUSY) \
-	EACH(BAD_VALUE)
+#define PASSO_VERDICT_NAMES \
+	{[0] = "OK", [1] = "DUPLICATE", [2] = "BAD_CRC", [3] = "BAD_LENGTH", [4] = "BAD_OPERATION", \
+	 [5] = "UNKNOWN_ADDRESS", [6] = "READ_ONLY", [7] = "QUEUE_FULL", [8] = "BUSY", [9] = \
+	 "BAD_VALUE"}
 
-/* What a channel does. */
+/* State of a channel. */
 enum passo_state {
 	PASSO_STATE_IDLE    = 0, /* No motion. */
-	PASSO_STATE_PREPARE = 1, /* First line and first velocity are being made ready. */
+	PASSO_STATE_PREPARE = 1, /* First line and first velocity are being prepared. */
 	PASSO_STATE_ARMED   = 2, /* Ready to start; waits while WAIT_SYNC is set. */
 	PASSO_STATE_RUN     = 3, /* The profile runs. */
-	PASSO_STATE_SETTLE  = 4, /* The profile has ended, its last substeps reach the pins. */
+	PASSO_STATE_SETTLE  = 4, /* The profile has ended; its last substeps travel to the pins. */
 	PASSO_STATE_DRAIN   = 5, /* Missing substeps of the LAST line are made at drain_velocity. */
 	PASSO_STATE_STOPPED = 6  /* Stopped by a command or a fault; queues flushed. CLEAR leads back to IDLE. */
 };
-/* Their names. */
-#define PASSO_STATES(EACH) \
-	EACH(IDLE) \
-	EACH(PREPARE) \
-	EACH(ARMED) \
-	EACH(RUN) \
-	EACH(SETTLE) \
-	EACH(DRAIN) \
-	EACH(STOPPED)
+#define PASSO_STATE_NAMES \
+	{[0] = "IDLE", [1] = "PREPARE", [2] = "ARMED", [3] = "RUN", [4] = "SETTLE", [5] = "DRAIN", \
+	 [6] = "STOPPED"}
 
-/* Why a channel stopped. */
+/* Why a channel has stopped. */
 enum passo_cause {
 	PASSO_CAUSE_NONE          = 0, /* Not stopped. */
 	PASSO_CAUSE_STOP          = 1, /* COMMAND.STOP. */
@@ -405,27 +388,18 @@ enum passo_cause {
 	PASSO_CAUSE_RAMP_UNDERRUN = 4, /* The ramps ran out at speed. */
 	PASSO_CAUSE_STEP_OVERRUN  = 5  /* Steps came faster than the pin timing of an axis allows. */
 };
-/* Their names. */
-#define PASSO_CAUSES(EACH) \
-	EACH(NONE) \
-	EACH(STOP) \
-	EACH(ABORT) \
-	EACH(LINE_UNDERRUN) \
-	EACH(RAMP_UNDERRUN) \
-	EACH(STEP_OVERRUN)
+#define PASSO_CAUSE_NAMES \
+	{[0] = "NONE", [1] = "STOP", [2] = "ABORT", [3] = "LINE_UNDERRUN", [4] = "RAMP_UNDERRUN", \
+	 [5] = "STEP_OVERRUN"}
 
-/* How a ramp leads the velocity: s for a progress u, both 0 .. 1. */
+/* Shape of a ramp: s as a function of the progress u, both 0 .. 1. */
 enum passo_shape {
 	PASSO_SHAPE_LINEAR  = 0, /* s = u, no table. */
 	PASSO_SHAPE_COSINE  = 1, /* (1 - cos(pi u)) / 2. */
 	PASSO_SHAPE_SIGMOID = 2, /* Logistic function over -5 .. 5, scaled to begin at 0 and end at 1. */
 	PASSO_SHAPE_EASE    = 3  /* u^2. */
 };
-/* Their names. */
-#define PASSO_SHAPES(EACH) \
-	EACH(LINEAR) \
-	EACH(COSINE) \
-	EACH(SIGMOID) \
-	EACH(EASE)
+#define PASSO_SHAPE_NAMES \
+	{[0] = "LINEAR", [1] = "COSINE", [2] = "SIGMOID", [3] = "EASE"}
 
 #endif

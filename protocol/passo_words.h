@@ -14,8 +14,8 @@
 
 /* Header. First word of a request. */
 struct passo_header {
-	enum passo_operation operation; /* What the frame asks for. */
-	uint8_t              sequence;  /* Differs from that of the write or push before it. */
+	enum passo_operation operation; /* Requested operation. */
+	uint8_t              sequence;  /* Must differ from that of the previous write or push. */
 	uint8_t              length;    /* Words of payload or data, 1 .. 60. */
 	uint16_t             address;   /* Address of the first register. */
 };
@@ -38,10 +38,10 @@ static inline struct passo_header passo_unpack_header(uint32_t word)
 	};
 }
 
-/* Ack. Last word of the reply to a write or push, and to a read that was refused. */
+/* Ack. Last word of the reply to a write or push, and to a refused read. */
 struct passo_ack {
-	uint8_t            sequence;     /* That of the request. */
-	enum passo_verdict verdict;      /* What became of the frame. */
+	uint8_t            sequence;     /* Sequence number of the request. */
+	enum passo_verdict verdict;      /* Outcome of the frame. */
 	uint8_t            not_sequence; /* The same, inverted. */
 	uint8_t            not_verdict;  /* The same, inverted. */
 };
@@ -64,14 +64,14 @@ static inline struct passo_ack passo_unpack_ack(uint32_t word)
 	};
 }
 
-/* Status. What stands in a reply before the ack or the data, as it was when chip select fell. */
+/* Status. Sent in a reply before the ack or the data; sampled when chip select fell. */
 struct passo_status {
 	uint8_t marker;       /* Always 2. */
-	bool    any_stopped;  /* Some channel is STOPPED. */
-	bool    any_occupied; /* Some channel prepares or makes a motion. */
+	bool    any_stopped;  /* At least one channel is STOPPED. */
+	bool    any_occupied; /* At least one channel has a motion prepared or running. */
 	bool    zero;         /* Always 0. */
 	uint8_t channel;      /* RUN.STATUS_CHANNEL: the channel whose room follows. */
-	uint8_t sequence;     /* Of the last write or push that was executed. */
+	uint8_t sequence;     /* Sequence number of the last write or push executed. */
 	uint8_t line_room;    /* Free places for lines, 255 = 255 or more. */
 	uint8_t ramp_room;    /* Free places for ramps, 255 = 255 or more. */
 };
@@ -104,9 +104,9 @@ static inline struct passo_status passo_unpack_status(uint32_t word)
 
 /* Line control. First word of a line; then M and N_0 .. N_{AXES-1}. */
 struct passo_line_control {
-	uint8_t directions; /* Axis i counts down: bit i. */
-	bool    endless;    /* Begin anew until the motion ends. */
-	bool    last;       /* The path may end here. */
+	uint8_t directions; /* Bit i: axis i counts down. */
+	bool    endless;    /* Repeat until the profile ends. */
+	bool    last;       /* The path ends with this line. */
 };
 
 static inline uint32_t passo_pack_line_control(const struct passo_line_control *word)
@@ -128,9 +128,9 @@ static inline struct passo_line_control passo_unpack_line_control(uint32_t word)
 /* Ramp control. First word of a ramp; then the lower bits of v_end, T, and the progress step in two words. */
 struct passo_ramp_control {
 	uint16_t         velocity_high; /* v_end, UQ0.48, bits 47:32. */
-	enum passo_shape shape;         /* How the velocity goes. */
+	enum passo_shape shape;         /* Shape of the ramp. */
 	bool             mirror;        /* 1 - shape(1 - u) instead of shape(u). */
-	bool             now;           /* Drop the ramps before it, begin at the present velocity. */
+	bool             now;           /* Drop the queued ramps before it and start from the present velocity. */
 	bool             last;          /* The profile ends with this ramp. */
 };
 
@@ -208,9 +208,9 @@ static inline struct passo_parameters_word passo_unpack_parameters(uint32_t word
 
 /* Run. One bit per channel, all in one register: channels that are ARMED start on the same clock when one write clears their WAIT_SYNC. */
 struct passo_run {
-	uint8_t status_channel; /* Channel whose queue room stands in the status word. */
+	uint8_t status_channel; /* Channel whose queue room the status word reports. */
 	uint8_t wait_sync;      /* A prepared motion stays ARMED until a rising edge of the sync input, or until this bit is cleared. */
-	uint8_t run;            /* Channel may start motions. Clearing it lets a running motion finish. */
+	uint8_t run;            /* The channel may start motions. Clearing it lets a running motion finish. */
 };
 
 static inline uint32_t passo_pack_run(const struct passo_run *word)
@@ -281,7 +281,7 @@ static inline struct passo_refusals_1 passo_unpack_refusals_1(uint32_t word)
 	};
 }
 
-/* Command. Each bit written as 1 is done once. With STOP or ABORT, CLEAR and ZERO in the same word are ignored; ABORT wins over STOP. */
+/* Command. Each bit written as 1 takes effect once. STOP and ABORT override CLEAR and ZERO in the same word; ABORT has priority over STOP. */
 struct passo_channel_command {
 	bool zero;  /* Set the positions of the channel's axes to 0. Refused with BUSY unless the channel is quiet. */
 	bool clear; /* Clear cause and lost steps and leave STOPPED. Refused with BUSY while a motion runs. */
@@ -307,13 +307,13 @@ static inline struct passo_channel_command passo_unpack_channel_command(uint32_t
 	};
 }
 
-/* State. What the channel does now. */
+/* State. State of the channel. */
 struct passo_channel_state {
 	uint16_t         drained;  /* Substeps drained since reset; wraps. */
-	uint8_t          overrun;  /* Axes that had a STEP_OVERRUN. */
-	bool             stopping; /* A soft stop is under way. */
-	enum passo_cause cause;    /* Why it stopped. */
-	bool             quiet;    /* Quiet: no motion is prepared or runs, and no step waits or is shaped at any axis. */
+	uint8_t          overrun;  /* One bit per axis: it had a STEP_OVERRUN. */
+	bool             stopping; /* A soft stop is in progress. */
+	enum passo_cause cause;    /* Cause of the stop. */
+	bool             quiet;    /* Quiet: no motion is prepared or running, and the pins of every axis are idle. */
 	enum passo_state state;    /* State of the motion. */
 };
 
@@ -359,12 +359,12 @@ static inline struct passo_channel_room passo_unpack_channel_room(uint32_t word)
 	};
 }
 
-/* Pins. Polarities and step mode. Refused with BUSY unless the channel is quiet. The next step waits for the low time, the DIR hold and the DIR set-up from here on. Kept over a reset of the core. */
+/* Pins. Polarities and step mode. Refused with BUSY unless the channel is quiet. From the write on, the next step waits for the low time, the DIR hold and the DIR setup. Kept through a reset of the core. */
 struct passo_axis_pins {
 	bool both_edges;         /* 1: every edge of STEP is a step. */
-	bool enable_inverted;    /* 1: EN is active low. From configuration on: parameter ENABLE_RESET. */
-	bool direction_inverted; /* 1: DIR is high for the positive direction. From configuration on: parameter DIR_RESET. */
-	bool step_inverted;      /* 1: STEP is active low. From configuration on: parameter STEP_RESET. */
+	bool enable_inverted;    /* 1: EN is active low. After configuration: parameter ENABLE_RESET. */
+	bool direction_inverted; /* 1: DIR is high for the positive direction. After configuration: parameter DIR_RESET. */
+	bool step_inverted;      /* 1: STEP is active low. After configuration: parameter STEP_RESET. */
 };
 
 static inline uint32_t passo_pack_axis_pins(const struct passo_axis_pins *word)
@@ -387,8 +387,8 @@ static inline struct passo_axis_pins passo_unpack_axis_pins(uint32_t word)
 
 /* STEP timing. Clocks, 1 .. 65535; 0 counts as 1. Kept over a reset of the core. */
 struct passo_axis_step_timing {
-	uint16_t step_high; /* How long STEP stays active. */
-	uint16_t step_low;  /* How long STEP stays inactive at least. */
+	uint16_t step_high; /* Time that STEP is active. */
+	uint16_t step_low;  /* Minimum time that STEP is inactive. */
 };
 
 static inline uint32_t passo_pack_axis_step_timing(const struct passo_axis_step_timing *word)

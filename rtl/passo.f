@@ -18,7 +18,9 @@ rtl/passo_line.v
 rtl/passo_line_queue.v
 rtl/passo_lines.v
 rtl/passo_link.v
+rtl/passo_link_bus.v
 rtl/passo_link_schedule.v
+rtl/passo_link_states.v
 rtl/passo_memory.v
 rtl/passo_motion.v
 rtl/passo_path.v
@@ -28,7 +30,9 @@ rtl/passo_profile.v
 rtl/passo_ramp.v
 rtl/passo_ramp_numbers.v
 rtl/passo_ramp_queue.v
+rtl/passo_ramp_schedule.v
 rtl/passo_ramp_strobes.v
+rtl/passo_ramp_tick.v
 rtl/passo_registers.v
 rtl/passo_reply.v
 rtl/passo_spi.v

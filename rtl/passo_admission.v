@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Admission: whether the state of the channel allows the frame that is about to be executed.
+// Admission: does the state of the channel allow the frame that is about to be executed?
 //
-// The checks of a frame's words tell what it needs; that is judged once for the whole frame, in a commit. Promise:
-// from 30 clocks after `bus_commit` rose until it falls, `busy` does not rise, so what is executed meets the state that it
-// was judged by: `hold` lets no motion begin, `now_coming` lets none end.
+// The checks of a frame's words collect what it needs; its commit decides once for the whole frame. Promise: from 30
+// clocks after `bus_commit` rises until it falls, `busy` does not rise, so the frame is executed in a state that
+// allows it: `hold` keeps a motion from beginning, `now_coming` keeps one from ending.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -14,11 +14,11 @@ module passo_admission (
   // bus
   input  wire bus_frame,
   input  wire bus_commit,
-  // a word that is checked needs ...
+  // strobes: the word being checked needs ...
   input  wire needs_idle,     // ... no motion
   input  wire needs_quiet,    // ... and no step at the pins
   input  wire needs_motion,   // ... a motion that can still take a NOW ramp
-  input  wire tables_wanted,  // the frame writes shape tables, which needs no motion in any channel
+  input  wire tables_wanted,  // the frame writes shape tables: no motion in any channel
   // state
   input  wire occupied,
   input  wire quiet,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Axes: how the steps leave. Pins, settings and positions of all axes of a channel; wiring only.
+// Axes: pins, settings and positions of all axes of a channel. Wiring only.
 //
-// Promise: step requests become legal pins, as each axis is set; positions are the number of active edges. `quiet`:
-// no step waits or is shaped at any axis, a clock ago.
+// Promise: step requests become legal pin waveforms, by the settings of each axis; positions count active edges.
+// `quiet`, one clock late: no step waits or is in progress at any axis.
 // Latency: step_request to STEP 3 clocks, to step_overrun 1 clock.
 `resetall
 `timescale 1ns / 1ps
@@ -25,22 +25,22 @@ module passo_axes #(
   input  wire [AXES-1:0] select_position,
   input  wire [     2:0] bus_address,      // within the block
   input  wire [    31:0] bus_data,
-  input  wire [     4:0] bus_top_bit,
+  input  wire [     4:0] bus_msb,
   output wire            claim,
   output wire [     3:0] refusal,
   output wire [    31:0] read_data,
-  output wire            needs_quiet,      // strobe: the pins of an axis are checked
+  output wire            needs_quiet,      // strobe: PINS of an axis is being checked
   // lines
   input  wire [AXES-1:0] step_request,
   input  wire [AXES-1:0] directions,
   // motion
-  input  wire            drop,             // forget the steps that wait
-  input  wire            clear,            // of the lost steps
-  input  wire            zero,             // of the positions
-  input  wire            snapshot,         // of the positions, for the frame that begins
+  input  wire            drop,             // drop the waiting steps
+  input  wire            clear,            // clears lost_steps
+  input  wire            zero,             // zeroes the positions
+  input  wire            snapshot,         // copies the positions for the new frame
   output wire            quiet,
   output reg             step_overrun,     // strobe: a step was lost
-  output wire [AXES-1:0] lost_steps,       // since `clear`, a bit for each axis
+  output wire [AXES-1:0] lost_steps,       // since `clear`, one bit per axis
   // pins
   output wire [AXES-1:0] step,
   output wire [AXES-1:0] dir,
@@ -58,8 +58,8 @@ module passo_axes #(
   wire [  AXES-1:0] write_step_timing;
   wire [  AXES-1:0] write_dir_timing;
   wire [  AXES-1:0] write_enable;
-  wire              short_upper;
-  wire              short_lower;
+  wire              upper_is_minimal;
+  wire              lower_is_minimal;
   wire [       3:0] lost_read;
   wire              answers_position;
   wire [      31:0] position;
@@ -76,10 +76,10 @@ module passo_axes #(
       wire [15:0] step_low;
       wire [15:0] dir_setup;
       wire [15:0] dir_hold;
-      wire        short_high;
-      wire        short_low;
-      wire        short_setup;
-      wire        short_hold;
+      wire        high_is_minimal;
+      wire        low_is_minimal;
+      wire        setup_is_minimal;
+      wire        hold_is_minimal;
       wire        both_edges;
       wire        step_inverted;
       wire        direction_inverted;
@@ -108,10 +108,10 @@ module passo_axes #(
         .step_low          (step_low),
         .dir_setup         (dir_setup),
         .dir_hold          (dir_hold),
-        .short_high        (short_high),
-        .short_low         (short_low),
-        .short_setup       (short_setup),
-        .short_hold        (short_hold),
+        .high_is_minimal   (high_is_minimal),
+        .low_is_minimal    (low_is_minimal),
+        .setup_is_minimal  (setup_is_minimal),
+        .hold_is_minimal   (hold_is_minimal),
         .timing_written    (write_step_timing[axis] | write_dir_timing[axis]),
         .pins_written      (write_pins[axis]),
         .both_edges_next   (bus_data[AXIS_PINS_BOTH_EDGES_LSB]),
@@ -137,12 +137,12 @@ module passo_axes #(
         .write_dir_timing  (write_dir_timing[axis]),
         .write_enable      (write_enable[axis]),
         .bus_data          (bus_data),
-        .short_upper       (short_upper),
-        .short_lower       (short_lower),
-        .short_high        (short_high),
-        .short_low         (short_low),
-        .short_setup       (short_setup),
-        .short_hold        (short_hold),
+        .upper_is_minimal  (upper_is_minimal),
+        .lower_is_minimal  (lower_is_minimal),
+        .high_is_minimal   (high_is_minimal),
+        .low_is_minimal    (low_is_minimal),
+        .setup_is_minimal  (setup_is_minimal),
+        .hold_is_minimal   (hold_is_minimal),
         .step_high         (step_high),
         .step_low          (step_low),
         .dir_setup         (dir_setup),
@@ -169,7 +169,7 @@ module passo_axes #(
     .select_position  (select_position),
     .bus_address      (bus_address),
     .bus_data         (bus_data),
-    .bus_top_bit      (bus_top_bit),
+    .bus_msb          (bus_msb),
     .claim            (claim),
     .refusal          (refusal),
     .read_data        (lost_read),
@@ -179,8 +179,8 @@ module passo_axes #(
     .write_dir_timing (write_dir_timing),
     .write_enable     (write_enable),
     .needs_quiet      (needs_quiet),
-    .short_upper      (short_upper),
-    .short_lower      (short_lower),
+    .upper_is_minimal (upper_is_minimal),
+    .lower_is_minimal (lower_is_minimal),
     .lost             (lost)
   );
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Passo behind AXI4-Lite: for a CPU in the same FPGA.
+// Passo behind AXI4-Lite, for a CPU in the same FPGA.
 //
-// The two registers of passo_words; what is an error there is answered with SLVERR. One access at a time: a write is
-// taken when its address and its data are there, a read when no write is; each is answered before the next is taken.
+// The two registers of passo_words; its errors return SLVERR. One access at a time: a write is accepted once its
+// address and data are valid, a read while no write is; each is answered before the next is accepted.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -11,17 +11,17 @@ module passo_axi_lite #(
   parameter                     CHANNELS        = 1,  // 1 .. 8
   parameter                     AXES            = 4,  // per channel, 1 .. 8
   parameter                     TICK_LOG2       = 7,  // clocks per tick, 7 .. 16
-  parameter                     LINE_QUEUE_LOG2 = 8,  // places for lines, 2 .. 8
-  parameter                     RAMP_QUEUE_LOG2 = 4,  // places for ramps, 2 .. 8
-  parameter                     STEPS_REGISTER  = 0,  // 1: where block RAMs have a register behind their data
-  // levels of the pins from configuration on until the host has spoken; bit channel * AXES + axis
+  parameter                     LINE_QUEUE_LOG2 = 8,  // log2 of the places for lines, 2 .. 8
+  parameter                     RAMP_QUEUE_LOG2 = 4,  // log2 of the places for ramps, 2 .. 8
+  parameter                     STEPS_REGISTER  = 0,  // 1: block RAMs have an output register
+  // pin levels from configuration until the host writes polarities; bit channel * AXES + axis
   parameter [CHANNELS*AXES-1:0] STEP_RESET      = 0,
   parameter [CHANNELS*AXES-1:0] DIR_RESET       = 0,
   parameter [CHANNELS*AXES-1:0] ENABLE_RESET    = 0
 ) (
   input  wire                     clk,
   input  wire                     rst,
-  // AXI4-Lite slave, byte addresses; their lowest bits and the protection do not matter
+  // AXI4-Lite slave, byte addresses; bits 1:0 and the protection are ignored
   /* verilator lint_off UNUSEDSIGNAL */
   input  wire [              2:0] s_axil_awaddr,
   input  wire [              2:0] s_axil_awprot,
@@ -43,7 +43,7 @@ module passo_axi_lite #(
   output reg                      s_axil_rvalid,
   input  wire                     s_axil_rready,
   /* verilator lint_on UNUSEDSIGNAL */
-  // start of several chips on one edge
+  // starts several chips on one edge
   input  wire                     sync,
   // drives: bit channel * AXES + axis
   output wire [CHANNELS*AXES-1:0] step,
@@ -51,7 +51,7 @@ module passo_axi_lite #(
   output wire [CHANNELS*AXES-1:0] enable,
   // to the host
   output wire [     CHANNELS-1:0] running,
-  output wire                     irq              // some channel is stopped
+  output wire                     irq              // a channel is stopped
 );
 
   wire        frame_start;
@@ -64,7 +64,7 @@ module passo_axi_lite #(
   wire done;
   wire error;
   wire write = s_axil_awvalid & s_axil_wvalid;
-  reg  write_q;  // which of the two is done
+  reg  write_q;  // `done` belongs to a write
   wire answering = s_axil_bvalid | s_axil_rvalid;
 
   assign s_axil_awready = done & write_q;

@@ -5,50 +5,50 @@
 //   STEP _________/~~~~\______/~~~~\_______________________
 //            |setup|high|  low |    |  low  |  hold  |
 //
-// Promise: STEP is active for exactly step_high and inactive for at least step_low clocks; DIR never changes
-// from dir_setup clocks before an active edge to dir_hold clocks after the low time of the pulse. With high =
-// low = 1 it makes a step every two clocks. A step that must wait keeps its direction in a queue of 4; one
-// that finds the queue `full` is not made but counts in `lost`, which stops at 15. While nothing waits, DIR
-// follows `direction`, that of the line whose steps are being made. With both_edges every edge of STEP is a
-// step, and each level lasts at least step_high or step_low. `drop` empties the queue; a pulse that has begun is
-// finished. No timing is 0. `timing_written` restarts the running time, as the timings change with it.
-// `pins_written`, while `quiet`: polarities and mode change with it, the pins follow two clocks later; the next step
-// waits for step_low, dir_hold and dir_setup. So it does after a reset, which leaves STEP and DIR as they are and
-// finishes a pulse that has begun. `quiet`: no step waits or is shaped, no time runs.
-// Latency: step_request to STEP 3 clocks, `direction` to DIR 3 clocks. `step_made`, with `step_direction`, is
-// high in the clock before the active edge leaves the pin.
+// Promise: STEP is active for exactly step_high and inactive for at least step_low clocks; DIR never changes from
+// dir_setup clocks before an active edge to dir_hold clocks after the low time of the pulse. With high = low = 1 the
+// axis steps every two clocks. A step that must wait is queued with its direction, up to 4; one that finds the queue
+// `full` is lost and counted in `lost`, up to 15. While nothing waits, DIR follows `direction`, that of the line
+// whose steps are being made. With both_edges every edge of STEP is a step, and each level lasts at least step_high
+// or step_low. `drop` empties the queue; a pulse in progress is finished. No timing is 0. `timing_written` restarts
+// the running timing, as the settings change with it. `pins_written`, only while `quiet`: polarities and mode change
+// with it, the pins two clocks later; the next step waits for step_low, dir_hold and dir_setup, as it does after a
+// reset. A reset leaves STEP and DIR as they are and finishes a pulse in progress. `quiet`: no step waits or is in
+// progress, no timing runs.
+// Latency: step_request to STEP 3 clocks, `direction` to DIR 3 clocks. `step_made`, with `step_direction`, is high in
+// the clock before the active edge leaves the pin.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
 
 module passo_axis #(
-  parameter [0:0] STEP_RESET   = 0,  // levels of the pins from configuration on
+  parameter [0:0] STEP_RESET   = 0,  // pin levels from configuration on
   parameter [0:0] DIR_RESET    = 0,
   parameter [0:0] ENABLE_RESET = 0
 ) (
   input  wire        clk,
   input  wire        rst,
   input  wire        step_request,
-  input  wire        direction,           // of the step and of the steps to come: 1 = negative
+  input  wire        direction,           // of this step and those to come: 1 = negative
   input  wire        drop,
   output reg         step_made,
   output wire        step_direction,
-  output wire        full,                // no place for a step
-  output reg         quiet,               // of a clock ago
-  input  wire        clear,               // of `lost`
+  output wire        full,                // no room for a step
+  output reg         quiet,               // one clock late
+  input  wire        clear,               // clears `lost`
   output reg  [ 3:0] lost,
   // settings
   input  wire [15:0] step_high,
   input  wire [15:0] step_low,
   input  wire [15:0] dir_setup,
   input  wire [15:0] dir_hold,
-  input  wire        short_high,          // 1: the time is 1
-  input  wire        short_low,
-  input  wire        short_setup,
-  input  wire        short_hold,
+  input  wire        high_is_minimal,     // step_high is 1
+  input  wire        low_is_minimal,
+  input  wire        setup_is_minimal,
+  input  wire        hold_is_minimal,
   input  wire        timing_written,
   input  wire        pins_written,
-  input  wire        both_edges_next,     // with pins_written: the mode that is written
+  input  wire        both_edges_next,     // with pins_written: the new mode
   input  wire        both_edges,
   input  wire        step_inverted,
   input  wire        direction_inverted,
@@ -60,24 +60,24 @@ module passo_axis #(
   output reg         enable_pin
 );
 
-  // States. With both_edges there is no high, a step leads to low at once.
+  // States. With both_edges there is no high: a step goes straight to low.
   reg high;  // STEP is active for step_high; then it falls
-  reg low;  // STEP keeps its level for step_low or, with both_edges, for the time of that level
+  reg low;  // STEP keeps its level for step_low or, with both_edges, for that level's time
   reg setup;
-  reg idle;  // a step or, unless in hold, a turn may begin
+  reg idle;  // a step or, unless in hold, a DIR setup may begin
   reg hold;  // a step in the same direction may interrupt it
   reg settle;  // polarities and mode have changed
-  reg unsettled;  // since then DIR has had no set-up time
+  reg unsettled;  // DIR has had no setup time since then
   reg step;
   reg dir;
 
-  // The timer tells the number of the next clock of the state. `level_done`, or `dir_done` in setup and hold, is
-  // high in the last clock: of a time of 1 that is the first one. Outside these states they stand for the time that
-  // would begin next.
+  // `timer` is the number of the next clock of the state. `level_done`, or `dir_done` in setup and hold, is high in
+  // the last clock, which is the first one if the timing is 1. Outside these states they say whether the timing that
+  // would begin next is 1.
   reg  [15:0] timer;
   reg         level_done;
   reg         dir_done;
-  // Kept, so that a bit of the choice and of the comparison goes into one LUT.
+  // Kept: one bit of the mux and the comparison fits one LUT.
   (* keep *)
   wire [15:0] level_equal;
   (* keep *)
@@ -85,9 +85,9 @@ module passo_axis #(
   assign level_equal = timer ^ ~(step ? step_high : step_low);
   assign dir_equal   = timer ^ ~(setup ? dir_setup : dir_hold);
 
-  // Steps that wait, as directions, the oldest in bit 0. Free places hold the latest direction.
+  // Waiting steps, as directions, oldest in bit 0. Free places hold the latest direction.
   reg  [3:0] waiting;
-  reg  [3:0] waits;  // which places are taken
+  reg  [3:0] waits;  // occupied places
   reg        waits_up;  // waits[0] & ~waiting[0]
   reg        waits_down;  // waits[0] & waiting[0]
   wire       ready = ~unsettled & (dir ? waits_down : waits_up);
@@ -100,20 +100,20 @@ module passo_axis #(
   wire low_over = low & level_done;
   wire free = idle | low_over | (setup & dir_done);
   wire step_begins = free & ready;
-  wire turns = wrong | unsettled;
-  wire turn = idle & turns & (~hold | dir_done);
+  wire needs_setup = wrong | unsettled;
+  wire setup_begins = idle & needs_setup & (~hold | dir_done);
   wire edge_begins = step_begins | falls;
 
-  // a time begins, or none runs
+  // a timing begins, or none runs
   wire restart = timing_written | settle;
-  wire begins = idle  ? ~hold | restart | ready | (turns & dir_done) :
+  wire begins = idle  ? ~hold | restart | ready | (needs_setup & dir_done) :
                         restart | (setup ? dir_done : level_done);
 
-  wire pulse = (step_pin ^ step_inverted) & ~both_edges;  // one is on the pin, and has an end
+  wire pulse = (step_pin ^ step_inverted) & ~both_edges;  // one is on the pin and will end
 
-  assign step_direction = dir;  // does not change in the clock after step_begins
+  assign step_direction = dir;  // stable in the clock after step_begins
 
-  // What will be the oldest: the second oldest when a step begins. Kept, as a LUT each.
+  // The next oldest step: the second oldest if a step begins. Kept: one LUT each.
   (* keep *)
   wire up_behind, up_here, down_behind, down_here;
   assign up_behind   = waits[1] ? ~waiting[1] : step_request & ~direction;
@@ -133,9 +133,9 @@ module passo_axis #(
 
     timer <= !begins ? timer + 16'd1 : restart ? 16'd1 : 16'd2;
     if ((high || low) && !level_done) level_done <= &level_equal;
-    else level_done <= step ? short_low : short_high;
+    else level_done <= step ? low_is_minimal : high_is_minimal;
     if ((setup || hold) && !dir_done) dir_done <= &dir_equal;
-    else dir_done <= low ? short_hold : short_setup;
+    else dir_done <= low ? hold_is_minimal : setup_is_minimal;
     if (restart) begin
       level_done <= 1'b0;
       dir_done   <= 1'b0;
@@ -143,15 +143,15 @@ module passo_axis #(
 
     high  <= (high & ~falls) | (step_begins & ~both_edges);
     low   <= (low & ~low_over) | falls | (step_begins & both_edges) | settle;
-    setup <= (setup & ~dir_done) | turn;
-    idle  <= free & ~step_begins & ~turn & ~settle;
-    hold  <= ((hold & ~dir_done) | low_over) & ~step_begins & ~turn;
+    setup <= (setup & ~dir_done) | setup_begins;
+    idle  <= free & ~step_begins & ~setup_begins & ~settle;
+    hold  <= ((hold & ~dir_done) | low_over) & ~step_begins & ~setup_begins;
     step  <= (step & ~(pins_written & ~both_edges_next)) ^ edge_begins;
-    dir   <= dir ^ (turn & wrong);
+    dir   <= dir ^ (setup_begins & wrong);
 
     settle    <= pins_written;
-    unsettled <= settle | (unsettled & ~turn);
-    quiet     <= idle & ~hold & ~turns & ~waits[0] & ~step_request & ~pins_written & ~settle;
+    unsettled <= settle | (unsettled & ~setup_begins);
+    quiet     <= idle & ~hold & ~needs_setup & ~waits[0] & ~step_request & ~pins_written & ~settle;
 
     step_made  <= step_begins;
     enable_pin <= enable ^ enable_inverted;

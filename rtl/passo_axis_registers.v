@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Registers of the axes of a channel: what is written to which axis, and what the bus is answered.
+// Registers of the axes of a channel: address decode, checks, write strobes, answers.
 //
-// Promise: the answer to a strobe comes one clock later, for one clock; it is 0 unless one of these registers
-// is meant. `select_axis` has the bit of the axis whose block is meant, `select_position` that of the axis
-// whose position is. `answers_position` tells that the answer is a position, which this module does not know.
+// Promise: a strobe is answered one clock later, for one clock; the answer is 0 unless one of these registers is
+// addressed. `select_axis` has the bit of the axis whose block is addressed, `select_position` that of the axis whose
+// position is. `answers_position`: the answer is a position, which this module does not have.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -22,25 +22,25 @@ module passo_axis_registers #(
   input  wire [  AXES-1:0] select_position,
   input  wire [       2:0] bus_address,        // within the block
   input  wire [      31:0] bus_data,
-  input  wire [       4:0] bus_top_bit,
+  input  wire [       4:0] bus_msb,
   output reg               claim,
   output reg  [       3:0] refusal,
   output reg  [       3:0] read_data,
   output reg               answers_position,
   // axes
-  output reg  [  AXES-1:0] write_pins,         // strobes, a clock after the bus's, with bus_data
+  output reg  [  AXES-1:0] write_pins,         // strobes, one clock after bus_write, with bus_data
   output reg  [  AXES-1:0] write_step_timing,
   output reg  [  AXES-1:0] write_dir_timing,
   output reg  [  AXES-1:0] write_enable,
-  output reg               short_upper,        // half of bus_data is 0 or 1
-  output reg               short_lower,
-  output wire              needs_quiet,        // strobe: the pins of an axis are checked
+  output reg               upper_is_minimal,   // half of bus_data is 0 or 1: a time of one clock
+  output reg               lower_is_minimal,
+  output wire              needs_quiet,        // strobe: PINS of an axis is being checked
   input  wire [AXES*4-1:0] lost
 );
 
   `include "passo_registers.vh"
 
-  // Which register is meant is known a clock before the strobe, because the address is.
+  // Decoded one clock ahead of the strobe: the address is stable by then.
   reg  is_pins;
   reg  is_step_timing;
   reg  is_dir_timing;
@@ -49,7 +49,7 @@ module passo_axis_registers #(
   wire is_axis = select_axis != {AXES{1'b0}};
   reg  readable;  // LOST_STEPS or a position
   reg  writable;
-  reg  bad_value;  // the data have bits that the register has not
+  reg  bad_value;  // undefined bits are set
 
   always @(posedge clk) begin
     is_pins <= is_axis && bus_address == AXIS_PINS;
@@ -82,10 +82,10 @@ module passo_axis_registers #(
   end
 
   always @(posedge clk) begin
-    short_upper <= bus_data[31:16] < 16'd2;
-    short_lower <= bus_data[15:0] < 16'd2;
-    bad_value        <= bus_address == AXIS_PINS   ? bus_top_bit > 5'd4 || bus_data[0] :
-                        bus_address == AXIS_ENABLE && bus_top_bit != 5'd0;
+    upper_is_minimal <= bus_data[31:16] < 16'd2;
+    lower_is_minimal <= bus_data[15:0] < 16'd2;
+    bad_value        <= bus_address == AXIS_PINS   ? bus_msb > 5'd4 || bus_data[0] :
+                        bus_address == AXIS_ENABLE && bus_msb != 5'd0;
     claim <= (bus_check | bus_read) & (readable | writable);
     refusal <= VERDICT_OK;
     read_data <= bus_read && is_lost ? selected_lost : 4'd0;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Settings of one axis, as they are written, and which of its times are 1, which its timer needs to know before
-// it counts. A time of 0 counts as 1.
+// Settings of one axis as written, and which of its timings are one clock: the timer needs to know before it counts.
+// A time of 0 counts as 1.
 //
-// They are configuration: a reset takes only the drive enable away. The polarities begin such that each pin has
-// the level of its parameter until the host has spoken.
+// They are configuration: a reset only clears the drive enable. Until the host writes others, the polarities give
+// each pin the level of its parameter.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -21,16 +21,16 @@ module passo_axis_settings #(
   input  wire        write_dir_timing,
   input  wire        write_enable,
   input  wire [31:0] bus_data,
-  input  wire        short_upper,         // its upper half is 0 or 1
-  input  wire        short_lower,
+  input  wire        upper_is_minimal,    // upper half is 0 or 1
+  input  wire        lower_is_minimal,
   output reg  [15:0] step_high,
   output reg  [15:0] step_low,
   output reg  [15:0] dir_setup,
   output reg  [15:0] dir_hold,
-  output reg         short_high,          // step_high is 1
-  output reg         short_low,
-  output reg         short_setup,
-  output reg         short_hold,
+  output reg         high_is_minimal,     // step_high is 1
+  output reg         low_is_minimal,
+  output reg         setup_is_minimal,
+  output reg         hold_is_minimal,
   output reg         both_edges,
   output reg         step_inverted,
   output reg         direction_inverted,
@@ -40,7 +40,7 @@ module passo_axis_settings #(
 
   `include "passo_registers.vh"
 
-  wire [31:0] times = bus_data | {15'd0, short_upper, 15'd0, short_lower};
+  wire [31:0] times = bus_data | {15'd0, upper_is_minimal, 15'd0, lower_is_minimal};
 
   initial begin
     step_inverted      = STEP_RESET;
@@ -52,21 +52,21 @@ module passo_axis_settings #(
     step_low           = AXIS_STEP_TIMING_STEP_LOW_RESET;
     dir_setup          = AXIS_DIR_TIMING_DIR_SETUP_RESET;
     dir_hold           = AXIS_DIR_TIMING_DIR_HOLD_RESET;
-    short_high         = AXIS_STEP_TIMING_STEP_HIGH_RESET < 16'd2;
-    short_low          = AXIS_STEP_TIMING_STEP_LOW_RESET < 16'd2;
-    short_setup        = AXIS_DIR_TIMING_DIR_SETUP_RESET < 16'd2;
-    short_hold         = AXIS_DIR_TIMING_DIR_HOLD_RESET < 16'd2;
+    high_is_minimal    = AXIS_STEP_TIMING_STEP_HIGH_RESET < 16'd2;
+    low_is_minimal     = AXIS_STEP_TIMING_STEP_LOW_RESET < 16'd2;
+    setup_is_minimal   = AXIS_DIR_TIMING_DIR_SETUP_RESET < 16'd2;
+    hold_is_minimal    = AXIS_DIR_TIMING_DIR_HOLD_RESET < 16'd2;
   end
 
   always @(posedge clk) begin
     if (write_pins && !rst) {both_edges, enable_inverted, direction_inverted, step_inverted} <= bus_data[4:1];
     if (write_step_timing && !rst) begin
-      {step_high, step_low}   <= times;
-      {short_high, short_low} <= {short_upper, short_lower};
+      {step_high, step_low}             <= times;
+      {high_is_minimal, low_is_minimal} <= {upper_is_minimal, lower_is_minimal};
     end
     if (write_dir_timing && !rst) begin
-      {dir_setup, dir_hold}     <= times;
-      {short_setup, short_hold} <= {short_upper, short_lower};
+      {dir_setup, dir_hold}               <= times;
+      {setup_is_minimal, hold_is_minimal} <= {upper_is_minimal, lower_is_minimal};
     end
     if (write_enable) enable <= bus_data[0];
     if (rst) enable <= AXIS_ENABLE_RESET;

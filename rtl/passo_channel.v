@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Channel: one coordinated group of AXES axes. Lines say where, the profile says when, axes shape the pins; the
-// motion leads them. Wiring, but for what is quiet.
+// Channel: one coordinated group of AXES axes. Lines say where, the profile says when, the axes drive the pins, the
+// motion controls them. Wiring, except for `quiet`.
 //
 // Promise: a step due n enabled clocks into the profile leaves its pin n clocks after `running` rose.
 `resetall
@@ -29,8 +29,8 @@ module passo_channel #(
   input  wire                     select,
   input  wire [              7:0] bus_address,
   input  wire [             31:0] bus_data,
-  input  wire [              4:0] bus_top_bit,
-  input  wire                     bus_lone_bit,
+  input  wire [              4:0] bus_msb,
+  input  wire                     bus_one_hot,
   output reg                      claim,
   output reg  [              3:0] refusal,
   output reg  [             31:0] read_data,
@@ -137,8 +137,8 @@ module passo_channel #(
     read_data = registers_read_data | axes_read_data;
   end
 
-  reg  [2:0] occupied_q;  // a line that is loaded in the clock of a stop turns DIR up to 4 clocks later
-  reg        at_rest;  // no motion, and no step on its way to the axes
+  reg  [2:0] occupied_q;  // a line loaded in the clock of a stop changes DIR up to 4 clocks later
+  reg        at_rest;  // no motion, and no step in flight to the axes
   wire       quiet = at_rest & ~occupied;
 
   always @(posedge clk) begin
@@ -160,8 +160,8 @@ module passo_channel #(
     .select           (select),
     .bus_address      (bus_address),
     .bus_data         (bus_data),
-    .bus_top_bit      (bus_top_bit),
-    .bus_lone_bit     (bus_lone_bit),
+    .bus_msb          (bus_msb),
+    .bus_one_hot      (bus_one_hot),
     .claim            (registers_claim),
     .refusal          (registers_refusal),
     .read_data        (registers_read_data),
@@ -270,7 +270,7 @@ module passo_channel #(
     .bus_write       (bus_write),
     .select          (select_ramp_queue),
     .bus_data        (bus_data),
-    .bus_top_bit     (bus_top_bit),
+    .bus_msb         (bus_msb),
     .refusal         (ramp_refusal),
     .incomplete      (ramp_incomplete),
     .needs_motion    (ramp_needs_motion),
@@ -309,7 +309,7 @@ module passo_channel #(
     .bus_write   (bus_write),
     .select      (select_line_queue),
     .bus_data    (bus_data),
-    .bus_top_bit (bus_top_bit),
+    .bus_msb     (bus_msb),
     .refusal     (line_refusal),
     .incomplete  (line_incomplete),
     .room        (line_room),
@@ -341,7 +341,7 @@ module passo_channel #(
     .select_position(select_position),
     .bus_address    (bus_address[2:0]),
     .bus_data       (bus_data),
-    .bus_top_bit    (bus_top_bit),
+    .bus_msb        (bus_msb),
     .claim          (axes_claim),
     .refusal        (axes_refusal),
     .read_data      (axes_read_data),

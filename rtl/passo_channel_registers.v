@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Registers of one channel: commands, time scale, drain velocity, state; and which of the channel's blocks an
-// address means.
+// Registers of one channel: commands, time scale, drain velocity, state; and the address decode of its blocks.
 //
-// Promise: the answer to a strobe comes one clock later, for one clock; it is 0 unless one of these registers
-// is meant. A command strobe is high for the clock after its write. With STOP or ABORT, CLEAR and ZERO in the same
-// word are ignored, and STOP with ABORT: no state refuses them. `bus_top_bit` and `bus_lone_bit` tell how large the
-// data of a check are.
+// Promise: a strobe is answered one clock later, for one clock; the answer is 0 unless one of these registers is
+// addressed. A command strobe is high in the clock after its write. STOP or ABORT masks CLEAR and ZERO in the same
+// word, ABORT masks STOP: no state refuses either. `bus_msb` and `bus_one_hot` describe the magnitude of checked
+// data.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -25,8 +24,8 @@ module passo_channel_registers #(
   input  wire                     select,
   input  wire [              7:0] bus_address,        // within the channel
   input  wire [             31:0] bus_data,
-  input  wire [              4:0] bus_top_bit,
-  input  wire                     bus_lone_bit,
+  input  wire [              4:0] bus_msb,
+  input  wire                     bus_one_hot,
   output reg                      claim,
   output reg  [              3:0] refusal,
   output wire [             31:0] read_data,
@@ -45,7 +44,7 @@ module passo_channel_registers #(
   output reg                      command_abort,
   output reg                      command_clear,
   output reg                      command_zero,
-  // what a command that is checked needs; strobes
+  // strobes: what the command being checked needs
   output wire                     needs_idle,
   output wire                     needs_quiet,
   // state
@@ -67,7 +66,7 @@ module passo_channel_registers #(
   wire       is_ramp = bus_address == CHANNEL_RAMP;
   wire [7:0] overrun_padded = {{(8 - AXES) {1'b0}}, overrun};
 
-  // Known a clock before the strobe, because the address is.
+  // Decoded one clock ahead of the strobe: the address is stable by then.
   genvar axis;
   generate
     for (axis = 0; axis < AXES; axis = axis + 1) begin : g_axis
@@ -83,7 +82,7 @@ module passo_channel_registers #(
     select_ramp_queue <= select & bus_push & is_ramp;
   end
 
-  // The blocks of write-only and of read-only registers, and the number in the block
+  // Blocks of write-only and of read-only registers, and the register's number within
   reg       in_settings;
   reg       in_state;
   reg       in_queues;
@@ -108,16 +107,16 @@ module passo_channel_registers #(
   assign needs_idle  = bus_check & is_command & clear;
   assign needs_quiet = bus_check & is_command & zero;
 
-  // What a check is answered. Values: a rate is at most 2^16, a drain velocity at most 2^31 and not 0.
+  // Answer to a check. Limits: a rate at most 2^16, a drain velocity 1 .. 2^31.
   reg  bad_value;
   wire not_taken = bus_push != in_queues;
 
   always @(posedge clk) begin
     known <= in_settings || in_state || in_queues;
-    bad_value <= in_settings && (is_command        ? bus_top_bit > 5'd3 :
-                                 is_drain_velocity ? (bus_top_bit == 5'd31 && !bus_lone_bit)
-                                                     || (bus_top_bit == 5'd0 && !bus_data[0]) :
-                                                     bus_top_bit > 5'd16 || (bus_top_bit[4] && !bus_lone_bit));
+    bad_value <= in_settings && (is_command        ? bus_msb > 5'd3 :
+                                 is_drain_velocity ? (bus_msb == 5'd31 && !bus_one_hot)
+                                                     || (bus_msb == 5'd0 && !bus_data[0]) :
+                                                     bus_msb > 5'd16 || (bus_msb[4] && !bus_one_hot));
     claim <= known && (bus_check || bus_read);
     refusal <= !known    ? VERDICT_OK :
                bus_read  ? (in_state ? VERDICT_OK : VERDICT_BAD_OPERATION) :
@@ -154,7 +153,7 @@ module passo_channel_registers #(
     if (write && number == CHANNEL_RATE_TARGET[2:0]) rate_target <= bus_data[16:0];
     if (write && number == CHANNEL_RATE_SLEW[2:0]) rate_slew <= bus_data[16:0];
     if (write && number == CHANNEL_STOP_SLEW[2:0]) stop_slew <= bus_data[16:0];
-    // the path takes the upper bits a clock after the lower ones
+    // the path takes the upper bits one clock after the lower ones
     drain_velocity_written <= write && is_drain_velocity;
     if (write && is_drain_velocity) drain_velocity[7:0] <= bus_data[7:0];
     if (drain_velocity_written) drain_velocity[31:8] <= bus_data[31:8];

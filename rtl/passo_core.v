@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Passo: a step-pulse generator behind a front door. Frames in, STEP/DIR out, CHANNELS independent groups of
+// Passo: a step-pulse generator behind a host interface. Frames in, STEP/DIR out, CHANNELS independent groups of
 // AXES coordinated axes. Wiring, and what the channels share: the sync input and the slew tick.
 //
-// The front door brings the words of a frame in halves of 16 bits and takes the words of the reply: passo_spi over
-// SPI, passo_words for a bus in the same FPGA. Instantiate a top: passo_spi_top, passo_wishbone, passo_axi_lite.
+// The host interface delivers the words of a frame in halves of 16 bits and takes the words of the reply: passo_spi
+// over SPI, passo_words for a bus in the same FPGA. Instantiate a top: passo_spi_top, passo_wishbone, passo_axi_lite.
 //
 // Reset: rst synchronous, active high.
 // Latency: a rising edge of `sync` starts the armed channels 4 clocks later.
@@ -15,24 +15,24 @@ module passo_core #(
   parameter                     CHANNELS        = 1,  // 1 .. 8
   parameter                     AXES            = 4,  // per channel, 1 .. 8
   parameter                     TICK_LOG2       = 7,  // clocks per tick, 7 .. 16
-  parameter                     LINE_QUEUE_LOG2 = 8,  // places for lines, 2 .. 8
-  parameter                     RAMP_QUEUE_LOG2 = 4,  // places for ramps, 2 .. 8
-  parameter                     STEPS_REGISTER  = 0,  // 1: where block RAMs have a register behind their data
-  // levels of the pins from configuration on until the host has spoken; bit channel * AXES + axis
+  parameter                     LINE_QUEUE_LOG2 = 8,  // log2 of the places for lines, 2 .. 8
+  parameter                     RAMP_QUEUE_LOG2 = 4,  // log2 of the places for ramps, 2 .. 8
+  parameter                     STEPS_REGISTER  = 0,  // 1: block RAMs have an output register
+  // pin levels from configuration until the host writes polarities; bit channel * AXES + axis
   parameter [CHANNELS*AXES-1:0] STEP_RESET      = 0,
   parameter [CHANNELS*AXES-1:0] DIR_RESET       = 0,
   parameter [CHANNELS*AXES-1:0] ENABLE_RESET    = 0
 ) (
   input  wire                     clk,
   input  wire                     rst,
-  // front door
+  // host interface
   input  wire                     frame_start,  // strobes
   input  wire                     frame_end,
   input  wire                     half_valid,
-  input  wire                     half_low,     // it is the lower half of a word
+  input  wire                     half_low,     // lower half of a word
   input  wire [             15:0] half,
   output wire [             31:0] reply_word,
-  // start of several chips on one edge
+  // starts several chips on one edge
   input  wire                     sync,
   // drives: bit channel * AXES + axis
   output wire [CHANNELS*AXES-1:0] step,
@@ -40,7 +40,7 @@ module passo_core #(
   output wire [CHANNELS*AXES-1:0] enable,
   // to the host
   output wire [     CHANNELS-1:0] running,
-  output reg                      irq           // some channel is stopped
+  output reg                      irq           // a channel is stopped
 );
 
   `include "passo_registers.vh"
@@ -73,8 +73,8 @@ module passo_core #(
   wire        bus_push;
   wire [11:0] bus_address;
   wire [31:0] bus_data;
-  wire [ 4:0] bus_top_bit;
-  wire        bus_lone_bit;
+  wire [ 4:0] bus_msb;
+  wire        bus_one_hot;
   wire        bus_counters;
   reg         bus_claim;
   reg  [ 3:0] bus_refusal;
@@ -119,7 +119,7 @@ module passo_core #(
   end
 
   // Shape banks 1 .. 3 are the last three blocks of 256 addresses.
-  reg select_tables;  // a clock after the address, which stands a clock before any strobe
+  reg select_tables;  // one clock after the address, in time for the strobe
 
   (* async_reg = "true" *)
   reg  [          2:0] sync_q;
@@ -162,8 +162,8 @@ module passo_core #(
     .bus_push      (bus_push),
     .bus_address   (bus_address),
     .bus_data      (bus_data),
-    .bus_top_bit   (bus_top_bit),
-    .bus_lone_bit  (bus_lone_bit),
+    .bus_msb       (bus_msb),
+    .bus_one_hot   (bus_one_hot),
     .bus_claim     (bus_claim),
     .bus_refusal   (bus_refusal),
     .bus_read_data (bus_read_data),
@@ -187,7 +187,7 @@ module passo_core #(
     .bus_push     (bus_push),
     .bus_address  (bus_address),
     .bus_data     (bus_data[18:0]),
-    .bus_top_bit  (bus_top_bit),
+    .bus_msb      (bus_msb),
     .claim        (registers_claim),
     .refusal      (registers_refusal),
     .read_data    (registers_read_data),
@@ -215,7 +215,7 @@ module passo_core #(
     .select     (select_tables),
     .bus_address(bus_address[9:0]),
     .bus_data   (bus_data[15:0]),
-    .bus_top_bit(bus_top_bit),
+    .bus_msb    (bus_msb),
     .refusal    (tables_refusal),
     .wanted     (tables_wanted),
     .request    (table_request),
@@ -251,8 +251,8 @@ module passo_core #(
         .select          (bus_address[11:8] == BLOCK),
         .bus_address     (bus_address[7:0]),
         .bus_data        (bus_data),
-        .bus_top_bit     (bus_top_bit),
-        .bus_lone_bit    (bus_lone_bit),
+        .bus_msb         (bus_msb),
+        .bus_one_hot     (bus_one_hot),
         .claim           (channel_claim[channel]),
         .refusal         (channel_refusal[channel*4+:4]),
         .read_data       (channel_read_data[channel*32+:32]),

@@ -3,10 +3,10 @@
 //
 //   each substep:  e += N;  if e >= M { e -= M; a step }           e = floor(M / 2) when the line starts
 //
-// `e` is kept as e - M, which is below 0 whenever a substep begins: 30 bits of it are enough. Clock A adds N; if
-// no carry comes out it is still below 0 (`below`), else clock B takes M off again. At the end of a line e would
-// be back at its start value; A leaves 0 instead, and B adds the start value of the next line: only e and the
-// addend enter the sum's carry chain.
+// The register holds e - M, negative whenever a substep begins, so 30 bits suffice. Clock A adds N; without a carry
+// the sum is still negative, with one clock B makes a step and subtracts M. At the end of a line e would be back at
+// its start value; A clears the register instead and B adds the start value of the next line: only the register and
+// the addend enter the carry chain.
 //
 // Promise: exactly N steps in M substeps, for any 0 <= N <= M. `step_request` is high in clock B.
 `resetall
@@ -15,28 +15,28 @@
 
 module passo_dda (
   input  wire               clk,
-  input  wire               slot_add,     // clock A of a substep
-  input  wire               slot_load,    // clock A when a new line begins
-  input  wire               slot_step,    // clock B of a substep
-  input  wire               slot_load_q,  // clock B when a new line begins
-  input  wire signed [30:0] broadcast,    // in A: -M, or the start value of the new line
-  input  wire        [29:0] steps,        // N of the current line; in B already that of the new one
+  input  wire               add_n,         // A: e += N
+  input  wire               load_start,    // A at the start of a line: clear
+  input  wire               decide_step,   // B: if e >= M, a step and e -= M
+  input  wire               load_start_q,  // B at the start of a line: e = start value
+  input  wire signed [30:0] line_addend,   // in A: -M, or the start value of the new line
+  input  wire        [29:0] steps,         // N of the current line; in B already that of the new one
   output wire               step_request
 );
 
   reg  [29:0] e_minus_m;
   reg  [30:0] addend;
-  // e + N >= M: the carry of the sum, if N is the addend. With an operand in its place that is not constant, LUT and
-  // flip-flop of the carry stay in the chain.
+  // e + N >= M: the carry of the sum in clock A. A non-constant operand in its place (addend[30], then 0) keeps its
+  // LUT and flip-flop in the carry chain.
   reg         reached;
   wire [30:0] sum = {addend[30], e_minus_m} + addend;
 
-  assign step_request = slot_step & reached;
+  assign step_request = decide_step & reached;
 
   always @(posedge clk) begin
-    addend  <= (slot_add || slot_load) ? broadcast : {1'b0, steps};
+    addend  <= (add_n || load_start) ? line_addend : {1'b0, steps};
     reached <= sum[30];
-    if (slot_add || slot_load || slot_load_q || step_request) e_minus_m <= slot_load ? 30'd0 : sum[29:0];
+    if (add_n || load_start || load_start_q || step_request) e_minus_m <= load_start ? 30'd0 : sum[29:0];
   end
 
 `ifdef FORMAL

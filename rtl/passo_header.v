@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Header decode: what the header of a frame asks for, and whether it can be had.
+// Header decode: what the header of a frame requests, and whether it is valid.
 //
-// Promise: two clocks after `hold` has risen, the outputs tell of the header that stood in `data` a clock before it rose.
-// They keep it while `hold`.
+// Promise: two clocks after `hold` rises, the outputs describe the header that was in `data` one clock before it
+// rose. They are stable while `hold`.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
 
 module passo_header (
   input  wire         clk,
-  input  wire         hold,            // the header turns
+  input  wire         hold,            // the header rotates
   input  wire [31:12] data,
-  input  wire         sequence_known,  // something was executed since reset
+  input  wire         sequence_known,  // a frame was executed since reset
   input  wire [  7:0] last_sequence,
   output reg          is_read,
   output reg          is_empty,        // length 0

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Line counter: counts the substeps of the current line, brings in the next one, and leads the DDAs of all
-// axes.
+// Line counter: counts the substeps of the current line, takes the next one, and drives the DDAs of all axes.
 //
 //   substep_number = substeps of this line so far;  the substep with the number M - 1 (`last_substep`) is its last
 //
-// A substep takes two clocks in the DDAs, A (slot_add) and B; the last substep of a line and the start of a
-// motion load the start value of the line that follows in B (slot_load). `broadcast` is -M in A, and floor(-M
-// / 2) of the new line when slot_load is high; -M is ~(M - 1).
+// A substep takes two clocks in the DDAs, A (add_n) and B (decide_step). The last substep of a line and the start of
+// a motion load the start value of the next line: load_start in A, load_start_q in B. In A `line_addend` is -M, which
+// is ~(M - 1), or with load_start floor(-M / 2) of the new line.
 //
-// Promise: the next line follows without a lost clock, even with M = 1 and a substep every second clock. After
-// the last substep of a LAST line `ended` rises and further substeps are ignored; an ENDLESS line that is not
-// LAST begins anew. When any other line ends and none follows, `underrun` is high for a clock and further
-// substeps are ignored.
-// Latency: substep to slot_add 1 clock, to slot_step 2 clocks.
+// Promise: the next line follows without a lost clock, even with M = 1 and a substep every second clock. After the
+// last substep of a LAST line `ended` rises and further substeps are ignored; an ENDLESS line that is not LAST
+// repeats. When any other line ends and none follows, `underrun` is high for one clock and further substeps are
+// ignored.
+// Latency: substep to add_n 1 clock, to decide_step 2 clocks.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -23,21 +22,21 @@ module passo_line #(
   input  wire                   clk,
   input  wire                   rst,
   input  wire                   start,               // take the first line of a motion
-  input  wire                   stop,                // forget the current line
+  input  wire                   stop,                // drop the current line
   input  wire                   substep,
   // line queue
   input  wire                   next_valid,
   output wire                   take,
-  input  wire                   last,                // the current line, from a clock after take
+  input  wire                   last,                // of the current line, from one clock after take
   input  wire                   endless,
   input  wire        [    29:0] last_substep,        // its M - 1
   input  wire        [AXES-1:0] current_directions,  // from two clocks after take
   // DDAs
-  output reg                    slot_add,            // A: e += N
-  output reg                    slot_load,           // A: a line begins
-  output reg                    slot_step,           // B: a step if e >= 0
-  output reg                    slot_load_q,         // B: e = start value
-  output wire signed [    30:0] broadcast,
+  output reg                    add_n,               // A: e += N
+  output reg                    load_start,          // A: a line begins, clear
+  output reg                    decide_step,         // B: a step if e >= M
+  output reg                    load_start_q,        // B: e = start value
+  output wire signed [    30:0] line_addend,
   output reg         [AXES-1:0] directions,          // of the line whose steps are being made
   // motion
   output reg                    current_endless,     // two clocks after take
@@ -47,10 +46,10 @@ module passo_line #(
 
   reg         active;
   reg  [29:0] substep_number;
-  reg         turns;  // when the line ends, it begins anew
-  reg         goes_on;  // when the line ends, another one is to follow
-  // The next substep is the last; known two clocks after a substep, part by part.
-  // Kept, so that two bits of the comparison go into one LUT.
+  reg         repeats;  // when the line ends, it repeats
+  reg         goes_on;  // when the line ends, another one must follow
+  // The next substep is the last: compared in parts, valid two clocks after a substep.
+  // Kept: two bits of the comparison fit one LUT.
   (* keep *)
   wire [14:0] pair_equal;
   reg  [ 3:0] equal;
@@ -67,42 +66,42 @@ module passo_line #(
   wire line_done = substep_taken & on_last;
 
   assign take = start | (substep & on_last & goes_on & next_valid);
-  wire line_begins = take | (substep & on_last & turns);
+  wire line_begins = take | (substep & on_last & repeats);
 
-  assign broadcast = slot_load ? {2'b11, ~last_substep[29:1]} : {1'b1, ~last_substep};
+  assign line_addend = load_start ? {2'b11, ~last_substep[29:1]} : {1'b1, ~last_substep};
 
   always @(posedge clk) begin
-    slot_add    <= substep_taken;
-    slot_load   <= line_begins;
-    slot_step   <= slot_add;
-    slot_load_q <= slot_load;
+    add_n        <= substep_taken;
+    load_start   <= line_begins;
+    decide_step  <= add_n;
+    load_start_q <= load_start;
 
     equal           <= {&pair_equal[14:12], &pair_equal[11:8], &pair_equal[7:4], &pair_equal[3:0]};
     current_endless <= endless;
-    turns           <= active & endless & ~last;
+    repeats         <= active & endless & ~last;
     goes_on         <= active & ~endless & ~last;
     if (start || substep) substep_number <= start || on_last ? 30'd0 : substep_number + 30'd1;
 
-    // the last step of the old line is made in B
-    if (slot_load_q) directions <= current_directions;
+    // B still makes the last step of the old line
+    if (load_start_q) directions <= current_directions;
 
     underrun <= substep & on_last & goes_on & ~next_valid;
-    if (line_done && !turns && !(goes_on && next_valid)) active <= 1'b0;
+    if (line_done && !repeats && !(goes_on && next_valid)) active <= 1'b0;
     if (line_done && last) ended <= 1'b1;
     if (start) begin
       active <= 1'b1;
       ended  <= 1'b0;
     end
     if (rst || stop) begin
-      active      <= 1'b0;
-      turns       <= 1'b0;
-      goes_on     <= 1'b0;
-      ended       <= 1'b0;
-      underrun    <= 1'b0;
-      slot_add    <= 1'b0;
-      slot_load   <= 1'b0;
-      slot_step   <= 1'b0;
-      slot_load_q <= 1'b0;
+      active       <= 1'b0;
+      repeats      <= 1'b0;
+      goes_on      <= 1'b0;
+      ended        <= 1'b0;
+      underrun     <= 1'b0;
+      add_n        <= 1'b0;
+      load_start   <= 1'b0;
+      decide_step  <= 1'b0;
+      load_start_q <= 1'b0;
     end
     if (rst) directions <= {AXES{1'b0}};
   end

@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Line queue: lines as they are pushed, one block RAM column for each of their words, so that a whole line is
-// read at once.
+// Line queue: lines as pushed, one block RAM column for each of their words, so that a whole line is read at once.
 //
-// Promise: lines come out whole and in order. While `next_valid` is high there is a next line; `take` makes it
-// the current line, whose length and flags are at the output one clock later, whose steps and directions two
-// clocks later; they stay there. A place is free again when the line after it is taken, or on `release_line`.
-// `room` is without all lines of a frame from a clock after its commit begins to write, and follows all else a
-// clock later. `flush` drops everything that is written; it stays while the channel is stopped, for a push that was
-// checked before.
+// Promise: lines come out whole and in order. While `next_valid` is high there is a next line; `take` makes it the
+// current line: its length and flags are valid one clock later, its steps and directions two clocks later, until the
+// next one is taken. A place is free again when the line after it is taken, or on `release_line`. `room` excludes all
+// lines of a frame from one clock after its commit begins to write, and follows all else one clock late. `flush`
+// drops everything written; it stays high while the channel is stopped, for a push that was checked before.
 //
-// A push is checked word by word (`bus_check`; the word stands two clocks before): room for it after all lines of
-// this frame before it, M not 0 and below 2^30, N_i <= M, no reserved bits. `refusal` answers one clock later.
-// One subtraction serves the checks and makes what is stored of M, which is M - 1, the number of the last
-// substep. The flags are stored with it, each direction with its N_i.
+// A push is checked word by word (`bus_check`; the word is stable from two clocks before): room for the line after
+// all lines of this frame before it, M not 0 and below 2^30, N_i <= M, no reserved bits. `refusal` answers one clock
+// later. One subtractor serves the checks and makes the stored M - 1, the number of the last substep. The flags are
+// stored with it, each direction with its N_i.
 //
-// With STEPS_REGISTER the steps wait in a register behind their block RAMs, else the address does before them.
+// With STEPS_REGISTER the steps are registered behind their block RAMs, else the address is before them.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -22,7 +20,7 @@
 module passo_line_queue #(
   parameter AXES           = 4,
   parameter DEPTH_LOG2     = 8,
-  parameter STEPS_REGISTER = 0   // 1: where block RAMs have a register behind their data
+  parameter STEPS_REGISTER = 0   // 1: block RAMs have an output register
 ) (
   input  wire                clk,
   input  wire                rst,
@@ -33,17 +31,17 @@ module passo_line_queue #(
   input  wire                bus_write,
   input  wire                select,
   input  wire [        31:0] bus_data,
-  input  wire [         4:0] bus_top_bit,
+  input  wire [         4:0] bus_msb,
   input  wire                blocked,       // the channel is stopped
   output reg  [         3:0] refusal,
-  output wire                incomplete,    // the frame so far ends within a line
+  output wire                incomplete,    // the frame so far ends mid-line
   output reg  [DEPTH_LOG2:0] room,          // in lines
   // to the line counter
   input  wire                take,
   input  wire                release_line,
   input  wire                flush,
   output reg                 next_valid,
-  output wire                last,          // the current line
+  output wire                last,          // of the current line
   output wire                endless,
   output wire [        29:0] last_substep,  // its M - 1
   output wire [    AXES-1:0] directions,
@@ -52,18 +50,18 @@ module passo_line_queue #(
 
   `include "passo_registers.vh"
 
-  localparam [4:0] CONTROL_TOP_BIT = 5'd7 + AXES[4:0];
+  localparam [4:0] CONTROL_MSB = 5'd7 + AXES[4:0];
   localparam INDEX_CONTROL = 0;
   localparam INDEX_SUBSTEPS = 1;
   localparam INDEX_STEPS = 2;
   localparam INDEX_LAST = INDEX_STEPS + AXES - 1;
-  localparam [4:0] COUNT_TOP_BIT = 5'd29;
+  localparam [4:0] COUNT_MSB = 5'd29;
   localparam [DEPTH_LOG2:0] DEPTH = 1 << DEPTH_LOG2;
 
-  // Writing: one word of a line after the other
-  reg [INDEX_LAST:0] index;  // one bit for each word
+  // Writing, word by word
+  reg [INDEX_LAST:0] index;  // word of the line, one-hot
   reg [DEPTH_LOG2:0] write_line;
-  reg [DEPTH_LOG2:0] write_end;  // write_line when the frame will have been written
+  reg [DEPTH_LOG2:0] write_end;  // write_line after this frame
   reg [DEPTH_LOG2:0] checked;  // lines of this frame
 
   wire strobe = select & (bus_check | bus_write);
@@ -73,7 +71,7 @@ module passo_line_queue #(
 
   assign incomplete = ~index[INDEX_CONTROL];
 
-  // The control of the line whose words follow
+  // Control word of the line in progress
   reg            write_last;
   reg            write_endless;
   reg [AXES-1:0] write_directions;
@@ -85,15 +83,15 @@ module passo_line_queue #(
       write_directions <= bus_data[LINE_CONTROL_DIRECTIONS_LSB+:AXES];
     end
 
-  // bus_data - 1 - M, but for M itself bus_data - 1. A carry comes out if that is not negative, which is right for
-  // M and wrong for N_i. Upper half a clock behind the lower: M - 1 can be written a clock after its strobe.
-  reg  [29:0] not_substeps;  // ~M; ~0 until M has passed
+  // bus_data - 1 - M, but for M itself bus_data - 1. A carry means not negative: right for M, wrong for N_i. The
+  // upper half is one clock behind the lower: M - 1 is ready one clock after its strobe.
+  reg  [29:0] not_substeps;  // ~M; ~0 before M
   reg  [29:0] difference;
   reg         carry;
   reg         wrong;
   reg         load_substeps;
   reg         write_substeps;
-  wire [ 1:0] unused_bits = bus_data[31:30];  // 0, or bus_top_bit tells that the word is bad
+  wire [ 1:0] unused_bits = bus_data[31:30];  // bus_msb refuses the word if they are not 0
 
   always @(posedge clk) begin
     if (strobe) begin
@@ -119,14 +117,13 @@ module passo_line_queue #(
     end
   end
 
-  // what is to be said of the word, a clock before it is asked
+  // Refusal, one clock ahead of the check
   reg full;
   reg bad_bits;
 
   always @(posedge clk) begin
     full <= room == checked;
-    bad_bits <= index[INDEX_CONTROL] ? bus_top_bit > CONTROL_TOP_BIT || bus_data[7:2] != 6'd0
-                                     : bus_top_bit > COUNT_TOP_BIT;
+    bad_bits <= index[INDEX_CONTROL] ? bus_msb > CONTROL_MSB || bus_data[7:2] != 6'd0 : bus_msb > COUNT_MSB;
     refusal  <= !(select && bus_check)                         ? VERDICT_OK :
                 blocked                                        ? VERDICT_BUSY :
                 full                                           ? VERDICT_QUEUE_FULL :
@@ -136,7 +133,7 @@ module passo_line_queue #(
   // Reading
   reg [  DEPTH_LOG2:0] next_line;
   reg [DEPTH_LOG2-1:0] current_line;
-  reg                  has_place;  // a line is the current one
+  reg                  has_place;  // the current line occupies a place
   reg                  taken;
 
   always @(posedge clk) begin

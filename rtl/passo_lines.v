@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Lines: where the axes go. Line queue, line counter and the DDA of each axis; wiring only.
+// Lines: where the axes go. Line queue, line counter and one DDA per axis. Wiring only.
 //
-// Promise: while M substeps pass, axis i gets exactly N_i step requests, spread evenly, for each line in the order
-// in which they were pushed, without a lost clock between lines.
+// Promise: in the M substeps of each line, axis i gets exactly N_i step requests, evenly spread; lines follow in the
+// order of their pushes, without a lost clock in between.
 // Latency: substep to step_request 2 clocks.
 `resetall
 `timescale 1ns / 1ps
@@ -11,7 +11,7 @@
 module passo_lines #(
   parameter AXES           = 4,
   parameter DEPTH_LOG2     = 8,
-  parameter STEPS_REGISTER = 0   // 1: where block RAMs have a register behind their data
+  parameter STEPS_REGISTER = 0   // 1: block RAMs have an output register
 ) (
   input  wire                clk,
   input  wire                rst,
@@ -22,18 +22,18 @@ module passo_lines #(
   input  wire                bus_write,
   input  wire                select,
   input  wire [        31:0] bus_data,
-  input  wire [         4:0] bus_top_bit,
+  input  wire [         4:0] bus_msb,
   output wire [         3:0] refusal,
   output wire                incomplete,
   output wire [DEPTH_LOG2:0] room,
   // motion
   input  wire                start,         // take the first line
-  input  wire                stopped,       // forget all lines
+  input  wire                stopped,       // drop all lines
   input  wire                release_line,  // the motion is over
-  output wire                valid,         // a line waits
+  output wire                valid,         // a line is queued
   output wire                endless,       // the current line repeats
-  output wire                ended,         // the LAST line has
-  output wire                underrun,      // strobe: no line follows one that is not LAST
+  output wire                ended,         // the LAST line has ended
+  output wire                underrun,      // strobe: a line that is not LAST has no successor
   // profile
   input  wire                substep,
   // axes
@@ -47,11 +47,11 @@ module passo_lines #(
   wire        [   AXES-1:0] current_directions;
   wire        [       29:0] last_substep;
   wire        [AXES*30-1:0] steps;
-  wire                      slot_add;
-  wire                      slot_load;
-  wire                      slot_step;
-  wire                      slot_load_q;
-  wire signed [       30:0] broadcast;
+  wire                      add_n;
+  wire                      load_start;
+  wire                      decide_step;
+  wire                      load_start_q;
+  wire signed [       30:0] line_addend;
 
   passo_line_queue #(
     .AXES          (AXES),
@@ -66,7 +66,7 @@ module passo_lines #(
     .bus_write   (bus_write),
     .select      (select),
     .bus_data    (bus_data),
-    .bus_top_bit (bus_top_bit),
+    .bus_msb     (bus_msb),
     .blocked     (stopped),
     .refusal     (refusal),
     .incomplete  (incomplete),
@@ -96,11 +96,11 @@ module passo_lines #(
     .endless           (next_endless),
     .last_substep      (last_substep),
     .current_directions(current_directions),
-    .slot_add          (slot_add),
-    .slot_load         (slot_load),
-    .slot_step         (slot_step),
-    .slot_load_q       (slot_load_q),
-    .broadcast         (broadcast),
+    .add_n             (add_n),
+    .load_start        (load_start),
+    .decide_step       (decide_step),
+    .load_start_q      (load_start_q),
+    .line_addend       (line_addend),
     .directions        (directions),
     .current_endless   (endless),
     .ended             (ended),
@@ -112,11 +112,11 @@ module passo_lines #(
     for (axis = 0; axis < AXES; axis = axis + 1) begin : g_axis
       passo_dda u_dda (
         .clk         (clk),
-        .slot_add    (slot_add),
-        .slot_load   (slot_load),
-        .slot_step   (slot_step),
-        .slot_load_q (slot_load_q),
-        .broadcast   (broadcast),
+        .add_n       (add_n),
+        .load_start  (load_start),
+        .decide_step (decide_step),
+        .load_start_q(load_start_q),
+        .line_addend (line_addend),
         .steps       (steps[axis*30+:30]),
         .step_request(step_request[axis])
       );

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Simple dual-port RAM that maps to block RAM everywhere, and a register behind it.
+// Simple dual-port RAM that maps to block RAM everywhere, with an output register.
 //
-// Promise: `read_data` is the word that `read_address` named a clock before the last `load`. Without
-// DATA_REGISTER it is the word that `read_address` named a clock ago, and `load` means nothing. A word that is
-// written in the clock in which it is read means nothing; nobody here looks at one, so synthesis need not
-// guard against it.
+// Promise: `read_data` is the word that `read_address` selected one clock before the last `load`. Without
+// DATA_REGISTER it is the word that `read_address` selected one clock ago, and `load` is ignored. A word read in the
+// clock in which it is written is undefined; nothing here uses one, so synthesis need not add a bypass.
 //
-// Many block RAMs have such a register of their own and are slow without it; elsewhere it takes cells.
+// Many block RAMs have such a register built in and are slow without it; elsewhere it takes logic cells.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none

@@ -3,17 +3,16 @@
 //
 //   IDLE -> PREPARE -> ARMED -> RUN -> SETTLE -> (DRAIN -> SETTLE) -> IDLE;  anything -> STOPPED -> IDLE
 //
-// Promise: a motion is prepared when `run` is set and a line and a ramp are there. It starts from ARMED at
-// once or, while wait_sync is set, with a sync edge; so channels that are ARMED start together when one write
-// clears their wait_sync. While `hold` is high none is prepared. It ends when its profile has ended and its line has ended (or is ENDLESS); what the
-// line still lacks is drained and counted. A stop is soft (the rate goes to 0 first) for COMMAND.STOP and
-// RAMP_UNDERRUN, else the channel is STOPPED two clocks later. On the same clock ABORT wins, then STEP_OVERRUN,
-// LINE_UNDERRUN, a soft stop; a stop wins over the end of the motion. `drop` is high from ABORT until no step is asked
-// for any more.
+// Promise: a motion is prepared when `run` is set and a line and a ramp are queued, but not while `hold`. From ARMED
+// it starts at once or, while wait_sync is set, on a sync edge; so ARMED channels start together when one write
+// clears their wait_sync. It ends when its profile has ended and its line has ended (or is ENDLESS); substeps the
+// line still lacks are drained and counted. A stop is soft (the rate goes to 0 first) for COMMAND.STOP and
+// RAMP_UNDERRUN, else the channel is STOPPED two clocks later. On the same clock ABORT has priority, then
+// STEP_OVERRUN, LINE_UNDERRUN, a soft stop; a stop has priority over the end of the motion. `drop` is high from ABORT
+// until no step can be requested any more.
 //
-// `running` is the motion as seen at the STEP pins: it rises 7 clocks after RUN begins and falls one clock
-// after SETTLE, so that it is high for as many clocks as the profile has, and until the last drained step has
-// been made.
+// `running` is the motion as seen at the STEP pins: it rises 7 clocks after RUN begins and falls one clock after
+// SETTLE, so that it is high for exactly the length of the profile, and until the last drained step has been made.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -34,16 +33,16 @@ module passo_motion (
   output reg         stopping,
   output reg  [15:0] drained,
   // timescale
-  output wire        occupied,       // a motion is prepared or runs
+  output wire        occupied,       // a motion is prepared or running
   output wire        moving,
-  output reg         counting,       // enabled clocks count: the profile runs, or substeps are drained
+  output reg         counting,       // the profile runs, or substeps are drained
   input  wire        rate_is_zero,
   // ramp and path
   input  wire        ramp_valid,
   input  wire        ramp_ready,
   input  wire        ramp_ended,
   input  wire        ramp_dry,
-  output wire        prepare,        // strobe: first line, first velocity
+  output wire        prepare,        // strobe: take the first line, make the first velocity
   output reg         begin_profile,  // strobe
   output wire        drain,
   // line
@@ -66,15 +65,15 @@ module passo_motion (
   localparam [2:0] START_LAST = 3'd6;  // from RUN to the STEP pin
 
   reg [2:0] count;  // clocks of RUN, up to START_LAST
-  reg [2:0] settling;  // a bit for each clock of SETTLE so far
+  reg [2:0] settling;  // one bit per clock of SETTLE so far
   reg       settled;  // its fifth clock: the last substep needs 2 clocks to the line
-  reg       finished;  // settled, and nothing is missing
+  reg       finished;  // settled, and no substep is missing
   reg [2:0] soft_cause;
-  reg       startable;  // for one clock, and still in IDLE
+  reg       startable;  // high for one clock, still in IDLE
   reg       rate_was_zero;
   reg [1:0] aborted;  // one and two clocks ago
 
-  // The states, one bit each
+  // States, one-hot
   reg idle;
   reg preparing;
   reg armed;
@@ -102,7 +101,7 @@ module passo_motion (
   assign release_line = finished;
   assign drop         = command_abort | (aborted != 2'b00);
 
-  // Registered stop decision.
+  // Stop decision, registered
   reg stop_due;
   reg [2:0] cause_due;
   wire       stop_wanted = command_abort | (moving & (step_overrun | line_underrun))

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Path: sums the velocity; each carry is a substep.
+// Path: accumulates the velocity; each carry is a substep.
 //
 //   every enabled clock:  phase += velocity;  carry out = substep         phase = 1/4 on `restart`
 //
-// The 48-bit sum is cut into two halves of 24 bits, the upper one a clock behind, and so is the velocity.
+// The 48-bit adder is split into two halves of 24 bits, the upper one clock behind the lower, and so is the velocity.
 // Promise: `substep` comes 2 clocks after its `advance`; with velocity <= 1/2 never on two clocks in a row.
-// `begin_profile` and `tick`: velocity_next counts from the next clock on (its upper half is
-// read one clock later), or 0 if `rest`. While `drain` is high drain_velocity counts, from the second clock on.
-// Rest and `stop`, or the end of drain: 0, 2 clocks later.
+// On `begin_profile` and `tick` velocity_next takes effect in the next clock (its upper half is read one clock
+// later), or 0 if `rest`. While `drain` is high drain_velocity is used, from the second clock on. At rest, `stop` or
+// the end of drain makes the velocity 0, 2 clocks later.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -19,7 +19,7 @@ module passo_path (
   input  wire        stop,
   input  wire        begin_profile,
   input  wire        advance,         // enabled clock
-  input  wire        tick,            // the last one of a tick
+  input  wire        tick,            // it ends a tick
   input  wire        rest,
   input  wire [47:0] velocity_next,   // UQ0.48 substeps per clock, 0 .. 1/2
   input  wire        drain,
@@ -41,7 +41,7 @@ module passo_path (
   reg        pauses;  // ~advance_q
 
   wire [24:0] phase_low_sum = {1'b0, phase_low} + {1'b0, velocity_low};
-  // restart is low whenever the sum counts; an operand there keeps the carry in the chain
+  // restart is low whenever the sum is used; a non-constant operand keeps the carry in the chain
   wire [24:0] phase_high_sum = {restart, phase_high} + {1'b0, velocity_high} + {24'd0, phase_low_carry};
 
   assign velocity = {velocity_high, velocity_low[23:16]};

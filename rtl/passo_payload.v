@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Payload: the words of a frame in half words, so that they take one block RAM; and the word on the bus.
-// Behind them lie two words of 4 counters each, of refused frames.
+// Payload: the words of a frame, as half-words so that they take one block RAM, and the word on the bus. Behind them
+// are two words of 4 counters each, of refused frames.
 //
-// Promise: `store` writes a half word. `load` two clocks after `load_low` = 0, then 1 named the halves
-// of a word puts this word into `data`, or 0 with `load_zero`. 32 clocks of `turn` show it at data[31] bit by
-// bit, leave it as it was, and decode it: `top_bit` is the index of its highest set bit
-// (0 if none is set), `lone_bit` says that it is the only one.
+// Promise: `store` writes a half-word. `load`, two clocks after `load_low` = 0, then 1 selected the halves of a word,
+// puts this word into `data`, or 0 with `load_zero`. 32 clocks of `rotate` show it at data[31] bit by bit, leave it
+// unchanged, and decode it: `msb` is the index of its highest set bit (0 if none is set), `one_hot` says that no
+// other bit is set.
 //
-// Bits go by from the top, but a counter has to be counted from the bottom: in the memory each counter lies
-// the other way round. `count` adds 1 to counter `counter` as the word turns; `put` stores data[15:0], which is
-// the upper half after 16 clocks, the lower after 32, and wins over `store`. `counter_bit` is the bit that
-// goes by when a word of counters is to be shown the right way round.
+// Bits pass MSB first, but counting starts at the LSB: each counter is stored bit-reversed. `count` adds 1 to counter
+// `counter` as the word rotates; `put` stores data[15:0], which is the upper half after 16 clocks, the lower after
+// 32, and has priority over `store`. `counter_bit` is the bit to pass if a word of counters is shown in normal bit
+// order.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -30,13 +30,13 @@ module passo_payload (
   input  wire [ 6:0] load_word,
   input  wire        load_low,
   input  wire        load_zero,
-  input  wire        turn,
-  input  wire [ 4:0] turns,       // 0 .. 31
+  input  wire        rotate,
+  input  wire [ 4:0] bit_index,   // rotations so far, 0 .. 31
   input  wire        count,
   input  wire [ 1:0] counter,
   output reg  [31:0] data,
-  output reg  [ 4:0] top_bit,
-  output reg         lone_bit,
+  output reg  [ 4:0] msb,
+  output reg         one_hot,
   output reg         counter_bit
 );
 
@@ -55,18 +55,18 @@ module passo_payload (
     .read_data    (loaded)
   );
 
-  // Before the first word it means nothing, but it should be something.
+  // Meaningless before the first word, but defined.
   initial data = 32'd0;
 
   reg  some_bit;
-  wire in_counter = count && turns[4:3] == ~counter;
+  wire in_counter = count && bit_index[4:3] == ~counter;
   reg  carry;
 
-  // A clock ahead of the turn that it belongs to, when the bit stands a place lower
+  // One clock ahead of its rotation, while the bit is one place lower
   always @(posedge clk)
-    if (!turn) counter_bit <= data[24];
+    if (!rotate) counter_bit <= data[24];
     else
-      case (turns[2:0])
+      case (bit_index[2:0])
         3'd0: counter_bit <= data[25];
         3'd1: counter_bit <= data[27];
         3'd2: counter_bit <= data[29];
@@ -80,17 +80,17 @@ module passo_payload (
   always @(posedge clk) begin
     carry <= !in_counter || (carry && data[31]);
     if (load && load_zero) data <= 32'd0;
-    else if (load || turn)
-      data <= turn ? {data[30:0], data[31] ^ (in_counter && carry)} : {data[15:0], loaded};
-    if (turn && data[31]) begin
+    else if (load || rotate)
+      data <= rotate ? {data[30:0], data[31] ^ (in_counter && carry)} : {data[15:0], loaded};
+    if (rotate && data[31]) begin
       some_bit <= 1'b1;
-      if (some_bit) lone_bit <= 1'b0;
-      else top_bit <= ~turns;
+      if (some_bit) one_hot <= 1'b0;
+      else msb <= ~bit_index;
     end
     if (load) begin
       some_bit <= 1'b0;
-      lone_bit <= 1'b1;
-      top_bit  <= 5'd0;
+      one_hot  <= 1'b1;
+      msb      <= 5'd0;
     end
   end
 

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Positions of the axes of a channel. Each axis counts its steps modulo 256; the whole positions are in a
-// block RAM and catch up in rounds of 64 clocks, axis by axis:
+// Positions of the axes of a channel. Each axis counts its steps modulo 256; the full positions are in a block RAM
+// and updated in rounds of 64 clocks, axis by axis:
 //
-//   slot = 63      all counters are copied, on one clock (`captured`)
-//   8 slots each   lower half: the captured byte, and a carry or borrow where it has gone past 0 or 255;
+//   slot = 63      all counters are captured, on one clock (`captured`)
+//   8 slots each   lower half: the captured byte, and a carry or borrow if it has wrapped;
 //                  upper half: what is left of the carry or borrow
 //
-// Promise: `snapshot` brings about one round that also copies the positions, as they were in the round's
-// slot 63: they are coherent. It is the next round, or the one after it when the positions are set to 0, which
-// takes a round; the copies are complete 194 clocks after `snapshot`. `position` is the copy of axis `address`
-// when `address` has stood for 13 clocks.
-// An axis makes at most 36 steps in a round, so the way that a counter went is never in doubt.
+// Promise: `snapshot` makes one round also copy the positions, as they were in its slot 63: they are coherent. It is
+// the next round, or the one after it if the positions are being zeroed, which takes a round; the copies are complete
+// 194 clocks after `snapshot`. `position` is the copy of axis `address` once `address` has been stable for 13 clocks.
+// An axis makes at most 36 steps in a round, so the direction of a wrap is never in doubt.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -38,9 +37,9 @@ module passo_positions #(
   reg clears;  // this round sets the positions to 0
   reg snapshot_waits;
   reg copies_next;
-  reg copies;  // this round copies the positions; later, as the last half is
+  reg copies;  // this round copies the positions; delayed, as the last half is
 
-  // Counters, and their chain to the round
+  // Counters, and the shift chain of captured bytes
   wire [7:0] captured[0:AXES];
   assign captured[AXES] = 8'd0;
 
@@ -58,17 +57,16 @@ module passo_positions #(
     end
   endgenerate
 
-  // One half of a position: read in phase 0, judged in phase 2, made in phase 3, written in the next phase 0, copied
-  // in phase 1. Bytes 0 and 1 stand in the word the other way round. In phases 2 and 3 the memory is asked for
-  // `position`.
+  // One half of a position: read in phase 0, examined in phase 2, computed in phase 3, written in the next phase 0,
+  // copied in phase 1. Bytes 0 and 1 are swapped in memory. Phases 2 and 3 read for `position`.
   wire [15:0] half;
   reg  [15:0] half_q;
   reg  [15:0] half_next;
-  reg         byte_is_first;  // half[7:0] is 0, a clock ago
+  reg         byte_is_first;  // half[7:0] is 0, one clock late
   reg         byte_is_last;  // it is 255
   reg         up;
   reg         down;
-  reg  [ 3:0] place;  // of half_next
+  reg  [ 3:0] place;  // address of half_next
   wire [ 7:0] low_byte = captured[0];
   wire [15:0] sum = half_q + {16{down}} + {15'd0, up};
 
@@ -117,7 +115,7 @@ module passo_positions #(
       clears         <= clear_waits;
       clear_waits    <= 1'b0;
       copies_next    <= snapshot_waits;
-      snapshot_waits <= snapshot_waits & clear_waits;  // copied once more when the positions are cleared
+      snapshot_waits <= snapshot_waits & clear_waits;  // copied once more after the positions are cleared
     end
     if (zero) clear_waits <= 1'b1;
     if (snapshot) snapshot_waits <= 1'b1;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Profile: when the axes move. Ramps become a velocity, and the velocity becomes substeps; wiring only.
+// Profile: when the axes move. Ramps become a velocity, the velocity becomes substeps. Wiring only.
 //
-// Promise: in tick after tick of enabled clocks the substeps come at the velocity of the ramps, in the order in which
-// they were pushed.
+// Promise: tick after tick of enabled clocks, substeps come at the velocity of the ramps, in the order of their
+// pushes.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -20,25 +20,25 @@ module passo_profile #(
   input  wire                bus_write,
   input  wire                select,
   input  wire [        31:0] bus_data,
-  input  wire [         4:0] bus_top_bit,
+  input  wire [         4:0] bus_msb,
   output wire [         3:0] refusal,
   output wire                incomplete,
-  output wire                needs_motion,      // strobe: a NOW ramp is checked
+  output wire                needs_motion,      // strobe: a NOW ramp is being checked
   output wire [DEPTH_LOG2:0] room,
   // motion
   input  wire                prepare,
   input  wire                begin_profile,
-  input  wire                stopped,           // forget all ramps
-  input  wire                drain,             // drain_velocity counts, not the ramps
+  input  wire                stopped,           // drop all ramps
+  input  wire                drain,             // use drain_velocity, not the ramps
   input  wire [        31:0] drain_velocity,
-  input  wire                now_coming,        // a NOW ramp is on its way
-  output wire                valid,             // a ramp waits
+  input  wire                now_coming,        // a NOW ramp is in flight
+  output wire                valid,             // a ramp is queued
   output wire                ready,
   output wire                ended,
   output wire                dry,
   output wire                ends_next,
   // time scale
-  input  wire                enable,            // of the clocks that count
+  input  wire                enable,            // clock enable
   // tables
   output wire                table_request,
   output wire [         9:0] table_address,
@@ -72,7 +72,7 @@ module passo_profile #(
     .bus_write   (bus_write),
     .select      (select),
     .bus_data    (bus_data),
-    .bus_top_bit (bus_top_bit),
+    .bus_msb     (bus_msb),
     .blocked     (stopped),
     .refusal     (refusal),
     .incomplete  (incomplete),

@@ -1,35 +1,35 @@
 // SPDX-License-Identifier: MIT
-// The numbers of the ramp that is made: its start velocity, its progress, its ticks. What does not change (end
-// velocity, progress step, length) stays in the ramp queue and comes from there in half words.
+// Numbers of the ramp being made: start velocity, progress, ticks. What is constant (end velocity, progress step,
+// length) stays in the ramp queue and is read from there in half-words.
 //
-//   v_start   moves by a half word to take v_end, by a bit to be read (48 clocks bring it round)
-//   u         in units of 2^-49, so that du / 2 is a whole number: u += du / 2 in 3 half words from the lowest
+//   v_start   shifts by a half-word to load v_end, by a bit to be read (48 clocks bring it round)
+//   u         in units of 2^-49, so that du / 2 is a whole number: u += du / 2 in 3 half-words, lowest first
 //   ticks     counts up from -1 - T; `over` when 1 has been added T + 1 times
 //
-// The queue holds T inverted, and du inverted if the ramp is mirrored: such a ramp runs from 1 back to 0, and
-// its u is the inverse of the other's, bit by bit.
+// The queue stores T inverted, and du inverted if the ramp is mirrored: such a ramp runs from 1 back to 0, and its u
+// is the bitwise inverse of the other's.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
 
 module passo_ramp_numbers (
   input  wire        clk,
-  input  wire [15:0] half,             // half word of the ramp queue
+  input  wire [15:0] half,             // half-word of the ramp queue
   // v_start
   input  wire        start_move,
   input  wire        start_load,
-  input  wire        start_copy,       // 24 clocks: from two streams, one for each half
+  input  wire        start_copy,       // 24 clocks: from two bit streams, one per half
   input  wire        copy_high,
   input  wire        copy_low,
   output wire        start_bit,
   // v_end
-  input  wire [ 3:0] end_index,        // the bit of `half`, counted from 1, modulo 16
+  input  wire [ 3:0] end_index,        // bit of `half`, from 1, modulo 16
   output reg         end_bit,
   // u
   input  wire        mirror,
-  input  wire        u_move,           // half word
-  input  wire        u_load,           // half word: du / 2 itself
-  input  wire        u_last,           // the upper of the three
+  input  wire        u_move,           // by a half-word
+  input  wire        u_load,           // load du / 2 instead of adding it
+  input  wire        u_last,           // the last of the three
   output wire [32:0] progress,         // UQ0.33
   // ticks
   input  wire        ticks_load_low,

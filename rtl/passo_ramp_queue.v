@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Ramp queue: ramps in half words, 10 in a slot of 16, so that a few ramps take one block RAM.
+// Ramp queue: ramps in half-words, 10 in a slot of 16, so that a few ramps take one block RAM.
 //
-// Promise: ramps come out whole and in order. `half` is half word `half_index` of the oldest ramp, three
-// clocks after the index; `take` removes that ramp. A ramp with NOW raises `now_pending`; `take_now` drops all ramps
-// before it, so that it is the oldest. `flush` drops everything that is written.
+// Promise: ramps come out whole and in order. `half` is half-word `half_index` of the oldest ramp, three clocks after
+// the index; `take` removes that ramp. A ramp with NOW raises `now_pending`; `take_now` drops all ramps before it, so
+// that it is the oldest. `flush` drops everything written.
 //
-// A push is checked word by word (`bus_check`): room for it after all ramps of this frame before it, a
-// velocity of at most 1/2, no reserved bits. `refusal` answers one clock later. A word is written in two
-// clocks: upper half first. `room` is without all ramps of a frame from a clock after its commit begins to write.
+// A push is checked word by word (`bus_check`): room for the ramp after all ramps of this frame before it, a velocity
+// of at most 1/2, no reserved bits. `refusal` answers one clock later. A word is written in two clocks, upper half
+// first. `room` excludes all ramps of a frame from one clock after its commit begins to write.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -24,17 +24,17 @@ module passo_ramp_queue #(
   input  wire                bus_write,
   input  wire                select,
   input  wire [        31:0] bus_data,
-  input  wire [         4:0] bus_top_bit,
+  input  wire [         4:0] bus_msb,
   input  wire                blocked,       // the channel is stopped
   output reg  [         3:0] refusal,
-  output wire                incomplete,    // the frame so far ends within a ramp
-  output wire                needs_motion,  // strobe: a NOW ramp is checked
+  output wire                incomplete,    // the frame so far ends mid-ramp
+  output wire                needs_motion,  // strobe: a NOW ramp is being checked
   output reg  [DEPTH_LOG2:0] room,          // in ramps
   // to the ramp
   input  wire                take,
   input  wire                take_now,
   input  wire                flush,
-  output reg                 valid,         // of two clocks ago
+  output reg                 valid,         // two clocks late
   output reg                 now_pending,
   input  wire [         3:0] half_index,
   output reg  [        15:0] half
@@ -52,10 +52,10 @@ module passo_ramp_queue #(
   // Writing
   reg [         2:0] index;
   reg [DEPTH_LOG2:0] write_ramp;
-  reg [DEPTH_LOG2:0] write_end;  // write_ramp when the frame will have been written
+  reg [DEPTH_LOG2:0] write_end;  // write_ramp after this frame
   reg [DEPTH_LOG2:0] now_ramp;
   reg [DEPTH_LOG2:0] checked;  // ramps of this frame
-  reg                velocity_is_max;  // as far as its upper bits tell
+  reg                velocity_is_max;  // by its upper 16 bits
   reg                write_low;  // second clock of a write
   reg                is_now;
   reg                is_mirror;
@@ -100,7 +100,7 @@ module passo_ramp_queue #(
     end
   end
 
-  // what is to be said of the word, a clock before it is asked
+  // Refusal, one clock ahead of the check
   reg full;
   reg bad_control;
   reg bad_velocity_low;
@@ -111,8 +111,8 @@ module passo_ramp_queue #(
   always @(posedge clk) begin
     full <= room == checked;
     bad_control <= (bus_data & ~RAMP_CONTROL_DEFINED) != 32'd0 || bus_data[31:16] > VELOCITY_MAX_HIGH;
-    bad_velocity_low <= velocity_is_max && (bus_top_bit != 5'd0 || bus_data[0]);
-    bad_step_high <= bus_top_bit > 5'd15;
+    bad_velocity_low <= velocity_is_max && (bus_msb != 5'd0 || bus_data[0]);
+    bad_step_high <= bus_msb > 5'd15;
     refusal          <= !(select && bus_check) ? VERDICT_OK :
                         blocked                ? VERDICT_BUSY :
                         full                   ? VERDICT_QUEUE_FULL :
@@ -134,7 +134,7 @@ module passo_ramp_queue #(
     end
   end
 
-  // as the ramp wants it: T inverted, and du of mirrored ramps
+  // Stored as the ramp needs it: T inverted, and du of mirrored ramps
   reg invert;
 
   always @(posedge clk)

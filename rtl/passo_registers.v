@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Registers of the core: identification, parameters, RUN; and the status word. The counters of refusals have
-// their addresses here, but the link keeps them.
+// Registers of the core: identification, parameters, RUN; and the status word. The refusal counters have their
+// addresses here, but the link keeps them.
 //
-// Promise: the answer to a strobe comes one clock later, for one clock; claim and refusal are 0 unless one of
-// these registers is meant. `read_data` is the status word at all other times. RUN changes for all channels on
-// the same clock.
+// Promise: a strobe is answered one clock later, for one clock; claim and refusal are 0 unless one of these registers
+// is addressed. `read_data` is the status word at all other times. RUN changes for all channels on the same clock.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -16,29 +15,29 @@ module passo_registers #(
   parameter LINE_QUEUE_LOG2 = 8,
   parameter RAMP_QUEUE_LOG2 = 4
 ) (
-  input wire clk,
-  input wire rst,
+  input  wire                                    clk,
+  input  wire                                    rst,
   // bus
-  input wire bus_check,
-  input wire bus_write,
-  input wire bus_read,
-  input wire bus_push,
-  input wire [11:0] bus_address,
-  input wire [18:0] bus_data,
-  input wire [4:0] bus_top_bit,
-  output reg claim,
-  output reg [3:0] refusal,
-  output wire [31:0] read_data,
+  input  wire                                    bus_check,
+  input  wire                                    bus_write,
+  input  wire                                    bus_read,
+  input  wire                                    bus_push,
+  input  wire [                            11:0] bus_address,
+  input  wire [                            18:0] bus_data,
+  input  wire [                             4:0] bus_msb,
+  output reg                                     claim,
+  output reg  [                             3:0] refusal,
+  output wire [                            31:0] read_data,
   // link
-  input wire [7:0] last_sequence,
-  output wire is_counters,  // the address is that of counters of refusals
+  input  wire [                             7:0] last_sequence,
+  output wire                                    is_counters,    // the address is that of refusal counters
   // channels
-  output reg [CHANNELS-1:0] run,
-  output reg [CHANNELS-1:0] wait_sync,
-  input wire any_stopped,
-  input wire any_occupied,
-  input wire [CHANNELS*(LINE_QUEUE_LOG2+1)-1:0] line_room,
-  input wire [CHANNELS*(RAMP_QUEUE_LOG2+1)-1:0] ramp_room
+  output reg  [                    CHANNELS-1:0] run,
+  output reg  [                    CHANNELS-1:0] wait_sync,
+  input  wire                                    any_stopped,
+  input  wire                                    any_occupied,
+  input  wire [CHANNELS*(LINE_QUEUE_LOG2+1)-1:0] line_room,
+  input  wire [CHANNELS*(RAMP_QUEUE_LOG2+1)-1:0] ramp_room
 );
 
   `include "passo_registers.vh"
@@ -70,7 +69,7 @@ module passo_registers #(
   wire run_beyond = ({1'b0, bus_data[7:0]} >> CHANNELS) != 9'd0 || ({1'b0, bus_data[15:8]} >> CHANNELS) != 9'd0
                     || {1'b0, bus_data[18:16]} >= CHANNELS[3:0];
 
-  // Which register is meant is known a clock before the strobe, because the address is.
+  // Decoded one clock ahead of the strobe: the address is stable by then.
   reg       known;
   reg       is_run;
   reg       bad_run;
@@ -93,7 +92,7 @@ module passo_registers #(
     known        <= bus_address[11:3] == 9'd0 && bus_address[2:0] <= ADDRESS_REFUSALS_1[2:0];
     is_run       <= bus_address == ADDRESS_RUN;
     number       <= bus_address[2:0];
-    bad_run      <= bus_top_bit > 5'd18 || run_beyond;
+    bad_run      <= bus_msb > 5'd18 || run_beyond;
     reads_status <= ~bus_read;
     for (i = 0; i < 4; i = i + 1) reads[i] <= bus_read && known && number == i[2:0];
     claim <= known && (bus_check || bus_read);

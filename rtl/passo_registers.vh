@@ -16,7 +16,7 @@ localparam HEADER_OPERATION_LSB  = 28;
 localparam HEADER_OPERATION_BITS = 4;
 localparam HEADER_DEFINED        = 32'hFFFFFFFF;
 
-// Word: Ack. Last word of the reply to a write or push, and to a read that was refused.
+// Word: Ack. Last word of the reply to a write or push, and to a refused read.
 localparam ACK_NOT_VERDICT_LSB   = 0;
 localparam ACK_NOT_VERDICT_BITS  = 8;
 localparam ACK_NOT_SEQUENCE_LSB  = 8;
@@ -27,7 +27,7 @@ localparam ACK_SEQUENCE_LSB      = 24;
 localparam ACK_SEQUENCE_BITS     = 8;
 localparam ACK_DEFINED           = 32'hFFFFFFFF;
 
-// Word: Status. What stands in a reply before the ack or the data, as it was when chip select fell.
+// Word: Status. Sent in a reply before the ack or the data; sampled when chip select fell.
 localparam STATUS_RAMP_ROOM_LSB     = 0;
 localparam STATUS_RAMP_ROOM_BITS    = 8;
 localparam STATUS_LINE_ROOM_LSB     = 8;
@@ -176,8 +176,8 @@ localparam ADDRESS_CHANNEL_BASE   = 12'h100;
 localparam ADDRESS_CHANNEL_COUNT  = 8;
 localparam ADDRESS_CHANNEL_STRIDE = 12'h100;
 
-// Channel: Command. Each bit written as 1 is done once. With STOP or ABORT, CLEAR and ZERO in the same word
-// are ignored; ABORT wins over STOP.
+// Channel: Command. Each bit written as 1 takes effect once. STOP and ABORT override CLEAR and ZERO in the
+// same word; ABORT has priority over STOP.
 localparam CHANNEL_COMMAND             = 8'h00;
 localparam CHANNEL_COMMAND_STOP_LSB    = 0;
 localparam CHANNEL_COMMAND_STOP_BITS   = 1;
@@ -215,14 +215,14 @@ localparam CHANNEL_STOP_SLEW_BITS    = 17;
 localparam CHANNEL_STOP_SLEW_RESET   = 17'h00400;
 localparam CHANNEL_STOP_SLEW_DEFINED = 32'h0001FFFF;
 
-// Channel: Drain velocity. Velocity of the substeps that are still missing when the profile has ended.
+// Channel: Drain velocity. Velocity of the substeps still missing when the profile has ended.
 localparam CHANNEL_DRAIN_VELOCITY         = 8'h04;
 localparam CHANNEL_DRAIN_VELOCITY_LSB     = 0;
 localparam CHANNEL_DRAIN_VELOCITY_BITS    = 32;
 localparam CHANNEL_DRAIN_VELOCITY_RESET   = 32'h01000000;
 localparam CHANNEL_DRAIN_VELOCITY_DEFINED = 32'hFFFFFFFF;
 
-// Channel: State. What the channel does now.
+// Channel: State. State of the channel.
 localparam CHANNEL_STATE                = 8'h08;
 localparam CHANNEL_STATE_STATE_LSB      = 0;
 localparam CHANNEL_STATE_STATE_BITS     = 3;
@@ -275,7 +275,7 @@ localparam CHANNEL_RAMP_LSB     = 0;
 localparam CHANNEL_RAMP_BITS    = 32;
 localparam CHANNEL_RAMP_DEFINED = 32'hFFFFFFFF;
 
-// Channel: Steps made. Position of an axis in steps, as it was soon after chip select fell; wraps.
+// Channel: Steps made. Position of an axis in steps, sampled soon after chip select fell; wraps.
 localparam CHANNEL_POSITION_BASE  = 8'h40;
 localparam CHANNEL_POSITION_COUNT = 8;
 localparam CHANNEL_POSITION_LSB   = 0;
@@ -287,8 +287,8 @@ localparam CHANNEL_AXIS_BASE   = 8'h80;
 localparam CHANNEL_AXIS_COUNT  = 8;
 localparam CHANNEL_AXIS_STRIDE = 8'h08;
 
-// Axis: Pins. Polarities and step mode. Refused with BUSY unless the channel is quiet. The next step waits
-// for the low time, the DIR hold and the DIR set-up from here on. Kept over a reset of the core.
+// Axis: Pins. Polarities and step mode. Refused with BUSY unless the channel is quiet. From the write on,
+// the next step waits for the low time, the DIR hold and the DIR setup. Kept through a reset of the core.
 localparam AXIS_PINS                          = 3'h0;
 localparam AXIS_PINS_STEP_INVERTED_LSB        = 1;
 localparam AXIS_PINS_STEP_INVERTED_BITS       = 1;
@@ -324,7 +324,7 @@ localparam AXIS_DIR_TIMING_DIR_SETUP_BITS  = 16;
 localparam AXIS_DIR_TIMING_DIR_SETUP_RESET = 16'h0001;
 localparam AXIS_DIR_TIMING_DEFINED         = 32'hFFFFFFFF;
 
-// Axis: Lost steps. Steps that found the queue of the axis full (STEP_OVERRUN).
+// Axis: Lost steps. Steps lost because the queue of the axis was full (STEP_OVERRUN).
 localparam AXIS_LOST_STEPS            = 3'h3;
 localparam AXIS_LOST_STEPS_LOST_LSB   = 0;
 localparam AXIS_LOST_STEPS_LOST_BITS  = 4;
@@ -337,12 +337,12 @@ localparam AXIS_ENABLE_BITS    = 1;
 localparam AXIS_ENABLE_RESET   = 1'h0;
 localparam AXIS_ENABLE_DEFINED = 32'h00000001;
 
-// What a frame asks for.
+// Operation of a frame.
 localparam OPERATION_READ  = 4'd1; // Read consecutive registers.
 localparam OPERATION_WRITE = 4'd2; // Write consecutive registers.
 localparam OPERATION_PUSH  = 4'd3; // Write every word to the same address: lines and ramps.
 
-// What became of a frame.
+// Outcome of a frame.
 localparam VERDICT_OK              = 4'd0; // Executed.
 localparam VERDICT_DUPLICATE       = 4'd1; // Not executed: its sequence number was accepted before.
 localparam VERDICT_BAD_CRC         = 4'd2; // CRC wrong.
@@ -354,16 +354,16 @@ localparam VERDICT_QUEUE_FULL      = 4'd7; // Not enough room for the whole fram
 localparam VERDICT_BUSY            = 4'd8; // The state of the channel does not allow it (see the register).
 localparam VERDICT_BAD_VALUE       = 4'd9; // M = 0 or M >= 2^30, N_i > M, a velocity above 1/2, drain velocity 0, reserved bits set.
 
-// What a channel does.
+// State of a channel.
 localparam STATE_IDLE    = 3'd0; // No motion.
-localparam STATE_PREPARE = 3'd1; // First line and first velocity are being made ready.
+localparam STATE_PREPARE = 3'd1; // First line and first velocity are being prepared.
 localparam STATE_ARMED   = 3'd2; // Ready to start; waits while WAIT_SYNC is set.
 localparam STATE_RUN     = 3'd3; // The profile runs.
-localparam STATE_SETTLE  = 3'd4; // The profile has ended, its last substeps reach the pins.
+localparam STATE_SETTLE  = 3'd4; // The profile has ended; its last substeps travel to the pins.
 localparam STATE_DRAIN   = 3'd5; // Missing substeps of the LAST line are made at drain_velocity.
 localparam STATE_STOPPED = 3'd6; // Stopped by a command or a fault; queues flushed. CLEAR leads back to IDLE.
 
-// Why a channel stopped.
+// Why a channel has stopped.
 localparam CAUSE_NONE          = 3'd0; // Not stopped.
 localparam CAUSE_STOP          = 3'd1; // COMMAND.STOP.
 localparam CAUSE_ABORT         = 3'd2; // COMMAND.ABORT.
@@ -371,7 +371,7 @@ localparam CAUSE_LINE_UNDERRUN = 3'd3; // A line ended, was not LAST, and none f
 localparam CAUSE_RAMP_UNDERRUN = 3'd4; // The ramps ran out at speed.
 localparam CAUSE_STEP_OVERRUN  = 3'd5; // Steps came faster than the pin timing of an axis allows.
 
-// How a ramp leads the velocity: s for a progress u, both 0 .. 1.
+// Shape of a ramp: s as a function of the progress u, both 0 .. 1.
 localparam SHAPE_LINEAR  = 2'd0; // s = u, no table.
 localparam SHAPE_COSINE  = 2'd1; // (1 - cos(pi u)) / 2.
 localparam SHAPE_SIGMOID = 2'd2; // Logistic function over -5 .. 5, scaled to begin at 0 and end at 1.

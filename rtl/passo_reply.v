@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Reply: the word that is sent next, taken as a whole or put together bit by bit.
+// Reply: the next word to send, loaded at once or built bit by bit.
 //
-// Promise: `take` takes `data`, in one clock. 32 clocks of `shift` with `turns` 0 .. 31 turn the word and
-// show it at `top`, bit by bit; or, with `acknowledge`, `crc_next` or `counters`, make it the acknowledge, the
-// CRC or the counters; `top` is the bit that goes in then.
-// Acknowledge: sequence (31:24) and verdict (23:16) and their complement. The header turns along; its bits 27
-// and 11 show the sequence, twice.
+// Promise: `take` loads `data`, in one clock. 32 clocks of `shift` with `bit_index` 0 .. 31 rotate the word and show
+// it at `top`, bit by bit; or, with `acknowledge`, `crc_next` or `counters`, replace it by the acknowledge, the CRC
+// or the counters, which `top` shows as they are shifted in.
+// Acknowledge: sequence (31:24), verdict (23:16) and their complement. The header rotates meanwhile; its bits 27 and
+// 11 show the sequence, twice.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -16,7 +16,7 @@ module passo_reply (
   input  wire        take,
   input  wire [31:0] data,
   input  wire        shift,
-  input  wire [ 4:0] turns,
+  input  wire [ 4:0] bit_index,
   input  wire        acknowledge,
   input  wire        header_11,
   input  wire        header_27,
@@ -29,13 +29,13 @@ module passo_reply (
   output wire        top
 );
 
-  wire sequence_bit = turns[4] ? header_11 : header_27;
-  wire verdict_bit = turns[2] & verdict[~turns[1:0]];
-  wire acknowledge_bit = turns[4] ^ (turns[3] ? verdict_bit : sequence_bit);
+  wire sequence_bit = bit_index[4] ? header_11 : header_27;
+  wire verdict_bit = bit_index[2] & verdict[~bit_index[1:0]];
+  wire acknowledge_bit = bit_index[4] ^ (bit_index[3] ? verdict_bit : sequence_bit);
 
   assign top = counters ? counter_bit : word[31];
 
-  // at most one of them
+  // at most one of them is high
   wire other = ~acknowledge & ~crc_next;
   wire next_bit = (acknowledge & acknowledge_bit) | (crc_next & crc_top) | (other & top);
 

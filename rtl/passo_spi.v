@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: MIT
-// SPI slave, mode 0, MSB first: bits to words of 32 bits, in halves of 16, and back.
+// SPI slave, mode 0, MSB first: bits to 32-bit words, in halves of 16, and back.
 //
-// Promise: `half_valid` is high for one clock after each 16 bits received, with `half` and `half_low` (it is
-// the second half of a word) stable until the next half is complete. `reply_word` is sampled at the end of
-// each word, to be sent as the next one; the first word of a frame is `reply_word` as well, except that its
-// top bit is sent as 1 (it is on the wire before the first edge).
+// Promise: `half_valid` is high for one clock after each 16 bits received; `half` and `half_low` (second half of a
+// word) are stable until the next half is complete. `reply_word` is sampled at the end of each word and sent as the
+// next one; the first word of a frame is `reply_word`, too, but its top bit is sent as 1 (it is on the wire before
+// the first edge).
 //
-// Everything that touches bits runs on SCLK, and words cross to `clk`. Timing budget at SCLK = 18 MHz, clk =
-// 72 MHz:
+// Everything that touches bits runs on SCLK; words cross to `clk`. Timing budget at SCLK = 18 MHz, clk = 72 MHz:
 //   MISO  falling edge of SCLK -> flip-flop -> pin -> master: 27.8 ns until the master's rising edge;
-//         about 3 ns in, 5 ns logic and routing, 6 ns out, 5 ns set-up of an STM32F103 leave 8 ns for the cable.
+//         about 3 ns in, 5 ns logic and routing, 6 ns out, 5 ns setup of an STM32F103 leave 8 ns for the cable.
 //         Oversampling with clk would need 3 clocks = 41.7 ns.
-//   half  crosses by a toggle through two flip-flops, 2 to 3 clocks after its last falling edge; it stays for
+//   half  crosses by a toggle through two flip-flops, 2 to 3 clocks after its last falling edge; it is stable for
 //         15 SCLK = 60 clocks.
 //   reply_word  may change from half_valid of a second half until the next word's last falling edge: 125 clocks.
-//   frame_start comes 2 to 3 clocks after chip select falls; reply_word must stand at the first falling edge of
-//         SCLK, so chip select has to fall at least 3 clocks before the first rising edge.
-//   chip select must be high for 2 clocks between two frames, or the second one is taken for a part of the first.
+//   frame_start comes 2 to 3 clocks after chip select falls; reply_word must be stable at the first falling edge of
+//         SCLK, so chip select must fall at least 3 clocks before the first rising edge.
+//   chip select must be high for 2 clocks between two frames, or the second one is taken for part of the first.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -28,7 +27,7 @@ module passo_spi (
   input  wire        spi_mosi,
   input  wire        spi_cs_n,
   output reg         spi_miso,
-  // words, in the domain of clk
+  // words, in the clk domain
   output wire        frame_start,  // chip select fell
   output wire        frame_end,    // chip select rose
   output wire        half_valid,
@@ -37,11 +36,11 @@ module passo_spi (
   input  wire [31:0] reply_word
 );
 
-  // Chip select resets bits and words, and it is also a signal: to the toggle, and to clk behind its own
-  // synchroniser.
+  // Chip select resets bits and words asynchronously and is also data: for the toggle and, through a synchroniser,
+  // for clk.
   /* verilator lint_off SYNCASYNCNET */
 
-  // SCLK domain. Bits come in on the rising edge; all else happens on the falling edge.
+  // SCLK domain. Bits are sampled on the rising edge; all else happens on the falling edge.
   reg [4:0] bit_count;
   reg       mosi;
 
@@ -51,8 +50,8 @@ module passo_spi (
 
   always @(posedge spi_sclk) mosi <= spi_mosi;
 
-  // One register: the reply leaves it at the top while the word comes in at the bottom. In the first word the
-  // reply is one bit ahead, because its top bit has gone by; so the word is one bit behind, by `mosi_late`.
+  // One shift register: the reply leaves at the top while the word enters at the bottom. In the first word the reply
+  // is one bit ahead, its top bit being out already; so the word is delayed by one bit, `mosi_late`.
   reg         first_word;
   reg  [30:0] shift;
   reg         mosi_late;
@@ -74,9 +73,9 @@ module passo_spi (
     shift     <= load_next || load_first ? reply_word[30:0] : {shift[29:0], first_word ? mosi_late : mosi};
   end
 
-  // A half is announced only when the reply to the next word has been taken, on the same falling edge: however
-  // slow SCLK is, whoever sees half_valid may change reply_word. The toggle only ever changes at the end of a
-  // half, so it needs no reset, just a beginning.
+  // A half is announced on the falling edge that also samples the next reply: however slow SCLK is, reply_word may
+  // change once half_valid is seen. The toggle only changes at the end of a half: it needs an initial value, no
+  // reset.
   reg half_toggle;
   initial half_toggle = 1'b0;
 
@@ -87,8 +86,8 @@ module passo_spi (
       half        <= first_word ? {shift[13:0], mosi_late, mosi} : {shift[14:0], mosi};
     end
 
-  // clk domain. Both follow through a reset: what does not change after it does not look like a change, so a frame
-  // begins only when chip select falls.
+  // clk domain. Both synchronisers run during reset, so that it leaves no false edge behind: a frame begins only when
+  // chip select falls.
   (* async_reg = "true" *)
   reg [2:0] select_sync;
   initial select_sync = 3'b111;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Passo behind SPI: for a microcontroller beside the FPGA.
+// Passo behind SPI, for a microcontroller next to the FPGA.
 //
 // Clock: clk at least four times SCLK. Reset: rst synchronous, active high.
 `resetall
@@ -10,10 +10,10 @@ module passo_spi_top #(
   parameter                     CHANNELS        = 1,  // 1 .. 8
   parameter                     AXES            = 4,  // per channel, 1 .. 8
   parameter                     TICK_LOG2       = 7,  // clocks per tick, 7 .. 16
-  parameter                     LINE_QUEUE_LOG2 = 8,  // places for lines, 2 .. 8
-  parameter                     RAMP_QUEUE_LOG2 = 4,  // places for ramps, 2 .. 8
-  parameter                     STEPS_REGISTER  = 0,  // 1: where block RAMs have a register behind their data
-  // levels of the pins from configuration on until the host has spoken; bit channel * AXES + axis
+  parameter                     LINE_QUEUE_LOG2 = 8,  // log2 of the places for lines, 2 .. 8
+  parameter                     RAMP_QUEUE_LOG2 = 4,  // log2 of the places for ramps, 2 .. 8
+  parameter                     STEPS_REGISTER  = 0,  // 1: block RAMs have an output register
+  // pin levels from configuration until the host writes polarities; bit channel * AXES + axis
   parameter [CHANNELS*AXES-1:0] STEP_RESET      = 0,
   parameter [CHANNELS*AXES-1:0] DIR_RESET       = 0,
   parameter [CHANNELS*AXES-1:0] ENABLE_RESET    = 0
@@ -26,7 +26,7 @@ module passo_spi_top #(
   input  wire                     spi_cs_n,
   output wire                     spi_miso,
   output wire                     spi_miso_enable,  // drive the pin
-  // start of several chips on one edge
+  // starts several chips on one edge
   input  wire                     sync,
   // drives: bit channel * AXES + axis
   output wire [CHANNELS*AXES-1:0] step,
@@ -34,7 +34,7 @@ module passo_spi_top #(
   output wire [CHANNELS*AXES-1:0] enable,
   // to the host
   output wire [     CHANNELS-1:0] running,
-  output wire                     irq               // some channel is stopped
+  output wire                     irq               // a channel is stopped
 );
 
   wire        frame_start;

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Shape tables: 3 banks of 256 points, UQ0.16, shared by all channels and writable over the bus while no
-// motion is prepared or runs.
+// Shape tables: 3 banks of 256 points, UQ0.16, shared by all channels; writable over the bus while no motion is
+// prepared or running.
 //
-// Promise: channels are served in turn, two clocks each. A channel that holds `request` with its `address`
-// gets `served` for one clock, with the point at the address on `point` and the point after it on
-// `point_next`; at most 2 * CHANNELS + 4 clocks after its request rose. Address = bank - 1 (9:8) and k (7:0);
-// point_next after k = 255 means nothing.
+// Promise: channels are served in turn, two clocks each. A channel that holds `request` with its `address` gets
+// `served` for one clock, within 2 * CHANNELS + 4 clocks, with the point at the address on `point` and the one after
+// it on `point_next`. Address = bank - 1 (9:8) and k (7:0); point_next after k = 255 is undefined.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -25,9 +24,9 @@ module passo_tables #(
   input  wire                   select,
   input  wire [            9:0] bus_address,  // within the tables: bank (9:8), 1 .. 3
   input  wire [           15:0] bus_data,
-  input  wire [            4:0] bus_top_bit,  // of the data that are checked: highest bit that is set
+  input  wire [            4:0] bus_msb,      // of checked data: index of the highest set bit
   output reg  [            3:0] refusal,
-  output reg                    wanted,       // the frame writes points, which needs all channels at rest
+  output reg                    wanted,       // the frame writes points: needs all channels at rest
   // channels
   input  wire [   CHANNELS-1:0] request,
   input  wire [CHANNELS*10-1:0] address,
@@ -49,16 +48,16 @@ module passo_tables #(
     refusal <= VERDICT_OK;
     if (select && bus_read) refusal <= VERDICT_BAD_OPERATION;
     if (select && bus_check)
-      refusal <= bus_push ? VERDICT_BAD_OPERATION : bus_top_bit > 5'd15 ? VERDICT_BAD_VALUE : VERDICT_OK;
+      refusal <= bus_push ? VERDICT_BAD_OPERATION : bus_msb > 5'd15 ? VERDICT_BAD_VALUE : VERDICT_OK;
   end
 
   always @(posedge clk) wanted <= ~rst & ~(bus_frame & ~bus_commit) & (wanted | (select & bus_check));
 
-  // One channel after the other; first its point, then the next one
+  // One channel after the other: first its point, then the next one
   reg [2:0] channel;
   reg second;
-  reg [CHANNELS-1:0] serves;  // a clock before `served`
-  reg asked;  // the channel asked when its first point was addressed, and no answer was on its way
+  reg [CHANNELS-1:0] serves;  // one clock before `served`
+  reg asked;  // the channel requested when its first point was addressed, and no answer was in flight
   wire [9:0] channel_address = address[channel*10+:10];
   wire [CHANNELS-1:0] channel_mask = CHANNEL_0 << channel;
   reg [15:0] word;
@@ -76,7 +75,7 @@ module passo_tables #(
     second <= ~second;
     if (!second) asked <= (request & channel_mask & ~serves) != {CHANNELS{1'b0}};
     else channel <= channel == CHANNEL_LAST ? 3'd0 : channel + 3'd1;
-    // read_data holds the point in the clock after the second one, and then point_next
+    // read_data holds the point in the clock after `second`, then point_next
     if (!second) point <= read_data;
     serves <= (second && asked) ? channel_mask : {CHANNELS{1'b0}};
     served <= serves;

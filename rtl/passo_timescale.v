@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Time scale: the clock enable of the profile. Feed hold, resume, override and soft stop change only this, so
-// the sequence of pulses is the same under any of them.
+// Time scale: the clock enable of the profile. Feed hold, resume, override and soft stop change only this, so the
+// pulse sequence is the same under any of them.
 //
 //   rate_sum += rate;  enable = carry out              rate = 1.0 -> every clock, rate = 0 -> none
 //   rate moves toward the goal by the slew every 2^TICK_LOG2 real clocks (`slew_tick`), and onto it when it is nearer
 //   goal = rate_target, or 0 when stopping
 //   outside a motion rate = rate_target, 2 clocks later
 //
-// Promise: `enable` is registered, low unless `moving`, and a motion begins with an empty rate_sum. A slew of
-// 0 counts as 1. The rate changes 7 clocks after the slew tick: goal, direction, slew, the new rate and whether
-// it lies beyond the goal are found one after the other. Slew ticks are at least 8 clocks apart. Once `stopping` is
-// high the rate never rises: a change under way when it rises is dropped.
+// Promise: `enable` is registered, low unless `moving`, and a motion begins with rate_sum = 0. Slew 0 counts as 1.
+// The rate changes 7 clocks after the slew tick: goal, direction, slew, new rate and overshoot are computed one after
+// the other. Slew ticks are at least 8 clocks apart. Once `stopping` is high the rate never rises: a change in
+// progress when it rises is dropped.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -19,7 +19,7 @@ module passo_timescale (
   input  wire        clk,
   input  wire        rst,
   input  wire        slew_tick,
-  input  wire        moving,       // count: the profile runs
+  input  wire        moving,       // the profile runs
   input  wire        stopping,
   input  wire [16:0] rate_target,  // UQ1.16
   input  wire [16:0] rate_slew,
@@ -31,9 +31,9 @@ module passo_timescale (
   reg  [15:0] rate_sum;
   wire [16:0] rate_sum_next = {1'b0, rate_sum} + rate;
 
-  reg [ 6:1] after;  // clocks since the slew tick
+  reg [ 6:1] after;  // clocks since the slew tick, one-hot
   reg [16:0] goal;
-  reg        stops;  // the slew tick found `stopping`
+  reg        stops;  // `stopping` was high at the slew tick
   reg        down;
   reg [16:0] change;  // the slew, inverted if down; else 0
   reg        change_carry;
@@ -41,7 +41,7 @@ module passo_timescale (
   reg        land;
   reg        still;  // not moving
 
-  // goal >= rate + change, but for the uppermost bit of the sum
+  // goal >= rate + change, except for the top bit of the sum
   wire        reaches;
   wire [16:0] unused_sum;
   assign {reaches, unused_sum} = {1'b0, goal} + {1'b0, not_moved[16:0]} + 18'd1;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Verdict: what is to be said of the frame that is received. BAD_CRC has priority, then what the header decode says, then
-// the first objection of a target, then BAD_LENGTH of a push that is not whole, then BUSY.
+// Verdict on the frame being received. BAD_CRC has priority, then the header decode, then the first objection of a
+// target, then BAD_LENGTH of a push that is not whole, then BUSY.
 //
-// Promise: `header` and `conclude` are strobes; a clock after them `verdict` is what the header decode says, and what is said of
-// the whole frame. Between them the first objection to a word counts: the answer to `bus_check` comes a clock after the bus
-// shows it, and is judged in the next; that to the first word of a read is there in the clock of `read_answered`.
-// `verdict_ok` says that the verdict is OK, `executes` that it would be now if the frame ended here.
+// Promise: one clock after the strobe `header`, `verdict` is that of the header decode; one clock after the strobe
+// `conclude`, that of the whole frame. In between the first objection to a word counts: the answer to `bus_check`
+// comes one clock after the strobe and is judged in the next; that to the first word of a read is ready in
+// `read_answered`. `verdict_ok`: the verdict is OK; `executes`: it would be OK if the frame ended now.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -17,8 +17,8 @@ module passo_verdict (
   input  wire       header,          // strobe: the header decode is done
   input  wire       header_ok,
   input  wire [3:0] header_verdict,
-  input  wire       in_header,       // nothing is wrong with the CRC yet
-  input  wire       crc_differs,     // a bit of the CRC that has come
+  input  wire       in_header,       // the CRC check starts over
+  input  wire       crc_differs,     // a bit of the received CRC does
   input  wire       conclude,        // strobe: the frame is whole
   input  wire       read_answered,
   // targets
@@ -39,7 +39,7 @@ module passo_verdict (
   reg       answer_due;
   reg       answer_came;
   reg [3:0] answer;
-  reg       objects;  // it is not OK
+  reg       objects;  // the answer is not OK
   reg [3:0] verdict_final;
 
   assign objection = read_answered & objects;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Passo behind Wishbone B4 (classic cycles, 32 bits): for a CPU in the same FPGA.
+// Passo behind Wishbone B4 (classic cycles, 32 bits), for a CPU in the same FPGA.
 //
-// The two registers of passo_words. A cycle that is an error there ends with ERR. ACK or ERR comes a clock after STB;
-// an access that has to wait for the word before takes up to 128 clocks.
+// The two registers of passo_words; its errors end the cycle with ERR. ACK or ERR comes one clock after STB; an
+// access that must wait for the previous word takes up to 128 clocks.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -11,17 +11,17 @@ module passo_wishbone #(
   parameter                     CHANNELS        = 1,  // 1 .. 8
   parameter                     AXES            = 4,  // per channel, 1 .. 8
   parameter                     TICK_LOG2       = 7,  // clocks per tick, 7 .. 16
-  parameter                     LINE_QUEUE_LOG2 = 8,  // places for lines, 2 .. 8
-  parameter                     RAMP_QUEUE_LOG2 = 4,  // places for ramps, 2 .. 8
-  parameter                     STEPS_REGISTER  = 0,  // 1: where block RAMs have a register behind their data
-  // levels of the pins from configuration on until the host has spoken; bit channel * AXES + axis
+  parameter                     LINE_QUEUE_LOG2 = 8,  // log2 of the places for lines, 2 .. 8
+  parameter                     RAMP_QUEUE_LOG2 = 4,  // log2 of the places for ramps, 2 .. 8
+  parameter                     STEPS_REGISTER  = 0,  // 1: block RAMs have an output register
+  // pin levels from configuration until the host writes polarities; bit channel * AXES + axis
   parameter [CHANNELS*AXES-1:0] STEP_RESET      = 0,
   parameter [CHANNELS*AXES-1:0] DIR_RESET       = 0,
   parameter [CHANNELS*AXES-1:0] ENABLE_RESET    = 0
 ) (
   input  wire                     clk,
   input  wire                     rst,
-  // Wishbone slave, byte addresses; their lowest bits do not matter
+  // Wishbone slave, byte addresses; bits 1:0 are ignored
   /* verilator lint_off UNUSEDSIGNAL */
   input  wire                     wb_cyc_i,
   input  wire                     wb_stb_i,
@@ -33,7 +33,7 @@ module passo_wishbone #(
   output wire                     wb_ack_o,
   output wire                     wb_err_o,
   /* verilator lint_on UNUSEDSIGNAL */
-  // start of several chips on one edge
+  // starts several chips on one edge
   input  wire                     sync,
   // drives: bit channel * AXES + axis
   output wire [CHANNELS*AXES-1:0] step,
@@ -41,7 +41,7 @@ module passo_wishbone #(
   output wire [CHANNELS*AXES-1:0] enable,
   // to the host
   output wire [     CHANNELS-1:0] running,
-  output wire                     irq        // some channel is stopped
+  output wire                     irq        // a channel is stopped
 );
 
   wire        frame_start;

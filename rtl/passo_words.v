@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Words: the front door of a bus in the same FPGA. A master writes and reads the words of a frame, which go on as if
-// they came over SPI at clk / 4.
+// Words: the host interface for a bus in the same FPGA. A master writes and reads the words of a frame, which proceed
+// as if they came over SPI at clk / 4.
 //
 //   address 0  SELECT  bit 0: a frame is open, as by chip select; bit 1, read only: the next access need not wait
-//   address 1  WORD    written: the next word of the frame; read: the word that is exchanged for it
+//   address 1  WORD    write: the next word of the frame; read: the word exchanged for it
 //
-// Promise: `request` with an access is held until `done`, which is high for one clock; `error` and `read_data` stand
-// from then until the next one. An access has to wait for 128 clocks after a word or a change of SELECT, except
-// reading SELECT. An error, without effect: a write of less than four bytes, or of WORD while no frame is open.
-// The first half of a word leaves a clock after it is done, the second 64 clocks later, frame_start and frame_end a
-// clock after SELECT is done. WORD read before the first word of a frame is the status.
+// Promise: `request` and its access are held until `done`, which is high for one clock; `error` and `read_data` are
+// valid from then until the next one. After a word or a change of SELECT an access waits for 128 clocks, except a
+// read of SELECT. Errors, without effect: a write of less than four bytes, or of WORD while no frame is open. The
+// first half of a word leaves with its `done`, the second 64 clocks later; frame_start and frame_end come with the
+// `done` of SELECT. WORD read before the first word of a frame is the status.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -64,7 +64,7 @@ module passo_words (
     if (selects) selected <= ~selected;
     if (selects || sends) sending <= address;
     if (sends) word <= write_data;
-    // the reply is exchanged at the end of a word, before the core answers to this word
+    // the reply is latched at the end of a word, before the core answers this word
     if (count[6] && count[5:0] == 6'd1) reply <= reply_word;
     if (selects || sends || !ready) count <= count + 7'd1;
     if (rst) begin

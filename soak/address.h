@@ -26,7 +26,7 @@ static inline bool in_channel(uint32_t address)
 	    && address < channel_address(PASSO_ADDRESS_CHANNEL_COUNT, 0);
 }
 
-/* Of a register in a channel; 0 for others. */
+/* Channel of a register; 0 for other registers. */
 static inline uint8_t channel_of(uint32_t address)
 {
 	const uint32_t channel = (address - PASSO_ADDRESS_CHANNEL_BASE) / PASSO_ADDRESS_CHANNEL_STRIDE;
@@ -34,7 +34,7 @@ static inline uint8_t channel_of(uint32_t address)
 	return in_channel(address) ? (uint8_t)channel : 0u;
 }
 
-/* Of a register, within its channel. */
+/* Offset of a register within its channel. */
 static inline unsigned place_of(uint32_t address)
 {
 	return address % PASSO_ADDRESS_CHANNEL_STRIDE;

@@ -8,7 +8,7 @@
 #define TRIES_NOISE 100u
 #define TRIES_DEATH 4u
 
-/* Its parts are numbered apart from the histories at the registers. */
+/* Makes the random numbers independent of the histories at register level. */
 #define SEED_OFFSET UINT64_C(0x62726964)
 
 static uint32_t microseconds(void *context)
@@ -40,7 +40,7 @@ static enum passo_error configure(struct bridge *bridge)
 		bridge_note(bridge, "configure", error);
 		if (error != PASSO_OK)
 			return error;
-		bridge_count_pins(bridge); /* the change of polarity is no step */
+		bridge_count_pins(bridge); /* a change of polarity is not a step */
 		bridge->config[a] = config;
 		error = passo_enable(&bridge->passo, a, true);
 		if (error != PASSO_OK)
@@ -55,7 +55,7 @@ static enum passo_error configure(struct bridge *bridge)
 	return error;
 }
 
-/* An earlier host has left off at any sequence number. */
+/* An earlier host may have stopped at any sequence number. */
 static void begin_sequences(struct bridge *bridge)
 {
 	uint32_t mosi[PASSO_FRAME_WORDS_MAX], miso[PASSO_FRAME_WORDS_MAX];

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
- * Histories through the driver (stm32_bridge/driver) over a wire that flips bits, loses and doubles clocks,
- * cuts frames, or dies in the middle of a call: every move is made exactly once or the driver says that it is
- * broken, and a stop, an abort or a hold takes place however often it has to be sent.
+ * Histories through the driver (stm32_bridge/driver) over a link that flips bits, drops and doubles clocks,
+ * cuts frames, or dies during a call. Every move is made exactly once, or the driver reports that it is
+ * broken; a stop, an abort or a hold takes effect however often it has to be sent.
  */
 #ifndef SOAK_BRIDGE_H
 #define SOAK_BRIDGE_H
 
 #include "plot.h"
 
-/* Its set of parameters. */
+/* Parameter set of these histories. */
 #define BRIDGE_SET 2u
 
 struct bridge_counts {

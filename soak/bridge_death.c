@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Histories on a wire that dies in the middle of a call, and comes back.
+ * Histories on a link that dies during a call and recovers.
  */
 #include <string.h>
 
@@ -7,7 +7,7 @@
 
 #define POLLS 50u
 
-/* The wire dies in one of the next frames, and comes back later. */
+/* Lets the link die in one of the next frames. */
 static void arm(struct bridge *bridge)
 {
 	bridge->wire.level = plot_chance(bridge->random, 50);

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-/* A queue of moves is over by then, even if each of its frames takes a hundred tries. */
+/* Longer than all queued moves, even if each frame takes a hundred tries. */
 #define WAIT_MICROSECONDS 4000000u
 #define POLL_CLOCKS 150u
 
@@ -99,7 +99,7 @@ struct passo_move_by_speed bridge_draw_move(struct bridge *bridge)
 	struct passo_move_by_speed move = {.profile = (enum passo_profile)plot_draw(bridge->random, 4),
 	    .acceleration = 40000000u * PASSO_UNIT_Q32};
 
-	/* no more than the queue of an axis holds come within its set-up time */
+	/* within the setup time, no more steps come than the queue of the axis holds */
 	move.speed = bridge->slow_turns ? 3000u : 10000u + plot_draw(bridge->random, 40000);
 	move.speed *= PASSO_UNIT_Q32;
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Histories on a wire with noise: nothing fails, all is made.
+ * Histories on a noisy link: nothing fails, and all moves are made.
  */
 #include "bridge_host.h"
 

@@ -13,7 +13,7 @@ static bool flips(struct wire *wire)
 	return flip;
 }
 
-/* One bit; the clock pulse may be lost on its way. Returns MISO as it was before the pulse. */
+/* Exchanges one bit; the clock pulse may be lost. Returns MISO before the pulse. */
 static bool exchange_bit(struct world *world, bool mosi, bool lost)
 {
 	world->inputs.spi_mosi = mosi;

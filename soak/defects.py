@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The defects of defects.toml, each put back into a copy of the sources and caught."""
+"""The defects in defects.toml: each is planted in a copy of the sources and must be caught."""
 
 import re
 import shutil
@@ -18,7 +18,7 @@ from soak.program import BUILD, FOLDERS, HERE, build, play_program
 
 @dataclass(frozen=True)
 class Defect:
-    """A known defect: its sentence, where it is put back, and the words with which it must go red."""
+    """A known defect: description, edits that plant it, and the pattern of the failure it must cause."""
 
     name: str
     says: str
@@ -26,20 +26,20 @@ class Defect:
     red: str  # regular expression
     driver: bool = False
     blind: bool = False  # the rate is judged by the steps alone
-    histories: int = 20_000  # within which it must
+    histories: int = 20_000  # within which it must be caught
 
     def folder(self) -> Path:
-        """Where its copy of the sources is."""
+        """Folder of its copy of the sources."""
         return BUILD / "defects" / self.name
 
 
 @dataclass(frozen=True)
 class Catch:
-    """What became of a defect."""
+    """Result of a defect."""
 
     defect: Defect
     good: bool
-    history: int  # the one that went red; -1: none
+    history: int  # the one that failed; -1: none
     seconds: float
     says: str
 
@@ -54,7 +54,7 @@ def defects() -> list[Defect]:
 
 
 def catch(defect: Defect, seed: int) -> Catch:
-    """Put the defect back into a copy of the sources; the histories must go red with its words."""
+    """Plant the defect in a copy of the sources; a history must fail with its pattern."""
     began = time.monotonic()
     root = defect.folder()
     shutil.rmtree(root, ignore_errors=True)
@@ -79,7 +79,7 @@ def catch(defect: Defect, seed: int) -> Catch:
 
 
 def catch_all(seed: int, jobs: int) -> list[Catch]:
-    """All of them, several at a time."""
+    """Plant and catch all defects, several in parallel."""
     chosen = defects()
     caught = []
     with ThreadPoolExecutor(jobs) as pool:

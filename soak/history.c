@@ -39,7 +39,7 @@ void history_play(struct world *world, const struct world_rtl *rtl, uint64_t see
 		player_aim(&scout, &plot.random, kind, &action);
 		plot_add(&plot, &action);
 		if (action.kind == ACTION_RESET && action.clocks > 4u * RESET_MARGIN) {
-			/* a frame that begins within a reset is none */
+			/* a frame that starts during a reset is ignored */
 			struct action within =
 			    plot_disturbance(&plot, plot_chance(&plot.random, 50) ? PLOT_ENABLE : PLOT_RUN);
 

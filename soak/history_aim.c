@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
- * Aiming: from the clocks where something changes to the beginning of a frame.
+ * Aiming: computes the start of a frame that hits a given event.
  */
 #include "history_player.h"
 
 #define BIT(event) (1u << EVENT_##event)
 
-/* What each disturbance is aimed at most of the time. */
+/* Preferred targets of each disturbance. */
 static const uint32_t wanted_events[PLOT_KINDS] = {
     [PLOT_STOP] = BIT(SLEW) | BIT(RATE) | BIT(STATE) | BIT(RAMP) | BIT(LINE),
     [PLOT_ABORT] = BIT(STEP) | BIT(DIR) | BIT(WAITS) | BIT(STATE) | BIT(STOPPING) | BIT(LINE),
@@ -29,7 +29,7 @@ static const uint32_t wanted_events[PLOT_KINDS] = {
     [PLOT_BAD] = BIT(STATE) | BIT(STEP),
 };
 
-/* One of the events, all kinds among those wanted alike. */
+/* Picks an event; all preferred kinds are equally likely. */
 static const struct world_event *choose_event(
     const struct world *scout, struct plot_random *random, uint32_t wanted)
 {
@@ -50,14 +50,14 @@ static const struct world_event *choose_event(
 			return &scout->events[i];
 }
 
-/* What is allowed in some states only. */
+/* Whether a disturbance is allowed only in some states. */
 static bool kind_is_gated(enum plot_kind kind)
 {
 	return kind == PLOT_CLEAR || kind == PLOT_ZERO || kind == PLOT_COMMAND || kind == PLOT_PINS
 	    || kind == PLOT_TABLE || kind == PLOT_NOW;
 }
 
-/* From the moment of an action that is to fall on the event, to its beginning. */
+/* Time from the start of an action to the point in it that is to hit the event. */
 static int64_t lead(
     const struct world *scout, struct plot_random *random, enum plot_kind kind, struct action *action)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The end of a history: rest, and one more move.
+ * The end of a history: come to rest, and make one more move.
  */
 #include <string.h>
 
@@ -9,7 +9,7 @@
 #define STOP (1u << PASSO_CHANNEL_COMMAND_STOP_LSB)
 #define CLEAR (1u << PASSO_CHANNEL_COMMAND_CLEAR_LSB)
 #define ZERO (1u << PASSO_CHANNEL_COMMAND_ZERO_LSB)
-/* Polls until something must have come to an end. */
+/* Polls after which a motion must have ended. */
 #define POLLS_MAX 400u
 #define LAST_MOVE_STEPS 8u
 
@@ -78,7 +78,7 @@ static void read_positions(struct player *player, unsigned channel)
 	    player_axes(player));
 }
 
-/* Whatever goes on: a stop or an abort ends it, in time. */
+/* Whatever is in progress, a stop or an abort ends it in time. */
 static uint32_t end_motion(struct player *player, struct plot_random *random, unsigned channel)
 {
 	struct world *world = player->world;
@@ -90,7 +90,7 @@ static uint32_t end_motion(struct player *player, struct plot_random *random, un
 	if (is_occupied(state) && plot_chance(random, 60)) {
 		write_one(player, channel_address(channel, PASSO_CHANNEL_STOP_SLEW), slew);
 		command(player, channel, STOP, "");
-		/* the rate needs so many ticks; a read takes longer than five */
+		/* the ticks that the rate needs; a read takes longer than five */
 		for (unsigned i = 0; i < PASSO_RATE_ONE / slew / 5u + 3u; i++)
 			state = state_of(player, channel);
 		if (is_occupied(state))
@@ -123,7 +123,7 @@ static uint32_t come_to_rest(struct player *player, struct plot_random *random, 
 	return state;
 }
 
-/* Empty queues, IDLE, quiet, position 0, full rate. */
+/* Restores empty queues, IDLE, quiet, position 0 and full rate. */
 static void start_again(struct player *player, struct plot_random *random, unsigned channel, uint32_t state)
 {
 	struct world *world = player->world;
@@ -142,7 +142,7 @@ static void start_again(struct player *player, struct plot_random *random, unsig
 	if (!now.quiet || now.stopping || now.cause != PASSO_CAUSE_NONE || now.state != PASSO_STATE_IDLE)
 		world_fail(world, world->clock, "channel %u: state %x after CLEAR", channel, state);
 	if (player->miso[PASSO_FRAME_DATA + 2u] != empty_room(player)) {
-		/* what waits there has no counterpart, and must not go with the last move */
+		/* lines or ramps left in the queues must not join the last move */
 		command(player, channel, ABORT, "");
 		command(player, channel, CLEAR, "in STOPPED");
 	}
@@ -157,7 +157,7 @@ static void last_move(struct player *player, struct plot_random *random, unsigne
 	uint32_t words[PASSO_FRAME_PAYLOAD_MAX];
 	struct passo_line line = {
 	    .last = true, .substeps = 2u * LAST_MOVE_STEPS, .directions = (uint8_t)channel};
-	/* slow enough for all its steps that wait while DIR is set up */
+	/* slow enough for the steps that queue during the DIR setup time */
 	const bool slow = plot_chance(random, 20);
 	const uint64_t velocity = PASSO_VELOCITY_MAX >> (slow ? 7 : 4);
 	const uint32_t ticks = slow ? 33 : 5;
@@ -177,7 +177,7 @@ static void last_move(struct player *player, struct plot_random *random, unsigne
 	    || !ramps_taken)
 		world_fail(world, world->clock, "channel %u: the last move was refused", channel);
 	for (unsigned a = 0; a < player_axes(player); a++) {
-		/* from the change of the polarity to the first step it is less than this set-up */
+		/* longer than the time from the polarity change to the first step */
 		const uint32_t frames = 5u * 64u * world->half_period + world->setup;
 		const uint32_t dir_setup = slow && a + 1u == player_axes(player) ? frames + 400u : 3u;
 		const uint32_t timings[2] = {0x40004u, dir_setup << 16 | 3u};
@@ -209,7 +209,7 @@ void player_end(struct player *player, struct plot_random *random, bool brief)
 	struct world *world = player->world;
 	uint32_t states[PASSO_CHANNELS_MAX] = {0};
 
-	if (plot_chance(random, 8)) { /* a reset leads there, too */
+	if (plot_chance(random, 8)) { /* a reset leads to the same state */
 		world_add_pin(world, (struct world_pin){world->clock + 3u, true, true});
 		world_add_pin(world, (struct world_pin){world->clock + 5u, true, false});
 		world_run(world, 20);

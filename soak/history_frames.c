@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Frames and edges of the pins, one after the other, out of the way of resets.
+ * Frames and pin edges in sequence, kept clear of resets.
  */
 #include <string.h>
 
@@ -26,8 +26,8 @@ static size_t build(struct player *player, const struct action *action, uint32_t
 	return count;
 }
 
-/* A write of which a reset would leave open whether it counts moves behind the reset; so does a frame that
- * begins while it ends. */
+/* Delays a write whose execution would race with a reset, and a frame that would start at its end, until
+ * after the reset. */
 static void avoid_reset(struct player *player, const struct action *action, size_t count)
 {
 	struct world *world = player->world;
@@ -86,7 +86,7 @@ void player_frame(struct player *player, const struct action *action)
 	const size_t count = build(player, action, mosi);
 	avoid_reset(player, action, count);
 	if (action->fault == FAULT_REPEATED && world->reset_at > player->repeat_at)
-		return; /* the core does not know its number any more */
+		return; /* the core has forgotten its sequence number */
 	const uint64_t begin = world->clock;
 	if (action->at == begin && action->event < EVENT_KINDS)
 		player->counts->hit++;
@@ -94,7 +94,7 @@ void player_frame(struct player *player, const struct action *action)
 	world_exchange(world, mosi, player->miso, count, bits);
 	player->counts->frames++;
 
-	/* what a reset falls into is lost */
+	/* a frame hit by a reset is lost */
 	const bool lost = world->reset_at != 0u
 	               && (world->reset_until == UINT64_MAX || world->reset_until + RESET_MARGIN > begin);
 	print_frame(player, action, begin, lost);
@@ -146,7 +146,7 @@ void player_actions(struct player *player, const struct plot *plot, size_t scout
 	}
 	if (scout_from >= plot->count && scout_from != SIZE_MAX)
 		world->events_from = world->clock;
-	/* pins that are still to come */
+	/* pin edges still to come */
 	if (world->pin_next < world->pin_count && world->pins[world->pin_count - 1u].clock > world->clock)
 		world_run(world, world->pins[world->pin_count - 1u].clock - world->clock + 8u);
 }

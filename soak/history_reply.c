@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
- * What a reply tells: facts for the judge, and refusals that must not be.
+ * Replies: facts for the judge, and refusals that must not occur.
  */
 #include <string.h>
 
 #include "history_player.h"
 
-/* The model of a position read may be as old. */
+/* Maximum age of a position that is read. */
 #define POSITION_CLOCKS 140u
 
 static void note_writes(struct player *player, const struct action *action, uint64_t begin)
@@ -30,7 +30,7 @@ static void note_pushes(struct player *player, const struct action *action, uint
 	const unsigned size = lines ? PASSO_LINE_WORDS(player_axes(player)) : PASSO_RAMP_WORDS;
 
 	for (unsigned i = 0; i + size <= action->length; i += size) {
-		/* it counts from the first word of the frame on: what it leads to comes later */
+		/* counts from the first word of the frame, because its effects come later */
 		struct world_fact fact = {.clock = player_executed_at(world, begin, action, 0) - 8u,
 		    .kind = lines ? FACT_LINE : FACT_RAMP,
 		    .channel = channel_of(action->address),
@@ -80,7 +80,7 @@ static void note_status(struct player *player, uint64_t begin)
 		world_add_fact(player->world, &fact);
 }
 
-/* A frame may be refused as BUSY only if it needs rest, or a channel that is not stopped. */
+/* Whether a frame may be refused as BUSY: it requires rest, or a channel that is not stopped. */
 static bool may_be_busy(const struct action *action)
 {
 	if (action->operation == PASSO_OPERATION_PUSH || passo_bank_at(action->address) != 0u)

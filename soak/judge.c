@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
- * A history from its beginning to its end: pins and facts in the order of their clocks.
+ * Goes through a history: pin rows and facts in order of their clocks.
  */
 #include "judge.h"
 
 #include "judge_state.h"
 
-/* A reset is over at the pins. */
+/* Latency of a reset to the pins. */
 #define RESET_CLOCKS 4u
 
 static void reset(struct judge *judge)
@@ -100,7 +100,7 @@ static void power_up(struct judge *judge)
 	judge->enable_unknown_until = 0;
 }
 
-/* Nearly sorted already; those of one clock keep their order. */
+/* Stable insertion sort: the facts are nearly sorted. */
 static void sort_facts(struct world *world)
 {
 	for (size_t i = 1; i < world->fact_count; i++) {
@@ -113,7 +113,7 @@ static void sort_facts(struct world *world)
 	}
 }
 
-/* What the pins did before a clock. */
+/* Processes the pin rows before a clock. */
 static void see_rows(struct judge *judge, uint64_t clock)
 {
 	struct world *world = judge->world;

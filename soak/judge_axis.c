@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * What the judge knows of the settings of an axis: pins and timings that change while it moves.
+ * Settings of an axis: polarities and timings that change while it moves.
  */
 #include "judge_state.h"
 
-/* STEP has followed its polarity. */
+/* Latency of a polarity change to STEP. */
 #define POLARITY_CLOCKS 4u
 
 static void write_step_timing(struct axis *axis, uint64_t now, uint32_t value)
@@ -33,7 +33,7 @@ static void write_dir_timing(struct axis *axis, uint64_t now, uint32_t value)
 	axis->written_at = now;
 	axis->dir_setup = judge_later(timing.dir_setup, 1);
 	axis->dir_hold = judge_later(timing.dir_hold, 1);
-	if (now <= axis->level_over + SLACK) /* the write restarts this time, too */
+	if (now <= axis->level_over + SLACK) /* the write restarts this time as well */
 		axis->exact = false;
 	if (now + SLACK < axis->setup_over)
 		axis->setup_over = now - SLACK + axis->dir_setup;
@@ -49,7 +49,7 @@ static void write_dir_timing(struct axis *axis, uint64_t now, uint32_t value)
 		axis->hold_over -= was_hold - axis->dir_hold;
 }
 
-/* The level of STEP a few clocks from now, and its edges until then. */
+/* The level of STEP a few clocks later, and its edges until then. */
 static bool follow_step(const struct judge *judge, unsigned bit, unsigned *edges)
 {
 	const struct world *world = judge->world;
@@ -66,7 +66,7 @@ static bool follow_step(const struct judge *judge, unsigned bit, unsigned *edges
 	return level;
 }
 
-/* The levels change with the polarity, which is no edge; the next step waits as after one. */
+/* A polarity change inverts the levels, which is not an edge; the next step waits as after a pulse. */
 static void write_pins(
     struct judge *judge, unsigned c, unsigned a, uint32_t value, const struct passo_outputs *pins)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * What the judge sees of the pins: every edge, and how long since the one before.
+ * Checks of the pins: every edge, and its distance from the previous one.
  */
 #include <string.h>
 
@@ -92,7 +92,7 @@ void judge_pins(struct judge *judge, const struct passo_outputs *pins)
 		struct channel *channel = &judge->channel[c];
 		bool moves = (pins->running & ~judge->pins.running & 1u << c) != 0u;
 
-		/* a motion begins at the rate that is its target */
+		/* a motion starts at the target rate */
 		for (unsigned a = 0; moves && a < axes; a++) {
 			memset(channel->axis[a].steps, 0, sizeof channel->axis[a].steps);
 			channel->axis[a].gap_least = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * What the judge reads in replies: state, positions, room, and refusals.
+ * Checks of replies: state, positions, room and refusals.
  */
 #include "judge_state.h"
 
@@ -64,7 +64,7 @@ void judge_state(struct judge *judge, const struct world_fact *fact)
 		see_quiet(judge, fact->channel, now.state, passo_unpack_channel_room(fact->words[2]));
 }
 
-/* What is read from here on is a position of now or later. */
+/* A position read from here on was sampled now or later. */
 void judge_reads(struct judge *judge, const struct world_fact *fact)
 {
 	for (unsigned a = 0; a < judge_axes(judge); a++) {
@@ -87,7 +87,7 @@ void judge_position(struct judge *judge, const struct world_fact *fact)
 	}
 }
 
-/* Refused, although the channel had said that it was quiet and nothing had been accepted since. */
+/* A refusal as BUSY is wrong if the channel was quiet and nothing has been accepted since. */
 void judge_busy(struct judge *judge, const struct world_fact *fact)
 {
 	const struct channel *channel = &judge->channel[fact->channel];
@@ -98,7 +98,7 @@ void judge_busy(struct judge *judge, const struct world_fact *fact)
 		    fact->words[0]);
 }
 
-/* While nothing can have left the queues their room is known. */
+/* While nothing can have left the queues, their room is known. */
 void judge_status(struct judge *judge, const struct world_fact *fact)
 {
 	const struct passo_parameters *parameters = &judge->world->model.parameters;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * What the judge keeps in mind, for its sources.
+ * Internal: state of the judge.
  */
 #ifndef SOAK_JUDGE_STATE_H
 #define SOAK_JUDGE_STATE_H
@@ -8,49 +8,47 @@
 #include "judge.h"
 #include "passo_words.h"
 
-/* Clocks by which what the host knows of the time of a write may be wrong. */
+/* Uncertainty in clocks of the time at which a write takes effect. */
 #define SLACK 3u
-/* Shortest time from the beginning of a motion to `running` and to its first step: nothing may run so soon
- * after a frame that is only executed while nothing does. DIR follows the motion's first line a few clocks
- * earlier. */
+/* Shortest time from the start of a motion to `running` and to its first step: nothing may run within it
+ * after a frame that requires rest. DIR may change a few clocks earlier, with the first line. */
 #define GATE_CLOCKS 32u
-/* Steps that may still leave an axis after its channel has stopped: four wait, two are on their way. */
+/* Steps that may still leave an axis after its channel has stopped: four queued, two in flight. */
 #define STEPS_AFTER_STOP 6u
-/* The shortest of the last ones tells the rate: one may be longer, between two lines or motions. */
+/* The shortest of the last GAPS gaps gives the rate: one can be longer, between two lines or motions. */
 #define GAPS 3u
 
 struct axis {
 	bool step_inverted, direction_inverted, enable_inverted, both_edges, enabled;
 	uint64_t step_high, step_low, dir_setup, dir_hold;
 	bool active, down;
-	bool exact;          /* the present pulse must be as long as it may be short */
-	uint64_t written_at; /* a timing was written */
-	uint64_t settled_at; /* the pins have followed a change of their polarity */
-	uint64_t level_over; /* STEP may change */
+	bool exact;          /* the present pulse must have exactly its minimum length */
+	uint64_t written_at; /* when a timing was written */
+	uint64_t settled_at; /* when the pins have followed a change of polarity */
+	uint64_t level_over; /* when STEP may change */
 	uint64_t setup_over, hold_over;
-	int64_t position, lowest, highest; /* the latter since a read began */
-	int64_t owed, owed_from;           /* steps of the accepted lines, from this position on */
+	int64_t position, lowest, highest; /* extremes since the start of a read */
+	int64_t owed, owed_from;           /* steps of the accepted lines, and the position they start from */
 	unsigned budget;                   /* steps that may still come */
-	uint64_t steps[GAPS + 1u];         /* clocks of the last ones, the latest first; 0: none */
+	uint64_t steps[GAPS + 1u];         /* clocks of the last steps, latest first; 0: none */
 	uint64_t gap_least;
 };
 
 struct channel {
 	struct axis axis[PASSO_AXES_MAX];
 	uint64_t silent_from; /* no step after this clock, if `silent` */
-	const char *silent;   /* why */
-	bool still;           /* nor a change of DIR */
-	uint64_t gated_until; /* nothing may run or move */
+	const char *silent;   /* the reason, or NULL */
+	bool still;           /* no change of DIR either */
+	uint64_t gated_until; /* nothing may run or move before this clock */
 	bool gated_pins;
-	bool exact; /* every accepted line must be made */
+	bool exact; /* every accepted line must be executed */
 	bool stopped, stops;
 	uint32_t rate_slew;
-	/* RATE while stopping; UINT32_MAX: none. The last one counts when the next state still says stopping.
-	 */
+	/* RATE read during a stop; UINT32_MAX: none. Valid when the next state still shows `stopping`. */
 	uint32_t slowed, last_rate;
 	uint16_t plain_ramps;
 	bool ramps_known;
-	bool fresh; /* nothing can have left the queues */
+	bool fresh; /* nothing has left the queues */
 	uint32_t lines, ramps;
 };
 
@@ -62,7 +60,7 @@ struct judge {
 	uint64_t now;
 	uint64_t enable_unknown_until;
 	uint8_t run;
-	size_t row; /* the first one that has not been seen */
+	size_t row; /* first row not processed yet */
 };
 
 #define FAIL(judge, ...) world_fail((judge)->world, (judge)->now, __VA_ARGS__)
@@ -82,32 +80,33 @@ static inline unsigned judge_channels(const struct judge *judge)
 	return judge->world->model.parameters.channels;
 }
 
-/* Shortest time at the present level of STEP. */
+/* Minimum time of the present STEP level. */
 static inline uint64_t judge_level_time(const struct axis *axis)
 {
 	return axis->active ? axis->step_high : axis->step_low;
 }
 
-/* The pins from now on, and one of EN. */
+/* Checks new pin levels, and the level of one EN pin. */
 void judge_pins(struct judge *judge, const struct passo_outputs *pins);
 void judge_enable(struct judge *judge, unsigned c, unsigned a, bool level);
 
-/* Something was accepted that may lead to steps. */
+/* Notes that something was accepted that may lead to steps. */
 void judge_may_move(struct channel *channel, const struct judge *judge, bool new_motion);
-/* Gaps may be as short again as they like. */
+/* Lifts the limit on gaps after a stop. */
 void judge_forget_stop(struct channel *channel, const struct judge *judge);
 
-/* Nothing of this channel may run, or even move, while the word is executed and a little later. */
+/* Notes that the channel must not run, or with `pins` not even move a pin, while a word is executed and
+ * shortly after. */
 void judge_gate(struct judge *judge, unsigned c, bool pins);
-/* A word of an axis, whose registers begin at place 0. */
+/* A write to a register of an axis; `place` is its offset in the axis. */
 void judge_write_axis(
     struct judge *judge, unsigned c, unsigned place, uint32_t value, const struct passo_outputs *pins);
 
-/* Facts: what was accepted ... */
+/* Facts: accepted words ... */
 void judge_write(struct judge *judge, const struct world_fact *fact, const struct passo_outputs *pins);
 void judge_line(struct judge *judge, const struct world_fact *fact);
 void judge_ramp(struct judge *judge, const struct world_fact *fact);
-/* ... and what was replied. */
+/* ... and replies. */
 void judge_state(struct judge *judge, const struct world_fact *fact);
 void judge_reads(struct judge *judge, const struct world_fact *fact);
 void judge_position(struct judge *judge, const struct world_fact *fact);

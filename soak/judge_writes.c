@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * What the judge knows of words that were accepted: from when on what must not happen.
+ * Accepted words: what must not happen after them, and from when on.
  */
 #include "judge_state.h"
 
-/* Enabled clocks from step to step, from which on a gap tells the rate. */
+/* Minimum gap between steps, in enabled clocks, from which the rate can be derived. */
 #define GAP_MIN 8u
 
 void judge_may_move(struct channel *channel, const struct judge *judge, bool new_motion)
@@ -21,7 +21,7 @@ void judge_forget_stop(struct channel *channel, const struct judge *judge)
 		channel->axis[a].gap_least = 0;
 }
 
-/* From here on the gaps must not shrink: how short they may become at the rate that may be in force now. */
+/* From here on the gaps must not shrink: sets their lower limit from the highest possible present rate. */
 static void expect_slowing(struct judge *judge, unsigned c)
 {
 	struct channel *channel = &judge->channel[c];
@@ -37,7 +37,7 @@ static void expect_slowing(struct judge *judge, unsigned c)
 		for (unsigned i = 1; i < GAPS; i++)
 			if (axis->steps[i] - axis->steps[i + 1u] < gap)
 				gap = axis->steps[i] - axis->steps[i + 1u];
-		/* the rate that this gap stands for, UQ48.16, and what the slew can have added since */
+		/* the rate derived from this gap, UQ48.16, plus what the slew can have added since */
 		const uint64_t ticks = (judge->now - axis->steps[GAPS]) / tick + 2u;
 		const uint64_t rate = ((enabled + 2u) << 16) / gap + ticks * channel->rate_slew;
 		const uint64_t most = rate < PASSO_RATE_ONE ? rate : PASSO_RATE_ONE;

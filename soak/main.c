@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * soak SEED FIRST COUNT [--rtl LIBRARY] [--record FOLDER] [--set N] [--driver] [--short] [--print]
  *     [--keep-on]
- *
- * Plays histories FIRST, FIRST + 1 ...: at the registers, with --set N only those of one set of parameters,
- * or with --driver through the driver; with --short only up to the rest after them, without another move.
- * Ends with the first one that fails unless --keep-on is given. Says what came of them, line by line:
- * "progress HISTORIES", "failed NUMBER CLOCK TEXT", "count NAME VALUE".
+ * Plays histories FIRST, FIRST + 1, ... at register level, or with --driver through the driver. --set N: only
+ * those of one parameter set; --short: without the last move. Stops at the first failure unless --keep-on is
+ * given. Prints lines "progress HISTORIES", "failed NUMBER CLOCK TEXT", "count NAME VALUE".
  */
 #include <inttypes.h>
 #include <stddef.h>
@@ -60,7 +58,7 @@ static void say(const char *name, uint64_t value)
 	printf("count %s %" PRIu64 "\n", name, value);
 }
 
-/* A count of a struct of counts. */
+/* A member of a struct of counts, and its name. */
 struct said {
 	const char *name;
 	size_t offset;

@@ -18,15 +18,14 @@ from rich.console import Console
 
 from soak.program import BUILD, HERE, Failure, play_program, say
 
-# The same as plot_parameters() in plot.c.
+# Must match plot_parameters() in plot.c.
 SETS = (
     Parameters(1, 1, 7, 5, 3),
     Parameters(1, 3, 7, 2, 2, step_reset=5, dir_reset=3, enable_reset=6),
     Parameters(2, 2, 7, 3, 4, step_reset=1, dir_reset=4, enable_reset=15),
 )
-DRIVER_SET = 2  # the same as BRIDGE_SET in bridge.h
-
-CHUNK = 50  # histories of one process
+DRIVER_SET = 2  # must match BRIDGE_SET in bridge.h
+CHUNK = 50  # histories per process
 
 
 console = terminal if terminal.is_terminal else Console(width=118)
@@ -34,7 +33,7 @@ console = terminal if terminal.is_terminal else Console(width=118)
 
 @dataclass
 class Part:
-    """What came of the histories of a part."""
+    """Result of a part."""
 
     name: str
     seconds: float = 0
@@ -46,7 +45,7 @@ Work = Callable[[], tuple[Counter[str], list[Failure]]]
 
 
 def _all(part: Part, wanted: int, work: Iterable[Work], jobs: int) -> Part:
-    """Do the work on so many cores, and say how far it is."""
+    """Run the work on `jobs` processor cores and print the progress."""
     began = last = time.monotonic()
     waiting: Iterator[Work] = iter(work)
     with ThreadPoolExecutor(jobs) as pool:
@@ -81,7 +80,7 @@ def _chunks(histories: int) -> Iterator[tuple[int, int]]:
 
 
 def play_model(program: Path, seed: int, histories: int, jobs: int) -> Part:
-    """Histories at the registers, on the C model."""
+    """Histories at register level, on the C model."""
 
     def task(first: int, count: int) -> Work:
         return lambda: play_program([program, str(seed), str(first), str(count), "--keep-on"], "model", seed)
@@ -90,7 +89,7 @@ def play_model(program: Path, seed: int, histories: int, jobs: int) -> Part:
 
 
 def play_driver(program: Path, seed: int, histories: int, jobs: int, library: Path | None = None) -> Part:
-    """Histories through the driver over a bad wire, on the C model or also the Verilated core."""
+    """Histories through the driver over a bad link, on the C model or also on a Verilated core."""
     name = "driver on verilator" if library else "driver"
     more = ["--rtl", library] if library else []
 
@@ -119,16 +118,16 @@ def play_verilator(program: Path, seed: int, histories: int, jobs: int) -> Part:
 
 
 def _bench(number: int) -> Path:
-    """The player for a set of parameters, compiled by Icarus Verilog."""
+    """Compile the player for a parameter set with Icarus Verilog; return its path."""
     made = BUILD / f"player{number}.vvp"
     given = [f"-Psoak_player.{name}={value}" for name, value in SETS[number].verilog().items()]
     sources = [HERE / "player.v", *sorted(paths.rtl.glob("*.v"))]
-    call(["iverilog", "-g2005", f"-I{paths.rtl}", *given, "-s", "soak_player", "-o", made, *sources])
+    call(["iverilog", "-g2012", f"-I{paths.rtl}", *given, "-s", "soak_player", "-o", made, *sources])
     return made
 
 
 def play_icarus(program: Path, seed: int, histories: int, jobs: int) -> Part:
-    """Histories recorded from the judged model and played to the core on Icarus Verilog."""
+    """Histories recorded on the judged model and replayed to the core on Icarus Verilog."""
     benches = [_bench(number) for number in range(len(SETS))]
     folder = BUILD / "records"
     shutil.rmtree(folder, ignore_errors=True)

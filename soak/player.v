@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Plays a recorded history to the core and compares every output pin after every clock.
+// Replays a recorded history to the core and compares every output pin after every clock.
 //
-// Each line of the record: so many clocks (hexadecimal) with these inputs, after each of which the outputs are
-// these. Plusarg: +record=FILE. Says "same CLOCKS", or what differs first.
+// Each line of the record is a run of clocks (hexadecimal count) with its inputs and the outputs after each of them.
+// Plusarg: +record=FILE. Prints "same CLOCKS", or the first difference.
 `resetall
 `default_nettype none
 `timescale 1ns / 1ns
@@ -49,22 +49,10 @@ module soak_player #(
     .DIR_RESET      (DIR_RESET),
     .ENABLE_RESET   (ENABLE_RESET)
   ) u_core (
-    .clk            (clk),
-    .rst            (rst),
-    .spi_sclk       (spi_sclk),
-    .spi_mosi       (spi_mosi),
-    .spi_cs_n       (spi_cs_n),
-    .spi_miso       (spi_miso),
-    .spi_miso_enable(spi_miso_enable),
-    .sync           (sync),
-    .step           (step),
-    .dir            (dir),
-    .enable         (enable),
-    .running        (running),
-    .irq            (irq)
+    .*
   );
 
-  // Inputs change between two rising edges, outputs are compared before they change again.
+  // Inputs change between two rising edges; outputs are compared before that.
   task tick;
     begin
       #1 clk = 1'b1;
@@ -75,7 +63,7 @@ module soak_player #(
   initial begin
     if (!$value$plusargs("record=%s", name)) name = "record.txt";
     file     = $fopen(name, "r");
-    // power-up: chip select rises like a pin with a pull-up
+    // power-up: chip select rises as with a pull-up
     spi_cs_n = 1'b0;
     rst      = 1'b1;
     repeat (4) tick;

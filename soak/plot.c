@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The set-up of a history: parameters, settings and motions of every channel.
+ * Setup of a history: parameters, settings and motions of every channel.
  */
 #include "plot.h"
 
@@ -59,7 +59,7 @@ static void set_up_channel(struct plot *plot, unsigned channel)
 	plot_draw_motions(plot, channel, constant, timing);
 }
 
-/* A slow rate that rises slowly while the motion runs: what a stop must not speed up. */
+/* A low rate that rises slowly during the motion, and that a stop must not raise. */
 static void draw_rise(struct plot *plot, unsigned channel)
 {
 	struct action action =

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Chance.
+ * Random numbers.
  */
 #include "plot.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Disturbances drawn at random.
+ * Random disturbances.
  */
 #include <string.h>
 
@@ -54,7 +54,7 @@ static struct action command(struct plot *plot, uint32_t bits)
 	return plot_write_word(plot, channel_address(plot_any_channel(plot), PASSO_CHANNEL_COMMAND), bits);
 }
 
-/* From the register on so many consecutive ones, drawn by their functions. */
+/* Writes random values to consecutive timing registers. */
 static struct action timings(struct plot *plot)
 {
 	const unsigned channel = plot_any_channel(plot),
@@ -119,7 +119,7 @@ static struct action table_points(struct plot *plot)
 	    plot_frame(plot, PASSO_OPERATION_WRITE, (uint16_t)(first + place % PASSO_BANK_POINTS));
 	const unsigned count = 1u + plot_draw(&plot->random, 4);
 
-	/* a ramp of any table stays between its ends */
+	/* with any table a ramp stays between its ends */
 	for (unsigned i = 0; i < count; i++)
 		plot_add_word(&action, plot_draw(&plot->random, 0x10000));
 	return action;
@@ -168,7 +168,14 @@ static struct action set_run(struct plot *plot)
 	        | status << PASSO_RUN_STATUS_CHANNEL_LSB);
 }
 
-/* After these the gaps from step to step are not known any more. */
+/* With a CLEAR in one of five. */
+static struct action command_perhaps_clear(struct plot *plot, uint32_t bit)
+{
+	return command(
+	    plot, bit | (plot_chance(&plot->random, 20) ? 1u << PASSO_CHANNEL_COMMAND_CLEAR_LSB : 0u));
+}
+
+/* After some disturbances the gaps between steps are unknown. */
 static void forget_gaps(struct plot *plot, enum plot_kind kind)
 {
 	if (kind == PLOT_NOW || kind == PLOT_MOTION || kind == PLOT_TIMING || kind == PLOT_PINS
@@ -186,15 +193,11 @@ struct action plot_disturbance(struct plot *plot, enum plot_kind kind)
 	case PLOT_STOP:
 		return command(plot, 1u << PASSO_CHANNEL_COMMAND_STOP_LSB);
 	case PLOT_ABORT:
-		return command(
-		    plot, 1u << PASSO_CHANNEL_COMMAND_ABORT_LSB
-		              | (plot_chance(random, 20) ? 1u << PASSO_CHANNEL_COMMAND_CLEAR_LSB : 0u));
+		return command_perhaps_clear(plot, 1u << PASSO_CHANNEL_COMMAND_ABORT_LSB);
 	case PLOT_CLEAR:
 		return command(plot, 1u << PASSO_CHANNEL_COMMAND_CLEAR_LSB);
 	case PLOT_ZERO:
-		return command(
-		    plot, 1u << PASSO_CHANNEL_COMMAND_ZERO_LSB
-		              | (plot_chance(random, 20) ? 1u << PASSO_CHANNEL_COMMAND_CLEAR_LSB : 0u));
+		return command_perhaps_clear(plot, 1u << PASSO_CHANNEL_COMMAND_ZERO_LSB);
 	case PLOT_COMMAND:
 		return command(plot, plot_draw(random, 16));
 	case PLOT_RATE:

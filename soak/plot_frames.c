@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * Frames, and words of registers drawn at random.
+ * Frames, and random register values.
  */
 #include "plot_draw.h"
 
-/* Chip select stays high for a little, or as little as it may. */
+/* Clocks that chip select stays high: short, or the minimum. */
 static uint32_t gap(struct plot *plot)
 {
 	return plot_chance(&plot->random, 40) ? 2u : 2u + plot_draw(&plot->random, 60);

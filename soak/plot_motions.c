@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Motions drawn at random: ramps, and lines about as long as the way under them.
+ * Random motions: ramps, and lines about as long as the area under them.
  */
 #include <string.h>
 
@@ -16,7 +16,7 @@ void plot_add_ramp(struct motion *motion, uint64_t velocity, uint32_t ticks, enu
 	}
 }
 
-/* Substeps made by the ramps, about. */
+/* Approximate number of substeps of the ramps. */
 static uint32_t way(const struct motion *motion)
 {
 	uint64_t from = 0, sum = 0;
@@ -52,7 +52,7 @@ void plot_draw_ramps(struct plot *plot, struct motion *motion, bool constant, un
 		motion->ramps[motion->ramp_count - 1u].last = true;
 }
 
-/* Substeps from step to step that the pins can follow; now and then too few. */
+/* Substeps per step that the pins can follow; sometimes too few. */
 static uint32_t closest(struct plot *plot, bool constant, unsigned speed, uint32_t timing)
 {
 	const uint32_t clocks = (timing >> 16) + (timing & 0xFFFFu) + 2u;
@@ -99,8 +99,7 @@ void plot_draw_lines(struct plot *plot, struct motion *motion, unsigned channel,
 
 			line->steps[a] = plot_chance(random, 15) ? 0u : steps;
 		}
-		if (constant
-		    && line->substeps >= period[0]) { /* exactly so many substeps from step to step */
+		if (constant && line->substeps >= period[0]) { /* exactly period[0] substeps per step */
 			line->steps[0] = line->substeps / period[0];
 			line->substeps = line->steps[0] * period[0];
 			line->directions = motion->lines[0].directions;
@@ -135,7 +134,7 @@ struct action plot_push_ramps(struct plot *plot, unsigned channel, const struct 
 	return action;
 }
 
-/* As many lines and ramps as go into a frame and into the queues. */
+/* As many lines and ramps as fit into a frame and into the queues. */
 static void fill_frames(
     const struct plot *plot, struct motion *motion, unsigned line_places, unsigned ramp_places)
 {

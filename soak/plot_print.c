@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Actions and events in words.
+ * Descriptions of actions and events.
  */
 #include "address.h"
 #include "plot.h"

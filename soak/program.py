@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The program that plays histories: building it, running it, and reading what it says."""
+"""The program that plays histories: build it, run it, and parse its output."""
 
 import os
 import subprocess
@@ -25,12 +25,12 @@ FOLDERS = {
 
 
 class SoakError(RuntimeError):
-    """Something could not be played."""
+    """The program could not be run."""
 
 
 @dataclass(frozen=True)
 class Failure:
-    """A broken promise."""
+    """A failed history."""
 
     part: str
     seed: int
@@ -40,30 +40,30 @@ class Failure:
 
     @property
     def again(self) -> str:
-        """What shows it once more."""
+        """The command that reproduces it."""
         driver = " DRIVER=1" if self.part.startswith("driver") else ""
         return f"make soak SEED={self.seed} HISTORY={self.history}{driver}"
 
 
 def _object(file: Path, folders: Sequence[Path]) -> Path:
-    """A source, compiled with the headers of folders."""
+    """Compile a source with the headers of folders; return the object file."""
     made = BUILD / "objects" / f"{file.stem}.o"
     return kept(made, [file, *headers(*folders)], FLAGS, *includes(*folders), "-c", file)
 
 
 def build(root: Path = paths.root, program: Path = BUILD / "soak") -> Path:
-    """The program that plays histories, of the sources under root."""
+    """Build the program from the sources under root; return its path."""
     folders = [root / folder for folder in FOLDERS]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         objects = list(pool.map(lambda file: _object(file, [*folders, paths.engine]), sources(*folders)))
     return compile_to(program, *objects, "-ldl")
 
 
-playing: set[subprocess.Popen] = set()  # to be ended with this program
+playing: set[subprocess.Popen] = set()  # killed when this program ends
 
 
 def say(command: Sequence[str | Path]) -> tuple[int, str, str]:
-    """Run a program to its end: exit status, and what it said."""
+    """Run a program; return its exit status and output."""
     process = subprocess.Popen(
         [*map(str, command)], env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
@@ -74,7 +74,7 @@ def say(command: Sequence[str | Path]) -> tuple[int, str, str]:
 
 
 def play_program(command: Sequence[str | Path], part: str, seed: int) -> tuple[Counter[str], list[Failure]]:
-    """Play histories and read what came of them."""
+    """Play histories; return the counts and the failures."""
     status, said, complaints = say(command)
     counts: Counter[str] = Counter()
     failures = []

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Random histories of the core, aimed at the clocks where something changes, under a judge of its promises.
+"""Random histories of the core, aimed at the clocks where something changes, checked by a judge.
 
     .venv/bin/python -m soak.run [--seed N] [--only model,verilator,icarus,driver,defects] [--scale X]
     .venv/bin/python -m soak.run --seed N --history N [--driver]
 
-The first form plays them on all cores of this machine, prints a table and writes build/soak.json; the second
-one prints a single history. docs/soak.md says what is played and what is judged.
+The first form plays them on all processor cores, prints a table and writes build/soak.json; the second one
+prints a single history. docs/soak.md describes what is played and judged.
 """
 
 import argparse
@@ -36,7 +36,7 @@ from soak.program import build, playing
 
 REPORT = paths.build / "soak.json"
 
-# Histories of each part.
+# Number of histories of each part.
 HISTORIES = {
     "model": 20_000,
     "driver": 3_000,
@@ -60,7 +60,7 @@ JUDGED = {
 
 
 def show(parts: Sequence[Part], caught: Sequence[Catch]) -> None:
-    """The tables."""
+    """Print the tables."""
     shown = table(
         "Histories", "part", "histories", "clocks", "frames", "aimed", "on the clock", "failed", "s"
     )
@@ -99,7 +99,7 @@ def show(parts: Sequence[Part], caught: Sequence[Catch]) -> None:
             wire.add_row(key, *(f"{part.counts[key]:,}" for part in wires))
         console.print(wire)
     if caught:
-        made = table("Defects put back by hand", "defect", "caught", "after histories", "s")
+        made = table("Planted defects", "defect", "caught", "after histories", "s")
         for one in caught:
             made.add_row(
                 one.defect.name,
@@ -142,7 +142,7 @@ def report(seed: int, parts: Sequence[Part], caught: Sequence[Catch]) -> dict[st
 
 
 def soak(seed: int, only: Sequence[str], scale: float, jobs: int) -> bool:
-    """Everything that is wanted; true if all of it is as it must be."""
+    """Play all selected parts; return whether everything passed."""
     program = build()
     wanted = {name: max(1, round(number * scale)) for name, number in HISTORIES.items()}
     parts = []
@@ -171,13 +171,13 @@ def _end(*_: object) -> None:
 
 
 def main() -> None:
-    """Read the command line; the exit status is 1 if a promise was broken or a defect not caught."""
+    """Parse the command line and run; exit status 1 if a history failed or a defect was not caught."""
     parser = argparse.ArgumentParser(prog="python -m soak.run", description=__doc__.split("\n")[0])
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--history", type=int, help="print this one")
-    parser.add_argument("--driver", action="store_true", help="the history through the driver")
+    parser.add_argument("--history", type=int, help="print a single history")
+    parser.add_argument("--driver", action="store_true", help="play the history through the driver")
     parser.add_argument("--only", default=",".join(PARTS), help="parts to play (default: %(default)s)")
-    parser.add_argument("--scale", type=float, default=1.0, help="times as many histories")
+    parser.add_argument("--scale", type=float, default=1.0, help="multiply the number of histories")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     arguments = parser.parse_args()
 

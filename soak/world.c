@@ -11,7 +11,7 @@
 /* Clocks from the last edge of SCLK to chip select. */
 #define HOLD 3u
 #define ROWS_FIRST 4096u
-/* A channel rests so long between two motions that are queued behind one another. */
+/* Clocks at rest between two consecutive queued motions. */
 #define GAP_CLOCKS 4u
 
 struct world_rtl {
@@ -103,7 +103,7 @@ static void add_event(struct world *world, enum world_event_kind kind, unsigned 
 	world->events[world->event_count++] = (struct world_event){world->clock, kind, (uint8_t)channel};
 }
 
-/* What a channel was before the clock. */
+/* State of a channel before the clock. */
 struct before {
 	enum passo_state state;
 	bool stopping, at_rest;
@@ -202,7 +202,7 @@ static void record(
 	world->recorded_outputs = *outputs;
 }
 
-/* So many clocks with these inputs; after each of them the outputs are these. */
+/* Writes a run of clocks with equal inputs and outputs. */
 void world_end_record(struct world *world)
 {
 	const struct passo_inputs *inputs = &world->recorded_inputs;
@@ -417,8 +417,8 @@ int64_t world_checks(const struct world *world, unsigned index)
 	return (int64_t)world->setup + ((int64_t)index + 2) * word_clocks(world) + world->latency->check;
 }
 
-/* One write of one word to a fresh model; returns the clock of the first change of a pin, counted from the
- * end of the CRC word. */
+/* Writes one word to a new model; returns the latency from the end of the CRC word to the first pin
+ * change. */
 static int64_t first_change(uint16_t address, uint32_t value)
 {
 	const struct passo_parameters parameters = {

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * The core under test with a wire at its pins: one clock after another, and everything that its pins and its
- * replies tell is written down for the judge.
+ * The core under test with a link at its pins. Executes it clock by clock and records pins and replies for
+ * the judge.
  *
- * The C model always runs. When a Verilated core is given it is the one under test: it gets the same inputs,
- * its replies are used, and its pins must be those of the model on every clock.
+ * The C model always runs. If a Verilated core is given, it is the one under test: it gets the same inputs,
+ * its replies are used, and its pins must match those of the model on every clock.
  */
 #ifndef SOAK_WORLD_H
 #define SOAK_WORLD_H
@@ -17,20 +17,20 @@
 #define WORLD_PINS_MAX 64u
 #define WORLD_TEXT 200u
 
-/* The output pins from this clock on. */
+/* Levels of the output pins from this clock on. */
 struct world_row {
 	uint64_t clock;
 	struct passo_outputs pins;
 };
 
-/* What the host knows: it follows from what it sent and what the core answered. */
+/* Knowledge of the host, derived from its frames and the replies. */
 enum world_fact_kind {
 	FACT_WRITE, /* an accepted word takes effect: words[0], address, words[1], value */
 	FACT_LINE,  /* the last word of an accepted line: words[0], control, words[1 + i], steps */
 	FACT_RAMP,  /* the last word of an accepted ramp: words[0], control */
 	FACT_BUSY,  /* a frame was refused as BUSY: words[0], operation and address, words[1], first word */
 	FACT_STATE, /* words[0 .. 2]: STATE, RATE, ROOM, not older than `clock` */
-	FACT_READS, /* a position is going to be read */
+	FACT_READS, /* a read of positions starts */
 	FACT_POSITION,  /* words[i]: position at some clock since FACT_READS */
 	FACT_STATUS,    /* words[0]: status word when chip select fell */
 	FACT_RESET,     /* rst rises */
@@ -44,20 +44,20 @@ struct world_fact {
 	uint32_t words[1u + PASSO_AXES_MAX];
 };
 
-/* Clocks at which something changes, as the model has them. What is aimed at them is judged without. */
+/* Events in the model at which disturbances can be aimed. The judge does not use them. */
 enum world_event_kind {
 	EVENT_STATE,    /* state of the motion */
-	EVENT_GAP,      /* a motion has ended, and the next one is prepared at once */
-	EVENT_STOPPING, /* a soft stop begins */
-	EVENT_SLEW,     /* slew tick while something moves */
+	EVENT_GAP,      /* a motion has ended and the next one is prepared at once */
+	EVENT_STOPPING, /* a soft stop starts */
+	EVENT_SLEW,     /* slew tick during a motion */
 	EVENT_RATE,     /* the rate changes */
-	EVENT_LINE,     /* a line is taken, or turns around */
+	EVENT_LINE,     /* a line is taken, or an endless line repeats */
 	EVENT_RAMP,     /* a ramp leaves its queue */
 	EVENT_TICK,     /* a tick ends */
 	EVENT_STEP,     /* edge of STEP */
 	EVENT_DIR,      /* edge of DIR */
-	EVENT_WAITS,    /* a step begins, or ceases, to wait at an axis */
-	EVENT_QUIET,    /* the last axis has come to rest */
+	EVENT_WAITS,    /* a step enters or leaves the queue of an axis */
+	EVENT_QUIET,    /* the last axis has become quiet */
 	EVENT_KINDS
 };
 
@@ -67,17 +67,17 @@ struct world_event {
 	uint8_t channel;
 };
 
-/* An input pin that changes at a clock of its own, whatever is on the wire. */
+/* An edge of an input pin at a given clock, independent of the link. */
 struct world_pin {
 	uint64_t clock;
-	bool is_reset; /* or sync */
+	bool is_reset; /* otherwise sync */
 	bool level;
 };
 
-/* Clocks from the end of the CRC word, measured once. */
+/* Latencies in clocks from the end of the CRC word, measured once. */
 struct world_latency {
 	int64_t enable, pins; /* to the pin, for the first word of a write */
-	int64_t command;      /* to the STEP pin's last active edge that an abort lets through */
+	int64_t command;      /* to the last active STEP edge that an abort lets through */
 	int64_t check;        /* from the end of a payload word to its check */
 };
 
@@ -89,17 +89,17 @@ struct world {
 	struct engine_core *core; /* NULL: the model is under test */
 	struct passo_inputs inputs;
 	struct passo_outputs outputs; /* of the core under test */
-	uint64_t clock;               /* executed */
-	uint32_t half_period;         /* clocks of each level of SCLK */
+	uint64_t clock;               /* clocks executed */
+	uint32_t half_period;         /* clocks per SCLK level */
 	uint32_t setup;               /* clocks from chip select to SCLK */
 	const struct world_latency *latency;
 
 	struct world_pin pins[WORLD_PINS_MAX]; /* by clock */
 	size_t pin_count, pin_next;
-	uint32_t resets;                /* that rst is high for */
+	uint32_t resets;                /* number of overlapping resets in progress */
 	uint64_t reset_at, reset_until; /* of the last reset; 0: none */
 	uint8_t sequence;               /* of the last write */
-	/* Enabled clocks from step to step while the channel moves at constant speed; 0: not known. */
+	/* Enabled clocks between steps while the channel moves at constant speed; 0: unknown. */
 	uint32_t gap_enabled[PASSO_CHANNELS_MAX][PASSO_AXES_MAX];
 
 	struct world_row *rows;
@@ -110,38 +110,38 @@ struct world {
 	size_t event_count, event_room;
 	uint64_t events_from;
 	uint64_t idle_since[PASSO_CHANNELS_MAX];
-	FILE *record; /* for the bench that plays it; NULL: none */
+	FILE *record; /* stimulus for soak/player.v; NULL: none */
 	struct passo_inputs recorded_inputs;
 	struct passo_outputs recorded_outputs;
 	uint64_t recorded_clocks;
 
-	bool blind;         /* the rate is judged by the steps alone; kept by world_open() */
-	uint64_t failed_at; /* 0: nothing has */
+	bool blind;         /* the rate is judged by the steps alone; not changed by world_open() */
+	uint64_t failed_at; /* clock of the first failure; 0: none */
 	char failure[WORLD_TEXT];
 };
 
-/* Functions of the library of a Verilated core; NULL, with a message, if it cannot be loaded. */
+/* Loads the library of a Verilated core; NULL, with a message, on failure. */
 const struct world_rtl *world_load(const char *library);
 
-/* Power-up. False if the parameters do not fit the Verilated core. */
+/* Powers up the core. False if the parameters do not match the Verilated core. */
 bool world_open(struct world *world, const struct passo_parameters *parameters, const struct world_rtl *rtl);
 void world_close(struct world *world);
-/* Writes the rest of the record. */
+/* Completes the record. */
 void world_end_record(struct world *world);
 
 void world_run(struct world *world, uint64_t clocks);
-/* Chip select falls, `bits` bits of the words are exchanged, chip select rises. */
+/* One chip select in which `bits` bits of the words are exchanged. */
 void world_exchange(struct world *world, const uint32_t *mosi, uint32_t *miso, size_t count, size_t bits);
 
-/* Adds an edge of an input pin; in any order, not in the past. */
+/* Schedules an edge of an input pin, in any order, but not in the past. */
 void world_add_pin(struct world *world, struct world_pin pin);
 void world_add_fact(struct world *world, const struct world_fact *fact);
-/* The first failure counts. */
+/* Records a failure; only the first one is kept. */
 void world_fail(struct world *world, uint64_t clock, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* Chip select to the clock on which word `index` of a write or push of `length` words shows at the pins, and
- * to the clock of its check. */
+/* Clocks from chip select until word `index` of a write or push of `length` words takes effect at the pins,
+ * and until its check. */
 int64_t world_executes(const struct world *world, unsigned length, unsigned index);
 int64_t world_checks(const struct world *world, unsigned index);
 

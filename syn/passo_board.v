@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The top of every board: PLL, reset, heartbeat, the core and its pins.
+// Top module of every board: PLL, reset, heartbeat, the core and its pins.
 //
-// `make synth` makes `passo_board_pll` and the pins of the table syn/<board>/board.toml; families/ has the cells.
+// `make synth` generates `passo_board_pll` and the pin file from syn/<board>/board.toml; families/ has the cells.
 //
-// Promise: the core is in reset from configuration until 16 clocks after the PLL locked, and again whenever it loses
-// lock. From configuration on until the host has spoken STEP, DIR and EN have the levels of their parameters; by
-// default STEP and DIR are low and EN is high, which is off at the usual drives. `led` changes every half second to
-// second as long as clk runs and the core is out of reset.
+// Promise: the core is in reset from configuration until 16 clocks after the PLL has locked, and again whenever it
+// loses lock. From configuration until the host first writes to them, STEP, DIR and EN have the levels of their
+// parameters; by default STEP and DIR are low and EN is high, which disables common drives. `led` toggles every half
+// to one second while clk runs and the core is out of reset.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -17,7 +17,7 @@ module passo_board #(
   parameter            RUNNING_INVERTED = 0,
   parameter            IRQ_INVERTED     = 0,
   parameter            LED_INVERTED     = 0,
-  parameter            STEPS_REGISTER   = 0,             // of the core, as are these
+  parameter            STEPS_REGISTER   = 0,             // parameters of the core, from here on
   parameter [AXES-1:0] STEP_RESET       = {AXES{1'b0}},
   parameter [AXES-1:0] DIR_RESET        = {AXES{1'b0}},
   parameter [AXES-1:0] ENABLE_RESET     = {AXES{1'b1}}
@@ -61,7 +61,8 @@ module passo_board #(
     .pin   (spi_miso)
   );
 
-  // Flip-flops begin as 0 in all of these FPGAs, so this counts "out of reset" up, not "in reset" down.
+  // The initial value of flip-flops is 0 in all of these FPGAs, so the counter counts up to release the
+  // reset.
   reg [3:0] reset_count = 4'd0;
   reg       rst_n = 1'b0;
 
@@ -74,7 +75,7 @@ module passo_board #(
       if (reset_count == 4'd15) rst_n <= 1'b1;
     end
 
-  // The core takes a synchronous reset: another flip-flop keeps the end of the asynchronous one away from it.
+  // The core has a synchronous reset: a second flip-flop synchronizes the release of the asynchronous one.
   reg rst = 1'b1;
   always @(posedge clk) rst <= ~rst_n;
 

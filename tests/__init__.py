@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Tests of everything but the RTL alone; what several of them share is in tests/helpers."""
+"""Tests of everything except the RTL alone; shared code is in tests/helpers."""

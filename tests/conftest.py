@@ -10,5 +10,5 @@ from tests.helpers.plans import planner
 
 @pytest.fixture
 def c() -> Any:
-    """The planner, every use of undefined behaviour being fatal."""
+    """The planner, built such that undefined behaviour is fatal."""
     return planner()

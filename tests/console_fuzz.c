@@ -30,7 +30,7 @@ static const char *const VALUES[] = {"0", "1", "-1", "5", "50", "100", "3.5", "0
     "1073741823", "-1073741824", "", ",", "1,,2", "x", "-", "1e",
     "0,100,200,300,400,500,600,700,800,900,1000,1100,1200,1300,1400,1500", "1600", "=", "#"};
 
-/* Good lines, so that motions run while the nonsense comes. */
+/* Valid lines, so that motions run in between. */
 static const char *const LINES[] = {"move steps=20,-9 profile=cosine total_time=0.02 ramp_time=5ms",
     "move steps=30 profile=linear speed=2000 acceleration=30000",
     "turn steps_per_turn=200 rpm=60 acceleration=9999",
@@ -66,7 +66,7 @@ static void drain(struct passo_engine *engine)
 		continue;
 }
 
-/* Now and then the wire is disturbed. */
+/* Sometimes with bit errors. */
 static bool transfer(void *context, const uint32_t *mosi, uint32_t *miso, size_t count)
 {
 	struct bench *bench = context;
@@ -103,7 +103,7 @@ static void keep(void *context, const char *text)
 	bench->length += length;
 }
 
-/* A line without its end; it may hold any byte but CR and LF. Returns its length. */
+/* Makes a line without its end, of any bytes except CR and LF. Returns its length. */
 static size_t make_line(char *line)
 {
 	size_t length = 0;

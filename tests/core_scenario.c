@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * A host that plays frames to the model, good and bad ones, for a build in which every fault is fatal.
+ * A host that sends valid and invalid frames to the model, for a build with sanitizers.
  *
- * Exits with 0 if the model answered as it should. The moves themselves are checked elsewhere.
+ * Exits with 0 if all replies are correct. The moves themselves are checked elsewhere.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -30,7 +30,7 @@ static void expect(bool good, const char *what)
 	exit(1);
 }
 
-/* Runs with these inputs, now and then in jumps. */
+/* Runs with these inputs, sometimes with skipping. */
 static void run(const struct passo_inputs *inputs, uint64_t clocks)
 {
 	while (clocks != 0u) {
@@ -48,7 +48,7 @@ static void rest(uint64_t clocks)
 	run(&inputs, clocks);
 }
 
-/* One chip select of so many bits, which need not be whole words. */
+/* One chip select of any number of bits. */
 static void transfer_bits(const uint32_t *mosi, uint32_t *miso, size_t bits)
 {
 	struct passo_inputs inputs = {.spi_cs_n = false};
@@ -143,7 +143,7 @@ static struct passo_ramp ramp_of(
 	    .progress_step = ticks == 1u ? PASSO_PROGRESS_STEP_MAX : PASSO_ONE_Q48 / ticks};
 }
 
-/* Up, on and down again in a shape, on every channel at once, one of them with a hold. */
+/* Acceleration, cruise and deceleration with a shape on every channel at once, one of them with a hold. */
 static void move_every_channel(enum passo_shape shape)
 {
 	const unsigned channels = core.parameters.channels;
@@ -182,7 +182,7 @@ static void move_every_channel(enum passo_shape shape)
 	expect(write_word(PASSO_ADDRESS_RUN, 0) == PASSO_VERDICT_OK, "all rest");
 }
 
-/* Every end that a motion can take. */
+/* Every way in which a motion can end. */
 static void fault_every_way(unsigned channel)
 {
 	const uint16_t base = channel_base(channel);
@@ -228,7 +228,7 @@ static void fault_every_way(unsigned channel)
 	    "pins");
 }
 
-/* Frames with a good CRC and anything in them, and frames of any bits, cut anywhere. */
+/* Random frames with a valid CRC, and frames of random bits, cut anywhere. */
 static void send_rubbish(unsigned count)
 {
 	uint32_t frame[PASSO_FRAME_WORDS_MAX];

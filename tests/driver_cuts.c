@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * The driver on a wire that dies at any word of any frame of any call, and comes back: what the driver then
- * believes is what the core has, or it says that it does not know and a clear brings it back.
+ * The driver on a link that dies at any word of any frame of any call and recovers: afterwards the state
+ * assumed by the driver matches the core, or the driver reports that it is unknown and a clear restores it.
  *
- * It is judged by the pins of the C model and by the model's own state. Driver, link and model are plain
- * structs: a case begins with a copy of the world as it was before the call. Prints how many cases were good.
+ * Checked by the pins and the state of the C model. Driver, link and model are plain structs: each case
+ * starts with a copy of the state before the call. Prints the number of good cases.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,19 +18,18 @@
 #define AXES 2u
 #define TRIES 2u
 #define LINE_PLACES 16u
-#define LOOKS 160u     /* until all has come to its end */
-#define CALM_LOOKS 12u /* it has */
+#define LOOKS 160u     /* until all motions have ended */
+#define CALM_LOOKS 12u /* consecutive ones that show it */
 #define LOOK_MICROSECONDS 250u
 #define DEAD_LOOKS 5u
 #define LINES 25u
 #define WORTH_A_JUMP 5u /* clocks */
 #define COMPLAINTS_MAX 10u
-#define FRAMES_MAX 8u /* of a call, that die */
-
-/* What dies: both directions between two words or in the middle of one, only what the core says, only what
- * it hears. The host then sees a constant level, the core one too, or no clock. */
+#define FRAMES_MAX 8u /* frames of a call that are cut */
+/* What dies: both directions between two words or within one, only MISO, only MOSI and SCLK. The host then
+ * sees a constant level; the core sees one too, or no clock. */
 enum kind { BOTH, BOTH_INSIDE, REPLY, REQUEST };
-/* How long: the next try gets through; until the call is over; some polls longer. */
+/* For how long: one frame; until the call returns; some polls longer. */
 enum patience { ONE_FRAME, CALL, POLLS };
 
 struct death {
@@ -197,7 +196,7 @@ static bool is_busy(void)
 	    && (channel->motion.state != PASSO_STATE_IDLE || channel->line_queue.room != LINE_PLACES);
 }
 
-/* Until all has come to its end, or for long. */
+/* Polls until all motions have ended, or for a long time. */
 static void look_long(void)
 {
 	unsigned calm = 0;
@@ -584,7 +583,7 @@ static const struct {
 /* ----------------------------------------------------------------------------------------- the judges ----
  */
 
-/* What a call may change in the core. */
+/* State of the core that a call may change. */
 struct effect {
 	uint32_t rate_target, rate_slew, stop_slew, drain_velocity;
 	uint8_t run, wait_sync;
@@ -640,7 +639,7 @@ static bool is_known(void)
 	return passo->belief == PASSO_BELIEF_READY;
 }
 
-/* The driver believes what the core has. */
+/* Checks that the state assumed by the driver matches the core. */
 static void judge_beliefs(void)
 {
 	const struct passo_channel *channel = &world.core.channel[0];
@@ -682,7 +681,7 @@ static void judge_beliefs(void)
 	judge(!is_known() || passo->stream != PASSO_STREAM_NONE || now.run == 1u || !is_busy(), "the gate");
 }
 
-/* Each thing is as before the call or as after it; as after it if the call said so. */
+/* Each item is as before or as after the call; as after it if the call succeeded. */
 static void judge_effect(enum passo_error error, bool is_motion_free)
 {
 	const struct effect now = effect_now();
@@ -704,7 +703,7 @@ static void judge_effect(enum passo_error error, bool is_motion_free)
 		if (!passo_driver_is_broken(passo))
 			JUDGE(stopped);
 	}
-	/* what restrains comes late, what lets go on does not */
+	/* restraining commands take effect late, others do not */
 	if (error != PASSO_OK && passo->belief != PASSO_BELIEF_NOT_OPEN) {
 		judge(
 		    now.rate_target
@@ -718,7 +717,7 @@ static void judge_effect(enum passo_error error, bool is_motion_free)
 #undef IS
 }
 
-/* What a program does then: at the end the driver makes a move, of just these steps. */
+/* Recovery as in a program: in the end the driver makes a move with exactly its steps. */
 static void judge_recovery(void)
 {
 	uint32_t pulses[AXES];
@@ -754,7 +753,7 @@ static void judge_recovery(void)
 	judge_beliefs();
 }
 
-/* A call, what comes after it, and a long time. */
+/* Plays a call and what follows it, for a long time. */
 static enum passo_error play(enum passo_error (*call)(void), const struct cut *cut)
 {
 	world.cut = *cut;

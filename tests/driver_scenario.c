@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * The driver and the C model in one program, for the sanitizers: moves, streams, turning, stops and resets
- * over a wire that flips bits, drops words and dies. Prints "ok" if every position is what the accepted moves
- * make.
+ * The driver and the C model in one program, for the sanitizers: moves, streams, rotation, stops and resets
+ * over a link that flips bits, drops words and dies. Prints "ok" if every position equals the sum of the
+ * accepted moves.
  */
 #include <stdio.h>
 #include <string.h>
@@ -24,7 +24,7 @@
 
 struct wire {
 	struct passo_engine *engine;
-	uint32_t random, noise; /* a frame in so many is damaged; 0: none */
+	uint32_t random, noise; /* one frame in `noise` is corrupted; 0: none */
 	bool dead;
 };
 

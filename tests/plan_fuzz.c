@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * All planning functions with arguments of all sizes, for so many seconds: plan_fuzz SEED SECONDS.
+ * All planning functions with arguments of all sizes: plan_fuzz SEED SECONDS.
  *
- * Built with sanitizers it finds undefined behaviour; by itself it finds plans that the core would not take,
- * and refusals that touch the plan. Prints how often each function planned and refused.
+ * Built with sanitizers it finds undefined behaviour; by itself it finds plans that the core would refuse,
+ * and errors that modify the plan. Prints how often each function succeeded and failed.
  */
 #include <inttypes.h>
 #include <stdio.h>

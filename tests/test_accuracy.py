@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The simulated microcontroller methods against figures worked out by hand, and Passo's own bounds."""
+"""The simulated microcontroller methods against hand-computed figures, and the error bounds of Passo."""
 
 import math
 import random
@@ -27,8 +27,8 @@ from tests.helpers.closed_form import Ramp, substep_clocks
 SEED = random_cases.seed()
 MOVES = 200  # of each method
 
-# What Passo keeps to: ticks by which the total time may be off what was wanted (a move by speeds rounds each
-# of three phases up), and steps by which a pulse may be off the planned curve.
+# Error bounds of Passo: total time in ticks (a move by speeds rounds up each of three phases), and distance
+# of a pulse from the planned curve in steps.
 TICKS = {"A": 3, "B": 3, "C": 3, "D": 0.5 + 1e-6}
 PLANNED = 0.1
 
@@ -74,7 +74,7 @@ def test_plots_follow_the_same_shapes(shape: Shape) -> None:
 
 @pytest.mark.parametrize("shape", ("linear", "cosine", "sigmoid", "ease", "quintic"))
 def test_areas_are_the_integrals_of_shapes(shape: str) -> None:
-    """A phase's position grows with a speed that goes from its start to its end; so does its mirror image."""
+    """The position of a phase is the integral of its speed, also for the mirror image."""
     area = 1 / 3 if shape == "ease" else 1 / 2
     seconds = np.linspace(0, 1, 2001)
     for mirror in (False, True):
@@ -106,7 +106,7 @@ def test_square_roots_are_truncated() -> None:
 
 
 def test_short_move_ends_at_speed() -> None:
-    """90 degrees at 300 rpm: 3196 updates of speeding up are more than half of 800, so there is only that."""
+    """90 degrees at 300 rpm: acceleration takes 3196 updates, more than half of 800: nothing else is left."""
     move = Trapezoid(90, 300, 10)
     assert (move.n_target, move.n_acc, move.cruises) == (800, 3196, False)
     pulses = sources.simulate(move)
@@ -115,7 +115,7 @@ def test_short_move_ends_at_speed() -> None:
 
 
 def test_trapezoid_is_the_loop_of_updates() -> None:
-    """The speeds, taken part by part, are those of the published loop, update by update."""
+    """The speeds computed by phase equal those of the published loop, update by update."""
     for move in random_moves(METHODS[0], 40, SEED):
         v = move.v_min
         speeds = [v]
@@ -250,7 +250,7 @@ def test_bounds(results: dict[str, list[Result]], method: Method) -> None:
         assert passo["planned"] <= PLANNED, move
         for name in ("start", "stop"):
             assert math.isnan(passo[name]) or passo[name] < 1e-9, (name, move)
-        # The time that rounding takes, at full speed, is what a step can be off.
+        # A step can be off by the rounding of time at full speed.
         off = (
             (passo["ticks"] + TICKS[method.key]) * passo_side.TICK_SECONDS * passo_side.wanted_curve(move).run
         )
@@ -259,7 +259,7 @@ def test_bounds(results: dict[str, list[Result]], method: Method) -> None:
 
 @pytest.mark.parametrize("method", METHODS, ids=lambda method: method.key)
 def test_passo_is_better_in_every_move(results: dict[str, list[Result]], method: Method) -> None:
-    """Nearer to the curve by more than ten times; sources lose no step either, but they lose the place."""
+    """More than ten times closer to the curve than the published methods, which lose no steps either."""
     for result in results[method.key]:
         assert result.passo["distance"] < result.source["distance"] / 10, result.move
         assert result.source["steps"] <= 1, result.move
@@ -267,7 +267,7 @@ def test_passo_is_better_in_every_move(results: dict[str, list[Result]], method:
 
 @pytest.mark.parametrize("name", FORMS)
 def test_forms_keep_to_their_plans(name: str) -> None:
-    """Every step and substep; moves in given time to half a tick, by speed and ramp time to three."""
+    """All steps and substeps; moves in a given time to half a tick, by speed and ramp time to three."""
     for errors in measure_forms(name, 25, SEED):
         assert errors["steps"] == errors["missing"] == 0
         assert errors["planned"] <= PLANNED
@@ -295,7 +295,7 @@ def test_steps_are_those_of_the_closed_form() -> None:
 
 
 def test_missing_steps_are_seen() -> None:
-    """A plan whose ramps are too short for its line is not taken for good."""
+    """A plan whose ramps are too short for its line is rejected."""
     plan = passo_side.make(Cosine(1000, 100, 50)).plan
     plan.ramps[0].ticks -= 100
     clocks, missing = passo_side.step_clocks(plan)
@@ -321,7 +321,7 @@ def test_highest_safe_frequency() -> None:
 
 
 def test_page_has_all_methods_and_forms(results: dict[str, list[Result]]) -> None:
-    """The page is made from what was measured, and nothing is left out."""
+    """The page has all measured methods and forms."""
     rng = random.Random(SEED)
     forms = {name: [measure_form(make(rng))] for name, make in FORMS.items()}
     named = [measure(case.move) for case in NAMED]

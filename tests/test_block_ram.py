@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Registers behind the block RAMs of an ECP5: which of them move, and that the netlist does the same then."""
+"""Packing of registers into the block RAMs of an ECP5: which are packed, and equivalence of the netlist."""
 
 import copy
 import importlib.util
@@ -31,7 +31,7 @@ INPUTS = """
   input  wire [ 8:0] write_address, read_address,
   input  wire [31:0] write_data"""
 
-# A memory, a word that was read from it, and what is behind that.
+# A memory, the word read from it, and its loads.
 MODULE = """
 module {name} ({inputs}, output reg [{top}:0] data, output wire early);
   (* no_rw_check *) reg [{top}:0] words[0:511];
@@ -42,7 +42,7 @@ module {name} ({inputs}, output reg [{top}:0] data, output wire early);
 endmodule
 """
 
-# A memory with two ports that write or read, and what is behind their words.
+# A memory with two ports that write or read, and the loads of their words.
 TWO_PORTS = """
 module {name} ({inputs}, output reg [{top}:0] data, output wire early);
   (* no_rw_check *) reg [8:0] words[0:511];
@@ -63,7 +63,7 @@ READ = "word <= words[read_address];"
 
 
 class Case(NamedTuple):
-    """How many registers move, what is behind the memory, and how it is read."""
+    """Number of registers packed, loads of the memory, and its read."""
 
     moved: int
     behind: str
@@ -151,7 +151,7 @@ CASES = {
 
 
 class Netlists(NamedTuple):
-    """All cases before and after, and how many registers moved."""
+    """All cases before and after, and the number of registers packed."""
 
     before: dict[str, Any]
     after: dict[str, Any]
@@ -160,7 +160,7 @@ class Netlists(NamedTuple):
 
 @pytest.fixture(scope="module")
 def netlists() -> Netlists:
-    """One run of Yosys for all cases, which stay modules of their own."""
+    """One run of Yosys for all cases, each a separate module."""
     shutil.rmtree(WORK, ignore_errors=True)
     WORK.mkdir(parents=True)
     (WORK / "cases.v").write_text("".join(case.verilog(name) for name, case in CASES.items()))
@@ -209,7 +209,7 @@ def test_registers_move_if_the_block_ram_can_do_the_same(netlists: Netlists, nam
 def test_registers_stay_if_a_cell_is_unusual(
     netlists: Netlists, kind: str, parameter: str, value: str
 ) -> None:
-    """One cell that is not what synthesis makes by itself is enough."""
+    """A single cell that does not match the requirements prevents packing."""
     module = copy.deepcopy(netlists.before["modules"]["always_loads"])
     cell = next(cell for cell in module["cells"].values() if cell["type"] == kind)
     cell["parameters"][parameter] = value
@@ -218,7 +218,8 @@ def test_registers_stay_if_a_cell_is_unusual(
     assert module == unchanged
 
 
-# Counts clocks on which the netlists differ, on which the Verilog says something else, and with a new output.
+# Counts the clocks on which the netlists differ, on which the Verilog differs, and on which the output
+# changes.
 COMPARE = """
 module compare #(parameter WIDTH = 1) (input wire clk, done, input wire [WIDTH-1:0] verilog, old, moved);
   integer differs = 0, wrong = 0, changes = 0;
@@ -262,7 +263,7 @@ CASE = """
 
 
 def gather(ram: dict[str, Any]) -> None:
-    """Pins become vectors, and what BLOCK_RAM does not know goes."""
+    """Convert pins to vectors, and drop properties that the model does not support."""
     ram["parameters"] = {name: value for name, value in ram["parameters"].items() if "INITVAL" not in name}
     directions, connections = ram["port_directions"], ram["connections"]
     for pin in [pin for pin in connections if pin.startswith("CS")]:

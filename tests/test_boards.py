@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The tables of the boards, what is made of them, and the top that all boards share."""
+"""The board tables, the files generated from them, and the common top module."""
 
 import importlib.util
 import json
@@ -42,7 +42,7 @@ needs_yosys = pytest.mark.skipif(
 
 
 def ports_of_top(chosen: Board, axes: int) -> set[str]:
-    """Ports, bit by bit, but for those that the board does without."""
+    """Port bits, except those that the board omits."""
     names = set()
     for width, name in re.findall(r"(?:input|output)\s+wire\s+(\[[^]]*\])?\s*(\w+)", TOP.read_text()):
         assert width in ("", "[AXES-1:0]")
@@ -73,7 +73,7 @@ def test_core_gets_the_parameters_of_its_device(board: Board) -> None:
 
 @each_board
 def test_pll_makes_the_clock(board: Board) -> None:
-    """By the formula in the data sheet of each family, with the oscillator inside within its limits."""
+    """By the formula in the data sheet of each family, with the VCO within its limits."""
     found = re.findall(r"\.([A-Z_]+)\((\d+)\)", pll_file(board))
     p, osc = {name: int(value) for name, value in found}, board.oscillator_mhz
     if board.device.family is ICE40:
@@ -172,7 +172,7 @@ endmodule
     ids=["default", "other_levels", "inverted"],
 )
 def test_drives_are_off_from_configuration_on(tmp_path: Path, parameters: str, levels: str) -> None:
-    """EN is high, STEP and DIR are low, or as the table says; no change when a reset begins or ends."""
+    """EN is high, STEP and DIR are low, or as the table says; no change when a reset starts or ends."""
     bench, program = tmp_path / "power_up.v", tmp_path / "power_up"
     bench.write_text(POWER_UP.replace("PARAMETERS", parameters))
     sources = [*sorted(paths.rtl.glob("*.v")), TOP, bench]
@@ -213,7 +213,7 @@ def test_link_is_idle_without_a_host(board: Board) -> None:
         assert pull not in pulls or re.search(pulls[pull].format(port), text, re.M), port
 
 
-# One that uses all that a table can have on an iCE40, but for some of the optional pins.
+# A board with all features of a table on an iCE40, except for some optional pins.
 MADE_UP = """\
 title = "Made up"
 device = "up5k"
@@ -244,7 +244,7 @@ AXES = MADE_UP[MADE_UP.index("axes") : MADE_UP.index("[clock]")]
 
 @pytest.fixture
 def made_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The table of a board in a folder of its own, which is all that it takes."""
+    """A new board: only a table in its own folder."""
     monkeypatch.setattr(module, "FOLDER", tmp_path)
     path = tmp_path / "made_up" / "board.toml"
     path.parent.mkdir()
@@ -253,7 +253,7 @@ def made_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_board_is_added_by_a_table(made_up: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """`make synth` knows it, and all that the tools get is made of the table."""
+    """`make synth` knows it, and all inputs of the tools are generated from the table."""
     assert made_up.exists() and synth.main([]) == 0
     assert re.search(r"made_up +2 +30 MHz +Made up", capsys.readouterr().out)
     chosen = board("made_up")

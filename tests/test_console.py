@@ -34,7 +34,7 @@ ZEROS = ",".join("0" * 16)
 
 
 class Bench:
-    """A terminal that remembers what it said."""
+    """A terminal that records its output."""
 
     def __init__(self, clock_hz: int = CLOCK_HZ, axes: int = 4):
         self.said: list[str] = []
@@ -43,7 +43,7 @@ class Bench:
         self.greeting = self.take()
 
     def take(self) -> str:
-        """What was said since the last call."""
+        """The output since the last call."""
         text = "".join(self.said)
         self.said.clear()
         return text
@@ -147,7 +147,7 @@ def chunks(table: tuple[int, ...] | Any) -> list[tuple[int, ...]]:
 
 
 def test_moves_are_queued_behind_each_other(bench: Bench) -> None:
-    """As many as the core's queues hold are taken at once; then FULL, which changes nothing; all are made."""
+    """The queues accept moves until FULL, which changes nothing; all accepted moves are made."""
     taken = 0
     while (answer := bench.ask("move steps=10,-5 profile=linear total_time=0.01 ramp_time=0.004")) == "ok":
         taken += 1
@@ -239,7 +239,7 @@ def toml_of(values: dict[str, str]) -> str:
 
 
 def problem_of_file(path: Path, values: dict[str, str]) -> str:
-    """What `passo run` says of a move; empty if it takes it."""
+    """Error of `passo run` for a move; empty if it is accepted."""
     path.write_text(toml_of(values))
     try:
         plan_file(read_moves(path), Parameters(axes=8))
@@ -249,7 +249,7 @@ def problem_of_file(path: Path, values: dict[str, str]) -> str:
 
 
 def broken(random_: random.Random) -> dict[str, str]:
-    """A good move with one or two things wrong with it, perhaps."""
+    """A valid move with up to two errors."""
     method = random_.choice(list(GOOD))
     values = dict(GOOD[method])
     if method not in ("in_time", "by_speed") or random_.random() < 0.3:
@@ -272,13 +272,13 @@ def broken(random_: random.Random) -> dict[str, str]:
     return values
 
 
-# What a value is not is shown as it was written, not as Python shows it; a shape is not a file.
+# Differences: the console shows a wrong value as typed, not as Python's repr; a shape is not a file.
 DIFFERENT = re.compile(r"profile = \"user\"|must be a (whole )?number, not|table|known are")
 
 
 @pytest.mark.parametrize("seed", range(4))
 def test_errors_are_those_of_move_files(seed: int, tmp_path: Path) -> None:
-    """Random moves with something wrong: both refuse them with the same words, or both take them."""
+    """Random moves with errors: console and move file reject them with the same message, or accept them."""
     random_ = random.Random(seed)
     bench = Bench(axes=8)
     compared = {"": 0}
@@ -403,7 +403,7 @@ def test_huge_numbers_saturate() -> None:
 
 
 def test_hold_and_resume_make_the_same_steps(bench: Bench) -> None:
-    """A held motion stands; wait says so instead of waiting for ever; after resume it goes on."""
+    """A held motion stops; `wait` reports that instead of waiting forever; after resume it continues."""
     bench.ask(IN_TIME)
     bench.ask("run 0.01")
     assert bench.ask("hold") == "ok"
@@ -525,16 +525,14 @@ def test_pin_times_reach_the_pins(bench: Bench) -> None:
 
 
 def test_a_refused_setting_changes_nothing(bench: Bench) -> None:
-    """The last key is wrong: none of the others has been taken."""
+    """If the last key is invalid, none of the others takes effect."""
     before = bench.ask("config axis=2"), bench.ask("config")
     assert (
         bench.ask("config axis=2 step_high=5us step_inverted=1 both_edges=2")
         == "error: both_edges must be 0 to 1"
     )
     assert bench.ask("config hold_time=1ms stop_time=x") == "error: stop_time must be a number, not 'x'"
-    assert (
-        bench.ask("config hold_time=1ms baud=115200") == "error: there is no board whose lines could be set"
-    )
+    assert bench.ask("config hold_time=1ms baud=115200") == "error: this console has no board"
     assert (bench.ask("config axis=2"), bench.ask("config")) == before
 
 
@@ -568,7 +566,7 @@ def test_hold_time_is_kept(bench: Bench) -> None:
 
 
 def test_another_clock(bench: Bench) -> None:
-    """The core is opened anew with the times of a start; the clock counts for the times of moves."""
+    """The core is reopened with default times; the new clock applies to the times of moves."""
     bench.ask("config axis=0 step_high=9us")
     assert bench.ask("config clock_hz=2_000_000") == "ok"
     assert bench.tell("config axis=0")["step_high"] == "2clocks"
@@ -588,7 +586,7 @@ def test_versions(bench: Bench) -> None:
 
 
 def test_table_is_checked(bench: Bench) -> None:
-    """Row by row; it must be complete, start at 0 and never fall."""
+    """Row by row; it must be complete, start at 0 and not decrease."""
     assert bench.ask("table") == "error: table is missing"
     user = "move steps=10 profile=user total_time=0.01 ramp_time=0.002"
     assert bench.ask(user) == "error: table is missing"
@@ -601,8 +599,8 @@ def test_table_is_checked(bench: Bench) -> None:
     assert bench.ask(user) == "ok"
     bench.ask("wait")
     assert bench.ask(f"table 7 {ZEROS}") == "ok"
-    assert bench.ask("table") == "error: TABLE_FALLS: point 112: A shape must never fall."
-    assert bench.ask(user) == "error: TABLE_FALLS: A shape must never fall."
+    assert bench.ask("table") == "error: TABLE_FALLS: point 112: A shape must not decrease."
+    assert bench.ask(user) == "error: TABLE_FALLS: A shape must not decrease."
     assert bench.tell("position")["position"] == "10,0,0,0"
 
 
@@ -628,7 +626,7 @@ def test_help_knows_every_command(bench: Bench) -> None:
 
 
 def test_help_shows_every_key_of_every_form(bench: Bench) -> None:
-    """In brackets what need not be given; a file's own keys are not there."""
+    """Optional keys in brackets; keys of move files only are not listed."""
     bench.terminal.line("help move")
     lines = bench.take().splitlines()
     assert len(lines) == len(FORMS) + 1
@@ -660,7 +658,7 @@ def test_a_motion_outlives_the_console(bench: Bench) -> None:
 
 
 def test_a_broken_wire_is_told_once(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
-    """One note when it breaks, one when it is whole again; commands meanwhile say what is wrong."""
+    """One note when the link fails, one when it recovers; commands in between report the error."""
     with monkeypatch.context() as patch:
         patch.setattr(bench.engine, "transfer", lambda mosi, gap: [0] * len(mosi))
         bench.terminal.line("run 0.5")
@@ -676,7 +674,7 @@ def test_a_broken_wire_is_told_once(bench: Bench, monkeypatch: pytest.MonkeyPatc
 
 @pytest.mark.parametrize("how", ["stop", "abort", "hold"])
 def test_a_stop_that_gets_lost(bench: Bench, monkeypatch: pytest.MonkeyPatch, how: str) -> None:
-    """It is sent again until it is acknowledged; what is wrong meanwhile is said, once."""
+    """It is resent until it is acknowledged; the error in between is reported once."""
     fault = "NOT_HELD" if how == "hold" else "NOT_STOPPED"
     for _ in range(4):
         assert bench.ask(IN_TIME) == "ok"
@@ -718,7 +716,7 @@ def test_open_again(bench: Bench) -> None:
 
 
 def test_ends_of_lines(bench: Bench) -> None:
-    """LF, CR and CR LF end a line; comments and blanks are nothing."""
+    """LF, CR and CR LF end a line; comments and blanks are ignored."""
     bench.terminal.type(b"version\nversion\rversion\r\n\tversion # or so\r\n\n  # nothing\r\r")
     answers = bench.take().splitlines()
     assert [a[:10] for a in answers] == ["ok console"] * 4 + ["ok"] * 3
@@ -757,10 +755,10 @@ def test_lines_have_255_characters(bench: Bench) -> None:
         ("bla", "error: unknown command 'bla'; help lists the commands"),
         ("move=3", "error: unknown command 'move'; help lists the commands"),
         ("hold now", "error: 'now' is not key=value"),
-        ("hold it=now", "error: there is no key 'it' here"),
+        ("hold it=now", "error: no key 'it' here"),
         ("override 50 percent=60", "error: percent is given twice"),
         ("move steps=1 steps=2", "error: steps is given twice"),
-        ("override =5", "error: there is no key before ="),
+        ("override =5", "error: no key before ="),
         ("override 50.0", "error: percent must be a whole number, not '50.0'"),
         ("override percent=", "error: percent must be a whole number, not ''"),
         ("move " + "a " * 24, "error: more than 24 words"),
@@ -775,7 +773,7 @@ def test_lines_have_255_characters(bench: Bench) -> None:
     ],
 )  # fmt: skip
 def test_what_is_wrong_is_named(bench: Bench, line: str, answer: str) -> None:
-    """Each fault has its words."""
+    """Each error has its message."""
     assert bench.ask(line) == answer
 
 

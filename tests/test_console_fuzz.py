@@ -14,7 +14,7 @@ FOLDERS = (paths.model, paths.planner, paths.protocol, paths.engine, paths.conso
 
 
 def test_every_line_gets_one_answer(tmp_path: Path) -> None:
-    """Whatever is typed, whatever the core does: one `ok` or `error:`, no undefined behaviour."""
+    """Any input in any state of the core: one `ok` or `error:`, no undefined behaviour."""
     files = [path for path in sources(*FOLDERS) if path.name != "passo_cpu.c"]
     flags = (*STRICT, *SANITIZED, *includes(*FOLDERS))
     program = compile_to(tmp_path / "fuzz", *flags, paths.tests / "console_fuzz.c", *files)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The constraints for other tools name what is there, and hold all that crosses between the clocks.
+"""The constraints for other tools match the core and cover all clock domain crossings.
 
-The crossings are found in the core itself: whichever flip-flop of one clock reaches one of the other.
+The crossings are derived from the netlist: all paths from a flip-flop of one clock to one of the other.
 """
 
 import importlib.util
@@ -19,7 +19,7 @@ from passo_fpga.tools import FOLDER, check, relative
 
 SDC, XDC = (paths.syn / "constraints" / f"passo.{suffix}" for suffix in ("sdc", "xdc"))
 NETLIST = "netlist.json"
-UNCONSTRAINED = {"rst", "spi_miso_enable"}  # from and to what is around the core
+UNCONSTRAINED = {"rst", "spi_miso_enable"}  # ports inside the FPGA
 
 each_file = pytest.mark.parametrize("file", [SDC, XDC], ids=lambda file: file.suffix[1:])
 pytestmark = pytest.mark.skipif(
@@ -29,7 +29,7 @@ pytestmark = pytest.mark.skipif(
 
 @dataclass(frozen=True)
 class Register:
-    """A bit of a register: its names on all levels, with [bit] if it has several; and its clock."""
+    """A register bit: its names at all levels, with [bit] if there are several, and its clock."""
 
     names: frozenset[str]
     clock: str
@@ -52,21 +52,21 @@ def core() -> Mapping[str, Any]:
 
 
 def outputs(cell: Mapping[str, Any]) -> Iterator[int]:
-    """Bits of the netlist that it drives."""
+    """Netlist bits that a cell drives."""
     for pin, bits in cell["connections"].items():
         if cell["port_directions"].get(pin) == "output":
             yield from bits
 
 
 def inputs(cell: Mapping[str, Any]) -> Iterator[int]:
-    """Bits of the netlist that it uses, but for its clock and constants."""
+    """Netlist bits that a cell reads, except its clock and constants."""
     for pin, bits in cell["connections"].items():
         if cell["port_directions"].get(pin) == "input" and pin not in ("C", "RD_CLK", "WR_CLK"):
             yield from (bit for bit in bits if isinstance(bit, int))
 
 
 def registers(core: Mapping[str, Any]) -> dict[int, Register]:
-    """Of flip-flops and memories, by the bit of the netlist that they drive."""
+    """Flip-flops and memories by the netlist bit that they drive."""
     ports = {bit: name for name, port in core["ports"].items() for bit in port["bits"]}
     clocks = {}
     for cell in core["cells"].values():
@@ -82,7 +82,7 @@ def registers(core: Mapping[str, Any]) -> dict[int, Register]:
 
 
 def origins(core: Mapping[str, Any]) -> Iterator[tuple[Register | str, Register]]:
-    """Each register behind all registers and input ports that it depends on through nothing but logic."""
+    """All combinational paths: from registers or input ports, to registers."""
     drivers = {bit: cell for cell in core["cells"].values() for bit in outputs(cell)}
     ports = {bit: name for name, port in core["ports"].items() for bit in port["bits"]}
     held = registers(core)
@@ -101,7 +101,7 @@ def origins(core: Mapping[str, Any]) -> Iterator[tuple[Register | str, Register]
 
 @pytest.fixture(scope="module")
 def paths_between(core: Mapping[str, Any]) -> Collection[tuple[Register | str, Register]]:
-    """All of the core: from, to."""
+    """All paths of the core: from, to."""
     return list(origins(core))
 
 
@@ -112,13 +112,13 @@ def crossings(paths_between: Collection[tuple[Register | str, Register]]) -> set
 
 
 def commands(file: Path) -> list[str]:
-    """One a line, without comments."""
+    """Commands, one per line, without comments."""
     text = re.sub(r"\\\n\s*", "", file.read_text())
     return [line for line in re.sub(r"(^|;)#.*", "", text, flags=re.M).splitlines() if line.strip()]
 
 
 def fits(register: Register, chosen: str, file: Path) -> bool:
-    """Whether `chosen`, what stands behind -from or -to, is the register among others; all if it is empty."""
+    """Whether the argument of -from or -to matches the register; an empty one matches all."""
     if not chosen:
         return True
     if clock := re.search(r"get_clocks (\w+)", chosen):
@@ -136,7 +136,7 @@ def fits(register: Register, chosen: str, file: Path) -> bool:
 
 @each_file
 def test_every_crossing_is_held(file: Path, crossings: set[tuple[Register, Register]]) -> None:
-    """By a set_max_delay; and each of these, and each name in it, is of a crossing."""
+    """By a set_max_delay; and every set_max_delay, and every name in it, matches a crossing."""
     assert crossings
     limits = [
         [re.search(rf"-{side} (\[.*?\}}?\])(?= -|$)", line) for side in ("from", "to")]
@@ -157,7 +157,7 @@ def test_every_crossing_is_held(file: Path, crossings: set[tuple[Register, Regis
 
 @each_file
 def test_every_port_is_constrained(file: Path, core: Mapping[str, Any]) -> None:
-    """All that a constraint names is there."""
+    """Every port in a constraint exists."""
     named = re.findall(r"get_ports (?:\{([^}]*)\}|(\w+))", file.read_text())
     ports = {re.sub(r"\*|\[\*\]", "", port) for pair in named for group in pair for port in group.split()}
     assert ports == core["ports"].keys() - UNCONSTRAINED

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""passo_core_advance() leads to the very state to which passo_core_clock() leads, struct byte for byte.
+"""passo_core_advance() leads to the same state as passo_core_clock(), compared byte for byte.
 
 PASSO_SEED is the seed of the random motions.
 """
@@ -33,7 +33,7 @@ BUILDS = [
 
 
 class Session:
-    """A host that does anything to any channel at any time; what is refused is refused."""
+    """A host that does anything to any channel at any time; refusals are ignored."""
 
     def __init__(self, parameters: Parameters, rng: random.Random):
         self.rng = rng
@@ -45,7 +45,7 @@ class Session:
         self.ramps = min(12, 1 << parameters.ramp_queue_log2)
 
     def try_to(self, what: Callable[..., None], *arguments: object) -> None:
-        """Do it unless the core refuses."""
+        """Execute something; ignore a refusal."""
         with suppress(RefusedError):
             what(*arguments)
 
@@ -115,7 +115,7 @@ class Session:
 
 @pytest.mark.parametrize("number", range(8))
 def test_advance_agrees_with_every_clock(number: int) -> None:
-    """Whatever a host does, pins and state are the same whether time is jumped over or not."""
+    """Whatever a host does, pins and state are the same with and without skipping."""
     print(f"PASSO_SEED={SEED}")
     rng = random.Random(f"{SEED}/{number}")
     session = Session(BUILDS[number % len(BUILDS)], rng)
@@ -133,7 +133,7 @@ def test_advance_agrees_with_every_clock(number: int) -> None:
 
 
 def test_advance_jumps_far() -> None:
-    """Most of a slow motion, of a hold and of the time between motions is jumped over."""
+    """Most of a slow motion, of a hold and of the time between motions is skipped."""
     parameters = BUILDS[0]
     pair = PlayerPair(parameters, random.Random(SEED))
     channel = Channel(Link(pair), parameters)
@@ -153,7 +153,7 @@ def test_advance_jumps_far() -> None:
 
 
 def test_endless_line_is_jumped_through() -> None:
-    """A jog of millions of clocks, its line repeated over and over, ends where it would have ended."""
+    """A jog of millions of clocks with a repeating line ends in the same state."""
     parameters = BUILDS[0]
     pair = PlayerPair(parameters, random.Random(SEED))
     channel = Channel(Link(pair), parameters)

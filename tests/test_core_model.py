@@ -68,7 +68,7 @@ def pulses(events: np.ndarray, axis: int) -> list[tuple[int, int]]:
 
 
 def check_motion(lines: Sequence[Line], ramps: Sequence[Ramp], tick_log2: int = 7) -> int:
-    """Every step of every axis comes on its clock; return their number."""
+    """Check that every step of every axis comes on its clock; return their number."""
     parameters = Parameters(axes=AXES, tick_log2=tick_log2)
     count = 0
     with model_engine(parameters, every_clock=True) as engine:
@@ -159,7 +159,7 @@ def test_jumps_in_the_middle() -> None:
 
 
 def test_velocity_zero_in_the_middle() -> None:
-    """A motion that stands for a while keeps its phase."""
+    """A motion at velocity 0 keeps its phase."""
     ramps = [Ramp(SLOW, 11), Ramp(0, 12), Ramp(0, 5), Ramp(SLOW, 13, SIGMOID), Ramp(0, 14, COSINE, last=True)]
     check_motion(fill(ramps, [(100, 50, -25)]), ramps)
 
@@ -175,7 +175,7 @@ def test_lines_follow_each_other_without_a_lost_clock() -> None:
 
 @pytest.mark.parametrize("tick_log2", [8, 10])
 def test_longer_ticks(tick_log2: int) -> None:
-    """TICK_LOG2 is the length of a tick and nothing else."""
+    """TICK_LOG2 affects only the length of a tick."""
     ramps = [Ramp(ONE // 10, 23, SIGMOID), Ramp(0, 11, EASE, True, last=True)]
     check_motion(fill(ramps, [(100, -100, 3)], tick_log2), ramps, tick_log2)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The sources of model, planner and driver: warnings, sanitizers, and what they do without."""
+"""The sources of model, planner and driver: warnings, sanitizers, no floating point and no heap."""
 
 import re
 import subprocess
@@ -11,12 +11,12 @@ from passo.toolchain import paths
 
 MODEL = (paths.model, paths.protocol)
 ALL = (*MODEL, paths.planner, paths.driver)
-# What a compiler may call by itself on any target.
+# Functions that a compiler may call implicitly on any target.
 ALLOWED = {"memcpy", "memset", "memmove", "memcmp"}
 
 
 def test_a_scenario_runs_clean_under_sanitizers(tmp_path: Path) -> None:
-    """Moves, holds, every kind of stop and rubbish on the wire: no fault, and the answers of the contract."""
+    """Moves, holds, every kind of stop and garbage on the link: no fault, and the specified replies."""
     files = [paths.tests / "core_scenario.c", *sources(*MODEL)]
     program = compile_to(tmp_path / "scenario", *STRICT, *SANITIZED, *includes(*MODEL), *files)
     done = subprocess.run([program], capture_output=True, text=True, timeout=300)
@@ -25,7 +25,7 @@ def test_a_scenario_runs_clean_under_sanitizers(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("source", sources(*ALL), ids=lambda path: path.stem)
 def test_no_floating_point_and_no_heap(source: Path, tmp_path: Path) -> None:
-    """It has no such type, needs no floating-point registers, and calls nothing but itself and memcpy."""
+    """No floating-point types or registers, and no calls except to itself and memcpy."""
     code = re.sub(r"/\*.*?\*/|//[^\n]*|\"[^\"\n]*\"", "", source.read_text(), flags=re.S)
     assert not re.search(r"\b(float|double|(malloc|calloc|realloc|free|alloca)\s*\()|\d\.|\.\d", code)
     flags = (*STRICT, "-O2", "-mgeneral-regs-only", "-fno-stack-protector", "-c")

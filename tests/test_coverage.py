@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What `make coverage` makes of Verilator's counts, and that its list of constant bits has to be right."""
+"""`make coverage`: evaluation of Verilator's counts, and checks of the list of constant bits."""
 
 from pathlib import Path
 
@@ -57,7 +57,7 @@ def test_points_of_all_runs_are_added_up(modules: dict[str, Module]) -> None:
 
 
 def test_constant_bits_are_no_holes(modules: dict[str, Module]) -> None:
-    """What is listed is neither missed nor counted, and the page says why."""
+    """Listed bits are neither missed nor counted, and the page gives the reason."""
     exclusions = [Exclusion(FILE, ("b",), "It is tied.")]
     assert wrong_exclusions(modules, exclusions) == []
     assert coverage.missed_bits(modules, []) == {FILE: ["a[1]", "b"]}

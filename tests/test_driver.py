@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The driver (stm32_bridge/driver/passo.h) against the C model: every call, and what it refuses."""
+"""The driver (stm32_bridge/driver/passo.h) on the C model: every call, and its errors."""
 
 import pytest
 from passo import frame
@@ -124,7 +124,7 @@ def test_moves_are_queued_until_it_is_full(driver: Driver) -> None:
 
 
 def test_blocking(driver: Driver) -> None:
-    """passo_wait() returns at the end, or when the time is over; then the motion goes on."""
+    """passo_wait() returns at the end, or after the timeout, when the motion continues."""
     driver.call("move_by_speed", LONG)
     with pytest.raises(DriverError, match="TIMEOUT"):
         driver.wait(0.01)
@@ -134,7 +134,7 @@ def test_blocking(driver: Driver) -> None:
 
 
 def test_hold_and_override(driver: Driver, wire: Wire) -> None:
-    """The same pulses later; the override survives a hold; the speed that is read knows both."""
+    """The same pulses later; the override survives a hold; the speed reading accounts for both."""
     rpm = ffi().new("uint64_t *")
     driver.call("configure_motion", 1000, 1000, 0)
     driver.call("move_by_speed", LONG)
@@ -166,7 +166,7 @@ def test_hold_and_override(driver: Driver, wire: Wire) -> None:
 
 @pytest.mark.parametrize("how", ["stop", "abort"])
 def test_stop(driver: Driver, wire: Wire, how: str) -> None:
-    """After a stop nothing is taken until clear; then the driver knows where it is."""
+    """After a stop no move is accepted until clear; then the position is known."""
     driver.call("configure_motion", 5000, 5000, 0)
     for _ in range(3):
         driver.call("move_by_speed", LONG)
@@ -187,7 +187,7 @@ def test_stop(driver: Driver, wire: Wire, how: str) -> None:
 
 
 def test_turning_without_end(driver: Driver, wire: Wire) -> None:
-    """Start, another speed, stop; nothing else is taken in between."""
+    """Start, change of speed, stop; no other move is accepted in between."""
     rpm = ffi().new("uint64_t *")
     turning = struct("turning", axis=2, steps_per_turn=TURN, backwards=True)
     turning.top_rpm, turning.acceleration = 1200 * Q32, 5_000_000 * Q32
@@ -215,7 +215,7 @@ def test_turning_without_end(driver: Driver, wire: Wire) -> None:
 
 
 def test_a_turn_that_has_ended_takes_no_speed(driver: Driver, wire: Wire) -> None:
-    """Its end came by the link: there is nothing that turns."""
+    """The rotation was ended over the link: nothing rotates any more."""
     turning = struct("turning", axis=2, steps_per_turn=TURN)
     turning.top_rpm, turning.acceleration = 1200 * Q32, 5_000_000 * Q32
     driver.call("turn_start", turning, 600 * Q32)
@@ -234,7 +234,7 @@ def test_a_turn_that_has_ended_takes_no_speed(driver: Driver, wire: Wire) -> Non
 
 
 def test_one_motor(driver: Driver, wire: Wire) -> None:
-    """The calls of the first lesson."""
+    """All functions of passo_motor.h."""
     lib, motor = planner(), struct("motor")
     degrees, rpm = ffi().new("int64_t *"), ffi().new("uint64_t *")
     assert lib.passo_motor_start(motor) == lib.PASSO_ERROR_NOT_OPEN
@@ -263,7 +263,7 @@ def test_one_motor(driver: Driver, wire: Wire) -> None:
 
 
 def test_tables(driver: Driver, wire: Wire) -> None:
-    """A table is loaded when a move needs it, only then, and never while something moves."""
+    """A table is loaded only if a move needs it, and never during a motion."""
 
     def loads(call: str, *arguments: object) -> int:
         wire.requests.clear()
@@ -400,7 +400,7 @@ def test_steps_that_leave_the_pins_are_waited_for(
 
 
 def test_a_stop_is_over_when_the_last_step_has_left_the_pins(driver: Driver, wire: Wire) -> None:
-    """Until then it is moving; its positions are final then."""
+    """Until then the channel is moving; then its positions are final."""
     driver.call("configure_axis", 0, struct("axis_config", step_high_ns=1000, dir_setup_ns=900_000))
     driver.call("move_by_speed", by_speed([-3, 0, 0, 0], 400_000, 4_000_000_000))
     while driver.snapshot().state != State.IDLE:
@@ -416,7 +416,7 @@ def test_a_stop_is_over_when_the_last_step_has_left_the_pins(driver: Driver, wir
 
 
 def test_a_drive_is_switched_off_at_rest(driver: Driver, wire: Wire) -> None:
-    """Not while something moves or waits; after an abort it is at once."""
+    """Not while a motion is running or queued; at once after an abort."""
     driver.call("enable", 0, False)
     assert enabled(wire) == 0b1110
     driver.call("enable", 0, True)
@@ -447,7 +447,7 @@ def test_slews(driver: Driver, wire: Wire) -> None:
 
 
 def test_steps_too_fast_for_the_pins(driver: Driver) -> None:
-    """What the driver cannot foresee in a stream the core finds; the driver tells it, once."""
+    """In a stream the core detects the overrun; the driver reports it once."""
     line = struct("line", last=True, substeps=100_000, steps=[100_000])[0]
     ramps = [struct("ramp", velocity_end=1 << 47)[0], struct("ramp", ticks=2000, last=True)[0]]
     ramps[1].progress_step = (1 << 48) // 2000
@@ -511,7 +511,7 @@ def test_channels() -> None:
 
 @pytest.mark.parametrize("parameters", [PARAMETERS, Parameters(line_queue_log2=2, ramp_queue_log2=2)])
 def test_streams(parameters: Parameters) -> None:
-    """A path far longer than the queues arrives without a gap, and no frame is refused."""
+    """A path much longer than the queues is executed without a gap, and no frame is refused."""
     wire = Wire(parameters)
     driver = open_driver(wire)
     lines, ramps = path(3000) if parameters is PARAMETERS else path(100, 200)
@@ -545,7 +545,7 @@ def test_a_stream_starts_when_it_is_told(driver: Driver, wire: Wire) -> None:
 
 
 def test_a_source_that_is_late(driver: Driver) -> None:
-    """The core stops, the driver says so, and forgets the rest of the path."""
+    """The core stops; the driver reports that and drops the rest of the path."""
     lines, ramps = path(600)
     source = Source([*lines[:100], *[None] * 10_000, *lines[100:]], ramps)
     driver.stream(source)
@@ -565,7 +565,7 @@ def test_a_source_that_is_late(driver: Driver) -> None:
 
 @pytest.mark.parametrize("bad", ["substeps", "length", "steps", "axis", "velocity", "now"])
 def test_a_source_that_is_wrong(driver: Driver, wire: Wire, bad: str) -> None:
-    """Nothing of a frame with an impossible item is sent; the motion is stopped softly."""
+    """A frame with an invalid item is not sent; the motion is stopped with a soft stop."""
     driver.call("configure_motion", 200, 200, 0)
     lines, ramps = path(3000)
     if bad == "substeps":
@@ -634,7 +634,7 @@ def test_a_stopped_stream_is_over(driver: Driver, wire: Wire) -> None:
 
 @pytest.mark.parametrize(("level", "name"), [(0, "STUCK_LOW"), (1, "STUCK_HIGH")])
 def test_no_core(wire: Wire, level: int, name: str) -> None:
-    """A dead wire is tried so often and no more."""
+    """The number of tries on a dead link is limited."""
     wire.stuck = level
     with pytest.raises(DriverError, match=name):
         Driver(wire)
@@ -677,7 +677,7 @@ def test_a_patch_does_not_matter(wire: Wire) -> None:
 
 
 def test_any_parameters(wire: Wire) -> None:
-    """A program that expects nothing takes the core as it is; some axes more are not an error."""
+    """A program without expectations accepts any core; additional axes are not an error."""
     for parameters in (Parameters(channels=3, axes=1), Parameters(axes=8, tick_log2=9)):
         driver = Driver(Wire(parameters))
         assert (driver.c.machine.axes, driver.c.machine.tick_log2) == (parameters.axes, parameters.tick_log2)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The driver on a wire that dies at each word of each frame of each of its calls (driver_cuts.c)."""
+"""The driver on a link that dies at each word of each frame of each call (driver_cuts.c)."""
 
 import subprocess
 from pathlib import Path
@@ -21,7 +21,7 @@ def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize("part", range(PARTS))
 def test_a_wire_that_dies_anywhere(program: Path, part: int) -> None:
-    """At the end the driver believes what the core has, or says what it does not know, and a clear helps."""
+    """The driver's state matches the core, or the driver reports that it is unknown and can be cleared."""
     done = subprocess.run([program, str(part), str(PARTS)], capture_output=True, text=True, timeout=900)
     print(done.stdout)
     good, _, all_of_them = done.stdout.splitlines()[-1].partition(" of ")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The driver on a wire that fails: every move arrives exactly once, or an error tells, nothing is half done.
+"""The driver on a faulty link: every move is made exactly once, or not at all with an error reported.
 
-The C model is the core; pulses are counted at its pins. That a poll is at most one frame is always checked.
+The C model is the core; pulses are counted at its pins. Every poll is checked to take at most one frame.
 """
 
 import random
@@ -89,12 +89,12 @@ def test_noise_on_a_stream(wire: Wire) -> None:
 
 
 def is_broken(driver: Driver) -> bool:
-    """The driver does not know what a command has done."""
+    """Whether the driver does not know the effect of a command."""
     return driver.c.belief >= driver.lib.PASSO_BELIEF_BROKEN
 
 
 def recover(driver: Driver, wire: Wire) -> list[int]:
-    """What a program does after an error: stop, wait, clear; open again if that is what it takes."""
+    """Recovery after an error: stop, wait, clear; open again if necessary."""
     if driver.host.lost:
         try:
             driver.open()
@@ -113,7 +113,7 @@ def recover(driver: Driver, wire: Wire) -> list[int]:
 
 @pytest.mark.parametrize("level", [0, 1])
 def test_a_wire_that_is_pulled_out(wire: Wire, level: int) -> None:
-    """At any frame of a move the wire dies: the error names it; the move was made, or nothing of it."""
+    """The link dies at any frame of a move: it is reported; the move is made completely or not at all."""
     rng = random.Random(f"{SEED} {level}")
     driver = open_driver(wire, tries=4)
     at = [0] * 4
@@ -183,7 +183,7 @@ def reset_at(wire: Wire, number: int) -> None:
 @pytest.mark.parametrize("garbled", [False, True])
 @pytest.mark.parametrize("frames", range(1, 9))
 def test_the_core_is_reset(wire: Wire, frames: int, garbled: bool) -> None:
-    """At any frame of a move, even if the reply to that frame is lost: the driver says so; nothing moves."""
+    """At any frame of a move, even if its reply is lost: the driver reports it; nothing moves."""
     driver = open_driver(wire)
     driver.call("move_by_speed", by_speed([5, 0, 0, 0]))
     finish(driver)
@@ -215,7 +215,7 @@ def test_the_core_is_reset(wire: Wire, frames: int, garbled: bool) -> None:
 @pytest.mark.parametrize("frames", [2, 12, 30, 31, 60, 100])
 @pytest.mark.parametrize("garbled", [False, True])
 def test_the_core_is_reset_during_a_stream(wire: Wire, frames: int, garbled: bool) -> None:
-    """It never goes on with half a path."""
+    """It never continues with part of a path."""
     driver = open_driver(wire)
     number = wire.frames + frames
     reset_at(wire, number)
@@ -233,7 +233,7 @@ def test_the_core_is_reset_during_a_stream(wire: Wire, frames: int, garbled: boo
 
 
 def test_another_host_writes(wire: Wire) -> None:
-    """A core that takes commands from somebody else as well is not trusted any more."""
+    """A core that another host writes to is reported as CORE_RESET."""
     driver = open_driver(wire)
     Driver(wire)
     assert error_of(driver, "hold") == "CORE_RESET"
@@ -241,7 +241,7 @@ def test_another_host_writes(wire: Wire) -> None:
 
 @pytest.mark.parametrize("polls", [3, 20, 45, 60, 200])
 def test_the_host_is_reset(wire: Wire, polls: int) -> None:
-    """A new host finds a path half prepared, or running: it stops it, and goes on from where the core is."""
+    """A new host finds a path in preparation or running, stops it and continues from its position."""
     first = open_driver(wire)
     first.stream(Source(*path(3000)))
     for _ in range(polls):
@@ -287,7 +287,7 @@ def test_a_wrong_position_is_told(wire: Wire) -> None:
 
 
 def test_tries_are_bounded(wire: Wire) -> None:
-    """A frame is sent so often and no more; polls tell after as many misses, and after as many tries."""
+    """The tries of a frame are limited; polls report an error after as many misses or tries."""
     driver = open_driver(wire, tries=5)
     wire.stuck = 0
 
@@ -317,7 +317,7 @@ def test_tries_are_bounded(wire: Wire) -> None:
     assert PARAMETERS.axes == driver.c.machine.axes
 
 
-# ----------------------------------------------------------------- what was commanded and did not arrive ----
+# ----------------------------------------------------------------------------- unacknowledged commands ----
 
 
 def eight_moves(driver: Driver, wire: Wire, steps: int = 400) -> None:
@@ -334,7 +334,7 @@ def eight_moves(driver: Driver, wire: Wire, steps: int = 400) -> None:
 
 
 def polls(driver: Driver, wire: Wire, count: int) -> None:
-    """Polls of a program that does not look at their errors."""
+    """Poll without looking at errors."""
     for _ in range(count):
         error_of(driver, "poll")
         wire.run(CLOCK_HZ // 5000)
@@ -344,7 +344,7 @@ def polls(driver: Driver, wire: Wire, count: int) -> None:
 @pytest.mark.parametrize("level", [0, 1])
 @pytest.mark.parametrize("how", ["stop", "abort"])
 def test_a_stop_that_was_not_acknowledged(wire: Wire, how: str, level: int, cut: str) -> None:
-    """It is sent again by every poll until it is; until then that is what is said."""
+    """Every poll resends it until it is acknowledged; until then NOT_STOPPED is reported."""
     stuck = "STUCK_HIGH" if level else "STUCK_LOW"
     driver = open_driver(wire)
     driver.call("configure_motion", 1000, 1000, 0)
@@ -388,7 +388,7 @@ def test_a_stop_that_was_not_acknowledged(wire: Wire, how: str, level: int, cut:
 
 @pytest.mark.parametrize("frames", [0, 1])
 def test_an_end_of_turning_that_was_not_acknowledged(wire: Wire, frames: int) -> None:
-    """A soft stop takes its place, at whatever frame the wire died."""
+    """A soft stop replaces it, whichever frame the link died at."""
     driver = open_driver(wire)
     turning = struct("turning", axis=2, steps_per_turn=3200, backwards=True)
     turning.top_rpm, turning.acceleration = 1200 * Q32, 5_000_000 * Q32
@@ -442,7 +442,7 @@ def test_an_abort_takes_the_place_of_a_stop(wire: Wire) -> None:
 
 @pytest.mark.parametrize(("before", "how"), [("hold", "stop"), ("hold", "abort"), ("stop", "abort")])
 def test_the_most_urgent_goes_first(wire: Wire, before: str, how: str) -> None:
-    """Also before a frame that is still being tried."""
+    """Even if another frame is being retried."""
     driver = open_driver(wire)
     eight_moves(driver, wire)
     wire.stuck = 0
@@ -455,12 +455,8 @@ def test_the_most_urgent_goes_first(wire: Wire, before: str, how: str) -> None:
     assert wire.requests[0][0] & 0xF == r.CHANNEL_COMMAND and wire.requests[0][1] == 1 << bit
 
 
-def test_a_stop_goes_before_a_frame_of_the_stream(wire: Wire) -> None:
-    """A frame that is still being tried is given up for it."""
-    driver = open_driver(wire)
-    driver.stream(Source(*path(3000)))
-    while driver.snapshot().state != State.RUN:
-        poll(driver)
+def fail_pushes(driver: Driver, wire: Wire) -> None:
+    """From now on pushes fail; returns while a frame of the stream is being retried."""
 
     def before(_: int) -> None:
         wire.stuck = 0 if wire.requests[-1][0] >> 28 == r.Operation.PUSH else None
@@ -469,6 +465,16 @@ def test_a_stop_goes_before_a_frame_of_the_stream(wire: Wire) -> None:
     while driver.c.post != planner().PASSO_POST_ITEMS:
         wire.run(CLOCK_HZ // 20_000)
         poll(driver)
+
+
+def test_a_stop_goes_before_a_frame_of_the_stream(wire: Wire) -> None:
+    """A frame that is being retried is abandoned for it."""
+    driver = open_driver(wire)
+    driver.stream(Source(*path(3000)))
+    while driver.snapshot().state != State.RUN:
+        poll(driver)
+
+    fail_pushes(driver, wire)
     wire.requests.clear()
     driver.call("stop")
     assert wire.requests[0][1] == 1 << r.CHANNEL_COMMAND_STOP_LSB and len(wire.requests) == 1
@@ -478,17 +484,11 @@ def test_a_stop_goes_before_a_frame_of_the_stream(wire: Wire) -> None:
 
 
 def test_a_frame_of_a_cleared_stream_is_forgotten(wire: Wire) -> None:
-    """What became of it does not matter to the next stream."""
+    """Its result does not affect the next stream."""
     driver = open_driver(wire, tries=3)
     driver.stream(Source(*path(300)))
 
-    def before(_: int) -> None:
-        wire.stuck = 0 if wire.requests[-1][0] >> 28 == r.Operation.PUSH else None
-
-    wire.before_frame = before
-    while driver.c.post != planner().PASSO_POST_ITEMS:
-        wire.run(CLOCK_HZ // 20_000)
-        poll(driver)
+    fail_pushes(driver, wire)
     driver.call("clear")
     wire.before_frame = lambda _: None
     driver.stream(Source(*path(30)))
@@ -498,7 +498,7 @@ def test_a_frame_of_a_cleared_stream_is_forgotten(wire: Wire) -> None:
 
 @pytest.mark.parametrize("cut", ["both ways", "replies"])
 def test_a_hold_that_was_not_acknowledged(wire: Wire, cut: str) -> None:
-    """It comes later; a resume takes its place."""
+    """It takes effect later; a resume replaces it."""
     driver = open_driver(wire)
     driver.call("configure_motion", 0, 0, 0)
     eight_moves(driver, wire)
@@ -530,7 +530,7 @@ def test_a_hold_that_was_not_acknowledged(wire: Wire, cut: str) -> None:
 
 @pytest.mark.parametrize("cut", ["both ways", "replies"])
 def test_a_resume_that_was_not_acknowledged_is_not_made_later(wire: Wire, cut: str) -> None:
-    """One that got through for a moment is held again. A slower override comes later, a faster does not."""
+    """If it was executed, the hold is restored. A slower override comes later, a faster one does not."""
     driver = open_driver(wire)
     driver.call("configure_motion", 0, 0, 0)
     eight_moves(driver, wire)
@@ -557,7 +557,7 @@ def test_a_resume_that_was_not_acknowledged_is_not_made_later(wire: Wire, cut: s
 
 
 def test_numbers_of_frames_are_not_used_twice(wire: Wire) -> None:
-    """After as many failures as there are numbers, a command is not taken for a duplicate."""
+    """After as many failures as there are sequence numbers, a command is not taken for a duplicate."""
     driver = open_driver(wire, tries=2)
     driver.call("configure_motion", 0, 0, 0)
     eight_moves(driver, wire)
@@ -575,7 +575,7 @@ def test_numbers_of_frames_are_not_used_twice(wire: Wire) -> None:
 
 
 def test_another_channels_stop_does_not_wait_long() -> None:
-    """Two channels on one dead wire: both stops get through when it is back, at most a frame in a poll."""
+    """Two channels on a dead link: both stops get through after recovery, with at most one frame per poll."""
     wire = Wire(Parameters(channels=2, axes=2))
     first = open_driver(wire, tries=3)
     second = Driver.__new__(Driver)

@@ -30,7 +30,7 @@ def test_a_scenario_runs_clean_under_sanitizers(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["hal.c", "libopencm3.c", "arduino.cpp", "soft_cpu.c"])
 def test_an_example_compiles(name: str, tmp_path: Path) -> None:
-    """Against headers that declare just what it uses."""
+    """Against stub headers."""
     standard = ["-std=c11", "-Wconversion"] if name.endswith(".c") else ["-x", "c++", "-std=c++17"]
     flags = (*standard, "-Wall", "-Wextra", "-Werror", "-c", *includes(*DRIVER, STUBS))
     compile_to(tmp_path / "example.o", *flags, EXAMPLES / name)
@@ -46,7 +46,7 @@ def test_examples_stand_in_the_documentation() -> None:
 
 
 def test_every_function_of_the_headers_exists() -> None:
-    """What the public headers declare can be called."""
+    """All functions declared in the public headers can be called."""
     for header in ("passo.h", "passo_host.h", "passo_motor.h", "passo_error.h"):
         text = re.sub(r"/\*.*?\*/", "", (paths.driver / header).read_text(), flags=re.S)
         names = set(re.findall(r"\b(passo_\w+)\(", text))

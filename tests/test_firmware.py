@@ -26,12 +26,12 @@ PARAMETERS = Parameters(axes=4)
 HZ = 72_000_000  # of the core; SCLK is 18 MHz
 SLOW_HZ = 36_000_000  # SCLK is 9 MHz
 EXAMPLES = sorted(path.stem for path in paths.examples.glob("*.toml"))
-SHORT_EXAMPLES = ("triangle", "cosine")  # that the Verilated core makes here
+SHORT_EXAMPLES = ("triangle", "cosine")  # for the Verilated core
 MOVE = "move steps=100,-50 profile=linear total_time=0.01 ramp_time=0.002"
 
 
 def model_board(**options: object) -> Board:
-    """The firmware before the C model, which is quick while nothing happens."""
+    """A board with the C model, which is fast while nothing happens."""
     return Board(model_engine(PARAMETERS, HZ), **options)
 
 
@@ -43,7 +43,7 @@ def compare(board: Board, lines: list[str], expected: Motion, seconds: float) ->
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_examples_by_the_firmware(name: str) -> None:
-    """Each example typed at the console: every edge where the planner on the PC puts it. With the C model."""
+    """Each example typed at the console, on the C model: every edge as planned on the PC."""
     played, _, _ = play(paths.examples / f"{name}.toml", HZ, "model")
     assert played and not [move.difference for move in played if move.difference]
 
@@ -87,7 +87,7 @@ def test_random_moves_on_the_verilated_core(clock_hz: int, count: int, tmp_path:
 
 @pytest.mark.parametrize("clock_hz", [72_000_000, 100_000_000, 123_456_789])
 def test_core_and_processor_do_not_drift(clock_hz: int) -> None:
-    """After a motion and many frames the core has executed just the clocks of the time that has passed."""
+    """After a motion and many frames the core has executed exactly the clocks of the elapsed time."""
     with model_engine(PARAMETERS, clock_hz) as engine:
         board = Board(engine)
         for seconds in (0.1, 0.2337):
@@ -135,7 +135,7 @@ REFUSED = [
 
 
 def test_nonsense_is_refused_and_nothing_happens() -> None:
-    """Each bad line gives one `error:` line that names the reason; then the console works as before."""
+    """Each invalid line gives one `error:` line with the reason; the console keeps working."""
     board = model_board()
     board.must(MOVE)
     board.wait_motion(0.1)
@@ -188,7 +188,7 @@ def test_flood_of_lines_loses_no_answer() -> None:
 
 
 def test_core_is_missing() -> None:
-    """The console says so, refuses moves, and finds the core when it is there."""
+    """The console reports it, refuses moves, and finds the core when it appears."""
     machine = Machine(firmware_elf(), None)
     machine.run(START)
     assert "note: STUCK_LOW" in machine.output  # PA6 is pulled down
@@ -258,7 +258,7 @@ def test_miso_is_stuck(level: int, name: str) -> None:
 
 
 def test_every_move_arrives_exactly_once_over_a_noisy_wire() -> None:
-    """1 of 10,000 bits is flipped in both directions: no move is lost, none made twice."""
+    """1 of 10,000 bits is flipped in both directions: no move is lost or made twice."""
     board = model_board(seed=random_cases.seed())
     board.wires.flip_rate = 1e-4
     rng = random.Random(random_cases.seed())

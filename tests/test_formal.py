@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The quick proofs hold, and each of their promises catches the bug that is planted for it.
+"""The quick proofs hold, and each of their promises catches its planted bug.
 
-``make formal`` runs the others as well; docs/formal.md says what is proved and how.
+``make formal`` also runs the others; docs/formal.md describes the proofs.
 """
 
 import re
@@ -28,7 +28,7 @@ def labels(proof: run.Proof) -> set[str]:
 
 
 def assumed() -> dict[str, str]:
-    """What docs/formal.md says of each assumption: who guarantees it."""
+    """The guarantee of each assumption, from docs/formal.md."""
     page = (run.paths.docs / "formal.md").read_text(encoding="utf-8")
     page = page[page.index("## What is assumed") :]
     rows = re.findall(r"^\| (`.+?`) \| .+ \| (.+) \|$", page, re.M)

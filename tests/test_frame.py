@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The frame codec against an independent CRC and against the word layouts of registers/passo.rdl."""
+"""The frame codec against an independent CRC and the word layouts of registers/passo.rdl."""
 
 import random
 from itertools import product
@@ -119,10 +119,10 @@ def test_useless_read_replies() -> None:
 
 
 def test_shifted_replies_are_damaged() -> None:
-    """A clock lost or doubled within a frame: the ack of one verdict must not pass for another.
+    """A clock lost or doubled within a frame: the ack of one verdict must not be taken for another.
 
-    The ack is repeated if the core took the request for a read: it was one, or the clock went wrong before
-    its operation had passed.
+    The ack is repeated if the core decoded the request as a read: it was one, or the clock error came before
+    its operation field.
     """
     write, read = frame.write_frame(1, 0x140, [1, 2]), frame.read_frame(1, 0x140, 2)
     kinds = (
@@ -149,7 +149,7 @@ def status_of(reply: list[int]) -> int | None:
 
 @pytest.mark.parametrize("count", range(1, 8))
 def test_status_is_what_most_words_repeat(count: int) -> None:
-    """Replies with damage in any of their words: three must be alike, and more than half."""
+    """Replies with errors in any words: at least three, and more than half, must be equal."""
     for damaged in product((False, True), repeat=count):
         alike = [STATUS ^ 4 if bad else STATUS for bad in damaged]
         good, bad = damaged.count(False), damaged.count(True)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The forms of a move: what is generated is fresh and the same everywhere; a wrong schema is refused."""
+"""The move forms: generated files are up to date and consistent; an invalid schema is rejected."""
 
 import re
 import shutil
@@ -45,7 +45,7 @@ def generate(folder: Path, *options: str) -> subprocess.CompletedProcess:
 
 @pytest.fixture
 def tree(tmp_path: Path) -> Path:
-    """The generator with all that it reads."""
+    """The generator with all its inputs."""
     for name in [SOURCE, GENERATOR, HELPER, *MADE, *PAGES]:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
     for name in [SOURCE, GENERATOR, HELPER, *PAGES]:
@@ -125,7 +125,7 @@ def test_profiles() -> None:
 
 @pytest.mark.parametrize("form", FORMS.values(), ids=list(FORMS))
 def test_each_form_is_complete(form: move_forms.Form) -> None:
-    """Its class, its functions, its struct, each of whose fields is filled by a key."""
+    """It has its class, its functions and its struct, and a key fills each member."""
     assert MOVES[form.name].form is form
     assert set(MOVES[form.name].__dataclass_fields__) - {"form", "profile"} == {
         key.name for key in form.keys
@@ -156,7 +156,7 @@ def unit(form: str, name: str) -> str:
 
 
 def test_units_are_those_that_the_names_say() -> None:
-    """In the documentation, in which they are what people believe."""
+    """In the documentation."""
     text = read(PLANNING)
     for forms, table in re.findall(r"<!-- moves: keys ([\w ]+) -->\n\n(.*?)\n\n", text, re.S):
         rows = [[cell.strip(" `") for cell in row.split("|")[1:-1]] for row in table.splitlines()[2:]]
@@ -220,7 +220,7 @@ def test_limits_of_axes_by_hand(tmp_path: Path) -> None:
 
 
 def test_a_new_key_is_one_entry(tree: Path) -> None:
-    """It comes to the struct, to the console and its page, to move files, and to the planner's page."""
+    """It appears in the struct, on the console and its page, in move files, and on the planner's page."""
     attributes = 'kind = "time", unit = "s", member = "dwell_clocks", default = 0, text = "at rest before it"'
     before, after = 'keys = ["steps", "profile", ', '"total_time", {'
     change(tree, before + after, f'{before}{{ name = "dwell_time", {attributes} }}, {after}')
@@ -251,7 +251,11 @@ WRONG = {
     "no unit": ('"signed", unit = "degrees"', '"signed"', "the unit of signed is not ''"),
     "kind": ('kind = "signed", unit', 'kind = "sign", unit', "form turn: angle: unknown kind sign"),
     "attribute": ('"signed", unit', '"signed", units', "form turn: angle: unknown units"),
-    "no text": (', text = "to the nearest step" }', " }", "missing 1 required positional argument: 'text'"),
+    "no text": (
+        ', text = "to the nearest step" }',
+        " }",
+        "missing 1 required positional argument: 'text'",
+    ),
     "default": ('default = "accelerate_time"', 'default = "jerk"', "jerk is no key before it"),
     "rule": ('excludes = "ramp_time"', 'excludes = "jerk"', "a rule for a key that is not there"),
     "rule kind": ('needs = "acceleration"', 'wants = "acceleration"', "unknown rule wants"),

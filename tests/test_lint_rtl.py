@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The front ends of `make lint` see what they are there for."""
+"""The front ends of `make lint` detect the faults they are used for."""
 
 import re
 import shutil
@@ -19,7 +19,7 @@ ANY_VALUE = ("STEPS_REGISTER",)  # is 0 or not
 
 @dataclass(frozen=True)
 class Fault:
-    """`new` stands in the file in place of `old`; `seen_by` have to complain of it."""
+    """`new` replaces `old` in the file; the readers in `seen_by` must report it."""
 
     file: str
     old: str
@@ -52,7 +52,7 @@ FAULTS = {
     [(fault, reader) for fault, facts in FAULTS.items() for reader in facts.seen_by],
 )
 def test_fault_is_seen(fault: str, reader: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """By each front end that is relied on for it, with the parameters that show it."""
+    """By each front end that must see it, with the parameters that show it."""
     facts = FAULTS[fault]
     monkeypatch.setattr(lint_rtl, "SURELOG", tmp_path)
     rtl = tmp_path / "rtl"
@@ -67,7 +67,7 @@ def test_fault_is_seen(fault: str, reader: str, tmp_path: Path, monkeypatch: pyt
 
 @pytest.mark.parametrize("name", [name for name in lint_rtl.ENDS if name not in ANY_VALUE])
 def test_corners_are_the_ends_of_the_parameters(name: str) -> None:
-    """The ends are taken; the values beyond them are refused."""
+    """The limits are accepted; values beyond them are rejected."""
     low, high = lint_rtl.ENDS[name]
     taken = [value for value in (low - 1, low, high, high + 1)
              if not lint_rtl.read_with_slang(paths.rtl, lint_rtl.TOPS[0], {name: value})]  # fmt: skip

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""passo_math against Python's integers, which have no width to overflow."""
+"""passo_math against Python's unbounded integers."""
 
 import math
 import random
@@ -22,7 +22,7 @@ MAX128 = 2**128 - 1
 
 @pytest.fixture(scope="module")
 def math_c() -> tuple[FFI, Any]:
-    """The planner with passo_math.c, every use of undefined behaviour being fatal."""
+    """The planner with passo_math.c, built such that undefined behaviour is fatal."""
     ffi = FFI()
     ffi.cdef(declarations([paths.planner / "passo_math.h"]))
     return ffi, ffi.dlopen(str(checked_library()))
@@ -125,7 +125,7 @@ def test_divide(c: MathC) -> None:
 
 
 def test_divide_next_to_multiples(c: MathC) -> None:
-    """Where a digit estimated one too high or too low would show."""
+    """Cases in which a digit estimate that is off by one would show."""
     for quotient, divisor in pairs(64, 64):
         for a in (quotient * divisor - 1, quotient * divisor, quotient * divisor + divisor - 1):
             if divisor > 0 and a >= 0:

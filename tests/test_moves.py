@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Move files: what is right is read exactly, what is wrong is told in one clear line."""
+"""Move files: valid ones are read exactly, errors are reported in one clear line."""
 
 from fractions import Fraction
 from pathlib import Path
@@ -121,7 +121,7 @@ BAD = {
     "negative start": (CLOCK + BY_SPEED + "start_speed = -1\n", "move 1: start_speed must not be negative"),
 }
 
-# What only the planner finds.
+# Errors that only the planner detects.
 UNPLANNABLE = {
     "no steps": (GOOD.replace("[100, -50]", "[0, 0]"), "move 1: NO_STEPS: "),
     "no time": (GOOD.replace("0.4", "0").replace("0.1", "0"), "move 1: NO_TIME: "),

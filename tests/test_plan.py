@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The planner against an independent derivation.
 
-What the core makes of a plan is worked out in helpers/core_steps.py, what a plan must be in exact fractions
-here and in helpers/plan_checks.py. PASSO_SEED is the seed of the random moves, PASSO_MOVES their number.
+helpers/core_steps.py computes how the core executes a plan; the requirements of a plan are checked with exact
+fractions here and in helpers/plan_checks.py. PASSO_SEED is the seed of the random moves, PASSO_MOVES their
+number.
 """
 
 import math
@@ -55,7 +56,7 @@ MOVES = random_cases.moves(2000)
 PHASE_TICKS = 1 << 32
 
 
-# ----------------------------------------------------------------------------------- what a plan must be ----
+# ---------------------------------------------------------------------------- requirements of a plan ----
 
 
 def check_in_time(plan: Plan, move: InTime) -> None:
@@ -82,7 +83,7 @@ class Ideal:
     """A move by speed without ticks and rounding. Times in clocks, speeds as in BySpeed."""
 
     peak: float
-    peak_tolerance: float  # the planner reckons with whole clocks from rest to the speed
+    peak_tolerance: float  # the planner rounds the ramp time to whole clocks
     accelerate: float
     cruise: float
     decelerate: float
@@ -93,7 +94,7 @@ class Ideal:
 
 
 def ideal_move(machine: Machine, move: BySpeed) -> Ideal:
-    """The quickest move within the limits."""
+    """The fastest move within the limits."""
 
     def slope(acceleration: int, change: int) -> float:
         """Change of speed per clock."""
@@ -128,7 +129,7 @@ def check_by_speed(plan: Plan, move: BySpeed) -> None:
     p, machine = plan.c, plan.machine
     scale = Fraction(p.oversampling * (ONE // UNIT), machine.clock_hz)  # speed -> velocity
 
-    # Speed, start and stop speed are never exceeded; ramps begin and end at them, rounded down to 2^-48.
+    # Speed, start and stop speed are never exceeded; ramps start and end at them, rounded down to 2^-48.
     assert p.velocity_peak <= move.speed * scale
     for velocity, ticks, limit in (
         (p.velocity_start, p.accelerate_ticks, move.start_speed),
@@ -165,8 +166,8 @@ def check_by_speed(plan: Plan, move: BySpeed) -> None:
             if ticks or p.velocity_peak >= limit * scale:
                 assert ticks == exact + (exact % 2 if move.profile == JERK else 0)
 
-    # As quick as that allows: each phase may lose what rounding up to ticks takes, and a little for rounding.
-    # Quicker it can only be by what progress lacks at the end of very long ramps.
+    # As fast as that allows: each phase may be longer by rounding up to ticks, and slightly by other
+    # rounding. It can be faster only by what progress lacks at the end of very long ramps.
     spare = 6 if move.profile == JERK else 4
     lack = max(p.accelerate_ticks, p.decelerate_ticks) / ONE
     assert plan.ticks >= ideal.clocks / machine.tick * (1 - 1e-9 - lack)
@@ -271,7 +272,7 @@ def test_random_moves(c: Any, form: str) -> None:
 
 
 def test_ramps_of_half_the_time(c: Any) -> None:
-    """However times and ticks fall, the ramps fit and the time is kept."""
+    """For any times and ticks, the ramps fit and the time is exact."""
     machine = Machine()
     for profile, total in product(PROFILES, range(machine.tick, 20 * machine.tick, 5)):
         for ramp in {total // 2, total // 2 - 1, total // 3, 0}:
@@ -331,7 +332,7 @@ def test_one_step_per_minute(c: Any) -> None:
 
 
 def test_short_moves(c: Any) -> None:
-    """A few steps, a few ticks: wherever rounding to ticks could turn the ramps upside down."""
+    """A few steps, a few ticks: cases in which rounding to ticks could invert the ramps."""
     machine = Machine()
     seen = set()
     for profile, speed, acceleration, deceleration in product(
@@ -429,7 +430,7 @@ def test_good_moves_are_planned(c: Any) -> None:
 
 @pytest.mark.parametrize("name", REFUSED)
 def test_refusals(c: Any, name: str) -> None:
-    """A wish that cannot be met is refused by its own name, in each form in which it can be uttered."""
+    """Each error is returned by every form that can cause it."""
     for changes in REFUSED[name]:
         machine = Machine(**{key: value for key, value in changes.items() if key in vars(Machine())})
         changes = {key: value for key, value in changes.items() if key not in vars(machine)}
@@ -477,7 +478,7 @@ def test_error_names_and_texts(c: Any) -> None:
 
 
 def small_move(rng: random.Random, machine: Machine, ticks: int, steps: int) -> InTime | BySpeed:
-    """A move of up to so many ticks and steps."""
+    """A move of up to `ticks` and `steps`."""
     if rng.random() < 0.5:
         total = int(log_uniform(rng, machine.tick, ticks * machine.tick))
         ramp = rng.choice((0, total // 2, rng.randint(0, total // 2)))
@@ -508,10 +509,10 @@ def test_closed_forms_are_the_recurrences(c: Any) -> None:
 
 
 def test_steps_follow_the_curve(c: Any) -> None:
-    """Each step of each axis is made when the ideal curve has come to the middle between two steps.
+    """Each step of each axis is made when the ideal curve is midway between two steps.
 
-    On the longest axis, with an even K, to a quarter of a substep. The other axes' steps wait for the next
-    substep and can be a whole one later; so can all with K = 1, where the middle is half a substep away.
+    On the longest axis with even K to a quarter of a substep. Steps of the other axes are made on the next
+    substep, up to one substep later; so are all steps with K = 1, where the midpoint is half a substep away.
     """
     print(f"seed {SEED}")
     rng = random.Random(f"{SEED} curve")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The further methods as forms of a move file: read exactly, refused in one line, and run."""
+"""The further methods as forms of a move file: read exactly, rejected in one line, and run."""
 
 import json
 from fractions import Fraction
@@ -46,7 +46,7 @@ def test_all_forms_are_tried() -> None:
 
 @pytest.mark.parametrize("form", FORMS)
 def test_every_form_is_planned_and_run(tmp_path: Path, form: str) -> None:
-    """The steps that the file says are those of the plan, and those that the model makes."""
+    """File, plan and model have the same steps."""
     path = write(tmp_path, CLOCK + move_of(form))
     (move,) = read_moves(path).moves
     (plan,) = plan_file(read_moves(path), Parameters())
@@ -106,7 +106,7 @@ BAD = {
     ),
 }
 UNPLANNABLE = {
-    "slow": (move_of("below_speed").replace("2000", "100"), "move 1: SPEED_TOO_LOW: At the highest"),
+    "slow": (move_of("below_speed").replace("2000", "100"), "move 1: SPEED_TOO_LOW: The steps take"),
     "alpha": (move_of("sigmoid").replace("3.25", "5.001"), "move 1: BAD_ALPHA: Alpha must be 3 to 5."),
     "jerk": (move_of("jerk").replace("5_000_000", "0"), "move 1: NO_JERK: "),
     "minimum": (move_of("turn", "minimum_rpm = 200\n"), "move 1: MINIMUM_ABOVE_SPEED: "),
@@ -135,7 +135,7 @@ def test_bad_moves(tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]
 
 @pytest.mark.parametrize("name", NEW_EXAMPLES)
 def test_examples_run(tmp_path: Path, name: str) -> None:
-    """Exact counts, exact times, and every step within a hundredth of its place."""
+    """Exact counts, exact times, and every step within a hundredth of its ideal position."""
     path = paths.examples / f"{name}.toml"
     assert cli.main(["run", str(path), "--engine", "model", "--out", str(tmp_path)]) == 0
     summary = json.loads((tmp_path / "summary.json").read_text())

@@ -2,7 +2,7 @@
 """The planning methods that are built on the first two forms: exact time with a highest speed, several axes,
 and what all methods refuse.
 
-Plans are judged in exact fractions; what the core makes of them is summed tick by tick.
+Plans are checked with exact fractions; their execution by the core is summed tick by tick.
 """
 
 import math

@@ -67,7 +67,7 @@ def check(plan: Plan, fields: dict) -> float:
 
 
 def test_the_tightest_axis_decides(c: Any) -> None:
-    """The feed, then x, then z; and how near the move comes to that limit."""
+    """The feed, then x, then z; and how close the move gets to that limit."""
     machine = Machine(16_000_000)
     cases = (
         ({}, 150),  # the feed

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Turning by angle and rpm, turning without end, and reading back."""
+"""Rotation by angle and rpm, continuous rotation, and conversion of readings."""
 
 import random
 from fractions import Fraction
@@ -118,7 +118,7 @@ def test_random_turns(c: Any) -> None:
 
 
 def test_a_telescope(c: Any) -> None:
-    """A turn of the sky: 360 degrees in a sidereal day, 6 million steps."""
+    """One revolution of the sky: 360 degrees in a sidereal day, 6 million steps."""
     rpm = round(2**32 / (86164.0905 / 60))
     plan = turn(c, Machine(100_000_000, 12), steps_per_turn=6_000_000, angle=q32(360), rpm=rpm, minimum_rpm=0)
     check_plan(plan, (0, 6_000_000, 0))
@@ -157,7 +157,7 @@ def test_as_far_as_a_line_goes(c: Any) -> None:
         assert refused(c, lambda c: turn(c, Machine(), **fast)) == "TOO_MANY_STEPS"
 
 
-# ----------------------------------------------------------------------------------- turning without end ----
+# ----------------------------------------------------------------------------------- continuous rotation ----
 
 
 def turning(c: Any, machine: Machine, what: str, *arguments: int, **changes: int) -> Plan:
@@ -172,7 +172,7 @@ def turning(c: Any, machine: Machine, what: str, *arguments: int, **changes: int
 
 
 def check_change(plan: Plan, ramp: Any, start: int, end: int) -> None:
-    """The acceleration is the wanted one, to the tick above."""
+    """The acceleration is as given, with the ramp rounded up to ticks."""
     change = Fraction(abs(end - start) * plan.machine.clock_hz, ONE * plan.c.oversampling)
     ticks = change / 20_000 * plan.machine.clock_hz / plan.machine.tick
     assert ramp.velocity_end == end
@@ -180,7 +180,7 @@ def check_change(plan: Plan, ramp: Any, start: int, end: int) -> None:
 
 
 def test_turning_changing_and_stopping_on_the_core(c: Any) -> None:
-    """60 rpm, then 300, then 30, then stop: what the core's own steps say, and what is read back."""
+    """60 rpm, then 300, then 30, then stop: speeds by the steps of the core, and by readings."""
     clock_hz = 1_280_000
     machine, parameters = Machine(clock_hz), Parameters(axes=2)
     first = turning(c, machine, "start", q32(60))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The user's own shapes, symmetric or not, and the check of their tables."""
+"""User-defined shapes, symmetric or not, and the check of their tables."""
 
 import math
 import random
@@ -112,7 +112,7 @@ def distance(plan: Plan, table: list[int]) -> Fraction:
 
 
 def check(plan: Plan, table: list[int], bank: int = SIGMOID) -> float:
-    """The ramps cover M; up by the shape, down by its mirror image."""
+    """The ramps cover M; acceleration follows the shape, deceleration its mirror image."""
     p = plan.c
     for ramp in plan.ramps:
         change = ramp.velocity_end - ramp.velocity_start

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The generated register definitions are fresh, without clashes, alike, and accepted by all tools."""
+"""The generated register definitions: up to date, consistent, without clashes, accepted by all tools."""
 
 import re
 import shutil

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A short form of `make soak`, which plays thousands of histories and puts all defects back."""
+"""A short form of `make soak`, which plays thousands of histories and plants all defects."""
 
 import shutil
 from pathlib import Path
@@ -23,7 +23,7 @@ DEFECTS = {defect.name: defect for defect in defects.defects()}
 
 @pytest.fixture(scope="module")
 def program() -> Path:
-    """What plays histories."""
+    """The program that plays histories."""
     return build()
 
 
@@ -34,7 +34,7 @@ def check(part: parts.Part, histories: int) -> None:
 
 
 def test_no_promise_is_broken_in_the_model(program: Path) -> None:
-    """Histories at the registers; the judge had something to judge of every kind."""
+    """Histories at register level; the judge has checked something of every kind."""
     part = parts.play_model(program, SEED, 300, JOBS)
     check(part, 300)
     assert all(part.counts[kind] for kind in JUDGED)
@@ -63,14 +63,14 @@ def test_no_promise_is_broken_in_icarus(program: Path) -> None:
 
 @pytest.mark.parametrize("name", ["abort leaves steps", "a lost stop counts as sent"])
 def test_a_defect_goes_red(name: str) -> None:
-    """One at the registers, one of the driver; `make soak` puts all of them back."""
+    """One at register level, one of the driver; `make soak` plants all of them."""
     caught = defects.catch(DEFECTS[name], 1)
     assert caught.good, caught.says
 
 
 @pytest.mark.parametrize("defect", DEFECTS.values(), ids=DEFECTS)
 def test_every_defect_can_be_put_back(defect: Defect, tmp_path: Path) -> None:
-    """Their sources still have what they replace."""
+    """The sources still contain the text that it replaces."""
     for file, old, new in defect.edits:
         copy = tmp_path / file
         if not copy.exists():

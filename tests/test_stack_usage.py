@@ -50,14 +50,14 @@ def test_frames_and_paths_add_up(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_call_by_pointer_must_be_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Neither a pointer that nobody names, nor a name that is not there, nor one that calls nobody."""
+    """Rejects an unlisted indirect call, an unknown target, and a listed function without indirect calls."""
     for calls in ({}, {"middle": ["nobody"]}, {"middle": ["hook"], "hook": ["leaf"]}):
         with pytest.raises(StackError):
             connect(functions(monkeypatch), calls)
 
 
 def test_recursion_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
-    """There is no bound then."""
+    """The depth would be unbounded."""
     found = functions(monkeypatch)
     by_name = connect(found, {"middle": ["start"]})
     with pytest.raises(StackError, match="recursion: start -> middle -> start"):

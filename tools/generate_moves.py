@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Generate the forms of a move, in C, in Python and in the documentation, from schema/moves.toml."""
+"""Generate the move forms in C, in Python and in the documentation from schema/moves.toml."""
 
 import sys
 from pathlib import Path
@@ -21,7 +21,7 @@ PAGES = ("docs/planning.md", "docs/console.md")
 
 def main() -> int:
     """Write the files, or compare them."""
-    check = is_check(f"Generate the forms of a move from {SOURCE}.")
+    check = is_check(f"Generate the move forms from {SOURCE}.")
     try:
         schema = read(ROOT)
         made = {name: write(schema) for name, write in OUTPUTS.items()}

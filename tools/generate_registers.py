@@ -41,11 +41,11 @@ GENERATED = f"Generated from {SOURCE} by tools/generate_registers.py."
 
 # Bits and meaning of the enumerations, of which the compiler keeps only the values.
 ENUMS = {
-    "operation": (4, "What a frame asks for."),
-    "verdict": (4, "What became of a frame."),
-    "state": (3, "What a channel does."),
-    "cause": (3, "Why a channel stopped."),
-    "shape": (2, "How a ramp leads the velocity: s for a progress u, both 0 .. 1."),
+    "operation": (4, "Operation of a frame."),
+    "verdict": (4, "Outcome of a frame."),
+    "state": (3, "State of a channel."),
+    "cause": (3, "Why a channel has stopped."),
+    "shape": (2, "Shape of a ramp: s as a function of the progress u, both 0 .. 1."),
 }
 
 
@@ -328,8 +328,8 @@ def write_c(source: Source) -> str:
         ]
         lines += ["", f"/* {enum.text} */", f"enum passo_{enum.name} {{"]
         lines += [f"\t{row}" for row in aligned(rows)] + ["};"]
-        listed = " \\\n".join(f"\tEACH({name})" for name, _, _ in enum.members)
-        lines += ["/* Their names. */", f"#define PASSO_{enum.name.upper()}S(EACH) \\\n{listed}"]
+        names = wrap(", ".join(f'[{value}] = "{name}"' for name, value, _ in enum.members), 90)
+        lines += [f"#define PASSO_{enum.name.upper()}_NAMES \\", "\t{" + " \\\n\t ".join(names) + "}"]
     return "\n".join([*lines, "", "#endif", ""])
 
 
@@ -407,45 +407,10 @@ PYTHON_HEAD = f"""\
 \"\"\"Registers of Passo: word addresses, fields, reset values, enumerations.\"\"\"
 
 from dataclasses import dataclass
-from enum import IntEnum
-from typing import ClassVar, Self
+from typing import ClassVar
 
 from passo.register_table import Field, Register
-
-
-class _DescribedEnum(IntEnum):
-    \"\"\"Numbers with a name and a description.\"\"\"
-
-    description: str
-
-    def __new__(cls, value: int, description: str) -> Self:
-        member = int.__new__(cls, value)
-        member._value_ = value
-        member.description = description
-        return member
-
-
-class _Word:
-    \"\"\"A word by its fields; PLACES has the lowest bit, the width and the type of each.\"\"\"
-
-    PLACES: ClassVar[dict[str, tuple[int, int, type]]]
-
-    def pack(self) -> int:
-        \"\"\"The word. ValueError if a field is too large.\"\"\"
-        word = 0
-        for name, (lsb, bits, _) in self.PLACES.items():
-            value = int(getattr(self, name))
-            if value >> bits:
-                raise ValueError(f"{{type(self).__name__}}.{{name}}: {{value}} has more than {{bits}} bits")
-            word |= value << lsb
-        return word
-
-    @classmethod
-    def unpack(cls, word: int) -> Self:
-        \"\"\"The fields of a word. ValueError if an enumeration has no such value.\"\"\"
-        return cls(
-            **{{name: kind(word >> lsb & (1 << bits) - 1) for name, (lsb, bits, kind) in cls.PLACES.items()}}
-        )
+from passo.register_word import DescribedEnum, Word
 """
 
 
@@ -482,7 +447,7 @@ def python_default(field: Field, enums: Sequence[Enum]) -> str:
 def python_layout(name: str, register: Register, enums: Sequence[Enum]) -> list[str]:
     """A class of the fields of a word; those with a reset value need not be given."""
     fields = sorted(reversed(register.fields), key=lambda field: field.reset is not None)
-    lines = ["", "@dataclass(frozen=True)", f"class {name.title().replace('_', '')}Word(_Word):"]
+    lines = ["", "@dataclass(frozen=True)", f"class {name.title().replace('_', '')}Word(Word):"]
     lines += [f'    """{register.title}."""', ""]
     for field in fields:
         lines += [f"    # {line}" for line in wrap(field.text, 104)]
@@ -495,7 +460,7 @@ def python_layout(name: str, register: Register, enums: Sequence[Enum]) -> list[
 def write_python(source: Source) -> str:
     lines = [PYTHON_HEAD]
     for enum in source.enums:
-        lines += ["", f"class {enum.name.capitalize()}(_DescribedEnum):", f'    """{enum.text}"""', ""]
+        lines += ["", f"class {enum.name.capitalize()}(DescribedEnum):", f'    """{enum.text}"""', ""]
         lines += [f'    {name} = {value}, "{text}"' for name, value, text in enum.members] + [""]
     for name, register in source.layouts():
         lines += python_layout(name, register, source.enums)
@@ -557,12 +522,12 @@ def write_markdown(source: Source) -> str:
             field_rows = [field_row(field, enums) for field in reversed(fields)]
             details += table(["bits", "field", "access", "reset", "meaning"], field_rows)
         where = "address" if block is core else "offset"
-        overview += table([where, "register", "access", "what it is"], rows)
+        overview += table([where, "register", "access", "meaning"], rows)
     details += [
         "",
         "## Words",
         "",
-        "What a frame has beside its payload, and the first words of what is pushed.",
+        "The words of a frame other than the payload, and the first words of pushed lines and ramps.",
     ]
     for word in source.words:
         details += ["", f"### {word.title}", "", word.text]
@@ -580,8 +545,8 @@ def write_markdown(source: Source) -> str:
         "# Registers",
         "",
         "A register is a 32-bit word; addresses count words. Unused bits read as 0 and must be written as 0.",
-        "A field without a reset value shows how the core was built or what happens now, or is not stored.",
-        "[How Passo works](architecture.md) tells what the registers are for and how the link carries them.",
+        "A field without a reset value reports a build parameter or a current state, or is not stored.",
+        "[How Passo works](architecture.md) explains their use and the link that carries them.",
     ]
     return "\n".join([*head, *overview, *details, ""])
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the generators have in common: files that are written, or compared."""
+"""Shared by the generators: write the generated files, or compare them."""
 
 import argparse
 from collections.abc import Mapping
@@ -7,14 +7,14 @@ from pathlib import Path
 
 
 def is_check(description: str) -> bool:
-    """Read the command line: whether the files are only to be compared."""
+    """Parse the command line; True if the files are only to be compared (--check)."""
     parser = argparse.ArgumentParser(description=description)
-    parser.add_argument("--check", action="store_true", help="only tell which files are not up to date")
+    parser.add_argument("--check", action="store_true", help="only list the files that are out of date")
     return parser.parse_args().check
 
 
 def keep(root: Path, made: Mapping[str, str], check: bool) -> int:
-    """Write the files below root that are not as they were made, or only tell of them; the exit status."""
+    """Write the files below root that differ, or only list them; return the exit status."""
     stale = []
     for name, text in made.items():
         path = root / name

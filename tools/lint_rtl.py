@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Read the core with four front ends, at the corners of its parameters; whatever one of them says is a fault.
+"""Lint the core with four front ends at the corners of its parameter space; any message is an error.
 
     tools/lint_rtl.py [FOLDER]
 
-FOLDER has the Verilog, rtl/ unless given. Verilator, Icarus Verilog and slang read all corners. Surelog,
-which takes longer, reads the three that are furthest apart. It has a grammar and an elaboration of its own;
-readers that stop at the grammar, such as hdlConvertor or Verible, would miss a name that is not declared or a
-port that is not there.
+FOLDER has the Verilog, default rtl/. Verilator, Icarus Verilog and slang read all corners. Surelog, which is
+slower, reads the three that are furthest apart. It elaborates with a front end of its own; tools that only
+parse, such as hdlConvertor or Verible, would miss an undeclared name or a missing port.
 """
 
 import argparse
@@ -22,11 +21,11 @@ import surelog
 from passo.toolchain import environment, paths
 from pyslang.driver import Driver
 
-TOPS = ("passo_spi_top", "passo_wishbone", "passo_axi_lite")  # the corners are read of the first
+TOPS = ("passo_spi_top", "passo_wishbone", "passo_axi_lite")  # only the first is read at all corners
 SURELOG = paths.build / "lint" / "surelog"
 
 Parameters = Mapping[str, int | str]
-Reader = Callable[[Path, str, Parameters], str]  # returns what it says; "" if it is content
+Reader = Callable[[Path, str, Parameters], str]  # returns the messages; "" if there are none
 
 ENDS = {
     "CHANNELS": (1, 8),
@@ -36,12 +35,12 @@ ENDS = {
     "RAMP_QUEUE_LOG2": (2, 8),
     "STEPS_REGISTER": (0, 1),
 }
-LEVELS = ("STEP_RESET", "DIR_RESET", "ENABLE_RESET")  # a bit for each axis, 0 unless given
-AXES = 4  # unless given
+LEVELS = ("STEP_RESET", "DIR_RESET", "ENABLE_RESET")  # a bit for each axis, default 0
+AXES = 4  # the default
 
 
 def _high(axes: int) -> Parameters:
-    """All bits of the levels set."""
+    """Parameters with all bits of the levels set."""
     return dict.fromkeys(LEVELS, f"{axes}'h{(1 << axes) - 1:x}")
 
 
@@ -64,18 +63,18 @@ def read_with_icarus(rtl: Path, top: str, parameters: Parameters) -> str:
 
 
 def read_with_slang(rtl: Path, top: str, parameters: Parameters) -> str:
-    """With all warnings but of constants that a module takes no notice of. It prints them itself."""
+    """With all warnings except unused parameters. slang prints its messages itself."""
     options = ["--std=1364-2005", "-Wextra", "-Wno-unused-parameter", "-Werror", f"-I{rtl}", "--top", top]
     words = ["slang", *options, *_set("-G{}={}", parameters), *_sources(rtl)]
     driver = Driver()
     driver.addStandardArgs()
     good = driver.parseCommandLine(" ".join(f'"{word}"' for word in words)) and driver.processOptions()
     good = good and driver.parseAllSources() and driver.runFullCompilation(quiet=True)
-    return "" if good else "slang refuses this"
+    return "" if good else "slang rejects this"
 
 
 def read_with_surelog(rtl: Path, top: str, parameters: Parameters) -> str:
-    """It keeps what it has parsed for the next parameters."""
+    """Surelog caches what it has parsed for the next set of parameters."""
     options = ["-parse", "-nouhdm", "-nobuiltin", "-noinfo", "-nonote", f"-I{rtl}", "-top", top]
     program = surelog.get_path() / surelog.get_bin()
     said = _call(program, *options, *_set("-P{}={}", parameters), *_sources(rtl), folder=SURELOG)
@@ -92,7 +91,7 @@ READERS: dict[str, tuple[Reader, Sequence[Parameters]]] = {
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Return 0 if all are content, 1 if one of them said something."""
+    """Return 0 if there are no messages, else 1."""
     parser = argparse.ArgumentParser(description="Read the core with four front ends.")
     parser.add_argument("rtl", nargs="?", type=Path, default=paths.rtl, metavar="FOLDER")
     rtl = parser.parse_args(arguments).rtl.resolve()
@@ -102,7 +101,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _read_all(name: str, rtl: Path) -> bool:
-    """Let one front end read all its sets of parameters; stop at the first that it does not like."""
+    """Read all parameter sets with one front end; stop at the first with messages."""
     read, sets = READERS[name]
     began = time.monotonic()
     calls = [*((TOPS[0], parameters) for parameters in sets), *((top, sets[0]) for top in TOPS[1:])]
@@ -125,7 +124,7 @@ def _sources(rtl: Path) -> list[Path]:
 
 
 def _call(*command: str | Path, folder: Path | None = None) -> str:
-    """What a program says, and if it fails silently, that."""
+    """Output of a program; its exit status if it fails silently."""
     done = subprocess.run(
         list(map(str, command)),
         cwd=folder,

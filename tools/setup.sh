@@ -1,11 +1,10 @@
 #!/usr/bin/env bash
-# Makes the machine ready for every other make target: Debian packages, .venv, Python packages.
+# Installs the prerequisites of all other make targets: Debian packages, .venv, Python packages.
 #
 #     tools/setup.sh [SET...]
-#
-# A SET is an optional set of Python packages, of requirements-SET.txt (yosys, fpga ...), installed after all
-# the rest; or `firmware`: Debian's compiler for the STM32. Safe to run again at any time: it only does what
-# is missing. PYTHON selects the interpreter the environment is made from (default: python3).
+# A SET is an optional set of Python packages in requirements-SET.txt (yosys, fpga, ...), installed last; or
+# `firmware`: Debian's compiler for the STM32. Safe to run again at any time: it installs only what is missing.
+# PYTHON selects the interpreter for the environment (default: python3).
 
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -22,17 +21,17 @@ fail() {
     exit 1
 }
 
-# Two runs at the same time would spoil each other's .venv.
+# Prevents concurrent runs from corrupting .venv.
 exec 9<tools/setup.sh
 flock 9
 
 # --- What is missing -----------------------------------------------------------------------------
 
-# A command that shows whether a Debian package is there. Verilator's driver needs the full Perl
-# (pod2usage comes with it) and the compiler under the name c++.
+# A command that shows that a Debian package is installed. Verilator's driver needs the full Perl, which has
+# pod2usage, and the compiler as c++.
 tools="iverilog:iverilog c++:g++ make:make pod2usage:perl git:git"
 
-# Headers that Verilator's writer of FST waves includes.
+# Headers for Verilator's FST writer.
 headers="lz4.h:liblz4-dev zlib.h:zlib1g-dev"
 
 python_sets=()
@@ -55,8 +54,8 @@ missing_tools() {
     done
 }
 
-# What the interpreter lacks: venv needs ensurepip; cffi needs the headers; cocotb loads Python
-# into the simulator, so it needs the shared library, which Debian ships apart from the interpreter.
+# Packages missing for the interpreter: venv needs ensurepip; cffi needs the headers; cocotb loads Python into the
+# simulator and needs the shared library, which Debian packages separately.
 missing_python_parts() {
     if ! command -v "$python" >/dev/null; then
         echo python3 python3-venv python3-dev
@@ -82,7 +81,7 @@ venv_is_current() {
     [ -f "$stamp" ] && [ "$(<"$stamp")" = "$key" ] && .venv/bin/python -c 'import pip' 2>/dev/null
 }
 
-# The same of a set; a set may include another one by a line "-r FILE".
+# The same for a set, which may include another one with a line "-r FILE".
 set_key() { cat "requirements-$1.txt" $(sed -n 's/^-r //p' "requirements-$1.txt") - <<<"$key" | sha256sum; }
 
 set_is_current() {
@@ -138,7 +137,7 @@ install_packages() {
 
 missing=$(echo $missing $(missing_python_parts))
 if [ -n "$missing" ]; then
-    # Unquoted on purpose: one argument for each package.
+    # Unquoted on purpose: one argument per package.
     install_packages $missing
     missing=$(echo $(missing_python_parts))
     [ -z "$missing" ] || fail "$(command -v "$python") still lacks what these packages give: $missing" \
@@ -152,7 +151,7 @@ fi
     fail "Python 3.11 or newer is needed; $(command -v "$python") is $("$python" -V)." \
         "Choose another one with PYTHON=... make setup."
 
-# The scripts of a .venv carry its path, so asking pip where it lives finds broken and moved ones.
+# The scripts of a .venv contain its path, so the path that pip reports reveals broken and moved ones.
 if [[ $(.venv/bin/pip --version 2>/dev/null) != *" $root/.venv/"* ]]; then
     step "Creating .venv with $("$python" -V)"
     rm -rf .venv
@@ -179,8 +178,8 @@ fi
 
 # --- Optional sets -------------------------------------------------------------------------------
 
-# Programs that a set or one that it includes names in a line "# warm-up: PROGRAM": they are WebAssembly and are
-# compiled on their first run, which must not be broken off.
+# Programs that a set, or one that it includes, names in a line "# warm-up: PROGRAM": they are WebAssembly and are
+# compiled on their first run, which must not be interrupted.
 warm_ups() { sed -n 's/^# warm-up: //p' "requirements-$1.txt" $(sed -n 's/^-r //p' "requirements-$1.txt"); }
 
 for name in $sets; do

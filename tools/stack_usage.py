@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Worst-case stack, flash and RAM of a Thumb-2 program, out of its ELF file.
+"""Worst-case stack, flash and RAM of a Thumb-2 program, computed from its ELF file.
 
-Every function is disassembled: what it takes off the stack pointer, and whom it calls. Calls through pointers
-are named in a file ("caller: target target ..."); one that is not named there, recursion, and a change of the
-stack pointer that is not understood are errors. Interrupts that can nest all come on top of the deepest path,
-with 36 bytes that the processor saves for each. The exit status is 1 when something does not fit.
+Every function is disassembled for its stack frame and its calls. Indirect calls are listed in a file
+("caller: target target ..."). An indirect call that is not listed, recursion, and an unknown change of the
+stack pointer are errors. All nesting interrupts are added to the deepest path, each with the 36 bytes that
+the processor stacks. The exit status is 1 if the program does not fit.
 """
 
 import argparse
@@ -15,7 +15,7 @@ import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 
-EXCEPTION_BYTES = 36  # 8 words, and one to align them
+EXCEPTION_BYTES = 36  # 8 words, and one for alignment
 FUNCTION = re.compile(r"^([0-9a-f]+) <(.+)>:$")
 TARGET = re.compile(r"([0-9a-f]+) <([^>+]+)>")
 CLONE = re.compile(r"\.(isra|part|constprop|cold|lto_priv)\b.*")
@@ -23,14 +23,14 @@ CONDITIONAL = re.compile(r"b(eq|ne|cs|cc|mi|pl|vs|vc|hi|ls|ge|lt|gt|le)")
 
 
 class StackError(Exception):
-    """The stack cannot be reckoned; the text says why."""
+    """The stack usage cannot be determined; the message says why."""
 
 
 @dataclass
 class Function:
-    """A function: bytes of stack for itself, addresses of those it calls."""
+    """A function: its stack frame in bytes and the addresses of its callees."""
 
-    name: str  # without what the compiler appends to the names of parts and clones
+    name: str  # without the compiler's suffixes for parts and clones
     frame: int = 0
     calls: set[int] = field(default_factory=set)
     by_pointer: bool = False
@@ -55,7 +55,7 @@ def disassemble(elf: Path, cross: str) -> dict[int, Function]:
 
 
 def _instruction(function: Function, start: int, operation: str, operands: str) -> None:
-    """Add what one instruction does to the stack and to the calls."""
+    """Account for one instruction: stack frame and calls."""
     name = operation.removesuffix(".n").removesuffix(".w")
     operands = operands.strip()
     if name == "push" or (name == "stmdb" and operands.startswith("sp!")):
@@ -68,7 +68,7 @@ def _instruction(function: Function, start: int, operation: str, operands: str) 
             raise StackError(f"{function.name} takes an unknown amount of stack: {operation} {operands}")
         function.frame += int(match[1])
     elif name in ("add", "addw", "mov", "ldr") and re.match(r"sp, (?!.*#\d)", operands + " "):
-        # A frame too large for an immediate, or a pointer put back.
+        # A frame too large for an immediate operand, or a restored stack pointer.
         if not re.match(r"sp, r7", operands):
             raise StackError(f"{function.name} changes the stack pointer: {operation} {operands}")
     elif name in ("bl", "b", "cbz", "cbnz") or CONDITIONAL.fullmatch(name):
@@ -79,7 +79,7 @@ def _instruction(function: Function, start: int, operation: str, operands: str) 
 
 
 def _registers(operands: str) -> int:
-    """How many registers a list such as {r4, r6-r8, lr} has."""
+    """Number of registers in a list such as {r4, r6-r8, lr}."""
     count = 0
     for item in re.search(r"\{(.*)\}", operands)[1].split(","):
         low, _, high = item.strip().partition("-")
@@ -88,7 +88,7 @@ def _registers(operands: str) -> int:
 
 
 def read_calls(path: Path) -> dict[str, list[str]]:
-    """Who is called through pointers: names by the caller's name."""
+    """Read the targets of indirect calls: names, by the caller's name."""
     calls = {}
     for line in path.read_text().splitlines():
         line = line.partition("#")[0].strip()
@@ -99,7 +99,7 @@ def read_calls(path: Path) -> dict[str, list[str]]:
 
 
 def connect(functions: dict[int, Function], pointers: dict[str, list[str]]) -> dict[str, list[int]]:
-    """Add the calls through pointers; return the addresses by name."""
+    """Add the indirect calls; return the addresses by name."""
     by_name: dict[str, list[int]] = {}
     for address, function in functions.items():
         by_name.setdefault(function.name, []).append(address)
@@ -107,19 +107,19 @@ def connect(functions: dict[int, Function], pointers: dict[str, list[str]]) -> d
         if not function.by_pointer:
             continue
         if function.name not in pointers:
-            raise StackError(f"{function.name} calls through a pointer and is not named in the list of calls")
+            raise StackError(f"{function.name} makes an indirect call and is not listed")
         for target in pointers[function.name]:
             if target not in by_name:
-                raise StackError(f"{function.name} is said to call {target}, which is not there")
+                raise StackError(f"{function.name} is listed as calling {target}, which does not exist")
             function.calls.update(by_name[target])
     unused = set(pointers) - {function.name for function in functions.values() if function.by_pointer}
     if unused:
-        raise StackError(f"these are said to call through pointers, but do not: {', '.join(sorted(unused))}")
+        raise StackError(f"listed but without indirect calls: {', '.join(sorted(unused))}")
     return by_name
 
 
 def deepest(functions: dict[int, Function], start: int) -> tuple[int, list[str]]:
-    """Bytes of stack of the deepest path from a function, and the path."""
+    """Stack bytes of the deepest call path from a function, and the path."""
     known: dict[int, tuple[int, list[str]]] = {}
 
     def visit(address: int, above: tuple[int, ...]) -> tuple[int, list[str]]:
@@ -136,7 +136,7 @@ def deepest(functions: dict[int, Function], start: int) -> tuple[int, list[str]]
 
 
 def sizes(elf: Path, cross: str) -> tuple[int, int]:
-    """Bytes of flash and of RAM, without the stack."""
+    """Bytes of flash and of RAM; the stack excluded."""
     flash = ram = 0
     for line in _run(f"{cross}size", "-A", str(elf)).splitlines():
         fields = line.split()
@@ -151,15 +151,15 @@ def _run(*command: str) -> str:
 
 
 def main() -> int:
-    """Print the figures; return 1 if something does not fit or cannot be reckoned."""
+    """Print the figures; return 1 if something does not fit or cannot be determined."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("elf", type=Path)
     parser.add_argument("--cross", default="arm-none-eabi-")
-    parser.add_argument("--calls", type=Path, required=True, help="who is called through pointers")
-    parser.add_argument("--flash", type=int, required=True, help="bytes there are")
-    parser.add_argument("--ram", type=int, required=True, help="bytes there are")
+    parser.add_argument("--calls", type=Path, required=True, help="targets of indirect calls")
+    parser.add_argument("--flash", type=int, required=True, help="bytes available")
+    parser.add_argument("--ram", type=int, required=True, help="bytes available")
     parser.add_argument("--start", default="reset_handler")
-    parser.add_argument("--interrupt", action="append", default=[], help="a handler that can come on top")
+    parser.add_argument("--interrupt", action="append", default=[], help="a handler that can nest on top")
     options = parser.parse_args()
     try:
         functions = disassemble(options.elf, options.cross)

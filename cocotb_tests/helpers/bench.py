@@ -8,6 +8,7 @@ the rising edge: what is written after clock n counts like a register that chang
 
 import random
 from collections.abc import Callable, Sequence
+from typing import ClassVar, Self
 
 import cocotb
 from cocotb.clock import Clock
@@ -107,6 +108,26 @@ async def _watchdog(clocks: Clocks) -> None:
     assert not clocks.running, f"no end after {LIMIT} clocks"
 
 
+class Bench:
+    """A module under test and its clock; INPUTS are 0 until a test says otherwise."""
+
+    INPUTS: ClassVar[tuple[str, ...]] = ()
+
+    def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
+        self.dut, self.clocks = dut, clocks
+
+    @classmethod
+    async def begin(cls, dut: HierarchyObject) -> Self:
+        """Reset."""
+        return cls(dut, await begin(dut, *cls.INPUTS))
+
+    async def strobe(self, name: str) -> None:
+        """Raise an input for a clock."""
+        getattr(self.dut, name).value = 1
+        await self.clocks.wait(1)
+        getattr(self.dut, name).value = 0
+
+
 class Recorder:
     """Records every change of a signal as (clock, value), from now to `stop` or the end of the test."""
 
@@ -146,7 +167,7 @@ class PushBus:
     """The bus of one queue: pushes words as the link does, first to be checked, then to be written."""
 
     COMMIT_CLOCKS = 3
-    INPUTS = ("bus_frame", "bus_commit", "bus_check", "bus_write", "select", "bus_data", "bus_top_bit")
+    INPUTS = ("bus_frame", "bus_commit", "bus_check", "bus_write", "select", "bus_data", "bus_msb")
 
     def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
         self.dut, self.clocks = dut, clocks
@@ -184,7 +205,7 @@ class PushBus:
         assert set(await self.check(words)) == {0}
 
     async def commit(self, words: Sequence[int]) -> None:
-        """Execute a frame that was checked; the first word stands on the bus after COMMIT_CLOCKS."""
+        """Execute a checked frame; its first word is on the bus after COMMIT_CLOCKS."""
         await self.frame(commit=True)
         await self.write(words)
 
@@ -198,7 +219,7 @@ class PushBus:
         # tells the highest bit
         self.dut.select.value = 1
         self.dut.bus_data.value = word
-        self.dut.bus_top_bit.value = max(0, word.bit_length() - 1) if signal is self.dut.bus_check else 0
+        self.dut.bus_msb.value = max(0, word.bit_length() - 1) if signal is self.dut.bus_check else 0
         await self.clocks.wait(before)
         signal.value = 1
         await self.clocks.wait(1)

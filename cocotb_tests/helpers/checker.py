@@ -50,7 +50,7 @@ class PulseError(AssertionError):
 
 @dataclass
 class AxisPins:
-    """The rules for one axis. It is told every change of its pins, and raises PulseError.
+    """The rules for one axis. It gets every change of its pins, and raises PulseError.
 
     - step_high: STEP is active for exactly so long; with both_edges each active level lasts at least so long
     - step_low: STEP is inactive for at least so long

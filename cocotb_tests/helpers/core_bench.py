@@ -9,7 +9,7 @@
         channel.start()
         core.wait_end()
 
-Such a test is plain code in a thread of its own, as passo.link and passo.host are not made of coroutines.
+Such a test is plain code in its own thread, because passo.link and passo.host are not coroutines.
 Simulated time passes in `run`, `transfer` and what is built on them. Each of these ends with a comparison of
 all pins on all clocks up to now; the first difference is an error.
 """
@@ -37,20 +37,15 @@ from cocotb_tests.helpers.core_thread import Thread
 from cocotb_tests.helpers.ramps import ONE, V_MAX, Ramp
 from cocotb_tests.helpers.shapes import Shape
 from cocotb_tests.helpers.spi import SpiMaster
+from tests.helpers import closed_form
 
 __all__ = ["ONE", "V_MAX", "Core", "CoreChannel", "Line", "PinTiming", "Ramp", "Shape", "core_test"]
 
 LEAD = 4  # clocks from chip select to SCLK and back
 
 
-@dataclass(frozen=True)
-class Line:
-    """A line command: `steps` per axis, with sign, in `substeps`."""
-
-    substeps: int
-    steps: tuple[int, ...]
-    last: bool = False
-    endless: bool = False
+class Line(closed_form.Line):
+    """A line command."""
 
     def words(self) -> list[int]:
         """What is pushed."""
@@ -103,7 +98,7 @@ class Core:
 
     @classmethod
     async def begin(cls, dut: HierarchyObject, thread: Thread) -> "Core":
-        """Reset; return on the falling edge on which reset ends."""
+        """Reset; return on the falling edge at its end."""
         dut.sync.value = 0
         dut.rst.value = 1
         clocks = Clocks(dut.clk)
@@ -120,7 +115,7 @@ class Core:
         return core
 
     def identify(self) -> None:
-        """Learn the parameters from the core and start to compare."""
+        """Read the parameters of the core and start the comparison."""
         self.link = Link(self)
         (word,) = self.link.read(r.ADDRESS_PARAMETERS, 1)
         self.parameters = Parameters(
@@ -138,7 +133,7 @@ class Core:
         self.compare()
 
     def _forget_settings(self) -> None:
-        """A reset keeps the settings of the pins: as they were before the first test."""
+        """Restore the initial pin settings, which a reset does not change."""
         for number in range(self.parameters.channels):
             channel = self.channel(number)
             channel.times(PinTiming())
@@ -189,7 +184,7 @@ class Core:
         return clocks
 
     def run_until(self, condition: Callable[[], object], limit: int, step: int = 64) -> None:
-        """Let time pass until something is so, which is looked at every `step` clocks."""
+        """Let time pass until a condition is true; it is checked every `step` clocks."""
         end = self.clock + limit
         while not condition():
             assert self.clock < end, f"clock {self.clock}: nothing after {limit} clocks"
@@ -205,7 +200,7 @@ class Core:
         self._thread.wait(set_pin())
 
     def reset(self, clocks: int) -> None:
-        """Reset the core, for so many clocks."""
+        """Reset the core for a number of clocks."""
 
         async def pulse() -> None:
             self.dut.rst.value = 1
@@ -220,14 +215,14 @@ class Core:
         return bool(read(self.dut.running) >> channel & 1)
 
     def wait_end(self, channel: int = 0, limit: int = 100_000) -> None:
-        """Wait until the motion that was started last has ended, and its last pulse too."""
+        """Wait until the last motion and its last pulse have ended."""
         self.run_until(lambda: self.motions(channel, self.started), limit)
         self.run(16)
 
     # comparison
 
     def compare(self) -> None:
-        """Compare all pins up to now with the model; an error tells the first difference."""
+        """Compare all pins up to now with the model; the error is the first difference."""
         record = self._record
         if record.judge is None:
             return
@@ -244,7 +239,7 @@ class Core:
                 self._running.append((clock - 1, level))
 
     def watch(self, *timings: PinTiming) -> PulseChecker:
-        """From now on check these pin timings, one for each axis of the core, or one for all."""
+        """Check these pin timings from now on, one per axis of the core, or one for all."""
 
         async def make() -> PulseChecker:
             return PulseChecker(self.clocks, self.dut.step, self.dut.dir, timings)
@@ -256,13 +251,13 @@ class Core:
         return self.checker
 
     def finish_watch(self) -> None:
-        """No pulse was too short, none is left unfinished."""
+        """Check that no pulse was too short or is unfinished."""
         if self.checker is not None:
             self.checker.finish()
             self.checker = None
 
     def end(self) -> None:
-        """Compare the rest and tell what was compared."""
+        """Compare the rest and log a summary."""
         self.run(200)
         self.finish_watch()
         self.dut._log.info(f"{self.clock} clocks compared, {self._record.judge.summary()}")
@@ -278,7 +273,7 @@ class Core:
         return [(int(clocks[i]), int(levels[i])) for i in at if clocks[i] > since]
 
     def motions(self, channel: int = 0, since: int = 0) -> list[tuple[int, int]]:
-        """Rise and fall of `running` of each motion that began after a clock and has ended."""
+        """Rise and fall of `running` of each completed motion that started after a clock."""
         found, begin = [], None
         for clock, levels in self._running:
             level = levels >> channel & 1
@@ -300,7 +295,7 @@ class Core:
 
 
 class CoreChannel(Channel):
-    """A channel of the core, which takes lines and ramps as tests have them."""
+    """A channel of the core that accepts the Line and Ramp of the tests."""
 
     def __init__(self, core: Core, number: int):
         super().__init__(core.link, core.parameters, number)
@@ -340,7 +335,7 @@ class CoreChannel(Channel):
         super().start()
 
     def rest(self) -> None:
-        """Take the permission to start motions away."""
+        """Disable the start of motions."""
         self.link.write(r.ADDRESS_RUN, 0)
 
 
@@ -349,7 +344,7 @@ async def _wait(time: int) -> None:
 
 
 def core_test(body: Callable[[Core], None]) -> Any:
-    """Make a cocotb test of plain code."""
+    """Make a cocotb test from plain code."""
 
     async def test(dut: HierarchyObject) -> None:
         thread = Thread()

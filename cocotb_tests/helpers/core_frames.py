@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Frames as no host would send them, and what can be seen of the core through frames."""
+"""Unusual frames, and the state of the core as seen through frames."""
 
 from collections.abc import Sequence
 
@@ -16,7 +16,7 @@ COUNTED = [verdict for verdict in Verdict if verdict not in (Verdict.OK, Verdict
 def request(
     operation: int, sequence: int, length: int, address: int, payload: Sequence[int] = ()
 ) -> list[int]:
-    """A frame with a good CRC and any header, as long as its length says."""
+    """A frame with a valid CRC and any header, with the length in its header."""
     header = operation << 28 | sequence << 20 | length << 12 | address
     words = [header, *payload]
     if operation == Operation.READ:
@@ -39,7 +39,7 @@ def refusals(core: Core) -> dict[Verdict, int]:
 
 
 def everything(core: Core) -> list[list[int]]:
-    """All that can be read of the core but the counters of refused frames."""
+    """All readable registers of the core except the refusal counters."""
     channel = r.ADDRESS_CHANNEL_BASE
     axis = channel + r.CHANNEL_AXIS_BASE
     places = [

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
- * Compares what was recorded of the core's pins (tops/passo_core_top.v) with the C model, on every clock.
+ * Compares the recorded pins of the core (probes/passo_spi_top.vh) with the C model on every clock.
  */
 #include <stddef.h>
 #include <string.h>
 
 #include "passo_core.h"
 
-/* The pins from this clock on: inputs and MISO as they stand at its rising edge, the others as the edge
- * before left them. */
+/* Pin levels from this clock on: inputs and MISO sampled at its rising edge, the others after the previous
+ * edge. */
 struct judge_row {
 	uint64_t clock;
 	uint64_t inputs; /* rst, sclk, mosi, cs_n, sync: bits 4 .. 0 */
@@ -73,7 +73,7 @@ static bool compare_outputs(struct judge *judge, const struct judge_row *row)
 	return true;
 }
 
-/* Goes on to the clock `until`, which is not before the last row. False at the first difference. */
+/* Compares up to the clock `until`, which must not be before the last row. False at the first difference. */
 bool judge_follow(struct judge *judge, const struct judge_row *rows, size_t count, uint64_t until)
 {
 	size_t next = 0;

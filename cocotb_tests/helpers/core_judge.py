@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Compares the recorded pins of the core with the C model on every clock; a difference is an error."""
+"""Compares the recorded pins of the core with the C model on every clock."""
 
 from functools import cache
 from pathlib import Path
@@ -25,7 +25,7 @@ void judge_matched(const void *judge, uint64_t matched[6]);
 
 
 class DifferenceError(AssertionError):
-    """The pins are not what the model says."""
+    """The pins differ from the model."""
 
 
 class Judge:
@@ -39,7 +39,7 @@ class Judge:
         assert self._c.judge_reset(self._judge, [getattr(parameters, name) for name in names])
 
     def follow(self, rows: np.ndarray, until: int) -> None:
-        """Go on to a clock; `rows` (COLUMNS) are those that were recorded since the last call."""
+        """Compare up to a clock; `rows` (COLUMNS) were recorded since the last call."""
         rows = np.ascontiguousarray(rows, np.uint64)
         pointer = self._ffi.from_buffer(rows)
         if not self._c.judge_follow(self._judge, pointer, len(rows), until):
@@ -64,7 +64,7 @@ class Judge:
         )
 
     def summary(self) -> str:
-        """How much agreed."""
+        """Summary of what was compared."""
         matched = self._ffi.new("uint64_t[6]")
         self._c.judge_matched(self._judge, matched)
         edges = ", ".join(f"{name} {n}" for name, n in zip(SIGNALS, matched, strict=True) if name != "miso")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A motion to try things with, and what has to be so after a stop."""
+"""A standard motion, and checks after a stop."""
 
 from passo.registers import Cause, State
 
@@ -10,7 +10,7 @@ SLOW = ONE // 32  # velocity
 
 
 def a_motion(core: Core, ticks: int = 5) -> tuple[list[Line], list[Ramp]]:
-    """Up, on and down again, over three lines."""
+    """Acceleration, cruise and deceleration over three lines."""
     ramps = [
         Ramp(ONE // 10, ticks, Shape.COSINE),
         Ramp(ONE // 10, ticks),
@@ -27,7 +27,7 @@ def a_motion(core: Core, ticks: int = 5) -> tuple[list[Line], list[Ramp]]:
 
 
 def pulse_groups(core: Core, since: int) -> list[tuple[int, ...]]:
-    """The rising edges of STEP in their order; those of the same clock are together."""
+    """The rising edges of STEP in order, grouped by clock."""
     clocks: dict[int, list[int]] = {}
     for axis in range(core.axes):
         for clock in core.steps(axis, since):
@@ -36,7 +36,7 @@ def pulse_groups(core: Core, since: int) -> list[tuple[int, ...]]:
 
 
 def check_stopped(core: Core, channel: CoreChannel, cause: Cause) -> None:
-    """Stopped for this cause, with the position of the pins and nothing in the queues."""
+    """Check for a stop with this cause, exact position and empty queues."""
     core.run(200)
     state = channel.state()
     assert (state.state, state.cause, state.stopping) == (State.STOPPED, cause, False)
@@ -53,7 +53,7 @@ def check_stopped(core: Core, channel: CoreChannel, cause: Cause) -> None:
 
 
 def clear_and_move(core: Core, channel: CoreChannel) -> None:
-    """After CLEAR the channel makes a motion as if nothing had been."""
+    """Check that after CLEAR the channel makes a normal motion."""
     channel.clear()
     channel.rest()
     before = channel.positions()

@@ -26,7 +26,7 @@ class Thread:
         return result
 
     async def run(self, body: Callable[[], None]) -> None:
-        """In the test: run the plain code; the simulator stands still except while that waits."""
+        """In the test: run the plain code; the simulator runs only while it waits."""
 
         def main() -> None:
             try:

@@ -1,28 +1,25 @@
 # SPDX-License-Identifier: MIT
-"""passo_line_queue, driven and looked at."""
+"""Test bench of passo_line_queue."""
 
 from random import Random
 
 from cocotb.handle import HierarchyObject
 
-from cocotb_tests.helpers.bench import SUBSTEPS_MAX, Clocks, PushBus, begin, read
+from cocotb_tests.helpers.bench import SUBSTEPS_MAX, Bench, Clocks, PushBus, read
 
 QUEUE_FULL, BUSY, BAD_VALUE = 7, 8, 9
 LAST, ENDLESS = 1, 2
 
 
-class Queue:
+class Queue(Bench):
     """The module under test."""
 
+    INPUTS = (*PushBus.INPUTS, "blocked", "take", "release_line", "flush")
+
     def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
-        self.dut, self.clocks = dut, clocks
+        super().__init__(dut, clocks)
         self.axes = len(dut.directions)
         self.bus = PushBus(dut, clocks)
-
-    @classmethod
-    async def begin(cls, dut: HierarchyObject) -> "Queue":
-        """Reset."""
-        return cls(dut, await begin(dut, *PushBus.INPUTS, "blocked", "take", "release_line", "flush"))
 
     def random_line(self, random: Random, control: int | None = None) -> list[int]:
         """Words of a good line."""
@@ -33,12 +30,6 @@ class Queue:
                 (0, LAST, ENDLESS, LAST | ENDLESS)
             )
         return [control, m, *n]
-
-    async def strobe(self, name: str) -> None:
-        """Raise an input for a clock."""
-        getattr(self.dut, name).value = 1
-        await self.clocks.wait(1)
-        getattr(self.dut, name).value = 0
 
     def check_next(self, line: list[int] | None) -> None:
         """Check that this line can be taken, or that there is none."""
@@ -52,6 +43,19 @@ class Queue:
         assert read(self.dut.last_substep) == line[1] - 1
         steps = read(self.dut.steps)
         assert [steps >> 30 * axis & SUBSTEPS_MAX for axis in range(self.axes)] == line[2:]
+
+    async def take(self, line: list[int]) -> None:
+        """Take the line that is offered, which is this one."""
+        self.check_next(line)
+        await self.strobe("take")
+        await self.clocks.wait(1)
+        self.check_current(line)
+
+    async def check_settled(self, line: list[int] | None, room: int) -> None:
+        """Check what can be taken and the free places, which follow by two clocks."""
+        await self.clocks.wait(2)
+        self.check_next(line)
+        self.check_room(room)
 
     def check_room(self, room: int) -> None:
         """Check the free places."""

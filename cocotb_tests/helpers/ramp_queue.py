@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""passo_ramp_queue, driven and looked at."""
+"""Test bench of passo_ramp_queue."""
 
 from collections.abc import Sequence
 from random import Random
@@ -7,7 +7,7 @@ from random import Random
 from cocotb.handle import HierarchyObject
 from passo.registers import Shape
 
-from cocotb_tests.helpers.bench import Clocks, PushBus, begin, read
+from cocotb_tests.helpers.bench import Bench, Clocks, PushBus, read
 
 QUEUE_FULL, BUSY, BAD_VALUE = 7, 8, 9
 WORDS = 5
@@ -34,26 +34,15 @@ def inverted(ramp: list[int], word: int) -> int:
     return 0xFFFF if word == 2 or (word > 2 and ramp[0] & MIRROR) else 0
 
 
-class Queue:
+class Queue(Bench):
     """The module under test."""
 
+    INPUTS = (*PushBus.INPUTS, "blocked", "take", "take_now", "flush", "half_index")
+
     def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
-        self.dut, self.clocks = dut, clocks
+        super().__init__(dut, clocks)
         self.depth = 1 << len(dut.room) - 1
         self.bus = PushBus(dut, clocks)
-
-    @classmethod
-    async def begin(cls, dut: HierarchyObject) -> "Queue":
-        """Reset."""
-        return cls(
-            dut, await begin(dut, *PushBus.INPUTS, "blocked", "take", "take_now", "flush", "half_index")
-        )
-
-    async def strobe(self, name: str) -> None:
-        """Raise an input for a clock."""
-        getattr(self.dut, name).value = 1
-        await self.clocks.wait(1)
-        getattr(self.dut, name).value = 0
 
     async def check(self, ramps: Sequence[list[int]], now_pending: bool = False) -> None:
         """Check the outputs, and all half words of the oldest ramp, each two clocks after its index."""

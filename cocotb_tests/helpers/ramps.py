@@ -13,7 +13,7 @@ ONE = 1 << 48
 
 @dataclass(frozen=True)
 class Ramp:
-    """A ramp command; `progress_step` None stands for what the planner chooses."""
+    """A ramp command; `progress_step` None: the value of the planner."""
 
     v_end: int
     ticks: int
@@ -35,7 +35,7 @@ class Ramp:
         return min(ONE - 1, (ONE + self.ticks // 2) // self.ticks)
 
     def words(self) -> list[int]:
-        """What is pushed."""
+        """Payload words."""
         control = self.last | self.now << 1 | self.mirror << 2 | self.shape << 4
         return [
             self.v_end >> 32 << 16 | control,

@@ -4,7 +4,7 @@
 Environment variables:
 
 - `PASSO_SEED`: seed of all random cases, default 1; the same seed gives the same run.
-- `PASSO_RTL`: another folder in place of `rtl/`, to see that a fault in the RTL is found.
+- `PASSO_RTL`: another folder instead of `rtl/`, to test that a fault in the RTL is found.
 - `PASSO_WAVES`: if set, waveforms are written into the test's folder below `build/cocotb`.
 - `PASSO_NETLIST`: if set, all tests of the whole core run on the netlist, not just some (test_netlist.py).
 - `PASSO_COVERAGE`: if set, Verilator writes coverage.dat into the test's folder below `build/cocotb`.
@@ -32,11 +32,12 @@ COVERAGE_VARIABLE = "PASSO_COVERAGE"
 
 _BUILD = paths.build / "cocotb"
 _TOPS = paths.cocotb_tests / "tops"
-CORE_TOP = "passo_core_top"
+_PROBES = paths.cocotb_tests / "probes"
+CORE_TOP = "passo_spi_top"
 DOORS = ("passo_wishbone", "passo_axi_lite")
 WHOLE_CORES = (CORE_TOP, *DOORS)
 ONE_CHANNEL = {"CHANNELS": 1, "AXES": 3, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 5, "RAMP_QUEUE_LOG2": 4}
-DOOR_CORE = {"CHANNELS": 1, "AXES": 2, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 5, "RAMP_QUEUE_LOG2": 4}
+BUS_CORE = {"CHANNELS": 1, "AXES": 2, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 5, "RAMP_QUEUE_LOG2": 4}
 TWO_CHANNELS = {"CHANNELS": 2, "AXES": 2, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 2, "RAMP_QUEUE_LOG2": 2}
 
 
@@ -51,9 +52,10 @@ def run(
 ) -> None:
     """Run the cocotb tests of `module` in `toplevel`, built with `parameters`; AssertionError if one fails.
 
-    `module` is the `__name__` of the Python module. `toplevel` is a module of `rtl/` or `cocotb_tests/tops/`;
-    it is built again only when one of the sources below it has changed. With `netlist` the core is what
-    synthesis makes of it for an iCE40, with exactly these parameters.
+    `module` is the `__name__` of the Python module. `toplevel` is a module of `cocotb_tests/tops/`, or of
+    `rtl/` with what `cocotb_tests/probes/` has for it included at its end; it is built again only when one of
+    the sources below it has changed. With `netlist` the core is what synthesis makes of it for an iCE40, with
+    exactly these parameters.
     """
     os.environ.update(environment())
     parameters = dict(parameters or {})
@@ -132,6 +134,14 @@ def _sources(toplevel: str, rtl: Path) -> list[Path]:
     return [*([models] if models.exists() else []), *reversed(found.values())]
 
 
+def _probed(source: Path, probe: Path, folder: Path) -> Path:
+    """A copy of a module with the probe at its end; messages and coverage name the lines of the source."""
+    code, end, rest = source.read_text().rpartition("endmodule")
+    copy = folder / source.name
+    copy.write_text(f'`line 1 "{source}" 0\n{code}`include "{probe}"\n{end}{rest}')
+    return copy
+
+
 def _build(
     simulator: str,
     toplevel: str,
@@ -142,12 +152,15 @@ def _build(
     folder: Path,
 ) -> None:
     sources = _sources(toplevel, rtl)
+    probe = _PROBES / f"{toplevel}.vh"
+    if probe.exists():
+        sources[-1] = _probed(sources[-1], probe, folder)
     netlist = (rtl / CELLS).exists()
     arguments = ["--coverage-line", "--coverage-toggle"] if coverage else []
     if netlist and simulator == "verilator":
         arguments += ["-Wno-fatal", "-Wno-lint"]  # the models of the cells are not ours to warn about
     digest = hashlib.sha256(Path(__file__).read_bytes())
-    for path in [*sources, *sorted(rtl.glob("*.vh"))]:
+    for path in [*sources, *sorted(rtl.glob("*.vh")), *sorted(_PROBES.glob("*.vh"))]:
         digest.update(str(path).encode() + path.read_bytes())
     stamp = folder / "built"
     if stamp.exists() and stamp.read_text() == digest.hexdigest():

@@ -16,7 +16,7 @@ def _logistic(x: float) -> float:
 
 
 def loaded_table(shape: Shape) -> list[int]:
-    """Table of a shape that nobody has rewritten, point 256 included."""
+    """Table of a shape after configuration, including point 256."""
     low, high = _logistic(-5), _logistic(5)
     formulas = {
         Shape.COSINE: lambda u: (1 - cos(pi * u)) / 2,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Profile of a channel, the last of CHANNELS, with the shape tables; enable and bus come from the test.
+// Profile of a channel, the last of CHANNELS, with the shape tables; enable and bus come from the test, which sets
+// the registers.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -8,61 +9,41 @@ module passo_profile_top #(
   parameter CHANNELS   = 1,
   parameter DEPTH_LOG2 = 4,
   parameter TICK_LOG2  = 7
-) (
-  input  wire                clk,
-  input  wire                rst,
-  input  wire                bus_frame,
-  input  wire                bus_commit,
-  input  wire                bus_check,
-  input  wire                bus_write,
-  input  wire                select,
-  input  wire [        31:0] bus_data,
-  input  wire [         4:0] bus_top_bit,
-  output wire [         3:0] refusal,
-  output wire                incomplete,
-  output wire                needs_motion,
-  output wire [DEPTH_LOG2:0] room,
-  input  wire                prepare,
-  input  wire                begin_profile,
-  input  wire                stopped,
-  input  wire                drain,
-  input  wire [        31:0] drain_velocity,
-  input  wire                now_coming,
-  input  wire                enable,
-  output wire                valid,
-  output wire                ready,
-  output wire                dry,
-  output wire                stall,
-  output reg                 ended_q,
-  output wire [        47:0] velocity         // that counts in this clock
 );
 
-  wire                   ended;
-  wire                   ends_next;
-  wire                   table_request;
-  wire [            9:0] table_address;
-  wire [   CHANNELS-1:0] table_served;
-  wire [           15:0] table_point;
-  wire [           15:0] table_point_next;
-  wire [   CHANNELS-1:0] table_requests;
-  wire [CHANNELS*10-1:0] table_addresses;
+  reg clk, rst;
+  reg bus_frame, bus_commit, bus_check, bus_write, select;
+  reg [31:0] bus_data;
+  reg [4:0] bus_msb;
+  reg prepare, begin_profile, stopped, now_coming, enable;
+  reg drain;
+  reg [31:0] drain_velocity;
 
-  // the other channels always ask
-  genvar channel;
-  generate
-    for (channel = 0; channel < CHANNELS; channel = channel + 1) begin : g_channel
-      assign table_requests[channel]         = channel == CHANNELS - 1 ? table_request : 1'b1;
-      assign table_addresses[channel*10+:10] = channel == CHANNELS - 1 ? table_address : 10'd5;
-    end
-  endgenerate
+  wire [3:0] refusal;
+  wire incomplete, needs_motion;
+  wire [DEPTH_LOG2:0] room;
+  wire valid, ready, ended, dry, ends_next;
+  wire stall = u_profile.stall;
+  wire [47:0] velocity;  // that counts in this clock
 
+  wire [CHANNELS-1:0] tables_served;
+  wire table_request;
+  wire [9:0] table_address;
+  wire table_served = tables_served[CHANNELS-1];
+  wire [15:0] table_point, table_point_next;
+
+  // this channel, and others that always ask, one too many
+  wire [CHANNELS:0] requests = {table_request, {CHANNELS{1'b1}}};
+  wire [CHANNELS*10+9:0] addresses = {table_address, {CHANNELS{10'd5}}};
+  wire [CHANNELS-1:0] table_requests = requests[CHANNELS:1];
+
+  reg ended_q;
   always @(posedge clk) ended_q <= ended;
 
   passo_tables #(
     .CHANNELS(CHANNELS)
   ) u_tables (
-    .clk        (clk),
-    .rst        (rst),
+    .*,
     .bus_frame  (1'b0),
     .bus_commit (1'b0),
     .bus_check  (1'b0),
@@ -72,12 +53,12 @@ module passo_profile_top #(
     .select     (1'b0),
     .bus_address(10'd0),
     .bus_data   (16'd0),
-    .bus_top_bit(5'd0),
+    .bus_msb(5'd0),
     .refusal    (),
     .wanted     (),
     .request    (table_requests),
-    .address    (table_addresses),
-    .served     (table_served),
+    .address    (addresses[CHANNELS*10+9:10]),
+    .served     (tables_served),
     .point      (table_point),
     .point_next (table_point_next)
   );
@@ -86,41 +67,11 @@ module passo_profile_top #(
     .TICK_LOG2 (TICK_LOG2),
     .DEPTH_LOG2(DEPTH_LOG2)
   ) u_profile (
-    .clk             (clk),
-    .rst             (rst),
-    .bus_frame       (bus_frame),
-    .bus_commit      (bus_commit),
-    .bus_check       (bus_check),
-    .bus_write       (bus_write),
-    .select          (select),
-    .bus_data        (bus_data),
-    .bus_top_bit     (bus_top_bit),
-    .refusal         (refusal),
-    .incomplete      (incomplete),
-    .needs_motion    (needs_motion),
-    .room            (room),
-    .prepare         (prepare),
-    .begin_profile   (begin_profile),
-    .stopped         (stopped),
-    .drain           (drain),
-    .drain_velocity  (drain_velocity),
-    .now_coming      (now_coming),
-    .valid           (valid),
-    .ready           (ready),
-    .ended           (ended),
-    .dry             (dry),
-    .ends_next       (ends_next),
-    .enable          (enable),
-    .table_request   (table_request),
-    .table_address   (table_address),
-    .table_served    (table_served[CHANNELS-1]),
-    .table_point     (table_point),
-    .table_point_next(table_point_next),
-    .velocity        (),
-    .substep         ()
+    .*,
+    .velocity(),
+    .substep ()
   );
 
-  assign stall           = u_profile.stall;
   // the path's upper half comes a clock late
   assign velocity[23:0]  = u_profile.u_path.velocity_low;
   assign velocity[47:24] = !u_profile.u_path.take_q ? u_profile.u_path.velocity_high :

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
- * What both engines share: the SPI master and the log of the output pins.
+ * Shared by both engines: the SPI master and the log of the output pins.
  */
 #include <stdlib.h>
 #include <string.h>
 
 #include "engine_core.h"
 
-/* A run ends at this number of waiting events; a transfer does not. */
+/* Number of waiting events that ends a run; a transfer is not ended. */
 #define LOG_FULL 65536u
 /* Clocks from chip select to the first edge of SCLK and from the last edge to chip select. */
 #define CS_SETUP 4u
@@ -19,13 +19,13 @@ struct passo_engine {
 	struct passo_pin_event last;
 	uint64_t clock;
 	uint32_t spi_half_period;
-	uint64_t tick, clocks, ticks, clock_of_tick_0; /* of the master with a time of its own */
+	uint64_t tick, clocks, ticks, clock_of_tick_0; /* time of an external master */
 	struct passo_pin_event *log;
 	size_t log_length;
 	size_t log_capacity;
 };
 
-/* Appends the pins to the log if they are not as they were. */
+/* Appends the pins to the log if they have changed. */
 static void log_pins(struct passo_engine *engine)
 {
 	const struct engine_outputs *outputs = &engine->outputs;
@@ -107,7 +107,7 @@ void passo_engine_pace(struct passo_engine *engine, uint64_t clocks, uint64_t ti
 {
 	uint64_t a = clocks, b = ticks;
 
-	/* the greatest common divisor, so that products stay small */
+	/* divide by the greatest common divisor to keep products small */
 	while (b) {
 		uint64_t rest = a % b;
 
@@ -145,7 +145,7 @@ uint64_t passo_engine_follow(struct passo_engine *engine, uint64_t tick)
 	if (left) {
 		const uint64_t clocks = engine->clock - engine->clock_of_tick_0;
 
-		/* the first tick that ends with this clock, or later */
+		/* the first tick that ends at this clock or later */
 		tick = (clocks * engine->ticks + engine->clocks - 1) / engine->clocks;
 		if (tick < engine->tick)
 			tick = engine->tick;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * What an engine has to supply: the core itself, one clock after another. engine.c does the rest.
+ * Internal: interface of engine.c to the core, which each engine implements.
  */
 #ifndef PASSO_ENGINE_CORE_H
 #define PASSO_ENGINE_CORE_H
@@ -22,13 +22,14 @@ struct engine_outputs {
 
 struct engine_core;
 
-/* A core fresh out of configuration and reset. */
+/* Creates a core after configuration and reset; null if the parameters are not supported or memory is
+ * short. */
 struct engine_core *engine_core_open(const struct passo_engine_config *config,
     const struct engine_inputs *inputs, struct engine_outputs *outputs);
 void engine_core_close(struct engine_core *core);
 
-/* Executes up to `limit` (at least 1) clocks, but none after one on which an output other than MISO changes.
- * Returns how many; *outputs are as they stand then. */
+/* Executes up to `limit` (at least 1) clocks, ending with the first on which an output other than MISO
+ * changes. Returns the number of clocks; *outputs are the levels after the last one. */
 uint64_t engine_core_run(struct engine_core *core, const struct engine_inputs *inputs, uint64_t limit,
     struct engine_outputs *outputs);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The engine on the C model. It jumps over the clocks on which nothing happens.
+ * The C model engine. It skips the clocks on which nothing changes.
  */
 #include <stdlib.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The engine on the Verilated core. The core's parameters are fixed when it is built.
+ * The Verilated engine. The parameters of the core are fixed at build time.
  */
 #include <memory>
 
@@ -18,7 +18,7 @@ struct engine_core {
 	uint64_t half_period_ps = 0;
 #endif
 
-	/* One half of a clock, at the end of which the pins are stable. */
+	/* Half a clock period. */
 	void half(bool level)
 	{
 		top.clk = level;
@@ -39,7 +39,7 @@ struct engine_core {
 		top.rst = inputs.rst;
 	}
 
-	/* All outputs but MISO are registers of clk: they stand still until the next rising edge. */
+	/* All outputs except MISO are registered on clk: they are stable until the next rising edge. */
 	bool read(engine_outputs &outputs) const
 	{
 		const uint64_t step = top.step, dir = top.dir, enable = top.enable;
@@ -74,7 +74,7 @@ engine_core *engine_core_open(
 	core->apply(*inputs);
 	core->top.rst = 1;
 	for (int i = 0; i < 8; i++) {
-		/* Chip select resets the SCLK domain by an edge: here it rises, like a pin with a pull-up. */
+		/* A rising edge of chip select resets the SCLK domain. */
 		core->top.spi_cs_n = i >= 4;
 		core->half(false);
 		core->half(true);

@@ -9,7 +9,7 @@
 
 #define FLASH 0x08000000u
 #define RAM 0x20000000u
-#define NOWHERE 0xFFFFFFF6u /* no instruction is ever fetched from here */
+#define NOWHERE 0xFFFFFFF6u /* an address that is never executed */
 #define EXCEPTION_CYCLES 12u
 #define WAIT_FOR_INTERRUPT 0xBF30u
 #define XPSR_THUMB (1u << 24)
@@ -17,17 +17,17 @@
 #define XPSR_IT 0x0600FC00u
 #define FRAME 32u
 
-/* What unicorn calls these exceptions. */
+/* unicorn's numbers of these exceptions */
 #define INTERRUPT_SVC 2u
 #define INTERRUPT_EXCEPTION_EXIT 8u
 
 struct cpu {
-	struct passo_cpu public; /* first: a pointer to it is one to the whole */
+	struct passo_cpu public; /* first member: a pointer to it is also one to struct cpu */
 	struct passo_cpu_config config;
 	uc_engine *uc;
 	uint8_t *flash, *ram;
 	bool may_unmask;
-	bool held; /* a stop was asked for before the instruction at held_address */
+	bool held; /* a stop was requested before the instruction at held_address */
 	uint32_t held_address;
 	enum passo_cpu_stop stop;
 };
@@ -71,7 +71,7 @@ static uint32_t load(struct cpu *cpu, uint32_t address)
 	return word;
 }
 
-/* Time and profile of an instruction. */
+/* Accounts for an instruction: time and profile. */
 static void count(struct cpu *cpu, uint32_t address)
 {
 	struct passo_cpu *public = &cpu->public;
@@ -93,8 +93,8 @@ static void count(struct cpu *cpu, uint32_t address)
 		cpu->may_unmask = true; /* cpsie i, cpsie f, msr */
 }
 
-/* Before each instruction whose condition is true. Inside an IT block unicorn goes on in spite of a stop:
- * that the instruction held back was executed is seen when the next one comes. */
+/* Called before each instruction whose condition is true. Inside an IT block unicorn continues in spite of a
+ * stop; the next call shows that the instruction that was to be held back has been executed. */
 static void on_instruction(uc_engine *uc, uint64_t address, uint32_t length, void *user)
 {
 	struct cpu *cpu = user;

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * One interface to two engines that execute the core: the C model and the Verilated RTL.
- *
- * Both are driven through the same pins by the same SPI master, so that the same calls give both of them the
- * same waveforms. What comes out of their pins is recorded in the pin log.
+ * Both are driven through the same pins by the same SPI master, so the same calls produce the same input
+ * waveforms. Changes of the output pins are recorded in the pin log.
  */
 #ifndef PASSO_ENGINE_H
 #define PASSO_ENGINE_H
@@ -17,13 +16,13 @@ extern "C" {
 
 struct passo_engine_config {
 	uint32_t channels, axes, tick_log2, line_queue_log2, ramp_queue_log2; /* the parameters of the core */
-	uint64_t step_reset, dir_reset, enable_reset; /* levels of the pins at first */
-	uint32_t clock_hz;                            /* time scale of the waves */
-	uint32_t spi_half_period;                     /* clocks that SCLK stays at each level, at least 1 */
-	uint32_t every_clock; /* 1: the model executes every clock instead of jumping over quiet time */
+	uint64_t step_reset, dir_reset, enable_reset;                         /* initial pin levels */
+	uint32_t clock_hz;                                                    /* time scale of the waves */
+	uint32_t spi_half_period; /* clocks per SCLK level, at least 1 */
+	uint32_t every_clock;     /* 1: the model executes every clock instead of skipping quiet time */
 };
 
-/* The output pins from this clock on; clock 1 is the first rising edge after reset. */
+/* Levels of the output pins after a clock; clock 1 is the first rising edge after reset. */
 struct passo_pin_event {
 	uint64_t clock, step, dir, enable;
 	uint32_t running, irq;
@@ -31,7 +30,7 @@ struct passo_pin_event {
 
 struct passo_engine;
 
-/* NULL when the memory does not suffice or this library was built for other parameters. */
+/* NULL if memory is short or the library was built for other parameters. */
 struct passo_engine *passo_engine_create(const struct passo_engine_config *config);
 void passo_engine_destroy(struct passo_engine *engine);
 
@@ -39,23 +38,23 @@ void passo_engine_destroy(struct passo_engine *engine);
 void passo_engine_transfer(
     struct passo_engine *engine, const uint32_t *mosi, uint32_t *miso, size_t count, uint64_t gap);
 
-/* Runs for `clocks`, or less when the log fills up; returns how many. */
+/* Runs for up to `clocks`, fewer if the log is full; returns the clocks executed. */
 uint64_t passo_engine_run(struct passo_engine *engine, uint64_t clocks);
 
-/* The SPI pins one by one, for a master with a time of its own, which runs in ticks: from here on, `ticks` of
- * them last as long as `clocks` of the core, and tick t ends with clock floor(t * clocks / ticks). Tick 0 is
+/* Direct access to the SPI pins, for an external master that counts time in ticks. Sets the unit: `ticks`
+ * last as long as `clocks` of the core, and tick t ends with clock floor(t * clocks / ticks). Tick 0 is
  * now. */
 void passo_engine_pace(struct passo_engine *engine, uint64_t clocks, uint64_t ticks);
 
-/* Runs to the end of a tick (not before the one reached already), or less: to the first tick on whose end irq
- * has changed, or the log is full. Returns the tick reached. */
+/* Runs to the end of a tick, but only to the first tick at whose end irq has changed or the log is full.
+ * Ticks in the past are ignored. Returns the tick reached. */
 uint64_t passo_engine_follow(struct passo_engine *engine, uint64_t tick);
 
-/* Chip select falls (true) or rises (false) now. */
+/* Asserts (true) or releases (false) chip select now. */
 void passo_engine_select(struct passo_engine *engine, bool selected);
 
-/* Exchanges bytes beginning now, in mode 0, most significant bit first; SCLK stays `half_period` ticks at
- * each level. The log may become longer than full. */
+/* Exchanges bytes in mode 0, most significant bit first, starting now; each SCLK level lasts `half_period`
+ * ticks. Not limited by a full log. */
 void passo_engine_exchange(
     struct passo_engine *engine, const uint8_t *mosi, uint8_t *miso, size_t count, uint32_t half_period);
 
@@ -66,10 +65,10 @@ uint32_t passo_engine_running(const struct passo_engine *engine);
 void passo_engine_sync(struct passo_engine *engine, bool level);
 uint64_t passo_engine_clock(const struct passo_engine *engine);
 
-/* Moves up to `capacity` of the oldest events to `events`; returns how many. */
+/* Moves up to `capacity` of the oldest events to `events`; returns their number. */
 size_t passo_engine_drain(struct passo_engine *engine, struct passo_pin_event *events, size_t capacity);
 
-/* Waves (FST) of everything inside the core from now on; false when this build has none. */
+/* Starts to record all signals of the core to an FST file; false if this build has no waves. */
 bool passo_engine_open_waves(struct passo_engine *engine, const char *path);
 void passo_engine_close_waves(struct passo_engine *engine);
 

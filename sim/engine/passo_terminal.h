@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The console of the STM32 bridge (stm32_bridge/console) for a core behind two functions of the caller.
+ * The console of the STM32 bridge (stm32_bridge/console) with a core that the caller provides.
  */
 #ifndef PASSO_TERMINAL_H
 #define PASSO_TERMINAL_H
@@ -12,11 +12,11 @@
 extern "C" {
 #endif
 
-/* What the caller gives. All are called with its context. */
+/* Functions of the caller, called with its context. */
 struct passo_terminal_caller {
-	/* One chip select, and 64 clocks and 4 for each word after it. */
+	/* One chip select, followed by 64 clocks plus 4 for each word. */
 	bool (*transfer)(void *context, const uint32_t *mosi, uint32_t *miso, size_t count);
-	/* Let the core run for this time; return the time since its reset. */
+	/* Runs the core for this time; returns the time since its reset in microseconds. */
 	uint32_t (*advance)(void *context, uint32_t microseconds);
 	void (*write)(void *context, const char *text);
 	void *context;
@@ -24,18 +24,18 @@ struct passo_terminal_caller {
 
 struct passo_terminal;
 
-/* NULL if there is no memory. The greeting is written at once. */
+/* NULL if memory is short. Writes the greeting. */
 struct passo_terminal *passo_terminal_create(const struct passo_terminal_caller *caller, uint32_t clock_hz);
 void passo_terminal_destroy(struct passo_terminal *terminal);
 
-/* Bytes that were typed. */
+/* Input to the console. */
 void passo_terminal_type(struct passo_terminal *terminal, const char *bytes, size_t count);
 
-/* What the core does. */
+/* State of the core. */
 enum passo_terminal_status {
 	PASSO_TERMINAL_IDLE,
-	PASSO_TERMINAL_MOVES, /* or something is queued */
-	PASSO_TERMINAL_WAITS  /* a motion that is held, or waits for sync */
+	PASSO_TERMINAL_MOVES, /* a motion is running or queued */
+	PASSO_TERMINAL_WAITS  /* a motion is held or waits for sync */
 };
 
 /* One round of the main loop. */

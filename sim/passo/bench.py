@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How fast the engines and the link are; every figure is measured, and also written to build/bench.json."""
+"""Speed of the engines and the link; every figure is measured, and written to build/bench.json."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -27,7 +27,7 @@ FOUR_AXES = (10_000, 6_000, 4_000, 2_000)
 
 @dataclass(frozen=True)
 class Measurement:
-    """A motion at constant speed on an engine, for so many seconds of its time."""
+    """A motion at constant speed on an engine; `seconds` is simulated time."""
 
     name: str
     text: str
@@ -36,7 +36,7 @@ class Measurement:
     engine: Callable[[], Engine]
 
     def clocks_per_second(self) -> float:
-        """Speed during the motion, SPI frames and the recording of the pins included."""
+        """Clocks per second of real time during the motion, including SPI frames and pin recording."""
         steps = tuple(int(speed * self.seconds) for speed in self.steps_per_second)
         move = MoveInTime(steps, "linear", self.seconds, Fraction(0))
         file = MoveFile(Path(self.name), CLOCK_HZ, PinTiming(), (move,))
@@ -68,7 +68,7 @@ MEASUREMENTS = (
 
 
 def bench() -> dict[str, Any]:
-    """Measure, print, write the report and return it."""
+    """Measure, print, write build/bench.json and return its contents."""
     shown = table("Core with 1 channel of 4 axes at 100 MHz", "engine", "motion", "clocks/s", "of real time")
     speeds = {}
     for m in MEASUREMENTS:
@@ -76,7 +76,7 @@ def bench() -> dict[str, Any]:
         kilohertz = ", ".join(f"{steps / 1000:g}" for steps in m.steps_per_second)
         shown.add_row(m.text, f"{kilohertz} kHz", f"{speed / 1e6:,.1f} M", f"{speed / CLOCK_HZ:.2g}")
     links = table(
-        "Lines of 4 axes over the link, core at 72 MHz", "SCLK", "the wire's limit", "fed", "without a gap"
+        "Lines of 4 axes over the link, core at 72 MHz", "SCLK", "link limit", "fed", "without a gap"
     )
     rates = measure_all()
     for rate in rates:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The C code and the Verilated core as shared libraries, compiled once for each state of the sources."""
+"""The C code and the Verilated core as shared libraries, compiled once per version of the sources."""
 
 import importlib.util
 from dataclasses import asdict, dataclass, field
@@ -24,7 +24,7 @@ from passo.toolchain import environment, paths
 ENGINE_FLAGS = (*STRICT, "-O3", "-fPIC", *includes(paths.engine))
 CPP_FLAGS = ("-std=gnu++17", "-O3", "-Wall", "-fPIC", "-fno-gnu-unique", *includes(paths.engine))
 
-# Every register of the core has a reset, so nothing depends on what an X becomes.
+# Every register of the core has a reset, so the value chosen for X does not matter.
 VERILATOR_FLAGS = (
     *("--cc", "--build", "-j", "2", "-O3", "--x-assign", "fast", "--x-initial", "fast"),
     *("--no-timing", "--no-assert", "--top-module", "passo_spi_top", "--prefix", "Vpasso_spi_top"),
@@ -34,28 +34,28 @@ VERILATOR_FLAGS = (
 
 @dataclass(frozen=True)
 class Parameters:
-    """How a core is built: the parameters of rtl/passo_core.v."""
+    """Build parameters of a core, those of rtl/passo_core.v; ranges as in model/passo_model.h."""
 
     channels: int = 1
     axes: int = 4
     tick_log2: int = 7
     line_queue_log2: int = 8
     ramp_queue_log2: int = 4
-    # levels of the pins after configuration: the host cannot read them from the core
+    # pin levels after configuration, bit channel * axes + axis; the host cannot read them from the core
     step_reset: int = field(default=0, compare=False)
     dir_reset: int = field(default=0, compare=False)
     enable_reset: int = field(default=0, compare=False)
 
     @property
     def name(self) -> str:
-        """Part of a file name that tells these parameters from others."""
+        """Unique name of these parameters, for file names."""
         queues = f"{self.line_queue_log2}_{self.ramp_queue_log2}"
         levels = (self.step_reset, self.dir_reset, self.enable_reset)
         reset = "_reset{:x}_{:x}_{:x}".format(*levels) if any(levels) else ""
         return f"{self.channels}x{self.axes}_{self.tick_log2}_{queues}{reset}"
 
     def verilog(self) -> dict[str, str]:
-        """Names and values as the Verilog has them."""
+        """Verilog parameter names and values."""
         pins = self.channels * self.axes
         return {
             name.upper(): f"{pins}'h{value:x}" if name.endswith("_reset") else str(value)
@@ -64,27 +64,27 @@ class Parameters:
 
 
 def planner_library() -> Path:
-    """Planner, frame codec, link library and driver: what runs on a microcontroller as well."""
+    """Planner, frame codec, link library and driver, as on a microcontroller."""
     folders = (paths.planner, paths.protocol, paths.driver)
     return library("planner", folders, sources(*folders), "-O3")
 
 
 def model_library() -> Path:
-    """The engine on the C model, for any parameters."""
+    """The C model engine, for any parameters."""
     folders = (paths.model, paths.protocol)
     engine = [paths.engine / "engine.c", paths.engine / "engine_model.c"]
     return library("model", [*folders, paths.engine], [*sources(*folders), *engine], "-O3")
 
 
 def console_library() -> Path:
-    """The console of the STM32 bridge with its driver, as it runs on a microcontroller."""
+    """The console of the STM32 bridge with the driver, as on a microcontroller."""
     folders = (paths.console, paths.driver, paths.planner, paths.protocol)
     files = [*sources(*folders), paths.engine / "passo_terminal.c"]
     return library("console", [*folders, paths.engine], files, "-O3")
 
 
 def cpu_library() -> Path:
-    """The microcontroller's processor on unicorn."""
+    """The Cortex-M3 of the emulated microcontroller, on unicorn."""
     spec = importlib.util.find_spec("unicorn")
     if spec is None or spec.origin is None:
         raise BuildError("the Python package 'unicorn' is missing: run 'make setup'")
@@ -97,7 +97,7 @@ def cpu_library() -> Path:
 
 
 def rtl_library(parameters: Parameters, waves: bool = False) -> Path:
-    """The engine on the Verilated core."""
+    """The engine of the Verilated core, for given parameters."""
     verilated = _verilated(parameters, waves)
     include = Path(environment()["VERILATOR_ROOT"]) / "include"
     c_part, cpp_part = paths.engine / "engine.c", paths.engine / "engine_rtl.cpp"
@@ -118,7 +118,7 @@ def rtl_library(parameters: Parameters, waves: bool = False) -> Path:
 
 
 def waves_possible() -> bool:
-    """Verilator's FST writer needs two libraries."""
+    """Whether the two libraries that Verilator's FST writer needs are installed."""
     try:
         call([CXX, "-E", "-include", "lz4.h", "-include", "zlib.h", "-x", "c++", "/dev/null"])
     except BuildError:
@@ -127,10 +127,10 @@ def waves_possible() -> bool:
 
 
 def _verilated(parameters: Parameters, waves: bool) -> Path:
-    """The folder with the C++ that Verilator made of the core, compiled."""
+    """The folder with the compiled C++ that Verilator generates from the core."""
     modules = sorted(paths.rtl.glob("*.v"))
     flags = [*VERILATOR_FLAGS, *(f"-G{name}={value}" for name, value in parameters.verilog().items())]
-    # Recording the waves takes most of the time, so that optimizing only makes the build slow.
+    # Recording takes most of the time, so optimization would only slow down the build.
     optimize = "OPT_FAST=-O1 OPT_SLOW=-O0" if waves else "OPT_FAST=-O3 OPT_SLOW=-O1 OPT_GLOBAL=-O2"
     flags += ["-MAKEFLAGS", optimize]
     if waves:

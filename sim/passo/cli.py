@@ -28,7 +28,7 @@ FAILURES = (BuildError, DifferenceError, FrameError, LinkError, RunError)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; return its exit status: 0 all agrees, 1 mismatch or fault, 2 bad input."""
+    """Run the command; return its exit status: 0 success, 1 mismatch or fault, 2 invalid input."""
     options = _parser().parse_args(arguments)
     try:
         return options.command(options)
@@ -46,26 +46,28 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="passo", description="Simulate the Passo step-pulse generator.")
     parser.add_argument("--version", action="version", version=f"passo {__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    run = commands.add_parser("run", help="make the moves of a file and check every edge")
+    run = commands.add_parser("run", help="run the moves of a file and check every edge")
     run.set_defaults(command=_run)
     run.add_argument("moves", type=Path, metavar="MOVES.toml", help="the moves")
     run.add_argument(
         "--engine",
         choices=ENGINES,
         default="both",
-        help="who makes them; both (default): RTL and model, compared edge for edge",
+        help="engine to run; both (default): RTL and model, compared edge for edge",
     )
-    run.add_argument("--out", type=Path, metavar="DIR", help="where the results go (default build/run/NAME)")
-    run.add_argument("--waves", action="store_true", help="write waves.fst (the RTL's inside)")
+    run.add_argument("--out", type=Path, metavar="DIR", help="output folder (default build/run/NAME)")
+    run.add_argument("--waves", action="store_true", help="write waves.fst (internal signals of the RTL)")
     run.add_argument("--plot", action="store_true", help="write motion.png")
-    shape = commands.add_parser("shape", help="make and check the table of a shape of your own")
+    shape = commands.add_parser("shape", help="create and check the table of a user-defined shape")
     shape.set_defaults(command=_shape)
     source = shape.add_mutually_exclusive_group(required=True)
     source.add_argument("--formula", metavar="F", help="of u from 0 to 1, such as 'u^2 * (3 - 2 * u)'")
     source.add_argument("--csv", type=Path, metavar="FILE", help="u,s: a curve; or k,point: a table")
     shape.add_argument("--out", type=Path, metavar="FILE", help="write the table: FILE.csv or FILE.toml")
     shape.add_argument("--plot", type=Path, metavar="FILE.png", help="draw it")
-    console = commands.add_parser("console", help="talk to a core as to the STM32 board (docs/console.md)")
+    console = commands.add_parser(
+        "console", help="console of the STM32 board with a simulated core (docs/console.md)"
+    )
     console.set_defaults(command=_console)
     console.add_argument("--engine", choices=ENGINES, default="rtl", help="the core (default rtl)")
     console.add_argument("--axes", type=int, default=4, metavar="N", help="axes of the core (default 4)")
@@ -75,17 +77,19 @@ def _parser() -> argparse.ArgumentParser:
     console.add_argument("--echo", action="store_true", help="show each line before its answer")
     firmware = commands.add_parser(
         "firmware",
-        help="type moves at the console of the STM32's firmware, simulated with a core at its pins",
+        help="type moves at the console of the STM32 firmware, emulated with a simulated core at its pins",
     )
     firmware.set_defaults(command=_firmware)
     firmware.add_argument(
-        "moves", type=Path, nargs="*", metavar="MOVES.toml", help="default: some short ones of examples/"
+        "moves", type=Path, nargs="*", metavar="MOVES.toml", help="default: some short files in examples/"
     )
     firmware.add_argument("--engine", choices=("rtl", "model"), default="rtl", help="the core (default rtl)")
-    firmware.add_argument("--table", action="store_true", help="measure the firmware instead")
-    demo = commands.add_parser("demo", help="make the moves of examples/, with pictures in build/demo")
+    firmware.add_argument(
+        "--table", action="store_true", help="measure the firmware instead and write docs/firmware_report.md"
+    )
+    demo = commands.add_parser("demo", help="run the moves in examples/; pictures in build/demo")
     demo.set_defaults(command=_demo)
-    bench = commands.add_parser("bench", help="measure how fast the engines are")
+    bench = commands.add_parser("bench", help="measure the speed of the engines")
     bench.set_defaults(command=_bench)
     return parser
 
@@ -124,7 +128,7 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _conclude(run: Run, out: Path) -> int:
-    """Say what came of it."""
+    """Print the result; return the exit status."""
     problems = run.problems()
     for problem in problems:
         print(f"{run.file.path}: {problem}", file=sys.stderr)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Compilers: their flags, and what they make, kept as long as everything that went into it stays the same."""
+"""Compilers and their flags; outputs are cached until a source, header or flag changes."""
 
 import fcntl
 import hashlib
@@ -20,17 +20,17 @@ CORTEX_M3 = ("arm-none-eabi-gcc", "-mcpu=cortex-m3", "-mthumb", "-Os", "-std=c11
 
 STRICT = ("-std=c11", "-Wall", "-Wextra", "-Wconversion", "-Werror")
 SHARED = ("-fPIC", "-shared", "-Wl,--no-undefined")
-# Every fault is fatal. The address sanitizer has to be in the program itself, so a library for Python has
-# only the other one.
+# Every error is fatal. The address sanitizer must be linked into the program itself, so libraries for Python
+# use only the undefined behaviour sanitizer.
 SANITIZED = ("-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 DEFINED = ("-O2", "-fsanitize=undefined", "-fno-sanitize-recover=all")
 
 LIBRARY = "library.so"
-MESSAGE_LINES = 30  # of a compiler's complaints
+MESSAGE_LINES = 30  # of compiler messages
 
 
 class BuildError(RuntimeError):
-    """A compiler failed; the text is what it said."""
+    """A compiler failed; the text is its message."""
 
 
 def sources(*folders: Path) -> list[Path]:
@@ -44,15 +44,15 @@ def headers(*folders: Path) -> list[Path]:
 
 
 def includes(*folders: Path) -> list[str]:
-    """The flags with which a compiler finds the headers of folders."""
+    """Compiler flags for the headers of folders."""
     return [f"-I{folder}" for folder in folders]
 
 
 def call(command: Sequence[str | Path], text: str | None = None) -> str:
-    """Run a compiler, with a text as its input; return what it prints.
+    """Run a compiler with a text on its standard input; return its standard output.
 
     Raises:
-        BuildError: it failed.
+        BuildError: The compiler failed.
     """
     words = [str(word) for word in command]
     done = subprocess.run(words, env=environment(), input=text, capture_output=True, text=True)
@@ -63,7 +63,7 @@ def call(command: Sequence[str | Path], text: str | None = None) -> str:
 
 
 def compile_to(made: Path, *arguments: str | Path, compiler: Sequence[str] = (CC,)) -> Path:
-    """Compile to a file, which is only there when it is whole."""
+    """Compile to a file, which appears only when it is complete."""
     made.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=f"{made.stem}.", dir=made.parent) as folder:
         part = Path(folder) / made.name
@@ -79,16 +79,16 @@ def kept(
     *rest: str | Path,
     compiler: Sequence[str] = (CC,),
 ) -> Path:
-    """The same, only once for the same inputs and flags: the file's name gets a hash of them.
+    """The same, but only once for the same inputs and flags, a hash of which is added to the file name.
 
-    The rest of the arguments says only where the inputs are.
+    `rest` are further arguments that only locate the inputs; they are not hashed.
     """
     made = made.with_name(f"{made.stem}-{_hash(inputs, [*compiler, *flags])}{made.suffix}")
     return made if made.exists() else compile_to(made, *flags, *rest, compiler=compiler)
 
 
 def library(name: str, folders: Sequence[Path], files: Sequence[Path], *flags: str) -> Path:
-    """A shared library of C sources, with the headers of folders."""
+    """Compile C sources to a cached shared library, with the headers of folders; return its path."""
     flags = (*STRICT, *SHARED, *includes(*folders), *flags)
 
     def make(folder: Path) -> None:
@@ -98,9 +98,9 @@ def library(name: str, folders: Sequence[Path], files: Sequence[Path], *flags: s
 
 
 def cached(name: str, inputs: Iterable[Path], flags: Sequence[str], make: Callable[[Path], None]) -> Path:
-    """The folder build/lib/NAME-HASH that `make` fills from these inputs; made only if it is not there yet.
+    """The folder build/lib/NAME-HASH, which `make` fills from these inputs if it does not exist yet.
 
-    Of each name only the newest folder stays.
+    Older folders of the same name are deleted.
     """
     libraries = paths.build / "lib"
     folder = libraries / f"{name}-{_hash(inputs, flags)}"
@@ -127,7 +127,7 @@ def cached(name: str, inputs: Iterable[Path], flags: Sequence[str], make: Callab
 
 
 def declarations(files: Iterable[Path]) -> str:
-    """Headers after the preprocessor, for cffi. It knows the standard types, so nothing is included."""
+    """Preprocessed headers for cffi. It knows the standard types, so #include lines are dropped."""
     text = "\n".join(re.sub(r"(?m)^#include.*$", "", path.read_text()) for path in files)
     return call([CC, "-E", "-P", "-x", "c", "-"], text)
 
@@ -141,7 +141,7 @@ def _hash(inputs: Iterable[Path], flags: Sequence[str]) -> str:
 
 @contextmanager
 def _lock(path: Path) -> Iterator[None]:
-    """Only one process at a time makes the same folder."""
+    """Hold a file lock, so that only one process builds the same folder."""
     with path.open("w") as file:
         fcntl.flock(file, fcntl.LOCK_EX)
         yield

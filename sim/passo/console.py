@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the commands show: progress bars, stages and tables."""
+"""Terminal output of the commands: progress bars, stages and tables."""
 
 import time
 from collections.abc import Callable, Iterator
@@ -15,7 +15,7 @@ console = Console()
 
 @contextmanager
 def progress(name: str, clocks: int) -> Iterator[Callable[[int], None]]:
-    """A progress bar, if there is a terminal to show it."""
+    """A progress bar if the output is a terminal; yields a function that sets the clocks done so far."""
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
@@ -28,7 +28,7 @@ def progress(name: str, clocks: int) -> Iterator[Callable[[int], None]]:
 
 
 def stages() -> Callable[[str], None]:
-    """A function that prints a line, with the time since now in front, wherever the output goes."""
+    """Return a function that prints a line with the time elapsed since now."""
     began = time.monotonic()
 
     def tell(words: str) -> None:
@@ -39,7 +39,7 @@ def stages() -> Callable[[str], None]:
 
 
 def table(title: str, first: str, *columns: str) -> Table:
-    """An empty table with numbers in all columns but the first."""
+    """An empty table; all columns except the first are right-aligned."""
     made = Table(title=title, title_justify="left", box=SIMPLE_HEAD, show_edge=False, pad_edge=False)
     made.add_column(first, no_wrap=True)
     for column in columns:

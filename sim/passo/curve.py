@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The ideal continuous motion of a plan, and how far each step is from it."""
+"""The ideal continuous motion of a plan, and the distance of each step from it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from passo.plan import ALPHA_ONE, ALPHA_RESET, Q48, Plan
 from passo.run import Run
 from passo.shape import ONE, POINTS
 
-# A shape and its integral from 0 to u.
+# A function of u that returns a shape and its integral from 0 to u.
 Shape = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
@@ -41,7 +41,7 @@ def _ease(u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _table(u: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Straight lines between the points, of which the last is 1."""
+    """Linear interpolation between the points; the last one is 1."""
     place = u * POINTS
     k = np.minimum(place.astype(int), POINTS - 1)
     areas = np.concatenate([[0], np.cumsum((points[1:] + points[:-1]) / 2)])
@@ -50,7 +50,7 @@ def _table(u: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def shapes_of(plan: Plan) -> tuple[Shape, ...]:
-    """By enum passo_shape."""
+    """The shapes that the ramps of a plan use, indexed by enum passo_shape."""
     sigmoid = partial(_sigmoid, a=(plan.c.sigmoid_alpha or ALPHA_RESET) / ALPHA_ONE)
     if plan.move.profile == USER:
         sigmoid = partial(_table, points=np.array([*plan.table, ONE]) / ONE)
@@ -74,7 +74,7 @@ class Segment:
     shape: Shape
 
     def at(self, clocks: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Velocity and distance; beyond its ends as at its ends."""
+        """Velocity (substeps per clock) and distance (substeps) at `clocks`, clamped to the segment."""
         u = np.clip((clocks - self.begin) / self.length, 0, 1)
         value, area = self.shape(u)
         change = self.velocity_end - self.velocity
@@ -103,7 +103,7 @@ class Curve:
             velocity = velocity_end
 
     def at(self, clocks: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Velocity and distance."""
+        """Velocity and distance at each of `clocks`; the velocity outside the plan is 0."""
         velocity, distance = np.zeros(len(clocks)), np.zeros(len(clocks))
         for segment in self.segments:
             inside = clocks >= segment.begin
@@ -113,9 +113,9 @@ class Curve:
 
 
 def step_errors(run: Run, axis: int) -> tuple[np.ndarray, np.ndarray]:
-    """Clock of each step of an axis and how far the ideal curve is beyond the step's own place, in steps.
+    """Clock of each step of an axis, and the lead of the ideal curve over the step at that clock, in steps.
 
-    The place of step q (from 0) of a line is q + 1/2: the DDA starts half full.
+    Step q (from 0) of a line belongs at distance q + 1/2, because the DDA starts half full.
     """
     clocks, _ = run.steps(axis)
     errors, first, begin = [], 0, 0
@@ -130,14 +130,17 @@ def step_errors(run: Run, axis: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def speeds_and_positions(run: Run, points: int = 2000) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Times (clocks), speeds (steps per clock) and positions (steps) of the ideal motion; axes are rows."""
+    """The ideal motion, sampled: times (clocks), speeds (steps per clock) and positions (steps).
+
+    Speeds and positions have one row per axis; there are about `points` columns.
+    """
     times, speeds, positions = [], [], []
     begin, base = 0, np.zeros((run.file.axes, 1))
     for plan in run.plans:
         clocks = np.linspace(0, plan.clocks, max(20, points // len(run.plans)))
         clocks = np.concatenate([[0], clocks, [plan.clocks]])
         velocity, distance = Curve(plan).at(clocks)
-        velocity[[0, -1]] = 0  # a plan starts and ends at rest, maybe with a jump
+        velocity[[0, -1]] = 0  # a plan starts and ends at rest, possibly with a jump
         share = np.array(plan.move.steps)[:, None] / plan.line.substeps
         times.append(clocks + begin)
         speeds.append(velocity * share)

@@ -19,7 +19,7 @@ EXAMPLES = (
 
 
 def demo() -> bool:
-    """Run it; return whether everything agreed."""
+    """Run the demonstration; return whether RTL and model agreed everywhere."""
     runs, summaries = {}, {}
     for name in EXAMPLES:
         file = read_moves(paths.examples / f"{name}.toml")

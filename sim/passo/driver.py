@@ -14,7 +14,7 @@ MICROSECONDS = 1_000_000
 
 
 class DriverError(LinkError):
-    """A call of the driver failed; `name` is that of the error, as "CORE_RESET"."""
+    """A call of the driver failed; `name` is the name of the error, such as "CORE_RESET"."""
 
     def __init__(self, call: str, error: int):
         super().__init__("", error)
@@ -22,11 +22,11 @@ class DriverError(LinkError):
 
 
 class Source:
-    """A `struct passo_source` that gives out `struct passo_line` and `struct passo_ramp` of two iterables."""
+    """A `struct passo_source` with the `struct passo_line` and `struct passo_ramp` of two iterables."""
 
     def __init__(self, lines: Iterable[Any], ramps: Iterable[Any]):
-        """An item None stands for: there is none at the moment."""
-        self.ticks: list[int] = []  # of the ramps given out
+        """An item None means: none available at the moment."""
+        self.ticks: list[int] = []  # of the ramps supplied so far
         self._lines, self._ramps = iter(lines), iter(ramps)
         self._callbacks = (
             ffi().callback("bool(void *, struct passo_line *)", self._line),
@@ -49,7 +49,10 @@ class Source:
 
 
 class Driver:
-    """One channel of the core behind an engine. Methods not listed here are called with `call`."""
+    """One channel of the core of an engine. Functions of passo.h without a method are called with `call`.
+
+    Methods raise DriverError, and the engine's own exceptions.
+    """
 
     def __init__(
         self,
@@ -59,7 +62,7 @@ class Driver:
         channel: int = 0,
         tries: int = 0,
     ):
-        """Open it; `parameters` are what the core must have, unless None. Raise DriverError."""
+        """Open the channel; `parameters`, unless None, must match those of the core."""
         self.engine = engine
         self.clock_hz = clock_hz or engine.clock_hz
         self.lib = planner()
@@ -74,21 +77,21 @@ class Driver:
         self.open()
 
     def open(self) -> None:
-        """Make contact, also again."""
+        """Open the channel, or reopen it."""
         self._check("open", self.lib.passo_open(self.c, self.host, self.hardware.c, self.options))
 
     def call(self, name: str, *arguments: Any) -> None:
-        """Call passo_NAME(); raise DriverError if it fails."""
+        """Call passo_NAME(); raises DriverError if it fails."""
         self._check(name, self.attempt(name, *arguments))
 
     def attempt(self, name: str, *arguments: Any) -> int:
-        """Call passo_NAME() and return one of enum passo_error."""
+        """Call passo_NAME() and return its enum passo_error."""
         error = getattr(self.lib, f"passo_{name}")(self.c, *arguments)
         self.hardware.check()
         return error
 
     def configure_axis(self, axis: int, pins: PinTiming, **fields: Any) -> None:
-        """Set the pins of an axis, and enable its drive; `fields` are those of struct passo_axis_config."""
+        """Set the pins of an axis and enable its drive; `fields` are members of struct passo_axis_config."""
         config = {
             "step_high_ns": pins.step_high,
             "step_low_ns": pins.step_low,
@@ -101,36 +104,36 @@ class Driver:
         self.call("enable", axis, True)
 
     def stream(self, source: Source) -> None:
-        """Feed the queues from a source; `poll` does it."""
+        """Start to stream from a source; `poll` feeds the queues."""
         self._source = source
         self.call("stream", source.c)
 
     def poll(self) -> None:
-        """At most one frame; raise DriverError when something went wrong, once."""
+        """passo_poll(): at most one frame; raises each error once."""
         self.call("poll")
 
     def wait(self, seconds: float = 0) -> None:
-        """Poll until all has ended."""
+        """Poll until all motions have ended; 0: no timeout."""
         self.call("wait", round(seconds * MICROSECONDS))
 
     @property
     def is_moving(self) -> bool:
-        """Something queued has not ended, as far as `poll` has seen."""
+        """Whether a queued motion has not ended yet, as of the last `poll`."""
         return self.lib.passo_is_moving(self.c)
 
     @property
     def is_streaming(self) -> bool:
-        """Not everything has been sent."""
+        """Whether a stream has not been sent completely yet."""
         return self.lib.passo_is_streaming(self.c)
 
     @property
     def idle_microseconds(self) -> int:
-        """Until `poll` has something to do."""
+        """Time until `poll` has something to do."""
         return self.lib.passo_idle_time(self.c)
 
     @property
     def fault(self) -> str:
-        """Name of what is wrong until it is cleared, or gets through: OK, if nothing."""
+        """Name of the present error (passo_fault()), or "OK"."""
         return error_name(self.lib.passo_fault(self.c))
 
     @property
@@ -139,25 +142,25 @@ class Driver:
         return self.host.counters
 
     def positions(self) -> list[int]:
-        """Steps made by each axis, all at one moment."""
+        """Steps made by each axis, all sampled at the same time."""
         positions = ffi().new("int32_t[8]")
         self.call("positions", positions)
         return list(positions[0 : self.c.machine.axes])
 
     def snapshot(self) -> Any:
-        """The `struct passo_snapshot` of now."""
+        """Read the present `struct passo_snapshot`."""
         snapshot = ffi().new("struct passo_snapshot *")
         self.call("read_state", snapshot)
         return snapshot
 
     @property
     def state(self) -> State:
-        """As `poll` saw it last."""
+        """State of the channel, as of the last read."""
         return State(self.c.snapshot.state)
 
     @property
     def cause(self) -> Cause:
-        """As `poll` saw it last."""
+        """Cause of the last stop, as of the last read."""
         return Cause(self.c.snapshot.cause)
 
     def _check(self, call: str, error: int) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The engines that execute the core: the C model, the Verilated RTL, and both in step with each other."""
+"""The engines that execute the core: the C model, the Verilated RTL, and both in lockstep."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,7 +10,8 @@ import numpy as np
 from passo.build import Parameters, model_library, rtl_library
 from passo.native import ffi, load
 
-# One row for each clock on which an output pin changes; clock 1 is the first one after reset.
+# Pin levels after each clock on which an output pin changes; clock 1 is the first one after reset. step, dir
+# and enable have bit channel * axes + axis, running and irq one bit per channel.
 EVENT = np.dtype(
     [("clock", "u8"), ("step", "u8"), ("dir", "u8"), ("enable", "u8"), ("running", "u4"), ("irq", "u4")]
 )
@@ -19,7 +20,7 @@ EVENTS_PER_DRAIN = 65536
 
 
 class DifferenceError(Exception):
-    """RTL and model disagree: `expected` is the model's level or word, `actual` the RTL's."""
+    """RTL and model differ: `expected` is the model's level or word, `actual` the RTL's."""
 
     def __init__(self, clock: int, signal: str, index: int, expected: int, actual: int):
         self.clock, self.signal, self.index = clock, signal, index
@@ -32,8 +33,22 @@ class DifferenceError(Exception):
         )
 
 
-class Engine:
-    """One core behind its pins."""
+class _Closed:
+    """Closes itself at the end of a with statement."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Free what it has."""
+        raise NotImplementedError
+
+
+class Engine(_Closed):
+    """A core that is accessed through its pins; see sim/engine/passo_engine.h."""
 
     def __init__(
         self,
@@ -57,18 +72,12 @@ class Engine:
         self._events = ffi().new("struct passo_pin_event[]", EVENTS_PER_DRAIN)
         self._engine = self._c.passo_engine_create(config)
         if self._engine == ffi().NULL:
-            raise RuntimeError(f"{library} does not take {parameters}")
+            raise RuntimeError(f"{library} does not support {parameters}")
 
     def close(self) -> None:
         """Free the engine; it cannot be used any more."""
         self._c.passo_engine_destroy(self._engine)
         self._engine = ffi().NULL
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     @property
     def clock(self) -> int:
@@ -82,23 +91,23 @@ class Engine:
         return list(miso)
 
     def run(self, clocks: int) -> int:
-        """Run for `clocks`, or less when there are many events to drain; return how many."""
+        """Run for up to `clocks`, fewer if many events are waiting; return the clocks executed."""
         return self._c.passo_engine_run(self._engine, clocks)
 
     def pace(self, clocks: int, ticks: int) -> None:
-        """Let a master's time run in ticks: `ticks` last as long as `clocks`. Tick 0 is now."""
+        """Set the time unit of an external master: `ticks` last as long as `clocks`. Tick 0 is now."""
         self._c.passo_engine_pace(self._engine, clocks, ticks)
 
     def follow(self, tick: int) -> int:
-        """Run to the end of a tick, a change of irq or many events to drain; return the tick reached."""
+        """Run to the end of a tick, or until irq changes or many events wait; return the tick reached."""
         return self._c.passo_engine_follow(self._engine, tick)
 
     def select(self, selected: bool) -> None:
-        """Chip select falls or rises now."""
+        """Assert or release chip select now."""
         self._c.passo_engine_select(self._engine, selected)
 
     def exchange(self, mosi: bytes, half_period: int) -> bytes:
-        """Exchange bytes from now on; SCLK stays `half_period` ticks at each level."""
+        """Exchange bytes in SPI mode 0; each SCLK level lasts `half_period` ticks."""
         miso = ffi().new("uint8_t[]", len(mosi))
         self._c.passo_engine_exchange(self._engine, mosi, miso, len(mosi), half_period)
         return bytes(miso)
@@ -129,12 +138,12 @@ class Engine:
         return np.frombuffer(ffi().buffer(self._events), EVENT, count).copy()
 
     def open_waves(self, path: Path) -> None:
-        """Record everything inside the core from now on; only in an engine that was built for it."""
+        """Start to record all signals of the core to an FST file; requires an engine built with waves."""
         if not self._c.passo_engine_open_waves(self._engine, str(path).encode()):
             raise OSError(f"cannot write waves to {path}")
 
     def close_waves(self) -> None:
-        """Finish the file of the waves."""
+        """Close the waves file."""
         self._c.passo_engine_close_waves(self._engine)
 
 
@@ -148,8 +157,8 @@ def rtl_engine(parameters: Parameters, clock_hz: int = 100_000_000, waves: bool 
     return Engine(rtl_library(parameters, waves), parameters, clock_hz)
 
 
-class PairEngine:
-    """RTL and model with the same waveforms at their inputs; every output of theirs is compared."""
+class PairEngine(_Closed):
+    """RTL and model with the same input waveforms; all outputs are compared, see DifferenceError."""
 
     def __init__(self, rtl: Engine, model: Engine):
         self.rtl, self.model = rtl, model
@@ -163,19 +172,13 @@ class PairEngine:
         self.rtl.close()
         self.model.close()
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
     @property
     def clock(self) -> int:
         """Clocks since reset."""
         return self.rtl.clock
 
     def transfer(self, mosi: Sequence[int], gap: int = 16) -> list[int]:
-        """Send the same words to both and compare what they answer."""
+        """Send the same words to both and compare the replies."""
         clock = self.clock
         actual, expected = self.rtl.transfer(mosi, gap), self.model.transfer(mosi, gap)
         self._compare()
@@ -197,7 +200,7 @@ class PairEngine:
         self.model.sync(level)
 
     def drain(self) -> np.ndarray:
-        """The pin events since the last call; they are the same in both."""
+        """The pin events (EVENT) since the last call, which are the same in both."""
         events, self._events = self._events, []
         return np.concatenate([np.empty(0, EVENT), *events])
 
@@ -206,7 +209,7 @@ class PairEngine:
         self.rtl.open_waves(path)
 
     def close_waves(self) -> None:
-        """Finish the file of the waves."""
+        """Close the waves file."""
         self.rtl.close_waves()
 
     def _compare(self) -> None:
@@ -226,7 +229,7 @@ def count_edges(events: np.ndarray) -> int:
 
 
 def first_difference(expected: np.ndarray, actual: np.ndarray, before: np.void) -> DifferenceError:
-    """Where two unequal lists of events, that follow the same event `before`, part."""
+    """The first difference between two lists of events that follow the same event `before`."""
     common = min(len(expected), len(actual))
     at = int(np.argmax(expected[:common] != actual[:common])) if common else 0
     if common and expected[at] == actual[at]:
@@ -235,7 +238,7 @@ def first_difference(expected: np.ndarray, actual: np.ndarray, before: np.void) 
     e = expected[at] if at < len(expected) else None
     a = actual[at] if at < len(actual) else None
     clock = min(int(event["clock"]) for event in (e, a) if event is not None)
-    # The engine whose event comes later still has the pins of before.
+    # The engine whose event comes later still has its previous pin levels.
     e = e if e is not None and e["clock"] == clock else last
     a = a if a is not None and a["clock"] == clock else last
     signal = next(s for s in SIGNALS if e[s] != a[s])

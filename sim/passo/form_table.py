@@ -1,28 +1,28 @@
 # SPDX-License-Identifier: MIT
-"""What move_forms.py is made of: forms of a move, their keys and rules."""
+"""The types of move_forms.py: move forms, their keys and rules."""
 
 from dataclasses import dataclass
 
-Points = tuple[int, ...]  # the points of a user's shape; empty with any other profile
+Points = tuple[int, ...]  # points of a user-defined shape; empty for other profiles
 
 
 @dataclass(frozen=True)
 class Key:
-    """A key of a form, and what its value becomes in the struct of the planner."""
+    """A key of a form, and the conversion of its value for the planner's struct."""
 
     name: str
     kind: str
-    member: str | None  # of the struct
-    factor: int | str | None = None  # "clock_hz": times the clock; none: as it is
+    member: str | None  # struct member; None: not in the struct
+    factor: int | str | None = None  # scale in the struct; "clock_hz": the clock; None: 1
     default: int | str | None = None  # a number, or the name of another key
-    low: int = 0  # of a whole number
+    low: int = 0  # range of an integer
     high: int = 0
     file_only: bool = False
 
 
 @dataclass(frozen=True)
 class Rule:
-    """What is checked when all keys are read: `key` excludes the other, needs it, or is above zero."""
+    """A rule checked after all keys are read: `key` excludes `other`, needs it, or must be above 0."""
 
     kind: str
     key: str
@@ -31,9 +31,9 @@ class Rule:
 
 @dataclass(frozen=True)
 class Form:
-    """A form of a move: passo_plan_NAME() plans it."""
+    """A move form, planned by passo_plan_NAME()."""
 
     name: str
     keys: tuple[Key, ...]
     rules: tuple[Rule, ...] = ()
-    told_by: str | None = None  # the key that tells it, so that `method` need not
+    told_by: str | None = None  # the key that identifies the form when `method` is missing

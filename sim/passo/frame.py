@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The frame codec (protocol/passo_frame.h) for Python."""
+"""Python binding of the frame codec (protocol/passo_frame.h)."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -14,19 +14,19 @@ CRC_START = 0xFFFFFFFF
 
 
 class FrameError(Exception):
-    """The reply does not tell what became of the frame."""
+    """The reply is not valid, so it is unknown whether the frame was executed."""
 
 
 class NoAnswerError(FrameError):
-    """MISO never moved."""
+    """MISO never changed."""
 
 
 class NoAckError(FrameError):
-    """The core sent its status in place of the ack."""
+    """The core sent its status instead of the ack."""
 
 
 class DamagedReplyError(FrameError):
-    """The ack or the data do not agree with their check."""
+    """The ack or the data failed their check."""
 
 
 class WrongSequenceError(FrameError):
@@ -34,44 +34,44 @@ class WrongSequenceError(FrameError):
 
 
 def crc(words: Sequence[int], start: int = CRC_START) -> int:
-    """CRC-32/MPEG-2 over words."""
+    """CRC-32/MPEG-2 over 32-bit words."""
     return planner().passo_crc(start, list(words), len(words))
 
 
 def write_frame(sequence: int, address: int, words: Sequence[int]) -> list[int]:
-    """A frame that writes consecutive registers."""
+    """A frame that writes 1 to 60 consecutive registers."""
     return _build(planner().passo_frame_write, sequence, address, list(words), len(words))
 
 
 def push_frame(sequence: int, address: int, words: Sequence[int]) -> list[int]:
-    """A frame that writes all words to one register."""
+    """A frame that writes 1 to 60 words to one register."""
     return _build(planner().passo_frame_push, sequence, address, list(words), len(words))
 
 
 def read_frame(sequence: int, address: int, length: int) -> list[int]:
-    """A frame that reads consecutive registers."""
+    """A frame that reads 1 to 60 consecutive registers."""
     frame = ffi().new("uint32_t[]", length + OVERHEAD)
     return list(frame[0 : planner().passo_frame_read(frame, sequence, address, length)])
 
 
 def write_verdict(mosi: Sequence[int], miso: Sequence[int]) -> Verdict:
-    """What became of a write or push; raises a FrameError when the reply does not tell."""
+    """Verdict on a write or push; raises FrameError if the reply is not valid."""
     return _verdict(planner().passo_frame_write_reply, mosi, miso)
 
 
 def read_verdict(mosi: Sequence[int], miso: Sequence[int]) -> Verdict:
-    """Whether the words of `miso` from DATA on are what was asked for."""
+    """Verdict on a read; if OK, its data start at miso[DATA]. Raises FrameError."""
     return _verdict(planner().passo_frame_read_reply, mosi, miso)
 
 
 def line_words(line: Any, axes: int) -> list[int]:
-    """Payload of a `struct passo_line`."""
+    """Payload words of a `struct passo_line`."""
     words = ffi().new("uint32_t[]", 2 + axes)
     return list(words[0 : planner().passo_line_words(words, ffi().addressof(line), axes)])
 
 
 def ramp_words(ramp: Any) -> list[int]:
-    """Payload of a `struct passo_ramp`."""
+    """Payload words of a `struct passo_ramp`."""
     words = ffi().new("uint32_t[5]")
     return list(words[0 : planner().passo_ramp_words(words, ffi().addressof(ramp))])
 
@@ -88,9 +88,9 @@ def _verdict(judge: Any, mosi: Sequence[int], miso: Sequence[int]) -> Verdict:
     if reply == c.PASSO_REPLY_STUCK:
         raise NoAnswerError(f"MISO stays {'high' if miso[0] else 'low'}")
     if reply == c.PASSO_REPLY_NO_ACK:
-        raise NoAckError("the core took the frame for unfinished")
+        raise NoAckError("the core saw an incomplete frame")
     if reply == c.PASSO_REPLY_DAMAGED:
-        raise DamagedReplyError("the reply does not agree with its check")
+        raise DamagedReplyError("the reply failed its check")
     if reply == c.PASSO_REPLY_SEQUENCE:
         raise WrongSequenceError(f"sequence {miso[-1] >> 24} instead of {mosi[0] >> 20 & 0xFF}")
     return Verdict(verdict[0])

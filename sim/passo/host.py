@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One channel of the core, register by register; passo.driver is what a program uses."""
+"""One channel of the core at register level. Programs normally use passo.driver."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,11 +16,11 @@ RATE_ONE = 1 << 16
 
 
 class HostError(Exception):
-    """This is not the core that the host expects."""
+    """The core is not the expected one."""
 
 
 def load_table(link: Link, bank: int, points: Sequence[int]) -> None:
-    """Rewrite a shape's bank (from 1), while no motion is prepared or runs."""
+    """Load a table into a bank (from 1); no motion may be prepared or running."""
     address = getattr(r, f"ADDRESS_{r.Shape(bank).name}_BASE")
     for k in range(0, len(points), frame.PAYLOAD_MAX):
         link.write(address + k, *points[k : k + frame.PAYLOAD_MAX])
@@ -39,7 +39,7 @@ class ChannelState:
 
 
 class Channel:
-    """One channel: `AXES` coordinated axes."""
+    """One channel with its coordinated axes. Methods raise LinkError."""
 
     def __init__(self, link: Link, parameters: Parameters, number: int = 0):
         self.link, self.parameters, self.number = link, parameters, number
@@ -58,11 +58,11 @@ class Channel:
             raise HostError(f"the core has {actual}, expected {parameters}")
 
     def axis_base(self, axis: int) -> int:
-        """Address of the registers of an axis."""
+        """Word address of the registers of an axis."""
         return self.base + r.CHANNEL_AXIS_BASE + axis * r.CHANNEL_AXIS_STRIDE
 
     def configure_axis(self, axis: int, pins: PinTiming, flags: int = 0) -> None:
-        """Set the pins of an axis and enable its drive; `flags` is its PINS register."""
+        """Set the pins of an axis and enable its drive; `flags` is the value of its PINS register."""
         address = self.axis_base(axis)
         self.link.write(
             address, flags, pins.step_high << 16 | pins.step_low, pins.dir_setup << 16 | pins.dir_hold
@@ -70,29 +70,29 @@ class Channel:
         self.link.write(address + r.AXIS_ENABLE, 1)
 
     def configure_motion(self, rate_slew: int, stop_slew: int, drain_velocity: int) -> None:
-        """Set how holds and stops slow down and how missing substeps are made."""
+        """Set the slew rates of hold and stop (UQ1.16 per tick) and the drain velocity (UQ0.32)."""
         self.link.write(self.base + r.CHANNEL_RATE_SLEW, rate_slew, stop_slew, drain_velocity)
 
     def room(self) -> tuple[int, int]:
-        """Free places in the queues: lines, ramps."""
+        """Free queue entries: lines, ramps."""
         (word,) = self.link.read(self.base + r.CHANNEL_ROOM, 1)
         return word >> r.CHANNEL_ROOM_LINE_ROOM_LSB, word & 0xFFFF
 
     def push_lines(self, lines: Sequence[Any]) -> None:
-        """Queue lines (`struct passo_line`), for which there is room."""
+        """Queue lines (`struct passo_line`); there must be room for them."""
         axes = self.parameters.axes
         self._push(r.CHANNEL_LINE, [frame.line_words(line, axes) for line in lines])
 
     def push_ramps(self, ramps: Sequence[Any]) -> None:
-        """Queue ramps (`struct passo_ramp`), for which there is room."""
+        """Queue ramps (`struct passo_ramp`); there must be room for them."""
         self._push(r.CHANNEL_RAMP, [frame.ramp_words(ramp) for ramp in ramps])
 
     def start(self) -> None:
-        """Let the channel start its motion."""
+        """Let the channel start motions."""
         self.link.write(r.ADDRESS_RUN, 1 << self.number)
 
     def set_rate(self, rate: int) -> None:
-        """Set the time scale: 0 holds, RATE_ONE is full speed."""
+        """Set the target of the time scale: 0 is a feed hold, RATE_ONE full speed."""
         self.link.write(self.base + r.CHANNEL_RATE_TARGET, rate)
 
     def stop(self) -> None:
@@ -108,12 +108,12 @@ class Channel:
         self.link.write(self.base + r.CHANNEL_COMMAND, 1 << r.CHANNEL_COMMAND_CLEAR_LSB)
 
     def positions(self) -> list[int]:
-        """Steps made by each axis, all at one moment."""
+        """Steps made by each axis, all sampled at the same time."""
         words = self.link.read(self.base + r.CHANNEL_POSITION_BASE, self.parameters.axes)
         return [word - (word >> 31 << 32) for word in words]
 
     def state(self) -> ChannelState:
-        """What the channel does."""
+        """Read the STATE register."""
         (word,) = self.link.read(self.base + r.CHANNEL_STATE, 1)
         return ChannelState(
             state=State(word & 7),
@@ -125,7 +125,7 @@ class Channel:
         )
 
     def _push(self, register: int, items: list[list[int]]) -> None:
-        """Send whole items, as many in a frame as fit."""
+        """Send complete items, as many per frame as fit."""
         per_frame = frame.PAYLOAD_MAX // len(items[0]) if items else 1
         for i in range(0, len(items), per_frame):
             words = [word for item in items[i : i + per_frame] for word in item]

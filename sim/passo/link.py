@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The link library (stm32_bridge/driver/passo_host.h) for Python: the host's end of the SPI link."""
+"""Python binding of the link library (stm32_bridge/driver/passo_host.h), the host's end of the SPI link."""
 
 from collections.abc import Sequence
 from typing import Any, Protocol
@@ -7,14 +7,14 @@ from typing import Any, Protocol
 from passo.native import ffi, planner
 from passo.registers import Verdict
 
-# The gap after a frame is the time the core needs to execute it.
+# Clocks after a frame, which the core needs to execute it.
 GAP = 64
 TRIES = 4
 MICROSECONDS = 1_000_000
 
 
 class LinkError(Exception):
-    """The link failed for good; `error` is one of enum passo_error, `name` its name."""
+    """A frame failed after all tries; `error` is an enum passo_error, `name` its name."""
 
     def __init__(self, what: str, error: int = 0):
         self.error = error
@@ -23,7 +23,7 @@ class LinkError(Exception):
 
 
 class RefusedError(LinkError):
-    """The core refused a frame; `verdict` says why."""
+    """The core refused a frame; `verdict` is the reason."""
 
     def __init__(self, verdict: Verdict, what: str):
         self.verdict = verdict
@@ -32,27 +32,27 @@ class RefusedError(LinkError):
 
 
 class Transferring(Protocol):
-    """What the link needs of an engine."""
+    """The part of an engine that the link uses."""
 
     def transfer(self, mosi: Sequence[int], gap: int) -> list[int]:
         """One chip select: send the words and return those received, then wait for `gap` clocks."""
 
 
 def error_name(error: int) -> str:
-    """Name of one of enum passo_error."""
+    """Name of an enum passo_error."""
     return ffi().string(planner().passo_error_name(error)).decode()
 
 
 def error_text(error: int) -> str:
-    """Its sentence."""
+    """Description of an enum passo_error."""
     return ffi().string(planner().passo_error_text(error)).decode()
 
 
 class Hardware:
-    """A `struct passo_hardware` whose functions are an engine's; `check` raises what goes wrong in them."""
+    """A `struct passo_hardware` on an engine. `check` raises exceptions that occurred in its callbacks."""
 
     def __init__(self, engine: Any, tries: int = 0, clock_hz: int = 0):
-        """With `clock_hz` there is also a clock, and waiting lets the engine run."""
+        """With `clock_hz` it also has a microsecond clock, and waiting runs the engine."""
         self.engine, self.clock_hz = engine, clock_hz
         self._raised: BaseException | None = None
         self.c = ffi().new("struct passo_hardware *", {"tries": tries, "paced": True})
@@ -69,7 +69,7 @@ class Hardware:
             self.c.microseconds, self.c.wait = self._callbacks[1:]
 
     def check(self) -> None:
-        """Raise what the engine raised."""
+        """Raise an exception of the engine that a callback has caught."""
         if self._raised is not None:
             raised, self._raised = self._raised, None
             raise raised
@@ -94,7 +94,7 @@ class Hardware:
 
 
 class Link:
-    """Frames that are executed exactly once, or an exception."""
+    """Register access with exactly-once frames. Methods raise LinkError, or RefusedError with the verdict."""
 
     def __init__(self, engine: Transferring, tries: int = TRIES):
         self.engine = engine
@@ -106,12 +106,12 @@ class Link:
 
     @property
     def retries(self) -> int:
-        """Frames sent again so far."""
+        """Number of frames resent so far."""
         return self.host.counters.retries
 
     @property
     def status(self) -> int:
-        """The last undamaged status word."""
+        """The last valid status word."""
         return self.host.status
 
     def write(self, address: int, *words: int) -> None:

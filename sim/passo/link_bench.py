@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How many lines per second the driver brings over the link, in simulated time."""
+"""Throughput of the driver over the link, in lines per second of simulated time."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -15,26 +15,26 @@ WORDS_PER_LINE = PARAMETERS.axes + 2
 SCLK_HZ = (9_000_000, 18_000_000)
 LINES = 3000
 VELOCITY = 1 << 47  # a substep every two clocks
-LOOP_CLOCKS = 72  # of a main loop that has nothing to send
+LOOP_CLOCKS = 72  # of an idle round of the main loop
 
 
 @dataclass(frozen=True)
 class LinkRate:
-    """What the link carries at one speed of SCLK, in lines of all axes per second."""
+    """Throughput of the link at one SCLK frequency, in lines of all axes per second."""
 
     sclk_hz: int
     limit: float  # SCLK / 32 words per second, in lines
-    burst: float  # while the queue never fills up
-    sustained: float  # the quickest path tried that was made without a gap
+    burst: float  # while the queue is never full
+    sustained: float  # the fastest path tried that had no underrun
 
     @property
     def share(self) -> float:
-        """Of the wire's limit."""
+        """Burst rate relative to the limit."""
         return self.burst / self.limit
 
 
 def _path(substeps: int, lines: int) -> tuple[list[Any], list[Any]]:
-    """Lines of so many substeps at full velocity; one ramp covers them all."""
+    """Lines of `substeps` each at full velocity, and the ramps for all of them."""
     line = ffi().new("struct passo_line *", {"substeps": substeps, "steps": [1] * PARAMETERS.axes})
     last = ffi().new("struct passo_line *", {"substeps": substeps, "steps": [1] * PARAMETERS.axes})
     last.last = True
@@ -46,12 +46,12 @@ def _path(substeps: int, lines: int) -> tuple[list[Any], list[Any]]:
 
 
 def _stream(sclk_hz: int, substeps: int, lines: int) -> tuple[bool, float]:
-    """Whether a path was made without a gap, and the lines per second given out while it was made."""
+    """Whether a path had no underrun, and the lines per second supplied during it."""
     config = {"clock_hz": CLOCK_HZ, "spi_half_period": CLOCK_HZ // sclk_hz // 2}
     with Engine(model_library(), PARAMETERS, **config) as engine:
         driver = Driver(engine)
         path, ramps = _path(substeps, lines)
-        given: list[int] = []  # clock at which each line was asked for
+        given: list[int] = []  # clock at which each line was requested
 
         def asked() -> Any:
             for line in path:
@@ -75,7 +75,7 @@ def _stream(sclk_hz: int, substeps: int, lines: int) -> tuple[bool, float]:
 
 
 def measure(sclk_hz: int) -> LinkRate:
-    """The core consumes a little faster than the wire can bring; then a little slower than it did."""
+    """Measure the burst rate with a path slightly faster than the link, then find the sustained rate."""
     limit = sclk_hz / 32 / WORDS_PER_LINE
     _, burst = _stream(sclk_hz, int(0.95 * CLOCK_HZ / 2 / limit), LINES)
     substeps = -int(-CLOCK_HZ / 2 / burst // 1)
@@ -87,5 +87,5 @@ def measure(sclk_hz: int) -> LinkRate:
 
 
 def measure_all() -> list[LinkRate]:
-    """At each speed of SCLK."""
+    """Measure at each frequency in SCLK_HZ."""
     return [measure(sclk_hz) for sclk_hz in SCLK_HZ]

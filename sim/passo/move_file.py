@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Move files: TOML to checked moves. Whatever is wrong with a file is told in one line."""
+"""Move files: parses TOML into checked moves. An error is reported in one line."""
 
 import math
 import tomllib
@@ -22,14 +22,14 @@ from passo.move_keys import (
 from passo.moves import MOVES, PIN_CLOCKS_MAX, Move, MoveFile, MoveFileError, PinTiming
 from passo.shape import ShapeError, read_table
 
-PIN_SECONDS = Fraction(1, 1_000_000)  # the default of every pin timing
+PIN_SECONDS = Fraction(1, 1_000_000)  # default of every pin time
 
 FILE_KEYS = ("clock_hz", "pins", "move")
 PIN_KEYS = tuple(field.name for field in fields(PinTiming))
 
 
 def read_moves(path: Path) -> MoveFile:
-    """Read and check a move file; raise MoveFileError."""
+    """Read and check a move file; raises MoveFileError."""
     try:
         data = tomllib.loads(path.read_text(encoding="utf-8"), parse_float=Decimal)
     except OSError as error:
@@ -98,7 +98,7 @@ def _names(form: Form) -> list[str]:
 
 
 def _form(table: Table) -> Form:
-    """The form by its name or, for the first two, by what is given."""
+    """The form named by `method` or, without it, the one identified by the keys."""
     if "method" in table:
         method = table["method"]
         if not isinstance(method, str) or method not in FORMS:
@@ -120,7 +120,7 @@ def _form(table: Table) -> Form:
 
 
 def _check_rules(form: Form, table: Table) -> None:
-    """Raise BadValueError if the keys of a move do not fit together."""
+    """Check the rules between the keys of a move; raises BadValueError."""
     for rule in form.rules:
         if rule.key not in table:
             continue

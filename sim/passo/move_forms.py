@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # Generated from schema/moves.toml by tools/generate_moves.py.
-"""Forms of a move: their keys, what their values become, and the limits of values."""
+"""Move forms: their keys, how values are converted, and the limits of values."""
 
 from dataclasses import dataclass
 from fractions import Fraction
@@ -9,17 +9,17 @@ from typing import ClassVar
 from passo.form_table import Form, Key, Points, Rule
 from passo.registers import Shape
 
-# Longest line: its substeps, and with them the steps of each axis, have 30 bits.
+# Longest line: its substeps, and so the steps of each axis, have 30 bits.
 SUBSTEPS_MAX = 1073741823
-# Largest number without a sign, in its unit.
+# Largest unsigned number, in its unit.
 NUMBER_MAX = 4294967295
-# Largest number with a sign, in its unit.
+# Largest signed number, in its unit.
 SIGNED_MAX = 2147483647
 # Largest whole number.
 WHOLE_MAX = 4294967295
-# Digits behind the point of a number.
+# Digits after the decimal point.
 DECIMALS_MAX = 30
-# Speeds and their like are UQ32.32, with a sign Q31.32: an integer x stands for x / 2^32.
+# Speeds and similar quantities are UQ32.32, signed ones Q31.32: an integer x stands for x / 2^32.
 UNIT_Q32 = 4294967296
 # A sigmoid's alpha is in units of 1 / 4096.
 ALPHA_ONE = 4096
@@ -27,12 +27,12 @@ ALPHA_ONE = 4096
 ALPHA_MIN = 3
 # Largest alpha.
 ALPHA_MAX = 5
-# The alpha that the core's table is made for after reset.
+# The alpha of the core's table after configuration.
 ALPHA_RESET = 5
 
 PROFILES = ("linear", "cosine", "sigmoid", "jerk")
-USER = "user"  # the profile that is a table
-USER_BANK = Shape.SIGMOID  # where that table goes
+USER = "user"  # the profile given by a table
+USER_BANK = Shape.SIGMOID  # the bank of that table
 
 FORMS = {
     "in_time": Form(
@@ -212,7 +212,7 @@ class MoveAxes:
 
 @dataclass(frozen=True)
 class MoveTurn:
-    """Trapezoid of one axis by angle and speed of turning."""
+    """Trapezoid on one axis by angle and rpm."""
 
     axis: int
     axes: int
@@ -259,7 +259,7 @@ class MoveJerk:
 
 @dataclass(frozen=True)
 class MoveStraight:
-    """Straight line through space, in millimetres or, where an axis turns, degrees."""
+    """Straight line through space, in millimetres or, for rotary axes, degrees."""
 
     distance: tuple[Fraction, ...]
     feed: Fraction

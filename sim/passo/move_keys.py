@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Values in a move file: a reader takes a table and a key and returns the checked value, or BadValueError."""
+"""Readers of values in a move file: each takes a table and a key and returns the checked value.
+
+Numbers are read exactly as written, as fractions. Errors raise BadValueError.
+"""
 
 from collections.abc import Callable
 from decimal import Decimal
@@ -23,18 +26,18 @@ Table = dict[str, Any]
 
 
 class BadValueError(ValueError):
-    """A reason without its place."""
+    """A value is invalid; the text does not say where yet."""
 
 
 def check_known(table: Table, keys: tuple[str, ...]) -> None:
-    """Raise BadValueError if a table has a key that is not one of `keys`."""
+    """Raises BadValueError if a table has a key other than `keys`."""
     for key in table:
         if key not in keys:
             raise BadValueError(f"unknown key {shown(key)}; known are {', '.join(keys)}")
 
 
 def shown(value: Any) -> str:
-    """A value as an error message can show it: short and on one line."""
+    """A value as text for an error message: short and on one line."""
     try:
         text = str(value).lower() if isinstance(value, bool) else repr(value)
     except ValueError:  # Python refuses to print very long numbers
@@ -43,7 +46,7 @@ def shown(value: Any) -> str:
 
 
 def within(place: str, check: Callable[[], Any]) -> Any:
-    """What `check` returns; its BadValueError is raised with the place."""
+    """Return the result of `check`; adds the place to its BadValueError."""
     try:
         return check()
     except BadValueError as error:
@@ -57,7 +60,7 @@ def _get(table: Table, key: str) -> Any:
 
 
 def read_integer(table: Table, key: str, low: int, high: int) -> int:
-    """A whole number, low .. high."""
+    """An integer, low .. high."""
     value = _get(table, key)
     if type(value) is not int:
         raise BadValueError(f"{key} must be a whole number, not {shown(value)}")
@@ -67,7 +70,7 @@ def read_integer(table: Table, key: str, low: int, high: int) -> int:
 
 
 def read_number(table: Table, key: str, default: Fraction | None = None) -> Fraction:
-    """A number that is not negative, exactly as it is written."""
+    """A number that is not negative."""
     if default is not None and key not in table:
         return default
     value = _finite(table, key)
@@ -77,7 +80,7 @@ def read_number(table: Table, key: str, default: Fraction | None = None) -> Frac
 
 
 def read_signed(table: Table, key: str) -> Fraction:
-    """A number, exactly as it is written."""
+    """A number with a sign."""
     return _fraction(key, _finite(table, key), SIGNED_MAX)
 
 
@@ -101,7 +104,7 @@ def _fraction(key: str, value: int | Decimal, largest: int) -> Fraction:
 
 
 def read_steps(table: Table, key: str) -> tuple[int, ...]:
-    """Steps of each axis, with the direction as sign."""
+    """Steps of each axis; the sign is the direction."""
     steps = _get(table, key)
     if not isinstance(steps, list) or any(type(n) is not int for n in steps):
         raise BadValueError("steps must be a list of whole numbers, one per axis")
@@ -114,7 +117,7 @@ def read_steps(table: Table, key: str) -> tuple[int, ...]:
 
 
 def read_profile(table: Table, key: str, profiles: tuple[str, ...] = PROFILES) -> str:
-    """Name of one of the profiles."""
+    """Name of a profile."""
     profile = _get(table, key)
     if profile not in profiles:
         raise BadValueError(f"profile must be one of {', '.join(profiles)}, not {shown(profile)}")
@@ -122,7 +125,7 @@ def read_profile(table: Table, key: str, profiles: tuple[str, ...] = PROFILES) -
 
 
 def read_table_file(table: Table, key: str) -> str | Points:
-    """Name of the file with a user's shape."""
+    """Name of the file with a user-defined shape; empty for other profiles."""
     if table.get("profile") != USER:
         if key in table:
             raise BadValueError(f'{key} needs profile = "{USER}"')
@@ -134,13 +137,13 @@ def read_table_file(table: Table, key: str) -> str | Points:
 
 
 def read_axes(table: Table, key: str) -> int:
-    """How many axes there are, by default as few as the key `axis` allows."""
+    """Number of axes; by default just enough for the key `axis`."""
     least = table.get("axis", 0) + 1
     return read_integer(table, key, least, AXES_MAX) if key in table else least
 
 
 def read_positive(table: Table, key: str) -> int:
-    """A whole number above 0."""
+    """An integer above 0."""
     return read_integer(table, key, 1, WHOLE_MAX)
 
 
@@ -163,7 +166,7 @@ def read_distance(table: Table, key: str) -> tuple[Fraction, ...]:
     return tuple(read_signed({key: item}, key) for item in value)
 
 
-# By the kind of a key.
+# By kind of key.
 READERS: dict[str, Callable[[Table, Key], Any]] = {
     "steps": lambda table, key: read_steps(table, key.name),
     "profile": lambda table, key: read_profile(table, key.name),
@@ -182,7 +185,7 @@ READERS: dict[str, Callable[[Table, Key], Any]] = {
 
 
 def read_key(table: Table, key: Key) -> Any:
-    """The value of a key of a form; its default if it is not given."""
+    """The value of a key of a form, or its default."""
     if key.default is not None and key.name not in table:
         default = table[key.default] if isinstance(key.default, str) else key.default
         table = {**table, key.name: default}

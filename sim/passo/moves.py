@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Moves: what the planner is asked for, one class for each of its methods."""
+"""Parameters of moves, one class for each form; units as in schema/moves.toml."""
 
 from dataclasses import dataclass
 from fractions import Fraction
@@ -24,7 +24,7 @@ PIN_CLOCKS_MAX = (1 << AXIS_STEP_TIMING_STEP_HIGH_BITS) - 1
 
 
 class MoveFileError(ValueError):
-    """A move file cannot be executed; the text is one line that says why."""
+    """A move file cannot be executed; the text is the reason, in one line."""
 
 
 @dataclass(frozen=True)
@@ -38,26 +38,26 @@ class PinTiming:
 
 
 class MoveTurn(move_forms.MoveTurn):
-    """A turn of one axis by degrees and rpm."""
+    """Rotation of one axis by degrees and rpm."""
 
     @property
     def steps(self) -> tuple[int, ...]:
-        """To the nearest step, as the planner reckons."""
+        """Steps of each axis, rounded like the planner."""
         count = (q32(abs(self.angle)) * self.steps_per_turn + 180 * UNIT_Q32) // (360 * UNIT_Q32)
         return tuple((count if self.angle > 0 else -count) * (i == self.axis) for i in range(self.axes))
 
 
 class MoveStraight(move_forms.MoveStraight):
-    """A straight line in millimetres with limits of its own for each axis."""
+    """Straight line in millimetres, with limits for each axis."""
 
     @property
     def profile(self) -> str:
-        """What its ramps are."""
+        """Profile of the ramps."""
         return "jerk" if any(self.jerk) else "linear"
 
     @property
     def steps(self) -> tuple[int, ...]:
-        """To the nearest step, as the planner reckons."""
+        """Steps of each axis, rounded like the planner."""
         counts = (
             (q32(abs(d)) * q32(scale) + (1 << 63)) >> 64
             for d, scale in zip(self.distance, self.steps_per_mm, strict=True)
@@ -77,12 +77,12 @@ Move = (
     | MoveStraight
 )
 
-# By the name of the form.
+# By name of the form.
 MOVES: dict[str, type[Move]] = {move.form.name: move for move in get_args(Move)}
 
 
 def q32(value: Fraction) -> int:
-    """The planner's number that is nearest."""
+    """Convert to UQ32.32 or Q31.32, rounded to nearest."""
     return round(value * UNIT_Q32)
 
 
@@ -97,10 +97,10 @@ class MoveFile:
 
     @property
     def name(self) -> str:
-        """What its results are called."""
+        """Name of the results."""
         return self.path.stem
 
     @property
     def axes(self) -> int:
-        """Axes of each move."""
+        """Number of axes of each move."""
         return len(self.moves[0].steps)

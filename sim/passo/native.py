@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The C code as Python sees it: its declarations are read from its own headers."""
+"""Access to the C code by cffi, with the declarations of its own headers."""
 
 from functools import cache
 from pathlib import Path
@@ -41,7 +41,7 @@ def ffi() -> FFI:
 
 @cache
 def load(library: Path) -> Any:
-    """A shared library; it need not have all the functions."""
+    """Load a shared library; it need not have all declared functions."""
     return ffi().dlopen(str(library))
 
 
@@ -53,7 +53,7 @@ def planner() -> Any:
 
 @cache
 def processor() -> Any:
-    """The microcontroller's processor."""
+    """The processor of the emulated microcontroller."""
     return load(cpu_library())
 
 

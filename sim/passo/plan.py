@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The planner (planner/passo_plan.h) for Python."""
+"""Python binding of the planner (planner/passo_plan.h)."""
 
 from dataclasses import dataclass
 from fractions import Fraction
@@ -13,11 +13,11 @@ from passo.native import ffi, planner
 from passo.shape import POINTS
 
 Q48 = 1 << 48
-ALPHA_RESET = move_forms.ALPHA_RESET * ALPHA_ONE  # what the sigmoid's table is made for after reset
+ALPHA_RESET = move_forms.ALPHA_RESET * ALPHA_ONE  # alpha of the sigmoid table after reset
 
 
 class PlanError(Exception):
-    """The planner refused a move; `name` is one of enum passo_plan_error."""
+    """The planner rejected a move; `name` is the name of an enum passo_plan_error."""
 
     def __init__(self, name: str, text: str):
         self.name, self.text = name, text
@@ -31,7 +31,7 @@ class Plan:
     move: Move
     c: Any
     tick_log2: int
-    table: Points = ()  # what the sigmoid's bank must hold; empty: what is there after reset, or anything
+    table: Points = ()  # required contents of the sigmoid bank; empty: those after reset, or any
 
     @property
     def line(self) -> Any:
@@ -40,17 +40,17 @@ class Plan:
 
     @property
     def ramps(self) -> list[Any]:
-        """Each `struct passo_ramp` of it."""
+        """All its `struct passo_ramp`."""
         return [self.c.ramps[i] for i in range(self.c.ramp_count)]
 
     @property
     def clocks(self) -> int:
-        """Length of the profile."""
+        """Length of the profile in clocks."""
         return sum(ramp.ticks for ramp in self.ramps) << self.tick_log2
 
 
 def plan_move(move: Move, clock_hz: int, parameters: Parameters) -> Plan:
-    """Plan one move; raise PlanError."""
+    """Plan one move; raises PlanError."""
     c = planner()
     machine = ffi().new("struct passo_machine *", (clock_hz, parameters.tick_log2, len(move.steps)))
     plan = ffi().new("struct passo_plan *")
@@ -71,7 +71,7 @@ def plan_move(move: Move, clock_hz: int, parameters: Parameters) -> Plan:
 
 
 def sigmoid_table(alpha: int) -> Points:
-    """The points of the sigmoid for an alpha in 1/4096."""
+    """The 256 points (UQ0.16) of a sigmoid table; `alpha` is in units of 1/4096. Raises ValueError."""
     table = ffi().new("uint16_t[]", POINTS)
     if planner().passo_sigmoid_table(alpha, table):
         raise ValueError(f"alpha {alpha / ALPHA_ONE} is not {ALPHA_MIN} to {ALPHA_MAX}")
@@ -79,7 +79,7 @@ def sigmoid_table(alpha: int) -> Points:
 
 
 def struct_of(move: Move, clock_hz: int) -> Any:
-    """A move's C struct, in the units of the planner."""
+    """The C struct of a move, in the units of the planner."""
     values: dict[str, Any] = {}
     for key in move.form.keys:
         value = getattr(move, key.name)
@@ -88,7 +88,7 @@ def struct_of(move: Move, clock_hz: int) -> Any:
             for own, number in zip(limits, value, strict=True):
                 own[key.member] = _number(key, number, clock_hz)
         elif key.kind in ("profile", "shape"):
-            name = "linear" if value == USER else value  # not looked at then
+            name = "linear" if value == USER else value  # ignored by the planner
             values[key.member] = getattr(planner(), f"PASSO_PROFILE_{name.upper()}")
         elif key.member and key.factor and isinstance(value, tuple):
             values[key.member] = [_number(key, number, clock_hz) for number in value]
@@ -98,13 +98,13 @@ def struct_of(move: Move, clock_hz: int) -> Any:
 
 
 def _number(key: Key, value: Fraction, clock_hz: int) -> int:
-    """To the nearest, in units of the struct; an alpha has 32 bits there."""
+    """A value in the units of the struct, rounded to nearest; alpha saturates at 32 bits."""
     number = round(value * (clock_hz if key.factor == "clock_hz" else key.factor))
     return min(number, WHOLE_MAX) if key.kind == "alpha" else number
 
 
 def plan_file(file: MoveFile, parameters: Parameters) -> list[Plan]:
-    """Plan all moves and chain them into one motion; raise MoveFileError."""
+    """Plan all moves and chain them into one motion; raises MoveFileError."""
     plans = []
     for number, move in enumerate(file.moves, 1):
         try:
@@ -121,12 +121,12 @@ def plan_file(file: MoveFile, parameters: Parameters) -> list[Plan]:
 
 
 def table_of(plans: list[Plan]) -> Points:
-    """What the sigmoid's bank must hold before this motion; empty: what is there after reset."""
+    """Required contents of the sigmoid bank for this motion; empty: those after reset."""
     return next((plan.table for plan in plans if plan.table), ())
 
 
 def _check_tables(plans: list[Plan], file: MoveFile) -> None:
-    """Raise MoveFileError if two moves need different tables in the one bank there is for them."""
+    """Raises MoveFileError if two moves need different tables in the same bank."""
     users = [(n, plan) for n, plan in enumerate(plans, 1) if plan.table or plan.c.sigmoid_alpha]
     for number, plan in users[1:]:
         if plan.table != users[0][1].table:
@@ -137,7 +137,7 @@ def _check_tables(plans: list[Plan], file: MoveFile) -> None:
 
 
 def _check_pins(plan: Plan, file: MoveFile) -> None:
-    """Raise PlanError if an axis makes steps faster than its pins can."""
+    """Raises PlanError if an axis would exceed its pin timing."""
     shortest = file.pins.step_high + file.pins.step_low
     for axis, steps in enumerate(map(abs, plan.move.steps)):
         steps_per_clock = Fraction(plan.c.velocity_peak * steps, Q48 * plan.line.substeps)

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""Planted defects: a check that nothing breaks is worth nothing, so each is shown a source that is wrong."""
+"""Planted defects: edits to a copy of a source that a check must detect, as proof that it can fail."""
 
 import re
 from pathlib import Path
 
 
 def plant(file: Path, old: str, new: str) -> None:
-    """Replace a text in a copy of a source; spaces and line ends do not count.
+    """Replace a text in a copy of a source; whitespace is not significant.
 
     Raises:
-        ValueError: the old text is not there exactly once.
+        ValueError: The old text does not occur exactly once.
     """
     text = file.read_text(encoding="utf-8")
     pattern = re.compile(r"\s+".join(re.escape(word) for word in old.split()))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Pictures of a motion."""
+"""Plots of a motion."""
 
 from pathlib import Path
 
@@ -38,11 +38,11 @@ STYLE = {
 }
 WIDE = {"linewidth": 5, "alpha": 0.25, "solid_capstyle": "butt"}
 POINTS_MAX = 6000  # of a scatter
-PULSES_SHOWN = 8  # by the first axis that makes steps, in the first and the last milliseconds
+PULSES_SHOWN = 8  # pulses per axis in the plots of the first and the last milliseconds
 
 
 def plot_motion(run: Run, path: Path) -> None:
-    """Everything about one motion on one page."""
+    """Write a page of plots of one motion: speed, position, error, pulses."""
     with plt.rc_context(STYLE):
         figure, axes = plt.subplot_mosaic(
             [["speed", "speed"], ["position", "error"], ["first", "last"]],
@@ -67,7 +67,7 @@ def plot_motion(run: Run, path: Path) -> None:
 
 
 def plot_overview(runs: dict[str, Run], path: Path) -> None:
-    """What the demonstration shows, on one small picture."""
+    """Write the overview picture of the demonstration."""
     with plt.rc_context(STYLE):
         names = [name for name in ("three_axes", "cosine", "sigmoid", "there_and_back") if name in runs]
         titles = {
@@ -101,7 +101,7 @@ def plot_overview(runs: dict[str, Run], path: Path) -> None:
 
 
 def _speed(ax: Axes, run: Run, legend: bool = True) -> None:
-    """Ideal speed and the inverse of the time between steps."""
+    """Ideal speed, and the inverse of the time between steps."""
     hz = run.file.clock_hz
     times, speeds, _ = speeds_and_positions(run)
     for axis in range(run.file.axes):
@@ -124,7 +124,7 @@ def _speed(ax: Axes, run: Run, legend: bool = True) -> None:
 
 
 def _position(ax: Axes, run: Run) -> None:
-    """Ideal position and that counted at the pins."""
+    """Ideal position, and the position counted at the pins."""
     hz = run.file.clock_hz
     times, _, positions = speeds_and_positions(run)
     for axis in range(run.file.axes):
@@ -139,7 +139,7 @@ def _position(ax: Axes, run: Run) -> None:
 
 
 def _error(ax: Axes, run: Run) -> None:
-    """Distance of each step from its place on the ideal curve."""
+    """Distance of each step from the ideal curve."""
     largest = 0.0
     for axis in range(run.file.axes):
         clocks, errors = step_errors(run, axis)
@@ -156,7 +156,7 @@ def _error(ax: Axes, run: Run) -> None:
 
 
 def _windows(run: Run) -> tuple[int, int]:
-    """Clocks to show at the start and at the end: a millisecond, or more to have some steps."""
+    """Clocks to show at the start and at the end: a millisecond, or enough for some steps."""
     clocks = np.sort(np.concatenate([run.steps(axis)[0] for axis in range(run.file.axes)]))
     some = min(len(clocks), PULSES_SHOWN * run.file.axes)
     shown = (clocks[some - 1], run.total_clocks - clocks[-some]) if some else (0, 0)
@@ -166,7 +166,7 @@ def _windows(run: Run) -> tuple[int, int]:
 
 
 def _lines(ax: Axes, run: Run, begin: int, end: int, title: str, directions: bool = True) -> None:
-    """The STEP and DIR lines between two clocks, counted from the start of the motion."""
+    """The STEP and DIR signals between two clocks, counted from the start of the motion."""
     scale = 1e3 / run.file.clock_hz
     names: list[str] = []
     for axis in range(run.file.axes):

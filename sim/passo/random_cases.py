@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the environment says about random cases: the same seed gives the same cases."""
+"""Environment variables for random cases; the same seed gives the same cases."""
 
 import os
 
@@ -12,10 +12,10 @@ def seed() -> int:
 
 
 def moves(default: int) -> int:
-    """How many random moves are planned: PASSO_MOVES."""
+    """Number of random moves: PASSO_MOVES."""
     return int(os.environ.get("PASSO_MOVES", default))
 
 
 def fuzz_seconds() -> float:
-    """How long each fuzzer runs: PASSO_FUZZ_SECONDS, default 5."""
+    """Duration of each fuzzer in seconds: PASSO_FUZZ_SECONDS, default 5."""
     return float(os.environ.get("PASSO_FUZZ_SECONDS", "5"))

@@ -3,57 +3,22 @@
 """Registers of Passo: word addresses, fields, reset values, enumerations."""
 
 from dataclasses import dataclass
-from enum import IntEnum
-from typing import ClassVar, Self
+from typing import ClassVar
 
 from passo.register_table import Field, Register
+from passo.register_word import DescribedEnum, Word
 
 
-class _DescribedEnum(IntEnum):
-    """Numbers with a name and a description."""
-
-    description: str
-
-    def __new__(cls, value: int, description: str) -> Self:
-        member = int.__new__(cls, value)
-        member._value_ = value
-        member.description = description
-        return member
-
-
-class _Word:
-    """A word by its fields; PLACES has the lowest bit, the width and the type of each."""
-
-    PLACES: ClassVar[dict[str, tuple[int, int, type]]]
-
-    def pack(self) -> int:
-        """The word. ValueError if a field is too large."""
-        word = 0
-        for name, (lsb, bits, _) in self.PLACES.items():
-            value = int(getattr(self, name))
-            if value >> bits:
-                raise ValueError(f"{type(self).__name__}.{name}: {value} has more than {bits} bits")
-            word |= value << lsb
-        return word
-
-    @classmethod
-    def unpack(cls, word: int) -> Self:
-        """The fields of a word. ValueError if an enumeration has no such value."""
-        return cls(
-            **{name: kind(word >> lsb & (1 << bits) - 1) for name, (lsb, bits, kind) in cls.PLACES.items()}
-        )
-
-
-class Operation(_DescribedEnum):
-    """What a frame asks for."""
+class Operation(DescribedEnum):
+    """Operation of a frame."""
 
     READ = 1, "Read consecutive registers."
     WRITE = 2, "Write consecutive registers."
     PUSH = 3, "Write every word to the same address: lines and ramps."
 
 
-class Verdict(_DescribedEnum):
-    """What became of a frame."""
+class Verdict(DescribedEnum):
+    """Outcome of a frame."""
 
     OK = 0, "Executed."
     DUPLICATE = 1, "Not executed: its sequence number was accepted before."
@@ -67,20 +32,20 @@ class Verdict(_DescribedEnum):
     BAD_VALUE = 9, "M = 0 or M >= 2^30, N_i > M, a velocity above 1/2, drain velocity 0, reserved bits set."
 
 
-class State(_DescribedEnum):
-    """What a channel does."""
+class State(DescribedEnum):
+    """State of a channel."""
 
     IDLE = 0, "No motion."
-    PREPARE = 1, "First line and first velocity are being made ready."
+    PREPARE = 1, "First line and first velocity are being prepared."
     ARMED = 2, "Ready to start; waits while WAIT_SYNC is set."
     RUN = 3, "The profile runs."
-    SETTLE = 4, "The profile has ended, its last substeps reach the pins."
+    SETTLE = 4, "The profile has ended; its last substeps travel to the pins."
     DRAIN = 5, "Missing substeps of the LAST line are made at drain_velocity."
     STOPPED = 6, "Stopped by a command or a fault; queues flushed. CLEAR leads back to IDLE."
 
 
-class Cause(_DescribedEnum):
-    """Why a channel stopped."""
+class Cause(DescribedEnum):
+    """Why a channel has stopped."""
 
     NONE = 0, "Not stopped."
     STOP = 1, "COMMAND.STOP."
@@ -90,8 +55,8 @@ class Cause(_DescribedEnum):
     STEP_OVERRUN = 5, "Steps came faster than the pin timing of an axis allows."
 
 
-class Shape(_DescribedEnum):
-    """How a ramp leads the velocity: s for a progress u, both 0 .. 1."""
+class Shape(DescribedEnum):
+    """Shape of a ramp: s as a function of the progress u, both 0 .. 1."""
 
     LINEAR = 0, "s = u, no table."
     COSINE = 1, "(1 - cos(pi u)) / 2."
@@ -100,12 +65,12 @@ class Shape(_DescribedEnum):
 
 
 @dataclass(frozen=True)
-class HeaderWord(_Word):
+class HeaderWord(Word):
     """Header."""
 
-    # What the frame asks for.
+    # Requested operation.
     operation: Operation
-    # Differs from that of the write or push before it.
+    # Must differ from that of the previous write or push.
     sequence: int
     # Words of payload or data, 1 .. 60.
     length: int
@@ -121,12 +86,12 @@ class HeaderWord(_Word):
 
 
 @dataclass(frozen=True)
-class AckWord(_Word):
+class AckWord(Word):
     """Ack."""
 
-    # That of the request.
+    # Sequence number of the request.
     sequence: int
-    # What became of the frame.
+    # Outcome of the frame.
     verdict: Verdict
     # The same, inverted.
     not_sequence: int
@@ -142,16 +107,16 @@ class AckWord(_Word):
 
 
 @dataclass(frozen=True)
-class StatusWord(_Word):
+class StatusWord(Word):
     """Status."""
 
-    # Some channel is STOPPED.
+    # At least one channel is STOPPED.
     any_stopped: bool
-    # Some channel prepares or makes a motion.
+    # At least one channel has a motion prepared or running.
     any_occupied: bool
     # RUN.STATUS_CHANNEL: the channel whose room follows.
     channel: int
-    # Of the last write or push that was executed.
+    # Sequence number of the last write or push executed.
     sequence: int
     # Free places for lines, 255 = 255 or more.
     line_room: int
@@ -175,14 +140,14 @@ class StatusWord(_Word):
 
 
 @dataclass(frozen=True)
-class LineControlWord(_Word):
+class LineControlWord(Word):
     """Line control."""
 
-    # Axis i counts down: bit i.
+    # Bit i: axis i counts down.
     directions: int
-    # Begin anew until the motion ends.
+    # Repeat until the profile ends.
     endless: bool
-    # The path may end here.
+    # The path ends with this line.
     last: bool
 
     PLACES: ClassVar = {
@@ -193,16 +158,16 @@ class LineControlWord(_Word):
 
 
 @dataclass(frozen=True)
-class RampControlWord(_Word):
+class RampControlWord(Word):
     """Ramp control."""
 
     # v_end, UQ0.48, bits 47:32.
     velocity_high: int
-    # How the velocity goes.
+    # Shape of the ramp.
     shape: Shape
     # 1 - shape(1 - u) instead of shape(u).
     mirror: bool
-    # Drop the ramps before it, begin at the present velocity.
+    # Drop the queued ramps before it and start from the present velocity.
     now: bool
     # The profile ends with this ramp.
     last: bool
@@ -217,7 +182,7 @@ class RampControlWord(_Word):
 
 
 @dataclass(frozen=True)
-class VersionWord(_Word):
+class VersionWord(Word):
     """Version."""
 
     # Major.
@@ -235,7 +200,7 @@ class VersionWord(_Word):
 
 
 @dataclass(frozen=True)
-class ParametersWord(_Word):
+class ParametersWord(Word):
     """Parameters."""
 
     # RAMP_QUEUE_LOG2.
@@ -259,14 +224,14 @@ class ParametersWord(_Word):
 
 
 @dataclass(frozen=True)
-class RunWord(_Word):
+class RunWord(Word):
     """Run."""
 
-    # Channel whose queue room stands in the status word.
+    # Channel whose queue room the status word reports.
     status_channel: int = 0
     # A prepared motion stays ARMED until a rising edge of the sync input, or until this bit is cleared.
     wait_sync: int = 0
-    # Channel may start motions. Clearing it lets a running motion finish.
+    # The channel may start motions. Clearing it lets a running motion finish.
     run: int = 0
 
     PLACES: ClassVar = {
@@ -277,7 +242,7 @@ class RunWord(_Word):
 
 
 @dataclass(frozen=True)
-class Refusals0Word(_Word):
+class Refusals0Word(Word):
     """Refusals 0."""
 
     # UNKNOWN_ADDRESS.
@@ -298,7 +263,7 @@ class Refusals0Word(_Word):
 
 
 @dataclass(frozen=True)
-class Refusals1Word(_Word):
+class Refusals1Word(Word):
     """Refusals 1."""
 
     # BAD_VALUE.
@@ -319,7 +284,7 @@ class Refusals1Word(_Word):
 
 
 @dataclass(frozen=True)
-class ChannelCommandWord(_Word):
+class ChannelCommandWord(Word):
     """Command."""
 
     # Set the positions of the channel's axes to 0. Refused with BUSY unless the channel is quiet.
@@ -340,18 +305,18 @@ class ChannelCommandWord(_Word):
 
 
 @dataclass(frozen=True)
-class ChannelStateWord(_Word):
+class ChannelStateWord(Word):
     """State."""
 
     # Substeps drained since reset; wraps.
     drained: int = 0
-    # Axes that had a STEP_OVERRUN.
+    # One bit per axis: it had a STEP_OVERRUN.
     overrun: int = 0
-    # A soft stop is under way.
+    # A soft stop is in progress.
     stopping: bool = False
-    # Why it stopped.
+    # Cause of the stop.
     cause: Cause = Cause.NONE
-    # Quiet: no motion is prepared or runs, and no step waits or is shaped at any axis.
+    # Quiet: no motion is prepared or running, and the pins of every axis are idle.
     quiet: bool = True
     # State of the motion.
     state: State = State.IDLE
@@ -367,7 +332,7 @@ class ChannelStateWord(_Word):
 
 
 @dataclass(frozen=True)
-class ChannelRoomWord(_Word):
+class ChannelRoomWord(Word):
     """Room."""
 
     # Lines.
@@ -382,16 +347,16 @@ class ChannelRoomWord(_Word):
 
 
 @dataclass(frozen=True)
-class AxisPinsWord(_Word):
+class AxisPinsWord(Word):
     """Pins."""
 
     # 1: every edge of STEP is a step.
     both_edges: bool = False
-    # 1: EN is active low. From configuration on: parameter ENABLE_RESET.
+    # 1: EN is active low. After configuration: parameter ENABLE_RESET.
     enable_inverted: bool = False
-    # 1: DIR is high for the positive direction. From configuration on: parameter DIR_RESET.
+    # 1: DIR is high for the positive direction. After configuration: parameter DIR_RESET.
     direction_inverted: bool = False
-    # 1: STEP is active low. From configuration on: parameter STEP_RESET.
+    # 1: STEP is active low. After configuration: parameter STEP_RESET.
     step_inverted: bool = False
 
     PLACES: ClassVar = {
@@ -403,12 +368,12 @@ class AxisPinsWord(_Word):
 
 
 @dataclass(frozen=True)
-class AxisStepTimingWord(_Word):
+class AxisStepTimingWord(Word):
     """STEP timing."""
 
-    # How long STEP stays active.
+    # Time that STEP is active.
     step_high: int = 1
-    # How long STEP stays inactive at least.
+    # Minimum time that STEP is inactive.
     step_low: int = 1
 
     PLACES: ClassVar = {
@@ -418,7 +383,7 @@ class AxisStepTimingWord(_Word):
 
 
 @dataclass(frozen=True)
-class AxisDirTimingWord(_Word):
+class AxisDirTimingWord(Word):
     """DIR timing."""
 
     # DIR change to the next active edge of STEP.
@@ -443,7 +408,7 @@ HEADER_OPERATION_LSB = 28
 HEADER_OPERATION_BITS = 4
 HEADER_DEFINED = 0xFFFFFFFF
 
-# Word: Ack. Last word of the reply to a write or push, and to a read that was refused.
+# Word: Ack. Last word of the reply to a write or push, and to a refused read.
 ACK_NOT_VERDICT_LSB = 0
 ACK_NOT_VERDICT_BITS = 8
 ACK_NOT_SEQUENCE_LSB = 8
@@ -454,7 +419,7 @@ ACK_SEQUENCE_LSB = 24
 ACK_SEQUENCE_BITS = 8
 ACK_DEFINED = 0xFFFFFFFF
 
-# Word: Status. What stands in a reply before the ack or the data, as it was when chip select fell.
+# Word: Status. Sent in a reply before the ack or the data; sampled when chip select fell.
 STATUS_RAMP_ROOM_LSB = 0
 STATUS_RAMP_ROOM_BITS = 8
 STATUS_LINE_ROOM_LSB = 8
@@ -603,8 +568,8 @@ ADDRESS_CHANNEL_BASE = 0x100
 ADDRESS_CHANNEL_COUNT = 8
 ADDRESS_CHANNEL_STRIDE = 0x100
 
-# Channel: Command. Each bit written as 1 is done once. With STOP or ABORT, CLEAR and ZERO in the same word
-# are ignored; ABORT wins over STOP.
+# Channel: Command. Each bit written as 1 takes effect once. STOP and ABORT override CLEAR and ZERO in the
+# same word; ABORT has priority over STOP.
 CHANNEL_COMMAND = 0x00
 CHANNEL_COMMAND_STOP_LSB = 0
 CHANNEL_COMMAND_STOP_BITS = 1
@@ -642,14 +607,14 @@ CHANNEL_STOP_SLEW_BITS = 17
 CHANNEL_STOP_SLEW_RESET = 0x00400
 CHANNEL_STOP_SLEW_DEFINED = 0x0001FFFF
 
-# Channel: Drain velocity. Velocity of the substeps that are still missing when the profile has ended.
+# Channel: Drain velocity. Velocity of the substeps still missing when the profile has ended.
 CHANNEL_DRAIN_VELOCITY = 0x04
 CHANNEL_DRAIN_VELOCITY_LSB = 0
 CHANNEL_DRAIN_VELOCITY_BITS = 32
 CHANNEL_DRAIN_VELOCITY_RESET = 0x01000000
 CHANNEL_DRAIN_VELOCITY_DEFINED = 0xFFFFFFFF
 
-# Channel: State. What the channel does now.
+# Channel: State. State of the channel.
 CHANNEL_STATE = 0x08
 CHANNEL_STATE_STATE_LSB = 0
 CHANNEL_STATE_STATE_BITS = 3
@@ -702,7 +667,7 @@ CHANNEL_RAMP_LSB = 0
 CHANNEL_RAMP_BITS = 32
 CHANNEL_RAMP_DEFINED = 0xFFFFFFFF
 
-# Channel: Steps made. Position of an axis in steps, as it was soon after chip select fell; wraps.
+# Channel: Steps made. Position of an axis in steps, sampled soon after chip select fell; wraps.
 CHANNEL_POSITION_BASE = 0x40
 CHANNEL_POSITION_COUNT = 8
 CHANNEL_POSITION_LSB = 0
@@ -714,8 +679,8 @@ CHANNEL_AXIS_BASE = 0x80
 CHANNEL_AXIS_COUNT = 8
 CHANNEL_AXIS_STRIDE = 0x08
 
-# Axis: Pins. Polarities and step mode. Refused with BUSY unless the channel is quiet. The next step waits
-# for the low time, the DIR hold and the DIR set-up from here on. Kept over a reset of the core.
+# Axis: Pins. Polarities and step mode. Refused with BUSY unless the channel is quiet. From the write on,
+# the next step waits for the low time, the DIR hold and the DIR setup. Kept through a reset of the core.
 AXIS_PINS = 0x0
 AXIS_PINS_STEP_INVERTED_LSB = 1
 AXIS_PINS_STEP_INVERTED_BITS = 1
@@ -751,7 +716,7 @@ AXIS_DIR_TIMING_DIR_SETUP_BITS = 16
 AXIS_DIR_TIMING_DIR_SETUP_RESET = 0x0001
 AXIS_DIR_TIMING_DEFINED = 0xFFFFFFFF
 
-# Axis: Lost steps. Steps that found the queue of the axis full (STEP_OVERRUN).
+# Axis: Lost steps. Steps lost because the queue of the axis was full (STEP_OVERRUN).
 AXIS_LOST_STEPS = 0x3
 AXIS_LOST_STEPS_LOST_LSB = 0
 AXIS_LOST_STEPS_LOST_BITS = 4

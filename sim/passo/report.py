@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The files that a run leaves behind: pulses.csv and summary.json."""
+"""Output files of a run: pulses.csv and summary.json."""
 
 import json
 from pathlib import Path
@@ -13,7 +13,7 @@ from passo.run import Run
 
 
 def write_pulses(run: Run, path: Path) -> None:
-    """A row for each step, sorted by clock and axis; clocks count from the start of the motion."""
+    """Write a row per step, sorted by clock and axis; clocks count from the start of the motion."""
     per_axis = [run.steps(axis) for axis in range(run.file.axes)]
     clocks = np.concatenate([clocks for clocks, _ in per_axis])
     directions = np.concatenate([directions for _, directions in per_axis])
@@ -56,7 +56,7 @@ def summarize(run: Run, engine: str) -> dict[str, Any]:
 
 
 def _axis(run: Run, axis: int) -> dict[str, Any]:
-    """Sums are signed; pulses are not. The error is the largest distance of a step from its ideal place."""
+    """Sums are signed, pulses are not. The error is the largest distance of a step from the ideal curve."""
     clocks, directions = run.steps(axis)
     _, errors = step_errors(run, axis)
     return {
@@ -69,5 +69,5 @@ def _axis(run: Run, axis: int) -> dict[str, Any]:
 
 
 def write_json(data: Any, path: Path) -> None:
-    """Indented JSON."""
+    """Write indented JSON."""
     path.write_text(json.dumps(data, indent=2) + "\n")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Execute a planned motion on an engine, the way a host does: over SPI, keeping the queues filled."""
+"""Execute a planned motion on an engine as a host does: over SPI, keeping the queues filled."""
 
 import time
 from collections.abc import Callable
@@ -18,10 +18,10 @@ from passo.registers import Cause, State
 
 ENGINES = ("both", "rtl", "model")
 CHUNK = 1_000_000  # clocks between two reports of progress
-SLEW_MICROSECONDS = 50_000  # a hold from full speed
+SLEW_MICROSECONDS = 50_000  # of hold and stop, from full speed
 AXES_OF_CORES = (4, 8)
 
-# The pins of the one channel, without what stays the same during a motion.
+# The pins of a single channel that change during a motion.
 PINS = np.dtype([("clock", "u8"), ("step", "u1"), ("dir", "u1"), ("running", "?")])
 
 
@@ -31,18 +31,18 @@ class RunError(Exception):
 
 @dataclass
 class Run:
-    """What came of a motion."""
+    """Result of a motion."""
 
     file: MoveFile
     plans: list[Plan]
     pins: np.ndarray  # PINS, one row for each clock on which they change
     state: ChannelState
     positions: list[int]
-    matched_edges: int | None  # None: there was only one engine
-    clocks: int  # executed in all
-    seconds: float  # that it took
-    start: int = field(init=False)  # clock on which the motion started
-    total_clocks: int = field(init=False)  # clocks that the motion lasted
+    matched_edges: int | None  # edges that agree; None: only one engine
+    clocks: int  # simulated in total
+    seconds: float  # of real time
+    start: int = field(init=False)  # clock at which the motion started
+    total_clocks: int = field(init=False)  # length of the motion
 
     def __post_init__(self) -> None:
         running = np.concatenate([[False], self.pins["running"]])
@@ -59,12 +59,12 @@ class Run:
         return self.pins["clock"][rising].astype(np.int64) - self.start, 1 - 2 * negative.astype(np.int8)
 
     def commanded(self, axis: int) -> tuple[int, int]:
-        """Sum of the steps of all moves, and of their magnitudes."""
+        """Commanded steps of an axis over all moves: their sum, and the sum of their magnitudes."""
         steps = [move.steps[axis] for move in self.file.moves]
         return sum(steps), sum(map(abs, steps))
 
     def problems(self) -> list[str]:
-        """What is not as it should be, in sentences; empty if the motion was made exactly."""
+        """Deviations from the plan, one sentence each; empty if the motion was exact."""
         found = []
         if self.state.cause != Cause.NONE:
             found.append(f"the core stopped: {self.state.cause.name}: {self.state.cause.description}")
@@ -84,12 +84,12 @@ class Run:
 
 
 def parameters_for(axes: int) -> Parameters:
-    """The core that is used for so many axes."""
+    """Parameters of the core used for a number of axes."""
     return Parameters(axes=next(n for n in AXES_OF_CORES if n >= axes))
 
 
 def open_engine(name: str, parameters: Parameters, clock_hz: int, waves: bool = False) -> Engine | PairEngine:
-    """An engine by its name on the command line."""
+    """Create the engine named on the command line: both, rtl or model."""
     if name == "model":
         return model_engine(parameters, clock_hz)
     rtl = rtl_engine(parameters, clock_hz, waves)
@@ -97,7 +97,7 @@ def open_engine(name: str, parameters: Parameters, clock_hz: int, waves: bool = 
 
 
 def patience(driver: Driver, source: Source) -> int:
-    """Clocks that may pass before the queues need another look: half of what they hold."""
+    """Clocks until the queues should be refilled: half of their contents."""
     parameters = driver.engine.parameters
     waiting = (1 << parameters.ramp_queue_log2) - driver.c.snapshot.ramp_room
     ticks = sum(source.ticks[-waiting:]) if waiting else 0
@@ -110,12 +110,12 @@ def execute(
     engine: Engine | PairEngine,
     progress: Callable[[int], None] = lambda clocks: None,
 ) -> Run:
-    """Make the motion; `progress` is told its clocks so far."""
+    """Execute the motion; `progress` is called with the clocks done so far. Raises DriverError, RunError."""
     driver = Driver(engine, file.clock_hz, engine.parameters)
     pins: list[np.ndarray] = []
 
     def collect() -> bool:
-        """Take over what happened at the pins; return whether the core reports a stop."""
+        """Store the pin events; return whether the core reports a stop."""
         events = engine.drain()
         compact = np.empty(len(events), PINS)
         for name in PINS.names:
@@ -131,7 +131,7 @@ def execute(
                 return
 
     def poll() -> bool:
-        """Send what there is to send; return whether all goes well."""
+        """Poll the driver while it has something to do; return whether there was no fault."""
         try:
             driver.poll()
             while driver.idle_microseconds == 0 and driver.is_moving:
@@ -139,7 +139,7 @@ def execute(
         except DriverError:
             if not driver.c.fault:
                 raise
-            return False  # the state tells why
+            return False  # the state shows the cause
         return True
 
     for axis in range(file.axes):
@@ -160,7 +160,7 @@ def execute(
             raise RunError(f"the motion did not end in time: {driver.state.name}")
         left = max(left, 16 * tick)
         advance(min(left, patience(driver, source)) if driver.is_streaming else left)
-    # The last pulse and a change of direction may still be under way.
+    # The last pulse and a change of DIR may still be in progress.
     advance(8 * sum((file.pins.step_high, file.pins.step_low, file.pins.dir_setup, file.pins.dir_hold)))
     positions = driver.positions()[: file.axes]
     snapshot = driver.snapshot()

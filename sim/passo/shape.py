@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Shapes of the user's own: 256 points, made from a formula or from a file, checked, and written.
+"""User-defined shapes: tables of 256 points, created from a formula or a file.
 
-A shape leads from 0 to 1 while the progress u goes from 0 to 1, and never falls. Point k is shape(k / 256) in
-units of 2^-16; point 256 is always 1 and is not stored.
+A shape rises from 0 to 1 while the progress u goes from 0 to 1, and never decreases. Point k is
+shape(k / 256) in units of 2^-16; point 256 is always 1 and not stored.
 """
 
 import ast
@@ -27,7 +27,7 @@ Points = tuple[int, ...]
 
 
 class ShapeError(ValueError):
-    """This is not a shape; the text is one line that says why."""
+    """Not a valid shape; the text is the reason, in one line."""
 
 
 # --------------------------------------------------------------------------------------------- formulas ----
@@ -45,7 +45,10 @@ FORMULA_MAX = 500  # characters
 
 
 def formula(text: str) -> Callable[[float], float]:
-    """A function of u from its text: numbers, u, + - * / **, brackets and the functions above."""
+    """Parse a function of u: numbers, u, pi, e, + - * / ^, parentheses and the functions in FUNCTIONS.
+
+    Raises ShapeError, and so does the returned function where it has no finite value.
+    """
     if len(text) > FORMULA_MAX:
         raise ShapeError(f"a formula has at most {FORMULA_MAX} characters")
     try:
@@ -67,7 +70,7 @@ def formula(text: str) -> Callable[[float], float]:
 
 
 def _check(node: ast.expr) -> None:
-    """Only arithmetic: nothing that could do anything else is evaluated."""
+    """Accept only arithmetic, so that nothing else can be evaluated."""
     match node:
         case ast.Constant(value=int() | float()) if not isinstance(node.value, bool):
             pass
@@ -105,27 +108,27 @@ def _value(node: ast.expr, u: float) -> float:
 
 @dataclass(frozen=True)
 class Facts:
-    """What a planner must know of a table."""
+    """Properties of a table."""
 
-    mean: Fraction  # exact, with straight lines between the points
+    mean: Fraction  # exact, with linear interpolation
     symmetric: bool
 
 
 def sample(shape: Callable[[float], float]) -> Points:
-    """A checked table of a function; it is scaled so that it starts at 0 and ends at 1."""
+    """Sample a function to a checked table, scaled to start at 0 and end at 1. Raises ShapeError."""
     values = [shape(k / POINTS) for k in range(POINTS + 1)]
     first, last = values[0], values[-1]
     if not last > first:
         raise ShapeError("a shape must rise: at u = 1 it is not above what it is at u = 0")
     points = [round((value - first) / (last - first) * ONE) for value in values]
-    # A shape that is 1 before its end stays a unit below, which 16 bits can hold.
+    # A shape that reaches 1 before its end is limited to 16 bits.
     table = tuple(min(point, ONE - 1) if point <= ONE else point for point in points[:-1])
     check(table)
     return table
 
 
 def check(points: Sequence[int]) -> Facts:
-    """Whether a table is a shape; raise ShapeError."""
+    """Check that a table is a shape; raises ShapeError."""
     if len(points) != POINTS:
         raise ShapeError(f"a table has {POINTS} points, not {len(points)}")
     for k, point in enumerate(points):
@@ -136,13 +139,16 @@ def check(points: Sequence[int]) -> Facts:
     whole = [*points, ONE]
     for k, (point, after) in enumerate(pairwise(whole)):
         if after < point:
-            raise ShapeError(f"a shape must never fall: point {k} is {point}, point {k + 1} is {after}")
+            raise ShapeError(f"a shape must not decrease: point {k} is {point}, point {k + 1} is {after}")
     mean = Fraction(sum(whole[:-1]) + sum(whole[1:]), 2 * POINTS * ONE)
     return Facts(mean, all(whole[k] + whole[POINTS - k] == ONE for k in range(POINTS + 1)))
 
 
 def read_table(path: Path) -> Points:
-    """The table in a CSV file: `k,point` with all points, or `u,s` with any number of them on a curve."""
+    """Read a table from a CSV file: `k,point` with all points, or `u,s` with any points of a curve.
+
+    Raises ShapeError.
+    """
     try:
         with path.open(newline="", encoding="utf-8") as file:
             rows = [[cell.strip() for cell in row] for row in csv.reader(file) if row]
@@ -173,7 +179,7 @@ def _points(rows: list[list[str]]) -> Points:
 
 
 def _curve(rows: list[list[str]]) -> Callable[[float], float]:
-    """Straight lines between points of a curve."""
+    """Linear interpolation between the points of a curve."""
     us, values = (list(column) for column in zip(*((float(u), float(s)) for u, s in rows), strict=True))
     if len(us) < 2 or us[0] != 0 or us[-1] != 1 or any(b <= a for a, b in pairwise(us)):
         raise ShapeError("u must go from 0 to 1, always rising")
@@ -189,7 +195,7 @@ def _curve(rows: list[list[str]]) -> Callable[[float], float]:
 
 
 def write_table(points: Sequence[int], path: Path) -> None:
-    """As CSV or, by the file's name, as TOML."""
+    """Write a table as CSV, or as TOML if the file name ends in .toml."""
     if path.suffix == ".toml":
         rows = (points[k : k + 8] for k in range(0, POINTS, 8))
         lines = "".join(f"    {', '.join(map(str, row))},\n" for row in rows)
@@ -202,7 +208,7 @@ def write_table(points: Sequence[int], path: Path) -> None:
 
 
 def plot_table(points: Sequence[int], path: Path) -> None:
-    """A small picture of the shape and its slope."""
+    """Plot a shape and its slope."""
     import matplotlib
 
     matplotlib.use("Agg")

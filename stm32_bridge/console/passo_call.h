@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * What a command of the console is given, for the sources that have one.
+ * Internal: arguments of the console commands.
  *
- * It says "ok" with what it has to tell, or complains, and returns whether the end of the line is still to be
- * said.
+ * A command prints "ok" with its output, or an error. It returns true if the end of line is still to be
+ * printed.
  */
 #ifndef PASSO_CALL_H
 #define PASSO_CALL_H
@@ -11,7 +11,7 @@
 
 #define PASSO_COUNT(table) (sizeof(table) / sizeof(table)[0])
 
-/* The values of all commands but `move`. */
+/* Values of all commands except `move`. */
 struct passo_values {
 	uint8_t axis;
 	uint32_t number; /* percent, row */
@@ -23,7 +23,7 @@ struct passo_values {
 	struct passo_axis_config config;
 };
 
-/* What a command works with. */
+/* Arguments of a command. */
 struct passo_call {
 	struct passo_console *console;
 	struct passo_reading *reading;
@@ -31,7 +31,7 @@ struct passo_call {
 	struct passo_values *values;
 };
 
-/* Rows of a table of keys, for a value and for a whole number. */
+/* Rows of a key table, for a value and for an integer. */
 #define PASSO_VALUE(text, member, read, default_text)                                                        \
 	{.name = (text),                                                                                     \
 	    .reader = PASSO_READ_##read,                                                                     \
@@ -45,13 +45,13 @@ struct passo_call {
 	    .high = (highest),                                                                               \
 	    .offset = offsetof(struct passo_values, member)}
 
-/* "ok", or the complaint. */
+/* Prints "ok", or the error. Returns whether there was none. */
 bool passo_answer(const struct passo_call *call, enum passo_error error);
-/* In thousandths, to the nearest; `value` has 32 binary places. */
+/* Converts Q31.32 to thousandths, rounded to nearest. */
 int64_t passo_thousandths(int64_t value);
 
-/* Motion and reading: passo_motion_commands.c. Settings, and the clear that may have to give them to the
- * core: passo_settings_commands.c. */
+/* Motion and readings: passo_motion_commands.c. Settings, and `clear`, which may have to apply them:
+ * passo_settings_commands.c. */
 bool passo_run_move(const struct passo_call *call);
 bool passo_run_turn(const struct passo_call *call);
 bool passo_run_rpm(const struct passo_call *call);
@@ -72,7 +72,7 @@ bool passo_run_config(const struct passo_call *call);
 bool passo_run_table(const struct passo_call *call);
 bool passo_run_open(const struct passo_call *call);
 bool passo_run_version(const struct passo_call *call);
-/* Print the keys of `config`. */
+/* Prints the keys of `config`. */
 void passo_config_help(const struct passo_sink *sink);
 
 #endif

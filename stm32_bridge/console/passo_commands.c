@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Each command is a row of the table below: its keys, and what it does.
+ * Command table: each row has the keys and the function of a command.
  */
 #include "passo_commands.h"
 
@@ -14,7 +14,7 @@ struct command {
 	bool (*run)(const struct passo_call *call);
 	const struct passo_key *keys;
 	uint8_t count;
-	uint8_t bare; /* so many of the keys can be given as values alone */
+	uint8_t bare; /* number of keys that can be given as values alone */
 	const char *text;
 };
 
@@ -57,29 +57,29 @@ int64_t passo_thousandths(int64_t value)
 
 static bool run_help(const struct passo_call *call);
 
-/* What a command is and takes. Those without a number of keys read their own. */
+/* Commands without keys in their row read their own keys, or have none. */
 #define TAKES(keys) (keys), PASSO_COUNT(keys)
 static const struct command COMMANDS[] = {
     {"move", passo_run_move, NULL, 0, 0, "queue a move; help move lists its forms"},
-    {"turn", passo_run_turn, TAKES(TURN_KEYS), 0, "turn without end, from rest"},
-    {"rpm", passo_run_rpm, TAKES(RPM_KEYS), 1, "another speed while turning without end; 0 ends it"},
-    {"hold", passo_run_hold, NULL, 0, 0, "slow down along the path, to 0"},
-    {"resume", passo_run_resume, NULL, 0, 0, "go on after hold"},
-    {"override", passo_run_override, TAKES(PERCENT_KEYS), 1, "slow down all motion to a percentage"},
-    {"stop", passo_run_stop, NULL, 0, 0, "slow down, stop, drop what is queued; then clear"},
-    {"abort", passo_run_abort, NULL, 0, 0, "stop at once, drop what is queued; then clear"},
+    {"turn", passo_run_turn, TAKES(TURN_KEYS), 0, "rotate continuously, from rest"},
+    {"rpm", passo_run_rpm, TAKES(RPM_KEYS), 1, "change the speed of the rotation; 0 ends it"},
+    {"hold", passo_run_hold, NULL, 0, 0, "feed hold: slow down to rest on the path"},
+    {"resume", passo_run_resume, NULL, 0, 0, "continue after hold"},
+    {"override", passo_run_override, TAKES(PERCENT_KEYS), 1, "feed override of all motion, 1 to 100"},
+    {"stop", passo_run_stop, NULL, 0, 0, "soft stop, flush the queues; then clear"},
+    {"abort", passo_run_abort, NULL, 0, 0, "hard stop, flush the queues; then clear"},
     {"clear", passo_run_clear, NULL, 0, 0, "leave the stopped state"},
-    {"status", passo_run_status, NULL, 0, 0, "what the channel does"},
+    {"status", passo_run_status, NULL, 0, 0, "state of the channel"},
     {"position", passo_run_position, NULL, 0, 0, "steps made by each axis"},
     {"angle", passo_run_angle, TAKES(ANGLE_KEYS), 1, "degrees of an axis and rpm of the motion"},
-    {"enable", passo_run_enable, TAKES(AXIS_KEYS), 1, "switch on the drive of an axis, or all"},
-    {"disable", passo_run_disable, TAKES(AXIS_KEYS), 1, "switch it off, at rest or when stopped"},
-    {"zero", passo_run_zero, NULL, 0, 0, "call the present positions 0"},
-    {"sync", passo_run_sync, TAKES(ON_KEYS), 1, "let motions wait for the sync input, or no longer"},
+    {"enable", passo_run_enable, TAKES(AXIS_KEYS), 1, "enable the drive of an axis, or all"},
+    {"disable", passo_run_disable, TAKES(AXIS_KEYS), 1, "disable it, at rest or when stopped"},
+    {"zero", passo_run_zero, NULL, 0, 0, "set all positions to 0"},
+    {"sync", passo_run_sync, TAKES(ON_KEYS), 1, "1: motions wait for the sync input; 0: not"},
     {"config", passo_run_config, NULL, 0, 0, "show or change settings; help config lists them"},
-    {"table", passo_run_table, TAKES(TABLE_KEYS), 2, "load 16 of the 256 points of a shape, or check it"},
-    {"open", passo_run_open, NULL, 0, 0, "make contact with the core again"},
-    {"version", passo_run_version, NULL, 0, 0, "of console and core"},
+    {"table", passo_run_table, TAKES(TABLE_KEYS), 2, "load 16 of 256 points of a shape, or check it"},
+    {"open", passo_run_open, NULL, 0, 0, "connect to the core again"},
+    {"version", passo_run_version, NULL, 0, 0, "versions of console and core"},
     {"help", run_help, TAKES(HELP_KEYS), 1, "this list, or the keys of one command"},
 };
 

@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: MIT
- * The commands of the console.
+ * Internal: the commands of the console.
  */
 #ifndef PASSO_COMMANDS_H
 #define PASSO_COMMANDS_H
 
 #include "passo_console.h"
 
-/* Execute a line, in place, and answer it. */
+/* Executes a line, which is modified, and prints the answer. */
 void passo_commands_execute(struct passo_console *console, char *line);
 
-/* Open the core and give it the settings that the console keeps. */
+/* Opens the core and applies the settings of the console to it. */
 enum passo_error passo_commands_open(struct passo_console *console);
 
-/* The settings of a fresh start: all pin times 1 us. */
+/* Default axis settings: all pin times 1 us. */
 void passo_commands_reset_axes(struct passo_console *console);
 
-/* A note about an error, if it is one. */
+/* Prints a note about an error other than PASSO_OK. */
 void passo_say_error_note(struct passo_console *console, enum passo_error error);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * From bytes to lines; what the lines do is in passo_commands.c.
+ * Assembles bytes to lines and polls the core. The commands are in passo_commands.c.
  */
 #include "passo_console.h"
 
@@ -32,7 +32,7 @@ void passo_console_start(struct passo_console *console, const struct passo_sink 
 	passo_say_error_note(console, passo_commands_open(console));
 }
 
-/* Execute the line that is complete, or say why not. */
+/* Executes a complete line, or prints why it cannot. */
 static void finish_line(struct passo_console *console)
 {
 	console->line[console->length] = '\0';
@@ -55,7 +55,7 @@ void passo_console_receive(struct passo_console *console, char byte)
 
 	console->ended_by_return = byte == '\r';
 	if (byte == '\n' && after_return)
-		return; /* the second half of an end of line */
+		return; /* LF of CR LF */
 	if (byte == '\n' || byte == '\r') {
 		finish_line(console);
 	} else if (byte == BACKSPACE || byte == DELETE) {
@@ -71,7 +71,7 @@ void passo_console_receive(struct passo_console *console, char byte)
 	}
 }
 
-/* A stop or hold that was not acknowledged is being sent again. */
+/* A stop or hold is being resent because it was not acknowledged. */
 static bool insists(const struct passo_console *console)
 {
 	const enum passo_error fault = passo_fault(&console->passo);
@@ -79,7 +79,7 @@ static bool insists(const struct passo_console *console)
 	return fault == PASSO_ERROR_NOT_STOPPED || fault == PASSO_ERROR_NOT_HELD;
 }
 
-/* While a motion runs there is nothing to do for long; the irq pin tells when it stops. */
+/* While a motion runs, polling seldom is enough; the irq pin signals a stop. */
 static bool is_time_to_look(struct passo_console *console)
 {
 	const struct passo_hardware *hardware = &console->hardware;
@@ -93,7 +93,7 @@ static bool is_time_to_look(struct passo_console *console)
 	return true;
 }
 
-/* Frames that did not come back as they should. */
+/* Number of frames without a valid reply. */
 static uint32_t bad_frames(const struct passo_counters *counters)
 {
 	return counters->stuck + counters->no_ack + counters->damaged + counters->sequence + counters->failed
@@ -106,7 +106,7 @@ static bool is_of_wire(enum passo_error error)
 	    || error == PASSO_ERROR_NOT_STOPPED || error == PASSO_ERROR_NOT_HELD;
 }
 
-/* A look costs no frame when it is too early for one: that is no news. */
+/* Polls the core. A poll that sends no frame does not change what is known. */
 static void look_at_core(struct passo_console *console)
 {
 	const struct passo_counters before = console->host.counters;
@@ -128,7 +128,7 @@ static void look_at_core(struct passo_console *console)
 	}
 }
 
-/* An FPGA may need longer than this board to wake up. */
+/* Retries to open the core: an FPGA may take longer to start than this board. */
 static void look_for_core(struct passo_console *console)
 {
 	const struct passo_hardware *hardware = &console->hardware;

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * The console: lines of text in, answers out, a Passo core behind it.
+ * The console: a text interface to a Passo core. docs/console.md describes the commands.
  *
- * Every line is answered by one line that begins with `ok` or `error:`; before it `help` prints lines that
- * begin with two spaces. Lines that begin with `note:` come by themselves. docs/console.md is the language.
- * Portable: the board, or a simulation, gives it the hardware of the link and a place for text.
+ * Every input line is answered by one line that starts with `ok` or `error:`; before it, `help` prints lines
+ * that start with two spaces. Lines that start with `note:` are unsolicited. Portable: the board, or a
+ * simulation, provides the hardware functions of the link and a text output.
  */
 #ifndef PASSO_CONSOLE_H
 #define PASSO_CONSOLE_H
@@ -11,21 +11,21 @@
 #include "passo.h"
 #include "passo_forms.h"
 
-/* Characters of a line, its end not counted. */
+/* Maximum length of a line, without its end. */
 #define PASSO_LINE_MAX 255u
 
-/* In the place of a byte that was lost or damaged on its way; its line is refused. */
+/* Stands for a byte that was lost or received with an error; its line is refused. */
 #define PASSO_CONSOLE_LOST '\0'
 
-/* Stands for the clock until `config clock_hz=` says another. */
+/* Clock of the core until `config clock_hz=` sets another. */
 #define PASSO_CLOCK_HZ_RESET 100000000u
 
-/* What a board can change; unused functions are null. */
+/* Functions of the board; unused ones are null. */
 struct passo_console_board {
-	/* After the answer has been sent. */
+	/* Called after the answer has been sent. */
 	void (*set_baud)(void *context, uint32_t baud);
 	void (*set_spi_fast)(void *context, bool fast);
-	/* How often bytes of the serial line were lost. */
+	/* Number of times that bytes of the serial line were lost. */
 	uint32_t (*lost_bytes)(void *context);
 	void *context;
 };
@@ -37,36 +37,37 @@ struct passo_console {
 	struct passo_host host;
 	struct passo passo;
 	uint32_t clock_hz, hold_microseconds, stop_microseconds, baud;
-	enum passo_error noted; /* the error that stands, and has been told in a note */
-	uint32_t tried_at;      /* microseconds: when the core was last looked for, or at */
+	enum passo_error noted; /* present error, which was reported in a note */
+	uint32_t tried_at;      /* microseconds: time of the last attempt to open or poll the core */
 	bool spi_slow;
 	bool opened;
-	bool unset; /* the core has not been given the settings yet: it was in motion when it was opened */
+	bool unset; /* settings not applied yet: the core was in motion when it was opened */
 	struct passo_axis_config axis[PASSO_AXES_MAX]; /* times in clocks */
 	struct passo_loaded_table table;
-	/* the line so far */
+	/* the incomplete input line */
 	char line[PASSO_LINE_MAX + 1u];
 	uint16_t length;
 	bool too_long, ended_by_return;
-	uint16_t bad; /* the first byte that is no text, plus 1; 0: none */
+	uint16_t bad; /* first byte that is not text, plus 1; 0: none */
 };
 
-/* Begin, greet with a note, and try to open the core. `board` may be null; `baud` is what holds at first. */
+/* Initializes the console, prints a greeting and tries to open the core. `board` may be null; `clock_hz` and
+ * `baud` are the initial values. */
 void passo_console_start(struct passo_console *console, const struct passo_sink *sink,
     const struct passo_hardware *hardware, const struct passo_console_board *board, uint32_t clock_hz,
     uint32_t baud);
 
-/* The next byte of the input. At the end of a line it is executed and answered. */
+/* Processes a byte of input. The end of a line executes and answers it. */
 void passo_console_receive(struct passo_console *console, char byte);
 
-/* To be called again and again: at most one frame. An error becomes a note, once while it lasts.
- * A core that did not answer at the start is looked for twice a second. */
+/* Call it continuously; at most one frame per call. Reports an error in a note, once while it persists. A
+ * core that did not answer at the start is tried again twice a second. */
 void passo_console_poll(struct passo_console *console);
 
-/* Is nothing queued or moving (or no core there)? */
+/* True if no motion is running or queued, or if there is no core. */
 bool passo_console_is_idle(const struct passo_console *console);
 
-/* Is everything as it should be: a core, and no fault? */
+/* True if the core is open and has no fault. */
 bool passo_console_is_well(const struct passo_console *console);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * A digit of the place 10^(point - i) goes into `whole` or behind the point. Multiplying is done as on paper,
- * from the last digit on: what is carried out of the first one is the whole part of the product.
+ * Integer digits go into `whole`, the others are stored one by one. Multiplication is schoolbook, starting
+ * with the last digit: the carry out of the first one is added to the whole part of the product.
  */
 #include "passo_decimal.h"
 
@@ -22,7 +22,7 @@ static void append(struct passo_decimal *number, uint8_t digit)
 		number->whole = number->whole * 10u + digit;
 }
 
-/* Read the exponent after its `e`; false if it is none. */
+/* Parses the exponent after its `e`; false if it is invalid. */
 static bool read_exponent(const char *text, const char *end, int *exponent)
 {
 	bool negative = text < end && *text == '-';
@@ -42,8 +42,8 @@ static bool read_exponent(const char *text, const char *end, int *exponent)
 	return true;
 }
 
-/* Put each digit of a mantissa where it belongs; `point` is the place of the decimal point, in digits from
- * the first one. */
+/* Stores the digits of a mantissa; `point` is the position of the decimal point, in digits from the first
+ * one. */
 static void place_digits(struct passo_decimal *number, const char *text, const char *end, int point)
 {
 	int place = 0;
@@ -121,7 +121,7 @@ bool passo_decimal_exceeds(const struct passo_decimal *number, uint64_t limit)
 	    || (number->whole == limit && has_fraction(number->digits, 0, number->decimals));
 }
 
-/* The product rounded down; the digits that are left behind its point go to *rest. */
+/* The product rounded down; its decimal digits go to *rest. */
 static uint64_t multiply(const struct passo_decimal *number, uint64_t factor, uint8_t *rest)
 {
 	uint64_t carry = 0;

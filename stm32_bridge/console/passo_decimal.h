@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Decimal numbers, read exactly as they are written: no floating point, one rounding at the very end.
+ * Exact decimal numbers: no floating point, a single rounding at the end.
  */
 #ifndef PASSO_DECIMAL_H
 #define PASSO_DECIMAL_H
@@ -13,24 +13,24 @@
 /* The absolute value is whole + 0.digits. */
 struct passo_decimal {
 	bool negative;
-	bool is_whole;    /* written with nothing but sign and digits */
-	bool too_fine;    /* it has more than PASSO_DECIMALS_MAX decimals; those are left out */
+	bool is_whole;    /* written with only sign and digits */
+	bool too_fine;    /* more than PASSO_DECIMALS_MAX decimal places; the rest is dropped */
 	uint64_t whole;   /* saturates */
-	uint8_t decimals; /* how many digits count */
+	uint8_t decimals; /* number of valid digits */
 	uint8_t digits[PASSO_DECIMALS_MAX];
 };
 
-/* Read [+-]digits[.digits][e[+-]digits], with at least one digit before the exponent, times 10^power. Digits
- * may be joined by underscores (20_000). False if the text is anything else. */
+/* Parses [+-]digits[.digits][e[+-]digits], with at least one digit before the exponent, times 10^power.
+ * Digits may be separated by underscores (20_000). Returns false for any other text. */
 bool passo_decimal_read(struct passo_decimal *number, const char *text, size_t length, int power);
 
 bool passo_decimal_is_zero(const struct passo_decimal *number);
 
-/* Is its absolute value above a limit? */
+/* Whether the absolute value is above a limit. */
 bool passo_decimal_exceeds(const struct passo_decimal *number, uint64_t limit);
 
-/* The absolute value times a factor of 1 .. 2^32: the nearest integer, ties to even; or the next one up.
- * The whole part times the factor must stay below 2^64 - 2^33. */
+/* The absolute value times a factor of 1 .. 2^32, rounded to nearest (ties to even), or up. The whole part
+ * times the factor must be below 2^64 - 2^33. */
 uint64_t passo_decimal_times(const struct passo_decimal *number, uint64_t factor);
 uint64_t passo_decimal_times_ceil(const struct passo_decimal *number, uint64_t factor);
 

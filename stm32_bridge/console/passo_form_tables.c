@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Generated from schema/moves.toml by tools/generate_moves.py.
  *
- * The keys of each form of a move.
+ * Keys of the move forms.
  */
 #include "passo_form_tables.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The forms of a move as tables of keys. The tables themselves are generated.
+ * Internal: the move forms as key tables. The tables are generated.
  */
 #ifndef PASSO_FORM_TABLES_H
 #define PASSO_FORM_TABLES_H
@@ -14,21 +14,21 @@ enum passo_form {
 	    PASSO_FORM_COUNT
 };
 
-/* What is checked when all keys are read. */
+/* Rules between keys, checked after all of them are read. */
 enum passo_rule_kind {
-	PASSO_RULE_EXCLUDES,  /* only one of the two keys is given */
-	PASSO_RULE_NEEDS,     /* the key is given with the other one */
-	PASSO_RULE_ABOVE_ZERO /* the key, a number, is above 0 if it is given */
+	PASSO_RULE_EXCLUDES,  /* at most one of the two keys may be given */
+	PASSO_RULE_NEEDS,     /* the key requires the other one */
+	PASSO_RULE_ABOVE_ZERO /* the key must be above 0 if given */
 };
 
 struct passo_rule {
 	uint8_t kind;
-	uint8_t key, other; /* places in the form's keys */
+	uint8_t key, other; /* indices of the form's keys */
 };
 
 struct passo_form_table {
 	const char *name;
-	const char *told_by; /* the key that tells this form when `method` does not; or null */
+	const char *told_by; /* the key that identifies this form when `method` is missing; or null */
 	const struct passo_key *keys;
 	const struct passo_rule *rules;
 	uint8_t count, rule_count;
@@ -36,7 +36,7 @@ struct passo_form_table {
 
 extern const struct passo_form_table passo_form_tables[PASSO_FORM_COUNT];
 
-/* The names of all keys of the forms that are told by a key. */
+/* All keys of the forms that are identified by a key. */
 extern const struct passo_key passo_form_told_keys[];
 extern const unsigned passo_form_told_count;
 

@@ -19,7 +19,7 @@ static bool has_key(const struct passo_form_table *form, const char *name)
 	return passo_key_find(form->keys, form->count, name) >= 0;
 }
 
-/* The form by its name; null after a complaint. */
+/* Finds a form by its name; null after printing an error. */
 static const struct passo_form_table *form_by_name(const struct passo_sink *sink, const char *name)
 {
 	for (unsigned form = 0; form < PASSO_FORM_COUNT; form++) {
@@ -33,7 +33,7 @@ static const struct passo_form_table *form_by_name(const struct passo_sink *sink
 	return NULL;
 }
 
-/* By time or by speed: what is given tells. */
+/* Finds the form without a method, in time or by speed, from the keys given. */
 static const struct passo_form_table *form_by_keys(
     const struct passo_reading *reading, struct passo_words *words)
 {

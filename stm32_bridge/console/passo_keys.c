@@ -28,7 +28,7 @@ bool passo_words_split(const struct passo_sink *sink, char *text, struct passo_w
 				words->word[words->count].key = words->word[words->count].value;
 				words->word[words->count].value = text + 1;
 				if (*words->word[words->count].key == '\0')
-					return passo_complain(sink, "there is no key before =");
+					return passo_complain(sink, "no key before =");
 			}
 		}
 		if (*text != '\0')
@@ -78,7 +78,7 @@ bool passo_keys_check(const struct passo_reading *reading, const struct passo_ke
 			name = keys[used++].name;
 		} else if (passo_key_find(keys, count, name) < 0) {
 			if (count == 0u)
-				return passo_complain(reading->sink, "there is no key %q here", name);
+				return passo_complain(reading->sink, "no key %q here", name);
 			return complain_unknown(reading->sink, keys, count, name);
 		}
 		words->word[i].key = "";

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Commands that move the axes, and that read where they are.
+ * Commands for motion and readings.
  */
 #include "passo_call.h"
 #include "passo_release.h"
@@ -69,7 +69,7 @@ bool passo_run_zero(const struct passo_call *call)
 	return passo_answer(call, passo_zero(&call->console->passo));
 }
 
-/* Of one axis, or of all. */
+/* For one axis, or for all. */
 bool passo_run_enable(const struct passo_call *call)
 {
 	enum passo_error error = PASSO_OK;
@@ -89,9 +89,7 @@ bool passo_run_disable(const struct passo_call *call)
 
 bool passo_run_status(const struct passo_call *call)
 {
-#define NAME(cause) [PASSO_CAUSE_##cause] = #cause,
-	static const char *const CAUSES[] = {PASSO_CAUSES(NAME)};
-#undef NAME
+	static const char *const CAUSES[] = PASSO_CAUSE_NAMES;
 	struct passo_console *console = call->console;
 	struct passo_snapshot now;
 

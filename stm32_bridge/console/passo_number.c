@@ -6,7 +6,7 @@
 #include "passo.h"
 #include "passo_decimal.h"
 
-/* A number within a limit of the amount, exactly as it is written, times 10^power. */
+/* Parses a number times 10^power exactly and checks its limits. */
 static bool read_decimal(const struct passo_reading *reading, const struct passo_key *key,
     struct passo_item item, int power, bool is_signed, struct passo_decimal *number)
 {
@@ -67,7 +67,7 @@ bool passo_number_whole(const struct passo_reading *reading, const struct passo_
 
 /* --------------------------------------------------------------------------------------------- times ---- */
 
-/* Split a time into number and unit. Clocks are the unit without a power. */
+/* Splits a time into number and unit. */
 static struct passo_item cut_unit(const char *text, int *power, bool *clocks)
 {
 	static const struct {

@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: MIT
- * Numbers and times of a line: checked against their limits, then in the units of driver and planner.
+ * Internal: numbers and times, checked against their limits and converted to the units of driver and planner.
  */
 #ifndef PASSO_NUMBER_H
 #define PASSO_NUMBER_H
 
 #include "passo_keys.h"
 
-/* A text that ends at a comma or at its own end. */
+/* An item of a list. */
 struct passo_item {
 	const char *text;
 	size_t length;
 };
 
-/* Each complains and returns false if the text is not what the key wants. */
+/* Each prints an error and returns false if the text is not a valid value of the key. */
 
-/* UQ: times a factor. */
+/* Unsigned, times a factor, rounded to nearest. */
 bool passo_number_read(const struct passo_reading *reading, const struct passo_key *key,
     struct passo_item item, uint64_t factor, uint64_t *value);
 
@@ -25,11 +25,11 @@ bool passo_number_signed(
 bool passo_number_whole(const struct passo_reading *reading, const struct passo_key *key,
     struct passo_item item, uint32_t low, uint32_t high, uint32_t *value);
 
-/* In clocks: to the nearest, or rounded up. */
+/* In clocks, rounded to nearest, or up. */
 bool passo_number_time(const struct passo_reading *reading, const struct passo_key *key, const char *text,
     bool round_up, uint64_t *clocks);
 
-/* To the nearest; saturates. */
+/* Rounded to nearest; saturates. */
 bool passo_number_microseconds(
     const struct passo_reading *reading, const struct passo_key *key, const char *text, uint32_t *value);
 

@@ -5,8 +5,8 @@
 #include <stddef.h>
 #include <string.h>
 
-#define PIECE 32u      /* characters between two % that go out in one go */
-#define QUOTED_MAX 40u /* of a value that is shown in an error */
+#define PIECE 32u      /* literal characters that are written at a time */
+#define QUOTED_MAX 40u /* characters of a quoted value */
 #define NUMBER_SIZE 24u
 
 static void say_text(const struct passo_sink *sink, const char *text)
@@ -21,7 +21,7 @@ static void say_char(const struct passo_sink *sink, char c)
 	say_text(sink, text);
 }
 
-/* In at least so many digits. */
+/* With a minimum number of digits. */
 static void say_number(const struct passo_sink *sink, uint64_t number, unsigned digits)
 {
 	char text[NUMBER_SIZE];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Commands that open the core and set it up.
+ * Commands that open and configure the core.
  */
 #include <string.h>
 
@@ -42,7 +42,7 @@ void passo_commands_reset_axes(struct passo_console *console)
 		    .dir_hold_ns = clocks};
 }
 
-/* Give the core the settings. */
+/* Applies the settings to the core. */
 static enum passo_error set_up(struct passo_console *console)
 {
 	struct passo *passo = &console->passo;
@@ -66,7 +66,7 @@ enum passo_error passo_commands_open(struct passo_console *console)
 	return error == PASSO_OK ? set_up(console) : error;
 }
 
-/* A core that was reset does not move any more, whatever was queued. */
+/* A core that was reset does not move, whatever was queued. */
 static bool is_moving(const struct passo_console *console)
 {
 	return console->opened && !console->host.lost && passo_is_moving(&console->passo);
@@ -88,7 +88,7 @@ bool passo_run_clear(const struct passo_call *call)
 	return passo_answer(call, error);
 }
 
-/* Only what is given changes. */
+/* Changes only the settings that are given. */
 static bool config_axis(const struct passo_call *call)
 {
 	struct passo_console *console = call->console;
@@ -120,7 +120,7 @@ static bool config_axis(const struct passo_call *call)
 	return true;
 }
 
-/* Another clock means that all times are others: the core is opened anew, with the settings of a start. */
+/* A new clock changes all times: the core is reopened with default settings. */
 static enum passo_error set_clock(struct passo_console *console, uint32_t clock_hz)
 {
 	if (is_moving(console))
@@ -146,7 +146,7 @@ static bool config_board(const struct passo_call *call)
 	    || !passo_keys_read(call->reading, CONFIG_KEYS, PASSO_COUNT(CONFIG_KEYS), call->words, values))
 		return false;
 	if ((has_baud && board->set_baud == NULL) || (has_spi && board->set_spi_fast == NULL))
-		return passo_complain(&console->sink, "there is no board whose lines could be set");
+		return passo_complain(&console->sink, "this console has no board");
 	if (has_clock)
 		error = set_clock(console, values->clock_hz);
 	if (error == PASSO_OK && console->opened)
@@ -162,7 +162,7 @@ static bool config_board(const struct passo_call *call)
 	}
 	if (has_baud) {
 		console->baud = values->baud;
-		passo_say(&console->sink, "\n"); /* before the other speed */
+		passo_say(&console->sink, "\n"); /* still at the old baud rate */
 		board->set_baud(board->context, values->baud);
 	}
 	return !has_baud;
@@ -192,7 +192,7 @@ void passo_config_help(const struct passo_sink *sink)
 	passo_say(sink, "\n");
 }
 
-/* Load a row, or tell what the table is. */
+/* Loads a row, or checks the table and prints its properties. */
 bool passo_run_table(const struct passo_call *call)
 {
 	struct passo_loaded_table *table = &call->console->table;

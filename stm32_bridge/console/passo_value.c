@@ -15,7 +15,7 @@ static const char *const PROFILES[] = {
 #undef NAME
 };
 
-/* Take the next item off a list. */
+/* Removes the next item from a list. */
 static struct passo_item next_item(const char **list)
 {
 	struct passo_item item = {.text = *list, .length = strcspn(*list, ",")};
@@ -128,7 +128,7 @@ static bool read_profile(
 		}
 	}
 	if (or_user && strcmp(text, PASSO_USER_PROFILE) == 0) {
-		*profile = PASSO_PROFILE_LINEAR; /* the planner does not look at it */
+		*profile = PASSO_PROFILE_LINEAR; /* the planner ignores it */
 		reading->user_shape = true;
 		return true;
 	}

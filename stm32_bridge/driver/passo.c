@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * What the rest of the driver is built on.
+ * Basic functions of the driver.
  */
 #include "passo.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The driver: what a program does with one channel of a Passo core.
+ * The driver: controls one channel of a Passo core.
  *
  *     static struct passo_host host;
  *     static struct passo passo;
@@ -7,23 +7,25 @@
  *     passo_open(&passo, &host, &hardware, &(struct passo_options){.clock_hz = 72000000});
  *     passo_configure_axis(&passo, 0, &(struct passo_axis_config){.step_high_ns = 2000});
  *     passo_enable(&passo, 0, true);
- *     passo_move_by_speed(&passo, &move); // queued: the core makes it by itself
+ *     passo_move_by_speed(&passo, &move); // queued; the core executes it on its own
  *     while (passo_is_moving(&passo))
- *             passo_poll(&passo); // at most one frame each
+ *             passo_poll(&passo); // at most one frame per call
+ * Every function returns an enum passo_error (passo_error_text() describes it), checks its arguments, and is
+ * atomic: a move that returns an error other than a link error was not started. No heap, no floating point;
+ * all RAM is in struct passo and struct passo_host. Not reentrant.
  *
- * Every function returns an enum passo_error (passo_error_text() has a sentence for it), checks its
- * arguments, and leaves nothing half done: a move whose error is not one of the wire was not begun. No heap,
- * no floating point; RAM is the two structs (passo_host.h).
+ * After a link error it is unknown whether the core has executed the last frame:
+ *   - a stop or abort is resent by every passo_poll() until it is acknowledged (NOT_STOPPED until then);
+ *   - for hold, resume, override and wait for sync, the slower of the old and the new setting is resent
+ *     in the same way (NOT_HELD until then);
+ *   - during a move or a stream the driver becomes BROKEN: motions that were queued before may continue;
+ *   - the pin settings of an axis are unknown (NOT_CONFIGURED) until it is configured again.
+ * New moves are refused with these errors; passo_clear() ends the first three. No other command is resent.
  *
- * After an error of the wire (or TRANSFER) it is not known whether the core has executed the last frame:
- *   - a stop or abort is sent again by every passo_poll() until it is acknowledged (NOT_STOPPED until then);
- *   - hold, resume, override, wait for sync: the slower of before and now is, in the same way (NOT_HELD);
- *   - during a move or a stream the driver is BROKEN: what was queued before may run on;
- *   - the pins of an axis are not known (NOT_CONFIGURED) until it is configured again.
- * New moves are refused with these errors; passo_clear() ends the first three. Nothing else is done later.
- *
- * A call costs one frame (chip select) unless its comment says otherwise; on a disturbed wire up to `tries`.
- * Units: speeds, accelerations, rpm are UQ32.32 (PASSO_UNIT_Q32 is 1); lengths and angles are Q31.32.
+ * A call costs one frame (chip select) unless its comment says otherwise; on a noisy link up to `tries`
+ * frames. Every call can return ARGUMENT, NOT_OPEN, link errors, CORE_RESET and REFUSED + verdict; comments
+ * list the other errors. Speeds, accelerations and rpm are UQ32.32 (PASSO_UNIT_Q32 is 1), lengths and angles
+ * Q31.32.
  */
 #ifndef PASSO_H
 #define PASSO_H
@@ -36,166 +38,167 @@ extern "C" {
 #include "passo_host.h"
 #include "passo_plan.h"
 
-#define PASSO_RATE_FULL UINT32_C(0x10000)
+#define PASSO_RATE_FULL UINT32_C(0x10000) /* 100 % override, UQ1.16 */
 
 /* -------------------------------------------------------------------------------------------- open ---- */
 
-/* What the program expects. Zeros mean: whatever the core has. */
+/* What the program expects of the core. */
 struct passo_options {
-	uint32_t clock_hz; /* of the core; cannot be read from it, must be given */
-	uint8_t channel;   /* which one this driver is for */
-	uint8_t channels;  /* of the core: 0: any number; otherwise it must match */
-	uint8_t axes;      /* of each channel: 0: any number; otherwise it must match */
-	uint8_t tick_log2; /* 0: any; otherwise it must match */
+	uint32_t clock_hz; /* clock of the core; required, because it cannot be read from the core */
+	uint8_t channel;   /* the channel to control, 0 .. channels - 1 */
+	uint8_t channels;  /* CHANNELS of the core, must match; 0: any */
+	uint8_t axes;      /* AXES per channel, must match; 0: any */
+	uint8_t tick_log2; /* TICK_LOG2 of the core, must match; 0: any */
 };
 
-/* What passo_poll() saw last. */
+/* State of the channel when it was last read. */
 struct passo_snapshot {
 	enum passo_state state;
-	enum passo_cause cause;
-	bool quiet;                    /* no motion is prepared or runs, and all steps have left the pins */
-	bool stopping;                 /* a soft stop is under way */
-	uint8_t overrun;               /* bit i: axis i has lost steps */
-	uint16_t drained;              /* substeps made at drain velocity, since reset */
-	uint32_t rate;                 /* time scale in force, UQ1.16 */
-	uint16_t line_room, ramp_room; /* free places in the queues */
+	enum passo_cause cause; /* of the last stop */
+	bool quiet;             /* no motion is prepared or running, and all steps have left the pins */
+	bool stopping;          /* a soft stop is in progress */
+	uint8_t overrun;        /* bit i: axis i has lost steps */
+	uint16_t drained;       /* substeps made at drain velocity since reset; wraps */
+	uint32_t rate;          /* present time scale, UQ1.16 */
+	uint16_t line_room, ramp_room; /* free queue entries */
 	uint32_t velocity;             /* UQ0.32 substeps per clock, before the time scale */
 };
 
-/* Where a stream gets its items. Each fills in one and returns true, or returns false if there is none at the
- * moment. Called from passo_poll() only when there is room. An item is asked for once; after one with `last`
- * its function is not called again. They must not call the driver. */
+/* Source of a stream. Each function fills in one item and returns true, or returns false if none is available
+ * yet. passo_poll() calls them only when there is room in the queue. Each item is requested once; after an
+ * item with `last`, its function is not called again. The functions must not call the driver. */
 struct passo_source {
 	bool (*line)(void *context, struct passo_line *line);
 	bool (*ramp)(void *context, struct passo_ramp *ramp);
 	void *context;
 };
 
-/* What the driver remembers of an axis. */
+/* Driver state of an axis. */
 struct passo_axis_memory {
 	uint64_t steps_per_unit;  /* UQ32.32 */
-	uint32_t shortest_clocks; /* of a step; 0: not known */
-	int32_t expected;         /* position when all that is queued has been made */
+	uint32_t shortest_clocks; /* shortest step period; 0: pin settings unknown */
+	int32_t expected;         /* position after all queued motions */
 };
 
-/* What the driver believes of the channel. docs/driver.md shows what leads from state to state. */
+/* Assumed state of the channel. docs/driver.md shows the transitions. */
 enum passo_belief {
 	PASSO_BELIEF_NOT_OPEN,
-	PASSO_BELIEF_READY,         /* it takes moves */
-	PASSO_BELIEF_STOPPED,       /* it is stopped, or a stop was commanded: nothing but clear helps */
-	PASSO_BELIEF_BROKEN,        /* what a command has done is not known: nothing but clear helps */
+	PASSO_BELIEF_READY,         /* accepts moves */
+	PASSO_BELIEF_STOPPED,       /* stopped, or a stop was commanded: must be cleared */
+	PASSO_BELIEF_BROKEN,        /* the effect of a command is unknown: must be cleared */
 	PASSO_BELIEF_BROKEN_STOPPED /* both */
 };
 
-/* What is still to be seen of what was queued. */
+/* How the queued motions are expected to end. */
 enum passo_expectation {
 	PASSO_EXPECT_NOTHING,
-	PASSO_EXPECT_POSITIONS, /* an end, where the axes are at the positions expected of them */
-	PASSO_EXPECT_END,       /* an end; nobody knows where */
-	PASSO_EXPECT_TURNING,   /* turning without end, until a speed or the end is commanded */
-	PASSO_EXPECT_TURN_END   /* the end of it, which is queued */
+	PASSO_EXPECT_POSITIONS, /* at the expected positions */
+	PASSO_EXPECT_END,       /* at unknown positions */
+	PASSO_EXPECT_TURNING,   /* continuous rotation: not before it is commanded */
+	PASSO_EXPECT_TURN_END   /* continuous rotation: with the deceleration that is queued */
 };
 
-/* The stop that was commanded and has not been acknowledged, and so is sent by every poll. */
+/* A stop that was commanded but not acknowledged; every poll resends it. */
 enum passo_due { PASSO_DUE_NOTHING, PASSO_DUE_STOP, PASSO_DUE_ABORT };
 
-/* What the frame is that was posted last, until its result has been seen to. */
+/* Purpose of the frame in flight, in ascending priority. */
 enum passo_post {
 	PASSO_POST_NONE,
-	PASSO_POST_ITEMS, /* of a stream */
-	PASSO_POST_START, /* lets a stream begin */
+	PASSO_POST_ITEMS, /* lines or ramps of a stream */
+	PASSO_POST_START, /* opens the gate for a stream */
 	PASSO_POST_RUN,
 	PASSO_POST_RATE,
 	PASSO_POST_STOP,
 	PASSO_POST_ABORT
 };
 
-/* A stream: there is none; its queues are filled behind a closed gate; it runs and is fed. */
+/* Phase of a stream: none, filling the queues behind the closed gate, running. */
 enum passo_stream_phase { PASSO_STREAM_NONE, PASSO_STREAM_FILLS, PASSO_STREAM_RUNS };
 
-/* What a stream's source has of lines, and of ramps: more, nothing at the moment, nothing any more. */
+/* State of a stream's source, for lines and for ramps: may have more, has none at present, finished. */
 enum passo_supply { PASSO_SUPPLY_MORE, PASSO_SUPPLY_DRY, PASSO_SUPPLY_DONE };
 
-/* Whether motions may start. */
+/* Whether motions may start: yes, at the sync edge, no. */
 enum passo_gate { PASSO_GATE_OPEN, PASSO_GATE_SYNC, PASSO_GATE_CLOSED };
 
-/* One channel. All fields are private; use the functions. */
+/* One channel. All members are private; use the functions. */
 struct passo {
 	struct passo_host *host;
 	struct passo_machine machine;
-	uint16_t base; /* address of the channel's registers */
-	uint16_t line_places, ramp_places;
+	uint16_t base;                     /* address of the channel's registers */
+	uint16_t line_places, ramp_places; /* depths of the queues */
 	uint8_t channel;
-	uint8_t misses;     /* looks in a row that failed */
-	uint8_t idle_looks; /* in a row that found everything at an end */
-	bool held;          /* the rate is 0, whatever the override */
-	bool rate_due;      /* the rate has not been acknowledged, and so is sent by every poll */
+	uint8_t misses;     /* consecutive status reads that failed */
+	uint8_t idle_looks; /* consecutive status reads that found all motions ended */
+	bool held;          /* feed hold: the rate is 0 whatever the override */
+	bool rate_due;      /* the rate is not acknowledged; every poll resends it */
 	enum passo_due stop_due;
 	enum passo_belief belief;
 	enum passo_expectation expects;
 	enum passo_stream_phase stream;
 	enum passo_supply lines : 8, ramps : 8; /* of the stream */
-	enum passo_gate gate;                   /* when no stream is being prepared */
+	enum passo_gate gate;                   /* outside the filling phase of a stream */
 	enum passo_error fault;
 	enum passo_post post;
 	enum passo_error posted; /* result of the posted frame */
 	struct passo_axis_memory axis[PASSO_AXES_MAX];
-	struct passo_snapshot snapshot; /* its room is never too much */
-	uint32_t looked_at;             /* microseconds */
-	uint32_t rate_target;           /* UQ1.16: the override, kept over a hold */
+	struct passo_snapshot snapshot; /* its room is a lower bound */
+	uint32_t looked_at;             /* microseconds: time of the last status read */
+	uint32_t rate_target;           /* UQ1.16: the override, kept during a hold */
 	uint32_t oversampling;          /* of the last plan */
-	uint64_t velocity_peak;
+	uint64_t velocity_peak;         /* of the last plan */
 	struct passo_turning turning;
 	struct passo_source source;
 };
 
-/* Makes contact with the core and takes over a channel: checks identification, version and parameters, throws
- * away what waits in the queues of a channel at rest, clears a stopped one, reads the positions. The position
- * counters are kept. A channel in motion (this host was reset) is left alone: the result is MOVING, and
- * state, positions, hold, stop and abort work; moves do after its end, or stop, and passo_clear(). Each axis
- * is to be configured before it moves. What a stop had left to do before is forgotten. About
- * ten frames. Errors: ARGUMENT, those of the wire, NOT_PASSO, VERSION, PARAMETERS, MOVING. */
+/* Connects to the core and takes over a channel: checks identification, version and parameters, flushes the
+ * queues of a channel at rest, clears a stopped one, and reads the positions, which are kept. A channel in
+ * motion (the host was reset) is left alone: the result is MOVING; state, positions, hold, stop and abort
+ * work at once, moves after the motion has ended or stopped and passo_clear(). Each axis must be configured
+ * before it moves. A pending stop of an earlier session is forgotten. About ten frames. Errors: NOT_PASSO,
+ * VERSION, PARAMETERS, MOVING. */
 enum passo_error passo_open(struct passo *passo, struct passo_host *host,
     const struct passo_hardware *hardware, const struct passo_options *options);
-/* A further channel of a core that is open already. */
+/* Takes over a further channel of a core that is open already. */
 enum passo_error passo_open_channel(
     struct passo *passo, struct passo_host *host, const struct passo_options *options);
 
 /* ---------------------------------------------------------------------------------------- settings ---- */
 
-/* Longest time of the pins in clocks. */
+/* Longest pin time in clocks. */
 #define PASSO_PIN_CLOCKS_MAX ((UINT32_C(1) << PASSO_AXIS_STEP_TIMING_STEP_HIGH_BITS) - 1u)
-/* Pins of an axis. Times are rounded up to clocks, at least one, at most PASSO_PIN_CLOCKS_MAX. */
+/* Pin settings of an axis. Times are rounded up to clocks, 1 .. PASSO_PIN_CLOCKS_MAX. */
 struct passo_axis_config {
-	uint32_t step_high_ns, step_low_ns; /* STEP active, and inactive before the next step */
-	uint32_t dir_setup_ns;              /* DIR change to the active edge of STEP */
-	uint32_t dir_hold_ns;               /* after the low time, before DIR changes */
-	bool in_clocks;                     /* the four above are clocks, not nanoseconds */
+	uint32_t step_high_ns, step_low_ns; /* minimum time of STEP active, and of STEP inactive */
+	uint32_t dir_setup_ns;              /* minimum time from a DIR change to the active edge of STEP */
+	uint32_t dir_hold_ns;               /* minimum time from the end of step_low to a DIR change */
+	bool in_clocks;                     /* the four times are in clocks, not nanoseconds */
 	bool step_inverted, direction_inverted, enable_inverted;
 	bool both_edges;         /* every edge of STEP is a step */
-	uint64_t steps_per_unit; /* UQ32.32 steps per millimetre, degree ...; 0: none */
+	uint64_t steps_per_unit; /* UQ32.32 steps per millimetre, degree, ...; 0: no units */
 };
 
-/* Sets pins and units of an axis; the drive stays enabled or not. Before it, an axis makes no steps. At rest
- * only: waits for the times of the pins. Errors: ARGUMENT, MOVING. */
+/* Sets the pins and units of an axis; the drive enable is not changed. An axis must be configured before it
+ * can move. Only at rest; waits until the pin timing of the last steps has elapsed. Error: MOVING. */
 enum passo_error passo_configure_axis(
     struct passo *passo, uint8_t axis, const struct passo_axis_config *config);
-/* Drive enable output. It is switched on at any time; off only at rest or when stopped, after the last step
- * has left the pins (for which it waits): MOVING while a motion runs or waits. To switch off at once,
- * passo_abort() first: then that is only a pulse that has begun. One frame, three for off. */
+/* Sets the drive enable output. Enabling works at any time. Disabling works only at rest or when stopped, and
+ * waits until the last step has left the pins; to disable at once, call passo_abort() first, which leaves at
+ * most the pulse that has started. One frame, three to disable. Error: MOVING while a motion is running or
+ * queued. */
 enum passo_error passo_enable(struct passo *passo, uint8_t axis, bool on);
-/* How long hold and resume, and a soft stop, take from full speed, in microseconds; 0: at once. Both are
- * rounded to what the core can do. And the velocity (UQ0.32 substeps per clock) of substeps
- * that are missing at the end of a profile: 0: leave it. */
+/* Sets the duration of hold and resume, and of a soft stop, from full rate, in microseconds; 0: at once. Both
+ * are rounded to the resolution of the core. Also sets the velocity (UQ0.32 substeps per clock, up to 1/2) of
+ * the substeps that remain at the end of a profile; 0: unchanged. */
 enum passo_error passo_configure_motion(
     struct passo *passo, uint32_t hold_microseconds, uint32_t stop_microseconds, uint32_t drain_velocity);
 
 /* ------------------------------------------------------------------------------------------- moves ---- */
 
-/* Each plans a move, checks it against the pin timing, loads a shape table if it needs one that the core does
- * not hold (five frames and the time to compute it), and queues it: three frames. It starts at once, or after
- * what is queued already. A planner's error is passed on as PASSO_ERROR_PLAN + error. Errors: FULL (try again
- * later), STOPPED, NOT_STOPPED, NOT_HELD, BROKEN, STREAMING, MOVING (while turning without end), TABLE,
+/* Each plans a move, checks it against the pin timing, loads a shape table if the core does not hold the
+ * required one (five frames and the time to compute it), and queues the move: three frames. It starts at once
+ * or after the motions queued before it. Errors: PASSO_ERROR_PLAN + enum passo_plan_error, FULL (try again
+ * later), STOPPED, NOT_STOPPED, NOT_HELD, BROKEN, STREAMING, MOVING (in continuous rotation), TABLE,
  * NOT_CONFIGURED, PINS_TOO_SLOW. */
 enum passo_error passo_move_in_time(struct passo *passo, const struct passo_move_in_time *move);
 enum passo_error passo_move_by_speed(struct passo *passo, const struct passo_move_by_speed *move);
@@ -205,98 +208,101 @@ enum passo_error passo_move_axes(struct passo *passo, const struct passo_move_ax
 enum passo_error passo_move_turn(struct passo *passo, const struct passo_move_turn *move);
 enum passo_error passo_move_sigmoid(struct passo *passo, const struct passo_move_sigmoid *move);
 enum passo_error passo_move_jerk(struct passo *passo, const struct passo_move_jerk *move);
-/* limits[i].steps_per_mm of 0 stands for the axis' steps per unit. */
+/* A limits[i].steps_per_mm of 0 means the steps per unit of the axis. */
 enum passo_error passo_move_straight(struct passo *passo, const struct passo_move_straight *move);
-/* The user's own table goes into the bank that `shape` names. It is recognized when used again. */
+/* With a user-defined shape. Its table is loaded into shape->bank, unless that bank holds it already. */
 enum passo_error passo_move_user_in_time(
     struct passo *passo, const struct passo_move_in_time *move, const struct passo_user_shape *shape);
 enum passo_error passo_move_user_by_speed(
     struct passo *passo, const struct passo_move_by_speed *move, const struct passo_user_shape *shape);
-/* A plan made before with passo_machine(); the shape is null unless it came from passo_plan_user_...(). */
+/* Queues a plan made with passo_machine(); `shape` is null unless it is a plan of passo_plan_user_...(). */
 enum passo_error passo_move_plan(
     struct passo *passo, const struct passo_plan *plan, const struct passo_user_shape *shape);
-/* Loads PASSO_TABLE_SIZE points into the bank of a shape: those of the planner's functions, of a stream.
- * Null: those after reset. Five frames, none if it holds them. At rest only. Errors: ARGUMENT, TABLE. */
+/* Loads PASSO_TABLE_SIZE points into the bank of a shape, for streams and plans; null: the points after
+ * reset. Only at rest. Five frames, none if the bank holds them already. Error: TABLE. */
 enum passo_error passo_load_table(struct passo *passo, enum passo_shape bank, const uint16_t *points);
-/* For the planner's functions: clock, ticks and axes of this channel. */
+/* Clock, ticks and axes of this channel, for the functions of the planner. */
 const struct passo_machine *passo_machine(const struct passo *passo);
 
-/* Turning without end: start it from rest, change the speed, end it. See passo_plan.h. If the end is not
- * acknowledged a soft stop takes its place, as after passo_stop(). */
+/* Continuous rotation: start it from rest, change the speed, decelerate to rest. See passo_plan.h. If
+ * passo_turn_stop() is not acknowledged, a soft stop replaces it, as by passo_stop(). Errors: those of a
+ * move, NOT_TURNING. */
 enum passo_error passo_turn_start(struct passo *passo, const struct passo_turning *turning, uint64_t rpm);
 enum passo_error passo_turn_speed(struct passo *passo, uint64_t rpm);
 enum passo_error passo_turn_stop(struct passo *passo);
 
-/* A path of many lines under many ramps. The source is copied and read by passo_poll(), which keeps the
- * queues filled. The motion starts when the queues are full or all is sent; passo_stream_start() starts it
- * earlier. A path ends with the items that have `last`. Items are checked before they are sent (SUPPLY). At
- * rest only. */
+/* Streams a path of many lines and ramps. *source is copied; passo_poll() reads from it and keeps the queues
+ * filled. The motion starts when the queues are full or everything is sent; passo_stream_start() starts it
+ * earlier. The path ends with the items that have `last`. Items are checked before they are sent (SUPPLY).
+ * Only at rest. */
 enum passo_error passo_stream(struct passo *passo, const struct passo_source *source);
 enum passo_error passo_stream_start(struct passo *passo);
-/* Not everything has been sent yet. */
+/* True until everything has been sent. */
 bool passo_is_streaming(const struct passo *passo);
 
 /* --------------------------------------------------------------------------------------- main loop ---- */
 
-/* To be called often: sends what the stream has, looks at the state, at most one frame; without anything to
- * do it looks every millisecond. Errors are told once, by the first call that sees them (CORE_RESET by all),
- * and passo_fault() keeps them: LINE_UNDERRUN, RAMP_UNDERRUN, STEP_OVERRUN, POSITION, SUPPLY, those of the
- * wire. A stream that fails for reasons of the host is stopped softly. What was not acknowledged goes first:
- * as long as a stop or hold does not get through nothing else is done, and NOT_STOPPED or NOT_HELD is told
- * once in `tries` polls. */
+/* Call it often: feeds the stream or reads the state, at most one frame; an idle driver reads the state every
+ * millisecond. Errors are returned once, by the first call that detects them (CORE_RESET by every call), and
+ * kept for passo_fault(): LINE_UNDERRUN, RAMP_UNDERRUN, STEP_OVERRUN, POSITION, SUPPLY, link errors. A stream
+ * that fails on the host's side is stopped with a soft stop. Commands that were not acknowledged have
+ * priority: until a stop or hold gets through, nothing else is sent, and NOT_STOPPED or NOT_HELD is returned
+ * once every `tries` polls. */
 enum passo_error passo_poll(struct passo *passo);
-/* Microseconds until passo_poll() has something to do; no frame. */
+/* Microseconds until passo_poll() has something to do. No frame. */
 uint32_t passo_idle_time(const struct passo *passo);
-/* Something that was queued has not ended yet, as far as passo_poll() has seen. */
+/* True until all queued motions have ended, as of the last passo_poll(). No frame. */
 bool passo_is_moving(const struct passo *passo);
-/* What passo_poll() saw last; no frame. */
+/* The state that was read last. No frame. */
 const struct passo_snapshot *passo_snapshot(const struct passo *passo);
-/* NOT_STOPPED or NOT_HELD as long as it is so; the error that passo_poll() has told, until passo_clear(); OK
- * if none. */
+/* NOT_STOPPED or NOT_HELD while that applies; otherwise the last error of passo_poll(), kept until
+ * passo_clear(), or OK. No frame. */
 enum passo_error passo_fault(const struct passo *passo);
-/* Polls until everything has ended. 0: no limit. Errors: TIMEOUT, and those of passo_poll(). */
+/* Polls until all motions have ended; 0: no timeout. Errors: TIMEOUT, those of passo_poll(). */
 enum passo_error passo_wait(struct passo *passo, uint32_t timeout_microseconds);
 
-/* --------------------------------------------------------------------------------------- influence ---- */
+/* ----------------------------------------------------------------------------------------- control ---- */
 
-/* Feed hold and resume: the same pulses, later. The override is kept over a hold. If one of these three is
- * not acknowledged, the slower of before and now is sent by every poll: a hold that failed comes later, a
- * resume does not. */
+/* Feed hold and resume: the pulses stay the same and come later. A hold keeps the override. If hold, resume
+ * or override is not acknowledged, every poll resends the slower of the old and the new rate: a failed hold
+ * still takes effect, a failed resume does not. Errors: NOT_STOPPED. */
 enum passo_error passo_hold(struct passo *passo);
 enum passo_error passo_resume(struct passo *passo);
-/* Feed override, 1 .. 100 percent, or in UQ1.16, 1 .. PASSO_RATE_FULL. While held it counts after resume. */
+/* Feed override in percent, 1 .. 100, or in UQ1.16, 1 .. PASSO_RATE_FULL. During a hold it takes effect with
+ * the resume. */
 enum passo_error passo_override(struct passo *passo, uint32_t percent);
 enum passo_error passo_override_q16(struct passo *passo, uint32_t rate);
-/* Soft and hard stop. What is queued is thrown away, a stream ends; then passo_clear(). After an error of the
- * wire every poll sends it again before anything else; an abort takes the place of a stop. */
+/* Soft and hard stop. The queues are flushed and a stream ends; passo_clear() is needed afterwards. After a
+ * link error every poll resends it before anything else; an abort replaces a pending stop. */
 enum passo_error passo_stop(struct passo *passo);
 enum passo_error passo_abort(struct passo *passo);
-/* Leaves the stopped state with empty queues and reads the positions: about four frames. A stop that was not
- * acknowledged gets through first, and steps that have not left the pins are waited for. Errors: MOVING while
- * a soft stop is still slowing down, or while a motion that nobody stopped goes on. */
+/* Leaves the stopped state with empty queues and reads the positions: about four frames. Sends a pending stop
+ * first and waits until all steps have left the pins. Errors: NOT_STOPPED, NOT_HELD, MOVING during a soft
+ * stop or a motion that was not stopped. */
 enum passo_error passo_clear(struct passo *passo);
-/* Sets all positions to 0. At rest only. */
+/* Sets all positions to 0. Only at rest: MOVING. */
 enum passo_error passo_zero(struct passo *passo);
-/* Motions wait, prepared, until the core's sync input rises or this is taken back. If it is not acknowledged
- * they wait, and that is sent by every poll. */
+/* While on, prepared motions wait for a rising edge of the core's sync input. Switching it off starts them.
+ * If it is not acknowledged, motions wait and every poll resends that. */
 enum passo_error passo_wait_for_sync(struct passo *passo, bool on);
 
 /* ----------------------------------------------------------------------------------------- reading ---- */
 
-/* Reads the state now. */
+/* Reads the present state. */
 enum passo_error passo_read_state(struct passo *passo, struct passo_snapshot *snapshot);
-/* Steps made by each axis, all of one moment: positions[0 .. axes - 1]. */
+/* Reads the steps made by each axis, all sampled at the same time: positions[0 .. axes - 1]. */
 enum passo_error passo_positions(struct passo *passo, int32_t *positions);
-/* Position of an axis in its units, Q31.32. */
+/* Position of an axis in its units, Q31.32. Error: UNITS. */
 enum passo_error passo_position_units(struct passo *passo, uint8_t axis, int64_t *units);
-/* Degrees (Q31.32) of an axis; speed of the longest axis in rpm (UQ32.32), the override included. Both take
- * the steps per turn. The speed is that of the move queued last: two moves queued at a time may differ. */
+/* Angle of an axis in degrees (Q31.32), and speed of the axis with the most steps in rpm (UQ32.32), override
+ * included. `steps_per_turn` is steps per revolution. The speed is scaled for the move queued last and can be
+ * wrong while an earlier one is running. */
 enum passo_error passo_angle(struct passo *passo, uint8_t axis, uint32_t steps_per_turn, int64_t *degrees);
 enum passo_error passo_rpm(struct passo *passo, uint32_t steps_per_turn, uint64_t *rpm);
-/* Steps that an axis has lost by overrun, 0 .. 15 (15: or more). */
+/* Steps that an axis has lost by STEP_OVERRUN, 0 .. 15; 15: 15 or more. */
 enum passo_error passo_lost_steps(struct passo *passo, uint8_t axis, uint32_t *lost);
 
-/* Name and sentence of a state and of a cause. Never null. */
+/* Name of a state and description of a cause, for any value. Never null. */
 const char *passo_state_name(enum passo_state state);
 const char *passo_cause_text(enum passo_cause cause);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * What the driver believes of the channel and expects of it, and whether a motion may begin.
+ * The assumed state of the channel, the expected end of its motions, and whether a motion may start.
  */
 #include "passo_driver.h"
 

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
- * What restrains a motion is sent until it is acknowledged: abort, stop, hold and override, the gate.
+ * Commands that are resent until they are acknowledged: abort, stop, rate (hold and override), gate.
  *
- * To send one of them again is harmless whether or not it was executed before: each says what shall be.
+ * They are idempotent, so repeating one that was already executed is harmless.
  */
 #include "passo_driver.h"
 
-/* The most urgent of what is due. */
+/* The due command of highest priority. */
 static enum passo_post urgent(const struct passo *passo)
 {
 	if (passo->stop_due != PASSO_DUE_NOTHING)
@@ -51,7 +51,7 @@ static enum passo_error post(struct passo *passo, enum passo_post most)
 	return error;
 }
 
-/* What restrains was executed. An abort that is due has dropped a posted stop. */
+/* The command was executed. A posted stop is dropped when an abort becomes due, so `done` is the due one. */
 static void acknowledge(struct passo *passo, enum passo_post done)
 {
 	if (done == PASSO_POST_RATE)
@@ -60,7 +60,7 @@ static void acknowledge(struct passo *passo, enum passo_post done)
 		passo->stop_due = PASSO_DUE_NOTHING;
 }
 
-/* Takes over what became of the posted frame. */
+/* Handles the result of the posted frame. */
 static enum passo_error settle(struct passo *passo)
 {
 	const enum passo_post done = passo->post;
@@ -84,7 +84,7 @@ enum passo_error passo_driver_insist(struct passo *passo)
 	const enum passo_post most = urgent(passo);
 	enum passo_error error = PASSO_OK;
 
-	/* a stop does not wait for what is still being tried */
+	/* a stop preempts a frame that is still being retried */
 	if (most >= PASSO_POST_STOP && passo->post < most)
 		passo_driver_drop(passo);
 	if (passo->post == PASSO_POST_NONE) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Names and sentences of the errors.
+ * Names and descriptions of the errors.
  */
 #include "passo_error.h"
 
@@ -17,53 +17,50 @@ static const struct words errors[PASSO_ERROR_COUNT] = {
     [PASSO_PENDING] = {"PENDING", "the frame is not settled yet"},
     [PASSO_ERROR_ARGUMENT] = {"ARGUMENT", "an argument is missing or out of range"},
     [PASSO_ERROR_NOT_OPEN] = {"NOT_OPEN", "the core has not been opened"},
-    [PASSO_ERROR_UNITS] = {"UNITS", "the axis has no steps per unit, or the position is too far for them"},
-    [PASSO_ERROR_TIMEOUT] = {"TIMEOUT", "the motion did not end in the given time; it goes on"},
-    [PASSO_ERROR_TRANSFER] = {"TRANSFER", "the hardware did not transfer the frame"},
+    [PASSO_ERROR_UNITS] = {"UNITS", "the axis has no steps per unit, or the position overflows"},
+    [PASSO_ERROR_TIMEOUT] = {"TIMEOUT", "the motion did not end in time and continues"},
+    [PASSO_ERROR_TRANSFER] = {"TRANSFER", "the SPI transfer failed"},
     [PASSO_ERROR_STUCK_LOW] = {"STUCK_LOW", "MISO stays low: no core, no power or no connection"},
     [PASSO_ERROR_STUCK_HIGH] = {"STUCK_HIGH", "MISO stays high: no core, no power or no connection"},
-    [PASSO_ERROR_NO_ACK] = {"NO_ACK", "the core took the frame for unfinished"},
-    [PASSO_ERROR_DAMAGED] = {"DAMAGED", "the reply does not agree with its check"},
+    [PASSO_ERROR_NO_ACK] = {"NO_ACK", "the core saw an incomplete frame"},
+    [PASSO_ERROR_DAMAGED] = {"DAMAGED", "the reply failed its check"},
     [PASSO_ERROR_SEQUENCE] = {"SEQUENCE", "the reply belongs to another frame"},
-    [PASSO_ERROR_BAD_CRC] = {"BAD_CRC", "the core received damaged frames only"},
-    [PASSO_ERROR_NOT_PASSO] = {"NOT_PASSO", "something else than a Passo core answers"},
-    [PASSO_ERROR_VERSION] = {"VERSION", "the core has another version of the register map"},
-    [PASSO_ERROR_PARAMETERS] = {"PARAMETERS", "the core has other channels, axes or ticks than expected"},
+    [PASSO_ERROR_BAD_CRC] = {"BAD_CRC", "the core received only corrupt frames"},
+    [PASSO_ERROR_NOT_PASSO] = {"NOT_PASSO", "the device is not a Passo core"},
+    [PASSO_ERROR_VERSION] = {"VERSION", "the register map has an unsupported version"},
+    [PASSO_ERROR_PARAMETERS] = {"PARAMETERS", "the core's channels, axes or ticks do not match"},
     [PASSO_ERROR_CORE_RESET] = {"CORE_RESET",
 	"the core was reset, or another host wrote to it: open it again"},
-    [PASSO_ERROR_MOVING] = {"MOVING", "this is only possible at rest"},
-    [PASSO_ERROR_NOT_TURNING] = {"NOT_TURNING", "this is only possible while turning without end"},
+    [PASSO_ERROR_MOVING] = {"MOVING", "only possible at rest"},
+    [PASSO_ERROR_NOT_TURNING] = {"NOT_TURNING", "only possible in continuous rotation"},
     [PASSO_ERROR_STREAMING] = {"STREAMING", "a stream is being fed"},
-    [PASSO_ERROR_FULL] = {"FULL", "the queues have no room for it now"},
+    [PASSO_ERROR_FULL] = {"FULL", "the queues are full at the moment"},
     [PASSO_ERROR_STOPPED] = {"STOPPED", "the channel is stopped: clear it first"},
-    [PASSO_ERROR_NOT_STOPPED] = {"NOT_STOPPED",
-	"the stop was not acknowledged; it is sent again until it is"},
-    [PASSO_ERROR_NOT_HELD] = {"NOT_HELD",
-	"hold or speed was not acknowledged; the slower one is sent again until it is"},
-    [PASSO_ERROR_NOT_CONFIGURED] = {"NOT_CONFIGURED",
-	"the pins of an axis are not known: configure it again"},
-    [PASSO_ERROR_BROKEN] = {"BROKEN", "a command was broken off: stop or abort, then clear"},
-    [PASSO_ERROR_TABLE] = {"TABLE", "it needs another shape table, which can only be loaded at rest"},
+    [PASSO_ERROR_NOT_STOPPED] = {"NOT_STOPPED", "the stop is not acknowledged yet; it is resent"},
+    [PASSO_ERROR_NOT_HELD] = {"NOT_HELD", "hold or rate is not acknowledged yet; the slower one is resent"},
+    [PASSO_ERROR_NOT_CONFIGURED] = {"NOT_CONFIGURED", "pin settings of an axis are unknown: configure it"},
+    [PASSO_ERROR_BROKEN] = {"BROKEN", "a command was cut off: stop or abort, then clear"},
+    [PASSO_ERROR_TABLE] = {"TABLE", "needs another shape table; tables load only at rest"},
     [PASSO_ERROR_PINS_TOO_SLOW] = {"PINS_TOO_SLOW", "an axis would step faster than its pin timing allows"},
-    [PASSO_ERROR_SUPPLY] = {"SUPPLY", "the source of the stream gave a line or ramp that is not possible"},
-    [PASSO_ERROR_LINE_UNDERRUN] = {"LINE_UNDERRUN", "stopped: a line ended and the next was not there"},
-    [PASSO_ERROR_RAMP_UNDERRUN] = {"RAMP_UNDERRUN", "stopped: the ramps ran out at speed"},
+    [PASSO_ERROR_SUPPLY] = {"SUPPLY", "the stream source supplied an invalid line or ramp"},
+    [PASSO_ERROR_LINE_UNDERRUN] = {"LINE_UNDERRUN", "stopped: a line ended and none was queued"},
+    [PASSO_ERROR_RAMP_UNDERRUN] = {"RAMP_UNDERRUN", "stopped: ran out of ramps at speed"},
     [PASSO_ERROR_STEP_OVERRUN] = {"STEP_OVERRUN", "stopped: steps came faster than the pin timing allows"},
-    [PASSO_ERROR_POSITION] = {"POSITION", "the motion ended at another position than commanded"},
+    [PASSO_ERROR_POSITION] = {"POSITION", "the motion ended at the wrong position"},
 };
 
 static const struct words refusals[PASSO_VERDICT_BAD_VALUE + 1u] = {
-    [PASSO_VERDICT_BAD_CRC] = {"BAD_CRC", "refused: its CRC is wrong"},
-    [PASSO_VERDICT_BAD_LENGTH] = {"BAD_LENGTH", "refused: its length is not possible"},
-    [PASSO_VERDICT_BAD_OPERATION] = {"BAD_OPERATION", "refused: the register does not take this operation"},
+    [PASSO_VERDICT_BAD_CRC] = {"BAD_CRC", "refused: wrong CRC"},
+    [PASSO_VERDICT_BAD_LENGTH] = {"BAD_LENGTH", "refused: invalid length"},
+    [PASSO_VERDICT_BAD_OPERATION] = {"BAD_OPERATION", "refused: the register has no such operation"},
     [PASSO_VERDICT_UNKNOWN_ADDRESS] = {"UNKNOWN_ADDRESS", "refused: no register at this address"},
-    [PASSO_VERDICT_READ_ONLY] = {"READ_ONLY", "refused: the register cannot be written"},
+    [PASSO_VERDICT_READ_ONLY] = {"READ_ONLY", "refused: the register is read-only"},
     [PASSO_VERDICT_QUEUE_FULL] = {"QUEUE_FULL", "refused: not enough room in the queue"},
-    [PASSO_VERDICT_BUSY] = {"BUSY", "refused: the state of the channel does not allow it"},
+    [PASSO_VERDICT_BUSY] = {"BUSY", "refused: not allowed in the channel's state"},
     [PASSO_VERDICT_BAD_VALUE] = {"BAD_VALUE", "refused: a value is out of range"},
 };
 
-static const struct words unknown = {"UNKNOWN", "there is no such error"};
+static const struct words unknown = {"UNKNOWN", "unknown error"};
 
 static const struct words *find(unsigned code)
 {

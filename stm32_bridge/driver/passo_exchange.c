@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: MIT
- * One chip select: gap, transfer, judgement, and what its status word says about the queues.
+ * One chip select: gap, transfer, decoding of the reply, and the queue room in its status word.
  */
 #include "passo_exchange.h"
 
 #include "passo_words.h"
 
-#define GAP_CLOCKS 64u         /* the core needs so long after a frame ... */
-#define GAP_CLOCKS_PER_WORD 4u /* ... and this for each word that it executes */
+#define GAP_CLOCKS 64u         /* time that the core needs after a frame ... */
+#define GAP_CLOCKS_PER_WORD 4u /* ... plus this for each word */
 #define MICROSECONDS 1000000u
-#define SPINS_MAX 100000u /* a clock that stands still must not hang the host */
+#define SPINS_MAX 100000u /* a stopped clock must not hang the host */
 
-/* Of an address, the register within its channel. */
+/* Mask of an address: the register within its channel. */
 #define PLACE (PASSO_ADDRESS_CHANNEL_STRIDE - 1u)
 
-/* Words of a reply that must agree before its status is believed: the same bit may flip in two. */
+/* Minimum number of equal words in a reply for a valid status: two could have the same bit error. */
 #define STATUS_WORDS 3u
 
 bool passo_host_status_of(const uint32_t *miso, size_t count, uint32_t *status)
@@ -21,7 +21,7 @@ bool passo_host_status_of(const uint32_t *miso, size_t count, uint32_t *status)
 	size_t lead = 0, same = 0;
 	uint32_t word = 0;
 
-	/* the only word that can be more than half of them */
+	/* majority vote (Boyer-Moore): the only candidate for more than half of the words */
 	for (size_t i = 0; i < count; i++) {
 		if (lead == 0u)
 			word = miso[i];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Frames that are executed exactly once. See passo_host.h.
+ * Exactly-once execution of frames. See passo_host.h.
  */
 #include "passo_host.h"
 
@@ -7,7 +7,7 @@
 
 #include "passo_tries.h"
 
-/* Before another frame takes its place the posted one is settled. */
+/* Checks the arguments and completes the posted frame, whose buffer the next frame uses. */
 static enum passo_error make_way(struct passo_host *host, const uint32_t *words, size_t length)
 {
 	if (!host || !words || length == 0u || length > PASSO_FRAME_PAYLOAD_MAX)
@@ -136,7 +136,7 @@ enum passo_error passo_host_open(struct passo_host *host, const struct passo_har
 		return error;
 	if (identification != PASSO_IDENTIFICATION_RESET)
 		return PASSO_ERROR_NOT_PASSO;
-	/* a write with the number that was accepted last would pass for a duplicate */
+	/* a write with the number accepted last would be taken for a duplicate */
 	host->last_sequence = host->sent_before = host->accepted;
 	host->fresh = host->accepted == 0u;
 	host->opened = true;
@@ -151,7 +151,7 @@ enum passo_error passo_host_guard(struct passo_host *host, uint8_t axes, uint32_
 
 	if (!host)
 		return PASSO_ERROR_ARGUMENT;
-	do { /* a second time if the counter has just wrapped */
+	do { /* again if the counter has just wrapped to 0 */
 		error = passo_host_write(host, PASSO_ADDRESS_IDENTIFICATION, &mark, 1);
 		if ((unsigned)error != PASSO_ERROR_REFUSED + PASSO_VERDICT_READ_ONLY)
 			return error;

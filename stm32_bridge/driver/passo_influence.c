@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * What is commanded while a channel moves, and after: hold, override, stop, clear.
+ * Commands to a moving or stopped channel: hold, override, stop, clear.
  */
 #include "passo_driver.h"
 
@@ -10,7 +10,7 @@ uint32_t passo_driver_rate(const struct passo *passo)
 	return passo->held ? 0u : passo->rate_target;
 }
 
-/* If it is not acknowledged, the slower one of what was and what shall be is due. */
+/* Without acknowledgement, the slower of the old and the new rate becomes due. */
 static enum passo_error set_rate(struct passo *passo, bool held, uint32_t target)
 {
 	const bool was_held = passo->held;
@@ -99,14 +99,14 @@ enum passo_error passo_clear(struct passo *passo)
 		error = passo_driver_look_at_rest(passo);
 	if (error != PASSO_OK)
 		return error;
-	/* between two motions none runs, but one waits */
+	/* between two motions none is running, but one is queued */
 	const bool goes_on = passo->snapshot.state == PASSO_STATE_IDLE && !passo_driver_at_rest(passo)
 	                  && passo->belief == PASSO_BELIEF_READY && passo->stream != PASSO_STREAM_FILLS;
 	if (goes_on || !passo->snapshot.quiet)
 		return PASSO_ERROR_MOVING;
 	passo_driver_end_stream(passo);
-	passo_driver_doubt(passo, PASSO_BELIEF_BROKEN); /* until it is done */
-	/* what still waits must not start in the meantime */
+	passo_driver_doubt(passo, PASSO_BELIEF_BROKEN); /* until clear has succeeded */
+	/* queued motions must not start in the meantime */
 	if (!passo_driver_at_rest(passo))
 		error = passo_driver_gate(passo, PASSO_GATE_CLOSED);
 	if (error == PASSO_OK)
@@ -128,7 +128,7 @@ enum passo_error passo_zero(struct passo *passo)
 		return error;
 	error = passo_driver_command(passo, (struct passo_channel_command){.zero = true});
 	if (passo_driver_is_wire(error))
-		passo->expects = PASSO_EXPECT_END; /* the positions are read by the next polls */
+		passo->expects = PASSO_EXPECT_END; /* the next polls read the positions */
 	if (error != PASSO_OK)
 		return passo_driver_moving(error);
 	const int32_t zeros[PASSO_AXES_MAX] = {0};
@@ -145,7 +145,7 @@ enum passo_error passo_wait_for_sync(struct passo *passo, bool on)
 	const enum passo_gate gate = on ? PASSO_GATE_SYNC : PASSO_GATE_OPEN;
 	error = passo_driver_restrain(passo, PASSO_POST_STOP);
 	if (passo->post == PASSO_POST_START)
-		passo_driver_drop(passo); /* it would start with the gate as it was */
+		passo_driver_drop(passo); /* it would open the gate as it was before */
 	if (error == PASSO_OK && passo->stream != PASSO_STREAM_FILLS)
 		error = passo_driver_gate(passo, gate);
 	if (error == PASSO_OK || (on && passo_driver_is_wire(error)))

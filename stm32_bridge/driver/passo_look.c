@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT
- * Looking: state and positions of the channel, and whether it rests.
+ * Reading the state and the positions of the channel, and whether it is at rest.
  */
 #include "passo_driver.h"
 
 #define STATE_WORDS 4u
 
-/* Four steps that wait and one under way, with four times of at most 65535 clocks each, take no longer than
- * so many looks: one takes more than 1024 clocks. */
+/* Four queued steps and one in progress, with four times of at most 65535 clocks each, take at most this many
+ * status reads of more than 1024 clocks each. */
 #define PIN_LOOKS_MAX 1280u
 
-/* No motion runs or waits; steps may still be at the pins. */
+/* No motion is running or queued; steps may still be at the pins. */
 static bool is_empty(const struct passo *passo)
 {
 	const struct passo_snapshot *snapshot = &passo->snapshot;

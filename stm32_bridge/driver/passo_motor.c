@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * One motor: thin functions over the driver.
+ * One motor: thin wrappers around the driver.
  */
 #include "passo_motor.h"
 
@@ -79,7 +79,7 @@ enum passo_error passo_motor_start_endless(
 	return error;
 }
 
-/* It turns without end, as far as is known. */
+/* Whether continuous rotation is in progress, as far as known. */
 static bool is_endless(const struct passo_motor *motor)
 {
 	return motor->endless && passo_is_moving(motor->passo);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * One motor, in the words of a first lesson: target angle, rpm, start, stop. Thin functions over passo.h.
+ * One motor with the simplest interface: target angle, rpm, start, stop. Thin wrappers around passo.h, whose
+ * errors they return.
  *
  *     passo_motor_init(&motor, &passo, 0, 200 * 16, PASSO_RPM(10), PASSO_RPM_PER_SECOND(600));
  *     passo_motor_set_target(&motor, PASSO_DEGREES(-90), PASSO_RPM(60));
@@ -24,34 +25,36 @@ extern "C" {
 struct passo_motor {
 	struct passo *passo;
 	uint8_t axis;
-	uint32_t steps_per_turn;
-	uint64_t minimum_rpm;  /* jumped to from rest, and from to rest */
-	uint64_t acceleration; /* UQ32.32 steps/s^2 */
-	int64_t angle;         /* of the next start, from where the motor stands */
-	uint64_t rpm;
-	bool endless;
+	uint32_t steps_per_turn; /* steps per revolution */
+	uint64_t minimum_rpm;    /* UQ32.32: initial and final speed */
+	uint64_t acceleration;   /* UQ32.32 steps/s^2 */
+	int64_t angle;           /* Q31.32 degrees: of the next start, relative to the present position */
+	uint64_t rpm;            /* UQ32.32: of the next start */
+	bool endless;            /* the last start was continuous rotation */
 };
 
-/* `steps_per_turn` is full steps times microsteps; `acceleration` in rpm per second. No frame. */
+/* Initializes a motor on an axis of an open channel. `steps_per_turn` is full steps times microsteps;
+ * `minimum_rpm` in rpm and `acceleration` in rpm per second, both UQ32.32. No frame. Error: ARGUMENT. */
 enum passo_error passo_motor_init(struct passo_motor *motor, struct passo *passo, uint8_t axis,
     uint32_t steps_per_turn, uint64_t minimum_rpm, uint64_t acceleration);
 
-/* What the next start does: turn by an angle, its sign is the direction. No frame. */
+/* Sets the angle (Q31.32 degrees, the sign is the direction) and the speed (UQ32.32 rpm) of the next start.
+ * No frame. */
 enum passo_error passo_motor_set_target(struct passo_motor *motor, int64_t degrees, uint64_t rpm);
-/* What the next start does: turn without end. `top_rpm` in passo_motor_start_endless(). */
+/* Rotates by the angle that was set. */
 enum passo_error passo_motor_start(struct passo_motor *motor);
-/* Turns without end, at no more than top_rpm whatever passo_motor_set_speed() will ask for. */
+/* Starts continuous rotation. top_rpm limits the speeds that passo_motor_set_speed() can set later. */
 enum passo_error passo_motor_start_endless(
     struct passo_motor *motor, bool backwards, uint64_t rpm, uint64_t top_rpm);
-/* While turning without end: another speed. Otherwise: the speed of the next start. */
+/* During continuous rotation: changes the speed. Otherwise: sets the speed of the next start. */
 enum passo_error passo_motor_set_speed(struct passo_motor *motor, uint64_t rpm);
-/* Slows down and stops: a motor that turns without end by its ramp; one on its way to an angle by the soft
- * stop, after which passo_clear() is needed. After an error of the wire both are stopped softly: passo_poll()
- * sends that until it is acknowledged. */
+/* Decelerates to rest: continuous rotation with its own ramp, a move to an angle with a soft stop, after
+ * which passo_clear() is needed. After a link error both become a soft stop, which passo_poll() resends until
+ * it is acknowledged. */
 enum passo_error passo_motor_stop(struct passo_motor *motor);
-/* As far as passo_poll() has seen. */
+/* Whether the motor rotates, as of the last passo_poll(). */
 bool passo_motor_is_turning(const struct passo_motor *motor);
-/* Degrees since the position was 0 (Q31.32), and the present rpm (UQ32.32). */
+/* Angle from position 0 in degrees (Q31.32), and the present speed in rpm (UQ32.32). One frame each. */
 enum passo_error passo_motor_angle(struct passo_motor *motor, int64_t *degrees);
 enum passo_error passo_motor_speed(struct passo_motor *motor, uint64_t *rpm);
 

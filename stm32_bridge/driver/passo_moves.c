@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Moves: planned, checked, queued. Ramps go first: the line lets the motion start.
+ * Moves: plan, check, queue. The ramps are sent first, because the line starts the motion.
  */
 #include "passo_driver.h"
 #include "passo_math.h"
@@ -21,12 +21,12 @@ static bool pins_suffice(const struct passo *passo, const struct passo_plan *pla
 	return true;
 }
 
-/* The core's answer to a push, in the words of the driver. After an error of the wire it is not known whether
- * the core executed it. */
+/* Converts the result of a push to an error of the driver. After a link error it is unknown whether the core
+ * executed it. */
 static enum passo_error judge(struct passo *passo, enum passo_error error, bool half_done)
 {
 	if ((unsigned)error == PASSO_ERROR_REFUSED + PASSO_VERDICT_BUSY)
-		return PASSO_ERROR_STOPPED; /* it stopped just now; that flushed the queues */
+		return PASSO_ERROR_STOPPED; /* it has just stopped, which flushed the queues */
 	if ((unsigned)error == PASSO_ERROR_REFUSED + PASSO_VERDICT_QUEUE_FULL && !half_done)
 		return PASSO_ERROR_FULL;
 	if (error != PASSO_OK && (half_done || passo_driver_is_wire(error)))
@@ -88,7 +88,7 @@ enum passo_error passo_move_plan(
 	return PASSO_OK;
 }
 
-/* What all moves have in common once they are planned. */
+/* Queues a plan, or converts the error of the planner. */
 static enum passo_error move_planned(struct passo *passo, enum passo_plan_error error,
     const struct passo_plan *plan, const struct passo_user_shape *shape)
 {
@@ -104,7 +104,7 @@ static enum passo_error check(const struct passo *passo, const void *move)
 	return error == PASSO_OK && !move ? PASSO_ERROR_ARGUMENT : error;
 }
 
-/* Steps of axes that the channel does not have are an error, not a wish to be ignored. */
+/* Steps for axes that the channel does not have are an error. */
 static enum passo_error check_steps(const struct passo *passo, const void *move, const int32_t *steps)
 {
 	enum passo_error error = check(passo, move);
@@ -116,7 +116,7 @@ static enum passo_error check_steps(const struct passo *passo, const void *move,
 	return error;
 }
 
-/* passo_move_METHOD() by passo_plan_METHOD(). */
+/* Defines passo_move_METHOD() from passo_plan_METHOD(). */
 #define MOVE_BY_STEPS(method, METHOD)                                                                        \
 	enum passo_error passo_move_##method(struct passo *passo, const struct passo_move_##method *move)    \
 	{                                                                                                    \
@@ -128,7 +128,7 @@ static enum passo_error check_steps(const struct passo *passo, const void *move,
 	}
 PASSO_MOVES_BY_STEPS(MOVE_BY_STEPS)
 
-/* passo_move_user_METHOD() by passo_plan_user_METHOD(). */
+/* Defines passo_move_user_METHOD() from passo_plan_user_METHOD(). */
 #define MOVE_BY_SHAPE(method, METHOD)                                                                        \
 	enum passo_error passo_move_user_##method(struct passo *passo,                                       \
 	    const struct passo_move_##method *move, const struct passo_user_shape *shape)                    \

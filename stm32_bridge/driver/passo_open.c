@@ -12,7 +12,7 @@ static bool fits(uint32_t actual, uint8_t expected)
 	return expected == 0u || actual == expected;
 }
 
-/* What the core is, against what is expected. */
+/* Reads the identity and parameters of the core and compares them with the options. */
 static enum passo_error identify(struct passo *passo, const struct passo_options *options, uint32_t *run)
 {
 	uint32_t words[OPEN_WORDS]; /* IDENTIFICATION, VERSION, PARAMETERS, RUN */
@@ -40,7 +40,7 @@ static enum passo_error identify(struct passo *passo, const struct passo_options
 	return PASSO_OK;
 }
 
-/* Identifies the core and takes over the channel, but leaves one in motion alone. */
+/* Identifies the core and takes over the channel, unless it is in motion. */
 static enum passo_error make_contact(struct passo *passo, const struct passo_options *options)
 {
 	struct passo_host *host = passo->host;
@@ -60,7 +60,7 @@ static enum passo_error make_contact(struct passo *passo, const struct passo_opt
 		error = passo_driver_gate(passo, PASSO_GATE_CLOSED);
 	if (error == PASSO_OK && is_quiet)
 		error = passo_driver_take_over(passo);
-	/* what follows a motion of the past is not to start */
+	/* motions queued behind one of an earlier session must not start */
 	if (error == PASSO_OK)
 		error = passo_driver_gate(passo, is_quiet ? PASSO_GATE_OPEN : PASSO_GATE_CLOSED);
 	if (error == PASSO_OK && !host->guarded)
@@ -83,7 +83,7 @@ enum passo_error passo_open_channel(
 	passo->belief = error == PASSO_OK ? PASSO_BELIEF_READY : PASSO_BELIEF_NOT_OPEN;
 	if (error != PASSO_OK || passo->snapshot.quiet)
 		return error;
-	passo_driver_break(passo); /* a motion of the past */
+	passo_driver_break(passo); /* a motion of an earlier session */
 	return PASSO_ERROR_MOVING;
 }
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * The main loop's side: feeding, looking, and seeing how motions end.
+ * The poll of the main loop: feeds streams, reads the state and detects the end of motions.
  */
 #include "passo_driver.h"
 
-/* Looks in a row until it is sure that everything has ended. */
+/* Consecutive reads of an idle state that prove that all motions have ended. */
 #define IDLE_LOOKS 2u
 
 static enum passo_error tell(struct passo *passo, enum passo_error error)
@@ -29,7 +29,7 @@ static enum passo_error fault_of(enum passo_cause cause)
 	return PASSO_OK;
 }
 
-/* A frame of the main loop failed: only many in a row are told. */
+/* A frame of the main loop failed; reported only after several consecutive failures. */
 static enum passo_error miss(struct passo *passo, enum passo_error error)
 {
 	if (error == PASSO_ERROR_CORE_RESET) {
@@ -48,14 +48,14 @@ static enum passo_error see_stop(struct passo *passo)
 	const bool is_news = !passo_driver_is_stopped(passo) || passo->expects != PASSO_EXPECT_NOTHING;
 
 	passo_driver_end_stream(passo);
-	/* the last steps leave the pins */
+	/* the last steps may still be at the pins */
 	passo->expects = passo->snapshot.quiet ? PASSO_EXPECT_NOTHING : PASSO_EXPECT_END;
 	passo_driver_doubt(passo, PASSO_BELIEF_STOPPED);
 	passo->idle_looks = 0;
 	return is_news && fault != PASSO_OK && fault != passo->fault ? tell(passo, fault) : PASSO_OK;
 }
 
-/* Nothing moves or waits. Ramps that a broken command has left behind do not move without a line. */
+/* Nothing moves or is queued. Ramps left over from an interrupted command do not move without a line. */
 static bool has_ended(const struct passo *passo)
 {
 	if (passo_driver_is_broken(passo))
@@ -80,7 +80,7 @@ static enum passo_error look(struct passo *passo)
 	return PASSO_OK;
 }
 
-/* As long as it does not get through, that is told after as many tries as other errors of the wire. */
+/* Resends due commands; a failure is reported after as many tries as other link errors. */
 static enum passo_error insist(struct passo *passo)
 {
 	enum passo_error error = passo_driver_insist(passo);
@@ -99,7 +99,7 @@ static bool is_at(const struct passo *passo, const int32_t *positions)
 	return true;
 }
 
-/* The channel rests: is it where it should be? */
+/* The channel is at rest: compares its positions with the expected ones. */
 static enum passo_error see_end(struct passo *passo)
 {
 	int32_t positions[PASSO_AXES_MAX];
@@ -135,7 +135,7 @@ enum passo_error passo_poll(struct passo *passo)
 		return tell(passo, PASSO_ERROR_CORE_RESET);
 	}
 	if (passo->host->posted && passo->host->posted != &passo->posted) {
-		passo_host_step(passo->host); /* another channel's frame goes first */
+		passo_host_step(passo->host); /* another channel's frame has priority */
 		return PASSO_OK;
 	}
 	if (passo_driver_due(passo) != PASSO_OK || passo->post > PASSO_POST_START)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Reading back: state, positions, angles, speeds.
+ * Readings: state, positions, angles, speeds.
  */
 #include "passo_driver.h"
 #include "passo_math.h"
@@ -27,7 +27,7 @@ enum passo_error passo_positions(struct passo *passo, int32_t *positions)
 	return positions ? passo_driver_positions(passo, positions, false) : PASSO_ERROR_ARGUMENT;
 }
 
-/* The position of one of the channel's axes. */
+/* Reads the position of one axis. */
 static enum passo_error position_of(struct passo *passo, uint8_t axis, const void *result, int32_t *position)
 {
 	int32_t positions[PASSO_AXES_MAX];
@@ -84,7 +84,7 @@ enum passo_error passo_rpm(struct passo *passo, uint32_t steps_per_turn, uint64_
 	if (error != PASSO_OK)
 		return error;
 	const struct passo_snapshot *snapshot = &passo->snapshot;
-	/* UQ0.32 times UQ1.16: both formats and what they are in UQ0.48 */
+	/* UQ0.32 * UQ1.16 = UQ0.48 */
 	const uint64_t velocity =
 	    snapshot->state == PASSO_STATE_RUN ? (uint64_t)snapshot->velocity * snapshot->rate : 0u;
 	*rpm = passo->oversampling
@@ -108,9 +108,7 @@ enum passo_error passo_lost_steps(struct passo *passo, uint8_t axis, uint32_t *l
 
 const char *passo_state_name(enum passo_state state)
 {
-#define NAME(state) [PASSO_STATE_##state] = #state,
-	static const char *const names[] = {PASSO_STATES(NAME)};
-#undef NAME
+	static const char *const names[] = PASSO_STATE_NAMES;
 
 	return (unsigned)state <= PASSO_STATE_STOPPED ? names[state] : "UNKNOWN";
 }
@@ -119,10 +117,10 @@ const char *passo_cause_text(enum passo_cause cause)
 {
 	static const char *const texts[] = {
 	    [PASSO_CAUSE_NONE] = "not stopped",
-	    [PASSO_CAUSE_STOP] = "stopped softly by command",
-	    [PASSO_CAUSE_ABORT] = "stopped hard by command",
-	    [PASSO_CAUSE_LINE_UNDERRUN] = "a line ended and the next was not there",
-	    [PASSO_CAUSE_RAMP_UNDERRUN] = "the ramps ran out at speed",
+	    [PASSO_CAUSE_STOP] = "soft stop by command",
+	    [PASSO_CAUSE_ABORT] = "hard stop by command",
+	    [PASSO_CAUSE_LINE_UNDERRUN] = "a line ended and none was queued",
+	    [PASSO_CAUSE_RAMP_UNDERRUN] = "ran out of ramps at speed",
 	    [PASSO_CAUSE_STEP_OVERRUN] = "steps came faster than the pin timing of an axis allows",
 	};
 

@@ -5,9 +5,9 @@
 
 #define NANOSECONDS UINT64_C(1000000000)
 #define MICROSECONDS UINT64_C(1000000)
-#define LOOKS_AT_REST 2u /* in a row */
+#define LOOKS_AT_REST 2u /* consecutive */
 
-/* A time of the pins in clocks, rounded up; above PASSO_PIN_CLOCKS_MAX if it is too long. */
+/* A pin time in clocks, rounded up; above PASSO_PIN_CLOCKS_MAX if it is too long. */
 static uint64_t clocks_of(const struct passo *passo, const struct passo_axis_config *config, uint32_t time)
 {
 	uint64_t clocks = time;
@@ -96,7 +96,7 @@ enum passo_error passo_enable(struct passo *passo, uint8_t axis, bool on)
 	return passo_driver_write(passo, address_of(axis, PASSO_AXIS_ENABLE), &enable, 1);
 }
 
-/* Change of rate in a tick, so that full rate takes so long. */
+/* Change of rate per tick for a change by the full rate in this time. */
 static uint32_t slew_of(const struct passo *passo, uint32_t microseconds)
 {
 	const uint64_t clocks = (uint64_t)microseconds * passo->machine.clock_hz;

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT
- * Streams: a path of any length goes through queues of any length, without overfilling or starving them.
+ * Streams: feed a path of any length through the queues without overflow or underrun.
  *
- * The path is prepared behind a closed gate, which opens when the queues are full or all is sent.
+ * The queues are filled behind a closed gate, which opens when they are full or everything is sent.
  */
 #include "passo_driver.h"
 
 #define LOOK_MICROSECONDS 1000u
 #define LOOK_MICROSECONDS_STREAMING 50u
-/* A queue with fewer places may run dry in that time. */
+/* A shorter queue can run empty in that time. */
 #define PLACES_FEW 64u
 
-/* The stream can begin. */
+/* The queues are filled: the stream can start. */
 static bool is_prepared(const struct passo *passo)
 {
 	return passo->stream == PASSO_STREAM_FILLS
@@ -53,14 +53,14 @@ enum passo_error passo_driver_settle_stream(struct passo *passo)
 		return PASSO_OK;
 	}
 	if ((unsigned)error == PASSO_ERROR_REFUSED + PASSO_VERDICT_BUSY) {
-		passo_driver_end_stream(passo); /* it has stopped; the next look tells why */
+		passo_driver_end_stream(passo); /* it has stopped; the next status read shows the cause */
 		return PASSO_OK;
 	}
 	if (error != PASSO_OK)
 		return fail(passo, error);
 	if (passo_unpack_status(host->status).channel != passo->channel)
 		return PASSO_OK;
-	/* both are never too much */
+	/* both are lower bounds */
 	if (snapshot->line_room < host->line_room)
 		snapshot->line_room = host->line_room;
 	if (snapshot->ramp_room < host->ramp_room)

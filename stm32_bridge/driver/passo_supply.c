@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * What the source of a stream gives: when it is asked, and what is taken of it.
+ * The source of a stream: when to call it, and how many items to take.
  */
 #include "passo_driver.h"
 
@@ -13,8 +13,8 @@ static uint32_t smaller(uint32_t a, uint32_t b)
 	return a < b ? a : b;
 }
 
-/* So many at a time are worth a frame: as many as fit, half a small queue; anything while nothing moves yet.
- */
+/* Number of items that justifies a frame: a full frame, or half of a short queue; any number before the
+ * motion starts. */
 static uint32_t worthwhile(const struct passo *passo, uint32_t words, uint32_t places)
 {
 	return passo->stream == PASSO_STREAM_FILLS ? 1u
@@ -33,7 +33,7 @@ bool passo_driver_wants_ramps(const struct passo *passo)
 	    && passo->snapshot.ramp_room >= worthwhile(passo, PASSO_RAMP_WORDS, passo->ramp_places);
 }
 
-/* A source that had nothing may have something now. */
+/* A source that had no items may have some now. */
 static enum passo_supply ask_again(enum passo_supply supply)
 {
 	return supply == PASSO_SUPPLY_DRY ? PASSO_SUPPLY_MORE : supply;

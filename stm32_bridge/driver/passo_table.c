@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT
- * Which shapes the core's tables hold, and loading others.
+ * The shape tables of the core: what they hold, and loading them.
  *
- * The tables cannot be read back, so the host remembers: nothing of a core that others have written to.
+ * The tables cannot be read back, so the host keeps track; after writes of another host their contents are
+ * unknown.
  */
 #include "passo_driver.h"
 
-/* What a bank holds: unknown, the points after reset, an alpha (below 2^31), or the CRC of a user's points.
- */
+/* Contents of a bank: unknown, the points after reset, an alpha (below 2^31), or the CRC of user-defined
+ * points. */
 #define HOLDS_UNKNOWN 0u
 #define HOLDS_RESET 1u
 #define HOLDS_USER UINT32_C(0x80000000)

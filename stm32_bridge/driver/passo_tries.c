@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
- * Tries of a frame, until it is known what became of it. See passo_host.h.
+ * Retries of a frame until its outcome is known. See passo_host.h.
  *
- * How a reset of the core is noticed: status words carry the sequence that the core accepted last. A reply to
- * the first try of a frame must show one that this host has sent; a core after reset shows 0, which is never
- * sent. When the first reply was not clear, the frame itself may have changed that number already: then a
- * counter of refusals is read, which the host has made other than 0, and which is 0 after reset.
+ * Detection of a core reset: status words carry the sequence number that the core accepted last. The reply to
+ * the first try of a frame must show a number that this host has sent; after reset the core shows 0, which is
+ * never sent. If the first reply was not valid, the frame itself may already have changed that number; then
+ * the host reads a refusal counter that it has made nonzero before and that a reset clears.
  */
 #include "passo_tries.h"
 
@@ -13,8 +13,8 @@
 #include "passo_exchange.h"
 #include "passo_words.h"
 
-/* A refused read repeats its ack. With this sequence it is no ack of the same sequence when a clock was lost
- * or doubled: shifted by a bit, in either direction, it is another number. */
+/* Sequence number of reads. The ack of a refused read is repeated; with this number it stays distinguishable
+ * when a clock is lost or doubled: shifted by a bit in either direction, it is a different number. */
 #define READ_SEQUENCE 0x55u
 
 /* Sequences are 1 .. 255. */
@@ -23,8 +23,8 @@ static uint8_t sequence_after(uint8_t sequence)
 	return sequence == 255u ? 1u : (uint8_t)(sequence + 1u);
 }
 
-/* Is this the core that this host knows: what it accepted last is one of those sent since the last one that
- * it is known to have accepted, up to `newest`. */
+/* Whether the core has not been reset: the number it accepted last must be one of those sent since the last
+ * known accepted one, up to `newest`. */
 static bool continues(const struct passo_host *host, uint8_t last, uint8_t newest)
 {
 	uint8_t sequence = host->accepted;
@@ -122,7 +122,7 @@ void passo_host_give_up(struct passo_host *host)
 	host->run_due = true;
 }
 
-/* One try of a write; PENDING: there must be another, or it must be proved. */
+/* One try of a write; PENDING: another try, or a check for a core reset, has to follow. */
 static enum passo_error try_write(struct passo_host *host)
 {
 	const bool first = host->attempt == 0u;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Turning without end: start, another speed, end.
+ * Continuous rotation: start, change of speed, stop.
  */
 #include "passo_driver.h"
 
@@ -23,7 +23,7 @@ enum passo_error passo_turn_start(struct passo *passo, const struct passo_turnin
 	return PASSO_OK;
 }
 
-/* An end that does not get through becomes a stop. */
+/* A stop by ramp that is not acknowledged becomes a soft stop. */
 static enum passo_error fail(struct passo *passo, enum passo_error error, bool stop)
 {
 	if (stop && passo_driver_is_wire(error))
@@ -31,7 +31,7 @@ static enum passo_error fail(struct passo *passo, enum passo_error error, bool s
 	return error;
 }
 
-/* Another ramp for a motion that turns: to an rpm, or to rest. */
+/* Queues a ramp to another speed, or to rest. */
 static enum passo_error turn_on(struct passo *passo, bool stop, uint64_t rpm)
 {
 	struct passo_plan plan;
@@ -53,7 +53,7 @@ static enum passo_error turn_on(struct passo *passo, bool stop, uint64_t rpm)
 	if (passo->snapshot.state == PASSO_STATE_STOPPED || passo->snapshot.stopping)
 		return PASSO_ERROR_STOPPED;
 
-	/* the register has its upper 32 bits only: at the peak they are replaced by all of them */
+	/* the register has only the upper 32 bits; at the peak all bits are known from the plan */
 	uint64_t velocity = (uint64_t)passo->snapshot.velocity << 16;
 	if (passo->velocity_peak >> 16 == passo->snapshot.velocity)
 		velocity = passo->velocity_peak;
@@ -68,7 +68,7 @@ static enum passo_error turn_on(struct passo *passo, bool stop, uint64_t rpm)
 	error = passo_driver_push_ramps(passo, &plan);
 	if (error == PASSO_ERROR_STOPPED && passo_driver_look(passo, false) == PASSO_OK
 	    && passo->snapshot.state != PASSO_STATE_STOPPED)
-		error = PASSO_ERROR_NOT_TURNING; /* its end was decided already */
+		error = PASSO_ERROR_NOT_TURNING; /* its end is already in progress */
 	if (error != PASSO_OK)
 		return fail(passo, error, stop);
 	passo->velocity_peak = plan.velocity_peak;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The driver's hardware on Arduino: the default SPI, chip select on PA4.
+// Hardware functions of the driver for Arduino: the default SPI, chip select on PA4.
 #include <Arduino.h>
 #include <SPI.h>
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The driver's hardware on STM32Cube HAL: SPI1 (mode 0, 8 bits, MSB first), chip select on PA4.
+ * Hardware functions of the driver for the STM32Cube HAL: SPI1 (mode 0, 8 bits, MSB first), chip select on
+ * PA4.
  */
 #include "passo.h"
 #include "stm32f1xx_hal.h"
@@ -25,8 +26,8 @@ static bool transfer(void *context, const uint32_t *send, uint32_t *receive, siz
 	return status == HAL_OK;
 }
 
-/* Milliseconds are fine enough for timeouts; the gap between frames is kept by the time the HAL itself takes.
- */
+/* Millisecond resolution is enough for timeouts; the overhead of the HAL itself keeps the gap between
+ * frames. */
 static uint32_t microseconds(void *context)
 {
 	(void)context;

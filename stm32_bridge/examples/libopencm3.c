@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The driver's hardware on libopencm3: SPI1 (mode 0, 8 bits, MSB first), chip select on PA4, the cycle
- * counter as clock.
+ * Hardware functions of the driver for libopencm3: SPI1 (mode 0, 8 bits, MSB first), chip select on PA4, the
+ * cycle counter as clock.
  */
 #include <libopencm3/cm3/dwt.h>
 #include <libopencm3/stm32/gpio.h>
@@ -26,7 +26,7 @@ static bool transfer(void *context, const uint32_t *send, uint32_t *receive, siz
 	return true;
 }
 
-/* The counter of cycles wraps at 2^32; microseconds have to do so too. */
+/* Extends the cycle counter: both it and the microseconds wrap at 2^32. */
 static uint32_t microseconds(void *context)
 {
 	static uint32_t cycles, now;

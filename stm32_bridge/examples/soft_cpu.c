@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT
- * The driver's hardware on a CPU in the same FPGA, behind passo_wishbone or passo_axi_lite; its counter of
- * cycles is the clock.
+ * Hardware functions of the driver for a CPU in the same FPGA, with passo_wishbone or passo_axi_lite; the
+ * cycle counter of the CPU is the clock.
  */
 #include "passo.h"
 
-#define DOOR_ADDRESS 0x40000000u /* where your bus has it */
+#define DOOR_ADDRESS 0x40000000u /* address on your bus */
 #define CLOCK_HZ 100000000u      /* of CPU and core */
 
-uint32_t cycle_count(void); /* of your CPU, as mcycle of a RISC-V */
+uint32_t cycle_count(void); /* of your CPU, such as mcycle on RISC-V */
 
-/* See rtl/passo_words.v. An access waits until the word before it has gone. */
+/* See rtl/passo_words.v. An access waits until the previous word has been sent. */
 struct door {
 	volatile uint32_t select; /* 1: a frame is open */
-	volatile uint32_t word;   /* written: the next word; read: the word that is exchanged for it */
+	volatile uint32_t word;   /* write: the next word to send; read: the word received in exchange */
 };
 
 static bool transfer(void *context, const uint32_t *send, uint32_t *receive, size_t words)
@@ -28,7 +28,7 @@ static bool transfer(void *context, const uint32_t *send, uint32_t *receive, siz
 	return true;
 }
 
-/* The counter of cycles wraps at 2^32; microseconds have to do so too. */
+/* Extends the cycle counter: both it and the microseconds wrap at 2^32. */
 static uint32_t microseconds(void *context)
 {
 	static uint32_t cycles, now;

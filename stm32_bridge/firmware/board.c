@@ -5,22 +5,22 @@
 
 #define HSE_HZ 8000000u
 #define HSI_HZ 8000000u
-#define HSE_WAIT 200000u /* rounds; a crystal needs 2 ms, this is above 50 ms */
-#define LED_PIN 13u      /* of port C, on when low */
+#define HSE_WAIT 200000u /* polls, more than 50 ms; a crystal needs 2 ms */
+#define LED_PIN 13u      /* of port C, active low */
 #define CORE_PIN 0u      /* of port B */
 #define FAULT_MAGIC 0x46415554u
 #define GUARD 0xDEADC0DEu
 
 enum { PRIORITY_SERIAL = 1, PRIORITY_TICK = 2, PRIORITY_CORE = 3 };
 
-extern uint32_t ram_used_end[]; /* the lowest word that the stack may reach */
+extern uint32_t ram_used_end[]; /* lowest word of the stack area */
 
 static uint32_t clock_hz;
 static volatile uint32_t milliseconds;
 static const char *reset_cause;
 static struct board_fault last_fault;
 
-/* Uninitialized on purpose: it survives a reset. */
+/* Not initialized, so that it survives a reset. */
 static struct {
 	uint32_t magic, exception, address, check;
 } noted_fault __attribute__((section(".noinit")));
@@ -34,10 +34,10 @@ static bool wait_for(const volatile uint32_t *reg, uint32_t mask, uint32_t value
 	return true;
 }
 
-/* From the internal oscillator, on which the chip starts, to the PLL. */
+/* Switches from the internal oscillator to the PLL. Returns whether there is a crystal. */
 static bool start_clocks(void)
 {
-	uint32_t cfgr = RCC_CFGR_PPRE1_HALF; /* APB1 takes 36 MHz */
+	uint32_t cfgr = RCC_CFGR_PPRE1_HALF; /* APB1 allows 36 MHz */
 	bool crystal;
 
 	RCC->cr |= RCC_CR_HSEON;
@@ -76,7 +76,7 @@ static void read_reset_cause(void)
 	uint32_t flags = RCC->csr;
 
 	RCC->csr |= RCC_CSR_RMVF;
-	reset_cause = "pin"; /* its flag is set by every other cause, too */
+	reset_cause = "pin"; /* every other cause sets this flag as well */
 	for (unsigned i = 0; i < sizeof CAUSES / sizeof CAUSES[0]; i++) {
 		if ((flags & CAUSES[i].flag) != 0u) {
 			reset_cause = CAUSES[i].name;
@@ -132,15 +132,16 @@ uint32_t board_milliseconds(void)
 	return milliseconds;
 }
 
-/* The tick may come between the two readings: then both are taken again. Not for interrupt handlers. */
-uint32_t board_microseconds(void)
+/* Reads again if a tick comes between the two readings. Not for interrupt handlers. */
+uint32_t board_microseconds(void *context)
 {
+	(void)context;
 	uint32_t before, left;
 
 	do {
 		before = milliseconds;
 		left = SYSTICK->cvr;
-		__asm volatile("isb" ::: "memory"); /* a tick that is due comes now */
+		__asm volatile("isb" ::: "memory"); /* a pending tick is taken here */
 	} while (before != milliseconds);
 	return before * 1000u + (SYSTICK->rvr - left) / (clock_hz / 1000000u);
 }
@@ -171,8 +172,8 @@ void board_reset(void)
 		continue;
 }
 
-/* 2500 ticks of 40 kHz / 16; the oscillator may have 30 to 60 kHz. The two registers take their values by
- * and by; until then the reset values hold, which are longer than the start of the firmware. */
+/* 2500 ticks of 40 kHz / 16; the oscillator has 30 to 60 kHz. The two registers are updated with a delay;
+ * their reset values, valid until then, exceed the startup time of the firmware. */
 void board_watchdog_start(void)
 {
 	DBGMCU_CR |= DBGMCU_CR_IWDG_STOP;
@@ -200,11 +201,12 @@ void board_led(bool fault)
 
 void exti0_handler(void)
 {
-	EXTI->pr = BIT(CORE_PIN); /* that it has woken the main loop is enough */
+	EXTI->pr = BIT(CORE_PIN); /* its only purpose is to wake the main loop */
 }
 
-bool board_core_calls(void)
+bool board_core_calls(void *context)
 {
+	(void)context;
 	return (GPIOB->idr & BIT(CORE_PIN)) != 0u;
 }
 

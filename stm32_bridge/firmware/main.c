@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
- * One loop: bytes of the serial line go to the console, the console drives the core, the watchdog is fed.
+ * Main loop: passes serial input to the console, polls the core and feeds the watchdog.
  */
 #include "board.h"
 #include "passo_console.h"
 #include "spi.h"
 #include "uart.h"
 
-#define BYTES_PER_ROUND 64u /* so that the core is not forgotten over a flood of text */
+#define BYTES_PER_ROUND 64u /* so that a flood of text does not starve the core */
 
 static struct passo_console console;
 
@@ -16,19 +16,7 @@ static void write_text(void *context, const char *text)
 	uart_write(text);
 }
 
-static uint32_t microseconds(void *context)
-{
-	(void)context;
-	return board_microseconds();
-}
-
-static bool core_calls(void *context)
-{
-	(void)context;
-	return board_core_calls();
-}
-
-/* Short pauses are not worth a sleep, which may take a millisecond. */
+/* A sleep can take a millisecond, so it is used only for longer waits. */
 static void wait(void *context, uint32_t duration)
 {
 	(void)context;
@@ -54,7 +42,7 @@ static void set_spi_fast(void *context, bool fast)
 	spi_set_fast(fast);
 }
 
-/* What led to this start, and what is not as it should be. */
+/* Prints the cause of the last reset and hardware problems. */
 static void report(const struct passo_sink *sink, bool crystal, bool crc_unit)
 {
 	struct board_fault fault = board_last_fault();
@@ -66,14 +54,16 @@ static void report(const struct passo_sink *sink, bool crystal, bool crc_unit)
 		passo_say(sink, "note: no crystal: 64 MHz from the internal oscillator, all times of this "
 				"board to 1 %%\n");
 	if (!crc_unit)
-		passo_say(sink, "note: the CRC unit does not work: CRCs are made in software\n");
+		passo_say(sink, "note: CRC unit faulty: CRCs in software\n");
 }
 
 int main(void)
 {
 	static const struct passo_sink sink = {.write = write_text};
-	static const struct passo_hardware hardware = {
-	    .transfer = spi_transfer, .microseconds = microseconds, .wait = wait, .irq = core_calls};
+	static const struct passo_hardware hardware = {.transfer = spi_transfer,
+	    .microseconds = board_microseconds,
+	    .wait = wait,
+	    .irq = board_core_calls};
 	static const struct passo_console_board board = {
 	    .set_baud = set_baud, .set_spi_fast = set_spi_fast, .lost_bytes = lost_bytes};
 	bool crystal = board_start();

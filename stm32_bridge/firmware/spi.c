@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The SPI sends halfwords, so that the upper half of a word goes first only if the halves change places: on
- * the way out in a copy, on the way in where the words are.
+ * The SPI transfers halfwords. To send the upper half of each word first, the halves are swapped: in a copy
+ * for sending, in place for receiving.
  */
 #include "spi.h"
 
@@ -11,9 +11,9 @@
 #define SCK_PIN 5u
 #define MISO_PIN 6u
 #define MOSI_PIN 7u
-#define RX_CHANNEL 2u /* of DMA1: those that SPI1 is wired to */
+#define RX_CHANNEL 2u /* DMA1 channels of SPI1 */
 #define TX_CHANNEL 3u
-#define ROUNDS_MAX 50000u /* of at least 6 clocks: 4 ms, where the longest transfer takes 0.25 */
+#define ROUNDS_MAX 50000u /* of at least 6 clocks: 4 ms; the longest transfer takes 0.25 ms */
 
 static uint32_t swapped[PASSO_FRAME_WORDS_MAX];
 static bool crc_unit_is_good;
@@ -37,7 +37,7 @@ void spi_start(void)
 	GPIOA->bsrr = BIT(NSS_PIN) | BIT(MISO_PIN + 16u);
 	gpio_mode(GPIOA, NSS_PIN, GPIO_OUTPUT_50MHZ);
 	gpio_mode(GPIOA, SCK_PIN, GPIO_FUNCTION_50MHZ);
-	gpio_mode(GPIOA, MISO_PIN, GPIO_INPUT_PULL); /* down: a core that is not there reads as 0 */
+	gpio_mode(GPIOA, MISO_PIN, GPIO_INPUT_PULL); /* pull-down: a missing core reads as 0 */
 	gpio_mode(GPIOA, MOSI_PIN, GPIO_FUNCTION_50MHZ);
 	DMA1->channel[RX_CHANNEL - 1u].cpar = (uint32_t)(uintptr_t)&SPI1->dr;
 	DMA1->channel[TX_CHANNEL - 1u].cpar = (uint32_t)(uintptr_t)&SPI1->dr;
@@ -45,7 +45,7 @@ void spi_start(void)
 	SPI1->cr2 = SPI_CR2_RXDMAEN | SPI_CR2_TXDMAEN;
 }
 
-/* Receiving goes first: a halfword that nobody fetches would stop everything. */
+/* Enables reception first: a halfword that is not fetched would stall the transfer. */
 static void start_dma(const uint32_t *send, const uint32_t *receive, size_t words)
 {
 	struct dma_channel *rx = &DMA1->channel[RX_CHANNEL - 1u], *tx = &DMA1->channel[TX_CHANNEL - 1u];
@@ -70,7 +70,7 @@ static bool wait_for(const volatile uint32_t *reg, uint32_t mask, uint32_t value
 	return false;
 }
 
-/* Until the last halfword has come in, which is after the last one has gone out. */
+/* The last halfword is received after the last one has been sent. */
 static bool wait_for_dma(void)
 {
 	return wait_for(&DMA1->isr, DMA_ISR_TCIF(RX_CHANNEL), DMA_ISR_TCIF(RX_CHANNEL))
@@ -110,7 +110,7 @@ static uint32_t crc_in_software(uint32_t crc, const uint32_t *words, size_t coun
 	return crc;
 }
 
-/* The unit starts at 0xFFFFFFFF; another start goes into the first word. */
+/* The unit starts at 0xFFFFFFFF; a different start value is folded into the first word. */
 static uint32_t crc_in_hardware(uint32_t crc, const uint32_t *words, size_t count)
 {
 	if (count == 0u)

@@ -8,17 +8,17 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Mode 0, 18 MHz (16 MHz without the crystal). */
+/* Starts SPI1 in mode 0 at 18 MHz (16 MHz without the crystal). */
 void spi_start(void);
 
-/* A quarter of the CPU's clock, or an eighth. */
+/* Sets SCLK to a quarter of the CPU clock, or to an eighth. */
 void spi_set_fast(bool fast);
 
-/* One chip select: 1 .. 64 words, the most significant bit first. False if the DMA does not finish; the time
- * it may take is bounded. The signature is that of passo_hardware.transfer; context is not used. */
+/* One chip select: exchanges 1 .. 64 words, most significant bit first. Returns false if the DMA does not
+ * finish within a bounded time. Implements passo_hardware.transfer; context is not used. */
 bool spi_transfer(void *context, const uint32_t *send, uint32_t *receive, size_t words);
 
-/* Does the CRC unit compute what the software does? If not, passo_crc() goes on in software. */
+/* Tests the CRC unit against software. Returns whether it works; if not, passo_crc() uses software. */
 bool crc_start(void);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The vector table, and what happens before main() and after a fault.
+ * Vector table, startup code and fault handler.
  */
 #include <stdint.h>
 #include <string.h>
@@ -19,14 +19,14 @@ void reset_handler(void)
 {
 	memcpy(data_start, data_load, (size_t)((char *)data_end - (char *)data_start));
 	memset(bss_start, 0, (size_t)((char *)bss_end - (char *)bss_start));
-	/* A boot loader may have left it elsewhere. */
+	/* a boot loader may have changed it */
 	SCB_VTOR = 0x08000000u;
 	main();
 	for (;;)
 		board_reset();
 }
 
-/* Every exception that nobody expects: keep what it was and where, and start anew. */
+/* Unexpected exceptions: record exception and address, and reset. */
 __attribute__((naked)) void fault_handler(void)
 {
 	__asm volatile("mrs r0, msp\n\tb fault_reset");

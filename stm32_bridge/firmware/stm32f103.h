@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The registers of the STM32F103 that the firmware uses, and no more. Names, addresses and bits are those of
- * the reference manual (RM0008) and of the Cortex-M3 programming manual (PM0056).
+ * The registers of the STM32F103 that the firmware uses. Names, addresses and bits are those of the reference
+ * manual (RM0008) and the Cortex-M3 programming manual (PM0056).
  */
 #ifndef STM32F103_H
 #define STM32F103_H
@@ -57,7 +57,7 @@ struct gpio {
 
 /* The four bits of a pin in CRL (pins 0 to 7) and CRH (8 to 15). */
 #define GPIO_INPUT 0x4u
-#define GPIO_INPUT_PULL 0x8u /* ODR says where to */
+#define GPIO_INPUT_PULL 0x8u /* up or down by ODR */
 #define GPIO_OUTPUT_2MHZ 0x2u
 #define GPIO_OUTPUT_50MHZ 0x3u
 #define GPIO_FUNCTION_50MHZ 0xBu /* push-pull output of a peripheral */
@@ -172,20 +172,20 @@ static inline void irq_enable(void)
 	__asm volatile("cpsie i" ::: "memory");
 }
 
-/* Sleep until an interrupt is pending, even while they are disabled. */
+/* Sleeps until an interrupt is pending, even if interrupts are disabled. */
 static inline void wait_for_interrupt(void)
 {
 	__asm volatile("dsb\n\twfi" ::: "memory");
 }
 
-/* Enable an interrupt; of the 16 priorities 0 is the most urgent. */
+/* Enables an interrupt; priority 0 .. 15, 0 is the highest. */
 static inline void nvic_enable(unsigned irq, unsigned priority)
 {
 	NVIC_IPR[irq] = (uint8_t)(priority << 4);
 	NVIC_ISER[irq / 32u] = BIT(irq % 32u);
 }
 
-/* Give pin 0 .. 15 of a port its four bits. */
+/* Sets the mode of pin 0 .. 15 of a port. */
 static inline void gpio_mode(struct gpio *port, unsigned pin, uint32_t mode)
 {
 	volatile uint32_t *cr = pin < 8u ? &port->crl : &port->crh;

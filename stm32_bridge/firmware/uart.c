@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Each ring has one writer and one reader; `head` is the writer's, `tail` the reader's, both count without
- * end, so that head - tail is what waits.
+ * Each ring has one writer, which owns `head`, and one reader, which owns `tail`. Both are free-running, so
+ * head - tail is the fill level.
  */
 #include "uart.h"
 
@@ -68,7 +68,7 @@ static void note_loss(void)
 	lost = true;
 }
 
-/* Put a byte, and the mark that is due before it, into the ring. */
+/* Puts a byte into the ring, after a pending UART_LOST. */
 static void keep(uint8_t byte)
 {
 	if (lost) {
@@ -80,7 +80,7 @@ static void keep(uint8_t byte)
 		note_loss();
 }
 
-/* Reading SR and then DR clears the errors. A byte after an overrun is good, but the next one was lost. */
+/* Reading SR and then DR clears the errors. On overrun, the byte in DR is valid and the next one was lost. */
 void usart1_handler(void)
 {
 	uint32_t status = USART1->sr;
@@ -115,7 +115,7 @@ bool uart_read(char *byte)
 	return true;
 }
 
-/* The interrupt handler changes CR1, too, but only when it finds nothing to send. */
+/* CR1 is also changed by the interrupt handler, hence the critical section. */
 static void put(uint8_t byte)
 {
 	while (!ring_put(&sending, byte))

@@ -11,18 +11,18 @@
 
 void uart_start(uint32_t baud);
 
-/* Another speed, after everything waiting has been sent. */
+/* Changes the baud rate after all queued text has been sent. */
 void uart_set_baud(uint32_t baud);
 
-/* The next byte received; false if there is none. UART_LOST stands where bytes were lost or damaged (noise,
- * wrong stop bit, overrun of the receiver or of the ring). */
+/* Gets the next received byte; false if there is none. UART_LOST stands for bytes that were lost or corrupt
+ * (noise, framing error, overrun of the receiver or of the ring). */
 #define UART_LOST '\0'
 bool uart_read(char *byte);
 
-/* Queue text for sending; waits while there is no room. */
+/* Queues text for sending; waits while the ring is full. */
 void uart_write(const char *text);
 
-/* How often that was since the start; wraps. */
+/* Number of losses since start; wraps. */
 uint32_t uart_losses(void);
 
 #endif

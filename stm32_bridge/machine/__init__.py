@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""An STM32F103 that executes firmware: unicorn for the instructions, models for what is around them.
+"""An emulated STM32F103 that executes firmware: unicorn for the instructions, models for the peripherals.
 
-`Machine` is the whole; each other module is one part of it. Time runs in ticks of 1/576 µs, of which the
-clocks of all usual frequencies are whole multiples.
+`Machine` is the whole microcontroller; each other module is a part of it. Time counts in ticks of 1/576 µs,
+of which all usual clock periods are integer multiples.
 """
 
 from passo_stm32.bus import MachineError

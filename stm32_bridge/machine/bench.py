@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the firmware costs: instructions per plan, frame and line, load during a motion, lines per second."""
+"""Cost of the firmware: instructions per plan, frame and line, load during a motion, lines per second."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,10 +17,10 @@ REPORT = paths.docs / "firmware_report.md"
 PAGE = paths.root / "benchmarks" / "firmware_page.md"
 HZ = 72_000_000
 PARAMETERS = Parameters(axes=4)
-AIM = 20_000  # instructions of a plan
+AIM = 20_000  # goal: instructions per plan
 WORDS_PER_LINE = PARAMETERS.axes + 2
 STREAM_SOURCE = paths.root / "benchmarks" / "stm32_stream.c"
-FIRST_LINES, LINES = (280, 480), (400, 2400)  # lines asked for, between which the time is taken
+FIRST_LINES, LINES = (280, 480), (400, 2400)  # the rate is measured between these two numbers of lines
 FASTER = 1.02
 
 STEPS = "steps=25600,15360,10240,-25599"
@@ -76,12 +76,12 @@ class Cost:
     """Instructions of one move."""
 
     plan: int  # in the planner alone
-    line: int  # everything between the end of the line and its answer, frames and waiting for them included
-    first: int  # the same for the first move, whose shape's table has to be checked or loaded
+    line: int  # from the end of the line to its answer, including frames and waiting for them
+    first: int  # the same for the first move, which may have to load a shape table
 
 
 def plan_costs() -> dict[str, Cost]:
-    """Each method on a board of its own."""
+    """Cost of each method, each measured on a separate board."""
     found = {}
     for name, (method, words) in PLANS.items():
         board = Board(model_engine(PARAMETERS, HZ))
@@ -98,7 +98,7 @@ def plan_costs() -> dict[str, Cost]:
 
 
 def planner_functions(words: str, method: str) -> dict[str, int]:
-    """Where the instructions of a plan go, by function."""
+    """Instructions of a plan, by function."""
     board = Board(model_engine(PARAMETERS, HZ))
     board.measure(f"passo_plan_{method}", profile=True)
     board.must(f"move {words}")
@@ -106,7 +106,7 @@ def planner_functions(words: str, method: str) -> dict[str, int]:
 
 
 def other_costs() -> dict[str, int]:
-    """A frame, a short line, a character, the idle loop."""
+    """Cost of a frame, a short line, a character and the idle loop."""
     board = Board(model_engine(PARAMETERS, HZ))
     found = {}
     for name, function, line in (
@@ -131,7 +131,7 @@ def other_costs() -> dict[str, int]:
 
 
 def load() -> tuple[float, dict[str, int], int]:
-    """Share of the processor while all axes make a million steps/s, where it goes, and the stack used."""
+    """Processor load while all axes make a million steps/s, instructions by function, and the stack used."""
     board = Board(model_engine(PARAMETERS, 200_000_000))
     for axis in range(PARAMETERS.axes):
         board.must(f"config axis={axis} step_high=50clocks step_low=50clocks")
@@ -145,7 +145,7 @@ def load() -> tuple[float, dict[str, int], int]:
 
 
 def stream_elf() -> Path:
-    """The driver with a main loop that streams."""
+    """Build a program that streams with the driver; return the path of its ELF file."""
     folder = paths.build / "firmware_stream"
     folder.mkdir(parents=True, exist_ok=True)
     files = [
@@ -159,15 +159,15 @@ def stream_elf() -> Path:
 
 
 def lines_per_second(sclk_hz: int) -> tuple[float, float]:
-    """Lines of all axes per second that the firmware's driver brings; and the wire's limit."""
+    """Lines of all axes per second that the driver achieves, and the limit of the link."""
     limit = sclk_hz / 32 / WORDS_PER_LINE
     rate = _stream(sclk_hz, limit, *FIRST_LINES)
-    # the core takes them a little faster than they come, so that its queue never fills up
+    # the core consumes lines slightly faster than they arrive, so that its queue is never full
     return _stream(sclk_hz, FASTER * rate, *LINES), limit
 
 
 def _stream(sclk_hz: int, taken: float, first: int, last: int) -> float:
-    """Lines per second that are asked for between two counts, while the core takes so many of them."""
+    """Lines per second requested between two counts, while the core consumes `taken` per second."""
     machine = Machine(stream_elf(), model_engine(PARAMETERS, HZ))
     machine.run(0.01)
     values = {"substeps": int(HZ / 2 / taken), "fast": int(sclk_hz > 9_000_000), "go": 1}
@@ -184,7 +184,7 @@ def _stream(sclk_hz: int, taken: float, first: int, last: int) -> float:
 
 
 def memory_report() -> str:
-    """What the firmware's own build says of flash, RAM and stack."""
+    """Flash, RAM and stack, as the build of the firmware prints them."""
     said = make_firmware().splitlines()
     return "\n".join(line for line in said if line and not line.startswith("make"))
 
@@ -212,7 +212,7 @@ def report(
     rates: dict[int, tuple[float, float]],
     memory: str,
 ) -> str:
-    """The page."""
+    """Text of the report."""
     share, where, stack = motion
     worst = max(costs, key=lambda name: costs[name].plan)
     method, words = PLANS[worst]

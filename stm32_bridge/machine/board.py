@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The board: the firmware's own ELF on the machine, a core at its pins, a person at its terminal."""
+"""The board: the emulated microcontroller with the firmware, a core at its pins, and a terminal."""
 
 import fcntl
 import subprocess
@@ -16,14 +16,14 @@ from passo_stm32.wires import CorePins
 ELF = paths.build / "firmware" / "passo.elf"
 ANSWERS = ("ok", "error:")
 FAST_SCLK_HZ = 18_000_000
-CLOCKS_PER_SCLK = 4  # of the core's clock, at least
+CLOCKS_PER_SCLK = 4  # minimum
 FAST_BAUD = 1_000_000
-START = 0.3  # seconds until the console has greeted, even without a crystal
+START = 0.3  # seconds until the greeting of the console, even without a crystal
 LATENCY = 0.001  # seconds
 
 
 def make_firmware(*arguments: str) -> str:
-    """Run the firmware's makefile; return what it says, or raise BuildError."""
+    """Run the makefile of the firmware; return its output. Raises BuildError."""
     paths.build.mkdir(parents=True, exist_ok=True)
     quiet = {k: v for k, v in environment().items() if k not in ("MAKEFLAGS", "MAKELEVEL")}
     with open(paths.build / "firmware.lock", "w") as lock:
@@ -36,22 +36,22 @@ def make_firmware(*arguments: str) -> str:
 
 
 def firmware_elf() -> Path:
-    """Build the firmware if it is not up to date; return what would be flashed."""
+    """Build the firmware if it is out of date; return the path of its ELF file."""
     make_firmware(f"OUT={ELF.parent}", str(ELF))
     return ELF
 
 
 @dataclass(frozen=True)
 class Motion:
-    """The pulses of one motion: from the rise of `running` on, and a little after its fall."""
+    """The pulses of one motion: from the rising edge of `running` to shortly after its falling edge."""
 
     start: int  # clock
-    clocks: int  # that `running` was high
-    step: np.ndarray  # rows of clock since the start and levels of all STEP pins, one for each change
-    dir: np.ndarray  # levels of the DIR pins at each of these rows
+    clocks: int  # duration of `running`
+    step: np.ndarray  # one row per change: clock since the start, levels of all STEP pins
+    dir: np.ndarray  # levels of the DIR pins for each row
 
     def same_as(self, other: "Motion") -> str:
-        """What is different, in a sentence; empty if nothing is."""
+        """The first difference, in words; empty if there is none."""
         if self.clocks != other.clocks:
             return f"{self.clocks} clocks long instead of {other.clocks}"
         common = min(len(self.step), len(other.step))
@@ -65,7 +65,7 @@ class Motion:
         return ""
 
     def rising(self) -> np.ndarray:
-        """The rows on which a STEP pin rises."""
+        """The rows with a rising edge of a STEP pin."""
         before = np.concatenate([[0], self.step[:-1, 1]]) if len(self.step) else np.empty(0, np.int64)
         return np.flatnonzero(self.step[:, 1] & ~before)
 
@@ -77,7 +77,7 @@ class Motion:
 
 
 def motions(events: np.ndarray) -> list[Motion]:
-    """All motions in the events of a core (passo.engine.EVENT) of one channel, if its last one has ended."""
+    """All motions in the events (passo.engine.EVENT) of a core with one channel; the last must have ended."""
     running = events["running"] & 1
     edges = np.flatnonzero(np.diff(np.concatenate([[0], running]).astype(np.int8)))
     starts, ends = edges[::2], edges[1::2]
@@ -100,7 +100,7 @@ def motions(events: np.ndarray) -> list[Motion]:
 
 
 class Board(Machine):
-    """The machine with the firmware, and who types at its console."""
+    """The machine with the firmware, and a user at its console."""
 
     def __init__(
         self, core: CorePins | None, *, fast: bool = True, elf: Path | None = None, **options: object
@@ -116,7 +116,7 @@ class Board(Machine):
             self.set_baud(FAST_BAUD)
 
     def ask(self, line: str, seconds: float = 1.0) -> str:
-        """Type a line; return its answer, the line that begins with ok or error:."""
+        """Type a line; return its answer, the line that starts with ok or error:."""
         since = len(self.output)
         self.type(line + "\r")
         self.run_until(lambda: self._answer(since), seconds)
@@ -129,14 +129,14 @@ class Board(Machine):
         return next((line for line in lines if line.startswith(ANSWERS)), "")
 
     def must(self, line: str, seconds: float = 1.0) -> str:
-        """Type a line that has to succeed; return its answer."""
+        """Type a line that must succeed; return its answer."""
         answer = self.ask(line, seconds)
         if not answer.startswith("ok"):
             raise AssertionError(f"{line!r} is answered with {answer!r}")
         return answer
 
     def set_baud(self, baud: int) -> None:
-        """Both ends change their baud rate; an empty line shows that they understand each other again."""
+        """Change the baud rate of both ends, and check it with an empty line."""
         since = len(self.output)
         self.type(f"config baud={baud}\r")
         self.expect("ok", 1.0, since)
@@ -145,12 +145,12 @@ class Board(Machine):
         self.must("")
 
     def positions(self) -> list[int]:
-        """What the console says of the positions."""
+        """The positions that the console reports."""
         answer = self.must("position")
         return [int(number) for number in answer.partition("position=")[2].split(",")]
 
     def wait_motion(self, seconds: float) -> None:
-        """Run until a motion of which `events` has not told yet has begun and ended, with its last pulse."""
+        """Run until a motion not yet returned by `events` has started and ended, with its last pulse."""
         end = self.seconds + seconds + LATENCY
         while not self._motion_ended():
             if self.seconds > end:

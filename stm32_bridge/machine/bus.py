@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Peripherals and their registers. What is not modelled is an error, never a guess."""
+"""Peripherals and their registers. Access to anything that is not modelled is an error."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,12 +15,12 @@ WORD = 0xFFFFFFFF
 
 
 class MachineError(Exception):
-    """The firmware does what the machine cannot do, or what the microcontroller forbids."""
+    """The firmware does something that is not modelled, or that the microcontroller forbids."""
 
 
 @dataclass(frozen=True)
 class Register:
-    """A register: its value after reset, and which bits of it software may write."""
+    """A register: its offset, the mask of bits that software may write, and its value after reset."""
 
     name: str
     offset: int
@@ -29,13 +29,13 @@ class Register:
 
 
 class Peripheral:
-    """Registers at an address. A subclass adds `read_NAME` and `write_NAME` where there is more to do."""
+    """A block of registers. Subclasses add `read_NAME` and `write_NAME` for registers with side effects."""
 
     name: str
     base: int
     size = 0x400
     registers: Sequence[Register] = ()
-    due = NEVER  # tick at which `advance` has something to do
+    due = NEVER  # tick of the next call of `advance`
 
     def __init__(self, machine: "Machine"):
         self.machine = machine
@@ -46,15 +46,15 @@ class Peripheral:
         self.reset()
 
     def reset(self) -> None:
-        """As after a reset of the chip."""
+        """Reset the peripheral."""
         self.value = {register.name: register.reset for register in self.registers}
         self.due = NEVER
 
     def advance(self, now: int) -> None:
-        """Do what is due."""
+        """Process the events due at or before tick `now`."""
 
     def clock_changed(self) -> None:
-        """The bus has another frequency now."""
+        """Called when the bus clock has changed."""
 
     def read(self, offset: int) -> int:
         """Read the register at an offset."""
@@ -91,7 +91,7 @@ class Peripheral:
 
 
 class Bus:
-    """Finds the peripheral of an address."""
+    """Address decoder."""
 
     def __init__(self) -> None:
         self._blocks: dict[int, Peripheral] = {}
@@ -103,8 +103,8 @@ class Bus:
             self._blocks[block] = peripheral
 
     def find(self, address: int) -> Peripheral:
-        """The peripheral at an address; MachineError if there is none."""
+        """The peripheral at an address; raises MachineError."""
         peripheral = self._blocks.get(address >> BLOCK_LOG2)
         if peripheral is None:
-            raise MachineError(f"there is no model of what is at 0x{address:08X}")
+            raise MachineError(f"nothing is modelled at 0x{address:08X}")
         return peripheral

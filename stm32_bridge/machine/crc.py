@@ -18,7 +18,7 @@ TABLE = [_byte(index) for index in range(256)]
 
 
 class Crc(Peripheral):
-    """Each word written goes into DR."""
+    """Each word written to DR updates the CRC."""
 
     name = "CRC"
     base = 0x40023000
@@ -29,13 +29,13 @@ class Crc(Peripheral):
     )
 
     def write_dr(self, value: int) -> None:
-        """One word more."""
+        """Add a word."""
         crc = self.value["DR"] ^ value
         for _ in range(4):
             crc = (crc << 8 ^ TABLE[crc >> 24]) & WORD
         self.value["DR"] = crc
 
     def write_cr(self, value: int) -> None:
-        """RESET starts anew; IDR stays."""
+        """RESET restores the start value; IDR is not affected."""
         if value & 1:
             self.value["DR"] = WORD

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The demonstration of the firmware: moves typed at its console, pulses out of the core."""
+"""The demonstration of the firmware: moves typed at its console, pulses of the core."""
 
 import sys
 from pathlib import Path
@@ -14,14 +14,18 @@ from passo_stm32.play import Played, planned_clocks, play
 
 FOLDER = paths.build / "firmware_demo"
 CLOCK_HZ = 36_000_000  # of the core; SCLK is 9 MHz
-EXAMPLES = ("three_axes", "cosine", "triangle")  # together about a second of motion, half a minute here
+EXAMPLES = (
+    "three_axes",
+    "cosine",
+    "triangle",
+)  # about a second of motion in total, half a minute of real time
 PICTURED = 3
 LINE_WIDTH = 90  # characters of what was typed
 SHOWN = 0.0006  # seconds of pulses
 
 
 def demo(files: list[Path] | None = None, engine: str = "rtl") -> bool:
-    """Run it; return whether every edge was where the C model and the planner on the PC put it."""
+    """Run the demonstration; return whether every edge matches the C model with the planner on the PC."""
     tell = stages()
     paths_ = files or [paths.examples / f"{name}.toml" for name in EXAMPLES]
     shown = table(
@@ -73,7 +77,7 @@ def demo(files: list[Path] | None = None, engine: str = "rtl") -> bool:
 
 
 def draw(pictures: dict[str, tuple[list[Played], Board]], path: Path) -> None:
-    """For each file what was typed, the speeds at the pins, and the first pulses of its first move."""
+    """Plot for each file the typed lines, the speeds at the pins, and the first pulses of its first move."""
     import matplotlib
 
     matplotlib.use("Agg")
@@ -109,7 +113,7 @@ def draw(pictures: dict[str, tuple[list[Played], Board]], path: Path) -> None:
 
 
 def _first_pulses(ax: object, move: Played) -> None:
-    """STEP of each axis from its first step on."""
+    """Plot STEP of each axis around the first pulses."""
     from passo.plot import COLORS
 
     axes = len(move.plan.move.steps)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""DMA1: a request of a peripheral moves one item between its data register and memory, without delay."""
+"""DMA1: each request of a peripheral moves one item between its data register and memory, at once."""
 
 from passo_stm32.bus import MachineError, Peripheral, Register
 
@@ -30,13 +30,13 @@ class Dma(Peripheral):
     )
 
     def reset(self) -> None:
-        """All channels off."""
+        """Disable all channels."""
         super().reset()
-        self._done = [0] * (CHANNELS + 1)  # items of this round
+        self._done = [0] * (CHANNELS + 1)  # items transferred in this round
         self._round = [0] * (CHANNELS + 1)
 
     def write(self, offset: int, value: int) -> None:
-        """The channels' registers are alike; those of a channel that is on are kept."""
+        """All channels have the same registers; those of an enabled channel must not be changed."""
         if offset < 0x08:
             super().write(offset, value)
             return
@@ -52,7 +52,7 @@ class Dma(Peripheral):
         self._request(channel)
 
     def write_ifcr(self, value: int) -> None:
-        """Ones clear flags; the global one clears all of its channel."""
+        """Ones clear flags; the global flag clears all flags of its channel."""
         for channel in range(1, CHANNELS + 1):
             flags = value >> 4 * (channel - 1) & 15
             flags = 15 if flags & 1 else flags
@@ -75,23 +75,23 @@ class Dma(Peripheral):
                 places[i] += self._done[channel] * sizes[i]
         source, target = (1, 0) if control >> FROM_MEMORY & 1 else (0, 1)
         value = self.machine.read(places[source], sizes[source])
-        self._count(channel, control)  # first: what is written may be followed by another request at once
+        self._count(channel, control)  # first, because the write may cause another request at once
         self.machine.write(places[target], sizes[target], value & ((1 << 8 * sizes[target]) - 1))
         return True
 
     def block(self, channel: int) -> int:
-        """How many requests could be served at once as a block of memory: items of one size, no circle."""
+        """Number of requests that can be served as one block: equal item sizes, not circular."""
         control = self.value[f"CCR{channel}"]
         plain = control >> MEMORY_INCREMENT & 1 and not control >> CIRCULAR & 1
         same = control >> PERIPHERAL_SIZE & 3 == control >> MEMORY_SIZE & 3
         return self.value[f"CNDTR{channel}"] if control & 1 and plain and same else 0
 
     def item_size(self, channel: int) -> int:
-        """Bytes of an item in memory."""
+        """Bytes per item in memory."""
         return 1 << (self.value[f"CCR{channel}"] >> MEMORY_SIZE & 3)
 
     def serve_block(self, channel: int, count: int) -> int:
-        """Serve so many requests of a `block`; return the address of its items, which the caller moves."""
+        """Serve `count` requests of a block; return the address of the items, which the caller transfers."""
         address = self.value[f"CMAR{channel}"] + self._done[channel] * self.item_size(channel)
         self._count(channel, self.value[f"CCR{channel}"], count)
         return address

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""An ELF file as the machine needs it: what to load where, and the names of addresses."""
+"""ELF files: segments to load, and symbols."""
 
 import struct
 from bisect import bisect_right
@@ -14,7 +14,7 @@ ARM = 40
 
 
 class ElfError(Exception):
-    """This is no executable for the microcontroller."""
+    """The file is not an executable for the microcontroller."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Elf:
 
     @classmethod
     def read(cls, path: Path) -> "Elf":
-        """Read a file; raise ElfError."""
+        """Read a file; raises ElfError."""
         try:
             data = path.read_bytes()
         except OSError as error:
@@ -70,6 +70,6 @@ class Elf:
         return sorted(self.functions)
 
     def function_at(self, address: int) -> str:
-        """Name of the function that an address is in, or the address itself."""
+        """Name of the function that contains an address, or the address itself."""
         at = bisect_right(self._addresses, address)
         return self.functions[self._addresses[at - 1]] if at else f"0x{address:08X}"

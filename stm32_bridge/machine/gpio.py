@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Ports and alternate functions; edges of inputs go to the EXTI lines."""
+"""GPIO ports, AFIO and EXTI: edges of inputs drive the EXTI lines."""
 
 from typing import TYPE_CHECKING
 
@@ -29,11 +29,11 @@ class Gpio(Peripheral):
         self.letter = letter
         self.name = f"GPIO{letter}"
         self.base = 0x40010800 + 0x400 * PORTS.index(letter)
-        self.external: dict[int, int] = {}  # levels that come from outside
+        self.external: dict[int, int] = {}  # levels driven from outside
         super().__init__(machine)
 
     def reset(self) -> None:
-        """All inputs."""
+        """Make all pins inputs."""
         before = [self.level(pin) for pin in range(16)] if self.value else []
         super().reset()
         self._tell(before)
@@ -44,7 +44,7 @@ class Gpio(Peripheral):
         return bool(code & 3), code >> 2
 
     def level(self, pin: int) -> int:
-        """Level at a pin; what nobody drives or pulls is high."""
+        """Level of a pin; a floating pin reads as high."""
         output, configuration = self.mode(pin)
         if output and configuration in (0, 1):
             open_high = configuration == 1 and self.value["ODR"] >> pin & 1
@@ -54,7 +54,7 @@ class Gpio(Peripheral):
         return self.value["ODR"] >> pin & 1 if not output and configuration == INPUT_PULLED else 1
 
     def drive(self, pin: int, level: int) -> None:
-        """From outside: a level at an input."""
+        """Drive a pin from outside."""
         if self.external.get(pin) != level:
             before = self.level(pin)
             self.external[pin] = level
@@ -83,24 +83,24 @@ class Gpio(Peripheral):
         self._change("CRH", value)
 
     def read_idr(self) -> int:
-        """Levels; an analog input reads 0."""
+        """Pin levels; an analog input reads as 0."""
         return sum(self.level(pin) << pin for pin in range(16) if self.mode(pin) != (False, INPUT_ANALOG))
 
     def write_odr(self, value: int) -> None:
-        """All outputs."""
+        """Set all outputs."""
         self._change("ODR", value)
 
     def write_bsrr(self, value: int) -> None:
-        """Set, and reset where not set."""
+        """Set bits and reset bits; set has priority."""
         self._change("ODR", self.value["ODR"] & ~(value >> 16) | value & 0xFFFF)
 
     def write_brr(self, value: int) -> None:
-        """Reset."""
+        """Reset bits."""
         self._change("ODR", self.value["ODR"] & ~value)
 
 
 class Afio(Peripheral):
-    """Which port an EXTI line listens to; of the remappings only those of the debug pins."""
+    """Port selection of the EXTI lines; the only remapping modelled is that of the debug pins."""
 
     name = "AFIO"
     base = 0x40010000
@@ -111,13 +111,13 @@ class Afio(Peripheral):
     )
 
     def port_of(self, line: int) -> str:
-        """The port whose pin is that EXTI line."""
+        """The port selected for an EXTI line."""
         code = self.value[f"EXTICR{line // 4 + 1}"] >> 4 * (line % 4) & 15
         return PORTS[code] if code < len(PORTS) else ""
 
 
 class Exti(Peripheral):
-    """Edges become interrupts."""
+    """Edge interrupts."""
 
     name = "EXTI"
     base = 0x40010400
@@ -131,7 +131,7 @@ class Exti(Peripheral):
     )
 
     def edge(self, line: int, level: int) -> None:
-        """A line has a new level."""
+        """An EXTI line has a new level."""
         if self.bit("RTSR" if level else "FTSR", line):
             self.set_bit("PR", line, True)
             self._request()

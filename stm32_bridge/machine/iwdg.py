@@ -4,7 +4,7 @@
 from passo_stm32.bus import NEVER, TICKS_PER_SECOND, MachineError, Peripheral, Register
 
 LSI = TICKS_PER_SECOND // 40_000
-UPDATE = 5 * LSI  # how long a new PR or RLR is on its way
+UPDATE = 5 * LSI  # delay of an update of PR or RLR
 RELOAD_KEY, ACCESS_KEY, START_KEY = 0xAAAA, 0x5555, 0xCCCC
 
 
@@ -21,7 +21,7 @@ class Iwdg(Peripheral):
     )
 
     def reset(self) -> None:
-        """Off until it is started."""
+        """Disable until it is started."""
         super().reset()
         self._updated = {"PR": 0, "RLR": 0}
         self._open = False
@@ -42,7 +42,7 @@ class Iwdg(Peripheral):
         self._updated[register] = self.machine.now + UPDATE
 
     def write_pr(self, value: int) -> None:
-        """Prescaler 4 to 256; counts from the next reload."""
+        """Prescaler 4 to 256; takes effect with the next reload."""
         self._update("PR", value)
 
     def write_rlr(self, value: int) -> None:
@@ -50,18 +50,18 @@ class Iwdg(Peripheral):
         self._update("RLR", value)
 
     def read_sr(self) -> int:
-        """PVU and RVU: an update is on its way."""
+        """PVU and RVU: an update is in progress."""
         now = self.machine.now
         return (now < self._updated["PR"]) | (now < self._updated["RLR"]) << 1
 
     def advance(self, now: int) -> None:
-        """Nobody reloaded it."""
+        """The counter has reached 0."""
         self.due = NEVER
         self.machine.request_reset("watchdog")
 
 
 class Debug(Peripheral):
-    """Which device this is; the freeze bits do nothing without a debugger."""
+    """Device identification; the freeze bits have no effect without a debugger."""
 
     name = "DBGMCU"
     base = 0xE0042000

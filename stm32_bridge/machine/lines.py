@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Move files in the language of the console (docs/console.md)."""
+"""Converts move files to console commands (docs/console.md)."""
 
 import tomllib
 from pathlib import Path
@@ -14,19 +14,19 @@ FILE_ONLY = {key.name for form in FORMS.values() for key in form.keys if key.fil
 
 
 def read_toml(path: Path) -> dict[str, Any]:
-    """A move file with its fractions as they are written."""
+    """Parse a move file; decimal fractions stay text."""
     return tomllib.loads(path.read_text(encoding="utf-8"), parse_float=str)
 
 
 def pin_lines(data: dict[str, Any], axes: int) -> list[str]:
-    """Lines that set the pin timing of a file, if it has one."""
+    """Lines that set the pin timing of a file, if it has any."""
     pins = data.get("pins", {})
     keys = " ".join(f"{key}={pins[key]}" for key in PIN_KEYS if key in pins)
     return [f"config axis={axis} {keys}" for axis in range(axes)] if keys else []
 
 
 def move_lines(data: dict[str, Any], folder: Path) -> list[list[str]]:
-    """For each move its lines: those of its table, if it needs another one, and the move itself."""
+    """The lines of each move: those that load its table, unless it is loaded, and the move itself."""
     found, loaded = [], None
     for move in data["move"]:
         lines = []

@@ -20,16 +20,16 @@ from passo_stm32.systick import SysTick
 from passo_stm32.usart import Usart
 from passo_stm32.wires import CorePins, Wires
 
-SLICE = 256  # instructions after which the core catches up, while the processor is awake
-HANG = FLASH_SIZE - 2  # where the endless loop of `hang` is
+SLICE = 256  # instructions after which the core catches up while the processor is awake
+HANG = FLASH_SIZE - 2  # address of the endless loop of `hang`
 BRANCH_TO_ITSELF = b"\xfe\xe7"
 STOP_MESSAGES = {6: "read", 7: "write to", 8: "fetch from", 12: "write to", 13: "read", 14: "fetch from"}
 
 
 class Machine(Processor):
-    """Power is on: the firmware starts with the first `run`.
+    """A powered microcontroller; the first `run` starts the firmware.
 
-    The engine has to be fresh; its clock_hz is the core's clock. `crystal` False: the crystal is broken.
+    The engine must be new; its clock_hz is the clock of the core. Without `crystal` there is no crystal.
     """
 
     def __init__(
@@ -48,9 +48,9 @@ class Machine(Processor):
         self.baud = baud  # of the terminal
         self.wires = Wires(core, seed)
         self.output = ""  # what the terminal received
-        self.output_ticks: list[int] = []  # and when each character ended
+        self.output_ticks: list[int] = []  # when the reception of each character ended
         self.resets: list[tuple[int, str]] = []  # tick and cause
-        self.faults: list[str] = []  # what led to a hard fault
+        self.faults: list[str] = []  # causes of hard faults
         self.asleep_ticks = 0
         self.led: list[tuple[int, int]] = []  # tick and level of PC13
         self._select, self._irq = _pin(select), _pin(irq)
@@ -91,52 +91,52 @@ class Machine(Processor):
 
     @property
     def now(self) -> int:
-        """Ticks since power came."""
+        """Ticks since power-on."""
         return self.cpu.now
 
     @property
     def seconds(self) -> float:
-        """Seconds since power came."""
+        """Seconds since power-on."""
         return self.cpu.now / TICKS_PER_SECOND
 
     def run(self, seconds: float) -> None:
-        """Let so much time pass; raise MachineError."""
+        """Let time pass; raises MachineError."""
         self._run(self.now + round(seconds * TICKS_PER_SECOND), lambda: False)
 
     def run_until(self, condition: Callable[[], object], seconds: float) -> None:
-        """Let time pass until something is so; TimeoutError if it is not after `seconds`."""
+        """Let time pass until a condition is true; raises TimeoutError after `seconds`."""
         if not self._run(self.now + round(seconds * TICKS_PER_SECOND), condition) and not condition():
             raise TimeoutError(f"nothing for {seconds} s; the terminal shows ...{self.output[-200:]!r}")
 
     def type(self, text: str, baud: int | None = None) -> None:
-        """Send characters from the terminal, one after the other at its baud rate."""
+        """Send characters from the terminal at its baud rate."""
         self.usart.type(text.encode("latin-1"), baud or self.baud, self.now)
         self._next_due = self.now
 
     def expect(self, text: str, seconds: float, since: int = 0) -> None:
-        """Run until the terminal has received a text after its first `since` characters."""
+        """Run until the output contains a text after its first `since` characters."""
         self.run_until(lambda: text in self.output[since:], seconds)
 
     def command(self, line: str, seconds: float, prompt: str) -> str:
-        """Type a line; run until `prompt` comes after it; return what came before."""
+        """Type a line and run until `prompt`; return the output before it."""
         since = len(self.output)
         self.type(line + "\r")
         self.expect(prompt, seconds, since)
         return self.output[since:].rpartition(prompt)[0]
 
     def events(self) -> np.ndarray:
-        """What happened at the core's pins (passo.engine.EVENT) since the last call."""
+        """The pin events of the core (passo.engine.EVENT) since the last call."""
         self._drain()
         events, self._events = self._events, []
         return np.concatenate([np.empty(0, EVENT), *events])
 
     def hang(self) -> None:
-        """Fault: the processor continues in an endless loop; interrupts go on."""
+        """Inject a fault: the processor enters an endless loop; interrupts keep working."""
         self.write_memory(FLASH + HANG, BRANCH_TO_ITSELF)
         self.jump(FLASH + HANG)
 
     def jump(self, address: int) -> None:
-        """Fault: the processor continues somewhere else."""
+        """Inject a fault: the processor continues at an address."""
         self._c.passo_cpu_set_pc(self.cpu, address)
         self._asleep = False
 
@@ -160,12 +160,12 @@ class Machine(Processor):
         return cpu.now < until
 
     def _advance(self) -> None:
-        """Whatever is due; then the core catches up."""
+        """Process due events, then let the core catch up."""
         self._catch_up()
         self._follow(self.now)
 
     def _follow(self, tick: int) -> int:
-        """The core's time passes, but not beyond the beginning of a word that is on the wires."""
+        """Advance the core to a tick, or to the start of a word in flight; return the tick reached."""
         wires = self.wires
         limit = tick if self.spi.started is None else min(tick, self.spi.started)
         reached = wires.follow(limit)
@@ -229,14 +229,14 @@ class Machine(Processor):
             self._hard_fault()
 
     def _hard_fault(self) -> None:
-        """What the processor itself objects to."""
+        """Take a hard fault."""
         cpu = self.cpu
         what = STOP_MESSAGES.get(cpu.fault)
         self.faults.append(
             f"{self._place()}: " + (f"{what} 0x{cpu.fault_address:08X}" if what else f"exception {cpu.fault}")
         )
         if self.exceptions.running(self._c.passo_cpu_masks(cpu) & 2) <= -1:
-            self._locked_up = True  # a fault in the handler of faults: only a reset helps
+            self._locked_up = True  # a fault in the fault handler: until reset
         else:
             self._enter(HARD_FAULT, self._c.passo_cpu_masks(cpu))
 
@@ -251,7 +251,7 @@ class Machine(Processor):
             if self.cpu.now >= self._next_due:
                 self._catch_up()
                 self._reschedule()
-            return self.read(address, size)  # never makes anything happen earlier
+            return self.read(address, size)  # a read never schedules an earlier event
         except Exception as error:
             return self._fail(error)
 
@@ -265,7 +265,7 @@ class Machine(Processor):
             self._fail(error)
 
     def _catch_up(self) -> None:
-        """Peripherals do what is due; they are up to date before they are accessed."""
+        """Process the due events of peripherals, so that they are up to date before an access."""
         now = self.cpu.now
         for peripheral in self._timed:
             while peripheral.due <= now:
@@ -273,7 +273,7 @@ class Machine(Processor):
         self._next_due = min([p.due for p in self._timed])
 
     def _fail(self, error: Exception) -> int:
-        """Callbacks cannot raise: stop, and raise afterwards."""
+        """Record an exception of a callback, which cannot raise, and stop the processor."""
         if isinstance(error, MachineError):
             error = MachineError(f"{self._place()}: {error}")
         if self._error is None:
@@ -282,7 +282,7 @@ class Machine(Processor):
         return 0
 
     def read(self, address: int, size: int) -> int:
-        """A load, as processor and DMA do it."""
+        """Load by processor or DMA."""
         if address < 0x40000000:
             return int.from_bytes(self.read_memory(address, size), "little")
         peripheral = self._peripheral(address)
@@ -290,7 +290,7 @@ class Machine(Processor):
         return word >> 8 * (address & 3) & ((1 << 8 * size) - 1)
 
     def write(self, address: int, size: int, value: int) -> None:
-        """A store, as processor and DMA do it."""
+        """Store by processor or DMA."""
         if address < 0x40000000:
             self.write_memory(address, value.to_bytes(size, "little"))
             return
@@ -304,14 +304,14 @@ class Machine(Processor):
         peripheral.write(offset, value)
 
     def _peripheral(self, address: int) -> Peripheral:
-        """Who is at an address."""
+        """The peripheral at an address; raises MachineError."""
         peripheral = self._bus.find(address)
         if peripheral.name in ENABLES and not self.rcc.enabled(peripheral.name):
             raise MachineError(f"{peripheral.name} (0x{address:08X}) has no clock")
         return peripheral
 
     def _reschedule(self) -> None:
-        """Stop behind this instruction if something may have to be done then, or earlier than was known."""
+        """Stop after this instruction if an exception is pending, and at the next event."""
         cpu = self.cpu
         if self.exceptions.pending & self.exceptions.enabled:
             cpu.watch_masks = True
@@ -324,7 +324,7 @@ class Machine(Processor):
             cpu.deadline = cpu.now
 
     def set_clocks(self, clocks: Clocks) -> None:
-        """The system clock has changed."""
+        """Set the system clocks."""
         self.flash.check(clocks.hclk)
         self.clocks = clocks
         self.cpu.step = clocks.hclk
@@ -332,11 +332,11 @@ class Machine(Processor):
             peripheral.clock_changed()
 
     def request_reset(self, cause: str) -> None:
-        """The chip is reset behind this instruction."""
+        """Reset the chip after this instruction."""
         self._reset_cause = cause
 
     def _reset(self, cause: str) -> None:
-        """The core at the other end of the wires goes on."""
+        """Reset the chip; the Passo core is not affected."""
         self._reset_cause = None
         self.resets.append((self.now, cause))
         self.rcc.note_reset(cause)
@@ -348,7 +348,7 @@ class Machine(Processor):
         self._c.passo_cpu_reset(self.cpu)
 
     def dma_enabled(self, channel: int) -> None:
-        """Requests that are there are served now."""
+        """A DMA channel was enabled: serve waiting requests."""
         (self.spi if channel in (RECEIVE_CHANNEL, RECEIVE_CHANNEL + 1) else self.usart).dma_enabled()
 
     def receive(self, character: int, tick: int) -> None:
@@ -371,7 +371,7 @@ class Machine(Processor):
             self.wires.select(selected)
 
     def exchange(self, mosi: bytes, tick: int, half_period: int) -> bytes:
-        """SPI1 sends a word that began at a tick."""
+        """Exchange the word that SPI1 started to send at a tick."""
         port = self.ports["A"]
         for pin in (5, 7):
             if port.mode(pin) != (True, ALTERNATE_PUSH_PULL):
@@ -388,7 +388,7 @@ class Machine(Processor):
 
 
 def _pin(name: str) -> tuple[str, int]:
-    """PA4 is ("A", 4)."""
+    """Parse a pin name: PA4 is ("A", 4)."""
     if len(name) < 3 or name[0] != "P" or name[1] not in PORTS or not name[2:].isdigit():
         raise ValueError(f"no pin {name}")
     return name[1], int(name[2:])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Nested interrupts: which exception is taken when, and the registers of NVIC and system control block."""
+"""Nested interrupts: selection of exceptions, and the registers of NVIC and system control block."""
 
 from passo_stm32.bus import MachineError, Peripheral, Register
 
@@ -21,34 +21,34 @@ SET_ENABLE, CLEAR_ENABLE, SET_PENDING, CLEAR_PENDING, ACTIVE, PRIORITY = (
 
 
 class Exceptions:
-    """The state of all exceptions. Numbers are those of the processor: interrupt n is 16 + n."""
+    """State of all exceptions. Numbers are exception numbers: interrupt n is 16 + n."""
 
     def __init__(self) -> None:
         self.reset()
 
     def reset(self) -> None:
-        """Nothing is pending or active; interrupts are disabled."""
+        """Reset: nothing is pending or active; interrupts are disabled."""
         self.enabled = 1 << NMI | 1 << HARD_FAULT | 1 << SUPERVISOR_CALL | 1 << PEND_SV | 1 << SYS_TICK
         self.pending = 0
         self.lines = 0  # levels of the peripherals' interrupt requests
-        self.active: list[int] = []  # the innermost is last
+        self.active: list[int] = []  # innermost last
         self.priority = [0] * (INTERRUPT_0 + INTERRUPTS)
         self.group = 0  # PRIGROUP
 
     def set_line(self, interrupt: int, level: object) -> None:
-        """A peripheral's request: its rise, or its level at the end of the handler, makes it pending."""
+        """Set a request line: a rising edge, or a high level at the end of the handler, makes it pending."""
         bit = 1 << (INTERRUPT_0 + interrupt)
         if level and not self.lines & bit:
             self.pending |= bit
         self.lines = self.lines | bit if level else self.lines & ~bit
 
     def preemption(self, exception: int) -> int:
-        """The part of a priority that decides who interrupts whom; less is more urgent."""
+        """Preemption priority; lower values are more urgent."""
         fixed = FIXED.get(exception)
         return self.priority[exception] >> (self.group + 1) if fixed is None else fixed
 
     def running(self, masks: int) -> int:
-        """Preemption priority of what is executed now, with the processor's masks (passo_cpu_masks)."""
+        """Present preemption priority, including the processor's masks (passo_cpu_masks())."""
         levels = [self.preemption(exception) for exception in self.active]
         if masks & 1:
             levels.append(0)
@@ -59,7 +59,7 @@ class Exceptions:
         return min(levels, default=LOWEST)
 
     def next(self, masks: int) -> int | None:
-        """The exception that is taken now, if one is."""
+        """The exception to be taken now, or None."""
         waiting = self.pending & self.enabled
         if not waiting:
             return None
@@ -70,16 +70,16 @@ class Exceptions:
         return best if self.preemption(best) < self.running(masks) else None
 
     def wakes(self, masks: int) -> bool:
-        """Whether WFI ends: something would be taken if PRIMASK were 0."""
+        """Whether WFI ends: an exception would be taken if PRIMASK were 0."""
         return self.next(masks & ~1) is not None
 
     def enter(self, exception: int) -> None:
-        """The exception is taken."""
+        """Take an exception."""
         self.pending &= ~(1 << exception)
         self.active.append(exception)
 
     def leave(self) -> None:
-        """The innermost handler returns; a request that is still there is pending again."""
+        """Return from the innermost handler; a request line that is still high is pending again."""
         if not self.active:
             raise MachineError("exception return without an exception")
         self.pending |= self.lines & (1 << self.active.pop())
@@ -93,7 +93,7 @@ class Nvic(Peripheral):
     size = 0x400
 
     def reset(self) -> None:
-        """The exceptions are reset by the machine."""
+        """Nothing to do: the machine resets the exceptions."""
 
     def read(self, offset: int) -> int:
         """Words of bits or of four priorities."""
@@ -130,7 +130,7 @@ class Nvic(Peripheral):
             e.pending |= bits
         elif bank == CLEAR_PENDING:
             e.pending &= ~bits
-            e.pending |= e.lines & bits  # a level that is still there
+            e.pending |= e.lines & bits  # request lines that are still high
         else:
             raise MachineError(f"write to an unmodelled register: {self.name} + 0x{offset:03X}")
 
@@ -159,7 +159,7 @@ class SystemControl(Peripheral):
     )
 
     def read_icsr(self) -> int:
-        """Pending system exceptions, the active one and the most urgent pending one."""
+        """Pending system exceptions, the active exception and the most urgent pending one."""
         e = self.machine.exceptions
         waiting = e.pending & e.enabled
         order = [n for n in range(waiting.bit_length()) if waiting >> n & 1]
@@ -188,7 +188,7 @@ class SystemControl(Peripheral):
             e.pending |= 1 << NMI
 
     def write_aircr(self, value: int) -> None:
-        """Priority grouping and system reset, under their key."""
+        """Priority grouping and system reset, protected by a key."""
         if value >> 16 != VECTOR_KEY:
             raise MachineError("SCB.AIRCR is written without its key")
         self.machine.exceptions.group = value >> 8 & 7

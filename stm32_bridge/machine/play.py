@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Move files typed at the console of the firmware, and the same moves planned on the PC for the C model."""
+"""Moves typed at the console of the firmware, and the same moves planned on the PC for the C model."""
 
 import tempfile
 import time
@@ -20,22 +20,22 @@ from passo_stm32.lines import move_lines, pin_lines, read_toml
 
 @dataclass
 class Played:
-    """What came of one move."""
+    """Result of one move."""
 
     line: str
     plan: Plan
     made: Motion
     expected: Motion
-    seconds: float  # of the core's clock: 1 / clock_hz times the clocks
+    seconds: float  # planned length in simulated time
 
     @property
     def difference(self) -> str:
-        """Empty if every edge is where it is expected."""
+        """First difference between the pulses made and expected; empty if there is none."""
         return self.made.same_as(self.expected)
 
 
 def with_clock(path: Path, clock_hz: int, folder: Path) -> Path:
-    """A copy of a move file with another clock, and of the tables beside it."""
+    """Copy a move file with another clock, and the tables in its folder; return its path."""
     copy = folder / path.name
     lines = path.read_text(encoding="utf-8").splitlines()
     lines = [f"clock_hz = {clock_hz}" if line.startswith("clock_hz") else line for line in lines]
@@ -46,7 +46,7 @@ def with_clock(path: Path, clock_hz: int, folder: Path) -> Path:
 
 
 def on_the_model(file: MoveFile, number: int, plan: Plan, parameters: Parameters) -> Motion:
-    """The pulses of one move of a file when the PC's planner feeds the C model."""
+    """The pulses of one move, planned on the PC and executed on the C model."""
     one = replace(file, moves=(file.moves[number],))
     with model_engine(parameters, file.clock_hz) as engine:
         run = execute(one, [plan], engine)
@@ -75,7 +75,10 @@ def play(
     engine: str = "rtl",
     progress: Callable[[int], None] = lambda clocks: None,
 ) -> tuple[list[Played], Board, float]:
-    """All moves of a file, each typed when the one before has ended; the board, and how long it took."""
+    """Type all moves of a file, each after the previous one has ended.
+
+    Returns the moves, the board and the real time in seconds.
+    """
     began = time.monotonic()
     data = read_toml(path)
     with tempfile.TemporaryDirectory() as folder:
@@ -97,7 +100,7 @@ def play(
 
 
 def planned_clocks(path: Path, clock_hz: int) -> int:
-    """Length of all moves of a file."""
+    """Total length of the moves of a file in clocks."""
     with tempfile.TemporaryDirectory() as folder:
         file = read_moves(with_clock(path, clock_hz, Path(folder)))
     return sum(plan_move(move, clock_hz, parameters_for(file.axes)).clocks for move in file.moves)

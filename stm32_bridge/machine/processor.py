@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The processor as seen from outside: memories, instructions counted, calls measured."""
+"""The processor: memories, instruction counts, measurement of calls."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -12,7 +12,7 @@ from passo_stm32.elf import Elf
 
 FLASH, FLASH_SIZE = 0x08000000, 64 << 10
 RAM, RAM_SIZE = 0x20000000, 20 << 10
-UNTOUCHED = 0xA5  # what RAM holds when power comes
+UNTOUCHED = 0xA5  # contents of RAM at power-on
 REGISTERS, LINK_REGISTER = 17, 14  # of passo_cpu_registers()
 EXCEPTION_RETURN = 0xFFFFFFF0  # values of LR from here on
 Read = Callable[[Any, int, int], int]
@@ -20,7 +20,7 @@ Write = Callable[[Any, int, int, int], None]
 
 
 class Processor:
-    """sim/engine/passo_cpu.h with an ELF in its flash."""
+    """A processor (sim/engine/passo_cpu.h) with an ELF file in its flash."""
 
     def __init__(self, elf: Path, read: Read, write: Write):
         self.elf = Elf.read(elf)
@@ -30,7 +30,7 @@ class Processor:
 
     @property
     def instructions(self) -> int:
-        """Executed since power came."""
+        """Instructions executed since power-on."""
         return self.cpu.instructions
 
     def _make_processor(self, read: Read, write: Write) -> None:
@@ -50,7 +50,7 @@ class Processor:
             self.write_memory(address, data)
 
     def profile(self, on: bool = True) -> None:
-        """Count the instructions of each address from now on."""
+        """Start or stop counting the instructions of each address."""
         self.cpu.profile = self._start_profile() if on else ffi().NULL
 
     def _start_profile(self) -> Any:
@@ -67,20 +67,20 @@ class Processor:
         return dict(sorted(found.items(), key=lambda item: -item[1]))
 
     def measure(self, function: str, profile: bool = False) -> None:
-        """Count the instructions of the next call of a function, what it calls and interrupts included.
+        """Count the instructions of the next call of a function, including its callees and interrupts.
 
-        With `profile` they, and no others, are also counted by address.
+        With `profile` these instructions are also counted by address.
         """
         self._measured: list[int] = []
         self._profile_measured = profile
         self.cpu.breakpoint = self.elf.symbols[function]
 
     def measured(self) -> int | None:
-        """The result of `measure`, as soon as the function has returned."""
+        """The result of `measure`; None until the function has returned."""
         return self._measured[1] - self._measured[0] if len(self._measured) == 2 else None
 
     def stack_used(self) -> int:
-        """Bytes from the top of RAM down to the lowest ever written, a guard at the stack's end aside."""
+        """Bytes from the top of RAM to the lowest byte ever written, except for the guard word."""
         names = [name for name in ("ram_used_end", "_ebss") if name in self.elf.symbols]
         bottom = self.elf.symbols[names[0]] if names else RAM
         stack = self.read_memory(bottom, RAM + RAM_SIZE - bottom)
@@ -88,11 +88,11 @@ class Processor:
         return len(stack) - max(0, stack.rfind(gap) + len(gap))
 
     def read_memory(self, address: int, size: int) -> bytes:
-        """Bytes of flash or RAM."""
+        """Read bytes of flash or RAM."""
         return bytes(ffi().buffer(self._memory(address, size), size))
 
     def write_memory(self, address: int, data: bytes) -> None:
-        """Change bytes of flash or RAM; code that was executed already must not change."""
+        """Write bytes of flash or RAM; code that has been executed must not be changed."""
         ffi().memmove(self._memory(address, len(data)), data, len(data))
 
     def _memory(self, address: int, size: int) -> Any:
@@ -103,7 +103,7 @@ class Processor:
         return memory
 
     def _at_breakpoint(self) -> None:
-        """The measured function begins, or has returned."""
+        """The measured function starts, or has returned."""
         self._measured.append(self.instructions)
         if self._profile_measured:
             self.cpu.profile = ffi().NULL if len(self._measured) == 2 else self._start_profile()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Reset and clock control, and the flash's wait states, which go with it."""
+"""Reset and clock control, and the wait states of the flash."""
 
 from dataclasses import dataclass
 
@@ -34,7 +34,7 @@ class Clocks:
 
 
 class Rcc(Peripheral):
-    """Oscillators, PLL, prescalers, enable bits, cause of the reset."""
+    """Oscillators, PLL, prescalers, enable bits and reset cause."""
 
     name = "RCC"
     base = 0x40021000
@@ -52,7 +52,7 @@ class Rcc(Peripheral):
     )
 
     def reset(self) -> None:
-        """On the internal oscillator. The flags of resets stay."""
+        """Select the internal oscillator. The reset flags are kept."""
         flags = self.value.get("CSR", 0)
         super().reset()
         self.value["CSR"] = flags
@@ -60,16 +60,16 @@ class Rcc(Peripheral):
         self._apply()
 
     def note_reset(self, cause: str) -> None:
-        """Remember why; every reset pulls the pin as well."""
+        """Set the flag of a reset cause; every reset also pulls the pin."""
         self.value["CSR"] |= 1 << CAUSES[cause] | 1 << PIN_RESET
 
     def enabled(self, name: str) -> bool:
-        """Whether a peripheral has its clock."""
+        """Whether the clock of a peripheral is enabled."""
         register, bit = ENABLES.get(name, ("", 0))
         return not register or bool(self.bit(register, bit))
 
     def write_cr(self, value: int) -> None:
-        """An oscillator is ready some time after it was switched on."""
+        """Switch oscillators on and off; they are ready after a delay."""
         source = self.value["CFGR"] & 3
         self.value["CR"] = value
         for on, ready, time in ((HSEON, HSERDY, CRYSTAL_START), (PLLON, PLLRDY, PLL_LOCK)):
@@ -128,20 +128,20 @@ class Rcc(Peripheral):
                 self.machine.peripherals[name].reset()
 
     def write_csr(self, value: int) -> None:
-        """RMVF clears the flags of resets."""
+        """RMVF clears the reset flags."""
         if value >> 24 & 1:
             self.value["CSR"] = 0
 
 
 class Flash(Peripheral):
-    """Wait states. Programming is not modelled."""
+    """Wait states only; programming is not modelled."""
 
     name = "FLASH"
     base = 0x40022000
     registers = (Register("ACR", 0x00, 0x1F, 0x30),)
 
     def check(self, hclk: int) -> None:
-        """One wait state above 24 MHz, two above 48."""
+        """Check the wait states: one above 24 MHz, two above 48 MHz."""
         hz = TICKS_PER_SECOND // hclk
         if self.value["ACR"] & 7 < (hz > 24_000_000) + (hz > 48_000_000):
             raise MachineError(f"flash has too few wait states for {hz} Hz")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""SPI1 as a master in mode 0, full duplex, 8 or 16 bits, by program, interrupt or DMA."""
+"""SPI1 as a full-duplex master in mode 0, 8 or 16 bits, with polling, interrupts or DMA."""
 
 from passo_stm32.bus import NEVER, MachineError, Peripheral, Register
 
@@ -10,9 +10,9 @@ RECEIVED, EMPTY, OVERRUN, BUSY = 0, 1, 6, 7
 
 
 class Spi(Peripheral):
-    """A word is on the wires from `started` to `due`; it meets the other end when it is over.
+    """A word is in flight from `started` to `due`; it is exchanged at its end.
 
-    Words that DMA sends and receives one after another are exchanged together, when the last of them is over.
+    Consecutive words that DMA sends and receives are exchanged together, at the end of the last one.
     """
 
     name = "SPI1"
@@ -25,7 +25,7 @@ class Spi(Peripheral):
     )
 
     def reset(self) -> None:
-        """Off."""
+        """Disable."""
         super().reset()
         self.started: int | None = None
         self._shifting = self._waiting = self._received = 0
@@ -33,7 +33,7 @@ class Spi(Peripheral):
         self._status_read = False
 
     def write_cr1(self, value: int) -> None:
-        """Check what is modelled."""
+        """Check that the configuration is modelled."""
         if value >> ENABLE & 1:
             if (
                 not value >> MASTER & 1
@@ -48,12 +48,12 @@ class Spi(Peripheral):
         self.value["CR1"] = value
 
     def write_cr2(self, value: int) -> None:
-        """DMA and interrupts."""
+        """Enable DMA and interrupts."""
         self.value["CR2"] = value
         self._requests()
 
     def read_dr(self) -> int:
-        """What was received."""
+        """Read the received word."""
         self.set_bit("SR", RECEIVED, False)
         if self._status_read:
             self.set_bit("SR", OVERRUN, False)
@@ -61,12 +61,12 @@ class Spi(Peripheral):
         return self._received
 
     def read_sr(self) -> int:
-        """Flags."""
+        """Read the flags."""
         self._status_read = bool(self.bit("SR", OVERRUN))
         return self.value["SR"]
 
     def write_dr(self, value: int) -> None:
-        """Send one word more."""
+        """Send a word."""
         if not self.bit("CR1", ENABLE):
             raise MachineError("SPI1.DR is written while SPI1 is disabled")
         if not self.bit("SR", EMPTY):
@@ -79,17 +79,17 @@ class Spi(Peripheral):
 
     @property
     def half_period(self) -> int:
-        """Ticks that SCLK stays at each level."""
+        """Ticks per SCLK level."""
         return self.machine.clocks.pclk2 << (self.value["CR1"] >> 3 & 7)
 
     @property
     def bits(self) -> int:
-        """Of a word."""
+        """Bits per word."""
         return 16 if self.bit("CR1", WIDE) else 8
 
     @property
     def _duration(self) -> int:
-        """Ticks of a word."""
+        """Ticks per word."""
         return 2 * self.bits * self.half_period
 
     def _load(self, now: int) -> None:
@@ -101,7 +101,7 @@ class Spi(Peripheral):
         self.set_bit("SR", BUSY, True)
 
     def _extend(self) -> None:
-        """Go on to the end of what DMA sends, if it receives as much."""
+        """Extend the transfer to all words that DMA sends, if it receives as many."""
         if self.started is None or self.value["CR2"] & 3 != 3 or self.bit("SR", RECEIVED):
             return
         dma, size = self.machine.dma, self.bits // 8
@@ -113,7 +113,7 @@ class Spi(Peripheral):
             self.due = self.started + self._burst * self._duration
 
     def advance(self, now: int) -> None:
-        """A word or a burst is over."""
+        """A word or a burst has ended."""
         end, size, started = self.due, self.bits // 8, self.started
         mask = (1 << self.bits) - 1
         sent = (self._shifting & mask).to_bytes(size, "big")
@@ -140,19 +140,19 @@ class Spi(Peripheral):
             self.set_bit("SR", RECEIVED, True)
 
     def _fetch(self, count: int, size: int) -> bytes:
-        """The next words of the block that DMA sends, as they go out."""
+        """The next words that DMA sends, in the order on the wire."""
         if not count:
             return b""
         address = self.machine.dma.serve_block(TRANSMIT_CHANNEL, count)
         return _swap(self.machine.read_memory(address, count * size), size)
 
     def _store(self, received: bytes, size: int) -> None:
-        """Words for the block that DMA receives."""
+        """Store words that DMA receives."""
         address = self.machine.dma.serve_block(RECEIVE_CHANNEL, len(received) // size)
         self.machine.write_memory(address, _swap(received, size))
 
     def _requests(self) -> None:
-        """Ask DMA and processor for what is needed."""
+        """Raise DMA and interrupt requests."""
         dma = self.machine.dma
         if self.bit("CR2", RECEIVE_DMA) and self.bit("SR", RECEIVED):
             dma.request(RECEIVE_CHANNEL)
@@ -162,7 +162,7 @@ class Spi(Peripheral):
         self._interrupt()
 
     def dma_enabled(self) -> None:
-        """A channel was enabled: it may serve a request that is there."""
+        """A DMA channel was enabled: it may serve a waiting request."""
         self._requests()
 
     def _interrupt(self) -> None:
@@ -173,5 +173,5 @@ class Spi(Peripheral):
 
 
 def _swap(data: bytes, size: int) -> bytes:
-    """Memory has the low byte first, the wire the high one."""
+    """Swap bytes between memory (low byte first) and wire (high byte first)."""
     return data if size == 1 else b"".join(data[i : i + 2][::-1] for i in range(0, len(data), 2))

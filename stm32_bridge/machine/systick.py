@@ -21,7 +21,7 @@ class SysTick(Peripheral):
     )
 
     def reset(self) -> None:
-        """Off."""
+        """Disable."""
         super().reset()
         self._value = 0  # while it is off
 
@@ -31,14 +31,14 @@ class SysTick(Peripheral):
         return self.machine.clocks.hclk * (1 if self.bit("CTRL", SOURCE) else 8)
 
     def _count(self) -> int:
-        """The counter. It shows 0 for the one count before it is loaded again."""
+        """Counter value; 0 for one count before it is reloaded."""
         if self.due == NEVER:
             return self._value
         left = -(-(self.due - self.machine.now) // self._step)
         return 0 if left > self.value["LOAD"] else max(left, 0)
 
     def _start(self, count: int) -> None:
-        """Count down from `count`; 0 is loaded first."""
+        """Count down from `count`; 0 is reloaded first."""
         self._value = count
         running = self.bit("CTRL", ENABLE) and (self.value["LOAD"] or count)
         self.due = self.machine.now + (count or self.value["LOAD"] + 1) * self._step if running else NEVER
@@ -52,18 +52,18 @@ class SysTick(Peripheral):
         self._value = 0
 
     def clock_changed(self) -> None:
-        """Go on from the present count at the new speed; the fraction of a count is lost."""
+        """Continue from the present count with the new clock; the fraction of a count is lost."""
         if self.due != NEVER:
             self._start(min(self.value["LOAD"], max(0, self.due - self.machine.now) // self._step))
 
     def read_ctrl(self) -> int:
-        """Reading clears the flag."""
+        """Reading clears COUNTFLAG."""
         value = self.value["CTRL"]
         self.set_bit("CTRL", COUNTED, False)
         return value
 
     def write_ctrl(self, value: int) -> None:
-        """Start or stop."""
+        """Start or stop the counter."""
         count = self._count()
         self.value["CTRL"] = value
         self._start(count)

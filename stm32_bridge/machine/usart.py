@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""USART1, 8N1, with the terminal at its other end."""
+"""USART1, 8N1, connected to the terminal."""
 
 from collections import deque
 
@@ -10,11 +10,11 @@ FRAMING, OVERRUN, RECEIVED, COMPLETE, EMPTY = 1, 3, 5, 6, 7
 RECEIVER, TRANSMITTER, ENABLE = 2, 3, 13
 RECEIVE_DMA, TRANSMIT_DMA = 6, 7
 BITS = 10  # of a character, with start and stop bit
-TOLERANCE = 0.04  # of the baud rate, above which nothing is understood
+TOLERANCE = 0.04  # largest relative difference between the baud rates
 
 
 class Usart(Peripheral):
-    """Characters take their time in both directions."""
+    """Characters take ten bit times in both directions."""
 
     name = "USART1"
     base = 0x40013800
@@ -29,7 +29,7 @@ class Usart(Peripheral):
     )
 
     def reset(self) -> None:
-        """Off. What the terminal has yet to send is not touched."""
+        """Disable. Characters that the terminal has still to send are kept."""
         super().reset()
         self._incoming: deque[tuple[int, int]] = getattr(self, "_incoming", deque())  # end, character
         self._sending: int | None = None
@@ -39,7 +39,7 @@ class Usart(Peripheral):
         self._schedule()
 
     def type(self, text: bytes, baud: int, now: int) -> None:
-        """The terminal sends characters one after another."""
+        """Let the terminal send characters."""
         at = max([now, *(end for end, _ in list(self._incoming)[-1:])])
         for i, character in enumerate(text, 1):
             self._incoming.append((at + i * BITS * TICKS_PER_SECOND // baud, character))
@@ -52,7 +52,7 @@ class Usart(Peripheral):
 
     @property
     def baud(self) -> float:
-        """What BRR says."""
+        """The baud rate set in BRR."""
         return TICKS_PER_SECOND / (self.machine.clocks.pclk2 * max(1, self.value["BRR"]))
 
     def _schedule(self) -> None:
@@ -62,7 +62,7 @@ class Usart(Peripheral):
         return abs(self.baud / self.machine.baud - 1) <= TOLERANCE
 
     def advance(self, now: int) -> None:
-        """A character is complete, in one direction or the other."""
+        """A character has been sent or received."""
         if self._sent_at <= now:
             end = self._sent_at
             self.machine.receive(self._sending if self._matches() else 0xFF, end)
@@ -94,7 +94,7 @@ class Usart(Peripheral):
         self._schedule()
 
     def read_sr(self) -> int:
-        """Flags; errors are cleared by reading DR next."""
+        """Read the flags; reading DR next clears the error flags."""
         self._status_read = self.value["SR"]
         return self.value["SR"]
 
@@ -106,7 +106,7 @@ class Usart(Peripheral):
         self._requests()
 
     def read_dr(self) -> int:
-        """The character received."""
+        """Read the received character."""
         self.set_bit("SR", RECEIVED, False)
         for bit in (OVERRUN, FRAMING):
             if self._status_read >> bit & 1:
@@ -129,7 +129,7 @@ class Usart(Peripheral):
         self._requests()
 
     def write_brr(self, value: int) -> None:
-        """Baud rate; not in the middle of a character."""
+        """Set the baud rate; not while a character is being sent."""
         if self._sending is not None:
             raise MachineError("USART1.BRR is written while a character is being sent")
         self.value["BRR"] = value
@@ -140,12 +140,12 @@ class Usart(Peripheral):
         self._requests()
 
     def write_cr3(self, value: int) -> None:
-        """DMA."""
+        """Enable DMA."""
         self.value["CR3"] = value
         self._requests()
 
     def dma_enabled(self) -> None:
-        """A channel was enabled."""
+        """A DMA channel was enabled."""
         self._requests()
 
     def _requests(self) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The wires between microcontroller and core, and what can be wrong with them."""
+"""The wires between microcontroller and core, with fault injection."""
 
 import random
 from typing import Protocol
@@ -9,44 +9,44 @@ from passo.frame import CRC_START, DATA, crc
 
 
 class CorePins(Protocol):
-    """The core's end: `passo.engine.Engine`, or a simulator. Ticks count from the reset of the core."""
+    """The core's end: `passo.engine.Engine`, or a simulator. Ticks count from the core reset."""
 
     @property
     def irq(self) -> int:
         """Levels of the irq pins."""
 
     def follow(self, tick: int) -> int:
-        """Let time pass up to a tick, or less: until irq changes; return the tick reached."""
+        """Advance to a tick, or until irq changes; return the tick reached."""
 
     def select(self, selected: bool) -> None:
-        """Chip select falls or rises now."""
+        """Assert or release chip select now."""
 
     def exchange(self, mosi: bytes, half_period: int) -> bytes:
-        """SPI mode 0 from now on; SCLK stays `half_period` ticks at each level."""
+        """Exchange bytes in SPI mode 0; each SCLK level lasts `half_period` ticks."""
 
 
 class Wires:
-    """Carries bytes; faults are injected by setting the attributes. Without a core MISO floats."""
+    """Carries bytes and injects faults according to its attributes. Without a core MISO floats."""
 
     def __init__(self, core: CorePins | None, seed: int = 1):
         self.core = core
-        self.floating = 1  # level of MISO when nobody drives it
-        self.flip_rate = 0.0  # of the bits, in both directions
-        self.stuck: int | None = None  # level of MISO
-        self.pretend: dict[int, int] = {}  # what registers seem to hold: a core of another kind
+        self.floating = 1  # level of an undriven MISO
+        self.flip_rate = 0.0  # bit error rate in both directions
+        self.stuck: int | None = None  # level of a stuck MISO
+        self.pretend: dict[int, int] = {}  # faked register values by address
         self.flipped = 0
         self.carried = 0  # bytes
         self.frames = 0
         self._random = random.Random(seed)
-        self._mosi = self._miso = b""  # of this chip select, unspoilt
+        self._mosi = self._miso = b""  # of this chip select, without faults
 
     @property
     def irq(self) -> int:
-        """Level of the interrupt pin: that of any channel."""
+        """Level of the interrupt pin: OR over all channels."""
         return int(self.core is not None and self.core.irq != 0)
 
     def follow(self, tick: int) -> int:
-        """Let the core's time pass; return the tick reached."""
+        """Advance the core; return the tick reached."""
         return tick if self.core is None else self.core.follow(tick)
 
     def select(self, selected: bool) -> None:
@@ -58,7 +58,7 @@ class Wires:
             self.core.select(selected)
 
     def exchange(self, mosi: bytes, half_period: int) -> bytes:
-        """Some bytes of a frame."""
+        """Exchange bytes of a frame."""
         self.carried += len(mosi)
         if self.core is None:
             miso = (b"\xff" if self.floating else b"\0") * len(mosi)
@@ -83,7 +83,7 @@ class Wires:
         return (int.from_bytes(data, "big") ^ noise).to_bytes(len(data), "big")
 
     def _pretended(self, length: int) -> bytes:
-        """The last bytes of the reply as a core with other contents of `pretend` would have sent them."""
+        """The last bytes of the reply, with the register values of `pretend` and a matching CRC."""
         begin = len(self._mosi) - length
         header = int.from_bytes(self._mosi[:4], "big")
         count, address = header >> 12 & 0xFF, header & 0xFFF

@@ -1,36 +1,37 @@
-# Timing of Passo for tools that read SDC, such as Quartus, Efinity, Radiant or Gowin's. Vivado has passo.xdc.
+# Timing constraints of Passo for tools that read SDC, such as Quartus, Efinity, Radiant or Gowin's. For Vivado use
+# passo.xdc.
 #
-# Ports have the names that the core gives them. Cells are found wherever the core is in the hierarchy, and whatever
-# a tool appends to the name of a register. Give the figures of your design here; all are ns. docs/integration.md
-# tells what is behind each line.
+# Ports have the names of the core. Cell patterns match at any level of the hierarchy and with any suffix that a tool
+# adds to register names. Set the values of your design here, in ns. docs/integration.md explains each line.
 
 set clk_period   10.0 ;# of clk
 set sclk_period  40.0 ;# of the fastest SCLK: at least four times that of clk
-set mosi_delay   10.0 ;# host and cable: from the falling edge of SCLK at the FPGA until MOSI is there
-set miso_delay   10.0 ;# cable and set-up time of the host: MISO leaves the FPGA so long before SCLK rises
+set mosi_delay   10.0 ;# host and cable: from the falling edge of SCLK at the FPGA until MOSI is valid
+set miso_delay   10.0 ;# cable and setup time of the host: from MISO at the FPGA to the rising edge of SCLK
 
-# Leave the first one out if a PLL makes clk, and write the name of its clock below instead of clk.
+# If a PLL generates clk, omit the first line and use the name of its clock instead of clk below.
 create_clock -name clk -period $clk_period [get_ports clk]
 create_clock -name spi_sclk -period $sclk_period [get_ports spi_sclk]
 
-# SPI mode 0: both sides change their data after the falling edge of SCLK, and take them with the rising one.
+# SPI mode 0: both sides change data after the falling edge of SCLK and sample with the rising edge.
 set_input_delay -max $mosi_delay -clock spi_sclk -clock_fall [get_ports spi_mosi]
 set_input_delay -min 0 -clock spi_sclk -clock_fall [get_ports spi_mosi]
 set_output_delay -max $miso_delay -clock spi_sclk [get_ports spi_miso]
 set_output_delay -min 0 -clock spi_sclk [get_ports spi_miso]
 
-# Asynchronous: chip select moves while SCLK rests, and has a synchroniser for clk; so has sync.
+# Asynchronous: chip select changes while SCLK is idle and has a synchronizer for clk, as has sync.
 set_false_path -from [get_ports {spi_cs_n sync}]
 
-# SCLK to clk: half_toggle announces half and half_low, which stay; they have the time its synchroniser takes.
+# SCLK to clk: half_toggle signals that half and half_low are stable; they have the latency of its
+# synchronizer.
 set_max_delay $clk_period -from [get_cells {*u_spi*half*}] -to [get_clocks clk]
 
-# clk to SCLK: the reply stands long before the falling edge that takes it into shift and spi_miso.
+# clk to SCLK: the reply is stable long before the falling edge that loads it into shift and spi_miso.
 set_max_delay $clk_period -from [get_cells {*u_reply*word*}] -to [get_clocks spi_sclk]
 
-# Nothing of this can come too early.
+# No hold requirements between the domains.
 set_false_path -hold -from [get_clocks clk] -to [get_clocks spi_sclk]
 set_false_path -hold -from [get_clocks spi_sclk] -to [get_clocks clk]
 
-# All pins of the drives are late by about the same, which no drive notices.
+# The drive pins are asynchronous to their receivers.
 set_false_path -to [get_ports {step* dir* enable* running* irq}]

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The cells of an ECP5 that a board needs.
+// ECP5 cells for the board top.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
 
-// clk = oscillator / CLKI_DIV * CLKFB_DIV; inside the PLL runs CLKOP_DIV times faster.
+// clk = oscillator / CLKI_DIV * CLKFB_DIV; VCO = clk * CLKOP_DIV
 module passo_pll #(
   parameter CLKI_DIV  = 1,
   parameter CLKFB_DIV = 1,
@@ -40,7 +40,7 @@ module passo_pll #(
 
 endmodule
 
-// nextpnr takes a clock to the clock network by itself.
+// nextpnr promotes a clock to the clock network by itself.
 module passo_clock_pin (
   input  wire pin,
   output wire clk
@@ -50,7 +50,7 @@ module passo_clock_pin (
 
 endmodule
 
-// Driven while enabled.
+// Tristate output.
 module passo_tristate_pin (
   input  wire data,
   input  wire enable,

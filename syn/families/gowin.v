@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The cells of a GW1NR-9C that a board needs.
+// GW1NR-9C cells for the board top.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
 
-// clk = oscillator / (IDIV_SEL + 1) * (FBDIV_SEL + 1); inside the PLL runs ODIV_SEL times faster.
+// clk = oscillator / (IDIV_SEL + 1) * (FBDIV_SEL + 1); VCO = clk * ODIV_SEL
 module passo_pll #(
   parameter FCLKIN    = "27",  // MHz of the oscillator
   parameter IDIV_SEL  = 0,
@@ -39,7 +39,7 @@ module passo_pll #(
 
 endmodule
 
-// From the pin to the clock network.
+// Input buffer onto the clock network.
 module passo_clock_pin (
   input  wire pin,
   output wire clk
@@ -52,7 +52,7 @@ module passo_clock_pin (
 
 endmodule
 
-// Driven while enabled.
+// Tristate output.
 module passo_tristate_pin (
   input  wire data,
   input  wire enable,

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The cells of an iCE40 that a board needs.
+// iCE40 cells for the board top.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
 
 // clk = oscillator / (DIVR + 1) * (DIVF + 1) / 2^DIVQ
 module passo_pll #(
-  parameter PAD          = 0,  // whether the oscillator is at the pin that belongs to the PLL
+  parameter PAD          = 0,  // 1: the oscillator is at the dedicated pin of the PLL
   parameter DIVR         = 0,
   parameter DIVF         = 0,
   parameter DIVQ         = 0,
@@ -51,7 +51,7 @@ module passo_pll #(
 
 endmodule
 
-// From the pad straight to the clock network.
+// Input buffer onto the clock network.
 module passo_clock_pin (
   input  wire pin,
   output wire clk
@@ -66,7 +66,7 @@ module passo_clock_pin (
 
 endmodule
 
-// Driven while enabled.
+// Tristate output.
 module passo_tristate_pin (
   input  wire data,
   input  wire enable,

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""From Verilog to bitstreams, netlists and figures, with the YoWASP builds of Yosys and nextpnr."""
+"""FPGA flow: bitstreams, netlists and reports, with the YoWASP builds of Yosys and nextpnr."""

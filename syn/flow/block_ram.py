@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Moves the registers behind the block RAMs of an ECP5 into them; synthesis leaves them outside.
+"""Packs output registers into the block RAMs of an ECP5, which synthesis does not do.
 
-The netlist does the same as before, clock by clock. A block RAM (DP16KD) has a register for all outputs of a
-port, with a clock enable (OCE). It has no reset but the RAM's, and begins as 0. So registers stay where they
-are unless they take all outputs in use, and nobody else does; have the clock of the port and one enable; and
-have neither a reset nor 1 as their initial value.
+The netlist stays cycle-exact. A block RAM (DP16KD) has an output register per port with a clock enable (OCE).
+It has no reset other than that of the RAM, and its initial value is 0. Registers are therefore packed only if
+they are the only load of all used outputs, have the clock of the port and a common enable, and have neither a
+reset nor an initial value of 1.
 """
 
 import json
@@ -14,19 +14,19 @@ from pathlib import Path
 from typing import Any
 
 Cell = dict[str, Any]
-Users = Mapping[int | str, list[tuple[str, str]]]  # of a net: cells and their ports, both "" for the module's
+Users = Mapping[int | str, list[tuple[str, str]]]  # by net: loads as (cell, port); ("", "") is a module port
 
-# What a register has to be. Without these parameters it is that, too.
+# Required parameters of a register; these are also the defaults.
 PLAIN = {"LSRMUX": "LSR", "LSRMODE": "LSR", "REGSET": "RESET"}
 
 
 def move_registers(netlist: dict[str, Any]) -> int:
-    """Change a netlist (Yosys' JSON), return how many registers were moved."""
+    """Modify a netlist (Yosys JSON); return the number of registers packed."""
     return sum(_move(module) for module in netlist["modules"].values())
 
 
 def move_registers_of(path: Path) -> int:
-    """Change the netlist at `path`, return how many registers were moved."""
+    """Modify the netlist file at `path`; return the number of registers packed."""
     netlist = json.loads(path.read_text())
     moved = move_registers(netlist)
     path.write_text(json.dumps(netlist))
@@ -67,9 +67,9 @@ def _users(module: dict[str, Any]) -> Users:
 
 
 def _ports(ram: Cell) -> Iterator[tuple[str, str]]:
-    """Ports with registers that are free and not reset, and the sides where their outputs are."""
+    """Ports whose output register is unused and not reset, and the sides of their outputs."""
     parameters, connections = ram["parameters"], ram["connections"]
-    # with words of 36 bits A writes and B reads: all outputs have the clock and the enable of B
+    # with 36-bit words A writes and B reads: all outputs have the clock and the enable of B
     wide = int(parameters["DATA_WIDTH_A"], 2) == 36
     for port, sides in [("B", "AB")] if wide else [("A", "A"), ("B", "B")]:
         free = all(parameters[f"REGMODE_{side}"] == "NOREG" for side in sides)
@@ -78,7 +78,7 @@ def _ports(ram: Cell) -> Iterator[tuple[str, str]]:
 
 
 def _registers(ram: Cell, port: str, sides: str, cells: Mapping[str, Cell], users: Users) -> dict[str, str]:
-    """The register behind each output in use; none if one of them has something else behind it."""
+    """The register at each used output; empty if one of them has another load."""
     found = {}
     for output, bits in ram["connections"].items():
         if not output.startswith(tuple(f"DO{side}" for side in sides)):
@@ -95,7 +95,7 @@ def _registers(ram: Cell, port: str, sides: str, cells: Mapping[str, Cell], user
 
 
 def _fits(cell: Cell, ram: Cell, port: str) -> bool:
-    """Whether this is a register with the clock of the port, and without a reset or an initial 1."""
+    """Whether a cell is a register with the clock of the port, without reset and initial value 1."""
     parameters, of_ram = cell["parameters"], ram["parameters"]
     return (
         cell["type"] == "TRELLIS_FF"
@@ -108,6 +108,6 @@ def _fits(cell: Cell, ram: Cell, port: str) -> bool:
 
 
 def _enable(register: Cell) -> tuple[int | str, bool]:
-    """The enable, a net or a constant, and whether it is inverted."""
+    """The enable of a register, a net or a constant, and whether it is inverted."""
     mux = register["parameters"].get("CEMUX", "1").strip()  # Yosys writes "1 ", which cannot be a number
     return (mux, False) if mux in ("0", "1") else (register["connections"]["CE"][0], mux == "INV")

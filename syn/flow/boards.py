@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The boards: a folder in syn/ with a table board.toml for each. docs/fpga.md tells what a table has."""
+"""The boards: each is a folder in syn/ with a table board.toml; see docs/fpga.md."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -14,13 +14,13 @@ TABLE = "board.toml"
 
 OSCILLATOR = "oscillator"
 NEEDED = ("spi_sclk", "spi_mosi", "spi_cs_n", "spi_miso", "sync")
-OPTIONAL = ("running", "irq", "led")  # outputs that a board may do without, or have inverted
+OPTIONAL = ("running", "irq", "led")  # outputs that a board may omit or invert
 OF_AXIS = ("step", "dir", "enable")
 
 
 @dataclass(frozen=True)
 class Pin:
-    """Where a port is; `io_type` and `options` are words of the file of pins."""
+    """Pin of a port; `io_type` and `options` are copied to the pin file."""
 
     pin: str
     pull: str = ""  # up, down or none
@@ -31,32 +31,32 @@ class Pin:
 
 @dataclass(frozen=True)
 class Board:
-    """What a table says; `reset` has the levels that differ from those of passo_board.v, by axis."""
+    """Contents of a board.toml; `reset` has the pin levels per axis that differ from passo_board.v."""
 
     name: str
     title: str
     device: Device
-    load: str  # the command that takes a bitstream to the board
+    load: str  # command that loads a bitstream
     pack: tuple[str, ...]  # options of the packer
     oscillator_mhz: float
     clock_mhz: float
     pll_kind: str
-    pins: Mapping[str, Pin]  # but for those of the axes
+    pins: Mapping[str, Pin]  # except those of the axes
     axis_pins: tuple[Mapping[str, Pin], ...]
     reset: Mapping[str, tuple[int, ...]]
 
     @property
     def axes(self) -> int:
-        """How many it has pins for."""
+        """Number of axes that it has pins for."""
         return len(self.axis_pins)
 
     @property
     def left_out(self) -> tuple[str, ...]:
-        """Ports that it has no pin for."""
+        """Ports without a pin."""
         return tuple(port for port in OPTIONAL if port not in self.pins)
 
     def ports(self, axes: int | None = None) -> dict[str, Pin]:
-        """The pin of each port, bit by bit. A port of one bit has no index."""
+        """The pin of each port bit. A port of one bit has no index."""
         chosen = self._axes(axes)
         of_axes = {
             f"{port}[{axis}]" if chosen > 1 else port: pin
@@ -66,7 +66,7 @@ class Board:
         return {**self.pins, **of_axes}
 
     def pll(self, mhz: float | None = None) -> Pll:
-        """The PLL for its own clock or another one."""
+        """PLL settings for the board's clock, or for `mhz`."""
         if mhz is not None:
             return dividers(self.device.family, self.oscillator_mhz, mhz)
         try:
@@ -75,7 +75,7 @@ class Board:
             raise TableError(self.name, "clock.mhz", str(error)) from None
 
     def parameters(self, axes: int | None = None, mhz: float | None = None) -> dict[str, int]:
-        """The parameters of the top."""
+        """Parameters of the top module."""
         chosen = self._axes(axes)
         inverted = [port for port in OPTIONAL if port in self.pins and self.pins[port].inverted]
         return {
@@ -98,17 +98,17 @@ class Board:
 
 
 def names() -> list[str]:
-    """Of all boards."""
+    """Names of all boards."""
     return [path.parent.name for path in sorted(FOLDER.glob(f"*/{TABLE}"))]
 
 
 def boards() -> dict[str, Board]:
-    """All boards by name; TableError if a table is bad."""
+    """All boards by name; raises TableError."""
     return {name: board(name) for name in names()}
 
 
 def board(name: str) -> Board:
-    """One board; TableError if its table is bad, BoardError names those that are there."""
+    """A board by name; raises TableError, or BoardError if there is no such board."""
     if name not in names():
         raise BoardError(f"there is no board '{name}'; choose one of {', '.join(names())}")
     table = Table.read(name, FOLDER / name / TABLE)
@@ -149,7 +149,7 @@ def board(name: str) -> Board:
 
 
 def _device(table: Table, title: str) -> Device:
-    """One of devices.py, or a relative of one of them that the table describes."""
+    """A device of devices.py, or a variant of one that the table describes."""
     if not table.is_table("device"):
         return DEVICES[table.choice("device", tuple(DEVICES))]
     facts = table.table("device")
@@ -165,7 +165,7 @@ def _device(table: Table, title: str) -> Device:
 
 
 def _pin(table: Table, key: str, family: Family, invertible: bool = False) -> Pin:
-    """Its name or number, or a table with that and more."""
+    """Read a pin: its name or number, or a table with further properties."""
     if not table.is_table(key):
         return Pin(table.pin(key), io_type=family.io_type)
     facts = table.table(key)

@@ -1,21 +1,21 @@
 # SPDX-License-Identifier: MIT
-"""What the tools do not like although they go on and end well: no board is made with any of it."""
+"""Warnings of the tools that are treated as errors: no bitstream is made with any of them."""
 
 import re
 from collections.abc import Collection, Mapping
 from importlib.resources import as_file, files
 
-# Yosys and nextpnr say "Warning", nextpnr also of clocks that are missed, which are judged by their figures.
-# As mere information it says that a file of pins names what is not there; the memory in the package
-# of a GW1NR has pins that no such file names.
+# Yosys and nextpnr print "Warning". nextpnr's warnings of missed clocks are excluded: the figures are
+# checked. It reports unknown names in a pin file only as information; the pins of the memory in the package
+# of a GW1NR are never in such a file.
 _COMPLAINT = re.compile(
     r"^(?:(?:\S+:\d+: )?(?:Warning: (?!Max frequency for clock)|ERROR: ).*"
     r"|Info: (?:Cell|Net) (?!I?O_psram_).* not found)$",
     re.M,
 )
 
-# Functions of the pins of a Gowin that serve its configuration until the packer is told to make them free.
-# Those of the other ways to configure it (D0, DIN, WE_N ...) end with the configuration.
+# Configuration functions of Gowin pins that stay active unless the packer releases them. Those of the other
+# configuration modes (D0, DIN, WE_N, ...) end with the configuration.
 _RELEASES = {
     **dict.fromkeys(("SCLK", "SSPI_CS_N", "SI", "SO", "CLKHOLD_N"), "--sspi_as_gpio"),
     **dict.fromkeys(("MCLK", "MCS_N", "MI", "MO", "FASTRD_N"), "--mspi_as_gpio"),
@@ -25,17 +25,17 @@ _RELEASES = {
 
 
 def complaints(log: str) -> tuple[str, ...]:
-    """Of Yosys or nextpnr, each once."""
+    """Warnings in a log of Yosys or nextpnr, without duplicates."""
     return tuple(dict.fromkeys(_COMPLAINT.findall(log)))
 
 
 def packer_complaints(log: str) -> tuple[str, ...]:
-    """Of a packer, which has nothing to say when all is well."""
+    """Messages of a packer, which prints nothing on success."""
     return tuple(dict.fromkeys(line for line in log.splitlines() if line.strip()))
 
 
 def gowin_functions() -> dict[str, list[str]]:
-    """The functions of each pin of a GW1NR-9C in QFN88P, beside that of a plain pin."""
+    """The special functions of each pin of a GW1NR-9C in QFN88P."""
     from apycula.chipdb import load_chipdb
 
     with as_file(files("apycula") / "GW1N-9C.msgpack.xz") as path:
@@ -46,7 +46,7 @@ def gowin_functions() -> dict[str, list[str]]:
 def held_pins(
     pins: Mapping[str, str], functions: Mapping[str, Collection[str]], options: Collection[str]
 ) -> tuple[str, ...]:
-    """Ports at pins of a Gowin that its configuration does not set free with these packer options."""
+    """Ports at Gowin pins that these packer options do not release from configuration."""
     held = []
     for port, pin in pins.items():
         missing = {_RELEASES[function] for function in functions.get(pin, ()) if function in _RELEASES}

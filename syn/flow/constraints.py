@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What nextpnr is told of the clocks, and of pins that nobody has chosen, in terms of the netlist."""
+"""Constraints for nextpnr in terms of the netlist: clocks, and pins for designs without a board."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -8,15 +8,15 @@ from passo_fpga.devices import GOWIN, Device, Family
 
 
 def clock_constraints(family: Family, module: Mapping[str, Any], ports: Mapping[str, float]) -> str:
-    """Periods in ns of the clocks (MHz) that come in by ports; the module of the netlist is for a Gowin."""
+    """Constraints of the clock ports (MHz); the netlist module is needed for a Gowin."""
     clocks = {f"get_ports {name}": mhz for name, mhz in ports.items()}
-    if family is GOWIN:  # nextpnr forgets the clock of a port there
+    if family is GOWIN:  # nextpnr does not propagate the clock of a port there
         clocks = {f"get_nets {{{_clock_net(module, name)}}}": mhz for name, mhz in ports.items()}
     return "".join(f"create_clock -period {1000 / mhz:.4f} [{what}]\n" for what, mhz in clocks.items())
 
 
 def any_pins(device: Device, module: Mapping[str, Any]) -> str:
-    """Some pin for each port, for the tool that does not choose one; SCLK on the clock network."""
+    """A pin for each port, for tools that do not choose pins; SCLK on the clock network."""
     first, second, *others = device.pins
     fixed, rest = {"clk": first, "spi_sclk": second}, iter(others)
     lines = []
@@ -29,7 +29,7 @@ def any_pins(device: Device, module: Mapping[str, Any]) -> str:
 
 
 def _clock_net(module: Mapping[str, Any], port: str) -> str:
-    """The net behind a Gowin's port, its input buffer and its clock buffer."""
+    """The clock net driven by a Gowin port through its input and clock buffers."""
     (bit,) = module["ports"][port]["bits"]
     for buffer in ("IBUF", "BUFG"):
         pins = [cell["connections"] for cell in module["cells"].values() if cell["type"] == buffer]

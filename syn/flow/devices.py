@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: MIT
-"""The FPGAs, and what the tools of each family want to be told."""
+"""The FPGAs, and the tool settings of each family."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-# The SPI clock is the host's; 25 MHz is what a clock of 100 MHz allows.
+# SCLK comes from the host; a core clock of 100 MHz allows 25 MHz.
 SPI_MHZ = 25
 
 
 @dataclass(frozen=True, eq=False)
 class Family:
-    """Tools, and how cells and places are called.
+    """Tools, and names of cells and sites.
 
-    `cells` counts what synthesis made, as {column: {cell: how many units}}; a name may end in *. `sites` are
-    the places of nextpnr whose sum is the size of a design. What a board needs of its cells is in
+    `cells` weights the cells after synthesis, as {column: {cell: units}}; a cell name may end in *. `sites`
+    are the site types of nextpnr whose sum is the size of a design. The cells for the board top are in
     syn/families/`name`.v.
     """
 
@@ -25,9 +25,9 @@ class Family:
     sites: tuple[str, ...]
     cells: dict[str, dict[str, int]]
     programs: tuple[str, ...]
-    pins_suffix: str  # of a file of pins
+    pins_suffix: str  # of a pin file
     pulls: tuple[str, ...] = ("up", "down")
-    io_type: str = ""  # of a pin unless a board tells another one; none where there is no choice
+    io_type: str = ""  # default of a pin; empty if the family has no choice
     plls: tuple[str, ...] = ()  # kinds, if there are several
 
 
@@ -59,7 +59,7 @@ ECP5 = Family(
     size_unit="LUT4",
     sites=("TRELLIS_COMB",),
     cells={
-        # two LUTs make a pair of carry bits, and a memory of 16 x 4 takes two for data and two for writing
+        # a pair of carry bits takes two LUTs; a 16 x 4 memory takes two for data and two for writing
         "LUT": {"LUT4": 1, "CCU2C": 2, "TRELLIS_DPR16X4": 4},
         "FF": {"TRELLIS_FF": 1},
         "carry": {"CCU2C": 2},
@@ -93,7 +93,7 @@ GOWIN = Family(
 
 @dataclass(frozen=True)
 class Device:
-    """An FPGA: how to call it, how much of it there is, and the clock (MHz) the figures are made for."""
+    """An FPGA: names, capacity, and the clock (MHz) for the report."""
 
     name: str
     title: str
@@ -102,8 +102,8 @@ class Device:
     part: tuple[str, ...]
     capacity: int  # in the family's unit
     target_mhz: int
-    pins: tuple[int, ...] = ()  # for the tool that does not choose them by itself; the first two are clocks
-    core: Mapping[str, int] = field(default_factory=dict, hash=False)  # parameters of the core that suit it
+    pins: tuple[int, ...] = ()  # for tools that do not choose pins; the first two are clock inputs
+    core: Mapping[str, int] = field(default_factory=dict, hash=False)  # suitable parameters of the core
 
 
 DEVICES = {

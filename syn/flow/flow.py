@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Synthesis, place and route; every result is kept in build/fpga until what goes into it changes."""
+"""Synthesis, place and route; results are cached in build/fpga until an input changes."""
 
 import hashlib
 import json
@@ -21,19 +21,18 @@ from passo_fpga.tools import FOLDER, check, failure, relative, run, versions
 
 NETLIST, CELLS, PLACED, REPORT = "netlist.json", "cells.json", "placed", "report.json"
 SYNTHESIS_LOG, PLACE_LOG, PACK_LOG = "yosys.log", "nextpnr.log", "pack.log"
-MOVED = "moved"  # how many registers went into block RAMs
+MOVED = "moved"  # file with the number of registers packed into block RAMs
 CONSTRAINTS = "clocks.sdc"
-# Some seeds never end: the placer tries all orders, or the router of iCE40 moves one net to and fro for ever.
-PLACE_SECONDS = 900  # on a core
-ROUTER_STEPS = 200_000  # three times what any routing needed that ended
-
-# nextpnr says this of a design that it could not place or route although no kind of cell was used up.
+# Some seeds never end: the placer tries all orders, or the iCE40 router moves one net back and forth.
+PLACE_SECONDS = 900  # of processor time
+ROUTER_STEPS = 200_000  # three times the largest number of any routing that ended
+# Message of nextpnr if it cannot place or route a design although no type of cell is exhausted.
 CROWDED = re.compile(r"ERROR: .*([Uu]nable to (find|place|legali)|[Ff]ailed to (place|route|expand)|no Bels)")
 
 
 @dataclass(frozen=True)
 class Design:
-    """What to make: a top with parameters on a device, without the outputs in `left_out`."""
+    """A top module with parameters on a device, without the outputs in `left_out`."""
 
     name: str
     device: Device
@@ -45,12 +44,12 @@ class Design:
 
     @property
     def sources(self) -> list[Path]:
-        """Verilog files; all modules of the core are read, whatever they are called."""
+        """All Verilog files, including all modules of the core."""
         return [*sorted(paths.rtl.glob("*.v")), *self.extra_sources]
 
     @property
     def elaboration(self) -> list[str]:
-        """Commands of Yosys for all that was read."""
+        """Yosys commands that elaborate the design."""
         parameters = " ".join(f"-chparam {name} {value}" for name, value in self.parameters.items())
         left_out = [f"delete -output {self.top}/{port}" for port in self.left_out]
         return [f"hierarchy -top {self.top} {parameters}", *left_out]
@@ -58,11 +57,11 @@ class Design:
 
 @dataclass(frozen=True)
 class Placed:
-    """What came of place and route.
+    """Result of place and route.
 
-    `used` is in the family's unit; `fits` is whether the design could be placed and routed; if it could not
-    without being too large, another seed may do better. `clocks` are its clocks in MHz, as (achieved,
-    wanted), by the names nextpnr gives them. `complaints` are what else the tool did not like.
+    `used` is in the unit of the family. `fits`: the design was placed and routed; if not, and it is not too
+    large, another seed may succeed. `clocks` in MHz, as (achieved, constraint), by nextpnr's names.
+    `complaints` are further warnings.
     """
 
     fits: bool
@@ -75,13 +74,13 @@ class Placed:
 
     @property
     def main_clock(self) -> tuple[float, float]:
-        """The clock that is not the host's."""
+        """The clock other than SCLK."""
         (found,) = [mhz for name, mhz in self.clocks.items() if "sclk" not in name]
         return found
 
 
 def synthesize(design: Design) -> Path:
-    """The folder with NETLIST, CELLS, logs, and MOVED for an ECP5."""
+    """Synthesize; return the folder with NETLIST, CELLS, logs, and MOVED for an ECP5."""
     device = design.device
     options = "" if design.flatten else " -noflatten"
     checks = ["check -assert", f"tee -q -o {CELLS} stat -json"]
@@ -107,24 +106,24 @@ def synthesize(design: Design) -> Path:
 
 
 def synthesis_complaints(design: Design) -> tuple[str, ...]:
-    """What synthesis did not like, although it went on."""
+    """Warnings of synthesis."""
     return complaints((synthesize(design) / SYNTHESIS_LOG).read_text())
 
 
 def cells(design: Design) -> dict[str, int]:
-    """How many LUTs, FFs, BRAMs ... synthesis made of a flat design."""
+    """Number of LUTs, FFs, BRAMs, ... after flat synthesis."""
     statistics = json.loads((synthesize(design) / CELLS).read_text())
     return count(design.device, statistics["design"]["num_cells_by_type"])
 
 
 def moved_registers(design: Design) -> int | None:
-    """How many registers went into block RAMs; None if that is not done for the device."""
+    """Number of registers packed into block RAMs; None if the device does not need it."""
     moved = synthesize(design) / MOVED
     return int(moved.read_text()) if moved.exists() else None
 
 
 def count(device: Device, by_type: Mapping[str, int]) -> dict[str, int]:
-    """Cells of a kind, in its units."""
+    """Weighted number of cells per column of the family."""
     return {
         column: sum(
             number * units
@@ -139,7 +138,7 @@ def count(device: Device, by_type: Mapping[str, int]) -> dict[str, int]:
 def place(
     design: Design, seed: int, mhz: float, clock_ports: Mapping[str, float], pins: Path | None = None
 ) -> Placed:
-    """Place and route for a clock of `mhz`; `clock_ports` come in by pins; without `pins` any pin will do."""
+    """Place and route for a clock of `mhz`; `clock_ports` are clock inputs, `pins` the pin file."""
     device, family = design.device, design.device.family
     netlist = synthesize(design)
     module = _module(design, netlist) if family is GOWIN else {}
@@ -170,7 +169,7 @@ def place(
 
 
 def pack(design: Design, placed: Placed, options: Sequence[str], path: Path) -> tuple[str, ...]:
-    """Write the bitstream to `path` unless the packer complains; return what of."""
+    """Write the bitstream to `path` unless there are complaints; return them."""
     family = design.device.family
     made = f"bitstream.{family.suffix}"
     arguments: list[object] = [*options, PLACED, made]
@@ -204,24 +203,24 @@ def _pin_options(design: Design, netlist: Path, folder: Path, pins: Path | None)
 
 
 def _sites(log: str) -> dict[str, tuple[int, int]]:
-    """Used and available places; the last of several tables counts."""
+    """Used and available sites from a log; the last of several tables counts."""
     found = re.findall(r"^Info:\s+(\w+):\s+(\d+)/\s*(\d+)\s+\d+%", log, re.M)
     return {name: (int(used), int(available)) for name, used, available in found}
 
 
 def _endless(log: str) -> bool:
-    """Whether the router has made more steps than any that ended."""
+    """Whether the router has exceeded ROUTER_STEPS."""
     steps = re.findall(r"^Info: +(\d+) \|", log, re.M)
     return bool(steps) and int(steps[-1]) > ROUTER_STEPS
 
 
 def _used(device: Device, sites: Mapping[str, tuple[int, int]]) -> int:
-    """Of the device's capacity."""
+    """Sites used, in the unit of the capacity."""
     return sum(sites[name][0] for name in device.family.sites if name in sites)
 
 
 def _too_large(device: Device, sites: Mapping[str, tuple[int, int]]) -> bool:
-    """Too many of some kind, or of those that share the same places."""
+    """Whether a site type, or the sum of types that share sites, is exceeded."""
     return any(used > there for used, there in sites.values()) or _used(device, sites) > device.capacity
 
 
@@ -242,7 +241,7 @@ def _read(device: Device, folder: Path) -> Placed:
 def kept(
     kind: str, name: str, inputs: Sequence[Path], settings: Sequence[str], make: Callable[[Path], Any]
 ) -> Path:
-    """The folder that `make` fills from these inputs and settings; made only if it is not there yet."""
+    """The folder that `make` fills from these inputs and settings, unless it exists already."""
     digest = hashlib.sha256(repr(list(settings)).encode())
     for path in inputs:
         digest.update(f"\0{path.name}\0".encode() + path.read_bytes())

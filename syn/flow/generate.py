@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a table of a board becomes: a Verilog file with the PLL, and a file of pins."""
+"""Generates the files of a board from its table: a Verilog file with the PLL, and a pin file."""
 
 import json
 from collections.abc import Callable, Mapping
@@ -13,7 +13,7 @@ from passo_fpga.flow import Design
 TOP = paths.syn / "passo_board.v"
 
 PLL = """\
-// Made of {table} by `make synth`: {made:g} MHz of {oscillator:g} MHz.
+// Generated from {table} by `make synth`: {made:g} MHz from {oscillator:g} MHz.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -40,7 +40,7 @@ endmodule
 def generate(
     board: Board, folder: Path, axes: int | None = None, mhz: float | None = None
 ) -> tuple[Design, Path]:
-    """Write both files into `folder`; return what is to be synthesised and the file of pins."""
+    """Write both files into `folder`; return the design and the pin file."""
     family = board.device.family
     folder.mkdir(parents=True, exist_ok=True)
     pll, pins = folder / "passo_board_pll.v", folder / f"pins.{family.pins_suffix}"
@@ -58,7 +58,7 @@ def generate(
 
 
 def pll_file(board: Board, mhz: float | None = None) -> str:
-    """The PLL of the family with the dividers for this clock."""
+    """Text of the PLL module with the dividers for this clock."""
     pll = board.pll(mhz)
     parameters = dict(pll.parameters)
     if board.device.family is ICE40:
@@ -72,7 +72,7 @@ def pll_file(board: Board, mhz: float | None = None) -> str:
 
 
 def pin_file(board: Board, axes: int | None = None) -> str:
-    """The pins, and how they are pulled and driven, as nextpnr of the family wants it."""
+    """Text of the pin file in the format of the family."""
     family = board.device.family
     comment = "//" if family is GOWIN else "#"
     lines = [f"{comment} Made of {_table(board)} by `make synth`.\n"]

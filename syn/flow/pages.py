@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the report shows: tables for the terminal, docs/report.md, and the goals in README.md."""
+"""Output of the report: tables for the terminal, docs/report.md, and the goals in README.md."""
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -14,7 +14,7 @@ PAGE = paths.docs / "report.md"
 TEMPLATE = Path(__file__).with_name("page.md")
 README = paths.root / "README.md"
 BEGIN, END = "<!-- report: make report writes from here -->", "<!-- to here -->"
-WIDTH = 118  # of the tables where there is no terminal
+WIDTH = 118  # of the tables without a terminal
 NONE = "–"
 
 Row = dict[str, Any]
@@ -26,7 +26,12 @@ def write(report: dict[str, Any]) -> None:
     parts = {
         "goals": _markdown(*_goals(report)),
         "devices": "\n\n".join(_device(report, name) for name in DEVICES),
-        "split": "\n\n".join(_split(report, name) for name in report["split"]),
+        "tops": _markdown(*_tops(report)),
+        "split": "\n\n".join(
+            f"### {DEVICES[name].title}\n\n{_modules(rows)}" for name, rows in report["split"].items()
+        ),
+        "channel": _modules(report["channel"]),
+        "channel_device": DEVICES[report["channel_device"]].title,
         "split_size": "{} channel, {} axes".format(*report["split_size"]),
         "by_seed": "\n".join(f"* {line}" for line in _by_seed(report)),
         "seeds": str(len(report["seeds"])),
@@ -66,7 +71,7 @@ def show(report: dict[str, Any]) -> None:
 
 
 def _with_block(text: str, block: str) -> str:
-    """README.md with another table between the marks."""
+    """README.md with a new table between the marks."""
     before, _, rest = text.partition(BEGIN)
     _, _, after = rest.partition(END)
     if not rest or END not in rest:
@@ -125,7 +130,7 @@ def _goals(report: dict[str, Any]) -> tuple[Sequence[str], list[list[str]]]:
 
 
 def _by_seed(report: dict[str, Any]) -> list[str]:
-    """The speeds of the designs with goals, seed by seed."""
+    """The speeds of the designs with goals, by seed."""
     rows = [(goal, _find(report, goal["device"], goal["channels"], goal["axes"])) for goal in report["goals"]]
     return [
         f"{DEVICES[goal['device']].title}, {goal['axes']} axes: {', '.join(map(_mhz, row['f_max'])) or NONE}"
@@ -157,11 +162,11 @@ def _sizes(report: dict[str, Any], name: str) -> tuple[Sequence[str], list[list[
 
 def _device(report: dict[str, Any], name: str) -> str:
     sizes = _markdown(*_sizes(report, name))
-    return f"### {DEVICES[name].title}\n\n{sizes}\n\nOne more: {_costs(report, name)}."
+    return f"### {DEVICES[name].title}\n\n{sizes}\n\nCost of one more: {_costs(report, name)}."
 
 
 def _costs(report: dict[str, Any], name: str) -> str:
-    """Of a further axis and of a further channel."""
+    """Cost of a further axis and of a further channel."""
     unit = DEVICES[name].family.size_unit
     one, eight = (_find(report, name, 1, axes) for axes in (1, 8))
     four = _find(report, name, 4, 1)
@@ -175,15 +180,23 @@ def _cost(small: Row, large: Row, steps: int, unit: str) -> str:
     return f"{of('size'):.0f} {unit}, {of('ff'):.0f} FF, {of('bram'):.3g} BRAM"
 
 
-def _split(report: dict[str, Any], name: str) -> str:
-    header = ("module", "instances", "LUT", "FF", "carry", "BRAM")
+def _tops(report: dict[str, Any]) -> tuple[Sequence[str], list[list[str]]]:
+    header = ("FPGA", "top", "size", "lowest MHz", "median MHz")
     rows = [
         [
-            f"`{row['module']}`",
-            *(f"{row[column]:,}" for column in ("instances", "LUT", "FF", "carry", "BRAM")),
+            DEVICES[row["device"]].title,
+            f"`{row['top']}`",
+            f"{row['size']:,} {DEVICES[row['device']].family.size_unit}",
+            _mhz(row["f_max_minimum"]),
+            _mhz(row["f_max_median"]),
         ]
-        for row in report["split"][name]
+        for row in sorted(report["tops"], key=lambda row: list(DEVICES).index(row["device"]))
     ]
-    total = [f"{sum(row[column] for row in report['split'][name]):,}" for column in header[2:]]
-    rows.append(["all", "", *total])
-    return f"### {DEVICES[name].title}\n\n{_markdown(header, rows)}"
+    return header, rows
+
+
+def _modules(modules: Sequence[Row]) -> str:
+    columns = ("instances", "LUT", "FF", "carry", "BRAM")
+    rows = [[f"`{row['module']}`", *(f"{row[column]:,}" for column in columns)] for row in modules]
+    total = [f"{sum(row[column] for row in modules):,}" for column in columns[1:]]
+    return _markdown(("module", *columns), [*rows, ["all", "", *total]])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Dividers of the PLLs for a wanted clock, as the parameters of passo_pll in syn/families/."""
+"""PLL dividers for a clock, as parameters of passo_pll in syn/families/."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -10,7 +10,7 @@ from passo_fpga.devices import ECP5, GOWIN, ICE40, Family
 
 @dataclass(frozen=True)
 class Pll:
-    """A clock in MHz and the parameters that make it."""
+    """A clock in MHz and the parameters that generate it."""
 
     mhz: float
     parameters: dict[str, int | str]
@@ -21,9 +21,9 @@ class PllError(ValueError):
 
 
 def dividers(family: Family, oscillator_mhz: float, mhz: float) -> Pll:
-    """The PLL whose clock is next to the wanted one; of these the one furthest from its own limits.
+    """The PLL settings with the clock nearest to `mhz`; among these, those furthest from the VCO limits.
 
-    PllError if none is within 1 %.
+    Raises PllError if none is within 1 %.
     """
     search, lowest, highest = _PLLS[family.place]
     middle = math.sqrt(lowest * highest)
@@ -39,7 +39,7 @@ def dividers(family: Family, oscillator_mhz: float, mhz: float) -> Pll:
     return Pll(made, parameters)
 
 
-# clock, oscillator inside, parameters
+# clock, VCO, parameters
 Possible = Iterator[tuple[float, float, dict[str, int | str]]]
 
 
@@ -84,7 +84,7 @@ def _gowin(oscillator: float) -> Possible:
                     yield made, made * odiv, {"FCLKIN": fclkin, **dividers}
 
 
-# Per family: what is possible, and the limits of the oscillator inside.
+# Per family: possible settings, and the limits of the VCO.
 _PLLS: dict[str, tuple[Callable[[float], Possible], float, float]] = {
     ICE40.place: (_ice40, 533, 1066),
     ECP5.place: (_ecp5, 400, 800),

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """`make report`: size and speed of the core on all devices.
 
-A whole report writes build/report.json, docs/report.md and the goals between two marks in README.md, QUICK=1
-the goals alone. A part (ONLY=, QUICK=1) is printed and written to build/report-part.json. Each run of a
-netlist with a seed is kept in build/fpga: a report that was broken off goes on, and one after a change makes
-again what the change concerns.
+A full report writes build/report.json, docs/report.md and the goals between two marks in README.md; QUICK=1
+writes only the goals. A partial report (ONLY=, QUICK=1) is printed and written to build/report-part.json.
+Each run of a netlist with a seed is cached in build/fpga: an interrupted report resumes, and after a change
+only the affected runs are repeated.
 """
 
 import argparse
@@ -23,7 +23,7 @@ from passo.toolchain import paths
 from passo_fpga import pages
 from passo_fpga.devices import DEVICES, SPI_MHZ, Device
 from passo_fpga.flow import Design, Placed, cells, place, synthesize
-from passo_fpga.split import split
+from passo_fpga.split import difference, split
 from passo_fpga.tools import ToolError, prepare, versions, workers
 
 REPORT = paths.build / "report.json"
@@ -32,13 +32,17 @@ GOAL_SEEDS = range(1, 9)  # of the designs that have a goal
 SIZES = ((1, 1), (1, 2), (1, 4), (1, 6), (1, 8), (2, 1), (2, 2), (4, 1), (4, 2))  # channels, axes
 SPLIT_DEVICES = ("hx8k", "ecp5-25")
 SPLIT_SIZE = (1, 4)
+CHANNEL_DEVICE = "hx8k"  # of the price of a further channel, module by module
+SPI = "passo_spi_top"
+BUS_TOPS = ("passo_wishbone", "passo_axi_lite")
+TOP_SIZE = (1, 4)
 
-Key = tuple[str, tuple[int, int]]  # device, (channels, axes)
+Key = tuple[str, str, tuple[int, int]]  # device, top, (channels, axes)
 
 
 @dataclass(frozen=True)
 class Goal:
-    """What a device is to hold: `size` in its own unit, `bram` if limited; and MHz over the seeds."""
+    """Goal for a device: `size` in its unit, `bram` if limited, and the clocks in MHz over the seeds."""
 
     device: str
     channels: int
@@ -58,7 +62,7 @@ GOALS = (
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Return 0 if all runs ended, fitting or not; 2 if there is no such device."""
+    """Return 0 if all runs ended, whether they fit or not; 2 for an unknown device."""
     parser = argparse.ArgumentParser(prog="make report", description="Measure size and speed of the core.")
     parser.add_argument("--only", default="", help=f"devices, with commas between: {','.join(DEVICES)}")
     parser.add_argument("--quick", action="store_true", help="only the rows of the goals")
@@ -68,11 +72,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         message = f"there is no device '{min(unknown)}'; choose of {', '.join(DEVICES)}"
         print(f"make report: {message}", file=sys.stderr)
         return 2
-    goals = [(DEVICES[goal.device], (goal.channels, goal.axes)) for goal in GOALS if goal.device in chosen]
-    others = [] if options.quick else list(product([DEVICES[name] for name in chosen], SIZES))
+    goals = [(goal.device, SPI, (goal.channels, goal.axes)) for goal in GOALS if goal.device in chosen]
+    others = (
+        [] if options.quick else [*product(chosen, (SPI,), SIZES), *product(chosen, BUS_TOPS, (TOP_SIZE,))]
+    )
     whole = not options.quick and set(chosen) == set(DEVICES)
     try:
-        report = measure(list(dict.fromkeys(goals + others)), splits=not options.quick)
+        report = measure(
+            list(dict.fromkeys(goals if options.quick else goals + others)), splits=not options.quick
+        )
     except ToolError as error:
         print(error, file=sys.stderr)
         return 1
@@ -89,32 +97,31 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 0
 
 
-def core(device: Device, size: tuple[int, int]) -> Design:
-    """The core alone, with its ports as pins."""
+def core(device: Device, size: tuple[int, int], top: str = SPI) -> Design:
+    """The design of the core alone behind one of its host interfaces, with its ports as pins."""
     channels, axes = size
     parameters = {"CHANNELS": channels, "AXES": axes, **device.core}
-    return Design(f"{device.name}-{channels}x{axes}", device, parameters=parameters)
+    suffix = "" if top == SPI else f"-{top.removeprefix('passo_')}"
+    return Design(f"{device.name}-{channels}x{axes}{suffix}", device, top, parameters)
 
 
-def measure(wanted: Sequence[tuple[Device, tuple[int, int]]], splits: bool) -> dict[str, Any]:
-    """Run what is not there yet, as many at a time as the machine can, and gather the figures."""
+def measure(wanted: Sequence[Key], splits: bool) -> dict[str, Any]:
+    """Run what is not cached, in parallel, and collect the figures."""
     tell = stages()
-    devices = list(dict.fromkeys(device for device, _ in wanted))
+    devices = list(dict.fromkeys(DEVICES[name] for name, _, _ in wanted))
     prepare(dict.fromkeys(program for device in devices for program in device.family.programs), tell)
-    designs = {(device.name, size): core(device, size) for device, size in wanted}
-    hierarchical = {
-        name: replace(core(DEVICES[name], SPLIT_SIZE), name=f"{name}-split", flatten=False)
-        for name in SPLIT_DEVICES
-        if splits and DEVICES[name] in devices
-    }
+    designs = {key: core(DEVICES[key[0]], key[2], key[1]) for key in wanted}
+    named = {device.name for device in devices} if splits else set()
+    hierarchical = {name: _hierarchical(name, SPLIT_SIZE) for name in SPLIT_DEVICES if name in named}
+    channels = [_hierarchical(CHANNEL_DEVICE, (number, 1)) for number in (1, 2) if CHANNEL_DEVICE in named]
     with ThreadPoolExecutor(workers()) as pool:
-        count = _counter(len(designs) + len(hierarchical))
+        count = _counter(len(designs) + len(hierarchical) + len(channels))
 
         def make(design: Design) -> None:
             synthesize(design)
             tell(f"synthesis {count()}: {design.name}")
 
-        list(pool.map(make, [*designs.values(), *hierarchical.values()]))
+        list(pool.map(make, [*designs.values(), *hierarchical.values(), *channels]))
 
         count = _counter(sum(len(_seeds(key)) for key in designs))
 
@@ -124,7 +131,7 @@ def measure(wanted: Sequence[tuple[Device, tuple[int, int]]], splits: bool) -> d
             tell(f"place and route {done}: {designs[key].name}, seed {seed}: {_words(placed)}")
             return placed
 
-        # the seeds of a design one after the other, because there is one run only of what is too large
+        # the seeds of a design run in sequence, because a design that is too large is run only once
         def runs(key: Key) -> list[Placed]:
             seed, *seeds = _seeds(key)
             first = run(key, seed)
@@ -136,19 +143,27 @@ def measure(wanted: Sequence[tuple[Device, tuple[int, int]]], splits: bool) -> d
         "goal_seeds": list(GOAL_SEEDS),
         "tools": {device.name: versions(device.family.programs) for device in devices},
         "goals": [asdict(goal) for goal in GOALS if DEVICES[goal.device] in devices],
-        "designs": [_row(designs[key], key, placed[key]) for key in designs],
+        "designs": [_row(designs[key], key, placed[key]) for key in designs if key[1] == SPI],
+        "tops": [_row(designs[key], key, placed[key]) for key in designs if key[2] == TOP_SIZE],
         "split": {name: split(design) for name, design in hierarchical.items()},
         "split_size": list(SPLIT_SIZE),
+        "channel_device": CHANNEL_DEVICE,
+        "channel": difference(*map(split, channels)) if channels else [],
     }
 
 
+def _hierarchical(name: str, size: tuple[int, int]) -> Design:
+    design = core(DEVICES[name], size)
+    return replace(design, name=f"{design.name}-split", flatten=False)
+
+
 def _seeds(key: Key) -> Sequence[int]:
-    goals = [(goal.device, (goal.channels, goal.axes)) for goal in GOALS]
+    goals = [(goal.device, SPI, (goal.channels, goal.axes)) for goal in GOALS]
     return GOAL_SEEDS if key in goals else SEEDS
 
 
 def _counter(total: int) -> Callable[..., str]:
-    """A function that counts one more, or several, and says how many of all that is."""
+    """A function that adds to a count and returns it as text."""
     done = 0
     lock = Lock()
 
@@ -163,7 +178,8 @@ def _counter(total: int) -> Callable[..., str]:
 
 def _place(design: Design, seed: int) -> Placed:
     mhz = design.device.target_mhz
-    return place(design, seed, mhz, {"clk": mhz, "spi_sclk": SPI_MHZ})
+    clocks = {"clk": mhz, "spi_sclk": SPI_MHZ} if design.top == SPI else {"clk": mhz}
+    return place(design, seed, mhz, clocks)
 
 
 def _words(placed: Placed) -> str:
@@ -173,13 +189,14 @@ def _words(placed: Placed) -> str:
 
 
 def _row(design: Design, key: Key, placed: Sequence[Placed]) -> dict[str, Any]:
-    device, (channels, axes) = key
+    device, top, (channels, axes) = key
     made = cells(design)
-    # a seed with which nextpnr finds no place for some cell, or no end of routing, counts as 0 MHz
+    # a seed that nextpnr cannot place or route counts as 0 MHz
     reached = [run.main_clock[0] if run.fits else 0.0 for run in placed]
     median = statistics.median(reached)
     return {
         "device": device,
+        "top": top,
         "channels": channels,
         "axes": axes,
         "fits": median > 0,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Which module takes how much, of a design whose hierarchy was kept."""
+"""Size of each module, from a synthesis that keeps the hierarchy."""
 
 import json
 import re
@@ -13,7 +13,7 @@ _PLAIN = re.compile(r"^\$paramod(?:\$[0-9a-f]+)?\\([^\\]+)(?:\\.*)?$")
 
 
 def split(design: Design) -> list[dict[str, Any]]:
-    """Cells of all instances of each module, without those of the modules inside it; the largest first."""
+    """Cells of all instances of each module, without their submodules; largest first."""
     modules = json.loads((synthesize(design) / CELLS).read_text())["modules"]
     inside = {name.lstrip("\\"): facts["num_cells_by_type"] for name, facts in modules.items()}
     instances: Counter[str] = Counter()
@@ -33,6 +33,21 @@ def split(design: Design) -> list[dict[str, Any]]:
             row[column] += times * number
     found = [{"module": name, **row} for name, row in rows.items()]
     return sorted(found, key=lambda row: -row["LUT"])
+
+
+def difference(small: list[dict[str, Any]], large: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """What a larger design has more of each module; the largest first, without modules it has no more of."""
+    before = {row["module"]: _counts(row) for row in small}
+    more = []
+    for row in large:
+        counts = _counts(row)
+        counts.subtract(before.get(row["module"], Counter()))
+        more.append({"module": row["module"], **counts})
+    return sorted((row for row in more if row["instances"]), key=lambda row: -row["LUT"])
+
+
+def _counts(row: dict[str, Any]) -> Counter[str]:
+    return Counter({column: number for column, number in row.items() if column != "module"})
 
 
 def _plain(name: str) -> str:

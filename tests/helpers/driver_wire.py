@@ -208,7 +208,7 @@ def error_of(driver: Driver, call: str, *arguments: Any) -> str:
 
 
 def path(count: int, clocks: int = 72) -> tuple[list, list]:
-    """Short lines: 2 steps of axis 0, one back of axis 1 each, at so many clocks a substep, under 8 ramps."""
+    """Short lines: 2 steps of axis 0 and one back of axis 1 each, with 8 ramps."""
     lines = [
         struct("line", substeps=20, steps=[2, 1], directions=2, last=n == count - 1)[0] for n in range(count)
     ]

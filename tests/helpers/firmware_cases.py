@@ -25,7 +25,7 @@ def _milliseconds(rng: random.Random, low: float, high: float) -> str:
 
 
 def random_move(rng: random.Random) -> dict[str, Any]:
-    """A move of some milliseconds, as it stands in a file. It may be one that is refused."""
+    """A move of some milliseconds as a table of a move file; it may be invalid."""
     profile = rng.choice(("linear", "cosine", "sigmoid", "jerk"))
     steps = _steps(rng, rng.choice((3, 40, 900)))
     speed = rng.choice((5_000, 50_000, 400_000))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a jerk-limited plan must be."""
+"""Requirements of a jerk-limited plan."""
 
 from fractions import Fraction
 
@@ -8,7 +8,7 @@ from tests.helpers.plans import EASE, HALF, LINEAR, SUBSTEPS_MAX, UNIT, Plan, Ra
 
 
 def ramp_parts(plan: Plan) -> tuple[list[Ramp], list[Ramp]]:
-    """The parts that speed up, and those that slow down."""
+    """The parts of the acceleration and of the deceleration ramp."""
     moving = [ramp for ramp in plan.ramps if ramp.ticks and ramp.velocity_start != ramp.velocity_end]
     up = [ramp for ramp in moving if ramp.velocity_end > ramp.velocity_start]
     return up, [ramp for ramp in moving if ramp.velocity_end < ramp.velocity_start]
@@ -33,7 +33,7 @@ def check_limits(plan: Plan, fields: dict) -> None:
 
 
 def check_structure(plan: Plan, fields: dict) -> None:
-    """Ease, straight and mirrored ease, with equal slopes where they meet; symmetric."""
+    """Ease, linear and mirrored ease, with equal slopes where they meet; symmetric."""
     p, ramps = plan.c, plan.ramps
     longest = max(map(abs, fields["steps"]))
     assert p.line.substeps == p.oversampling * longest <= SUBSTEPS_MAX

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Lines and ramps to test with, and how the host's code wants them."""
+"""Lines and ramps for tests, and their conversion to C structs."""
 
 import random
 from collections.abc import Sequence
@@ -53,7 +53,7 @@ def fill(ramps: Sequence[Ramp], shares: Sequence[tuple[int, ...]], tick_log2: in
 def random_motion(
     rng: random.Random, axes: int, most_lines: int = 9, most_ramps: int = 14
 ) -> tuple[list[Line], list[Ramp]]:
-    """Up to so many lines and ramps of all kinds; at least 3 ramps."""
+    """A limited number of lines and ramps of all kinds; at least 3 ramps."""
     ramps = []
     for _ in range(rng.randint(1, most_ramps - 2)):
         velocity = rng.choice([0, rng.randrange(SLOW), SLOW, rng.randrange(1 << rng.randint(1, 42))])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What every plan must be, in exact fractions."""
+"""Requirements of every plan, checked with exact fractions."""
 
 import math
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ from tests.helpers.plans import (
     Plan,
 )
 
-DISTANCE_TOLERANCE = Fraction(1, 5)  # substeps; the core bears 1/4
+DISTANCE_TOLERANCE = Fraction(1, 5)  # substeps; the core tolerates 1/4
 LONG_RAMPS = 32  # see progress_bound()
 
 
@@ -79,10 +79,10 @@ def check_structure(plan: Plan, move: InTime | BySpeed) -> None:
 
 
 def progress_bound(plan: Plan) -> Fraction:
-    """How far the core's 24 bits of progress and of shape can move the end, in substeps.
+    """Bound of the end position error, in substeps, due to the core's 24 bits of progress and of shape.
 
-    Equal ramps cancel out. Others need hundreds of millions of clocks at full velocity to get beyond the
-    tolerance, even though this bound, 2^-24 in every tick, does so earlier.
+    Equal ramps cancel out. Others need hundreds of millions of clocks at full velocity to exceed the
+    tolerance, although this bound of 2^-24 per tick does so earlier.
     """
     p = plan.c
     up, down = p.velocity_peak - p.velocity_start, p.velocity_peak - p.velocity_stop
@@ -117,7 +117,7 @@ def check_plan(plan: Plan, steps: tuple[int, ...], profile: int = LINEAR) -> Fra
 
 
 def check_steps_to_stop(plan: Plan) -> None:
-    """The path of the ramps that slow down, in whole steps to the nearest."""
+    """The distance of the deceleration ramps, rounded to the nearest step."""
     ticks, substeps = 0, 0.0
     for ramp in reversed(plan.ramps):
         if ticks >= plan.c.decelerate_ticks:

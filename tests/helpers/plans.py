@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The planner as its tests call it: machines, moves and plans; velocities as UQ0.48, speeds as UQ32.32."""
+"""Test interface of the planner: machines, moves and plans; velocities are UQ0.48, speeds UQ32.32."""
 
 import tomllib
 from dataclasses import dataclass, field
@@ -97,7 +97,7 @@ class Plan:
 
 
 class PlanError(Exception):
-    """The planner refused; the text is the error's name."""
+    """The planner returned an error; the text is its name."""
 
 
 def q32(value: float) -> int:
@@ -109,7 +109,7 @@ GOOD_BY_SPEED = BySpeed((500, -3), JERK, q32(1000), q32(100), q32(50), q32(1e5),
 
 
 def checked_library() -> Path:
-    """The planner, built so that every use of undefined behaviour is fatal."""
+    """Build the planner such that undefined behaviour is fatal."""
     files = compiler.sources(paths.planner)
     return compiler.library("checked_planner", (paths.planner, paths.protocol), files, *compiler.DEFINED)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The forms of a move in C: limits, structs, and the console's tables."""
+"""The move forms in C: limits, structs and the tables of the console."""
 
 from collections.abc import Iterable
 from textwrap import wrap
@@ -36,16 +36,16 @@ def limits(schema: Schema) -> str:
         if constant.words:
             rows.append((f"#define PASSO_{constant.name.upper()}_WORDS", f'"{constant.shown}"'))
         lines += ["", _comment(constant.text), *_aligned(rows)]
-    return _guarded("PASSO_LIMITS_H", "Limits of moves and of the numbers that ask for them.", lines)
+    return _guarded("PASSO_LIMITS_H", "Limits of moves and of their parameters.", lines)
 
 
 def _list(name: str, about: str, rows: Iterable[str]) -> list[str]:
-    """A macro that calls its argument for each row."""
+    """An X macro: it invokes its argument for each row."""
     return ["", _comment(about), f"#define {name}(EACH) \\", " \\\n".join(f"\tEACH({row})" for row in rows)]
 
 
 def _remark(key: Key) -> str:
-    """Unit and meaning."""
+    """Comment of a member: unit and meaning."""
     unit = "" if key.kind.factor == CLOCK or not key.kind.factor else key.unit
     unit = " ".join(filter(None, (key.kind.stands_for, unit)))
     return f"{unit}: {key.text}" if unit else key.text
@@ -78,13 +78,13 @@ def moves(schema: Schema) -> str:
     several = ", ".join(names[:-1]) + f" or {names[-1]}"
     lines = ['#include "passo_command.h"']
     rows = [f'{name.upper()}, PASSO_SHAPE_{s.upper()}, "{name}"' for name, s in schema.profiles.items()]
-    lines += _list("PASSO_PROFILES", "Each profile with its shape and its name.", rows)
+    lines += _list("PASSO_PROFILES", "X macro of the profiles: EACH(NAME, shape of the core, name).", rows)
     lines += ["", "enum passo_profile {", *(f"\tPASSO_PROFILE_{name.upper()}," for name in names)]
     lines += ["\tPASSO_PROFILE_COUNT", "};", "", f'#define PASSO_PROFILES_WORDS "{several}"']
     lines.append(f'#define PASSO_PROFILES_CHOICE "{"|".join(names)}"')
     lines += [
         "",
-        "/* The user's own shape: what stands in the place of a profile, where its table goes. */",
+        "/* User-defined shape: the name that replaces a profile, and the bank of its table. */",
     ]
     lines += _aligned(
         [
@@ -93,15 +93,15 @@ def moves(schema: Schema) -> str:
         ]
     )
     for name, about, kind in (
-        ("PASSO_MOVES", "Each form.", None),
-        ("PASSO_MOVES_BY_STEPS", "Those whose steps are in their field `steps`.", "steps"),
-        ("PASSO_MOVES_BY_SHAPE", "Those that can follow a shape of the user's own.", "shape"),
+        ("PASSO_MOVES", "X macros: EACH(name, NAME) for each form ...", None),
+        ("PASSO_MOVES_BY_STEPS", "... for those with a member `steps` ...", "steps"),
+        ("PASSO_MOVES_BY_SHAPE", "... and for those that accept a user-defined shape.", "shape"),
     ):
         forms = [form.name for form in schema.forms if kind is None or form.has(kind)]
         lines += _list(name, about, [f"{form}, {form.upper()}" for form in forms])
     for form in schema.forms:
         lines += _structs(form)
-    about = "What a move is asked for with: profiles, and a struct for each form."
+    about = "Parameters of moves: the profiles, and a struct for each form."
     return _guarded("PASSO_MOVES_H", about, lines)
 
 
@@ -125,7 +125,7 @@ def _row(form: Form, key: Key) -> str:
 
 def tables(schema: Schema) -> str:
     """stm32_bridge/console/passo_form_tables.c"""
-    lines = [*_head("The keys of each form of a move."), '#include "passo_form_tables.h"']
+    lines = [*_head("Keys of the move forms."), '#include "passo_form_tables.h"']
     rows = []
     for form in schema.forms:
         name, keys = form.name.upper(), form.console_keys

@@ -50,7 +50,7 @@ def _forms(schema: Schema) -> str:
         anchor = form.section.lower().replace(" ", "-")
         method = f"none, or `{form.name}`" if form.told_by else f"`{form.name}`"
         rows.append([f"[{form.title}](#{anchor})", form.given, f"`passo_plan_{form.name}`", method])
-    return _table(["form", "given", "function", "`method` in a move file"], rows)
+    return _table(["method", "inputs", "function", "`method` in a move file"], rows)
 
 
 def _range(schema: Schema, key: Key) -> str:
@@ -74,9 +74,9 @@ def _default(schema: Schema, key: Key) -> str:
 
 
 RULES = {
-    "excludes": "`{key}` and `{other}` exclude each other",
-    "needs": "`{key}` needs `{other}`",
-    "above_zero": "`{key}` is above 0 if it is given",
+    "excludes": "`{key}` and `{other}` are mutually exclusive",
+    "needs": "`{key}` requires `{other}`",
+    "above_zero": "`{key}`, if given, must be above 0",
 }
 
 
@@ -108,8 +108,8 @@ def _keys(schema: Schema, forms: list[Form]) -> str:
                 _in_c(key),
             ]
             rows.append([f"`{form.name}`", *row] if len(forms) > 1 else row)
-    columns = ["key", "is", "unit", "range", "default", "in C"]
-    table = _table(["form", *columns] if len(forms) > 1 else columns, rows)
+    columns = ["key", "meaning", "unit", "range", "default", "in C"]
+    table = _table(["method", *columns] if len(forms) > 1 else columns, rows)
     return table + "".join(map(_rules, forms))
 
 
@@ -118,4 +118,4 @@ def _console(schema: Schema) -> str:
     for form in schema.forms:
         keys = (f"`[{k.name}]`" if k.otherwise is not None else f"`{k.name}`" for k in form.console_keys)
         rows.append([f"`{'' if form.told_by else 'method='}{form.name}`", " ".join(keys)])
-    return _table(["form", "keys"], rows)
+    return _table(["method", "keys"], rows)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The forms of a move for move files."""
+"""The move forms for move files."""
 
 from textwrap import wrap
 
@@ -10,7 +10,7 @@ WIDTH = 110
 HEAD = f'''\
 # SPDX-License-Identifier: MIT
 # {GENERATED}
-"""Forms of a move: their keys, what their values become, and the limits of values."""
+"""Move forms: their keys, how values are converted, and the limits of values."""
 
 from dataclasses import dataclass
 from fractions import Fraction
@@ -22,7 +22,7 @@ from passo.registers import Shape
 
 
 def _call(prefix: str, cells: list[str], indent: int, suffix: str = "") -> list[str]:
-    """A call, broken as the formatter breaks it."""
+    """A call, wrapped the way the formatter does it."""
     blanks = " " * indent
     if len(line := f"{blanks}{prefix}({', '.join(cells)}){suffix}") <= WIDTH:
         return [line]
@@ -67,7 +67,7 @@ def _form(schema: Schema, form: Form) -> list[str]:
 
 
 def _class(form: Form) -> list[str]:
-    """What a move of the form is asked for with."""
+    """The dataclass with the parameters of a form."""
     name = "Move" + form.name.title().replace("_", "")
     lines = ["", "", "@dataclass(frozen=True)", f"class {name}:", f'    """{form.summary}"""', ""]
     for key in sorted(form.keys, key=lambda key: key.file_only):
@@ -87,8 +87,8 @@ def module(schema: Schema) -> str:
         lines += [f"# {line}" for line in wrap(constant.text, 105)]
         lines.append(f"{constant.name.upper()} = {constant.value}")
     names = ", ".join(map(_quoted, schema.profiles))
-    lines += ["", f"PROFILES = ({names})", f'USER = "{schema.user_name}"  # the profile that is a table']
-    lines += [f"USER_BANK = Shape.{schema.user_bank.upper()}  # where that table goes", ""]
+    lines += ["", f"PROFILES = ({names})", f'USER = "{schema.user_name}"  # the profile given by a table']
+    lines += [f"USER_BANK = Shape.{schema.user_bank.upper()}  # the bank of that table", ""]
     lines.append("FORMS = {")
     for form in schema.forms:
         lines += _form(schema, form)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Read schema/moves.toml and check that it makes sense."""
+"""Read schema/moves.toml and check its consistency."""
 
 import re
 import tomllib
@@ -13,7 +13,7 @@ from passo.registers import CHANNEL_AXIS_COUNT, Shape
 SOURCE = "schema/moves.toml"
 GENERATED = f"Generated from {SOURCE} by tools/generate_moves.py."
 
-CLOCK = "clock_hz"  # the factor that is no constant
+CLOCK = "clock_hz"  # the only factor that is not a constant
 
 
 class SchemaError(ValueError):
@@ -22,7 +22,7 @@ class SchemaError(ValueError):
 
 @dataclass(frozen=True)
 class Constant:
-    """A number of the planner or of the readers; `shown` is how people write it."""
+    """A limit or unit of values; `shown` is its notation in texts, such as 2^30 - 1."""
 
     name: str
     value: int
@@ -34,7 +34,7 @@ class Constant:
 
 @dataclass(frozen=True)
 class Kind:
-    """What a value can be."""
+    """Type of a value; see [kinds] in the schema."""
 
     name: str
     python: str
@@ -48,7 +48,7 @@ class Kind:
 
 @dataclass(frozen=True)
 class Key:
-    """A key of a form. A default is as it would be written, or the name of a key before this one."""
+    """A key of a form. A default is a literal, or the name of an earlier key."""
 
     name: str
     kind: Kind
@@ -66,12 +66,12 @@ class Key:
 
     @property
     def shared(self) -> bool:
-        """It is in the struct of the limits of an axis."""
+        """The key is in struct passo_axis_limits."""
         return self.kind.name == "per_axis"
 
     @property
     def otherwise(self) -> str | None:
-        """What stands for a missing value on the console; empty: the kind knows; none: it must be there."""
+        """Default on the console; empty: supplied by the kind; None: the key is required."""
         if self.console_default is not None:
             return self.console_default
         return "" if self.optional else self.default
@@ -79,7 +79,7 @@ class Key:
 
 @dataclass(frozen=True)
 class Form:
-    """A form of a move."""
+    """A move form."""
 
     name: str
     title: str
@@ -92,7 +92,7 @@ class Form:
     profile: str | None = None
 
     def has(self, kind: str) -> bool:
-        """Is there a key of this kind?"""
+        """Whether the form has a key of this kind."""
         return any(key.kind.name == kind for key in self.keys)
 
     @property
@@ -102,23 +102,23 @@ class Form:
 
     @property
     def console_keys(self) -> tuple[Key, ...]:
-        """Those that the console has, too."""
+        """The keys that the console also accepts."""
         return tuple(key for key in self.keys if not key.file_only)
 
 
 @dataclass(frozen=True)
 class Schema:
-    """All of it."""
+    """Contents of schema/moves.toml."""
 
     constants: dict[str, Constant]
-    profiles: dict[str, str]  # to the shape of the core
+    profiles: dict[str, str]  # by name: the shape of the core
     user_name: str
     user_bank: str
     kinds: dict[str, Kind]
     forms: tuple[Form, ...]
 
     def shown(self, end: int | str) -> str:
-        """An end of a range, as people write it: a number, a constant, or words."""
+        """One end of a range for the documentation: a number, a constant, or words."""
         sign, name = ("-", end[1:]) if str(end).startswith("-") else ("", end)
         if name == "axes_max":
             return str(CHANNEL_AXIS_COUNT)
@@ -127,7 +127,7 @@ class Schema:
 
 
 def read(root: Path) -> Schema:
-    """The schema of a tree; raise SchemaError."""
+    """Read the schema of a source tree; raises SchemaError."""
     data = tomllib.loads((root / SOURCE).read_text(encoding="utf-8"))
     _known(data, {"constants", "profiles", "user", "kinds", "keys", "form"}, SOURCE)
     constants = {name: _constant(name, table) for name, table in data["constants"].items()}
@@ -153,7 +153,7 @@ def _known(table: dict[str, Any], known: set[str], place: str) -> None:
 
 
 def _record(make: type, place: str, table: dict[str, Any]) -> Any:
-    """A table as one of the classes above; lists become tuples."""
+    """Turn a table into one of the classes above; lists become tuples."""
     _known(table, set(make.__dataclass_fields__), place)
     values = {name: tuple(v) if isinstance(v, list) else v for name, v in table.items()}
     try:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""A front door for a CPU in the same FPGA, behind a bus master that others have written.
+"""A host interface for a CPU in the same FPGA, driven by a third-party bus master.
 
-The judges are the driver library, which believes no reply that is not right; the C model behind its SPI pins,
-which gives the same replies to the same frames and makes the same pulses; and the rules of passo_words.
+Checked against the driver library, which accepts only valid replies; the C model with SPI, which must give
+the same replies and pulses for the same frames; and the rules of passo_words.
 """
 
 import functools
@@ -24,10 +24,10 @@ from passo.registers import Operation
 from cocotb_tests.helpers import core_frames as frames
 from cocotb_tests.helpers.bench import PERIOD, Clocks, Recorder, begin, patience, read, rng
 from cocotb_tests.helpers.core_thread import Thread
-from cocotb_tests.helpers.runner import DOOR_CORE
+from cocotb_tests.helpers.runner import BUS_CORE
 from tests.helpers.driver_wire import by_speed, configure
 
-PARAMETERS = Parameters(**{name.lower(): value for name, value in DOOR_CORE.items()})
+PARAMETERS = Parameters(**{name.lower(): value for name, value in BUS_CORE.items()})
 CLOCK_HZ = 10_000_000  # of plans
 SELECT, WORD = 0, 4  # addresses
 WAIT = 128  # clocks after a word or a change of SELECT
@@ -36,7 +36,7 @@ MOVES = ((30, -17), (-5, 0), (1, 40), (-26, -23))
 
 
 class Bus(Protocol):
-    """What a CPU can do; both return None instead of what they should if the access is an error."""
+    """Bus accesses of a CPU; both return None if the access is answered with an error."""
 
     async def read(self, address: int) -> int | None:
         """Read a register."""
@@ -183,7 +183,7 @@ def drive(engine: Any) -> list[int]:
 
 @door_test
 def the_driver_moves(door: Door) -> None:
-    """Pulses, on their clocks, and positions are those of the C model behind SPI."""
+    """Pulses, on their clocks, and positions equal those of the C model with SPI."""
     positions = drive(door)
     assert positions == [sum(steps) for steps in zip(*moves(), strict=True)]
     assert read(door.dut.enable) == 3
@@ -212,7 +212,7 @@ def engine_edges(engine: Engine) -> list[tuple[int, int, int]]:
 
 @door_test
 def replies_are_those_over_spi(door: Door) -> None:
-    """Good frames, refused ones, duplicates, frames that are cut short or damaged: word by word."""
+    """Valid and refused frames, duplicates, cut and corrupt frames: compared word by word."""
     random = rng("replies_are_those_over_spi")
     channel = 0x100
     sent = [
@@ -271,7 +271,7 @@ def an_access_waits_for_the_one_before(door: Door) -> None:
 
 @door_test
 def what_is_an_error(door: Door) -> None:
-    """WORD written while no frame is open, and bytes; they leave no trace."""
+    """Writes of WORD while no frame is open, and byte accesses; they have no effect."""
     assert door.write(WORD, 0x12345678) is None
     assert door.read(SELECT) == 2
     for lanes in (1, 2, 4, 8, 3, 6, 12, 7, 14):

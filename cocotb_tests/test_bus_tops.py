@@ -1,0 +1,12 @@
+# SPDX-License-Identifier: MIT
+"""The host interfaces for a CPU in the same FPGA: passo_wishbone and passo_axi_lite."""
+
+import pytest
+
+from cocotb_tests.helpers.runner import BUS_CORE, DOORS, run
+
+
+@pytest.mark.parametrize("top", DOORS)
+def test_door(top: str, simulator: str) -> None:
+    """Driver, frames and registers through a public bus master."""
+    run("cocotb_tests.bus_tops", top, BUS_CORE, simulator)
