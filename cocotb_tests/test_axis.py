@@ -80,9 +80,9 @@ def expected_steps(
 
 
 def set_time(dut: HierarchyObject, name: str, clocks: int) -> None:
-    """Set one of the four times and tell whether it is short; 0 counts as 1."""
+    """Set one of the four times, and whether it is minimal; 0 counts as 1."""
     getattr(dut, name).value = max(1, clocks)
-    getattr(dut, f"short_{name.partition('_')[2]}").value = clocks < 2
+    getattr(dut, f"{name.partition('_')[2]}_is_minimal").value = clocks < 2
 
 
 def apply(dut: HierarchyObject, timing: PinTiming) -> None:

@@ -3,10 +3,10 @@
 
 import pytest
 
-from cocotb_tests.helpers.runner import BUS_CORE, DOORS, run
+from cocotb_tests.helpers.runner import BUS_CORE, BUS_TOPS, run
 
 
-@pytest.mark.parametrize("top", DOORS)
-def test_door(top: str, simulator: str) -> None:
+@pytest.mark.parametrize("top", BUS_TOPS)
+def test_bus_top(top: str, simulator: str) -> None:
     """Driver, frames and registers through a public bus master."""
     run("cocotb_tests.bus_tops", top, BUS_CORE, simulator)

@@ -4,6 +4,8 @@
 They share helpers/core_bench.py; PASSO_SEED is the seed of the random tests.
 """
 
+import os
+
 import pytest
 
 from cocotb_tests.helpers.runner import CORE_TOP as TOP
@@ -11,10 +13,10 @@ from cocotb_tests.helpers.runner import ONE_CHANNEL, TWO_CHANNELS, run
 
 MOST_CHANNELS = {"CHANNELS": 8, "AXES": 1, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 8, "RAMP_QUEUE_LOG2": 8}
 
-# Icarus Verilog is much slower: long tests run only on Verilator, and Icarus gets fewer random moves. `make
-# soak` plays a thousand more histories on it.
+# Icarus Verilog is up to ten times slower: long tests run only on Verilator, Icarus gets fewer random moves,
+# and `make icarus` runs on it what `make test` leaves out. `make soak` plays a thousand more histories on it.
 verilator_only = pytest.mark.parametrize("simulator", ["verilator"])
-
+LEFT_TO_MAKE_ICARUS = ("core_commands", "core_faults", "core_link", "core_refusals")
 
 MODULES = {
     "core_motion": ONE_CHANNEL,  # every step on its clock, from the first clock of a motion to the last
@@ -29,6 +31,8 @@ MODULES = {
 
 @pytest.mark.parametrize("module", MODULES)
 def test_core(simulator: str, module: str) -> None:
+    if simulator == "icarus" and module in LEFT_TO_MAKE_ICARUS and not os.environ.get("PASSO_ICARUS"):
+        pytest.skip("part of 'make icarus'")
     run(f"cocotb_tests.{module}", TOP, MODULES[module], simulator)
 
 

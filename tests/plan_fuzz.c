@@ -11,6 +11,7 @@
 #include <time.h>
 
 #include "passo_plan.h"
+#include "passo_shapes.h"
 
 static uint64_t state;
 

@@ -301,8 +301,8 @@ def test_report_tries_more_seeds_where_there_is_a_goal(
         ("hx8k", report.SPI, (1, 1)),
         ("up5k", report.SPI, (4, 2)),
     )
-    door = ("hx8k", "passo_wishbone", (1, 4))
-    measured = report.measure([goal, other, large, door], splits=False)
+    wishbone = ("hx8k", "passo_wishbone", (1, 4))
+    measured = report.measure([goal, other, large, wishbone], splits=False)
     assert runs == {
         "hx8k-1x4": [*range(1, 9)],
         "hx8k-1x1": [1, 2, 3],

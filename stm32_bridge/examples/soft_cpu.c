@@ -4,27 +4,27 @@
  */
 #include "passo.h"
 
-#define DOOR_ADDRESS 0x40000000u /* address on your bus */
+#define PORT_ADDRESS 0x40000000u /* address on your bus */
 #define CLOCK_HZ 100000000u      /* of CPU and core */
 
 uint32_t cycle_count(void); /* of your CPU, such as mcycle on RISC-V */
 
 /* See rtl/passo_words.v. An access waits until the previous word has been sent. */
-struct door {
+struct port {
 	volatile uint32_t select; /* 1: a frame is open */
 	volatile uint32_t word;   /* write: the next word to send; read: the word received in exchange */
 };
 
 static bool transfer(void *context, const uint32_t *send, uint32_t *receive, size_t words)
 {
-	struct door *door = context;
+	struct port *port = context;
 
-	door->select = 1;
+	port->select = 1;
 	for (size_t i = 0; i < words; i++) {
-		receive[i] = door->word;
-		door->word = send[i];
+		receive[i] = port->word;
+		port->word = send[i];
 	}
-	door->select = 0;
+	port->select = 0;
 	return true;
 }
 
@@ -43,7 +43,7 @@ static uint32_t microseconds(void *context)
 enum passo_error open_passo(struct passo *passo, struct passo_host *host)
 {
 	const struct passo_hardware hardware = {
-	    .transfer = transfer, .microseconds = microseconds, .context = (void *)(uintptr_t)DOOR_ADDRESS};
+	    .transfer = transfer, .microseconds = microseconds, .context = (void *)(uintptr_t)PORT_ADDRESS};
 	const struct passo_options options = {.clock_hz = CLOCK_HZ};
 
 	return passo_open(passo, host, &hardware, &options);
