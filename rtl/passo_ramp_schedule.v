@@ -50,12 +50,13 @@ module passo_ramp_schedule (
   reg [5:0] before_end;  // count in the last clock but one; valid from the second clock on
   always @(posedge clk)
     case (stage)
-      STAGE_COPY:                 before_end <= COPY_CLOCKS - 6'd1;
-      STAGE_FETCH, STAGE_ADVANCE: before_end <= FETCH_CLOCKS - 6'd1;
-      STAGE_TAKE:                 before_end <= TAKE_CLOCKS - 6'd1;
-      STAGE_SHAPE:                before_end <= SHAPE_CLOCKS - 6'd1;
-      STAGE_SCALE:                before_end <= SCALE_CLOCKS - 6'd1;
-      default:                    before_end <= 6'd0;
+      STAGE_COPY:    before_end <= COPY_CLOCKS - 6'd1;
+      STAGE_FETCH:   before_end <= FETCH_CLOCKS - 6'd1;
+      STAGE_ADVANCE: before_end <= ADVANCE_CLOCKS - 6'd1;
+      STAGE_TAKE:    before_end <= TAKE_CLOCKS - 6'd1;
+      STAGE_SHAPE:   before_end <= SHAPE_CLOCKS - 6'd1;
+      STAGE_SCALE:   before_end <= SCALE_CLOCKS - 6'd1;
+      default:       before_end <= 6'd0;
     endcase
 
   reg  last;

@@ -14,7 +14,8 @@ from passo.build import Parameters
 from passo.engine import Engine, model_engine, rtl_engine
 from passo.toolchain import paths
 from passo_stm32 import demo
-from passo_stm32.board import START, Board, Motion, firmware_elf, make_firmware, motions
+from passo_stm32.bench import memory_report
+from passo_stm32.board import START, Board, Motion, firmware_elf, motions
 from passo_stm32.bus import TICKS_PER_SECOND
 from passo_stm32.lines import move_line
 from passo_stm32.machine import Machine
@@ -344,7 +345,7 @@ def test_processor_has_little_to_do_during_a_motion() -> None:
 
 def test_it_fits_and_the_page_says_how_large_it_is() -> None:
     """`make firmware` ends well: flash, RAM, and the stack by all calls, those by pointer included."""
-    said = make_firmware(f"OUT={paths.build / 'firmware'}")
+    said = memory_report()
     page = (paths.docs / "firmware.md").read_text(encoding="utf-8")
     for name, row in (("flash", "flash"), ("RAM", "RAM without stack"), ("stack", "worst-case stack")):
         (size,) = re.findall(rf"^{name} +(\d+) of", said, re.M)

@@ -25,13 +25,14 @@ A field that is alone in its register and has its name does not repeat it: CHANN
 import re
 import sys
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
 from textwrap import wrap
 
 from generated import is_check, keep
+from passo import register_table
 from systemrdl import RDLCompiler
 from systemrdl.node import AddressableNode, FieldNode, RegNode
 
@@ -50,25 +51,15 @@ ENUMS = {
 
 
 @dataclass(frozen=True)
-class Field:
-    """Some bits of a register."""
+class Field(register_table.Field):
+    """Some bits of a register, with what the documentation says of them."""
 
-    name: str
-    lsb: int
-    bits: int
-    access: str
-    reset: int | None
     text: str
     enum: str | None
 
 
-def bits_of(fields: Iterable["Field"]) -> int:
-    """All bits of fields."""
-    return sum(((1 << field.bits) - 1) << field.lsb for field in fields)
-
-
 @dataclass(frozen=True)
-class Register:
+class Register(register_table.Fields):
     """One word, or `count` words in a row."""
 
     name: str
@@ -77,14 +68,6 @@ class Register:
     title: str
     text: str
     fields: tuple[Field, ...]
-
-    @property
-    def access(self) -> str:
-        return "".join(letter for letter in "rw" if any(letter in field.access for field in self.fields))
-
-    @property
-    def defined(self) -> int:
-        return bits_of(field for field in self.fields if "w" in field.access)
 
 
 @dataclass(frozen=True)
@@ -259,7 +242,7 @@ def constant_groups(source: Source) -> list[tuple[str, list[Constant]]]:
     for word in source.words:
         fields = [field_constants(f"{word.name}_{field.name}", field) for field in word.fields]
         constants = [constant for of_field in fields for constant in of_field]
-        constants.append(Constant(f"{word.name}_DEFINED", bits_of(word.fields), 32))
+        constants.append(Constant(f"{word.name}_DEFINED", register_table.bits_of(word.fields), 32))
         groups.append((f"Word: {word.title}. {word.text}", constants))
     for block in core.walk():
         level = block.name.capitalize()

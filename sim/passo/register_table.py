@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What the table of all registers (passo.registers.TABLE) consists of."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 
@@ -20,14 +21,14 @@ class Field:
         return ((1 << self.bits) - 1) << self.lsb
 
 
-@dataclass(frozen=True)
-class Register:
-    """One word of the core, of each channel or of each axis, or `count` words in a row."""
+def bits_of(fields: Iterable[Field]) -> int:
+    """All bits of fields."""
+    return sum(field.mask for field in fields)
 
-    name: str
-    block: str  # CORE, CHANNEL or AXIS
-    word: int  # of its block
-    count: int
+
+class Fields:
+    """What follows from the fields of a register."""
+
     fields: tuple[Field, ...]
 
     @property
@@ -38,12 +39,23 @@ class Register:
     @property
     def defined(self) -> int:
         """The bits that may be written."""
-        return sum(field.mask for field in self.fields if "w" in field.access)
+        return bits_of(field for field in self.fields if "w" in field.access)
+
+
+@dataclass(frozen=True)
+class Register(Fields):
+    """One word of the core, of each channel or of each axis, or `count` words in a row."""
+
+    name: str
+    block: str  # CORE, CHANNEL or AXIS
+    word: int  # of its block
+    count: int
+    fields: tuple[Field, ...]
 
     @property
     def known(self) -> int:
         """The bits that are known after a reset: all but the fields without a reset value."""
-        return 0xFFFFFFFF & ~sum(field.mask for field in self.fields if field.reset is None)
+        return 0xFFFFFFFF & ~bits_of(field for field in self.fields if field.reset is None)
 
     @property
     def reset(self) -> int:
