@@ -245,6 +245,12 @@ def test_one_motor(driver: Driver, wire: Wire) -> None:
     finish(driver)
     assert not lib.passo_motor_is_turning(motor)
     assert lib.passo_motor_angle(motor, degrees) == 0 and degrees[0] == -180 * Q32
+    assert lib.passo_motor_start(motor) == 0 and not lib.passo_motor_is_turning(motor)  # there already
+    assert lib.passo_motor_set_angle(motor, 45 * Q32, 600 * Q32) == 0
+    for end in (-135, -90):
+        assert lib.passo_motor_start(motor) == 0
+        finish(driver)
+        assert lib.passo_motor_angle(motor, degrees) == 0 and degrees[0] == end * Q32
     assert lib.passo_motor_start_endless(motor, False, 300 * Q32, 900 * Q32) == 0
     wire.run(CLOCK_HZ // 20)
     assert lib.passo_motor_set_speed(motor, 900 * Q32) == 0

@@ -12,6 +12,13 @@ enum passo_error passo_driver_check(const struct passo *passo)
 	return passo->belief != PASSO_BELIEF_NOT_OPEN ? PASSO_OK : PASSO_ERROR_NOT_OPEN;
 }
 
+enum passo_error passo_driver_check_axis(const struct passo *passo, uint8_t axis)
+{
+	enum passo_error error = passo_driver_check(passo);
+
+	return error == PASSO_OK && axis >= passo->machine.axes ? PASSO_ERROR_ARGUMENT : error;
+}
+
 bool passo_driver_is_wire(enum passo_error error)
 {
 	return error >= PASSO_ERROR_TRANSFER && error <= PASSO_ERROR_BAD_CRC;

@@ -77,7 +77,8 @@ struct passo_source {
 struct passo_axis_memory {
 	uint64_t steps_per_unit;  /* UQ32.32 */
 	uint32_t shortest_clocks; /* shortest step period; 0: pin settings unknown */
-	int32_t expected;         /* position after all queued motions */
+	int32_t expected;         /* position of the core after all queued motions */
+	uint32_t offset;          /* position of the program less that of the core; wraps */
 };
 
 /* Assumed state of the channel. docs/driver.md shows the transitions. */
@@ -132,6 +133,7 @@ struct passo {
 	uint8_t idle_looks; /* consecutive status reads that found all motions ended */
 	bool held;          /* feed hold: the rate is 0 whatever the override */
 	bool rate_due;      /* the rate is not acknowledged; every poll resends it */
+	bool zero_due;      /* zero is not acknowledged: the positions read next count as 0 */
 	enum passo_due stop_due;
 	enum passo_belief belief;
 	enum passo_expectation expects;
@@ -215,6 +217,33 @@ enum passo_error passo_move_user_in_time(
     struct passo *passo, const struct passo_move_in_time *move, const struct passo_user_shape *shape);
 enum passo_error passo_move_user_by_speed(
     struct passo *passo, const struct passo_move_by_speed *move, const struct passo_user_shape *shape);
+/* The same to absolute positions: `steps`, `distance` and `angle` are those of the end. Bit i of `axes` moves
+ * axis i; the others stay, whatever is given for them. The way is counted from passo_target(), the end of the
+ * moves queued before, in the shorter direction around 2^32 steps. An end in millimetres or degrees is
+ * rounded to the nearest step of the axis, so that errors do not add up. If no axis is left with a way,
+ * nothing is queued: OK. One frame more. Errors: those of a move; ARGUMENT also if `axes` is 0 or has an axis
+ * that the channel does not have; MOVING also while passo_target() is unknown. */
+enum passo_error passo_move_to_in_time(
+    struct passo *passo, uint8_t axes, const struct passo_move_in_time *move);
+enum passo_error passo_move_to_by_speed(
+    struct passo *passo, uint8_t axes, const struct passo_move_by_speed *move);
+enum passo_error passo_move_to_below_speed(
+    struct passo *passo, uint8_t axes, const struct passo_move_below_speed *move);
+enum passo_error passo_move_to_at_speed(
+    struct passo *passo, uint8_t axes, const struct passo_move_at_speed *move);
+enum passo_error passo_move_to_axes(struct passo *passo, uint8_t axes, const struct passo_move_axes *move);
+enum passo_error passo_move_to_sigmoid(
+    struct passo *passo, uint8_t axes, const struct passo_move_sigmoid *move);
+enum passo_error passo_move_to_jerk(struct passo *passo, uint8_t axes, const struct passo_move_jerk *move);
+enum passo_error passo_move_to_straight(
+    struct passo *passo, uint8_t axes, const struct passo_move_straight *move);
+enum passo_error passo_move_to_user_in_time(struct passo *passo, uint8_t axes,
+    const struct passo_move_in_time *move, const struct passo_user_shape *shape);
+enum passo_error passo_move_to_user_by_speed(struct passo *passo, uint8_t axes,
+    const struct passo_move_by_speed *move, const struct passo_user_shape *shape);
+/* To an angle from position 0, over full turns as well. */
+enum passo_error passo_move_to_turn(struct passo *passo, const struct passo_move_turn *move);
+
 /* Queues a plan made with passo_machine(); `shape` is null unless it is a plan of passo_plan_user_...(). */
 enum passo_error passo_move_plan(
     struct passo *passo, const struct passo_plan *plan, const struct passo_user_shape *shape);
@@ -280,20 +309,45 @@ enum passo_error passo_abort(struct passo *passo);
  * first and waits until all steps have left the pins. Errors: NOT_STOPPED, NOT_HELD, MOVING during a soft
  * stop or a motion that was not stopped. */
 enum passo_error passo_clear(struct passo *passo);
-/* Sets all positions to 0. Only at rest: MOVING. */
-enum passo_error passo_zero(struct passo *passo);
 /* While on, prepared motions wait for a rising edge of the core's sync input. Switching it off starts them.
  * If it is not acknowledged, motions wait and every poll resends that. */
 enum passo_error passo_wait_for_sync(struct passo *passo, bool on);
+
+/* --------------------------------------------------------------------------------------- positions ----
+ *
+ * Positions are steps, -2^31 .. 2^31 - 1, and wrap. The core counts them from its reset or the last
+ * passo_zero(); passo_set_position() adds an offset that is kept in struct passo. Clear, stop, abort and wire
+ * errors keep it; passo_open() and passo_zero() set it to 0. */
+
+/* Stands for the position of an axis without units, or beyond 2^31 units. */
+#define PASSO_NO_UNITS INT64_MIN
+
+/* Positions of all axes at one instant, in steps and, Q31.32, in the units of each axis: [0 .. axes - 1].
+ * `steps` may be null. */
+enum passo_error passo_positions(struct passo *passo, int32_t *steps);
+enum passo_error passo_positions_units(struct passo *passo, int32_t *steps, int64_t *units);
+/* Position of one axis in its units, Q31.32. Error: UNITS. */
+enum passo_error passo_position_units(struct passo *passo, uint8_t axis, int64_t *units);
+/* Where all axes will be after the motions queued so far; at rest, where they are. No frame. Errors: STOPPED
+ * or BROKEN until passo_clear(), which makes the real positions the target; MOVING while the end is unknown:
+ * during continuous rotation, or an endless line. */
+enum passo_error passo_target(const struct passo *passo, int32_t *steps);
+/* Steps from the present position to passo_target(), of all axes at one instant; the sign is the direction.
+ * One frame. Errors: those of passo_target(). */
+enum passo_error passo_distance_to_go(struct passo *passo, int32_t *steps);
+/* Converts steps of an axis, such as a target, to its units, Q31.32. No frame. Error: UNITS. */
+enum passo_error passo_to_units(const struct passo *passo, uint8_t axis, int32_t steps, int64_t *units);
+/* The present position of one axis becomes `steps`; the other axes keep theirs. Only at rest: MOVING. Three
+ * frames. */
+enum passo_error passo_set_position(struct passo *passo, uint8_t axis, int32_t steps);
+/* Sets all positions to 0, in the core as well. Only at rest: MOVING. After a link error they are 0 all the
+ * same for the driver; whether for the core, that passo_open() reads, is unknown. */
+enum passo_error passo_zero(struct passo *passo);
 
 /* ----------------------------------------------------------------------------------------- reading ---- */
 
 /* Reads the present state. */
 enum passo_error passo_read_state(struct passo *passo, struct passo_snapshot *snapshot);
-/* Reads the steps made by each axis, all sampled at the same time: positions[0 .. axes - 1]. */
-enum passo_error passo_positions(struct passo *passo, int32_t *positions);
-/* Position of an axis in its units, Q31.32. Error: UNITS. */
-enum passo_error passo_position_units(struct passo *passo, uint8_t axis, int64_t *units);
 /* Angle of an axis in degrees (Q31.32), and speed of the axis with the most steps in rpm (UQ32.32), override
  * included. `steps_per_turn` is steps per revolution. The speed is scaled for the move queued last and can be
  * wrong while an earlier one is running. */

@@ -22,17 +22,10 @@ static uint16_t address_of(uint8_t axis, uint16_t reg)
 	return (uint16_t)(PASSO_CHANNEL_AXIS_BASE + axis * PASSO_CHANNEL_AXIS_STRIDE + reg);
 }
 
-static enum passo_error check_axis(const struct passo *passo, uint8_t axis)
-{
-	enum passo_error error = passo_driver_check(passo);
-
-	return error == PASSO_OK && axis >= passo->machine.axes ? PASSO_ERROR_ARGUMENT : error;
-}
-
 enum passo_error passo_configure_axis(
     struct passo *passo, uint8_t axis, const struct passo_axis_config *config)
 {
-	enum passo_error error = check_axis(passo, axis);
+	enum passo_error error = passo_driver_check_axis(passo, axis);
 
 	if (error != PASSO_OK)
 		return error;
@@ -80,7 +73,7 @@ bool passo_driver_pins_known(const struct passo *passo, const struct passo_line 
 
 enum passo_error passo_enable(struct passo *passo, uint8_t axis, bool on)
 {
-	enum passo_error error = check_axis(passo, axis);
+	enum passo_error error = passo_driver_check_axis(passo, axis);
 
 	if (error != PASSO_OK)
 		return error;
