@@ -5,6 +5,7 @@ import pytest
 from passo.driver import Driver
 from passo.native import ffi, planner
 from passo.plan import sigmoid_table
+from passo.registers import Operation
 
 from tests.helpers.driver_wire import CLOCK_HZ, Q32, Wire, by_speed, error_of, finish, open_driver, struct
 from tests.test_driver import LONG, MOVES, TURN, straight
@@ -178,6 +179,10 @@ def test_no_end_in_rotation(driver: Driver, wire: Wire) -> None:
     assert driver.positions() == [0, 0, 0, 0] == wire.counted()[1]
 
 
+def is_write(request: list[int]) -> bool:
+    return request[0] >> 28 == Operation.WRITE
+
+
 @pytest.mark.parametrize("arrives", [False, True])
 def test_zero_on_a_dying_wire(driver: Driver, wire: Wire, arrives: bool) -> None:
     """Executed or not: the driver counts from 0, and absolute moves agree with it."""
@@ -185,11 +190,11 @@ def test_zero_on_a_dying_wire(driver: Driver, wire: Wire, arrives: bool) -> None
     finish(driver)
     driver.call("set_position", 1, 50)
     if arrives:
-        wire.back = lambda words: [0] * len(words)
+        wire.back = lambda words: [0] * len(words) if is_write(wire.requests[-1]) else words
     else:
-        wire.stuck = 0
+        wire.there = lambda words: None if is_write(words) else words
     assert error_of(driver, "zero") == "STUCK_LOW"
-    wire.stuck, wire.back = None, list
+    wire.there = wire.back = list
     driver.call("move_to_by_speed", X | Y, by_speed([10, 20]))
     finish(driver)
     assert driver.positions() == [10, 20, 0, 0] and driver.fault == "OK"

@@ -24,8 +24,8 @@
  *
  * A call costs one frame (chip select) unless its comment says otherwise; on a noisy link up to `tries`
  * frames. Every call can return ARGUMENT, NOT_OPEN, link errors, CORE_RESET and REFUSED + verdict; comments
- * list the other errors. Speeds, accelerations and rpm are UQ32.32 (PASSO_UNIT_Q32 is 1), lengths and angles
- * Q31.32.
+ * list the other errors. Speeds, accelerations and rpm are UQ32.32, lengths and angles Q31.32, times of moves
+ * clocks of the core: passo_units.h makes them of numbers and units.
  */
 #ifndef PASSO_H
 #define PASSO_H
@@ -37,6 +37,7 @@ extern "C" {
 #include "passo_error.h"
 #include "passo_host.h"
 #include "passo_plan.h"
+#include "passo_units.h"
 
 #define PASSO_RATE_FULL UINT32_C(0x10000) /* 100 % override, UQ1.16 */
 
@@ -199,8 +200,9 @@ enum passo_error passo_configure_motion(
 
 /* Each plans a move, checks it against the pin timing, loads a shape table if the core does not hold the
  * required one (five frames and the time to compute it), and queues the move: three frames. It starts at once
- * or after the motions queued before it. Errors: PASSO_ERROR_PLAN + enum passo_plan_error, FULL (try again
- * later), STOPPED, NOT_STOPPED, NOT_HELD, BROKEN, STREAMING, MOVING (in continuous rotation), TABLE,
+ * or after the motions queued before it. Errors: PASSO_ERROR_PLAN + enum passo_plan_error, or ABSURD in place
+ * of those of a value that lacks its factor, such as .speed = 10000 for PASSO_STEPS_PER_S(10000); FULL (try
+ * again later), STOPPED, NOT_STOPPED, NOT_HELD, BROKEN, STREAMING, MOVING (in continuous rotation), TABLE,
  * NOT_CONFIGURED, PINS_TOO_SLOW. */
 enum passo_error passo_move_in_time(struct passo *passo, const struct passo_move_in_time *move);
 enum passo_error passo_move_by_speed(struct passo *passo, const struct passo_move_by_speed *move);
@@ -340,8 +342,8 @@ enum passo_error passo_to_units(const struct passo *passo, uint8_t axis, int32_t
 /* The present position of one axis becomes `steps`; the other axes keep theirs. Only at rest: MOVING. Three
  * frames. */
 enum passo_error passo_set_position(struct passo *passo, uint8_t axis, int32_t steps);
-/* Sets all positions to 0, in the core as well. Only at rest: MOVING. After a link error they are 0 all the
- * same for the driver; whether for the core, that passo_open() reads, is unknown. */
+/* Sets all positions to 0, in the core as well. Only at rest: MOVING. After a link error they are as
+ * before, or 0 for the driver whether the core has executed it or not: call it again. */
 enum passo_error passo_zero(struct passo *passo);
 
 /* ----------------------------------------------------------------------------------------- reading ---- */

@@ -18,6 +18,7 @@ static const struct words errors[PASSO_ERROR_COUNT] = {
     [PASSO_ERROR_ARGUMENT] = {"ARGUMENT", "an argument is missing or out of range"},
     [PASSO_ERROR_NOT_OPEN] = {"NOT_OPEN", "the core has not been opened"},
     [PASSO_ERROR_UNITS] = {"UNITS", "the axis has no steps per unit, or the position overflows"},
+    [PASSO_ERROR_ABSURD] = {"ABSURD", "so slow or so short a move is not meant: is a unit missing?"},
     [PASSO_ERROR_TIMEOUT] = {"TIMEOUT", "the motion did not end in time and continues"},
     [PASSO_ERROR_TRANSFER] = {"TRANSFER", "the SPI transfer failed"},
     [PASSO_ERROR_STUCK_LOW] = {"STUCK_LOW", "MISO stays low: no core, no power or no connection"},

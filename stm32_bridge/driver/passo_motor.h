@@ -2,7 +2,7 @@
  * One motor with the simplest interface: target or angle, rpm, start, stop. Thin wrappers around passo.h,
  * whose errors they return.
  *
- *     passo_motor_init(&motor, &passo, 0, 200 * 16, PASSO_RPM(10), PASSO_RPM_PER_SECOND(600));
+ *     passo_motor_init(&motor, &passo, 0, 200 * 16, PASSO_RPM(10), PASSO_RPM_PER_S(600));
  *     passo_motor_set_target(&motor, PASSO_DEGREES(-90), PASSO_RPM(60));
  *     passo_motor_start(&motor);
  *     while (passo_motor_is_turning(&motor))
@@ -16,11 +16,6 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-/* Whole degrees as Q31.32; whole rpm, and rpm per second, as UQ32.32. */
-#define PASSO_DEGREES(n) ((int64_t)(n) * (int64_t)PASSO_UNIT_Q32)
-#define PASSO_RPM(n) ((uint64_t)(n) * PASSO_UNIT_Q32)
-#define PASSO_RPM_PER_SECOND(n) PASSO_RPM(n)
 
 struct passo_motor {
 	struct passo *passo;

@@ -28,7 +28,7 @@ static bool aim(int32_t *steps, uint8_t axes, const int32_t *start)
 	bool remains = false;
 
 	for (unsigned i = 0; i < PASSO_AXES_MAX; i++) {
-		steps[i] = (axes >> i & 1u) != 0u ? way(start[i], steps[i]) : 0;
+		steps[i] = ((unsigned)axes >> i & 1u) != 0u ? way(start[i], steps[i]) : 0;
 		remains |= steps[i] != 0;
 	}
 	return remains;
@@ -102,7 +102,7 @@ enum passo_error passo_move_to_straight(
 	for (unsigned i = 0; i < PASSO_AXES_MAX; i++) {
 		uint64_t *scale = &relative.limits[i].steps_per_mm;
 		relative.distance[i] = 0;
-		if ((axes >> i & 1u) == 0u)
+		if (((unsigned)axes >> i & 1u) == 0u)
 			continue;
 		if (*scale == 0u)
 			*scale = passo->axis[i].steps_per_unit;
