@@ -152,8 +152,7 @@ static bool turn_and_stop(struct passo *passo)
 	int64_t degrees;
 	uint64_t rpm;
 
-	CHECK(
-	    passo_motor_init(&motor, passo, 3, 3200, PASSO_RPM(5), PASSO_RPM_PER_S(60000)) == PASSO_OK);
+	CHECK(passo_motor_init(&motor, passo, 3, 3200, PASSO_RPM(5), PASSO_RPM_PER_S(60000)) == PASSO_OK);
 	CHECK(passo_motor_start_endless(&motor, true, PASSO_RPM(300), PASSO_RPM(600)) == PASSO_OK);
 	CHECK(passo_wait(passo, 20000) == PASSO_ERROR_TIMEOUT);
 	CHECK(passo_motor_set_speed(&motor, PASSO_RPM(600)) == PASSO_OK);

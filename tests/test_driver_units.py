@@ -42,7 +42,8 @@ def test_values() -> None:
     header = (paths.driver / "passo_units.h").read_text()
     for macro in VALUES:
         assert f"#define {macro.split('(')[0]}(" in header
-    checks = "".join(f"\tif (v{i} != UINT64_C({n % 2**64})) return {i + 1};\n" for i, n in enumerate(VALUES.values()))
+    words = [n % 2**64 for n in VALUES.values()]
+    checks = "".join(f"\tif (v{i} != UINT64_C({n})) return {i + 1};\n" for i, n in enumerate(words))
     build = paths.build / "units"
     build.mkdir(parents=True, exist_ok=True)
     for name, flags in {
