@@ -344,6 +344,7 @@ def test_what_is_refused(driver: Driver, wire: Wire) -> None:
     for name, arguments in {"poll": (), "move_by_speed": (LONG,), "hold": (), "wait": (0,)}.items():
         assert getattr(lib, f"passo_{name}")(closed, *arguments) == lib.PASSO_ERROR_NOT_OPEN
         assert getattr(lib, f"passo_{name}")(null, *arguments) == lib.PASSO_ERROR_ARGUMENT
+    assert lib.passo_fault(closed) == lib.PASSO_ERROR_NOT_OPEN
     driver.call("move_by_speed", LONG)
     assert error_of(driver, "configure_axis", 0, struct("axis_config")) == "MOVING"
     assert error_of(driver, "zero") == "MOVING"
@@ -734,3 +735,15 @@ def test_configured_again_after_open(driver: Driver, wire: Wire) -> None:
     driver.call("move_by_speed", by_speed([-23, 0, 0, 0]))
     finish(driver)
     assert driver.positions()[0] == 100 and wire.counted()[0][0] == 146
+
+
+def test_why_it_is_not_open(driver: Driver, wire: Wire) -> None:
+    """Calls are NOT_OPEN; the fault repeats what went wrong when it was opened."""
+    for level, name in enumerate(("STUCK_LOW", "STUCK_HIGH")):
+        wire.stuck = level
+        with pytest.raises(DriverError, match=name):
+            driver.open()
+        assert error_of(driver, "move_by_speed", LONG) == "NOT_OPEN" and driver.fault == name
+    wire.stuck = None
+    driver.open()
+    assert driver.fault == "OK"

@@ -287,7 +287,8 @@ bool passo_is_moving(const struct passo *passo);
 /* The state that was read last. No frame. */
 const struct passo_snapshot *passo_snapshot(const struct passo *passo);
 /* NOT_STOPPED or NOT_HELD while that applies; otherwise the last error of passo_poll(), kept until
- * passo_clear(), or OK. No frame. */
+ * passo_clear(), or OK. Of a channel that is not open: the error of passo_open(), such as STUCK_LOW, or
+ * NOT_OPEN if that has not been called. No frame. */
 enum passo_error passo_fault(const struct passo *passo);
 /* Polls until all motions have ended; 0: no timeout. Errors: TIMEOUT, those of passo_poll(). */
 enum passo_error passo_wait(struct passo *passo, uint32_t timeout_microseconds);

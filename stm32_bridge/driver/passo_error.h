@@ -13,7 +13,7 @@ enum passo_error {
 
 	/* the call */
 	PASSO_ERROR_ARGUMENT, /* null pointer, nonexistent axis, or value out of range */
-	PASSO_ERROR_NOT_OPEN, /* passo_open() has not succeeded */
+	PASSO_ERROR_NOT_OPEN, /* passo_open() has not succeeded: call it; passo_fault() repeats its error */
 	PASSO_ERROR_UNITS,    /* the axis has no steps per unit, or the position overflows */
 	PASSO_ERROR_ABSURD,   /* a speed below 1/65536 per second or a time below 100 us: see passo_units.h */
 	PASSO_ERROR_TIMEOUT,  /* the wait timed out; the motion continues */

@@ -169,6 +169,8 @@ enum passo_error passo_fault(const struct passo *passo)
 {
 	enum passo_error error = passo_driver_check(passo);
 
+	if (error == PASSO_ERROR_NOT_OPEN && passo->fault != PASSO_OK)
+		return passo->fault;
 	if (error != PASSO_OK)
 		return error;
 	error = passo->host->lost ? PASSO_OK : passo_driver_due(passo);
