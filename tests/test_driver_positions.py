@@ -140,7 +140,7 @@ def test_the_way_wraps(driver: Driver) -> None:
 
 def test_distance_to_go(driver: Driver, wire: Wire) -> None:
     """What is left of all queued moves; after a stop nothing, from the place where the axes are."""
-    driver.call("configure_motion", 5000, 5000, 0)
+    driver.call("configure_motion", 360000, 360000, 0)
     driver.call("set_position", 0, -500)
     driver.call("move_by_speed", LONG)
     driver.call("move_by_speed", by_speed([-10_000, 30, 0, 0]))

@@ -56,7 +56,7 @@ int main(void)
 		must(passo_enable(&passo, axis, true));
 	}
 	must(passo_move_straight(&passo, &home));
-	if (passo_wait(&passo, 500000) == PASSO_ERROR_TIMEOUT) { /* here the switch of x closes */
+	if (passo_wait(&passo, PASSO_MS(500)) == PASSO_ERROR_TIMEOUT) { /* here the switch of x closes */
 		must(passo_abort(&passo));
 		must(passo_clear(&passo));
 		must(passo_set_position(&passo, 0, 0));

@@ -71,6 +71,11 @@ enum passo_error passo_driver_moving(enum passo_error error)
 	return is_busy ? PASSO_ERROR_MOVING : error;
 }
 
+uint64_t passo_clocks(const struct passo *passo, uint32_t microseconds)
+{
+	return (uint64_t)microseconds * passo->machine.clock_hz / 1000000u;
+}
+
 const struct passo_machine *passo_machine(const struct passo *passo)
 {
 	return &passo->machine;

@@ -190,11 +190,11 @@ enum passo_error passo_configure_axis(
  * most the pulse that has started. One frame, three to disable. Error: MOVING while a motion is running or
  * queued. */
 enum passo_error passo_enable(struct passo *passo, uint8_t axis, bool on);
-/* Sets the duration of hold and resume, and of a soft stop, from full rate, in microseconds; 0: at once. Both
- * are rounded to the resolution of the core. Also sets the velocity (UQ0.32 substeps per clock, up to 1/2) of
- * the substeps that remain at the end of a profile; 0: unchanged. */
+/* Sets the duration of hold and resume, and of a soft stop, from full rate, in clocks, PASSO_MS(100); 0: at
+ * once. Both are rounded to the resolution of the core. Also sets the velocity (UQ0.32 substeps per clock, up
+ * to 1/2) of the substeps that remain at the end of a profile; 0: unchanged. */
 enum passo_error passo_configure_motion(
-    struct passo *passo, uint32_t hold_microseconds, uint32_t stop_microseconds, uint32_t drain_velocity);
+    struct passo *passo, uint64_t hold_clocks, uint64_t stop_clocks, uint32_t drain_velocity);
 
 /* ------------------------------------------------------------------------------------------- moves ---- */
 
@@ -252,6 +252,8 @@ enum passo_error passo_move_plan(
 /* Loads PASSO_TABLE_SIZE points into the bank of a shape, for streams and plans; null: the points after
  * reset. Only at rest. Five frames, none if the bank holds them already. Error: TABLE. */
 enum passo_error passo_load_table(struct passo *passo, enum passo_shape bank, const uint16_t *points);
+/* A time of run time, in clocks of the core, rounded down; 0 before passo_open(). */
+uint64_t passo_clocks(const struct passo *passo, uint32_t microseconds);
 /* Clock, ticks and axes of this channel, for the functions of the planner. */
 const struct passo_machine *passo_machine(const struct passo *passo);
 
@@ -290,8 +292,9 @@ const struct passo_snapshot *passo_snapshot(const struct passo *passo);
  * passo_clear(), or OK. Of a channel that is not open: the error of passo_open(), such as STUCK_LOW, or
  * NOT_OPEN if that has not been called. No frame. */
 enum passo_error passo_fault(const struct passo *passo);
-/* Polls until all motions have ended; 0: no timeout. Errors: TIMEOUT, those of passo_poll(). */
-enum passo_error passo_wait(struct passo *passo, uint32_t timeout_microseconds);
+/* Polls until all motions have ended, at most for a time in clocks, PASSO_S(2), up to 2^32 microseconds; 0:
+ * no timeout. Errors: TIMEOUT, those of passo_poll(). */
+enum passo_error passo_wait(struct passo *passo, uint64_t timeout_clocks);
 
 /* ----------------------------------------------------------------------------------------- control ---- */
 
