@@ -140,9 +140,9 @@ static enum passo_error move_planned(struct passo *passo, enum passo_plan_error 
 {
 	if (error == PASSO_PLAN_OK)
 		return passo_move_plan(passo, plan, shape);
-	if (is_absurd(passo, error, slow, total_clocks))
-		return PASSO_ERROR_ABSURD;
-	return (enum passo_error)((unsigned)PASSO_ERROR_PLAN + (unsigned)error);
+	const enum passo_error base =
+	    is_absurd(passo, error, slow, total_clocks) ? PASSO_ERROR_ABSURD : PASSO_ERROR_PLAN;
+	return (enum passo_error)((unsigned)base + (unsigned)error);
 }
 
 static enum passo_error check(const struct passo *passo, const void *move)
