@@ -139,6 +139,11 @@ enum passo_plan_error passo_plan_turning_speed(const struct passo_machine *machi
 enum passo_plan_error passo_plan_turning_stop(const struct passo_machine *machine,
     const struct passo_turning *turning, uint64_t velocity, struct passo_plan *plan);
 
+/* Nearest whole steps to an angle (Q31.32 degrees) and to a length (Q31.32 mm, scale UQ32.32), with its sign;
+ * at most 2^32 - 1 either way. 0 if the scale is 0. */
+int64_t passo_steps_of_angle(int64_t angle, uint32_t steps_per_turn);
+int64_t passo_steps_of_length(int64_t length, uint64_t steps_per_mm);
+
 /* Conversion of readings: the angle of a position in degrees (Q31.32, saturating), and the speed of the
  * longest axis in rpm (UQ32.32) from a velocity (UQ0.48 substeps per clock) and the oversampling of its plan.
  * 0 if steps_per_turn is 0. */

@@ -29,12 +29,11 @@ static uint64_t absolute(int64_t value)
 	return value < 0 ? 0 - (uint64_t)value : (uint64_t)value;
 }
 
-/* Rounded to nearest; saturates at UINT32_MAX. */
-static uint32_t steps_of(uint64_t distance, uint64_t steps_per_mm)
+int64_t passo_steps_of_length(int64_t length, uint64_t steps_per_mm)
 {
-	struct passo_u128 steps = passo_multiply(distance, steps_per_mm); /* UQ64.64, below 2^63 */
-	uint64_t whole = steps.high + (steps.low >> 63);
-	return whole < UINT32_MAX ? (uint32_t)whole : UINT32_MAX;
+	struct passo_u128 exact = passo_multiply(absolute(length), steps_per_mm); /* UQ64.64, below 2^63 */
+	int64_t steps = (int64_t)passo_smaller(exact.high + (exact.low >> 63), UINT32_MAX);
+	return length < 0 ? -steps : steps;
 }
 
 /* Length of the path in millimetres, UQ32.32, rounded up to a few units; saturates. */
@@ -71,8 +70,8 @@ static uint32_t check_axes(const struct passo_machine *machine, const struct pas
 			return PASSO_PLAN_NO_AXIS_SPEED;
 		if (move->limits[axis].acceleration == 0)
 			return PASSO_PLAN_NO_AXIS_ACCELERATION;
-		uint32_t steps = steps_of(absolute(move->distance[axis]), move->limits[axis].steps_per_mm);
-		if (steps > PASSO_SUBSTEPS_MAX)
+		int64_t steps = passo_steps_of_length(move->distance[axis], move->limits[axis].steps_per_mm);
+		if (steps < -(int64_t)PASSO_SUBSTEPS_MAX || steps > (int64_t)PASSO_SUBSTEPS_MAX)
 			return PASSO_PLAN_TOO_MANY_STEPS;
 	}
 	return PASSO_PLAN_OK;
@@ -85,10 +84,9 @@ enum passo_plan_error passo_plan_straight(
 	if (refused != PASSO_PLAN_OK)
 		return refused;
 	int32_t steps[PASSO_AXES_MAX] = {0};
-	for (uint32_t axis = 0; axis < machine->axes; axis++) {
-		uint32_t count = steps_of(absolute(move->distance[axis]), move->limits[axis].steps_per_mm);
-		steps[axis] = move->distance[axis] < 0 ? -(int32_t)count : (int32_t)count;
-	}
+	for (uint32_t axis = 0; axis < machine->axes; axis++)
+		steps[axis] =
+		    (int32_t)passo_steps_of_length(move->distance[axis], move->limits[axis].steps_per_mm);
 
 	struct passo_draft draft;
 	enum passo_plan_error error = passo_draft_start(&draft, machine, steps, PASSO_PROFILE_LINEAR);

@@ -25,14 +25,11 @@ enum passo_plan_error passo_plan_turn(
 	if (move->minimum_rpm > move->rpm)
 		return PASSO_PLAN_MINIMUM_ABOVE_SPEED;
 
-	const uint64_t turn = DEGREES_PER_TURN * PASSO_UNIT_Q32;
-	uint64_t angle = move->angle < 0 ? 0 - (uint64_t)move->angle : (uint64_t)move->angle;
-	struct passo_u128 product = passo_multiply(angle, move->steps_per_turn);
-	uint64_t count = passo_divide(passo_u128_add(product, (struct passo_u128){0, turn / 2}), turn, NULL);
-	if (count > PASSO_SUBSTEPS_MAX)
+	int64_t count = passo_steps_of_angle(move->angle, move->steps_per_turn);
+	if (count < -(int64_t)PASSO_SUBSTEPS_MAX || count > (int64_t)PASSO_SUBSTEPS_MAX)
 		return PASSO_PLAN_TOO_MANY_STEPS;
 	int32_t steps[PASSO_AXES_MAX] = {0};
-	steps[move->axis] = move->angle < 0 ? -(int32_t)count : (int32_t)count;
+	steps[move->axis] = (int32_t)count;
 
 	struct passo_draft draft;
 	enum passo_plan_error error = passo_draft_start(&draft, machine, steps, PASSO_PROFILE_LINEAR);
@@ -190,6 +187,16 @@ enum passo_plan_error passo_plan_turning_stop(const struct passo_machine *machin
 }
 
 /* -------------------------------------------------------------------------------------- conversion ---- */
+
+int64_t passo_steps_of_angle(int64_t angle, uint32_t steps_per_turn)
+{
+	const uint64_t turn = DEGREES_PER_TURN * PASSO_UNIT_Q32;
+	struct passo_u128 product =
+	    passo_multiply(angle < 0 ? 0 - (uint64_t)angle : (uint64_t)angle, steps_per_turn);
+	uint64_t count = passo_divide(passo_u128_add(product, (struct passo_u128){0, turn / 2}), turn, NULL);
+	int64_t steps = (int64_t)passo_smaller(count, UINT32_MAX);
+	return angle < 0 ? -steps : steps;
+}
 
 int64_t passo_angle_of(int32_t position, uint32_t steps_per_turn)
 {

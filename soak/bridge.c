@@ -47,7 +47,8 @@ static enum passo_error configure(struct bridge *bridge)
 			return error;
 	}
 	enum passo_error error =
-	    passo_configure_motion(&bridge->passo, HOLD_MICROSECONDS, STOP_MICROSECONDS, 1u << 28);
+	    passo_configure_motion(&bridge->passo, passo_clocks(&bridge->passo, HOLD_MICROSECONDS),
+		passo_clocks(&bridge->passo, STOP_MICROSECONDS), 1u << 28);
 	world_run(bridge->world, 50);
 	bridge->row = bridge->world->row_count - 1u;
 	memset(bridge->made, 0, sizeof bridge->made);

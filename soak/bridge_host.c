@@ -131,7 +131,8 @@ bool bridge_move(struct bridge *bridge, enum passo_error *error)
 
 void bridge_finish(struct bridge *bridge)
 {
-	bridge_must(bridge, "wait", passo_wait(&bridge->passo, WAIT_MICROSECONDS));
+	bridge_must(
+	    bridge, "wait", passo_wait(&bridge->passo, passo_clocks(&bridge->passo, WAIT_MICROSECONDS)));
 	if (!bridge->world->failed_at)
 		check_made(bridge, "at rest");
 }

@@ -250,7 +250,7 @@ static enum passo_error disable(void)
 
 static enum passo_error configure_motion(void)
 {
-	return passo_configure_motion(passo, 3000, 1500, 12345);
+	return passo_configure_motion(passo, passo_clocks(passo, 3000), passo_clocks(passo, 1500), 12345);
 }
 
 static enum passo_error move_steps(int32_t first, int32_t second)
@@ -347,7 +347,7 @@ static enum passo_error poll_stream(void)
 
 static enum passo_error wait(void)
 {
-	return passo_wait(passo, 60000);
+	return passo_wait(passo, passo_clocks(passo, 60000));
 }
 
 static enum passo_error stream_start(void)
@@ -445,7 +445,8 @@ static void at_rest(void)
 	must(configure(), "configure");
 	for (uint8_t axis = 0; axis < AXES; axis++)
 		must(passo_enable(passo, axis, axis == 1u), "enable");
-	must(passo_configure_motion(passo, 300, 300, 0), "configure motion");
+	must(passo_configure_motion(passo, passo_clocks(passo, 300), passo_clocks(passo, 300), 0),
+	    "configure motion");
 	must(move_steps(3, 5), "first move");
 	look(20);
 }

@@ -11,6 +11,7 @@
 #include "passo_motor.h"
 
 #define CLOCK_HZ 72000000u
+#define PASSO_CLOCK_HZ CLOCK_HZ
 #define GAP 64u
 #define MOVES 60u
 #define LINES 400u
@@ -100,9 +101,9 @@ static bool random_moves(struct passo *passo, struct wire *wire)
 		for (unsigned i = 0; i < 4 && error == PASSO_OK; i++)
 			expected[i] += move.steps[i];
 		if (error == PASSO_ERROR_FULL || draw(wire) % 3u == 0)
-			CHECK(passo_wait(passo, 1000000) == PASSO_OK);
+			CHECK(passo_wait(passo, PASSO_S(1)) == PASSO_OK);
 	}
-	CHECK(passo_wait(passo, 1000000) == PASSO_OK);
+	CHECK(passo_wait(passo, PASSO_S(1)) == PASSO_OK);
 	CHECK(passo_positions(passo, positions) == PASSO_OK);
 	CHECK(memcmp(expected, positions, 4 * sizeof positions[0]) == 0);
 	return true;
@@ -140,7 +141,7 @@ static bool stream(struct passo *passo)
 
 	CHECK(passo_positions(passo, before) == PASSO_OK);
 	CHECK(passo_stream(passo, &source) == PASSO_OK);
-	CHECK(passo_wait(passo, 1000000) == PASSO_OK);
+	CHECK(passo_wait(passo, PASSO_S(1)) == PASSO_OK);
 	CHECK(passo_positions(passo, after) == PASSO_OK);
 	CHECK(after[0] - before[0] == 3 * (int32_t)LINES && after[1] - before[1] == -(int32_t)LINES);
 	return true;
@@ -152,22 +153,21 @@ static bool turn_and_stop(struct passo *passo)
 	int64_t degrees;
 	uint64_t rpm;
 
-	CHECK(
-	    passo_motor_init(&motor, passo, 3, 3200, PASSO_RPM(5), PASSO_RPM_PER_SECOND(60000)) == PASSO_OK);
+	CHECK(passo_motor_init(&motor, passo, 3, 3200, PASSO_RPM(5), PASSO_RPM_PER_S(60000)) == PASSO_OK);
 	CHECK(passo_motor_start_endless(&motor, true, PASSO_RPM(300), PASSO_RPM(600)) == PASSO_OK);
-	CHECK(passo_wait(passo, 20000) == PASSO_ERROR_TIMEOUT);
+	CHECK(passo_wait(passo, PASSO_MS(20)) == PASSO_ERROR_TIMEOUT);
 	CHECK(passo_motor_set_speed(&motor, PASSO_RPM(600)) == PASSO_OK);
-	CHECK(passo_wait(passo, 20000) == PASSO_ERROR_TIMEOUT);
+	CHECK(passo_wait(passo, PASSO_MS(20)) == PASSO_ERROR_TIMEOUT);
 	CHECK(passo_motor_speed(&motor, &rpm) == PASSO_OK && rpm > PASSO_RPM(599));
 	CHECK(passo_motor_stop(&motor) == PASSO_OK);
-	CHECK(passo_wait(passo, 1000000) == PASSO_OK);
+	CHECK(passo_wait(passo, PASSO_S(1)) == PASSO_OK);
 	CHECK(passo_motor_angle(&motor, &degrees) == PASSO_OK && degrees < 0);
 	CHECK(passo_motor_set_target(&motor, PASSO_DEGREES(3600), PASSO_RPM(600)) == PASSO_OK);
 	CHECK(passo_motor_start(&motor) == PASSO_OK);
 	CHECK(passo_hold(passo) == PASSO_OK && passo_override(passo, 50) == PASSO_OK);
 	CHECK(passo_resume(passo) == PASSO_OK && passo_override(passo, 100) == PASSO_OK);
 	CHECK(passo_stop(passo) == PASSO_OK);
-	CHECK(passo_wait(passo, 1000000) == PASSO_OK);
+	CHECK(passo_wait(passo, PASSO_S(1)) == PASSO_OK);
 	CHECK(passo_snapshot(passo)->state == PASSO_STATE_STOPPED);
 	CHECK(passo_clear(passo) == PASSO_OK);
 	return true;
@@ -182,7 +182,7 @@ static bool tables(struct passo *passo)
 	    .alpha = 3 * 4096};
 
 	CHECK(passo_move_sigmoid(passo, &move) == PASSO_OK);
-	CHECK(passo_wait(passo, 1000000) == PASSO_OK);
+	CHECK(passo_wait(passo, PASSO_S(1)) == PASSO_OK);
 	CHECK(passo_load_table(passo, PASSO_SHAPE_COSINE, NULL) == PASSO_OK);
 	return true;
 }
@@ -237,7 +237,7 @@ static bool scenario(struct wire *wire)
 	CHECK(passo_abort(&passo) == PASSO_ERROR_STUCK_HIGH);
 	CHECK(passo_move_jerk(&passo, &move) == PASSO_ERROR_NOT_STOPPED);
 	wire->dead = false;
-	CHECK(passo_wait(&passo, 1000000) == PASSO_OK);
+	CHECK(passo_wait(&passo, PASSO_S(1)) == PASSO_OK);
 	CHECK(passo_clear(&passo) == PASSO_OK);
 	for (uint8_t axis = 0; axis < 4; axis++)
 		CHECK(passo_enable(&passo, axis, false) == PASSO_OK);

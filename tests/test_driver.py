@@ -136,7 +136,7 @@ def test_blocking(driver: Driver) -> None:
 def test_hold_and_override(driver: Driver, wire: Wire) -> None:
     """The same pulses later; the override survives a hold; the speed reading accounts for both."""
     rpm = ffi().new("uint64_t *")
-    driver.call("configure_motion", 1000, 1000, 0)
+    driver.call("configure_motion", 72000, 72000, 0)
     driver.call("move_by_speed", LONG)
     wire.run(CLOCK_HZ // 20)
     driver.call("rpm", TURN, rpm)
@@ -167,7 +167,7 @@ def test_hold_and_override(driver: Driver, wire: Wire) -> None:
 @pytest.mark.parametrize("how", ["stop", "abort"])
 def test_stop(driver: Driver, wire: Wire, how: str) -> None:
     """After a stop no move is accepted until clear; then the position is known."""
-    driver.call("configure_motion", 5000, 5000, 0)
+    driver.call("configure_motion", 360000, 360000, 0)
     for _ in range(3):
         driver.call("move_by_speed", LONG)
     wire.run(CLOCK_HZ // 10)
@@ -245,6 +245,12 @@ def test_one_motor(driver: Driver, wire: Wire) -> None:
     finish(driver)
     assert not lib.passo_motor_is_turning(motor)
     assert lib.passo_motor_angle(motor, degrees) == 0 and degrees[0] == -180 * Q32
+    assert lib.passo_motor_start(motor) == 0 and not lib.passo_motor_is_turning(motor)  # there already
+    assert lib.passo_motor_set_angle(motor, 45 * Q32, 600 * Q32) == 0
+    for end in (-135, -90):
+        assert lib.passo_motor_start(motor) == 0
+        finish(driver)
+        assert lib.passo_motor_angle(motor, degrees) == 0 and degrees[0] == end * Q32
     assert lib.passo_motor_start_endless(motor, False, 300 * Q32, 900 * Q32) == 0
     wire.run(CLOCK_HZ // 20)
     assert lib.passo_motor_set_speed(motor, 900 * Q32) == 0
@@ -338,6 +344,7 @@ def test_what_is_refused(driver: Driver, wire: Wire) -> None:
     for name, arguments in {"poll": (), "move_by_speed": (LONG,), "hold": (), "wait": (0,)}.items():
         assert getattr(lib, f"passo_{name}")(closed, *arguments) == lib.PASSO_ERROR_NOT_OPEN
         assert getattr(lib, f"passo_{name}")(null, *arguments) == lib.PASSO_ERROR_ARGUMENT
+    assert lib.passo_fault(closed) == lib.PASSO_ERROR_NOT_OPEN
     driver.call("move_by_speed", LONG)
     assert error_of(driver, "configure_axis", 0, struct("axis_config")) == "MOVING"
     assert error_of(driver, "zero") == "MOVING"
@@ -440,9 +447,9 @@ def test_a_drive_is_switched_off_at_rest(driver: Driver, wire: Wire) -> None:
 
 def test_slews(driver: Driver, wire: Wire) -> None:
     """Times of holds and stops become slews."""
-    driver.call("configure_motion", 1000, 0, 77)
+    driver.call("configure_motion", 72000, 0, 77)
     assert wire.requests[-1][1:4] == [65536 * 128 * 1000 // CLOCK_HZ, 65536, 77]
-    driver.call("configure_motion", 2**32 - 1, 1, 0)
+    driver.call("configure_motion", (2**32 - 1) * 72, 72, 0)
     assert wire.requests[-1][1:3] == [1, 65536] and wire.requests[-1][0] >> 12 & 0xFF == 2
 
 
@@ -566,7 +573,7 @@ def test_a_source_that_is_late(driver: Driver) -> None:
 @pytest.mark.parametrize("bad", ["substeps", "length", "steps", "axis", "velocity", "now"])
 def test_a_source_that_is_wrong(driver: Driver, wire: Wire, bad: str) -> None:
     """A frame with an invalid item is not sent; the motion is stopped with a soft stop."""
-    driver.call("configure_motion", 200, 200, 0)
+    driver.call("configure_motion", 14400, 14400, 0)
     lines, ramps = path(3000)
     if bad == "substeps":
         lines[1500].substeps = 0
@@ -597,7 +604,7 @@ def test_a_source_that_is_wrong(driver: Driver, wire: Wire, bad: str) -> None:
 
 def test_the_longest_line(driver: Driver, wire: Wire) -> None:
     """The core takes it, and makes it until it is told to stop."""
-    driver.call("configure_motion", 1, 1, 0)
+    driver.call("configure_motion", 72, 72, 0)
     ramps = path(3000)[1]
     line = struct("line", substeps=(1 << 30) - 1, steps=[1 << 29], last=True)[0]
     driver.stream(Source([line], ramps))
@@ -728,3 +735,15 @@ def test_configured_again_after_open(driver: Driver, wire: Wire) -> None:
     driver.call("move_by_speed", by_speed([-23, 0, 0, 0]))
     finish(driver)
     assert driver.positions()[0] == 100 and wire.counted()[0][0] == 146
+
+
+def test_why_it_is_not_open(driver: Driver, wire: Wire) -> None:
+    """Calls are NOT_OPEN; the fault repeats what went wrong when it was opened."""
+    for level, name in enumerate(("STUCK_LOW", "STUCK_HIGH")):
+        wire.stuck = level
+        with pytest.raises(DriverError, match=name):
+            driver.open()
+        assert error_of(driver, "move_by_speed", LONG) == "NOT_OPEN" and driver.fault == name
+    wire.stuck = None
+    driver.open()
+    assert driver.fault == "OK"

@@ -347,7 +347,7 @@ def test_a_stop_that_was_not_acknowledged(wire: Wire, how: str, level: int, cut:
     """Every poll resends it until it is acknowledged; until then NOT_STOPPED is reported."""
     stuck = "STUCK_HIGH" if level else "STUCK_LOW"
     driver = open_driver(wire)
-    driver.call("configure_motion", 1000, 1000, 0)
+    driver.call("configure_motion", 72000, 72000, 0)
     eight_moves(driver, wire)
     if cut == "replies":
         wire.back = lambda miso: [0xFFFFFFFF * level] * len(miso)

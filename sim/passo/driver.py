@@ -10,8 +10,6 @@ from passo.moves import PinTiming
 from passo.native import ffi, planner
 from passo.registers import Cause, State
 
-MICROSECONDS = 1_000_000
-
 
 class DriverError(LinkError):
     """A call of the driver failed; `name` is the name of the error, such as "CORE_RESET"."""
@@ -114,7 +112,7 @@ class Driver:
 
     def wait(self, seconds: float = 0) -> None:
         """Poll until all motions have ended; 0: no timeout."""
-        self.call("wait", round(seconds * MICROSECONDS))
+        self.call("wait", round(seconds * self.clock_hz))
 
     @property
     def is_moving(self) -> bool:

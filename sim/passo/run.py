@@ -18,7 +18,7 @@ from passo.registers import Cause, State
 
 ENGINES = ("both", "rtl", "model")
 CHUNK = 1_000_000  # clocks between two reports of progress
-SLEW_MICROSECONDS = 50_000  # of hold and stop, from full speed
+SLEWS_PER_SECOND = 20  # of hold and stop, from full speed
 AXES_OF_CORES = (4, 8)
 
 # The pins of a single channel that change during a motion.
@@ -147,7 +147,8 @@ def execute(
     if table := table_of(plans):
         driver.call("load_table", USER_BANK, table)
     slowest = min(plan.c.velocity_peak for plan in plans)
-    driver.call("configure_motion", SLEW_MICROSECONDS, SLEW_MICROSECONDS, max(1, slowest >> 16 >> 4))
+    slew = driver.clock_hz // SLEWS_PER_SECOND
+    driver.call("configure_motion", slew, slew, max(1, slowest >> 16 >> 4))
 
     tick = 1 << engine.parameters.tick_log2
     planned = sum(plan.clocks for plan in plans)

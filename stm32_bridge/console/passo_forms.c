@@ -139,6 +139,8 @@ bool passo_forms_move(struct passo *passo, struct passo_reading *reading, struct
 		return passo_complain(reading->sink, "table is missing");
 	number = (enum passo_form)(form - passo_form_tables);
 	error = reading->user_shape ? queue_user(passo, number, &move, &shape) : queue(passo, number, &move);
+	if (error >= PASSO_ERROR_ABSURD) /* values of a line have units */
+		error = (enum passo_error)((unsigned)error - PASSO_ERROR_ABSURD + PASSO_ERROR_PLAN);
 	return error == PASSO_OK || passo_complain_error(reading->sink, error);
 }
 

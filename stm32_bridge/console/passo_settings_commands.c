@@ -47,7 +47,8 @@ static enum passo_error set_up(struct passo_console *console)
 {
 	struct passo *passo = &console->passo;
 	enum passo_error error =
-	    passo_configure_motion(passo, console->hold_microseconds, console->stop_microseconds, 0);
+	    passo_configure_motion(passo, passo_clocks(passo, console->hold_microseconds),
+		passo_clocks(passo, console->stop_microseconds), 0);
 
 	for (uint8_t axis = 0; axis < passo_machine(passo)->axes && error == PASSO_OK; axis++)
 		error = passo_configure_axis(passo, axis, &console->axis[axis]);
@@ -150,8 +151,9 @@ static bool config_board(const struct passo_call *call)
 	if (has_clock)
 		error = set_clock(console, values->clock_hz);
 	if (error == PASSO_OK && console->opened)
-		error = passo_configure_motion(
-		    &console->passo, values->hold_microseconds, values->stop_microseconds, 0);
+		error = passo_configure_motion(&console->passo,
+		    passo_clocks(&console->passo, values->hold_microseconds),
+		    passo_clocks(&console->passo, values->stop_microseconds), 0);
 	if (!passo_answer(call, error))
 		return false;
 	console->hold_microseconds = values->hold_microseconds;

@@ -12,6 +12,13 @@ enum passo_error passo_driver_check(const struct passo *passo)
 	return passo->belief != PASSO_BELIEF_NOT_OPEN ? PASSO_OK : PASSO_ERROR_NOT_OPEN;
 }
 
+enum passo_error passo_driver_check_axis(const struct passo *passo, uint8_t axis)
+{
+	enum passo_error error = passo_driver_check(passo);
+
+	return error == PASSO_OK && axis >= passo->machine.axes ? PASSO_ERROR_ARGUMENT : error;
+}
+
 bool passo_driver_is_wire(enum passo_error error)
 {
 	return error >= PASSO_ERROR_TRANSFER && error <= PASSO_ERROR_BAD_CRC;
@@ -62,6 +69,11 @@ enum passo_error passo_driver_moving(enum passo_error error)
 	const bool is_busy = (unsigned)error == PASSO_ERROR_REFUSED + PASSO_VERDICT_BUSY;
 
 	return is_busy ? PASSO_ERROR_MOVING : error;
+}
+
+uint64_t passo_clocks(const struct passo *passo, uint32_t microseconds)
+{
+	return (uint64_t)microseconds * passo->machine.clock_hz / 1000000u;
 }
 
 const struct passo_machine *passo_machine(const struct passo *passo)

@@ -24,8 +24,8 @@
  *
  * A call costs one frame (chip select) unless its comment says otherwise; on a noisy link up to `tries`
  * frames. Every call can return ARGUMENT, NOT_OPEN, link errors, CORE_RESET and REFUSED + verdict; comments
- * list the other errors. Speeds, accelerations and rpm are UQ32.32 (PASSO_UNIT_Q32 is 1), lengths and angles
- * Q31.32.
+ * list the other errors. Speeds, accelerations and rpm are UQ32.32, lengths and angles Q31.32, times of moves
+ * clocks of the core: passo_units.h makes them of numbers and units.
  */
 #ifndef PASSO_H
 #define PASSO_H
@@ -37,6 +37,7 @@ extern "C" {
 #include "passo_error.h"
 #include "passo_host.h"
 #include "passo_plan.h"
+#include "passo_units.h"
 
 #define PASSO_RATE_FULL UINT32_C(0x10000) /* 100 % override, UQ1.16 */
 
@@ -77,7 +78,8 @@ struct passo_source {
 struct passo_axis_memory {
 	uint64_t steps_per_unit;  /* UQ32.32 */
 	uint32_t shortest_clocks; /* shortest step period; 0: pin settings unknown */
-	int32_t expected;         /* position after all queued motions */
+	int32_t expected;         /* position of the core after all queued motions */
+	uint32_t offset;          /* position of the program less that of the core; wraps */
 };
 
 /* Assumed state of the channel. docs/driver.md shows the transitions. */
@@ -132,6 +134,7 @@ struct passo {
 	uint8_t idle_looks; /* consecutive status reads that found all motions ended */
 	bool held;          /* feed hold: the rate is 0 whatever the override */
 	bool rate_due;      /* the rate is not acknowledged; every poll resends it */
+	bool zero_due;      /* zero is not acknowledged: the positions read next count as 0 */
 	enum passo_due stop_due;
 	enum passo_belief belief;
 	enum passo_expectation expects;
@@ -187,18 +190,19 @@ enum passo_error passo_configure_axis(
  * most the pulse that has started. One frame, three to disable. Error: MOVING while a motion is running or
  * queued. */
 enum passo_error passo_enable(struct passo *passo, uint8_t axis, bool on);
-/* Sets the duration of hold and resume, and of a soft stop, from full rate, in microseconds; 0: at once. Both
- * are rounded to the resolution of the core. Also sets the velocity (UQ0.32 substeps per clock, up to 1/2) of
- * the substeps that remain at the end of a profile; 0: unchanged. */
+/* Sets the duration of hold and resume, and of a soft stop, from full rate, in clocks, PASSO_MS(100); 0: at
+ * once. Both are rounded to the resolution of the core. Also sets the velocity (UQ0.32 substeps per clock, up
+ * to 1/2) of the substeps that remain at the end of a profile; 0: unchanged. */
 enum passo_error passo_configure_motion(
-    struct passo *passo, uint32_t hold_microseconds, uint32_t stop_microseconds, uint32_t drain_velocity);
+    struct passo *passo, uint64_t hold_clocks, uint64_t stop_clocks, uint32_t drain_velocity);
 
 /* ------------------------------------------------------------------------------------------- moves ---- */
 
 /* Each plans a move, checks it against the pin timing, loads a shape table if the core does not hold the
  * required one (five frames and the time to compute it), and queues the move: three frames. It starts at once
- * or after the motions queued before it. Errors: PASSO_ERROR_PLAN + enum passo_plan_error, FULL (try again
- * later), STOPPED, NOT_STOPPED, NOT_HELD, BROKEN, STREAMING, MOVING (in continuous rotation), TABLE,
+ * or after the motions queued before it. Errors: PASSO_ERROR_PLAN + enum passo_plan_error, or ABSURD in place
+ * of those of a value that lacks its factor, such as .speed = 10000 for PASSO_STEPS_PER_S(10000); FULL (try
+ * again later), STOPPED, NOT_STOPPED, NOT_HELD, BROKEN, STREAMING, MOVING (in continuous rotation), TABLE,
  * NOT_CONFIGURED, PINS_TOO_SLOW. */
 enum passo_error passo_move_in_time(struct passo *passo, const struct passo_move_in_time *move);
 enum passo_error passo_move_by_speed(struct passo *passo, const struct passo_move_by_speed *move);
@@ -215,12 +219,41 @@ enum passo_error passo_move_user_in_time(
     struct passo *passo, const struct passo_move_in_time *move, const struct passo_user_shape *shape);
 enum passo_error passo_move_user_by_speed(
     struct passo *passo, const struct passo_move_by_speed *move, const struct passo_user_shape *shape);
+/* The same to absolute positions: `steps`, `distance` and `angle` are those of the end. Bit i of `axes` moves
+ * axis i; the others stay, whatever is given for them. The way is counted from passo_target(), the end of the
+ * moves queued before, in the shorter direction around 2^32 steps. An end in millimetres or degrees is
+ * rounded to the nearest step of the axis, so that errors do not add up. If no axis is left with a way,
+ * nothing is queued: OK. One frame more. Errors: those of a move; ARGUMENT also if `axes` is 0 or has an axis
+ * that the channel does not have; MOVING also while passo_target() is unknown. */
+enum passo_error passo_move_to_in_time(
+    struct passo *passo, uint8_t axes, const struct passo_move_in_time *move);
+enum passo_error passo_move_to_by_speed(
+    struct passo *passo, uint8_t axes, const struct passo_move_by_speed *move);
+enum passo_error passo_move_to_below_speed(
+    struct passo *passo, uint8_t axes, const struct passo_move_below_speed *move);
+enum passo_error passo_move_to_at_speed(
+    struct passo *passo, uint8_t axes, const struct passo_move_at_speed *move);
+enum passo_error passo_move_to_axes(struct passo *passo, uint8_t axes, const struct passo_move_axes *move);
+enum passo_error passo_move_to_sigmoid(
+    struct passo *passo, uint8_t axes, const struct passo_move_sigmoid *move);
+enum passo_error passo_move_to_jerk(struct passo *passo, uint8_t axes, const struct passo_move_jerk *move);
+enum passo_error passo_move_to_straight(
+    struct passo *passo, uint8_t axes, const struct passo_move_straight *move);
+enum passo_error passo_move_to_user_in_time(struct passo *passo, uint8_t axes,
+    const struct passo_move_in_time *move, const struct passo_user_shape *shape);
+enum passo_error passo_move_to_user_by_speed(struct passo *passo, uint8_t axes,
+    const struct passo_move_by_speed *move, const struct passo_user_shape *shape);
+/* To an angle from position 0, over full turns as well. */
+enum passo_error passo_move_to_turn(struct passo *passo, const struct passo_move_turn *move);
+
 /* Queues a plan made with passo_machine(); `shape` is null unless it is a plan of passo_plan_user_...(). */
 enum passo_error passo_move_plan(
     struct passo *passo, const struct passo_plan *plan, const struct passo_user_shape *shape);
 /* Loads PASSO_TABLE_SIZE points into the bank of a shape, for streams and plans; null: the points after
  * reset. Only at rest. Five frames, none if the bank holds them already. Error: TABLE. */
 enum passo_error passo_load_table(struct passo *passo, enum passo_shape bank, const uint16_t *points);
+/* A time of run time, in clocks of the core, rounded down; 0 before passo_open(). */
+uint64_t passo_clocks(const struct passo *passo, uint32_t microseconds);
 /* Clock, ticks and axes of this channel, for the functions of the planner. */
 const struct passo_machine *passo_machine(const struct passo *passo);
 
@@ -256,10 +289,12 @@ bool passo_is_moving(const struct passo *passo);
 /* The state that was read last. No frame. */
 const struct passo_snapshot *passo_snapshot(const struct passo *passo);
 /* NOT_STOPPED or NOT_HELD while that applies; otherwise the last error of passo_poll(), kept until
- * passo_clear(), or OK. No frame. */
+ * passo_clear(), or OK. Of a channel that is not open: the error of passo_open(), such as STUCK_LOW, or
+ * NOT_OPEN if that has not been called. No frame. */
 enum passo_error passo_fault(const struct passo *passo);
-/* Polls until all motions have ended; 0: no timeout. Errors: TIMEOUT, those of passo_poll(). */
-enum passo_error passo_wait(struct passo *passo, uint32_t timeout_microseconds);
+/* Polls until all motions have ended, at most for a time in clocks, PASSO_S(2), up to 2^32 microseconds; 0:
+ * no timeout. Errors: TIMEOUT, those of passo_poll(). */
+enum passo_error passo_wait(struct passo *passo, uint64_t timeout_clocks);
 
 /* ----------------------------------------------------------------------------------------- control ---- */
 
@@ -280,20 +315,45 @@ enum passo_error passo_abort(struct passo *passo);
  * first and waits until all steps have left the pins. Errors: NOT_STOPPED, NOT_HELD, MOVING during a soft
  * stop or a motion that was not stopped. */
 enum passo_error passo_clear(struct passo *passo);
-/* Sets all positions to 0. Only at rest: MOVING. */
-enum passo_error passo_zero(struct passo *passo);
 /* While on, prepared motions wait for a rising edge of the core's sync input. Switching it off starts them.
  * If it is not acknowledged, motions wait and every poll resends that. */
 enum passo_error passo_wait_for_sync(struct passo *passo, bool on);
+
+/* --------------------------------------------------------------------------------------- positions ----
+ *
+ * Positions are steps, -2^31 .. 2^31 - 1, and wrap. The core counts them from its reset or the last
+ * passo_zero(); passo_set_position() adds an offset that is kept in struct passo. Clear, stop, abort and wire
+ * errors keep it; passo_open() and passo_zero() set it to 0. */
+
+/* Stands for the position of an axis without units, or beyond 2^31 units. */
+#define PASSO_NO_UNITS INT64_MIN
+
+/* Positions of all axes at one instant, in steps and, Q31.32, in the units of each axis: [0 .. axes - 1].
+ * `steps` may be null. */
+enum passo_error passo_positions(struct passo *passo, int32_t *steps);
+enum passo_error passo_positions_units(struct passo *passo, int32_t *steps, int64_t *units);
+/* Position of one axis in its units, Q31.32. Error: UNITS. */
+enum passo_error passo_position_units(struct passo *passo, uint8_t axis, int64_t *units);
+/* Where all axes will be after the motions queued so far; at rest, where they are. No frame. Errors: STOPPED
+ * or BROKEN until passo_clear(), which makes the real positions the target; MOVING while the end is unknown:
+ * during continuous rotation, or an endless line. */
+enum passo_error passo_target(const struct passo *passo, int32_t *steps);
+/* Steps from the present position to passo_target(), of all axes at one instant; the sign is the direction.
+ * One frame. Errors: those of passo_target(). */
+enum passo_error passo_distance_to_go(struct passo *passo, int32_t *steps);
+/* Converts steps of an axis, such as a target, to its units, Q31.32. No frame. Error: UNITS. */
+enum passo_error passo_to_units(const struct passo *passo, uint8_t axis, int32_t steps, int64_t *units);
+/* The present position of one axis becomes `steps`; the other axes keep theirs. Only at rest: MOVING. Three
+ * frames. */
+enum passo_error passo_set_position(struct passo *passo, uint8_t axis, int32_t steps);
+/* Sets all positions to 0, in the core as well. Only at rest: MOVING. After a link error they are as
+ * before, or 0 for the driver whether the core has executed it or not: call it again. */
+enum passo_error passo_zero(struct passo *passo);
 
 /* ----------------------------------------------------------------------------------------- reading ---- */
 
 /* Reads the present state. */
 enum passo_error passo_read_state(struct passo *passo, struct passo_snapshot *snapshot);
-/* Reads the steps made by each axis, all sampled at the same time: positions[0 .. axes - 1]. */
-enum passo_error passo_positions(struct passo *passo, int32_t *positions);
-/* Position of an axis in its units, Q31.32. Error: UNITS. */
-enum passo_error passo_position_units(struct passo *passo, uint8_t axis, int64_t *units);
 /* Angle of an axis in degrees (Q31.32), and speed of the axis with the most steps in rpm (UQ32.32), override
  * included. `steps_per_turn` is steps per revolution. The speed is scaled for the move queued last and can be
  * wrong while an earlier one is running. */

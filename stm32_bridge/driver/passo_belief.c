@@ -94,7 +94,7 @@ enum passo_error passo_driver_ready(struct passo *passo, bool needs_rest)
 		return error;
 	if (passo->snapshot.state == PASSO_STATE_STOPPED || passo->snapshot.stopping)
 		return PASSO_ERROR_STOPPED;
-	if (passo_driver_is_turning(passo) && passo_driver_at_rest(passo)) {
+	if (passo->zero_due || (passo_driver_is_turning(passo) && passo_driver_at_rest(passo))) {
 		int32_t positions[PASSO_AXES_MAX];
 		error = passo_driver_positions(passo, positions, false);
 		if (error != PASSO_OK)

@@ -9,6 +9,8 @@
 
 /* ARGUMENT for null, NOT_OPEN for a channel that is not open. */
 enum passo_error passo_driver_check(const struct passo *passo);
+/* The same, and ARGUMENT for an axis that the channel does not have. */
+enum passo_error passo_driver_check_axis(const struct passo *passo, uint8_t axis);
 /* Whether an error is a link error. */
 bool passo_driver_is_wire(enum passo_error error);
 /* Present time in microseconds; 0 without a clock. */
@@ -27,7 +29,13 @@ enum passo_error passo_driver_look(struct passo *passo, bool once);
 /* The same, repeated while only the pins are busy: with the last steps, or with the times that restart when
  * an axis is configured. */
 enum passo_error passo_driver_look_at_rest(struct passo *passo);
+/* Reads the positions of the core, without the offsets. */
 enum passo_error passo_driver_positions(struct passo *passo, int32_t *positions, bool once);
+/* A position of the core as the program counts it. */
+int32_t passo_driver_offset(const struct passo *passo, unsigned axis, int32_t position);
+/* Steps in units of a scale (UQ32.32), Q31.32, to nearest. PASSO_NO_UNITS if the scale is 0, or beyond 2^31.
+ */
+int64_t passo_driver_units(int32_t steps, uint64_t scale);
 /* Whether nothing moves or is queued according to the snapshot. Its room is sampled some hundred clocks after
  * its state, so only a second consecutive read is conclusive. */
 bool passo_driver_at_rest(const struct passo *passo);

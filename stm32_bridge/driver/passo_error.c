@@ -16,7 +16,7 @@ static const struct words errors[PASSO_ERROR_COUNT] = {
     [PASSO_OK] = {"OK", "no error"},
     [PASSO_PENDING] = {"PENDING", "the frame is not settled yet"},
     [PASSO_ERROR_ARGUMENT] = {"ARGUMENT", "an argument is missing or out of range"},
-    [PASSO_ERROR_NOT_OPEN] = {"NOT_OPEN", "the core has not been opened"},
+    [PASSO_ERROR_NOT_OPEN] = {"NOT_OPEN", "the core is not open: open it; if that fails, its error says why"},
     [PASSO_ERROR_UNITS] = {"UNITS", "the axis has no steps per unit, or the position overflows"},
     [PASSO_ERROR_TIMEOUT] = {"TIMEOUT", "the motion did not end in time and continues"},
     [PASSO_ERROR_TRANSFER] = {"TRANSFER", "the SPI transfer failed"},
@@ -62,6 +62,8 @@ static const struct words refusals[PASSO_VERDICT_BAD_VALUE + 1u] = {
 
 static const struct words unknown = {"UNKNOWN", "unknown error"};
 
+static const struct words absurd = {"ABSURD", "so slow or so short a move is not meant: is a unit missing?"};
+
 static const struct words *find(unsigned code)
 {
 	const struct words *found = &unknown;
@@ -75,6 +77,8 @@ static const struct words *find(unsigned code)
 
 const char *passo_error_name(enum passo_error error)
 {
+	if (error >= PASSO_ERROR_ABSURD)
+		return absurd.name;
 	if (error >= PASSO_ERROR_PLAN)
 		return passo_plan_error_name((enum passo_plan_error)(error - PASSO_ERROR_PLAN));
 	return find((unsigned)error)->name;
@@ -82,6 +86,8 @@ const char *passo_error_name(enum passo_error error)
 
 const char *passo_error_text(enum passo_error error)
 {
+	if (error >= PASSO_ERROR_ABSURD)
+		return absurd.text;
 	if (error >= PASSO_ERROR_PLAN)
 		return passo_plan_error_text((enum passo_plan_error)(error - PASSO_ERROR_PLAN));
 	return find((unsigned)error)->text;

@@ -13,7 +13,7 @@ enum passo_error {
 
 	/* the call */
 	PASSO_ERROR_ARGUMENT, /* null pointer, nonexistent axis, or value out of range */
-	PASSO_ERROR_NOT_OPEN, /* passo_open() has not succeeded */
+	PASSO_ERROR_NOT_OPEN, /* passo_open() has not succeeded: call it; passo_fault() repeats its error */
 	PASSO_ERROR_UNITS,    /* the axis has no steps per unit, or the position overflows */
 	PASSO_ERROR_TIMEOUT,  /* the wait timed out; the motion continues */
 
@@ -58,7 +58,10 @@ enum passo_error {
 	PASSO_ERROR_REFUSED = 0x100,
 	/* The planner rejected the move: this plus an enum passo_plan_error. */
 	PASSO_ERROR_PLAN = 0x200,
-	PASSO_ERROR_MAX = 0x2FF
+	/* The same, of a speed below 1/65536 per second or a time below 100 us: a unit of passo_units.h seems
+	 * to be missing. */
+	PASSO_ERROR_ABSURD = 0x300,
+	PASSO_ERROR_MAX = 0x3FF
 };
 
 /* Name ("CORE_RESET", "BUSY" of a refusal, "TOO_FAST" of the planner) and description of an error, for any

@@ -118,24 +118,6 @@ enum passo_error passo_clear(struct passo *passo)
 	return error != PASSO_OK ? error : passo_driver_gate(passo, passo->gate);
 }
 
-enum passo_error passo_zero(struct passo *passo)
-{
-	enum passo_error error = passo_driver_check(passo);
-
-	if (error == PASSO_OK)
-		error = passo_driver_ready(passo, true);
-	if (error != PASSO_OK)
-		return error;
-	error = passo_driver_command(passo, (struct passo_channel_command){.zero = true});
-	if (passo_driver_is_wire(error))
-		passo->expects = PASSO_EXPECT_END; /* the next polls read the positions */
-	if (error != PASSO_OK)
-		return passo_driver_moving(error);
-	const int32_t zeros[PASSO_AXES_MAX] = {0};
-	passo_driver_ended(passo, zeros);
-	return PASSO_OK;
-}
-
 enum passo_error passo_wait_for_sync(struct passo *passo, bool on)
 {
 	enum passo_error error = passo_driver_check(passo);

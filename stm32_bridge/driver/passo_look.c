@@ -67,9 +67,18 @@ enum passo_error passo_driver_positions(struct passo *passo, int32_t *positions,
 
 	if (error != PASSO_OK)
 		return error;
-	for (unsigned i = 0; i < passo->machine.axes; i++)
+	for (unsigned i = 0; i < passo->machine.axes; i++) {
 		positions[i] = (int32_t)words[i];
+		if (passo->zero_due)
+			passo->axis[i].offset = 0u - words[i];
+	}
+	passo->zero_due = false;
 	return PASSO_OK;
+}
+
+int32_t passo_driver_offset(const struct passo *passo, unsigned axis, int32_t position)
+{
+	return (int32_t)((uint32_t)position + passo->axis[axis].offset);
 }
 
 bool passo_driver_at_rest(const struct passo *passo)

@@ -31,15 +31,26 @@ enum passo_error passo_motor_init(struct passo_motor *motor, struct passo *passo
 	return PASSO_OK;
 }
 
-enum passo_error passo_motor_set_target(struct passo_motor *motor, int64_t degrees, uint64_t rpm)
+static enum passo_error set(struct passo_motor *motor, bool absolute, int64_t degrees, uint64_t rpm)
 {
 	enum passo_error error = check(motor);
 
 	if (error != PASSO_OK)
 		return error;
+	motor->absolute = absolute;
 	motor->angle = degrees;
 	motor->rpm = rpm;
 	return PASSO_OK;
+}
+
+enum passo_error passo_motor_set_target(struct passo_motor *motor, int64_t degrees, uint64_t rpm)
+{
+	return set(motor, true, degrees, rpm);
+}
+
+enum passo_error passo_motor_set_angle(struct passo_motor *motor, int64_t degrees, uint64_t rpm)
+{
+	return set(motor, false, degrees, rpm);
 }
 
 enum passo_error passo_motor_start(struct passo_motor *motor)
@@ -56,7 +67,8 @@ enum passo_error passo_motor_start(struct passo_motor *motor)
 	    .minimum_rpm = motor->minimum_rpm < motor->rpm ? motor->minimum_rpm : motor->rpm,
 	    .acceleration = motor->acceleration,
 	};
-	return passo_move_turn(motor->passo, &move);
+	return motor->absolute ? passo_move_to_turn(motor->passo, &move)
+	                       : passo_move_turn(motor->passo, &move);
 }
 
 enum passo_error passo_motor_start_endless(

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * One motor with the simplest interface: target angle, rpm, start, stop. Thin wrappers around passo.h, whose
- * errors they return.
+ * One motor with the simplest interface: target or angle, rpm, start, stop. Thin wrappers around passo.h,
+ * whose errors they return.
  *
- *     passo_motor_init(&motor, &passo, 0, 200 * 16, PASSO_RPM(10), PASSO_RPM_PER_SECOND(600));
+ *     passo_motor_init(&motor, &passo, 0, 200 * 16, PASSO_RPM(10), PASSO_RPM_PER_S(600));
  *     passo_motor_set_target(&motor, PASSO_DEGREES(-90), PASSO_RPM(60));
  *     passo_motor_start(&motor);
  *     while (passo_motor_is_turning(&motor))
@@ -17,18 +17,14 @@
 extern "C" {
 #endif
 
-/* Whole degrees as Q31.32; whole rpm, and rpm per second, as UQ32.32. */
-#define PASSO_DEGREES(n) ((int64_t)(n) * (int64_t)PASSO_UNIT_Q32)
-#define PASSO_RPM(n) ((uint64_t)(n) * PASSO_UNIT_Q32)
-#define PASSO_RPM_PER_SECOND(n) PASSO_RPM(n)
-
 struct passo_motor {
 	struct passo *passo;
 	uint8_t axis;
 	uint32_t steps_per_turn; /* steps per revolution */
 	uint64_t minimum_rpm;    /* UQ32.32: initial and final speed */
 	uint64_t acceleration;   /* UQ32.32 steps/s^2 */
-	int64_t angle;           /* Q31.32 degrees: of the next start, relative to the present position */
+	int64_t angle;           /* Q31.32 degrees: of the next start */
+	bool absolute;           /* the angle is counted from position 0, not from the end of the last move */
 	uint64_t rpm;            /* UQ32.32: of the next start */
 	bool endless;            /* the last start was continuous rotation */
 };
@@ -38,10 +34,12 @@ struct passo_motor {
 enum passo_error passo_motor_init(struct passo_motor *motor, struct passo *passo, uint8_t axis,
     uint32_t steps_per_turn, uint64_t minimum_rpm, uint64_t acceleration);
 
-/* Sets the angle (Q31.32 degrees, the sign is the direction) and the speed (UQ32.32 rpm) of the next start.
- * No frame. */
+/* Sets the angle (Q31.32 degrees) and the speed (UQ32.32 rpm) of the next start. A target is absolute,
+ * counted from position 0 over full turns as well; an angle is relative to the end of the move before, its
+ * sign is the direction. No frame. */
 enum passo_error passo_motor_set_target(struct passo_motor *motor, int64_t degrees, uint64_t rpm);
-/* Rotates by the angle that was set. */
+enum passo_error passo_motor_set_angle(struct passo_motor *motor, int64_t degrees, uint64_t rpm);
+/* Rotates to the target, or by the angle, whichever was set last. At the target already: OK, no rotation. */
 enum passo_error passo_motor_start(struct passo_motor *motor);
 /* Starts continuous rotation. top_rpm limits the speeds that passo_motor_set_speed() can set later. */
 enum passo_error passo_motor_start_endless(

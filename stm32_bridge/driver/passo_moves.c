@@ -5,6 +5,9 @@
 #include "passo_math.h"
 
 #define VELOCITY_BITS 48u
+/* What nobody means: less than 1/65536 per second, UQ32.32, and a move of less than 1/10000 s. */
+#define RATE_ABSURD (PASSO_UNIT_Q32 >> 16)
+#define MOVES_PER_S_ABSURD 10000u
 
 /* Rejects plans that exceed the pin timing of an axis. */
 static bool pins_suffice(const struct passo *passo, const struct passo_plan *plan)
@@ -88,13 +91,58 @@ enum passo_error passo_move_plan(
 	return PASSO_OK;
 }
 
+/* Whether a speed, acceleration, jerk or scale, UQ32.32, lacks its factor. */
+static bool is_slow(uint64_t rate)
+{
+	return rate != 0u && rate < RATE_ABSURD;
+}
+
+/* Of each form: whether it says such a number, and its time in clocks, 0 if it has none. */
+#define SLOW_in_time(move) false
+#define SLOW_by_speed(move)                                                                                  \
+	(is_slow((move)->speed) || is_slow((move)->acceleration) || is_slow((move)->deceleration))
+#define SLOW_below_speed(move) is_slow((move)->speed)
+#define SLOW_at_speed(move) is_slow((move)->speed)
+#define SLOW_axes(move) is_slow((move)->speed)
+#define SLOW_sigmoid(move) is_slow((move)->speed)
+#define SLOW_jerk(move) (is_slow((move)->speed) || is_slow((move)->acceleration) || is_slow((move)->jerk))
+#define TIME_in_time(move) (move)->total_clocks
+#define TIME_by_speed(move) 0u
+#define TIME_below_speed(move) (move)->total_clocks
+#define TIME_at_speed(move) 0u
+#define TIME_axes(move) 0u
+#define TIME_sigmoid(move) 0u
+#define TIME_jerk(move) 0u
+
+/* Whether the planner's error is that of a number without its unit. */
+static bool is_absurd(
+    const struct passo *passo, enum passo_plan_error error, bool slow, uint64_t total_clocks)
+{
+	const bool brief = total_clocks != 0u && total_clocks < passo->machine.clock_hz / MOVES_PER_S_ABSURD;
+
+	switch (error) {
+	case PASSO_PLAN_TOO_LONG:
+		return slow;
+	case PASSO_PLAN_SPEED_TOO_LOW:
+		return slow || brief;
+	case PASSO_PLAN_NO_TIME:
+	case PASSO_PLAN_TOO_FAST:
+	case PASSO_PLAN_RAMP_TOO_LONG:
+		return brief;
+	default:
+		return false;
+	}
+}
+
 /* Queues a plan, or converts the error of the planner. */
 static enum passo_error move_planned(struct passo *passo, enum passo_plan_error error,
-    const struct passo_plan *plan, const struct passo_user_shape *shape)
+    const struct passo_plan *plan, const struct passo_user_shape *shape, bool slow, uint64_t total_clocks)
 {
-	if (error != PASSO_PLAN_OK)
-		return (enum passo_error)((unsigned)PASSO_ERROR_PLAN + (unsigned)error);
-	return passo_move_plan(passo, plan, shape);
+	if (error == PASSO_PLAN_OK)
+		return passo_move_plan(passo, plan, shape);
+	const enum passo_error base =
+	    is_absurd(passo, error, slow, total_clocks) ? PASSO_ERROR_ABSURD : PASSO_ERROR_PLAN;
+	return (enum passo_error)((unsigned)base + (unsigned)error);
 }
 
 static enum passo_error check(const struct passo *passo, const void *move)
@@ -124,7 +172,8 @@ static enum passo_error check_steps(const struct passo *passo, const void *move,
 		enum passo_error error = check_steps(passo, move, move ? move->steps : NULL);                \
 		if (error != PASSO_OK)                                                                       \
 			return error;                                                                        \
-		return move_planned(passo, passo_plan_##method(&passo->machine, move, &plan), &plan, NULL);  \
+		return move_planned(passo, passo_plan_##method(&passo->machine, move, &plan), &plan, NULL,   \
+		    SLOW_##method(move), TIME_##method(move));                                               \
 	}
 PASSO_MOVES_BY_STEPS(MOVE_BY_STEPS)
 
@@ -137,8 +186,8 @@ PASSO_MOVES_BY_STEPS(MOVE_BY_STEPS)
 		enum passo_error error = check_steps(passo, move, move ? move->steps : NULL);                \
 		if (error != PASSO_OK || !shape || !shape->table)                                            \
 			return error != PASSO_OK ? error : PASSO_ERROR_ARGUMENT;                             \
-		return move_planned(                                                                         \
-		    passo, passo_plan_user_##method(&passo->machine, move, shape, &plan), &plan, shape);     \
+		return move_planned(passo, passo_plan_user_##method(&passo->machine, move, shape, &plan),    \
+		    &plan, shape, SLOW_##method(move), TIME_##method(move));                                 \
 	}
 PASSO_MOVES_BY_SHAPE(MOVE_BY_SHAPE)
 
@@ -149,7 +198,8 @@ enum passo_error passo_move_turn(struct passo *passo, const struct passo_move_tu
 
 	if (error != PASSO_OK)
 		return error;
-	return move_planned(passo, passo_plan_turn(&passo->machine, move, &plan), &plan, NULL);
+	return move_planned(passo, passo_plan_turn(&passo->machine, move, &plan), &plan, NULL,
+	    is_slow(move->rpm) || is_slow(move->acceleration), 0);
 }
 
 enum passo_error passo_move_straight(struct passo *passo, const struct passo_move_straight *move)
@@ -160,11 +210,15 @@ enum passo_error passo_move_straight(struct passo *passo, const struct passo_mov
 	if (error != PASSO_OK)
 		return error;
 	struct passo_move_straight scaled = *move;
+	bool slow = is_slow(move->feed);
 	for (unsigned i = 0; i < PASSO_AXES_MAX; i++) {
 		if (i >= passo->machine.axes && move->distance[i] != 0)
 			return PASSO_ERROR_ARGUMENT;
 		if (scaled.limits[i].steps_per_mm == 0u)
 			scaled.limits[i].steps_per_mm = passo->axis[i].steps_per_unit;
+		slow |= is_slow(scaled.limits[i].speed) || is_slow(scaled.limits[i].acceleration)
+		     || is_slow(scaled.limits[i].steps_per_mm);
 	}
-	return move_planned(passo, passo_plan_straight(&passo->machine, &scaled, &plan), &plan, NULL);
+	return move_planned(
+	    passo, passo_plan_straight(&passo->machine, &scaled, &plan), &plan, NULL, slow, 0);
 }

@@ -81,6 +81,7 @@ enum passo_error passo_open_channel(
 	passo->rate_target = PASSO_RATE_FULL;
 	enum passo_error error = make_contact(passo, options);
 	passo->belief = error == PASSO_OK ? PASSO_BELIEF_READY : PASSO_BELIEF_NOT_OPEN;
+	passo->fault = error;
 	if (error != PASSO_OK || passo->snapshot.quiet)
 		return error;
 	passo_driver_break(passo); /* a motion of an earlier session */
@@ -94,5 +95,6 @@ enum passo_error passo_open(struct passo *passo, struct passo_host *host,
 		return PASSO_ERROR_ARGUMENT;
 	passo->belief = PASSO_BELIEF_NOT_OPEN;
 	enum passo_error error = passo_host_open(host, hardware);
+	passo->fault = error;
 	return error != PASSO_OK ? error : passo_open_channel(passo, host, options);
 }

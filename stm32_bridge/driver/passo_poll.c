@@ -2,9 +2,11 @@
  * The poll of the main loop: feeds streams, reads the state and detects the end of motions.
  */
 #include "passo_driver.h"
+#include "passo_math.h"
 
 /* Consecutive reads of an idle state that prove that all motions have ended. */
 #define IDLE_LOOKS 2u
+#define MICROSECONDS_PER_SECOND 1000000u
 
 static enum passo_error tell(struct passo *passo, enum passo_error error)
 {
@@ -169,13 +171,15 @@ enum passo_error passo_fault(const struct passo *passo)
 {
 	enum passo_error error = passo_driver_check(passo);
 
+	if (error == PASSO_ERROR_NOT_OPEN && passo->fault != PASSO_OK)
+		return passo->fault;
 	if (error != PASSO_OK)
 		return error;
 	error = passo->host->lost ? PASSO_OK : passo_driver_due(passo);
 	return error != PASSO_OK ? error : passo->fault;
 }
 
-enum passo_error passo_wait(struct passo *passo, uint32_t timeout_microseconds)
+enum passo_error passo_wait(struct passo *passo, uint64_t timeout_clocks)
 {
 	enum passo_error error = passo_driver_check(passo);
 
@@ -183,16 +187,19 @@ enum passo_error passo_wait(struct passo *passo, uint32_t timeout_microseconds)
 		return error;
 	const struct passo_hardware *hardware = &passo->host->hardware;
 	const uint32_t began = passo_driver_now(passo);
+	const uint64_t longest =
+	    passo_mul_div_ceil(timeout_clocks, MICROSECONDS_PER_SECOND, passo->machine.clock_hz);
+	const uint32_t timeout = longest < UINT32_MAX ? (uint32_t)longest : UINT32_MAX;
 	for (;;) {
 		error = passo_poll(passo);
 		if (error != PASSO_OK || !passo_is_moving(passo))
 			return error;
 		uint32_t idle = passo_idle_time(passo);
 		uint32_t waited = passo_driver_now(passo) - began;
-		if (timeout_microseconds != 0u && waited >= timeout_microseconds)
+		if (timeout != 0u && waited >= timeout)
 			return PASSO_ERROR_TIMEOUT;
-		if (timeout_microseconds != 0u && idle > timeout_microseconds - waited)
-			idle = timeout_microseconds - waited;
+		if (timeout != 0u && idle > timeout - waited)
+			idle = timeout - waited;
 		if (hardware->wait && idle != 0u)
 			hardware->wait(hardware->context, idle);
 	}

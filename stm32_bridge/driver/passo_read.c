@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Readings: state, positions, angles, speeds.
+ * Readings: state, angles, speeds.
  */
 #include "passo_driver.h"
-#include "passo_math.h"
 
 enum passo_error passo_read_state(struct passo *passo, struct passo_snapshot *snapshot)
 {
@@ -18,58 +17,18 @@ enum passo_error passo_read_state(struct passo *passo, struct passo_snapshot *sn
 	return error;
 }
 
-enum passo_error passo_positions(struct passo *passo, int32_t *positions)
-{
-	enum passo_error error = passo_driver_check(passo);
-
-	if (error != PASSO_OK)
-		return error;
-	return positions ? passo_driver_positions(passo, positions, false) : PASSO_ERROR_ARGUMENT;
-}
-
-/* Reads the position of one axis. */
-static enum passo_error position_of(struct passo *passo, uint8_t axis, const void *result, int32_t *position)
-{
-	int32_t positions[PASSO_AXES_MAX];
-	enum passo_error error = passo_driver_check(passo);
-
-	if (error != PASSO_OK)
-		return error;
-	if (!result || axis >= passo->machine.axes)
-		return PASSO_ERROR_ARGUMENT;
-	error = passo_driver_positions(passo, positions, false);
-	*position = error == PASSO_OK ? positions[axis] : 0;
-	return error;
-}
-
-enum passo_error passo_position_units(struct passo *passo, uint8_t axis, int64_t *units)
-{
-	int32_t position;
-	enum passo_error error = position_of(passo, axis, units, &position);
-
-	if (error != PASSO_OK)
-		return error;
-	const uint64_t scale = passo->axis[axis].steps_per_unit;
-	const uint64_t steps = position < 0 ? 0u - (uint64_t)position : (uint64_t)position;
-	const struct passo_u128 half = {0, scale / 2u};
-	uint64_t size = passo_divide(passo_u128_add((struct passo_u128){steps, 0}, half), scale, NULL);
-	if (scale == 0u || size > INT64_MAX)
-		return PASSO_ERROR_UNITS;
-	*units = position < 0 ? -(int64_t)size : (int64_t)size;
-	return PASSO_OK;
-}
-
 enum passo_error passo_angle(struct passo *passo, uint8_t axis, uint32_t steps_per_turn, int64_t *degrees)
 {
-	int32_t position;
-	enum passo_error error = position_of(passo, axis, degrees, &position);
+	int32_t positions[PASSO_AXES_MAX];
+	enum passo_error error = passo_driver_check_axis(passo, axis);
 
-	if (error != PASSO_OK)
-		return error;
-	if (steps_per_turn == 0u)
-		return PASSO_ERROR_ARGUMENT;
-	*degrees = passo_angle_of(position, steps_per_turn);
-	return PASSO_OK;
+	if (error == PASSO_OK && (!degrees || steps_per_turn == 0u))
+		error = PASSO_ERROR_ARGUMENT;
+	if (error == PASSO_OK)
+		error = passo_positions(passo, positions);
+	if (error == PASSO_OK)
+		*degrees = passo_angle_of(positions[axis], steps_per_turn);
+	return error;
 }
 
 enum passo_error passo_rpm(struct passo *passo, uint32_t steps_per_turn, uint64_t *rpm)

@@ -4,7 +4,6 @@
 #include "passo_driver.h"
 
 #define NANOSECONDS UINT64_C(1000000000)
-#define MICROSECONDS UINT64_C(1000000)
 #define LOOKS_AT_REST 2u /* consecutive */
 
 /* A pin time in clocks, rounded up; above PASSO_PIN_CLOCKS_MAX if it is too long. */
@@ -22,17 +21,10 @@ static uint16_t address_of(uint8_t axis, uint16_t reg)
 	return (uint16_t)(PASSO_CHANNEL_AXIS_BASE + axis * PASSO_CHANNEL_AXIS_STRIDE + reg);
 }
 
-static enum passo_error check_axis(const struct passo *passo, uint8_t axis)
-{
-	enum passo_error error = passo_driver_check(passo);
-
-	return error == PASSO_OK && axis >= passo->machine.axes ? PASSO_ERROR_ARGUMENT : error;
-}
-
 enum passo_error passo_configure_axis(
     struct passo *passo, uint8_t axis, const struct passo_axis_config *config)
 {
-	enum passo_error error = check_axis(passo, axis);
+	enum passo_error error = passo_driver_check_axis(passo, axis);
 
 	if (error != PASSO_OK)
 		return error;
@@ -80,7 +72,7 @@ bool passo_driver_pins_known(const struct passo *passo, const struct passo_line 
 
 enum passo_error passo_enable(struct passo *passo, uint8_t axis, bool on)
 {
-	enum passo_error error = check_axis(passo, axis);
+	enum passo_error error = passo_driver_check_axis(passo, axis);
 
 	if (error != PASSO_OK)
 		return error;
@@ -97,10 +89,9 @@ enum passo_error passo_enable(struct passo *passo, uint8_t axis, bool on)
 }
 
 /* Change of rate per tick for a change by the full rate in this time. */
-static uint32_t slew_of(const struct passo *passo, uint32_t microseconds)
+static uint32_t slew_of(const struct passo *passo, uint64_t clocks)
 {
-	const uint64_t clocks = (uint64_t)microseconds * passo->machine.clock_hz;
-	const uint64_t full = ((uint64_t)PASSO_RATE_FULL << passo->machine.tick_log2) * MICROSECONDS;
+	const uint64_t full = (uint64_t)PASSO_RATE_FULL << passo->machine.tick_log2;
 	uint64_t slew = clocks != 0u ? full / clocks : PASSO_RATE_FULL;
 
 	if (slew == 0u)
@@ -109,7 +100,7 @@ static uint32_t slew_of(const struct passo *passo, uint32_t microseconds)
 }
 
 enum passo_error passo_configure_motion(
-    struct passo *passo, uint32_t hold_microseconds, uint32_t stop_microseconds, uint32_t drain_velocity)
+    struct passo *passo, uint64_t hold_clocks, uint64_t stop_clocks, uint32_t drain_velocity)
 {
 	enum passo_error error = passo_driver_check(passo);
 
@@ -117,7 +108,6 @@ enum passo_error passo_configure_motion(
 		return error;
 	if (drain_velocity > PASSO_VELOCITY_MAX >> 16)
 		return PASSO_ERROR_ARGUMENT;
-	const uint32_t words[] = {
-	    slew_of(passo, hold_microseconds), slew_of(passo, stop_microseconds), drain_velocity};
+	const uint32_t words[] = {slew_of(passo, hold_clocks), slew_of(passo, stop_clocks), drain_velocity};
 	return passo_driver_write(passo, PASSO_CHANNEL_RATE_SLEW, words, drain_velocity != 0u ? 3u : 2u);
 }
