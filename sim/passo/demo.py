@@ -55,5 +55,7 @@ def demo() -> bool:
             f"{summary['clocks_per_second'] / 1e6:.1f} M",
         )
     console.print(shown)
-    console.print(f"Pictures and tables: {FOLDER.relative_to(paths.root)}/")
+    folder = FOLDER.relative_to(paths.root)
+    console.print(f"A page for each move: {folder}/NAME/motion.png, its steps: {folder}/NAME/pulses.csv")
+    console.print(f"open: {folder}/demo.png")
     return all(summary["ok"] for summary in summaries.values())
