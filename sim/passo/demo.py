@@ -56,6 +56,6 @@ def demo() -> bool:
         )
     console.print(shown)
     folder = FOLDER.relative_to(paths.root)
-    console.print(f"A page for each move: {folder}/NAME/motion.png, its steps: {folder}/NAME/pulses.csv")
-    console.print(f"open: {folder}/demo.png")
+    print(f"{folder}/NAME/ has a page for each move, motion.png, and its steps, pulses.csv")
+    print(f"open: {folder}/demo.png")
     return all(summary["ok"] for summary in summaries.values())
