@@ -34,7 +34,7 @@ test: lint ## Check the sources, then run all tests.
 	@tools/setup.sh yosys formal firmware
 	@$(BIN)/pytest -n auto --maxprocesses 8 --dist worksteal
 
-demo: setup ## Run the demonstration.
+demo: setup ## Run the demonstration (1 to 2 minutes).
 	@$(BIN)/passo demo
 
 lint: setup ## Check Verilog, C and Python for errors and format.

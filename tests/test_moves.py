@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Move files: valid ones are read exactly, errors are reported in one clear line."""
 
+import re
 from fractions import Fraction
 from pathlib import Path
 
@@ -9,6 +10,7 @@ from passo.cli import main
 from passo.move_file import read_moves
 from passo.moves import MoveBySpeed, MoveFileError, MoveInTime, PinTiming
 from passo.toolchain import paths
+from passo.values import UNITS
 
 CLOCK = "clock_hz = 16_000_000\n"
 BY_TIME = '[[move]]\nsteps = [100, -50]\nprofile = "cosine"\ntotal_time = 0.4\nramp_time = 0.1\n'
@@ -59,10 +61,75 @@ def test_decimals_are_exact(tmp_path: Path) -> None:
     assert move.ramp_time == Fraction(1, 1000)
 
 
+@pytest.mark.parametrize(
+    ("text", "seconds"),
+    [
+        ("400ms", Fraction(2, 5)),
+        ("400_000us", Fraction(2, 5)),
+        ("0.4s", Fraction(2, 5)),
+        ("+4e-1", Fraction(2, 5)),
+        (".4", Fraction(2, 5)),
+        ("4e8ns", Fraction(2, 5)),
+        ("4e+00000002ms", Fraction(2, 5)),
+        ("0.1234567890123456789012345678901ms", None),
+        ("6_400_001clocks", Fraction(6_400_001, 16_000_000)),
+        ("400 ms", None),
+        ("ms", None),
+        ("", None),
+        ("4__0ms", None),
+        ("_4ms", None),
+        ("1.2.3s", None),
+        ("1e", None),
+        ("inf", None),
+        ("nans", None),
+        ("-1ms", None),
+        ("1e99999999999999999999s", None),
+        ("4294967296s", None),
+        ("400MS", None),
+    ],
+)
+def test_times_with_units(tmp_path: Path, text: str, seconds: Fraction | None) -> None:
+    """In a move and in the pins; what is refused is refused with one line."""
+    path = write(tmp_path, GOOD.replace("0.4", f'"{text}"'))
+    if seconds is None:
+        with pytest.raises(MoveFileError, match="move 1: total_time"):
+            read_moves(path)
+    else:
+        (move,) = read_moves(path).moves
+        assert isinstance(move, MoveInTime)
+        assert move.total_time == seconds
+
+
+def test_pins_with_units(tmp_path: Path) -> None:
+    pins = '[pins]\nstep_high = "2us"\nstep_low = "33clocks"\ndir_setup = "62.6ns"\ndir_hold = "0s"\n'
+    file = read_moves(write(tmp_path, CLOCK + pins + BY_TIME))
+    assert file.pins == PinTiming(step_high=32, step_low=33, dir_setup=2, dir_hold=1)
+
+
+def test_the_units_are_those_of_the_console() -> None:
+    source = (paths.console / "passo_number.c").read_text()
+    (table,) = re.findall(r"UNITS\[\] = \{(.*)\};", source)
+    assert dict((name, int(power)) for name, power in re.findall(r'\{"(\w+)", (-?\d+)\}', table)) == UNITS
+
+
+def test_a_byte_order_mark(tmp_path: Path) -> None:
+    path = tmp_path / "notepad.toml"
+    path.write_bytes(b"\xef\xbb\xbf" + GOOD.replace("\n", "\r\n").encode())
+    assert read_moves(path).clock_hz == 16_000_000
+
+
 BAD = {
     "clock missing": (BY_TIME, "clock_hz is missing"),
     "clock zero": (GOOD.replace("16_000_000", "0"), "clock_hz must be 1 to 4294967295"),
     "clock float": (GOOD.replace("16_000_000", "16e6"), "clock_hz must be a whole number"),
+    "clock in MHz": (
+        GOOD.replace("16_000_000", "12"),
+        "clock_hz = 12 is in Hz: write 12_000_000 for 12 MHz",
+    ),
+    "clock 12e6": (
+        GOOD.replace("16_000_000", "12e6"),
+        "clock_hz must be a whole number, not 12e6; write 12_000_000",
+    ),
     "clock true": (GOOD.replace("16_000_000", "true"), "clock_hz must be a whole number, not true"),
     "syntax": (CLOCK + "[[move\n", "at line 2"),
     "twice": (CLOCK + GOOD, "Cannot overwrite"),
@@ -72,6 +139,13 @@ BAD = {
     "a table": (GOOD.replace("[[move]]", "[move]"), "move must be an array of tables"),
     "a number": (CLOCK + "move = 3\n", "move must be an array of tables"),
     "a list of numbers": (CLOCK + "move = [3]\n", "move must be an array of tables"),
+    "misspelt key": (CLOCK.replace("hz", "khz") + BY_TIME, "unknown key 'clock_khz'; did you mean clock_hz?"),
+    "misspelt key of a move": (GOOD + "sped = 3\n", "unknown key 'sped'; did you mean speed?"),
+    "misspelt profile": (GOOD.replace("cosine", "cosin"), "not 'cosin'; did you mean cosine?"),
+    "misspelt method": (GOOD + 'method = "in_tim"\n', "not 'in_tim'; did you mean in_time?"),
+    "G-code": ("G21\nG0 X10 Y20\n", "this is G-code; moves are in TOML"),
+    "G-code with a comment": ("; a part\nN10 G0 X10 Y20\n", "this is G-code"),
+    "G-code with percent": ("%\nG90\n", "this is G-code"),
     "unknown key": (CLOCK + "color = 1\n" + BY_TIME, "unknown key 'color'"),
     "unknown key of a move": (GOOD + "sped = 3\n", "move 1: unknown key 'sped'"),
     "unknown key of the pins": (CLOCK + "[pins]\nstep = 1\n" + BY_TIME, "pins: unknown key 'step'"),
@@ -79,8 +153,13 @@ BAD = {
     "pin too long": (CLOCK + "[pins]\ndir_hold = 0.005\n" + BY_TIME, "pins: dir_hold is 80000 clocks"),
     "pin negative": (CLOCK + "[pins]\ndir_hold = -1e-6\n" + BY_TIME, "pins: dir_hold must not be negative"),
     "pin text": (
-        CLOCK + '[pins]\nstep_low = "1us"\n' + BY_TIME,
-        "pins: step_low must be a number, not '1us'",
+        CLOCK + '[pins]\nstep_low = "1 parsec"\n' + BY_TIME,
+        "pins: step_low must be a number or a text such as \"400ms\", not '1 parsec'",
+    ),
+    "pin in microseconds": (
+        CLOCK + "[pins]\nstep_high = 2\n" + BY_TIME,
+        "pins: step_high is 32000000 clocks, at most 65535 are possible; a number is in seconds, "
+        'a text may have a unit: "2us"',
     ),
     "steps missing": (GOOD.replace("steps = [100, -50]", ""), "move 1: steps is missing"),
     "steps a number": (GOOD.replace("[100, -50]", "100"), "move 1: steps must be a list"),

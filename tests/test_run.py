@@ -10,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from passo import cli, frame
+from passo import cli, frame, run_command
 from passo import registers as r
-from passo.build import Parameters, waves_possible
+from passo.build import Parameters
 from passo.engine import EVENT, DifferenceError, PairEngine, first_difference, model_engine, rtl_engine
 from passo.link import Link, LinkError, RefusedError
 from passo.move_file import read_moves
@@ -172,7 +172,7 @@ def test_a_difference_is_reported(
             rtl_engine(parameters, clock_hz, waves), Tampered(model_engine(parameters, clock_hz))
         )
 
-    monkeypatch.setattr(cli, "open_engine", open_tampered)
+    monkeypatch.setattr(run_command, "open_engine", open_tampered)
     out = tmp_path / "out"
     assert cli.main(["run", str(write(tmp_path, TWO_MOVES)), "--out", str(out)]) == 1
     message = capsys.readouterr().err
@@ -258,11 +258,3 @@ def test_a_refusal_has_a_name() -> None:
             link.read(0x0FF, 1)
         with pytest.raises(RefusedError, match="BAD_VALUE"):
             link.push(r.ADDRESS_CHANNEL_BASE + r.CHANNEL_LINE, [1, 0, 0, 0, 0, 0])
-
-
-@pytest.mark.skipif(not waves_possible(), reason="liblz4-dev and zlib1g-dev are not installed")
-def test_waves(tmp_path: Path) -> None:
-    out = tmp_path / "out"
-    file = write(tmp_path, TWO_MOVES)
-    assert cli.main(["run", str(file), "--out", str(out), "--waves", "--engine", "rtl"]) == 0
-    assert (out / "waves.fst").stat().st_size > 10_000

@@ -159,15 +159,32 @@ if [[ $(.venv/bin/pip --version 2>/dev/null) != *" $root/.venv/"* ]]; then
         "On Debian, the package python3-venv has to be there."
 fi
 
+# Prints what pip is doing: a line for each package.
+show_progress() {
+    local line number=0
+    while read -r line; do
+        case $line in
+            "Collecting "*) number=$((number + 1)) && line="${number}${1:+ of $1}: ${line#Collecting }" ;;
+            "Installing collected"*) line="unpacking $number packages" ;;
+            *) continue ;;
+        esac
+        printf '   [%3d s] %s\n' "$SECONDS" "${line%% (from*}"
+    done
+}
+
+# Arguments of pip; the first one may be `-r FILE`.
 pip_install() {
-    .venv/bin/python -m pip install --quiet --no-input --disable-pip-version-check "$@" ||
+    local packages=
+    [ "$1" != -r ] || packages=$(cat "$2" $(sed -n 's/^-r //p' "$2") | grep -c '==')
+    PYTHONUNBUFFERED=1 .venv/bin/python -m pip install --no-input --disable-pip-version-check \
+        --progress-bar off "$@" | show_progress "$packages" ||
         fail "pip could not install the Python packages; its message is above." \
             "Check the network and pip's own configuration (.venv/bin/pip config list), then run" \
             "'make setup' again. It goes on from where it stopped."
 }
 
 if ! venv_is_current; then
-    step "Installing the Python packages of requirements.txt (a minute or two the first time)"
+    step "Installing the Python packages of requirements.txt (up to four minutes the first time)"
     pip_install -r requirements.txt
 
     step "Installing passo in editable mode"

@@ -231,9 +231,9 @@ size_t passo_engine_drain(struct passo_engine *engine, struct passo_pin_event *e
 	return count;
 }
 
-bool passo_engine_open_waves(struct passo_engine *engine, const char *path)
+bool passo_engine_open_waves(struct passo_engine *engine, const char *path, uint64_t begin, uint64_t end)
 {
-	return engine_core_open_waves(engine->core, path);
+	return engine_core_open_waves(engine->core, path, begin, end);
 }
 
 void passo_engine_close_waves(struct passo_engine *engine)

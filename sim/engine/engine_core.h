@@ -33,7 +33,7 @@ void engine_core_close(struct engine_core *core);
 uint64_t engine_core_run(struct engine_core *core, const struct engine_inputs *inputs, uint64_t limit,
     struct engine_outputs *outputs);
 
-bool engine_core_open_waves(struct engine_core *core, const char *path);
+bool engine_core_open_waves(struct engine_core *core, const char *path, uint64_t begin, uint64_t end);
 void engine_core_close_waves(struct engine_core *core);
 
 #ifdef __cplusplus

@@ -83,10 +83,12 @@ uint64_t engine_core_run(struct engine_core *core, const struct engine_inputs *i
 	return clocks;
 }
 
-bool engine_core_open_waves(struct engine_core *core, const char *path)
+bool engine_core_open_waves(struct engine_core *core, const char *path, uint64_t begin, uint64_t end)
 {
 	(void)core;
 	(void)path;
+	(void)begin;
+	(void)end;
 	return false;
 }
 

@@ -16,6 +16,9 @@ struct engine_core {
 #ifdef PASSO_WAVES
 	std::unique_ptr<VerilatedFstC> waves;
 	uint64_t half_period_ps = 0;
+	uint64_t halves = 0;          /* of a clock, since reset */
+	uint64_t begin = 0, end = 0;  /* clocks to record, from `origin` on */
+	uint64_t origin = UINT64_MAX; /* the half in which `running` rose */
 #endif
 
 	/* Half a clock period. */
@@ -25,10 +28,25 @@ struct engine_core {
 		top.eval();
 #ifdef PASSO_WAVES
 		if (waves)
-			waves->dump(context.time());
-		context.timeInc(half_period_ps);
+			record();
+		halves++;
 #endif
 	}
+
+#ifdef PASSO_WAVES
+	void record()
+	{
+		if (origin == UINT64_MAX && top.running)
+			origin = halves;
+		const bool started = origin != UINT64_MAX;
+		if (started && halves - origin >= 2 * end) {
+			waves->close();
+			waves.reset();
+		} else if (begin == 0 || (started && halves - origin >= 2 * begin)) {
+			waves->dump(halves * half_period_ps);
+		}
+	}
+#endif
 
 	void apply(const engine_inputs &inputs)
 	{
@@ -80,6 +98,9 @@ engine_core *engine_core_open(
 		core->half(true);
 	}
 	core->top.rst = 0;
+#ifdef PASSO_WAVES
+	core->halves = 0;
+#endif
 	core->read(*outputs);
 	outputs->spi_miso = core->top.spi_miso;
 	return core;
@@ -109,9 +130,12 @@ uint64_t engine_core_run(
 	return clocks;
 }
 
-bool engine_core_open_waves(engine_core *core, const char *path)
+bool engine_core_open_waves(engine_core *core, const char *path, uint64_t begin, uint64_t end)
 {
 #ifdef PASSO_WAVES
+	core->begin = begin;
+	core->end = end;
+	core->origin = UINT64_MAX;
 	core->waves = std::make_unique<VerilatedFstC>();
 	core->top.trace(core->waves.get(), 99);
 	core->waves->open(path);
@@ -119,6 +143,8 @@ bool engine_core_open_waves(engine_core *core, const char *path)
 #else
 	(void)core;
 	(void)path;
+	(void)begin;
+	(void)end;
 	return false;
 #endif
 }

@@ -68,8 +68,9 @@ uint64_t passo_engine_clock(const struct passo_engine *engine);
 /* Moves up to `capacity` of the oldest events to `events`; returns their number. */
 size_t passo_engine_drain(struct passo_engine *engine, struct passo_pin_event *events, size_t capacity);
 
-/* Starts to record all signals of the core to an FST file; false if this build has no waves. */
-bool passo_engine_open_waves(struct passo_engine *engine, const char *path);
+/* Records all signals of the core to an FST file, from `begin` to `end` clocks after the next clock on which
+ * a channel is running; with `begin` 0 from now on. Time 0 is the reset. False if this build has no waves. */
+bool passo_engine_open_waves(struct passo_engine *engine, const char *path, uint64_t begin, uint64_t end);
 void passo_engine_close_waves(struct passo_engine *engine);
 
 #ifdef __cplusplus

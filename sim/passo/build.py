@@ -130,11 +130,11 @@ def _verilated(parameters: Parameters, waves: bool) -> Path:
     """The folder with the compiled C++ that Verilator generates from the core."""
     modules = sorted(paths.rtl.glob("*.v"))
     flags = [*VERILATOR_FLAGS, *(f"-G{name}={value}" for name, value in parameters.verilog().items())]
-    # Recording takes most of the time, so optimization would only slow down the build.
+    # With waves, more optimization takes longer than it saves.
     optimize = "OPT_FAST=-O1 OPT_SLOW=-O0" if waves else "OPT_FAST=-O3 OPT_SLOW=-O1 OPT_GLOBAL=-O2"
     flags += ["-MAKEFLAGS", optimize]
     if waves:
-        flags.append("--trace-fst")
+        flags += ["--trace-fst", "--no-trace-params"]  # the constants of the registers, in every module
         if not waves_possible():
             raise BuildError(
                 "waves need lz4.h and zlib.h: install the Debian packages liblz4-dev and zlib1g-dev"

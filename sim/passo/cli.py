@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The command `passo`."""
+"""The command `passo`. Each subcommand imports what it needs: `passo --help` is fast."""
 
 import argparse
 import sys
@@ -8,23 +8,10 @@ from itertools import pairwise
 from pathlib import Path
 
 from passo import __version__
-from passo.build import Parameters
-from passo.compiler import BuildError
-from passo.console import progress
-from passo.engine import DifferenceError
-from passo.frame import FrameError
-from passo.link import LinkError
-from passo.move_file import read_moves
-from passo.move_forms import WHOLE_MAX
-from passo.moves import AXES_MAX, MoveFileError
-from passo.plan import plan_file
-from passo.run import ENGINES, Run, RunError, execute, open_engine, parameters_for
-from passo.shape import ShapeError
-from passo.toolchain import paths
+from passo.failure import BadInputError, Failure
 
-RESULTS = ("pulses.csv", "summary.json", "motion.png", "waves.fst")
+ENGINES = ("both", "rtl", "model")
 OK, FAILED, BAD_INPUT = 0, 1, 2
-FAILURES = (BuildError, DifferenceError, FrameError, LinkError, RunError)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -32,10 +19,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = _parser().parse_args(arguments)
     try:
         return options.command(options)
-    except (MoveFileError, ShapeError) as error:
+    except BadInputError as error:
         print(error, file=sys.stderr)
         return BAD_INPUT
-    except FAILURES as error:
+    except Failure as error:
         print(error, file=sys.stderr)
         return FAILED
     except KeyboardInterrupt:
@@ -56,7 +43,14 @@ def _parser() -> argparse.ArgumentParser:
         help="engine to run; both (default): RTL and model, compared edge for edge",
     )
     run.add_argument("--out", type=Path, metavar="DIR", help="output folder (default build/run/NAME)")
-    run.add_argument("--waves", action="store_true", help="write waves.fst (internal signals of the RTL)")
+    run.add_argument(
+        "--waves",
+        nargs="?",
+        const="2ms",
+        metavar="WINDOW",
+        help="write waves.fst, signals inside the RTL: 2ms (default) is from the reset to 2 ms after the "
+        "start of the motion, 100ms..102ms a part of it",
+    )
     run.add_argument("--plot", action="store_true", help="write motion.png")
     shape = commands.add_parser("shape", help="create and check the table of a user-defined shape")
     shape.set_defaults(command=_shape)
@@ -95,50 +89,9 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _run(options: argparse.Namespace) -> int:
-    from passo.report import summarize, write_json, write_pulses
+    from passo.run_command import run_file
 
-    if options.waves and options.engine == "model":
-        raise MoveFileError("--waves needs the RTL: --engine both or rtl")
-    file = read_moves(options.moves)
-    parameters = parameters_for(file.axes)
-    plans = plan_file(file, parameters)
-    out = options.out or paths.build / "run" / file.name
-    with open_engine(options.engine, parameters, file.clock_hz, options.waves) as engine:
-        try:
-            out.mkdir(parents=True, exist_ok=True)
-            for result in RESULTS:
-                (out / result).unlink(missing_ok=True)
-        except OSError as error:
-            raise MoveFileError(f"{out}: {error.strerror}") from None
-        if options.waves:
-            engine.open_waves(out / "waves.fst")
-        try:
-            with progress(file.name, sum(plan.clocks for plan in plans)) as report:
-                run = execute(file, plans, engine, report)
-        except DifferenceError as error:
-            write_json({"name": file.name, "ok": False, "difference": vars(error)}, out / "summary.json")
-            raise
-    write_pulses(run, out / "pulses.csv")
-    write_json(summarize(run, options.engine), out / "summary.json")
-    if options.plot:
-        from passo.plot import plot_motion
-
-        plot_motion(run, out / "motion.png")
-    return _conclude(run, out)
-
-
-def _conclude(run: Run, out: Path) -> int:
-    """Print the result; return the exit status."""
-    problems = run.problems()
-    for problem in problems:
-        print(f"{run.file.path}: {problem}", file=sys.stderr)
-    if problems:
-        return FAILED
-    steps = sum(run.commanded(axis)[1] for axis in range(run.file.axes))
-    edges = "" if run.matched_edges is None else f", {run.matched_edges} edges agree"
-    seconds = run.total_clocks / run.file.clock_hz
-    print(f"{run.file.name}: {steps} steps in {run.total_clocks} clocks ({seconds:.6g} s){edges}: {out}")
-    return OK
+    return OK if run_file(options.moves, options.engine, options.out, options.waves, options.plot) else FAILED
 
 
 def _shape(options: argparse.Namespace) -> int:
@@ -154,7 +107,7 @@ def _shape(options: argparse.Namespace) -> int:
         if options.plot:
             shape.plot_table(points, options.plot)
     except OSError as error:
-        raise ShapeError(f"{error.filename}: {error.strerror}") from None
+        raise BadInputError(f"{error.filename}: {error.strerror}") from None
     steepest = max(b - a for a, b in pairwise((*points, shape.ONE))) * shape.POINTS / shape.ONE
     symmetric = "symmetric" if facts.symmetric else "not symmetric"
     print(f"mean {float(facts.mean):.6f}, {symmetric}, slope at most {steepest:.3f}")
@@ -162,13 +115,17 @@ def _shape(options: argparse.Namespace) -> int:
 
 
 def _console(options: argparse.Namespace) -> int:
+    from passo.build import Parameters
+    from passo.move_forms import WHOLE_MAX
+    from passo.moves import AXES_MAX
+    from passo.run import open_engine
     from passo.terminal import Terminal, talk
 
     def write(text: str) -> None:
         print(text, end="", flush=text.endswith("\n"))
 
     if not 1 <= options.axes <= AXES_MAX or not 1 <= options.clock <= WHOLE_MAX:
-        raise MoveFileError(f"--axes must be 1 to {AXES_MAX}, --clock 1 to {WHOLE_MAX}")
+        raise BadInputError(f"--axes must be 1 to {AXES_MAX}, --clock 1 to {WHOLE_MAX}")
     parameters = Parameters(axes=options.axes)
     with (
         open_engine(options.engine, parameters, options.clock) as engine,

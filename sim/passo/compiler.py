@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
+from passo.failure import Failure
 from passo.toolchain import environment, paths
 
 CC = "cc"
@@ -29,7 +30,7 @@ LIBRARY = "library.so"
 MESSAGE_LINES = 30  # of compiler messages
 
 
-class BuildError(RuntimeError):
+class BuildError(Failure):
     """A compiler failed; the text is its message."""
 
 

@@ -55,5 +55,7 @@ def demo() -> bool:
             f"{summary['clocks_per_second'] / 1e6:.1f} M",
         )
     console.print(shown)
-    console.print(f"Pictures and tables: {FOLDER.relative_to(paths.root)}/")
+    folder = FOLDER.relative_to(paths.root)
+    print(f"{folder}/NAME/ has a page for each move, motion.png, and its steps, pulses.csv")
+    print(f"open: {folder}/demo.png")
     return all(summary["ok"] for summary in summaries.values())

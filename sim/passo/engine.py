@@ -8,6 +8,7 @@ from typing import Self
 import numpy as np
 
 from passo.build import Parameters, model_library, rtl_library
+from passo.failure import Failure
 from passo.native import ffi, load
 
 # Pin levels after each clock on which an output pin changes; clock 1 is the first one after reset. step, dir
@@ -19,7 +20,7 @@ SIGNALS = EVENT.names[1:]
 EVENTS_PER_DRAIN = 65536
 
 
-class DifferenceError(Exception):
+class DifferenceError(Failure):
     """RTL and model differ: `expected` is the model's level or word, `actual` the RTL's."""
 
     def __init__(self, clock: int, signal: str, index: int, expected: int, actual: int):
@@ -137,9 +138,12 @@ class Engine(_Closed):
         count = self._c.passo_engine_drain(self._engine, self._events, EVENTS_PER_DRAIN)
         return np.frombuffer(ffi().buffer(self._events), EVENT, count).copy()
 
-    def open_waves(self, path: Path) -> None:
-        """Start to record all signals of the core to an FST file; requires an engine built with waves."""
-        if not self._c.passo_engine_open_waves(self._engine, str(path).encode()):
+    def open_waves(self, path: Path, begin: int, end: int) -> None:
+        """Record all signals of the core to an FST file; requires an engine built with waves.
+
+        From `begin` to `end` clocks after the motion has started; with `begin` 0 from now on.
+        """
+        if not self._c.passo_engine_open_waves(self._engine, str(path).encode(), begin, end):
             raise OSError(f"cannot write waves to {path}")
 
     def close_waves(self) -> None:
@@ -204,9 +208,9 @@ class PairEngine(_Closed):
         events, self._events = self._events, []
         return np.concatenate([np.empty(0, EVENT), *events])
 
-    def open_waves(self, path: Path) -> None:
+    def open_waves(self, path: Path, begin: int, end: int) -> None:
         """Record the waves of the RTL."""
-        self.rtl.open_waves(path)
+        self.rtl.open_waves(path, begin, end)
 
     def close_waves(self) -> None:
         """Close the waves file."""

@@ -4,6 +4,7 @@
 from collections.abc import Sequence
 from typing import Any
 
+from passo.failure import Failure
 from passo.native import ffi, planner
 from passo.registers import Verdict
 
@@ -13,7 +14,7 @@ DATA = 3
 CRC_START = 0xFFFFFFFF
 
 
-class FrameError(Exception):
+class FrameError(Failure):
     """The reply is not valid, so it is unknown whether the frame was executed."""
 
 

@@ -4,6 +4,7 @@
 from collections.abc import Sequence
 from typing import Any, Protocol
 
+from passo.failure import Failure
 from passo.native import ffi, planner
 from passo.registers import Verdict
 
@@ -13,7 +14,7 @@ TRIES = 4
 MICROSECONDS = 1_000_000
 
 
-class LinkError(Exception):
+class LinkError(Failure):
     """A frame failed after all tries; `error` is an enum passo_error, `name` its name."""
 
     def __init__(self, what: str, error: int = 0):

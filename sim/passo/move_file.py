@@ -2,27 +2,28 @@
 """Move files: parses TOML into checked moves. An error is reported in one line."""
 
 import math
+import re
 import tomllib
 from dataclasses import fields
-from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
 
 from passo.move_forms import FORMS, Form
 from passo.move_keys import (
-    BadValueError,
     Table,
     check_known,
     read_key,
-    read_number,
     read_positive,
-    shown,
+    read_time,
     within,
 )
 from passo.moves import MOVES, PIN_CLOCKS_MAX, Move, MoveFile, MoveFileError, PinTiming
 from passo.shape import ShapeError, read_table
+from passo.values import BadValueError, Written, meant, shown
 
 PIN_SECONDS = Fraction(1, 1_000_000)  # default of every pin time
+CLOCK_HZ_MIN = 1000  # below that it is in another unit
+G_CODE = re.compile(r"^\s*(%|\(.*\)|;.*|N?\d*\s*[GMT]\d+(\s.*)?)$", re.MULTILINE)
 
 FILE_KEYS = ("clock_hz", "pins", "move")
 PIN_KEYS = tuple(field.name for field in fields(PinTiming))
@@ -31,7 +32,8 @@ PIN_KEYS = tuple(field.name for field in fields(PinTiming))
 def read_moves(path: Path) -> MoveFile:
     """Read and check a move file; raises MoveFileError."""
     try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"), parse_float=Decimal)
+        text = path.read_text(encoding="utf-8-sig")
+        data = tomllib.loads(text, parse_float=Written)
     except OSError as error:
         raise MoveFileError(f"{path}: {error.strerror}") from None
     except UnicodeDecodeError:
@@ -41,6 +43,8 @@ def read_moves(path: Path) -> MoveFile:
     except ArithmeticError:
         raise MoveFileError(f"{path}: a number is out of all range") from None
     except ValueError as error:
+        if G_CODE.match(text):
+            raise MoveFileError(f"{path}: this is G-code; moves are in TOML (docs/planning.md)") from None
         raise MoveFileError(f"{path}: {str(error).splitlines()[0]}") from None
     try:
         return _file(path, data)
@@ -51,6 +55,8 @@ def read_moves(path: Path) -> MoveFile:
 def _file(path: Path, data: Table) -> MoveFile:
     check_known(data, FILE_KEYS)
     clock_hz = read_positive(data, "clock_hz")
+    if clock_hz < CLOCK_HZ_MIN:
+        raise BadValueError(f"clock_hz = {clock_hz} is in Hz: write {clock_hz}_000_000 for {clock_hz} MHz")
     pins = data.get("pins", {})
     if not isinstance(pins, dict):
         raise BadValueError("pins must be a table: [pins]")
@@ -62,7 +68,7 @@ def _file(path: Path, data: Table) -> MoveFile:
         raise BadValueError("there are no moves: [[move]] is missing")
     moves: list[Move] = []
     for number, table in enumerate(tables, 1):
-        move = within(f"move {number}", lambda table=table: _move(table, path.parent))
+        move = within(f"move {number}", lambda table=table: _move(table, path.parent, clock_hz))
         if moves and len(move.steps) != len(moves[0].steps):
             raise BadValueError(
                 f"move {number}: steps has {len(move.steps)} axes, but move 1 has {len(moves[0].steps)}"
@@ -75,15 +81,17 @@ def _pins(table: Table, clock_hz: int) -> PinTiming:
     check_known(table, PIN_KEYS)
     clocks = {}
     for key in PIN_KEYS:
-        clocks[key] = max(1, math.ceil(read_number(table, key, PIN_SECONDS) * clock_hz))
+        seconds = read_time(table, key, clock_hz) if key in table else PIN_SECONDS
+        clocks[key] = max(1, math.ceil(seconds * clock_hz))
         if clocks[key] > PIN_CLOCKS_MAX:
-            raise BadValueError(f"{key} is {clocks[key]} clocks, at most {PIN_CLOCKS_MAX} are possible")
+            hint = '; a number is in seconds, a text may have a unit: "2us"' if seconds >= 1 else ""
+            raise BadValueError(f"{key} is {clocks[key]} clocks, at most {PIN_CLOCKS_MAX} are possible{hint}")
     return PinTiming(**clocks)
 
 
-def _move(table: Table, folder: Path) -> Move:
+def _move(table: Table, folder: Path, clock_hz: int) -> Move:
     form = _form(table)
-    values = {key.name: read_key(table, key) for key in form.keys}
+    values = {key.name: read_key(table, key, clock_hz) for key in form.keys}
     _check_rules(form, table)
     if values.get("table"):
         try:
@@ -102,7 +110,8 @@ def _form(table: Table) -> Form:
     if "method" in table:
         method = table["method"]
         if not isinstance(method, str) or method not in FORMS:
-            raise BadValueError(f"method must be one of {', '.join(FORMS)}, not {shown(method)}")
+            hint = meant(method, tuple(FORMS))
+            raise BadValueError(f"method must be one of {', '.join(FORMS)}, not {shown(method)}{hint}")
         check_known(table, ("method", *_names(FORMS[method])))
         return FORMS[method]
     by_time, by_speed = FORMS["in_time"], FORMS["by_speed"]

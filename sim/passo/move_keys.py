@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Readers of values in a move file: each takes a table and a key and returns the checked value.
 
-Numbers are read exactly as written, as fractions. Errors raise BadValueError.
+Numbers are read exactly as written, as fractions. Times are seconds, or a text with a unit as on the console.
+Errors raise BadValueError.
 """
 
 from collections.abc import Callable
@@ -10,7 +11,6 @@ from fractions import Fraction
 from typing import Any
 
 from passo.move_forms import (
-    DECIMALS_MAX,
     NUMBER_MAX,
     PROFILES,
     SIGNED_MAX,
@@ -21,28 +21,17 @@ from passo.move_forms import (
     Points,
 )
 from passo.moves import AXES_MAX
+from passo.values import BadValueError, check_number, meant, parse_time, shown
 
 Table = dict[str, Any]
-
-
-class BadValueError(ValueError):
-    """A value is invalid; the text does not say where yet."""
 
 
 def check_known(table: Table, keys: tuple[str, ...]) -> None:
     """Raises BadValueError if a table has a key other than `keys`."""
     for key in table:
         if key not in keys:
-            raise BadValueError(f"unknown key {shown(key)}; known are {', '.join(keys)}")
-
-
-def shown(value: Any) -> str:
-    """A value as text for an error message: short and on one line."""
-    try:
-        text = str(value).lower() if isinstance(value, bool) else repr(value)
-    except ValueError:  # Python refuses to print very long numbers
-        return "a very long number"
-    return text if len(text) <= 40 else text[:37] + "..."
+            hint = meant(key, keys) or f"; known are {', '.join(keys)}"
+            raise BadValueError(f"unknown key {shown(key)}{hint}")
 
 
 def within(place: str, check: Callable[[], Any]) -> Any:
@@ -63,44 +52,43 @@ def read_integer(table: Table, key: str, low: int, high: int) -> int:
     """An integer, low .. high."""
     value = _get(table, key)
     if type(value) is not int:
-        raise BadValueError(f"{key} must be a whole number, not {shown(value)}")
+        whole = isinstance(value, Decimal) and value.is_finite() and low <= value <= high and value % 1 == 0
+        hint = f"; write {int(value):_}" if whole else ""
+        raise BadValueError(f"{key} must be a whole number, not {shown(value)}{hint}")
     if not low <= value <= high:
         raise BadValueError(f"{key} must be {low} to {high}")
     return value
 
 
-def read_number(table: Table, key: str, default: Fraction | None = None) -> Fraction:
+def read_number(table: Table, key: str) -> Fraction:
     """A number that is not negative."""
-    if default is not None and key not in table:
-        return default
-    value = _finite(table, key)
+    value = _number(table, key)
     if value < 0:
         raise BadValueError(f"{key} must not be negative")
-    return _fraction(key, value, NUMBER_MAX)
+    return check_number(key, value, NUMBER_MAX)
 
 
 def read_signed(table: Table, key: str) -> Fraction:
     """A number with a sign."""
-    return _fraction(key, _finite(table, key), SIGNED_MAX)
+    return check_number(key, _number(table, key), SIGNED_MAX)
 
 
-def _finite(table: Table, key: str) -> int | Decimal:
+def read_time(table: Table, key: str, clock_hz: int) -> Fraction:
+    """Seconds, or a text with a unit."""
     value = _get(table, key)
-    if type(value) is not int and type(value) is not Decimal:
-        raise BadValueError(f"{key} must be a number, not {shown(value)}")
-    if type(value) is Decimal and not value.is_finite():
+    if isinstance(value, str):
+        return parse_time(key, value, clock_hz)
+    _number(table, key, ' or a text such as "400ms"')
+    return read_number(table, key)
+
+
+def _number(table: Table, key: str, others: str = "") -> int | Decimal:
+    value = _get(table, key)
+    if type(value) is not int and not isinstance(value, Decimal):
+        raise BadValueError(f"{key} must be a number{others}, not {shown(value)}")
+    if isinstance(value, Decimal) and not value.is_finite():
         raise BadValueError(f"{key} must be finite, not {value}")
     return value
-
-
-def _fraction(key: str, value: int | Decimal, largest: int) -> Fraction:
-    if value > largest:
-        raise BadValueError(f"{key} must be at most {largest}")
-    if value < -largest:
-        raise BadValueError(f"{key} must be at least -{largest}")
-    if type(value) is Decimal and value.as_tuple().exponent < -DECIMALS_MAX:
-        raise BadValueError(f"{key} has more than {DECIMALS_MAX} decimals")
-    return Fraction(value)
 
 
 def read_steps(table: Table, key: str) -> tuple[int, ...]:
@@ -120,7 +108,9 @@ def read_profile(table: Table, key: str, profiles: tuple[str, ...] = PROFILES) -
     """Name of a profile."""
     profile = _get(table, key)
     if profile not in profiles:
-        raise BadValueError(f"profile must be one of {', '.join(profiles)}, not {shown(profile)}")
+        raise BadValueError(
+            f"profile must be one of {', '.join(profiles)}, not {shown(profile)}{meant(profile, profiles)}"
+        )
     return profile
 
 
@@ -166,27 +156,27 @@ def read_distance(table: Table, key: str) -> tuple[Fraction, ...]:
     return tuple(read_signed({key: item}, key) for item in value)
 
 
-# By kind of key.
-READERS: dict[str, Callable[[Table, Key], Any]] = {
-    "steps": lambda table, key: read_steps(table, key.name),
-    "profile": lambda table, key: read_profile(table, key.name),
-    "shape": lambda table, key: read_profile(table, key.name, (*PROFILES, USER)),
-    "table": lambda table, key: read_table_file(table, key.name),
-    "time": lambda table, key: read_number(table, key.name),
-    "number": lambda table, key: read_number(table, key.name),
-    "signed": lambda table, key: read_signed(table, key.name),
-    "alpha": lambda table, key: read_number(table, key.name),
-    "whole": lambda table, key: read_integer(table, key.name, key.low, key.high),
-    "axis": lambda table, key: read_integer(table, key.name, 0, AXES_MAX - 1),
-    "axes": lambda table, key: read_axes(table, key.name),
-    "distance": lambda table, key: read_distance(table, key.name),
-    "per_axis": lambda table, key: read_per_axis(table, key.name),
+# By kind of key; times need the clock.
+READERS: dict[str, Callable[[Table, Key, int], Any]] = {
+    "steps": lambda table, key, _: read_steps(table, key.name),
+    "profile": lambda table, key, _: read_profile(table, key.name),
+    "shape": lambda table, key, _: read_profile(table, key.name, (*PROFILES, USER)),
+    "table": lambda table, key, _: read_table_file(table, key.name),
+    "time": lambda table, key, clock_hz: read_time(table, key.name, clock_hz),
+    "number": lambda table, key, _: read_number(table, key.name),
+    "signed": lambda table, key, _: read_signed(table, key.name),
+    "alpha": lambda table, key, _: read_number(table, key.name),
+    "whole": lambda table, key, _: read_integer(table, key.name, key.low, key.high),
+    "axis": lambda table, key, _: read_integer(table, key.name, 0, AXES_MAX - 1),
+    "axes": lambda table, key, _: read_axes(table, key.name),
+    "distance": lambda table, key, _: read_distance(table, key.name),
+    "per_axis": lambda table, key, _: read_per_axis(table, key.name),
 }
 
 
-def read_key(table: Table, key: Key) -> Any:
+def read_key(table: Table, key: Key, clock_hz: int) -> Any:
     """The value of a key of a form, or its default."""
     if key.default is not None and key.name not in table:
         default = table[key.default] if isinstance(key.default, str) else key.default
         table = {**table, key.name: default}
-    return READERS[key.kind](table, key)
+    return READERS[key.kind](table, key, clock_hz)

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import get_args
 
 from passo import move_forms
+from passo.failure import BadInputError
 from passo.move_forms import (
     UNIT_Q32,
     MoveAtSpeed,
@@ -23,7 +24,7 @@ AXES_MAX = CHANNEL_AXIS_COUNT
 PIN_CLOCKS_MAX = (1 << AXIS_STEP_TIMING_STEP_HIGH_BITS) - 1
 
 
-class MoveFileError(ValueError):
+class MoveFileError(BadInputError):
     """A move file cannot be executed; the text is the reason, in one line."""
 
 

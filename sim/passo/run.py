@@ -10,13 +10,13 @@ import numpy as np
 from passo.build import Parameters
 from passo.driver import Driver, DriverError, Source
 from passo.engine import Engine, PairEngine, model_engine, rtl_engine
+from passo.failure import Failure
 from passo.host import ChannelState
 from passo.move_forms import USER_BANK
 from passo.moves import MoveFile
 from passo.plan import Plan, table_of
 from passo.registers import Cause, State
 
-ENGINES = ("both", "rtl", "model")
 CHUNK = 1_000_000  # clocks between two reports of progress
 SLEWS_PER_SECOND = 20  # of hold and stop, from full speed
 AXES_OF_CORES = (4, 8)
@@ -25,7 +25,7 @@ AXES_OF_CORES = (4, 8)
 PINS = np.dtype([("clock", "u8"), ("step", "u1"), ("dir", "u1"), ("running", "?")])
 
 
-class RunError(Exception):
+class RunError(Failure):
     """The motion did not end."""
 
 

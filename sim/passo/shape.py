@@ -16,6 +16,7 @@ from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path
 
+from passo.failure import BadInputError
 from passo.registers import ADDRESS_SIGMOID_COUNT
 
 POINTS = ADDRESS_SIGMOID_COUNT
@@ -26,7 +27,7 @@ CURVE_HEADER = ("u", "s")
 Points = tuple[int, ...]
 
 
-class ShapeError(ValueError):
+class ShapeError(BadInputError):
     """Not a valid shape; the text is the reason, in one line."""
 
 

@@ -1,0 +1,10 @@
+# SPDX-License-Identifier: MIT
+"""What the command reports in one line."""
+
+
+class Failure(Exception):  # noqa: N818 - the errors have it as their base
+    """A mismatch or a fault: exit status 1."""
+
+
+class BadInputError(ValueError):
+    """The input is invalid: exit status 2."""

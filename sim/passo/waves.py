@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: MIT
+"""Waves of a window of a motion, and how to look at them: a save file for GTKWave with groups and names."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+
+from passo.build import Parameters
+from passo.engine import Engine, PairEngine
+from passo.registers import Cause, DescribedEnum, State, Verdict
+from passo.values import BadValueError, parse_time
+
+AROUND = Fraction(2, 1000)  # seconds recorded unless a window is given
+NAMED: dict[str, type[DescribedEnum]] = {"state": State, "cause": Cause, "verdict": Verdict}
+FILES = ("waves.fst", "waves.gtkw", *(f"waves_{name}.txt" for name in NAMED))
+CORE = "TOP.passo_spi_top.u_core"
+
+# Formats of GTKWave: flags of a trace in a save file.
+BITS, DECIMAL, NAMES, CURVE = "28", "24", "2022", "8024"
+MARGIN_PS = 20_000_000  # shown before the start
+
+
+@dataclass(frozen=True)
+class Window:
+    """Seconds since the start of the motion; `begin` 0 is the reset."""
+
+    begin: Fraction = Fraction(0)
+    end: Fraction = AROUND
+
+    def clocks(self, clock_hz: int) -> tuple[int, int]:
+        """The same in clocks, at least one."""
+        begin, end = (round(time * clock_hz) for time in (self.begin, self.end))
+        return begin, max(end, begin + 1)
+
+
+def read_window(text: str) -> Window:
+    """`2ms`: from the reset until then; `100ms..102ms`: a part. Raises ValueError."""
+    begin, dots, end = text.rpartition("..")
+    try:
+        window = Window(parse_time("begin", begin) if dots else Fraction(0), parse_time("end", end))
+    except BadValueError:
+        raise ValueError(f"{text!r} is not a window such as 2ms or 100ms..102ms") from None
+    if window.begin >= window.end:
+        raise ValueError(f"the window {text} is empty")
+    return window
+
+
+def record(engine: Engine | PairEngine, window: Window, folder: Path) -> None:
+    """Begin to record the next motion to waves.fst."""
+    engine.open_waves(folder / FILES[0], *window.clocks(engine.clock_hz))
+
+
+def write_view(folder: Path, parameters: Parameters, axes: int, clock_hz: int, start: int) -> None:
+    """Write the save file for GTKWave and its names; `start` is the clock at which the motion started."""
+    for name, values in NAMED.items():
+        lines = (f"{value:x} {value.name}" for value in values)
+        (folder / f"waves_{name}.txt").write_text("\n".join([*lines, ""]))
+    edge_ps = (2 * start - 1) * (10**12 // (2 * clock_hz))
+    zoom = -(10**12 // clock_hz * 2000).bit_length()
+    files = zip(("dumpfile", "savefile"), FILES, strict=False)
+    head = [f'[{kind}] "{folder.resolve() / name}"' for kind, name in files]
+    head += [f"[timestart] {max(0, edge_ps - MARGIN_PS)}", f"*{zoom} {edge_ps}" + " -1" * 26]
+    (folder / FILES[1]).write_text("\n".join([*head, *_traces(folder, parameters, axes), ""]))
+
+
+def _traces(folder: Path, parameters: Parameters, axes: int) -> Iterator[str]:
+    channel = f"{CORE}.g_channel[0].u_channel"
+    lines, ramps = parameters.line_queue_log2, parameters.ramp_queue_log2
+    pins = f"[{parameters.channels * parameters.axes - 1}:0]"
+
+    def names(signal: str, name: str) -> list[str]:
+        return [f"@{NAMES}", f"^1 {folder.resolve() / f'waves_{name}.txt'}", signal]
+
+    def group(title: str, *rows: str) -> list[str]:
+        return ["@800200", f"-{title}", *rows, "@1000200", f"-{title}"]
+
+    top = [f"TOP.{name}" for name in ("clk", "spi_cs_n", "spi_sclk", "spi_mosi", "spi_miso")]
+    yield from group("host", f"@{BITS}", *top, *names(f"{CORE}.u_link.verdict[3:0]", "verdict"))
+    yield from group(
+        "motion", *names(f"{channel}.state[2:0]", "state"), *names(f"{channel}.cause[2:0]", "cause"),
+        f"@{BITS}", "TOP.running[0:0]", f"@{DECIMAL}", f"{channel}.line_room[{lines}:0]",
+        f"{channel}.ramp_room[{ramps}:0]", f"{channel}.rate[16:0]",
+    )  # fmt: skip
+    curve = [f"@{CURVE}", f"{channel}.velocity[31:0]", "@20000", "-", "-", "-"]
+    yield from group("velocity (2^-32 substeps per clock)", *curve, f"@{BITS}", f"{channel}.substep")
+    for axis in range(axes):
+        own = f"{channel}.u_axes.g_axis[{axis}]"
+        bits = [f"({parameters.axes - 1 - axis})TOP.{name}{pins}" for name in ("step", "dir", "enable")]
+        states = [f"{own}.u_axis.{name}" for name in ("setup", "high", "low", "hold", "idle")]
+        yield from group(f"axis {axis}", f"@{BITS}", *bits, *states)
