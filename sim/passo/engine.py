@@ -194,6 +194,11 @@ class PairEngine(_Closed):
         assert actual == expected  # the same events fill both logs on the same clock
         return actual
 
+    @property
+    def irq(self) -> int:
+        """Level of the irq pins; their changes are compared like those of all pins."""
+        return self.rtl.irq
+
     def sync(self, level: bool) -> None:
         """Set the sync input of both."""
         self.rtl.sync(level)
