@@ -27,10 +27,15 @@ class DifferenceError(Exception):
         self.expected, self.actual = expected, actual
         place = "word" if signal == "miso" else "channel" if signal in ("running", "irq") else "axis"
         show = hex if signal == "miso" else str
+        self._all = (clock, signal, index, expected, actual)
         super().__init__(
             f"clock {clock}: {signal} of {place} {index} differs: "
             f"expected (model) {show(expected)}, actual (rtl) {show(actual)}"
         )
+
+    def __reduce__(self) -> tuple[type, tuple[int | str, ...]]:
+        """Can be passed between processes."""
+        return type(self), self._all
 
 
 class _Closed:
