@@ -27,7 +27,6 @@ class DifferenceError(Exception):
         self.expected, self.actual = expected, actual
         place = "word" if signal == "miso" else "channel" if signal in ("running", "irq") else "axis"
         show = hex if signal == "miso" else str
-        self._all = (clock, signal, index, expected, actual)
         super().__init__(
             f"clock {clock}: {signal} of {place} {index} differs: "
             f"expected (model) {show(expected)}, actual (rtl) {show(actual)}"
@@ -35,7 +34,7 @@ class DifferenceError(Exception):
 
     def __reduce__(self) -> tuple[type, tuple[int | str, ...]]:
         """Can be passed between processes."""
-        return type(self), self._all
+        return type(self), (self.clock, self.signal, self.index, self.expected, self.actual)
 
 
 class _Closed:
