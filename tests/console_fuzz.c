@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Random lines for the console over the C model: console_fuzz SEED SECONDS. Every line must get exactly one
- * answer; the sanitizers watch the rest. Prints how many lines were answered ok and with an error.
+ * answer, at once unless it is a move that waits for room; the sanitizers watch the rest. Prints how many
+ * lines were answered ok and with an error, and how many of them waited.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,15 +21,17 @@ static const char *const WORDS[] = {"move", "turn", "rpm", "hold", "resume", "ov
     "stop_speed", "acceleration", "deceleration", "jerk", "method", "axis", "axes", "steps_per_turn", "rpm",
     "top_rpm", "minimum_rpm", "backwards", "distance", "feed", "steps_per_mm", "accelerate_time",
     "decelerate_time", "alpha", "row", "points", "percent", "step_high", "step_low", "dir_setup", "dir_hold",
-    "both_edges", "steps_per_unit", "clock_hz", "hold_time", "stop_time", "baud", "spi_slow", "on",
-    "command"};
+    "both_edges", "steps_per_unit", "clock_hz", "hold_time", "stop_time", "flow", "need_enable", "baud",
+    "spi_slow", "on", "command"};
 
 static const char *const VALUES[] = {"0", "1", "-1", "5", "50", "100", "3.5", "0.01", "1e-3", "2us",
-    "7clocks", "10ms", "200,-100", "1,2,3,4", "1,2,3,4,5,6,7,8,9", "20_000", "1e9", "4294967295",
-    "4294967296", "1e99", "0.00000000000000000000000000000001", "linear", "cosine", "sigmoid", "jerk", "user",
-    "in_time", "by_speed", "below_speed", "at_speed", "axes", "turn", "straight", "-2147483648", "2147483647",
-    "1073741823", "-1073741824", "", ",", "1,,2", "x", "-", "1e",
+    "7clocks", "10ms", "wait", "refuse", "200,-100", "1,2,3,4", "1,2,3,4,5,6,7,8,9", "20_000", "1e9",
+    "4294967295", "4294967296", "1e99", "0.00000000000000000000000000000001", "linear", "cosine", "sigmoid",
+    "jerk", "user", "in_time", "by_speed", "below_speed", "at_speed", "axes", "turn", "straight",
+    "-2147483648", "2147483647", "1073741823", "-1073741824", "", ",", "1,,2", "x", "-", "1e",
     "0,100,200,300,400,500,600,700,800,900,1000,1100,1200,1300,1400,1500", "1600", "=", "#"};
+
+#define LONG_MOVE "move steps=20 profile=linear total_time=0.05 ramp_time=10ms"
 
 /* Valid lines, so that motions run in between. */
 static const char *const LINES[] = {"move steps=20,-9 profile=cosine total_time=0.02 ramp_time=5ms",
@@ -40,8 +43,15 @@ static const char *const LINES[] = {"move steps=20,-9 profile=cosine total_time=
     "move method=straight distance=1,2,3 feed=50 steps_per_mm=9 speed=90 acceleration=900 jerk=9000",
     "move method=turn steps_per_turn=200 angle=-45.5 rpm=120 acceleration=30000"};
 
+/* Now and then these lines, without pauses, so that a move has to wait for room. */
+static const char *const FILL[] = {"abort", "clear", "resume", "sync 0", "config flow=wait need_enable=0",
+    LONG_MOVE, LONG_MOVE, LONG_MOVE, LONG_MOVE, LONG_MOVE, LONG_MOVE};
+#define FILLS (sizeof FILL / sizeof FILL[0])
+
 struct bench {
 	struct passo_engine *engine;
+	unsigned long good, bad, waited;
+	bool last; /* the last line was an answer */
 	char said[ANSWER_MAX];
 	size_t length;
 };
@@ -76,6 +86,13 @@ static bool transfer(void *context, const uint32_t *mosi, uint32_t *miso, size_t
 		miso[draw((uint32_t)count)] ^= 1u << draw(32);
 	drain(bench->engine);
 	return draw(2000) != 0;
+}
+
+static bool irq(void *context)
+{
+	const struct bench *bench = context;
+
+	return passo_engine_irq(bench->engine) != 0;
 }
 
 static uint32_t advance(void *context, uint32_t microseconds)
@@ -132,38 +149,52 @@ static size_t make_line(char *line)
 	return length;
 }
 
-/* One line that begins with ok or error, the last one; no end of a line is missing. Returns whether it is ok.
+/* Counts the answers, lines that begin with ok or error. Every line is one, a note or indented, and has an
+ * end.
  */
-static bool check(const struct bench *bench, const char *line)
+static unsigned answers(struct bench *bench, const char *line)
 {
-	unsigned answers = 0;
-	bool good = false, last = false;
+	unsigned found = 0;
 
 	for (const char *at = bench->said; *at;) {
 		const char *end = strchr(at, '\n');
-		bool ok = strncmp(at, "ok", 2) == 0 && (at[2] == ' ' || at[2] == '\n');
+		const bool ok = strncmp(at, "ok", 2) == 0 && (at[2] == ' ' || at[2] == '\n');
+		const bool error = strncmp(at, "error: ", 7) == 0;
 
-		last = ok || strncmp(at, "error: ", 7) == 0;
-		answers += last;
-		good = ok;
-		if (!end || (!last && strncmp(at, "  ", 2) != 0 && strncmp(at, "note: ", 6) != 0)) {
+		bench->good += ok;
+		bench->bad += error;
+		found += ok || error;
+		bench->last = ok || error;
+		if (!end || (!ok && !error && strncmp(at, "  ", 2) != 0 && strncmp(at, "note: ", 6) != 0)) {
 			fprintf(stderr, "to \"%s\" it said: %s\n", line, bench->said);
 			exit(1);
 		}
 		at = end + 1;
 	}
-	if (answers != 1 || !last) {
-		fprintf(stderr, "%u answers to \"%s\": %s\n", answers, line, bench->said);
+	return found;
+}
+
+/* Takes what was said after `lines` lines, or while time passed: each line is answered, except the one that
+ * may wait, and an answer is the last that is said to a line. Returns whether one waits. */
+static bool check(
+    struct bench *bench, const struct passo_terminal *terminal, unsigned lines, bool typed, const char *line)
+{
+	const bool waits = passo_terminal_owes(terminal);
+
+	bench->last = true;
+	if (answers(bench, line) + waits != lines || (typed && !bench->last)) {
+		fprintf(stderr, "to \"%s\", the last of %u lines: %s\n", line, lines, bench->said);
 		exit(1);
 	}
-	return good;
+	bench->length = 0;
+	bench->said[0] = '\0';
+	return waits;
 }
 
 int main(int count, char **arguments)
 {
 	static struct bench bench;
 	static char line[8192];
-	unsigned long answered[2] = {0, 0};
 	time_t end = time(NULL) + (count > 2 ? atol(arguments[2]) : 5);
 
 	state = (uint64_t)(count > 1 ? atoll(arguments[1]) : 1) * UINT64_C(0x9E3779B97F4A7C15) + 1u;
@@ -173,33 +204,41 @@ int main(int count, char **arguments)
 		    .tick_log2 = 7,
 		    .line_queue_log2 = 4,
 		    .ramp_queue_log2 = 4,
-		    .clock_hz = CLOCK_HZ};
+		    .clock_hz = CLOCK_HZ,
+		    .spi_half_period = 2};
 		struct passo_terminal *terminal;
+		bool waits = false;
 
 		bench.length = 0;
 		bench.engine = passo_engine_create(&config);
 		terminal = passo_terminal_create(
-		    &(struct passo_terminal_caller){transfer, advance, keep, &bench}, CLOCK_HZ);
-		for (unsigned i = 0; i < LINES_PER_CONSOLE; i++) {
-			size_t length = make_line(line);
+		    &(struct passo_terminal_caller){transfer, advance, irq, keep, &bench}, CLOCK_HZ);
+		bench.length = 0; /* the greeting */
+		bench.said[0] = '\0';
+		for (unsigned i = 0, fill = FILLS; i < LINES_PER_CONSOLE; i++, fill++) {
+			size_t length;
 
-			bench.length = 0;
-			bench.said[0] = '\0';
+			if (fill >= FILLS && draw(40) == 0)
+				fill = 0;
+			length = fill < FILLS ? (size_t)sprintf(line, "%s", FILL[fill]) : make_line(line);
+
 			passo_terminal_type(terminal, line, length);
 			if (bench.length != 0) {
 				fprintf(stderr, "an answer before the end of the line: %s\n", bench.said);
 				return 1;
 			}
 			passo_terminal_type(terminal, "\n", 1);
-			answered[check(&bench, line)]++;
-			for (uint32_t round = draw(4); round > 0; round--) {
+			waits = check(&bench, terminal, 1u + waits, true, line);
+			bench.waited += waits;
+			for (uint32_t round = fill < FILLS ? 0 : draw(4); round > 0; round--) {
 				passo_terminal_poll(terminal);
 				advance(&bench, draw(8000));
 			}
+			waits = check(&bench, terminal, waits, false, line);
 		}
 		passo_terminal_destroy(terminal);
 		passo_engine_destroy(bench.engine);
 	}
-	printf("ok %lu\nerror %lu\n", answered[1], answered[0]);
+	printf("ok %lu\nerror %lu\nwaited %lu\n", bench.good, bench.bad, bench.waited);
 	return 0;
 }

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The console of the STM32 bridge, on the PC, over the C model."""
 
+import os
 import random
 import re
 import subprocess
@@ -24,7 +25,7 @@ from passo.moves import MoveFile, MoveFileError, q32
 from passo.native import console, ffi
 from passo.plan import plan_file
 from passo.run import execute, open_engine
-from passo.terminal import Terminal
+from passo.terminal import Terminal, talk
 from passo.toolchain import paths
 
 CLOCK_HZ = 4_000_000
@@ -147,7 +148,8 @@ def chunks(table: tuple[int, ...] | Any) -> list[tuple[int, ...]]:
 
 
 def test_moves_are_queued_behind_each_other(bench: Bench) -> None:
-    """The queues accept moves until FULL, which changes nothing; all accepted moves are made."""
+    """With flow=refuse moves are accepted until FULL, which changes nothing; all accepted ones are made."""
+    assert bench.ask("config flow=refuse") == "ok"
     taken = 0
     while (answer := bench.ask("move steps=10,-5 profile=linear total_time=0.01 ramp_time=0.004")) == "ok":
         taken += 1
@@ -155,6 +157,146 @@ def test_moves_are_queued_behind_each_other(bench: Bench) -> None:
     assert 5 <= taken <= 6  # 16 ramps, three a move, and those of the first have left the queue
     assert bench.ask("wait") == "ok"
     assert bench.tell("position")["position"] == f"{10 * taken},{-5 * taken},0,0"
+
+
+# --------------------------------------------------------------------------------------------- flow=wait ----
+
+SHORT = "move steps=2,-1 profile=linear total_time=0.001 ramp_time=0.0003"
+LONG = "move steps=100 profile=linear total_time=1 ramp_time=0.2"
+WAITING = "error: WAITING: a move waits for room: send {} after its answer\n"
+MANY = int(os.environ.get("PASSO_CONSOLE_LINES", "1000"))
+
+
+def test_a_sender_that_waits_for_answers_loses_no_move(bench: Bench) -> None:
+    """Each line after the answer of the one before: none is refused. PASSO_CONSOLE_LINES: how many."""
+    for _ in range(MANY):
+        assert bench.ask(SHORT) == "ok"
+    assert bench.ask("wait") == "ok"
+    assert bench.tell("position")["position"] == f"{2 * MANY},{-MANY},0,0"
+
+
+def test_shapes_that_change_wait_for_rest(bench: Bench) -> None:
+    """A move that needs another table is not refused either."""
+    sigmoid = "move method=sigmoid steps=20 speed=900 accelerate_time=0.01 alpha={}"
+    for alpha in (3.25, 4.5, 3.25, 5):
+        assert bench.ask(sigmoid.format(alpha)) == "ok"
+    assert bench.ask("wait") == "ok"
+    assert bench.tell("position")["position"] == "80,0,0,0"
+
+
+def fill(bench: Bench, line: str = IN_TIME) -> int:
+    """Send moves until one waits, without letting time pass; return how many were queued."""
+    for queued in range(20):
+        bench.terminal.type(f"{line}\n".encode())
+        if not (said := bench.take()):
+            return queued
+        assert said.endswith("ok\n")
+    raise AssertionError("no move waits")
+
+
+def test_urgent_lines_pass_a_move_that_waits(bench: Bench) -> None:
+    """Readings, hold, resume and override are answered meanwhile; other lines are refused."""
+    queued = fill(bench)
+    type_ = bench.terminal.type
+    type_(b"status\n")
+    assert " waiting=1" in bench.take()
+    for line in ("hold", "override 50", "sync 0", "resume", "override 100", ""):
+        type_(f"{line}\n".encode())
+        assert bench.take() == "ok\n", line
+    for line in ("position", "angle 200", "version", "help", "? move"):
+        type_(f"{line}\n".encode())
+        assert bench.take().splitlines()[-1].startswith("ok"), line
+    for line in ("clear", "zero", "enable", "open", "table", "config", "config flow=refuse", "turn", IN_TIME):
+        type_(f"{line}\n".encode())
+        assert bench.take() == WAITING.format(line.split(" ")[0])
+    type_(b"bla\n")
+    assert bench.take() == "error: unknown command 'bla'; help lists the commands\n"
+    bench.terminal.run(60_000)
+    assert bench.take() == "ok\n"  # of the move
+    assert bench.tell("status")["waiting"] == "0"
+    assert bench.ask("wait") == "ok"
+    assert bench.tell("position")["position"] == f"{200 * (queued + 1)},{-120 * (queued + 1)},0,0"
+
+
+@pytest.mark.parametrize("how", ["stop", "abort"])
+def test_a_stop_answers_the_move_that_waits(bench: Bench, how: str) -> None:
+    """First the stop, then the move, which is not made."""
+    fill(bench)
+    bench.terminal.type(f"{how}\n".encode())
+    assert bench.take() == "ok\nerror: STOPPED: the channel is stopped: clear it first\n"
+    bench.terminal.run(200_000)
+    assert bench.take() == ""
+    assert bench.ask("clear") == "ok"
+    before = bench.tell("position")
+    bench.terminal.run(200_000)
+    assert bench.tell("position") == before
+
+
+def test_a_broken_wire_answers_the_move_that_waits(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With the error of the wire; the moves that were queued are made."""
+    queued = fill(bench)
+    with monkeypatch.context() as patch:
+        patch.setattr(bench.engine, "transfer", lambda mosi, gap: [0] * len(mosi))
+        bench.terminal.run(20_000)
+        wire = "STUCK_LOW: MISO stays low: no core, no power or no connection\n"
+        assert bench.take() == f"note: {wire}error: {wire}"
+    bench.terminal.run(500_000)
+    assert bench.take() == "note: the core answers\n"
+    assert bench.tell("position")["position"] == f"{200 * queued},{-120 * queued},0,0"
+
+
+def test_a_lost_stop_answers_the_move_that_waits(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The stop is resent, and the move is refused at once."""
+    fill(bench)
+    with monkeypatch.context() as patch:
+        patch.setattr(bench.engine, "transfer", lambda mosi, gap: [0] * len(mosi))
+        bench.terminal.type(b"stop\n")
+        stop, move = bench.take().splitlines()
+        assert stop.startswith("error: STUCK_LOW: ")
+        assert move.startswith("error: NOT_STOPPED: ")
+
+
+def test_a_core_that_is_reset_answers_the_move_that_waits(bench: Bench) -> None:
+    """Another core, fresh from its reset, on the same wires."""
+    fill(bench)
+    old = bench.engine
+    with model_engine(old.parameters, old.clock_hz) as other:
+        bench.terminal.engine = other
+        bench.terminal.run(20_000)
+        notes, answer = bench.take().splitlines()
+        assert notes.startswith("note: CORE_RESET: ") and answer.startswith("error: CORE_RESET: ")
+        bench.terminal.engine = old
+
+
+def test_a_held_motion_leaves_the_move_waiting(bench: Bench) -> None:
+    """On the PC the next lines are read: they can let it go on, and it is then answered, after them."""
+    queued = fill(bench, LONG)
+    bench.terminal.line("hold")
+    note = "note: the move waits: the motion does not go on: it is held, or waits for the sync input\n"
+    assert bench.take() == "ok\n" + note
+    bench.terminal.line("status")
+    assert "state=RUN" in (said := bench.take()) and said.count("\n") == 1
+    bench.terminal.line("resume")
+    assert bench.take() == "ok\nok\n"
+    assert bench.ask("wait") == "ok"
+    assert bench.tell("position")["position"] == f"{100 * (queued + 1)},0,0,0"
+
+
+def test_the_end_of_the_input_answers_the_move_that_waits(bench: Bench) -> None:
+    """No line stays without an answer."""
+    fill(bench, LONG)
+    talk(["hold"], bench.terminal)
+    assert bench.take().splitlines()[-1].startswith("error: the motion does not go on")
+
+
+def test_a_move_that_never_fits_is_refused() -> None:
+    """More ramps than the core has places: FULL at rest, not a wait without end."""
+    with model_engine(Parameters(ramp_queue_log2=2), CLOCK_HZ) as engine:
+        said: list[str] = []
+        with Terminal(engine, said.append) as terminal:
+            said.clear()
+            terminal.line("move method=jerk steps=900 speed=900 acceleration=3000 jerk=9e5")
+        assert "".join(said).splitlines()[-1].startswith("error: FULL: ")
 
 
 # ------------------------------------------------------------------------- the same words as move files ----
@@ -281,6 +423,7 @@ def test_errors_are_those_of_move_files(seed: int, tmp_path: Path) -> None:
     """Random moves with errors: console and move file reject them with the same message, or accept them."""
     random_ = random.Random(seed)
     bench = Bench(axes=8)
+    bench.ask("config flow=refuse")
     compared = {"": 0}
     for _ in range(300):
         values = broken(random_)
@@ -509,11 +652,55 @@ def test_enable_switches_the_drives(bench: Bench) -> None:
     assert enabled() == 0
 
 
+DISABLED = "note: axis {} is not enabled\n"
+
+
+def test_a_move_without_its_drives_is_noted(bench: Bench) -> None:
+    """Once for each axis that moves, and again after the drive was switched off."""
+    for axis in (0, 1):
+        bench.ask(f"config axis={axis} steps_per_unit=100")
+    bench.ask("enable 3")
+    bench.terminal.line("move steps=5,0,0,5 profile=linear total_time=0.01 ramp_time=0.002")
+    assert bench.take() == DISABLED.format(0) + "ok\n"
+    bench.terminal.line("move method=straight distance=0.1,-0.1 feed=10 speed=10 acceleration=1000")
+    assert bench.take() == DISABLED.format(1) + "ok\n"
+    bench.terminal.line("move method=turn axis=2 steps_per_turn=1600 angle=9 rpm=60 acceleration=20000")
+    assert bench.take() == DISABLED.format(2) + "ok\n"
+    bench.ask("enable")
+    bench.ask("wait")
+    bench.ask("disable 2")
+    bench.terminal.line("move steps=5,5,5,5 profile=linear total_time=0.01 ramp_time=0.002")
+    assert bench.take() == DISABLED.format(2) + "ok\n"
+    bench.ask("wait")
+    bench.terminal.line("turn axis=2 steps_per_turn=200 rpm=60 acceleration=9999")
+    assert bench.take() == "ok\n"
+
+
+def test_a_move_without_its_drives_can_be_refused(bench: Bench) -> None:
+    """With need_enable=1 nothing moves unless all its drives are on."""
+    assert bench.ask("config need_enable=1") == "ok"
+    assert bench.tell("config")["need_enable"] == "1"
+    bench.ask("enable 0")
+    assert bench.ask(IN_TIME) == "error: NOT_ENABLED: axis 1 is not enabled"
+    turn = "turn axis=3 steps_per_turn=200 rpm=60 acceleration=9999"
+    assert bench.ask(turn) == "error: NOT_ENABLED: axis 3 is not enabled"
+    assert bench.ask("wait") == "ok"
+    assert bench.tell("position")["position"] == "0,0,0,0"
+    bench.ask("enable 1")
+    assert bench.ask(IN_TIME) == "ok"
+    assert bench.ask("disable 1").startswith("error: MOVING: ")
+    assert bench.ask(IN_TIME) == "ok"
+    assert bench.ask("open").startswith("error: MOVING: ")
+    assert bench.ask("wait") == "ok"
+    assert bench.ask("open") == "ok"
+    assert bench.ask(IN_TIME) == "ok"
+
+
 def test_pin_times_reach_the_pins(bench: Bench) -> None:
     """A step is as long as configured, in clocks or in seconds, rounded up."""
     assert bench.ask("config axis=0 step_high=2.1us step_low=3clocks") == "ok"
     assert bench.tell("config axis=0")["step_high"] == "9clocks"
-    assert bench.ask("config axis=1 dir_hold=0") == "ok"
+    assert bench.ask("config axis=1 dir_hold=1ns") == "ok"
     assert bench.tell("config axis=1")["dir_hold"] == "1clocks"
     bench.ask("move steps=3 profile=linear total_time=0.01 ramp_time=0.001")
     bench.ask("wait")
@@ -583,6 +770,19 @@ def test_versions(bench: Bench) -> None:
     assert told["console"] == passo.__version__
     register_map = (r.VERSION_MAJOR_RESET, r.VERSION_MINOR_RESET, r.VERSION_PATCH_RESET)
     assert told["core"] == "{}.{}.{}".format(*register_map)
+
+
+def test_version_needs_no_core() -> None:
+    """It says what is wrong instead."""
+    with model_engine(Parameters(), CLOCK_HZ) as engine, pytest.MonkeyPatch.context() as patch:
+        patch.setattr(engine, "transfer", lambda mosi, gap: [0] * len(mosi))
+        said: list[str] = []
+        with Terminal(engine, said.append) as terminal:
+            said.clear()
+            terminal.line("version")
+        assert "".join(said) == (
+            f"ok console={passo.__version__} core=none fault=STUCK_LOW clock_hz={CLOCK_HZ}\n"
+        )
 
 
 def test_table_is_checked(bench: Bench) -> None:
@@ -769,7 +969,16 @@ def test_lines_have_255_characters(bench: Bench) -> None:
         ("move method=straight distance=1,a,3", "error: distance must be a number, not 'a'"),
         ("config axis=0 step_high=1h", "error: step_high must be a number, not '1h'"),
         ("config hold_time=5clocks", "error: hold_time must be in s, ms, us or ns, not '5clocks'"),
-        ("config x=5", "error: unknown key 'x'; known are clock_hz, hold_time, stop_time, baud, spi_slow"),
+        ("config axis=0 step_high=0", "error: step_high is 0 clocks, 1 to 65535 are possible"),
+        ("config axis=0 step_low=0us", "error: step_low is 0 clocks, 1 to 65535 are possible"),
+        ("config axis=0 dir_setup=0clocks", "error: dir_setup is 0 clocks, 1 to 65535 are possible"),
+        ("config axis=0 dir_hold=65536clocks", "error: dir_hold is 65536 clocks, 1 to 65535 are possible"),
+        ("config flow=stop", "error: flow must be wait or refuse, not 'stop'"),
+        (
+            "config x=5",
+            "error: unknown key 'x'; known are clock_hz, hold_time, stop_time, flow, need_enable, baud, "
+            "spi_slow",
+        ),
     ],
 )  # fmt: skip
 def test_what_is_wrong_is_named(bench: Bench, line: str, answer: str) -> None:

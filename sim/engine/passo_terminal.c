@@ -31,6 +31,13 @@ static void wait(void *context, uint32_t duration)
 	terminal->caller.advance(terminal->caller.context, duration ? duration : 1);
 }
 
+static bool irq(void *context)
+{
+	const struct passo_terminal *terminal = context;
+
+	return terminal->caller.irq(terminal->caller.context);
+}
+
 struct passo_terminal *passo_terminal_create(const struct passo_terminal_caller *caller, uint32_t clock_hz)
 {
 	struct passo_terminal *terminal = calloc(1, sizeof *terminal);
@@ -43,6 +50,7 @@ struct passo_terminal *passo_terminal_create(const struct passo_terminal_caller 
 	    &(struct passo_hardware){.transfer = transfer,
 		.microseconds = microseconds,
 		.wait = wait,
+		.irq = irq,
 		.context = terminal,
 		.paced = true},
 	    NULL, clock_hz, 0);
@@ -58,6 +66,11 @@ void passo_terminal_type(struct passo_terminal *terminal, const char *bytes, siz
 {
 	for (size_t i = 0; i < count; i++)
 		passo_console_receive(&terminal->console, bytes[i]);
+}
+
+bool passo_terminal_owes(const struct passo_terminal *terminal)
+{
+	return passo_console_owes(&terminal->console);
 }
 
 enum passo_terminal_status passo_terminal_poll(struct passo_terminal *terminal)

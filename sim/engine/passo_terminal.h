@@ -18,6 +18,8 @@ struct passo_terminal_caller {
 	bool (*transfer)(void *context, const uint32_t *mosi, uint32_t *miso, size_t count);
 	/* Runs the core for this time; returns the time since its reset in microseconds. */
 	uint32_t (*advance)(void *context, uint32_t microseconds);
+	/* Level of the irq pin. */
+	bool (*irq)(void *context);
 	void (*write)(void *context, const char *text);
 	void *context;
 };
@@ -30,6 +32,9 @@ void passo_terminal_destroy(struct passo_terminal *terminal);
 
 /* Input to the console. */
 void passo_terminal_type(struct passo_terminal *terminal, const char *bytes, size_t count);
+
+/* A move waits for room in the queues; its line is not answered yet. */
+bool passo_terminal_owes(const struct passo_terminal *terminal);
 
 /* State of the core. */
 enum passo_terminal_status {

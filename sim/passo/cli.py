@@ -63,7 +63,7 @@ def _parser() -> argparse.ArgumentParser:
         "console", help="console of the STM32 board with a simulated core (docs/console.md)"
     )
     console.set_defaults(command=_console)
-    console.add_argument("--engine", choices=ENGINES, default="rtl", help="the core (default rtl)")
+    console.add_argument("--engine", choices=ENGINES, default="model", help="the core (default model)")
     console.add_argument("--axes", type=int, default=4, metavar="N", help="axes of the core (default 4)")
     console.add_argument(
         "--clock", type=int, default=100_000_000, metavar="HZ", help="clock of the core (default 100000000)"
@@ -131,7 +131,13 @@ def _console(options: argparse.Namespace) -> int:
         open_engine(options.engine, parameters, options.clock) as engine,
         Terminal(engine, write) as terminal,
     ):
-        talk(sys.stdin, terminal, write if options.echo else None)
+        if sys.stdin.isatty() and sys.stdout.isatty():
+            from passo.prompt import GREETING, typed
+
+            write(GREETING.format(f"{options.engine}, {options.axes} axes, {options.clock} Hz"))
+            talk(typed(terminal), terminal)
+        else:
+            talk(sys.stdin, terminal, write if options.echo else None)
     return OK
 
 

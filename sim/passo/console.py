@@ -27,6 +27,15 @@ def progress(name: str, clocks: int) -> Iterator[Callable[[int], None]]:
         yield lambda done: bar.update(task, completed=min(done, clocks))
 
 
+@contextmanager
+def passing(name: str, seconds: float | None = None) -> Iterator[Callable[[float], None]]:
+    """The same for simulated seconds, of which the total may be unknown."""
+    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed:.3f} s simulated"))
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+        task = bar.add_task(name, total=seconds)
+        yield lambda done: bar.update(task, completed=done)
+
+
 def stages() -> Callable[[str], None]:
     """Return a function that prints a line with the time elapsed since now."""
     began = time.monotonic()

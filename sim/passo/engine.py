@@ -33,6 +33,10 @@ class DifferenceError(Failure):
             f"expected (model) {show(expected)}, actual (rtl) {show(actual)}"
         )
 
+    def __reduce__(self) -> tuple[type, tuple[int | str, ...]]:
+        """Can be passed between processes."""
+        return type(self), (self.clock, self.signal, self.index, self.expected, self.actual)
+
 
 class _Closed:
     """Closes itself at the end of a with statement."""
@@ -197,6 +201,11 @@ class PairEngine(_Closed):
         self._compare()
         assert actual == expected  # the same events fill both logs on the same clock
         return actual
+
+    @property
+    def irq(self) -> int:
+        """Level of the irq pins; their changes are compared like those of all pins."""
+        return self.rtl.irq
 
     def sync(self, level: bool) -> None:
         """Set the sync input of both."""

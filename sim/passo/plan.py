@@ -33,6 +33,10 @@ class Plan:
     tick_log2: int
     table: Points = ()  # required contents of the sigmoid bank; empty: those after reset, or any
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Can be passed between processes, although a C struct cannot."""
+        return _restored, (self.move, bytes(ffi().buffer(self.c)), self.tick_log2, self.table)
+
     @property
     def line(self) -> Any:
         """Its `struct passo_line`."""
@@ -47,6 +51,12 @@ class Plan:
     def clocks(self) -> int:
         """Length of the profile in clocks."""
         return sum(ramp.ticks for ramp in self.ramps) << self.tick_log2
+
+
+def _restored(move: Move, data: bytes, tick_log2: int, table: Points) -> Plan:
+    plan = ffi().new("struct passo_plan *")
+    ffi().memmove(plan, data, len(data))
+    return Plan(move, plan, tick_log2, table)
 
 
 def plan_move(move: Move, clock_hz: int, parameters: Parameters) -> Plan:

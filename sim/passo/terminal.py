@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The console of the STM32 bridge with a simulated core: `passo console`.
 
-Simulated time advances only on request: a line takes as long as its frames on the link, `run SECONDS` lets
-time pass, and `wait` lets it pass until all motions have ended. The same input always gives the same output.
+Simulated time advances only on request: a line takes as long as its frames on the link, a move until there
+is room for it, `run SECONDS` lets time pass, and `wait` lets it pass until all motions have ended. The same
+input always gives the same output.
 """
 
 import re
@@ -12,44 +13,54 @@ from typing import Any, Self
 
 import numpy as np
 
+from passo.console import passing
 from passo.engine import EVENT, Engine, PairEngine
 from passo.native import console, ffi
 
 GAP, GAP_PER_WORD = 64, 4  # clocks after a frame
-PATIENCE = 5  # rounds that a motion may be held or wait for sync
+PATIENCE = 20  # rounds that a motion may be held or wait for sync
 ROUND = 1000  # microseconds between two polls
 MICROSECONDS = 1_000_000
 RUN_MAX = 3600  # seconds
 DECIMAL = re.compile(r"\d{1,6}(\.\d{0,9})?")
 
+STANDS = "the motion does not go on: it is held, or waits for the sync input"
+
 HELP = """  run: let seconds of simulated time pass (only in the simulation)
   wait: let time pass until nothing is queued or moves (only in the simulation)
+  quit, exit: end the simulation
 """
 
 
 class Terminal:
     """A console and its core.
 
-    `write` receives all output, in pieces; `keep`: store the pin events for pulses().
+    `write` receives all output, in pieces; `keep`: store the pin events for pulses(). Setting `interrupted`
+    ends what lets time pass.
     """
 
     def __init__(self, engine: Engine | PairEngine, write: Callable[[str], object], keep: bool = False):
         self.engine, self._write, self._keep = engine, write, keep
         self._events: list[np.ndarray] = []
         self._error: Exception | None = None
+        self.interrupted = False
+        self._stands = False  # a move waits for room, but the motion does not go on
         types = (
             "bool(void *, uint32_t *, uint32_t *, size_t)",
             "uint32_t(void *, uint32_t)",
+            "bool(void *)",
             "void(void *, char *)",
         )
-        functions = self._transfer, self._advance, self._say
+        functions = self._transfer, self._advance, self._irq, self._say
         # cffi requires that they live as long as the console.
         self._callbacks = [
             ffi().callback(kind, function, onerror=self._failed)
             for kind, function in zip(types, functions, strict=True)
         ]
         caller = ffi().new("struct passo_terminal_caller *")
-        caller.transfer, caller.advance, caller.write = (ffi().cast("void *", c) for c in self._callbacks)
+        caller.transfer, caller.advance, caller.irq, caller.write = (
+            ffi().cast("void *", callback) for callback in self._callbacks
+        )
         self._console = console().passo_terminal_create(caller, engine.clock_hz)
         self._check()
 
@@ -71,45 +82,85 @@ class Terminal:
 
     def line(self, text: str) -> None:
         """Execute a line: a command of the simulation (run, wait) or of the console."""
-        words = text.partition("#")[0].split()
+        words = words_of(text)
+        self.interrupted = False
         if words[:1] == ["wait"]:
             self._answer(self.wait() if len(words) == 1 else "wait takes no keys")
         elif words[:1] == ["run"]:
             self._answer(self._run(words[1:]))
         else:
-            if words == ["help"]:
+            if words in (["help"], ["?"]):
                 self._write(HELP)
             self.type(text.encode("utf-8", "surrogateescape") + b"\n")
+            self._wait_for_room()
+
+    def finish(self) -> None:
+        """No more lines come: answer a move that still waits for room."""
+        if self._owes():
+            self._answer(STANDS)
+
+    def quit(self) -> None:
+        """Answer the last line."""
+        self.finish()
+        self._answer(None)
 
     def wait(self) -> str | None:
         """Let time pass until all motions have ended; return None, or why they do not end."""
-        waits = 0
-        while status := self._poll():
-            waits = waits + 1 if status == console().PASSO_TERMINAL_WAITS else 0
-            if waits == PATIENCE:
-                return "the motion does not go on: it is held, or waits for the sync input"
-            self._advance(None, ROUND)
-        return None
+        return self._pass("wait", lambda status: status == console().PASSO_TERMINAL_IDLE)
 
-    def run(self, microseconds: int) -> None:
-        """Let time pass, including the time that frames take meanwhile."""
+    def run(self, microseconds: int) -> str | None:
+        """Let time pass, including the time that frames take meanwhile; return None, or what ended it."""
         end = self.engine.clock + microseconds * self.engine.clock_hz // MICROSECONDS
-        while self.engine.clock < end:
-            self._poll()
-            left = (end - self.engine.clock) * MICROSECONDS // self.engine.clock_hz
-            self._advance(None, max(1, min(left, ROUND)))
+        problem = None
+        with passing("run", microseconds / MICROSECONDS) as report:
+            while self.engine.clock < end and not problem:
+                self._poll()
+                left = (end - self.engine.clock) * MICROSECONDS // self.engine.clock_hz
+                self._advance(None, max(1, min(left, ROUND)))
+                report((microseconds - left) / MICROSECONDS)
+                problem = self._interruption()
         self._poll()
+        return problem
 
     def pulses(self) -> np.ndarray:
         """All pin events (EVENT) since the start, if they are kept."""
         self._collect()
         return np.concatenate([np.empty(0, EVENT), *self._events])
 
+    def _wait_for_room(self) -> None:
+        """Let time pass until the move that waits for room is answered, or the motion does not go on."""
+        if not self._owes():
+            self._stands = False
+            return
+        problem = self._pass("wait for room", lambda _: not self._owes())
+        if problem and not self._stands:
+            self._write(f"note: the move waits: {problem}\n")
+        self._stands = problem is not None
+
+    def _owes(self) -> bool:
+        return bool(console().passo_terminal_owes(self._console))
+
+    def _pass(self, name: str, is_over: Callable[[int], bool]) -> str | None:
+        """Let time pass until the status satisfies a condition; return None, or why it does not."""
+        began, waits = self.engine.clock, 0
+        with passing(name) as report:
+            while not is_over(status := self._poll()):
+                waits = waits + 1 if status == console().PASSO_TERMINAL_WAITS else 0
+                if waits == PATIENCE:
+                    return STANDS
+                if problem := self._interruption():
+                    return problem
+                self._advance(None, ROUND)
+                report((self.engine.clock - began) / self.engine.clock_hz)
+        return None
+
+    def _interruption(self) -> str | None:
+        return "interrupted" if self.interrupted else None
+
     def _run(self, words: list[str]) -> str | None:
         if len(words) != 1 or not DECIMAL.fullmatch(words[0]) or Decimal(words[0]) > RUN_MAX:
             return f"run needs seconds, at most {RUN_MAX}"
-        self.run(int(Decimal(words[0]) * MICROSECONDS))
-        return None
+        return self.run(int(Decimal(words[0]) * MICROSECONDS))
 
     def _poll(self) -> int:
         """One round of the console's main loop; return the enum passo_terminal_status."""
@@ -133,6 +184,9 @@ class Terminal:
             self._collect()
         return self.engine.clock * MICROSECONDS // self.engine.clock_hz % 2**32
 
+    def _irq(self, _: Any) -> bool:
+        return bool(self.engine.irq)
+
     def _say(self, _: Any, text: Any) -> None:
         self._write(ffi().string(text).decode("ascii", "replace"))
 
@@ -152,10 +206,19 @@ class Terminal:
             raise error
 
 
+def words_of(line: str) -> list[str]:
+    """The words of a line without its comment."""
+    return line.partition("#")[0].split()
+
+
 def talk(lines: Iterable[str], terminal: Terminal, echo: Callable[[str], object] | None = None) -> None:
-    """Execute lines; `echo` receives each before its answer."""
+    """Execute lines to their end, or to `quit` or `exit`; `echo` receives each before its answer."""
     for line in lines:
         text = line.rstrip("\r\n")
         if echo:
             echo(f"> {text}\n")
+        if words_of(text) in (["quit"], ["exit"]):
+            terminal.quit()
+            return
         terminal.line(text)
+    terminal.finish()

@@ -20,6 +20,7 @@ struct passo_values {
 	uint32_t steps_per_turn;
 	uint64_t rpm, top_rpm, minimum_rpm, acceleration;
 	uint32_t clock_hz, baud, hold_microseconds, stop_microseconds;
+	bool flow_waits, need_enable;
 	struct passo_axis_config config;
 };
 

@@ -15,6 +15,7 @@ struct command {
 	const struct passo_key *keys;
 	uint8_t count;
 	uint8_t bare; /* number of keys that can be given as values alone */
+	bool passes;  /* is also executed while a move waits for room */
 	const char *text;
 };
 
@@ -60,31 +61,33 @@ static bool run_help(const struct passo_call *call);
 /* Commands without keys in their row read their own keys, or have none. */
 #define TAKES(keys) (keys), PASSO_COUNT(keys)
 static const struct command COMMANDS[] = {
-    {"move", passo_run_move, NULL, 0, 0, "queue a move; help move lists its forms"},
-    {"turn", passo_run_turn, TAKES(TURN_KEYS), 0, "rotate continuously, from rest"},
-    {"rpm", passo_run_rpm, TAKES(RPM_KEYS), 1, "change the speed of the rotation; 0 ends it"},
-    {"hold", passo_run_hold, NULL, 0, 0, "feed hold: slow down to rest on the path"},
-    {"resume", passo_run_resume, NULL, 0, 0, "continue after hold"},
-    {"override", passo_run_override, TAKES(PERCENT_KEYS), 1, "feed override of all motion, 1 to 100"},
-    {"stop", passo_run_stop, NULL, 0, 0, "soft stop, flush the queues; then clear"},
-    {"abort", passo_run_abort, NULL, 0, 0, "hard stop, flush the queues; then clear"},
-    {"clear", passo_run_clear, NULL, 0, 0, "leave the stopped state"},
-    {"status", passo_run_status, NULL, 0, 0, "state of the channel"},
-    {"position", passo_run_position, NULL, 0, 0, "steps made by each axis"},
-    {"angle", passo_run_angle, TAKES(ANGLE_KEYS), 1, "degrees of an axis and rpm of the motion"},
-    {"enable", passo_run_enable, TAKES(AXIS_KEYS), 1, "enable the drive of an axis, or all"},
-    {"disable", passo_run_disable, TAKES(AXIS_KEYS), 1, "disable it, at rest or when stopped"},
-    {"zero", passo_run_zero, NULL, 0, 0, "set all positions to 0"},
-    {"sync", passo_run_sync, TAKES(ON_KEYS), 1, "1: motions wait for the sync input; 0: not"},
-    {"config", passo_run_config, NULL, 0, 0, "show or change settings; help config lists them"},
-    {"table", passo_run_table, TAKES(TABLE_KEYS), 2, "load 16 of 256 points of a shape, or check it"},
-    {"open", passo_run_open, NULL, 0, 0, "connect to the core again"},
-    {"version", passo_run_version, NULL, 0, 0, "versions of console and core"},
-    {"help", run_help, TAKES(HELP_KEYS), 1, "this list, or the keys of one command"},
+    {"move", passo_run_move, NULL, 0, 0, false, "queue a move; help move lists its forms"},
+    {"turn", passo_run_turn, TAKES(TURN_KEYS), 0, false, "rotate continuously, from rest"},
+    {"rpm", passo_run_rpm, TAKES(RPM_KEYS), 1, false, "change the speed of the rotation; 0 ends it"},
+    {"hold", passo_run_hold, NULL, 0, 0, true, "feed hold: slow down to rest on the path"},
+    {"resume", passo_run_resume, NULL, 0, 0, true, "continue after hold"},
+    {"override", passo_run_override, TAKES(PERCENT_KEYS), 1, true, "feed override of all motion, 1 to 100"},
+    {"stop", passo_run_stop, NULL, 0, 0, true, "soft stop, flush the queues; then clear"},
+    {"abort", passo_run_abort, NULL, 0, 0, true, "hard stop, flush the queues; then clear"},
+    {"clear", passo_run_clear, NULL, 0, 0, false, "leave the stopped state"},
+    {"status", passo_run_status, NULL, 0, 0, true, "state of the channel"},
+    {"position", passo_run_position, NULL, 0, 0, true, "steps made by each axis"},
+    {"angle", passo_run_angle, TAKES(ANGLE_KEYS), 1, true, "degrees of an axis and rpm of the motion"},
+    {"enable", passo_run_enable, TAKES(AXIS_KEYS), 1, false, "enable the drive of an axis, or all"},
+    {"disable", passo_run_disable, TAKES(AXIS_KEYS), 1, false, "disable it, at rest or when stopped"},
+    {"zero", passo_run_zero, NULL, 0, 0, false, "set all positions to 0"},
+    {"sync", passo_run_sync, TAKES(ON_KEYS), 1, true, "1: motions wait for the sync input; 0: not"},
+    {"config", passo_run_config, NULL, 0, 0, false, "show or change settings; help config lists them"},
+    {"table", passo_run_table, TAKES(TABLE_KEYS), 2, false, "load 16 of 256 points of a shape, or check it"},
+    {"open", passo_run_open, NULL, 0, 0, false, "connect to the core again"},
+    {"version", passo_run_version, NULL, 0, 0, true, "versions of console and core"},
+    {"help", run_help, TAKES(HELP_KEYS), 1, true, "this list, or the keys of one command"},
 };
 
 static const struct command *find_command(const char *name)
 {
+	if (strcmp(name, "?") == 0)
+		name = "help";
 	for (unsigned i = 0; i < PASSO_COUNT(COMMANDS); i++) {
 		if (strcmp(COMMANDS[i].name, name) == 0)
 			return &COMMANDS[i];
@@ -157,6 +160,11 @@ void passo_commands_execute(struct passo_console *console, char *line)
 	if (command == NULL) {
 		passo_complain(&console->sink, "unknown command %q; help lists the commands",
 		    *words.word[0].key == '\0' ? words.word[0].value : words.word[0].key);
+		return;
+	}
+	if (console->waits && !command->passes) {
+		passo_complain(&console->sink, "WAITING: a move waits for room: send %s after its answer",
+		    command->name);
 		return;
 	}
 	words.count--;

@@ -27,9 +27,32 @@ void passo_console_start(struct passo_console *console, const struct passo_sink 
 	console->clock_hz = clock_hz;
 	console->baud = baud;
 	console->hold_microseconds = console->stop_microseconds = HOLD_MICROSECONDS;
+	console->flow_waits = true;
 	passo_commands_reset_axes(console);
 	passo_say(sink, "note: Passo console " PASSO_RELEASE "; help lists the commands\n");
 	passo_say_error_note(console, passo_commands_open(console));
+}
+
+/* Executes the line of the waiting move once more: it waits on, or is answered. */
+static void try_again(struct passo_console *console)
+{
+	char line[PASSO_LINE_MAX + 1u];
+
+	memcpy(line, console->waiting, sizeof line);
+	console->waits = false;
+	passo_commands_execute(console, line);
+}
+
+/* Executes a line, then the waiting one, which it may have ended or let go on. */
+static void take_line(struct passo_console *console)
+{
+	if (console->waits) {
+		passo_commands_execute(console, console->line);
+		try_again(console);
+	} else {
+		memcpy(console->waiting, console->line, console->length + 1u);
+		passo_commands_execute(console, console->line);
+	}
 }
 
 /* Executes a complete line, or prints why it cannot. */
@@ -43,7 +66,7 @@ static void finish_line(struct passo_console *console)
 	else if (console->too_long)
 		passo_complain(&console->sink, "the line is longer than %u characters", PASSO_LINE_MAX);
 	else
-		passo_commands_execute(console, console->line);
+		take_line(console);
 	console->length = 0;
 	console->too_long = false;
 	console->bad = 0;
@@ -86,7 +109,7 @@ static bool is_time_to_look(struct passo_console *console)
 	bool runs = passo_snapshot(&console->passo)->state == PASSO_STATE_RUN;
 	uint32_t now = hardware->microseconds ? hardware->microseconds(hardware->context) : 0u;
 
-	if (runs && !insists(console) && hardware->irq && !hardware->irq(hardware->context)
+	if (runs && !console->waits && !insists(console) && hardware->irq && !hardware->irq(hardware->context)
 	    && now - console->tried_at < LOOK_MICROSECONDS)
 		return false;
 	console->tried_at = now;
@@ -141,12 +164,29 @@ static void look_for_core(struct passo_console *console)
 		passo_say(&console->sink, "note: the core answers\n");
 }
 
+/* Something has changed since the last attempt to queue the waiting move. */
+static bool may_go_on(const struct passo_console *console)
+{
+	const struct passo_snapshot *now = passo_snapshot(&console->passo);
+
+	return console->noted != PASSO_OK || !passo_is_moving(&console->passo)
+	    || now->state != console->seen_state || now->line_room != console->seen_lines
+	    || now->ramp_room != console->seen_ramps;
+}
+
 void passo_console_poll(struct passo_console *console)
 {
 	if (!console->opened)
 		look_for_core(console);
 	else if (is_time_to_look(console))
 		look_at_core(console);
+	if (console->waits && may_go_on(console))
+		try_again(console);
+}
+
+bool passo_console_owes(const struct passo_console *console)
+{
+	return console->waits;
 }
 
 bool passo_console_is_idle(const struct passo_console *console)

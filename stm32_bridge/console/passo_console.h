@@ -2,8 +2,9 @@
  * The console: a text interface to a Passo core. docs/console.md describes the commands.
  *
  * Every input line is answered by one line that starts with `ok` or `error:`; before it, `help` prints lines
- * that start with two spaces. Lines that start with `note:` are unsolicited. Portable: the board, or a
- * simulation, provides the hardware functions of the link and a text output.
+ * that start with two spaces. Lines that start with `note:` are unsolicited. A move that finds the queues
+ * full is answered when it is queued or can no longer be; meanwhile only some commands are executed.
+ * Portable: the board, or a simulation, provides the hardware functions of the link and a text output.
  */
 #ifndef PASSO_CONSOLE_H
 #define PASSO_CONSOLE_H
@@ -41,9 +42,20 @@ struct passo_console {
 	uint32_t tried_at;      /* microseconds: time of the last attempt to open or poll the core */
 	bool spi_slow;
 	bool opened;
-	bool unset; /* settings not applied yet: the core was in motion when it was opened */
+	enum passo_error absent; /* why it is not */
+	bool unset;              /* settings not applied yet: the core was in motion when it was opened */
 	struct passo_axis_config axis[PASSO_AXES_MAX]; /* times in clocks */
 	struct passo_loaded_table table;
+	/* drives */
+	bool need_enable;  /* moves of axes that are not enabled are refused */
+	uint8_t enabled;   /* bit i: axis i was enabled */
+	uint8_t announced; /* bit i: a note said that axis i is not enabled */
+	/* flow control */
+	bool flow_waits;                   /* moves wait for room in the queues; otherwise they are refused */
+	bool waits;                        /* one does */
+	char waiting[PASSO_LINE_MAX + 1u]; /* its line */
+	enum passo_state seen_state;       /* at its last attempt */
+	uint16_t seen_lines, seen_ramps;
 	/* the incomplete input line */
 	char line[PASSO_LINE_MAX + 1u];
 	uint16_t length;
@@ -66,6 +78,9 @@ void passo_console_poll(struct passo_console *console);
 
 /* True if no motion is running or queued, or if there is no core. */
 bool passo_console_is_idle(const struct passo_console *console);
+
+/* True while a move waits for room and its line is not answered. */
+bool passo_console_owes(const struct passo_console *console);
 
 /* True if the core is open and has no fault. */
 bool passo_console_is_well(const struct passo_console *console);

@@ -3,14 +3,6 @@
 
 #include <string.h>
 
-#include "passo_form_tables.h"
-
-union move {
-#define MEMBER(name, NAME) struct passo_move_##name name;
-	PASSO_MOVES(MEMBER)
-#undef MEMBER
-};
-
 static const struct passo_form_table *const IN_TIME = &passo_form_tables[PASSO_FORM_IN_TIME];
 static const struct passo_form_table *const BY_SPEED = &passo_form_tables[PASSO_FORM_BY_SPEED];
 
@@ -61,16 +53,16 @@ static const struct passo_form_table *form_by_keys(
 	return of_time != NULL ? IN_TIME : BY_SPEED;
 }
 
-static bool is_zero(const union move *move, const struct passo_key *key)
+static bool is_zero(const union passo_form_values *values, const struct passo_key *key)
 {
 	uint64_t value;
 
-	memcpy(&value, (const char *)move + key->offset, sizeof value);
+	memcpy(&value, (const char *)values + key->offset, sizeof value);
 	return value == 0u;
 }
 
-static bool check_rules(
-    const struct passo_reading *reading, const struct passo_form_table *form, const union move *move)
+static bool check_rules(const struct passo_reading *reading, const struct passo_form_table *form,
+    const union passo_form_values *values)
 {
 	for (const struct passo_rule *rule = form->rules; rule < form->rules + form->rule_count; rule++) {
 		const struct passo_key *key = &form->keys[rule->key], *other = &form->keys[rule->other];
@@ -83,18 +75,87 @@ static bool check_rules(
 			    reading->sink, "%s and %s exclude each other", key->name, other->name);
 		if (rule->kind == PASSO_RULE_NEEDS && !other_given)
 			return passo_complain(reading->sink, "%s needs %s", key->name, other->name);
-		if (rule->kind == PASSO_RULE_ABOVE_ZERO && is_zero(move, key))
+		if (rule->kind == PASSO_RULE_ABOVE_ZERO && is_zero(values, key))
 			return passo_complain(reading->sink, "%s must be greater than 0", key->name);
 	}
 	return true;
 }
 
-static enum passo_error queue(struct passo *passo, enum passo_form form, const union move *move)
+bool passo_forms_read(struct passo_reading *reading, struct passo_words *words,
+    const struct passo_loaded_table *table, struct passo_form_move *move)
 {
-	switch (form) {
+	const char *name = passo_words_find(words, "method");
+	const struct passo_form_table *form =
+	    name != NULL ? form_by_name(reading->sink, name) : form_by_keys(reading, words);
+
+	if (form == NULL)
+		return false;
+	memset(move, 0, sizeof *move);
+	if (!passo_keys_check(reading, form->keys, form->count, 0, words)
+	    || !passo_keys_read(reading, form->keys, form->count, words, &move->values)
+	    || !check_rules(reading, form, &move->values))
+		return false;
+	if (reading->user_shape && table->loaded != PASSO_TABLE_LOADED)
+		return passo_complain(reading->sink, "table is missing");
+	move->form = (enum passo_form)(form - passo_form_tables);
+	move->table = reading->user_shape ? table : NULL;
+	return true;
+}
+
+/* Bit i: item i of a list is not 0. */
+static uint8_t axes_of_list(const char *list, size_t size)
+{
+	static const char ZERO[sizeof(int64_t)];
+	uint8_t axes = 0;
+
+	for (unsigned axis = 0; axis < PASSO_AXES_MAX; axis++) {
+		if (memcmp(list + axis * size, ZERO, size) != 0)
+			axes |= (uint8_t)(1u << axis);
+	}
+	return axes;
+}
+
+uint8_t passo_forms_axes(const struct passo_form_move *move)
+{
+	const struct passo_form_table *form = &passo_form_tables[move->form];
+	uint8_t axes = 0;
+
+	for (const struct passo_key *key = form->keys; key < form->keys + form->count; key++) {
+		const char *place = (const char *)&move->values + key->offset;
+
+		if (key->reader == PASSO_READ_STEPS)
+			axes |= axes_of_list(place, sizeof(int32_t));
+		else if (key->reader == PASSO_READ_DISTANCE)
+			axes |= axes_of_list(place, sizeof(int64_t));
+		else if (key->reader == PASSO_READ_AXIS)
+			axes |= (uint8_t)(1u << *(const uint8_t *)place);
+	}
+	return axes;
+}
+
+static enum passo_error queue_user(struct passo *passo, const struct passo_form_move *move)
+{
+	const struct passo_user_shape shape = {.bank = PASSO_USER_BANK, .table = move->table->points};
+
+	switch (move->form) {
 #define QUEUE(name, NAME)                                                                                    \
 	case PASSO_FORM_##NAME:                                                                              \
-		return passo_move_##name(passo, &move->name);
+		return passo_move_user_##name(passo, &move->values.name, &shape);
+		PASSO_MOVES_BY_SHAPE(QUEUE)
+#undef QUEUE
+	default:
+		return PASSO_ERROR_ARGUMENT;
+	}
+}
+
+static enum passo_error queue(struct passo *passo, const struct passo_form_move *move)
+{
+	if (move->table != NULL)
+		return queue_user(passo, move);
+	switch (move->form) {
+#define QUEUE(name, NAME)                                                                                    \
+	case PASSO_FORM_##NAME:                                                                              \
+		return passo_move_##name(passo, &move->values.name);
 		PASSO_MOVES(QUEUE)
 #undef QUEUE
 	case PASSO_FORM_COUNT:
@@ -103,45 +164,13 @@ static enum passo_error queue(struct passo *passo, enum passo_form form, const u
 	return PASSO_ERROR_ARGUMENT;
 }
 
-static enum passo_error queue_user(
-    struct passo *passo, enum passo_form form, const union move *move, const struct passo_user_shape *shape)
+enum passo_error passo_forms_queue(struct passo *passo, const struct passo_form_move *move)
 {
-	switch (form) {
-#define QUEUE(name, NAME)                                                                                    \
-	case PASSO_FORM_##NAME:                                                                              \
-		return passo_move_user_##name(passo, &move->name, shape);
-		PASSO_MOVES_BY_SHAPE(QUEUE)
-#undef QUEUE
-	default:
-		return PASSO_ERROR_ARGUMENT;
-	}
-}
+	const enum passo_error error = queue(passo, move);
 
-bool passo_forms_move(struct passo *passo, struct passo_reading *reading, struct passo_words *words,
-    const struct passo_loaded_table *table)
-{
-	const char *name = passo_words_find(words, "method");
-	const struct passo_form_table *form =
-	    name != NULL ? form_by_name(reading->sink, name) : form_by_keys(reading, words);
-	const struct passo_user_shape shape = {.bank = PASSO_USER_BANK, .table = table->points};
-	enum passo_form number;
-	union move move;
-	enum passo_error error;
-
-	if (form == NULL)
-		return false;
-	memset(&move, 0, sizeof move);
-	if (!passo_keys_check(reading, form->keys, form->count, 0, words)
-	    || !passo_keys_read(reading, form->keys, form->count, words, &move)
-	    || !check_rules(reading, form, &move))
-		return false;
-	if (reading->user_shape && table->loaded != PASSO_TABLE_LOADED)
-		return passo_complain(reading->sink, "table is missing");
-	number = (enum passo_form)(form - passo_form_tables);
-	error = reading->user_shape ? queue_user(passo, number, &move, &shape) : queue(passo, number, &move);
 	if (error >= PASSO_ERROR_ABSURD) /* values of a line have units */
-		error = (enum passo_error)((unsigned)error - PASSO_ERROR_ABSURD + PASSO_ERROR_PLAN);
-	return error == PASSO_OK || passo_complain_error(reading->sink, error);
+		return (enum passo_error)((unsigned)error - PASSO_ERROR_ABSURD + PASSO_ERROR_PLAN);
+	return error;
 }
 
 void passo_forms_help(const struct passo_sink *sink)

@@ -5,12 +5,61 @@
 #include "passo_release.h"
 #include "passo_words.h"
 
+/* Finds axes that are not enabled. If enabled drives are needed, prints an error and returns false. */
+static bool check_enabled(const struct passo_console *console, uint8_t axes, uint8_t *off)
+{
+	uint32_t axis = 0;
+
+	*off = axes & (uint8_t)~console->enabled;
+	if (!console->need_enable || *off == 0u)
+		return true;
+	while (((uint32_t)*off >> axis & 1u) == 0u)
+		axis++;
+	return passo_complain(&console->sink, "NOT_ENABLED: axis %u is not enabled", axis);
+}
+
+/* Notes once for each axis that it moves without its drive. */
+static void note_disabled(struct passo_console *console, uint8_t off)
+{
+	const uint32_t news = off & (uint8_t)~console->announced;
+
+	for (uint32_t axis = 0; axis < PASSO_AXES_MAX; axis++) {
+		if ((news >> axis & 1u) != 0u)
+			passo_say(&console->sink, "note: axis %u is not enabled\n", axis);
+	}
+	console->announced |= off;
+}
+
+/* Whether the move can be queued later, when those before it have progressed. */
+static bool can_wait(const struct passo_console *console, enum passo_error error)
+{
+	return console->flow_waits && (error == PASSO_ERROR_FULL || error == PASSO_ERROR_TABLE)
+	    && passo_is_moving(&console->passo);
+}
+
 bool passo_run_move(const struct passo_call *call)
 {
 	struct passo_console *console = call->console;
+	struct passo_form_move move;
+	enum passo_error error;
+	uint8_t off;
 
-	return passo_forms_move(&console->passo, call->reading, call->words, &console->table)
-	    && passo_answer(call, PASSO_OK);
+	if (!passo_forms_read(call->reading, call->words, &console->table, &move)
+	    || !check_enabled(console, passo_forms_axes(&move), &off))
+		return false;
+	error = passo_forms_queue(&console->passo, &move);
+	if (can_wait(console, error)) {
+		const struct passo_snapshot *seen = passo_snapshot(&console->passo);
+
+		console->waits = true;
+		console->seen_state = seen->state;
+		console->seen_lines = seen->line_room;
+		console->seen_ramps = seen->ramp_room;
+		return false;
+	}
+	if (error == PASSO_OK)
+		note_disabled(console, off);
+	return passo_answer(call, error);
 }
 
 bool passo_run_turn(const struct passo_call *call)
@@ -22,8 +71,15 @@ bool passo_run_turn(const struct passo_call *call)
 	    .top_rpm = values->top_rpm,
 	    .minimum_rpm = values->minimum_rpm,
 	    .acceleration = values->acceleration};
+	enum passo_error error;
+	uint8_t off;
 
-	return passo_answer(call, passo_turn_start(&call->console->passo, &turning, values->rpm));
+	if (!check_enabled(call->console, (uint8_t)(1u << values->axis), &off))
+		return false;
+	error = passo_turn_start(&call->console->passo, &turning, values->rpm);
+	if (error == PASSO_OK)
+		note_disabled(call->console, off);
+	return passo_answer(call, error);
 }
 
 bool passo_run_rpm(const struct passo_call *call)
@@ -72,11 +128,21 @@ bool passo_run_zero(const struct passo_call *call)
 /* For one axis, or for all. */
 bool passo_run_enable(const struct passo_call *call)
 {
+	struct passo_console *console = call->console;
 	enum passo_error error = PASSO_OK;
 
 	for (uint8_t axis = 0; axis < call->reading->axes && error == PASSO_OK; axis++) {
-		if (call->reading->given == 0u || axis == call->values->axis)
-			error = passo_enable(&call->console->passo, axis, call->values->on);
+		const uint8_t bit = (uint8_t)(1u << axis);
+
+		if (call->reading->given != 0u && axis != call->values->axis)
+			continue;
+		error = passo_enable(&console->passo, axis, call->values->on);
+		if (error == PASSO_ERROR_MOVING)
+			break; /* the drive is on as before */
+		console->announced &= (uint8_t)~bit;
+		console->enabled &= (uint8_t)~bit;
+		if (error == PASSO_OK && call->values->on)
+			console->enabled |= bit;
 	}
 	return passo_answer(call, error);
 }
@@ -101,6 +167,7 @@ bool passo_run_status(const struct passo_call *call)
 	passo_say(&console->sink, " lines=%u ramps=%u drained=%u overrun=%u fault=%s retries=%u",
 	    (uint32_t)now.line_room, (uint32_t)now.ramp_room, (uint32_t)now.drained, (uint32_t)now.overrun,
 	    passo_error_name(passo_fault(&console->passo)), console->host.counters.retries);
+	passo_say(&console->sink, " waiting=%u", (uint32_t)console->waits);
 	if (console->board.lost_bytes)
 		passo_say(
 		    &console->sink, " lost_bytes=%u", console->board.lost_bytes(console->board.context));
@@ -139,12 +206,22 @@ bool passo_run_version(const struct passo_call *call)
 {
 	struct passo_console *console = call->console;
 	uint32_t word;
+	const enum passo_error error = passo_host_read(&console->host, PASSO_ADDRESS_VERSION, &word, 1);
+	const enum passo_error fault = console->opened ? error : console->absent;
 
-	if (!passo_answer(call, passo_host_read(&console->host, PASSO_ADDRESS_VERSION, &word, 1)))
-		return false;
-	const struct passo_version core = passo_unpack_version(word);
-	passo_say(&console->sink, " console=" PASSO_RELEASE " core=%u.%u.%u axes=%u clock_hz=%u",
-	    (uint32_t)core.major, (uint32_t)core.minor, (uint32_t)core.patch, (uint32_t)call->reading->axes,
-	    console->clock_hz);
+	passo_say(&console->sink, "ok console=" PASSO_RELEASE);
+	if (error == PASSO_OK) {
+		const struct passo_version core = passo_unpack_version(word);
+
+		passo_say(&console->sink, " core=%u.%u.%u", (uint32_t)core.major, (uint32_t)core.minor,
+		    (uint32_t)core.patch);
+	} else {
+		passo_say(&console->sink, " core=none");
+	}
+	if (fault == PASSO_OK)
+		passo_say(&console->sink, " axes=%u", (uint32_t)call->reading->axes);
+	else
+		passo_say(&console->sink, " fault=%s", passo_error_name(fault));
+	passo_say(&console->sink, " clock_hz=%u", console->clock_hz);
 	return true;
 }

@@ -129,9 +129,9 @@ bool passo_number_pin_time(
 
 	if (!passo_number_time(reading, key, text, true, &clocks))
 		return false;
-	if (clocks > PASSO_PIN_CLOCKS_MAX)
-		return passo_complain(reading->sink, "%s is %u clocks, at most %u are possible", key->name,
+	if (clocks == 0u || clocks > PASSO_PIN_CLOCKS_MAX)
+		return passo_complain(reading->sink, "%s is %u clocks, 1 to %u are possible", key->name,
 		    clocks > UINT32_MAX ? UINT32_MAX : (uint32_t)clocks, PASSO_PIN_CLOCKS_MAX);
-	*value = clocks == 0u ? 1u : (uint32_t)clocks;
+	*value = (uint32_t)clocks;
 	return true;
 }

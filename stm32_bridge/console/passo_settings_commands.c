@@ -5,6 +5,7 @@
 
 #include "passo_call.h"
 #include "passo_commands.h"
+#include "passo_value.h"
 
 #define BAUD_MIN 115200u
 #define BAUD_MAX 1000000u
@@ -26,6 +27,8 @@ static const struct passo_key CONFIG_KEYS[] = {
     PASSO_WHOLE("clock_hz", clock_hz, CLOCK_HZ_MIN, UINT32_MAX, ""),
     PASSO_VALUE("hold_time", hold_microseconds, MICROSECONDS, ""),
     PASSO_VALUE("stop_time", stop_microseconds, MICROSECONDS, ""),
+    PASSO_VALUE("flow", flow_waits, FLOW, ""),
+    PASSO_VALUE("need_enable", need_enable, FLAG, ""),
     PASSO_WHOLE("baud", baud, BAUD_MIN, BAUD_MAX, ""),
     PASSO_VALUE("spi_slow", on, FLAG, ""),
 };
@@ -59,9 +62,13 @@ static enum passo_error set_up(struct passo_console *console)
 enum passo_error passo_commands_open(struct passo_console *console)
 {
 	const struct passo_options options = {.clock_hz = console->clock_hz};
+	const bool is_other = !console->opened || console->host.lost;
 	enum passo_error error = passo_open(&console->passo, &console->host, &console->hardware, &options);
 
+	if (is_other)
+		console->enabled = console->announced = 0;
 	console->opened = error == PASSO_OK || error == PASSO_ERROR_MOVING;
+	console->absent = error;
 	console->unset = true;
 	console->noted = PASSO_OK;
 	return error == PASSO_OK ? set_up(console) : error;
@@ -143,6 +150,8 @@ static bool config_board(const struct passo_call *call)
 
 	values->hold_microseconds = console->hold_microseconds;
 	values->stop_microseconds = console->stop_microseconds;
+	values->flow_waits = console->flow_waits;
+	values->need_enable = console->need_enable;
 	if (!passo_keys_check(call->reading, CONFIG_KEYS, PASSO_COUNT(CONFIG_KEYS), 0, call->words)
 	    || !passo_keys_read(call->reading, CONFIG_KEYS, PASSO_COUNT(CONFIG_KEYS), call->words, values))
 		return false;
@@ -158,6 +167,8 @@ static bool config_board(const struct passo_call *call)
 		return false;
 	console->hold_microseconds = values->hold_microseconds;
 	console->stop_microseconds = values->stop_microseconds;
+	console->flow_waits = values->flow_waits;
+	console->need_enable = values->need_enable;
 	if (has_spi) {
 		console->spi_slow = values->on;
 		board->set_spi_fast(board->context, !values->on);
@@ -180,6 +191,8 @@ bool passo_run_config(const struct passo_call *call)
 		return config_board(call);
 	passo_say(&console->sink, "ok clock_hz=%u hold_time=%uus stop_time=%uus", console->clock_hz,
 	    console->hold_microseconds, console->stop_microseconds);
+	passo_say(&console->sink, " flow=%s need_enable=%u", passo_value_flow(console->flow_waits),
+	    (uint32_t)console->need_enable);
 	if (console->board.set_baud)
 		passo_say(&console->sink, " baud=%u spi_slow=%u", console->baud, (uint32_t)console->spi_slow);
 	return true;

@@ -7,6 +7,8 @@
 #include "passo_number.h"
 #include "passo_plan.h"
 
+#define FLOW_WAIT "wait"
+#define FLOW_REFUSE "refuse"
 #define POINT_MAX ((1u << PASSO_SIGMOID_POINT_BITS) - 1u)
 
 static const char *const PROFILES[] = {
@@ -157,6 +159,12 @@ bool passo_value_read(
 			return false;
 		*(bool *)place = whole != 0u;
 		return true;
+	case PASSO_READ_FLOW:
+		if (strcmp(text, FLOW_WAIT) != 0 && strcmp(text, FLOW_REFUSE) != 0)
+			return passo_complain(reading->sink,
+			    "%s must be " FLOW_WAIT " or " FLOW_REFUSE ", not %q", key->name, text);
+		*(bool *)place = strcmp(text, FLOW_WAIT) == 0;
+		return true;
 	case PASSO_READ_AXIS:
 		if (!passo_number_whole(reading, key, all, 0, reading->axes - 1u, &whole))
 			return false;
@@ -194,12 +202,18 @@ bool passo_value_read(
 	return false;
 }
 
+const char *passo_value_flow(bool waits)
+{
+	return waits ? FLOW_WAIT : FLOW_REFUSE;
+}
+
 const char *passo_value_placeholder(enum passo_reader reader)
 {
 	static const char *const PLACEHOLDERS[] = {
 	    [PASSO_READ_NOTHING] = "name",
 	    [PASSO_READ_WHOLE] = "n",
 	    [PASSO_READ_FLAG] = "0|1",
+	    [PASSO_READ_FLOW] = FLOW_WAIT "|" FLOW_REFUSE,
 	    [PASSO_READ_AXIS] = "axis",
 	    [PASSO_READ_AXES] = "n",
 	    [PASSO_READ_STEPS] = "n,..",

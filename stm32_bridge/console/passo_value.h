@@ -10,6 +10,9 @@
 bool passo_value_read(
     struct passo_reading *reading, const struct passo_key *key, const char *text, void *values);
 
+/* Name of a flow. */
+const char *passo_value_flow(bool waits);
+
 /* Placeholder of a value in the help. */
 const char *passo_value_placeholder(enum passo_reader reader);
 

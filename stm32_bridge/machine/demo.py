@@ -2,15 +2,20 @@
 """The demonstration of the firmware: moves typed at its console, pulses of the core."""
 
 import sys
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
 from pathlib import Path
 from textwrap import fill
+from typing import Any
 
 import numpy as np
 from passo.console import console, progress, stages, table
 from passo.report import write_json
+from passo.run import open_engine, parameters_for
 from passo.toolchain import paths
-from passo_stm32.board import Board
+from passo_stm32.board import firmware_elf
 from passo_stm32.play import Played, planned_clocks, play
+from rich.table import Table
 
 FOLDER = paths.build / "firmware_demo"
 CLOCK_HZ = 36_000_000  # of the core; SCLK is 9 MHz
@@ -18,65 +23,95 @@ EXAMPLES = (
     "three_axes",
     "cosine",
     "triangle",
-)  # about a second of motion in total, half a minute of real time
+)  # about a second of motion in total
 PICTURED = 3
 LINE_WIDTH = 90  # characters of what was typed
 SHOWN = 0.0006  # seconds of pulses
 
 
+@dataclass
+class Shown:
+    """What is shown of a file: its moves and its row of summary.json."""
+
+    name: str
+    played: list[Played]
+    facts: dict[str, Any]
+    took: float  # seconds of real time
+
+
+def run_file(path: Path, engine: str) -> Shown:
+    """Type the moves of a file at a board of its own."""
+    played, board, took = play(path, CLOCK_HZ, engine)
+    facts = {
+        "ok": not any(move.difference for move in played),
+        "lines": [move.line for move in played],
+        "steps": [len(move.made.rising()) for move in played],
+        "edges": sum(len(move.made.step) for move in played),
+        "clocks": [move.made.clocks for move in played],
+        "frames": board.wires.frames,
+        "instructions": board.instructions,
+        "awake": 1 - board.asleep_ticks / board.now,
+    }
+    return Shown(path.stem, played, facts, took)
+
+
 def demo(files: list[Path] | None = None, engine: str = "rtl") -> bool:
-    """Run the demonstration; return whether every edge matches the C model with the planner on the PC."""
+    """Run the demonstration, a file per processor; return whether every edge matches the C model with the
+    planner on the PC."""
     tell = stages()
-    paths_ = files or [paths.examples / f"{name}.toml" for name in EXAMPLES]
-    shown = table(
-        "Typed at the console of the firmware; compared edge for edge with the C model fed on the PC",
-        *("moves", "steps", "time", "edges", "frames", "awake", "took"),
-    )
-    results, good = {}, True
-    pictures: dict[str, tuple[list[Played], Board]] = {}
-    for path in paths_:
-        clocks = planned_clocks(path, CLOCK_HZ)
-        tell(f"{path.stem}: {clocks / CLOCK_HZ:.3f} s of motion, {clocks:,} clocks")
-        with progress(path.stem, clocks) as report:
-            played, board, took = play(path, CLOCK_HZ, engine, report)
-        for move in played:
+    files = files or [paths.examples / f"{name}.toml" for name in EXAMPLES]
+    open_engine(engine, parameters_for(1), CLOCK_HZ).close()  # builds what all of them need
+    firmware_elf()
+    clocks = [planned_clocks(path, CLOCK_HZ) for path in files]
+    for path, length in zip(files, clocks, strict=True):
+        tell(f"{path.stem}: {length / CLOCK_HZ:.3f} s of motion, {length:,} clocks")
+    results: list[Shown] = []
+    with ProcessPoolExecutor() as pool:
+        coming = pool.map(run_file, files, [engine] * len(files))
+        with progress("moves", sum(clocks)) as report:
+            for result in coming:
+                results.append(result)
+                report(sum(clocks[: len(results)]))
+                wrong = sum(bool(move.difference) for move in result.played)
+                told = f"{wrong} moves differ" if wrong else "all as expected"
+                tell(f"{result.name}: {result.facts['edges']:,} edges, {told}")
+    for path, result in zip(files, results, strict=True):
+        for move in result.played:
             if move.difference:
-                good = False
                 print(f"{path}: {move.line}: {move.difference}", file=sys.stderr)
-        awake = 1 - board.asleep_ticks / board.now
-        results[path.stem] = {
-            "ok": not any(move.difference for move in played),
-            "lines": [move.line for move in played],
-            "steps": [len(move.made.rising()) for move in played],
-            "edges": sum(len(move.made.step) for move in played),
-            "clocks": [move.made.clocks for move in played],
-            "frames": board.wires.frames,
-            "instructions": board.instructions,
-            "awake": awake,
-        }
-        wrong = sum(bool(move.difference) for move in played)
-        tell(
-            f"{path.stem}: {results[path.stem]['edges']:,} edges, "
-            + (f"{wrong} moves differ" if wrong else "all as expected")
-        )
-        steps = sum(len(move.made.steps(axis)[0]) for move in played for axis in range(8))
-        shown.add_row(
-            path.stem, f"{steps:,}", f"{sum(move.seconds for move in played):.3f} s",
-            f"{results[path.stem]['edges']:,}", f"{board.wires.frames:,}", f"{100 * awake:.1f} %",
-            f"{took:.0f} s",
-        )  # fmt: skip
-        pictures[path.stem] = (played, board)
+    good = all(result.facts["ok"] for result in results)
     FOLDER.mkdir(parents=True, exist_ok=True)
-    write_json({"ok": good, "runs": results}, FOLDER / "summary.json")
-    draw(dict(list(pictures.items())[:PICTURED]), FOLDER / "firmware.png")
+    write_json({"ok": good, "runs": {r.name: r.facts for r in results}}, FOLDER / "summary.json")
+    draw({result.name: result.played for result in results[:PICTURED]}, FOLDER / "firmware.png")
     tell("picture drawn")
-    console.print(shown)
+    console.print(overview(results))
     console.print("awake: the processor, of all the time from its reset on")
     console.print(f"Picture and summary: {FOLDER.relative_to(paths.root)}/")
     return good
 
 
-def draw(pictures: dict[str, tuple[list[Played], Board]], path: Path) -> None:
+def overview(results: list[Shown]) -> Table:
+    """A row per file."""
+    shown = table(
+        "Typed at the console of the firmware; compared edge for edge with the C model fed on the PC",
+        *("moves", "steps", "time", "edges", "frames", "awake", "took"),
+    )
+    for result in results:
+        steps = sum(len(move.made.steps(axis)[0]) for move in result.played for axis in range(8))
+        facts = result.facts
+        shown.add_row(
+            result.name,
+            f"{steps:,}",
+            f"{sum(move.seconds for move in result.played):.3f} s",
+            f"{facts['edges']:,}",
+            f"{facts['frames']:,}",
+            f"{100 * facts['awake']:.1f} %",
+            f"{result.took:.0f} s",
+        )
+    return shown
+
+
+def draw(pictures: dict[str, list[Played]], path: Path) -> None:
     """Plot for each file the typed lines, the speeds at the pins, and the first pulses of its first move."""
     import matplotlib
 
@@ -92,7 +127,7 @@ def draw(pictures: dict[str, tuple[list[Played], Board]], path: Path) -> None:
             "Typed at the console of the STM32 firmware, made by the simulated core", x=0.01, ha="left",
             fontsize=13, fontweight="bold",
         )  # fmt: skip
-        for (speed, pulses), (name, (played, _)) in zip(rows, pictures.items(), strict=True):
+        for (speed, pulses), (name, played) in zip(rows, pictures.items(), strict=True):
             origin = 0.0
             for move in played:
                 for axis in range(len(move.plan.move.steps)):

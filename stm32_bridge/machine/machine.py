@@ -337,12 +337,12 @@ class Machine(Processor):
 
     def _reset(self, cause: str) -> None:
         """Reset the chip; the Passo core is not affected."""
-        self._reset_cause = None
         self.resets.append((self.now, cause))
         self.rcc.note_reset(cause)
         self.exceptions.reset()
         for peripheral in self.peripherals.values():
             peripheral.reset()
+        self._reset_cause = None  # until here chip select may be cut off in a word
         self._asleep = self._locked_up = False
         self._next_due = self.now
         self._c.passo_cpu_reset(self.cpu)
