@@ -414,8 +414,10 @@ def broken(random_: random.Random) -> dict[str, str]:
     return values
 
 
-# Differences: the console shows a wrong value as typed, not as Python's repr; a shape is not a file.
-DIFFERENT = re.compile(r"profile = \"user\"|must be a (whole )?number, not|table|known are")
+# Differences: the console shows a wrong value as typed, not as Python's repr; a shape is not a file; for an unknown key
+# it lists the known ones, where the file suggests one.
+DIFFERENT = re.compile(r"profile = \"user\"|must be a (whole )?number, not|table")
+UNKNOWN = re.compile(r"unknown (key|method) '.*?'")
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -436,6 +438,8 @@ def test_errors_are_those_of_move_files(seed: int, tmp_path: Path) -> None:
             answer = bench.ask(line)
         if DIFFERENT.search(wanted):
             assert answer.startswith("error: "), line
+        elif unknown := UNKNOWN.match(wanted):
+            assert answer.startswith(f"error: {unknown[0]}"), line
         elif wanted.startswith("PINS_TOO_SLOW"):
             assert answer.startswith("error: PINS_TOO_SLOW: "), line
         elif wanted.startswith("steps_per_mm is missing"):
