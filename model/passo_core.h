@@ -19,6 +19,7 @@ struct passo_core {
 	struct passo_response response;
 	struct passo_channel channel[PASSO_CHANNELS_MAX];
 	uint8_t sync_q; /* synchronizer of the sync input */
+	struct passo_machine machine;
 	uint32_t slew_count;
 	bool slew_tick;
 	struct passo_inputs inputs; /* at the previous clock, to detect SCLK edges */
@@ -36,6 +37,9 @@ void passo_core_clock(struct passo_core *core, const struct passo_inputs *inputs
  * clocks skipped; after 0, continue with passo_core_clock(). The resulting state is identical to that many
  * calls of passo_core_clock(). */
 uint64_t passo_core_advance(struct passo_core *core, const struct passo_inputs *inputs, uint64_t limit);
+
+/* Levels of the enable pins while estop_n has this level: it acts without a clock. */
+uint64_t passo_core_enable(const struct passo_core *core, bool estop_n);
 
 const struct passo_outputs *passo_core_outputs(const struct passo_core *core);
 

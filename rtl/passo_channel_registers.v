@@ -12,7 +12,8 @@
 module passo_channel_registers #(
   parameter AXES            = 4,
   parameter LINE_QUEUE_LOG2 = 8,
-  parameter RAMP_QUEUE_LOG2 = 4
+  parameter RAMP_QUEUE_LOG2 = 4,
+  parameter INPUTS          = 0
 ) (
   input  wire                     clk,
   input  wire                     rst,
@@ -72,8 +73,9 @@ module passo_channel_registers #(
     for (axis = 0; axis < AXES; axis = axis + 1) begin : g_axis
       localparam [2:0] NUMBER = axis;
       always @(posedge clk) begin
-        select_axis[axis]     <= select && bus_address[7:3] == {CHANNEL_AXIS_BASE[7:6], NUMBER};
-        select_position[axis] <= select && bus_address == CHANNEL_POSITION_BASE + {5'd0, NUMBER};
+        select_axis[axis] <= select && bus_address[7:3] == {CHANNEL_AXIS_BASE[7:6], NUMBER};
+        select_position[axis] <= select && (bus_address == CHANNEL_POSITION_BASE + {5'd0, NUMBER}
+          || (INPUTS != 0 && bus_address == CHANNEL_TRIGGER_POSITION_BASE + {5'd0, NUMBER}));
       end
     end
   endgenerate

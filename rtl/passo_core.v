@@ -38,12 +38,12 @@ module passo_core #(
   // starts several chips on one edge
   input  wire                     sync,
   // machine: bit channel * AXES + axis; ignored without INPUTS
-  /* verilator lint_off UNUSEDSIGNAL */
   input  wire [CHANNELS*AXES-1:0] limit_low,
   input  wire [CHANNELS*AXES-1:0] limit_high,
   input  wire [CHANNELS*AXES-1:0] home,
   input  wire [CHANNELS*AXES-1:0] alarm,
   input  wire [     CHANNELS-1:0] probe,
+  /* verilator lint_off UNUSEDSIGNAL */
   input  wire                     estop_n,        // asynchronous
   // encoders; ignored without ENCODERS
   input  wire [CHANNELS*AXES-1:0] encoder_a,
@@ -139,12 +139,26 @@ module passo_core #(
   assign power   = {CHANNELS{1'b0}};
   assign compare = {CHANNELS{1'b0}};
 
+  // inputs of the machine
+  wire                filter_tick;
+  wire [        15:0] filter;
+  wire                estop_pressed;
+  wire                estop;
+  wire                watchdog_stop;
+  wire                disable_drives;
+  /* verilator lint_off UNUSEDSIGNAL */
+  wire [CHANNELS-1:0] moving;
+  /* verilator lint_on UNUSEDSIGNAL */
+  wire                machine_claim;
+  wire [         3:0] machine_refusal;
+  wire [        31:0] machine_read_data;
+
   // Unselected targets drive 0.
   integer i;
   always @* begin
-    bus_claim   = registers_claim | tables_claim | (channel_claim != {CHANNELS{1'b0}});
-    bus_refusal = registers_refusal | tables_refusal;
-    read_data   = registers_read_data;
+    bus_claim   = registers_claim | tables_claim | machine_claim | (channel_claim != {CHANNELS{1'b0}});
+    bus_refusal = registers_refusal | tables_refusal | machine_refusal;
+    read_data   = registers_read_data | machine_read_data;
     for (i = 0; i < CHANNELS; i = i + 1) begin
       bus_refusal = bus_refusal | channel_refusal[i*4+:4];
       read_data   = read_data | channel_read_data[i*32+:32];
@@ -261,6 +275,43 @@ module passo_core #(
     .point_next (table_point_next)
   );
 
+  generate
+    if (INPUTS != 0) begin : g_machine
+      passo_machine u_machine (
+        .clk           (clk),
+        .rst           (rst),
+        .bus_check     (bus_check),
+        .bus_write     (bus_write),
+        .bus_read      (bus_read),
+        .bus_push      (bus_push),
+        .bus_address   (bus_address),
+        .bus_data      (bus_data[19:0]),
+        .bus_msb       (bus_msb),
+        .claim         (machine_claim),
+        .refusal       (machine_refusal),
+        .read_data     (machine_read_data),
+        .estop_n       (estop_n),
+        .moving        (moving != {CHANNELS{1'b0}}),
+        .tick          (filter_tick),
+        .filter        (filter),
+        .pressed       (estop_pressed),
+        .estop         (estop),
+        .watchdog_stop (watchdog_stop),
+        .disable_drives(disable_drives)
+      );
+    end else begin : g_no_machine
+      assign machine_claim     = 1'b0;
+      assign machine_refusal   = VERDICT_OK;
+      assign machine_read_data = 32'd0;
+      assign filter_tick       = 1'b0;
+      assign filter            = 16'd0;
+      assign estop_pressed     = 1'b0;
+      assign estop             = 1'b0;
+      assign watchdog_stop     = 1'b0;
+      assign disable_drives    = 1'b0;
+    end
+  endgenerate
+
   genvar channel;
   generate
     for (channel = 0; channel < CHANNELS; channel = channel + 1) begin : g_channel
@@ -272,6 +323,7 @@ module passo_core #(
         .LINE_QUEUE_LOG2(LINE_QUEUE_LOG2),
         .RAMP_QUEUE_LOG2(RAMP_QUEUE_LOG2),
         .STEPS_REGISTER (STEPS_REGISTER),
+        .INPUTS         (INPUTS),
         .STEP_RESET     (STEP_RESET[channel*AXES+:AXES]),
         .DIR_RESET      (DIR_RESET[channel*AXES+:AXES]),
         .ENABLE_RESET   (ENABLE_RESET[channel*AXES+:AXES])
@@ -309,6 +361,18 @@ module passo_core #(
         .table_served    (table_served[channel]),
         .table_point     (table_point),
         .table_point_next(table_point_next),
+        .filter_tick     (filter_tick),
+        .filter          (filter),
+        .estop_pressed   (estop_pressed),
+        .estop           (estop),
+        .watchdog_stop   (watchdog_stop),
+        .disable_drives  (disable_drives),
+        .limit_low       (limit_low[channel*AXES+:AXES]),
+        .limit_high      (limit_high[channel*AXES+:AXES]),
+        .home            (home[channel*AXES+:AXES]),
+        .alarm           (alarm[channel*AXES+:AXES]),
+        .probe           (probe[channel]),
+        .moving          (moving[channel]),
         .step            (step[channel*AXES+:AXES]),
         .dir             (dir[channel*AXES+:AXES]),
         .enable          (enable[channel*AXES+:AXES]),

@@ -67,7 +67,10 @@ static struct passo_inputs inputs_of(const struct judge_row *row)
 
 static bool compare_outputs(struct judge *judge, const struct judge_row *row)
 {
-	const struct passo_outputs *model = passo_core_outputs(&judge->core);
+	struct passo_outputs now = *passo_core_outputs(&judge->core);
+	const struct passo_outputs *model = &now;
+
+	now.enable = passo_core_enable(&judge->core, row->inputs[PASSO_INPUT_ESTOP_N] != 0u);
 
 #define COMPARE(name, type, number)                                                                          \
 	if (differs(judge, judge->clock, number, model->name, row->outputs[number]))                         \
