@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "passo_model.h"
+#include "passo_words.h"
 
 /* A bit of the setting INPUTS of all axes. */
 static uint8_t setting(const struct passo_channel *channel, unsigned lsb)
@@ -29,7 +30,7 @@ struct passo_requests passo_inputs_requests(
 	const struct passo_limits *limits = &unit->limits;
 	const struct passo_trigger *trigger = &unit->trigger;
 	const struct passo_machine *machine = inputs->machine;
-	const enum passo_trigger_action action = trigger->settings.action;
+	const enum passo_trigger_action action = (enum passo_trigger_action)trigger->action;
 	const enum passo_state state = channel->motion.state;
 	const bool moving =
 	    state == PASSO_STATE_RUN || state == PASSO_STATE_SETTLE || state == PASSO_STATE_DRAIN;
@@ -143,7 +144,10 @@ void passo_inputs_clock(struct passo_inputs_unit *unit, const struct passo_chann
 void passo_inputs_restart(struct passo_inputs_unit *unit, const struct passo_inputs_unit *before)
 {
 	*unit = (struct passo_inputs_unit){.probe_inverted = before->probe_inverted};
-	unit->trigger.settings = before->trigger.settings;
+	unit->trigger.source = before->trigger.source;
+	unit->trigger.axis = before->trigger.axis;
+	unit->trigger.action = before->trigger.action;
+	unit->trigger.falling = before->trigger.falling;
 }
 
 uint32_t passo_inputs_value(const struct passo_inputs_unit *unit, uint8_t address)
@@ -182,6 +186,12 @@ bool passo_inputs_quiet(const struct passo_channel *channel, const struct passo_
 
 	if (inputs->parameters->inputs == 0u)
 		return true;
+	const struct passo_requests requests = passo_inputs_requests(channel, inputs);
+	if (requests.hard || requests.soft || requests.latch || (inputs->machine->estop_seen & 2u) != 0u)
+		return false;
+	for (unsigned i = 0; i < channel->axes; i++)
+		if ((requests.disable >> i & 1u) != 0u && channel->axis[i].settings.enable)
+			return false;
 	passo_inputs_clock(&then, channel, inputs, &wires);
 	if (trigger->armed)
 		then.trigger.clocks--;

@@ -3,6 +3,7 @@
  * rtl/passo_estop.v and rtl/passo_watchdog.v.
  */
 #include "passo_model.h"
+#include "passo_words.h"
 
 static const uint32_t UNIT_CLOCKS = 0x10000;
 
@@ -41,7 +42,8 @@ static void begin_units(struct passo_machine *machine, uint16_t units)
 
 static void clock_watchdog(struct passo_machine *machine, bool feed, bool moving)
 {
-	const struct passo_watchdog settings = machine->watchdog;
+	const uint16_t stop_after = machine->watchdog_stop_after;
+	const uint16_t disable_after = machine->watchdog_disable_after;
 	const bool fed = machine->watchdog_fed, stop = machine->watchdog_stop;
 	const bool over = machine->watchdog_count == 0u && !fed;
 
@@ -49,15 +51,15 @@ static void clock_watchdog(struct passo_machine *machine, bool feed, bool moving
 	machine->watchdog_unit = (machine->watchdog_unit + 1u) % UNIT_CLOCKS;
 	if (machine->watchdog_unit == 0u && machine->watchdog_count != 0u)
 		machine->watchdog_count--;
-	if (over && !stop && settings.stop_after != 0u && moving) {
+	if (over && !stop && stop_after != 0u && moving) {
 		machine->watchdog_stop = true;
-		begin_units(machine, settings.disable_after);
+		begin_units(machine, disable_after);
 	}
-	if (over && stop && settings.disable_after != 0u)
+	if (over && stop && disable_after != 0u)
 		machine->watchdog_disable = true;
 	if (fed) {
 		machine->watchdog_stop = machine->watchdog_disable = false;
-		begin_units(machine, settings.stop_after);
+		begin_units(machine, stop_after);
 	}
 }
 
@@ -72,8 +74,11 @@ void passo_machine_clock(struct passo_machine *machine, const struct passo_bus *
 	clock_watchdog(machine, bus->write || bus->read, moving);
 	if (bus->write && bus->address == PASSO_ADDRESS_INPUT_FILTER && !inputs->rst)
 		machine->filter = (uint16_t)bus->data;
-	if (bus->write && bus->address == PASSO_ADDRESS_WATCHDOG)
-		machine->watchdog = passo_unpack_watchdog(bus->data);
+	if (bus->write && bus->address == PASSO_ADDRESS_WATCHDOG) {
+		const struct passo_watchdog word = passo_unpack_watchdog(bus->data);
+		machine->watchdog_stop_after = word.stop_after;
+		machine->watchdog_disable_after = word.disable_after;
+	}
 }
 
 bool passo_machine_register(const struct passo_machine *machine, uint16_t address, uint32_t *value)
@@ -83,7 +88,10 @@ bool passo_machine_register(const struct passo_machine *machine, uint16_t addres
 		*value = machine->filter;
 		return true;
 	case PASSO_ADDRESS_WATCHDOG:
-		*value = passo_pack_watchdog(&machine->watchdog);
+		*value = passo_pack_watchdog(&(struct passo_watchdog){
+		    .stop_after = machine->watchdog_stop_after,
+		    .disable_after = machine->watchdog_disable_after,
+		});
 		return true;
 	case PASSO_ADDRESS_ESTOP:
 		*value = (uint32_t)machine->estop_seen >> 1;
@@ -119,8 +127,8 @@ uint64_t passo_machine_quiet(
 	const bool pressed = machine->estop_pressed;
 	const uint8_t seen = pressed ? 3u : 0u, released = inputs->estop_n ? 3u : 0u;
 	const bool over = machine->watchdog_count == 0u;
-	const bool stops = over && !machine->watchdog_stop && machine->watchdog.stop_after != 0u && moving;
-	const bool disables = over && machine->watchdog_stop && machine->watchdog.disable_after != 0u
+	const bool stops = over && !machine->watchdog_stop && machine->watchdog_stop_after != 0u && moving;
+	const bool disables = over && machine->watchdog_stop && machine->watchdog_disable_after != 0u
 	                   && !machine->watchdog_disable;
 
 	if (machine->watchdog_fed || stops || disables || machine->estop_seen != seen

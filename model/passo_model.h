@@ -11,7 +11,6 @@
 #include "passo_pins.h"
 #include "passo_registers.h"
 #include "passo_shapes.h"
-#include "passo_words.h"
 
 #define PASSO_PAYLOAD_MAX 60u
 #define PASSO_LINE_QUEUE_MAX 256u
@@ -316,7 +315,8 @@ struct passo_limits {
 };
 
 struct passo_trigger {
-	struct passo_channel_trigger settings;
+	uint8_t source, axis, action;
+	bool falling;
 	uint8_t arming; /* bits 0 and 1: written one and two clocks ago */
 	bool picked, level, armed, fired, latch;
 	uint16_t count;
@@ -337,7 +337,7 @@ struct passo_machine {
 	bool tick;
 	bool estop_pressed;
 	uint8_t estop_released, estop_seen; /* 2 bits */
-	struct passo_watchdog watchdog;
+	uint16_t watchdog_stop_after, watchdog_disable_after;
 	uint16_t watchdog_count;
 	uint32_t watchdog_unit;
 	bool watchdog_fed, watchdog_stop, watchdog_disable;

@@ -2,6 +2,7 @@
  * Trigger of a channel: one input, one edge, once. See rtl/passo_trigger.v.
  */
 #include "passo_model.h"
+#include "passo_words.h"
 
 static bool chosen(const struct passo_trigger *trigger, const struct passo_inputs_unit *unit)
 {
@@ -10,11 +11,11 @@ static bool chosen(const struct passo_trigger *trigger, const struct passo_input
 	    [PASSO_TRIGGER_SOURCE_LIMIT_HIGH] = PASSO_KIND_LIMIT_HIGH,
 	    [PASSO_TRIGGER_SOURCE_HOME] = PASSO_KIND_HOME,
 	    [PASSO_TRIGGER_SOURCE_PROBE] = PASSO_KIND_PROBE};
-	const enum passo_trigger_source source = trigger->settings.source;
+	const enum passo_trigger_source source = (enum passo_trigger_source)trigger->source;
 
 	if (source == PASSO_TRIGGER_SOURCE_INDEX)
 		return false;
-	const unsigned bit = kinds[source] == PASSO_KIND_PROBE ? 0u : trigger->settings.axis;
+	const unsigned bit = kinds[source] == PASSO_KIND_PROBE ? 0u : trigger->axis;
 	return (unit->input[kinds[source]].second >> bit & 1u) != 0u;
 }
 
@@ -38,7 +39,7 @@ void passo_trigger_clock(struct passo_trigger *trigger, const struct passo_input
 	const bool arms = (trigger->arming & 2u) != 0u;
 	const bool differs = picked != trigger->level;
 	const bool changes = armed && differs && trigger->count == filter;
-	const bool fires = changes && trigger->level == trigger->settings.falling;
+	const bool fires = changes && trigger->level == trigger->falling;
 
 	trigger->picked = chosen(trigger, unit);
 	trigger->arming = (uint8_t)(trigger->arming << 1 & 3u);
@@ -56,7 +57,12 @@ void passo_trigger_clock(struct passo_trigger *trigger, const struct passo_input
 
 void passo_trigger_write(struct passo_trigger *trigger, uint32_t data)
 {
-	trigger->settings = passo_unpack_channel_trigger(data);
-	trigger->arming |= trigger->settings.arm ? 1u : 0u;
+	const struct passo_channel_trigger word = passo_unpack_channel_trigger(data);
+
+	trigger->source = (uint8_t)word.source;
+	trigger->axis = word.axis;
+	trigger->action = (uint8_t)word.action;
+	trigger->falling = word.falling;
+	trigger->arming |= word.arm ? 1u : 0u;
 	trigger->armed = trigger->fired = trigger->latch = false;
 }
