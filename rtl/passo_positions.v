@@ -152,7 +152,7 @@ module passo_positions #(
       copies_next    <= 1'b0;
       snapshot_waits <= 1'b0;
       latch_waits    <= 1'b0;
-      latches_next   <= 1'b0;
+      latches_next   <= LATCH != 0;  // zeroes the latched positions
       latches        <= 1'b0;
     end
   end

@@ -140,6 +140,12 @@ class Core:
             channel = self.channel(number)
             channel.times(PinTiming())
             channel.pins(PinTiming(), enable=False)
+            if self.parameters.inputs:
+                channel.link.write(channel.base + r.CHANNEL_PROBE, 0)
+                for axis in range(self.axes):
+                    channel.link.write(channel.axis_base(axis) + r.AXIS_INPUTS, 0)
+        if self.parameters.inputs:
+            self.link.write(r.ADDRESS_INPUT_FILTER, 0)
 
     def channel(self, number: int = 0) -> "CoreChannel":
         """One channel."""
@@ -290,6 +296,10 @@ class Core:
                     found.append((begin, clock))
                 begin = None
         return found
+
+    def motions_begun(self, since: int = 0) -> list[int]:
+        """Clocks after a clock on which `running` of any channel rose, and still is or was high."""
+        return [clock for clock, level in self._running if level and clock > since]
 
     def began(self) -> int:
         """Clock on which `running` rose last."""
