@@ -12,34 +12,33 @@
 /* Latency from a slew tick to the change of rate; see passo_timescale_clock(). */
 enum { SLEW_CLOCKS = 6 };
 
-static bool same_inputs(const struct passo_inputs *a, const struct passo_inputs *b)
-{
-	return a->spi_sclk == b->spi_sclk && a->spi_mosi == b->spi_mosi && a->spi_cs_n == b->spi_cs_n
-	    && a->sync == b->sync && a->rst == b->rst;
-}
-
 static bool link_side_quiet(const struct passo_core *core, const struct passo_inputs *inputs)
 {
 	const uint8_t selected = inputs->spi_cs_n ? 0 : 7;
 	const uint8_t toggled = core->spi.half_toggle ? 7 : 0;
 	const uint8_t synced = inputs->sync ? 7 : 0;
 
-	return same_inputs(inputs, &core->inputs) && core->spi.select_sync == selected
+	return PASSO_SAME_INPUTS(inputs, &core->inputs) && core->spi.select_sync == selected
 	    && core->spi.toggle_sync == toggled && core->sync_q == synced && passo_link_quiet(&core->link)
 	    && core->link.status == passo_registers_status(core) && !core->response.claim
 	    && core->response.refusal == 0u && core->response.read_data == 0u && !core->response.late
 	    && core->outputs.irq == passo_registers_any_stopped(core);
 }
 
-static struct passo_channel_inputs inputs_of(const struct passo_core *core, unsigned channel)
+static struct passo_channel_inputs inputs_of(
+    const struct passo_core *core, unsigned channel, const struct passo_inputs *inputs)
 {
-	return (struct passo_channel_inputs){
+	struct passo_channel_inputs made = {
 	    .parameters = &core->parameters,
 	    .tables = &core->tables,
 	    .bus = &core->link.bus,
 	    .run = (core->registers.run >> channel & 1u) != 0u,
 	    .wait_sync = (core->registers.wait_sync >> channel & 1u) != 0u,
+	    .machine = &core->machine,
 	};
+
+	passo_core_take_pins(core, channel, inputs, &made);
+	return made;
 }
 
 uint64_t passo_core_advance(struct passo_core *core, const struct passo_inputs *inputs, uint64_t limit)
@@ -52,8 +51,13 @@ uint64_t passo_core_advance(struct passo_core *core, const struct passo_inputs *
 
 	if (clocks == 0u || inputs->rst || !link_side_quiet(core, inputs))
 		return 0;
+	if (core->parameters.inputs != 0u)
+		clocks = passo_advance_least(
+		    clocks, passo_machine_quiet(&core->machine, inputs, passo_core_any_moving(core)));
+	if (clocks == 0u)
+		return 0;
 	for (unsigned i = 0; i < channels; i++) {
-		const struct passo_channel_inputs channel_inputs = inputs_of(core, i);
+		const struct passo_channel_inputs channel_inputs = inputs_of(core, i, inputs);
 		if (moving == channels && passo_advance_profile_counts(&core->channel[i])) {
 			moving = i;
 			continue;
@@ -64,7 +68,7 @@ uint64_t passo_core_advance(struct passo_core *core, const struct passo_inputs *
 			return 0;
 	}
 	if (moving != channels) {
-		const struct passo_channel_inputs channel_inputs = inputs_of(core, moving);
+		const struct passo_channel_inputs channel_inputs = inputs_of(core, moving, inputs);
 		struct passo_channel *channel = &core->channel[moving];
 		const uint64_t quiet = passo_advance_least(
 		    clocks, passo_advance_surroundings_quiet(channel, &channel_inputs, clocks_to_slew));
@@ -90,6 +94,8 @@ uint64_t passo_core_advance(struct passo_core *core, const struct passo_inputs *
 		if (core->channel[i].motion.state == PASSO_STATE_RUN && core->slew_count <= SLEW_CLOCKS
 		    && core->slew_count <= clocks)
 			core->channel[i].timescale.after = (uint8_t)core->slew_count;
+	if (core->parameters.inputs != 0u)
+		passo_machine_skip(&core->machine, clocks);
 	core->tables.slot = (uint8_t)((core->tables.slot + clocks) % (2u * channels));
 	return clocks;
 }

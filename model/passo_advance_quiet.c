@@ -136,6 +136,8 @@ uint64_t passo_advance_surroundings_quiet(
 	    || line->underrun || !ramps_settled(&channel->ramp_queue, inputs->parameters)
 	    || !lines_settled(channel, inputs->parameters))
 		return 0;
+	if (!passo_inputs_quiet(channel, inputs))
+		return 0;
 	uint64_t clocks =
 	    passo_advance_least(ramp_quiet(&channel->ramp), timescale_quiet(channel, moving, clocks_to_slew));
 	for (unsigned i = 0; i < channel->axes && clocks != 0u; i++) {

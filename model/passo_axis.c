@@ -68,6 +68,9 @@ void passo_axis_settings_write(struct passo_axis_settings *settings, uint8_t add
 	case PASSO_AXIS_ENABLE:
 		settings->enable = (data & 1u) != 0u;
 		break;
+	case PASSO_AXIS_INPUTS:
+		settings->inputs = (uint8_t)(data & PASSO_AXIS_INPUTS_DEFINED);
+		break;
 	default:
 		break;
 	}
@@ -139,7 +142,8 @@ void passo_axis_clock(struct passo_axis *axis, const struct passo_axis_wires *wi
 	const bool free = state == PASSO_AXIS_READY || state == PASSO_AXIS_HOLD || (level_done && !falls)
 	               || (state == PASSO_AXIS_SETUP && over);
 	const bool waits = place_is(axis->waits, 0);
-	const bool step_begins = free && waits && right && !axis->unsettled;
+	const bool closed = axis->dir ? axis->closed.low : axis->closed.high;
+	const bool step_begins = free && waits && right && !axis->unsettled && !closed;
 	const bool setup_begins =
 	    (!right || axis->unsettled) && (state == PASSO_AXIS_READY || (state == PASSO_AXIS_HOLD && over));
 
@@ -150,6 +154,7 @@ void passo_axis_clock(struct passo_axis *axis, const struct passo_axis_wires *wi
 		axis->position = 0;
 	clock_queue(axis, step_begins, wires);
 
+	axis->closed = wires->closed;
 	axis->timer++;
 	if (step_begins || setup_begins || level_done || axis->timing_changed || settle)
 		axis->timer = 1;

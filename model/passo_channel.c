@@ -46,6 +46,7 @@ void passo_channel_restart(struct passo_channel *channel, const struct passo_cha
 	passo_channel_reset(channel, parameters, before->number);
 	for (unsigned axis = 0; axis < parameters->axes; axis++)
 		passo_axis_restart(&channel->axis[axis], &before->axis[axis]);
+	passo_inputs_restart(&channel->inputs, &before->inputs);
 }
 
 static struct passo_channel_wires gather_wires(
@@ -68,6 +69,8 @@ static struct passo_channel_wires gather_wires(
 	    commit
 	    && (channel->admission.idle_needed || channel->admission.quiet_needed || inputs->tables_wanted);
 	wires.now_coming = commit && channel->admission.motion_needed;
+	wires.estop = (inputs->machine->estop_seen & 2u) != 0u;
+	wires.requests = passo_inputs_requests(channel, inputs);
 	passo_motion_wires(channel, inputs, &wires);
 
 	const bool at_tick_end = channel->ramp.tick_count == tick_last;
@@ -81,8 +84,9 @@ static struct passo_channel_wires gather_wires(
 	wires.line_done = wires.substep_taken && channel->line.on_last;
 	const struct passo_line_queue *queue = &channel->line_queue;
 	const bool goes_on = wires.line_done && !queue->last;
-	wires.repeats = goes_on && queue->endless;
-	wires.take = wires.prepare || (goes_on && !queue->endless && queue->next_valid);
+	const bool endless = queue->endless && !channel->line.no_repeat_before;
+	wires.repeats = goes_on && endless;
+	wires.take = wires.prepare || (goes_on && !endless && queue->next_valid);
 	return wires;
 }
 
@@ -100,6 +104,7 @@ void passo_channel_clock(struct passo_channel *channel, const struct passo_chann
 	const struct passo_needs needs = passo_channel_needs(channel, bus);
 	const struct passo_channel_registers registers = channel->registers;
 	const bool stopping = channel->motion.stopping;
+	struct passo_inputs_unit inputs_unit = channel->inputs;
 	bool take_ramp;
 	bool take_now;
 	bool axes_quiet = true;
@@ -113,7 +118,9 @@ void passo_channel_clock(struct passo_channel *channel, const struct passo_chann
 	passo_admission_clock(&channel->admission, bus, &needs);
 
 	/* from the pins back to the queues, so that each module sees the old state of those that feed it */
-	passo_positions_clock(&channel->positions, channel->axis, registers.command_zero, inputs->snapshot);
+	passo_inputs_clock(&inputs_unit, channel, inputs, &wires);
+	passo_positions_clock(&channel->positions, channel->axis, registers.command_zero, inputs->snapshot,
+	    wires.requests.latch);
 	for (unsigned i = 0; i < channel->axes; i++) {
 		const struct passo_axis_wires axis_wires = {
 		    .step_request = passo_dda_step_request(&channel->dda[i], &channel->line),
@@ -124,6 +131,8 @@ void passo_channel_clock(struct passo_channel *channel, const struct passo_chann
 		    .timing_written = write_timing && written_axis == i,
 		    .pins_written = write_pins && written_axis == i,
 		    .both_edges_next = (bus->data >> PASSO_AXIS_PINS_BOTH_EDGES_LSB & 1u) != 0u,
+		    .closed = {.low = (channel->inputs.limits.closed_low >> i & 1u) != 0u,
+			.high = (channel->inputs.limits.closed_high >> i & 1u) != 0u},
 		};
 		passo_axis_clock(&channel->axis[i], &axis_wires);
 		passo_dda_clock(&channel->dda[i], &channel->line, &channel->line_queue, i);
@@ -131,6 +140,9 @@ void passo_channel_clock(struct passo_channel *channel, const struct passo_chann
 	if (channel->writes_axis)
 		passo_axis_settings_write(
 		    &channel->axis[written_axis].settings, (uint8_t)written_register, bus->data);
+	for (unsigned i = 0; i < channel->axes; i++)
+		if ((wires.requests.disable >> i & 1u) != 0u)
+			channel->axis[i].settings.enable = false;
 	channel->writes_axis =
 	    wires.selected && bus->write && in_axes < channel->axes * PASSO_CHANNEL_AXIS_STRIDE;
 	channel->written_register = (uint8_t)in_axes;
@@ -143,4 +155,5 @@ void passo_channel_clock(struct passo_channel *channel, const struct passo_chann
 	passo_line_queue_clock(&channel->line_queue, inputs->parameters, bus, &wires);
 	passo_ramp_queue_clock(&channel->ramp_queue, inputs->parameters, bus, &wires, take_ramp, take_now);
 	passo_channel_registers_clock(&channel->registers, bus, wires.selected);
+	channel->inputs = inputs_unit;
 }

@@ -94,11 +94,12 @@ uint32_t passo_channel_registers_value(const struct passo_channel *channel, uint
 	case PASSO_CHANNEL_VELOCITY:
 		return channel->path.velocity_high << 8 | channel->path.velocity_low >> 16;
 	default:
-		return 0;
+		return passo_inputs_value(&channel->inputs, address);
 	}
 }
 
-static struct answer axis_answer(const struct passo_axis *axis, uint8_t address, uint32_t data)
+static struct answer axis_answer(
+    const struct passo_axis *axis, uint8_t address, uint32_t data, bool has_inputs)
 {
 	switch (address) {
 	case PASSO_AXIS_PINS:
@@ -110,9 +111,37 @@ static struct answer axis_answer(const struct passo_axis *axis, uint8_t address,
 		return write_only(PASSO_VERDICT_OK);
 	case PASSO_AXIS_LOST_STEPS:
 		return read_only(axis->lost);
+	case PASSO_AXIS_INPUTS:
+		if (has_inputs)
+			return write_only(value_check((data & ~PASSO_AXIS_INPUTS_DEFINED) != 0u));
+		return (struct answer){0};
 	default:
 		return (struct answer){0};
 	}
+}
+
+/* Registers of the inputs. */
+static struct answer input_answer(const struct passo_channel *channel, uint8_t address, uint32_t data)
+{
+	const unsigned position = (unsigned)address - PASSO_CHANNEL_TRIGGER_POSITION_BASE;
+
+	switch (address) {
+	case PASSO_CHANNEL_INPUT_LEVELS:
+	case PASSO_CHANNEL_INPUT_FLAGS:
+	case PASSO_CHANNEL_TRIGGER_STATE:
+	case PASSO_CHANNEL_TRIGGER_CLOCKS:
+		return read_late();
+	case PASSO_CHANNEL_INPUT_CLEAR:
+		return write_only(PASSO_VERDICT_OK);
+	case PASSO_CHANNEL_TRIGGER:
+		return write_only(passo_trigger_check(channel, data));
+	case PASSO_CHANNEL_PROBE:
+		return write_only(value_check((data & ~PASSO_CHANNEL_PROBE_DEFINED) != 0u));
+	default:
+		break;
+	}
+	return position < channel->axes ? read_only(channel->positions.latched_copies[position])
+	                                : (struct answer){0};
 }
 
 static struct answer channel_answer(
@@ -151,8 +180,10 @@ static struct answer channel_answer(
 		return read_only(channel->positions.copies[position]);
 	if (in_axes < channel->axes * PASSO_CHANNEL_AXIS_STRIDE)
 		return axis_answer(&channel->axis[in_axes / PASSO_CHANNEL_AXIS_STRIDE],
-		    (uint8_t)(in_axes % PASSO_CHANNEL_AXIS_STRIDE), bus->data);
-	return (struct answer){0};
+		    (uint8_t)(in_axes % PASSO_CHANNEL_AXIS_STRIDE), bus->data,
+		    inputs->parameters->inputs != 0u);
+	return inputs->parameters->inputs != 0u ? input_answer(channel, address, bus->data)
+	                                        : (struct answer){0};
 }
 
 struct passo_response passo_channel_respond(

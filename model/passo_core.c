@@ -12,6 +12,20 @@ static bool in_range(unsigned value, unsigned low, unsigned high)
 	return value >= low && value <= high;
 }
 
+uint64_t passo_core_enable(const struct passo_core *core, bool estop_n)
+{
+	const bool off = core->parameters.inputs != 0u && (core->machine.estop_pressed || !estop_n);
+	uint64_t enable = 0;
+
+	for (unsigned i = 0; i < core->parameters.channels; i++)
+		for (unsigned a = 0; a < core->parameters.axes; a++) {
+			const struct passo_axis *axis = &core->channel[i].axis[a];
+			const bool level = off ? axis->settings.enable_inverted : axis->enable_pin;
+			enable |= (uint64_t)level << (i * core->parameters.axes + a);
+		}
+	return enable;
+}
+
 static void gather_outputs(struct passo_core *core)
 {
 	struct passo_outputs *outputs = &core->outputs;
@@ -24,10 +38,10 @@ static void gather_outputs(struct passo_core *core)
 			const unsigned bit = i * core->parameters.axes + a;
 			outputs->step |= (uint64_t)channel->axis[a].step_pin << bit;
 			outputs->dir |= (uint64_t)channel->axis[a].dir_pin << bit;
-			outputs->enable |= (uint64_t)channel->axis[a].enable_pin << bit;
 		}
 		outputs->running |= (uint8_t)((channel->motion.running ? 1u : 0u) << i);
 	}
+	outputs->enable = passo_core_enable(core, true);
 	outputs->spi_miso = core->spi.miso;
 }
 
@@ -36,12 +50,14 @@ bool passo_core_reset(struct passo_core *core, const struct passo_parameters *pa
 	if (!in_range(parameters->channels, 1, PASSO_CHANNELS_MAX)
 	    || !in_range(parameters->axes, 1, PASSO_AXES_MAX)
 	    || !in_range(parameters->tick_log2, PASSO_TICK_LOG2_MIN, PASSO_TICK_LOG2_MAX)
-	    || !in_range(parameters->line_queue_log2, 2, 8) || !in_range(parameters->ramp_queue_log2, 2, 8))
+	    || !in_range(parameters->line_queue_log2, 2, 8) || !in_range(parameters->ramp_queue_log2, 2, 8)
+	    || parameters->inputs > 1u || parameters->encoders > 1u || parameters->outputs > 1u)
 		return false;
 	memset(core, 0, sizeof *core);
 	core->parameters = *parameters;
-	core->inputs = (struct passo_inputs){.spi_cs_n = true};
+	core->inputs = (struct passo_inputs)PASSO_INPUTS_IDLE;
 	core->sync_q = 7;
+	passo_machine_reset(&core->machine);
 	passo_spi_reset(&core->spi);
 	passo_link_reset(&core->link);
 	memcpy(core->tables.points, passo_shapes, sizeof core->tables.points);
@@ -92,6 +108,30 @@ static bool any_busy(const struct passo_core *core)
 	return core->tables.wanted && passo_registers_any_occupied(core);
 }
 
+/* Levels at the inputs of a channel. */
+void passo_core_take_pins(const struct passo_core *core, unsigned channel, const struct passo_inputs *inputs,
+    struct passo_channel_inputs *made)
+{
+	const unsigned axes = core->parameters.axes, first = channel * axes;
+	const uint64_t mask = (UINT64_C(1) << axes) - 1u;
+
+	made->pins[PASSO_KIND_LIMIT_LOW] = (uint8_t)(inputs->limit_low >> first & mask);
+	made->pins[PASSO_KIND_LIMIT_HIGH] = (uint8_t)(inputs->limit_high >> first & mask);
+	made->pins[PASSO_KIND_HOME] = (uint8_t)(inputs->home >> first & mask);
+	made->pins[PASSO_KIND_ALARM] = (uint8_t)(inputs->alarm >> first & mask);
+	made->pins[PASSO_KIND_PROBE] = (uint8_t)(inputs->probe >> channel & 1u);
+}
+
+bool passo_core_any_moving(const struct passo_core *core)
+{
+	for (unsigned i = 0; i < core->parameters.channels; i++) {
+		const enum passo_state state = core->channel[i].motion.state;
+		if (state == PASSO_STATE_RUN || state == PASSO_STATE_SETTLE || state == PASSO_STATE_DRAIN)
+			return true;
+	}
+	return false;
+}
+
 static void clock_all(struct passo_core *core, const struct passo_inputs *inputs)
 {
 	const struct passo_parameters *parameters = &core->parameters;
@@ -113,8 +153,10 @@ static void clock_all(struct passo_core *core, const struct passo_inputs *inputs
 	    .slew_tick = core->slew_tick,
 	    .snapshot = link_wires.spi.frame_start,
 	    .tables_wanted = core->tables.wanted,
+	    .machine = &core->machine,
 	};
 	const bool irq = passo_registers_any_stopped(core);
+	const bool moving = passo_core_any_moving(core);
 	const struct passo_registers registers = core->registers;
 	const uint32_t reply_word = core->link.reply_word;
 
@@ -123,8 +165,11 @@ static void clock_all(struct passo_core *core, const struct passo_inputs *inputs
 	for (unsigned i = 0; i < parameters->channels; i++) {
 		channel_inputs.run = (registers.run >> i & 1u) != 0u;
 		channel_inputs.wait_sync = (registers.wait_sync >> i & 1u) != 0u;
+		passo_core_take_pins(core, i, inputs, &channel_inputs);
 		passo_channel_clock(&core->channel[i], &channel_inputs);
 	}
+	if (parameters->inputs != 0u)
+		passo_machine_clock(&core->machine, &bus, inputs, moving);
 	passo_link_clock(&core->link, &link_wires);
 	passo_spi_clock(&core->spi, core->inputs.spi_sclk, inputs->spi_sclk, inputs->spi_mosi,
 	    inputs->spi_cs_n, reply_word);
@@ -145,11 +190,13 @@ static void restart(struct passo_core *core, const struct passo_core *before)
 	const struct passo_inputs inputs = core->inputs;
 	const struct passo_tables tables = core->tables;
 	const struct passo_spi spi = core->spi;
+	const struct passo_machine machine = core->machine;
 
 	passo_core_reset(core, &parameters);
 
 	core->spi = spi;
 	core->inputs = inputs;
+	passo_machine_restart(&core->machine, &machine);
 	memcpy(core->tables.points, tables.points, sizeof core->tables.points);
 	for (unsigned i = 0; i < parameters.channels; i++)
 		passo_channel_restart(&core->channel[i], &before->channel[i], &parameters);

@@ -10,27 +10,6 @@
 
 #include "passo_model.h"
 
-/* Input pins. Each level of spi_sclk must last at least one clock, and spi_cs_n must not change together with
- * it. */
-struct passo_inputs {
-	bool spi_sclk;
-	bool spi_mosi;
-	bool spi_cs_n;
-	bool sync;
-	bool rst;
-};
-
-/* Output pins. step, dir and enable have one bit per axis, channel * AXES + axis; running has one per
- * channel. */
-struct passo_outputs {
-	uint64_t step;
-	uint64_t dir;
-	uint64_t enable;
-	uint8_t running;
-	bool irq;
-	bool spi_miso;
-};
-
 struct passo_core {
 	struct passo_parameters parameters;
 	struct passo_spi spi;
@@ -40,6 +19,7 @@ struct passo_core {
 	struct passo_response response;
 	struct passo_channel channel[PASSO_CHANNELS_MAX];
 	uint8_t sync_q; /* synchronizer of the sync input */
+	struct passo_machine machine;
 	uint32_t slew_count;
 	bool slew_tick;
 	struct passo_inputs inputs; /* at the previous clock, to detect SCLK edges */
@@ -57,6 +37,9 @@ void passo_core_clock(struct passo_core *core, const struct passo_inputs *inputs
  * clocks skipped; after 0, continue with passo_core_clock(). The resulting state is identical to that many
  * calls of passo_core_clock(). */
 uint64_t passo_core_advance(struct passo_core *core, const struct passo_inputs *inputs, uint64_t limit);
+
+/* Levels of the enable pins while estop_n has this level: it acts without a clock. */
+uint64_t passo_core_enable(const struct passo_core *core, bool estop_n);
 
 const struct passo_outputs *passo_core_outputs(const struct passo_core *core);
 

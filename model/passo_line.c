@@ -19,7 +19,9 @@ void passo_line_clock(struct passo_line_unit *line, const struct passo_line_queu
 	line->add_n = wires->substep_taken;
 	line->load_start = wires->take || wires->repeats;
 
-	line->endless = queue->endless;
+	line->endless = queue->endless && !line->no_repeat;
+	line->no_repeat_before = line->no_repeat;
+	line->no_repeat = wires->requests.end_endless || (line->no_repeat && !wires->take);
 	line->on_last = line->substep_number == queue->last_substep;
 	line->underrun = false;
 	if (wires->take || wires->repeats) {

@@ -8,6 +8,7 @@
 #define PASSO_MODEL_H
 
 #include "passo_command.h"
+#include "passo_pins.h"
 #include "passo_registers.h"
 #include "passo_shapes.h"
 
@@ -15,16 +16,6 @@
 #define PASSO_LINE_QUEUE_MAX 256u
 #define PASSO_RAMP_QUEUE_MAX 256u
 #define PASSO_RATE_ONE 0x10000u /* UQ1.16 */
-
-struct passo_parameters {
-	uint8_t channels;        /* CHANNELS, 1 .. 8 */
-	uint8_t axes;            /* AXES, 1 .. 8 */
-	uint8_t tick_log2;       /* TICK_LOG2, 7 .. 16 */
-	uint8_t line_queue_log2; /* LINE_QUEUE_LOG2, 2 .. 8 */
-	uint8_t ramp_queue_log2; /* RAMP_QUEUE_LOG2, 2 .. 8 */
-	/* STEP_RESET, DIR_RESET, ENABLE_RESET: initial pin levels, bit channel * AXES + axis */
-	uint64_t step_reset, dir_reset, enable_reset;
-};
 
 /* ---- link side ---- */
 
@@ -229,6 +220,7 @@ struct passo_line_unit {
 	bool on_last;
 	uint8_t directions;
 	bool add_n, load_start, decide_step, load_start_q;
+	bool no_repeat, no_repeat_before; /* the trigger has ended the ENDLESS line */
 };
 
 struct passo_dda {
@@ -242,6 +234,12 @@ enum passo_axis_state { PASSO_AXIS_READY, PASSO_AXIS_PULSE, PASSO_AXIS_HOLD, PAS
 struct passo_axis_settings {
 	uint16_t step_high, step_low, dir_setup, dir_hold; /* clocks */
 	bool enable, step_inverted, direction_inverted, enable_inverted, both_edges;
+	uint8_t inputs; /* register INPUTS */
+};
+
+/* Steps refused in a direction; see rtl/passo_limits.v. */
+struct passo_closed {
+	bool low, high;
 };
 
 struct passo_axis {
@@ -256,6 +254,7 @@ struct passo_axis {
 	bool quiet;          /* of the previous clock */
 	bool step_made;
 	bool overrun;
+	struct passo_closed closed; /* in the previous clock */
 	uint32_t position;
 	uint8_t lost;
 	bool step_pin, dir_pin, enable_pin;
@@ -263,8 +262,9 @@ struct passo_axis {
 
 struct passo_positions {
 	uint8_t slot; /* clock within the round */
-	bool clear_waits, snapshot_waits;
+	bool clear_waits, snapshot_waits, latch_waits;
 	uint32_t copies[PASSO_AXES_MAX];
+	uint32_t latched[PASSO_AXES_MAX], latched_copies[PASSO_AXES_MAX];
 };
 
 struct passo_motion {
@@ -272,7 +272,7 @@ struct passo_motion {
 	enum passo_cause cause;
 	enum passo_cause soft_cause;
 	bool stopping;
-	uint16_t drained;
+	uint16_t drained; /* 15 bits */
 	uint8_t count;
 	uint8_t settling; /* 3 bits */
 	bool settled;
@@ -292,6 +292,64 @@ struct passo_channel_registers {
 	bool command_stop, command_abort, command_clear, command_zero;
 };
 
+/* ---- inputs of the machine ---- */
+
+/* Pins of one kind, a bit per axis; see rtl/passo_input.v. */
+struct passo_input_filter {
+	uint8_t first, second, level, pending, was_active;
+};
+
+enum passo_input_kind {
+	PASSO_KIND_LIMIT_LOW,
+	PASSO_KIND_LIMIT_HIGH,
+	PASSO_KIND_HOME,
+	PASSO_KIND_ALARM,
+	PASSO_KIND_PROBE,
+	PASSO_KINDS
+};
+
+struct passo_limits {
+	uint8_t closed_low, closed_high;
+	bool limit_hard, limit_softly, alarm_hard, alarm_softly;
+	uint8_t named;
+};
+
+struct passo_trigger {
+	uint8_t source, axis, action;
+	bool falling;
+	uint8_t arming; /* bits 0 and 1: written one and two clocks ago */
+	bool picked, level, armed, fired, latch;
+	uint16_t count;
+	uint32_t clocks;
+};
+
+/* Inputs of a channel; see rtl/passo_inputs.v. */
+struct passo_inputs_unit {
+	struct passo_input_filter input[PASSO_KINDS];
+	struct passo_limits limits;
+	struct passo_trigger trigger;
+	bool probe_inverted;
+};
+
+/* What the inputs of all channels share; see rtl/passo_machine.v. */
+struct passo_machine {
+	uint16_t filter, count;
+	bool tick;
+	bool estop_pressed;
+	uint8_t estop_released, estop_seen; /* 2 bits */
+	uint16_t watchdog_stop_after, watchdog_disable_after;
+	uint16_t watchdog_count;
+	uint32_t watchdog_unit;
+	bool watchdog_fed, watchdog_stop, watchdog_disable;
+};
+
+/* What a channel asks its motion, axes and line to do. */
+struct passo_requests {
+	bool hard, soft, latch, end_endless;
+	enum passo_cause hard_cause, soft_cause;
+	uint8_t disable; /* a bit per axis */
+};
+
 struct passo_channel {
 	uint8_t axes;
 	uint8_t number;
@@ -307,6 +365,7 @@ struct passo_channel {
 	struct passo_dda dda[PASSO_AXES_MAX];
 	struct passo_axis axis[PASSO_AXES_MAX];
 	struct passo_positions positions;
+	struct passo_inputs_unit inputs;
 	uint8_t occupied_before;  /* in the previous three clocks */
 	bool at_rest;             /* no motion, and no step in flight to the axes */
 	bool writes_axis;         /* bus write strobe for the axes, one clock late */
@@ -320,6 +379,8 @@ struct passo_channel_inputs {
 	const struct passo_bus *bus;
 	bool run, wait_sync, sync_edge, slew_tick, snapshot;
 	bool tables_wanted;
+	const struct passo_machine *machine; /* before the edge */
+	uint8_t pins[PASSO_KINDS];           /* levels, a bit per axis */
 };
 
 /* The wires of a channel, from the state before the edge. */
@@ -337,6 +398,8 @@ struct passo_channel_wires {
 	bool finished;
 	bool stop_now, stopped;
 	bool drop;
+	bool estop;
+	struct passo_requests requests;
 };
 
 void passo_admission_clock(
@@ -385,6 +448,7 @@ struct passo_axis_wires {
 	bool step_request, direction;
 	bool drop, zero, clear, timing_written, pins_written;
 	bool both_edges_next; /* with pins_written: the value written */
+	struct passo_closed closed;
 };
 
 /* State after configuration, with the levels of the three pins. */
@@ -398,9 +462,37 @@ void passo_axis_skip(struct passo_axis *axis, uint64_t clocks);
 
 void passo_positions_reset(struct passo_positions *positions);
 void passo_positions_clock(
-    struct passo_positions *positions, const struct passo_axis *axes, bool zero, bool snapshot);
+    struct passo_positions *positions, const struct passo_axis *axes, bool zero, bool snapshot, bool latch);
 /* Skips clocks without `zero` and `snapshot`; no snapshot may be pending. */
 void passo_positions_skip(struct passo_positions *positions, uint64_t clocks);
+
+void passo_machine_reset(struct passo_machine *machine);
+/* Synchronous reset in the clock just simulated, which keeps the filter and an e-stop. */
+void passo_machine_restart(struct passo_machine *machine, const struct passo_machine *before);
+void passo_machine_clock(struct passo_machine *machine, const struct passo_bus *bus,
+    const struct passo_inputs *inputs, bool moving);
+/* Whether there is such a register; the value that it reads as and the verdict on a write. */
+bool passo_machine_register(const struct passo_machine *machine, uint16_t address, uint32_t *value);
+uint8_t passo_machine_check(const struct passo_bus *bus);
+uint64_t passo_machine_quiet(
+    const struct passo_machine *machine, const struct passo_inputs *inputs, bool moving);
+void passo_machine_skip(struct passo_machine *machine, uint64_t clocks);
+
+struct passo_requests passo_inputs_requests(
+    const struct passo_channel *channel, const struct passo_channel_inputs *inputs);
+void passo_inputs_clock(struct passo_inputs_unit *unit, const struct passo_channel *channel,
+    const struct passo_channel_inputs *inputs, const struct passo_channel_wires *wires);
+/* Synchronous reset, which keeps the settings. */
+void passo_inputs_restart(struct passo_inputs_unit *unit, const struct passo_inputs_unit *before);
+/* Verdict on the value of TRIGGER. */
+uint8_t passo_trigger_check(const struct passo_channel *channel, uint32_t data);
+void passo_trigger_clock(
+    struct passo_trigger *trigger, const struct passo_inputs_unit *unit, uint16_t filter);
+void passo_trigger_write(struct passo_trigger *trigger, uint32_t data);
+uint32_t passo_inputs_value(const struct passo_inputs_unit *unit, uint8_t address);
+/* Whether nothing changes except the time of an armed trigger, and skipping that. */
+bool passo_inputs_quiet(const struct passo_channel *channel, const struct passo_channel_inputs *inputs);
+void passo_inputs_skip(struct passo_inputs_unit *unit, uint64_t clocks);
 
 void passo_motion_wires(const struct passo_channel *channel, const struct passo_channel_inputs *inputs,
     struct passo_channel_wires *wires);

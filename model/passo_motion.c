@@ -5,10 +5,14 @@
 
 enum { START_LAST = 6 };
 
+static bool aborts(const struct passo_channel *channel, const struct passo_channel_wires *wires)
+{
+	return channel->registers.command_abort || wires->estop || wires->requests.hard;
+}
+
 static bool stop_wanted(const struct passo_channel *channel, const struct passo_channel_wires *wires)
 {
-	return channel->registers.command_abort
-	    || (wires->moving && (wires->overrun || channel->line.underrun))
+	return aborts(channel, wires) || (wires->moving && (wires->overrun || channel->line.underrun))
 	    || (channel->motion.stopping
 	        && (channel->motion.rate_was_zero || wires->finished || !wires->moving));
 }
@@ -16,10 +20,16 @@ static bool stop_wanted(const struct passo_channel *channel, const struct passo_
 static enum passo_cause cause_of_stop(
     const struct passo_channel *channel, const struct passo_channel_wires *wires)
 {
+	if (channel->motion.stopping)
+		return channel->motion.soft_cause;
+	if (wires->estop)
+		return PASSO_CAUSE_ESTOP;
 	if (channel->registers.command_abort)
 		return PASSO_CAUSE_ABORT;
 	if (wires->moving && wires->overrun)
 		return PASSO_CAUSE_STEP_OVERRUN;
+	if (wires->requests.hard)
+		return wires->requests.hard_cause;
 	if (wires->moving && channel->line.underrun)
 		return PASSO_CAUSE_LINE_UNDERRUN;
 	return channel->motion.soft_cause;
@@ -44,7 +54,7 @@ void passo_motion_wires(const struct passo_channel *channel, const struct passo_
 	wires->begin_profile = motion->begin_profile;
 	wires->finished = motion->settled && (line_over || channel->line.endless);
 	wires->stop_now = motion->stop_due && !wires->stopped;
-	wires->drop = channel->registers.command_abort || motion->aborted != 0u;
+	wires->drop = aborts(channel, wires) || motion->aborted != 0u;
 }
 
 void passo_motion_clock(
@@ -67,7 +77,7 @@ void passo_motion_clock(
 	motion->settled = state == PASSO_STATE_SETTLE && (settling & 4u) != 0u && !settled;
 	motion->rate_was_zero = channel->timescale.rate == 0u;
 	motion->aborted =
-	    (uint8_t)(((uint32_t)motion->aborted << 1 | (registers->command_abort ? 1u : 0u)) & 3u);
+	    (uint8_t)(((uint32_t)motion->aborted << 1 | (aborts(channel, wires) ? 1u : 0u)) & 3u);
 	if (wires->prepare)
 		motion->state = PASSO_STATE_PREPARE;
 	if (state == PASSO_STATE_PREPARE && channel->ramp.ready)
@@ -86,14 +96,16 @@ void passo_motion_clock(
 		motion->running = wires->moving;
 
 	if (wires->drain && channel->path.substep && !channel->line.ended)
-		motion->drained++;
+		motion->drained = (motion->drained + 1u) & 0x7FFFu;
 
 	if (!motion->stopping && !wires->stopped) {
 		if (registers->command_stop)
 			motion->soft_cause = PASSO_CAUSE_STOP;
+		else if (wires->requests.soft)
+			motion->soft_cause = wires->requests.soft_cause;
 		else if (dry)
 			motion->soft_cause = PASSO_CAUSE_RAMP_UNDERRUN;
-		motion->stopping = registers->command_stop || dry;
+		motion->stopping = registers->command_stop || wires->requests.soft || dry;
 	}
 
 	if (wires->stopped && registers->command_clear) {

@@ -13,18 +13,29 @@ void passo_positions_reset(struct passo_positions *positions)
 }
 
 void passo_positions_clock(
-    struct passo_positions *positions, const struct passo_axis *axes, bool zero, bool snapshot)
+    struct passo_positions *positions, const struct passo_axis *axes, bool zero, bool snapshot, bool latch)
 {
 	if (positions->slot == ROUND_CLOCKS - 1) {
-		if (positions->snapshot_waits && !positions->clear_waits) {
+		if (positions->clear_waits) {
+			positions->clear_waits = false;
+		} else if (positions->latch_waits) {
+			for (unsigned i = 0; i < PASSO_AXES_MAX; i++)
+				positions->latched_copies[i] = positions->latched[i];
+			positions->latch_waits = false;
+		} else if (positions->snapshot_waits) {
 			for (unsigned i = 0; i < PASSO_AXES_MAX; i++)
 				positions->copies[i] = axes[i].position;
 			positions->snapshot_waits = false;
 		}
-		positions->clear_waits = false;
 	}
 	positions->clear_waits = positions->clear_waits || zero;
 	positions->snapshot_waits = positions->snapshot_waits || snapshot;
+	positions->latch_waits = positions->latch_waits || latch;
+	for (unsigned i = 0; i < PASSO_AXES_MAX && latch; i++)
+		positions->latched[i] = axes[i].position;
+	if (zero)
+		for (unsigned i = 0; i < PASSO_AXES_MAX; i++)
+			positions->latched[i] = 0;
 	positions->slot = (positions->slot + 1u) % ROUND_CLOCKS;
 }
 

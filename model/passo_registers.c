@@ -51,6 +51,9 @@ static uint32_t parameters_word(const struct passo_parameters *parameters)
 	    .tick_log2 = parameters->tick_log2,
 	    .line_queue_log2 = parameters->line_queue_log2,
 	    .ramp_queue_log2 = parameters->ramp_queue_log2,
+	    .inputs = parameters->inputs,
+	    .encoders = parameters->encoders,
+	    .outputs = parameters->outputs,
 	});
 }
 
@@ -92,7 +95,8 @@ static bool register_value(const struct passo_core *core, uint16_t address, uint
 		*value = four_counters(&registers->refusals[4]);
 		return true;
 	default:
-		return false;
+		return core->parameters.inputs != 0u
+		    && passo_machine_register(&core->machine, address, value);
 	}
 }
 
@@ -133,9 +137,11 @@ struct passo_response passo_registers_respond(const struct passo_core *core)
 		response.claim = true;
 		if (bus->check)
 			response.refusal = bus->push                         ? PASSO_VERDICT_BAD_OPERATION
-			                 : bus->address != PASSO_ADDRESS_RUN ? PASSO_VERDICT_READ_ONLY
-			                                                     : run_check(core, bus->data);
-		response.late = bus->read;
+			                 : bus->address == PASSO_ADDRESS_RUN ? run_check(core, bus->data)
+			                                                     : passo_machine_check(bus);
+		else if (bus->address == PASSO_ADDRESS_ESTOP_CLEAR)
+			response.refusal = PASSO_VERDICT_BAD_OPERATION;
+		response.late = bus->read && response.refusal == PASSO_VERDICT_OK;
 		response.address = bus->address;
 	}
 	return response;

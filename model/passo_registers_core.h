@@ -16,4 +16,10 @@ struct passo_response passo_registers_respond(const struct passo_core *core);
 uint32_t passo_registers_value(const struct passo_core *core, uint16_t address);
 void passo_registers_clock(struct passo_core *core);
 
+/* Levels at the inputs of a channel. */
+void passo_core_take_pins(const struct passo_core *core, unsigned channel, const struct passo_inputs *inputs,
+    struct passo_channel_inputs *made);
+/* Whether a motion runs. */
+bool passo_core_any_moving(const struct passo_core *core);
+
 #endif

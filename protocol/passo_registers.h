@@ -86,7 +86,7 @@
 #define PASSO_VERSION_PATCH_RESET 0x00u
 #define PASSO_VERSION_MINOR_LSB   8u
 #define PASSO_VERSION_MINOR_BITS  8u
-#define PASSO_VERSION_MINOR_RESET 0x01u
+#define PASSO_VERSION_MINOR_RESET 0x02u
 #define PASSO_VERSION_MAJOR_LSB   16u
 #define PASSO_VERSION_MAJOR_BITS  8u
 #define PASSO_VERSION_MAJOR_RESET 0x00u
@@ -103,6 +103,12 @@
 #define PASSO_PARAMETERS_LINE_QUEUE_LOG2_BITS 5u
 #define PASSO_PARAMETERS_RAMP_QUEUE_LOG2_LSB  24u
 #define PASSO_PARAMETERS_RAMP_QUEUE_LOG2_BITS 5u
+#define PASSO_PARAMETERS_INPUTS_LSB           29u
+#define PASSO_PARAMETERS_INPUTS_BITS          1u
+#define PASSO_PARAMETERS_ENCODERS_LSB         30u
+#define PASSO_PARAMETERS_ENCODERS_BITS        1u
+#define PASSO_PARAMETERS_OUTPUTS_LSB          31u
+#define PASSO_PARAMETERS_OUTPUTS_BITS         1u
 
 /* Core: Run. One bit per channel, all in one register: channels that are ARMED start on the same clock when
  * one write clears their WAIT_SYNC. */
@@ -147,6 +153,38 @@
 #define PASSO_REFUSALS_1_BAD_VALUE_LSB    24u
 #define PASSO_REFUSALS_1_BAD_VALUE_BITS   8u
 #define PASSO_REFUSALS_1_BAD_VALUE_RESET  0x00u
+
+/* Core: Input filter. Only with INPUTS. Glitch filter of all inputs but e-stop. Kept over a reset of the
+ * core. */
+#define PASSO_ADDRESS_INPUT_FILTER      0x010u
+#define PASSO_INPUT_FILTER_FILTER_LSB   0u
+#define PASSO_INPUT_FILTER_FILTER_BITS  16u
+#define PASSO_INPUT_FILTER_FILTER_RESET 0x0000u
+#define PASSO_INPUT_FILTER_DEFINED      0x0000FFFFu
+
+/* Core: Watchdog. Only with INPUTS. Stops motions when no frame has been executed for some time. In units
+ * of 2^16 clocks. */
+#define PASSO_ADDRESS_WATCHDOG             0x011u
+#define PASSO_WATCHDOG_STOP_AFTER_LSB      0u
+#define PASSO_WATCHDOG_STOP_AFTER_BITS     10u
+#define PASSO_WATCHDOG_STOP_AFTER_RESET    0x000u
+#define PASSO_WATCHDOG_DISABLE_AFTER_LSB   10u
+#define PASSO_WATCHDOG_DISABLE_AFTER_BITS  10u
+#define PASSO_WATCHDOG_DISABLE_AFTER_RESET 0x000u
+#define PASSO_WATCHDOG_DEFINED             0x000FFFFFu
+
+/* Core: E-stop. Only with INPUTS. State of the e-stop. */
+#define PASSO_ADDRESS_ESTOP       0x012u
+#define PASSO_ESTOP_PRESSED_LSB   0u
+#define PASSO_ESTOP_PRESSED_BITS  1u
+#define PASSO_ESTOP_PRESSED_RESET 0x0u
+
+/* Core: Clear e-stop. Only with INPUTS. No effect while e-stop is pressed. */
+#define PASSO_ADDRESS_ESTOP_CLEAR     0x013u
+#define PASSO_ESTOP_CLEAR_CLEAR_LSB   0u
+#define PASSO_ESTOP_CLEAR_CLEAR_BITS  1u
+#define PASSO_ESTOP_CLEAR_CLEAR_RESET 0x0u
+#define PASSO_ESTOP_CLEAR_DEFINED     0x00000001u
 
 /* Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0. Refused with BUSY
  * while a motion runs. */
@@ -232,16 +270,16 @@
 #define PASSO_CHANNEL_STATE_QUIET_BITS     1u
 #define PASSO_CHANNEL_STATE_QUIET_RESET    0x1u
 #define PASSO_CHANNEL_STATE_CAUSE_LSB      4u
-#define PASSO_CHANNEL_STATE_CAUSE_BITS     3u
+#define PASSO_CHANNEL_STATE_CAUSE_BITS     4u
 #define PASSO_CHANNEL_STATE_CAUSE_RESET    0x0u
-#define PASSO_CHANNEL_STATE_STOPPING_LSB   7u
-#define PASSO_CHANNEL_STATE_STOPPING_BITS  1u
-#define PASSO_CHANNEL_STATE_STOPPING_RESET 0x0u
 #define PASSO_CHANNEL_STATE_OVERRUN_LSB    8u
 #define PASSO_CHANNEL_STATE_OVERRUN_BITS   8u
 #define PASSO_CHANNEL_STATE_OVERRUN_RESET  0x00u
-#define PASSO_CHANNEL_STATE_DRAINED_LSB    16u
-#define PASSO_CHANNEL_STATE_DRAINED_BITS   16u
+#define PASSO_CHANNEL_STATE_STOPPING_LSB   16u
+#define PASSO_CHANNEL_STATE_STOPPING_BITS  1u
+#define PASSO_CHANNEL_STATE_STOPPING_RESET 0x0u
+#define PASSO_CHANNEL_STATE_DRAINED_LSB    17u
+#define PASSO_CHANNEL_STATE_DRAINED_BITS   15u
 #define PASSO_CHANNEL_STATE_DRAINED_RESET  0x0000u
 
 /* Channel: Rate. Time scale in force. */
@@ -263,6 +301,109 @@
 #define PASSO_CHANNEL_VELOCITY_BITS  32u
 #define PASSO_CHANNEL_VELOCITY_RESET 0x00000000u
 
+/* Channel: Input levels. Only with INPUTS. Filtered levels, 1 = active, one bit per axis. */
+#define PASSO_CHANNEL_INPUT_LEVELS                  0x10u
+#define PASSO_CHANNEL_INPUT_LEVELS_LIMIT_LOW_LSB    0u
+#define PASSO_CHANNEL_INPUT_LEVELS_LIMIT_LOW_BITS   8u
+#define PASSO_CHANNEL_INPUT_LEVELS_LIMIT_LOW_RESET  0x00u
+#define PASSO_CHANNEL_INPUT_LEVELS_LIMIT_HIGH_LSB   8u
+#define PASSO_CHANNEL_INPUT_LEVELS_LIMIT_HIGH_BITS  8u
+#define PASSO_CHANNEL_INPUT_LEVELS_LIMIT_HIGH_RESET 0x00u
+#define PASSO_CHANNEL_INPUT_LEVELS_HOME_LSB         16u
+#define PASSO_CHANNEL_INPUT_LEVELS_HOME_BITS        8u
+#define PASSO_CHANNEL_INPUT_LEVELS_HOME_RESET       0x00u
+#define PASSO_CHANNEL_INPUT_LEVELS_ALARM_LSB        24u
+#define PASSO_CHANNEL_INPUT_LEVELS_ALARM_BITS       8u
+#define PASSO_CHANNEL_INPUT_LEVELS_ALARM_RESET      0x00u
+
+/* Channel: Input flags. Only with INPUTS. Inputs that were active since their flag was cleared, one bit per
+ * axis. */
+#define PASSO_CHANNEL_INPUT_FLAGS                  0x11u
+#define PASSO_CHANNEL_INPUT_FLAGS_LIMIT_LOW_LSB    0u
+#define PASSO_CHANNEL_INPUT_FLAGS_LIMIT_LOW_BITS   8u
+#define PASSO_CHANNEL_INPUT_FLAGS_LIMIT_LOW_RESET  0x00u
+#define PASSO_CHANNEL_INPUT_FLAGS_LIMIT_HIGH_LSB   8u
+#define PASSO_CHANNEL_INPUT_FLAGS_LIMIT_HIGH_BITS  8u
+#define PASSO_CHANNEL_INPUT_FLAGS_LIMIT_HIGH_RESET 0x00u
+#define PASSO_CHANNEL_INPUT_FLAGS_HOME_LSB         16u
+#define PASSO_CHANNEL_INPUT_FLAGS_HOME_BITS        8u
+#define PASSO_CHANNEL_INPUT_FLAGS_HOME_RESET       0x00u
+#define PASSO_CHANNEL_INPUT_FLAGS_ALARM_LSB        24u
+#define PASSO_CHANNEL_INPUT_FLAGS_ALARM_BITS       8u
+#define PASSO_CHANNEL_INPUT_FLAGS_ALARM_RESET      0x00u
+
+/* Channel: Clear input flags. Only with INPUTS. Each bit written as 1 clears a flag of INPUT_FLAGS; bits of
+ * axes that are not there do nothing. */
+#define PASSO_CHANNEL_INPUT_CLEAR                  0x12u
+#define PASSO_CHANNEL_INPUT_CLEAR_LIMIT_LOW_LSB    0u
+#define PASSO_CHANNEL_INPUT_CLEAR_LIMIT_LOW_BITS   8u
+#define PASSO_CHANNEL_INPUT_CLEAR_LIMIT_LOW_RESET  0x00u
+#define PASSO_CHANNEL_INPUT_CLEAR_LIMIT_HIGH_LSB   8u
+#define PASSO_CHANNEL_INPUT_CLEAR_LIMIT_HIGH_BITS  8u
+#define PASSO_CHANNEL_INPUT_CLEAR_LIMIT_HIGH_RESET 0x00u
+#define PASSO_CHANNEL_INPUT_CLEAR_HOME_LSB         16u
+#define PASSO_CHANNEL_INPUT_CLEAR_HOME_BITS        8u
+#define PASSO_CHANNEL_INPUT_CLEAR_HOME_RESET       0x00u
+#define PASSO_CHANNEL_INPUT_CLEAR_ALARM_LSB        24u
+#define PASSO_CHANNEL_INPUT_CLEAR_ALARM_BITS       8u
+#define PASSO_CHANNEL_INPUT_CLEAR_ALARM_RESET      0x00u
+#define PASSO_CHANNEL_INPUT_CLEAR_DEFINED          0xFFFFFFFFu
+
+/* Channel: Trigger. Only with INPUTS. Every write ends what was armed before. Refused with BAD_VALUE if
+ * armed without a source, or for an axis that is not there. */
+#define PASSO_CHANNEL_TRIGGER               0x13u
+#define PASSO_CHANNEL_TRIGGER_SOURCE_LSB    0u
+#define PASSO_CHANNEL_TRIGGER_SOURCE_BITS   3u
+#define PASSO_CHANNEL_TRIGGER_SOURCE_RESET  0x0u
+#define PASSO_CHANNEL_TRIGGER_AXIS_LSB      4u
+#define PASSO_CHANNEL_TRIGGER_AXIS_BITS     3u
+#define PASSO_CHANNEL_TRIGGER_AXIS_RESET    0x0u
+#define PASSO_CHANNEL_TRIGGER_FALLING_LSB   8u
+#define PASSO_CHANNEL_TRIGGER_FALLING_BITS  1u
+#define PASSO_CHANNEL_TRIGGER_FALLING_RESET 0x0u
+#define PASSO_CHANNEL_TRIGGER_ACTION_LSB    12u
+#define PASSO_CHANNEL_TRIGGER_ACTION_BITS   2u
+#define PASSO_CHANNEL_TRIGGER_ACTION_RESET  0x0u
+#define PASSO_CHANNEL_TRIGGER_ARM_LSB       16u
+#define PASSO_CHANNEL_TRIGGER_ARM_BITS      1u
+#define PASSO_CHANNEL_TRIGGER_ARM_RESET     0x0u
+#define PASSO_CHANNEL_TRIGGER_DEFINED       0x00013177u
+
+/* Channel: Trigger state. Only with INPUTS. State of the trigger and the probe, and the axes that stopped
+ * the channel. */
+#define PASSO_CHANNEL_TRIGGER_STATE                  0x14u
+#define PASSO_CHANNEL_TRIGGER_STATE_ARMED_LSB        0u
+#define PASSO_CHANNEL_TRIGGER_STATE_ARMED_BITS       1u
+#define PASSO_CHANNEL_TRIGGER_STATE_ARMED_RESET      0x0u
+#define PASSO_CHANNEL_TRIGGER_STATE_FIRED_LSB        1u
+#define PASSO_CHANNEL_TRIGGER_STATE_FIRED_BITS       1u
+#define PASSO_CHANNEL_TRIGGER_STATE_FIRED_RESET      0x0u
+#define PASSO_CHANNEL_TRIGGER_STATE_PROBE_LSB        2u
+#define PASSO_CHANNEL_TRIGGER_STATE_PROBE_BITS       1u
+#define PASSO_CHANNEL_TRIGGER_STATE_PROBE_RESET      0x0u
+#define PASSO_CHANNEL_TRIGGER_STATE_PROBE_FLAG_LSB   3u
+#define PASSO_CHANNEL_TRIGGER_STATE_PROBE_FLAG_BITS  1u
+#define PASSO_CHANNEL_TRIGGER_STATE_PROBE_FLAG_RESET 0x0u
+#define PASSO_CHANNEL_TRIGGER_STATE_AXES_LSB         8u
+#define PASSO_CHANNEL_TRIGGER_STATE_AXES_BITS        8u
+#define PASSO_CHANNEL_TRIGGER_STATE_AXES_RESET       0x00u
+
+/* Channel: Trigger clocks. Only with INPUTS. Clocks from arming to firing, or up to now; wraps. */
+#define PASSO_CHANNEL_TRIGGER_CLOCKS       0x15u
+#define PASSO_CHANNEL_TRIGGER_CLOCKS_LSB   0u
+#define PASSO_CHANNEL_TRIGGER_CLOCKS_BITS  32u
+#define PASSO_CHANNEL_TRIGGER_CLOCKS_RESET 0x00000000u
+
+/* Channel: Probe. Only with INPUTS. Polarity, kept over a reset of the core; and the flag of the probe. */
+#define PASSO_CHANNEL_PROBE                0x16u
+#define PASSO_CHANNEL_PROBE_INVERTED_LSB   0u
+#define PASSO_CHANNEL_PROBE_INVERTED_BITS  1u
+#define PASSO_CHANNEL_PROBE_INVERTED_RESET 0x0u
+#define PASSO_CHANNEL_PROBE_CLEAR_LSB      1u
+#define PASSO_CHANNEL_PROBE_CLEAR_BITS     1u
+#define PASSO_CHANNEL_PROBE_CLEAR_RESET    0x0u
+#define PASSO_CHANNEL_PROBE_DEFINED        0x00000003u
+
 /* Channel: Line queue. PUSH only: control, M, N_0 .. N_{AXES-1} for each line. */
 #define PASSO_CHANNEL_LINE         0x20u
 #define PASSO_CHANNEL_LINE_LSB     0u
@@ -282,6 +423,14 @@
 #define PASSO_CHANNEL_POSITION_LSB   0u
 #define PASSO_CHANNEL_POSITION_BITS  32u
 #define PASSO_CHANNEL_POSITION_RESET 0x00000000u
+
+/* Channel: Latched position. Only with INPUTS. Position of an axis in steps on the clock on which the
+ * trigger fired, complete 130 clocks later. A ZERO less than 64 clocks after that clears it. */
+#define PASSO_CHANNEL_TRIGGER_POSITION_BASE           0x48u
+#define PASSO_CHANNEL_TRIGGER_POSITION_COUNT          8u
+#define PASSO_CHANNEL_TRIGGER_POSITION_POSITION_LSB   0u
+#define PASSO_CHANNEL_TRIGGER_POSITION_POSITION_BITS  32u
+#define PASSO_CHANNEL_TRIGGER_POSITION_POSITION_RESET 0x00000000u
 
 /* Channel: where each axis has its registers. */
 #define PASSO_CHANNEL_AXIS_BASE   0x80u
@@ -338,6 +487,32 @@
 #define PASSO_AXIS_ENABLE_RESET   0x0u
 #define PASSO_AXIS_ENABLE_DEFINED 0x00000001u
 
+/* Axis: Inputs of the axis. Only with INPUTS. Polarities, and what limits and alarm do. Kept over a reset
+ * of the core. */
+#define PASSO_AXIS_INPUTS                           0x5u
+#define PASSO_AXIS_INPUTS_LIMIT_LOW_INVERTED_LSB    0u
+#define PASSO_AXIS_INPUTS_LIMIT_LOW_INVERTED_BITS   1u
+#define PASSO_AXIS_INPUTS_LIMIT_LOW_INVERTED_RESET  0x0u
+#define PASSO_AXIS_INPUTS_LIMIT_HIGH_INVERTED_LSB   1u
+#define PASSO_AXIS_INPUTS_LIMIT_HIGH_INVERTED_BITS  1u
+#define PASSO_AXIS_INPUTS_LIMIT_HIGH_INVERTED_RESET 0x0u
+#define PASSO_AXIS_INPUTS_HOME_INVERTED_LSB         2u
+#define PASSO_AXIS_INPUTS_HOME_INVERTED_BITS        1u
+#define PASSO_AXIS_INPUTS_HOME_INVERTED_RESET       0x0u
+#define PASSO_AXIS_INPUTS_ALARM_INVERTED_LSB        3u
+#define PASSO_AXIS_INPUTS_ALARM_INVERTED_BITS       1u
+#define PASSO_AXIS_INPUTS_ALARM_INVERTED_RESET      0x0u
+#define PASSO_AXIS_INPUTS_LIMIT_SOFT_LSB            4u
+#define PASSO_AXIS_INPUTS_LIMIT_SOFT_BITS           1u
+#define PASSO_AXIS_INPUTS_LIMIT_SOFT_RESET          0x0u
+#define PASSO_AXIS_INPUTS_ALARM_SOFT_LSB            5u
+#define PASSO_AXIS_INPUTS_ALARM_SOFT_BITS           1u
+#define PASSO_AXIS_INPUTS_ALARM_SOFT_RESET          0x0u
+#define PASSO_AXIS_INPUTS_ALARM_DISABLES_LSB        6u
+#define PASSO_AXIS_INPUTS_ALARM_DISABLES_BITS       1u
+#define PASSO_AXIS_INPUTS_ALARM_DISABLES_RESET      0x0u
+#define PASSO_AXIS_INPUTS_DEFINED                   0x0000007Fu
+
 /* Operation of a frame. */
 enum passo_operation {
 	PASSO_OPERATION_READ  = 1, /* Read consecutive registers. */
@@ -381,16 +556,46 @@ enum passo_state {
 
 /* Why a channel has stopped. */
 enum passo_cause {
-	PASSO_CAUSE_NONE          = 0, /* Not stopped. */
-	PASSO_CAUSE_STOP          = 1, /* COMMAND.STOP. */
-	PASSO_CAUSE_ABORT         = 2, /* COMMAND.ABORT. */
-	PASSO_CAUSE_LINE_UNDERRUN = 3, /* A line ended, was not LAST, and none followed. */
-	PASSO_CAUSE_RAMP_UNDERRUN = 4, /* The ramps ran out at speed. */
-	PASSO_CAUSE_STEP_OVERRUN  = 5  /* Steps came faster than the pin timing of an axis allows. */
+	PASSO_CAUSE_NONE            = 0,  /* Not stopped. */
+	PASSO_CAUSE_STOP            = 1,  /* COMMAND.STOP. */
+	PASSO_CAUSE_ABORT           = 2,  /* COMMAND.ABORT. */
+	PASSO_CAUSE_LINE_UNDERRUN   = 3,  /* A line ended, was not LAST, and none followed. */
+	PASSO_CAUSE_RAMP_UNDERRUN   = 4,  /* The ramps ran out at speed. */
+	PASSO_CAUSE_STEP_OVERRUN    = 5,  /* Steps came faster than the pin timing of an axis allows. */
+	PASSO_CAUSE_LIMIT           = 6,  /* An axis stepped towards an active limit switch. */
+	PASSO_CAUSE_ALARM           = 7,  /* The alarm input of an axis became active. */
+	PASSO_CAUSE_TRIGGER         = 8,  /* The trigger fired, and its action is a stop. */
+	PASSO_CAUSE_WATCHDOG        = 9,  /* No good frame came for too long while a motion ran. */
+	PASSO_CAUSE_ESTOP           = 10, /* The e-stop input became active. */
+	PASSO_CAUSE_FOLLOWING_ERROR = 11  /* An axis was too far from its encoder. */
 };
 #define PASSO_CAUSE_NAMES \
 	{[0] = "NONE", [1] = "STOP", [2] = "ABORT", [3] = "LINE_UNDERRUN", [4] = "RAMP_UNDERRUN", \
-	 [5] = "STEP_OVERRUN"}
+	 [5] = "STEP_OVERRUN", [6] = "LIMIT", [7] = "ALARM", [8] = "TRIGGER", [9] = "WATCHDOG", \
+	 [10] = "ESTOP", [11] = "FOLLOWING_ERROR"}
+
+/* What fires the trigger of a channel. */
+enum passo_trigger_source {
+	PASSO_TRIGGER_SOURCE_NONE       = 0, /* None; cannot be armed. */
+	PASSO_TRIGGER_SOURCE_LIMIT_LOW  = 1, /* Limit switch of the axis in negative direction. */
+	PASSO_TRIGGER_SOURCE_LIMIT_HIGH = 2, /* Limit switch of the axis in positive direction. */
+	PASSO_TRIGGER_SOURCE_HOME       = 3, /* Home switch of the axis. */
+	PASSO_TRIGGER_SOURCE_PROBE      = 4, /* Probe of the channel. */
+	PASSO_TRIGGER_SOURCE_INDEX      = 5  /* Index of the axis's encoder; never active without ENCODERS. */
+};
+#define PASSO_TRIGGER_SOURCE_NAMES \
+	{[0] = "NONE", [1] = "LIMIT_LOW", [2] = "LIMIT_HIGH", [3] = "HOME", [4] = "PROBE", [5] = \
+	 "INDEX"}
+
+/* What the trigger does when it fires. */
+enum passo_trigger_action {
+	PASSO_TRIGGER_ACTION_LATCH       = 0, /* Only latch. */
+	PASSO_TRIGGER_ACTION_SOFT_STOP   = 1, /* Latch and soft stop. */
+	PASSO_TRIGGER_ACTION_HARD_STOP   = 2, /* Latch and hard stop. */
+	PASSO_TRIGGER_ACTION_END_ENDLESS = 3  /* Latch, and let the current ENDLESS line end as any other line. */
+};
+#define PASSO_TRIGGER_ACTION_NAMES \
+	{[0] = "LATCH", [1] = "SOFT_STOP", [2] = "HARD_STOP", [3] = "END_ENDLESS"}
 
 /* Shape of a ramp: s as a function of the progress u, both 0 .. 1. */
 enum passo_shape {

@@ -179,6 +179,9 @@ static inline struct passo_version passo_unpack_version(uint32_t word)
 
 /* Parameters. How the core was built. */
 struct passo_parameters_word {
+	bool    outputs;         /* OUTPUTS. */
+	bool    encoders;        /* ENCODERS. */
+	bool    inputs;          /* INPUTS. */
 	uint8_t ramp_queue_log2; /* RAMP_QUEUE_LOG2. */
 	uint8_t line_queue_log2; /* LINE_QUEUE_LOG2. */
 	uint8_t tick_log2;       /* TICK_LOG2. */
@@ -188,7 +191,10 @@ struct passo_parameters_word {
 
 static inline uint32_t passo_pack_parameters(const struct passo_parameters_word *word)
 {
-	return ((uint32_t)word->ramp_queue_log2 & 0x1Fu) << 24
+	return ((uint32_t)word->outputs & 0x1u) << 31
+	     | ((uint32_t)word->encoders & 0x1u) << 30
+	     | ((uint32_t)word->inputs & 0x1u) << 29
+	     | ((uint32_t)word->ramp_queue_log2 & 0x1Fu) << 24
 	     | ((uint32_t)word->line_queue_log2 & 0x1Fu) << 16
 	     | ((uint32_t)word->tick_log2 & 0x1Fu) << 8
 	     | ((uint32_t)word->axes & 0xFu) << 4
@@ -198,6 +204,9 @@ static inline uint32_t passo_pack_parameters(const struct passo_parameters_word 
 static inline struct passo_parameters_word passo_unpack_parameters(uint32_t word)
 {
 	return (struct passo_parameters_word){
+	    .outputs = (word >> 31 & 0x1u) != 0u,
+	    .encoders = (word >> 30 & 0x1u) != 0u,
+	    .inputs = (word >> 29 & 0x1u) != 0u,
 	    .ramp_queue_log2 = (uint8_t)(word >> 24 & 0x1Fu),
 	    .line_queue_log2 = (uint8_t)(word >> 16 & 0x1Fu),
 	    .tick_log2 = (uint8_t)(word >> 8 & 0x1Fu),
@@ -281,6 +290,26 @@ static inline struct passo_refusals_1 passo_unpack_refusals_1(uint32_t word)
 	};
 }
 
+/* Watchdog. Only with INPUTS. Stops motions when no frame has been executed for some time. In units of 2^16 clocks. */
+struct passo_watchdog {
+	uint16_t disable_after; /* Time from that stop until all drive enables are cleared; 0 = never. */
+	uint16_t stop_after;    /* Silence after which a running motion is stopped softly; 0 = off. */
+};
+
+static inline uint32_t passo_pack_watchdog(const struct passo_watchdog *word)
+{
+	return ((uint32_t)word->disable_after & 0x3FFu) << 10
+	     | ((uint32_t)word->stop_after & 0x3FFu);
+}
+
+static inline struct passo_watchdog passo_unpack_watchdog(uint32_t word)
+{
+	return (struct passo_watchdog){
+	    .disable_after = (uint16_t)(word >> 10 & 0x3FFu),
+	    .stop_after = (uint16_t)(word & 0x3FFu),
+	};
+}
+
 /* Command. Each bit written as 1 takes effect once. STOP and ABORT override CLEAR and ZERO in the same word; ABORT has priority over STOP. */
 struct passo_channel_command {
 	bool zero;  /* Set the positions of the channel's axes to 0. Refused with BUSY unless the channel is quiet. */
@@ -310,8 +339,8 @@ static inline struct passo_channel_command passo_unpack_channel_command(uint32_t
 /* State. State of the channel. */
 struct passo_channel_state {
 	uint16_t         drained;  /* Substeps drained since reset; wraps. */
-	uint8_t          overrun;  /* One bit per axis: it had a STEP_OVERRUN. */
 	bool             stopping; /* A soft stop is in progress. */
+	uint8_t          overrun;  /* One bit per axis: it had a STEP_OVERRUN. */
 	enum passo_cause cause;    /* Cause of the stop. */
 	bool             quiet;    /* Quiet: no motion is prepared or running, and the pins of every axis are idle. */
 	enum passo_state state;    /* State of the motion. */
@@ -319,10 +348,10 @@ struct passo_channel_state {
 
 static inline uint32_t passo_pack_channel_state(const struct passo_channel_state *word)
 {
-	return ((uint32_t)word->drained & 0xFFFFu) << 16
+	return ((uint32_t)word->drained & 0x7FFFu) << 17
+	     | ((uint32_t)word->stopping & 0x1u) << 16
 	     | ((uint32_t)word->overrun & 0xFFu) << 8
-	     | ((uint32_t)word->stopping & 0x1u) << 7
-	     | ((uint32_t)word->cause & 0x7u) << 4
+	     | ((uint32_t)word->cause & 0xFu) << 4
 	     | ((uint32_t)word->quiet & 0x1u) << 3
 	     | ((uint32_t)word->state & 0x7u);
 }
@@ -330,10 +359,10 @@ static inline uint32_t passo_pack_channel_state(const struct passo_channel_state
 static inline struct passo_channel_state passo_unpack_channel_state(uint32_t word)
 {
 	return (struct passo_channel_state){
-	    .drained = (uint16_t)(word >> 16 & 0xFFFFu),
+	    .drained = (uint16_t)(word >> 17 & 0x7FFFu),
+	    .stopping = (word >> 16 & 0x1u) != 0u,
 	    .overrun = (uint8_t)(word >> 8 & 0xFFu),
-	    .stopping = (word >> 7 & 0x1u) != 0u,
-	    .cause = (enum passo_cause)(word >> 4 & 0x7u),
+	    .cause = (enum passo_cause)(word >> 4 & 0xFu),
 	    .quiet = (word >> 3 & 0x1u) != 0u,
 	    .state = (enum passo_state)(word & 0x7u),
 	};
@@ -356,6 +385,162 @@ static inline struct passo_channel_room passo_unpack_channel_room(uint32_t word)
 	return (struct passo_channel_room){
 	    .line_room = (uint16_t)(word >> 16 & 0xFFFFu),
 	    .ramp_room = (uint16_t)(word & 0xFFFFu),
+	};
+}
+
+/* Input levels. Only with INPUTS. Filtered levels, 1 = active, one bit per axis. */
+struct passo_channel_input_levels {
+	uint8_t alarm;      /* alarm. */
+	uint8_t home;       /* home. */
+	uint8_t limit_high; /* limit_high. */
+	uint8_t limit_low;  /* limit_low. */
+};
+
+static inline uint32_t passo_pack_channel_input_levels(const struct passo_channel_input_levels *word)
+{
+	return ((uint32_t)word->alarm & 0xFFu) << 24
+	     | ((uint32_t)word->home & 0xFFu) << 16
+	     | ((uint32_t)word->limit_high & 0xFFu) << 8
+	     | ((uint32_t)word->limit_low & 0xFFu);
+}
+
+static inline struct passo_channel_input_levels passo_unpack_channel_input_levels(uint32_t word)
+{
+	return (struct passo_channel_input_levels){
+	    .alarm = (uint8_t)(word >> 24 & 0xFFu),
+	    .home = (uint8_t)(word >> 16 & 0xFFu),
+	    .limit_high = (uint8_t)(word >> 8 & 0xFFu),
+	    .limit_low = (uint8_t)(word & 0xFFu),
+	};
+}
+
+/* Input flags. Only with INPUTS. Inputs that were active since their flag was cleared, one bit per axis. */
+struct passo_channel_input_flags {
+	uint8_t alarm;      /* alarm. */
+	uint8_t home;       /* home. */
+	uint8_t limit_high; /* limit_high. */
+	uint8_t limit_low;  /* limit_low. */
+};
+
+static inline uint32_t passo_pack_channel_input_flags(const struct passo_channel_input_flags *word)
+{
+	return ((uint32_t)word->alarm & 0xFFu) << 24
+	     | ((uint32_t)word->home & 0xFFu) << 16
+	     | ((uint32_t)word->limit_high & 0xFFu) << 8
+	     | ((uint32_t)word->limit_low & 0xFFu);
+}
+
+static inline struct passo_channel_input_flags passo_unpack_channel_input_flags(uint32_t word)
+{
+	return (struct passo_channel_input_flags){
+	    .alarm = (uint8_t)(word >> 24 & 0xFFu),
+	    .home = (uint8_t)(word >> 16 & 0xFFu),
+	    .limit_high = (uint8_t)(word >> 8 & 0xFFu),
+	    .limit_low = (uint8_t)(word & 0xFFu),
+	};
+}
+
+/* Clear input flags. Only with INPUTS. Each bit written as 1 clears a flag of INPUT_FLAGS; bits of axes that are not there do nothing. */
+struct passo_channel_input_clear {
+	uint8_t alarm;      /* alarm. */
+	uint8_t home;       /* home. */
+	uint8_t limit_high; /* limit_high. */
+	uint8_t limit_low;  /* limit_low. */
+};
+
+static inline uint32_t passo_pack_channel_input_clear(const struct passo_channel_input_clear *word)
+{
+	return ((uint32_t)word->alarm & 0xFFu) << 24
+	     | ((uint32_t)word->home & 0xFFu) << 16
+	     | ((uint32_t)word->limit_high & 0xFFu) << 8
+	     | ((uint32_t)word->limit_low & 0xFFu);
+}
+
+static inline struct passo_channel_input_clear passo_unpack_channel_input_clear(uint32_t word)
+{
+	return (struct passo_channel_input_clear){
+	    .alarm = (uint8_t)(word >> 24 & 0xFFu),
+	    .home = (uint8_t)(word >> 16 & 0xFFu),
+	    .limit_high = (uint8_t)(word >> 8 & 0xFFu),
+	    .limit_low = (uint8_t)(word & 0xFFu),
+	};
+}
+
+/* Trigger. Only with INPUTS. Every write ends what was armed before. Refused with BAD_VALUE if armed without a source, or for an axis that is not there. */
+struct passo_channel_trigger {
+	bool                      arm;     /* 1: armed, once. */
+	enum passo_trigger_action action;  /* What it does. */
+	bool                      falling; /* 1: fires when the source becomes inactive; 0: active. */
+	uint8_t                   axis;    /* Axis of the source. */
+	enum passo_trigger_source source;  /* What fires it. */
+};
+
+static inline uint32_t passo_pack_channel_trigger(const struct passo_channel_trigger *word)
+{
+	return ((uint32_t)word->arm & 0x1u) << 16
+	     | ((uint32_t)word->action & 0x3u) << 12
+	     | ((uint32_t)word->falling & 0x1u) << 8
+	     | ((uint32_t)word->axis & 0x7u) << 4
+	     | ((uint32_t)word->source & 0x7u);
+}
+
+static inline struct passo_channel_trigger passo_unpack_channel_trigger(uint32_t word)
+{
+	return (struct passo_channel_trigger){
+	    .arm = (word >> 16 & 0x1u) != 0u,
+	    .action = (enum passo_trigger_action)(word >> 12 & 0x3u),
+	    .falling = (word >> 8 & 0x1u) != 0u,
+	    .axis = (uint8_t)(word >> 4 & 0x7u),
+	    .source = (enum passo_trigger_source)(word & 0x7u),
+	};
+}
+
+/* Trigger state. Only with INPUTS. State of the trigger and the probe, and the axes that stopped the channel. */
+struct passo_channel_trigger_state {
+	uint8_t axes;       /* Axes of the first limit or alarm since COMMAND.CLEAR. */
+	bool    probe_flag; /* The probe was active since its flag was cleared. */
+	bool    probe;      /* Filtered level of the probe, 1 = active. */
+	bool    fired;      /* It has fired since it was armed. */
+	bool    armed;      /* The trigger waits for its edge. */
+};
+
+static inline uint32_t passo_pack_channel_trigger_state(const struct passo_channel_trigger_state *word)
+{
+	return ((uint32_t)word->axes & 0xFFu) << 8
+	     | ((uint32_t)word->probe_flag & 0x1u) << 3
+	     | ((uint32_t)word->probe & 0x1u) << 2
+	     | ((uint32_t)word->fired & 0x1u) << 1
+	     | ((uint32_t)word->armed & 0x1u);
+}
+
+static inline struct passo_channel_trigger_state passo_unpack_channel_trigger_state(uint32_t word)
+{
+	return (struct passo_channel_trigger_state){
+	    .axes = (uint8_t)(word >> 8 & 0xFFu),
+	    .probe_flag = (word >> 3 & 0x1u) != 0u,
+	    .probe = (word >> 2 & 0x1u) != 0u,
+	    .fired = (word >> 1 & 0x1u) != 0u,
+	    .armed = (word & 0x1u) != 0u,
+	};
+}
+
+/* Probe. Only with INPUTS. Polarity, kept over a reset of the core; and the flag of the probe. */
+struct passo_channel_probe {
+	bool clear;    /* 1: clear the flag. */
+	bool inverted; /* 1: probe is active low. */
+};
+
+static inline uint32_t passo_pack_channel_probe(const struct passo_channel_probe *word)
+{
+	return ((uint32_t)word->clear & 0x1u) << 1
+	     | ((uint32_t)word->inverted & 0x1u);
+}
+
+static inline struct passo_channel_probe passo_unpack_channel_probe(uint32_t word)
+{
+	return (struct passo_channel_probe){
+	    .clear = (word >> 1 & 0x1u) != 0u,
+	    .inverted = (word & 0x1u) != 0u,
 	};
 }
 
@@ -422,6 +607,41 @@ static inline struct passo_axis_dir_timing passo_unpack_axis_dir_timing(uint32_t
 	return (struct passo_axis_dir_timing){
 	    .dir_setup = (uint16_t)(word >> 16 & 0xFFFFu),
 	    .dir_hold = (uint16_t)(word & 0xFFFFu),
+	};
+}
+
+/* Inputs of the axis. Only with INPUTS. Polarities, and what limits and alarm do. Kept over a reset of the core. */
+struct passo_axis_inputs {
+	bool alarm_disables;      /* 1: the alarm also clears the drive enable of this axis. */
+	bool alarm_soft;          /* 1: the alarm makes a soft stop; 0: a hard one. */
+	bool limit_soft;          /* 1: limits make a soft stop; 0: a hard one. */
+	bool alarm_inverted;      /* 1: alarm is active low. */
+	bool home_inverted;       /* 1: home is active low. */
+	bool limit_high_inverted; /* 1: limit_high is active low. */
+	bool limit_low_inverted;  /* 1: limit_low is active low. */
+};
+
+static inline uint32_t passo_pack_axis_inputs(const struct passo_axis_inputs *word)
+{
+	return ((uint32_t)word->alarm_disables & 0x1u) << 6
+	     | ((uint32_t)word->alarm_soft & 0x1u) << 5
+	     | ((uint32_t)word->limit_soft & 0x1u) << 4
+	     | ((uint32_t)word->alarm_inverted & 0x1u) << 3
+	     | ((uint32_t)word->home_inverted & 0x1u) << 2
+	     | ((uint32_t)word->limit_high_inverted & 0x1u) << 1
+	     | ((uint32_t)word->limit_low_inverted & 0x1u);
+}
+
+static inline struct passo_axis_inputs passo_unpack_axis_inputs(uint32_t word)
+{
+	return (struct passo_axis_inputs){
+	    .alarm_disables = (word >> 6 & 0x1u) != 0u,
+	    .alarm_soft = (word >> 5 & 0x1u) != 0u,
+	    .limit_soft = (word >> 4 & 0x1u) != 0u,
+	    .alarm_inverted = (word >> 3 & 0x1u) != 0u,
+	    .home_inverted = (word >> 2 & 0x1u) != 0u,
+	    .limit_high_inverted = (word >> 1 & 0x1u) != 0u,
+	    .limit_low_inverted = (word & 0x1u) != 0u,
 	};
 }
 

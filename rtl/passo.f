@@ -12,8 +12,12 @@ rtl/passo_channel_registers.v
 rtl/passo_core.v
 rtl/passo_crc.v
 rtl/passo_dda.v
+rtl/passo_estop.v
 rtl/passo_header.v
+rtl/passo_input.v
+rtl/passo_inputs.v
 rtl/passo_interpolate.v
+rtl/passo_limits.v
 rtl/passo_line.v
 rtl/passo_line_queue.v
 rtl/passo_lines.v
@@ -21,6 +25,7 @@ rtl/passo_link.v
 rtl/passo_link_bus.v
 rtl/passo_link_schedule.v
 rtl/passo_link_states.v
+rtl/passo_machine.v
 rtl/passo_memory.v
 rtl/passo_motion.v
 rtl/passo_path.v
@@ -39,6 +44,8 @@ rtl/passo_spi.v
 rtl/passo_spi_top.v
 rtl/passo_tables.v
 rtl/passo_timescale.v
+rtl/passo_trigger.v
 rtl/passo_verdict.v
+rtl/passo_watchdog.v
 rtl/passo_wishbone.v
 rtl/passo_words.v

@@ -10,6 +10,7 @@
 
 module passo_axes #(
   parameter            AXES         = 4,
+  parameter            INPUTS       = 0,
   parameter [AXES-1:0] STEP_RESET   = 0,
   parameter [AXES-1:0] DIR_RESET    = 0,
   parameter [AXES-1:0] ENABLE_RESET = 0
@@ -23,7 +24,7 @@ module passo_axes #(
   input  wire            bus_push,
   input  wire [AXES-1:0] select_axis,
   input  wire [AXES-1:0] select_position,
-  input  wire [     2:0] bus_address,      // within the block
+  input  wire [     3:0] bus_address,      // within the block
   input  wire [    31:0] bus_data,
   input  wire [     4:0] bus_msb,
   output wire            claim,
@@ -35,6 +36,15 @@ module passo_axes #(
   input  wire [AXES-1:0] directions,
   // motion
   input  wire            drop,             // drop the waiting steps
+  // inputs of the machine
+  input  wire [AXES-1:0] closed_low,       // refuse steps
+  input  wire [AXES-1:0] closed_high,
+  input  wire [AXES-1:0] disable_axis,     // clear the drive enable
+  input  wire            latch,            // keep the positions of this clock
+  output wire [AXES-1:0] waits,            // the step that waits next
+  output wire [AXES-1:0] negative,
+  output wire [AXES-1:0] write_inputs,     // strobes with bus_data
+  output wire [AXES-1:0] enable_off,       // level of EN that disables
   input  wire            clear,            // clears lost_steps
   input  wire            zero,             // zeroes the positions
   input  wire            snapshot,         // copies the positions for the new frame
@@ -87,6 +97,7 @@ module passo_axes #(
       wire        enable_inverted;
 
       assign lost_steps[axis] = lost[axis*4+:4] != 4'd0;
+      assign enable_off[axis] = enable_inverted;
 
       passo_axis #(
         .STEP_RESET  (STEP_RESET[axis]),
@@ -98,6 +109,10 @@ module passo_axes #(
         .step_request      (step_request[axis]),
         .direction         (directions[axis]),
         .drop              (drop),
+        .closed_low        (closed_low[axis]),
+        .closed_high       (closed_high[axis]),
+        .waits_next        (waits[axis]),
+        .negative_next     (negative[axis]),
         .step_made         (step_made[axis]),
         .step_direction    (step_direction[axis]),
         .full              (full[axis]),
@@ -136,6 +151,7 @@ module passo_axes #(
         .write_step_timing (write_step_timing[axis]),
         .write_dir_timing  (write_dir_timing[axis]),
         .write_enable      (write_enable[axis]),
+        .disable_axis      (disable_axis[axis]),
         .bus_data          (bus_data),
         .upper_is_minimal  (upper_is_minimal),
         .lower_is_minimal  (lower_is_minimal),
@@ -157,7 +173,8 @@ module passo_axes #(
   endgenerate
 
   passo_axis_registers #(
-    .AXES(AXES)
+    .AXES  (AXES),
+    .INPUTS(INPUTS)
   ) u_registers (
     .clk              (clk),
     .rst              (rst),
@@ -167,7 +184,7 @@ module passo_axes #(
     .bus_push         (bus_push),
     .select_axis      (select_axis),
     .select_position  (select_position),
-    .bus_address      (bus_address),
+    .bus_address      (bus_address[2:0]),
     .bus_data         (bus_data),
     .bus_msb          (bus_msb),
     .claim            (claim),
@@ -178,6 +195,7 @@ module passo_axes #(
     .write_step_timing(write_step_timing),
     .write_dir_timing (write_dir_timing),
     .write_enable     (write_enable),
+    .write_inputs     (write_inputs),
     .needs_quiet      (needs_quiet),
     .upper_is_minimal (upper_is_minimal),
     .lower_is_minimal (lower_is_minimal),
@@ -185,7 +203,8 @@ module passo_axes #(
   );
 
   passo_positions #(
-    .AXES(AXES)
+    .AXES (AXES),
+    .LATCH(INPUTS)
   ) u_positions (
     .clk           (clk),
     .rst           (rst),
@@ -193,6 +212,7 @@ module passo_axes #(
     .step_direction(step_direction),
     .zero          (zero),
     .snapshot      (snapshot),
+    .latch         (latch),
     .address       (bus_address),
     .position      (position)
   );

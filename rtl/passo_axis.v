@@ -16,7 +16,8 @@
 // reset. A reset leaves STEP and DIR as they are and finishes a pulse in progress. `quiet`: no step waits or is in
 // progress, no timing runs.
 // Latency: step_request to STEP 3 clocks, `direction` to DIR 3 clocks. `step_made`, with `step_direction`, is high in
-// the clock before the active edge leaves the pin.
+// the clock before the active edge leaves the pin. `closed_low` refuses negative steps and `closed_high` positive ones:
+// they wait until they are dropped. Latency: `closed_low` to the last STEP edge in that direction 2 clocks.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -31,6 +32,10 @@ module passo_axis #(
   input  wire        step_request,
   input  wire        direction,           // of this step and those to come: 1 = negative
   input  wire        drop,
+  input  wire        closed_low,
+  input  wire        closed_high,
+  output wire        waits_next,          // a step waits: the next one
+  output wire        negative_next,
   output reg         step_made,
   output wire        step_direction,
   output wire        full,                // no room for a step
@@ -94,7 +99,9 @@ module passo_axis #(
   wire       wrong = waiting[0] ^ dir;
   wire       accepted = step_request & ~full;
 
-  assign full = waits[3];
+  assign full          = waits[3];
+  assign waits_next    = waits[0];
+  assign negative_next = waiting[0];
 
   wire falls = high & level_done;
   wire low_over = low & level_done;
@@ -127,8 +134,8 @@ module passo_axis #(
       if (step_begins || !waits[i]) waiting[i] <= i < 3 && waits[(i+1)%4] ? waiting[(i+1)%4] : direction;
     end
     if (step_begins != accepted) waits <= step_begins ? {1'b0, waits[3:1]} : {waits[2:0], 1'b1};
-    waits_up   <= step_begins ? up_behind : up_here;
-    waits_down <= step_begins ? down_behind : down_here;
+    waits_up   <= (step_begins ? up_behind : up_here) & ~closed_high;
+    waits_down <= (step_begins ? down_behind : down_here) & ~closed_low;
     if (step_request && full && lost != 4'hF) lost <= lost + 4'd1;
 
     timer <= !begins ? timer + 16'd1 : restart ? 16'd1 : 16'd2;

@@ -9,7 +9,8 @@
 `default_nettype none
 
 module passo_axis_registers #(
-  parameter AXES = 4
+  parameter AXES   = 4,
+  parameter INPUTS = 0
 ) (
   input  wire              clk,
   input  wire              rst,
@@ -32,6 +33,7 @@ module passo_axis_registers #(
   output reg  [  AXES-1:0] write_step_timing,
   output reg  [  AXES-1:0] write_dir_timing,
   output reg  [  AXES-1:0] write_enable,
+  output reg  [  AXES-1:0] write_inputs,
   output reg               upper_is_minimal,   // half of bus_data is 0 or 1: a time of one clock
   output reg               lower_is_minimal,
   output wire              needs_quiet,        // strobe: PINS of an axis is being checked
@@ -46,6 +48,7 @@ module passo_axis_registers #(
   reg  is_dir_timing;
   reg  is_enable;
   reg  is_lost;
+  reg  is_inputs;
   wire is_axis = select_axis != {AXES{1'b0}};
   reg  readable;  // LOST_STEPS or a position
   reg  writable;
@@ -57,18 +60,22 @@ module passo_axis_registers #(
     is_dir_timing <= is_axis && bus_address == AXIS_DIR_TIMING;
     is_enable <= is_axis && bus_address == AXIS_ENABLE;
     is_lost <= is_axis && bus_address == AXIS_LOST_STEPS;
+    is_inputs <= INPUTS != 0 && is_axis && bus_address == AXIS_INPUTS;
     readable <= (is_axis && bus_address == AXIS_LOST_STEPS) || select_position != {AXES{1'b0}};
     writable          <= is_axis && (bus_address == AXIS_PINS || bus_address == AXIS_STEP_TIMING
-                                     || bus_address == AXIS_DIR_TIMING || bus_address == AXIS_ENABLE);
+                                     || bus_address == AXIS_DIR_TIMING || bus_address == AXIS_ENABLE
+                                     || (INPUTS != 0 && bus_address == AXIS_INPUTS));
     write_pins <= select_axis & {AXES{bus_write & is_pins}};
     write_step_timing <= select_axis & {AXES{bus_write & is_step_timing}};
     write_dir_timing <= select_axis & {AXES{bus_write & is_dir_timing}};
     write_enable <= select_axis & {AXES{bus_write & is_enable}};
+    write_inputs <= select_axis & {AXES{bus_write & is_inputs}};
     if (rst) begin
       write_pins        <= {AXES{1'b0}};
       write_step_timing <= {AXES{1'b0}};
       write_dir_timing  <= {AXES{1'b0}};
       write_enable      <= {AXES{1'b0}};
+      write_inputs      <= {AXES{1'b0}};
     end
   end
 
@@ -85,6 +92,7 @@ module passo_axis_registers #(
     upper_is_minimal <= bus_data[31:16] < 16'd2;
     lower_is_minimal <= bus_data[15:0] < 16'd2;
     bad_value        <= bus_address == AXIS_PINS   ? bus_msb > 5'd4 || bus_data[0] :
+                        bus_address == AXIS_INPUTS ? INPUTS != 0 && bus_msb > 5'd6 :
                         bus_address == AXIS_ENABLE && bus_msb != 5'd0;
     claim <= (bus_check | bus_read) & (readable | writable);
     refusal <= VERDICT_OK;

@@ -20,6 +20,7 @@ module passo_axis_settings #(
   input  wire        write_step_timing,
   input  wire        write_dir_timing,
   input  wire        write_enable,
+  input  wire        disable_axis,        // clears `enable` while it is high
   input  wire [31:0] bus_data,
   input  wire        upper_is_minimal,    // upper half is 0 or 1
   input  wire        lower_is_minimal,
@@ -69,7 +70,7 @@ module passo_axis_settings #(
       {setup_is_minimal, hold_is_minimal} <= {upper_is_minimal, lower_is_minimal};
     end
     if (write_enable) enable <= bus_data[0];
-    if (rst) enable <= AXIS_ENABLE_RESET;
+    if (disable_axis || rst) enable <= AXIS_ENABLE_RESET;
   end
 
 endmodule

@@ -13,6 +13,7 @@ module passo_channel #(
   parameter            LINE_QUEUE_LOG2 = 8,
   parameter            RAMP_QUEUE_LOG2 = 4,
   parameter            STEPS_REGISTER  = 0,
+  parameter            INPUTS          = 0,
   parameter [AXES-1:0] STEP_RESET      = 0,
   parameter [AXES-1:0] DIR_RESET       = 0,
   parameter [AXES-1:0] ENABLE_RESET    = 0
@@ -53,12 +54,29 @@ module passo_channel #(
   input  wire                     table_served,
   input  wire [             15:0] table_point,
   input  wire [             15:0] table_point_next,
+  // inputs of the machine
+  /* verilator lint_off UNUSEDSIGNAL */
+  input  wire                     filter_tick,
+  input  wire [             15:0] filter,
+  input  wire                     estop_pressed,     // asynchronous
+  input  wire                     estop,
+  input  wire                     watchdog_stop,
+  input  wire                     disable_drives,
+  input  wire [         AXES-1:0] limit_low,
+  input  wire [         AXES-1:0] limit_high,
+  input  wire [         AXES-1:0] home,
+  input  wire [         AXES-1:0] alarm,
+  input  wire                     probe,
+  /* verilator lint_on UNUSEDSIGNAL */
+  output wire                     moving,
   // pins
   output wire [         AXES-1:0] step,
   output wire [         AXES-1:0] dir,
   output wire [         AXES-1:0] enable,
   output wire                     running
 );
+
+  `include "passo_registers.vh"
 
   // registers
   wire            select_line_queue;
@@ -81,10 +99,9 @@ module passo_channel #(
 
   // motion
   wire [ 2:0] state;
-  wire [ 2:0] cause;
+  wire [ 3:0] cause;
   wire        stopping;
-  wire [15:0] drained;
-  wire        moving;
+  wire [14:0] drained;
   wire        counting;
   wire        prepare;
   wire        begin_profile;
@@ -116,6 +133,29 @@ module passo_channel #(
   wire            axes_quiet;
   wire            step_overrun;
   wire [AXES-1:0] lost_steps;
+  wire [AXES-1:0] enable_wanted;
+  /* verilator lint_off UNUSEDSIGNAL */
+  wire [AXES-1:0] enable_off;
+  /* verilator lint_on UNUSEDSIGNAL */
+
+  // inputs
+  /* verilator lint_off UNUSEDSIGNAL */
+  wire [AXES-1:0] waits;
+  wire [AXES-1:0] negative;
+  wire [AXES-1:0] write_inputs;
+  /* verilator lint_on UNUSEDSIGNAL */
+  wire [AXES-1:0] closed_low;
+  wire [AXES-1:0] closed_high;
+  wire [AXES-1:0] disable_axis;
+  wire            latch;
+  wire            input_hard;
+  wire [     3:0] input_hard_cause;
+  wire            input_soft;
+  wire [     3:0] input_soft_cause;
+  wire            end_endless;
+  wire            inputs_claim;
+  wire [     3:0] inputs_refusal;
+  wire [    31:0] inputs_read_data;
 
   wire        registers_claim;
   wire [ 3:0] registers_refusal;
@@ -132,9 +172,9 @@ module passo_channel #(
 
   // Unselected targets drive 0.
   always @* begin
-    claim     = registers_claim | axes_claim;
-    refusal   = registers_refusal | line_refusal | ramp_refusal | axes_refusal;
-    read_data = registers_read_data | axes_read_data;
+    claim     = registers_claim | axes_claim | inputs_claim;
+    refusal   = registers_refusal | line_refusal | ramp_refusal | axes_refusal | inputs_refusal;
+    read_data = registers_read_data | axes_read_data | inputs_read_data;
   end
 
   reg  [2:0] occupied_q;  // a line loaded in the clock of a stop changes DIR up to 4 clocks later
@@ -149,7 +189,8 @@ module passo_channel #(
   passo_channel_registers #(
     .AXES           (AXES),
     .LINE_QUEUE_LOG2(LINE_QUEUE_LOG2),
-    .RAMP_QUEUE_LOG2(RAMP_QUEUE_LOG2)
+    .RAMP_QUEUE_LOG2(RAMP_QUEUE_LOG2),
+    .INPUTS         (INPUTS)
   ) u_registers (
     .clk              (clk),
     .rst              (rst),
@@ -192,40 +233,45 @@ module passo_channel #(
   );
 
   passo_motion u_motion (
-    .clk          (clk),
-    .rst          (rst),
-    .run          (run),
-    .wait_sync    (wait_sync),
-    .sync_edge    (sync_edge),
-    .hold         (hold),
-    .command_stop (command_stop),
-    .command_abort(command_abort),
-    .command_clear(command_clear),
-    .state        (state),
-    .cause        (cause),
-    .stopping     (stopping),
-    .drained      (drained),
-    .occupied     (occupied),
-    .moving       (moving),
-    .counting     (counting),
-    .rate_is_zero (rate == 17'd0),
-    .ramp_valid   (ramp_valid),
-    .ramp_ready   (ramp_ready),
-    .ramp_ended   (ramp_ended),
-    .ramp_dry     (ramp_dry),
-    .prepare      (prepare),
-    .begin_profile(begin_profile),
-    .drain        (drain),
-    .line_valid   (line_valid),
-    .line_ended   (line_ended),
-    .line_endless (line_endless),
-    .line_underrun(line_underrun),
-    .substep_made (substep),
-    .step_overrun (step_overrun),
-    .drop         (drop),
-    .release_line (release_line),
-    .stopped      (stopped),
-    .running      (running)
+    .clk             (clk),
+    .rst             (rst),
+    .run             (run),
+    .wait_sync       (wait_sync),
+    .sync_edge       (sync_edge),
+    .hold            (hold),
+    .command_stop    (command_stop),
+    .command_abort   (command_abort),
+    .command_clear   (command_clear),
+    .estop           (estop),
+    .input_hard      (input_hard),
+    .input_hard_cause(input_hard_cause),
+    .input_soft      (input_soft),
+    .input_soft_cause(input_soft_cause),
+    .state           (state),
+    .cause           (cause),
+    .stopping        (stopping),
+    .drained         (drained),
+    .occupied        (occupied),
+    .moving          (moving),
+    .counting        (counting),
+    .rate_is_zero    (rate == 17'd0),
+    .ramp_valid      (ramp_valid),
+    .ramp_ready      (ramp_ready),
+    .ramp_ended      (ramp_ended),
+    .ramp_dry        (ramp_dry),
+    .prepare         (prepare),
+    .begin_profile   (begin_profile),
+    .drain           (drain),
+    .line_valid      (line_valid),
+    .line_ended      (line_ended),
+    .line_endless    (line_endless),
+    .line_underrun   (line_underrun),
+    .substep_made    (substep),
+    .step_overrun    (step_overrun),
+    .drop            (drop),
+    .release_line    (release_line),
+    .stopped         (stopped),
+    .running         (running)
   );
 
   passo_admission u_admission (
@@ -316,6 +362,7 @@ module passo_channel #(
     .start       (prepare),
     .stopped     (stopped),
     .release_line(release_line),
+    .end_endless (end_endless),
     .valid       (line_valid),
     .endless     (line_endless),
     .ended       (line_ended),
@@ -327,6 +374,7 @@ module passo_channel #(
 
   passo_axes #(
     .AXES        (AXES),
+    .INPUTS      (INPUTS),
     .STEP_RESET  (STEP_RESET),
     .DIR_RESET   (DIR_RESET),
     .ENABLE_RESET(ENABLE_RESET)
@@ -339,7 +387,7 @@ module passo_channel #(
     .bus_push       (bus_push),
     .select_axis    (select_axis),
     .select_position(select_position),
-    .bus_address    (bus_address[2:0]),
+    .bus_address    (bus_address[3:0]),
     .bus_data       (bus_data),
     .bus_msb        (bus_msb),
     .claim          (axes_claim),
@@ -349,6 +397,14 @@ module passo_channel #(
     .step_request   (step_request),
     .directions     (directions),
     .drop           (drop),
+    .closed_low     (closed_low),
+    .closed_high    (closed_high),
+    .disable_axis   (disable_axis),
+    .latch          (latch),
+    .waits          (waits),
+    .negative       (negative),
+    .write_inputs   (write_inputs),
+    .enable_off     (enable_off),
     .clear          (command_clear),
     .zero           (command_zero),
     .snapshot       (snapshot),
@@ -357,8 +413,71 @@ module passo_channel #(
     .lost_steps     (lost_steps),
     .step           (step),
     .dir            (dir),
-    .enable         (enable)
+    .enable         (enable_wanted)
   );
+
+  generate
+    if (INPUTS != 0) begin : g_inputs
+      assign enable = estop_pressed ? enable_off : enable_wanted;
+
+      passo_inputs #(
+        .AXES(AXES)
+      ) u_inputs (
+        .clk           (clk),
+        .rst           (rst),
+        .bus_check     (bus_check),
+        .bus_write     (bus_write),
+        .bus_read      (bus_read),
+        .bus_push      (bus_push),
+        .select        (select),
+        .bus_address   (bus_address),
+        .bus_data      (bus_data),
+        .bus_msb       (bus_msb),
+        .claim         (inputs_claim),
+        .refusal       (inputs_refusal),
+        .read_data     (inputs_read_data),
+        .write_axis    (write_inputs),
+        .tick          (filter_tick),
+        .filter        (filter),
+        .watchdog_stop (watchdog_stop),
+        .disable_drives(disable_drives | estop),
+        .limit_low     (limit_low),
+        .limit_high    (limit_high),
+        .home          (home),
+        .alarm         (alarm),
+        .probe         (probe),
+        .index         ({AXES{1'b0}}),
+        .waits         (waits),
+        .negative      (negative),
+        .closed_low    (closed_low),
+        .closed_high   (closed_high),
+        .disable_axis  (disable_axis),
+        .latch         (latch),
+        .may_close     (quiet | (occupied & ~moving)),
+        .moving        (moving),
+        .clear         (command_clear),
+        .hard_stop     (input_hard),
+        .hard_cause    (input_hard_cause),
+        .soft_stop     (input_soft),
+        .soft_cause    (input_soft_cause),
+        .end_endless   (end_endless)
+      );
+    end else begin : g_no_inputs
+      assign enable           = enable_wanted;
+      assign inputs_claim     = 1'b0;
+      assign inputs_refusal   = 4'd0;
+      assign inputs_read_data = 32'd0;
+      assign closed_low       = {AXES{1'b0}};
+      assign closed_high      = {AXES{1'b0}};
+      assign disable_axis     = {AXES{1'b0}};
+      assign latch            = 1'b0;
+      assign input_hard       = 1'b0;
+      assign input_hard_cause = CAUSE_NONE;
+      assign input_soft       = 1'b0;
+      assign input_soft_cause = CAUSE_NONE;
+      assign end_endless      = 1'b0;
+    end
+  endgenerate
 
 endmodule
 `resetall

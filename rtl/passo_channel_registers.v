@@ -12,7 +12,8 @@
 module passo_channel_registers #(
   parameter AXES            = 4,
   parameter LINE_QUEUE_LOG2 = 8,
-  parameter RAMP_QUEUE_LOG2 = 4
+  parameter RAMP_QUEUE_LOG2 = 4,
+  parameter INPUTS          = 0
 ) (
   input  wire                     clk,
   input  wire                     rst,
@@ -50,10 +51,10 @@ module passo_channel_registers #(
   // state
   input  wire                     quiet,
   input  wire [              2:0] state,
-  input  wire [              2:0] cause,
+  input  wire [              3:0] cause,
   input  wire                     stopping,
   input  wire [         AXES-1:0] overrun,
-  input  wire [             15:0] drained,
+  input  wire [             14:0] drained,
   input  wire [             16:0] rate,
   input  wire [             31:0] velocity,           // upper 32 bits
   input  wire [LINE_QUEUE_LOG2:0] line_room,
@@ -72,8 +73,9 @@ module passo_channel_registers #(
     for (axis = 0; axis < AXES; axis = axis + 1) begin : g_axis
       localparam [2:0] NUMBER = axis;
       always @(posedge clk) begin
-        select_axis[axis]     <= select && bus_address[7:3] == {CHANNEL_AXIS_BASE[7:6], NUMBER};
-        select_position[axis] <= select && bus_address == CHANNEL_POSITION_BASE + {5'd0, NUMBER};
+        select_axis[axis] <= select && bus_address[7:3] == {CHANNEL_AXIS_BASE[7:6], NUMBER};
+        select_position[axis] <= select && (bus_address == CHANNEL_POSITION_BASE + {5'd0, NUMBER}
+          || (INPUTS != 0 && bus_address == CHANNEL_TRIGGER_POSITION_BASE + {5'd0, NUMBER}));
       end
     end
   endgenerate
@@ -139,7 +141,7 @@ module passo_channel_registers #(
       reads[i] <= bus_read && in_state && number[1:0] == i[1:0];
 
   assign read_data =
-      (reads[0] ? {drained, overrun_padded, stopping, cause, quiet, state} : 32'd0)
+      (reads[0] ? {drained, stopping, overrun_padded, cause, quiet, state} : 32'd0)
       | (reads[1] ? {15'd0, rate} : 32'd0)
       | (reads[2] ? {{(15 - LINE_QUEUE_LOG2) {1'b0}}, line_room, {(15 - RAMP_QUEUE_LOG2) {1'b0}}, ramp_room} : 32'd0)
       | (reads[3] ? velocity : 32'd0);

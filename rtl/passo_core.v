@@ -18,6 +18,9 @@ module passo_core #(
   parameter                     LINE_QUEUE_LOG2 = 8,  // log2 of the places for lines, 2 .. 8
   parameter                     RAMP_QUEUE_LOG2 = 4,  // log2 of the places for ramps, 2 .. 8
   parameter                     STEPS_REGISTER  = 0,  // 1: block RAMs have an output register
+  parameter                     INPUTS          = 0,  // 1: limits, home, alarm, probe, e-stop
+  parameter                     ENCODERS        = 0,  // 1: encoders
+  parameter                     OUTPUTS         = 0,  // 1: outputs bound to the path
   // pin levels from configuration until the host writes polarities; bit channel * AXES + axis
   parameter [CHANNELS*AXES-1:0] STEP_RESET      = 0,
   parameter [CHANNELS*AXES-1:0] DIR_RESET       = 0,
@@ -26,21 +29,38 @@ module passo_core #(
   input  wire                     clk,
   input  wire                     rst,
   // host interface
-  input  wire                     frame_start,  // strobes
+  input  wire                     frame_start,    // strobes
   input  wire                     frame_end,
   input  wire                     half_valid,
-  input  wire                     half_low,     // lower half of a word
+  input  wire                     half_low,       // lower half of a word
   input  wire [             15:0] half,
   output wire [             31:0] reply_word,
   // starts several chips on one edge
   input  wire                     sync,
+  // machine: bit channel * AXES + axis; ignored without INPUTS
+  input  wire [CHANNELS*AXES-1:0] limit_low,
+  input  wire [CHANNELS*AXES-1:0] limit_high,
+  input  wire [CHANNELS*AXES-1:0] home,
+  input  wire [CHANNELS*AXES-1:0] alarm,
+  input  wire [     CHANNELS-1:0] probe,
+  /* verilator lint_off UNUSEDSIGNAL */
+  input  wire                     estop_n,        // asynchronous
+  // encoders; ignored without ENCODERS
+  input  wire [CHANNELS*AXES-1:0] encoder_a,
+  input  wire [CHANNELS*AXES-1:0] encoder_b,
+  input  wire [CHANNELS*AXES-1:0] encoder_index,
+  /* verilator lint_on UNUSEDSIGNAL */
   // drives: bit channel * AXES + axis
   output wire [CHANNELS*AXES-1:0] step,
   output wire [CHANNELS*AXES-1:0] dir,
   output wire [CHANNELS*AXES-1:0] enable,
+  // outputs bound to the path; 0 without OUTPUTS
+  output wire [   CHANNELS*8-1:0] outputs,
+  output wire [     CHANNELS-1:0] power,
+  output wire [     CHANNELS-1:0] compare,
   // to the host
   output wire [     CHANNELS-1:0] running,
-  output reg                      irq           // a channel is stopped
+  output reg                      irq             // a channel is stopped
 );
 
   `include "passo_registers.vh"
@@ -57,6 +77,15 @@ module passo_core #(
     end
     if (LINE_QUEUE_LOG2 < 2 || LINE_QUEUE_LOG2 > 8) begin : g_bad_line_queue
       passo_parameter_LINE_QUEUE_LOG2_must_be_2_to_8 u_error ();
+    end
+    if (INPUTS < 0 || INPUTS > 1) begin : g_bad_inputs
+      passo_parameter_INPUTS_must_be_0_or_1 u_error ();
+    end
+    if (ENCODERS < 0 || ENCODERS > 1) begin : g_bad_encoders
+      passo_parameter_ENCODERS_must_be_0_or_1 u_error ();
+    end
+    if (OUTPUTS < 0 || OUTPUTS > 1) begin : g_bad_outputs
+      passo_parameter_OUTPUTS_must_be_0_or_1 u_error ();
     end
     if (RAMP_QUEUE_LOG2 < 2 || RAMP_QUEUE_LOG2 > 8) begin : g_bad_ramp_queue
       passo_parameter_RAMP_QUEUE_LOG2_must_be_2_to_8 u_error ();
@@ -106,12 +135,30 @@ module passo_core #(
   wire [                            15:0] table_point;
   wire [                            15:0] table_point_next;
 
+  assign outputs = {CHANNELS * 8{1'b0}};
+  assign power   = {CHANNELS{1'b0}};
+  assign compare = {CHANNELS{1'b0}};
+
+  // inputs of the machine
+  wire                filter_tick;
+  wire [        15:0] filter;
+  wire                estop_pressed;
+  wire                estop;
+  wire                watchdog_stop;
+  wire                disable_drives;
+  /* verilator lint_off UNUSEDSIGNAL */
+  wire [CHANNELS-1:0] moving;
+  /* verilator lint_on UNUSEDSIGNAL */
+  wire                machine_claim;
+  wire [         3:0] machine_refusal;
+  wire [        31:0] machine_read_data;
+
   // Unselected targets drive 0.
   integer i;
   always @* begin
-    bus_claim   = registers_claim | tables_claim | (channel_claim != {CHANNELS{1'b0}});
-    bus_refusal = registers_refusal | tables_refusal;
-    read_data   = registers_read_data;
+    bus_claim   = registers_claim | tables_claim | machine_claim | (channel_claim != {CHANNELS{1'b0}});
+    bus_refusal = registers_refusal | tables_refusal | machine_refusal;
+    read_data   = registers_read_data | machine_read_data;
     for (i = 0; i < CHANNELS; i = i + 1) begin
       bus_refusal = bus_refusal | channel_refusal[i*4+:4];
       read_data   = read_data | channel_read_data[i*32+:32];
@@ -177,7 +224,10 @@ module passo_core #(
     .AXES           (AXES),
     .TICK_LOG2      (TICK_LOG2),
     .LINE_QUEUE_LOG2(LINE_QUEUE_LOG2),
-    .RAMP_QUEUE_LOG2(RAMP_QUEUE_LOG2)
+    .RAMP_QUEUE_LOG2(RAMP_QUEUE_LOG2),
+    .INPUTS         (INPUTS),
+    .ENCODERS       (ENCODERS),
+    .OUTPUTS        (OUTPUTS)
   ) u_registers (
     .clk          (clk),
     .rst          (rst),
@@ -225,6 +275,43 @@ module passo_core #(
     .point_next (table_point_next)
   );
 
+  generate
+    if (INPUTS != 0) begin : g_machine
+      passo_machine u_machine (
+        .clk           (clk),
+        .rst           (rst),
+        .bus_check     (bus_check),
+        .bus_write     (bus_write),
+        .bus_read      (bus_read),
+        .bus_push      (bus_push),
+        .bus_address   (bus_address),
+        .bus_data      (bus_data[19:0]),
+        .bus_msb       (bus_msb),
+        .claim         (machine_claim),
+        .refusal       (machine_refusal),
+        .read_data     (machine_read_data),
+        .estop_n       (estop_n),
+        .moving        (moving != {CHANNELS{1'b0}}),
+        .tick          (filter_tick),
+        .filter        (filter),
+        .pressed       (estop_pressed),
+        .estop         (estop),
+        .watchdog_stop (watchdog_stop),
+        .disable_drives(disable_drives)
+      );
+    end else begin : g_no_machine
+      assign machine_claim     = 1'b0;
+      assign machine_refusal   = VERDICT_OK;
+      assign machine_read_data = 32'd0;
+      assign filter_tick       = 1'b0;
+      assign filter            = 16'd0;
+      assign estop_pressed     = 1'b0;
+      assign estop             = 1'b0;
+      assign watchdog_stop     = 1'b0;
+      assign disable_drives    = 1'b0;
+    end
+  endgenerate
+
   genvar channel;
   generate
     for (channel = 0; channel < CHANNELS; channel = channel + 1) begin : g_channel
@@ -236,6 +323,7 @@ module passo_core #(
         .LINE_QUEUE_LOG2(LINE_QUEUE_LOG2),
         .RAMP_QUEUE_LOG2(RAMP_QUEUE_LOG2),
         .STEPS_REGISTER (STEPS_REGISTER),
+        .INPUTS         (INPUTS),
         .STEP_RESET     (STEP_RESET[channel*AXES+:AXES]),
         .DIR_RESET      (DIR_RESET[channel*AXES+:AXES]),
         .ENABLE_RESET   (ENABLE_RESET[channel*AXES+:AXES])
@@ -273,6 +361,18 @@ module passo_core #(
         .table_served    (table_served[channel]),
         .table_point     (table_point),
         .table_point_next(table_point_next),
+        .filter_tick     (filter_tick),
+        .filter          (filter),
+        .estop_pressed   (estop_pressed),
+        .estop           (estop),
+        .watchdog_stop   (watchdog_stop),
+        .disable_drives  (disable_drives),
+        .limit_low       (limit_low[channel*AXES+:AXES]),
+        .limit_high      (limit_high[channel*AXES+:AXES]),
+        .home            (home[channel*AXES+:AXES]),
+        .alarm           (alarm[channel*AXES+:AXES]),
+        .probe           (probe[channel]),
+        .moving          (moving[channel]),
         .step            (step[channel*AXES+:AXES]),
         .dir             (dir[channel*AXES+:AXES]),
         .enable          (enable[channel*AXES+:AXES]),

@@ -30,6 +30,7 @@ module passo_lines #(
   input  wire                start,         // take the first line
   input  wire                stopped,       // drop all lines
   input  wire                release_line,  // the motion is over
+  input  wire                end_endless,   // strobe: the current line no longer repeats
   output wire                valid,         // a line is queued
   output wire                endless,       // the current line repeats
   output wire                ended,         // the LAST line has ended
@@ -44,6 +45,7 @@ module passo_lines #(
   wire                      take;
   wire                      last;
   wire                      next_endless;
+  reg                       no_repeat;
   wire        [   AXES-1:0] current_directions;
   wire        [       29:0] last_substep;
   wire        [AXES*30-1:0] steps;
@@ -82,6 +84,8 @@ module passo_lines #(
     .steps       (steps)
   );
 
+  always @(posedge clk) no_repeat <= ~rst & (end_endless | (no_repeat & ~take));
+
   passo_line #(
     .AXES(AXES)
   ) u_line (
@@ -93,7 +97,7 @@ module passo_lines #(
     .next_valid        (valid),
     .take              (take),
     .last              (last),
-    .endless           (next_endless),
+    .endless           (next_endless & ~no_repeat),
     .last_substep      (last_substep),
     .current_directions(current_directions),
     .add_n             (add_n),

@@ -6,10 +6,11 @@
 // Promise: a motion is prepared when `run` is set and a line and a ramp are queued, but not while `hold`. From ARMED
 // it starts at once or, while wait_sync is set, on a sync edge; so ARMED channels start together when one write
 // clears their wait_sync. It ends when its profile has ended and its line has ended (or is ENDLESS); substeps the
-// line still lacks are drained and counted. A stop is soft (the rate goes to 0 first) for COMMAND.STOP and
-// RAMP_UNDERRUN, else the channel is STOPPED two clocks later. On the same clock ABORT has priority, then
-// STEP_OVERRUN, LINE_UNDERRUN, a soft stop; a stop has priority over the end of the motion. `drop` is high from ABORT
-// until no step can be requested any more.
+// line still lacks are drained and counted. A stop is soft (the rate goes to 0 first) for COMMAND.STOP, RAMP_UNDERRUN
+// and soft requests of inputs, else the channel is STOPPED two clocks later. On the same clock e-stop has priority, then
+// ABORT, STEP_OVERRUN, hard requests of inputs, LINE_UNDERRUN, a soft stop; a stop has priority over the end of the
+// motion. A soft stop that is overtaken by a hard one keeps its cause. `drop` is high from e-stop, ABORT or a hard
+// request until no step can be requested any more.
 //
 // `running` is the motion as seen at the STEP pins: it rises 7 clocks after RUN begins and falls one clock after
 // SETTLE, so that it is high for exactly the length of the profile, and until the last drained step has been made.
@@ -25,25 +26,31 @@ module passo_motion (
   input  wire        wait_sync,
   input  wire        sync_edge,
   input  wire        hold,
-  input  wire        command_stop,   // strobes
+  input  wire        command_stop,      // strobes
   input  wire        command_abort,
   input  wire        command_clear,
+  // inputs of the machine: requests to stop
+  input  wire        estop,             // hard
+  input  wire        input_hard,
+  input  wire [ 3:0] input_hard_cause,
+  input  wire        input_soft,
+  input  wire [ 3:0] input_soft_cause,
   output wire [ 2:0] state,
-  output reg  [ 2:0] cause,
+  output reg  [ 3:0] cause,
   output reg         stopping,
-  output reg  [15:0] drained,
+  output reg  [14:0] drained,
   // timescale
-  output wire        occupied,       // a motion is prepared or running
+  output wire        occupied,          // a motion is prepared or running
   output wire        moving,
-  output reg         counting,       // the profile runs, or substeps are drained
+  output reg         counting,          // the profile runs, or substeps are drained
   input  wire        rate_is_zero,
   // ramp and path
   input  wire        ramp_valid,
   input  wire        ramp_ready,
   input  wire        ramp_ended,
   input  wire        ramp_dry,
-  output wire        prepare,        // strobe: take the first line, make the first velocity
-  output reg         begin_profile,  // strobe
+  output wire        prepare,           // strobe: take the first line, make the first velocity
+  output reg         begin_profile,     // strobe
   output wire        drain,
   // line
   input  wire        line_valid,
@@ -55,8 +62,8 @@ module passo_motion (
   input  wire        step_overrun,
   output wire        drop,
   // queues
-  output wire        release_line,   // strobe: the motion is over
-  output reg         stopped,        // holds the datapath of the motion in reset
+  output wire        release_line,      // strobe: the motion is over
+  output reg         stopped,           // holds the datapath of the motion in reset
   output reg         running
 );
 
@@ -68,7 +75,7 @@ module passo_motion (
   reg [2:0] settling;  // one bit per clock of SETTLE so far
   reg       settled;  // its fifth clock: the last substep needs 2 clocks to the line
   reg       finished;  // settled, and no substep is missing
-  reg [2:0] soft_cause;
+  reg [3:0] soft_cause;
   reg       startable;  // high for one clock, still in IDLE
   reg       rate_was_zero;
   reg [1:0] aborted;  // one and two clocks ago
@@ -95,19 +102,23 @@ module passo_motion (
   wire drains_next = (settled & ~finished) | (drains & ~line_ended);
   wire settled_next = settles & settling[2] & ~settled;
   wire dry = ramp_dry & ~line_endless;
+  wire abort = command_abort | estop | input_hard;
 
   assign prepare      = startable;
   assign drain        = drains;
   assign release_line = finished;
-  assign drop         = command_abort | (aborted != 2'b00);
+  assign drop         = abort | (aborted != 2'b00);
 
   // Stop decision, registered
   reg stop_due;
-  reg [2:0] cause_due;
-  wire       stop_wanted = command_abort | (moving & (step_overrun | line_underrun))
+  reg [3:0] cause_due;
+  wire       stop_wanted = abort | (moving & (step_overrun | line_underrun))
                   | (stopping & (rate_was_zero | finished | ~moving));
-  wire [2:0] cause_wanted = command_abort           ? CAUSE_ABORT :
+  wire [3:0] cause_wanted = stopping               ? soft_cause :
+                         estop                   ? CAUSE_ESTOP :
+                         command_abort           ? CAUSE_ABORT :
                          moving & step_overrun   ? CAUSE_STEP_OVERRUN :
+                         input_hard              ? input_hard_cause :
                          moving & line_underrun  ? CAUSE_LINE_UNDERRUN : soft_cause;
 
   wire stop_now = stop_due & ~stopped;
@@ -149,15 +160,16 @@ module passo_motion (
     settled       <= settled_next;
     finished      <= settled_next && (line_ended || line_endless);
     rate_was_zero <= rate_is_zero;
-    aborted       <= {aborted[0], command_abort};
+    aborted       <= {aborted[0], abort};
     if (!runs || count == START_LAST) running <= moving;
 
-    if (drains && substep_made && !line_ended) drained <= drained + 16'd1;
+    if (drains && substep_made && !line_ended) drained <= drained + 15'd1;
 
     if (!stopping && !stopped) begin
       if (command_stop) soft_cause <= CAUSE_STOP;
+      else if (input_soft) soft_cause <= input_soft_cause;
       else if (dry) soft_cause <= CAUSE_RAMP_UNDERRUN;
-      stopping <= command_stop | dry;
+      stopping <= command_stop | input_soft | dry;
     end
 
     if (stop_now) begin
@@ -168,7 +180,7 @@ module passo_motion (
     end
     if (rst) begin
       stopping      <= 1'b0;
-      drained       <= 16'd0;
+      drained       <= 15'd0;
       startable     <= 1'b0;
       begin_profile <= 1'b0;
       stop_due      <= 1'b0;

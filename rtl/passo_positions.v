@@ -8,14 +8,21 @@
 //
 // Promise: `snapshot` makes one round also copy the positions, as they were in its slot 63: they are coherent. It is
 // the next round, or the one after it if the positions are being zeroed, which takes a round; the copies are complete
-// 194 clocks after `snapshot`. `position` is the copy of axis `address` once `address` has been stable for 13 clocks.
+// 194 clocks after `snapshot`, or 258 if `latch` came before it. `position` is the copy of axis `address` once `address`
+// has been stable for 13 clocks.
+//
+// `latch` captures all counters at once. The next round, or the one after it if positions are being zeroed, takes them
+// instead of the present ones and copies the positions as they were on the clock of `latch`, complete 130 clocks later
+// (194 with a zero); zeroed meanwhile, they are 0. The round after it covers at most 127 clocks, in which an axis makes
+// at most 64 steps: the direction of a wrap is still certain.
 // An axis makes at most 36 steps in a round, so the direction of a wrap is never in doubt.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
 
 module passo_positions #(
-  parameter AXES = 4
+  parameter AXES  = 4,
+  parameter LATCH = 0   // 1: positions can be latched
 ) (
   input  wire            clk,
   input  wire            rst,
@@ -23,7 +30,8 @@ module passo_positions #(
   input  wire [AXES-1:0] step_direction,  // 1 = negative
   input  wire            zero,            // set all positions to 0
   input  wire            snapshot,
-  input  wire [     2:0] address,
+  input  wire            latch,           // positions of this clock are kept
+  input  wire [     3:0] address,         // of an axis; 8 and more: of its latched position
   output reg  [    31:0] position
 );
 
@@ -33,11 +41,15 @@ module passo_positions #(
   wire       upper = slot[2];
   wire [1:0] phase = slot[1:0];
 
-  reg clear_waits;
-  reg clears;  // this round sets the positions to 0
-  reg snapshot_waits;
-  reg copies_next;
-  reg copies;  // this round copies the positions; delayed, as the last half is
+  reg  clear_waits;
+  reg  clears;  // this round sets the positions to 0
+  reg  snapshot_waits;
+  reg  copies_next;
+  reg  copies;  // this round copies the positions; delayed, as the last half is
+  reg  latch_waits;
+  reg  latches_next;  // this round is that of the latched counters
+  reg  latches;  // delayed
+  wire latch_round = latch_waits & ~clear_waits;
 
   // Counters, and the shift chain of captured bytes
   wire [7:0] captured[0:AXES];
@@ -48,11 +60,14 @@ module passo_positions #(
     for (axis = 0; axis < AXES; axis = axis + 1) begin : g_axis
       reg [7:0] count;
       reg [7:0] capture;
+      reg [7:0] latched;
       assign captured[axis] = capture;
       always @(posedge clk) begin
         if (step_made[axis]) count <= count + {{7{step_direction[axis]}}, 1'b1};
         if (rst || zero) count <= 8'd0;
-        if (axis_ends) capture <= round_ends ? count : captured[axis+1];
+        if (axis_ends) capture <= !round_ends ? captured[axis+1] : latch_round ? latched : count;
+        if (latch && LATCH != 0) latched <= count;
+        if (rst || zero) latched <= 8'd0;
       end
     end
   endgenerate
@@ -70,15 +85,21 @@ module passo_positions #(
   wire [ 7:0] low_byte = captured[0];
   wire [15:0] sum = half_q + {16{down}} + {15'd0, up};
 
+  // Positions, copies, and latched ones
+  /* verilator lint_off UNUSEDSIGNAL */
+  wire [5:0] write_address = {phase[0] & latches, phase[0] & ~latches, place};
+  wire [5:0] read_address = phase[1] ? {address[3], ~address[3], address[2:0], upper} : {2'b00, slot[5:2]};
+  /* verilator lint_on UNUSEDSIGNAL */
+
   passo_memory #(
     .WIDTH     (16),
-    .DEPTH_LOG2(5)
+    .DEPTH_LOG2(LATCH != 0 ? 6 : 5)
   ) u_memory (
     .clk          (clk),
-    .write        (phase == 2'd0 || (phase == 2'd1 && copies)),
-    .write_address({phase[0], place}),
+    .write        (phase == 2'd0 || (phase == 2'd1 && (copies || latches))),
+    .write_address(write_address[(LATCH!=0?5 : 4):0]),
     .write_data   (half_next),
-    .read_address (phase[1] ? {1'b1, address, upper} : {1'b0, slot[5:2]}),
+    .read_address (read_address[(LATCH!=0?5 : 4):0]),
     .load         (1'b1),
     .read_data    (half)
   );
@@ -89,6 +110,7 @@ module passo_positions #(
     axis_ends  <= slot[2:0] == 3'd6;
     if (phase == 2'd3) place <= slot[5:2];
     if (phase == 2'd1) copies <= copies_next;
+    if (phase == 2'd1) latches <= latches_next;
     half_q        <= half;
     byte_is_first <= half[7:0] == 8'd0;
     byte_is_last  <= half[7:0] == 8'd255;
@@ -112,13 +134,16 @@ module passo_positions #(
     end
 
     if (round_ends) begin
-      clears         <= clear_waits;
-      clear_waits    <= 1'b0;
-      copies_next    <= snapshot_waits;
-      snapshot_waits <= snapshot_waits & clear_waits;  // copied once more after the positions are cleared
+      clears <= clear_waits;
+      clear_waits <= 1'b0;
+      copies_next <= snapshot_waits & ~latch_round;
+      snapshot_waits <= snapshot_waits & (clear_waits | latch_round);  // copied once more after the positions are cleared
+      latches_next <= latch_round;
+      latch_waits <= latch_waits & clear_waits;
     end
     if (zero) clear_waits <= 1'b1;
     if (snapshot) snapshot_waits <= 1'b1;
+    if (latch && LATCH != 0) latch_waits <= 1'b1;
 
     if (rst) begin
       slot           <= 6'd0;
@@ -126,6 +151,9 @@ module passo_positions #(
       clear_waits    <= 1'b0;
       copies_next    <= 1'b0;
       snapshot_waits <= 1'b0;
+      latch_waits    <= 1'b0;
+      latches_next   <= LATCH != 0;  // zeroes the latched positions
+      latches        <= 1'b0;
     end
   end
 

@@ -85,7 +85,7 @@ localparam VERSION_PATCH_BITS  = 8;
 localparam VERSION_PATCH_RESET = 8'h00;
 localparam VERSION_MINOR_LSB   = 8;
 localparam VERSION_MINOR_BITS  = 8;
-localparam VERSION_MINOR_RESET = 8'h01;
+localparam VERSION_MINOR_RESET = 8'h02;
 localparam VERSION_MAJOR_LSB   = 16;
 localparam VERSION_MAJOR_BITS  = 8;
 localparam VERSION_MAJOR_RESET = 8'h00;
@@ -102,6 +102,12 @@ localparam PARAMETERS_LINE_QUEUE_LOG2_LSB  = 16;
 localparam PARAMETERS_LINE_QUEUE_LOG2_BITS = 5;
 localparam PARAMETERS_RAMP_QUEUE_LOG2_LSB  = 24;
 localparam PARAMETERS_RAMP_QUEUE_LOG2_BITS = 5;
+localparam PARAMETERS_INPUTS_LSB           = 29;
+localparam PARAMETERS_INPUTS_BITS          = 1;
+localparam PARAMETERS_ENCODERS_LSB         = 30;
+localparam PARAMETERS_ENCODERS_BITS        = 1;
+localparam PARAMETERS_OUTPUTS_LSB          = 31;
+localparam PARAMETERS_OUTPUTS_BITS         = 1;
 
 // Core: Run. One bit per channel, all in one register: channels that are ARMED start on the same clock when
 // one write clears their WAIT_SYNC.
@@ -146,6 +152,38 @@ localparam REFUSALS_1_BUSY_RESET       = 8'h00;
 localparam REFUSALS_1_BAD_VALUE_LSB    = 24;
 localparam REFUSALS_1_BAD_VALUE_BITS   = 8;
 localparam REFUSALS_1_BAD_VALUE_RESET  = 8'h00;
+
+// Core: Input filter. Only with INPUTS. Glitch filter of all inputs but e-stop. Kept over a reset of the
+// core.
+localparam ADDRESS_INPUT_FILTER      = 12'h010;
+localparam INPUT_FILTER_FILTER_LSB   = 0;
+localparam INPUT_FILTER_FILTER_BITS  = 16;
+localparam INPUT_FILTER_FILTER_RESET = 16'h0000;
+localparam INPUT_FILTER_DEFINED      = 32'h0000FFFF;
+
+// Core: Watchdog. Only with INPUTS. Stops motions when no frame has been executed for some time. In units
+// of 2^16 clocks.
+localparam ADDRESS_WATCHDOG             = 12'h011;
+localparam WATCHDOG_STOP_AFTER_LSB      = 0;
+localparam WATCHDOG_STOP_AFTER_BITS     = 10;
+localparam WATCHDOG_STOP_AFTER_RESET    = 10'h000;
+localparam WATCHDOG_DISABLE_AFTER_LSB   = 10;
+localparam WATCHDOG_DISABLE_AFTER_BITS  = 10;
+localparam WATCHDOG_DISABLE_AFTER_RESET = 10'h000;
+localparam WATCHDOG_DEFINED             = 32'h000FFFFF;
+
+// Core: E-stop. Only with INPUTS. State of the e-stop.
+localparam ADDRESS_ESTOP       = 12'h012;
+localparam ESTOP_PRESSED_LSB   = 0;
+localparam ESTOP_PRESSED_BITS  = 1;
+localparam ESTOP_PRESSED_RESET = 1'h0;
+
+// Core: Clear e-stop. Only with INPUTS. No effect while e-stop is pressed.
+localparam ADDRESS_ESTOP_CLEAR     = 12'h013;
+localparam ESTOP_CLEAR_CLEAR_LSB   = 0;
+localparam ESTOP_CLEAR_CLEAR_BITS  = 1;
+localparam ESTOP_CLEAR_CLEAR_RESET = 1'h0;
+localparam ESTOP_CLEAR_DEFINED     = 32'h00000001;
 
 // Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0. Refused with BUSY
 // while a motion runs.
@@ -231,17 +269,17 @@ localparam CHANNEL_STATE_QUIET_LSB      = 3;
 localparam CHANNEL_STATE_QUIET_BITS     = 1;
 localparam CHANNEL_STATE_QUIET_RESET    = 1'h1;
 localparam CHANNEL_STATE_CAUSE_LSB      = 4;
-localparam CHANNEL_STATE_CAUSE_BITS     = 3;
-localparam CHANNEL_STATE_CAUSE_RESET    = 3'h0;
-localparam CHANNEL_STATE_STOPPING_LSB   = 7;
-localparam CHANNEL_STATE_STOPPING_BITS  = 1;
-localparam CHANNEL_STATE_STOPPING_RESET = 1'h0;
+localparam CHANNEL_STATE_CAUSE_BITS     = 4;
+localparam CHANNEL_STATE_CAUSE_RESET    = 4'h0;
 localparam CHANNEL_STATE_OVERRUN_LSB    = 8;
 localparam CHANNEL_STATE_OVERRUN_BITS   = 8;
 localparam CHANNEL_STATE_OVERRUN_RESET  = 8'h00;
-localparam CHANNEL_STATE_DRAINED_LSB    = 16;
-localparam CHANNEL_STATE_DRAINED_BITS   = 16;
-localparam CHANNEL_STATE_DRAINED_RESET  = 16'h0000;
+localparam CHANNEL_STATE_STOPPING_LSB   = 16;
+localparam CHANNEL_STATE_STOPPING_BITS  = 1;
+localparam CHANNEL_STATE_STOPPING_RESET = 1'h0;
+localparam CHANNEL_STATE_DRAINED_LSB    = 17;
+localparam CHANNEL_STATE_DRAINED_BITS   = 15;
+localparam CHANNEL_STATE_DRAINED_RESET  = 15'h0000;
 
 // Channel: Rate. Time scale in force.
 localparam CHANNEL_RATE       = 8'h09;
@@ -262,6 +300,109 @@ localparam CHANNEL_VELOCITY_LSB   = 0;
 localparam CHANNEL_VELOCITY_BITS  = 32;
 localparam CHANNEL_VELOCITY_RESET = 32'h00000000;
 
+// Channel: Input levels. Only with INPUTS. Filtered levels, 1 = active, one bit per axis.
+localparam CHANNEL_INPUT_LEVELS                  = 8'h10;
+localparam CHANNEL_INPUT_LEVELS_LIMIT_LOW_LSB    = 0;
+localparam CHANNEL_INPUT_LEVELS_LIMIT_LOW_BITS   = 8;
+localparam CHANNEL_INPUT_LEVELS_LIMIT_LOW_RESET  = 8'h00;
+localparam CHANNEL_INPUT_LEVELS_LIMIT_HIGH_LSB   = 8;
+localparam CHANNEL_INPUT_LEVELS_LIMIT_HIGH_BITS  = 8;
+localparam CHANNEL_INPUT_LEVELS_LIMIT_HIGH_RESET = 8'h00;
+localparam CHANNEL_INPUT_LEVELS_HOME_LSB         = 16;
+localparam CHANNEL_INPUT_LEVELS_HOME_BITS        = 8;
+localparam CHANNEL_INPUT_LEVELS_HOME_RESET       = 8'h00;
+localparam CHANNEL_INPUT_LEVELS_ALARM_LSB        = 24;
+localparam CHANNEL_INPUT_LEVELS_ALARM_BITS       = 8;
+localparam CHANNEL_INPUT_LEVELS_ALARM_RESET      = 8'h00;
+
+// Channel: Input flags. Only with INPUTS. Inputs that were active since their flag was cleared, one bit per
+// axis.
+localparam CHANNEL_INPUT_FLAGS                  = 8'h11;
+localparam CHANNEL_INPUT_FLAGS_LIMIT_LOW_LSB    = 0;
+localparam CHANNEL_INPUT_FLAGS_LIMIT_LOW_BITS   = 8;
+localparam CHANNEL_INPUT_FLAGS_LIMIT_LOW_RESET  = 8'h00;
+localparam CHANNEL_INPUT_FLAGS_LIMIT_HIGH_LSB   = 8;
+localparam CHANNEL_INPUT_FLAGS_LIMIT_HIGH_BITS  = 8;
+localparam CHANNEL_INPUT_FLAGS_LIMIT_HIGH_RESET = 8'h00;
+localparam CHANNEL_INPUT_FLAGS_HOME_LSB         = 16;
+localparam CHANNEL_INPUT_FLAGS_HOME_BITS        = 8;
+localparam CHANNEL_INPUT_FLAGS_HOME_RESET       = 8'h00;
+localparam CHANNEL_INPUT_FLAGS_ALARM_LSB        = 24;
+localparam CHANNEL_INPUT_FLAGS_ALARM_BITS       = 8;
+localparam CHANNEL_INPUT_FLAGS_ALARM_RESET      = 8'h00;
+
+// Channel: Clear input flags. Only with INPUTS. Each bit written as 1 clears a flag of INPUT_FLAGS; bits of
+// axes that are not there do nothing.
+localparam CHANNEL_INPUT_CLEAR                  = 8'h12;
+localparam CHANNEL_INPUT_CLEAR_LIMIT_LOW_LSB    = 0;
+localparam CHANNEL_INPUT_CLEAR_LIMIT_LOW_BITS   = 8;
+localparam CHANNEL_INPUT_CLEAR_LIMIT_LOW_RESET  = 8'h00;
+localparam CHANNEL_INPUT_CLEAR_LIMIT_HIGH_LSB   = 8;
+localparam CHANNEL_INPUT_CLEAR_LIMIT_HIGH_BITS  = 8;
+localparam CHANNEL_INPUT_CLEAR_LIMIT_HIGH_RESET = 8'h00;
+localparam CHANNEL_INPUT_CLEAR_HOME_LSB         = 16;
+localparam CHANNEL_INPUT_CLEAR_HOME_BITS        = 8;
+localparam CHANNEL_INPUT_CLEAR_HOME_RESET       = 8'h00;
+localparam CHANNEL_INPUT_CLEAR_ALARM_LSB        = 24;
+localparam CHANNEL_INPUT_CLEAR_ALARM_BITS       = 8;
+localparam CHANNEL_INPUT_CLEAR_ALARM_RESET      = 8'h00;
+localparam CHANNEL_INPUT_CLEAR_DEFINED          = 32'hFFFFFFFF;
+
+// Channel: Trigger. Only with INPUTS. Every write ends what was armed before. Refused with BAD_VALUE if
+// armed without a source, or for an axis that is not there.
+localparam CHANNEL_TRIGGER               = 8'h13;
+localparam CHANNEL_TRIGGER_SOURCE_LSB    = 0;
+localparam CHANNEL_TRIGGER_SOURCE_BITS   = 3;
+localparam CHANNEL_TRIGGER_SOURCE_RESET  = 3'h0;
+localparam CHANNEL_TRIGGER_AXIS_LSB      = 4;
+localparam CHANNEL_TRIGGER_AXIS_BITS     = 3;
+localparam CHANNEL_TRIGGER_AXIS_RESET    = 3'h0;
+localparam CHANNEL_TRIGGER_FALLING_LSB   = 8;
+localparam CHANNEL_TRIGGER_FALLING_BITS  = 1;
+localparam CHANNEL_TRIGGER_FALLING_RESET = 1'h0;
+localparam CHANNEL_TRIGGER_ACTION_LSB    = 12;
+localparam CHANNEL_TRIGGER_ACTION_BITS   = 2;
+localparam CHANNEL_TRIGGER_ACTION_RESET  = 2'h0;
+localparam CHANNEL_TRIGGER_ARM_LSB       = 16;
+localparam CHANNEL_TRIGGER_ARM_BITS      = 1;
+localparam CHANNEL_TRIGGER_ARM_RESET     = 1'h0;
+localparam CHANNEL_TRIGGER_DEFINED       = 32'h00013177;
+
+// Channel: Trigger state. Only with INPUTS. State of the trigger and the probe, and the axes that stopped
+// the channel.
+localparam CHANNEL_TRIGGER_STATE                  = 8'h14;
+localparam CHANNEL_TRIGGER_STATE_ARMED_LSB        = 0;
+localparam CHANNEL_TRIGGER_STATE_ARMED_BITS       = 1;
+localparam CHANNEL_TRIGGER_STATE_ARMED_RESET      = 1'h0;
+localparam CHANNEL_TRIGGER_STATE_FIRED_LSB        = 1;
+localparam CHANNEL_TRIGGER_STATE_FIRED_BITS       = 1;
+localparam CHANNEL_TRIGGER_STATE_FIRED_RESET      = 1'h0;
+localparam CHANNEL_TRIGGER_STATE_PROBE_LSB        = 2;
+localparam CHANNEL_TRIGGER_STATE_PROBE_BITS       = 1;
+localparam CHANNEL_TRIGGER_STATE_PROBE_RESET      = 1'h0;
+localparam CHANNEL_TRIGGER_STATE_PROBE_FLAG_LSB   = 3;
+localparam CHANNEL_TRIGGER_STATE_PROBE_FLAG_BITS  = 1;
+localparam CHANNEL_TRIGGER_STATE_PROBE_FLAG_RESET = 1'h0;
+localparam CHANNEL_TRIGGER_STATE_AXES_LSB         = 8;
+localparam CHANNEL_TRIGGER_STATE_AXES_BITS        = 8;
+localparam CHANNEL_TRIGGER_STATE_AXES_RESET       = 8'h00;
+
+// Channel: Trigger clocks. Only with INPUTS. Clocks from arming to firing, or up to now; wraps.
+localparam CHANNEL_TRIGGER_CLOCKS       = 8'h15;
+localparam CHANNEL_TRIGGER_CLOCKS_LSB   = 0;
+localparam CHANNEL_TRIGGER_CLOCKS_BITS  = 32;
+localparam CHANNEL_TRIGGER_CLOCKS_RESET = 32'h00000000;
+
+// Channel: Probe. Only with INPUTS. Polarity, kept over a reset of the core; and the flag of the probe.
+localparam CHANNEL_PROBE                = 8'h16;
+localparam CHANNEL_PROBE_INVERTED_LSB   = 0;
+localparam CHANNEL_PROBE_INVERTED_BITS  = 1;
+localparam CHANNEL_PROBE_INVERTED_RESET = 1'h0;
+localparam CHANNEL_PROBE_CLEAR_LSB      = 1;
+localparam CHANNEL_PROBE_CLEAR_BITS     = 1;
+localparam CHANNEL_PROBE_CLEAR_RESET    = 1'h0;
+localparam CHANNEL_PROBE_DEFINED        = 32'h00000003;
+
 // Channel: Line queue. PUSH only: control, M, N_0 .. N_{AXES-1} for each line.
 localparam CHANNEL_LINE         = 8'h20;
 localparam CHANNEL_LINE_LSB     = 0;
@@ -281,6 +422,14 @@ localparam CHANNEL_POSITION_COUNT = 8;
 localparam CHANNEL_POSITION_LSB   = 0;
 localparam CHANNEL_POSITION_BITS  = 32;
 localparam CHANNEL_POSITION_RESET = 32'h00000000;
+
+// Channel: Latched position. Only with INPUTS. Position of an axis in steps on the clock on which the
+// trigger fired, complete 130 clocks later. A ZERO less than 64 clocks after that clears it.
+localparam CHANNEL_TRIGGER_POSITION_BASE           = 8'h48;
+localparam CHANNEL_TRIGGER_POSITION_COUNT          = 8;
+localparam CHANNEL_TRIGGER_POSITION_POSITION_LSB   = 0;
+localparam CHANNEL_TRIGGER_POSITION_POSITION_BITS  = 32;
+localparam CHANNEL_TRIGGER_POSITION_POSITION_RESET = 32'h00000000;
 
 // Channel: where each axis has its registers.
 localparam CHANNEL_AXIS_BASE   = 8'h80;
@@ -337,6 +486,32 @@ localparam AXIS_ENABLE_BITS    = 1;
 localparam AXIS_ENABLE_RESET   = 1'h0;
 localparam AXIS_ENABLE_DEFINED = 32'h00000001;
 
+// Axis: Inputs of the axis. Only with INPUTS. Polarities, and what limits and alarm do. Kept over a reset
+// of the core.
+localparam AXIS_INPUTS                           = 3'h5;
+localparam AXIS_INPUTS_LIMIT_LOW_INVERTED_LSB    = 0;
+localparam AXIS_INPUTS_LIMIT_LOW_INVERTED_BITS   = 1;
+localparam AXIS_INPUTS_LIMIT_LOW_INVERTED_RESET  = 1'h0;
+localparam AXIS_INPUTS_LIMIT_HIGH_INVERTED_LSB   = 1;
+localparam AXIS_INPUTS_LIMIT_HIGH_INVERTED_BITS  = 1;
+localparam AXIS_INPUTS_LIMIT_HIGH_INVERTED_RESET = 1'h0;
+localparam AXIS_INPUTS_HOME_INVERTED_LSB         = 2;
+localparam AXIS_INPUTS_HOME_INVERTED_BITS        = 1;
+localparam AXIS_INPUTS_HOME_INVERTED_RESET       = 1'h0;
+localparam AXIS_INPUTS_ALARM_INVERTED_LSB        = 3;
+localparam AXIS_INPUTS_ALARM_INVERTED_BITS       = 1;
+localparam AXIS_INPUTS_ALARM_INVERTED_RESET      = 1'h0;
+localparam AXIS_INPUTS_LIMIT_SOFT_LSB            = 4;
+localparam AXIS_INPUTS_LIMIT_SOFT_BITS           = 1;
+localparam AXIS_INPUTS_LIMIT_SOFT_RESET          = 1'h0;
+localparam AXIS_INPUTS_ALARM_SOFT_LSB            = 5;
+localparam AXIS_INPUTS_ALARM_SOFT_BITS           = 1;
+localparam AXIS_INPUTS_ALARM_SOFT_RESET          = 1'h0;
+localparam AXIS_INPUTS_ALARM_DISABLES_LSB        = 6;
+localparam AXIS_INPUTS_ALARM_DISABLES_BITS       = 1;
+localparam AXIS_INPUTS_ALARM_DISABLES_RESET      = 1'h0;
+localparam AXIS_INPUTS_DEFINED                   = 32'h0000007F;
+
 // Operation of a frame.
 localparam OPERATION_READ  = 4'd1; // Read consecutive registers.
 localparam OPERATION_WRITE = 4'd2; // Write consecutive registers.
@@ -364,12 +539,32 @@ localparam STATE_DRAIN   = 3'd5; // Missing substeps of the LAST line are made a
 localparam STATE_STOPPED = 3'd6; // Stopped by a command or a fault; queues flushed. CLEAR leads back to IDLE.
 
 // Why a channel has stopped.
-localparam CAUSE_NONE          = 3'd0; // Not stopped.
-localparam CAUSE_STOP          = 3'd1; // COMMAND.STOP.
-localparam CAUSE_ABORT         = 3'd2; // COMMAND.ABORT.
-localparam CAUSE_LINE_UNDERRUN = 3'd3; // A line ended, was not LAST, and none followed.
-localparam CAUSE_RAMP_UNDERRUN = 3'd4; // The ramps ran out at speed.
-localparam CAUSE_STEP_OVERRUN  = 3'd5; // Steps came faster than the pin timing of an axis allows.
+localparam CAUSE_NONE            = 4'd0;  // Not stopped.
+localparam CAUSE_STOP            = 4'd1;  // COMMAND.STOP.
+localparam CAUSE_ABORT           = 4'd2;  // COMMAND.ABORT.
+localparam CAUSE_LINE_UNDERRUN   = 4'd3;  // A line ended, was not LAST, and none followed.
+localparam CAUSE_RAMP_UNDERRUN   = 4'd4;  // The ramps ran out at speed.
+localparam CAUSE_STEP_OVERRUN    = 4'd5;  // Steps came faster than the pin timing of an axis allows.
+localparam CAUSE_LIMIT           = 4'd6;  // An axis stepped towards an active limit switch.
+localparam CAUSE_ALARM           = 4'd7;  // The alarm input of an axis became active.
+localparam CAUSE_TRIGGER         = 4'd8;  // The trigger fired, and its action is a stop.
+localparam CAUSE_WATCHDOG        = 4'd9;  // No good frame came for too long while a motion ran.
+localparam CAUSE_ESTOP           = 4'd10; // The e-stop input became active.
+localparam CAUSE_FOLLOWING_ERROR = 4'd11; // An axis was too far from its encoder.
+
+// What fires the trigger of a channel.
+localparam TRIGGER_SOURCE_NONE       = 3'd0; // None; cannot be armed.
+localparam TRIGGER_SOURCE_LIMIT_LOW  = 3'd1; // Limit switch of the axis in negative direction.
+localparam TRIGGER_SOURCE_LIMIT_HIGH = 3'd2; // Limit switch of the axis in positive direction.
+localparam TRIGGER_SOURCE_HOME       = 3'd3; // Home switch of the axis.
+localparam TRIGGER_SOURCE_PROBE      = 3'd4; // Probe of the channel.
+localparam TRIGGER_SOURCE_INDEX      = 3'd5; // Index of the axis's encoder; never active without ENCODERS.
+
+// What the trigger does when it fires.
+localparam TRIGGER_ACTION_LATCH       = 2'd0; // Only latch.
+localparam TRIGGER_ACTION_SOFT_STOP   = 2'd1; // Latch and soft stop.
+localparam TRIGGER_ACTION_HARD_STOP   = 2'd2; // Latch and hard stop.
+localparam TRIGGER_ACTION_END_ENDLESS = 2'd3; // Latch, and let the current ENDLESS line end as any other line.
 
 // Shape of a ramp: s as a function of the progress u, both 0 .. 1.
 localparam SHAPE_LINEAR  = 2'd0; // s = u, no table.

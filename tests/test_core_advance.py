@@ -21,6 +21,7 @@ from passo.registers import State
 from tests.helpers.closed_form import COSINE, HALF, ONE, SIGMOID, Line, Ramp
 from tests.helpers.core_player import PlayerPair
 from tests.helpers.motions import SLOW, fill, random_motion, to_line, to_ramp
+from tests.helpers.random_inputs import RandomInputs
 
 SEED = random_cases.seed()
 
@@ -29,6 +30,8 @@ BUILDS = [
     Parameters(channels=2, axes=2, line_queue_log2=2, ramp_queue_log2=2),
     Parameters(channels=3, axes=1, tick_log2=9, ramp_queue_log2=8),
     Parameters(channels=8, axes=8),
+    Parameters(channels=1, axes=3, inputs=1),
+    Parameters(channels=2, axes=2, ramp_queue_log2=3, inputs=1),
 ]
 
 
@@ -41,6 +44,7 @@ class Session:
         self.link = Link(self.pair)
         self.channels = [Channel(self.link, parameters, n) for n in range(parameters.channels)]
         self.axes = parameters.axes
+        self.inputs = RandomInputs(rng, parameters) if parameters.inputs else None
         self.lines = min(9, 1 << parameters.line_queue_log2)
         self.ramps = min(12, 1 << parameters.ramp_queue_log2)
 
@@ -104,6 +108,16 @@ class Session:
         else:
             self.pair.transfer([rng.getrandbits(32) for _ in range(rng.randint(1, 5))], 40)
 
+    def disturb(self) -> None:
+        """Something happens at the inputs of the machine."""
+        if self.inputs is None:
+            return
+        if self.rng.random() < 0.5:
+            self.try_to(self.link.write, *self.inputs.write())
+        for _ in range(self.rng.randrange(4)):
+            self.pair.set(*self.inputs.pin())
+            self.pair.run(self.rng.randint(1, self.rng.choice([3, 60, 3000])))
+
     def go_on(self, clocks: int) -> None:
         """Let time pass and clear what has stopped."""
         self.pair.run(self.rng.randint(1, clocks))
@@ -113,7 +127,7 @@ class Session:
                 self.try_to(channel.set_rate, RATE_ONE)
 
 
-@pytest.mark.parametrize("number", range(8))
+@pytest.mark.parametrize("number", range(2 * len(BUILDS)))
 def test_advance_agrees_with_every_clock(number: int) -> None:
     """Whatever a host does, pins and state are the same with and without skipping."""
     print(f"PASSO_SEED={SEED}")
@@ -127,6 +141,7 @@ def test_advance_agrees_with_every_clock(number: int) -> None:
             session.push(channel)
         else:
             session.command(channel)
+        session.disturb()
         session.go_on(rng.choice([200, 3000, 20000]))
     assert session.pair.compared > 500
     assert session.pair.events > 0

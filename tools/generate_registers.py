@@ -45,7 +45,9 @@ ENUMS = {
     "operation": (4, "Operation of a frame."),
     "verdict": (4, "Outcome of a frame."),
     "state": (3, "State of a channel."),
-    "cause": (3, "Why a channel has stopped."),
+    "cause": (4, "Why a channel has stopped."),
+    "trigger_source": (3, "What fires the trigger of a channel."),
+    "trigger_action": (2, "What the trigger does when it fires."),
     "shape": (2, "Shape of a ramp: s as a function of the progress u, both 0 .. 1."),
 }
 
@@ -408,12 +410,13 @@ def python_table(core: Block) -> list[str]:
                 reset = None if field.reset is None else f"0x{digits(field.reset, field.bits)}"
                 arguments = f'"{field.name}", {field.lsb}, {field.bits}, "{field.access}", {reset}'
                 lines.append(f"        Field({arguments}),")
-            lines.append("    )),")
+            part = re.match(r"Only with (INPUTS|ENCODERS|OUTPUTS)\.", register.text)
+            lines.append(f'    ), "{part[1].lower()}"),' if part else "    )),")
     return [*lines, ")", "# fmt: on"]
 
 
 def python_type(field: Field) -> str:
-    return field.enum.capitalize() if field.enum else "bool" if field.bits == 1 else "int"
+    return class_name(field.enum) if field.enum else "bool" if field.bits == 1 else "int"
 
 
 def python_default(field: Field, enums: Sequence[Enum]) -> str:
@@ -430,7 +433,7 @@ def python_default(field: Field, enums: Sequence[Enum]) -> str:
 def python_layout(name: str, register: Register, enums: Sequence[Enum]) -> list[str]:
     """A class of the fields of a word; those with a reset value need not be given."""
     fields = sorted(reversed(register.fields), key=lambda field: field.reset is not None)
-    lines = ["", "@dataclass(frozen=True)", f"class {name.title().replace('_', '')}Word(Word):"]
+    lines = ["", "@dataclass(frozen=True)", f"class {class_name(name)}Word(Word):"]
     lines += [f'    """{register.title}."""', ""]
     for field in fields:
         lines += [f"    # {line}" for line in wrap(field.text, 104)]
@@ -440,10 +443,15 @@ def python_layout(name: str, register: Register, enums: Sequence[Enum]) -> list[
     return [*lines, "    }", ""]
 
 
+def class_name(name: str) -> str:
+    """Of a word or an enumeration."""
+    return name.title().replace("_", "")
+
+
 def write_python(source: Source) -> str:
     lines = [PYTHON_HEAD]
     for enum in source.enums:
-        lines += ["", f"class {enum.name.capitalize()}(DescribedEnum):", f'    """{enum.text}"""', ""]
+        lines += ["", f"class {class_name(enum.name)}(DescribedEnum):", f'    """{enum.text}"""', ""]
         lines += [f'    {name} = {value}, "{text}"' for name, value, text in enum.members] + [""]
     for name, register in source.layouts():
         lines += python_layout(name, register, source.enums)
@@ -477,7 +485,8 @@ def field_row(field: Field, enums: list[Enum]) -> list[str]:
     for enum in enums:
         if enum.name == field.enum:
             values = ", ".join(f"{value} `{name}`" for name, value, _ in enum.members)
-            meaning += f" [{enum.name.capitalize()}s](#{enum.name}s): {values}."
+            title = f"{enum.name.capitalize()}s".replace("_", " ")
+            meaning += f" [{title}](#{title.lower().replace(' ', '-')}): {values}."
     return [bits, f"`{field.name}`", ACCESS[field.access], reset, meaning]
 
 
@@ -518,7 +527,7 @@ def write_markdown(source: Source) -> str:
         rows = [[bits, name, meaning] for bits, name, _, _, meaning in rows]
         details += table(["bits", "field", "meaning"], rows)
     for enum in enums:
-        details += ["", f"## {enum.name.capitalize()}s", "", enum.text]
+        details += ["", f"## {enum.name.capitalize().replace('_', ' ')}s", "", enum.text]
         rows = [[f"{value}", f"`{name}`", text] for name, value, text in enum.members]
         details += table(["value", "name", "meaning"], rows)
     head = [

@@ -25,9 +25,9 @@ import numpy as np
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import Timer
 from passo import registers as r
-from passo.build import Parameters
-from passo.host import Channel
+from passo.host import Channel, parameters_of
 from passo.link import Link
+from passo.pins import INPUTS
 from passo.plan import Plan
 
 from cocotb_tests.helpers.bench import PERIOD, Clocks, read
@@ -74,6 +74,14 @@ class Record:
     judge: Judge | None = None
 
 
+def set_idle(dut: HierarchyObject) -> None:
+    """Set the inputs of a core, other than clk, rst and those of its link, as if nothing were connected."""
+    for pin in INPUTS:
+        if pin.name != "rst" and not pin.name.startswith("spi_"):
+            signal = getattr(dut, pin.name)
+            signal.value = pin.idle * ((1 << len(signal)) - 1)
+
+
 @functools.cache
 def _record() -> Record:
     return Record(Path("pins.log").open())
@@ -99,8 +107,8 @@ class Core:
     @classmethod
     async def begin(cls, dut: HierarchyObject, thread: Thread) -> "Core":
         """Reset; return on the falling edge at its end."""
-        dut.sync.value = 0
         dut.rst.value = 1
+        set_idle(dut)
         clocks = Clocks(dut.clk)
         clocks.start()
         core = cls(dut, thread, clocks)
@@ -118,13 +126,7 @@ class Core:
         """Read the parameters of the core and start the comparison."""
         self.link = Link(self)
         (word,) = self.link.read(r.ADDRESS_PARAMETERS, 1)
-        self.parameters = Parameters(
-            channels=word & 0xF,
-            axes=word >> r.PARAMETERS_AXES_LSB & 0xF,
-            tick_log2=word >> r.PARAMETERS_TICK_LOG2_LSB & 0x1F,
-            line_queue_log2=word >> r.PARAMETERS_LINE_QUEUE_LOG2_LSB & 0x1F,
-            ramp_queue_log2=word >> r.PARAMETERS_RAMP_QUEUE_LOG2_LSB & 0x1F,
-        )
+        self.parameters = parameters_of(word)
         self.axes, self.tick = self.parameters.axes, 1 << self.parameters.tick_log2
         if self._record.judge is None:
             self._record.judge = Judge(self.parameters)
@@ -138,6 +140,12 @@ class Core:
             channel = self.channel(number)
             channel.times(PinTiming())
             channel.pins(PinTiming(), enable=False)
+            if self.parameters.inputs:
+                channel.link.write(channel.base + r.CHANNEL_PROBE, 0)
+                for axis in range(self.axes):
+                    channel.link.write(channel.axis_base(axis) + r.AXIS_INPUTS, 0)
+        if self.parameters.inputs:
+            self.link.write(r.ADDRESS_INPUT_FILTER, 0)
 
     def channel(self, number: int = 0) -> "CoreChannel":
         """One channel."""
@@ -190,14 +198,18 @@ class Core:
             assert self.clock < end, f"clock {self.clock}: nothing after {limit} clocks"
             self.run(step)
 
-    def sync(self, level: bool) -> None:
-        """Set the sync input."""
+    def set(self, pin: str, levels: int) -> None:
+        """Set the levels of an input pin."""
 
         async def set_pin() -> None:
-            self.dut.sync.value = int(level)
+            getattr(self.dut, pin).value = levels
 
-        self.started = self.clock
         self._thread.wait(set_pin())
+
+    def sync(self, level: bool) -> None:
+        """Set the sync input."""
+        self.started = self.clock
+        self.set("sync", int(level))
 
     def reset(self, clocks: int) -> None:
         """Reset the core for a number of clocks."""
@@ -284,6 +296,10 @@ class Core:
                     found.append((begin, clock))
                 begin = None
         return found
+
+    def motions_begun(self, since: int = 0) -> list[int]:
+        """Clocks after a clock on which `running` of any channel rose, and still is or was high."""
+        return [clock for clock, level in self._running if level and clock > since]
 
     def began(self) -> int:
         """Clock on which `running` rose last."""

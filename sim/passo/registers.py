@@ -53,6 +53,32 @@ class Cause(DescribedEnum):
     LINE_UNDERRUN = 3, "A line ended, was not LAST, and none followed."
     RAMP_UNDERRUN = 4, "The ramps ran out at speed."
     STEP_OVERRUN = 5, "Steps came faster than the pin timing of an axis allows."
+    LIMIT = 6, "An axis stepped towards an active limit switch."
+    ALARM = 7, "The alarm input of an axis became active."
+    TRIGGER = 8, "The trigger fired, and its action is a stop."
+    WATCHDOG = 9, "No good frame came for too long while a motion ran."
+    ESTOP = 10, "The e-stop input became active."
+    FOLLOWING_ERROR = 11, "An axis was too far from its encoder."
+
+
+class TriggerSource(DescribedEnum):
+    """What fires the trigger of a channel."""
+
+    NONE = 0, "None; cannot be armed."
+    LIMIT_LOW = 1, "Limit switch of the axis in negative direction."
+    LIMIT_HIGH = 2, "Limit switch of the axis in positive direction."
+    HOME = 3, "Home switch of the axis."
+    PROBE = 4, "Probe of the channel."
+    INDEX = 5, "Index of the axis's encoder; never active without ENCODERS."
+
+
+class TriggerAction(DescribedEnum):
+    """What the trigger does when it fires."""
+
+    LATCH = 0, "Only latch."
+    SOFT_STOP = 1, "Latch and soft stop."
+    HARD_STOP = 2, "Latch and hard stop."
+    END_ENDLESS = 3, "Latch, and let the current ENDLESS line end as any other line."
 
 
 class Shape(DescribedEnum):
@@ -188,7 +214,7 @@ class VersionWord(Word):
     # Major.
     major: int = 0
     # Minor.
-    minor: int = 1
+    minor: int = 2
     # Patch.
     patch: int = 0
 
@@ -203,6 +229,12 @@ class VersionWord(Word):
 class ParametersWord(Word):
     """Parameters."""
 
+    # OUTPUTS.
+    outputs: bool
+    # ENCODERS.
+    encoders: bool
+    # INPUTS.
+    inputs: bool
     # RAMP_QUEUE_LOG2.
     ramp_queue_log2: int
     # LINE_QUEUE_LOG2.
@@ -220,6 +252,9 @@ class ParametersWord(Word):
         "tick_log2": (8, 5, int),
         "line_queue_log2": (16, 5, int),
         "ramp_queue_log2": (24, 5, int),
+        "inputs": (29, 1, bool),
+        "encoders": (30, 1, bool),
+        "outputs": (31, 1, bool),
     }
 
 
@@ -284,6 +319,21 @@ class Refusals1Word(Word):
 
 
 @dataclass(frozen=True)
+class WatchdogWord(Word):
+    """Watchdog."""
+
+    # Time from that stop until all drive enables are cleared; 0 = never.
+    disable_after: int = 0
+    # Silence after which a running motion is stopped softly; 0 = off.
+    stop_after: int = 0
+
+    PLACES: ClassVar = {
+        "stop_after": (0, 10, int),
+        "disable_after": (10, 10, int),
+    }
+
+
+@dataclass(frozen=True)
 class ChannelCommandWord(Word):
     """Command."""
 
@@ -310,10 +360,10 @@ class ChannelStateWord(Word):
 
     # Substeps drained since reset; wraps.
     drained: int = 0
-    # One bit per axis: it had a STEP_OVERRUN.
-    overrun: int = 0
     # A soft stop is in progress.
     stopping: bool = False
+    # One bit per axis: it had a STEP_OVERRUN.
+    overrun: int = 0
     # Cause of the stop.
     cause: Cause = Cause.NONE
     # Quiet: no motion is prepared or running, and the pins of every axis are idle.
@@ -324,10 +374,10 @@ class ChannelStateWord(Word):
     PLACES: ClassVar = {
         "state": (0, 3, State),
         "quiet": (3, 1, bool),
-        "cause": (4, 3, Cause),
-        "stopping": (7, 1, bool),
+        "cause": (4, 4, Cause),
         "overrun": (8, 8, int),
-        "drained": (16, 16, int),
+        "stopping": (16, 1, bool),
+        "drained": (17, 15, int),
     }
 
 
@@ -343,6 +393,132 @@ class ChannelRoomWord(Word):
     PLACES: ClassVar = {
         "ramp_room": (0, 16, int),
         "line_room": (16, 16, int),
+    }
+
+
+@dataclass(frozen=True)
+class ChannelInputLevelsWord(Word):
+    """Input levels."""
+
+    # alarm.
+    alarm: int = 0
+    # home.
+    home: int = 0
+    # limit_high.
+    limit_high: int = 0
+    # limit_low.
+    limit_low: int = 0
+
+    PLACES: ClassVar = {
+        "limit_low": (0, 8, int),
+        "limit_high": (8, 8, int),
+        "home": (16, 8, int),
+        "alarm": (24, 8, int),
+    }
+
+
+@dataclass(frozen=True)
+class ChannelInputFlagsWord(Word):
+    """Input flags."""
+
+    # alarm.
+    alarm: int = 0
+    # home.
+    home: int = 0
+    # limit_high.
+    limit_high: int = 0
+    # limit_low.
+    limit_low: int = 0
+
+    PLACES: ClassVar = {
+        "limit_low": (0, 8, int),
+        "limit_high": (8, 8, int),
+        "home": (16, 8, int),
+        "alarm": (24, 8, int),
+    }
+
+
+@dataclass(frozen=True)
+class ChannelInputClearWord(Word):
+    """Clear input flags."""
+
+    # alarm.
+    alarm: int = 0
+    # home.
+    home: int = 0
+    # limit_high.
+    limit_high: int = 0
+    # limit_low.
+    limit_low: int = 0
+
+    PLACES: ClassVar = {
+        "limit_low": (0, 8, int),
+        "limit_high": (8, 8, int),
+        "home": (16, 8, int),
+        "alarm": (24, 8, int),
+    }
+
+
+@dataclass(frozen=True)
+class ChannelTriggerWord(Word):
+    """Trigger."""
+
+    # 1: armed, once.
+    arm: bool = False
+    # What it does.
+    action: TriggerAction = TriggerAction.LATCH
+    # 1: fires when the source becomes inactive; 0: active.
+    falling: bool = False
+    # Axis of the source.
+    axis: int = 0
+    # What fires it.
+    source: TriggerSource = TriggerSource.NONE
+
+    PLACES: ClassVar = {
+        "source": (0, 3, TriggerSource),
+        "axis": (4, 3, int),
+        "falling": (8, 1, bool),
+        "action": (12, 2, TriggerAction),
+        "arm": (16, 1, bool),
+    }
+
+
+@dataclass(frozen=True)
+class ChannelTriggerStateWord(Word):
+    """Trigger state."""
+
+    # Axes of the first limit or alarm since COMMAND.CLEAR.
+    axes: int = 0
+    # The probe was active since its flag was cleared.
+    probe_flag: bool = False
+    # Filtered level of the probe, 1 = active.
+    probe: bool = False
+    # It has fired since it was armed.
+    fired: bool = False
+    # The trigger waits for its edge.
+    armed: bool = False
+
+    PLACES: ClassVar = {
+        "armed": (0, 1, bool),
+        "fired": (1, 1, bool),
+        "probe": (2, 1, bool),
+        "probe_flag": (3, 1, bool),
+        "axes": (8, 8, int),
+    }
+
+
+@dataclass(frozen=True)
+class ChannelProbeWord(Word):
+    """Probe."""
+
+    # 1: clear the flag.
+    clear: bool = False
+    # 1: probe is active low.
+    inverted: bool = False
+
+    PLACES: ClassVar = {
+        "inverted": (0, 1, bool),
+        "clear": (1, 1, bool),
     }
 
 
@@ -394,6 +570,36 @@ class AxisDirTimingWord(Word):
     PLACES: ClassVar = {
         "dir_hold": (0, 16, int),
         "dir_setup": (16, 16, int),
+    }
+
+
+@dataclass(frozen=True)
+class AxisInputsWord(Word):
+    """Inputs of the axis."""
+
+    # 1: the alarm also clears the drive enable of this axis.
+    alarm_disables: bool = False
+    # 1: the alarm makes a soft stop; 0: a hard one.
+    alarm_soft: bool = False
+    # 1: limits make a soft stop; 0: a hard one.
+    limit_soft: bool = False
+    # 1: alarm is active low.
+    alarm_inverted: bool = False
+    # 1: home is active low.
+    home_inverted: bool = False
+    # 1: limit_high is active low.
+    limit_high_inverted: bool = False
+    # 1: limit_low is active low.
+    limit_low_inverted: bool = False
+
+    PLACES: ClassVar = {
+        "limit_low_inverted": (0, 1, bool),
+        "limit_high_inverted": (1, 1, bool),
+        "home_inverted": (2, 1, bool),
+        "alarm_inverted": (3, 1, bool),
+        "limit_soft": (4, 1, bool),
+        "alarm_soft": (5, 1, bool),
+        "alarm_disables": (6, 1, bool),
     }
 
 
@@ -477,7 +683,7 @@ VERSION_PATCH_BITS = 8
 VERSION_PATCH_RESET = 0x00
 VERSION_MINOR_LSB = 8
 VERSION_MINOR_BITS = 8
-VERSION_MINOR_RESET = 0x01
+VERSION_MINOR_RESET = 0x02
 VERSION_MAJOR_LSB = 16
 VERSION_MAJOR_BITS = 8
 VERSION_MAJOR_RESET = 0x00
@@ -494,6 +700,12 @@ PARAMETERS_LINE_QUEUE_LOG2_LSB = 16
 PARAMETERS_LINE_QUEUE_LOG2_BITS = 5
 PARAMETERS_RAMP_QUEUE_LOG2_LSB = 24
 PARAMETERS_RAMP_QUEUE_LOG2_BITS = 5
+PARAMETERS_INPUTS_LSB = 29
+PARAMETERS_INPUTS_BITS = 1
+PARAMETERS_ENCODERS_LSB = 30
+PARAMETERS_ENCODERS_BITS = 1
+PARAMETERS_OUTPUTS_LSB = 31
+PARAMETERS_OUTPUTS_BITS = 1
 
 # Core: Run. One bit per channel, all in one register: channels that are ARMED start on the same clock when
 # one write clears their WAIT_SYNC.
@@ -538,6 +750,38 @@ REFUSALS_1_BUSY_RESET = 0x00
 REFUSALS_1_BAD_VALUE_LSB = 24
 REFUSALS_1_BAD_VALUE_BITS = 8
 REFUSALS_1_BAD_VALUE_RESET = 0x00
+
+# Core: Input filter. Only with INPUTS. Glitch filter of all inputs but e-stop. Kept over a reset of the
+# core.
+ADDRESS_INPUT_FILTER = 0x010
+INPUT_FILTER_FILTER_LSB = 0
+INPUT_FILTER_FILTER_BITS = 16
+INPUT_FILTER_FILTER_RESET = 0x0000
+INPUT_FILTER_DEFINED = 0x0000FFFF
+
+# Core: Watchdog. Only with INPUTS. Stops motions when no frame has been executed for some time. In units
+# of 2^16 clocks.
+ADDRESS_WATCHDOG = 0x011
+WATCHDOG_STOP_AFTER_LSB = 0
+WATCHDOG_STOP_AFTER_BITS = 10
+WATCHDOG_STOP_AFTER_RESET = 0x000
+WATCHDOG_DISABLE_AFTER_LSB = 10
+WATCHDOG_DISABLE_AFTER_BITS = 10
+WATCHDOG_DISABLE_AFTER_RESET = 0x000
+WATCHDOG_DEFINED = 0x000FFFFF
+
+# Core: E-stop. Only with INPUTS. State of the e-stop.
+ADDRESS_ESTOP = 0x012
+ESTOP_PRESSED_LSB = 0
+ESTOP_PRESSED_BITS = 1
+ESTOP_PRESSED_RESET = 0x0
+
+# Core: Clear e-stop. Only with INPUTS. No effect while e-stop is pressed.
+ADDRESS_ESTOP_CLEAR = 0x013
+ESTOP_CLEAR_CLEAR_LSB = 0
+ESTOP_CLEAR_CLEAR_BITS = 1
+ESTOP_CLEAR_CLEAR_RESET = 0x0
+ESTOP_CLEAR_DEFINED = 0x00000001
 
 # Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0. Refused with BUSY
 # while a motion runs.
@@ -623,16 +867,16 @@ CHANNEL_STATE_QUIET_LSB = 3
 CHANNEL_STATE_QUIET_BITS = 1
 CHANNEL_STATE_QUIET_RESET = 0x1
 CHANNEL_STATE_CAUSE_LSB = 4
-CHANNEL_STATE_CAUSE_BITS = 3
+CHANNEL_STATE_CAUSE_BITS = 4
 CHANNEL_STATE_CAUSE_RESET = 0x0
-CHANNEL_STATE_STOPPING_LSB = 7
-CHANNEL_STATE_STOPPING_BITS = 1
-CHANNEL_STATE_STOPPING_RESET = 0x0
 CHANNEL_STATE_OVERRUN_LSB = 8
 CHANNEL_STATE_OVERRUN_BITS = 8
 CHANNEL_STATE_OVERRUN_RESET = 0x00
-CHANNEL_STATE_DRAINED_LSB = 16
-CHANNEL_STATE_DRAINED_BITS = 16
+CHANNEL_STATE_STOPPING_LSB = 16
+CHANNEL_STATE_STOPPING_BITS = 1
+CHANNEL_STATE_STOPPING_RESET = 0x0
+CHANNEL_STATE_DRAINED_LSB = 17
+CHANNEL_STATE_DRAINED_BITS = 15
 CHANNEL_STATE_DRAINED_RESET = 0x0000
 
 # Channel: Rate. Time scale in force.
@@ -654,6 +898,109 @@ CHANNEL_VELOCITY_LSB = 0
 CHANNEL_VELOCITY_BITS = 32
 CHANNEL_VELOCITY_RESET = 0x00000000
 
+# Channel: Input levels. Only with INPUTS. Filtered levels, 1 = active, one bit per axis.
+CHANNEL_INPUT_LEVELS = 0x10
+CHANNEL_INPUT_LEVELS_LIMIT_LOW_LSB = 0
+CHANNEL_INPUT_LEVELS_LIMIT_LOW_BITS = 8
+CHANNEL_INPUT_LEVELS_LIMIT_LOW_RESET = 0x00
+CHANNEL_INPUT_LEVELS_LIMIT_HIGH_LSB = 8
+CHANNEL_INPUT_LEVELS_LIMIT_HIGH_BITS = 8
+CHANNEL_INPUT_LEVELS_LIMIT_HIGH_RESET = 0x00
+CHANNEL_INPUT_LEVELS_HOME_LSB = 16
+CHANNEL_INPUT_LEVELS_HOME_BITS = 8
+CHANNEL_INPUT_LEVELS_HOME_RESET = 0x00
+CHANNEL_INPUT_LEVELS_ALARM_LSB = 24
+CHANNEL_INPUT_LEVELS_ALARM_BITS = 8
+CHANNEL_INPUT_LEVELS_ALARM_RESET = 0x00
+
+# Channel: Input flags. Only with INPUTS. Inputs that were active since their flag was cleared, one bit per
+# axis.
+CHANNEL_INPUT_FLAGS = 0x11
+CHANNEL_INPUT_FLAGS_LIMIT_LOW_LSB = 0
+CHANNEL_INPUT_FLAGS_LIMIT_LOW_BITS = 8
+CHANNEL_INPUT_FLAGS_LIMIT_LOW_RESET = 0x00
+CHANNEL_INPUT_FLAGS_LIMIT_HIGH_LSB = 8
+CHANNEL_INPUT_FLAGS_LIMIT_HIGH_BITS = 8
+CHANNEL_INPUT_FLAGS_LIMIT_HIGH_RESET = 0x00
+CHANNEL_INPUT_FLAGS_HOME_LSB = 16
+CHANNEL_INPUT_FLAGS_HOME_BITS = 8
+CHANNEL_INPUT_FLAGS_HOME_RESET = 0x00
+CHANNEL_INPUT_FLAGS_ALARM_LSB = 24
+CHANNEL_INPUT_FLAGS_ALARM_BITS = 8
+CHANNEL_INPUT_FLAGS_ALARM_RESET = 0x00
+
+# Channel: Clear input flags. Only with INPUTS. Each bit written as 1 clears a flag of INPUT_FLAGS; bits of
+# axes that are not there do nothing.
+CHANNEL_INPUT_CLEAR = 0x12
+CHANNEL_INPUT_CLEAR_LIMIT_LOW_LSB = 0
+CHANNEL_INPUT_CLEAR_LIMIT_LOW_BITS = 8
+CHANNEL_INPUT_CLEAR_LIMIT_LOW_RESET = 0x00
+CHANNEL_INPUT_CLEAR_LIMIT_HIGH_LSB = 8
+CHANNEL_INPUT_CLEAR_LIMIT_HIGH_BITS = 8
+CHANNEL_INPUT_CLEAR_LIMIT_HIGH_RESET = 0x00
+CHANNEL_INPUT_CLEAR_HOME_LSB = 16
+CHANNEL_INPUT_CLEAR_HOME_BITS = 8
+CHANNEL_INPUT_CLEAR_HOME_RESET = 0x00
+CHANNEL_INPUT_CLEAR_ALARM_LSB = 24
+CHANNEL_INPUT_CLEAR_ALARM_BITS = 8
+CHANNEL_INPUT_CLEAR_ALARM_RESET = 0x00
+CHANNEL_INPUT_CLEAR_DEFINED = 0xFFFFFFFF
+
+# Channel: Trigger. Only with INPUTS. Every write ends what was armed before. Refused with BAD_VALUE if
+# armed without a source, or for an axis that is not there.
+CHANNEL_TRIGGER = 0x13
+CHANNEL_TRIGGER_SOURCE_LSB = 0
+CHANNEL_TRIGGER_SOURCE_BITS = 3
+CHANNEL_TRIGGER_SOURCE_RESET = 0x0
+CHANNEL_TRIGGER_AXIS_LSB = 4
+CHANNEL_TRIGGER_AXIS_BITS = 3
+CHANNEL_TRIGGER_AXIS_RESET = 0x0
+CHANNEL_TRIGGER_FALLING_LSB = 8
+CHANNEL_TRIGGER_FALLING_BITS = 1
+CHANNEL_TRIGGER_FALLING_RESET = 0x0
+CHANNEL_TRIGGER_ACTION_LSB = 12
+CHANNEL_TRIGGER_ACTION_BITS = 2
+CHANNEL_TRIGGER_ACTION_RESET = 0x0
+CHANNEL_TRIGGER_ARM_LSB = 16
+CHANNEL_TRIGGER_ARM_BITS = 1
+CHANNEL_TRIGGER_ARM_RESET = 0x0
+CHANNEL_TRIGGER_DEFINED = 0x00013177
+
+# Channel: Trigger state. Only with INPUTS. State of the trigger and the probe, and the axes that stopped
+# the channel.
+CHANNEL_TRIGGER_STATE = 0x14
+CHANNEL_TRIGGER_STATE_ARMED_LSB = 0
+CHANNEL_TRIGGER_STATE_ARMED_BITS = 1
+CHANNEL_TRIGGER_STATE_ARMED_RESET = 0x0
+CHANNEL_TRIGGER_STATE_FIRED_LSB = 1
+CHANNEL_TRIGGER_STATE_FIRED_BITS = 1
+CHANNEL_TRIGGER_STATE_FIRED_RESET = 0x0
+CHANNEL_TRIGGER_STATE_PROBE_LSB = 2
+CHANNEL_TRIGGER_STATE_PROBE_BITS = 1
+CHANNEL_TRIGGER_STATE_PROBE_RESET = 0x0
+CHANNEL_TRIGGER_STATE_PROBE_FLAG_LSB = 3
+CHANNEL_TRIGGER_STATE_PROBE_FLAG_BITS = 1
+CHANNEL_TRIGGER_STATE_PROBE_FLAG_RESET = 0x0
+CHANNEL_TRIGGER_STATE_AXES_LSB = 8
+CHANNEL_TRIGGER_STATE_AXES_BITS = 8
+CHANNEL_TRIGGER_STATE_AXES_RESET = 0x00
+
+# Channel: Trigger clocks. Only with INPUTS. Clocks from arming to firing, or up to now; wraps.
+CHANNEL_TRIGGER_CLOCKS = 0x15
+CHANNEL_TRIGGER_CLOCKS_LSB = 0
+CHANNEL_TRIGGER_CLOCKS_BITS = 32
+CHANNEL_TRIGGER_CLOCKS_RESET = 0x00000000
+
+# Channel: Probe. Only with INPUTS. Polarity, kept over a reset of the core; and the flag of the probe.
+CHANNEL_PROBE = 0x16
+CHANNEL_PROBE_INVERTED_LSB = 0
+CHANNEL_PROBE_INVERTED_BITS = 1
+CHANNEL_PROBE_INVERTED_RESET = 0x0
+CHANNEL_PROBE_CLEAR_LSB = 1
+CHANNEL_PROBE_CLEAR_BITS = 1
+CHANNEL_PROBE_CLEAR_RESET = 0x0
+CHANNEL_PROBE_DEFINED = 0x00000003
+
 # Channel: Line queue. PUSH only: control, M, N_0 .. N_{AXES-1} for each line.
 CHANNEL_LINE = 0x20
 CHANNEL_LINE_LSB = 0
@@ -673,6 +1020,14 @@ CHANNEL_POSITION_COUNT = 8
 CHANNEL_POSITION_LSB = 0
 CHANNEL_POSITION_BITS = 32
 CHANNEL_POSITION_RESET = 0x00000000
+
+# Channel: Latched position. Only with INPUTS. Position of an axis in steps on the clock on which the
+# trigger fired, complete 130 clocks later. A ZERO less than 64 clocks after that clears it.
+CHANNEL_TRIGGER_POSITION_BASE = 0x48
+CHANNEL_TRIGGER_POSITION_COUNT = 8
+CHANNEL_TRIGGER_POSITION_POSITION_LSB = 0
+CHANNEL_TRIGGER_POSITION_POSITION_BITS = 32
+CHANNEL_TRIGGER_POSITION_POSITION_RESET = 0x00000000
 
 # Channel: where each axis has its registers.
 CHANNEL_AXIS_BASE = 0x80
@@ -729,6 +1084,32 @@ AXIS_ENABLE_BITS = 1
 AXIS_ENABLE_RESET = 0x0
 AXIS_ENABLE_DEFINED = 0x00000001
 
+# Axis: Inputs of the axis. Only with INPUTS. Polarities, and what limits and alarm do. Kept over a reset
+# of the core.
+AXIS_INPUTS = 0x5
+AXIS_INPUTS_LIMIT_LOW_INVERTED_LSB = 0
+AXIS_INPUTS_LIMIT_LOW_INVERTED_BITS = 1
+AXIS_INPUTS_LIMIT_LOW_INVERTED_RESET = 0x0
+AXIS_INPUTS_LIMIT_HIGH_INVERTED_LSB = 1
+AXIS_INPUTS_LIMIT_HIGH_INVERTED_BITS = 1
+AXIS_INPUTS_LIMIT_HIGH_INVERTED_RESET = 0x0
+AXIS_INPUTS_HOME_INVERTED_LSB = 2
+AXIS_INPUTS_HOME_INVERTED_BITS = 1
+AXIS_INPUTS_HOME_INVERTED_RESET = 0x0
+AXIS_INPUTS_ALARM_INVERTED_LSB = 3
+AXIS_INPUTS_ALARM_INVERTED_BITS = 1
+AXIS_INPUTS_ALARM_INVERTED_RESET = 0x0
+AXIS_INPUTS_LIMIT_SOFT_LSB = 4
+AXIS_INPUTS_LIMIT_SOFT_BITS = 1
+AXIS_INPUTS_LIMIT_SOFT_RESET = 0x0
+AXIS_INPUTS_ALARM_SOFT_LSB = 5
+AXIS_INPUTS_ALARM_SOFT_BITS = 1
+AXIS_INPUTS_ALARM_SOFT_RESET = 0x0
+AXIS_INPUTS_ALARM_DISABLES_LSB = 6
+AXIS_INPUTS_ALARM_DISABLES_BITS = 1
+AXIS_INPUTS_ALARM_DISABLES_RESET = 0x0
+AXIS_INPUTS_DEFINED = 0x0000007F
+
 # All registers, once each.
 # fmt: off
 TABLE = (
@@ -737,7 +1118,7 @@ TABLE = (
     )),
     Register("VERSION", "CORE", 0x001, 1, (
         Field("PATCH", 0, 8, "r", 0x00),
-        Field("MINOR", 8, 8, "r", 0x01),
+        Field("MINOR", 8, 8, "r", 0x02),
         Field("MAJOR", 16, 8, "r", 0x00),
     )),
     Register("PARAMETERS", "CORE", 0x002, 1, (
@@ -746,6 +1127,9 @@ TABLE = (
         Field("TICK_LOG2", 8, 5, "r", None),
         Field("LINE_QUEUE_LOG2", 16, 5, "r", None),
         Field("RAMP_QUEUE_LOG2", 24, 5, "r", None),
+        Field("INPUTS", 29, 1, "r", None),
+        Field("ENCODERS", 30, 1, "r", None),
+        Field("OUTPUTS", 31, 1, "r", None),
     )),
     Register("RUN", "CORE", 0x003, 1, (
         Field("RUN", 0, 8, "rw", 0x00),
@@ -764,6 +1148,19 @@ TABLE = (
         Field("BUSY", 16, 8, "r", 0x00),
         Field("BAD_VALUE", 24, 8, "r", 0x00),
     )),
+    Register("INPUT_FILTER", "CORE", 0x010, 1, (
+        Field("FILTER", 0, 16, "rw", 0x0000),
+    ), "inputs"),
+    Register("WATCHDOG", "CORE", 0x011, 1, (
+        Field("STOP_AFTER", 0, 10, "rw", 0x000),
+        Field("DISABLE_AFTER", 10, 10, "rw", 0x000),
+    ), "inputs"),
+    Register("ESTOP", "CORE", 0x012, 1, (
+        Field("PRESSED", 0, 1, "r", 0x0),
+    ), "inputs"),
+    Register("ESTOP_CLEAR", "CORE", 0x013, 1, (
+        Field("CLEAR", 0, 1, "w", 0x0),
+    ), "inputs"),
     Register("COSINE", "CORE", 0xD00, 256, (
         Field("POINT", 0, 16, "w", None),
     )),
@@ -794,10 +1191,10 @@ TABLE = (
     Register("CHANNEL_STATE", "CHANNEL", 0x08, 1, (
         Field("STATE", 0, 3, "r", 0x0),
         Field("QUIET", 3, 1, "r", 0x1),
-        Field("CAUSE", 4, 3, "r", 0x0),
-        Field("STOPPING", 7, 1, "r", 0x0),
+        Field("CAUSE", 4, 4, "r", 0x0),
         Field("OVERRUN", 8, 8, "r", 0x00),
-        Field("DRAINED", 16, 16, "r", 0x0000),
+        Field("STOPPING", 16, 1, "r", 0x0),
+        Field("DRAINED", 17, 15, "r", 0x0000),
     )),
     Register("CHANNEL_RATE", "CHANNEL", 0x09, 1, (
         Field("RATE", 0, 17, "r", 0x10000),
@@ -809,6 +1206,45 @@ TABLE = (
     Register("CHANNEL_VELOCITY", "CHANNEL", 0x0B, 1, (
         Field("VELOCITY", 0, 32, "r", 0x00000000),
     )),
+    Register("CHANNEL_INPUT_LEVELS", "CHANNEL", 0x10, 1, (
+        Field("LIMIT_LOW", 0, 8, "r", 0x00),
+        Field("LIMIT_HIGH", 8, 8, "r", 0x00),
+        Field("HOME", 16, 8, "r", 0x00),
+        Field("ALARM", 24, 8, "r", 0x00),
+    ), "inputs"),
+    Register("CHANNEL_INPUT_FLAGS", "CHANNEL", 0x11, 1, (
+        Field("LIMIT_LOW", 0, 8, "r", 0x00),
+        Field("LIMIT_HIGH", 8, 8, "r", 0x00),
+        Field("HOME", 16, 8, "r", 0x00),
+        Field("ALARM", 24, 8, "r", 0x00),
+    ), "inputs"),
+    Register("CHANNEL_INPUT_CLEAR", "CHANNEL", 0x12, 1, (
+        Field("LIMIT_LOW", 0, 8, "w", 0x00),
+        Field("LIMIT_HIGH", 8, 8, "w", 0x00),
+        Field("HOME", 16, 8, "w", 0x00),
+        Field("ALARM", 24, 8, "w", 0x00),
+    ), "inputs"),
+    Register("CHANNEL_TRIGGER", "CHANNEL", 0x13, 1, (
+        Field("SOURCE", 0, 3, "w", 0x0),
+        Field("AXIS", 4, 3, "w", 0x0),
+        Field("FALLING", 8, 1, "w", 0x0),
+        Field("ACTION", 12, 2, "w", 0x0),
+        Field("ARM", 16, 1, "w", 0x0),
+    ), "inputs"),
+    Register("CHANNEL_TRIGGER_STATE", "CHANNEL", 0x14, 1, (
+        Field("ARMED", 0, 1, "r", 0x0),
+        Field("FIRED", 1, 1, "r", 0x0),
+        Field("PROBE", 2, 1, "r", 0x0),
+        Field("PROBE_FLAG", 3, 1, "r", 0x0),
+        Field("AXES", 8, 8, "r", 0x00),
+    ), "inputs"),
+    Register("CHANNEL_TRIGGER_CLOCKS", "CHANNEL", 0x15, 1, (
+        Field("TRIGGER_CLOCKS", 0, 32, "r", 0x00000000),
+    ), "inputs"),
+    Register("CHANNEL_PROBE", "CHANNEL", 0x16, 1, (
+        Field("INVERTED", 0, 1, "w", 0x0),
+        Field("CLEAR", 1, 1, "w", 0x0),
+    ), "inputs"),
     Register("CHANNEL_LINE", "CHANNEL", 0x20, 1, (
         Field("LINE", 0, 32, "w", None),
     )),
@@ -818,6 +1254,9 @@ TABLE = (
     Register("CHANNEL_POSITION", "CHANNEL", 0x40, 8, (
         Field("POSITION", 0, 32, "r", 0x00000000),
     )),
+    Register("CHANNEL_TRIGGER_POSITION", "CHANNEL", 0x48, 8, (
+        Field("POSITION", 0, 32, "r", 0x00000000),
+    ), "inputs"),
     Register("AXIS_PINS", "AXIS", 0x0, 1, (
         Field("STEP_INVERTED", 1, 1, "w", 0x0),
         Field("DIRECTION_INVERTED", 2, 1, "w", 0x0),
@@ -838,5 +1277,14 @@ TABLE = (
     Register("AXIS_ENABLE", "AXIS", 0x4, 1, (
         Field("ENABLE", 0, 1, "w", 0x0),
     )),
+    Register("AXIS_INPUTS", "AXIS", 0x5, 1, (
+        Field("LIMIT_LOW_INVERTED", 0, 1, "w", 0x0),
+        Field("LIMIT_HIGH_INVERTED", 1, 1, "w", 0x0),
+        Field("HOME_INVERTED", 2, 1, "w", 0x0),
+        Field("ALARM_INVERTED", 3, 1, "w", 0x0),
+        Field("LIMIT_SOFT", 4, 1, "w", 0x0),
+        Field("ALARM_SOFT", 5, 1, "w", 0x0),
+        Field("ALARM_DISABLES", 6, 1, "w", 0x0),
+    ), "inputs"),
 )
 # fmt: on

@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: MIT
+ * What the inputs of all channels share: the tick of the filter, e-stop, watchdog. See rtl/passo_machine.v,
+ * rtl/passo_estop.v and rtl/passo_watchdog.v.
+ */
+#include "passo_model.h"
+#include "passo_words.h"
+
+static const uint32_t UNIT_CLOCKS = 0x10000;
+
+void passo_machine_reset(struct passo_machine *machine)
+{
+	*machine = (struct passo_machine){.watchdog_fed = true};
+}
+
+void passo_machine_restart(struct passo_machine *machine, const struct passo_machine *before)
+{
+	passo_machine_reset(machine);
+	machine->filter = before->filter;
+	machine->estop_pressed = before->estop_pressed;
+	machine->estop_released = before->estop_released;
+	machine->estop_seen = before->estop_seen;
+}
+
+static void clock_estop(struct passo_machine *machine, bool estop_n, bool clear)
+{
+	/* asynchronous: it is pressed before the clock */
+	const bool pressed = machine->estop_pressed || !estop_n;
+
+	if (!estop_n)
+		machine->estop_pressed = true;
+	else if ((machine->estop_released & 2u) != 0u && clear)
+		machine->estop_pressed = false;
+	machine->estop_released = estop_n ? (uint8_t)((machine->estop_released << 1 | 1) & 3) : 0u;
+	machine->estop_seen = (uint8_t)((machine->estop_seen << 1 | (pressed ? 1 : 0)) & 3);
+}
+
+static void begin_units(struct passo_machine *machine, uint16_t units)
+{
+	machine->watchdog_count = units;
+	machine->watchdog_unit = 0;
+}
+
+static void clock_watchdog(struct passo_machine *machine, bool feed, bool moving)
+{
+	const uint16_t stop_after = machine->watchdog_stop_after;
+	const uint16_t disable_after = machine->watchdog_disable_after;
+	const bool fed = machine->watchdog_fed, stop = machine->watchdog_stop;
+	const bool over = machine->watchdog_count == 0u && !fed;
+
+	machine->watchdog_fed = feed;
+	machine->watchdog_unit = (machine->watchdog_unit + 1u) % UNIT_CLOCKS;
+	if (machine->watchdog_unit == 0u && machine->watchdog_count != 0u)
+		machine->watchdog_count--;
+	if (over && !stop && stop_after != 0u && moving) {
+		machine->watchdog_stop = true;
+		begin_units(machine, disable_after);
+	}
+	if (over && stop && disable_after != 0u)
+		machine->watchdog_disable = true;
+	if (fed) {
+		machine->watchdog_stop = machine->watchdog_disable = false;
+		begin_units(machine, stop_after);
+	}
+}
+
+void passo_machine_clock(struct passo_machine *machine, const struct passo_bus *bus,
+    const struct passo_inputs *inputs, bool moving)
+{
+	const bool clears = bus->write && bus->address == PASSO_ADDRESS_ESTOP_CLEAR && (bus->data & 1u) != 0u;
+
+	machine->tick = machine->count <= 1u;
+	machine->count = machine->count <= 1u ? machine->filter : (uint16_t)(machine->count - 1u);
+	clock_estop(machine, inputs->estop_n, clears || inputs->rst);
+	clock_watchdog(machine, bus->write || bus->read, moving);
+	if (bus->write && bus->address == PASSO_ADDRESS_INPUT_FILTER && !inputs->rst)
+		machine->filter = (uint16_t)bus->data;
+	if (bus->write && bus->address == PASSO_ADDRESS_WATCHDOG) {
+		const struct passo_watchdog word = passo_unpack_watchdog(bus->data);
+		machine->watchdog_stop_after = word.stop_after;
+		machine->watchdog_disable_after = word.disable_after;
+	}
+}
+
+bool passo_machine_register(const struct passo_machine *machine, uint16_t address, uint32_t *value)
+{
+	switch (address) {
+	case PASSO_ADDRESS_INPUT_FILTER:
+		*value = machine->filter;
+		return true;
+	case PASSO_ADDRESS_WATCHDOG:
+		*value = passo_pack_watchdog(&(struct passo_watchdog){
+		    .stop_after = machine->watchdog_stop_after,
+		    .disable_after = machine->watchdog_disable_after,
+		});
+		return true;
+	case PASSO_ADDRESS_ESTOP:
+		*value = (uint32_t)machine->estop_seen >> 1;
+		return true;
+	case PASSO_ADDRESS_ESTOP_CLEAR:
+		*value = 0;
+		return true;
+	default:
+		return false;
+	}
+}
+
+uint8_t passo_machine_check(const struct passo_bus *bus)
+{
+	switch (bus->address) {
+	case PASSO_ADDRESS_INPUT_FILTER:
+		return (bus->data & ~PASSO_INPUT_FILTER_DEFINED) != 0u ? PASSO_VERDICT_BAD_VALUE
+		                                                       : PASSO_VERDICT_OK;
+	case PASSO_ADDRESS_WATCHDOG:
+		return (bus->data & ~PASSO_WATCHDOG_DEFINED) != 0u ? PASSO_VERDICT_BAD_VALUE
+		                                                   : PASSO_VERDICT_OK;
+	case PASSO_ADDRESS_ESTOP_CLEAR:
+		return (bus->data & ~PASSO_ESTOP_CLEAR_DEFINED) != 0u ? PASSO_VERDICT_BAD_VALUE
+		                                                      : PASSO_VERDICT_OK;
+	default:
+		return PASSO_VERDICT_READ_ONLY;
+	}
+}
+
+uint64_t passo_machine_quiet(
+    const struct passo_machine *machine, const struct passo_inputs *inputs, bool moving)
+{
+	const bool pressed = machine->estop_pressed;
+	const uint8_t seen = pressed ? 3u : 0u, released = inputs->estop_n ? 3u : 0u;
+	const bool over = machine->watchdog_count == 0u;
+	const bool stops = over && !machine->watchdog_stop && machine->watchdog_stop_after != 0u && moving;
+	const bool disables = over && machine->watchdog_stop && machine->watchdog_disable_after != 0u
+	                   && !machine->watchdog_disable;
+
+	if (machine->watchdog_fed || stops || disables || machine->estop_seen != seen
+	    || machine->estop_released != released || (!inputs->estop_n && !pressed))
+		return 0;
+	/* up to the clock before the end of a unit that counts */
+	return over ? UINT64_MAX : (uint64_t)UNIT_CLOCKS - 1u - machine->watchdog_unit;
+}
+
+void passo_machine_skip(struct passo_machine *machine, uint64_t clocks)
+{
+	const uint64_t period = machine->filter > 1u ? machine->filter : 1u;
+
+	machine->watchdog_unit = (uint32_t)((machine->watchdog_unit + clocks) % UNIT_CLOCKS);
+	/* after a tick of this count, the next one is every `period` clocks */
+	const uint64_t first = machine->count > 1u ? machine->count : 1u; /* clocks to the next tick */
+	if (clocks < first) {
+		machine->tick = false;
+		machine->count = (uint16_t)(machine->count - clocks);
+		return;
+	}
+	const uint64_t since = (clocks - first) % period;
+	machine->tick = since == 0u;
+	machine->count = (uint16_t)(machine->filter - since);
+}

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// E-stop: a latch on an asynchronous input.
+//
+// Promise: `pressed` is 1 from the moment that `estop_n` falls, without a clock, and stays 1 until `clear` comes (or
+// rst) with `estop_n` high for at least two clocks. `stop` is `pressed`, synchronised: 2 clocks later.
+`resetall
+`timescale 1ns / 1ps
+`default_nettype none
+
+module passo_estop (
+  input  wire clk,
+  input  wire rst,
+  input  wire estop_n,
+  input  wire clear,
+  output reg  pressed,
+  output wire stop
+);
+
+  reg [1:0] released;  // synchronised: estop_n is high
+  (* async_reg = "true" *)
+  reg [1:0] seen;
+
+  assign stop = seen[1];
+
+  always @(posedge clk or negedge estop_n)
+    if (!estop_n) released <= 2'b00;
+    else released <= {released[0], 1'b1};
+
+  always @(posedge clk or negedge estop_n)
+    if (!estop_n) pressed <= 1'b1;
+    else if (released[1] && (clear || rst)) pressed <= 1'b0;
+
+  always @(posedge clk) seen <= {seen[0], pressed};
+
+  initial begin
+    pressed  = 1'b0;
+    released = 2'b00;
+    seen     = 2'b00;
+  end
+
+`ifdef FORMAL
+  `include "passo_estop_formal.vh"
+`endif
+
+endmodule
+`resetall

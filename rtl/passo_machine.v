@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+// What the inputs of all channels share: the tick of the filter, e-stop, watchdog, and their registers.
+//
+// Promise: a strobe is answered one clock later, for one clock; the answer is 0 unless one of these registers is
+// addressed. `tick` comes every `filter` clocks; 0 counts as 1.
+`resetall
+`timescale 1ns / 1ps
+`default_nettype none
+
+module passo_machine (
+  input  wire        clk,
+  input  wire        rst,
+  // bus
+  input  wire        bus_check,
+  input  wire        bus_write,
+  input  wire        bus_read,
+  input  wire        bus_push,
+  input  wire [11:0] bus_address,
+  input  wire [19:0] bus_data,
+  input  wire [ 4:0] bus_msb,
+  output reg         claim,
+  output reg  [ 3:0] refusal,
+  output wire [31:0] read_data,
+  // pin
+  input  wire        estop_n,
+  // channels
+  input  wire        moving,         // a motion runs
+  output reg         tick,
+  output reg  [15:0] filter,
+  output wire        pressed,        // asynchronous: take all enables away
+  output wire        estop,          // hard stop
+  output wire        watchdog_stop,
+  output wire        disable_drives
+);
+
+  `include "passo_registers.vh"
+
+  // Decoded one clock ahead of the strobe: the address is stable by then.
+  reg         known;
+  reg         bad_value;
+  reg  [ 1:0] number;
+  reg  [ 2:0] reads;
+  wire        write = bus_write & known;
+  wire        write_filter = write && number == ADDRESS_INPUT_FILTER[1:0];
+  wire        write_watchdog = write && number == ADDRESS_WATCHDOG[1:0];
+  wire        write_clear = write && number == ADDRESS_ESTOP_CLEAR[1:0] && bus_data[0];
+  wire [19:0] watchdog;
+
+  assign read_data = (reads[ADDRESS_INPUT_FILTER[1:0]] ? {16'd0, filter} : 32'd0)
+                     | (reads[ADDRESS_WATCHDOG[1:0]] ? {12'd0, watchdog} : 32'd0)
+                     | (reads[ADDRESS_ESTOP[1:0]] ? {31'd0, estop} : 32'd0);
+
+  integer i;
+  always @(posedge clk) begin
+    known <= bus_address[11:2] == ADDRESS_INPUT_FILTER[11:2];
+    number <= bus_address[1:0];
+    bad_value <= number == ADDRESS_INPUT_FILTER[1:0] ? bus_msb > 5'd15 :
+                 number == ADDRESS_WATCHDOG[1:0]     ? bus_msb > 5'd19 : bus_msb != 5'd0;
+    claim <= known & (bus_check | bus_read);
+    refusal <= !known    ? VERDICT_OK :
+               bus_read  ? (number == ADDRESS_ESTOP_CLEAR[1:0] ? VERDICT_BAD_OPERATION : VERDICT_OK) :
+               !bus_check ? VERDICT_OK :
+               bus_push  ? VERDICT_BAD_OPERATION :
+               number == ADDRESS_ESTOP[1:0] ? VERDICT_READ_ONLY :
+               bad_value ? VERDICT_BAD_VALUE : VERDICT_OK;
+    for (i = 0; i < 3; i = i + 1) reads[i] <= bus_read && known && number == i[1:0];
+    if (rst) begin
+      claim   <= 1'b0;
+      refusal <= VERDICT_OK;
+    end
+  end
+
+  // Filter: it describes the machine and is kept over a reset.
+  reg [15:0] count;
+
+  always @(posedge clk) begin
+    tick  <= count[15:1] == 15'd0;
+    count <= count[15:1] == 15'd0 ? filter : count - 16'd1;
+    if (write_filter && !rst) filter <= bus_data[15:0];
+    if (rst) begin
+      tick  <= 1'b0;
+      count <= 16'd0;
+    end
+  end
+
+  initial filter = INPUT_FILTER_FILTER_RESET;
+
+  passo_estop u_estop (
+    .clk    (clk),
+    .rst    (rst),
+    .estop_n(estop_n),
+    .clear  (write_clear),
+    .pressed(pressed),
+    .stop   (estop)
+  );
+
+  passo_watchdog u_watchdog (
+    .clk           (clk),
+    .rst           (rst),
+    .write         (write_watchdog),
+    .bus_data      (bus_data),
+    .feed          (bus_write | bus_read),
+    .moving        (moving),
+    .stop          (watchdog_stop),
+    .disable_drives(disable_drives),
+    .settings      (watchdog)
+  );
+
+endmodule
+`resetall
