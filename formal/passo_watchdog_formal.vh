@@ -38,10 +38,10 @@ wire [31:0] f_left = ({22'd0, count} << UNIT_LOG2) - {{(32 - UNIT_LOG2) {1'b0}},
 always @(posedge clk)
   if (f_begun && $past(f_begun)) begin
     assert (unit_ends == &unit);
-    if (!fed && !stop && f_age <= f_stop_time && f_small)
+    if (!fed && !stop && f_age <= f_stop_time)
       assert (count != 10'd0 ? f_left == f_stop_time - f_age : f_age == f_stop_time);
     if (!fed && !stop && f_age > f_stop_time) assert (count == 10'd0);
-    if (!fed && stop && f_stopped <= f_disable_time && f_small)
+    if (!fed && stop && f_stopped <= f_disable_time)
       assert (count != 10'd0 ? f_left == f_disable_time - f_stopped : f_stopped == f_disable_time);
     if (stop && !fed) assert (stop_after != 10'd0);
     if (stop && !fed && f_stopped > f_disable_time) assert (count == 10'd0);
