@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Inputs of the machine: limits, alarms, trigger, e-stop, watchdog. Every clock is compared with the model."""
+"""Inputs of the machine: limits, alarms, trigger, e-stop, watchdog. The model agrees on every clock."""
 
 from contextlib import suppress
 
@@ -82,7 +82,7 @@ def positions_at(core: Core, clock: int) -> list[int]:
 
 @core_test
 def a_hard_limit_ends_steps_and_lets_the_axis_be_driven_off(core: Core) -> None:
-    """No step towards it begins; the axis is named; a fresh motion towards it is refused, one away is made."""
+    """No step towards it begins; the axis is named; a motion towards it is refused, one away is made."""
     channel = jog(core)
     pressed = core.clock
     core.set("limit_high", 1)
@@ -133,7 +133,7 @@ def a_soft_limit_makes_the_steps_of_the_stop_and_none_after(core: Core) -> None:
 
 @core_test
 def an_alarm_stops_and_takes_the_enable_away(core: Core) -> None:
-    """Hard, or soft if wanted; the channel does not leave STOPPED while it is active; EN stays off after it."""
+    """Hard, or soft if wanted; the channel stays STOPPED while it is active; EN stays off after it."""
     core.channel().pins(PinTiming())
     set_inputs(core.channel(), 1, alarm_disables=True)
     channel = jog(core)
@@ -340,9 +340,8 @@ def random_events_match_the_model(core: Core) -> None:
     core.link.write(r.ADDRESS_RUN, 1)
     for _ in range(60):
         with suppress(RefusedError):
-            channel.lines(
-                Line(40, tuple(random.randint(-40, 40) for _ in range(core.axes)), endless=random.random() < 0.7)
-            )
+            steps = tuple(random.randint(-40, 40) for _ in range(core.axes))
+            channel.lines(Line(40, steps, endless=random.random() < 0.7))
             channel.ramps(Ramp(ONE // random.randint(2, 60), random.randint(0, 3)), Ramp(ONE // 30, 500))
         for _ in range(3):
             with suppress(RefusedError):

@@ -21,6 +21,8 @@ INPUTS = (
     "pins_written",
     "direction",
     "drop",
+    "closed_low",
+    "closed_high",
     "clear",
     "timing_written",
     "both_edges",

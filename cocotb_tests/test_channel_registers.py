@@ -26,7 +26,7 @@ SETTINGS = {
 }
 COMMANDS = ("command_stop", "command_abort", "command_clear", "command_zero")
 STATES = {
-    "state": 3, "quiet": 1, "cause": 3, "stopping": 1, "overrun": AXES, "drained": 16, "rate": 17,
+    "state": 3, "quiet": 1, "cause": 4, "stopping": 1, "overrun": AXES, "drained": 15, "rate": 17,
     "velocity": 32, "line_room": LINE_QUEUE_LOG2 + 1, "ramp_room": RAMP_QUEUE_LOG2 + 1,
 }  # fmt: skip
 
@@ -187,9 +187,9 @@ async def states_are_read_as_they_are(dut: HierarchyObject) -> None:
             getattr(dut, name).value = value
         v = values
         words = {
-            STATE: v["drained"] << 16
+            STATE: v["drained"] << r.CHANNEL_STATE_DRAINED_LSB
             | v["overrun"] << 8
-            | v["stopping"] << 7
+            | v["stopping"] << r.CHANNEL_STATE_STOPPING_LSB
             | v["cause"] << 4
             | v["quiet"] << 3
             | v["state"],

@@ -58,7 +58,7 @@ Step = tuple[int, int, int]  # clock, axis, direction bit
 class Lines(Bench):
     """The module under test, what it made and what it should have made."""
 
-    INPUTS = (*PushBus.INPUTS, "start", "stopped", "release_line", "substep")
+    INPUTS = (*PushBus.INPUTS, "start", "stopped", "release_line", "end_endless", "substep")
 
     def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
         super().__init__(dut, clocks)

@@ -18,13 +18,13 @@ READ = 12  # address to position
 
 @pytest.mark.parametrize("axes", [1, 5, 8])
 def test_positions(simulator: str, axes: int) -> None:
-    run(__name__, "passo_positions", {"AXES": axes}, simulator)
+    run(__name__, "passo_positions", {"AXES": axes, "LATCH": 1}, simulator)
 
 
 class Positions(Bench):
     """The module under test, and what its positions should be."""
 
-    INPUTS = ("step_made", "step_direction", "zero", "snapshot", "address")
+    INPUTS = ("step_made", "step_direction", "zero", "snapshot", "latch", "address")
 
     def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
         super().__init__(dut, clocks)
@@ -134,3 +134,26 @@ async def a_snapshot_waits_for_a_zero(dut: HierarchyObject) -> None:
             await positions.clock([0] * positions.axes)
         await positions.clock([0] * positions.axes, zero=True)
         await positions.snapshot(random, 0.5, delay=1)
+
+
+@cocotb.test()
+async def a_latch_keeps_the_positions_of_its_clock(dut: HierarchyObject) -> None:
+    """At any clock of a round and in the fastest motion, either way; a snapshot after it is right as well."""
+    random = rng("positions, latch")
+    positions = await Positions.begin(dut)
+    for at in range(0, ROUND, 3):
+        direction = random.choice((-1, 1))
+        for n in range(300 + at):
+            await positions.clock([direction * (n % 2)] * positions.axes)
+        expected = list(positions.now)
+        dut.latch.value = 1
+        await positions.clock([direction] * positions.axes)
+        dut.latch.value = 0
+        for n in range(2 * ROUND + 20):
+            await positions.clock([direction * (n % 2)] * positions.axes)
+        for axis in range(positions.axes):
+            dut.address.value = 8 + axis
+            for n in range(READ + 1):
+                await positions.clock([direction * (n % 2)] * positions.axes)
+            assert dut.position.value.to_signed() == expected[axis], f"axis {axis}, clock {at}"
+        await positions.snapshot(random, 0.5)

@@ -1,6 +1,28 @@
 // SPDX-License-Identifier: MIT
 // Promises of the axis, at its ports; included at the end of passo_axis.v.
 
+`ifdef CLOSED
+// --- Limits: two clocks after a direction is closed, the step that leaves then was the last
+reg [2:0] f_age = 3'd0;
+always @(posedge clk) begin
+  if (f_age != 3'd7) f_age <= f_age + 3'd1;
+  if (f_age == 3'd0) closed_reset : assume (rst);
+  if (f_age > 3'd3 && !rst && step_made) begin
+    if (step_direction) none_into_closed_low : assert (!$past(closed_low, 2));
+    else none_into_closed_high : assert (!$past(closed_high, 2));
+  end
+end
+`ifdef INVARIANTS
+always @(posedge clk)
+  if (f_age > 3'd1 && !rst && !$past(rst)) begin
+    assert (waits == 4'd0 || waits == 4'd1 || waits == 4'd3 || waits == 4'd7 || waits == 4'd15);
+    assert (!waits_up || (waits[0] && !waiting[0] && !$past(closed_high)));
+    assert (!waits_down || (waits[0] && waiting[0] && !$past(closed_low)));
+  end
+`endif
+`else
+always @(posedge clk) axis_open : assume (!closed_low && !closed_high);
+
 // --- Assumptions: a reset at the beginning and at any time. Polarities and mode change one clock after
 // `pins_written`, which comes only while `quiet`, with no step request and no change of direction around it. With
 // WRITTEN the timings change at any time, one clock after `timing_written`; else they are constant.
@@ -343,4 +365,5 @@ always @(posedge clk)
       end
     end else assert (!f_active && f_waiting_count == 3'd0 && !f_request[1] && f_waited == 20'd0 && f_still <= 20'd1);
   end
+`endif
 `endif

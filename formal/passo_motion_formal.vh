@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Promises of the motion states; included at the end of passo_motion.v.
 
-// --- Assumption: a reset at the beginning, then any inputs
+// --- Assumptions: a reset at the beginning, then any inputs; requests of inputs have a cause
 reg f_started = 1'b0;
 wire f_begun = ~rst;
 always @(posedge clk) begin
   f_started <= 1'b1;
   if (!f_started) motion_reset : assume (rst);
+  motion_causes : assume (input_hard_cause != CAUSE_NONE && input_soft_cause != CAUSE_NONE);
 end
 
-wire f_stop_hard = command_abort | (moving & (step_overrun | line_underrun));
+wire f_abort = command_abort | estop | input_hard;
+wire f_stop_hard = f_abort | (moving & (step_overrun | line_underrun));
 
 // --- How long RUN has lasted
 reg [3:0] f_run_age;
@@ -32,9 +34,11 @@ end
 // --- After ABORT steps may be requested until the clock after `stopped`, which ends the substeps in flight
 reg f_aborted = 1'b0;  // and steps may still come
 reg f_stopped_q = 1'b0;
-wire f_abort_lasts = command_abort | (f_aborted & ~f_stopped_q);
+reg [3:0] f_soft = 4'd0;  // cause of the last soft request of an input
+wire f_abort_lasts = f_abort | (f_aborted & ~f_stopped_q);
 always @(posedge clk) begin
   f_aborted   <= f_abort_lasts & ~rst;
+  if (!stopping && !command_stop && input_soft) f_soft <= input_soft_cause;
   f_stopped_q <= stopped;
 end
 
@@ -57,6 +61,7 @@ always @(posedge clk)
   if (f_begun && $past(f_begun)) begin
     if ($past(stopped)) stopped_until_clear : assert (stopped == !$past(command_clear));
     if ($past(stopped) && stopped) cause_stays : assert (cause == $past(cause));
+    if ($past(input_soft) && !$past(stopped)) request_is_heard : assert (stopping || stopped);
     if ($past(command_stop) && !$past(stopped)) stop_is_heard : assert (stopping || stopped);
     if ($past(stopping)) stop_is_kept : assert (stopping || stopped);
     if (state != $past(state) && !stopped)
@@ -74,9 +79,9 @@ always @(posedge clk)
         default:
         drain_comes_from : assert ($past(state == STATE_SETTLE) && $past(!line_ended && !line_endless, 2));
       endcase
-    if ($past(begin_profile) && !$past(command_abort, 2) && !$past(stopping, 2))
+    if ($past(begin_profile) && !$past(f_abort, 2) && !$past(stopping, 2))
       begins_when_told : assert (state == STATE_RUN || state == STATE_SETTLE);
-    if (drop) drops_only_after_abort : assert (command_abort || $past(command_abort) || $past(command_abort, 2));
+    if (drop) drops_only_after_abort : assert (f_abort || $past(f_abort) || $past(f_abort, 2));
     if ($past(hold)) none_prepared_in_hold : assert (!prepare);
     if ($past(hold) && $past(hold && f_begun, 2) && !$past(occupied)) none_begins_in_hold : assert (!occupied);
     if (drain && !$past(drain)) drains_after_settling : assert (f_uncounted >= 3'd5);
@@ -95,18 +100,24 @@ always @(posedge clk)
 always @(posedge clk)
   if (f_begun && $past(f_begun) && $past(f_begun, 2)) begin
     if (!$past(stopped) && !$past(stopped, 2)) begin
-      if ($past(command_abort, 2)) abort_stops : assert (stopped && cause == CAUSE_ABORT);
+      if ($past(f_abort, 2)) abort_stops : assert (stopped);
+      if ($past(stopping, 2) && stopped) first_cause_stays : assert (cause == $past(soft_cause, 2));
+      if ($past(estop && !stopping, 2)) estop_is_the_cause : assert (cause == CAUSE_ESTOP);
+      if ($past(command_abort && !estop && !stopping, 2)) abort_is_the_cause : assert (cause == CAUSE_ABORT);
+      if ($past(input_hard && !command_abort && !estop && !(moving && step_overrun) && !stopping, 2))
+        input_is_the_cause : assert (cause == $past(input_hard_cause, 2));
       if ($past(f_stop_hard, 2)) fault_stops : assert (stopped);
-      if ($past(moving && step_overrun && !command_abort, 2))
+      if ($past(moving && step_overrun && !command_abort && !estop && !stopping, 2))
         overrun_is_the_cause : assert (cause == CAUSE_STEP_OVERRUN);
-      if ($past(moving && line_underrun && !step_overrun && !command_abort, 2))
+      if ($past(moving && line_underrun && !step_overrun && !f_abort && !stopping, 2))
         underrun_is_the_cause : assert (cause == CAUSE_LINE_UNDERRUN);
       if ($past(stopping, 2) && ($past(!moving, 2) || ($past(rate_is_zero, 3) && $past(f_begun, 3))))
         stop_ends_in_stopped : assert (stopped);
     end
     if (stopped && !$past(stopped)) begin
       stopped_for_a_reason : assert ($past(f_stop_hard, 2) || $past(stopping, 2));
-      if (!$past(f_stop_hard, 2)) soft_cause_told : assert (cause == CAUSE_STOP || cause == CAUSE_RAMP_UNDERRUN);
+      if (!$past(f_stop_hard, 2))
+        soft_cause_told : assert (cause == CAUSE_STOP || cause == CAUSE_RAMP_UNDERRUN || cause == f_soft);
     end
   end
 
@@ -116,7 +127,9 @@ wire [2:0] f_states = {2'd0, idle} + {2'd0, preparing} + {2'd0, armed} + {2'd0, 
 always @(posedge clk)
   if (f_begun) begin
     assert (f_states == 3'd1);
-    assert (soft_cause == CAUSE_STOP || soft_cause == CAUSE_RAMP_UNDERRUN || !stopping);
+    assert (soft_cause == CAUSE_STOP || soft_cause == CAUSE_RAMP_UNDERRUN || soft_cause == f_soft || !stopping);
+    if (stopping) assert (soft_cause != CAUSE_NONE);
+    if (stop_due && !stopped) assert (cause_due != CAUSE_NONE);
     assert (!stopping || !stopped);
     if (state == STATE_RUN) assert (f_run_age >= 4'd6 ? count == 3'd6 : {1'b0, count} == f_run_age);
     assert ((!settled || state == STATE_SETTLE) && (!finished || settled));

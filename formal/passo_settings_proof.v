@@ -31,13 +31,16 @@ module passo_settings_proof (
 
   // of the state nothing is promised
   wire        quiet, stopping, overrun;
-  wire [ 2:0] state, cause;
+  wire [ 2:0] state;
+  wire [ 3:0] cause;
   wire [14:0] drained;
   wire [16:0] rate;
   wire [31:0] velocity;
   wire [ 8:0] line_room;
   wire [ 4:0] ramp_room;
   wire [ 3:0] lost;
+  wire        write_inputs;
+  wire        disable_axis;
 
   passo_channel_registers #(
     .AXES(1)

@@ -45,7 +45,7 @@ static void clock_watchdog(struct passo_machine *machine, bool feed, bool moving
 	const uint16_t stop_after = machine->watchdog_stop_after;
 	const uint16_t disable_after = machine->watchdog_disable_after;
 	const bool fed = machine->watchdog_fed, stop = machine->watchdog_stop;
-	const bool over = machine->watchdog_count == 0u && !fed;
+	const bool over = machine->watchdog_count == 0u;
 
 	machine->watchdog_fed = feed;
 	machine->watchdog_unit = (machine->watchdog_unit + 1u) % UNIT_CLOCKS;

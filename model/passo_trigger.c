@@ -63,6 +63,6 @@ void passo_trigger_write(struct passo_trigger *trigger, uint32_t data)
 	trigger->axis = word.axis;
 	trigger->action = (uint8_t)word.action;
 	trigger->falling = word.falling;
-	trigger->arming |= word.arm ? 1u : 0u;
+	trigger->arming = word.arm ? 1u : 0u;
 	trigger->armed = trigger->fired = trigger->latch = false;
 }

@@ -63,7 +63,7 @@ module passo_trigger #(
 
   always @(posedge clk) begin
     picked <= chosen;
-    arming <= {arming[0], write & bus_data[CHANNEL_TRIGGER_ARM_LSB]};
+    arming <= {arming[0] & ~write, write & bus_data[CHANNEL_TRIGGER_ARM_LSB]};
     latch  <= fires;
     armed  <= (armed & ~fires) | arming[1];
     fired  <= fired | fires;
