@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: MIT
+ * Outputs of a channel that are bound to the path. See rtl/passo_outputs.v.
+ */
+#include "passo_outputs.h"
+
+void passo_outputs_reset(struct passo_outputs_unit *outputs)
+{
+	*outputs = (struct passo_outputs_unit){.pwm = {.idle = true}};
+	passo_power_reset(&outputs->power);
+	passo_changes_reset(&outputs->changes);
+	passo_raster_reset(&outputs->raster);
+}
+
+bool passo_outputs_quiet(const struct passo_outputs_unit *outputs)
+{
+	return outputs->changes.empty;
+}
+
+static void clock_pwm(struct passo_outputs_unit *outputs, const struct passo_outputs_wires *wires)
+{
+	passo_pwm_clock(&outputs->pwm,
+	    &(struct passo_pwm_wires){
+		.go = outputs->lit && !outputs->still && !outputs->overflow && wires->running_next,
+		.restart = outputs->restart,
+		.power = outputs->now.power,
+		.proportional = outputs->now.proportional,
+		.step = wires->settings.pwm_step,
+		.cost = outputs->power.cost,
+	    });
+}
+
+/* The word in force, and the levels at the pins. */
+static void clock_word(struct passo_outputs_unit *outputs, const struct passo_outputs_wires *wires)
+{
+	const struct passo_changes *changes = &outputs->changes;
+	const struct passo_output_word *next = &changes->data.word;
+	struct passo_output_word *now = &outputs->now;
+	const bool differs = next->power != now->power || next->proportional != now->proportional;
+
+	outputs->levels = now->levels;
+	outputs->restart = changes->hit && outputs->differs;
+	outputs->differs = differs;
+	if (changes->hit) {
+		*now = *next;
+		outputs->lit = next->power != 0u;
+	}
+	if (!wires->running) {
+		now->power = 0;
+		outputs->lit = false;
+	}
+	if (wires->write_levels)
+		now->levels = (uint8_t)wires->bus.data;
+	outputs->still = wires->velocity == 0u || wires->rate == 0u;
+	outputs->overflow = (outputs->overflow || changes->overflow) && !wires->clear;
+	outputs->raster_empty = (outputs->raster_empty || outputs->raster.missed) && !wires->clear;
+}
+
+void passo_outputs_clock(struct passo_outputs_unit *outputs, const struct passo_outputs_wires *wires)
+{
+	const bool take = passo_raster_take(&outputs->raster, wires);
+	const bool change = take || (wires->substep && outputs->raster.first);
+	struct passo_output_word word = wires->word;
+
+	word.raster = false;
+	if (take)
+		word.power = (uint16_t)(passo_raster_value(&outputs->raster) * 0x101u);
+	clock_pwm(outputs, wires);
+	clock_word(outputs, wires);
+	passo_power_clock(&outputs->power, wires);
+	passo_raster_clock(&outputs->raster, wires);
+	passo_changes_clock(&outputs->changes, wires->stopped, wires->settings.lag, change, &word);
+	passo_compare_clock(&outputs->compare, wires);
+}
