@@ -19,7 +19,7 @@ void passo_changes_reset(struct passo_changes *changes)
 }
 
 void passo_changes_clock(struct passo_changes *changes, bool flush, uint16_t lag, bool change,
-    const struct passo_output_word *word)
+    const struct passo_line_output *word)
 {
 	const uint16_t reads = (uint16_t)((changes->read_place + (changes->hit ? 1u : 0u)) % TWICE_DEPTH);
 	const uint16_t write_place = changes->write_place;

@@ -51,6 +51,7 @@ struct passo_needs passo_channel_needs(const struct passo_channel *channel, cons
 	const uint8_t address = (uint8_t)bus->address;
 	const unsigned in_axes = (unsigned)address - PASSO_CHANNEL_AXIS_BASE;
 	const uint32_t command = address == PASSO_CHANNEL_COMMAND ? command_of(bus->data) : 0u;
+	const bool outputs = channel->has_outputs && passo_output_registers_need_quiet(address);
 	const bool pins = in_axes < channel->axes * PASSO_CHANNEL_AXIS_STRIDE
 	               && in_axes % PASSO_CHANNEL_AXIS_STRIDE == PASSO_AXIS_PINS;
 
@@ -58,7 +59,7 @@ struct passo_needs passo_channel_needs(const struct passo_channel *channel, cons
 		return (struct passo_needs){0};
 	return (struct passo_needs){
 	    .idle = (command >> PASSO_CHANNEL_COMMAND_CLEAR_LSB & 1u) != 0u,
-	    .quiet = pins || (command >> PASSO_CHANNEL_COMMAND_ZERO_LSB & 1u) != 0u,
+	    .quiet = pins || outputs || (command >> PASSO_CHANNEL_COMMAND_ZERO_LSB & 1u) != 0u,
 	    .motion = bus->push && address == PASSO_CHANNEL_RAMP
 	           && passo_ramp_queue_checks_now(&channel->ramp_queue, bus->data),
 	};
@@ -91,6 +92,8 @@ uint32_t passo_channel_registers_value(const struct passo_channel *channel, uint
 	case PASSO_CHANNEL_ROOM:
 		return passo_pack_channel_room(&(struct passo_channel_room){
 		    .line_room = channel->line_queue.room, .ramp_room = channel->ramp_queue.room});
+	case PASSO_CHANNEL_OUTPUT_STATE:
+		return passo_outputs_state(&channel->outputs);
 	case PASSO_CHANNEL_VELOCITY:
 		return channel->path.velocity_high << 8 | channel->path.velocity_low >> 16;
 	default:
@@ -113,6 +116,21 @@ static struct answer axis_answer(const struct passo_axis *axis, uint8_t address,
 	default:
 		return (struct answer){0};
 	}
+}
+
+static struct answer output_answer(const struct passo_channel *channel, const struct passo_bus *bus)
+{
+	const uint8_t address = (uint8_t)bus->address;
+
+	if (address == PASSO_CHANNEL_RASTER)
+		return write_only(
+		    bus->push ? passo_raster_refusal(&channel->outputs.raster, passo_channel_stopped(channel))
+		              : PASSO_VERDICT_BAD_OPERATION);
+	if (address == PASSO_CHANNEL_OUTPUT_STATE)
+		return read_late();
+	if (passo_output_registers_known(address))
+		return write_only(passo_output_registers_check(address, bus->data, channel->axes));
+	return (struct answer){0};
 }
 
 static struct answer channel_answer(
@@ -152,7 +170,7 @@ static struct answer channel_answer(
 	if (in_axes < channel->axes * PASSO_CHANNEL_AXIS_STRIDE)
 		return axis_answer(&channel->axis[in_axes / PASSO_CHANNEL_AXIS_STRIDE],
 		    (uint8_t)(in_axes % PASSO_CHANNEL_AXIS_STRIDE), bus->data);
-	return (struct answer){0};
+	return channel->has_outputs ? output_answer(channel, bus) : (struct answer){0};
 }
 
 struct passo_response passo_channel_respond(
@@ -166,6 +184,7 @@ struct passo_response passo_channel_respond(
 	response.claim = answer.known;
 	if (answer.known && bus->check)
 		response.refusal = bus->push && address != PASSO_CHANNEL_LINE && address != PASSO_CHANNEL_RAMP
+		                        && address != PASSO_CHANNEL_RASTER
 		                     ? PASSO_VERDICT_BAD_OPERATION
 		                     : answer.check;
 	if (answer.known && bus->read) {

@@ -3,6 +3,8 @@
  */
 #include "passo_outputs.h"
 
+#include <string.h>
+
 void passo_outputs_reset(struct passo_outputs_unit *outputs)
 {
 	*outputs = (struct passo_outputs_unit){.pwm = {.idle = true}};
@@ -14,6 +16,16 @@ void passo_outputs_reset(struct passo_outputs_unit *outputs)
 bool passo_outputs_quiet(const struct passo_outputs_unit *outputs)
 {
 	return outputs->changes.empty;
+}
+
+uint32_t passo_outputs_state(const struct passo_outputs_unit *outputs)
+{
+	return passo_pack_channel_output_state(&(struct passo_channel_output_state){
+	    .levels = outputs->levels,
+	    .raster_empty = outputs->raster_empty,
+	    .overflow = outputs->overflow,
+	    .raster_room = outputs->raster.room,
+	});
 }
 
 static void clock_pwm(struct passo_outputs_unit *outputs, const struct passo_outputs_wires *wires)
@@ -33,8 +45,8 @@ static void clock_pwm(struct passo_outputs_unit *outputs, const struct passo_out
 static void clock_word(struct passo_outputs_unit *outputs, const struct passo_outputs_wires *wires)
 {
 	const struct passo_changes *changes = &outputs->changes;
-	const struct passo_output_word *next = &changes->data.word;
-	struct passo_output_word *now = &outputs->now;
+	const struct passo_line_output *next = &changes->data.word;
+	struct passo_line_output *now = &outputs->now;
 	const bool differs = next->power != now->power || next->proportional != now->proportional;
 
 	outputs->levels = now->levels;
@@ -59,7 +71,7 @@ void passo_outputs_clock(struct passo_outputs_unit *outputs, const struct passo_
 {
 	const bool take = passo_raster_take(&outputs->raster, wires);
 	const bool change = take || (wires->substep && outputs->raster.first);
-	struct passo_output_word word = wires->word;
+	struct passo_line_output word = wires->word;
 
 	word.raster = false;
 	if (take)
@@ -70,4 +82,24 @@ void passo_outputs_clock(struct passo_outputs_unit *outputs, const struct passo_
 	passo_raster_clock(&outputs->raster, wires);
 	passo_changes_clock(&outputs->changes, wires->stopped, wires->settings.lag, change, &word);
 	passo_compare_clock(&outputs->compare, wires);
+}
+
+bool passo_outputs_steady(const struct passo_outputs_unit *outputs, const struct passo_outputs_wires *wires)
+{
+	struct passo_outputs_unit next = *outputs;
+
+	if (wires->running || outputs->compare.pin || !outputs->changes.empty)
+		return false;
+	passo_outputs_clock(&next, wires);
+	next.changes.now--;
+	next.changes.due--;
+	next.compare.timer--;
+	return memcmp(&next, outputs, sizeof next) == 0;
+}
+
+void passo_outputs_skip(struct passo_outputs_unit *outputs, uint64_t clocks)
+{
+	outputs->changes.now = (uint16_t)(outputs->changes.now + clocks);
+	outputs->changes.due = (uint16_t)(outputs->changes.due + clocks);
+	outputs->compare.timer = (uint16_t)(outputs->compare.timer + clocks);
 }

@@ -7,15 +7,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "passo_words.h"
+
 #define PASSO_CHANGES_DEPTH 256u
 #define PASSO_RASTER_DEPTH 256u /* words */
-
-/* The output word of a line; see rtl/passo_outputs.v. */
-struct passo_output_word {
-	uint16_t power;
-	uint8_t levels;
-	bool proportional, raster;
-};
 
 struct passo_output_settings {
 	uint16_t lag;
@@ -25,6 +20,11 @@ struct passo_output_settings {
 	uint8_t compare_axis;
 	uint16_t compare_width;
 	uint32_t compare_interval; /* signed */
+};
+
+struct passo_output_registers {
+	struct passo_output_settings settings;
+	bool write_levels, write_distance; /* the bus wrote one of them in the previous clock */
 };
 
 struct passo_pwm {
@@ -43,7 +43,7 @@ struct passo_power {
 
 struct passo_change {
 	uint16_t time;
-	struct passo_output_word word;
+	struct passo_line_output word;
 };
 
 struct passo_changes {
@@ -82,7 +82,7 @@ struct passo_raster_bus {
 struct passo_outputs_wires {
 	struct passo_raster_bus bus;
 	struct passo_output_settings settings;
-	struct passo_output_word word;
+	struct passo_line_output word;
 	bool write_distance, write_levels; /* with bus.data */
 	bool line_begins, substep;
 	bool stopped, clear, running, running_next;
@@ -96,7 +96,7 @@ struct passo_outputs_unit {
 	struct passo_changes changes;
 	struct passo_raster raster;
 	struct passo_compare compare;
-	struct passo_output_word now;
+	struct passo_line_output now;
 	bool lit, differs, restart, still;
 	bool overflow, raster_empty;
 	uint8_t levels; /* the pins */
@@ -115,7 +115,7 @@ void passo_power_clock(struct passo_power *power, const struct passo_outputs_wir
 
 void passo_changes_reset(struct passo_changes *changes);
 void passo_changes_clock(struct passo_changes *changes, bool flush, uint16_t lag, bool change,
-    const struct passo_output_word *word);
+    const struct passo_line_output *word);
 
 void passo_raster_reset(struct passo_raster *raster);
 /* Whether a substep takes a value, and the value. */
@@ -130,5 +130,16 @@ void passo_outputs_reset(struct passo_outputs_unit *outputs);
 void passo_outputs_clock(struct passo_outputs_unit *outputs, const struct passo_outputs_wires *wires);
 /* Whether no change waits, one clock late. */
 bool passo_outputs_quiet(const struct passo_outputs_unit *outputs);
+uint32_t passo_outputs_state(const struct passo_outputs_unit *outputs);
+/* Whether only counters change as long as the inputs stay as they are, and skipping such clocks. */
+bool passo_outputs_steady(const struct passo_outputs_unit *outputs, const struct passo_outputs_wires *wires);
+void passo_outputs_skip(struct passo_outputs_unit *outputs, uint64_t clocks);
+
+bool passo_output_registers_known(uint8_t address);
+bool passo_output_registers_need_quiet(uint8_t address);
+uint8_t passo_output_registers_check(uint8_t address, uint32_t data, uint8_t axes);
+void passo_output_registers_reset(struct passo_output_registers *registers);
+void passo_output_registers_clock(
+    struct passo_output_registers *registers, bool write, uint8_t address, uint32_t data);
 
 #endif

@@ -25,7 +25,7 @@ bool passo_raster_take(const struct passo_raster *raster, const struct passo_out
 
 uint8_t passo_raster_value(const struct passo_raster *raster)
 {
-	return raster->available ? (uint8_t)(raster->word >> (8u * raster->index)) : 0u;
+	return (uint8_t)(raster->available ? raster->word >> (8u * raster->index) : 0u);
 }
 
 uint8_t passo_raster_refusal(const struct passo_raster *raster, bool blocked)

@@ -25,6 +25,7 @@ rtl/passo_link_schedule.v
 rtl/passo_link_states.v
 rtl/passo_memory.v
 rtl/passo_motion.v
+rtl/passo_output_registers.v
 rtl/passo_outputs.v
 rtl/passo_path.v
 rtl/passo_payload.v
