@@ -158,7 +158,7 @@ async def power_in_proportion_to_the_velocity(dut: HierarchyObject) -> None:
         for velocity, rate in SPEEDS:
             outputs.set(velocity=min(HALF, top * velocity // 100), rate=RATE_ONE * rate // 100)
             await outputs.motion(word(0, power, proportional=True))
-            await outputs.run(1000)
+            await outputs.run(200)
             first = len(outputs.seen)
             await outputs.run(clocks)
             share = Fraction(sum(outputs.seen.power[first:]), clocks)
@@ -175,12 +175,12 @@ async def no_power_when_nothing_moves(dut: HierarchyObject) -> None:
     await outputs.run(20)
     for still in ({"rate": 0}, {"velocity": 0}):
         outputs.set(**still)
-        await outputs.run(2)
+        await outputs.run(7)
         first = len(outputs.seen)
         await outputs.run(500)
         assert 1 not in outputs.seen.power[first:]
         outputs.set(rate=RATE_ONE, velocity=HALF)
-        await outputs.run(2)
+        await outputs.run(7)
         assert outputs.now["power"] == 1
     await outputs.clock(running_next=0)
     assert outputs.now["power"] == 0 and outputs.now["outputs"] == 3

@@ -5,6 +5,8 @@
 
 #include <string.h>
 
+enum { STILL_LAST = 5, STILL_MASK = 0x3F };
+
 void passo_outputs_reset(struct passo_outputs_unit *outputs)
 {
 	*outputs = (struct passo_outputs_unit){.pwm = {.idle = true}};
@@ -30,15 +32,15 @@ uint32_t passo_outputs_state(const struct passo_outputs_unit *outputs)
 
 static void clock_pwm(struct passo_outputs_unit *outputs, const struct passo_outputs_wires *wires)
 {
-	passo_pwm_clock(&outputs->pwm,
-	    &(struct passo_pwm_wires){
-		.go = outputs->lit && !outputs->still && !outputs->overflow && wires->running_next,
-		.restart = outputs->restart,
-		.power = outputs->now.power,
-		.proportional = outputs->now.proportional,
-		.step = wires->settings.pwm_step,
-		.cost = outputs->power.cost,
-	    });
+	passo_pwm_clock(&outputs->pwm, &(struct passo_pwm_wires){
+					   .go = outputs->lit && (outputs->still >> STILL_LAST & 1u) == 0u
+	                                      && !outputs->overflow && wires->running_next,
+					   .restart = outputs->restart,
+					   .power = outputs->now.power,
+					   .proportional = outputs->now.proportional,
+					   .step = wires->settings.pwm_step,
+					   .cost = outputs->power.cost,
+				       });
 }
 
 /* The word in force, and the levels at the pins. */
@@ -62,7 +64,8 @@ static void clock_word(struct passo_outputs_unit *outputs, const struct passo_ou
 	}
 	if (wires->write_levels)
 		now->levels = (uint8_t)wires->bus.data;
-	outputs->still = wires->velocity == 0u || wires->rate == 0u;
+	outputs->still =
+	    (uint8_t)((outputs->still << 1 | (wires->velocity == 0u || wires->rate == 0u)) & STILL_MASK);
 	outputs->overflow = (outputs->overflow || changes->overflow) && !wires->clear;
 	outputs->raster_empty = (outputs->raster_empty || outputs->raster.missed) && !wires->clear;
 }
@@ -71,6 +74,7 @@ void passo_outputs_clock(struct passo_outputs_unit *outputs, const struct passo_
 {
 	const bool take = passo_raster_take(&outputs->raster, wires);
 	const bool change = take || (wires->substep && outputs->raster.first);
+	const bool moves = wires->running && (outputs->still & 1u) == 0u;
 	struct passo_line_output word = wires->word;
 
 	word.raster = false;
@@ -78,7 +82,7 @@ void passo_outputs_clock(struct passo_outputs_unit *outputs, const struct passo_
 		word.power = (uint16_t)(passo_raster_value(&outputs->raster) * 0x101u);
 	clock_pwm(outputs, wires);
 	clock_word(outputs, wires);
-	passo_power_clock(&outputs->power, wires);
+	passo_power_clock(&outputs->power, wires, moves);
 	passo_raster_clock(&outputs->raster, wires);
 	passo_changes_clock(&outputs->changes, wires->stopped, wires->settings.lag, change, &word);
 	passo_compare_clock(&outputs->compare, wires);

@@ -97,7 +97,8 @@ struct passo_outputs_unit {
 	struct passo_raster raster;
 	struct passo_compare compare;
 	struct passo_line_output now;
-	bool lit, differs, restart, still;
+	bool lit, differs, restart;
+	uint8_t still; /* bit n: velocity or rate was 0 n + 1 clocks ago */
 	bool overflow, raster_empty;
 	uint8_t levels; /* the pins */
 };
@@ -111,7 +112,7 @@ struct passo_pwm_wires {
 void passo_pwm_clock(struct passo_pwm *pwm, const struct passo_pwm_wires *wires);
 
 void passo_power_reset(struct passo_power *power);
-void passo_power_clock(struct passo_power *power, const struct passo_outputs_wires *wires);
+void passo_power_clock(struct passo_power *power, const struct passo_outputs_wires *wires, bool moves);
 
 void passo_changes_reset(struct passo_changes *changes);
 void passo_changes_clock(struct passo_changes *changes, bool flush, uint16_t lag, bool change,

@@ -10,7 +10,7 @@ static const uint32_t LOW_MASK = 0x1FFFFFFu;
 
 void passo_power_reset(struct passo_power *power)
 {
-	*power = (struct passo_power){.cost = COST_MAX};
+	*power = (struct passo_power){0};
 }
 
 static void multiply(struct passo_power *power, uint32_t factor)
@@ -30,11 +30,11 @@ static void divide(struct passo_power *power)
 	power->low = (power->low << 1 & LOW_MASK) | (fits ? 1u : 0u);
 }
 
-void passo_power_clock(struct passo_power *power, const struct passo_outputs_wires *wires)
+void passo_power_clock(struct passo_power *power, const struct passo_outputs_wires *wires, bool moves)
 {
-	if (!wires->running) {
+	if (!moves) {
 		power->count = 0;
-		power->cost = COST_MAX;
+		power->cost = 0;
 		return;
 	}
 	if (power->count == SAMPLE) {

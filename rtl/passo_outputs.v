@@ -5,8 +5,9 @@
 //
 // Promise: the word of a line is at the pins 5 + lag clocks after the first substep of the line, that is, lag clocks
 // after its STEP pin, and so is each value of a raster after its substep. The digital outputs keep their levels until
-// another line or `write_levels` changes them. The power pin is low in every clock in which `running` is low, from 2
-// clocks after velocity or rate is 0, and after `overflow` until `clear`: a change was lost. What waits when the
+// another line or `write_levels` changes them. The power pin is low in every clock in which `running` is low, from 7
+// clocks after velocity or rate is 0, when the last step has left, and after `overflow` until `clear`: a change was
+// lost. What waits when the
 // channel stops is dropped. `quiet`, one clock late: no change waits.
 `resetall
 `timescale 1ns / 1ps
@@ -75,11 +76,11 @@ module passo_outputs #(
   reg         differs;  // the change that comes next changes the power
   reg         lights;  // it has one
   reg         restart;
-  reg         still;
+  reg  [ 6:1] still;  // velocity or rate was 0, 1 .. 6 clocks ago
   wire [23:0] cost;
 
   always @(posedge clk) begin
-    still   <= velocity == 32'd0 || rate == 17'd0;
+    still   <= {still[5:1], velocity == 32'd0 || rate == 17'd0};
     differs <= {data[24], data[15:0]} != {proportional, power_now};
     lights  <= data[15:0] != 16'd0;
     restart <= hit & differs;
@@ -149,7 +150,7 @@ module passo_outputs #(
   passo_power u_power (
     .clk            (clk),
     .rst            (rst),
-    .running        (running),
+    .moves          (running & ~still[1]),
     .velocity       (velocity),
     .rate           (rate),
     .power_reference(power_reference),
@@ -160,7 +161,7 @@ module passo_outputs #(
   passo_pwm u_pwm (
     .clk         (clk),
     .rst         (rst),
-    .go          (lit & ~still & ~overflow & running_next),
+    .go          (lit & ~still[6] & ~overflow & running_next),
     .restart     (restart),
     .power       (power_now),
     .proportional(proportional),

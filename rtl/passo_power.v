@@ -3,7 +3,7 @@
 //
 //   cost = pwm_step * power_reference / (velocity * rate)
 //
-// One bit-serial unit multiplies and divides, over and over while a motion runs:
+// One bit-serial unit multiplies and divides, over and over while something moves:
 //
 //   clock    0          velocity and rate are sampled
 //         1 .. 17       velocity * rate
@@ -13,9 +13,8 @@
 //        45 .. 68       the division
 //        69             the new cost
 //
-// Promise: `cost` follows velocity and rate within 140 clocks. It is the quotient of pwm_step * power_reference / 2, rounded
-// down, and velocity * rate / 2, rounded down; 2^24 - 1 if that is more, and from the start of a motion on until the
-// first quotient is there. So power never exceeds what the velocity asks for by more than the rounding.
+// Promise: `cost` follows velocity and rate within 140 clocks. It is the quotient of pwm_step * power_reference / 2,
+// rounded down, and velocity * rate / 2, rounded down; 2^24 - 1 if that is more; 0 for 70 clocks when `moves` has risen.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -23,7 +22,7 @@
 module passo_power (
   input  wire        clk,
   input  wire        rst,
-  input  wire        running,
+  input  wire        moves,            // velocity and rate are not 0
   input  wire [31:0] velocity,         // UQ0.32 substeps per clock
   input  wire [16:0] rate,             // UQ1.16
   input  wire [31:0] power_reference,  // UQ0.32: the velocity of full power
@@ -73,12 +72,12 @@ module passo_power (
       low  <= {sum[0], low[24:1]};
     end
     if (count == DONE) cost <= too_large ? 24'hFFFFFF : low[23:0];
-    if (rst || !running) begin
+    if (rst || !moves) begin
       count           <= 7'd0;
       checks          <= 1'b0;
       divides         <= 1'b0;
       multiplies_step <= 1'b0;
-      cost            <= 24'hFFFFFF;
+      cost            <= 24'd0;
     end
   end
 

@@ -127,7 +127,7 @@ def cached(name: str, inputs: Iterable[Path], flags: Sequence[str], make: Callab
 
 
 def declarations(files: Iterable[Path]) -> str:
-    """Preprocessed headers for cffi, without #include, as it knows the standard types, and inline functions."""
+    """Preprocessed headers for cffi, without #include, as it knows the standard types, and inlines."""
     text = "\n".join(path.read_text() for path in files)
     dropped = r"(?ms)^#include[^\n]*$|^static inline .*?^}$"
     return call([CC, "-E", "-P", "-x", "c", "-"], re.sub(dropped, "", text))

@@ -78,7 +78,7 @@ class Channel:
         return word >> r.CHANNEL_ROOM_LINE_ROOM_LSB, word & 0xFFFF
 
     def push_lines(self, lines: Sequence[Any], outputs: Sequence[r.LineOutputWord] = ()) -> None:
-        """Queue lines (`struct passo_line`), with OUTPUTS each with its output; there must be room for them."""
+        """Queue lines (`struct passo_line`), with OUTPUTS each with its output; there must be room."""
         axes = self.parameters.axes
         self.push_line_words([frame.line_words(line, axes) for line in lines], outputs)
 
