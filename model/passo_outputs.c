@@ -34,7 +34,7 @@ static void clock_pwm(struct passo_outputs_unit *outputs, const struct passo_out
 {
 	passo_pwm_clock(&outputs->pwm, &(struct passo_pwm_wires){
 					   .go = outputs->lit && (outputs->still >> STILL_LAST & 1u) == 0u
-	                                      && !outputs->overflow && wires->running_next,
+	                                      && !outputs->overflow && wires->running && wires->running_next,
 					   .restart = outputs->restart,
 					   .power = outputs->now.power,
 					   .proportional = outputs->now.proportional,

@@ -75,9 +75,5 @@ module passo_changes #(
     end
   end
 
-`ifdef FORMAL
-  `include "passo_changes_formal.vh"
-`endif
-
 endmodule
 `resetall

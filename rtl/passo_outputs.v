@@ -161,7 +161,7 @@ module passo_outputs #(
   passo_pwm u_pwm (
     .clk         (clk),
     .rst         (rst),
-    .go          (lit & ~still[6] & ~overflow & running_next),
+    .go          (lit & ~still[6] & ~overflow & running & running_next),
     .restart     (restart),
     .power       (power_now),
     .proportional(proportional),
@@ -184,6 +184,10 @@ module passo_outputs #(
     .step_direction(step_direction),
     .pin           (compare)
   );
+
+`ifdef FORMAL
+  `include "passo_outputs_formal.vh"
+`endif
 
 endmodule
 `resetall

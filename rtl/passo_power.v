@@ -81,9 +81,5 @@ module passo_power (
     end
   end
 
-`ifdef FORMAL
-  `include "passo_power_formal.vh"
-`endif
-
 endmodule
 `resetall
