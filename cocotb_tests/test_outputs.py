@@ -367,9 +367,8 @@ async def anything_on_any_clock_is_as_in_the_model(dut: HierarchyObject) -> None
             step_may = now + 2
         if random.random() < 0.05:
             strobes |= {"bus_data": random.getrandbits(32)}
-            strobes |= random.choice(
-                ({"select": 1, "bus_write": 1}, {"select": 1, "bus_check": 1}, {"write_levels": 1})
-            )
+            queue = {"select": 1, "bus_write": 1}, {"select": 1, "bus_check": 1}
+            strobes |= random.choice((*queue, {"write_levels": 1}, {"write_pulse": 1}))
         if random.random() < 0.01:
             strobes |= {"bus_data": random.choice((0, 1, 2**32 - 1, 7)), "write_distance": 1}
         if random.random() < 0.01:
@@ -377,7 +376,7 @@ async def anything_on_any_clock_is_as_in_the_model(dut: HierarchyObject) -> None
         if random.random() < 0.002:
             strobes["clear"] = 1
         if random.random() < 0.0005:
-            strobes["rst"], substep_may, begun = 1, now + 3, 0
+            strobes["rst"], substep_may, step_may, begun = 1, now + 3, now + 3, 0
             outputs.set(word=0)
         if random.random() < 0.01:
             setting = random.choice(

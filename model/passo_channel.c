@@ -101,6 +101,7 @@ struct passo_outputs_wires passo_channel_outputs(
 		.data = bus->data},
 	    .settings = channel->output_registers.settings,
 	    .word = passo_unpack_line_output(channel->line_queue.output_word),
+	    .write_pulse = channel->output_registers.write_pulse,
 	    .write_distance = channel->output_registers.write_distance,
 	    .write_levels = channel->output_registers.write_levels,
 	    .line_begins = wires->take || wires->repeats,

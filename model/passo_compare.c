@@ -22,8 +22,8 @@ void passo_compare_clock(struct passo_compare *compare, const struct passo_outpu
 		compare->pin = settings->compare_width != 0u;
 		compare->timer = 1;
 	}
-	if (wires->write_distance) {
+	if (wires->write_distance)
 		compare->away = wires->bus.data;
+	if (wires->write_distance || wires->write_pulse)
 		compare->pin = false;
-	}
 }

@@ -70,6 +70,7 @@ void passo_output_registers_clock(
 	struct passo_output_settings *settings = &registers->settings;
 
 	registers->write_levels = write && address == PASSO_CHANNEL_OUTPUT_LEVELS;
+	registers->write_pulse = write && address == PASSO_CHANNEL_COMPARE_PULSE;
 	registers->write_distance = write && address == PASSO_CHANNEL_COMPARE_DISTANCE;
 	if (!write)
 		return;

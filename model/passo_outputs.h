@@ -24,7 +24,7 @@ struct passo_output_settings {
 
 struct passo_output_registers {
 	struct passo_output_settings settings;
-	bool write_levels, write_distance; /* the bus wrote one of them in the previous clock */
+	bool write_levels, write_pulse, write_distance; /* written in the previous clock */
 };
 
 struct passo_pwm {
@@ -83,7 +83,7 @@ struct passo_outputs_wires {
 	struct passo_raster_bus bus;
 	struct passo_output_settings settings;
 	struct passo_line_output word;
-	bool write_distance, write_levels; /* with bus.data */
+	bool write_pulse, write_distance, write_levels; /* with bus.data */
 	bool line_begins, substep;
 	bool stopped, clear, running, running_next;
 	uint32_t velocity, rate;

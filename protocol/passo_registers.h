@@ -342,7 +342,7 @@
 #define PASSO_CHANNEL_RASTER_PITCH_DEFINED     0x3FFFFFFFu
 
 /* Channel: Compare pulse. Refused with BUSY unless the channel is quiet, with BAD_VALUE if there is no such
- * axis. With OUTPUTS. */
+ * axis. Ends a pulse in progress, as COMPARE_DISTANCE does. With OUTPUTS. */
 #define PASSO_CHANNEL_COMPARE_PULSE             0x35u
 #define PASSO_CHANNEL_COMPARE_PULSE_WIDTH_LSB   0u
 #define PASSO_CHANNEL_COMPARE_PULSE_WIDTH_BITS  16u

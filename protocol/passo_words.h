@@ -394,7 +394,7 @@ static inline struct passo_channel_room passo_unpack_channel_room(uint32_t word)
 	};
 }
 
-/* Compare pulse. Refused with BUSY unless the channel is quiet, with BAD_VALUE if there is no such axis. With OUTPUTS. */
+/* Compare pulse. Refused with BUSY unless the channel is quiet, with BAD_VALUE if there is no such axis. Ends a pulse in progress, as COMPARE_DISTANCE does. With OUTPUTS. */
 struct passo_channel_compare_pulse {
 	uint8_t  axis;  /* Axis whose position is compared. */
 	uint16_t width; /* Clocks; 0 = no pulses. */

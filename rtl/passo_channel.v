@@ -398,6 +398,7 @@ module passo_channel #(
       wire [15:0] compare_width;
       wire [31:0] compare_interval;
       wire        write_levels;
+      wire        write_pulse;
       wire        write_distance;
       wire        raster_empty;
       wire        overflow;
@@ -433,6 +434,7 @@ module passo_channel #(
         .compare_width   (compare_width),
         .compare_interval(compare_interval),
         .write_levels    (write_levels),
+        .write_pulse     (write_pulse),
         .write_distance  (write_distance),
         .levels          (outputs),
         .raster_empty    (raster_empty),
@@ -459,6 +461,7 @@ module passo_channel #(
         .compare_axis    (compare_axis),
         .compare_width   (compare_width),
         .compare_interval(compare_interval),
+        .write_pulse     (write_pulse),
         .write_distance  (write_distance),
         .write_levels    (write_levels),
         .raster_room     (raster_room),

@@ -5,7 +5,7 @@
 // for `width` clocks, or that long from the last arrival if there is another one meanwhile. Only arriving counts, from
 // either side; so after the first point the others come once each, in the direction of the interval, however often the
 // axis turns. Wraps of the position do no harm. With width 0 there are no pulses, but the points move on. A pulse is
-// not cut by anything but a reset or `write_distance`.
+// not cut by anything but a reset, `write_distance` or `write_pulse`, with which axis and width change.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -19,7 +19,8 @@ module passo_compare #(
   input  wire [     2:0] axis,
   input  wire [    15:0] width,
   input  wire [    31:0] interval,        // signed steps, not 0
-  input  wire            write_distance,  // strobe, while nothing moves
+  input  wire            write_pulse,     // strobes, while nothing moves
+  input  wire            write_distance,
   input  wire [    31:0] distance,        // signed steps from here to the first point
   // axes
   input  wire [AXES-1:0] step_made,       // one clock before the edge; at least 2 clocks apart
@@ -46,10 +47,8 @@ module passo_compare #(
       pin   <= width != 16'd0;
       timer <= 16'd1;
     end
-    if (write_distance) begin
-      away <= distance;
-      pin  <= 1'b0;
-    end
+    if (write_distance) away <= distance;
+    if (write_distance || write_pulse) pin <= 1'b0;
     if (rst) begin
       away <= 32'd0;
       pin  <= 1'b0;

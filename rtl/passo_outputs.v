@@ -34,7 +34,8 @@ module passo_outputs #(
   input  wire [     2:0] compare_axis,
   input  wire [    15:0] compare_width,
   input  wire [    31:0] compare_interval,
-  input  wire            write_distance,    // strobes, with bus_data
+  input  wire            write_pulse,       // strobes, with bus_data
+  input  wire            write_distance,
   input  wire            write_levels,
   // state
   output wire [     8:0] raster_room,       // in words
@@ -178,6 +179,7 @@ module passo_outputs #(
     .axis          (compare_axis),
     .width         (compare_width),
     .interval      (compare_interval),
+    .write_pulse   (write_pulse),
     .write_distance(write_distance),
     .distance      (bus_data),
     .step_made     (step_made),

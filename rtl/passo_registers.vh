@@ -341,7 +341,7 @@ localparam CHANNEL_RASTER_PITCH_PITCH_RESET = 30'h00000001;
 localparam CHANNEL_RASTER_PITCH_DEFINED     = 32'h3FFFFFFF;
 
 // Channel: Compare pulse. Refused with BUSY unless the channel is quiet, with BAD_VALUE if there is no such
-// axis. With OUTPUTS.
+// axis. Ends a pulse in progress, as COMPARE_DISTANCE does. With OUTPUTS.
 localparam CHANNEL_COMPARE_PULSE             = 8'h35;
 localparam CHANNEL_COMPARE_PULSE_WIDTH_LSB   = 0;
 localparam CHANNEL_COMPARE_PULSE_WIDTH_BITS  = 16;

@@ -806,7 +806,7 @@ CHANNEL_RASTER_PITCH_PITCH_RESET = 0x00000001
 CHANNEL_RASTER_PITCH_DEFINED = 0x3FFFFFFF
 
 # Channel: Compare pulse. Refused with BUSY unless the channel is quiet, with BAD_VALUE if there is no such
-# axis. With OUTPUTS.
+# axis. Ends a pulse in progress, as COMPARE_DISTANCE does. With OUTPUTS.
 CHANNEL_COMPARE_PULSE = 0x35
 CHANNEL_COMPARE_PULSE_WIDTH_LSB = 0
 CHANNEL_COMPARE_PULSE_WIDTH_BITS = 16
