@@ -9,14 +9,17 @@ import os
 import pytest
 
 from cocotb_tests.helpers.runner import CORE_TOP as TOP
-from cocotb_tests.helpers.runner import ONE_CHANNEL, TWO_CHANNELS, WITH_INPUTS, run
+from cocotb_tests.helpers.runner import ONE_CHANNEL, OUTPUT_CORE, TWO_CHANNELS, WITH_INPUTS, run
 
 MOST_CHANNELS = {"CHANNELS": 8, "AXES": 1, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 8, "RAMP_QUEUE_LOG2": 8}
 
 # Icarus Verilog is up to ten times slower: long tests run only on Verilator, Icarus gets fewer random moves,
 # and `make icarus` runs on it what `make test` leaves out. `make soak` plays a thousand more histories on it.
 verilator_only = pytest.mark.parametrize("simulator", ["verilator"])
-LEFT_TO_MAKE_ICARUS = ("core_commands", "core_faults", "core_link", "core_refusals", "core_inputs")
+LEFT_TO_MAKE_ICARUS = (
+    *("core_commands", "core_faults", "core_link", "core_refusals"),
+    *("core_inputs", "core_outputs"),
+)
 
 MODULES = {
     "core_motion": ONE_CHANNEL,  # every step on its clock, from the first clock of a motion to the last
@@ -27,6 +30,7 @@ MODULES = {
     "core_channels": TWO_CHANNELS,  # two channels at once
     "core_registers": ONE_CHANNEL,  # settings and states in all their bits
     "core_inputs": WITH_INPUTS,  # limits, alarms, trigger, e-stop, watchdog
+    "core_outputs": OUTPUT_CORE,  # outputs bound to the path
 }
 
 

@@ -94,6 +94,7 @@ always @(posedge clk)
       running_not_before_7 : assert (!running);
     if (state == STATE_RUN && f_run_age >= 4'd7) running_from_7_on : assert (running);
     if (!$past(moving)) not_running_at_rest : assert (!running);
+    running_is_foretold : assert (running == $past(running_next));
   end
 
 // --- From a fault to STOPPED: two clocks. A channel that was stopped in the clock between may be cleared already.

@@ -188,6 +188,8 @@ static void skip_surroundings(struct passo_channel *channel, uint64_t clocks)
 		passo_axis_skip(&channel->axis[i], clocks);
 	passo_positions_skip(&channel->positions, clocks);
 	passo_inputs_skip(&channel->inputs, clocks);
+	if (channel->has_outputs)
+		passo_outputs_skip(&channel->outputs, clocks);
 }
 
 void passo_advance_channel_skip(struct passo_channel *channel, uint64_t clocks)

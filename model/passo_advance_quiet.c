@@ -19,6 +19,8 @@ static bool lines_settled(const struct passo_channel *channel, const struct pass
 	for (unsigned i = 0; i < channel->axes; i++)
 		if (queue->steps[i] != current->steps[i])
 			return false;
+	if (queue->output_word != queue->output_words[queue->current_line])
+		return false;
 	return queue->room == depth - used - (queue->has_place ? 1u : 0u) && queue->next_valid == (used != 0u)
 	    && queue->directions == current->directions;
 }
@@ -122,7 +124,23 @@ static bool rest_settled(const struct passo_channel *channel)
 
 	for (unsigned i = 0; i < channel->axes; i++)
 		at_rest = at_rest && channel->axis[i].quiet;
+	at_rest = at_rest && passo_outputs_quiet(&channel->outputs);
 	return channel->occupied_before == (occupied ? 7u : 0u) && channel->at_rest == at_rest;
+}
+
+/* Outputs change with each substep and each period of the PWM: a motion that has them is not skipped. */
+static bool outputs_settled(const struct passo_channel *channel, const struct passo_bus *bus)
+{
+	const struct passo_channel_wires wires = {.stopped = passo_channel_stopped(channel)};
+	struct passo_outputs_wires outputs;
+
+	if (!channel->has_outputs)
+		return true;
+	if (channel->output_registers.write_levels || channel->output_registers.write_pulse
+	    || channel->output_registers.write_distance)
+		return false;
+	outputs = passo_channel_outputs(channel, bus, &wires);
+	return passo_outputs_steady(&channel->outputs, &outputs);
 }
 
 uint64_t passo_advance_surroundings_quiet(
@@ -131,7 +149,8 @@ uint64_t passo_advance_surroundings_quiet(
 	const struct passo_line_unit *line = &channel->line;
 	const bool moving = channel->motion.state == PASSO_STATE_RUN;
 
-	if (!motion_settled(channel, inputs) || !rest_settled(channel) || channel->positions.snapshot_waits
+	if (!motion_settled(channel, inputs) || !rest_settled(channel)
+	    || !outputs_settled(channel, inputs->bus) || channel->positions.snapshot_waits
 	    || !commands_settled(channel, inputs->bus) || line->load_start || line->load_start_q
 	    || line->underrun || !ramps_settled(&channel->ramp_queue, inputs->parameters)
 	    || !lines_settled(channel, inputs->parameters))

@@ -26,7 +26,8 @@ bool passo_channel_incomplete(const struct passo_channel *channel)
 void passo_channel_reset(
     struct passo_channel *channel, const struct passo_parameters *parameters, uint8_t number)
 {
-	*channel = (struct passo_channel){.axes = parameters->axes, .number = number};
+	*channel = (struct passo_channel){
+	    .axes = parameters->axes, .number = number, .has_outputs = parameters->outputs != 0u};
 	passo_channel_registers_reset(&channel->registers);
 	channel->line_queue.room = (uint16_t)(1u << parameters->line_queue_log2);
 	channel->ramp_queue.room = (uint16_t)(1u << parameters->ramp_queue_log2);
@@ -38,6 +39,8 @@ void passo_channel_reset(
 		    (parameters->dir_reset >> pin & 1u) != 0u, (parameters->enable_reset >> pin & 1u) != 0u);
 	}
 	passo_positions_reset(&channel->positions);
+	passo_output_registers_reset(&channel->output_registers);
+	passo_outputs_reset(&channel->outputs);
 }
 
 void passo_channel_restart(struct passo_channel *channel, const struct passo_channel *before,
@@ -90,6 +93,48 @@ static struct passo_channel_wires gather_wires(
 	return wires;
 }
 
+struct passo_outputs_wires passo_channel_outputs(
+    const struct passo_channel *channel, const struct passo_bus *bus, const struct passo_channel_wires *wires)
+{
+	struct passo_outputs_wires outputs = {
+	    .bus = {.push = wires->selected && bus->push && wires->bus_address == PASSO_CHANNEL_RASTER,
+		.frame = bus->frame,
+		.commit = bus->commit,
+		.check = bus->check,
+		.write = bus->write,
+		.data = bus->data},
+	    .settings = channel->output_registers.settings,
+	    .word = passo_unpack_line_output(channel->line_queue.output_word),
+	    .write_pulse = channel->output_registers.write_pulse,
+	    .write_distance = channel->output_registers.write_distance,
+	    .write_levels = channel->output_registers.write_levels,
+	    .line_begins = wires->take || wires->repeats,
+	    .substep = wires->substep_taken,
+	    .stopped = wires->stopped,
+	    .clear = channel->registers.command_clear,
+	    .running = channel->motion.running,
+	    .running_next = wires->running_next,
+	    .velocity = passo_channel_registers_value(channel, PASSO_CHANNEL_VELOCITY),
+	    .rate = channel->timescale.rate,
+	};
+
+	for (unsigned i = 0; i < channel->axes; i++) {
+		outputs.step_made |= (uint8_t)((channel->axis[i].step_made ? 1u : 0u) << i);
+		outputs.step_direction |= (uint8_t)((channel->axis[i].dir ? 1u : 0u) << i);
+	}
+	return outputs;
+}
+
+static void clock_outputs(
+    struct passo_channel *channel, const struct passo_bus *bus, const struct passo_channel_wires *wires)
+{
+	const struct passo_outputs_wires outputs = passo_channel_outputs(channel, bus, wires);
+
+	passo_outputs_clock(&channel->outputs, &outputs);
+	passo_output_registers_clock(
+	    &channel->output_registers, wires->selected && bus->write, wires->bus_address, bus->data);
+}
+
 void passo_channel_clock(struct passo_channel *channel, const struct passo_channel_inputs *inputs)
 {
 	const struct passo_channel_wires wires = gather_wires(channel, inputs);
@@ -112,11 +157,14 @@ void passo_channel_clock(struct passo_channel *channel, const struct passo_chann
 	for (unsigned i = 0; i < channel->axes; i++)
 		axes_quiet = axes_quiet && channel->axis[i].quiet;
 	/* a line loaded in the clock of a stop changes DIR up to 4 clocks later */
-	channel->at_rest = !wires.occupied && channel->occupied_before == 0u && axes_quiet;
+	channel->at_rest = !wires.occupied && channel->occupied_before == 0u && axes_quiet
+	                && passo_outputs_quiet(&channel->outputs);
 	channel->occupied_before =
 	    (uint8_t)(((uint32_t)channel->occupied_before << 1 | (wires.occupied ? 1u : 0u)) & 7u);
 	passo_admission_clock(&channel->admission, bus, &needs);
 
+	if (channel->has_outputs)
+		clock_outputs(channel, bus, &wires);
 	/* from the pins back to the queues, so that each module sees the old state of those that feed it */
 	passo_inputs_clock(&inputs_unit, channel, inputs, &wires);
 	passo_positions_clock(&channel->positions, channel->axis, registers.command_zero, inputs->snapshot,

@@ -51,6 +51,7 @@ struct passo_needs passo_channel_needs(const struct passo_channel *channel, cons
 	const uint8_t address = (uint8_t)bus->address;
 	const unsigned in_axes = (unsigned)address - PASSO_CHANNEL_AXIS_BASE;
 	const uint32_t command = address == PASSO_CHANNEL_COMMAND ? command_of(bus->data) : 0u;
+	const bool outputs = channel->has_outputs && passo_output_registers_need_quiet(address);
 	const bool pins = in_axes < channel->axes * PASSO_CHANNEL_AXIS_STRIDE
 	               && in_axes % PASSO_CHANNEL_AXIS_STRIDE == PASSO_AXIS_PINS;
 
@@ -58,7 +59,7 @@ struct passo_needs passo_channel_needs(const struct passo_channel *channel, cons
 		return (struct passo_needs){0};
 	return (struct passo_needs){
 	    .idle = (command >> PASSO_CHANNEL_COMMAND_CLEAR_LSB & 1u) != 0u,
-	    .quiet = pins || (command >> PASSO_CHANNEL_COMMAND_ZERO_LSB & 1u) != 0u,
+	    .quiet = pins || outputs || (command >> PASSO_CHANNEL_COMMAND_ZERO_LSB & 1u) != 0u,
 	    .motion = bus->push && address == PASSO_CHANNEL_RAMP
 	           && passo_ramp_queue_checks_now(&channel->ramp_queue, bus->data),
 	};
@@ -91,6 +92,8 @@ uint32_t passo_channel_registers_value(const struct passo_channel *channel, uint
 	case PASSO_CHANNEL_ROOM:
 		return passo_pack_channel_room(&(struct passo_channel_room){
 		    .line_room = channel->line_queue.room, .ramp_room = channel->ramp_queue.room});
+	case PASSO_CHANNEL_OUTPUT_STATE:
+		return passo_outputs_state(&channel->outputs);
 	case PASSO_CHANNEL_VELOCITY:
 		return channel->path.velocity_high << 8 | channel->path.velocity_low >> 16;
 	default:
@@ -144,6 +147,35 @@ static struct answer input_answer(const struct passo_channel *channel, uint8_t a
 	                                : (struct answer){0};
 }
 
+/* Registers of the outputs. */
+static struct answer output_answer(const struct passo_channel *channel, const struct passo_bus *bus)
+{
+	const uint8_t address = (uint8_t)bus->address;
+
+	if (address == PASSO_CHANNEL_RASTER)
+		return write_only(
+		    bus->push ? passo_raster_refusal(&channel->outputs.raster, passo_channel_stopped(channel))
+		              : PASSO_VERDICT_BAD_OPERATION);
+	if (address == PASSO_CHANNEL_OUTPUT_STATE)
+		return read_late();
+	if (passo_output_registers_known(address))
+		return write_only(passo_output_registers_check(address, bus->data, channel->axes));
+	return (struct answer){0};
+}
+
+/* Registers of the parts that a core may have. */
+static struct answer part_answer(
+    const struct passo_channel *channel, const struct passo_channel_inputs *inputs, uint8_t address)
+{
+	struct answer answer = {0};
+
+	if (inputs->parameters->inputs != 0u)
+		answer = input_answer(channel, address, inputs->bus->data);
+	if (!answer.known && channel->has_outputs)
+		answer = output_answer(channel, inputs->bus);
+	return answer;
+}
+
 static struct answer channel_answer(
     const struct passo_channel *channel, const struct passo_channel_inputs *inputs, uint8_t address)
 {
@@ -182,8 +214,7 @@ static struct answer channel_answer(
 		return axis_answer(&channel->axis[in_axes / PASSO_CHANNEL_AXIS_STRIDE],
 		    (uint8_t)(in_axes % PASSO_CHANNEL_AXIS_STRIDE), bus->data,
 		    inputs->parameters->inputs != 0u);
-	return inputs->parameters->inputs != 0u ? input_answer(channel, address, bus->data)
-	                                        : (struct answer){0};
+	return part_answer(channel, inputs, address);
 }
 
 struct passo_response passo_channel_respond(
@@ -197,6 +228,7 @@ struct passo_response passo_channel_respond(
 	response.claim = answer.known;
 	if (answer.known && bus->check)
 		response.refusal = bus->push && address != PASSO_CHANNEL_LINE && address != PASSO_CHANNEL_RAMP
+		                        && address != PASSO_CHANNEL_RASTER
 		                     ? PASSO_VERDICT_BAD_OPERATION
 		                     : answer.check;
 	if (answer.known && bus->read) {

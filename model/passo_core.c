@@ -31,6 +31,8 @@ static void gather_outputs(struct passo_core *core)
 	struct passo_outputs *outputs = &core->outputs;
 
 	outputs->step = outputs->dir = outputs->enable = 0;
+	outputs->outputs = 0;
+	outputs->power = outputs->compare = 0;
 	outputs->running = 0;
 	for (unsigned i = 0; i < core->parameters.channels; i++) {
 		const struct passo_channel *channel = &core->channel[i];
@@ -39,6 +41,9 @@ static void gather_outputs(struct passo_core *core)
 			outputs->step |= (uint64_t)channel->axis[a].step_pin << bit;
 			outputs->dir |= (uint64_t)channel->axis[a].dir_pin << bit;
 		}
+		outputs->outputs |= (uint64_t)channel->outputs.levels << 8u * i;
+		outputs->power |= (uint8_t)((channel->outputs.pwm.pin ? 1u : 0u) << i);
+		outputs->compare |= (uint8_t)((channel->outputs.compare.pin ? 1u : 0u) << i);
 		outputs->running |= (uint8_t)((channel->motion.running ? 1u : 0u) << i);
 	}
 	outputs->enable = passo_core_enable(core, true);

@@ -11,6 +11,17 @@ static unsigned depth(const struct passo_parameters *parameters)
 	return 1u << parameters->line_queue_log2;
 }
 
+/* Of a line: control, M, N_i, and with OUTPUTS its output word. */
+static unsigned last_index(const struct passo_parameters *parameters)
+{
+	return INDEX_STEPS + parameters->axes - 1u + parameters->outputs;
+}
+
+static bool is_output(const struct passo_parameters *parameters, unsigned index)
+{
+	return index == (unsigned)INDEX_STEPS + parameters->axes;
+}
+
 static uint16_t wrap(unsigned line, const struct passo_parameters *parameters)
 {
 	return (uint16_t)(line & (2u * depth(parameters) - 1u));
@@ -30,6 +41,12 @@ uint8_t passo_line_queue_refusal(const struct passo_line_queue *queue,
 		return PASSO_VERDICT_BAD_VALUE;
 	if (queue->index == INDEX_SUBSTEPS && (bus->data == 0u || bus->data > PASSO_SUBSTEPS_MAX))
 		return PASSO_VERDICT_BAD_VALUE;
+	if (is_output(parameters, queue->index)) {
+		const struct passo_line_output output = passo_unpack_line_output(bus->data);
+		return (bus->data & ~PASSO_LINE_OUTPUT_DEFINED) != 0u || (output.raster && output.power != 0u)
+		         ? PASSO_VERDICT_BAD_VALUE
+		         : PASSO_VERDICT_OK;
+	}
 	if (queue->index >= INDEX_STEPS && bus->data > queue->checked_substeps)
 		return PASSO_VERDICT_BAD_VALUE;
 	return PASSO_VERDICT_OK;
@@ -57,7 +74,8 @@ static void write_word(struct passo_line *line, unsigned index, uint32_t data)
 static void clock_writing(struct passo_line_queue *queue, const struct passo_parameters *parameters,
     const struct passo_bus *bus, bool push)
 {
-	const bool complete = queue->index == parameters->axes + 1u;
+	const bool complete = queue->index == last_index(parameters);
+	const unsigned place = queue->write_line & (depth(parameters) - 1u);
 	const uint8_t index = queue->index;
 
 	if (push && (bus->check || bus->write)) {
@@ -66,9 +84,10 @@ static void clock_writing(struct passo_line_queue *queue, const struct passo_par
 			queue->checked_substeps = bus->data;
 		if (complete && bus->check)
 			queue->checked = wrap(queue->checked + 1u, parameters);
-		if (bus->write)
-			write_word(
-			    &queue->lines[queue->write_line & (depth(parameters) - 1u)], index, bus->data);
+		if (bus->write && is_output(parameters, index))
+			queue->output_words[place] = bus->data;
+		else if (bus->write)
+			write_word(&queue->lines[place], index, bus->data);
 		if (complete && bus->write)
 			queue->write_line = wrap(queue->write_line + 1u, parameters);
 	}
@@ -90,6 +109,7 @@ static void read_memory(struct passo_line_queue *queue, const struct passo_param
 		queue->last_substep = next->substeps - 1u;
 	}
 	queue->directions = current->directions;
+	queue->output_word = queue->output_words[queue->current_line];
 	for (unsigned axis = 0; axis < parameters->axes; axis++)
 		queue->steps[axis] = current->steps[axis];
 }

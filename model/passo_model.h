@@ -8,6 +8,7 @@
 #define PASSO_MODEL_H
 
 #include "passo_command.h"
+#include "passo_outputs.h"
 #include "passo_pins.h"
 #include "passo_registers.h"
 #include "passo_shapes.h"
@@ -153,11 +154,13 @@ struct passo_line_queue {
 	uint16_t room;
 	bool next_valid;
 	struct passo_line lines[PASSO_LINE_QUEUE_MAX];
+	uint32_t output_words[PASSO_LINE_QUEUE_MAX]; /* of the lines, with OUTPUTS */
 	/* outputs of the block RAM */
 	bool last, endless;
 	uint32_t last_substep; /* M - 1 */
 	uint8_t directions;
 	uint32_t steps[PASSO_AXES_MAX];
+	uint32_t output_word;
 };
 
 struct passo_ramp_queue {
@@ -353,6 +356,7 @@ struct passo_requests {
 struct passo_channel {
 	uint8_t axes;
 	uint8_t number;
+	bool has_outputs; /* OUTPUTS */
 	struct passo_channel_registers registers;
 	struct passo_admission admission;
 	struct passo_line_queue line_queue;
@@ -366,9 +370,11 @@ struct passo_channel {
 	struct passo_axis axis[PASSO_AXES_MAX];
 	struct passo_positions positions;
 	struct passo_inputs_unit inputs;
-	uint8_t occupied_before;  /* in the previous three clocks */
-	bool at_rest;             /* no motion, and no step in flight to the axes */
-	bool writes_axis;         /* bus write strobe for the axes, one clock late */
+	struct passo_output_registers output_registers;
+	struct passo_outputs_unit outputs;
+	uint8_t occupied_before; /* in the previous three clocks */
+	bool at_rest;     /* no motion, no step in flight to the axes, no change of the outputs waits */
+	bool writes_axis; /* bus write strobe for the axes, one clock late */
 	uint8_t written_register; /* its address within the axis blocks */
 };
 
@@ -397,6 +403,7 @@ struct passo_channel_wires {
 	bool overrun;
 	bool finished;
 	bool stop_now, stopped;
+	bool running_next; /* the pin after this clock */
 	bool drop;
 	bool estop;
 	struct passo_requests requests;
@@ -517,6 +524,9 @@ void passo_channel_reset(
 void passo_channel_restart(struct passo_channel *channel, const struct passo_channel *before,
     const struct passo_parameters *parameters);
 void passo_channel_clock(struct passo_channel *channel, const struct passo_channel_inputs *inputs);
+/* Inputs of the outputs, from the state before the edge. */
+struct passo_outputs_wires passo_channel_outputs(const struct passo_channel *channel,
+    const struct passo_bus *bus, const struct passo_channel_wires *wires);
 bool passo_channel_stopped(const struct passo_channel *channel);
 bool passo_channel_occupied(const struct passo_channel *channel);
 bool passo_channel_quiet(const struct passo_channel *channel);

@@ -54,6 +54,9 @@ void passo_motion_wires(const struct passo_channel *channel, const struct passo_
 	wires->begin_profile = motion->begin_profile;
 	wires->finished = motion->settled && (line_over || channel->line.endless);
 	wires->stop_now = motion->stop_due && !wires->stopped;
+	wires->running_next =
+	    !wires->stop_now
+	    && (state != PASSO_STATE_RUN || motion->count == START_LAST ? wires->moving : motion->running);
 	wires->drop = aborts(channel, wires) || motion->aborted != 0u;
 }
 
@@ -92,8 +95,7 @@ void passo_motion_clock(
 		motion->state = wires->ramp_ended ? PASSO_STATE_SETTLE : PASSO_STATE_RUN;
 	if (wires->finished)
 		motion->state = PASSO_STATE_IDLE;
-	if (state != PASSO_STATE_RUN || count == START_LAST)
-		motion->running = wires->moving;
+	motion->running = wires->running_next;
 
 	if (wires->drain && channel->path.substep && !channel->line.ended)
 		motion->drained = (motion->drained + 1u) & 0x7FFFu;
@@ -116,7 +118,6 @@ void passo_motion_clock(
 		motion->state = PASSO_STATE_STOPPED;
 		motion->cause = cause_due;
 		motion->stopping = false;
-		motion->running = false;
 		motion->settled = false;
 	}
 }

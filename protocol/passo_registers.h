@@ -49,7 +49,7 @@
 #define PASSO_STATUS_MARKER_RESET      0x2u
 #define PASSO_STATUS_DEFINED           0xFFFFFFFFu
 
-/* Word: Line control. First word of a line; then M and N_0 .. N_{AXES-1}. */
+/* Word: Line control. First word of a line; then M, N_0 .. N_{AXES-1} and, with OUTPUTS, its output. */
 #define PASSO_LINE_CONTROL_LAST_LSB        0u
 #define PASSO_LINE_CONTROL_LAST_BITS       1u
 #define PASSO_LINE_CONTROL_ENDLESS_LSB     1u
@@ -71,6 +71,17 @@
 #define PASSO_RAMP_CONTROL_VELOCITY_HIGH_LSB  16u
 #define PASSO_RAMP_CONTROL_VELOCITY_HIGH_BITS 16u
 #define PASSO_RAMP_CONTROL_DEFINED            0xFFFF0037u
+
+/* Word: Line output. With OUTPUTS the last word of a line. */
+#define PASSO_LINE_OUTPUT_POWER_LSB         0u
+#define PASSO_LINE_OUTPUT_POWER_BITS        16u
+#define PASSO_LINE_OUTPUT_LEVELS_LSB        16u
+#define PASSO_LINE_OUTPUT_LEVELS_BITS       8u
+#define PASSO_LINE_OUTPUT_PROPORTIONAL_LSB  24u
+#define PASSO_LINE_OUTPUT_PROPORTIONAL_BITS 1u
+#define PASSO_LINE_OUTPUT_RASTER_LSB        25u
+#define PASSO_LINE_OUTPUT_RASTER_BITS       1u
+#define PASSO_LINE_OUTPUT_DEFINED           0x03FFFFFFu
 
 /* Core: Identification. Reads as ASCII PASO. */
 #define PASSO_ADDRESS_IDENTIFICATION 0x000u
@@ -404,7 +415,8 @@
 #define PASSO_CHANNEL_PROBE_CLEAR_RESET    0x0u
 #define PASSO_CHANNEL_PROBE_DEFINED        0x00000003u
 
-/* Channel: Line queue. PUSH only: control, M, N_0 .. N_{AXES-1} for each line. */
+/* Channel: Line queue. PUSH only: control, M, N_0 .. N_{AXES-1} for each line, and with OUTPUTS its output
+ * word. */
 #define PASSO_CHANNEL_LINE         0x20u
 #define PASSO_CHANNEL_LINE_LSB     0u
 #define PASSO_CHANNEL_LINE_BITS    32u
@@ -416,6 +428,93 @@
 #define PASSO_CHANNEL_RAMP_LSB     0u
 #define PASSO_CHANNEL_RAMP_BITS    32u
 #define PASSO_CHANNEL_RAMP_DEFINED 0xFFFFFFFFu
+
+/* Channel: Raster queue. Only with OUTPUTS. PUSH only: four values to a word, the lowest byte first. A
+ * raster line begins with a whole word. */
+#define PASSO_CHANNEL_RASTER         0x22u
+#define PASSO_CHANNEL_RASTER_LSB     0u
+#define PASSO_CHANNEL_RASTER_BITS    32u
+#define PASSO_CHANNEL_RASTER_DEFINED 0xFFFFFFFFu
+
+/* Channel: Output levels. Only with OUTPUTS. Sets the digital outputs at once, until a line changes them.
+ * Refused with BUSY unless the channel is quiet. */
+#define PASSO_CHANNEL_OUTPUT_LEVELS              0x30u
+#define PASSO_CHANNEL_OUTPUT_LEVELS_LEVELS_LSB   0u
+#define PASSO_CHANNEL_OUTPUT_LEVELS_LEVELS_BITS  8u
+#define PASSO_CHANNEL_OUTPUT_LEVELS_LEVELS_RESET 0x00u
+#define PASSO_CHANNEL_OUTPUT_LEVELS_DEFINED      0x000000FFu
+
+/* Channel: Output lag. Only with OUTPUTS. Refused with BUSY unless the channel is quiet. */
+#define PASSO_CHANNEL_OUTPUT_LAG           0x31u
+#define PASSO_CHANNEL_OUTPUT_LAG_LAG_LSB   0u
+#define PASSO_CHANNEL_OUTPUT_LAG_LAG_BITS  16u
+#define PASSO_CHANNEL_OUTPUT_LAG_LAG_RESET 0x0000u
+#define PASSO_CHANNEL_OUTPUT_LAG_DEFINED   0x0000FFFFu
+
+/* Channel: PWM step. Only with OUTPUTS. Frequency of the power pin. May be written at any time. Refused
+ * with BAD_VALUE if 0 or above 1/2. */
+#define PASSO_CHANNEL_PWM_STEP         0x32u
+#define PASSO_CHANNEL_PWM_STEP_LSB     0u
+#define PASSO_CHANNEL_PWM_STEP_BITS    24u
+#define PASSO_CHANNEL_PWM_STEP_RESET   0x001000u
+#define PASSO_CHANNEL_PWM_STEP_DEFINED 0x00FFFFFFu
+
+/* Channel: Power reference. Only with OUTPUTS. Velocity at which a power in proportion to the velocity is
+ * the one of the line; above it, it stays that. May be written at any time. Refused with BAD_VALUE if 0 or
+ * above 1/2. */
+#define PASSO_CHANNEL_POWER_REFERENCE         0x33u
+#define PASSO_CHANNEL_POWER_REFERENCE_LSB     0u
+#define PASSO_CHANNEL_POWER_REFERENCE_BITS    32u
+#define PASSO_CHANNEL_POWER_REFERENCE_RESET   0x80000000u
+#define PASSO_CHANNEL_POWER_REFERENCE_DEFINED 0xFFFFFFFFu
+
+/* Channel: Raster pitch. Only with OUTPUTS. Substeps from one value of a raster line to the next; counts
+ * from the next value on. Refused with BAD_VALUE if 0 or above 2^30 - 1. */
+#define PASSO_CHANNEL_RASTER_PITCH             0x34u
+#define PASSO_CHANNEL_RASTER_PITCH_PITCH_LSB   0u
+#define PASSO_CHANNEL_RASTER_PITCH_PITCH_BITS  30u
+#define PASSO_CHANNEL_RASTER_PITCH_PITCH_RESET 0x00000001u
+#define PASSO_CHANNEL_RASTER_PITCH_DEFINED     0x3FFFFFFFu
+
+/* Channel: Compare pulse. Only with OUTPUTS. Refused with BUSY unless the channel is quiet, with BAD_VALUE
+ * if there is no such axis. Ends a pulse in progress, as COMPARE_DISTANCE does. */
+#define PASSO_CHANNEL_COMPARE_PULSE             0x35u
+#define PASSO_CHANNEL_COMPARE_PULSE_WIDTH_LSB   0u
+#define PASSO_CHANNEL_COMPARE_PULSE_WIDTH_BITS  16u
+#define PASSO_CHANNEL_COMPARE_PULSE_WIDTH_RESET 0x0000u
+#define PASSO_CHANNEL_COMPARE_PULSE_AXIS_LSB    16u
+#define PASSO_CHANNEL_COMPARE_PULSE_AXIS_BITS   3u
+#define PASSO_CHANNEL_COMPARE_PULSE_AXIS_RESET  0x0u
+#define PASSO_CHANNEL_COMPARE_PULSE_DEFINED     0x0007FFFFu
+
+/* Channel: Compare distance. Only with OUTPUTS. Refused with BUSY unless the channel is quiet. */
+#define PASSO_CHANNEL_COMPARE_DISTANCE                0x36u
+#define PASSO_CHANNEL_COMPARE_DISTANCE_DISTANCE_LSB   0u
+#define PASSO_CHANNEL_COMPARE_DISTANCE_DISTANCE_BITS  32u
+#define PASSO_CHANNEL_COMPARE_DISTANCE_DISTANCE_RESET 0x00000000u
+#define PASSO_CHANNEL_COMPARE_DISTANCE_DEFINED        0xFFFFFFFFu
+
+/* Channel: Compare interval. Only with OUTPUTS. Counts from the next pulse on. Refused with BAD_VALUE if 0. */
+#define PASSO_CHANNEL_COMPARE_INTERVAL                0x37u
+#define PASSO_CHANNEL_COMPARE_INTERVAL_INTERVAL_LSB   0u
+#define PASSO_CHANNEL_COMPARE_INTERVAL_INTERVAL_BITS  32u
+#define PASSO_CHANNEL_COMPARE_INTERVAL_INTERVAL_RESET 0x00000001u
+#define PASSO_CHANNEL_COMPARE_INTERVAL_DEFINED        0xFFFFFFFFu
+
+/* Channel: Output state. Only with OUTPUTS. State of the outputs. */
+#define PASSO_CHANNEL_OUTPUT_STATE                    0x38u
+#define PASSO_CHANNEL_OUTPUT_STATE_LEVELS_LSB         0u
+#define PASSO_CHANNEL_OUTPUT_STATE_LEVELS_BITS        8u
+#define PASSO_CHANNEL_OUTPUT_STATE_LEVELS_RESET       0x00u
+#define PASSO_CHANNEL_OUTPUT_STATE_RASTER_EMPTY_LSB   8u
+#define PASSO_CHANNEL_OUTPUT_STATE_RASTER_EMPTY_BITS  1u
+#define PASSO_CHANNEL_OUTPUT_STATE_RASTER_EMPTY_RESET 0x0u
+#define PASSO_CHANNEL_OUTPUT_STATE_OVERFLOW_LSB       9u
+#define PASSO_CHANNEL_OUTPUT_STATE_OVERFLOW_BITS      1u
+#define PASSO_CHANNEL_OUTPUT_STATE_OVERFLOW_RESET     0x0u
+#define PASSO_CHANNEL_OUTPUT_STATE_RASTER_ROOM_LSB    16u
+#define PASSO_CHANNEL_OUTPUT_STATE_RASTER_ROOM_BITS   16u
+#define PASSO_CHANNEL_OUTPUT_STATE_RASTER_ROOM_RESET  0x0100u
 
 /* Channel: Steps made. Position of an axis in steps, sampled soon after chip select fell; wraps. */
 #define PASSO_CHANNEL_POSITION_BASE  0x40u

@@ -102,7 +102,7 @@ static inline struct passo_status passo_unpack_status(uint32_t word)
 	};
 }
 
-/* Line control. First word of a line; then M and N_0 .. N_{AXES-1}. */
+/* Line control. First word of a line; then M, N_0 .. N_{AXES-1} and, with OUTPUTS, its output. */
 struct passo_line_control {
 	uint8_t directions; /* Bit i: axis i counts down. */
 	bool    endless;    /* Repeat until the profile ends. */
@@ -151,6 +151,32 @@ static inline struct passo_ramp_control passo_unpack_ramp_control(uint32_t word)
 	    .mirror = (word >> 2 & 0x1u) != 0u,
 	    .now = (word >> 1 & 0x1u) != 0u,
 	    .last = (word & 0x1u) != 0u,
+	};
+}
+
+/* Line output. With OUTPUTS the last word of a line. */
+struct passo_line_output {
+	bool     raster;       /* The power comes from the raster queue; the field is then 0. */
+	bool     proportional; /* Power in proportion to the present velocity. */
+	uint8_t  levels;       /* Levels of the digital outputs. */
+	uint16_t power;        /* Power, UQ0.16, but 65535 is 1.0. */
+};
+
+static inline uint32_t passo_pack_line_output(const struct passo_line_output *word)
+{
+	return ((uint32_t)word->raster & 0x1u) << 25
+	     | ((uint32_t)word->proportional & 0x1u) << 24
+	     | ((uint32_t)word->levels & 0xFFu) << 16
+	     | ((uint32_t)word->power & 0xFFFFu);
+}
+
+static inline struct passo_line_output passo_unpack_line_output(uint32_t word)
+{
+	return (struct passo_line_output){
+	    .raster = (word >> 25 & 0x1u) != 0u,
+	    .proportional = (word >> 24 & 0x1u) != 0u,
+	    .levels = (uint8_t)(word >> 16 & 0xFFu),
+	    .power = (uint16_t)(word & 0xFFFFu),
 	};
 }
 
@@ -541,6 +567,52 @@ static inline struct passo_channel_probe passo_unpack_channel_probe(uint32_t wor
 	return (struct passo_channel_probe){
 	    .clear = (word >> 1 & 0x1u) != 0u,
 	    .inverted = (word & 0x1u) != 0u,
+	};
+}
+
+/* Compare pulse. Only with OUTPUTS. Refused with BUSY unless the channel is quiet, with BAD_VALUE if there is no such axis. Ends a pulse in progress, as COMPARE_DISTANCE does. */
+struct passo_channel_compare_pulse {
+	uint8_t  axis;  /* Axis whose position is compared. */
+	uint16_t width; /* Clocks; 0 = no pulses. */
+};
+
+static inline uint32_t passo_pack_channel_compare_pulse(const struct passo_channel_compare_pulse *word)
+{
+	return ((uint32_t)word->axis & 0x7u) << 16
+	     | ((uint32_t)word->width & 0xFFFFu);
+}
+
+static inline struct passo_channel_compare_pulse passo_unpack_channel_compare_pulse(uint32_t word)
+{
+	return (struct passo_channel_compare_pulse){
+	    .axis = (uint8_t)(word >> 16 & 0x7u),
+	    .width = (uint16_t)(word & 0xFFFFu),
+	};
+}
+
+/* Output state. Only with OUTPUTS. State of the outputs. */
+struct passo_channel_output_state {
+	uint16_t raster_room;  /* Free words of the raster queue. A push counts from the moment its frame is accepted. */
+	bool     overflow;     /* More than 256 changes waited for the lag since COMMAND.CLEAR. One was lost, so there is no power until then. */
+	bool     raster_empty; /* A raster line found no value since COMMAND.CLEAR: its power was 0. */
+	uint8_t  levels;       /* Levels of the digital outputs. */
+};
+
+static inline uint32_t passo_pack_channel_output_state(const struct passo_channel_output_state *word)
+{
+	return ((uint32_t)word->raster_room & 0xFFFFu) << 16
+	     | ((uint32_t)word->overflow & 0x1u) << 9
+	     | ((uint32_t)word->raster_empty & 0x1u) << 8
+	     | ((uint32_t)word->levels & 0xFFu);
+}
+
+static inline struct passo_channel_output_state passo_unpack_channel_output_state(uint32_t word)
+{
+	return (struct passo_channel_output_state){
+	    .raster_room = (uint16_t)(word >> 16 & 0xFFFFu),
+	    .overflow = (word >> 9 & 0x1u) != 0u,
+	    .raster_empty = (word >> 8 & 0x1u) != 0u,
+	    .levels = (uint8_t)(word & 0xFFu),
 	};
 }
 

@@ -14,6 +14,7 @@ module passo_channel #(
   parameter            RAMP_QUEUE_LOG2 = 4,
   parameter            STEPS_REGISTER  = 0,
   parameter            INPUTS          = 0,
+  parameter            OUTPUTS         = 0,
   parameter [AXES-1:0] STEP_RESET      = 0,
   parameter [AXES-1:0] DIR_RESET       = 0,
   parameter [AXES-1:0] ENABLE_RESET    = 0
@@ -73,6 +74,9 @@ module passo_channel #(
   output wire [         AXES-1:0] step,
   output wire [         AXES-1:0] dir,
   output wire [         AXES-1:0] enable,
+  output wire [              7:0] outputs,
+  output wire                     power,
+  output wire                     compare,
   output wire                     running
 );
 
@@ -128,6 +132,9 @@ module passo_channel #(
   wire            line_underrun;
   wire [AXES-1:0] step_request;
   wire [AXES-1:0] directions;
+  wire            line_begins;
+  wire            line_substep;
+  wire [    25:0] output_word;
 
   // axes
   wire            axes_quiet;
@@ -156,6 +163,16 @@ module passo_channel #(
   wire            inputs_claim;
   wire [     3:0] inputs_refusal;
   wire [    31:0] inputs_read_data;
+  wire [AXES-1:0] step_made;
+  wire [AXES-1:0] step_direction;
+
+  // outputs
+  wire        outputs_quiet;
+  wire        outputs_need_quiet;
+  wire        outputs_claim;
+  wire [ 3:0] outputs_refusal;
+  wire [31:0] outputs_read_data;
+  wire        running_next;
 
   wire        registers_claim;
   wire [ 3:0] registers_refusal;
@@ -172,18 +189,18 @@ module passo_channel #(
 
   // Unselected targets drive 0.
   always @* begin
-    claim     = registers_claim | axes_claim | inputs_claim;
-    refusal   = registers_refusal | line_refusal | ramp_refusal | axes_refusal | inputs_refusal;
-    read_data = registers_read_data | axes_read_data | inputs_read_data;
+    claim = registers_claim | axes_claim | inputs_claim | outputs_claim;
+    refusal   = registers_refusal | line_refusal | ramp_refusal | axes_refusal | inputs_refusal | outputs_refusal;
+    read_data = registers_read_data | axes_read_data | inputs_read_data | outputs_read_data;
   end
 
   reg  [2:0] occupied_q;  // a line loaded in the clock of a stop changes DIR up to 4 clocks later
-  reg        at_rest;  // no motion, and no step in flight to the axes
+  reg        at_rest;  // no motion, no step in flight to the axes, no change of the outputs that waits
   wire       quiet = at_rest & ~occupied;
 
   always @(posedge clk) begin
     occupied_q <= {occupied_q[1:0], occupied};
-    at_rest    <= ~rst & ~occupied & (occupied_q == 3'b000) & axes_quiet;
+    at_rest    <= ~rst & ~occupied & (occupied_q == 3'b000) & axes_quiet & outputs_quiet;
   end
 
   passo_channel_registers #(
@@ -271,7 +288,8 @@ module passo_channel #(
     .drop            (drop),
     .release_line    (release_line),
     .stopped         (stopped),
-    .running         (running)
+    .running         (running),
+    .running_next    (running_next)
   );
 
   passo_admission u_admission (
@@ -280,7 +298,7 @@ module passo_channel #(
     .bus_frame    (bus_frame),
     .bus_commit   (bus_commit),
     .needs_idle   (command_needs_idle),
-    .needs_quiet  (command_needs_quiet | pins_need_quiet),
+    .needs_quiet  (command_needs_quiet | pins_need_quiet | outputs_need_quiet),
     .needs_motion (ramp_needs_motion),
     .tables_wanted(tables_wanted),
     .occupied     (occupied),
@@ -345,7 +363,8 @@ module passo_channel #(
   passo_lines #(
     .AXES          (AXES),
     .DEPTH_LOG2    (LINE_QUEUE_LOG2),
-    .STEPS_REGISTER(STEPS_REGISTER)
+    .STEPS_REGISTER(STEPS_REGISTER),
+    .OUTPUTS       (OUTPUTS)
   ) u_lines (
     .clk         (clk),
     .rst         (rst),
@@ -369,7 +388,10 @@ module passo_channel #(
     .underrun    (line_underrun),
     .substep     (substep),
     .step_request(step_request),
-    .directions  (directions)
+    .directions  (directions),
+    .line_begins (line_begins),
+    .line_substep(line_substep),
+    .output_word (output_word)
   );
 
   passo_axes #(
@@ -411,6 +433,8 @@ module passo_channel #(
     .quiet          (axes_quiet),
     .step_overrun   (step_overrun),
     .lost_steps     (lost_steps),
+    .step_made      (step_made),
+    .step_direction (step_direction),
     .step           (step),
     .dir            (dir),
     .enable         (enable_wanted)
@@ -476,6 +500,119 @@ module passo_channel #(
       assign input_soft       = 1'b0;
       assign input_soft_cause = CAUSE_NONE;
       assign end_endless      = 1'b0;
+    end
+  endgenerate
+
+  generate
+    if (OUTPUTS != 0) begin : g_outputs
+      wire        settings_claim;
+      wire [ 3:0] settings_refusal;
+      wire [ 3:0] raster_refusal;
+      wire        select_raster;
+      wire [15:0] lag;
+      wire [23:0] pwm_step;
+      wire [31:0] power_reference;
+      wire [29:0] pitch;
+      wire [ 2:0] compare_axis;
+      wire [15:0] compare_width;
+      wire [31:0] compare_interval;
+      wire        write_levels;
+      wire        write_pulse;
+      wire        write_distance;
+      wire        raster_empty;
+      wire        overflow;
+      wire [ 8:0] raster_room;
+
+      assign outputs_claim   = settings_claim;
+      assign outputs_refusal = settings_refusal | raster_refusal;
+
+      passo_output_registers #(
+        .AXES(AXES)
+      ) u_output_registers (
+        .clk             (clk),
+        .rst             (rst),
+        .bus_check       (bus_check),
+        .bus_write       (bus_write),
+        .bus_read        (bus_read),
+        .bus_push        (bus_push),
+        .select          (select),
+        .bus_address     (bus_address),
+        .bus_data        (bus_data),
+        .bus_msb         (bus_msb),
+        .bus_one_hot     (bus_one_hot),
+        .claim           (settings_claim),
+        .refusal         (settings_refusal),
+        .read_data       (outputs_read_data),
+        .select_raster   (select_raster),
+        .needs_quiet     (outputs_need_quiet),
+        .lag             (lag),
+        .pwm_step        (pwm_step),
+        .power_reference (power_reference),
+        .pitch           (pitch),
+        .compare_axis    (compare_axis),
+        .compare_width   (compare_width),
+        .compare_interval(compare_interval),
+        .write_levels    (write_levels),
+        .write_pulse     (write_pulse),
+        .write_distance  (write_distance),
+        .levels          (outputs),
+        .raster_empty    (raster_empty),
+        .overflow        (overflow),
+        .raster_room     (raster_room)
+      );
+
+      passo_outputs #(
+        .AXES(AXES)
+      ) u_outputs (
+        .clk             (clk),
+        .rst             (rst),
+        .bus_frame       (bus_frame),
+        .bus_commit      (bus_commit),
+        .bus_check       (bus_check),
+        .bus_write       (bus_write),
+        .select          (select_raster),
+        .bus_data        (bus_data),
+        .refusal         (raster_refusal),
+        .lag             (lag),
+        .pwm_step        (pwm_step),
+        .power_reference (power_reference),
+        .pitch           (pitch),
+        .compare_axis    (compare_axis),
+        .compare_width   (compare_width),
+        .compare_interval(compare_interval),
+        .write_pulse     (write_pulse),
+        .write_distance  (write_distance),
+        .write_levels    (write_levels),
+        .raster_room     (raster_room),
+        .raster_empty    (raster_empty),
+        .overflow        (overflow),
+        .quiet           (outputs_quiet),
+        .line_begins     (line_begins),
+        .substep         (line_substep),
+        .word            (output_word),
+        .stopped         (stopped),
+        .clear           (command_clear),
+        .running         (running),
+        .running_next    (running_next),
+        .velocity        (velocity),
+        .rate            (rate),
+        .step_made       (step_made),
+        .step_direction  (step_direction),
+        .outputs         (outputs),
+        .power           (power),
+        .compare         (compare)
+      );
+    end else begin : g_no_outputs
+      wire unused = &{1'b0, line_begins, line_substep, output_word, running_next, step_made, step_direction};
+
+      assign outputs_claim      = 1'b0;
+      assign outputs_refusal    = 4'd0;
+      assign outputs_read_data  = 32'd0;
+      assign outputs_need_quiet = 1'b0;
+      assign outputs_quiet      = 1'b1;
+      assign outputs            = 8'd0;
+      assign power              = 1'b0;
+      assign compare            = 1'b0;
     end
   endgenerate
 

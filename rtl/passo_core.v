@@ -135,10 +135,6 @@ module passo_core #(
   wire [                            15:0] table_point;
   wire [                            15:0] table_point_next;
 
-  assign outputs = {CHANNELS * 8{1'b0}};
-  assign power   = {CHANNELS{1'b0}};
-  assign compare = {CHANNELS{1'b0}};
-
   // inputs of the machine
   wire                filter_tick;
   wire [        15:0] filter;
@@ -324,6 +320,7 @@ module passo_core #(
         .RAMP_QUEUE_LOG2(RAMP_QUEUE_LOG2),
         .STEPS_REGISTER (STEPS_REGISTER),
         .INPUTS         (INPUTS),
+        .OUTPUTS        (OUTPUTS),
         .STEP_RESET     (STEP_RESET[channel*AXES+:AXES]),
         .DIR_RESET      (DIR_RESET[channel*AXES+:AXES]),
         .ENABLE_RESET   (ENABLE_RESET[channel*AXES+:AXES])
@@ -376,6 +373,9 @@ module passo_core #(
         .step            (step[channel*AXES+:AXES]),
         .dir             (dir[channel*AXES+:AXES]),
         .enable          (enable[channel*AXES+:AXES]),
+        .outputs         (outputs[channel*8+:8]),
+        .power           (power[channel]),
+        .compare         (compare[channel]),
         .running         (running[channel])
       );
     end

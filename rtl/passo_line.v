@@ -41,7 +41,10 @@ module passo_line #(
   // motion
   output reg                    current_endless,     // two clocks after take
   output reg                    ended,
-  output reg                    underrun
+  output reg                    underrun,
+  // outputs
+  output wire                   line_begins,         // strobe: the next substep is the first of a line
+  output wire                   substep_taken        // a substep of a line
 );
 
   reg         active;
@@ -62,11 +65,11 @@ module passo_line #(
     end
   endgenerate
 
-  wire substep_taken = substep & active;
+  assign substep_taken = substep & active;
   wire line_done = substep_taken & on_last;
 
-  assign take = start | (substep & on_last & goes_on & next_valid);
-  wire line_begins = take | (substep & on_last & repeats);
+  assign take        = start | (substep & on_last & goes_on & next_valid);
+  assign line_begins = take | (substep & on_last & repeats);
 
   assign line_addend = load_start ? {2'b11, ~last_substep[29:1]} : {1'b1, ~last_substep};
 

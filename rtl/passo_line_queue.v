@@ -9,7 +9,8 @@
 //
 // A push is checked word by word (`bus_check`; the word is stable from two clocks before): room for the line after
 // all lines of this frame before it, M not 0 and below 2^30, N_i <= M, no reserved bits. `refusal` answers one clock
-// later. One subtractor serves the checks and makes the stored M - 1, the number of the last substep. The flags are
+// later. With OUTPUTS the output word follows the steps: a raster line has no power of its own, no reserved bits.
+// One subtractor serves the checks and makes the stored M - 1, the number of the last substep. The flags are
 // stored with it, each direction with its N_i.
 //
 // With STEPS_REGISTER the steps are registered behind their block RAMs, else the address is before them.
@@ -20,7 +21,8 @@
 module passo_line_queue #(
   parameter AXES           = 4,
   parameter DEPTH_LOG2     = 8,
-  parameter STEPS_REGISTER = 0   // 1: block RAMs have an output register
+  parameter STEPS_REGISTER = 0,  // 1: block RAMs have an output register
+  parameter OUTPUTS        = 0   // 1: a line has an output word
 ) (
   input  wire                clk,
   input  wire                rst,
@@ -45,7 +47,8 @@ module passo_line_queue #(
   output wire                endless,
   output wire [        29:0] last_substep,  // its M - 1
   output wire [    AXES-1:0] directions,
-  output wire [ AXES*30-1:0] steps          // its N_i
+  output wire [ AXES*30-1:0] steps,         // its N_i
+  output wire [        25:0] output_word    // 0 without OUTPUTS
 );
 
   `include "passo_registers.vh"
@@ -54,8 +57,10 @@ module passo_line_queue #(
   localparam INDEX_CONTROL = 0;
   localparam INDEX_SUBSTEPS = 1;
   localparam INDEX_STEPS = 2;
-  localparam INDEX_LAST = INDEX_STEPS + AXES - 1;
+  localparam INDEX_OUTPUT = INDEX_STEPS + AXES;
+  localparam INDEX_LAST = INDEX_OUTPUT - 1 + OUTPUTS;
   localparam [4:0] COUNT_MSB = 5'd29;
+  localparam [4:0] OUTPUT_MSB = 5'd25;
   localparam [DEPTH_LOG2:0] DEPTH = 1 << DEPTH_LOG2;
 
   // Writing, word by word
@@ -118,16 +123,20 @@ module passo_line_queue #(
   end
 
   // Refusal, one clock ahead of the check
-  reg full;
-  reg bad_bits;
+  reg  full;
+  reg  bad_bits;
+  wire is_output = OUTPUTS != 0 && index[INDEX_LAST];
 
   always @(posedge clk) begin
     full <= room == checked;
-    bad_bits <= index[INDEX_CONTROL] ? bus_msb > CONTROL_MSB || bus_data[7:2] != 6'd0 : bus_msb > COUNT_MSB;
+    bad_bits <= index[INDEX_CONTROL] ? bus_msb > CONTROL_MSB || bus_data[7:2] != 6'd0 :
+                is_output            ? bus_msb > OUTPUT_MSB
+                                       || (bus_data[LINE_OUTPUT_RASTER_LSB] && bus_data[15:0] != 16'd0) :
+                                       bus_msb > COUNT_MSB;
     refusal  <= !(select && bus_check)                         ? VERDICT_OK :
                 blocked                                        ? VERDICT_BUSY :
                 full                                           ? VERDICT_QUEUE_FULL :
-                bad_bits || (wrong && !index[INDEX_CONTROL])   ? VERDICT_BAD_VALUE : VERDICT_OK;
+                bad_bits || (wrong && !index[INDEX_CONTROL] && !is_output) ? VERDICT_BAD_VALUE : VERDICT_OK;
   end
 
   // Reading
@@ -168,6 +177,23 @@ module passo_line_queue #(
 
   genvar axis;
   generate
+    if (OUTPUTS != 0) begin : g_output
+      passo_memory #(
+        .WIDTH        (26),
+        .DEPTH_LOG2   (DEPTH_LOG2),
+        .DATA_REGISTER(STEPS_REGISTER)
+      ) u_output (
+        .clk          (clk),
+        .write        (write & index[INDEX_OUTPUT]),
+        .write_address(write_line[DEPTH_LOG2-1:0]),
+        .write_data   (bus_data[25:0]),
+        .read_address (STEPS_REGISTER != 0 ? next_line[DEPTH_LOG2-1:0] : current_line),
+        .load         (taken),
+        .read_data    (output_word)
+      );
+    end else begin : g_no_output
+      assign output_word = 26'd0;
+    end
     for (axis = 0; axis < AXES; axis = axis + 1) begin : g_axis
       passo_memory #(
         .WIDTH        (31),

@@ -11,7 +11,8 @@
 module passo_lines #(
   parameter AXES           = 4,
   parameter DEPTH_LOG2     = 8,
-  parameter STEPS_REGISTER = 0   // 1: block RAMs have an output register
+  parameter STEPS_REGISTER = 0,  // 1: block RAMs have an output register
+  parameter OUTPUTS        = 0   // 1: a line has an output word
 ) (
   input  wire                clk,
   input  wire                rst,
@@ -39,7 +40,11 @@ module passo_lines #(
   input  wire                substep,
   // axes
   output wire [    AXES-1:0] step_request,
-  output wire [    AXES-1:0] directions     // of the line whose steps are being made
+  output wire [    AXES-1:0] directions,    // of the line whose steps are being made
+  // outputs
+  output wire                line_begins,   // strobe: the next substep is the first of a line
+  output wire                line_substep,  // a substep of a line
+  output wire [        25:0] output_word    // of the current line, from two clocks after it began
 );
 
   wire                      take;
@@ -58,7 +63,8 @@ module passo_lines #(
   passo_line_queue #(
     .AXES          (AXES),
     .DEPTH_LOG2    (DEPTH_LOG2),
-    .STEPS_REGISTER(STEPS_REGISTER)
+    .STEPS_REGISTER(STEPS_REGISTER),
+    .OUTPUTS       (OUTPUTS)
   ) u_queue (
     .clk         (clk),
     .rst         (rst),
@@ -81,7 +87,8 @@ module passo_lines #(
     .endless     (next_endless),
     .last_substep(last_substep),
     .directions  (current_directions),
-    .steps       (steps)
+    .steps       (steps),
+    .output_word (output_word)
   );
 
   always @(posedge clk) no_repeat <= ~rst & (end_endless | (no_repeat & ~take));
@@ -108,7 +115,9 @@ module passo_lines #(
     .directions        (directions),
     .current_endless   (endless),
     .ended             (ended),
-    .underrun          (underrun)
+    .underrun          (underrun),
+    .line_begins       (line_begins),
+    .substep_taken     (line_substep)
   );
 
   genvar axis;

@@ -64,7 +64,8 @@ module passo_motion (
   // queues
   output wire        release_line,      // strobe: the motion is over
   output reg         stopped,           // holds the datapath of the motion in reset
-  output reg         running
+  output reg         running,
+  output wire        running_next       // its level in the next clock, except for a reset
 );
 
   `include "passo_registers.vh"
@@ -123,6 +124,8 @@ module passo_motion (
 
   wire stop_now = stop_due & ~stopped;
 
+  assign running_next = ~stop_now & (~runs | count == START_LAST ? moving : running);
+
   always @(posedge clk) begin
     idle      <= (idle & ~startable) | finished | (stopped & command_clear);
     preparing <= startable | (preparing & ~ramp_ready);
@@ -161,7 +164,7 @@ module passo_motion (
     finished      <= settled_next && (line_ended || line_endless);
     rate_was_zero <= rate_is_zero;
     aborted       <= {aborted[0], abort};
-    if (!runs || count == START_LAST) running <= moving;
+    running       <= running_next;
 
     if (drains && substep_made && !line_ended) drained <= drained + 15'd1;
 
@@ -174,7 +177,6 @@ module passo_motion (
 
     if (stop_now) begin
       stopping <= 1'b0;
-      running  <= 1'b0;
       settled  <= 1'b0;
       finished <= 1'b0;
     end

@@ -48,7 +48,7 @@ localparam STATUS_MARKER_BITS       = 2;
 localparam STATUS_MARKER_RESET      = 2'h2;
 localparam STATUS_DEFINED           = 32'hFFFFFFFF;
 
-// Word: Line control. First word of a line; then M and N_0 .. N_{AXES-1}.
+// Word: Line control. First word of a line; then M, N_0 .. N_{AXES-1} and, with OUTPUTS, its output.
 localparam LINE_CONTROL_LAST_LSB        = 0;
 localparam LINE_CONTROL_LAST_BITS       = 1;
 localparam LINE_CONTROL_ENDLESS_LSB     = 1;
@@ -70,6 +70,17 @@ localparam RAMP_CONTROL_SHAPE_BITS         = 2;
 localparam RAMP_CONTROL_VELOCITY_HIGH_LSB  = 16;
 localparam RAMP_CONTROL_VELOCITY_HIGH_BITS = 16;
 localparam RAMP_CONTROL_DEFINED            = 32'hFFFF0037;
+
+// Word: Line output. With OUTPUTS the last word of a line.
+localparam LINE_OUTPUT_POWER_LSB         = 0;
+localparam LINE_OUTPUT_POWER_BITS        = 16;
+localparam LINE_OUTPUT_LEVELS_LSB        = 16;
+localparam LINE_OUTPUT_LEVELS_BITS       = 8;
+localparam LINE_OUTPUT_PROPORTIONAL_LSB  = 24;
+localparam LINE_OUTPUT_PROPORTIONAL_BITS = 1;
+localparam LINE_OUTPUT_RASTER_LSB        = 25;
+localparam LINE_OUTPUT_RASTER_BITS       = 1;
+localparam LINE_OUTPUT_DEFINED           = 32'h03FFFFFF;
 
 // Core: Identification. Reads as ASCII PASO.
 localparam ADDRESS_IDENTIFICATION = 12'h000;
@@ -403,7 +414,8 @@ localparam CHANNEL_PROBE_CLEAR_BITS     = 1;
 localparam CHANNEL_PROBE_CLEAR_RESET    = 1'h0;
 localparam CHANNEL_PROBE_DEFINED        = 32'h00000003;
 
-// Channel: Line queue. PUSH only: control, M, N_0 .. N_{AXES-1} for each line.
+// Channel: Line queue. PUSH only: control, M, N_0 .. N_{AXES-1} for each line, and with OUTPUTS its output
+// word.
 localparam CHANNEL_LINE         = 8'h20;
 localparam CHANNEL_LINE_LSB     = 0;
 localparam CHANNEL_LINE_BITS    = 32;
@@ -415,6 +427,93 @@ localparam CHANNEL_RAMP         = 8'h21;
 localparam CHANNEL_RAMP_LSB     = 0;
 localparam CHANNEL_RAMP_BITS    = 32;
 localparam CHANNEL_RAMP_DEFINED = 32'hFFFFFFFF;
+
+// Channel: Raster queue. Only with OUTPUTS. PUSH only: four values to a word, the lowest byte first. A
+// raster line begins with a whole word.
+localparam CHANNEL_RASTER         = 8'h22;
+localparam CHANNEL_RASTER_LSB     = 0;
+localparam CHANNEL_RASTER_BITS    = 32;
+localparam CHANNEL_RASTER_DEFINED = 32'hFFFFFFFF;
+
+// Channel: Output levels. Only with OUTPUTS. Sets the digital outputs at once, until a line changes them.
+// Refused with BUSY unless the channel is quiet.
+localparam CHANNEL_OUTPUT_LEVELS              = 8'h30;
+localparam CHANNEL_OUTPUT_LEVELS_LEVELS_LSB   = 0;
+localparam CHANNEL_OUTPUT_LEVELS_LEVELS_BITS  = 8;
+localparam CHANNEL_OUTPUT_LEVELS_LEVELS_RESET = 8'h00;
+localparam CHANNEL_OUTPUT_LEVELS_DEFINED      = 32'h000000FF;
+
+// Channel: Output lag. Only with OUTPUTS. Refused with BUSY unless the channel is quiet.
+localparam CHANNEL_OUTPUT_LAG           = 8'h31;
+localparam CHANNEL_OUTPUT_LAG_LAG_LSB   = 0;
+localparam CHANNEL_OUTPUT_LAG_LAG_BITS  = 16;
+localparam CHANNEL_OUTPUT_LAG_LAG_RESET = 16'h0000;
+localparam CHANNEL_OUTPUT_LAG_DEFINED   = 32'h0000FFFF;
+
+// Channel: PWM step. Only with OUTPUTS. Frequency of the power pin. May be written at any time. Refused
+// with BAD_VALUE if 0 or above 1/2.
+localparam CHANNEL_PWM_STEP         = 8'h32;
+localparam CHANNEL_PWM_STEP_LSB     = 0;
+localparam CHANNEL_PWM_STEP_BITS    = 24;
+localparam CHANNEL_PWM_STEP_RESET   = 24'h001000;
+localparam CHANNEL_PWM_STEP_DEFINED = 32'h00FFFFFF;
+
+// Channel: Power reference. Only with OUTPUTS. Velocity at which a power in proportion to the velocity is
+// the one of the line; above it, it stays that. May be written at any time. Refused with BAD_VALUE if 0 or
+// above 1/2.
+localparam CHANNEL_POWER_REFERENCE         = 8'h33;
+localparam CHANNEL_POWER_REFERENCE_LSB     = 0;
+localparam CHANNEL_POWER_REFERENCE_BITS    = 32;
+localparam CHANNEL_POWER_REFERENCE_RESET   = 32'h80000000;
+localparam CHANNEL_POWER_REFERENCE_DEFINED = 32'hFFFFFFFF;
+
+// Channel: Raster pitch. Only with OUTPUTS. Substeps from one value of a raster line to the next; counts
+// from the next value on. Refused with BAD_VALUE if 0 or above 2^30 - 1.
+localparam CHANNEL_RASTER_PITCH             = 8'h34;
+localparam CHANNEL_RASTER_PITCH_PITCH_LSB   = 0;
+localparam CHANNEL_RASTER_PITCH_PITCH_BITS  = 30;
+localparam CHANNEL_RASTER_PITCH_PITCH_RESET = 30'h00000001;
+localparam CHANNEL_RASTER_PITCH_DEFINED     = 32'h3FFFFFFF;
+
+// Channel: Compare pulse. Only with OUTPUTS. Refused with BUSY unless the channel is quiet, with BAD_VALUE
+// if there is no such axis. Ends a pulse in progress, as COMPARE_DISTANCE does.
+localparam CHANNEL_COMPARE_PULSE             = 8'h35;
+localparam CHANNEL_COMPARE_PULSE_WIDTH_LSB   = 0;
+localparam CHANNEL_COMPARE_PULSE_WIDTH_BITS  = 16;
+localparam CHANNEL_COMPARE_PULSE_WIDTH_RESET = 16'h0000;
+localparam CHANNEL_COMPARE_PULSE_AXIS_LSB    = 16;
+localparam CHANNEL_COMPARE_PULSE_AXIS_BITS   = 3;
+localparam CHANNEL_COMPARE_PULSE_AXIS_RESET  = 3'h0;
+localparam CHANNEL_COMPARE_PULSE_DEFINED     = 32'h0007FFFF;
+
+// Channel: Compare distance. Only with OUTPUTS. Refused with BUSY unless the channel is quiet.
+localparam CHANNEL_COMPARE_DISTANCE                = 8'h36;
+localparam CHANNEL_COMPARE_DISTANCE_DISTANCE_LSB   = 0;
+localparam CHANNEL_COMPARE_DISTANCE_DISTANCE_BITS  = 32;
+localparam CHANNEL_COMPARE_DISTANCE_DISTANCE_RESET = 32'h00000000;
+localparam CHANNEL_COMPARE_DISTANCE_DEFINED        = 32'hFFFFFFFF;
+
+// Channel: Compare interval. Only with OUTPUTS. Counts from the next pulse on. Refused with BAD_VALUE if 0.
+localparam CHANNEL_COMPARE_INTERVAL                = 8'h37;
+localparam CHANNEL_COMPARE_INTERVAL_INTERVAL_LSB   = 0;
+localparam CHANNEL_COMPARE_INTERVAL_INTERVAL_BITS  = 32;
+localparam CHANNEL_COMPARE_INTERVAL_INTERVAL_RESET = 32'h00000001;
+localparam CHANNEL_COMPARE_INTERVAL_DEFINED        = 32'hFFFFFFFF;
+
+// Channel: Output state. Only with OUTPUTS. State of the outputs.
+localparam CHANNEL_OUTPUT_STATE                    = 8'h38;
+localparam CHANNEL_OUTPUT_STATE_LEVELS_LSB         = 0;
+localparam CHANNEL_OUTPUT_STATE_LEVELS_BITS        = 8;
+localparam CHANNEL_OUTPUT_STATE_LEVELS_RESET       = 8'h00;
+localparam CHANNEL_OUTPUT_STATE_RASTER_EMPTY_LSB   = 8;
+localparam CHANNEL_OUTPUT_STATE_RASTER_EMPTY_BITS  = 1;
+localparam CHANNEL_OUTPUT_STATE_RASTER_EMPTY_RESET = 1'h0;
+localparam CHANNEL_OUTPUT_STATE_OVERFLOW_LSB       = 9;
+localparam CHANNEL_OUTPUT_STATE_OVERFLOW_BITS      = 1;
+localparam CHANNEL_OUTPUT_STATE_OVERFLOW_RESET     = 1'h0;
+localparam CHANNEL_OUTPUT_STATE_RASTER_ROOM_LSB    = 16;
+localparam CHANNEL_OUTPUT_STATE_RASTER_ROOM_BITS   = 16;
+localparam CHANNEL_OUTPUT_STATE_RASTER_ROOM_RESET  = 16'h0100;
 
 // Channel: Steps made. Position of an axis in steps, sampled soon after chip select fell; wraps.
 localparam CHANNEL_POSITION_BASE  = 8'h40;

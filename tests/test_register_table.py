@@ -12,6 +12,13 @@ from passo.register_table import Register
 from passo.registers import Verdict
 
 WORDS = 1 << r.HEADER_ADDRESS_BITS
+CORES = [
+    Parameters(),
+    Parameters(channels=2, axes=2),
+    Parameters(channels=2, axes=3, inputs=1),
+    Parameters(channels=2, axes=3, outputs=1),
+    Parameters(channels=2, axes=3, inputs=1, outputs=1),
+]
 
 
 def every_register(parameters: Parameters) -> Iterator[tuple[int, Register]]:
@@ -35,10 +42,11 @@ class Core:
     def __init__(self, link: Link, parameters: Parameters) -> None:
         self.link, self.parameters = link, parameters
         self.table = dict(every_register(parameters))
-        # what is pushed: a line, a ramp
+        # what is pushed: a line, a ramp, values
         self.items = {
-            "CHANNEL_LINE": [1, 9, *[9] * parameters.axes],
+            "CHANNEL_LINE": [1, 9, *[9] * parameters.axes, *[0] * parameters.outputs],
             "CHANNEL_RAMP": [1, 0, 1, 0, 1],
+            "CHANNEL_RASTER": [0x12345678],
         }
         self.registers = [
             (address, register) for address, register in self.table.items() if register.name not in self.items
@@ -68,12 +76,15 @@ class Core:
         return Verdict.OK
 
     def taken(self, register: Register) -> int:
-        """The bits that may be 1 alone: RUN has those of the channels that are there only.
+        """The bits that may be 1 alone: only those of channels and axes that are there.
 
         A trigger cannot be armed without a source.
         """
         if register.name == "CHANNEL_TRIGGER":
             return register.defined & ~(1 << r.CHANNEL_TRIGGER_ARM_LSB)
+        if register.name == "CHANNEL_COMPARE_PULSE":
+            axes = sum(bit for bit in (1, 2, 4) if bit < self.parameters.axes)
+            return 0xFFFF | axes << r.CHANNEL_COMPARE_PULSE_AXIS_LSB
         if register.name != "RUN":
             return register.defined
         channels = self.parameters.channels
@@ -152,16 +163,12 @@ def check_all(core: Core) -> None:
 
 def test_every_register_of_the_model_answers() -> None:
     """Of the largest core, of which RUN has all bits."""
-    parameters = Parameters(channels=8, axes=8, inputs=1)
+    parameters = Parameters(channels=8, axes=8, inputs=1, outputs=1)
     with model_engine(parameters) as engine:
         check_all(Core(Link(engine), parameters))
 
 
-@pytest.mark.parametrize(
-    "parameters",
-    [Parameters(), Parameters(channels=2, axes=2), Parameters(channels=2, axes=3, inputs=1)],
-    ids=lambda p: p.name,
-)
+@pytest.mark.parametrize("parameters", CORES, ids=lambda p: p.name)
 def test_every_register_of_the_rtl_answers_as_in_the_model(parameters: Parameters) -> None:
     """PairEngine compares each word of each reply."""
     with PairEngine(rtl_engine(parameters), model_engine(parameters)) as engine:

@@ -317,9 +317,9 @@ class CoreChannel(Channel):
         super().__init__(core.link, core.parameters, number)
         self.core = core
 
-    def lines(self, *lines: Line) -> None:
-        """Push lines."""
-        self._push(r.CHANNEL_LINE, [line.words() for line in lines])
+    def lines(self, *lines: Line, outputs: Sequence[r.LineOutputWord] = ()) -> None:
+        """Push lines, with OUTPUTS each with its output."""
+        self.push_line_words([line.words() for line in lines], outputs)
 
     def ramps(self, *ramps: Ramp) -> None:
         """Push ramps."""

@@ -128,9 +128,10 @@ def cached(name: str, inputs: Iterable[Path], flags: Sequence[str], make: Callab
 
 
 def declarations(files: Iterable[Path]) -> str:
-    """Preprocessed headers for cffi. It knows the standard types, so #include lines are dropped."""
-    text = "\n".join(re.sub(r"(?m)^#include.*$", "", path.read_text()) for path in files)
-    return call([CC, "-E", "-P", "-x", "c", "-"], text)
+    """Preprocessed headers for cffi, without #include, as it knows the standard types, and inlines."""
+    text = "\n".join(path.read_text() for path in files)
+    dropped = r"(?ms)^#include[^\n]*$|^static inline .*?^}$"
+    return call([CC, "-E", "-P", "-x", "c", "-"], re.sub(dropped, "", text))
 
 
 def _hash(inputs: Iterable[Path], flags: Sequence[str]) -> str:

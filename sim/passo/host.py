@@ -77,10 +77,18 @@ class Channel:
         (word,) = self.link.read(self.base + r.CHANNEL_ROOM, 1)
         return word >> r.CHANNEL_ROOM_LINE_ROOM_LSB, word & 0xFFFF
 
-    def push_lines(self, lines: Sequence[Any]) -> None:
-        """Queue lines (`struct passo_line`); there must be room for them."""
+    def push_lines(self, lines: Sequence[Any], outputs: Sequence[r.LineOutputWord] = ()) -> None:
+        """Queue lines (`struct passo_line`), with OUTPUTS each with its output; there must be room."""
         axes = self.parameters.axes
-        self._push(r.CHANNEL_LINE, [frame.line_words(line, axes) for line in lines])
+        self.push_line_words([frame.line_words(line, axes) for line in lines], outputs)
+
+    def push_line_words(
+        self, lines: Sequence[Sequence[int]], outputs: Sequence[r.LineOutputWord] = ()
+    ) -> None:
+        """Queue lines as words; outputs that are not given are 0."""
+        words = [[output.pack()] for output in outputs]
+        words += [[0] * self.parameters.outputs] * (len(lines) - len(words))
+        self._push(r.CHANNEL_LINE, [[*line, *output] for line, output in zip(lines, words, strict=True)])
 
     def push_ramps(self, ramps: Sequence[Any]) -> None:
         """Queue ramps (`struct passo_ramp`); there must be room for them."""

@@ -208,6 +208,27 @@ class RampControlWord(Word):
 
 
 @dataclass(frozen=True)
+class LineOutputWord(Word):
+    """Line output."""
+
+    # The power comes from the raster queue; the field is then 0.
+    raster: bool
+    # Power in proportion to the present velocity.
+    proportional: bool
+    # Levels of the digital outputs.
+    levels: int
+    # Power, UQ0.16, but 65535 is 1.0.
+    power: int
+
+    PLACES: ClassVar = {
+        "power": (0, 16, int),
+        "levels": (16, 8, int),
+        "proportional": (24, 1, bool),
+        "raster": (25, 1, bool),
+    }
+
+
+@dataclass(frozen=True)
 class VersionWord(Word):
     """Version."""
 
@@ -523,6 +544,43 @@ class ChannelProbeWord(Word):
 
 
 @dataclass(frozen=True)
+class ChannelComparePulseWord(Word):
+    """Compare pulse."""
+
+    # Axis whose position is compared.
+    axis: int = 0
+    # Clocks; 0 = no pulses.
+    width: int = 0
+
+    PLACES: ClassVar = {
+        "width": (0, 16, int),
+        "axis": (16, 3, int),
+    }
+
+
+@dataclass(frozen=True)
+class ChannelOutputStateWord(Word):
+    """Output state."""
+
+    # Free words of the raster queue. A push counts from the moment its frame is accepted.
+    raster_room: int = 256
+    # More than 256 changes waited for the lag since COMMAND.CLEAR. One was lost, so there is no power until
+    # then.
+    overflow: bool = False
+    # A raster line found no value since COMMAND.CLEAR: its power was 0.
+    raster_empty: bool = False
+    # Levels of the digital outputs.
+    levels: int = 0
+
+    PLACES: ClassVar = {
+        "levels": (0, 8, int),
+        "raster_empty": (8, 1, bool),
+        "overflow": (9, 1, bool),
+        "raster_room": (16, 16, int),
+    }
+
+
+@dataclass(frozen=True)
 class AxisPinsWord(Word):
     """Pins."""
 
@@ -646,7 +704,7 @@ STATUS_MARKER_BITS = 2
 STATUS_MARKER_RESET = 0x2
 STATUS_DEFINED = 0xFFFFFFFF
 
-# Word: Line control. First word of a line; then M and N_0 .. N_{AXES-1}.
+# Word: Line control. First word of a line; then M, N_0 .. N_{AXES-1} and, with OUTPUTS, its output.
 LINE_CONTROL_LAST_LSB = 0
 LINE_CONTROL_LAST_BITS = 1
 LINE_CONTROL_ENDLESS_LSB = 1
@@ -668,6 +726,17 @@ RAMP_CONTROL_SHAPE_BITS = 2
 RAMP_CONTROL_VELOCITY_HIGH_LSB = 16
 RAMP_CONTROL_VELOCITY_HIGH_BITS = 16
 RAMP_CONTROL_DEFINED = 0xFFFF0037
+
+# Word: Line output. With OUTPUTS the last word of a line.
+LINE_OUTPUT_POWER_LSB = 0
+LINE_OUTPUT_POWER_BITS = 16
+LINE_OUTPUT_LEVELS_LSB = 16
+LINE_OUTPUT_LEVELS_BITS = 8
+LINE_OUTPUT_PROPORTIONAL_LSB = 24
+LINE_OUTPUT_PROPORTIONAL_BITS = 1
+LINE_OUTPUT_RASTER_LSB = 25
+LINE_OUTPUT_RASTER_BITS = 1
+LINE_OUTPUT_DEFINED = 0x03FFFFFF
 
 # Core: Identification. Reads as ASCII PASO.
 ADDRESS_IDENTIFICATION = 0x000
@@ -1001,7 +1070,8 @@ CHANNEL_PROBE_CLEAR_BITS = 1
 CHANNEL_PROBE_CLEAR_RESET = 0x0
 CHANNEL_PROBE_DEFINED = 0x00000003
 
-# Channel: Line queue. PUSH only: control, M, N_0 .. N_{AXES-1} for each line.
+# Channel: Line queue. PUSH only: control, M, N_0 .. N_{AXES-1} for each line, and with OUTPUTS its output
+# word.
 CHANNEL_LINE = 0x20
 CHANNEL_LINE_LSB = 0
 CHANNEL_LINE_BITS = 32
@@ -1013,6 +1083,93 @@ CHANNEL_RAMP = 0x21
 CHANNEL_RAMP_LSB = 0
 CHANNEL_RAMP_BITS = 32
 CHANNEL_RAMP_DEFINED = 0xFFFFFFFF
+
+# Channel: Raster queue. Only with OUTPUTS. PUSH only: four values to a word, the lowest byte first. A
+# raster line begins with a whole word.
+CHANNEL_RASTER = 0x22
+CHANNEL_RASTER_LSB = 0
+CHANNEL_RASTER_BITS = 32
+CHANNEL_RASTER_DEFINED = 0xFFFFFFFF
+
+# Channel: Output levels. Only with OUTPUTS. Sets the digital outputs at once, until a line changes them.
+# Refused with BUSY unless the channel is quiet.
+CHANNEL_OUTPUT_LEVELS = 0x30
+CHANNEL_OUTPUT_LEVELS_LEVELS_LSB = 0
+CHANNEL_OUTPUT_LEVELS_LEVELS_BITS = 8
+CHANNEL_OUTPUT_LEVELS_LEVELS_RESET = 0x00
+CHANNEL_OUTPUT_LEVELS_DEFINED = 0x000000FF
+
+# Channel: Output lag. Only with OUTPUTS. Refused with BUSY unless the channel is quiet.
+CHANNEL_OUTPUT_LAG = 0x31
+CHANNEL_OUTPUT_LAG_LAG_LSB = 0
+CHANNEL_OUTPUT_LAG_LAG_BITS = 16
+CHANNEL_OUTPUT_LAG_LAG_RESET = 0x0000
+CHANNEL_OUTPUT_LAG_DEFINED = 0x0000FFFF
+
+# Channel: PWM step. Only with OUTPUTS. Frequency of the power pin. May be written at any time. Refused
+# with BAD_VALUE if 0 or above 1/2.
+CHANNEL_PWM_STEP = 0x32
+CHANNEL_PWM_STEP_LSB = 0
+CHANNEL_PWM_STEP_BITS = 24
+CHANNEL_PWM_STEP_RESET = 0x001000
+CHANNEL_PWM_STEP_DEFINED = 0x00FFFFFF
+
+# Channel: Power reference. Only with OUTPUTS. Velocity at which a power in proportion to the velocity is
+# the one of the line; above it, it stays that. May be written at any time. Refused with BAD_VALUE if 0 or
+# above 1/2.
+CHANNEL_POWER_REFERENCE = 0x33
+CHANNEL_POWER_REFERENCE_LSB = 0
+CHANNEL_POWER_REFERENCE_BITS = 32
+CHANNEL_POWER_REFERENCE_RESET = 0x80000000
+CHANNEL_POWER_REFERENCE_DEFINED = 0xFFFFFFFF
+
+# Channel: Raster pitch. Only with OUTPUTS. Substeps from one value of a raster line to the next; counts
+# from the next value on. Refused with BAD_VALUE if 0 or above 2^30 - 1.
+CHANNEL_RASTER_PITCH = 0x34
+CHANNEL_RASTER_PITCH_PITCH_LSB = 0
+CHANNEL_RASTER_PITCH_PITCH_BITS = 30
+CHANNEL_RASTER_PITCH_PITCH_RESET = 0x00000001
+CHANNEL_RASTER_PITCH_DEFINED = 0x3FFFFFFF
+
+# Channel: Compare pulse. Only with OUTPUTS. Refused with BUSY unless the channel is quiet, with BAD_VALUE
+# if there is no such axis. Ends a pulse in progress, as COMPARE_DISTANCE does.
+CHANNEL_COMPARE_PULSE = 0x35
+CHANNEL_COMPARE_PULSE_WIDTH_LSB = 0
+CHANNEL_COMPARE_PULSE_WIDTH_BITS = 16
+CHANNEL_COMPARE_PULSE_WIDTH_RESET = 0x0000
+CHANNEL_COMPARE_PULSE_AXIS_LSB = 16
+CHANNEL_COMPARE_PULSE_AXIS_BITS = 3
+CHANNEL_COMPARE_PULSE_AXIS_RESET = 0x0
+CHANNEL_COMPARE_PULSE_DEFINED = 0x0007FFFF
+
+# Channel: Compare distance. Only with OUTPUTS. Refused with BUSY unless the channel is quiet.
+CHANNEL_COMPARE_DISTANCE = 0x36
+CHANNEL_COMPARE_DISTANCE_DISTANCE_LSB = 0
+CHANNEL_COMPARE_DISTANCE_DISTANCE_BITS = 32
+CHANNEL_COMPARE_DISTANCE_DISTANCE_RESET = 0x00000000
+CHANNEL_COMPARE_DISTANCE_DEFINED = 0xFFFFFFFF
+
+# Channel: Compare interval. Only with OUTPUTS. Counts from the next pulse on. Refused with BAD_VALUE if 0.
+CHANNEL_COMPARE_INTERVAL = 0x37
+CHANNEL_COMPARE_INTERVAL_INTERVAL_LSB = 0
+CHANNEL_COMPARE_INTERVAL_INTERVAL_BITS = 32
+CHANNEL_COMPARE_INTERVAL_INTERVAL_RESET = 0x00000001
+CHANNEL_COMPARE_INTERVAL_DEFINED = 0xFFFFFFFF
+
+# Channel: Output state. Only with OUTPUTS. State of the outputs.
+CHANNEL_OUTPUT_STATE = 0x38
+CHANNEL_OUTPUT_STATE_LEVELS_LSB = 0
+CHANNEL_OUTPUT_STATE_LEVELS_BITS = 8
+CHANNEL_OUTPUT_STATE_LEVELS_RESET = 0x00
+CHANNEL_OUTPUT_STATE_RASTER_EMPTY_LSB = 8
+CHANNEL_OUTPUT_STATE_RASTER_EMPTY_BITS = 1
+CHANNEL_OUTPUT_STATE_RASTER_EMPTY_RESET = 0x0
+CHANNEL_OUTPUT_STATE_OVERFLOW_LSB = 9
+CHANNEL_OUTPUT_STATE_OVERFLOW_BITS = 1
+CHANNEL_OUTPUT_STATE_OVERFLOW_RESET = 0x0
+CHANNEL_OUTPUT_STATE_RASTER_ROOM_LSB = 16
+CHANNEL_OUTPUT_STATE_RASTER_ROOM_BITS = 16
+CHANNEL_OUTPUT_STATE_RASTER_ROOM_RESET = 0x0100
 
 # Channel: Steps made. Position of an axis in steps, sampled soon after chip select fell; wraps.
 CHANNEL_POSITION_BASE = 0x40
@@ -1251,6 +1408,40 @@ TABLE = (
     Register("CHANNEL_RAMP", "CHANNEL", 0x21, 1, (
         Field("RAMP", 0, 32, "w", None),
     )),
+    Register("CHANNEL_RASTER", "CHANNEL", 0x22, 1, (
+        Field("RASTER", 0, 32, "w", None),
+    ), "outputs"),
+    Register("CHANNEL_OUTPUT_LEVELS", "CHANNEL", 0x30, 1, (
+        Field("LEVELS", 0, 8, "w", 0x00),
+    ), "outputs"),
+    Register("CHANNEL_OUTPUT_LAG", "CHANNEL", 0x31, 1, (
+        Field("LAG", 0, 16, "w", 0x0000),
+    ), "outputs"),
+    Register("CHANNEL_PWM_STEP", "CHANNEL", 0x32, 1, (
+        Field("PWM_STEP", 0, 24, "w", 0x001000),
+    ), "outputs"),
+    Register("CHANNEL_POWER_REFERENCE", "CHANNEL", 0x33, 1, (
+        Field("POWER_REFERENCE", 0, 32, "w", 0x80000000),
+    ), "outputs"),
+    Register("CHANNEL_RASTER_PITCH", "CHANNEL", 0x34, 1, (
+        Field("PITCH", 0, 30, "w", 0x00000001),
+    ), "outputs"),
+    Register("CHANNEL_COMPARE_PULSE", "CHANNEL", 0x35, 1, (
+        Field("WIDTH", 0, 16, "w", 0x0000),
+        Field("AXIS", 16, 3, "w", 0x0),
+    ), "outputs"),
+    Register("CHANNEL_COMPARE_DISTANCE", "CHANNEL", 0x36, 1, (
+        Field("DISTANCE", 0, 32, "w", 0x00000000),
+    ), "outputs"),
+    Register("CHANNEL_COMPARE_INTERVAL", "CHANNEL", 0x37, 1, (
+        Field("INTERVAL", 0, 32, "w", 0x00000001),
+    ), "outputs"),
+    Register("CHANNEL_OUTPUT_STATE", "CHANNEL", 0x38, 1, (
+        Field("LEVELS", 0, 8, "r", 0x00),
+        Field("RASTER_EMPTY", 8, 1, "r", 0x0),
+        Field("OVERFLOW", 9, 1, "r", 0x0),
+        Field("RASTER_ROOM", 16, 16, "r", 0x0100),
+    ), "outputs"),
     Register("CHANNEL_POSITION", "CHANNEL", 0x40, 8, (
         Field("POSITION", 0, 32, "r", 0x00000000),
     )),

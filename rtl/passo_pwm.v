@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// PWM of one power pin, as an account: each period pays in the duty, each clock on costs the period of that clock, and
+// the pin is on while there is credit.
+//
+//   every period of 2^24 / step clocks:  credit += duty * 2^24             duty = (power + power[15]) / 2^16
+//   every clock on:                      credit -= cost                    cost = `step`, or more if in proportion
+//
+// What the last clock on costs too much is missing in the next pulse, so the share of clocks on is duty * step / cost
+// on the average, also where this is not a whole number of clocks or below one clock per period.
+//
+// Promise: with `go` low the pin is low from the next clock on. The pin rises on the clock after `go` rises or
+// `restart` if power is not 0, which begins a period; else only where a period begins, and once in it. With power 0
+// the pin is low, with power 65535 and cost = step it is high on every clock. Step and cost may change at any time.
+`resetall
+`timescale 1ns / 1ps
+`default_nettype none
+
+module passo_pwm (
+  input  wire        clk,
+  input  wire        rst,
+  input  wire        go,            // power is wanted and something moves
+  input  wire        restart,       // strobe: power or proportional has changed
+  input  wire [15:0] power,         // UQ0.16, but 65535 is 1.0
+  input  wire        proportional,
+  input  wire [23:0] step,          // UQ0.24 periods per clock, above 0, at most 1/2
+  input  wire [23:0] cost,          // of a clock, if proportional; below `step` counts as `step`
+  output reg         pin
+);
+
+  reg               idle;
+  reg        [23:0] phase;  // of the period, one clock ahead
+  reg               begins;  // a period
+  reg        [23:0] cost_now;
+  reg signed [25:0] credit;  // less 1: on while it is not negative
+
+  wire        fresh = restart | idle;
+  wire [16:0] duty = {1'b0, power} + {16'd0, power[15]};
+  wire [25:0] pays = fresh || begins ? {1'b0, duty, 8'd0} : 26'd0;
+  // ~x is -x - 1
+  wire [25:0] not_spent = fresh || !pin ? 26'h3FFFFFF : {2'b11, ~cost_now};
+  wire [25:0] start = fresh ? 26'h3FFFFFF : credit;
+  wire [25:0] sum = start + pays + not_spent + 26'd1;
+
+  always @(posedge clk) begin
+    idle            <= !go;
+    {begins, phase} <= fresh ? {1'b0, step} : {1'b0, phase} + {1'b0, step};
+    cost_now        <= proportional && cost > step ? cost : step;
+    credit          <= sum;
+    pin             <= go & ~sum[25];
+    if (rst) begin
+      idle <= 1'b1;
+      pin  <= 1'b0;
+    end
+  end
+
+`ifdef FORMAL
+  `include "passo_pwm_formal.vh"
+`endif
+
+endmodule
+`resetall

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: MIT
+"""passo_core_advance() of a core with OUTPUTS: the same state as clock by clock, and idle time is skipped.
+
+PASSO_SEED is the seed of the random motions.
+"""
+
+import random
+from collections.abc import Sequence
+from typing import Any
+
+import pytest
+from passo import registers as r
+from passo.build import Parameters
+from passo.host import Channel
+from passo.link import Link
+from passo.registers import LineOutputWord, State
+
+from tests.helpers.closed_form import Line, Ramp
+from tests.helpers.core_player import PlayerPair
+from tests.helpers.motions import SLOW, to_line, to_ramp
+from tests.test_core_advance import SEED, Session
+
+BUILDS = [
+    Parameters(channels=1, axes=3, outputs=1),
+    Parameters(channels=2, axes=2, line_queue_log2=3, ramp_queue_log2=3, outputs=1),
+]
+SETTINGS = range(r.CHANNEL_OUTPUT_LEVELS, r.CHANNEL_COMPARE_INTERVAL + 1)
+
+
+class OutputChannel(Channel):
+    """A channel whose lines have outputs of all kinds."""
+
+    def __init__(self, session: "OutputSession", number: int):
+        super().__init__(session.link, session.pair.parameters, number)
+        self.rng = session.rng
+
+    def push_lines(self, lines: Sequence[Any], outputs: Sequence[LineOutputWord] = ()) -> None:
+        """With outputs drawn by chance."""
+        super().push_lines(lines, [self.draw() for _ in lines])
+
+    def draw(self) -> LineOutputWord:
+        """An output word."""
+        rng = self.rng
+        raster = rng.random() < 0.3
+        power = 0 if raster else rng.choice((0, 0xFFFF, rng.getrandbits(16)))
+        return LineOutputWord(
+            raster=raster, proportional=rng.random() < 0.5, levels=rng.getrandbits(8), power=power
+        )
+
+
+class OutputSession(Session):
+    """A host that also writes settings of the outputs and raster values."""
+
+    def __init__(self, parameters: Parameters, rng: random.Random):
+        super().__init__(parameters, rng)
+        self.channels = [OutputChannel(self, n) for n in range(parameters.channels)]
+
+    def command(self, channel: Channel) -> None:
+        """A command, a setting, values."""
+        rng = self.rng
+        value = rng.choice((0, 1, 2, 300, rng.getrandbits(rng.randint(1, 32))))
+        kind = rng.randrange(3)
+        if kind == 0:
+            super().command(channel)
+        elif kind == 1:
+            self.try_to(self.link.write, channel.base + rng.choice(SETTINGS), value)
+        else:
+            words = [rng.getrandbits(32) for _ in range(rng.randint(1, 20))]
+            self.try_to(self.link.push, channel.base + r.CHANNEL_RASTER, words)
+
+
+@pytest.mark.parametrize("number", range(6))
+def test_advance_agrees_with_every_clock(number: int) -> None:
+    """Whatever a host does, pins and state are the same with and without skipping."""
+    print(f"PASSO_SEED={SEED}")
+    rng = random.Random(f"{SEED}/outputs/{number}")
+    session = OutputSession(BUILDS[number % len(BUILDS)], rng)
+    session.link.write(r.ADDRESS_RUN, (1 << len(session.channels)) - 1)
+    for _ in range(25):
+        channel = rng.choice(session.channels)
+        if rng.random() < 0.5:
+            session.push(channel)
+        else:
+            session.command(channel)
+        session.go_on(rng.choice([200, 3000, 20000]))
+    assert session.pair.compared > 500
+    assert session.pair.events > 0
+
+
+def test_idle_time_is_skipped() -> None:
+    """Before and after a motion, with settings that are not those of a reset."""
+    pair = PlayerPair(BUILDS[0], random.Random(SEED))
+    channel = Channel(Link(pair), BUILDS[0])
+    channel.link.write(channel.base + r.CHANNEL_OUTPUT_LAG, 5000)
+    channel.link.write(channel.base + r.CHANNEL_COMPARE_PULSE, 100, 3, 2)
+    pair.run(100_000)
+    output = LineOutputWord(raster=False, proportional=True, levels=9, power=1 << 15)
+    channel.push_lines([to_line(Line(100, (99, -7, 0), last=True))], [output])
+    channel.push_ramps([to_ramp(ramp) for ramp in (Ramp(SLOW, 9), Ramp(0, 9, last=True))])
+    channel.start()
+    pair.run(400_000)
+    assert channel.state().state == State.IDLE
+    assert channel.positions() == [99, -7, 0]
+    assert pair.skipped > pair.clock * 0.8
