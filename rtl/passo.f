@@ -12,6 +12,10 @@ rtl/passo_channel_registers.v
 rtl/passo_core.v
 rtl/passo_crc.v
 rtl/passo_dda.v
+rtl/passo_encoder.v
+rtl/passo_encoder_filter.v
+rtl/passo_follower.v
+rtl/passo_following.v
 rtl/passo_header.v
 rtl/passo_interpolate.v
 rtl/passo_line.v
