@@ -29,7 +29,7 @@ void passo_follower_clock(struct passo_follower *follower, const struct passo_fo
 		follower->owed += wires->count_down ? -one_count : one_count;
 	if (advance)
 		follower->owed--;
-	follower->due = owed > 0 && !advance;
+	follower->due = owed > 0;
 	follower->behind = owed >= 2 * one_count;
 	follower->lost = follower->lost || owed >= OWED_MAX || owed < -OWED_MAX;
 	if (wires->enable && (!follower->credit || advance)) {

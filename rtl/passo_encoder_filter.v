@@ -38,5 +38,9 @@ module passo_encoder_filter (
 
   initial sync = 2'b00;
 
+`ifdef FORMAL
+  `include "passo_encoder_filter_formal.vh"
+`endif
+
 endmodule
 `resetall

@@ -31,7 +31,7 @@ module passo_follower (
   output reg         lost
 );
 
-  reg        due;  // owed is positive
+  reg        due;  // owed was positive; credit is not there again before it knows of an advance
   reg        credit;
   reg [31:0] sum;
 
@@ -50,7 +50,7 @@ module passo_follower (
 
   always @(posedge clk) begin
     owed   <= owed + change + paid + {23'd0, carry};
-    due    <= ~owed[23] & (owed[22:0] != 23'd0) & ~advance;
+    due    <= ~owed[23] & (owed[22:0] != 23'd0);
     behind <= ~owed[23] & ((owed[22:0] & above) != 23'd0);
     lost   <= lost | (owed[23] ^ owed[22]);
     if (enable && (!credit || advance)) {credit, sum} <= {1'b0, sum} + {1'b0, limit};
