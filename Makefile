@@ -8,7 +8,7 @@ BOARDS      := $(wildcard syn/*.v syn/*/*.v)
 BENCHES     := $(wildcard soak/*.v) tests/passo_bench.v
 # generated files keep the format of their generators
 C_SOURCES   := $(filter-out $(addprefix protocol/passo_,registers.h words.h limits.h release.h shapes.%) \
-    planner/passo_moves.h stm32_bridge/console/passo_form_tables.c, \
+    planner/passo_moves.h model/passo_pins.h stm32_bridge/console/passo_form_tables.c, \
     $(wildcard $(foreach dir,model planner protocol sim/engine benchmarks cocotb_tests/helpers tests tests/helpers soak stm32_bridge/*,$(dir)/*.[ch] $(dir)/*.cpp)))
 PYTHON_DIRS := $(wildcard sim syn stm32_bridge tools benchmarks cocotb_tests tests formal soak)
 
@@ -57,8 +57,9 @@ endif
 	@$(BIN)/ruff check --fix $(PYTHON_DIRS)
 	@$(BIN)/ruff format $(PYTHON_DIRS)
 
-generate: setup ## Regenerate the generated files: registers, move forms, shape tables, file lists.
+generate: setup ## Regenerate the generated files: registers, pins, move forms, shape tables, file lists.
 	@$(BIN)/python tools/generate_registers.py
+	@$(BIN)/python tools/generate_pins.py
 	@$(BIN)/python tools/generate_moves.py
 	@$(BIN)/python tools/generate_shapes.py
 	@$(BIN)/python tools/generate_package.py

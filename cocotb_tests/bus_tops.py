@@ -23,6 +23,7 @@ from passo.registers import Operation
 
 from cocotb_tests.helpers import core_frames as frames
 from cocotb_tests.helpers.bench import PERIOD, Clocks, Recorder, begin, patience, read, rng
+from cocotb_tests.helpers.core_bench import set_idle
 from cocotb_tests.helpers.core_thread import Thread
 from cocotb_tests.helpers.runner import BUS_CORE
 from tests.helpers.driver_wire import by_speed, configure
@@ -152,7 +153,8 @@ def bus_test(body: Callable[[BusCore], None]) -> Any:
     async def test(dut: HierarchyObject) -> None:
         thread = Thread()
         master = Wishbone if hasattr(dut, "wb_cyc_i") else AxiLite
-        clocks = await begin(dut, "sync", *master.INPUTS)
+        set_idle(dut)
+        clocks = await begin(dut, *master.INPUTS)
         core = BusCore(dut, thread, clocks, master(dut))
         await RisingEdge(dut.clk)
         await thread.run(lambda: body(core))

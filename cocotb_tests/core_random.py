@@ -249,7 +249,7 @@ class Session:
                     assert end - begin == motion.ticks * core.tick, motion
             state = axes.channel.state()
             assert (state.state, state.cause) == (State.IDLE, Cause.NONE)
-            assert state.drained == axes.drained & 0xFFFF
+            assert state.drained == axes.drained & 0x7FFF
             for axis in range(core.axes):
                 steps = self.checker.steps(number * core.axes + axis)
                 up = sum(direction > 0 for _, direction in steps)

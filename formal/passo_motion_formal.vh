@@ -83,7 +83,7 @@ always @(posedge clk)
     if (prepare) prepared_only_with_both : assert ($past(run && line_valid && ramp_valid && state == STATE_IDLE));
     if (release_line) released_at_the_end : assert ($past(line_ended || line_endless));
     drained_counts :
-    assert (drained == $past(drained) + {15'd0, $past(drain && substep_made && !line_ended)});
+    assert (drained == $past(drained) + {14'd0, $past(drain && substep_made && !line_ended)});
     if ($past(stopped) && $past(state) == STATE_STOPPED) no_move_out_of_stopped : assert (!running);
     if (state == STATE_RUN && f_run_age < 4'd7 && !$past(running) && $past(state) == STATE_RUN)
       running_not_before_7 : assert (!running);

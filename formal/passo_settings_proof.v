@@ -32,7 +32,7 @@ module passo_settings_proof (
   // of the state nothing is promised
   wire        quiet, stopping, overrun;
   wire [ 2:0] state, cause;
-  wire [15:0] drained;
+  wire [14:0] drained;
   wire [16:0] rate;
   wire [31:0] velocity;
   wire [ 8:0] line_room;

@@ -12,19 +12,13 @@
 /* Latency from a slew tick to the change of rate; see passo_timescale_clock(). */
 enum { SLEW_CLOCKS = 6 };
 
-static bool same_inputs(const struct passo_inputs *a, const struct passo_inputs *b)
-{
-	return a->spi_sclk == b->spi_sclk && a->spi_mosi == b->spi_mosi && a->spi_cs_n == b->spi_cs_n
-	    && a->sync == b->sync && a->rst == b->rst;
-}
-
 static bool link_side_quiet(const struct passo_core *core, const struct passo_inputs *inputs)
 {
 	const uint8_t selected = inputs->spi_cs_n ? 0 : 7;
 	const uint8_t toggled = core->spi.half_toggle ? 7 : 0;
 	const uint8_t synced = inputs->sync ? 7 : 0;
 
-	return same_inputs(inputs, &core->inputs) && core->spi.select_sync == selected
+	return PASSO_SAME_INPUTS(inputs, &core->inputs) && core->spi.select_sync == selected
 	    && core->spi.toggle_sync == toggled && core->sync_q == synced && passo_link_quiet(&core->link)
 	    && core->link.status == passo_registers_status(core) && !core->response.claim
 	    && core->response.refusal == 0u && core->response.read_data == 0u && !core->response.late

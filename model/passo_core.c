@@ -36,11 +36,12 @@ bool passo_core_reset(struct passo_core *core, const struct passo_parameters *pa
 	if (!in_range(parameters->channels, 1, PASSO_CHANNELS_MAX)
 	    || !in_range(parameters->axes, 1, PASSO_AXES_MAX)
 	    || !in_range(parameters->tick_log2, PASSO_TICK_LOG2_MIN, PASSO_TICK_LOG2_MAX)
-	    || !in_range(parameters->line_queue_log2, 2, 8) || !in_range(parameters->ramp_queue_log2, 2, 8))
+	    || !in_range(parameters->line_queue_log2, 2, 8) || !in_range(parameters->ramp_queue_log2, 2, 8)
+	    || parameters->inputs > 1u || parameters->encoders > 1u || parameters->outputs > 1u)
 		return false;
 	memset(core, 0, sizeof *core);
 	core->parameters = *parameters;
-	core->inputs = (struct passo_inputs){.spi_cs_n = true};
+	core->inputs = (struct passo_inputs)PASSO_INPUTS_IDLE;
 	core->sync_q = 7;
 	passo_spi_reset(&core->spi);
 	passo_link_reset(&core->link);

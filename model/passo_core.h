@@ -10,27 +10,6 @@
 
 #include "passo_model.h"
 
-/* Input pins. Each level of spi_sclk must last at least one clock, and spi_cs_n must not change together with
- * it. */
-struct passo_inputs {
-	bool spi_sclk;
-	bool spi_mosi;
-	bool spi_cs_n;
-	bool sync;
-	bool rst;
-};
-
-/* Output pins. step, dir and enable have one bit per axis, channel * AXES + axis; running has one per
- * channel. */
-struct passo_outputs {
-	uint64_t step;
-	uint64_t dir;
-	uint64_t enable;
-	uint8_t running;
-	bool irq;
-	bool spi_miso;
-};
-
 struct passo_core {
 	struct passo_parameters parameters;
 	struct passo_spi spi;

@@ -8,6 +8,7 @@
 #define PASSO_MODEL_H
 
 #include "passo_command.h"
+#include "passo_pins.h"
 #include "passo_registers.h"
 #include "passo_shapes.h"
 
@@ -15,16 +16,6 @@
 #define PASSO_LINE_QUEUE_MAX 256u
 #define PASSO_RAMP_QUEUE_MAX 256u
 #define PASSO_RATE_ONE 0x10000u /* UQ1.16 */
-
-struct passo_parameters {
-	uint8_t channels;        /* CHANNELS, 1 .. 8 */
-	uint8_t axes;            /* AXES, 1 .. 8 */
-	uint8_t tick_log2;       /* TICK_LOG2, 7 .. 16 */
-	uint8_t line_queue_log2; /* LINE_QUEUE_LOG2, 2 .. 8 */
-	uint8_t ramp_queue_log2; /* RAMP_QUEUE_LOG2, 2 .. 8 */
-	/* STEP_RESET, DIR_RESET, ENABLE_RESET: initial pin levels, bit channel * AXES + axis */
-	uint64_t step_reset, dir_reset, enable_reset;
-};
 
 /* ---- link side ---- */
 
@@ -272,7 +263,7 @@ struct passo_motion {
 	enum passo_cause cause;
 	enum passo_cause soft_cause;
 	bool stopping;
-	uint16_t drained;
+	uint16_t drained; /* 15 bits */
 	uint8_t count;
 	uint8_t settling; /* 3 bits */
 	bool settled;

@@ -86,7 +86,7 @@ void passo_motion_clock(
 		motion->running = wires->moving;
 
 	if (wires->drain && channel->path.substep && !channel->line.ended)
-		motion->drained++;
+		motion->drained = (motion->drained + 1u) & 0x7FFFu;
 
 	if (!motion->stopping && !wires->stopped) {
 		if (registers->command_stop)

@@ -51,6 +51,9 @@ static uint32_t parameters_word(const struct passo_parameters *parameters)
 	    .tick_log2 = parameters->tick_log2,
 	    .line_queue_log2 = parameters->line_queue_log2,
 	    .ramp_queue_log2 = parameters->ramp_queue_log2,
+	    .inputs = parameters->inputs,
+	    .encoders = parameters->encoders,
+	    .outputs = parameters->outputs,
 	});
 }
 

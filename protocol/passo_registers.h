@@ -86,7 +86,7 @@
 #define PASSO_VERSION_PATCH_RESET 0x00u
 #define PASSO_VERSION_MINOR_LSB   8u
 #define PASSO_VERSION_MINOR_BITS  8u
-#define PASSO_VERSION_MINOR_RESET 0x01u
+#define PASSO_VERSION_MINOR_RESET 0x02u
 #define PASSO_VERSION_MAJOR_LSB   16u
 #define PASSO_VERSION_MAJOR_BITS  8u
 #define PASSO_VERSION_MAJOR_RESET 0x00u
@@ -103,6 +103,12 @@
 #define PASSO_PARAMETERS_LINE_QUEUE_LOG2_BITS 5u
 #define PASSO_PARAMETERS_RAMP_QUEUE_LOG2_LSB  24u
 #define PASSO_PARAMETERS_RAMP_QUEUE_LOG2_BITS 5u
+#define PASSO_PARAMETERS_INPUTS_LSB           29u
+#define PASSO_PARAMETERS_INPUTS_BITS          1u
+#define PASSO_PARAMETERS_ENCODERS_LSB         30u
+#define PASSO_PARAMETERS_ENCODERS_BITS        1u
+#define PASSO_PARAMETERS_OUTPUTS_LSB          31u
+#define PASSO_PARAMETERS_OUTPUTS_BITS         1u
 
 /* Core: Run. One bit per channel, all in one register: channels that are ARMED start on the same clock when
  * one write clears their WAIT_SYNC. */
@@ -232,16 +238,16 @@
 #define PASSO_CHANNEL_STATE_QUIET_BITS     1u
 #define PASSO_CHANNEL_STATE_QUIET_RESET    0x1u
 #define PASSO_CHANNEL_STATE_CAUSE_LSB      4u
-#define PASSO_CHANNEL_STATE_CAUSE_BITS     3u
+#define PASSO_CHANNEL_STATE_CAUSE_BITS     4u
 #define PASSO_CHANNEL_STATE_CAUSE_RESET    0x0u
-#define PASSO_CHANNEL_STATE_STOPPING_LSB   7u
-#define PASSO_CHANNEL_STATE_STOPPING_BITS  1u
-#define PASSO_CHANNEL_STATE_STOPPING_RESET 0x0u
 #define PASSO_CHANNEL_STATE_OVERRUN_LSB    8u
 #define PASSO_CHANNEL_STATE_OVERRUN_BITS   8u
 #define PASSO_CHANNEL_STATE_OVERRUN_RESET  0x00u
-#define PASSO_CHANNEL_STATE_DRAINED_LSB    16u
-#define PASSO_CHANNEL_STATE_DRAINED_BITS   16u
+#define PASSO_CHANNEL_STATE_STOPPING_LSB   16u
+#define PASSO_CHANNEL_STATE_STOPPING_BITS  1u
+#define PASSO_CHANNEL_STATE_STOPPING_RESET 0x0u
+#define PASSO_CHANNEL_STATE_DRAINED_LSB    17u
+#define PASSO_CHANNEL_STATE_DRAINED_BITS   15u
 #define PASSO_CHANNEL_STATE_DRAINED_RESET  0x0000u
 
 /* Channel: Rate. Time scale in force. */
@@ -381,16 +387,23 @@ enum passo_state {
 
 /* Why a channel has stopped. */
 enum passo_cause {
-	PASSO_CAUSE_NONE          = 0, /* Not stopped. */
-	PASSO_CAUSE_STOP          = 1, /* COMMAND.STOP. */
-	PASSO_CAUSE_ABORT         = 2, /* COMMAND.ABORT. */
-	PASSO_CAUSE_LINE_UNDERRUN = 3, /* A line ended, was not LAST, and none followed. */
-	PASSO_CAUSE_RAMP_UNDERRUN = 4, /* The ramps ran out at speed. */
-	PASSO_CAUSE_STEP_OVERRUN  = 5  /* Steps came faster than the pin timing of an axis allows. */
+	PASSO_CAUSE_NONE            = 0,  /* Not stopped. */
+	PASSO_CAUSE_STOP            = 1,  /* COMMAND.STOP. */
+	PASSO_CAUSE_ABORT           = 2,  /* COMMAND.ABORT. */
+	PASSO_CAUSE_LINE_UNDERRUN   = 3,  /* A line ended, was not LAST, and none followed. */
+	PASSO_CAUSE_RAMP_UNDERRUN   = 4,  /* The ramps ran out at speed. */
+	PASSO_CAUSE_STEP_OVERRUN    = 5,  /* Steps came faster than the pin timing of an axis allows. */
+	PASSO_CAUSE_LIMIT           = 6,  /* An axis stepped towards an active limit switch. */
+	PASSO_CAUSE_ALARM           = 7,  /* The alarm input of an axis became active. */
+	PASSO_CAUSE_TRIGGER         = 8,  /* The trigger fired, and its action is a stop. */
+	PASSO_CAUSE_WATCHDOG        = 9,  /* No good frame came for too long while a motion ran. */
+	PASSO_CAUSE_ESTOP           = 10, /* The e-stop input became active. */
+	PASSO_CAUSE_FOLLOWING_ERROR = 11  /* An axis was too far from its encoder. */
 };
 #define PASSO_CAUSE_NAMES \
 	{[0] = "NONE", [1] = "STOP", [2] = "ABORT", [3] = "LINE_UNDERRUN", [4] = "RAMP_UNDERRUN", \
-	 [5] = "STEP_OVERRUN"}
+	 [5] = "STEP_OVERRUN", [6] = "LIMIT", [7] = "ALARM", [8] = "TRIGGER", [9] = "WATCHDOG", \
+	 [10] = "ESTOP", [11] = "FOLLOWING_ERROR"}
 
 /* Shape of a ramp: s as a function of the progress u, both 0 .. 1. */
 enum passo_shape {

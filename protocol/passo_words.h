@@ -179,6 +179,9 @@ static inline struct passo_version passo_unpack_version(uint32_t word)
 
 /* Parameters. How the core was built. */
 struct passo_parameters_word {
+	bool    outputs;         /* OUTPUTS. */
+	bool    encoders;        /* ENCODERS. */
+	bool    inputs;          /* INPUTS. */
 	uint8_t ramp_queue_log2; /* RAMP_QUEUE_LOG2. */
 	uint8_t line_queue_log2; /* LINE_QUEUE_LOG2. */
 	uint8_t tick_log2;       /* TICK_LOG2. */
@@ -188,7 +191,10 @@ struct passo_parameters_word {
 
 static inline uint32_t passo_pack_parameters(const struct passo_parameters_word *word)
 {
-	return ((uint32_t)word->ramp_queue_log2 & 0x1Fu) << 24
+	return ((uint32_t)word->outputs & 0x1u) << 31
+	     | ((uint32_t)word->encoders & 0x1u) << 30
+	     | ((uint32_t)word->inputs & 0x1u) << 29
+	     | ((uint32_t)word->ramp_queue_log2 & 0x1Fu) << 24
 	     | ((uint32_t)word->line_queue_log2 & 0x1Fu) << 16
 	     | ((uint32_t)word->tick_log2 & 0x1Fu) << 8
 	     | ((uint32_t)word->axes & 0xFu) << 4
@@ -198,6 +204,9 @@ static inline uint32_t passo_pack_parameters(const struct passo_parameters_word 
 static inline struct passo_parameters_word passo_unpack_parameters(uint32_t word)
 {
 	return (struct passo_parameters_word){
+	    .outputs = (word >> 31 & 0x1u) != 0u,
+	    .encoders = (word >> 30 & 0x1u) != 0u,
+	    .inputs = (word >> 29 & 0x1u) != 0u,
 	    .ramp_queue_log2 = (uint8_t)(word >> 24 & 0x1Fu),
 	    .line_queue_log2 = (uint8_t)(word >> 16 & 0x1Fu),
 	    .tick_log2 = (uint8_t)(word >> 8 & 0x1Fu),
@@ -310,8 +319,8 @@ static inline struct passo_channel_command passo_unpack_channel_command(uint32_t
 /* State. State of the channel. */
 struct passo_channel_state {
 	uint16_t         drained;  /* Substeps drained since reset; wraps. */
-	uint8_t          overrun;  /* One bit per axis: it had a STEP_OVERRUN. */
 	bool             stopping; /* A soft stop is in progress. */
+	uint8_t          overrun;  /* One bit per axis: it had a STEP_OVERRUN. */
 	enum passo_cause cause;    /* Cause of the stop. */
 	bool             quiet;    /* Quiet: no motion is prepared or running, and the pins of every axis are idle. */
 	enum passo_state state;    /* State of the motion. */
@@ -319,10 +328,10 @@ struct passo_channel_state {
 
 static inline uint32_t passo_pack_channel_state(const struct passo_channel_state *word)
 {
-	return ((uint32_t)word->drained & 0xFFFFu) << 16
+	return ((uint32_t)word->drained & 0x7FFFu) << 17
+	     | ((uint32_t)word->stopping & 0x1u) << 16
 	     | ((uint32_t)word->overrun & 0xFFu) << 8
-	     | ((uint32_t)word->stopping & 0x1u) << 7
-	     | ((uint32_t)word->cause & 0x7u) << 4
+	     | ((uint32_t)word->cause & 0xFu) << 4
 	     | ((uint32_t)word->quiet & 0x1u) << 3
 	     | ((uint32_t)word->state & 0x7u);
 }
@@ -330,10 +339,10 @@ static inline uint32_t passo_pack_channel_state(const struct passo_channel_state
 static inline struct passo_channel_state passo_unpack_channel_state(uint32_t word)
 {
 	return (struct passo_channel_state){
-	    .drained = (uint16_t)(word >> 16 & 0xFFFFu),
+	    .drained = (uint16_t)(word >> 17 & 0x7FFFu),
+	    .stopping = (word >> 16 & 0x1u) != 0u,
 	    .overrun = (uint8_t)(word >> 8 & 0xFFu),
-	    .stopping = (word >> 7 & 0x1u) != 0u,
-	    .cause = (enum passo_cause)(word >> 4 & 0x7u),
+	    .cause = (enum passo_cause)(word >> 4 & 0xFu),
 	    .quiet = (word >> 3 & 0x1u) != 0u,
 	    .state = (enum passo_state)(word & 0x7u),
 	};

@@ -81,9 +81,9 @@ module passo_channel #(
 
   // motion
   wire [ 2:0] state;
-  wire [ 2:0] cause;
+  wire [ 3:0] cause;
   wire        stopping;
-  wire [15:0] drained;
+  wire [14:0] drained;
   wire        moving;
   wire        counting;
   wire        prepare;

@@ -50,10 +50,10 @@ module passo_channel_registers #(
   // state
   input  wire                     quiet,
   input  wire [              2:0] state,
-  input  wire [              2:0] cause,
+  input  wire [              3:0] cause,
   input  wire                     stopping,
   input  wire [         AXES-1:0] overrun,
-  input  wire [             15:0] drained,
+  input  wire [             14:0] drained,
   input  wire [             16:0] rate,
   input  wire [             31:0] velocity,           // upper 32 bits
   input  wire [LINE_QUEUE_LOG2:0] line_room,
@@ -139,7 +139,7 @@ module passo_channel_registers #(
       reads[i] <= bus_read && in_state && number[1:0] == i[1:0];
 
   assign read_data =
-      (reads[0] ? {drained, overrun_padded, stopping, cause, quiet, state} : 32'd0)
+      (reads[0] ? {drained, stopping, overrun_padded, cause, quiet, state} : 32'd0)
       | (reads[1] ? {15'd0, rate} : 32'd0)
       | (reads[2] ? {{(15 - LINE_QUEUE_LOG2) {1'b0}}, line_room, {(15 - RAMP_QUEUE_LOG2) {1'b0}}, ramp_room} : 32'd0)
       | (reads[3] ? velocity : 32'd0);

@@ -18,6 +18,9 @@ module passo_core #(
   parameter                     LINE_QUEUE_LOG2 = 8,  // log2 of the places for lines, 2 .. 8
   parameter                     RAMP_QUEUE_LOG2 = 4,  // log2 of the places for ramps, 2 .. 8
   parameter                     STEPS_REGISTER  = 0,  // 1: block RAMs have an output register
+  parameter                     INPUTS          = 0,  // 1: limits, home, alarm, probe, e-stop
+  parameter                     ENCODERS        = 0,  // 1: encoders
+  parameter                     OUTPUTS         = 0,  // 1: outputs bound to the path
   // pin levels from configuration until the host writes polarities; bit channel * AXES + axis
   parameter [CHANNELS*AXES-1:0] STEP_RESET      = 0,
   parameter [CHANNELS*AXES-1:0] DIR_RESET       = 0,
@@ -26,21 +29,38 @@ module passo_core #(
   input  wire                     clk,
   input  wire                     rst,
   // host interface
-  input  wire                     frame_start,  // strobes
+  input  wire                     frame_start,    // strobes
   input  wire                     frame_end,
   input  wire                     half_valid,
-  input  wire                     half_low,     // lower half of a word
+  input  wire                     half_low,       // lower half of a word
   input  wire [             15:0] half,
   output wire [             31:0] reply_word,
   // starts several chips on one edge
   input  wire                     sync,
+  // machine: bit channel * AXES + axis; ignored without INPUTS
+  /* verilator lint_off UNUSEDSIGNAL */
+  input  wire [CHANNELS*AXES-1:0] limit_low,
+  input  wire [CHANNELS*AXES-1:0] limit_high,
+  input  wire [CHANNELS*AXES-1:0] home,
+  input  wire [CHANNELS*AXES-1:0] alarm,
+  input  wire [     CHANNELS-1:0] probe,
+  input  wire                     estop_n,        // asynchronous
+  // encoders; ignored without ENCODERS
+  input  wire [CHANNELS*AXES-1:0] encoder_a,
+  input  wire [CHANNELS*AXES-1:0] encoder_b,
+  input  wire [CHANNELS*AXES-1:0] encoder_index,
+  /* verilator lint_on UNUSEDSIGNAL */
   // drives: bit channel * AXES + axis
   output wire [CHANNELS*AXES-1:0] step,
   output wire [CHANNELS*AXES-1:0] dir,
   output wire [CHANNELS*AXES-1:0] enable,
+  // outputs bound to the path; 0 without OUTPUTS
+  output wire [   CHANNELS*8-1:0] outputs,
+  output wire [     CHANNELS-1:0] power,
+  output wire [     CHANNELS-1:0] compare,
   // to the host
   output wire [     CHANNELS-1:0] running,
-  output reg                      irq           // a channel is stopped
+  output reg                      irq             // a channel is stopped
 );
 
   `include "passo_registers.vh"
@@ -57,6 +77,15 @@ module passo_core #(
     end
     if (LINE_QUEUE_LOG2 < 2 || LINE_QUEUE_LOG2 > 8) begin : g_bad_line_queue
       passo_parameter_LINE_QUEUE_LOG2_must_be_2_to_8 u_error ();
+    end
+    if (INPUTS < 0 || INPUTS > 1) begin : g_bad_inputs
+      passo_parameter_INPUTS_must_be_0_or_1 u_error ();
+    end
+    if (ENCODERS < 0 || ENCODERS > 1) begin : g_bad_encoders
+      passo_parameter_ENCODERS_must_be_0_or_1 u_error ();
+    end
+    if (OUTPUTS < 0 || OUTPUTS > 1) begin : g_bad_outputs
+      passo_parameter_OUTPUTS_must_be_0_or_1 u_error ();
     end
     if (RAMP_QUEUE_LOG2 < 2 || RAMP_QUEUE_LOG2 > 8) begin : g_bad_ramp_queue
       passo_parameter_RAMP_QUEUE_LOG2_must_be_2_to_8 u_error ();
@@ -105,6 +134,10 @@ module passo_core #(
   wire [                    CHANNELS-1:0] table_served;
   wire [                            15:0] table_point;
   wire [                            15:0] table_point_next;
+
+  assign outputs = {CHANNELS * 8{1'b0}};
+  assign power   = {CHANNELS{1'b0}};
+  assign compare = {CHANNELS{1'b0}};
 
   // Unselected targets drive 0.
   integer i;
@@ -177,7 +210,10 @@ module passo_core #(
     .AXES           (AXES),
     .TICK_LOG2      (TICK_LOG2),
     .LINE_QUEUE_LOG2(LINE_QUEUE_LOG2),
-    .RAMP_QUEUE_LOG2(RAMP_QUEUE_LOG2)
+    .RAMP_QUEUE_LOG2(RAMP_QUEUE_LOG2),
+    .INPUTS         (INPUTS),
+    .ENCODERS       (ENCODERS),
+    .OUTPUTS        (OUTPUTS)
   ) u_registers (
     .clk          (clk),
     .rst          (rst),

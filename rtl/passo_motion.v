@@ -29,9 +29,9 @@ module passo_motion (
   input  wire        command_abort,
   input  wire        command_clear,
   output wire [ 2:0] state,
-  output reg  [ 2:0] cause,
+  output reg  [ 3:0] cause,
   output reg         stopping,
-  output reg  [15:0] drained,
+  output reg  [14:0] drained,
   // timescale
   output wire        occupied,       // a motion is prepared or running
   output wire        moving,
@@ -68,7 +68,7 @@ module passo_motion (
   reg [2:0] settling;  // one bit per clock of SETTLE so far
   reg       settled;  // its fifth clock: the last substep needs 2 clocks to the line
   reg       finished;  // settled, and no substep is missing
-  reg [2:0] soft_cause;
+  reg [3:0] soft_cause;
   reg       startable;  // high for one clock, still in IDLE
   reg       rate_was_zero;
   reg [1:0] aborted;  // one and two clocks ago
@@ -103,10 +103,10 @@ module passo_motion (
 
   // Stop decision, registered
   reg stop_due;
-  reg [2:0] cause_due;
+  reg [3:0] cause_due;
   wire       stop_wanted = command_abort | (moving & (step_overrun | line_underrun))
                   | (stopping & (rate_was_zero | finished | ~moving));
-  wire [2:0] cause_wanted = command_abort           ? CAUSE_ABORT :
+  wire [3:0] cause_wanted = command_abort           ? CAUSE_ABORT :
                          moving & step_overrun   ? CAUSE_STEP_OVERRUN :
                          moving & line_underrun  ? CAUSE_LINE_UNDERRUN : soft_cause;
 
@@ -152,7 +152,7 @@ module passo_motion (
     aborted       <= {aborted[0], command_abort};
     if (!runs || count == START_LAST) running <= moving;
 
-    if (drains && substep_made && !line_ended) drained <= drained + 16'd1;
+    if (drains && substep_made && !line_ended) drained <= drained + 15'd1;
 
     if (!stopping && !stopped) begin
       if (command_stop) soft_cause <= CAUSE_STOP;
@@ -168,7 +168,7 @@ module passo_motion (
     end
     if (rst) begin
       stopping      <= 1'b0;
-      drained       <= 16'd0;
+      drained       <= 15'd0;
       startable     <= 1'b0;
       begin_profile <= 1'b0;
       stop_due      <= 1'b0;

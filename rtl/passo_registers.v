@@ -13,7 +13,10 @@ module passo_registers #(
   parameter AXES            = 4,
   parameter TICK_LOG2       = 7,
   parameter LINE_QUEUE_LOG2 = 8,
-  parameter RAMP_QUEUE_LOG2 = 4
+  parameter RAMP_QUEUE_LOG2 = 4,
+  parameter INPUTS          = 0,
+  parameter ENCODERS        = 0,
+  parameter OUTPUTS         = 0
 ) (
   input  wire                                    clk,
   input  wire                                    rst,
@@ -43,7 +46,16 @@ module passo_registers #(
   `include "passo_registers.vh"
 
   localparam [31:0] PARAMETERS = {
-    3'd0, RAMP_QUEUE_LOG2[4:0], 3'd0, LINE_QUEUE_LOG2[4:0], 3'd0, TICK_LOG2[4:0], AXES[3:0], CHANNELS[3:0]
+    OUTPUTS[0],
+    ENCODERS[0],
+    INPUTS[0],
+    RAMP_QUEUE_LOG2[4:0],
+    3'd0,
+    LINE_QUEUE_LOG2[4:0],
+    3'd0,
+    TICK_LOG2[4:0],
+    AXES[3:0],
+    CHANNELS[3:0]
   };
 
   reg [2:0] status_channel;

@@ -85,7 +85,7 @@ localparam VERSION_PATCH_BITS  = 8;
 localparam VERSION_PATCH_RESET = 8'h00;
 localparam VERSION_MINOR_LSB   = 8;
 localparam VERSION_MINOR_BITS  = 8;
-localparam VERSION_MINOR_RESET = 8'h01;
+localparam VERSION_MINOR_RESET = 8'h02;
 localparam VERSION_MAJOR_LSB   = 16;
 localparam VERSION_MAJOR_BITS  = 8;
 localparam VERSION_MAJOR_RESET = 8'h00;
@@ -102,6 +102,12 @@ localparam PARAMETERS_LINE_QUEUE_LOG2_LSB  = 16;
 localparam PARAMETERS_LINE_QUEUE_LOG2_BITS = 5;
 localparam PARAMETERS_RAMP_QUEUE_LOG2_LSB  = 24;
 localparam PARAMETERS_RAMP_QUEUE_LOG2_BITS = 5;
+localparam PARAMETERS_INPUTS_LSB           = 29;
+localparam PARAMETERS_INPUTS_BITS          = 1;
+localparam PARAMETERS_ENCODERS_LSB         = 30;
+localparam PARAMETERS_ENCODERS_BITS        = 1;
+localparam PARAMETERS_OUTPUTS_LSB          = 31;
+localparam PARAMETERS_OUTPUTS_BITS         = 1;
 
 // Core: Run. One bit per channel, all in one register: channels that are ARMED start on the same clock when
 // one write clears their WAIT_SYNC.
@@ -231,17 +237,17 @@ localparam CHANNEL_STATE_QUIET_LSB      = 3;
 localparam CHANNEL_STATE_QUIET_BITS     = 1;
 localparam CHANNEL_STATE_QUIET_RESET    = 1'h1;
 localparam CHANNEL_STATE_CAUSE_LSB      = 4;
-localparam CHANNEL_STATE_CAUSE_BITS     = 3;
-localparam CHANNEL_STATE_CAUSE_RESET    = 3'h0;
-localparam CHANNEL_STATE_STOPPING_LSB   = 7;
-localparam CHANNEL_STATE_STOPPING_BITS  = 1;
-localparam CHANNEL_STATE_STOPPING_RESET = 1'h0;
+localparam CHANNEL_STATE_CAUSE_BITS     = 4;
+localparam CHANNEL_STATE_CAUSE_RESET    = 4'h0;
 localparam CHANNEL_STATE_OVERRUN_LSB    = 8;
 localparam CHANNEL_STATE_OVERRUN_BITS   = 8;
 localparam CHANNEL_STATE_OVERRUN_RESET  = 8'h00;
-localparam CHANNEL_STATE_DRAINED_LSB    = 16;
-localparam CHANNEL_STATE_DRAINED_BITS   = 16;
-localparam CHANNEL_STATE_DRAINED_RESET  = 16'h0000;
+localparam CHANNEL_STATE_STOPPING_LSB   = 16;
+localparam CHANNEL_STATE_STOPPING_BITS  = 1;
+localparam CHANNEL_STATE_STOPPING_RESET = 1'h0;
+localparam CHANNEL_STATE_DRAINED_LSB    = 17;
+localparam CHANNEL_STATE_DRAINED_BITS   = 15;
+localparam CHANNEL_STATE_DRAINED_RESET  = 15'h0000;
 
 // Channel: Rate. Time scale in force.
 localparam CHANNEL_RATE       = 8'h09;
@@ -364,12 +370,18 @@ localparam STATE_DRAIN   = 3'd5; // Missing substeps of the LAST line are made a
 localparam STATE_STOPPED = 3'd6; // Stopped by a command or a fault; queues flushed. CLEAR leads back to IDLE.
 
 // Why a channel has stopped.
-localparam CAUSE_NONE          = 3'd0; // Not stopped.
-localparam CAUSE_STOP          = 3'd1; // COMMAND.STOP.
-localparam CAUSE_ABORT         = 3'd2; // COMMAND.ABORT.
-localparam CAUSE_LINE_UNDERRUN = 3'd3; // A line ended, was not LAST, and none followed.
-localparam CAUSE_RAMP_UNDERRUN = 3'd4; // The ramps ran out at speed.
-localparam CAUSE_STEP_OVERRUN  = 3'd5; // Steps came faster than the pin timing of an axis allows.
+localparam CAUSE_NONE            = 4'd0;  // Not stopped.
+localparam CAUSE_STOP            = 4'd1;  // COMMAND.STOP.
+localparam CAUSE_ABORT           = 4'd2;  // COMMAND.ABORT.
+localparam CAUSE_LINE_UNDERRUN   = 4'd3;  // A line ended, was not LAST, and none followed.
+localparam CAUSE_RAMP_UNDERRUN   = 4'd4;  // The ramps ran out at speed.
+localparam CAUSE_STEP_OVERRUN    = 4'd5;  // Steps came faster than the pin timing of an axis allows.
+localparam CAUSE_LIMIT           = 4'd6;  // An axis stepped towards an active limit switch.
+localparam CAUSE_ALARM           = 4'd7;  // The alarm input of an axis became active.
+localparam CAUSE_TRIGGER         = 4'd8;  // The trigger fired, and its action is a stop.
+localparam CAUSE_WATCHDOG        = 4'd9;  // No good frame came for too long while a motion ran.
+localparam CAUSE_ESTOP           = 4'd10; // The e-stop input became active.
+localparam CAUSE_FOLLOWING_ERROR = 4'd11; // An axis was too far from its encoder.
 
 // Shape of a ramp: s as a function of the progress u, both 0 .. 1.
 localparam SHAPE_LINEAR  = 2'd0; // s = u, no table.

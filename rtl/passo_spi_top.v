@@ -13,6 +13,9 @@ module passo_spi_top #(
   parameter                     LINE_QUEUE_LOG2 = 8,  // log2 of the places for lines, 2 .. 8
   parameter                     RAMP_QUEUE_LOG2 = 4,  // log2 of the places for ramps, 2 .. 8
   parameter                     STEPS_REGISTER  = 0,  // 1: block RAMs have an output register
+  parameter                     INPUTS          = 0,  // 1: limits, home, alarm, probe, e-stop
+  parameter                     ENCODERS        = 0,  // 1: encoders
+  parameter                     OUTPUTS         = 0,  // 1: outputs bound to the path
   // pin levels from configuration until the host writes polarities; bit channel * AXES + axis
   parameter [CHANNELS*AXES-1:0] STEP_RESET      = 0,
   parameter [CHANNELS*AXES-1:0] DIR_RESET       = 0,
@@ -28,10 +31,25 @@ module passo_spi_top #(
   output wire                     spi_miso_enable,  // drive the pin
   // starts several chips on one edge
   input  wire                     sync,
+  // machine: bit channel * AXES + axis; ignored without INPUTS
+  input  wire [CHANNELS*AXES-1:0] limit_low,
+  input  wire [CHANNELS*AXES-1:0] limit_high,
+  input  wire [CHANNELS*AXES-1:0] home,
+  input  wire [CHANNELS*AXES-1:0] alarm,
+  input  wire [     CHANNELS-1:0] probe,
+  input  wire                     estop_n,          // asynchronous
+  // encoders; ignored without ENCODERS
+  input  wire [CHANNELS*AXES-1:0] encoder_a,
+  input  wire [CHANNELS*AXES-1:0] encoder_b,
+  input  wire [CHANNELS*AXES-1:0] encoder_index,
   // drives: bit channel * AXES + axis
   output wire [CHANNELS*AXES-1:0] step,
   output wire [CHANNELS*AXES-1:0] dir,
   output wire [CHANNELS*AXES-1:0] enable,
+  // outputs bound to the path; 0 without OUTPUTS
+  output wire [   CHANNELS*8-1:0] outputs,
+  output wire [     CHANNELS-1:0] power,
+  output wire [     CHANNELS-1:0] compare,
   // to the host
   output wire [     CHANNELS-1:0] running,
   output wire                     irq               // a channel is stopped
@@ -67,24 +85,39 @@ module passo_spi_top #(
     .LINE_QUEUE_LOG2(LINE_QUEUE_LOG2),
     .RAMP_QUEUE_LOG2(RAMP_QUEUE_LOG2),
     .STEPS_REGISTER (STEPS_REGISTER),
+    .INPUTS         (INPUTS),
+    .ENCODERS       (ENCODERS),
+    .OUTPUTS        (OUTPUTS),
     .STEP_RESET     (STEP_RESET),
     .DIR_RESET      (DIR_RESET),
     .ENABLE_RESET   (ENABLE_RESET)
   ) u_core (
-    .clk        (clk),
-    .rst        (rst),
-    .frame_start(frame_start),
-    .frame_end  (frame_end),
-    .half_valid (half_valid),
-    .half_low   (half_low),
-    .half       (half),
-    .reply_word (reply_word),
-    .sync       (sync),
-    .step       (step),
-    .dir        (dir),
-    .enable     (enable),
-    .running    (running),
-    .irq        (irq)
+    .clk          (clk),
+    .rst          (rst),
+    .frame_start  (frame_start),
+    .frame_end    (frame_end),
+    .half_valid   (half_valid),
+    .half_low     (half_low),
+    .half         (half),
+    .reply_word   (reply_word),
+    .sync         (sync),
+    .limit_low    (limit_low),
+    .limit_high   (limit_high),
+    .home         (home),
+    .alarm        (alarm),
+    .probe        (probe),
+    .estop_n      (estop_n),
+    .encoder_a    (encoder_a),
+    .encoder_b    (encoder_b),
+    .encoder_index(encoder_index),
+    .step         (step),
+    .dir          (dir),
+    .enable       (enable),
+    .outputs      (outputs),
+    .power        (power),
+    .compare      (compare),
+    .running      (running),
+    .irq          (irq)
   );
 
 endmodule

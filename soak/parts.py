@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from passo.build import Parameters, rtl_library
-from passo.compiler import call
+from passo.compiler import call, includes
 from passo.console import console as terminal
 from passo.toolchain import paths
 from rich.console import Console
@@ -122,7 +122,8 @@ def _bench(number: int) -> Path:
     made = BUILD / f"player{number}.vvp"
     given = [f"-Psoak_player.{name}={value}" for name, value in SETS[number].verilog().items()]
     sources = [HERE / "player.v", *sorted(paths.rtl.glob("*.v"))]
-    call(["iverilog", "-g2012", f"-I{paths.rtl}", *given, "-s", "soak_player", "-o", made, *sources])
+    folders = includes(paths.rtl, HERE)
+    call(["iverilog", "-g2012", *folders, *given, "-s", "soak_player", "-o", made, *sources])
     return made
 
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Replays a recorded history to the core and compares every output pin after every clock.
 //
-// Each line of the record is a run of clocks (hexadecimal count) with its inputs and the outputs after each of them.
+// Each line of the record is a run of clocks (hexadecimal count) with its inputs and the outputs after each of them, in
+// the order of player_pins.vh.
 // Plusarg: +record=FILE. Prints "same CLOCKS", or the first difference.
 `resetall
 `default_nettype none
@@ -13,31 +14,27 @@ module soak_player #(
   parameter TICK_LOG2       = 7,
   parameter LINE_QUEUE_LOG2 = 5,
   parameter RAMP_QUEUE_LOG2 = 3,
+  parameter INPUTS          = 0,
+  parameter ENCODERS        = 0,
+  parameter OUTPUTS         = 0,
   parameter STEP_RESET      = 0,
   parameter DIR_RESET       = 0,
   parameter ENABLE_RESET    = 0
 );
 
-  localparam PINS = CHANNELS * AXES;
+  reg  clk = 1'b0;
+  wire spi_miso_enable;
 
-  reg clk = 1'b0;
-  reg rst = 1'b0;
-  reg sync = 1'b0;
-  reg spi_cs_n = 1'b1;
-  reg spi_mosi = 1'b0;
-  reg spi_sclk = 1'b0;
-  wire spi_miso, spi_miso_enable, irq;
-  wire [PINS-1:0] step, dir, enable;
-  wire [CHANNELS-1:0] running;
+  `include "player_pins.vh"
+
+  localparam WORDS = INPUT_COUNT + OUTPUT_COUNT;
 
   reg [1023:0] name;
-  integer file, found;
+  integer file, found, word;
   reg [31:0] clocks, clock;
-  reg [4:0] pins;
-  reg [PINS-1:0] step_wanted, dir_wanted, enable_wanted;
-  reg [CHANNELS-1:0] running_wanted;
-  reg irq_wanted, miso_wanted;
-  reg same;
+  reg [        63:0] level;
+  reg [64*WORDS-1:0] levels;
+  reg                same;
 
   passo_spi_top #(
     .CHANNELS       (CHANNELS),
@@ -45,6 +42,9 @@ module soak_player #(
     .TICK_LOG2      (TICK_LOG2),
     .LINE_QUEUE_LOG2(LINE_QUEUE_LOG2),
     .RAMP_QUEUE_LOG2(RAMP_QUEUE_LOG2),
+    .INPUTS         (INPUTS),
+    .ENCODERS       (ENCODERS),
+    .OUTPUTS        (OUTPUTS),
     .STEP_RESET     (STEP_RESET),
     .DIR_RESET      (DIR_RESET),
     .ENABLE_RESET   (ENABLE_RESET)
@@ -72,47 +72,26 @@ module soak_player #(
     rst   = 1'b0;
     clock = 32'd0;
     same  = file != 0;
-    found = 8;
-    while (same && found == 8) begin
-      found = $fscanf(
-          file,
-          "%h %h %h %h %h %h %h %h\n",
-          clocks,
-          pins,
-          step_wanted,
-          dir_wanted,
-          enable_wanted,
-          running_wanted,
-          irq_wanted,
-          miso_wanted
-      );
-      if (found == 8) {rst, sync, spi_cs_n, spi_mosi, spi_sclk} = pins;
-      while (same && found == 8 && clocks != 32'd0) begin
+    found = 1;
+    while (same && found == 1) begin
+      found = $fscanf(file, "%h", clocks);
+      for (word = 0; found == 1 && word < WORDS; word = word + 1) begin
+        found               = $fscanf(file, "%h", level);
+        levels[64*word+:64] = level;
+      end
+      if (found == 1) begin
+        set_inputs(levels[64*INPUT_COUNT-1:0]);
+        wanted = levels[64*WORDS-1:64*INPUT_COUNT];
+      end
+      while (same && found == 1 && clocks != 32'd0) begin
         tick;
-        clock = clock + 32'd1;
+        clock  = clock + 32'd1;
         clocks = clocks - 32'd1;
-        same   = {step, dir, enable, running, irq, spi_miso} === {step_wanted, dir_wanted, enable_wanted,
-                                                                running_wanted, irq_wanted, miso_wanted};
+        same   = seen === wanted;
       end
     end
     if (same) $display("same %0d", clock);
-    else
-      $display(
-          "clock %0d: step %h %h dir %h %h enable %h %h running %h %h irq %b %b miso %b %b",
-          clock,
-          step,
-          step_wanted,
-          dir,
-          dir_wanted,
-          enable,
-          enable_wanted,
-          running,
-          running_wanted,
-          irq,
-          irq_wanted,
-          spi_miso,
-          miso_wanted
-      );
+    else tell_difference(clock);
     $finish;
   end
 

@@ -16,10 +16,10 @@
 
 struct world_rtl {
 	struct engine_core *(*open)(const struct passo_engine_config *config,
-	    const struct engine_inputs *inputs, struct engine_outputs *outputs);
+	    const struct passo_inputs *inputs, struct passo_outputs *outputs);
 	void (*close)(struct engine_core *core);
-	uint64_t (*run)(struct engine_core *core, const struct engine_inputs *inputs, uint64_t limit,
-	    struct engine_outputs *outputs);
+	uint64_t (*run)(struct engine_core *core, const struct passo_inputs *inputs, uint64_t limit,
+	    struct passo_outputs *outputs);
 };
 
 const struct world_rtl *world_load(const char *library)
@@ -81,15 +81,9 @@ void world_add_pin(struct world *world, struct world_pin pin)
 	world->pin_count++;
 }
 
-static bool same_pins(const struct passo_outputs *a, const struct passo_outputs *b)
-{
-	return a->step == b->step && a->dir == b->dir && a->enable == b->enable && a->running == b->running
-	    && a->irq == b->irq;
-}
-
 static void add_row(struct world *world)
 {
-	if (world->row_count && same_pins(&world->rows[world->row_count - 1u].pins, &world->outputs))
+	if (world->row_count && PASSO_SAME_OUTPUTS(&world->rows[world->row_count - 1u].pins, &world->outputs))
 		return;
 	if (world->row_count == world->row_room)
 		world->rows = more(world->rows, &world->row_room, sizeof *world->rows);
@@ -184,13 +178,9 @@ static void note_events(struct world *world, const struct before *before, const 
 static void record(
     struct world *world, const struct passo_inputs *inputs, const struct passo_outputs *outputs)
 {
-	const bool same = same_pins(outputs, &world->recorded_outputs)
+	const bool same = PASSO_SAME_OUTPUTS(outputs, &world->recorded_outputs)
 	               && outputs->spi_miso == world->recorded_outputs.spi_miso
-	               && inputs->spi_sclk == world->recorded_inputs.spi_sclk
-	               && inputs->spi_mosi == world->recorded_inputs.spi_mosi
-	               && inputs->spi_cs_n == world->recorded_inputs.spi_cs_n
-	               && inputs->sync == world->recorded_inputs.sync
-	               && inputs->rst == world->recorded_inputs.rst;
+	               && PASSO_SAME_INPUTS(inputs, &world->recorded_inputs);
 
 	if (same || world->recorded_clocks == 0u) {
 		world->recorded_clocks++;
@@ -207,30 +197,31 @@ void world_end_record(struct world *world)
 {
 	const struct passo_inputs *inputs = &world->recorded_inputs;
 	const struct passo_outputs *outputs = &world->recorded_outputs;
-	const unsigned pins = (inputs->rst ? 16u : 0u) | (inputs->sync ? 8u : 0u)
-	                    | (inputs->spi_cs_n ? 4u : 0u) | (inputs->spi_mosi ? 2u : 0u)
-	                    | (inputs->spi_sclk ? 1u : 0u);
 
-	if (world->record && world->recorded_clocks != 0u)
-		fprintf(world->record, "%llx %x %llx %llx %llx %x %x %x\n",
-		    (unsigned long long)world->recorded_clocks, pins, (unsigned long long)outputs->step,
-		    (unsigned long long)outputs->dir, (unsigned long long)outputs->enable, outputs->running,
-		    outputs->irq ? 1u : 0u, outputs->spi_miso ? 1u : 0u);
+	if (world->record && world->recorded_clocks != 0u) {
+		fprintf(world->record, "%llx", (unsigned long long)world->recorded_clocks);
+#define WRITE_INPUT(name, type, number) fprintf(world->record, " %llx", (unsigned long long)inputs->name);
+#define WRITE_OUTPUT(name, type, number) fprintf(world->record, " %llx", (unsigned long long)outputs->name);
+		PASSO_INPUTS(WRITE_INPUT)
+		PASSO_OUTPUTS(WRITE_OUTPUT)
+#undef WRITE_INPUT
+#undef WRITE_OUTPUT
+		fprintf(world->record, " %x\n", outputs->spi_miso ? 1u : 0u);
+	}
 	world->recorded_clocks = 0;
 }
 
 static void compare(struct world *world, const struct passo_outputs *rtl, const struct passo_outputs *model)
 {
-	if (same_pins(rtl, model) && rtl->spi_miso == model->spi_miso)
-		return;
-	world_fail(world, world->clock,
-	    "RTL and model differ: step %llx %llx dir %llx %llx enable %llx %llx running %x %x irq %d %d "
-	    "miso "
-	    "%d %d",
-	    (unsigned long long)rtl->step, (unsigned long long)model->step, (unsigned long long)rtl->dir,
-	    (unsigned long long)model->dir, (unsigned long long)rtl->enable,
-	    (unsigned long long)model->enable, rtl->running, model->running, rtl->irq, model->irq,
-	    rtl->spi_miso, model->spi_miso);
+	if (rtl->spi_miso != model->spi_miso)
+		world_fail(
+		    world, world->clock, "RTL and model differ: miso %d %d", rtl->spi_miso, model->spi_miso);
+#define COMPARE(name, type, number)                                                                          \
+	if (rtl->name != model->name)                                                                        \
+		world_fail(world, world->clock, "RTL and model differ: " #name " %llx %llx",                 \
+		    (unsigned long long)rtl->name, (unsigned long long)model->name);
+	PASSO_OUTPUTS(COMPARE)
+#undef COMPARE
 }
 
 static void change_reset(struct world *world)
@@ -265,24 +256,10 @@ static void change_pins(struct world *world)
 
 static struct passo_outputs run_rtl(struct world *world)
 {
-	const struct engine_inputs inputs = {.spi_sclk = world->inputs.spi_sclk,
-	    .spi_mosi = world->inputs.spi_mosi,
-	    .spi_cs_n = world->inputs.spi_cs_n,
-	    .sync = world->inputs.sync,
-	    .rst = world->inputs.rst};
-	struct engine_outputs now = {.step = world->outputs.step,
-	    .dir = world->outputs.dir,
-	    .enable = world->outputs.enable,
-	    .running = world->outputs.running,
-	    .irq = world->outputs.irq};
+	struct passo_outputs now = world->outputs;
 
-	world->rtl->run(world->core, &inputs, 1, &now);
-	return (struct passo_outputs){.step = now.step,
-	    .dir = now.dir,
-	    .enable = now.enable,
-	    .running = (uint8_t)now.running,
-	    .irq = now.irq != 0u,
-	    .spi_miso = now.spi_miso};
+	world->rtl->run(world->core, &world->inputs, 1, &now);
+	return now;
 }
 
 static void tick(struct world *world)
@@ -347,24 +324,15 @@ bool world_open(struct world *world, const struct passo_parameters *parameters, 
 	world->blind = kept.blind;
 	world->half_period = 2;
 	world->setup = 4;
-	world->inputs.spi_cs_n = true;
+	world->inputs = (struct passo_inputs)PASSO_INPUTS_IDLE;
 	if (!passo_core_reset(&world->model, parameters))
 		return false;
 	world->outputs = *passo_core_outputs(&world->model);
 	if (rtl) {
-		const struct passo_engine_config config = {.channels = parameters->channels,
-		    .axes = parameters->axes,
-		    .tick_log2 = parameters->tick_log2,
-		    .line_queue_log2 = parameters->line_queue_log2,
-		    .ramp_queue_log2 = parameters->ramp_queue_log2,
-		    .step_reset = parameters->step_reset,
-		    .dir_reset = parameters->dir_reset,
-		    .enable_reset = parameters->enable_reset,
-		    .clock_hz = 1,
-		    .spi_half_period = 1,
-		    .every_clock = 1};
-		const struct engine_inputs inputs = {.spi_cs_n = true};
-		struct engine_outputs outputs;
+		const struct passo_engine_config config = {
+		    .core = *parameters, .clock_hz = 1, .spi_half_period = 1, .every_clock = 1};
+		const struct passo_inputs inputs = PASSO_INPUTS_IDLE;
+		struct passo_outputs outputs;
 
 		world->rtl = rtl;
 		world->core = rtl->open(&config, &inputs, &outputs);

@@ -184,7 +184,10 @@ def test_a_difference_is_reported(
 
 
 def events(*rows: tuple[int, int, int]) -> np.ndarray:
-    return np.array([(clock, step, direction, 0, 0, 0) for clock, step, direction in rows], EVENT)
+    made = np.zeros(len(rows), EVENT)
+    for event, (clock, step, direction) in zip(made, rows, strict=True):
+        event["clock"], event["step"], event["dir"] = clock, step, direction
+    return made
 
 
 @pytest.mark.parametrize(

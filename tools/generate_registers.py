@@ -45,7 +45,7 @@ ENUMS = {
     "operation": (4, "Operation of a frame."),
     "verdict": (4, "Outcome of a frame."),
     "state": (3, "State of a channel."),
-    "cause": (3, "Why a channel has stopped."),
+    "cause": (4, "Why a channel has stopped."),
     "shape": (2, "Shape of a ramp: s as a function of the progress u, both 0 .. 1."),
 }
 

@@ -34,6 +34,9 @@ ENDS = {
     "LINE_QUEUE_LOG2": (2, 8),
     "RAMP_QUEUE_LOG2": (2, 8),
     "STEPS_REGISTER": (0, 1),
+    "INPUTS": (0, 1),
+    "ENCODERS": (0, 1),
+    "OUTPUTS": (0, 1),
 }
 LEVELS = ("STEP_RESET", "DIR_RESET", "ENABLE_RESET")  # a bit for each axis, default 0
 AXES = 4  # the default

@@ -25,9 +25,9 @@ import numpy as np
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import Timer
 from passo import registers as r
-from passo.build import Parameters
-from passo.host import Channel
+from passo.host import Channel, parameters_of
 from passo.link import Link
+from passo.pins import INPUTS
 from passo.plan import Plan
 
 from cocotb_tests.helpers.bench import PERIOD, Clocks, read
@@ -74,6 +74,14 @@ class Record:
     judge: Judge | None = None
 
 
+def set_idle(dut: HierarchyObject) -> None:
+    """Set the inputs of a core, other than clk, rst and those of its link, as if nothing were connected."""
+    for pin in INPUTS:
+        if pin.name != "rst" and not pin.name.startswith("spi_"):
+            signal = getattr(dut, pin.name)
+            signal.value = pin.idle * ((1 << len(signal)) - 1)
+
+
 @functools.cache
 def _record() -> Record:
     return Record(Path("pins.log").open())
@@ -99,8 +107,8 @@ class Core:
     @classmethod
     async def begin(cls, dut: HierarchyObject, thread: Thread) -> "Core":
         """Reset; return on the falling edge at its end."""
-        dut.sync.value = 0
         dut.rst.value = 1
+        set_idle(dut)
         clocks = Clocks(dut.clk)
         clocks.start()
         core = cls(dut, thread, clocks)
@@ -118,13 +126,7 @@ class Core:
         """Read the parameters of the core and start the comparison."""
         self.link = Link(self)
         (word,) = self.link.read(r.ADDRESS_PARAMETERS, 1)
-        self.parameters = Parameters(
-            channels=word & 0xF,
-            axes=word >> r.PARAMETERS_AXES_LSB & 0xF,
-            tick_log2=word >> r.PARAMETERS_TICK_LOG2_LSB & 0x1F,
-            line_queue_log2=word >> r.PARAMETERS_LINE_QUEUE_LOG2_LSB & 0x1F,
-            ramp_queue_log2=word >> r.PARAMETERS_RAMP_QUEUE_LOG2_LSB & 0x1F,
-        )
+        self.parameters = parameters_of(word)
         self.axes, self.tick = self.parameters.axes, 1 << self.parameters.tick_log2
         if self._record.judge is None:
             self._record.judge = Judge(self.parameters)
@@ -190,14 +192,18 @@ class Core:
             assert self.clock < end, f"clock {self.clock}: nothing after {limit} clocks"
             self.run(step)
 
-    def sync(self, level: bool) -> None:
-        """Set the sync input."""
+    def set(self, pin: str, levels: int) -> None:
+        """Set the levels of an input pin."""
 
         async def set_pin() -> None:
-            self.dut.sync.value = int(level)
+            getattr(self.dut, pin).value = levels
 
-        self.started = self.clock
         self._thread.wait(set_pin())
+
+    def sync(self, level: bool) -> None:
+        """Set the sync input."""
+        self.started = self.clock
+        self.set("sync", int(level))
 
     def reset(self, clocks: int) -> None:
         """Reset the core for a number of clocks."""

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Compares the recorded pins of the core with the C model on every clock."""
 
+from dataclasses import asdict
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -8,19 +9,21 @@ from typing import Any
 import numpy as np
 from cffi import FFI
 from passo.build import Parameters
-from passo.compiler import library, sources
+from passo.compiler import declarations, library, sources
+from passo.pins import INPUTS, OUTPUTS
 from passo.toolchain import paths
 
-SIGNALS = ("step", "dir", "enable", "running", "irq", "miso")
-COLUMNS = ("clock", "inputs", "pin_miso", *SIGNALS[:-1])
+SIGNALS = (*(pin.name for pin in OUTPUTS), "miso")
+COLUMNS = ("clock", *(f"in_{pin.name}" for pin in INPUTS), "pin_miso", *SIGNALS[:-1])
+HEADER = paths.model / "passo_pins.h"
 FOLDERS = (paths.model, paths.protocol)
 
 DECLARATIONS = """
 uint64_t judge_size(void);
-bool judge_reset(void *judge, const uint8_t parameters[5]);
+bool judge_reset(void *judge, const struct passo_parameters *parameters);
 bool judge_follow(void *judge, const void *rows, size_t count, uint64_t until);
 void judge_difference(const void *judge, uint64_t difference[4]);
-void judge_matched(const void *judge, uint64_t matched[6]);
+void judge_matched(const void *judge, uint64_t *matched);
 """
 
 
@@ -35,8 +38,8 @@ class Judge:
         self.parameters = parameters
         self._ffi, self._c = _load()
         self._judge = self._ffi.new("uint64_t[]", self._c.judge_size() // 8 + 1)
-        names = ("channels", "axes", "tick_log2", "line_queue_log2", "ramp_queue_log2")
-        assert self._c.judge_reset(self._judge, [getattr(parameters, name) for name in names])
+        wanted = self._ffi.new("struct passo_parameters *", asdict(parameters))
+        assert self._c.judge_reset(self._judge, wanted)
 
     def follow(self, rows: np.ndarray, until: int) -> None:
         """Compare up to a clock; `rows` (COLUMNS) were recorded since the last call."""
@@ -53,9 +56,10 @@ class Judge:
         bit = (different & -different).bit_length() - 1
         name = SIGNALS[signal]
         place = ""
-        if name == "running":
+        width = {pin.name: pin.width for pin in OUTPUTS}.get(name)
+        if width == "CHANNELS":
             place = f" of channel {bit}"
-        elif name in ("step", "dir", "enable"):
+        elif width == "CHANNELS*AXES":
             channel, axis = divmod(bit, self.parameters.axes)
             place = f" of channel {channel}, axis {axis}"
         return (
@@ -65,16 +69,16 @@ class Judge:
 
     def summary(self) -> str:
         """Summary of what was compared."""
-        matched = self._ffi.new("uint64_t[6]")
+        matched = self._ffi.new("uint64_t[]", len(SIGNALS))
         self._c.judge_matched(self._judge, matched)
         edges = ", ".join(f"{name} {n}" for name, n in zip(SIGNALS, matched, strict=True) if name != "miso")
-        return f"edges that agree: {edges}; bits of MISO that agree: {matched[5]}"
+        return f"edges that agree: {edges}; bits of MISO that agree: {matched[len(SIGNALS) - 1]}"
 
 
 @cache
 def _load() -> tuple[FFI, Any]:
     """The model and the judge."""
     ffi = FFI()
-    ffi.cdef(DECLARATIONS)
+    ffi.cdef(declarations([HEADER]) + DECLARATIONS)
     files = [Path(__file__).with_suffix(".c"), *sources(*FOLDERS)]
     return ffi, ffi.dlopen(str(library("judge", FOLDERS, files, "-O2")))

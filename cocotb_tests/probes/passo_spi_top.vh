@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Recorder of the pins of the core.
+// Recorder of the pins of the core. Generated from schema/pins.toml by tools/generate_pins.py.
 //
-// Clock 1 is the first rising edge ever without rst. Whenever a pin is not as it was a clock before, a row goes to pins.log:
-//
-//   clock; rst, sclk, mosi, cs_n, sync as bits 4 .. 0 and miso, all as they stand at its rising edge;
-//   step, dir, enable, running, irq as the rising edge before left them
-//
-// in decimal numbers; one with an X in it is not a number.
+// Clock 1 is the first rising edge ever without rst. Whenever a pin is not as it was a clock before, a row
+// goes to pins.log: the clock; the inputs and MISO as they stand at its rising edge; the other outputs as the
+// rising edge before left them. The numbers are decimal; one with an X in it is not a number.
 
-localparam PINS = 6 + 3 * CHANNELS * AXES + CHANNELS + 1;
+localparam PINS = 1 + 1 + 1 + 1 + 1 + 1 + 1 + CHANNELS*AXES + CHANNELS*AXES + CHANNELS*AXES + CHANNELS*AXES + CHANNELS + CHANNELS*AXES + CHANNELS*AXES + CHANNELS*AXES + CHANNELS*AXES + CHANNELS*AXES + CHANNELS*AXES + CHANNELS + 1 + CHANNELS*8 + CHANNELS + CHANNELS;
 
-wire    [PINS-1:0] pins = {rst, spi_sclk, spi_mosi, spi_cs_n, sync, spi_miso, step, dir, enable, running, irq};
-reg     [PINS-1:0] pins_before;
-reg                begun = 1'b0;
-reg     [    31:0] clock = 0;
-integer            file;
+wire [PINS-1:0] pins = {rst, spi_sclk, spi_mosi, spi_cs_n, sync, estop_n, limit_low, limit_high, home, alarm, probe, encoder_a, encoder_b, encoder_index, spi_miso, step, dir, enable, running, irq, outputs, power, compare};
+reg  [PINS-1:0] pins_before;
+reg             begun = 1'b0;
+reg  [    31:0] clock = 0;
+integer         file;
 
 initial file = $fopen("pins.log", "w");
 
@@ -24,8 +21,7 @@ always @(posedge clk) begin
     begun <= 1'b1;
     clock <= clock + 1;
     if (!begun || pins !== pins_before) begin
-      $fwrite(file, "%0d %0d %0d %0d %0d %0d %0d %0d\n", clock + 1,
-              {rst, spi_sclk, spi_mosi, spi_cs_n, sync}, spi_miso, step, dir, enable, running, irq);
+      $fwrite(file, "%0d %0d %0d %0d %0d %0d %0d %0d %0d %0d %0d %0d %0d %0d %0d %0d %0d %0d %0d %0d %0d %0d %0d %0d\n", clock + 1, rst, spi_sclk, spi_mosi, spi_cs_n, sync, estop_n, limit_low, limit_high, home, alarm, probe, encoder_a, encoder_b, encoder_index, spi_miso, step, dir, enable, running, irq, outputs, power, compare);
       $fflush(file);
     end
   end

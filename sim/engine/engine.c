@@ -14,8 +14,8 @@
 
 struct passo_engine {
 	struct engine_core *core;
-	struct engine_inputs inputs;
-	struct engine_outputs outputs;
+	struct passo_inputs inputs;
+	struct passo_outputs outputs;
 	struct passo_pin_event last;
 	uint64_t clock;
 	uint32_t spi_half_period;
@@ -28,11 +28,10 @@ struct passo_engine {
 /* Appends the pins to the log if they have changed. */
 static void log_pins(struct passo_engine *engine)
 {
-	const struct engine_outputs *outputs = &engine->outputs;
+	const struct passo_outputs *outputs = &engine->outputs;
 	struct passo_pin_event *last = &engine->last;
 
-	if (last->step == outputs->step && last->dir == outputs->dir && last->enable == outputs->enable
-	    && last->running == outputs->running && last->irq == outputs->irq)
+	if (PASSO_SAME_OUTPUTS(last, outputs))
 		return;
 	if (engine->log_length == engine->log_capacity) {
 		engine->log_capacity *= 2;
@@ -40,12 +39,10 @@ static void log_pins(struct passo_engine *engine)
 		if (!engine->log)
 			abort();
 	}
-	*last = (struct passo_pin_event){.clock = engine->clock,
-	    .step = outputs->step,
-	    .dir = outputs->dir,
-	    .enable = outputs->enable,
-	    .running = outputs->running,
-	    .irq = outputs->irq};
+	last->clock = engine->clock;
+#define COPY(name, type, number) last->name = outputs->name;
+	PASSO_OUTPUTS(COPY)
+#undef COPY
 	engine->log[engine->log_length++] = *last;
 }
 
@@ -55,7 +52,7 @@ struct passo_engine *passo_engine_create(const struct passo_engine_config *confi
 
 	if (!engine)
 		return NULL;
-	engine->inputs.spi_cs_n = true;
+	engine->inputs = (struct passo_inputs)PASSO_INPUTS_IDLE;
 	engine->spi_half_period = config->spi_half_period ? config->spi_half_period : 1;
 	engine->clocks = engine->ticks = 1;
 	engine->log_capacity = LOG_FULL;
@@ -211,9 +208,18 @@ void passo_engine_transfer(
 	run_all(engine, gap);
 }
 
-void passo_engine_sync(struct passo_engine *engine, bool level)
+void passo_engine_set(struct passo_engine *engine, enum passo_input input, uint64_t levels)
 {
-	engine->inputs.sync = level;
+	switch (input) {
+#define SET(name, type, number)                                                                              \
+	case number:                                                                                         \
+		engine->inputs.name = (type)levels;                                                          \
+		break;
+		PASSO_INPUTS(SET)
+#undef SET
+	case PASSO_INPUT_COUNT:
+		break;
+	}
 }
 
 uint64_t passo_engine_clock(const struct passo_engine *engine)

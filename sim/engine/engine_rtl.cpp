@@ -30,41 +30,31 @@ struct engine_core {
 #endif
 	}
 
-	void apply(const engine_inputs &inputs)
+	void apply(const passo_inputs &inputs)
 	{
-		top.spi_sclk = inputs.spi_sclk;
-		top.spi_mosi = inputs.spi_mosi;
-		top.spi_cs_n = inputs.spi_cs_n;
-		top.sync = inputs.sync;
-		top.rst = inputs.rst;
+#define SET(name, type, number) top.name = inputs.name;
+		PASSO_INPUTS(SET)
+#undef SET
 	}
 
-	/* All outputs except MISO are registered on clk: they are stable until the next rising edge. */
-	bool read(engine_outputs &outputs) const
+	/* All outputs except MISO are stable until the next rising edge of clk or change of an input. */
+	bool read(passo_outputs &outputs) const
 	{
-		const uint64_t step = top.step, dir = top.dir, enable = top.enable;
-		const uint32_t running = top.running, irq = top.irq;
-		const uint64_t difference = (step ^ outputs.step) | (dir ^ outputs.dir)
-		                          | (enable ^ outputs.enable) | (running ^ outputs.running)
-		                          | (irq ^ outputs.irq);
-		if (!difference)
-			return false;
-		outputs.step = step;
-		outputs.dir = dir;
-		outputs.enable = enable;
-		outputs.running = running;
-		outputs.irq = irq;
-		return true;
+		const passo_outputs was = outputs;
+
+#define GET(name, type, number) outputs.name = top.name;
+		PASSO_OUTPUTS(GET)
+#undef GET
+		return !PASSO_SAME_OUTPUTS(&was, &outputs);
 	}
 };
 
 engine_core *engine_core_open(
-    const passo_engine_config *config, const engine_inputs *inputs, engine_outputs *outputs)
+    const passo_engine_config *config, const passo_inputs *inputs, passo_outputs *outputs)
 {
-	if (config->channels != PASSO_CHANNELS || config->axes != PASSO_AXES
-	    || config->tick_log2 != PASSO_TICK_LOG2 || config->line_queue_log2 != PASSO_LINE_QUEUE_LOG2
-	    || config->ramp_queue_log2 != PASSO_RAMP_QUEUE_LOG2 || config->step_reset != PASSO_STEP_RESET
-	    || config->dir_reset != PASSO_DIR_RESET || config->enable_reset != PASSO_ENABLE_RESET)
+#define DIFFERS(name, NAME) config->core.name != PASSO_CORE_##NAME ||
+	if (PASSO_PARAMETERS(DIFFERS) PASSO_LEVELS(DIFFERS) false)
+#undef DIFFERS
 		return nullptr;
 	auto *core = new engine_core;
 #ifdef PASSO_WAVES
@@ -93,7 +83,7 @@ void engine_core_close(engine_core *core)
 }
 
 uint64_t engine_core_run(
-    engine_core *core, const engine_inputs *inputs, uint64_t limit, engine_outputs *outputs)
+    engine_core *core, const passo_inputs *inputs, uint64_t limit, passo_outputs *outputs)
 {
 	uint64_t clocks = 0;
 	bool changed = false;

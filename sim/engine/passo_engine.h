@@ -10,22 +10,17 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "passo_pins.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 struct passo_engine_config {
-	uint32_t channels, axes, tick_log2, line_queue_log2, ramp_queue_log2; /* the parameters of the core */
-	uint64_t step_reset, dir_reset, enable_reset;                         /* initial pin levels */
-	uint32_t clock_hz;                                                    /* time scale of the waves */
+	struct passo_parameters core;
+	uint32_t clock_hz;        /* time scale of the waves */
 	uint32_t spi_half_period; /* clocks per SCLK level, at least 1 */
 	uint32_t every_clock;     /* 1: the model executes every clock instead of skipping quiet time */
-};
-
-/* Levels of the output pins after a clock; clock 1 is the first rising edge after reset. */
-struct passo_pin_event {
-	uint64_t clock, step, dir, enable;
-	uint32_t running, irq;
 };
 
 struct passo_engine;
@@ -62,7 +57,8 @@ void passo_engine_exchange(
 uint32_t passo_engine_irq(const struct passo_engine *engine);
 uint32_t passo_engine_running(const struct passo_engine *engine);
 
-void passo_engine_sync(struct passo_engine *engine, bool level);
+/* Sets the levels of an input pin, a bit per axis or channel, from the next clock on. */
+void passo_engine_set(struct passo_engine *engine, enum passo_input input, uint64_t levels);
 uint64_t passo_engine_clock(const struct passo_engine *engine);
 
 /* Moves up to `capacity` of the oldest events to `events`; returns their number. */

@@ -2,7 +2,7 @@
 """The C code and the Verilated core as shared libraries, compiled once per version of the sources."""
 
 import importlib.util
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 from importlib.metadata import version
 from pathlib import Path
 
@@ -19,10 +19,11 @@ from passo.compiler import (
     library,
     sources,
 )
+from passo.pins import CoreParameters
 from passo.toolchain import environment, paths
 
-ENGINE_FLAGS = (*STRICT, "-O3", "-fPIC", *includes(paths.engine))
-CPP_FLAGS = ("-std=gnu++17", "-O3", "-Wall", "-fPIC", "-fno-gnu-unique", *includes(paths.engine))
+ENGINE_FLAGS = (*STRICT, "-O3", "-fPIC", *includes(paths.engine, paths.model))
+CPP_FLAGS = ("-std=gnu++17", "-O3", "-Wall", "-fPIC", "-fno-gnu-unique", *includes(paths.engine, paths.model))
 
 # Every register of the core has a reset, so the value chosen for X does not matter.
 VERILATOR_FLAGS = (
@@ -33,18 +34,8 @@ VERILATOR_FLAGS = (
 
 
 @dataclass(frozen=True)
-class Parameters:
-    """Build parameters of a core, those of rtl/passo_core.v; ranges as in model/passo_model.h."""
-
-    channels: int = 1
-    axes: int = 4
-    tick_log2: int = 7
-    line_queue_log2: int = 8
-    ramp_queue_log2: int = 4
-    # pin levels after configuration, bit channel * axes + axis; the host cannot read them from the core
-    step_reset: int = field(default=0, compare=False)
-    dir_reset: int = field(default=0, compare=False)
-    enable_reset: int = field(default=0, compare=False)
+class Parameters(CoreParameters):
+    """Build parameters of a core; ranges as in schema/pins.toml."""
 
     @property
     def name(self) -> str:
@@ -52,7 +43,8 @@ class Parameters:
         queues = f"{self.line_queue_log2}_{self.ramp_queue_log2}"
         levels = (self.step_reset, self.dir_reset, self.enable_reset)
         reset = "_reset{:x}_{:x}_{:x}".format(*levels) if any(levels) else ""
-        return f"{self.channels}x{self.axes}_{self.tick_log2}_{queues}{reset}"
+        parts = "".join(f"_{part}" for part in ("inputs", "encoders", "outputs") if getattr(self, part))
+        return f"{self.channels}x{self.axes}_{self.tick_log2}_{queues}{parts}{reset}"
 
     def verilog(self) -> dict[str, str]:
         """Verilog parameter names and values."""
@@ -101,7 +93,7 @@ def rtl_library(parameters: Parameters, waves: bool = False) -> Path:
     verilated = _verilated(parameters, waves)
     include = Path(environment()["VERILATOR_ROOT"]) / "include"
     c_part, cpp_part = paths.engine / "engine.c", paths.engine / "engine_rtl.cpp"
-    defines = [f"-DPASSO_{name.upper()}={value}" for name, value in asdict(parameters).items()]
+    defines = [f"-DPASSO_CORE_{name.upper()}={value}" for name, value in asdict(parameters).items()]
     flags = [*CPP_FLAGS, *defines, f"-I{verilated}", f"-isystem{include}", f"-isystem{include / 'vltstd'}"]
     archives = [str(verilated / "Vpasso_spi_top__ALL.a"), str(verilated / "libverilated.a"), "-pthread"]
     if waves:
@@ -113,7 +105,7 @@ def rtl_library(parameters: Parameters, waves: bool = False) -> Path:
         call([CXX, "-shared", *flags, cpp_part, folder / "engine.o", *archives, "-o", folder / LIBRARY])
 
     name = f"rtl_{parameters.name}{'_waves' if waves else ''}"
-    inputs = [c_part, cpp_part, *headers(paths.engine)]
+    inputs = [c_part, cpp_part, *headers(paths.engine), paths.model / "passo_pins.h"]
     return cached(name, inputs, [*ENGINE_FLAGS, *flags, *archives], make) / LIBRARY
 
 

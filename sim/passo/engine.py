@@ -2,6 +2,7 @@
 """The engines that execute the core: the C model, the Verilated RTL, and both in lockstep."""
 
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Self
 
@@ -9,14 +10,14 @@ import numpy as np
 
 from passo.build import Parameters, model_library, rtl_library
 from passo.native import ffi, load
+from passo.pins import INPUTS, OUTPUTS
 
-# Pin levels after each clock on which an output pin changes; clock 1 is the first one after reset. step, dir
-# and enable have bit channel * axes + axis, running and irq one bit per channel.
-EVENT = np.dtype(
-    [("clock", "u8"), ("step", "u8"), ("dir", "u8"), ("enable", "u8"), ("running", "u4"), ("irq", "u4")]
-)
+# Pin levels after each clock on which an output pin changes; clock 1 is the first one after reset. A pin has
+# a bit per axis, channel * axes + axis, or per channel.
+EVENT = np.dtype([("clock", "u8"), *((pin.name, "u8") for pin in OUTPUTS)])
 SIGNALS = EVENT.names[1:]
 EVENTS_PER_DRAIN = 65536
+NUMBERS = {pin.name: number for number, pin in enumerate(INPUTS)}
 
 
 class DifferenceError(Exception):
@@ -25,7 +26,8 @@ class DifferenceError(Exception):
     def __init__(self, clock: int, signal: str, index: int, expected: int, actual: int):
         self.clock, self.signal, self.index = clock, signal, index
         self.expected, self.actual = expected, actual
-        place = "word" if signal == "miso" else "channel" if signal in ("running", "irq") else "axis"
+        of_axes = [pin.name for pin in OUTPUTS if "AXES" in pin.width]
+        place = "word" if signal == "miso" else "axis" if signal in of_axes else "bit"
         show = hex if signal == "miso" else str
         super().__init__(
             f"clock {clock}: {signal} of {place} {index} differs: "
@@ -62,12 +64,7 @@ class Engine(_Closed):
         self.clock_hz = clock_hz
         self._c = load(library)
         config = ffi().new("struct passo_engine_config *")
-        config.channels, config.axes = parameters.channels, parameters.axes
-        config.tick_log2 = parameters.tick_log2
-        config.line_queue_log2 = parameters.line_queue_log2
-        config.ramp_queue_log2 = parameters.ramp_queue_log2
-        config.step_reset, config.dir_reset = parameters.step_reset, parameters.dir_reset
-        config.enable_reset = parameters.enable_reset
+        config.core = asdict(parameters)
         config.clock_hz, config.spi_half_period, config.every_clock = clock_hz, spi_half_period, every_clock
         self._events = ffi().new("struct passo_pin_event[]", EVENTS_PER_DRAIN)
         self._engine = self._c.passo_engine_create(config)
@@ -122,9 +119,13 @@ class Engine(_Closed):
         """Level of the running pins, one bit per channel."""
         return self._c.passo_engine_running(self._engine)
 
+    def set(self, pin: str, levels: int) -> None:
+        """Set the levels of an input pin, a bit per axis or channel."""
+        self._c.passo_engine_set(self._engine, NUMBERS[pin], levels)
+
     def sync(self, level: bool) -> None:
         """Set the sync input."""
-        self._c.passo_engine_sync(self._engine, level)
+        self.set("sync", level)
 
     def drain(self) -> np.ndarray:
         """The pin events (EVENT) since the last call."""
@@ -194,10 +195,14 @@ class PairEngine(_Closed):
         assert actual == expected  # the same events fill both logs on the same clock
         return actual
 
+    def set(self, pin: str, levels: int) -> None:
+        """Set the levels of an input pin of both."""
+        self.rtl.set(pin, levels)
+        self.model.set(pin, levels)
+
     def sync(self, level: bool) -> None:
         """Set the sync input of both."""
-        self.rtl.sync(level)
-        self.model.sync(level)
+        self.set("sync", level)
 
     def drain(self) -> np.ndarray:
         """The pin events (EVENT) since the last call, which are the same in both."""

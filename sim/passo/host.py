@@ -2,7 +2,7 @@
 """One channel of the core at register level. Programs normally use passo.driver."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from passo import frame
@@ -26,6 +26,11 @@ def load_table(link: Link, bank: int, points: Sequence[int]) -> None:
         link.write(address + k, *points[k : k + frame.PAYLOAD_MAX])
 
 
+def parameters_of(word: int) -> Parameters:
+    """What a core says of itself: its register PARAMETERS."""
+    return Parameters(**{name: int(value) for name, value in asdict(r.ParametersWord.unpack(word)).items()})
+
+
 @dataclass(frozen=True)
 class ChannelState:
     """The STATE register."""
@@ -47,13 +52,7 @@ class Channel:
         identification, _, word = link.read(r.ADDRESS_IDENTIFICATION, 3)
         if identification != r.IDENTIFICATION_RESET:
             raise HostError(f"no Passo core: it identifies itself as 0x{identification:08X}")
-        actual = Parameters(
-            channels=word & 0xF,
-            axes=word >> r.PARAMETERS_AXES_LSB & 0xF,
-            tick_log2=word >> r.PARAMETERS_TICK_LOG2_LSB & 0x1F,
-            line_queue_log2=word >> r.PARAMETERS_LINE_QUEUE_LOG2_LSB & 0x1F,
-            ramp_queue_log2=word >> r.PARAMETERS_RAMP_QUEUE_LOG2_LSB & 0x1F,
-        )
+        actual = parameters_of(word)
         if actual != parameters:
             raise HostError(f"the core has {actual}, expected {parameters}")
 
@@ -115,14 +114,7 @@ class Channel:
     def state(self) -> ChannelState:
         """Read the STATE register."""
         (word,) = self.link.read(self.base + r.CHANNEL_STATE, 1)
-        return ChannelState(
-            state=State(word & 7),
-            cause=Cause(word >> r.CHANNEL_STATE_CAUSE_LSB & 7),
-            quiet=bool(word >> r.CHANNEL_STATE_QUIET_LSB & 1),
-            stopping=bool(word >> r.CHANNEL_STATE_STOPPING_LSB & 1),
-            overrun=word >> r.CHANNEL_STATE_OVERRUN_LSB & 0xFF,
-            drained=word >> r.CHANNEL_STATE_DRAINED_LSB & 0xFFFF,
-        )
+        return ChannelState(**asdict(r.ChannelStateWord.unpack(word)))
 
     def _push(self, register: int, items: list[list[int]]) -> None:
         """Send complete items, as many per frame as fit."""

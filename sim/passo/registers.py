@@ -53,6 +53,12 @@ class Cause(DescribedEnum):
     LINE_UNDERRUN = 3, "A line ended, was not LAST, and none followed."
     RAMP_UNDERRUN = 4, "The ramps ran out at speed."
     STEP_OVERRUN = 5, "Steps came faster than the pin timing of an axis allows."
+    LIMIT = 6, "An axis stepped towards an active limit switch."
+    ALARM = 7, "The alarm input of an axis became active."
+    TRIGGER = 8, "The trigger fired, and its action is a stop."
+    WATCHDOG = 9, "No good frame came for too long while a motion ran."
+    ESTOP = 10, "The e-stop input became active."
+    FOLLOWING_ERROR = 11, "An axis was too far from its encoder."
 
 
 class Shape(DescribedEnum):
@@ -188,7 +194,7 @@ class VersionWord(Word):
     # Major.
     major: int = 0
     # Minor.
-    minor: int = 1
+    minor: int = 2
     # Patch.
     patch: int = 0
 
@@ -203,6 +209,12 @@ class VersionWord(Word):
 class ParametersWord(Word):
     """Parameters."""
 
+    # OUTPUTS.
+    outputs: bool
+    # ENCODERS.
+    encoders: bool
+    # INPUTS.
+    inputs: bool
     # RAMP_QUEUE_LOG2.
     ramp_queue_log2: int
     # LINE_QUEUE_LOG2.
@@ -220,6 +232,9 @@ class ParametersWord(Word):
         "tick_log2": (8, 5, int),
         "line_queue_log2": (16, 5, int),
         "ramp_queue_log2": (24, 5, int),
+        "inputs": (29, 1, bool),
+        "encoders": (30, 1, bool),
+        "outputs": (31, 1, bool),
     }
 
 
@@ -310,10 +325,10 @@ class ChannelStateWord(Word):
 
     # Substeps drained since reset; wraps.
     drained: int = 0
-    # One bit per axis: it had a STEP_OVERRUN.
-    overrun: int = 0
     # A soft stop is in progress.
     stopping: bool = False
+    # One bit per axis: it had a STEP_OVERRUN.
+    overrun: int = 0
     # Cause of the stop.
     cause: Cause = Cause.NONE
     # Quiet: no motion is prepared or running, and the pins of every axis are idle.
@@ -324,10 +339,10 @@ class ChannelStateWord(Word):
     PLACES: ClassVar = {
         "state": (0, 3, State),
         "quiet": (3, 1, bool),
-        "cause": (4, 3, Cause),
-        "stopping": (7, 1, bool),
+        "cause": (4, 4, Cause),
         "overrun": (8, 8, int),
-        "drained": (16, 16, int),
+        "stopping": (16, 1, bool),
+        "drained": (17, 15, int),
     }
 
 
@@ -477,7 +492,7 @@ VERSION_PATCH_BITS = 8
 VERSION_PATCH_RESET = 0x00
 VERSION_MINOR_LSB = 8
 VERSION_MINOR_BITS = 8
-VERSION_MINOR_RESET = 0x01
+VERSION_MINOR_RESET = 0x02
 VERSION_MAJOR_LSB = 16
 VERSION_MAJOR_BITS = 8
 VERSION_MAJOR_RESET = 0x00
@@ -494,6 +509,12 @@ PARAMETERS_LINE_QUEUE_LOG2_LSB = 16
 PARAMETERS_LINE_QUEUE_LOG2_BITS = 5
 PARAMETERS_RAMP_QUEUE_LOG2_LSB = 24
 PARAMETERS_RAMP_QUEUE_LOG2_BITS = 5
+PARAMETERS_INPUTS_LSB = 29
+PARAMETERS_INPUTS_BITS = 1
+PARAMETERS_ENCODERS_LSB = 30
+PARAMETERS_ENCODERS_BITS = 1
+PARAMETERS_OUTPUTS_LSB = 31
+PARAMETERS_OUTPUTS_BITS = 1
 
 # Core: Run. One bit per channel, all in one register: channels that are ARMED start on the same clock when
 # one write clears their WAIT_SYNC.
@@ -623,16 +644,16 @@ CHANNEL_STATE_QUIET_LSB = 3
 CHANNEL_STATE_QUIET_BITS = 1
 CHANNEL_STATE_QUIET_RESET = 0x1
 CHANNEL_STATE_CAUSE_LSB = 4
-CHANNEL_STATE_CAUSE_BITS = 3
+CHANNEL_STATE_CAUSE_BITS = 4
 CHANNEL_STATE_CAUSE_RESET = 0x0
-CHANNEL_STATE_STOPPING_LSB = 7
-CHANNEL_STATE_STOPPING_BITS = 1
-CHANNEL_STATE_STOPPING_RESET = 0x0
 CHANNEL_STATE_OVERRUN_LSB = 8
 CHANNEL_STATE_OVERRUN_BITS = 8
 CHANNEL_STATE_OVERRUN_RESET = 0x00
-CHANNEL_STATE_DRAINED_LSB = 16
-CHANNEL_STATE_DRAINED_BITS = 16
+CHANNEL_STATE_STOPPING_LSB = 16
+CHANNEL_STATE_STOPPING_BITS = 1
+CHANNEL_STATE_STOPPING_RESET = 0x0
+CHANNEL_STATE_DRAINED_LSB = 17
+CHANNEL_STATE_DRAINED_BITS = 15
 CHANNEL_STATE_DRAINED_RESET = 0x0000
 
 # Channel: Rate. Time scale in force.
@@ -737,7 +758,7 @@ TABLE = (
     )),
     Register("VERSION", "CORE", 0x001, 1, (
         Field("PATCH", 0, 8, "r", 0x00),
-        Field("MINOR", 8, 8, "r", 0x01),
+        Field("MINOR", 8, 8, "r", 0x02),
         Field("MAJOR", 16, 8, "r", 0x00),
     )),
     Register("PARAMETERS", "CORE", 0x002, 1, (
@@ -746,6 +767,9 @@ TABLE = (
         Field("TICK_LOG2", 8, 5, "r", None),
         Field("LINE_QUEUE_LOG2", 16, 5, "r", None),
         Field("RAMP_QUEUE_LOG2", 24, 5, "r", None),
+        Field("INPUTS", 29, 1, "r", None),
+        Field("ENCODERS", 30, 1, "r", None),
+        Field("OUTPUTS", 31, 1, "r", None),
     )),
     Register("RUN", "CORE", 0x003, 1, (
         Field("RUN", 0, 8, "rw", 0x00),
@@ -794,10 +818,10 @@ TABLE = (
     Register("CHANNEL_STATE", "CHANNEL", 0x08, 1, (
         Field("STATE", 0, 3, "r", 0x0),
         Field("QUIET", 3, 1, "r", 0x1),
-        Field("CAUSE", 4, 3, "r", 0x0),
-        Field("STOPPING", 7, 1, "r", 0x0),
+        Field("CAUSE", 4, 4, "r", 0x0),
         Field("OVERRUN", 8, 8, "r", 0x00),
-        Field("DRAINED", 16, 16, "r", 0x0000),
+        Field("STOPPING", 16, 1, "r", 0x0),
+        Field("DRAINED", 17, 15, "r", 0x0000),
     )),
     Register("CHANNEL_RATE", "CHANNEL", 0x09, 1, (
         Field("RATE", 0, 17, "r", 0x10000),

@@ -21,9 +21,7 @@ static enum passo_error fault_of(enum passo_cause cause)
 		return PASSO_ERROR_RAMP_UNDERRUN;
 	case PASSO_CAUSE_STEP_OVERRUN:
 		return PASSO_ERROR_STEP_OVERRUN;
-	case PASSO_CAUSE_NONE:
-	case PASSO_CAUSE_STOP:
-	case PASSO_CAUSE_ABORT:
+	default:
 		break;
 	}
 	return PASSO_OK;

