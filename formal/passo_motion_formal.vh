@@ -9,7 +9,8 @@ always @(posedge clk) begin
   if (!f_started) motion_reset : assume (rst);
 end
 
-wire f_stop_hard = command_abort | (moving & (step_overrun | line_underrun));
+wire f_too_far = following_hard & occupied;
+wire f_stop_hard = command_abort | f_too_far | (moving & (step_overrun | line_underrun));
 
 // --- How long RUN has lasted
 reg [3:0] f_run_age;
@@ -29,10 +30,10 @@ always @(posedge clk) begin
   if (rst) {f_uncounted, f_unmoved} <= 6'd0;
 end
 
-// --- After ABORT steps may be requested until the clock after `stopped`, which ends the substeps in flight
+// --- After ABORT, or following_hard in a motion, steps may be requested until the clock after `stopped`, which ends the substeps in flight
 reg f_aborted = 1'b0;  // and steps may still come
 reg f_stopped_q = 1'b0;
-wire f_abort_lasts = command_abort | (f_aborted & ~f_stopped_q);
+wire f_abort_lasts = command_abort | f_too_far | (f_aborted & ~f_stopped_q);
 always @(posedge clk) begin
   f_aborted   <= f_abort_lasts & ~rst;
   f_stopped_q <= stopped;
@@ -49,7 +50,7 @@ always @(posedge clk)
     if (prepare) nothing_counts_before : assert (f_uncounted >= (f_stilled ? 3'd1 : 3'd5));
     if (release_line) settled_before_release : assert (f_uncounted >= 3'd4 && f_settle_age >= 3'd4);
     if (moving && f_unmoved != 3'd0) rests_before_it_moves : assert (f_unmoved >= 3'd3);
-    if (begin_profile) begins_only_armed : assert (state == STATE_ARMED && $past(state == STATE_ARMED && (sync_edge || !wait_sync)));
+    if (begin_profile) begins_only_armed : assert (state == STATE_ARMED && $past(state == STATE_ARMED && may_begin && (sync_edge || !wait_sync)));
   end
 
 // --- From one clock to the next
@@ -74,9 +75,9 @@ always @(posedge clk)
         default:
         drain_comes_from : assert ($past(state == STATE_SETTLE) && $past(!line_ended && !line_endless, 2));
       endcase
-    if ($past(begin_profile) && !$past(command_abort, 2) && !$past(stopping, 2))
+    if ($past(begin_profile) && !$past(command_abort || f_too_far, 2) && !$past(stopping, 2))
       begins_when_told : assert (state == STATE_RUN || state == STATE_SETTLE);
-    if (drop) drops_only_after_abort : assert (command_abort || $past(command_abort) || $past(command_abort, 2));
+    if (drop) drops_only_after_abort : assert (command_abort || f_too_far || $past(command_abort || f_too_far) || $past(command_abort || f_too_far, 2));
     if ($past(hold)) none_prepared_in_hold : assert (!prepare);
     if ($past(hold) && $past(hold && f_begun, 2) && !$past(occupied)) none_begins_in_hold : assert (!occupied);
     if (drain && !$past(drain)) drains_after_settling : assert (f_uncounted >= 3'd5);
@@ -99,14 +100,18 @@ always @(posedge clk)
       if ($past(f_stop_hard, 2)) fault_stops : assert (stopped);
       if ($past(moving && step_overrun && !command_abort, 2))
         overrun_is_the_cause : assert (cause == CAUSE_STEP_OVERRUN);
-      if ($past(moving && line_underrun && !step_overrun && !command_abort, 2))
+      if ($past(moving && line_underrun && !step_overrun && !command_abort && !f_too_far, 2))
         underrun_is_the_cause : assert (cause == CAUSE_LINE_UNDERRUN);
+      if ($past(f_too_far && !stopping && !command_abort && !(moving && step_overrun), 2))
+        too_far_is_the_cause : assert (cause == CAUSE_FOLLOWING_ERROR);
+      if ($past(f_too_far && stopping && !command_abort && !(moving && step_overrun), 2))
+        first_cause_stays : assert (cause == $past(soft_cause, 2));
       if ($past(stopping, 2) && ($past(!moving, 2) || ($past(rate_is_zero, 3) && $past(f_begun, 3))))
         stop_ends_in_stopped : assert (stopped);
     end
     if (stopped && !$past(stopped)) begin
       stopped_for_a_reason : assert ($past(f_stop_hard, 2) || $past(stopping, 2));
-      if (!$past(f_stop_hard, 2)) soft_cause_told : assert (cause == CAUSE_STOP || cause == CAUSE_RAMP_UNDERRUN);
+      if (!$past(f_stop_hard, 2)) soft_cause_told : assert (cause == CAUSE_STOP || cause == CAUSE_RAMP_UNDERRUN || cause == CAUSE_FOLLOWING_ERROR);
     end
   end
 
@@ -116,7 +121,7 @@ wire [2:0] f_states = {2'd0, idle} + {2'd0, preparing} + {2'd0, armed} + {2'd0, 
 always @(posedge clk)
   if (f_begun) begin
     assert (f_states == 3'd1);
-    assert (soft_cause == CAUSE_STOP || soft_cause == CAUSE_RAMP_UNDERRUN || !stopping);
+    assert (soft_cause == CAUSE_STOP || soft_cause == CAUSE_RAMP_UNDERRUN || soft_cause == CAUSE_FOLLOWING_ERROR || !stopping);
     assert (!stopping || !stopped);
     if (state == STATE_RUN) assert (f_run_age >= 4'd6 ? count == 3'd6 : {1'b0, count} == f_run_age);
     assert ((!settled || state == STATE_SETTLE) && (!finished || settled));

@@ -27,13 +27,16 @@ static bool link_side_quiet(const struct passo_core *core, const struct passo_in
 
 static struct passo_channel_inputs inputs_of(const struct passo_core *core, unsigned channel)
 {
-	return (struct passo_channel_inputs){
+	struct passo_channel_inputs inputs = {
 	    .parameters = &core->parameters,
 	    .tables = &core->tables,
 	    .bus = &core->link.bus,
 	    .run = (core->registers.run >> channel & 1u) != 0u,
 	    .wait_sync = (core->registers.wait_sync >> channel & 1u) != 0u,
 	};
+
+	passo_encoders_pins(&inputs, &core->inputs, channel);
+	return inputs;
 }
 
 uint64_t passo_core_advance(struct passo_core *core, const struct passo_inputs *inputs, uint64_t limit)

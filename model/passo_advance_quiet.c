@@ -134,7 +134,7 @@ uint64_t passo_advance_surroundings_quiet(
 	if (!motion_settled(channel, inputs) || !rest_settled(channel) || channel->positions.snapshot_waits
 	    || !commands_settled(channel, inputs->bus) || line->load_start || line->load_start_q
 	    || line->underrun || !ramps_settled(&channel->ramp_queue, inputs->parameters)
-	    || !lines_settled(channel, inputs->parameters))
+	    || !lines_settled(channel, inputs->parameters) || !passo_encoders_quiet(channel, inputs))
 		return 0;
 	uint64_t clocks =
 	    passo_advance_least(ramp_quiet(&channel->ramp), timescale_quiet(channel, moving, clocks_to_slew));

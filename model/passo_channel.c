@@ -38,12 +38,17 @@ void passo_channel_reset(
 		    (parameters->dir_reset >> pin & 1u) != 0u, (parameters->enable_reset >> pin & 1u) != 0u);
 	}
 	passo_positions_reset(&channel->positions);
+	passo_encoders_reset(&channel->encoders);
 }
 
 void passo_channel_restart(struct passo_channel *channel, const struct passo_channel *before,
     const struct passo_parameters *parameters)
 {
+	const struct passo_encoders encoders = channel->encoders;
+
 	passo_channel_reset(channel, parameters, before->number);
+	channel->encoders = encoders;
+	passo_encoders_restart(&channel->encoders, &before->encoders);
 	for (unsigned axis = 0; axis < parameters->axes; axis++)
 		passo_axis_restart(&channel->axis[axis], &before->axis[axis]);
 }
@@ -71,8 +76,9 @@ static struct passo_channel_wires gather_wires(
 	passo_motion_wires(channel, inputs, &wires);
 
 	const bool at_tick_end = channel->ramp.tick_count == tick_last;
-	const bool stall = at_tick_end && channel->ramp.unready;
-	wires.advance = channel->timescale.enable && wires.counting && !stall;
+	wires.stall = at_tick_end && channel->ramp.unready;
+	wires.advance = wires.follows ? passo_encoders_advance(channel, &wires)
+	                              : channel->timescale.enable && wires.counting && !wires.stall;
 	wires.tick = wires.advance && at_tick_end;
 	wires.next = wires.begin_profile || wires.tick;
 	wires.ramp_ended = wires.next && channel->ramp.ends_next;
@@ -113,7 +119,11 @@ void passo_channel_clock(struct passo_channel *channel, const struct passo_chann
 	passo_admission_clock(&channel->admission, bus, &needs);
 
 	/* from the pins back to the queues, so that each module sees the old state of those that feed it */
-	passo_positions_clock(&channel->positions, channel->axis, registers.command_zero, inputs->snapshot);
+	uint32_t positions[PASSO_AXES_MAX];
+	for (unsigned i = 0; i < PASSO_AXES_MAX; i++)
+		positions[i] = channel->axis[i].position;
+	passo_positions_clock(&channel->positions, positions, registers.command_zero, inputs->snapshot);
+	passo_encoders_clock(channel, inputs, &wires);
 	for (unsigned i = 0; i < channel->axes; i++) {
 		const struct passo_axis_wires axis_wires = {
 		    .step_request = passo_dda_step_request(&channel->dda[i], &channel->line),

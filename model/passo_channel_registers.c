@@ -58,7 +58,8 @@ struct passo_needs passo_channel_needs(const struct passo_channel *channel, cons
 		return (struct passo_needs){0};
 	return (struct passo_needs){
 	    .idle = (command >> PASSO_CHANNEL_COMMAND_CLEAR_LSB & 1u) != 0u,
-	    .quiet = pins || (command >> PASSO_CHANNEL_COMMAND_ZERO_LSB & 1u) != 0u,
+	    .quiet = pins || address == PASSO_CHANNEL_FOLLOW
+	          || (command >> PASSO_CHANNEL_COMMAND_ZERO_LSB & 1u) != 0u,
 	    .motion = bus->push && address == PASSO_CHANNEL_RAMP
 	           && passo_ramp_queue_checks_now(&channel->ramp_queue, bus->data),
 	};
@@ -94,7 +95,7 @@ uint32_t passo_channel_registers_value(const struct passo_channel *channel, uint
 	case PASSO_CHANNEL_VELOCITY:
 		return channel->path.velocity_high << 8 | channel->path.velocity_low >> 16;
 	default:
-		return 0;
+		return passo_encoders_value(channel, address);
 	}
 }
 
@@ -113,6 +114,52 @@ static struct answer axis_answer(const struct passo_axis *axis, uint8_t address,
 	default:
 		return (struct answer){0};
 	}
+}
+
+static struct answer encoder_answer(uint8_t address, uint32_t data)
+{
+	switch (address) {
+	case PASSO_ENCODER_SETUP:
+		return write_only(value_check((data & ~PASSO_ENCODER_SETUP_DEFINED) != 0u));
+	case PASSO_ENCODER_RATIO:
+		return write_only(value_check(data == 0u));
+	case PASSO_ENCODER_LIMIT:
+		return write_only(value_check(data == 0u || (data & ~PASSO_ENCODER_LIMIT_DEFINED) != 0u));
+	case PASSO_ENCODER_ERROR:
+	case PASSO_ENCODER_GREATEST:
+	case PASSO_ENCODER_INDEX:
+		return read_late();
+	default:
+		return (struct answer){0};
+	}
+}
+
+static struct answer encoders_answer(
+    const struct passo_channel *channel, const struct passo_channel_inputs *inputs, uint8_t address)
+{
+	const uint32_t data = inputs->bus->data;
+	const unsigned position = (unsigned)address - PASSO_CHANNEL_ENCODER_POSITION_BASE;
+	const unsigned in_axes = (unsigned)address - PASSO_CHANNEL_ENCODER_BASE;
+
+	if (inputs->parameters->encoders == 0u)
+		return (struct answer){0};
+	switch (address) {
+	case PASSO_CHANNEL_FOLLOW:
+		return write_only(value_check((data & ~PASSO_CHANNEL_FOLLOW_DEFINED) != 0u));
+	case PASSO_CHANNEL_FOLLOW_LIMIT:
+		return write_only(value_check(data == 0u || data > VELOCITY_MAX));
+	case PASSO_CHANNEL_ENCODER_FILTER:
+		return write_only(value_check((data & ~PASSO_CHANNEL_ENCODER_FILTER_DEFINED) != 0u));
+	case PASSO_CHANNEL_FOLLOW_STATE:
+		return read_late();
+	default:
+		break;
+	}
+	if (position < channel->axes)
+		return read_only(channel->encoders.positions.copies[position]);
+	if (in_axes < channel->axes * PASSO_CHANNEL_ENCODER_STRIDE)
+		return encoder_answer((uint8_t)(in_axes % PASSO_CHANNEL_ENCODER_STRIDE), data);
+	return (struct answer){0};
 }
 
 static struct answer channel_answer(
@@ -152,7 +199,7 @@ static struct answer channel_answer(
 	if (in_axes < channel->axes * PASSO_CHANNEL_AXIS_STRIDE)
 		return axis_answer(&channel->axis[in_axes / PASSO_CHANNEL_AXIS_STRIDE],
 		    (uint8_t)(in_axes % PASSO_CHANNEL_AXIS_STRIDE), bus->data);
-	return (struct answer){0};
+	return encoders_answer(channel, inputs, address);
 }
 
 struct passo_response passo_channel_respond(

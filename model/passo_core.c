@@ -124,6 +124,7 @@ static void clock_all(struct passo_core *core, const struct passo_inputs *inputs
 	for (unsigned i = 0; i < parameters->channels; i++) {
 		channel_inputs.run = (registers.run >> i & 1u) != 0u;
 		channel_inputs.wait_sync = (registers.wait_sync >> i & 1u) != 0u;
+		passo_encoders_pins(&channel_inputs, inputs, i);
 		passo_channel_clock(&core->channel[i], &channel_inputs);
 	}
 	passo_link_clock(&core->link, &link_wires);

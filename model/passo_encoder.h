@@ -52,6 +52,19 @@ void passo_following_clock(struct passo_following *following, const struct passo
 bool passo_following_quiet(
     const struct passo_following *following, const struct passo_following_wires *wires);
 
+/* One axis: encoder, settings, what it is compared with. See rtl/passo_encoder_axis.v. */
+struct passo_encoder_axis {
+	bool inverted, index_inverted, index_gated, stops_soft, stops_hard;
+	uint32_t ratio;
+	uint16_t limit;
+	struct passo_encoder encoder;
+	struct passo_following following;
+	uint32_t count; /* the RTL has it in passo_positions and, its lower half, beside the latch */
+	uint16_t latch;
+	uint8_t indexes;
+	bool index_event_q;
+};
+
 struct passo_follower {
 	int32_t owed; /* 24 bits */
 	bool due, credit, behind, lost;

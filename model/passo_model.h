@@ -8,6 +8,7 @@
 #define PASSO_MODEL_H
 
 #include "passo_command.h"
+#include "passo_encoder.h"
 #include "passo_pins.h"
 #include "passo_registers.h"
 #include "passo_shapes.h"
@@ -283,6 +284,20 @@ struct passo_channel_registers {
 	bool command_stop, command_abort, command_clear, command_zero;
 };
 
+struct passo_encoders {
+	struct passo_encoder_axis axis[PASSO_AXES_MAX];
+	bool follow, wait_index;
+	uint8_t source, scale;
+	uint32_t follow_limit; /* UQ0.32 */
+	uint8_t filter;
+	struct passo_follower follower;
+	bool was_behind, was_lost;
+	bool stop_soft, stop_hard;
+	struct passo_positions positions;
+	bool writes;     /* bus write strobe for one of the registers, one clock late */
+	uint8_t written; /* its address within the channel */
+};
+
 struct passo_channel {
 	uint8_t axes;
 	uint8_t number;
@@ -298,6 +313,7 @@ struct passo_channel {
 	struct passo_dda dda[PASSO_AXES_MAX];
 	struct passo_axis axis[PASSO_AXES_MAX];
 	struct passo_positions positions;
+	struct passo_encoders encoders;
 	uint8_t occupied_before;  /* in the previous three clocks */
 	bool at_rest;             /* no motion, and no step in flight to the axes */
 	bool writes_axis;         /* bus write strobe for the axes, one clock late */
@@ -311,6 +327,7 @@ struct passo_channel_inputs {
 	const struct passo_bus *bus;
 	bool run, wait_sync, sync_edge, slew_tick, snapshot;
 	bool tables_wanted;
+	uint8_t encoder_a, encoder_b, encoder_index; /* pins, one bit per axis */
 };
 
 /* The wires of a channel, from the state before the edge. */
@@ -322,6 +339,9 @@ struct passo_channel_wires {
 	bool ramp_valid;
 	bool hold, now_coming; /* from the admission */
 	bool startable, prepare, begins_next, begin_profile;
+	bool may_begin, follows;
+	bool too_far, lags; /* from the encoders: a hard stop, a soft stop */
+	bool stall;
 	bool advance, tick, next, ramp_ended;
 	bool substep_taken, line_done, take, repeats;
 	bool overrun;
@@ -389,9 +409,26 @@ void passo_axis_skip(struct passo_axis *axis, uint64_t clocks);
 
 void passo_positions_reset(struct passo_positions *positions);
 void passo_positions_clock(
-    struct passo_positions *positions, const struct passo_axis *axes, bool zero, bool snapshot);
+    struct passo_positions *positions, const uint32_t values[PASSO_AXES_MAX], bool zero, bool snapshot);
 /* Skips clocks without `zero` and `snapshot`; no snapshot may be pending. */
 void passo_positions_skip(struct passo_positions *positions, uint64_t clocks);
+
+/* The pins of a channel among those of the core. */
+void passo_encoders_pins(
+    struct passo_channel_inputs *inputs, const struct passo_inputs *pins, unsigned channel);
+void passo_encoders_reset(struct passo_encoders *encoders);
+void passo_encoders_restart(struct passo_encoders *encoders, const struct passo_encoders *before);
+/* What the encoders say to motion and profile; they need `counting`, `drain` and `stall`. */
+void passo_encoders_wires(const struct passo_channel *channel, const struct passo_channel_inputs *inputs,
+    struct passo_channel_wires *wires);
+/* Whether the profile advances in this clock, while it follows. */
+bool passo_encoders_advance(const struct passo_channel *channel, const struct passo_channel_wires *wires);
+void passo_encoders_clock(struct passo_channel *channel, const struct passo_channel_inputs *inputs,
+    const struct passo_channel_wires *wires);
+/* Value of a read-only register of the encoders. */
+uint32_t passo_encoders_value(const struct passo_channel *channel, uint8_t address);
+/* Whether nothing changes in the encoders until their pins or the axes do. */
+bool passo_encoders_quiet(const struct passo_channel *channel, const struct passo_channel_inputs *inputs);
 
 void passo_motion_wires(const struct passo_channel *channel, const struct passo_channel_inputs *inputs,
     struct passo_channel_wires *wires);

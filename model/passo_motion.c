@@ -7,7 +7,7 @@ enum { START_LAST = 6 };
 
 static bool stop_wanted(const struct passo_channel *channel, const struct passo_channel_wires *wires)
 {
-	return channel->registers.command_abort
+	return channel->registers.command_abort || wires->too_far
 	    || (wires->moving && (wires->overrun || channel->line.underrun))
 	    || (channel->motion.stopping
 	        && (channel->motion.rate_was_zero || wires->finished || !wires->moving));
@@ -20,6 +20,8 @@ static enum passo_cause cause_of_stop(
 		return PASSO_CAUSE_ABORT;
 	if (wires->moving && wires->overrun)
 		return PASSO_CAUSE_STEP_OVERRUN;
+	if (wires->too_far)
+		return channel->motion.stopping ? channel->motion.soft_cause : PASSO_CAUSE_FOLLOWING_ERROR;
 	if (wires->moving && channel->line.underrun)
 		return PASSO_CAUSE_LINE_UNDERRUN;
 	return channel->motion.soft_cause;
@@ -40,11 +42,13 @@ void passo_motion_wires(const struct passo_channel *channel, const struct passo_
 	wires->startable = state == PASSO_STATE_IDLE && inputs->run && channel->line_queue.next_valid
 	                && wires->ramp_valid && !wires->hold;
 	wires->prepare = state == PASSO_STATE_IDLE && motion->startable;
-	wires->begins_next = state == PASSO_STATE_ARMED && (inputs->sync_edge || !inputs->wait_sync);
+	passo_encoders_wires(channel, inputs, wires);
+	wires->begins_next =
+	    state == PASSO_STATE_ARMED && (inputs->sync_edge || !inputs->wait_sync) && wires->may_begin;
 	wires->begin_profile = motion->begin_profile;
 	wires->finished = motion->settled && (line_over || channel->line.endless);
 	wires->stop_now = motion->stop_due && !wires->stopped;
-	wires->drop = channel->registers.command_abort || motion->aborted != 0u;
+	wires->drop = channel->registers.command_abort || wires->too_far || motion->aborted != 0u;
 }
 
 void passo_motion_clock(
@@ -66,8 +70,9 @@ void passo_motion_clock(
 	motion->settling = (uint8_t)(state == PASSO_STATE_SETTLE ? (settling << 1 | 1u) & 7u : 0u);
 	motion->settled = state == PASSO_STATE_SETTLE && (settling & 4u) != 0u && !settled;
 	motion->rate_was_zero = channel->timescale.rate == 0u;
-	motion->aborted =
-	    (uint8_t)(((uint32_t)motion->aborted << 1 | (registers->command_abort ? 1u : 0u)) & 3u);
+	motion->aborted = (uint8_t)(((uint32_t)motion->aborted << 1
+	                                | (registers->command_abort || wires->too_far ? 1u : 0u))
+	                            & 3u);
 	if (wires->prepare)
 		motion->state = PASSO_STATE_PREPARE;
 	if (state == PASSO_STATE_PREPARE && channel->ramp.ready)
@@ -93,7 +98,9 @@ void passo_motion_clock(
 			motion->soft_cause = PASSO_CAUSE_STOP;
 		else if (dry)
 			motion->soft_cause = PASSO_CAUSE_RAMP_UNDERRUN;
-		motion->stopping = registers->command_stop || dry;
+		else if (wires->lags)
+			motion->soft_cause = PASSO_CAUSE_FOLLOWING_ERROR;
+		motion->stopping = registers->command_stop || dry || wires->lags;
 	}
 
 	if (wires->stopped && registers->command_clear) {

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Snapshot of the positions of a channel for the host. See rtl/passo_positions.v.
  *
- * In the model each axis has its full position, so only the time of the snapshot matters here.
+ * In the model each axis has its full position, and each encoder its full count, so only the time of the
+ * snapshot matters here.
  */
 #include "passo_model.h"
 
@@ -13,12 +14,12 @@ void passo_positions_reset(struct passo_positions *positions)
 }
 
 void passo_positions_clock(
-    struct passo_positions *positions, const struct passo_axis *axes, bool zero, bool snapshot)
+    struct passo_positions *positions, const uint32_t values[PASSO_AXES_MAX], bool zero, bool snapshot)
 {
 	if (positions->slot == ROUND_CLOCKS - 1) {
 		if (positions->snapshot_waits && !positions->clear_waits) {
 			for (unsigned i = 0; i < PASSO_AXES_MAX; i++)
-				positions->copies[i] = axes[i].position;
+				positions->copies[i] = values[i];
 			positions->snapshot_waits = false;
 		}
 		positions->clear_waits = false;

@@ -13,7 +13,10 @@ rtl/passo_core.v
 rtl/passo_crc.v
 rtl/passo_dda.v
 rtl/passo_encoder.v
+rtl/passo_encoder_axis.v
 rtl/passo_encoder_filter.v
+rtl/passo_encoder_registers.v
+rtl/passo_encoders.v
 rtl/passo_follower.v
 rtl/passo_following.v
 rtl/passo_header.v

@@ -41,6 +41,8 @@ module passo_axes #(
   output wire            quiet,
   output reg             step_overrun,     // strobe: a step was lost
   output wire [AXES-1:0] lost_steps,       // since `clear`, one bit per axis
+  output wire [AXES-1:0] step_made,        // strobes: the active edge leaves the pin with the next clock
+  output wire [AXES-1:0] step_direction,   // with step_made: 1 = negative
   // pins
   output wire [AXES-1:0] step,
   output wire [AXES-1:0] dir,
@@ -49,8 +51,6 @@ module passo_axes #(
 
   `include "passo_registers.vh"
 
-  wire [  AXES-1:0] step_made;
-  wire [  AXES-1:0] step_direction;
   wire [  AXES-1:0] full;
   wire [  AXES-1:0] axis_quiet;
   wire [AXES*4-1:0] lost;

@@ -13,6 +13,7 @@ module passo_channel #(
   parameter            LINE_QUEUE_LOG2 = 8,
   parameter            RAMP_QUEUE_LOG2 = 4,
   parameter            STEPS_REGISTER  = 0,
+  parameter            ENCODERS        = 0,
   parameter [AXES-1:0] STEP_RESET      = 0,
   parameter [AXES-1:0] DIR_RESET       = 0,
   parameter [AXES-1:0] ENABLE_RESET    = 0
@@ -54,6 +55,11 @@ module passo_channel #(
   input  wire [             15:0] table_point,
   input  wire [             15:0] table_point_next,
   // pins
+  /* verilator lint_off UNUSEDSIGNAL */
+  input  wire [         AXES-1:0] encoder_a,
+  input  wire [         AXES-1:0] encoder_b,
+  input  wire [         AXES-1:0] encoder_index,
+  /* verilator lint_on UNUSEDSIGNAL */
   output wire [         AXES-1:0] step,
   output wire [         AXES-1:0] dir,
   output wire [         AXES-1:0] enable,
@@ -117,6 +123,22 @@ module passo_channel #(
   wire            step_overrun;
   wire [AXES-1:0] lost_steps;
 
+  // encoders; they listen to what nobody else does
+  /* verilator lint_off UNUSEDSIGNAL */
+  wire [AXES-1:0] step_made;
+  wire [AXES-1:0] step_direction;
+  wire            stall;
+  /* verilator lint_on UNUSEDSIGNAL */
+  wire            follow_needs_quiet;
+  wire            may_begin;
+  wire            following_soft;
+  wire            following_hard;
+  wire            follows;
+  wire            follow_advance;
+  wire            encoders_claim;
+  wire [     3:0] encoders_refusal;
+  wire [    31:0] encoders_read_data;
+
   wire        registers_claim;
   wire [ 3:0] registers_refusal;
   wire [31:0] registers_read_data;
@@ -132,9 +154,9 @@ module passo_channel #(
 
   // Unselected targets drive 0.
   always @* begin
-    claim     = registers_claim | axes_claim;
-    refusal   = registers_refusal | line_refusal | ramp_refusal | axes_refusal;
-    read_data = registers_read_data | axes_read_data;
+    claim     = registers_claim | axes_claim | encoders_claim;
+    refusal   = registers_refusal | line_refusal | ramp_refusal | axes_refusal | encoders_refusal;
+    read_data = registers_read_data | axes_read_data | encoders_read_data;
   end
 
   reg  [2:0] occupied_q;  // a line loaded in the clock of a stop changes DIR up to 4 clocks later
@@ -192,40 +214,43 @@ module passo_channel #(
   );
 
   passo_motion u_motion (
-    .clk          (clk),
-    .rst          (rst),
-    .run          (run),
-    .wait_sync    (wait_sync),
-    .sync_edge    (sync_edge),
-    .hold         (hold),
-    .command_stop (command_stop),
-    .command_abort(command_abort),
-    .command_clear(command_clear),
-    .state        (state),
-    .cause        (cause),
-    .stopping     (stopping),
-    .drained      (drained),
-    .occupied     (occupied),
-    .moving       (moving),
-    .counting     (counting),
-    .rate_is_zero (rate == 17'd0),
-    .ramp_valid   (ramp_valid),
-    .ramp_ready   (ramp_ready),
-    .ramp_ended   (ramp_ended),
-    .ramp_dry     (ramp_dry),
-    .prepare      (prepare),
-    .begin_profile(begin_profile),
-    .drain        (drain),
-    .line_valid   (line_valid),
-    .line_ended   (line_ended),
-    .line_endless (line_endless),
-    .line_underrun(line_underrun),
-    .substep_made (substep),
-    .step_overrun (step_overrun),
-    .drop         (drop),
-    .release_line (release_line),
-    .stopped      (stopped),
-    .running      (running)
+    .clk           (clk),
+    .rst           (rst),
+    .run           (run),
+    .wait_sync     (wait_sync),
+    .sync_edge     (sync_edge),
+    .hold          (hold),
+    .may_begin     (may_begin),
+    .following_soft(following_soft),
+    .following_hard(following_hard),
+    .command_stop  (command_stop),
+    .command_abort (command_abort),
+    .command_clear (command_clear),
+    .state         (state),
+    .cause         (cause),
+    .stopping      (stopping),
+    .drained       (drained),
+    .occupied      (occupied),
+    .moving        (moving),
+    .counting      (counting),
+    .rate_is_zero  (rate == 17'd0),
+    .ramp_valid    (ramp_valid),
+    .ramp_ready    (ramp_ready),
+    .ramp_ended    (ramp_ended),
+    .ramp_dry      (ramp_dry),
+    .prepare       (prepare),
+    .begin_profile (begin_profile),
+    .drain         (drain),
+    .line_valid    (line_valid),
+    .line_ended    (line_ended),
+    .line_endless  (line_endless),
+    .line_underrun (line_underrun),
+    .substep_made  (substep),
+    .step_overrun  (step_overrun),
+    .drop          (drop),
+    .release_line  (release_line),
+    .stopped       (stopped),
+    .running       (running)
   );
 
   passo_admission u_admission (
@@ -234,7 +259,7 @@ module passo_channel #(
     .bus_frame    (bus_frame),
     .bus_commit   (bus_commit),
     .needs_idle   (command_needs_idle),
-    .needs_quiet  (command_needs_quiet | pins_need_quiet),
+    .needs_quiet  (command_needs_quiet | pins_need_quiet | follow_needs_quiet),
     .needs_motion (ramp_needs_motion),
     .tables_wanted(tables_wanted),
     .occupied     (occupied),
@@ -286,7 +311,8 @@ module passo_channel #(
     .ended           (ramp_ended),
     .dry             (ramp_dry),
     .ends_next       (ends_next),
-    .enable          (enabled & counting),
+    .enable          (follows ? follow_advance : enabled & counting),
+    .stall           (stall),
     .table_request   (table_request),
     .table_address   (table_address),
     .table_served    (table_served),
@@ -355,10 +381,65 @@ module passo_channel #(
     .quiet          (axes_quiet),
     .step_overrun   (step_overrun),
     .lost_steps     (lost_steps),
+    .step_made      (step_made),
+    .step_direction (step_direction),
     .step           (step),
     .dir            (dir),
     .enable         (enable)
   );
+
+  generate
+    if (ENCODERS != 0) begin : g_encoders
+      passo_encoders #(
+        .AXES(AXES)
+      ) u_encoders (
+        .clk           (clk),
+        .rst           (rst),
+        .bus_check     (bus_check),
+        .bus_write     (bus_write),
+        .bus_read      (bus_read),
+        .bus_push      (bus_push),
+        .select        (select),
+        .bus_address   (bus_address),
+        .bus_data      (bus_data),
+        .bus_msb       (bus_msb),
+        .bus_one_hot   (bus_one_hot),
+        .claim         (encoders_claim),
+        .refusal       (encoders_refusal),
+        .read_data     (encoders_read_data),
+        .needs_quiet   (follow_needs_quiet),
+        .zero          (command_zero),
+        .clear         (command_clear),
+        .snapshot      (snapshot),
+        .step_made     (step_made),
+        .step_direction(step_direction),
+        .prepare       (prepare),
+        .begin_profile (begin_profile),
+        .counting      (counting),
+        .drain         (drain),
+        .may_begin     (may_begin),
+        .stop_soft     (following_soft),
+        .stop_hard     (following_hard),
+        .enabled       (enabled),
+        .stall         (stall),
+        .follows       (follows),
+        .advance       (follow_advance),
+        .a             (encoder_a),
+        .b             (encoder_b),
+        .index         (encoder_index)
+      );
+    end else begin : g_no_encoders
+      assign encoders_claim     = 1'b0;
+      assign encoders_refusal   = 4'd0;
+      assign encoders_read_data = 32'd0;
+      assign follow_needs_quiet = 1'b0;
+      assign may_begin          = 1'b1;
+      assign following_soft     = 1'b0;
+      assign following_hard     = 1'b0;
+      assign follows            = 1'b0;
+      assign follow_advance     = 1'b0;
+    end
+  endgenerate
 
 endmodule
 `resetall

@@ -272,6 +272,7 @@ module passo_core #(
         .LINE_QUEUE_LOG2(LINE_QUEUE_LOG2),
         .RAMP_QUEUE_LOG2(RAMP_QUEUE_LOG2),
         .STEPS_REGISTER (STEPS_REGISTER),
+        .ENCODERS       (ENCODERS),
         .STEP_RESET     (STEP_RESET[channel*AXES+:AXES]),
         .DIR_RESET      (DIR_RESET[channel*AXES+:AXES]),
         .ENABLE_RESET   (ENABLE_RESET[channel*AXES+:AXES])
@@ -309,6 +310,9 @@ module passo_core #(
         .table_served    (table_served[channel]),
         .table_point     (table_point),
         .table_point_next(table_point_next),
+        .encoder_a       (encoder_a[channel*AXES+:AXES]),
+        .encoder_b       (encoder_b[channel*AXES+:AXES]),
+        .encoder_index   (encoder_index[channel*AXES+:AXES]),
         .step            (step[channel*AXES+:AXES]),
         .dir             (dir[channel*AXES+:AXES]),
         .enable          (enable[channel*AXES+:AXES]),

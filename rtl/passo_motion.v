@@ -4,12 +4,12 @@
 //   IDLE -> PREPARE -> ARMED -> RUN -> SETTLE -> (DRAIN -> SETTLE) -> IDLE;  anything -> STOPPED -> IDLE
 //
 // Promise: a motion is prepared when `run` is set and a line and a ramp are queued, but not while `hold`. From ARMED
-// it starts at once or, while wait_sync is set, on a sync edge; so ARMED channels start together when one write
+// it starts at once or, while wait_sync is set, on a sync edge, but not unless it `may_begin`; so ARMED channels start together when one write
 // clears their wait_sync. It ends when its profile has ended and its line has ended (or is ENDLESS); substeps the
-// line still lacks are drained and counted. A stop is soft (the rate goes to 0 first) for COMMAND.STOP and
-// RAMP_UNDERRUN, else the channel is STOPPED two clocks later. On the same clock ABORT has priority, then
-// STEP_OVERRUN, LINE_UNDERRUN, a soft stop; a stop has priority over the end of the motion. `drop` is high from ABORT
-// until no step can be requested any more.
+// line still lacks are drained and counted. A stop is soft (the rate goes to 0 first) for COMMAND.STOP,
+// RAMP_UNDERRUN and following_soft, else the channel is STOPPED two clocks later. On the same clock ABORT has priority, then
+// STEP_OVERRUN, following_hard, LINE_UNDERRUN, a soft stop; a stop has priority over the end of the motion. `drop` is high from ABORT
+// or following_hard until no step can be requested any more.
 //
 // `running` is the motion as seen at the STEP pins: it rises 7 clocks after RUN begins and falls one clock after
 // SETTLE, so that it is high for exactly the length of the profile, and until the last drained step has been made.
@@ -25,7 +25,10 @@ module passo_motion (
   input  wire        wait_sync,
   input  wire        sync_edge,
   input  wire        hold,
-  input  wire        command_stop,   // strobes
+  input  wire        may_begin,       // an ARMED motion need not wait for an index
+  input  wire        following_soft,  // an axis is too far from its encoder: a motion stops
+  input  wire        following_hard,
+  input  wire        command_stop,    // strobes
   input  wire        command_abort,
   input  wire        command_clear,
   output wire [ 2:0] state,
@@ -33,17 +36,17 @@ module passo_motion (
   output reg         stopping,
   output reg  [14:0] drained,
   // timescale
-  output wire        occupied,       // a motion is prepared or running
+  output wire        occupied,        // a motion is prepared or running
   output wire        moving,
-  output reg         counting,       // the profile runs, or substeps are drained
+  output reg         counting,        // the profile runs, or substeps are drained
   input  wire        rate_is_zero,
   // ramp and path
   input  wire        ramp_valid,
   input  wire        ramp_ready,
   input  wire        ramp_ended,
   input  wire        ramp_dry,
-  output wire        prepare,        // strobe: take the first line, make the first velocity
-  output reg         begin_profile,  // strobe
+  output wire        prepare,         // strobe: take the first line, make the first velocity
+  output reg         begin_profile,   // strobe
   output wire        drain,
   // line
   input  wire        line_valid,
@@ -55,8 +58,8 @@ module passo_motion (
   input  wire        step_overrun,
   output wire        drop,
   // queues
-  output wire        release_line,   // strobe: the motion is over
-  output reg         stopped,        // holds the datapath of the motion in reset
+  output wire        release_line,    // strobe: the motion is over
+  output reg         stopped,         // holds the datapath of the motion in reset
   output reg         running
 );
 
@@ -95,19 +98,23 @@ module passo_motion (
   wire drains_next = (settled & ~finished) | (drains & ~line_ended);
   wire settled_next = settles & settling[2] & ~settled;
   wire dry = ramp_dry & ~line_endless;
+  wire too_far = following_hard & occupied;
+  wire lags = following_soft & occupied;
 
   assign prepare      = startable;
   assign drain        = drains;
   assign release_line = finished;
-  assign drop         = command_abort | (aborted != 2'b00);
+  assign drop         = command_abort | too_far | (aborted != 2'b00);
 
   // Stop decision, registered
   reg stop_due;
   reg [3:0] cause_due;
   wire       stop_wanted = command_abort | (moving & (step_overrun | line_underrun))
-                  | (stopping & (rate_was_zero | finished | ~moving));
+                  | too_far | (stopping & (rate_was_zero | finished | ~moving));
   wire [3:0] cause_wanted = command_abort           ? CAUSE_ABORT :
                          moving & step_overrun   ? CAUSE_STEP_OVERRUN :
+                         too_far & ~stopping     ? CAUSE_FOLLOWING_ERROR :
+                         too_far                 ? soft_cause :
                          moving & line_underrun  ? CAUSE_LINE_UNDERRUN : soft_cause;
 
   wire stop_now = stop_due & ~stopped;
@@ -139,7 +146,7 @@ module passo_motion (
   end
 
   always @(posedge clk) begin
-    begin_profile <= armed && (sync_edge || !wait_sync) && !begin_profile && !stop_now;
+    begin_profile <= armed && (sync_edge || !wait_sync) && may_begin && !begin_profile && !stop_now;
     startable     <= idle && run && line_valid && ramp_valid && !startable && !stop_due && !hold;
     stop_due      <= stop_wanted && !stopped;
     cause_due     <= cause_wanted;
@@ -149,7 +156,7 @@ module passo_motion (
     settled       <= settled_next;
     finished      <= settled_next && (line_ended || line_endless);
     rate_was_zero <= rate_is_zero;
-    aborted       <= {aborted[0], command_abort};
+    aborted       <= {aborted[0], command_abort | too_far};
     if (!runs || count == START_LAST) running <= moving;
 
     if (drains && substep_made && !line_ended) drained <= drained + 15'd1;
@@ -157,7 +164,8 @@ module passo_motion (
     if (!stopping && !stopped) begin
       if (command_stop) soft_cause <= CAUSE_STOP;
       else if (dry) soft_cause <= CAUSE_RAMP_UNDERRUN;
-      stopping <= command_stop | dry;
+      else if (lags) soft_cause <= CAUSE_FOLLOWING_ERROR;
+      stopping <= command_stop | dry | lags;
     end
 
     if (stop_now) begin

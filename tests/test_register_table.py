@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Every register of registers/passo.rdl answers, in model and RTL, as its fields say; nothing else does."""
 
+import re
 from collections.abc import Iterator
 
 import pytest
@@ -19,8 +20,11 @@ def every_register(parameters: Parameters) -> Iterator[tuple[int, Register]]:
     channels = [r.ADDRESS_CHANNEL_BASE + n * r.ADDRESS_CHANNEL_STRIDE for n in range(parameters.channels)]
     places = [r.CHANNEL_AXIS_BASE + n * r.CHANNEL_AXIS_STRIDE for n in range(parameters.axes)]
     axes = [channel + place for channel in channels for place in places]
-    bases = {"CORE": [0], "CHANNEL": channels, "AXIS": axes}
+    encoders = [base - r.CHANNEL_AXIS_BASE + r.CHANNEL_ENCODER_BASE for base in axes]
+    bases = {"CORE": [0], "CHANNEL": channels, "AXIS": axes, "ENCODER": encoders}
     for register in r.TABLE:
+        if not parameters.encoders and re.match("ENCODER|CHANNEL_(ENCODER|FOLLOW)", register.name):
+            continue
         per_axis = register.block == "CHANNEL" and register.count > 1
         for base in bases[register.block]:
             for n in range(parameters.axes if per_axis else register.count):
@@ -142,12 +146,15 @@ def check_all(core: Core) -> None:
 
 def test_every_register_of_the_model_answers() -> None:
     """Of the largest core, of which RUN has all bits."""
-    parameters = Parameters(channels=8, axes=8)
+    parameters = Parameters(channels=8, axes=8, encoders=1)
     with model_engine(parameters) as engine:
         check_all(Core(Link(engine), parameters))
 
 
-@pytest.mark.parametrize("parameters", [Parameters(), Parameters(channels=2, axes=2)], ids=lambda p: p.name)
+RTL = [Parameters(), Parameters(channels=2, axes=2), Parameters(axes=3, encoders=1)]
+
+
+@pytest.mark.parametrize("parameters", RTL, ids=lambda p: p.name)
 def test_every_register_of_the_rtl_answers_as_in_the_model(parameters: Parameters) -> None:
     """PairEngine compares each word of each reply."""
     with PairEngine(rtl_engine(parameters), model_engine(parameters)) as engine:
@@ -157,5 +164,5 @@ def test_every_register_of_the_rtl_answers_as_in_the_model(parameters: Parameter
 def test_arrays_of_a_channel_have_a_word_for_each_axis() -> None:
     """This is how their number is known here."""
     arrays = [register.name for register in r.TABLE if register.block == "CHANNEL" and register.count > 1]
-    assert arrays == ["CHANNEL_POSITION"]
-    assert all(register.count == 1 for register in r.TABLE if register.block == "AXIS")
+    assert arrays == ["CHANNEL_POSITION", "CHANNEL_ENCODER_POSITION"]
+    assert all(register.count == 1 for register in r.TABLE if register.block in ("AXIS", "ENCODER"))
