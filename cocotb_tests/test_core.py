@@ -9,7 +9,7 @@ import os
 import pytest
 
 from cocotb_tests.helpers.runner import CORE_TOP as TOP
-from cocotb_tests.helpers.runner import ONE_CHANNEL, TWO_CHANNELS, run
+from cocotb_tests.helpers.runner import ENCODERS, ONE_CHANNEL, TWO_CHANNELS, run
 
 MOST_CHANNELS = {"CHANNELS": 8, "AXES": 1, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 8, "RAMP_QUEUE_LOG2": 8}
 
@@ -26,6 +26,7 @@ MODULES = {
     "core_refusals": TWO_CHANNELS,  # every reason to refuse a frame
     "core_channels": TWO_CHANNELS,  # two channels at once
     "core_registers": ONE_CHANNEL,  # settings and states in all their bits
+    "core_encoders": ENCODERS,  # following error, threading
 }
 
 

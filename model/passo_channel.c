@@ -42,13 +42,13 @@ void passo_channel_reset(
 }
 
 void passo_channel_restart(struct passo_channel *channel, const struct passo_channel *before,
-    const struct passo_parameters *parameters)
+    const struct passo_parameters *parameters, const struct passo_inputs *pins)
 {
-	const struct passo_encoders encoders = channel->encoders;
+	struct passo_channel_inputs inputs = {.parameters = parameters};
 
 	passo_channel_reset(channel, parameters, before->number);
-	channel->encoders = encoders;
-	passo_encoders_restart(&channel->encoders, &before->encoders);
+	passo_encoders_pins(&inputs, pins, before->number);
+	passo_encoders_restart(&channel->encoders, &before->encoders, &inputs);
 	for (unsigned axis = 0; axis < parameters->axes; axis++)
 		passo_axis_restart(&channel->axis[axis], &before->axis[axis]);
 }

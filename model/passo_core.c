@@ -154,7 +154,7 @@ static void restart(struct passo_core *core, const struct passo_core *before)
 	core->inputs = inputs;
 	memcpy(core->tables.points, tables.points, sizeof core->tables.points);
 	for (unsigned i = 0; i < parameters.channels; i++)
-		passo_channel_restart(&core->channel[i], &before->channel[i], &parameters);
+		passo_channel_restart(&core->channel[i], &before->channel[i], &parameters, &inputs);
 }
 
 void passo_core_clock(struct passo_core *core, const struct passo_inputs *inputs)

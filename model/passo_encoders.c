@@ -82,13 +82,19 @@ void passo_encoders_reset(struct passo_encoders *encoders)
 		passo_encoder_reset(&encoders->axis[i].encoder);
 }
 
-void passo_encoders_restart(struct passo_encoders *encoders, const struct passo_encoders *before)
+void passo_encoders_restart(struct passo_encoders *encoders, const struct passo_encoders *before,
+    const struct passo_channel_inputs *inputs)
 {
-	const struct passo_encoders clocked = *encoders;
-
 	passo_encoders_reset(encoders);
 	for (unsigned i = 0; i < PASSO_AXES_MAX; i++) {
-		encoders->axis[i].encoder = clocked.axis[i].encoder;
+		const struct passo_encoder_wires pins = {
+		    .a = pin(inputs->encoder_a, i),
+		    .b = pin(inputs->encoder_b, i),
+		    .index = pin(inputs->encoder_index, i),
+		};
+
+		encoders->axis[i].encoder = before->axis[i].encoder;
+		passo_encoder_clock(&encoders->axis[i].encoder, &pins);
 		passo_encoder_restart(&encoders->axis[i].encoder, &before->axis[i].encoder);
 	}
 }

@@ -417,7 +417,9 @@ void passo_positions_skip(struct passo_positions *positions, uint64_t clocks);
 void passo_encoders_pins(
     struct passo_channel_inputs *inputs, const struct passo_inputs *pins, unsigned channel);
 void passo_encoders_reset(struct passo_encoders *encoders);
-void passo_encoders_restart(struct passo_encoders *encoders, const struct passo_encoders *before);
+/* Synchronous reset with these pins; `before` is the state before the clock. */
+void passo_encoders_restart(struct passo_encoders *encoders, const struct passo_encoders *before,
+    const struct passo_channel_inputs *inputs);
 /* What the encoders say to motion and profile; they need `counting`, `drain` and `stall`. */
 void passo_encoders_wires(const struct passo_channel *channel, const struct passo_channel_inputs *inputs,
     struct passo_channel_wires *wires);
@@ -451,7 +453,7 @@ void passo_channel_reset(
     struct passo_channel *channel, const struct passo_parameters *parameters, uint8_t number);
 /* Synchronous reset in the clock just simulated; `before` is the state before that clock. */
 void passo_channel_restart(struct passo_channel *channel, const struct passo_channel *before,
-    const struct passo_parameters *parameters);
+    const struct passo_parameters *parameters, const struct passo_inputs *pins);
 void passo_channel_clock(struct passo_channel *channel, const struct passo_channel_inputs *inputs);
 bool passo_channel_stopped(const struct passo_channel *channel);
 bool passo_channel_occupied(const struct passo_channel *channel);
