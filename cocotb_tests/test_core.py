@@ -16,7 +16,7 @@ MOST_CHANNELS = {"CHANNELS": 8, "AXES": 1, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 8,
 # Icarus Verilog is up to ten times slower: long tests run only on Verilator, Icarus gets fewer random moves,
 # and `make icarus` runs on it what `make test` leaves out. `make soak` plays a thousand more histories on it.
 verilator_only = pytest.mark.parametrize("simulator", ["verilator"])
-LEFT_TO_MAKE_ICARUS = ("core_commands", "core_faults", "core_link", "core_refusals")
+LEFT_TO_MAKE_ICARUS = ("core_commands", "core_faults", "core_link", "core_refusals", "core_encoders")
 
 MODULES = {
     "core_motion": ONE_CHANNEL,  # every step on its clock, from the first clock of a motion to the last

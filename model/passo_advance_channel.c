@@ -187,7 +187,8 @@ static void skip_surroundings(struct passo_channel *channel, uint64_t clocks)
 	for (unsigned i = 0; i < channel->axes; i++)
 		passo_axis_skip(&channel->axis[i], clocks);
 	passo_positions_skip(&channel->positions, clocks);
-	passo_positions_skip(&channel->encoders.positions, clocks);
+	if (channel->encoders.present)
+		passo_positions_skip(&channel->encoders.positions, clocks);
 }
 
 void passo_advance_channel_skip(struct passo_channel *channel, uint64_t clocks)

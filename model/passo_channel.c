@@ -38,7 +38,7 @@ void passo_channel_reset(
 		    (parameters->dir_reset >> pin & 1u) != 0u, (parameters->enable_reset >> pin & 1u) != 0u);
 	}
 	passo_positions_reset(&channel->positions);
-	passo_encoders_reset(&channel->encoders);
+	passo_encoders_reset(&channel->encoders, parameters->encoders != 0u);
 }
 
 void passo_channel_restart(struct passo_channel *channel, const struct passo_channel *before,

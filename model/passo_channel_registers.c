@@ -141,7 +141,7 @@ static struct answer encoders_answer(
 	const unsigned position = (unsigned)address - PASSO_CHANNEL_ENCODER_POSITION_BASE;
 	const unsigned in_axes = (unsigned)address - PASSO_CHANNEL_ENCODER_BASE;
 
-	if (inputs->parameters->encoders == 0u)
+	if (!channel->encoders.present)
 		return (struct answer){0};
 	switch (address) {
 	case PASSO_CHANNEL_FOLLOW:

@@ -72,9 +72,9 @@ static void reset_settings(struct passo_encoders *encoders)
 	}
 }
 
-void passo_encoders_reset(struct passo_encoders *encoders)
+void passo_encoders_reset(struct passo_encoders *encoders, bool present)
 {
-	*encoders = (struct passo_encoders){0};
+	*encoders = (struct passo_encoders){.present = present};
 	reset_settings(encoders);
 	passo_follower_reset(&encoders->follower);
 	passo_positions_reset(&encoders->positions);
@@ -85,7 +85,7 @@ void passo_encoders_reset(struct passo_encoders *encoders)
 void passo_encoders_restart(struct passo_encoders *encoders, const struct passo_encoders *before,
     const struct passo_channel_inputs *inputs)
 {
-	passo_encoders_reset(encoders);
+	passo_encoders_reset(encoders, before->present);
 	for (unsigned i = 0; i < PASSO_AXES_MAX; i++) {
 		const struct passo_encoder_wires pins = {
 		    .a = pin(inputs->encoder_a, i),
@@ -99,11 +99,10 @@ void passo_encoders_restart(struct passo_encoders *encoders, const struct passo_
 	}
 }
 
-void passo_encoders_wires(const struct passo_channel *channel, const struct passo_channel_inputs *inputs,
-    struct passo_channel_wires *wires)
+void passo_encoders_wires(const struct passo_channel *channel, struct passo_channel_wires *wires)
 {
 	const struct passo_encoders *encoders = &channel->encoders;
-	const bool follow = inputs->parameters->encoders != 0u && encoders->follow;
+	const bool follow = encoders->follow;
 
 	wires->may_begin = !(follow && encoders->wait_index) || followed(channel)->index_event;
 	wires->follows = follow && !wires->drain;
@@ -206,7 +205,7 @@ void passo_encoders_clock(struct passo_channel *channel, const struct passo_chan
 	bool soft = encoders->follower.lost;
 	bool hard = false;
 
-	if (inputs->parameters->encoders == 0u)
+	if (!encoders->present)
 		return;
 	for (unsigned i = 0; i < PASSO_AXES_MAX; i++)
 		counts[i] = encoders->axis[i].count;
@@ -235,7 +234,7 @@ bool passo_encoders_quiet(const struct passo_channel *channel, const struct pass
 	bool soft = encoders->follower.lost;
 	bool hard = false;
 
-	if (inputs->parameters->encoders == 0u)
+	if (!encoders->present)
 		return true;
 	/* a motion that follows, or is about to, is not skipped */
 	if (encoders->writes || encoders->written != (uint8_t)inputs->bus->address

@@ -285,6 +285,7 @@ struct passo_channel_registers {
 };
 
 struct passo_encoders {
+	bool present; /* ENCODERS */
 	struct passo_encoder_axis axis[PASSO_AXES_MAX];
 	bool follow, wait_index;
 	uint8_t source, scale;
@@ -416,13 +417,12 @@ void passo_positions_skip(struct passo_positions *positions, uint64_t clocks);
 /* The pins of a channel among those of the core. */
 void passo_encoders_pins(
     struct passo_channel_inputs *inputs, const struct passo_inputs *pins, unsigned channel);
-void passo_encoders_reset(struct passo_encoders *encoders);
+void passo_encoders_reset(struct passo_encoders *encoders, bool present);
 /* Synchronous reset with these pins; `before` is the state before the clock. */
 void passo_encoders_restart(struct passo_encoders *encoders, const struct passo_encoders *before,
     const struct passo_channel_inputs *inputs);
 /* What the encoders say to motion and profile; they need `counting`, `drain` and `stall`. */
-void passo_encoders_wires(const struct passo_channel *channel, const struct passo_channel_inputs *inputs,
-    struct passo_channel_wires *wires);
+void passo_encoders_wires(const struct passo_channel *channel, struct passo_channel_wires *wires);
 /* Whether the profile advances in this clock, while it follows. */
 bool passo_encoders_advance(const struct passo_channel *channel, const struct passo_channel_wires *wires);
 void passo_encoders_clock(struct passo_channel *channel, const struct passo_channel_inputs *inputs,

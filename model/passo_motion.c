@@ -42,7 +42,7 @@ void passo_motion_wires(const struct passo_channel *channel, const struct passo_
 	wires->startable = state == PASSO_STATE_IDLE && inputs->run && channel->line_queue.next_valid
 	                && wires->ramp_valid && !wires->hold;
 	wires->prepare = state == PASSO_STATE_IDLE && motion->startable;
-	passo_encoders_wires(channel, inputs, wires);
+	passo_encoders_wires(channel, wires);
 	wires->begins_next =
 	    state == PASSO_STATE_ARMED && (inputs->sync_edge || !inputs->wait_sync) && wires->may_begin;
 	wires->begin_profile = motion->begin_profile;
