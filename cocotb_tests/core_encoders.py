@@ -24,8 +24,8 @@ SOFT = 1 << r.ENCODER_SETUP_STOP_SOFT_LSB
 HARD = 1 << r.ENCODER_SETUP_STOP_HARD_LSB
 ZERO = 1 << r.CHANNEL_COMMAND_ZERO_LSB
 FILTER = r.CHANNEL_ENCODER_FILTER_FILTER_RESET
-# pin of an encoder to STEP: 6 + filter to the clock enable, 7 from there
-LATENCY = 13 + FILTER
+# pin of an encoder to STEP: 7 + filter to the clock enable, 7 from there
+LATENCY = 14 + FILTER
 
 
 def compare_with_encoder(channel: CoreChannel, ratio: int, limit: int, action: int, axes: int = 3) -> None:
@@ -208,7 +208,7 @@ def a_spindle_that_turns_back_repeats_nothing(core: Core) -> None:
     made = core.steps(0)
     assert len(made) == steps == channel.positions()[0]
     began, counts = core.began(), shafts.counts[1]
-    first = next(n for n, (clock, _) in enumerate(counts) if clock + 6 + FILTER > began - 7 - 1)
+    first = next(n for n, (clock, _) in enumerate(counts) if clock + 7 + FILTER > began - 7 - 1)
     origin = counts[first - 1][1] if first else 0
     for k, clock in enumerate(made):
         place = ceil((k + 0.75) * ONE / per_count)

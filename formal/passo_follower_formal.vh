@@ -15,6 +15,7 @@ end
 
 // --- Counts and advances since the motion began, as numbers
 reg  signed [31:0] f_counted;  // 2^scale each
+reg  signed [31:0] f_change;  // of the clock before
 reg         [31:0] f_made;
 reg         [31:0] f_made_q;
 reg                f_made_one;
@@ -22,11 +23,13 @@ reg  signed [31:0] f_owed_q;
 wire signed [31:0] f_one = 32'sd1 <<< scale;
 wire signed [31:0] f_owed = $signed({{8{owed[23]}}, owed});
 always @(posedge clk) begin
-  if (count_made && !lost) f_counted <= count_down ? f_counted - f_one : f_counted + f_one;
+  f_change  <= !count_made || lost ? 32'sd0 : count_down ? -f_one : f_one;
+  f_counted <= f_counted + f_change;
   f_made     <= f_made + {31'd0, advance};
   f_made_one <= advance;
   f_owed_q   <= f_owed;
   if (!following || rst) begin
+    f_change   <= 32'sd0;
     f_counted  <= 32'sd0;
     f_made     <= 32'd0;
     f_made_one <= 1'b0;
@@ -56,7 +59,7 @@ always @(posedge clk)
     if (f_follows) behind_told : assert (behind == (f_owed_q >= 2 * f_one));
     if (f_follows)
       lost_told : assert (lost == ($past(f_follows && lost) || f_owed_q >= 32'sd4194304 || f_owed_q < -32'sd4194304));
-    never_wraps : assert (f_owed < 32'sd4194304 + 32'sd384 && f_owed > -32'sd4194304 - 32'sd384);
+    never_wraps : assert (f_owed < 32'sd4194304 + 32'sd512 && f_owed > -32'sd4194304 - 32'sd512);
   end
 
 `ifdef INVARIANTS
@@ -68,6 +71,11 @@ always @(posedge clk)
     // the credit is what the sum has carried
     assert (f_bucket >= {1'b0, credit, sum} && !f_bucket[33]);
     if (f_made_one) assert (!credit);
+    assert (change == f_change[7:0] - {7'd0, change_carry} && change_above == (f_change < 0) && change_carry == (f_change < 0));
+    assert (f_change == 0 || f_change == f_one || f_change == -f_one);
+    assert (change_advanced == (f_change > 0 ? f_change[7:0] - 8'd1 : f_change == 0 ? 8'hFF : change));
+    assert (change_advanced_above == (f_change <= 0));
     if (!lost) assert (f_owed < 32'sd4194304 + 32'sd256 && f_owed > -32'sd4194304 - 32'sd256);
+    if (lost && f_change != 0) assert (f_owed < 32'sd4194304 + 32'sd384 && f_owed > -32'sd4194304 - 32'sd384);
   end
 `endif

@@ -66,7 +66,8 @@ struct passo_encoder_axis {
 };
 
 struct passo_follower {
-	int32_t owed; /* 24 bits */
+	int32_t change; /* of the count in the clock before */
+	int32_t owed;   /* 24 bits */
 	bool due, credit, behind, lost;
 	uint32_t sum;
 };

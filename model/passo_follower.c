@@ -25,10 +25,10 @@ void passo_follower_clock(struct passo_follower *follower, const struct passo_fo
 		passo_follower_reset(follower);
 		return;
 	}
+	follower->owed += follower->change - (advance ? 1 : 0);
+	follower->change = 0;
 	if (wires->count_made && !follower->lost)
-		follower->owed += wires->count_down ? -one_count : one_count;
-	if (advance)
-		follower->owed--;
+		follower->change = wires->count_down ? -one_count : one_count;
 	follower->due = owed > 0;
 	follower->behind = owed >= 2 * one_count;
 	follower->lost = follower->lost || owed >= OWED_MAX || owed < -OWED_MAX;

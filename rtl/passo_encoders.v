@@ -4,7 +4,7 @@
 //
 // Promise: following, the profile has 2^scale enabled clocks for each count since the motion began; `advance` is its
 // clock enable. With `wait_index` an ARMED motion begins with an index (`may_begin`), at the count that leads to it.
-// Latency: pin to `advance` 6 + filter clocks; the first enabled clock is that of the first count after the index.
+// Latency: pin to `advance` 7 + filter clocks; the first enabled clock is that of the first count after the index.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none

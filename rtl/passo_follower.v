@@ -4,13 +4,13 @@
 //   a count: owed += 2^scale, down: owed -= 2^scale;  `advance`: owed -= 1
 //   credit: every enabled clock without one:  sum += limit;  carry out = credit
 //
-// Promise: while following, 2^scale * counts = advances + owed. There is no advance unless a count was owed in the clock
+// Promise: while following, 2^scale * counts = advances + owed, a clock after the count. There is no advance unless a count was owed in the clock
 // before, none without `enable`, and none on two clocks in a row; so counts back are paid back before the profile goes
 // on, and it never gets ahead of the furthest count. In any time there are at most 1 + limit * (enabled clocks)
 // advances. When owed is positive and credit is there, an advance follows with the next enabled clock but one.
 // `behind`: two counts or more are owed, one clock late. `lost`: 2^22 or more are owed, either way; then nothing is
 // counted any more.
-// Latency: count_made to advance 2 clocks.
+// Latency: count_made to owed 2 clocks, to advance 3.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -35,13 +35,18 @@ module passo_follower (
   reg        credit;
   reg [31:0] sum;
 
-  wire        add = count_made & ~count_down & ~lost;
-  wire        take = count_made & count_down & ~lost;
-  wire [ 7:0] one_count = 8'd1 << scale;
-  // 2^scale, or its inverse; an advance takes 1, or gives the carry of the inverse away
-  wire [23:0] change = ({16'd0, one_count} & {24{add | take}}) ^ {24{take}};
-  wire [23:0] paid = {24{advance & ~take}};
-  wire        carry = take & ~advance;
+  wire       add = count_made & ~count_down & ~lost;
+  wire       take = count_made & count_down & ~lost;
+  wire [7:0] one_count = 8'd1 << scale;
+
+  // What the count of the clock before adds, with an advance in this clock and without: one operand, bits 7:0 and all
+  // above; taking is the inverse and a carry, which an advance keeps
+  reg [7:0] change;
+  reg change_above;
+  reg [7:0] change_advanced;
+  reg change_advanced_above;
+  reg change_carry;
+  wire [23:0] operand = advance ? {{16{change_advanced_above}}, change_advanced} : {{16{change_above}}, change};
 
   // bits of owed above two counts
   wire [22:0] above = 23'h7FFFFE << scale;
@@ -49,18 +54,28 @@ module passo_follower (
   assign advance = enable & due & credit & ~stall;
 
   always @(posedge clk) begin
-    owed   <= owed + change + paid + {23'd0, carry};
-    due    <= ~owed[23] & (owed[22:0] != 23'd0);
-    behind <= ~owed[23] & ((owed[22:0] & above) != 23'd0);
-    lost   <= lost | (owed[23] ^ owed[22]);
+    change                <= (one_count & {8{add | take}}) ^ {8{take}};
+    change_above          <= take;
+    change_advanced       <= add ? one_count - 8'd1 : take ? ~one_count : 8'hFF;
+    change_advanced_above <= ~add;
+    change_carry          <= take;
+    owed                  <= owed + operand + {23'd0, change_carry & ~advance};
+    due                   <= ~owed[23] & (owed[22:0] != 23'd0);
+    behind                <= ~owed[23] & ((owed[22:0] & above) != 23'd0);
+    lost                  <= lost | (owed[23] ^ owed[22]);
     if (enable && (!credit || advance)) {credit, sum} <= {1'b0, sum} + {1'b0, limit};
     if (rst || !following) begin
-      owed   <= 24'd0;
-      due    <= 1'b0;
-      behind <= 1'b0;
-      lost   <= 1'b0;
-      credit <= 1'b1;
-      sum    <= 32'd0;
+      change                <= 8'd0;
+      change_above          <= 1'b0;
+      change_advanced       <= 8'hFF;
+      change_advanced_above <= 1'b1;
+      change_carry          <= 1'b0;
+      owed                  <= 24'd0;
+      due                   <= 1'b0;
+      behind                <= 1'b0;
+      lost                  <= 1'b0;
+      credit                <= 1'b1;
+      sum                   <= 32'd0;
     end
   end
 

@@ -77,7 +77,7 @@ def test_a_thousand_turns_of_a_wandering_spindle() -> None:
         source = 2 << r.CHANNEL_FOLLOW_SOURCE_LSB
         channel.link.write(channel.base + r.CHANNEL_FOLLOW, follow | source, 1 << 31)
         channel.link.write(channel.base + r.CHANNEL_ENCODER_FILTER, 2)
-        latency = 2 + 13  # filter, and pin to STEP
+        latency = 2 + 14  # filter, and pin to STEP
         for _ in range(10):
             channel.push_lines([to_line(Line(steps, (steps, 0, 0), last=True))])
             channel.push_ramps([to_ramp(Ramp(per_count, 0)), to_ramp(Ramp(per_count, ticks, last=True))])
