@@ -10,7 +10,8 @@ always @(posedge clk) begin
   motion_causes : assume (input_hard_cause != CAUSE_NONE && input_soft_cause != CAUSE_NONE);
 end
 
-wire f_abort = command_abort | estop | input_hard;
+wire f_too_far = following_hard & occupied;
+wire f_abort = command_abort | estop | input_hard | f_too_far;
 wire f_stop_hard = f_abort | (moving & (step_overrun | line_underrun));
 
 // --- How long RUN has lasted
@@ -31,7 +32,8 @@ always @(posedge clk) begin
   if (rst) {f_uncounted, f_unmoved} <= 6'd0;
 end
 
-// --- After ABORT steps may be requested until the clock after `stopped`, which ends the substeps in flight
+// --- After ABORT, or a hard request, steps may be requested until the clock after `stopped`, which ends the substeps in
+// flight
 reg f_aborted = 1'b0;  // and steps may still come
 reg f_stopped_q = 1'b0;
 reg [3:0] f_soft = 4'd0;  // cause of the last soft request of an input
@@ -53,7 +55,7 @@ always @(posedge clk)
     if (prepare) nothing_counts_before : assert (f_uncounted >= (f_stilled ? 3'd1 : 3'd5));
     if (release_line) settled_before_release : assert (f_uncounted >= 3'd4 && f_settle_age >= 3'd4);
     if (moving && f_unmoved != 3'd0) rests_before_it_moves : assert (f_unmoved >= 3'd3);
-    if (begin_profile) begins_only_armed : assert (state == STATE_ARMED && $past(state == STATE_ARMED && (sync_edge || !wait_sync)));
+    if (begin_profile) begins_only_armed : assert (state == STATE_ARMED && $past(state == STATE_ARMED && may_begin && (sync_edge || !wait_sync)));
   end
 
 // --- From one clock to the next
@@ -112,13 +114,16 @@ always @(posedge clk)
         overrun_is_the_cause : assert (cause == CAUSE_STEP_OVERRUN);
       if ($past(moving && line_underrun && !step_overrun && !f_abort && !stopping, 2))
         underrun_is_the_cause : assert (cause == CAUSE_LINE_UNDERRUN);
+      if ($past(f_too_far && !stopping && !estop && !command_abort && !input_hard && !(moving && step_overrun), 2))
+        too_far_is_the_cause : assert (cause == CAUSE_FOLLOWING_ERROR);
       if ($past(stopping, 2) && ($past(!moving, 2) || ($past(rate_is_zero, 3) && $past(f_begun, 3))))
         stop_ends_in_stopped : assert (stopped);
     end
     if (stopped && !$past(stopped)) begin
       stopped_for_a_reason : assert ($past(f_stop_hard, 2) || $past(stopping, 2));
       if (!$past(f_stop_hard, 2))
-        soft_cause_told : assert (cause == CAUSE_STOP || cause == CAUSE_RAMP_UNDERRUN || cause == f_soft);
+        soft_cause_told :
+        assert (cause == CAUSE_STOP || cause == CAUSE_RAMP_UNDERRUN || cause == CAUSE_FOLLOWING_ERROR || cause == f_soft);
     end
   end
 
@@ -128,7 +133,7 @@ wire [2:0] f_states = {2'd0, idle} + {2'd0, preparing} + {2'd0, armed} + {2'd0, 
 always @(posedge clk)
   if (f_begun) begin
     assert (f_states == 3'd1);
-    assert (soft_cause == CAUSE_STOP || soft_cause == CAUSE_RAMP_UNDERRUN || soft_cause == f_soft || !stopping);
+    assert (soft_cause == CAUSE_STOP || soft_cause == CAUSE_RAMP_UNDERRUN || soft_cause == CAUSE_FOLLOWING_ERROR || soft_cause == f_soft || !stopping);
     if (stopping) assert (soft_cause != CAUSE_NONE);
     if (stop_due && !stopped) assert (cause_due != CAUSE_NONE);
     assert (!stopping || !stopped);

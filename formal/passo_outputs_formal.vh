@@ -15,7 +15,7 @@ reg [2:0] f_still = 3'd0;
 reg       f_lit = 1'b0;
 reg       f_lost = 1'b0;
 always @(posedge clk) begin
-  f_still <= velocity != 32'd0 && rate != 17'd0 || rst ? 3'd0 : f_still == 3'd7 ? 3'd7 : f_still + 3'd1;
+  f_still <= velocity != 32'd0 && rate != 17'd0 && !waits || rst ? 3'd0 : f_still == 3'd7 ? 3'd7 : f_still + 3'd1;
   f_lit   <= ~rst & running & (f_lit | hit);
   f_lost  <= ~rst & ~clear & (f_lost | lost);
 end

@@ -37,6 +37,7 @@ static struct passo_channel_inputs inputs_of(
 	    .machine = &core->machine,
 	};
 
+	passo_encoders_pins(&made, inputs, channel);
 	passo_core_take_pins(core, channel, inputs, &made);
 	return made;
 }

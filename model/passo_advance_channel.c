@@ -190,6 +190,8 @@ static void skip_surroundings(struct passo_channel *channel, uint64_t clocks)
 	passo_inputs_skip(&channel->inputs, clocks);
 	if (channel->has_outputs)
 		passo_outputs_skip(&channel->outputs, clocks);
+	if (channel->encoders.present)
+		passo_positions_skip(&channel->encoders.positions, clocks);
 }
 
 void passo_advance_channel_skip(struct passo_channel *channel, uint64_t clocks)

@@ -153,7 +153,7 @@ uint64_t passo_advance_surroundings_quiet(
 	    || !outputs_settled(channel, inputs->bus) || channel->positions.snapshot_waits
 	    || !commands_settled(channel, inputs->bus) || line->load_start || line->load_start_q
 	    || line->underrun || !ramps_settled(&channel->ramp_queue, inputs->parameters)
-	    || !lines_settled(channel, inputs->parameters))
+	    || !lines_settled(channel, inputs->parameters) || !passo_encoders_quiet(channel, inputs))
 		return 0;
 	if (!passo_inputs_quiet(channel, inputs))
 		return 0;

@@ -41,12 +41,17 @@ void passo_channel_reset(
 	passo_positions_reset(&channel->positions);
 	passo_output_registers_reset(&channel->output_registers);
 	passo_outputs_reset(&channel->outputs);
+	passo_encoders_reset(&channel->encoders, parameters->encoders != 0u);
 }
 
 void passo_channel_restart(struct passo_channel *channel, const struct passo_channel *before,
-    const struct passo_parameters *parameters)
+    const struct passo_parameters *parameters, const struct passo_inputs *pins)
 {
+	struct passo_channel_inputs inputs = {.parameters = parameters};
+
 	passo_channel_reset(channel, parameters, before->number);
+	passo_encoders_pins(&inputs, pins, before->number);
+	passo_encoders_restart(&channel->encoders, &before->encoders, &inputs);
 	for (unsigned axis = 0; axis < parameters->axes; axis++)
 		passo_axis_restart(&channel->axis[axis], &before->axis[axis]);
 	passo_inputs_restart(&channel->inputs, &before->inputs);
@@ -77,8 +82,9 @@ static struct passo_channel_wires gather_wires(
 	passo_motion_wires(channel, inputs, &wires);
 
 	const bool at_tick_end = channel->ramp.tick_count == tick_last;
-	const bool stall = at_tick_end && channel->ramp.unready;
-	wires.advance = channel->timescale.enable && wires.counting && !stall;
+	wires.stall = at_tick_end && channel->ramp.unready;
+	wires.advance = wires.follows ? passo_encoders_advance(channel, &wires)
+	                              : channel->timescale.enable && wires.counting && !wires.stall;
 	wires.tick = wires.advance && at_tick_end;
 	wires.next = wires.begin_profile || wires.tick;
 	wires.ramp_ended = wires.next && channel->ramp.ends_next;
@@ -116,6 +122,7 @@ struct passo_outputs_wires passo_channel_outputs(
 	    .running_next = wires->running_next,
 	    .velocity = passo_channel_registers_value(channel, PASSO_CHANNEL_VELOCITY),
 	    .rate = channel->timescale.rate,
+	    .waits = passo_encoders_wait(channel),
 	};
 
 	for (unsigned i = 0; i < channel->axes; i++) {
@@ -166,9 +173,13 @@ void passo_channel_clock(struct passo_channel *channel, const struct passo_chann
 	if (channel->has_outputs)
 		clock_outputs(channel, bus, &wires);
 	/* from the pins back to the queues, so that each module sees the old state of those that feed it */
+	uint32_t positions[PASSO_AXES_MAX];
+	for (unsigned i = 0; i < PASSO_AXES_MAX; i++)
+		positions[i] = channel->axis[i].position;
 	passo_inputs_clock(&inputs_unit, channel, inputs, &wires);
-	passo_positions_clock(&channel->positions, channel->axis, registers.command_zero, inputs->snapshot,
-	    wires.requests.latch);
+	passo_positions_clock(
+	    &channel->positions, positions, registers.command_zero, inputs->snapshot, wires.requests.latch);
+	passo_encoders_clock(channel, inputs, &wires);
 	for (unsigned i = 0; i < channel->axes; i++) {
 		const struct passo_axis_wires axis_wires = {
 		    .step_request = passo_dda_step_request(&channel->dda[i], &channel->line),

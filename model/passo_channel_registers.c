@@ -59,7 +59,8 @@ struct passo_needs passo_channel_needs(const struct passo_channel *channel, cons
 		return (struct passo_needs){0};
 	return (struct passo_needs){
 	    .idle = (command >> PASSO_CHANNEL_COMMAND_CLEAR_LSB & 1u) != 0u,
-	    .quiet = pins || outputs || (command >> PASSO_CHANNEL_COMMAND_ZERO_LSB & 1u) != 0u,
+	    .quiet = pins || outputs || address == PASSO_CHANNEL_FOLLOW
+	          || (command >> PASSO_CHANNEL_COMMAND_ZERO_LSB & 1u) != 0u,
 	    .motion = bus->push && address == PASSO_CHANNEL_RAMP
 	           && passo_ramp_queue_checks_now(&channel->ramp_queue, bus->data),
 	};
@@ -97,7 +98,7 @@ uint32_t passo_channel_registers_value(const struct passo_channel *channel, uint
 	case PASSO_CHANNEL_VELOCITY:
 		return channel->path.velocity_high << 8 | channel->path.velocity_low >> 16;
 	default:
-		return passo_inputs_value(&channel->inputs, address);
+		return passo_inputs_value(&channel->inputs, address) | passo_encoders_value(channel, address);
 	}
 }
 
@@ -147,6 +148,51 @@ static struct answer input_answer(const struct passo_channel *channel, uint8_t a
 	                                : (struct answer){0};
 }
 
+/* Registers of the encoders. */
+static struct answer encoder_answer(uint8_t address, uint32_t data)
+{
+	switch (address) {
+	case PASSO_ENCODER_SETUP:
+		return write_only(value_check((data & ~PASSO_ENCODER_SETUP_DEFINED) != 0u));
+	case PASSO_ENCODER_RATIO:
+		return write_only(value_check(data == 0u));
+	case PASSO_ENCODER_LIMIT:
+		return write_only(value_check(data == 0u || (data & ~PASSO_ENCODER_LIMIT_DEFINED) != 0u));
+	case PASSO_ENCODER_ERROR:
+	case PASSO_ENCODER_GREATEST:
+	case PASSO_ENCODER_INDEX:
+		return read_late();
+	default:
+		return (struct answer){0};
+	}
+}
+
+static struct answer encoders_answer(
+    const struct passo_channel *channel, const struct passo_channel_inputs *inputs, uint8_t address)
+{
+	const uint32_t data = inputs->bus->data;
+	const unsigned position = (unsigned)address - PASSO_CHANNEL_ENCODER_POSITION_BASE;
+	const unsigned in_axes = (unsigned)address - PASSO_CHANNEL_ENCODER_BASE;
+
+	switch (address) {
+	case PASSO_CHANNEL_FOLLOW:
+		return write_only(value_check((data & ~PASSO_CHANNEL_FOLLOW_DEFINED) != 0u));
+	case PASSO_CHANNEL_FOLLOW_LIMIT:
+		return write_only(value_check(data == 0u || data > VELOCITY_MAX));
+	case PASSO_CHANNEL_ENCODER_FILTER:
+		return write_only(value_check((data & ~PASSO_CHANNEL_ENCODER_FILTER_DEFINED) != 0u));
+	case PASSO_CHANNEL_FOLLOW_STATE:
+		return read_late();
+	default:
+		break;
+	}
+	if (position < channel->axes)
+		return read_only(channel->encoders.positions.copies[position]);
+	if (in_axes < channel->axes * PASSO_CHANNEL_ENCODER_STRIDE)
+		return encoder_answer((uint8_t)(in_axes % PASSO_CHANNEL_ENCODER_STRIDE), data);
+	return (struct answer){0};
+}
+
 /* Registers of the outputs. */
 static struct answer output_answer(const struct passo_channel *channel, const struct passo_bus *bus)
 {
@@ -171,6 +217,8 @@ static struct answer part_answer(
 
 	if (inputs->parameters->inputs != 0u)
 		answer = input_answer(channel, address, inputs->bus->data);
+	if (!answer.known && channel->encoders.present)
+		answer = encoders_answer(channel, inputs, address);
 	if (!answer.known && channel->has_outputs)
 		answer = output_answer(channel, inputs->bus);
 	return answer;

@@ -171,6 +171,7 @@ static void clock_all(struct passo_core *core, const struct passo_inputs *inputs
 		channel_inputs.run = (registers.run >> i & 1u) != 0u;
 		channel_inputs.wait_sync = (registers.wait_sync >> i & 1u) != 0u;
 		passo_core_take_pins(core, i, inputs, &channel_inputs);
+		passo_encoders_pins(&channel_inputs, inputs, i);
 		passo_channel_clock(&core->channel[i], &channel_inputs);
 	}
 	if (parameters->inputs != 0u)
@@ -204,7 +205,7 @@ static void restart(struct passo_core *core, const struct passo_core *before)
 	passo_machine_restart(&core->machine, &machine);
 	memcpy(core->tables.points, tables.points, sizeof core->tables.points);
 	for (unsigned i = 0; i < parameters.channels; i++)
-		passo_channel_restart(&core->channel[i], &before->channel[i], &parameters);
+		passo_channel_restart(&core->channel[i], &before->channel[i], &parameters, &inputs);
 }
 
 void passo_core_clock(struct passo_core *core, const struct passo_inputs *inputs)

@@ -132,7 +132,8 @@ void passo_inputs_clock(struct passo_inputs_unit *unit, const struct passo_chann
 
 	if (inputs->parameters->inputs == 0u)
 		return;
-	passo_trigger_clock(&unit->trigger, &channel->inputs, inputs->machine->filter);
+	passo_trigger_clock(
+	    &unit->trigger, &channel->inputs, passo_encoders_index(channel), inputs->machine->filter);
 	clock_limits(&unit->limits, channel, may_close);
 	for (unsigned kind = 0; kind < PASSO_KINDS; kind++)
 		clock_input(&unit->input[kind],

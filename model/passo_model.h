@@ -8,6 +8,7 @@
 #define PASSO_MODEL_H
 
 #include "passo_command.h"
+#include "passo_encoder.h"
 #include "passo_outputs.h"
 #include "passo_pins.h"
 #include "passo_registers.h"
@@ -353,6 +354,23 @@ struct passo_requests {
 	uint8_t disable; /* a bit per axis */
 };
 
+/* ---- encoders ---- */
+
+struct passo_encoders {
+	bool present; /* ENCODERS */
+	struct passo_encoder_axis axis[PASSO_AXES_MAX];
+	bool follow, wait_index;
+	uint8_t source, scale;
+	uint32_t follow_limit; /* UQ0.32 */
+	uint8_t filter;
+	struct passo_follower follower;
+	bool was_behind, was_lost;
+	bool stop_soft, stop_hard;
+	struct passo_positions positions;
+	bool writes;     /* bus write strobe for one of the registers, one clock late */
+	uint8_t written; /* its address within the channel */
+};
+
 struct passo_channel {
 	uint8_t axes;
 	uint8_t number;
@@ -370,6 +388,7 @@ struct passo_channel {
 	struct passo_axis axis[PASSO_AXES_MAX];
 	struct passo_positions positions;
 	struct passo_inputs_unit inputs;
+	struct passo_encoders encoders;
 	struct passo_output_registers output_registers;
 	struct passo_outputs_unit outputs;
 	uint8_t occupied_before; /* in the previous three clocks */
@@ -385,8 +404,9 @@ struct passo_channel_inputs {
 	const struct passo_bus *bus;
 	bool run, wait_sync, sync_edge, slew_tick, snapshot;
 	bool tables_wanted;
-	const struct passo_machine *machine; /* before the edge */
-	uint8_t pins[PASSO_KINDS];           /* levels, a bit per axis */
+	const struct passo_machine *machine;         /* before the edge */
+	uint8_t pins[PASSO_KINDS];                   /* levels, a bit per axis */
+	uint8_t encoder_a, encoder_b, encoder_index; /* pins, one bit per axis */
 };
 
 /* The wires of a channel, from the state before the edge. */
@@ -398,6 +418,9 @@ struct passo_channel_wires {
 	bool ramp_valid;
 	bool hold, now_coming; /* from the admission */
 	bool startable, prepare, begins_next, begin_profile;
+	bool may_begin, follows;
+	bool too_far, lags; /* from the encoders: a hard stop, a soft stop */
+	bool stall;
 	bool advance, tick, next, ramp_ended;
 	bool substep_taken, line_done, take, repeats;
 	bool overrun;
@@ -468,8 +491,8 @@ uint32_t passo_axis_quiet(const struct passo_axis *axis, bool line_direction);
 void passo_axis_skip(struct passo_axis *axis, uint64_t clocks);
 
 void passo_positions_reset(struct passo_positions *positions);
-void passo_positions_clock(
-    struct passo_positions *positions, const struct passo_axis *axes, bool zero, bool snapshot, bool latch);
+void passo_positions_clock(struct passo_positions *positions, const uint32_t values[PASSO_AXES_MAX],
+    bool zero, bool snapshot, bool latch);
 /* Skips clocks without `zero` and `snapshot`; no snapshot may be pending. */
 void passo_positions_skip(struct passo_positions *positions, uint64_t clocks);
 
@@ -494,12 +517,33 @@ void passo_inputs_restart(struct passo_inputs_unit *unit, const struct passo_inp
 /* Verdict on the value of TRIGGER. */
 uint8_t passo_trigger_check(const struct passo_channel *channel, uint32_t data);
 void passo_trigger_clock(
-    struct passo_trigger *trigger, const struct passo_inputs_unit *unit, uint16_t filter);
+    struct passo_trigger *trigger, const struct passo_inputs_unit *unit, uint8_t index, uint16_t filter);
 void passo_trigger_write(struct passo_trigger *trigger, uint32_t data);
 uint32_t passo_inputs_value(const struct passo_inputs_unit *unit, uint8_t address);
 /* Whether nothing changes except the time of an armed trigger, and skipping that. */
 bool passo_inputs_quiet(const struct passo_channel *channel, const struct passo_channel_inputs *inputs);
 void passo_inputs_skip(struct passo_inputs_unit *unit, uint64_t clocks);
+/* The pins of a channel among those of the core. */
+void passo_encoders_pins(
+    struct passo_channel_inputs *inputs, const struct passo_inputs *pins, unsigned channel);
+void passo_encoders_reset(struct passo_encoders *encoders, bool present);
+/* Synchronous reset with these pins; `before` is the state before the clock. */
+void passo_encoders_restart(struct passo_encoders *encoders, const struct passo_encoders *before,
+    const struct passo_channel_inputs *inputs);
+/* What the encoders say to motion and profile; they need `counting`, `drain` and `stall`. */
+void passo_encoders_wires(const struct passo_channel *channel, struct passo_channel_wires *wires);
+/* Whether the profile advances in this clock, while it follows. */
+bool passo_encoders_advance(const struct passo_channel *channel, const struct passo_channel_wires *wires);
+void passo_encoders_clock(struct passo_channel *channel, const struct passo_channel_inputs *inputs,
+    const struct passo_channel_wires *wires);
+/* Value of a read-only register of the encoders. */
+uint32_t passo_encoders_value(const struct passo_channel *channel, uint8_t address);
+/* Levels of the indexes as the setups have them, synchronised but not filtered, a bit per axis. */
+uint8_t passo_encoders_index(const struct passo_channel *channel);
+/* Whether the profile follows and nothing is owed to it: nothing moves. */
+bool passo_encoders_wait(const struct passo_channel *channel);
+/* Whether nothing changes in the encoders until their pins or the axes do. */
+bool passo_encoders_quiet(const struct passo_channel *channel, const struct passo_channel_inputs *inputs);
 
 void passo_motion_wires(const struct passo_channel *channel, const struct passo_channel_inputs *inputs,
     struct passo_channel_wires *wires);
@@ -522,7 +566,7 @@ void passo_channel_reset(
     struct passo_channel *channel, const struct passo_parameters *parameters, uint8_t number);
 /* Synchronous reset in the clock just simulated; `before` is the state before that clock. */
 void passo_channel_restart(struct passo_channel *channel, const struct passo_channel *before,
-    const struct passo_parameters *parameters);
+    const struct passo_parameters *parameters, const struct passo_inputs *pins);
 void passo_channel_clock(struct passo_channel *channel, const struct passo_channel_inputs *inputs);
 /* Inputs of the outputs, from the state before the edge. */
 struct passo_outputs_wires passo_channel_outputs(const struct passo_channel *channel,

@@ -7,7 +7,7 @@ enum { START_LAST = 6 };
 
 static bool aborts(const struct passo_channel *channel, const struct passo_channel_wires *wires)
 {
-	return channel->registers.command_abort || wires->estop || wires->requests.hard;
+	return channel->registers.command_abort || wires->estop || wires->requests.hard || wires->too_far;
 }
 
 static bool stop_wanted(const struct passo_channel *channel, const struct passo_channel_wires *wires)
@@ -30,6 +30,8 @@ static enum passo_cause cause_of_stop(
 		return PASSO_CAUSE_STEP_OVERRUN;
 	if (wires->requests.hard)
 		return wires->requests.hard_cause;
+	if (wires->too_far)
+		return PASSO_CAUSE_FOLLOWING_ERROR;
 	if (wires->moving && channel->line.underrun)
 		return PASSO_CAUSE_LINE_UNDERRUN;
 	return channel->motion.soft_cause;
@@ -50,7 +52,9 @@ void passo_motion_wires(const struct passo_channel *channel, const struct passo_
 	wires->startable = state == PASSO_STATE_IDLE && inputs->run && channel->line_queue.next_valid
 	                && wires->ramp_valid && !wires->hold;
 	wires->prepare = state == PASSO_STATE_IDLE && motion->startable;
-	wires->begins_next = state == PASSO_STATE_ARMED && (inputs->sync_edge || !inputs->wait_sync);
+	passo_encoders_wires(channel, wires);
+	wires->begins_next =
+	    state == PASSO_STATE_ARMED && (inputs->sync_edge || !inputs->wait_sync) && wires->may_begin;
 	wires->begin_profile = motion->begin_profile;
 	wires->finished = motion->settled && (line_over || channel->line.endless);
 	wires->stop_now = motion->stop_due && !wires->stopped;
@@ -107,7 +111,9 @@ void passo_motion_clock(
 			motion->soft_cause = wires->requests.soft_cause;
 		else if (dry)
 			motion->soft_cause = PASSO_CAUSE_RAMP_UNDERRUN;
-		motion->stopping = registers->command_stop || wires->requests.soft || dry;
+		else if (wires->lags)
+			motion->soft_cause = PASSO_CAUSE_FOLLOWING_ERROR;
+		motion->stopping = registers->command_stop || wires->requests.soft || dry || wires->lags;
 	}
 
 	if (wires->stopped && registers->command_clear) {

@@ -65,7 +65,8 @@ static void clock_word(struct passo_outputs_unit *outputs, const struct passo_ou
 	if (wires->write_levels)
 		now->levels = (uint8_t)wires->bus.data;
 	outputs->still =
-	    (uint8_t)((outputs->still << 1 | (wires->velocity == 0u || wires->rate == 0u)) & STILL_MASK);
+	    (uint8_t)((outputs->still << 1 | (wires->velocity == 0u || wires->rate == 0u || wires->waits))
+	              & STILL_MASK);
 	outputs->overflow = (outputs->overflow || changes->overflow) && !wires->clear;
 	outputs->raster_empty = (outputs->raster_empty || outputs->raster.missed) && !wires->clear;
 }

@@ -87,6 +87,7 @@ struct passo_outputs_wires {
 	bool line_begins, substep;
 	bool stopped, clear, running, running_next;
 	uint32_t velocity, rate;
+	bool waits;                        /* the path waits for an encoder */
 	uint8_t step_made, step_direction; /* one bit per axis */
 };
 

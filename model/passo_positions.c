@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Snapshot of the positions of a channel for the host. See rtl/passo_positions.v.
  *
- * In the model each axis has its full position, so only the time of the snapshot matters here.
+ * In the model each axis has its full position, and each encoder its full count, so only the time of the
+ * snapshot matters here.
  */
 #include "passo_model.h"
 
@@ -12,8 +13,8 @@ void passo_positions_reset(struct passo_positions *positions)
 	*positions = (struct passo_positions){0};
 }
 
-void passo_positions_clock(
-    struct passo_positions *positions, const struct passo_axis *axes, bool zero, bool snapshot, bool latch)
+void passo_positions_clock(struct passo_positions *positions, const uint32_t values[PASSO_AXES_MAX],
+    bool zero, bool snapshot, bool latch)
 {
 	if (positions->slot == ROUND_CLOCKS - 1) {
 		if (positions->clear_waits) {
@@ -24,7 +25,7 @@ void passo_positions_clock(
 			positions->latch_waits = false;
 		} else if (positions->snapshot_waits) {
 			for (unsigned i = 0; i < PASSO_AXES_MAX; i++)
-				positions->copies[i] = axes[i].position;
+				positions->copies[i] = values[i];
 			positions->snapshot_waits = false;
 		}
 	}
@@ -32,7 +33,7 @@ void passo_positions_clock(
 	positions->snapshot_waits = positions->snapshot_waits || snapshot;
 	positions->latch_waits = positions->latch_waits || latch;
 	for (unsigned i = 0; i < PASSO_AXES_MAX && latch; i++)
-		positions->latched[i] = axes[i].position;
+		positions->latched[i] = values[i];
 	if (zero)
 		for (unsigned i = 0; i < PASSO_AXES_MAX; i++)
 			positions->latched[i] = 0;

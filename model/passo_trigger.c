@@ -4,7 +4,7 @@
 #include "passo_model.h"
 #include "passo_words.h"
 
-static bool chosen(const struct passo_trigger *trigger, const struct passo_inputs_unit *unit)
+static bool chosen(const struct passo_trigger *trigger, const struct passo_inputs_unit *unit, uint8_t index)
 {
 	static const uint8_t kinds[] = {[PASSO_TRIGGER_SOURCE_NONE] = PASSO_KIND_PROBE,
 	    [PASSO_TRIGGER_SOURCE_LIMIT_LOW] = PASSO_KIND_LIMIT_LOW,
@@ -14,7 +14,7 @@ static bool chosen(const struct passo_trigger *trigger, const struct passo_input
 	const enum passo_trigger_source source = (enum passo_trigger_source)trigger->source;
 
 	if (source == PASSO_TRIGGER_SOURCE_INDEX)
-		return false;
+		return (index >> trigger->axis & 1u) != 0u;
 	const unsigned bit = kinds[source] == PASSO_KIND_PROBE ? 0u : trigger->axis;
 	return (unit->input[kinds[source]].second >> bit & 1u) != 0u;
 }
@@ -32,7 +32,8 @@ uint8_t passo_trigger_check(const struct passo_channel *channel, uint32_t data)
 	         : PASSO_VERDICT_OK;
 }
 
-void passo_trigger_clock(struct passo_trigger *trigger, const struct passo_inputs_unit *unit, uint16_t filter)
+void passo_trigger_clock(
+    struct passo_trigger *trigger, const struct passo_inputs_unit *unit, uint8_t index, uint16_t filter)
 {
 	const bool picked = trigger->picked;
 	const bool armed = trigger->armed;
@@ -41,7 +42,7 @@ void passo_trigger_clock(struct passo_trigger *trigger, const struct passo_input
 	const bool changes = armed && differs && trigger->count == filter;
 	const bool fires = changes && trigger->level == trigger->falling;
 
-	trigger->picked = chosen(trigger, unit);
+	trigger->picked = chosen(trigger, unit, index);
 	trigger->arming = (uint8_t)(trigger->arming << 1 & 3u);
 	if (armed)
 		trigger->clocks++;

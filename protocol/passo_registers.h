@@ -531,10 +531,68 @@
 #define PASSO_CHANNEL_TRIGGER_POSITION_POSITION_BITS  32u
 #define PASSO_CHANNEL_TRIGGER_POSITION_POSITION_RESET 0x00000000u
 
+/* Channel: Encoder position. Only with ENCODERS. Counts of the encoder of an axis, sampled on the clock of
+ * its position; wraps. */
+#define PASSO_CHANNEL_ENCODER_POSITION_BASE           0x50u
+#define PASSO_CHANNEL_ENCODER_POSITION_COUNT          8u
+#define PASSO_CHANNEL_ENCODER_POSITION_POSITION_LSB   0u
+#define PASSO_CHANNEL_ENCODER_POSITION_POSITION_BITS  32u
+#define PASSO_CHANNEL_ENCODER_POSITION_POSITION_RESET 0x00000000u
+
+/* Channel: Follow. Only with ENCODERS. Refused with BUSY unless the channel is quiet. */
+#define PASSO_CHANNEL_FOLLOW                  0x60u
+#define PASSO_CHANNEL_FOLLOW_FOLLOW_LSB       0u
+#define PASSO_CHANNEL_FOLLOW_FOLLOW_BITS      1u
+#define PASSO_CHANNEL_FOLLOW_FOLLOW_RESET     0x0u
+#define PASSO_CHANNEL_FOLLOW_WAIT_INDEX_LSB   1u
+#define PASSO_CHANNEL_FOLLOW_WAIT_INDEX_BITS  1u
+#define PASSO_CHANNEL_FOLLOW_WAIT_INDEX_RESET 0x0u
+#define PASSO_CHANNEL_FOLLOW_SOURCE_LSB       2u
+#define PASSO_CHANNEL_FOLLOW_SOURCE_BITS      3u
+#define PASSO_CHANNEL_FOLLOW_SOURCE_RESET     0x0u
+#define PASSO_CHANNEL_FOLLOW_SCALE_LSB        5u
+#define PASSO_CHANNEL_FOLLOW_SCALE_BITS       3u
+#define PASSO_CHANNEL_FOLLOW_SCALE_RESET      0x0u
+#define PASSO_CHANNEL_FOLLOW_DEFINED          0x000000FFu
+
+/* Channel: Follow limit. Only with ENCODERS. What is owed to the encoder is made at no more than this.
+ * Refused with BAD_VALUE if 0 or above 1/2. */
+#define PASSO_CHANNEL_FOLLOW_LIMIT             0x61u
+#define PASSO_CHANNEL_FOLLOW_LIMIT_LIMIT_LSB   0u
+#define PASSO_CHANNEL_FOLLOW_LIMIT_LIMIT_BITS  32u
+#define PASSO_CHANNEL_FOLLOW_LIMIT_LIMIT_RESET 0x01000000u
+#define PASSO_CHANNEL_FOLLOW_LIMIT_DEFINED     0xFFFFFFFFu
+
+/* Channel: Encoder filter. Only with ENCODERS. Glitch filter of all encoders of the channel. May be written
+ * at any time. */
+#define PASSO_CHANNEL_ENCODER_FILTER              0x62u
+#define PASSO_CHANNEL_ENCODER_FILTER_FILTER_LSB   0u
+#define PASSO_CHANNEL_ENCODER_FILTER_FILTER_BITS  8u
+#define PASSO_CHANNEL_ENCODER_FILTER_FILTER_RESET 0x03u
+#define PASSO_CHANNEL_ENCODER_FILTER_DEFINED      0x000000FFu
+
+/* Channel: Follow state. Only with ENCODERS. Of the motion that runs; behind and lost, of the last one,
+ * until the next is prepared. */
+#define PASSO_CHANNEL_FOLLOW_STATE              0x63u
+#define PASSO_CHANNEL_FOLLOW_STATE_OWED_LSB     0u
+#define PASSO_CHANNEL_FOLLOW_STATE_OWED_BITS    24u
+#define PASSO_CHANNEL_FOLLOW_STATE_OWED_RESET   0x000000u
+#define PASSO_CHANNEL_FOLLOW_STATE_BEHIND_LSB   24u
+#define PASSO_CHANNEL_FOLLOW_STATE_BEHIND_BITS  1u
+#define PASSO_CHANNEL_FOLLOW_STATE_BEHIND_RESET 0x0u
+#define PASSO_CHANNEL_FOLLOW_STATE_LOST_LSB     25u
+#define PASSO_CHANNEL_FOLLOW_STATE_LOST_BITS    1u
+#define PASSO_CHANNEL_FOLLOW_STATE_LOST_RESET   0x0u
+
 /* Channel: where each axis has its registers. */
 #define PASSO_CHANNEL_AXIS_BASE   0x80u
 #define PASSO_CHANNEL_AXIS_COUNT  8u
 #define PASSO_CHANNEL_AXIS_STRIDE 0x08u
+
+/* Channel: where each encoder has its registers. */
+#define PASSO_CHANNEL_ENCODER_BASE   0xC0u
+#define PASSO_CHANNEL_ENCODER_COUNT  8u
+#define PASSO_CHANNEL_ENCODER_STRIDE 0x08u
 
 /* Axis: Pins. Polarities and step mode. Refused with BUSY unless the channel is quiet. From the write on,
  * the next step waits for the low time, the DIR hold and the DIR setup. Kept through a reset of the core. */
@@ -612,6 +670,70 @@
 #define PASSO_AXIS_INPUTS_ALARM_DISABLES_RESET      0x0u
 #define PASSO_AXIS_INPUTS_DEFINED                   0x0000007Fu
 
+/* Encoder: Encoder setup. Only with ENCODERS. May be written at any time. */
+#define PASSO_ENCODER_SETUP                      0x0u
+#define PASSO_ENCODER_SETUP_INVERTED_LSB         0u
+#define PASSO_ENCODER_SETUP_INVERTED_BITS        1u
+#define PASSO_ENCODER_SETUP_INVERTED_RESET       0x0u
+#define PASSO_ENCODER_SETUP_INDEX_INVERTED_LSB   1u
+#define PASSO_ENCODER_SETUP_INDEX_INVERTED_BITS  1u
+#define PASSO_ENCODER_SETUP_INDEX_INVERTED_RESET 0x0u
+#define PASSO_ENCODER_SETUP_INDEX_GATED_LSB      2u
+#define PASSO_ENCODER_SETUP_INDEX_GATED_BITS     1u
+#define PASSO_ENCODER_SETUP_INDEX_GATED_RESET    0x0u
+#define PASSO_ENCODER_SETUP_STOP_SOFT_LSB        3u
+#define PASSO_ENCODER_SETUP_STOP_SOFT_BITS       1u
+#define PASSO_ENCODER_SETUP_STOP_SOFT_RESET      0x0u
+#define PASSO_ENCODER_SETUP_STOP_HARD_LSB        4u
+#define PASSO_ENCODER_SETUP_STOP_HARD_BITS       1u
+#define PASSO_ENCODER_SETUP_STOP_HARD_RESET      0x0u
+#define PASSO_ENCODER_SETUP_DEFINED              0x0000001Fu
+
+/* Encoder: Encoder ratio. Only with ENCODERS. Counts per step. Refused with BAD_VALUE if 0. A write sets
+ * the following error to 0. */
+#define PASSO_ENCODER_RATIO         0x1u
+#define PASSO_ENCODER_RATIO_LSB     0u
+#define PASSO_ENCODER_RATIO_BITS    32u
+#define PASSO_ENCODER_RATIO_RESET   0x00010000u
+#define PASSO_ENCODER_RATIO_DEFINED 0xFFFFFFFFu
+
+/* Encoder: Following error limit. Only with ENCODERS. Refused with BAD_VALUE if 0. */
+#define PASSO_ENCODER_LIMIT         0x2u
+#define PASSO_ENCODER_LIMIT_LSB     0u
+#define PASSO_ENCODER_LIMIT_BITS    16u
+#define PASSO_ENCODER_LIMIT_RESET   0xFFFFu
+#define PASSO_ENCODER_LIMIT_DEFINED 0x0000FFFFu
+
+/* Encoder: Following error. Only with ENCODERS. Position times ratio less encoder position, both as they
+ * were set to 0 by COMMAND.ZERO or a write of the ratio. */
+#define PASSO_ENCODER_ERROR       0x3u
+#define PASSO_ENCODER_ERROR_LSB   0u
+#define PASSO_ENCODER_ERROR_BITS  32u
+#define PASSO_ENCODER_ERROR_RESET 0x00000000u
+
+/* Encoder: Greatest following error. Only with ENCODERS. Since COMMAND.ZERO, COMMAND.CLEAR or a write of
+ * the ratio. */
+#define PASSO_ENCODER_GREATEST                0x4u
+#define PASSO_ENCODER_GREATEST_GREATEST_LSB   0u
+#define PASSO_ENCODER_GREATEST_GREATEST_BITS  18u
+#define PASSO_ENCODER_GREATEST_GREATEST_RESET 0x00000u
+#define PASSO_ENCODER_GREATEST_EXCEEDED_LSB   31u
+#define PASSO_ENCODER_GREATEST_EXCEEDED_BITS  1u
+#define PASSO_ENCODER_GREATEST_EXCEEDED_RESET 0x0u
+
+/* Encoder: Encoder index. Only with ENCODERS. What the index has latched, and the transitions that were
+ * none. All 0 after COMMAND.ZERO. */
+#define PASSO_ENCODER_INDEX               0x5u
+#define PASSO_ENCODER_INDEX_LATCH_LSB     0u
+#define PASSO_ENCODER_INDEX_LATCH_BITS    16u
+#define PASSO_ENCODER_INDEX_LATCH_RESET   0x0000u
+#define PASSO_ENCODER_INDEX_INDEXES_LSB   16u
+#define PASSO_ENCODER_INDEX_INDEXES_BITS  8u
+#define PASSO_ENCODER_INDEX_INDEXES_RESET 0x00u
+#define PASSO_ENCODER_INDEX_ILLEGAL_LSB   24u
+#define PASSO_ENCODER_INDEX_ILLEGAL_BITS  8u
+#define PASSO_ENCODER_INDEX_ILLEGAL_RESET 0x00u
+
 /* Operation of a frame. */
 enum passo_operation {
 	PASSO_OPERATION_READ  = 1, /* Read consecutive registers. */
@@ -680,7 +802,7 @@ enum passo_trigger_source {
 	PASSO_TRIGGER_SOURCE_LIMIT_HIGH = 2, /* Limit switch of the axis in positive direction. */
 	PASSO_TRIGGER_SOURCE_HOME       = 3, /* Home switch of the axis. */
 	PASSO_TRIGGER_SOURCE_PROBE      = 4, /* Probe of the channel. */
-	PASSO_TRIGGER_SOURCE_INDEX      = 5  /* Index of the axis's encoder; never active without ENCODERS. */
+	PASSO_TRIGGER_SOURCE_INDEX      = 5  /* Index of the axis's encoder, as its setup says; never active without ENCODERS. */
 };
 #define PASSO_TRIGGER_SOURCE_NAMES \
 	{[0] = "NONE", [1] = "LIMIT_LOW", [2] = "LIMIT_HIGH", [3] = "HOME", [4] = "PROBE", [5] = \

@@ -616,6 +616,55 @@ static inline struct passo_channel_output_state passo_unpack_channel_output_stat
 	};
 }
 
+/* Follow. Only with ENCODERS. Refused with BUSY unless the channel is quiet. */
+struct passo_channel_follow {
+	uint8_t scale;      /* A count is 2^scale clocks of the profile. */
+	uint8_t source;     /* Axis of the encoder. One that is not there stands still. */
+	bool    wait_index; /* 1: an ARMED motion waits for the index of that encoder. */
+	bool    follow;     /* 1: the clocks of the profile are counts of an encoder. */
+};
+
+static inline uint32_t passo_pack_channel_follow(const struct passo_channel_follow *word)
+{
+	return ((uint32_t)word->scale & 0x7u) << 5
+	     | ((uint32_t)word->source & 0x7u) << 2
+	     | ((uint32_t)word->wait_index & 0x1u) << 1
+	     | ((uint32_t)word->follow & 0x1u);
+}
+
+static inline struct passo_channel_follow passo_unpack_channel_follow(uint32_t word)
+{
+	return (struct passo_channel_follow){
+	    .scale = (uint8_t)(word >> 5 & 0x7u),
+	    .source = (uint8_t)(word >> 2 & 0x7u),
+	    .wait_index = (word >> 1 & 0x1u) != 0u,
+	    .follow = (word & 0x1u) != 0u,
+	};
+}
+
+/* Follow state. Only with ENCODERS. Of the motion that runs; behind and lost, of the last one, until the next is prepared. */
+struct passo_channel_follow_state {
+	bool     lost;   /* 2^22 or more were owed: the phase is lost. */
+	bool     behind; /* Two counts or more were owed: the path was late. */
+	uint32_t owed;   /* Clocks of the profile that are owed to the encoder, signed. */
+};
+
+static inline uint32_t passo_pack_channel_follow_state(const struct passo_channel_follow_state *word)
+{
+	return ((uint32_t)word->lost & 0x1u) << 25
+	     | ((uint32_t)word->behind & 0x1u) << 24
+	     | ((uint32_t)word->owed & 0xFFFFFFu);
+}
+
+static inline struct passo_channel_follow_state passo_unpack_channel_follow_state(uint32_t word)
+{
+	return (struct passo_channel_follow_state){
+	    .lost = (word >> 25 & 0x1u) != 0u,
+	    .behind = (word >> 24 & 0x1u) != 0u,
+	    .owed = (uint32_t)(word & 0xFFFFFFu),
+	};
+}
+
 /* Pins. Polarities and step mode. Refused with BUSY unless the channel is quiet. From the write on, the next step waits for the low time, the DIR hold and the DIR setup. Kept through a reset of the core. */
 struct passo_axis_pins {
 	bool both_edges;         /* 1: every edge of STEP is a step. */
@@ -714,6 +763,78 @@ static inline struct passo_axis_inputs passo_unpack_axis_inputs(uint32_t word)
 	    .home_inverted = (word >> 2 & 0x1u) != 0u,
 	    .limit_high_inverted = (word >> 1 & 0x1u) != 0u,
 	    .limit_low_inverted = (word & 0x1u) != 0u,
+	};
+}
+
+/* Encoder setup. Only with ENCODERS. May be written at any time. */
+struct passo_encoder_setup {
+	bool stop_hard;      /* 1: it is a hard stop, whatever stop_soft says. Neither: it only shows. */
+	bool stop_soft;      /* 1: a following error at the limit is a soft stop. */
+	bool index_gated;    /* 1: the index counts only while A and B are high. */
+	bool index_inverted; /* 1: the index is active low. */
+	bool inverted;       /* 1: up is B before A. */
+};
+
+static inline uint32_t passo_pack_encoder_setup(const struct passo_encoder_setup *word)
+{
+	return ((uint32_t)word->stop_hard & 0x1u) << 4
+	     | ((uint32_t)word->stop_soft & 0x1u) << 3
+	     | ((uint32_t)word->index_gated & 0x1u) << 2
+	     | ((uint32_t)word->index_inverted & 0x1u) << 1
+	     | ((uint32_t)word->inverted & 0x1u);
+}
+
+static inline struct passo_encoder_setup passo_unpack_encoder_setup(uint32_t word)
+{
+	return (struct passo_encoder_setup){
+	    .stop_hard = (word >> 4 & 0x1u) != 0u,
+	    .stop_soft = (word >> 3 & 0x1u) != 0u,
+	    .index_gated = (word >> 2 & 0x1u) != 0u,
+	    .index_inverted = (word >> 1 & 0x1u) != 0u,
+	    .inverted = (word & 0x1u) != 0u,
+	};
+}
+
+/* Greatest following error. Only with ENCODERS. Since COMMAND.ZERO, COMMAND.CLEAR or a write of the ratio. */
+struct passo_encoder_greatest {
+	bool     exceeded; /* The error is at its limit now. */
+	uint32_t greatest; /* Counts, either way. */
+};
+
+static inline uint32_t passo_pack_encoder_greatest(const struct passo_encoder_greatest *word)
+{
+	return ((uint32_t)word->exceeded & 0x1u) << 31
+	     | ((uint32_t)word->greatest & 0x3FFFFu);
+}
+
+static inline struct passo_encoder_greatest passo_unpack_encoder_greatest(uint32_t word)
+{
+	return (struct passo_encoder_greatest){
+	    .exceeded = (word >> 31 & 0x1u) != 0u,
+	    .greatest = (uint32_t)(word & 0x3FFFFu),
+	};
+}
+
+/* Encoder index. Only with ENCODERS. What the index has latched, and the transitions that were none. All 0 after COMMAND.ZERO. */
+struct passo_encoder_index {
+	uint8_t  illegal; /* Changes of A and B at once, up to 255; 0 after COMMAND.CLEAR, too. */
+	uint8_t  indexes; /* Number of indexes; wraps. */
+	uint16_t latch;   /* Encoder position at the last index, its lower 16 bits. */
+};
+
+static inline uint32_t passo_pack_encoder_index(const struct passo_encoder_index *word)
+{
+	return ((uint32_t)word->illegal & 0xFFu) << 24
+	     | ((uint32_t)word->indexes & 0xFFu) << 16
+	     | ((uint32_t)word->latch & 0xFFFFu);
+}
+
+static inline struct passo_encoder_index passo_unpack_encoder_index(uint32_t word)
+{
+	return (struct passo_encoder_index){
+	    .illegal = (uint8_t)(word >> 24 & 0xFFu),
+	    .indexes = (uint8_t)(word >> 16 & 0xFFu),
+	    .latch = (uint16_t)(word & 0xFFFFu),
 	};
 }
 

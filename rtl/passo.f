@@ -14,7 +14,14 @@ rtl/passo_compare.v
 rtl/passo_core.v
 rtl/passo_crc.v
 rtl/passo_dda.v
+rtl/passo_encoder.v
+rtl/passo_encoder_axis.v
+rtl/passo_encoder_filter.v
+rtl/passo_encoder_registers.v
+rtl/passo_encoders.v
 rtl/passo_estop.v
+rtl/passo_follower.v
+rtl/passo_following.v
 rtl/passo_header.v
 rtl/passo_input.v
 rtl/passo_inputs.v

@@ -51,8 +51,8 @@ module passo_axes #(
   output wire            quiet,
   output reg             step_overrun,     // strobe: a step was lost
   output wire [AXES-1:0] lost_steps,       // since `clear`, one bit per axis
-  output wire [AXES-1:0] step_made,        // one clock before the active edge
-  output wire [AXES-1:0] step_direction,   // of that step: 1 = negative
+  output wire [AXES-1:0] step_made,        // strobes: the active edge leaves the pin with the next clock
+  output wire [AXES-1:0] step_direction,   // with step_made: 1 = negative
   // pins
   output wire [AXES-1:0] step,
   output wire [AXES-1:0] dir,

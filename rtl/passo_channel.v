@@ -14,6 +14,7 @@ module passo_channel #(
   parameter            RAMP_QUEUE_LOG2 = 4,
   parameter            STEPS_REGISTER  = 0,
   parameter            INPUTS          = 0,
+  parameter            ENCODERS        = 0,
   parameter            OUTPUTS         = 0,
   parameter [AXES-1:0] STEP_RESET      = 0,
   parameter [AXES-1:0] DIR_RESET       = 0,
@@ -68,6 +69,9 @@ module passo_channel #(
   input  wire [         AXES-1:0] home,
   input  wire [         AXES-1:0] alarm,
   input  wire                     probe,
+  input  wire [         AXES-1:0] encoder_a,
+  input  wire [         AXES-1:0] encoder_b,
+  input  wire [         AXES-1:0] encoder_index,
   /* verilator lint_on UNUSEDSIGNAL */
   output wire                     moving,
   // pins
@@ -132,25 +136,31 @@ module passo_channel #(
   wire            line_underrun;
   wire [AXES-1:0] step_request;
   wire [AXES-1:0] directions;
-  wire            line_begins;
-  wire            line_substep;
-  wire [    25:0] output_word;
 
   // axes
   wire            axes_quiet;
   wire            step_overrun;
   wire [AXES-1:0] lost_steps;
   wire [AXES-1:0] enable_wanted;
+
+  // for inputs, encoders and outputs only
   /* verilator lint_off UNUSEDSIGNAL */
   wire [AXES-1:0] enable_off;
-  /* verilator lint_on UNUSEDSIGNAL */
-
-  // inputs
-  /* verilator lint_off UNUSEDSIGNAL */
   wire [AXES-1:0] waits;
   wire [AXES-1:0] negative;
   wire [AXES-1:0] write_inputs;
+  wire [AXES-1:0] step_made;
+  wire [AXES-1:0] step_direction;
+  wire [AXES-1:0] index;
+  wire            stall;
+  wire            running_next;
+  wire            line_begins;
+  wire            line_substep;
+  wire [    25:0] output_word;
+  wire            follow_waits;
   /* verilator lint_on UNUSEDSIGNAL */
+
+  // inputs
   wire [AXES-1:0] closed_low;
   wire [AXES-1:0] closed_high;
   wire [AXES-1:0] disable_axis;
@@ -163,8 +173,17 @@ module passo_channel #(
   wire            inputs_claim;
   wire [     3:0] inputs_refusal;
   wire [    31:0] inputs_read_data;
-  wire [AXES-1:0] step_made;
-  wire [AXES-1:0] step_direction;
+
+  // encoders
+  wire        follow_needs_quiet;
+  wire        may_begin;
+  wire        following_soft;
+  wire        following_hard;
+  wire        follows;
+  wire        follow_advance;
+  wire        encoders_claim;
+  wire [ 3:0] encoders_refusal;
+  wire [31:0] encoders_read_data;
 
   // outputs
   wire        outputs_quiet;
@@ -172,7 +191,6 @@ module passo_channel #(
   wire        outputs_claim;
   wire [ 3:0] outputs_refusal;
   wire [31:0] outputs_read_data;
-  wire        running_next;
 
   wire        registers_claim;
   wire [ 3:0] registers_refusal;
@@ -189,9 +207,10 @@ module passo_channel #(
 
   // Unselected targets drive 0.
   always @* begin
-    claim = registers_claim | axes_claim | inputs_claim | outputs_claim;
-    refusal   = registers_refusal | line_refusal | ramp_refusal | axes_refusal | inputs_refusal | outputs_refusal;
-    read_data = registers_read_data | axes_read_data | inputs_read_data | outputs_read_data;
+    claim = registers_claim | axes_claim | inputs_claim | encoders_claim | outputs_claim;
+    refusal   = registers_refusal | line_refusal | ramp_refusal | axes_refusal
+                | inputs_refusal | encoders_refusal | outputs_refusal;
+    read_data = registers_read_data | axes_read_data | inputs_read_data | encoders_read_data | outputs_read_data;
   end
 
   reg  [2:0] occupied_q;  // a line loaded in the clock of a stop changes DIR up to 4 clocks later
@@ -264,6 +283,9 @@ module passo_channel #(
     .input_hard_cause(input_hard_cause),
     .input_soft      (input_soft),
     .input_soft_cause(input_soft_cause),
+    .may_begin       (may_begin),
+    .following_soft  (following_soft),
+    .following_hard  (following_hard),
     .state           (state),
     .cause           (cause),
     .stopping        (stopping),
@@ -298,7 +320,7 @@ module passo_channel #(
     .bus_frame    (bus_frame),
     .bus_commit   (bus_commit),
     .needs_idle   (command_needs_idle),
-    .needs_quiet  (command_needs_quiet | pins_need_quiet | outputs_need_quiet),
+    .needs_quiet  (command_needs_quiet | pins_need_quiet | follow_needs_quiet | outputs_need_quiet),
     .needs_motion (ramp_needs_motion),
     .tables_wanted(tables_wanted),
     .occupied     (occupied),
@@ -350,7 +372,8 @@ module passo_channel #(
     .ended           (ramp_ended),
     .dry             (ramp_dry),
     .ends_next       (ends_next),
-    .enable          (enabled & counting),
+    .enable          (follows ? follow_advance : enabled & counting),
+    .stall           (stall),
     .table_request   (table_request),
     .table_address   (table_address),
     .table_served    (table_served),
@@ -470,7 +493,7 @@ module passo_channel #(
         .home          (home),
         .alarm         (alarm),
         .probe         (probe),
-        .index         ({AXES{1'b0}}),
+        .index         (index),
         .waits         (waits),
         .negative      (negative),
         .closed_low    (closed_low),
@@ -500,6 +523,65 @@ module passo_channel #(
       assign input_soft       = 1'b0;
       assign input_soft_cause = CAUSE_NONE;
       assign end_endless      = 1'b0;
+    end
+  endgenerate
+
+  generate
+    if (ENCODERS != 0) begin : g_encoders
+      passo_encoders #(
+        .AXES (AXES),
+        .LATCH(INPUTS)
+      ) u_encoders (
+        .clk           (clk),
+        .rst           (rst),
+        .bus_check     (bus_check),
+        .bus_write     (bus_write),
+        .bus_read      (bus_read),
+        .bus_push      (bus_push),
+        .select        (select),
+        .bus_address   (bus_address),
+        .bus_data      (bus_data),
+        .bus_msb       (bus_msb),
+        .bus_one_hot   (bus_one_hot),
+        .claim         (encoders_claim),
+        .refusal       (encoders_refusal),
+        .read_data     (encoders_read_data),
+        .needs_quiet   (follow_needs_quiet),
+        .zero          (command_zero),
+        .clear         (command_clear),
+        .snapshot      (snapshot),
+        .latch         (latch),
+        .step_made     (step_made),
+        .step_direction(step_direction),
+        .prepare       (prepare),
+        .begin_profile (begin_profile),
+        .counting      (counting),
+        .drain         (drain),
+        .may_begin     (may_begin),
+        .stop_soft     (following_soft),
+        .stop_hard     (following_hard),
+        .enabled       (enabled),
+        .stall         (stall),
+        .follows       (follows),
+        .advance       (follow_advance),
+        .waits         (follow_waits),
+        .a             (encoder_a),
+        .b             (encoder_b),
+        .index         (encoder_index),
+        .index_active  (index)
+      );
+    end else begin : g_no_encoders
+      assign encoders_claim     = 1'b0;
+      assign encoders_refusal   = 4'd0;
+      assign encoders_read_data = 32'd0;
+      assign follow_needs_quiet = 1'b0;
+      assign may_begin          = 1'b1;
+      assign following_soft     = 1'b0;
+      assign following_hard     = 1'b0;
+      assign follows            = 1'b0;
+      assign follow_advance     = 1'b0;
+      assign follow_waits       = 1'b0;
+      assign index              = {AXES{1'b0}};
     end
   endgenerate
 
@@ -596,6 +678,7 @@ module passo_channel #(
         .running_next    (running_next),
         .velocity        (velocity),
         .rate            (rate),
+        .waits           (follow_waits),
         .step_made       (step_made),
         .step_direction  (step_direction),
         .outputs         (outputs),
@@ -603,8 +686,6 @@ module passo_channel #(
         .compare         (compare)
       );
     end else begin : g_no_outputs
-      wire unused = &{1'b0, line_begins, line_substep, output_word, running_next, step_made, step_direction};
-
       assign outputs_claim      = 1'b0;
       assign outputs_refusal    = 4'd0;
       assign outputs_read_data  = 32'd0;

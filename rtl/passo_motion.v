@@ -4,11 +4,12 @@
 //   IDLE -> PREPARE -> ARMED -> RUN -> SETTLE -> (DRAIN -> SETTLE) -> IDLE;  anything -> STOPPED -> IDLE
 //
 // Promise: a motion is prepared when `run` is set and a line and a ramp are queued, but not while `hold`. From ARMED
-// it starts at once or, while wait_sync is set, on a sync edge; so ARMED channels start together when one write
-// clears their wait_sync. It ends when its profile has ended and its line has ended (or is ENDLESS); substeps the
-// line still lacks are drained and counted. A stop is soft (the rate goes to 0 first) for COMMAND.STOP, RAMP_UNDERRUN
-// and soft requests of inputs, else the channel is STOPPED two clocks later. On the same clock e-stop has priority, then
-// ABORT, STEP_OVERRUN, hard requests of inputs, LINE_UNDERRUN, a soft stop; a stop has priority over the end of the
+// it starts when it `may_begin`, at once or, while wait_sync is set, on a sync edge; so ARMED channels start together
+// when one write clears their wait_sync. It ends when its profile has ended and its line has ended (or is ENDLESS);
+// substeps the line still lacks are drained and counted. A stop is soft (the rate goes to 0 first) for COMMAND.STOP,
+// RAMP_UNDERRUN and soft requests of inputs and encoders, else the channel is STOPPED two clocks later. Encoders stop a
+// motion only. On the same clock e-stop has priority, then ABORT, STEP_OVERRUN, hard requests of inputs, those of
+// encoders, LINE_UNDERRUN, a soft stop (STOP, inputs, RAMP_UNDERRUN, encoders); a stop has priority over the end of the
 // motion. A soft stop that is overtaken by a hard one keeps its cause. `drop` is high from e-stop, ABORT or a hard
 // request until no step can be requested any more.
 //
@@ -35,6 +36,10 @@ module passo_motion (
   input  wire [ 3:0] input_hard_cause,
   input  wire        input_soft,
   input  wire [ 3:0] input_soft_cause,
+  // encoders
+  input  wire        may_begin,         // an ARMED motion need not wait for an index
+  input  wire        following_soft,    // an axis is too far from its encoder: requests to stop
+  input  wire        following_hard,
   output wire [ 2:0] state,
   output reg  [ 3:0] cause,
   output reg         stopping,
@@ -103,7 +108,9 @@ module passo_motion (
   wire drains_next = (settled & ~finished) | (drains & ~line_ended);
   wire settled_next = settles & settling[2] & ~settled;
   wire dry = ramp_dry & ~line_endless;
-  wire abort = command_abort | estop | input_hard;
+  wire too_far = following_hard & occupied;
+  wire lags = following_soft & occupied;
+  wire abort = command_abort | estop | input_hard | too_far;
 
   assign prepare      = startable;
   assign drain        = drains;
@@ -120,6 +127,7 @@ module passo_motion (
                          command_abort           ? CAUSE_ABORT :
                          moving & step_overrun   ? CAUSE_STEP_OVERRUN :
                          input_hard              ? input_hard_cause :
+                         too_far                 ? CAUSE_FOLLOWING_ERROR :
                          moving & line_underrun  ? CAUSE_LINE_UNDERRUN : soft_cause;
 
   wire stop_now = stop_due & ~stopped;
@@ -153,7 +161,7 @@ module passo_motion (
   end
 
   always @(posedge clk) begin
-    begin_profile <= armed && (sync_edge || !wait_sync) && !begin_profile && !stop_now;
+    begin_profile <= armed && (sync_edge || !wait_sync) && may_begin && !begin_profile && !stop_now;
     startable     <= idle && run && line_valid && ramp_valid && !startable && !stop_due && !hold;
     stop_due      <= stop_wanted && !stopped;
     cause_due     <= cause_wanted;
@@ -172,7 +180,8 @@ module passo_motion (
       if (command_stop) soft_cause <= CAUSE_STOP;
       else if (input_soft) soft_cause <= input_soft_cause;
       else if (dry) soft_cause <= CAUSE_RAMP_UNDERRUN;
-      stopping <= command_stop | input_soft | dry;
+      else if (lags) soft_cause <= CAUSE_FOLLOWING_ERROR;
+      stopping <= command_stop | input_soft | dry | lags;
     end
 
     if (stop_now) begin

@@ -6,9 +6,8 @@
 // Promise: the word of a line is at the pins 5 + lag clocks after the first substep of the line, that is, lag clocks
 // after its STEP pin, and so is each value of a raster after its substep. The digital outputs keep their levels until
 // another line or `write_levels` changes them. The power pin is low in every clock in which `running` is low, from 7
-// clocks after velocity or rate is 0, when the last step has left, and after `overflow` until `clear`: a change was
-// lost. What waits when the
-// channel stops is dropped. `quiet`, one clock late: no change waits.
+// clocks after velocity or rate is 0 or the path waits, when the last step has left, and after `overflow` until `clear`:
+// a change was lost. What waits when the channel stops is dropped. `quiet`, one clock late: no change waits.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -53,6 +52,7 @@ module passo_outputs #(
   input  wire            running_next,      // the level of `running` in the next clock
   input  wire [    31:0] velocity,
   input  wire [    16:0] rate,
+  input  wire            waits,             // the path waits for an encoder
   // axes
   input  wire [AXES-1:0] step_made,
   input  wire [AXES-1:0] step_direction,
@@ -77,11 +77,11 @@ module passo_outputs #(
   reg         differs;  // the change that comes next changes the power
   reg         lights;  // it has one
   reg         restart;
-  reg  [ 6:1] still;  // velocity or rate was 0, 1 .. 6 clocks ago
+  reg  [ 6:1] still;  // velocity or rate was 0, or the path waited, 1 .. 6 clocks ago
   wire [23:0] cost;
 
   always @(posedge clk) begin
-    still   <= {still[5:1], velocity == 32'd0 || rate == 17'd0};
+    still   <= {still[5:1], velocity == 32'd0 || rate == 17'd0 || waits};
     differs <= {data[24], data[15:0]} != {proportional, power_now};
     lights  <= data[15:0] != 16'd0;
     restart <= hit & differs;

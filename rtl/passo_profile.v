@@ -39,6 +39,7 @@ module passo_profile #(
   output wire                ends_next,
   // time scale
   input  wire                enable,            // clock enable
+  output wire                stall,             // it is ignored in this clock
   // tables
   output wire                table_request,
   output wire [         9:0] table_address,
@@ -50,7 +51,6 @@ module passo_profile #(
   output wire                substep
 );
 
-  wire        stall;
   wire        tick_ends;
   wire        advance = enable & ~stall;
   wire        tick = enable & tick_ends;

@@ -530,10 +530,68 @@ localparam CHANNEL_TRIGGER_POSITION_POSITION_LSB   = 0;
 localparam CHANNEL_TRIGGER_POSITION_POSITION_BITS  = 32;
 localparam CHANNEL_TRIGGER_POSITION_POSITION_RESET = 32'h00000000;
 
+// Channel: Encoder position. Only with ENCODERS. Counts of the encoder of an axis, sampled on the clock of
+// its position; wraps.
+localparam CHANNEL_ENCODER_POSITION_BASE           = 8'h50;
+localparam CHANNEL_ENCODER_POSITION_COUNT          = 8;
+localparam CHANNEL_ENCODER_POSITION_POSITION_LSB   = 0;
+localparam CHANNEL_ENCODER_POSITION_POSITION_BITS  = 32;
+localparam CHANNEL_ENCODER_POSITION_POSITION_RESET = 32'h00000000;
+
+// Channel: Follow. Only with ENCODERS. Refused with BUSY unless the channel is quiet.
+localparam CHANNEL_FOLLOW                  = 8'h60;
+localparam CHANNEL_FOLLOW_FOLLOW_LSB       = 0;
+localparam CHANNEL_FOLLOW_FOLLOW_BITS      = 1;
+localparam CHANNEL_FOLLOW_FOLLOW_RESET     = 1'h0;
+localparam CHANNEL_FOLLOW_WAIT_INDEX_LSB   = 1;
+localparam CHANNEL_FOLLOW_WAIT_INDEX_BITS  = 1;
+localparam CHANNEL_FOLLOW_WAIT_INDEX_RESET = 1'h0;
+localparam CHANNEL_FOLLOW_SOURCE_LSB       = 2;
+localparam CHANNEL_FOLLOW_SOURCE_BITS      = 3;
+localparam CHANNEL_FOLLOW_SOURCE_RESET     = 3'h0;
+localparam CHANNEL_FOLLOW_SCALE_LSB        = 5;
+localparam CHANNEL_FOLLOW_SCALE_BITS       = 3;
+localparam CHANNEL_FOLLOW_SCALE_RESET      = 3'h0;
+localparam CHANNEL_FOLLOW_DEFINED          = 32'h000000FF;
+
+// Channel: Follow limit. Only with ENCODERS. What is owed to the encoder is made at no more than this.
+// Refused with BAD_VALUE if 0 or above 1/2.
+localparam CHANNEL_FOLLOW_LIMIT             = 8'h61;
+localparam CHANNEL_FOLLOW_LIMIT_LIMIT_LSB   = 0;
+localparam CHANNEL_FOLLOW_LIMIT_LIMIT_BITS  = 32;
+localparam CHANNEL_FOLLOW_LIMIT_LIMIT_RESET = 32'h01000000;
+localparam CHANNEL_FOLLOW_LIMIT_DEFINED     = 32'hFFFFFFFF;
+
+// Channel: Encoder filter. Only with ENCODERS. Glitch filter of all encoders of the channel. May be written
+// at any time.
+localparam CHANNEL_ENCODER_FILTER              = 8'h62;
+localparam CHANNEL_ENCODER_FILTER_FILTER_LSB   = 0;
+localparam CHANNEL_ENCODER_FILTER_FILTER_BITS  = 8;
+localparam CHANNEL_ENCODER_FILTER_FILTER_RESET = 8'h03;
+localparam CHANNEL_ENCODER_FILTER_DEFINED      = 32'h000000FF;
+
+// Channel: Follow state. Only with ENCODERS. Of the motion that runs; behind and lost, of the last one,
+// until the next is prepared.
+localparam CHANNEL_FOLLOW_STATE              = 8'h63;
+localparam CHANNEL_FOLLOW_STATE_OWED_LSB     = 0;
+localparam CHANNEL_FOLLOW_STATE_OWED_BITS    = 24;
+localparam CHANNEL_FOLLOW_STATE_OWED_RESET   = 24'h000000;
+localparam CHANNEL_FOLLOW_STATE_BEHIND_LSB   = 24;
+localparam CHANNEL_FOLLOW_STATE_BEHIND_BITS  = 1;
+localparam CHANNEL_FOLLOW_STATE_BEHIND_RESET = 1'h0;
+localparam CHANNEL_FOLLOW_STATE_LOST_LSB     = 25;
+localparam CHANNEL_FOLLOW_STATE_LOST_BITS    = 1;
+localparam CHANNEL_FOLLOW_STATE_LOST_RESET   = 1'h0;
+
 // Channel: where each axis has its registers.
 localparam CHANNEL_AXIS_BASE   = 8'h80;
 localparam CHANNEL_AXIS_COUNT  = 8;
 localparam CHANNEL_AXIS_STRIDE = 8'h08;
+
+// Channel: where each encoder has its registers.
+localparam CHANNEL_ENCODER_BASE   = 8'hC0;
+localparam CHANNEL_ENCODER_COUNT  = 8;
+localparam CHANNEL_ENCODER_STRIDE = 8'h08;
 
 // Axis: Pins. Polarities and step mode. Refused with BUSY unless the channel is quiet. From the write on,
 // the next step waits for the low time, the DIR hold and the DIR setup. Kept through a reset of the core.
@@ -611,6 +669,70 @@ localparam AXIS_INPUTS_ALARM_DISABLES_BITS       = 1;
 localparam AXIS_INPUTS_ALARM_DISABLES_RESET      = 1'h0;
 localparam AXIS_INPUTS_DEFINED                   = 32'h0000007F;
 
+// Encoder: Encoder setup. Only with ENCODERS. May be written at any time.
+localparam ENCODER_SETUP                      = 3'h0;
+localparam ENCODER_SETUP_INVERTED_LSB         = 0;
+localparam ENCODER_SETUP_INVERTED_BITS        = 1;
+localparam ENCODER_SETUP_INVERTED_RESET       = 1'h0;
+localparam ENCODER_SETUP_INDEX_INVERTED_LSB   = 1;
+localparam ENCODER_SETUP_INDEX_INVERTED_BITS  = 1;
+localparam ENCODER_SETUP_INDEX_INVERTED_RESET = 1'h0;
+localparam ENCODER_SETUP_INDEX_GATED_LSB      = 2;
+localparam ENCODER_SETUP_INDEX_GATED_BITS     = 1;
+localparam ENCODER_SETUP_INDEX_GATED_RESET    = 1'h0;
+localparam ENCODER_SETUP_STOP_SOFT_LSB        = 3;
+localparam ENCODER_SETUP_STOP_SOFT_BITS       = 1;
+localparam ENCODER_SETUP_STOP_SOFT_RESET      = 1'h0;
+localparam ENCODER_SETUP_STOP_HARD_LSB        = 4;
+localparam ENCODER_SETUP_STOP_HARD_BITS       = 1;
+localparam ENCODER_SETUP_STOP_HARD_RESET      = 1'h0;
+localparam ENCODER_SETUP_DEFINED              = 32'h0000001F;
+
+// Encoder: Encoder ratio. Only with ENCODERS. Counts per step. Refused with BAD_VALUE if 0. A write sets
+// the following error to 0.
+localparam ENCODER_RATIO         = 3'h1;
+localparam ENCODER_RATIO_LSB     = 0;
+localparam ENCODER_RATIO_BITS    = 32;
+localparam ENCODER_RATIO_RESET   = 32'h00010000;
+localparam ENCODER_RATIO_DEFINED = 32'hFFFFFFFF;
+
+// Encoder: Following error limit. Only with ENCODERS. Refused with BAD_VALUE if 0.
+localparam ENCODER_LIMIT         = 3'h2;
+localparam ENCODER_LIMIT_LSB     = 0;
+localparam ENCODER_LIMIT_BITS    = 16;
+localparam ENCODER_LIMIT_RESET   = 16'hFFFF;
+localparam ENCODER_LIMIT_DEFINED = 32'h0000FFFF;
+
+// Encoder: Following error. Only with ENCODERS. Position times ratio less encoder position, both as they
+// were set to 0 by COMMAND.ZERO or a write of the ratio.
+localparam ENCODER_ERROR       = 3'h3;
+localparam ENCODER_ERROR_LSB   = 0;
+localparam ENCODER_ERROR_BITS  = 32;
+localparam ENCODER_ERROR_RESET = 32'h00000000;
+
+// Encoder: Greatest following error. Only with ENCODERS. Since COMMAND.ZERO, COMMAND.CLEAR or a write of
+// the ratio.
+localparam ENCODER_GREATEST                = 3'h4;
+localparam ENCODER_GREATEST_GREATEST_LSB   = 0;
+localparam ENCODER_GREATEST_GREATEST_BITS  = 18;
+localparam ENCODER_GREATEST_GREATEST_RESET = 18'h00000;
+localparam ENCODER_GREATEST_EXCEEDED_LSB   = 31;
+localparam ENCODER_GREATEST_EXCEEDED_BITS  = 1;
+localparam ENCODER_GREATEST_EXCEEDED_RESET = 1'h0;
+
+// Encoder: Encoder index. Only with ENCODERS. What the index has latched, and the transitions that were
+// none. All 0 after COMMAND.ZERO.
+localparam ENCODER_INDEX               = 3'h5;
+localparam ENCODER_INDEX_LATCH_LSB     = 0;
+localparam ENCODER_INDEX_LATCH_BITS    = 16;
+localparam ENCODER_INDEX_LATCH_RESET   = 16'h0000;
+localparam ENCODER_INDEX_INDEXES_LSB   = 16;
+localparam ENCODER_INDEX_INDEXES_BITS  = 8;
+localparam ENCODER_INDEX_INDEXES_RESET = 8'h00;
+localparam ENCODER_INDEX_ILLEGAL_LSB   = 24;
+localparam ENCODER_INDEX_ILLEGAL_BITS  = 8;
+localparam ENCODER_INDEX_ILLEGAL_RESET = 8'h00;
+
 // Operation of a frame.
 localparam OPERATION_READ  = 4'd1; // Read consecutive registers.
 localparam OPERATION_WRITE = 4'd2; // Write consecutive registers.
@@ -657,7 +779,7 @@ localparam TRIGGER_SOURCE_LIMIT_LOW  = 3'd1; // Limit switch of the axis in nega
 localparam TRIGGER_SOURCE_LIMIT_HIGH = 3'd2; // Limit switch of the axis in positive direction.
 localparam TRIGGER_SOURCE_HOME       = 3'd3; // Home switch of the axis.
 localparam TRIGGER_SOURCE_PROBE      = 3'd4; // Probe of the channel.
-localparam TRIGGER_SOURCE_INDEX      = 3'd5; // Index of the axis's encoder; never active without ENCODERS.
+localparam TRIGGER_SOURCE_INDEX      = 3'd5; // Index of the axis's encoder, as its setup says; never active without ENCODERS.
 
 // What the trigger does when it fires.
 localparam TRIGGER_ACTION_LATCH       = 2'd0; // Only latch.

@@ -17,7 +17,8 @@ CORES = [
     Parameters(channels=2, axes=2),
     Parameters(channels=2, axes=3, inputs=1),
     Parameters(channels=2, axes=3, outputs=1),
-    Parameters(channels=2, axes=3, inputs=1, outputs=1),
+    Parameters(axes=3, encoders=1),
+    Parameters(channels=2, axes=3, inputs=1, encoders=1, outputs=1),
 ]
 
 
@@ -26,7 +27,8 @@ def every_register(parameters: Parameters) -> Iterator[tuple[int, Register]]:
     channels = [r.ADDRESS_CHANNEL_BASE + n * r.ADDRESS_CHANNEL_STRIDE for n in range(parameters.channels)]
     places = [r.CHANNEL_AXIS_BASE + n * r.CHANNEL_AXIS_STRIDE for n in range(parameters.axes)]
     axes = [channel + place for channel in channels for place in places]
-    bases = {"CORE": [0], "CHANNEL": channels, "AXIS": axes}
+    encoders = [base - r.CHANNEL_AXIS_BASE + r.CHANNEL_ENCODER_BASE for base in axes]
+    bases = {"CORE": [0], "CHANNEL": channels, "AXIS": axes, "ENCODER": encoders}
     for register in r.TABLE:
         if register.part and not getattr(parameters, register.part):
             continue
@@ -163,7 +165,7 @@ def check_all(core: Core) -> None:
 
 def test_every_register_of_the_model_answers() -> None:
     """Of the largest core, of which RUN has all bits."""
-    parameters = Parameters(channels=8, axes=8, inputs=1, outputs=1)
+    parameters = Parameters(channels=8, axes=8, inputs=1, encoders=1, outputs=1)
     with model_engine(parameters) as engine:
         check_all(Core(Link(engine), parameters))
 
@@ -178,5 +180,5 @@ def test_every_register_of_the_rtl_answers_as_in_the_model(parameters: Parameter
 def test_arrays_of_a_channel_have_a_word_for_each_axis() -> None:
     """This is how their number is known here."""
     arrays = [register.name for register in r.TABLE if register.block == "CHANNEL" and register.count > 1]
-    assert arrays == ["CHANNEL_POSITION", "CHANNEL_TRIGGER_POSITION"]
-    assert all(register.count == 1 for register in r.TABLE if register.block == "AXIS")
+    assert arrays == ["CHANNEL_POSITION", "CHANNEL_TRIGGER_POSITION", "CHANNEL_ENCODER_POSITION"]
+    assert all(register.count == 1 for register in r.TABLE if register.block in ("AXIS", "ENCODER"))

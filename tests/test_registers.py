@@ -71,7 +71,9 @@ def word_addresses(verilog: dict[str, tuple[int, int]]) -> list[int]:
         base, count, stride = (verilog[f"{name}_{part}"][1] for part in ("BASE", "COUNT", "STRIDE"))
         return [base + n * stride for n in range(count)]
 
-    channel = words("CHANNEL_") + [base + word for base in bases("CHANNEL_AXIS") for word in words("AXIS_")]
+    channel = words("CHANNEL_")
+    for block in ("AXIS", "ENCODER"):
+        channel += [base + word for base in bases(f"CHANNEL_{block}") for word in words(f"{block}_")]
     return words("ADDRESS_") + [base + word for base in bases("ADDRESS_CHANNEL") for word in channel]
 
 
@@ -166,7 +168,8 @@ def test_resets_have_the_width_of_their_field(verilog: dict):
 def test_fields_are_those_of_the_source(verilog: dict, rdl: list[RegNode]):
     of_verilog = fields(verilog)
     for register in rdl:
-        level = {1: "", 2: "CHANNEL_", 3: "AXIS_"}[register.get_path().count(".")]
+        *_, block = register.parent.inst_name.upper().split("[")[:1]
+        level = "" if block == "PASSO" else f"{block}_"
         stem = f"{level}{register.inst_name}".upper()
         for field in register.fields():
             long = f"{stem}_{field.inst_name}".upper()

@@ -15,7 +15,7 @@ all pins on all clocks up to now; the first difference is an error.
 """
 
 import functools
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Coroutine, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TextIO
@@ -205,6 +205,14 @@ class Core:
             getattr(self.dut, pin).value = levels
 
         self._thread.wait(set_pin())
+
+    def spawn(self, run: Callable[[], Coroutine[Any, Any, None]]) -> None:
+        """Start a coroutine that runs beside the test, until its end."""
+
+        async def start() -> None:
+            cocotb.start_soon(run())
+
+        self._thread.wait(start())
 
     def sync(self, level: bool) -> None:
         """Set the sync input."""

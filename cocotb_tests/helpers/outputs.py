@@ -16,7 +16,7 @@ INPUTS = (
     *("rst", "bus_frame", "bus_commit", "bus_check", "bus_write", "select", "bus_data"),
     *("lag", "pwm_step", "power_reference", "pitch", "compare_axis", "compare_width", "compare_interval"),
     *("write_pulse", "write_distance", "write_levels", "line_begins", "substep", "word", "stopped", "clear"),
-    *("running", "running_next", "velocity", "rate", "step_made", "step_direction"),
+    *("running", "running_next", "velocity", "rate", "waits", "step_made", "step_direction"),
 )
 OUTPUTS = ("outputs", "power", "compare", "raster_room", "raster_empty", "overflow", "quiet", "refusal")
 MODEL = ("outputs", "pwm", "power", "changes", "raster", "compare")  # sources, passo_*.c

@@ -32,6 +32,7 @@ enum input {
 	RUNNING_NEXT,
 	VELOCITY,
 	RATE,
+	WAITS,
 	STEP_MADE,
 	STEP_DIRECTION
 };
@@ -74,6 +75,7 @@ void outputs_model_clock(struct passo_outputs_unit *unit, const uint32_t *in, ui
 	    .running_next = in[RUNNING_NEXT] != 0u,
 	    .velocity = in[VELOCITY],
 	    .rate = in[RATE],
+	    .waits = in[WAITS] != 0u,
 	    .step_made = (uint8_t)in[STEP_MADE],
 	    .step_direction = (uint8_t)in[STEP_DIRECTION],
 	};

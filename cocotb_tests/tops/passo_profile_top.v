@@ -23,7 +23,7 @@ module passo_profile_top #(
   wire incomplete, needs_motion;
   wire [DEPTH_LOG2:0] room;
   wire valid, ready, ended, dry, ends_next;
-  wire stall = u_profile.stall;
+  wire stall;
   wire [47:0] velocity;  // that counts in this clock
 
   wire [CHANNELS-1:0] tables_served;

@@ -69,7 +69,7 @@ class TriggerSource(DescribedEnum):
     LIMIT_HIGH = 2, "Limit switch of the axis in positive direction."
     HOME = 3, "Home switch of the axis."
     PROBE = 4, "Probe of the channel."
-    INDEX = 5, "Index of the axis's encoder; never active without ENCODERS."
+    INDEX = 5, "Index of the axis's encoder, as its setup says; never active without ENCODERS."
 
 
 class TriggerAction(DescribedEnum):
@@ -581,6 +581,45 @@ class ChannelOutputStateWord(Word):
 
 
 @dataclass(frozen=True)
+class ChannelFollowWord(Word):
+    """Follow."""
+
+    # A count is 2^scale clocks of the profile.
+    scale: int = 0
+    # Axis of the encoder. One that is not there stands still.
+    source: int = 0
+    # 1: an ARMED motion waits for the index of that encoder.
+    wait_index: bool = False
+    # 1: the clocks of the profile are counts of an encoder.
+    follow: bool = False
+
+    PLACES: ClassVar = {
+        "follow": (0, 1, bool),
+        "wait_index": (1, 1, bool),
+        "source": (2, 3, int),
+        "scale": (5, 3, int),
+    }
+
+
+@dataclass(frozen=True)
+class ChannelFollowStateWord(Word):
+    """Follow state."""
+
+    # 2^22 or more were owed: the phase is lost.
+    lost: bool = False
+    # Two counts or more were owed: the path was late.
+    behind: bool = False
+    # Clocks of the profile that are owed to the encoder, signed.
+    owed: int = 0
+
+    PLACES: ClassVar = {
+        "owed": (0, 24, int),
+        "behind": (24, 1, bool),
+        "lost": (25, 1, bool),
+    }
+
+
+@dataclass(frozen=True)
 class AxisPinsWord(Word):
     """Pins."""
 
@@ -658,6 +697,63 @@ class AxisInputsWord(Word):
         "limit_soft": (4, 1, bool),
         "alarm_soft": (5, 1, bool),
         "alarm_disables": (6, 1, bool),
+    }
+
+
+@dataclass(frozen=True)
+class EncoderSetupWord(Word):
+    """Encoder setup."""
+
+    # 1: it is a hard stop, whatever stop_soft says. Neither: it only shows.
+    stop_hard: bool = False
+    # 1: a following error at the limit is a soft stop.
+    stop_soft: bool = False
+    # 1: the index counts only while A and B are high.
+    index_gated: bool = False
+    # 1: the index is active low.
+    index_inverted: bool = False
+    # 1: up is B before A.
+    inverted: bool = False
+
+    PLACES: ClassVar = {
+        "inverted": (0, 1, bool),
+        "index_inverted": (1, 1, bool),
+        "index_gated": (2, 1, bool),
+        "stop_soft": (3, 1, bool),
+        "stop_hard": (4, 1, bool),
+    }
+
+
+@dataclass(frozen=True)
+class EncoderGreatestWord(Word):
+    """Greatest following error."""
+
+    # The error is at its limit now.
+    exceeded: bool = False
+    # Counts, either way.
+    greatest: int = 0
+
+    PLACES: ClassVar = {
+        "greatest": (0, 18, int),
+        "exceeded": (31, 1, bool),
+    }
+
+
+@dataclass(frozen=True)
+class EncoderIndexWord(Word):
+    """Encoder index."""
+
+    # Changes of A and B at once, up to 255; 0 after COMMAND.CLEAR, too.
+    illegal: int = 0
+    # Number of indexes; wraps.
+    indexes: int = 0
+    # Encoder position at the last index, its lower 16 bits.
+    latch: int = 0
+
+    PLACES: ClassVar = {
+        "latch": (0, 16, int),
+        "indexes": (16, 8, int),
+        "illegal": (24, 8, int),
     }
 
 
@@ -1186,10 +1282,68 @@ CHANNEL_TRIGGER_POSITION_POSITION_LSB = 0
 CHANNEL_TRIGGER_POSITION_POSITION_BITS = 32
 CHANNEL_TRIGGER_POSITION_POSITION_RESET = 0x00000000
 
+# Channel: Encoder position. Only with ENCODERS. Counts of the encoder of an axis, sampled on the clock of
+# its position; wraps.
+CHANNEL_ENCODER_POSITION_BASE = 0x50
+CHANNEL_ENCODER_POSITION_COUNT = 8
+CHANNEL_ENCODER_POSITION_POSITION_LSB = 0
+CHANNEL_ENCODER_POSITION_POSITION_BITS = 32
+CHANNEL_ENCODER_POSITION_POSITION_RESET = 0x00000000
+
+# Channel: Follow. Only with ENCODERS. Refused with BUSY unless the channel is quiet.
+CHANNEL_FOLLOW = 0x60
+CHANNEL_FOLLOW_FOLLOW_LSB = 0
+CHANNEL_FOLLOW_FOLLOW_BITS = 1
+CHANNEL_FOLLOW_FOLLOW_RESET = 0x0
+CHANNEL_FOLLOW_WAIT_INDEX_LSB = 1
+CHANNEL_FOLLOW_WAIT_INDEX_BITS = 1
+CHANNEL_FOLLOW_WAIT_INDEX_RESET = 0x0
+CHANNEL_FOLLOW_SOURCE_LSB = 2
+CHANNEL_FOLLOW_SOURCE_BITS = 3
+CHANNEL_FOLLOW_SOURCE_RESET = 0x0
+CHANNEL_FOLLOW_SCALE_LSB = 5
+CHANNEL_FOLLOW_SCALE_BITS = 3
+CHANNEL_FOLLOW_SCALE_RESET = 0x0
+CHANNEL_FOLLOW_DEFINED = 0x000000FF
+
+# Channel: Follow limit. Only with ENCODERS. What is owed to the encoder is made at no more than this.
+# Refused with BAD_VALUE if 0 or above 1/2.
+CHANNEL_FOLLOW_LIMIT = 0x61
+CHANNEL_FOLLOW_LIMIT_LIMIT_LSB = 0
+CHANNEL_FOLLOW_LIMIT_LIMIT_BITS = 32
+CHANNEL_FOLLOW_LIMIT_LIMIT_RESET = 0x01000000
+CHANNEL_FOLLOW_LIMIT_DEFINED = 0xFFFFFFFF
+
+# Channel: Encoder filter. Only with ENCODERS. Glitch filter of all encoders of the channel. May be written
+# at any time.
+CHANNEL_ENCODER_FILTER = 0x62
+CHANNEL_ENCODER_FILTER_FILTER_LSB = 0
+CHANNEL_ENCODER_FILTER_FILTER_BITS = 8
+CHANNEL_ENCODER_FILTER_FILTER_RESET = 0x03
+CHANNEL_ENCODER_FILTER_DEFINED = 0x000000FF
+
+# Channel: Follow state. Only with ENCODERS. Of the motion that runs; behind and lost, of the last one,
+# until the next is prepared.
+CHANNEL_FOLLOW_STATE = 0x63
+CHANNEL_FOLLOW_STATE_OWED_LSB = 0
+CHANNEL_FOLLOW_STATE_OWED_BITS = 24
+CHANNEL_FOLLOW_STATE_OWED_RESET = 0x000000
+CHANNEL_FOLLOW_STATE_BEHIND_LSB = 24
+CHANNEL_FOLLOW_STATE_BEHIND_BITS = 1
+CHANNEL_FOLLOW_STATE_BEHIND_RESET = 0x0
+CHANNEL_FOLLOW_STATE_LOST_LSB = 25
+CHANNEL_FOLLOW_STATE_LOST_BITS = 1
+CHANNEL_FOLLOW_STATE_LOST_RESET = 0x0
+
 # Channel: where each axis has its registers.
 CHANNEL_AXIS_BASE = 0x80
 CHANNEL_AXIS_COUNT = 8
 CHANNEL_AXIS_STRIDE = 0x08
+
+# Channel: where each encoder has its registers.
+CHANNEL_ENCODER_BASE = 0xC0
+CHANNEL_ENCODER_COUNT = 8
+CHANNEL_ENCODER_STRIDE = 0x08
 
 # Axis: Pins. Polarities and step mode. Refused with BUSY unless the channel is quiet. From the write on,
 # the next step waits for the low time, the DIR hold and the DIR setup. Kept through a reset of the core.
@@ -1266,6 +1420,70 @@ AXIS_INPUTS_ALARM_DISABLES_LSB = 6
 AXIS_INPUTS_ALARM_DISABLES_BITS = 1
 AXIS_INPUTS_ALARM_DISABLES_RESET = 0x0
 AXIS_INPUTS_DEFINED = 0x0000007F
+
+# Encoder: Encoder setup. Only with ENCODERS. May be written at any time.
+ENCODER_SETUP = 0x0
+ENCODER_SETUP_INVERTED_LSB = 0
+ENCODER_SETUP_INVERTED_BITS = 1
+ENCODER_SETUP_INVERTED_RESET = 0x0
+ENCODER_SETUP_INDEX_INVERTED_LSB = 1
+ENCODER_SETUP_INDEX_INVERTED_BITS = 1
+ENCODER_SETUP_INDEX_INVERTED_RESET = 0x0
+ENCODER_SETUP_INDEX_GATED_LSB = 2
+ENCODER_SETUP_INDEX_GATED_BITS = 1
+ENCODER_SETUP_INDEX_GATED_RESET = 0x0
+ENCODER_SETUP_STOP_SOFT_LSB = 3
+ENCODER_SETUP_STOP_SOFT_BITS = 1
+ENCODER_SETUP_STOP_SOFT_RESET = 0x0
+ENCODER_SETUP_STOP_HARD_LSB = 4
+ENCODER_SETUP_STOP_HARD_BITS = 1
+ENCODER_SETUP_STOP_HARD_RESET = 0x0
+ENCODER_SETUP_DEFINED = 0x0000001F
+
+# Encoder: Encoder ratio. Only with ENCODERS. Counts per step. Refused with BAD_VALUE if 0. A write sets
+# the following error to 0.
+ENCODER_RATIO = 0x1
+ENCODER_RATIO_LSB = 0
+ENCODER_RATIO_BITS = 32
+ENCODER_RATIO_RESET = 0x00010000
+ENCODER_RATIO_DEFINED = 0xFFFFFFFF
+
+# Encoder: Following error limit. Only with ENCODERS. Refused with BAD_VALUE if 0.
+ENCODER_LIMIT = 0x2
+ENCODER_LIMIT_LSB = 0
+ENCODER_LIMIT_BITS = 16
+ENCODER_LIMIT_RESET = 0xFFFF
+ENCODER_LIMIT_DEFINED = 0x0000FFFF
+
+# Encoder: Following error. Only with ENCODERS. Position times ratio less encoder position, both as they
+# were set to 0 by COMMAND.ZERO or a write of the ratio.
+ENCODER_ERROR = 0x3
+ENCODER_ERROR_LSB = 0
+ENCODER_ERROR_BITS = 32
+ENCODER_ERROR_RESET = 0x00000000
+
+# Encoder: Greatest following error. Only with ENCODERS. Since COMMAND.ZERO, COMMAND.CLEAR or a write of
+# the ratio.
+ENCODER_GREATEST = 0x4
+ENCODER_GREATEST_GREATEST_LSB = 0
+ENCODER_GREATEST_GREATEST_BITS = 18
+ENCODER_GREATEST_GREATEST_RESET = 0x00000
+ENCODER_GREATEST_EXCEEDED_LSB = 31
+ENCODER_GREATEST_EXCEEDED_BITS = 1
+ENCODER_GREATEST_EXCEEDED_RESET = 0x0
+
+# Encoder: Encoder index. Only with ENCODERS. What the index has latched, and the transitions that were
+# none. All 0 after COMMAND.ZERO.
+ENCODER_INDEX = 0x5
+ENCODER_INDEX_LATCH_LSB = 0
+ENCODER_INDEX_LATCH_BITS = 16
+ENCODER_INDEX_LATCH_RESET = 0x0000
+ENCODER_INDEX_INDEXES_LSB = 16
+ENCODER_INDEX_INDEXES_BITS = 8
+ENCODER_INDEX_INDEXES_RESET = 0x00
+ENCODER_INDEX_ILLEGAL_LSB = 24
+ENCODER_INDEX_ILLEGAL_BITS = 8
+ENCODER_INDEX_ILLEGAL_RESET = 0x00
 
 # All registers, once each.
 # fmt: off
@@ -1448,6 +1666,26 @@ TABLE = (
     Register("CHANNEL_TRIGGER_POSITION", "CHANNEL", 0x48, 8, (
         Field("POSITION", 0, 32, "r", 0x00000000),
     ), "inputs"),
+    Register("CHANNEL_ENCODER_POSITION", "CHANNEL", 0x50, 8, (
+        Field("POSITION", 0, 32, "r", 0x00000000),
+    ), "encoders"),
+    Register("CHANNEL_FOLLOW", "CHANNEL", 0x60, 1, (
+        Field("FOLLOW", 0, 1, "w", 0x0),
+        Field("WAIT_INDEX", 1, 1, "w", 0x0),
+        Field("SOURCE", 2, 3, "w", 0x0),
+        Field("SCALE", 5, 3, "w", 0x0),
+    ), "encoders"),
+    Register("CHANNEL_FOLLOW_LIMIT", "CHANNEL", 0x61, 1, (
+        Field("LIMIT", 0, 32, "w", 0x01000000),
+    ), "encoders"),
+    Register("CHANNEL_ENCODER_FILTER", "CHANNEL", 0x62, 1, (
+        Field("FILTER", 0, 8, "w", 0x03),
+    ), "encoders"),
+    Register("CHANNEL_FOLLOW_STATE", "CHANNEL", 0x63, 1, (
+        Field("OWED", 0, 24, "r", 0x000000),
+        Field("BEHIND", 24, 1, "r", 0x0),
+        Field("LOST", 25, 1, "r", 0x0),
+    ), "encoders"),
     Register("AXIS_PINS", "AXIS", 0x0, 1, (
         Field("STEP_INVERTED", 1, 1, "w", 0x0),
         Field("DIRECTION_INVERTED", 2, 1, "w", 0x0),
@@ -1477,5 +1715,30 @@ TABLE = (
         Field("ALARM_SOFT", 5, 1, "w", 0x0),
         Field("ALARM_DISABLES", 6, 1, "w", 0x0),
     ), "inputs"),
+    Register("ENCODER_SETUP", "ENCODER", 0x0, 1, (
+        Field("INVERTED", 0, 1, "w", 0x0),
+        Field("INDEX_INVERTED", 1, 1, "w", 0x0),
+        Field("INDEX_GATED", 2, 1, "w", 0x0),
+        Field("STOP_SOFT", 3, 1, "w", 0x0),
+        Field("STOP_HARD", 4, 1, "w", 0x0),
+    ), "encoders"),
+    Register("ENCODER_RATIO", "ENCODER", 0x1, 1, (
+        Field("RATIO", 0, 32, "w", 0x00010000),
+    ), "encoders"),
+    Register("ENCODER_LIMIT", "ENCODER", 0x2, 1, (
+        Field("LIMIT", 0, 16, "w", 0xFFFF),
+    ), "encoders"),
+    Register("ENCODER_ERROR", "ENCODER", 0x3, 1, (
+        Field("ERROR", 0, 32, "r", 0x00000000),
+    ), "encoders"),
+    Register("ENCODER_GREATEST", "ENCODER", 0x4, 1, (
+        Field("GREATEST", 0, 18, "r", 0x00000),
+        Field("EXCEEDED", 31, 1, "r", 0x0),
+    ), "encoders"),
+    Register("ENCODER_INDEX", "ENCODER", 0x5, 1, (
+        Field("LATCH", 0, 16, "r", 0x0000),
+        Field("INDEXES", 16, 8, "r", 0x00),
+        Field("ILLEGAL", 24, 8, "r", 0x00),
+    ), "encoders"),
 )
 # fmt: on

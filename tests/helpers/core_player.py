@@ -17,7 +17,7 @@ from passo.toolchain import paths
 HERE = Path(__file__).parent
 HEADERS = [
     *(paths.protocol / f"passo_{name}.h" for name in ("registers", "words", "shapes", "command")),
-    *(paths.model / f"passo_{name}.h" for name in ("pins", "outputs", "model", "core")),
+    *(paths.model / f"passo_{name}.h" for name in ("pins", "encoder", "outputs", "model", "core")),
     HERE / "core_player.h",
 ]
 FOLDERS = (paths.model, paths.protocol)

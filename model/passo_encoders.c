@@ -1,0 +1,306 @@
+/* SPDX-License-Identifier: MIT
+ * Encoders of a channel, and the follower. See rtl/passo_encoders.v.
+ */
+#include "passo_model.h"
+#include "passo_words.h"
+
+static bool pin(uint8_t pins, unsigned axis)
+{
+	return ((uint32_t)pins >> axis & 1u) != 0u;
+}
+
+void passo_encoders_pins(
+    struct passo_channel_inputs *inputs, const struct passo_inputs *pins, unsigned channel)
+{
+	const unsigned first = channel * inputs->parameters->axes;
+
+	if (inputs->parameters->encoders == 0u)
+		return;
+	inputs->encoder_a = (uint8_t)(pins->encoder_a >> first);
+	inputs->encoder_b = (uint8_t)(pins->encoder_b >> first);
+	inputs->encoder_index = (uint8_t)(pins->encoder_index >> first);
+}
+
+static struct passo_encoder_wires encoder_wires(
+    const struct passo_channel *channel, const struct passo_channel_inputs *inputs, unsigned axis)
+{
+	const struct passo_encoder_axis *encoder = &channel->encoders.axis[axis];
+
+	return (struct passo_encoder_wires){
+	    .a = pin(inputs->encoder_a, axis),
+	    .b = pin(inputs->encoder_b, axis),
+	    .index = pin(inputs->encoder_index, axis),
+	    .filter = channel->encoders.filter,
+	    .inverted = encoder->inverted,
+	    .index_inverted = encoder->index_inverted,
+	    .index_gated = encoder->index_gated,
+	    .clear = channel->registers.command_zero || channel->registers.command_clear,
+	};
+}
+
+static const struct passo_encoder *followed(const struct passo_channel *channel)
+{
+	static const struct passo_encoder none = {0};
+	const unsigned source = channel->encoders.source;
+
+	return source < channel->axes ? &channel->encoders.axis[source].encoder : &none;
+}
+
+static struct passo_follower_wires follower_wires(
+    const struct passo_channel *channel, const struct passo_channel_wires *wires)
+{
+	const struct passo_encoder *source = followed(channel);
+
+	return (struct passo_follower_wires){
+	    .following = wires->follows && (wires->begin_profile || wires->counting),
+	    .count_made = source->count_made,
+	    .count_down = source->count_down,
+	    .scale = channel->encoders.scale,
+	    .limit = channel->encoders.follow_limit,
+	    .enable = channel->timescale.enable && wires->counting,
+	    .stall = wires->stall,
+	};
+}
+
+static void reset_settings(struct passo_encoders *encoders)
+{
+	encoders->follow_limit = PASSO_CHANNEL_FOLLOW_LIMIT_LIMIT_RESET;
+	encoders->filter = PASSO_CHANNEL_ENCODER_FILTER_FILTER_RESET;
+	for (unsigned i = 0; i < PASSO_AXES_MAX; i++) {
+		encoders->axis[i].ratio = PASSO_ENCODER_RATIO_RESET;
+		encoders->axis[i].limit = PASSO_ENCODER_LIMIT_RESET;
+	}
+}
+
+void passo_encoders_reset(struct passo_encoders *encoders, bool present)
+{
+	*encoders = (struct passo_encoders){.present = present};
+	reset_settings(encoders);
+	passo_follower_reset(&encoders->follower);
+	passo_positions_reset(&encoders->positions);
+	for (unsigned i = 0; i < PASSO_AXES_MAX; i++)
+		passo_encoder_reset(&encoders->axis[i].encoder);
+}
+
+void passo_encoders_restart(struct passo_encoders *encoders, const struct passo_encoders *before,
+    const struct passo_channel_inputs *inputs)
+{
+	passo_encoders_reset(encoders, before->present);
+	for (unsigned i = 0; i < PASSO_AXES_MAX; i++) {
+		const struct passo_encoder_wires pins = {
+		    .a = pin(inputs->encoder_a, i),
+		    .b = pin(inputs->encoder_b, i),
+		    .index = pin(inputs->encoder_index, i),
+		};
+
+		encoders->axis[i].encoder = before->axis[i].encoder;
+		passo_encoder_clock(&encoders->axis[i].encoder, &pins);
+		passo_encoder_restart(&encoders->axis[i].encoder, &before->axis[i].encoder);
+	}
+}
+
+void passo_encoders_wires(const struct passo_channel *channel, struct passo_channel_wires *wires)
+{
+	const struct passo_encoders *encoders = &channel->encoders;
+	const bool follow = encoders->follow;
+
+	wires->may_begin = !(follow && encoders->wait_index) || followed(channel)->index_event;
+	wires->follows = follow && !wires->drain;
+	wires->too_far = encoders->stop_hard && wires->occupied;
+	wires->lags = encoders->stop_soft && wires->occupied;
+}
+
+bool passo_encoders_wait(const struct passo_channel *channel)
+{
+	const struct passo_encoders *encoders = &channel->encoders;
+
+	return encoders->follow && channel->motion.state != PASSO_STATE_DRAIN && !encoders->follower.due;
+}
+
+uint8_t passo_encoders_index(const struct passo_channel *channel)
+{
+	uint8_t active = 0;
+
+	for (unsigned i = 0; i < channel->axes; i++) {
+		const struct passo_encoder_axis *axis = &channel->encoders.axis[i];
+		const struct passo_encoder *encoder = &axis->encoder;
+		const bool gate = !axis->index_gated || (encoder->a.sync & encoder->b.sync & 2u) != 0u;
+		const bool high = (encoder->index.sync & 2u) != 0u;
+		active |= (uint8_t)((gate && high != axis->index_inverted ? 1u : 0u) << i);
+	}
+	return channel->encoders.present ? active : 0u;
+}
+
+bool passo_encoders_advance(const struct passo_channel *channel, const struct passo_channel_wires *wires)
+{
+	const struct passo_follower_wires follower = follower_wires(channel, wires);
+
+	return passo_follower_advance(&channel->encoders.follower, &follower);
+}
+
+static void write_axis(struct passo_encoder_axis *axis, unsigned address, uint32_t data)
+{
+	switch (address) {
+	case PASSO_ENCODER_SETUP: {
+		const struct passo_encoder_setup setup = passo_unpack_encoder_setup(data);
+		axis->inverted = setup.inverted;
+		axis->index_inverted = setup.index_inverted;
+		axis->index_gated = setup.index_gated;
+		axis->stops_soft = setup.stop_soft;
+		axis->stops_hard = setup.stop_hard;
+		break;
+	}
+	case PASSO_ENCODER_RATIO:
+		axis->ratio = data;
+		break;
+	case PASSO_ENCODER_LIMIT:
+		axis->limit = (uint16_t)data;
+		break;
+	default:
+		break;
+	}
+}
+
+static void write_register(struct passo_channel *channel, uint8_t address, uint32_t data)
+{
+	struct passo_encoders *encoders = &channel->encoders;
+	const unsigned in_axes = (unsigned)address - PASSO_CHANNEL_ENCODER_BASE;
+
+	if (address == PASSO_CHANNEL_FOLLOW) {
+		const struct passo_channel_follow follow = passo_unpack_channel_follow(data);
+		encoders->follow = follow.follow;
+		encoders->wait_index = follow.wait_index;
+		encoders->source = follow.source;
+		encoders->scale = follow.scale;
+	} else if (address == PASSO_CHANNEL_FOLLOW_LIMIT) {
+		encoders->follow_limit = data;
+	} else if (address == PASSO_CHANNEL_ENCODER_FILTER) {
+		encoders->filter = (uint8_t)data;
+	} else if (in_axes < channel->axes * PASSO_CHANNEL_ENCODER_STRIDE) {
+		write_axis(&encoders->axis[in_axes / PASSO_CHANNEL_ENCODER_STRIDE],
+		    in_axes % PASSO_CHANNEL_ENCODER_STRIDE, data);
+	}
+}
+
+static void clock_axis(struct passo_channel *channel, const struct passo_channel_inputs *inputs, unsigned i)
+{
+	struct passo_encoder_axis *axis = &channel->encoders.axis[i];
+	const struct passo_encoder_wires pins = encoder_wires(channel, inputs, i);
+	const uint8_t ratio =
+	    (uint8_t)(PASSO_CHANNEL_ENCODER_BASE + i * PASSO_CHANNEL_ENCODER_STRIDE + PASSO_ENCODER_RATIO);
+	const bool zero = channel->registers.command_zero;
+	const struct passo_following_wires following = {
+	    .zero = zero || (channel->encoders.writes && channel->encoders.written == ratio),
+	    .clear = channel->registers.command_clear,
+	    .step_made = channel->axis[i].step_made,
+	    .step_direction = channel->axis[i].dir,
+	    .count_made = axis->encoder.count_made,
+	    .count_down = axis->encoder.count_down,
+	    .ratio = axis->ratio,
+	    .limit = axis->limit,
+	};
+
+	passo_following_clock(&axis->following, &following);
+	if (axis->index_event_q) {
+		axis->latch = (uint16_t)axis->count;
+		axis->indexes++;
+	}
+	axis->index_event_q = axis->encoder.index_event;
+	if (axis->encoder.count_made)
+		axis->count += axis->encoder.count_down ? 0xFFFFFFFFu : 1u;
+	if (zero) {
+		axis->count = 0;
+		axis->latch = 0;
+		axis->indexes = 0;
+		axis->index_event_q = false;
+	}
+	passo_encoder_clock(&axis->encoder, &pins);
+}
+
+void passo_encoders_clock(struct passo_channel *channel, const struct passo_channel_inputs *inputs,
+    const struct passo_channel_wires *wires)
+{
+	struct passo_encoders *encoders = &channel->encoders;
+	const struct passo_follower_wires follower = follower_wires(channel, wires);
+	uint32_t counts[PASSO_AXES_MAX];
+	bool soft = encoders->follower.lost;
+	bool hard = false;
+
+	if (!encoders->present)
+		return;
+	for (unsigned i = 0; i < PASSO_AXES_MAX; i++)
+		counts[i] = encoders->axis[i].count;
+	passo_positions_clock(&encoders->positions, counts, channel->registers.command_zero, inputs->snapshot,
+	    wires->requests.latch);
+	encoders->was_behind = (encoders->was_behind && !wires->prepare) || encoders->follower.behind;
+	encoders->was_lost = (encoders->was_lost && !wires->prepare) || encoders->follower.lost;
+	passo_follower_clock(&encoders->follower, &follower);
+	for (unsigned i = 0; i < channel->axes; i++) {
+		const struct passo_encoder_axis *axis = &encoders->axis[i];
+		soft = soft || (axis->following.exceeded && axis->stops_soft);
+		hard = hard || (axis->following.exceeded && axis->stops_hard);
+		clock_axis(channel, inputs, i);
+	}
+	encoders->stop_soft = soft;
+	encoders->stop_hard = hard;
+	if (encoders->writes)
+		write_register(channel, encoders->written, inputs->bus->data);
+	encoders->writes = wires->selected && inputs->bus->write;
+	encoders->written = wires->bus_address;
+}
+
+bool passo_encoders_quiet(const struct passo_channel *channel, const struct passo_channel_inputs *inputs)
+{
+	const struct passo_encoders *encoders = &channel->encoders;
+	bool soft = encoders->follower.lost;
+	bool hard = false;
+
+	if (!encoders->present)
+		return true;
+	/* a motion that follows, or is about to, is not skipped */
+	if (encoders->writes || encoders->written != (uint8_t)inputs->bus->address
+	    || encoders->positions.snapshot_waits || encoders->positions.latch_waits
+	    || (encoders->follow && passo_channel_occupied(channel)))
+		return false;
+	for (unsigned i = 0; i < channel->axes; i++) {
+		const struct passo_encoder_axis *axis = &encoders->axis[i];
+		const struct passo_encoder_wires pins = encoder_wires(channel, inputs, i);
+		const struct passo_following_wires following = {
+		    .step_made = channel->axis[i].step_made, .ratio = axis->ratio, .limit = axis->limit};
+
+		if (!passo_encoder_quiet(&axis->encoder, &pins)
+		    || !passo_following_quiet(&axis->following, &following) || axis->index_event_q)
+			return false;
+		soft = soft || (axis->following.exceeded && axis->stops_soft);
+		hard = hard || (axis->following.exceeded && axis->stops_hard);
+	}
+	return encoders->stop_soft == soft && encoders->stop_hard == hard && !encoders->follower.lost
+	    && !encoders->follower.behind;
+}
+
+uint32_t passo_encoders_value(const struct passo_channel *channel, uint8_t address)
+{
+	const struct passo_encoders *encoders = &channel->encoders;
+	const unsigned in_axes = (unsigned)address - PASSO_CHANNEL_ENCODER_BASE;
+	const struct passo_encoder_axis *axis =
+	    &encoders->axis[in_axes / PASSO_CHANNEL_ENCODER_STRIDE % PASSO_AXES_MAX];
+
+	if (address == PASSO_CHANNEL_FOLLOW_STATE)
+		return passo_pack_channel_follow_state(&(struct passo_channel_follow_state){
+		    .owed = (uint32_t)encoders->follower.owed & 0xFFFFFFu,
+		    .behind = encoders->was_behind,
+		    .lost = encoders->was_lost,
+		});
+	switch (in_axes % PASSO_CHANNEL_ENCODER_STRIDE) {
+	case PASSO_ENCODER_ERROR:
+		return (uint32_t)(axis->following.error >> 8);
+	case PASSO_ENCODER_GREATEST:
+		return passo_pack_encoder_greatest(&(struct passo_encoder_greatest){
+		    .greatest = axis->following.greatest, .exceeded = axis->following.exceeded});
+	case PASSO_ENCODER_INDEX:
+		return passo_pack_encoder_index(&(struct passo_encoder_index){
+		    .latch = axis->latch, .indexes = axis->indexes, .illegal = axis->encoder.illegal});
+	default:
+		return 0;
+	}
+}
