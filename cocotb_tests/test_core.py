@@ -12,6 +12,7 @@ from cocotb_tests.helpers.runner import CORE_TOP as TOP
 from cocotb_tests.helpers.runner import (
     ONE_CHANNEL,
     TWO_CHANNELS,
+    WITH_ALL,
     WITH_ENCODERS,
     WITH_INPUTS,
     WITH_OUTPUTS,
@@ -25,7 +26,7 @@ MOST_CHANNELS = {"CHANNELS": 8, "AXES": 1, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 8,
 verilator_only = pytest.mark.parametrize("simulator", ["verilator"])
 LEFT_TO_MAKE_ICARUS = (
     *("core_commands", "core_faults", "core_link", "core_refusals"),
-    *("core_inputs", "core_encoders", "core_outputs"),
+    *("core_inputs", "core_encoders", "core_outputs", "core_machine"),
 )
 
 MODULES = {
@@ -37,8 +38,9 @@ MODULES = {
     "core_channels": TWO_CHANNELS,  # two channels at once
     "core_registers": ONE_CHANNEL,  # settings and states in all their bits
     "core_inputs": WITH_INPUTS,  # limits, alarms, trigger, e-stop, watchdog
-    "core_outputs": WITH_OUTPUTS,  # outputs bound to the path
     "core_encoders": WITH_ENCODERS,  # following error, threading
+    "core_outputs": WITH_OUTPUTS,  # outputs bound to the path
+    "core_machine": WITH_ALL,  # what they do to each other
 }
 
 
