@@ -7,6 +7,8 @@ wire f_quiet = ~(|made);
 always @(posedge clk) begin
   f_started <= 1'b1;
   if (!f_started) compare_reset : assume (rst);
+  if (f_started)
+    compare_direction_stands : assume ((step_made & (step_direction ^ $past(step_direction))) == {AXES{1'b0}});
   if (f_started) compare_steps_apart : assume ((step_made & $past(step_made)) == {AXES{1'b0}});
   if (write_distance || write_pulse) compare_written_at_rest : assume (f_quiet && $past(f_quiet));
   if (f_started && $past(write_distance || write_pulse || rst)) compare_step_not_at_once : assume (f_quiet);
@@ -16,7 +18,7 @@ end
 // --- Position of the axis, and the point it is compared with
 reg  [31:0] f_position;
 reg  [31:0] f_point;
-wire [31:0] f_next = f_position + (down[axis] ? 32'hFFFFFFFF : 32'd1);
+wire [31:0] f_next = f_position + (directions[axis] ? 32'hFFFFFFFF : 32'd1);
 wire        f_arrives = steps && f_next == f_point;
 reg         f_arrived = 1'b0;
 reg  [15:0] f_high = 16'd0;  // clocks since the last arrival

@@ -24,7 +24,7 @@ module passo_compare #(
   input  wire [    31:0] distance,        // signed steps from here to the first point
   // axes
   input  wire [AXES-1:0] step_made,       // one clock before the edge; at least 2 clocks apart
-  input  wire [AXES-1:0] step_direction,  // 1 = negative
+  input  wire [AXES-1:0] step_direction,  // 1 = negative, from the clock before step_made on
   output reg             pin
 );
 
@@ -33,14 +33,16 @@ module passo_compare #(
   reg         one_down;  // away is -1
   reg  [15:0] timer;  // clocks of the pulse so far
   wire [ 7:0] made = {{(8 - AXES) {1'b0}}, step_made};
-  wire [ 7:0] down = {{(8 - AXES) {1'b0}}, step_direction};
+  wire [ 7:0] directions = {{(8 - AXES) {1'b0}}, step_direction};
+  reg         down;  // that of the step in this clock
   wire        steps = made[axis];
-  wire        arrives = steps & (down[axis] ? one_down : one_up);
+  wire        arrives = steps & (down ? one_down : one_up);
 
   always @(posedge clk) begin
+    down     <= directions[axis];
     one_up   <= away == 32'd1;
     one_down <= away == 32'hFFFFFFFF;
-    if (steps) away <= arrives ? interval : away - {{31{down[axis]}}, 1'b1};
+    if (steps) away <= arrives ? interval : away - {{31{down}}, 1'b1};
     timer <= timer + 16'd1;
     if (timer == width) pin <= 1'b0;
     if (arrives) begin
