@@ -19,6 +19,7 @@ HEADERS = (
     paths.protocol / "passo_crc.h",
     paths.planner / "passo_moves.h",
     paths.planner / "passo_plan.h",
+    paths.planner / "passo_path.h",
     paths.protocol / "passo_frame.h",
     paths.driver / "passo_error.h",
     paths.driver / "passo_host.h",

@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: MIT
+ * The lines of a path: a ring of items, with three places in it. Items before `planned` have been passed by
+ * the ramps, those before `sent` have been handed out as lines; `added` is the number of those known.
+ */
+#include "passo_path_private.h"
+
+static struct passo_path_item *newest(const struct passo_path_planner *path)
+{
+	return passo_path_item(path, path->added - 1);
+}
+
+uint32_t passo_path_room(const struct passo_path_planner *path)
+{
+	const uint32_t oldest = path->sent < path->planned ? path->sent : path->planned;
+
+	return path->capacity - (path->added - oldest);
+}
+
+bool passo_path_is_empty(const struct passo_path_planner *path)
+{
+	return path->sent == path->added && path->planned == path->added;
+}
+
+/* An arc is limited along its lines, not only at its corners. */
+static void level_arc(struct passo_path_planner *path, const struct passo_path_item *next)
+{
+	struct passo_path_item *item = newest(path);
+
+	if (item->arc && next->arc)
+		item->top = passo_path_smaller(item->top, passo_path_larger(item->corner, next->corner));
+}
+
+enum passo_plan_error passo_path_add(struct passo_path_planner *path, const struct passo_path_move *move)
+{
+	if (passo_path_room(path) == 0)
+		return PASSO_PLAN_PATH_FULL;
+	struct passo_path_item item = {.output = move->output, .dwell = path->dwell, .rest = path->rest};
+	const enum passo_plan_error error = passo_path_measure(path, move, &item);
+	if (error != PASSO_PLAN_OK || item.substeps == 0)
+		return error;
+	if (!item.rest) {
+		item.corner = passo_path_smaller(item.corner, newest(path)->top);
+		level_arc(path, &item);
+	}
+	path->rest = false;
+	path->dwell = 0;
+	*passo_path_item(path, path->added++) = item;
+	passo_path_look_back(path);
+	return PASSO_PLAN_OK;
+}
+
+void passo_path_dwell(struct passo_path_planner *path, uint64_t clocks)
+{
+	const uint32_t round = (UINT32_C(1) << path->machine.tick_log2) - 1u;
+	const uint64_t ticks = path->dwell + ((clocks >> path->machine.tick_log2) + ((clocks & round) > 0));
+
+	path->dwell = (uint32_t)passo_path_smaller(ticks, UINT32_MAX);
+	path->rest = true;
+	path->final = path->added;
+}
+
+void passo_path_end(struct passo_path_planner *path)
+{
+	passo_path_dwell(path, 0);
+	if (path->planned < path->added)
+		newest(path)->last = true;
+}
+
+bool passo_path_rests_after(const struct passo_path_planner *path, uint32_t index)
+{
+	return index + 1 == path->added || passo_path_item(path, index)->last
+	    || passo_path_item(path, index + 1)->rest;
+}
+
+uint64_t passo_path_end_square(const struct passo_path_planner *path, uint32_t index)
+{
+	return passo_path_rests_after(path, index) ? passo_path_item(path, index)->halt
+	                                           : passo_path_item(path, index + 1)->reach;
+}
+
+bool passo_path_is_settled(const struct passo_path_planner *path, uint32_t index)
+{
+	return index < path->final;
+}
+
+/* Goes back from the newest line as long as anything changes. */
+void passo_path_look_back(struct passo_path_planner *path)
+{
+	uint32_t final = path->final;
+
+	for (uint32_t index = path->added; index-- > path->planned && index >= path->final;) {
+		struct passo_path_item *item = passo_path_item(path, index);
+		const uint64_t most =
+		    passo_path_end_square(path, index)
+		    + passo_path_gain(passo_path_down_slope(item), (uint64_t)item->substeps << 32);
+		const uint64_t reach = passo_path_smaller(item->corner, most);
+
+		if ((reach == item->corner || item->rest) && final < index)
+			final = index;
+		if (reach == item->reach && index + 1 < path->added)
+			break;
+		item->reach = reach;
+	}
+	path->final = final;
+}
+
+bool passo_path_next_line(struct passo_path_planner *path, struct passo_line *line)
+{
+	if (path->lines_end || path->sent == path->added)
+		return false;
+	const struct passo_path_item *item = passo_path_item(path, path->sent);
+	if (path->sent + 1 == path->added && !item->last)
+		return false;
+	*line = (struct passo_line){
+	    .last = item->last,
+	    .directions = item->directions,
+	    .substeps = item->substeps,
+	};
+	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
+		line->steps[axis] = item->steps[axis];
+	path->sent++;
+	path->lines_end = item->last;
+	return true;
+}
+
+bool passo_path_next_motion(struct passo_path_planner *path)
+{
+	if (!path->lines_end || !path->ramps_end)
+		return false;
+	path->lines_end = path->ramps_end = false;
+	return true;
+}
