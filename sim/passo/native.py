@@ -25,6 +25,7 @@ HEADERS = (
     paths.driver / "passo_host.h",
     paths.driver / "passo.h",
     paths.driver / "passo_motor.h",
+    paths.driver / "passo_path_feed.h",
     paths.engine / "passo_engine.h",
     paths.engine / "passo_terminal.h",
     paths.console / "passo_decimal.h",

@@ -7,6 +7,7 @@ from fractions import Fraction
 from typing import Any
 
 from passo.build import Parameters
+from passo.driver import Driver, DriverError
 from passo.moves import q32
 from passo.native import ffi, planner
 from passo.plan import PlanError
@@ -112,3 +113,29 @@ class Path:
         if error != self._c.PASSO_PLAN_OK:
             name, text = self._c.passo_plan_error_name(error), self._c.passo_plan_error_text(error)
             raise PlanError(ffi().string(name).decode(), ffi().string(text).decode())
+
+
+class PathFeed:
+    """A `struct passo_path_feed`: a path that is fed to a channel while its lines become known."""
+
+    def __init__(self, driver: Driver, path: Path):
+        self.driver, self.path = driver, path
+        self._c = planner()
+        self.c = ffi().new("struct passo_path_feed *")
+        self.open()
+
+    def open(self) -> None:
+        """Begin, or begin again after a stop."""
+        self._c.passo_path_feed_open(self.c, self.driver.c, self.path.c)
+
+    def poll(self) -> None:
+        """At most one frame, two at the start of a motion; raises each error once."""
+        error = self._c.passo_path_feed_poll(self.c)
+        self.driver.hardware.check()
+        if error != self._c.PASSO_OK:
+            raise DriverError("path_feed_poll", error)
+
+    @property
+    def is_moving(self) -> bool:
+        """Whether there are lines that have not been executed yet."""
+        return self._c.passo_path_feed_is_moving(self.c)
