@@ -30,6 +30,21 @@ static void level_arc(struct passo_path_planner *path, const struct passo_path_i
 		item->top = passo_path_smaller(item->top, passo_path_larger(item->corner, next->corner));
 }
 
+/* The next line is the first of a motion. */
+static bool is_first(const struct passo_path_planner *path)
+{
+	return path->added == 0 || newest(path)->last;
+}
+
+/* The square below which the path rests at a corner: what the acceleration makes in a few ticks. */
+static uint64_t slowest(const struct passo_path_planner *path, const struct passo_path_item *item)
+{
+	const uint64_t velocity =
+	    passo_path_change(path, item->slope, PASSO_PATH_LANDING_TICKS) >> PASSO_PATH_VELOCITY_SHIFT;
+
+	return velocity * velocity + 1;
+}
+
 enum passo_plan_error passo_path_add(struct passo_path_planner *path, const struct passo_path_move *move)
 {
 	if (passo_path_room(path) == 0)
@@ -40,8 +55,11 @@ enum passo_plan_error passo_path_add(struct passo_path_planner *path, const stru
 		return error;
 	if (!item.rest) {
 		item.corner = passo_path_smaller(item.corner, newest(path)->top);
+		item.rest = item.corner < slowest(path, &item);
 		level_arc(path, &item);
 	}
+	if (item.rest && item.dwell == 0 && !is_first(path))
+		item.corner = 0;
 	path->rest = false;
 	path->dwell = 0;
 	*passo_path_item(path, path->added++) = item;
@@ -74,8 +92,16 @@ bool passo_path_rests_after(const struct passo_path_planner *path, uint32_t inde
 
 uint64_t passo_path_end_square(const struct passo_path_planner *path, uint32_t index)
 {
-	return passo_path_rests_after(path, index) ? passo_path_item(path, index)->halt
-	                                           : passo_path_item(path, index + 1)->reach;
+	const struct passo_path_item *item = passo_path_item(path, index);
+
+	if (item->last)
+		return item->halt;
+	if (index + 1 == path->added)
+		return 0;
+	const struct passo_path_item *next = passo_path_item(path, index + 1);
+	if (next->rest)
+		return next->dwell > 0 ? item->halt : 0;
+	return next->reach;
 }
 
 bool passo_path_is_settled(const struct passo_path_planner *path, uint32_t index)

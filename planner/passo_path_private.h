@@ -19,6 +19,9 @@
 /* Longest ramp that is not shaped: a longer one is cut. */
 #define PASSO_PATH_TICKS_MAX (UINT32_C(1) << 15)
 
+/* The path comes to rest from a velocity that the acceleration makes in so many ticks. */
+#define PASSO_PATH_LANDING_TICKS 2u
+
 /* A straight part of the profile: the square of the velocity changes evenly over the path. */
 enum passo_path_kind { PASSO_PATH_UP, PASSO_PATH_FLAT, PASSO_PATH_DOWN };
 
@@ -51,6 +54,9 @@ static inline uint64_t passo_path_down_slope(const struct passo_path_item *item)
 
 /* Change of the square over a length (UQ32.32 substeps); saturates. */
 uint64_t passo_path_gain(uint64_t slope, uint64_t length);
+
+/* Change of the velocity, UQ0.48, in so many ticks. */
+uint64_t passo_path_change(const struct passo_path_planner *path, uint64_t slope, uint64_t ticks);
 
 /* Fills in the geometry and the limits of a line, and remembers it as the last one; *substeps is 0 if it is
  * too short to be a line. */

@@ -13,6 +13,11 @@ uint64_t passo_path_gain(uint64_t slope, uint64_t length)
 	return product.high << 32 | product.low >> 32;
 }
 
+uint64_t passo_path_change(const struct passo_path_planner *path, uint64_t slope, uint64_t ticks)
+{
+	return passo_mul_div(slope, ticks << path->machine.tick_log2, UINT32_C(1) << 17);
+}
+
 /* Length over which the square changes, UQ32.32 substeps. */
 static uint64_t length_of(uint64_t change, uint64_t slope)
 {

@@ -11,8 +11,6 @@
 #define TICKS_MIN 32u
 /* While more lines may come, the reserve is divided into so many ramps. */
 #define RAMPS_PER_RESERVE 4u
-/* The path comes to rest from a velocity that the acceleration makes in so many ticks. */
-#define LANDING_TICKS 2u
 
 /* Why ramps are made beyond what is settled. */
 enum need { NO_NEED, FULL, DRY };
@@ -48,12 +46,6 @@ static uint64_t ticks_to(const struct passo_path_planner *path, const struct aim
 	const uint64_t speeds = path->velocity + velocity_of(aim->square);
 
 	return speeds > 0 ? ticks_over(path, aim->length, speeds) : UINT32_MAX;
-}
-
-/* Change of velocity in so many ticks. */
-static uint64_t change_in(const struct passo_path_planner *path, uint64_t slope, uint64_t ticks)
-{
-	return passo_mul_div(slope, ticks << path->machine.tick_log2, UINT32_C(1) << 17);
 }
 
 /* The newest line is handed out when the next one is known, or when it is the last. */
@@ -174,7 +166,7 @@ static void follow(
 	const uint64_t begin = path->velocity, end = velocity_of(aim->square);
 	const uint64_t ticks = passo_path_larger(ticks_to(path, aim), 1);
 	const uint32_t used = (uint32_t)passo_path_smaller(ticks, most);
-	const uint64_t limit = change_in(path, aim->slope, used);
+	const uint64_t limit = passo_path_change(path, aim->slope, used);
 	uint64_t change = begin < end ? end - begin : begin - end;
 
 	if (used < ticks)
@@ -239,8 +231,8 @@ bool passo_path_next_ramp(struct passo_path_planner *path, uint32_t held, struct
 			most = path->reserve / RAMPS_PER_RESERVE + 1;
 	}
 	if (aim.rest) {
-		const uint64_t landing =
-		    passo_path_larger(velocity_of(aim.square), change_in(path, aim.slope, LANDING_TICKS));
+		const uint64_t landing = passo_path_larger(
+		    velocity_of(aim.square), passo_path_change(path, aim.slope, PASSO_PATH_LANDING_TICKS));
 		const uint64_t ticks = ticks_over(path, aim.length, path->velocity + landing) + 1;
 
 		if (ticks <= most) {
