@@ -77,23 +77,21 @@ uint64_t passo_path_distance(
 	return sum.high << (64u - surplus) | sum.low >> surplus;
 }
 
-uint64_t passo_path_landing(
-    const struct passo_path_planner *path, uint64_t velocity, uint64_t distance, uint32_t ticks)
+void passo_path_land(
+    const struct passo_path_planner *path, uint64_t velocity, uint64_t distance, struct passo_ramp *ramp)
 {
-	struct passo_ramp ramp = {.shape = PASSO_SHAPE_LINEAR};
 	const uint64_t units = UINT64_C(1) << (17u - path->machine.tick_log2);
-	const uint64_t mean_twice = passo_mul_div(distance, units, ticks);
+	const uint64_t mean_twice = passo_mul_div(distance, units, ramp->ticks);
 
-	passo_path_set_ticks(&ramp, ticks);
-	ramp.velocity_end =
+	ramp->velocity_end =
 	    passo_path_smaller(mean_twice > velocity ? mean_twice - velocity : 0, PASSO_VELOCITY_MAX);
 	/* one correction makes good what rounding adds */
-	const uint64_t covered = passo_path_distance(path, velocity, &ramp);
+	const uint64_t covered = passo_path_distance(path, velocity, ramp);
 	if (covered > distance)
-		ramp.velocity_end -=
-		    passo_path_smaller(passo_mul_div(covered - distance, units, ticks), ramp.velocity_end);
+		ramp->velocity_end -= passo_path_smaller(
+		    passo_mul_div(covered - distance, units, ramp->ticks), ramp->velocity_end);
 	else
-		ramp.velocity_end = passo_path_smaller(
-		    ramp.velocity_end + passo_mul_div(distance - covered, units, ticks), PASSO_VELOCITY_MAX);
-	return ramp.velocity_end;
+		ramp->velocity_end = passo_path_smaller(
+		    ramp->velocity_end + passo_mul_div(distance - covered, units, ramp->ticks),
+		    PASSO_VELOCITY_MAX);
 }

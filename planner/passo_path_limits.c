@@ -78,6 +78,15 @@ static uint64_t find_steps(const struct passo_path_planner *path, const int64_t 
 	return most;
 }
 
+/* What a shape leaves of the slope of a line. A ramp over several lines needs one slope: the acceleration of
+ * the weakest axis that moves, doubled as often as possible. */
+static uint64_t shaped_slope(const struct passo_path_planner *path, uint64_t slope, uint64_t weakest)
+{
+	while (weakest <= slope / 2)
+		weakest *= 2;
+	return passo_mul_div(weakest, path->gentleness, UINT32_C(1) << 16);
+}
+
 /* Limits within the line, and where it begins or ends at rest. Returns the square of the latter. */
 static uint64_t limit_line(
     const struct passo_path_planner *path, const int32_t *unit, uint64_t feed, struct passo_path_item *item)
@@ -86,7 +95,7 @@ static uint64_t limit_line(
 	    feed < PASSO_PATH_RAPID
 		? passo_path_larger(1, passo_mul_div(feed, path->substeps_per_mm, path->machine.clock_hz))
 		: SPEED_MAX;
-	uint64_t slope = PASSO_PATH_SQUARE_MAX, jump = SPEED_MAX;
+	uint64_t slope = PASSO_PATH_SQUARE_MAX, jump = SPEED_MAX, weakest = PASSO_PATH_SQUARE_MAX;
 
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
 		const struct passo_path_scale *own = &path->axis[axis];
@@ -96,10 +105,13 @@ static uint64_t limit_line(
 			continue;
 		speed = passo_path_smaller(speed, ((uint64_t)own->speed << PASSO_PATH_UNIT_BITS) / share);
 		slope = passo_path_smaller(slope, passo_mul_div(2 * own->acceleration, ONE, share));
+		weakest = passo_path_smaller(weakest, 2 * own->acceleration);
 		jump = passo_path_smaller(jump, ((uint64_t)own->jump << PASSO_PATH_UNIT_BITS) / share);
 	}
 	item->top = square_of(speed);
-	item->slope = passo_path_larger(passo_mul_div(slope, path->gentleness, UINT32_C(1) << 16), 1);
+	if (path->shape != PASSO_SHAPE_LINEAR)
+		slope = shaped_slope(path, slope, weakest);
+	item->slope = passo_path_larger(slope, 1);
 	return passo_path_smaller(square_of(jump), item->top);
 }
 

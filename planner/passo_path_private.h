@@ -31,6 +31,15 @@ struct passo_path_part {
 	uint64_t square; /* at its end */
 };
 
+/* What the next ramp aims at. */
+struct passo_path_aim {
+	enum passo_path_kind kind;
+	uint64_t length, square; /* of the path to there, UQ32.32 substeps; of the velocity there */
+	uint64_t slope;
+	bool rest; /* it comes to rest there */
+	bool open; /* it ends there because what follows is not settled */
+};
+
 static inline struct passo_path_item *passo_path_item(const struct passo_path_planner *path, uint32_t index)
 {
 	return &path->items[index % path->capacity];
@@ -82,9 +91,13 @@ unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index,
 uint64_t passo_path_distance(
     const struct passo_path_planner *path, uint64_t velocity, const struct passo_ramp *ramp);
 
-/* The end velocity with which a linear ramp covers a distance; saturates at 0 and PASSO_VELOCITY_MAX. */
-uint64_t passo_path_landing(
-    const struct passo_path_planner *path, uint64_t velocity, uint64_t distance, uint32_t ticks);
+/* Solves a ramp of given shape and ticks for the end velocity with which it covers a distance; saturates at 0
+ * and PASSO_VELOCITY_MAX. */
+void passo_path_land(
+    const struct passo_path_planner *path, uint64_t velocity, uint64_t distance, struct passo_ramp *ramp);
+
+/* The first item at whose start a shaped ramp would exceed the limit of the corner; `added`: none. */
+uint32_t passo_path_too_fast(const struct passo_path_planner *path, const struct passo_path_aim *aim);
 
 /* Sets ticks and progress step. */
 void passo_path_set_ticks(struct passo_ramp *ramp, uint32_t ticks);

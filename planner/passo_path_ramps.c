@@ -11,18 +11,13 @@
 #define TICKS_MIN 32u
 /* While more lines may come, the reserve is divided into so many ramps. */
 #define RAMPS_PER_RESERVE 4u
+/* Shorter ramps are linear whatever the shape. */
+#define SHAPED_TICKS_MIN 64u
+/* Longest shaped ramp. */
+#define SHAPED_TICKS_MAX (UINT32_C(1) << 20)
 
 /* Why ramps are made beyond what is settled. */
 enum need { NO_NEED, FULL, DRY };
-
-/* What the next ramp aims at. */
-struct aim {
-	enum passo_path_kind kind;
-	uint64_t length, square; /* of the path to there, UQ32.32 substeps; velocity there */
-	uint64_t slope;
-	bool rest; /* it comes to rest there */
-	bool open; /* it ends there because what follows is not settled */
-};
 
 static uint64_t square_of(uint64_t velocity)
 {
@@ -41,7 +36,7 @@ static uint64_t ticks_over(const struct passo_path_planner *path, uint64_t lengt
 	return passo_mul_div(length, UINT64_C(1) << (17u - path->machine.tick_log2), speeds);
 }
 
-static uint64_t ticks_to(const struct passo_path_planner *path, const struct aim *aim)
+static uint64_t ticks_to(const struct passo_path_planner *path, const struct passo_path_aim *aim)
 {
 	const uint64_t speeds = path->velocity + velocity_of(aim->square);
 
@@ -55,7 +50,7 @@ static bool is_held_back(const struct passo_path_planner *path, uint32_t index)
 }
 
 /* Whether a part may be made already. */
-static bool is_due(const struct passo_path_planner *path, const struct aim *aim, uint32_t index,
+static bool is_due(const struct passo_path_planner *path, const struct passo_path_aim *aim, uint32_t index,
     const struct passo_path_part *part, enum need need)
 {
 	if (is_held_back(path, index))
@@ -66,7 +61,7 @@ static bool is_due(const struct passo_path_planner *path, const struct aim *aim,
 }
 
 /* Whether the ramp has to end before this part. */
-static bool is_enough(const struct passo_path_planner *path, const struct aim *aim, uint64_t slope,
+static bool is_enough(const struct passo_path_planner *path, const struct passo_path_aim *aim, uint64_t slope,
     const struct passo_path_part *part)
 {
 	if (aim->length == 0)
@@ -79,15 +74,19 @@ static bool is_enough(const struct passo_path_planner *path, const struct aim *a
 	    || (ticks > 1 && aim->kind == PASSO_PATH_DOWN && part->kind != PASSO_PATH_DOWN);
 }
 
-static struct aim find_aim(const struct passo_path_planner *path, enum need need)
+/* Follows the profile, at most to the start of item `before`. */
+static struct passo_path_aim find_aim(const struct passo_path_planner *path, enum need need, uint32_t before)
 {
-	struct aim aim = {.square = square_of(path->velocity)};
+	struct passo_path_aim aim = {.square = square_of(path->velocity)};
 	uint32_t index = path->planned;
 	uint64_t left = ((uint64_t)passo_path_item(path, index)->substeps << 32) - (uint64_t)path->offset;
 
 	for (;; index++, left = (uint64_t)passo_path_item(path, index)->substeps << 32) {
 		const struct passo_path_item *item = passo_path_item(path, index);
 		struct passo_path_part parts[3];
+
+		if (index == before)
+			return aim;
 		const unsigned count = passo_path_parts(
 		    path, index, left, aim.square, need == FULL && index == path->planned, parts);
 
@@ -108,6 +107,24 @@ static struct aim find_aim(const struct passo_path_planner *path, enum need need
 			return aim;
 		}
 	}
+}
+
+static bool is_shaped(const struct passo_path_planner *path, const struct passo_path_aim *aim)
+{
+	return path->shape != PASSO_SHAPE_LINEAR && aim->kind != PASSO_PATH_FLAT
+	    && ticks_to(path, aim) >= SHAPED_TICKS_MIN;
+}
+
+/* The shape of a ramp must keep the limits of all corners that it passes: otherwise it ends at the first of
+ * them. */
+static struct passo_path_aim choose_aim(const struct passo_path_planner *path, enum need need)
+{
+	struct passo_path_aim aim = find_aim(path, need, path->added);
+	uint32_t before;
+
+	while (is_shaped(path, &aim) && (before = passo_path_too_fast(path, &aim)) < path->added)
+		aim = find_aim(path, need, before);
+	return aim;
 }
 
 /* -------------------------------------------------------------------------------------------- ramps ---- */
@@ -148,11 +165,12 @@ static void come_to_rest(struct passo_path_planner *path, bool *last)
 }
 
 /* A ramp to a small velocity, which covers exactly what is left of the line; a ramp to 0 follows at once. */
-static void land(
-    struct passo_path_planner *path, const struct aim *aim, uint32_t ticks, struct passo_ramp *ramp)
+static void land(struct passo_path_planner *path, const struct passo_path_aim *aim, uint32_t ticks,
+    struct passo_ramp *ramp)
 {
+	ramp->shape = is_shaped(path, aim) ? path->shape : PASSO_SHAPE_LINEAR;
 	passo_path_set_ticks(ramp, ticks);
-	ramp->velocity_end = passo_path_landing(path, path->velocity, aim->length, ticks);
+	passo_path_land(path, path->velocity, aim->length, ramp);
 	make(path, ramp);
 	if (ramp->velocity_end > 0)
 		path->jump = true;
@@ -161,17 +179,19 @@ static void land(
 }
 
 static void follow(
-    struct passo_path_planner *path, const struct aim *aim, uint32_t most, struct passo_ramp *ramp)
+    struct passo_path_planner *path, const struct passo_path_aim *aim, uint32_t most, struct passo_ramp *ramp)
 {
 	const uint64_t begin = path->velocity, end = velocity_of(aim->square);
 	const uint64_t ticks = passo_path_larger(ticks_to(path, aim), 1);
-	const uint32_t used = (uint32_t)passo_path_smaller(ticks, most);
+	const bool shaped = is_shaped(path, aim);
+	const uint32_t used = (uint32_t)passo_path_smaller(ticks, shaped ? SHAPED_TICKS_MAX : most);
 	const uint64_t limit = passo_path_change(path, aim->slope, used);
 	uint64_t change = begin < end ? end - begin : begin - end;
 
 	if (used < ticks)
 		change = passo_mul_div(change, used, ticks);
 	change = passo_path_smaller(change, limit);
+	ramp->shape = shaped ? path->shape : PASSO_SHAPE_LINEAR;
 	passo_path_set_ticks(ramp, used);
 	ramp->velocity_end = begin < end ? begin + change : begin - change;
 	make(path, ramp);
@@ -217,7 +237,7 @@ bool passo_path_next_ramp(struct passo_path_planner *path, uint32_t held, struct
 		if (start(path, ramp))
 			return true;
 	}
-	struct aim aim = find_aim(path, NO_NEED);
+	struct passo_path_aim aim = choose_aim(path, NO_NEED);
 	uint32_t most = PASSO_PATH_TICKS_MAX;
 	if (aim.open && ticks_to(path, &aim) < path->reserve / RAMPS_PER_RESERVE) {
 		const bool is_full = path->added - path->planned == path->capacity;
@@ -226,7 +246,7 @@ bool passo_path_next_ramp(struct passo_path_planner *path, uint32_t held, struct
 			return false;
 		if (!is_full && is_held_back(path, path->planned))
 			passo_path_end(path);
-		aim = find_aim(path, is_full ? FULL : DRY);
+		aim = choose_aim(path, is_full ? FULL : DRY);
 		if (!is_full)
 			most = path->reserve / RAMPS_PER_RESERVE + 1;
 	}
@@ -235,7 +255,7 @@ bool passo_path_next_ramp(struct passo_path_planner *path, uint32_t held, struct
 		    velocity_of(aim.square), passo_path_change(path, aim.slope, PASSO_PATH_LANDING_TICKS));
 		const uint64_t ticks = ticks_over(path, aim.length, path->velocity + landing) + 1;
 
-		if (ticks <= most) {
+		if (ticks <= (is_shaped(path, &aim) ? SHAPED_TICKS_MAX : most)) {
 			land(path, &aim, (uint32_t)ticks, ramp);
 			return true;
 		}
