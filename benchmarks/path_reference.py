@@ -19,7 +19,7 @@ Line = tuple[Sequence[float], float | None]  # target in mm, feed in mm/s or Non
 
 @dataclass(frozen=True)
 class Limits:
-    """Limits of each line, and of the corner at its start, in mm and seconds; squares are of the path speed."""
+    """Limits of each line and of the corner at its start, in mm and s; squares are of the path speed."""
 
     length: np.ndarray
     unit: np.ndarray  # line x axis
@@ -30,8 +30,8 @@ class Limits:
     stop: float
 
 
-def limits_of(lines: Sequence[Line], settings: PathSettings) -> Limits:
-    """The limits of a path that begins at the origin."""
+def limits_of(lines: Sequence[Line], settings: PathSettings, arcs: bool = True) -> Limits:
+    """The limits of a path that begins at the origin; without `arcs` their lines are as fast as others."""
     axes = len(settings.axes)
     points = np.array([[0.0] * axes, *(list(target) for target, _ in lines)])
     delta = np.diff(points, axis=0)
@@ -66,11 +66,9 @@ def limits_of(lines: Sequence[Line], settings: PathSettings) -> Limits:
             corner[i] = min(corner[i], (jump[jumps] / change[jumps]).min() ** 2)
     corner[1:] = np.minimum(corner[1:], np.minimum(top[1:], top[:-1]))
     for i in range(1, len(length) - 1):
-        if arc[i] and arc[i + 1]:
+        if arcs and arc[i] and arc[i + 1]:
             top[i] = min(top[i], max(corner[i], corner[i + 1]))
-    return Limits(
-        length, unit, top, along, corner, min(ends[0], top[0]), min(ends[-1], top[-1])
-    )
+    return Limits(length, unit, top, along, corner, min(ends[0], top[0]), min(ends[-1], top[-1]))
 
 
 def profile(limits: Limits) -> tuple[np.ndarray, np.ndarray]:

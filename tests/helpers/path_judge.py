@@ -9,11 +9,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from benchmarks.path_reference import Limits, Line, limits_of
 from passo.move_forms import UNIT_Q32
 from passo.moves import q32
 from passo.path import PathSettings
 
+from benchmarks.path_reference import Limits, Line, limits_of
 from tests.helpers.path_player import Played
 
 WINDOW = 2e-3  # seconds over which speeds are measured
@@ -47,12 +47,11 @@ def steps_at(target: Sequence[float], settings: PathSettings) -> list[int]:
 
 @dataclass(frozen=True)
 class Samples:
-    """Times (s) and places (mm) of all steps in the order of the path; times and places of the lines' ends."""
+    """Times (s) and places (mm) of all steps in the order of the path; places of the lines' ends."""
 
     time: np.ndarray
     place: np.ndarray
     ends: np.ndarray
-    gaps: np.ndarray  # lines x 2: times of the last step before and the first after the end of each line
 
 
 def place_steps(
@@ -62,8 +61,8 @@ def place_steps(
     hz = settings.clock_hz
     points = np.array([[0] * len(settings.axes), *(steps_at(target, settings) for target, _ in lines)])
     counts = np.diff(points, axis=0)
-    moves = [i for i in range(len(lines)) if list(lines[i][0]) != list(lines[i - 1][0] if i else [0.0] * 8)[: len(settings.axes)]]
-    counts = counts[moves]
+    here = [(0.0,) * len(settings.axes), *(tuple(target) for target, _ in lines)]
+    counts = counts[[here[i] != here[i + 1] for i in range(len(lines))]]
     ends = np.concatenate(([0.0], np.cumsum(limits.length)))
     last = np.full(len(counts), -np.inf)
     first = np.full(len(counts), np.inf)
@@ -83,23 +82,21 @@ def place_steps(
         share = (number + 0.5) / np.maximum(size[line], 1)
         times.append(clocks)
         places.append(ends[line] + share * limits.length[line])
-        some = size > 0
         np.maximum.at(last, line, clocks / hz)
         np.minimum.at(first, line, clocks / hz)
-        assert some.any() or not len(clocks)
     time, place = np.concatenate(times), np.concatenate(places)
     order = np.lexsort((place, time))
     time, place = time[order] / hz, place[order]
-    if len(place) and (np.diff(place) < -PLACE).any():
-        late = np.flatnonzero(np.diff(place) < -PLACE)
-        wait = [time[k + 1] - time[max(0, np.searchsorted(place[: k + 1], place[k + 1]) - 1)] for k in late[:100]]
-        problems.append(f"{len(late)} steps out of the order of the path, e.g. at {place[late[0]]} mm {wait[:3]}")
+    back = np.flatnonzero(np.diff(place) < -PLACE)
+    if len(back):
+        problems.append(
+            f"{len(back)} steps out of the order of the path, the first at {place[back[0]]:.4f} mm"
+        )
     before = np.maximum.accumulate(last)
     behind = np.minimum.accumulate(first[::-1])[::-1]
     if (before[:-1] > behind[1:] + LATE / hz).any():
         problems.append("a step of a line before the end of the line before")
-    gaps = np.column_stack((before[:-1], behind[1:]))
-    return Samples(time, place, ends, gaps)
+    return Samples(time, place, ends)
 
 
 def windows(samples: Samples, width: float) -> tuple[np.ndarray, np.ndarray]:
@@ -125,16 +122,13 @@ def most_between(values: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.
     return found
 
 
-def judge(
-    lines: Sequence[Line], settings: PathSettings, played: Played, rests: bool = False, peak: float = 1.0
-) -> Verdict:
-    """Compare what was played with the limits.
+def judge(lines: Sequence[Line], settings: PathSettings, played: Played, rests: bool = False) -> Verdict:
+    """Compare what was played with the limits; with `rests` the path may have rested on the way.
 
-    With `rests` the path rested on the way, so that windows across a rest say nothing about its corners.
-    `peak` is the ratio of the steepest to the mean slope of the ramps.
+    A corner at which it rested is none, so neither its jump nor the arc that it is part of is judged.
     """
     problems: list[str] = []
-    limits = limits_of(lines, settings)
+    limits = limits_of(lines, settings, arcs=not rests)
     if played.positions != steps_at(lines[-1][0], settings):
         problems.append(f"the end is {played.positions} instead of {steps_at(lines[-1][0], settings)}")
     if played.drained:
@@ -148,7 +142,6 @@ def judge(
 
     tick = 128 / settings.clock_hz
     first, second = windows(samples, WINDOW)
-    speed = np.zeros(0)
     speed_ratio = acceleration_ratio = 0.0
     if len(first):
         width = samples.time[second] - samples.time[first]
@@ -164,8 +157,7 @@ def judge(
             change = np.abs(speed[two] - speed[one]) / (middle[two] - middle[one])
             noise = 2 * PLACE / np.minimum(width[one], width[two]) / (middle[two] - middle[one])
             most = most_between(limits.acceleration, a[one], b[two])
-            jump = np.zeros(len(one))
-            acceleration_ratio = float(((change - noise - jump) / most).max())
+            acceleration_ratio = float(((change - noise) / most).max())
     corner_ratio, jump_ratio = corners(settings, limits, samples, tick, rests)
     for name, ratio, bound in (
         ("speed", speed_ratio, SPEED_BOUND),
@@ -189,14 +181,14 @@ def corners(
         k = int(np.searchsorted(samples.place, place))
         if k == 0 or k == len(samples.place):
             continue
-        after = min(int(np.searchsorted(samples.time, samples.time[k - 1] + CORNER_WINDOW)), len(samples.time) - 1)
-        before, after = k - 1, max(after, k)
-        before = max(0, min(before, int(np.searchsorted(samples.time, samples.time[k] - CORNER_WINDOW, "right")) - 1))
+        after = max(k, int(np.searchsorted(samples.time, samples.time[k - 1] + CORNER_WINDOW)))
+        before = int(np.searchsorted(samples.time, samples.time[k] - CORNER_WINDOW, "right")) - 1
+        before, after = max(0, min(before, k - 1)), min(after, len(samples.time) - 1)
         width = samples.time[after] - samples.time[before]
         if width <= 0:
             continue
-        lowest, highest = np.searchsorted(samples.ends, [samples.place[before], samples.place[after]], "right") - 1
-        steepest = limits.acceleration[max(lowest, 0) : min(highest, len(limits.length) - 1) + 1].max()
+        around = np.searchsorted(samples.ends, samples.place[[before, after]], "right") - 1
+        steepest = limits.acceleration[around[0] : around[1] + 1].max()
         speed = (samples.place[after] - samples.place[before] - PLACE) / width - steepest * width / 2
         allowed = limits.corner[i] ** 0.5 + TICKS_BOUND * tick * steepest
         worst = max(worst, speed / allowed)

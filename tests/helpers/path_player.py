@@ -2,7 +2,7 @@
 """Plays paths on the C model through the driver, and returns the steps that left the pins."""
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,12 +12,12 @@ from passo.engine import Engine, model_engine
 from passo.moves import PinTiming
 from passo.path import Path, PathFeed, PathSettings
 
+from benchmarks.path_reference import Line
+
 PARAMETERS = Parameters(axes=4)
 PINS = PinTiming()
 SLEW_MICROSECONDS = 20_000
-LOOP_CLOCKS = 6_400  # between two polls
-
-Line = tuple[Sequence[float], float | None]  # target, feed
+LOOP_CLOCKS = 64_000  # a millisecond between two polls
 
 
 @dataclass
@@ -29,24 +29,19 @@ class Played:
     motions: list[tuple[int, int]]  # begin and end of each motion, in clocks
     positions: list[int]
     drained: int
-    ramps: int = 0
-    lines: list[tuple[int, ...]] = field(default_factory=list)  # steps of each, as handed out
 
     @property
-    def seconds(self) -> int:
+    def moving(self) -> int:
+        """Clocks of all motions."""
         return sum(end - begin for begin, end in self.motions)
 
 
 class Player:
     """A core with a path. `poll` passes time; `finish` returns what was played."""
 
-    def __init__(
-        self, settings: PathSettings, look_ahead: int, loop: int = LOOP_CLOCKS, **parameters: Any
-    ):
+    def __init__(self, settings: PathSettings, look_ahead: int, loop: int = LOOP_CLOCKS, **parameters: Any):
         self.settings, self.loop = settings, loop
-        self.engine: Engine = model_engine(
-            Parameters(**{"axes": 4, **parameters}), settings.clock_hz
-        )
+        self.engine: Engine = model_engine(Parameters(**{"axes": 4, **parameters}), settings.clock_hz)
         self.driver = Driver(self.engine, settings.clock_hz, self.engine.parameters)
         for axis in range(len(settings.axes)):
             self.driver.configure_axis(axis, PINS)
@@ -66,6 +61,11 @@ class Player:
                 return
             self.poll()
         raise AssertionError("it takes too long")
+
+    def rest(self, seconds: float) -> None:
+        """Let time pass."""
+        end = self.engine.clock + seconds * self.settings.clock_hz
+        self.wait(lambda: self.engine.clock >= end)
 
     def add(self, target: Sequence[float], feed: float | None) -> None:
         """Add a line as soon as there is room."""
@@ -87,8 +87,8 @@ class Player:
         origin = int(rises[0]) if len(rises) else 0
         clocks, steps = [], []
         for axis in range(len(self.settings.axes)):
-            level = events["step"] >> np.uint64(axis) & np.uint64(1)
-            rising = np.flatnonzero(level & ~np.concatenate([[0], level[:-1]]).astype(np.uint64) & np.uint64(1))
+            level = (events["step"] >> np.uint64(axis)).astype(np.int64) & 1
+            rising = np.flatnonzero(np.diff(level, prepend=0) == 1)
             back = (events["dir"][rising] >> np.uint64(axis) & np.uint64(1)).astype(np.int64)
             clocks.append(events["clock"][rising].astype(np.int64) - origin)
             steps.append(np.cumsum(1 - 2 * back))
@@ -107,14 +107,12 @@ def play(
     settings: PathSettings,
     look_ahead: int = 48,
     loop: int = LOOP_CLOCKS,
-    progress: Callable[[int], None] = lambda _: None,
 ) -> Played:
     """Play a path whose lines are all at hand."""
     player = Player(settings, look_ahead, loop)
     try:
-        for count, (target, feed) in enumerate(lines, 1):
+        for target, feed in lines:
             player.add(target, feed)
-            progress(count)
         return player.finish()
     finally:
         player.engine.close()
