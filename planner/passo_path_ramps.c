@@ -129,14 +129,18 @@ static struct passo_path_aim choose_aim(const struct passo_path_planner *path, e
 
 /* -------------------------------------------------------------------------------------------- ramps ---- */
 
-/* The ramps have moved on by a distance; in a path that goes on they pass the ends of lines. */
+/* The ramps have moved on by a distance; in a path that goes on they pass the ends of lines. A ramp can be
+ * beyond the end of the path only if the path lasts less than a tick: then it rests at once. */
 static void advance(struct passo_path_planner *path, uint64_t distance)
 {
 	path->offset += (int64_t)distance;
-	while (!passo_path_rests_after(path, path->planned)) {
+	for (;;) {
 		const int64_t whole = (int64_t)passo_path_item(path, path->planned)->substeps << 32;
 
 		if (path->offset < whole)
+			break;
+		path->jump = passo_path_rests_after(path, path->planned);
+		if (path->jump)
 			break;
 		path->offset -= whole;
 		path->planned++;
@@ -156,6 +160,8 @@ static void come_to_rest(struct passo_path_planner *path, bool *last)
 {
 	const struct passo_path_item *item = passo_path_item(path, path->planned);
 
+	if (is_held_back(path, path->planned))
+		passo_path_end(path);
 	*last = item->last;
 	path->offset = item->last ? 0 : path->offset - ((int64_t)item->substeps << 32);
 	path->planned++;
@@ -172,9 +178,8 @@ static void land(struct passo_path_planner *path, const struct passo_path_aim *a
 	passo_path_set_ticks(ramp, ticks);
 	passo_path_land(path, path->velocity, aim->length, ramp);
 	make(path, ramp);
-	if (ramp->velocity_end > 0)
-		path->jump = true;
-	else
+	path->jump = ramp->velocity_end > 0;
+	if (!path->jump)
 		come_to_rest(path, &ramp->last);
 }
 
