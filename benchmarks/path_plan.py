@@ -18,6 +18,7 @@ class Planned:
     path: Path
     lines: list[Any]
     ramps: list[Any]
+    words: list[int]  # of all of them, in the order in which they were handed out
 
     @property
     def seconds(self) -> float:
@@ -31,13 +32,15 @@ def plan(
 ) -> Planned:
     """Plan a path as one motion."""
     path = Path(settings, parameters or Parameters(), look_ahead)
-    made = Planned(path, [], [])
+    made = Planned(path, [], [], [])
 
     def take() -> None:
         while (line := path.next_line()) is not None:
             made.lines.append(line)
+            made.words.extend((line.substeps, line.directions, *line.steps[0 : len(settings.axes)]))
         while (ramp := path.next_ramp()) is not None:
             made.ramps.append(ramp)
+            made.words.extend((ramp.ticks, ramp.velocity_end & 0xFFFFFFFF, ramp.velocity_end >> 32))
 
     for target, feed in lines:
         if path.room == 0:
