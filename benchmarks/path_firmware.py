@@ -28,7 +28,6 @@ class FirmwareCost:
     """Of a path on the STM32F103."""
 
     per_line: int  # instructions
-    worst_batch: int  # per line, in the worst 32 lines
     same: bool  # lines and ramps are those of a PC
     bytes_used: int  # RAM of planner and look-ahead
 
@@ -77,7 +76,7 @@ def measure(lines: Sequence[Line], settings: PathSettings) -> FirmwareCost:
 
     put("go", 1)
     machine.run_until(lambda: get("go") == 0, 1.0)
-    costs = []
+    total = 0
     for begin in range(0, len(lines), BATCH):
         batch = lines[begin : begin + BATCH]
         words = [
@@ -92,10 +91,9 @@ def measure(lines: Sequence[Line], settings: PathSettings) -> FirmwareCost:
         machine.measure("path_batch")
         put("go", 1)
         machine.run_until(lambda: machine.measured() is not None and get("go") == 0, 5.0)
-        costs.append((machine.measured() or 0) / len(batch))
+        total += machine.measured() or 0
     if get("error"):
         raise AssertionError(f"planner error {get('error')}")
-    total = sum(cost * min(BATCH, len(lines) - i * BATCH) for i, cost in enumerate(costs))
     same = get("check") == hash_of(lines, settings)
     size = ffi().sizeof("struct passo_path_planner") + LOOK_AHEAD * ffi().sizeof("struct passo_path_item")
-    return FirmwareCost(round(total / len(lines)), round(max(costs)), same, size)
+    return FirmwareCost(round(total / len(lines)), same, size)

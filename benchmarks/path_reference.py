@@ -46,6 +46,7 @@ def limits_of(lines: Sequence[Line], settings: PathSettings, arcs: bool = True) 
     with np.errstate(divide="ignore"):
         top = np.minimum(feed, (speed / np.abs(unit)).min(axis=1)) ** 2
         along = (acceleration / np.abs(unit)).min(axis=1)
+        along = np.minimum(along, float(settings.acceleration) or UNLIMITED)
         ends = (np.where(unit == 0, UNLIMITED, jump) / np.maximum(np.abs(unit), 1e-12)).min(axis=1) ** 2
     corner = np.full(len(length), UNLIMITED)
     arc = np.zeros(len(length), bool)

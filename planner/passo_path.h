@@ -44,6 +44,7 @@ struct passo_path_axis {
 struct passo_path_settings {
 	struct passo_machine machine;
 	struct passo_path_axis axis[PASSO_AXES_MAX];
+	uint64_t acceleration;       /* UQ32.32 mm/s^2 along the path; 0: only those of the axes */
 	uint64_t junction_deviation; /* UQ32.32 mm; 0: rest at every corner */
 	enum passo_profile profile;  /* linear, cosine or sigmoid */
 	uint32_t reserve_clocks;     /* the core is never left with less, unless the path ends; 0: 20 ms */
@@ -91,6 +92,7 @@ struct passo_path_planner {
 	/* geometry of the last line */
 	uint64_t steps_per_mm[PASSO_AXES_MAX];
 	struct passo_path_scale axis[PASSO_AXES_MAX];
+	uint64_t acceleration; /* UQ0.64 substeps per clock^2, along the path */
 	int64_t target[PASSO_AXES_MAX];
 	int64_t steps[PASSO_AXES_MAX];
 	int32_t direction[PASSO_AXES_MAX]; /* unit vector, Q1.30 */

@@ -95,7 +95,7 @@ static uint64_t limit_line(
 	    feed < PASSO_PATH_RAPID
 		? passo_path_larger(1, passo_mul_div(feed, path->substeps_per_mm, path->machine.clock_hz))
 		: SPEED_MAX;
-	uint64_t slope = PASSO_PATH_SQUARE_MAX, jump = SPEED_MAX, weakest = PASSO_PATH_SQUARE_MAX;
+	uint64_t slope = 2 * path->acceleration, weakest = slope, jump = SPEED_MAX;
 
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
 		const struct passo_path_scale *own = &path->axis[axis];

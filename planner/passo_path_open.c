@@ -89,17 +89,24 @@ static uint32_t gentleness(enum passo_shape shape)
 	return (UINT32_C(1) << 24) / (steepest + 1);
 }
 
+/* UQ0.64 substeps per clock^2, at least 1. */
+static uint64_t acceleration_of(const struct passo_path_planner *path, uint64_t acceleration)
+{
+	const uint32_t hz = path->machine.clock_hz;
+	const uint64_t gain = passo_mul_div(acceleration, path->substeps_per_mm, hz); /* UQ.32 per second */
+	const uint64_t scaled = passo_mul_div(gain, PASSO_UNIT_Q32, hz);
+
+	return passo_path_larger(1, passo_path_smaller(scaled, PASSO_PATH_SQUARE_MAX >> 2));
+}
+
 static struct passo_path_scale scale_of(
     const struct passo_path_planner *path, const struct passo_path_axis *own)
 {
 	const uint32_t hz = path->machine.clock_hz;
 	const uint64_t jump = passo_mul_div(own->jump, path->substeps_per_mm, hz);
-	const uint64_t gain =
-	    passo_mul_div(own->acceleration, path->substeps_per_mm, hz); /* UQ.32 per second */
 
 	return (struct passo_path_scale){
-	    .acceleration = passo_path_larger(
-		1, passo_path_smaller(passo_mul_div(gain, PASSO_UNIT_Q32, hz), PASSO_PATH_SQUARE_MAX >> 2)),
+	    .acceleration = acceleration_of(path, own->acceleration),
 	    .speed = (uint32_t)passo_path_larger(1, passo_mul_div(own->speed, path->substeps_per_mm, hz)),
 	    .jump = (uint32_t)passo_path_smaller(jump, UINT32_C(1) << 31),
 	};
@@ -133,6 +140,8 @@ enum passo_plan_error passo_path_open(struct passo_path_planner *path,
 	                                                        : PASSO_SHAPE_LINEAR,
 	};
 	path->gentleness = gentleness(path->shape);
+	path->acceleration = settings->acceleration > 0 ? acceleration_of(path, settings->acceleration)
+	                                                : PASSO_PATH_SQUARE_MAX >> 2;
 	for (uint32_t axis = 0; axis < machine->axes; axis++) {
 		path->axis[axis] = scale_of(path, &settings->axis[axis]);
 		path->steps_per_mm[axis] = settings->axis[axis].steps_per_mm;

@@ -51,6 +51,7 @@ static struct passo_path_settings any_settings(void)
 	struct passo_path_settings settings = {
 	    .machine = {below(8) ? 16000000u + below(200000000u) : (uint32_t)any(32),
 		(uint8_t)(below(8) ? 7 : below(20)), (uint8_t)(below(30) ? 1 + below(8) : below(12))},
+	    .acceleration = below(2) ? 0 : any(64),
 	    .junction_deviation = below(3) ? PASSO_UNIT_Q32 / 100 : any(64),
 	    .profile = PROFILES[below(40) ? below(3) : 3],
 	    .reserve_clocks = below(2) ? 0 : (uint32_t)any(32),

@@ -32,6 +32,7 @@ class PathSettings:
 
     axes: tuple[PathAxis, ...] = (PathAxis(), PathAxis(), PathAxis())
     clock_hz: int = 64_000_000
+    acceleration: Fraction | float = 0  # along the path; 0: only those of the axes
     junction_deviation: Fraction | float = 0.01
     profile: str = "linear"
     reserve_clocks: int = 0
@@ -44,6 +45,7 @@ class PathSettings:
             {
                 "machine": (self.clock_hz, parameters.tick_log2, len(self.axes)),
                 "axis": [{name: q32(getattr(axis, name)) for name in names} for axis in self.axes],
+                "acceleration": q32(self.acceleration),
                 "junction_deviation": q32(self.junction_deviation),
                 "profile": getattr(planner(), f"PASSO_PROFILE_{self.profile.upper()}"),
                 "reserve_clocks": self.reserve_clocks,
