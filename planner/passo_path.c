@@ -21,15 +21,6 @@ bool passo_path_is_empty(const struct passo_path_planner *path)
 	return path->sent == path->added && path->planned == path->added;
 }
 
-/* An arc is limited along its lines, not only at its corners. */
-static void level_arc(struct passo_path_planner *path, const struct passo_path_item *next)
-{
-	struct passo_path_item *item = newest(path);
-
-	if (item->arc && next->arc)
-		item->top = passo_path_smaller(item->top, passo_path_larger(item->corner, next->corner));
-}
-
 /* The next line is the first of a motion. */
 static bool is_first(const struct passo_path_planner *path)
 {
@@ -49,20 +40,20 @@ enum passo_plan_error passo_path_add(struct passo_path_planner *path, const stru
 {
 	if (passo_path_room(path) == 0)
 		return PASSO_PLAN_PATH_FULL;
-	struct passo_path_item item = {.output = move->output, .dwell = path->dwell, .rest = path->rest};
-	const enum passo_plan_error error = passo_path_measure(path, move, &item);
-	if (error != PASSO_PLAN_OK || item.substeps == 0)
+	struct passo_path_item *item = passo_path_item(path, path->added);
+	struct passo_path_item made = {.output = move->output, .dwell = path->dwell, .rest = path->rest};
+	const enum passo_plan_error error = passo_path_measure(path, move, &made);
+	if (error != PASSO_PLAN_OK || made.substeps == 0)
 		return error;
-	if (!item.rest) {
-		item.corner = passo_path_smaller(item.corner, newest(path)->top);
-		item.rest = item.corner < slowest(path, &item);
-		level_arc(path, &item);
-	}
-	if (item.rest && item.dwell == 0 && !is_first(path))
-		item.corner = 0;
+	*item = made;
+	passo_path_limit(path, path->added);
+	if (!item->rest)
+		item->rest = item->corner < slowest(path, item);
+	if (item->rest)
+		item->corner = item->dwell > 0 || is_first(path) ? item->halt : 0;
 	path->rest = false;
 	path->dwell = 0;
-	*passo_path_item(path, path->added++) = item;
+	path->added++;
 	passo_path_look_back(path);
 	return PASSO_PLAN_OK;
 }
@@ -123,11 +114,12 @@ void passo_path_look_back(struct passo_path_planner *path)
 
 		if ((reach == item->corner || item->rest) && final < index)
 			final = index;
-		if (reach == item->reach && index + 1 < path->added)
+		if (reach == item->reach && index + 1 < path->added && !path->anew)
 			break;
 		item->reach = reach;
 	}
 	path->final = final;
+	path->anew = false;
 }
 
 bool passo_path_next_line(struct passo_path_planner *path, struct passo_line *line)

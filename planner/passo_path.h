@@ -60,6 +60,9 @@ struct passo_path_move {
 /* A line of the path. Private, except for `output` of the item that was handed out last. Squares are those of
  * velocities, UQ0.64 (substeps per clock)^2. */
 struct passo_path_item {
+	uint64_t feed;   /* square of its feed */
+	uint64_t limit;  /* highest square within the line, by its axes */
+	uint64_t bend;   /* highest square at the corner at its start, by its geometry */
 	uint64_t top;    /* highest square within the line */
 	uint64_t corner; /* highest square at its start */
 	uint64_t halt;   /* highest square at its end, if the path rests there */
@@ -109,6 +112,8 @@ struct passo_path_planner {
 	bool started;    /* the dwell before the item is over */
 	bool jump, last; /* a ramp to 0 in no time is due; it ends the motion */
 	bool lines_end, ramps_end;
+	bool anew;           /* the limits of all items have changed */
+	uint32_t override;   /* UQ16.16 */
 	uint32_t reserve;    /* ticks */
 	uint32_t gentleness; /* UQ0.16: what a shape leaves of the acceleration */
 	enum passo_shape shape;
@@ -133,6 +138,12 @@ void passo_path_dwell(struct passo_path_planner *path, uint64_t clocks);
 
 /* No line follows for now: the motion ends with the last line. Lines added later belong to the next one. */
 void passo_path_end(struct passo_path_planner *path);
+
+/* Feed override, UQ16.16, from 100 % on: of the feeds of all lines that the ramps have not passed yet. The
+ * limits of the axes and of the corners stay. Lower overrides are those of the core. */
+#define PASSO_PATH_OVERRIDE_MIN UINT32_C(0x10000)
+#define PASSO_PATH_OVERRIDE_MAX UINT32_C(0xA0000)
+void passo_path_override(struct passo_path_planner *path, uint32_t override);
 
 /* The next line and ramp of the motion; false: none at present. The last ones have `last`; after that
  * passo_path_next_motion() goes on, if more lines are known. `held` is a number of ticks that the core still

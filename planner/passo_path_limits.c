@@ -91,10 +91,11 @@ static uint64_t shaped_slope(const struct passo_path_planner *path, uint64_t slo
 static uint64_t limit_line(
     const struct passo_path_planner *path, const int32_t *unit, uint64_t feed, struct passo_path_item *item)
 {
-	uint64_t speed =
+	const uint64_t wanted =
 	    feed < PASSO_PATH_RAPID
 		? passo_path_larger(1, passo_mul_div(feed, path->substeps_per_mm, path->machine.clock_hz))
 		: SPEED_MAX;
+	uint64_t speed = SPEED_MAX;
 	uint64_t slope = 2 * path->acceleration, weakest = slope, jump = SPEED_MAX;
 
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
@@ -108,11 +109,12 @@ static uint64_t limit_line(
 		weakest = passo_path_smaller(weakest, 2 * own->acceleration);
 		jump = passo_path_smaller(jump, ((uint64_t)own->jump << PASSO_PATH_UNIT_BITS) / share);
 	}
-	item->top = square_of(speed);
+	item->feed = square_of(wanted);
+	item->limit = square_of(speed);
 	if (path->shape != PASSO_SHAPE_LINEAR)
 		slope = shaped_slope(path, slope, weakest);
 	item->slope = passo_path_larger(slope, 1);
-	return passo_path_smaller(square_of(jump), item->top);
+	return passo_path_smaller(square_of(jump), passo_path_smaller(item->feed, item->limit));
 }
 
 /* Of the arc with the deviation from a corner whose directions differ by `turn` (UQ2.60, squared): half its
@@ -189,12 +191,9 @@ enum passo_plan_error passo_path_measure(
 	if (substeps > PASSO_SUBSTEPS_MAX)
 		return PASSO_PLAN_TOO_LONG;
 
-	const uint64_t halt = limit_line(path, unit, move->feed, item);
-	if (path->rest)
-		item->corner = halt;
-	else
-		item->corner = passo_path_smaller(limit_corner(path, unit, length, &item->arc), item->top);
-	item->halt = halt;
+	item->halt = limit_line(path, unit, move->feed, item);
+	if (!path->rest)
+		item->bend = limit_corner(path, unit, length, &item->arc);
 	item->substeps = (uint32_t)substeps;
 	path->carry = stretched ? 0 : (int32_t)(path->carry + (int64_t)length - (int64_t)(substeps << 16));
 	path->length = length;

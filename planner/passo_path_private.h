@@ -72,6 +72,9 @@ uint64_t passo_path_change(const struct passo_path_planner *path, uint64_t slope
 enum passo_plan_error passo_path_measure(
     struct passo_path_planner *path, const struct passo_path_move *move, struct passo_path_item *item);
 
+/* Sets the limits of an item, `top` and, unless the path rests there, `corner`; those before it are known. */
+void passo_path_limit(struct passo_path_planner *path, uint32_t index);
+
 /* The path rests at the end of this item, as far as is known. */
 bool passo_path_rests_after(const struct passo_path_planner *path, uint32_t index);
 

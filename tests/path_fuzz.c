@@ -154,6 +154,8 @@ static void fuzz(struct passo_path_item *items)
 			passo_path_dwell(&path, below(2) ? 0 : any(below(8) ? 20 : 64));
 		if (below(40) == 0)
 			passo_path_end(&path);
+		if (below(50) == 0)
+			passo_path_override(&path, (uint32_t)any(22));
 		if (below(300) == 0) {
 			const int32_t positions[PASSO_AXES_MAX] = {(int32_t)any(32), -(int32_t)any(30)};
 

@@ -232,6 +232,24 @@ def test_hold_and_override_change_no_step() -> None:
     assert played.positions == still.positions and played.drained == 0
 
 
+def test_an_override_above_100_percent_plans_anew_what_is_not_sent() -> None:
+    """From half of the circle on it is faster, within the limits of axes and corners, and exact."""
+    lines = [(target, 50.0) for target, _ in path_cases.circle()]
+    player = Player(MACHINE, 48)
+    for count, (target, feed) in enumerate(lines):
+        player.add(target, feed)
+        if count == 180:
+            player.path.override(1.5)
+    played = player.finish()
+    player.engine.close()
+    faster = [(target, 75.0) for target, _ in lines]
+    verdict = judge(faster, MACHINE, played)
+    assert verdict.problems == []
+    assert verdict.speed > 0.999
+    half = (seconds(lines, MACHINE) + seconds(faster, MACHINE)) / 2
+    assert abs(played.moving / MACHINE.clock_hz - half) < 0.2
+
+
 @pytest.mark.parametrize("command", ["stop", "abort"])
 def test_after_a_stop_the_path_begins_where_it_stopped(command: str) -> None:
     """The rest is dropped; positions are exact, and the next path ends exactly."""

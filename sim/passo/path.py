@@ -13,6 +13,7 @@ from passo.native import ffi, planner
 from passo.plan import PlanError
 
 NOT_MOVING = 0xFFFFFFFF  # ticks held by a core that does not move yet
+OVERRIDE_ONE = 1 << 16
 LOOK_AHEAD = 48  # lines, as on an STM32F103
 
 
@@ -88,6 +89,10 @@ class Path:
     def dwell(self, seconds: float = 0) -> None:
         """Rest after the last line; 0: an exact stop."""
         self._c.passo_path_dwell(self.c, round(seconds * self.settings.clock_hz))
+
+    def override(self, factor: float) -> None:
+        """Scale the feeds of all lines that the ramps have not passed yet, from 1 on."""
+        self._c.passo_path_override(self.c, round(factor * OVERRIDE_ONE))
 
     def end(self) -> None:
         """End the motion with the last line."""
