@@ -4,6 +4,7 @@
 import random
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -113,6 +114,27 @@ def test_the_ramps_cover_exactly_the_substeps_of_the_lines(profile: str) -> None
         planned = plan(lines, replace(MACHINE, profile=profile), 48, parameters)
         wanted = sum(line.substeps for line in planned.lines)
         assert abs(substeps_under(planned.ramps, parameters.tick_log2) - wanted) < 1 / 64
+
+
+def test_the_planner_knows_where_the_ramps_end() -> None:
+    """To 2^-32 substep per ramp and 2^-41 per tick, also in ramps so long that progress rounds unevenly."""
+    path = Path(replace(MACHINE, acceleration=77), Parameters(), 400)
+    for target, feed in path_cases.wander(random.Random(5), 100):
+        path.add(target, feed)
+    path.end()
+    ends = [0]
+    while (line := path.next_line()) is not None:
+        ends.append(ends[-1] + line.substeps)
+    velocity = covered = ticks = count = longest = 0
+    while (c := path.next_ramp()) is not None:
+        ramp = Ramp(c.ticks, c.shape, c.mirror, velocity, c.velocity_end, c.progress_step)
+        covered += sum_of_velocities(ramp) << 7 if c.ticks else 0
+        velocity, ticks, count = c.velocity_end, ticks + c.ticks, count + 1
+        longest = max(longest, c.ticks if ramp.velocity_start != velocity else 0)
+        if not c.last and velocity > 0:
+            known = (ends[path.c.planned] << 32) + path.c.offset
+            assert abs(Fraction(covered, 1 << 48) - Fraction(known, 1 << 32)) <= count / 2**32 + ticks / 2**41
+    assert longest > 20_000
 
 
 def test_the_lines_are_as_long_as_the_path() -> None:
