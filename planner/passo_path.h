@@ -128,6 +128,12 @@ enum passo_plan_error passo_path_open(struct passo_path_planner *path,
 /* Drops all that is known and begins a new path at these positions, in steps: after a stop, or homing. */
 void passo_path_restart(struct passo_path_planner *path, const int32_t *positions);
 
+/* After a stop: goes on with the rest of the path from these positions, in steps, which must be on one of the
+ * lines that are still in memory, those added last; the first one from number `done` on (counted from 0) is
+ * taken. Each of its axes makes the steps that it lacks. False: the positions are on none, and nothing has
+ * changed. */
+bool passo_path_recover(struct passo_path_planner *path, const int32_t *positions, uint32_t done);
+
 /* Adds a line. A line shorter than half a substep becomes part of the next one. Errors: PATH_FULL (take ramps
  * and lines, then add it again), NO_FEED, TOO_FAR (target out of range), TOO_LONG (2^30 substeps or more). */
 enum passo_plan_error passo_path_add(struct passo_path_planner *path, const struct passo_path_move *move);

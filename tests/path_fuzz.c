@@ -159,8 +159,17 @@ static void fuzz(struct passo_path_item *items)
 		if (below(300) == 0) {
 			const int32_t positions[PASSO_AXES_MAX] = {(int32_t)any(32), -(int32_t)any(30)};
 
-			passo_path_restart(&path, positions);
+			if (!passo_path_recover(&path, positions, below(path.added + 1)))
+				passo_path_restart(&path, positions);
 			taken.velocity = 0;
+		}
+		if (below(60) == 0 && path.added > path.sent) {
+			int32_t positions[PASSO_AXES_MAX];
+
+			for (uint32_t axis = 0; axis < PASSO_AXES_MAX; axis++)
+				positions[axis] = (int32_t)path.steps[axis];
+			if (passo_path_recover(&path, positions, path.sent))
+				taken.velocity = 0;
 		}
 	}
 	passo_path_end(&path);

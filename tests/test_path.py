@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from passo import random_cases
 from passo.build import Parameters
+from passo.native import ffi, planner
 from passo.path import Path, PathAxis, PathSettings
 from passo.plan import PlanError
 
@@ -290,6 +291,44 @@ def test_after_a_stop_the_path_begins_where_it_stopped(command: str) -> None:
     player.engine.close()
     assert played.positions == steps_at((-5, 3, 0), MACHINE)
     assert [int(steps[-1]) for steps in played.steps[:2]] == played.positions[:2]
+
+
+@pytest.mark.parametrize(("command", "after"), [("stop", 20), ("stop", 70), ("abort", 45), ("abort", 80)])
+def test_after_a_stop_the_rest_of_the_path_can_be_made(command: str, after: int) -> None:
+    """From the step at which it stopped, and to the exact end; no step of the path is left out."""
+    lines = path_cases.circle(chords=120)
+    player = Player(MACHINE, 400)
+    for target, feed in lines:
+        player.add(target, feed)
+    player.path.end()
+    ends = [steps_at(target, MACHINE) for target, _ in lines]
+    player.wait(lambda: player.feed.is_moving and player.driver.positions()[:2] != [0, 0])
+    while player.feed.c.done < after:
+        player.poll()
+    player.driver.call(command)
+    player.wait(lambda: player.driver.state.name == "STOPPED")
+    player.driver.call("clear")
+    assert player.feed.recover(player.driver.positions()[:3])
+    assert player.path.c.planned >= after - 1
+    played = player.finish()
+    player.engine.close()
+    assert len(played.motions) == 2
+    assert played.positions == ends[-1] and played.drained == 0
+    if command == "stop":
+        assert [len(clocks) for clocks in played.clocks] == [
+            int(np.abs(np.diff([0, *(end[axis] for end in ends)])).sum()) for axis in range(3)
+        ]
+
+
+def test_a_position_off_the_path_is_not_taken_for_a_stop() -> None:
+    """Nothing changes then."""
+    path = Path(MACHINE, Parameters(), 8)
+    path.add((10, 0, 0), 50)
+    path.add((10, 10, 0), 50)
+    feed = path.c.planned, path.c.sent, path.c.added
+    positions = ffi().new("int32_t[8]", [400, 100, 0])
+    assert not planner().passo_path_recover(path.c, positions, 0)
+    assert feed == (path.c.planned, path.c.sent, path.c.added)
 
 
 # ------------------------------------------------------------------------------------------- refusals

@@ -142,6 +142,10 @@ class PathFeed:
         if error != self._c.PASSO_OK:
             raise DriverError("path_feed_poll", error)
 
+    def recover(self, positions: Sequence[int]) -> bool:
+        """After a stop: go on with the rest of the path; False: its line is forgotten."""
+        return self._c.passo_path_feed_recover(self.c, ffi().new("int32_t[8]", list(positions)))
+
     @property
     def is_moving(self) -> bool:
         """Whether there are lines that have not been executed yet."""

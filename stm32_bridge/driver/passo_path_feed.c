@@ -84,6 +84,9 @@ static void correct(struct passo_path_feed *feed)
 	    || passo->stream == PASSO_STREAM_FILLS)
 		return;
 	feed->seen = passo->looked_at;
+	const uint32_t lines = (uint32_t)(passo->line_places - passo->snapshot.line_room) + 1u;
+	if (passo->snapshot.state == PASSO_STATE_RUN && feed->lines > lines)
+		feed->done = feed->first + feed->lines - lines;
 	const uint64_t least = queued > 1u ? clocks_of(feed, queued - 1u) : 0u;
 	const uint64_t most = clocks_of(feed, queued);
 
@@ -105,6 +108,7 @@ static enum passo_error begin(struct passo_path_feed *feed)
 
 	passo_path_next_motion(feed->path);
 	feed->left = 0;
+	feed->first = feed->done = feed->path->sent;
 	feed->ramps = feed->lines = 0;
 	feed->hurry = false;
 	return passo_stream(feed->passo, &source);
@@ -137,6 +141,11 @@ enum passo_error passo_path_feed_poll(struct passo_path_feed *feed)
 		error = passo_poll(passo);
 	correct(feed);
 	return error;
+}
+
+bool passo_path_feed_recover(struct passo_path_feed *feed, const int32_t *positions)
+{
+	return passo_path_recover(feed->path, positions, feed->done);
 }
 
 bool passo_path_feed_is_moving(const struct passo_path_feed *feed)

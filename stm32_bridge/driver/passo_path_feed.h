@@ -9,7 +9,8 @@
  *     }
  * The core moves while lines are known, and rests at the end of the last one while none are, whatever the
  * source of the lines does. Each rest ends a motion. Hold, resume and override are those of passo.h. After a
- * stop and passo_clear() call passo_path_restart() with the positions, and passo_path_feed_open().
+ * stop and passo_clear() call passo_path_restart() with the positions and passo_path_feed_open(), to drop the
+ * rest of the path, or passo_path_feed_recover() to go on with it.
  */
 #ifndef PASSO_PATH_FEED_H
 #define PASSO_PATH_FEED_H
@@ -33,6 +34,7 @@ struct passo_path_feed {
 	uint32_t rate;                         /* highest since then, UQ1.16 */
 	uint32_t ticks[PASSO_PATH_FEED_RAMPS]; /* of the ramps given last */
 	uint32_t ramps, lines;                 /* given, of this motion */
+	uint32_t first, done;                  /* number of its first line; lines executed, at least */
 	uint32_t added, added_at;              /* lines known, and since when */
 	bool hurry;                            /* start with what is known */
 };
@@ -42,6 +44,10 @@ void passo_path_feed_open(struct passo_path_feed *feed, struct passo *passo, str
 /* passo_poll(), and starts motions. A motion starts when the look-ahead is full, when the path has been
  * ended, or when no line was added for 20 ms. Errors: those of passo_stream() and passo_poll(). */
 enum passo_error passo_path_feed_poll(struct passo_path_feed *feed);
+
+/* After a stop and passo_clear(): goes on with the rest of the path from the present positions, at once.
+ * False: the line on which it stopped is not in memory any more. */
+bool passo_path_feed_recover(struct passo_path_feed *feed, const int32_t *positions);
 
 /* True until all lines have been executed, as of the last poll. */
 bool passo_path_feed_is_moving(const struct passo_path_feed *feed);
