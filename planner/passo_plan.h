@@ -53,7 +53,10 @@ enum passo_plan_error {
 	PASSO_PLAN_NO_AXIS_ACCELERATION, /* the acceleration limit of a moving axis is 0 */
 	PASSO_PLAN_BAD_BANK,             /* not one of the three table banks */
 	PASSO_PLAN_TABLE_START,          /* point 0 of the table is not 0 */
-	PASSO_PLAN_TABLE_FALLS           /* a point of the table is lower than the previous one */
+	PASSO_PLAN_TABLE_FALLS,          /* a point of the table is lower than the previous one */
+	/* paths of many lines: passo_path.h */
+	PASSO_PLAN_PATH_FULL, /* no room for another line at present */
+	PASSO_PLAN_TOO_FAR    /* a target is out of range */
 };
 
 /* The machine that a plan is made for. */

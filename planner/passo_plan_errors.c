@@ -43,6 +43,8 @@ static const struct {
     [PASSO_PLAN_BAD_BANK] = {"BAD_BANK", "A table must go into bank 1, 2 or 3."},
     [PASSO_PLAN_TABLE_START] = {"TABLE_START", "A shape must start at 0."},
     [PASSO_PLAN_TABLE_FALLS] = {"TABLE_FALLS", "A shape must not decrease."},
+    [PASSO_PLAN_PATH_FULL] = {"PATH_FULL", "The path has no room for another line at present."},
+    [PASSO_PLAN_TOO_FAR] = {"TOO_FAR", "A target is 2^30 mm or more from the origin."},
 };
 
 static bool is_known(enum passo_plan_error error)

@@ -16,7 +16,7 @@ SECONDS = str(random_cases.fuzz_seconds())
 def test_no_argument_breaks_the_planner(tmp_path: Path) -> None:
     """No undefined behaviour, no plan that the core would refuse, no error that modifies the plan."""
     flags = (*STRICT, *SANITIZED, *includes(paths.planner, paths.protocol))
-    files = [paths.tests / "plan_fuzz.c", *sources(paths.planner)]
+    files = [paths.tests / "plan_fuzz.c", *sources(paths.planner, paths.protocol)]
     program = compile_to(tmp_path / "fuzz", *flags, *files)
     done = subprocess.run([program, SEED, SECONDS], capture_output=True, text=True, timeout=600)
     print(f"seed {SEED}, {SECONDS} s\n{done.stdout}")

@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: MIT
+"""`make path`: the path planner against the fastest motion possible, its pulses against its limits.
+
+Writes build/path.json.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+from passo.console import console, table
+from passo.path import LOOK_AHEAD, PathAxis, PathSettings
+from passo.report import write_json
+from passo.toolchain import paths
+
+from benchmarks import path_cases
+from benchmarks.path_firmware import measure
+from benchmarks.path_plan import plan
+from benchmarks.path_reference import Line, seconds
+from tests.helpers.path_judge import judge
+from tests.helpers.path_player import play
+
+REPORT = paths.build / "path.json"
+SETTINGS = PathSettings((PathAxis(), PathAxis(), PathAxis(400, 12, 100)))
+ALONG = replace(SETTINGS, acceleration=1000)  # as published figures have it
+UNLIMITED_AIM, LOOK_AHEAD_AIM, CIRCLE_AIM = 1.01, 1.05, 1.37
+FIRMWARE_LINES = 1000  # of a path are planned on the microcontroller
+WANDERINGS = 200
+PLAYED = 10  # of the random polylines are played
+PROFILES = ("cosine", "sigmoid")
+
+CASES: dict[str, Callable[[], list[Line]]] = {
+    "circle": path_cases.circle,
+    "square": path_cases.square,
+    "star": path_cases.star,
+    "spiral": path_cases.spiral,
+    "text": path_cases.text,
+    "trochoid": path_cases.trochoid,
+}
+
+
+@dataclass
+class Result:
+    """Of one path; ratios are of the fastest motion possible."""
+
+    name: str
+    lines: int
+    seconds: float  # with LOOK_AHEAD lines
+    unlimited: float
+    look_ahead: float
+    ramps: int
+    speed: float = 0.0  # highest share of its limit, from the pulses
+    acceleration: float = 0.0
+    corner: float = 0.0
+    instructions: int = 0  # per line, on the STM32F103
+
+    @property
+    def met(self) -> bool:
+        """Whether the aims are met."""
+        return self.unlimited <= UNLIMITED_AIM and self.look_ahead <= LOOK_AHEAD_AIM
+
+
+def times(name: str, lines: Sequence[Line], settings: PathSettings = SETTINGS) -> Result:
+    """Plan a path with both look-aheads."""
+    fastest = seconds(lines, settings)
+    unlimited = plan(lines, settings, len(lines) + 4)
+    limited = plan(lines, settings, LOOK_AHEAD)
+    ratios = (unlimited.seconds / fastest, limited.seconds / fastest)
+    return Result(name, len(lines), limited.seconds, *ratios, len(limited.ramps))
+
+
+def watch(result: Result, lines: Sequence[Line]) -> None:
+    """Play a path with a short look-ahead, and judge its pulses; raises AssertionError."""
+    verdict = judge(lines, SETTINGS, play(lines, SETTINGS))
+    assert not verdict.problems, (result.name, verdict.problems)
+    for name in ("speed", "acceleration", "corner"):
+        setattr(result, name, max(getattr(result, name), float(getattr(verdict, name))))
+
+
+def count(result: Result, lines: Sequence[Line]) -> None:
+    """Plan the beginning of a path on the emulated microcontroller."""
+    cost = measure(lines[:FIRMWARE_LINES], SETTINGS)
+    assert cost.same, f"{result.name}: the microcontroller plans something else"
+    result.instructions = cost.per_line
+
+
+def wanderings() -> Result:
+    """The worst of many random polylines; the time is that of all."""
+    worst = Result(f"{WANDERINGS} polylines", 0, 0.0, 0.0, 0.0, 0)
+    for number, lines in enumerate(path_cases.wanderings(WANDERINGS)):
+        if number % 20 == 0:
+            console.print(f"Random polylines, {number} of {WANDERINGS} ...")
+        result = times("", lines)
+        worst.lines += result.lines
+        worst.seconds += result.seconds
+        worst.ramps += result.ramps
+        worst.unlimited = max(worst.unlimited, result.unlimited)
+        worst.look_ahead = max(worst.look_ahead, result.look_ahead)
+        if number < PLAYED:
+            watch(worst, lines)
+    return worst
+
+
+def shapes() -> dict[str, dict[str, float]]:
+    """Times of the shaped profiles relative to the linear one, with unlimited look-ahead."""
+    found: dict[str, dict[str, float]] = {profile: {} for profile in PROFILES}
+    for name, case in CASES.items():
+        lines = case()
+        linear = plan(lines, SETTINGS, len(lines) + 4).seconds
+        for profile in PROFILES:
+            planned = plan(lines, replace(SETTINGS, profile=profile), len(lines) + 4)
+            found[profile][name] = round(planned.seconds / linear, 4)
+    return found
+
+
+def main() -> None:
+    """Measure, print and write the report."""
+    results = []
+    for name, case in CASES.items():
+        console.print(f"{name[0].upper()}{name[1:]} ...")
+        lines = case()
+        result = times(name, lines)
+        watch(result, lines)
+        count(result, lines)
+        results.append(result)
+    results.append(wanderings())
+    console.print("Shaped ramps ...")
+    shaped = shapes()
+    circle = plan(path_cases.circle(), ALONG, LOOK_AHEAD).seconds
+    show(results, shaped, circle)
+    report: dict[str, Any] = {
+        "paths": [asdict(result) for result in results],
+        "shaped": shaped,
+        "circle_seconds": circle,
+        "met": all(result.met for result in results) and circle <= CIRCLE_AIM,
+    }
+    write_json(report, REPORT)
+    console.print(f"Report: {REPORT.relative_to(paths.root)}")
+    if not report["met"]:
+        raise SystemExit("an aim is missed")
+
+
+def show(results: Sequence[Result], shaped: dict[str, dict[str, float]], circle: float) -> None:
+    """Print the tables."""
+    shown = table(
+        f"Time as a ratio of the fastest motion possible (aims: {UNLIMITED_AIM}, {LOOK_AHEAD_AIM})",
+        *("path", "lines", "seconds", "unlimited", f"{LOOK_AHEAD} lines", "ramps"),
+    )
+    limits = table(
+        "Highest share of each limit, from the pulses; instructions per line, STM32F103",
+        *("path", "speed", "acceleration", "corners", "instructions"),
+    )
+    for r in results:
+        ratios = (f"{r.unlimited:.4f}", f"{r.look_ahead:.4f}")
+        shown.add_row(r.name, f"{r.lines:,}", f"{r.seconds:.3f}", *ratios, f"{r.ramps:,}")
+        shares = (f"{r.speed:.4f}", f"{r.acceleration:.4f}", f"{r.corner:.4f}")
+        limits.add_row(r.name, *shares, f"{r.instructions:,}" if r.instructions else "")
+    gentle = table("Time with shaped ramps, as a ratio of linear ones", "path", *PROFILES)
+    for name in CASES:
+        gentle.add_row(name, *(f"{shaped[profile][name]:.4f}" for profile in PROFILES))
+    for one in (shown, limits, gentle):
+        console.print(one)
+    console.print(f"The circle with 1000 mm/s^2 along the path: {circle:.4f} s (aim: {CIRCLE_AIM} s)")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,150 @@
+/* SPDX-License-Identifier: MIT
+ * The lines of a path: a ring of items, with three places in it. Items before `planned` have been passed by
+ * the ramps, those before `sent` have been handed out as lines; `added` is the number of those known.
+ */
+#include "passo_path_private.h"
+
+static struct passo_path_item *newest(const struct passo_path_planner *path)
+{
+	return passo_path_item(path, path->added - 1);
+}
+
+uint32_t passo_path_room(const struct passo_path_planner *path)
+{
+	const uint32_t oldest = path->sent < path->planned ? path->sent : path->planned;
+
+	return path->capacity - (path->added - oldest);
+}
+
+bool passo_path_is_empty(const struct passo_path_planner *path)
+{
+	return path->sent == path->added && path->planned == path->added;
+}
+
+/* The next line is the first of a motion. */
+static bool is_first(const struct passo_path_planner *path)
+{
+	return path->added == 0 || newest(path)->last;
+}
+
+/* The square below which the path rests at a corner: what the acceleration makes in a few ticks. */
+static uint64_t slowest(const struct passo_path_planner *path, const struct passo_path_item *item)
+{
+	const uint64_t velocity =
+	    passo_path_change(path, item->slope, PASSO_PATH_LANDING_TICKS) >> PASSO_PATH_VELOCITY_SHIFT;
+
+	return velocity * velocity + 1;
+}
+
+enum passo_plan_error passo_path_add(struct passo_path_planner *path, const struct passo_path_move *move)
+{
+	if (passo_path_room(path) == 0)
+		return PASSO_PLAN_PATH_FULL;
+	struct passo_path_item *item = passo_path_item(path, path->added);
+	struct passo_path_item made = {.output = move->output, .dwell = path->dwell, .rest = path->rest};
+	const enum passo_plan_error error = passo_path_measure(path, move, &made);
+	if (error != PASSO_PLAN_OK || made.substeps == 0)
+		return error;
+	*item = made;
+	passo_path_limit(path, path->added);
+	if (!item->rest)
+		item->rest = item->corner < slowest(path, item);
+	if (item->rest)
+		item->corner = item->dwell > 0 || is_first(path) ? item->halt : 0;
+	path->rest = false;
+	path->dwell = 0;
+	path->added++;
+	passo_path_look_back(path);
+	return PASSO_PLAN_OK;
+}
+
+void passo_path_dwell(struct passo_path_planner *path, uint64_t clocks)
+{
+	const uint32_t round = (UINT32_C(1) << path->machine.tick_log2) - 1u;
+	const uint64_t ticks = path->dwell + ((clocks >> path->machine.tick_log2) + ((clocks & round) > 0));
+
+	path->dwell = (uint32_t)passo_path_smaller(ticks, UINT32_MAX);
+	path->rest = true;
+	path->final = path->added;
+}
+
+void passo_path_end(struct passo_path_planner *path)
+{
+	passo_path_dwell(path, 0);
+	if (path->planned < path->added)
+		newest(path)->last = true;
+}
+
+bool passo_path_rests_after(const struct passo_path_planner *path, uint32_t index)
+{
+	return index + 1 == path->added || passo_path_item(path, index)->last
+	    || passo_path_item(path, index + 1)->rest;
+}
+
+uint64_t passo_path_end_square(const struct passo_path_planner *path, uint32_t index)
+{
+	const struct passo_path_item *item = passo_path_item(path, index);
+
+	if (item->last)
+		return item->halt;
+	if (index + 1 == path->added)
+		return 0;
+	const struct passo_path_item *next = passo_path_item(path, index + 1);
+	if (next->rest)
+		return next->dwell > 0 ? item->halt : 0;
+	return next->reach;
+}
+
+bool passo_path_is_settled(const struct passo_path_planner *path, uint32_t index)
+{
+	return index < path->final;
+}
+
+/* Goes back from the newest line as long as anything changes. */
+void passo_path_look_back(struct passo_path_planner *path)
+{
+	uint32_t final = path->final;
+
+	for (uint32_t index = path->added; index-- > path->planned && index >= path->final;) {
+		struct passo_path_item *item = passo_path_item(path, index);
+		const uint64_t most =
+		    passo_path_end_square(path, index)
+		    + passo_path_gain(passo_path_down_slope(item), (uint64_t)item->substeps << 32);
+		const uint64_t reach = passo_path_smaller(item->corner, most);
+
+		if ((reach == item->corner || item->rest) && final < index)
+			final = index;
+		if (reach == item->reach && index + 1 < path->added && !path->anew)
+			break;
+		item->reach = reach;
+	}
+	path->final = final;
+	path->anew = false;
+}
+
+bool passo_path_next_line(struct passo_path_planner *path, struct passo_line *line)
+{
+	if (path->lines_end || path->sent == path->added)
+		return false;
+	const struct passo_path_item *item = passo_path_item(path, path->sent);
+	if (path->sent + 1 == path->added && !item->last)
+		return false;
+	*line = (struct passo_line){
+	    .last = item->last,
+	    .directions = item->directions,
+	    .substeps = item->substeps,
+	};
+	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
+		line->steps[axis] = item->steps[axis];
+	path->sent++;
+	path->lines_end = item->last;
+	return true;
+}
+
+bool passo_path_next_motion(struct passo_path_planner *path)
+{
+	if (!path->lines_end || !path->ramps_end)
+		return false;
+	path->lines_end = path->ramps_end = false;
+	return true;
+}

@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: MIT
+ * The path planner: converts a path of many lines into lines and ramps, in integer arithmetic. See
+ * docs/path.md.
+ *
+ *     static struct passo_path_item items[48];
+ *     static struct passo_path_planner path;
+ *
+ *     passo_path_open(&path, &settings, items, 48);
+ *     passo_path_add(&path, &move);            // again with the same move after PATH_FULL
+ *     passo_path_end(&path);                   // what has been added is all
+ *     passo_path_next_line(&path, &line);      // for the queues of the core, whenever they have room
+ *     passo_path_next_ramp(&path, held, &ramp);
+ *
+ * At every moment the ramps that were handed out, and those that can still be handed out, bring the path to
+ * rest within the known lines. A path that is not continued ends there as a motion, and the next one begins
+ * there.
+ *
+ * No heap, no floating point; the same results on every machine. The work of a call is bounded by the number
+ * of items. Pointers must not be null.
+ */
+#ifndef PASSO_PATH_H
+#define PASSO_PATH_H
+
+#include "passo_plan.h"
+
+/* Fewest lines that can be looked ahead. */
+#define PASSO_PATH_ITEMS_MIN 4u
+
+/* Feed of a line that is limited by its axes alone. */
+#define PASSO_PATH_RAPID UINT64_MAX
+
+/* Largest magnitude of a target, Q31.32 mm. */
+#define PASSO_PATH_TARGET_MAX (INT64_C(1) << 62)
+
+/* Limits of an axis, UQ32.32. For rotary axes read degrees for millimetres. */
+struct passo_path_axis {
+	uint64_t steps_per_mm;
+	uint64_t speed;        /* mm/s */
+	uint64_t acceleration; /* mm/s^2 */
+	uint64_t jump; /* mm/s that the axis may start, stop and change at once; 0: it starts and stops at
+	                  rest, and corners are limited by the other rules alone */
+};
+
+struct passo_path_settings {
+	struct passo_machine machine;
+	struct passo_path_axis axis[PASSO_AXES_MAX];
+	uint64_t acceleration;       /* UQ32.32 mm/s^2 along the path; 0: only those of the axes */
+	uint64_t junction_deviation; /* UQ32.32 mm; 0: rest at every corner */
+	enum passo_profile profile;  /* linear, cosine or sigmoid */
+	uint32_t reserve_clocks;     /* the core is never left with less, unless the path ends; 0: 20 ms */
+};
+
+/* A straight line from the end of the previous one. */
+struct passo_path_move {
+	int64_t target[PASSO_AXES_MAX]; /* Q31.32 mm, absolute; steps are rounded from it */
+	uint64_t feed;                  /* UQ32.32 mm/s along the path, or PASSO_PATH_RAPID */
+	uint32_t output;                /* kept with the line; see passo_path_item */
+};
+
+/* A line of the path. Private, except for `output` of the item that was handed out last. Squares are those of
+ * velocities, UQ0.64 (substeps per clock)^2. */
+struct passo_path_item {
+	uint64_t feed;   /* square of its feed */
+	uint64_t limit;  /* highest square within the line, by its axes */
+	uint64_t bend;   /* highest square at the corner at its start, by its geometry */
+	uint64_t top;    /* highest square within the line */
+	uint64_t corner; /* highest square at its start */
+	uint64_t halt;   /* highest square at its end, if the path rests there */
+	uint64_t reach;  /* highest square at its start from which the path can come to rest */
+	uint64_t slope;  /* change of the square per substep at full acceleration */
+	uint32_t substeps;
+	uint32_t dwell; /* ticks of rest before the line */
+	uint32_t output;
+	uint32_t steps[PASSO_AXES_MAX];
+	uint8_t directions; /* bit i set: axis i counts down */
+	bool rest;          /* the path rests before the line */
+	bool last;          /* the motion ends with the line */
+	bool arc;           /* the corner at its start is limited as part of an arc */
+};
+
+/* The limits of an axis in substeps and clocks. */
+struct passo_path_scale {
+	uint64_t acceleration; /* UQ0.64 substeps per clock^2 */
+	uint32_t speed;        /* UQ0.32 substeps per clock */
+	uint32_t jump;         /* the same */
+};
+
+/* All members are private. Items are counted from 0 and never wrap within a motion. */
+struct passo_path_planner {
+	struct passo_machine machine;
+	struct passo_path_item *items;
+	uint32_t capacity;
+	uint32_t sent, planned, added; /* items handed out as lines; passed by the ramps; known */
+	uint32_t final;                /* what is before the start of this item cannot become faster */
+	/* geometry of the last line */
+	uint64_t steps_per_mm[PASSO_AXES_MAX];
+	struct passo_path_scale axis[PASSO_AXES_MAX];
+	uint64_t acceleration; /* UQ0.64 substeps per clock^2, along the path */
+	int64_t target[PASSO_AXES_MAX];
+	int64_t steps[PASSO_AXES_MAX];
+	int32_t direction[PASSO_AXES_MAX]; /* unit vector, Q1.30 */
+	uint64_t length;                   /* UQ32.16 substeps */
+	uint64_t deviation;                /* UQ32.16 substeps */
+	uint32_t substeps_per_mm;
+	int32_t carry;  /* Q16: substeps that rounding has withheld from the lines so far */
+	uint32_t dwell; /* ticks before the next line */
+	bool rest;      /* before the next line */
+	/* where the ramps end */
+	int64_t offset;    /* Q31.32 substeps into item `planned` */
+	uint64_t velocity; /* UQ0.48 substeps per clock */
+	bool at_rest;
+	bool started;    /* the dwell before the item is over */
+	bool jump, last; /* a ramp to 0 in no time is due; it ends the motion */
+	bool lines_end, ramps_end;
+	bool anew;           /* the limits of all items have changed */
+	uint32_t override;   /* UQ16.16 */
+	uint32_t reserve;    /* ticks */
+	uint32_t gentleness; /* UQ0.16: what a shape leaves of the acceleration */
+	enum passo_shape shape;
+};
+
+/* Starts a path at position 0 of all axes. `items` has room for `capacity` lines, at least
+ * PASSO_PATH_ITEMS_MIN: the look-ahead. Errors: BAD_CLOCK, BAD_AXES, BAD_PROFILE, NO_SCALE, NO_AXIS_SPEED,
+ * NO_AXIS_ACCELERATION, TOO_FAST, PATH_FULL (capacity too small). */
+enum passo_plan_error passo_path_open(struct passo_path_planner *path,
+    const struct passo_path_settings *settings, struct passo_path_item *items, uint32_t capacity);
+
+/* Drops all that is known and begins a new path at these positions, in steps: after a stop, or homing. */
+void passo_path_restart(struct passo_path_planner *path, const int32_t *positions);
+
+/* After a stop: goes on with the rest of the path from these positions, in steps, which must be on one of the
+ * lines that are still in memory, those added last; the first one from number `done` on (counted from 0) is
+ * taken. Each of its axes makes the steps that it lacks. False: the positions are on none, and nothing has
+ * changed. */
+bool passo_path_recover(struct passo_path_planner *path, const int32_t *positions, uint32_t done);
+
+/* Adds a line. A line shorter than half a substep becomes part of the next one. Errors: PATH_FULL (take ramps
+ * and lines, then add it again), NO_FEED, TOO_FAR (target out of range), TOO_LONG (2^30 substeps or more). */
+enum passo_plan_error passo_path_add(struct passo_path_planner *path, const struct passo_path_move *move);
+
+/* The path comes to rest at the end of the last line and stays there for so many clocks, in whole ticks,
+ * before the next line begins; 0: an exact stop. */
+void passo_path_dwell(struct passo_path_planner *path, uint64_t clocks);
+
+/* No line follows for now: the motion ends with the last line. Lines added later belong to the next one. */
+void passo_path_end(struct passo_path_planner *path);
+
+/* Feed override, UQ16.16, from 100 % on: of the feeds of all lines that the ramps have not passed yet. The
+ * limits of the axes and of the corners stay. Lower overrides are those of the core. */
+#define PASSO_PATH_OVERRIDE_MIN UINT32_C(0x10000)
+#define PASSO_PATH_OVERRIDE_MAX UINT32_C(0xA0000)
+void passo_path_override(struct passo_path_planner *path, uint32_t override);
+
+/* The next line and ramp of the motion; false: none at present. The last ones have `last`; after that
+ * passo_path_next_motion() goes on, if more lines are known. `held` is a number of ticks that the core still
+ * holds for sure, in ramps handed out before, or UINT32_MAX while it does not move yet: while it is above the
+ * reserve, the planner waits for further lines rather than slow down for the end of those it knows. */
+bool passo_path_next_line(struct passo_path_planner *path, struct passo_line *line);
+bool passo_path_next_ramp(struct passo_path_planner *path, uint32_t held, struct passo_ramp *ramp);
+
+/* After the last line and ramp of a motion: goes on with the next one. False: they have not been handed out
+ * yet. */
+bool passo_path_next_motion(struct passo_path_planner *path);
+
+/* Whether lines are known that have not been handed out, or passed by the ramps. */
+bool passo_path_is_empty(const struct passo_path_planner *path);
+
+/* Lines that can be added at present. */
+uint32_t passo_path_room(const struct passo_path_planner *path);
+
+#endif

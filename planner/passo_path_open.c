@@ -1,0 +1,174 @@
+/* SPDX-License-Identifier: MIT
+ * Opening a path: the scale of the substeps, and the limits of the axes in substeps and clocks.
+ *
+ * A substep is the same length everywhere on the path: as short as half, or better a quarter, of a substep
+ * per clock allows at the highest speed that all axes together can reach, but not shorter than 2^-18 mm.
+ */
+#include <stddef.h>
+
+#include "passo_path_private.h"
+#include "passo_shapes.h"
+
+/* Most substeps per mm, so that lines of four metres have less than 2^30. */
+#define SUBSTEPS_PER_MM_MAX (UINT64_C(1) << 18)
+/* Fewest substeps per step. */
+#define OVERSAMPLING_MIN 2u
+#define STEPS_PER_MM_MAX (UINT64_C(1) << (20 + 32))
+/* Of the reserve, unless it is given. */
+#define RESERVES_PER_SECOND 50u
+
+/* Highest speed of a line on any axes, UQ32.32 mm/s; saturates. */
+static uint64_t top_speed(const struct passo_path_settings *settings)
+{
+	struct passo_u128 sum = {0, 0};
+
+	for (uint32_t axis = 0; axis < settings->machine.axes; axis++) {
+		const uint64_t quarter =
+		    settings->axis[axis].speed / 4 + 1; /* eight squares do not overflow */
+
+		sum = passo_u128_add(sum, passo_multiply(quarter, quarter));
+	}
+	const uint64_t root = passo_isqrt128(sum) + 1;
+	return root < UINT64_MAX / 4 ? root * 4 : UINT64_MAX;
+}
+
+/* Substeps per mm; 0: too fast for the clock. */
+static uint32_t substeps_per_mm(const struct passo_path_settings *settings)
+{
+	const uint64_t speed = top_speed(settings);
+	const uint64_t fastest = passo_mul_div(settings->machine.clock_hz, PASSO_UNIT_Q32 / 2, speed);
+	uint64_t steps = 0;
+
+	for (uint32_t axis = 0; axis < settings->machine.axes; axis++)
+		steps = passo_path_larger(steps, settings->axis[axis].steps_per_mm);
+	const uint64_t least = (steps >> 32) * OVERSAMPLING_MIN + OVERSAMPLING_MIN;
+	const uint64_t wanted = passo_path_smaller(fastest / 2, SUBSTEPS_PER_MM_MAX);
+	return least > fastest ? 0 : (uint32_t)passo_path_larger(least, wanted);
+}
+
+static enum passo_plan_error check(const struct passo_path_settings *settings)
+{
+	const struct passo_machine *machine = &settings->machine;
+
+	if (machine->clock_hz == 0 || machine->tick_log2 < PASSO_TICK_LOG2_MIN
+	    || machine->tick_log2 > PASSO_TICK_LOG2_MAX)
+		return PASSO_PLAN_BAD_CLOCK;
+	if (machine->axes < 1 || machine->axes > PASSO_AXES_MAX)
+		return PASSO_PLAN_BAD_AXES;
+	if (settings->profile != PASSO_PROFILE_LINEAR && settings->profile != PASSO_PROFILE_COSINE
+	    && settings->profile != PASSO_PROFILE_SIGMOID)
+		return PASSO_PLAN_BAD_PROFILE;
+	for (uint32_t axis = 0; axis < machine->axes; axis++) {
+		const struct passo_path_axis *own = &settings->axis[axis];
+
+		if (own->steps_per_mm == 0)
+			return PASSO_PLAN_NO_SCALE;
+		if (own->speed == 0)
+			return PASSO_PLAN_NO_AXIS_SPEED;
+		if (own->acceleration == 0)
+			return PASSO_PLAN_NO_AXIS_ACCELERATION;
+		if (own->steps_per_mm > STEPS_PER_MM_MAX)
+			return PASSO_PLAN_TOO_FAST;
+	}
+	return PASSO_PLAN_OK;
+}
+
+/* Mean slope of a shape divided by its steepest, UQ0.16, rounded down: 2 / pi for a cosine. */
+static uint32_t gentleness(enum passo_shape shape)
+{
+	uint32_t steepest = 1;
+
+	if (shape == PASSO_SHAPE_LINEAR)
+		return UINT32_C(1) << 16;
+	for (uint32_t k = 1; k < PASSO_BANK_POINTS; k++) {
+		const uint16_t *point = &passo_shapes[shape - 1][k];
+
+		if (steepest < (uint32_t)(point[0] - point[-1]))
+			steepest = (uint32_t)(point[0] - point[-1]);
+	}
+	return (UINT32_C(1) << 24) / (steepest + 1);
+}
+
+/* UQ0.64 substeps per clock^2, at least 1. */
+static uint64_t acceleration_of(const struct passo_path_planner *path, uint64_t acceleration)
+{
+	const uint32_t hz = path->machine.clock_hz;
+	const uint64_t gain = passo_mul_div(acceleration, path->substeps_per_mm, hz); /* UQ.32 per second */
+	const uint64_t scaled = passo_mul_div(gain, PASSO_UNIT_Q32, hz);
+
+	return passo_path_larger(1, passo_path_smaller(scaled, PASSO_PATH_SQUARE_MAX >> 2));
+}
+
+static struct passo_path_scale scale_of(
+    const struct passo_path_planner *path, const struct passo_path_axis *own)
+{
+	const uint32_t hz = path->machine.clock_hz;
+	const uint64_t jump = passo_mul_div(own->jump, path->substeps_per_mm, hz);
+
+	return (struct passo_path_scale){
+	    .acceleration = acceleration_of(path, own->acceleration),
+	    .speed = (uint32_t)passo_path_larger(1, passo_mul_div(own->speed, path->substeps_per_mm, hz)),
+	    .jump = (uint32_t)passo_path_smaller(jump, UINT32_C(1) << 31),
+	};
+}
+
+enum passo_plan_error passo_path_open(struct passo_path_planner *path,
+    const struct passo_path_settings *settings, struct passo_path_item *items, uint32_t capacity)
+{
+	static const int32_t ORIGIN[PASSO_AXES_MAX];
+	const enum passo_plan_error error = check(settings);
+
+	if (error != PASSO_PLAN_OK)
+		return error;
+	if (capacity < PASSO_PATH_ITEMS_MIN)
+		return PASSO_PLAN_PATH_FULL;
+	const uint32_t scale = substeps_per_mm(settings);
+	if (scale == 0)
+		return PASSO_PLAN_TOO_FAST;
+	const struct passo_machine *machine = &settings->machine;
+	const uint32_t reserve =
+	    settings->reserve_clocks > 0 ? settings->reserve_clocks : machine->clock_hz / RESERVES_PER_SECOND;
+	*path = (struct passo_path_planner){
+	    .machine = *machine,
+	    .items = items,
+	    .capacity = capacity,
+	    .substeps_per_mm = scale,
+	    .override = PASSO_PATH_OVERRIDE_MIN,
+	    .deviation = passo_mul_div(settings->junction_deviation, scale, UINT32_C(1) << 16),
+	    .reserve = (reserve >> machine->tick_log2) + 1,
+	    .shape = settings->profile == PASSO_PROFILE_COSINE  ? PASSO_SHAPE_COSINE
+	           : settings->profile == PASSO_PROFILE_SIGMOID ? PASSO_SHAPE_SIGMOID
+	                                                        : PASSO_SHAPE_LINEAR,
+	};
+	path->gentleness = gentleness(path->shape);
+	path->acceleration = settings->acceleration > 0 ? acceleration_of(path, settings->acceleration)
+	                                                : PASSO_PATH_SQUARE_MAX >> 2;
+	for (uint32_t axis = 0; axis < machine->axes; axis++) {
+		path->axis[axis] = scale_of(path, &settings->axis[axis]);
+		path->steps_per_mm[axis] = settings->axis[axis].steps_per_mm;
+	}
+	passo_path_restart(path, ORIGIN);
+	return PASSO_PLAN_OK;
+}
+
+void passo_path_restart(struct passo_path_planner *path, const int32_t *positions)
+{
+	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
+		const int64_t steps = positions[axis];
+		const uint64_t size = steps < 0 ? 0 - (uint64_t)steps : (uint64_t)steps;
+		const uint64_t target = passo_path_smaller(
+		    passo_divide((struct passo_u128){size, 0}, path->steps_per_mm[axis], NULL),
+		    PASSO_PATH_TARGET_MAX);
+
+		path->steps[axis] = steps;
+		path->target[axis] = steps < 0 ? -(int64_t)target : (int64_t)target;
+	}
+	path->sent = path->planned = path->added = path->final = 0;
+	path->carry = 0;
+	path->dwell = 0;
+	path->rest = true;
+	path->offset = 0;
+	path->velocity = 0;
+	path->at_rest = true;
+	path->started = path->jump = path->last = path->lines_end = path->ramps_end = false;
+}

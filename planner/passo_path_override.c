@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: MIT
+ * The limits of an item under the present override.
+ */
+#include "passo_path_private.h"
+
+#define OVERRIDE_BITS 16u
+
+void passo_path_limit(struct passo_path_planner *path, uint32_t index)
+{
+	struct passo_path_item *item = passo_path_item(path, index);
+	const uint64_t factor = (uint64_t)path->override * path->override;
+
+	item->top = passo_path_smaller(
+	    item->limit, passo_mul_div(item->feed, factor, UINT64_C(1) << (2 * OVERRIDE_BITS)));
+	if (item->rest)
+		return;
+	item->corner = passo_path_smaller(item->bend, item->top);
+	if (index == path->planned)
+		return;
+	struct passo_path_item *before = passo_path_item(path, index - 1);
+
+	item->corner = passo_path_smaller(item->corner, before->top);
+	/* an arc is limited along its lines, not only at its corners */
+	if (before->arc && item->arc)
+		before->top =
+		    passo_path_smaller(before->top, passo_path_larger(before->corner, item->corner));
+}
+
+void passo_path_override(struct passo_path_planner *path, uint32_t override)
+{
+	path->override = (uint32_t)passo_path_smaller(
+	    passo_path_larger(override, PASSO_PATH_OVERRIDE_MIN), PASSO_PATH_OVERRIDE_MAX);
+	for (uint32_t index = path->planned; index < path->added; index++)
+		passo_path_limit(path, index);
+	path->final = path->planned;
+	path->anew = true;
+	if (path->planned < path->added)
+		passo_path_look_back(path);
+	if (path->rest)
+		path->final = path->added;
+}

@@ -1,0 +1,108 @@
+/* SPDX-License-Identifier: MIT
+ * Internal: shared by the sources of the path planner.
+ */
+#ifndef PASSO_PATH_PRIVATE_H
+#define PASSO_PATH_PRIVATE_H
+
+#include "passo_math.h"
+#include "passo_path.h"
+
+/* Squares of velocities are below this, so that the sum of two fits. */
+#define PASSO_PATH_SQUARE_MAX (UINT64_C(1) << 62)
+
+/* Velocities of the planner are UQ0.32, those of ramps UQ0.48. */
+#define PASSO_PATH_VELOCITY_SHIFT 16u
+
+/* 1.0 of a unit vector. */
+#define PASSO_PATH_UNIT_BITS 30u
+
+/* Longest ramp that is not shaped: a longer one is cut. */
+#define PASSO_PATH_TICKS_MAX (UINT32_C(1) << 15)
+
+/* The path comes to rest from a velocity that the acceleration makes in so many ticks. */
+#define PASSO_PATH_LANDING_TICKS 2u
+
+/* A straight part of the profile: the square of the velocity changes evenly over the path. */
+enum passo_path_kind { PASSO_PATH_UP, PASSO_PATH_FLAT, PASSO_PATH_DOWN };
+
+struct passo_path_part {
+	enum passo_path_kind kind;
+	uint64_t length; /* UQ32.32 substeps */
+	uint64_t square; /* at its end */
+};
+
+/* What the next ramp aims at. */
+struct passo_path_aim {
+	enum passo_path_kind kind;
+	uint64_t length, square; /* of the path to there, UQ32.32 substeps; of the velocity there */
+	uint64_t slope;
+	bool rest; /* it comes to rest there */
+	bool open; /* it ends there because what follows is not settled */
+};
+
+static inline struct passo_path_item *passo_path_item(const struct passo_path_planner *path, uint32_t index)
+{
+	return &path->items[index % path->capacity];
+}
+
+static inline uint64_t passo_path_smaller(uint64_t a, uint64_t b)
+{
+	return a < b ? a : b;
+}
+
+static inline uint64_t passo_path_larger(uint64_t a, uint64_t b)
+{
+	return a > b ? a : b;
+}
+
+/* Deceleration is planned a little below the limit, so that it can make up for ramps that end at ticks. */
+static inline uint64_t passo_path_down_slope(const struct passo_path_item *item)
+{
+	return item->slope - item->slope / 256;
+}
+
+/* Change of the square over a length (UQ32.32 substeps); saturates. */
+uint64_t passo_path_gain(uint64_t slope, uint64_t length);
+
+/* Change of the velocity, UQ0.48, in so many ticks. */
+uint64_t passo_path_change(const struct passo_path_planner *path, uint64_t slope, uint64_t ticks);
+
+/* Fills in the geometry and the limits of a line, and remembers it as the last one; *substeps is 0 if it is
+ * too short to be a line. */
+enum passo_plan_error passo_path_measure(
+    struct passo_path_planner *path, const struct passo_path_move *move, struct passo_path_item *item);
+
+/* Sets the limits of an item, `top` and, unless the path rests there, `corner`; those before it are known. */
+void passo_path_limit(struct passo_path_planner *path, uint32_t index);
+
+/* The path rests at the end of this item, as far as is known. */
+bool passo_path_rests_after(const struct passo_path_planner *path, uint32_t index);
+
+/* Highest square at the end of an item, and whether further lines can raise it. */
+uint64_t passo_path_end_square(const struct passo_path_planner *path, uint32_t index);
+bool passo_path_is_settled(const struct passo_path_planner *path, uint32_t index);
+
+/* Updates `reach` after a line has been added. */
+void passo_path_look_back(struct passo_path_planner *path);
+
+/* The parts of the profile from a point of an item to its end, of which `left` (UQ32.32 substeps) are left:
+ * at most three. With `level` the path does not speed up for less than the line. */
+unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index, uint64_t left,
+    uint64_t square, bool level, struct passo_path_part *parts);
+
+/* The distance under a ramp that begins at a velocity, UQ32.32 substeps. */
+uint64_t passo_path_distance(
+    const struct passo_path_planner *path, uint64_t velocity, const struct passo_ramp *ramp);
+
+/* Solves a ramp of given shape and ticks for the end velocity with which it covers a distance; saturates at 0
+ * and PASSO_VELOCITY_MAX. */
+void passo_path_land(
+    const struct passo_path_planner *path, uint64_t velocity, uint64_t distance, struct passo_ramp *ramp);
+
+/* The first item at whose start a shaped ramp would exceed the limit of the corner; `added`: none. */
+uint32_t passo_path_too_fast(const struct passo_path_planner *path, const struct passo_path_aim *aim);
+
+/* Sets ticks and progress step. */
+void passo_path_set_ticks(struct passo_ramp *ramp, uint32_t ticks);
+
+#endif

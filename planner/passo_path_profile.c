@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: MIT
+ * The profile of a path: the square of the velocity over the path, which changes evenly at constant
+ * acceleration. It rises from where the ramps end, and falls such that the path can come to rest.
+ */
+#include "passo_path_private.h"
+
+uint64_t passo_path_gain(uint64_t slope, uint64_t length)
+{
+	const struct passo_u128 product = passo_multiply(slope, length);
+
+	if (product.high >= PASSO_PATH_SQUARE_MAX >> 32)
+		return PASSO_PATH_SQUARE_MAX;
+	return product.high << 32 | product.low >> 32;
+}
+
+uint64_t passo_path_change(const struct passo_path_planner *path, uint64_t slope, uint64_t ticks)
+{
+	return passo_mul_div(slope, ticks << path->machine.tick_log2, UINT32_C(1) << 17);
+}
+
+/* Length over which the square changes, UQ32.32 substeps. */
+static uint64_t length_of(uint64_t change, uint64_t slope)
+{
+	return passo_mul_div(change, PASSO_UNIT_Q32, slope);
+}
+
+static unsigned put(struct passo_path_part *parts, unsigned count, enum passo_path_kind kind, uint64_t length,
+    uint64_t square)
+{
+	if (length == 0)
+		return count;
+	parts[count] = (struct passo_path_part){kind, length, square};
+	return count + 1;
+}
+
+unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index, uint64_t left,
+    uint64_t square, bool level, struct passo_path_part *parts)
+{
+	const struct passo_path_item *item = passo_path_item(path, index);
+	const uint64_t up = item->slope, down = passo_path_down_slope(item);
+	const uint64_t end = passo_path_end_square(path, index);
+	const uint64_t highest = end + passo_path_gain(down, left);
+	uint64_t top = passo_path_larger(item->top, square);
+
+	if (square >= highest)
+		return put(parts, 0, PASSO_PATH_DOWN, left, end);
+	if (level && !passo_path_is_settled(path, index))
+		top = passo_path_smaller(top, passo_path_larger(end, square));
+	const uint64_t rise = square + passo_path_gain(up, left);
+	if (rise <= end && rise <= top)
+		return put(parts, 0, PASSO_PATH_UP, left, rise);
+
+	uint64_t rising = passo_path_smaller(length_of(highest - square, up + down), left);
+	uint64_t peak = square + passo_path_gain(up, rising);
+	uint64_t falling = left - rising;
+	if (peak > top) {
+		peak = top;
+		rising = length_of(peak - square, up);
+		falling = peak > end ? length_of(peak - end, down) : 0;
+		falling = passo_path_smaller(falling, left - rising);
+	}
+	unsigned count = put(parts, 0, PASSO_PATH_UP, rising, peak);
+	count = put(parts, count, PASSO_PATH_FLAT, left - rising - falling, peak);
+	return put(parts, count, PASSO_PATH_DOWN, falling, end);
+}

@@ -1,0 +1,270 @@
+/* SPDX-License-Identifier: MIT
+ * From the profile to ramps of whole ticks.
+ *
+ * A ramp follows one part of the profile, or several that are too short for a ramp each, from exactly where
+ * the last one ended. It ends at the last tick within the part, so no limit is exceeded: what is left is
+ * covered by the next ramp. The ramp that comes to rest is solved to end exactly at the end of its line.
+ */
+#include "passo_path_private.h"
+
+/* Parts that are shorter share a ramp, unless the speed is lowest between them. */
+#define TICKS_MIN 32u
+/* While more lines may come, the reserve is divided into so many ramps. */
+#define RAMPS_PER_RESERVE 4u
+/* Shorter ramps are linear whatever the shape. */
+#define SHAPED_TICKS_MIN 64u
+/* Longest shaped ramp. */
+#define SHAPED_TICKS_MAX (UINT32_C(1) << 20)
+
+/* Why ramps are made beyond what is settled. */
+enum need { NO_NEED, FULL, DRY };
+
+static uint64_t square_of(uint64_t velocity)
+{
+	velocity >>= PASSO_PATH_VELOCITY_SHIFT;
+	return velocity * velocity;
+}
+
+static uint64_t velocity_of(uint64_t square)
+{
+	return (uint64_t)passo_isqrt64(square) << PASSO_PATH_VELOCITY_SHIFT;
+}
+
+/* Ticks over a length, rounded down. */
+static uint64_t ticks_over(const struct passo_path_planner *path, uint64_t length, uint64_t speeds)
+{
+	return passo_mul_div(length, UINT64_C(1) << (17u - path->machine.tick_log2), speeds);
+}
+
+static uint64_t ticks_to(const struct passo_path_planner *path, const struct passo_path_aim *aim)
+{
+	const uint64_t speeds = path->velocity + velocity_of(aim->square);
+
+	return speeds > 0 ? ticks_over(path, aim->length, speeds) : UINT32_MAX;
+}
+
+/* The newest line is handed out when the next one is known, or when it is the last. */
+static bool is_held_back(const struct passo_path_planner *path, uint32_t index)
+{
+	return index + 1 == path->added && !passo_path_item(path, index)->last;
+}
+
+/* Whether a part may be made already. */
+static bool is_due(const struct passo_path_planner *path, const struct passo_path_aim *aim, uint32_t index,
+    const struct passo_path_part *part, enum need need)
+{
+	if (is_held_back(path, index))
+		return false;
+	if (need == DRY || part->kind != PASSO_PATH_DOWN || passo_path_is_settled(path, index))
+		return true;
+	return need == FULL && (index == path->planned || ticks_to(path, aim) < TICKS_MIN);
+}
+
+/* Whether the ramp has to end before this part. */
+static bool is_enough(const struct passo_path_planner *path, const struct passo_path_aim *aim, uint64_t slope,
+    const struct passo_path_part *part)
+{
+	if (aim->length == 0)
+		return false;
+	if (aim->kind == part->kind
+	    && (part->kind == PASSO_PATH_FLAT ? aim->square == part->square : aim->slope == slope))
+		return false;
+	const uint64_t ticks = ticks_to(path, aim);
+	return ticks >= TICKS_MIN
+	    || (ticks > 1 && aim->kind == PASSO_PATH_DOWN && part->kind != PASSO_PATH_DOWN);
+}
+
+/* Follows the profile, at most to the start of item `before`. */
+static struct passo_path_aim find_aim(const struct passo_path_planner *path, enum need need, uint32_t before)
+{
+	struct passo_path_aim aim = {.square = square_of(path->velocity)};
+	uint32_t index = path->planned;
+	uint64_t left = ((uint64_t)passo_path_item(path, index)->substeps << 32) - (uint64_t)path->offset;
+
+	for (;; index++, left = (uint64_t)passo_path_item(path, index)->substeps << 32) {
+		const struct passo_path_item *item = passo_path_item(path, index);
+		struct passo_path_part parts[3];
+
+		if (index == before)
+			return aim;
+		const unsigned count = passo_path_parts(
+		    path, index, left, aim.square, need == FULL && index == path->planned, parts);
+
+		for (unsigned i = 0; i < count; i++) {
+			if (!is_due(path, &aim, index, &parts[i], need)) {
+				aim.open = true;
+				return aim;
+			}
+			if (is_enough(path, &aim, item->slope, &parts[i]))
+				return aim;
+			aim.kind = parts[i].kind;
+			aim.slope = item->slope;
+			aim.length += parts[i].length;
+			aim.square = parts[i].square;
+		}
+		if (passo_path_rests_after(path, index)) {
+			aim.rest = true;
+			return aim;
+		}
+	}
+}
+
+static bool is_shaped(const struct passo_path_planner *path, const struct passo_path_aim *aim)
+{
+	return path->shape != PASSO_SHAPE_LINEAR && aim->kind != PASSO_PATH_FLAT
+	    && ticks_to(path, aim) >= SHAPED_TICKS_MIN;
+}
+
+/* The shape of a ramp must keep the limits of all corners that it passes: otherwise it ends at the first of
+ * them. */
+static struct passo_path_aim choose_aim(const struct passo_path_planner *path, enum need need)
+{
+	struct passo_path_aim aim = find_aim(path, need, path->added);
+	uint32_t before;
+
+	while (is_shaped(path, &aim) && (before = passo_path_too_fast(path, &aim)) < path->added)
+		aim = find_aim(path, need, before);
+	return aim;
+}
+
+/* -------------------------------------------------------------------------------------------- ramps ---- */
+
+/* The ramps have moved on by a distance; in a path that goes on they pass the ends of lines. A ramp can be
+ * beyond the end of the path only if the path lasts less than a tick: then it rests at once. */
+static void advance(struct passo_path_planner *path, uint64_t distance)
+{
+	path->offset += (int64_t)distance;
+	for (;;) {
+		const int64_t whole = (int64_t)passo_path_item(path, path->planned)->substeps << 32;
+
+		if (path->offset < whole)
+			break;
+		path->jump = passo_path_rests_after(path, path->planned);
+		if (path->jump)
+			break;
+		path->offset -= whole;
+		path->planned++;
+	}
+}
+
+static void make(struct passo_path_planner *path, struct passo_ramp *ramp)
+{
+	const uint64_t distance = passo_path_distance(path, path->velocity, ramp);
+
+	path->velocity = ramp->velocity_end;
+	advance(path, distance);
+}
+
+/* The path rests at the end of the item. */
+static void come_to_rest(struct passo_path_planner *path, bool *last)
+{
+	const struct passo_path_item *item = passo_path_item(path, path->planned);
+
+	if (is_held_back(path, path->planned))
+		passo_path_end(path);
+	*last = item->last;
+	path->offset = item->last ? 0 : path->offset - ((int64_t)item->substeps << 32);
+	path->planned++;
+	path->at_rest = true;
+	path->started = false;
+	path->ramps_end = item->last;
+}
+
+/* A ramp to a small velocity, which covers exactly what is left of the line; a ramp to 0 follows at once. */
+static void land(struct passo_path_planner *path, const struct passo_path_aim *aim, uint32_t ticks,
+    struct passo_ramp *ramp)
+{
+	ramp->shape = is_shaped(path, aim) ? path->shape : PASSO_SHAPE_LINEAR;
+	passo_path_set_ticks(ramp, ticks);
+	passo_path_land(path, path->velocity, aim->length, ramp);
+	make(path, ramp);
+	path->jump = ramp->velocity_end > 0;
+	if (!path->jump)
+		come_to_rest(path, &ramp->last);
+}
+
+static void follow(
+    struct passo_path_planner *path, const struct passo_path_aim *aim, uint32_t most, struct passo_ramp *ramp)
+{
+	const uint64_t begin = path->velocity, end = velocity_of(aim->square);
+	const uint64_t ticks = passo_path_larger(ticks_to(path, aim), 1);
+	const bool shaped = is_shaped(path, aim);
+	const uint32_t used = (uint32_t)passo_path_smaller(ticks, shaped ? SHAPED_TICKS_MAX : most);
+	const uint64_t limit = passo_path_change(path, aim->slope, used);
+	uint64_t change = begin < end ? end - begin : begin - end;
+
+	if (used < ticks)
+		change = passo_mul_div(change, used, ticks);
+	change = passo_path_smaller(change, limit);
+	ramp->shape = shaped ? path->shape : PASSO_SHAPE_LINEAR;
+	passo_path_set_ticks(ramp, used);
+	ramp->velocity_end = begin < end ? begin + change : begin - change;
+	make(path, ramp);
+}
+
+/* From rest: the dwell, then the jump to the start speed. False: neither is due. */
+static bool start(struct passo_path_planner *path, struct passo_ramp *ramp)
+{
+	struct passo_path_item *item = passo_path_item(path, path->planned);
+
+	if (!path->started && item->dwell > 0) {
+		passo_path_set_ticks(ramp, item->dwell);
+		item->dwell = 0;
+		return true;
+	}
+	path->started = true;
+	path->at_rest = false;
+	ramp->velocity_end = velocity_of(passo_path_smaller(item->reach, item->top));
+	path->velocity = ramp->velocity_end;
+	return ramp->velocity_end > 0;
+}
+
+bool passo_path_next_ramp(struct passo_path_planner *path, uint32_t held, struct passo_ramp *ramp)
+{
+	*ramp = (struct passo_ramp){.shape = PASSO_SHAPE_LINEAR};
+	if (path->ramps_end)
+		return false;
+	if (path->jump) {
+		path->jump = false;
+		path->velocity = 0;
+		come_to_rest(path, &ramp->last);
+		return true;
+	}
+	if (path->planned == path->added)
+		return false;
+
+	if (path->at_rest) {
+		if (is_held_back(path, path->planned)) {
+			if (held >= path->reserve)
+				return false;
+			passo_path_end(path);
+		}
+		if (start(path, ramp))
+			return true;
+	}
+	struct passo_path_aim aim = choose_aim(path, NO_NEED);
+	uint32_t most = PASSO_PATH_TICKS_MAX;
+	if (aim.open && ticks_to(path, &aim) < path->reserve / RAMPS_PER_RESERVE) {
+		const bool is_full = path->added - path->planned == path->capacity;
+
+		if (!is_full && held >= path->reserve)
+			return false;
+		if (!is_full && is_held_back(path, path->planned))
+			passo_path_end(path);
+		aim = choose_aim(path, is_full ? FULL : DRY);
+		if (!is_full)
+			most = path->reserve / RAMPS_PER_RESERVE + 1;
+	}
+	if (aim.rest) {
+		const uint64_t landing = passo_path_larger(
+		    velocity_of(aim.square), passo_path_change(path, aim.slope, PASSO_PATH_LANDING_TICKS));
+		const uint64_t ticks = ticks_over(path, aim.length, path->velocity + landing) + 1;
+
+		if (ticks <= (is_shaped(path, &aim) ? SHAPED_TICKS_MAX : most)) {
+			land(path, &aim, (uint32_t)ticks, ramp);
+			return true;
+		}
+	}
+	follow(path, &aim, most, ramp);
+	return true;
+}

@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: MIT
+ * The rest of a path after a stop: the line on which it stopped becomes shorter, and is the first of a
+ * motion.
+ */
+#include "passo_path_private.h"
+
+/* Steps by which the axes may be off the line: an abort drops those that wait for their pins. */
+#define TOLERANCE 5
+
+static int64_t steps_of(const struct passo_path_item *item, uint32_t axis)
+{
+	const int64_t steps = item->steps[axis];
+
+	return item->directions >> axis & 1u ? -steps : steps;
+}
+
+static int64_t magnitude(int64_t value)
+{
+	return value < 0 ? -value : value;
+}
+
+/* The axis with the most steps. */
+static uint32_t leader(const struct passo_path_planner *path, const struct passo_path_item *item)
+{
+	uint32_t found = 0;
+
+	for (uint32_t axis = 1; axis < path->machine.axes; axis++) {
+		if (item->steps[axis] > item->steps[found])
+			found = axis;
+	}
+	return found;
+}
+
+/* Whether the steps made since the start of a line are on it. */
+static bool is_on(
+    const struct passo_path_planner *path, const struct passo_path_item *item, const int64_t *made)
+{
+	const uint32_t lead = leader(path, item);
+	const int64_t most = steps_of(item, lead);
+
+	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
+		const int64_t all = steps_of(item, axis);
+
+		if (magnitude(made[axis]) + magnitude(all - made[axis]) - magnitude(all) > 2 * TOLERANCE)
+			return false;
+	}
+	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
+		if (magnitude(made[axis] * most - made[lead] * steps_of(item, axis))
+		    > TOLERANCE * magnitude(most))
+			return false;
+	}
+	return most != 0;
+}
+
+/* Takes the steps that were made off a line. */
+static void shorten(const struct passo_path_planner *path, struct passo_path_item *item, const int64_t *made)
+{
+	const uint32_t lead = leader(path, item);
+	const uint32_t all = item->steps[lead];
+	uint32_t most = 1;
+
+	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
+		const int64_t left = steps_of(item, axis) - made[axis];
+
+		item->steps[axis] = (uint32_t)magnitude(left);
+		item->directions =
+		    (uint8_t)((item->directions & ~(1u << axis)) | (left < 0 ? 1u << axis : 0u));
+		most = item->steps[axis] > most ? item->steps[axis] : most;
+	}
+	const uint64_t left = passo_mul_div(item->substeps, item->steps[lead], all);
+	item->substeps = (uint32_t)passo_path_smaller(passo_path_larger(left, most), PASSO_SUBSTEPS_MAX);
+}
+
+static void begin_at(struct passo_path_planner *path, uint32_t index)
+{
+	struct passo_path_item *item = passo_path_item(path, index);
+
+	item->rest = true;
+	item->arc = false;
+	item->dwell = 0;
+	item->corner = item->halt;
+	path->sent = path->planned = path->final = index;
+	path->offset = 0;
+	path->velocity = 0;
+	path->at_rest = true;
+	path->started = path->jump = path->lines_end = path->ramps_end = false;
+	path->anew = true;
+	passo_path_look_back(path);
+	if (path->rest)
+		path->final = path->added;
+}
+
+bool passo_path_recover(struct passo_path_planner *path, const int32_t *positions, uint32_t done)
+{
+	const uint32_t oldest = path->added > path->capacity ? path->added - path->capacity : 0;
+	const uint32_t first = done > oldest ? done : oldest;
+	int64_t made[PASSO_AXES_MAX];
+
+	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
+		made[axis] = positions[axis] - path->steps[axis];
+		for (uint32_t index = first; index < path->added; index++)
+			made[axis] += steps_of(passo_path_item(path, index), axis);
+	}
+	for (uint32_t index = first; index < path->added; index++) {
+		struct passo_path_item *item = passo_path_item(path, index);
+
+		if (is_on(path, item, made)) {
+			shorten(path, item, made);
+			begin_at(path, index);
+			return true;
+		}
+		for (uint32_t axis = 0; axis < path->machine.axes; axis++)
+			made[axis] -= steps_of(item, axis);
+	}
+	return false;
+}

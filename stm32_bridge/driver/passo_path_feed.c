@@ -1,0 +1,154 @@
+/* SPDX-License-Identifier: MIT
+ * The time that the core still has: each ramp adds to it, and it passes at the rate of the time scale. The
+ * clocks of host and core differ, so each look at the queue corrects it: what is left is at least the ramps
+ * behind the present one, and at most those with it.
+ */
+#include "passo_path_feed.h"
+
+#include "passo_driver.h"
+#include "passo_math.h"
+
+#define START_MICROSECONDS 20000u
+#define MICROSECONDS_PER_SECOND 1000000u
+
+static uint32_t tick_log2(const struct passo_path_feed *feed)
+{
+	return feed->passo->machine.tick_log2;
+}
+
+static uint32_t larger(uint32_t a, uint32_t b)
+{
+	return a > b ? a : b;
+}
+
+static bool give_line(void *context, struct passo_line *line)
+{
+	struct passo_path_feed *feed = context;
+	const bool given = passo_path_next_line(feed->path, line);
+
+	feed->lines += given;
+	return given;
+}
+
+static bool give_ramp(void *context, struct passo_ramp *ramp)
+{
+	struct passo_path_feed *feed = context;
+	const bool waits = feed->passo->stream == PASSO_STREAM_FILLS && !feed->hurry;
+	const uint64_t left = feed->left >> tick_log2(feed);
+	const uint32_t held = waits || left > UINT32_MAX ? UINT32_MAX : (uint32_t)left;
+
+	if (!passo_path_next_ramp(feed->path, held, ramp))
+		return false;
+	feed->ticks[feed->ramps++ % PASSO_PATH_FEED_RAMPS] = ramp->ticks;
+	feed->left += (uint64_t)ramp->ticks << tick_log2(feed);
+	return true;
+}
+
+/* The rate that the core has, or goes to. */
+static uint32_t rate(const struct passo_path_feed *feed)
+{
+	return larger(passo_driver_rate(feed->passo), feed->passo->snapshot.rate);
+}
+
+/* Clocks of the last ramps given, `count` of them. */
+static uint64_t clocks_of(const struct passo_path_feed *feed, uint32_t count)
+{
+	uint64_t ticks = 0;
+
+	for (uint32_t i = 0; i < count && i < PASSO_PATH_FEED_RAMPS && i < feed->ramps; i++)
+		ticks += feed->ticks[(feed->ramps - 1u - i) % PASSO_PATH_FEED_RAMPS];
+	return ticks << tick_log2(feed);
+}
+
+static void pass_time(struct passo_path_feed *feed)
+{
+	const struct passo *passo = feed->passo;
+	const uint32_t now = passo_driver_now(passo), present = rate(feed);
+	const uint64_t passed = (uint64_t)(now - feed->at) * larger(feed->rate, present);
+	const uint64_t clocks = passo_mul_div_ceil(
+	    passed, passo->machine.clock_hz, (uint64_t)MICROSECONDS_PER_SECOND * PASSO_RATE_FULL);
+
+	feed->at = now;
+	feed->rate = present;
+	if (passo->stream != PASSO_STREAM_FILLS)
+		feed->left -= feed->left < clocks ? feed->left : clocks;
+}
+
+/* After a look at the state of the core. */
+static void correct(struct passo_path_feed *feed)
+{
+	const struct passo *passo = feed->passo;
+	const uint32_t queued = (uint32_t)(passo->ramp_places - passo->snapshot.ramp_room);
+
+	if (feed->seen == passo->looked_at || passo->post != PASSO_POST_NONE
+	    || passo->stream == PASSO_STREAM_FILLS)
+		return;
+	feed->seen = passo->looked_at;
+	const uint32_t lines = (uint32_t)(passo->line_places - passo->snapshot.line_room) + 1u;
+	if (passo->snapshot.state == PASSO_STATE_RUN && feed->lines > lines)
+		feed->done = feed->first + feed->lines - lines;
+	const uint64_t least = queued > 1u ? clocks_of(feed, queued - 1u) : 0u;
+	const uint64_t most = clocks_of(feed, queued);
+
+	if (feed->left > most && queued < PASSO_PATH_FEED_RAMPS)
+		feed->left = most;
+	if (feed->left < least)
+		feed->left = least;
+}
+
+void passo_path_feed_open(struct passo_path_feed *feed, struct passo *passo, struct passo_path_planner *path)
+{
+	*feed = (struct passo_path_feed){
+	    .passo = passo, .path = path, .at = passo_driver_now(passo), .rate = PASSO_RATE_FULL};
+}
+
+static enum passo_error begin(struct passo_path_feed *feed)
+{
+	const struct passo_source source = {.line = give_line, .ramp = give_ramp, .context = feed};
+
+	passo_path_next_motion(feed->path);
+	feed->left = 0;
+	feed->first = feed->done = feed->path->sent;
+	feed->ramps = feed->lines = 0;
+	feed->hurry = false;
+	return passo_stream(feed->passo, &source);
+}
+
+/* Whether the stream starts with what it has. */
+static bool is_time(struct passo_path_feed *feed)
+{
+	const uint32_t now = passo_driver_now(feed->passo);
+
+	if (feed->added != feed->path->added) {
+		feed->added = feed->path->added;
+		feed->added_at = now;
+	}
+	feed->hurry = passo_path_room(feed->path) == 0u || now - feed->added_at >= START_MICROSECONDS;
+	return feed->hurry && feed->ramps > 0u && feed->lines > 0u;
+}
+
+enum passo_error passo_path_feed_poll(struct passo_path_feed *feed)
+{
+	struct passo *passo = feed->passo;
+	enum passo_error error = PASSO_OK;
+
+	pass_time(feed);
+	if (!passo_is_moving(passo) && feed->path->sent != feed->path->added)
+		error = begin(feed);
+	else if (passo->stream == PASSO_STREAM_FILLS && is_time(feed) && passo->post == PASSO_POST_NONE)
+		error = passo_stream_start(passo);
+	if (error == PASSO_OK)
+		error = passo_poll(passo);
+	correct(feed);
+	return error;
+}
+
+bool passo_path_feed_recover(struct passo_path_feed *feed, const int32_t *positions)
+{
+	return passo_path_recover(feed->path, positions, feed->done);
+}
+
+bool passo_path_feed_is_moving(const struct passo_path_feed *feed)
+{
+	return passo_is_moving(feed->passo) || feed->path->sent != feed->path->added;
+}

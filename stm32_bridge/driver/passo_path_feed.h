@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: MIT
+ * Feeds a path (planner/passo_path.h) to a channel of the core, line by line as it becomes known.
+ *
+ *     passo_path_feed_open(&feed, &passo, &path);
+ *     for (;;) {
+ *             if (there is a line and passo_path_room(&path) > 0)
+ *                     passo_path_add(&path, &line);
+ *             error = passo_path_feed_poll(&feed); // instead of passo_poll()
+ *     }
+ * The core moves while lines are known, and rests at the end of the last one while none are, whatever the
+ * source of the lines does. Each rest ends a motion. Hold, resume and override are those of passo.h. After a
+ * stop and passo_clear() call passo_path_restart() with the positions and passo_path_feed_open(), to drop the
+ * rest of the path, or passo_path_feed_recover() to go on with it.
+ */
+#ifndef PASSO_PATH_FEED_H
+#define PASSO_PATH_FEED_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#include "passo.h"
+#include "passo_path.h"
+
+#define PASSO_PATH_FEED_RAMPS 32u
+
+/* All members are private. */
+struct passo_path_feed {
+	struct passo *passo;
+	struct passo_path_planner *path;
+	uint64_t left;                         /* clocks of ramps that the core holds: a lower bound */
+	uint32_t at;                           /* microseconds: time of `left` */
+	uint32_t seen;                         /* time of the last look that corrected it */
+	uint32_t rate;                         /* highest since then, UQ1.16 */
+	uint32_t ticks[PASSO_PATH_FEED_RAMPS]; /* of the ramps given last */
+	uint32_t ramps, lines;                 /* given, of this motion */
+	uint32_t first, done;                  /* number of its first line; lines executed, at least */
+	uint32_t added, added_at;              /* lines known, and since when */
+	bool hurry;                            /* start with what is known */
+};
+
+void passo_path_feed_open(struct passo_path_feed *feed, struct passo *passo, struct passo_path_planner *path);
+
+/* passo_poll(), and starts motions. A motion starts when the look-ahead is full, when the path has been
+ * ended, or when no line was added for 20 ms. Errors: those of passo_stream() and passo_poll(). */
+enum passo_error passo_path_feed_poll(struct passo_path_feed *feed);
+
+/* After a stop and passo_clear(): goes on with the rest of the path from the present positions, at once.
+ * False: the line on which it stopped is not in memory any more. */
+bool passo_path_feed_recover(struct passo_path_feed *feed, const int32_t *positions);
+
+/* True until all lines have been executed, as of the last poll. */
+bool passo_path_feed_is_moving(const struct passo_path_feed *feed);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,201 @@
+/* SPDX-License-Identifier: MIT
+ * Fuzzes the path planner with settings and lines of all sizes: path_fuzz SEED SECONDS.
+ *
+ * Whatever the arguments, lines and ramps are such that the core takes them, the path moves on, and its last
+ * ramp ends at rest.
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+#include "passo_path.h"
+
+#define CAPACITY_MAX 64u
+#define RAMPS_MAX 3000u
+
+static uint64_t state;
+
+static uint64_t random_bits(void)
+{
+	state ^= state << 13;
+	state ^= state >> 7;
+	state ^= state << 17;
+	return state;
+}
+
+static uint32_t below(uint32_t limit)
+{
+	return (uint32_t)(random_bits() >> 32) % limit;
+}
+
+/* Any number of bits up to `most`, all equally likely. */
+static uint64_t any(uint32_t most)
+{
+	const uint32_t bits = below(most + 1);
+
+	return bits == 0 ? 0 : random_bits() >> (64 - bits);
+}
+
+static void must(bool holds, const char *what)
+{
+	if (!holds) {
+		fprintf(stderr, "%s\n", what);
+		abort();
+	}
+}
+
+static struct passo_path_settings any_settings(void)
+{
+	static const enum passo_profile PROFILES[] = {
+	    PASSO_PROFILE_LINEAR, PASSO_PROFILE_COSINE, PASSO_PROFILE_SIGMOID, PASSO_PROFILE_JERK};
+	struct passo_path_settings settings = {
+	    .machine = {below(8) ? 16000000u + below(200000000u) : (uint32_t)any(32),
+		(uint8_t)(below(8) ? 7 : below(20)), (uint8_t)(below(30) ? 1 + below(8) : below(12))},
+	    .acceleration = below(2) ? 0 : any(64),
+	    .junction_deviation = below(3) ? PASSO_UNIT_Q32 / 100 : any(64),
+	    .profile = PROFILES[below(40) ? below(3) : 3],
+	    .reserve_clocks = below(2) ? 0 : (uint32_t)any(32),
+	};
+
+	for (uint32_t axis = 0; axis < PASSO_AXES_MAX; axis++) {
+		const bool wild = below(12) == 0;
+
+		settings.axis[axis] = (struct passo_path_axis){
+		    .steps_per_mm = wild ? any(64) : (1 + below(1000)) * PASSO_UNIT_Q32,
+		    .speed = wild ? any(64) : (1 + below(1000)) * PASSO_UNIT_Q32,
+		    .acceleration = wild ? any(64) : (1 + below(20000)) * PASSO_UNIT_Q32,
+		    .jump = below(3) ? 0
+		          : wild     ? any(64)
+		                     : below(20) * PASSO_UNIT_Q32,
+		};
+	}
+	return settings;
+}
+
+static struct passo_path_move any_move(const int64_t *from, uint32_t most)
+{
+	struct passo_path_move move = {.feed = below(4) ? (1 + below(300)) * PASSO_UNIT_Q32 : any(64)};
+
+	if (below(10) == 0)
+		move.feed = PASSO_PATH_RAPID;
+	for (uint32_t axis = 0; axis < PASSO_AXES_MAX; axis++) {
+		const int64_t by = (int64_t)any(below(30) ? most : 62);
+
+		move.target[axis] = from[axis];
+		if (from[axis] > -PASSO_PATH_TARGET_MAX / 2 && from[axis] < PASSO_PATH_TARGET_MAX / 2
+		    && below(3))
+			move.target[axis] += below(2) ? by : -by;
+	}
+	return move;
+}
+
+/* What has been handed out. */
+struct taken {
+	uint64_t substeps, velocity,
+	    distance; /* the last two UQ0.48; distance in ticks, only of linear ramps */
+	uint32_t ramps;
+	bool shaped;
+};
+
+static void take_lines(struct passo_path_planner *path, struct taken *taken)
+{
+	struct passo_line line;
+
+	while (passo_path_next_line(path, &line)) {
+		must(line.substeps > 0 && line.substeps <= PASSO_SUBSTEPS_MAX && !line.endless, "substeps");
+		must(line.directions >> path->machine.axes == 0, "directions");
+		for (uint32_t axis = 0; axis < path->machine.axes; axis++)
+			must(line.steps[axis] <= line.substeps, "more steps than substeps");
+		taken->substeps += line.substeps;
+	}
+}
+
+static void take_ramps(struct passo_path_planner *path, struct taken *taken, uint32_t held)
+{
+	struct passo_ramp ramp;
+
+	while (taken->ramps < RAMPS_MAX && passo_path_next_ramp(path, held, &ramp)) {
+		must(ramp.velocity_end <= PASSO_VELOCITY_MAX && !ramp.now && !ramp.mirror, "velocity");
+		must(ramp.progress_step <= PASSO_PROGRESS_STEP_MAX, "progress step");
+		must((ramp.ticks == 0) == (ramp.progress_step == 0), "ticks");
+		must(!ramp.last || ramp.velocity_end == 0, "the last ramp does not end at rest");
+		taken->velocity = ramp.velocity_end;
+		taken->ramps++;
+		if (held < UINT32_MAX)
+			break;
+	}
+}
+
+static void fuzz(struct passo_path_item *items)
+{
+	struct passo_path_planner path;
+	const struct passo_path_settings settings = any_settings();
+	const uint32_t capacity = below(20) ? 4 + below(CAPACITY_MAX - 3) : below(4);
+	int64_t at[PASSO_AXES_MAX] = {0};
+	struct taken taken = {.ramps = 0};
+	const uint32_t most = 20 + below(24);
+
+	if (passo_path_open(&path, &settings, items, capacity) != PASSO_PLAN_OK)
+		return;
+	for (uint32_t count = below(300); count > 0 && taken.ramps < RAMPS_MAX; count--) {
+		const struct passo_path_move move = any_move(at, most);
+		const enum passo_plan_error error = passo_path_add(&path, &move);
+
+		if (error == PASSO_PLAN_OK) {
+			for (uint32_t axis = 0; axis < PASSO_AXES_MAX; axis++)
+				at[axis] = move.target[axis];
+		}
+		if (error == PASSO_PLAN_PATH_FULL || below(6) == 0) {
+			take_lines(&path, &taken);
+			take_ramps(&path, &taken, below(3) ? UINT32_MAX : below(100));
+			passo_path_next_motion(&path);
+		}
+		if (below(20) == 0)
+			passo_path_dwell(&path, below(2) ? 0 : any(below(8) ? 20 : 64));
+		if (below(40) == 0)
+			passo_path_end(&path);
+		if (below(50) == 0)
+			passo_path_override(&path, (uint32_t)any(22));
+		if (below(300) == 0) {
+			const int32_t positions[PASSO_AXES_MAX] = {(int32_t)any(32), -(int32_t)any(30)};
+
+			if (!passo_path_recover(&path, positions, below(path.added + 1)))
+				passo_path_restart(&path, positions);
+			taken.velocity = 0;
+		}
+		if (below(60) == 0 && path.added > path.sent) {
+			int32_t positions[PASSO_AXES_MAX];
+
+			for (uint32_t axis = 0; axis < PASSO_AXES_MAX; axis++)
+				positions[axis] = (int32_t)path.steps[axis];
+			if (passo_path_recover(&path, positions, path.sent))
+				taken.velocity = 0;
+		}
+	}
+	passo_path_end(&path);
+	while (taken.ramps < RAMPS_MAX && !passo_path_is_empty(&path)) {
+		const uint32_t ramps = taken.ramps;
+		const uint64_t substeps = taken.substeps;
+
+		take_lines(&path, &taken);
+		take_ramps(&path, &taken, UINT32_MAX);
+		must(passo_path_next_motion(&path) || taken.ramps > ramps || taken.substeps > substeps,
+		    "it is stuck");
+	}
+	must(taken.ramps == RAMPS_MAX || taken.velocity == 0, "it does not end at rest");
+}
+
+int main(int count, char **words)
+{
+	static struct passo_path_item items[CAPACITY_MAX];
+	const time_t end = time(NULL) + (count > 2 ? atoi(words[2]) : 1);
+	uint64_t rounds = 0;
+
+	state = (count > 1 ? strtoull(words[1], NULL, 10) : 1) * UINT64_C(0x9E3779B97F4A7C15) | 1u;
+	do {
+		fuzz(items);
+		rounds++;
+	} while (time(NULL) < end);
+	printf("%llu paths\n", (unsigned long long)rounds);
+	return 0;
+}
