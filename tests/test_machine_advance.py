@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: MIT
+"""passo_core_advance() of a core with inputs, encoders and outputs: the same state as clock by clock.
+
+PASSO_SEED is the seed of the random motions.
+"""
+
+import random
+
+import pytest
+from passo import registers as r
+from passo.build import Parameters
+
+from tests.test_core_advance import SEED
+from tests.test_encoders import EncoderSession
+from tests.test_outputs_advance import OutputSession
+
+BUILDS = [
+    Parameters(channels=1, axes=3, inputs=1, encoders=1, outputs=1),
+    Parameters(channels=2, axes=2, line_queue_log2=3, ramp_queue_log2=3, inputs=1, encoders=1, outputs=1),
+]
+
+
+class MachineSession(OutputSession, EncoderSession):
+    """A host that does anything with a machine that does anything."""
+
+
+@pytest.mark.parametrize("number", range(8))
+def test_advance_agrees_with_every_clock(number: int) -> None:
+    """Whatever host and machine do, pins and state are the same with and without skipping."""
+    print(f"PASSO_SEED={SEED}")
+    rng = random.Random(f"{SEED}/machine/{number}")
+    session = MachineSession(BUILDS[number % len(BUILDS)], rng)
+    session.link.write(r.ADDRESS_RUN, (1 << len(session.channels)) - 1)
+    for _ in range(40):
+        channel = rng.choice(session.channels)
+        what = rng.choice((session.push, session.push, session.command, session.configure))
+        what(channel)
+        if rng.random() < 0.3:
+            session.poke()
+        session.disturb()
+        session.go_on(rng.choice([200, 3000, 20000]))
+    assert session.pair.compared > 500
+    assert session.pair.events > 0
+
+
+def test_a_machine_that_stands_is_skipped() -> None:
+    """With an armed trigger and encoders at any level."""
+    session = MachineSession(BUILDS[0], random.Random(SEED))
+    trigger = r.ChannelTriggerWord(
+        source=r.TriggerSource.INDEX, axis=1, falling=False, action=r.TriggerAction.LATCH, arm=True
+    )
+    session.link.write(session.channels[0].base + r.CHANNEL_TRIGGER, trigger.pack())
+    session.pair.set("encoder_a", 5)
+    session.pair.run(100_000)
+    assert session.pair.skipped > 99_000
+    session.pair.set("encoder_index", 2)
+    session.pair.run(1000)
+    state = session.link.read(session.channels[0].base + r.CHANNEL_TRIGGER_STATE, 1)
+    assert r.ChannelTriggerStateWord.unpack(state[0]).fired
