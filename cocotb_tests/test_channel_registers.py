@@ -6,6 +6,7 @@ from random import Random
 import cocotb
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import ReadOnly, Timer
+from passo import registers as r
 
 from cocotb_tests.helpers.bench import PERIOD, Bench, read, rng
 from cocotb_tests.helpers.runner import run

@@ -190,7 +190,7 @@ static void restart(struct passo_core *core, const struct passo_core *before)
 	const struct passo_inputs inputs = core->inputs;
 	const struct passo_tables tables = core->tables;
 	const struct passo_spi spi = core->spi;
-	const struct passo_machine machine = core->machine;
+	const struct passo_machine_unit machine = core->machine;
 
 	passo_core_reset(core, &parameters);
 

@@ -19,7 +19,7 @@ struct passo_core {
 	struct passo_response response;
 	struct passo_channel channel[PASSO_CHANNELS_MAX];
 	uint8_t sync_q; /* synchronizer of the sync input */
-	struct passo_machine machine;
+	struct passo_machine_unit machine;
 	uint32_t slew_count;
 	bool slew_tick;
 	struct passo_inputs inputs; /* at the previous clock, to detect SCLK edges */

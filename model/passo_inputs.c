@@ -29,7 +29,7 @@ struct passo_requests passo_inputs_requests(
 	const struct passo_inputs_unit *unit = &channel->inputs;
 	const struct passo_limits *limits = &unit->limits;
 	const struct passo_trigger *trigger = &unit->trigger;
-	const struct passo_machine *machine = inputs->machine;
+	const struct passo_machine_unit *machine = inputs->machine;
 	const enum passo_trigger_action action = (enum passo_trigger_action)trigger->action;
 	const enum passo_state state = channel->motion.state;
 	const bool moving =

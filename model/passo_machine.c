@@ -7,12 +7,12 @@
 
 static const uint32_t UNIT_CLOCKS = 0x10000;
 
-void passo_machine_reset(struct passo_machine *machine)
+void passo_machine_reset(struct passo_machine_unit *machine)
 {
-	*machine = (struct passo_machine){.watchdog_fed = true};
+	*machine = (struct passo_machine_unit){.watchdog_fed = true};
 }
 
-void passo_machine_restart(struct passo_machine *machine, const struct passo_machine *before)
+void passo_machine_restart(struct passo_machine_unit *machine, const struct passo_machine_unit *before)
 {
 	passo_machine_reset(machine);
 	machine->filter = before->filter;
@@ -21,7 +21,7 @@ void passo_machine_restart(struct passo_machine *machine, const struct passo_mac
 	machine->estop_seen = before->estop_seen;
 }
 
-static void clock_estop(struct passo_machine *machine, bool estop_n, bool clear)
+static void clock_estop(struct passo_machine_unit *machine, bool estop_n, bool clear)
 {
 	/* asynchronous: it is pressed before the clock */
 	const bool pressed = machine->estop_pressed || !estop_n;
@@ -34,13 +34,13 @@ static void clock_estop(struct passo_machine *machine, bool estop_n, bool clear)
 	machine->estop_seen = (uint8_t)((machine->estop_seen << 1 | (pressed ? 1 : 0)) & 3);
 }
 
-static void begin_units(struct passo_machine *machine, uint16_t units)
+static void begin_units(struct passo_machine_unit *machine, uint16_t units)
 {
 	machine->watchdog_count = units;
 	machine->watchdog_unit = 0;
 }
 
-static void clock_watchdog(struct passo_machine *machine, bool feed, bool moving)
+static void clock_watchdog(struct passo_machine_unit *machine, bool feed, bool moving)
 {
 	const uint16_t stop_after = machine->watchdog_stop_after;
 	const uint16_t disable_after = machine->watchdog_disable_after;
@@ -63,7 +63,7 @@ static void clock_watchdog(struct passo_machine *machine, bool feed, bool moving
 	}
 }
 
-void passo_machine_clock(struct passo_machine *machine, const struct passo_bus *bus,
+void passo_machine_clock(struct passo_machine_unit *machine, const struct passo_bus *bus,
     const struct passo_inputs *inputs, bool moving)
 {
 	const bool clears = bus->write && bus->address == PASSO_ADDRESS_ESTOP_CLEAR && (bus->data & 1u) != 0u;
@@ -81,7 +81,7 @@ void passo_machine_clock(struct passo_machine *machine, const struct passo_bus *
 	}
 }
 
-bool passo_machine_register(const struct passo_machine *machine, uint16_t address, uint32_t *value)
+bool passo_machine_register(const struct passo_machine_unit *machine, uint16_t address, uint32_t *value)
 {
 	switch (address) {
 	case PASSO_ADDRESS_INPUT_FILTER:
@@ -122,7 +122,7 @@ uint8_t passo_machine_check(const struct passo_bus *bus)
 }
 
 uint64_t passo_machine_quiet(
-    const struct passo_machine *machine, const struct passo_inputs *inputs, bool moving)
+    const struct passo_machine_unit *machine, const struct passo_inputs *inputs, bool moving)
 {
 	const bool pressed = machine->estop_pressed;
 	const uint8_t seen = pressed ? 3u : 0u, released = inputs->estop_n ? 3u : 0u;
@@ -138,7 +138,7 @@ uint64_t passo_machine_quiet(
 	return over ? UINT64_MAX : (uint64_t)UNIT_CLOCKS - 1u - machine->watchdog_unit;
 }
 
-void passo_machine_skip(struct passo_machine *machine, uint64_t clocks)
+void passo_machine_skip(struct passo_machine_unit *machine, uint64_t clocks)
 {
 	const uint64_t period = machine->filter > 1u ? machine->filter : 1u;
 

@@ -332,7 +332,7 @@ struct passo_inputs_unit {
 };
 
 /* What the inputs of all channels share; see rtl/passo_machine.v. */
-struct passo_machine {
+struct passo_machine_unit {
 	uint16_t filter, count;
 	bool tick;
 	bool estop_pressed;
@@ -379,8 +379,8 @@ struct passo_channel_inputs {
 	const struct passo_bus *bus;
 	bool run, wait_sync, sync_edge, slew_tick, snapshot;
 	bool tables_wanted;
-	const struct passo_machine *machine; /* before the edge */
-	uint8_t pins[PASSO_KINDS];           /* levels, a bit per axis */
+	const struct passo_machine_unit *machine; /* before the edge */
+	uint8_t pins[PASSO_KINDS];                /* levels, a bit per axis */
 };
 
 /* The wires of a channel, from the state before the edge. */
@@ -466,17 +466,17 @@ void passo_positions_clock(
 /* Skips clocks without `zero` and `snapshot`; no snapshot may be pending. */
 void passo_positions_skip(struct passo_positions *positions, uint64_t clocks);
 
-void passo_machine_reset(struct passo_machine *machine);
+void passo_machine_reset(struct passo_machine_unit *machine);
 /* Synchronous reset in the clock just simulated, which keeps the filter and an e-stop. */
-void passo_machine_restart(struct passo_machine *machine, const struct passo_machine *before);
-void passo_machine_clock(struct passo_machine *machine, const struct passo_bus *bus,
+void passo_machine_restart(struct passo_machine_unit *machine, const struct passo_machine_unit *before);
+void passo_machine_clock(struct passo_machine_unit *machine, const struct passo_bus *bus,
     const struct passo_inputs *inputs, bool moving);
 /* Whether there is such a register; the value that it reads as and the verdict on a write. */
-bool passo_machine_register(const struct passo_machine *machine, uint16_t address, uint32_t *value);
+bool passo_machine_register(const struct passo_machine_unit *machine, uint16_t address, uint32_t *value);
 uint8_t passo_machine_check(const struct passo_bus *bus);
 uint64_t passo_machine_quiet(
-    const struct passo_machine *machine, const struct passo_inputs *inputs, bool moving);
-void passo_machine_skip(struct passo_machine *machine, uint64_t clocks);
+    const struct passo_machine_unit *machine, const struct passo_inputs *inputs, bool moving);
+void passo_machine_skip(struct passo_machine_unit *machine, uint64_t clocks);
 
 struct passo_requests passo_inputs_requests(
     const struct passo_channel *channel, const struct passo_channel_inputs *inputs);

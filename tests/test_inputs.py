@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Random events at the inputs during motions, judged by promises from pins and replies alone.
 
-Position = active edges that left the pins; the latch is exact to the clock; no step goes into an active switch;
-no edge of STEP later than 4 clocks after a hard stop; the cause is the first event.
+Position = active edges that left the pins; the latch is exact to the clock; no step goes into an active
+switch; no edge of STEP later than 4 clocks after a hard stop; the cause is the first event.
 """
 
 import random
