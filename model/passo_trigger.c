@@ -42,7 +42,7 @@ void passo_trigger_clock(struct passo_trigger *trigger, const struct passo_input
 	const bool fires = changes && trigger->level == trigger->falling;
 
 	trigger->picked = chosen(trigger, unit);
-	trigger->arming = (uint8_t)(trigger->arming << 1 & 3u);
+	trigger->arming = (uint8_t)(trigger->arming << 1 & 3);
 	if (armed)
 		trigger->clocks++;
 	trigger->latch = fires;
