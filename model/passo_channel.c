@@ -190,8 +190,8 @@ void passo_channel_clock(struct passo_channel *channel, const struct passo_chann
 		    .timing_written = write_timing && written_axis == i,
 		    .pins_written = write_pins && written_axis == i,
 		    .both_edges_next = (bus->data >> PASSO_AXIS_PINS_BOTH_EDGES_LSB & 1u) != 0u,
-		    .closed = {.low = (channel->inputs.limits.closed_low >> i & 1u) != 0u,
-			.high = (channel->inputs.limits.closed_high >> i & 1u) != 0u},
+		    .closed = {.low = (channel->inputs.limits.closed_low >> i & 1) != 0,
+			.high = (channel->inputs.limits.closed_high >> i & 1) != 0},
 		};
 		passo_axis_clock(&channel->axis[i], &axis_wires);
 		passo_dda_clock(&channel->dda[i], &channel->line, &channel->line_queue, i);

@@ -30,7 +30,7 @@ static void clock_estop(struct passo_machine_unit *machine, bool estop_n, bool c
 		machine->estop_pressed = true;
 	else if ((machine->estop_released & 2u) != 0u && clear)
 		machine->estop_pressed = false;
-	machine->estop_released = estop_n ? (uint8_t)((machine->estop_released << 1 | 1) & 3) : 0u;
+	machine->estop_released = (uint8_t)(estop_n ? (machine->estop_released << 1 | 1) & 3 : 0);
 	machine->estop_seen = (uint8_t)((machine->estop_seen << 1 | (pressed ? 1 : 0)) & 3);
 }
 

@@ -28,6 +28,7 @@ from tests.helpers.driver_wire import (
 
 TURN = 3200
 LONG = by_speed([40_000, 0, 0, 0])
+VERSION = r.VERSION_MAJOR_RESET << r.VERSION_MAJOR_LSB | r.VERSION_MINOR_RESET << r.VERSION_MINOR_LSB
 
 
 @pytest.fixture
@@ -659,8 +660,8 @@ def changed(wanted: int, word: int) -> object:
     ("address", "word", "name"),
     [
         (r.ADDRESS_IDENTIFICATION, 0x5041534E, "NOT_PASSO"),
-        (r.ADDRESS_VERSION, 0x010100, "VERSION"),
-        (r.ADDRESS_VERSION, 0x000200, "VERSION"),
+        (r.ADDRESS_VERSION, VERSION + (1 << r.VERSION_MAJOR_LSB), "VERSION"),
+        (r.ADDRESS_VERSION, VERSION + (1 << r.VERSION_MINOR_LSB), "VERSION"),
         (r.ADDRESS_PARAMETERS, 0x04080741, "OK"),
         (r.ADDRESS_PARAMETERS, 0x04080751, "PARAMETERS"),
         (r.ADDRESS_PARAMETERS, 0x04080742, "PARAMETERS"),
@@ -679,7 +680,7 @@ def test_another_core(wire: Wire, address: int, word: int, name: str) -> None:
 
 
 def test_a_patch_does_not_matter(wire: Wire) -> None:
-    answer_reads(wire, changed(r.ADDRESS_VERSION, 0x0001FF))
+    answer_reads(wire, changed(r.ADDRESS_VERSION, VERSION | 0xFF))
     Driver(wire)
 
 

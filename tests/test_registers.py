@@ -22,7 +22,7 @@ HELPER = "tools/generated.py"
 VERILOG = "rtl/passo_registers.vh"
 C = "protocol/passo_registers.h"
 OUTPUTS = [VERILOG, C, "protocol/passo_words.h", "sim/passo/registers.py", "docs/registers.md"]
-ENUMS = [registers.Operation, registers.Verdict, registers.State, registers.Cause, registers.Shape]
+ENUMS = registers.DescribedEnum.__subclasses__()
 
 
 def read(name: str) -> str:
@@ -208,7 +208,8 @@ def test_verilog_and_c_agree(verilog: dict):
 def test_verilog_and_python_agree(verilog: dict):
     python = {n: value for n, value in vars(registers).items() if n.isupper() and isinstance(value, int)}
     for enum in ENUMS:
-        python |= {f"{enum.__name__}_{member.name}".upper(): int(member) for member in enum}
+        prefix = re.sub(r"\B([A-Z])", r"_\1", enum.__name__).upper()
+        python |= {f"{prefix}_{member.name}": int(member) for member in enum}
         assert all(member.description.endswith(".") for member in enum)
     assert python == {name: value for name, (_, value) in verilog.items()}
 

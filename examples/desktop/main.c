@@ -39,7 +39,7 @@ int main(void)
 	static struct passo_host host;
 	static struct passo passo;
 	/* 1 channel, 4 axes, ticks of 2^7 clocks, queues of 2^6 places */
-	const struct passo_engine_config core = {1, 4, 7, 6, 6, .spi_half_period = 2};
+	const struct passo_engine_config core = {.core = {1, 4, 7, 6, 6}, .spi_half_period = 2};
 	const struct passo_hardware hardware = {
 	    transfer, microseconds, wait, .context = passo_engine_create(&core)};
 	/* STEP high and low, DIR setup and hold, in nanoseconds; the scale */

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from passo.build import Parameters
 from passo.engine import Engine, PairEngine
-from passo.registers import Cause, DescribedEnum, State, Verdict
+from passo.registers import CHANNEL_STATE_CAUSE_BITS, Cause, DescribedEnum, State, Verdict
 from passo.values import BadValueError, parse_time
 
 AROUND = Fraction(2, 1000)  # seconds recorded unless a window is given
@@ -77,8 +77,9 @@ def _traces(folder: Path, parameters: Parameters, axes: int) -> Iterator[str]:
 
     top = [f"TOP.{name}" for name in ("clk", "spi_cs_n", "spi_sclk", "spi_mosi", "spi_miso")]
     yield from group("host", f"@{BITS}", *top, *names(f"{CORE}.u_link.verdict[3:0]", "verdict"))
+    cause = f"{channel}.cause[{CHANNEL_STATE_CAUSE_BITS - 1}:0]"
     yield from group(
-        "motion", *names(f"{channel}.state[2:0]", "state"), *names(f"{channel}.cause[2:0]", "cause"),
+        "motion", *names(f"{channel}.state[2:0]", "state"), *names(cause, "cause"),
         f"@{BITS}", "TOP.running[0:0]", f"@{DECIMAL}", f"{channel}.line_room[{lines}:0]",
         f"{channel}.ramp_room[{ramps}:0]", f"{channel}.rate[16:0]",
     )  # fmt: skip
