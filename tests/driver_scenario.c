@@ -29,11 +29,8 @@ struct wire {
 	bool dead;
 };
 
-static const struct passo_engine_config config = {.channels = 1,
-    .axes = 4,
-    .tick_log2 = 7,
-    .line_queue_log2 = 8,
-    .ramp_queue_log2 = 4,
+static const struct passo_engine_config config = {
+    .core = {.channels = 1, .axes = 4, .tick_log2 = 7, .line_queue_log2 = 8, .ramp_queue_log2 = 4},
     .clock_hz = CLOCK_HZ,
     .spi_half_period = 2};
 
