@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A simulated machine at the pins of an engine: axes that follow STEP and DIR, and switches that they press."""
+"""A simulated machine at the pins of an engine: axes that follow STEP and DIR, and their switches."""
 
 import random
 from collections.abc import Sequence
@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 GRAINS_PER_S = 100_000  # how often the switches are looked at
+RESTING_GRAINS = 10  # as many at once while no pin changes
 
 
 @dataclass
@@ -46,11 +47,13 @@ class Switch:
 class Machine:
     """An engine with a machine at it: whatever has the interface of passo.engine.Engine.
 
-    The axes begin at `start`, steps of the machine, which the core does not know. Switches see a position up to
-    1/100000 s late, or the length of a frame.
+    The axes begin at `start`, steps of the machine, which the core does not know. A switch sees a position up
+    to 1/100000 s late, after a rest 1/10000 s, and not during a frame.
     """
 
-    def __init__(self, engine: Any, switches: Sequence[Switch] = (), start: Sequence[int] = (), seed: int = 1):
+    def __init__(
+        self, engine: Any, switches: Sequence[Switch] = (), start: Sequence[int] = (), seed: int = 1
+    ):
         self.engine, self.switches = engine, list(switches)
         self.parameters, self.clock_hz = engine.parameters, engine.clock_hz
         pins = self.parameters.channels * self.parameters.axes
@@ -61,6 +64,7 @@ class Machine:
         self.enable = 0  # levels of the EN pins
         self._rng = random.Random(seed)
         self._step = np.uint64(0)
+        self._rests = False  # nothing has changed at the last look
         self._levels: dict[str, int] = {}
         self._look()
 
@@ -87,9 +91,9 @@ class Machine:
 
     def run(self, clocks: int) -> int:
         """Let time pass."""
-        grain = max(1, self.clock_hz // GRAINS_PER_S)
         done = 0
         while done < clocks:
+            grain = self.clock_hz // GRAINS_PER_S * (RESTING_GRAINS if self._rests else 1)
             done += self.engine.run(min(grain, clocks - done))
             self._look()
         return done
@@ -110,6 +114,7 @@ class Machine:
         for pin, level in levels.items():
             if self._levels.get(pin) != level:
                 self.engine.set(pin, level)
+        self._rests = not len(events) and self._levels == levels
         self._levels = levels
 
     def _follow(self, events: np.ndarray) -> None:
