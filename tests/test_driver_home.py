@@ -184,7 +184,7 @@ def test_what_is_refused() -> None:
         "TOO_MANY_STEPS": home(distance=-(2**31)),
         "NO_SPEED": home(slow_speed=0),
         "NO_ACCELERATION": home(acceleration=0),
-        "PINS_TOO_SLOW": home(speed=2_000_000 * Q32),
+        "PINS_TOO_SLOW": home(speed=2_000_000 * Q32, acceleration=Q32 << 31),
     }
     for name, fields in refused.items():
         assert run_home(driver, fields) == name
