@@ -47,7 +47,14 @@ def test_examples_stand_in_the_documentation() -> None:
 
 def test_every_function_of_the_headers_exists() -> None:
     """All functions declared in the public headers can be called."""
-    for header in ("passo.h", "passo_host.h", "passo_motor.h", "passo_error.h"):
+    for header in (
+        "passo.h",
+        "passo_host.h",
+        "passo_motor.h",
+        "passo_inputs.h",
+        "passo_home.h",
+        "passo_error.h",
+    ):
         text = re.sub(r"/\*.*?\*/", "", (paths.driver / header).read_text(), flags=re.S)
         names = set(re.findall(r"\b(passo_\w+)\(", text))
         assert names or header == "passo_error.h"

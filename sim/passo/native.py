@@ -26,6 +26,8 @@ HEADERS = (
     paths.driver / "passo.h",
     paths.driver / "passo_motor.h",
     paths.driver / "passo_path_feed.h",
+    paths.driver / "passo_inputs.h",
+    paths.driver / "passo_home.h",
     paths.model / "passo_pins.h",
     paths.engine / "passo_engine.h",
     paths.engine / "passo_terminal.h",

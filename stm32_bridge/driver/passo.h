@@ -50,7 +50,12 @@ struct passo_options {
 	uint8_t channels;  /* CHANNELS of the core, must match; 0: any */
 	uint8_t axes;      /* AXES per channel, must match; 0: any */
 	uint8_t tick_log2; /* TICK_LOG2 of the core, must match; 0: any */
+	/* Of a core with inputs: a motion that runs while no frame comes for these clocks is stopped softly;
+	 * 0: half a second, at most what the core can count; PASSO_NO_WATCHDOG for a program that does not
+	 * poll. */
+	uint64_t watchdog_clocks;
 };
+#define PASSO_NO_WATCHDOG UINT64_MAX
 
 /* State of the channel when it was last read. */
 struct passo_snapshot {
@@ -80,6 +85,27 @@ struct passo_axis_memory {
 	uint32_t shortest_clocks; /* shortest step period; 0: pin settings unknown */
 	int32_t expected;         /* position of the core after all queued motions */
 	uint32_t offset;          /* position of the program less that of the core; wraps */
+	uint8_t switches;         /* those that are configured, a bit per enum passo_trigger_source */
+	bool homed;
+};
+
+/* Home or probe that is under way; see passo_home.h. */
+enum passo_task_kind { PASSO_TASK_NONE, PASSO_TASK_HOME, PASSO_TASK_PROBE };
+enum passo_home_phase {
+	PASSO_HOME_RELEASE,  /* leaves a switch that is active already */
+	PASSO_HOME_APPROACH, /* looks for the switch */
+	PASSO_HOME_BACK_OFF,
+	PASSO_HOME_SLOW, /* looks for the edge */
+	PASSO_HOME_PULL_OFF
+};
+struct passo_task {
+	enum passo_task_kind kind;
+	enum passo_home_phase phase;
+	bool inside;   /* the driver's own calls */
+	bool armed;    /* its trigger may be armed */
+	bool optional; /* of a probe */
+	uint8_t left;  /* axes to home, with the present one */
+	const struct passo_home *home;
 };
 
 /* Assumed state of the channel. docs/driver.md shows the transitions. */
@@ -150,6 +176,10 @@ struct passo {
 	uint32_t rate_target;           /* UQ1.16: the override, kept during a hold */
 	uint32_t oversampling;          /* of the last plan */
 	uint64_t velocity_peak;         /* of the last plan */
+	bool has_inputs;                /* the core has */
+	bool probe_fitted;              /* the probe is configured */
+	bool probe_inverted;
+	struct passo_task task;
 	struct passo_turning turning;
 	struct passo_source source;
 };
@@ -158,8 +188,9 @@ struct passo {
  * queues of a channel at rest, clears a stopped one, and reads the positions, which are kept. A channel in
  * motion (the host was reset) is left alone: the result is MOVING; state, positions, hold, stop and abort
  * work at once, moves after the motion has ended or stopped and passo_clear(). Each axis must be configured
- * before it moves. A pending stop of an earlier session is forgotten. About ten frames. Errors: NOT_PASSO,
- * VERSION, PARAMETERS, MOVING. */
+ * before it moves. A pending stop of an earlier session is forgotten. ESTOP and ALARM: these keep the channel
+ * stopped; it is open, and passo_clear() goes on when they are over. About ten frames. Errors: NOT_PASSO,
+ * VERSION, PARAMETERS, WATCHDOG_TOO_LONG, MOVING, ESTOP, ALARM. */
 enum passo_error passo_open(struct passo *passo, struct passo_host *host,
     const struct passo_hardware *hardware, const struct passo_options *options);
 /* Takes over a further channel of a core that is open already. */
@@ -277,10 +308,11 @@ bool passo_is_streaming(const struct passo *passo);
 
 /* Call it often: feeds the stream or reads the state, at most one frame; an idle driver reads the state every
  * millisecond. Errors are returned once, by the first call that detects them (CORE_RESET by every call), and
- * kept for passo_fault(): LINE_UNDERRUN, RAMP_UNDERRUN, STEP_OVERRUN, POSITION, SUPPLY, link errors. A stream
- * that fails on the host's side is stopped with a soft stop. Commands that were not acknowledged have
- * priority: until a stop or hold gets through, nothing else is sent, and NOT_STOPPED or NOT_HELD is returned
- * once every `tries` polls. */
+ * kept for passo_fault(): LINE_UNDERRUN, RAMP_UNDERRUN, STEP_OVERRUN, POSITION, SUPPLY, LIMIT, ALARM,
+ * TRIGGER, WATCHDOG, ESTOP, FOLLOWING, link errors, those of passo_home() and passo_probe(), which it moves
+ * on. A stream that fails on the host's side is stopped with a soft stop. Commands that were not acknowledged
+ * have priority: until a stop or hold gets through, nothing else is sent, and NOT_STOPPED or NOT_HELD is
+ * returned once every `tries` polls. */
 enum passo_error passo_poll(struct passo *passo);
 /* Microseconds until passo_poll() has something to do. No frame. */
 uint32_t passo_idle_time(const struct passo *passo);
@@ -313,7 +345,8 @@ enum passo_error passo_stop(struct passo *passo);
 enum passo_error passo_abort(struct passo *passo);
 /* Leaves the stopped state with empty queues and reads the positions: about four frames. Sends a pending stop
  * first and waits until all steps have left the pins. Errors: NOT_STOPPED, NOT_HELD, MOVING during a soft
- * stop or a motion that was not stopped. */
+ * stop or a motion that was not stopped; ESTOP and ALARM while these keep the channel stopped. It ends a home
+ * or probe. */
 enum passo_error passo_clear(struct passo *passo);
 /* While on, prepared motions wait for a rising edge of the core's sync input. Switching it off starts them.
  * If it is not acknowledged, motions wait and every poll resends that. */

@@ -18,6 +18,23 @@ bool passo_driver_is_turning(const struct passo *passo)
 	return passo->expects >= PASSO_EXPECT_TURNING;
 }
 
+enum passo_error passo_driver_fault_of(enum passo_cause cause)
+{
+	static const enum passo_error faults[] = {
+	    [PASSO_CAUSE_LINE_UNDERRUN] = PASSO_ERROR_LINE_UNDERRUN,
+	    [PASSO_CAUSE_RAMP_UNDERRUN] = PASSO_ERROR_RAMP_UNDERRUN,
+	    [PASSO_CAUSE_STEP_OVERRUN] = PASSO_ERROR_STEP_OVERRUN,
+	    [PASSO_CAUSE_LIMIT] = PASSO_ERROR_LIMIT,
+	    [PASSO_CAUSE_ALARM] = PASSO_ERROR_ALARM,
+	    [PASSO_CAUSE_TRIGGER] = PASSO_ERROR_TRIGGER,
+	    [PASSO_CAUSE_WATCHDOG] = PASSO_ERROR_WATCHDOG,
+	    [PASSO_CAUSE_ESTOP] = PASSO_ERROR_ESTOP,
+	    [PASSO_CAUSE_FOLLOWING_ERROR] = PASSO_ERROR_FOLLOWING,
+	};
+
+	return (unsigned)cause <= PASSO_CAUSE_FOLLOWING_ERROR ? faults[cause] : PASSO_OK;
+}
+
 void passo_driver_doubt(struct passo *passo, enum passo_belief worse)
 {
 	if (passo->belief == PASSO_BELIEF_READY)
@@ -72,8 +89,11 @@ enum passo_error passo_driver_take_over(struct passo *passo)
 	if (error != PASSO_OK)
 		return error;
 	passo_driver_ended(passo, positions);
-	passo->belief = PASSO_BELIEF_READY;
-	passo->fault = PASSO_OK;
+	const bool is_kept = passo->snapshot.state == PASSO_STATE_STOPPED; /* by e-stop or an alarm */
+	passo->belief = is_kept ? PASSO_BELIEF_STOPPED : PASSO_BELIEF_READY;
+	passo->fault = is_kept ? passo_driver_fault_of(passo->snapshot.cause) : PASSO_OK;
+	if (is_kept)
+		return passo->fault;
 	return passo_driver_at_rest(passo) ? PASSO_OK : PASSO_ERROR_MOVING;
 }
 
@@ -83,6 +103,8 @@ enum passo_error passo_driver_ready(struct passo *passo, bool needs_rest)
 
 	if (error != PASSO_OK)
 		return error;
+	if (passo->task.kind != PASSO_TASK_NONE && !passo->task.inside)
+		return PASSO_ERROR_UNDER_WAY;
 	if (passo_driver_is_broken(passo))
 		return PASSO_ERROR_BROKEN;
 	if (passo_driver_is_stopped(passo))

@@ -4,7 +4,7 @@
 #ifndef PASSO_DRIVER_H
 #define PASSO_DRIVER_H
 
-#include "passo.h"
+#include "passo_home.h"
 #include "passo_words.h"
 
 /* ARGUMENT for null, NOT_OPEN for a channel that is not open. */
@@ -29,6 +29,8 @@ enum passo_error passo_driver_look(struct passo *passo, bool once);
 /* The same, repeated while only the pins are busy: with the last steps, or with the times that restart when
  * an axis is configured. */
 enum passo_error passo_driver_look_at_rest(struct passo *passo);
+/* MOVING unless two reads in a row find the channel at rest, or stopped with all steps made. */
+enum passo_error passo_driver_still(struct passo *passo);
 /* Reads the positions of the core, without the offsets. */
 enum passo_error passo_driver_positions(struct passo *passo, int32_t *positions, bool once);
 /* A position of the core as the program counts it. */
@@ -39,6 +41,10 @@ int64_t passo_driver_units(int32_t steps, uint64_t scale);
 /* Whether nothing moves or is queued according to the snapshot. Its room is sampled some hundred clocks after
  * its state, so only a second consecutive read is conclusive. */
 bool passo_driver_at_rest(const struct passo *passo);
+/* In motion, or not known to have ended; a task that waits does not count. */
+bool passo_driver_in_motion(const struct passo *passo);
+/* The error of a cause; OK if it was a command. */
+enum passo_error passo_driver_fault_of(enum passo_cause cause);
 /* Maps REFUSED + BUSY of a command that requires rest to MOVING; other errors are unchanged. */
 enum passo_error passo_driver_moving(enum passo_error error);
 
@@ -106,5 +112,37 @@ enum passo_error passo_driver_insist_on(struct passo *passo, enum passo_post lea
 enum passo_error passo_driver_restrain(struct passo *passo, enum passo_post least);
 /* Abandons this channel's posted frame, if there is one. */
 void passo_driver_drop(struct passo *passo);
+
+/* ARGUMENT, NOT_OPEN, or NO_INPUTS of a core without. */
+enum passo_error passo_driver_check_inputs(const struct passo *passo);
+/* Writes the watchdog of the core. */
+enum passo_error passo_driver_watchdog(struct passo *passo, uint64_t stop_clocks, uint64_t disable_clocks);
+/* Arms the trigger for a task, or ends it. */
+enum passo_error passo_driver_arm(struct passo *passo, const struct passo_trigger_config *config);
+enum passo_error passo_driver_disarm(struct passo *passo);
+/* Whether the source of a trigger is active. */
+enum passo_error passo_driver_level(
+    struct passo *passo, enum passo_trigger_source source, uint8_t axis, bool *active);
+/* NO_SOURCE, ARGUMENT, or NO_SWITCH unless the source is configured. */
+enum passo_error passo_driver_check_source(
+    const struct passo *passo, enum passo_trigger_source source, uint8_t axis);
+/* Begins a task at rest: with a trigger and a motion, or with the first of a home. */
+enum passo_error passo_driver_begin(struct passo *passo, struct passo_task task,
+    const struct passo_trigger_config *trigger, const struct passo_move_by_speed *move);
+/* Moves a task on, after a poll with this result. */
+enum passo_error passo_driver_task(struct passo *passo, enum passo_error error);
+/* The next motion of a task: PENDING, or why there is none. With a trigger, unless null, its edge is waited
+ * for; SWITCH_LEVEL if the source has the level already. */
+enum passo_error passo_driver_seek(
+    struct passo *passo, const struct passo_trigger_config *trigger, const struct passo_move_by_speed *move);
+/* The first motion of a home, and those after a motion has ended: PENDING, OK at the end, or an error. */
+enum passo_error passo_driver_home_first(struct passo *passo);
+enum passo_error passo_driver_home_next(struct passo *passo, const struct passo_trigger_report *report);
+/* Change of a continuous rotation: the present velocity; and the ramps that were planned from there. `stop`:
+ * to rest; after a link error a soft stop replaces it. */
+enum passo_error passo_driver_turning_velocity(struct passo *passo, bool stop, uint64_t *velocity);
+enum passo_error passo_driver_turning_ramps(struct passo *passo, bool stop, const struct passo_plan *plan);
+/* After a stop with this fault no axis is certain to be where it was. */
+void passo_driver_forget_home(struct passo *passo, enum passo_error fault);
 
 #endif

@@ -126,6 +126,7 @@ enum passo_error passo_driver_restrain(struct passo *passo, enum passo_post leas
 void passo_driver_halt(struct passo *passo, enum passo_due due)
 {
 	passo_driver_end_stream(passo);
+	passo->task.kind = PASSO_TASK_NONE;
 	if (passo->expects == PASSO_EXPECT_POSITIONS)
 		passo->expects = PASSO_EXPECT_END;
 	passo_driver_doubt(passo, PASSO_BELIEF_STOPPED);

@@ -46,11 +46,28 @@ enum passo_error {
 	PASSO_ERROR_PINS_TOO_SLOW,  /* an axis would step faster than its pin timing allows */
 	PASSO_ERROR_SUPPLY,         /* the source of a stream supplied an invalid line or ramp */
 
+	/* inputs, home, probe */
+	PASSO_ERROR_NO_INPUTS,         /* the core was built without inputs */
+	PASSO_ERROR_FILTER_TOO_LONG,   /* the glitch filter is longer than its register */
+	PASSO_ERROR_WATCHDOG_TOO_LONG, /* a time of the watchdog is longer than its register */
+	PASSO_ERROR_NO_SOURCE,         /* a trigger without a source */
+	PASSO_ERROR_NO_SWITCH,         /* no such switch or probe is configured */
+	PASSO_ERROR_NO_DISTANCE,       /* a home without a distance or without a back-off */
+	PASSO_ERROR_UNDER_WAY,         /* a home or probe is under way: wait for its end, or stop it */
+	PASSO_ERROR_SWITCH_MISSED,     /* the switch or probe did not change within the distance; at rest */
+	PASSO_ERROR_SWITCH_LEVEL,      /* it has the level already that is looked for; at rest */
+
 	/* how a motion ended */
 	PASSO_ERROR_LINE_UNDERRUN, /* stopped: a line ended and no other was queued */
 	PASSO_ERROR_RAMP_UNDERRUN, /* soft stop: the ramp queue ran empty at speed */
 	PASSO_ERROR_STEP_OVERRUN,  /* stopped: steps came faster than the pin timing allows */
 	PASSO_ERROR_POSITION,      /* the motion ended at the wrong position */
+	PASSO_ERROR_LIMIT,         /* stopped: an axis stepped towards an active limit switch */
+	PASSO_ERROR_ALARM,         /* stopped, and kept so: the alarm of an axis is or was active */
+	PASSO_ERROR_TRIGGER,       /* stopped by the trigger, as told */
+	PASSO_ERROR_WATCHDOG,      /* soft stop: the core heard nothing for too long */
+	PASSO_ERROR_ESTOP,         /* stopped, and kept so: e-stop; the drives are off */
+	PASSO_ERROR_FOLLOWING,     /* stopped: an axis was too far from its encoder */
 
 	PASSO_ERROR_COUNT, /* number of the codes above */
 

@@ -105,6 +105,12 @@ enum passo_error passo_clear(struct passo *passo)
 	if (goes_on || !passo->snapshot.quiet)
 		return PASSO_ERROR_MOVING;
 	passo_driver_end_stream(passo);
+	if (!passo->task.inside)
+		passo->task.kind = PASSO_TASK_NONE;
+	if (passo->task.armed)
+		error = passo_driver_disarm(passo);
+	if (error != PASSO_OK)
+		return error;
 	passo_driver_doubt(passo, PASSO_BELIEF_BROKEN); /* until clear has succeeded */
 	/* queued motions must not start in the meantime */
 	if (!passo_driver_at_rest(passo))

@@ -4,6 +4,7 @@
 #include "passo_driver.h"
 
 #define STATE_WORDS 4u
+#define LOOKS_AT_REST 2u /* consecutive */
 
 /* Four queued steps and one in progress, with four times of at most 65535 clocks each, take at most this many
  * status reads of more than 1024 clocks each. */
@@ -56,6 +57,21 @@ enum passo_error passo_driver_look_at_rest(struct passo *passo)
 	    looks++)
 		error = passo_driver_look(passo, false);
 	return error;
+}
+
+enum passo_error passo_driver_still(struct passo *passo)
+{
+	const struct passo_snapshot *snapshot = &passo->snapshot;
+
+	for (unsigned looks = 0; looks < LOOKS_AT_REST; looks++) {
+		enum passo_error error = passo_driver_look_at_rest(passo);
+		if (error != PASSO_OK)
+			return error;
+		if (!passo_driver_at_rest(passo)
+		    && !(snapshot->state == PASSO_STATE_STOPPED && snapshot->quiet))
+			return PASSO_ERROR_MOVING;
+	}
+	return PASSO_OK;
 }
 
 enum passo_error passo_driver_positions(struct passo *passo, int32_t *positions, bool once)

@@ -36,8 +36,25 @@ static enum passo_error identify(struct passo *passo, const struct passo_options
 	    .clock_hz = options->clock_hz, .tick_log2 = core.tick_log2, .axes = core.axes};
 	passo->line_places = (uint16_t)(1u << core.line_queue_log2);
 	passo->ramp_places = (uint16_t)(1u << core.ramp_queue_log2);
+	passo->has_inputs = core.inputs;
 	*run = words[3];
 	return PASSO_OK;
+}
+
+static uint64_t watchdog_of(const struct passo *passo, const struct passo_options *options)
+{
+	if (options->watchdog_clocks == PASSO_NO_WATCHDOG)
+		return 0;
+	if (options->watchdog_clocks != 0u)
+		return options->watchdog_clocks;
+	const uint64_t clocks = passo->machine.clock_hz / 2u;
+	return clocks < PASSO_WATCHDOG_CLOCKS_MAX ? clocks : PASSO_WATCHDOG_CLOCKS_MAX;
+}
+
+/* The channel is open, and stopped until this is over. */
+static bool is_kept_stopped(enum passo_error error)
+{
+	return error == PASSO_ERROR_ESTOP || error == PASSO_ERROR_ALARM;
 }
 
 /* Identifies the core and takes over the channel, unless it is in motion. */
@@ -60,9 +77,13 @@ static enum passo_error make_contact(struct passo *passo, const struct passo_opt
 		error = passo_driver_gate(passo, PASSO_GATE_CLOSED);
 	if (error == PASSO_OK && is_quiet)
 		error = passo_driver_take_over(passo);
+	if (error != PASSO_OK && is_kept_stopped(error))
+		error = PASSO_OK;
 	/* motions queued behind one of an earlier session must not start */
 	if (error == PASSO_OK)
 		error = passo_driver_gate(passo, is_quiet ? PASSO_GATE_OPEN : PASSO_GATE_CLOSED);
+	if (error == PASSO_OK && !host->guarded && passo->has_inputs)
+		error = passo_driver_watchdog(passo, watchdog_of(passo, options), 0);
 	if (error == PASSO_OK && !host->guarded)
 		error = passo_host_guard(host, passo->machine.axes, options->clock_hz);
 	return error;
@@ -80,6 +101,8 @@ enum passo_error passo_open_channel(
 	    (uint16_t)(PASSO_ADDRESS_CHANNEL_BASE + options->channel * PASSO_ADDRESS_CHANNEL_STRIDE);
 	passo->rate_target = PASSO_RATE_FULL;
 	enum passo_error error = make_contact(passo, options);
+	if (error == PASSO_OK && passo->belief == PASSO_BELIEF_STOPPED)
+		return passo->fault;
 	passo->belief = error == PASSO_OK ? PASSO_BELIEF_READY : PASSO_BELIEF_NOT_OPEN;
 	passo->fault = error;
 	if (error != PASSO_OK || passo->snapshot.quiet)

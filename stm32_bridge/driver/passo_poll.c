@@ -14,21 +14,6 @@ static enum passo_error tell(struct passo *passo, enum passo_error error)
 	return error;
 }
 
-static enum passo_error fault_of(enum passo_cause cause)
-{
-	switch (cause) {
-	case PASSO_CAUSE_LINE_UNDERRUN:
-		return PASSO_ERROR_LINE_UNDERRUN;
-	case PASSO_CAUSE_RAMP_UNDERRUN:
-		return PASSO_ERROR_RAMP_UNDERRUN;
-	case PASSO_CAUSE_STEP_OVERRUN:
-		return PASSO_ERROR_STEP_OVERRUN;
-	default:
-		break;
-	}
-	return PASSO_OK;
-}
-
 /* A frame of the main loop failed; reported only after several consecutive failures. */
 static enum passo_error miss(struct passo *passo, enum passo_error error)
 {
@@ -44,7 +29,7 @@ static enum passo_error miss(struct passo *passo, enum passo_error error)
 
 static enum passo_error see_stop(struct passo *passo)
 {
-	const enum passo_error fault = fault_of(passo->snapshot.cause);
+	const enum passo_error fault = passo_driver_fault_of(passo->snapshot.cause);
 	const bool is_news = !passo_driver_is_stopped(passo) || passo->expects != PASSO_EXPECT_NOTHING;
 
 	passo_driver_end_stream(passo);
@@ -52,6 +37,7 @@ static enum passo_error see_stop(struct passo *passo)
 	passo->expects = passo->snapshot.quiet ? PASSO_EXPECT_NOTHING : PASSO_EXPECT_END;
 	passo_driver_doubt(passo, PASSO_BELIEF_STOPPED);
 	passo->idle_looks = 0;
+	passo_driver_forget_home(passo, fault);
 	return is_news && fault != PASSO_OK && fault != passo->fault ? tell(passo, fault) : PASSO_OK;
 }
 
@@ -123,13 +109,11 @@ static bool is_due(const struct passo *passo)
 	    || passo_driver_now(passo) - passo->looked_at >= passo_driver_interval(passo);
 }
 
-enum passo_error passo_poll(struct passo *passo)
+static enum passo_error poll(struct passo *passo)
 {
-	enum passo_error error = passo_driver_check(passo);
+	enum passo_error error = PASSO_OK;
 	bool sent = false;
 
-	if (error != PASSO_OK)
-		return error;
 	if (passo->host->lost) {
 		passo_driver_end_stream(passo);
 		return tell(passo, PASSO_ERROR_CORE_RESET);
@@ -153,11 +137,26 @@ enum passo_error passo_poll(struct passo *passo)
 	return is_due(passo) || (expects && passo->idle_looks != 0u) ? look(passo) : PASSO_OK;
 }
 
+enum passo_error passo_poll(struct passo *passo)
+{
+	enum passo_error error = passo_driver_check(passo);
+
+	if (error != PASSO_OK)
+		return error;
+	error = poll(passo);
+	return passo->task.kind != PASSO_TASK_NONE ? passo_driver_task(passo, error) : error;
+}
+
+bool passo_driver_in_motion(const struct passo *passo)
+{
+	return passo->expects != PASSO_EXPECT_NOTHING || passo->stream != PASSO_STREAM_NONE
+	    || passo_driver_due(passo) == PASSO_ERROR_NOT_STOPPED;
+}
+
 bool passo_is_moving(const struct passo *passo)
 {
 	return passo && passo->belief != PASSO_BELIEF_NOT_OPEN
-	    && (passo->expects != PASSO_EXPECT_NOTHING || passo->stream != PASSO_STREAM_NONE
-	        || passo_driver_due(passo) == PASSO_ERROR_NOT_STOPPED);
+	    && (passo->task.kind != PASSO_TASK_NONE || passo_driver_in_motion(passo));
 }
 
 const struct passo_snapshot *passo_snapshot(const struct passo *passo)

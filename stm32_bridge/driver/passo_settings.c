@@ -4,7 +4,6 @@
 #include "passo_driver.h"
 
 #define NANOSECONDS UINT64_C(1000000000)
-#define LOOKS_AT_REST 2u /* consecutive */
 
 /* A pin time in clocks, rounded up; above PASSO_PIN_CLOCKS_MAX if it is too long. */
 static uint64_t clocks_of(const struct passo *passo, const struct passo_axis_config *config, uint32_t time)
@@ -77,14 +76,12 @@ enum passo_error passo_enable(struct passo *passo, uint8_t axis, bool on)
 	if (error != PASSO_OK)
 		return error;
 	const uint32_t enable = (uint32_t)on << PASSO_AXIS_ENABLE_LSB;
-	for (unsigned looks = 0; !on && looks < LOOKS_AT_REST; looks++) {
-		error = passo_driver_look_at_rest(passo);
-		if (error != PASSO_OK)
-			return error;
-		if (!passo_driver_at_rest(passo)
-		    && !(passo->snapshot.state == PASSO_STATE_STOPPED && passo->snapshot.quiet))
-			return PASSO_ERROR_MOVING;
-	}
+	if (!on)
+		error = passo_driver_still(passo);
+	if (error != PASSO_OK)
+		return error;
+	if (!on)
+		passo->axis[axis].homed = false;
 	return passo_driver_write(passo, address_of(axis, PASSO_AXIS_ENABLE), &enable, 1);
 }
 

@@ -31,11 +31,8 @@ static enum passo_error fail(struct passo *passo, enum passo_error error, bool s
 	return error;
 }
 
-/* Queues a ramp to another speed, or to rest. */
-static enum passo_error turn_on(struct passo *passo, bool stop, uint64_t rpm)
+enum passo_error passo_driver_turning_velocity(struct passo *passo, bool stop, uint64_t *velocity)
 {
-	struct passo_plan plan;
-	enum passo_plan_error refused;
 	enum passo_error error = passo_driver_check(passo);
 
 	if (error != PASSO_OK)
@@ -54,27 +51,45 @@ static enum passo_error turn_on(struct passo *passo, bool stop, uint64_t rpm)
 		return PASSO_ERROR_STOPPED;
 
 	/* the register has only the upper 32 bits; at the peak all bits are known from the plan */
-	uint64_t velocity = (uint64_t)passo->snapshot.velocity << 16;
+	*velocity = (uint64_t)passo->snapshot.velocity << 16;
 	if (passo->velocity_peak >> 16 == passo->snapshot.velocity)
-		velocity = passo->velocity_peak;
+		*velocity = passo->velocity_peak;
+	return PASSO_OK;
+}
+
+enum passo_error passo_driver_turning_ramps(struct passo *passo, bool stop, const struct passo_plan *plan)
+{
+	if (passo->snapshot.ramp_room < plan->ramp_count)
+		return PASSO_ERROR_FULL;
+	enum passo_error error = passo_driver_push_ramps(passo, plan);
+	if (error == PASSO_ERROR_STOPPED && passo_driver_look(passo, false) == PASSO_OK
+	    && passo->snapshot.state != PASSO_STATE_STOPPED)
+		error = PASSO_ERROR_NOT_TURNING; /* its end is already in progress */
+	if (error != PASSO_OK)
+		return fail(passo, error, stop);
+	passo->velocity_peak = plan->velocity_peak;
+	if (stop)
+		passo->expects = PASSO_EXPECT_TURN_END;
+	return PASSO_OK;
+}
+
+/* Queues a ramp to another speed, or to rest. */
+static enum passo_error turn_on(struct passo *passo, bool stop, uint64_t rpm)
+{
+	struct passo_plan plan;
+	enum passo_plan_error refused;
+	uint64_t velocity;
+	enum passo_error error = passo_driver_turning_velocity(passo, stop, &velocity);
+
+	if (error != PASSO_OK)
+		return error;
 	if (stop)
 		refused = passo_plan_turning_stop(&passo->machine, &passo->turning, velocity, &plan);
 	else
 		refused = passo_plan_turning_speed(&passo->machine, &passo->turning, velocity, rpm, &plan);
 	if (refused != PASSO_PLAN_OK)
 		return (enum passo_error)((unsigned)PASSO_ERROR_PLAN + (unsigned)refused);
-	if (passo->snapshot.ramp_room < plan.ramp_count)
-		return PASSO_ERROR_FULL;
-	error = passo_driver_push_ramps(passo, &plan);
-	if (error == PASSO_ERROR_STOPPED && passo_driver_look(passo, false) == PASSO_OK
-	    && passo->snapshot.state != PASSO_STATE_STOPPED)
-		error = PASSO_ERROR_NOT_TURNING; /* its end is already in progress */
-	if (error != PASSO_OK)
-		return fail(passo, error, stop);
-	passo->velocity_peak = plan.velocity_peak;
-	if (stop)
-		passo->expects = PASSO_EXPECT_TURN_END;
-	return PASSO_OK;
+	return passo_driver_turning_ramps(passo, stop, &plan);
 }
 
 enum passo_error passo_turn_speed(struct passo *passo, uint64_t rpm)

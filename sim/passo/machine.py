@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: MIT
+"""A simulated machine at the pins of an engine: axes that follow STEP and DIR, and their switches."""
+
+import random
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+GRAINS_PER_S = 100_000  # how often the switches are looked at
+RESTING_GRAINS = 10  # as many at once while no pin changes
+
+
+@dataclass
+class Switch:
+    """A switch or probe on the way of an axis; `pin` is an input of the core, such as "home"."""
+
+    pin: str
+    axis: int
+    at: int  # physical position in steps from which on it is active
+    above: bool = False  # active above, else below
+    hysteresis: int = 0  # steps back from `at` before it is inactive again
+    bounce: int = 0  # clocks of chatter after every change
+    inverted: bool = False  # active low
+    stuck: bool | None = None  # active or inactive for ever
+    active: bool = False  # without chatter
+    changed_at: int = -(1 << 60)  # clock of the last change
+    edges: list[tuple[int, int]] = field(default_factory=list)  # position and clock of each change
+
+    def look(self, position: int, clock: int) -> None:
+        """The axis is there now."""
+        beyond = position - self.at if self.above else self.at - position
+        active = beyond >= (-self.hysteresis if self.active else 0)
+        if self.stuck is not None:
+            active = self.stuck
+        if active != self.active:
+            self.active, self.changed_at = active, clock
+            self.edges.append((position, clock))
+
+    def level(self, clock: int, rng: random.Random) -> bool:
+        """Of the pin."""
+        chatters = clock - self.changed_at < self.bounce
+        return (rng.random() < 0.5 if chatters else self.active) != self.inverted
+
+
+class Machine:
+    """An engine with a machine at it: whatever has the interface of passo.engine.Engine.
+
+    The axes begin at `start`, steps of the machine, which the core does not know. A switch sees a position up
+    to 1/100000 s late, after a rest 1/10000 s, and not during a frame.
+    """
+
+    def __init__(
+        self, engine: Any, switches: Sequence[Switch] = (), start: Sequence[int] = (), seed: int = 1
+    ):
+        self.engine, self.switches = engine, list(switches)
+        self.parameters, self.clock_hz = engine.parameters, engine.clock_hz
+        pins = self.parameters.channels * self.parameters.axes
+        self.positions = np.zeros(pins, np.int64)
+        self.positions[: len(start)] = start
+        self.frames = 0
+        self.noise: dict[str, float] = {}  # pin: share of the looks at which a random bit of it flips
+        self.enable = 0  # levels of the EN pins
+        self._rng = random.Random(seed)
+        self._step = np.uint64(0)
+        self._rests = False  # nothing has changed at the last look
+        self._levels: dict[str, int] = {}
+        self._look()
+
+    @property
+    def clock(self) -> int:
+        """Clocks since reset."""
+        return self.engine.clock
+
+    @property
+    def irq(self) -> int:
+        """Level of the irq pin."""
+        return self.engine.irq
+
+    def set(self, pin: str, levels: int) -> None:
+        """Set the levels of an input pin that has no switch."""
+        self.engine.set(pin, levels)
+
+    def transfer(self, mosi: Sequence[int], gap: int = 64) -> list[int]:
+        """One chip select."""
+        self.frames += 1
+        miso = self.engine.transfer(mosi, gap)
+        self._look()
+        return miso
+
+    def run(self, clocks: int) -> int:
+        """Let time pass."""
+        done = 0
+        while done < clocks:
+            grain = self.clock_hz // GRAINS_PER_S * (RESTING_GRAINS if self._rests else 1)
+            done += self.engine.run(min(grain, clocks - done))
+            self._look()
+        return done
+
+    def _look(self) -> None:
+        events = self.engine.drain()
+        if len(events):
+            self._follow(events)
+        levels = dict.fromkeys((switch.pin for switch in self.switches), 0)
+        for switch in self.switches:
+            switch.look(int(self.positions[switch.axis]), self.clock)
+            at = 0 if switch.pin == "probe" else switch.axis
+            levels[switch.pin] |= switch.level(self.clock, self._rng) << at
+        for pin, share in self.noise.items():
+            if self._rng.random() < share:
+                levels[pin] = levels.get(pin, 0) ^ 1 << self._rng.randrange(len(self.positions))
+            levels.setdefault(pin, 0)
+        for pin, level in levels.items():
+            if self._levels.get(pin) != level:
+                self.engine.set(pin, level)
+        self._rests = not len(events) and self._levels == levels
+        self._levels = levels
+
+    def _follow(self, events: np.ndarray) -> None:
+        """The axes go where the rising edges of STEP tell them."""
+        step = np.concatenate([[self._step], events["step"]])
+        rising = ~step[:-1] & step[1:]
+        for axis in range(len(self.positions)):
+            at = rising >> np.uint64(axis) & np.uint64(1) != 0
+            down = int((events["dir"][at] >> np.uint64(axis) & np.uint64(1)).sum())
+            self.positions[axis] += int(at.sum()) - 2 * down
+        self._step = step[-1]
+        self.enable = int(events["enable"][-1])

@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: MIT
+ * The trigger: arm it, see that it has fired, read what it has latched.
+ */
+#include "passo_driver.h"
+#include "passo_math.h"
+
+#define MICROSECONDS_PER_SECOND 1000000u
+
+static enum passo_error write_trigger(struct passo *passo, struct passo_channel_trigger trigger)
+{
+	const uint32_t word = passo_pack_channel_trigger(&trigger);
+
+	return passo_driver_write(passo, PASSO_CHANNEL_TRIGGER, &word, 1);
+}
+
+enum passo_error passo_driver_check_source(
+    const struct passo *passo, enum passo_trigger_source source, uint8_t axis)
+{
+	if (source == PASSO_TRIGGER_SOURCE_NONE)
+		return PASSO_ERROR_NO_SOURCE;
+	if ((unsigned)source > PASSO_TRIGGER_SOURCE_INDEX || axis >= passo->machine.axes)
+		return PASSO_ERROR_ARGUMENT;
+	if (source == PASSO_TRIGGER_SOURCE_INDEX)
+		return PASSO_OK;
+	const bool is_fitted = source == PASSO_TRIGGER_SOURCE_PROBE
+	                         ? passo->probe_fitted
+	                         : (passo->axis[axis].switches >> source & 1u) != 0u;
+	return is_fitted ? PASSO_OK : PASSO_ERROR_NO_SWITCH;
+}
+
+enum passo_error passo_driver_arm(struct passo *passo, const struct passo_trigger_config *config)
+{
+	enum passo_error error = passo_driver_check_source(passo, config->source, config->axis);
+
+	if (error == PASSO_OK && (unsigned)config->action > PASSO_TRIGGER_ACTION_END_ENDLESS)
+		error = PASSO_ERROR_ARGUMENT;
+	if (error != PASSO_OK)
+		return error;
+	return write_trigger(passo, (struct passo_channel_trigger){.arm = true,
+					.action = config->action,
+					.falling = config->falling,
+					.axis = config->axis,
+					.source = config->source});
+}
+
+enum passo_error passo_driver_disarm(struct passo *passo)
+{
+	enum passo_error error = write_trigger(passo, (struct passo_channel_trigger){.arm = false});
+
+	if (error == PASSO_OK)
+		passo->task.armed = false;
+	return error;
+}
+
+/* That of a home or probe is left alone. */
+static enum passo_error check_free(const struct passo *passo)
+{
+	enum passo_error error = passo_driver_check_inputs(passo);
+
+	return error == PASSO_OK && passo->task.kind != PASSO_TASK_NONE ? PASSO_ERROR_UNDER_WAY : error;
+}
+
+enum passo_error passo_arm_trigger(struct passo *passo, const struct passo_trigger_config *config)
+{
+	enum passo_error error = check_free(passo);
+
+	if (error == PASSO_OK && !config)
+		error = PASSO_ERROR_ARGUMENT;
+	if (error == PASSO_OK)
+		error = passo_driver_arm(passo, config);
+	if (error == PASSO_OK)
+		passo->task.armed = false; /* it is the program's now */
+	return error;
+}
+
+enum passo_error passo_disarm_trigger(struct passo *passo)
+{
+	enum passo_error error = check_free(passo);
+
+	return error != PASSO_OK ? error : passo_driver_disarm(passo);
+}
+
+enum passo_error passo_read_trigger(struct passo *passo, struct passo_trigger_report *report)
+{
+	uint32_t words[PASSO_AXES_MAX]; /* TRIGGER_STATE, TRIGGER_CLOCKS; then the positions */
+	enum passo_error error = passo_driver_check_inputs(passo);
+
+	if (error == PASSO_OK && !report)
+		error = PASSO_ERROR_ARGUMENT;
+	if (error == PASSO_OK)
+		error = passo_host_read(
+		    passo->host, (uint16_t)(passo->base + PASSO_CHANNEL_TRIGGER_STATE), words, 2);
+	if (error != PASSO_OK)
+		return error;
+	const struct passo_channel_trigger_state state = passo_unpack_channel_trigger_state(words[0]);
+	*report =
+	    (struct passo_trigger_report){.armed = state.armed, .fired = state.fired, .clocks = words[1]};
+	if (!state.fired)
+		return PASSO_OK;
+	error = passo_host_read(passo->host, (uint16_t)(passo->base + PASSO_CHANNEL_TRIGGER_POSITION_BASE),
+	    words, passo->machine.axes);
+	for (unsigned i = 0; error == PASSO_OK && i < passo->machine.axes; i++)
+		report->positions[i] = passo_driver_offset(passo, i, (int32_t)words[i]);
+	return error;
+}
+
+enum passo_error passo_wait_for_trigger(
+    struct passo *passo, uint64_t timeout_clocks, struct passo_trigger_report *report)
+{
+	enum passo_error error = passo_driver_check_inputs(passo);
+
+	if (error != PASSO_OK)
+		return error;
+	const struct passo_hardware *hardware = &passo->host->hardware;
+	const uint32_t began = passo_driver_now(passo);
+	const uint64_t longest =
+	    passo_mul_div_ceil(timeout_clocks, MICROSECONDS_PER_SECOND, passo->machine.clock_hz);
+	for (;;) {
+		error = passo_poll(passo);
+		if (error == PASSO_OK || error == PASSO_ERROR_TRIGGER)
+			error = passo_read_trigger(passo, report);
+		if (error != PASSO_OK || report->fired)
+			return error;
+		if (!report->armed)
+			return PASSO_ERROR_NO_SOURCE;
+		if (timeout_clocks != 0u && passo_driver_now(passo) - began >= longest)
+			return PASSO_ERROR_TIMEOUT;
+		if (hardware->wait)
+			hardware->wait(hardware->context, passo_driver_interval(passo));
+	}
+}

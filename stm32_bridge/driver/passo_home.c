@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: MIT
+ * Homing of axes, one after the other, and probing.
+ */
+#include "passo_driver.h"
+
+static enum passo_error of_plan(enum passo_plan_error error)
+{
+	return (enum passo_error)((unsigned)PASSO_ERROR_PLAN + (unsigned)error);
+}
+
+static enum passo_error check_home(const struct passo *passo, const struct passo_home *home)
+{
+	const int32_t most = (int32_t)PASSO_SUBSTEPS_MAX;
+	const enum passo_trigger_source source = home->source;
+	enum passo_error error = passo_driver_check_source(passo, source, home->axis);
+
+	if (error != PASSO_OK)
+		return error;
+	if (source > PASSO_TRIGGER_SOURCE_HOME
+	    || (source == PASSO_TRIGGER_SOURCE_LIMIT_LOW && home->distance > 0)
+	    || (source == PASSO_TRIGGER_SOURCE_LIMIT_HIGH && home->distance < 0))
+		return PASSO_ERROR_ARGUMENT;
+	if (home->distance == 0 || home->back_off == 0u)
+		return PASSO_ERROR_NO_DISTANCE;
+	if (home->distance < -most || home->distance > most || home->back_off > PASSO_SUBSTEPS_MAX / 4u
+	    || home->pull_off > PASSO_SUBSTEPS_MAX / 4u)
+		return of_plan(PASSO_PLAN_TOO_MANY_STEPS);
+	if (home->speed == 0u || home->slow_speed == 0u)
+		return of_plan(PASSO_PLAN_NO_SPEED);
+	return home->acceleration != 0u ? PASSO_OK : of_plan(PASSO_PLAN_NO_ACCELERATION);
+}
+
+enum passo_error passo_home(struct passo *passo, const struct passo_home *homes, uint8_t count)
+{
+	enum passo_error error = passo_driver_check_inputs(passo);
+
+	if (error == PASSO_OK && (!homes || count == 0u))
+		error = PASSO_ERROR_ARGUMENT;
+	for (unsigned i = 0; error == PASSO_OK && i < count; i++)
+		error = check_home(passo, &homes[i]);
+	if (error != PASSO_OK)
+		return error;
+	return passo_driver_begin(
+	    passo, (struct passo_task){.kind = PASSO_TASK_HOME, .left = count, .home = homes}, NULL, NULL);
+}
+
+bool passo_is_homed(const struct passo *passo, uint8_t axis)
+{
+	return passo_driver_check_axis(passo, axis) == PASSO_OK && passo->axis[axis].homed;
+}
+
+/* Moves the axis of the present home, for a phase. With an edge: until it comes. */
+enum edge { NO_EDGE, RISING, FALLING };
+static enum passo_error go(
+    struct passo *passo, enum passo_home_phase phase, enum edge edge, int32_t steps, uint64_t speed)
+{
+	const struct passo_home *home = passo->task.home;
+	const struct passo_trigger_config trigger = {.source = home->source,
+	    .action = PASSO_TRIGGER_ACTION_SOFT_STOP,
+	    .axis = home->axis,
+	    .falling = edge == FALLING};
+	struct passo_move_by_speed move = {.speed = speed, .acceleration = home->acceleration};
+
+	move.steps[home->axis] = steps;
+	passo->task.phase = phase;
+	return passo_driver_seek(passo, edge != NO_EDGE ? &trigger : NULL, &move);
+}
+
+enum passo_error passo_driver_home_first(struct passo *passo)
+{
+	const struct passo_home *home = passo->task.home;
+	enum passo_error error = go(passo, PASSO_HOME_APPROACH, RISING, home->distance, home->speed);
+
+	passo->axis[home->axis].homed = false;
+	if (error != PASSO_ERROR_SWITCH_LEVEL)
+		return error;
+	return go(passo, PASSO_HOME_RELEASE, FALLING, -home->distance, home->speed);
+}
+
+/* Goes slowly from the back-off to the edge; it must come soon. */
+static enum passo_error approach_slowly(struct passo *passo)
+{
+	const struct passo_home *home = passo->task.home;
+	const int32_t most = (int32_t)(2u * home->back_off + 1u);
+
+	return go(passo, PASSO_HOME_SLOW, RISING, home->distance < 0 ? -most : most, home->slow_speed);
+}
+
+static enum passo_error back_off(struct passo *passo, int32_t past)
+{
+	const struct passo_home *home = passo->task.home;
+	const int32_t away = (int32_t)home->back_off;
+	const int32_t steps = (home->distance < 0 ? away : -away) - past;
+
+	if (steps == 0)
+		return approach_slowly(passo);
+	return go(passo, PASSO_HOME_BACK_OFF, NO_EDGE, steps, home->speed);
+}
+
+/* The next axis, if there is one. */
+static enum passo_error end_axis(struct passo *passo)
+{
+	passo->task.left--;
+	if (passo->task.left == 0u)
+		return PASSO_OK;
+	passo->task.home++;
+	return passo_driver_home_first(passo);
+}
+
+/* The edge has come `past` steps ago: it is at home->position. */
+static enum passo_error set_home(struct passo *passo, int32_t past)
+{
+	const struct passo_home *home = passo->task.home;
+	const int32_t away = (int32_t)home->pull_off;
+	enum passo_error error =
+	    passo_set_position(passo, home->axis, (int32_t)((uint32_t)home->position + (uint32_t)past));
+
+	if (error != PASSO_OK)
+		return error;
+	passo->axis[home->axis].homed = true;
+	if (away == 0)
+		return end_axis(passo);
+	return go(
+	    passo, PASSO_HOME_PULL_OFF, NO_EDGE, (home->distance < 0 ? away : -away) - past, home->speed);
+}
+
+enum passo_error passo_driver_home_next(struct passo *passo, const struct passo_trigger_report *report)
+{
+	const uint8_t axis = passo->task.home->axis;
+	int32_t now[PASSO_AXES_MAX];
+
+	if (passo->task.phase == PASSO_HOME_BACK_OFF)
+		return approach_slowly(passo);
+	if (passo->task.phase == PASSO_HOME_PULL_OFF)
+		return end_axis(passo);
+	if (!report->fired)
+		return PASSO_ERROR_SWITCH_MISSED;
+	enum passo_error error = passo_positions(passo, now);
+	if (error != PASSO_OK)
+		return error;
+	const int32_t past = (int32_t)((uint32_t)now[axis] - (uint32_t)report->positions[axis]);
+	return passo->task.phase == PASSO_HOME_SLOW ? set_home(passo, past) : back_off(passo, past);
+}
+
+enum passo_error passo_probe(struct passo *passo, const struct passo_probe *probe)
+{
+	enum passo_error error = passo_driver_check_inputs(passo);
+
+	if (error != PASSO_OK)
+		return error;
+	if (!probe)
+		return PASSO_ERROR_ARGUMENT;
+	const struct passo_trigger_config trigger = {.source = PASSO_TRIGGER_SOURCE_PROBE,
+	    .action = PASSO_TRIGGER_ACTION_SOFT_STOP,
+	    .falling = probe->away};
+	struct passo_move_by_speed move = {.speed = probe->speed, .acceleration = probe->acceleration};
+	for (unsigned i = 0; i < PASSO_AXES_MAX; i++)
+		move.steps[i] = probe->steps[i];
+	return passo_driver_begin(passo,
+	    (struct passo_task){.kind = PASSO_TASK_PROBE, .optional = probe->optional}, &trigger, &move);
+}

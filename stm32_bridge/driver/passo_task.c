@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: MIT
+ * What home and probe share: motions that a trigger may end, one after the other, moved on by passo_poll().
+ */
+#include "passo_driver.h"
+
+/* Ends the task. A trigger that is still armed must not stop a later motion. */
+static enum passo_error settle(struct passo *passo, enum passo_error error)
+{
+	passo->task.inside = false;
+	if (error == PASSO_PENDING)
+		return PASSO_OK;
+	passo->task.kind = PASSO_TASK_NONE;
+	if (passo->task.armed && !passo_driver_is_wire(error) && error != PASSO_ERROR_CORE_RESET)
+		passo_driver_disarm(passo); /* otherwise passo_clear() does it */
+	return error;
+}
+
+enum passo_error passo_driver_seek(
+    struct passo *passo, const struct passo_trigger_config *trigger, const struct passo_move_by_speed *move)
+{
+	enum passo_error error = PASSO_OK;
+	bool active = false;
+
+	/* armed first: an edge between the two is not missed */
+	if (trigger) {
+		passo->task.armed = true;
+		error = passo_driver_arm(passo, trigger);
+		if (error == PASSO_OK)
+			error = passo_driver_level(passo, trigger->source, trigger->axis, &active);
+		if (error == PASSO_OK && active != trigger->falling)
+			error = PASSO_ERROR_SWITCH_LEVEL;
+	}
+	if (error == PASSO_OK)
+		error = passo_move_by_speed(passo, move);
+	return error == PASSO_OK ? PASSO_PENDING : error;
+}
+
+enum passo_error passo_driver_begin(struct passo *passo, struct passo_task task,
+    const struct passo_trigger_config *trigger, const struct passo_move_by_speed *move)
+{
+	enum passo_error error = passo_driver_ready(passo, true);
+
+	if (error != PASSO_OK)
+		return error;
+	passo->task = task;
+	passo->task.inside = true;
+	error = trigger ? passo_driver_seek(passo, trigger, move) : passo_driver_home_first(passo);
+	return settle(passo, error);
+}
+
+/* A motion of the task has ended. */
+static enum passo_error next(struct passo *passo)
+{
+	struct passo_trigger_report report = {.fired = false};
+	enum passo_error error = PASSO_OK;
+
+	if (passo->task.armed)
+		error = passo_read_trigger(passo, &report);
+	if (error != PASSO_OK)
+		return error;
+	if (passo_driver_is_stopped(passo) && !report.fired) {
+		error = passo_driver_fault_of(passo->snapshot.cause);
+		return error != PASSO_OK ? error : PASSO_ERROR_STOPPED;
+	}
+	if (report.fired) {
+		passo->task.armed = false;
+		error = passo_clear(passo);
+	}
+	if (error != PASSO_OK)
+		return error;
+	if (passo->task.kind == PASSO_TASK_HOME)
+		return passo_driver_home_next(passo, &report);
+	return report.fired || passo->task.optional ? PASSO_OK : PASSO_ERROR_SWITCH_MISSED;
+}
+
+enum passo_error passo_driver_task(struct passo *passo, enum passo_error error)
+{
+	if (error == PASSO_ERROR_NOT_STOPPED || error == PASSO_ERROR_NOT_HELD)
+		return error;
+	/* the stops that are looked for: by the trigger, or by the very switch */
+	const bool is_sought =
+	    (error == PASSO_ERROR_TRIGGER || error == PASSO_ERROR_LIMIT) && passo->task.armed;
+	if (is_sought)
+		passo->fault = PASSO_OK;
+	else if (error != PASSO_OK)
+		return settle(passo, error);
+	if (passo_driver_in_motion(passo))
+		return PASSO_OK;
+	passo->task.inside = true;
+	error = settle(passo, next(passo));
+	if (error != PASSO_OK)
+		passo->fault = error;
+	return error;
+}

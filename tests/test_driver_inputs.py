@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: MIT
+"""Inputs of the driver (stm32_bridge/driver/passo_inputs.h): settings, readings, triggers, stops."""
+
+from typing import Any
+
+import pytest
+from passo.driver import Driver, DriverError
+from passo.machine import Switch
+from passo.native import ffi
+from passo.registers import ADDRESS_WATCHDOG, Cause, State, TriggerSource
+
+from tests.helpers.driver_wire import CLOCK_HZ, Wire, by_speed, error_of, open_driver, struct
+from tests.test_driver_home import driver_of, jog, machine_of, report_of
+
+UNIT = 1 << 16
+
+
+def readings(driver: Driver) -> Any:
+    now = struct("readings")
+    driver.call("read_inputs", now)
+    return now
+
+
+def test_a_core_without_inputs() -> None:
+    """Each call says so."""
+    driver = open_driver(Wire())
+    assert error_of(driver, "configure_filter", 5) == "NO_INPUTS"
+    assert error_of(driver, "configure_inputs", 0, struct("input_config")) == "NO_INPUTS"
+    assert error_of(driver, "configure_watchdog", UNIT, 0) == "NO_INPUTS"
+    assert error_of(driver, "clear_estop") == error_of(driver, "disarm_trigger") == "NO_INPUTS"
+    assert error_of(driver, "read_inputs", struct("readings")) == "NO_INPUTS"
+
+
+def test_settings_that_contradict() -> None:
+    """Each has its error."""
+    driver = driver_of(machine_of())
+    driver.call("configure_filter", 65535)
+    assert error_of(driver, "configure_filter", 65536) == "FILTER_TOO_LONG"
+    assert error_of(driver, "configure_filter", 1 << 32) == "FILTER_TOO_LONG"
+    driver.call("configure_watchdog", 1023 * UNIT, 1023 * UNIT)
+    assert error_of(driver, "configure_watchdog", 1023 * UNIT + 1, 0) == "WATCHDOG_TOO_LONG"
+    assert error_of(driver, "configure_watchdog", UNIT, 2**64 - 1) == "WATCHDOG_TOO_LONG"
+    assert error_of(driver, "configure_watchdog", 0, UNIT) == "ARGUMENT"
+    assert error_of(driver, "configure_inputs", 4, struct("input_config")) == "ARGUMENT"
+    assert error_of(driver, "arm_trigger", struct("trigger_config")) == "NO_SOURCE"
+    assert error_of(driver, "arm_trigger", struct("trigger_config", source=6)) == "ARGUMENT"
+    assert error_of(driver, "arm_trigger", struct("trigger_config", source=1, axis=4)) == "ARGUMENT"
+    driver.call("move_by_speed", by_speed([5000, 0, 0, 0]))
+    assert error_of(driver, "configure_inputs", 0, struct("input_config")) == "MOVING"
+
+
+def test_levels_and_flags() -> None:
+    """What is active, and what was."""
+    machine = machine_of()
+    driver = driver_of(machine, home_inverted=True)
+    machine.set("limit_low", 2)
+    machine.set("home", 7)
+    machine.set("probe", 1)
+    machine.run(10_000)
+    now = readings(driver)
+    assert (now.limit_low, now.home, now.probe, now.alarm, now.estop) == (2, 8, True, 0, False)
+    machine.set("limit_low", 0)
+    machine.set("probe", 0)
+    machine.run(10_000)
+    now = readings(driver)
+    assert (now.limit_low, now.was_limit_low, now.probe, now.was_probe) == (0, 2, False, True)
+    driver.call("clear_flags")
+    now = readings(driver)
+    assert (now.was_limit_low, now.was_probe, now.was_home) == (0, False, 8)
+
+
+def test_trigger_latches_and_is_waited_for() -> None:
+    """The position of the edge; only once; the move goes on."""
+    switch = Switch("home", 0, 500, above=True)
+    driver = driver_of(machine_of(switch))
+    driver.call("arm_trigger", struct("trigger_config", source=TriggerSource.HOME))
+    driver.call("move_by_speed", by_speed([2000, 0, 0, 0], speed=20_000))
+    report = struct("trigger_report")
+    driver.call("wait_for_trigger", 0, report)
+    assert report.positions[0] == pytest.approx(switch.edges[0][0], abs=1)
+    assert report.fired and not report.armed and report.clocks > 0
+    driver.wait(1)
+    assert driver.positions()[0] == 2000 and driver.state == State.IDLE
+    driver.call("disarm_trigger")
+    assert not report_of(driver).fired
+    assert error_of(driver, "wait_for_trigger", 0, report) == "NO_SOURCE"
+    driver.call("arm_trigger", struct("trigger_config", source=TriggerSource.PROBE))
+    assert error_of(driver, "wait_for_trigger", CLOCK_HZ // 100, report) == "TIMEOUT"
+
+
+def test_alarm_keeps_it_stopped() -> None:
+    """Its name, its axis; clear says so until it is over; then nothing moves."""
+    machine = machine_of()
+    driver = driver_of(machine, alarm_disables=True)
+    driver.call("jog", jog(axis=1))
+    machine.run(CLOCK_HZ // 50)
+    machine.set("alarm", 4)
+    with pytest.raises(DriverError, match="ALARM"):
+        driver.wait(1)
+    there = machine.positions.tolist()
+    assert machine.enable == 0b1011 and readings(driver).axes == 4
+    assert error_of(driver, "clear") == "ALARM" and driver.cause == Cause.ALARM
+    machine.set("alarm", 0)
+    machine.run(10_000)
+    driver.call("clear")
+    machine.run(CLOCK_HZ // 100)
+    driver.poll()
+    assert machine.positions.tolist() == there == [0, driver.positions()[1], 0, 0]
+
+
+@pytest.mark.parametrize("pin", ["estop_n", "alarm"])
+def test_stuck_at_power_up(pin: str) -> None:
+    """The channel opens stopped, can be configured, and goes on when that is over."""
+    machine = machine_of()
+    machine.set(pin, 0 if pin == "estop_n" else 15)
+    name = "ESTOP" if pin == "estop_n" else "ALARM"
+    driver = Driver.__new__(Driver)
+    with pytest.raises(DriverError, match=name):
+        driver.__init__(machine)  # type: ignore[misc]
+    assert driver.fault == name
+    assert error_of(driver, "move_by_speed", by_speed([1, 0, 0, 0])) == "STOPPED"
+    inverted = struct("input_config", alarm_inverted=pin == "alarm")
+    for axis in range(4):
+        driver.call("configure_inputs", axis, inverted)
+    machine.set("estop_n", 1)
+    machine.run(10_000)
+    if pin == "estop_n":
+        driver.call("clear_estop")
+    driver.call("clear")
+    assert driver.fault == "OK" and driver.state == State.IDLE
+
+
+def test_watchdog() -> None:
+    """On after open; a silent host: a soft stop, with a name and an exact position; off if told so."""
+    machine = machine_of()
+    driver = driver_of(machine)
+    driver.call("configure_watchdog", 20 * UNIT, 0)
+    driver.call("jog", jog(axis=0))
+    machine.run(40 * UNIT)
+    there = int(machine.positions[0])
+    machine.run(40 * UNIT)
+    assert machine.positions[0] == there
+    with pytest.raises(DriverError, match="WATCHDOG"):
+        driver.wait(1)
+    driver.call("clear")
+    assert driver.positions()[0] == there and machine.enable == 15
+    driver.options.watchdog_clocks = 2**64 - 1
+    driver.open()
+    assert error_of(driver, "configure_watchdog", 0, 0) == "OK"
+
+
+def test_the_watchdog_is_on_by_default() -> None:
+    """Half a second."""
+    driver = Driver(machine_of())
+    words = ffi().new("uint32_t[1]")
+    assert driver.lib.passo_host_read(driver.host, ADDRESS_WATCHDOG, words, 1) == 0
+    assert words[0] == -(-(CLOCK_HZ // 2) // UNIT)
