@@ -58,8 +58,8 @@ enum passo_error {
 	PASSO_ERROR_REFUSED = 0x100,
 	/* The planner rejected the move: this plus an enum passo_plan_error. */
 	PASSO_ERROR_PLAN = 0x200,
-	/* The same, of a speed below 1/65536 per second or a time below 100 us: a unit of passo_units.h seems
-	 * to be missing. */
+	/* The same, of a speed below 1/65536 per second, a distance below 1/65536 mm or degree, or a time
+	 * below 100 us: a unit of passo_units.h seems to be missing. */
 	PASSO_ERROR_ABSURD = 0x300,
 	PASSO_ERROR_MAX = 0x3FF
 };

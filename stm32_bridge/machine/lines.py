@@ -15,7 +15,7 @@ FILE_ONLY = {key.name for form in FORMS.values() for key in form.keys if key.fil
 
 def read_toml(path: Path) -> dict[str, Any]:
     """Parse a move file; decimal fractions stay text."""
-    return tomllib.loads(path.read_text(encoding="utf-8"), parse_float=str)
+    return tomllib.loads(path.read_text(encoding="utf-8-sig"), parse_float=str)
 
 
 def pin_lines(data: dict[str, Any], axes: int) -> list[str]:

@@ -71,7 +71,8 @@ def _class(form: Form) -> list[str]:
     name = "Move" + form.name.title().replace("_", "")
     lines = ["", "", "@dataclass(frozen=True)", f"class {name}:", f'    """{form.summary}"""', ""]
     for key in sorted(form.keys, key=lambda key: key.file_only):
-        lines.append(f"    {key.name}: {key.kind.python}{' = ()' if key.file_only else ''}")
+        default = f" = {key.default or '()'}" if key.file_only else ""
+        lines.append(f"    {key.name}: {key.kind.python}{default}")
     lines += ["", f'    form: ClassVar[Form] = FORMS["{form.name}"]']
     if form.profile:
         lines.append(f'    profile: ClassVar[str] = "{form.profile}"')
