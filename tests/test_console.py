@@ -414,8 +414,8 @@ def broken(random_: random.Random) -> dict[str, str]:
     return values
 
 
-# Differences: the console shows a wrong value as typed, not as Python's repr; a shape is not a file; for an unknown
-# key it lists the known ones, where the file suggests one.
+# Differences: the console shows a wrong value as typed, not as Python's repr; a shape is not a file; for an
+# unknown key it lists the known ones, where the file suggests one.
 DIFFERENT = re.compile(r"profile = \"user\"|must be a (whole )?number, not|table")
 UNKNOWN = re.compile(r"unknown (key|method) '.*?'")
 
