@@ -155,9 +155,9 @@ BAD = {
     "pin too long": (CLOCK + "[pins]\ndir_hold = 0.005\n" + BY_TIME, "pins: dir_hold is 80000 clocks"),
     "pin zero": (
         CLOCK + "[pins]\nstep_low = 0\n" + BY_TIME,
-        "pins: step_low must be greater than 0",
+        "pins: step_low is 0 clocks, 1 to 65535 are possible",
     ),
-    "pin zero with a unit": (CLOCK + '[pins]\ndir_hold = "0us"\n' + BY_TIME, "pins: dir_hold must be gre"),
+    "pin zero with a unit": (CLOCK + '[pins]\ndir_hold = "0us"\n' + BY_TIME, "pins: dir_hold is 0 clocks"),
     "channel above": (GOOD + "channel = 8\n", "move 1: channel must be 0 to 7"),
     "channel negative": (GOOD + "channel = -1\n", "move 1: channel must be 0 to 7"),
     "channel text": (GOOD + 'channel = "x"\n', "move 1: channel must be a whole number"),

@@ -129,7 +129,7 @@ def _pins(table: Table, clock_hz: int, others: tuple[str, ...] = ()) -> PinTimin
     for key in PIN_KEYS:
         seconds = read_time(table, key, clock_hz) if key in table else PIN_SECONDS
         if not seconds:
-            raise BadValueError(f"{key} must be greater than 0")
+            raise BadValueError(f"{key} is 0 clocks, 1 to {PIN_CLOCKS_MAX} are possible")
         clocks[key] = math.ceil(seconds * clock_hz)
         if clocks[key] > PIN_CLOCKS_MAX:
             hint = '; a number is in seconds, a text may have a unit: "2us"' if seconds >= 1 else ""
