@@ -43,7 +43,7 @@ FORMS = {
             Key("table", "table", None, file_only=True),
             Key("total_time", "time", "total_clocks", factor="clock_hz"),
             Key("ramp_time", "time", "ramp_clocks", factor="clock_hz"),
-            Key("channel", "channel", None, default=0, file_only=True),
+            Key("channel", "channel", None, default=0),
         ),
         told_by="total_time",
     ),
@@ -59,7 +59,7 @@ FORMS = {
             Key("acceleration", "number", "acceleration", factor=UNIT_Q32, default=0),
             Key("deceleration", "number", "deceleration", factor=UNIT_Q32, default=0),
             Key("ramp_time", "time", "ramp_clocks", factor="clock_hz", default=0),
-            Key("channel", "channel", None, default=0, file_only=True),
+            Key("channel", "channel", None, default=0),
         ),
         (
             Rule("excludes", "acceleration", "ramp_time"),
@@ -76,7 +76,7 @@ FORMS = {
             Key("profile", "profile", "profile"),
             Key("total_time", "time", "total_clocks", factor="clock_hz"),
             Key("speed", "number", "speed", factor=UNIT_Q32),
-            Key("channel", "channel", None, default=0, file_only=True),
+            Key("channel", "channel", None, default=0),
         ),
     ),
     "at_speed": Form(
@@ -86,7 +86,7 @@ FORMS = {
             Key("profile", "profile", "profile"),
             Key("speed", "number", "speed", factor=UNIT_Q32),
             Key("ramp_time", "time", "ramp_clocks", factor="clock_hz"),
-            Key("channel", "channel", None, default=0, file_only=True),
+            Key("channel", "channel", None, default=0),
         ),
     ),
     "axes": Form(
@@ -96,7 +96,7 @@ FORMS = {
             Key("start_speed", "number", "start_speed", factor=UNIT_Q32, default=0),
             Key("speed", "number", "speed", factor=UNIT_Q32),
             Key("ramp_time", "time", "ramp_clocks", factor="clock_hz"),
-            Key("channel", "channel", None, default=0, file_only=True),
+            Key("channel", "channel", None, default=0),
         ),
     ),
     "turn": Form(
@@ -109,7 +109,7 @@ FORMS = {
             Key("rpm", "number", "rpm", factor=UNIT_Q32),
             Key("minimum_rpm", "number", "minimum_rpm", factor=UNIT_Q32, default=0),
             Key("acceleration", "number", "acceleration", factor=UNIT_Q32),
-            Key("channel", "channel", None, default=0, file_only=True),
+            Key("channel", "channel", None, default=0),
         ),
     ),
     "sigmoid": Form(
@@ -122,7 +122,7 @@ FORMS = {
             Key("accelerate_time", "time", "accelerate_clocks", factor="clock_hz"),
             Key("decelerate_time", "time", "decelerate_clocks", factor="clock_hz", default="accelerate_time"),
             Key("alpha", "alpha", "alpha", factor=ALPHA_ONE, default=5),
-            Key("channel", "channel", None, default=0, file_only=True),
+            Key("channel", "channel", None, default=0),
         ),
     ),
     "jerk": Form(
@@ -134,7 +134,7 @@ FORMS = {
             Key("stop_speed", "number", "stop_speed", factor=UNIT_Q32, default=0),
             Key("acceleration", "number", "acceleration", factor=UNIT_Q32),
             Key("jerk", "number", "jerk", factor=UNIT_Q32),
-            Key("channel", "channel", None, default=0, file_only=True),
+            Key("channel", "channel", None, default=0),
         ),
     ),
     "straight": Form(
@@ -146,7 +146,7 @@ FORMS = {
             Key("speed", "per_axis", "speed", factor=UNIT_Q32),
             Key("acceleration", "per_axis", "acceleration", factor=UNIT_Q32),
             Key("jerk", "per_axis", "jerk", factor=UNIT_Q32, default=0),
-            Key("channel", "channel", None, default=0, file_only=True),
+            Key("channel", "channel", None, default=0),
         ),
     ),
 }

@@ -30,7 +30,7 @@ static enum passo_error identify(struct passo *passo, const struct passo_options
 	const struct passo_parameters_word core = passo_unpack_parameters(words[2]);
 	if (!fits(core.channels, options->channels) || !fits(core.axes, options->axes)
 	    || !fits(core.tick_log2, options->tick_log2) || options->channel >= core.channels
-	    || core.axes == 0u || core.axes > PASSO_AXES_MAX)
+	    || core.channels > PASSO_CHANNELS_MAX || core.axes == 0u || core.axes > PASSO_AXES_MAX)
 		return PASSO_ERROR_PARAMETERS;
 	passo->machine = (struct passo_machine){
 	    .clock_hz = options->clock_hz, .tick_log2 = core.tick_log2, .axes = core.axes};

@@ -66,6 +66,11 @@ class Key:
     every: bool = False  # of every form
 
     @property
+    def trails(self) -> bool:
+        """In the class of a form it comes last, with its default."""
+        return self.file_only or self.every
+
+    @property
     def shared(self) -> bool:
         """The key is in struct passo_axis_limits."""
         return self.kind.name == "per_axis"
