@@ -16,13 +16,13 @@
 #define LINES_PER_CONSOLE 400u
 
 static const char *const WORDS[] = {"move", "turn", "rpm", "hold", "resume", "override", "stop", "abort",
-    "clear", "status", "position", "angle", "enable", "disable", "zero", "sync", "config", "table", "open",
-    "version", "help", "bla", "steps", "profile", "total_time", "ramp_time", "start_speed", "speed",
+    "clear", "status", "position", "angle", "enable", "disable", "zero", "sync", "start", "config", "table",
+    "open", "version", "help", "bla", "steps", "profile", "total_time", "ramp_time", "start_speed", "speed",
     "stop_speed", "acceleration", "deceleration", "jerk", "method", "axis", "axes", "steps_per_turn", "rpm",
     "top_rpm", "minimum_rpm", "backwards", "distance", "feed", "steps_per_mm", "accelerate_time",
     "decelerate_time", "alpha", "row", "points", "percent", "step_high", "step_low", "dir_setup", "dir_hold",
     "both_edges", "steps_per_unit", "clock_hz", "hold_time", "stop_time", "flow", "need_enable", "baud",
-    "spi_slow", "on", "command"};
+    "spi_slow", "on", "command", "channel", "channel"};
 
 static const char *const VALUES[] = {"0", "1", "-1", "5", "50", "100", "3.5", "0.01", "1e-3", "2us",
     "7clocks", "10ms", "wait", "refuse", "200,-100", "1,2,3,4", "1,2,3,4,5,6,7,8,9", "20_000", "1e9",
@@ -39,7 +39,9 @@ static const char *const LINES[] = {"move steps=20,-9 profile=cosine total_time=
     "turn steps_per_turn=200 rpm=60 acceleration=9999",
     "move method=sigmoid steps=9,4 speed=900 accelerate_time=0.01 alpha=3.25", "clear", "resume", "rpm 90",
     "rpm 0", "move method=jerk steps=15 speed=900 acceleration=30000 jerk=9e6",
-    "config stop_time=1ms hold_time=1ms",
+    "config stop_time=1ms hold_time=1ms", "sync 1 channel=1", "start",
+    "move steps=20,-9 profile=cosine total_time=0.02 ramp_time=5ms channel=1", "clear channel=1",
+    "sync 0 channel=1",
     "move method=straight distance=1,2,3 feed=50 steps_per_mm=9 speed=90 acceleration=900 jerk=9000",
     "move method=turn steps_per_turn=200 angle=-45.5 rpm=120 acceleration=30000"};
 
@@ -131,7 +133,7 @@ static size_t make_line(char *line)
 	} else {
 		uint32_t words = draw(8);
 
-		length = (size_t)sprintf(line, "%s", kind < 9 ? WORDS[draw(22)] : "");
+		length = (size_t)sprintf(line, "%s", kind < 9 ? WORDS[draw(23)] : "");
 		for (uint32_t i = 0; i < words; i++)
 			length += (size_t)sprintf(
 			    line + length, draw(8) ? " %s=%s" : " %s %s", PICK(WORDS), PICK(VALUES));
@@ -199,11 +201,11 @@ int main(int count, char **arguments)
 
 	state = (uint64_t)(count > 1 ? atoll(arguments[1]) : 1) * UINT64_C(0x9E3779B97F4A7C15) + 1u;
 	while (time(NULL) < end) {
-		const struct passo_engine_config config = {.core = {.channels = 1,
-							       .axes = (uint8_t)(1u + draw(8)),
-							       .tick_log2 = 7,
-							       .line_queue_log2 = 4,
-							       .ramp_queue_log2 = 4},
+		const struct passo_engine_config config = {.core = {.channels = draw(4) == 0 ? 2u : 1u,
+		    .axes = (uint8_t)(1u + draw(8)),
+		    .tick_log2 = 7,
+		    .line_queue_log2 = 4,
+		    .ramp_queue_log2 = 4},
 		    .clock_hz = CLOCK_HZ,
 		    .spi_half_period = 2};
 		struct passo_terminal *terminal;

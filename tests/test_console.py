@@ -19,7 +19,7 @@ import pytest
 from passo import registers as r
 from passo.build import Parameters
 from passo.engine import model_engine, rtl_engine
-from passo.move_file import read_moves
+from passo.move_file import read_channels, read_moves
 from passo.move_forms import FORMS
 from passo.moves import MoveFile, MoveFileError, q32
 from passo.native import console, ffi
@@ -37,9 +37,9 @@ ZEROS = ",".join("0" * 16)
 class Bench:
     """A terminal that records its output."""
 
-    def __init__(self, clock_hz: int = CLOCK_HZ, axes: int = 4):
+    def __init__(self, clock_hz: int = CLOCK_HZ, axes: int = 4, channels: int = 1):
         self.said: list[str] = []
-        self.engine = model_engine(Parameters(axes=axes), clock_hz)
+        self.engine = model_engine(Parameters(channels=channels, axes=axes), clock_hz)
         self.terminal = Terminal(self.engine, self.said.append, keep=True)
         self.greeting = self.take()
 
@@ -77,15 +77,16 @@ def bench() -> Iterator[Bench]:
     made.close()
 
 
-def pulses_of(events: np.ndarray, axes: int) -> list[tuple[int, int, int]]:
-    """Clock since `running` rose, axis and direction bit of each step."""
-    running = np.diff(events["running"].astype(int), prepend=0)
+def pulses_of(events: np.ndarray, axes: int, channel: int = 0) -> list[tuple[int, int, int]]:
+    """Clock since `running` rose, axis and direction bit of each step of a channel with so many axes."""
+    running = np.diff(events["running"].astype(int) >> channel & 1, prepend=0)
     start = int(events["clock"][running > 0][0])
     found = []
     for axis in range(axes):
-        rising = np.diff((events["step"] >> axis & 1).astype(int), prepend=0) > 0
+        pin = channel * axes + axis
+        rising = np.diff((events["step"] >> pin & 1).astype(int), prepend=0) > 0
         found += [
-            (int(clock) - start, axis, int(direction) >> axis & 1)
+            (int(clock) - start, axis, int(direction) >> pin & 1)
             for clock, direction in zip(events["clock"][rising], events["dir"][rising], strict=True)
         ]
     return sorted(found)
@@ -111,34 +112,45 @@ def line_of(table: dict[str, Any]) -> str:
 
 
 def moves_of_examples() -> list[tuple[str, int]]:
-    return [(path.stem, i) for path in EXAMPLES for i in range(len(read_moves(path).moves))]
+    """Name of the file, and number of the move in it, from 1 on."""
+    return [
+        (path.stem, file.number(i))
+        for path in EXAMPLES
+        for file in read_channels(path).files
+        for i in range(len(file.moves))
+    ]
 
 
 @pytest.mark.parametrize(("name", "number"), moves_of_examples())
 def test_a_move_makes_the_pulses_of_its_move_file(name: str, number: int) -> None:
     """Each move of the examples: the same steps on the same clocks as `passo run` makes of it."""
     path = paths.examples / f"{name}.toml"
-    file = read_moves(path)
-    table = tomllib.loads(path.read_text(), parse_float=Decimal)["move"][number]
-    alone = MoveFile(path, file.clock_hz, file.pins, (file.moves[number],))
-    parameters = Parameters()
+    table = tomllib.loads(path.read_text(), parse_float=Decimal)["move"][number - 1]
+    ((file, move),) = [
+        (file, move)
+        for file in read_channels(path).files
+        for i, move in enumerate(file.moves)
+        if file.number(i) == number
+    ]
+    alone = MoveFile(path, file.clock_hz, file.pins, (move,), file.channel)
+    parameters = Parameters(channels=file.channel + 1)
     with open_engine("model", parameters, file.clock_hz) as engine:
         run = execute(alone, plan_file(alone, parameters), engine)
-    bench = Bench(file.clock_hz)
+    bench = Bench(file.clock_hz, channels=parameters.channels)
     for axis in range(4):
         pins = " ".join(f"{key}={value}clocks" for key, value in vars(file.pins).items())
-        assert bench.ask(f"config axis={axis} {pins}") == "ok"
-    for row, points in enumerate(chunks(getattr(file.moves[number], "table", ()))):
+        assert bench.ask(f"config axis={axis} channel={file.channel} {pins}") == "ok"
+    for row, points in enumerate(chunks(getattr(move, "table", ()))):
         assert bench.ask(f"table {row} {','.join(map(str, points))}") == "ok"
     assert bench.ask(line_of(table)) == "ok"
     assert bench.ask("wait") == "ok"
-    made = pulses_of(bench.terminal.pulses(), 4)
+    made = pulses_of(bench.terminal.pulses(), 4, file.channel)
     wanted = sorted(
         (int(clock), axis, int(direction < 0))
         for axis in range(file.axes)
         for clock, direction in zip(*run.steps(axis), strict=True)
     )
-    assert len(wanted) == sum(map(abs, file.moves[number].steps))
+    assert len(wanted) == sum(map(abs, move.steps))
     assert made == wanted
     bench.close()
 
@@ -959,7 +971,8 @@ def test_lines_have_255_characters(bench: Bench) -> None:
         ("bla", "error: unknown command 'bla'; help lists the commands"),
         ("move=3", "error: unknown command 'move'; help lists the commands"),
         ("hold now", "error: 'now' is not key=value"),
-        ("hold it=now", "error: no key 'it' here"),
+        ("open it=now", "error: no key 'it' here"),
+        ("hold it=now", "error: unknown key 'it'; known are channel"),
         ("override 50 percent=60", "error: percent is given twice"),
         ("move steps=1 steps=2", "error: steps is given twice"),
         ("override =5", "error: no key before ="),

@@ -239,7 +239,7 @@ def test_one_motor(driver: Driver, wire: Wire) -> None:
     lib, motor = planner(), struct("motor")
     degrees, rpm = ffi().new("int64_t *"), ffi().new("uint64_t *")
     assert lib.passo_motor_start(motor) == lib.PASSO_ERROR_NOT_OPEN
-    assert lib.passo_motor_init(motor, driver.c, 0, 0, 0, Q32) == lib.PASSO_ERROR_ARGUMENT
+    assert lib.passo_motor_init(motor, driver.c, 0, 0, 0, Q32) == lib.PASSO_ERROR_ARGUMENT_STEPS_PER_TURN
     assert lib.passo_motor_init(motor, driver.c, 0, TURN, 10 * Q32, 60_000 * Q32) == 0
     assert lib.passo_motor_set_target(motor, -180 * Q32, 600 * Q32) == 0
     assert lib.passo_motor_start(motor) == 0 and lib.passo_motor_is_turning(motor)
@@ -319,6 +319,27 @@ def test_a_host_that_was_reset_does_not_trust_tables(driver: Driver, wire: Wire)
     assert sum(request[0] & 0xFFF >= r.ADDRESS_COSINE_BASE for request in wire.requests) == 5
 
 
+@pytest.mark.parametrize(
+    ("call", "arguments", "which"),
+    [
+        ("positions", (ffi().NULL,), "POINTER"),
+        ("move_by_speed", (by_speed([0, 0, 0, 0, 1]),), "AXIS"),
+        ("enable", (4, True), "AXIS"),
+        ("lost_steps", (4, ffi().new("uint32_t *")), "AXIS"),
+        ("move_to_by_speed", (16, by_speed([1])), "AXIS"),
+        ("configure_axis", (0, struct("axis_config", dir_hold_ns=910_300)), "PIN_TIME"),
+        ("configure_motion", (0, 0, 0x80000001), "DRAIN_VELOCITY"),
+        ("override", (101,), "RATE"),
+        ("rpm", (0, ffi().new("uint64_t *")), "STEPS_PER_TURN"),
+        ("load_table", (0, ffi().NULL), "SHAPE"),
+        ("move_plan", (struct("plan"), ffi().NULL), "PLAN"),
+    ],
+)
+def test_the_error_says_which_argument(driver: Driver, call: str, arguments: tuple, which: str) -> None:
+    """Each argument that can be wrong has a code of its own."""
+    assert driver.attempt(call, *arguments) == getattr(planner(), f"PASSO_ERROR_ARGUMENT_{which}")
+
+
 def test_what_is_refused(driver: Driver, wire: Wire) -> None:
     """Bad arguments change nothing in the core."""
     before = wire.frames
@@ -336,7 +357,7 @@ def test_what_is_refused(driver: Driver, wire: Wire) -> None:
     assert error_of(driver, "configure_axis", 0, struct("axis_config", step_high_ns=910_300)) == "ARGUMENT"
     assert error_of(driver, "configure_motion", 0, 0, 0x80000001) == "ARGUMENT"
     assert error_of(driver, "stream", struct("source")) == "ARGUMENT"
-    assert error_of(driver, "stream_start") == "ARGUMENT"
+    assert error_of(driver, "stream_start") == "NOT_PREPARED"
     assert error_of(driver, "positions", null) == "ARGUMENT"
     assert error_of(driver, "override_q16", 0x10001) == "ARGUMENT"
     assert wire.frames == before
@@ -704,18 +725,19 @@ def test_a_refusal_is_told(driver: Driver) -> None:
         expected = lib.PASSO_ERROR_REFUSED + (verdict or Verdict.BAD_VALUE)
         assert lib.passo_host_write(driver.host, address, words, 1) == expected
         assert driver.counters.refused[expected - lib.PASSO_ERROR_REFUSED] == 1
-    assert lib.passo_host_write(driver.host, 0, words, 61) == lib.PASSO_ERROR_ARGUMENT
-    assert lib.passo_host_write(driver.host, 0, words, 0) == lib.PASSO_ERROR_ARGUMENT
+    assert lib.passo_host_write(driver.host, 0, words, 61) == lib.PASSO_ERROR_ARGUMENT_LENGTH
+    assert lib.passo_host_write(driver.host, 0, words, 0) == lib.PASSO_ERROR_ARGUMENT_LENGTH
 
 
 def test_every_error_has_a_sentence() -> None:
     lib = planner()
     codes = [*range(lib.PASSO_ERROR_COUNT), *(lib.PASSO_ERROR_REFUSED + v for v in range(2, 10))]
     codes += [lib.PASSO_ERROR_PLAN + e for e in range(1, 29)]
+    codes += range(lib.PASSO_ERROR_ARGUMENT, lib.PASSO_ERROR_ARGUMENT_END)
     texts = {ffi().string(lib.passo_error_text(code)) for code in codes}
     names = {ffi().string(lib.passo_error_name(code)) for code in codes}
     assert len(texts) == len(codes) and b"UNKNOWN" not in names
-    for code in (lib.PASSO_ERROR_COUNT, 0x10A, 0x2FF):
+    for code in (lib.PASSO_ERROR_COUNT, 0x10A, 0x2FF, lib.PASSO_ERROR_ARGUMENT_END):
         assert ffi().string(lib.passo_error_name(code)) == b"UNKNOWN"
 
 

@@ -104,5 +104,14 @@ def test_a_missing_unit_is_suspected(driver: Driver) -> None:
     move = straight()
     move.limits[1].speed = 200
     assert error_of(driver, "move_straight", move) == "ABSURD"
+    move = straight()
+    move.distance = [10, -20]
+    assert error_of(driver, "move_straight", move) == "ABSURD"
+    move.distance = [0, 0]
+    assert error_of(driver, "move_straight", move) == "NO_STEPS"
+    turn = struct("move_turn", steps_per_turn=3200, angle=-360, rpm=60 * Q32, acceleration=Q32 * 10_000)
+    assert error_of(driver, "move_turn", turn) == "ABSURD"
+    turn.angle = 0
+    assert error_of(driver, "move_turn", turn) == "NO_STEPS"
     slow = by_speed([2**30 - 1], 1, 1)
     assert error_of(driver, "move_by_speed", slow) == "TOO_LONG"

@@ -6,9 +6,11 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
+from passo.build import Parameters
 from passo.cli import main
-from passo.move_file import read_moves
+from passo.move_file import read_channels, read_moves
 from passo.moves import MoveBySpeed, MoveFileError, MoveInTime, PinTiming
+from passo.plan import plan_channels
 from passo.toolchain import paths
 from passo.values import UNITS
 
@@ -27,7 +29,7 @@ def write(folder: Path, text: str) -> Path:
 
 def test_both_forms(tmp_path: Path) -> None:
     file = read_moves(
-        write(tmp_path, CLOCK + "[pins]\nstep_high = 1.01e-6\nstep_low = 0\n" + BY_TIME + BY_SPEED)
+        write(tmp_path, CLOCK + "[pins]\nstep_high = 1.01e-6\nstep_low = 1e-9\n" + BY_TIME + BY_SPEED)
     )
     assert file.clock_hz == 16_000_000
     assert file.pins == PinTiming(step_high=17, step_low=1, dir_setup=16, dir_hold=16)
@@ -101,7 +103,7 @@ def test_times_with_units(tmp_path: Path, text: str, seconds: Fraction | None) -
 
 
 def test_pins_with_units(tmp_path: Path) -> None:
-    pins = '[pins]\nstep_high = "2us"\nstep_low = "33clocks"\ndir_setup = "62.6ns"\ndir_hold = "0s"\n'
+    pins = '[pins]\nstep_high = "2us"\nstep_low = "33clocks"\ndir_setup = "62.6ns"\ndir_hold = "1ns"\n'
     file = read_moves(write(tmp_path, CLOCK + pins + BY_TIME))
     assert file.pins == PinTiming(step_high=32, step_low=33, dir_setup=2, dir_hold=1)
 
@@ -151,6 +153,33 @@ BAD = {
     "unknown key of the pins": (CLOCK + "[pins]\nstep = 1\n" + BY_TIME, "pins: unknown key 'step'"),
     "pins no table": (CLOCK + "pins = 1\n" + BY_TIME, "pins must be a table"),
     "pin too long": (CLOCK + "[pins]\ndir_hold = 0.005\n" + BY_TIME, "pins: dir_hold is 80000 clocks"),
+    "pin zero": (
+        CLOCK + "[pins]\nstep_low = 0\n" + BY_TIME,
+        "pins: step_low is 0 clocks, 1 to 65535 are possible",
+    ),
+    "pin zero with a unit": (CLOCK + '[pins]\ndir_hold = "0us"\n' + BY_TIME, "pins: dir_hold is 0 clocks"),
+    "channel above": (GOOD + "channel = 8\n", "move 1: channel must be 0 to 7"),
+    "channel negative": (GOOD + "channel = -1\n", "move 1: channel must be 0 to 7"),
+    "channel text": (GOOD + 'channel = "x"\n', "move 1: channel must be a whole number"),
+    "together alone": (
+        "together = true\n" + GOOD,
+        "together needs several channels: all moves are of channel 0",
+    ),
+    "together a number": ("together = 1\n" + GOOD, "together must be true or false, not 1"),
+    "pins of no channel": (
+        CLOCK + '[pins.1]\nstep_low = "1us"\n' + BY_TIME,
+        "pins.1: no move is of channel 1",
+    ),
+    "pins of channel 8": (CLOCK + '[pins.8]\nstep_low = "1us"\n' + BY_TIME, "pins: unknown key '8'"),
+    "pins of a channel, a number": (CLOCK + "[pins]\n0 = 3\n" + BY_TIME, "pins.0: it must be a table"),
+    "unknown key of a channel's pins": (
+        CLOCK + "[pins.0]\nlow = 3\n" + BY_TIME,
+        "pins.0: unknown key 'low'",
+    ),
+    "axes of a channel": (
+        GOOD + "channel = 1\n" + BY_SPEED + BY_TIME.replace("-50", "-50, 1") + "channel = 1\n",
+        "move 3: steps has 3 axes, but move 1 has 2",
+    ),
     "pin negative": (CLOCK + "[pins]\ndir_hold = -1e-6\n" + BY_TIME, "pins: dir_hold must not be negative"),
     "pin text": (
         CLOCK + '[pins]\nstep_low = "1 parsec"\n' + BY_TIME,
@@ -252,4 +281,24 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("path", sorted(paths.examples.glob("*.toml")), ids=lambda path: path.stem)
 def test_examples_are_good(path: Path) -> None:
-    assert read_moves(path).moves
+    assert all(file.moves for file in read_channels(path).files)
+
+
+def test_channels(tmp_path: Path) -> None:
+    """Each channel has its own moves, axes and pins; moves without a channel are those of channel 0."""
+    pins = '[pins]\nstep_high = "2us"\nstep_low = "3us"\n[pins.2]\nstep_low = "4us"\n'
+    of_2 = BY_SPEED.replace("[100, -50]", "[7]") + "channel = 2\n"
+    path = write(tmp_path, CLOCK + "together = true\n" + pins + of_2 + BY_TIME + of_2)
+    file = read_channels(path)
+    assert file.together and file.several and file.clock_hz == 16_000_000
+    assert [(own.channel, own.axes, own.numbers) for own in file.files] == [(0, 2, (2,)), (2, 1, (1, 3))]
+    assert [own.pins for own in file.files] == [PinTiming(32, 48, 16, 16), PinTiming(32, 64, 16, 16)]
+    with pytest.raises(MoveFileError, match="it moves channel 2; here is only channel 0"):
+        read_moves(path)
+    with pytest.raises(MoveFileError, match="move 3: TOO_FAST"):
+        fast = write(tmp_path, CLOCK + of_2 + BY_TIME + of_2.replace("2000", "1e8"))
+        plan_channels(read_channels(fast), Parameters())
+    shapes = '[[move]]\nmethod = "sigmoid"\nsteps = [9]\nspeed = 100\naccelerate_time = 0.1\n'
+    tables = write(tmp_path, CLOCK + shapes + shapes + "alpha = 3\nchannel = 1\n")
+    with pytest.raises(MoveFileError, match="move 2: it needs another table than move 1"):
+        plan_channels(read_channels(tables), Parameters())

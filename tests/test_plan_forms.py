@@ -15,7 +15,9 @@ from passo.plan import plan_file, table_of
 from passo.shape import check, sample, write_table
 from passo.toolchain import paths
 
-CLOCK = "clock_hz = 1_280_000\n[pins]\nstep_high = 0\nstep_low = 0\ndir_setup = 0\ndir_hold = 0\n"
+CLOCK = "clock_hz = 1_280_000\n[pins]\n" + "".join(
+    f'{key} = "1clocks"\n' for key in ("step_high", "step_low", "dir_setup", "dir_hold")
+)
 FORMS = {
     "in_time": 'steps = [9, -4]\nprofile = "jerk"\ntotal_time = 0.05\nramp_time = 0.01\n',
     "by_speed": 'steps = [9, -4]\nprofile = "jerk"\nspeed = 900\nacceleration = 5000\n',

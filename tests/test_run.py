@@ -2,6 +2,7 @@
 """The command `passo run` from file to files, and the engines behind it."""
 
 import csv
+import dataclasses
 import json
 import subprocess
 import sys
@@ -15,10 +16,11 @@ from passo import registers as r
 from passo.build import Parameters
 from passo.engine import EVENT, DifferenceError, PairEngine, first_difference, model_engine, rtl_engine
 from passo.link import Link, LinkError, RefusedError
-from passo.move_file import read_moves
-from passo.plan import plan_file
+from passo.move_file import read_channels, read_moves
+from passo.plan import plan_channels, plan_file
 from passo.registers import Verdict
-from passo.run import execute, open_engine, parameters_for
+from passo.run import execute, execute_channels, open_engine, parameters_for, parameters_of
+from passo.toolchain import paths
 
 CLOCK_HZ = 1_280_000  # 10000 ticks per second
 TWO_MOVES = f"""
@@ -132,6 +134,58 @@ def test_many_moves_are_streamed(tmp_path: Path) -> None:
     with open_engine("both", Parameters(), file.clock_hz) as engine:
         run = execute(file, plans, engine)
     assert run.problems() == []
+
+
+@pytest.mark.parametrize("together", [True, False])
+def test_four_motors(tmp_path: Path, together: bool) -> None:
+    """Channels on their own, on both engines: started on one clock, as seen at the pins, or one by one."""
+    text = (paths.examples / "four_motors.toml").read_text()
+    text = text.replace("together = true", f"together = {str(together).lower()}")
+    file = read_channels(write(tmp_path, text))
+    parameters = parameters_of(file)
+    assert (parameters.channels, parameters.axes) == (4, 1)
+    plans = plan_channels(file, parameters)
+    with open_engine("both", parameters, file.clock_hz) as engine:
+        runs = execute_channels(file, plans, engine)
+    assert runs[0].matched_edges > 2 * 17500
+    assert len({run.start for run in runs}) == (1 if together else 4)
+    for run, own in zip(runs, plans, strict=True):
+        # The same steps on the same clocks as with a core of its own.
+        alone = dataclasses.replace(run.file, channel=0)
+        with open_engine("model", parameters_for(1), file.clock_hz) as engine:
+            expected = execute(alone, own, engine)
+        assert run.problems() == []
+        for actual, wanted in zip(run.steps(0), expected.steps(0), strict=True):
+            assert np.array_equal(actual, wanted)
+
+
+def test_files_of_several_channels(tmp_path: Path) -> None:
+    """What the command writes: a column for the channel, a page for each channel, their waves."""
+    move = '[[move]]\nchannel = {}\nsteps = {}\nprofile = "cosine"\ntotal_time = 0.02\nramp_time = 0.01\n'
+    text = f"clock_hz = {CLOCK_HZ}\n" + move.format(1, [60, -20]) + move.format(3, [50])
+    out = tmp_path / "out"
+    done = passo("run", write(tmp_path, text), "--out", out, "--plot", "--waves")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "130 steps on 2 channels in " in done.stdout
+    pictures = {"motion.png", "motion_channel_1.png", "motion_channel_3.png"}
+    assert {path.name for path in out.glob("*.png")} == pictures
+    view = (out / "waves.gtkw").read_text()
+    assert "g_channel[3].u_channel.state" in view and "-channel 1: axis 1" in view
+    head, *rows = (out / "pulses.csv").read_text().splitlines()
+    assert head == "clock,channel,axis,direction"
+    places = [tuple(map(int, row.split(",")))[1:] for row in rows]
+    assert {place: places.count(place) for place in places} == {(1, 0, 1): 60, (1, 1, -1): 20, (3, 0, 1): 50}
+    summary = json.loads((out / "summary.json").read_text())
+    assert [(axis["channel"], axis["position"]) for axis in summary["axes"]] == [(1, 60), (1, -20), (3, 50)]
+    first, second = summary["channels"]
+    assert (first["channel"], first["start_clock"], second["channel"]) == (1, 0, 3)
+    assert second["start_clock"] > 0
+    assert summary["total_clocks"] == second["start_clock"] + second["total_clocks"]
+    # An underrun of one channel is told with its number; the other goes on.
+    short = move.format(1, [3]).replace("0.02", "0.0003").replace("0.01", "0.0001")
+    done = passo("run", write(tmp_path, text.replace("[60, -20]", "[60]") + 30 * short), "--out", out)
+    assert done.returncode == 1
+    assert "channel 1: the core stopped: RAMP_UNDERRUN" in done.stderr and "channel 3" not in done.stderr
 
 
 def test_a_host_that_is_too_slow(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

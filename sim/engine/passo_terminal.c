@@ -75,12 +75,8 @@ bool passo_terminal_owes(const struct passo_terminal *terminal)
 
 enum passo_terminal_status passo_terminal_poll(struct passo_terminal *terminal)
 {
-	const struct passo_snapshot *seen;
-
 	passo_console_poll(&terminal->console);
 	if (passo_console_is_idle(&terminal->console))
 		return PASSO_TERMINAL_IDLE;
-	seen = passo_snapshot(&terminal->console.passo);
-	return seen->rate == 0u || seen->state == PASSO_STATE_ARMED ? PASSO_TERMINAL_WAITS
-	                                                            : PASSO_TERMINAL_MOVES;
+	return passo_console_stands(&terminal->console) ? PASSO_TERMINAL_WAITS : PASSO_TERMINAL_MOVES;
 }

@@ -64,7 +64,10 @@ def _parser() -> argparse.ArgumentParser:
     )
     console.set_defaults(command=_console)
     console.add_argument("--engine", choices=ENGINES, default="model", help="the core (default model)")
-    console.add_argument("--axes", type=int, default=4, metavar="N", help="axes of the core (default 4)")
+    console.add_argument("--axes", type=int, default=4, metavar="N", help="axes of a channel (default 4)")
+    console.add_argument(
+        "--channels", type=int, default=1, metavar="N", help="channels of the core (default 1)"
+    )
     console.add_argument(
         "--clock", type=int, default=100_000_000, metavar="HZ", help="clock of the core (default 100000000)"
     )
@@ -117,7 +120,7 @@ def _shape(options: argparse.Namespace) -> int:
 def _console(options: argparse.Namespace) -> int:
     from passo.build import Parameters
     from passo.move_forms import WHOLE_MAX
-    from passo.moves import AXES_MAX
+    from passo.moves import AXES_MAX, CHANNELS_MAX
     from passo.run import open_engine
     from passo.terminal import Terminal, talk
 
@@ -126,7 +129,9 @@ def _console(options: argparse.Namespace) -> int:
 
     if not 1 <= options.axes <= AXES_MAX or not 1 <= options.clock <= WHOLE_MAX:
         raise BadInputError(f"--axes must be 1 to {AXES_MAX}, --clock 1 to {WHOLE_MAX}")
-    parameters = Parameters(axes=options.axes)
+    if not 1 <= options.channels <= CHANNELS_MAX:
+        raise BadInputError(f"--channels must be 1 to {CHANNELS_MAX}")
+    parameters = Parameters(channels=options.channels, axes=options.axes)
     with (
         open_engine(options.engine, parameters, options.clock) as engine,
         Terminal(engine, write) as terminal,

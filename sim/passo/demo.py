@@ -6,50 +6,50 @@ from concurrent.futures import ProcessPoolExecutor
 from typing import Any
 
 from passo.console import console, progress, table
-from passo.move_file import read_moves
-from passo.plan import plan_file
-from passo.plot import plot_motion, plot_overview
-from passo.report import summarize, write_json, write_pulses
-from passo.run import Run, execute, open_engine, parameters_for
+from passo.move_file import read_channels
+from passo.plan import plan_channels
+from passo.plot import plot_file, plot_overview
+from passo.report import problems, summarize_channels, write_json, write_pulses
+from passo.run import Run, execute_channels, open_engine, parameters_for, parameters_of
 from passo.toolchain import paths
 
 FOLDER = paths.build / "demo"
 EXAMPLES = (
     *("three_axes", "cosine", "sigmoid", "triangle", "there_and_back"),
-    *("exact_time", "turn", "sigmoid_alpha", "seven_phases", "straight", "user_shape"),
+    *("exact_time", "turn", "sigmoid_alpha", "seven_phases", "straight", "user_shape", "four_motors"),
 )
 
 
-def run_example(name: str) -> tuple[Run, dict[str, Any]]:
-    """Run an example on both engines and write its files; return the run and its summary."""
-    file = read_moves(paths.examples / f"{name}.toml")
-    parameters = parameters_for(file.axes)
+def run_example(name: str) -> tuple[list[Run], dict[str, Any]]:
+    """Run an example on both engines and write its files; return its runs and its summary."""
+    file = read_channels(paths.examples / f"{name}.toml")
+    parameters = parameters_of(file)
     with open_engine("both", parameters, file.clock_hz) as engine:
-        run = execute(file, plan_file(file, parameters), engine)
-    summary = summarize(run, "both")
+        runs = execute_channels(file, plan_channels(file, parameters), engine)
+    summary = summarize_channels(file, runs, "both")
     out = FOLDER / name
     out.mkdir(parents=True, exist_ok=True)
-    write_pulses(run, out / "pulses.csv")
+    write_pulses(runs, out / "pulses.csv")
     write_json(summary, out / "summary.json")
-    plot_motion(run, out / "motion.png")
-    return run, summary
+    plot_file(runs, out)
+    return runs, summary
 
 
 def demo() -> bool:
     """Run the demonstration, an example per processor; return whether RTL and model agreed everywhere."""
     open_engine("both", parameters_for(1), 1).close()  # builds what all of them need
-    runs, summaries = {}, {}
+    files, summaries = {}, {}
     with ProcessPoolExecutor() as pool:
         results = pool.map(run_example, EXAMPLES)
         with progress("examples", len(EXAMPLES)) as report:
-            for done, (run, summary) in enumerate(results, 1):
-                runs[run.file.name], summaries[run.file.name] = run, summary
+            for done, (runs, summary) in enumerate(results, 1):
+                files[summary["name"]], summaries[summary["name"]] = runs, summary
                 report(done)
-    for run in runs.values():
-        for problem in run.problems():
-            print(f"{run.file.path}: {problem}", file=sys.stderr)
+    for runs in files.values():
+        for problem in problems(runs):
+            print(f"{runs[0].file.path}: {problem}", file=sys.stderr)
     write_json({"ok": all(s["ok"] for s in summaries.values()), "runs": summaries}, FOLDER / "summary.json")
-    plot_overview(runs, FOLDER / "demo.png")
+    plot_overview({name: runs[0] for name, runs in files.items()}, FOLDER / "demo.png")
 
     shown = table(
         "RTL and C model, compared edge for edge",

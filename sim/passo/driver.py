@@ -59,20 +59,27 @@ class Driver:
         parameters: Parameters | None = None,
         channel: int = 0,
         tries: int = 0,
+        beside: "Driver | None" = None,
     ):
-        """Open the channel; `parameters`, unless None, must match those of the core."""
+        """Open the channel; `parameters`, unless None, must match those of the core.
+
+        `beside` is the driver of another channel of the core, which is open already.
+        """
         self.engine = engine
         self.clock_hz = clock_hz or engine.clock_hz
         self.lib = planner()
-        self.hardware = Hardware(engine, tries, self.clock_hz)
-        self.host = ffi().new("struct passo_host *")
+        self.hardware = beside.hardware if beside else Hardware(engine, tries, self.clock_hz)
+        self.host = beside.host if beside else ffi().new("struct passo_host *")
         self.c = ffi().new("struct passo *")
         self.options = ffi().new("struct passo_options *", {"clock_hz": self.clock_hz, "channel": channel})
         if parameters:
             self.options.channels, self.options.axes = parameters.channels, parameters.axes
             self.options.tick_log2 = parameters.tick_log2
         self._source: Source | None = None
-        self.open()
+        if beside:
+            self._check("open_channel", self.lib.passo_open_channel(self.c, self.host, self.options))
+        else:
+            self.open()
 
     def open(self) -> None:
         """Open the channel, or reopen it."""

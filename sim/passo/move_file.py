@@ -17,7 +17,16 @@ from passo.move_keys import (
     read_time,
     within,
 )
-from passo.moves import MOVES, PIN_CLOCKS_MAX, Move, MoveFile, MoveFileError, PinTiming
+from passo.moves import (
+    CHANNELS_MAX,
+    MOVES,
+    PIN_CLOCKS_MAX,
+    Channels,
+    Move,
+    MoveFile,
+    MoveFileError,
+    PinTiming,
+)
 from passo.shape import ShapeError, read_table
 from passo.values import BadValueError, Written, meant, shown
 
@@ -25,11 +34,20 @@ PIN_SECONDS = Fraction(1, 1_000_000)  # default of every pin time
 CLOCK_HZ_MIN = 1000  # below that it is in another unit
 G_CODE = re.compile(r"^\s*(%|\(.*\)|;.*|N?\d*\s*[GMT]\d+(\s.*)?)$", re.MULTILINE)
 
-FILE_KEYS = ("clock_hz", "pins", "move")
+FILE_KEYS = ("clock_hz", "together", "pins", "move")
 PIN_KEYS = tuple(field.name for field in fields(PinTiming))
+CHANNEL_KEYS = tuple(map(str, range(CHANNELS_MAX)))
 
 
 def read_moves(path: Path) -> MoveFile:
+    """Read and check a move file of channel 0 only; raises MoveFileError."""
+    channels = read_channels(path)
+    if channels.several:
+        raise MoveFileError(f"{path}: it moves channel {channels.files[-1].channel}; here is only channel 0")
+    return channels.files[0]
+
+
+def read_channels(path: Path) -> Channels:
     """Read and check a move file; raises MoveFileError."""
     try:
         text = path.read_text(encoding="utf-8-sig")
@@ -52,37 +70,67 @@ def read_moves(path: Path) -> MoveFile:
         raise MoveFileError(f"{path}: {error}") from None
 
 
-def _file(path: Path, data: Table) -> MoveFile:
+def _file(path: Path, data: Table) -> Channels:
     check_known(data, FILE_KEYS)
     clock_hz = read_positive(data, "clock_hz")
     if clock_hz < CLOCK_HZ_MIN:
         raise BadValueError(f"clock_hz = {clock_hz} is in Hz: write {clock_hz}_000_000 for {clock_hz} MHz")
+    together = data.get("together", False)
+    if not isinstance(together, bool):
+        raise BadValueError(f"together must be true or false, not {shown(together)}")
     pins = data.get("pins", {})
     if not isinstance(pins, dict):
         raise BadValueError("pins must be a table: [pins]")
-    timing = within("pins", lambda: _pins(pins, clock_hz))
+    timing = within("pins", lambda: _pins(pins, clock_hz, CHANNEL_KEYS))
     tables = data.get("move", [])
     if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
         raise BadValueError("move must be an array of tables: [[move]]")
     if not tables:
         raise BadValueError("there are no moves: [[move]] is missing")
-    moves: list[Move] = []
+    queues: dict[int, dict[int, Move]] = {}  # by channel, by number
     for number, table in enumerate(tables, 1):
         move = within(f"move {number}", lambda table=table: _move(table, path.parent, clock_hz))
-        if moves and len(move.steps) != len(moves[0].steps):
+        queue = queues.setdefault(move.channel, {})
+        first = next(iter(queue), number)
+        queue[number] = move
+        if len(move.steps) != len(queue[first].steps):
             raise BadValueError(
-                f"move {number}: steps has {len(move.steps)} axes, but move 1 has {len(moves[0].steps)}"
+                f"move {number}: steps has {len(move.steps)} axes, "
+                f"but move {first} has {len(queue[first].steps)}"
             )
-        moves.append(move)
-    return MoveFile(path, clock_hz, timing, tuple(moves))
+    if together and len(queues) == 1:
+        raise BadValueError(f"together needs several channels: all moves are of channel {min(queues)}")
+    own = {}
+    for key, table in ((key, pins[key]) for key in CHANNEL_KEYS if key in pins):
+        if int(key) not in queues:
+            raise BadValueError(f"pins.{key}: no move is of channel {key}")
+        own[int(key)] = within(f"pins.{key}", lambda table=table: _own_pins(pins, table, clock_hz))
+    return Channels(
+        path,
+        together,
+        tuple(
+            MoveFile(path, clock_hz, own.get(channel, timing), tuple(queue.values()), channel, tuple(queue))
+            for channel, queue in sorted(queues.items())
+        ),
+    )
 
 
-def _pins(table: Table, clock_hz: int) -> PinTiming:
+def _own_pins(common: Table, table: object, clock_hz: int) -> PinTiming:
+    """The pin timing of one channel: what it does not say is as for all."""
+    if not isinstance(table, dict):
+        raise BadValueError("it must be a table, such as [pins.1]")
     check_known(table, PIN_KEYS)
+    return _pins({key: common[key] for key in PIN_KEYS if key in common} | table, clock_hz)
+
+
+def _pins(table: Table, clock_hz: int, others: tuple[str, ...] = ()) -> PinTiming:
+    check_known(table, (*PIN_KEYS, *others))
     clocks = {}
     for key in PIN_KEYS:
         seconds = read_time(table, key, clock_hz) if key in table else PIN_SECONDS
-        clocks[key] = max(1, math.ceil(seconds * clock_hz))
+        if not seconds:
+            raise BadValueError(f"{key} is 0 clocks, 1 to {PIN_CLOCKS_MAX} are possible")
+        clocks[key] = math.ceil(seconds * clock_hz)
         if clocks[key] > PIN_CLOCKS_MAX:
             hint = '; a number is in seconds, a text may have a unit: "2us"' if seconds >= 1 else ""
             raise BadValueError(f"{key} is {clocks[key]} clocks, at most {PIN_CLOCKS_MAX} are possible{hint}")

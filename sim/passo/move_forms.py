@@ -43,6 +43,7 @@ FORMS = {
             Key("table", "table", None, file_only=True),
             Key("total_time", "time", "total_clocks", factor="clock_hz"),
             Key("ramp_time", "time", "ramp_clocks", factor="clock_hz"),
+            Key("channel", "channel", None, default=0),
         ),
         told_by="total_time",
     ),
@@ -58,6 +59,7 @@ FORMS = {
             Key("acceleration", "number", "acceleration", factor=UNIT_Q32, default=0),
             Key("deceleration", "number", "deceleration", factor=UNIT_Q32, default=0),
             Key("ramp_time", "time", "ramp_clocks", factor="clock_hz", default=0),
+            Key("channel", "channel", None, default=0),
         ),
         (
             Rule("excludes", "acceleration", "ramp_time"),
@@ -74,6 +76,7 @@ FORMS = {
             Key("profile", "profile", "profile"),
             Key("total_time", "time", "total_clocks", factor="clock_hz"),
             Key("speed", "number", "speed", factor=UNIT_Q32),
+            Key("channel", "channel", None, default=0),
         ),
     ),
     "at_speed": Form(
@@ -83,6 +86,7 @@ FORMS = {
             Key("profile", "profile", "profile"),
             Key("speed", "number", "speed", factor=UNIT_Q32),
             Key("ramp_time", "time", "ramp_clocks", factor="clock_hz"),
+            Key("channel", "channel", None, default=0),
         ),
     ),
     "axes": Form(
@@ -92,6 +96,7 @@ FORMS = {
             Key("start_speed", "number", "start_speed", factor=UNIT_Q32, default=0),
             Key("speed", "number", "speed", factor=UNIT_Q32),
             Key("ramp_time", "time", "ramp_clocks", factor="clock_hz"),
+            Key("channel", "channel", None, default=0),
         ),
     ),
     "turn": Form(
@@ -104,6 +109,7 @@ FORMS = {
             Key("rpm", "number", "rpm", factor=UNIT_Q32),
             Key("minimum_rpm", "number", "minimum_rpm", factor=UNIT_Q32, default=0),
             Key("acceleration", "number", "acceleration", factor=UNIT_Q32),
+            Key("channel", "channel", None, default=0),
         ),
     ),
     "sigmoid": Form(
@@ -116,6 +122,7 @@ FORMS = {
             Key("accelerate_time", "time", "accelerate_clocks", factor="clock_hz"),
             Key("decelerate_time", "time", "decelerate_clocks", factor="clock_hz", default="accelerate_time"),
             Key("alpha", "alpha", "alpha", factor=ALPHA_ONE, default=5),
+            Key("channel", "channel", None, default=0),
         ),
     ),
     "jerk": Form(
@@ -127,6 +134,7 @@ FORMS = {
             Key("stop_speed", "number", "stop_speed", factor=UNIT_Q32, default=0),
             Key("acceleration", "number", "acceleration", factor=UNIT_Q32),
             Key("jerk", "number", "jerk", factor=UNIT_Q32),
+            Key("channel", "channel", None, default=0),
         ),
     ),
     "straight": Form(
@@ -138,6 +146,7 @@ FORMS = {
             Key("speed", "per_axis", "speed", factor=UNIT_Q32),
             Key("acceleration", "per_axis", "acceleration", factor=UNIT_Q32),
             Key("jerk", "per_axis", "jerk", factor=UNIT_Q32, default=0),
+            Key("channel", "channel", None, default=0),
         ),
     ),
 }
@@ -152,6 +161,7 @@ class MoveInTime:
     total_time: Fraction
     ramp_time: Fraction
     table: Points = ()
+    channel: int = 0
 
     form: ClassVar[Form] = FORMS["in_time"]
 
@@ -169,6 +179,7 @@ class MoveBySpeed:
     deceleration: Fraction
     ramp_time: Fraction
     table: Points = ()
+    channel: int = 0
 
     form: ClassVar[Form] = FORMS["by_speed"]
 
@@ -181,6 +192,7 @@ class MoveBelowSpeed:
     profile: str
     total_time: Fraction
     speed: Fraction
+    channel: int = 0
 
     form: ClassVar[Form] = FORMS["below_speed"]
 
@@ -193,6 +205,7 @@ class MoveAtSpeed:
     profile: str
     speed: Fraction
     ramp_time: Fraction
+    channel: int = 0
 
     form: ClassVar[Form] = FORMS["at_speed"]
 
@@ -205,6 +218,7 @@ class MoveAxes:
     start_speed: Fraction
     speed: Fraction
     ramp_time: Fraction
+    channel: int = 0
 
     form: ClassVar[Form] = FORMS["axes"]
     profile: ClassVar[str] = "linear"
@@ -221,6 +235,7 @@ class MoveTurn:
     rpm: Fraction
     minimum_rpm: Fraction
     acceleration: Fraction
+    channel: int = 0
 
     form: ClassVar[Form] = FORMS["turn"]
     profile: ClassVar[str] = "linear"
@@ -237,6 +252,7 @@ class MoveSigmoid:
     accelerate_time: Fraction
     decelerate_time: Fraction
     alpha: Fraction
+    channel: int = 0
 
     form: ClassVar[Form] = FORMS["sigmoid"]
     profile: ClassVar[str] = "sigmoid"
@@ -252,6 +268,7 @@ class MoveJerk:
     stop_speed: Fraction
     acceleration: Fraction
     jerk: Fraction
+    channel: int = 0
 
     form: ClassVar[Form] = FORMS["jerk"]
     profile: ClassVar[str] = "jerk"
@@ -267,5 +284,6 @@ class MoveStraight:
     speed: tuple[Fraction, ...]
     acceleration: tuple[Fraction, ...]
     jerk: tuple[Fraction, ...]
+    channel: int = 0
 
     form: ClassVar[Form] = FORMS["straight"]

@@ -20,7 +20,7 @@ from passo.move_forms import (
     Key,
     Points,
 )
-from passo.moves import AXES_MAX
+from passo.moves import AXES_MAX, CHANNELS_MAX
 from passo.values import BadValueError, check_number, meant, parse_time, shown
 
 Table = dict[str, Any]
@@ -169,6 +169,7 @@ READERS: dict[str, Callable[[Table, Key, int], Any]] = {
     "whole": lambda table, key, _: read_integer(table, key.name, key.low, key.high),
     "axis": lambda table, key, _: read_integer(table, key.name, 0, AXES_MAX - 1),
     "axes": lambda table, key, _: read_axes(table, key.name),
+    "channel": lambda table, key, _: read_integer(table, key.name, 0, CHANNELS_MAX - 1),
     "distance": lambda table, key, _: read_distance(table, key.name),
     "per_axis": lambda table, key, _: read_per_axis(table, key.name),
 }

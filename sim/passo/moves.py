@@ -18,9 +18,10 @@ from passo.move_forms import (
     MoveJerk,
     MoveSigmoid,
 )
-from passo.registers import AXIS_STEP_TIMING_STEP_HIGH_BITS, CHANNEL_AXIS_COUNT
+from passo.registers import ADDRESS_CHANNEL_COUNT, AXIS_STEP_TIMING_STEP_HIGH_BITS, CHANNEL_AXIS_COUNT
 
 AXES_MAX = CHANNEL_AXIS_COUNT
+CHANNELS_MAX = ADDRESS_CHANNEL_COUNT
 PIN_CLOCKS_MAX = (1 << AXIS_STEP_TIMING_STEP_HIGH_BITS) - 1
 
 
@@ -89,12 +90,14 @@ def q32(value: Fraction) -> int:
 
 @dataclass(frozen=True)
 class MoveFile:
-    """A checked move file. All moves have the same number of axes."""
+    """The checked moves of a file, all of one channel and with the same number of axes."""
 
     path: Path
     clock_hz: int
     pins: PinTiming
     moves: tuple[Move, ...]
+    channel: int = 0
+    numbers: tuple[int, ...] = ()  # of the moves in the file; empty: from 1 on
 
     @property
     def name(self) -> str:
@@ -105,3 +108,31 @@ class MoveFile:
     def axes(self) -> int:
         """Number of axes of each move."""
         return len(self.moves[0].steps)
+
+    def number(self, index: int) -> int:
+        """Number of a move in the file, from 1 on."""
+        return self.numbers[index] if self.numbers else index + 1
+
+
+@dataclass(frozen=True)
+class Channels:
+    """A checked move file: the moves of each of its channels, in ascending order."""
+
+    path: Path
+    together: bool  # they start on one clock
+    files: tuple[MoveFile, ...]
+
+    @property
+    def name(self) -> str:
+        """Name of the results."""
+        return self.path.stem
+
+    @property
+    def clock_hz(self) -> int:
+        """Clock of the core."""
+        return self.files[0].clock_hz
+
+    @property
+    def several(self) -> bool:
+        """A channel other than 0 is in use."""
+        return self.files[-1].channel > 0

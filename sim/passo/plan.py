@@ -3,12 +3,13 @@
 
 from dataclasses import dataclass
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 from passo import move_forms
 from passo.build import Parameters
 from passo.move_forms import ALPHA_MAX, ALPHA_MIN, ALPHA_ONE, USER, USER_BANK, WHOLE_MAX, Key, Points
-from passo.moves import Move, MoveFile, MoveFileError
+from passo.moves import Channels, Move, MoveFile, MoveFileError
 from passo.native import ffi, planner
 from passo.shape import POINTS
 
@@ -115,15 +116,32 @@ def _number(key: Key, value: Fraction, clock_hz: int) -> int:
 
 def plan_file(file: MoveFile, parameters: Parameters) -> list[Plan]:
     """Plan all moves and chain them into one motion; raises MoveFileError."""
+    plans = _plan_moves(file, parameters)
+    _check_tables([(file.number(i), plan) for i, plan in enumerate(plans)], file.path)
+    return plans
+
+
+def plan_channels(channels: Channels, parameters: Parameters) -> list[list[Plan]]:
+    """Plan the motion of each channel; raises MoveFileError."""
+    plans = [_plan_moves(file, parameters) for file in channels.files]
+    numbered = [
+        (file.number(i), plan)
+        for file, own in zip(channels.files, plans, strict=True)
+        for i, plan in enumerate(own)
+    ]
+    _check_tables(sorted(numbered, key=lambda pair: pair[0]), channels.path)
+    return plans
+
+
+def _plan_moves(file: MoveFile, parameters: Parameters) -> list[Plan]:
     plans = []
-    for number, move in enumerate(file.moves, 1):
+    for index, move in enumerate(file.moves):
         try:
             plan = plan_move(move, file.clock_hz, parameters)
             _check_pins(plan, file)
         except PlanError as error:
-            raise MoveFileError(f"{file.path}: move {number}: {error}") from None
+            raise MoveFileError(f"{file.path}: move {file.number(index)}: {error}") from None
         plans.append(plan)
-    _check_tables(plans, file)
     for plan in plans[:-1]:
         plan.line.last = False
         plan.ramps[-1].last = False
@@ -135,13 +153,13 @@ def table_of(plans: list[Plan]) -> Points:
     return next((plan.table for plan in plans if plan.table), ())
 
 
-def _check_tables(plans: list[Plan], file: MoveFile) -> None:
-    """Raises MoveFileError if two moves need different tables in the same bank."""
-    users = [(n, plan) for n, plan in enumerate(plans, 1) if plan.table or plan.c.sigmoid_alpha]
+def _check_tables(plans: list[tuple[int, Plan]], path: Path) -> None:
+    """Raises MoveFileError if two moves, given with their numbers, need different tables in the same bank."""
+    users = [(n, plan) for n, plan in plans if plan.table or plan.c.sigmoid_alpha]
     for number, plan in users[1:]:
         if plan.table != users[0][1].table:
             raise MoveFileError(
-                f"{file.path}: move {number}: it needs another table than move {users[0][0]}, "
+                f"{path}: move {number}: it needs another table than move {users[0][0]}, "
                 "and tables cannot be loaded during a motion"
             )
 

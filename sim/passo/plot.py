@@ -23,7 +23,7 @@ from passo.plot_panels import (
 )
 from passo.run import Run
 
-__all__ = ["COLORS", "STYLE", "plot_motion", "plot_overview"]
+__all__ = ["COLORS", "STYLE", "plot_file", "plot_motion", "plot_overview"]
 
 STYLE = {
     "font.family": "DejaVu Sans",
@@ -47,7 +47,32 @@ STYLE = {
 }
 
 
-def plot_motion(run: Run, path: Path) -> None:
+def plot_file(runs: list[Run], folder: Path) -> None:
+    """Write motion.png; of several channels: their speeds, and a page for each, motion_channel_N.png."""
+    if not runs[-1].file.channel:
+        plot_motion(runs[0], folder / "motion.png")
+        return
+    for run in runs:
+        channel = run.file.channel
+        plot_motion(run, folder / f"motion_channel_{channel}.png", f"{run.file.name}, channel {channel}")
+    with plt.rc_context(STYLE):
+        figure, panels = plt.subplots(
+            len(runs), 1, sharex=True, squeeze=False, figsize=(11, 1.2 + 2.1 * len(runs))
+        )
+        figure.suptitle(
+            f"{runs[0].file.name}: ideal speeds (wide) and the steps at the pins (thin)",
+            x=0.01, ha="left", fontsize=13, fontweight="bold",
+        )  # fmt: skip
+        for ax, run in zip(panels.flat, runs, strict=True):
+            plot_speed(ax, run, run.late / run.file.clock_hz)
+            ax.set_title(f"Channel {run.file.channel}")
+            if run is not runs[-1]:
+                ax.set_xlabel("")
+        figure.savefig(folder / "motion.png", dpi=110)
+        plt.close(figure)
+
+
+def plot_motion(run: Run, path: Path, title: str = "") -> None:
     """Write a page of plots of one motion."""
     with plt.rc_context(STYLE):
         figure, axes = plt.subplot_mosaic(
@@ -58,7 +83,8 @@ def plot_motion(run: Run, path: Path) -> None:
         seconds = run.total_clocks / run.file.clock_hz
         pulses = sum(len(run.steps(axis)[0]) for axis in range(run.file.axes))
         figure.suptitle(
-            f"{run.file.name}: {pulses:,} steps in {seconds:.6g} s at {run.file.clock_hz / 1e6:g} MHz",
+            f"{title or run.file.name}: {pulses:,} steps in {seconds:.6g} s "
+            f"at {run.file.clock_hz / 1e6:g} MHz",
             x=0.01, ha="left", fontsize=13, fontweight="bold",
         )  # fmt: skip
         plot_speed(axes["speed"], run)

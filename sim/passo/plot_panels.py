@@ -61,17 +61,17 @@ def measured_speeds(run: Run, axis: int) -> tuple[np.ndarray, np.ndarray, np.nda
     return middle, speeds, clocks[~(padded[1:] | padded[:-1])[: len(clocks)]]
 
 
-def plot_speed(ax: Axes, run: Run) -> None:
-    """Ideal speed, and the inverse of the time between steps."""
+def plot_speed(ax: Axes, run: Run, late: float = 0) -> None:
+    """Ideal speed, and the inverse of the time between steps; the motion starts at `late` seconds."""
     hz, units = run.file.clock_hz, units_of(run)
     times, speeds, _ = speeds_and_positions(run)
     for axis in range(run.file.axes):
         color, scale = COLORS[axis], hz * units.speed_scale * units.per_step[axis]
-        ax.plot(times / hz, speeds[axis] * scale, color=color, **WIDE)
+        ax.plot(times / hz + late, speeds[axis] * scale, color=color, **WIDE)
         clocks, measured, single = measured_speeds(run, axis)
-        ax.plot(clocks / hz, measured * scale, color=color, linewidth=0.9, label=f"axis {axis}")
+        ax.plot(clocks / hz + late, measured * scale, color=color, linewidth=0.9, label=f"axis {axis}")
         heights = np.interp(single, times, speeds[axis]) * scale
-        ax.vlines(single / hz, 0, heights, color=color, linewidth=0.9)
+        ax.vlines(single / hz + late, 0, heights, color=color, linewidth=0.9)
     ax.set_xlabel("s")
     ax.set_ylabel(units.speed)
     ax.margins(x=0.01)

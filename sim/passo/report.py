@@ -8,25 +8,75 @@ from typing import Any
 import numpy as np
 
 from passo.curve import step_errors
+from passo.moves import Channels
 from passo.plan import Q48
 from passo.run import Run
 
 
-def write_pulses(run: Run, path: Path) -> None:
-    """Write a row per step, sorted by clock and axis; clocks count from the start of the motion."""
-    per_axis = [run.steps(axis) for axis in range(run.file.axes)]
-    clocks = np.concatenate([clocks for clocks, _ in per_axis])
-    directions = np.concatenate([directions for _, directions in per_axis])
-    axes = np.repeat(np.arange(run.file.axes), [len(clocks) for clocks, _ in per_axis])
-    order = np.lexsort((axes, clocks))
-    rows = zip(clocks[order].tolist(), axes[order].tolist(), directions[order].tolist(), strict=True)
+def write_pulses(runs: list[Run], path: Path) -> None:
+    """Write a row per step, sorted by clock, channel and axis; clocks count from the first start.
+
+    A file of channel 0 alone has no column for the channel.
+    """
+    parts = []
+    for run in runs:
+        for axis in range(run.file.axes):
+            clocks, directions = run.steps(axis)
+            place = (np.full(len(clocks), n) for n in (run.file.channel, axis))
+            parts.append(np.stack([clocks + run.late, *place, directions.astype(np.int64)]))
+    rows = np.concatenate(parts, axis=1)
+    rows = rows[:, np.lexsort((rows[2], rows[1], rows[0]))]
+    columns = ["clock", "channel", "axis", "direction"]
+    if not runs[-1].file.channel:
+        rows, columns = np.delete(rows, 1, axis=0), ["clock", "axis", "direction"]
     with path.open("w") as file:
-        file.write("clock,axis,direction\n")
-        file.writelines(f"{clock},{axis},{direction}\n" for clock, axis, direction in rows)
+        file.writelines(",".join(map(str, row)) + "\n" for row in [columns, *rows.T.tolist()])
+
+
+def problems(runs: list[Run]) -> list[str]:
+    """Deviations from the plans, one sentence each."""
+    several = runs[-1].file.channel > 0
+    return [
+        f"channel {run.file.channel}: {problem}" if several else problem
+        for run in runs
+        for problem in run.problems()
+    ]
+
+
+def total_clocks(runs: list[Run]) -> int:
+    """From the first start to the last end."""
+    return max(run.late + run.total_clocks for run in runs)
+
+
+def summarize_channels(channels: Channels, runs: list[Run], engine: str) -> dict[str, Any]:
+    """The contents of summary.json; of a file of channel 0 alone: `summarize`."""
+    summaries = [summarize(run, engine) for run in runs]
+    if not channels.several:
+        return summaries[0]
+    found = problems(runs)
+    clocks = total_clocks(runs)
+    places = [{"channel": file.channel} for file in channels.files]
+    own = ("total_clocks", "drained")
+    parts = list(zip(places, runs, summaries, strict=True))
+    return {
+        **summaries[0],
+        "ok": not found,
+        "problems": found,
+        "total_clocks": clocks,
+        "total_seconds": clocks / channels.clock_hz,
+        "drained": sum(run.state.drained for run in runs),
+        "together": channels.together,
+        "channels": [
+            {**place, "start_clock": run.late, **{name: summary[name] for name in own}}
+            for place, run, summary in parts
+        ],
+        "axes": [{**place, **axis} for place, _, summary in parts for axis in summary["axes"]],
+        "moves": [{**place, **move} for place, _, summary in parts for move in summary["moves"]],
+    }
 
 
 def summarize(run: Run, engine: str) -> dict[str, Any]:
-    """The contents of summary.json."""
+    """The contents of summary.json for one channel."""
     return {
         "name": run.file.name,
         "engine": engine,

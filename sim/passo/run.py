@@ -13,7 +13,7 @@ from passo.engine import Engine, PairEngine, model_engine, rtl_engine
 from passo.failure import Failure
 from passo.host import ChannelState
 from passo.move_forms import USER_BANK
-from passo.moves import MoveFile
+from passo.moves import Channels, MoveFile
 from passo.plan import Plan, table_of
 from passo.registers import Cause, State
 
@@ -21,7 +21,7 @@ CHUNK = 1_000_000  # clocks between two reports of progress
 SLEWS_PER_SECOND = 20  # of hold and stop, from full speed
 AXES_OF_CORES = (4, 8)
 
-# The pins of a single channel that change during a motion.
+# The pins of one channel that change during a motion.
 PINS = np.dtype([("clock", "u8"), ("step", "u1"), ("dir", "u1"), ("running", "?")])
 
 
@@ -41,6 +41,7 @@ class Run:
     matched_edges: int | None  # edges that agree; None: only one engine
     clocks: int  # simulated in total
     seconds: float  # of real time
+    since: int | None = None  # clock from which the channels of the file count; None: the start
     start: int = field(init=False)  # clock at which the motion started
     total_clocks: int = field(init=False)  # length of the motion
 
@@ -50,6 +51,11 @@ class Run:
         falls = self.pins["clock"][running[:-1] & ~running[1:]]
         self.start = int(rises[0]) if len(rises) else 0
         self.total_clocks = int(falls.sum()) - int(rises.sum()) if len(rises) == len(falls) else 0
+
+    @property
+    def late(self) -> int:
+        """Clocks from the start of the first channel to that of this one."""
+        return 0 if self.since is None else self.start - self.since
 
     def steps(self, axis: int) -> tuple[np.ndarray, np.ndarray]:
         """Clocks since the start of the motion and directions (1, -1) of all steps of an axis."""
@@ -83,9 +89,16 @@ class Run:
         return found
 
 
-def parameters_for(axes: int) -> Parameters:
-    """Parameters of the core used for a number of axes."""
+def parameters_for(axes: int, channels: int = 1) -> Parameters:
+    """Parameters of the core used for a number of axes and channels."""
+    if channels > 1:
+        return Parameters(channels=channels, axes=axes)
     return Parameters(axes=next(n for n in AXES_OF_CORES if n >= axes))
+
+
+def parameters_of(channels: Channels) -> Parameters:
+    """Parameters of the core used for a move file."""
+    return parameters_for(max(file.axes for file in channels.files), channels.files[-1].channel + 1)
 
 
 def open_engine(name: str, parameters: Parameters, clock_hz: int, waves: bool = False) -> Engine | PairEngine:
@@ -96,12 +109,64 @@ def open_engine(name: str, parameters: Parameters, clock_hz: int, waves: bool = 
     return rtl if name == "rtl" else PairEngine(rtl, model_engine(parameters, clock_hz))
 
 
-def patience(driver: Driver, source: Source) -> int:
-    """Clocks until the queues should be refilled: half of their contents."""
-    parameters = driver.engine.parameters
-    waiting = (1 << parameters.ramp_queue_log2) - driver.c.snapshot.ramp_room
-    ticks = sum(source.ticks[-waiting:]) if waiting else 0
-    return max(1, ticks // 2) << parameters.tick_log2
+@dataclass
+class _Channel:
+    """A channel while it moves."""
+
+    file: MoveFile
+    plans: list[Plan]
+    driver: Driver
+    source: Source = field(init=False)
+    pins: list[np.ndarray] = field(default_factory=list)
+    moves: bool = True
+
+    def __post_init__(self) -> None:
+        ramps = [ramp for plan in self.plans for ramp in plan.ramps]
+        self.source = Source([plan.line for plan in self.plans], ramps)
+
+    @property
+    def planned(self) -> int:
+        """Length of its motion in clocks."""
+        return sum(plan.clocks for plan in self.plans)
+
+    def configure(self) -> None:
+        """Set pins and speeds of holds, stops and the drain."""
+        for axis in range(self.file.axes):
+            self.driver.configure_axis(axis, self.file.pins)
+        slowest = min(plan.c.velocity_peak for plan in self.plans)
+        slew = self.driver.clock_hz // SLEWS_PER_SECOND
+        self.driver.call("configure_motion", slew, slew, max(1, slowest >> 16 >> 4))
+
+    def collect(self, events: np.ndarray) -> None:
+        """Store its part of the pin events."""
+        pins = self.driver.engine.parameters.axes
+        compact = np.empty(len(events), PINS)
+        compact["clock"] = events["clock"]
+        for name in ("step", "dir"):
+            compact[name] = events[name] >> np.uint64(self.file.channel * pins) & np.uint64((1 << pins) - 1)
+        compact["running"] = events["running"] >> np.uint32(self.file.channel) & np.uint32(1)
+        self.pins.append(compact)
+
+    def poll(self) -> None:
+        """Poll the driver while it has something to do."""
+        if not self.moves:
+            return
+        try:
+            self.driver.poll()
+            while self.driver.idle_microseconds == 0 and self.driver.is_moving:
+                self.driver.poll()
+            self.moves = self.driver.is_moving
+        except DriverError:
+            if not self.driver.c.fault:
+                raise
+            self.moves = False  # the state shows the cause
+
+    def patience(self) -> int:
+        """Clocks until the queues should be refilled: half of their contents."""
+        parameters = self.driver.engine.parameters
+        waiting = (1 << parameters.ramp_queue_log2) - self.driver.c.snapshot.ramp_room
+        ticks = sum(self.source.ticks[-waiting:]) if waiting else 0
+        return max(1, ticks // 2) << parameters.tick_log2
 
 
 def execute(
@@ -110,17 +175,34 @@ def execute(
     engine: Engine | PairEngine,
     progress: Callable[[int], None] = lambda clocks: None,
 ) -> Run:
-    """Execute the motion; `progress` is called with the clocks done so far. Raises DriverError, RunError."""
-    driver = Driver(engine, file.clock_hz, engine.parameters)
-    pins: list[np.ndarray] = []
+    """Execute the motion of one channel; `progress` is called with the clocks done so far.
+
+    Raises DriverError, RunError.
+    """
+    (run,) = execute_channels(Channels(file.path, False, (file,)), [plans], engine, progress)
+    run.since = None
+    return run
+
+
+def execute_channels(
+    channels: Channels,
+    plans: list[list[Plan]],
+    engine: Engine | PairEngine,
+    progress: Callable[[int], None] = lambda clocks: None,
+) -> list[Run]:
+    """Execute the motions of all channels, as `execute` does; a run for each of them."""
+    used: list[_Channel] = []
+    for file, own in zip(channels.files, plans, strict=True):
+        driver = Driver(
+            engine, file.clock_hz, engine.parameters, file.channel, beside=used[0].driver if used else None
+        )
+        used.append(_Channel(file, own, driver))
 
     def collect() -> bool:
         """Store the pin events; return whether the core reports a stop."""
         events = engine.drain()
-        compact = np.empty(len(events), PINS)
-        for name in PINS.names:
-            compact[name] = events[name]
-        pins.append(compact)
+        for channel in used:
+            channel.collect(events)
         return bool(len(events) and events["irq"][-1])
 
     def advance(clocks: int) -> None:
@@ -130,57 +212,68 @@ def execute(
             if collect():
                 return
 
-    def poll() -> bool:
-        """Poll the driver while it has something to do; return whether there was no fault."""
-        try:
-            driver.poll()
-            while driver.idle_microseconds == 0 and driver.is_moving:
-                driver.poll()
-        except DriverError:
-            if not driver.c.fault:
-                raise
-            return False  # the state shows the cause
-        return True
-
-    for axis in range(file.axes):
-        driver.configure_axis(axis, file.pins)
-    if table := table_of(plans):
-        driver.call("load_table", USER_BANK, table)
-    slowest = min(plan.c.velocity_peak for plan in plans)
-    slew = driver.clock_hz // SLEWS_PER_SECOND
-    driver.call("configure_motion", slew, slew, max(1, slowest >> 16 >> 4))
-
     tick = 1 << engine.parameters.tick_log2
-    planned = sum(plan.clocks for plan in plans)
-    source = Source([plan.line for plan in plans], [ramp for plan in plans for ramp in plan.ramps])
-    driver.stream(source)
+
+    def go_on() -> None:
+        """Run until a channel that moves has something to do."""
+        times = []
+        for channel in used:
+            left = start + channel.planned - engine.clock
+            if channel.moves and left < -channels.clock_hz:
+                raise RunError(f"the motion did not end in time: {channel.driver.state.name}")
+            left = max(left, 16 * tick)
+            if channel.moves:
+                times.append(min(left, channel.patience()) if channel.driver.is_streaming else left)
+        advance(min(times))
+
+    for channel in used:
+        channel.configure()
+    if table := table_of([plan for own in plans for plan in own]):
+        used[0].driver.call("load_table", USER_BANK, table)
+    if channels.together:
+        for channel in used:
+            channel.driver.call("wait_for_sync", True)
+    for channel in used:
+        channel.driver.stream(channel.source)
     start, began = engine.clock, time.monotonic()
-    while poll() and driver.is_moving:
-        left = start + planned - engine.clock
-        if left < -file.clock_hz:
-            raise RunError(f"the motion did not end in time: {driver.state.name}")
-        left = max(left, 16 * tick)
-        advance(min(left, patience(driver, source)) if driver.is_streaming else left)
+    for channel in used:
+        channel.poll()
+    if channels.together:
+        while any(channel.driver.snapshot().state != State.ARMED for channel in used):
+            if engine.clock - start > channels.clock_hz:
+                raise RunError("the motions were not prepared in time")
+            advance(tick)
+        start = engine.clock
+        engine.sync(True)
+    while any(channel.moves for channel in used):
+        go_on()
+        for channel in used:
+            channel.poll()
     # The last pulse and a change of DIR may still be in progress.
-    advance(8 * sum((file.pins.step_high, file.pins.step_low, file.pins.dir_setup, file.pins.dir_hold)))
-    positions = driver.positions()[: file.axes]
-    snapshot = driver.snapshot()
-    state = ChannelState(
-        state=State(snapshot.state),
-        cause=Cause(snapshot.cause),
-        quiet=snapshot.quiet,
-        stopping=snapshot.stopping,
-        overrun=snapshot.overrun,
-        drained=snapshot.drained,
-    )
+    pins = [file.pins for file in channels.files]
+    advance(8 * max(sum((pin.step_high, pin.step_low, pin.dir_setup, pin.dir_hold)) for pin in pins))
+    ends = [(channel.driver.positions(), channel.driver.snapshot()) for channel in used]
     collect()
-    return Run(
-        file=file,
-        plans=plans,
-        pins=np.concatenate(pins),
-        state=state,
-        positions=positions,
-        matched_edges=engine.matched_edges if isinstance(engine, PairEngine) else None,
-        clocks=engine.clock - start,
-        seconds=time.monotonic() - began,
-    )
+    runs = [
+        Run(
+            file=channel.file,
+            plans=channel.plans,
+            pins=np.concatenate(channel.pins),
+            state=ChannelState(
+                state=State(snapshot.state),
+                cause=Cause(snapshot.cause),
+                quiet=snapshot.quiet,
+                stopping=snapshot.stopping,
+                overrun=snapshot.overrun,
+                drained=snapshot.drained,
+            ),
+            positions=positions[: channel.file.axes],
+            matched_edges=engine.matched_edges if isinstance(engine, PairEngine) else None,
+            clocks=engine.clock - start,
+            seconds=time.monotonic() - began,
+        )
+        for channel, (positions, snapshot) in zip(used, ends, strict=True)
+    ]
+    for run in runs:
+        run.since = min(other.start for other in runs)
+    return runs

@@ -7,11 +7,11 @@ from pathlib import Path
 from passo.console import progress
 from passo.engine import DifferenceError
 from passo.failure import BadInputError
-from passo.move_file import read_moves
-from passo.moves import MoveFile
-from passo.plan import Plan, plan_file
-from passo.report import summarize, write_json, write_pulses
-from passo.run import Run, execute, open_engine, parameters_for
+from passo.move_file import read_channels
+from passo.moves import Channels
+from passo.plan import Plan, plan_channels
+from passo.report import problems, summarize_channels, total_clocks, write_json, write_pulses
+from passo.run import Run, execute_channels, open_engine, parameters_of
 from passo.toolchain import paths
 from passo.waves import FILES, Window, read_window, record, write_view
 
@@ -21,9 +21,9 @@ PULSES, SUMMARY, PICTURE = "pulses.csv", "summary.json", "motion.png"
 def run_file(moves: Path, engine: str, out: Path | None, waves: str | None, plot: bool) -> bool:
     """Run the moves, write the results and say where they are; return whether the motion was exact."""
     window = _read_window(waves, engine)
-    file = read_moves(moves)
-    parameters = parameters_for(file.axes)
-    plans = plan_file(file, parameters)
+    file = read_channels(moves)
+    parameters = parameters_of(file)
+    plans = plan_channels(file, parameters)
     if window:
         _check_window(window, file, plans)
     out = out or paths.build / "run" / file.name
@@ -32,21 +32,26 @@ def run_file(moves: Path, engine: str, out: Path | None, waves: str | None, plot
         if window:
             record(core, window, out)
         try:
-            with progress(file.name, sum(plan.clocks for plan in plans)) as report:
-                run = execute(file, plans, core, report)
+            with progress(file.name, _longest(plans)) as report:
+                runs = execute_channels(file, plans, core, report)
         except DifferenceError as error:
             write_json({"name": file.name, "ok": False, "difference": vars(error)}, out / SUMMARY)
             raise
         if window:
             core.close_waves()
-            write_view(out, parameters, file.axes, file.clock_hz, run.start)
-    write_pulses(run, out / PULSES)
-    write_json(summarize(run, engine), out / SUMMARY)
+            write_view(out, parameters, file, runs[0].start - runs[0].late)
+    write_pulses(runs, out / PULSES)
+    write_json(summarize_channels(file, runs, engine), out / SUMMARY)
     if plot:
-        from passo.plot import plot_motion
+        from passo.plot import plot_file
 
-        plot_motion(run, out / PICTURE)
-    return _conclude(run, out, window, plot)
+        plot_file(runs, out)
+    return _conclude(file, runs, out, window, plot)
+
+
+def _longest(plans: list[list[Plan]]) -> int:
+    """Clocks of the longest motion."""
+    return max(sum(plan.clocks for plan in own) for own in plans)
 
 
 def _read_window(waves: str | None, engine: str) -> Window | None:
@@ -60,8 +65,8 @@ def _read_window(waves: str | None, engine: str) -> Window | None:
         raise BadInputError(f"--waves: {error}") from None
 
 
-def _check_window(window: Window, file: MoveFile, plans: list[Plan]) -> None:
-    clocks = sum(plan.clocks for plan in plans)
+def _check_window(window: Window, file: Channels, plans: list[list[Plan]]) -> None:
+    clocks = _longest(plans)
     if window.clocks(file.clock_hz)[0] >= clocks:
         raise BadInputError(f"--waves: the motion takes only {clocks / file.clock_hz:.6g} s")
 
@@ -70,26 +75,29 @@ def _clear(out: Path) -> None:
     """Make the folder and delete the results of an earlier run."""
     try:
         out.mkdir(parents=True, exist_ok=True)
-        for result in (PULSES, SUMMARY, PICTURE, *FILES):
+        pictures = [path.name for path in out.glob("motion_channel_[0-7].png")]
+        for result in (PULSES, SUMMARY, PICTURE, *pictures, *FILES):
             (out / result).unlink(missing_ok=True)
     except OSError as error:
         raise BadInputError(f"{out}: {error.strerror}") from None
 
 
-def _conclude(run: Run, out: Path, window: Window | None, plot: bool) -> bool:
+def _conclude(file: Channels, runs: list[Run], out: Path, window: Window | None, plot: bool) -> bool:
     """Print the result and which files to open."""
-    problems = run.problems()
-    for problem in problems:
-        print(f"{run.file.path}: {problem}", file=sys.stderr)
-    if not problems:
-        steps = sum(run.commanded(axis)[1] for axis in range(run.file.axes))
-        edges = "" if run.matched_edges is None else f", {run.matched_edges} edges agree"
-        seconds = run.total_clocks / run.file.clock_hz
-        print(f"{run.file.name}: {steps} steps in {run.total_clocks} clocks ({seconds:.6g} s){edges}")
+    found = problems(runs)
+    for problem in found:
+        print(f"{file.path}: {problem}", file=sys.stderr)
+    if not found:
+        steps = sum(run.commanded(axis)[1] for run in runs for axis in range(run.file.axes))
+        where = f" on {len(runs)} channels" if len(runs) > 1 else ""
+        edges = "" if runs[0].matched_edges is None else f", {runs[0].matched_edges} edges agree"
+        clocks = total_clocks(runs)
+        seconds = clocks / file.clock_hz
+        print(f"{file.name}: {steps} steps{where} in {clocks} clocks ({seconds:.6g} s){edges}")
     print(f"results: {out / PULSES}, {out / SUMMARY}")
     if window:
         fst, view = (out / name for name in FILES[:2])
         print(f"waves, {fst.stat().st_size / 1e6:.1f} MB; open: gtkwave {view}   or: surfer {fst}")
     if plot:
         print(f"open: {out / PICTURE}")
-    return not problems
+    return not found

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from passo.build import Parameters
 from passo.engine import Engine, PairEngine
+from passo.moves import Channels
 from passo.registers import CHANNEL_STATE_CAUSE_BITS, Cause, DescribedEnum, State, Verdict
 from passo.values import BadValueError, parse_time
 
@@ -51,8 +52,9 @@ def record(engine: Engine | PairEngine, window: Window, folder: Path) -> None:
     engine.open_waves(folder / FILES[0], *window.clocks(engine.clock_hz))
 
 
-def write_view(folder: Path, parameters: Parameters, axes: int, clock_hz: int, start: int) -> None:
+def write_view(folder: Path, parameters: Parameters, file: Channels, start: int) -> None:
     """Write the save file for GTKWave and its names; `start` is the clock at which the motion started."""
+    clock_hz = file.clock_hz
     for name, values in NAMED.items():
         lines = (f"{value:x} {value.name}" for value in values)
         (folder / f"waves_{name}.txt").write_text("\n".join([*lines, ""]))
@@ -61,13 +63,12 @@ def write_view(folder: Path, parameters: Parameters, axes: int, clock_hz: int, s
     files = zip(("dumpfile", "savefile"), FILES, strict=False)
     head = [f'[{kind}] "{folder.resolve() / name}"' for kind, name in files]
     head += [f"[timestart] {max(0, edge_ps - MARGIN_PS)}", f"*{zoom} {edge_ps}" + " -1" * 26]
-    (folder / FILES[1]).write_text("\n".join([*head, *_traces(folder, parameters, axes), ""]))
+    (folder / FILES[1]).write_text("\n".join([*head, *_traces(folder, parameters, file), ""]))
 
 
-def _traces(folder: Path, parameters: Parameters, axes: int) -> Iterator[str]:
-    channel = f"{CORE}.g_channel[0].u_channel"
+def _traces(folder: Path, parameters: Parameters, file: Channels) -> Iterator[str]:
     lines, ramps = parameters.line_queue_log2, parameters.ramp_queue_log2
-    pins = f"[{parameters.channels * parameters.axes - 1}:0]"
+    running, pins = parameters.channels, parameters.channels * parameters.axes
 
     def names(signal: str, name: str) -> list[str]:
         return [f"@{NAMES}", f"^1 {folder.resolve() / f'waves_{name}.txt'}", signal]
@@ -77,16 +78,23 @@ def _traces(folder: Path, parameters: Parameters, axes: int) -> Iterator[str]:
 
     top = [f"TOP.{name}" for name in ("clk", "spi_cs_n", "spi_sclk", "spi_mosi", "spi_miso")]
     yield from group("host", f"@{BITS}", *top, *names(f"{CORE}.u_link.verdict[3:0]", "verdict"))
-    cause = f"{channel}.cause[{CHANNEL_STATE_CAUSE_BITS - 1}:0]"
-    yield from group(
-        "motion", *names(f"{channel}.state[2:0]", "state"), *names(cause, "cause"),
-        f"@{BITS}", "TOP.running[0:0]", f"@{DECIMAL}", f"{channel}.line_room[{lines}:0]",
-        f"{channel}.ramp_room[{ramps}:0]", f"{channel}.rate[16:0]",
-    )  # fmt: skip
-    curve = [f"@{CURVE}", f"{channel}.velocity[31:0]", "@20000", "-", "-", "-"]
-    yield from group("velocity (2^-32 substeps per clock)", *curve, f"@{BITS}", f"{channel}.substep")
-    for axis in range(axes):
-        own = f"{channel}.u_axes.g_axis[{axis}]"
-        bits = [f"({parameters.axes - 1 - axis})TOP.{name}{pins}" for name in ("step", "dir", "enable")]
-        states = [f"{own}.u_axis.{name}" for name in ("setup", "high", "low", "hold", "idle")]
-        yield from group(f"axis {axis}", f"@{BITS}", *bits, *states)
+    for moves in file.files:
+        number = moves.channel
+        title = f"channel {number}: " if file.several else ""
+        channel = f"{CORE}.g_channel[{number}].u_channel"
+        bit = "" if running == 1 else f"({running - 1 - number})"
+        moving = f"{bit}TOP.running[{running - 1}:0]"
+        yield from group(
+            f"{title}motion", *names(f"{channel}.state[2:0]", "state"),
+            *names(f"{channel}.cause[{CHANNEL_STATE_CAUSE_BITS - 1}:0]", "cause"),
+            f"@{BITS}", moving, f"@{DECIMAL}", f"{channel}.line_room[{lines}:0]", f"{channel}.ramp_room[{ramps}:0]", f"{channel}.rate[16:0]",
+        )  # fmt: skip
+        curve = [f"@{CURVE}", f"{channel}.velocity[31:0]", "@20000", "-", "-", "-"]
+        substep = [f"@{BITS}", f"{channel}.substep"]
+        yield from group(f"{title}velocity (2^-32 substeps per clock)", *curve, *substep)
+        for axis in range(moves.axes):
+            own = f"{channel}.u_axes.g_axis[{axis}]"
+            place = pins - 1 - (number * parameters.axes + axis)
+            bits = [f"({place})TOP.{name}[{pins - 1}:0]" for name in ("step", "dir", "enable")]
+            states = [f"{own}.u_axis.{name}" for name in ("setup", "high", "low", "hold", "idle")]
+            yield from group(f"{title}axis {axis}", f"@{BITS}", *bits, *states)

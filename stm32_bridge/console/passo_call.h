@@ -27,6 +27,7 @@ struct passo_values {
 /* Arguments of a command. */
 struct passo_call {
 	struct passo_console *console;
+	struct passo_console_channel *channel; /* which the line names */
 	struct passo_reading *reading;
 	struct passo_words *words;
 	struct passo_values *values;
@@ -51,8 +52,8 @@ bool passo_answer(const struct passo_call *call, enum passo_error error);
 /* Converts Q31.32 to thousandths, rounded to nearest. */
 int64_t passo_thousandths(int64_t value);
 
-/* Motion and readings: passo_motion_commands.c. Settings, and `clear`, which may have to apply them:
- * passo_settings_commands.c. */
+/* Moves and rotation: passo_move_commands.c. Control and readings: passo_motion_commands.c. Settings:
+ * passo_settings_commands.c. `open`, and `clear`, which may have to apply them: passo_opening.c. */
 bool passo_run_move(const struct passo_call *call);
 bool passo_run_turn(const struct passo_call *call);
 bool passo_run_rpm(const struct passo_call *call);
@@ -68,6 +69,7 @@ bool passo_run_angle(const struct passo_call *call);
 bool passo_run_enable(const struct passo_call *call);
 bool passo_run_disable(const struct passo_call *call);
 bool passo_run_zero(const struct passo_call *call);
+bool passo_run_start(const struct passo_call *call);
 bool passo_run_sync(const struct passo_call *call);
 bool passo_run_config(const struct passo_call *call);
 bool passo_run_table(const struct passo_call *call);

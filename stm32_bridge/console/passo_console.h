@@ -31,30 +31,37 @@ struct passo_console_board {
 	void *context;
 };
 
+/* A channel of the core. */
+struct passo_console_channel {
+	struct passo passo;
+	enum passo_error noted; /* present error, which was reported in a note */
+	uint32_t looked_at;     /* microseconds: time of the last poll */
+	bool unset;             /* settings not applied yet: it was in motion when it was opened */
+	uint8_t enabled;        /* bit i: axis i was enabled */
+	uint8_t announced;      /* bit i: a note said that axis i is not enabled */
+	struct passo_axis_config axis[PASSO_AXES_MAX]; /* times in clocks */
+};
+
 struct passo_console {
 	struct passo_sink sink;
 	struct passo_hardware hardware;
 	struct passo_console_board board;
 	struct passo_host host;
-	struct passo passo;
+	struct passo_console_channel channel[PASSO_CHANNELS_MAX];
 	uint32_t clock_hz, hold_microseconds, stop_microseconds, baud;
-	enum passo_error noted; /* present error, which was reported in a note */
-	uint32_t tried_at;      /* microseconds: time of the last attempt to open or poll the core */
+	uint32_t tried_at; /* microseconds: time of the last attempt to open the core */
 	bool spi_slow;
 	bool opened;
 	enum passo_error absent; /* why it is not */
-	bool unset;              /* settings not applied yet: the core was in motion when it was opened */
-	struct passo_axis_config axis[PASSO_AXES_MAX]; /* times in clocks */
 	struct passo_loaded_table table;
-	/* drives */
-	bool need_enable;  /* moves of axes that are not enabled are refused */
-	uint8_t enabled;   /* bit i: axis i was enabled */
-	uint8_t announced; /* bit i: a note said that axis i is not enabled */
+	bool need_enable; /* moves of axes that are not enabled are refused */
 	/* flow control */
 	bool flow_waits;                   /* moves wait for room in the queues; otherwise they are refused */
 	bool waits;                        /* one does */
 	char waiting[PASSO_LINE_MAX + 1u]; /* its line */
-	enum passo_state seen_state;       /* at its last attempt */
+	uint8_t waiting_channel;
+	uint8_t seen_moving;         /* bit i: channel i was moving at its last attempt */
+	enum passo_state seen_state; /* the same of its channel */
 	uint16_t seen_lines, seen_ramps;
 	/* the incomplete input line */
 	char line[PASSO_LINE_MAX + 1u];
@@ -72,12 +79,16 @@ void passo_console_start(struct passo_console *console, const struct passo_sink 
 /* Processes a byte of input. The end of a line executes and answers it. */
 void passo_console_receive(struct passo_console *console, char byte);
 
-/* Call it continuously; at most one frame per call. Reports an error in a note, once while it persists. A
- * core that did not answer at the start is tried again twice a second. */
+/* Call it continuously; at most one frame per call and channel. Reports an error in a note, once while it
+ * persists. A core that did not answer at the start is tried again twice a second. */
 void passo_console_poll(struct passo_console *console);
 
 /* True if no motion is running or queued, or if there is no core. */
 bool passo_console_is_idle(const struct passo_console *console);
+
+/* True if what is to go on next, the channel of a waiting move or else every channel that moves, is held or
+ * waits for its start. */
+bool passo_console_stands(const struct passo_console *console);
 
 /* True while a move waits for room and its line is not answered. */
 bool passo_console_owes(const struct passo_console *console);

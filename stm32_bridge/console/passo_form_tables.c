@@ -11,6 +11,7 @@ static const struct passo_key IN_TIME_KEYS[] = {
 	{.name = "profile", .reader = PASSO_READ_SHAPE, .offset = offsetof(struct passo_move_in_time, profile)},
 	{.name = "total_time", .reader = PASSO_READ_TIME, .offset = offsetof(struct passo_move_in_time, total_clocks)},
 	{.name = "ramp_time", .reader = PASSO_READ_TIME, .offset = offsetof(struct passo_move_in_time, ramp_clocks)},
+	{.name = "channel", .reader = PASSO_READ_CHANNEL, .otherwise = "0"},
 };
 
 static const struct passo_key BY_SPEED_KEYS[] = {
@@ -23,6 +24,7 @@ static const struct passo_key BY_SPEED_KEYS[] = {
 	{.name = "acceleration", .reader = PASSO_READ_NUMBER, .otherwise = "0", .offset = offsetof(struct passo_move_by_speed, acceleration)},
 	{.name = "deceleration", .reader = PASSO_READ_NUMBER, .otherwise = "0", .offset = offsetof(struct passo_move_by_speed, deceleration)},
 	{.name = "ramp_time", .reader = PASSO_READ_TIME, .otherwise = "0", .offset = offsetof(struct passo_move_by_speed, ramp_clocks)},
+	{.name = "channel", .reader = PASSO_READ_CHANNEL, .otherwise = "0"},
 };
 
 static const struct passo_rule BY_SPEED_RULES[] = {
@@ -38,6 +40,7 @@ static const struct passo_key BELOW_SPEED_KEYS[] = {
 	{.name = "profile", .reader = PASSO_READ_PROFILE, .offset = offsetof(struct passo_move_below_speed, profile)},
 	{.name = "total_time", .reader = PASSO_READ_TIME, .offset = offsetof(struct passo_move_below_speed, total_clocks)},
 	{.name = "speed", .reader = PASSO_READ_NUMBER, .offset = offsetof(struct passo_move_below_speed, speed)},
+	{.name = "channel", .reader = PASSO_READ_CHANNEL, .otherwise = "0"},
 };
 
 static const struct passo_key AT_SPEED_KEYS[] = {
@@ -46,6 +49,7 @@ static const struct passo_key AT_SPEED_KEYS[] = {
 	{.name = "profile", .reader = PASSO_READ_PROFILE, .offset = offsetof(struct passo_move_at_speed, profile)},
 	{.name = "speed", .reader = PASSO_READ_NUMBER, .offset = offsetof(struct passo_move_at_speed, speed)},
 	{.name = "ramp_time", .reader = PASSO_READ_TIME, .offset = offsetof(struct passo_move_at_speed, ramp_clocks)},
+	{.name = "channel", .reader = PASSO_READ_CHANNEL, .otherwise = "0"},
 };
 
 static const struct passo_key AXES_KEYS[] = {
@@ -54,6 +58,7 @@ static const struct passo_key AXES_KEYS[] = {
 	{.name = "start_speed", .reader = PASSO_READ_NUMBER, .otherwise = "0", .offset = offsetof(struct passo_move_axes, start_speed)},
 	{.name = "speed", .reader = PASSO_READ_NUMBER, .offset = offsetof(struct passo_move_axes, speed)},
 	{.name = "ramp_time", .reader = PASSO_READ_TIME, .offset = offsetof(struct passo_move_axes, ramp_clocks)},
+	{.name = "channel", .reader = PASSO_READ_CHANNEL, .otherwise = "0"},
 };
 
 static const struct passo_key TURN_KEYS[] = {
@@ -65,6 +70,7 @@ static const struct passo_key TURN_KEYS[] = {
 	{.name = "rpm", .reader = PASSO_READ_NUMBER, .offset = offsetof(struct passo_move_turn, rpm)},
 	{.name = "minimum_rpm", .reader = PASSO_READ_NUMBER, .otherwise = "0", .offset = offsetof(struct passo_move_turn, minimum_rpm)},
 	{.name = "acceleration", .reader = PASSO_READ_NUMBER, .offset = offsetof(struct passo_move_turn, acceleration)},
+	{.name = "channel", .reader = PASSO_READ_CHANNEL, .otherwise = "0"},
 };
 
 static const struct passo_key SIGMOID_KEYS[] = {
@@ -76,6 +82,7 @@ static const struct passo_key SIGMOID_KEYS[] = {
 	{.name = "accelerate_time", .reader = PASSO_READ_TIME, .offset = offsetof(struct passo_move_sigmoid, accelerate_clocks)},
 	{.name = "decelerate_time", .reader = PASSO_READ_TIME, .otherwise = "accelerate_time", .offset = offsetof(struct passo_move_sigmoid, decelerate_clocks)},
 	{.name = "alpha", .reader = PASSO_READ_ALPHA, .otherwise = "5", .offset = offsetof(struct passo_move_sigmoid, alpha)},
+	{.name = "channel", .reader = PASSO_READ_CHANNEL, .otherwise = "0"},
 };
 
 static const struct passo_key JERK_KEYS[] = {
@@ -86,6 +93,7 @@ static const struct passo_key JERK_KEYS[] = {
 	{.name = "stop_speed", .reader = PASSO_READ_NUMBER, .otherwise = "0", .offset = offsetof(struct passo_move_jerk, stop_speed)},
 	{.name = "acceleration", .reader = PASSO_READ_NUMBER, .offset = offsetof(struct passo_move_jerk, acceleration)},
 	{.name = "jerk", .reader = PASSO_READ_NUMBER, .offset = offsetof(struct passo_move_jerk, jerk)},
+	{.name = "channel", .reader = PASSO_READ_CHANNEL, .otherwise = "0"},
 };
 
 static const struct passo_key STRAIGHT_KEYS[] = {
@@ -96,18 +104,19 @@ static const struct passo_key STRAIGHT_KEYS[] = {
 	{.name = "speed", .reader = PASSO_READ_PER_AXIS, .offset = offsetof(struct passo_move_straight, limits[0].speed)},
 	{.name = "acceleration", .reader = PASSO_READ_PER_AXIS, .offset = offsetof(struct passo_move_straight, limits[0].acceleration)},
 	{.name = "jerk", .reader = PASSO_READ_PER_AXIS, .otherwise = "0", .offset = offsetof(struct passo_move_straight, limits[0].jerk)},
+	{.name = "channel", .reader = PASSO_READ_CHANNEL, .otherwise = "0"},
 };
 
 const struct passo_form_table passo_form_tables[PASSO_FORM_COUNT] = {
-	[PASSO_FORM_IN_TIME] = {.name = "in_time", .keys = IN_TIME_KEYS, .count = 5u, .told_by = "total_time"},
-	[PASSO_FORM_BY_SPEED] = {.name = "by_speed", .keys = BY_SPEED_KEYS, .count = 9u, .rules = BY_SPEED_RULES, .rule_count = 4u, .told_by = "speed"},
-	[PASSO_FORM_BELOW_SPEED] = {.name = "below_speed", .keys = BELOW_SPEED_KEYS, .count = 5u},
-	[PASSO_FORM_AT_SPEED] = {.name = "at_speed", .keys = AT_SPEED_KEYS, .count = 5u},
-	[PASSO_FORM_AXES] = {.name = "axes", .keys = AXES_KEYS, .count = 5u},
-	[PASSO_FORM_TURN] = {.name = "turn", .keys = TURN_KEYS, .count = 8u},
-	[PASSO_FORM_SIGMOID] = {.name = "sigmoid", .keys = SIGMOID_KEYS, .count = 8u},
-	[PASSO_FORM_JERK] = {.name = "jerk", .keys = JERK_KEYS, .count = 7u},
-	[PASSO_FORM_STRAIGHT] = {.name = "straight", .keys = STRAIGHT_KEYS, .count = 7u},
+	[PASSO_FORM_IN_TIME] = {.name = "in_time", .keys = IN_TIME_KEYS, .count = 6u, .told_by = "total_time"},
+	[PASSO_FORM_BY_SPEED] = {.name = "by_speed", .keys = BY_SPEED_KEYS, .count = 10u, .rules = BY_SPEED_RULES, .rule_count = 4u, .told_by = "speed"},
+	[PASSO_FORM_BELOW_SPEED] = {.name = "below_speed", .keys = BELOW_SPEED_KEYS, .count = 6u},
+	[PASSO_FORM_AT_SPEED] = {.name = "at_speed", .keys = AT_SPEED_KEYS, .count = 6u},
+	[PASSO_FORM_AXES] = {.name = "axes", .keys = AXES_KEYS, .count = 6u},
+	[PASSO_FORM_TURN] = {.name = "turn", .keys = TURN_KEYS, .count = 9u},
+	[PASSO_FORM_SIGMOID] = {.name = "sigmoid", .keys = SIGMOID_KEYS, .count = 9u},
+	[PASSO_FORM_JERK] = {.name = "jerk", .keys = JERK_KEYS, .count = 8u},
+	[PASSO_FORM_STRAIGHT] = {.name = "straight", .keys = STRAIGHT_KEYS, .count = 8u},
 };
 
 const struct passo_key passo_form_told_keys[] = {
@@ -116,10 +125,11 @@ const struct passo_key passo_form_told_keys[] = {
 	{.name = "profile"},
 	{.name = "total_time"},
 	{.name = "ramp_time"},
+	{.name = "channel"},
 	{.name = "start_speed"},
 	{.name = "speed"},
 	{.name = "stop_speed"},
 	{.name = "acceleration"},
 	{.name = "deceleration"},
 };
-const unsigned passo_form_told_count = 10u;
+const unsigned passo_form_told_count = 11u;

@@ -144,7 +144,7 @@ static enum passo_error queue_user(struct passo *passo, const struct passo_form_
 		PASSO_MOVES_BY_SHAPE(QUEUE)
 #undef QUEUE
 	default:
-		return PASSO_ERROR_ARGUMENT;
+		return PASSO_ERROR_ARGUMENT_POINTER;
 	}
 }
 
@@ -161,14 +161,14 @@ static enum passo_error queue(struct passo *passo, const struct passo_form_move 
 	case PASSO_FORM_COUNT:
 		break;
 	}
-	return PASSO_ERROR_ARGUMENT;
+	return PASSO_ERROR_ARGUMENT_POINTER;
 }
 
 enum passo_error passo_forms_queue(struct passo *passo, const struct passo_form_move *move)
 {
 	const enum passo_error error = queue(passo, move);
 
-	if (error >= PASSO_ERROR_ABSURD) /* values of a line have units */
+	if (error >= PASSO_ERROR_ABSURD && error < PASSO_ERROR_ARGUMENT) /* values of a line have units */
 		return (enum passo_error)((unsigned)error - PASSO_ERROR_ABSURD + PASSO_ERROR_PLAN);
 	return error;
 }

@@ -22,6 +22,7 @@ enum passo_reader {
 	PASSO_READ_FLAG,         /* bool, 0 or 1 */
 	PASSO_READ_FLOW,         /* bool: wait (true) or refuse */
 	PASSO_READ_AXIS,         /* uint8_t, 0 .. axes - 1 */
+	PASSO_READ_CHANNEL,      /* not stored: it was read before the command */
 	PASSO_READ_AXES,         /* axis + 1 .. axes: checked but not stored */
 	PASSO_READ_STEPS,        /* int32_t[], one per axis */
 	PASSO_READ_NUMBER,       /* uint64_t UQ32.32 */

@@ -1,148 +1,80 @@
 /* SPDX-License-Identifier: MIT
- * Commands for motion and readings.
+ * Commands that control motions, and readings.
  */
 #include "passo_call.h"
+#include "passo_commands.h"
 #include "passo_release.h"
 #include "passo_words.h"
 
-/* Finds axes that are not enabled. If enabled drives are needed, prints an error and returns false. */
-static bool check_enabled(const struct passo_console *console, uint8_t axes, uint8_t *off)
-{
-	uint32_t axis = 0;
-
-	*off = axes & (uint8_t)~console->enabled;
-	if (!console->need_enable || *off == 0u)
-		return true;
-	while (((uint32_t)*off >> axis & 1u) == 0u)
-		axis++;
-	return passo_complain(&console->sink, "NOT_ENABLED: axis %u is not enabled", axis);
-}
-
-/* Notes once for each axis that it moves without its drive. */
-static void note_disabled(struct passo_console *console, uint8_t off)
-{
-	const uint32_t news = off & (uint8_t)~console->announced;
-
-	for (uint32_t axis = 0; axis < PASSO_AXES_MAX; axis++) {
-		if ((news >> axis & 1u) != 0u)
-			passo_say(&console->sink, "note: axis %u is not enabled\n", axis);
-	}
-	console->announced |= off;
-}
-
-/* Whether the move can be queued later, when those before it have progressed. */
-static bool can_wait(const struct passo_console *console, enum passo_error error)
-{
-	return console->flow_waits && (error == PASSO_ERROR_FULL || error == PASSO_ERROR_TABLE)
-	    && passo_is_moving(&console->passo);
-}
-
-bool passo_run_move(const struct passo_call *call)
-{
-	struct passo_console *console = call->console;
-	struct passo_form_move move;
-	enum passo_error error;
-	uint8_t off;
-
-	if (!passo_forms_read(call->reading, call->words, &console->table, &move)
-	    || !check_enabled(console, passo_forms_axes(&move), &off))
-		return false;
-	error = passo_forms_queue(&console->passo, &move);
-	if (can_wait(console, error)) {
-		const struct passo_snapshot *seen = passo_snapshot(&console->passo);
-
-		console->waits = true;
-		console->seen_state = seen->state;
-		console->seen_lines = seen->line_room;
-		console->seen_ramps = seen->ramp_room;
-		return false;
-	}
-	if (error == PASSO_OK)
-		note_disabled(console, off);
-	return passo_answer(call, error);
-}
-
-bool passo_run_turn(const struct passo_call *call)
-{
-	const struct passo_values *values = call->values;
-	struct passo_turning turning = {.axis = values->axis,
-	    .steps_per_turn = values->steps_per_turn,
-	    .backwards = values->on,
-	    .top_rpm = values->top_rpm,
-	    .minimum_rpm = values->minimum_rpm,
-	    .acceleration = values->acceleration};
-	enum passo_error error;
-	uint8_t off;
-
-	if (!check_enabled(call->console, (uint8_t)(1u << values->axis), &off))
-		return false;
-	error = passo_turn_start(&call->console->passo, &turning, values->rpm);
-	if (error == PASSO_OK)
-		note_disabled(call->console, off);
-	return passo_answer(call, error);
-}
-
-bool passo_run_rpm(const struct passo_call *call)
-{
-	struct passo *passo = &call->console->passo;
-	uint64_t rpm = call->values->rpm;
-
-	return passo_answer(call, rpm == 0u ? passo_turn_stop(passo) : passo_turn_speed(passo, rpm));
-}
-
 bool passo_run_hold(const struct passo_call *call)
 {
-	return passo_answer(call, passo_hold(&call->console->passo));
+	return passo_answer(call, passo_hold(&call->channel->passo));
 }
 
 bool passo_run_resume(const struct passo_call *call)
 {
-	return passo_answer(call, passo_resume(&call->console->passo));
+	return passo_answer(call, passo_resume(&call->channel->passo));
 }
 
 bool passo_run_override(const struct passo_call *call)
 {
-	return passo_answer(call, passo_override(&call->console->passo, call->values->number));
+	return passo_answer(call, passo_override(&call->channel->passo, call->values->number));
 }
 
 bool passo_run_stop(const struct passo_call *call)
 {
-	return passo_answer(call, passo_stop(&call->console->passo));
+	return passo_answer(call, passo_stop(&call->channel->passo));
 }
 
 bool passo_run_abort(const struct passo_call *call)
 {
-	return passo_answer(call, passo_abort(&call->console->passo));
+	return passo_answer(call, passo_abort(&call->channel->passo));
 }
 
 bool passo_run_sync(const struct passo_call *call)
 {
-	return passo_answer(call, passo_wait_for_sync(&call->console->passo, call->values->on));
+	return passo_answer(call, passo_wait_for_sync(&call->channel->passo, call->values->on));
+}
+
+bool passo_run_start(const struct passo_call *call)
+{
+	struct passo_console *console = call->console;
+	struct passo *waiting[PASSO_CHANNELS_MAX];
+	unsigned count = 0;
+
+	for (unsigned i = 0; i < passo_commands_channels(console); i++) {
+		struct passo *passo = &console->channel[i].passo;
+
+		if (passo_waits_for_sync(passo) && passo_is_moving(passo))
+			waiting[count++] = passo;
+	}
+	return passo_answer(
+	    call, count != 0u ? passo_start_together(waiting, count) : PASSO_ERROR_NOT_PREPARED);
 }
 
 bool passo_run_zero(const struct passo_call *call)
 {
-	return passo_answer(call, passo_zero(&call->console->passo));
+	return passo_answer(call, passo_zero(&call->channel->passo));
 }
 
 /* For one axis, or for all. */
 bool passo_run_enable(const struct passo_call *call)
 {
-	struct passo_console *console = call->console;
+	struct passo_console_channel *channel = call->channel;
 	enum passo_error error = PASSO_OK;
 
 	for (uint8_t axis = 0; axis < call->reading->axes && error == PASSO_OK; axis++) {
 		const uint8_t bit = (uint8_t)(1u << axis);
 
-		if (call->reading->given != 0u && axis != call->values->axis)
+		if ((call->reading->given & 1u) != 0u && axis != call->values->axis)
 			continue;
-		error = passo_enable(&console->passo, axis, call->values->on);
+		error = passo_enable(&channel->passo, axis, call->values->on);
 		if (error == PASSO_ERROR_MOVING)
 			break; /* the drive is on as before */
-		console->announced &= (uint8_t)~bit;
-		console->enabled &= (uint8_t)~bit;
+		channel->announced &= (uint8_t)~bit;
+		channel->enabled &= (uint8_t)~bit;
 		if (error == PASSO_OK && call->values->on)
-			console->enabled |= bit;
+			channel->enabled |= bit;
 	}
 	return passo_answer(call, error);
 }
@@ -159,14 +91,14 @@ bool passo_run_status(const struct passo_call *call)
 	struct passo_console *console = call->console;
 	struct passo_snapshot now;
 
-	if (!passo_answer(call, passo_read_state(&console->passo, &now)))
+	if (!passo_answer(call, passo_read_state(&call->channel->passo, &now)))
 		return false;
 	passo_say(&console->sink, " state=%s cause=%s moving=%u rate=%m", passo_state_name(now.state),
 	    now.cause < PASSO_COUNT(CAUSES) ? CAUSES[now.cause] : "?",
-	    (uint32_t)passo_is_moving(&console->passo), (int64_t)now.rate * 100000 / PASSO_RATE_FULL);
+	    (uint32_t)passo_is_moving(&call->channel->passo), (int64_t)now.rate * 100000 / PASSO_RATE_FULL);
 	passo_say(&console->sink, " lines=%u ramps=%u drained=%u overrun=%u fault=%s retries=%u",
 	    (uint32_t)now.line_room, (uint32_t)now.ramp_room, (uint32_t)now.drained, (uint32_t)now.overrun,
-	    passo_error_name(passo_fault(&console->passo)), console->host.counters.retries);
+	    passo_error_name(passo_fault(&call->channel->passo)), console->host.counters.retries);
 	passo_say(&console->sink, " waiting=%u", (uint32_t)console->waits);
 	if (console->board.lost_bytes)
 		passo_say(
@@ -178,7 +110,7 @@ bool passo_run_position(const struct passo_call *call)
 {
 	int32_t positions[PASSO_AXES_MAX];
 
-	if (!passo_answer(call, passo_positions(&call->console->passo, positions)))
+	if (!passo_answer(call, passo_positions(&call->channel->passo, positions)))
 		return false;
 	for (unsigned axis = 0; axis < call->reading->axes; axis++)
 		passo_say(&call->console->sink, axis == 0u ? " position=%d" : ",%d", positions[axis]);
@@ -188,7 +120,7 @@ bool passo_run_position(const struct passo_call *call)
 bool passo_run_angle(const struct passo_call *call)
 {
 	const struct passo_values *values = call->values;
-	struct passo *passo = &call->console->passo;
+	struct passo *passo = &call->channel->passo;
 	int64_t degrees;
 	uint64_t rpm;
 	enum passo_error error = passo_angle(passo, values->axis, values->steps_per_turn, &degrees);
@@ -219,7 +151,8 @@ bool passo_run_version(const struct passo_call *call)
 		passo_say(&console->sink, " core=none");
 	}
 	if (fault == PASSO_OK)
-		passo_say(&console->sink, " axes=%u", (uint32_t)call->reading->axes);
+		passo_say(&console->sink, " channels=%u axes=%u", (uint32_t)passo_commands_channels(console),
+		    (uint32_t)call->reading->axes);
 	else
 		passo_say(&console->sink, " fault=%s", passo_error_name(fault));
 	passo_say(&console->sink, " clock_hz=%u", console->clock_hz);

@@ -13,6 +13,7 @@
 
 static const struct passo_key CONFIG_AXIS_KEYS[] = {
     PASSO_VALUE("axis", axis, AXIS, NULL),
+    {.name = "channel", .reader = PASSO_READ_CHANNEL, .otherwise = "0"},
     PASSO_VALUE("step_high", config.step_high_ns, PIN_TIME, ""),
     PASSO_VALUE("step_low", config.step_low_ns, PIN_TIME, ""),
     PASSO_VALUE("dir_setup", config.dir_setup_ns, PIN_TIME, ""),
@@ -33,69 +34,6 @@ static const struct passo_key CONFIG_KEYS[] = {
     PASSO_VALUE("spi_slow", on, FLAG, ""),
 };
 
-void passo_commands_reset_axes(struct passo_console *console)
-{
-	uint32_t clocks = (console->clock_hz + 999999u) / 1000000u;
-
-	for (unsigned axis = 0; axis < PASSO_AXES_MAX; axis++)
-		console->axis[axis] = (struct passo_axis_config){.in_clocks = true,
-		    .step_high_ns = clocks,
-		    .step_low_ns = clocks,
-		    .dir_setup_ns = clocks,
-		    .dir_hold_ns = clocks};
-}
-
-/* Applies the settings to the core. */
-static enum passo_error set_up(struct passo_console *console)
-{
-	struct passo *passo = &console->passo;
-	enum passo_error error =
-	    passo_configure_motion(passo, passo_clocks(passo, console->hold_microseconds),
-		passo_clocks(passo, console->stop_microseconds), 0);
-
-	for (uint8_t axis = 0; axis < passo_machine(passo)->axes && error == PASSO_OK; axis++)
-		error = passo_configure_axis(passo, axis, &console->axis[axis]);
-	console->unset = error != PASSO_OK;
-	return error;
-}
-
-enum passo_error passo_commands_open(struct passo_console *console)
-{
-	const struct passo_options options = {.clock_hz = console->clock_hz};
-	const bool is_other = !console->opened || console->host.lost;
-	enum passo_error error = passo_open(&console->passo, &console->host, &console->hardware, &options);
-
-	if (is_other)
-		console->enabled = console->announced = 0;
-	console->opened = error == PASSO_OK || error == PASSO_ERROR_MOVING;
-	console->absent = error;
-	console->unset = true;
-	console->noted = PASSO_OK;
-	return error == PASSO_OK ? set_up(console) : error;
-}
-
-/* A core that was reset does not move, whatever was queued. */
-static bool is_moving(const struct passo_console *console)
-{
-	return console->opened && !console->host.lost && passo_is_moving(&console->passo);
-}
-
-bool passo_run_open(const struct passo_call *call)
-{
-	if (is_moving(call->console))
-		return passo_answer(call, PASSO_ERROR_MOVING);
-	return passo_answer(call, passo_commands_open(call->console));
-}
-
-bool passo_run_clear(const struct passo_call *call)
-{
-	enum passo_error error = passo_clear(&call->console->passo);
-
-	if (error == PASSO_OK && call->console->unset)
-		error = set_up(call->console);
-	return passo_answer(call, error);
-}
-
 /* Changes only the settings that are given. */
 static bool config_axis(const struct passo_call *call)
 {
@@ -107,15 +45,15 @@ static bool config_axis(const struct passo_call *call)
 	    || !passo_keys_read(call->reading, CONFIG_AXIS_KEYS, 1, call->words, call->values))
 		return false;
 	axis = call->values->axis;
-	*config = console->axis[axis];
+	*config = call->channel->axis[axis];
 	if (!passo_keys_read(
 		call->reading, CONFIG_AXIS_KEYS, PASSO_COUNT(CONFIG_AXIS_KEYS), call->words, call->values))
 		return false;
-	if (call->words->count > 1u) {
+	if (call->reading->given >> 2 != 0u) { /* more than axis and channel */
 		if (console->opened
-		    && !passo_answer(call, passo_configure_axis(&console->passo, axis, config)))
+		    && !passo_answer(call, passo_configure_axis(&call->channel->passo, axis, config)))
 			return false;
-		console->axis[axis] = *config;
+		call->channel->axis[axis] = *config;
 		return console->opened || passo_answer(call, PASSO_OK);
 	}
 	passo_say(&console->sink, "ok axis=%u step_high=%uclocks step_low=%uclocks dir_setup=%uclocks",
@@ -131,7 +69,7 @@ static bool config_axis(const struct passo_call *call)
 /* A new clock changes all times: the core is reopened with default settings. */
 static enum passo_error set_clock(struct passo_console *console, uint32_t clock_hz)
 {
-	if (is_moving(console))
+	if (passo_commands_is_moving(console))
 		return PASSO_ERROR_MOVING;
 	console->clock_hz = clock_hz;
 	passo_commands_reset_axes(console);
@@ -159,10 +97,12 @@ static bool config_board(const struct passo_call *call)
 		return passo_complain(&console->sink, "this console has no board");
 	if (has_clock)
 		error = set_clock(console, values->clock_hz);
-	if (error == PASSO_OK && console->opened)
-		error = passo_configure_motion(&console->passo,
-		    passo_clocks(&console->passo, values->hold_microseconds),
-		    passo_clocks(&console->passo, values->stop_microseconds), 0);
+	for (unsigned i = 0; i < passo_commands_channels(console) && error == PASSO_OK; i++) {
+		struct passo *passo = &console->channel[i].passo;
+
+		error = passo_configure_motion(passo, passo_clocks(passo, values->hold_microseconds),
+		    passo_clocks(passo, values->stop_microseconds), 0);
+	}
 	if (!passo_answer(call, error))
 		return false;
 	console->hold_microseconds = values->hold_microseconds;

@@ -151,6 +151,7 @@ bool passo_value_read(
 
 	switch (key->reader) {
 	case PASSO_READ_NOTHING:
+	case PASSO_READ_CHANNEL:
 		return true;
 	case PASSO_READ_WHOLE:
 		return passo_number_whole(reading, key, all, key->low, key->high, place);
@@ -215,6 +216,7 @@ const char *passo_value_placeholder(enum passo_reader reader)
 	    [PASSO_READ_FLAG] = "0|1",
 	    [PASSO_READ_FLOW] = FLOW_WAIT "|" FLOW_REFUSE,
 	    [PASSO_READ_AXIS] = "axis",
+	    [PASSO_READ_CHANNEL] = "n",
 	    [PASSO_READ_AXES] = "n",
 	    [PASSO_READ_STEPS] = "n,..",
 	    [PASSO_READ_NUMBER] = "x",

@@ -8,7 +8,7 @@
 enum passo_error passo_driver_check(const struct passo *passo)
 {
 	if (!passo)
-		return PASSO_ERROR_ARGUMENT;
+		return PASSO_ERROR_ARGUMENT_POINTER;
 	return passo->belief != PASSO_BELIEF_NOT_OPEN ? PASSO_OK : PASSO_ERROR_NOT_OPEN;
 }
 
@@ -16,7 +16,7 @@ enum passo_error passo_driver_check_axis(const struct passo *passo, uint8_t axis
 {
 	enum passo_error error = passo_driver_check(passo);
 
-	return error == PASSO_OK && axis >= passo->machine.axes ? PASSO_ERROR_ARGUMENT : error;
+	return error == PASSO_OK && axis >= passo->machine.axes ? PASSO_ERROR_ARGUMENT_AXIS : error;
 }
 
 bool passo_driver_is_wire(enum passo_error error)

@@ -23,9 +23,9 @@
  * New moves are refused with these errors; passo_clear() ends the first three. No other command is resent.
  *
  * A call costs one frame (chip select) unless its comment says otherwise; on a noisy link up to `tries`
- * frames. Every call can return ARGUMENT, NOT_OPEN, link errors, CORE_RESET and REFUSED + verdict; comments
- * list the other errors. Speeds, accelerations and rpm are UQ32.32, lengths and angles Q31.32, times of moves
- * clocks of the core: passo_units.h makes them of numbers and units.
+ * frames. Every call can return an error of ARGUMENT, NOT_OPEN, link errors, CORE_RESET and REFUSED +
+ * verdict; comments list the other errors. Speeds, accelerations and rpm are UQ32.32, lengths and angles
+ * Q31.32, times of moves clocks of the core: passo_units.h makes them of numbers and units.
  */
 #ifndef PASSO_H
 #define PASSO_H
@@ -298,7 +298,7 @@ enum passo_error passo_turn_stop(struct passo *passo);
 /* Streams a path of many lines and ramps. *source is copied; passo_poll() reads from it and keeps the queues
  * filled. The motion starts when the queues are full or everything is sent; passo_stream_start() starts it
  * earlier. The path ends with the items that have `last`. Items are checked before they are sent (SUPPLY).
- * Only at rest. */
+ * Only at rest. Error of passo_stream_start(): NOT_PREPARED if no stream waits for its start. */
 enum passo_error passo_stream(struct passo *passo, const struct passo_source *source);
 enum passo_error passo_stream_start(struct passo *passo);
 /* True until everything has been sent. */
@@ -351,6 +351,14 @@ enum passo_error passo_clear(struct passo *passo);
 /* While on, prepared motions wait for a rising edge of the core's sync input. Switching it off starts them.
  * If it is not acknowledged, motions wait and every poll resends that. */
 enum passo_error passo_wait_for_sync(struct passo *passo, bool on);
+/* Whether that is on. No frame. */
+bool passo_waits_for_sync(const struct passo *passo);
+/* Starts, on one clock, the motions that passo_wait_for_sync() holds back on these channels of one core, and
+ * switches it off for them: one write, after a read of each channel until its motion is ready. A stream is
+ * ready when passo_poll() has filled the queues. On an error nothing has started; after a link error in the
+ * write all motions have, or none. Errors: NOT_PREPARED if one of the channels has no motion that waits, or
+ * an earlier one still runs; STOPPED, NOT_STOPPED, NOT_HELD, BROKEN. */
+enum passo_error passo_start_together(struct passo *const *channels, unsigned count);
 
 /* --------------------------------------------------------------------------------------- positions ----
  *

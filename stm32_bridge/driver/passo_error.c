@@ -3,6 +3,7 @@
  */
 #include "passo_error.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "passo_plan.h"
@@ -15,7 +16,6 @@ struct words {
 static const struct words errors[PASSO_ERROR_COUNT] = {
     [PASSO_OK] = {"OK", "no error"},
     [PASSO_PENDING] = {"PENDING", "the frame is not settled yet"},
-    [PASSO_ERROR_ARGUMENT] = {"ARGUMENT", "an argument is missing or out of range"},
     [PASSO_ERROR_NOT_OPEN] = {"NOT_OPEN", "the core is not open: open it; if that fails, its error says why"},
     [PASSO_ERROR_UNITS] = {"UNITS", "the axis has no steps per unit, or the position overflows"},
     [PASSO_ERROR_TIMEOUT] = {"TIMEOUT", "the motion did not end in time and continues"},
@@ -31,6 +31,8 @@ static const struct words errors[PASSO_ERROR_COUNT] = {
     [PASSO_ERROR_PARAMETERS] = {"PARAMETERS", "the core's channels, axes or ticks do not match"},
     [PASSO_ERROR_CORE_RESET] = {"CORE_RESET",
 	"the core was reset, or another host wrote to it: open it again"},
+    [PASSO_ERROR_NOT_PREPARED] = {"NOT_PREPARED",
+	"no motion of the channel is ready and waits for its start"},
     [PASSO_ERROR_MOVING] = {"MOVING", "only possible at rest"},
     [PASSO_ERROR_NOT_TURNING] = {"NOT_TURNING", "only possible in continuous rotation"},
     [PASSO_ERROR_STREAMING] = {"STREAMING", "a stream is being fed"},
@@ -81,6 +83,27 @@ static const struct words unknown = {"UNKNOWN", "unknown error"};
 
 static const struct words absurd = {"ABSURD", "so slow or so short a move is not meant: is a unit missing?"};
 
+#define ARGUMENT(which) [PASSO_ERROR_ARGUMENT_##which - PASSO_ERROR_ARGUMENT]
+static const char *const arguments[PASSO_ERROR_ARGUMENT_END - PASSO_ERROR_ARGUMENT] = {
+    ARGUMENT(POINTER) = "a pointer is null",
+    ARGUMENT(AXIS) = "axis: the channel does not have it",
+    ARGUMENT(CHANNEL) = "channel: the core does not have it",
+    ARGUMENT(CLOCK) = "clock_hz is 0",
+    ARGUMENT(PIN_TIME) = "a pin time is too long",
+    ARGUMENT(DRAIN_VELOCITY) = "drain velocity: above half a substep per clock",
+    ARGUMENT(RATE) = "override: not 1 to 100 %",
+    ARGUMENT(STEPS_PER_TURN) = "steps_per_turn is 0",
+    ARGUMENT(SHAPE) = "table: no such bank, or not a shape",
+    ARGUMENT(PLAN) = "the plan is not one of the planner",
+    ARGUMENT(LENGTH) = "the length of the frame",
+    ARGUMENT(POSTED) = "a frame is posted, or a read has to come first",
+};
+
+static bool is_argument(enum passo_error error)
+{
+	return error >= PASSO_ERROR_ARGUMENT && error < PASSO_ERROR_ARGUMENT_END;
+}
+
 static const struct words *find(unsigned code)
 {
 	const struct words *found = &unknown;
@@ -94,18 +117,22 @@ static const struct words *find(unsigned code)
 
 const char *passo_error_name(enum passo_error error)
 {
-	if (error >= PASSO_ERROR_ABSURD)
+	if (is_argument(error))
+		return "ARGUMENT";
+	if (error >= PASSO_ERROR_ABSURD && error < PASSO_ERROR_ARGUMENT)
 		return absurd.name;
-	if (error >= PASSO_ERROR_PLAN)
+	if (error >= PASSO_ERROR_PLAN && error < PASSO_ERROR_ABSURD)
 		return passo_plan_error_name((enum passo_plan_error)(error - PASSO_ERROR_PLAN));
 	return find((unsigned)error)->name;
 }
 
 const char *passo_error_text(enum passo_error error)
 {
-	if (error >= PASSO_ERROR_ABSURD)
+	if (is_argument(error))
+		return arguments[error - PASSO_ERROR_ARGUMENT];
+	if (error >= PASSO_ERROR_ABSURD && error < PASSO_ERROR_ARGUMENT)
 		return absurd.text;
-	if (error >= PASSO_ERROR_PLAN)
+	if (error >= PASSO_ERROR_PLAN && error < PASSO_ERROR_ABSURD)
 		return passo_plan_error_text((enum passo_plan_error)(error - PASSO_ERROR_PLAN));
 	return find((unsigned)error)->text;
 }

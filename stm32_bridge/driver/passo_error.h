@@ -12,7 +12,6 @@ enum passo_error {
 	PASSO_PENDING, /* not an error: the posted frame is still in flight */
 
 	/* the call */
-	PASSO_ERROR_ARGUMENT, /* null pointer, nonexistent axis, or value out of range */
 	PASSO_ERROR_NOT_OPEN, /* passo_open() has not succeeded: call it; passo_fault() repeats its error */
 	PASSO_ERROR_UNITS,    /* the axis has no steps per unit, or the position overflows */
 	PASSO_ERROR_TIMEOUT,  /* the wait timed out; the motion continues */
@@ -33,12 +32,13 @@ enum passo_error {
 	PASSO_ERROR_CORE_RESET, /* the core was reset, or another host wrote to it: open it again */
 
 	/* the channel */
-	PASSO_ERROR_MOVING,      /* only possible at rest, but a motion is running or queued */
-	PASSO_ERROR_NOT_TURNING, /* only possible during continuous rotation */
-	PASSO_ERROR_STREAMING,   /* a stream is being fed: wait for its end, or stop it */
-	PASSO_ERROR_FULL,        /* the queues are full: try again later */
-	PASSO_ERROR_STOPPED,     /* the channel is stopped: clear it first */
-	PASSO_ERROR_NOT_STOPPED, /* a stop or abort is not acknowledged yet: every poll resends it */
+	PASSO_ERROR_NOT_PREPARED, /* no motion of the channel is ready and waits for its start */
+	PASSO_ERROR_MOVING,       /* only possible at rest, but a motion is running or queued */
+	PASSO_ERROR_NOT_TURNING,  /* only possible during continuous rotation */
+	PASSO_ERROR_STREAMING,    /* a stream is being fed: wait for its end, or stop it */
+	PASSO_ERROR_FULL,         /* the queues are full: try again later */
+	PASSO_ERROR_STOPPED,      /* the channel is stopped: clear it first */
+	PASSO_ERROR_NOT_STOPPED,  /* a stop or abort is not acknowledged yet: every poll resends it */
 	PASSO_ERROR_NOT_HELD, /* the same for hold, resume, override or sync: the slower setting is resent */
 	PASSO_ERROR_BROKEN,   /* a link error interrupted a command: stop or abort, then clear */
 	PASSO_ERROR_NOT_CONFIGURED, /* an axis has unknown pin settings: configure it again */
@@ -75,10 +75,25 @@ enum passo_error {
 	PASSO_ERROR_REFUSED = 0x100,
 	/* The planner rejected the move: this plus an enum passo_plan_error. */
 	PASSO_ERROR_PLAN = 0x200,
-	/* The same, of a speed below 1/65536 per second or a time below 100 us: a unit of passo_units.h seems
-	 * to be missing. */
+	/* The same, of a speed below 1/65536 per second, a distance below 1/65536 mm or degree, or a time
+	 * below 100 us: a unit of passo_units.h seems to be missing. */
 	PASSO_ERROR_ABSURD = 0x300,
-	PASSO_ERROR_MAX = 0x3FF
+	/* An argument of the call: which one, and why. The first of the codes is that of a null pointer. */
+	PASSO_ERROR_ARGUMENT = 0x400,
+	PASSO_ERROR_ARGUMENT_POINTER = PASSO_ERROR_ARGUMENT, /* a pointer, or one in a struct, is null */
+	PASSO_ERROR_ARGUMENT_AXIS,                           /* the channel does not have the axis */
+	PASSO_ERROR_ARGUMENT_CHANNEL,        /* beyond PASSO_CHANNELS_MAX, or of another core */
+	PASSO_ERROR_ARGUMENT_CLOCK,          /* `clock_hz` is 0 */
+	PASSO_ERROR_ARGUMENT_PIN_TIME,       /* longer than PASSO_PIN_CLOCKS_MAX clocks */
+	PASSO_ERROR_ARGUMENT_DRAIN_VELOCITY, /* above half a substep per clock */
+	PASSO_ERROR_ARGUMENT_RATE,           /* an override of 0, or above 100 % */
+	PASSO_ERROR_ARGUMENT_STEPS_PER_TURN, /* 0 */
+	PASSO_ERROR_ARGUMENT_SHAPE,          /* the bank does not exist, or the points are no shape */
+	PASSO_ERROR_ARGUMENT_PLAN,           /* not made by the planner */
+	PASSO_ERROR_ARGUMENT_LENGTH,         /* of a frame: not 1 .. PASSO_FRAME_PAYLOAD_MAX words */
+	PASSO_ERROR_ARGUMENT_POSTED,         /* a frame is posted, or a read has to come first */
+	PASSO_ERROR_ARGUMENT_END,            /* the codes above are from ARGUMENT up to here */
+	PASSO_ERROR_MAX = 0x4FF
 };
 
 /* Name ("CORE_RESET", "BUSY" of a refusal, "TOO_FAST" of the planner) and description of an error, for any

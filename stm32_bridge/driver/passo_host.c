@@ -10,8 +10,10 @@
 /* Checks the arguments and completes the posted frame, whose buffer the next frame uses. */
 static enum passo_error make_way(struct passo_host *host, const uint32_t *words, size_t length)
 {
-	if (!host || !words || length == 0u || length > PASSO_FRAME_PAYLOAD_MAX)
-		return PASSO_ERROR_ARGUMENT;
+	if (!host || !words)
+		return PASSO_ERROR_ARGUMENT_POINTER;
+	if (length == 0u || length > PASSO_FRAME_PAYLOAD_MAX)
+		return PASSO_ERROR_ARGUMENT_LENGTH;
 	if (!host->opened)
 		return PASSO_ERROR_NOT_OPEN;
 	while (passo_host_step(host) == PASSO_PENDING)
@@ -22,7 +24,7 @@ static enum passo_error make_way(struct passo_host *host, const uint32_t *words,
 enum passo_error passo_host_step(struct passo_host *host)
 {
 	if (!host)
-		return PASSO_ERROR_ARGUMENT;
+		return PASSO_ERROR_ARGUMENT_POINTER;
 	if (!host->posted)
 		return PASSO_OK;
 	enum passo_error error = passo_host_step_write(host);
@@ -95,9 +97,12 @@ uint32_t *passo_host_payload(struct passo_host *host)
 static enum passo_error post(struct passo_host *host, enum passo_operation operation, uint16_t address,
     size_t length, enum passo_error *result)
 {
-	if (!host || !result || host->posted || length == 0u || length > PASSO_FRAME_PAYLOAD_MAX
-	    || passo_host_is_unsure(host))
-		return PASSO_ERROR_ARGUMENT;
+	if (!host || !result)
+		return PASSO_ERROR_ARGUMENT_POINTER;
+	if (length == 0u || length > PASSO_FRAME_PAYLOAD_MAX)
+		return PASSO_ERROR_ARGUMENT_LENGTH;
+	if (host->posted || passo_host_is_unsure(host))
+		return PASSO_ERROR_ARGUMENT_POSTED;
 	if (!host->opened)
 		return PASSO_ERROR_NOT_OPEN;
 	if (host->lost)
@@ -125,7 +130,7 @@ enum passo_error passo_host_open(struct passo_host *host, const struct passo_har
 	uint32_t identification;
 
 	if (!host || !hardware || !hardware->transfer)
-		return PASSO_ERROR_ARGUMENT;
+		return PASSO_ERROR_ARGUMENT_POINTER;
 	memset(host, 0, sizeof *host);
 	host->hardware = *hardware;
 	if (host->hardware.tries == 0u)
@@ -150,7 +155,7 @@ enum passo_error passo_host_guard(struct passo_host *host, uint8_t axes, uint32_
 	bool marked;
 
 	if (!host)
-		return PASSO_ERROR_ARGUMENT;
+		return PASSO_ERROR_ARGUMENT_POINTER;
 	do { /* again if the counter has just wrapped to 0 */
 		error = passo_host_write(host, PASSO_ADDRESS_IDENTIFICATION, &mark, 1);
 		if ((unsigned)error != PASSO_ERROR_REFUSED + PASSO_VERDICT_READ_ONLY)

@@ -74,6 +74,7 @@ struct passo_host {
 	uint32_t clock_hz;     /* of the core, for the gap between frames; 0: unknown, no gap */
 	uint32_t ready_at;     /* microseconds: when the core will have executed the last frame */
 	uint8_t axes;          /* axes per channel, for counting lines; 0: unknown */
+	uint8_t channels;      /* of the core; 0: unknown */
 	uint8_t last_sequence; /* sequence number of the last write sent */
 	uint8_t sent_before;   /* of the write before that */
 	uint8_t accepted;      /* of the last write known to be accepted by the core */

@@ -54,7 +54,7 @@ enum passo_error passo_override_q16(struct passo *passo, uint32_t rate)
 	if (error != PASSO_OK)
 		return error;
 	if (rate == 0u || rate > PASSO_RATE_FULL)
-		return PASSO_ERROR_ARGUMENT;
+		return PASSO_ERROR_ARGUMENT_RATE;
 	if (!passo->held)
 		return set_rate(passo, false, rate);
 	passo->rate_target = rate;
@@ -64,7 +64,7 @@ enum passo_error passo_override_q16(struct passo *passo, uint32_t rate)
 enum passo_error passo_override(struct passo *passo, uint32_t percent)
 {
 	if (percent == 0u || percent > PERCENT)
-		return PASSO_ERROR_ARGUMENT;
+		return PASSO_ERROR_ARGUMENT_RATE;
 	return passo_override_q16(passo, (percent * PASSO_RATE_FULL + PERCENT / 2u) / PERCENT);
 }
 

@@ -12,15 +12,19 @@
 static enum passo_error check(const struct passo_motor *motor)
 {
 	if (!motor)
-		return PASSO_ERROR_ARGUMENT;
+		return PASSO_ERROR_ARGUMENT_POINTER;
 	return motor->passo ? PASSO_OK : PASSO_ERROR_NOT_OPEN;
 }
 
 enum passo_error passo_motor_init(struct passo_motor *motor, struct passo *passo, uint8_t axis,
     uint32_t steps_per_turn, uint64_t minimum_rpm, uint64_t acceleration)
 {
-	if (!motor || !passo || steps_per_turn == 0u || axis >= PASSO_AXES_MAX)
-		return PASSO_ERROR_ARGUMENT;
+	if (!motor || !passo)
+		return PASSO_ERROR_ARGUMENT_POINTER;
+	if (steps_per_turn == 0u)
+		return PASSO_ERROR_ARGUMENT_STEPS_PER_TURN;
+	if (axis >= PASSO_AXES_MAX)
+		return PASSO_ERROR_ARGUMENT_AXIS;
 	*motor = (struct passo_motor){
 	    .passo = passo,
 	    .axis = axis,

@@ -10,8 +10,10 @@ static enum passo_error find_start(struct passo *passo, const void *move, uint8_
 
 	if (error != PASSO_OK)
 		return error;
-	if (!move || axes == 0u || (unsigned)axes >> passo->machine.axes != 0u)
-		return PASSO_ERROR_ARGUMENT;
+	if (!move)
+		return PASSO_ERROR_ARGUMENT_POINTER;
+	if (axes == 0u || (unsigned)axes >> passo->machine.axes != 0u)
+		return PASSO_ERROR_ARGUMENT_AXIS;
 	error = passo_driver_ready(passo, false);
 	return error != PASSO_OK ? error : passo_target(passo, start);
 }

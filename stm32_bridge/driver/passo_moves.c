@@ -5,7 +5,7 @@
 #include "passo_math.h"
 
 #define VELOCITY_BITS 48u
-/* What nobody means: less than 1/65536 per second, UQ32.32, and a move of less than 1/10000 s. */
+/* What nobody means: less than 1/65536 per second, mm or degrees, and a move of less than 1/10000 s. */
 #define RATE_ABSURD (PASSO_UNIT_Q32 >> 16)
 #define MOVES_PER_S_ABSURD 10000u
 
@@ -64,9 +64,10 @@ enum passo_error passo_move_plan(
 
 	if (error != PASSO_OK)
 		return error;
-	if (!plan || plan->ramp_count == 0u || plan->ramp_count > PASSO_PLAN_RAMPS_MAX
-	    || (shape && !shape->table))
-		return PASSO_ERROR_ARGUMENT;
+	if (!plan || (shape && !shape->table))
+		return PASSO_ERROR_ARGUMENT_POINTER;
+	if (plan->ramp_count == 0u || plan->ramp_count > PASSO_PLAN_RAMPS_MAX)
+		return PASSO_ERROR_ARGUMENT_PLAN;
 	if (!pins_suffice(passo, plan))
 		return PASSO_ERROR_PINS_TOO_SLOW;
 	error = passo_driver_ready(passo, plan->line.endless);
@@ -95,6 +96,12 @@ enum passo_error passo_move_plan(
 static bool is_slow(uint64_t rate)
 {
 	return rate != 0u && rate < RATE_ABSURD;
+}
+
+/* Whether a length or angle, Q31.32, lacks its factor. */
+static bool is_short(int64_t length)
+{
+	return length != 0 && length < (int64_t)RATE_ABSURD && length > -(int64_t)RATE_ABSURD;
 }
 
 /* Of each form: whether it says such a number, and its time in clocks, 0 if it has none. */
@@ -149,7 +156,7 @@ static enum passo_error check(const struct passo *passo, const void *move)
 {
 	enum passo_error error = passo_driver_check(passo);
 
-	return error == PASSO_OK && !move ? PASSO_ERROR_ARGUMENT : error;
+	return error == PASSO_OK && !move ? PASSO_ERROR_ARGUMENT_POINTER : error;
 }
 
 /* Steps for axes that the channel does not have are an error. */
@@ -159,7 +166,7 @@ static enum passo_error check_steps(const struct passo *passo, const void *move,
 
 	for (unsigned i = error == PASSO_OK ? passo->machine.axes : PASSO_AXES_MAX; i < PASSO_AXES_MAX; i++) {
 		if (steps[i] != 0)
-			return PASSO_ERROR_ARGUMENT;
+			return PASSO_ERROR_ARGUMENT_AXIS;
 	}
 	return error;
 }
@@ -185,7 +192,7 @@ PASSO_MOVES_BY_STEPS(MOVE_BY_STEPS)
 		struct passo_plan plan;                                                                      \
 		enum passo_error error = check_steps(passo, move, move ? move->steps : NULL);                \
 		if (error != PASSO_OK || !shape || !shape->table)                                            \
-			return error != PASSO_OK ? error : PASSO_ERROR_ARGUMENT;                             \
+			return error != PASSO_OK ? error : PASSO_ERROR_ARGUMENT_POINTER;                     \
 		return move_planned(passo, passo_plan_user_##method(&passo->machine, move, shape, &plan),    \
 		    &plan, shape, SLOW_##method(move), TIME_##method(move));                                 \
 	}
@@ -198,8 +205,10 @@ enum passo_error passo_move_turn(struct passo *passo, const struct passo_move_tu
 
 	if (error != PASSO_OK)
 		return error;
-	return move_planned(passo, passo_plan_turn(&passo->machine, move, &plan), &plan, NULL,
-	    is_slow(move->rpm) || is_slow(move->acceleration), 0);
+	const enum passo_plan_error result = passo_plan_turn(&passo->machine, move, &plan);
+	if (result == PASSO_PLAN_NO_STEPS && is_short(move->angle))
+		return (enum passo_error)(PASSO_ERROR_ABSURD + PASSO_PLAN_NO_STEPS);
+	return move_planned(passo, result, &plan, NULL, is_slow(move->rpm) || is_slow(move->acceleration), 0);
 }
 
 enum passo_error passo_move_straight(struct passo *passo, const struct passo_move_straight *move)
@@ -210,15 +219,20 @@ enum passo_error passo_move_straight(struct passo *passo, const struct passo_mov
 	if (error != PASSO_OK)
 		return error;
 	struct passo_move_straight scaled = *move;
-	bool slow = is_slow(move->feed);
+	bool slow = is_slow(move->feed), is_tiny = false;
 	for (unsigned i = 0; i < PASSO_AXES_MAX; i++) {
 		if (i >= passo->machine.axes && move->distance[i] != 0)
-			return PASSO_ERROR_ARGUMENT;
+			error = PASSO_ERROR_ARGUMENT_AXIS;
 		if (scaled.limits[i].steps_per_mm == 0u)
 			scaled.limits[i].steps_per_mm = passo->axis[i].steps_per_unit;
 		slow |= is_slow(scaled.limits[i].speed) || is_slow(scaled.limits[i].acceleration)
 		     || is_slow(scaled.limits[i].steps_per_mm);
+		is_tiny |= is_short(move->distance[i]);
 	}
-	return move_planned(
-	    passo, passo_plan_straight(&passo->machine, &scaled, &plan), &plan, NULL, slow, 0);
+	if (error != PASSO_OK)
+		return error;
+	const enum passo_plan_error result = passo_plan_straight(&passo->machine, &scaled, &plan);
+	if (result == PASSO_PLAN_NO_STEPS && is_tiny)
+		return (enum passo_error)(PASSO_ERROR_ABSURD + PASSO_PLAN_NO_STEPS);
+	return move_planned(passo, result, &plan, NULL, slow, 0);
 }

@@ -30,13 +30,14 @@ static enum passo_error identify(struct passo *passo, const struct passo_options
 	const struct passo_parameters_word core = passo_unpack_parameters(words[2]);
 	if (!fits(core.channels, options->channels) || !fits(core.axes, options->axes)
 	    || !fits(core.tick_log2, options->tick_log2) || options->channel >= core.channels
-	    || core.axes == 0u || core.axes > PASSO_AXES_MAX)
+	    || core.channels > PASSO_CHANNELS_MAX || core.axes == 0u || core.axes > PASSO_AXES_MAX)
 		return PASSO_ERROR_PARAMETERS;
 	passo->machine = (struct passo_machine){
 	    .clock_hz = options->clock_hz, .tick_log2 = core.tick_log2, .axes = core.axes};
 	passo->line_places = (uint16_t)(1u << core.line_queue_log2);
 	passo->ramp_places = (uint16_t)(1u << core.ramp_queue_log2);
 	passo->has_inputs = core.inputs;
+	passo->host->channels = core.channels;
 	*run = words[3];
 	return PASSO_OK;
 }
@@ -89,18 +90,31 @@ static enum passo_error make_contact(struct passo *passo, const struct passo_opt
 	return error;
 }
 
+static enum passo_error check(const struct passo *passo, const struct passo_options *options)
+{
+	if (!passo || !options)
+		return PASSO_ERROR_ARGUMENT_POINTER;
+	if (options->clock_hz == 0u)
+		return PASSO_ERROR_ARGUMENT_CLOCK;
+	return options->channel < PASSO_CHANNELS_MAX ? PASSO_OK : PASSO_ERROR_ARGUMENT_CHANNEL;
+}
+
 enum passo_error passo_open_channel(
     struct passo *passo, struct passo_host *host, const struct passo_options *options)
 {
-	if (!passo || !host || !options || options->clock_hz == 0u || options->channel >= PASSO_CHANNELS_MAX)
-		return PASSO_ERROR_ARGUMENT;
+	enum passo_error error = check(passo, options);
+
+	if (error != PASSO_OK)
+		return error;
+	if (!host)
+		return PASSO_ERROR_ARGUMENT_POINTER;
 	memset(passo, 0, sizeof *passo);
 	passo->host = host;
 	passo->channel = options->channel;
 	passo->base =
 	    (uint16_t)(PASSO_ADDRESS_CHANNEL_BASE + options->channel * PASSO_ADDRESS_CHANNEL_STRIDE);
 	passo->rate_target = PASSO_RATE_FULL;
-	enum passo_error error = make_contact(passo, options);
+	error = make_contact(passo, options);
 	if (error == PASSO_OK && passo->belief == PASSO_BELIEF_STOPPED)
 		return passo->fault;
 	passo->belief = error == PASSO_OK ? PASSO_BELIEF_READY : PASSO_BELIEF_NOT_OPEN;
@@ -114,10 +128,12 @@ enum passo_error passo_open_channel(
 enum passo_error passo_open(struct passo *passo, struct passo_host *host,
     const struct passo_hardware *hardware, const struct passo_options *options)
 {
-	if (!passo || !options || options->clock_hz == 0u || options->channel >= PASSO_CHANNELS_MAX)
-		return PASSO_ERROR_ARGUMENT;
+	enum passo_error error = check(passo, options);
+
+	if (error != PASSO_OK)
+		return error;
 	passo->belief = PASSO_BELIEF_NOT_OPEN;
-	enum passo_error error = passo_host_open(host, hardware);
+	error = passo_host_open(host, hardware);
 	passo->fault = error;
 	return error != PASSO_OK ? error : passo_open_channel(passo, host, options);
 }

@@ -13,7 +13,7 @@ enum passo_error passo_positions(struct passo *passo, int32_t *steps)
 	if (error != PASSO_OK)
 		return error;
 	if (!steps)
-		return PASSO_ERROR_ARGUMENT;
+		return PASSO_ERROR_ARGUMENT_POINTER;
 	error = passo_driver_positions(passo, steps, false);
 	for (unsigned i = 0; error == PASSO_OK && i < passo->machine.axes; i++)
 		steps[i] = passo_driver_offset(passo, i, steps[i]);
@@ -37,7 +37,7 @@ enum passo_error passo_positions_units(struct passo *passo, int32_t *steps, int6
 	enum passo_error error = passo_driver_check(passo);
 
 	if (error == PASSO_OK && !units)
-		error = PASSO_ERROR_ARGUMENT;
+		error = PASSO_ERROR_ARGUMENT_POINTER;
 	if (error == PASSO_OK)
 		error = passo_positions(passo, positions);
 	for (unsigned i = 0; error == PASSO_OK && i < passo->machine.axes; i++) {
@@ -55,7 +55,7 @@ enum passo_error passo_to_units(const struct passo *passo, uint8_t axis, int32_t
 	if (error != PASSO_OK)
 		return error;
 	if (!units)
-		return PASSO_ERROR_ARGUMENT;
+		return PASSO_ERROR_ARGUMENT_POINTER;
 	const int64_t found = passo_driver_units(steps, passo->axis[axis].steps_per_unit);
 	if (found == PASSO_NO_UNITS)
 		return PASSO_ERROR_UNITS;
@@ -69,7 +69,7 @@ enum passo_error passo_position_units(struct passo *passo, uint8_t axis, int64_t
 	enum passo_error error = passo_driver_check_axis(passo, axis);
 
 	if (error == PASSO_OK && !units)
-		error = PASSO_ERROR_ARGUMENT;
+		error = PASSO_ERROR_ARGUMENT_POINTER;
 	if (error == PASSO_OK)
 		error = passo_positions(passo, positions);
 	return error != PASSO_OK ? error : passo_to_units(passo, axis, positions[axis], units);
@@ -82,7 +82,7 @@ enum passo_error passo_target(const struct passo *passo, int32_t *steps)
 	if (error != PASSO_OK)
 		return error;
 	if (!steps)
-		return PASSO_ERROR_ARGUMENT;
+		return PASSO_ERROR_ARGUMENT_POINTER;
 	if (passo_driver_is_broken(passo))
 		return PASSO_ERROR_BROKEN;
 	if (passo_driver_is_stopped(passo))

@@ -10,7 +10,7 @@ enum passo_error passo_read_state(struct passo *passo, struct passo_snapshot *sn
 	if (error != PASSO_OK)
 		return error;
 	if (!snapshot)
-		return PASSO_ERROR_ARGUMENT;
+		return PASSO_ERROR_ARGUMENT_POINTER;
 	error = passo_driver_look(passo, false);
 	if (error == PASSO_OK)
 		*snapshot = passo->snapshot;
@@ -23,7 +23,7 @@ enum passo_error passo_angle(struct passo *passo, uint8_t axis, uint32_t steps_p
 	enum passo_error error = passo_driver_check_axis(passo, axis);
 
 	if (error == PASSO_OK && (!degrees || steps_per_turn == 0u))
-		error = PASSO_ERROR_ARGUMENT;
+		error = degrees ? PASSO_ERROR_ARGUMENT_STEPS_PER_TURN : PASSO_ERROR_ARGUMENT_POINTER;
 	if (error == PASSO_OK)
 		error = passo_positions(passo, positions);
 	if (error == PASSO_OK)
@@ -38,7 +38,7 @@ enum passo_error passo_rpm(struct passo *passo, uint32_t steps_per_turn, uint64_
 	if (error != PASSO_OK)
 		return error;
 	if (!rpm || steps_per_turn == 0u)
-		return PASSO_ERROR_ARGUMENT;
+		return rpm ? PASSO_ERROR_ARGUMENT_STEPS_PER_TURN : PASSO_ERROR_ARGUMENT_POINTER;
 	error = passo_driver_look(passo, false);
 	if (error != PASSO_OK)
 		return error;
@@ -54,12 +54,12 @@ enum passo_error passo_rpm(struct passo *passo, uint32_t steps_per_turn, uint64_
 
 enum passo_error passo_lost_steps(struct passo *passo, uint8_t axis, uint32_t *lost)
 {
-	enum passo_error error = passo_driver_check(passo);
+	enum passo_error error = passo_driver_check_axis(passo, axis);
 
 	if (error != PASSO_OK)
 		return error;
-	if (!lost || axis >= passo->machine.axes)
-		return PASSO_ERROR_ARGUMENT;
+	if (!lost)
+		return PASSO_ERROR_ARGUMENT_POINTER;
 	const unsigned address =
 	    passo->base + PASSO_CHANNEL_AXIS_BASE + axis * PASSO_CHANNEL_AXIS_STRIDE + PASSO_AXIS_LOST_STEPS;
 	return passo_host_read(passo->host, (uint16_t)address, lost, 1);

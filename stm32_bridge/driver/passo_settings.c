@@ -28,14 +28,14 @@ enum passo_error passo_configure_axis(
 	if (error != PASSO_OK)
 		return error;
 	if (!config)
-		return PASSO_ERROR_ARGUMENT;
+		return PASSO_ERROR_ARGUMENT_POINTER;
 	const uint64_t high = clocks_of(passo, config, config->step_high_ns);
 	const uint64_t low = clocks_of(passo, config, config->step_low_ns);
 	const uint64_t setup = clocks_of(passo, config, config->dir_setup_ns);
 	const uint64_t hold = clocks_of(passo, config, config->dir_hold_ns);
 	if (high > PASSO_PIN_CLOCKS_MAX || low > PASSO_PIN_CLOCKS_MAX || setup > PASSO_PIN_CLOCKS_MAX
 	    || hold > PASSO_PIN_CLOCKS_MAX)
-		return PASSO_ERROR_ARGUMENT;
+		return PASSO_ERROR_ARGUMENT_PIN_TIME;
 	error = passo_driver_ready(passo, true);
 	if (error != PASSO_OK)
 		return error;
@@ -104,7 +104,7 @@ enum passo_error passo_configure_motion(
 	if (error != PASSO_OK)
 		return error;
 	if (drain_velocity > PASSO_VELOCITY_MAX >> 16)
-		return PASSO_ERROR_ARGUMENT;
+		return PASSO_ERROR_ARGUMENT_DRAIN_VELOCITY;
 	const uint32_t words[] = {slew_of(passo, hold_clocks), slew_of(passo, stop_clocks), drain_velocity};
 	return passo_driver_write(passo, PASSO_CHANNEL_RATE_SLEW, words, drain_velocity != 0u ? 3u : 2u);
 }

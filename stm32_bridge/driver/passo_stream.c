@@ -114,7 +114,7 @@ enum passo_error passo_stream(struct passo *passo, const struct passo_source *so
 	if (error != PASSO_OK)
 		return error;
 	if (!source || !source->line || !source->ramp)
-		return PASSO_ERROR_ARGUMENT;
+		return PASSO_ERROR_ARGUMENT_POINTER;
 	error = passo_driver_ready(passo, true);
 	if (error == PASSO_OK)
 		error = passo_driver_gate(passo, PASSO_GATE_CLOSED);
@@ -133,7 +133,7 @@ enum passo_error passo_stream_start(struct passo *passo)
 	if (error != PASSO_OK)
 		return error;
 	if (passo->stream != PASSO_STREAM_FILLS)
-		return PASSO_ERROR_ARGUMENT;
+		return PASSO_ERROR_NOT_PREPARED;
 	if (passo->post == PASSO_POST_START)
 		passo_driver_drop(passo);
 	error = passo_driver_gate(passo, passo->gate);

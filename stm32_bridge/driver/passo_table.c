@@ -51,7 +51,7 @@ static enum passo_error load_sigmoid(struct passo_host *host, uint32_t alpha)
 	uint16_t points[PASSO_TABLE_SIZE];
 
 	if (passo_sigmoid_table(alpha, points) != PASSO_PLAN_OK)
-		return PASSO_ERROR_ARGUMENT;
+		return PASSO_ERROR_ARGUMENT_PLAN;
 	return load(host, PASSO_SHAPE_SIGMOID, points);
 }
 
@@ -105,9 +105,9 @@ enum passo_error passo_load_table(struct passo *passo, enum passo_shape bank, co
 	if (error != PASSO_OK)
 		return error;
 	if (bank == PASSO_SHAPE_LINEAR || (unsigned)bank > PASSO_BANKS)
-		return PASSO_ERROR_ARGUMENT;
+		return PASSO_ERROR_ARGUMENT_SHAPE;
 	if (points && passo_table_check(points, &facts) != PASSO_PLAN_OK)
-		return PASSO_ERROR_ARGUMENT;
+		return PASSO_ERROR_ARGUMENT_SHAPE;
 	error = passo_driver_ready(passo, true);
 	if (error == PASSO_ERROR_MOVING)
 		return PASSO_ERROR_TABLE;

@@ -11,7 +11,7 @@ enum passo_error passo_turn_start(struct passo *passo, const struct passo_turnin
 	if (error != PASSO_OK)
 		return error;
 	if (!turning)
-		return PASSO_ERROR_ARGUMENT;
+		return PASSO_ERROR_ARGUMENT_POINTER;
 	enum passo_plan_error refused = passo_plan_turning_start(&passo->machine, turning, rpm, &plan);
 	if (refused != PASSO_PLAN_OK)
 		return (enum passo_error)((unsigned)PASSO_ERROR_PLAN + (unsigned)refused);

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from passo.compiler import BuildError
 from passo.engine import Engine
+from passo.moves import AXES_MAX
 from passo.toolchain import environment, paths
 from passo_stm32.machine import Machine
 from passo_stm32.wires import CorePins
@@ -76,15 +77,19 @@ class Motion:
         return self.step[rows, 0], 1 - 2 * (self.dir[rows] >> axis & 1)
 
 
-def motions(events: np.ndarray) -> list[Motion]:
-    """All motions in the events (passo.engine.EVENT) of a core with one channel; the last must have ended."""
-    running = events["running"] & 1
+def motions(events: np.ndarray, channel: int = 0, axes: int = AXES_MAX) -> list[Motion]:
+    """All motions of a channel in the events (passo.engine.EVENT) of a core; the last must have ended.
+
+    `axes` is the number of axes of each channel.
+    """
+    running = events["running"] >> channel & 1
+    first, mask = np.uint64(channel * axes), np.uint64((1 << axes) - 1)
     edges = np.flatnonzero(np.diff(np.concatenate([[0], running]).astype(np.int8)))
     starts, ends = edges[::2], edges[1::2]
     found = []
     for begin, end, stop in zip(starts, ends, [*starts[1:], len(events)], strict=False):
         part = events[begin:stop]
-        levels = part["step"].astype(np.int64)
+        levels = (part["step"].astype(np.uint64) >> first & mask).astype(np.int64)
         changed = np.flatnonzero(np.diff(np.concatenate([[0], levels])))
         start = int(events["clock"][begin])
         clocks = part["clock"][changed].astype(np.int64) - start
@@ -93,7 +98,7 @@ def motions(events: np.ndarray) -> list[Motion]:
                 start=start,
                 clocks=int(events["clock"][end]) - start,
                 step=np.stack([clocks, levels[changed]], axis=1),
-                dir=part["dir"][changed].astype(np.int64),
+                dir=(part["dir"][changed].astype(np.uint64) >> first & mask).astype(np.int64),
             )
         )
     return found

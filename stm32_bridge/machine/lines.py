@@ -15,14 +15,16 @@ FILE_ONLY = {key.name for form in FORMS.values() for key in form.keys if key.fil
 
 def read_toml(path: Path) -> dict[str, Any]:
     """Parse a move file; decimal fractions stay text."""
-    return tomllib.loads(path.read_text(encoding="utf-8"), parse_float=str)
+    return tomllib.loads(path.read_text(encoding="utf-8-sig"), parse_float=str)
 
 
-def pin_lines(data: dict[str, Any], axes: int) -> list[str]:
-    """Lines that set the pin timing of a file, if it has any."""
+def pin_lines(data: dict[str, Any], axes: int, channel: int = 0) -> list[str]:
+    """Lines that set the pin timing of a channel of a file, if it has any."""
     pins = data.get("pins", {})
-    keys = " ".join(f"{key}={pins[key]}" for key in PIN_KEYS if key in pins)
-    return [f"config axis={axis} {keys}" for axis in range(axes)] if keys else []
+    pins = pins | pins.get(str(channel), {})
+    words = [f"channel={channel}"] if channel else []
+    words += [f"{key}={pins[key]}" for key in PIN_KEYS if key in pins]
+    return [" ".join([f"config axis={axis}", *words]) for axis in range(axes)] if pins else []
 
 
 def move_lines(data: dict[str, Any], folder: Path) -> list[list[str]]:

@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 from passo.build import Parameters
 from passo.engine import EVENT, Engine, model_engine, rtl_engine
-from passo.move_file import read_moves
-from passo.moves import MoveFile
+from passo.move_file import read_channels
+from passo.moves import AXES_MAX, Channels, MoveFile
 from passo.plan import Plan, plan_move
-from passo.run import execute, parameters_for
+from passo.run import execute, parameters_of
 from passo_stm32.board import Board, Motion, motions
 from passo_stm32.lines import move_lines, pin_lines, read_toml
 
@@ -45,11 +45,17 @@ def with_clock(path: Path, clock_hz: int, folder: Path) -> Path:
     return copy
 
 
+def channels_of(path: Path, clock_hz: int) -> Channels:
+    """Read a move file, for a core with this clock."""
+    with tempfile.TemporaryDirectory() as folder:
+        return read_channels(with_clock(path, clock_hz, Path(folder)))
+
+
 def on_the_model(file: MoveFile, number: int, plan: Plan, parameters: Parameters) -> Motion:
     """The pulses of one move, planned on the PC and executed on the C model."""
     one = replace(file, moves=(file.moves[number],))
     with model_engine(parameters, file.clock_hz) as engine:
-        run = execute(one, [plan], engine)
+        run = execute(one, [plan], engine)  # its events are those of its channel alone
     if problems := run.problems():
         raise AssertionError(problems[0])
     events = np.zeros(len(run.pins), EVENT)
@@ -59,13 +65,15 @@ def on_the_model(file: MoveFile, number: int, plan: Plan, parameters: Parameters
     return motion
 
 
-def type_move(board: Board, lines: list[str], seconds: float) -> Motion:
-    """Type the lines of one move; return its pulses."""
+def type_move(
+    board: Board, lines: list[str], seconds: float, channel: int = 0, axes: int = AXES_MAX
+) -> Motion:
+    """Type the lines of one move; return the pulses of its channel, which has `axes` axes."""
     board.events()
     for line in lines:
         board.must(line)
     board.wait_motion(seconds)
-    (motion,) = motions(board.events())
+    (motion,) = motions(board.events(), channel, axes)
     return motion
 
 
@@ -81,17 +89,20 @@ def play(
     """
     began = time.monotonic()
     data = read_toml(path)
-    with tempfile.TemporaryDirectory() as folder:
-        file = read_moves(with_clock(path, clock_hz, Path(folder)))
-    parameters = parameters_for(file.axes)
+    channels = channels_of(path, clock_hz)
+    parameters = parameters_of(channels)
     core: Engine = rtl_engine(parameters, clock_hz) if engine == "rtl" else model_engine(parameters, clock_hz)
     board = Board(core)
-    for line in pin_lines(data, file.axes):
-        board.must(line)
+    for file in channels.files:
+        for line in pin_lines(data, file.axes, file.channel):
+            board.must(line)
+    typed = move_lines(data, path.parent)
+    moves = [(file.number(index), file, index) for file in channels.files for index in range(len(file.moves))]
     played, clocks = [], 0
-    for number, lines in enumerate(move_lines(data, path.parent)):
+    for place, file, number in sorted(moves, key=lambda move: move[0]):
+        lines = typed[place - 1]
         plan = plan_move(file.moves[number], clock_hz, parameters)
-        made = type_move(board, lines, plan.clocks / clock_hz)
+        made = type_move(board, lines, plan.clocks / clock_hz, file.channel, parameters.axes)
         expected = on_the_model(file, number, plan, parameters)
         played.append(Played(lines[-1], plan, made, expected, plan.clocks / clock_hz))
         clocks += plan.clocks
@@ -101,6 +112,6 @@ def play(
 
 def planned_clocks(path: Path, clock_hz: int) -> int:
     """Total length of the moves of a file in clocks."""
-    with tempfile.TemporaryDirectory() as folder:
-        file = read_moves(with_clock(path, clock_hz, Path(folder)))
-    return sum(plan_move(move, clock_hz, parameters_for(file.axes)).clocks for move in file.moves)
+    channels = channels_of(path, clock_hz)
+    parameters = parameters_of(channels)
+    return sum(plan_move(move, clock_hz, parameters).clocks for file in channels.files for move in file.moves)

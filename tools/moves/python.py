@@ -70,8 +70,9 @@ def _class(form: Form) -> list[str]:
     """The dataclass with the parameters of a form."""
     name = "Move" + form.name.title().replace("_", "")
     lines = ["", "", "@dataclass(frozen=True)", f"class {name}:", f'    """{form.summary}"""', ""]
-    for key in sorted(form.keys, key=lambda key: key.file_only):
-        lines.append(f"    {key.name}: {key.kind.python}{' = ()' if key.file_only else ''}")
+    for key in sorted(form.keys, key=lambda key: key.trails):
+        default = f" = {key.default or '()'}" if key.trails else ""
+        lines.append(f"    {key.name}: {key.kind.python}{default}")
     lines += ["", f'    form: ClassVar[Form] = FORMS["{form.name}"]']
     if form.profile:
         lines.append(f'    profile: ClassVar[str] = "{form.profile}"')

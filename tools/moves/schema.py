@@ -63,6 +63,12 @@ class Key:
     console_default: str | None = None
     console_default_says: str = ""
     file_only: bool = False
+    every: bool = False  # of every form
+
+    @property
+    def trails(self) -> bool:
+        """In the class of a form it comes last, with its default."""
+        return self.file_only or self.every
 
     @property
     def shared(self) -> bool:
@@ -179,7 +185,8 @@ def _form(
 ) -> Form:
     place = f"form {table.get('name')}"
     keys: dict[str, Key] = {}
-    for entry in table["keys"]:
+    every = [name for name, key in common.items() if key.get("every")]
+    for entry in (*table["keys"], *every):
         given = {"name": entry} if isinstance(entry, str) else entry
         key = _key(place, {**common.get(given["name"], {}), **given}, kinds, constants, keys)
         _want(key.name not in keys, f"{place}: {key.name} is there twice")
