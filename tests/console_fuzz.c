@@ -202,10 +202,10 @@ int main(int count, char **arguments)
 	state = (uint64_t)(count > 1 ? atoll(arguments[1]) : 1) * UINT64_C(0x9E3779B97F4A7C15) + 1u;
 	while (time(NULL) < end) {
 		const struct passo_engine_config config = {.core = {.channels = draw(4) == 0 ? 2u : 1u,
-		    .axes = (uint8_t)(1u + draw(8)),
-		    .tick_log2 = 7,
-		    .line_queue_log2 = 4,
-		    .ramp_queue_log2 = 4},
+							       .axes = (uint8_t)(1u + draw(8)),
+							       .tick_log2 = 7,
+							       .line_queue_log2 = 4,
+							       .ramp_queue_log2 = 4},
 		    .clock_hz = CLOCK_HZ,
 		    .spi_half_period = 2};
 		struct passo_terminal *terminal;

@@ -87,7 +87,8 @@ def _traces(folder: Path, parameters: Parameters, file: Channels) -> Iterator[st
         yield from group(
             f"{title}motion", *names(f"{channel}.state[2:0]", "state"),
             *names(f"{channel}.cause[{CHANNEL_STATE_CAUSE_BITS - 1}:0]", "cause"),
-            f"@{BITS}", moving, f"@{DECIMAL}", f"{channel}.line_room[{lines}:0]", f"{channel}.ramp_room[{ramps}:0]", f"{channel}.rate[16:0]",
+            f"@{BITS}", moving, f"@{DECIMAL}", f"{channel}.line_room[{lines}:0]",
+            f"{channel}.ramp_room[{ramps}:0]", f"{channel}.rate[16:0]",
         )  # fmt: skip
         curve = [f"@{CURVE}", f"{channel}.velocity[31:0]", "@20000", "-", "-", "-"]
         substep = [f"@{BITS}", f"{channel}.substep"]
