@@ -23,6 +23,7 @@ def history_file() -> Path:
 
 def typed(terminal: Terminal) -> Iterator[str]:
     """The lines until ctrl-D. Ctrl-C discards the line at the prompt, or ends what lets time pass."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a script's background has it ignored
     with _history():
         while True:
             try:
