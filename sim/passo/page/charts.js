@@ -73,7 +73,7 @@ class View {
 //   read(axis, clock)    text at the cursor
 class TimeChart {
     constructor(parent, view, spec) {
-        Object.assign(this, { view, spec, most: 1 });
+        Object.assign(this, { view, spec });
         const panel = element(parent, "section", "panel");
         panel.id = spec.id;
         const head = element(panel, "header");
@@ -174,8 +174,6 @@ class TimeChart {
         const room = (bounds[1] - bounds[0]) * 0.07 || Math.abs(bounds[0]) * 0.07 || 1;
         this.bounds = spec.bounds || [bounds[0] - room, bounds[1] + room];
         this.plot.setData([grid, ...series], true);
-        this.note.textContent = this.most > 1 ? spec.decimated(this.most) : spec.exact || "";
-        this.note.classList.toggle("decimated", this.most > 1);
     }
 
     draw(ctx, scale) {
@@ -190,13 +188,15 @@ class TimeChart {
             ctx.stroke();
         }
         ctx.setLineDash([]);
-        this.most = 1;
+        let most = 1;
         for (const [axis, n] of this.view.axes) {
             ctx.strokeStyle = ctx.fillStyle = colorOf(n);
             ctx.lineWidth = Math.max(1, devicePixelRatio);
             ctx.globalAlpha = this.spec.alpha ?? 1;
-            this.most = Math.max(this.most, this.spec.draw?.(ctx, scale, axis, n) ?? 1);
+            most = Math.max(most, this.spec.draw?.(ctx, scale, axis, n) ?? 1);
         }
+        this.note.textContent = most > 1 ? this.spec.decimated(most) : this.spec.exact;
+        this.note.classList.toggle("decimated", most > 1);
     }
 
     read(clock) {
