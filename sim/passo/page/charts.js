@@ -222,13 +222,14 @@ function visible(view, name, factor) {
 }
 
 function addMotionCharts(parent, view) {
-    const { hz, facts } = view.motion, units = new Set(facts.runs.map(run => run.unit));
+    const { hz, facts, planned } = view.motion, units = new Set(facts.runs.map(run => run.unit));
     const unit = units.size === 1 ? [...units][0] : "steps", same = units.size === 1;
     const per = axis => (same ? axis.per_step : 1);
     const shared = { height: 210, decimated: most => `up to ${grouped(most)} steps per pixel, drawn as their range`, exact: "every step drawn" };
     new TimeChart(parent, view, {
         ...shared, id: "position", title: "Position", unit,
-        ideal: (axis, clock) => axis.ideal(clock)[1] * per(axis),
+        ideal: planned && ((axis, clock) => axis.ideal(clock)[1] * per(axis)),
+        range: () => visible(view, "counted", per),
         draw: (ctx, scale, axis) => drawTrace(ctx, scale, axis.rises, axis.counted, axis.extremes.counted,
             { before: 0, factor: per(axis), end: axis.end }),
         read: (axis, clock) => `${plain(axis.position(clock) * per(axis), 9)}`,
@@ -236,11 +237,12 @@ function addMotionCharts(parent, view) {
     const speed = per => axis => per(axis) * hz;
     new TimeChart(parent, view, {
         ...shared, id: "speed", title: "Speed", unit: `${unit}/s`,
-        ideal: (axis, clock) => axis.ideal(clock)[0] * per(axis) * hz,
+        ideal: planned && ((axis, clock) => axis.ideal(clock)[0] * per(axis) * hz),
         draw: (ctx, scale, axis) => drawTrace(ctx, scale, axis.rises, axis.speeds, axis.extremes.speeds, { factor: speed(per)(axis) }),
         range: () => visible(view, "speeds", speed(per)),
-        read: (axis, clock) => plain(axis.ideal(clock)[0] * per(axis) * hz),
+        read: (axis, clock) => plain((planned ? axis.ideal(clock)[0] : axis.speed(clock)) * per(axis) * hz),
     });
+    if (!planned) return;
     new TimeChart(parent, view, {
         ...shared, id: "acceleration", title: "Acceleration", unit: `${unit}/s²`, height: 160, exact: "of the ideal curve",
         ideal: (axis, clock) => axis.ideal(clock)[2] * per(axis) * hz * hz,

@@ -149,6 +149,12 @@ class Axis {
         return [velocity * plan.share, plan.base + distance * plan.share, slope * plan.share];
     }
 
+    // Speed at the pins, in steps per clock.
+    speed(clock) {
+        const made = lower(this.rises, clock + 1e-9);
+        return made ? this.speeds[made - 1] || 0 : 0;
+    }
+
     // Position counted at the pins.
     position(clock) {
         const made = lower(this.rises, clock + 1e-9);
@@ -171,6 +177,7 @@ class Motion {
     constructor(facts, edges) {
         this.facts = facts;
         this.hz = facts.clock_hz;
+        this.planned = facts.runs.some(run => run.plans.length);  // otherwise there are no ideal curves
         this.clocks = Math.max(1, facts.clocks);
         this.axes = facts.axes.map((own, n) => new Axis(own, facts.runs[own.run], edges[n], facts.alpha_reset));
     }

@@ -39,7 +39,7 @@ function addSummary(motion) {
     tile(duration(facts.clocks, hz), `${grouped(facts.clocks)} clocks at ${plain(hz / 1e6)} MHz`);
     tile(`${motion.axes.length}`, facts.runs.length > 1 ? `axes on ${facts.runs.length} channels` : motion.axes.length > 1 ? "axes" : "axis");
     if (summary.matched_edges !== null) tile(grouped(summary.matched_edges), "edges equal in RTL and C model");
-    tile(plain(Math.max(0, ...summary.axes.map(axis => axis.largest_error_steps)), 2), "steps, largest timing error");
+    if (motion.planned) tile(plain(Math.max(0, ...summary.axes.map(axis => axis.largest_error_steps)), 2), "steps, largest timing error");
 }
 
 function addToolbar(bar, view) {
@@ -90,13 +90,14 @@ function showMotion(motion) {
     const [charts, side, tables] = ["charts", "side", "tables"].map(id => document.getElementById(id));
     for (const part of [charts, side, tables]) part.textContent = "";
     const view = new View(motion);
+    document.getElementById("curves").hidden = !motion.planned;
     addToolbar(document.getElementById("toolbar"), view);
     addMotionCharts(charts, view);
     addPins(charts, view);
-    const errors = addErrors(charts, view);
-    const histogram = new Histogram(side, view, errors);
+    const errors = motion.planned ? addErrors(charts, view) : null;
+    const histogram = errors && new Histogram(side, view, errors);
     const path = motion.axes.length > 1 ? new ToolPath(side, view) : null;
-    addTables(tables, view);
+    if (motion.planned) addTables(tables, view);
     passo = { motion, view, errors, histogram, path };
     view.changed();
 }

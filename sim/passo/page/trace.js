@@ -29,7 +29,7 @@ function clipped(chart, draw) {
 // first clock is `before`. Returns the most steps that share a column: 1 where all are drawn.
 function drawTrace(ctx, scale, clocks, values, extremes, { points = false, before = NaN, factor = 1, end = Infinity } = {}) {
     const first = Math.max(0, lower(clocks, scale.min) - 1), last = Math.min(clocks.length, lower(clocks, scale.max) + 1);
-    if (last - first > scale.width / 2) return drawColumns(ctx, scale, clocks, extremes, points, factor);
+    if (last - first > scale.width / 2) return drawColumns(ctx, scale, clocks, extremes, points, factor, end);
     ctx.beginPath();
     if (points) {
         const size = Math.max(2, Math.min(6, scale.width / (last - first + 1) / 3)) * devicePixelRatio;
@@ -57,8 +57,9 @@ function drawTrace(ctx, scale, clocks, values, extremes, { points = false, befor
     return 1;
 }
 
-function drawColumns(ctx, scale, clocks, extremes, points, factor) {
-    let most = 1, begin = lower(clocks, scale.min), before = begin;
+// Values hold until `last`.
+function drawColumns(ctx, scale, clocks, extremes, points, factor, last) {
+    let most = 1, begin = lower(clocks, scale.min), before = Math.max(0, begin - 1);
     const thin = ctx.lineWidth;
     ctx.beginPath();
     for (let column = 0; column < scale.width; column++) {
@@ -66,7 +67,7 @@ function drawColumns(ctx, scale, clocks, extremes, points, factor) {
         most = Math.max(most, end - begin);
         // A value holds until the next step: the one before a column shows in it.
         const [least, greatest] = extremes.of(points ? begin : before, end);
-        if (end > begin && least <= greatest) {
+        if (least <= greatest && (end > begin || scale.clock(column) < last)) {
             const [bottom, top] = [least, greatest].map(value => scale.y(value * factor));
             ctx.rect(scale.left + column, top - thin / 2, 1, Math.max(thin, bottom - top + thin));
         }
