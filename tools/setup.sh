@@ -2,8 +2,9 @@
 # Installs the prerequisites of all other make targets: Debian packages, .venv, Python packages.
 #
 #     tools/setup.sh [SET...]
-# A SET is an optional set of Python packages in requirements-SET.txt (yosys, fpga, ...), installed last; or
-# `firmware`: Debian's compiler for the STM32. Safe to run again at any time: it installs only what is missing.
+# A SET is an optional set of Python packages in requirements-SET.txt (yosys, fpga, ...), installed last; or `firmware`:
+# Debian's compiler for the STM32; or `browser`: Debian's headless Chromium. Safe to run again at any time: it installs
+# only what is missing.
 # PYTHON selects the interpreter for the environment (default: python3).
 
 set -euo pipefail
@@ -39,6 +40,8 @@ for name in "$@"; do
     if [ "$name" = firmware ]; then
         tools+=" arm-none-eabi-gcc:gcc-arm-none-eabi"
         headers+=" newlib/newlib.h:libnewlib-arm-none-eabi"
+    elif [ "$name" = browser ]; then
+        tools+=" chromium-headless-shell:chromium-headless-shell"
     else
         python_sets+=("$name")
     fi

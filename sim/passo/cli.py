@@ -52,6 +52,7 @@ def _parser() -> argparse.ArgumentParser:
         "start of the motion, 100ms..102ms a part of it",
     )
     run.add_argument("--plot", action="store_true", help="write motion.png")
+    run.add_argument("--report", action="store_true", help="write report.html, to zoom down to single clocks")
     shape = commands.add_parser("shape", help="create and check the table of a user-defined shape")
     shape.set_defaults(command=_shape)
     source = shape.add_mutually_exclusive_group(required=True)
@@ -92,9 +93,10 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _run(options: argparse.Namespace) -> int:
-    from passo.run_command import run_file
+    from passo.run_command import Wanted, run_file
 
-    return OK if run_file(options.moves, options.engine, options.out, options.waves, options.plot) else FAILED
+    wanted = Wanted(options.waves, options.plot, options.report)
+    return OK if run_file(options.moves, options.engine, options.out, wanted) else FAILED
 
 
 def _shape(options: argparse.Namespace) -> int:

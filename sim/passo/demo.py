@@ -10,6 +10,7 @@ from passo.move_file import read_channels
 from passo.plan import plan_channels
 from passo.plot import plot_file, plot_overview
 from passo.report import problems, summarize_channels, write_json, write_pulses
+from passo.report_page import write_page
 from passo.run import Run, execute_channels, open_engine, parameters_for, parameters_of
 from passo.toolchain import paths
 
@@ -32,6 +33,7 @@ def run_example(name: str) -> tuple[list[Run], dict[str, Any]]:
     write_pulses(runs, out / "pulses.csv")
     write_json(summary, out / "summary.json")
     plot_file(runs, out)
+    write_page(file, runs, "both", out / "report.html")
     return runs, summary
 
 
@@ -66,6 +68,6 @@ def demo() -> bool:
         )
     console.print(shown)
     folder = FOLDER.relative_to(paths.root)
-    print(f"{folder}/NAME/ has a page for each move, motion.png, and its steps, pulses.csv")
+    print(f"{folder}/NAME/ has of each move report.html, to zoom in, motion.png, and its steps, pulses.csv")
     print(f"open: {folder}/demo.png")
     return all(summary["ok"] for summary in summaries.values())

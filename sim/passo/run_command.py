@@ -2,6 +2,7 @@
 """`passo run`: from a move file to a folder of results."""
 
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 
 from passo.console import progress
@@ -15,12 +16,21 @@ from passo.run import Run, execute_channels, open_engine, parameters_of
 from passo.toolchain import paths
 from passo.waves import FILES, Window, read_window, record, write_view
 
-PULSES, SUMMARY, PICTURE = "pulses.csv", "summary.json", "motion.png"
+PULSES, SUMMARY, PICTURE, PAGE = "pulses.csv", "summary.json", "motion.png", "report.html"
 
 
-def run_file(moves: Path, engine: str, out: Path | None, waves: str | None, plot: bool) -> bool:
+@dataclass(frozen=True)
+class Wanted:
+    """What to write besides the pulses and the summary; `waves` is a window of time."""
+
+    waves: str | None = None
+    plot: bool = False
+    report: bool = False
+
+
+def run_file(moves: Path, engine: str, out: Path | None, wanted: Wanted) -> bool:
     """Run the moves, write the results and say where they are; return whether the motion was exact."""
-    window = _read_window(waves, engine)
+    window = _read_window(wanted.waves, engine)
     file = read_channels(moves)
     parameters = parameters_of(file)
     plans = plan_channels(file, parameters)
@@ -42,11 +52,15 @@ def run_file(moves: Path, engine: str, out: Path | None, waves: str | None, plot
             write_view(out, parameters, file, runs[0].start - runs[0].late)
     write_pulses(runs, out / PULSES)
     write_json(summarize_channels(file, runs, engine), out / SUMMARY)
-    if plot:
+    if wanted.plot:
         from passo.plot import plot_file
 
         plot_file(runs, out)
-    return _conclude(file, runs, out, window, plot)
+    if wanted.report:
+        from passo.report_page import write_page
+
+        write_page(file, runs, engine, out / PAGE)
+    return _conclude(file, runs, out, window, wanted)
 
 
 def _longest(plans: list[list[Plan]]) -> int:
@@ -76,13 +90,13 @@ def _clear(out: Path) -> None:
     try:
         out.mkdir(parents=True, exist_ok=True)
         pictures = [path.name for path in out.glob("motion_channel_[0-7].png")]
-        for result in (PULSES, SUMMARY, PICTURE, *pictures, *FILES):
+        for result in (PULSES, SUMMARY, PICTURE, PAGE, *pictures, *FILES):
             (out / result).unlink(missing_ok=True)
     except OSError as error:
         raise BadInputError(f"{out}: {error.strerror}") from None
 
 
-def _conclude(file: Channels, runs: list[Run], out: Path, window: Window | None, plot: bool) -> bool:
+def _conclude(file: Channels, runs: list[Run], out: Path, window: Window | None, wanted: Wanted) -> bool:
     """Print the result and which files to open."""
     found = problems(runs)
     for problem in found:
@@ -98,6 +112,6 @@ def _conclude(file: Channels, runs: list[Run], out: Path, window: Window | None,
     if window:
         fst, view = (out / name for name in FILES[:2])
         print(f"waves, {fst.stat().st_size / 1e6:.1f} MB; open: gtkwave {view}   or: surfer {fst}")
-    if plot:
-        print(f"open: {out / PICTURE}")
+    for name in [PICTURE] * wanted.plot + [PAGE] * wanted.report:
+        print(f"open: {out / name}")
     return not found

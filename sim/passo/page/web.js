@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+// The page to try Passo: lines of the console in, the edges at the pins of the C model out.
+"use strict";
+
+const AXES = 4, CLOCKS = [16e6, 72e6, 100e6], LINE_MAX = 4000, ROW_BYTES = 24;
+const EXAMPLES = {
+    "three axes": "move steps=6400,3840,-2560 profile=cosine total_time=0.4 ramp_time=0.2",
+    "by speed": "move steps=20000 profile=linear start_speed=400 speed=50000 acceleration=500000 stop_speed=400",
+    "there and back": "move steps=3200 profile=sigmoid total_time=0.2 ramp_time=0.08\nmove steps=-3200 profile=sigmoid total_time=0.2 ramp_time=0.08",
+};
+
+class Machine {
+    static async load(base64) {
+        if (typeof WebAssembly === "undefined") throw new Error("this browser has no WebAssembly");
+        const bytes = await inflate(base64), machine = new Machine();
+        const { module, instance } = await WebAssembly.instantiate(bytes, machine.imports()).then(made => made);
+        machine.c = instance.exports;
+        machine.module = module;
+        machine.c._initialize?.();
+        return machine;
+    }
+
+    // The C library asks for files and an exit; there are none.
+    imports() {
+        const none = () => 8;  // errno of a bad file
+        const wasi = new Proxy({}, { get: (_, name) => (name === "proc_exit" ? code => { throw new Error(`exit ${code}`); } : none), has: () => true });
+        return { wasi_snapshot_preview1: wasi };
+    }
+
+    said() {
+        const length = this.c.said();
+        return new TextDecoder().decode(new Uint8Array(this.c.memory.buffer, this.c.text(), length));
+    }
+
+    // Executes lines on a core after reset; returns what the console said, and the events at the pins.
+    run(lines, axes, hz) {
+        if (!this.c.open(axes, hz)) throw new Error("out of memory");
+        this.said();
+        let text = "";
+        for (const line of ["enable", ...lines]) {
+            const bytes = new TextEncoder().encode(line + "\n");
+            if (bytes.length > LINE_MAX) throw new Error(`a line has more than ${LINE_MAX} bytes`);
+            new Uint8Array(this.c.memory.buffer).set(bytes, this.c.line());
+            const goes = this.c.type(bytes.length), answer = this.said();
+            if (line !== "enable") text += `> ${line}\n${answer}`;
+            if (!goes) throw new Error("the motion stands: it is held, or waits for sync");
+        }
+        if (!this.c.wait()) text += "the motion stands: it is held, or waits for sync\n";
+        text += this.said();
+        const view = new DataView(this.c.memory.buffer, this.c.rows(), this.c.count() * ROW_BYTES), events = [];
+        for (let place = 0; place < view.byteLength; place += ROW_BYTES) {
+            const word = n => view.getUint32(place + 8 + 4 * n, true);
+            events.push({ clock: view.getFloat64(place, true), step: word(0), dir: word(1), running: word(2) });
+        }
+        return { text, events };
+    }
+}
+
+// What the charts need, from the events at the pins.
+function motionOf(events, axes, hz) {
+    const starts = events.findIndex(event => event.running);
+    if (starts < 0) return null;
+    const start = events[starts].clock, edges = Array.from({ length: axes }, () => [[], [], []]);
+    const times = [], before = { step: 0, dir: 0, running: 0 };
+    for (const { clock, step, dir, running } of events) {
+        for (let n = 0; n < axes; n++) {
+            const bit = 1 << n;
+            if ((step ^ before.step) & bit) edges[n][step & bit ? 0 : 1].push(clock - start);
+            if ((dir ^ before.dir) & bit) edges[n][2].push(clock - start);
+        }
+        if (running !== before.running) times.push({ clock: clock - start, text: running ? "a motion begins" : "the motion ends", kind: "" });
+        Object.assign(before, { step, dir, running });
+    }
+    const used = edges.map((_, n) => n).filter(n => edges[n][0].length || n === 0);
+    const own = used.map(n => edges[n].map(list => Float64Array.from(list)));
+    const clocks = times[times.length - 1].clock;
+    const facts = {
+        clock_hz: hz, clocks, events: times, alpha_reset: 5, file: "", version: document.body.dataset.version,
+        parameters: { channels: 1, axes, tick_log2: 7, line_queue_log2: 8, ramp_queue_log2: 4 },
+        runs: [{ channel: 0, start: 0, clocks, unit: "steps", plans: [], pins: null }],
+        axes: used.map(n => ({ run: 0, axis: n, name: `${n}`, per_step: 1 })),
+        summary: {
+            name: "Try Passo", ok: true, problems: [], engine: "model", matched_edges: null, moves: [],
+            axes: own.map(([rises]) => ({ pulses: rises.length })),
+        },
+    };
+    return new Motion(facts, own);
+}
+
+async function openWeb() {
+    chooseTheme();
+    const main = document.querySelector("main"), form = element(main, "section", "panel");
+    main.prepend(form);
+    element(form, "p", "hint", "Type moves as on the console of the board. The C model of the core, the planner and the console run in this page; every edge below left its pins.");
+    const lines = element(form, "textarea", "lines");
+    lines.rows = 4;
+    lines.spellcheck = false;
+    lines.value = EXAMPLES["three axes"];
+    const bar = element(form, "p", "bar"), clock = element(bar, "select");
+    for (const hz of CLOCKS) element(clock, "option", "", `${hz / 1e6} MHz`).value = hz;
+    const go = element(bar, "button", "go", "run");
+    for (const [name, text] of Object.entries(EXAMPLES)) {
+        element(bar, "button", "", name).onclick = () => {
+            lines.value = text;
+            go.click();
+        };
+    }
+    const answer = element(form, "pre", "answer");
+    try {
+        const machine = await Machine.load(document.getElementById("wasm").textContent);
+        go.onclick = () => {
+            try {
+                const hz = Number(clock.value);
+                const { text, events } = machine.run(lines.value.split("\n").map(line => line.trim()).filter(Boolean), AXES, hz);
+                answer.textContent = text;
+                const motion = motionOf(events, AXES, hz), wrong = text.split("\n").filter(line => line.startsWith("error"));
+                if (motion) showMotion(motion);
+                const verdict = document.getElementById("verdict");
+                verdict.textContent = wrong.length ? wrong.join("; ") : motion ? "done" : "nothing moved";
+                verdict.className = wrong.length ? "bad" : "good";
+            } catch (error) {
+                showFailure(error);
+            }
+        };
+        go.click();
+    } catch (error) {
+        showFailure(error);
+    }
+}

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: MIT
+"""The report page: a run as one HTML file that needs nothing else."""
+
+import html
+import json
+from pathlib import Path
+
+from passo.moves import Channels
+from passo.report_data import page_data
+from passo.run import Run
+
+FOLDER = Path(__file__).parent / "page"
+UPLOT = ("uplot/LICENSE", "uplot/uPlot.min.css", "uplot/uPlot.iife.min.js")
+SCRIPTS = (
+    "curve.js",
+    "motion.js",
+    "trace.js",
+    "time.js",
+    "charts.js",
+    "pins.js",
+    "side.js",
+    "tables.js",
+    "page.js",
+)
+
+
+def write_page(channels: Channels, runs: list[Run], engine: str, path: Path) -> None:
+    """Write the report of a run."""
+    facts, edges = page_data(channels, runs, engine)
+    # `</` would end the element that holds it.
+    data = json.dumps(facts, allow_nan=False, separators=(",", ":")).replace("</", "<\\/")
+    body = (
+        f'<script type="application/json" id="facts">{data}</script>\n'
+        f'<script type="text/plain" id="edges">{edges}</script>\n'
+        "<script>openReport();</script>"
+    )
+    path.write_text(page(channels.name, body))
+
+
+def page(title: str, body: str, scripts: tuple[str, ...] = SCRIPTS) -> str:
+    """A page with the styles and scripts in it; `body` comes last."""
+    licence, styles, library = ((FOLDER / name).read_text() for name in UPLOT)
+    source = "\n".join((FOLDER / name).read_text() for name in scripts)
+    return (
+        (FOLDER / "page.html")
+        .read_text()
+        .replace("<!-- title -->", html.escape(title))
+        .replace("/* styles */", styles + (FOLDER / "page.css").read_text())
+        .replace("/* scripts */", f"/*\nuPlot: {licence}*/\n{library}\n{source}")
+        .replace("<!-- body -->", body)
+    )

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: MIT
+"""A headless browser, driven through a pair of pipes in the DevTools protocol."""
+
+import base64
+import json
+import os
+import shutil
+import subprocess
+import time
+from pathlib import Path
+from typing import Any, Self
+
+PROGRAM = "chromium-headless-shell"
+
+
+class Browser:
+    """One page of a browser; `errors` are what its console said of failures."""
+
+    def __init__(self, folder: Path, width: int = 1400, height: int = 1000):
+        program = shutil.which(PROGRAM)
+        assert program, "there is no browser: run 'tools/setup.sh browser'"
+        (command_in, self._out), (self._in, command_out) = os.pipe(), os.pipe()
+        options = (
+            *("--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--remote-debugging-pipe"),
+            *(f"--user-data-dir={folder}", f"--window-size={width},{height}", "about:blank"),
+        )
+        # The browser reads from 3 and writes to 4.
+        self._process = subprocess.Popen(
+            ["bash", "-c", f'exec "$@" 3<&{command_in} 4>&{command_out}', "bash", program, *options],
+            pass_fds=(command_in, command_out),
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+        os.close(command_in)
+        os.close(command_out)
+        self._number, self._waiting = 0, b""
+        self.errors: list[str] = []
+        target = self._call("Target.createTarget", url="about:blank", session=None)["targetId"]
+        self._session = None
+        self._session = self._call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        for domain in ("Page", "Runtime", "Log"):
+            self._call(f"{domain}.enable")
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._process.kill()
+        self._process.wait()
+        os.close(self._in)
+        os.close(self._out)
+
+    def open(self, url: str, ready: str = "true", seconds: float = 60) -> None:
+        """Open a page and wait until an expression holds in it."""
+        self._call("Page.navigate", url=url)
+        self.wait(ready, seconds)
+
+    def wait(self, expression: str, seconds: float = 60) -> None:
+        """Wait until an expression holds."""
+        end = time.monotonic() + seconds
+        while not self.value(f"document.readyState === 'complete' && !!({expression})"):
+            assert time.monotonic() < end, f"{expression} does not become true: {self.errors}"
+            time.sleep(0.05)
+
+    def value(self, expression: str) -> Any:
+        """The value of an expression of JavaScript, as JSON has it; a promise is awaited."""
+        answer = self._call("Runtime.evaluate", expression=expression, awaitPromise=True, returnByValue=True)
+        assert "exceptionDetails" not in answer, answer["exceptionDetails"]
+        return answer["result"].get("value")
+
+    def drag(self, selector: str, begin: float, end: float) -> None:
+        """Drag the mouse over an element, between two parts of its width."""
+        box = self.value(
+            f"(() => {{ const e = document.querySelector({json.dumps(selector)});"
+            "e.scrollIntoView({block: 'center'}); const b = e.getBoundingClientRect();"
+            "return [b.left, b.top, b.width, b.height]; })()"
+        )
+        left, top, width, height = box
+        for kind, part in (
+            ("mouseMoved", begin),
+            ("mousePressed", begin),
+            ("mouseMoved", end),
+            ("mouseReleased", end),
+        ):
+            self._call(
+                "Input.dispatchMouseEvent",
+                type=kind, x=left + part * width, y=top + height / 2, clickCount=1,
+                button="none" if kind == "mouseMoved" and part == begin else "left", buttons=1,
+            )  # fmt: skip
+
+    def picture(self, path: Path) -> None:
+        """Write what is visible to a PNG."""
+        path.write_bytes(base64.b64decode(self._call("Page.captureScreenshot", format="png")["data"]))
+
+    def _call(self, method: str, session: str | None = "", **params: Any) -> dict[str, Any]:
+        self._number += 1
+        message = {"id": self._number, "method": method, "params": params}
+        if session == "" and self._session:
+            message["sessionId"] = self._session
+        os.write(self._out, json.dumps(message).encode() + b"\0")
+        while True:
+            answer = self._read()
+            if answer.get("id") == self._number:
+                assert "error" not in answer, answer
+                return answer["result"]
+            self._note(answer)
+
+    def _note(self, event: dict[str, Any]) -> None:
+        params = event.get("params", {})
+        if event.get("method") == "Runtime.exceptionThrown":
+            details = params["exceptionDetails"]
+            self.errors.append(details.get("exception", {}).get("description", details["text"]))
+        elif event.get("method") == "Log.entryAdded" and params["entry"]["level"] == "error":
+            self.errors.append(params["entry"]["text"])
+
+    def _read(self) -> dict[str, Any]:
+        while b"\0" not in self._waiting:
+            more = os.read(self._in, 1 << 16)
+            assert more, "the browser has ended"
+            self._waiting += more
+        message, self._waiting = self._waiting.split(b"\0", 1)
+        return json.loads(message)

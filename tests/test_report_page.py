@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: MIT
+"""The report page, opened in a browser: it shows every edge, and what the command says of them."""
+
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from passo.cli import main
+from passo.curve import speeds_and_positions, step_errors
+from passo.engine import model_engine
+from passo.move_file import read_channels
+from passo.plan import plan_channels
+from passo.report_page import FOLDER, write_page
+from passo.run import Run, execute_channels, parameters_of
+from passo.toolchain import paths
+
+from tests.helpers.browser import Browser
+
+READY = "passo && passo.ready"
+LARGE = """
+clock_hz = 100_000_000
+[[move]]
+steps = [600_000, -400_000]
+profile = "cosine"
+total_time = 4
+ramp_time = 1
+"""
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+    with Browser(tmp_path_factory.mktemp("browser")) as browser:
+        yield browser
+
+
+def report(moves: Path, page: Path) -> list[Run]:
+    file = read_channels(moves)
+    parameters = parameters_of(file)
+    with model_engine(parameters, file.clock_hz) as engine:
+        runs = execute_channels(file, plan_channels(file, parameters), engine)
+    write_page(file, runs, "model", page)
+    return runs
+
+
+def shown(browser: Browser, page: Path) -> None:
+    browser.errors.clear()
+    browser.open(page.as_uri(), READY)
+    assert browser.errors == []
+
+
+def numbers(browser: Browser, expression: str) -> np.ndarray:
+    return np.array(browser.value(f"Array.from({expression}, v => isNaN(v) ? null : v)"), float)
+
+
+@pytest.mark.parametrize("name", [path.stem for path in sorted(paths.examples.glob("*.toml"))])
+def test_it_has_every_edge_and_the_ideal_curve(browser: Browser, tmp_path: Path, name: str) -> None:
+    runs = report(paths.examples / f"{name}.toml", tmp_path / "page.html")
+    shown(browser, tmp_path / "page.html")
+    number = 0
+    for run in runs:
+        times, speeds, positions = speeds_and_positions(run, 200)
+        inside = np.flatnonzero((np.diff(times, prepend=-1) > 0) & (np.diff(times, append=times[-1] + 1) > 0))
+        for axis in range(run.file.axes):
+            own = f"passo.motion.axes[{number}]"
+            clocks, directions = run.steps(axis)
+            assert np.array_equal(numbers(browser, f"{own}.rises"), clocks + run.late)
+            assert np.array_equal(numbers(browser, f"{own}.counted"), np.cumsum(directions, dtype=int))
+            rises, falls = numbers(browser, f"{own}.rises"), numbers(browser, f"{own}.falls")
+            assert np.array_equal(np.unique(falls - rises), [run.file.pins.step_high][: len(falls)])
+            assert np.allclose(
+                numbers(browser, f"{own}.errors"), step_errors(run, axis)[1], rtol=0, atol=2e-6
+            )
+            asked = json.dumps((times[inside] + run.late).tolist())
+            ideal = np.array(browser.value(f"{asked}.map(clock => {own}.ideal(clock))"))
+            assert np.allclose(ideal[:, 0], speeds[axis][inside], rtol=1e-9, atol=1e-15)
+            assert np.allclose(ideal[:, 1], positions[axis][inside], rtol=0, atol=2e-6)
+            number += 1
+    assert browser.value("document.getElementById('verdict').className") == "good"
+
+
+def test_a_step_late_by_clocks_is_late_in_the_errors(browser: Browser, tmp_path: Path) -> None:
+    """Half a clock of full speed and rounding to substeps, not more."""
+    report(paths.examples / "three_axes.toml", tmp_path / "page.html")
+    shown(browser, tmp_path / "page.html")
+    lags, errors = (
+        numbers(browser, "passo.motion.axes[0].lags"),
+        numbers(browser, "passo.motion.axes[0].errors"),
+    )
+    middle = slice(len(lags) // 4, len(lags) // 2)  # at 50 kHz: 320 clocks a step
+    assert np.allclose(lags[middle], errors[middle] * 320, atol=1e-3)
+
+
+def test_zoom_to_a_clock(browser: Browser, tmp_path: Path) -> None:
+    (run,) = report(paths.examples / "three_axes.toml", tmp_path / "page.html")
+    shown(browser, tmp_path / "page.html")
+    note = "document.querySelector('#pins .note').textContent"
+    assert "edges per pixel" in browser.value(note)
+    browser.drag("#pins .u-over", 0.25, 0.5)
+    browser.wait("!passo.view.isAll")
+    minimum, maximum = browser.value("[passo.view.min, passo.view.max]")
+    length = browser.value("passo.view.limits[1] - passo.view.limits[0]")
+    assert 0.24 < (maximum - minimum) / length < 0.26
+    middle = int(run.steps(0)[0][10_000])
+    browser.value(f"passo.view.set({middle - 20}, {middle + 20})")
+    browser.wait(f"{note}.includes('every edge')")
+    level = browser.value(f"[-1, 0].map(d => passo.motion.axes[0].level('STEP', {middle} + d).high)")
+    assert level == [False, True]
+    found = browser.value("passo.histogram.found.total")
+    assert found == sum(int(np.sum(np.abs(run.steps(axis)[0] - middle) < 20)) for axis in range(3))
+
+
+def test_faults_are_shown(browser: Browser, tmp_path: Path) -> None:
+    moves = paths.examples / "cosine.toml"
+    file = read_channels(moves)
+    parameters = parameters_of(file)
+    with model_engine(parameters, file.clock_hz) as engine:
+        runs = execute_channels(file, plan_channels(file, parameters), engine)
+    runs[0].pins = runs[0].pins[: len(runs[0].pins) // 2]
+    write_page(file, runs, "model", tmp_path / "page.html")
+    shown(browser, tmp_path / "page.html")
+    verdict = browser.value("document.getElementById('verdict').textContent")
+    assert all(problem in verdict for problem in runs[0].problems()) and "steps of" in verdict
+    assert browser.value("document.querySelectorAll('#events tr.fault').length") == len(runs[0].problems())
+
+
+def test_a_million_steps(browser: Browser, tmp_path: Path) -> None:
+    (tmp_path / "moves.toml").write_text(LARGE)
+    report(tmp_path / "moves.toml", tmp_path / "page.html")
+    assert (tmp_path / "page.html").stat().st_size < 5_000_000
+    shown(browser, tmp_path / "page.html")
+    assert browser.value("passo.ready") < 2000 * 4  # 2 s on a machine that has nothing else to do
+    assert browser.value("passo.motion.axes[0].rises.length") == 600_000
+
+
+def test_the_command_writes_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """It names no other file or address, and says whose the library is."""
+    moves = str(paths.examples / "cosine.toml")
+    assert main(["run", moves, "--engine", "model", "--report", "--out", str(tmp_path)]) == 0
+    assert f"open: {tmp_path / 'report.html'}" in capsys.readouterr().out
+    text = (tmp_path / "report.html").read_text()
+    assert not re.search(r"""(src|href)\s*=\s*["']|@import|url\(""", text)
+    assert (FOLDER / "uplot/LICENSE").read_text() in text
+    assert main(["run", moves, "--engine", "model", "--out", str(tmp_path)]) == 0
+    assert not (tmp_path / "report.html").exists()
