@@ -24,6 +24,7 @@ paths = SimpleNamespace(
     model=_root / "model",
     planner=_root / "planner",
     protocol=_root / "protocol",
+    gcode=_root / "gcode",
     sim=_root / "sim",
     engine=_root / "sim" / "engine",
     driver=_root / "stm32_bridge" / "driver",
