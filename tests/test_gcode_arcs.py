@@ -31,7 +31,7 @@ def corners(gcode: Gcode, *lines: str) -> np.ndarray:
 def judge(
     points: np.ndarray, plane: str, centre: np.ndarray, clockwise: bool, tolerance: float, turn: float | None
 ) -> None:
-    """All corners on the circle, no chord further from it than the tolerance, one way round, a straight helix."""
+    """Corners on the circle, chords within the tolerance, one way round, a straight helix."""
     first, second, other = PLANES[plane]
     flat = points[:, [first, second]] - centre
     radius = np.hypot(*flat[0])

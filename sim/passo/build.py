@@ -57,7 +57,7 @@ class Parameters(CoreParameters):
 
 def planner_library() -> Path:
     """Planner, G-code interpreter, frame codec, link library and driver, as on a microcontroller."""
-    folders = (paths.planner, paths.gcode, paths.protocol, paths.driver)
+    folders = (paths.planner, paths.gcode, paths.protocol, paths.driver, paths.grbl)
     return library("planner", folders, sources(*folders), "-O3")
 
 

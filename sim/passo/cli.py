@@ -11,6 +11,7 @@ from passo import __version__
 from passo.failure import BadInputError, Failure
 
 ENGINES = ("both", "rtl", "model")
+PART_SUFFIXES = (".nc", ".ngc", ".gcode")
 OK, FAILED, BAD_INPUT = 0, 1, 2
 
 
@@ -33,14 +34,16 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="passo", description="Simulate the Passo step-pulse generator.")
     parser.add_argument("--version", action="version", version=f"passo {__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    run = commands.add_parser("run", help="run the moves of a file and check every edge")
+    run = commands.add_parser("run", help="run the moves of a file, or G-code, and check every edge")
     run.set_defaults(command=_run)
-    run.add_argument("moves", type=Path, metavar="MOVES.toml", help="the moves")
+    run.add_argument("moves", type=Path, metavar="MOVES.toml", help="the moves, or G-code: .nc .ngc .gcode")
+    run.add_argument(
+        "--machine", type=Path, metavar="MACHINE.toml", help="of G-code: axes and limits (docs/gcode.md)"
+    )
     run.add_argument(
         "--engine",
         choices=ENGINES,
-        default="both",
-        help="engine to run; both (default): RTL and model, compared edge for edge",
+        help="engine to run; both: RTL and model, compared edge for edge (default; of G-code: model)",
     )
     run.add_argument("--out", type=Path, metavar="DIR", help="output folder (default build/run/NAME)")
     run.add_argument(
@@ -51,7 +54,7 @@ def _parser() -> argparse.ArgumentParser:
         help="write waves.fst, signals inside the RTL: 2ms (default) is from the reset to 2 ms after the "
         "start of the motion, 100ms..102ms a part of it",
     )
-    run.add_argument("--plot", action="store_true", help="write motion.png")
+    run.add_argument("--plot", action="store_true", help="write motion.png, of G-code path.png")
     shape = commands.add_parser("shape", help="create and check the table of a user-defined shape")
     shape.set_defaults(command=_shape)
     source = shape.add_mutually_exclusive_group(required=True)
@@ -92,9 +95,20 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _run(options: argparse.Namespace) -> int:
+    if options.moves.suffix.lower() in PART_SUFFIXES:
+        from passo.part_command import run_part
+
+        if options.waves:
+            raise BadInputError("--waves: only of moves")
+        engine = options.engine or "model"
+        done = run_part(options.moves, options.machine, engine, options.out, options.plot)
+        return OK if done else FAILED
     from passo.run_command import run_file
 
-    return OK if run_file(options.moves, options.engine, options.out, options.waves, options.plot) else FAILED
+    if options.machine:
+        raise BadInputError(f"--machine is for G-code: {', '.join(PART_SUFFIXES)}")
+    engine = options.engine or "both"
+    return OK if run_file(options.moves, engine, options.out, options.waves, options.plot) else FAILED
 
 
 def _shape(options: argparse.Namespace) -> int:

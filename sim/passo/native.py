@@ -29,6 +29,7 @@ HEADERS = (
     paths.driver / "passo_path_feed.h",
     paths.driver / "passo_inputs.h",
     paths.driver / "passo_home.h",
+    paths.grbl / "passo_player.h",
     paths.model / "passo_pins.h",
     paths.engine / "passo_engine.h",
     paths.engine / "passo_terminal.h",

@@ -35,6 +35,7 @@ paths = SimpleNamespace(
     tools=_root / "tools",
     examples=_root / "examples",
     docs=_root / "docs",
+    grbl=_root / "stm32_bridge" / "grbl",
     stm32_bridge=_root / "stm32_bridge",
 )
 
