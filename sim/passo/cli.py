@@ -74,6 +74,9 @@ def _parser() -> argparse.ArgumentParser:
     console.add_argument(
         "--clock", type=int, default=100_000_000, metavar="HZ", help="clock of the core (default 100000000)"
     )
+    console.add_argument("--grbl", action="store_true", help="speak the protocol of grbl (docs/gcode.md)")
+    console.add_argument("--machine", type=Path, metavar="MACHINE.toml", help="of --grbl: axes and limits")
+    console.add_argument("--pty", type=Path, metavar="LINK", help="of --grbl: pseudo-terminal, in real time")
     console.add_argument("--echo", action="store_true", help="show each line before its answer")
     firmware = commands.add_parser(
         "firmware",
@@ -131,7 +134,32 @@ def _shape(options: argparse.Namespace) -> int:
     return OK
 
 
+def _grbl(options: argparse.Namespace) -> int:
+    from passo.grbl import Grbl, pseudo_terminal, serve, talk
+    from passo.machine_file import read_machine
+    from passo.run import open_engine, parameters_for
+
+    def write(text: str) -> None:
+        print(text, end="", flush=True)
+
+    if not options.machine:
+        raise BadInputError("--grbl needs --machine MACHINE.toml (docs/gcode.md)")
+    machine = read_machine(options.machine)
+    with open_engine(options.engine, parameters_for(len(machine.settings.axes)), machine.clock_hz) as engine:
+        if not options.pty:
+            talk(sys.stdin, Grbl(engine, machine, write))
+            return OK
+        import os
+
+        with pseudo_terminal(options.pty) as terminal:
+            write(f"{options.pty}: 115200 baud or any other\n")
+            serve(Grbl(engine, machine, lambda text: os.write(terminal, text.encode())), terminal)
+    return OK
+
+
 def _console(options: argparse.Namespace) -> int:
+    if options.grbl or options.pty or options.machine:
+        return _grbl(options)
     from passo.build import Parameters
     from passo.move_forms import WHOLE_MAX
     from passo.moves import AXES_MAX, CHANNELS_MAX

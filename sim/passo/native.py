@@ -30,6 +30,7 @@ HEADERS = (
     paths.driver / "passo_inputs.h",
     paths.driver / "passo_home.h",
     paths.grbl / "passo_player.h",
+    paths.grbl / "passo_grbl.h",
     paths.model / "passo_pins.h",
     paths.engine / "passo_engine.h",
     paths.engine / "passo_terminal.h",
