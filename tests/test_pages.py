@@ -80,7 +80,7 @@ def test_commands_exist(page: Path) -> None:
         words = shlex.split(command.split(" < ")[0])[1:]
         if len(words) == 1:
             words.append("--help")
-        elif words[0] == "run" and not any(word.endswith(".toml") for word in words):
+        elif words[0] == "run" and not any(word.endswith((".toml", ".nc")) for word in words):
             words.insert(1, "moves.toml")
         try:
             _parser().parse_args(words)

@@ -56,8 +56,8 @@ class Parameters(CoreParameters):
 
 
 def planner_library() -> Path:
-    """Planner, frame codec, link library and driver, as on a microcontroller."""
-    folders = (paths.planner, paths.protocol, paths.driver)
+    """Planner, G-code interpreter, frame codec, link library and driver, as on a microcontroller."""
+    folders = (paths.planner, paths.gcode, paths.protocol, paths.driver, paths.grbl)
     return library("planner", folders, sources(*folders), "-O3")
 
 

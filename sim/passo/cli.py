@@ -11,6 +11,7 @@ from passo import __version__
 from passo.failure import BadInputError, Failure
 
 ENGINES = ("both", "rtl", "model")
+PART_SUFFIXES = (".nc", ".ngc", ".gcode")
 OK, FAILED, BAD_INPUT = 0, 1, 2
 
 
@@ -33,14 +34,16 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="passo", description="Simulate the Passo step-pulse generator.")
     parser.add_argument("--version", action="version", version=f"passo {__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    run = commands.add_parser("run", help="run the moves of a file and check every edge")
+    run = commands.add_parser("run", help="run the moves of a file, or G-code, and check every edge")
     run.set_defaults(command=_run)
-    run.add_argument("moves", type=Path, metavar="MOVES.toml", help="the moves")
+    run.add_argument("moves", type=Path, metavar="MOVES.toml", help="the moves, or G-code: .nc .ngc .gcode")
+    run.add_argument(
+        "--machine", type=Path, metavar="MACHINE.toml", help="of G-code: axes and limits (docs/gcode.md)"
+    )
     run.add_argument(
         "--engine",
         choices=ENGINES,
-        default="both",
-        help="engine to run; both (default): RTL and model, compared edge for edge",
+        help="engine to run; both: RTL and model, compared edge for edge (default; of G-code: model)",
     )
     run.add_argument("--out", type=Path, metavar="DIR", help="output folder (default build/run/NAME)")
     run.add_argument(
@@ -51,7 +54,7 @@ def _parser() -> argparse.ArgumentParser:
         help="write waves.fst, signals inside the RTL: 2ms (default) is from the reset to 2 ms after the "
         "start of the motion, 100ms..102ms a part of it",
     )
-    run.add_argument("--plot", action="store_true", help="write motion.png")
+    run.add_argument("--plot", action="store_true", help="write motion.png, of G-code path.png")
     run.add_argument("--report", action="store_true", help="write report.html, to zoom down to single clocks")
     shape = commands.add_parser("shape", help="create and check the table of a user-defined shape")
     shape.set_defaults(command=_shape)
@@ -72,6 +75,9 @@ def _parser() -> argparse.ArgumentParser:
     console.add_argument(
         "--clock", type=int, default=100_000_000, metavar="HZ", help="clock of the core (default 100000000)"
     )
+    console.add_argument("--grbl", action="store_true", help="speak the protocol of grbl (docs/gcode.md)")
+    console.add_argument("--machine", type=Path, metavar="MACHINE.toml", help="of --grbl: axes and limits")
+    console.add_argument("--pty", type=Path, metavar="LINK", help="of --grbl: pseudo-terminal, in real time")
     console.add_argument("--echo", action="store_true", help="show each line before its answer")
     firmware = commands.add_parser(
         "firmware",
@@ -93,10 +99,20 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _run(options: argparse.Namespace) -> int:
+    if options.moves.suffix.lower() in PART_SUFFIXES:
+        from passo.part_command import run_part
+
+        if options.waves or options.report:
+            raise BadInputError("--waves and --report: only of moves")
+        engine = options.engine or "model"
+        done = run_part(options.moves, options.machine, engine, options.out, options.plot)
+        return OK if done else FAILED
     from passo.run_command import Wanted, run_file
 
+    if options.machine:
+        raise BadInputError(f"--machine is for G-code: {', '.join(PART_SUFFIXES)}")
     wanted = Wanted(options.waves, options.plot, options.report)
-    return OK if run_file(options.moves, options.engine, options.out, wanted) else FAILED
+    return OK if run_file(options.moves, options.engine or "both", options.out, wanted) else FAILED
 
 
 def _shape(options: argparse.Namespace) -> int:
@@ -119,7 +135,32 @@ def _shape(options: argparse.Namespace) -> int:
     return OK
 
 
+def _grbl(options: argparse.Namespace) -> int:
+    from passo.grbl import Grbl, pseudo_terminal, serve, talk
+    from passo.machine_file import read_machine
+    from passo.run import open_engine, parameters_for
+
+    def write(text: str) -> None:
+        print(text, end="", flush=True)
+
+    if not options.machine:
+        raise BadInputError("--grbl needs --machine MACHINE.toml (docs/gcode.md)")
+    machine = read_machine(options.machine)
+    with open_engine(options.engine, parameters_for(len(machine.settings.axes)), machine.clock_hz) as engine:
+        if not options.pty:
+            talk(sys.stdin, Grbl(engine, machine, write))
+            return OK
+        import os
+
+        with pseudo_terminal(options.pty) as terminal:
+            write(f"{options.pty}: 115200 baud or any other\n")
+            serve(Grbl(engine, machine, lambda text: os.write(terminal, text.encode())), terminal)
+    return OK
+
+
 def _console(options: argparse.Namespace) -> int:
+    if options.grbl or options.pty or options.machine:
+        return _grbl(options)
     from passo.build import Parameters
     from passo.move_forms import WHOLE_MAX
     from passo.moves import AXES_MAX, CHANNELS_MAX

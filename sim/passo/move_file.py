@@ -62,7 +62,9 @@ def read_channels(path: Path) -> Channels:
         raise MoveFileError(f"{path}: a number is out of all range") from None
     except ValueError as error:
         if G_CODE.match(text):
-            raise MoveFileError(f"{path}: this is G-code; moves are in TOML (docs/planning.md)") from None
+            raise MoveFileError(
+                f"{path}: this is G-code; moves are in TOML (docs/gcode.md, docs/planning.md)"
+            ) from None
         raise MoveFileError(f"{path}: {str(error).splitlines()[0]}") from None
     try:
         return _file(path, data)
@@ -81,7 +83,7 @@ def _file(path: Path, data: Table) -> Channels:
     pins = data.get("pins", {})
     if not isinstance(pins, dict):
         raise BadValueError("pins must be a table: [pins]")
-    timing = within("pins", lambda: _pins(pins, clock_hz, CHANNEL_KEYS))
+    timing = within("pins", lambda: read_pins(pins, clock_hz, CHANNEL_KEYS))
     tables = data.get("move", [])
     if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
         raise BadValueError("move must be an array of tables: [[move]]")
@@ -120,10 +122,11 @@ def _own_pins(common: Table, table: object, clock_hz: int) -> PinTiming:
     if not isinstance(table, dict):
         raise BadValueError("it must be a table, such as [pins.1]")
     check_known(table, PIN_KEYS)
-    return _pins({key: common[key] for key in PIN_KEYS if key in common} | table, clock_hz)
+    return read_pins({key: common[key] for key in PIN_KEYS if key in common} | table, clock_hz)
 
 
-def _pins(table: Table, clock_hz: int, others: tuple[str, ...] = ()) -> PinTiming:
+def read_pins(table: Table, clock_hz: int, others: tuple[str, ...] = ()) -> PinTiming:
+    """The table [pins]; raises BadValueError."""
     check_known(table, (*PIN_KEYS, *others))
     clocks = {}
     for key in PIN_KEYS:

@@ -24,6 +24,7 @@ paths = SimpleNamespace(
     model=_root / "model",
     planner=_root / "planner",
     protocol=_root / "protocol",
+    gcode=_root / "gcode",
     sim=_root / "sim",
     engine=_root / "sim" / "engine",
     driver=_root / "stm32_bridge" / "driver",
@@ -34,6 +35,7 @@ paths = SimpleNamespace(
     tools=_root / "tools",
     examples=_root / "examples",
     docs=_root / "docs",
+    grbl=_root / "stm32_bridge" / "grbl",
     stm32_bridge=_root / "stm32_bridge",
 )
 

@@ -1,0 +1,25 @@
+%
+(A plate with a slot and a round pocket)
+G21 G90 G17 G54
+M3 S8000
+G0 X0 Y0 Z2
+G1 Z-1 F300
+X60 F3000
+G3 X80 Y20 I0 J20
+G1 Y40
+G2 X70 Y50 R10
+G3 X60 Y60 I-10
+G1 X0
+Y0
+G0 Z2
+X30 Y30
+G1 Z0 F300
+G3 X30 Y30 Z-1 I5 F2000 (helix into the pocket)
+X30 I5
+G1 X25
+G3 X25 I10
+G0 Z2
+M5
+G28
+M30
+%

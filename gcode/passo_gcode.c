@@ -1,0 +1,184 @@
+/* SPDX-License-Identifier: MIT
+ * The interpreter: checks a line and accepts it.
+ */
+#include "passo_gcode.h"
+
+#include "passo_gcode_private.h"
+
+const passo_gcode_command PASSO_GCODE_POWER_UP[PASSO_GCODE_MODES] = {
+    [PASSO_GCODE_MOTION] = 0,
+    [PASSO_GCODE_SYSTEM] = 540,
+    [PASSO_GCODE_PLANE] = 170,
+    [PASSO_GCODE_UNITS] = 210,
+    [PASSO_GCODE_DISTANCE] = 900,
+    [PASSO_GCODE_FEED_MODE] = 940,
+    [PASSO_GCODE_PATH] = 640,
+    [PASSO_GCODE_TOOL_LENGTH] = 490,
+    [PASSO_GCODE_CUTTER] = 400,
+    [PASSO_GCODE_ARC_DISTANCE] = 911,
+    [PASSO_GCODE_SPINDLE] = 50,
+};
+
+void passo_gcode_copy(const struct passo_gcode *gcode, const int64_t *from, int64_t *to)
+{
+	for (unsigned axis = 0; axis < gcode->settings.axes; axis++)
+		to[axis] = from[axis];
+}
+
+static void clear_job(struct passo_gcode *gcode)
+{
+	gcode->job = (struct passo_gcode_job){.probe = PASSO_GCODE_NONE};
+}
+
+void passo_gcode_open(struct passo_gcode *gcode, const struct passo_gcode_settings *settings)
+{
+	*gcode = (struct passo_gcode){.settings = *settings};
+	passo_gcode_reset(gcode);
+}
+
+void passo_gcode_reset(struct passo_gcode *gcode)
+{
+	for (unsigned group = 0; group < PASSO_GCODE_MODES; group++)
+		gcode->mode[group] = PASSO_GCODE_POWER_UP[group];
+	for (unsigned axis = 0; axis < PASSO_GCODE_AXES_MAX; axis++)
+		gcode->shift[axis] = 0;
+	gcode->flood = gcode->mist = false;
+	gcode->tool_length = gcode->feed = gcode->spindle = 0;
+	gcode->line = 0;
+	gcode->tool = 0;
+	clear_job(gcode);
+}
+
+void passo_gcode_set_position(struct passo_gcode *gcode, const int64_t *position)
+{
+	passo_gcode_copy(gcode, position, gcode->position);
+	clear_job(gcode);
+}
+
+static void accept_coolant(struct passo_gcode *gcode, passo_gcode_command command)
+{
+	gcode->mist = command == 70 || (gcode->mist && command != 90);
+	gcode->flood = command == 80 || (gcode->flood && command != 90);
+}
+
+static void accept_command(struct passo_gcode *gcode, const struct passo_gcode_check *check)
+{
+	switch (check->block.command[PASSO_GCODE_COMMAND]) {
+	case 100:
+		passo_gcode_copy(gcode, check->set, gcode->offsets.system[check->system]);
+		break;
+	case 281:
+		passo_gcode_copy(gcode, gcode->position, gcode->offsets.home[0]);
+		break;
+	case 301:
+		passo_gcode_copy(gcode, gcode->position, gcode->offsets.home[1]);
+		break;
+	case 920:
+		passo_gcode_copy(gcode, check->set, gcode->shift);
+		break;
+	case 921:
+		for (unsigned axis = 0; axis < PASSO_GCODE_AXES_MAX; axis++)
+			gcode->shift[axis] = 0;
+		break;
+	default:
+		break;
+	}
+	if (check->block.command[PASSO_GCODE_TOOL_LENGTH] == 490)
+		gcode->tool_length = 0;
+	else if (check->block.command[PASSO_GCODE_TOOL_LENGTH] == 431)
+		gcode->tool_length = check->set[2];
+}
+
+static void accept(struct passo_gcode *gcode, const struct passo_gcode_check *check)
+{
+	const struct passo_gcode_block *block = &check->block;
+	const passo_gcode_command program = block->command[PASSO_GCODE_PROGRAM];
+	const uint32_t output = passo_gcode_output(gcode);
+
+	if (block->words & PASSO_GCODE_WORD('N'))
+		gcode->line = (uint32_t)(block->value['N' - 'A'] / PASSO_GCODE_MILLION);
+	if (block->words & PASSO_GCODE_WORD('T'))
+		gcode->tool = (uint8_t)(block->value['T' - 'A'] / PASSO_GCODE_MILLION);
+	if (block->words & PASSO_GCODE_WORD('S'))
+		gcode->spindle = block->value['S' - 'A'];
+	gcode->feed = check->feed;
+	for (unsigned group = 0; group < PASSO_GCODE_MODES; group++)
+		gcode->mode[group] = check->mode[group];
+	accept_coolant(gcode, block->command[PASSO_GCODE_COOLANT]);
+	accept_command(gcode, check);
+	if (gcode->job.motion)
+		passo_gcode_copy(gcode, gcode->job.destination, gcode->position);
+	gcode->job.output = passo_gcode_output(gcode) != output;
+	gcode->job.pause = program == 0;
+	gcode->job.end = program == 20 || program == 300;
+}
+
+static enum passo_gcode_error begin(
+    struct passo_gcode *gcode, struct passo_gcode_check *check, const char *text)
+{
+	const enum passo_gcode_error error = passo_gcode_parse(text, gcode->settings.axes, &check->block);
+
+	clear_job(gcode);
+	check->gcode = gcode;
+	check->job = &gcode->job;
+	check->unused = check->block.words;
+	check->axis_words = check->block.words & passo_gcode_axis_words(gcode->settings.axes);
+	for (unsigned group = 0; group < PASSO_GCODE_MODES; group++) {
+		const passo_gcode_command given = check->block.command[group];
+
+		check->mode[group] = given == PASSO_GCODE_NONE ? gcode->mode[group] : given;
+	}
+	return error;
+}
+
+static enum passo_gcode_error finish(struct passo_gcode_check *check, enum passo_gcode_error error)
+{
+	if (error == PASSO_GCODE_OK)
+		error = passo_gcode_check_words(check);
+	if (error == PASSO_GCODE_OK)
+		error = passo_gcode_check_motion(check);
+	return error == PASSO_GCODE_OK && check->unused ? PASSO_GCODE_UNUSED : error;
+}
+
+enum passo_gcode_error passo_gcode_execute(struct passo_gcode *gcode, const char *text)
+{
+	struct passo_gcode_check check = {.feed = 0};
+	const enum passo_gcode_error error = finish(&check, begin(gcode, &check, text));
+
+	if (error == PASSO_GCODE_OK)
+		accept(gcode, &check);
+	else
+		clear_job(gcode);
+	return error;
+}
+
+enum passo_gcode_error passo_gcode_jog(struct passo_gcode *gcode, const char *text)
+{
+	const uint32_t known =
+	    passo_gcode_axis_words(gcode->settings.axes) | PASSO_GCODE_WORD('F') | PASSO_GCODE_WORD('N');
+	struct passo_gcode_check check = {.feed = 0};
+	enum passo_gcode_error error = begin(gcode, &check, text);
+
+	for (unsigned group = 0; group < PASSO_GCODE_GROUPS; group++) {
+		const passo_gcode_command given = check.block.command[group];
+		const bool allowed =
+		    group == PASSO_GCODE_UNITS || group == PASSO_GCODE_DISTANCE || given == 530;
+
+		if (error == PASSO_GCODE_OK && given != PASSO_GCODE_NONE && !allowed)
+			error = PASSO_GCODE_JOG;
+	}
+	if (error == PASSO_GCODE_OK && (check.block.words & ~known))
+		error = PASSO_GCODE_JOG;
+	if (error == PASSO_GCODE_OK && check.axis_words == 0)
+		error = PASSO_GCODE_NO_AXIS_WORDS;
+	if (error == PASSO_GCODE_OK && !(check.block.words & PASSO_GCODE_WORD('F')))
+		error = PASSO_GCODE_NO_FEED;
+	check.mode[PASSO_GCODE_MOTION] = 10;
+	check.mode[PASSO_GCODE_FEED_MODE] = 940;
+	error = finish(&check, error);
+	if (error == PASSO_GCODE_OK)
+		passo_gcode_copy(gcode, gcode->job.destination, gcode->position);
+	else
+		clear_job(gcode);
+	return error;
+}

@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: MIT
+ * The G-code interpreter: from lines to actions, in integer arithmetic. See docs/gcode.md.
+ *
+ *     passo_gcode_open(&gcode, &settings);
+ *     if (!passo_gcode_is_busy(&gcode))
+ *             error = passo_gcode_execute(&gcode, "G1X10F600");
+ *     while (passo_gcode_next(&gcode, &action))
+ *             ... one chord, dwell, pause, in this order
+ *
+ * A line is checked completely before anything of it takes effect; a line with an error changes nothing.
+ * Lengths are nanometres, Q63.0; the degrees of A, B, C count as millimetres. No heap, no floating point.
+ */
+#ifndef PASSO_GCODE_H
+#define PASSO_GCODE_H
+
+#include "passo_gcode_arc.h"
+#include "passo_gcode_block.h"
+#include "passo_path.h"
+
+#define PASSO_GCODE_SYSTEMS 6u /* G54 .. G59 */
+
+typedef int64_t passo_gcode_position[PASSO_GCODE_AXES_MAX];
+
+struct passo_gcode_settings {
+	uint8_t axes;             /* X, Y, Z, A, B, C: the first 1 .. PASSO_GCODE_AXES_MAX of them */
+	uint32_t arc_tolerance;   /* nm, at least 1 */
+	uint32_t spindle_maximum; /* rpm at full power; 0: S has no effect */
+};
+
+/* What outlasts a reset: kept by the caller, if at all. */
+struct passo_gcode_offsets {
+	passo_gcode_position system[PASSO_GCODE_SYSTEMS];
+	passo_gcode_position home[2]; /* G28, G30 */
+};
+
+/* The output word of the lines: that of the core with OUTPUTS. */
+#define PASSO_GCODE_OUTPUT_SPINDLE (UINT32_C(1) << 16)
+#define PASSO_GCODE_OUTPUT_REVERSE (UINT32_C(1) << 17)
+#define PASSO_GCODE_OUTPUT_FLOOD (UINT32_C(1) << 18)
+#define PASSO_GCODE_OUTPUT_MIST (UINT32_C(1) << 19)
+
+enum passo_gcode_kind {
+	PASSO_GCODE_LINE,
+	PASSO_GCODE_PROBE, /* to the target, until the probe acts; `probe` is 382 .. 385 */
+	PASSO_GCODE_DWELL,
+	PASSO_GCODE_OUTPUT, /* spindle or coolant have changed */
+	PASSO_GCODE_PAUSE,  /* M0: wait for the operator at the end of the lines so far */
+	PASSO_GCODE_END,    /* M2, M30: of the program */
+	PASSO_GCODE_OFFSETS /* struct passo_gcode_offsets has changed */
+};
+
+struct passo_gcode_action {
+	enum passo_gcode_kind kind;
+	passo_gcode_position target; /* machine coordinates */
+	uint64_t feed;               /* UQ32.32 mm/s, or PASSO_PATH_RAPID */
+	uint64_t microseconds;       /* of a dwell */
+	uint32_t output;
+	uint32_t line; /* N; 0: none */
+	passo_gcode_command probe;
+};
+
+/* What a line is about to do, and has not handed out yet. */
+struct passo_gcode_job {
+	bool output, dwell, offsets, via, motion, pause, end; /* in this order */
+	bool turns;                                           /* the motion is an arc */
+	passo_gcode_command probe; /* the motion is a probe; else PASSO_GCODE_NONE */
+	uint64_t microseconds;
+	uint64_t feed;                              /* UQ32.32 mm/s, or PASSO_PATH_RAPID */
+	passo_gcode_position stopover, destination; /* machine coordinates */
+	struct passo_gcode_arc arc;
+};
+
+/* All members are to be read only. */
+struct passo_gcode {
+	struct passo_gcode_settings settings;
+	struct passo_gcode_offsets offsets;
+	passo_gcode_command mode[PASSO_GCODE_MODES];
+	bool flood, mist;
+	passo_gcode_position position; /* programmed end, machine coordinates */
+	passo_gcode_position shift;    /* G92 */
+	int64_t tool_length;           /* G43.1 */
+	int64_t feed;                  /* nm/min; 0: none yet */
+	int64_t spindle;               /* millionths of rpm */
+	uint32_t line;                 /* N of the last line that had one */
+	uint8_t tool;
+	struct passo_gcode_job job;
+};
+
+/* All modes as at power-up, at position 0, without offsets. */
+void passo_gcode_open(struct passo_gcode *gcode, const struct passo_gcode_settings *settings);
+
+/* The modes of power-up; offsets and position stay, G92 and G43.1 end. */
+void passo_gcode_reset(struct passo_gcode *gcode);
+
+/* After a stop, a home or a probe: the machine is here. Drops what is left of the line. */
+void passo_gcode_set_position(struct passo_gcode *gcode, const int64_t *position);
+
+/* A line of passo_gcode_line.h. Only while it is not busy. An error changes nothing. */
+enum passo_gcode_error passo_gcode_execute(struct passo_gcode *gcode, const char *text);
+
+/* The same for the words after `$J=`: modes and feed stay as they are. Error: also JOG. */
+enum passo_gcode_error passo_gcode_jog(struct passo_gcode *gcode, const char *text);
+
+/* The next action of the line; false: none is left. */
+bool passo_gcode_next(struct passo_gcode *gcode, struct passo_gcode_action *action);
+bool passo_gcode_is_busy(const struct passo_gcode *gcode);
+
+/* Machine less work coordinates of an axis: the sum of all offsets. */
+int64_t passo_gcode_offset(const struct passo_gcode *gcode, unsigned axis);
+
+/* Q31.32 mm of nanometres, to the nearest. */
+int64_t passo_gcode_millimetres(int64_t nanometres);
+
+#endif

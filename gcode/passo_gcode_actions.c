@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: MIT
+ * What an accepted line does, one action after the other.
+ */
+#include "passo_gcode_private.h"
+#include "passo_math.h"
+
+#define POWER_FULL 65535u
+
+uint32_t passo_gcode_output(const struct passo_gcode *gcode)
+{
+	const uint32_t maximum = gcode->settings.spindle_maximum;
+	uint32_t output = 0;
+
+	if (gcode->mode[PASSO_GCODE_SPINDLE] != 50) {
+		const uint64_t full = (uint64_t)maximum * PASSO_GCODE_MILLION;
+		const uint64_t speed = (uint64_t)gcode->spindle < full ? (uint64_t)gcode->spindle : full;
+
+		output = PASSO_GCODE_OUTPUT_SPINDLE;
+		output |= full > 0 ? (uint32_t)passo_mul_div(speed, POWER_FULL, full) : 0u;
+		output |= gcode->mode[PASSO_GCODE_SPINDLE] == 40 ? PASSO_GCODE_OUTPUT_REVERSE : 0u;
+	}
+	output |= gcode->flood ? PASSO_GCODE_OUTPUT_FLOOD : 0u;
+	return output | (gcode->mist ? PASSO_GCODE_OUTPUT_MIST : 0u);
+}
+
+/* M2 and M30. */
+static void end_program(struct passo_gcode *gcode)
+{
+	static const uint8_t ENDING[] = {PASSO_GCODE_SYSTEM, PASSO_GCODE_PLANE, PASSO_GCODE_DISTANCE,
+	    PASSO_GCODE_FEED_MODE, PASSO_GCODE_SPINDLE};
+
+	gcode->mode[PASSO_GCODE_MOTION] = 10;
+	for (unsigned i = 0; i < sizeof ENDING; i++)
+		gcode->mode[ENDING[i]] = PASSO_GCODE_POWER_UP[ENDING[i]];
+	gcode->flood = gcode->mist = false;
+}
+
+bool passo_gcode_is_busy(const struct passo_gcode *gcode)
+{
+	const struct passo_gcode_job *job = &gcode->job;
+
+	return job->output || job->dwell || job->offsets || job->via || job->motion || job->pause || job->end;
+}
+
+/* Takes a part of the job, if it is there. */
+static bool take(bool *part)
+{
+	const bool there = *part;
+
+	*part = false;
+	return there;
+}
+
+static void next_of_motion(struct passo_gcode *gcode, struct passo_gcode_action *action)
+{
+	struct passo_gcode_job *job = &gcode->job;
+
+	action->kind = PASSO_GCODE_LINE;
+	action->feed = job->feed;
+	if (job->turns) {
+		passo_gcode_arc_next(&job->arc, action->target);
+		job->motion = job->arc.done < job->arc.chords;
+		return;
+	}
+	if (job->probe != PASSO_GCODE_NONE) {
+		action->kind = PASSO_GCODE_PROBE;
+		action->probe = job->probe;
+	}
+	passo_gcode_copy(gcode, job->destination, action->target);
+	job->motion = false;
+}
+
+bool passo_gcode_next(struct passo_gcode *gcode, struct passo_gcode_action *action)
+{
+	struct passo_gcode_job *job = &gcode->job;
+
+	*action = (struct passo_gcode_action){
+	    .line = gcode->line, .output = passo_gcode_output(gcode), .probe = PASSO_GCODE_NONE};
+	if (take(&job->output)) {
+		action->kind = PASSO_GCODE_OUTPUT;
+	} else if (take(&job->dwell)) {
+		action->kind = PASSO_GCODE_DWELL;
+		action->microseconds = job->microseconds;
+	} else if (take(&job->offsets)) {
+		action->kind = PASSO_GCODE_OFFSETS;
+	} else if (take(&job->via)) {
+		action->kind = PASSO_GCODE_LINE;
+		action->feed = PASSO_PATH_RAPID;
+		passo_gcode_copy(gcode, job->stopover, action->target);
+	} else if (job->motion) {
+		next_of_motion(gcode, action);
+	} else if (take(&job->pause)) {
+		action->kind = PASSO_GCODE_PAUSE;
+	} else if (take(&job->end)) {
+		action->kind = PASSO_GCODE_END;
+		end_program(gcode);
+		action->output = passo_gcode_output(gcode);
+	} else {
+		return false;
+	}
+	return true;
+}
+
+int64_t passo_gcode_offset(const struct passo_gcode *gcode, unsigned axis)
+{
+	const struct passo_gcode_check check = {
+	    .gcode = gcode, .mode = {[PASSO_GCODE_SYSTEM] = gcode->mode[PASSO_GCODE_SYSTEM]}};
+
+	return passo_gcode_offset_of(&check, axis);
+}
+
+int64_t passo_gcode_millimetres(int64_t nanometres)
+{
+	const uint64_t size = nanometres < 0 ? 0 - (uint64_t)nanometres : (uint64_t)nanometres;
+	const struct passo_u128 scaled = passo_u128_add(
+	    (struct passo_u128){size >> 32, size << 32}, (struct passo_u128){0, PASSO_GCODE_MILLION / 2});
+	const int64_t value = (int64_t)passo_divide(scaled, PASSO_GCODE_MILLION, 0);
+
+	return nanometres < 0 ? -value : value;
+}

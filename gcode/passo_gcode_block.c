@@ -1,0 +1,201 @@
+/* SPDX-License-Identifier: MIT
+ * Words: a letter and a number. G and M are commands, all others are values.
+ */
+#include "passo_gcode_block.h"
+
+#include <stddef.h>
+
+#define INTEGER_MAX INT64_C(999999999)
+#define TENTH (PASSO_GCODE_MILLION / 10)
+
+struct code {
+	int16_t number; /* tenths */
+	uint8_t group;
+};
+
+static const struct code G_CODES[] = {
+    {0, PASSO_GCODE_MOTION},
+    {10, PASSO_GCODE_MOTION},
+    {20, PASSO_GCODE_MOTION},
+    {30, PASSO_GCODE_MOTION},
+    {40, PASSO_GCODE_COMMAND},
+    {100, PASSO_GCODE_COMMAND},
+    {170, PASSO_GCODE_PLANE},
+    {180, PASSO_GCODE_PLANE},
+    {190, PASSO_GCODE_PLANE},
+    {200, PASSO_GCODE_UNITS},
+    {210, PASSO_GCODE_UNITS},
+    {280, PASSO_GCODE_COMMAND},
+    {281, PASSO_GCODE_COMMAND},
+    {300, PASSO_GCODE_COMMAND},
+    {301, PASSO_GCODE_COMMAND},
+    {382, PASSO_GCODE_MOTION},
+    {383, PASSO_GCODE_MOTION},
+    {384, PASSO_GCODE_MOTION},
+    {385, PASSO_GCODE_MOTION},
+    {400, PASSO_GCODE_CUTTER},
+    {431, PASSO_GCODE_TOOL_LENGTH},
+    {490, PASSO_GCODE_TOOL_LENGTH},
+    {530, PASSO_GCODE_COMMAND},
+    {540, PASSO_GCODE_SYSTEM},
+    {550, PASSO_GCODE_SYSTEM},
+    {560, PASSO_GCODE_SYSTEM},
+    {570, PASSO_GCODE_SYSTEM},
+    {580, PASSO_GCODE_SYSTEM},
+    {590, PASSO_GCODE_SYSTEM},
+    {610, PASSO_GCODE_PATH},
+    {640, PASSO_GCODE_PATH},
+    {800, PASSO_GCODE_MOTION},
+    {900, PASSO_GCODE_DISTANCE},
+    {910, PASSO_GCODE_DISTANCE},
+    {911, PASSO_GCODE_ARC_DISTANCE},
+    {920, PASSO_GCODE_COMMAND},
+    {921, PASSO_GCODE_COMMAND},
+    {930, PASSO_GCODE_FEED_MODE},
+    {940, PASSO_GCODE_FEED_MODE},
+};
+
+static const struct code M_CODES[] = {
+    {0, PASSO_GCODE_PROGRAM},
+    {10, PASSO_GCODE_PROGRAM},
+    {20, PASSO_GCODE_PROGRAM},
+    {30, PASSO_GCODE_SPINDLE},
+    {40, PASSO_GCODE_SPINDLE},
+    {50, PASSO_GCODE_SPINDLE},
+    {70, PASSO_GCODE_COOLANT},
+    {80, PASSO_GCODE_COOLANT},
+    {90, PASSO_GCODE_COOLANT},
+    {300, PASSO_GCODE_PROGRAM},
+};
+
+#define COUNT(table) (sizeof(table) / sizeof *(table))
+
+static const char AXIS_LETTERS[PASSO_GCODE_AXES_MAX + 1u] = "XYZABC";
+/* Those of values that every machine knows. */
+static const uint32_t VALUE_WORDS = PASSO_GCODE_WORD('F') | PASSO_GCODE_WORD('I') | PASSO_GCODE_WORD('J')
+                                  | PASSO_GCODE_WORD('K') | PASSO_GCODE_WORD('L') | PASSO_GCODE_WORD('N')
+                                  | PASSO_GCODE_WORD('P') | PASSO_GCODE_WORD('R') | PASSO_GCODE_WORD('S')
+                                  | PASSO_GCODE_WORD('T');
+static const uint32_t POSITIVE_WORDS = PASSO_GCODE_WORD('F') | PASSO_GCODE_WORD('N') | PASSO_GCODE_WORD('P')
+                                     | PASSO_GCODE_WORD('S') | PASSO_GCODE_WORD('T');
+
+char passo_gcode_axis_letter(unsigned axis)
+{
+	return AXIS_LETTERS[axis];
+}
+
+uint32_t passo_gcode_axis_words(unsigned axes)
+{
+	uint32_t words = 0;
+
+	for (unsigned axis = 0; axis < axes; axis++)
+		words |= PASSO_GCODE_WORD(AXIS_LETTERS[axis]);
+	return words;
+}
+
+static bool is_digit(char c)
+{
+	return c >= '0' && c <= '9';
+}
+
+bool passo_gcode_number(const char **text, int64_t *millionths)
+{
+	const char *at = *text;
+	const bool negative = *at == '-';
+	int64_t whole = 0, fraction = 0;
+
+	if (*at == '-' || *at == '+')
+		at++;
+	if (!is_digit(*at) && !(*at == '.' && is_digit(at[1])))
+		return false;
+	for (; is_digit(*at); at++) {
+		whole = 10 * whole + (*at - '0');
+		if (whole > INTEGER_MAX)
+			return false;
+	}
+	if (*at == '.') {
+		int64_t place = PASSO_GCODE_MILLION;
+
+		for (at++; is_digit(*at); at++) {
+			fraction += (*at - '0') * (place / 10);
+			if (place == 1 && *at >= '5')
+				fraction++;
+			place /= 10;
+		}
+	}
+	*text = at;
+	*millionths = whole * PASSO_GCODE_MILLION + fraction;
+	if (negative)
+		*millionths = -*millionths;
+	return true;
+}
+
+/* A command with a fraction that is not there is UNSUPPORTED if its number has others, else NOT_INTEGER. */
+static enum passo_gcode_error add_command(
+    struct passo_gcode_block *block, const struct code *table, size_t count, int64_t value)
+{
+	const int64_t whole = value / PASSO_GCODE_MILLION;
+	enum passo_gcode_error error = PASSO_GCODE_UNSUPPORTED;
+
+	for (size_t i = 0; i < count; i++) {
+		const struct code *code = &table[i];
+
+		if (code->number * (int64_t)TENTH == value) {
+			if (block->command[code->group] != PASSO_GCODE_NONE)
+				return PASSO_GCODE_MODAL_GROUP;
+			block->command[code->group] = code->number;
+			return PASSO_GCODE_OK;
+		}
+		if (code->number / 10 == whole)
+			error = code->number % 10 ? PASSO_GCODE_UNSUPPORTED : PASSO_GCODE_NOT_INTEGER;
+	}
+	if (table == G_CODES && whole == 59)
+		return PASSO_GCODE_COORDINATES;
+	return error;
+}
+
+static enum passo_gcode_error add_value(
+    struct passo_gcode_block *block, uint32_t known, char letter, int64_t value)
+{
+	const uint32_t word = PASSO_GCODE_WORD(letter);
+
+	if (!(known & word))
+		return PASSO_GCODE_UNSUPPORTED;
+	if (block->words & word)
+		return PASSO_GCODE_REPEATED;
+	if (value < 0 && (POSITIVE_WORDS & word))
+		return PASSO_GCODE_NEGATIVE;
+	block->words |= word;
+	block->value[letter - 'A'] = value;
+	return PASSO_GCODE_OK;
+}
+
+enum passo_gcode_error passo_gcode_parse(const char *text, unsigned axes, struct passo_gcode_block *block)
+{
+	const uint32_t known = VALUE_WORDS | passo_gcode_axis_words(axes);
+	enum passo_gcode_error error = PASSO_GCODE_OK;
+
+	*block = (struct passo_gcode_block){.words = 0};
+	for (unsigned group = 0; group < PASSO_GCODE_GROUPS; group++)
+		block->command[group] = PASSO_GCODE_NONE;
+	if (*text == '/')
+		text++;
+	if (text[0] == '%' && text[1] == '\0')
+		return PASSO_GCODE_OK;
+	while (*text != '\0' && error == PASSO_GCODE_OK) {
+		const char letter = *text++;
+		int64_t value = 0;
+
+		if (letter < 'A' || letter > 'Z')
+			return PASSO_GCODE_LETTER;
+		if (!passo_gcode_number(&text, &value))
+			return PASSO_GCODE_NUMBER;
+		if (letter == 'G')
+			error = add_command(block, G_CODES, COUNT(G_CODES), value);
+		else if (letter == 'M')
+			error = add_command(block, M_CODES, COUNT(M_CODES), value);
+		else
+			error = add_value(block, known, letter, value);
+	}
+	return error;
+}

@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: MIT
+ * The words of a line: what it says, before it is known whether that makes sense.
+ *
+ * Numbers are exact in millionths: millimetres become nanometres, seconds microseconds.
+ */
+#ifndef PASSO_GCODE_BLOCK_H
+#define PASSO_GCODE_BLOCK_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "passo_gcode_error.h"
+
+/* Axes are X Y Z A B C, in this order. */
+#define PASSO_GCODE_AXES_MAX 6u
+
+#define PASSO_GCODE_MILLION 1000000
+
+/* Modal groups; at most one command of each in a line. Those before COMMAND are kept from line to line. */
+enum passo_gcode_group {
+	PASSO_GCODE_MOTION,       /* G0 G1 G2 G3 G38.2-5 G80 */
+	PASSO_GCODE_SYSTEM,       /* G54-59 */
+	PASSO_GCODE_PLANE,        /* G17-19 */
+	PASSO_GCODE_UNITS,        /* G20 G21 */
+	PASSO_GCODE_DISTANCE,     /* G90 G91 */
+	PASSO_GCODE_FEED_MODE,    /* G93 G94 */
+	PASSO_GCODE_PATH,         /* G61 G64 */
+	PASSO_GCODE_TOOL_LENGTH,  /* G43.1 G49 */
+	PASSO_GCODE_CUTTER,       /* G40 */
+	PASSO_GCODE_ARC_DISTANCE, /* G91.1 */
+	PASSO_GCODE_SPINDLE,      /* M3 M4 M5 */
+	PASSO_GCODE_COMMAND,      /* G4 G10 G28 G28.1 G30 G30.1 G53 G92 G92.1 */
+	PASSO_GCODE_COOLANT,      /* M7 M8 M9 */
+	PASSO_GCODE_PROGRAM,      /* M0 M1 M2 M30 */
+	PASSO_GCODE_GROUPS
+};
+#define PASSO_GCODE_MODES PASSO_GCODE_COMMAND
+
+/* A command is its number in tenths: G38.2 is 382. */
+typedef int16_t passo_gcode_command;
+#define PASSO_GCODE_NONE ((passo_gcode_command) - 1)
+
+#define PASSO_GCODE_WORD(letter) (UINT32_C(1) << ((letter) - 'A'))
+
+struct passo_gcode_block {
+	passo_gcode_command command[PASSO_GCODE_GROUPS]; /* PASSO_GCODE_NONE: none */
+	uint32_t words;                                  /* of the other letters, a bit for each */
+	int64_t value[26];                               /* of a letter, in millionths */
+};
+
+/* Letter of an axis, and the words of the first `axes` of them. */
+char passo_gcode_axis_letter(unsigned axis);
+uint32_t passo_gcode_axis_words(unsigned axes);
+
+/* Reads a number: sign, digits and at most one point, below 10^9; rounded to millionths. Moves *text behind
+ * it. False: there is none. */
+bool passo_gcode_number(const char **text, int64_t *millionths);
+
+/* Reads the words of a line (passo_gcode_line.h) for a machine with `axes` axes. Errors: LETTER, NUMBER,
+ * NEGATIVE, UNSUPPORTED, MODAL_GROUP, NOT_INTEGER, REPEATED, COORDINATES. */
+enum passo_gcode_error passo_gcode_parse(const char *text, unsigned axes, struct passo_gcode_block *block);
+
+#endif

@@ -1,0 +1,219 @@
+/* SPDX-License-Identifier: MIT
+ * Checks of all words but those of a motion, in the order in which grbl names the errors.
+ */
+#include "passo_gcode_private.h"
+
+#define TOOL_MAX 255
+#define LINE_NUMBER_MAX 9999999
+#define TOOL_AXIS 2u /* Z */
+
+bool passo_gcode_take(struct passo_gcode_check *check, char letter)
+{
+	check->unused &= ~PASSO_GCODE_WORD(letter);
+	return (check->block.words & PASSO_GCODE_WORD(letter)) != 0;
+}
+
+static int64_t value_of(const struct passo_gcode_check *check, char letter)
+{
+	return check->block.value[letter - 'A'];
+}
+
+static int64_t whole_of(const struct passo_gcode_check *check, char letter)
+{
+	return value_of(check, letter) / PASSO_GCODE_MILLION;
+}
+
+/* Nanometres of millionths of an inch, to the nearest; 25.4 is 127 / 5. */
+static int64_t from_inches(int64_t value)
+{
+	return (127 * value + (value < 0 ? -2 : 2)) / 5;
+}
+
+int64_t passo_gcode_length_of(const struct passo_gcode_check *check, char letter)
+{
+	const int64_t value = value_of(check, letter);
+
+	return check->mode[PASSO_GCODE_UNITS] == 200 ? from_inches(value) : value;
+}
+
+bool passo_gcode_has_axis(const struct passo_gcode_check *check, unsigned axis)
+{
+	return (check->axis_words & PASSO_GCODE_WORD(passo_gcode_axis_letter(axis))) != 0;
+}
+
+int64_t passo_gcode_axis_value(const struct passo_gcode_check *check, unsigned axis)
+{
+	const char letter = passo_gcode_axis_letter(axis);
+
+	return letter >= 'X' ? passo_gcode_length_of(check, letter) : value_of(check, letter);
+}
+
+bool passo_gcode_in_range(int64_t nanometres)
+{
+	return nanometres <= PASSO_GCODE_COORDINATE_MAX && nanometres >= -PASSO_GCODE_COORDINATE_MAX;
+}
+
+/* At most one command may use the axis words. Without one they are those of the motion in force. */
+static enum passo_gcode_error find_user(struct passo_gcode_check *check)
+{
+	const passo_gcode_command command = check->block.command[PASSO_GCODE_COMMAND];
+	const passo_gcode_command motion = check->block.command[PASSO_GCODE_MOTION];
+	const bool moves = motion != PASSO_GCODE_NONE && motion != 800;
+	const bool sets = command == 100 || command == 280 || command == 300 || command == 920;
+	const bool lengthens = check->block.command[PASSO_GCODE_TOOL_LENGTH] != PASSO_GCODE_NONE;
+
+	if (moves + sets + lengthens > 1)
+		return PASSO_GCODE_TWO_COMMANDS;
+	check->moves = moves || (check->axis_words && !sets && !lengthens);
+	check->unused &= ~check->axis_words;
+	return PASSO_GCODE_OK;
+}
+
+static enum passo_gcode_error check_line_number(struct passo_gcode_check *check)
+{
+	if (passo_gcode_take(check, 'N') && whole_of(check, 'N') > LINE_NUMBER_MAX)
+		return PASSO_GCODE_LINE_NUMBER;
+	return PASSO_GCODE_OK;
+}
+
+/* In G93 each line that moves at a feed has its own; G94 keeps it, but not that of G93. */
+static enum passo_gcode_error check_feed(struct passo_gcode_check *check)
+{
+	const passo_gcode_command motion = check->mode[PASSO_GCODE_MOTION];
+	const bool given = passo_gcode_take(check, 'F');
+
+	if (check->mode[PASSO_GCODE_FEED_MODE] == 930) {
+		if (check->moves && motion != 0 && motion != 800 && !given)
+			return PASSO_GCODE_NO_FEED;
+		check->inverse = given ? value_of(check, 'F') : 0;
+	} else {
+		check->feed = given ? passo_gcode_length_of(check, 'F') : check->gcode->feed;
+	}
+	return PASSO_GCODE_OK;
+}
+
+static enum passo_gcode_error check_tool(struct passo_gcode_check *check)
+{
+	passo_gcode_take(check, 'S');
+	if (passo_gcode_take(check, 'T') && whole_of(check, 'T') > TOOL_MAX)
+		return PASSO_GCODE_TOOL;
+	if (check->block.command[PASSO_GCODE_TOOL_LENGTH] != 431)
+		return PASSO_GCODE_OK;
+	if (check->axis_words != PASSO_GCODE_WORD('Z'))
+		return PASSO_GCODE_TOOL_AXIS;
+	check->set[TOOL_AXIS] = passo_gcode_axis_value(check, TOOL_AXIS);
+	return passo_gcode_in_range(check->set[TOOL_AXIS]) ? PASSO_GCODE_OK : PASSO_GCODE_TARGET;
+}
+
+static int64_t tool_offset(const struct passo_gcode *gcode, unsigned axis)
+{
+	return axis == TOOL_AXIS ? gcode->tool_length : 0;
+}
+
+int64_t passo_gcode_offset_of(const struct passo_gcode_check *check, unsigned axis)
+{
+	const struct passo_gcode *gcode = check->gcode;
+	const unsigned system = (unsigned)(check->mode[PASSO_GCODE_SYSTEM] - 540) / 10;
+
+	return gcode->offsets.system[system][axis] + gcode->shift[axis] + tool_offset(gcode, axis);
+}
+
+/* G10 L2: the offsets themselves; L20: such that the position gets the given coordinates. */
+static enum passo_gcode_error check_g10(struct passo_gcode_check *check)
+{
+	const struct passo_gcode *gcode = check->gcode;
+
+	if (check->axis_words == 0)
+		return PASSO_GCODE_NO_AXIS_WORDS;
+	if (!passo_gcode_take(check, 'P') || !passo_gcode_take(check, 'L'))
+		return PASSO_GCODE_NO_VALUE;
+	const int64_t number = whole_of(check, 'P'), kind = whole_of(check, 'L');
+	if (number > (int64_t)PASSO_GCODE_SYSTEMS)
+		return PASSO_GCODE_COORDINATES;
+	if ((kind != 2 && kind != 20) || (check->block.words & PASSO_GCODE_WORD('R')))
+		return PASSO_GCODE_UNSUPPORTED;
+	check->system = (unsigned)(number > 0 ? number - 1 : (check->mode[PASSO_GCODE_SYSTEM] - 540) / 10);
+	for (unsigned axis = 0; axis < gcode->settings.axes; axis++) {
+		const int64_t value = passo_gcode_axis_value(check, axis);
+		const int64_t rest = gcode->position[axis] - gcode->shift[axis] - tool_offset(gcode, axis);
+
+		check->set[axis] = gcode->offsets.system[check->system][axis];
+		if (passo_gcode_has_axis(check, axis))
+			check->set[axis] = kind == 2 ? value : rest - value;
+		if (!passo_gcode_in_range(check->set[axis]))
+			return PASSO_GCODE_TARGET;
+	}
+	check->job->offsets = true;
+	return PASSO_GCODE_OK;
+}
+
+static enum passo_gcode_error check_g92(struct passo_gcode_check *check)
+{
+	const struct passo_gcode *gcode = check->gcode;
+
+	if (check->axis_words == 0)
+		return PASSO_GCODE_NO_AXIS_WORDS;
+	for (unsigned axis = 0; axis < gcode->settings.axes; axis++) {
+		const int64_t offset = passo_gcode_offset_of(check, axis) - gcode->shift[axis];
+
+		check->set[axis] = gcode->shift[axis];
+		if (passo_gcode_has_axis(check, axis))
+			check->set[axis] =
+			    gcode->position[axis] - offset - passo_gcode_axis_value(check, axis);
+		if (!passo_gcode_in_range(check->set[axis]))
+			return PASSO_GCODE_TARGET;
+	}
+	return PASSO_GCODE_OK;
+}
+
+/* Through the given point, then the given axes, or all, to the stored position. */
+static enum passo_gcode_error check_return(struct passo_gcode_check *check, const int64_t *home)
+{
+	struct passo_gcode_job *job = check->job;
+	const enum passo_gcode_error error = passo_gcode_find_target(check, job->stopover);
+
+	for (unsigned axis = 0; axis < check->gcode->settings.axes; axis++) {
+		const bool goes = check->axis_words == 0 || passo_gcode_has_axis(check, axis);
+
+		job->destination[axis] = goes ? home[axis] : job->stopover[axis];
+	}
+	job->via = check->axis_words != 0;
+	job->motion = true;
+	job->feed = PASSO_PATH_RAPID;
+	return error;
+}
+
+static enum passo_gcode_error check_command(struct passo_gcode_check *check)
+{
+	switch (check->block.command[PASSO_GCODE_COMMAND]) {
+	case 40:
+		check->job->dwell = true;
+		check->job->microseconds = (uint64_t)value_of(check, 'P');
+		return passo_gcode_take(check, 'P') ? PASSO_GCODE_OK : PASSO_GCODE_NO_VALUE;
+	case 100:
+		return check_g10(check);
+	case 280:
+		return check_return(check, check->gcode->offsets.home[0]);
+	case 300:
+		return check_return(check, check->gcode->offsets.home[1]);
+	case 281:
+	case 301:
+		check->job->offsets = true;
+		return PASSO_GCODE_OK;
+	case 920:
+		return check_g92(check);
+	default:
+		return PASSO_GCODE_OK;
+	}
+}
+
+enum passo_gcode_error passo_gcode_check_words(struct passo_gcode_check *check)
+{
+	static enum passo_gcode_error (*const CHECKS[])(struct passo_gcode_check *) = {
+	    find_user, check_line_number, check_feed, check_tool, check_command};
+	enum passo_gcode_error error = PASSO_GCODE_OK;
+
+	for (unsigned i = 0; i < sizeof CHECKS / sizeof *CHECKS && error == PASSO_GCODE_OK; i++)
+		error = CHECKS[i](check);
+	return error;
+}

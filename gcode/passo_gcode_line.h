@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: MIT
+ * A line as it comes in, byte by byte: without spaces and comments, in capitals.
+ */
+#ifndef PASSO_GCODE_LINE_H
+#define PASSO_GCODE_LINE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Longest line, without spaces and comments, and its end. */
+#define PASSO_GCODE_LINE_SIZE 128u
+
+struct passo_gcode_line {
+	char text[PASSO_GCODE_LINE_SIZE];
+	uint8_t length;
+	char comment; /* its first character; 0: outside */
+	bool overflow;
+};
+
+/* Begins an empty line. */
+void passo_gcode_line_clear(struct passo_gcode_line *line);
+
+/* Adds a byte. Comments are (...) and ;... to the end of the line; a byte that no word can have stays, so
+ * that the line is refused. */
+void passo_gcode_line_add(struct passo_gcode_line *line, char byte);
+
+/* Reads a whole line of text; what follows a line feed is ignored. */
+void passo_gcode_line_read(struct passo_gcode_line *line, const char *text, size_t count);
+
+#endif

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: MIT
+"""Python binding of the G-code interpreter (gcode/passo_gcode.h)."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from passo.failure import Failure
+from passo.native import ffi, planner
+
+NANOMETRES = 1_000_000  # per millimetre
+AXIS_LETTERS = "XYZABC"
+
+
+class GcodeError(Failure):
+    """A line was refused; `number` is that of grbl."""
+
+    def __init__(self, number: int):
+        self.number = number
+        text = ffi().string(planner().passo_gcode_error_text(number)).decode()
+        super().__init__(f"error:{number}: {text}")
+
+
+@dataclass(frozen=True)
+class GcodeSettings:
+    """See struct passo_gcode_settings."""
+
+    axes: int = 3
+    arc_tolerance: float = 0.002  # mm
+    spindle_maximum: int = 0  # rpm
+
+    def struct(self) -> Any:
+        """The `struct passo_gcode_settings`."""
+        tolerance = max(1, round(self.arc_tolerance * NANOMETRES))
+        return ffi().new("struct passo_gcode_settings *", (self.axes, tolerance, self.spindle_maximum))
+
+
+def stripped(line: bytes) -> Any:
+    """The `struct passo_gcode_line` of a line of text; raises GcodeError."""
+    made = ffi().new("struct passo_gcode_line *")
+    planner().passo_gcode_line_read(made, line, len(line))
+    if made.overflow:
+        raise GcodeError(planner().PASSO_GCODE_LINE_OVERFLOW)
+    return made
+
+
+class Gcode:
+    """A `struct passo_gcode`."""
+
+    def __init__(self, settings: GcodeSettings | None = None):
+        self.settings = settings or GcodeSettings()
+        self._c = planner()
+        self.c = ffi().new("struct passo_gcode *")
+        self._c.passo_gcode_open(self.c, self.settings.struct())
+
+    def execute(self, line: str | bytes) -> None:
+        """Execute a line; raises GcodeError."""
+        self._check("execute", line)
+
+    def jog(self, line: str | bytes) -> None:
+        """The words after `$J=`; raises GcodeError."""
+        self._check("jog", line)
+
+    def actions(self) -> Iterator[Any]:
+        """What is left of the line: each `struct passo_gcode_action`."""
+        action = ffi().new("struct passo_gcode_action *")
+        while self._c.passo_gcode_next(self.c, action):
+            yield action[0]
+            action = ffi().new("struct passo_gcode_action *")
+
+    @property
+    def position(self) -> tuple[int, ...]:
+        """Programmed end in machine coordinates, in nanometres."""
+        return tuple(self.c.position[0 : self.settings.axes])
+
+    def _check(self, function: str, line: str | bytes) -> None:
+        text = stripped(line.encode("utf-8", "replace") if isinstance(line, str) else line)
+        error = getattr(self._c, f"passo_gcode_{function}")(self.c, text.text)
+        if error:
+            raise GcodeError(error)

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: MIT
+"""The grbl console (stm32_bridge/grbl/passo_grbl.h) with a simulated core: `passo console --grbl`."""
+
+import contextlib
+import os
+import time
+import tty
+from collections.abc import Callable, Iterable
+from pathlib import Path as FilePath
+from typing import Any
+
+from passo.driver import Driver
+from passo.engine import Engine, PairEngine
+from passo.failure import BadInputError, Failure
+from passo.gcode import Gcode
+from passo.machine_file import MachineFile
+from passo.native import ffi, planner
+from passo.part import LOOPS_PER_SECOND, SLEWS_PER_SECOND
+from passo.path import LOOK_AHEAD, Path, PathFeed
+from passo.player import Player
+
+REAL_TIME = (b"?", b"!", b"~", b"\x18")  # lines of one of these bytes alone are sent without an end of line
+PATIENCE = 600  # simulated seconds until the machine rests
+READ = 4096
+
+
+class Grbl:
+    """A `struct passo_grbl` on a machine; `write` receives all answers, in pieces."""
+
+    def __init__(self, engine: Engine | PairEngine, machine: MachineFile, write: Callable[[str], object]):
+        self.engine, self.machine, self._write = engine, machine, write
+        driver = Driver(engine, machine.clock_hz, engine.parameters)
+        for axis in range(len(machine.settings.axes)):
+            driver.configure_axis(axis, machine.pins)
+        slew = machine.clock_hz // SLEWS_PER_SECOND
+        driver.call("configure_motion", slew, slew, 1 << 16)
+        feed = PathFeed(driver, Path(machine.settings, engine.parameters, LOOK_AHEAD))
+        self.player = Player(Gcode(machine.gcode), feed)
+        self._c = planner()
+        self._say = ffi().callback("void(void *, char *)", self._said)
+        self._sink = ffi().new("struct passo_grbl_sink *")
+        self._sink.write = ffi().cast("void *", self._say)
+        self.answers = 0  # ok and error so far
+        self.c = ffi().new("struct passo_grbl *")
+        self._c.passo_grbl_open(self.c, self.player.c, self._sink)
+
+    @property
+    def is_idle(self) -> bool:
+        """Nothing moves or waits."""
+        return self._c.passo_grbl_is_idle(self.c)
+
+    @property
+    def room(self) -> int:
+        """Bytes that can be typed at present."""
+        return (self.c.tail - self.c.head - 1) % 256
+
+    def type(self, data: bytes) -> None:
+        """Bytes from the host."""
+        for byte in data:
+            self._c.passo_grbl_receive(self.c, bytes([byte]))
+
+    def poll(self) -> None:
+        """One round of the main loop, and the time that it takes."""
+        self._c.passo_grbl_poll(self.c)
+        self.player.feed.driver.hardware.check()
+        self.engine.run(self.machine.clock_hz // LOOPS_PER_SECOND)
+        self.engine.drain()
+
+    def wait(self, until: Callable[[], bool], seconds: float = PATIENCE) -> bool:
+        """Poll until a condition holds; return whether it did within a simulated time."""
+        end = self.engine.clock + round(seconds * self.machine.clock_hz)
+        while not until() and self.engine.clock < end:
+            self.poll()
+        return until()
+
+    def line(self, text: bytes) -> None:
+        """A line, until it is answered; a real-time byte, until it has taken effect."""
+        if text.strip() in REAL_TIME:
+            self.type(text.strip())
+            self.poll()
+            return
+        answers = self.answers
+        self.type(text.rstrip(b"\r\n") + b"\n")
+        if not self.wait(lambda: self.answers > answers):
+            raise Failure(f"no answer to {text!r}: the machine is held")
+
+    def _said(self, _: Any, text: Any) -> None:
+        said = ffi().string(text).decode("ascii", "replace")
+        self.answers += said == "ok\r\n" or said == "error:"
+        self._write(said)
+
+
+def talk(lines: Iterable[str], grbl: Grbl) -> None:
+    """Type lines, and wait until all has been executed."""
+    for line in lines:
+        grbl.line(line.encode("utf-8", "surrogateescape"))
+    grbl.wait(lambda: grbl.is_idle)
+
+
+def serve(grbl: Grbl, terminal: int, until: Callable[[], bool] = lambda: False) -> None:
+    """Connect the console to a terminal, in real time."""
+    began, start = time.monotonic(), grbl.engine.clock
+    os.set_blocking(terminal, False)
+    while not until():
+        with contextlib.suppress(BlockingIOError, OSError):
+            # Real-time bytes pass a full buffer, so reading goes on; a sender keeps count of the rest.
+            grbl.type(os.read(terminal, READ))
+        grbl.poll()
+        ahead = (grbl.engine.clock - start) / grbl.machine.clock_hz - (time.monotonic() - began)
+        if ahead > 0:
+            time.sleep(ahead)
+
+
+@contextlib.contextmanager
+def pseudo_terminal(link: FilePath) -> Any:
+    """Open a pseudo-terminal under a name; yields its other end."""
+    ours, theirs = os.openpty()
+    tty.setraw(theirs)
+    try:
+        if link.is_symlink():
+            link.unlink()
+        link.symlink_to(os.ttyname(theirs))
+    except OSError as error:
+        raise BadInputError(f"{link}: {error.strerror}") from None
+    try:
+        yield ours
+    finally:
+        link.unlink(missing_ok=True)
+        os.close(theirs)
+        os.close(ours)

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: MIT
+"""A part of G-code on a machine: its lines are checked, then played on an engine."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from passo.driver import Driver
+from passo.engine import Engine, PairEngine
+from passo.failure import BadInputError
+from passo.gcode import NANOMETRES, Gcode, GcodeError
+from passo.machine_file import MachineFile
+from passo.native import planner
+from passo.path import LOOK_AHEAD, PathFeed
+from passo.path import Path as LinePath
+from passo.player import Player
+
+LOOPS_PER_SECOND = 1000  # polls of the driver
+SLEWS_PER_SECOND = 20  # of hold and stop, from full speed
+PATIENCE = 3600  # simulated seconds without an end of the path that are too many
+
+
+@dataclass(frozen=True)
+class Part:
+    """The checked lines of a file."""
+
+    path: Path
+    lines: list[bytes]
+    chords: int  # with those of the arcs
+    end: tuple[int, ...]  # nm
+
+
+@dataclass(frozen=True)
+class Played:
+    """What left the pins."""
+
+    part: Part
+    machine: MachineFile
+    clocks: list[np.ndarray]  # of the steps of each axis, from the start of the first motion
+    positions: list[np.ndarray]  # in steps, after each of them
+    motions: list[tuple[int, int]]  # begin and end of each motion, in clocks
+    end: list[int]  # positions at the end, in steps
+    drained: int
+    cause: str
+    matched_edges: int | None
+
+    @cached_property
+    def seconds(self) -> float:
+        """Duration of all motions."""
+        return sum(end - begin for begin, end in self.motions) / self.machine.clock_hz
+
+    def problems(self) -> list[str]:
+        """What was not exact, one sentence each."""
+        found = []
+        if self.cause != "NONE":
+            found.append(f"the core stopped: {self.cause}")
+        if self.drained:
+            found.append(f"{self.drained} substeps were missing at the end of a ramp")
+        for axis, settings in enumerate(self.machine.settings.axes):
+            made = int(self.positions[axis][-1]) if len(self.positions[axis]) else 0
+            exact = self.part.end[axis] / NANOMETRES * float(settings.steps_per_mm)
+            if abs(made - exact) > 0.5 + 1e-6 or self.end[axis] != made:
+                found.append(
+                    f"axis {axis} made {made} steps and counted {self.end[axis]}, wanted are {exact:g}"
+                )
+        return found
+
+
+def read_part(path: Path, machine: MachineFile) -> Part:
+    """Check all lines of a file; raises BadInputError with the number of the first bad line."""
+    try:
+        lines = path.read_bytes().split(b"\n")
+    except OSError as error:
+        raise BadInputError(f"{path}: {error.strerror}") from None
+    gcode, chords = Gcode(machine.gcode), 0
+    for number, line in enumerate(lines, 1):
+        try:
+            gcode.execute(line)
+        except GcodeError as error:
+            raise BadInputError(f"{path}:{number}: {error}") from None
+        for action in gcode.actions():
+            if action.kind == planner().PASSO_GCODE_PROBE:
+                raise BadInputError(f"{path}:{number}: there is no probe here")
+            if action.kind == planner().PASSO_GCODE_END:
+                return Part(path, lines[:number], chords, gcode.position)
+            chords += action.kind == planner().PASSO_GCODE_LINE
+    return Part(path, lines, chords, gcode.position)
+
+
+def play_part(
+    part: Part,
+    machine: MachineFile,
+    engine: Engine | PairEngine,
+    progress: Callable[[int], None] = lambda chords: None,
+    look_ahead: int = LOOK_AHEAD,
+) -> Played:
+    """Play all lines; `progress` is called with the chords that the planner has taken."""
+    driver = Driver(engine, machine.clock_hz, engine.parameters)
+    axes = len(machine.settings.axes)
+    for axis in range(axes):
+        driver.configure_axis(axis, machine.pins)
+    slew = machine.clock_hz // SLEWS_PER_SECOND
+    driver.call("configure_motion", slew, slew, 1 << 16)
+    feed = PathFeed(driver, LinePath(machine.settings, engine.parameters, look_ahead))
+    player = Player(Gcode(machine.gcode), feed)
+    events = [engine.drain()]
+    waiting = iter(part.lines)
+    last, quiet = -1, engine.clock
+    while True:
+        line = b""
+        while player.is_ready and line is not None:
+            if (line := next(waiting, None)) is not None:
+                player.gcode.execute(line)
+                if player.poll() == "PAUSED":
+                    player.go_on()
+            else:
+                feed.path.end()
+        if player.poll() == "PAUSED":
+            player.go_on()
+        if line is None and player.is_idle:
+            break
+        engine.run(machine.clock_hz // LOOPS_PER_SECOND)
+        events.append(engine.drain())
+        if player.chords != last:
+            last, quiet = player.chords, engine.clock
+            progress(last)
+        if engine.clock - quiet > PATIENCE * machine.clock_hz:
+            raise BadInputError(f"{part.path}: the machine stands still")
+    engine.run(8 * sum(vars(machine.pins).values()))
+    events.append(engine.drain())
+    snapshot, end = driver.snapshot(), driver.positions()[:axes]
+    cause, matched = driver.cause.name, getattr(engine, "matched_edges", None)
+    return _played(part, machine, np.concatenate(events), end, int(snapshot.drained), cause, matched)
+
+
+def _played(
+    part: Part,
+    machine: MachineFile,
+    events: np.ndarray,
+    end: list[int],
+    drained: int,
+    cause: str,
+    matched: int | None,
+) -> Played:
+    running = np.concatenate([[0], events["running"] & 1]).astype(bool)
+    rises = events["clock"][running[1:] & ~running[:-1]].astype(np.int64)
+    falls = events["clock"][running[:-1] & ~running[1:]].astype(np.int64)
+    origin = int(rises[0]) if len(rises) else 0
+    clocks, positions = [], []
+    for axis in range(len(end)):
+        level = (events["step"] >> np.uint64(axis)).astype(np.int64) & 1
+        rising = np.flatnonzero(np.diff(level, prepend=0) == 1)
+        back = (events["dir"][rising] >> np.uint64(axis) & np.uint64(1)).astype(np.int64)
+        clocks.append(events["clock"][rising].astype(np.int64) - origin)
+        positions.append(np.cumsum(1 - 2 * back))
+    motions = [(b - origin, e - origin) for b, e in zip(rises.tolist(), falls.tolist(), strict=True)]
+    return Played(part, machine, clocks, positions, motions, end, drained, cause, matched)

@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: MIT
+"""`passo run PART.nc`: G-code on the C model, its pulses against the path reference and the G-code itself."""
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from passo import cli
+from passo.gcode import NANOMETRES
+from passo.machine_file import MachineFile, read_machine
+from passo.part import Played, play_part, read_part
+from passo.path import PathAxis
+from passo.run import open_engine, parameters_for
+from passo.toolchain import paths
+
+from benchmarks.path_reference import seconds
+
+MACHINE = paths.examples / "machine.toml"
+PART = paths.examples / "part.nc"
+
+
+def play(folder: Path, text: str, engine: str = "model", look_ahead: int = 48) -> Played:
+    """A part on the machine of the example."""
+    path, machine = folder / "part.nc", read_machine(MACHINE)
+    path.write_text(text)
+    part = read_part(path, machine)
+    with open_engine(engine, parameters_for(3), machine.clock_hz) as core:
+        return play_part(part, machine, core, look_ahead=look_ahead)
+
+
+def places(played: Played, clocks: np.ndarray) -> np.ndarray:
+    """Positions of all axes in mm at these clocks."""
+    columns = []
+    for at, counts, axis in zip(played.clocks, played.positions, played.machine.settings.axes, strict=True):
+        index = np.searchsorted(at, clocks, side="right")
+        columns.append(np.concatenate([[0], counts])[index] / float(axis.steps_per_mm))
+    return np.stack(columns, axis=1)
+
+
+def test_the_example(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Command, summary, picture."""
+    arguments = ["run", str(PART), "--machine", str(MACHINE), "--out", str(tmp_path), "--plot"]
+    assert cli.main(arguments) == 0
+    assert "24 lines, 530 chords in 12.08" in capsys.readouterr().out
+    summary = json.loads((tmp_path / "summary.json").read_text())
+    assert summary["ok"] and summary["end"]["steps"] == [0, 0, 0]
+    assert (summary["lines"], summary["chords"], summary["motions"]) == (24, 530, 1)
+    assert (tmp_path / "path.png").stat().st_size > 20_000
+
+
+def test_a_circle_takes_as_long_as_the_reference(tmp_path: Path) -> None:
+    """And its steps are within a step and the tolerance of the circle."""
+    played = play(tmp_path, "G21 G90\nG1 F6000\nG2 X0 I20\n")
+    assert played.problems() == []
+    lines = played.part.chords
+    angles = [-2 * math.pi * i / lines for i in range(1, lines + 1)]
+    chords = [((20 - 20 * math.cos(a), -20 * math.sin(a), 0.0), 100.0) for a in angles]
+    assert 0.999 < played.seconds / seconds(chords, played.machine.settings) < 1.01
+    steps = places(played, np.unique(np.concatenate(played.clocks[:2])))
+    radius = np.hypot(steps[:, 0] - 20, steps[:, 1])
+    assert np.abs(radius - 20).max() < 0.002 + 1.5 / 80
+    area = np.sum(steps[:-1, 0] * steps[1:, 1] - steps[1:, 0] * steps[:-1, 1]) / 2
+    assert abs(area + math.pi * 400) < 1  # clockwise
+
+
+def test_dwells_pauses_and_stops_of_the_program(tmp_path: Path) -> None:
+    """A dwell lasts; M0 ends a motion; nothing after M30 is read."""
+    still = play(tmp_path, "G1 X5 F1000\nX10")
+    with_dwell = play(tmp_path, "G1 X5 F1000\nG4 P0.25\nX10")
+    stop = play(tmp_path, "G1 X5 F1000\nM0\nX10\nM30\nnonsense")
+    assert 0.25 < with_dwell.seconds - still.seconds < 0.3
+    assert (len(still.motions), len(with_dwell.motions), len(stop.motions)) == (1, 1, 2)
+    assert still.end == with_dwell.end == stop.end == [800, 0, 0]
+
+
+def test_the_look_ahead_changes_times_only(tmp_path: Path) -> None:
+    """The same steps with 4 lines as with 1000."""
+    text = "G1 F3000\n" + "".join(f"X{i * 0.3:.2f} Y{math.sin(i):.3f}\n" for i in range(60))
+    short, long = (play(tmp_path, text, look_ahead=n) for n in (4, 1000))
+    assert short.problems() == long.problems() == []
+    for a, b in zip(short.positions, long.positions, strict=True):
+        assert a.tolist() == b.tolist()
+    assert long.seconds <= short.seconds
+
+
+def test_rtl_and_model_agree(tmp_path: Path) -> None:
+    """A short part on both, edge for edge."""
+    played = play(tmp_path, "G91 G0 X0.5 Y0.2\nG2 X0.2 I0.1 F2000\n", "both")
+    assert played.problems() == [] and played.matched_edges
+    assert played.matched_edges > 100
+
+
+def test_the_end_is_exact_in_any_units(tmp_path: Path) -> None:
+    """Positions are rounded once, from the sum of all increments."""
+    played = play(tmp_path, "G20 G91 G1 F100\n" + "X0.0007 Y-0.00013\n" * 300)
+    assert played.problems() == []
+    assert played.part.end[0] == 300 * 17_780
+    assert played.end[:2] == [round(300 * 17_780 * 80 / NANOMETRES), round(-300 * 3_302 * 80 / NANOMETRES)]
+
+
+# ---------------------------------------------------------------------------------------- bad input
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [("G1 X10", ":1: error:22:"), ("G0 X1\nG0 X1 Y1 X2", ":2: error:25:"), ("\x00\xff", ":1: error:1:"),
+     ("G38.2 Z-1 F10", "no probe"), ("G0 X" + "0" * 200, ":1: error:11:"),
+     ("F100\n\nG2 X1 R.1", ":3: error:34:")],
+)  # fmt: skip
+def test_a_bad_line_is_named_and_nothing_moves(
+    tmp_path: Path, text: str, told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "bad.nc"
+    path.write_bytes(text.encode("latin-1"))
+    assert cli.main(["run", str(path), "--machine", str(MACHINE), "--out", str(tmp_path / "out")]) == 2
+    assert told in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+GOOD_AXIS = '[[axis]]\nname = "X"\nsteps_per_mm = 80\nspeed = 200\nacceleration = 1000\n'
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("", "clock_hz is missing"),
+        ("clock_hz = 64", "write 64_000_000"),
+        ("clock_hz = 64_000_000", "0 axes"),
+        ("clock_hz = 64_000_000\nclock = 1\n" + GOOD_AXIS, "unknown key 'clock'"),
+        ("clock_hz = 64_000_000\n" + GOOD_AXIS.replace("X", "Y"), 'axis 1: name must be "X"'),
+        ("clock_hz = 64_000_000\n" + GOOD_AXIS.replace("speed = 200\n", ""), "axis 1: speed is missing"),
+        ("clock_hz = 64_000_000\n" + GOOD_AXIS.replace("1000", "0"), "acceleration must be greater than 0"),
+        ("clock_hz = 64_000_000\narc_tolerance = 0\n" + GOOD_AXIS, "arc_tolerance must be greater than 0"),
+        ('clock_hz = 64_000_000\nprofile = "jerk"\n' + GOOD_AXIS, "not jerk"),
+        ("clock_hz = 64_000_000\n[pins]\nstep_high = 1\n" + GOOD_AXIS, "pins: step_high is"),
+        ("clock_hz = 64_000_000\n" + GOOD_AXIS + "jerk = 5", "axis 1: jerk must be 0"),
+        ("clock_hz = ", "Invalid value"),
+    ],
+)
+def test_a_bad_machine_file_is_refused(
+    tmp_path: Path, text: str, told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "machine.toml"
+    path.write_text(text)
+    assert cli.main(["run", str(PART), "--machine", str(path)]) == 2
+    assert told in capsys.readouterr().err
+
+
+def test_what_does_not_fit_together_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["run", str(PART)]) == 2
+    assert cli.main(["run", str(PART), "--machine", str(MACHINE), "--waves"]) == 2
+    assert cli.main(["run", str(paths.examples / "turn.toml"), "--machine", str(MACHINE)]) == 2
+    assert cli.main(["run", "missing.nc", "--machine", str(MACHINE)]) == 2
+    assert capsys.readouterr().err.count("\n") == 4
+
+
+def test_a_machine_file(tmp_path: Path) -> None:
+    """All keys."""
+    path = tmp_path / "machine.toml"
+    path.write_text(
+        'clock_hz = 72_000_000\nprofile = "cosine"\nspindle_maximum = 24000\n'
+        "junction_deviation = 0.02\narc_tolerance = 0.005\n"
+        f'[pins]\nstep_high = "2us"\n{GOOD_AXIS}jump = 2\njerk = 0\n'
+    )
+    machine: MachineFile = read_machine(path)
+    assert machine.settings.axes == (PathAxis(80, 200, 1000, 2),)
+    assert (machine.clock_hz, machine.settings.profile) == (72_000_000, "cosine")
+    assert (machine.gcode.axes, machine.gcode.spindle_maximum) == (1, 24000)
+    assert (machine.pins.step_high, machine.pins.step_low) == (144, 72)
