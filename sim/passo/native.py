@@ -29,6 +29,7 @@ HEADERS = (
     paths.driver / "passo_inputs.h",
     paths.driver / "passo_home.h",
     paths.model / "passo_pins.h",
+    paths.engine / "passo_rig.h",
     paths.engine / "passo_engine.h",
     paths.engine / "passo_terminal.h",
     paths.console / "passo_decimal.h",
