@@ -10,7 +10,7 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
-from passo.form_table import Place
+from passo.form_table import Form, Place
 from passo.move_forms import (
     NUMBER_MAX,
     PROFILES,
@@ -239,3 +239,16 @@ def read_key(table: Table, key: Key, clock_hz: int) -> Any:
         default = table[key.default] if names_key else key.default
         table = {**table, key.name: default}
     return READERS[key.kind](table, key, clock_hz)
+
+
+def check_rules(form: Form, table: Table) -> None:
+    """Check the rules between the keys of a form."""
+    for rule in form.rules:
+        if rule.key not in table:
+            continue
+        if rule.kind == "excludes" and rule.other in table:
+            raise BadValueError(f"{rule.key} and {rule.other} exclude each other")
+        if rule.kind == "needs" and rule.other not in table:
+            raise BadValueError(f"{rule.key} needs {rule.other}")
+        if rule.kind == "above_zero" and table[rule.key] == 0:
+            raise BadValueError(f"{rule.key} must be greater than 0")

@@ -116,14 +116,14 @@ def _number(key: Key, value: Fraction, clock_hz: int) -> int:
 
 def plan_file(file: MoveFile, parameters: Parameters) -> list[Plan]:
     """Plan all moves and chain them into one motion; raises MoveFileError."""
-    plans = _plan_moves(file, parameters)
+    plans = plan_moves(file, parameters)
     _check_tables([(file.number(i), plan) for i, plan in enumerate(plans)], file.path)
     return plans
 
 
 def plan_channels(channels: Channels, parameters: Parameters) -> list[list[Plan]]:
     """Plan the motion of each channel; raises MoveFileError."""
-    plans = [_plan_moves(file, parameters) for file in channels.files]
+    plans = [plan_moves(file, parameters) for file in channels.files]
     numbered = [
         (file.number(i), plan)
         for file, own in zip(channels.files, plans, strict=True)
@@ -133,7 +133,7 @@ def plan_channels(channels: Channels, parameters: Parameters) -> list[list[Plan]
     return plans
 
 
-def _plan_moves(file: MoveFile, parameters: Parameters) -> list[Plan]:
+def plan_moves(file: MoveFile, parameters: Parameters) -> list[Plan]:
     plans = []
     for index, move in enumerate(file.moves):
         try:
