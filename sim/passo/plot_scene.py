@@ -54,6 +54,9 @@ def plot_scene(run: SceneRun, path: Path) -> None:
             if ax is not shared[-1]:
                 ax.tick_params(labelbottom=False)
         _badges(axes["speed"], run)
+        if run.file.axes > 1:
+            handles = axes["speed"].get_legend_handles_labels()
+            head.legend(*handles, loc="upper right", ncols=8)
         for number, (title, begin, stop) in enumerate(zooms):
             _zoom(axes[f"zoom {number}"], run, lanes, title, begin, stop)
         figure.savefig(path, dpi=110)
@@ -112,7 +115,7 @@ def _speed(ax: Axes, run: SceneRun) -> None:
     for section in run.sections:
         if section.plans:
             length = sum(plan.clocks for plan in section.plans)
-            clocks = np.linspace(0, length, 1500)
+            clocks = np.linspace(0, min(length, run.total_clocks + run.start - section.begin), 1500)
             _, speeds, _ = planned(run, section, clocks)
             for axis in range(run.file.axes):
                 times = (clocks + section.begin - run.start) / hz
@@ -128,8 +131,6 @@ def _speed(ax: Axes, run: SceneRun) -> None:
     ax.set_ylabel("kHz")
     is_planned = any(section.plans for section in run.sections)
     ax.set_title("Speed: as planned (wide) and the steps at the pins (thin)" if is_planned else "Speed")
-    if run.file.axes > 1:
-        ax.legend(loc="upper right", ncols=4, borderaxespad=0.1)
 
 
 def _position(ax: Axes, run: SceneRun) -> None:
@@ -270,32 +271,36 @@ def _badges(ax: Axes, run: SceneRun) -> None:
 
 
 def _zooms(run: SceneRun) -> list[tuple[str, int, int]]:
-    """Titles, begins and ends of what is shown of the pins: the end of the last stop, the first that was sought."""
+    """Titles, begins and ends of what is shown of the pins: edges that were sought, the stop at the end."""
     found = []
     sought = [stop for stop in run.stops if run.sought(stop) and stop.latch is not None]
     others = [stop for stop in run.stops if not run.sought(stop)]
     half = run.file.clock_hz // 1000
     if sought:
         edge = _edge_before(run, sought[0].clock)
-        found.append(("The first edge of the switch", edge - half // 3, edge + half))
+        found.append(("The first edge that was sought", edge - half // 2, edge + half))
     if others:
         clock = others[-1].clock - run.start
         found.append((f"The stop {others[-1].cause.name}", clock - half, clock + half // 2))
     elif len(sought) > 1:
         edge = _edge_before(run, sought[-1].clock)
-        found.append(("The last edge", edge - half // 3, edge + half))
+        found.append(("The last one", edge - half // 2, edge + half))
     return found
 
 
 def _edge_before(run: SceneRun, clock: int) -> int:
-    """Clock since the start of the first change of a switch that led to a stop."""
-    roles = [NUMBERS[one.role] for one in run.setup.inputs if one.at is not None]
-    own = run.inputs[np.isin(run.inputs["input"], roles) & (run.inputs["clock"] < clock)]
-    clocks = own["clock"].astype(np.int64)
-    if not len(clocks):
-        return clock - run.start
-    near = clocks[clocks > clock - run.file.clock_hz // 50]
-    return int(near[0] if len(near) else clocks[-1]) - run.start
+    """Clock since the start of the last change of a switch before a stop that the filter lets pass."""
+    filter_clocks = run.setup.settings.filter * run.file.clock_hz
+    found = clock - run.file.clock_hz // 50
+    for one in run.setup.inputs:
+        own = run.inputs[(run.inputs["input"] == NUMBERS[one.role]) & (run.inputs["clock"] < clock)]
+        bit = 0 if one.role == "probe" else one.axis
+        levels = (own["levels"] >> np.uint64(bit) & np.uint64(1)).astype(np.int8)
+        clocks = own["clock"].astype(np.int64)
+        changes = np.flatnonzero(np.diff(levels)) + 1
+        lasts = np.diff(np.append(clocks[changes], clock)) > filter_clocks
+        found = max([found, *clocks[changes[lasts]].tolist()[-1:]])
+    return found - run.start
 
 
 def _zoom(

@@ -19,11 +19,11 @@ from passo.plan import plan_moves, table_of
 from passo.registers import Cause, State, TriggerAction, TriggerSource
 from passo.rig import RATIO_ONE, Rig
 from passo.run import CHUNK, SLEWS_PER_SECOND, RunError
-from passo.scene_run import SAMPLE, SAMPLE_LAG, Happened, Latch, SceneRun, Section, Stop
+from passo.scene_run import SAMPLE, Happened, Latch, SceneRun, Section, Stop, sampled_at
 from passo.setup import Event
 
 POLLS_PER_SECOND = 1000
-POLL_CLOCKS_MIN = 4096  # some times the length of a frame
+POLL_CLOCKS_MIN = 2000  # some times the length of a frame
 AXES_OF_CORES = (2, 4, 8)
 COMMANDS = ("hold", "resume", "override", "stop", "abort", "arm")  # events that the host carries out
 GIVE_UP_SECONDS = 2  # without a step, a change of an input or an event
@@ -334,7 +334,7 @@ class Scene:
         return report
 
     def _sample(self) -> None:
-        clock = self.engine.clock + SAMPLE_LAG
+        clock = sampled_at(self.engine.clock)
         length = r.CHANNEL_ENCODER_POSITION_BASE + self.axes - r.CHANNEL_POSITION_BASE
         words = self._read(r.CHANNEL_POSITION_BASE, length)
         signed = np.zeros((2, 8), np.int32)

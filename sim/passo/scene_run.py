@@ -13,7 +13,13 @@ from passo.setup import Event, Setup
 
 # What the host has read in one frame, all of one clock.
 SAMPLE = np.dtype([("clock", "u8"), ("position", "i4", 8), ("encoder", "i4", 8)])
-SAMPLE_LAG = 36  # clocks from the start of the frame to that clock, up to 32 more or less
+ROUND_CLOCKS = 64  # the core reads its positions in rounds from the reset on; docs/architecture.md, SPI link
+CS_CLOCKS = 4  # until chip select is seen
+
+
+def sampled_at(clock: int) -> int:
+    """Clock of the positions in a frame whose chip select falls at `clock`: the end of the next round."""
+    return ((clock + CS_CLOCKS) // ROUND_CLOCKS + 1) * ROUND_CLOCKS - 1
 
 
 @dataclass
