@@ -11,6 +11,7 @@ from passo.engine import NUMBERS
 from passo.move_forms import EventInput, EventOverride, EventSlip
 from passo.plot import STYLE
 from passo.plot_panels import COLORS, INK, WIDE
+from passo.registers import Cause
 from passo.scene_report import measured_curve, planned
 from passo.scene_run import Happened, SceneRun
 
@@ -143,6 +144,11 @@ def _position(ax: Axes, run: SceneRun) -> None:
         times = np.concatenate([[0], clocks, [run.total_clocks]]) / hz
         places = np.append(places, places[-1])
         ax.step(times, places * scale, where="post", color=COLORS[axis], linewidth=1.1)
+    for encoder in run.setup.encoders:
+        curve, color = measured_curve(run, encoder), COLORS[encoder.axis]
+        scale = 1 / float(scales[encoder.axis]) if in_mm else 1
+        measured = (curve.measured + run.setup.start(encoder.axis)) * scale
+        ax.plot(curve.clocks / hz, measured, color=color, **WIDE)
     low, high = ax.get_ylim()
     for one in run.setup.inputs:
         if one.at is None:
@@ -164,7 +170,9 @@ def _position(ax: Axes, run: SceneRun) -> None:
             color = SOUGHT if run.sought(stop) else STOP
             at = (stop.clock - run.start) / hz
             ax.plot(at, stop.positions[axis] * scale, "o", color=color, markersize=3.5, zorder=5)
-    ax.set_title("Position of the machine, its switches (dashed) and stops (dots)")
+    measured = ", as measured (wide)" if run.setup.encoders else ""
+    switches = ", switches (dashed)" if any(one.at is not None for one in run.setup.inputs) else ""
+    ax.set_title(f"Position{measured}{switches}{', stops (dots)' if run.stops else ''}")
     ax.set_ylabel("mm" if in_mm else "steps")
 
 
@@ -264,7 +272,7 @@ def _badges(ax: Axes, run: SceneRun) -> None:
     for stop in run.stops:
         if not run.sought(stop):
             ax.annotate(
-                stop.cause.name, ((stop.clock - run.start) / hz, 0.08), xycoords=top, color=STOP,
+                stop.cause.name, ((stop.clock - run.start) / hz, 0.8), xycoords=top, color=STOP,
                 xytext=(-5, 0), textcoords="offset points", ha="right", va="center",
                 fontsize=8, fontweight="bold", bbox=LABEL, zorder=6,
             )  # fmt: skip
@@ -280,8 +288,12 @@ def _zooms(run: SceneRun) -> list[tuple[str, int, int]]:
         edge = _edge_before(run, sought[0].clock)
         found.append(("The first edge that was sought", edge - half // 2, edge + half))
     if others:
-        clock = others[-1].clock - run.start
-        found.append((f"The stop {others[-1].cause.name}", clock - half, clock + half // 2))
+        clock, title = others[-1].clock - run.start, f"The stop {others[-1].cause.name}"
+        if others[-1].cause == Cause.FOLLOWING_ERROR:  # what it began with
+            events = [one for one in run.events if one.clock is not None and one.clock <= others[-1].clock]
+            if events:
+                clock, title = events[-1].clock - run.start, f"Event {events[-1].number}"
+        found.append((title, clock - half, clock + half // 2))
     elif len(sought) > 1:
         edge = _edge_before(run, sought[-1].clock)
         found.append(("The last one", edge - half // 2, edge + half))

@@ -25,6 +25,7 @@ from passo.setup import Event
 POLLS_PER_SECOND = 1000
 POLL_CLOCKS_MIN = 2000  # some times the length of a frame
 AXES_OF_CORES = (2, 4, 8)
+SETTLE_CLOCKS = 256
 COMMANDS = ("hold", "resume", "override", "stop", "abort", "arm")  # events that the host carries out
 GIVE_UP_SECONDS = 2  # without a step, a change of an input or an event
 
@@ -69,8 +70,8 @@ class Scene:
         self.clock_hz, self.axes = channels.clock_hz, self.file.axes
         self.poll_clocks = max(self.clock_hz // POLLS_PER_SECOND, POLL_CLOCKS_MIN)
         self.sections = plan_sections(self.file, engine.parameters)
-        self.rig = Rig(engine, self.setup, self.axes)
         self.driver = Driver(engine, self.clock_hz, engine.parameters)
+        self.rig = Rig(engine, self.setup, self.axes)
         self.progress = progress or (lambda _: None)
         self.pins: list[np.ndarray] = []
         self.inputs: list[np.ndarray] = []
@@ -125,8 +126,13 @@ class Scene:
         driver.call("configure_watchdog", 0, 0)
         driver.call("configure_filter", round(settings.filter * self.clock_hz))
         for axis in range(self.axes):
-            driver.configure_axis(axis, self.file.pins)
             driver.call("configure_inputs", axis, self._input_config(axis))
+        # An alarm may have been read with the wrong polarity until now.
+        self._advance(3 * round(settings.filter * self.clock_hz) + SETTLE_CLOCKS)
+        if driver.snapshot().state == State.STOPPED:
+            driver.attempt("clear")
+        for axis in range(self.axes):
+            driver.configure_axis(axis, self.file.pins)
         probe = self.setup.find("probe", 0)
         if probe is not None:
             driver.call("configure_probe", self.setup.inputs[probe].polarity == "low")
@@ -145,10 +151,6 @@ class Scene:
             self._write(r.CHANNEL_ENCODER_FILTER, encoder.filter)
             base = r.CHANNEL_ENCODER_BASE + encoder.axis * r.CHANNEL_ENCODER_STRIDE
             self._write(base + r.ENCODER_SETUP, word, ratio, limit)
-        # Polarities of alarms are known only now.
-        if driver.snapshot().state == State.STOPPED:
-            driver.attempt("clear")
-        self._collect()
 
     def _input_config(self, axis: int) -> Any:
         """The `struct passo_input_config` of an axis."""
