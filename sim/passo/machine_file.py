@@ -89,6 +89,10 @@ def _machine(table: object, axes: int, clock_hz: int) -> Setup:
             raise BadValueError(f"input {number}: {made.role} is input {first + 1} already")
         inputs.append(made)
     _check_count("inputs", len(inputs), most("wire") - 1)
+    for axis in range(axes):
+        own = {one.soft for one in inputs if one.axis == axis and one.role in ("limit_low", "limit_high")}
+        if len(own) > 1:
+            raise BadValueError(f"the limits of axis {axis} are both soft or both hard")
     encoders: list[MachineEncoder] = []
     for number, one in enumerate(_tables(table, "encoder"), 1):
         made = within(f"encoder {number}", lambda one=one: _encoder(one, axes, clock_hz))

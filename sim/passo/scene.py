@@ -7,19 +7,18 @@ from typing import Any
 
 import numpy as np
 
-from passo import registers as r
 from passo.build import Parameters
-from passo.driver import Driver, DriverError, Source
+from passo.driver import DriverError, Source
 from passo.engine import EVENT, Engine, PairEngine
-from passo.link import error_text
-from passo.move_forms import USER_BANK, EventArm, EventOverride, MoveHome, MoveProbe
-from passo.moves import Channels, MoveFile, MoveFileError, Task, q32
+from passo.move_forms import EventArm, EventOverride
+from passo.moves import Channels, MoveFile, MoveFileError, Task
 from passo.native import ffi
-from passo.plan import plan_moves, table_of
+from passo.plan import check_tables, plan_moves
 from passo.registers import Cause, State, TriggerAction, TriggerSource
-from passo.rig import RATIO_ONE, Rig
-from passo.run import CHUNK, SLEWS_PER_SECOND, RunError
-from passo.scene_run import SAMPLE, Happened, Latch, SceneRun, Section, Stop, sampled_at
+from passo.rig import Rig
+from passo.run import CHUNK, RunError
+from passo.scene_driver import SceneDriver
+from passo.scene_run import SAMPLE, Happened, Latch, SceneRun, Section, Stop
 from passo.setup import Event
 
 POLLS_PER_SECOND = 1000
@@ -55,6 +54,11 @@ def plan_sections(file: MoveFile, parameters: Parameters) -> list[Section]:
                 tuple(section.numbers),
             )
             section.plans = plan_moves(own, parameters)
+    numbered = [
+        pair for section in sections if section.plans
+        for pair in zip(section.numbers, section.plans, strict=True)
+    ]  # fmt: skip
+    check_tables(numbered, file.path)
     return sections
 
 
@@ -70,7 +74,7 @@ class Scene:
         self.clock_hz, self.axes = channels.clock_hz, self.file.axes
         self.poll_clocks = max(self.clock_hz // POLLS_PER_SECOND, POLL_CLOCKS_MIN)
         self.sections = plan_sections(self.file, engine.parameters)
-        self.driver = Driver(engine, self.clock_hz, engine.parameters)
+        self.driver = SceneDriver(engine, self.clock_hz, engine.parameters)
         self.rig = Rig(engine, self.setup, self.axes)
         self.progress = progress or (lambda _: None)
         self.pins: list[np.ndarray] = []
@@ -97,8 +101,8 @@ class Scene:
         pins = self.file.pins
         rest = 8 * (pins.step_high + pins.step_low + pins.dir_setup + pins.dir_hold)
         self._advance(max(rest, self.clock_hz // 500))
-        positions, core = self.driver.positions(), self._raw_positions()
-        self._sample()
+        positions = self.driver.positions()
+        self.samples.append(self.driver.sample(self.axes))
         return SceneRun(
             file=self.file,
             setup=self.setup,
@@ -110,64 +114,26 @@ class Scene:
             stops=self.stops,
             latches=self.latches,
             positions=positions[: self.axes],
-            core_positions=core,
+            core_positions=self.samples[-1][1][: self.axes].tolist(),
             machine=[self.rig.position(axis) for axis in range(self.axes)],
-            greatest=[self._greatest(encoder.axis) for encoder in self.setup.encoders],
+            greatest=[
+                self.driver.greatest(one.axis, float(one.counts_per_step)) for one in self.setup.encoders
+            ],
             troubles=self.troubles,
             matched_edges=self.engine.matched_edges if isinstance(self.engine, PairEngine) else None,
             clocks=self.engine.clock - start,
             seconds=time.monotonic() - began,
         )
 
-    # ------------------------------------------------------------------------------------- settings ----
+    # --------------------------------------------------------------------------------------- moves ----
 
     def _configure(self) -> None:
-        driver, settings = self.driver, self.setup.settings
-        driver.call("configure_watchdog", 0, 0)
-        driver.call("configure_filter", round(settings.filter * self.clock_hz))
-        for axis in range(self.axes):
-            driver.call("configure_inputs", axis, self._input_config(axis))
-        # An alarm may have been read with the wrong polarity until now.
-        self._advance(3 * round(settings.filter * self.clock_hz) + SETTLE_CLOCKS)
+        driver = self.driver
+        driver.configure_inputs(self.setup, self.axes)
+        self._advance(3 * round(self.setup.settings.filter * self.clock_hz) + SETTLE_CLOCKS)
         if driver.snapshot().state == State.STOPPED:
             driver.attempt("clear")
-        for axis in range(self.axes):
-            driver.configure_axis(axis, self.file.pins)
-        probe = self.setup.find("probe", 0)
-        if probe is not None:
-            driver.call("configure_probe", self.setup.inputs[probe].polarity == "low")
-        stop = settings.stop_time
-        slew = self.clock_hz // SLEWS_PER_SECOND if stop is None else round(stop * self.clock_hz)
-        peaks = [plan.c.velocity_peak for section in self.sections for plan in section.plans]
-        driver.call("configure_motion", slew, slew, max(1, min(peaks) >> 20) if peaks else 0)
-        if table := table_of([plan for section in self.sections for plan in section.plans]):
-            driver.call("load_table", USER_BANK, table)
-        for encoder in self.setup.encoders:
-            ratio = round(encoder.counts_per_step * RATIO_ONE)
-            limit = round(encoder.limit * encoder.counts_per_step) if encoder.limit else r.ENCODER_LIMIT_RESET
-            stops = bool(encoder.limit)
-            word = (stops and encoder.stop == "soft") << r.ENCODER_SETUP_STOP_SOFT_LSB
-            word |= (stops and encoder.stop == "hard") << r.ENCODER_SETUP_STOP_HARD_LSB
-            self._write(r.CHANNEL_ENCODER_FILTER, encoder.filter)
-            base = r.CHANNEL_ENCODER_BASE + encoder.axis * r.CHANNEL_ENCODER_STRIDE
-            self._write(base + r.ENCODER_SETUP, word, ratio, limit)
-
-    def _input_config(self, axis: int) -> Any:
-        """The `struct passo_input_config` of an axis."""
-        config: dict[str, bool] = {}
-        for one in self.setup.inputs:
-            if one.axis != axis or one.role == "probe":
-                continue
-            if one.role != "alarm":
-                config[one.role] = True
-            config[f"{one.role}_inverted"] = one.polarity == "low"
-            if one.role == "alarm":
-                config |= {"alarm_soft": one.soft, "alarm_disables": one.disables}
-            elif one.soft:
-                config["limit_soft"] = True
-        return ffi().new("struct passo_input_config *", config)
-
-    # --------------------------------------------------------------------------------------- moves ----
+        driver.configure(self.setup, self.file, [plan for section in self.sections for plan in section.plans])
 
     def _section(self, section: Section) -> None:
         section.begin = self.engine.clock
@@ -192,7 +158,7 @@ class Scene:
                     raise
                 section.outcome = error.name
             if self.setup.encoders:
-                self._sample()
+                self.samples.append(self.driver.sample(self.axes))
             self._advance(min(self.poll_clocks, self._patience()))
             self._look()
             if self.engine.clock - self.active_at > GIVE_UP_SECONDS * self.clock_hz:
@@ -217,32 +183,8 @@ class Scene:
             ramps = [ramp for plan in section.plans for ramp in plan.ramps]
             self.source = Source([plan.line for plan in section.plans], ramps)
             self.driver.stream(self.source)
-        elif isinstance(move, MoveHome):
-            axis = next(axis for axis, steps in enumerate(move.steps) if steps)
-            self.home = ffi().new(
-                "struct passo_home *",
-                {
-                    "axis": axis,
-                    "source": TriggerSource[move.switch.upper()],
-                    "distance": move.steps[axis],
-                    "back_off": move.back_off,
-                    "pull_off": move.pull_off,
-                    "speed": q32(move.speed),
-                    "slow_speed": q32(move.slow_speed),
-                    "acceleration": q32(move.acceleration),
-                    "position": move.edge_position,
-                },
-            )
-            self.driver.call("home", self.home, 1)
-        elif isinstance(move, MoveProbe):
-            fields = {
-                "steps": move.steps,
-                "speed": q32(move.speed),
-                "acceleration": q32(move.acceleration),
-                "away": move.away,
-                "optional": move.optional,
-            }
-            self.driver.call("probe", ffi().new("struct passo_probe *", fields))
+        else:
+            self.driver.begin(move)
 
     def _patience(self) -> int:
         """Clocks until the queues should be refilled: half of their contents."""
@@ -305,7 +247,7 @@ class Scene:
     def _look(self) -> None:
         """See whether the core has stopped, and what a trigger has latched."""
         if self.armed is not None:
-            report = self._trigger()
+            report = self.driver.trigger()
             if report.fired:
                 self.latches.append(Latch(self.armed + 1, list(report.positions)[: self.axes]))
                 self.armed = None
@@ -315,9 +257,7 @@ class Scene:
         if self.is_stopped:
             return
         self.is_stopped = True
-        state, report = self.driver.snapshot(), self._trigger()
-        readings = ffi().new("struct passo_readings *")
-        self.driver.call("read_inputs", readings)
+        state, report, readings = self.driver.snapshot(), self.driver.trigger(), self.driver.readings()
         cause = Cause(state.cause)
         named = cause in (Cause.LIMIT, Cause.ALARM)
         self.stops.append(
@@ -330,33 +270,6 @@ class Scene:
             )
         )
 
-    def _trigger(self) -> Any:
-        report = ffi().new("struct passo_trigger_report *")
-        self.driver.call("read_trigger", report)
-        return report
-
-    def _sample(self) -> None:
-        clock = sampled_at(self.engine.clock)
-        length = r.CHANNEL_ENCODER_POSITION_BASE + self.axes - r.CHANNEL_POSITION_BASE
-        words = self._read(r.CHANNEL_POSITION_BASE, length)
-        signed = np.zeros((2, 8), np.int32)
-        at = r.CHANNEL_ENCODER_POSITION_BASE - r.CHANNEL_POSITION_BASE
-        signed[0, : self.axes] = np.array(words[: self.axes], np.uint32).view(np.int32)
-        signed[1, : self.axes] = np.array(words[at : at + self.axes], np.uint32).view(np.int32)
-        self.samples.append((clock, signed[0], signed[1]))
-
-    def _raw_positions(self) -> list[int]:
-        words = self._read(r.CHANNEL_POSITION_BASE, self.axes)
-        return [word - (word >> 31 << 32) for word in words]
-
-    def _greatest(self, axis: int) -> float:
-        """Greatest following error of an axis in steps."""
-        encoder = next(one for one in self.setup.encoders if one.axis == axis)
-        base = r.CHANNEL_ENCODER_BASE + axis * r.CHANNEL_ENCODER_STRIDE
-        (word,) = self._read(base + r.ENCODER_GREATEST, 1)
-        counts = word & ((1 << r.ENCODER_GREATEST_GREATEST_BITS) - 1)
-        return counts / float(encoder.counts_per_step)
-
     def _happened(self, number: int) -> Happened:
         clock = self.rig.moment(number)
         positions = self.rig.moment_positions(number, self.axes) if clock is not None else []
@@ -365,22 +278,3 @@ class Scene:
         )
         answered = self.answers.get(number) if command else None
         return Happened(number + 1, self.setup.events[number], clock, positions, answered)
-
-    def _read(self, address: int, length: int) -> list[int]:
-        words = ffi().new("uint32_t[]", length)
-        self._check(self.driver.lib.passo_host_read(self.driver.host, address + self._base, words, length))
-        return list(words)
-
-    def _write(self, address: int, *words: int) -> None:
-        self._check(
-            self.driver.lib.passo_host_write(self.driver.host, address + self._base, words, len(words))
-        )
-
-    @property
-    def _base(self) -> int:
-        return r.ADDRESS_CHANNEL_BASE
-
-    def _check(self, error: int) -> None:
-        self.driver.hardware.check()
-        if error:
-            raise RunError(error_text(error))
