@@ -23,9 +23,9 @@ HELPER = "tools/generated.py"
 LIMITS, STRUCTS = "protocol/passo_limits.h", "planner/passo_moves.h"
 TABLES = "stm32_bridge/console/passo_form_tables.c"
 PYTHON = "sim/passo/move_forms.py"
-PLANNING, CONSOLE = "docs/planning.md", "docs/console.md"
+PLANNING, CONSOLE, SCENES = "docs/planning.md", "docs/console.md", "docs/scenes.md"
 MADE = [LIMITS, STRUCTS, TABLES, PYTHON]
-PAGES = [PLANNING, CONSOLE]
+PAGES = [PLANNING, CONSOLE, SCENES]
 
 
 def read(name: str, folder: Path = paths.root) -> str:

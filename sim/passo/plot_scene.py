@@ -124,10 +124,10 @@ def _marks(ax: Axes, run: SceneRun, scale: float = 0, origin: int = 0) -> None:
     for happened in run.events:
         if happened.clock is not None:
             at = (happened.clock - run.start - origin) * scale
-            ax.axvline(at, color=EVENT_COLOR, linewidth=0.9, linestyle=(0, (3, 2)), zorder=1.5)
+            ax.axvline(at, color=EVENT_COLOR, linewidth=0.9, linestyle=(0, (3, 2)), zorder=2.2)
     for stop in run.stops:
         color, width = (SOUGHT, 0.7) if run.sought(stop) else (STOP, 1.2)
-        ax.axvline((stop.clock - run.start - origin) * scale, color=color, linewidth=width, zorder=1.5)
+        ax.axvline((stop.clock - run.start - origin) * scale, color=color, linewidth=width, zorder=2.2)
 
 
 def _badges(ax: Axes, run: SceneRun) -> None:
