@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The machine at the core, and the events of a move file."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import get_args
 
@@ -42,7 +42,7 @@ class Setup:
     inputs: tuple[MachineInput, ...] = ()
     encoders: tuple[MachineEncoder, ...] = ()
     events: tuple[Event, ...] = ()
-    scales: tuple[Fraction, ...] = field(default=(), compare=False)
+    scales: tuple[Fraction, ...] = ()
 
     def find(self, role: str, axis: int) -> int | None:
         """Number of an input; the channel has one probe."""
