@@ -79,7 +79,8 @@ def test_check_names_stale_files(tree: Path, stale: str) -> None:
     assert generate(tree).returncode == 0
     assert generate(tree, "--check").returncode == 0
     fresh = read(stale, tree)
-    wrong = fresh.replace("2^30 - 1<", "2^31 - 1<") if stale in PAGES else fresh + "\n"
+    end = "<!-- /moves -->"
+    wrong = fresh.replace(end, f"wrong{end}", 1) if stale in PAGES else fresh + "\n"
     (tree / stale).write_text(wrong, encoding="utf-8")
     for _ in range(2):  # the first one must not have written the file
         result = generate(tree, "--check")
