@@ -29,7 +29,7 @@ from passo.terminal import Terminal, talk
 from passo.toolchain import paths
 
 CLOCK_HZ = 4_000_000
-EXAMPLES = sorted(paths.examples.glob("*.toml"))
+EXAMPLES = sorted(path for path in paths.examples.glob("*.toml") if not read_channels(path).setup)
 IN_TIME = "move steps=200,-120 profile=cosine total_time=0.05 ramp_time=0.02"
 ZEROS = ",".join("0" * 16)
 

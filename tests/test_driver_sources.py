@@ -7,6 +7,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from passo.build import engine_sources
 from passo.compiler import CORTEX_M3, SANITIZED, STRICT, call, compile_to, includes, sources
 from passo.native import ffi, planner
 from passo.toolchain import paths
@@ -21,7 +22,7 @@ def test_a_scenario_runs_clean_under_sanitizers(tmp_path: Path) -> None:
     """Moves, streams, stops, noise and resets, driver and model in one program: no fault, nothing lost."""
     folders = (*DRIVER, paths.model)
     files = [paths.tests / "driver_scenario.c", *sources(*folders)]
-    files += [paths.engine / "engine.c", paths.engine / "engine_model.c"]
+    files += [*engine_sources(), paths.engine / "engine_model.c"]
     flags = [*STRICT, *SANITIZED, *includes(*folders, paths.engine)]
     program = compile_to(tmp_path / "scenario", *flags, *files)
     done = subprocess.run([program], capture_output=True, text=True, timeout=300)

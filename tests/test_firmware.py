@@ -13,6 +13,7 @@ import pytest
 from passo import random_cases
 from passo.build import Parameters
 from passo.engine import Engine, model_engine, rtl_engine
+from passo.move_file import read_channels
 from passo.toolchain import paths
 from passo_stm32 import demo
 from passo_stm32.bench import memory_report
@@ -27,7 +28,7 @@ from tests.helpers.firmware_cases import random_moves
 PARAMETERS = Parameters(axes=4)
 HZ = 72_000_000  # of the core; SCLK is 18 MHz
 SLOW_HZ = 36_000_000  # SCLK is 9 MHz
-EXAMPLES = sorted(path.stem for path in paths.examples.glob("*.toml"))
+EXAMPLES = sorted(path.stem for path in paths.examples.glob("*.toml") if not read_channels(path).setup)
 SHORT_EXAMPLES = ("triangle", "cosine")  # for the Verilated core
 MOVE = "move steps=100,-50 profile=linear total_time=0.01 ramp_time=0.002"
 

@@ -23,9 +23,9 @@ HELPER = "tools/generated.py"
 LIMITS, STRUCTS = "protocol/passo_limits.h", "planner/passo_moves.h"
 TABLES = "stm32_bridge/console/passo_form_tables.c"
 PYTHON = "sim/passo/move_forms.py"
-PLANNING, CONSOLE = "docs/planning.md", "docs/console.md"
+PLANNING, CONSOLE, SCENES = "docs/planning.md", "docs/console.md", "docs/scenes.md"
 MADE = [LIMITS, STRUCTS, TABLES, PYTHON]
-PAGES = [PLANNING, CONSOLE]
+PAGES = [PLANNING, CONSOLE, SCENES]
 
 
 def read(name: str, folder: Path = paths.root) -> str:
@@ -79,7 +79,8 @@ def test_check_names_stale_files(tree: Path, stale: str) -> None:
     assert generate(tree).returncode == 0
     assert generate(tree, "--check").returncode == 0
     fresh = read(stale, tree)
-    wrong = fresh.replace("2^30 - 1<", "2^31 - 1<") if stale in PAGES else fresh + "\n"
+    end = "<!-- /moves -->"
+    wrong = fresh.replace(end, f"wrong{end}", 1) if stale in PAGES else fresh + "\n"
     (tree / stale).write_text(wrong, encoding="utf-8")
     for _ in range(2):  # the first one must not have written the file
         result = generate(tree, "--check")

@@ -16,7 +16,7 @@ OUTPUTS = {
     "stm32_bridge/console/passo_form_tables.c": c.tables,
     "sim/passo/move_forms.py": python.module,
 }
-PAGES = ("docs/planning.md", "docs/console.md")
+PAGES = ("docs/planning.md", "docs/console.md", "docs/scenes.md")
 
 
 def main() -> int:

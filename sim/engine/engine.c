@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "engine_core.h"
+#include "passo_rig.h"
 
 /* Number of waiting events that ends a run; a transfer is not ended. */
 #define LOG_FULL 65536u
@@ -15,6 +16,7 @@
 struct passo_engine {
 	struct engine_core *core;
 	struct passo_inputs inputs;
+	struct passo_rig *rig; /* what is at the pins; null: nothing */
 	struct passo_outputs outputs;
 	struct passo_pin_event last;
 	uint64_t clock;
@@ -72,16 +74,23 @@ void passo_engine_destroy(struct passo_engine *engine)
 		return;
 	if (engine->core)
 		engine_core_close(engine->core);
+	passo_rig_destroy(engine->rig);
 	free(engine->log);
 	free(engine);
 }
 
 static uint64_t run_to_event(struct passo_engine *engine, uint64_t limit)
 {
-	uint64_t clocks = engine_core_run(engine->core, &engine->inputs, limit, &engine->outputs);
+	const uint64_t next = engine->rig ? passo_rig_next(engine->rig, engine->clock) : UINT64_MAX;
+
+	if (limit > next - engine->clock)
+		limit = next - engine->clock;
+	const uint64_t clocks = engine_core_run(engine->core, &engine->inputs, limit, &engine->outputs);
 
 	engine->clock += clocks;
 	log_pins(engine);
+	if (engine->rig)
+		passo_rig_follow(engine->rig, engine->clock, &engine->outputs, &engine->inputs);
 	return clocks;
 }
 
@@ -95,9 +104,16 @@ uint64_t passo_engine_run(struct passo_engine *engine, uint64_t clocks)
 {
 	uint64_t left = clocks;
 
-	while (left && engine->log_length < LOG_FULL)
+	while (left && engine->log_length < LOG_FULL && !(engine->rig && passo_rig_calls(engine->rig)))
 		left -= run_to_event(engine, left);
 	return clocks - left;
+}
+
+struct passo_rig *passo_engine_attach(struct passo_engine *engine, const struct passo_rig_config *config)
+{
+	passo_rig_destroy(engine->rig);
+	engine->rig = passo_rig_create(config, &engine->inputs);
+	return engine->rig;
 }
 
 void passo_engine_pace(struct passo_engine *engine, uint64_t clocks, uint64_t ticks)

@@ -11,6 +11,7 @@
 #include <stdint.h>
 
 #include "passo_pins.h"
+#include "passo_rig.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -33,7 +34,12 @@ void passo_engine_destroy(struct passo_engine *engine);
 void passo_engine_transfer(
     struct passo_engine *engine, const uint32_t *mosi, uint32_t *miso, size_t count, uint64_t gap);
 
-/* Runs for up to `clocks`, fewer if the log is full; returns the clocks executed. */
+/* Connects a machine to the pins, instead of one before; returns it, null if memory is short. It belongs to
+ * the engine. */
+struct passo_rig *passo_engine_attach(struct passo_engine *engine, const struct passo_rig_config *config);
+
+/* Runs for up to `clocks`, fewer if the log is full or an event of the machine calls; returns the clocks
+ * executed. */
 uint64_t passo_engine_run(struct passo_engine *engine, uint64_t clocks);
 
 /* Direct access to the SPI pins, for an external master that counts time in ticks. Sets the unit: `ticks`

@@ -61,10 +61,15 @@ def planner_library() -> Path:
     return library("planner", folders, sources(*folders), "-O3")
 
 
+def engine_sources() -> list[Path]:
+    """What both engines share: the SPI master, the log of the pins, the machine at the pins."""
+    return [paths.engine / name for name in ("engine.c", "passo_rig.c", "rig_parts.c")]
+
+
 def model_library() -> Path:
     """The C model engine, for any parameters."""
     folders = (paths.model, paths.protocol)
-    engine = [paths.engine / "engine.c", paths.engine / "engine_model.c"]
+    engine = [*engine_sources(), paths.engine / "engine_model.c"]
     return library("model", [*folders, paths.engine], [*sources(*folders), *engine], "-O3")
 
 
@@ -92,7 +97,7 @@ def rtl_library(parameters: Parameters, waves: bool = False) -> Path:
     """The engine of the Verilated core, for given parameters."""
     verilated = _verilated(parameters, waves)
     include = Path(environment()["VERILATOR_ROOT"]) / "include"
-    c_part, cpp_part = paths.engine / "engine.c", paths.engine / "engine_rtl.cpp"
+    c_parts, cpp_part = engine_sources(), paths.engine / "engine_rtl.cpp"
     defines = [f"-DPASSO_CORE_{name.upper()}={value}" for name, value in asdict(parameters).items()]
     flags = [*CPP_FLAGS, *defines, f"-I{verilated}", f"-isystem{include}", f"-isystem{include / 'vltstd'}"]
     archives = [str(verilated / "Vpasso_spi_top__ALL.a"), str(verilated / "libverilated.a"), "-pthread"]
@@ -101,11 +106,13 @@ def rtl_library(parameters: Parameters, waves: bool = False) -> Path:
         archives += ["-llz4", "-lz"]
 
     def make(folder: Path) -> None:
-        call([CC, *ENGINE_FLAGS, "-c", c_part, "-o", folder / "engine.o"])
-        call([CXX, "-shared", *flags, cpp_part, folder / "engine.o", *archives, "-o", folder / LIBRARY])
+        objects = [folder / f"{part.stem}.o" for part in c_parts]
+        for part, made in zip(c_parts, objects, strict=True):
+            call([CC, *ENGINE_FLAGS, "-c", part, "-o", made])
+        call([CXX, "-shared", *flags, cpp_part, *objects, *archives, "-o", folder / LIBRARY])
 
     name = f"rtl_{parameters.name}{'_waves' if waves else ''}"
-    inputs = [c_part, cpp_part, *headers(paths.engine), paths.model / "passo_pins.h"]
+    inputs = [*c_parts, cpp_part, *headers(paths.engine), paths.model / "passo_pins.h"]
     return cached(name, inputs, [*ENGINE_FLAGS, *flags, *archives], make) / LIBRARY
 
 

@@ -9,9 +9,12 @@ from passo.console import console, progress, table
 from passo.move_file import read_channels
 from passo.plan import plan_channels
 from passo.plot import plot_file, plot_overview
+from passo.plot_scene import plot_scene
 from passo.report import problems, summarize_channels, write_json, write_pulses
 from passo.report_page import write_page
 from passo.run import Run, execute_channels, open_engine, parameters_for, parameters_of
+from passo.scene import Scene, scene_parameters
+from passo.scene_report import summarize_scene, write_scene_pulses
 from passo.toolchain import paths
 
 FOLDER = paths.build / "demo"
@@ -19,6 +22,7 @@ EXAMPLES = (
     *("three_axes", "cosine", "sigmoid", "triangle", "there_and_back"),
     *("exact_time", "turn", "sigmoid_alpha", "seven_phases", "straight", "user_shape", "four_motors"),
 )
+MACHINES = ("homing", "probing", "hold_and_estop", "closed_loop")  # examples with a machine or events
 
 
 def run_example(name: str) -> tuple[list[Run], dict[str, Any]]:
@@ -37,19 +41,49 @@ def run_example(name: str) -> tuple[list[Run], dict[str, Any]]:
     return runs, summary
 
 
+def run_machine(name: str) -> dict[str, Any]:
+    """The same for an example with a machine; return its summary."""
+    file = read_channels(paths.examples / f"{name}.toml")
+    with open_engine("both", scene_parameters(file), file.clock_hz) as engine:
+        run = Scene(file, engine).run()
+    summary = summarize_scene(run, "both")
+    out = FOLDER / name
+    out.mkdir(parents=True, exist_ok=True)
+    write_scene_pulses(run, out / "pulses.csv")
+    write_json(summary, out / "summary.json")
+    plot_scene(run, out / "motion.png")
+    return summary
+
+
+def _error(summary: dict[str, Any]) -> str:
+    """The largest distance from the ideal curve, of the steps or of what an encoder measured."""
+    own = [axis["largest_error_steps"] for axis in summary["axes"] if "largest_error_steps" in axis]
+    own += [encoder["largest_error_steps"] for encoder in summary.get("encoders", [])]
+    return f"{max(own):.4f} steps" if own else ", ".join(stop["cause"] for stop in summary["stops"][-1:])
+
+
 def demo() -> bool:
     """Run the demonstration, an example per processor; return whether RTL and model agreed everywhere."""
     open_engine("both", parameters_for(1), 1).close()  # builds what all of them need
+    machine = read_channels(paths.examples / f"{MACHINES[0]}.toml")
+    open_engine("both", scene_parameters(machine), 1).close()
     files, summaries = {}, {}
     with ProcessPoolExecutor() as pool:
+        machines = pool.map(run_machine, MACHINES)
         results = pool.map(run_example, EXAMPLES)
-        with progress("examples", len(EXAMPLES)) as report:
+        with progress("examples", len(EXAMPLES) + len(MACHINES)) as report:
             for done, (runs, summary) in enumerate(results, 1):
                 files[summary["name"]], summaries[summary["name"]] = runs, summary
+                report(done)
+            for done, summary in enumerate(machines, len(EXAMPLES) + 1):
+                summaries[summary["name"]] = summary
                 report(done)
     for runs in files.values():
         for problem in problems(runs):
             print(f"{runs[0].file.path}: {problem}", file=sys.stderr)
+    for name in MACHINES:
+        for problem in summaries[name]["problems"]:
+            print(f"{name}: {problem}", file=sys.stderr)
     write_json({"ok": all(s["ok"] for s in summaries.values()), "runs": summaries}, FOLDER / "summary.json")
     plot_overview({name: runs[0] for name, runs in files.items()}, FOLDER / "demo.png")
 
@@ -63,7 +97,7 @@ def demo() -> bool:
             f"{sum(axis['pulses'] for axis in summary['axes']):,}",
             f"{summary['total_seconds']:.4f} s",
             f"{summary['matched_edges']:,}",
-            f"{max(axis['largest_error_steps'] for axis in summary['axes']):.4f} steps",
+            _error(summary),
             f"{summary['clocks_per_second'] / 1e6:.1f} M",
         )
     console.print(shown)

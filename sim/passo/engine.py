@@ -4,7 +4,7 @@
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 
@@ -124,6 +124,10 @@ class Engine(_Closed):
         """Level of the running pins, one bit per channel."""
         return self._c.passo_engine_running(self._engine)
 
+    def attach(self, config: Any) -> list[tuple[Any, Any]]:
+        """Connect a machine (`struct passo_rig_config`); return it, with the library of its functions."""
+        return [(self._c, self._c.passo_engine_attach(self._engine, config))]
+
     def set(self, pin: str, levels: int) -> None:
         """Set the levels of an input pin, a bit per axis or channel."""
         self._c.passo_engine_set(self._engine, NUMBERS[pin], levels)
@@ -207,6 +211,10 @@ class PairEngine(_Closed):
     def irq(self) -> int:
         """Level of the irq pins; their changes are compared like those of all pins."""
         return self.rtl.irq
+
+    def attach(self, config: Any) -> list[tuple[Any, Any]]:
+        """Connect equal machines to both."""
+        return self.rtl.attach(config) + self.model.attach(config)
 
     def set(self, pin: str, levels: int) -> None:
         """Set the levels of an input pin of both."""

@@ -2,8 +2,17 @@
 """The types of move_forms.py: move forms, their keys and rules."""
 
 from dataclasses import dataclass
+from fractions import Fraction
 
 Points = tuple[int, ...]  # points of a user-defined shape; empty for other profiles
+
+
+@dataclass(frozen=True)
+class Place:
+    """A position as written, in steps or millimetres."""
+
+    value: Fraction
+    in_mm: bool = False
 
 
 @dataclass(frozen=True)
@@ -14,10 +23,12 @@ class Key:
     kind: str
     member: str | None  # struct member; None: not in the struct
     factor: int | str | None = None  # scale in the struct; "clock_hz": the clock; None: 1
-    default: int | str | None = None  # a number, or the name of another key
+    default: int | str | None = None  # a number, a word, or the name of another key
     low: int = 0  # range of an integer
     high: int = 0
+    choices: tuple[str, ...] = ()  # of a word
     file_only: bool = False
+    optional: bool = False  # None without it
 
 
 @dataclass(frozen=True)

@@ -8,10 +8,11 @@ from dataclasses import fields
 from fractions import Fraction
 from pathlib import Path
 
-from passo.move_forms import FORMS, Form
+from passo.move_forms import FORMS, TASKS, Form
 from passo.move_keys import (
     Table,
     check_known,
+    check_rules,
     read_key,
     read_positive,
     read_time,
@@ -21,12 +22,14 @@ from passo.moves import (
     CHANNELS_MAX,
     MOVES,
     PIN_CLOCKS_MAX,
+    TASK_TYPES,
     Channels,
     Move,
     MoveFile,
     MoveFileError,
     PinTiming,
 )
+from passo.setup_file import read_setup
 from passo.shape import ShapeError, read_table
 from passo.values import BadValueError, Written, meant, shown
 
@@ -34,7 +37,7 @@ PIN_SECONDS = Fraction(1, 1_000_000)  # default of every pin time
 CLOCK_HZ_MIN = 1000  # below that it is in another unit
 G_CODE = re.compile(r"^\s*(%|\(.*\)|;.*|N?\d*\s*[GMT]\d+(\s.*)?)$", re.MULTILINE)
 
-FILE_KEYS = ("clock_hz", "together", "pins", "move")
+FILE_KEYS = ("clock_hz", "together", "pins", "move", "machine", "event")
 PIN_KEYS = tuple(field.name for field in fields(PinTiming))
 CHANNEL_KEYS = tuple(map(str, range(CHANNELS_MAX)))
 
@@ -44,6 +47,8 @@ def read_moves(path: Path) -> MoveFile:
     channels = read_channels(path)
     if channels.several:
         raise MoveFileError(f"{path}: it moves channel {channels.files[-1].channel}; here is only channel 0")
+    if channels.setup:
+        raise MoveFileError(f"{path}: it has a machine or events, home or probe; here are only moves")
     return channels.files[0]
 
 
@@ -107,6 +112,7 @@ def _file(path: Path, data: Table) -> Channels:
         if int(key) not in queues:
             raise BadValueError(f"pins.{key}: no move is of channel {key}")
         own[int(key)] = within(f"pins.{key}", lambda table=table: _own_pins(pins, table, clock_hz))
+    moves = {number: move for queue in queues.values() for number, move in queue.items()}
     return Channels(
         path,
         together,
@@ -114,6 +120,7 @@ def _file(path: Path, data: Table) -> Channels:
             MoveFile(path, clock_hz, own.get(channel, timing), tuple(queue.values()), channel, tuple(queue))
             for channel, queue in sorted(queues.items())
         ),
+        read_setup(data, [moves[number] for number in sorted(moves)], clock_hz),
     )
 
 
@@ -143,13 +150,13 @@ def read_pins(table: Table, clock_hz: int, others: tuple[str, ...] = ()) -> PinT
 def _move(table: Table, folder: Path, clock_hz: int) -> Move:
     form = _form(table)
     values = {key.name: read_key(table, key, clock_hz) for key in form.keys}
-    _check_rules(form, table)
+    check_rules(form, table)
     if values.get("table"):
         try:
             values["table"] = read_table(folder / values["table"])
         except ShapeError as error:
             raise BadValueError(f"table: {error}") from None
-    return MOVES[form.name](**values)
+    return (MOVES | TASK_TYPES)[form.name](**values)
 
 
 def _names(form: Form) -> list[str]:
@@ -159,12 +166,12 @@ def _names(form: Form) -> list[str]:
 def _form(table: Table) -> Form:
     """The form named by `method` or, without it, the one identified by the keys."""
     if "method" in table:
-        method = table["method"]
-        if not isinstance(method, str) or method not in FORMS:
-            hint = meant(method, tuple(FORMS))
-            raise BadValueError(f"method must be one of {', '.join(FORMS)}, not {shown(method)}{hint}")
-        check_known(table, ("method", *_names(FORMS[method])))
-        return FORMS[method]
+        method, methods = table["method"], FORMS | TASKS
+        if not isinstance(method, str) or method not in methods:
+            hint = meant(method, tuple(methods))
+            raise BadValueError(f"method must be one of {', '.join(methods)}, not {shown(method)}{hint}")
+        check_known(table, ("method", *_names(methods[method])))
+        return methods[method]
     by_time, by_speed = FORMS["in_time"], FORMS["by_speed"]
     time_keys, speed_keys = _names(by_time), _names(by_speed)
     check_known(table, tuple(dict.fromkeys(("method", *time_keys, *speed_keys))))
@@ -177,16 +184,3 @@ def _form(table: Table) -> Form:
     if not of_time and by_speed.told_by not in table:
         raise BadValueError(f"{by_time.told_by} or {by_speed.told_by} is missing")
     return by_time if of_time else by_speed
-
-
-def _check_rules(form: Form, table: Table) -> None:
-    """Check the rules between the keys of a move; raises BadValueError."""
-    for rule in form.rules:
-        if rule.key not in table:
-            continue
-        if rule.kind == "excludes" and rule.other in table:
-            raise BadValueError(f"{rule.key} and {rule.other} exclude each other")
-        if rule.kind == "needs" and rule.other not in table:
-            raise BadValueError(f"{rule.key} needs {rule.other}")
-        if rule.kind == "above_zero" and table[rule.key] == 0:
-            raise BadValueError(f"{rule.key} must be greater than 0")

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import ClassVar
 
-from passo.form_table import Form, Key, Points, Rule
+from passo.form_table import Form, Key, Place, Points, Rule
 from passo.registers import Shape
 
 # Longest line: its substeps, and so the steps of each axis, have 30 bits.
@@ -151,6 +151,243 @@ FORMS = {
     ),
 }
 
+TASKS = {
+    "home": Form(
+        "home",
+        (
+            Key("steps", "steps", "steps"),
+            Key("switch", "word", None, default="home", choices=("home", "limit_low", "limit_high")),
+            Key("speed", "number", "speed", factor=UNIT_Q32),
+            Key("slow_speed", "number", "slow_speed", factor=UNIT_Q32),
+            Key("acceleration", "number", "acceleration", factor=UNIT_Q32),
+            Key("back_off", "whole", "back_off", low=1, high=SUBSTEPS_MAX),
+            Key("pull_off", "whole", "pull_off", default=0, low=0, high=SUBSTEPS_MAX),
+            Key("edge_position", "whole", "edge_position", default=0, low=-SIGNED_MAX, high=SIGNED_MAX),
+            Key("channel", "channel", None, default=0),
+        ),
+    ),
+    "probe": Form(
+        "probe",
+        (
+            Key("steps", "steps", "steps"),
+            Key("speed", "number", "speed", factor=UNIT_Q32),
+            Key("acceleration", "number", "acceleration", factor=UNIT_Q32),
+            Key("away", "flag", None, default=False),
+            Key("optional", "flag", None, default=False),
+            Key("channel", "channel", None, default=0),
+        ),
+    ),
+}
+
+EVENTS = {
+    "input": Form(
+        "input",
+        (
+            Key("time", "time", "time", factor="clock_hz", optional=True),
+            Key("position", "place", None, optional=True),
+            Key(
+                "trigger",
+                "word",
+                None,
+                choices=("limit_low", "limit_high", "home", "alarm", "probe"),
+                optional=True,
+            ),
+            Key("falling", "flag", None, default=False),
+            Key("at_axis", "axis", "at_axis", default=0),
+            Key("input", "word", None, choices=("limit_low", "limit_high", "home", "alarm", "probe")),
+            Key("axis", "axis", "axis", default=0),
+            Key("active", "flag", None, default=True),
+            Key("length", "time", "length", factor="clock_hz", optional=True),
+        ),
+    ),
+    "estop": Form(
+        "estop",
+        (
+            Key("time", "time", "time", factor="clock_hz", optional=True),
+            Key("position", "place", None, optional=True),
+            Key(
+                "trigger",
+                "word",
+                None,
+                choices=("limit_low", "limit_high", "home", "alarm", "probe"),
+                optional=True,
+            ),
+            Key("falling", "flag", None, default=False),
+            Key("at_axis", "axis", "at_axis", default=0),
+            Key("length", "time", "length", factor="clock_hz", optional=True),
+        ),
+    ),
+    "hold": Form(
+        "hold",
+        (
+            Key("time", "time", "time", factor="clock_hz", optional=True),
+            Key("position", "place", None, optional=True),
+            Key(
+                "trigger",
+                "word",
+                None,
+                choices=("limit_low", "limit_high", "home", "alarm", "probe"),
+                optional=True,
+            ),
+            Key("falling", "flag", None, default=False),
+            Key("at_axis", "axis", "at_axis", default=0),
+        ),
+    ),
+    "resume": Form(
+        "resume",
+        (
+            Key("time", "time", "time", factor="clock_hz", optional=True),
+            Key("position", "place", None, optional=True),
+            Key(
+                "trigger",
+                "word",
+                None,
+                choices=("limit_low", "limit_high", "home", "alarm", "probe"),
+                optional=True,
+            ),
+            Key("falling", "flag", None, default=False),
+            Key("at_axis", "axis", "at_axis", default=0),
+        ),
+    ),
+    "override": Form(
+        "override",
+        (
+            Key("time", "time", "time", factor="clock_hz", optional=True),
+            Key("position", "place", None, optional=True),
+            Key(
+                "trigger",
+                "word",
+                None,
+                choices=("limit_low", "limit_high", "home", "alarm", "probe"),
+                optional=True,
+            ),
+            Key("falling", "flag", None, default=False),
+            Key("at_axis", "axis", "at_axis", default=0),
+            Key("percent", "whole", "percent", low=1, high=100),
+        ),
+    ),
+    "stop": Form(
+        "stop",
+        (
+            Key("time", "time", "time", factor="clock_hz", optional=True),
+            Key("position", "place", None, optional=True),
+            Key(
+                "trigger",
+                "word",
+                None,
+                choices=("limit_low", "limit_high", "home", "alarm", "probe"),
+                optional=True,
+            ),
+            Key("falling", "flag", None, default=False),
+            Key("at_axis", "axis", "at_axis", default=0),
+        ),
+    ),
+    "abort": Form(
+        "abort",
+        (
+            Key("time", "time", "time", factor="clock_hz", optional=True),
+            Key("position", "place", None, optional=True),
+            Key(
+                "trigger",
+                "word",
+                None,
+                choices=("limit_low", "limit_high", "home", "alarm", "probe"),
+                optional=True,
+            ),
+            Key("falling", "flag", None, default=False),
+            Key("at_axis", "axis", "at_axis", default=0),
+        ),
+    ),
+    "arm": Form(
+        "arm",
+        (
+            Key("time", "time", "time", factor="clock_hz", optional=True),
+            Key("position", "place", None, optional=True),
+            Key(
+                "trigger",
+                "word",
+                None,
+                choices=("limit_low", "limit_high", "home", "alarm", "probe"),
+                optional=True,
+            ),
+            Key("falling", "flag", None, default=False),
+            Key("at_axis", "axis", "at_axis", default=0),
+            Key("source", "word", None, choices=("limit_low", "limit_high", "home", "probe")),
+            Key("axis", "axis", "axis", default=0),
+            Key("away", "flag", None, default=False),
+            Key("action", "word", None, default="latch", choices=("latch", "soft_stop", "hard_stop")),
+        ),
+    ),
+    "slip": Form(
+        "slip",
+        (
+            Key("time", "time", "time", factor="clock_hz", optional=True),
+            Key("position", "place", None, optional=True),
+            Key(
+                "trigger",
+                "word",
+                None,
+                choices=("limit_low", "limit_high", "home", "alarm", "probe"),
+                optional=True,
+            ),
+            Key("falling", "flag", None, default=False),
+            Key("at_axis", "axis", "at_axis", default=0),
+            Key("axis", "axis", "axis", default=0),
+            Key("counts", "whole", "counts", low=-SIGNED_MAX, high=SIGNED_MAX),
+        ),
+    ),
+}
+
+MACHINES = {
+    "settings": Form(
+        "settings",
+        (
+            Key("filter", "time", "filter", factor="clock_hz", default=0),
+            Key("stop_time", "time", "stop_time", factor="clock_hz", optional=True),
+            Key("start", "places", None, optional=True),
+            Key("steps_per_mm", "scales", None, optional=True),
+            Key("seed", "whole", "seed", default=1, low=0, high=WHOLE_MAX),
+        ),
+    ),
+    "input": Form(
+        "input",
+        (
+            Key("role", "word", None, choices=("limit_low", "limit_high", "home", "alarm", "probe")),
+            Key("axis", "axis", "axis", default=0),
+            Key("polarity", "word", None, default="high", choices=("high", "low")),
+            Key("at", "place", None, optional=True),
+            Key("side", "word", None, default="below", choices=("below", "above")),
+            Key("hysteresis", "whole", "hysteresis", default=0, low=0, high=SIGNED_MAX),
+            Key("bounce", "time", "bounce", factor="clock_hz", default=0),
+            Key("noise", "number", "noise", factor=UNIT_Q32, default=0),
+            Key("glitch", "time", "glitch", factor="clock_hz", default=0),
+            Key("soft", "flag", None, default=False),
+            Key("disables", "flag", None, default=False),
+        ),
+        (
+            Rule("needs", "hysteresis", "at"),
+            Rule("needs", "bounce", "at"),
+            Rule("needs", "noise", "glitch"),
+            Rule("needs", "glitch", "noise"),
+            Rule("above_zero", "noise", "noise"),
+        ),
+    ),
+    "encoder": Form(
+        "encoder",
+        (
+            Key("axis", "axis", "axis", default=0),
+            Key("counts_per_step", "number", "counts_per_step", factor=UNIT_Q32),
+            Key("limit", "number", "limit", factor=UNIT_Q32, optional=True),
+            Key("stop", "word", None, default="soft", choices=("none", "soft", "hard")),
+            Key("filter", "whole", "filter", default=3, low=0, high=255),
+        ),
+        (
+            Rule("above_zero", "counts_per_step", "counts_per_step"),
+            Rule("above_zero", "limit", "limit"),
+        ),
+    ),
+}
+
 
 @dataclass(frozen=True)
 class MoveInTime:
@@ -287,3 +524,208 @@ class MoveStraight:
     channel: int = 0
 
     form: ClassVar[Form] = FORMS["straight"]
+
+
+@dataclass(frozen=True)
+class MoveHome:
+    """One axis to its switch, off it, and slowly to it again; the edge becomes the position."""
+
+    steps: tuple[int, ...]
+    switch: str
+    speed: Fraction
+    slow_speed: Fraction
+    acceleration: Fraction
+    back_off: int
+    pull_off: int
+    edge_position: int
+    channel: int = 0
+
+    form: ClassVar[Form] = TASKS["home"]
+
+
+@dataclass(frozen=True)
+class MoveProbe:
+    """Toward a workpiece until the probe touches it, or away until it is free."""
+
+    steps: tuple[int, ...]
+    speed: Fraction
+    acceleration: Fraction
+    away: bool
+    optional: bool
+    channel: int = 0
+
+    form: ClassVar[Form] = TASKS["probe"]
+
+
+@dataclass(frozen=True)
+class EventInput:
+    """An input becomes active or inactive, whatever its switch says."""
+
+    time: Fraction | None
+    position: Place | None
+    trigger: str | None
+    falling: bool
+    at_axis: int
+    input: str
+    axis: int
+    active: bool
+    length: Fraction | None
+
+    form: ClassVar[Form] = EVENTS["input"]
+
+
+@dataclass(frozen=True)
+class EventEstop:
+    """The e-stop is pressed."""
+
+    time: Fraction | None
+    position: Place | None
+    trigger: str | None
+    falling: bool
+    at_axis: int
+    length: Fraction | None
+
+    form: ClassVar[Form] = EVENTS["estop"]
+
+
+@dataclass(frozen=True)
+class EventHold:
+    """Feed hold."""
+
+    time: Fraction | None
+    position: Place | None
+    trigger: str | None
+    falling: bool
+    at_axis: int
+
+    form: ClassVar[Form] = EVENTS["hold"]
+
+
+@dataclass(frozen=True)
+class EventResume:
+    """End of a hold."""
+
+    time: Fraction | None
+    position: Place | None
+    trigger: str | None
+    falling: bool
+    at_axis: int
+
+    form: ClassVar[Form] = EVENTS["resume"]
+
+
+@dataclass(frozen=True)
+class EventOverride:
+    """Feed override."""
+
+    time: Fraction | None
+    position: Place | None
+    trigger: str | None
+    falling: bool
+    at_axis: int
+    percent: int
+
+    form: ClassVar[Form] = EVENTS["override"]
+
+
+@dataclass(frozen=True)
+class EventStop:
+    """Soft stop."""
+
+    time: Fraction | None
+    position: Place | None
+    trigger: str | None
+    falling: bool
+    at_axis: int
+
+    form: ClassVar[Form] = EVENTS["stop"]
+
+
+@dataclass(frozen=True)
+class EventAbort:
+    """Hard stop."""
+
+    time: Fraction | None
+    position: Place | None
+    trigger: str | None
+    falling: bool
+    at_axis: int
+
+    form: ClassVar[Form] = EVENTS["abort"]
+
+
+@dataclass(frozen=True)
+class EventArm:
+    """Arm the trigger of the core, which latches the positions of all axes on one clock."""
+
+    time: Fraction | None
+    position: Place | None
+    trigger: str | None
+    falling: bool
+    at_axis: int
+    source: str
+    axis: int
+    away: bool
+    action: str
+
+    form: ClassVar[Form] = EVENTS["arm"]
+
+
+@dataclass(frozen=True)
+class EventSlip:
+    """An axis slips: its encoder leaves the steps by so many counts."""
+
+    time: Fraction | None
+    position: Place | None
+    trigger: str | None
+    falling: bool
+    at_axis: int
+    axis: int
+    counts: int
+
+    form: ClassVar[Form] = EVENTS["slip"]
+
+
+@dataclass(frozen=True)
+class MachineSettings:
+    """Settings of the core, and the axes of the simulated machine."""
+
+    filter: Fraction
+    stop_time: Fraction | None
+    start: tuple[int, ...] | None
+    steps_per_mm: tuple[Fraction, ...] | None
+    seed: int
+
+    form: ClassVar[Form] = MACHINES["settings"]
+
+
+@dataclass(frozen=True)
+class MachineInput:
+    """An input that is connected: a switch at a position, or what events make of it."""
+
+    role: str
+    axis: int
+    polarity: str
+    at: Place | None
+    side: str
+    hysteresis: int
+    bounce: Fraction
+    noise: Fraction
+    glitch: Fraction
+    soft: bool
+    disables: bool
+
+    form: ClassVar[Form] = MACHINES["input"]
+
+
+@dataclass(frozen=True)
+class MachineEncoder:
+    """An encoder at an axis, and how far its axis may be from it."""
+
+    axis: int
+    counts_per_step: Fraction
+    limit: Fraction | None
+    stop: str
+    filter: int
+
+    form: ClassVar[Form] = MACHINES["encoder"]

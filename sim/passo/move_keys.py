@@ -10,6 +10,7 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
+from passo.form_table import Form, Place
 from passo.move_forms import (
     NUMBER_MAX,
     PROFILES,
@@ -21,7 +22,7 @@ from passo.move_forms import (
     Points,
 )
 from passo.moves import AXES_MAX, CHANNELS_MAX
-from passo.values import BadValueError, check_number, meant, parse_time, shown
+from passo.values import NUMBER, BadValueError, check_number, meant, parse_time, shown
 
 Table = dict[str, Any]
 
@@ -156,6 +157,55 @@ def read_distance(table: Table, key: str) -> tuple[Fraction, ...]:
     return tuple(read_signed({key: item}, key) for item in value)
 
 
+def read_word(table: Table, key: str, choices: tuple[str, ...]) -> str:
+    """One of some words."""
+    word = _get(table, key)
+    if word not in choices:
+        raise BadValueError(
+            f"{key} must be one of {', '.join(choices)}, not {shown(word)}{meant(word, choices)}"
+        )
+    return word
+
+
+def read_flag(table: Table, key: str) -> bool:
+    """true or false."""
+    flag = _get(table, key)
+    if not isinstance(flag, bool):
+        raise BadValueError(f"{key} must be true or false, not {shown(flag)}")
+    return flag
+
+
+def read_place(table: Table, key: str) -> Place:
+    """A position in steps, or a text in millimetres."""
+    value = _get(table, key)
+    if not isinstance(value, str):
+        return Place(Fraction(read_integer(table, key, -SIGNED_MAX, SIGNED_MAX)))
+    number = value.removesuffix("mm")
+    if number == value or not NUMBER.fullmatch(number):
+        raise BadValueError(f'{key} must be steps or a text such as "12.5mm", not {shown(value)}')
+    return Place(check_number(key, Decimal(number.replace("_", "")), SIGNED_MAX), in_mm=True)
+
+
+def read_places(table: Table, key: str) -> tuple[int, ...]:
+    """Whole numbers, one for each axis."""
+    value = _get(table, key)
+    if not isinstance(value, list) or not 1 <= len(value) <= AXES_MAX:
+        raise BadValueError(f"{key} must be a list of 1 to {AXES_MAX} whole numbers, one per axis")
+    return tuple(read_integer({key: item}, key, -SIGNED_MAX, SIGNED_MAX) for item in value)
+
+
+def read_scales(table: Table, key: str) -> tuple[Fraction, ...]:
+    """One number for all axes, or a list."""
+    value = _get(table, key)
+    items = value if isinstance(value, list) else [value] * AXES_MAX
+    if not 1 <= len(items) <= AXES_MAX:
+        raise BadValueError(f"{key} must be a number, or a list of 1 to {AXES_MAX} numbers, one per axis")
+    scales = tuple(read_number({key: item}, key) for item in items)
+    if not all(scales):
+        raise BadValueError(f"{key} must be greater than 0")
+    return scales
+
+
 # By kind of key; times need the clock.
 READERS: dict[str, Callable[[Table, Key, int], Any]] = {
     "steps": lambda table, key, _: read_steps(table, key.name),
@@ -172,12 +222,33 @@ READERS: dict[str, Callable[[Table, Key, int], Any]] = {
     "channel": lambda table, key, _: read_integer(table, key.name, 0, CHANNELS_MAX - 1),
     "distance": lambda table, key, _: read_distance(table, key.name),
     "per_axis": lambda table, key, _: read_per_axis(table, key.name),
+    "word": lambda table, key, _: read_word(table, key.name, key.choices),
+    "flag": lambda table, key, _: read_flag(table, key.name),
+    "place": lambda table, key, _: read_place(table, key.name),
+    "places": lambda table, key, _: read_places(table, key.name),
+    "scales": lambda table, key, _: read_scales(table, key.name),
 }
 
 
 def read_key(table: Table, key: Key, clock_hz: int) -> Any:
     """The value of a key of a form, or its default."""
+    if key.optional and key.name not in table:
+        return None
     if key.default is not None and key.name not in table:
-        default = table[key.default] if isinstance(key.default, str) else key.default
+        names_key = isinstance(key.default, str) and key.kind != "word"
+        default = table[key.default] if names_key else key.default
         table = {**table, key.name: default}
     return READERS[key.kind](table, key, clock_hz)
+
+
+def check_rules(form: Form, table: Table) -> None:
+    """Check the rules between the keys of a form."""
+    for rule in form.rules:
+        if rule.key not in table:
+            continue
+        if rule.kind == "excludes" and rule.other in table:
+            raise BadValueError(f"{rule.key} and {rule.other} exclude each other")
+        if rule.kind == "needs" and rule.other not in table:
+            raise BadValueError(f"{rule.key} needs {rule.other}")
+        if rule.kind == "above_zero" and table[rule.key] == 0:
+            raise BadValueError(f"{rule.key} must be greater than 0")

@@ -14,11 +14,14 @@ from passo.move_forms import (
     MoveAxes,
     MoveBelowSpeed,
     MoveBySpeed,
+    MoveHome,
     MoveInTime,
     MoveJerk,
+    MoveProbe,
     MoveSigmoid,
 )
 from passo.registers import ADDRESS_CHANNEL_COUNT, AXIS_STEP_TIMING_STEP_HIGH_BITS, CHANNEL_AXIS_COUNT
+from passo.setup import Setup
 
 AXES_MAX = CHANNEL_AXIS_COUNT
 CHANNELS_MAX = ADDRESS_CHANNEL_COUNT
@@ -78,9 +81,11 @@ Move = (
     | MoveJerk
     | MoveStraight
 )
+Task = MoveHome | MoveProbe
 
 # By name of the form.
 MOVES: dict[str, type[Move]] = {move.form.name: move for move in get_args(Move)}
+TASK_TYPES: dict[str, type[Task]] = {task.form.name: task for task in get_args(Task)}
 
 
 def q32(value: Fraction) -> int:
@@ -95,7 +100,7 @@ class MoveFile:
     path: Path
     clock_hz: int
     pins: PinTiming
-    moves: tuple[Move, ...]
+    moves: tuple[Move | Task, ...]  # tasks only in a file with a setup
     channel: int = 0
     numbers: tuple[int, ...] = ()  # of the moves in the file; empty: from 1 on
 
@@ -121,6 +126,7 @@ class Channels:
     path: Path
     together: bool  # they start on one clock
     files: tuple[MoveFile, ...]
+    setup: Setup | None = None  # the machine and the events, if it has any
 
     @property
     def name(self) -> str:

@@ -32,6 +32,7 @@ HEADERS = (
     paths.grbl / "passo_player.h",
     paths.grbl / "passo_grbl.h",
     paths.model / "passo_pins.h",
+    paths.engine / "passo_rig.h",
     paths.engine / "passo_engine.h",
     paths.engine / "passo_terminal.h",
     paths.console / "passo_decimal.h",

@@ -116,24 +116,24 @@ def _number(key: Key, value: Fraction, clock_hz: int) -> int:
 
 def plan_file(file: MoveFile, parameters: Parameters) -> list[Plan]:
     """Plan all moves and chain them into one motion; raises MoveFileError."""
-    plans = _plan_moves(file, parameters)
-    _check_tables([(file.number(i), plan) for i, plan in enumerate(plans)], file.path)
+    plans = plan_moves(file, parameters)
+    check_tables([(file.number(i), plan) for i, plan in enumerate(plans)], file.path)
     return plans
 
 
 def plan_channels(channels: Channels, parameters: Parameters) -> list[list[Plan]]:
     """Plan the motion of each channel; raises MoveFileError."""
-    plans = [_plan_moves(file, parameters) for file in channels.files]
+    plans = [plan_moves(file, parameters) for file in channels.files]
     numbered = [
         (file.number(i), plan)
         for file, own in zip(channels.files, plans, strict=True)
         for i, plan in enumerate(own)
     ]
-    _check_tables(sorted(numbered, key=lambda pair: pair[0]), channels.path)
+    check_tables(sorted(numbered, key=lambda pair: pair[0]), channels.path)
     return plans
 
 
-def _plan_moves(file: MoveFile, parameters: Parameters) -> list[Plan]:
+def plan_moves(file: MoveFile, parameters: Parameters) -> list[Plan]:
     plans = []
     for index, move in enumerate(file.moves):
         try:
@@ -153,7 +153,7 @@ def table_of(plans: list[Plan]) -> Points:
     return next((plan.table for plan in plans if plan.table), ())
 
 
-def _check_tables(plans: list[tuple[int, Plan]], path: Path) -> None:
+def check_tables(plans: list[tuple[int, Plan]], path: Path) -> None:
     """Raises MoveFileError if two moves, given with their numbers, need different tables in the same bank."""
     users = [(n, plan) for n, plan in plans if plan.table or plan.c.sigmoid_alpha]
     for number, plan in users[1:]:

@@ -13,6 +13,8 @@ from passo.moves import Channels
 from passo.plan import Plan, plan_channels
 from passo.report import problems, summarize_channels, total_clocks, write_json, write_pulses
 from passo.run import Run, execute_channels, open_engine, parameters_of
+from passo.scene import Scene, plan_sections, scene_parameters
+from passo.scene_report import summarize_scene, write_scene_pulses
 from passo.toolchain import paths
 from passo.waves import FILES, Window, read_window, record, write_view
 
@@ -32,6 +34,10 @@ def run_file(moves: Path, engine: str, out: Path | None, wanted: Wanted) -> bool
     """Run the moves, write the results and say where they are; return whether the motion was exact."""
     window = _read_window(wanted.waves, engine)
     file = read_channels(moves)
+    if file.setup:
+        if window:
+            raise BadInputError("--waves is for files without a machine or events")
+        return _run_scene(file, engine, out or paths.build / "run" / file.name, plot)
     parameters = parameters_of(file)
     plans = plan_channels(file, parameters)
     if window:
@@ -61,6 +67,38 @@ def run_file(moves: Path, engine: str, out: Path | None, wanted: Wanted) -> bool
 
         write_page(file, runs, engine, out / PAGE)
     return _conclude(file, runs, out, window, wanted)
+
+
+def _run_scene(file: Channels, engine: str, out: Path, plot: bool) -> bool:
+    """The same for a file with a machine or events."""
+    parameters = scene_parameters(file)
+    plan_sections(file.files[0], parameters)  # says what is wrong before anything is built
+    with open_engine(engine, parameters, file.clock_hz) as core:
+        _clear(out)
+        try:
+            run = Scene(file, core).run()
+        except DifferenceError as error:
+            write_json({"name": file.name, "ok": False, "difference": vars(error)}, out / SUMMARY)
+            raise
+    write_scene_pulses(run, out / PULSES)
+    write_json(summarize_scene(run, engine), out / SUMMARY)
+    if plot:
+        from passo.plot_scene import plot_scene
+
+        plot_scene(run, out / PICTURE)
+    for problem in run.problems():
+        print(f"{file.path}: {problem}", file=sys.stderr)
+    edges = "" if run.matched_edges is None else f", {run.matched_edges} edges agree"
+    steps = sum(len(run.steps(axis)[0]) for axis in range(run.file.axes))
+    print(f"{file.name}: {steps} steps in {run.total_clocks} clocks{edges}")
+    for stop in run.stops:
+        if not run.sought(stop):
+            at = ", ".join(map(str, stop.positions))
+            print(f"stop {stop.cause.name} at {at}, clock {stop.clock - run.start}")
+    print(f"results: {out / PULSES}, {out / SUMMARY}")
+    if plot:
+        print(f"open: {out / PICTURE}")
+    return not run.problems()
 
 
 def _longest(plans: list[list[Plan]]) -> int:

@@ -11,7 +11,7 @@ import numpy as np
 from passo.build import Parameters
 from passo.engine import EVENT, Engine, model_engine, rtl_engine
 from passo.move_file import read_channels
-from passo.moves import AXES_MAX, Channels, MoveFile
+from passo.moves import AXES_MAX, Channels, MoveFile, MoveFileError
 from passo.plan import Plan, plan_move
 from passo.run import execute, parameters_of
 from passo_stm32.board import Board, Motion, motions
@@ -48,7 +48,10 @@ def with_clock(path: Path, clock_hz: int, folder: Path) -> Path:
 def channels_of(path: Path, clock_hz: int) -> Channels:
     """Read a move file, for a core with this clock."""
     with tempfile.TemporaryDirectory() as folder:
-        return read_channels(with_clock(path, clock_hz, Path(folder)))
+        channels = read_channels(with_clock(path, clock_hz, Path(folder)))
+    if channels.setup:
+        raise MoveFileError(f"{path}: the machine of the file is not at the pins here; passo run has it")
+    return channels
 
 
 def on_the_model(file: MoveFile, number: int, plan: Plan, parameters: Parameters) -> Motion:

@@ -5,6 +5,8 @@ A marker is <!-- moves: WHAT -->...<!-- /moves -->, where WHAT is one of
 
     forms               the table of the forms
     keys FORM ...       the table of the keys of a form, or of some forms
+    task FORM ...       the same for what is only in move files: task, event, machine
+    events              the table of the events and their own keys
     console             the table of the forms on the console
     CONSTANT            a constant
     profiles            the names of the profiles
@@ -32,6 +34,11 @@ def _between(schema: Schema, what: str) -> str:
         return _forms(schema)
     if kind == "keys":
         return _keys(schema, [forms[name] for name in names])
+    if kind in schema.others:
+        others = {form.name: form for form in schema.others[kind]}
+        return _keys(schema, [others[name] for name in names], in_c=False)
+    if kind == "events":
+        return _events(schema)
     if kind == "console":
         return _console(schema)
     if kind == "profiles":
@@ -57,6 +64,8 @@ def _range(schema: Schema, key: Key) -> str:
     if key.kind.name in ("profile", "shape"):
         user = [schema.user_name] if key.kind.name == "shape" else []
         return ", ".join(f"`{name}`" for name in [*schema.profiles, *user])
+    if key.choices or key.kind.name == "flag":
+        return ", ".join(f"`{word}`" for word in key.choices or ("true", "false"))
     return " .. ".join(map(schema.shown, key.range)) if key.range else ""
 
 
@@ -70,7 +79,7 @@ def _default(schema: Schema, key: Key) -> str:
         return key.optional_says
     if key.default_says:
         return key.default_says
-    return key.default if key.default.isdigit() else f"`{key.default}`"
+    return key.default if key.default.isdigit() else f"`{key.default.lower()}`"
 
 
 RULES = {
@@ -94,7 +103,7 @@ def _in_c(key: Key) -> str:
     return ", ".join(filter(None, (f"`{member}`", key.kind.stands_for)))
 
 
-def _keys(schema: Schema, forms: list[Form]) -> str:
+def _keys(schema: Schema, forms: list[Form], in_c: bool = True) -> str:
     """One row for each key; of several forms with the names of those that have it."""
     rows = []
     for form in forms:
@@ -106,11 +115,37 @@ def _keys(schema: Schema, forms: list[Form]) -> str:
                 _range(schema, key),
                 _default(schema, key),
                 _in_c(key),
-            ]
+            ][: 6 if in_c else 5]
             rows.append([f"`{form.name}`", *row] if len(forms) > 1 else row)
-    columns = ["key", "meaning", "unit", "range", "default", "in C"]
+    columns = ["key", "meaning", "unit", "range", "default", "in C"][: 6 if in_c else 5]
     table = _table(["method", *columns] if len(forms) > 1 else columns, rows)
     return table + "".join(map(_rules, forms))
+
+
+def _events(schema: Schema) -> str:
+    """What every event has, then its own keys."""
+    events = schema.others["event"]
+    common = [key for key in events[0].keys if all(key in form.keys for form in events)]
+    rows = [
+        [
+            "all" if form is None else f"`{form.name}`",
+            f"`{key.name}`",
+            key.text,
+            key.unit,
+            *_values(schema, key),
+        ]
+        for form, keys in [(None, common), *((form, form.keys) for form in events)]
+        for key in keys
+        if form is None or key not in common
+    ]
+    alone = [
+        [f"`{form.name}`", "", form.text, "", "", ""] for form in events if len(form.keys) == len(common)
+    ]
+    return _table(["`do`", "key", "meaning", "unit", "range", "default"], [*rows, *alone])
+
+
+def _values(schema: Schema, key: Key) -> tuple[str, str]:
+    return _range(schema, key), _default(schema, key)
 
 
 def _console(schema: Schema) -> str:

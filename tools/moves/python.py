@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import ClassVar
 
-from passo.form_table import Form, Key, Points, Rule
+from passo.form_table import Form, Key, Place, Points, Rule
 from passo.registers import Shape
 '''
 
@@ -42,13 +42,23 @@ def _key(schema: Schema, key: Key) -> list[str]:
         factor = _quoted(CLOCK) if key.kind.factor == CLOCK else key.kind.factor.upper()
         cells.append(f"factor={factor}")
     if key.default is not None:
-        cells.append(f"default={key.default if key.default.isdigit() else _quoted(key.default)}")
+        literal = key.default.isdigit() or key.kind.name == "flag"
+        cells.append(f"default={key.default if literal else _quoted(key.default)}")
     if key.kind.name == "whole":
         low, high = (end.upper() if isinstance(end, str) else str(end) for end in key.range)
         cells += [f"low={low}", f"high={high}"]
+    if key.choices:
+        cells.append(f"choices=({', '.join(map(_quoted, key.choices))})")
     if key.file_only:
         cells.append("file_only=True")
+    if _may_miss(key):
+        cells.append("optional=True")
     return _call("Key", cells, 12, ",")
+
+
+def _may_miss(key: Key) -> bool:
+    """Its value is None then; some kinds know what stands for it."""
+    return key.optional and key.kind.name not in ("table", "axes")
 
 
 def _form(schema: Schema, form: Form) -> list[str]:
@@ -66,14 +76,18 @@ def _form(schema: Schema, form: Form) -> list[str]:
     return [*lines, "    ),"]
 
 
-def _class(form: Form) -> list[str]:
+PREFIXES = {"task": "Move", "event": "Event", "machine": "Machine"}
+
+
+def _class(form: Form, prefix: str = "Move", table: str = "FORMS") -> list[str]:
     """The dataclass with the parameters of a form."""
-    name = "Move" + form.name.title().replace("_", "")
+    name = prefix + form.name.title().replace("_", "")
     lines = ["", "", "@dataclass(frozen=True)", f"class {name}:", f'    """{form.summary}"""', ""]
     for key in sorted(form.keys, key=lambda key: key.trails):
         default = f" = {key.default or '()'}" if key.trails else ""
-        lines.append(f"    {key.name}: {key.kind.python}{default}")
-    lines += ["", f'    form: ClassVar[Form] = FORMS["{form.name}"]']
+        optional = " | None" if _may_miss(key) else ""
+        lines.append(f"    {key.name}: {key.kind.python}{optional}{default}")
+    lines += ["", f'    form: ClassVar[Form] = {table}["{form.name}"]']
     if form.profile:
         lines.append(f'    profile: ClassVar[str] = "{form.profile}"')
     return lines
@@ -94,6 +108,14 @@ def module(schema: Schema) -> str:
     for form in schema.forms:
         lines += _form(schema, form)
     lines.append("}")
+    for group, forms in schema.others.items():
+        lines += ["", f"{group.upper()}S = {{"]
+        for form in forms:
+            lines += _form(schema, form)
+        lines.append("}")
     for form in schema.forms:
         lines += _class(form)
+    for group, forms in schema.others.items():
+        for form in forms:
+            lines += _class(form, PREFIXES[group], f"{group.upper()}S")
     return "\n".join([*lines, ""])

@@ -14,6 +14,7 @@ SOURCE = "schema/moves.toml"
 GENERATED = f"Generated from {SOURCE} by tools/generate_moves.py."
 
 CLOCK = "clock_hz"  # the only factor that is not a constant
+OTHERS = ("task", "event", "machine")  # forms that are only in move files
 
 
 class SchemaError(ValueError):
@@ -62,8 +63,9 @@ class Key:
     optional_says: str = ""
     console_default: str | None = None
     console_default_says: str = ""
+    choices: tuple[str, ...] = ()
     file_only: bool = False
-    every: bool = False  # of every form
+    every: bool = False  # of every move
 
     @property
     def trails(self) -> bool:
@@ -121,7 +123,8 @@ class Schema:
     user_name: str
     user_bank: str
     kinds: dict[str, Kind]
-    forms: tuple[Form, ...]
+    forms: tuple[Form, ...]  # of moves that are planned
+    others: dict[str, tuple[Form, ...]]  # task, event, machine: only in move files
 
     def shown(self, end: int | str) -> str:
         """One end of a range for the documentation: a number, a constant, or words."""
@@ -135,17 +138,24 @@ class Schema:
 def read(root: Path) -> Schema:
     """Read the schema of a source tree; raises SchemaError."""
     data = tomllib.loads((root / SOURCE).read_text(encoding="utf-8"))
-    _known(data, {"constants", "profiles", "user", "kinds", "keys", "form"}, SOURCE)
+    _known(data, {"constants", "profiles", "user", "kinds", "keys", "form", *OTHERS}, SOURCE)
     constants = {name: _constant(name, table) for name, table in data["constants"].items()}
     for name, shape in (*data["profiles"].items(), ("user", data["user"]["bank"])):
         _want(shape.upper() in Shape.__members__, f"{name}: the core has no shape {shape}")
     kinds = {name: _record(Kind, f"kind {name}", {"name": name, **t}) for name, t in data["kinds"].items()}
     for kind in kinds.values():
         _want(kind.factor in (None, CLOCK, *constants), f"kind {kind.name}: no such factor")
-    forms = tuple(_form(table, data["keys"], kinds, constants, data["profiles"]) for table in data["form"])
+    made = {
+        group: tuple(_form(group, table, data["keys"], kinds, constants) for table in data.get(group, ()))
+        for group in ("form", *OTHERS)
+    }
+    forms = made.pop("form")
+    for form in forms:
+        by_key = form.has("profile") or form.has("shape") or form.has("per_axis")
+        _want(by_key or form.profile in data["profiles"], f"form {form.name}: which profile has it?")
     _want(sum(form.told_by is not None for form in forms) == 2, "two forms are told by their keys")
     user = data["user"]
-    return Schema(constants, data["profiles"], user["name"], user["bank"], kinds, forms)
+    return Schema(constants, data["profiles"], user["name"], user["bank"], kinds, forms, made)
 
 
 def _want(condition: bool, complaint: str) -> None:
@@ -177,15 +187,15 @@ def _constant(name: str, table: dict[str, Any]) -> Constant:
 
 
 def _form(
+    group: str,
     table: dict[str, Any],
     common: dict[str, dict[str, Any]],
     kinds: dict[str, Kind],
     constants: dict[str, Constant],
-    profiles: dict[str, str],
 ) -> Form:
-    place = f"form {table.get('name')}"
+    place = f"{group} {table.get('name')}"
     keys: dict[str, Key] = {}
-    every = [name for name, key in common.items() if key.get("every")]
+    every = [name for name, key in common.items() if key.get("every") and group in ("form", "task")]
     for entry in (*table["keys"], *every):
         given = {"name": entry} if isinstance(entry, str) else entry
         key = _key(place, {**common.get(given["name"], {}), **given}, kinds, constants, keys)
@@ -200,8 +210,6 @@ def _form(
         rules.append(Rule(kind, rule["key"], other))
     form = _record(Form, place, {**table, "keys": list(keys.values()), "rules": rules})
     _want(form.told_by in (None, *keys), f"{place}: no key {form.told_by}")
-    by_key = form.has("profile") or form.has("shape") or form.has("per_axis")
-    _want(by_key or form.profile in profiles, f"{place}: which profile has it?")
     return form
 
 
@@ -218,7 +226,8 @@ def _key(
     default = table.get("default")
     if default in constants:
         default = constants[default].value
-    _want(not isinstance(default, str) or default in before, f"{place}: {default} is no key before it")
+    is_key = isinstance(default, str) and kind.name != "word"
+    _want(not is_key or default in before, f"{place}: {default} is no key before it")
     values = {**table, "kind": kind, "member": table.get("member", table["name"])}
     values |= {name: str(values[name]) for name in ("console_default",) if name in values}
     key = _record(Key, place, values)
@@ -226,4 +235,8 @@ def _key(
         key = replace(key, default=str(default))
     _want(key.unit in (kind.units or ("",)), f"{place}: the unit of {kind.name} is not {key.unit!r}")
     _want(key.range is not None or kind.name != "whole", f"{place}: a whole number needs a range")
+    _want(bool(key.choices) == (kind.name == "word"), f"{place}: a word needs choices, and only a word")
+    _want(
+        kind.name != "word" or default is None or default in key.choices, f"{place}: {default} is no choice"
+    )
     return replace(key, range=key.range or kind.range)

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: MIT
+"""What the host of a move file with a machine says to the core: settings, home and probe, readings."""
+
+from typing import Any
+
+import numpy as np
+
+from passo import registers as r
+from passo.driver import Driver
+from passo.link import error_text
+from passo.move_forms import USER_BANK, MoveHome, MoveProbe
+from passo.moves import MoveFile, Task, q32
+from passo.native import ffi
+from passo.plan import Plan, table_of
+from passo.registers import TriggerSource
+from passo.rig import RATIO_ONE
+from passo.run import SLEWS_PER_SECOND, RunError
+from passo.scene_run import sampled_at
+from passo.setup import Setup
+
+
+class SceneDriver(Driver):
+    """A driver with what a scene needs besides."""
+
+    def configure_inputs(self, setup: Setup, axes: int) -> None:
+        """Tell the core which inputs are there; afterwards an alarm has its polarity."""
+        self.call("configure_watchdog", 0, 0)
+        self.call("configure_filter", round(setup.settings.filter * self.clock_hz))
+        for axis in range(axes):
+            self.call("configure_inputs", axis, _input_config(setup, axis))
+
+    def configure(self, setup: Setup, file: MoveFile, plans: list[Plan]) -> None:
+        """All other settings."""
+        for axis in range(file.axes):
+            self.configure_axis(axis, file.pins)
+        probe = setup.find("probe", 0)
+        if probe is not None:
+            self.call("configure_probe", setup.inputs[probe].polarity == "low")
+        stop = setup.settings.stop_time
+        slew = self.clock_hz // SLEWS_PER_SECOND if stop is None else round(stop * self.clock_hz)
+        slowest = min((plan.c.velocity_peak for plan in plans), default=0)
+        self.call("configure_motion", slew, slew, max(1, slowest >> 16 >> 4) if slowest else 0)
+        if table := table_of(plans):
+            self.call("load_table", USER_BANK, table)
+        for encoder in setup.encoders:
+            ratio = round(encoder.counts_per_step * RATIO_ONE)
+            limit = round(encoder.limit * encoder.counts_per_step) if encoder.limit else r.ENCODER_LIMIT_RESET
+            stops = bool(encoder.limit)
+            word = (stops and encoder.stop == "soft") << r.ENCODER_SETUP_STOP_SOFT_LSB
+            word |= (stops and encoder.stop == "hard") << r.ENCODER_SETUP_STOP_HARD_LSB
+            self.write(r.CHANNEL_ENCODER_FILTER, encoder.filter)
+            self.write(_encoder_base(encoder.axis) + r.ENCODER_SETUP, word, ratio, limit)
+
+    def begin(self, move: Task) -> None:
+        """Begin a home or a probe."""
+        common = {"speed": q32(move.speed), "acceleration": q32(move.acceleration)}
+        if isinstance(move, MoveProbe):
+            fields = {"steps": move.steps, "away": move.away, "optional": move.optional}
+            self.call("probe", ffi().new("struct passo_probe *", common | fields))
+        if isinstance(move, MoveHome):
+            axis = next(axis for axis, steps in enumerate(move.steps) if steps)
+            fields = {
+                "axis": axis,
+                "source": TriggerSource[move.switch.upper()],
+                "distance": move.steps[axis],
+                "back_off": move.back_off,
+                "pull_off": move.pull_off,
+                "slow_speed": q32(move.slow_speed),
+                "position": move.edge_position,
+            }
+            self.home = ffi().new("struct passo_home *", common | fields)  # must live until the end
+            self.call("home", self.home, 1)
+
+    def trigger(self) -> Any:
+        """The `struct passo_trigger_report`."""
+        report = ffi().new("struct passo_trigger_report *")
+        self.call("read_trigger", report)
+        return report
+
+    def readings(self) -> Any:
+        """The `struct passo_readings`."""
+        readings = ffi().new("struct passo_readings *")
+        self.call("read_inputs", readings)
+        return readings
+
+    def sample(self, axes: int) -> tuple[int, np.ndarray, np.ndarray]:
+        """A SAMPLE: its clock, positions as the core counts them, encoder positions."""
+        clock = sampled_at(self.engine.clock)
+        at = r.CHANNEL_ENCODER_POSITION_BASE - r.CHANNEL_POSITION_BASE
+        words = self.read(r.CHANNEL_POSITION_BASE, at + axes)
+        both = np.zeros((2, 8), np.int32)
+        for row, first in enumerate((0, at)):
+            both[row, :axes] = np.array(words[first : first + axes], np.uint32).view(np.int32)
+        return clock, both[0], both[1]
+
+    def greatest(self, axis: int, counts_per_step: float) -> float:
+        """Greatest following error of an axis in steps."""
+        (word,) = self.read(_encoder_base(axis) + r.ENCODER_GREATEST, 1)
+        return (word & ((1 << r.ENCODER_GREATEST_GREATEST_BITS) - 1)) / counts_per_step
+
+    def read(self, address: int, length: int) -> list[int]:
+        """Read registers of the channel."""
+        words = ffi().new("uint32_t[]", length)
+        address += r.ADDRESS_CHANNEL_BASE
+        self._wire(self.lib.passo_host_read(self.host, address, words, length))
+        return list(words)
+
+    def write(self, address: int, *words: int) -> None:
+        """Write registers of the channel."""
+        address += r.ADDRESS_CHANNEL_BASE
+        self._wire(self.lib.passo_host_write(self.host, address, words, len(words)))
+
+    def _wire(self, error: int) -> None:
+        self.hardware.check()
+        if error:
+            raise RunError(error_text(error))
+
+
+def _encoder_base(axis: int) -> int:
+    return r.CHANNEL_ENCODER_BASE + axis * r.CHANNEL_ENCODER_STRIDE
+
+
+def _input_config(setup: Setup, axis: int) -> Any:
+    """The `struct passo_input_config` of an axis."""
+    config: dict[str, bool] = {}
+    for one in setup.inputs:
+        if one.axis != axis or one.role == "probe":
+            continue
+        config[f"{one.role}_inverted"] = one.polarity == "low"
+        if one.role == "alarm":
+            config |= {"alarm_soft": one.soft, "alarm_disables": one.disables}
+        else:
+            config[one.role] = True
+            config["limit_soft"] = config.get("limit_soft", False) or one.soft
+    return ffi().new("struct passo_input_config *", config)

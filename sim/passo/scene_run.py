@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: MIT
+"""What has happened in a move file with a machine."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from passo.moves import MoveFile, Task
+from passo.plan import Plan
+from passo.registers import Cause
+from passo.setup import Event, Setup
+
+# What the host has read in one frame, all of one clock.
+SAMPLE = np.dtype([("clock", "u8"), ("position", "i4", 8), ("encoder", "i4", 8)])
+ROUND_CLOCKS = 64  # the core reads its positions in rounds from the reset on; docs/architecture.md, SPI link
+CS_CLOCKS = 4  # until chip select is seen
+
+
+def sampled_at(clock: int) -> int:
+    """Clock of the positions in a frame whose chip select falls at `clock`: the end of the next round."""
+    return ((clock + CS_CLOCKS) // ROUND_CLOCKS + 1) * ROUND_CLOCKS - 1
+
+
+@dataclass
+class Section:
+    """Moves that make one motion, or a home or a probe."""
+
+    numbers: list[int]  # of its moves in the file
+    moves: list[Any]
+    plans: list[Plan]  # none of a home or probe
+    begin: int = 0  # clock at which it has started to move
+    end: int = 0
+    start: list[int] = field(default_factory=list)  # positions of the machine
+    outcome: str = "OK"  # name of an error of the driver
+
+    @property
+    def kind(self) -> str:
+        """home, probe or moves."""
+        return self.moves[0].form.name if isinstance(self.moves[0], Task) else "moves"
+
+
+@dataclass
+class Stop:
+    """The core has stopped."""
+
+    clock: int
+    cause: Cause
+    positions: list[int]  # of the machine
+    axes: list[int]  # of the limit or alarm
+    latch: list[int] | None  # positions that the trigger latched, as the driver counts them
+
+
+@dataclass
+class Happened:
+    """An event."""
+
+    number: int
+    event: Event
+    clock: int | None  # None: it did not come
+    positions: list[int]  # of the machine
+    answered: int | None = None  # clock at which the frame of a command ended
+
+
+@dataclass
+class Latch:
+    """What an armed trigger has latched."""
+
+    number: int  # of the event that armed it
+    positions: list[int]  # as the driver counts them
+
+
+@dataclass
+class SceneRun:
+    """Result of a move file with a machine. Clocks are those of the engine."""
+
+    file: MoveFile
+    setup: Setup
+    sections: list[Section]
+    pins: np.ndarray  # EVENT
+    inputs: np.ndarray  # CHANGE of passo.rig
+    samples: np.ndarray  # SAMPLE
+    events: list[Happened]
+    stops: list[Stop]
+    latches: list[Latch]
+    positions: list[int]  # as the driver counts them
+    core_positions: list[int]
+    machine: list[int]  # positions of the machine
+    greatest: list[float]  # following error of each encoder in steps
+    troubles: list[str]  # what a command or a read has met
+    matched_edges: int | None
+    clocks: int
+    seconds: float
+    start: int = 0  # clock at which the first motion started
+    total_clocks: int = 0  # from there to the end of the last one
+
+    def __post_init__(self) -> None:
+        running = np.concatenate([[0], self.pins["running"] & 1])
+        rises = self.pins["clock"][running[1:] > running[:-1]]
+        falls = self.pins["clock"][running[1:] < running[:-1]]
+        self.rises, self.falls = rises.astype(np.int64), falls.astype(np.int64)
+        self.start = int(rises[0]) if len(rises) else 0
+        self.total_clocks = int(falls[-1]) - self.start if len(falls) else 0
+        for stop in self.stops:
+            ends = self.falls[self.falls <= stop.clock]
+            stop.clock = int(ends[-1]) if len(ends) else stop.clock
+        for section in self.sections:
+            ends = self.falls[(self.falls > section.begin) & (self.falls <= section.end)]
+            begins = self.rises[self.rises >= section.begin]
+            section.begin = int(begins[0]) if len(begins) else section.begin
+            section.end = int(ends[-1]) if len(ends) else section.end
+
+    def steps(self, axis: int) -> tuple[np.ndarray, np.ndarray]:
+        """Clocks since the start and directions of all steps of an axis."""
+        level = self.pins["step"] >> np.uint64(axis) & np.uint64(1)
+        rising = np.flatnonzero(level > np.concatenate([[0], level[:-1]]))
+        negative = (self.pins["dir"][rising] >> np.uint64(axis) & np.uint64(1)).astype(np.int8)
+        return self.pins["clock"][rising].astype(np.int64) - self.start, 1 - 2 * negative
+
+    @property
+    def is_stopped(self) -> bool:
+        """The last stop ended the file."""
+        return bool(self.stops) and self.sections[-1].outcome != "OK"
+
+    def sought(self, stop: Stop) -> bool:
+        """Home or probe has made it."""
+        kinds = {s.kind for s in self.sections if s.begin <= stop.clock <= s.end}
+        return stop.cause in (Cause.TRIGGER, Cause.LIMIT) and bool(kinds & {"home", "probe"})
+
+    def undisturbed(self, section: Section) -> int:
+        """Clock up to which the moves of a section are certainly as planned."""
+        if section.end - section.begin == sum(plan.clocks for plan in section.plans):
+            return section.end
+        clocks = [happened.clock for happened in self.events if happened.clock is not None]
+        return min((clock for clock in clocks if section.begin < clock <= section.end), default=section.begin)
+
+    def problems(self) -> list[str]:
+        """What is not as it must be, one sentence each."""
+        found = list(self.troubles)
+        mistakes = (Cause.LINE_UNDERRUN, Cause.RAMP_UNDERRUN, Cause.STEP_OVERRUN)
+        found += [f"the core stopped: {s.cause.name}" for s in self.stops if s.cause in mistakes]
+        for axis in range(self.file.axes):
+            _, directions = self.steps(axis)
+            net = int(directions.sum(dtype=np.int64))
+            if self.core_positions[axis] != net:
+                found.append(f"axis {axis} counts {self.core_positions[axis]} steps, its pin made {net}")
+            if self.machine[axis] != net + self.setup.start(axis):
+                found.append(f"axis {axis} of the machine is at {self.machine[axis]}")
+        for section in self.sections:
+            number = section.numbers[0]
+            if section.outcome == "OK":
+                found += self._short(section)
+            elif not self.stops or section.outcome in ("SWITCH_MISSED", "SWITCH_LEVEL"):
+                found.append(f"move {number}: {section.outcome}")
+        for happened in self.events:
+            if happened.clock is None:
+                found.append(f"event {happened.number}: it did not come")
+        return found
+
+    def _short(self, section: Section) -> list[str]:
+        """Axes that did not make the steps of a section that was not stopped."""
+        found = []
+        for axis in range(self.file.axes if section.plans else 0):
+            clocks, directions = self.steps(axis)
+            own = (clocks >= section.begin - self.start) & (clocks <= section.end - self.start)
+            made, wanted = int(directions[own].sum()), sum(move.steps[axis] for move in section.moves)
+            if made != wanted:
+                found.append(f"move {section.numbers[0]}: axis {axis} made {made} steps of {wanted}")
+        return found

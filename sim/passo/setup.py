@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: MIT
+"""The machine at the core, and the events of a move file."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import get_args
+
+from passo.move_forms import (
+    EventAbort,
+    EventArm,
+    EventEstop,
+    EventHold,
+    EventInput,
+    EventOverride,
+    EventResume,
+    EventSlip,
+    EventStop,
+    MachineEncoder,
+    MachineInput,
+    MachineSettings,
+)
+
+Event = (
+    EventInput
+    | EventEstop
+    | EventHold
+    | EventResume
+    | EventOverride
+    | EventStop
+    | EventAbort
+    | EventArm
+    | EventSlip
+)
+EVENT_TYPES: dict[str, type[Event]] = {event.form.name: event for event in get_args(Event)}
+
+
+@dataclass(frozen=True)
+class Setup:
+    """The machine and the events of a move file; places are in steps."""
+
+    settings: MachineSettings
+    inputs: tuple[MachineInput, ...] = ()
+    encoders: tuple[MachineEncoder, ...] = ()
+    events: tuple[Event, ...] = ()
+    scales: tuple[Fraction, ...] = ()
+
+    def find(self, role: str, axis: int) -> int | None:
+        """Number of an input; the channel has one probe."""
+        places = [(one.role, 0 if one.role == "probe" else one.axis) for one in self.inputs]
+        wanted = (role, 0 if role == "probe" else axis)
+        return places.index(wanted) if wanted in places else None
+
+    def start(self, axis: int) -> int:
+        """Where an axis is at the beginning."""
+        return self.settings.start[axis] if self.settings.start else 0
