@@ -35,9 +35,10 @@ def run_file(moves: Path, engine: str, out: Path | None, wanted: Wanted) -> bool
     window = _read_window(wanted.waves, engine)
     file = read_channels(moves)
     if file.setup:
-        if window:
-            raise BadInputError("--waves is for files without a machine or events")
-        return _run_scene(file, engine, out or paths.build / "run" / file.name, plot)
+        if window or wanted.report:
+            option = "--waves" if window else "--report"
+            raise BadInputError(f"{option} is for files without a machine or events")
+        return _run_scene(file, engine, out or paths.build / "run" / file.name, wanted.plot)
     parameters = parameters_of(file)
     plans = plan_channels(file, parameters)
     if window:
