@@ -17,6 +17,58 @@ static const char *const PROFILES[] = {
 #undef NAME
 };
 
+/* The value of a key in the help; from PASSO_READ_LEVEL on, all its words in the order of its numbers. */
+static const char *const PLACEHOLDERS[] = {
+    [PASSO_READ_NOTHING] = "name",
+    [PASSO_READ_WHOLE] = "n",
+    [PASSO_READ_FLAG] = "0|1",
+    [PASSO_READ_FLOW] = FLOW_WAIT "|" FLOW_REFUSE,
+    [PASSO_READ_AXIS] = "axis",
+    [PASSO_READ_CHANNEL] = "n",
+    [PASSO_READ_AXES] = "n",
+    [PASSO_READ_STEPS] = "n,..",
+    [PASSO_READ_NUMBER] = "x",
+    [PASSO_READ_SIGNED] = "x",
+    [PASSO_READ_TIME] = "time",
+    [PASSO_READ_PIN_TIME] = "time",
+    [PASSO_READ_MICROSECONDS] = "time",
+    [PASSO_READ_ALPHA] = "x",
+    [PASSO_READ_DISTANCE] = "x,..",
+    [PASSO_READ_PER_AXIS] = "x[,..]",
+    [PASSO_READ_PROFILE] = PASSO_PROFILES_CHOICE,
+    [PASSO_READ_SHAPE] = PASSO_PROFILES_CHOICE "|" PASSO_USER_PROFILE,
+    [PASSO_READ_POINTS] = "n,..(16)",
+    [PASSO_READ_INTEGER] = "n",
+    [PASSO_READ_LEVEL] = "none|active_high|active_low",
+    [PASSO_READ_SOURCE] = "none|limit_low|limit_high|home|probe|index",
+    [PASSO_READ_EDGE] = "rising|falling",
+    [PASSO_READ_ACTION] = "latch|soft_stop|hard_stop|end_endless",
+};
+
+/* The length of the first word of some. */
+static size_t word_length(const char *words)
+{
+	return strcspn(words, "|");
+}
+
+static bool read_choice(
+    const struct passo_reading *reading, const struct passo_key *key, const char *text, uint8_t *choice)
+{
+	const char *words = PLACEHOLDERS[key->reader];
+
+	for (*choice = 0;; (*choice)++) {
+		const size_t length = word_length(words);
+
+		if (strlen(text) == length && memcmp(text, words, length) == 0)
+			return true;
+		if (words[length] == '\0')
+			break;
+		words += length + 1u;
+	}
+	return passo_complain(
+	    reading->sink, "%s must be one of %s, not %q", key->name, PLACEHOLDERS[key->reader], text);
+}
+
 /* Removes the next item from a list. */
 static struct passo_item next_item(const char **list)
 {
@@ -64,6 +116,20 @@ static bool read_steps(
 			    "axis %u has too many steps, at most %u are possible", axis, PASSO_SUBSTEPS_MAX);
 		steps[axis] = number.negative ? -(int32_t)number.whole : (int32_t)number.whole;
 	}
+	return true;
+}
+
+static bool read_integer(
+    const struct passo_reading *reading, const struct passo_key *key, const char *text, int32_t *value)
+{
+	struct passo_decimal number;
+
+	if (!passo_decimal_read(&number, text, strlen(text), 0) || !number.is_whole)
+		return passo_complain(reading->sink, "%s must be a whole number, not %q", key->name, text);
+	if (number.whole > PASSO_SUBSTEPS_MAX)
+		return passo_complain(
+		    reading->sink, "%s is beyond %u", key->name, (uint32_t)PASSO_SUBSTEPS_MAX);
+	*value = number.negative ? -(int32_t)number.whole : (int32_t)number.whole;
 	return true;
 }
 
@@ -199,6 +265,13 @@ bool passo_value_read(
 		return read_profile(reading, key, text, place);
 	case PASSO_READ_POINTS:
 		return read_points(reading, key, text, place);
+	case PASSO_READ_INTEGER:
+		return read_integer(reading, key, text, place);
+	case PASSO_READ_LEVEL:
+	case PASSO_READ_SOURCE:
+	case PASSO_READ_EDGE:
+	case PASSO_READ_ACTION:
+		return read_choice(reading, key, text, place);
 	}
 	return false;
 }
@@ -208,29 +281,18 @@ const char *passo_value_flow(bool waits)
 	return waits ? FLOW_WAIT : FLOW_REFUSE;
 }
 
+void passo_value_say(const struct passo_sink *sink, enum passo_reader reader, uint8_t choice)
+{
+	const char *words = PLACEHOLDERS[reader];
+	size_t length;
+
+	for (length = word_length(words); choice > 0u; choice--, length = word_length(words))
+		words += length + 1u;
+	for (; length > 0u; length--, words++)
+		passo_say(sink, "%s", (const char[]){*words, '\0'});
+}
+
 const char *passo_value_placeholder(enum passo_reader reader)
 {
-	static const char *const PLACEHOLDERS[] = {
-	    [PASSO_READ_NOTHING] = "name",
-	    [PASSO_READ_WHOLE] = "n",
-	    [PASSO_READ_FLAG] = "0|1",
-	    [PASSO_READ_FLOW] = FLOW_WAIT "|" FLOW_REFUSE,
-	    [PASSO_READ_AXIS] = "axis",
-	    [PASSO_READ_CHANNEL] = "n",
-	    [PASSO_READ_AXES] = "n",
-	    [PASSO_READ_STEPS] = "n,..",
-	    [PASSO_READ_NUMBER] = "x",
-	    [PASSO_READ_SIGNED] = "x",
-	    [PASSO_READ_TIME] = "time",
-	    [PASSO_READ_PIN_TIME] = "time",
-	    [PASSO_READ_MICROSECONDS] = "time",
-	    [PASSO_READ_ALPHA] = "x",
-	    [PASSO_READ_DISTANCE] = "x,..",
-	    [PASSO_READ_PER_AXIS] = "x[,..]",
-	    [PASSO_READ_PROFILE] = PASSO_PROFILES_CHOICE,
-	    [PASSO_READ_SHAPE] = PASSO_PROFILES_CHOICE "|" PASSO_USER_PROFILE,
-	    [PASSO_READ_POINTS] = "n,..(16)",
-	};
-
 	return PLACEHOLDERS[reader];
 }

@@ -13,6 +13,9 @@ bool passo_value_read(
 /* Name of a flow. */
 const char *passo_value_flow(bool waits);
 
+/* Prints the word of a value that is one of some. */
+void passo_value_say(const struct passo_sink *sink, enum passo_reader reader, uint8_t choice);
+
 /* Placeholder of a value in the help. */
 const char *passo_value_placeholder(enum passo_reader reader);
 
