@@ -994,7 +994,7 @@ def test_lines_have_255_characters(bench: Bench) -> None:
         (
             "config x=5",
             "error: unknown key 'x'; known are clock_hz, hold_time, stop_time, flow, need_enable, baud, "
-            "spi_slow",
+            "spi_slow, input_filter, watchdog, watchdog_disable",
         ),
     ],
 )  # fmt: skip

@@ -96,10 +96,8 @@ void passo_commands_execute(struct passo_console *console, char *line)
 	    .console = console, .reading = &reading, .words = &words, .values = &values};
 	uint32_t channel;
 	const struct passo_command *command;
-	char *comment = strchr(line, '#');
 
-	if (comment)
-		*comment = '\0';
+	line[strcspn(line, "#")] = '\0';
 	if (!passo_words_split(&console->sink, line, &words))
 		return;
 	if (words.count == 0u) {
@@ -118,7 +116,8 @@ void passo_commands_execute(struct passo_console *console, char *line)
 		return;
 	}
 	words.count--;
-	memmove(&words.word[0], &words.word[1], words.count * sizeof words.word[0]);
+	for (unsigned i = 0; i < words.count; i++)
+		words.word[i] = words.word[i + 1u];
 	if (!find_channel(&reading, &words, passo_commands_channels(console), &channel))
 		return;
 	call.channel = &console->channel[channel];
