@@ -14,7 +14,7 @@ static void say_axes(const struct passo_sink *sink, const char *text, uint8_t ax
 	const char *before = text;
 
 	for (uint32_t axis = 0; axis < PASSO_AXES_MAX; axis++) {
-		if ((axes >> axis & 1u) == 0u)
+		if (((uint32_t)axes >> axis & 1u) == 0u)
 			continue;
 		passo_say(sink, "%s%u", before, axis);
 		before = ",";
@@ -35,7 +35,7 @@ static void say_levels(
 
 	for (unsigned i = 0; i < 4u; i++) {
 		for (uint32_t axis = 0; axis < PASSO_AXES_MAX; axis++) {
-			if ((levels[i].axes >> axis & 1u) == 0u)
+			if (((uint32_t)levels[i].axes >> axis & 1u) == 0u)
 				continue;
 			passo_say(sink, "%s%s:%u", before, levels[i].name, axis);
 			before = ",";

@@ -52,7 +52,7 @@ static enum passo_error set_inputs(struct passo_console_channel *channel)
 	if (!passo_has_inputs(passo))
 		return PASSO_OK;
 	for (uint8_t axis = 0; axis < passo_machine(passo)->axes && error == PASSO_OK; axis++) {
-		if ((channel->inputs_given >> axis & 1u) != 0u)
+		if (((uint32_t)channel->inputs_given >> axis & 1u) != 0u)
 			error = passo_commands_set_inputs(&channel->inputs[axis], passo, axis);
 	}
 	if (error == PASSO_OK && channel->probe != PASSO_LEVEL_NONE)
