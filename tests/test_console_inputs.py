@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: MIT
 """The console on a core with inputs: switches, e-stop, watchdog, home, probe, jog, trigger."""
 
+import re
+import subprocess
+import sys
 from collections.abc import Iterator
 
 import pytest
 from passo.machine import Switch
+from passo.toolchain import paths
 
-from tests.test_console import CLOCK_HZ, Bench
+from tests.test_console import CLOCK_HZ, Bench, passo_console
 
 HOME = "home axis=0 back_off=50 speed=5000 slow_speed=500 acceleration=200_000"
 JOG = "jog axis=0 speed=4000 acceleration=100_000"
@@ -324,3 +328,32 @@ def test_two_channels_home_each() -> None:
     bench.machine.set("estop_n", 1)
     bench.ask("run 0.01")
     assert bench.ask("clear") == "ok" and bench.ask("clear channel=1") == "ok"
+
+
+def test_the_session_in_the_documentation_is_real() -> None:
+    """What docs/console.md shows of the inputs, with the options that it shows."""
+    page = (paths.docs / "console.md").read_text(encoding="utf-8")
+    part = page.partition("## Inputs, home, probe, jog")[2]
+    command = re.search(r"```sh\npasso console (.*?)\n```", part)[1]
+    shown = re.search(r"```text\n(.*?)```", part, re.S)[1]
+    typed = "".join(f"{line}\n" for line in re.findall(r"^> (.*)$", shown, re.M))
+    assert typed.count("\n") > 12
+    assert passo_console(typed, *command.split()).partition("\n")[2] == shown
+
+
+def test_what_the_console_of_the_pc_refuses() -> None:
+    """Switches that cannot be, with what is wrong; pins that are not there."""
+    for options, problem in (
+        (["--switch", "home:0:..5"], "--switch needs --inputs"),
+        (["--inputs", "--switch", "home:4:..5"], "the core has no such axis"),
+        (["--inputs", "--switch", "home:0:5"], "a switch is PIN:AXIS:..POSITION"),
+    ):
+        words = [sys.executable, "-m", "passo.cli", "console", *options]
+        done = subprocess.run(words, input="", capture_output=True, text=True)
+        assert done.returncode != 0 and problem in done.stderr, done
+    bench = Bench(inputs=1)
+    for line in ("pin", "pin estop_n", "pin step 1", "pin home -1"):
+        assert bench.ask(line).startswith("error: pin needs a name and levels, ")
+    assert bench.ask("pin home 4") == "ok"
+    bench.ask("run 0.001")
+    assert bench.tell("inputs")["inputs"] == "home:2"
