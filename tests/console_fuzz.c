@@ -83,11 +83,11 @@ static void poke(struct passo_engine *engine)
 	static const enum passo_input PINS[] = {
 	    PASSO_INPUT_HOME, PASSO_INPUT_LIMIT_LOW, PASSO_INPUT_PROBE, PASSO_INPUT_ALARM};
 
-	if (draw(8) == 0)
+	if (draw(16) == 0)
 		passo_engine_set(engine, PICK(PINS), draw(2));
 	if (draw(20) == 0)
 		passo_engine_set(engine, PASSO_INPUT_ALARM, 0);
-	passo_engine_set(engine, PASSO_INPUT_ESTOP_N, draw(50) != 0);
+	passo_engine_set(engine, PASSO_INPUT_ESTOP_N, draw(200) != 0);
 }
 
 static void drain(struct passo_engine *engine)
