@@ -49,7 +49,7 @@ class Switch:
 
 
 def read_switch(text: str) -> Switch:
-    """A switch as users write it: home:0:..-500 is active at -500 and below, limit_high:1:9000.. from 9000 on."""
+    """A switch as users write it: home:0:..-500 is active up to -500, limit_high:1:9000.. from 9000 on."""
     match = SWITCH.fullmatch(text)
     if not match:
         raise ValueError(f"{text}: a switch is PIN:AXIS:..POSITION or PIN:AXIS:POSITION..")

@@ -45,7 +45,9 @@ class Terminal:
     ends what lets time pass.
     """
 
-    def __init__(self, engine: Engine | PairEngine | Machine, write: Callable[[str], object], keep: bool = False):
+    def __init__(
+        self, engine: Engine | PairEngine | Machine, write: Callable[[str], object], keep: bool = False
+    ):
         self.engine, self._write, self._keep = engine, write, keep
         self._events: list[np.ndarray] = []
         self._error: Exception | None = None

@@ -7,8 +7,6 @@
 #include "passo_number.h"
 #include "passo_plan.h"
 
-#define FLOW_WAIT "wait"
-#define FLOW_REFUSE "refuse"
 #define POINT_MAX ((1u << PASSO_SIGMOID_POINT_BITS) - 1u)
 
 static const char *const PROFILES[] = {
@@ -16,58 +14,6 @@ static const char *const PROFILES[] = {
     PASSO_PROFILES(NAME)
 #undef NAME
 };
-
-/* The value of a key in the help; from PASSO_READ_LEVEL on, all its words in the order of its numbers. */
-static const char *const PLACEHOLDERS[] = {
-    [PASSO_READ_NOTHING] = "name",
-    [PASSO_READ_WHOLE] = "n",
-    [PASSO_READ_FLAG] = "0|1",
-    [PASSO_READ_FLOW] = FLOW_WAIT "|" FLOW_REFUSE,
-    [PASSO_READ_AXIS] = "axis",
-    [PASSO_READ_CHANNEL] = "n",
-    [PASSO_READ_AXES] = "n",
-    [PASSO_READ_STEPS] = "n,..",
-    [PASSO_READ_NUMBER] = "x",
-    [PASSO_READ_SIGNED] = "x",
-    [PASSO_READ_TIME] = "time",
-    [PASSO_READ_PIN_TIME] = "time",
-    [PASSO_READ_MICROSECONDS] = "time",
-    [PASSO_READ_ALPHA] = "x",
-    [PASSO_READ_DISTANCE] = "x,..",
-    [PASSO_READ_PER_AXIS] = "x[,..]",
-    [PASSO_READ_PROFILE] = PASSO_PROFILES_CHOICE,
-    [PASSO_READ_SHAPE] = PASSO_PROFILES_CHOICE "|" PASSO_USER_PROFILE,
-    [PASSO_READ_POINTS] = "n,..(16)",
-    [PASSO_READ_INTEGER] = "n",
-    [PASSO_READ_LEVEL] = "none|active_high|active_low",
-    [PASSO_READ_SOURCE] = "none|limit_low|limit_high|home|probe|index",
-    [PASSO_READ_EDGE] = "rising|falling",
-    [PASSO_READ_ACTION] = "latch|soft_stop|hard_stop|end_endless",
-};
-
-/* The length of the first word of some. */
-static size_t word_length(const char *words)
-{
-	return strcspn(words, "|");
-}
-
-static bool read_choice(
-    const struct passo_reading *reading, const struct passo_key *key, const char *text, uint8_t *choice)
-{
-	const char *words = PLACEHOLDERS[key->reader];
-
-	for (*choice = 0;; (*choice)++) {
-		const size_t length = word_length(words);
-
-		if (strlen(text) == length && memcmp(text, words, length) == 0)
-			return true;
-		if (words[length] == '\0')
-			break;
-		words += length + 1u;
-	}
-	return passo_complain(
-	    reading->sink, "%s must be one of %s, not %q", key->name, PLACEHOLDERS[key->reader], text);
-}
 
 /* Removes the next item from a list. */
 static struct passo_item next_item(const char **list)
@@ -227,10 +173,11 @@ bool passo_value_read(
 		*(bool *)place = whole != 0u;
 		return true;
 	case PASSO_READ_FLOW:
-		if (strcmp(text, FLOW_WAIT) != 0 && strcmp(text, FLOW_REFUSE) != 0)
+		if (strcmp(text, PASSO_FLOW_WAIT) != 0 && strcmp(text, PASSO_FLOW_REFUSE) != 0)
 			return passo_complain(reading->sink,
-			    "%s must be " FLOW_WAIT " or " FLOW_REFUSE ", not %q", key->name, text);
-		*(bool *)place = strcmp(text, FLOW_WAIT) == 0;
+			    "%s must be " PASSO_FLOW_WAIT " or " PASSO_FLOW_REFUSE ", not %q", key->name,
+			    text);
+		*(bool *)place = strcmp(text, PASSO_FLOW_WAIT) == 0;
 		return true;
 	case PASSO_READ_AXIS:
 		if (!passo_number_whole(reading, key, all, 0, reading->axes - 1u, &whole))
@@ -271,28 +218,12 @@ bool passo_value_read(
 	case PASSO_READ_SOURCE:
 	case PASSO_READ_EDGE:
 	case PASSO_READ_ACTION:
-		return read_choice(reading, key, text, place);
+		return passo_value_choose(reading, key, text, place);
 	}
 	return false;
 }
 
 const char *passo_value_flow(bool waits)
 {
-	return waits ? FLOW_WAIT : FLOW_REFUSE;
-}
-
-void passo_value_say(const struct passo_sink *sink, enum passo_reader reader, uint8_t choice)
-{
-	const char *words = PLACEHOLDERS[reader];
-	size_t length;
-
-	for (length = word_length(words); choice > 0u; choice--, length = word_length(words))
-		words += length + 1u;
-	for (; length > 0u; length--, words++)
-		passo_say(sink, "%s", (const char[]){*words, '\0'});
-}
-
-const char *passo_value_placeholder(enum passo_reader reader)
-{
-	return PLACEHOLDERS[reader];
+	return waits ? PASSO_FLOW_WAIT : PASSO_FLOW_REFUSE;
 }

@@ -6,9 +6,16 @@
 
 #include "passo_keys.h"
 
+#define PASSO_FLOW_WAIT "wait"
+#define PASSO_FLOW_REFUSE "refuse"
+
 /* Reads a value into its member of a struct. Prints an error and returns false if it is invalid. */
 bool passo_value_read(
     struct passo_reading *reading, const struct passo_key *key, const char *text, void *values);
+
+/* Reads a value that is one of some words. */
+bool passo_value_choose(
+    const struct passo_reading *reading, const struct passo_key *key, const char *text, uint8_t *choice);
 
 /* Name of a flow. */
 const char *passo_value_flow(bool waits);
