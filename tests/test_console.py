@@ -844,7 +844,7 @@ def test_help_knows_every_command(bench: Bench) -> None:
     bench.terminal.line("help")
     names = re.findall(r"^  (\w+): ", bench.take(), re.M)
     assert len(names) > 20
-    for name in set(names) - {"run", "wait"}:
+    for name in set(names) - {"run", "wait", "pin"}:
         bench.terminal.line(f"help {name}")
         assert bench.take().startswith(f"  {name}")
     assert bench.ask("help nothing") == "error: unknown command 'nothing'"
