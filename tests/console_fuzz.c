@@ -17,19 +17,26 @@
 
 static const char *const WORDS[] = {"move", "turn", "rpm", "hold", "resume", "override", "stop", "abort",
     "clear", "status", "position", "angle", "enable", "disable", "zero", "sync", "start", "config", "table",
-    "open", "version", "help", "bla", "steps", "profile", "total_time", "ramp_time", "start_speed", "speed",
+    "open", "version", "help", "input", "inputs", "home", "probe", "jog", "jog_speed", "jog_cancel",
+    "trigger", "wait_trigger", "bla", "steps", "profile", "total_time", "ramp_time", "start_speed", "speed",
     "stop_speed", "acceleration", "deceleration", "jerk", "method", "axis", "axes", "steps_per_turn", "rpm",
     "top_rpm", "minimum_rpm", "backwards", "distance", "feed", "steps_per_mm", "accelerate_time",
     "decelerate_time", "alpha", "row", "points", "percent", "step_high", "step_low", "dir_setup", "dir_hold",
     "both_edges", "steps_per_unit", "clock_hz", "hold_time", "stop_time", "flow", "need_enable", "baud",
-    "spi_slow", "on", "command", "channel", "channel"};
+    "spi_slow", "on", "command", "channel", "channel", "limit_low", "limit_high", "home", "alarm",
+    "limit_soft", "alarm_disables", "clear", "source", "edge", "action", "timeout", "back_off", "pull_off",
+    "slow_speed", "position", "away", "optional", "input_filter", "watchdog", "watchdog_disable"};
+
+#define COMMANDS 32u /* the first words; the last of them is none */
 
 static const char *const VALUES[] = {"0", "1", "-1", "5", "50", "100", "3.5", "0.01", "1e-3", "2us",
     "7clocks", "10ms", "wait", "refuse", "200,-100", "1,2,3,4", "1,2,3,4,5,6,7,8,9", "20_000", "1e9",
     "4294967295", "4294967296", "1e99", "0.00000000000000000000000000000001", "linear", "cosine", "sigmoid",
     "jerk", "user", "in_time", "by_speed", "below_speed", "at_speed", "axes", "turn", "straight",
     "-2147483648", "2147483647", "1073741823", "-1073741824", "", ",", "1,,2", "x", "-", "1e",
-    "0,100,200,300,400,500,600,700,800,900,1000,1100,1200,1300,1400,1500", "1600", "=", "#"};
+    "0,100,200,300,400,500,600,700,800,900,1000,1100,1200,1300,1400,1500", "1600", "=", "#", "none",
+    "active_high", "active_low", "home", "probe", "limit_low", "rising", "falling", "soft_stop",
+    "end_endless"};
 
 #define LONG_MOVE "move steps=20 profile=linear total_time=0.05 ramp_time=10ms"
 
@@ -69,6 +76,19 @@ static uint32_t draw(uint32_t below)
 }
 
 #define PICK(list) ((list)[draw(sizeof(list) / sizeof(list)[0])])
+
+/* Switches of some axes, a drive's alarm, e-stop; mostly all is well. */
+static void poke(struct passo_engine *engine)
+{
+	static const enum passo_input PINS[] = {
+	    PASSO_INPUT_HOME, PASSO_INPUT_LIMIT_LOW, PASSO_INPUT_PROBE, PASSO_INPUT_ALARM};
+
+	if (draw(16) == 0)
+		passo_engine_set(engine, PICK(PINS), draw(2));
+	if (draw(20) == 0)
+		passo_engine_set(engine, PASSO_INPUT_ALARM, 0);
+	passo_engine_set(engine, PASSO_INPUT_ESTOP_N, draw(200) != 0);
+}
 
 static void drain(struct passo_engine *engine)
 {
@@ -133,7 +153,7 @@ static size_t make_line(char *line)
 	} else {
 		uint32_t words = draw(8);
 
-		length = (size_t)sprintf(line, "%s", kind < 9 ? WORDS[draw(23)] : "");
+		length = (size_t)sprintf(line, "%s", kind < 9 ? WORDS[draw(COMMANDS)] : "");
 		for (uint32_t i = 0; i < words; i++)
 			length += (size_t)sprintf(
 			    line + length, draw(8) ? " %s=%s" : " %s %s", PICK(WORDS), PICK(VALUES));
@@ -205,7 +225,8 @@ int main(int count, char **arguments)
 							       .axes = (uint8_t)(1u + draw(8)),
 							       .tick_log2 = 7,
 							       .line_queue_log2 = 4,
-							       .ramp_queue_log2 = 4},
+							       .ramp_queue_log2 = 4,
+							       .inputs = (uint8_t)draw(2)},
 		    .clock_hz = CLOCK_HZ,
 		    .spi_half_period = 2};
 		struct passo_terminal *terminal;
@@ -224,6 +245,7 @@ int main(int count, char **arguments)
 				fill = 0;
 			length = fill < FILLS ? (size_t)sprintf(line, "%s", FILL[fill]) : make_line(line);
 
+			poke(bench.engine);
 			passo_terminal_type(terminal, line, length);
 			if (bench.length != 0) {
 				fprintf(stderr, "an answer before the end of the line: %s\n", bench.said);

@@ -7,7 +7,7 @@ import re
 import subprocess
 import sys
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
@@ -19,6 +19,7 @@ import pytest
 from passo import registers as r
 from passo.build import Parameters
 from passo.engine import model_engine, rtl_engine
+from passo.machine import Machine, Switch
 from passo.move_file import read_channels, read_moves
 from passo.move_forms import FORMS
 from passo.moves import MoveFile, MoveFileError, q32
@@ -37,10 +38,18 @@ ZEROS = ",".join("0" * 16)
 class Bench:
     """A terminal that records its output."""
 
-    def __init__(self, clock_hz: int = CLOCK_HZ, axes: int = 4, channels: int = 1):
+    def __init__(
+        self,
+        clock_hz: int = CLOCK_HZ,
+        axes: int = 4,
+        channels: int = 1,
+        inputs: int = 0,
+        switches: Sequence[Switch] = (),
+    ):
         self.said: list[str] = []
-        self.engine = model_engine(Parameters(channels=channels, axes=axes), clock_hz)
-        self.terminal = Terminal(self.engine, self.said.append, keep=True)
+        self.engine = model_engine(Parameters(channels=channels, axes=axes, inputs=inputs), clock_hz)
+        self.machine = Machine(self.engine, switches)  # only with inputs
+        self.terminal = Terminal(self.machine if inputs else self.engine, self.said.append, keep=True)
         self.greeting = self.take()
 
     def take(self) -> str:
@@ -835,7 +844,7 @@ def test_help_knows_every_command(bench: Bench) -> None:
     bench.terminal.line("help")
     names = re.findall(r"^  (\w+): ", bench.take(), re.M)
     assert len(names) > 20
-    for name in set(names) - {"run", "wait"}:
+    for name in set(names) - {"run", "wait", "pin"}:
         bench.terminal.line(f"help {name}")
         assert bench.take().startswith(f"  {name}")
     assert bench.ask("help nothing") == "error: unknown command 'nothing'"
@@ -994,7 +1003,7 @@ def test_lines_have_255_characters(bench: Bench) -> None:
         (
             "config x=5",
             "error: unknown key 'x'; known are clock_hz, hold_time, stop_time, flow, need_enable, baud, "
-            "spi_slow",
+            "spi_slow, input_filter, watchdog, watchdog_disable",
         ),
     ],
 )  # fmt: skip

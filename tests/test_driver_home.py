@@ -201,6 +201,20 @@ def test_what_is_refused() -> None:
     assert not driver.engine.positions.any()
 
 
+def test_no_soft_stop_without_its_time() -> None:
+    """After a reset of the core a soft stop would be a blow: home and probe wait until its time is set."""
+    driver = open_driver(machine_of())
+    driver.call("configure_inputs", 0, struct("input_config", **FITTED))
+    driver.call("configure_probe", False)
+    assert run_home(driver, home()) == "NO_STOP_TIME"
+    assert error_of(driver, "probe", probe([0, 0, -700, 0])) == "NO_STOP_TIME"
+    driver.call("configure_motion", CLOCK_HZ // 500, CLOCK_HZ // 500, 0)
+    assert run_home(driver, home(distance=-500)) == "SWITCH_MISSED"
+    driver.open()
+    driver.call("configure_inputs", 0, struct("input_config", **FITTED))
+    assert run_home(driver, home()) == "NO_STOP_TIME"
+
+
 def test_while_it_is_under_way() -> None:
     """Hold and resume work, other motions and triggers wait; a stop ends it, for good."""
     machine = machine_of(Switch("home", 0, -4000))
@@ -341,6 +355,7 @@ def test_a_probe_that_is_wrong_from_the_start() -> None:
     driver = open_driver(machine)
     assert error_of(driver, "probe", probe([0, 0, -700, 0])) == "NO_SWITCH"
     driver.call("configure_probe", False)
+    driver.call("configure_motion", CLOCK_HZ // 500, CLOCK_HZ // 500, 0)
     assert error_of(driver, "probe", probe([0, 0, 700, 0], away=True)) == "SWITCH_LEVEL"
     machine.set("probe", 1)
     machine.run(10_000)

@@ -190,6 +190,38 @@ def test_flood_of_lines_loses_no_answer() -> None:
     assert len(answers) == 200 or lost
 
 
+def test_the_core_hears_from_a_board_that_has_much_to_say() -> None:
+    """The watchdog of a core with inputs, half a second, is fed between long answers at the slowest rate."""
+    board = Board(model_engine(Parameters(inputs=1), HZ), fast=False)
+    board.must("jog axis=0 speed=5000 acceleration=100000")
+    board.type("help\rhelp move\rhelp\rhelp config\r" * 2)
+    board.run(3.5)
+    assert board.output.count("  move [method=in_time]") == 2
+    status = board.must("status")
+    assert "state=RUN" in status and "fault=OK" in status
+    board.must("jog_cancel")
+    board.run(0.2)
+    assert "state=IDLE cause=NONE" in board.must("status")
+
+
+def test_home_by_the_firmware() -> None:
+    """A switch that comes: its line is answered when the axis is home."""
+    engine = model_engine(Parameters(inputs=1), HZ)
+    board = Board(engine)
+    board.must("config stop_time=2ms")
+    board.must("input axis=1 home=active_low")
+    engine.set("home", 2)
+    board.type("home axis=1 distance=-2000 back_off=20 speed=5000 slow_speed=500 acceleration=99999\r")
+    since = len(board.output)
+    board.run(0.1)
+    for level, seconds in ((0, 0.02), (2, 0.06), (0, 0.05)):  # found, backed off, found again
+        assert "ok" not in board.output[since:] and "error" not in board.output[since:]
+        engine.set("home", level)
+        board.run(seconds)
+    assert "ok" in board.output[since:]
+    assert "homed=1" in board.must("status")
+
+
 def test_a_move_waits_for_room() -> None:
     """Each line after the answer of the one before: none is refused, and the motion does not pause."""
     board = model_board()

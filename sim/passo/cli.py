@@ -75,6 +75,15 @@ def _parser() -> argparse.ArgumentParser:
     console.add_argument(
         "--clock", type=int, default=100_000_000, metavar="HZ", help="clock of the core (default 100000000)"
     )
+    console.add_argument("--inputs", action="store_true", help="the core has inputs (docs/machine.md)")
+    console.add_argument(
+        "--switch",
+        action="append",
+        default=[],
+        metavar="PIN:AXIS:..POSITION",
+        help="simulate a machine with a switch: home:0:..-500 is active at -500 steps and below, "
+        "limit_high:1:9000.. from 9000 on, probe:2:..-300; repeatable, with --inputs",
+    )
     console.add_argument("--grbl", action="store_true", help="speak the protocol of grbl (docs/gcode.md)")
     console.add_argument("--machine", type=Path, metavar="MACHINE.toml", help="of --grbl: axes and limits")
     console.add_argument("--pty", type=Path, metavar="LINK", help="of --grbl: pseudo-terminal, in real time")
@@ -162,6 +171,7 @@ def _console(options: argparse.Namespace) -> int:
     if options.grbl or options.pty or options.machine:
         return _grbl(options)
     from passo.build import Parameters
+    from passo.machine import Machine, read_switch
     from passo.move_forms import WHOLE_MAX
     from passo.moves import AXES_MAX, CHANNELS_MAX
     from passo.run import open_engine
@@ -174,10 +184,18 @@ def _console(options: argparse.Namespace) -> int:
         raise BadInputError(f"--axes must be 1 to {AXES_MAX}, --clock 1 to {WHOLE_MAX}")
     if not 1 <= options.channels <= CHANNELS_MAX:
         raise BadInputError(f"--channels must be 1 to {CHANNELS_MAX}")
-    parameters = Parameters(channels=options.channels, axes=options.axes)
+    try:
+        switches = [read_switch(text) for text in options.switch]
+    except ValueError as error:
+        raise BadInputError(f"--switch {error}") from None
+    if switches and not options.inputs:
+        raise BadInputError("--switch needs --inputs")
+    if any(switch.axis >= options.channels * options.axes for switch in switches):
+        raise BadInputError("--switch: the core has no such axis")
+    parameters = Parameters(channels=options.channels, axes=options.axes, inputs=int(options.inputs))
     with (
         open_engine(options.engine, parameters, options.clock) as engine,
-        Terminal(engine, write) as terminal,
+        Terminal(Machine(engine, switches) if switches else engine, write) as terminal,
     ):
         if sys.stdin.isatty() and sys.stdout.isatty():
             from passo.prompt import GREETING, typed

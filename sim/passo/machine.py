@@ -2,14 +2,18 @@
 """A simulated machine at the pins of an engine: axes that follow STEP and DIR, and their switches."""
 
 import random
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
+from passo.engine import EVENT
+
 GRAINS_PER_S = 100_000  # how often the switches are looked at
 RESTING_GRAINS = 10  # as many at once while no pin changes
+SWITCH = re.compile(r"(limit_low|limit_high|home|alarm|probe):(\d+):(?:\.\.(-?\d+)|(-?\d+)\.\.)")
 
 
 @dataclass
@@ -44,6 +48,15 @@ class Switch:
         return (rng.random() < 0.5 if chatters else self.active) != self.inverted
 
 
+def read_switch(text: str) -> Switch:
+    """A switch as users write it: home:0:..-500 is active up to -500, limit_high:1:9000.. from 9000 on."""
+    match = SWITCH.fullmatch(text)
+    if not match:
+        raise ValueError(f"{text}: a switch is PIN:AXIS:..POSITION or PIN:AXIS:POSITION..")
+    pin, axis, below, above = match.groups()
+    return Switch(pin, int(axis), int(below or above), above=below is None)
+
+
 class Machine:
     """An engine with a machine at it: whatever has the interface of passo.engine.Engine.
 
@@ -66,6 +79,7 @@ class Machine:
         self._step = np.uint64(0)
         self._rests = False  # nothing has changed at the last look
         self._levels: dict[str, int] = {}
+        self._events: list[np.ndarray] = []  # for drain()
         self._look()
 
     @property
@@ -81,6 +95,11 @@ class Machine:
     def set(self, pin: str, levels: int) -> None:
         """Set the levels of an input pin that has no switch."""
         self.engine.set(pin, levels)
+
+    def drain(self) -> np.ndarray:
+        """The pin events since the last call, as those of the engine."""
+        events, self._events = self._events, []
+        return np.concatenate([np.empty(0, EVENT), *events])
 
     def transfer(self, mosi: Sequence[int], gap: int = 64) -> list[int]:
         """One chip select."""
@@ -101,11 +120,12 @@ class Machine:
     def _look(self) -> None:
         events = self.engine.drain()
         if len(events):
+            self._events.append(events)
             self._follow(events)
         levels = dict.fromkeys((switch.pin for switch in self.switches), 0)
         for switch in self.switches:
             switch.look(int(self.positions[switch.axis]), self.clock)
-            at = 0 if switch.pin == "probe" else switch.axis
+            at = switch.axis // self.parameters.axes if switch.pin == "probe" else switch.axis
             levels[switch.pin] |= switch.level(self.clock, self._rng) << at
         for pin, share in self.noise.items():
             if self._rng.random() < share:

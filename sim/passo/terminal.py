@@ -15,7 +15,9 @@ import numpy as np
 
 from passo.console import passing
 from passo.engine import EVENT, Engine, PairEngine
+from passo.machine import Machine
 from passo.native import console, ffi
+from passo.pins import INPUTS
 
 GAP, GAP_PER_WORD = 64, 4  # clocks after a frame
 PATIENCE = 20  # rounds that a motion may be held or wait for sync
@@ -24,10 +26,14 @@ MICROSECONDS = 1_000_000
 RUN_MAX = 3600  # seconds
 DECIMAL = re.compile(r"\d{1,6}(\.\d{0,9})?")
 
+PINS = [pin.name for pin in INPUTS if pin.name == "sync" or pin.parameter == "inputs"]
+LEVELS = re.compile(r"\d{1,6}")
+
 STANDS = "the motion does not go on: it is held, or waits for the sync input"
 
 HELP = """  run: let seconds of simulated time pass (only in the simulation)
   wait: let time pass until nothing is queued or moves (only in the simulation)
+  pin: set the levels of an input of the core, a bit per axis (only in the simulation)
   quit, exit: end the simulation
 """
 
@@ -39,7 +45,9 @@ class Terminal:
     ends what lets time pass.
     """
 
-    def __init__(self, engine: Engine | PairEngine, write: Callable[[str], object], keep: bool = False):
+    def __init__(
+        self, engine: Engine | PairEngine | Machine, write: Callable[[str], object], keep: bool = False
+    ):
         self.engine, self._write, self._keep = engine, write, keep
         self._events: list[np.ndarray] = []
         self._error: Exception | None = None
@@ -81,13 +89,15 @@ class Terminal:
         self._check()
 
     def line(self, text: str) -> None:
-        """Execute a line: a command of the simulation (run, wait) or of the console."""
+        """Execute a line: a command of the simulation (run, wait, pin) or of the console."""
         words = words_of(text)
         self.interrupted = False
         if words[:1] == ["wait"]:
             self._answer(self.wait() if len(words) == 1 else "wait takes no keys")
         elif words[:1] == ["run"]:
             self._answer(self._run(words[1:]))
+        elif words[:1] == ["pin"]:
+            self._answer(self._pin(words[1:]))
         else:
             if words in (["help"], ["?"]):
                 self._write(HELP)
@@ -161,6 +171,12 @@ class Terminal:
         if len(words) != 1 or not DECIMAL.fullmatch(words[0]) or Decimal(words[0]) > RUN_MAX:
             return f"run needs seconds, at most {RUN_MAX}"
         return self.run(int(Decimal(words[0]) * MICROSECONDS))
+
+    def _pin(self, words: list[str]) -> str | None:
+        if len(words) != 2 or words[0] not in PINS or not LEVELS.fullmatch(words[1]):
+            return f"pin needs a name and levels, such as pin estop_n 0; names are {', '.join(PINS)}"
+        self.engine.set(words[0], int(words[1]))
+        return None
 
     def _poll(self) -> int:
         """One round of the console's main loop; return the enum passo_terminal_status."""

@@ -22,6 +22,15 @@ struct passo_values {
 	uint32_t clock_hz, baud, hold_microseconds, stop_microseconds;
 	bool flow_waits, need_enable;
 	struct passo_axis_config config;
+	/* inputs, home, probe, jog */
+	struct passo_console_inputs inputs;
+	uint8_t probe, source, edge, action; /* PASSO_READ_LEVEL, _SOURCE, ... */
+	bool clear, backwards, away, optional;
+	uint32_t filter_microseconds, watchdog_microseconds, disable_microseconds, timeout_microseconds;
+	int32_t steps[PASSO_AXES_MAX];
+	int32_t distance, position;
+	uint32_t back_off, pull_off;
+	uint64_t speed, slow_speed, top_speed;
 };
 
 /* Arguments of a command. */
@@ -49,11 +58,21 @@ struct passo_call {
 
 /* Prints "ok", or the error. Returns whether there was none. */
 bool passo_answer(const struct passo_call *call, enum passo_error error);
+/* Finds axes that are not enabled. If enabled drives are needed, prints an error and returns false. */
+bool passo_check_enabled(const struct passo_call *call, uint8_t axes, uint8_t *off);
+/* Notes once for each axis that it moves without its drive. */
+void passo_note_disabled(const struct passo_call *call, uint8_t off);
+/* Prints levels of inputs, why the channel is stopped, and which axes are homed. */
+void passo_say_inputs(const struct passo_call *call, const struct passo_readings *now);
+/* Prints what a trigger has latched. */
+void passo_say_trigger(
+    const struct passo_sink *sink, const struct passo *passo, const struct passo_trigger_report *report);
 /* Converts Q31.32 to thousandths, rounded to nearest. */
 int64_t passo_thousandths(int64_t value);
 
 /* Moves and rotation: passo_move_commands.c. Control and readings: passo_motion_commands.c. Settings:
- * passo_settings_commands.c. `open`, and `clear`, which may have to apply them: passo_opening.c. */
+ * passo_settings_commands.c. `open`, and `clear`, which may have to apply them: passo_opening.c. Inputs:
+ * passo_input_commands.c. Home, probe, jog: passo_task_commands.c. */
 bool passo_run_move(const struct passo_call *call);
 bool passo_run_turn(const struct passo_call *call);
 bool passo_run_rpm(const struct passo_call *call);
@@ -74,7 +93,17 @@ bool passo_run_sync(const struct passo_call *call);
 bool passo_run_config(const struct passo_call *call);
 bool passo_run_table(const struct passo_call *call);
 bool passo_run_open(const struct passo_call *call);
+bool passo_run_input(const struct passo_call *call);
+bool passo_run_inputs(const struct passo_call *call);
+bool passo_run_trigger(const struct passo_call *call);
+bool passo_run_wait_trigger(const struct passo_call *call);
+bool passo_run_home(const struct passo_call *call);
+bool passo_run_probe(const struct passo_call *call);
+bool passo_run_jog(const struct passo_call *call);
+bool passo_run_jog_speed(const struct passo_call *call);
+bool passo_run_jog_cancel(const struct passo_call *call);
 bool passo_run_version(const struct passo_call *call);
+bool passo_run_help(const struct passo_call *call);
 /* Prints the keys of `config`. */
 void passo_config_help(const struct passo_sink *sink);
 

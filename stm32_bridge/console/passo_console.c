@@ -12,6 +12,7 @@
 #define DELETE 0x7F
 
 #define HOLD_MICROSECONDS 50000u
+#define FILTER_MICROSECONDS 20u
 
 void passo_console_start(struct passo_console *console, const struct passo_sink *sink,
     const struct passo_hardware *hardware, const struct passo_console_board *board, uint32_t clock_hz,
@@ -25,8 +26,9 @@ void passo_console_start(struct passo_console *console, const struct passo_sink 
 	console->clock_hz = clock_hz;
 	console->baud = baud;
 	console->hold_microseconds = console->stop_microseconds = HOLD_MICROSECONDS;
+	console->filter_microseconds = FILTER_MICROSECONDS;
 	console->flow_waits = true;
-	passo_commands_reset_axes(console);
+	passo_commands_reset_times(console);
 	passo_say(sink, "note: Passo console " PASSO_RELEASE "; help lists the commands\n");
 	passo_say_error_note(console, passo_commands_open(console));
 }

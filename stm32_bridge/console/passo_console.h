@@ -3,14 +3,16 @@
  *
  * Every input line is answered by one line that starts with `ok` or `error:`; before it, `help` prints lines
  * that start with two spaces. Lines that start with `note:` are unsolicited. A move that finds the queues
- * full is answered when it is queued or can no longer be; meanwhile only some commands are executed.
- * Portable: the board, or a simulation, provides the hardware functions of the link and a text output.
+ * full is answered when it is queued or can no longer be; home and probe when they are over; wait_trigger
+ * when the trigger has fired. Meanwhile only some commands are executed. Portable: the board, or a
+ * simulation, provides the hardware functions of the link and a text output.
  */
 #ifndef PASSO_CONSOLE_H
 #define PASSO_CONSOLE_H
 
 #include "passo.h"
 #include "passo_forms.h"
+#include "passo_home.h"
 
 /* Maximum length of a line, without its end. */
 #define PASSO_LINE_MAX 255u
@@ -31,6 +33,21 @@ struct passo_console_board {
 	void *context;
 };
 
+/* Inputs of an axis; enum passo_level. */
+struct passo_console_inputs {
+	uint8_t limit_low, limit_high, home, alarm;
+	bool limit_soft, alarm_soft, alarm_disables;
+};
+
+/* What a line waits for before it is answered. */
+enum passo_awaited {
+	PASSO_AWAITS_NOTHING,
+	PASSO_AWAITS_ROOM, /* a move, for room in the queues */
+	PASSO_AWAITS_HOME, /* its end */
+	PASSO_AWAITS_PROBE,
+	PASSO_AWAITS_TRIGGER
+};
+
 /* A channel of the core. */
 struct passo_console_channel {
 	struct passo passo;
@@ -40,6 +57,10 @@ struct passo_console_channel {
 	uint8_t enabled;        /* bit i: axis i was enabled */
 	uint8_t announced;      /* bit i: a note said that axis i is not enabled */
 	struct passo_axis_config axis[PASSO_AXES_MAX]; /* times in clocks */
+	struct passo_console_inputs inputs[PASSO_AXES_MAX];
+	uint8_t inputs_given; /* bit i: those of axis i were configured */
+	uint8_t probe;        /* enum passo_level */
+	struct passo_home home;
 };
 
 struct passo_console {
@@ -50,6 +71,7 @@ struct passo_console {
 	struct passo_console_channel channel[PASSO_CHANNELS_MAX];
 	uint32_t clock_hz, hold_microseconds, stop_microseconds, baud;
 	uint32_t tried_at; /* microseconds: time of the last attempt to open the core */
+	uint32_t filter_microseconds, watchdog_microseconds, disable_microseconds; /* of the inputs */
 	bool spi_slow;
 	bool opened;
 	enum passo_error absent; /* why it is not */
@@ -57,11 +79,12 @@ struct passo_console {
 	bool need_enable; /* moves of axes that are not enabled are refused */
 	/* flow control */
 	bool flow_waits;                   /* moves wait for room in the queues; otherwise they are refused */
-	bool waits;                        /* one does */
-	char waiting[PASSO_LINE_MAX + 1u]; /* its line */
+	enum passo_awaited waits;          /* what the present line waits for */
+	char waiting[PASSO_LINE_MAX + 1u]; /* the line */
 	uint8_t waiting_channel;
-	uint8_t seen_moving;         /* bit i: channel i was moving at its last attempt */
-	enum passo_state seen_state; /* the same of its channel */
+	uint32_t waits_since, waits_most; /* microseconds, for the trigger */
+	uint8_t seen_moving;              /* bit i: channel i was moving at its last attempt */
+	enum passo_state seen_state;      /* the same of its channel */
 	uint16_t seen_lines, seen_ramps;
 	/* the incomplete input line */
 	char line[PASSO_LINE_MAX + 1u];
@@ -79,8 +102,9 @@ void passo_console_start(struct passo_console *console, const struct passo_sink 
 /* Processes a byte of input. The end of a line executes and answers it. */
 void passo_console_receive(struct passo_console *console, char byte);
 
-/* Call it continuously; at most one frame per call and channel. Reports an error in a note, once while it
- * persists. A core that did not answer at the start is tried again twice a second. */
+/* Call it continuously, after each line too, or the watchdog of a core with inputs stops the motion; at most
+ * one frame per call and channel, and one more while a line waits for the trigger. Reports an error in a
+ * note, once while it persists. A core that did not answer at the start is tried again twice a second. */
 void passo_console_poll(struct passo_console *console);
 
 /* True if no motion is running or queued, or if there is no core. */
@@ -90,7 +114,7 @@ bool passo_console_is_idle(const struct passo_console *console);
  * waits for its start. */
 bool passo_console_stands(const struct passo_console *console);
 
-/* True while a move waits for room and its line is not answered. */
+/* True while a line waits and is not answered. */
 bool passo_console_owes(const struct passo_console *console);
 
 /* True if the core is open and has no fault. */

@@ -62,6 +62,13 @@ static bool is_told(
 	return told;
 }
 
+/* The line that waits for this channel is answered with its error. */
+static bool is_answer(const struct passo_console *console, unsigned number)
+{
+	return (console->waits == PASSO_AWAITS_HOME || console->waits == PASSO_AWAITS_PROBE)
+	    && console->waiting_channel == number && !insists(&console->channel[number]);
+}
+
 static void note_error(struct passo_console *console, unsigned number, enum passo_error error)
 {
 	if (is_several(console) && !is_of_link(error) && error != PASSO_ERROR_CORE_RESET)
@@ -99,9 +106,10 @@ static void look_at_channel(struct passo_console *console, unsigned number)
 	enum passo_error error = passo_poll(&channel->passo);
 
 	if (error != PASSO_OK) {
-		if (!is_told(console, channel, error))
+		if (!is_told(console, channel, error) && !is_answer(console, number))
 			note_error(console, number, error);
 		channel->noted = error;
+		passo_commands_see(console, channel, error);
 	} else if (now->frames != before.frames && bad_frames(now) == bad_frames(&before)
 	           && !insists(channel)) {
 		if (is_of_wire(channel->noted))
@@ -136,15 +144,15 @@ static uint8_t moving_channels(const struct passo_console *console)
 	return found;
 }
 
-/* Something has changed since the last attempt to queue the waiting move. */
+/* Something has changed since the last attempt to queue the waiting move. Other lines are not attempts. */
 static bool may_go_on(const struct passo_console *console)
 {
 	const struct passo_console_channel *channel = &console->channel[console->waiting_channel];
 	const struct passo_snapshot *now = passo_snapshot(&channel->passo);
 
-	return channel->noted != PASSO_OK || moving_channels(console) != console->seen_moving
-	    || now->state != console->seen_state || now->line_room != console->seen_lines
-	    || now->ramp_room != console->seen_ramps;
+	return console->waits != PASSO_AWAITS_ROOM || channel->noted != PASSO_OK
+	    || moving_channels(console) != console->seen_moving || now->state != console->seen_state
+	    || now->line_room != console->seen_lines || now->ramp_room != console->seen_ramps;
 }
 
 static void look_at_channels(struct passo_console *console)

@@ -35,8 +35,17 @@ enum passo_reader {
 	PASSO_READ_PER_AXIS,     /* uint64_t in each passo_axis_limits: one number for all axes, or a list */
 	PASSO_READ_PROFILE,      /* enum passo_profile */
 	PASSO_READ_SHAPE,        /* the same, or a user-defined shape */
-	PASSO_READ_POINTS        /* uint16_t[16] */
+	PASSO_READ_POINTS,       /* uint16_t[16] */
+	PASSO_READ_INTEGER,      /* int32_t, of as many steps as a move can have */
+	/* uint8_t: which of some words */
+	PASSO_READ_LEVEL,  /* enum passo_level */
+	PASSO_READ_SOURCE, /* enum passo_trigger_source */
+	PASSO_READ_EDGE,   /* 0 rising, 1 falling */
+	PASSO_READ_ACTION  /* enum passo_trigger_action */
 };
+
+/* Words of PASSO_READ_LEVEL: how an input is connected. */
+enum passo_level { PASSO_LEVEL_NONE, PASSO_LEVEL_HIGH, PASSO_LEVEL_LOW };
 
 struct passo_key {
 	const char *name;

@@ -89,17 +89,24 @@ bool passo_run_status(const struct passo_call *call)
 {
 	static const char *const CAUSES[] = PASSO_CAUSE_NAMES;
 	struct passo_console *console = call->console;
+	struct passo *passo = &call->channel->passo;
 	struct passo_snapshot now;
+	struct passo_readings inputs;
+	enum passo_error error = passo_read_state(passo, &now);
 
-	if (!passo_answer(call, passo_read_state(&call->channel->passo, &now)))
+	if (error == PASSO_OK && passo_has_inputs(passo))
+		error = passo_read_inputs(passo, &inputs);
+	if (!passo_answer(call, error))
 		return false;
 	passo_say(&console->sink, " state=%s cause=%s moving=%u rate=%m", passo_state_name(now.state),
-	    now.cause < PASSO_COUNT(CAUSES) ? CAUSES[now.cause] : "?",
-	    (uint32_t)passo_is_moving(&call->channel->passo), (int64_t)now.rate * 100000 / PASSO_RATE_FULL);
+	    now.cause < PASSO_COUNT(CAUSES) ? CAUSES[now.cause] : "?", (uint32_t)passo_is_moving(passo),
+	    (int64_t)now.rate * 100000 / PASSO_RATE_FULL);
 	passo_say(&console->sink, " lines=%u ramps=%u drained=%u overrun=%u fault=%s retries=%u",
 	    (uint32_t)now.line_room, (uint32_t)now.ramp_room, (uint32_t)now.drained, (uint32_t)now.overrun,
-	    passo_error_name(passo_fault(&call->channel->passo)), console->host.counters.retries);
-	passo_say(&console->sink, " waiting=%u", (uint32_t)console->waits);
+	    passo_error_name(passo_fault(passo)), console->host.counters.retries);
+	passo_say(&console->sink, " waiting=%u", (uint32_t)(console->waits != PASSO_AWAITS_NOTHING));
+	if (passo_has_inputs(passo))
+		passo_say_inputs(call, &inputs);
 	if (console->board.lost_bytes)
 		passo_say(
 		    &console->sink, " lost_bytes=%u", console->board.lost_bytes(console->board.context));

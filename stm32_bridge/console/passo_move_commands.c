@@ -4,8 +4,7 @@
 #include "passo_call.h"
 #include "passo_commands.h"
 
-/* Finds axes that are not enabled. If enabled drives are needed, prints an error and returns false. */
-static bool check_enabled(const struct passo_call *call, uint8_t axes, uint8_t *off)
+bool passo_check_enabled(const struct passo_call *call, uint8_t axes, uint8_t *off)
 {
 	uint32_t axis = 0;
 
@@ -17,8 +16,7 @@ static bool check_enabled(const struct passo_call *call, uint8_t axes, uint8_t *
 	return passo_complain(&call->console->sink, "NOT_ENABLED: axis %u is not enabled", axis);
 }
 
-/* Notes once for each axis that it moves without its drive. */
-static void note_disabled(const struct passo_call *call, uint8_t off)
+void passo_note_disabled(const struct passo_call *call, uint8_t off)
 {
 	const uint32_t news = off & (uint8_t)~call->channel->announced;
 
@@ -69,13 +67,13 @@ bool passo_run_move(const struct passo_call *call)
 	uint8_t off;
 
 	if (!passo_forms_read(call->reading, call->words, &console->table, &move)
-	    || !check_enabled(call, passo_forms_axes(&move), &off))
+	    || !passo_check_enabled(call, passo_forms_axes(&move), &off))
 		return false;
 	error = passo_forms_queue(&call->channel->passo, &move);
 	if (can_wait(call, error)) {
 		const struct passo_snapshot *seen = passo_snapshot(&call->channel->passo);
 
-		console->waits = true;
+		console->waits = PASSO_AWAITS_ROOM;
 		console->waiting_channel = (uint8_t)(call->channel - console->channel);
 		console->seen_state = seen->state;
 		console->seen_lines = seen->line_room;
@@ -83,7 +81,7 @@ bool passo_run_move(const struct passo_call *call)
 		return false;
 	}
 	if (error == PASSO_OK)
-		note_disabled(call, off);
+		passo_note_disabled(call, off);
 	return passo_answer(call, error);
 }
 
@@ -99,11 +97,11 @@ bool passo_run_turn(const struct passo_call *call)
 	enum passo_error error;
 	uint8_t off;
 
-	if (!check_enabled(call, (uint8_t)(1u << values->axis), &off))
+	if (!passo_check_enabled(call, (uint8_t)(1u << values->axis), &off))
 		return false;
 	error = passo_turn_start(&call->channel->passo, &turning, values->rpm);
 	if (error == PASSO_OK)
-		note_disabled(call, off);
+		passo_note_disabled(call, off);
 	return passo_answer(call, error);
 }
 

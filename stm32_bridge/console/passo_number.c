@@ -111,8 +111,11 @@ bool passo_number_microseconds(
 {
 	struct passo_reading in_microseconds = *reading;
 	uint64_t wide;
+	int power;
+	bool in_clocks;
 
-	if (strstr(text, "clocks") != NULL)
+	cut_unit(text, &power, &in_clocks);
+	if (in_clocks)
 		return passo_complain(
 		    reading->sink, "%s must be in s, ms, us or ns, not %q", key->name, text);
 	in_microseconds.clock_hz = 1000000u;

@@ -4,14 +4,18 @@
 #include "passo_call.h"
 #include "passo_commands.h"
 
+#define MICROSECONDS UINT64_C(1000000)
+#define WATCHDOG_MICROSECONDS 500000u
+
 uint8_t passo_commands_channels(const struct passo_console *console)
 {
 	return console->opened ? console->host.channels : 0u;
 }
 
-void passo_commands_reset_axes(struct passo_console *console)
+void passo_commands_reset_times(struct passo_console *console)
 {
-	uint32_t clocks = (console->clock_hz + 999999u) / 1000000u;
+	const uint32_t clocks = (console->clock_hz + 999999u) / 1000000u;
+	const uint64_t longest = PASSO_WATCHDOG_CLOCKS_MAX * MICROSECONDS / console->clock_hz;
 
 	for (unsigned i = 0; i < PASSO_CHANNELS_MAX * PASSO_AXES_MAX; i++)
 		console->channel[i / PASSO_AXES_MAX].axis[i % PASSO_AXES_MAX] =
@@ -20,6 +24,40 @@ void passo_commands_reset_axes(struct passo_console *console)
 			.step_low_ns = clocks,
 			.dir_setup_ns = clocks,
 			.dir_hold_ns = clocks};
+	console->watchdog_microseconds =
+	    longest < WATCHDOG_MICROSECONDS ? (uint32_t)longest : WATCHDOG_MICROSECONDS;
+	console->disable_microseconds = 0;
+}
+
+enum passo_error passo_commands_set_core(struct passo_console *console)
+{
+	struct passo *passo = &console->channel[0].passo;
+	enum passo_error error;
+
+	if (!passo_has_inputs(passo))
+		return PASSO_OK;
+	error = passo_configure_filter(passo, passo_clocks(passo, console->filter_microseconds));
+	if (error != PASSO_OK)
+		return error;
+	return passo_configure_watchdog(passo, passo_clocks(passo, console->watchdog_microseconds),
+	    passo_clocks(passo, console->disable_microseconds));
+}
+
+/* Applies the settings of the inputs to a channel. */
+static enum passo_error set_inputs(struct passo_console_channel *channel)
+{
+	struct passo *passo = &channel->passo;
+	enum passo_error error = PASSO_OK;
+
+	if (!passo_has_inputs(passo))
+		return PASSO_OK;
+	for (uint8_t axis = 0; axis < passo_machine(passo)->axes && error == PASSO_OK; axis++) {
+		if (((uint32_t)channel->inputs_given >> axis & 1u) != 0u)
+			error = passo_commands_set_inputs(&channel->inputs[axis], passo, axis);
+	}
+	if (error == PASSO_OK && channel->probe != PASSO_LEVEL_NONE)
+		error = passo_configure_probe(passo, channel->probe == PASSO_LEVEL_LOW);
+	return error;
 }
 
 /* Applies the settings to a channel. */
@@ -32,8 +70,17 @@ static enum passo_error set_up(const struct passo_console *console, struct passo
 
 	for (uint8_t axis = 0; axis < passo_machine(passo)->axes && error == PASSO_OK; axis++)
 		error = passo_configure_axis(passo, axis, &channel->axis[axis]);
+	if (error == PASSO_OK)
+		error = set_inputs(channel);
 	channel->unset = error != PASSO_OK;
 	return error;
+}
+
+/* Whether a channel is open with this result of passo_open(). */
+static bool is_open(enum passo_error error)
+{
+	return error == PASSO_OK || error == PASSO_ERROR_MOVING || error == PASSO_ERROR_ESTOP
+	    || error == PASSO_ERROR_ALARM;
 }
 
 /* Opens a channel; the first one opens the core. */
@@ -45,10 +92,19 @@ static enum passo_error open_channel(struct passo_console *console, uint8_t numb
 	                           ? passo_open(&channel->passo, &console->host, &console->hardware, &options)
 	                           : passo_open_channel(&channel->passo, &console->host, &options);
 
-	console->opened = error == PASSO_OK || error == PASSO_ERROR_MOVING;
+	console->opened = is_open(error);
 	console->absent = error;
 	channel->unset = true;
 	channel->noted = PASSO_OK;
+	if (number == 0u && console->opened) {
+		const enum passo_error refused = passo_commands_set_core(console);
+
+		if (error == PASSO_OK)
+			error = refused;
+	}
+	passo_commands_see(console, channel, error);
+	if (error == PASSO_ERROR_ALARM || error == PASSO_ERROR_ESTOP)
+		set_inputs(channel); /* the alarm may have the other level */
 	return error == PASSO_OK ? set_up(console, channel) : error;
 }
 
@@ -72,7 +128,23 @@ enum passo_error passo_commands_clear(struct passo_console *console, struct pass
 {
 	enum passo_error error = passo_clear(&channel->passo);
 
+	if (error == PASSO_ERROR_ESTOP && passo_clear_estop(&channel->passo) == PASSO_OK)
+		error = passo_clear(&channel->passo);
 	return error == PASSO_OK && channel->unset ? set_up(console, channel) : error;
+}
+
+void passo_commands_see(
+    struct passo_console *console, struct passo_console_channel *channel, enum passo_error error)
+{
+	if (error == PASSO_ERROR_ESTOP
+	    || (error == PASSO_ERROR_WATCHDOG && console->disable_microseconds != 0u)) {
+		for (unsigned i = 0; i < PASSO_CHANNELS_MAX; i++)
+			console->channel[i].enabled = console->channel[i].announced = 0;
+	}
+	for (unsigned i = 0; error == PASSO_ERROR_ALARM && i < PASSO_AXES_MAX; i++) {
+		if (channel->inputs[i].alarm_disables)
+			channel->enabled &= (uint8_t)~(1u << i);
+	}
 }
 
 bool passo_commands_is_moving(const struct passo_console *console)

@@ -32,6 +32,9 @@ static const struct passo_key CONFIG_KEYS[] = {
     PASSO_VALUE("need_enable", need_enable, FLAG, ""),
     PASSO_WHOLE("baud", baud, BAUD_MIN, BAUD_MAX, ""),
     PASSO_VALUE("spi_slow", on, FLAG, ""),
+    PASSO_VALUE("input_filter", filter_microseconds, MICROSECONDS, ""),
+    PASSO_VALUE("watchdog", watchdog_microseconds, MICROSECONDS, ""),
+    PASSO_VALUE("watchdog_disable", disable_microseconds, MICROSECONDS, ""),
 };
 
 /* Changes only the settings that are given. */
@@ -72,8 +75,28 @@ static enum passo_error set_clock(struct passo_console *console, uint32_t clock_
 	if (passo_commands_is_moving(console))
 		return PASSO_ERROR_MOVING;
 	console->clock_hz = clock_hz;
-	passo_commands_reset_axes(console);
+	passo_commands_reset_times(console);
 	return passo_commands_open(console);
+}
+
+/* Filter and watchdog of the core. */
+static enum passo_error set_core(struct passo_console *console, const struct passo_values *values)
+{
+	const uint32_t filter = console->filter_microseconds, watchdog = console->watchdog_microseconds,
+		       disable = console->disable_microseconds;
+	enum passo_error error = console->opened ? PASSO_ERROR_NO_INPUTS : PASSO_ERROR_NOT_OPEN;
+
+	console->filter_microseconds = values->filter_microseconds;
+	console->watchdog_microseconds = values->watchdog_microseconds;
+	console->disable_microseconds = values->disable_microseconds;
+	if (passo_has_inputs(&console->channel[0].passo))
+		error = passo_commands_set_core(console);
+	if (error != PASSO_OK) {
+		console->filter_microseconds = filter;
+		console->watchdog_microseconds = watchdog;
+		console->disable_microseconds = disable;
+	}
+	return error;
 }
 
 static bool config_board(const struct passo_call *call)
@@ -83,9 +106,15 @@ static bool config_board(const struct passo_call *call)
 	bool has_clock = passo_words_find(call->words, "clock_hz") != NULL;
 	bool has_baud = passo_words_find(call->words, "baud") != NULL;
 	bool has_spi = passo_words_find(call->words, "spi_slow") != NULL;
+	bool has_inputs = passo_words_find(call->words, "input_filter") != NULL
+	               || passo_words_find(call->words, "watchdog") != NULL
+	               || passo_words_find(call->words, "watchdog_disable") != NULL;
 	struct passo_values *values = call->values;
 	enum passo_error error = PASSO_OK;
 
+	values->filter_microseconds = console->filter_microseconds;
+	values->watchdog_microseconds = console->watchdog_microseconds;
+	values->disable_microseconds = console->disable_microseconds;
 	values->hold_microseconds = console->hold_microseconds;
 	values->stop_microseconds = console->stop_microseconds;
 	values->flow_waits = console->flow_waits;
@@ -103,6 +132,8 @@ static bool config_board(const struct passo_call *call)
 		error = passo_configure_motion(passo, passo_clocks(passo, values->hold_microseconds),
 		    passo_clocks(passo, values->stop_microseconds), 0);
 	}
+	if (error == PASSO_OK && has_inputs)
+		error = set_core(console, values);
 	if (!passo_answer(call, error))
 		return false;
 	console->hold_microseconds = values->hold_microseconds;
@@ -133,6 +164,10 @@ bool passo_run_config(const struct passo_call *call)
 	    console->hold_microseconds, console->stop_microseconds);
 	passo_say(&console->sink, " flow=%s need_enable=%u", passo_value_flow(console->flow_waits),
 	    (uint32_t)console->need_enable);
+	if (console->opened && passo_has_inputs(&console->channel[0].passo))
+		passo_say(&console->sink, " input_filter=%uus watchdog=%uus watchdog_disable=%uus",
+		    console->filter_microseconds, console->watchdog_microseconds,
+		    console->disable_microseconds);
 	if (console->board.set_baud)
 		passo_say(&console->sink, " baud=%u spi_slow=%u", console->baud, (uint32_t)console->spi_slow);
 	return true;

@@ -7,8 +7,6 @@
 #include "passo_number.h"
 #include "passo_plan.h"
 
-#define FLOW_WAIT "wait"
-#define FLOW_REFUSE "refuse"
 #define POINT_MAX ((1u << PASSO_SIGMOID_POINT_BITS) - 1u)
 
 static const char *const PROFILES[] = {
@@ -64,6 +62,20 @@ static bool read_steps(
 			    "axis %u has too many steps, at most %u are possible", axis, PASSO_SUBSTEPS_MAX);
 		steps[axis] = number.negative ? -(int32_t)number.whole : (int32_t)number.whole;
 	}
+	return true;
+}
+
+static bool read_integer(
+    const struct passo_reading *reading, const struct passo_key *key, const char *text, int32_t *value)
+{
+	struct passo_decimal number;
+
+	if (!passo_decimal_read(&number, text, strlen(text), 0) || !number.is_whole)
+		return passo_complain(reading->sink, "%s must be a whole number, not %q", key->name, text);
+	if (number.whole > PASSO_SUBSTEPS_MAX)
+		return passo_complain(
+		    reading->sink, "%s is beyond %u", key->name, (uint32_t)PASSO_SUBSTEPS_MAX);
+	*value = number.negative ? -(int32_t)number.whole : (int32_t)number.whole;
 	return true;
 }
 
@@ -161,10 +173,11 @@ bool passo_value_read(
 		*(bool *)place = whole != 0u;
 		return true;
 	case PASSO_READ_FLOW:
-		if (strcmp(text, FLOW_WAIT) != 0 && strcmp(text, FLOW_REFUSE) != 0)
+		if (strcmp(text, PASSO_FLOW_WAIT) != 0 && strcmp(text, PASSO_FLOW_REFUSE) != 0)
 			return passo_complain(reading->sink,
-			    "%s must be " FLOW_WAIT " or " FLOW_REFUSE ", not %q", key->name, text);
-		*(bool *)place = strcmp(text, FLOW_WAIT) == 0;
+			    "%s must be " PASSO_FLOW_WAIT " or " PASSO_FLOW_REFUSE ", not %q", key->name,
+			    text);
+		*(bool *)place = strcmp(text, PASSO_FLOW_WAIT) == 0;
 		return true;
 	case PASSO_READ_AXIS:
 		if (!passo_number_whole(reading, key, all, 0, reading->axes - 1u, &whole))
@@ -199,38 +212,18 @@ bool passo_value_read(
 		return read_profile(reading, key, text, place);
 	case PASSO_READ_POINTS:
 		return read_points(reading, key, text, place);
+	case PASSO_READ_INTEGER:
+		return read_integer(reading, key, text, place);
+	case PASSO_READ_LEVEL:
+	case PASSO_READ_SOURCE:
+	case PASSO_READ_EDGE:
+	case PASSO_READ_ACTION:
+		return passo_value_choose(reading, key, text, place);
 	}
 	return false;
 }
 
 const char *passo_value_flow(bool waits)
 {
-	return waits ? FLOW_WAIT : FLOW_REFUSE;
-}
-
-const char *passo_value_placeholder(enum passo_reader reader)
-{
-	static const char *const PLACEHOLDERS[] = {
-	    [PASSO_READ_NOTHING] = "name",
-	    [PASSO_READ_WHOLE] = "n",
-	    [PASSO_READ_FLAG] = "0|1",
-	    [PASSO_READ_FLOW] = FLOW_WAIT "|" FLOW_REFUSE,
-	    [PASSO_READ_AXIS] = "axis",
-	    [PASSO_READ_CHANNEL] = "n",
-	    [PASSO_READ_AXES] = "n",
-	    [PASSO_READ_STEPS] = "n,..",
-	    [PASSO_READ_NUMBER] = "x",
-	    [PASSO_READ_SIGNED] = "x",
-	    [PASSO_READ_TIME] = "time",
-	    [PASSO_READ_PIN_TIME] = "time",
-	    [PASSO_READ_MICROSECONDS] = "time",
-	    [PASSO_READ_ALPHA] = "x",
-	    [PASSO_READ_DISTANCE] = "x,..",
-	    [PASSO_READ_PER_AXIS] = "x[,..]",
-	    [PASSO_READ_PROFILE] = PASSO_PROFILES_CHOICE,
-	    [PASSO_READ_SHAPE] = PASSO_PROFILES_CHOICE "|" PASSO_USER_PROFILE,
-	    [PASSO_READ_POINTS] = "n,..(16)",
-	};
-
-	return PLACEHOLDERS[reader];
+	return waits ? PASSO_FLOW_WAIT : PASSO_FLOW_REFUSE;
 }

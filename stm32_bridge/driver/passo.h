@@ -177,6 +177,7 @@ struct passo {
 	uint32_t oversampling;          /* of the last plan */
 	uint64_t velocity_peak;         /* of the last plan */
 	bool has_inputs;                /* the core has */
+	bool stop_time_known;           /* that of a soft stop is configured */
 	bool probe_fitted;              /* the probe is configured */
 	bool probe_inverted;
 	struct passo_task task;
@@ -285,6 +286,8 @@ enum passo_error passo_move_plan(
 enum passo_error passo_load_table(struct passo *passo, enum passo_shape bank, const uint16_t *points);
 /* A time of run time, in clocks of the core, rounded down; 0 before passo_open(). */
 uint64_t passo_clocks(const struct passo *passo, uint32_t microseconds);
+/* Whether the core was built with inputs; see passo_inputs.h. */
+bool passo_has_inputs(const struct passo *passo);
 /* Clock, ticks and axes of this channel, for the functions of the planner. */
 const struct passo_machine *passo_machine(const struct passo *passo);
 

@@ -52,6 +52,8 @@ static const struct words errors[PASSO_ERROR_COUNT] = {
     [PASSO_ERROR_NO_SOURCE] = {"NO_SOURCE", "a trigger needs a source"},
     [PASSO_ERROR_NO_SWITCH] = {"NO_SWITCH", "no such switch or probe is configured"},
     [PASSO_ERROR_NO_DISTANCE] = {"NO_DISTANCE", "home needs a distance and a back-off"},
+    [PASSO_ERROR_NO_STOP_TIME] = {"NO_STOP_TIME",
+	"home and probe stop softly, and the time of a soft stop is not configured"},
     [PASSO_ERROR_UNDER_WAY] = {"UNDER_WAY", "a home or probe is under way: wait for its end, or stop it"},
     [PASSO_ERROR_SWITCH_MISSED] = {"SWITCH_MISSED", "the switch or probe did not change within the distance"},
     [PASSO_ERROR_SWITCH_LEVEL] = {"SWITCH_LEVEL",

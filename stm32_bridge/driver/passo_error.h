@@ -53,6 +53,7 @@ enum passo_error {
 	PASSO_ERROR_NO_SOURCE,         /* a trigger without a source */
 	PASSO_ERROR_NO_SWITCH,         /* no such switch or probe is configured */
 	PASSO_ERROR_NO_DISTANCE,       /* a home without a distance or without a back-off */
+	PASSO_ERROR_NO_STOP_TIME,      /* home and probe stop softly: passo_configure_motion() before them */
 	PASSO_ERROR_UNDER_WAY,         /* a home or probe is under way: wait for its end, or stop it */
 	PASSO_ERROR_SWITCH_MISSED,     /* the switch or probe did not change within the distance; at rest */
 	PASSO_ERROR_SWITCH_LEVEL,      /* it has the level already that is looked for; at rest */

@@ -33,8 +33,8 @@ struct passo_home {
 };
 
 /* Homes `count` axes, one after the other; homes[] must live until the end. Two frames. Errors: of the call
- * NO_SWITCH, NO_DISTANCE, TOO_MANY_STEPS, NO_SPEED, NO_ACCELERATION, those of a move; of passo_poll() also
- * SWITCH_MISSED, SWITCH_LEVEL if the switch stays active. */
+ * NO_SWITCH, NO_STOP_TIME, NO_DISTANCE, TOO_MANY_STEPS, NO_SPEED, NO_ACCELERATION, those of a move; of
+ * passo_poll() also SWITCH_MISSED, SWITCH_LEVEL if the switch stays active. */
 enum passo_error passo_home(struct passo *passo, const struct passo_home *homes, uint8_t count);
 /* Whether the position of an axis is that of its home: until the drive is switched off, e-stop, alarm or
  * watchdog stop the channel, or it is opened. No frame. */
@@ -49,8 +49,8 @@ struct passo_probe {
 };
 
 /* passo_read_trigger() has the positions at the touch afterwards; the axes have stopped behind it. Errors: of
- * the call NO_SWITCH, SWITCH_LEVEL if the probe has that level already, those of a move; of passo_poll() also
- * SWITCH_MISSED unless it is optional. */
+ * the call NO_SWITCH, NO_STOP_TIME, SWITCH_LEVEL if the probe has that level already, those of a move; of
+ * passo_poll() also SWITCH_MISSED unless it is optional. */
 enum passo_error passo_probe(struct passo *passo, const struct passo_probe *probe);
 
 /* One axis by hand, from rest. */

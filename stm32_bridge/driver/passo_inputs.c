@@ -14,6 +14,11 @@ enum passo_error passo_driver_check_inputs(const struct passo *passo)
 	return error == PASSO_OK && !passo->has_inputs ? PASSO_ERROR_NO_INPUTS : error;
 }
 
+bool passo_has_inputs(const struct passo *passo)
+{
+	return passo->has_inputs;
+}
+
 void passo_driver_forget_home(struct passo *passo, enum passo_error fault)
 {
 	if (fault != PASSO_ERROR_ESTOP && fault != PASSO_ERROR_ALARM && fault != PASSO_ERROR_WATCHDOG)

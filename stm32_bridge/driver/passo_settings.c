@@ -106,5 +106,7 @@ enum passo_error passo_configure_motion(
 	if (drain_velocity > PASSO_VELOCITY_MAX >> 16)
 		return PASSO_ERROR_ARGUMENT_DRAIN_VELOCITY;
 	const uint32_t words[] = {slew_of(passo, hold_clocks), slew_of(passo, stop_clocks), drain_velocity};
-	return passo_driver_write(passo, PASSO_CHANNEL_RATE_SLEW, words, drain_velocity != 0u ? 3u : 2u);
+	error = passo_driver_write(passo, PASSO_CHANNEL_RATE_SLEW, words, drain_velocity != 0u ? 3u : 2u);
+	passo->stop_time_known |= error == PASSO_OK;
+	return error;
 }

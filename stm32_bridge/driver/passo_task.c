@@ -40,6 +40,10 @@ enum passo_error passo_driver_begin(struct passo *passo, struct passo_task task,
 {
 	enum passo_error error = passo_driver_ready(passo, true);
 
+	if (error == PASSO_OK && trigger)
+		error = passo_driver_check_source(passo, trigger->source, trigger->axis);
+	if (error == PASSO_OK && !passo->stop_time_known)
+		error = PASSO_ERROR_NO_STOP_TIME; /* after a reset the core stops within 0.1 ms */
 	if (error != PASSO_OK)
 		return error;
 	passo->task = task;

@@ -80,6 +80,9 @@ int main(void)
 		while (bytes < BYTES_PER_ROUND && uart_read(&byte)) {
 			passo_console_receive(&console, byte);
 			bytes++;
+			if (byte == '\r' || byte == '\n')
+				break; /* an answer can take long: the core stops if it is not polled in
+				          between */
 		}
 		passo_console_poll(&console);
 		board_led(!passo_console_is_well(&console));

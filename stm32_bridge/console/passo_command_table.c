@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: MIT
+ * Command table: each row has the keys and the function of a command.
+ */
+#include "passo_command_table.h"
+
+#include <string.h>
+
+#define ROWS (PASSO_TABLE_SIZE / PASSO_POINTS_PER_LINE)
+
+#define CHANNEL {.name = "channel", .reader = PASSO_READ_CHANNEL, .otherwise = "0"}
+
+const struct passo_key passo_channel_key = CHANNEL;
+static const struct passo_key CHANNEL_KEYS[] = {CHANNEL};
+static const struct passo_key AXIS_KEYS[] = {PASSO_VALUE("axis", axis, AXIS, ""), CHANNEL};
+static const struct passo_key ON_KEYS[] = {PASSO_VALUE("on", on, FLAG, NULL), CHANNEL};
+static const struct passo_key PERCENT_KEYS[] = {PASSO_WHOLE("percent", number, 1, 100, NULL), CHANNEL};
+static const struct passo_key RPM_KEYS[] = {PASSO_VALUE("rpm", rpm, NUMBER, NULL), CHANNEL};
+static const struct passo_key HELP_KEYS[] = {
+    {.name = "command", .reader = PASSO_READ_NOTHING, .otherwise = ""}};
+static const struct passo_key TABLE_KEYS[] = {
+    PASSO_WHOLE("row", number, 0, ROWS - 1u, ""),
+    PASSO_VALUE("points", points, POINTS, ""),
+};
+static const struct passo_key ANGLE_KEYS[] = {
+    PASSO_WHOLE("steps_per_turn", steps_per_turn, 1, UINT32_MAX, NULL),
+    PASSO_VALUE("axis", axis, AXIS, "0"),
+    CHANNEL,
+};
+static const struct passo_key TURN_KEYS[] = {
+    PASSO_VALUE("axis", axis, AXIS, "0"),
+    PASSO_WHOLE("steps_per_turn", steps_per_turn, 1, UINT32_MAX, NULL),
+    PASSO_VALUE("rpm", rpm, NUMBER, NULL),
+    PASSO_VALUE("top_rpm", top_rpm, NUMBER, "rpm"),
+    PASSO_VALUE("minimum_rpm", minimum_rpm, NUMBER, "0"),
+    PASSO_VALUE("acceleration", acceleration, NUMBER, NULL),
+    PASSO_VALUE("backwards", on, FLAG, "0"),
+    CHANNEL,
+};
+
+static const struct passo_key INPUT_KEYS[] = {
+    PASSO_VALUE("axis", axis, AXIS, ""),
+    CHANNEL,
+    PASSO_VALUE("probe", probe, LEVEL, ""),
+    PASSO_VALUE("limit_low", inputs.limit_low, LEVEL, ""),
+    PASSO_VALUE("limit_high", inputs.limit_high, LEVEL, ""),
+    PASSO_VALUE("home", inputs.home, LEVEL, ""),
+    PASSO_VALUE("alarm", inputs.alarm, LEVEL, ""),
+    PASSO_VALUE("limit_soft", inputs.limit_soft, FLAG, ""),
+    PASSO_VALUE("alarm_soft", inputs.alarm_soft, FLAG, ""),
+    PASSO_VALUE("alarm_disables", inputs.alarm_disables, FLAG, ""),
+};
+static const struct passo_key INPUTS_KEYS[] = {PASSO_VALUE("clear", clear, FLAG, "0"), CHANNEL};
+static const struct passo_key TRIGGER_KEYS[] = {
+    PASSO_VALUE("source", source, SOURCE, ""),
+    CHANNEL,
+    PASSO_VALUE("axis", axis, AXIS, ""),
+    PASSO_VALUE("edge", edge, EDGE, ""),
+    PASSO_VALUE("action", action, ACTION, ""),
+};
+static const struct passo_key WAIT_TRIGGER_KEYS[] = {
+    PASSO_VALUE("timeout", timeout_microseconds, MICROSECONDS, "10"), CHANNEL};
+static const struct passo_key HOME_KEYS[] = {
+    PASSO_VALUE("axis", axis, AXIS, NULL),
+    PASSO_VALUE("source", source, SOURCE, "home"),
+    PASSO_VALUE("distance", distance, INTEGER, NULL),
+    PASSO_WHOLE("back_off", back_off, 0, PASSO_SUBSTEPS_MAX, NULL),
+    PASSO_WHOLE("pull_off", pull_off, 0, PASSO_SUBSTEPS_MAX, "0"),
+    PASSO_VALUE("speed", speed, NUMBER, NULL),
+    PASSO_VALUE("slow_speed", slow_speed, NUMBER, NULL),
+    PASSO_VALUE("acceleration", acceleration, NUMBER, NULL),
+    PASSO_VALUE("position", position, INTEGER, "0"),
+    CHANNEL,
+};
+static const struct passo_key PROBE_KEYS[] = {
+    PASSO_VALUE("steps", steps, STEPS, NULL),
+    PASSO_VALUE("speed", speed, NUMBER, NULL),
+    PASSO_VALUE("acceleration", acceleration, NUMBER, NULL),
+    PASSO_VALUE("away", away, FLAG, "0"),
+    PASSO_VALUE("optional", optional, FLAG, "0"),
+    CHANNEL,
+};
+static const struct passo_key JOG_KEYS[] = {
+    PASSO_VALUE("axis", axis, AXIS, "0"),
+    PASSO_VALUE("steps", distance, INTEGER, ""),
+    PASSO_VALUE("backwards", backwards, FLAG, "0"),
+    PASSO_VALUE("speed", speed, NUMBER, NULL),
+    PASSO_VALUE("top_speed", top_speed, NUMBER, "speed"),
+    PASSO_VALUE("acceleration", acceleration, NUMBER, NULL),
+    CHANNEL,
+};
+static const struct passo_key SPEED_KEYS[] = {PASSO_VALUE("speed", speed, NUMBER, NULL), CHANNEL};
+
+/* Commands without keys in their row read their own keys, or have none. */
+#define TAKES(keys) (keys), PASSO_COUNT(keys)
+const struct passo_command passo_command_table[] = {
+    {"move", passo_run_move, NULL, 0, 0, false, "queue a move; help move lists its forms"},
+    {"turn", passo_run_turn, TAKES(TURN_KEYS), 0, false, "rotate continuously, from rest"},
+    {"rpm", passo_run_rpm, TAKES(RPM_KEYS), 1, false, "change the speed of the rotation; 0 ends it"},
+    {"hold", passo_run_hold, TAKES(CHANNEL_KEYS), 0, true, "feed hold: slow down to rest on the path"},
+    {"resume", passo_run_resume, TAKES(CHANNEL_KEYS), 0, true, "continue after hold"},
+    {"override", passo_run_override, TAKES(PERCENT_KEYS), 1, true, "feed override of all motion, 1 to 100"},
+    {"stop", passo_run_stop, TAKES(CHANNEL_KEYS), 0, true, "soft stop, flush the queues; then clear"},
+    {"abort", passo_run_abort, TAKES(CHANNEL_KEYS), 0, true, "hard stop, flush the queues; then clear"},
+    {"clear", passo_run_clear, TAKES(CHANNEL_KEYS), 0, false, "leave the stopped state"},
+    {"status", passo_run_status, TAKES(CHANNEL_KEYS), 0, true, "state of the channel"},
+    {"position", passo_run_position, TAKES(CHANNEL_KEYS), 0, true, "steps made by each axis"},
+    {"angle", passo_run_angle, TAKES(ANGLE_KEYS), 1, true, "degrees of an axis and rpm of the motion"},
+    {"enable", passo_run_enable, TAKES(AXIS_KEYS), 1, false, "enable the drive of an axis, or all"},
+    {"disable", passo_run_disable, TAKES(AXIS_KEYS), 1, false, "disable it, at rest or when stopped"},
+    {"zero", passo_run_zero, TAKES(CHANNEL_KEYS), 0, false, "set all positions to 0"},
+    {"sync", passo_run_sync, TAKES(ON_KEYS), 1, true, "1: motions wait for start, or the sync input; 0: not"},
+    {"start", passo_run_start, NULL, 0, 0, true, "start the waiting motions of all channels on one clock"},
+    {"input", passo_run_input, TAKES(INPUT_KEYS), 0, false, "connect the inputs of an axis, or show them"},
+    {"inputs", passo_run_inputs, TAKES(INPUTS_KEYS), 0, true, "which inputs are active, and were"},
+    {"home", passo_run_home, TAKES(HOME_KEYS), 0, false, "find the switch of an axis"},
+    {"probe", passo_run_probe, TAKES(PROBE_KEYS), 0, false, "move until the probe acts"},
+    {"jog", passo_run_jog, TAKES(JOG_KEYS), 0, false, "move one axis by hand: by steps, or for ever"},
+    {"jog_speed", passo_run_jog_speed, TAKES(SPEED_KEYS), 1, false, "change the speed of an endless jog"},
+    {"jog_cancel", passo_run_jog_cancel, TAKES(CHANNEL_KEYS), 0, true, "end a jog on its path, now"},
+    {"trigger", passo_run_trigger, TAKES(TRIGGER_KEYS), 1, false,
+	"latch positions at an edge; or what it did"},
+    {"wait_trigger", passo_run_wait_trigger, TAKES(WAIT_TRIGGER_KEYS), 1, false, "answered at the edge"},
+    {"config", passo_run_config, NULL, 0, 0, false, "show or change settings; help config lists them"},
+    {"table", passo_run_table, TAKES(TABLE_KEYS), 2, false, "load 16 of 256 points of a shape, or check it"},
+    {"open", passo_run_open, NULL, 0, 0, false, "connect to the core again"},
+    {"version", passo_run_version, NULL, 0, 0, true, "versions of console and core"},
+    {"help", passo_run_help, TAKES(HELP_KEYS), 1, true, "this list, or the keys of one command"},
+};
+
+const unsigned passo_command_count = PASSO_COUNT(passo_command_table);
+
+const struct passo_command *passo_command_find(const char *name)
+{
+	if (strcmp(name, "?") == 0)
+		name = "help";
+	for (unsigned i = 0; i < passo_command_count; i++) {
+		if (strcmp(passo_command_table[i].name, name) == 0)
+			return &passo_command_table[i];
+	}
+	return NULL;
+}
