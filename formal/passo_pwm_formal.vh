@@ -18,8 +18,19 @@ always @(posedge clk) begin
   f_begins <= pays;
 end
 
+// --- Clocks on times step, less what the periods paid, since the last beginning; from -2^26 on
+reg signed  [27:0] f_over;
+wire signed [27:0] f_base = f_fresh ? 28'sd0 : f_over;
+wire signed [27:0] f_sum = f_base - (pays ? $signed({3'd0, {1'b0, power} + {16'd0, power[15]}, 8'd0}) : 28'sd0);
+reg         [23:0] f_step;
+always @(posedge clk) begin
+  f_step <= step;
+  f_over <= (f_sum < -28'sh4000000 ? -28'sh4000000 : f_sum) + (!f_fresh && pin ? $signed({4'd0, f_step}) : 28'sd0);
+end
+
 always @(posedge clk)
   if (f_started && !$past(rst)) begin
+    if (!f_fresh && pin) never_more_than_asked : assert (f_over < 28'sd0);
     if (!$past(go)) off_when_told : assert (!pin);
     if ($past(go && f_fresh)) begins_at_once : assert (pin == $past(power != 16'd0));
     if (pin && !$past(pin)) rises_with_a_period : assert (f_begins);
@@ -39,6 +50,7 @@ always @(posedge clk)
     assert (pays && !spends && phase == 24'd0 && credit == 26'h3FFFFFF);
   else if (f_started && !$past(rst)) begin
     assert (cost_now != 24'd0);
+    assert (cost_now >= f_step && f_over <= -f_credit - 28'sd1 && f_over >= -28'sh4000000 && f_over < 28'sh2000000);
     assert (f_ahead < $signed(28'h1800000) && f_credit < $signed(28'h1800000));
     assert (f_credit >= -$signed(28'h1000000));
     assert (pin == ~credit[25] && spends == pin);
