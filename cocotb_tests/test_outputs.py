@@ -158,7 +158,7 @@ async def power_in_proportion_to_the_velocity(dut: HierarchyObject) -> None:
         for velocity, rate in SPEEDS:
             outputs.set(velocity=min(HALF, top * velocity // 100), rate=RATE_ONE * rate // 100)
             await outputs.motion(word(0, power, proportional=True))
-            await outputs.run(200)
+            await outputs.run(300)
             first = len(outputs.seen)
             await outputs.run(clocks)
             share = Fraction(sum(outputs.seen.power[first:]), clocks)

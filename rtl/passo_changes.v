@@ -27,6 +27,7 @@ module passo_changes #(
   localparam [DEPTH_LOG2:0] DEPTH = 1 << DEPTH_LOG2;
 
   reg  [        15:0] now;
+  reg  [        15:0] ahead;  // now + 3
   reg  [        15:0] due;  // of a change in this clock: now + lag + 2
   reg  [DEPTH_LOG2:0] write_place;
   reg  [DEPTH_LOG2:0] read_place;
@@ -53,7 +54,8 @@ module passo_changes #(
 
   always @(posedge clk) begin
     now   <= now + 16'd1;
-    due   <= now + lag + 16'd3;
+    ahead <= ahead + 16'd1;
+    due   <= ahead + lag;
     hit   <= valid && time_out == now;
     valid <= reads != write_place;
     full  <= (write_place ^ read_place) == DEPTH;
@@ -62,7 +64,10 @@ module passo_changes #(
     read_next  <= reads + 1'b1;
     overflow   <= change & full;
     empty      <= reads == write_place && !change;
-    if (rst) now <= 16'd0;
+    if (rst) begin
+      now   <= 16'd0;
+      ahead <= 16'd3;
+    end
     if (rst || flush) begin
       write_place <= {(DEPTH_LOG2 + 1) {1'b0}};
       read_place  <= {(DEPTH_LOG2 + 1) {1'b0}};

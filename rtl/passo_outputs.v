@@ -76,7 +76,6 @@ module passo_outputs #(
   reg         lit;  // power_now is not 0
   reg         differs;  // the change that comes next changes the power
   reg         lights;  // it has one
-  reg         restart;
   reg  [ 6:1] still;  // velocity or rate was 0, or the path waited, 1 .. 6 clocks ago
   wire [23:0] cost;
 
@@ -84,7 +83,6 @@ module passo_outputs #(
     still   <= {still[5:1], velocity == 32'd0 || rate == 17'd0 || waits};
     differs <= {data[24], data[15:0]} != {proportional, power_now};
     lights  <= data[15:0] != 16'd0;
-    restart <= hit & differs;
     if (hit) begin
       outputs_now  <= data[23:16];
       power_now    <= data[15:0];
@@ -163,7 +161,7 @@ module passo_outputs #(
     .clk         (clk),
     .rst         (rst),
     .go          (lit & ~still[6] & ~overflow & running & running_next),
-    .restart     (restart),
+    .restart     (hit & differs),
     .power       (power_now),
     .proportional(proportional),
     .step        (pwm_step),

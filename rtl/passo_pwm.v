@@ -8,8 +8,8 @@
 // What the last clock on costs too much is missing in the next pulse, so the share of clocks on is duty * step / cost
 // on the average, also where this is not a whole number of clocks or below one clock per period.
 //
-// Promise: with `go` low the pin is low from the next clock on. The pin rises on the clock after `go` rises or
-// `restart` if power is not 0, which begins a period; else only where a period begins, and once in it. With power 0
+// Promise: with `go` low the pin is low from the next clock on. The pin rises on the clock after `go` rises, or two
+// clocks after `restart`, if power is not 0, which begins a period; else only where a period begins, and once in it. With power 0
 // the pin is low, with power 65535 and cost = step it is high on every clock. Step and cost may change at any time.
 `resetall
 `timescale 1ns / 1ps
@@ -19,7 +19,7 @@ module passo_pwm (
   input  wire        clk,
   input  wire        rst,
   input  wire        go,            // power is wanted and something moves
-  input  wire        restart,       // strobe: power or proportional has changed
+  input  wire        restart,       // strobe: power or proportional changes in the next clock
   input  wire [15:0] power,         // UQ0.16, but 65535 is 1.0
   input  wire        proportional,
   input  wire [23:0] step,          // UQ0.24 periods per clock, above 0, at most 1/2
@@ -27,30 +27,30 @@ module passo_pwm (
   output reg         pin
 );
 
-  reg               idle;
-  reg        [23:0] phase;  // of the period, one clock ahead
-  reg               begins;  // a period
-  reg        [23:0] cost_now;
-  reg signed [25:0] credit;  // less 1: on while it is not negative
+  reg [23:0] phase;  // of the period, one clock ahead
+  reg        pays;  // a period begins
+  reg        spends;
+  reg [23:0] cost_now;
+  reg [25:0] credit;  // less 1, signed: on while it is not negative
 
-  wire        fresh = restart | idle;
-  wire [16:0] duty = {1'b0, power} + {16'd0, power[15]};
-  wire [25:0] pays = fresh || begins ? {1'b0, duty, 8'd0} : 26'd0;
-  // ~x is -x - 1
-  wire [25:0] not_spent = fresh || !pin ? 26'h3FFFFFF : {2'b11, ~cost_now};
-  wire [25:0] start = fresh ? 26'h3FFFFFF : credit;
-  wire [25:0] sum = start + pays + not_spent + 26'd1;
+  wire        renew = restart | ~go | rst;  // nothing is left of before
+  wire [24:0] phase_next = {1'b0, phase} + {1'b0, step};
+  wire [25:0] paid = {2'd0, power, {8{power[15]}}} & {26{pays}};  // less power[15]
+  wire [25:0] spent = {2'd0, cost_now} & {26{spends}};
+  wire [25:0] sum = credit + paid - spent + {25'd0, pays & power[15]};
 
   always @(posedge clk) begin
-    idle            <= !go;
-    {begins, phase} <= fresh ? {1'b0, step} : {1'b0, phase} + {1'b0, step};
-    cost_now        <= proportional && cost > step ? cost : step;
-    credit          <= sum;
-    pin             <= go & ~sum[25];
-    if (rst) begin
-      idle <= 1'b1;
-      pin  <= 1'b0;
+    phase    <= phase_next[23:0];
+    pays     <= renew | phase_next[24];
+    spends   <= ~renew & ~sum[25];
+    cost_now <= proportional && cost > step ? cost : step;
+    credit   <= sum;
+    pin      <= go & ~sum[25];
+    if (renew) begin
+      phase  <= 24'd0;
+      credit <= 26'h3FFFFFF;
     end
+    if (rst) pin <= 1'b0;
   end
 
 `ifdef FORMAL
