@@ -28,6 +28,8 @@ HEADERS = (
     paths.driver / "passo_path_feed.h",
     paths.driver / "passo_inputs.h",
     paths.driver / "passo_home.h",
+    paths.driver / "passo_outputs.h",
+    paths.driver / "passo_encoder.h",
     paths.model / "passo_pins.h",
     paths.engine / "passo_engine.h",
     paths.engine / "passo_terminal.h",

@@ -16,7 +16,8 @@ enum passo_error passo_driver_check_inputs(const struct passo *passo)
 
 void passo_driver_forget_home(struct passo *passo, enum passo_error fault)
 {
-	if (fault != PASSO_ERROR_ESTOP && fault != PASSO_ERROR_ALARM && fault != PASSO_ERROR_WATCHDOG)
+	if (fault != PASSO_ERROR_ESTOP && fault != PASSO_ERROR_ALARM && fault != PASSO_ERROR_WATCHDOG
+	    && fault != PASSO_ERROR_FOLLOWING)
 		return;
 	for (unsigned i = 0; i < passo->machine.axes; i++)
 		passo->axis[i].homed = false;
