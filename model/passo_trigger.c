@@ -14,7 +14,7 @@ static bool chosen(const struct passo_trigger *trigger, const struct passo_input
 	const enum passo_trigger_source source = (enum passo_trigger_source)trigger->source;
 
 	if (source == PASSO_TRIGGER_SOURCE_INDEX)
-		return (index >> trigger->axis & 1u) != 0u;
+		return ((unsigned)index >> trigger->axis & 1u) != 0u;
 	const unsigned bit = kinds[source] == PASSO_KIND_PROBE ? 0u : trigger->axis;
 	return (unit->input[kinds[source]].second >> bit & 1u) != 0u;
 }
@@ -43,7 +43,7 @@ void passo_trigger_clock(
 	const bool fires = changes && trigger->level == trigger->falling;
 
 	trigger->picked = chosen(trigger, unit, index);
-	trigger->arming = (uint8_t)(trigger->arming << 1 & 3u);
+	trigger->arming = (uint8_t)((unsigned)trigger->arming << 1 & 3u);
 	if (armed)
 		trigger->clocks++;
 	trigger->latch = fires;

@@ -134,7 +134,7 @@ void passo_host_count_room(struct passo_host *host, bool known, bool executed)
 	}
 	if (executed && header.operation == PASSO_OPERATION_PUSH) {
 		if ((header.address & PLACE) == PASSO_CHANNEL_LINE)
-			lines = host->line_words ? header.length / host->line_words : header.length;
+			lines = host->line_words ? (uint32_t)header.length / host->line_words : header.length;
 		else if ((header.address & PLACE) == PASSO_CHANNEL_RAMP)
 			ramps = header.length / PASSO_RAMP_WORDS;
 	}
