@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Encoders of the driver (stm32_bridge/driver/passo_encoder.h): shafts that turn at the pins of the C model."""
+"""Encoders of the driver (stm32_bridge/driver/passo_encoder.h): shafts that turn at the C model."""
 
 from collections.abc import Callable
 from typing import Any

@@ -205,7 +205,7 @@ def test_each_move_has_its_outputs() -> None:
 
 @pytest.mark.parametrize("speed", [5000, 20_000, 100_000])
 def test_energy_per_step(speed: int) -> None:
-    """The same at 5 % and 100 % of the reference speed, from move to move, through ramps, hold and override."""
+    """The same from 5 % to 100 % of the reference speed, through ramps, hold and override."""
     driver, pins = machine()
     reference, power = 100_000, 50_000
     driver.call("set_output", output(power=power, proportional=True, speed=reference * Q32))
