@@ -133,12 +133,27 @@ bool passo_path_next_line(struct passo_path_planner *path, struct passo_line *li
 	    .last = item->last,
 	    .directions = item->directions,
 	    .substeps = item->substeps,
+	    .output = item->output,
 	};
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
 		line->steps[axis] = item->steps[axis];
 	path->sent++;
 	path->lines_end = item->last;
 	return true;
+}
+
+uint32_t passo_path_velocity(const struct passo_path_planner *path, uint64_t speed)
+{
+	const uint64_t velocity = passo_mul_div(speed, path->substeps_per_mm, path->machine.clock_hz);
+
+	return (uint32_t)passo_path_smaller(velocity, UINT32_MAX);
+}
+
+uint32_t passo_path_substeps(const struct passo_path_planner *path, uint64_t length)
+{
+	const uint64_t halves = passo_mul_div(length, path->substeps_per_mm, PASSO_UNIT_Q32 / 2);
+
+	return (uint32_t)passo_path_smaller(halves / 2 + halves % 2, UINT32_MAX);
 }
 
 bool passo_path_next_motion(struct passo_path_planner *path)

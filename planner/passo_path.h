@@ -54,11 +54,10 @@ struct passo_path_settings {
 struct passo_path_move {
 	int64_t target[PASSO_AXES_MAX]; /* Q31.32 mm, absolute; steps are rounded from it */
 	uint64_t feed;                  /* UQ32.32 mm/s along the path, or PASSO_PATH_RAPID */
-	uint32_t output;                /* kept with the line; see passo_path_item */
+	uint32_t output;                /* of the line; see passo_output_word() of the driver */
 };
 
-/* A line of the path. Private, except for `output` of the item that was handed out last. Squares are those of
- * velocities, UQ0.64 (substeps per clock)^2. */
+/* A line of the path, private. Squares are those of velocities, UQ0.64 (substeps per clock)^2. */
 struct passo_path_item {
 	uint64_t feed;   /* square of its feed */
 	uint64_t limit;  /* highest square within the line, by its axes */
@@ -164,6 +163,11 @@ bool passo_path_next_motion(struct passo_path_planner *path);
 
 /* Whether lines are known that have not been handed out, or passed by the ramps. */
 bool passo_path_is_empty(const struct passo_path_planner *path);
+
+/* What the settings of the outputs need (passo_outputs.h): a speed, UQ32.32 mm/s, in UQ0.32 substeps per
+ * clock, rounded down, and a length, UQ32.32 mm, in substeps, to nearest; both saturate. */
+uint32_t passo_path_velocity(const struct passo_path_planner *path, uint64_t speed);
+uint32_t passo_path_substeps(const struct passo_path_planner *path, uint64_t length);
 
 /* Lines that can be added at present. */
 uint32_t passo_path_room(const struct passo_path_planner *path);

@@ -69,12 +69,12 @@ struct passo_machine {
 /* A complete plan. Velocities are UQ0.48 substeps per clock; phase lengths are in ticks. */
 struct passo_plan {
 	struct passo_line line;
+	uint32_t ramp_count; /* ramps in use, 1 .. PASSO_PLAN_RAMPS_MAX */
 	struct passo_ramp ramps[PASSO_PLAN_RAMPS_MAX];
-	uint32_t ramp_count;     /* ramps in use, 1 .. PASSO_PLAN_RAMPS_MAX */
-	uint32_t oversampling;   /* K = M / max(N): substeps per step of the longest axis; 1 or even */
 	uint64_t velocity_start; /* initial jump; velocity_peak if there is no acceleration */
 	uint64_t velocity_peak;
 	uint64_t velocity_stop; /* final jump; velocity_peak if there is no deceleration */
+	uint32_t oversampling;  /* K = M / max(N): substeps per step of the longest axis; 1 or even */
 	uint32_t accelerate_ticks;
 	uint32_t cruise_ticks;
 	uint32_t decelerate_ticks;

@@ -30,6 +30,7 @@ struct passo_line {
 	uint8_t directions;             /* bit i set: axis i counts down */
 	uint32_t substeps;              /* M, 1 .. PASSO_SUBSTEPS_MAX */
 	uint32_t steps[PASSO_AXES_MAX]; /* N_i, 0 .. M */
+	uint32_t output;                /* of a core with OUTPUTS: its output word */
 };
 
 /* A ramp takes the velocity from its present value to velocity_end. */

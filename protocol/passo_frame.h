@@ -25,7 +25,8 @@
 #define PASSO_FRAME_DATA 3u
 #define PASSO_FRAME_WORDS_MAX (PASSO_FRAME_PAYLOAD_MAX + PASSO_FRAME_OVERHEAD)
 
-/* Payload words of a line on a core with `axes` axes per channel, and of a ramp. */
+/* Payload words of a line on a core with `axes` axes per channel, without the output word, which is the last
+ * one on a core with OUTPUTS; and of a ramp. */
 #define PASSO_LINE_WORDS(axes) ((axes) + 2u)
 #define PASSO_RAMP_WORDS 5u
 

@@ -29,6 +29,8 @@ HEADERS = (
     paths.driver / "passo_path_feed.h",
     paths.driver / "passo_inputs.h",
     paths.driver / "passo_home.h",
+    paths.driver / "passo_outputs.h",
+    paths.driver / "passo_encoder.h",
     paths.grbl / "passo_player.h",
     paths.grbl / "passo_grbl.h",
     paths.model / "passo_pins.h",

@@ -83,6 +83,7 @@ struct passo_source {
 struct passo_axis_memory {
 	uint64_t steps_per_unit;  /* UQ32.32 */
 	uint32_t shortest_clocks; /* shortest step period; 0: pin settings unknown */
+	uint32_t ratio;           /* counts per step of its encoder, UQ16.16; 0: not configured */
 	int32_t expected;         /* position of the core after all queued motions */
 	uint32_t offset;          /* position of the program less that of the core; wraps */
 	uint8_t switches;         /* those that are configured, a bit per enum passo_trigger_source */
@@ -106,6 +107,16 @@ struct passo_task {
 	bool optional; /* of a probe */
 	uint8_t left;  /* axes to home, with the present one */
 	const struct passo_home *home;
+};
+
+/* What the outputs do while a move runs; see passo_outputs.h. */
+struct passo_output {
+	uint8_t levels;    /* bit i: digital output i */
+	bool proportional; /* the power is in proportion to the velocity, else constant */
+	bool raster;       /* it comes from the raster queue; `power` is 0 */
+	uint32_t power;    /* 0 .. PASSO_POWER_FULL */
+	uint64_t speed;    /* UQ32.32 steps/s of the longest axis at which a proportional power is `power`; 0:
+	                      at the reference of passo_configure_outputs() */
 };
 
 /* Assumed state of the channel. docs/driver.md shows the transitions. */
@@ -171,14 +182,17 @@ struct passo {
 	enum passo_post post;
 	enum passo_error posted; /* result of the posted frame */
 	struct passo_axis_memory axis[PASSO_AXES_MAX];
-	struct passo_snapshot snapshot; /* its room is a lower bound */
-	uint32_t looked_at;             /* microseconds: time of the last status read */
-	uint32_t rate_target;           /* UQ1.16: the override, kept during a hold */
-	uint32_t oversampling;          /* of the last plan */
-	uint64_t velocity_peak;         /* of the last plan */
-	bool has_inputs;                /* the core has */
-	bool stop_time_known;           /* that of a soft stop is configured */
-	bool probe_fitted;              /* the probe is configured */
+	struct passo_snapshot snapshot;             /* its room is a lower bound */
+	uint32_t looked_at;                         /* microseconds: time of the last status read */
+	uint32_t rate_target;                       /* UQ1.16: the override, kept during a hold */
+	uint32_t oversampling;                      /* of the last plan */
+	uint64_t velocity_peak;                     /* of the last plan */
+	bool has_inputs, has_outputs, has_encoders; /* the core has */
+	bool follows;                               /* the clock of motions may be an encoder */
+	bool stop_time_known;                       /* that of a soft stop is configured */
+	uint32_t reference;         /* of proportional power, UQ0.32 substeps per clock; 0: unknown */
+	struct passo_output output; /* of the moves from now on */
+	bool probe_fitted;          /* the probe is configured */
 	bool probe_inverted;
 	struct passo_task task;
 	struct passo_turning turning;

@@ -89,6 +89,8 @@ enum passo_error passo_driver_take_over(struct passo *passo)
 	if (error != PASSO_OK)
 		return error;
 	passo_driver_ended(passo, positions);
+	passo->output.power = 0;
+	passo->output.raster = false;
 	const bool is_kept = passo->snapshot.state == PASSO_STATE_STOPPED; /* by e-stop or an alarm */
 	passo->belief = is_kept ? PASSO_BELIEF_STOPPED : PASSO_BELIEF_READY;
 	passo->fault = is_kept ? passo_driver_fault_of(passo->snapshot.cause) : PASSO_OK;

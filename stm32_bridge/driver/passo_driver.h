@@ -4,7 +4,9 @@
 #ifndef PASSO_DRIVER_H
 #define PASSO_DRIVER_H
 
+#include "passo_encoder.h"
 #include "passo_home.h"
+#include "passo_outputs.h"
 #include "passo_words.h"
 
 /* ARGUMENT for null, NOT_OPEN for a channel that is not open. */
@@ -75,6 +77,26 @@ enum passo_error passo_driver_tables(
 /* Records that all banks have their contents after reset. */
 void passo_driver_tables_fresh(struct passo_host *host);
 
+/* Queues a plan that was checked, and leaves the clock of motions as it is. */
+enum passo_error passo_driver_queue(
+    struct passo *passo, const struct passo_plan *plan, const struct passo_user_shape *shape);
+/* Makes the core's clock the clock of motions, if an encoder may be it. Errors: those of a motion at rest. */
+enum passo_error passo_driver_unfollow(struct passo *passo);
+/* ARGUMENT, NOT_OPEN, or NO_OUTPUTS of a core without. */
+enum passo_error passo_driver_check_outputs(const struct passo *passo);
+/* ARGUMENT, NOT_OPEN, or NO_ENCODERS of a core without. */
+enum passo_error passo_driver_check_encoders(const struct passo *passo);
+/* Reads the levels of a core with outputs. */
+enum passo_error passo_driver_recall_outputs(struct passo *passo);
+/* The word of an output that was checked. */
+uint32_t passo_driver_word_of(const struct passo_output *output);
+/* The words of a line, with its output if the core has outputs; returns their number. */
+size_t passo_driver_line_words(const struct passo *passo, uint32_t *words, const struct passo_line *line);
+/* The output word of a planned move. Errors: REFERENCE, ABOVE_REFERENCE. */
+enum passo_error passo_driver_output(
+    const struct passo *passo, const struct passo_plan *plan, uint32_t *word);
+/* NO_OUTPUTS or SUPPLY if a line of a stream must not have this output word. */
+enum passo_error passo_driver_check_output(const struct passo *passo, uint32_t word);
 /* Pushes the ramps of a plan; there must be room for them. */
 enum passo_error passo_driver_push_ramps(struct passo *passo, const struct passo_plan *plan);
 /* Whether all axes that a line moves are configured. */

@@ -58,6 +58,27 @@ enum passo_error {
 	PASSO_ERROR_SWITCH_MISSED,     /* the switch or probe did not change within the distance; at rest */
 	PASSO_ERROR_SWITCH_LEVEL,      /* it has the level already that is looked for; at rest */
 
+	/* outputs */
+	PASSO_ERROR_NO_OUTPUTS,      /* the core was built without outputs */
+	PASSO_ERROR_POWER,           /* above PASSO_POWER_FULL, or not 0 beside a raster */
+	PASSO_ERROR_REFERENCE,       /* of proportional power: 0, or above half a substep per clock */
+	PASSO_ERROR_ABOVE_REFERENCE, /* a move faster than the reference of its proportional power */
+	PASSO_ERROR_PWM,          /* frequency of the power: 0, below a step of it, or above half the clock */
+	PASSO_ERROR_LAG_TOO_LONG, /* the lag of the outputs is longer than its register */
+	PASSO_ERROR_PITCH,        /* of a raster: 0, or longer than its register */
+	PASSO_ERROR_INTERVAL,     /* of compare points: 0 */
+	PASSO_ERROR_PULSE,        /* width of compare pulses: 0, or longer than its register */
+
+	/* encoders */
+	PASSO_ERROR_NO_ENCODERS,     /* the core was built without encoders */
+	PASSO_ERROR_ENCODER_FILTER,  /* the filter of the encoders is longer than its register */
+	PASSO_ERROR_RATIO,           /* counts per step: 0 */
+	PASSO_ERROR_FOLLOWING_LIMIT, /* limit of the following error: 0 */
+	PASSO_ERROR_OFF_SCALE,       /* the following error is too large to tell where the axis is */
+	PASSO_ERROR_NO_COUNTS,       /* a thread over no counts */
+	PASSO_ERROR_STEEP,           /* a thread of more steps per count than an encoder can lead */
+	PASSO_ERROR_FOLLOW_SPEED,    /* top speed of the encoder: 0, or above half a clock per clock */
+
 	/* how a motion ended */
 	PASSO_ERROR_LINE_UNDERRUN, /* stopped: a line ended and no other was queued */
 	PASSO_ERROR_RAMP_UNDERRUN, /* soft stop: the ramp queue ran empty at speed */

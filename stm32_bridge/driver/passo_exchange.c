@@ -134,8 +134,8 @@ void passo_host_count_room(struct passo_host *host, bool known, bool executed)
 	}
 	if (executed && header.operation == PASSO_OPERATION_PUSH) {
 		if ((header.address & PLACE) == PASSO_CHANNEL_LINE)
-			lines = host->axes ? header.length / PASSO_LINE_WORDS(host->axes) : header.length;
-		else
+			lines = host->line_words ? (uint32_t)header.length / host->line_words : header.length;
+		else if ((header.address & PLACE) == PASSO_CHANNEL_RAMP)
 			ramps = header.length / PASSO_RAMP_WORDS;
 	}
 	host->line_room = less(host->line_room, lines);

@@ -73,7 +73,7 @@ struct passo_host {
 	bool run_due;          /* `run` is not acknowledged and has to be written; see passo_host_write() */
 	uint32_t clock_hz;     /* of the core, for the gap between frames; 0: unknown, no gap */
 	uint32_t ready_at;     /* microseconds: when the core will have executed the last frame */
-	uint8_t axes;          /* axes per channel, for counting lines; 0: unknown */
+	uint8_t line_words;    /* words of a line, for counting lines; 0: unknown */
 	uint8_t channels;      /* of the core; 0: unknown */
 	uint8_t last_sequence; /* sequence number of the last write sent */
 	uint8_t sent_before;   /* of the write before that */
@@ -99,9 +99,9 @@ enum passo_error passo_host_open(struct passo_host *host, const struct passo_har
 
 /* Starts to detect core resets and writes of other hosts: from then on every call returns CORE_RESET until
  * the host is opened again. Marks the core with a write that is refused as READ_ONLY, which makes a refusal
- * counter nonzero. `axes` (per channel) and `clock_hz` are those of the core. About two frames. Errors:
- * ARGUMENT, NOT_OPEN, link errors. */
-enum passo_error passo_host_guard(struct passo_host *host, uint8_t axes, uint32_t clock_hz);
+ * counter nonzero. `line_words` (words of a line) and `clock_hz` are those of the core. About two frames.
+ * Errors: ARGUMENT, NOT_OPEN, link errors. */
+enum passo_error passo_host_guard(struct passo_host *host, uint8_t line_words, uint32_t clock_hz);
 
 /* Read or write 1 .. 60 consecutive registers, or write all words to one register (push). `address` is a word
  * address. Errors: ARGUMENT, NOT_OPEN, link errors, CORE_RESET, REFUSED + verdict. After a link error it is

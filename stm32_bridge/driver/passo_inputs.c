@@ -21,7 +21,8 @@ bool passo_has_inputs(const struct passo *passo)
 
 void passo_driver_forget_home(struct passo *passo, enum passo_error fault)
 {
-	if (fault != PASSO_ERROR_ESTOP && fault != PASSO_ERROR_ALARM && fault != PASSO_ERROR_WATCHDOG)
+	if (fault != PASSO_ERROR_ESTOP && fault != PASSO_ERROR_ALARM && fault != PASSO_ERROR_WATCHDOG
+	    && fault != PASSO_ERROR_FOLLOWING)
 		return;
 	for (unsigned i = 0; i < passo->machine.axes; i++)
 		passo->axis[i].homed = false;

@@ -51,23 +51,20 @@ enum passo_error passo_driver_push_ramps(struct passo *passo, const struct passo
 static enum passo_error push_line(struct passo *passo, const struct passo_line *line)
 {
 	const uint16_t address = (uint16_t)(passo->base + PASSO_CHANNEL_LINE);
-	uint32_t words[PASSO_LINE_WORDS(PASSO_AXES_MAX)];
-	size_t length = passo_line_words(words, line, passo->machine.axes);
+	uint32_t words[PASSO_LINE_WORDS(PASSO_AXES_MAX) + 1u];
+	size_t length = passo_driver_line_words(passo, words, line);
 
 	return judge(passo, passo_host_push(passo->host, address, words, length), true);
 }
 
-enum passo_error passo_move_plan(
+enum passo_error passo_driver_queue(
     struct passo *passo, const struct passo_plan *plan, const struct passo_user_shape *shape)
 {
-	enum passo_error error = passo_driver_check(passo);
+	struct passo_line line = plan->line;
+	enum passo_error error = passo_driver_output(passo, plan, &line.output);
 
 	if (error != PASSO_OK)
 		return error;
-	if (!plan || (shape && !shape->table))
-		return PASSO_ERROR_ARGUMENT_POINTER;
-	if (plan->ramp_count == 0u || plan->ramp_count > PASSO_PLAN_RAMPS_MAX)
-		return PASSO_ERROR_ARGUMENT_PLAN;
 	if (!pins_suffice(passo, plan))
 		return PASSO_ERROR_PINS_TOO_SLOW;
 	error = passo_driver_ready(passo, plan->line.endless);
@@ -83,13 +80,28 @@ enum passo_error passo_move_plan(
 	if (error == PASSO_OK)
 		error = passo_driver_push_ramps(passo, plan);
 	if (error == PASSO_OK)
-		error = push_line(passo, &plan->line);
+		error = push_line(passo, &line);
 	if (error != PASSO_OK)
 		return error;
 	passo->oversampling = plan->oversampling;
 	passo->velocity_peak = plan->velocity_peak;
 	passo_driver_expect(passo, &plan->line);
 	return PASSO_OK;
+}
+
+enum passo_error passo_move_plan(
+    struct passo *passo, const struct passo_plan *plan, const struct passo_user_shape *shape)
+{
+	enum passo_error error = passo_driver_check(passo);
+
+	if (error != PASSO_OK)
+		return error;
+	if (!plan || (shape && !shape->table))
+		return PASSO_ERROR_ARGUMENT_POINTER;
+	if (plan->ramp_count == 0u || plan->ramp_count > PASSO_PLAN_RAMPS_MAX)
+		return PASSO_ERROR_ARGUMENT_PLAN;
+	error = passo_driver_unfollow(passo);
+	return error != PASSO_OK ? error : passo_driver_queue(passo, plan, shape);
 }
 
 /* Whether a speed, acceleration, jerk or scale, UQ32.32, lacks its factor. */

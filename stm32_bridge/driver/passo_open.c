@@ -37,6 +37,8 @@ static enum passo_error identify(struct passo *passo, const struct passo_options
 	passo->line_places = (uint16_t)(1u << core.line_queue_log2);
 	passo->ramp_places = (uint16_t)(1u << core.ramp_queue_log2);
 	passo->has_inputs = core.inputs;
+	passo->has_outputs = core.outputs;
+	passo->has_encoders = passo->follows = core.encoders;
 	passo->host->channels = core.channels;
 	*run = words[3];
 	return PASSO_OK;
@@ -72,7 +74,9 @@ static enum passo_error make_contact(struct passo *passo, const struct passo_opt
 		if (host->fresh && run == 0u)
 			passo_driver_tables_fresh(host);
 	}
-	error = passo_driver_look(passo, false);
+	error = passo_driver_recall_outputs(passo);
+	if (error == PASSO_OK)
+		error = passo_driver_look(passo, false);
 	const bool is_quiet = passo->snapshot.quiet;
 	if (error == PASSO_OK && is_quiet && !passo_driver_at_rest(passo))
 		error = passo_driver_gate(passo, PASSO_GATE_CLOSED);
@@ -86,7 +90,8 @@ static enum passo_error make_contact(struct passo *passo, const struct passo_opt
 	if (error == PASSO_OK && !host->guarded && passo->has_inputs)
 		error = passo_driver_watchdog(passo, watchdog_of(passo, options), 0);
 	if (error == PASSO_OK && !host->guarded)
-		error = passo_host_guard(host, passo->machine.axes, options->clock_hz);
+		error = passo_host_guard(host,
+		    (uint8_t)(PASSO_LINE_WORDS(passo->machine.axes) + passo->has_outputs), options->clock_hz);
 	return error;
 }
 

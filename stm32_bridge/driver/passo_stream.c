@@ -117,6 +117,8 @@ enum passo_error passo_stream(struct passo *passo, const struct passo_source *so
 		return PASSO_ERROR_ARGUMENT_POINTER;
 	error = passo_driver_ready(passo, true);
 	if (error == PASSO_OK)
+		error = passo_driver_unfollow(passo);
+	if (error == PASSO_OK)
 		error = passo_driver_gate(passo, PASSO_GATE_CLOSED);
 	if (error != PASSO_OK)
 		return error;

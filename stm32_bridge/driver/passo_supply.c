@@ -3,11 +3,6 @@
  */
 #include "passo_driver.h"
 
-static uint32_t line_words(const struct passo *passo)
-{
-	return PASSO_LINE_WORDS((uint32_t)passo->machine.axes);
-}
-
 static uint32_t smaller(uint32_t a, uint32_t b)
 {
 	return a < b ? a : b;
@@ -24,7 +19,7 @@ static uint32_t worthwhile(const struct passo *passo, uint32_t words, uint32_t p
 bool passo_driver_wants_lines(const struct passo *passo)
 {
 	return passo->lines == PASSO_SUPPLY_MORE
-	    && passo->snapshot.line_room >= worthwhile(passo, line_words(passo), passo->line_places);
+	    && passo->snapshot.line_room >= worthwhile(passo, passo->host->line_words, passo->line_places);
 }
 
 bool passo_driver_wants_ramps(const struct passo *passo)
@@ -65,7 +60,8 @@ static bool is_ramp(const struct passo_ramp *ramp)
 
 enum passo_error passo_driver_take_lines(struct passo *passo, size_t *length)
 {
-	const uint32_t most = smaller(passo->snapshot.line_room, PASSO_FRAME_PAYLOAD_MAX / line_words(passo));
+	const uint32_t most =
+	    smaller(passo->snapshot.line_room, PASSO_FRAME_PAYLOAD_MAX / passo->host->line_words);
 	uint32_t *payload = passo_host_payload(passo->host);
 	uint32_t count = 0;
 
@@ -79,7 +75,10 @@ enum passo_error passo_driver_take_lines(struct passo *passo, size_t *length)
 			return PASSO_ERROR_SUPPLY;
 		if (!passo_driver_pins_known(passo, &line))
 			return PASSO_ERROR_NOT_CONFIGURED;
-		*length += passo_line_words(payload + *length, &line, passo->machine.axes);
+		const enum passo_error error = passo_driver_check_output(passo, line.output);
+		if (error != PASSO_OK)
+			return error;
+		*length += passo_driver_line_words(passo, payload + *length, &line);
 		if (line.last)
 			passo->lines = PASSO_SUPPLY_DONE;
 		passo_driver_expect(passo, &line);
