@@ -69,7 +69,7 @@ async def changes_of_duty_and_period_make_no_glitch(dut: HierarchyObject) -> Non
     power, mode = 20000, True
     restarts = {await outputs.motion(word(0, power, proportional=mode))}
     steps: list[int] = [outputs.inputs["pwm_step"]] * len(outputs.seen)
-    for _ in range(patience(20000, 4000)):
+    for _ in range(patience(20000, 10000)):
         if random.random() < 0.003:
             outputs.set(pwm_step=random.randrange(1, (PERIOD >> random.randrange(1, 12)) + 1))
         if random.random() < 0.003:
