@@ -69,7 +69,8 @@ static void drop_line(struct passo_player *player)
 static enum passo_error take_line(struct passo_player *player, enum passo_player_event *event)
 {
 	const struct passo_gcode_action *action = &player->action;
-	struct passo_path_move move = {.feed = action->feed, .output = action->output};
+	const uint32_t output = player->feed->passo->has_outputs ? action->output : 0u;
+	struct passo_path_move move = {.feed = action->feed, .output = output};
 
 	if (!is_within_travel(player, action->target)) {
 		*event = PASSO_PLAYER_TRAVEL;
