@@ -158,7 +158,7 @@ async def power_in_proportion_to_the_velocity(dut: HierarchyObject) -> None:
         for velocity, rate in SPEEDS:
             outputs.set(velocity=min(HALF, top * velocity // 100), rate=RATE_ONE * rate // 100)
             await outputs.motion(word(0, power, proportional=True))
-            await outputs.run(300)
+            await outputs.run(200)
             first = len(outputs.seen)
             await outputs.run(clocks)
             share = Fraction(sum(outputs.seen.power[first:]), clocks)
@@ -207,7 +207,7 @@ async def a_stop_drops_what_waits(dut: HierarchyObject) -> None:
     await outputs.run(3)
     outputs.set(stopped=0)
     outputs.set(running=1, running_next=1)
-    await outputs.run(300)
+    await outputs.run(200)
     assert 3 not in outputs.seen.outputs and 1 not in outputs.seen.power
     assert outputs.now["quiet"] == 1 and outputs.now["raster_room"] == 256
 

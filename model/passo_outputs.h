@@ -35,8 +35,7 @@ struct passo_pwm {
 };
 
 struct passo_power {
-	uint8_t count; /* of steps of two clocks */
-	bool adds;     /* the second clock of a step */
+	uint8_t count;
 	bool too_large;
 	uint32_t factor, high, low;
 	uint32_t cost; /* UQ0.24 */

@@ -34,14 +34,9 @@ void passo_power_clock(struct passo_power *power, const struct passo_outputs_wir
 {
 	if (!moves) {
 		power->count = 0;
-		power->adds = false;
 		power->cost = 0;
 		return;
 	}
-	/* a step in its first clock; nothing of it is seen before the second is over */
-	power->adds = !power->adds;
-	if (!power->adds)
-		return;
 	if (power->count == SAMPLE) {
 		power->factor = wires->velocity;
 		power->high = 0;

@@ -3,19 +3,18 @@
 //
 //   cost = pwm_step * power_reference / (velocity * rate)
 //
-// One bit-serial unit multiplies and divides, over and over while something moves. A step takes two clocks: the first
-// shifts and chooses what to add, the second adds.
+// One bit-serial unit multiplies and divides, over and over while something moves:
 //
-//   step     0          velocity and rate are sampled
+//   clock    0          velocity and rate are sampled
 //         1 .. 17       velocity * rate
 //        18             pwm_step is sampled
 //        19 .. 43       pwm_step * power_reference
 //        44             is the quotient too large?
-//        45 .. 68       the division, non-restoring
+//        45 .. 68       the division
 //        69             the new cost
 //
-// Promise: `cost` follows velocity and rate within 280 clocks. It is the quotient of pwm_step * power_reference / 2,
-// rounded down, and velocity * rate / 2, rounded down; 2^24 - 1 if that is more; 0 for 139 clocks when `moves` has risen.
+// Promise: `cost` follows velocity and rate within 140 clocks. It is the quotient of pwm_step * power_reference / 2,
+// rounded down, and velocity * rate / 2, rounded down; 2^24 - 1 if that is more; 0 for 70 clocks when `moves` has risen.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -35,61 +34,49 @@ module passo_power (
   localparam [6:0] CHECK = 7'd44;
   localparam [6:0] DONE = 7'd69;
 
-  // What a step adds
-  localparam [1:0] NOTHING = 2'd0;
-  localparam [1:0] FACTOR = 2'd1;
-  localparam [1:0] REFERENCE = 2'd2;
-  localparam [1:0] MINUS_FACTOR = 2'd3;
-
-  reg [ 6:0] count;  // of steps
-  reg        adds;  // the second clock of a step
+  reg [ 6:0] count;
   reg        multiplies_step;  // from SAMPLE_STEP on
   reg        divides;  // from CHECK on
-  reg        shifts_left;  // after it
+  reg        checks;
+  reg        too_large;
   reg [31:0] factor;  // velocity, then velocity * rate
-  reg [32:0] shifted;
-  reg [32:0] addend;  // one's complement
-  reg [32:0] sum;  // two's complement in the division
-  reg [24:0] low;  // multiplier or dividend, and what follows it: product or quotient
+  reg [31:0] high;
+  reg [24:0] low;
 
-  wire samples = count == 7'd0;
-  wire samples_step = count == SAMPLE_STEP;
-  wire ends = count == DONE;
-  wire loads = samples | samples_step;
-  wire fits = ~sum[32];  // a bit of the quotient
-  wire [ 1:0] pick =
-    loads   ? NOTHING :
-    divides ? (fits ? MINUS_FACTOR : FACTOR) :
-    !low[0] ? NOTHING : multiplies_step ? REFERENCE : FACTOR;
+  wire [32:0] left = divides && !checks ? {high, low[24]} : {1'b0, high};
+  wire [31:0] addend = (multiplies_step ? power_reference : factor) & {32{low[0]}};
+  wire [32:0] right = divides ? {1'b1, ~factor} : {1'b0, addend};
+  wire [33:0] sum = {1'b0, left} + {1'b0, right} + {33'd0, divides};
+  wire        fits = sum[33];  // no borrow
 
   always @(posedge clk) begin
-    adds <= !adds;
-    sum  <= shifted + addend + {32'd0, addend[32]};
-    if (!adds) begin
-      count           <= ends ? 7'd0 : count + 7'd1;
-      multiplies_step <= (multiplies_step | samples_step) & ~ends;
-      divides         <= (divides | count == CHECK - 7'd1) & ~ends;
-      shifts_left     <= divides & ~ends;
-      shifted         <= loads ? 33'd0 : shifts_left ? {sum[31:0], low[24]} : {1'b0, sum[32:1]};
-      case (pick)
-        NOTHING:   addend <= 33'd0;
-        FACTOR:    addend <= {1'b0, factor};
-        REFERENCE: addend <= {1'b0, power_reference};
-        default:   addend <= {1'b1, ~factor};
-      endcase
-      if (samples) low <= {8'd0, rate};
-      else if (samples_step) low <= {1'b0, pwm_step};
-      else if (shifts_left) low <= {low[23:0], fits};
-      else low <= {sum[0], low[24:1]};
-      if (loads) factor <= samples ? velocity : sum[32:1];
-      if (ends) cost <= low[23] ? 24'hFFFFFF : {low[22:0], fits};
+    count           <= count == DONE ? 7'd0 : count + 7'd1;
+    checks          <= count == CHECK - 7'd1;
+    divides         <= count >= CHECK - 7'd1 && count != DONE;
+    multiplies_step <= count >= SAMPLE_STEP && count != DONE;
+    if (count == 7'd0) begin
+      factor <= velocity;
+      high   <= 32'd0;
+      low    <= {8'd0, rate};
+    end else if (count == SAMPLE_STEP) begin
+      factor <= high;
+      high   <= 32'd0;
+      low    <= {1'b0, pwm_step};
+    end else if (checks) begin
+      too_large <= fits;
+    end else if (divides) begin
+      high <= fits ? sum[31:0] : left[31:0];
+      low  <= {low[23:0], fits};
+    end else begin
+      high <= sum[32:1];
+      low  <= {sum[0], low[24:1]};
     end
+    if (count == DONE) cost <= too_large ? 24'hFFFFFF : low[23:0];
     if (rst || !moves) begin
       count           <= 7'd0;
-      adds            <= 1'b0;
-      multiplies_step <= 1'b0;
+      checks          <= 1'b0;
       divides         <= 1'b0;
-      shifts_left     <= 1'b0;
+      multiplies_step <= 1'b0;
       cost            <= 24'd0;
     end
   end

@@ -13,7 +13,7 @@ from passo.machine_file import read_machine
 from passo.run import open_engine, parameters_for
 from passo.toolchain import paths
 
-MACHINE = read_machine(paths.examples / "machine.toml")
+MACHINE = read_machine(paths.examples / "gcode" / "machine.toml")
 RX = 128  # bytes that senders count with
 
 

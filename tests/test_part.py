@@ -17,8 +17,8 @@ from passo.toolchain import paths
 
 from benchmarks.path_reference import seconds
 
-MACHINE = paths.examples / "machine.toml"
-PART = paths.examples / "part.nc"
+MACHINE = paths.examples / "gcode" / "machine.toml"
+PART = paths.examples / "gcode" / "part.nc"
 
 
 def play(folder: Path, text: str, engine: str = "model", look_ahead: int = 48) -> Played:

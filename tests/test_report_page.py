@@ -20,6 +20,7 @@ from passo.toolchain import paths
 from tests.helpers.browser import Browser
 
 READY = "passo && passo.ready"
+MOVES = sorted(path for path in paths.examples.glob("*.toml") if not read_channels(path).setup)
 LARGE = """
 clock_hz = 100_000_000
 [[move]]
@@ -55,7 +56,7 @@ def numbers(browser: Browser, expression: str) -> np.ndarray:
     return np.array(browser.value(f"Array.from({expression}, v => isNaN(v) ? null : v)"), float)
 
 
-@pytest.mark.parametrize("name", [path.stem for path in sorted(paths.examples.glob("*.toml"))])
+@pytest.mark.parametrize("name", [path.stem for path in MOVES])
 def test_it_has_every_edge_and_the_ideal_curve(browser: Browser, tmp_path: Path, name: str) -> None:
     runs = report(paths.examples / f"{name}.toml", tmp_path / "page.html")
     shown(browser, tmp_path / "page.html")

@@ -9,12 +9,13 @@ import zlib
 from pathlib import Path
 
 from passo import __version__
+from passo.build import engine_sources
 from passo.compiler import BuildError, cached, call, headers, includes, sources
 from passo.report_page import SCRIPTS, page
 from passo.toolchain import paths
 
 FOLDERS = (paths.model, paths.protocol, paths.planner, paths.driver, paths.console)
-ENGINE = ("engine.c", "engine_model.c", "passo_terminal.c", "passo_web.c")
+OWN = ("engine_model.c", "passo_terminal.c", "passo_web.c")
 # The warnings are those of GCC, which compiles the same sources elsewhere: Clang has others.
 FLAGS = ("--target=wasm32-wasi", "-mexec-model=reactor", "-std=c11", "-O2", "-s")
 
@@ -23,7 +24,7 @@ def module() -> Path:
     """The WebAssembly module."""
     if importlib.util.find_spec("ziglang") is None:
         raise BuildError("the Python package 'ziglang' is missing: run 'tools/setup.sh web'")
-    files = [*sources(*FOLDERS), *(paths.engine / name for name in ENGINE)]
+    files = [*sources(*FOLDERS), *engine_sources(), *(paths.engine / name for name in OWN)]
     flags = [*FLAGS, *includes(*FOLDERS, paths.engine)]
 
     def make(folder: Path) -> None:
