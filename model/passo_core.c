@@ -208,15 +208,20 @@ static void restart(struct passo_core *core, const struct passo_core *before)
 		passo_channel_restart(&core->channel[i], &before->channel[i], &parameters, &inputs);
 }
 
+static void clock_in_reset(struct passo_core *core, const struct passo_inputs *inputs)
+{
+	const struct passo_core before = *core;
+
+	clock_all(core, inputs);
+	restart(core, &before);
+}
+
 void passo_core_clock(struct passo_core *core, const struct passo_inputs *inputs)
 {
-	if (inputs->rst) {
-		const struct passo_core before = *core;
+	if (inputs->rst)
+		clock_in_reset(core, inputs);
+	else
 		clock_all(core, inputs);
-		restart(core, &before);
-	} else {
-		clock_all(core, inputs);
-	}
 	gather_outputs(core);
 }
 

@@ -256,7 +256,7 @@ int main(int count, char **arguments)
 			bench.waited += waits;
 			for (uint32_t round = fill < FILLS ? 0 : draw(4); round > 0; round--) {
 				passo_terminal_poll(terminal);
-				advance(&bench, draw(8000));
+				advance(&bench, draw(4) ? draw(400) : draw(8000));
 			}
 			waits = check(&bench, terminal, waits, false, line);
 		}
