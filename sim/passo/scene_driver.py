@@ -8,15 +8,17 @@ import numpy as np
 from passo import registers as r
 from passo.driver import Driver
 from passo.link import error_text
-from passo.move_forms import USER_BANK, MoveHome, MoveProbe
+from passo.move_forms import USER_BANK, MachineEncoder, MoveHome, MoveProbe
 from passo.moves import MoveFile, Task, q32
-from passo.native import ffi
+from passo.native import ffi, planner
 from passo.plan import Plan, table_of
 from passo.registers import TriggerSource
 from passo.rig import RATIO_ONE
 from passo.run import SLEWS_PER_SECOND, RunError
 from passo.scene_run import sampled_at
 from passo.setup import Setup
+
+STOPS = {"none": "PASSO_FOLLOWING_SHOW", "soft": "PASSO_FOLLOWING_SOFT", "hard": "PASSO_FOLLOWING_HARD"}
 
 
 class SceneDriver(Driver):
@@ -43,13 +45,8 @@ class SceneDriver(Driver):
         if table := table_of(plans):
             self.call("load_table", USER_BANK, table)
         for encoder in setup.encoders:
-            ratio = round(encoder.counts_per_step * RATIO_ONE)
-            limit = round(encoder.limit * encoder.counts_per_step) if encoder.limit else r.ENCODER_LIMIT_RESET
-            stops = bool(encoder.limit)
-            word = (stops and encoder.stop == "soft") << r.ENCODER_SETUP_STOP_SOFT_LSB
-            word |= (stops and encoder.stop == "hard") << r.ENCODER_SETUP_STOP_HARD_LSB
-            self.write(r.CHANNEL_ENCODER_FILTER, encoder.filter)
-            self.write(_encoder_base(encoder.axis) + r.ENCODER_SETUP, word, ratio, limit)
+            self.call("configure_encoder_filter", encoder.filter)
+            self.call("configure_encoder", encoder.axis, _encoder_config(encoder))
 
     def begin(self, move: Task) -> None:
         """Begin a home or a probe."""
@@ -95,8 +92,9 @@ class SceneDriver(Driver):
 
     def greatest(self, axis: int, counts_per_step: float) -> float:
         """Greatest following error of an axis in steps."""
-        (word,) = self.read(_encoder_base(axis) + r.ENCODER_GREATEST, 1)
-        return (word & ((1 << r.ENCODER_GREATEST_GREATEST_BITS) - 1)) / counts_per_step
+        reading = ffi().new("struct passo_encoder_reading *")
+        self.call("read_encoder", axis, reading)
+        return reading.greatest / counts_per_step
 
     def read(self, address: int, length: int) -> list[int]:
         """Read registers of the channel."""
@@ -105,19 +103,20 @@ class SceneDriver(Driver):
         self._wire(self.lib.passo_host_read(self.host, address, words, length))
         return list(words)
 
-    def write(self, address: int, *words: int) -> None:
-        """Write registers of the channel."""
-        address += r.ADDRESS_CHANNEL_BASE
-        self._wire(self.lib.passo_host_write(self.host, address, words, len(words)))
-
     def _wire(self, error: int) -> None:
         self.hardware.check()
         if error:
             raise RunError(error_text(error))
 
 
-def _encoder_base(axis: int) -> int:
-    return r.CHANNEL_ENCODER_BASE + axis * r.CHANNEL_ENCODER_STRIDE
+def _encoder_config(encoder: MachineEncoder) -> Any:
+    """The `struct passo_encoder_config`."""
+    ratio = round(encoder.counts_per_step * RATIO_ONE)
+    fields = {"ratio": ratio, "limit": r.ENCODER_LIMIT_RESET}
+    if encoder.limit:
+        limit, stop = round(encoder.limit * encoder.counts_per_step), STOPS[encoder.stop]
+        fields |= {"limit": limit, "stop": getattr(planner(), stop)}
+    return ffi().new("struct passo_encoder_config *", fields)
 
 
 def _input_config(setup: Setup, axis: int) -> Any:
