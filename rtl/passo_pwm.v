@@ -28,28 +28,27 @@ module passo_pwm (
 );
 
   reg [23:0] phase;  // of the period, one clock ahead
-  reg        pays;  // a period begins
-  reg        spends;
+  reg        fresh;  // nothing is left of before: a period begins, whatever credit and paid are
+  reg [16:0] paid;  // in this clock, if not fresh: power is that of the clock before
   reg [23:0] cost_now;
-  reg [25:0] credit;  // less 1, signed: on while it is not negative
+  reg [25:0] credit;  // less 1, signed: the pin is on while it is not negative
 
-  wire        renew = restart | ~go | rst;  // nothing is left of before
+  wire        renew = restart | ~go | rst;
   wire [24:0] phase_next = {1'b0, phase} + {1'b0, step};
-  wire [25:0] paid = {2'd0, power, {8{power[15]}}} & {26{pays}};  // less power[15]
-  wire [25:0] spent = {2'd0, cost_now} & {26{spends}};
-  wire [25:0] sum = credit + paid - spent + {25'd0, pays & power[15]};
+  wire [16:0] duty = {1'b0, power} + {16'd0, power[15]};
+  wire [16:0] duty_less = {1'b0, power} + {17{~power[15]}};  // by 1
+  wire [25:0] spent = {2'd0, cost_now & {24{pin}}};
+  wire [25:0] balance = credit + {1'b0, paid, 8'd0} - spent;
+  wire [25:0] sum = fresh ? {duty_less[16], duty_less, 8'hFF} : balance;
 
   always @(posedge clk) begin
     phase    <= phase_next[23:0];
-    pays     <= renew | phase_next[24];
-    spends   <= ~renew & ~sum[25];
+    fresh    <= renew;
+    paid     <= phase_next[24] ? duty : 17'd0;
     cost_now <= proportional && cost > step ? cost : step;
     credit   <= sum;
     pin      <= go & ~sum[25];
-    if (renew) begin
-      phase  <= 24'd0;
-      credit <= 26'h3FFFFFF;
-    end
+    if (renew) phase <= 24'd0;
     if (rst) pin <= 1'b0;
   end
 
