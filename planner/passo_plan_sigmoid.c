@@ -9,6 +9,8 @@
 
 /* UQ1.62 */
 #define ONE_Q62 (UINT64_C(1) << 62)
+/* Half of the last point, UQ32.32 */
+#define HALF_Q32 (UINT64_C(32768) << 32)
 
 static const uint32_t MIDDLE = PASSO_TABLE_SIZE / 2;
 
@@ -37,29 +39,41 @@ static uint64_t tanh_of_half(uint64_t e)
 
 /* With the middle as the origin and d points from it the scaled logistic function is
  *
- *   1/2 + tanh(alpha d / 256) / (2 tanh(alpha / 2))
- * Only the upper half is computed; the lower half is its exact mirror image. */
+ *   1/2 - t / (2 t0),  t = tanh(alpha d / 256),  t0 = tanh(alpha / 2)
+ *
+ * The points keep the area from the start to each of them as close to that of the curve as integers can, as
+ * in tools/generate_shapes.py. By Euler and Maclaurin the area below the curve is that below its exact
+ * points, less 1/12 of what its slope has grown. Only the lower half is computed; the upper half is its exact
+ * mirror image. */
 enum passo_plan_error passo_sigmoid_table(uint32_t alpha, uint16_t table[PASSO_TABLE_SIZE])
 {
 	if (alpha < ALPHA_MIN || alpha > ALPHA_MAX)
 		return PASSO_PLAN_BAD_ALPHA;
 
-	/* exp(-alpha / 128): multiplied once more for each point from the middle */
-	uint64_t step = exp_minus(ONE_Q62 / ((uint64_t)PASSO_ALPHA_ONE * MIDDLE) * alpha);
-	uint64_t last = ONE_Q62;
-	for (uint32_t d = 0; d < MIDDLE; d++)
-		last = multiply_q62(last, step);
-	uint64_t scale = tanh_of_half(last);
-
+	/* exp(-alpha / 128), once for each point from the middle */
+	const uint64_t step = exp_minus(ONE_Q62 / ((uint64_t)PASSO_ALPHA_ONE * MIDDLE) * alpha);
+	const uint64_t back = passo_mul_div(ONE_Q62, ONE_Q62, step);
 	uint64_t e = ONE_Q62;
-	table[0] = 0;
-	for (uint32_t d = 0; d < MIDDLE; d++) {
-		const uint32_t half = 65536 / 2;
-		uint32_t above = ((uint32_t)passo_mul_div(tanh_of_half(e), 65536, scale) + 1) / 2;
-		table[MIDDLE + d] = (uint16_t)(half + above);
-		table[MIDDLE - d] = (uint16_t)(half - above);
+	for (uint32_t d = 0; d < MIDDLE; d++)
 		e = multiply_q62(e, step);
+	const uint64_t t0 = tanh_of_half(e);
+
+	uint64_t exact = 0, given = 0; /* sums of points, UQ32.32 */
+	for (uint32_t k = 0; k < MIDDLE; k++) {
+		const uint64_t t = tanh_of_half(e);
+		const uint64_t value = passo_mul_div(t0 - t, HALF_Q32, t0);
+		const uint64_t slope =
+		    passo_mul_div(multiply_q62(value, t0 + t), alpha, UINT64_C(3072) * PASSO_ALPHA_ONE);
+
+		exact += value;
+		const uint64_t point = (exact - slope - given + (1u << 31)) >> 32;
+		given += point << 32;
+		table[k] = (uint16_t)point;
+		if (k > 0)
+			table[PASSO_TABLE_SIZE - k] = (uint16_t)(65536u - point);
+		e = multiply_q62(e, back);
 	}
+	table[MIDDLE] = 65536u / 2;
 	return PASSO_PLAN_OK;
 }
 

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Generate the pulse shapes: rtl/passo_shapes.vh, protocol/passo_shapes.h and protocol/passo_shapes.c.
 
-A bank has 256 points: point k is shape(k / 256) * 65536, rounded to the nearest integer. Point 256 is always
-65536 and not stored. The values are computed with 50 decimal digits, so they are the same on every machine.
+A bank has 256 points: point k is shape(k / 256) * 65536. Point 256 is always 65536 and not stored. What
+a ramp travels is the area below the straight lines between its points, so the points of an S-curve are
+not rounded each by itself: they keep the area from the start to each of them as close to that of the
+curve as integers can. The values are computed with 50 decimal digits, so they are the same on every
+machine.
 With ``--check`` nothing is written; the exit status is 1 if a committed file is out of date.
 """
 
@@ -28,9 +31,18 @@ PI = Decimal("3.14159265358979323846264338327950288419716939937510582097494")
 
 
 def _cos(x: Decimal) -> Decimal:
-    """Return the cosine of ``x``, 0 .. pi, from its power series."""
-    total = term = Decimal(1)
-    n = 0
+    """Return the cosine of ``x``, 0 .. pi."""
+    return _series(x, Decimal(1), 0)
+
+
+def _sin(x: Decimal) -> Decimal:
+    """Return the sine of ``x``, 0 .. pi."""
+    return _series(x, x, 1)
+
+
+def _series(x: Decimal, term: Decimal, n: int) -> Decimal:
+    """Return the power series of the cosine or sine from its first term, that of degree n."""
+    total = term
     while abs(term) > Decimal(10) ** -DIGITS:
         term *= -x * x / ((n + 1) * (n + 2))
         total += term
@@ -53,22 +65,43 @@ def sigmoid(u: Decimal) -> Decimal:
     return (_logistic(SIGMOID_A * (2 * u - 1)) - low) / (high - low)
 
 
-def ease(u: Decimal) -> Decimal:
-    """u^2"""
-    return u * u
+def cosine_area(u: Decimal) -> Decimal:
+    """Return the integral of the cosine shape from 0 to u."""
+    return (u - _sin(PI * u) / PI) / 2
 
 
-def points(shape: Callable[[Decimal], Decimal]) -> list[int]:
-    """Return the 256 stored points of a shape."""
+def sigmoid_area(u: Decimal) -> Decimal:
+    """Return the integral of the sigmoid shape from 0 to u."""
+    a = Decimal(SIGMOID_A)
+    low, high = _logistic(-a), _logistic(a)
+    area = ((1 + (a * (2 * u - 1)).exp()).ln() - (1 + (-a).exp()).ln()) / (2 * a)
+    return (area - low * u) / (high - low)
+
+
+def points(shape: Callable[[Decimal], Decimal], area: Callable[[Decimal], Decimal]) -> list[int]:
+    """Return the 256 stored points of a shape with point symmetry.
+
+    The area below the lines up to point k is the sum of all points up to it less half of point k, in points.
+    From the start to the middle each point is the one that brings this sum closest to the area below the
+    curve and half the value of the curve; the other half is the mirror image.
+    """
     with localcontext() as context:
         context.prec = DIGITS + 10
-        values = [shape(Decimal(k) / POINTS) * ONE for k in range(POINTS)]
-        return [int(value.to_integral_value(ROUND_HALF_EVEN)) for value in values]
+        half: list[int] = []
+        for k in range(POINTS // 2):
+            u = Decimal(k) / POINTS
+            wanted = (area(u) * POINTS + shape(u) / 2) * ONE - sum(half)
+            half.append(int(wanted.to_integral_value(ROUND_HALF_EVEN)))
+    return [*half, ONE // 2, *(ONE - point for point in half[:0:-1])]
 
 
 def banks() -> dict[str, list[int]]:
     """Return banks 1, 2 and 3, in this order, by name."""
-    result = {"cosine": points(cosine), "sigmoid": points(sigmoid), "ease": points(ease)}
+    result = {
+        "cosine": points(cosine, cosine_area),
+        "sigmoid": points(sigmoid, sigmoid_area),
+        "ease": [k * k for k in range(POINTS)],
+    }
 
     for name, table in result.items():
         whole = [*table, ONE]
@@ -76,7 +109,6 @@ def banks() -> dict[str, list[int]]:
         # Point symmetry: the mean velocity of such a ramp is exactly the mean of its ends.
         if name != "ease":
             assert all(whole[k] + whole[POINTS - k] == ONE for k in range(POINTS + 1)), name
-    assert result["ease"] == [k * k for k in range(POINTS)]
     return result
 
 
@@ -117,8 +149,9 @@ def c_header() -> str:
 #define PASSO_BANKS {len(names)}u
 #define PASSO_BANK_POINTS {POINTS}u
 
-/* Points of banks 1 to {len(names)} ({", ".join(names)}) in UQ0.16: point k is shape(k / 256) * 65536,
- * rounded. Point 256 is always 65536 and not stored. */
+/* Points of banks 1 to {len(names)} ({", ".join(names)}) in UQ0.16: point k is shape(k / 256) * 65536 to
+ * within 2, so that the area below the points is that of the shape.
+ * Point 256 is always 65536 and not stored. */
 extern const uint16_t passo_shapes[PASSO_BANKS][PASSO_BANK_POINTS];
 /* Address of the first point of each. */
 extern const uint16_t passo_shape_addresses[PASSO_BANKS];
