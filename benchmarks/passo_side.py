@@ -16,7 +16,7 @@ from passo.plan import ALPHA_ONE, ALPHA_RESET, Q48, Plan, plan_move
 from passo.registers import Shape
 
 from benchmarks import sources
-from benchmarks.ideal import Ideal, Phase, by_speed, in_time, shape_value
+from benchmarks.ideal import Ideal, Phase, by_speed, in_time, shape_area, shape_value
 from benchmarks.sources import MILLISECONDS, Cosine, MultiAxis, Pulses, Sigmoid, Trapezoid
 
 CLOCK_HZ = 100_000_000
@@ -99,11 +99,22 @@ def library() -> tuple[FFI, Any]:
     return own, own.dlopen(str(compiler.library("steps", (), [SOURCE], "-std=gnu11", "-O3")))
 
 
+def _points(shape: str, alpha: float) -> np.ndarray:
+    """A bank as defined in docs/architecture.md: S-curves by area, the first half of the bank mirrored."""
+    u = np.arange(257) / 256
+    value = shape_value(shape, alpha, u)
+    if shape == "ease":
+        return np.rint(65536 * value)
+    # sum of the points up to each: the area below the lines, in points, and half of the last
+    sums = np.rint(65536 * (256 * shape_area(shape, alpha, u) + value / 2))
+    half = np.diff(sums[:128], prepend=0)
+    return np.concatenate([half, [32768], 65536 - half[::-1]])
+
+
 @cache
 def tables(alpha: float) -> np.ndarray:
-    """Banks 1 to 3 as defined in docs/architecture.md, 257 points each; the sigmoid for any alpha."""
-    u = np.arange(257) / 256
-    return np.array([np.rint(65536 * shape_value(name, alpha, u)) for name in SHAPES[1:]], dtype=np.uint32)
+    """Banks 1 to 3, 257 points each; the sigmoid for any alpha."""
+    return np.array([_points(shape, alpha) for shape in SHAPES[1:]], dtype=np.uint32)
 
 
 def step_substeps(substeps: int, steps: int) -> np.ndarray:

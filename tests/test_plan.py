@@ -565,7 +565,8 @@ def test_table_values() -> None:
     }
     for bank, function in shapes.items():
         for k, point in enumerate(tables()[bank]):
-            assert abs(point - function(k / 256) * 65536) <= 0.5 + 1e-9
+            # the points of S-curves are chosen by the area below them
+            assert abs(point - function(k / 256) * 65536) <= (0.5 if bank == EASE else 2) + 1e-9
     for bank in (COSINE, SIGMOID):
         t = tables()[bank]
         assert all(t[k] + t[256 - k] == 65536 for k in range(257))

@@ -2,7 +2,7 @@
 """Shapes in integers, from the formulas of docs/architecture.md."""
 
 from collections.abc import Sequence
-from math import cos, exp, pi
+from math import cos, exp, log1p, pi, sin
 
 from passo.registers import Shape
 
@@ -15,15 +15,29 @@ def _logistic(x: float) -> float:
     return 1 / (1 + exp(-x))
 
 
+def _cosine(u: float) -> tuple[float, float]:
+    """The shape, and the area below it from 0 to u."""
+    return (1 - cos(pi * u)) / 2, (u - sin(pi * u) / pi) / 2
+
+
+def _sigmoid(u: float) -> tuple[float, float]:
+    low, high = _logistic(-5), _logistic(5)
+    area = log1p(exp(5 * (2 * u - 1))) - log1p(exp(-5))
+    return (_logistic(5 * (2 * u - 1)) - low) / (high - low), (area / 10 - low * u) / (high - low)
+
+
 def loaded_table(shape: Shape) -> list[int]:
     """Table of a shape after configuration, including point 256."""
-    low, high = _logistic(-5), _logistic(5)
-    formulas = {
-        Shape.COSINE: lambda u: (1 - cos(pi * u)) / 2,
-        Shape.SIGMOID: lambda u: (_logistic(5 * (2 * u - 1)) - low) / (high - low),
-        Shape.EASE: lambda u: u * u,
-    }
-    return [round(formulas[shape](k / POINTS) * 65536) for k in range(POINTS + 1)]
+    if shape == Shape.EASE:
+        return [k * k for k in range(POINTS + 1)]
+    curve = {Shape.COSINE: _cosine, Shape.SIGMOID: _sigmoid}[shape]
+    table: list[int] = []
+    for k in range(POINTS // 2 + 1):
+        value, area = curve(k / POINTS)
+        # the area below the lines: all points so far, less half of the last
+        table.append(round(65536 * (POINTS * area + value / 2)) - sum(table))
+    table[POINTS // 2] = 32768
+    return table + [65536 - point for point in reversed(table[: POINTS // 2])]
 
 
 def evaluate(progress: int, table: Sequence[int] | None) -> int:
