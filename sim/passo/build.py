@@ -23,14 +23,16 @@ from passo.pins import CoreParameters
 from passo.toolchain import environment, paths
 
 ENGINE_FLAGS = (*STRICT, "-O3", "-fPIC", *includes(paths.engine, paths.model))
-CPP_FLAGS = ("-std=gnu++17", "-O3", "-Wall", "-fPIC", "-fno-gnu-unique", *includes(paths.engine, paths.model))
+CPP_FLAGS = ("-std=gnu++17", "-O2", "-Wall", "-fPIC", "-fno-gnu-unique", *includes(paths.engine, paths.model))
 
 # Every register of the core has a reset, so the value chosen for X does not matter.
+TOP = "passo_spi_top"
 VERILATOR_FLAGS = (
-    *("--cc", "--build", "-j", "2", "-O3", "--x-assign", "fast", "--x-initial", "fast"),
-    *("--no-timing", "--no-assert", "--top-module", "passo_spi_top", "--prefix", "Vpasso_spi_top"),
-    *("-CFLAGS", "-fPIC -fno-gnu-unique"),
+    *("--cc", "-O3", "--x-assign", "fast", "--x-initial", "fast", "--no-timing", "--no-assert"),
+    *("--prefix", f"V{TOP}", "-CFLAGS", "-fPIC -fno-gnu-unique"),
 )
+WAVES_FLAGS = ("--trace-fst", "--no-trace-params")  # without the constants of the registers, in every module
+MAKEFILE, MODEL, RUNTIME = f"V{TOP}.mk", f"V{TOP}__ALL.a", "libverilated.a"
 
 
 @dataclass(frozen=True)
@@ -100,7 +102,7 @@ def rtl_library(parameters: Parameters, waves: bool = False) -> Path:
     c_parts, cpp_part = engine_sources(), paths.engine / "engine_rtl.cpp"
     defines = [f"-DPASSO_CORE_{name.upper()}={value}" for name, value in asdict(parameters).items()]
     flags = [*CPP_FLAGS, *defines, f"-I{verilated}", f"-isystem{include}", f"-isystem{include / 'vltstd'}"]
-    archives = [str(verilated / "Vpasso_spi_top__ALL.a"), str(verilated / "libverilated.a"), "-pthread"]
+    archives = [str(verilated / MODEL), str(_runtime(waves) / RUNTIME), "-pthread"]
     if waves:
         flags.append("-DPASSO_WAVES")
         archives += ["-llz4", "-lz"]
@@ -127,20 +129,34 @@ def waves_possible() -> bool:
 
 def _verilated(parameters: Parameters, waves: bool) -> Path:
     """The folder with the compiled C++ that Verilator generates from the core."""
+    if waves and not waves_possible():
+        raise BuildError("waves need lz4.h and zlib.h: install the Debian packages liblz4-dev and zlib1g-dev")
     modules = sorted(paths.rtl.glob("*.v"))
-    flags = [*VERILATOR_FLAGS, *(f"-G{name}={value}" for name, value in parameters.verilog().items())]
-    # With waves, more optimization takes longer than it saves.
-    optimize = "OPT_FAST=-O1 OPT_SLOW=-O0" if waves else "OPT_FAST=-O3 OPT_SLOW=-O1 OPT_GLOBAL=-O2"
-    flags += ["-MAKEFLAGS", optimize]
-    if waves:
-        flags += ["--trace-fst", "--no-trace-params"]  # the constants of the registers, in every module
-        if not waves_possible():
-            raise BuildError(
-                "waves need lz4.h and zlib.h: install the Debian packages liblz4-dev and zlib1g-dev"
-            )
+    # More optimization takes longer than it saves; several channels in one function take much longer.
+    optimize = ("OPT_FAST=-O1" if waves or parameters.channels > 1 else "OPT_FAST=-O2", "OPT_SLOW=-O0")
+    chosen = (f"-G{name}={value}" for name, value in parameters.verilog().items())
+    flags = [*_verilator_flags(waves), "--top-module", TOP, *chosen]
 
     def make(folder: Path) -> None:
         call(["verilator", *flags, f"-I{paths.rtl}", "--Mdir", folder, *modules])
+        call(["make", "-C", folder, "-f", MAKEFILE, MODEL, *optimize])
 
     name = f"verilated_{parameters.name}{'_waves' if waves else ''}"
-    return cached(name, [*modules, *sorted(paths.rtl.glob("*.vh"))], flags, make)
+    return cached(name, [*modules, *sorted(paths.rtl.glob("*.vh"))], [*flags, *optimize], make)
+
+
+def _runtime(waves: bool) -> Path:
+    """The folder with Verilator's runtime, which takes as long to compile as a core: once for all of them."""
+    flags = _verilator_flags(waves)
+
+    def make(folder: Path) -> None:
+        empty = folder / "empty.v"
+        empty.write_text("module empty; endmodule\n")
+        call(["verilator", *flags, "--Mdir", folder, empty])
+        call(["make", "-C", folder, "-f", MAKEFILE, RUNTIME, "OPT_GLOBAL=-O1"])
+
+    return cached(f"verilator_runtime{'_waves' if waves else ''}", [], [version("verilator"), *flags], make)
+
+
+def _verilator_flags(waves: bool) -> list[str]:
+    return [*VERILATOR_FLAGS, *(WAVES_FLAGS if waves else ())]

@@ -114,20 +114,16 @@ def cached(name: str, inputs: Iterable[Path], flags: Sequence[str], make: Callab
     libraries.mkdir(parents=True, exist_ok=True)
     with _lock(libraries / f"{name}.lock"):
         if not folder.exists():
-            print(f"Building {name} ...", end="", flush=True)
+            print(f"Building {name} ...", flush=True)
             began = time.monotonic()
             with tempfile.TemporaryDirectory(prefix=f"{name}.", dir=libraries) as temporary:
                 work = Path(temporary) / "work"
                 work.mkdir()
-                try:
-                    make(work)
-                except BuildError:
-                    print(" failed", flush=True)
-                    raise
+                make(work)
                 for stale in libraries.glob(f"{name}-*"):
                     shutil.rmtree(stale)
                 work.rename(folder)
-            print(f" {time.monotonic() - began:.1f} s", flush=True)
+            print(f"Built {name} in {time.monotonic() - began:.1f} s", flush=True)
     return folder
 
 

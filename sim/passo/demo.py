@@ -2,17 +2,18 @@
 """The demonstration: all of examples/ on both engines, with pictures, tables and an overview."""
 
 import sys
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from typing import Any
 
+from passo.build import model_library, planner_library, rtl_library
 from passo.console import console, progress, table
 from passo.move_file import read_channels
 from passo.plan import plan_channels
 from passo.plot import plot_file, plot_overview
 from passo.plot_scene import plot_scene
-from passo.report import problems, summarize_channels, write_json, write_pulses
+from passo.report import summarize_channels, write_json, write_pulses
 from passo.report_page import write_page
-from passo.run import Run, execute_channels, open_engine, parameters_for, parameters_of
+from passo.run import Run, execute_channels, open_engine, parameters_of
 from passo.scene import Scene, scene_parameters
 from passo.scene_report import summarize_scene, write_scene_pulses
 from passo.toolchain import paths
@@ -22,6 +23,7 @@ EXAMPLES = (
     *("three_axes", "cosine", "sigmoid", "triangle", "there_and_back"),
     *("exact_time", "turn", "sigmoid_alpha", "seven_phases", "straight", "user_shape", "four_motors"),
 )
+LONG = ("four_motors", "there_and_back", "sigmoid", "turn")  # to simulate; these come first
 MACHINES = ("homing", "probing", "hold_and_estop", "closed_loop")  # examples with a machine or events
 
 
@@ -55,6 +57,11 @@ def run_machine(name: str) -> dict[str, Any]:
     return summary
 
 
+def _run(name: str) -> tuple[list[Run], dict[str, Any]]:
+    """Either of them; return the runs of an example without a machine, and the summary."""
+    return ([], run_machine(name)) if name in MACHINES else run_example(name)
+
+
 def _error(summary: dict[str, Any]) -> str:
     """The largest distance from the ideal curve, of the steps or of what an encoder measured."""
     own = [axis["largest_error_steps"] for axis in summary["axes"] if "largest_error_steps" in axis]
@@ -62,30 +69,34 @@ def _error(summary: dict[str, Any]) -> str:
     return f"{max(own):.4f} steps" if own else ", ".join(stop["cause"] for stop in summary["stops"][-1:])
 
 
+def _build_all(pool: ProcessPoolExecutor) -> None:
+    """Build what the examples need, side by side and the longest first."""
+    files = [read_channels(paths.examples / f"{name}.toml") for name in (*EXAMPLES, *MACHINES)]
+    used = {scene_parameters(file) if file.setup else parameters_of(file) for file in files}
+    cores = sorted(used, key=lambda core: (core.channels, core.encoders), reverse=True)
+    waiting = [pool.submit(rtl_library, core) for core in cores]
+    waiting += [pool.submit(make) for make in (planner_library, model_library)]
+    for built in waiting:
+        built.result()
+
+
 def demo() -> bool:
     """Run the demonstration, an example per processor; return whether RTL and model agreed everywhere."""
-    open_engine("both", parameters_for(1), 1).close()  # builds what all of them need
-    machine = read_channels(paths.examples / f"{MACHINES[0]}.toml")
-    open_engine("both", scene_parameters(machine), 1).close()
-    files, summaries = {}, {}
+    results = {}
     with ProcessPoolExecutor() as pool:
-        machines = pool.map(run_machine, MACHINES)
-        results = pool.map(run_example, EXAMPLES)
-        with progress("examples", len(EXAMPLES) + len(MACHINES)) as report:
-            for done, (runs, summary) in enumerate(results, 1):
-                files[summary["name"]], summaries[summary["name"]] = runs, summary
-                report(done)
-            for done, summary in enumerate(machines, len(EXAMPLES) + 1):
-                summaries[summary["name"]] = summary
-                report(done)
-    for runs in files.values():
-        for problem in problems(runs):
-            print(f"{runs[0].file.path}: {problem}", file=sys.stderr)
-    for name in MACHINES:
-        for problem in summaries[name]["problems"]:
+        _build_all(pool)
+        long = sorted((*EXAMPLES, *MACHINES), key=lambda name: name not in LONG)
+        waiting = {pool.submit(_run, name): name for name in long}
+        with progress("examples", len(waiting)) as report:
+            for count, done in enumerate(as_completed(waiting), 1):
+                results[waiting[done]] = done.result()
+                report(count)
+    summaries = {name: results[name][1] for name in (*EXAMPLES, *MACHINES)}
+    for name, summary in summaries.items():
+        for problem in summary["problems"]:
             print(f"{name}: {problem}", file=sys.stderr)
     write_json({"ok": all(s["ok"] for s in summaries.values()), "runs": summaries}, FOLDER / "summary.json")
-    plot_overview({name: runs[0] for name, runs in files.items()}, FOLDER / "demo.png")
+    plot_overview({name: runs[0] for name, (runs, _) in results.items() if runs}, FOLDER / "demo.png")
 
     shown = table(
         "RTL and C model, compared edge for edge",

@@ -9,6 +9,7 @@ import numpy as np
 matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
+from matplotlib.figure import Figure
 
 from passo.plot_panels import (
     COLORS,
@@ -23,7 +24,7 @@ from passo.plot_panels import (
 )
 from passo.run import Run
 
-__all__ = ["COLORS", "STYLE", "plot_file", "plot_motion", "plot_overview"]
+__all__ = ["COLORS", "STYLE", "plot_file", "plot_motion", "plot_overview", "save"]
 
 STYLE = {
     "font.family": "DejaVu Sans",
@@ -47,6 +48,13 @@ STYLE = {
 }
 
 
+def save(figure: Figure, path: Path, dpi: int) -> None:
+    """Write a picture as PNG and close it; savefig would draw it twice, first for the layout only."""
+    figure.set_dpi(dpi)
+    figure.canvas.print_png(path)
+    plt.close(figure)
+
+
 def plot_file(runs: list[Run], folder: Path) -> None:
     """Write motion.png; of several channels: their speeds, and a page for each, motion_channel_N.png."""
     if not runs[-1].file.channel:
@@ -68,8 +76,7 @@ def plot_file(runs: list[Run], folder: Path) -> None:
             ax.set_title(f"Channel {run.file.channel}")
             if run is not runs[-1]:
                 ax.set_xlabel("")
-        figure.savefig(folder / "motion.png", dpi=110)
-        plt.close(figure)
+        save(figure, folder / "motion.png", 110)
 
 
 def plot_motion(run: Run, path: Path, title: str = "") -> None:
@@ -98,8 +105,7 @@ def plot_motion(run: Run, path: Path, title: str = "") -> None:
         plot_lines(axes["last"], run, run.total_clocks - last, run.total_clocks, "The last milliseconds")
         if run.file.axes > 1:
             figure.legend(*axes["speed"].get_legend_handles_labels(), loc="outside lower center", ncols=8)
-        figure.savefig(path, dpi=110)
-        plt.close(figure)
+        save(figure, path, 110)
 
 
 def plot_overview(runs: dict[str, Run], path: Path) -> None:
@@ -132,5 +138,4 @@ def plot_overview(runs: dict[str, Run], path: Path) -> None:
         turn = back.plans[0].clocks
         half = round(0.010 * back.file.clock_hz)
         plot_lines(right, back, turn - half, turn + half, "STEP and DIR at the reversal")
-        figure.savefig(path, dpi=100)
-        plt.close(figure)
+        save(figure, path, 100)

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 
 from passo.engine import NUMBERS
 from passo.move_forms import EventInput, EventOverride, EventSlip
-from passo.plot import STYLE
+from passo.plot import STYLE, save
 from passo.registers import Cause
 from passo.scene_panels import (
     SOUGHT,
@@ -67,8 +67,7 @@ def plot_scene(run: SceneRun, path: Path) -> None:
             head.legend(*handles, loc="upper right", ncols=8)
         for number, (title, begin, stop) in enumerate(zooms):
             _zoom(axes[f"zoom {number}"], run, lanes, title, begin, stop)
-        figure.savefig(path, dpi=110)
-        plt.close(figure)
+        save(figure, path, 110)
 
 
 # ------------------------------------------------------------------------------------------------ words ----
