@@ -99,7 +99,8 @@ def rtl_library(parameters: Parameters, waves: bool = False) -> Path:
     include = Path(environment()["VERILATOR_ROOT"]) / "include"
     c_parts, cpp_part = engine_sources(), paths.engine / "engine_rtl.cpp"
     defines = [f"-DPASSO_CORE_{name.upper()}={value}" for name, value in asdict(parameters).items()]
-    flags = [*CPP_FLAGS, *defines, f"-I{verilated}", f"-isystem{include}", f"-isystem{include / 'vltstd'}"]
+    flags = [*CPP_FLAGS, *defines, f"-I{verilated}"]
+    runtime = [f"-isystem{include}", f"-isystem{include / 'vltstd'}"]
     archives = [str(verilated / "Vpasso_spi_top__ALL.a"), str(verilated / "libverilated.a"), "-pthread"]
     if waves:
         flags.append("-DPASSO_WAVES")
@@ -109,11 +110,11 @@ def rtl_library(parameters: Parameters, waves: bool = False) -> Path:
         objects = [folder / f"{part.stem}.o" for part in c_parts]
         for part, made in zip(c_parts, objects, strict=True):
             call([CC, *ENGINE_FLAGS, "-c", part, "-o", made])
-        call([CXX, "-shared", *flags, cpp_part, *objects, *archives, "-o", folder / LIBRARY])
+        call([CXX, "-shared", *flags, *runtime, cpp_part, *objects, *archives, "-o", folder / LIBRARY])
 
     name = f"rtl_{parameters.name}{'_waves' if waves else ''}"
     inputs = [*c_parts, cpp_part, *headers(paths.engine), paths.model / "passo_pins.h"]
-    return cached(name, inputs, [*ENGINE_FLAGS, *flags, *archives], make) / LIBRARY
+    return cached(name, inputs, [_verilator(), *ENGINE_FLAGS, *flags, *archives], make) / LIBRARY
 
 
 def waves_possible() -> bool:
@@ -140,7 +141,13 @@ def _verilated(parameters: Parameters, waves: bool) -> Path:
             )
 
     def make(folder: Path) -> None:
+        if " " in f"{paths.rtl}{paths.build}":
+            raise BuildError(f"Verilator's makefiles take no path with a space: {paths.rtl}, {paths.build}")
         call(["verilator", *flags, f"-I{paths.rtl}", "--Mdir", folder, *modules])
 
     name = f"verilated_{parameters.name}{'_waves' if waves else ''}"
-    return cached(name, [*modules, *sorted(paths.rtl.glob("*.vh"))], flags, make)
+    return cached(name, [*modules, *sorted(paths.rtl.glob("*.vh"))], [_verilator(), *flags], make)
+
+
+def _verilator() -> str:
+    return f"verilator {version('verilator')}"

@@ -210,6 +210,9 @@ def _console(options: argparse.Namespace) -> int:
 def _firmware(options: argparse.Namespace) -> int:
     from passo_stm32 import MachineError
 
+    from passo.toolchain import need_repository
+
+    need_repository("the firmware")
     try:
         if options.table:
             from passo_stm32.bench import bench
