@@ -106,7 +106,7 @@ def library(name: str, folders: Sequence[Path], files: Sequence[Path], *flags: s
 
 
 def cached(name: str, inputs: Iterable[Path], flags: Sequence[str], make: Callable[[Path], None]) -> Path:
-    """The folder lib/NAME-HASH below `paths.build`, which `make` fills from these inputs if it does not exist.
+    """The folder lib/NAME-HASH below `paths.build`, which `make` fills from these inputs if it is not there.
 
     Older folders of the same name are deleted.
     """
