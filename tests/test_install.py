@@ -13,7 +13,8 @@ from pathlib import Path
 
 import numpy
 import pytest
-from passo.build import Parameters, planner_library, rtl_library
+from cocotb_tools.check_results import get_results
+from passo.build import Parameters, judge_library, planner_library, rtl_library
 from passo.compiler import cached
 from passo.run import parameters_for
 from passo.toolchain import paths
@@ -61,7 +62,7 @@ class Installed:
     def run(self, program: str, *arguments: str | Path, **env: str) -> subprocess.CompletedProcess[str]:
         own = {name: value for name, value in os.environ.items() if not name.startswith(("XDG_", "PYTHON"))}
         own |= {"HOME": str(self.home), "PATH": f"{self.environment / 'bin'}:{os.environ['PATH']}"} | env
-        command = [str(self.environment / "bin" / program), *map(str, arguments)]
+        command = [shutil.which(program, path=own["PATH"]) or program, *map(str, arguments)]
         return subprocess.run(command, cwd=self.home, env=own, capture_output=True, text=True)
 
 
@@ -76,6 +77,14 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Installed:
     pip = (sys.executable, "-m", "pip", "--python", str(made.environment / "bin" / "python"))
     subprocess.run((*pip, "install", *offline, str(wheel())), check=True)
     return made
+
+
+def lend(installed: Installed, *built: Path) -> Path:
+    """Put libraries of the repository into the cache; return the folder."""
+    library = installed.home / ".cache" / "passo" / "lib"
+    for path in built:
+        shutil.copytree(path.parent, library / path.parent.name, dirs_exist_ok=True)
+    return library
 
 
 def test_the_wheel_has_all_sources_and_type_hints() -> None:
@@ -107,12 +116,9 @@ def test_moves_run_outside_of_the_repository(installed: Installed) -> None:
     Only the C model is compiled: the name of a library has the hash of its sources, so that those of the
     repository, put into the cache, are found if the package carries the same ones.
     """
-    library = installed.home / ".cache" / "passo" / "lib"
-    for built in (planner_library(), rtl_library(parameters_for(3))):
-        shutil.copytree(built.parent, library / built.parent.name)
-    verilated = f"verilated_{Parameters().name}"
-    (known,) = (paths.build / "lib").glob(f"{verilated}-*")
-    shutil.copytree(known, library / known.name)
+    rtl = rtl_library(parameters_for(3))
+    (verilated,) = (paths.build / "lib").glob(f"verilated_{Parameters().name}-*/Vpasso_spi_top.mk")
+    library = lend(installed, planner_library(), rtl, verilated)
     (installed.home / "moves.toml").write_text(MOVES)
     done = installed.run("passo", "run", "moves.toml", "--report")
     assert done.returncode == 0, done.stderr
@@ -121,7 +127,8 @@ def test_moves_run_outside_of_the_repository(installed: Installed) -> None:
     results = installed.home / "build" / "run" / "moves"
     assert sorted(path.name for path in results.iterdir()) == ["pulses.csv", "report.html", "summary.json"]
     assert sorted(path.name for path in library.glob("model-*/*")) == ["library.so"]
-    assert {path.name for path in installed.home.iterdir()} <= {".cache", ".config", "build", "moves.toml"}
+    left = {".cache", ".config", "build", "moves.toml", "machine"}
+    assert {path.name for path in installed.home.iterdir()} <= left
 
 
 def test_what_needs_the_repository_says_so(installed: Installed) -> None:
@@ -142,3 +149,17 @@ def test_a_bad_build_folder_is_told_in_one_line(installed: Installed, tmp_path: 
     assert done.returncode == 1 and str(tmp_path / folder) in done.stderr and done.stderr.count("\n") == 1
     assert "PASSO_BUILD names another folder" in done.stderr or "no path with a space" in done.stderr
     moves.unlink()
+
+
+def test_the_example_of_the_kit(installed: Installed) -> None:
+    """examples/cocotb, outside of the repository."""
+    lend(installed, judge_library(), planner_library())
+    machine = shutil.copytree(paths.examples / "cocotb", installed.home / "machine")
+    config = installed.environment / "bin" / "cocotb-config"  # as pip installs it with cocotb
+    config.write_text(f"#!{config.with_name('python')}\nfrom cocotb_tools.config import main\nmain()\n")
+    config.chmod(0o755)
+    done = installed.run("make", "-C", machine)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert get_results(machine / "results.xml") == (2, 0)
+    assert f"{installed.environment}/lib" in done.stdout and str(paths.rtl) not in done.stdout
+    assert "axis 0: 40 up 0 down" in done.stdout and "edges that agree: step 140," in done.stdout

@@ -55,6 +55,11 @@ class Parameters(CoreParameters):
         }
 
 
+def rtl_sources() -> list[Path]:
+    """The Verilog modules of the core."""
+    return sorted(paths.rtl.glob("*.v"))
+
+
 def planner_library() -> Path:
     """Planner, G-code interpreter, frame codec, link library and driver, as on a microcontroller."""
     folders = (paths.planner, paths.gcode, paths.protocol, paths.driver, paths.grbl)
@@ -71,6 +76,13 @@ def model_library() -> Path:
     folders = (paths.model, paths.protocol)
     engine = [*engine_sources(), paths.engine / "engine_model.c"]
     return library("model", [*folders, paths.engine], [*sources(*folders), *engine], "-O3")
+
+
+def judge_library() -> Path:
+    """The C model that compares itself with recorded pins."""
+    folders = (paths.model, paths.protocol)
+    files = [*sources(*folders), paths.engine / "passo_judge.c"]
+    return library("judge", [*folders, paths.engine], files, "-O2")
 
 
 def console_library() -> Path:
@@ -128,7 +140,7 @@ def waves_possible() -> bool:
 
 def _verilated(parameters: Parameters, waves: bool) -> Path:
     """The folder with the compiled C++ that Verilator generates from the core."""
-    modules = sorted(paths.rtl.glob("*.v"))
+    modules = rtl_sources()
     flags = [*VERILATOR_FLAGS, *(f"-G{name}={value}" for name, value in parameters.verilog().items())]
     # With waves, more optimization takes longer than it saves.
     optimize = "OPT_FAST=-O1 OPT_SLOW=-O0" if waves else "OPT_FAST=-O3 OPT_SLOW=-O1 OPT_GLOBAL=-O2"
