@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * Compares recorded pins of the core with the C model on every clock.
  *
- * A row has the clock, the inputs, MISO and the other outputs, each as uint64_t in the order of passo_pins.h: as they
- * stand just before that rising edge. There is a row for clock 1, the first one without reset, and one for each clock
- * before which a pin has changed.
+ * A row has the clock, the inputs, MISO and the other outputs, each as uint64_t in the order of passo_pins.h:
+ * as they stand just before that rising edge. There is a row for clock 1, the first one without reset, and
+ * one for each clock before which a pin has changed.
  */
 #ifndef PASSO_JUDGE_H
 #define PASSO_JUDGE_H
