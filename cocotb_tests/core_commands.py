@@ -4,10 +4,10 @@
 from itertools import pairwise
 
 from passo import registers as r
+from passo.cocotb.clocks import read
 from passo.host import RATE_ONE
 from passo.registers import Cause, State
 
-from cocotb_tests.helpers.bench import read
 from cocotb_tests.helpers.core_bench import ONE, Core, CoreChannel, Line, PinTiming, Ramp, Shape, core_test
 from cocotb_tests.helpers.core_expected import distance, due, totals
 from cocotb_tests.helpers.core_moves import SLOW, a_motion, check_stopped, clear_and_move, pulse_groups

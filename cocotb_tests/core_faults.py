@@ -3,11 +3,12 @@
 
 import pytest
 from passo import registers as r
+from passo.cocotb.clocks import read
 from passo.host import RATE_ONE
 from passo.link import RefusedError
 from passo.registers import Cause, State, Verdict
 
-from cocotb_tests.helpers.bench import patience, read, rng
+from cocotb_tests.helpers.bench import patience, rng
 from cocotb_tests.helpers.core_bench import (
     ONE,
     V_MAX,

@@ -10,13 +10,14 @@ from pathlib import Path
 
 from cocotb.triggers import First, Timer, ValueChange
 from cocotb.utils import get_sim_time
+from passo.cocotb.clocks import PERIOD, read
 from passo.plan import plan_move
 from passo_stm32.board import START, firmware_elf
 from passo_stm32.bus import TICKS_PER_SECOND
 from passo_stm32.lines import move_line
 from passo_stm32.machine import Machine
 
-from cocotb_tests.helpers.bench import PERIOD, read, seed
+from cocotb_tests.helpers.bench import seed
 from cocotb_tests.helpers.core_bench import Core, PinTiming, core_test, planned
 from tests.helpers.firmware_cases import random_moves
 

@@ -4,11 +4,12 @@
 from contextlib import suppress
 
 from passo import registers as r
+from passo.cocotb.clocks import read
 from passo.host import RATE_ONE
 from passo.link import RefusedError
 from passo.registers import Cause, State, TriggerAction, TriggerSource
 
-from cocotb_tests.helpers.bench import read, rng
+from cocotb_tests.helpers.bench import rng
 from cocotb_tests.helpers.core_bench import ONE, Core, CoreChannel, Line, PinTiming, Ramp, core_test
 from cocotb_tests.helpers.core_moves import check_stopped, clear_and_move
 from tests.helpers.random_inputs import RandomInputs

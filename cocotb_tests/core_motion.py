@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from passo import registers as r
+from passo.cocotb.clocks import read
 from passo.registers import Cause, State
 
-from cocotb_tests.helpers.bench import read
 from cocotb_tests.helpers.core_bench import (
     ONE,
     V_MAX,

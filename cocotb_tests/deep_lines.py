@@ -3,8 +3,9 @@
 
 import cocotb
 from cocotb.handle import HierarchyObject
+from passo.cocotb.clocks import read
 
-from cocotb_tests.helpers.bench import read, rng
+from cocotb_tests.helpers.bench import rng
 from cocotb_tests.helpers.line_queue import ENDLESS, LAST, QUEUE_FULL, Queue
 
 

@@ -7,9 +7,10 @@ from random import Random
 
 import cocotb
 from cocotb.handle import HierarchyObject
+from passo.cocotb.clocks import Clocks, Recorder, read
+from passo.cocotb.pulses import PinTiming, PulseChecker
 
-from cocotb_tests.helpers.bench import Clocks, Recorder, begin, read, rng
-from cocotb_tests.helpers.checker import PinTiming, PulseChecker
+from cocotb_tests.helpers.bench import begin, rng
 from cocotb_tests.helpers.runner import run
 
 LATENCY = 3  # step_request to STEP, direction to DIR

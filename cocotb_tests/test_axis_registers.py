@@ -4,8 +4,9 @@
 import cocotb
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import Timer
+from passo.cocotb.clocks import Clocks, read
 
-from cocotb_tests.helpers.bench import Clocks, begin, read, rng
+from cocotb_tests.helpers.bench import begin, rng
 from cocotb_tests.helpers.runner import run
 
 AXES = 8

@@ -7,8 +7,9 @@ import cocotb
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import ReadOnly, Timer
 from passo import registers as r
+from passo.cocotb.clocks import PERIOD, read
 
-from cocotb_tests.helpers.bench import PERIOD, Bench, read, rng
+from cocotb_tests.helpers.bench import Bench, rng
 from cocotb_tests.helpers.runner import run
 
 AXES = 8

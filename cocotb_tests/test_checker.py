@@ -4,8 +4,7 @@
 from dataclasses import replace
 
 import pytest
-
-from cocotb_tests.helpers.checker import AxisPins, PinTiming, PulseError
+from passo.cocotb.pulses import AxisPins, PinTiming, PulseError
 
 TIMING = PinTiming(high=4, low=3, setup=5, hold=6)
 BOTH = replace(TIMING, both_edges=True)

@@ -6,10 +6,11 @@ from random import Random
 
 import cocotb
 from cocotb.handle import HierarchyObject
+from passo.cocotb.clocks import Clocks, read
 
-from cocotb_tests.helpers.bench import Clocks, begin, read, rng
+from cocotb_tests.helpers.bench import begin, rng
+from cocotb_tests.helpers.crc import crc_of_bytes, crc_of_words
 from cocotb_tests.helpers.runner import run
-from cocotb_tests.helpers.spi import crc_of_bytes, crc_of_words
 
 
 def test_crc(simulator: str) -> None:

@@ -5,8 +5,9 @@ from itertools import product
 
 import cocotb
 from cocotb.handle import HierarchyObject
+from passo.cocotb.clocks import Clocks, read
 
-from cocotb_tests.helpers.bench import Clocks, read, rng
+from cocotb_tests.helpers.bench import rng
 from cocotb_tests.helpers.runner import run
 from cocotb_tests.helpers.shapes import ONE, POINTS, PROGRESS_ONE, Shape, evaluate, loaded_table
 

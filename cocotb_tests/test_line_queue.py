@@ -6,8 +6,9 @@ from collections import deque
 import cocotb
 import pytest
 from cocotb.handle import HierarchyObject
+from passo.cocotb.clocks import read
 
-from cocotb_tests.helpers.bench import SUBSTEPS_MAX, read, rng
+from cocotb_tests.helpers.bench import SUBSTEPS_MAX, rng
 from cocotb_tests.helpers.line_queue import BAD_VALUE, BUSY, ENDLESS, LAST, QUEUE_FULL, Queue
 from cocotb_tests.helpers.runner import run
 

@@ -9,8 +9,9 @@ import cocotb
 import pytest
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import gather
+from passo.cocotb.clocks import Clocks, Recorder, read
 
-from cocotb_tests.helpers.bench import SUBSTEPS_MAX, Bench, Clocks, PushBus, Recorder, read, rng
+from cocotb_tests.helpers.bench import SUBSTEPS_MAX, Bench, PushBus, rng
 from cocotb_tests.helpers.runner import run
 
 AXES = 3

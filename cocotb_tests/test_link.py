@@ -9,10 +9,12 @@ from random import Random
 import cocotb
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import FallingEdge, RisingEdge, Timer
+from passo.cocotb.clocks import Clocks, Recorder, read
+from passo.cocotb.spi import SpiMaster
 
-from cocotb_tests.helpers.bench import Clocks, Recorder, begin, read, rng
+from cocotb_tests.helpers.bench import begin, rng
+from cocotb_tests.helpers.crc import crc_of_words
 from cocotb_tests.helpers.runner import run
-from cocotb_tests.helpers.spi import SpiMaster, crc_of_words
 
 READ, WRITE, PUSH = 1, 2, 3
 PAYLOAD_MAX = 60

@@ -6,8 +6,9 @@ from itertools import pairwise
 
 import cocotb
 from cocotb.handle import HierarchyObject
+from passo.cocotb.clocks import Clocks, Recorder, read
 
-from cocotb_tests.helpers.bench import Bench, Clocks, Recorder, read, rng
+from cocotb_tests.helpers.bench import Bench, rng
 from cocotb_tests.helpers.runner import run
 
 LATENCY = 2  # advance to substep

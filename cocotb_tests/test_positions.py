@@ -6,8 +6,9 @@ from random import Random
 import cocotb
 import pytest
 from cocotb.handle import HierarchyObject
+from passo.cocotb.clocks import Clocks, read
 
-from cocotb_tests.helpers.bench import Bench, Clocks, read, rng
+from cocotb_tests.helpers.bench import Bench, rng
 from cocotb_tests.helpers.runner import run
 
 ROUND = 64  # clocks

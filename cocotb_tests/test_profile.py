@@ -8,8 +8,9 @@ from random import Random
 import cocotb
 import pytest
 from cocotb.handle import HierarchyObject
+from passo.cocotb.clocks import Clocks, Recorder, read
 
-from cocotb_tests.helpers.bench import Bench, Clocks, PushBus, Recorder, read, rng
+from cocotb_tests.helpers.bench import Bench, PushBus, rng
 from cocotb_tests.helpers.ramps import V_MAX, Ramp, velocities
 from cocotb_tests.helpers.runner import run
 from cocotb_tests.helpers.shapes import Shape

@@ -7,8 +7,9 @@ import cocotb
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import ReadOnly
 from passo import registers as r
+from passo.cocotb.clocks import read
 
-from cocotb_tests.helpers.bench import read, rng
+from cocotb_tests.helpers.bench import rng
 from cocotb_tests.helpers.ramp_queue import BAD_VALUE, BUSY, QUEUE_FULL, WORDS, Queue, random_ramp
 from cocotb_tests.helpers.runner import run
 

@@ -7,8 +7,9 @@ import cocotb
 import pytest
 from cocotb.handle import HierarchyObject
 from passo import registers as r
+from passo.cocotb.clocks import Clocks, read
 
-from cocotb_tests.helpers.bench import Bench, Clocks, read, rng
+from cocotb_tests.helpers.bench import Bench, rng
 from cocotb_tests.helpers.runner import run
 
 AXES, TICK_LOG2, LINE_QUEUE_LOG2, RAMP_QUEUE_LOG2 = 8, 16, 8, 7

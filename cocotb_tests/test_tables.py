@@ -8,8 +8,9 @@ import cocotb
 import pytest
 from cocotb.handle import HierarchyObject
 from passo import registers as r
+from passo.cocotb.clocks import Clocks, read
 
-from cocotb_tests.helpers.bench import Bench, Clocks, read, rng
+from cocotb_tests.helpers.bench import Bench, rng
 from cocotb_tests.helpers.runner import run
 from cocotb_tests.helpers.shapes import POINTS, Shape, loaded_table
 

@@ -5,8 +5,9 @@ from dataclasses import dataclass, field
 
 import cocotb
 from cocotb.handle import HierarchyObject
+from passo.cocotb.clocks import Clocks, read
 
-from cocotb_tests.helpers.bench import Clocks, begin, read, rng
+from cocotb_tests.helpers.bench import begin, rng
 from cocotb_tests.helpers.runner import run
 
 ONE = 1 << 16

@@ -15,33 +15,28 @@ all pins on all clocks up to now; the first difference is an error.
 """
 
 import functools
-from collections.abc import Callable, Coroutine, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any, Self, TextIO
 
-import cocotb
 import numpy as np
 from cocotb.handle import HierarchyObject
-from cocotb.triggers import Timer
 from passo import registers as r
+from passo.cocotb.clocks import PERIOD, Clocks, read
+from passo.cocotb.host import Host, plain_test, wait
+from passo.cocotb.pulses import PinTiming
+from passo.cocotb.thread import Thread
 from passo.host import Channel, parameters_of
+from passo.judge import COLUMNS, Judge
 from passo.link import Link
-from passo.pins import INPUTS
 from passo.plan import Plan
 
-from cocotb_tests.helpers.bench import PERIOD, Clocks, read
-from cocotb_tests.helpers.checker import PinTiming, PulseChecker
-from cocotb_tests.helpers.core_judge import COLUMNS, Judge
-from cocotb_tests.helpers.core_thread import Thread
 from cocotb_tests.helpers.ramps import ONE, V_MAX, Ramp
 from cocotb_tests.helpers.shapes import Shape
-from cocotb_tests.helpers.spi import SpiMaster
 from tests.helpers import closed_form
 
 __all__ = ["ONE", "V_MAX", "Core", "CoreChannel", "Line", "PinTiming", "Ramp", "Shape", "core_test"]
-
-LEAD = 4  # clocks from chip select to SCLK and back
 
 
 class Line(closed_form.Line):
@@ -74,30 +69,17 @@ class Record:
     judge: Judge | None = None
 
 
-def set_idle(dut: HierarchyObject) -> None:
-    """Set the inputs of a core, other than clk, rst and those of its link, as if nothing were connected."""
-    for pin in INPUTS:
-        if pin.name != "rst" and not pin.name.startswith("spi_"):
-            signal = getattr(dut, pin.name)
-            signal.value = pin.idle * ((1 << len(signal)) - 1)
-
-
 @functools.cache
 def _record() -> Record:
     return Record(Path("pins.log").open())
 
 
-class Core:
+class Core(Host):
     """The core as an engine for passo.link; `parameters` are what the core says of itself."""
 
     def __init__(self, dut: HierarchyObject, thread: Thread, clocks: Clocks) -> None:
-        self.dut, self.clocks = dut, clocks
+        super().__init__(dut, thread, clocks)
         self.clock_hz = 1_280_000  # of plans: 10000 ticks per second
-        self.checker: PulseChecker | None = None
-        self.half_period, self.sclk_high = 2, 2  # clocks
-        self.corrupt: Callable[[list[int]], list[int]] = list  # what the wire makes of a frame
-        self._thread = thread
-        self._spi = SpiMaster(dut, 2 * PERIOD)
         self.started = 0  # clock
         self._rows: list[np.ndarray] = []
         self._running: list[tuple[int, int]] = [(0, 0)]  # clocks and levels of all channels
@@ -105,21 +87,10 @@ class Core:
         self._first = 0  # clock
 
     @classmethod
-    async def begin(cls, dut: HierarchyObject, thread: Thread) -> "Core":
+    async def begin(cls, dut: HierarchyObject, thread: Thread) -> Self:
         """Reset; return on the falling edge at its end."""
-        dut.rst.value = 1
-        set_idle(dut)
-        clocks = Clocks(dut.clk)
-        clocks.start()
-        core = cls(dut, thread, clocks)
-        # chip select resets the SCLK domain by an edge
-        dut.spi_cs_n.value = 0
-        await clocks.wait(4)
-        dut.spi_cs_n.value = 1
-        await clocks.wait(4)
-        core._record = _record()
-        core._first = core.clock
-        dut.rst.value = 0
+        core = await super().begin(dut, thread)
+        core._record, core._first = _record(), core.clock
         return core
 
     def identify(self) -> None:
@@ -158,62 +129,6 @@ class Core:
         """Clocks since the first reset."""
         return read(self.dut.clock)
 
-    def transfer(self, mosi: Sequence[int], gap: int = 16) -> list[int]:
-        """One chip select: send the words and return those received, then wait for `gap` clocks."""
-        bits = self.transfer_bits(mosi, 32 * len(mosi), gap)
-        return [int("".join(map(str, bits[n : n + 32])), 2) for n in range(0, len(bits), 32)]
-
-    def transfer_bits(
-        self, mosi: Sequence[int], count: int, gap: int = 16, cut_high: bool = False
-    ) -> list[int]:
-        """One chip select of `count` bits."""
-        words = self.corrupt(list(mosi))
-        received = self._thread.wait(self._master(gap).transfer_bits(words, count, cut_high=cut_high))
-        self.compare()
-        return received
-
-    def clock_others(self, bits: int) -> None:
-        """SCLK and MOSI move for another slave: chip select stays high."""
-        self._thread.wait(self._master(LEAD).clock_others(bits))
-        self.compare()
-
-    def _master(self, gap: int) -> SpiMaster:
-        spi = self._spi
-        spi.period, spi.high = 2 * self.half_period * PERIOD, self.sclk_high * PERIOD
-        spi.lead = spi.trail = LEAD * PERIOD
-        spi.gap = gap * PERIOD
-        return spi
-
-    def run(self, clocks: int) -> int:
-        """Let time pass."""
-        if clocks > 0:
-            self._thread.wait(_wait(clocks * PERIOD))
-        self.compare()
-        return clocks
-
-    def run_until(self, condition: Callable[[], object], limit: int, step: int = 64) -> None:
-        """Let time pass until a condition is true; it is checked every `step` clocks."""
-        end = self.clock + limit
-        while not condition():
-            assert self.clock < end, f"clock {self.clock}: nothing after {limit} clocks"
-            self.run(step)
-
-    def set(self, pin: str, levels: int) -> None:
-        """Set the levels of an input pin."""
-
-        async def set_pin() -> None:
-            getattr(self.dut, pin).value = levels
-
-        self._thread.wait(set_pin())
-
-    def spawn(self, run: Callable[[], Coroutine[Any, Any, None]]) -> None:
-        """Start a coroutine that runs beside the test, until its end."""
-
-        async def start() -> None:
-            cocotb.start_soon(run())
-
-        self._thread.wait(start())
-
     def sync(self, level: bool) -> None:
         """Set the sync input."""
         self.started = self.clock
@@ -224,7 +139,7 @@ class Core:
 
         async def pulse() -> None:
             self.dut.rst.value = 1
-            await _wait(clocks * PERIOD)
+            await wait(clocks * PERIOD)
             self.dut.rst.value = 0
 
         self._thread.wait(pulse())
@@ -258,28 +173,10 @@ class Core:
             if level != self._running[-1][1]:
                 self._running.append((clock - 1, level))
 
-    def watch(self, *timings: PinTiming) -> PulseChecker:
-        """Check these pin timings from now on, one per axis of the core, or one for all."""
-
-        async def make() -> PulseChecker:
-            return PulseChecker(self.clocks, self.dut.step, self.dut.dir, timings)
-
-        if len(timings) == 1:
-            timings *= self.axes * self.parameters.channels
-        self.finish_watch()
-        self.checker = self._thread.wait(make())
-        return self.checker
-
-    def finish_watch(self) -> None:
-        """Check that no pulse was too short or is unfinished."""
-        if self.checker is not None:
-            self.checker.finish()
-            self.checker = None
-
     def end(self) -> None:
         """Compare the rest and log a summary."""
         self.run(200)
-        self.finish_watch()
+        super().end()
         self.dut._log.info(f"{self.clock} clocks compared, {self._record.judge.summary()}")
 
     # what was recorded; the clock of a change is the one after whose rising edge the pin shows it
@@ -363,24 +260,12 @@ class CoreChannel(Channel):
         self.link.write(r.ADDRESS_RUN, 0)
 
 
-async def _wait(time: int) -> None:
-    await Timer(time, "step")
-
-
 def core_test(body: Callable[[Core], None]) -> Any:
     """Make a cocotb test from plain code."""
 
-    async def test(dut: HierarchyObject) -> None:
-        thread = Thread()
-        core = await Core.begin(dut, thread)
+    def whole(core: Core) -> None:
+        core.identify()
+        body(core)
+        core.end()
 
-        def all_of_it() -> None:
-            core.identify()
-            body(core)
-            core.end()
-
-        await thread.run(all_of_it)
-
-    for name in functools.WRAPPER_ASSIGNMENTS:
-        setattr(test, name, getattr(body, name))
-    return cocotb.test(test)
+    return plain_test(Core.begin, body, whole)

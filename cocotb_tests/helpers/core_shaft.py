@@ -4,8 +4,8 @@
 from collections.abc import Iterable
 
 from passo import registers as r
+from passo.cocotb.clocks import read
 
-from cocotb_tests.helpers.bench import read
 from cocotb_tests.helpers.core_bench import Core, CoreChannel
 
 GRAY = ((0, 0), (1, 0), (1, 1), (0, 1))  # A and B while a shaft turns up

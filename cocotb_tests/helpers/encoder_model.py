@@ -7,10 +7,11 @@ from typing import Any
 
 from cffi import FFI
 from cocotb.handle import HierarchyObject
+from passo.cocotb.clocks import Clocks, read
 from passo.compiler import declarations, library
 from passo.toolchain import paths
 
-from cocotb_tests.helpers.bench import Clocks, begin, read
+from cocotb_tests.helpers.bench import begin
 
 HEADER = paths.model / "passo_encoder.h"
 SOURCES = [paths.model / f"passo_{name}.c" for name in ("encoder", "following", "follower")]

@@ -4,8 +4,9 @@
 from random import Random
 
 from cocotb.handle import HierarchyObject
+from passo.cocotb.clocks import Clocks, read
 
-from cocotb_tests.helpers.bench import SUBSTEPS_MAX, Bench, Clocks, PushBus, read
+from cocotb_tests.helpers.bench import SUBSTEPS_MAX, Bench, PushBus
 
 QUEUE_FULL, BUSY, BAD_VALUE = 7, 8, 9
 LAST, ENDLESS = 1, 2

@@ -7,10 +7,11 @@ from dataclasses import dataclass, field
 from typing import Self
 
 from cocotb.handle import HierarchyObject
+from passo.cocotb.clocks import Clocks, read
 from passo.compiler import library
 from passo.toolchain import paths
 
-from cocotb_tests.helpers.bench import Clocks, begin, read
+from cocotb_tests.helpers.bench import begin
 
 INPUTS = (
     *("rst", "bus_frame", "bus_commit", "bus_check", "bus_write", "select", "bus_data"),

@@ -5,9 +5,10 @@ from collections.abc import Sequence
 from random import Random
 
 from cocotb.handle import HierarchyObject
+from passo.cocotb.clocks import Clocks, read
 from passo.registers import Shape
 
-from cocotb_tests.helpers.bench import Bench, Clocks, PushBus, read
+from cocotb_tests.helpers.bench import Bench, PushBus
 
 QUEUE_FULL, BUSY, BAD_VALUE = 7, 8, 9
 WORDS = 5

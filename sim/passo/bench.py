@@ -15,11 +15,11 @@ from passo.moves import MoveFile, MoveInTime, PinTiming
 from passo.plan import plan_file
 from passo.report import write_json
 from passo.run import execute
-from passo.toolchain import paths
+from passo.toolchain import paths, short
 
 CLOCK_HZ = 100_000_000
 PARAMETERS = Parameters(axes=4)
-REPORT = paths.build / "bench.json"
+REPORT = paths.results / "bench.json"
 
 ONE_AXIS = (10_000,)  # steps per second
 FOUR_AXES = (10_000, 6_000, 4_000, 2_000)
@@ -100,5 +100,5 @@ def bench() -> dict[str, Any]:
         f"passo_core_advance() against clock by clock: {ratios['1_axis']:.0f} times as fast with one axis,\n"
         f"{ratios['4_axes']:.0f} times as fast with four"
     )
-    console.print(f"Report: {REPORT.relative_to(paths.root)}")
+    console.print(f"Report: {short(REPORT)}")
     return report

@@ -57,6 +57,11 @@ class Parameters(CoreParameters):
         }
 
 
+def rtl_sources() -> list[Path]:
+    """The Verilog modules of the core."""
+    return sorted(paths.rtl.glob("*.v"))
+
+
 def planner_library() -> Path:
     """Planner, G-code interpreter, frame codec, link library and driver, as on a microcontroller."""
     folders = (paths.planner, paths.gcode, paths.protocol, paths.driver, paths.grbl)
@@ -73,6 +78,13 @@ def model_library() -> Path:
     folders = (paths.model, paths.protocol)
     engine = [*engine_sources(), paths.engine / "engine_model.c"]
     return library("model", [*folders, paths.engine], [*sources(*folders), *engine], "-O3")
+
+
+def judge_library() -> Path:
+    """The C model that compares itself with recorded pins."""
+    folders = (paths.model, paths.protocol)
+    files = [*sources(*folders), paths.engine / "passo_judge.c"]
+    return library("judge", [*folders, paths.engine], files, "-O2")
 
 
 def console_library() -> Path:
@@ -101,7 +113,8 @@ def rtl_library(parameters: Parameters, waves: bool = False) -> Path:
     include = Path(environment()["VERILATOR_ROOT"]) / "include"
     c_parts, cpp_part = engine_sources(), paths.engine / "engine_rtl.cpp"
     defines = [f"-DPASSO_CORE_{name.upper()}={value}" for name, value in asdict(parameters).items()]
-    flags = [*CPP_FLAGS, *defines, f"-I{verilated}", f"-isystem{include}", f"-isystem{include / 'vltstd'}"]
+    flags = [*CPP_FLAGS, *defines, f"-I{verilated}"]
+    runtime = [f"-isystem{include}", f"-isystem{include / 'vltstd'}"]
     archives = [str(verilated / MODEL), str(_runtime(waves) / RUNTIME), "-pthread"]
     if waves:
         flags.append("-DPASSO_WAVES")
@@ -111,11 +124,11 @@ def rtl_library(parameters: Parameters, waves: bool = False) -> Path:
         objects = [folder / f"{part.stem}.o" for part in c_parts]
         for part, made in zip(c_parts, objects, strict=True):
             call([CC, *ENGINE_FLAGS, "-c", part, "-o", made])
-        call([CXX, "-shared", *flags, cpp_part, *objects, *archives, "-o", folder / LIBRARY])
+        call([CXX, "-shared", *flags, *runtime, cpp_part, *objects, *archives, "-o", folder / LIBRARY])
 
     name = f"rtl_{parameters.name}{'_waves' if waves else ''}"
     inputs = [*c_parts, cpp_part, *headers(paths.engine), paths.model / "passo_pins.h"]
-    return cached(name, inputs, [*ENGINE_FLAGS, *flags, *archives], make) / LIBRARY
+    return cached(name, inputs, [_verilator(), *ENGINE_FLAGS, *flags, *archives], make) / LIBRARY
 
 
 def waves_possible() -> bool:
@@ -131,18 +144,20 @@ def _verilated(parameters: Parameters, waves: bool) -> Path:
     """The folder with the compiled C++ that Verilator generates from the core."""
     if waves and not waves_possible():
         raise BuildError("waves need lz4.h and zlib.h: install the Debian packages liblz4-dev and zlib1g-dev")
-    modules = sorted(paths.rtl.glob("*.v"))
+    modules = rtl_sources()
     # More optimization takes longer than it saves; several channels in one function take much longer.
     optimize = ("OPT_FAST=-O1" if waves or parameters.channels > 1 else "OPT_FAST=-O2", "OPT_SLOW=-O0")
     chosen = (f"-G{name}={value}" for name, value in parameters.verilog().items())
     flags = [*_verilator_flags(waves), "--top-module", TOP, *chosen]
 
     def make(folder: Path) -> None:
+        if " " in f"{paths.rtl}{paths.build}":
+            raise BuildError(f"Verilator's makefiles take no path with a space: {paths.rtl}, {paths.build}")
         call(["verilator", *flags, f"-I{paths.rtl}", "--Mdir", folder, *modules])
         call(["make", "-C", folder, "-f", MAKEFILE, MODEL, *optimize])
 
     name = f"verilated_{parameters.name}{'_waves' if waves else ''}"
-    return cached(name, [*modules, *sorted(paths.rtl.glob("*.vh"))], [*flags, *optimize], make)
+    return cached(name, [*modules, *sorted(paths.rtl.glob("*.vh"))], [_verilator(), *flags, *optimize], make)
 
 
 def _runtime(waves: bool) -> Path:
@@ -155,8 +170,12 @@ def _runtime(waves: bool) -> Path:
         call(["verilator", *flags, "--Mdir", folder, empty])
         call(["make", "-C", folder, "-f", MAKEFILE, RUNTIME, "OPT_GLOBAL=-O1"])
 
-    return cached(f"verilator_runtime{'_waves' if waves else ''}", [], [version("verilator"), *flags], make)
+    return cached(f"verilator_runtime{'_waves' if waves else ''}", [], [_verilator(), *flags], make)
 
 
 def _verilator_flags(waves: bool) -> list[str]:
     return [*VERILATOR_FLAGS, *(WAVES_FLAGS if waves else ())]
+
+
+def _verilator() -> str:
+    return f"verilator {version('verilator')}"

@@ -100,7 +100,10 @@ def _parser() -> argparse.ArgumentParser:
     firmware.add_argument(
         "--table", action="store_true", help="measure the firmware instead and write docs/firmware_report.md"
     )
-    demo = commands.add_parser("demo", help="run the moves in examples/; pictures in build/demo")
+    rtl = commands.add_parser("rtl", help="name the Verilog sources of the core, for makefiles")
+    rtl.set_defaults(command=_rtl)
+    rtl.add_argument("--folder", action="store_true", help="only their folder, which is the include path")
+    demo = commands.add_parser("demo", help="run the moves in examples/; pictures in build/demo/")
     demo.set_defaults(command=_demo)
     bench = commands.add_parser("bench", help="measure the speed of the engines")
     bench.set_defaults(command=_bench)
@@ -210,6 +213,9 @@ def _console(options: argparse.Namespace) -> int:
 def _firmware(options: argparse.Namespace) -> int:
     from passo_stm32 import MachineError
 
+    from passo.toolchain import need_repository
+
+    need_repository("the firmware")
     try:
         if options.table:
             from passo_stm32.bench import bench
@@ -222,6 +228,14 @@ def _firmware(options: argparse.Namespace) -> int:
     except (MachineError, TimeoutError) as error:
         print(error, file=sys.stderr)
         return FAILED
+
+
+def _rtl(options: argparse.Namespace) -> int:
+    from passo.build import rtl_sources
+    from passo.toolchain import paths
+
+    print(*([paths.rtl] if options.folder else rtl_sources()), sep="\n")
+    return OK
 
 
 def _demo(options: argparse.Namespace) -> int:

@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from passo.failure import Failure
-from passo.toolchain import environment, paths
+from passo.toolchain import BUILD_VARIABLE, environment, paths
 
 CC = "cc"
 CXX = "c++"
@@ -60,7 +60,10 @@ def call(command: Sequence[str | Path], text: str | None = None) -> str:
         BuildError: The compiler failed.
     """
     words = [str(word) for word in command]
-    done = subprocess.run(words, env=environment(), input=text, capture_output=True, text=True)
+    try:
+        done = subprocess.run(words, env=environment(), input=text, capture_output=True, text=True)
+    except FileNotFoundError:
+        raise BuildError(f"there is no '{words[0]}': on Debian, install g++, make and perl") from None
     if done.returncode:
         said = (done.stderr or done.stdout).splitlines()
         raise BuildError("\n".join([f"{words[0]} failed:", *said[:MESSAGE_LINES]]))
@@ -103,7 +106,7 @@ def library(name: str, folders: Sequence[Path], files: Sequence[Path], *flags: s
 
 
 def cached(name: str, inputs: Iterable[Path], flags: Sequence[str], make: Callable[[Path], None]) -> Path:
-    """The folder build/lib/NAME-HASH, which `make` fills from these inputs if it does not exist yet.
+    """The folder lib/NAME-HASH below `paths.build`, which `make` fills from these inputs if it is not there.
 
     Older folders of the same name are deleted.
     """
@@ -111,7 +114,11 @@ def cached(name: str, inputs: Iterable[Path], flags: Sequence[str], make: Callab
     folder = libraries / f"{name}-{_hash(inputs, flags)}"
     if folder.exists():
         return folder
-    libraries.mkdir(parents=True, exist_ok=True)
+    try:
+        libraries.mkdir(parents=True, exist_ok=True)
+        (libraries / f"{name}.lock").touch()
+    except OSError as error:
+        raise BuildError(f"{libraries}: {error.strerror}; {BUILD_VARIABLE} names another folder") from None
     with _lock(libraries / f"{name}.lock"):
         if not folder.exists():
             print(f"Building {name} ...", flush=True)
@@ -135,7 +142,9 @@ def declarations(files: Iterable[Path]) -> str:
 
 
 def _hash(inputs: Iterable[Path], flags: Sequence[str]) -> str:
-    digest = hashlib.sha256(repr(list(flags)).encode())
+    """Of what is compiled, wherever the sources and what was built before are."""
+    text = repr(list(flags)).replace(str(paths.build), "BUILD").replace(str(paths.root), "ROOT")
+    digest = hashlib.sha256(text.encode())
     for path in inputs:
         digest.update(f"\0{path.name}\0".encode() + path.read_bytes())
     return digest.hexdigest()[:12]

@@ -16,9 +16,9 @@ from passo.report_page import write_page
 from passo.run import Run, execute_channels, open_engine, parameters_of
 from passo.scene import Scene, scene_parameters
 from passo.scene_report import summarize_scene, write_scene_pulses
-from passo.toolchain import paths
+from passo.toolchain import paths, short
 
-FOLDER = paths.build / "demo"
+FOLDER = paths.results / "demo"
 EXAMPLES = (
     *("three_axes", "cosine", "sigmoid", "triangle", "there_and_back"),
     *("exact_time", "turn", "sigmoid_alpha", "seven_phases", "straight", "user_shape", "four_motors"),
@@ -112,7 +112,7 @@ def demo() -> bool:
             f"{summary['clocks_per_second'] / 1e6:.1f} M",
         )
     console.print(shown)
-    folder = FOLDER.relative_to(paths.root)
+    folder = short(FOLDER)
     print(f"{folder}/NAME/ has of each move report.html, to zoom in, motion.png, and its steps, pulses.csv")
     print(f"open: {folder}/demo.png")
     return all(summary["ok"] for summary in summaries.values())

@@ -6,8 +6,9 @@ from typing import Any
 
 from passo.build import Parameters
 from passo.link import Hardware, LinkError, error_name, error_text
-from passo.moves import PinTiming
+from passo.moves import Move, PinTiming
 from passo.native import ffi, planner
+from passo.plan import struct_of
 from passo.registers import Cause, State
 
 
@@ -94,6 +95,10 @@ class Driver:
         error = getattr(self.lib, f"passo_{name}")(self.c, *arguments)
         self.hardware.check()
         return error
+
+    def move(self, move: Move) -> None:
+        """Queue a move, as passo_move_FORM() does; of those with a table of their own: `call`."""
+        self.call(f"move_{move.form.name}", struct_of(move, self.clock_hz))
 
     def configure_axis(self, axis: int, pins: PinTiming, **fields: Any) -> None:
         """Set the pins of an axis and enable its drive; `fields` are members of struct passo_axis_config."""

@@ -37,6 +37,7 @@ HEADERS = (
     paths.engine / "passo_rig.h",
     paths.engine / "passo_engine.h",
     paths.engine / "passo_terminal.h",
+    paths.engine / "passo_judge.h",
     paths.console / "passo_decimal.h",
     paths.engine / "passo_cpu.h",
 )

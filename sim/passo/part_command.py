@@ -23,7 +23,7 @@ def run_part(path: Path, machine_path: Path | None, engine: str, out: Path | Non
         raise BadInputError(f"{path}: G-code needs --machine MACHINE.toml (docs/gcode.md)")
     machine = read_machine(machine_path)
     part = read_part(path, machine)
-    out = out or paths.build / "run" / path.stem
+    out = out or paths.results / "run" / path.stem
     try:
         out.mkdir(parents=True, exist_ok=True)
         for result in (SUMMARY, PICTURE):

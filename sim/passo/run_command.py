@@ -38,12 +38,12 @@ def run_file(moves: Path, engine: str, out: Path | None, wanted: Wanted) -> bool
         if window or wanted.report:
             option = "--waves" if window else "--report"
             raise BadInputError(f"{option} is for files without a machine or events")
-        return _run_scene(file, engine, out or paths.build / "run" / file.name, wanted.plot)
+        return _run_scene(file, engine, out or paths.results / "run" / file.name, wanted.plot)
     parameters = parameters_of(file)
     plans = plan_channels(file, parameters)
     if window:
         _check_window(window, file, plans)
-    out = out or paths.build / "run" / file.name
+    out = out or paths.results / "run" / file.name
     with open_engine(engine, parameters, file.clock_hz, window is not None) as core:
         _clear(out)
         if window:

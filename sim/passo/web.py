@@ -12,7 +12,7 @@ from passo import __version__
 from passo.build import engine_sources
 from passo.compiler import BuildError, cached, call, headers, includes, sources
 from passo.report_page import SCRIPTS, page
-from passo.toolchain import paths
+from passo.toolchain import paths, short
 
 FOLDERS = (paths.model, paths.protocol, paths.planner, paths.driver, paths.console)
 OWN = ("engine_model.c", "passo_terminal.c", "passo_web.c")
@@ -47,6 +47,6 @@ def build(folder: Path) -> Path:
 
 
 if __name__ == "__main__":
-    made = build(paths.build / "web")
+    made = build(paths.results / "web")
     size = len(gzip.compress(made.read_bytes()))
-    print(f"open: {made.relative_to(paths.root)} ({size / 1000:.0f} kB gzipped)")
+    print(f"open: {short(made)} ({size / 1000:.0f} kB gzipped)")

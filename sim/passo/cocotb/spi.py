@@ -1,32 +1,18 @@
 # SPDX-License-Identifier: MIT
-"""SPI master for the pins of the core, and the CRC of its frames.
+"""SPI master for the pins of the core; passo.frame makes the words of its frames and reads the replies.
 
 spi = SpiMaster(dut, half_period=27_778)
-miso = await spi.transfer([0x10001000, 0x12345678, 0, 0, 0])
+mosi = frame.read_frame(1, ADDRESS_PARAMETERS, 1)
+miso = await spi.transfer(mosi)
+assert frame.read_verdict(mosi, miso) == Verdict.OK
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import Timer
 
-from cocotb_tests.helpers.bench import read
-
-POLYNOMIAL = 0x04C11DB7
-
-
-def crc_of_bytes(data: bytes, crc: int = 0xFFFFFFFF) -> int:
-    """CRC-32/MPEG-2 over bytes."""
-    for byte in data:
-        crc ^= byte << 24
-        for _ in range(8):
-            crc = (crc << 1 ^ POLYNOMIAL if crc >> 31 else crc << 1) & 0xFFFFFFFF
-    return crc
-
-
-def crc_of_words(words: Iterable[int]) -> int:
-    """CRC-32/MPEG-2 over 32-bit words."""
-    return crc_of_bytes(b"".join(word.to_bytes(4, "big") for word in words))
+from passo.cocotb.clocks import read
 
 
 class SpiMaster:

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * Compares the recorded pins of the core (probes/passo_spi_top.vh) with the C model on every clock.
+ * Compares recorded pins of the core with the C model on every clock.
  */
-#include <stddef.h>
+#include "passo_judge.h"
+
 #include <string.h>
 
 #include "passo_core.h"
@@ -30,8 +31,10 @@ uint64_t judge_size(void)
 	return sizeof(struct judge);
 }
 
-bool judge_reset(struct judge *judge, const struct passo_parameters *parameters)
+bool judge_reset(void *room, const struct passo_parameters *parameters)
 {
+	struct judge *judge = room;
+
 	memset(judge, 0, sizeof *judge);
 	return passo_core_reset(&judge->core, parameters);
 }
@@ -80,9 +83,10 @@ static bool compare_outputs(struct judge *judge, const struct judge_row *row)
 	return true;
 }
 
-/* Compares up to the clock `until`, which must not be before the last row. False at the first difference. */
-bool judge_follow(struct judge *judge, const struct judge_row *rows, size_t count, uint64_t until)
+bool judge_follow(void *room, const void *recorded, size_t count, uint64_t until)
 {
+	struct judge *judge = room;
+	const struct judge_row *rows = recorded;
 	size_t next = 0;
 
 	while (judge->clock < until) {
@@ -109,15 +113,19 @@ bool judge_follow(struct judge *judge, const struct judge_row *rows, size_t coun
 	return true;
 }
 
-void judge_difference(const struct judge *judge, uint64_t difference[4])
+void judge_difference(const void *room, uint64_t difference[4])
 {
+	const struct judge *judge = room;
+
 	difference[0] = judge->difference_clock;
 	difference[1] = judge->difference_signal;
 	difference[2] = judge->expected;
 	difference[3] = judge->actual;
 }
 
-void judge_matched(const struct judge *judge, uint64_t *matched)
+void judge_matched(const void *room, uint64_t *matched)
 {
+	const struct judge *judge = room;
+
 	memcpy(matched, judge->matched, sizeof judge->matched);
 }

@@ -2,29 +2,15 @@
 """Compares the recorded pins of the core with the C model on every clock."""
 
 from dataclasses import asdict
-from functools import cache
-from pathlib import Path
-from typing import Any
 
 import numpy as np
-from cffi import FFI
-from passo.build import Parameters
-from passo.compiler import declarations, library, sources
+
+from passo.build import Parameters, judge_library
+from passo.native import ffi, load
 from passo.pins import INPUTS, OUTPUTS
-from passo.toolchain import paths
 
 SIGNALS = (*(pin.name for pin in OUTPUTS), "miso")
 COLUMNS = ("clock", *(f"in_{pin.name}" for pin in INPUTS), "pin_miso", *SIGNALS[:-1])
-HEADER = paths.model / "passo_pins.h"
-FOLDERS = (paths.model, paths.protocol)
-
-DECLARATIONS = """
-uint64_t judge_size(void);
-bool judge_reset(void *judge, const struct passo_parameters *parameters);
-bool judge_follow(void *judge, const void *rows, size_t count, uint64_t until);
-void judge_difference(const void *judge, uint64_t difference[4]);
-void judge_matched(const void *judge, uint64_t *matched);
-"""
 
 
 class DifferenceError(AssertionError):
@@ -36,20 +22,20 @@ class Judge:
 
     def __init__(self, parameters: Parameters):
         self.parameters = parameters
-        self._ffi, self._c = _load()
-        self._judge = self._ffi.new("uint64_t[]", self._c.judge_size() // 8 + 1)
-        wanted = self._ffi.new("struct passo_parameters *", asdict(parameters))
+        self._c = load(judge_library())
+        self._judge = ffi().new("uint64_t[]", self._c.judge_size() // 8 + 1)
+        wanted = ffi().new("struct passo_parameters *", asdict(parameters))
         assert self._c.judge_reset(self._judge, wanted)
 
     def follow(self, rows: np.ndarray, until: int) -> None:
         """Compare up to a clock; `rows` (COLUMNS) were recorded since the last call."""
         rows = np.ascontiguousarray(rows, np.uint64)
-        pointer = self._ffi.from_buffer(rows)
+        pointer = ffi().from_buffer(rows)
         if not self._c.judge_follow(self._judge, pointer, len(rows), until):
             raise DifferenceError(self._difference())
 
     def _difference(self) -> str:
-        found = self._ffi.new("uint64_t[4]")
+        found = ffi().new("uint64_t[4]")
         self._c.judge_difference(self._judge, found)
         clock, signal, expected, actual = found
         different = expected ^ actual
@@ -69,16 +55,7 @@ class Judge:
 
     def summary(self) -> str:
         """Summary of what was compared."""
-        matched = self._ffi.new("uint64_t[]", len(SIGNALS))
+        matched = ffi().new("uint64_t[]", len(SIGNALS))
         self._c.judge_matched(self._judge, matched)
         edges = ", ".join(f"{name} {n}" for name, n in zip(SIGNALS, matched, strict=True) if name != "miso")
         return f"edges that agree: {edges}; bits of MISO that agree: {matched[len(SIGNALS) - 1]}"
-
-
-@cache
-def _load() -> tuple[FFI, Any]:
-    """The model and the judge."""
-    ffi = FFI()
-    ffi.cdef(declarations([HEADER]) + DECLARATIONS)
-    files = [Path(__file__).with_suffix(".c"), *sources(*FOLDERS)]
-    return ffi, ffi.dlopen(str(library("judge", FOLDERS, files, "-O2")))

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: MIT
+"""The clock of a test and its count, and recorders of signals.
+
+Conventions. Clock `n` is the n-th rising edge after the clock was started; an output "of clock n" is what a
+register shows after that edge. Tests write inputs and look at outputs on falling edges, so that neither races
+the rising edge: what is written after clock n counts like a register that changed with clock n.
+"""
+
+from collections.abc import Callable
+
+import cocotb
+from cocotb.clock import Clock
+from cocotb.handle import LogicArrayObject, LogicObject
+from cocotb.triggers import FallingEdge, ValueChange
+from cocotb.utils import get_sim_time
+
+Signal = LogicObject | LogicArrayObject
+
+PERIOD = 10_000  # ps
+
+
+def read(signal: Signal) -> int:
+    """Value of a signal as unsigned integer; ValueError if a bit is X or Z."""
+    return int(signal.value) if isinstance(signal, LogicObject) else signal.value.to_unsigned()
+
+
+class Clocks:
+    """Drives a clock and counts it."""
+
+    def __init__(self, clk: LogicObject, period: int = PERIOD) -> None:
+        self.period = period
+        self.fall = FallingEdge(clk)
+        self.running = False
+        self._clock = Clock(clk, period, unit="step", impl="gpi")
+        self._origin = 0
+
+    def start(self) -> None:
+        """Start the clock low; its first rising edge is clock 0."""
+        self._clock.start(start_high=False)
+        self.running = True
+        self._origin = get_sim_time("step") + self.period // 2
+
+    def stop(self) -> None:
+        """Stop the clock and all recorders, so that `begin` can be called again in the same test."""
+        self._clock.stop()
+        self.running = False
+
+    @property
+    def now(self) -> int:
+        """Number of the last rising edge."""
+        return (get_sim_time("step") - self._origin) // self.period
+
+    def edge(self) -> int:
+        """Number of the rising edge that is right now; ValueError at any other time."""
+        clock, off = divmod(get_sim_time("step") - self._origin, self.period)
+        if off:
+            raise ValueError(f"change {off} ps after clock {clock}")
+        return clock
+
+    async def until(self, clock: int) -> None:
+        """Wait for the falling edge after a clock."""
+        while self.now < clock:
+            await self.fall
+
+    async def wait(self, clocks: int) -> None:
+        """Wait for as many falling edges."""
+        for _ in range(clocks):
+            await self.fall
+
+
+class Recorder:
+    """Records every change of a signal as (clock, value), from now to `stop` or the end of the test."""
+
+    def __init__(self, clocks: Clocks, signal: Signal) -> None:
+        self.changes: list[tuple[int, int]] = []
+        self._clocks = clocks
+        self._signal = signal
+        self._task = cocotb.start_soon(self._watch())
+
+    def stop(self) -> None:
+        """Record no more."""
+        self._task.cancel()
+
+    async def _watch(self) -> None:
+        change = ValueChange(self._signal)
+        while True:
+            await change
+            if not self._clocks.running:
+                return
+            clock = self._clocks.edge()
+            # a vector may change bit by bit, at the same time
+            if self.changes and self.changes[-1][0] == clock:
+                self.changes.pop()
+            self.changes.append((clock, read(self._signal)))
+
+    def clocks_where(self, condition: Callable[[int], object], last: int) -> list[int]:
+        """Clocks up to `last` after which the value met a condition."""
+        found: list[int] = []
+        ends = [*[clock for clock, _ in self.changes], last + 1][1:]
+        for (clock, value), end in zip(self.changes, ends, strict=True):
+            if condition(value):
+                found.extend(range(clock, end))
+        return found
