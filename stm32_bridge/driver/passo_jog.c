@@ -67,6 +67,8 @@ enum passo_error passo_jog_cancel(struct passo *passo)
 
 	if (error != PASSO_OK)
 		return error;
+	if (passo->task.kind == PASSO_TASK_GOTO)
+		passo->task.kind = PASSO_TASK_NONE;
 	if (passo->expects == PASSO_EXPECT_NOTHING || passo->expects == PASSO_EXPECT_TURN_END)
 		return PASSO_OK;
 	error = passo_driver_turning_velocity(passo, true, &velocity);
