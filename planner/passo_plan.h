@@ -160,8 +160,8 @@ struct passo_course {
  * ABOVE_TOP, TOO_FAST above a quarter of the clock, NO_ACCELERATION, TOO_LONG. */
 enum passo_plan_error passo_plan_course(const struct passo_machine *machine,
     const struct passo_course *course, uint32_t steps, struct passo_plan *plan);
-/* While it moves: ramps only, the first of them with NOW. The present speed, UQ32.32 steps/s, is from `low` to
- * `high`. At most `way` (UQ48.16 steps) are made from the NOW on, at most the given acceleration is needed
+/* While it moves: ramps only, the first of them with NOW. The present speed, UQ32.32 steps/s, is from `low`
+ * to `high`. At most `way` (UQ48.16 steps) are made from the NOW on, at most the given acceleration is needed
  * wherever the speed is within its bounds, and the way is used up as far as these allow. Way 0: to rest at
  * once. Errors: the same, TOO_NEAR if the axis cannot come to rest within the way. */
 enum passo_plan_error passo_plan_course_change(const struct passo_machine *machine,

@@ -160,14 +160,21 @@ static bool along(const struct passo_draft *draft, const struct passo_course *co
 	const uint64_t first = ticks_of(draft, course, change), last = ticks_of(draft, course, top);
 	if (first > PASSO_COURSE_RAMP_TICKS_MAX || last > PASSO_COURSE_RAMP_TICKS_MAX)
 		return false;
-	const uint64_t peak = passo_draft_velocity(draft, top);
 	const struct passo_u128 distance = distance_of(draft, way);
-	const struct passo_u128 ramps =
-	    passo_u128_add(passo_multiply(present.velocity + peak, first), passo_multiply(peak, last));
-	if (peak == 0u || passo_u128_less(distance, ramps))
+	const struct passo_u128 entry = passo_multiply(present.velocity, first);
+	if (passo_u128_less(distance, entry))
 		return false;
-	const uint64_t cruise =
-	    passo_smaller(passo_divide(passo_u128_subtract(distance, ramps), 2u * peak, NULL), UINT32_MAX);
+	const struct passo_u128 rest = passo_u128_subtract(distance, entry);
+	/* rounding to ticks may take more than the way: then the peak that fits, which is between the bounds
+	 * of the present speed and the top */
+	const uint64_t fits = passo_divide(rest, first + last, NULL);
+	const uint64_t peak = passo_smaller(passo_draft_velocity(draft, top), fits);
+	if (peak == 0u
+	    || (peak == fits && peak <= passo_draft_velocity(draft, passo_smaller(present.low, top))))
+		return false;
+	const uint64_t cruise = passo_smaller(
+	    passo_divide(passo_u128_subtract(rest, passo_multiply(peak, first + last)), 2u * peak, NULL),
+	    UINT32_MAX);
 	plan->velocity_peak = peak;
 	plan->accelerate_ticks = (uint32_t)first;
 	plan->cruise_ticks = (uint32_t)cruise;
@@ -190,8 +197,9 @@ enum passo_plan_error passo_plan_course_change(const struct passo_machine *machi
 		return error;
 	const struct present present = {
 	    passo_smaller(low, high), high, passo_draft_velocity(&draft, high) + 1u};
-	struct passo_plan made = {
-	    .oversampling = draft.oversampling, .velocity_start = present.velocity, .velocity_peak = present.velocity};
+	struct passo_plan made = {.oversampling = draft.oversampling,
+	    .velocity_start = present.velocity,
+	    .velocity_peak = present.velocity};
 	if (way == 0u || !along(&draft, course, present, way, &made))
 		error = to_rest(&draft, course, present, way, &made);
 	if (error != PASSO_PLAN_OK)

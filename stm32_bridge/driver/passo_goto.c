@@ -2,9 +2,9 @@
  * One axis to a target that may change on the way.
  *
  * Each motion is an endless line, whose ramps end it. From rest they end exactly at the target. A change
- * replaces them all in one frame, so there is no moment without an end. Where on the way the core receives that
- * frame is known only within bounds, so it plans to end short of the target; another motion, from rest, makes
- * what is left. A frame that is never sent, or refused, leaves the end as it was.
+ * replaces them all in one frame, so there is no moment without an end. Where on the way the core receives
+ * that frame is known only within bounds, so it plans to end short of the target; another motion, from rest,
+ * makes what is left. A frame that is never sent, or refused, leaves the end as it was.
  */
 #include "passo_goto.h"
 
@@ -84,8 +84,7 @@ static enum passo_error go_on(struct passo *passo)
 		return error;
 	const uint64_t peak = plan.velocity_peak, units = PASSO_ONE_Q48 / PASSO_UNIT_Q32;
 	/* the pins have to suffice for all changes */
-	plan.velocity_peak =
-	    passo_mul_div(go->top_speed, units * plan.oversampling, passo->machine.clock_hz);
+	plan.velocity_peak = passo_mul_div(go->top_speed, units * plan.oversampling, passo->machine.clock_hz);
 	error = passo_move_plan(passo, &plan, NULL);
 	if (error != PASSO_OK)
 		return error;
@@ -102,9 +101,9 @@ static enum passo_error look(struct passo *passo, const struct passo_goto *to, s
 {
 	const struct passo_machine *machine = &passo->machine;
 	const uint64_t units = PASSO_ONE_Q48 / PASSO_UNIT_Q32;
-	const uint64_t time = passo_mul_div_ceil(late_microseconds(passo, to), machine->clock_hz,
-	                          MICROSECONDS_PER_SECOND)
-	                    + ((uint64_t)TICKS_AHEAD << machine->tick_log2);
+	const uint64_t time =
+	    passo_mul_div_ceil(late_microseconds(passo, to), machine->clock_hz, MICROSECONDS_PER_SECOND)
+	    + ((uint64_t)TICKS_AHEAD << machine->tick_log2);
 	int32_t positions[PASSO_AXES_MAX];
 	uint64_t velocity;
 	enum passo_error error = passo_driver_turning_velocity(passo, false, &velocity);
@@ -116,17 +115,16 @@ static enum passo_error look(struct passo *passo, const struct passo_goto *to, s
 	const uint64_t steepest = larger(to->acceleration, passo->go.acceleration);
 	const uint64_t change = passo_mul_div_ceil(steepest, time, machine->clock_hz);
 	const uint64_t speed = passo_mul_div(velocity, machine->clock_hz, units * passo->oversampling);
-	const uint64_t peak = passo_mul_div_ceil(larger(velocity + units, passo->velocity_peak),
-	    machine->clock_hz, units * passo->oversampling);
+	const uint64_t peak = passo_mul_div_ceil(
+	    larger(velocity + units, passo->velocity_peak), machine->clock_hz, units * passo->oversampling);
 	sight->low = speed > change ? speed - change : 0u;
 	sight->high = speed + change < peak && speed + change > speed ? speed + change : peak;
 	const uint64_t passed =
 	    (passo_mul_div_ceil(sight->high, time, machine->clock_hz) >> (32u - WAY_BITS)) + 1u;
 	const int32_t far = distance(passo, to, positions);
 	const int64_t ahead = (passo->backwards ? -(int64_t)far : far) - STEPS_AHEAD;
-	sight->way = ahead > 0 && (uint64_t)ahead << WAY_BITS > passed
-	               ? ((uint64_t)ahead << WAY_BITS) - passed
-	               : 0u;
+	sight->way =
+	    ahead > 0 && (uint64_t)ahead << WAY_BITS > passed ? ((uint64_t)ahead << WAY_BITS) - passed : 0u;
 	return PASSO_OK;
 }
 
@@ -150,8 +148,7 @@ static enum passo_error plan_change(
 	if (refused == PASSO_PLAN_TOO_NEAR && passo->aimed && to->target == passo->go.target)
 		return PASSO_OK;
 	if (refused == PASSO_PLAN_TOO_NEAR)
-		refused =
-		    passo_plan_course_change(&passo->machine, &course, sight.low, sight.high, 0, plan);
+		refused = passo_plan_course_change(&passo->machine, &course, sight.low, sight.high, 0, plan);
 	return of_plan(refused);
 }
 
@@ -159,17 +156,20 @@ static enum passo_error plan_change(
 static enum passo_error steer(struct passo *passo, const struct passo_goto *to)
 {
 	const uint32_t late = late_microseconds(passo, to);
+	enum passo_error error = PASSO_ERROR_LATE;
 	bool overdue = false;
 
 	for (unsigned tries = 0; tries < TRIES; tries++) {
 		const uint32_t since = passo_driver_now(passo);
 		struct passo_plan plan;
 		bool aimed;
-		enum passo_error error = plan_change(passo, to, &plan, &aimed);
+
+		error = plan_change(passo, to, &plan, &aimed);
 		if (error == PASSO_ERROR_NOT_TURNING || (error == PASSO_OK && plan.ramp_count == 0u))
 			return PASSO_OK;
 		if (error != PASSO_OK)
 			return error;
+		error = PASSO_ERROR_LATE;
 		if (passo_driver_now(passo) - since > late)
 			continue;
 		error = passo_driver_turning_ramps(passo, false, &plan);
@@ -186,10 +186,11 @@ static enum passo_error steer(struct passo *passo, const struct passo_goto *to)
 		passo->aimed = !overdue && aimed;
 		if (!overdue)
 			return PASSO_OK;
+		error = PASSO_ERROR_LATE;
 	}
 	if (overdue)
 		passo_driver_halt(passo, PASSO_DUE_STOP);
-	return PASSO_ERROR_LATE;
+	return error;
 }
 
 /* A goto is under way. */

@@ -30,15 +30,16 @@ extern "C" {
  * behind it and returns.
  *
  * From rest five frames, for a change three. A change is planned for a core that receives it within
- * late_clocks (the time of three frames and of planning; add the resolution of a coarse clock), and is planned
- * again if the microsecond clock shows more. The axis then comes to rest short of the target by the way of
- * that time and 5 steps, and goes on from there. Where the target is that near already, a new speed has no
- * effect.
+ * late_clocks (the time of three frames and of planning; add the resolution of a coarse clock), and is
+ * planned again if the microsecond clock shows more. The axis then comes to rest short of the target by the
+ * way of that time and 5 steps, and goes on from there. Where the target is that near already, a new speed
+ * has no effect.
  *
- * Errors: those of a move from rest; NO_CLOCK; TOO_FAST above a quarter of the clock, ABOVE_TOP, TOO_LONG also
- * for ramps of more than 2^22 ticks; UNDER_WAY for another axis, or while home or probe is under way; LATE: the
- * change was not sent, and the motion goes on as it was, or it was sent too late and a soft stop (STOPPED)
- * follows. After a link error in the change a soft stop replaces it, as in passo_turn_stop(). */
+ * Errors: those of a move from rest; NO_CLOCK; TOO_FAST above a quarter of the clock, ABOVE_TOP, TOO_LONG
+ * also for ramps of more than 2^22 ticks; UNDER_WAY for another axis, or while home or probe is under way;
+ * LATE: the change was not sent, and the motion goes on as it was, or it was sent too late and a soft stop
+ * (STOPPED) follows; FULL on a core with 4 places for ramps. After a link error in the change a soft stop
+ * replaces it, as in passo_turn_stop(). */
 enum passo_error passo_goto(struct passo *passo, const struct passo_goto *go);
 
 #ifdef __cplusplus
