@@ -19,7 +19,6 @@ from passo.toolchain import paths
 
 from tests.helpers.driver_wire import (
     CLOCK_HZ,
-    PARAMETERS,
     Q32,
     Noise,
     Wire,
@@ -152,7 +151,7 @@ def test_a_target_that_runs_away(driver: Driver) -> None:
 
 @pytest.mark.parametrize("after", [10, 60, 100, 200])
 def test_a_host_that_falls_silent(after: int) -> None:
-    """On a core whose watchdog is off; the axis rests on its way, short of the target by no more than stated."""
+    """Without a watchdog: the axis rests on its way, short of the target by no more than stated."""
     driver = open_driver(Wire(WATCHED))
     driver.call("configure_motion", 50 * MS, 50 * MS, 0)
     driver.call("configure_watchdog", 0, 0)
@@ -332,7 +331,7 @@ def test_what_it_refuses(wire: Wire, driver: Driver) -> None:
     ):
         assert error_of(driver, *call) == "UNDER_WAY"
     assert error_of(driver, "jog_speed", 1000 * Q32) == "NOT_TURNING"
-    assert error_of(driver, "set_position", 1, 0) == "MOVING"
+    assert error_of(driver, "set_position", 1, 0) == "UNDER_WAY"
     assert finish(driver) == 3000
     fast = {"top_speed": 0, "acceleration": 2**63}
     assert error_of(driver, "goto", go(0, CLOCK_HZ // 3, **fast)) == "TOO_FAST"
