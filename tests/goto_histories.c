@@ -148,7 +148,7 @@ static void allow(int32_t target, double acceleration)
 	const double *t = world.time + world.steps;
 	const signed char *way = world.way + world.steps;
 	const int32_t at = world.position;
-	int32_t below = way_to_rest(sqrt(2 * acceleration), acceleration), above = below;
+	int32_t below = way_to_rest(5 * sqrt(acceleration), acceleration), above = below;
 
 	const double interval = world.steps > 1u ? t[-1] - t[-2] : 1;
 	if (world.steps > 1u && way[-1] == way[-2] && now() - t[-1] < 2 * interval
