@@ -191,7 +191,9 @@ static void judge_speeds(void)
 			if (n != k)
 				break;
 			const double v = span / (t[j] - t[i]), w = span / (t[k] - t[j]);
-			const double clock = (v * v + w * w) / span / CLOCK_HZ;
+			/* with a rate r edges are 1 / r clocks apart, at most top / v */
+			const bool scaled = world.limit > (double)(world.go.acceleration >> 32);
+			const double clock = (scaled ? (v + w) * world.top : v * v + w * w) / span / CLOCK_HZ;
 			const double excess = fabs(w - v) - clock - 2 * world.limit * TICK;
 			most = fmax(most, excess / (world.limit * (t[k] - t[i]) / 2));
 		}
