@@ -840,7 +840,7 @@ def test_steps_per_mm_can_come_from_the_settings(bench: Bench) -> None:
 
 
 def test_a_target_that_changes(bench: Bench) -> None:
-    """Faster and further on the way; back; another motion is refused meanwhile; bad values have their errors."""
+    """Faster and further on the way; back; other motions and bad values are refused."""
     bench.ask("enable")
     bench.ask("config stop_time=50ms")
     assert bench.ask("goto 2000 speed=5000 top_speed=10_000 acceleration=100_000") == "ok"
