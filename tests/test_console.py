@@ -845,7 +845,7 @@ def test_a_target_that_changes(bench: Bench) -> None:
     bench.ask("config stop_time=50ms")
     assert bench.ask("goto 2000 speed=5000 top_speed=10_000 acceleration=100_000") == "ok"
     bench.ask("run 0.1")
-    assert bench.ask("goto 4000 speed=10_000 acceleration=100_000") == "ok"
+    assert bench.ask("goto 4000 speed=10_000 acceleration=100_000 late=50ms") == "ok"
     assert bench.ask("goto 4000 axis=1 speed=10_000 acceleration=100_000").startswith("error: UNDER_WAY: ")
     assert bench.ask("goto 4000 speed=10_001 acceleration=100_000").startswith("error: ABOVE_TOP: ")
     assert bench.ask("goto 4000 speed=0 acceleration=100_000").startswith("error: NO_SPEED: ")

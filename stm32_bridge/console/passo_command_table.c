@@ -95,6 +95,7 @@ static const struct passo_key GOTO_KEYS[] = {
     PASSO_VALUE("speed", speed, NUMBER, NULL),
     PASSO_VALUE("top_speed", top_speed, NUMBER, "speed"),
     PASSO_VALUE("acceleration", acceleration, NUMBER, NULL),
+    PASSO_VALUE("late", timeout_microseconds, MICROSECONDS, "1ms"),
     CHANNEL,
 };
 #endif

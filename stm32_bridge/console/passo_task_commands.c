@@ -106,7 +106,8 @@ bool passo_run_goto(const struct passo_call *call)
 	    .target = values->distance,
 	    .speed = values->speed,
 	    .top_speed = values->top_speed,
-	    .acceleration = values->acceleration};
+	    .acceleration = values->acceleration,
+	    .late_clocks = passo_clocks(&call->channel->passo, values->timeout_microseconds)};
 	uint8_t off;
 
 	if (!passo_check_enabled(call, (uint8_t)(1u << wanted.axis), &off))
