@@ -56,7 +56,9 @@ enum passo_plan_error {
 	PASSO_PLAN_TABLE_FALLS,          /* a point of the table is lower than the previous one */
 	/* paths of many lines: passo_path.h */
 	PASSO_PLAN_PATH_FULL, /* no room for another line at present */
-	PASSO_PLAN_TOO_FAR    /* a target is out of range */
+	PASSO_PLAN_TOO_FAR,   /* a target is out of range */
+	/* targets that change on the way */
+	PASSO_PLAN_TOO_NEAR /* the axis cannot come to rest before the target */
 };
 
 /* The machine that a plan is made for. */
@@ -141,6 +143,29 @@ enum passo_plan_error passo_plan_turning_speed(const struct passo_machine *machi
     const struct passo_turning *turning, uint64_t velocity, uint64_t rpm, struct passo_plan *plan);
 enum passo_plan_error passo_plan_turning_stop(const struct passo_machine *machine,
     const struct passo_turning *turning, uint64_t velocity, struct passo_plan *plan);
+
+/* A course leads one axis to a target that may change on the way. Like continuous rotation it has an endless
+ * line, but its ramps always end at rest before or at the target. */
+struct passo_course {
+	uint8_t axis;
+	bool backwards;        /* negative direction */
+	uint64_t top_speed;    /* UQ32.32 steps/s: upper limit of all speeds of this line */
+	uint64_t speed;        /* UQ32.32 steps/s, at most top_speed */
+	uint64_t acceleration; /* UQ32.32 steps/s^2, for deceleration as well */
+};
+/* Ramps of at most so many ticks, so that their rounding is below a step. */
+#define PASSO_COURSE_RAMP_TICKS_MAX (UINT32_C(1) << 22)
+
+/* From rest: exactly `steps` of them, at least 1. Errors: BAD_CLOCK, BAD_AXES, BAD_AXIS, NO_STEPS, NO_SPEED,
+ * ABOVE_TOP, TOO_FAST above a quarter of the clock, NO_ACCELERATION, TOO_LONG. */
+enum passo_plan_error passo_plan_course(const struct passo_machine *machine,
+    const struct passo_course *course, uint32_t steps, struct passo_plan *plan);
+/* While it moves: ramps only, the first of them with NOW. The present speed, UQ32.32 steps/s, is from `low`
+ * to `high`. At most `way` (UQ48.16 steps) are made from the NOW on, at most the given acceleration is needed
+ * wherever the speed is within its bounds, and the way is used up as far as these allow. Way 0: to rest at
+ * once. Errors: the same, TOO_NEAR if the axis cannot come to rest within the way. */
+enum passo_plan_error passo_plan_course_change(const struct passo_machine *machine,
+    const struct passo_course *course, uint64_t low, uint64_t high, uint64_t way, struct passo_plan *plan);
 
 /* Nearest whole steps to an angle (Q31.32 degrees) and to a length (Q31.32 mm, scale UQ32.32), with its sign;
  * at most 2^32 - 1 either way. 0 if the scale is 0. */

@@ -839,6 +839,26 @@ def test_steps_per_mm_can_come_from_the_settings(bench: Bench) -> None:
     assert bench.tell("position")["position"] == "120,0,0,0"
 
 
+def test_a_target_that_changes(bench: Bench) -> None:
+    """Faster and further on the way; back; other motions and bad values are refused."""
+    bench.ask("enable")
+    bench.ask("config stop_time=50ms")
+    assert bench.ask("goto 2000 speed=5000 top_speed=10_000 acceleration=100_000") == "ok"
+    bench.ask("run 0.1")
+    assert bench.ask("goto 4000 speed=10_000 acceleration=100_000 late=50ms") == "ok"
+    assert bench.ask("goto 4000 axis=1 speed=10_000 acceleration=100_000").startswith("error: UNDER_WAY: ")
+    assert bench.ask("goto 4000 speed=10_001 acceleration=100_000").startswith("error: ABOVE_TOP: ")
+    assert bench.ask("goto 4000 speed=0 acceleration=100_000").startswith("error: NO_SPEED: ")
+    assert bench.ask("wait") == "ok"
+    assert bench.tell("position")["position"].startswith("4000,0,")
+    assert bench.ask("goto -100 speed=5000 acceleration=100_000") == "ok"
+    bench.ask("run 0.2")
+    assert bench.ask("jog_cancel") == "ok"
+    assert bench.ask("wait") == "ok"
+    assert 2000 < int(bench.tell("position")["position"].split(",")[0]) < 4000
+    assert bench.tell("status")["state"] == "IDLE"
+
+
 def test_help_knows_every_command(bench: Bench) -> None:
     """Each command in the list has help of its own; another one has not."""
     bench.terminal.line("help")

@@ -54,6 +54,7 @@ def test_every_function_of_the_headers_exists() -> None:
         "passo_motor.h",
         "passo_inputs.h",
         "passo_home.h",
+        "passo_goto.h",
         "passo_outputs.h",
         "passo_encoder.h",
         "passo_error.h",

@@ -29,6 +29,7 @@ HEADERS = (
     paths.driver / "passo_path_feed.h",
     paths.driver / "passo_inputs.h",
     paths.driver / "passo_home.h",
+    paths.driver / "passo_goto.h",
     paths.driver / "passo_outputs.h",
     paths.driver / "passo_encoder.h",
     paths.grbl / "passo_player.h",

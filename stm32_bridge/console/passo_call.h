@@ -100,6 +100,7 @@ bool passo_run_wait_trigger(const struct passo_call *call);
 bool passo_run_home(const struct passo_call *call);
 bool passo_run_probe(const struct passo_call *call);
 bool passo_run_jog(const struct passo_call *call);
+bool passo_run_goto(const struct passo_call *call);
 bool passo_run_jog_speed(const struct passo_call *call);
 bool passo_run_jog_cancel(const struct passo_call *call);
 bool passo_run_version(const struct passo_call *call);

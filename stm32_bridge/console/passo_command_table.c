@@ -88,6 +88,17 @@ static const struct passo_key JOG_KEYS[] = {
     PASSO_VALUE("acceleration", acceleration, NUMBER, NULL),
     CHANNEL,
 };
+#ifndef PASSO_WITHOUT_GOTO /* for the flash of a small controller */
+static const struct passo_key GOTO_KEYS[] = {
+    PASSO_VALUE("target", distance, INTEGER, NULL),
+    PASSO_VALUE("axis", axis, AXIS, "0"),
+    PASSO_VALUE("speed", speed, NUMBER, NULL),
+    PASSO_VALUE("top_speed", top_speed, NUMBER, "speed"),
+    PASSO_VALUE("acceleration", acceleration, NUMBER, NULL),
+    PASSO_VALUE("late", timeout_microseconds, MICROSECONDS, "1ms"),
+    CHANNEL,
+};
+#endif
 static const struct passo_key SPEED_KEYS[] = {PASSO_VALUE("speed", speed, NUMBER, NULL), CHANNEL};
 
 /* Commands without keys in their row read their own keys, or have none. */
@@ -117,6 +128,10 @@ const struct passo_command passo_command_table[] = {
     {"jog", passo_run_jog, TAKES(JOG_KEYS), 0, false, "move one axis by hand: by steps, or for ever"},
     {"jog_speed", passo_run_jog_speed, TAKES(SPEED_KEYS), 1, false, "change the speed of an endless jog"},
     {"jog_cancel", passo_run_jog_cancel, TAKES(CHANNEL_KEYS), 0, true, "end a jog on its path, now"},
+#ifndef PASSO_WITHOUT_GOTO
+    {"goto", passo_run_goto, TAKES(GOTO_KEYS), 1, false,
+	"one axis to a position; again on the way: to another"},
+#endif
     {"trigger", passo_run_trigger, TAKES(TRIGGER_KEYS), 1, false,
 	"latch positions at an edge; or what it did"},
     {"wait_trigger", passo_run_wait_trigger, TAKES(WAIT_TRIGGER_KEYS), 1, false, "answered at the edge"},

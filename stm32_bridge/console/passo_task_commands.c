@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * Home, probe, jog, and the wait for a trigger: commands whose line is answered when they are over.
+ * Home, probe, and the wait for a trigger: commands whose line is answered when they are over. Jog and goto.
  */
 #include "passo_call.h"
 #include "passo_commands.h"
+#include "passo_goto.h"
 
 static uint32_t now_of(const struct passo_console *console)
 {
@@ -96,6 +97,27 @@ bool passo_run_jog(const struct passo_call *call)
 		passo_note_disabled(call, off);
 	return passo_answer(call, error);
 }
+
+#ifndef PASSO_WITHOUT_GOTO
+bool passo_run_goto(const struct passo_call *call)
+{
+	const struct passo_values *values = call->values;
+	const struct passo_goto wanted = {.axis = values->axis,
+	    .target = values->distance,
+	    .speed = values->speed,
+	    .top_speed = values->top_speed,
+	    .acceleration = values->acceleration,
+	    .late_clocks = passo_clocks(&call->channel->passo, values->timeout_microseconds)};
+	uint8_t off;
+
+	if (!passo_check_enabled(call, (uint8_t)(1u << wanted.axis), &off))
+		return false;
+	enum passo_error error = passo_goto(&call->channel->passo, &wanted);
+	if (error == PASSO_OK)
+		passo_note_disabled(call, off);
+	return passo_answer(call, error);
+}
+#endif
 
 bool passo_run_jog_speed(const struct passo_call *call)
 {

@@ -90,8 +90,18 @@ struct passo_axis_memory {
 	bool homed;
 };
 
-/* Home or probe that is under way; see passo_home.h. */
-enum passo_task_kind { PASSO_TASK_NONE, PASSO_TASK_HOME, PASSO_TASK_PROBE };
+/* A target that may change on the way; see passo_goto.h. */
+struct passo_goto {
+	uint8_t axis;
+	int32_t target;        /* position in steps */
+	uint64_t speed;        /* UQ32.32 steps/s */
+	uint64_t top_speed;    /* highest of all changes; 0: speed. Of the call from rest */
+	uint64_t acceleration; /* UQ32.32 steps/s^2 */
+	uint64_t late_clocks;  /* how long a change may take to reach the core; 0: 1 ms */
+};
+
+/* Home, probe or goto that is under way; see passo_home.h, passo_goto.h. */
+enum passo_task_kind { PASSO_TASK_NONE, PASSO_TASK_HOME, PASSO_TASK_PROBE, PASSO_TASK_GOTO };
 enum passo_home_phase {
 	PASSO_HOME_RELEASE,  /* leaves a switch that is active already */
 	PASSO_HOME_APPROACH, /* looks for the switch */
@@ -99,6 +109,7 @@ enum passo_home_phase {
 	PASSO_HOME_SLOW, /* looks for the edge */
 	PASSO_HOME_PULL_OFF
 };
+struct passo;
 struct passo_task {
 	enum passo_task_kind kind;
 	enum passo_home_phase phase;
@@ -107,6 +118,8 @@ struct passo_task {
 	bool optional; /* of a probe */
 	uint8_t left;  /* axes to home, with the present one */
 	const struct passo_home *home;
+	/* of a goto: its next motion, from rest; a program without a goto does not link it */
+	enum passo_error (*go_on)(struct passo *passo);
 };
 
 /* What the outputs do while a move runs; see passo_outputs.h. */
@@ -196,6 +209,9 @@ struct passo {
 	bool probe_inverted;
 	struct passo_task task;
 	struct passo_turning turning;
+	struct passo_goto go; /* that is under way */
+	bool backwards;       /* direction of its motion */
+	bool aimed;           /* which ends at the target, or before it */
 	struct passo_source source;
 };
 

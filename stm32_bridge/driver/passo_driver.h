@@ -5,6 +5,7 @@
 #define PASSO_DRIVER_H
 
 #include "passo_encoder.h"
+#include "passo_goto.h"
 #include "passo_home.h"
 #include "passo_outputs.h"
 #include "passo_words.h"
@@ -148,7 +149,7 @@ enum passo_error passo_driver_level(
 /* NO_SOURCE, ARGUMENT, or NO_SWITCH unless the source is configured. */
 enum passo_error passo_driver_check_source(
     const struct passo *passo, enum passo_trigger_source source, uint8_t axis);
-/* Begins a task at rest: with a trigger and a motion, or with the first of a home. */
+/* Begins a task at rest: with a trigger and a motion, or with the first of a home or goto. */
 enum passo_error passo_driver_begin(struct passo *passo, struct passo_task task,
     const struct passo_trigger_config *trigger, const struct passo_move_by_speed *move);
 /* Moves a task on, after a poll with this result. */

@@ -54,9 +54,13 @@ enum passo_error {
 	PASSO_ERROR_NO_SWITCH,         /* no such switch or probe is configured */
 	PASSO_ERROR_NO_DISTANCE,       /* a home without a distance or without a back-off */
 	PASSO_ERROR_NO_STOP_TIME,      /* home and probe stop softly: passo_configure_motion() before them */
-	PASSO_ERROR_UNDER_WAY,         /* a home or probe is under way: wait for its end, or stop it */
+	PASSO_ERROR_UNDER_WAY,         /* a home, probe or goto is under way: wait for its end, or stop it */
 	PASSO_ERROR_SWITCH_MISSED,     /* the switch or probe did not change within the distance; at rest */
 	PASSO_ERROR_SWITCH_LEVEL,      /* it has the level already that is looked for; at rest */
+
+	/* goto */
+	PASSO_ERROR_NO_CLOCK, /* the hardware has no microsecond clock */
+	PASSO_ERROR_LATE,     /* the host was too slow for a change on the way: it goes on as it was */
 
 	/* outputs */
 	PASSO_ERROR_NO_OUTPUTS,      /* the core was built without outputs */

@@ -5,6 +5,9 @@
 #include "passo_math.h"
 #include "passo_plan_draft.h"
 
+/* A ramp reaches the core within a millisecond of the look that it was planned by. */
+#define FRAMES_PER_S 1000u
+
 /* With so many steps per turn, rpm are steps per second. */
 #define STEPS_PER_TURN 60u
 
@@ -67,6 +70,8 @@ enum passo_error passo_jog_cancel(struct passo *passo)
 
 	if (error != PASSO_OK)
 		return error;
+	if (passo->task.kind == PASSO_TASK_GOTO)
+		passo->task.kind = PASSO_TASK_NONE;
 	if (passo->expects == PASSO_EXPECT_NOTHING || passo->expects == PASSO_EXPECT_TURN_END)
 		return PASSO_OK;
 	error = passo_driver_turning_velocity(passo, true, &velocity);
@@ -74,7 +79,13 @@ enum passo_error passo_jog_cancel(struct passo *passo)
 		return error;
 	const struct passo_machine *machine = &passo->machine;
 	const uint64_t units = PASSO_ONE_Q48 / PASSO_UNIT_Q32;
-	const uint64_t speed = passo_mul_div_ceil(velocity, machine->clock_hz, units * passo->oversampling);
+	const uint64_t peak = velocity > passo->velocity_peak ? velocity : passo->velocity_peak;
+	const uint64_t most = passo_mul_div_ceil(peak, machine->clock_hz, units * passo->oversampling);
+	/* while it speeds up, what is added until the core has the ramp */
+	const uint64_t speed =
+	    passo_smaller(passo_mul_div_ceil(velocity, machine->clock_hz, units * passo->oversampling)
+	                      + passo->turning.acceleration / FRAMES_PER_S,
+		most);
 	const uint64_t clocks = passo_mul_div_ceil(speed, machine->clock_hz, passo->turning.acceleration);
 	const uint64_t ticks = passo_ticks_ceil(machine, clocks);
 	passo_plan_add_ramp(&plan, PASSO_SHAPE_LINEAR, false, 0, passo_smaller(ticks, UINT32_MAX));

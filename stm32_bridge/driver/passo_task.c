@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * What home and probe share: motions that a trigger may end, one after the other, moved on by passo_poll().
+ * What home, probe and goto share: motions, one after the other, moved on by passo_poll(). Those of home and
+ * probe may be ended by a trigger.
  */
 #include "passo_driver.h"
 
@@ -42,12 +43,14 @@ enum passo_error passo_driver_begin(struct passo *passo, struct passo_task task,
 
 	if (error == PASSO_OK && trigger)
 		error = passo_driver_check_source(passo, trigger->source, trigger->axis);
-	if (error == PASSO_OK && !passo->stop_time_known)
+	if (error == PASSO_OK && !task.go_on && !passo->stop_time_known)
 		error = PASSO_ERROR_NO_STOP_TIME; /* after a reset the core stops within 0.1 ms */
 	if (error != PASSO_OK)
 		return error;
 	passo->task = task;
 	passo->task.inside = true;
+	if (task.go_on)
+		return settle(passo, task.go_on(passo));
 	error = trigger ? passo_driver_seek(passo, trigger, move) : passo_driver_home_first(passo);
 	return settle(passo, error);
 }
@@ -72,6 +75,8 @@ static enum passo_error next(struct passo *passo)
 	}
 	if (error != PASSO_OK)
 		return error;
+	if (passo->task.go_on)
+		return passo->task.go_on(passo);
 	if (passo->task.kind == PASSO_TASK_HOME)
 		return passo_driver_home_next(passo, &report);
 	return report.fired || passo->task.optional ? PASSO_OK : PASSO_ERROR_SWITCH_MISSED;
