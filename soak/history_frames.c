@@ -157,6 +157,7 @@ void player_actions(struct player *player, const struct plot *plot, size_t scout
 		if (action->kind == ACTION_FRAME)
 			continue;
 		print_pin(player, action);
+		player->counts->hit += action->event < EVENT_KINDS ? 1u : 0u;
 		player_pin(world, action);
 	}
 	for (size_t i = 0; i < plot->count; i++) {

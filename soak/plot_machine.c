@@ -209,7 +209,7 @@ void plot_begin_machine(struct plot *plot, uint64_t seed, uint64_t number, bool 
 	memset(plot, 0, sizeof *plot);
 	plot->parameters = plot_machine_parameters();
 	plot_seed(random, seed, number);
-	plot->half_period = tries ? 1u : 2u;
+	plot->half_period = 2;
 	plot->setup = 2u + plot_draw(random, 4);
 	set_up_inputs(plot, tries);
 	write(plot, PASSO_ADDRESS_RUN, plot_all_run(plot));
