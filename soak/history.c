@@ -32,12 +32,14 @@ void history_play(struct world *world, const struct world_rtl *rtl, uint64_t see
 
 	scout.latency = world->latency;
 	scout.machine = world->machine;
-	if (world->machine)
+	if (world->pokes)
+		plot_begin_pokes(&plot, seed, number);
+	else if (world->machine)
 		plot_begin_machine(&plot, seed, number, world->tries);
 	else
 		plot_begin(&plot, seed, number);
 	const unsigned most = world->machine ? 5u : 3u;
-	const unsigned disturbances = world->tries ? 0u : 1u + plot_draw(&plot.random, most);
+	const unsigned disturbances = world->tries || world->pokes ? 0u : 1u + plot_draw(&plot.random, most);
 	for (unsigned i = 0; i < disturbances; i++) {
 		const enum plot_kind kind = i != 0u || !plot.waits        ? plot_kind(&plot)
 		                          : plot_chance(&plot.random, 70) ? PLOT_SYNC
@@ -68,12 +70,14 @@ void history_play(struct world *world, const struct world_rtl *rtl, uint64_t see
 	player = (struct player){.world = world, .counts = counts, .print = print};
 	open_world(world, &plot, rtl, record);
 	player_actions(&player, &plot, SIZE_MAX);
-	if (world->machine)
+	if (world->pokes)
+		player_pokes(&player, &random);
+	else if (world->machine)
 		player_end_machine(&player);
 	player_end(&player, &random, brief);
 	world_end_record(world);
 	counts->clocks += world->clock;
-	if (!world->failed_at)
+	if (!world->failed_at && !world->pokes)
 		judge_history(world, &counts->judge);
 	world_close(world);
 }

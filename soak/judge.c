@@ -37,7 +37,7 @@ static void reset(struct judge *judge)
 	}
 	judge->enable_unknown_until = judge->now + RESET_CLOCKS;
 	if (judge->world->machine)
-		judge_machine_reset(judge);
+		judge_machine_reset(judge, false);
 }
 
 static void do_fact(struct judge *judge, const struct world_fact *fact, const struct passo_outputs *pins)
@@ -72,7 +72,7 @@ static void do_fact(struct judge *judge, const struct world_fact *fact, const st
 		break;
 	case FACT_RESET_DONE:
 		if (judge->world->machine)
-			judge_machine_reset(judge);
+			judge_machine_reset(judge, true);
 		break;
 	case FACT_PIN:
 		judge_pin(judge, fact);

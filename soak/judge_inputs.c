@@ -8,9 +8,9 @@
 /* Clocks around CLEAR in which an event may come before or after it. */
 #define CLEAR_CLOCKS 10u
 
-bool judge_may(const struct level *level, uint64_t clock)
+bool judge_may(const struct level *level, uint64_t from, uint64_t until)
 {
-	return level->may_from <= clock && clock < level->may_until;
+	return level->may_from <= until && from < level->may_until;
 }
 
 bool judge_must(const struct level *level, uint64_t clock)
@@ -41,6 +41,9 @@ void judge_add_event(
 {
 	struct machine *machine = &judge->machine;
 
+	for (unsigned i = 0; i < machine->event_count && latest == NEVER; i++)
+		if (machine->events[i].cause == cause && machine->events[i].latest == NEVER)
+			return; /* perhaps, and perhaps before */
 	if (machine->event_count < EVENTS_MAX)
 		machine->events[machine->event_count++] = (struct stop_event){cause, hard, earliest, latest};
 }
@@ -79,7 +82,7 @@ static void see_level(struct judge *judge, unsigned input, unsigned a, uint64_t 
 	if (!acts)
 		return;
 	judge->counts->levels++;
-	level->may_from = judge_may(level, earliest) ? level->may_from : earliest;
+	level->may_from = judge_may(level, earliest, earliest) ? level->may_from : earliest;
 	level->may_until = NEVER;
 	level->may_have_been = true;
 	if (always && (level->must_from == NEVER || level->must_until != NEVER)) {
@@ -163,7 +166,7 @@ void judge_clear_events(struct judge *judge)
 	judge_exceeding(judge);
 }
 
-void judge_reset_inputs(struct judge *judge, uint64_t slack)
+void judge_reset_inputs(struct judge *judge, bool done)
 {
 	struct machine *machine = &judge->machine;
 
@@ -173,12 +176,12 @@ void judge_reset_inputs(struct judge *judge, uint64_t slack)
 			machine->levels[input][a] = (struct level){NEVER, NEVER, NEVER, NEVER, false, false};
 			if (input >= PASSO_INPUT_LIMIT_LOW && input <= PASSO_INPUT_PROBE
 			    && is_active(machine, input, a))
-				see_level(judge, input, a, slack);
+				see_level(judge, input, a, SLACK);
 		}
-	if (machine->pressed && machine->pins[PASSO_INPUT_ESTOP_N] == 0u)
+	/* it is seen for two more clocks */
+	if (machine->pressed)
 		judge_add_event(judge, PASSO_CAUSE_ESTOP, true, judge->now, NEVER);
-	else
-		machine->pressed = false;
+	machine->pressed = machine->pressed && (machine->pins[PASSO_INPUT_ESTOP_N] == 0u || !done);
 }
 
 void judge_flags(struct judge *judge, const struct world_fact *fact)

@@ -20,11 +20,11 @@ void judge_machine_power_up(struct judge *judge)
 	machine->encoder_filter = PASSO_CHANNEL_ENCODER_FILTER_FILTER_RESET;
 }
 
-void judge_machine_reset(struct judge *judge)
+void judge_machine_reset(struct judge *judge, bool done)
 {
 	struct machine *machine = &judge->machine;
 
-	judge_reset_inputs(judge, SLACK);
+	judge_reset_inputs(judge, done);
 	machine->stop_slew = PASSO_CHANNEL_STOP_SLEW_RESET;
 	machine->full_rate = true;
 	machine->held = false;

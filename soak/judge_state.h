@@ -116,7 +116,7 @@ void judge_status(struct judge *judge, const struct world_fact *fact);
 
 /* A machine: settings ... */
 void judge_machine_power_up(struct judge *judge);
-void judge_machine_reset(struct judge *judge);
+void judge_machine_reset(struct judge *judge, bool done);
 void judge_machine_line(struct judge *judge, const struct world_fact *fact);
 void judge_machine_write(struct judge *judge, uint32_t address, uint32_t value);
 void judge_machine_command(struct judge *judge, struct passo_channel_command command);
@@ -124,10 +124,10 @@ void judge_machine_enable(struct judge *judge, unsigned a);
 /* ... its inputs; the pin `input` of an axis has changed, or its polarity ... */
 void judge_pin(struct judge *judge, const struct world_fact *fact);
 void judge_see_levels(struct judge *judge, unsigned input, unsigned a, bool inverted);
-bool judge_may(const struct level *level, uint64_t clock);
+bool judge_may(const struct level *level, uint64_t from, uint64_t until);
 bool judge_must(const struct level *level, uint64_t clock);
 uint64_t judge_next_change(const struct judge *judge, unsigned input, unsigned a);
-void judge_reset_inputs(struct judge *judge, uint64_t slack);
+void judge_reset_inputs(struct judge *judge, bool done);
 void judge_flags(struct judge *judge, const struct world_fact *fact);
 /* ... its stops; before and after the pins of a row are judged ... */
 void judge_add_event(

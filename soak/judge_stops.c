@@ -97,7 +97,7 @@ bool judge_enabled(struct judge *judge, unsigned a, bool *unsure)
 	const uint8_t bit = (uint8_t)(1u << a);
 
 	if ((machine->alarm_disables & bit) != 0u && judge->now > 6u) {
-		if (judge_may(alarm, judge->now + 2u) || judge_may(alarm, judge->now - 6u))
+		if (judge_may(alarm, judge->now - 6u, judge->now + 2u))
 			machine->enable_unsure |= bit;
 		if (judge_must(alarm, judge->now) && judge_must(alarm, judge->now - 6u)) {
 			machine->enable_unsure &= (uint8_t)~bit;
@@ -121,7 +121,7 @@ static void see_slew(struct judge *judge, const struct stop_event *event)
 	    || machine->ran_from == 0u || machine->ran_from > event->earliest || stopped <= event->latest)
 		return;
 	judge->counts->slews++;
-	if (stopped + SHOWN < event->latest + (ticks - 1u) * tick
+	if (stopped + SHOWN < event->earliest + (ticks - 1u) * tick
 	    || stopped > event->latest + (ticks + 1u) * tick + 64u)
 		FAIL(judge, "a soft stop took %llu clocks, its slew %llu ticks",
 		    (unsigned long long)(stopped - event->latest), (unsigned long long)ticks);

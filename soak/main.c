@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * soak SEED FIRST COUNT [--rtl LIBRARY] [--record FOLDER] [--set N] [--driver | --machine | --tries] [--short]
- *     [--print] [--keep-on]
+ * soak SEED FIRST COUNT [--rtl LIBRARY] [--record FOLDER] [--set N] [--driver | --machine | --tries | --pokes]
+ *     [--short] [--print] [--keep-on]
  * Plays histories FIRST, FIRST + 1, ... at register level, or with --driver through the driver. --set N: only
  * those of one parameter set; --short: without the last move. Stops at the first failure unless --keep-on is
  * given. Prints lines "progress HISTORIES", "failed NUMBER CLOCK TEXT", "count NAME VALUE".
@@ -17,7 +17,7 @@ struct options {
 	uint64_t seed, first, count;
 	const char *library, *folder;
 	unsigned set; /* PLOT_SETS: all */
-	bool print, keep_on, driver, brief, blind, machine, tries;
+	bool print, keep_on, driver, brief, blind, machine, tries, pokes;
 };
 
 static bool parse(int argc, char **argv, struct options *options)
@@ -39,6 +39,8 @@ static bool parse(int argc, char **argv, struct options *options)
 			options->machine = true;
 		else if (strcmp(argv[i], "--tries") == 0)
 			options->machine = options->tries = true;
+		else if (strcmp(argv[i], "--pokes") == 0)
+			options->machine = options->pokes = true;
 		else if (strcmp(argv[i], "--short") == 0)
 			options->brief = true;
 		else if (strcmp(argv[i], "--driver") == 0)
@@ -144,6 +146,7 @@ int main(int argc, char **argv)
 	world.blind = options.blind;
 	world.machine = options.machine;
 	world.tries = options.tries;
+	world.pokes = options.pokes;
 	for (uint64_t number = options.first; played < options.count; number++) {
 		char path[WORLD_TEXT];
 		FILE *record = NULL;

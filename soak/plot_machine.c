@@ -202,6 +202,16 @@ static void add_tries(struct plot *plot)
 	}
 }
 
+void plot_begin_pokes(struct plot *plot, uint64_t seed, uint64_t number)
+{
+	memset(plot, 0, sizeof *plot);
+	plot->parameters = plot_machine_parameters();
+	plot_seed(&plot->random, seed, number);
+	plot->half_period = plot->setup = 2;
+	plot->levels = (struct passo_inputs)PASSO_INPUTS_IDLE;
+	plot->shaft_period = 1;
+}
+
 void plot_begin_machine(struct plot *plot, uint64_t seed, uint64_t number, bool tries)
 {
 	struct plot_random *random = &plot->random;

@@ -285,10 +285,29 @@ static void turn_shafts(struct world *world)
 	}
 }
 
+/* Now and then any input of the machine, or sync. */
+static void make_noise(struct world *world)
+{
+	uint64_t x = world->noise;
+
+	x ^= x >> 12;
+	x ^= x << 25;
+	x ^= x >> 27;
+	world->noise = x;
+	const enum passo_input input = (enum passo_input)(PASSO_INPUT_SYNC + (x >> 8) % 10u);
+
+	if ((x & 0x1Fu) != 0u || (input == PASSO_INPUT_ESTOP_N && (x >> 20 & 0xFFu) != 0u))
+		return;
+	invert(world, input, input <= PASSO_INPUT_ESTOP_N ? 1u : (uint8_t)(x >> 32));
+	world->fact_count--;
+}
+
 static void change_pins(struct world *world)
 {
 	if (world->machine)
 		turn_shafts(world);
+	if (world->noise != 0u)
+		make_noise(world);
 	while (
 	    world->pin_next < world->pin_count && world->pins[world->pin_next].clock <= world->clock + 1u) {
 		const struct world_pin *pin = &world->pins[world->pin_next++];
@@ -379,6 +398,7 @@ bool world_open(struct world *world, const struct passo_parameters *parameters, 
 	world->blind = kept.blind;
 	world->machine = kept.machine;
 	world->tries = kept.tries;
+	world->pokes = kept.pokes;
 	world->half_period = 2;
 	world->setup = 4;
 	world->inputs = (struct passo_inputs)PASSO_INPUTS_IDLE;

@@ -128,6 +128,7 @@ struct world {
 	uint64_t events_from;
 	uint64_t idle_since[PASSO_CHANNELS_MAX];
 	struct passo_inputs levels; /* of the inputs at rest */
+	uint64_t noise;             /* state of the random changes of all inputs; 0: none */
 	struct world_shaft shafts[PASSO_AXES_MAX]; /* of channel 0 */
 	FILE *record; /* stimulus for soak/player.v; NULL: none */
 	struct passo_inputs recorded_inputs;
@@ -138,6 +139,7 @@ struct world {
 	bool blind;         /* the rate is judged by the steps alone */
 	bool machine;       /* a core with inputs, encoders and outputs */
 	bool tries;         /* that drives into its limit switches */
+	bool pokes;         /* anything is written and anything happens at its pins; not judged */
 	uint64_t failed_at; /* clock of the first failure; 0: none */
 	char failure[WORLD_TEXT];
 };
