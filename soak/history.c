@@ -76,6 +76,8 @@ void history_play(struct world *world, const struct world_rtl *rtl, uint64_t see
 		player_end_machine(&player);
 	player_end(&player, &random, brief);
 	world_end_record(world);
+	if (record && world->machine)
+		world_record_estop(world);
 	counts->clocks += world->clock;
 	if (!world->failed_at && !world->pokes)
 		judge_history(world, &counts->judge);

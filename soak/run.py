@@ -48,8 +48,8 @@ HISTORIES = {
     "machine": 4_000,
     "tries": 15_000,
     "pokes": 60,
-    "machine on verilator": 200,
-    "machine on icarus": 200,
+    "machine on verilator": 170,
+    "machine on icarus": 170,
 }
 PARTS = ("model", "driver", "verilator", "icarus", "machine", "defects")
 

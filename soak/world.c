@@ -192,13 +192,13 @@ static void record(
 	world->recorded_outputs = *outputs;
 }
 
-/* Writes a run of clocks with equal inputs and outputs. */
-void world_end_record(struct world *world)
+/* Writes the clocks recorded with equal inputs and outputs. */
+static void write_run(struct world *world)
 {
 	const struct passo_inputs *inputs = &world->recorded_inputs;
 	const struct passo_outputs *outputs = &world->recorded_outputs;
 
-	if (world->record && world->recorded_clocks != 0u) {
+	if (world->record) {
 		fprintf(world->record, "%llx", (unsigned long long)world->recorded_clocks);
 #define WRITE_INPUT(name, type, number) fprintf(world->record, " %llx", (unsigned long long)inputs->name);
 #define WRITE_OUTPUT(name, type, number) fprintf(world->record, " %llx", (unsigned long long)outputs->name);
@@ -209,6 +209,19 @@ void world_end_record(struct world *world)
 		fprintf(world->record, " %x\n", outputs->spi_miso ? 1u : 0u);
 	}
 	world->recorded_clocks = 0;
+}
+
+void world_end_record(struct world *world)
+{
+	if (world->recorded_clocks != 0u)
+		write_run(world);
+}
+
+void world_record_estop(struct world *world)
+{
+	world->recorded_inputs.estop_n = false;
+	world->recorded_outputs.enable = passo_core_enable(&world->model, false);
+	write_run(world);
 }
 
 static void compare(struct world *world, const struct passo_outputs *rtl, const struct passo_outputs *model)

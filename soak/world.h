@@ -150,8 +150,9 @@ const struct world_rtl *world_load(const char *library);
 /* Powers up the core. False if the parameters do not match the Verilated core. */
 bool world_open(struct world *world, const struct passo_parameters *parameters, const struct world_rtl *rtl);
 void world_close(struct world *world);
-/* Completes the record. */
+/* Completes the record; and then takes the enables away by e-stop, without a clock. */
 void world_end_record(struct world *world);
+void world_record_estop(struct world *world);
 
 void world_run(struct world *world, uint64_t clocks);
 /* One chip select in which `bits` bits of the words are exchanged. */
