@@ -212,10 +212,8 @@ void player_end(struct player *player, struct plot_random *random, bool brief)
 	uint32_t states[PASSO_CHANNELS_MAX] = {0};
 
 	if (plot_chance(random, 8)) { /* a reset leads to the same state */
-		world_add_pin(
-		    world, (struct world_pin){world->clock + 3u, PASSO_INPUT_RST, true, 0, 0});
-		world_add_pin(
-		    world, (struct world_pin){world->clock + 5u, PASSO_INPUT_RST, false, 0, 0});
+		world_add_pin(world, (struct world_pin){world->clock + 3u, PASSO_INPUT_RST, true, 0, 0});
+		world_add_pin(world, (struct world_pin){world->clock + 5u, PASSO_INPUT_RST, false, 0, 0});
 		world_run(world, 20);
 	}
 	for (unsigned c = 0; c < player_channels(player) && !world->failed_at; c++)

@@ -132,10 +132,8 @@ static void player_pin(struct world *world, const struct action *action)
 	    .level = true};
 
 	if (action->kind == ACTION_INPUT)
-		pin = (struct world_pin){.clock = action->at,
-		    .input = action->input,
-		    .mask = action->mask,
-		    .turn = action->turn};
+		pin = (struct world_pin){
+		    .clock = action->at, .input = action->input, .mask = action->mask, .turn = action->turn};
 	world_add_pin(world, pin);
 	for (unsigned i = 1; action->kind == ACTION_INPUT && i < action->edges; i++) {
 		pin.clock += action->clocks;

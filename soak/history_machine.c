@@ -11,8 +11,8 @@
 #define POKE_MAX 12u
 #define FORGETS 70000u
 
-static void frame(struct player *player, enum passo_operation operation, uint16_t address, uint32_t word,
-    uint16_t length)
+static void frame(
+    struct player *player, enum passo_operation operation, uint16_t address, uint32_t word, uint16_t length)
 {
 	const struct action action = {.kind = ACTION_FRAME,
 	    .clocks = 2,
@@ -96,8 +96,8 @@ static void poke(struct player *player, struct plot_random *random)
 	uint32_t length = 1u + plot_draw(random, POKE_MAX);
 	const bool moves = plot_chance(random, 30), reads = !moves && plot_chance(random, 30);
 	uint16_t address = (uint16_t)(plot_chance(random, 75)   ? channel_address(0, plot_draw(random, 256))
-	                                    : plot_chance(random, 80) ? plot_draw(random, 64)
-	                                                              : plot_draw(random, 4096));
+	                              : plot_chance(random, 80) ? plot_draw(random, 64)
+	                                                        : plot_draw(random, 4096));
 	enum passo_verdict verdict;
 	enum passo_reply reply;
 	size_t count;
@@ -152,7 +152,8 @@ void player_pokes(struct player *player, struct plot_random *random)
 		write(player, axis_address(0, a, PASSO_AXIS_STEP_TIMING), 0x10001);
 		write(player, axis_address(0, a, PASSO_AXIS_DIR_TIMING), 0x10001);
 		write(player, axis_address(0, a, PASSO_AXIS_INPUTS), 0);
-		write(player, channel_address(0, PASSO_CHANNEL_ENCODER_BASE + a * PASSO_CHANNEL_ENCODER_STRIDE), 0);
+		write(player,
+		    channel_address(0, PASSO_CHANNEL_ENCODER_BASE + a * PASSO_CHANNEL_ENCODER_STRIDE), 0);
 	}
 	world_run(world, FORGETS);
 	write(player, PASSO_ADDRESS_ESTOP_CLEAR, 1);

@@ -54,7 +54,8 @@ static void add_events(struct judge *judge, unsigned input, unsigned a, uint64_t
 	const struct machine *machine = &judge->machine;
 
 	if (input == PASSO_INPUT_ALARM)
-		judge_add_event(judge, PASSO_CAUSE_ALARM, (machine->alarm_soft >> a & 1u) == 0u, earliest, latest);
+		judge_add_event(
+		    judge, PASSO_CAUSE_ALARM, (machine->alarm_soft >> a & 1u) == 0u, earliest, latest);
 	if (input == PASSO_INPUT_LIMIT_LOW || input == PASSO_INPUT_LIMIT_HIGH)
 		judge_add_event(judge, PASSO_CAUSE_LIMIT, false, earliest, NEVER);
 }
@@ -157,8 +158,8 @@ void judge_clear_events(struct judge *judge)
 			if (level->may_until > judge->now && level->may_from != NEVER)
 				add_events(judge, input, a, judge_later(level->may_from, judge->now),
 				    judge_must(level, judge->now) && level->must_until == NEVER
-				        ? judge->now + CLEAR_CLOCKS
-				        : NEVER);
+					? judge->now + CLEAR_CLOCKS
+					: NEVER);
 		}
 	if (machine->pressed)
 		judge_add_event(judge, PASSO_CAUSE_ESTOP, true, judge->now,

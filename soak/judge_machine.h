@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Internal: what the judge knows of a machine: its inputs, trigger, encoders, outputs, and the events that must
- * stop the channel. One channel.
+ * Internal: what the judge knows of a machine: its inputs, trigger, encoders, outputs, and the events that
+ * must stop the channel. One channel.
  */
 #ifndef SOAK_JUDGE_MACHINE_H
 #define SOAK_JUDGE_MACHINE_H

@@ -84,7 +84,8 @@ void judge_enable(struct judge *judge, unsigned c, unsigned a, bool level)
 	bool unsure = false;
 	const bool enabled = judge->world->machine ? judge_enabled(judge, a, &unsure) : axis->enabled;
 
-	if (!unsure && judge->now >= judge->enable_unknown_until && level != (enabled != axis->enable_inverted))
+	if (!unsure && judge->now >= judge->enable_unknown_until
+	    && level != (enabled != axis->enable_inverted))
 		FAIL(judge, "channel %u axis %u: EN is %d", c, a, level);
 }
 

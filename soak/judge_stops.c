@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Stops of a machine: the first event is the cause, none is missed, hard ones end steps, soft ones keep their slew.
+ * Stops of a machine: the first event is the cause, none is missed, hard ones end steps, soft ones keep their
+ * slew.
  */
 #include "judge_state.h"
 
@@ -68,7 +69,7 @@ void judge_machine_after(struct judge *judge, const struct passo_outputs *pins)
 		for (unsigned a = 0; a < judge_axes(judge); a++)
 			judge->counts->tries += ((machine->closed_low & machine->line_low)
 			                            | (machine->closed_high & machine->line_high))
-			                          >> a
+			                         >> a
 			                      & 1u;
 		machine->closed_low = machine->closed_high = 0;
 	}

@@ -3,8 +3,8 @@
  */
 #include "judge_state.h"
 
-/* Clocks around arming in which an edge may count or not; from a pin to the latch, besides the filter; from the
- * latch until it can be read; from a pin to its count, besides the filter. */
+/* Clocks around arming in which an edge may count or not; from a pin to the latch, besides the filter; from
+ * the latch until it can be read; from a pin to its count, besides the filter. */
 #define ARMING 12u
 #define LATCH 3u
 #define READABLE 140u
@@ -23,7 +23,8 @@ static uint64_t fires_at(struct judge *judge, struct passo_channel_trigger word,
 	    [PASSO_TRIGGER_SOURCE_HOME] = PASSO_INPUT_HOME,
 	    [PASSO_TRIGGER_SOURCE_PROBE] = PASSO_INPUT_PROBE};
 	const struct machine *machine = &judge->machine;
-	const unsigned input = inputs[word.source], a = word.source == PASSO_TRIGGER_SOURCE_PROBE ? 0 : word.axis;
+	const unsigned input = inputs[word.source],
+		       a = word.source == PASSO_TRIGGER_SOURCE_PROBE ? 0 : word.axis;
 	const uint32_t inverted = (uint32_t)machine->inverted[input] >> a & 1u;
 	uint32_t level = ((uint32_t)machine->pins[input] >> a & 1u) ^ inverted, pin = level;
 	uint64_t since = judge->now;
@@ -58,10 +59,8 @@ void judge_arm(struct judge *judge, uint32_t value)
 	const struct passo_channel_trigger word = passo_unpack_channel_trigger(value);
 	struct trigger *trigger = &judge->machine.trigger;
 
-	*trigger = (struct trigger){.armed = word.arm,
-	    .action = word.action,
-	    .armed_at = judge->now,
-	    .fires_at = NEVER};
+	*trigger = (struct trigger){
+	    .armed = word.arm, .action = word.action, .armed_at = judge->now, .fires_at = NEVER};
 	if (!word.arm)
 		return;
 	trigger->fires_at = fires_at(judge, word, &trigger->unsure);
@@ -83,8 +82,7 @@ void judge_latch(struct judge *judge)
 	for (unsigned a = 0; a < judge_axes(judge); a++)
 		trigger->position[a] = judge->channel[0].axis[a].position;
 	if (hard || trigger->action == PASSO_TRIGGER_ACTION_SOFT_STOP)
-		judge_add_event(
-		    judge, PASSO_CAUSE_TRIGGER, hard, trigger->fires_at, trigger->fires_at + 1u);
+		judge_add_event(judge, PASSO_CAUSE_TRIGGER, hard, trigger->fires_at, trigger->fires_at + 1u);
 }
 
 void judge_trigger_state(struct judge *judge, const struct world_fact *fact)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * soak SEED FIRST COUNT [--rtl LIBRARY] [--record FOLDER] [--set N] [--driver | --machine | --tries | --pokes]
+ * soak SEED FIRST COUNT [--rtl LIBRARY] [--record FOLDER] [--set N] [--driver | --machine | --tries |
+ * --pokes]
  *     [--short] [--print] [--keep-on]
  * Plays histories FIRST, FIRST + 1, ... at register level, or with --driver through the driver. --set N: only
  * those of one parameter set; --short: without the last move. Stops at the first failure unless --keep-on is
@@ -94,8 +95,8 @@ static void say_history(const struct history_counts *counts, uint64_t played)
 	    SAID(aimed), SAID(hit), JUDGED(steps), JUDGED(turns), JUDGED(quiets), JUDGED(positions),
 	    JUDGED(paths), JUDGED(aborts), JUDGED(stops), JUDGED(gaps), JUDGED(resets), JUDGED(gates),
 	    JUDGED(causes), JUDGED(slews), JUDGED(tries), JUDGED(latches), JUDGED(fired), JUDGED(levels),
-	    JUDGED(glitches), JUDGED(estops), JUDGED(compares), JUDGED(words), JUDGED(holds),
-	    JUDGED(counted), JUDGED(encoders)};
+	    JUDGED(glitches), JUDGED(estops), JUDGED(compares), JUDGED(words), JUDGED(holds), JUDGED(counted),
+	    JUDGED(encoders)};
 #undef JUDGED
 #undef SAID
 

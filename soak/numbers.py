@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a path bound to a machine keeps, measured in the C model: pitch of a thread, energy per step, raster."""
+"""What a path bound to a machine keeps, in the C model: pitch of a thread, energy per step, raster."""
 
 import random
 from fractions import Fraction
@@ -59,7 +59,7 @@ def run(engine: Engine, clocks: int) -> None:
 
 
 def thread(seed: int) -> dict[str, Any]:
-    """Ten passes of 100 turns: how far steps are from the exact pitch, and whether all passes are the same."""
+    """Ten passes of 100 turns: how far steps are from the exact pitch, whether all passes are the same."""
     rng = random.Random(f"{seed}/spindle")
     parameters = Parameters(channels=1, axes=3, encoders=1)
     pitch = Fraction(1, 3)  # steps per count
@@ -135,7 +135,7 @@ class _Laser:
 
 
 def laser() -> dict[str, Any]:
-    """Energy per step from 5 % to 100 % of the speed, and through holds and resumes, relative to full speed."""
+    """Energy per step from 5 % to 100 % of the speed, and through holds and resumes: relative errors."""
     with model_engine(Parameters(channels=1, axes=3, outputs=1)) as engine:
         core = _Laser(engine, pwm_step=(1 << 24) // 50, power_reference=1 << 31)
         core.channel.configure_motion(400, RATE_ONE, 1 << 28)

@@ -28,7 +28,7 @@ enum action_fault { FAULT_NONE, FAULT_CRC, FAULT_REPEATED, FAULT_CUT, FAULT_VALU
 
 struct action {
 	enum action_kind kind;
-	uint64_t at;     /* earliest clock */
+	uint64_t at; /* earliest clock */
 	/* chip select high before a frame, length of a sync pulse or reset, time from edge to edge */
 	uint32_t clocks;
 	enum passo_input input; /* that `edges` edges invert at `mask`, or the shaft that turns */

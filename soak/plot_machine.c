@@ -106,7 +106,8 @@ static void set_up_outputs(struct plot *plot)
 	plot_add_word(&action,
 	    plot_draw(random, AXES) << PASSO_CHANNEL_COMPARE_PULSE_AXIS_LSB | (1u + plot_draw(random, 40)));
 	plot_add_word(&action, plot_draw(random, 30) - 15u);
-	plot_add_word(&action, plot_chance(random, 50) ? 1u + plot_draw(random, 9) : 0u - 1u - plot_draw(random, 9));
+	plot_add_word(
+	    &action, plot_chance(random, 50) ? 1u + plot_draw(random, 9) : 0u - 1u - plot_draw(random, 9));
 	plot_add(plot, &action);
 	write_channel(plot, PASSO_CHANNEL_PWM_STEP, 1u << (14u + plot_draw(random, 8)));
 }
@@ -146,9 +147,9 @@ static void set_up_motion(struct plot *plot)
 		    .directions = (uint8_t)plot_draw(random, 1u << AXES),
 		    .output = some_output(plot)};
 		for (unsigned a = 0; a < AXES; a++)
-			line->steps[a] = a == 0u                  ? REPEATED
+			line->steps[a] = a == 0u                 ? REPEATED
 			               : plot_chance(random, 15) ? 0u
-			                                          : plot_draw(random, REPEATED);
+			                                         : plot_draw(random, REPEATED);
 	}
 	plot->gap_enabled[0][0] = period << (speed + 1u);
 	plot_add_ramp(&motion, PASSO_VELOCITY_MAX >> speed, plot_draw(random, 3), PASSO_SHAPE_LINEAR);
@@ -163,12 +164,8 @@ static void set_up_motion(struct plot *plot)
 /* A switch that is active before the host knows of it. */
 static void close_early(struct plot *plot, enum passo_input input, uint8_t mask)
 {
-	const struct action action = {.kind = ACTION_INPUT,
-	    .at = 10,
-	    .input = input,
-	    .mask = mask,
-	    .edges = 1,
-	    .event = EVENT_KINDS};
+	const struct action action = {
+	    .kind = ACTION_INPUT, .at = 10, .input = input, .mask = mask, .edges = 1, .event = EVENT_KINDS};
 
 	plot_add(plot, &action);
 }
@@ -257,7 +254,8 @@ static struct action pulse(struct plot *plot, enum passo_input input, uint32_t c
 /* An edge, or a pulse about as long as the filter. */
 static struct action edge(struct plot *plot, enum passo_input input)
 {
-	struct action action = pulse(plot, input, plot->filter + plot_draw(&plot->random, plot->filter + 4u) + 1u);
+	struct action action =
+	    pulse(plot, input, plot->filter + plot_draw(&plot->random, plot->filter + 4u) + 1u);
 
 	if (plot_chance(&plot->random, 60))
 		action.edges = 1;
@@ -288,8 +286,7 @@ static struct action measure(struct plot *plot)
 	} reads[] = {{PASSO_CHANNEL_TRIGGER_STATE, 2}, {PASSO_CHANNEL_TRIGGER_POSITION_BASE, AXES},
 	    {PASSO_CHANNEL_ENCODER_POSITION_BASE, AXES}, {PASSO_CHANNEL_INPUT_FLAGS, 1}};
 	const unsigned i = plot_draw(&plot->random, 4);
-	struct action action =
-	    plot_frame(plot, PASSO_OPERATION_READ, channel_address(0, reads[i].place));
+	struct action action = plot_frame(plot, PASSO_OPERATION_READ, channel_address(0, reads[i].place));
 
 	action.length = reads[i].length;
 	return action;

@@ -26,7 +26,8 @@ struct world_row {
 /* Knowledge of the host, derived from its frames and the replies. */
 enum world_fact_kind {
 	FACT_WRITE, /* an accepted word takes effect: words[0], address, words[1], value */
-	FACT_LINE,  /* the last word of an accepted line: words[0], control, words[1 + i], steps, then its output */
+	FACT_LINE,  /* the last word of an accepted line: words[0], control, words[1 + i], steps, then its
+	               output */
 	FACT_RAMP,  /* the last word of an accepted ramp: words[0], control */
 	FACT_BUSY,  /* a frame was refused as BUSY: words[0], operation and address, words[1], first word */
 	FACT_STATE, /* words[0 .. 2]: STATE, RATE, ROOM, not older than `clock` */
@@ -127,10 +128,10 @@ struct world {
 	size_t event_count, event_room;
 	uint64_t events_from;
 	uint64_t idle_since[PASSO_CHANNELS_MAX];
-	struct passo_inputs levels; /* of the inputs at rest */
-	uint64_t noise;             /* state of the random changes of all inputs; 0: none */
+	struct passo_inputs levels;                /* of the inputs at rest */
+	uint64_t noise;                            /* state of the random changes of all inputs; 0: none */
 	struct world_shaft shafts[PASSO_AXES_MAX]; /* of channel 0 */
-	FILE *record; /* stimulus for soak/player.v; NULL: none */
+	FILE *record;                              /* stimulus for soak/player.v; NULL: none */
 	struct passo_inputs recorded_inputs;
 	struct passo_outputs recorded_outputs;
 	uint64_t recorded_clocks;
