@@ -167,6 +167,8 @@ static inline unsigned world_line_words(const struct passo_parameters *parameter
 
 /* Schedules an edge of an input pin, in any order, but not in the past. */
 void world_add_pin(struct world *world, struct world_pin pin);
+/* Changes the pins that are due before a clock. */
+void world_change_pins(struct world *world);
 void world_add_fact(struct world *world, const struct world_fact *fact);
 /* Records a failure; only the first one is kept. */
 void world_fail(struct world *world, uint64_t clock, const char *format, ...)
