@@ -113,9 +113,9 @@ formal: ## Prove the promises of the RTL and catch all planted bugs; ONLY="axis 
 	@tools/setup.sh formal
 	@$(BIN)/python -m formal.run $(ONLY)
 
-soak: setup ## Play and judge random histories (an hour); SCALE=, SEED=, ONLY=model,driver,verilator,icarus,defects; HISTORY=n [DRIVER=1] prints one.
+soak: setup ## Play and judge random histories (two hours); SCALE=, SEED=, ONLY=model,driver,verilator,icarus,machine,defects; HISTORY=n [DRIVER=1 | KIND=machine] prints one.
 	@$(BIN)/python -m soak.run $(if $(SEED),--seed $(SEED)) $(if $(SCALE),--scale $(SCALE)) $(if $(ONLY),--only $(ONLY)) \
-	    $(if $(HISTORY),--history $(HISTORY)) $(if $(DRIVER),--driver)
+	    $(if $(HISTORY),--history $(HISTORY)) $(if $(DRIVER),--driver) $(if $(KIND),--kind $(KIND))
 
 clean: ## Delete everything that was built; .venv is kept.
 	@rm -rf build .pytest_cache .ruff_cache obj_dir sim_build results.xml

@@ -291,6 +291,8 @@ uint32_t passo_encoders_value(const struct passo_channel *channel, uint8_t addre
 		    .behind = encoders->was_behind,
 		    .lost = encoders->was_lost,
 		});
+	if (in_axes >= channel->axes * PASSO_CHANNEL_ENCODER_STRIDE)
+		return 0;
 	switch (in_axes % PASSO_CHANNEL_ENCODER_STRIDE) {
 	case PASSO_ENCODER_ERROR:
 		return (uint32_t)(axis->following.error >> 8);

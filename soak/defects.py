@@ -25,6 +25,7 @@ class Defect:
     edits: tuple[tuple[str, str, str], ...]  # file, old, new
     red: str  # regular expression
     driver: bool = False
+    kind: str = ""  # of the history of a machine, one of KINDS
     blind: bool = False  # the rate is judged by the steps alone
     histories: int = 20_000  # within which it must be caught
 
@@ -68,6 +69,7 @@ def catch(defect: Defect, seed: int) -> Catch:
         return Catch(defect, False, -1, time.monotonic() - began, f"not planted: {error}")
     command = [program, str(seed), "0", str(defect.histories), *(["--driver"] if defect.driver else [])]
     command += ["--blind"] if defect.blind else []
+    command += [f"--{defect.kind}"] if defect.kind else []
     counts, failures = play_program(command, defect.name, seed)
     seconds = time.monotonic() - began
     if not failures:

@@ -13,6 +13,12 @@ static void open_world(
 	world->half_period = plot->half_period;
 	world->setup = plot->setup;
 	memcpy(world->gap_enabled, plot->gap_enabled, sizeof world->gap_enabled);
+	if (world->machine) {
+		world->levels = world->inputs = plot->levels;
+		for (unsigned a = 0; a < plot->parameters.axes; a++)
+			world->shafts[a] = (struct world_shaft){
+			    .coupled = (plot->coupled >> a & 1u) != 0u, .period = plot->shaft_period};
+	}
 	world_run(world, 8);
 }
 
@@ -25,8 +31,15 @@ void history_play(struct world *world, const struct world_rtl *rtl, uint64_t see
 	struct player player = {.world = &scout, .counts = &ignored};
 
 	scout.latency = world->latency;
-	plot_begin(&plot, seed, number);
-	const unsigned disturbances = 1u + plot_draw(&plot.random, 3);
+	scout.machine = world->machine;
+	if (world->pokes)
+		plot_begin_pokes(&plot, seed, number);
+	else if (world->machine)
+		plot_begin_machine(&plot, seed, number, world->tries);
+	else
+		plot_begin(&plot, seed, number);
+	const unsigned most = world->machine ? 5u : 3u;
+	const unsigned disturbances = world->tries || world->pokes ? 0u : 1u + plot_draw(&plot.random, most);
 	for (unsigned i = 0; i < disturbances; i++) {
 		const enum plot_kind kind = i != 0u || !plot.waits        ? plot_kind(&plot)
 		                          : plot_chance(&plot.random, 70) ? PLOT_SYNC
@@ -57,10 +70,16 @@ void history_play(struct world *world, const struct world_rtl *rtl, uint64_t see
 	player = (struct player){.world = world, .counts = counts, .print = print};
 	open_world(world, &plot, rtl, record);
 	player_actions(&player, &plot, SIZE_MAX);
+	if (world->pokes)
+		player_pokes(&player, &random);
+	else if (world->machine)
+		player_end_machine(&player);
 	player_end(&player, &random, brief);
 	world_end_record(world);
+	if (record && world->machine)
+		world_record_estop(world);
 	counts->clocks += world->clock;
-	if (!world->failed_at)
+	if (!world->failed_at && !world->pokes)
 		judge_history(world, &counts->judge);
 	world_close(world);
 }

@@ -171,7 +171,9 @@ static void last_move(struct player *player, struct plot_random *random, unsigne
 	length += passo_ramp_words(words + length, &ramps[1]);
 	const bool ramps_taken = send(player, PASSO_OPERATION_PUSH,
 	    channel_address(channel, PASSO_CHANNEL_RAMP), words, (unsigned)length);
-	length = passo_line_words(words, &line, (uint8_t)player_axes(player));
+	passo_line_words(words, &line, (uint8_t)player_axes(player));
+	length = world_line_words(&world->model.parameters);
+	words[length - 1u] = world->machine ? 0u : words[length - 1u];
 	if (!send(player, PASSO_OPERATION_PUSH, channel_address(channel, PASSO_CHANNEL_LINE), words,
 		(unsigned)length)
 	    || !ramps_taken)
@@ -210,8 +212,8 @@ void player_end(struct player *player, struct plot_random *random, bool brief)
 	uint32_t states[PASSO_CHANNELS_MAX] = {0};
 
 	if (plot_chance(random, 8)) { /* a reset leads to the same state */
-		world_add_pin(world, (struct world_pin){world->clock + 3u, true, true});
-		world_add_pin(world, (struct world_pin){world->clock + 5u, true, false});
+		world_add_pin(world, (struct world_pin){world->clock + 3u, PASSO_INPUT_RST, true, 0, 0});
+		world_add_pin(world, (struct world_pin){world->clock + 5u, PASSO_INPUT_RST, false, 0, 0});
 		world_run(world, 20);
 	}
 	for (unsigned c = 0; c < player_channels(player) && !world->failed_at; c++)

@@ -36,7 +36,7 @@ static void avoid_reset(struct player *player, const struct action *action, size
 	for (size_t i = world->pin_next; i < world->pin_count; i++) {
 		const struct world_pin *pin = &world->pins[i];
 
-		if (!pin->is_reset)
+		if (pin->input != PASSO_INPUT_RST)
 			continue;
 		const bool keeps = pin->level && (in_axis(action->address) || action->fault == FAULT_REPEATED)
 		                && pin->clock < world->clock + length;
@@ -124,19 +124,39 @@ static void print_pin(struct player *player, const struct action *action)
 	    plot_event_name(action->event), (unsigned long long)action->event_clock, action->offset);
 }
 
+/* Schedules the edges of an action. */
+static void player_pin(struct world *world, const struct action *action)
+{
+	struct world_pin pin = {.clock = action->at,
+	    .input = action->kind == ACTION_RESET ? PASSO_INPUT_RST : PASSO_INPUT_SYNC,
+	    .level = true};
+
+	if (action->kind == ACTION_INPUT)
+		pin = (struct world_pin){
+		    .clock = action->at, .input = action->input, .mask = action->mask, .turn = action->turn};
+	world_add_pin(world, pin);
+	for (unsigned i = 1; action->kind == ACTION_INPUT && i < action->edges; i++) {
+		pin.clock += action->clocks;
+		world_add_pin(world, pin);
+	}
+	if (action->kind == ACTION_INPUT)
+		return;
+	pin.clock += action->clocks;
+	pin.level = false;
+	world_add_pin(world, pin);
+}
+
 void player_actions(struct player *player, const struct plot *plot, size_t scout_from)
 {
 	struct world *world = player->world;
 
 	for (size_t i = 0; i < plot->count; i++) {
 		const struct action *action = &plot->actions[i];
-		const bool resets = action->kind == ACTION_RESET;
-
 		if (action->kind == ACTION_FRAME)
 			continue;
 		print_pin(player, action);
-		world_add_pin(world, (struct world_pin){action->at, resets, true});
-		world_add_pin(world, (struct world_pin){action->at + action->clocks, resets, false});
+		player->counts->hit += action->event < EVENT_KINDS ? 1u : 0u;
+		player_pin(world, action);
 	}
 	for (size_t i = 0; i < plot->count; i++) {
 		if (i == scout_from)

@@ -47,6 +47,10 @@ void player_actions(struct player *player, const struct plot *plot, size_t scout
 /* Converts the reply to a complete frame into facts for the judge. */
 void player_note_reply(
     struct player *player, const struct action *action, const uint32_t *mosi, size_t count, uint64_t begin);
+/* Before that: measures, opens all switches, and ends what a machine waits for. */
+void player_end_machine(struct player *player);
+/* Any frames while anything happens at the pins; then the settings that the end of a history needs. */
+void player_pokes(struct player *player, struct plot_random *random);
 /* Brings the core to rest and, unless `brief`, makes one more move. */
 void player_end(struct player *player, struct plot_random *random, bool brief);
 /* Chooses a target for a disturbance among the events of the scout. */

@@ -27,7 +27,7 @@ static void note_pushes(struct player *player, const struct action *action, uint
 {
 	struct world *world = player->world;
 	const bool lines = place_of(action->address) == PASSO_CHANNEL_LINE;
-	const unsigned size = lines ? PASSO_LINE_WORDS(player_axes(player)) : PASSO_RAMP_WORDS;
+	const unsigned size = lines ? world_line_words(&player->world->model.parameters) : PASSO_RAMP_WORDS;
 
 	for (unsigned i = 0; i + size <= action->length; i += size) {
 		/* counts from the first word of the frame, because its effects come later */
@@ -36,7 +36,7 @@ static void note_pushes(struct player *player, const struct action *action, uint
 		    .channel = channel_of(action->address),
 		    .words = {action->payload[i]}};
 
-		for (unsigned a = 0; lines && a < player_axes(player); a++)
+		for (unsigned a = 0; lines && a + 2u < size; a++)
 			fact.words[1u + a] = action->payload[i + 2u + a];
 		world_add_fact(world, &fact);
 	}
@@ -50,14 +50,22 @@ static void note_read(struct player *player, const struct action *action, uint64
 	const unsigned place = place_of(action->address);
 
 	memcpy(fact.words, data, sizeof *data * (action->length > 9u ? 9u : action->length));
+	fact.words[action->length] = (uint32_t)(world->clock - begin);
 	if (!in_channel(action->address))
 		return;
 	if (place == PASSO_CHANNEL_STATE) {
 		fact.kind = FACT_STATE;
 		fact.clock = begin + world->setup + 2u * 64u * world->half_period + 91u;
 		world_add_fact(world, &fact);
-	} else if (place == PASSO_CHANNEL_POSITION_BASE) {
-		fact.kind = FACT_POSITION;
+	} else if (place == PASSO_CHANNEL_TRIGGER_STATE || place == PASSO_CHANNEL_TRIGGER_POSITION_BASE
+	           || place == PASSO_CHANNEL_INPUT_FLAGS) {
+		fact.kind = place == PASSO_CHANNEL_TRIGGER_STATE ? FACT_TRIGGER
+		          : place == PASSO_CHANNEL_INPUT_FLAGS   ? FACT_FLAGS
+		                                                 : FACT_LATCH;
+		fact.clock = world->clock;
+		world_add_fact(world, &fact);
+	} else if (place == PASSO_CHANNEL_POSITION_BASE || place == PASSO_CHANNEL_ENCODER_POSITION_BASE) {
+		fact.kind = place == PASSO_CHANNEL_POSITION_BASE ? FACT_POSITION : FACT_COUNTS;
 		fact.clock = begin + POSITION_CLOCKS;
 		world_add_fact(world, &fact);
 		fact.kind = FACT_READS;
@@ -106,7 +114,7 @@ static void check_refusal(
 	const bool lines = place_of(action->address) == PASSO_CHANNEL_LINE;
 	const struct passo_status status = passo_unpack_status(player->miso[0]);
 	const unsigned room = lines ? status.line_room : status.ramp_room;
-	const unsigned size = lines ? PASSO_LINE_WORDS(player_axes(player)) : PASSO_RAMP_WORDS;
+	const unsigned size = lines ? world_line_words(&player->world->model.parameters) : PASSO_RAMP_WORDS;
 
 	player->counts->refused++;
 	if (action->fault == FAULT_CRC && verdict == PASSO_VERDICT_BAD_CRC)
@@ -156,6 +164,13 @@ void player_note_reply(
 	}
 	if (verdict == PASSO_VERDICT_DUPLICATE)
 		return;
+	if (world->machine) {
+		const uint64_t from = begin + 64u * world->half_period * (reads ? 1u : action->length + 2u);
+		const struct world_fact fact = {
+		    .clock = from, .kind = FACT_FED, .words = {(uint32_t)(world->clock - from)}};
+
+		world_add_fact(world, &fact);
+	}
 	if (reads)
 		note_read(player, action, begin);
 	else if (action->operation == PASSO_OPERATION_PUSH)

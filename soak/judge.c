@@ -36,6 +36,8 @@ static void reset(struct judge *judge)
 		}
 	}
 	judge->enable_unknown_until = judge->now + RESET_CLOCKS;
+	if (judge->world->machine)
+		judge_machine_reset(judge, false);
 }
 
 static void do_fact(struct judge *judge, const struct world_fact *fact, const struct passo_outputs *pins)
@@ -69,6 +71,26 @@ static void do_fact(struct judge *judge, const struct world_fact *fact, const st
 		reset(judge);
 		break;
 	case FACT_RESET_DONE:
+		if (judge->world->machine)
+			judge_machine_reset(judge, true);
+		break;
+	case FACT_PIN:
+		judge_pin(judge, fact);
+		break;
+	case FACT_FED:
+		judge_feed(judge, fact);
+		break;
+	case FACT_TRIGGER:
+		judge_trigger_state(judge, fact);
+		break;
+	case FACT_LATCH:
+		judge_latched(judge, fact);
+		break;
+	case FACT_COUNTS:
+		judge_counts_read(judge, fact);
+		break;
+	case FACT_FLAGS:
+		judge_flags(judge, fact);
 		break;
 	}
 }
@@ -95,6 +117,8 @@ static void power_up(struct judge *judge)
 			};
 		}
 	}
+	if (judge->world->machine)
+		judge_machine_power_up(judge);
 	reset(judge);
 	judge->counts->resets--;
 	judge->enable_unknown_until = 0;
@@ -113,6 +137,14 @@ static void sort_facts(struct world *world)
 	}
 }
 
+/* What happens in a machine as time goes on. */
+static void go_on(struct judge *judge)
+{
+	judge_silence(judge);
+	judge_latch(judge);
+	judge_turns(judge);
+}
+
 /* Processes the pin rows before a clock. */
 static void see_rows(struct judge *judge, uint64_t clock)
 {
@@ -120,6 +152,8 @@ static void see_rows(struct judge *judge, uint64_t clock)
 
 	while (judge->row < world->row_count && world->rows[judge->row].clock < clock && !world->failed_at) {
 		judge->now = world->rows[judge->row].clock;
+		if (world->machine)
+			go_on(judge);
 		judge_pins(judge, &world->rows[judge->row++].pins);
 	}
 }
@@ -136,6 +170,9 @@ void judge_history(struct world *world, struct judge_counts *counts)
 		see_rows(&judge, fact->clock);
 		const bool same = judge.row < world->row_count && world->rows[judge.row].clock == fact->clock;
 		judge.now = fact->clock;
+		judge.fact = i;
+		if (world->machine)
+			go_on(&judge);
 		if (!world->failed_at)
 			do_fact(&judge, fact, same ? &world->rows[judge.row].pins : &judge.pins);
 	}

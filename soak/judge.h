@@ -12,6 +12,9 @@
 /* Number of checks by kind, to show coverage. */
 struct judge_counts {
 	uint64_t steps, turns, quiets, positions, paths, aborts, stops, gaps, resets, gates;
+	/* of a machine */
+	uint64_t causes, slews, tries, latches, fired, levels, glitches, estops, compares, words, holds,
+	    counted, encoders;
 };
 
 /* Judges a complete history; the first violation fails the world. */

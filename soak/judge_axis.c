@@ -112,8 +112,12 @@ void judge_write_axis(
 	case PASSO_AXIS_DIR_TIMING:
 		write_dir_timing(axis, judge->now, value);
 		break;
+	case PASSO_AXIS_INPUTS:
+		break;
 	default:
 		axis->enabled = (value & 1u) != 0u;
+		if (judge->world->machine)
+			judge_machine_enable(judge, a);
 		judge_enable(judge, c, a, (pins->enable >> (c * judge_axes(judge) + a) & 1u) != 0u);
 		break;
 	}

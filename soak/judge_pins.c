@@ -38,6 +38,8 @@ static void see_step(struct judge *judge, unsigned c, unsigned a)
 		FAIL(judge, "channel %u axis %u: more steps after the stop than can have waited", c, a);
 	axis->budget -= axis->budget != UINT32_MAX && axis->budget != 0u ? 1u : 0u;
 	see_gap(judge, c, a);
+	if (judge->world->machine)
+		judge_machine_step(judge, a);
 }
 
 static void see_level(struct judge *judge, unsigned c, unsigned a)
@@ -79,8 +81,11 @@ static void see_turn(struct judge *judge, unsigned c, unsigned a)
 void judge_enable(struct judge *judge, unsigned c, unsigned a, bool level)
 {
 	const struct axis *axis = &judge->channel[c].axis[a];
+	bool unsure = false;
+	const bool enabled = judge->world->machine ? judge_enabled(judge, a, &unsure) : axis->enabled;
 
-	if (judge->now >= judge->enable_unknown_until && level != (axis->enabled != axis->enable_inverted))
+	if (!unsure && judge->now >= judge->enable_unknown_until
+	    && level != (enabled != axis->enable_inverted))
 		FAIL(judge, "channel %u axis %u: EN is %d", c, a, level);
 }
 
@@ -88,6 +93,8 @@ void judge_pins(struct judge *judge, const struct passo_outputs *pins)
 {
 	const unsigned axes = judge_axes(judge);
 
+	if (judge->world->machine)
+		judge_machine_before(judge, pins);
 	for (unsigned c = 0; c < judge_channels(judge); c++) {
 		struct channel *channel = &judge->channel[c];
 		bool moves = (pins->running & ~judge->pins.running & 1u << c) != 0u;
@@ -128,5 +135,7 @@ void judge_pins(struct judge *judge, const struct passo_outputs *pins)
 		channel->stopped = true;
 		channel->exact = false;
 	}
+	if (judge->world->machine)
+		judge_machine_after(judge, pins);
 	judge->pins = *pins;
 }

@@ -60,6 +60,8 @@ void judge_state(struct judge *judge, const struct world_fact *fact)
 		channel->slowed = UINT32_MAX;
 	}
 	channel->last_rate = now.stopping ? fact->words[1] : UINT32_MAX;
+	if (judge->world->machine)
+		judge_machine_state(judge, now, fact->words[1]);
 	if (now.quiet)
 		see_quiet(judge, fact->channel, now.state, passo_unpack_channel_room(fact->words[2]));
 }
@@ -71,6 +73,8 @@ void judge_reads(struct judge *judge, const struct world_fact *fact)
 		struct axis *axis = &judge->channel[fact->channel].axis[a];
 
 		axis->lowest = axis->highest = axis->position;
+		judge->machine.shafts[a].lowest = judge->machine.shafts[a].highest =
+		    judge->machine.shafts[a].count;
 	}
 }
 

@@ -5,8 +5,7 @@
 #define SOAK_JUDGE_STATE_H
 
 #include "address.h"
-#include "judge.h"
-#include "passo_words.h"
+#include "judge_machine.h"
 
 /* Uncertainty in clocks of the time at which a write takes effect. */
 #define SLACK 3u
@@ -61,6 +60,8 @@ struct judge {
 	uint64_t enable_unknown_until;
 	uint8_t run;
 	size_t row; /* first row not processed yet */
+	size_t fact;
+	struct machine machine;
 };
 
 #define FAIL(judge, ...) world_fail((judge)->world, (judge)->now, __VA_ARGS__)
@@ -112,5 +113,45 @@ void judge_reads(struct judge *judge, const struct world_fact *fact);
 void judge_position(struct judge *judge, const struct world_fact *fact);
 void judge_busy(struct judge *judge, const struct world_fact *fact);
 void judge_status(struct judge *judge, const struct world_fact *fact);
+
+/* A machine: settings ... */
+void judge_machine_power_up(struct judge *judge);
+void judge_machine_reset(struct judge *judge, bool done);
+void judge_machine_line(struct judge *judge, const struct world_fact *fact);
+void judge_machine_write(struct judge *judge, uint32_t address, uint32_t value);
+void judge_machine_command(struct judge *judge, struct passo_channel_command command);
+void judge_machine_enable(struct judge *judge, unsigned a);
+/* ... its inputs; the pin `input` of an axis has changed, or its polarity ... */
+void judge_pin(struct judge *judge, const struct world_fact *fact);
+void judge_see_levels(struct judge *judge, unsigned input, unsigned a, bool inverted);
+bool judge_may(const struct level *level, uint64_t from, uint64_t until);
+bool judge_must(const struct level *level, uint64_t clock);
+uint64_t judge_next_change(const struct judge *judge, unsigned input, unsigned a);
+void judge_reset_inputs(struct judge *judge, bool done);
+void judge_flags(struct judge *judge, const struct world_fact *fact);
+/* ... its stops; before and after the pins of a row are judged ... */
+void judge_add_event(
+    struct judge *judge, enum passo_cause cause, bool hard, uint64_t earliest, uint64_t latest);
+void judge_clear_events(struct judge *judge);
+void judge_machine_before(struct judge *judge, const struct passo_outputs *pins);
+void judge_machine_after(struct judge *judge, const struct passo_outputs *pins);
+void judge_machine_step(struct judge *judge, unsigned a);
+void judge_machine_state(struct judge *judge, struct passo_channel_state now, uint32_t rate);
+bool judge_enabled(struct judge *judge, unsigned a, bool *unsure);
+void judge_feed(struct judge *judge, const struct world_fact *fact);
+void judge_silence(struct judge *judge);
+/* ... its trigger ... */
+void judge_arm(struct judge *judge, uint32_t value);
+void judge_latch(struct judge *judge);
+void judge_trigger_state(struct judge *judge, const struct world_fact *fact);
+void judge_latched(struct judge *judge, const struct world_fact *fact);
+/* ... and its encoders. */
+void judge_turn(struct judge *judge, unsigned input, unsigned a);
+void judge_turns(struct judge *judge);
+void judge_counts_read(struct judge *judge, const struct world_fact *fact);
+void judge_follow(struct judge *judge, unsigned a);
+void judge_exceeding(struct judge *judge);
+void judge_write_encoder(struct judge *judge, unsigned a, unsigned place, uint32_t value);
+void judge_zero_encoders(struct judge *judge);
 
 #endif

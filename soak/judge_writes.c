@@ -112,6 +112,8 @@ void judge_write(struct judge *judge, const struct world_fact *fact, const struc
 	const uint32_t address = fact->words[0], value = fact->words[1];
 	const unsigned c = fact->channel, place = place_of(address);
 
+	if (judge->world->machine)
+		judge_machine_write(judge, address, value);
 	if (address == PASSO_ADDRESS_RUN)
 		do_run(judge, value);
 	if (passo_bank_at(address) != 0u)
@@ -119,7 +121,7 @@ void judge_write(struct judge *judge, const struct world_fact *fact, const struc
 			judge_gate(judge, i, false);
 	if (!in_channel(address))
 		return;
-	if (place >= PASSO_CHANNEL_AXIS_BASE)
+	if (place >= PASSO_CHANNEL_AXIS_BASE && place < PASSO_CHANNEL_ENCODER_BASE)
 		judge_write_axis(judge, c, place - PASSO_CHANNEL_AXIS_BASE, value, pins);
 	else if (place == PASSO_CHANNEL_RATE_SLEW)
 		judge->channel[c].rate_slew = value == 0u ? 1u : value;
@@ -128,6 +130,8 @@ void judge_write(struct judge *judge, const struct world_fact *fact, const struc
 		if (!command.stop && !command.abort && (command.clear || command.zero))
 			judge_gate(judge, c, command.zero);
 		do_command(judge, c, command);
+		if (judge->world->machine)
+			judge_machine_command(judge, command);
 	}
 }
 
@@ -137,6 +141,8 @@ void judge_line(struct judge *judge, const struct world_fact *fact)
 	struct channel *channel = &judge->channel[fact->channel];
 
 	judge_may_move(channel, judge, true);
+	if (judge->world->machine)
+		judge_machine_line(judge, fact);
 	channel->lines++;
 	if (control.endless)
 		channel->exact = false;

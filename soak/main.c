@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * soak SEED FIRST COUNT [--rtl LIBRARY] [--record FOLDER] [--set N] [--driver] [--short] [--print]
- *     [--keep-on]
+ * soak SEED FIRST COUNT [--rtl LIBRARY] [--record FOLDER] [--set N] [--driver | --machine | --tries |
+ * --pokes]
+ *     [--short] [--print] [--keep-on]
  * Plays histories FIRST, FIRST + 1, ... at register level, or with --driver through the driver. --set N: only
  * those of one parameter set; --short: without the last move. Stops at the first failure unless --keep-on is
  * given. Prints lines "progress HISTORIES", "failed NUMBER CLOCK TEXT", "count NAME VALUE".
@@ -17,7 +18,7 @@ struct options {
 	uint64_t seed, first, count;
 	const char *library, *folder;
 	unsigned set; /* PLOT_SETS: all */
-	bool print, keep_on, driver, brief, blind;
+	bool print, keep_on, driver, brief, blind, machine, tries, pokes;
 };
 
 static bool parse(int argc, char **argv, struct options *options)
@@ -35,6 +36,12 @@ static bool parse(int argc, char **argv, struct options *options)
 			options->keep_on = true;
 		else if (strcmp(argv[i], "--blind") == 0)
 			options->blind = true;
+		else if (strcmp(argv[i], "--machine") == 0)
+			options->machine = true;
+		else if (strcmp(argv[i], "--tries") == 0)
+			options->machine = options->tries = true;
+		else if (strcmp(argv[i], "--pokes") == 0)
+			options->machine = options->pokes = true;
 		else if (strcmp(argv[i], "--short") == 0)
 			options->brief = true;
 		else if (strcmp(argv[i], "--driver") == 0)
@@ -86,7 +93,10 @@ static void say_history(const struct history_counts *counts, uint64_t played)
 	}
 	static const struct said table[] = {SAID(clocks), SAID(frames), SAID(refused), SAID(busy),
 	    SAID(aimed), SAID(hit), JUDGED(steps), JUDGED(turns), JUDGED(quiets), JUDGED(positions),
-	    JUDGED(paths), JUDGED(aborts), JUDGED(stops), JUDGED(gaps), JUDGED(resets), JUDGED(gates)};
+	    JUDGED(paths), JUDGED(aborts), JUDGED(stops), JUDGED(gaps), JUDGED(resets), JUDGED(gates),
+	    JUDGED(causes), JUDGED(slews), JUDGED(tries), JUDGED(latches), JUDGED(fired), JUDGED(levels),
+	    JUDGED(glitches), JUDGED(estops), JUDGED(compares), JUDGED(words), JUDGED(holds), JUDGED(counted),
+	    JUDGED(encoders)};
 #undef JUDGED
 #undef SAID
 
@@ -135,6 +145,9 @@ int main(int argc, char **argv)
 		return 2;
 	world.latency = &latency;
 	world.blind = options.blind;
+	world.machine = options.machine;
+	world.tries = options.tries;
+	world.pokes = options.pokes;
 	for (uint64_t number = options.first; played < options.count; number++) {
 		char path[WORLD_TEXT];
 		FILE *record = NULL;

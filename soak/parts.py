@@ -16,7 +16,7 @@ from passo.console import console as terminal
 from passo.toolchain import paths
 from rich.console import Console
 
-from soak.program import BUILD, HERE, Failure, play_program, say
+from soak.program import BUILD, HERE, KINDS, Failure, play_program, say
 
 # Must match plot_parameters() in plot.c.
 SETS = (
@@ -25,6 +25,8 @@ SETS = (
     Parameters(2, 2, 7, 3, 4, step_reset=1, dir_reset=4, enable_reset=15),
 )
 DRIVER_SET = 2  # must match BRIDGE_SET in bridge.h
+# Must match plot_machine_parameters() in plot_machine.c.
+MACHINE = Parameters(1, 3, 7, 5, 5, inputs=1, encoders=1, outputs=1)
 CHUNK = 50  # histories per process
 
 
@@ -79,13 +81,15 @@ def _chunks(histories: int) -> Iterator[tuple[int, int]]:
     return ((first, min(CHUNK, histories - first)) for first in range(0, histories, CHUNK))
 
 
-def play_model(program: Path, seed: int, histories: int, jobs: int) -> Part:
-    """Histories at register level, on the C model."""
+def play_model(program: Path, seed: int, histories: int, jobs: int, name: str = "model") -> Part:
+    """Histories at register level, on the C model; `name` is one of KINDS, too."""
+    kind = [f"--{name}"] if name in KINDS else []
 
     def task(first: int, count: int) -> Work:
-        return lambda: play_program([program, str(seed), str(first), str(count), "--keep-on"], "model", seed)
+        command = [program, str(seed), str(first), str(count), "--keep-on", *kind]
+        return lambda: play_program(command, name, seed)
 
-    return _all(Part("model"), histories, (task(*chunk) for chunk in _chunks(histories)), jobs)
+    return _all(Part(name), histories, (task(*chunk) for chunk in _chunks(histories)), jobs)
 
 
 def play_driver(program: Path, seed: int, histories: int, jobs: int, library: Path | None = None) -> Part:
@@ -95,6 +99,17 @@ def play_driver(program: Path, seed: int, histories: int, jobs: int, library: Pa
 
     def task(first: int, count: int) -> Work:
         command = [program, str(seed), str(first), str(count), "--driver", "--keep-on", *more]
+        return lambda: play_program(command, name, seed)
+
+    return _all(Part(name), histories, (task(*chunk) for chunk in _chunks(histories)), jobs)
+
+
+def play_machine_on_verilator(program: Path, seed: int, histories: int, jobs: int) -> Part:
+    """The histories of a machine on the Verilated core, compared with the model on every clock."""
+    name, library = "machine on verilator", rtl_library(MACHINE)
+
+    def task(first: int, count: int) -> Work:
+        command = [program, str(seed), str(first), str(count), "--machine", "--keep-on", "--rtl", library]
         return lambda: play_program(command, name, seed)
 
     return _all(Part(name), histories, (task(*chunk) for chunk in _chunks(histories)), jobs)
@@ -117,37 +132,39 @@ def play_verilator(program: Path, seed: int, histories: int, jobs: int) -> Part:
     return _all(Part("verilator"), share * len(SETS), work, jobs)
 
 
-def _bench(number: int) -> Path:
-    """Compile the player for a parameter set with Icarus Verilog; return its path."""
-    made = BUILD / f"player{number}.vvp"
-    given = [f"-Psoak_player.{name}={value}" for name, value in SETS[number].verilog().items()]
+def _bench(parameters: Parameters) -> Path:
+    """Compile the player for these parameters with Icarus Verilog; return its path."""
+    made = BUILD / f"player_{parameters.name}.vvp"
+    given = [f"-Psoak_player.{name}={value}" for name, value in parameters.verilog().items()]
     sources = [HERE / "player.v", *sorted(paths.rtl.glob("*.v"))]
     folders = includes(paths.rtl, HERE)
     call(["iverilog", "-g2012", *folders, *given, "-s", "soak_player", "-o", made, *sources])
     return made
 
 
-def play_icarus(program: Path, seed: int, histories: int, jobs: int) -> Part:
+def play_icarus(program: Path, seed: int, histories: int, jobs: int, machine: bool = False) -> Part:
     """Histories recorded on the judged model and replayed to the core on Icarus Verilog."""
-    benches = [_bench(number) for number in range(len(SETS))]
-    folder = BUILD / "records"
+    benches = [_bench(parameters) for parameters in ((MACHINE,) if machine else SETS)]
+    name = "machine on icarus" if machine else "icarus"
+    kind = ["--machine"] if machine else []
+    folder = BUILD / "records" / name.replace(" ", "_")
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
 
     def play(history: int) -> tuple[Counter[str], list[Failure]]:
         record = folder / f"{history}.txt"
-        command = [program, str(seed), str(history), "1", "--record", folder, "--short"]
-        counts, failures = play_program(command, "icarus", seed)
-        bench = ["vvp", str(benches[history % len(SETS)]), f"+record={record}"]
+        command = [program, str(seed), str(history), "1", "--record", folder, "--short", *kind]
+        counts, failures = play_program(command, name, seed)
+        bench = ["vvp", str(benches[history % len(benches)]), f"+record={record}"]
         said = say(bench)[1].strip()
         record.unlink()
         if not re.fullmatch(r"same [1-9]\d*", said):
             clock = re.match(r"clock (\d+)", said)
-            failures.append(Failure("icarus", seed, history, int(clock[1]) if clock else 0, said))
+            failures.append(Failure(name, seed, history, int(clock[1]) if clock else 0, said))
         return counts, failures
 
     return _all(
-        Part("icarus"),
+        Part(name),
         histories,
         ((lambda history=history: play(history)) for history in range(histories)),
         jobs,

@@ -6,7 +6,7 @@
 
 #include "world.h"
 
-#define PLOT_ACTIONS_MAX 64u
+#define PLOT_ACTIONS_MAX 128u
 
 /* xorshift64*, seeded by splitmix64: seed and number determine a history. */
 struct plot_random {
@@ -21,15 +21,20 @@ bool plot_chance(struct plot_random *random, uint32_t percent);
 /* from .. to, log-uniform by powers of two. */
 uint32_t plot_log(struct plot_random *random, uint32_t from, uint32_t to);
 
-enum action_kind { ACTION_FRAME, ACTION_SYNC, ACTION_RESET };
+enum action_kind { ACTION_FRAME, ACTION_SYNC, ACTION_RESET, ACTION_INPUT };
 
 /* Fault of a frame. */
 enum action_fault { FAULT_NONE, FAULT_CRC, FAULT_REPEATED, FAULT_CUT, FAULT_VALUE };
 
 struct action {
 	enum action_kind kind;
-	uint64_t at;     /* earliest clock */
-	uint32_t clocks; /* chip select high before a frame, or length of a sync pulse or reset */
+	uint64_t at; /* earliest clock */
+	/* chip select high before a frame, length of a sync pulse or reset, time from edge to edge */
+	uint32_t clocks;
+	enum passo_input input; /* that `edges` edges invert at `mask`, or the shaft that turns */
+	uint8_t mask;
+	uint16_t edges;
+	int32_t turn;
 	uint16_t operation, address, length;
 	enum action_fault fault;
 	uint16_t bits; /* length of a cut frame */
@@ -63,6 +68,17 @@ enum plot_kind {
 	PLOT_TABLE,
 	PLOT_READ,
 	PLOT_BAD,
+	/* of a machine */
+	PLOT_LIMIT,
+	PLOT_ALARM,
+	PLOT_ESTOP,
+	PLOT_HOME,
+	PLOT_PROBE,
+	PLOT_NOISE, /* glitches and flicker of any input */
+	PLOT_TURN,  /* an encoder slips or is turned */
+	PLOT_ARM,
+	PLOT_SILENCE, /* the host says nothing until the watchdog bites */
+	PLOT_MEASURE, /* a read of what was latched and counted */
 	PLOT_KINDS
 };
 
@@ -74,7 +90,20 @@ struct plot {
 	size_t count, prologue;                  /* the first `prologue` actions set up the motions */
 	bool waits;                              /* for the sync input */
 	uint32_t gap_enabled[PASSO_CHANNELS_MAX][PASSO_AXES_MAX];
+	/* Of a machine: levels of its inputs, the coupled encoders, and the filters. */
+	struct passo_inputs levels;
+	uint8_t coupled;
+	uint32_t filter, encoder_filter, shaft_period;
 };
+
+/* Parameters of the core with a machine, and the plot of a history with one; `tries`: one that drives into
+ * active limit switches again and again. */
+struct passo_parameters plot_machine_parameters(void);
+void plot_begin_machine(struct plot *plot, uint64_t seed, uint64_t number, bool tries);
+/* The same core, and nothing is set up. */
+void plot_begin_pokes(struct plot *plot, uint64_t seed, uint64_t number);
+/* Draws an event of a machine. */
+struct action plot_machine_event(struct plot *plot, enum plot_kind kind);
 
 /* Parameter sets of the core. */
 #define PLOT_SETS 3u

@@ -7,28 +7,38 @@
 
 static const struct {
 	const char *name;
-	uint32_t weight;
+	uint32_t weights[2]; /* without and with a machine */
 } kinds[PLOT_KINDS] = {
-    [PLOT_STOP] = {"stop", 12},
-    [PLOT_ABORT] = {"abort", 10},
-    [PLOT_CLEAR] = {"clear", 4},
-    [PLOT_ZERO] = {"zero", 10},
-    [PLOT_COMMAND] = {"command bits", 4},
-    [PLOT_RATE] = {"rate target", 8},
-    [PLOT_RATES] = {"command and rates", 6},
-    [PLOT_SLEW] = {"slews", 3},
-    [PLOT_DRAIN] = {"drain velocity", 2},
-    [PLOT_PINS] = {"pins", 8},
-    [PLOT_ENABLE] = {"enable", 2},
-    [PLOT_TIMING] = {"timing", 10},
-    [PLOT_RUN] = {"run, wait for sync", 5},
-    [PLOT_SYNC] = {"sync", 3},
-    [PLOT_RESET] = {"core reset", 6},
-    [PLOT_NOW] = {"NOW ramp", 8},
-    [PLOT_MOTION] = {"lines or ramps", 6},
-    [PLOT_TABLE] = {"table", 6},
-    [PLOT_READ] = {"read", 4},
-    [PLOT_BAD] = {"bad frame", 4},
+    [PLOT_STOP] = {"stop", {12, 5}},
+    [PLOT_ABORT] = {"abort", {10, 3}},
+    [PLOT_CLEAR] = {"clear", {4, 5}},
+    [PLOT_ZERO] = {"zero", {10, 3}},
+    [PLOT_COMMAND] = {"command bits", {4, 0}},
+    [PLOT_RATE] = {"rate target", {8, 5}},
+    [PLOT_RATES] = {"command and rates", {6, 0}},
+    [PLOT_SLEW] = {"slews", {3, 0}},
+    [PLOT_DRAIN] = {"drain velocity", {2, 0}},
+    [PLOT_PINS] = {"pins", {8, 0}},
+    [PLOT_ENABLE] = {"enable", {2, 4}},
+    [PLOT_TIMING] = {"timing", {10, 0}},
+    [PLOT_RUN] = {"run, wait for sync", {5, 0}},
+    [PLOT_SYNC] = {"sync", {3, 0}},
+    [PLOT_RESET] = {"core reset", {6, 4}},
+    [PLOT_NOW] = {"NOW ramp", {8, 0}},
+    [PLOT_MOTION] = {"lines or ramps", {6, 0}},
+    [PLOT_TABLE] = {"table", {6, 0}},
+    [PLOT_READ] = {"read", {4, 4}},
+    [PLOT_BAD] = {"bad frame", {4, 0}},
+    [PLOT_LIMIT] = {"limit", {0, 10}},
+    [PLOT_ALARM] = {"alarm", {0, 8}},
+    [PLOT_ESTOP] = {"e-stop", {0, 5}},
+    [PLOT_HOME] = {"home", {0, 10}},
+    [PLOT_PROBE] = {"probe", {0, 10}},
+    [PLOT_NOISE] = {"noise", {0, 12}},
+    [PLOT_TURN] = {"encoder", {0, 10}},
+    [PLOT_ARM] = {"trigger", {0, 6}},
+    [PLOT_SILENCE] = {"silence", {0, 2}},
+    [PLOT_MEASURE] = {"measure", {0, 6}},
 };
 
 const char *plot_kind_name(enum plot_kind kind)
@@ -38,14 +48,15 @@ const char *plot_kind_name(enum plot_kind kind)
 
 enum plot_kind plot_kind(struct plot *plot)
 {
+	const unsigned machine = plot->parameters.inputs;
 	uint32_t sum = 0, drawn;
 	unsigned kind = 0;
 
 	for (unsigned i = 0; i < PLOT_KINDS; i++)
-		sum += kinds[i].weight;
+		sum += kinds[i].weights[machine];
 	drawn = plot_draw(&plot->random, sum);
-	while (drawn >= kinds[kind].weight)
-		drawn -= kinds[kind++].weight;
+	while (drawn >= kinds[kind].weights[machine])
+		drawn -= kinds[kind++].weights[machine];
 	return (enum plot_kind)kind;
 }
 
@@ -246,7 +257,18 @@ struct action plot_disturbance(struct plot *plot, enum plot_kind kind)
 		return read(plot);
 	case PLOT_BAD:
 	case PLOT_KINDS:
+		return bad_frame(plot);
+	case PLOT_LIMIT:
+	case PLOT_ALARM:
+	case PLOT_ESTOP:
+	case PLOT_HOME:
+	case PLOT_PROBE:
+	case PLOT_NOISE:
+	case PLOT_TURN:
+	case PLOT_ARM:
+	case PLOT_SILENCE:
+	case PLOT_MEASURE:
 		break;
 	}
-	return bad_frame(plot);
+	return plot_machine_event(plot, kind);
 }

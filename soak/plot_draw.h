@@ -10,6 +10,8 @@
 
 #define TICK_CLOCKS 128u /* TICK_LOG2 is 7 in all sets */
 
+#define AXES 3u /* of a machine */
+
 /* Most lines and ramps of one frame. */
 #define LINES_MAX 20u
 #define RAMPS_MAX 12u
@@ -36,6 +38,8 @@ uint32_t plot_some_slew(struct plot *plot);
 uint32_t plot_some_drain(struct plot *plot);
 /* COMMAND, rate, slews and drain velocity in one frame. */
 struct action plot_rates(struct plot *plot, unsigned channel, uint32_t command);
+/* What a trigger waits for; home and probe have no other effect. */
+uint32_t plot_some_trigger(struct plot *plot);
 /* RUN of all channels. */
 uint32_t plot_all_run(const struct plot *plot);
 

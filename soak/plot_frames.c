@@ -78,6 +78,8 @@ uint32_t plot_some_rate(struct plot *plot)
 {
 	struct plot_random *random = &plot->random;
 
+	if (plot->parameters.outputs != 0u && plot_chance(random, 50))
+		return 0; /* a hold takes the power away */
 	return plot_chance(random, 40) ? PASSO_RATE_ONE
 	     : plot_chance(random, 30) ? 0u
 	                               : plot_log(random, 256, PASSO_RATE_ONE);

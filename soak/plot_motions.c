@@ -117,9 +117,12 @@ struct action plot_push_lines(struct plot *plot, unsigned channel, const struct 
 	struct action action =
 	    plot_frame(plot, PASSO_OPERATION_PUSH, channel_address(channel, PASSO_CHANNEL_LINE));
 
-	for (unsigned i = 0; i < motion->line_count; i++)
+	for (unsigned i = 0; i < motion->line_count; i++) {
 		action.length += (uint16_t)passo_line_words(
 		    action.payload + action.length, &motion->lines[i], plot->parameters.axes);
+		if (plot->parameters.outputs != 0u)
+			plot_add_word(&action, motion->lines[i].output);
+	}
 	return action;
 }
 
@@ -138,7 +141,7 @@ struct action plot_push_ramps(struct plot *plot, unsigned channel, const struct 
 static void fill_frames(
     const struct plot *plot, struct motion *motion, unsigned line_places, unsigned ramp_places)
 {
-	const unsigned fit = PASSO_FRAME_PAYLOAD_MAX / PASSO_LINE_WORDS((unsigned)plot->parameters.axes);
+	const unsigned fit = PASSO_FRAME_PAYLOAD_MAX / world_line_words(&plot->parameters);
 
 	while (motion->line_count < fit && motion->line_count < LINES_MAX && motion->line_count < line_places)
 		motion->lines[motion->line_count++] = (struct passo_line){.substeps = 9, .steps = {1}};

@@ -40,6 +40,15 @@ void plot_print(const struct action *action, char *text, size_t size)
 	static const char *const faults[] = {"", " (bad CRC)", " (repeated)", " (cut)", " (bad value)"};
 	size_t at;
 
+	if (action->kind == ACTION_INPUT) {
+		static const char *const inputs[] = {"rst", "sclk", "mosi", "cs", "sync", "estop_n",
+		    "limit_low", "limit_high", "home", "alarm", "probe", "encoder_a", "encoder_b",
+		    "encoder_index", "shaft"};
+
+		snprintf(text, size, "%s %x: %u edges, %u clocks apart, %d counts", inputs[action->input],
+		    action->mask, action->edges, action->clocks, action->turn);
+		return;
+	}
 	if (action->kind != ACTION_FRAME) {
 		snprintf(text, size, "%s for %u clocks", action->kind == ACTION_SYNC ? "sync" : "rst",
 		    action->clocks);

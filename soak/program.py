@@ -24,6 +24,10 @@ FOLDERS = {
 }
 
 
+# Histories of a core with inputs, encoders and outputs: events, drives into switches, anything at all.
+KINDS = ("machine", "tries", "pokes")
+
+
 class SoakError(RuntimeError):
     """The program could not be run."""
 
@@ -41,8 +45,9 @@ class Failure:
     @property
     def again(self) -> str:
         """The command that reproduces it."""
-        driver = " DRIVER=1" if self.part.startswith("driver") else ""
-        return f"make soak SEED={self.seed} HISTORY={self.history}{driver}"
+        kind = self.part.split()[0]
+        more = " DRIVER=1" if kind == "driver" else f" KIND={kind}" if kind in KINDS else ""
+        return f"make soak SEED={self.seed} HISTORY={self.history}{more}"
 
 
 def _object(file: Path, folders: Sequence[Path]) -> Path:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Random histories of the core, aimed at the clocks where something changes, checked by a judge.
 
-    .venv/bin/python -m soak.run [--seed N] [--only model,verilator,icarus,driver,defects] [--scale X]
-    .venv/bin/python -m soak.run --seed N --history N [--driver]
+    .venv/bin/python -m soak.run [--seed N] [--only model,machine,verilator,icarus,driver,defects] [--scale X]
+    .venv/bin/python -m soak.run --seed N --history N [--driver | --kind machine]
 
 The first form plays them on all processor cores, prints a table and writes build/soak.json; the second one
 prints a single history. docs/soak.md describes what is played and judged.
@@ -22,6 +22,7 @@ from passo.report import write_json
 from passo.toolchain import paths
 
 from soak.defects import Catch, catch_all
+from soak.numbers import measure
 from soak.parts import (
     DRIVER_SET,
     SETS,
@@ -29,10 +30,11 @@ from soak.parts import (
     console,
     play_driver,
     play_icarus,
+    play_machine_on_verilator,
     play_model,
     play_verilator,
 )
-from soak.program import build, playing
+from soak.program import KINDS, build, playing
 
 REPORT = paths.build / "soak.json"
 
@@ -43,8 +45,13 @@ HISTORIES = {
     "verilator": 1_500,
     "driver on verilator": 150,
     "icarus": 1_000,
+    "machine": 4_000,
+    "tries": 15_000,
+    "pokes": 60,
+    "machine on verilator": 170,
+    "machine on icarus": 170,
 }
-PARTS = ("model", "driver", "verilator", "icarus", "defects")
+PARTS = ("model", "driver", "verilator", "icarus", "machine", "defects")
 
 JUDGED = {
     "steps": "steps",
@@ -57,6 +64,56 @@ JUDGED = {
     "gates": "words that need rest",
     "resets": "resets",
 }
+
+
+MACHINE_JUDGED = {
+    "causes": "causes of stops",
+    "slews": "slews of soft stops",
+    "latches": "positions latched, to the clock",
+    "fired": "clocks until a trigger fired",
+    "tries": "steps tried towards an active switch",
+    "levels": "levels longer than the filter",
+    "glitches": "glitches that it must ignore",
+    "estops": "e-stops",
+    "counted": "edges of encoders counted",
+    "encoders": "encoder positions read",
+    "holds": "holds without power",
+    "compares": "compare pulses",
+    "words": "changes of the outputs",
+}
+
+
+def events(part: Part) -> int:
+    """Disturbances of a part."""
+    return sum(count for name, count in part.counts.items() if name.startswith("kind:"))
+
+
+def show_machine(parts: Sequence[Part], numbers: dict[str, Any]) -> None:
+    """Print what was judged of a machine, and the numbers of its path."""
+    judged = table("A machine", "what", *(part.name for part in parts))
+    judged.add_row("events", *(f"{events(part):,}" for part in parts))
+    for key, text in MACHINE_JUDGED.items():
+        judged.add_row(text, *(f"{part.counts[key]:,}" for part in parts))
+    console.print(judged)
+    thread, laser, raster = numbers["thread"], numbers["laser"], numbers["raster"]
+    bound = table("Bound to the machine", "what", "measured", "ok")
+    bound.add_row(
+        f"thread: {thread['turns']} turns, spindle +-30 %",
+        f"{thread['worst_counts']:.2f} counts from the exact pitch at most, "
+        f"{'same' if thread['same_phase'] else 'NOT the same'} phase in every pass",
+        "yes" if thread["ok"] else "NO",
+    )
+    bound.add_row(
+        "laser: energy per step, 5 % to 100 %, hold",
+        f"within {laser['worst']:.2%}",
+        "yes" if laser["ok"] else "NO",
+    )
+    bound.add_row(
+        f"raster: {raster['values']:,} values",
+        f"{raster['wrong']} not on their substep",
+        "yes" if raster["ok"] else "NO",
+    )
+    console.print(bound)
 
 
 def show(parts: Sequence[Part], caught: Sequence[Catch]) -> None:
@@ -110,11 +167,23 @@ def show(parts: Sequence[Part], caught: Sequence[Catch]) -> None:
         console.print(made)
 
 
-def report(seed: int, parts: Sequence[Part], caught: Sequence[Catch]) -> dict[str, Any]:
+def report(
+    seed: int, parts: Sequence[Part], caught: Sequence[Catch], numbers: dict[str, Any]
+) -> dict[str, Any]:
     """The contents of soak.json."""
     return {
         "seed": seed,
-        "ok": not any(part.failures for part in parts) and all(one.good for one in caught),
+        "ok": not any(part.failures for part in parts)
+        and all(one.good for one in caught)
+        and all(number["ok"] for number in numbers.values()),
+        "machine": {
+            **numbers,
+            **{
+                part.name: {"events": events(part), **{key: part.counts[key] for key in MACHINE_JUDGED}}
+                for part in parts
+                if part.name.split()[0] in KINDS
+            },
+        },
         "parts": {
             part.name: {
                 "seconds": round(part.seconds, 1),
@@ -156,10 +225,20 @@ def soak(seed: int, only: Sequence[str], scale: float, jobs: int) -> bool:
         parts.append(play_driver(program, seed, wanted["driver on verilator"], jobs, library))
     if "icarus" in only:
         parts.append(play_icarus(program, seed, wanted["icarus"], jobs))
+    numbers: dict[str, Any] = {}
+    machine = []
+    if "machine" in only:
+        machine = [play_model(program, seed, wanted[kind], jobs, kind) for kind in KINDS]
+        number = wanted["machine on verilator"]
+        machine.append(play_machine_on_verilator(program, seed, number, jobs))
+        machine.append(play_icarus(program, seed, wanted["machine on icarus"], jobs, machine=True))
+        numbers = measure(seed)
     caught = catch_all(seed, jobs) if "defects" in only else []
-    made = report(seed, parts, caught)
+    made = report(seed, [*parts, *machine], caught, numbers)
     write_json(made, REPORT)
-    show(parts, caught)
+    show([*parts, *machine], caught)
+    if machine:
+        show_machine(machine, numbers)
     console.print(f"Report: {REPORT.relative_to(paths.root)}")
     return made["ok"]
 
@@ -176,6 +255,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--history", type=int, help="print a single history")
     parser.add_argument("--driver", action="store_true", help="play the history through the driver")
+    parser.add_argument("--kind", choices=KINDS, help="play the history of a machine")
     parser.add_argument("--only", default=",".join(PARTS), help="parts to play (default: %(default)s)")
     parser.add_argument("--scale", type=float, default=1.0, help="multiply the number of histories")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
@@ -187,7 +267,9 @@ def main() -> None:
         parser.error(f"no such part: {', '.join(sorted(unknown))}")
     if arguments.history is not None:
         command = [build(), str(arguments.seed), str(arguments.history), "1", "--print"]
-        sys.exit(subprocess.run([*command, *(["--driver"] if arguments.driver else [])]).returncode)
+        command += ["--driver"] if arguments.driver else []
+        command += [f"--{arguments.kind}"] if arguments.kind else []
+        sys.exit(subprocess.run(command).returncode)
     sys.exit(not soak(arguments.seed, only, arguments.scale, arguments.jobs))
 
 

@@ -67,20 +67,6 @@ void world_add_fact(struct world *world, const struct world_fact *fact)
 	world->facts[world->fact_count++] = *fact;
 }
 
-void world_add_pin(struct world *world, struct world_pin pin)
-{
-	size_t at = world->pin_count;
-
-	if (at == WORLD_PINS_MAX)
-		abort();
-	while (at > world->pin_next && world->pins[at - 1u].clock > pin.clock) {
-		world->pins[at] = world->pins[at - 1u];
-		at--;
-	}
-	world->pins[at] = pin;
-	world->pin_count++;
-}
-
 static void add_row(struct world *world)
 {
 	if (world->row_count && PASSO_SAME_OUTPUTS(&world->rows[world->row_count - 1u].pins, &world->outputs))
@@ -192,13 +178,13 @@ static void record(
 	world->recorded_outputs = *outputs;
 }
 
-/* Writes a run of clocks with equal inputs and outputs. */
-void world_end_record(struct world *world)
+/* Writes the clocks recorded with equal inputs and outputs. */
+static void write_run(struct world *world)
 {
 	const struct passo_inputs *inputs = &world->recorded_inputs;
 	const struct passo_outputs *outputs = &world->recorded_outputs;
 
-	if (world->record && world->recorded_clocks != 0u) {
+	if (world->record) {
 		fprintf(world->record, "%llx", (unsigned long long)world->recorded_clocks);
 #define WRITE_INPUT(name, type, number) fprintf(world->record, " %llx", (unsigned long long)inputs->name);
 #define WRITE_OUTPUT(name, type, number) fprintf(world->record, " %llx", (unsigned long long)outputs->name);
@@ -209,6 +195,19 @@ void world_end_record(struct world *world)
 		fprintf(world->record, " %x\n", outputs->spi_miso ? 1u : 0u);
 	}
 	world->recorded_clocks = 0;
+}
+
+void world_end_record(struct world *world)
+{
+	if (world->recorded_clocks != 0u)
+		write_run(world);
+}
+
+void world_record_estop(struct world *world)
+{
+	world->recorded_inputs.estop_n = false;
+	world->recorded_outputs.enable = passo_core_enable(&world->model, false);
+	write_run(world);
 }
 
 static void compare(struct world *world, const struct passo_outputs *rtl, const struct passo_outputs *model)
@@ -222,36 +221,6 @@ static void compare(struct world *world, const struct passo_outputs *rtl, const 
 		    (unsigned long long)rtl->name, (unsigned long long)model->name);
 	PASSO_OUTPUTS(COMPARE)
 #undef COMPARE
-}
-
-static void change_reset(struct world *world)
-{
-	const struct world_fact fact = {
-	    .clock = world->clock + 1u, .kind = world->resets != 0u ? FACT_RESET : FACT_RESET_DONE};
-
-	world_add_fact(world, &fact);
-	world->inputs.rst = world->resets != 0u;
-	if (world->inputs.rst)
-		world->reset_at = fact.clock;
-	world->reset_until = world->inputs.rst ? UINT64_MAX : fact.clock;
-}
-
-static void change_pins(struct world *world)
-{
-	while (
-	    world->pin_next < world->pin_count && world->pins[world->pin_next].clock <= world->clock + 1u) {
-		const struct world_pin *pin = &world->pins[world->pin_next++];
-
-		if (!pin->is_reset) {
-			world->inputs.sync = pin->level;
-			continue;
-		}
-		/* resets may overlap */
-		const bool was = world->resets != 0u;
-		world->resets += pin->level ? 1u : UINT32_MAX;
-		if ((world->resets != 0u) != was)
-			change_reset(world);
-	}
 }
 
 static struct passo_outputs run_rtl(struct world *world)
@@ -271,7 +240,7 @@ static void tick(struct world *world)
 	uint32_t rate[PASSO_CHANNELS_MAX];
 	bool stopping[PASSO_CHANNELS_MAX];
 
-	change_pins(world);
+	world_change_pins(world);
 	for (unsigned i = 0; i < channels; i++) {
 		rate[i] = world->model.channel[i].timescale.rate;
 		stopping[i] = world->model.channel[i].motion.stopping;
@@ -322,6 +291,9 @@ bool world_open(struct world *world, const struct passo_parameters *parameters, 
 	world->event_room = kept.event_room;
 	world->latency = kept.latency;
 	world->blind = kept.blind;
+	world->machine = kept.machine;
+	world->tries = kept.tries;
+	world->pokes = kept.pokes;
 	world->half_period = 2;
 	world->setup = 4;
 	world->inputs = (struct passo_inputs)PASSO_INPUTS_IDLE;

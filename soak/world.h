@@ -14,7 +14,7 @@
 #include "passo_core.h"
 #include "passo_frame.h"
 
-#define WORLD_PINS_MAX 64u
+#define WORLD_PINS_MAX 1024u
 #define WORLD_TEXT 200u
 
 /* Levels of the output pins from this clock on. */
@@ -26,13 +26,20 @@ struct world_row {
 /* Knowledge of the host, derived from its frames and the replies. */
 enum world_fact_kind {
 	FACT_WRITE, /* an accepted word takes effect: words[0], address, words[1], value */
-	FACT_LINE,  /* the last word of an accepted line: words[0], control, words[1 + i], steps */
+	FACT_LINE,  /* the last word of an accepted line: words[0], control, words[1 + i], steps, then its
+	               output */
 	FACT_RAMP,  /* the last word of an accepted ramp: words[0], control */
 	FACT_BUSY,  /* a frame was refused as BUSY: words[0], operation and address, words[1], first word */
 	FACT_STATE, /* words[0 .. 2]: STATE, RATE, ROOM, not older than `clock` */
 	FACT_READS, /* a read of positions starts */
 	FACT_POSITION,  /* words[i]: position at some clock since FACT_READS */
 	FACT_STATUS,    /* words[0]: status word when chip select fell */
+	FACT_PIN,       /* words[0]: number of an input of the machine, words[1]: its new levels */
+	FACT_FED,       /* a frame was executed */
+	FACT_TRIGGER,   /* words[0 .. 1]: TRIGGER_STATE, TRIGGER_CLOCKS */
+	FACT_LATCH,     /* words[i]: latched position */
+	FACT_COUNTS,    /* words[i]: encoder position at some clock since FACT_READS */
+	FACT_FLAGS,     /* words[0]: INPUT_FLAGS */
 	FACT_RESET,     /* rst rises */
 	FACT_RESET_DONE /* rst has fallen */
 };
@@ -41,7 +48,7 @@ struct world_fact {
 	uint64_t clock;
 	enum world_fact_kind kind;
 	uint8_t channel;
-	uint32_t words[1u + PASSO_AXES_MAX];
+	uint32_t words[2u + PASSO_AXES_MAX];
 };
 
 /* Events in the model at which disturbances can be aimed. The judge does not use them. */
@@ -70,8 +77,19 @@ struct world_event {
 /* An edge of an input pin at a given clock, independent of the link. */
 struct world_pin {
 	uint64_t clock;
-	bool is_reset; /* otherwise sync */
-	bool level;
+	enum passo_input input; /* PASSO_INPUT_COUNT: the shaft of an encoder turns */
+	bool level;             /* of rst and sync */
+	uint8_t mask;           /* other inputs: the bits that change */
+	int32_t turn;           /* of axis `mask`, in counts */
+};
+
+/* The shaft of an encoder: turns with the steps of its axis if it is `coupled`, and as told. */
+struct world_shaft {
+	bool coupled;
+	int32_t due;     /* counts still to be made */
+	uint32_t period; /* clocks from one to the next */
+	uint64_t next;
+	uint8_t place; /* in the cycle of A and B */
 };
 
 /* Latencies in clocks from the end of the CRC word, measured once. */
@@ -110,12 +128,19 @@ struct world {
 	size_t event_count, event_room;
 	uint64_t events_from;
 	uint64_t idle_since[PASSO_CHANNELS_MAX];
-	FILE *record; /* stimulus for soak/player.v; NULL: none */
+	struct passo_inputs levels;                /* of the inputs at rest */
+	uint64_t noise;                            /* state of the random changes of all inputs; 0: none */
+	struct world_shaft shafts[PASSO_AXES_MAX]; /* of channel 0 */
+	FILE *record;                              /* stimulus for soak/player.v; NULL: none */
 	struct passo_inputs recorded_inputs;
 	struct passo_outputs recorded_outputs;
 	uint64_t recorded_clocks;
 
-	bool blind;         /* the rate is judged by the steps alone; not changed by world_open() */
+	/* not changed by world_open() */
+	bool blind;         /* the rate is judged by the steps alone */
+	bool machine;       /* a core with inputs, encoders and outputs */
+	bool tries;         /* that drives into its limit switches */
+	bool pokes;         /* anything is written and anything happens at its pins; not judged */
 	uint64_t failed_at; /* clock of the first failure; 0: none */
 	char failure[WORLD_TEXT];
 };
@@ -126,15 +151,24 @@ const struct world_rtl *world_load(const char *library);
 /* Powers up the core. False if the parameters do not match the Verilated core. */
 bool world_open(struct world *world, const struct passo_parameters *parameters, const struct world_rtl *rtl);
 void world_close(struct world *world);
-/* Completes the record. */
+/* Completes the record; and then takes the enables away by e-stop, without a clock. */
 void world_end_record(struct world *world);
+void world_record_estop(struct world *world);
 
 void world_run(struct world *world, uint64_t clocks);
 /* One chip select in which `bits` bits of the words are exchanged. */
 void world_exchange(struct world *world, const uint32_t *mosi, uint32_t *miso, size_t count, size_t bits);
 
+/* Words of a line. */
+static inline unsigned world_line_words(const struct passo_parameters *parameters)
+{
+	return PASSO_LINE_WORDS((unsigned)parameters->axes) + parameters->outputs;
+}
+
 /* Schedules an edge of an input pin, in any order, but not in the past. */
 void world_add_pin(struct world *world, struct world_pin pin);
+/* Changes the pins that are due before a clock. */
+void world_change_pins(struct world *world);
 void world_add_fact(struct world *world, const struct world_fact *fact);
 /* Records a failure; only the first one is kept. */
 void world_fail(struct world *world, uint64_t clock, const char *format, ...)

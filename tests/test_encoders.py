@@ -5,101 +5,30 @@ PASSO_SEED is the seed of everything random.
 """
 
 import random
-from fractions import Fraction
 
 import pytest
 from passo import random_cases
 from passo import registers as r
 from passo.build import Parameters
-from passo.engine import Engine, model_engine
 from passo.host import Channel
-from passo.link import Link
-from passo.registers import State
 
-from tests.helpers.closed_form import ONE, Line, Ramp
-from tests.helpers.motions import to_line, to_ramp
+from soak import numbers
 from tests.test_core_advance import Session
 
 SEED = random_cases.seed()
-GRAY = ((0, 0), (1, 0), (1, 1), (0, 1))  # A and B while a shaft turns up
 BUILDS = [
     Parameters(channels=1, axes=3, encoders=1),
     Parameters(channels=2, axes=2, line_queue_log2=2, ramp_queue_log2=2, encoders=1),
 ]
 
 
-class Spindle:
-    """An encoder of axis 2 whose speed wanders by 30 %; it never stops."""
-
-    PER_TURN = 400  # counts
-    CLOCKS = 12  # per count, at the mean speed
-
-    def __init__(self, engine: Engine, rng: random.Random) -> None:
-        self.engine, self.rng = engine, rng
-        self.at = 0
-        self.time = 0.0
-        self.period = float(self.CLOCKS)
-        self.counts: list[int] = []  # clocks since the last index
-
-    def turn(self) -> None:
-        """One turn, from index to index."""
-        low, high = self.CLOCKS / 1.3, self.CLOCKS * 1.43
-        for _ in range(self.PER_TURN):
-            self.period = min(high, max(low, self.period + self.rng.uniform(-0.2, 0.2)))
-            self.time += self.period
-            left = int(self.time)
-            self.time -= left
-            while left:
-                left -= self.engine.run(left)
-            self.at += 1
-            a, b = GRAY[self.at % 4]
-            self.engine.set("encoder_a", a << 2)
-            self.engine.set("encoder_b", b << 2)
-            self.engine.set("encoder_index", (self.at % self.PER_TURN == 0) << 2)
-            self.counts.append(self.engine.clock)
-
-
 def test_a_thousand_turns_of_a_wandering_spindle() -> None:
     """Ten passes of 100 turns: each step within a count of the exact pitch, the same counts in each pass."""
     print(f"PASSO_SEED={SEED}")
-    rng = random.Random(f"{SEED}/spindle")
-    parameters = Parameters(channels=1, axes=3, encoders=1)
-    pitch = Fraction(1, 3)  # steps per count
-    per_count = int(pitch * ONE)
-    ticks = 100 * Spindle.PER_TURN // 128 - 2
-    steps = (ONE // 4 + per_count * ticks * 128) // ONE
-    passes: set[tuple[int, ...]] = set()
-    worst = Fraction(0)
-    with model_engine(parameters) as engine:
-        spindle = Spindle(engine, rng)
-        channel = Channel(Link(engine), parameters)
-        follow = 1 << r.CHANNEL_FOLLOW_FOLLOW_LSB | 1 << r.CHANNEL_FOLLOW_WAIT_INDEX_LSB
-        source = 2 << r.CHANNEL_FOLLOW_SOURCE_LSB
-        channel.link.write(channel.base + r.CHANNEL_FOLLOW, follow | source, 1 << 31)
-        channel.link.write(channel.base + r.CHANNEL_ENCODER_FILTER, 2)
-        latency = 2 + 14  # filter, and pin to STEP
-        for _ in range(10):
-            channel.push_lines([to_line(Line(steps, (steps, 0, 0), last=True))])
-            channel.push_ramps([to_ramp(Ramp(per_count, 0)), to_ramp(Ramp(per_count, ticks, last=True))])
-            channel.start()
-            engine.drain()
-            spindle.turn()  # the index at its end starts the motion
-            start = engine.clock
-            spindle.counts.clear()
-            for _ in range(101):
-                spindle.turn()
-            assert channel.state().state == State.IDLE
-            events = engine.drain()
-            made = [int(clock) for clock in events["clock"][events["step"] & 1 == 1] if clock > start]
-            at_clock = {clock + latency: n for n, clock in enumerate(spindle.counts, 1)}
-            at = tuple(at_clock[clock] for clock in made)
-            assert len(at) == steps
-            exact = [(k - Fraction(1, 4)) / pitch for k in range(1, steps + 1)]
-            worst = max(worst, *(abs(n - e) for n, e in zip(at, exact, strict=True)))
-            passes.add(at)
-    print(f"{steps} steps in each of 10 passes, {float(worst):.4f} counts at most from the exact pitch")
-    assert worst < 1
-    assert len(passes) == 1
+    made = numbers.thread(SEED)
+    print(made)
+    assert made["worst_counts"] < 1
+    assert made["same_phase"]
 
 
 class EncoderSession(Session):

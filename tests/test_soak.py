@@ -10,10 +10,10 @@ from passo.build import rtl_library
 from passo.planted import plant
 from passo.toolchain import paths
 
-from soak import defects, parts
+from soak import defects, numbers, parts
 from soak.defects import Defect
 from soak.program import build
-from soak.run import JUDGED
+from soak.run import JUDGED, MACHINE_JUDGED
 
 SEED = random_cases.seed()
 JOBS = 1  # pytest uses the other cores
@@ -41,6 +41,18 @@ def test_no_promise_is_broken_in_the_model(program: Path) -> None:
     assert part.counts["hit"] > 0.8 * part.counts["aimed"] > 0
 
 
+@pytest.mark.parametrize(("kind", "histories"), [("machine", 100), ("tries", 20), ("pokes", 5)])
+def test_no_promise_is_broken_with_a_machine(program: Path, kind: str, histories: int) -> None:
+    """Events of all kinds, drives into active switches, random pokes."""
+    part = parts.play_model(program, SEED, histories, JOBS, kind)
+    check(part, histories)
+    if kind == "machine":
+        assert all(part.counts[judged] for judged in set(MACHINE_JUDGED) - {"tries"})
+        assert part.counts["hit"] > 0.8 * part.counts["aimed"] > 0
+    if kind == "tries":
+        assert part.counts["tries"] > 50 * histories
+
+
 def test_no_promise_is_broken_through_the_driver(program: Path) -> None:
     """On wires with errors of all kinds."""
     part = parts.play_driver(program, SEED, 60, JOBS)
@@ -59,11 +71,19 @@ def test_no_promise_is_broken_in_verilator(program: Path) -> None:
 def test_no_promise_is_broken_in_icarus(program: Path) -> None:
     """The same in another simulator."""
     check(parts.play_icarus(program, SEED, 6, JOBS), 6)
+    check(parts.play_icarus(program, SEED, 1, JOBS, machine=True), 1)
 
 
-@pytest.mark.parametrize("name", ["abort leaves steps", "a lost stop counts as sent"])
+def test_power_keeps_its_energy_and_raster_its_substep() -> None:
+    """From 5 % to 100 % of the speed, through holds."""
+    laser, raster = numbers.laser(), numbers.raster(SEED)
+    print(laser, raster)
+    assert laser["ok"] and raster["ok"]
+
+
+@pytest.mark.parametrize("name", ["abort leaves steps", "a lost stop counts as sent", "power after a stop"])
 def test_a_defect_goes_red(name: str) -> None:
-    """One at register level, one of the driver; `make soak` plants all of them."""
+    """One at register level, one of the driver, one of a machine; `make soak` plants all of them."""
     caught = defects.catch(DEFECTS[name], 1)
     assert caught.good, caught.says
 
