@@ -136,8 +136,8 @@ static bool outputs_settled(const struct passo_channel *channel, const struct pa
 
 	if (!channel->has_outputs)
 		return true;
-	if (channel->output_registers.write_levels || channel->output_registers.write_pulse
-	    || channel->output_registers.write_distance)
+	if (channel->output_registers.write_levels || channel->output_registers.write_power
+	    || channel->output_registers.write_pulse || channel->output_registers.write_distance)
 		return false;
 	outputs = passo_channel_outputs(channel, bus, &wires);
 	return passo_outputs_steady(&channel->outputs, &outputs);

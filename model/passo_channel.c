@@ -114,6 +114,7 @@ struct passo_outputs_wires passo_channel_outputs(
 	    .write_pulse = channel->output_registers.write_pulse,
 	    .write_distance = channel->output_registers.write_distance,
 	    .write_levels = channel->output_registers.write_levels,
+	    .write_power = channel->output_registers.write_power,
 	    .line_begins = wires->take || wires->repeats,
 	    .substep = wires->substep_taken,
 	    .stopped = wires->stopped,

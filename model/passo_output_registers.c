@@ -70,6 +70,8 @@ void passo_output_registers_clock(
 	struct passo_output_settings *settings = &registers->settings;
 
 	registers->write_levels = write && address == PASSO_CHANNEL_OUTPUT_LEVELS;
+	registers->write_power =
+	    write && (address == PASSO_CHANNEL_PWM_STEP || address == PASSO_CHANNEL_POWER_REFERENCE);
 	registers->write_pulse = write && address == PASSO_CHANNEL_COMPARE_PULSE;
 	registers->write_distance = write && address == PASSO_CHANNEL_COMPARE_DISTANCE;
 	if (!write)

@@ -24,7 +24,7 @@ struct passo_output_settings {
 
 struct passo_output_registers {
 	struct passo_output_settings settings;
-	bool write_levels, write_pulse, write_distance; /* written in the previous clock */
+	bool write_levels, write_power, write_pulse, write_distance; /* written in the previous clock */
 };
 
 struct passo_pwm {
@@ -36,9 +36,9 @@ struct passo_pwm {
 
 struct passo_power {
 	uint8_t count;
-	bool too_large;
-	uint32_t factor, high, low;
-	uint32_t cost; /* UQ0.24 */
+	bool stale;               /* the settings were written since their product was begun */
+	uint64_t scaled;          /* their product, half of it */
+	uint32_t cost, next_cost; /* UQ0.24 */
 };
 
 struct passo_change {
@@ -84,6 +84,7 @@ struct passo_outputs_wires {
 	struct passo_output_settings settings;
 	struct passo_line_output word;
 	bool write_pulse, write_distance, write_levels; /* with bus.data */
+	bool write_power;                               /* pwm_step or power_reference may be new */
 	bool line_begins, substep;
 	bool stopped, clear, running, running_next;
 	uint32_t velocity, rate;

@@ -2,8 +2,8 @@
 // Changes of the outputs on their way: a delay of `lag` clocks, as a queue in block RAM of changes with their time.
 //
 // Promise: a change comes out 3 + lag clocks after it went in (`hit`, with `data`, which is there a clock before), in
-// order, none lost or doubled, while `lag` does not change. One that finds 2^DEPTH_LOG2 others waiting is lost: `overflow` is high for one clock.
-// `flush` drops what waits. Changes are at least 2 clocks apart.
+// order, none lost or doubled, while `lag` does not change. One that finds 2^DEPTH_LOG2 others waiting is lost:
+// `overflow` is high for one clock. `flush` drops what waits. Changes are at least 2 clocks apart.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -79,6 +79,10 @@ module passo_changes #(
       empty       <= 1'b1;
     end
   end
+
+`ifdef FORMAL
+  `include "passo_changes_formal.vh"
+`endif
 
 endmodule
 `resetall

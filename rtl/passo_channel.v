@@ -599,6 +599,7 @@ module passo_channel #(
       wire [15:0] compare_width;
       wire [31:0] compare_interval;
       wire        write_levels;
+      wire        write_power;
       wire        write_pulse;
       wire        write_distance;
       wire        raster_empty;
@@ -635,6 +636,7 @@ module passo_channel #(
         .compare_width   (compare_width),
         .compare_interval(compare_interval),
         .write_levels    (write_levels),
+        .write_power     (write_power),
         .write_pulse     (write_pulse),
         .write_distance  (write_distance),
         .levels          (outputs),
@@ -665,6 +667,7 @@ module passo_channel #(
         .write_pulse     (write_pulse),
         .write_distance  (write_distance),
         .write_levels    (write_levels),
+        .write_power     (write_power),
         .raster_room     (raster_room),
         .raster_empty    (raster_empty),
         .overflow        (overflow),

@@ -34,15 +34,15 @@ module passo_compare #(
   reg  [15:0] timer;  // clocks of the pulse so far
   wire [ 7:0] made = {{(8 - AXES) {1'b0}}, step_made};
   wire [ 7:0] directions = {{(8 - AXES) {1'b0}}, step_direction};
-  reg         down;  // that of the step in this clock
+  reg         up;  // the step in this clock
   wire        steps = made[axis];
-  wire        arrives = steps & (down ? one_down : one_up);
+  wire        arrives = steps & (up ? one_up : one_down);
 
   always @(posedge clk) begin
-    down     <= directions[axis];
+    up       <= ~directions[axis];
     one_up   <= away == 32'd1;
     one_down <= away == 32'hFFFFFFFF;
-    if (steps) away <= arrives ? interval : away - {{31{down}}, 1'b1};
+    if (steps) away <= arrives ? interval : away + {{31{up}}, 1'b1};
     timer <= timer + 16'd1;
     if (timer == width) pin <= 1'b0;
     if (arrives) begin

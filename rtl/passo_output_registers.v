@@ -2,7 +2,8 @@
 // Registers of the outputs of a channel: decode, checks, settings, state; and the decode of the raster queue.
 //
 // Promise: a strobe is answered one clock later, for one clock; the answer is 0 unless one of these registers is
-// addressed. `write_levels`, `write_pulse` and `write_distance` are high in the clock after their write, with bus_data.
+// addressed. `write_levels`, `write_pulse` and `write_distance` are high in the clock after their write, with bus_data;
+// `write_power` in the first clock of a new pwm_step or power_reference.
 // `select_raster`: a push to the raster queue, which answers by itself whether it takes the word.
 `resetall
 `timescale 1ns / 1ps
@@ -37,6 +38,7 @@ module passo_output_registers #(
   output reg  [15:0] compare_width,
   output reg  [31:0] compare_interval,
   output reg         write_levels,
+  output reg         write_power,
   output reg         write_pulse,
   output reg         write_distance,
   // state
@@ -109,6 +111,7 @@ module passo_output_registers #(
 
   always @(posedge clk) begin
     write_levels   <= bus_write && is_levels;
+    write_power    <= write && (number == CHANNEL_PWM_STEP[2:0] || number == CHANNEL_POWER_REFERENCE[2:0]);
     write_pulse    <= bus_write && is_pulse;
     write_distance <= bus_write && is_distance;
     if (bus_write && is_lag) lag <= bus_data[15:0];
@@ -119,6 +122,7 @@ module passo_output_registers #(
     if (write && number == CHANNEL_COMPARE_INTERVAL[2:0]) compare_interval <= bus_data;
     if (rst) begin
       write_levels     <= 1'b0;
+      write_power      <= 1'b0;
       write_pulse      <= 1'b0;
       write_distance   <= 1'b0;
       lag              <= CHANNEL_OUTPUT_LAG_LAG_RESET;

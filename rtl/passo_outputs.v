@@ -36,6 +36,7 @@ module passo_outputs #(
   input  wire            write_pulse,       // strobes, with bus_data
   input  wire            write_distance,
   input  wire            write_levels,
+  input  wire            write_power,       // strobe: pwm_step or power_reference is new
   // state
   output wire [     8:0] raster_room,       // in words
   output reg             raster_empty,      // a value was missing, since `clear`
@@ -152,6 +153,7 @@ module passo_outputs #(
     .moves          (running & ~still[1]),
     .velocity       (velocity),
     .rate           (rate),
+    .write          (write_power),
     .power_reference(power_reference),
     .pwm_step       (pwm_step),
     .cost           (cost)

@@ -37,7 +37,7 @@ module passo_pwm (
   wire [24:0] phase_next = {1'b0, phase} + {1'b0, step};
   wire [16:0] duty = {1'b0, power} + {16'd0, power[15]};
   wire [16:0] duty_less = {1'b0, power} + {17{~power[15]}};  // by 1
-  wire [25:0] spent = {2'd0, cost_now & {24{pin}}};
+  wire [25:0] spent = {2'd0, cost_now & {24{~credit[25]}}};  // the pin is on, or fresh
   wire [25:0] balance = credit + {1'b0, paid, 8'd0} - spent;
   wire [25:0] sum = fresh ? {duty_less[16], duty_less, 8'hFF} : balance;
 

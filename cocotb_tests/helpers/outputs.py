@@ -16,7 +16,8 @@ from cocotb_tests.helpers.bench import begin
 INPUTS = (
     *("rst", "bus_frame", "bus_commit", "bus_check", "bus_write", "select", "bus_data"),
     *("lag", "pwm_step", "power_reference", "pitch", "compare_axis", "compare_width", "compare_interval"),
-    *("write_pulse", "write_distance", "write_levels", "line_begins", "substep", "word", "stopped", "clear"),
+    *("write_pulse", "write_distance", "write_levels", "write_power"),
+    *("line_begins", "substep", "word", "stopped", "clear"),
     *("running", "running_next", "velocity", "rate", "waits", "step_made", "step_direction"),
 )
 OUTPUTS = ("outputs", "power", "compare", "raster_room", "raster_empty", "overflow", "quiet", "refusal")
@@ -50,6 +51,7 @@ class Outputs:
     def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
         self.dut, self.clocks = dut, clocks
         self.inputs = dict.fromkeys(INPUTS, 0)
+        self._scaled = False  # step or reference are new
         self.seen = Seen()
         self.now: dict[str, int] = dict.fromkeys(OUTPUTS, 0)
         folders = (paths.model, paths.protocol)
@@ -75,11 +77,14 @@ class Outputs:
         for name, value in inputs.items():
             if self.inputs[name] != value:
                 self.inputs[name] = value
+                self._scaled |= name in {"pwm_step", "power_reference"}
                 getattr(self.dut, name).value = value
 
     async def clock(self, **strobes: int) -> None:
         """One rising edge, with these inputs for this clock only."""
         self.set(**strobes)
+        self.set(write_power=int(self._scaled))
+        self._scaled = False
         for place, name in enumerate(INPUTS):
             self._in[place] = self.inputs[name]
         self._model.outputs_model_clock(self._state, self._in, self._out)
