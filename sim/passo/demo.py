@@ -13,7 +13,8 @@ from passo.plot_scene import plot_scene
 from passo.report import problems, summarize_channels, write_json, write_pulses
 from passo.report_page import write_page
 from passo.run import Run, execute_channels, open_engine, parameters_for, parameters_of
-from passo.scene import Scene, scene_parameters
+from passo.scene import Scene
+from passo.scene_plan import scene_parameters
 from passo.scene_report import summarize_scene, write_scene_pulses
 from passo.toolchain import paths
 

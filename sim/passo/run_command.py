@@ -13,7 +13,8 @@ from passo.moves import Channels
 from passo.plan import Plan, plan_channels
 from passo.report import problems, summarize_channels, total_clocks, write_json, write_pulses
 from passo.run import Run, execute_channels, open_engine, parameters_of
-from passo.scene import Scene, plan_sections, scene_parameters
+from passo.scene import Scene
+from passo.scene_plan import plan_sections, scene_parameters
 from passo.scene_report import summarize_scene, write_scene_pulses
 from passo.toolchain import paths
 from passo.waves import FILES, Window, read_window, record, write_view
@@ -73,7 +74,7 @@ def run_file(moves: Path, engine: str, out: Path | None, wanted: Wanted) -> bool
 def _run_scene(file: Channels, engine: str, out: Path, plot: bool) -> bool:
     """The same for a file with a machine or events."""
     parameters = scene_parameters(file)
-    plan_sections(file.files[0], parameters)  # says what is wrong before anything is built
+    plan_sections(file.files[0], file.setup, parameters)  # says what is wrong before anything is built
     with open_engine(engine, parameters, file.clock_hz) as core:
         _clear(out)
         try:

@@ -9,6 +9,7 @@ import numpy as np
 
 from passo.curve import Curve
 from passo.move_forms import MachineEncoder
+from passo.scene_figures import energies, thread_figures
 from passo.scene_run import Happened, SceneRun, Section, Stop
 
 
@@ -95,6 +96,7 @@ def summarize_scene(run: SceneRun, engine: str) -> dict[str, Any]:
         "events": [_event(run, happened) for happened in run.events],
         "stops": [_stop(run, stop) for stop in run.stops],
         "triggers": [{"event": latch.number, "positions": latch.positions} for latch in run.latches],
+        "energy": energies(run),
         "encoders": [_encoder(run, number) for number in range(len(run.setup.encoders))],
     }
 
@@ -110,13 +112,14 @@ def _axis(run: SceneRun, axis: int) -> dict[str, Any]:
 
 
 def _section(run: SceneRun, section: Section) -> dict[str, Any]:
-    return {
+    made = {
         "numbers": section.numbers,
         "kind": section.kind,
         "start_clock": section.begin - run.start,
         "end_clock": section.end - run.start,
         "result": section.outcome,
     }
+    return made | (thread_figures(run, section) if section.kind == "thread" else {})
 
 
 def _event(run: SceneRun, happened: Happened) -> dict[str, Any]:
