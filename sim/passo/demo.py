@@ -11,7 +11,7 @@ from passo.plan import plan_channels
 from passo.plot import plot_file, plot_overview
 from passo.plot_scene import plot_scene
 from passo.report import problems, summarize_channels, write_json, write_pulses
-from passo.report_page import write_page
+from passo.report_page import write_page, write_scene_page
 from passo.run import Run, execute_channels, open_engine, parameters_for, parameters_of
 from passo.scene import Scene
 from passo.scene_plan import scene_parameters
@@ -23,7 +23,14 @@ EXAMPLES = (
     *("three_axes", "cosine", "sigmoid", "triangle", "there_and_back"),
     *("exact_time", "turn", "sigmoid_alpha", "seven_phases", "straight", "user_shape", "four_motors"),
 )
-MACHINES = ("homing", "probing", "hold_and_estop", "closed_loop")  # examples with a machine or events
+MACHINES = (
+    "homing",
+    "probing",
+    "hold_and_estop",
+    "closed_loop",
+    "laser",
+    "threading",
+)  # examples with a machine or events
 
 
 def run_example(name: str) -> tuple[list[Run], dict[str, Any]]:
@@ -53,6 +60,7 @@ def run_machine(name: str) -> dict[str, Any]:
     write_scene_pulses(run, out / "pulses.csv")
     write_json(summary, out / "summary.json")
     plot_scene(run, out / "motion.png")
+    write_scene_page(file, run, "both", out / "report.html")
     return summary
 
 

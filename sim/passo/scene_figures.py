@@ -10,6 +10,7 @@ from passo.move_forms import MachineOutput
 from passo.scene_run import SceneRun, Section
 
 PERIODS = 256  # of the PWM in a window at full speed: its ends are a period uncertain
+POWER_POINTS = 2000  # at most, of the curve of the mean power
 SLOWEST = 0.05  # of the speed at which the power is full
 
 
@@ -43,7 +44,7 @@ def _energy(run: SceneRun, output: MachineOutput, steps: np.ndarray) -> dict[str
     slowest = float(hz / (output.speed * SLOWEST)) * (1 + 1e-3)  # steps lie on whole clocks
     gaps = np.diff(steps)
     fast = [bool(gaps[begin : begin + size].max() <= slowest) for begin in begins]
-    on = _time_on(run, steps)
+    on = time_on(run, steps)
     deviations = ((on[begins + size] - on[begins]) / (size * ideal) - 1)[fast] if len(begins) else np.empty(0)
     whole = (on[-1] - on[0]) / ((len(steps) - 1) * ideal) - 1 if len(steps) > 1 else 0.0
     return {
@@ -55,13 +56,22 @@ def _energy(run: SceneRun, output: MachineOutput, steps: np.ndarray) -> dict[str
     }
 
 
-def _time_on(run: SceneRun, clocks: np.ndarray) -> np.ndarray:
+def time_on(run: SceneRun, clocks: np.ndarray) -> np.ndarray:
     """Clocks on which the power pin was high before each of `clocks`."""
     level = (run.pins["power"] & np.uint64(1)).astype(np.int64)
     at = run.pins["clock"].astype(np.int64) - run.start
     total = np.concatenate([[0], np.cumsum(np.diff(at) * level[:-1])])
     place = np.searchsorted(at, clocks, side="right") - 1
     return total[place] + (clocks - at[place]) * level[place]
+
+
+def mean_power(run: SceneRun) -> tuple[np.ndarray, np.ndarray]:
+    """Clocks, a period of the PWM or more apart, and the share of the time (%) that the power is on from each on."""
+    period = float(run.file.clock_hz / run.setup.settings.pwm)
+    count = max(1, int(min(POWER_POINTS, run.total_clocks / period)))
+    clocks = np.linspace(0, run.total_clocks, count + 1).astype(np.int64)
+    shares = np.diff(time_on(run, clocks)) / np.maximum(1, np.diff(clocks))
+    return clocks, np.append(100 * shares, 0)
 
 
 def thread_figures(run: SceneRun, section: Section) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from passo.curve import Curve
-from passo.move_forms import MachineEncoder
+from passo.move_forms import EventInput, EventOverride, EventSlip, MachineEncoder
 from passo.scene_figures import energies, thread_figures
 from passo.scene_run import Happened, SceneRun, Section, Stop
 
@@ -152,3 +152,16 @@ def _encoder(run: SceneRun, number: int) -> dict[str, Any]:
         "rms_error_steps": float(np.sqrt((errors**2).mean())) if len(errors) else 0.0,
         "greatest_following_error_steps": run.greatest[number],
     }
+
+
+def said(happened: Happened) -> str:
+    """An event in words."""
+    event = happened.event
+    said = event.form.name
+    if isinstance(event, EventInput):
+        said = f"{event.input} of axis {event.axis} {'active' if event.active else 'inactive'}"
+    if isinstance(event, EventOverride):
+        said += f" {event.percent} %"
+    if isinstance(event, EventSlip):
+        said += f" of axis {event.axis} by {event.counts} counts"
+    return f"{said} at {', '.join(map(str, happened.positions))}"
