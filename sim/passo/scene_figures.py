@@ -66,7 +66,7 @@ def time_on(run: SceneRun, clocks: np.ndarray) -> np.ndarray:
 
 
 def mean_power(run: SceneRun) -> tuple[np.ndarray, np.ndarray]:
-    """Clocks, a period of the PWM or more apart, and the share of the time (%) that the power is on from each on."""
+    """Clocks, a period of the PWM or more apart, and the power (%) from each to the next."""
     period = float(run.file.clock_hz / run.setup.settings.pwm)
     count = max(1, int(min(POWER_POINTS, run.total_clocks / period)))
     clocks = np.linspace(0, run.total_clocks, count + 1).astype(np.int64)
