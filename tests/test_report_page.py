@@ -13,8 +13,13 @@ from passo.curve import speeds_and_positions, step_errors
 from passo.engine import model_engine
 from passo.move_file import read_channels
 from passo.plan import plan_channels
-from passo.report_page import FOLDER, write_page
+from passo.report_page import FOLDER, write_page, write_scene_page
 from passo.run import Run, execute_channels, parameters_of
+from passo.scene import Scene
+from passo.scene_panels import lanes_of, trace_of
+from passo.scene_plan import scene_parameters
+from passo.scene_report import measured_curve
+from passo.scene_run import SceneRun
 from passo.toolchain import paths
 
 from tests.helpers.browser import Browser
@@ -146,3 +151,73 @@ def test_the_command_writes_it(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert (FOLDER / "uplot/LICENSE").read_text() in text
     assert main(["run", moves, "--engine", "model", "--out", str(tmp_path)]) == 0
     assert not (tmp_path / "report.html").exists()
+
+
+# ------------------------------------------------------------------------------ files with a machine ----
+
+
+def scene_report(name: str, page: Path) -> SceneRun:
+    file = read_channels(paths.examples / f"{name}.toml")
+    with model_engine(scene_parameters(file), file.clock_hz) as engine:
+        run = Scene(file, engine).run()
+    write_scene_page(file, run, "model", page)
+    return run
+
+
+@pytest.mark.parametrize("name", ["homing", "laser", "closed_loop", "threading"])
+def test_a_machine(browser: Browser, tmp_path: Path, name: str) -> None:
+    """Every edge of every pin that is shown, the samples of the encoders, events and stops."""
+    run = scene_report(name, tmp_path / "page.html")
+    shown(browser, tmp_path / "page.html")
+    for axis in range(run.file.axes):
+        clocks, directions = run.steps(axis)
+        assert np.array_equal(numbers(browser, f"passo.motion.axes[{axis}].rises"), clocks)
+        assert np.array_equal(numbers(browser, f"passo.motion.axes[{axis}].counted"), np.cumsum(directions))
+    lanes = lanes_of(run)
+    assert browser.value("passo.motion.machine.signals.map(one => one.name)") == [lane[0] for lane in lanes]
+    for number, lane in enumerate(lanes):
+        clocks, levels = trace_of(run, lane, -run.start - 1, run.clocks)
+        changes = clocks[np.flatnonzero(np.diff(levels, prepend=np.int8(0)))]
+        assert np.array_equal(numbers(browser, f"passo.motion.machine.signals[{number}].edges"), changes)
+        middle = json.dumps(((clocks[1:] + clocks[:-1]) // 2)[::50].tolist())
+        found = browser.value(f"{middle}.map(clock => passo.motion.machine.level({number}, clock))")
+        assert found == (levels[:-1][::50] == 1).tolist()
+    for number, encoder in enumerate(run.setup.encoders):
+        curve, own = measured_curve(run, encoder), f"passo.motion.machine.encoders[{number}]"
+        assert np.array_equal(numbers(browser, f"{own}.measured"), curve.measured)
+        assert np.array_equal(numbers(browser, f"{own}.error"), curve.made - curve.measured)
+        assert np.array_equal(numbers(browser, f"{own}.clocks"), curve.clocks)
+    text = browser.value("document.getElementById('events').textContent")
+    assert all(stop.cause.name in text for stop in run.stops)
+    assert text.count("event ") >= len(run.events) and text.count("begins") == len(run.sections)
+    panels = browser.value("Array.from(document.querySelectorAll('section.panel'), panel => panel.id)")
+    assert "signals" in panels and ("power" in panels) == run.setup.has_outputs
+    assert ("following" in panels) == ("measured" in panels) == bool(run.setup.encoders)
+    assert browser.value("document.getElementById('verdict').className") == "good"
+
+
+def test_the_power_of_a_laser(browser: Browser, tmp_path: Path) -> None:
+    """Its curve has the time that the pin is high, and the page the energy per step."""
+    run = scene_report("laser", tmp_path / "page.html")
+    shown(browser, tmp_path / "page.html")
+    percent, clocks = (
+        numbers(browser, f"passo.motion.machine.power.{name}") for name in ("values", "clocks")
+    )
+    on = int(np.diff(run.pins["clock"].astype(np.int64))[run.pins["power"][:-1] == 1].sum())
+    assert abs((percent[:-1] / 100 * np.diff(clocks)).sum() - on) < 1e-4 * on
+    assert 55 < percent.max() <= 100 and percent.min() == 0
+    assert "Energy per step" in browser.value("document.getElementById('energy').textContent")
+
+
+def test_faults_of_a_machine_are_shown(browser: Browser, tmp_path: Path) -> None:
+    """What the command calls a problem is a fault, the stop at the end a stop."""
+    (tmp_path / "moves.toml").write_text(
+        (paths.examples / "hold_and_estop.toml").read_text() + '\n[[event]]\ndo = "hold"\ntime = 999\n'
+    )
+    out = str(tmp_path / "out")
+    command = ["run", str(tmp_path / "moves.toml"), "--engine", "model", "--report", "--out", out]
+    assert main(command) == 1
+    shown(browser, tmp_path / "out" / "report.html")
+    assert "it did not come" in browser.value("document.querySelector('#events tr.fault').textContent")
+    assert "ESTOP" in browser.value("document.querySelector('#events tr.stop').textContent")
+    assert browser.value("document.getElementById('verdict').className") == "bad"

@@ -14,44 +14,15 @@ from passo.moves import MoveFileError
 from passo.registers import Cause
 from passo.rig import most
 from passo.run import RunError, open_engine
-from passo.scene import Scene, scene_parameters
+from passo.scene import Scene
+from passo.scene_plan import scene_parameters
 from passo.scene_report import measured_curve, summarize_scene
 from passo.scene_run import SceneRun
 from passo.toolchain import paths
 
-CLOCK_HZ = 1_000_000
-SPEED = 10_000  # steps/s of the cruise
+from tests.helpers.scenes import CLOCK_HZ, MOVE, SPEED, event, machine, play, write
+
 HARD = 4  # clocks from the level to the last edge of STEP that may begin
-HEAD = f"clock_hz = {CLOCK_HZ}\n"
-MOVE = f"""
-[[move]]
-steps = [2000, -1000]
-profile = "linear"
-speed = {SPEED}
-acceleration = 400_000
-"""
-LENGTH = 0.225  # seconds of MOVE
-
-
-def write(folder: Path, text: str) -> Path:
-    path = folder / "scene.toml"
-    path.write_text(HEAD + text)
-    return path
-
-
-def play(folder: Path, text: str, engine: str = "model") -> SceneRun:
-    file = read_channels(write(folder, text))
-    with open_engine(engine, scene_parameters(file), file.clock_hz) as core:
-        return Scene(file, core).run()
-
-
-def machine(settings: str = "", *inputs: str, encoder: str = "") -> str:
-    parts = [f"[machine]\n{settings}\n", *(f"[[machine.input]]\n{one}\n" for one in inputs)]
-    return "".join(parts) + (f"[[machine.encoder]]\n{encoder}\n" if encoder else "")
-
-
-def event(text: str) -> str:
-    return "[[event]]\n" + text + "\n"
 
 
 def level_clock(run: SceneRun, pin: str, number: int = -1) -> int:
@@ -222,6 +193,23 @@ def test_home(tmp_path: Path) -> None:
     assert run.machine[0] == offset - 7 + 30 + 2000
 
 
+def test_home_of_several_axes(tmp_path: Path) -> None:
+    """One line, one after the other, each at its own switch; a stop at the second one ends the task."""
+    switches = [f'role = "home"\naxis = {axis}\nat = {at}' for axis, at in ((0, 100), (1, -300))]
+    text = machine('filter = "20us"\nstop_time = "4ms"\nstart = [500, 0]', *switches)
+    home = HOME.replace("-900, 0", "-900, -700")
+    run = play(tmp_path, text + home + MOVE)
+    assert run.problems() == [] and [section.kind for section in run.sections] == ["home", "moves"]
+    assert [stop.cause for stop in run.stops] == [Cause.TRIGGER] * 4
+    offsets = [run.machine[axis] - run.positions[axis] for axis in (0, 1)]
+    assert abs(offsets[0] - (100 + 7)) <= 1 and abs(offsets[1] - (-300 + 7)) <= 1
+    first, second = run.steps(0)[0], run.steps(1)[0]
+    begins = run.sections[1].begin - run.start
+    assert first[first < begins].max() < second.min()
+    missed = play(tmp_path, text + home.replace("-700", "-200") + MOVE)
+    assert missed.problems() == ["move 1: SWITCH_MISSED"] and len(missed.sections) == 1
+
+
 def test_a_switch_that_is_missed(tmp_path: Path) -> None:
     text = machine('start = [5000, 0]\nfilter = "20us"', 'role = "home"\nat = 100')
     run = play(tmp_path, text + HOME + MOVE)
@@ -303,7 +291,7 @@ def test_files_of_the_command(tmp_path: Path) -> None:
     assert cli.main(["run", str(file), "--waves", "--out", str(out)]) == 2
 
 
-@pytest.mark.parametrize("name", ["homing", "probing", "hold_and_estop", "closed_loop"])
+@pytest.mark.parametrize("name", ["homing", "probing", "hold_and_estop", "closed_loop", "laser", "threading"])
 def test_examples(name: str) -> None:
     """On the model; `make demo` compares them with the Verilated core."""
     file = read_channels(paths.examples / f"{name}.toml")
@@ -312,7 +300,8 @@ def test_examples(name: str) -> None:
     assert run.problems() == []
     summary: dict[str, Any] = summarize_scene(run, "model")
     causes = [stop["cause"] for stop in summary["stops"]]
-    assert causes[-1] == {"hold_and_estop": "ESTOP", "closed_loop": "FOLLOWING_ERROR"}.get(name, "TRIGGER")
+    ends = {"hold_and_estop": "ESTOP", "closed_loop": "FOLLOWING_ERROR", "laser": None, "threading": None}
+    assert (causes or [None])[-1] == ends.get(name, "TRIGGER")
 
 
 INPUT = "[[machine.input]]\n"
@@ -362,7 +351,8 @@ BAD = [
     (MOVE + event('do = "hold"\ntime = 1') * (most("event") + 1), "there are 65 events, at most 64"),
     ("event = 3\n" + MOVE, "event must be an array of tables"),
     (HOME, "move 1: home of axis 0 is not connected"),
-    (INPUT + 'role = "home"\n' + HOME.replace("-900, 0", "5, 5"), "move 1: steps of home must move one axis"),
+    (INPUT + 'role = "home"\n' + HOME.replace("-900, 0", "5, 5"), "move 1: home of axis 1 is not connected"),
+    (INPUT + 'role = "home"\n' + HOME.replace("-900, 0", "0, 0"), "move 1: steps of home must move an axis"),
     (INPUT + 'role = "home"\n' + HOME.replace("back_off = 40", ""), "move 1: back_off is missing"),
     (MOVE + "channel = 1\n" + event('do = "hold"\ntime = 1'), "are for files of channel 0 only"),
 ]

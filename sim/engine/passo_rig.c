@@ -20,6 +20,18 @@ static void record(
 	rig->log[rig->length++] = (struct passo_rig_change){clock, input, rig_levels(inputs, input)};
 }
 
+/* One entry for a count, and one where its index changes. */
+static void record_spindle(
+    struct passo_rig *rig, unsigned number, uint64_t clock, const struct passo_inputs *inputs)
+{
+	const uint64_t turn = rig->config.wheel[number].per_turn;
+	const uint64_t count = (uint64_t)rig->wheel[number].count;
+
+	record(rig, clock, (count & 1u) != 0u ? PASSO_INPUT_ENCODER_A : PASSO_INPUT_ENCODER_B, inputs);
+	if (count % turn <= 1u)
+		record(rig, clock, PASSO_INPUT_ENCODER_INDEX, inputs);
+}
+
 static void happen(struct passo_rig *rig, unsigned number, uint64_t clock)
 {
 	const struct passo_rig_event *event = &rig->config.event[number];
@@ -137,7 +149,7 @@ uint64_t passo_rig_next(const struct passo_rig *rig, uint64_t clock)
 		next = sooner(next, clock, rig->wire[i].release);
 	}
 	for (unsigned i = 0; i < rig->config.wheels; i++)
-		if (rig->wheel[i].count != rig_counts(rig, i))
+		if (rig->config.wheel[i].interval != 0u || rig->wheel[i].count != rig_counts(rig, i))
 			next = sooner(next, clock, rig->wheel[i].next);
 	for (unsigned i = 0; i < rig->config.events; i++)
 		if (rig->started != UINT64_MAX && is_pending(rig, i, PASSO_RIG_TIME))
@@ -176,7 +188,10 @@ void passo_rig_follow(
 			record(rig, clock, fitted->input, inputs);
 	}
 	for (unsigned i = 0; i < rig->config.wheels; i++)
-		rig_turn(rig, i, clock, inputs);
+		if (rig->config.wheel[i].interval == 0u)
+			rig_turn(rig, i, clock, inputs);
+		else if (rig_spin(rig, i, clock, inputs))
+			record_spindle(rig, i, clock, inputs);
 }
 
 bool passo_rig_calls(struct passo_rig *rig)

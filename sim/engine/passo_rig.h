@@ -36,11 +36,15 @@ struct passo_rig_wire {
 	uint64_t every, glitch; /* noise: mean clocks from one glitch to the next, 0: none; their length */
 };
 
-/* An encoder at an axis. Its counts come one by one, at least `gap` clocks apart. */
+/* An encoder at an axis. Its counts come one by one, at least `gap` clocks apart. With an interval it is that
+ * of a spindle, which turns by itself and has an index. */
 struct passo_rig_wheel {
 	uint8_t axis;
 	int64_t ratio; /* counts per step, 2^16 */
 	uint64_t gap;
+	uint64_t interval; /* of a spindle: clocks per count at its mean speed, 2^16 */
+	uint32_t wander;   /* by which its speed wanders either way, 2^16 of the mean */
+	uint32_t per_turn; /* counts from index to index */
 };
 
 enum passo_rig_when { PASSO_RIG_TIME, PASSO_RIG_POSITION, PASSO_RIG_RISING, PASSO_RIG_FALLING };
@@ -95,8 +99,8 @@ bool passo_rig_calls(struct passo_rig *rig);
 
 const struct passo_rig_moment *passo_rig_moment(const struct passo_rig *rig, uint32_t event);
 int64_t passo_rig_position(const struct passo_rig *rig, uint32_t axis);
-/* Moves up to `capacity` of the oldest changes of inputs, but encoders, to `changes`; returns their number.
- */
+/* Moves up to `capacity` of the oldest changes of inputs to `changes`, of encoders only those of spindles;
+ * returns their number. */
 size_t passo_rig_drain(struct passo_rig *rig, struct passo_rig_change *changes, size_t capacity);
 
 #ifdef __cplusplus

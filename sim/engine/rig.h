@@ -19,6 +19,10 @@ struct wire {
 struct wheel {
 	int64_t slip, count;
 	uint64_t next; /* clock after which the next count is possible */
+	/* of a spindle */
+	uint64_t due;              /* the same, 2^16 */
+	int64_t from, to;          /* speeds between which it changes, 2^16 of the mean */
+	uint32_t length, progress; /* counts of the change, and made */
 };
 
 struct passo_rig {
@@ -48,5 +52,7 @@ void rig_disturb(struct passo_rig *rig, unsigned number, bool changed, uint64_t 
 int64_t rig_counts(const struct passo_rig *rig, unsigned number);
 /* Makes a count if one is due. */
 void rig_turn(struct passo_rig *rig, unsigned number, uint64_t clock, struct passo_inputs *inputs);
+/* The same of a spindle; whether it has. */
+bool rig_spin(struct passo_rig *rig, unsigned number, uint64_t clock, struct passo_inputs *inputs);
 
 #endif

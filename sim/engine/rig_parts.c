@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
- * Parts of the simulated machine: switches with their noise, encoders.
+ * Parts of the simulated machine: switches with their noise, encoders, spindles.
  */
 #include "rig.h"
 
 #define CHATTER 8u /* changes of a bouncing contact, about */
+#define SPEED_ONE (INT64_C(1) << 16)
 
 uint64_t rig_random(struct passo_rig *rig, uint64_t limit)
 {
@@ -93,17 +94,57 @@ int64_t rig_counts(const struct passo_rig *rig, unsigned number)
 	return (way >= 0 ? way : way - (one - 1)) / one + rig->wheel[number].slip;
 }
 
+/* A leads: 00 10 11 01 */
+static void show(const struct passo_rig *rig, unsigned number, struct passo_inputs *inputs)
+{
+	const uint8_t axis = rig->config.wheel[number].axis;
+	const int64_t count = rig->wheel[number].count;
+
+	rig_set(inputs, PASSO_INPUT_ENCODER_A, axis, ((count + 1) & 2) != 0);
+	rig_set(inputs, PASSO_INPUT_ENCODER_B, axis, (count & 2) != 0);
+}
+
 void rig_turn(struct passo_rig *rig, unsigned number, uint64_t clock, struct passo_inputs *inputs)
 {
-	const struct passo_rig_wheel *fitted = &rig->config.wheel[number];
 	struct wheel *wheel = &rig->wheel[number];
 	const int64_t wanted = rig_counts(rig, number);
 
 	if (wheel->count == wanted || clock < wheel->next)
 		return;
 	wheel->count += wanted > wheel->count ? 1 : -1;
-	wheel->next = clock + fitted->gap;
-	/* A leads: 00 10 11 01 */
-	rig_set(inputs, PASSO_INPUT_ENCODER_A, fitted->axis, ((wheel->count + 1) & 2) != 0);
-	rig_set(inputs, PASSO_INPUT_ENCODER_B, fitted->axis, (wheel->count & 2) != 0);
+	wheel->next = clock + rig->config.wheel[number].gap;
+	show(rig, number, inputs);
+}
+
+/* Clocks to the next count, 2^16: the speed goes from one random value to the next in a part of a turn. */
+static uint64_t interval(struct passo_rig *rig, unsigned number)
+{
+	const struct passo_rig_wheel *fitted = &rig->config.wheel[number];
+	struct wheel *wheel = &rig->wheel[number];
+
+	if (wheel->progress == wheel->length) {
+		wheel->from = wheel->length == 0u ? SPEED_ONE : wheel->to;
+		wheel->to =
+		    SPEED_ONE - fitted->wander + (int64_t)rig_random(rig, 2u * (uint64_t)fitted->wander + 1u);
+		wheel->length = 1u + (uint32_t)rig_random(rig, fitted->per_turn);
+		wheel->progress = 0;
+	}
+	wheel->progress++;
+	return (fitted->interval << 16)
+	     / (uint64_t)(wheel->from + (wheel->to - wheel->from) * wheel->progress / wheel->length);
+}
+
+bool rig_spin(struct passo_rig *rig, unsigned number, uint64_t clock, struct passo_inputs *inputs)
+{
+	const struct passo_rig_wheel *fitted = &rig->config.wheel[number];
+	struct wheel *wheel = &rig->wheel[number];
+
+	if (clock < wheel->next)
+		return false;
+	wheel->count++;
+	wheel->due += interval(rig, number);
+	wheel->next = wheel->due >> 16;
+	show(rig, number, inputs);
+	rig_set(inputs, PASSO_INPUT_ENCODER_INDEX, fitted->axis, wheel->count % fitted->per_turn == 0);
+	return true;
 }

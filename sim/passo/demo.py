@@ -12,9 +12,10 @@ from passo.plan import plan_channels
 from passo.plot import plot_file, plot_overview
 from passo.plot_scene import plot_scene
 from passo.report import summarize_channels, write_json, write_pulses
-from passo.report_page import write_page
+from passo.report_page import write_page, write_scene_page
 from passo.run import Run, execute_channels, open_engine, parameters_of
-from passo.scene import Scene, scene_parameters
+from passo.scene import Scene
+from passo.scene_plan import scene_parameters
 from passo.scene_report import summarize_scene, write_scene_pulses
 from passo.toolchain import paths, short
 
@@ -24,7 +25,8 @@ EXAMPLES = (
     *("exact_time", "turn", "sigmoid_alpha", "seven_phases", "straight", "user_shape", "four_motors"),
 )
 LONG = ("four_motors", "there_and_back", "sigmoid", "turn")  # to simulate; these come first
-MACHINES = ("homing", "probing", "hold_and_estop", "closed_loop")  # examples with a machine or events
+# examples with a machine or events
+MACHINES = ("homing", "probing", "hold_and_estop", "closed_loop", "laser", "threading")
 
 
 def run_example(name: str) -> tuple[list[Run], dict[str, Any]]:
@@ -54,6 +56,7 @@ def run_machine(name: str) -> dict[str, Any]:
     write_scene_pulses(run, out / "pulses.csv")
     write_json(summary, out / "summary.json")
     plot_scene(run, out / "motion.png")
+    write_scene_page(file, run, "both", out / "report.html")
     return summary
 
 

@@ -29,7 +29,7 @@ from passo.moves import (
     MoveFileError,
     PinTiming,
 )
-from passo.setup_file import read_setup
+from passo.setup_file import OUTPUT, read_setup
 from passo.shape import ShapeError, read_table
 from passo.values import BadValueError, Written, meant, shown
 
@@ -148,6 +148,7 @@ def read_pins(table: Table, clock_hz: int, others: tuple[str, ...] = ()) -> PinT
 
 
 def _move(table: Table, folder: Path, clock_hz: int) -> Move:
+    table = {key: value for key, value in table.items() if key != OUTPUT}
     form = _form(table)
     values = {key.name: read_key(table, key, clock_hz) for key in form.keys}
     check_rules(form, table)

@@ -177,6 +177,20 @@ TASKS = {
             Key("channel", "channel", None, default=0),
         ),
     ),
+    "thread": Form(
+        "thread",
+        (
+            Key("steps", "steps", "steps"),
+            Key("turns", "number", "turns", factor=UNIT_Q32),
+            Key("wait_index", "flag", None, default=True),
+            Key("top_rpm", "number", "top_rpm", factor=UNIT_Q32, optional=True),
+            Key("channel", "channel", None, default=0),
+        ),
+        (
+            Rule("above_zero", "turns", "turns"),
+            Rule("above_zero", "top_rpm", "top_rpm"),
+        ),
+    ),
 }
 
 EVENTS = {
@@ -347,6 +361,8 @@ MACHINES = {
             Key("start", "places", None, optional=True),
             Key("steps_per_mm", "scales", None, optional=True),
             Key("seed", "whole", "seed", default=1, low=0, high=WHOLE_MAX),
+            Key("pwm", "number", "pwm", factor=UNIT_Q32, default=20000),
+            Key("lag", "time", "lag", factor="clock_hz", default=0),
         ),
     ),
     "input": Form(
@@ -385,6 +401,40 @@ MACHINES = {
             Rule("above_zero", "counts_per_step", "counts_per_step"),
             Rule("above_zero", "limit", "limit"),
         ),
+    ),
+    "output": Form(
+        "output",
+        (
+            Key("levels", "whole", "levels", default=0, low=0, high=255),
+            Key("power", "number", "power", factor=UNIT_Q32, default=0),
+            Key("speed", "number", "speed", factor=UNIT_Q32, optional=True),
+            Key("raster", "values", None, optional=True),
+            Key("pitch", "whole", "pitch", default=1, low=1, high=SUBSTEPS_MAX),
+        ),
+        (
+            Rule("excludes", "power", "raster"),
+            Rule("needs", "speed", "power"),
+            Rule("above_zero", "speed", "speed"),
+            Rule("needs", "pitch", "raster"),
+        ),
+    ),
+    "compare": Form(
+        "compare",
+        (
+            Key("axis", "axis", "axis", default=0),
+            Key("position", "place", None),
+            Key("interval", "whole", "interval", low=-SIGNED_MAX, high=SIGNED_MAX),
+            Key("width", "time", "width", factor="clock_hz"),
+        ),
+    ),
+    "spindle": Form(
+        "spindle",
+        (
+            Key("counts_per_turn", "whole", "counts_per_turn", low=4, high=65535),
+            Key("rpm", "number", "rpm", factor=UNIT_Q32),
+            Key("wander", "whole", "wander", default=0, low=0, high=90),
+        ),
+        (Rule("above_zero", "rpm", "rpm"),),
     ),
 }
 
@@ -528,7 +578,7 @@ class MoveStraight:
 
 @dataclass(frozen=True)
 class MoveHome:
-    """One axis to its switch, off it, and slowly to it again; the edge becomes the position."""
+    """Each axis to its switch, off it, and slowly to it again; the edge becomes the position."""
 
     steps: tuple[int, ...]
     switch: str
@@ -555,6 +605,19 @@ class MoveProbe:
     channel: int = 0
 
     form: ClassVar[Form] = TASKS["probe"]
+
+
+@dataclass(frozen=True)
+class MoveThread:
+    """One pass of a thread: a straight line whose clock is the spindle."""
+
+    steps: tuple[int, ...]
+    turns: Fraction
+    wait_index: bool
+    top_rpm: Fraction | None
+    channel: int = 0
+
+    form: ClassVar[Form] = TASKS["thread"]
 
 
 @dataclass(frozen=True)
@@ -695,6 +758,8 @@ class MachineSettings:
     start: tuple[int, ...] | None
     steps_per_mm: tuple[Fraction, ...] | None
     seed: int
+    pwm: Fraction
+    lag: Fraction
 
     form: ClassVar[Form] = MACHINES["settings"]
 
@@ -729,3 +794,39 @@ class MachineEncoder:
     filter: int
 
     form: ClassVar[Form] = MACHINES["encoder"]
+
+
+@dataclass(frozen=True)
+class MachineOutput:
+    """The outputs during a move."""
+
+    levels: int
+    power: Fraction
+    speed: Fraction | None
+    raster: tuple[int, ...] | None
+    pitch: int
+
+    form: ClassVar[Form] = MACHINES["output"]
+
+
+@dataclass(frozen=True)
+class MachineCompare:
+    """A pulse with the step onto each of some points."""
+
+    axis: int
+    position: Place
+    interval: int
+    width: Fraction
+
+    form: ClassVar[Form] = MACHINES["compare"]
+
+
+@dataclass(frozen=True)
+class MachineSpindle:
+    """A spindle with an encoder, at the inputs of the first axis that the moves do not have."""
+
+    counts_per_turn: int
+    rpm: Fraction
+    wander: int
+
+    form: ClassVar[Form] = MACHINES["spindle"]

@@ -25,6 +25,7 @@ from passo.moves import AXES_MAX, CHANNELS_MAX
 from passo.values import NUMBER, BadValueError, check_number, meant, parse_time, shown
 
 Table = dict[str, Any]
+BYTE_MAX = 255
 
 
 def check_known(table: Table, keys: tuple[str, ...]) -> None:
@@ -194,6 +195,14 @@ def read_places(table: Table, key: str) -> tuple[int, ...]:
     return tuple(read_integer({key: item}, key, -SIGNED_MAX, SIGNED_MAX) for item in value)
 
 
+def read_values(table: Table, key: str) -> tuple[int, ...]:
+    """Bytes, one at least."""
+    value = _get(table, key)
+    if not isinstance(value, list) or not value:
+        raise BadValueError(f"{key} must be a list of whole numbers, 0 to {BYTE_MAX}")
+    return tuple(read_integer({key: item}, key, 0, BYTE_MAX) for item in value)
+
+
 def read_scales(table: Table, key: str) -> tuple[Fraction, ...]:
     """One number for all axes, or a list."""
     value = _get(table, key)
@@ -226,6 +235,7 @@ READERS: dict[str, Callable[[Table, Key, int], Any]] = {
     "flag": lambda table, key, _: read_flag(table, key.name),
     "place": lambda table, key, _: read_place(table, key.name),
     "places": lambda table, key, _: read_places(table, key.name),
+    "values": lambda table, key, _: read_values(table, key.name),
     "scales": lambda table, key, _: read_scales(table, key.name),
 }
 

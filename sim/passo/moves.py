@@ -19,6 +19,7 @@ from passo.move_forms import (
     MoveJerk,
     MoveProbe,
     MoveSigmoid,
+    MoveThread,
 )
 from passo.registers import ADDRESS_CHANNEL_COUNT, AXIS_STEP_TIMING_STEP_HIGH_BITS, CHANNEL_AXIS_COUNT
 from passo.setup import Setup
@@ -81,7 +82,7 @@ Move = (
     | MoveJerk
     | MoveStraight
 )
-Task = MoveHome | MoveProbe
+Task = MoveHome | MoveProbe | MoveThread
 
 # By name of the form.
 MOVES: dict[str, type[Move]] = {move.form.name: move for move in get_args(Move)}

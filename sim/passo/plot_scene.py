@@ -8,7 +8,6 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from passo.engine import NUMBERS
-from passo.move_forms import EventInput, EventOverride, EventSlip
 from passo.plot import STYLE, save
 from passo.registers import Cause
 from passo.scene_panels import (
@@ -18,10 +17,12 @@ from passo.scene_panels import (
     lanes_of,
     plot_scene_encoder,
     plot_scene_position,
+    plot_scene_power,
     plot_scene_speed,
     plot_signals,
 )
-from passo.scene_run import Happened, SceneRun
+from passo.scene_report import said
+from passo.scene_run import SceneRun
 
 EVENT_COLOR = "#6639ba"
 BADGE = {"boxstyle": "circle,pad=0.25", "facecolor": EVENT_COLOR, "edgecolor": "white", "linewidth": 1}
@@ -33,6 +34,8 @@ def plot_scene(run: SceneRun, path: Path) -> None:
     heights = {"speed": 1.5, "position": 1.3}
     if run.setup.encoders:
         heights["encoder"] = 1.0
+    if run.setup.has_outputs:
+        heights["power"] = 0.8
     lanes = lanes_of(run)
     heights["lanes"] = 0.3 + 0.24 * len(lanes)
     zooms = _zooms(run)
@@ -51,6 +54,8 @@ def plot_scene(run: SceneRun, path: Path) -> None:
         plot_scene_position(axes["position"], run)
         if run.setup.encoders:
             plot_scene_encoder(axes["encoder"], run)
+        if run.setup.has_outputs:
+            plot_scene_power(axes["power"], run)
         end = run.total_clocks * 1.02
         plot_signals(axes["lanes"], run, lanes, -0.01 * run.total_clocks, end, 1 / run.file.clock_hz)
         axes["lanes"].set_title("Inputs and drives")
@@ -93,25 +98,13 @@ def _listing(run: SceneRun) -> list[tuple[str, str]]:
     for happened in run.events:
         if happened.clock is not None:
             clock = happened.clock - run.start
-            found.append((clock, str(happened.number), f"{clock / hz:.6f} s  {_said(happened)}"))
+            found.append((clock, str(happened.number), f"{clock / hz:.6f} s  {said(happened)}"))
     for stop in run.stops:
         if not run.sought(stop):
             clock = stop.clock - run.start
             where = ", ".join(map(str, stop.positions))
             found.append((clock, "■", f"{clock / hz:.6f} s  stop {stop.cause.name} at {where}"))
     return [(mark, text) for _, mark, text in sorted(found)]
-
-
-def _said(happened: Happened) -> str:
-    event = happened.event
-    said = event.form.name
-    if isinstance(event, EventInput):
-        said = f"{event.input} of axis {event.axis} {'active' if event.active else 'inactive'}"
-    if isinstance(event, EventOverride):
-        said += f" {event.percent} %"
-    if isinstance(event, EventSlip):
-        said += f" of axis {event.axis} by {event.counts} counts"
-    return f"{said} at {', '.join(map(str, happened.positions))}"
 
 
 # ------------------------------------------------------------------------------------------------ marks ----

@@ -29,13 +29,8 @@ def page_data(channels: Channels, runs: list[Run], engine: str) -> tuple[dict[st
     for place, run in enumerate(runs):
         units = units_of(run)
         for axis in range(run.file.axes):
-            rises, falls = _edges(run, "step", axis)
-            turns = np.sort(np.concatenate(_edges(run, "dir", axis)))
-            streams += [
-                _varints(np.diff(np.diff(rises, prepend=0), prepend=0)),
-                _varints(np.diff(falls - rises[: len(falls)], prepend=0)),
-                _varints(np.diff(turns, prepend=0)),
-            ]
+            rises, falls, turns = edges_of(run.pins, axis, run.start - run.late)
+            streams += packed_edges(rises, falls, turns)
             axes.append(
                 {
                     "run": place,
@@ -115,15 +110,26 @@ def _events(runs: list[Run], several: bool) -> list[dict[str, Any]]:
     return sorted(found, key=lambda event: event["clock"])
 
 
-def _edges(run: Run, signal: str, axis: int) -> tuple[np.ndarray, np.ndarray]:
-    """Clocks of the rising and of the falling edges of a pin, which is low at first."""
-    level = (run.pins[signal] >> axis & 1).astype(np.int8)
-    change = np.diff(level, prepend=np.int8(0))
-    clocks = run.pins["clock"].astype(np.int64) - run.start + run.late
-    return clocks[change > 0], clocks[change < 0]
+def edges_of(pins: np.ndarray, axis: int, start: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Clocks since `start` of the rising and falling edges of STEP, and of all of DIR; low at first."""
+    clocks = pins["clock"].astype(np.int64) - start
+    step, direction = (
+        np.diff((pins[signal] >> np.uint64(axis) & np.uint64(1)).astype(np.int8), prepend=np.int8(0))
+        for signal in ("step", "dir")
+    )
+    return clocks[step > 0], clocks[step < 0], clocks[direction != 0]
 
 
-def _varints(numbers: np.ndarray) -> np.ndarray:
+def packed_edges(rises: np.ndarray, falls: np.ndarray, turns: np.ndarray) -> list[np.ndarray]:
+    """The streams of an axis."""
+    return [
+        varints(np.diff(np.diff(rises, prepend=0), prepend=0)),
+        varints(np.diff(falls - rises[: len(falls)], prepend=0)),
+        varints(np.diff(turns, prepend=0)),
+    ]
+
+
+def varints(numbers: np.ndarray) -> np.ndarray:
     """Signed numbers in zigzag, 7 bits in a byte, the lowest first; bit 7: more follow."""
     rest = np.where(numbers < 0, -2 * numbers - 1, 2 * numbers).astype(np.uint64)
     lengths = np.ones(len(rest), np.int64)

@@ -4,10 +4,13 @@
 import html
 import json
 from pathlib import Path
+from typing import Any
 
 from passo.moves import Channels
 from passo.report_data import page_data
 from passo.run import Run
+from passo.scene_page import scene_data
+from passo.scene_run import SceneRun
 
 FOLDER = Path(__file__).parent / "page"
 UPLOT = ("uplot/LICENSE", "uplot/uPlot.min.css", "uplot/uPlot.iife.min.js")
@@ -18,6 +21,7 @@ SCRIPTS = (
     "time.js",
     "charts.js",
     "pins.js",
+    "machine.js",
     "side.js",
     "tables.js",
     "page.js",
@@ -26,15 +30,24 @@ SCRIPTS = (
 
 def write_page(channels: Channels, runs: list[Run], engine: str, path: Path) -> None:
     """Write the report of a run."""
-    facts, edges = page_data(channels, runs, engine)
+    _write(channels.name, page_data(channels, runs, engine), path)
+
+
+def write_scene_page(channels: Channels, run: SceneRun, engine: str, path: Path) -> None:
+    """The same of a move file with a machine."""
+    _write(channels.name, scene_data(channels, run, engine), path)
+
+
+def _write(name: str, data: tuple[dict[str, Any], str], path: Path) -> None:
+    facts, edges = data
     # `</` would end the element that holds it.
-    data = json.dumps(facts, allow_nan=False, separators=(",", ":")).replace("</", "<\\/")
+    text = json.dumps(facts, allow_nan=False, separators=(",", ":")).replace("</", "<\\/")
     body = (
-        f'<script type="application/json" id="facts">{data}</script>\n'
+        f'<script type="application/json" id="facts">{text}</script>\n'
         f'<script type="text/plain" id="edges">{edges}</script>\n'
         "<script>openReport();</script>"
     )
-    path.write_text(page(channels.name, body))
+    path.write_text(page(name, body))
 
 
 def page(title: str, body: str, scripts: tuple[str, ...] = SCRIPTS) -> str:

@@ -52,7 +52,14 @@ def config_of(setup: Setup, axes: int, pins: int, clock_hz: int) -> Any:
     for number, encoder in enumerate(setup.encoders):
         ratio = round(encoder.counts_per_step * RATIO_ONE)
         c.wheel[number] = {"axis": encoder.axis, "ratio": ratio, "gap": gap_of(encoder.filter)}
-    c.wheels = len(setup.encoders)
+    if spindle := setup.spindle:
+        c.wheel[len(setup.encoders)] = {
+            "axis": setup.spindle_axis,
+            "interval": round(clock_hz * 60 * RATIO_ONE / (spindle.rpm * spindle.counts_per_turn)),
+            "wander": spindle.wander * RATIO_ONE // 100,
+            "per_turn": spindle.counts_per_turn,
+        }
+    c.wheels = len(setup.encoders) + bool(setup.spindle)
     for number, event in enumerate(setup.events):
         c.event[number] = _when(event, setup, clock_hz) | _what(event, setup, estop, clock_hz)
     c.events = len(setup.events)

@@ -13,7 +13,8 @@ from passo.moves import Channels
 from passo.plan import Plan, plan_channels
 from passo.report import problems, summarize_channels, total_clocks, write_json, write_pulses
 from passo.run import Run, execute_channels, open_engine, parameters_of
-from passo.scene import Scene, plan_sections, scene_parameters
+from passo.scene import Scene
+from passo.scene_plan import plan_sections, scene_parameters
 from passo.scene_report import summarize_scene, write_scene_pulses
 from passo.toolchain import paths
 from passo.waves import FILES, Window, read_window, record, write_view
@@ -35,10 +36,9 @@ def run_file(moves: Path, engine: str, out: Path | None, wanted: Wanted) -> bool
     window = _read_window(wanted.waves, engine)
     file = read_channels(moves)
     if file.setup:
-        if window or wanted.report:
-            option = "--waves" if window else "--report"
-            raise BadInputError(f"{option} is for files without a machine or events")
-        return _run_scene(file, engine, out or paths.results / "run" / file.name, wanted.plot)
+        if window:
+            raise BadInputError("--waves is for files without a machine or events")
+        return _run_scene(file, engine, out or paths.results / "run" / file.name, wanted)
     parameters = parameters_of(file)
     plans = plan_channels(file, parameters)
     if window:
@@ -70,10 +70,10 @@ def run_file(moves: Path, engine: str, out: Path | None, wanted: Wanted) -> bool
     return _conclude(file, runs, out, window, wanted)
 
 
-def _run_scene(file: Channels, engine: str, out: Path, plot: bool) -> bool:
+def _run_scene(file: Channels, engine: str, out: Path, wanted: Wanted) -> bool:
     """The same for a file with a machine or events."""
     parameters = scene_parameters(file)
-    plan_sections(file.files[0], parameters)  # says what is wrong before anything is built
+    plan_sections(file.files[0], file.setup, parameters)  # says what is wrong before anything is built
     with open_engine(engine, parameters, file.clock_hz) as core:
         _clear(out)
         try:
@@ -83,10 +83,14 @@ def _run_scene(file: Channels, engine: str, out: Path, plot: bool) -> bool:
             raise
     write_scene_pulses(run, out / PULSES)
     write_json(summarize_scene(run, engine), out / SUMMARY)
-    if plot:
+    if wanted.plot:
         from passo.plot_scene import plot_scene
 
         plot_scene(run, out / PICTURE)
+    if wanted.report:
+        from passo.report_page import write_scene_page
+
+        write_scene_page(file, run, engine, out / PAGE)
     for problem in run.problems():
         print(f"{file.path}: {problem}", file=sys.stderr)
     edges = "" if run.matched_edges is None else f", {run.matched_edges} edges agree"
@@ -97,8 +101,8 @@ def _run_scene(file: Channels, engine: str, out: Path, plot: bool) -> bool:
             at = ", ".join(map(str, stop.positions))
             print(f"stop {stop.cause.name} at {at}, clock {stop.clock - run.start}")
     print(f"results: {out / PULSES}, {out / SUMMARY}")
-    if plot:
-        print(f"open: {out / PICTURE}")
+    for name in [PICTURE] * wanted.plot + [PAGE] * wanted.report:
+        print(f"open: {out / name}")
     return not run.problems()
 
 

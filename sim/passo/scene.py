@@ -7,59 +7,25 @@ from typing import Any
 
 import numpy as np
 
-from passo.build import Parameters
 from passo.driver import DriverError, Source
-from passo.engine import EVENT, Engine, PairEngine
+from passo.engine import EVENT, NUMBERS, Engine, PairEngine
 from passo.move_forms import EventArm, EventOverride
-from passo.moves import Channels, MoveFile, MoveFileError, Task
+from passo.moves import Channels, MoveFileError
 from passo.native import ffi
-from passo.plan import check_tables, plan_moves
 from passo.registers import Cause, State, TriggerAction, TriggerSource
 from passo.rig import Rig
 from passo.run import CHUNK, RunError
 from passo.scene_driver import SceneDriver
+from passo.scene_plan import Raster, plan_sections
 from passo.scene_run import SAMPLE, Happened, Latch, SceneRun, Section, Stop
 from passo.setup import Event
 
 POLLS_PER_SECOND = 1000
 POLL_CLOCKS_MIN = 2000  # some times the length of a frame
-AXES_OF_CORES = (2, 4, 8)
 SETTLE_CLOCKS = 256
 COMMANDS = ("hold", "resume", "override", "stop", "abort", "arm")  # events that the host carries out
+SPINDLE = [NUMBERS[f"encoder_{line}"] for line in ("a", "b", "index")]  # turns for ever
 GIVE_UP_SECONDS = 2  # without a step, a change of an input or an event
-
-
-def scene_parameters(channels: Channels) -> Parameters:
-    """Parameters of the core used for a file with a machine."""
-    axes = next(n for n in AXES_OF_CORES if n >= channels.files[0].axes)
-    return Parameters(axes=axes, inputs=1, encoders=1)
-
-
-def plan_sections(file: MoveFile, parameters: Parameters) -> list[Section]:
-    """The moves of a file as sections; raises MoveFileError."""
-    sections: list[Section] = []
-    for index, move in enumerate(file.moves):
-        if isinstance(move, Task) or not sections or sections[-1].kind != "moves":
-            sections.append(Section([], [], []))
-        sections[-1].numbers.append(file.number(index))
-        sections[-1].moves.append(move)
-    for section in sections:
-        if section.kind == "moves":
-            own = MoveFile(
-                file.path,
-                file.clock_hz,
-                file.pins,
-                tuple(section.moves),
-                file.channel,
-                tuple(section.numbers),
-            )
-            section.plans = plan_moves(own, parameters)
-    numbered = [
-        pair for section in sections if section.plans
-        for pair in zip(section.numbers, section.plans, strict=True)
-    ]  # fmt: skip
-    check_tables(numbered, file.path)
-    return sections
 
 
 class Scene:
@@ -73,7 +39,7 @@ class Scene:
         self.setup = channels.setup
         self.clock_hz, self.axes = channels.clock_hz, self.file.axes
         self.poll_clocks = max(self.clock_hz // POLLS_PER_SECOND, POLL_CLOCKS_MIN)
-        self.sections = plan_sections(self.file, engine.parameters)
+        self.sections = plan_sections(self.file, self.setup, engine.parameters)
         self.driver = SceneDriver(engine, self.clock_hz, engine.parameters)
         self.rig = Rig(engine, self.setup, self.axes)
         self.progress = progress or (lambda _: None)
@@ -86,6 +52,7 @@ class Scene:
         self.answers: dict[int, int] = {}
         self.armed: int | None = None  # event
         self.source: Source | None = None
+        self.raster: Raster | None = None
         self.is_stopped = False
         self.active_at = 0  # clock of the last change of anything
 
@@ -133,7 +100,7 @@ class Scene:
         self._advance(3 * round(self.setup.settings.filter * self.clock_hz) + SETTLE_CLOCKS)
         if driver.snapshot().state == State.STOPPED:
             driver.attempt("clear")
-        driver.configure(self.setup, self.file, [plan for section in self.sections for plan in section.plans])
+        driver.configure(self.setup, self.file, self.sections)
 
     def _section(self, section: Section) -> None:
         section.begin = self.engine.clock
@@ -174,17 +141,21 @@ class Scene:
         """Poll the driver, which clears a stop that home or probe expects."""
         self._look()
         self.driver.poll()
+        if self.raster:
+            self.raster.feed()
         self._serve()
 
     def _begin(self, section: Section) -> None:
-        self.source = None
+        self.source, self.raster = None, None
         move = section.moves[0]
         if section.plans:
+            self.raster = Raster(section, self.driver)
+            self.raster.feed()
             ramps = [ramp for plan in section.plans for ramp in plan.ramps]
             self.source = Source([plan.line for plan in section.plans], ramps)
             self.driver.stream(self.source)
         else:
-            self.driver.begin(move)
+            self.driver.begin(move, self.setup)
 
     def _patience(self) -> int:
         """Clocks until the queues should be refilled: half of their contents."""
@@ -210,7 +181,7 @@ class Scene:
         pins, inputs = self.engine.drain(), self.rig.changes()
         self.pins.append(pins)
         self.inputs.append(inputs)
-        if len(pins) or len(inputs):
+        if len(pins) or not np.isin(inputs["input"], SPINDLE).all():
             self.active_at = self.engine.clock
 
     def _serve(self) -> None:
@@ -273,8 +244,6 @@ class Scene:
     def _happened(self, number: int) -> Happened:
         clock = self.rig.moment(number)
         positions = self.rig.moment_positions(number, self.axes) if clock is not None else []
-        command = self.setup.events[number].form.name in (
-            *["hold", "resume", "override", "stop", "abort", "arm"],
-        )
+        command = self.setup.events[number].form.name in COMMANDS
         answered = self.answers.get(number) if command else None
         return Happened(number + 1, self.setup.events[number], clock, positions, answered)

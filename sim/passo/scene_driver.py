@@ -1,23 +1,27 @@
 # SPDX-License-Identifier: MIT
-"""What the host of a move file with a machine says to the core: settings, home and probe, readings."""
+"""What the host of a move file with a machine says to the core: settings, tasks, readings."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from passo import registers as r
-from passo.driver import Driver
-from passo.link import error_text
-from passo.move_forms import USER_BANK, MachineEncoder, MoveHome, MoveProbe
+from passo.driver import Driver, DriverError
+from passo.link import error_name, error_text
+from passo.move_forms import USER_BANK, MachineEncoder, MoveHome, MoveProbe, MoveThread
 from passo.moves import MoveFile, Task, q32
 from passo.native import ffi, planner
-from passo.plan import Plan, table_of
+from passo.plan import table_of
 from passo.registers import TriggerSource
 from passo.rig import RATIO_ONE
 from passo.run import SLEWS_PER_SECOND, RunError
-from passo.scene_run import sampled_at
+from passo.scene_plan import reference_of
+from passo.scene_run import Section, sampled_at
 from passo.setup import Setup
+from passo.setup_outputs import counts_of, fastest
 
+SPINDLE_FILTER = 3  # clocks
 STOPS = {"none": "PASSO_FOLLOWING_SHOW", "soft": "PASSO_FOLLOWING_SOFT", "hard": "PASSO_FOLLOWING_HARD"}
 
 
@@ -31,8 +35,9 @@ class SceneDriver(Driver):
         for axis in range(axes):
             self.call("configure_inputs", axis, _input_config(setup, axis))
 
-    def configure(self, setup: Setup, file: MoveFile, plans: list[Plan]) -> None:
+    def configure(self, setup: Setup, file: MoveFile, sections: list[Section]) -> None:
         """All other settings."""
+        plans = [plan for section in sections for plan in section.plans]
         for axis in range(file.axes):
             self.configure_axis(axis, file.pins)
         probe = setup.find("probe", 0)
@@ -48,25 +53,54 @@ class SceneDriver(Driver):
             self.call("configure_encoder_filter", encoder.filter)
             self.call("configure_encoder", encoder.axis, _encoder_config(encoder))
 
-    def begin(self, move: Task) -> None:
-        """Begin a home or a probe."""
+        if setup.spindle and not setup.encoders:
+            self.call("configure_encoder_filter", SPINDLE_FILTER)
+        self._configure_outputs(setup, reference_of(setup, sections))
+
+    def _configure_outputs(self, setup: Setup, reference: int) -> None:
+        if setup.has_outputs:
+            lag = round(setup.settings.lag * self.clock_hz)
+            fields = {"pwm_hz": round(setup.settings.pwm), "reference": reference, "lag": lag}
+            self.call("configure_outputs", ffi().new("struct passo_outputs_config *", fields))
+        if compare := setup.compare:
+            fields = {
+                "axis": compare.axis,
+                "position": int(compare.position.value) - setup.start(compare.axis),
+                "interval": compare.interval,
+                "width": round(compare.width * self.clock_hz),
+            }
+            self.call("arm_compare", ffi().new("struct passo_compare_config *", fields))
+
+    def push_raster(self, values: Sequence[int]) -> int:
+        """Queue values of a raster line; return how many were taken."""
+        taken = ffi().new("size_t *")
+        error = self.attempt("push_raster", bytes(values), len(values), taken)
+        if error and error_name(error) != "STOPPED":
+            raise DriverError("push_raster", error)
+        return 0 if error else taken[0]
+
+    def begin(self, move: Task, setup: Setup) -> None:
+        """Begin a home, a probe or a thread."""
+        if isinstance(move, MoveThread):
+            self.call("thread", _thread(move, setup))
+            return
         common = {"speed": q32(move.speed), "acceleration": q32(move.acceleration)}
         if isinstance(move, MoveProbe):
             fields = {"steps": move.steps, "away": move.away, "optional": move.optional}
             self.call("probe", ffi().new("struct passo_probe *", common | fields))
         if isinstance(move, MoveHome):
-            axis = next(axis for axis, steps in enumerate(move.steps) if steps)
             fields = {
-                "axis": axis,
                 "source": TriggerSource[move.switch.upper()],
-                "distance": move.steps[axis],
                 "back_off": move.back_off,
                 "pull_off": move.pull_off,
                 "slow_speed": q32(move.slow_speed),
                 "position": move.edge_position,
             }
-            self.home = ffi().new("struct passo_home *", common | fields)  # must live until the end
-            self.call("home", self.home, 1)
+            moved = [(axis, steps) for axis, steps in enumerate(move.steps) if steps]
+            self.homes = ffi().new("struct passo_home[]", len(moved))  # must live until the end
+            for home, (axis, steps) in zip(range(len(moved)), moved, strict=True):
+                self.homes[home] = common | fields | {"axis": axis, "distance": steps}
+            self.call("home", self.homes, len(moved))
 
     def trigger(self) -> Any:
         """The `struct passo_trigger_report`."""
@@ -117,6 +151,20 @@ def _encoder_config(encoder: MachineEncoder) -> Any:
         limit, stop = round(encoder.limit * encoder.counts_per_step), STOPS[encoder.stop]
         fields |= {"limit": limit, "stop": getattr(planner(), stop)}
     return ffi().new("struct passo_encoder_config *", fields)
+
+
+def _thread(move: MoveThread, setup: Setup) -> Any:
+    """The `struct passo_thread`."""
+    assert setup.spindle
+    top_rpm = move.top_rpm if move.top_rpm is not None else fastest(setup.spindle) * 5 / 4
+    fields = {
+        "encoder": setup.spindle_axis,
+        "wait_index": move.wait_index,
+        "steps": move.steps,
+        "counts": counts_of(move, setup.spindle),
+        "top_speed": q32(top_rpm / 60 * setup.spindle.counts_per_turn),
+    }
+    return ffi().new("struct passo_thread *", fields)
 
 
 def _input_config(setup: Setup, axis: int) -> Any:

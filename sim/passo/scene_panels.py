@@ -6,11 +6,13 @@ from matplotlib.axes import Axes
 
 from passo.engine import NUMBERS
 from passo.plot_panels import COLORS, INK, WIDE
+from passo.scene_figures import energies, mean_power
 from passo.scene_report import measured_curve, planned
 from passo.scene_run import SceneRun
 
 STOP, SOUGHT, INPUT = "#c1121f", "#8c959f", "#57606a"
 REST_SECONDS = 0.02  # between two steps that belong to no speed
+OF_AXES = ("step", "dir", "enable")  # pins that have the colour of an axis
 Lane = tuple[str, str, int, bool]  # name, pin, bit, whether it is an input
 
 
@@ -101,10 +103,32 @@ def plot_scene_encoder(ax: Axes, run: SceneRun) -> None:
     ax.set_ylabel("steps")
 
 
+def plot_scene_power(ax: Axes, run: SceneRun) -> None:
+    """Share of the time that the power is on."""
+    clocks, percent = mean_power(run)
+    ax.step(clocks / run.file.clock_hz, percent, where="post", color=STOP, linewidth=1.0)
+    ax.set_ylim(bottom=0)
+    found = [
+        f"move {one['number']}: {one['least_percent']:+.2f} to {one['most_percent']:+.2f} %"
+        for one in energies(run)
+        if one["windows"]
+    ]
+    ax.set_title("Power" + (f"; energy per step less the wanted one, {'; '.join(found)}" if found else ""))
+    ax.set_ylabel("%")
+
+
 def lanes_of(run: SceneRun) -> list[Lane]:
     """The signals that are shown."""
     lanes = [("ENABLE " + str(axis), "enable", axis, False) for axis in range(run.file.axes)]
     lanes.append(("RUNNING", "running", 0, False))
+    if run.setup.has_outputs:
+        used = 0
+        for output in run.setup.outputs:
+            used |= output.levels if output else 0
+        lanes += [(f"output {bit}", "outputs", bit, False) for bit in range(8) if used >> bit & 1]
+        lanes.append(("POWER", "power", 0, False))
+    if run.setup.compare:
+        lanes.append(("COMPARE", "compare", 0, False))
     for one in run.setup.inputs:
         bit = 0 if one.role == "probe" else one.axis
         name = one.role if one.role == "probe" else f"{one.role} {one.axis}"
@@ -135,7 +159,7 @@ def plot_signals(ax: Axes, run: SceneRun, lanes: list[Lane], begin: float, end: 
     """Levels of pins, one above the other."""
     for row, lane in enumerate(lanes):
         base = -1.5 * row
-        color = INPUT if lane[3] or lane[1] == "running" else COLORS[lane[2]]
+        color = INPUT if lane[3] or lane[1] not in OF_AXES else COLORS[lane[2]]
         clocks, levels = trace_of(run, lane, begin, end)
         ax.step(clocks * scale, base + levels, where="post", color=color, linewidth=1.0)
         ax.fill_between(

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from passo.curve import Curve
-from passo.move_forms import MachineEncoder
+from passo.move_forms import EventInput, EventOverride, EventSlip, MachineEncoder
+from passo.scene_figures import energies, thread_figures
 from passo.scene_run import Happened, SceneRun, Section, Stop
 
 
@@ -95,6 +96,7 @@ def summarize_scene(run: SceneRun, engine: str) -> dict[str, Any]:
         "events": [_event(run, happened) for happened in run.events],
         "stops": [_stop(run, stop) for stop in run.stops],
         "triggers": [{"event": latch.number, "positions": latch.positions} for latch in run.latches],
+        "energy": energies(run),
         "encoders": [_encoder(run, number) for number in range(len(run.setup.encoders))],
     }
 
@@ -110,13 +112,14 @@ def _axis(run: SceneRun, axis: int) -> dict[str, Any]:
 
 
 def _section(run: SceneRun, section: Section) -> dict[str, Any]:
-    return {
+    made = {
         "numbers": section.numbers,
         "kind": section.kind,
         "start_clock": section.begin - run.start,
         "end_clock": section.end - run.start,
         "result": section.outcome,
     }
+    return made | (thread_figures(run, section) if section.kind == "thread" else {})
 
 
 def _event(run: SceneRun, happened: Happened) -> dict[str, Any]:
@@ -149,3 +152,16 @@ def _encoder(run: SceneRun, number: int) -> dict[str, Any]:
         "rms_error_steps": float(np.sqrt((errors**2).mean())) if len(errors) else 0.0,
         "greatest_following_error_steps": run.greatest[number],
     }
+
+
+def said(happened: Happened) -> str:
+    """An event in words."""
+    event = happened.event
+    said = event.form.name
+    if isinstance(event, EventInput):
+        said = f"{event.input} of axis {event.axis} {'active' if event.active else 'inactive'}"
+    if isinstance(event, EventOverride):
+        said += f" {event.percent} %"
+    if isinstance(event, EventSlip):
+        said += f" of axis {event.axis} by {event.counts} counts"
+    return f"{said} at {', '.join(map(str, happened.positions))}"

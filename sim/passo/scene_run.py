@@ -33,10 +33,12 @@ class Section:
     end: int = 0
     start: list[int] = field(default_factory=list)  # positions of the machine
     outcome: str = "OK"  # name of an error of the driver
+    raster: list[bytes] = field(default_factory=list)  # powers of its raster lines
+    pitch: int = 0  # of them in substeps; 0: there are none
 
     @property
     def kind(self) -> str:
-        """home, probe or moves."""
+        """home, probe, thread or moves."""
         return self.moves[0].form.name if isinstance(self.moves[0], Task) else "moves"
 
 
@@ -160,7 +162,7 @@ class SceneRun:
     def _short(self, section: Section) -> list[str]:
         """Axes that did not make the steps of a section that was not stopped."""
         found = []
-        for axis in range(self.file.axes if section.plans else 0):
+        for axis in range(self.file.axes if section.kind in ("moves", "thread") else 0):
             clocks, directions = self.steps(axis)
             own = (clocks >= section.begin - self.start) & (clocks <= section.end - self.start)
             made, wanted = int(directions[own].sum()), sum(move.steps[axis] for move in section.moves)

@@ -15,9 +15,12 @@ from passo.move_forms import (
     EventResume,
     EventSlip,
     EventStop,
+    MachineCompare,
     MachineEncoder,
     MachineInput,
+    MachineOutput,
     MachineSettings,
+    MachineSpindle,
 )
 
 Event = (
@@ -39,16 +42,30 @@ class Setup:
     """The machine and the events of a move file; places are in steps."""
 
     settings: MachineSettings
+    axes: int  # of the moves
     inputs: tuple[MachineInput, ...] = ()
     encoders: tuple[MachineEncoder, ...] = ()
     events: tuple[Event, ...] = ()
     scales: tuple[Fraction, ...] = ()
+    outputs: tuple[MachineOutput | None, ...] = ()  # of each move of the file
+    compare: MachineCompare | None = None
+    spindle: MachineSpindle | None = None
 
     def find(self, role: str, axis: int) -> int | None:
         """Number of an input; the channel has one probe."""
         places = [(one.role, 0 if one.role == "probe" else one.axis) for one in self.inputs]
         wanted = (role, 0 if role == "probe" else axis)
         return places.index(wanted) if wanted in places else None
+
+    @property
+    def spindle_axis(self) -> int:
+        """The axis whose encoder inputs the spindle has: the first one without a move."""
+        return self.axes
+
+    @property
+    def has_outputs(self) -> bool:
+        """A move says what they do."""
+        return any(self.outputs)
 
     def start(self, axis: int) -> int:
         """Where an axis is at the beginning."""

@@ -6,7 +6,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
-from passo.form_table import Form, Place
+from passo.form_table import Place
 from passo.move_forms import (
     EVENTS,
     MACHINES,
@@ -15,28 +15,41 @@ from passo.move_forms import (
     EventSlip,
     MachineEncoder,
     MachineInput,
-    MachineSettings,
     MoveHome,
     MoveProbe,
+    MoveThread,
 )
-from passo.move_keys import Table, check_known, check_rules, read_key, within
+from passo.move_keys import Table, within
 from passo.registers import ENCODER_LIMIT_BITS, INPUT_FILTER_FILTER_BITS
 from passo.rig import RATIO_ONE, most
 from passo.setup import EVENT_TYPES, Event, Setup
+from passo.setup_outputs import (
+    check_pwm,
+    check_thread,
+    read_compare,
+    read_form,
+    read_output,
+    read_spindle,
+    settings_of,
+)
 from passo.values import BadValueError, meant, shown
 
-MACHINE_KEYS = ("input", "encoder")
+OUTPUT = "output"  # of a move
+MACHINE_KEYS = ("input", "encoder", "compare", "spindle")
 FILTER_MAX = (1 << INPUT_FILTER_FILTER_BITS) - 1
 COUNTS_MAX = (1 << ENCODER_LIMIT_BITS) - 1
 
 
 def read_setup(data: Table, moves: Sequence[Any], clock_hz: int) -> Setup | None:
     """The setup of a file that has one; raises BadValueError."""
-    tasks = [move for move in moves if isinstance(move, MoveHome | MoveProbe)]
-    if "machine" not in data and "event" not in data and not tasks:
+    tasks = [move for move in moves if isinstance(move, MoveHome | MoveProbe | MoveThread)]
+    has_outputs = any(OUTPUT in table for table in data["move"])
+    if "machine" not in data and "event" not in data and not tasks and not has_outputs:
         return None
     if any(move.channel for move in moves):
-        raise BadValueError("[machine], [[event]], home and probe are for files of channel 0 only")
+        raise BadValueError(
+            "[machine], [[event]], output, home, probe and thread are for files of channel 0 only"
+        )
     axes = len(moves[0].steps)
     setup = within("machine", lambda: _machine(data.get("machine", {}), axes, clock_hz))
     events = []
@@ -44,7 +57,13 @@ def read_setup(data: Table, moves: Sequence[Any], clock_hz: int) -> Setup | None
         event = within(f"event {number}", lambda table=table: _event(table, setup, axes, clock_hz))
         events.append(event)
     _check_count("events", len(events), most("event"))
-    setup = replace(setup, events=tuple(events))
+    outputs = []
+    for number, (table, move) in enumerate(zip(data["move"], moves, strict=True), 1):
+        made = within(f"move {number}", lambda table=table, move=move: read_output(table, move, clock_hz))
+        outputs.append(made)
+    setup = replace(setup, events=tuple(events), outputs=tuple(outputs))
+    if setup.has_outputs:
+        check_pwm(setup.settings, clock_hz)
     for number, move in enumerate(moves, 1):
         if move in tasks:
             within(f"move {number}", lambda move=move: _check_task(move, setup))
@@ -63,18 +82,10 @@ def _tables(table: Table, key: str) -> list[Table]:
     return tables
 
 
-def _read(form: Form, table: Table, clock_hz: int, others: tuple[str, ...] = ()) -> dict[str, Any]:
-    names = tuple(key.name for key in form.keys)
-    check_known(table, (*others, *names))
-    values = {key.name: read_key(table, key, clock_hz) for key in form.keys}
-    check_rules(form, table)
-    return values
-
-
 def _machine(table: object, axes: int, clock_hz: int) -> Setup:
     if not isinstance(table, dict):
         raise BadValueError("it must be a table: [machine]")
-    settings = MachineSettings(**_read(MACHINES["settings"], table, clock_hz, MACHINE_KEYS))
+    settings = settings_of(table, clock_hz, MACHINE_KEYS)
     for key in ("start", "steps_per_mm"):
         value = table.get(key)
         if isinstance(value, list) and len(value) != axes:
@@ -85,7 +96,7 @@ def _machine(table: object, axes: int, clock_hz: int) -> Setup:
     inputs: list[MachineInput] = []
     for number, one in enumerate(_tables(table, "input"), 1):
         made = within(f"input {number}", lambda one=one: _input(one, scales, axes, clock_hz))
-        if (first := Setup(settings, tuple(inputs)).find(made.role, made.axis)) is not None:
+        if (first := Setup(settings, axes, tuple(inputs)).find(made.role, made.axis)) is not None:
             raise BadValueError(f"input {number}: {made.role} is input {first + 1} already")
         inputs.append(made)
     _check_count("inputs", len(inputs), most("wire") - 1)
@@ -101,7 +112,12 @@ def _machine(table: object, axes: int, clock_hz: int) -> Setup:
         if any(made.filter != other.filter for other in encoders):
             raise BadValueError(f"encoder {number}: all encoders have the same filter")
         encoders.append(made)
-    return Setup(settings, tuple(inputs), tuple(encoders), scales=scales)
+    compare = within("compare", lambda: read_compare(table, axes, clock_hz))
+    if compare:
+        place = _steps("compare: position", compare.position, compare.axis, scales)
+        compare = replace(compare, position=place)
+    spindle = within("spindle", lambda: read_spindle(table, axes, clock_hz))
+    return Setup(settings, axes, tuple(inputs), tuple(encoders), (), scales, (), compare, spindle)
 
 
 def _check_axis(key: str, axis: int, axes: int) -> None:
@@ -117,7 +133,7 @@ def _steps(key: str, place: Place, axis: int, scales: tuple[Fraction, ...]) -> P
 
 
 def _input(table: Table, scales: tuple[Fraction, ...], axes: int, clock_hz: int) -> MachineInput:
-    one = MachineInput(**_read(MACHINES["input"], table, clock_hz))
+    one = MachineInput(**read_form(MACHINES["input"], table, clock_hz))
     _check_axis("axis", one.axis, axes)
     if "side" in table and one.at is None:
         raise BadValueError("side needs at")
@@ -131,7 +147,7 @@ def _input(table: Table, scales: tuple[Fraction, ...], axes: int, clock_hz: int)
 
 
 def _encoder(table: Table, axes: int, clock_hz: int) -> MachineEncoder:
-    encoder = MachineEncoder(**_read(MACHINES["encoder"], table, clock_hz))
+    encoder = MachineEncoder(**read_form(MACHINES["encoder"], table, clock_hz))
     _check_axis("axis", encoder.axis, axes)
     ratio = encoder.counts_per_step
     if not 1 <= round(ratio * RATIO_ONE) < RATIO_ONE << 16:
@@ -150,7 +166,7 @@ def _event(table: Table, setup: Setup, axes: int, clock_hz: int) -> Event:
     do = table["do"]
     if do not in names:
         raise BadValueError(f"do must be one of {', '.join(names)}, not {shown(do)}{meant(do, names)}")
-    event = EVENT_TYPES[do](**_read(EVENTS[do], table, clock_hz, ("do",)))
+    event = EVENT_TYPES[do](**read_form(EVENTS[do], table, clock_hz, ("do",)))
     _check_when(table, event, setup, axes)
     if isinstance(event, EventInput | EventArm | EventSlip):
         _check_axis("axis", event.axis, axes)
@@ -187,11 +203,14 @@ def _check_fitted(role: str, axis: int, setup: Setup) -> None:
         raise BadValueError(f"{place} is not connected: [[machine.input]]")
 
 
-def _check_task(move: MoveHome | MoveProbe, setup: Setup) -> None:
+def _check_task(move: MoveHome | MoveProbe | MoveThread, setup: Setup) -> None:
     moved = [axis for axis, steps in enumerate(move.steps) if steps]
+    if not moved:
+        raise BadValueError(f"steps of {move.form.name} must move an axis")
     if isinstance(move, MoveProbe):
         _check_fitted("probe", 0, setup)
-        return
-    if len(moved) != 1:
-        raise BadValueError("steps of home must move one axis")
-    _check_fitted(move.switch, moved[0], setup)
+    if isinstance(move, MoveThread):
+        check_thread(move, setup)
+    if isinstance(move, MoveHome):
+        for axis in moved:
+            _check_fitted(move.switch, axis, setup)

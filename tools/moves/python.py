@@ -66,10 +66,13 @@ def _form(schema: Schema, form: Form) -> list[str]:
     for key in form.keys:
         lines += _key(schema, key)
     lines.append("        ),")
-    if form.rules:
+    rules = [[_quoted(rule.kind), _quoted(rule.key), _quoted(rule.other)] for rule in form.rules]
+    if len(rules) == 1:
+        lines += _call("(Rule", rules[0], 8, ",),")
+    elif rules:
         lines.append("        (")
-        for rule in form.rules:
-            lines += _call("Rule", [_quoted(rule.kind), _quoted(rule.key), _quoted(rule.other)], 12, ",")
+        for cells in rules:
+            lines += _call("Rule", cells, 12, ",")
         lines.append("        ),")
     if form.told_by:
         lines.append(f'        told_by="{form.told_by}",')

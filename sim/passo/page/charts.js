@@ -179,7 +179,7 @@ class TimeChart {
     draw(ctx, scale) {
         for (const { clock, kind } of this.view.motion.facts.events) {
             if (clock < scale.min || clock > scale.max) continue;
-            ctx.strokeStyle = styleOf(kind === "fault" ? "--bad" : "--event");
+            ctx.strokeStyle = styleOf(kind ? "--bad" : "--event");
             ctx.lineWidth = devicePixelRatio;
             ctx.setLineDash([3 * devicePixelRatio, 3 * devicePixelRatio]);
             ctx.beginPath();

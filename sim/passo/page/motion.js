@@ -47,8 +47,9 @@ class Extremes {
     }
 }
 
-// The edges of each axis, [rises of STEP, falls of STEP, edges of DIR], from the streams of sim/passo/report_data.py.
-function unpack(bytes, axes) {
+// The edges of each axis, [rises of STEP, falls of STEP, edges of DIR], from the streams of sim/passo/report_data.py,
+// and those of further signals.
+function unpack(bytes, axes, signals = []) {
     let place = 0;
     const sums = count => {
         const found = new Float64Array(count);
@@ -64,12 +65,13 @@ function unpack(bytes, axes) {
         }
         return found;
     };
-    return axes.map(({ edges: [rises, falls, turns] }) => {
+    const ofAxes = axes.map(({ edges: [rises, falls, turns] }) => {
         const up = sums(rises);
         for (let i = 1; i < rises; i++) up[i] += up[i - 1];
         const down = sums(falls).map((length, i) => length + up[i]);
         return [up, down, sums(turns)];
     });
+    return [ofAxes, signals.map(({ edges }) => sums(edges))];
 }
 
 class Axis {
@@ -92,7 +94,7 @@ class Axis {
             base += steps;
         }
         this.begins = this.plans.map(plan => plan.begin);
-        this.end = begin;
+        this.end = this.plans.length ? begin : run.start + run.clocks;
         this._speeds();
         this._errors();
         this.extremes = {
@@ -174,8 +176,9 @@ class Axis {
 }
 
 class Motion {
-    constructor(facts, edges) {
+    constructor(facts, [edges, signals]) {
         this.facts = facts;
+        this.machine = facts.machine ? new Rig(facts.machine, signals) : null;
         this.hz = facts.clock_hz;
         this.planned = facts.runs.some(run => run.plans.length);  // otherwise there are no ideal curves
         this.clocks = Math.max(1, facts.clocks);

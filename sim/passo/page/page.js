@@ -26,7 +26,7 @@ function addSummary(motion) {
     const { facts, hz } = motion, { summary } = facts;
     document.getElementById("name").textContent = summary.name;
     const verdict = document.getElementById("verdict");
-    verdict.textContent = summary.ok ? "exact: every step made, in the planned time" : summary.problems.join("; ");
+    verdict.textContent = summary.ok ? (motion.machine ? "every step made and counted" : "exact: every step made, in the planned time") : summary.problems.join("; ");
     verdict.className = summary.ok ? "good" : "bad";
     const tiles = document.getElementById("tiles");
     tiles.textContent = "";
@@ -89,15 +89,16 @@ function showMotion(motion) {
     addSummary(motion);
     const [charts, side, tables] = ["charts", "side", "tables"].map(id => document.getElementById(id));
     for (const part of [charts, side, tables]) part.textContent = "";
-    const view = new View(motion);
+    const view = new View(motion), { facts } = motion;
     document.getElementById("curves").hidden = !motion.planned;
     addToolbar(document.getElementById("toolbar"), view);
     addMotionCharts(charts, view);
     addPins(charts, view);
+    addMachine(charts, view);
     const errors = motion.planned ? addErrors(charts, view) : null;
     const histogram = errors && new Histogram(side, view, errors);
     const path = motion.axes.length > 1 ? new ToolPath(side, view) : null;
-    if (motion.planned) addTables(tables, view);
+    if (facts.file) addTables(tables, view);
     passo = { motion, view, errors, histogram, path };
     view.changed();
 }
@@ -113,7 +114,7 @@ async function openReport() {
         const facts = JSON.parse(document.getElementById("facts").textContent);
         chooseTheme();
         const bytes = await inflate(document.getElementById("edges").textContent);
-        showMotion(new Motion(facts, unpack(bytes, facts.axes)));
+        showMotion(new Motion(facts, unpack(bytes, facts.axes, facts.machine?.signals)));
         requestAnimationFrame(() => requestAnimationFrame(() => { passo.ready = performance.now(); }));
     } catch (error) {
         showFailure(error);

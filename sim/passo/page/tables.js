@@ -23,13 +23,12 @@ function addTable(parent, title, columns, rows, { open = true } = {}) {
     return panel;
 }
 
-function addTables(parent, view) {
-    const { facts, hz, axes } = view.motion, { summary } = facts;
-    const near = clock => () => view.set(clock - hz / 2000, clock + hz / 2000);
-    addTable(parent, `Events and faults (${facts.events.length})`, ["time", "clock", "event"], facts.events.map(event => ({
-        cells: [duration(event.clock, hz, 9), event.clock, event.text], kind: event.kind, show: near(event.clock),
-    }))).id = "events";
+const pinTimes = ({ pins }, hz) => [pins.step_high, pins.step_low, pins.dir_setup, pins.dir_hold].map(clocks => `${grouped(clocks)} clk, ${duration(clocks, hz, 4)}`);
+const PIN_TIMES = ["STEP high", "STEP low", "DIR setup", "DIR hold"];
 
+// Moves as planned, and what came out.
+function addPlans(parent, view) {
+    const { facts, hz, axes } = view.motion, { summary } = facts;
     const moves = facts.runs.flatMap(run => {
         let begin = run.start;
         return run.plans.map(plan => {
@@ -47,12 +46,44 @@ function addTables(parent, view) {
             show: () => view.set(from - 0.02 * clocks, from + 1.02 * clocks),
         })), { open: moves.length <= 40 }).id = "moves";
 
-    addTable(parent, "Axes", ["axis", "steps commanded", "steps made (sum)", "pulses", "position at the end", "largest error, steps", "STEP high", "STEP low", "DIR setup", "DIR hold"],
-        summary.axes.map((own, n) => {
-            const pins = axes[n].motion.pins, time = clocks => `${grouped(clocks)} clk, ${duration(clocks, hz, 4)}`;
-            return { cells: [axes[n].name, own.commanded, own.emitted, own.pulses, own.position, plain(own.largest_error_steps, 3),
-                time(pins.step_high), time(pins.step_low), time(pins.dir_setup), time(pins.dir_hold)] };
-        })).id = "axes";
+    addTable(parent, "Axes", ["axis", "steps commanded", "steps made (sum)", "pulses", "position at the end", "largest error, steps", ...PIN_TIMES],
+        summary.axes.map((own, n) => ({
+            cells: [axes[n].name, own.commanded, own.emitted, own.pulses, own.position, plain(own.largest_error_steps, 3), ...pinTimes(axes[n].motion, hz)],
+        }))).id = "axes";
+}
+
+// Motions, homes, probes and threads of a move file with a machine.
+function addScene(parent, view) {
+    const { facts: { summary }, hz, axes } = view.motion;
+    const figures = own => (own.phase_counts === undefined ? "" : `within ${plain(own.largest_distance_counts, 3)} counts of the pitch, phase ${own.phase_counts} counts`);
+    addTable(parent, `Moves (${summary.moves.length})`, ["moves", "kind", "starts at", "takes", "result", "thread"], summary.moves.map(own => ({
+        cells: [own.numbers.join(", "), own.kind, duration(own.start_clock, hz), duration(own.end_clock - own.start_clock, hz), own.result, figures(own)],
+        show: () => view.set(1.02 * own.start_clock - 0.02 * own.end_clock, 1.02 * own.end_clock - 0.02 * own.start_clock),
+    }))).id = "moves";
+    addTable(parent, "Axes", ["axis", "steps made (sum)", "pulses", "position of the driver", "position of the machine", ...PIN_TIMES], summary.axes.map((own, n) => ({
+        cells: [axes[n].name, own.emitted, own.pulses, own.position, own.machine_position, ...pinTimes(axes[n].motion, hz)],
+    }))).id = "axes";
+    if (summary.energy.length) {
+        addTable(parent, "Energy per step, less the wanted one", ["move", "windows", "least", "most", "whole move"], summary.energy.map(own => ({
+            cells: [own.number, own.windows, ...[own.least_percent, own.most_percent, own.whole_percent].map(value => `${plain(value ?? NaN, 3)} %`)],
+        }))).id = "energy";
+    }
+    if (summary.encoders.length) {
+        addTable(parent, "Encoders", ["axis", "samples", "largest error, steps", "rms", "greatest following error"], summary.encoders.map(own => ({
+            cells: [own.axis, own.samples, ...[own.largest_error_steps, own.rms_error_steps, own.greatest_following_error_steps].map(value => plain(value, 3))],
+        }))).id = "encoders";
+    }
+}
+
+function addTables(parent, view) {
+    const { facts, hz } = view.motion, { summary } = facts;
+    const near = clock => () => view.set(clock - hz / 2000, clock + hz / 2000);
+    addTable(parent, `Events and faults (${facts.events.length})`, ["time", "clock", "event"], facts.events.map(event => ({
+        cells: [duration(event.clock, hz, 9), event.clock, event.text], kind: event.kind, show: near(event.clock),
+    }))).id = "events";
+
+    if (view.motion.machine) addScene(parent, view);
+    else addPlans(parent, view);
 
     const settings = [
         ["move file", facts.file], ["engine", { both: "RTL and C model, compared edge for edge", rtl: "RTL", model: "C model" }[summary.engine] ?? summary.engine],

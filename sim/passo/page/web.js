@@ -84,7 +84,7 @@ function motionOf(events, axes, hz) {
             axes: own.map(([rises]) => ({ pulses: rises.length })),
         },
     };
-    return new Motion(facts, own);
+    return new Motion(facts, [own, []]);
 }
 
 async function openWeb() {
