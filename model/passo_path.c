@@ -6,6 +6,11 @@
 static const uint32_t QUARTER = 0x400000u;
 static const uint32_t HALF_MASK = 0xFFFFFFu; /* phase and velocity are stored in two 24-bit halves */
 
+void passo_path_reset(struct passo_path *path)
+{
+	*path = (struct passo_path){.phase_high = QUARTER, .refresh = true};
+}
+
 static void add(struct passo_path *path, bool advance)
 {
 	path->substep = false;

@@ -11,7 +11,7 @@ from passo.registers import LineOutputWord
 from passo.scene_run import Section
 from passo.setup import Setup
 
-AXES_OF_CORES = (2, 4, 8)
+AXES_OF_CORES = (3, 4, 8)  # few, as each has to be built
 POWER_FULL = 65535  # on all the time
 REFERENCE_ANY = 1 << 31  # 1/2 substep per clock, the fastest
 

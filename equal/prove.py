@@ -1,0 +1,237 @@
+# SPDX-License-Identifier: MIT
+"""Proves that a module of the model and one of the RTL are equal.
+
+Before a clock the registers of the RTL are what the coupling says of the state of the model, and so are its
+inputs. Then the C function and the transition relation of the RTL each make one clock. Proved is that the
+outputs are equal, that the coupling holds again, and that nothing in the C is undefined; for a reset, that
+the coupling holds after it, whatever was before, except for what a reset keeps. So both agree from then on.
+"""
+
+import re
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import z3
+from passo import compiler
+from passo.failure import Failure
+
+from equal.c_evaluate import Evaluator
+from equal.c_program import Program
+from equal.c_types import BOOL, Condition, Integer, Type, Value, convert, filled, leaves, truth
+from equal.coupling import Coupling, Link
+from equal.rtl import Rtl, read_rtl
+
+HERE = Path(__file__).resolve().parent
+TIME_LIMIT = 600  # seconds for one query
+EXPRESSIONS = "equal_expressions"
+CLOCK = "equal_clock"
+RESET = "equal_reset"
+
+
+@dataclass(frozen=True)
+class Goal:
+    """Something to prove."""
+
+    name: str
+    formula: Any
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What was found: the goals that fail with the values that show it."""
+
+    failed: tuple[str, ...]
+    counterexample: str
+    goals: int
+    bits: int  # of registers that are coupled
+    seconds: float
+
+
+def harness(coupling: Coupling, expressions: list[str], root: Path) -> str:
+    """The C sources of a module, with the coupling's objects and expressions, preprocessed."""
+    lines = [f'#include "{root}/{source}"' for source in coupling.sources]
+    lines += [f"{declaration};" for declaration in coupling.objects]
+    lines.append(coupling.prelude)
+    lines.append(f"static void {CLOCK}(void) {{ {coupling.clock} }}")
+    lines.append(f"static void {RESET}(void) {{ {coupling.reset or ''} }}")
+    lines.append(f"static void {EXPRESSIONS}(void) {{ {' '.join(f'{e};' for e in expressions)} }}")
+    folders = (HERE / "headers", root / "model", root / "protocol")
+    command = [compiler.CC, "-E", "-P", "-nostdinc", *compiler.includes(*folders), "-x", "c", "-"]
+    return compiler.call(command, "\n".join(lines))
+
+
+class Model:
+    """The C side: the state before and after a clock, and expressions of both."""
+
+    def __init__(self, coupling: Coupling, root: Path) -> None:
+        links = [*coupling.inputs.values(), *coupling.outputs.values(), *coupling.registers.values()]
+        self.expressions = [link.expression for link in links]
+        self.expressions += [link.when for link in links if link.when]
+        self.expressions += [link.expression for link in coupling.invariants.values()]
+        self.expressions += [assumption["that"] for assumption in coupling.assumptions.values()]
+        program = Program(harness(coupling, self.expressions, root))
+        self.nodes = program.functions[EXPRESSIONS].body.block_items or []
+        self.evaluator = Evaluator(program)
+        for declaration in coupling.objects:
+            found = re.search(r"(\w+)(\[\w+\])?$", declaration)
+            assert found
+            self.evaluator.make_unknown(found[1])
+
+    def values(self) -> dict[str, Value]:
+        """The expressions of the coupling, with the state as it is now."""
+        kept = self.evaluator.demands
+        self.evaluator.demands = []
+        found = {
+            text: self.evaluator.value(node) for text, node in zip(self.expressions, self.nodes, strict=True)
+        }
+        self.evaluator.demands = kept
+        return found
+
+    def run(self, function: str) -> None:
+        """Execute the clock or the reset."""
+        self.evaluator.call(function, [])
+
+    def set_all(self, values: Mapping[str, int]) -> None:
+        """Give all leaves of the objects known values, by their names in C."""
+        for name, cell in self.evaluator.cells.items():
+            cell.bits = filled(cell.type, name, lambda kind, leaf: typed(values[leaf], kind))
+
+    def leaves(self) -> dict[str, tuple[Type, Any]]:
+        """Types and bits of all leaves of the objects, by their names in C."""
+        found: dict[str, tuple[Type, Any]] = {}
+        for name, cell in self.evaluator.cells.items():
+            found |= {leaf: (kind, bits) for leaf, kind, bits in leaves(cell.type, cell.bits, name)}
+        return found
+
+
+def typed(value: int, kind: Type) -> int | bool:
+    """A number as bits of a type."""
+    return value != 0 if kind == BOOL else value
+
+
+def _same(term: z3.ExprRef, value: Value, signed: bool) -> Condition:
+    """Whether a register or port of the RTL has the value of a C expression."""
+    kind = value.type
+    own = value.bits
+    if z3.is_bool(term):
+        if isinstance(own, bool | z3.BoolRef):
+            return term == own
+        term = z3.If(term, z3.BitVecVal(1, 1), z3.BitVecVal(0, 1))
+    c_signed = isinstance(kind, Integer) and kind.signed
+    number = convert(value, Integer(64, c_signed)).bits
+    number = z3.BitVecVal(number, 64) if isinstance(number, int) else number
+    more = 64 - term.size()
+    return (z3.SignExt(more, term) if signed else z3.ZeroExt(more, term)) == number
+
+
+def _coupled(
+    links: dict[str, Link], terms: dict[str, z3.ExprRef], values: dict[str, Value]
+) -> dict[str, Condition]:
+    found: dict[str, Condition] = {}
+    for name, link in links.items():
+        equal = _same(terms[name], values[link.expression], link.signed)
+        found[name] = equal if link.when is None else z3.Implies(truth(values[link.when]), equal)
+    return found
+
+
+def _check_names(coupling: Coupling, rtl: Rtl) -> None:
+    """Every register and port of the RTL is in the coupling, and nothing else is.
+
+    Raises:
+        Failure: Something is missing or unknown.
+    """
+    for what, own, listed in (
+        ("input", rtl.inputs, coupling.inputs),
+        ("output", rtl.outputs, coupling.outputs),
+        ("register", rtl.registers, coupling.registers),
+    ):
+        for name in listed:
+            if name not in own:
+                raise Failure(f"{coupling.name}: {coupling.top} has no {what} {name}")
+        for name in own:
+            if name not in listed and name not in coupling.free and name not in ("clk", "rst"):
+                raise Failure(f"{coupling.name}: nothing is said of the {what} {name}")
+
+
+def _search(assumed: list[Any], goals: list[Goal]) -> tuple[tuple[str, ...], str]:
+    """The goals that fail, and values with which the first ones do."""
+    solver = z3.Solver()
+    solver.set("timeout", TIME_LIMIT * 1000)
+    solver.add(*assumed)
+    if solver.check() != z3.sat:
+        raise Failure("the assumptions contradict each other: no state satisfies them")
+    solver.add(z3.Not(z3.And([goal.formula for goal in goals])))
+    answer = solver.check()
+    if answer == z3.unsat:
+        return (), ""
+    if answer == z3.unknown:
+        raise Failure(f"no answer within {TIME_LIMIT} s")
+    example = solver.model()
+    failed = tuple(goal.name for goal in goals if z3.is_false(example.eval(z3.And(goal.formula), True)))
+    values = sorted((str(of), example[of]) for of in example if of.arity() == 0 and "#" not in str(of))
+    return failed, "\n".join(f"  {name} = {value}" for name, value in values)
+
+
+def _clock_goals(coupling: Coupling, rtl: Rtl, root: Path) -> tuple[list[Any], list[Goal]]:
+    model = Model(coupling, root)
+    before = model.values()
+    model.run(CLOCK)
+    after = model.values()
+    assumed = [*rtl.relation]
+    assumed += _coupled(coupling.inputs, rtl.before, before).values()
+    assumed += _coupled(coupling.registers, rtl.before, before).values()
+    assumed += [truth(before[link.expression]) for link in coupling.invariants.values()]
+    assumed += [truth(before[entry["that"]]) for entry in coupling.assumptions.values()]
+    if "rst" in rtl.inputs and "rst" not in coupling.inputs:
+        assumed.append(z3.Not(rtl.before["rst"]))
+    outputs = _coupled(coupling.outputs, rtl.before, before)
+    registers = _coupled(coupling.registers, rtl.after, after)
+    goals = [Goal(f"output {name}", formula) for name, formula in outputs.items()]
+    goals += [Goal(f"register {name}", formula) for name, formula in registers.items()]
+    for name, link in coupling.invariants.items():
+        goals.append(Goal(f"invariant {name}", truth(after[link.expression])))
+    goals += [Goal(f"defined: {what}", condition) for what, condition in model.evaluator.demands]
+    return assumed, goals
+
+
+def _reset_goals(coupling: Coupling, rtl: Rtl, root: Path) -> tuple[list[Any], list[Goal]]:
+    model = Model(coupling, root)
+    before = model.values()
+    model.run(RESET)
+    after = model.values()
+    kept = {name: link for name, link in coupling.registers.items() if link.kept}
+    assumed = [*rtl.relation, rtl.before["rst"]]
+    assumed += _coupled(coupling.inputs, rtl.before, before).values()
+    assumed += _coupled(kept, rtl.before, before).values()
+    assumed += [truth(before[link.expression]) for link in coupling.invariants.values() if link.kept]
+    assumed += [truth(before[entry["that"]]) for entry in coupling.assumptions.values()]
+    registers = _coupled(coupling.registers, rtl.after, after)
+    goals = [Goal(f"after a reset: register {name}", formula) for name, formula in registers.items()]
+    for name, link in coupling.invariants.items():
+        goals.append(Goal(f"after a reset: invariant {name}", truth(after[link.expression])))
+    return assumed, goals
+
+
+def prove(coupling: Coupling, root: Path) -> Outcome:
+    """Prove a module equal, with the sources below root.
+
+    Raises:
+        Failure: The coupling does not fit the RTL, its assumptions contradict each other, or no answer comes.
+    """
+    begin = time.monotonic()
+    rtl = read_rtl(coupling.top, root / "rtl", coupling.parameters)
+    _check_names(coupling, rtl)
+    bits = sum(rtl.registers[name] for name in coupling.registers)
+    count = 0
+    for goals_of in (_clock_goals, _reset_goals):
+        if goals_of is _reset_goals and coupling.reset is None:
+            continue
+        assumed, goals = goals_of(coupling, rtl, root)
+        count += len(goals)
+        failed, example = _search(assumed, goals)
+        if failed:
+            return Outcome(failed, example, count, bits, time.monotonic() - begin)
+    return Outcome((), "", count, bits, time.monotonic() - begin)

