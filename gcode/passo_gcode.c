@@ -32,8 +32,21 @@ static void clear_job(struct passo_gcode *gcode)
 
 void passo_gcode_open(struct passo_gcode *gcode, const struct passo_gcode_settings *settings)
 {
-	*gcode = (struct passo_gcode){.settings = *settings};
+	*gcode = (struct passo_gcode){.settings = *settings, .spindle_percent = 100};
 	passo_gcode_reset(gcode);
+}
+
+void passo_gcode_configure(struct passo_gcode *gcode, const struct passo_gcode_settings *settings)
+{
+	const uint8_t axes = gcode->settings.axes;
+
+	gcode->settings = *settings;
+	gcode->settings.axes = axes;
+}
+
+void passo_gcode_set_offsets(struct passo_gcode *gcode, const struct passo_gcode_offsets *offsets)
+{
+	gcode->offsets = *offsets;
 }
 
 void passo_gcode_reset(struct passo_gcode *gcode)

@@ -25,6 +25,7 @@ struct passo_gcode_settings {
 	uint8_t axes;             /* X, Y, Z, A, B, C: the first 1 .. PASSO_GCODE_AXES_MAX of them */
 	uint32_t arc_tolerance;   /* nm, at least 1 */
 	uint32_t spindle_maximum; /* rpm at full power; 0: S has no effect */
+	bool laser;               /* M4: power in proportion to the speed, not reverse */
 };
 
 /* What outlasts a reset: kept by the caller, if at all. */
@@ -38,6 +39,7 @@ struct passo_gcode_offsets {
 #define PASSO_GCODE_OUTPUT_REVERSE (UINT32_C(1) << 17)
 #define PASSO_GCODE_OUTPUT_FLOOD (UINT32_C(1) << 18)
 #define PASSO_GCODE_OUTPUT_MIST (UINT32_C(1) << 19)
+#define PASSO_GCODE_OUTPUT_PROPORTIONAL (UINT32_C(1) << 24)
 
 enum passo_gcode_kind {
 	PASSO_GCODE_LINE,
@@ -70,7 +72,7 @@ struct passo_gcode_job {
 	struct passo_gcode_arc arc;
 };
 
-/* All members are to be read only. */
+/* All members but spindle_percent are to be read only. */
 struct passo_gcode {
 	struct passo_gcode_settings settings;
 	struct passo_gcode_offsets offsets;
@@ -83,11 +85,19 @@ struct passo_gcode {
 	int64_t spindle;               /* millionths of rpm */
 	uint32_t line;                 /* N of the last line that had one */
 	uint8_t tool;
+	uint8_t
+	    spindle_percent; /* override of S: the caller may set it; it holds for the actions from now on */
 	struct passo_gcode_job job;
 };
 
 /* All modes as at power-up, at position 0, without offsets. */
 void passo_gcode_open(struct passo_gcode *gcode, const struct passo_gcode_settings *settings);
+
+/* Other settings, while it is not busy. The number of axes stays. */
+void passo_gcode_configure(struct passo_gcode *gcode, const struct passo_gcode_settings *settings);
+
+/* Other stored offsets, while it is not busy. */
+void passo_gcode_set_offsets(struct passo_gcode *gcode, const struct passo_gcode_offsets *offsets);
 
 /* The modes of power-up; offsets and position stay, G92 and G43.1 end. */
 void passo_gcode_reset(struct passo_gcode *gcode);

@@ -13,11 +13,14 @@ uint32_t passo_gcode_output(const struct passo_gcode *gcode)
 
 	if (gcode->mode[PASSO_GCODE_SPINDLE] != 50) {
 		const uint64_t full = (uint64_t)maximum * PASSO_GCODE_MILLION;
-		const uint64_t speed = (uint64_t)gcode->spindle < full ? (uint64_t)gcode->spindle : full;
+		const uint64_t wanted = passo_mul_div((uint64_t)gcode->spindle, gcode->spindle_percent, 100);
+		const uint64_t speed = wanted < full ? wanted : full;
+		const uint32_t reverse =
+		    gcode->settings.laser ? PASSO_GCODE_OUTPUT_PROPORTIONAL : PASSO_GCODE_OUTPUT_REVERSE;
 
 		output = PASSO_GCODE_OUTPUT_SPINDLE;
 		output |= full > 0 ? (uint32_t)passo_mul_div(speed, POWER_FULL, full) : 0u;
-		output |= gcode->mode[PASSO_GCODE_SPINDLE] == 40 ? PASSO_GCODE_OUTPUT_REVERSE : 0u;
+		output |= gcode->mode[PASSO_GCODE_SPINDLE] == 40 ? reverse : 0u;
 	}
 	output |= gcode->flood ? PASSO_GCODE_OUTPUT_FLOOD : 0u;
 	return output | (gcode->mist ? PASSO_GCODE_OUTPUT_MIST : 0u);

@@ -50,7 +50,8 @@ enum passo_plan_error passo_path_add(struct passo_path_planner *path, const stru
 	if (!item->rest)
 		item->rest = item->corner < slowest(path, item);
 	if (item->rest)
-		item->corner = item->dwell > 0 || is_first(path) ? item->halt : 0;
+		item->corner =
+		    item->dwell > 0 || is_first(path) ? passo_path_smaller(item->halt, item->top) : 0;
 	path->rest = false;
 	path->dwell = 0;
 	path->added++;
@@ -85,13 +86,15 @@ uint64_t passo_path_end_square(const struct passo_path_planner *path, uint32_t i
 {
 	const struct passo_path_item *item = passo_path_item(path, index);
 
+	const uint64_t halt = passo_path_smaller(item->halt, item->top);
+
 	if (item->last)
-		return item->halt;
+		return halt;
 	if (index + 1 == path->added)
 		return 0;
 	const struct passo_path_item *next = passo_path_item(path, index + 1);
 	if (next->rest)
-		return next->dwell > 0 ? item->halt : 0;
+		return next->dwell > 0 ? halt : 0;
 	return next->reach;
 }
 

@@ -75,6 +75,7 @@ struct passo_path_item {
 	bool rest;          /* the path rests before the line */
 	bool last;          /* the motion ends with the line */
 	bool arc;           /* the corner at its start is limited as part of an arc */
+	bool rapid;         /* its feed is PASSO_PATH_RAPID */
 };
 
 /* The limits of an axis in substeps and clocks. */
@@ -113,6 +114,7 @@ struct passo_path_planner {
 	bool lines_end, ramps_end;
 	bool anew;           /* the limits of all items have changed */
 	uint32_t override;   /* UQ16.16 */
+	uint32_t rapid;      /* the same, of rapids */
 	uint32_t reserve;    /* ticks */
 	uint32_t gentleness; /* UQ0.16: what a shape leaves of the acceleration */
 	enum passo_shape shape;
@@ -149,6 +151,11 @@ void passo_path_end(struct passo_path_planner *path);
 #define PASSO_PATH_OVERRIDE_MIN UINT32_C(0x10000)
 #define PASSO_PATH_OVERRIDE_MAX UINT32_C(0xA0000)
 void passo_path_override(struct passo_path_planner *path, uint32_t override);
+
+/* The same for lines with PASSO_PATH_RAPID, which the other one leaves alone: UQ16.16, 1 .. 100 %, of the
+ * speed that the axes allow. */
+#define PASSO_PATH_RAPID_FULL UINT32_C(0x10000)
+void passo_path_rapid(struct passo_path_planner *path, uint32_t rapid);
 
 /* The next line and ramp of the motion; false: none at present. The last ones have `last`; after that
  * passo_path_next_motion() goes on, if more lines are known. `held` is a number of ticks that the core still

@@ -110,6 +110,7 @@ static uint64_t limit_line(
 		jump = passo_path_smaller(jump, ((uint64_t)own->jump << PASSO_PATH_UNIT_BITS) / share);
 	}
 	item->feed = square_of(wanted);
+	item->rapid = feed == PASSO_PATH_RAPID;
 	item->limit = square_of(speed);
 	if (path->shape != PASSO_SHAPE_LINEAR)
 		slope = shaped_slope(path, slope, weakest);

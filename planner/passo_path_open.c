@@ -134,6 +134,7 @@ enum passo_plan_error passo_path_open(struct passo_path_planner *path,
 	    .capacity = capacity,
 	    .substeps_per_mm = scale,
 	    .override = PASSO_PATH_OVERRIDE_MIN,
+	    .rapid = PASSO_PATH_RAPID_FULL,
 	    .deviation = passo_mul_div(settings->junction_deviation, scale, UINT32_C(1) << 16),
 	    .reserve = (reserve >> machine->tick_log2) + 1,
 	    .shape = settings->profile == PASSO_PROFILE_COSINE  ? PASSO_SHAPE_COSINE

@@ -1,17 +1,19 @@
 /* SPDX-License-Identifier: MIT
- * The limits of an item under the present override.
+ * The limits of an item under the present overrides.
  */
 #include "passo_path_private.h"
 
 #define OVERRIDE_BITS 16u
+#define RAPID_MIN (PASSO_PATH_RAPID_FULL / 100u)
 
 void passo_path_limit(struct passo_path_planner *path, uint32_t index)
 {
 	struct passo_path_item *item = passo_path_item(path, index);
-	const uint64_t factor = (uint64_t)path->override * path->override;
+	const uint32_t override = item->rapid ? path->rapid : path->override;
+	const uint64_t base = item->rapid ? item->limit : item->feed;
 
-	item->top = passo_path_smaller(
-	    item->limit, passo_mul_div(item->feed, factor, UINT64_C(1) << (2 * OVERRIDE_BITS)));
+	item->top = passo_path_smaller(item->limit,
+	    passo_mul_div(base, (uint64_t) override * override, UINT64_C(1) << (2 * OVERRIDE_BITS)));
 	if (item->rest)
 		return;
 	item->corner = passo_path_smaller(item->bend, item->top);
@@ -26,10 +28,9 @@ void passo_path_limit(struct passo_path_planner *path, uint32_t index)
 		    passo_path_smaller(before->top, passo_path_larger(before->corner, item->corner));
 }
 
-void passo_path_override(struct passo_path_planner *path, uint32_t override)
+/* Plans anew what the ramps have not passed. */
+static void plan_anew(struct passo_path_planner *path)
 {
-	path->override = (uint32_t)passo_path_smaller(
-	    passo_path_larger(override, PASSO_PATH_OVERRIDE_MIN), PASSO_PATH_OVERRIDE_MAX);
 	for (uint32_t index = path->planned; index < path->added; index++)
 		passo_path_limit(path, index);
 	path->final = path->planned;
@@ -38,4 +39,18 @@ void passo_path_override(struct passo_path_planner *path, uint32_t override)
 		passo_path_look_back(path);
 	if (path->rest)
 		path->final = path->added;
+}
+
+void passo_path_override(struct passo_path_planner *path, uint32_t override)
+{
+	path->override = (uint32_t)passo_path_smaller(
+	    passo_path_larger(override, PASSO_PATH_OVERRIDE_MIN), PASSO_PATH_OVERRIDE_MAX);
+	plan_anew(path);
+}
+
+void passo_path_rapid(struct passo_path_planner *path, uint32_t rapid)
+{
+	path->rapid =
+	    (uint32_t)passo_path_smaller(passo_path_larger(rapid, RAPID_MIN), PASSO_PATH_RAPID_FULL);
+	plan_anew(path);
 }

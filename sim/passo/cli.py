@@ -87,6 +87,12 @@ def _parser() -> argparse.ArgumentParser:
     console.add_argument("--grbl", action="store_true", help="speak the protocol of grbl (docs/gcode.md)")
     console.add_argument("--machine", type=Path, metavar="MACHINE.toml", help="of --grbl: axes and limits")
     console.add_argument("--pty", type=Path, metavar="LINK", help="of --grbl: pseudo-terminal, in real time")
+    console.add_argument(
+        "--settings",
+        type=Path,
+        metavar="FILE",
+        help="of --grbl: keeps $ settings and offsets; made if missing",
+    )
     console.add_argument("--echo", action="store_true", help="show each line before its answer")
     firmware = commands.add_parser(
         "firmware",
@@ -149,8 +155,8 @@ def _shape(options: argparse.Namespace) -> int:
 
 def _grbl(options: argparse.Namespace) -> int:
     from passo.grbl import Grbl, pseudo_terminal, serve, talk
+    from passo.grbl_setup import SettingsFile, machine_at
     from passo.machine_file import read_machine
-    from passo.run import open_engine, parameters_for
 
     def write(text: str) -> None:
         print(text, end="", flush=True)
@@ -158,20 +164,22 @@ def _grbl(options: argparse.Namespace) -> int:
     if not options.machine:
         raise BadInputError("--grbl needs --machine MACHINE.toml (docs/gcode.md)")
     machine = read_machine(options.machine)
-    with open_engine(options.engine, parameters_for(len(machine.settings.axes)), machine.clock_hz) as engine:
+    settings = SettingsFile(options.settings) if options.settings else None
+    with machine_at(options.engine, machine) as engine:
         if not options.pty:
-            talk(sys.stdin, Grbl(engine, machine, write))
+            talk(sys.stdin, Grbl(engine, machine, write, settings))
             return OK
         import os
 
         with pseudo_terminal(options.pty) as terminal:
             write(f"{options.pty}: 115200 baud or any other\n")
-            serve(Grbl(engine, machine, lambda text: os.write(terminal, text.encode())), terminal)
+            said = lambda text: os.write(terminal, text.encode())  # noqa: E731
+            serve(Grbl(engine, machine, said, settings), terminal)
     return OK
 
 
 def _console(options: argparse.Namespace) -> int:
-    if options.grbl or options.pty or options.machine:
+    if options.grbl or options.pty or options.machine or options.settings:
         return _grbl(options)
     from passo.build import Parameters
     from passo.machine import Machine, read_switch

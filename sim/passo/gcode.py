@@ -32,7 +32,7 @@ class GcodeSettings:
     def struct(self) -> Any:
         """The `struct passo_gcode_settings`."""
         tolerance = max(1, round(self.arc_tolerance * NANOMETRES))
-        return ffi().new("struct passo_gcode_settings *", (self.axes, tolerance, self.spindle_maximum))
+        return ffi().new("struct passo_gcode_settings *", (self.axes, tolerance, self.spindle_maximum, False))
 
 
 def stripped(line: bytes) -> Any:

@@ -10,9 +10,9 @@ from pathlib import Path as FilePath
 from typing import Any
 
 from passo.driver import Driver
-from passo.engine import Engine, PairEngine
 from passo.failure import BadInputError, Failure
 from passo.gcode import Gcode
+from passo.grbl_setup import SettingsFile, setup_of
 from passo.machine_file import MachineFile
 from passo.native import ffi, planner
 from passo.part import LOOPS_PER_SECOND, SLEWS_PER_SECOND
@@ -27,11 +27,16 @@ READ = 4096
 class Grbl:
     """A `struct passo_grbl` on a machine; `write` receives all answers, in pieces."""
 
-    def __init__(self, engine: Engine | PairEngine, machine: MachineFile, write: Callable[[str], object]):
+    def __init__(
+        self,
+        engine: Any,
+        machine: MachineFile,
+        write: Callable[[str], object],
+        settings: SettingsFile | None = None,
+    ):
+        """Settings and offsets are kept in a file, or not at all."""
         self.engine, self.machine, self._write = engine, machine, write
         driver = Driver(engine, machine.clock_hz, engine.parameters)
-        for axis in range(len(machine.settings.axes)):
-            driver.configure_axis(axis, machine.pins)
         slew = machine.clock_hz // SLEWS_PER_SECOND
         driver.call("configure_motion", slew, slew, 1 << 16)
         feed = PathFeed(driver, Path(machine.settings, engine.parameters, LOOK_AHEAD))
@@ -42,7 +47,9 @@ class Grbl:
         self._sink.write = ffi().cast("void *", self._say)
         self.answers = 0  # ok and error so far
         self.c = ffi().new("struct passo_grbl *")
-        self._c.passo_grbl_open(self.c, self.player.c, self._sink)
+        self._settings = settings
+        self._setup = setup_of(machine, engine.parameters, settings.c if settings else ffi().NULL)
+        self._c.passo_grbl_open(self.c, self.player.c, self._sink, self._setup)
 
     @property
     def is_idle(self) -> bool:

@@ -13,10 +13,48 @@ from passo.moves import PinTiming
 from passo.path import PathAxis, PathSettings
 from passo.values import BadValueError, Written, shown
 
-FILE_KEYS = ("clock_hz", "junction_deviation", "arc_tolerance", "profile", "spindle_maximum", "pins", "axis")
-AXIS_KEYS = ("name", "steps_per_mm", "speed", "acceleration", "jerk", "jump")
+FILE_KEYS = (
+    *("clock_hz", "junction_deviation", "arc_tolerance", "profile", "spindle_maximum", "laser"),
+    *("soft_limits", "probe", "pins", "switches", "home", "axis"),
+)
+AXIS_KEYS = ("name", "steps_per_mm", "speed", "acceleration", "jerk", "jump", "travel", "home", "switches")
+SWITCH_KEYS = ("inverted", "debounce", "stop")
+HOME_KEYS = ("seek", "speed", "pull_off")
+HOME_ENDS = ("low", "high")
+SWITCHES = ("home", "limit_low", "limit_high")
 PROFILES = ("linear", "cosine", "sigmoid", "jerk")
+TRAVEL = 200  # mm
 JUNCTION_DEVIATION, ARC_TOLERANCE = 0.01, 0.002  # mm
+
+
+@dataclass(frozen=True)
+class AxisEnds:
+    """The ends of an axis."""
+
+    travel: float = TRAVEL  # mm
+    home: str | None = None  # the end with its home
+    switches: tuple[str, ...] = ()
+
+    @property
+    def homing_switch(self) -> str | None:
+        """The switch that its home is found by."""
+        if self.home is None:
+            return None
+        return "home" if "home" in self.switches else f"limit_{self.home}"
+
+
+@dataclass(frozen=True)
+class Switches:
+    """What all switches and homes of a machine share."""
+
+    inverted: bool = False  # active low
+    debounce: float = 0.00002  # s
+    stop: bool = True  # a limit stops the machine
+    probe: bool = False
+    soft_limits: bool = False
+    seek: float = 20  # mm/s
+    speed: float = 2  # mm/s
+    pull_off: float = 1  # mm
 
 
 @dataclass(frozen=True)
@@ -27,6 +65,14 @@ class MachineFile:
     settings: PathSettings
     gcode: GcodeSettings
     pins: PinTiming
+    ends: tuple[AxisEnds, ...]
+    switches: Switches
+    laser: bool = False
+
+    @property
+    def has_inputs(self) -> bool:
+        """Whether there is a switch or a probe."""
+        return self.switches.probe or any(end.switches for end in self.ends)
 
     @property
     def clock_hz(self) -> int:
@@ -68,6 +114,12 @@ def _machine(path: Path, data: Table) -> MachineFile:
         within(f"axis {number}", lambda number=number, table=table: _axis(table, AXIS_LETTERS[number - 1]))
         for number, table in enumerate(tables, 1)
     )
+    ends = tuple(
+        within(f"axis {number}", lambda table=table: _ends(table)) for number, table in enumerate(tables, 1)
+    )
+    switches = _switches(data)
+    if switches.soft_limits and not any(end.home for end in ends):
+        raise BadValueError("soft_limits: no axis has a home")
     tolerance = _number(data, "arc_tolerance", ARC_TOLERANCE)
     if not tolerance:
         raise BadValueError("arc_tolerance must be greater than 0")
@@ -82,7 +134,57 @@ def _machine(path: Path, data: Table) -> MachineFile:
         ),
         GcodeSettings(len(axes), tolerance, spindle),
         within("pins", lambda: read_pins(pins, clock_hz)),
+        ends,
+        switches,
+        _flag(data, "laser", False),
     )
+
+
+def _table(data: Table, key: str) -> Table:
+    table = data.get(key, {})
+    if not isinstance(table, dict):
+        raise BadValueError(f"{key} must be a table: [{key}]")
+    return table
+
+
+def _flag(table: Table, key: str, default: bool) -> bool:
+    value = table.get(key, default)
+    if not isinstance(value, bool):
+        raise BadValueError(f"{key} must be true or false, not {shown(value)}")
+    return value
+
+
+def _switches(data: Table) -> Switches:
+    table, home, default = _table(data, "switches"), _table(data, "home"), Switches()
+    within("switches", lambda: check_known(table, SWITCH_KEYS))
+    within("home", lambda: check_known(home, HOME_KEYS))
+    speeds = {key: _number(home, key, getattr(default, key)) for key in HOME_KEYS}
+    for key, value in speeds.items():
+        if not value:
+            raise BadValueError(f"home: {key} must be greater than 0")
+    return Switches(
+        inverted=_flag(table, "inverted", default.inverted),
+        debounce=_number(table, "debounce", default.debounce),
+        stop=_flag(table, "stop", default.stop),
+        probe=_flag(data, "probe", default.probe),
+        soft_limits=_flag(data, "soft_limits", default.soft_limits),
+        **speeds,
+    )
+
+
+def _ends(table: Table) -> AxisEnds:
+    home, switches = table.get("home"), table.get("switches", [])
+    if home is not None and home not in HOME_ENDS:
+        raise BadValueError(f'home must be "low" or "high", not {shown(home)}')
+    if not isinstance(switches, list) or not all(switch in SWITCHES for switch in switches):
+        raise BadValueError(f"switches must be an array of {', '.join(SWITCHES)}")
+    travel = _number(table, "travel", TRAVEL)
+    if not travel:
+        raise BadValueError("travel must be greater than 0")
+    ends = AxisEnds(travel, home, tuple(switches))
+    if ends.homing_switch not in (None, *switches):
+        raise BadValueError(f'home = "{home}" needs "home" or "{ends.homing_switch}" in switches')
+    return ends
 
 
 def _number(table: Table, key: str, default: float) -> float:

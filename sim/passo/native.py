@@ -33,6 +33,8 @@ HEADERS = (
     paths.driver / "passo_outputs.h",
     paths.driver / "passo_encoder.h",
     paths.grbl / "passo_player.h",
+    paths.grbl / "passo_storage.h",
+    paths.grbl / "passo_grbl_settings.h",
     paths.grbl / "passo_grbl.h",
     paths.model / "passo_pins.h",
     paths.engine / "passo_rig.h",

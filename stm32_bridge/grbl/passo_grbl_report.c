@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: MIT
  * Reports: state, modes, offsets. Lengths are millimetres with three decimals.
  */
-#include "passo_grbl.h"
+#include "passo_grbl_private.h"
+#include "passo_inputs.h"
 #include "passo_math.h"
 
 #define DIGITS_MAX 20u
-#define NANOMETRES_PER_MICROMETRE 1000u
-#define REPORTS_MOVING 30u /* status reports from one with offsets to the next */
+#define NANOMETRES_PER_INCH 25400000u
+#define REPORT_MACHINE 1u /* bits of $10 */
+#define REPORT_BUFFER 2u
 
 void passo_grbl_say(struct passo_grbl *grbl, const char *text)
 {
@@ -31,24 +33,54 @@ void passo_grbl_say_number(struct passo_grbl *grbl, uint64_t number)
 	say_digits(grbl, number, 1);
 }
 
-void passo_grbl_say_millimetres(struct passo_grbl *grbl, int64_t nanometres)
+static void say_decimals(struct passo_grbl *grbl, bool negative, uint64_t units, unsigned digits)
 {
-	const uint64_t size = nanometres < 0 ? 0 - (uint64_t)nanometres : (uint64_t)nanometres;
-	const uint64_t micrometres = (size + NANOMETRES_PER_MICROMETRE / 2) / NANOMETRES_PER_MICROMETRE;
+	uint64_t one = 1;
 
-	if (nanometres < 0 && micrometres > 0)
+	for (unsigned i = 0; i < digits; i++)
+		one *= 10;
+	if (negative && units > 0)
 		passo_grbl_say(grbl, "-");
-	say_digits(grbl, micrometres / 1000, 1);
+	say_digits(grbl, units / one, 1);
 	passo_grbl_say(grbl, ".");
-	say_digits(grbl, micrometres % 1000, 3);
+	say_digits(grbl, units % one, digits);
 }
 
-static void say_position(struct passo_grbl *grbl, const char *name, const int64_t *position)
+static bool in_inches(const struct passo_grbl *grbl)
+{
+	return passo_grbl_is_on(&grbl->stored.settings, PASSO_GRBL_INCHES);
+}
+
+void passo_grbl_say_thousandths(struct passo_grbl *grbl, int64_t millionths)
+{
+	const uint64_t size = millionths < 0 ? 0 - (uint64_t)millionths : (uint64_t)millionths;
+
+	say_decimals(grbl, millionths < 0, (size + 500) / 1000, 3);
+}
+
+/* In the units of reports. */
+void passo_grbl_say_length(struct passo_grbl *grbl, int64_t nanometres)
+{
+	const uint64_t size = nanometres < 0 ? 0 - (uint64_t)nanometres : (uint64_t)nanometres;
+	const uint64_t inches = passo_mul_div(2 * size, 10000, NANOMETRES_PER_INCH); /* halves of 1/10000 */
+
+	if (in_inches(grbl))
+		say_decimals(grbl, nanometres < 0, (inches + 1) / 2, 4);
+	else
+		passo_grbl_say_thousandths(grbl, nanometres);
+}
+
+uint64_t passo_grbl_in_units(const struct passo_grbl *grbl, uint64_t millimetres)
+{
+	return in_inches(grbl) ? passo_mul_div(millimetres, 10, 254) : millimetres;
+}
+
+void passo_grbl_say_position(struct passo_grbl *grbl, const char *name, const int64_t *position)
 {
 	passo_grbl_say(grbl, name);
 	for (unsigned axis = 0; axis < grbl->player->gcode->settings.axes; axis++) {
 		passo_grbl_say(grbl, axis > 0 ? "," : ":");
-		passo_grbl_say_millimetres(grbl, position[axis]);
+		passo_grbl_say_length(grbl, position[axis]);
 	}
 }
 
@@ -56,8 +88,12 @@ static const char *state_of(const struct passo_grbl *grbl)
 {
 	const struct passo_path_feed *feed = grbl->player->feed;
 
-	if (grbl->alarm != PASSO_GRBL_NO_ALARM)
+	if (grbl->homes)
+		return "Home";
+	if (grbl->locked)
 		return "Alarm";
+	if (grbl->door)
+		return grbl->held && passo_snapshot(feed->passo)->rate > 0 ? "Door:2" : "Door:0";
 	if (grbl->held || grbl->player->paused)
 		return grbl->held && passo_snapshot(feed->passo)->rate > 0 ? "Hold:1" : "Hold:0";
 	if (grbl->checks)
@@ -79,89 +115,87 @@ static uint64_t feed_of(const struct passo_path_feed *feed)
 	return passo_is_moving(feed->passo) ? (substeps + scale / 2) / scale : 0;
 }
 
-void passo_grbl_report(struct passo_grbl *grbl)
+/* Switches that are active, in the letters of grbl. */
+static void report_inputs(struct passo_grbl *grbl)
+{
+	struct passo *passo = grbl->player->feed->passo;
+	struct passo_readings readings;
+
+	if (!passo->has_inputs || passo_read_inputs(passo, &readings) != PASSO_OK)
+		return;
+	const unsigned switches = (readings.limit_low & grbl->setup->limits_low)
+	                        | (readings.limit_high & grbl->setup->limits_high)
+	                        | (readings.home & grbl->setup->homes);
+	const bool probe = readings.probe && grbl->setup->probe;
+	if (switches == 0 && !probe && !readings.estop)
+		return;
+	passo_grbl_say(grbl, "|Pn:");
+	if (probe)
+		passo_grbl_say(grbl, "P");
+	for (unsigned axis = 0; axis < grbl->player->gcode->settings.axes; axis++) {
+		if (switches >> axis & 1u)
+			passo_grbl_say(grbl, (const char[]){passo_gcode_axis_letter(axis), '\0'});
+	}
+	if (readings.estop)
+		passo_grbl_say(grbl, "R");
+}
+
+static void report_overrides(struct passo_grbl *grbl)
+{
+	passo_grbl_say(grbl, "|Ov:");
+	passo_grbl_say_number(grbl, grbl->feed);
+	passo_grbl_say(grbl, ",");
+	passo_grbl_say_number(grbl, grbl->rapid);
+	passo_grbl_say(grbl, ",");
+	passo_grbl_say_number(grbl, grbl->spindle);
+}
+
+static void report_position(struct passo_grbl *grbl, bool machine)
 {
 	struct passo_player *player = grbl->player;
 	int32_t steps[PASSO_AXES_MAX] = {0};
 	passo_gcode_position position = {0};
 
 	passo_positions(player->feed->passo, steps);
-	for (unsigned axis = 0; axis < player->gcode->settings.axes; axis++)
+	for (unsigned axis = 0; axis < player->gcode->settings.axes; axis++) {
 		position[axis] = passo_player_nanometres(player, axis, steps[axis]);
+		position[axis] -= machine ? 0 : passo_gcode_offset(player->gcode, axis);
+	}
+	passo_grbl_say_position(grbl, machine ? "|MPos" : "|WPos", position);
+}
+
+void passo_grbl_report(struct passo_grbl *grbl)
+{
+	const struct passo_player *player = grbl->player;
+	const unsigned shown =
+	    (unsigned)(grbl->stored.settings.value[PASSO_GRBL_REPORT] / PASSO_GCODE_MILLION);
+	passo_gcode_position offset = {0};
+
 	passo_grbl_say(grbl, "<");
 	passo_grbl_say(grbl, state_of(grbl));
-	say_position(grbl, "|MPos", position);
-	passo_grbl_say(grbl, "|Bf:");
-	passo_grbl_say_number(grbl, passo_path_room(player->feed->path));
-	passo_grbl_say(grbl, ",");
-	passo_grbl_say_number(grbl, (uint8_t)(grbl->tail - grbl->head - 1u));
+	report_position(grbl, (shown & REPORT_MACHINE) != 0);
+	if (shown & REPORT_BUFFER) {
+		passo_grbl_say(grbl, "|Bf:");
+		passo_grbl_say_number(grbl, passo_path_room(player->feed->path));
+		passo_grbl_say(grbl, ",");
+		passo_grbl_say_number(grbl, (uint8_t)(grbl->tail - grbl->head - 1u));
+	}
 	if (player->gcode->line > 0) {
 		passo_grbl_say(grbl, "|Ln:");
 		passo_grbl_say_number(grbl, player->gcode->line);
 	}
 	passo_grbl_say(grbl, "|FS:");
-	passo_grbl_say_number(grbl, feed_of(player->feed));
+	passo_grbl_say_number(grbl, passo_grbl_in_units(grbl, feed_of(player->feed)));
 	passo_grbl_say(grbl, ",");
 	passo_grbl_say_number(grbl, (uint64_t)player->gcode->spindle / PASSO_GCODE_MILLION);
+	report_inputs(grbl);
 	if (grbl->reports == 0) {
 		for (unsigned axis = 0; axis < player->gcode->settings.axes; axis++)
-			position[axis] = passo_gcode_offset(player->gcode, axis);
-		say_position(grbl, "|WCO", position);
-		grbl->reports = REPORTS_MOVING;
-	} else if (grbl->reports-- == REPORTS_MOVING) {
-		passo_grbl_say(grbl, "|Ov:");
-		passo_grbl_say_number(grbl, grbl->feed_percent);
-		passo_grbl_say(grbl, ",100,100");
+			offset[axis] = passo_gcode_offset(player->gcode, axis);
+		passo_grbl_say_position(grbl, "|WCO", offset);
+		grbl->reports = PASSO_GRBL_REPORTS;
+	} else if (grbl->reports-- == PASSO_GRBL_REPORTS) {
+		report_overrides(grbl);
 	}
 	passo_grbl_say(grbl, ">\r\n");
-}
-
-static void say_command(struct passo_grbl *grbl, const char *letter, passo_gcode_command command)
-{
-	passo_grbl_say(grbl, letter);
-	passo_grbl_say_number(grbl, (uint64_t)command / 10);
-	if (command % 10 > 0) {
-		passo_grbl_say(grbl, ".");
-		passo_grbl_say_number(grbl, (uint64_t)command % 10);
-	}
-}
-
-void passo_grbl_report_modes(struct passo_grbl *grbl)
-{
-	static const uint8_t SHOWN[] = {PASSO_GCODE_MOTION, PASSO_GCODE_SYSTEM, PASSO_GCODE_PLANE,
-	    PASSO_GCODE_UNITS, PASSO_GCODE_DISTANCE, PASSO_GCODE_FEED_MODE};
-	const struct passo_gcode *gcode = grbl->player->gcode;
-
-	passo_grbl_say(grbl, "[GC:");
-	for (unsigned i = 0; i < sizeof SHOWN; i++)
-		say_command(grbl, i > 0 ? " G" : "G", gcode->mode[SHOWN[i]]);
-	say_command(grbl, " M", gcode->mode[PASSO_GCODE_SPINDLE]);
-	passo_grbl_say(grbl, gcode->mist ? " M7" : "");
-	passo_grbl_say(grbl, gcode->flood ? " M8" : "");
-	passo_grbl_say(grbl, gcode->mist || gcode->flood ? "" : " M9");
-	passo_grbl_say(grbl, " T");
-	passo_grbl_say_number(grbl, gcode->tool);
-	passo_grbl_say(grbl, " F");
-	passo_grbl_say_number(grbl, (uint64_t)gcode->feed / PASSO_GCODE_MILLION);
-	passo_grbl_say(grbl, " S");
-	passo_grbl_say_number(grbl, (uint64_t)gcode->spindle / PASSO_GCODE_MILLION);
-	passo_grbl_say(grbl, "]\r\n");
-}
-
-void passo_grbl_report_offsets(struct passo_grbl *grbl)
-{
-	static const char *const SYSTEMS[] = {"[G54", "[G55", "[G56", "[G57", "[G58", "[G59"};
-	const struct passo_gcode *gcode = grbl->player->gcode;
-
-	for (unsigned system = 0; system < PASSO_GCODE_SYSTEMS; system++) {
-		say_position(grbl, SYSTEMS[system], gcode->offsets.system[system]);
-		passo_grbl_say(grbl, "]\r\n");
-	}
-	say_position(grbl, "[G28", gcode->offsets.home[0]);
-	say_position(grbl, "]\r\n[G30", gcode->offsets.home[1]);
-	say_position(grbl, "]\r\n[G92", gcode->shift);
-	passo_grbl_say(grbl, "]\r\n[TLO:");
-	passo_grbl_say_millimetres(grbl, gcode->tool_length);
-	say_position(grbl, "]\r\n[PRB", grbl->player->touch);
-	passo_grbl_say(grbl, grbl->player->touched ? ":1]\r\n" : ":0]\r\n");
 }

@@ -1,44 +1,17 @@
 /* SPDX-License-Identifier: MIT
  * Lines that begin with `$`.
  */
-#include "passo_grbl.h"
-#include "passo_math.h"
+#include "passo_grbl_private.h"
 
 #include <string.h>
 
-/* A setting with three decimals, from UQ32.32 times a factor. */
-static void say_setting(struct passo_grbl *grbl, unsigned number, uint64_t value, uint32_t factor)
-{
-	passo_grbl_say(grbl, "$");
-	passo_grbl_say_number(grbl, number);
-	passo_grbl_say(grbl, "=");
-	passo_grbl_say_millimetres(
-	    grbl, (int64_t)passo_mul_div(value, (uint64_t)factor * PASSO_GCODE_MILLION, UINT64_C(1) << 32));
-	passo_grbl_say(grbl, "\r\n");
-}
-
-static void say_settings(struct passo_grbl *grbl)
-{
-	const struct passo_player *player = grbl->player;
-
-	passo_grbl_say(grbl, "$12=");
-	passo_grbl_say_millimetres(grbl, player->gcode->settings.arc_tolerance);
-	passo_grbl_say(grbl, "\r\n$30=");
-	passo_grbl_say_number(grbl, player->gcode->settings.spindle_maximum);
-	passo_grbl_say(grbl, "\r\n");
-	for (unsigned axis = 0; axis < player->gcode->settings.axes; axis++)
-		say_setting(grbl, 100 + axis, player->machine->axis[axis].steps_per_mm, 1);
-	for (unsigned axis = 0; axis < player->gcode->settings.axes; axis++)
-		say_setting(grbl, 110 + axis, player->machine->axis[axis].speed, 60);
-	for (unsigned axis = 0; axis < player->gcode->settings.axes; axis++)
-		say_setting(grbl, 120 + axis, player->machine->axis[axis].acceleration, 1);
-}
-
 static enum passo_gcode_error unlock(struct passo_grbl *grbl)
 {
-	if (grbl->alarm != PASSO_GRBL_NO_ALARM)
+	if (grbl->stopping)
+		return PASSO_GCODE_LOCKED; /* e-stop is still pressed */
+	if (grbl->locked)
 		passo_grbl_say(grbl, "[MSG:Caution: Unlocked]\r\n");
-	grbl->alarm = PASSO_GRBL_NO_ALARM;
+	grbl->locked = false;
 	return PASSO_GCODE_OK;
 }
 
@@ -54,15 +27,42 @@ static enum passo_gcode_error check(struct passo_grbl *grbl)
 
 static enum passo_gcode_error jog(struct passo_grbl *grbl, const char *text)
 {
-	if (grbl->alarm != PASSO_GRBL_NO_ALARM)
+	struct passo_gcode *gcode = grbl->player->gcode;
+	passo_gcode_position before = {0};
+
+	if (grbl->locked)
 		return PASSO_GCODE_LOCKED;
 	if (text[0] != '=')
 		return PASSO_GCODE_JOG;
 	if (!grbl->jogs && !passo_grbl_is_idle(grbl))
 		return PASSO_GCODE_NOT_IDLE;
-	const enum passo_gcode_error error = passo_gcode_jog(grbl->player->gcode, text + 1);
+	for (unsigned axis = 0; axis < gcode->settings.axes; axis++)
+		before[axis] = gcode->position[axis];
+	const enum passo_gcode_error error = passo_gcode_jog(gcode, text + 1);
+	if (error == PASSO_GCODE_OK && !passo_player_allows(grbl->player, gcode->position)) {
+		passo_gcode_set_position(gcode, before);
+		return PASSO_GCODE_TRAVEL;
+	}
 	grbl->jogs = grbl->jogs || error == PASSO_GCODE_OK;
 	return error;
+}
+
+/* What needs rest. */
+static enum passo_gcode_error at_rest(struct passo_grbl *grbl, const char *text)
+{
+	if (!passo_grbl_is_idle(grbl))
+		return PASSO_GCODE_NOT_IDLE;
+	if (strcmp(text, "$") == 0)
+		passo_grbl_report_settings(grbl);
+	else if (strcmp(text, "#") == 0)
+		passo_grbl_report_offsets(grbl);
+	else if (strcmp(text, "N") == 0)
+		passo_grbl_report_starts(grbl);
+	else if (strncmp(text, "RST=", 4) == 0)
+		return passo_grbl_restore(grbl, text + 4);
+	else
+		return passo_grbl_change(grbl, text);
+	return PASSO_GCODE_OK;
 }
 
 enum passo_gcode_error passo_grbl_system(struct passo_grbl *grbl, const char *text)
@@ -73,21 +73,16 @@ enum passo_gcode_error passo_grbl_system(struct passo_grbl *grbl, const char *te
 		return unlock(grbl);
 	if (strcmp(text, "$C") == 0)
 		return check(grbl);
+	if (strcmp(text, "$H") == 0)
+		return passo_grbl_home(grbl);
 	if (strcmp(text, "$G") == 0)
 		passo_grbl_report_modes(grbl);
 	else if (strcmp(text, "$") == 0)
-		passo_grbl_say(grbl, "[HLP:$$ $# $G $I $J=line $C $X ~ ! ? ctrl-x]\r\n");
+		passo_grbl_say(
+		    grbl, "[HLP:$$ $# $G $I $N $x=val $Nx=line $J=line $C $X $H $RST= ~ ! ? ctrl-x]\r\n");
 	else if (strcmp(text, "$I") == 0)
 		passo_grbl_say(grbl, "[VER:1.1h.passo:]\r\n[OPT:VNM,48,255]\r\n");
-	else if (strcmp(text, "$H") == 0)
-		return PASSO_GCODE_NO_HOMING;
-	else if (strcmp(text, "$$") != 0 && strcmp(text, "$#") != 0)
-		return PASSO_GCODE_STATEMENT;
-	else if (!passo_grbl_is_idle(grbl))
-		return PASSO_GCODE_NOT_IDLE;
-	else if (text[1] == '$')
-		say_settings(grbl);
 	else
-		passo_grbl_report_offsets(grbl);
+		return at_rest(grbl, text + 1);
 	return PASSO_GCODE_OK;
 }

@@ -43,7 +43,7 @@ int64_t passo_player_nanometres(const struct passo_player *player, unsigned axis
 	return steps < 0 ? -size : size;
 }
 
-static bool is_within_travel(const struct passo_player *player, const int64_t *target)
+bool passo_player_allows(const struct passo_player *player, const int64_t *target)
 {
 	const struct passo_player_machine *machine = player->machine;
 
@@ -72,7 +72,7 @@ static enum passo_error take_line(struct passo_player *player, enum passo_player
 	const uint32_t output = player->feed->passo->has_outputs ? action->output : 0u;
 	struct passo_path_move move = {.feed = action->feed, .output = output};
 
-	if (!is_within_travel(player, action->target)) {
+	if (!passo_player_allows(player, action->target)) {
 		*event = PASSO_PLAYER_TRAVEL;
 		drop_line(player);
 		return PASSO_OK;

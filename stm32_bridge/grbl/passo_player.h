@@ -61,6 +61,9 @@ bool passo_player_is_idle(const struct passo_player *player);
  * and PASSO_ERROR_PLAN + those of passo_path_add(); its line is dropped then. */
 enum passo_error passo_player_poll(struct passo_player *player, enum passo_player_event *event);
 
+/* Whether a target is within the travel of all axes. */
+bool passo_player_allows(const struct passo_player *player, const int64_t *target);
+
 void passo_player_go_on(struct passo_player *player);
 
 /* After a stop and passo_clear(), or after homing: drops all that is left, and begins at the present position

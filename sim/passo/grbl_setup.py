@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: MIT
+"""What the grbl console knows of its machine, and the file that keeps its settings."""
+
+import contextlib
+import os
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from passo.build import Parameters
+from passo.engine import NUMBERS
+from passo.failure import BadInputError
+from passo.machine_file import MachineFile
+from passo.native import ffi, planner
+from passo.run import open_engine, parameters_for
+
+MILLION = 1_000_000
+SECONDS_PER_MINUTE = 60
+REPORT_ALL = 3  # $10: MPos and Bf
+PAGE = 1024  # bytes; a page of flash of the STM32F103
+PAGES = 2
+WORD = 4
+PROBED = 3  # the probe is at Z
+
+
+def default_settings(machine: MachineFile) -> Any:
+    """The `struct passo_grbl_settings` of a machine file."""
+    c = planner()
+    made = ffi().new("struct passo_grbl_settings *")
+    ends, switches = machine.ends, machine.switches
+    values = {
+        "PULSE": machine.pins.step_high * MILLION / machine.clock_hz,
+        "REPORT": REPORT_ALL,
+        "LIMITS_INVERTED": switches.inverted,
+        "DEVIATION": machine.settings.junction_deviation,
+        "ARC_TOLERANCE": machine.gcode.arc_tolerance,
+        "SOFT_LIMITS": switches.soft_limits,
+        "HARD_LIMITS": switches.stop and any(set(end.switches) - {"home"} for end in ends),
+        "HOMING": any(end.home for end in ends),
+        "HOMES_LOW": sum(1 << axis for axis, end in enumerate(ends) if end.home == "low"),
+        "HOME_FEED": switches.speed * SECONDS_PER_MINUTE,
+        "HOME_SEEK": switches.seek * SECONDS_PER_MINUTE,
+        "DEBOUNCE": switches.debounce * 1000,
+        "PULL_OFF": switches.pull_off,
+        "SPINDLE": machine.gcode.spindle_maximum,
+        "LASER": machine.laser,
+    }
+    for name, value in values.items():
+        made.value[getattr(c, f"PASSO_GRBL_{name}")] = round(value * MILLION)
+    for axis, limits in enumerate(machine.settings.axes):
+        made.axis[c.PASSO_GRBL_STEPS][axis] = round(limits.steps_per_mm * MILLION)
+        made.axis[c.PASSO_GRBL_SPEED][axis] = round(limits.speed * SECONDS_PER_MINUTE * MILLION)
+        made.axis[c.PASSO_GRBL_ACCELERATION][axis] = round(limits.acceleration * MILLION)
+        made.axis[c.PASSO_GRBL_TRAVEL][axis] = round(ends[axis].travel * MILLION)
+    return made
+
+
+def setup_of(machine: MachineFile, parameters: Parameters, pages: Any) -> Any:
+    """The `struct passo_grbl_setup`; `pages` is that of a file, or NULL."""
+    made = ffi().new("struct passo_grbl_setup *")
+    made.path = machine.settings.struct(parameters)[0]
+    made.defaults = default_settings(machine)[0]
+    made.pins.step_low_ns, made.pins.dir_setup_ns = machine.pins.step_low, machine.pins.dir_setup
+    made.pins.dir_hold_ns = machine.pins.dir_hold
+    for axis, end in enumerate(machine.ends):
+        made.limits_low |= ("limit_low" in end.switches) << axis
+        made.limits_high |= ("limit_high" in end.switches) << axis
+        made.homes |= ("home" in end.switches) << axis
+        made.homed |= (end.home is not None) << axis
+    made.probe, made.pages = machine.switches.probe, pages
+    return made
+
+
+def core_for(machine: MachineFile) -> Parameters:
+    """The core that a machine needs."""
+    core = parameters_for(len(machine.settings.axes))
+    outputs = machine.gcode.spindle_maximum > 0
+    return replace(core, inputs=int(machine.has_inputs), outputs=int(outputs))
+
+
+def attach(engine: Any, machine: MachineFile) -> None:
+    """A simulated machine at the core: each axis in the middle of its travel, switches at its ends.
+
+    For the probe there is a plate that Z (or the last axis) touches a quarter of its travel below the middle.
+    """
+    config = ffi().new("struct passo_rig_config *")
+    config.axes = engine.parameters.channels * engine.parameters.axes
+    wires = []
+    for axis, (limits, end) in enumerate(zip(machine.settings.axes, machine.ends, strict=True)):
+        travel = round(float(limits.steps_per_mm) * end.travel)
+        config.start[axis] = travel // 2
+        for switch in end.switches:
+            above = "limit_high" in (switch, f"limit_{end.home}")
+            wires.append((NUMBERS[switch], axis, axis, above, travel if above else 0))
+    if machine.switches.probe:
+        axis = min(len(machine.ends), PROBED) - 1
+        wires.append((NUMBERS["probe"], 0, axis, False, config.start[axis] // 2))
+    for wire, (pin, bit, axis, above, at) in zip(config.wire, wires, strict=False):
+        wire.input, wire.bit, wire.axis, wire.above, wire.at = pin, bit, axis, above, at
+        wire.is_switch, wire.inverted = True, machine.switches.inverted and pin != NUMBERS["probe"]
+    config.wires = len(wires)
+    engine.attach(config)
+
+
+@contextlib.contextmanager
+def machine_at(name: str, machine: MachineFile) -> Iterator[Any]:
+    """An engine with the machine at its pins."""
+    with open_engine(name, core_for(machine), machine.clock_hz) as engine:
+        if machine.has_inputs:
+            attach(engine, machine)
+        yield engine
+
+
+class SettingsFile:
+    """Two pages in a file, as they would be in flash."""
+
+    def __init__(self, path: Path):
+        self.path = path
+        try:
+            if not path.exists():
+                path.write_bytes(b"\xff" * PAGE * PAGES)
+            if path.stat().st_size != PAGE * PAGES:
+                raise BadInputError(f"{path}: this is no file of settings: it has not {PAGE * PAGES} bytes")
+        except OSError as error:
+            raise BadInputError(f"{path}: {error.strerror}") from None
+        kinds = (
+            "bool(void *, unsigned, size_t, uint32_t *, size_t)",
+            "bool(void *, unsigned)",
+            "bool(void *, unsigned, size_t, uint32_t *, size_t)",
+        )
+        functions = self._read, self._erase, self._write
+        self._callbacks = [
+            ffi().callback(kind, function, error=False)
+            for kind, function in zip(kinds, functions, strict=True)
+        ]
+        self.c = ffi().new("struct passo_storage_pages *")
+        self.c.read, self.c.erase, self.c.write = (ffi().cast("void *", call) for call in self._callbacks)
+
+    def _read(self, _: Any, page: int, at: int, words: Any, count: int) -> bool:
+        if WORD * (at + count) > PAGE:
+            return False
+        with self.path.open("rb") as file:
+            file.seek(page * PAGE + WORD * at)
+            ffi().memmove(words, file.read(WORD * count), WORD * count)
+        return True
+
+    def _erase(self, _: Any, page: int) -> bool:
+        return self._put(page, 0, b"\xff" * PAGE)
+
+    def _write(self, _: Any, page: int, at: int, words: Any, count: int) -> bool:
+        return self._put(page, at, bytes(ffi().buffer(words, WORD * count)))
+
+    def _put(self, page: int, at: int, data: bytes) -> bool:
+        if WORD * at + len(data) > PAGE:
+            return False
+        with self.path.open("r+b") as file:
+            file.seek(page * PAGE + WORD * at)
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        return True

@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: MIT
+ * Answers to `$G`, `$#`, `$$` and `$N`.
+ */
+#include "passo_grbl_private.h"
+
+static void say_command(struct passo_grbl *grbl, const char *letter, passo_gcode_command command)
+{
+	passo_grbl_say(grbl, letter);
+	passo_grbl_say_number(grbl, (uint64_t)command / 10);
+	if (command % 10 > 0) {
+		passo_grbl_say(grbl, ".");
+		passo_grbl_say_number(grbl, (uint64_t)command % 10);
+	}
+}
+
+void passo_grbl_report_modes(struct passo_grbl *grbl)
+{
+	static const uint8_t SHOWN[] = {PASSO_GCODE_MOTION, PASSO_GCODE_SYSTEM, PASSO_GCODE_PLANE,
+	    PASSO_GCODE_UNITS, PASSO_GCODE_DISTANCE, PASSO_GCODE_FEED_MODE};
+	const struct passo_gcode *gcode = grbl->player->gcode;
+
+	passo_grbl_say(grbl, "[GC:");
+	for (unsigned i = 0; i < sizeof SHOWN; i++)
+		say_command(grbl, i > 0 ? " G" : "G", gcode->mode[SHOWN[i]]);
+	say_command(grbl, " M", gcode->mode[PASSO_GCODE_SPINDLE]);
+	passo_grbl_say(grbl, gcode->mist ? " M7" : "");
+	passo_grbl_say(grbl, gcode->flood ? " M8" : "");
+	passo_grbl_say(grbl, gcode->mist || gcode->flood ? "" : " M9");
+	passo_grbl_say(grbl, " T");
+	passo_grbl_say_number(grbl, gcode->tool);
+	passo_grbl_say(grbl, " F");
+	passo_grbl_say_number(grbl, passo_grbl_in_units(grbl, (uint64_t)gcode->feed / PASSO_GCODE_MILLION));
+	passo_grbl_say(grbl, " S");
+	passo_grbl_say_number(grbl, (uint64_t)gcode->spindle / PASSO_GCODE_MILLION);
+	passo_grbl_say(grbl, "]\r\n");
+}
+
+void passo_grbl_report_offsets(struct passo_grbl *grbl)
+{
+	static const char *const SYSTEMS[] = {"[G54", "[G55", "[G56", "[G57", "[G58", "[G59"};
+	const struct passo_gcode *gcode = grbl->player->gcode;
+
+	for (unsigned system = 0; system < PASSO_GCODE_SYSTEMS; system++) {
+		passo_grbl_say_position(grbl, SYSTEMS[system], gcode->offsets.system[system]);
+		passo_grbl_say(grbl, "]\r\n");
+	}
+	passo_grbl_say_position(grbl, "[G28", gcode->offsets.home[0]);
+	passo_grbl_say_position(grbl, "]\r\n[G30", gcode->offsets.home[1]);
+	passo_grbl_say_position(grbl, "]\r\n[G92", gcode->shift);
+	passo_grbl_say(grbl, "]\r\n[TLO:");
+	passo_grbl_say_length(grbl, gcode->tool_length);
+	passo_grbl_say(grbl, "]\r\n");
+	passo_grbl_report_probe(grbl);
+}
+
+void passo_grbl_report_probe(struct passo_grbl *grbl)
+{
+	passo_grbl_say_position(grbl, "[PRB", grbl->player->touch);
+	passo_grbl_say(grbl, grbl->player->touched ? ":1]\r\n" : ":0]\r\n");
+}
+
+void passo_grbl_report_settings(struct passo_grbl *grbl)
+{
+	const unsigned axes = grbl->path.machine.axes;
+	unsigned number;
+	bool whole;
+
+	for (unsigned i = 0; (number = passo_grbl_setting_number(i, axes, &whole)) != PASSO_GRBL_NO_SETTING;
+	    i++) {
+		const int64_t value = *passo_grbl_setting(&grbl->stored.settings, number, axes);
+
+		passo_grbl_say(grbl, "$");
+		passo_grbl_say_number(grbl, number);
+		passo_grbl_say(grbl, "=");
+		if (whole)
+			passo_grbl_say_number(grbl, (uint64_t)value / PASSO_GCODE_MILLION);
+		else
+			passo_grbl_say_thousandths(grbl, value);
+		passo_grbl_say(grbl, "\r\n");
+	}
+}
+
+void passo_grbl_report_starts(struct passo_grbl *grbl)
+{
+	for (unsigned i = 0; i < PASSO_GRBL_STARTS; i++) {
+		passo_grbl_say(grbl, "$N");
+		passo_grbl_say_number(grbl, i);
+		passo_grbl_say(grbl, "=");
+		passo_grbl_say(grbl, grbl->stored.start[i]);
+		passo_grbl_say(grbl, "\r\n");
+	}
+}

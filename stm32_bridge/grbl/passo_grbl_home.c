@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: MIT
+ * Homing: Z first, then the other axes, as the settings say.
+ */
+#include "passo_grbl_private.h"
+#include "passo_math.h"
+
+#define MILLION ((uint64_t)PASSO_GCODE_MILLION)
+#define SECONDS_PER_MINUTE 60u
+
+/* Steps of millionths of a millimetre; UQ32.32 steps/s of millionths of mm/min. */
+static int32_t steps_of(const struct passo_grbl *grbl, unsigned axis, uint64_t length)
+{
+	const uint64_t steps = passo_mul_div(
+	    length, (uint64_t)grbl->stored.settings.axis[PASSO_GRBL_STEPS][axis], MILLION * MILLION);
+
+	return steps < PASSO_SUBSTEPS_MAX ? (int32_t)steps : (int32_t)PASSO_SUBSTEPS_MAX;
+}
+
+static uint64_t speed_of(const struct passo_grbl *grbl, unsigned axis, enum passo_grbl_setting setting)
+{
+	const int64_t own = grbl->stored.settings.axis[PASSO_GRBL_SPEED][axis];
+	const int64_t wanted = grbl->stored.settings.value[setting];
+
+	return passo_mul_div((uint64_t)(wanted < own ? wanted : own), grbl->path.axis[axis].steps_per_mm,
+	    SECONDS_PER_MINUTE * MILLION);
+}
+
+static struct passo_home home_of(const struct passo_grbl *grbl, uint8_t axis)
+{
+	const struct passo_grbl_settings *settings = &grbl->stored.settings;
+	const bool low = passo_grbl_has_axis(settings, PASSO_GRBL_HOMES_LOW, axis);
+	const int32_t off = steps_of(grbl, axis, (uint64_t)settings->value[PASSO_GRBL_PULL_OFF]);
+	const uint64_t travel = (uint64_t)settings->axis[PASSO_GRBL_TRAVEL][axis];
+	const int32_t distance = steps_of(grbl, axis, travel + travel / 2);
+
+	return (struct passo_home){
+	    .axis = axis,
+	    .source = grbl->setup->homes >> axis & 1u ? PASSO_TRIGGER_SOURCE_HOME
+	            : low                             ? PASSO_TRIGGER_SOURCE_LIMIT_LOW
+	                                              : PASSO_TRIGGER_SOURCE_LIMIT_HIGH,
+	    .distance = low ? -distance : distance,
+	    .back_off = off > 0 ? (uint32_t)off : 1u,
+	    .pull_off = (uint32_t)off,
+	    .speed = speed_of(grbl, axis, PASSO_GRBL_HOME_SEEK),
+	    .slow_speed = speed_of(grbl, axis, PASSO_GRBL_HOME_FEED),
+	    .acceleration = passo_mul_div(
+		grbl->path.axis[axis].acceleration, grbl->path.axis[axis].steps_per_mm, UINT64_C(1) << 32),
+	    .position = low ? -steps_of(grbl, axis, travel) : 0,
+	};
+}
+
+enum passo_gcode_error passo_grbl_home(struct passo_grbl *grbl)
+{
+	static const uint8_t ORDER[PASSO_GCODE_AXES_MAX] = {2, 0, 1, 3, 4, 5};
+	struct passo *passo = grbl->player->feed->passo;
+	uint8_t count = 0;
+
+	for (unsigned i = 0; i < PASSO_GCODE_AXES_MAX; i++) {
+		const uint8_t axis = ORDER[i];
+
+		if (axis < grbl->path.machine.axes && (grbl->setup->homed >> axis & 1u))
+			grbl->home[count++] = home_of(grbl, axis);
+	}
+	if (!passo->has_inputs || count == 0 || !passo_grbl_is_on(&grbl->stored.settings, PASSO_GRBL_HOMING))
+		return PASSO_GCODE_NO_HOMING;
+	if (!passo_grbl_is_idle(grbl))
+		return PASSO_GCODE_NOT_IDLE;
+	if (passo_home(passo, grbl->home, count) != PASSO_OK)
+		return PASSO_GCODE_NO_HOMING;
+	grbl->homes = true;
+	return PASSO_GCODE_OK;
+}
+
+static void fail(struct passo_grbl *grbl, enum passo_error error)
+{
+	enum passo_grbl_alarm alarm = PASSO_GRBL_ABORTED;
+
+	if (error == PASSO_ERROR_SWITCH_MISSED)
+		alarm = PASSO_GRBL_HOME_MISSED;
+	else if (error == PASSO_ERROR_SWITCH_LEVEL)
+		alarm = PASSO_GRBL_HOME_PULL_OFF;
+	else if (error == PASSO_ERROR_LIMIT)
+		alarm = PASSO_GRBL_HARD_LIMIT;
+	passo_grbl_alarm(grbl, alarm);
+	passo_grbl_begin_stop(grbl, false);
+}
+
+void passo_grbl_poll_home(struct passo_grbl *grbl)
+{
+	struct passo *passo = grbl->player->feed->passo;
+	const enum passo_error error = passo_poll(passo);
+
+	if (grbl->stopping)
+		return;
+	if (error != PASSO_OK) {
+		fail(grbl, error);
+		return;
+	}
+	if (passo_is_moving(passo) || passo_player_restart(grbl->player) != PASSO_OK)
+		return;
+	grbl->homes = grbl->locked = false;
+	grbl->starts = 0;
+	passo_grbl_answer(grbl, PASSO_GCODE_OK);
+}

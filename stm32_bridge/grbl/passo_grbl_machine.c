@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: MIT
+ * The machine as the settings say.
+ */
+#include "passo_grbl_private.h"
+#include "passo_inputs.h"
+#include "passo_math.h"
+#include "passo_outputs.h"
+
+#define ONE (UINT64_C(1) << 32)
+#define SECONDS_PER_MINUTE 60u
+#define MILLION ((uint64_t)PASSO_GCODE_MILLION)
+#define PWM_HZ 20000u
+
+/* UQ32.32 of millionths. */
+static uint64_t fixed(int64_t millionths, uint32_t divisor)
+{
+	return passo_mul_div((uint64_t)millionths, ONE, MILLION * divisor);
+}
+
+static struct passo_path_settings path_of(const struct passo_grbl *grbl)
+{
+	const struct passo_grbl_settings *settings = &grbl->stored.settings;
+	struct passo_path_settings path = grbl->setup->path;
+
+	for (unsigned axis = 0; axis < path.machine.axes; axis++) {
+		path.axis[axis].steps_per_mm = fixed(settings->axis[PASSO_GRBL_STEPS][axis], 1);
+		path.axis[axis].speed = fixed(settings->axis[PASSO_GRBL_SPEED][axis], SECONDS_PER_MINUTE);
+		path.axis[axis].acceleration = fixed(settings->axis[PASSO_GRBL_ACCELERATION][axis], 1);
+	}
+	path.junction_deviation = fixed(settings->value[PASSO_GRBL_DEVIATION], 1);
+	return path;
+}
+
+static enum passo_gcode_error of_plan(enum passo_plan_error error)
+{
+	if (error == PASSO_PLAN_OK)
+		return PASSO_GCODE_OK;
+	return error == PASSO_PLAN_TOO_FAST ? PASSO_GCODE_TOO_FAST : PASSO_GCODE_STATEMENT;
+}
+
+static enum passo_error apply_pins(struct passo_grbl *grbl, uint32_t pulse)
+{
+	const struct passo_grbl_settings *settings = &grbl->stored.settings;
+	struct passo *passo = grbl->player->feed->passo;
+	struct passo_axis_config config = grbl->setup->pins;
+	enum passo_error error = PASSO_OK;
+
+	config.in_clocks = true;
+	config.step_high_ns = pulse;
+	config.enable_inverted = passo_grbl_is_on(settings, PASSO_GRBL_ENABLES_INVERTED);
+	for (uint8_t axis = 0; error == PASSO_OK && axis < grbl->path.machine.axes; axis++) {
+		config.step_inverted = passo_grbl_has_axis(settings, PASSO_GRBL_STEPS_INVERTED, axis);
+		config.direction_inverted = passo_grbl_has_axis(settings, PASSO_GRBL_DIRS_INVERTED, axis);
+		error = passo_configure_axis(passo, axis, &config);
+		if (error == PASSO_OK)
+			error = passo_enable(passo, axis, true);
+	}
+	return error;
+}
+
+/* A limit that is also a home is there whether or not limits stop. */
+static enum passo_error apply_inputs(struct passo_grbl *grbl)
+{
+	const struct passo_grbl_setup *setup = grbl->setup;
+	const struct passo_grbl_settings *settings = &grbl->stored.settings;
+	struct passo *passo = grbl->player->feed->passo;
+	const bool inverted = passo_grbl_is_on(settings, PASSO_GRBL_LIMITS_INVERTED);
+	const bool hard = passo_grbl_is_on(settings, PASSO_GRBL_HARD_LIMITS);
+	const uint64_t filter = passo_mul_div(
+	    (uint64_t)settings->value[PASSO_GRBL_DEBOUNCE], grbl->path.machine.clock_hz, MILLION * 1000u);
+	enum passo_error error = passo_configure_filter(passo, filter);
+
+	for (uint8_t axis = 0; error == PASSO_OK && axis < grbl->path.machine.axes; axis++) {
+		const bool by_limit = (setup->homed >> axis & 1u) > (setup->homes >> axis & 1u);
+		const bool used = hard || (by_limit && passo_grbl_is_on(settings, PASSO_GRBL_HOMING));
+
+		error = passo_configure_inputs(passo, axis,
+		    &(struct passo_input_config){.limit_low = used && (setup->limits_low >> axis & 1u),
+			.limit_high = used && (setup->limits_high >> axis & 1u),
+			.home = setup->homes >> axis & 1u,
+			.limit_low_inverted = inverted,
+			.limit_high_inverted = inverted,
+			.home_inverted = inverted,
+			.limit_soft = true});
+	}
+	if (error == PASSO_OK && setup->probe)
+		error = passo_configure_probe(passo, passo_grbl_is_on(settings, PASSO_GRBL_PROBE_INVERTED));
+	return error;
+}
+
+/* Full power in proportion is at the highest speed of all axes. */
+static enum passo_error apply_outputs(struct passo_grbl *grbl)
+{
+	uint64_t fastest = 0;
+
+	for (unsigned axis = 0; axis < grbl->path.machine.axes; axis++) {
+		const uint64_t speed = grbl->path.axis[axis].speed;
+
+		fastest = speed > fastest ? speed : fastest;
+	}
+	return passo_configure_outputs(grbl->player->feed->passo,
+	    &(struct passo_outputs_config){
+		.pwm_hz = PWM_HZ, .reference = passo_path_velocity(grbl->player->feed->path, fastest)});
+}
+
+/* Machine coordinates are those after $H: 0 is at the high end. */
+static void apply_travel(struct passo_grbl *grbl)
+{
+	const struct passo_grbl_settings *settings = &grbl->stored.settings;
+
+	grbl->limits = (struct passo_player_machine){
+	    .axis = grbl->path.axis, .limited = passo_grbl_is_on(settings, PASSO_GRBL_SOFT_LIMITS)};
+	for (unsigned axis = 0; axis < grbl->path.machine.axes; axis++)
+		grbl->limits.low[axis] = -settings->axis[PASSO_GRBL_TRAVEL][axis];
+	grbl->player->machine = &grbl->limits;
+}
+
+enum passo_gcode_error passo_grbl_apply(struct passo_grbl *grbl)
+{
+	const struct passo_grbl_settings *settings = &grbl->stored.settings;
+	struct passo_path_planner *path = grbl->player->feed->path;
+	struct passo *passo = grbl->player->feed->passo;
+	const uint64_t pulse = passo_mul_div(2u * (uint64_t)settings->value[PASSO_GRBL_PULSE],
+	    grbl->setup->path.machine.clock_hz, MILLION * MILLION);
+
+	grbl->path = path_of(grbl);
+	const enum passo_gcode_error planned =
+	    of_plan(passo_path_open(path, &grbl->path, path->items, path->capacity));
+	if (planned != PASSO_GCODE_OK)
+		return planned;
+	if (pulse == 0)
+		return PASSO_GCODE_PULSE_TOO_SHORT;
+	if (pulse / 2 >= PASSO_PIN_CLOCKS_MAX)
+		return PASSO_GCODE_STATEMENT;
+	apply_travel(grbl);
+	passo_gcode_configure(grbl->player->gcode,
+	    &(struct passo_gcode_settings){
+		.arc_tolerance = (uint32_t)settings->value[PASSO_GRBL_ARC_TOLERANCE],
+		.spindle_maximum = (uint32_t)(settings->value[PASSO_GRBL_SPINDLE] / PASSO_GCODE_MILLION),
+		.laser = passo_grbl_is_on(settings, PASSO_GRBL_LASER)});
+	enum passo_error error = apply_pins(grbl, (uint32_t)((pulse + 1) / 2));
+	if (error == PASSO_OK && passo->has_inputs)
+		error = apply_inputs(grbl);
+	if (error == PASSO_OK && passo->has_outputs)
+		error = apply_outputs(grbl);
+	if (error == PASSO_OK)
+		error = passo_player_restart(grbl->player);
+	passo_grbl_override(grbl);
+	if (error == PASSO_ERROR_FILTER_TOO_LONG)
+		return PASSO_GCODE_STATEMENT;
+	return error == PASSO_OK ? PASSO_GCODE_OK : PASSO_GCODE_NOT_IDLE;
+}

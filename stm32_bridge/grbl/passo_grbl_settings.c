@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: MIT
+ * Numbers, kinds and ranges of the settings.
+ */
+#include "passo_grbl_settings.h"
+
+#include <stddef.h>
+
+#define AXES_AT 100u /* first number of the settings of axes; ten numbers for each */
+#define AXES_STEP 10u
+
+/* Ranges are whole numbers; `positive`: above 0 as well. */
+struct kind {
+	uint8_t number;
+	bool whole, positive;
+	uint32_t most;
+};
+
+static const struct kind KINDS[PASSO_GRBL_SETTINGS] = {
+    [PASSO_GRBL_PULSE] = {0, false, true, 1000},
+    [PASSO_GRBL_STEPS_INVERTED] = {2, true, false, 63},
+    [PASSO_GRBL_DIRS_INVERTED] = {3, true, false, 63},
+    [PASSO_GRBL_ENABLES_INVERTED] = {4, true, false, 1},
+    [PASSO_GRBL_LIMITS_INVERTED] = {5, true, false, 1},
+    [PASSO_GRBL_PROBE_INVERTED] = {6, true, false, 1},
+    [PASSO_GRBL_REPORT] = {10, true, false, 3},
+    [PASSO_GRBL_DEVIATION] = {11, false, false, 1000},
+    [PASSO_GRBL_ARC_TOLERANCE] = {12, false, true, 1000},
+    [PASSO_GRBL_INCHES] = {13, true, false, 1},
+    [PASSO_GRBL_SOFT_LIMITS] = {20, true, false, 1},
+    [PASSO_GRBL_HARD_LIMITS] = {21, true, false, 1},
+    [PASSO_GRBL_HOMING] = {22, true, false, 1},
+    [PASSO_GRBL_HOMES_LOW] = {23, true, false, 63},
+    [PASSO_GRBL_HOME_FEED] = {24, false, true, 1000000},
+    [PASSO_GRBL_HOME_SEEK] = {25, false, true, 1000000},
+    [PASSO_GRBL_DEBOUNCE] = {26, false, false, 1000},
+    [PASSO_GRBL_PULL_OFF] = {27, false, true, 1000},
+    [PASSO_GRBL_SPINDLE] = {30, true, false, 1000000},
+    [PASSO_GRBL_LASER] = {32, true, false, 1},
+};
+
+static const struct kind AXIS_KINDS[PASSO_GRBL_AXIS_SETTINGS] = {
+    [PASSO_GRBL_STEPS] = {100, false, true, 1000000},
+    [PASSO_GRBL_SPEED] = {110, false, true, 10000000},
+    [PASSO_GRBL_ACCELERATION] = {120, false, true, 1000000},
+    [PASSO_GRBL_TRAVEL] = {130, false, true, 100000},
+};
+
+static const struct kind *find(unsigned number, unsigned axes, unsigned *index)
+{
+	if (number >= AXES_AT) {
+		*index = (number - AXES_AT) / AXES_STEP;
+		return *index < PASSO_GRBL_AXIS_SETTINGS && number % AXES_STEP < axes ? &AXIS_KINDS[*index]
+		                                                                      : NULL;
+	}
+	for (*index = 0; *index < PASSO_GRBL_SETTINGS; (*index)++) {
+		if (KINDS[*index].number == number)
+			return &KINDS[*index];
+	}
+	return NULL;
+}
+
+int64_t *passo_grbl_setting(struct passo_grbl_settings *settings, unsigned number, unsigned axes)
+{
+	unsigned index = 0;
+
+	if (!find(number, axes, &index))
+		return NULL;
+	return number >= AXES_AT ? &settings->axis[index][number % AXES_STEP] : &settings->value[index];
+}
+
+unsigned passo_grbl_setting_number(unsigned index, unsigned axes, bool *whole)
+{
+	if (index < PASSO_GRBL_SETTINGS) {
+		*whole = KINDS[index].whole;
+		return KINDS[index].number;
+	}
+	index -= PASSO_GRBL_SETTINGS;
+	*whole = false;
+	return index < PASSO_GRBL_AXIS_SETTINGS * axes ? AXES_AT + index / axes * AXES_STEP + index % axes
+	                                               : PASSO_GRBL_NO_SETTING;
+}
+
+bool passo_grbl_is_on(const struct passo_grbl_settings *settings, enum passo_grbl_setting setting)
+{
+	return settings->value[setting] != 0;
+}
+
+bool passo_grbl_has_axis(
+    const struct passo_grbl_settings *settings, enum passo_grbl_setting mask, unsigned axis)
+{
+	return (settings->value[mask] / PASSO_GCODE_MILLION >> axis & 1) != 0;
+}
+
+enum passo_gcode_error passo_grbl_set(
+    struct passo_grbl_settings *settings, unsigned number, unsigned axes, int64_t value)
+{
+	unsigned index = 0;
+	const struct kind *kind = find(number, axes, &index);
+
+	if (!kind)
+		return PASSO_GCODE_STATEMENT;
+	if (value < 0)
+		return PASSO_GCODE_NEGATIVE;
+	if (kind->whole && value % PASSO_GCODE_MILLION != 0)
+		return PASSO_GCODE_NUMBER;
+	if (kind == &KINDS[PASSO_GRBL_PULSE] && value == 0)
+		return PASSO_GCODE_PULSE_TOO_SHORT;
+	if (value > kind->most * (int64_t)PASSO_GCODE_MILLION || (kind->positive && value == 0))
+		return PASSO_GCODE_STATEMENT;
+	if (kind == &KINDS[PASSO_GRBL_SOFT_LIMITS] && value != 0
+	    && !passo_grbl_is_on(settings, PASSO_GRBL_HOMING))
+		return PASSO_GCODE_SOFT_LIMITS_NEED_HOMING;
+	*passo_grbl_setting(settings, number, axes) = value;
+	if (!passo_grbl_is_on(settings, PASSO_GRBL_HOMING))
+		settings->value[PASSO_GRBL_SOFT_LIMITS] = 0;
+	return PASSO_GCODE_OK;
+}

@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: MIT
+ * The settings `$n=` of grbl, in its units, and what else outlasts a loss of power.
+ */
+#ifndef PASSO_GRBL_SETTINGS_H
+#define PASSO_GRBL_SETTINGS_H
+
+#include "passo_gcode.h"
+
+/* Longest start line, with its end. */
+#define PASSO_GRBL_START_SIZE 80u
+#define PASSO_GRBL_STARTS 2u
+
+enum passo_grbl_setting {
+	PASSO_GRBL_PULSE,            /* $0: us */
+	PASSO_GRBL_STEPS_INVERTED,   /* $2: a bit per axis */
+	PASSO_GRBL_DIRS_INVERTED,    /* $3 */
+	PASSO_GRBL_ENABLES_INVERTED, /* $4: all axes */
+	PASSO_GRBL_LIMITS_INVERTED,  /* $5: limit and home switches of all axes */
+	PASSO_GRBL_PROBE_INVERTED,   /* $6 */
+	PASSO_GRBL_REPORT,           /* $10: a bit for MPos, WPos without; a bit for Bf */
+	PASSO_GRBL_DEVIATION,        /* $11: of junctions, mm */
+	PASSO_GRBL_ARC_TOLERANCE,    /* $12: mm */
+	PASSO_GRBL_INCHES,           /* $13: reports in inches */
+	PASSO_GRBL_SOFT_LIMITS,      /* $20 */
+	PASSO_GRBL_HARD_LIMITS,      /* $21 */
+	PASSO_GRBL_HOMING,           /* $22 */
+	PASSO_GRBL_HOMES_LOW,        /* $23: a bit per axis whose switch is at its low end */
+	PASSO_GRBL_HOME_FEED,        /* $24: mm/min */
+	PASSO_GRBL_HOME_SEEK,        /* $25: mm/min */
+	PASSO_GRBL_DEBOUNCE,         /* $26: ms */
+	PASSO_GRBL_PULL_OFF,         /* $27: mm */
+	PASSO_GRBL_SPINDLE,          /* $30: rpm of full power */
+	PASSO_GRBL_LASER,            /* $32 */
+	PASSO_GRBL_SETTINGS
+};
+
+enum passo_grbl_axis_setting {
+	PASSO_GRBL_STEPS,        /* $100: per mm */
+	PASSO_GRBL_SPEED,        /* $110: mm/min */
+	PASSO_GRBL_ACCELERATION, /* $120: mm/s^2 */
+	PASSO_GRBL_TRAVEL,       /* $130: mm */
+	PASSO_GRBL_AXIS_SETTINGS
+};
+
+/* In millionths. */
+struct passo_grbl_settings {
+	int64_t value[PASSO_GRBL_SETTINGS];
+	int64_t axis[PASSO_GRBL_AXIS_SETTINGS][PASSO_GCODE_AXES_MAX];
+};
+
+struct passo_grbl_stored {
+	struct passo_grbl_settings settings;
+	struct passo_gcode_offsets offsets;
+	char start[PASSO_GRBL_STARTS][PASSO_GRBL_START_SIZE];
+};
+
+/* Its words in the storage. */
+#define PASSO_GRBL_STORED_WORDS (sizeof(struct passo_grbl_stored) / sizeof(uint32_t))
+
+/* Where the value of `$n` is; null: there is no such setting for this number of axes. */
+int64_t *passo_grbl_setting(struct passo_grbl_settings *settings, unsigned number, unsigned axes);
+
+/* Sets `$n` to a number in millionths. Errors: STATEMENT (no such setting, out of range), NEGATIVE, NUMBER
+ * (not whole), PULSE_TOO_SHORT, SOFT_LIMITS_NEED_HOMING. */
+enum passo_gcode_error passo_grbl_set(
+    struct passo_grbl_settings *settings, unsigned number, unsigned axes, int64_t value);
+
+/* The settings in the order of their numbers: the number of each, and whether it is whole; 0xFF: no more. */
+#define PASSO_GRBL_NO_SETTING 0xFFu
+unsigned passo_grbl_setting_number(unsigned index, unsigned axes, bool *whole);
+
+/* Whether an axis has its bit in a setting that is a mask. */
+bool passo_grbl_has_axis(
+    const struct passo_grbl_settings *settings, enum passo_grbl_setting mask, unsigned axis);
+bool passo_grbl_is_on(const struct passo_grbl_settings *settings, enum passo_grbl_setting setting);
+
+#endif

@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: MIT
+"""Home of the grbl console, on a simulated machine."""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from passo.grbl import Grbl
+from passo.grbl_setup import machine_at
+from passo.machine_file import MachineFile, read_machine
+
+AXIS = """
+[[axis]]
+name = "{name}"
+steps_per_mm = 80
+speed = 100
+acceleration = 1000
+travel = 40
+home = "{home}"
+switches = {switches}
+"""
+HEAD = "clock_hz = 16_000_000\nprobe = true\nspindle_maximum = 1000\n"
+
+
+def machine_of(
+    folder: Path, head: str = HEAD, switches: str = '["home", "limit_low", "limit_high"]'
+) -> MachineFile:
+    path = folder / "machine.toml"
+    axes = (("X", "low", switches), ("Y", "high", '["limit_high"]'), ("Z", "high", '["home"]'))
+    path.write_text(head + "".join(AXIS.format(name=n, home=h, switches=s) for n, h, s in axes))
+    return read_machine(path)
+
+
+class Session:
+    """A console with a machine."""
+
+    def __init__(self, engine: object, machine: MachineFile):
+        self.said = ""
+        self.grbl = Grbl(engine, machine, self.write)
+
+    def write(self, text: str) -> None:
+        self.said += text
+
+    def take(self) -> str:
+        said, self.said = self.said, ""
+        return said.replace("\r\n", "\n").strip()
+
+    def line(self, text: str) -> str:
+        self.take()
+        self.grbl.line(text.encode("latin-1"))
+        return self.take()
+
+    def byte(self, code: int) -> None:
+        self.grbl.type(bytes([code]))
+        self.grbl.poll()
+
+    def run(self, seconds: float) -> None:
+        self.grbl.wait(lambda: False, seconds)
+
+    def rest(self) -> str:
+        self.take()
+        assert self.grbl.wait(lambda: self.grbl.is_idle)
+        self.grbl.poll()
+        return self.take()
+
+    def report(self) -> str:
+        return re.findall(r"<(.*)>", self.line("?"))[0]
+
+
+@pytest.fixture
+def session(tmp_path: Path) -> Iterator[Session]:
+    machine = machine_of(tmp_path)
+    with machine_at("model", machine) as engine:
+        yield Session(engine, machine)
+
+
+def test_home(session: Session) -> None:
+    """Locked until then; positions are those of the ends less the pull-off."""
+    assert "to unlock]" in session.take()
+    assert session.report().startswith("Alarm") and session.line("G0 X1") == "error:9"
+    session.grbl.type(b"$H\n")
+    session.run(0.1)
+    assert session.report().startswith("Home|")
+    assert session.grbl.wait(lambda: session.grbl.is_idle, 60) and "ok" in session.take()
+    assert session.report().startswith("Idle|MPos:-39.000,-1.000,-1.000|")
+    assert session.line("$20=1") == "ok" and session.line("$J=X1F100") == "error:15"
+    assert session.line("G0 X-39 Y-2") == "ok"
+    assert session.line("G0 X0.5").splitlines() == ["ok", "ALARM:2"]
+
+
+@pytest.mark.parametrize(("code", "alarm"), [(0x18, 6), (0x84, 7)])
+def test_a_home_that_is_stopped(session: Session, code: int, alarm: int) -> None:
+    session.grbl.type(b"$H\n")
+    session.run(0.1)
+    session.take()
+    session.byte(code)
+    session.grbl.wait(lambda: session.grbl.is_idle)
+    assert f"ALARM:{alarm}\n" in session.take() and session.report().startswith("Alarm")
+
+
+def test_a_home_without_its_switch(tmp_path: Path) -> None:
+    """The travel of the settings is too short to get there."""
+    machine = machine_of(tmp_path)
+    with machine_at("model", machine) as engine:
+        session = Session(engine, machine)
+        session.line("$X")
+        assert session.line("$132=10") == "ok"
+        said = session.line("$H")
+        assert "ALARM:9" in said and "error:9" in said

@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: MIT
+"""Settings of the grbl console: ranges, errors, what outlasts a loss of power at any write."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from passo.grbl import Grbl
+from passo.grbl_setup import PAGE, SettingsFile
+from passo.machine_file import read_machine
+from passo.native import ffi, planner
+from passo.run import open_engine, parameters_for
+from passo.toolchain import paths
+
+MACHINE = read_machine(paths.examples / "gcode" / "machine.toml")
+WORDS = 40
+ERASED = 0xFFFFFFFF
+
+
+class Session:
+    """A console with a file of settings; a new one is a new power-up."""
+
+    def __init__(self, file: Path):
+        self.engine = open_engine("model", parameters_for(3), MACHINE.clock_hz)
+        self.said = ""
+        self.grbl = Grbl(self.engine, MACHINE, self.write, SettingsFile(file))
+        self.greeting = self.take()
+
+    def write(self, text: str) -> None:
+        self.said += text
+
+    def take(self) -> str:
+        said, self.said = self.said, ""
+        return said.replace("\r\n", "\n").strip()
+
+    def line(self, text: str) -> str:
+        self.grbl.line(text.encode())
+        return self.take()
+
+    def rest(self) -> None:
+        assert self.grbl.wait(lambda: self.grbl.is_idle)
+        self.grbl.poll()
+
+    def off(self) -> None:
+        self.engine.close()
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    return tmp_path / "settings"
+
+
+@pytest.fixture
+def session(file: Path) -> Iterator[Session]:
+    made = Session(file)
+    assert made.greeting == "Grbl 1.1h ['$' for help]"
+    yield made
+    made.off()
+
+
+def test_values_and_their_errors(session: Session) -> None:
+    """Each answer of grbl, and nothing has changed after an error."""
+    before = session.line("$$")
+    for text, said in (
+        ("$100=-1", "error:4"), ("$100=x", "error:2"), ("$100=", "error:2"), ("$100=1 2x", "error:2"),
+        ("$103=1", "error:3"), ("$140=1", "error:3"), ("$7=1", "error:3"), ("$20=1", "error:10"),
+        ("$3=1.5", "error:2"), ("$3=64", "error:3"), ("$0=0", "error:6"), ("$0=0.000001", "error:6"),
+        ("$12=0", "error:3"), ("$110=9999999", "error:12"), ("$1000=1", "error:3"), ("$N2=G21", "error:3"),
+        ("$N0=G21X", "error:2"), ("$N0=" + "G4P0" * 30, "error:14"), ("$RST=x", "error:3"),
+        ("$0=1000.1", "error:3"),
+    ):  # fmt: skip
+        assert (text, session.line(text)) == (text, said)
+    assert session.line("$$") == before
+
+
+def test_a_setting_changes_the_machine(session: Session) -> None:
+    """Steps per mm, inches in reports, work coordinates."""
+    assert session.line("$100=160") == "ok"
+    session.line("G0 X2")
+    assert session.line("$101=1") == "error:8"
+    session.rest()
+    assert "MPos:2.000,0.000,0.000" in session.line("?")
+    assert session.engine is not None and session.grbl.player.feed.driver.positions()[0] == 320
+    session.line("G10 L2 P1 X1")
+    assert session.line("$10=0") == session.line("$13=1") == "ok"
+    assert "<Idle|WPos:0.0394,0.0000,0.0000|FS" in session.line("?")
+
+
+def test_what_outlasts_a_loss_of_power(session: Session, file: Path) -> None:
+    session.line("$110=6000.5")
+    session.line("G10 L2 P3 X1.5")
+    session.line("G0 Y2")
+    session.line("G28.1")
+    assert session.line("$N0=G20 (inches)") == "error:8"
+    session.rest()
+    assert session.line("$N0=G20 (inches)") == "ok"
+    again = Session(file)
+    again.grbl.poll()
+    assert again.take() == ">G20:ok" and "G20" in again.line("$G")
+    assert "$110=6000.500" in again.line("$$")
+    offsets = again.line("$#")
+    assert "[G56:1.500," in offsets and "[G28:0.000,2.000," in offsets
+    assert again.line("$N") == "$N0=G20\n$N1=\nok"
+    assert "ok" in again.line("$RST=*")
+    again.rest()
+    assert "$110=12000.000" in again.line("$$") and "[G56:0.000," in again.line("$#")
+    assert again.line("$N") == "$N0=\n$N1=\nok"
+    again.off()
+
+
+def test_two_bad_copies_are_error_7(session: Session, file: Path) -> None:
+    """Defaults, and the settings are shown; one bad copy is no loss."""
+    session.line("$110=6000")
+    session.line("$111=6000")
+    data = bytearray(file.read_bytes())
+    data[100] ^= 1
+    file.write_bytes(data)
+    one = Session(file)
+    assert "$110=6000.000" in one.line("$$") and "error" not in one.greeting
+    one.off()
+    data[PAGE + 100] ^= 1
+    file.write_bytes(data)
+    both = Session(file)
+    assert both.greeting.startswith("error:7\n$0=") and "$110=12000.000" in both.greeting
+    assert both.line("$110=6000") == "ok"
+    both.off()
+
+
+class Flash:
+    """Two pages of flash whose power fails after a number of written words; the last one is torn."""
+
+    def __init__(self) -> None:
+        self.pages = [[ERASED] * (WORDS + 3) for _ in range(2)]
+        self.left = 1 << 30
+        self._calls = (
+            ffi().callback("bool(void *, unsigned, size_t, uint32_t *, size_t)", self._read),
+            ffi().callback("bool(void *, unsigned)", self._erase),
+            ffi().callback("bool(void *, unsigned, size_t, uint32_t *, size_t)", self._write),
+        )
+        self.c = ffi().new("struct passo_storage_pages *")
+        self.c.read, self.c.erase, self.c.write = (ffi().cast("void *", call) for call in self._calls)
+
+    def _read(self, _: Any, page: int, at: int, words: Any, count: int) -> bool:
+        for i in range(count):
+            words[i] = self.pages[page][at + i]
+        return True
+
+    def _put(self, page: int, at: int, word: int) -> bool:
+        self.left -= 1
+        if self.left >= 0:
+            self.pages[page][at] = word
+        elif self.left == -1:
+            self.pages[page][at] = word ^ 0x00FF00FF
+        return self.left >= 0
+
+    def _erase(self, _: Any, page: int) -> bool:
+        return all([self._put(page, at, ERASED) for at in range(WORDS + 3)])
+
+    def _write(self, _: Any, page: int, at: int, words: Any, count: int) -> bool:
+        return all([self._put(page, at + i, words[i]) for i in range(count)])
+
+    def open(self) -> Any:
+        storage = ffi().new("struct passo_storage *")
+        planner().passo_storage_open(storage, self.c, WORDS)
+        return storage
+
+    def load(self) -> tuple[int, list[int]]:
+        record = ffi().new("uint32_t[]", WORDS)
+        state = planner().passo_storage_load(self.open(), record)
+        return state, list(record)
+
+    def save(self, record: list[int]) -> bool:
+        storage = self.open()
+        planner().passo_storage_load(storage, ffi().new("uint32_t[]", WORDS))
+        return planner().passo_storage_save(storage, ffi().new("uint32_t[]", record))
+
+
+def test_power_that_fails_at_any_write() -> None:
+    """The old record or the new one, never neither; and the next save succeeds."""
+    c = planner()
+    old, new, third = ([n * 1000 + i for i in range(WORDS)] for n in (1, 2, 3))
+    for saves in (1, 2):
+        for left in range(2 * (WORDS + 3) + 1):
+            flash = Flash()
+            assert flash.load()[0] == c.PASSO_STORAGE_EMPTY
+            for _ in range(saves):
+                assert flash.save(old)
+            flash.left = left
+            done = flash.save(new)
+            flash.left = 1 << 30
+            assert flash.load() == (c.PASSO_STORAGE_LOADED, new if done else old)
+            assert flash.save(third) and flash.load() == (c.PASSO_STORAGE_LOADED, third)
