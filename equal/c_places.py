@@ -75,8 +75,8 @@ def _read(bits: Any, kind: Type, path: tuple[str | int | Value, ...]) -> Any:
         assert isinstance(kind, Struct)
         return _read(bits[key], kind.fields[key], rest)
     assert isinstance(kind, Array)
-    if isinstance(key, int):
-        return _read(bits[key], kind.element, rest)
+    if isinstance(key, int):  # one out of range is a demand that fails
+        return _read(bits[min(max(key, 0), kind.length - 1)], kind.element, rest)
     inner = _target(kind.element, rest)
     found = _read(bits[-1], kind.element, rest)
     for i in range(kind.length - 2, -1, -1):
@@ -106,7 +106,7 @@ def _write(bits: Any, kind: Type, path: tuple[str | int | Value, ...], when: Con
         bits[key] = _write(bits[key], kind.fields[key], rest, when, new)
         return bits
     assert isinstance(kind, Array)
-    for i in range(kind.length) if isinstance(key, Value) else (key,):
+    for i in range(kind.length) if isinstance(key, Value) else {key} & set(range(kind.length)):
         here = both(when, key.bits == i) if isinstance(key, Value) else when
         bits[i] = _write(bits[i], kind.element, rest, here, new)
     return bits

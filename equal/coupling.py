@@ -22,7 +22,6 @@ class Bug:
     file: str
     old: str
     new: str
-    slow: bool = False  # takes too long for ``make test``
 
 
 @dataclass(frozen=True)

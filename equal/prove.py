@@ -75,10 +75,9 @@ class Model:
         program = Program(harness(coupling, self.expressions, root))
         self.nodes = program.functions[EXPRESSIONS].body.block_items or []
         self.evaluator = Evaluator(program)
-        for declaration in coupling.objects:
-            found = re.search(r"(\w+)(\[\w+\])?$", declaration)
-            assert found
-            self.evaluator.make_unknown(found[1])
+        self.objects = [re.findall(r"\w+", declaration)[-1] for declaration in coupling.objects]
+        for name in self.objects:
+            self.evaluator.make_unknown(name)
 
     def values(self) -> dict[str, Value]:
         """The expressions of the coupling, with the state as it is now."""
@@ -96,13 +95,15 @@ class Model:
 
     def set_all(self, values: Mapping[str, int]) -> None:
         """Give all leaves of the objects known values, by their names in C."""
-        for name, cell in self.evaluator.cells.items():
+        for name in self.objects:
+            cell = self.evaluator.cells[name]
             cell.bits = filled(cell.type, name, lambda kind, leaf: typed(values[leaf], kind))
 
     def leaves(self) -> dict[str, tuple[Type, Any]]:
         """Types and bits of all leaves of the objects, by their names in C."""
         found: dict[str, tuple[Type, Any]] = {}
-        for name, cell in self.evaluator.cells.items():
+        for name in self.objects:
+            cell = self.evaluator.cells[name]
             found |= {leaf: (kind, bits) for leaf, kind, bits in leaves(cell.type, cell.bits, name)}
         return found
 
