@@ -108,14 +108,13 @@ def main() -> None:
 
     begin = time.monotonic()
     results = run_all(chosen, arguments.jobs)
-    made = table("Model and RTL", "module", "RTL", "goals", "bits", "prove", "bugs seen", "result")
+    made = table("Model and RTL", "module", "goals", "bits", "prove", "bugs seen", "result")
     for coupling in chosen:
         mine = [result for result in results if result.module == coupling.name]
         proof = next(result for result in mine if result.what == "proof")
         seen = sum(result.good for result in mine if result.what != "proof")
         made.add_row(
             coupling.name,
-            coupling.top,
             str(proof.goals),
             str(proof.bits),
             f"{proof.seconds:.0f} s",
