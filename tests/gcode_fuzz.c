@@ -149,8 +149,8 @@ static void fuzz(struct passo_path_item *items)
 		settings.axis[axis] = (struct passo_path_axis){
 		    80 * PASSO_UNIT_Q32, 200 * PASSO_UNIT_Q32, 1000 * PASSO_UNIT_Q32, 0};
 	must(passo_path_open(&path, &settings, items, ITEMS) == PASSO_PLAN_OK, "open", "");
-	passo_gcode_open(&gcode,
-	    &(struct passo_gcode_settings){settings.machine.axes, 1 + below(1u << below(20)), below(20000)});
+	passo_gcode_open(&gcode, &(struct passo_gcode_settings){settings.machine.axes,
+				     1 + below(1u << below(20)), below(20000), below(2) != 0u});
 	for (unsigned count = below(200); count > 0; count--)
 		execute(&path, &gcode);
 }

@@ -343,6 +343,31 @@ static enum passo_plan_error user_by_speed(const struct passo_machine *machine, 
 	return passo_plan_user_by_speed(machine, &move, &shape, plan);
 }
 
+static struct passo_course some_course(void)
+{
+	struct passo_course course = {
+	    .axis = (uint8_t)below(below(20) > 0 ? PASSO_AXES_MAX : 256),
+	    .backwards = below(2) > 0,
+	    .top_speed = quantity(),
+	    .acceleration = quantity(),
+	};
+	course.speed = up_to(course.top_speed);
+	return course;
+}
+
+static enum passo_plan_error course(const struct passo_machine *machine, struct passo_plan *plan)
+{
+	const struct passo_course made = some_course();
+	return passo_plan_course(machine, &made, (uint32_t)sized(32), plan);
+}
+
+static enum passo_plan_error course_change(const struct passo_machine *machine, struct passo_plan *plan)
+{
+	const struct passo_course made = some_course();
+	const uint64_t high = up_to(made.top_speed);
+	return passo_plan_course_change(machine, &made, up_to(high), high, sized(64), plan);
+}
+
 static struct {
 	const char *name;
 	enum passo_plan_error (*call)(const struct passo_machine *machine, struct passo_plan *plan);
@@ -358,6 +383,8 @@ static struct {
     {"turning_start", turning_start, TURNING, 0, 0},
     {"turning_speed", turning_speed, RAMPS_ONLY, 0, 0},
     {"turning_stop", turning_stop, RAMPS_ONLY, 0, 0},
+    {"course", course, TURNING, 0, 0},
+    {"course_change", course_change, RAMPS_ONLY, 0, 0},
     {"sigmoid", sigmoid, WHOLE, 0, 0},
     {"jerk", jerk, WHOLE, 0, 0},
     {"straight", straight, WHOLE, 0, 0},

@@ -118,7 +118,8 @@ def test_moves_run_outside_of_the_repository(installed: Installed) -> None:
     """
     rtl = rtl_library(parameters_for(3))
     (verilated,) = (paths.build / "lib").glob(f"verilated_{Parameters().name}-*/Vpasso_spi_top.mk")
-    library = lend(installed, planner_library(), rtl, verilated)
+    (runtime,) = (paths.build / "lib").glob("verilator_runtime-*/libverilated.a")
+    library = lend(installed, planner_library(), rtl, verilated, runtime)
     (installed.home / "moves.toml").write_text(MOVES)
     done = installed.run("passo", "run", "moves.toml", "--report")
     assert done.returncode == 0, done.stderr

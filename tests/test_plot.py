@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from passo import plot_panels
+from passo import plot, plot_panels
 from passo.engine import model_engine
 from passo.move_file import read_moves
 from passo.plan import plan_file
@@ -83,7 +83,7 @@ def test_nothing_is_printed_over_something_else(
 ) -> None:
     """The titles and the legend; and the rows of both rows of signals are at the same heights."""
     figures = []
-    monkeypatch.setattr(Figure, "savefig", lambda self, path, dpi: figures.append(self))
+    monkeypatch.setattr(plot, "save", lambda figure, path, dpi: figures.append(figure))
     run = run_moves(tmp_path, *([*steps, 0, 0, 0, 0, 0][:axes] for steps in ([300, 9, 1], [-300, 1, 0])))
     plot_motion(run, tmp_path / "motion.png")
     (figure,) = figures

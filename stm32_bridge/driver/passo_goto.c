@@ -210,9 +210,17 @@ static enum passo_error change(struct passo *passo, const struct passo_goto *to)
 	return PASSO_OK;
 }
 
+/* Whether a step can be planned so: errors of the planner before anything moves. */
+static enum passo_error check_plan(const struct passo *passo, const struct passo_goto *wanted)
+{
+	const struct passo_course course = course_of(wanted, false);
+	struct passo_plan plan;
+
+	return of_plan(passo_plan_course(&passo->machine, &course, 1, &plan));
+}
+
 enum passo_error passo_goto(struct passo *passo, const struct passo_goto *go)
 {
-	struct passo_plan plan;
 	enum passo_error error = passo_driver_check(passo);
 
 	if (error != PASSO_OK)
@@ -229,8 +237,7 @@ enum passo_error passo_goto(struct passo *passo, const struct passo_goto *go)
 		wanted.top_speed = passo->go.top_speed;
 	else if (wanted.top_speed == 0u)
 		wanted.top_speed = wanted.speed;
-	const struct passo_course course = course_of(&wanted, false);
-	error = of_plan(passo_plan_course(&passo->machine, &course, 1, &plan));
+	error = check_plan(passo, &wanted);
 	if (error != PASSO_OK)
 		return error;
 	if (is_under_way)
