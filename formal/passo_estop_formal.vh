@@ -14,6 +14,8 @@ always @(posedge clk) begin
   if (!estop_n) pressed_at_once : assert (pressed);
   if (f_three && $past(pressed) && !pressed)
     only_cleared_when_released : assert ($past(clear || rst) && $past(estop_n) && $past(estop_n, 2) && $past(estop_n, 3));
+  if (f_three && $past(clear || rst) && $past(estop_n) && $past(estop_n, 2) && $past(estop_n, 3) && estop_n)
+    cleared : assert (!pressed);
   if (f_two && $past(pressed, 2)) stops_after_two : assert (stop);
   if (f_two && stop) stops_for_a_reason : assert ($past(pressed, 2));
 end

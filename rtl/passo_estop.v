@@ -2,7 +2,9 @@
 // E-stop: a latch on an asynchronous input.
 //
 // Promise: `pressed` is 1 from the moment that `estop_n` falls, without a clock, and stays 1 until `clear` comes (or
-// rst) with `estop_n` high for at least two clocks. `stop` is `pressed`, synchronised: 2 clocks later.
+// rst) with `estop_n` high for at least two clocks. `stop` is `pressed`, synchronised: 2 clocks later. From
+// configuration on it is pressed, until the first reset: a latch starts as its asynchronous input sets it, since some
+// FPGAs have one value for both.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -33,9 +35,9 @@ module passo_estop (
   always @(posedge clk) seen <= {seen[0], pressed};
 
   initial begin
-    pressed  = 1'b0;
+    pressed  = 1'b1;
     released = 2'b00;
-    seen     = 2'b00;
+    seen     = 2'b11;
   end
 
 `ifdef FORMAL

