@@ -175,7 +175,7 @@ static uint64_t reachable_with_ease(const struct passo_draft *draft, uint64_t li
 		if (next > higher && step < step_before)
 			next -=
 			    passo_smaller(passo_mul_div(step, step, step_before - step), next - higher - 1);
-	} while (next > higher && step > (next - higher) >> 8 && --rounds > 0);
+	} while (next > higher && step > (next - higher) >> 17 && --rounds > 0);
 	return next;
 }
 

@@ -88,6 +88,28 @@ def test_trigger_latches_and_is_waited_for() -> None:
     assert error_of(driver, "wait_for_trigger", CLOCK_HZ // 100, report) == "TIMEOUT"
 
 
+def test_timeout_longer_than_the_clock_counts() -> None:
+    """The microseconds wrap at 2^32, 71 minutes; a timeout of hours does not."""
+    driver = driver_of(machine_of(Switch("home", 0, 500, above=True)))
+    driver.call("arm_trigger", struct("trigger_config", source=TriggerSource.HOME))
+    now, waits = 0, 0
+
+    def wait(_: Any, __: int) -> None:
+        nonlocal now, waits
+        now, waits = now + (1 << 31), waits + 1
+
+    clock = ffi().callback("uint32_t(void *)", lambda _: now & 0xFFFFFFFF)
+    waiting = ffi().callback("void(void *, uint32_t)", wait)
+    driver.host.hardware.microseconds, driver.host.hardware.wait = clock, waiting
+    hours = (10 << 32) * CLOCK_HZ // 10**6
+    assert error_of(driver, "wait_for_trigger", hours, struct("trigger_report")) == "TIMEOUT"
+    assert waits == 20
+    waits = 0
+    driver.call("jog", jog())
+    assert error_of(driver, "wait", hours) == "TIMEOUT"
+    assert waits == 20
+
+
 def test_alarm_keeps_it_stopped() -> None:
     """Its name, its axis; clear says so until it is over; then nothing moves."""
     machine = machine_of()

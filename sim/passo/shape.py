@@ -115,17 +115,56 @@ class Facts:
     symmetric: bool
 
 
+PARTS = 16  # of an interval between two points, for its area
+
+
 def sample(shape: Callable[[float], float]) -> Points:
-    """Sample a function to a checked table, scaled to start at 0 and end at 1. Raises ShapeError."""
-    values = [shape(k / POINTS) for k in range(POINTS + 1)]
+    """Sample a function to a checked table, scaled to start at 0 and end at 1. Raises ShapeError.
+
+    What a ramp travels is the area below the straight lines between its points. So the points are not
+    rounded each by itself: each is the integer that keeps the area from the start to it closest to that
+    of the function.
+    """
+    values = [shape(k / (POINTS * PARTS)) for k in range(POINTS * PARTS + 1)]
     first, last = values[0], values[-1]
     if not last > first:
         raise ShapeError("a shape must rise: at u = 1 it is not above what it is at u = 0")
-    points = [round((value - first) / (last - first) * ONE) for value in values]
-    # A shape that reaches 1 before its end is limited to 16 bits.
-    table = tuple(min(point, ONE - 1) if point <= ONE else point for point in points[:-1])
+    fine = [(value - first) / (last - first) * ONE for value in values]
+    exact = fine[::PARTS]
+    check(tuple(_stored(round(point)) for point in exact[:-1]))
+    symmetric = all(abs(exact[k] + exact[POINTS - k] - ONE) < SAME for k in range(POINTS + 1))
+    points = _by_area(fine, exact, POINTS // 2 if symmetric else POINTS)
+    if symmetric:
+        points = [*points, ONE // 2, *(ONE - point for point in points[:0:-1])]
+    table = tuple(map(_stored, points))
     check(table)
     return table
+
+
+SAME = 1e-6  # points; less is the rounding of floating point
+
+
+def _stored(point: int) -> int:
+    """Limit a shape that reaches 1 before its end to 16 bits."""
+    return ONE - 1 if point == ONE else point
+
+
+def _by_area(fine: Sequence[float], exact: Sequence[float], count: int) -> list[int]:
+    """The first points; the area up to point k is the sum of the points before it and half of itself."""
+    points: list[int] = []
+    area, total = 0.0, 0
+    for k in range(count):
+        wanted = round(area + exact[k] / 2 - total)
+        points.append(min(max(wanted, points[-1] if points else 0), ONE))
+        total += points[-1]
+        area += _simpson(fine[k * PARTS : (k + 1) * PARTS + 1])
+    return points
+
+
+def _simpson(values: Sequence[float]) -> float:
+    """Mean of a function from its values at an odd number of equal distances (Simpson's rule)."""
+    inner = 4 * sum(values[1:-1:2]) + 2 * sum(values[2:-1:2])
+    return (values[0] + inner + values[-1]) / (3 * (len(values) - 1))
 
 
 def check(points: Sequence[int]) -> Facts:

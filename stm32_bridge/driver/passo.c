@@ -4,6 +4,9 @@
 #include "passo.h"
 
 #include "passo_driver.h"
+#include "passo_math.h"
+
+#define MICROSECONDS_PER_SECOND 1000000u
 
 enum passo_error passo_driver_check(const struct passo *passo)
 {
@@ -29,6 +32,25 @@ uint32_t passo_driver_now(const struct passo *passo)
 	const struct passo_hardware *hardware = &passo->host->hardware;
 
 	return hardware->microseconds ? hardware->microseconds(hardware->context) : 0u;
+}
+
+struct passo_deadline passo_driver_deadline(const struct passo *passo, uint64_t clocks)
+{
+	return (struct passo_deadline){
+	    .left = clocks == 0u
+	              ? UINT64_MAX
+	              : passo_mul_div_ceil(clocks, MICROSECONDS_PER_SECOND, passo->machine.clock_hz),
+	    .looked_at = passo_driver_now(passo),
+	};
+}
+
+uint64_t passo_driver_left(const struct passo *passo, struct passo_deadline *deadline)
+{
+	const uint32_t now = passo_driver_now(passo), passed = now - deadline->looked_at;
+
+	deadline->looked_at = now;
+	deadline->left -= deadline->left < passed ? deadline->left : passed;
+	return deadline->left;
 }
 
 enum passo_error passo_driver_write(

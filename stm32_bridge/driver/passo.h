@@ -357,8 +357,8 @@ const struct passo_snapshot *passo_snapshot(const struct passo *passo);
  * passo_clear(), or OK. Of a channel that is not open: the error of passo_open(), such as STUCK_LOW, or
  * NOT_OPEN if that has not been called. No frame. */
 enum passo_error passo_fault(const struct passo *passo);
-/* Polls until all motions have ended, at most for a time in clocks, PASSO_S(2), up to 2^32 microseconds; 0:
- * no timeout. Errors: TIMEOUT, those of passo_poll(). */
+/* Polls until all motions have ended, at most for a time in clocks, PASSO_S(2); 0: no timeout. Errors:
+ * TIMEOUT, those of passo_poll(). */
 enum passo_error passo_wait(struct passo *passo, uint64_t timeout_clocks);
 
 /* ----------------------------------------------------------------------------------------- control ---- */

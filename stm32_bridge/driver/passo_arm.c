@@ -2,9 +2,6 @@
  * The trigger: arm it, see that it has fired, read what it has latched.
  */
 #include "passo_driver.h"
-#include "passo_math.h"
-
-#define MICROSECONDS_PER_SECOND 1000000u
 
 static enum passo_error write_trigger(struct passo *passo, struct passo_channel_trigger trigger)
 {
@@ -112,9 +109,7 @@ enum passo_error passo_wait_for_trigger(
 	if (error != PASSO_OK)
 		return error;
 	const struct passo_hardware *hardware = &passo->host->hardware;
-	const uint32_t began = passo_driver_now(passo);
-	const uint64_t longest =
-	    passo_mul_div_ceil(timeout_clocks, MICROSECONDS_PER_SECOND, passo->machine.clock_hz);
+	struct passo_deadline deadline = passo_driver_deadline(passo, timeout_clocks);
 	for (;;) {
 		error = passo_poll(passo);
 		if (error == PASSO_OK || error == PASSO_ERROR_TRIGGER)
@@ -123,7 +118,7 @@ enum passo_error passo_wait_for_trigger(
 			return error;
 		if (!report->armed)
 			return PASSO_ERROR_NO_SOURCE;
-		if (timeout_clocks != 0u && passo_driver_now(passo) - began >= longest)
+		if (passo_driver_left(passo, &deadline) == 0u)
 			return PASSO_ERROR_TIMEOUT;
 		if (hardware->wait)
 			hardware->wait(hardware->context, passo_driver_interval(passo));

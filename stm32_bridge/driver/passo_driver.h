@@ -18,6 +18,16 @@ enum passo_error passo_driver_check_axis(const struct passo *passo, uint8_t axis
 bool passo_driver_is_wire(enum passo_error error);
 /* Present time in microseconds; 0 without a clock. */
 uint32_t passo_driver_now(const struct passo *passo);
+/* A limit on waiting, in microseconds. It counts what passes from look to look, so it may be longer than the
+ * microsecond clock counts. */
+struct passo_deadline {
+	uint64_t left;
+	uint32_t looked_at;
+};
+/* The limit in clocks; 0: none. */
+struct passo_deadline passo_driver_deadline(const struct passo *passo, uint64_t clocks);
+/* Microseconds left; 0 when it is over. Call it at least once in 2^32 microseconds. */
+uint64_t passo_driver_left(const struct passo *passo, struct passo_deadline *deadline);
 
 /* Writes consecutive registers of the channel. */
 enum passo_error passo_driver_write(

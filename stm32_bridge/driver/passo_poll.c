@@ -2,11 +2,9 @@
  * The poll of the main loop: feeds streams, reads the state and detects the end of motions.
  */
 #include "passo_driver.h"
-#include "passo_math.h"
 
 /* Consecutive reads of an idle state that prove that all motions have ended. */
 #define IDLE_LOOKS 2u
-#define MICROSECONDS_PER_SECOND 1000000u
 
 static enum passo_error tell(struct passo *passo, enum passo_error error)
 {
@@ -183,20 +181,17 @@ enum passo_error passo_wait(struct passo *passo, uint64_t timeout_clocks)
 	if (error != PASSO_OK)
 		return error;
 	const struct passo_hardware *hardware = &passo->host->hardware;
-	const uint32_t began = passo_driver_now(passo);
-	const uint64_t longest =
-	    passo_mul_div_ceil(timeout_clocks, MICROSECONDS_PER_SECOND, passo->machine.clock_hz);
-	const uint32_t timeout = longest < UINT32_MAX ? (uint32_t)longest : UINT32_MAX;
+	struct passo_deadline deadline = passo_driver_deadline(passo, timeout_clocks);
 	for (;;) {
 		error = passo_poll(passo);
 		if (error != PASSO_OK || !passo_is_moving(passo))
 			return error;
 		uint32_t idle = passo_idle_time(passo);
-		uint32_t waited = passo_driver_now(passo) - began;
-		if (timeout != 0u && waited >= timeout)
+		const uint64_t left = passo_driver_left(passo, &deadline);
+		if (left == 0u)
 			return PASSO_ERROR_TIMEOUT;
-		if (timeout != 0u && idle > timeout - waited)
-			idle = timeout - waited;
+		if (idle > left)
+			idle = (uint32_t)left;
 		if (hardware->wait && idle != 0u)
 			hardware->wait(hardware->context, idle);
 	}
