@@ -34,7 +34,7 @@ test: lint ## Check the sources, then run all tests.
 	@tools/setup.sh yosys formal firmware browser web
 	@$(BIN)/pytest -n auto --maxprocesses 8 --dist worksteal
 
-demo: setup ## Run the demonstration (1 to 2 minutes).
+demo: setup ## Run the demonstration (a minute).
 	@$(BIN)/passo demo
 
 web: ## Build build/web/: a page to type moves and see their edges.

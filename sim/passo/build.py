@@ -65,7 +65,7 @@ def rtl_sources() -> list[Path]:
 def planner_library() -> Path:
     """Planner, G-code interpreter, frame codec, link library and driver, as on a microcontroller."""
     folders = (paths.planner, paths.gcode, paths.protocol, paths.driver, paths.grbl)
-    return library("planner", folders, sources(*folders), "-O3")
+    return library("planner", folders, sources(*folders), "-O1")
 
 
 def engine_sources() -> list[Path]:
@@ -91,7 +91,7 @@ def console_library() -> Path:
     """The console of the STM32 bridge with the driver, as on a microcontroller."""
     folders = (paths.console, paths.driver, paths.planner, paths.protocol)
     files = [*sources(*folders), paths.engine / "passo_terminal.c"]
-    return library("console", [*folders, paths.engine], files, "-O3")
+    return library("console", [*folders, paths.engine], files, "-O1")
 
 
 def cpu_library() -> Path:
@@ -145,8 +145,9 @@ def _verilated(parameters: Parameters, waves: bool) -> Path:
     if waves and not waves_possible():
         raise BuildError("waves need lz4.h and zlib.h: install the Debian packages liblz4-dev and zlib1g-dev")
     modules = rtl_sources()
-    # More optimization takes longer than it saves; several channels in one function take much longer.
-    optimize = ("OPT_FAST=-O1" if waves or parameters.channels > 1 else "OPT_FAST=-O2", "OPT_SLOW=-O0")
+    # More optimization takes longer than it saves, and the more so the more there is in one function.
+    large = parameters.channels > 1 or parameters.encoders or parameters.outputs
+    optimize = ("OPT_FAST=-O1" if waves or large else "OPT_FAST=-O2", "OPT_SLOW=-O0")
     chosen = (f"-G{name}={value}" for name, value in parameters.verilog().items())
     flags = [*_verilator_flags(waves), "--top-module", TOP, *chosen]
 

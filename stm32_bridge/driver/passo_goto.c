@@ -162,7 +162,7 @@ static enum passo_error steer(struct passo *passo, const struct passo_goto *to)
 	for (unsigned tries = 0; tries < TRIES; tries++) {
 		const uint32_t since = passo_driver_now(passo);
 		struct passo_plan plan;
-		bool aimed;
+		bool aimed = false;
 
 		error = plan_change(passo, to, &plan, &aimed);
 		if (error == PASSO_ERROR_NOT_TURNING || (error == PASSO_OK && plan.ramp_count == 0u))
