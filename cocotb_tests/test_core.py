@@ -25,7 +25,7 @@ MOST_CHANNELS = {"CHANNELS": 8, "AXES": 1, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 8,
 # and `make icarus` runs on it what `make test` leaves out. `make soak` plays a thousand more histories on it.
 verilator_only = pytest.mark.parametrize("simulator", ["verilator"])
 LEFT_TO_MAKE_ICARUS = (
-    *("core_commands", "core_faults", "core_link", "core_refusals"),
+    *("core_commands", "core_faults", "core_link", "core_refusals", "core_channels", "core_registers"),
     *("core_inputs", "core_encoders", "core_outputs", "core_machine"),
 )
 
