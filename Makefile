@@ -78,10 +78,10 @@ path: ## Measure the path planner: time, limits from the pulses, instructions on
 	@tools/setup.sh firmware
 	@$(BIN)/python -m benchmarks.path
 
-synth: ## Make the bitstream of a board: BOARD=..., optional AXES= and CLOCK= (MHz); without BOARD list the boards.
+synth: ## Make the bitstream of a board: BOARD=..., optional AXES=, CLOCK= (MHz), PARTS=inputs,encoders,outputs; without BOARD list the boards.
 	@$(if $(BOARD),tools/setup.sh fpga,tools/setup.sh)
 	@$(BIN)/python -m passo_fpga.synth $(if $(BOARD),--board $(BOARD)) $(if $(AXES),--axes $(AXES)) \
-	    $(if $(CLOCK),--clock $(CLOCK))
+	    $(if $(CLOCK),--clock $(CLOCK)) $(if $(PARTS),--parts $(PARTS))
 
 report: ## Measure size and speed on all FPGAs (several hours); ONLY=hx8k,up5k or QUICK=1 for a part.
 	@tools/setup.sh fpga

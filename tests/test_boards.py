@@ -5,6 +5,7 @@ import importlib.util
 import json
 import re
 import subprocess
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -16,7 +17,7 @@ from passo_fpga.boards import Board, board, boards
 from passo_fpga.devices import ECP5, GOWIN, ICE40
 from passo_fpga.generate import TOP, generate, pin_file, pll_file
 from passo_fpga.pll import PllError, dividers
-from passo_fpga.table import TableError
+from passo_fpga.table import BoardError, TableError
 from passo_fpga.tools import FOLDER, check, relative
 
 BOARDS = list(boards().values())
@@ -42,15 +43,15 @@ needs_yosys = pytest.mark.skipif(
 )
 
 
-def ports_of_top(chosen: Board, axes: int) -> set[str]:
-    """Port bits, except those that the board omits."""
+def ports_of_top(chosen: Board, axes: int, parts: Sequence[str] = ()) -> set[str]:
+    """Port bits, except those that the board omits, and those of parts that it does not have."""
     names = set()
-    of_parts = {pin.name for pin in (*INPUTS, *OUTPUTS) if pin.parameter}
+    of_parts = {pin.name for pin in (*INPUTS, *OUTPUTS) if pin.parameter and pin.parameter not in parts}
     for width, name in re.findall(r"(?:input|output)\s+wire\s+(\[[^]]*\])?\s*(\w+)", TOP.read_text()):
         if name in of_parts:
             continue
-        assert width in ("", "[AXES-1:0]")
-        names |= {f"{name}[{axis}]" for axis in range(axes)} if width and axes > 1 else {name}
+        bits = {"": 1, "[AXES-1:0]": axes, "[     7:0]": 8}[width]
+        names |= {f"{name}[{bit}]" for bit in range(bits)} if bits > 1 else {name}
     return names - {*chosen.left_out}
 
 
@@ -63,6 +64,50 @@ def test_every_port_has_a_pin_of_its_own(board: Board) -> None:
         assert sorted(ports) == sorted(ports_of_top(board, axes))
         assert len(set(pins)) == len(pins)
         assert dict(found) == {port: pin.pin for port, pin in board.ports(axes).items()}
+
+
+WITH_PARTS = [(board, (part,)) for board in BOARDS for part in board.parts]
+WITH_PARTS += [(board, tuple(board.parts)) for board in BOARDS if board.name == "hx8k"]
+
+
+@pytest.mark.parametrize(
+    ("board", "parts"), WITH_PARTS, ids=lambda it: getattr(it, "name", None) or ",".join(it)
+)
+def test_every_port_of_a_part_has_a_pin_of_its_own(board: Board, parts: tuple[str, ...]) -> None:
+    """With as many axes as there are pins for."""
+    for axes in range(1, board.axes + 1):
+        try:
+            there = board.ports(axes, parts)
+        except BoardError as error:
+            assert axes > 1 and re.search("are wanted for|is that of", str(error))
+            break
+        assert sorted(there) == sorted(ports_of_top(board, axes, parts))
+        assert board.parameters(axes, parts=parts).items() >= {part.upper(): 1 for part in parts}.items()
+
+
+def test_parts_are_chosen_by_name(made_up: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Unknown ones, those without pins, too few pins and too many are told."""
+    assert synth.main(["--board", "made_up", "--parts", "inputs,lasers"]) == 2
+    assert "no part 'lasers'; choose of inputs, encoders, outputs" in capsys.readouterr().err
+    assert synth.main(["--board", "made_up", "--parts", "inputs"]) == 2
+    assert "'made_up': the table has no pins for part 'inputs'; it has none" in capsys.readouterr().err
+    table = MADE_UP + "[encoders]\nencoder_a = [23, 25]\nencoder_b = [26]\nencoder_index = 27\n"
+    made_up.write_text(table)
+    assert synth.main(["--board", "made_up", "--parts", "encoders"]) == 2
+    told = "board 'made_up': encoders.encoder_index: 27 is not a list of pins"
+    assert told in capsys.readouterr().err
+    made_up.write_text(table.replace("= 27", "= [27]"))
+    assert synth.main(["--board", "made_up", "--parts", "inputs"]) == 2
+    assert "for part 'inputs'; there are those of encoders" in capsys.readouterr().err
+    assert synth.main(["--board", "made_up", "--parts", "encoders"]) == 2
+    assert "encoders.encoder_b: 2 are wanted for 2 axes, the table has 1" in capsys.readouterr().err
+    assert board("made_up").ports(1, ["encoders"])["encoder_index"].pin == "27"
+    with pytest.raises(BoardError, match=r"encoders.encoder_index\[0\]: pin 43 is that of axes\[0\].step"):
+        made_up.write_text(table.replace("= 27", "= [43]"))
+        board("made_up").ports(1, ["encoders"])
+    made_up.write_text(table.replace("= 27", "= [27, 28, 32]"))
+    assert synth.main([]) == 2
+    assert "encoders.encoder_index: 3 pins are too many; it has 2 bits" in capsys.readouterr().err
 
 
 @each_board
@@ -105,10 +150,10 @@ def test_impossible_clock_is_refused() -> None:
         dividers(ICE40, 12, 700)
 
 
-def elaborate(chosen: Board, axes: int | None = None) -> dict:
+def elaborate(chosen: Board, axes: int | None = None, parts: Sequence[str] = ()) -> dict:
     """The top as Yosys reads it: all modules, ports and parameters are there; nothing is driven twice."""
     folder = FOLDER / "elaborated" / chosen.name
-    design, _ = generate(chosen, folder, axes)
+    design, _ = generate(chosen, folder, axes, parts=parts)
     sources = " ".join(relative(path, folder) for path in design.sources)
     script = [
         *(f"read_verilog -lib +/{name}" for name in CELLS[chosen.device.family]),
@@ -131,6 +176,15 @@ def test_top_elaborates(board: Board) -> None:
     """With the parameters of the board; its ports are those that have pins."""
     ports = elaborate(board)["ports"]
     assert {re.sub(r"\[\d+\]", "", port) for port in board.ports()} == ports.keys()
+
+
+@needs_yosys
+@pytest.mark.parametrize("part", ["inputs", "encoders", "outputs"])
+def test_top_elaborates_with_a_part(part: str) -> None:
+    """Its ports are those that have pins."""
+    chosen = board("tangnano9k")
+    ports = elaborate(chosen, 2, [part])["ports"]
+    assert {re.sub(r"\[\d+\]", "", port) for port in chosen.ports(2, [part])} == ports.keys()
 
 
 POWER_UP = """\

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The boards: each is a folder in syn/ with a table board.toml; see docs/fpga.md."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from passo.toolchain import paths
+from passo_fpga import parts as core_parts
 from passo_fpga.devices import DEVICES, GOWIN, Device, Family
 from passo_fpga.pll import Pll, PllError, dividers
 from passo_fpga.table import BoardError, Table, TableError
@@ -44,6 +45,7 @@ class Board:
     pins: Mapping[str, Pin]  # except those of the axes
     axis_pins: tuple[Mapping[str, Pin], ...]
     reset: Mapping[str, tuple[int, ...]]
+    parts: Mapping[str, core_parts.PartPins[Pin]]  # pins of each optional part of the core
 
     @property
     def axes(self) -> int:
@@ -55,15 +57,34 @@ class Board:
         """Ports without a pin."""
         return tuple(port for port in OPTIONAL if port not in self.pins)
 
-    def ports(self, axes: int | None = None) -> dict[str, Pin]:
-        """The pin of each port bit. A port of one bit has no index."""
-        chosen = self._axes(axes)
-        of_axes = {
-            f"{port}[{axis}]" if chosen > 1 else port: pin
-            for axis, pins in enumerate(self.axis_pins[:chosen])
-            for port, pin in pins.items()
-        }
-        return {**self.pins, **of_axes}
+    def ports(self, axes: int | None = None, parts: Sequence[str] = ()) -> dict[str, Pin]:
+        """The pin of each port bit of a core with these parts. A port of one bit has no index.
+
+        Raises BoardError for parts without pins, TableError for a pin that is used twice.
+        """
+        users: dict[str, str] = {}
+        found = {}
+        for key, port, pin in self._places(self._axes(axes), parts):
+            if pin.pin in users:
+                raise TableError(self.name, key, f"pin {pin.pin} is that of {users[pin.pin]} already")
+            users[pin.pin] = key
+            found[port] = pin
+        return found
+
+    def _places(self, axes: int, parts: Sequence[str]) -> Iterator[tuple[str, str, Pin]]:
+        """Key of the table, port bit and pin."""
+        for port, pin in self.pins.items():
+            yield "clock.pin" if port == OSCILLATOR else f"pins.{port}", port, pin
+        for axis, pins in enumerate(self.axis_pins[:axes]):
+            for port, pin in pins.items():
+                yield f"axes[{axis}].{port}", f"{port}[{axis}]" if axes > 1 else port, pin
+        core_parts.check(self.name, self.parts, parts, axes)
+        for part in parts:
+            for port, of_bits in self.parts[part].items():
+                count = core_parts.bits(part, port, axes)
+                for bit, pin in enumerate(of_bits[:count]):
+                    name = f"{port}[{bit}]"
+                    yield f"{part}.{name}", name if count > 1 else port, pin
 
     def pll(self, mhz: float | None = None) -> Pll:
         """PLL settings for the board's clock, or for `mhz`."""
@@ -74,7 +95,9 @@ class Board:
         except PllError as error:
             raise TableError(self.name, "clock.mhz", str(error)) from None
 
-    def parameters(self, axes: int | None = None, mhz: float | None = None) -> dict[str, int]:
+    def parameters(
+        self, axes: int | None = None, mhz: float | None = None, parts: Sequence[str] = ()
+    ) -> dict[str, int]:
         """Parameters of the top module."""
         chosen = self._axes(axes)
         inverted = [port for port in OPTIONAL if port in self.pins and self.pins[port].inverted]
@@ -82,6 +105,7 @@ class Board:
             "AXES": chosen,
             "CLOCK_HZ": round(self.pll(mhz).mhz * 1e6),
             **self.device.core,
+            **{part.upper(): 1 for part in parts},
             **{f"{port.upper()}_INVERTED": 1 for port in inverted},
             **{
                 f"{port.upper()}_RESET": sum(level << axis for axis, level in enumerate(levels[:chosen]))
@@ -140,12 +164,19 @@ def board(name: str) -> Board:
         if levels.has(port):
             reset[port] = levels.levels(port, len(axis_pins))
     levels.end()
+    parts = {
+        part: core_parts.read(table.table(part), part, len(axis_pins), lambda at, key: _pin(at, key, family))
+        for part in core_parts.PORTS
+        if table.has(part)
+    }
     table.end()
 
-    _refuse_pins_used_twice(name, pins, axis_pins)
-    return Board(
-        name, title, device, load, pack, oscillator_mhz, clock_mhz, pll_kind, pins, tuple(axis_pins), reset
+    of_axes = tuple(axis_pins)
+    made = Board(
+        *(name, title, device, load, pack, oscillator_mhz, clock_mhz, pll_kind, pins, of_axes, reset, parts)
     )
+    made.ports()  # refuses a pin that is used twice
+    return made
 
 
 def _device(table: Table, title: str) -> Device:
@@ -178,13 +209,3 @@ def _pin(table: Table, key: str, family: Family, invertible: bool = False) -> Pi
     )
     facts.end()
     return found
-
-
-def _refuse_pins_used_twice(name: str, pins: Mapping[str, Pin], axes: list[dict[str, Pin]]) -> None:
-    keys = {"clock.pin" if port == OSCILLATOR else f"pins.{port}": pin for port, pin in pins.items()}
-    keys |= {f"axes[{axis}].{port}": pin for axis, of in enumerate(axes) for port, pin in of.items()}
-    users: dict[str, str] = {}
-    for key, pin in keys.items():
-        if pin.pin in users:
-            raise TableError(name, key, f"pin {pin.pin} is that of {users[pin.pin]} already")
-        users[pin.pin] = key

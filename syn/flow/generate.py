@@ -2,7 +2,7 @@
 """Generates the files of a board from its table: a Verilog file with the PLL, and a pin file."""
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from passo.toolchain import paths
@@ -38,19 +38,23 @@ endmodule
 
 
 def generate(
-    board: Board, folder: Path, axes: int | None = None, mhz: float | None = None
+    board: Board,
+    folder: Path,
+    axes: int | None = None,
+    mhz: float | None = None,
+    parts: Sequence[str] = (),
 ) -> tuple[Design, Path]:
     """Write both files into `folder`; return the design and the pin file."""
     family = board.device.family
     folder.mkdir(parents=True, exist_ok=True)
     pll, pins = folder / "passo_board_pll.v", folder / f"pins.{family.pins_suffix}"
-    pins.write_text(pin_file(board, axes))
+    pins.write_text(pin_file(board, axes, parts))
     pll.write_text(pll_file(board, mhz))
     design = Design(
         name=f"board-{board.name}",
         device=board.device,
         top=TOP.stem,
-        parameters=board.parameters(axes, mhz),
+        parameters=board.parameters(axes, mhz, parts),
         left_out=board.left_out,
         extra_sources=(TOP, paths.syn / "families" / f"{family.name}.v", pll),
     )
@@ -71,12 +75,12 @@ def pll_file(board: Board, mhz: float | None = None) -> str:
     )
 
 
-def pin_file(board: Board, axes: int | None = None) -> str:
+def pin_file(board: Board, axes: int | None = None, parts: Sequence[str] = ()) -> str:
     """Text of the pin file in the format of the family."""
     family = board.device.family
     comment = "//" if family is GOWIN else "#"
     lines = [f"{comment} Made of {_table(board)} by `make synth`.\n"]
-    lines += [_FORMATS[family](port, pin) for port, pin in board.ports(axes).items()]
+    lines += [_FORMATS[family](port, pin) for port, pin in board.ports(axes, parts).items()]
     return "".join(lines)
 
 

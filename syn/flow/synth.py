@@ -9,6 +9,7 @@ from pathlib import Path
 
 from passo.console import console, stages, table
 from passo.toolchain import paths
+from passo_fpga import parts
 from passo_fpga.boards import OSCILLATOR, Board, board, boards
 from passo_fpga.complaints import gowin_functions, held_pins
 from passo_fpga.devices import GOWIN, SPI_MHZ
@@ -29,12 +30,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--board", default="", help="one of the folders in syn/")
     parser.add_argument("--axes", type=int, help="another number of axes")
     parser.add_argument("--clock", type=float, metavar="MHZ", help="another clock")
+    parser.add_argument("--parts", default="", help=f"parts of the core: {','.join(parts.PORTS)}")
     options = parser.parse_args(arguments)
     try:
         if not options.board:
             _list()
             return 0
-        return 0 if make(board(options.board), options.axes, options.clock) else 1
+        return (
+            0 if make(board(options.board), options.axes, options.clock, parts.chosen(options.parts)) else 1
+        )
     except (BoardError, PllError) as error:
         print(f"make synth: {error}", file=sys.stderr)
         return 2
@@ -49,12 +53,17 @@ def _list() -> None:
     for each in boards().values():
         shown.add_row(each.name, str(each.axes), f"{each.clock_mhz:g} MHz", each.title)
     console.print(shown)
+    for each in boards().values():
+        if each.parts:
+            print(f"{each.name} has pins for PARTS={','.join(each.parts)}")
 
 
-def make(chosen: Board, axes: int | None = None, mhz: float | None = None) -> bool:
+def make(
+    chosen: Board, axes: int | None = None, mhz: float | None = None, wanted: Sequence[str] = ()
+) -> bool:
     """Make the bitstream of the first good seed and print the result; return whether there is one."""
     tell = stages()
-    (design, pins), pll = generate(chosen, OUT / chosen.name, axes, mhz), chosen.pll(mhz)
+    (design, pins), pll = generate(chosen, OUT / chosen.name, axes, mhz, wanted), chosen.pll(mhz)
     family = chosen.device.family
     OUT.mkdir(parents=True, exist_ok=True)
     bitstream = OUT / f"{chosen.name}.{family.suffix}"
@@ -65,7 +74,7 @@ def make(chosen: Board, axes: int | None = None, mhz: float | None = None) -> bo
     made = cells(design)
     problems = synthesis_complaints(design)
     if family is GOWIN:
-        at = {port: pin.pin for port, pin in chosen.ports(axes).items()}
+        at = {port: pin.pin for port, pin in chosen.ports(axes, wanted).items()}
         problems += held_pins(at, gowin_functions(), chosen.pack)
     tried = {} if problems else _try_seeds(chosen, design, pins, pll.mhz, tell)
     good = next((seed for seed, placed in tried.items() if not _problems(placed, pll.mhz)), None)
@@ -73,7 +82,7 @@ def make(chosen: Board, axes: int | None = None, mhz: float | None = None) -> bo
         tell("bitstream")
         problems = pack(design, tried[good], chosen.pack, bitstream)
 
-    print(f"{chosen.title}, {design.parameters['AXES']} axes")
+    print(", ".join((chosen.title, f"{design.parameters['AXES']} axes", *wanted)))
     for problem in problems:
         print(f"  PROBLEM    {problem}")
     if not tried:

@@ -3,9 +3,11 @@
 
 import re
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
+
+P = TypeVar("P")
 
 _NEEDED: Any = object()  # marks a required key
 
@@ -51,6 +53,10 @@ class Table:
         """Whether the value of a key is a table."""
         return isinstance(self._facts.get(key), dict)
 
+    def is_list(self, key: str) -> bool:
+        """Whether the value of a key is a list."""
+        return isinstance(self._facts.get(key), list)
+
     def text(self, key: str, default: str = _NEEDED) -> str:
         """A string."""
         return self._take(key, default, "a text", lambda value: isinstance(value, str) and value != "")
@@ -84,6 +90,14 @@ class Table:
             return type(value) is int or (isinstance(value, str) and re.fullmatch(r"\w+", value) is not None)
 
         return str(self._take(key, _NEEDED, "the name or number of a pin", fits))
+
+    def pins(self, key: str, pin: Callable[["Table", str], P]) -> tuple[P, ...]:
+        """A list of one or more pins, each read by `pin` as a key of a table."""
+        found = self._take(
+            key, _NEEDED, "a list of pins", lambda value: isinstance(value, list) and value != []
+        )
+        each = Table(self.board, "", {f"{self._path(key)}[{n}]": value for n, value in enumerate(found)})
+        return tuple(pin(each, name) for name in each._facts)
 
     def levels(self, key: str, axes: int) -> tuple[int, ...]:
         """A level for each axis, or one for all."""
