@@ -83,9 +83,9 @@ synth: ## Make the bitstream of a board: BOARD=..., optional AXES=, CLOCK= (MHz)
 	@$(BIN)/python -m passo_fpga.synth $(if $(BOARD),--board $(BOARD)) $(if $(AXES),--axes $(AXES)) \
 	    $(if $(CLOCK),--clock $(CLOCK)) $(if $(PARTS),--parts $(PARTS))
 
-report: ## Measure size and speed on all FPGAs (several hours); ONLY=hx8k,up5k or QUICK=1 for a part.
+report: ## Measure size and speed on all FPGAs (several hours); ONLY=hx8k,up5k or QUICK=1 for some of it, PARTS=1 for the optional parts.
 	@tools/setup.sh fpga
-	@$(BIN)/python -m passo_fpga.report $(if $(ONLY),--only $(ONLY)) $(if $(QUICK),--quick)
+	@$(BIN)/python -m passo_fpga.report $(if $(ONLY),--only $(ONLY)) $(if $(QUICK),--quick) $(if $(PARTS),--parts)
 
 icarus: setup ## Run all tests of the whole core on Icarus Verilog.
 	@PASSO_ICARUS=1 $(BIN)/pytest cocotb_tests/test_core.py -k icarus

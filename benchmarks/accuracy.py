@@ -24,9 +24,10 @@ from benchmarks.cases import METHODS, NAMED, method_of, random_moves
 from benchmarks.forms import FORMS, measure_forms
 from benchmarks.measure import Result, check_with_model, measure, statistics
 from benchmarks.passo_side import CLOCK_HZ, PARAMETERS
+from benchmarks.peer import KINDS, MOVES, compare_with_peer
 from benchmarks.picture import plot_accuracy
 from benchmarks.sources import Move
-from benchmarks.tables import named_table, page, plan_table, random_table
+from benchmarks.tables import named_table, page, peer_table, plan_table, random_table
 
 REPORT = paths.build / "accuracy.json"
 PAGE = paths.docs / "accuracy.md"
@@ -57,6 +58,7 @@ class Measured:
 
     results: list[Result]
     forms: dict[str, list[dict[str, float]]]
+    peers: dict[str, dict[str, Any]]
     checked_moves: int
     checked_steps: int
 
@@ -75,8 +77,12 @@ def measure_all(cases: int, seed: int) -> Measured:
             results += some
             report(len(results))
         own = {name: pool.submit(measure_forms, name, max(1, cases // FORMS_SHARE), seed) for name in FORMS}
+        share = max(1, MOVES * cases // CASES)
+        peers = {name: pool.submit(compare_with_peer, name, share, seed) for name in KINDS}
         steps = sum(pool.map(check_some, ([move] for move in checked)))
-        return Measured(results, {name: errors.result() for name, errors in own.items()}, len(checked), steps)
+        forms = {name: errors.result() for name, errors in own.items()}
+        against = {name: found.result() for name, found in peers.items()}
+        return Measured(results, forms, against, len(checked), steps)
 
 
 def groups(results: list[Result]) -> Iterator[tuple[str, list[Result]]]:
@@ -120,6 +126,7 @@ def gather(measured: Measured, named: list[Result]) -> dict[str, Any]:
             }
             for case, result in zip(NAMED, named, strict=True)
         ],
+        "peers": measured.peers,
         "checked": {"moves": measured.checked_moves, "steps": measured.checked_steps},
     }
 
@@ -136,7 +143,7 @@ def accuracy(cases: int = CASES, seed: int = SEED) -> dict[str, Any]:
     PAGE.write_text(page(report), encoding="utf-8")
     plot_accuracy(PICTURE)
     screen = console if console.is_terminal else Console(width=WIDTH)
-    for shown in (random_table(report), named_table(report), plan_table(report)):
+    for shown in (random_table(report), named_table(report), plan_table(report), peer_table(report)):
         screen.print(shown)
         screen.print()
     made = len(measured.results) + sum(map(len, measured.forms.values()))

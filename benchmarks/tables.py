@@ -149,6 +149,30 @@ def plan_table(report: dict[str, Any]) -> Table:
     return made
 
 
+PEER_COLUMNS = ("", "moves", "ticks longer", "median", "99.9 %", "worst")
+
+
+def peer_rows(report: dict[str, Any]) -> list[list[str]]:
+    """Passo's total times against those of ruckig."""
+    return [
+        [
+            name,
+            f"{data['moves']:,}",
+            f"{data['fewest_ticks']:.2f} .. {data['most_ticks']:.2f}",
+            *(relative(data[key]) for key in ("median", "999 of 1000", "worst")),
+        ]
+        for name, data in report["peers"].items()
+    ]
+
+
+def peer_table(report: dict[str, Any]) -> Table:
+    """The same for the terminal."""
+    made = table("Total time against ruckig: in ticks; relative, of moves of 50 ms and more", *PEER_COLUMNS)
+    for row in peer_rows(report):
+        made.add_row(*row)
+    return made
+
+
 def page(report: dict[str, Any]) -> str:
     """docs/accuracy.md."""
     body = []
@@ -167,6 +191,7 @@ def page(report: dict[str, Any]) -> str:
         seed=report["seed"],
         random=markdown(("median / worst", *COLUMNS.values()), body),
         planned=markdown(PLAN_COLUMNS, plan_rows(report)),
+        peers=markdown(PEER_COLUMNS, peer_rows(report)),
         named=markdown(NAMED_COLUMNS, named_rows(report)),
         gap_5=relative(sigmoid_formula(5, 0, 1)),
         gap_3=relative(sigmoid_formula(3, 0, 1)),

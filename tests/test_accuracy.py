@@ -20,6 +20,7 @@ from benchmarks.forms import FORMS, measure_form, measure_forms
 from benchmarks.ideal import Phase, by_speed, in_time, shape_area, shape_value
 from benchmarks.measure import Result, check_with_model, measure
 from benchmarks.passo_side import CLOCK_HZ, PARAMETERS
+from benchmarks.peer import KINDS, compare_with_peer
 from benchmarks.sources import Cosine, MultiAxis, Sigmoid, Trapezoid
 from benchmarks.tables import number, page, relative
 from tests.helpers.closed_form import Ramp, substep_clocks
@@ -274,6 +275,14 @@ def test_forms_keep_to_their_plans(name: str) -> None:
         assert math.isnan(errors["ticks"]) or errors["ticks"] <= (4 if "ramp time" in name else 0.5 + 1e-6)
 
 
+@pytest.mark.parametrize("name", KINDS)
+def test_plans_are_as_short_as_those_of_a_peer(name: str) -> None:
+    """Never shorter than the shortest possible; longer by some ticks, and by less than 0.02 %."""
+    found = compare_with_peer(name, 400, SEED)
+    assert found["fewest_ticks"] >= 0 and found["most_ticks"] < 5
+    assert found["long_moves"] > 350 and found["worst"] < 2e-4
+
+
 def test_steps_are_those_of_the_model() -> None:
     """steps.c puts each step on the clock on which the C model's pin rises; also with tables for an alpha."""
     moves = [move for method in METHODS for move in random_moves(method, 2, SEED)]
@@ -324,9 +333,10 @@ def test_page_has_all_methods_and_forms(results: dict[str, list[Result]]) -> Non
     """The page has all measured methods and forms."""
     rng = random.Random(SEED)
     forms = {name: [measure_form(make(rng))] for name, make in FORMS.items()}
+    peers = {name: compare_with_peer(name, 10, SEED) for name in KINDS}
     named = [measure(case.move) for case in NAMED]
     some = [result for method in results.values() for result in method]
-    report = {"cases": MOVES, "seed": SEED} | gather(Measured(some, forms, 1, 1), named)
+    report = {"cases": MOVES, "seed": SEED} | gather(Measured(some, forms, peers, 1, 1), named)
     text = page(report)
     for title in (*(method.title for method in METHODS), *FORMS, *(case.text for case in NAMED)):
         assert title in text

@@ -13,7 +13,7 @@ from rich.console import Console
 PAGE = paths.docs / "report.md"
 TEMPLATE = Path(__file__).with_name("page.md")
 README = paths.root / "README.md"
-BEGIN, END = "<!-- report: make report writes from here -->", "<!-- to here -->"
+MARKS = "<!-- report: make report writes from here -->", "<!-- to here -->"
 WIDTH = 118  # of the tables without a terminal
 NONE = "–"
 
@@ -24,9 +24,9 @@ def write(report: dict[str, Any]) -> None:
     """Write the page, and the goals in README.md."""
     template = TEMPLATE.read_text(encoding="utf-8")
     parts = {
-        "goals": _markdown(*_goals(report)),
+        "goals": markdown(*_goals(report)),
         "devices": "\n\n".join(_device(report, name) for name in DEVICES),
-        "tops": _markdown(*_tops(report)),
+        "tops": markdown(*_tops(report)),
         "split": "\n\n".join(
             f"### {DEVICES[name].title}\n\n{_modules(rows)}" for name, rows in report["split"].items()
         ),
@@ -50,8 +50,7 @@ def write(report: dict[str, Any]) -> None:
 
 def write_goals(report: dict[str, Any]) -> None:
     """Write the goals in README.md."""
-    block = _markdown(*_goals(report))
-    README.write_text(_with_block(README.read_text(encoding="utf-8"), block), encoding="utf-8")
+    write_block(README, markdown(*_goals(report)))
 
 
 def show(report: dict[str, Any]) -> None:
@@ -70,16 +69,19 @@ def show(report: dict[str, Any]) -> None:
         screen.print(shown)
 
 
-def _with_block(text: str, block: str) -> str:
-    """README.md with a new table between the marks."""
-    before, _, rest = text.partition(BEGIN)
-    _, _, after = rest.partition(END)
-    if not rest or END not in rest:
-        raise ValueError(f"README.md lacks the marks '{BEGIN}' and '{END}'")
-    return f"{before}{BEGIN}\n{block}\n{END}{after}"
+def write_block(page: Path, block: str) -> None:
+    """Replace what a page has between the marks."""
+    begin, end = MARKS
+    text = page.read_text(encoding="utf-8")
+    before, _, rest = text.partition(begin)
+    _, _, after = rest.partition(end)
+    if not rest or end not in rest:
+        raise ValueError(f"{page.name} lacks the marks '{begin}' and '{end}'")
+    page.write_text(f"{before}{begin}\n{block}\n{end}{after}", encoding="utf-8")
 
 
-def _markdown(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+def markdown(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A table of Markdown, its numbers on the right."""
     rule = ["---", *["---:"] * (len(header) - 1)]
     return "\n".join(f"| {' | '.join(cells)} |" for cells in (header, rule, *rows))
 
@@ -93,7 +95,8 @@ def _find(report: dict[str, Any], device: str, channels: int, axes: int) -> Row:
     return found
 
 
-def _mhz(value: float | None) -> str:
+def mhz(value: float | None) -> str:
+    """A clock, or a dash for none."""
     return NONE if value is None else f"{value:.1f}"
 
 
@@ -116,9 +119,9 @@ def _goals(report: dict[str, Any]) -> tuple[Sequence[str], list[list[str]]]:
             [
                 device.title,
                 str(goal["axes"]),
-                _mhz(row["f_max_median"]) if row["fits"] else "does not fit",
+                mhz(row["f_max_median"]) if row["fits"] else "does not fit",
                 str(goal["median_mhz"]),
-                _mhz(row["f_max_minimum"]),
+                mhz(row["f_max_minimum"]),
                 str(goal["minimum_mhz"]),
                 f"{row['size']:,} {unit}",
                 f"{goal['size']:,} {unit}",
@@ -133,7 +136,7 @@ def _by_seed(report: dict[str, Any]) -> list[str]:
     """The speeds of the designs with goals, by seed."""
     rows = [(goal, _find(report, goal["device"], goal["channels"], goal["axes"])) for goal in report["goals"]]
     return [
-        f"{DEVICES[goal['device']].title}, {goal['axes']} axes: {', '.join(map(_mhz, row['f_max'])) or NONE}"
+        f"{DEVICES[goal['device']].title}, {goal['axes']} axes: {', '.join(map(mhz, row['f_max'])) or NONE}"
         for goal, row in rows
     ]
 
@@ -145,7 +148,7 @@ def _sizes(report: dict[str, Any], name: str) -> tuple[Sequence[str], list[list[
     for row in sorted(
         (row for row in report["designs"] if row["device"] == name), key=lambda r: (r["channels"], r["axes"])
     ):
-        speed = [_mhz(row["f_max_minimum"]), _mhz(row["f_max_median"])]
+        speed = [mhz(row["f_max_minimum"]), mhz(row["f_max_median"])]
         rows.append(
             [
                 f"{row['channels']} x {row['axes']}",
@@ -161,7 +164,7 @@ def _sizes(report: dict[str, Any], name: str) -> tuple[Sequence[str], list[list[
 
 
 def _device(report: dict[str, Any], name: str) -> str:
-    sizes = _markdown(*_sizes(report, name))
+    sizes = markdown(*_sizes(report, name))
     return f"### {DEVICES[name].title}\n\n{sizes}\n\nCost of one more: {_costs(report, name)}."
 
 
@@ -187,8 +190,8 @@ def _tops(report: dict[str, Any]) -> tuple[Sequence[str], list[list[str]]]:
             DEVICES[row["device"]].title,
             f"`{row['top']}`",
             f"{row['size']:,} {DEVICES[row['device']].family.size_unit}",
-            _mhz(row["f_max_minimum"]),
-            _mhz(row["f_max_median"]),
+            mhz(row["f_max_minimum"]),
+            mhz(row["f_max_median"]),
         ]
         for row in sorted(report["tops"], key=lambda row: list(DEVICES).index(row["device"]))
     ]
@@ -199,4 +202,4 @@ def _modules(modules: Sequence[Row]) -> str:
     columns = ("instances", "LUT", "FF", "carry", "BRAM")
     rows = [[f"`{row['module']}`", *(f"{row[column]:,}" for column in columns)] for row in modules]
     total = [f"{sum(row[column] for row in modules):,}" for column in columns[1:]]
-    return _markdown(("module", *columns), [*rows, ["all", "", *total]])
+    return markdown(("module", *columns), [*rows, ["all", "", *total]])

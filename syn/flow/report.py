@@ -4,7 +4,7 @@
 A full report writes build/report.json, docs/report.md and the goals between two marks in README.md; QUICK=1
 writes only the goals. A partial report (ONLY=, QUICK=1) is printed and written to build/report-part.json.
 Each run of a netlist with a seed is cached in build/fpga: an interrupted report resumes, and after a change
-only the affected runs are repeated.
+only the affected runs are repeated. PARTS=1 measures the optional parts of the core instead.
 """
 
 import argparse
@@ -20,7 +20,7 @@ from typing import Any
 from passo.console import console, stages
 from passo.report import write_json
 from passo.toolchain import paths
-from passo_fpga import pages
+from passo_fpga import pages, parts_report
 from passo_fpga.devices import DEVICES, SPI_MHZ, Device
 from passo_fpga.flow import Design, Placed, cells, place, synthesize
 from passo_fpga.split import difference, split
@@ -66,12 +66,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="make report", description="Measure size and speed of the core.")
     parser.add_argument("--only", default="", help=f"devices, with commas between: {','.join(DEVICES)}")
     parser.add_argument("--quick", action="store_true", help="only the rows of the goals")
+    parser.add_argument("--parts", action="store_true", help="the cost of each part of the core instead")
     options = parser.parse_args(arguments)
     chosen = [name for name in options.only.split(",") if name] or list(DEVICES)
     if unknown := set(chosen) - set(DEVICES):
         message = f"there is no device '{min(unknown)}'; choose of {', '.join(DEVICES)}"
         print(f"make report: {message}", file=sys.stderr)
         return 2
+    if options.parts:
+        return _parts(chosen)
     goals = [(goal.device, SPI, (goal.channels, goal.axes)) for goal in GOALS if goal.device in chosen]
     others = (
         [] if options.quick else [*product(chosen, (SPI,), SIZES), *product(chosen, BUS_TOPS, (TOP_SIZE,))]
@@ -94,6 +97,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if len(goals) == len(GOALS):
             pages.write_goals(report)
     pages.show(report)
+    return 0
+
+
+def _parts(chosen: Sequence[str]) -> int:
+    try:
+        parts_report.report(chosen, set(chosen) == set(DEVICES))
+    except ToolError as error:
+        print(error, file=sys.stderr)
+        return 1
     return 0
 
 
