@@ -26,8 +26,16 @@ from benchmarks.measure import Result, check_with_model, measure, statistics
 from benchmarks.passo_side import CLOCK_HZ, PARAMETERS
 from benchmarks.peer import KINDS, MOVES, compare_with_peer
 from benchmarks.picture import plot_accuracy
+from benchmarks.resonance import measure_resonances
 from benchmarks.sources import Move
-from benchmarks.tables import named_table, page, peer_table, plan_table, random_table
+from benchmarks.tables import (
+    named_table,
+    page,
+    peer_table,
+    plan_table,
+    random_table,
+    resonance_table,
+)
 
 REPORT = paths.build / "accuracy.json"
 PAGE = paths.docs / "accuracy.md"
@@ -127,6 +135,7 @@ def gather(measured: Measured, named: list[Result]) -> dict[str, Any]:
             for case, result in zip(NAMED, named, strict=True)
         ],
         "peers": measured.peers,
+        "resonances": measure_resonances(),
         "checked": {"moves": measured.checked_moves, "steps": measured.checked_steps},
     }
 
@@ -143,7 +152,13 @@ def accuracy(cases: int = CASES, seed: int = SEED) -> dict[str, Any]:
     PAGE.write_text(page(report), encoding="utf-8")
     plot_accuracy(PICTURE)
     screen = console if console.is_terminal else Console(width=WIDTH)
-    for shown in (random_table(report), named_table(report), plan_table(report), peer_table(report)):
+    for shown in (
+        random_table(report),
+        named_table(report),
+        plan_table(report),
+        peer_table(report),
+        resonance_table(report),
+    ):
         screen.print(shown)
         screen.print()
     made = len(measured.results) + sum(map(len, measured.forms.values()))

@@ -11,7 +11,7 @@ import numpy as np
 from cffi import FFI
 from passo import compiler, moves
 from passo.build import Parameters
-from passo.move_forms import USER
+from passo.move_forms import SHAPED, USER
 from passo.plan import ALPHA_ONE, ALPHA_RESET, Q48, Plan, plan_move
 from passo.registers import Shape
 
@@ -131,7 +131,7 @@ def alpha_of(plan: Plan) -> float:
 def banks_of(plan: Plan) -> np.ndarray:
     """Contents of the banks for a plan: the standard shapes, or a user-defined one in the sigmoid bank."""
     banks = tables(alpha_of(plan))
-    if plan.move.profile == USER:
+    if plan.move.profile in (USER, SHAPED):
         banks = banks.copy()
         banks[SHAPES.index("sigmoid") - 1] = [*plan.table, 65536]
     return banks

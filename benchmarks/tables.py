@@ -9,6 +9,7 @@ from passo.console import table
 from rich.table import Table
 
 from benchmarks.cases import METHODS
+from benchmarks.resonance import DETUNED, FREQUENCY
 from benchmarks.sources import sigmoid_formula
 
 TEMPLATE = Path(__file__).with_name("page.md")
@@ -173,6 +174,26 @@ def peer_table(report: dict[str, Any]) -> Table:
     return made
 
 
+RESONANCE_COLUMNS = ("ramps", *(f"{float(part - 1):+.0%}" if part != 1 else "exact" for part in DETUNED))
+
+
+def resonance_rows(report: dict[str, Any]) -> list[list[str]]:
+    """Steps of vibration that are left, by the error of the frequency."""
+    return [
+        [f"{row['ramp']}, damping {row['damping']:g}", *(f"{left:.3f}" for left in row["left"])]
+        for row in report["resonances"]
+    ]
+
+
+def resonance_table(report: dict[str, Any]) -> Table:
+    """The same for the terminal."""
+    title = f"Vibration left at {FREQUENCY} Hz, in steps, when the frequency is off by"
+    made = table(title, *RESONANCE_COLUMNS)
+    for row in resonance_rows(report):
+        made.add_row(*row)
+    return made
+
+
 def page(report: dict[str, Any]) -> str:
     """docs/accuracy.md."""
     body = []
@@ -192,6 +213,8 @@ def page(report: dict[str, Any]) -> str:
         random=markdown(("median / worst", *COLUMNS.values()), body),
         planned=markdown(PLAN_COLUMNS, plan_rows(report)),
         peers=markdown(PEER_COLUMNS, peer_rows(report)),
+        resonances=markdown(RESONANCE_COLUMNS, resonance_rows(report)),
+        resonance_hz=FREQUENCY,
         named=markdown(NAMED_COLUMNS, named_rows(report)),
         gap_5=relative(sigmoid_formula(5, 0, 1)),
         gap_3=relative(sigmoid_formula(3, 0, 1)),

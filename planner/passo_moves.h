@@ -60,7 +60,7 @@ enum passo_profile {
 /* A move in a given total time, from rest to rest. f_max = n / (total - ramp), both rounded to ticks. */
 struct passo_move_in_time {
 	int32_t            steps[PASSO_AXES_MAX]; /* per axis; the sign is the direction */
-	enum passo_profile profile;               /* shape of the ramps */
+	enum passo_profile profile;               /* shape of the ramps; `shaped` with a shaper */
 	uint64_t           total_clocks;          /* clocks: from start to end */
 	uint64_t           ramp_clocks;           /* clocks: of each of the two ramps; 0 to half of the total time */
 };

@@ -146,7 +146,7 @@ static uint64_t weight_of_end(const struct passo_draft *draft, struct passo_phas
 void passo_draft_weigh(struct passo_draft *draft)
 {
 	draft->accelerate.weight = weight_of_end(draft, draft->accelerate, false);
-	draft->decelerate.weight = weight_of_end(draft, draft->decelerate, true);
+	draft->decelerate.weight = weight_of_end(draft, draft->decelerate, draft->mirrors);
 }
 
 /* Weight of a ramp's start velocity in its distance. */
@@ -208,7 +208,7 @@ static void add_change(struct passo_plan *plan, const struct passo_draft *draft,
     uint64_t from, uint64_t to)
 {
 	if (draft->profile != PASSO_PROFILE_JERK) {
-		passo_plan_add_ramp(plan, draft->shape, draft->table != NULL && to < from, to, ramp.ticks);
+		passo_plan_add_ramp(plan, draft->shape, draft->mirrors && to < from, to, ramp.ticks);
 		return;
 	}
 	uint64_t curve = (ramp.ticks - ramp.straight) / 2;

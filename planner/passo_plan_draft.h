@@ -43,7 +43,8 @@ struct passo_draft {
 	enum passo_profile profile;
 	enum passo_shape shape; /* of the ramps */
 	uint32_t sigmoid_alpha; /* alpha of a sigmoid in units of 1/4096; 0: no sigmoid */
-	const uint16_t *table;  /* points of a user-defined shape, else null; deceleration mirrors it */
+	const uint16_t *table;  /* points of a user-defined shape, else null */
+	bool mirrors;           /* deceleration mirrors it */
 	uint32_t mean;          /* mean of the shape in units of 2^-24; 1/2 except for some tables */
 	uint64_t (*table_weight)(const struct passo_draft *draft, uint64_t ticks, bool mirror);
 	uint32_t longest;      /* steps of the longest axis */

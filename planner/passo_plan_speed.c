@@ -73,9 +73,13 @@ static enum passo_plan_error find_slope(struct slope *slope, const struct passo_
 	return too_long ? PASSO_PLAN_TOO_LONG : PASSO_PLAN_OK;
 }
 
-/* Scales the ramp time by the mean of a user-defined shape, which is the weight of the peak in the ramps. */
-static uint64_t weighted(uint64_t clocks, uint32_t mean)
+/* Scales a ramp time by twice the weight of the peak in the ramp: the mean of a user-defined shape, or, for a
+ * deceleration that is not mirrored, what it lacks to 1. */
+static uint64_t weighted(uint64_t clocks, const struct passo_draft *draft, bool falls)
 {
+	const bool rest = falls && draft->table && !draft->mirrors;
+	const uint32_t mean = rest ? 2 * PASSO_MEAN_HALF - draft->mean : draft->mean;
+
 	return mean == PASSO_MEAN_HALF ? clocks : passo_mul_div(clocks, mean, PASSO_MEAN_HALF);
 }
 
@@ -97,9 +101,10 @@ static uint64_t reachable_speed(const struct passo_draft *draft, uint64_t limit,
 	sum = passo_u128_add(
 	    sum, passo_multiply(stop, passo_smaller(clocks_ceil(down, stop), SLOPE_CLOCKS_MAX)));
 
-	uint64_t clocks = passo_smaller(clocks_floor(up, limit), SLOPE_CLOCKS_MAX)
-	                + passo_smaller(clocks_floor(down, limit), SLOPE_CLOCKS_MAX);
-	uint64_t quotient = passo_divide(sum, weighted(clocks, draft->mean), NULL);
+	uint64_t clocks =
+	    weighted(passo_smaller(clocks_floor(up, limit), SLOPE_CLOCKS_MAX), draft, false)
+	    + weighted(passo_smaller(clocks_floor(down, limit), SLOPE_CLOCKS_MAX), draft, true);
+	uint64_t quotient = passo_divide(sum, clocks, NULL);
 	if (quotient >= limit)
 		return limit;
 	return passo_smaller(limit, passo_isqrt128(passo_multiply(quotient + 1, limit)) + 1);

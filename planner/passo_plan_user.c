@@ -71,6 +71,7 @@ static uint32_t start_draft(struct passo_draft *draft, const struct passo_machin
 		return refused;
 	draft->shape = shape->bank;
 	draft->table = shape->table;
+	draft->mirrors = !shape->forward;
 	draft->mean = facts.mean;
 	draft->table_weight = table_weight;
 	return PASSO_PLAN_OK;

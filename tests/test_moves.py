@@ -18,6 +18,8 @@ CLOCK = "clock_hz = 16_000_000\n"
 BY_TIME = '[[move]]\nsteps = [100, -50]\nprofile = "cosine"\ntotal_time = 0.4\nramp_time = 0.1\n'
 BY_SPEED = '[[move]]\nsteps = [100, -50]\nprofile = "linear"\nspeed = 2000\nacceleration = 40000\n'
 GOOD = CLOCK + BY_TIME
+SHAPER = '{ name = "zv", frequency = 40 }'
+SHAPED = GOOD.replace("cosine", "shaped") + f"shaper = {SHAPER}\n"
 MOST = 2**30 - 1  # steps of an axis
 
 
@@ -122,6 +124,17 @@ def test_a_byte_order_mark(tmp_path: Path) -> None:
 
 BAD = {
     "clock missing": (BY_TIME, "clock_hz is missing"),
+    "shaper of another profile": (
+        GOOD + 'shaper = { name = "zv", frequency = 40 }\n',
+        'shaper needs profile = "shaped"',
+    ),
+    "no shaper": (SHAPED.replace("shaper = ", "# "), "shaper is missing"),
+    "shaper by name": (SHAPED.replace(SHAPER, '"zv"'), "shaper must be a table such as"),
+    "unknown shaper": (SHAPED.replace('"zv"', '"zvd"'), "shaper: name must be one of zv, mzv, ei"),
+    "shaper key": (SHAPED.replace("frequency", "frequenzy"), "shaper: unknown key 'frequenzy'; did you mean"),
+    "frequency zero": (SHAPED.replace("= 40", "= 0"), "shaper: frequency must be greater than 0"),
+    "damping": (SHAPED.replace("= 40", "= 40, damping = 0.6"), "shaper: damping must be 0 to 0.5"),
+    "shaped by speed": (CLOCK + BY_SPEED.replace("linear", "shaped"), "profile must be one of linear"),
     "clock zero": (GOOD.replace("16_000_000", "0"), "clock_hz must be 1 to 4294967295"),
     "clock float": (GOOD.replace("16_000_000", "16e6"), "clock_hz must be a whole number"),
     "clock in MHz": (
@@ -231,6 +244,10 @@ BAD = {
 
 # Errors that only the planner detects.
 UNPLANNABLE = {
+    "shaper longer than the ramp": (
+        SHAPED.replace("= 40", "= 4"),
+        "RAMP_TOO_SHORT: zv at 4 Hz takes 125.000 ms",
+    ),
     "no steps": (GOOD.replace("[100, -50]", "[0, 0]"), "move 1: NO_STEPS: "),
     "no time": (GOOD.replace("0.4", "0").replace("0.1", "0"), "move 1: NO_TIME: "),
     "long ramp": (GOOD + BY_TIME.replace("0.1", "0.21"), "move 2: RAMP_TOO_LONG: "),

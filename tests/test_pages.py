@@ -56,12 +56,12 @@ def test_the_moves_of_the_planning(tmp_path: Path) -> None:
     """Each is run, after the table of its own shape has been made."""
     (command,) = [block for block in blocks(PLANNING, "") if block.startswith("passo shape")]
     moves = blocks(PLANNING, "toml")
-    assert len(moves) == 10
+    assert len(moves) == 11
     for number, text in enumerate(moves):
         clock = "" if "clock_hz" in text else "clock_hz = 4_000_000\n"  # a whole file, or a move
         (tmp_path / f"move{number}.toml").write_text(clock + text)
-    runs = "".join(f"passo run --engine model move{number}.toml --out out{number}\n" for number in range(10))
-    assert shell(tmp_path, f"set -e\n{command}{runs}").count(" clocks (") == 10
+    runs = "".join(f"passo run --engine model move{number}.toml --out out{number}\n" for number in range(11))
+    assert shell(tmp_path, f"set -e\n{command}{runs}").count(" clocks (") == 11
     assert (tmp_path / "my.png").exists()
 
 

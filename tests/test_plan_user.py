@@ -82,11 +82,16 @@ def test_random_facts(c: Any) -> None:
 
 
 def plan_user(
-    c: Any, machine: Machine, move: InTime | BySpeed, table: list[int], bank: int = SIGMOID
+    c: Any,
+    machine: Machine,
+    move: InTime | BySpeed,
+    table: list[int],
+    bank: int = SIGMOID,
+    forward: bool = False,
 ) -> Plan:
     kind = "in_time" if isinstance(move, InTime) else "by_speed"
     kept = ffi().new("uint16_t[256]", table)
-    shape = ffi().new("struct passo_user_shape *", {"bank": bank, "table": kept})
+    shape = ffi().new("struct passo_user_shape *", {"bank": bank, "table": kept, "forward": forward})
     fields = {**vars(move), "steps": list(move.steps)}
     return make(c, machine, len(move.steps), f"user_{kind}", f"passo_move_{kind}", fields, shape)
 
@@ -111,12 +116,12 @@ def distance(plan: Plan, table: list[int]) -> Fraction:
     return Fraction(total * plan.machine.tick, 1 << 48)
 
 
-def check(plan: Plan, table: list[int], bank: int = SIGMOID) -> float:
-    """The ramps cover M; acceleration follows the shape, deceleration its mirror image."""
+def check(plan: Plan, table: list[int], bank: int = SIGMOID, forward: bool = False) -> float:
+    """The ramps cover M; acceleration follows the shape, deceleration its mirror image, or the shape too."""
     p = plan.c
     for ramp in plan.ramps:
         change = ramp.velocity_end - ramp.velocity_start
-        assert ramp.mirror == (ramp.shape != 0 and change < 0)
+        assert ramp.mirror == (ramp.shape != 0 and change < 0 and not forward)
         assert ramp.shape == (bank if ramp.ticks and change else ramp.shape)
     assert max(ramp.velocity_end for ramp in plan.ramps) == p.velocity_peak <= HALF
     error = abs(distance(plan, table) - plan.substeps)
@@ -152,6 +157,21 @@ def test_mirrored_ramps_are_mirror_images(c: Any) -> None:
     assert plan.c.steps_to_stop == round(
         float(up.velocity_end * 625 * 128 * mean(table)) / 2**48 / plan.c.oversampling
     )
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_forward_ramps_are_exact_too(c: Any, name: str) -> None:
+    """Both ramps follow the table; the number of steps, the time and the limits are kept."""
+    table = points(SHAPES[name])
+    for ramp in (50, 255, 256, 1000):
+        plan = plan_user(c, Machine(), InTime((9 * ramp,), 0, 640 * ramp, 128 * ramp), table, forward=True)
+        assert plan.ticks == 5 * ramp
+        check(plan, table, forward=True)
+    for steps in (300, 20_000):
+        move = BySpeed((steps,), 0, q32(10_000), acceleration=q32(100_000))
+        plan = plan_user(c, Machine(), move, table, forward=True)
+        check(plan, table, forward=True)
+        assert speed_of(plan, plan.c.velocity_peak) <= 10_000
 
 
 def test_random_moves_by_speed(c: Any) -> None:

@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from passo.move_forms import USER
+from passo.move_forms import SHAPED, USER
 from passo.plan import ALPHA_ONE, ALPHA_RESET, Q48, Plan
 from passo.run import Run
 from passo.shape import ONE, POINTS
@@ -52,7 +52,7 @@ def _table(u: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def shapes_of(plan: Plan) -> tuple[Shape, ...]:
     """The shapes that the ramps of a plan use, indexed by enum passo_shape."""
     sigmoid = partial(_sigmoid, a=(plan.c.sigmoid_alpha or ALPHA_RESET) / ALPHA_ONE)
-    if plan.move.profile == USER:
+    if plan.move.profile in (USER, SHAPED):
         sigmoid = partial(_table, points=np.array([*plan.table, ONE]) / ONE)
     return _linear, _cosine, sigmoid, _ease
 

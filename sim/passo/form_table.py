@@ -8,6 +8,15 @@ Points = tuple[int, ...]  # points of a user-defined shape; empty for other prof
 
 
 @dataclass(frozen=True)
+class Shaper:
+    """An input shaper, and the resonance that it is for; see passo/shaper.py."""
+
+    name: str
+    frequency: Fraction  # Hz
+    damping: Fraction  # of 1, critical
+
+
+@dataclass(frozen=True)
 class Place:
     """A position as written, in steps or millimetres."""
 

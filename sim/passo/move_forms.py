@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import ClassVar
 
-from passo.form_table import Form, Key, Place, Points, Rule
+from passo.form_table import Form, Key, Place, Points, Rule, Shaper
 from passo.registers import Shape
 
 # Longest line: its substeps, and so the steps of each axis, have 30 bits.
@@ -32,6 +32,7 @@ ALPHA_RESET = 5
 
 PROFILES = ("linear", "cosine", "sigmoid", "jerk")
 USER = "user"  # the profile given by a table
+SHAPED = "shaped"  # the profile given by an input shaper
 USER_BANK = Shape.SIGMOID  # the bank of that table
 
 FORMS = {
@@ -41,6 +42,7 @@ FORMS = {
             Key("steps", "steps", "steps"),
             Key("profile", "shape", "profile"),
             Key("table", "table", None, file_only=True),
+            Key("shaper", "shaper", None, file_only=True),
             Key("total_time", "time", "total_clocks", factor="clock_hz"),
             Key("ramp_time", "time", "ramp_clocks", factor="clock_hz"),
             Key("channel", "channel", None, default=0),
@@ -448,6 +450,7 @@ class MoveInTime:
     total_time: Fraction
     ramp_time: Fraction
     table: Points = ()
+    shaper: Shaper | None = None
     channel: int = 0
 
     form: ClassVar[Form] = FORMS["in_time"]

@@ -10,10 +10,11 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
-from passo.form_table import Form, Place
+from passo.form_table import Form, Place, Shaper
 from passo.move_forms import (
     NUMBER_MAX,
     PROFILES,
+    SHAPED,
     SIGNED_MAX,
     SUBSTEPS_MAX,
     USER,
@@ -22,6 +23,7 @@ from passo.move_forms import (
     Points,
 )
 from passo.moves import AXES_MAX, CHANNELS_MAX
+from passo.shaper import DAMPING_MAX, SHAPERS
 from passo.values import NUMBER, BadValueError, check_number, meant, parse_time, shown
 
 Table = dict[str, Any]
@@ -116,6 +118,12 @@ def read_profile(table: Table, key: str, profiles: tuple[str, ...] = PROFILES) -
     return profile
 
 
+def _shapes(table: Table) -> tuple[str, ...]:
+    """The profiles of a form that accepts a shape; an input shaper needs a given time, and a move file."""
+    shapes = table.get("profile") == SHAPED and "total_time" in table
+    return (*PROFILES, USER, SHAPED) if shapes else (*PROFILES, USER)
+
+
 def read_table_file(table: Table, key: str) -> str | Points:
     """Name of the file with a user-defined shape; empty for other profiles."""
     if table.get("profile") != USER:
@@ -126,6 +134,31 @@ def read_table_file(table: Table, key: str) -> str | Points:
     if not isinstance(name, str) or not name:
         raise BadValueError(f"{key} must be the name of a file, not {shown(name)}")
     return name
+
+
+def read_shaper(table: Table, key: str) -> Shaper | None:
+    """An input shaper; None for other profiles."""
+    if table.get("profile") != SHAPED:
+        if key in table:
+            raise BadValueError(f'{key} needs profile = "{SHAPED}"')
+        return None
+    facts = _get(table, key)
+    if not isinstance(facts, dict):
+        raise BadValueError(
+            f'{key} must be a table such as {{ name = "zv", frequency = 40 }}, not {shown(facts)}'
+        )
+    return within(key, lambda: _shaper(facts))
+
+
+def _shaper(facts: Table) -> Shaper:
+    check_known(facts, ("name", "frequency", "damping"))
+    name, frequency = read_word(facts, "name", SHAPERS), read_number(facts, "frequency")
+    damping = read_number(facts, "damping") if "damping" in facts else Fraction(0)
+    if not frequency:
+        raise BadValueError("frequency must be greater than 0")
+    if damping > DAMPING_MAX:
+        raise BadValueError(f"damping must be 0 to {float(DAMPING_MAX)}")
+    return Shaper(name, frequency, damping)
 
 
 def read_axes(table: Table, key: str) -> int:
@@ -219,7 +252,8 @@ def read_scales(table: Table, key: str) -> tuple[Fraction, ...]:
 READERS: dict[str, Callable[[Table, Key, int], Any]] = {
     "steps": lambda table, key, _: read_steps(table, key.name),
     "profile": lambda table, key, _: read_profile(table, key.name),
-    "shape": lambda table, key, _: read_profile(table, key.name, (*PROFILES, USER)),
+    "shape": lambda table, key, _: read_profile(table, key.name, _shapes(table)),
+    "shaper": lambda table, key, _: read_shaper(table, key.name),
     "table": lambda table, key, _: read_table_file(table, key.name),
     "time": lambda table, key, clock_hz: read_time(table, key.name, clock_hz),
     "number": lambda table, key, _: read_number(table, key.name),

@@ -8,10 +8,11 @@ from typing import Any
 
 from passo import move_forms
 from passo.build import Parameters
-from passo.move_forms import ALPHA_MAX, ALPHA_MIN, ALPHA_ONE, USER, USER_BANK, WHOLE_MAX, Key, Points
+from passo.move_forms import ALPHA_MAX, ALPHA_MIN, ALPHA_ONE, SHAPED, USER, USER_BANK, WHOLE_MAX, Key, Points
 from passo.moves import Channels, Move, MoveFile, MoveFileError
 from passo.native import ffi, planner
-from passo.shape import POINTS
+from passo.shape import POINTS, ShapeError
+from passo.shaper import shaped
 
 Q48 = 1 << 48
 ALPHA_RESET = move_forms.ALPHA_RESET * ALPHA_ONE  # alpha of the sigmoid table after reset
@@ -65,11 +66,11 @@ def plan_move(move: Move, clock_hz: int, parameters: Parameters) -> Plan:
     c = planner()
     machine = ffi().new("struct passo_machine *", (clock_hz, parameters.tick_log2, len(move.steps)))
     plan = ffi().new("struct passo_plan *")
-    method, table = move.form.name, getattr(move, "table", ())
+    method, table = move.form.name, _table(move)
     wanted = struct_of(move, clock_hz)
     if table:
         points = ffi().new("uint16_t[]", table)
-        shape = ffi().new("struct passo_user_shape *", (int(USER_BANK), points))
+        shape = ffi().new("struct passo_user_shape *", (int(USER_BANK), points, move.profile == SHAPED))
         error = getattr(c, f"passo_plan_user_{method}")(machine, wanted, shape, plan)
     else:
         error = getattr(c, f"passo_plan_{method}")(machine, wanted, plan)
@@ -79,6 +80,16 @@ def plan_move(move: Move, clock_hz: int, parameters: Parameters) -> Plan:
     if plan.sigmoid_alpha not in (0, ALPHA_RESET):
         table = sigmoid_table(plan.sigmoid_alpha)
     return Plan(move, plan, parameters.tick_log2, table)
+
+
+def _table(move: Move) -> Points:
+    """The table that a move needs; empty: none."""
+    if move.profile != SHAPED:
+        return getattr(move, "table", ())
+    try:
+        return shaped(move.shaper, move.ramp_time)
+    except ShapeError as error:
+        raise PlanError("RAMP_TOO_SHORT", str(error)) from None
 
 
 def sigmoid_table(alpha: int) -> Points:
@@ -99,7 +110,7 @@ def struct_of(move: Move, clock_hz: int) -> Any:
             for own, number in zip(limits, value, strict=True):
                 own[key.member] = _number(key, number, clock_hz)
         elif key.kind in ("profile", "shape"):
-            name = "linear" if value == USER else value  # ignored by the planner
+            name = "linear" if value in (USER, SHAPED) else value  # ignored by the planner
             values[key.member] = getattr(planner(), f"PASSO_PROFILE_{name.upper()}")
         elif key.member and key.factor and isinstance(value, tuple):
             values[key.member] = [_number(key, number, clock_hz) for number in value]

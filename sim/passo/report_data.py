@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from passo import __version__
+from passo.move_forms import SHAPED, USER
 from passo.moves import Channels
 from passo.plan import ALPHA_ONE, ALPHA_RESET, Q48, Plan
 from passo.plot_panels import units_of
@@ -71,6 +72,7 @@ def _motion(run: Run) -> dict[str, Any]:
 
 def _plan(number: int, plan: Plan) -> dict[str, Any]:
     """A move as planned. Velocities are substeps per clock."""
+    own = plan.move.profile in (USER, SHAPED)
     return {
         "number": number,
         "profile": plan.move.profile,
@@ -79,7 +81,7 @@ def _plan(number: int, plan: Plan) -> dict[str, Any]:
         "substeps": plan.line.substeps,
         "tick": 1 << plan.tick_log2,
         "alpha": plan.c.sigmoid_alpha / ALPHA_ONE,
-        "table": [point / ONE for point in (*plan.table, ONE)] if plan.move.profile == "user" else None,
+        "table": [point / ONE for point in (*plan.table, ONE)] if own else None,
         "ramps": [
             [ramp.ticks, ramp.velocity_end / Q48, Shape(ramp.shape).name.lower(), bool(ramp.mirror)]
             for ramp in plan.ramps

@@ -75,6 +75,8 @@ def _default(schema: Schema, key: Key) -> str:
         return f"on the console: {key.console_default_says}"
     if key.kind.name == "table":
         return f"only with profile `{schema.user_name}`"
+    if key.kind.name == "shaper":
+        return f"only with profile `{schema.shaped_name}`"
     if key.default in schema.constants or key.default is None:
         return key.optional_says
     if key.default_says:

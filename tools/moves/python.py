@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import ClassVar
 
-from passo.form_table import Form, Key, Place, Points, Rule
+from passo.form_table import Form, Key, Place, Points, Rule, Shaper
 from passo.registers import Shape
 '''
 
@@ -58,7 +58,7 @@ def _key(schema: Schema, key: Key) -> list[str]:
 
 def _may_miss(key: Key) -> bool:
     """Its value is None then; some kinds know what stands for it."""
-    return key.optional and key.kind.name not in ("table", "axes")
+    return key.optional and key.kind.name not in ("table", "shaper", "axes")
 
 
 def _form(schema: Schema, form: Form) -> list[str]:
@@ -87,7 +87,8 @@ def _class(form: Form, prefix: str = "Move", table: str = "FORMS") -> list[str]:
     name = prefix + form.name.title().replace("_", "")
     lines = ["", "", "@dataclass(frozen=True)", f"class {name}:", f'    """{form.summary}"""', ""]
     for key in sorted(form.keys, key=lambda key: key.trails):
-        default = f" = {key.default or '()'}" if key.trails else ""
+        missing = "()" if key.kind.name == "table" else "None"
+        default = f" = {key.default or missing}" if key.trails else ""
         optional = " | None" if _may_miss(key) else ""
         lines.append(f"    {key.name}: {key.kind.python}{optional}{default}")
     lines += ["", f'    form: ClassVar[Form] = {table}["{form.name}"]']
@@ -106,6 +107,7 @@ def module(schema: Schema) -> str:
         lines.append(f"{constant.name.upper()} = {constant.value}")
     names = ", ".join(map(_quoted, schema.profiles))
     lines += ["", f"PROFILES = ({names})", f'USER = "{schema.user_name}"  # the profile given by a table']
+    lines.append(f'SHAPED = "{schema.shaped_name}"  # the profile given by an input shaper')
     lines += [f"USER_BANK = Shape.{schema.user_bank.upper()}  # the bank of that table", ""]
     lines.append("FORMS = {")
     for form in schema.forms:

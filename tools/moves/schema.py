@@ -122,6 +122,7 @@ class Schema:
     profiles: dict[str, str]  # by name: the shape of the core
     user_name: str
     user_bank: str
+    shaped_name: str
     kinds: dict[str, Kind]
     forms: tuple[Form, ...]  # of moves that are planned
     others: dict[str, tuple[Form, ...]]  # task, event, machine: only in move files
@@ -155,7 +156,7 @@ def read(root: Path) -> Schema:
         _want(by_key or form.profile in data["profiles"], f"form {form.name}: which profile has it?")
     _want(sum(form.told_by is not None for form in forms) == 2, "two forms are told by their keys")
     user = data["user"]
-    return Schema(constants, data["profiles"], user["name"], user["bank"], kinds, forms, made)
+    return Schema(constants, data["profiles"], user["name"], user["bank"], user["shaped"], kinds, forms, made)
 
 
 def _want(condition: bool, complaint: str) -> None:
