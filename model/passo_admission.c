@@ -16,6 +16,13 @@ void passo_admission_clock(
 	admission->motion_needed |= needs->motion;
 }
 
+void passo_admission_wires(const struct passo_admission *admission, const struct passo_bus *bus,
+    bool tables_wanted, struct passo_channel_wires *wires)
+{
+	wires->hold = bus->commit && (admission->idle_needed || admission->quiet_needed || tables_wanted);
+	wires->now_coming = bus->commit && admission->motion_needed;
+}
+
 bool passo_channel_busy(const struct passo_channel *channel)
 {
 	const struct passo_admission *admission = &channel->admission;

@@ -21,7 +21,8 @@ static bool lines_settled(const struct passo_channel *channel, const struct pass
 			return false;
 	if (queue->output_word != queue->output_words[queue->current_line])
 		return false;
-	return queue->room == depth - used - (queue->has_place ? 1u : 0u) && queue->next_valid == (used != 0u)
+	return queue->room == depth - used - (queue->has_place ? 1u : 0u)
+	    && queue->full == (queue->room == queue->checked) && queue->next_valid == (used != 0u)
 	    && queue->directions == current->directions;
 }
 
@@ -30,7 +31,8 @@ static bool ramps_settled(const struct passo_ramp_queue *queue, const struct pas
 	const unsigned depth = 1u << parameters->ramp_queue_log2;
 	const unsigned used = used_places(queue->write_ramp, queue->read_ramp, depth);
 
-	return !queue->write_low && queue->room == depth - used && queue->valid == (used != 0u);
+	return !queue->write_low && queue->room == depth - used
+	    && queue->full == (queue->room == queue->checked) && queue->valid == (used != 0u);
 }
 
 static bool commands_settled(const struct passo_channel *channel, const struct passo_bus *bus)

@@ -73,11 +73,7 @@ static struct passo_channel_wires gather_wires(
 	for (unsigned axis = 0; axis < channel->axes; axis++)
 		wires.overrun = wires.overrun || channel->axis[axis].overrun;
 
-	const bool commit = bus->commit;
-	wires.hold =
-	    commit
-	    && (channel->admission.idle_needed || channel->admission.quiet_needed || inputs->tables_wanted);
-	wires.now_coming = commit && channel->admission.motion_needed;
+	passo_admission_wires(&channel->admission, bus, inputs->tables_wanted, &wires);
 	wires.estop = (inputs->machine->estop_seen & 2u) != 0u;
 	wires.requests = passo_inputs_requests(channel, inputs);
 	passo_motion_wires(channel, inputs, &wires);
@@ -90,13 +86,7 @@ static struct passo_channel_wires gather_wires(
 	wires.next = wires.begin_profile || wires.tick;
 	wires.ramp_ended = wires.next && channel->ramp.ends_next;
 
-	wires.substep_taken = channel->path.substep && channel->line.active;
-	wires.line_done = wires.substep_taken && channel->line.on_last;
-	const struct passo_line_queue *queue = &channel->line_queue;
-	const bool goes_on = wires.line_done && !queue->last;
-	const bool endless = queue->endless && !channel->line.no_repeat_before;
-	wires.repeats = goes_on && endless;
-	wires.take = wires.prepare || (goes_on && !endless && queue->next_valid);
+	passo_line_wires(&channel->line, &channel->line_queue, channel->path.substep, &wires);
 	return wires;
 }
 

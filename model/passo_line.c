@@ -3,6 +3,18 @@
  */
 #include "passo_model.h"
 
+void passo_line_wires(const struct passo_line_unit *line, const struct passo_line_queue *queue, bool substep,
+    struct passo_channel_wires *wires)
+{
+	const bool endless = queue->endless && !line->no_repeat_before;
+
+	wires->substep_taken = substep && line->active;
+	wires->line_done = wires->substep_taken && line->on_last;
+	const bool goes_on = wires->line_done && !queue->last;
+	wires->repeats = goes_on && endless;
+	wires->take = wires->prepare || (goes_on && !endless && queue->next_valid);
+}
+
 int64_t passo_line_addend(const struct passo_line_unit *line, uint32_t last_substep)
 {
 	const int64_t substeps = (int64_t)last_substep + 1;

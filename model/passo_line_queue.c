@@ -35,7 +35,7 @@ uint8_t passo_line_queue_refusal(const struct passo_line_queue *queue,
 
 	if (blocked)
 		return PASSO_VERDICT_BUSY;
-	if (queue->room == queue->checked)
+	if (queue->full)
 		return PASSO_VERDICT_QUEUE_FULL;
 	if (queue->index == INDEX_CONTROL && (bus->data & ~defined) != 0u)
 		return PASSO_VERDICT_BAD_VALUE;
@@ -122,6 +122,7 @@ void passo_line_queue_clock(struct passo_line_queue *queue, const struct passo_p
 
 	const unsigned occupied = (unsigned)queue->write_end - next_line + (queue->has_place ? 1u : 0u);
 
+	queue->full = queue->room == queue->checked;
 	queue->room = wrap(depth(parameters) - occupied, parameters);
 	if (bus->frame && bus->commit)
 		queue->write_end = wrap((unsigned)write_line + queue->checked, parameters);

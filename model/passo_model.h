@@ -153,6 +153,7 @@ struct passo_line_queue {
 	uint16_t checked;
 	uint32_t checked_substeps;
 	uint16_t room;
+	bool full; /* for the frame so far, in the previous clock */
 	bool next_valid;
 	struct passo_line lines[PASSO_LINE_QUEUE_MAX];
 	uint32_t output_words[PASSO_LINE_QUEUE_MAX]; /* of the lines, with OUTPUTS */
@@ -173,6 +174,7 @@ struct passo_ramp_queue {
 	bool is_now;
 	bool now_pending;
 	uint16_t room;
+	bool full; /* for the frame so far, in the previous clock */
 	bool valid;
 	uint32_t words[PASSO_RAMP_QUEUE_MAX][5];
 };
@@ -432,6 +434,9 @@ struct passo_channel_wires {
 	struct passo_requests requests;
 };
 
+/* What the frame being executed keeps a motion from: `hold` and `now_coming`. */
+void passo_admission_wires(const struct passo_admission *admission, const struct passo_bus *bus,
+    bool tables_wanted, struct passo_channel_wires *wires);
 void passo_admission_clock(
     struct passo_admission *admission, const struct passo_bus *bus, const struct passo_needs *needs);
 
@@ -467,6 +472,9 @@ void passo_path_reset(struct passo_path *path);
 void passo_path_clock(struct passo_path *path, const struct passo_ramp_unit *ramp,
     const struct passo_channel_wires *wires, uint32_t drain_velocity);
 
+/* What a substep does to the line; it needs `prepare`. */
+void passo_line_wires(const struct passo_line_unit *line, const struct passo_line_queue *queue, bool substep,
+    struct passo_channel_wires *wires);
 int64_t passo_line_addend(const struct passo_line_unit *line, uint32_t last_substep);
 void passo_line_clock(struct passo_line_unit *line, const struct passo_line_queue *queue,
     const struct passo_channel_wires *wires);

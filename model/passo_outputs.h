@@ -57,6 +57,7 @@ struct passo_changes {
 struct passo_raster {
 	uint16_t write_word, write_end, read_word; /* one bit wider than the address */
 	uint16_t checked, room;
+	bool full; /* for the frame so far, in the previous clock */
 	uint8_t index;
 	bool available, first, due, missed;
 	uint32_t left;

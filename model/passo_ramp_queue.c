@@ -25,7 +25,7 @@ uint8_t passo_ramp_queue_refusal(
 
 	if (blocked)
 		return PASSO_VERDICT_BUSY;
-	if (queue->room == queue->checked)
+	if (queue->full)
 		return PASSO_VERDICT_QUEUE_FULL;
 	switch (queue->index) {
 	case INDEX_CONTROL:
@@ -78,6 +78,7 @@ void passo_ramp_queue_clock(struct passo_ramp_queue *queue, const struct passo_p
 	const uint16_t read_ramp = queue->read_ramp;
 
 	queue->write_low = write_high;
+	queue->full = queue->room == queue->checked;
 	if ((check || write_high) && index == INDEX_CONTROL) {
 		queue->velocity_is_max = bus->data >> 16 == VELOCITY_MAX_HIGH;
 		queue->is_now = passo_unpack_ramp_control(bus->data).now;

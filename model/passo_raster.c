@@ -32,13 +32,14 @@ uint8_t passo_raster_refusal(const struct passo_raster *raster, bool blocked)
 {
 	if (blocked)
 		return PASSO_VERDICT_BUSY;
-	return raster->room == raster->checked ? PASSO_VERDICT_QUEUE_FULL : PASSO_VERDICT_OK;
+	return raster->full ? PASSO_VERDICT_QUEUE_FULL : PASSO_VERDICT_OK;
 }
 
 static void clock_writing(struct passo_raster *raster, const struct passo_raster_bus *bus)
 {
 	const uint16_t write_word = raster->write_word;
 
+	raster->full = raster->room == raster->checked;
 	raster->room =
 	    (uint16_t)(((raster->read_word ^ PASSO_RASTER_DEPTH) - raster->write_end) % TWICE_DEPTH);
 	if (bus->frame && bus->commit)
