@@ -42,6 +42,17 @@ static bool next_ramp(void *context, struct passo_ramp *ramp)
 	return true;
 }
 
+static enum passo_error configure(void)
+{
+	const struct passo_axis_config config = {
+	    .step_high_ns = 500, .step_low_ns = 500, .dir_setup_ns = 500, .dir_hold_ns = 500};
+	enum passo_error error = PASSO_OK;
+
+	for (uint8_t axis = 0; error == PASSO_OK && axis < AXES; axis++)
+		error = passo_configure_axis(&passo, axis, &config);
+	return error;
+}
+
 int main(void)
 {
 	static const struct passo_hardware hardware = {
@@ -57,6 +68,8 @@ int main(void)
 		continue;
 	spi_set_fast(stream_fast != 0u);
 	stream_error = passo_open(&passo, &host, &hardware, &options);
+	if (stream_error == PASSO_OK)
+		stream_error = configure();
 	if (stream_error == PASSO_OK)
 		stream_error = passo_stream(&passo, &source);
 	while (stream_error == PASSO_OK)

@@ -15,7 +15,7 @@ from passo.build import Parameters
 from passo.engine import Engine, model_engine, rtl_engine
 from passo.move_file import read_channels
 from passo.toolchain import paths
-from passo_stm32 import demo
+from passo_stm32 import bench, demo
 from passo_stm32.bench import memory_report
 from passo_stm32.board import START, Board, Motion, firmware_elf, motions
 from passo_stm32.bus import TICKS_PER_SECOND
@@ -418,3 +418,9 @@ def test_it_fits_and_the_page_says_how_large_it_is() -> None:
     for name, row in (("flash", "flash"), ("RAM", "RAM without stack"), ("stack", "worst-case stack")):
         (size,) = re.findall(rf"^{name} +(\d+) of", said, re.M)
         assert f"| {row} | {int(size):,} |" in page, f"docs/firmware.md: {row} is {int(size):,}"
+
+
+def test_lines_are_streamed_without_an_error() -> None:
+    """The program of `make firmware-bench` that measures the link keeps it at work."""
+    rate, limit = bench.lines_per_second(18_000_000)
+    assert 0.4 * limit < rate < limit

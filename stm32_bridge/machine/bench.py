@@ -8,6 +8,7 @@ from passo.build import Parameters
 from passo.compiler import sources
 from passo.console import console
 from passo.engine import model_engine
+from passo.link import error_name
 from passo.toolchain import paths
 from passo_stm32.board import Board, make_firmware
 from passo_stm32.bus import TICKS_PER_SECOND
@@ -177,9 +178,16 @@ def _stream(sclk_hz: int, taken: float, first: int, last: int) -> float:
     def asked() -> int:
         return int.from_bytes(machine.read_memory(machine.elf.symbols["stream_asked"], 4), "little")
 
-    machine.run_until(lambda: asked() >= first, 1.0)
+    def run_to(count: int) -> None:
+        try:
+            machine.run_until(lambda: asked() >= count, 1.0)
+        except TimeoutError:
+            error = int.from_bytes(machine.read_memory(machine.elf.symbols["stream_error"], 4), "little")
+            raise RuntimeError(f"the stream has ended: {error_name(error)}") from None
+
+    run_to(first)
     count, began = asked(), machine.now
-    machine.run_until(lambda: asked() >= last, 1.0)
+    run_to(last)
     return (asked() - count) * TICKS_PER_SECOND / (machine.now - began)
 
 
