@@ -97,7 +97,7 @@ netlist: ## Run all tests of the whole core on the synthesized iCE40 netlist.
 coverage: setup ## Measure line and toggle coverage of the RTL; a hole is an error; writes docs/coverage.md.
 	@$(BIN)/python -m cocotb_tests.coverage
 
-firmware: ## Build the firmware of the STM32F103C8; prints its flash, RAM and worst-case stack.
+firmware: ## Build the firmware of the STM32F103C8; prints its flash, RAM and stack; GRBL=1: the image that speaks grbl.
 	@tools/setup.sh firmware
 	@$(MAKE) -C stm32_bridge/firmware
 

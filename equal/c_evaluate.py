@@ -49,7 +49,7 @@ class Evaluator(Expressions):
             node = parameter.type
             kind = Pointer(self.program.type_of(node.type)) if isinstance(node, c_ast.ArrayDecl) else None
             kind = kind or self.program.type_of(node)
-            frame.scopes[0][parameter.name] = Cell(kind, copied(convert(argument, kind).bits))
+            frame.scopes[0][parameter.name] = Cell(kind, copied(convert(argument, kind).bits), guard)
         result = self.program.type_of(decl.type)
         if not isinstance(result, Void):
             frame.result = Value(result, None)
@@ -77,7 +77,7 @@ class Evaluator(Expressions):
 
     def _do_decl(self, node: c_ast.Decl) -> None:
         if node.name is not None:
-            self.frame.scopes[-1][node.name] = self._declared(node, node.name)
+            self.frame.scopes[-1][node.name] = self._declared(node, node.name, both(self.guard, self._alive()))
 
     def _do_decllist(self, node: c_ast.DeclList) -> None:
         for decl in node.decls:

@@ -80,7 +80,7 @@ class Expressions:
         kind = self.program.type_of(self.program.objects[name].type)
         self.cells[name] = Cell(kind, symbols(kind, name))
 
-    def _declared(self, decl: c_ast.Decl, name: str) -> Cell:
+    def _declared(self, decl: c_ast.Decl, name: str, born: Condition = True) -> Cell:
         node = decl.type
         if isinstance(node, c_ast.ArrayDecl) and node.dim is None:
             element = self.program.type_of(node.type)
@@ -88,8 +88,8 @@ class Expressions:
         else:
             kind = self.program.type_of(node)
         if decl.init is None:
-            return Cell(kind, self._undefined(kind, name))
-        return Cell(kind, self._initial(kind, decl.init).bits)
+            return Cell(kind, self._undefined(kind, name), born)
+        return Cell(kind, self._initial(kind, decl.init).bits, born)
 
     def _length(self, init: c_ast.InitList) -> int:
         place, length = 0, 0

@@ -29,10 +29,14 @@ from equal.c_types import (
 
 @dataclass
 class Cell:
-    """An object: a variable, a parameter, or a compound literal."""
+    """An object: a variable, a parameter, or a compound literal.
+
+    It is seen only where ``born`` holds, so that a write under this very condition is one without.
+    """
 
     type: Type
     bits: Any
+    born: Condition = True
 
 
 @dataclass(frozen=True)
@@ -130,7 +134,8 @@ def write(places: Places, new: Value, guard: Condition) -> None:
         raise UnsupportedError("writing through a null pointer")
     for when, place in places:
         cell = place.cell
-        cell.bits = _write(cell.bits, cell.type, place.path, both(guard, when), new)
+        under = when if guard is cell.born else both(guard, when)
+        cell.bits = _write(cell.bits, cell.type, place.path, under, new)
 
 
 def pointer_to(places: Places) -> Value:

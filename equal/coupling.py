@@ -55,6 +55,7 @@ class Coupling:
     invariants: dict[str, Link]  # hold before the clock, and are proved to hold after it
     assumptions: dict[str, dict[str, str]]  # ``that`` holds of the inputs, ``because`` of a neighbour
     bugs: tuple[Bug, ...]
+    at_once: tuple[str, ...]  # registers with an asynchronous reset; the clock then gives the inputs their next values
     slow: bool  # takes too long for ``make test``
 
 
@@ -92,6 +93,7 @@ def read_coupling(path: Path) -> Coupling:
             {name: _link(entry) for name, entry in table.pop("invariants", {}).items()},
             table.pop("assumptions", {}),
             tuple(Bug(**bug) for bug in table.pop("bug", ())),
+            tuple(table.pop("at_once", ())),
             table.pop("slow", False),
         )
     except KeyError as missing:

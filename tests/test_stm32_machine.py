@@ -244,3 +244,68 @@ def test_fault_in_the_fault_handler_waits_for_the_watchdog(tmp_path: Path) -> No
     machine.run(0.5)
     assert [cause for _, cause in machine.resets] == ["power", "watchdog"]
     assert len(machine.faults) == 4  # two in each life
+
+
+PAGE = 0x0800F800
+FLASH_CODE = """
+#define FLASH(offset) REGISTER(0x40022000 + (offset))
+#define HALF(address) (*(volatile uint16_t *)(address))
+RCC_CR |= 1u;
+"""
+UNLOCK = "FLASH(4) = 0x45670123; FLASH(4) = 0xCDEF89AB;\n"
+LOCKED, PROGRAM_ERROR, END = 0x80, 0x04, 0x20
+
+
+def flash_program(folder: Path, code: str) -> Machine:
+    """A machine that has executed code; HALF(PAGE) is erased at first."""
+    machine = Machine(snippet(folder, FLASH_CODE + code.replace("PAGE", hex(PAGE))))
+    machine.run_until(lambda: words(machine, "finished")[0] in (1, 2), 0.1)
+    return machine
+
+
+def test_flash_is_erased_and_programmed(tmp_path: Path) -> None:
+    """A half-word at a time, and only an erased one; 0 goes over anything. The processor waits."""
+    machine = flash_program(
+        tmp_path,
+        UNLOCK
+        + """FLASH(16) = 1; HALF(PAGE) = 0x1234; note(FLASH(12)); FLASH(12) = 0x34;
+        HALF(PAGE) = 0x1204; note(FLASH(12)); note(HALF(PAGE)); FLASH(12) = 0x34;
+        HALF(PAGE) = 0; note(FLASH(12)); note(HALF(PAGE)); FLASH(12) = 0x34;
+        FLASH(16) = 2; FLASH(20) = PAGE + 6; FLASH(16) = 0x42; note(FLASH(12)); note(HALF(PAGE));
+        FLASH(16) = LOCK; note(FLASH(16));""".replace("LOCK", "0x80"),
+    )
+    assert log(machine) == [END, PROGRAM_ERROR, 0x1234, END, 0, END, 0xFFFF, LOCKED]
+    assert machine.seconds > 0.02
+
+
+@pytest.mark.parametrize(
+    "keys",
+    [
+        "",
+        "FLASH(4) = 0x45670123;",
+        "FLASH(4) = 0xCDEF89AB; FLASH(4) = 0x45670123; " + UNLOCK,
+        "FLASH(4) = 1; " + UNLOCK,
+        UNLOCK + UNLOCK,
+    ],
+)
+def test_flash_stays_locked_without_its_keys(tmp_path: Path, keys: str) -> None:
+    """Nothing takes effect; the store is a fault."""
+    machine = flash_program(
+        tmp_path,
+        keys + "FLASH(16) = 2; FLASH(20) = PAGE; FLASH(16) = 0x42; note(FLASH(16)); FLASH(16) = 1; HALF(PAGE) = 1;",
+    )
+    assert log(machine) == [LOCKED, 0xDEAD0003]
+    assert machine.faults and machine.read_memory(PAGE, 2) == b"\xff\xff"
+
+
+def test_flash_takes_half_words_only(tmp_path: Path) -> None:
+    """A word or a byte is a fault."""
+    for kind in ("uint32_t", "uint8_t"):
+        machine = flash_program(tmp_path, UNLOCK + f"FLASH(16) = 1; *(volatile {kind} *)PAGE = 1;")
+        assert log(machine) == [0xDEAD0003]
+
+
+def test_program_cannot_change_itself(tmp_path: Path) -> None:
+    """Erasing the page of the vectors."""
+    with pytest.raises(MachineError, match="changes itself"):
+        flash_program(tmp_path, UNLOCK + "FLASH(16) = 2; FLASH(20) = 0x08000000; FLASH(16) = 0x42;")

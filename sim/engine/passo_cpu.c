@@ -27,6 +27,8 @@ struct cpu {
 	uc_engine *uc;
 	uint8_t *flash, *ram;
 	bool may_unmask;
+	uint8_t *programmed; /* half-words that unicorn may have overwritten, or NULL */
+	uint8_t as_programmed[4];
 	bool held; /* a stop was requested before the instruction at held_address */
 	uint32_t held_address;
 	enum passo_cpu_stop stop;
@@ -93,6 +95,14 @@ static void count(struct cpu *cpu, uint32_t address)
 		cpu->may_unmask = true; /* cpsie i, cpsie f, msr */
 }
 
+/* After a store into flash: what it has become. */
+static void settle(struct cpu *cpu)
+{
+	if (cpu->programmed)
+		memcpy(cpu->programmed, cpu->as_programmed, sizeof cpu->as_programmed);
+	cpu->programmed = NULL;
+}
+
 /* Called before each instruction whose condition is true. Inside an IT block unicorn continues in spite of a
  * stop; the next call shows that the instruction that was to be held back has been executed. */
 static void on_instruction(uc_engine *uc, uint64_t address, uint32_t length, void *user)
@@ -102,6 +112,7 @@ static void on_instruction(uc_engine *uc, uint64_t address, uint32_t length, voi
 
 	(void)uc;
 	(void)length;
+	settle(cpu);
 	if (cpu->held)
 		count(cpu, cpu->held_address);
 	if (cpu->may_unmask) {
@@ -142,6 +153,22 @@ static bool on_bad_access(
 	(void)uc, (void)type, (void)size, (void)value;
 	((struct cpu *)user)->public.fault_address = (uint32_t)address;
 	return false;
+}
+
+/* unicorn may store the value as well when this has returned true: settle() undoes it. */
+static bool on_store_into_flash(
+    uc_engine *uc, uc_mem_type type, uint64_t address, int size, int64_t value, void *user)
+{
+	struct cpu *cpu = user;
+	uint32_t left;
+
+	(void)uc, (void)type;
+	cpu->public.fault_address = (uint32_t)address;
+	if (!cpu->config.program(cpu->config.user, (uint32_t)address, (uint32_t)size, (uint32_t)value))
+		return false;
+	cpu->programmed = passo_cpu_memory(&cpu->public, (uint32_t)address & ~3u, &left);
+	memcpy(cpu->as_programmed, cpu->programmed, sizeof cpu->as_programmed);
+	return true;
 }
 
 static uint64_t on_read(uc_engine *uc, uint64_t offset, unsigned size, void *user)
@@ -204,8 +231,11 @@ static bool open_unicorn(struct cpu *cpu)
 	callback.on_interrupt = on_interrupt;
 	if (!hook(cpu, UC_HOOK_INTR, callback.pointer))
 		return false;
+	callback.on_bad_access = on_store_into_flash;
+	if (!hook(cpu, UC_HOOK_MEM_WRITE_PROT, callback.pointer))
+		return false;
 	callback.on_bad_access = on_bad_access;
-	return hook(cpu, UC_HOOK_MEM_INVALID, callback.pointer);
+	return hook(cpu, UC_HOOK_MEM_INVALID & ~UC_HOOK_MEM_WRITE_PROT, callback.pointer);
 }
 
 struct passo_cpu *passo_cpu_create(const struct passo_cpu_config *config)
@@ -291,6 +321,7 @@ enum passo_cpu_stop passo_cpu_run(struct passo_cpu *cpu)
 	cpu->fault = 0;
 	cpu->fault_address = 0;
 	error = uc_emu_start(own->uc, get(own, UC_ARM_REG_PC) | 1u, NOWHERE, 0, 0);
+	settle(own);
 	if (error != UC_ERR_OK) {
 		cpu->fault = (int32_t)error;
 		return PASSO_CPU_FAULT;

@@ -50,7 +50,7 @@ static bool start_clocks(void)
 		cfgr |= RCC_CFGR_PLLMUL(16u); /* of HSI / 2 */
 		clock_hz = 16u * (HSI_HZ / 2u);
 	}
-	FLASH_ACR = FLASH_ACR_PREFETCH | FLASH_ACR_2_WAITS;
+	FLASH->acr = FLASH_ACR_PREFETCH | FLASH_ACR_2_WAITS;
 	RCC->cfgr = cfgr;
 	RCC->cr |= RCC_CR_PLLON;
 	if (!wait_for(&RCC->cr, RCC_CR_PLLRDY, RCC_CR_PLLRDY, HSE_WAIT))

@@ -2,6 +2,7 @@
  * Main loop: passes serial input to the console, polls the core and feeds the watchdog.
  */
 #include "board.h"
+#include "input.h"
 #include "passo_console.h"
 #include "spi.h"
 #include "uart.h"
@@ -27,7 +28,7 @@ static void wait(void *context, uint32_t duration)
 static uint32_t lost_bytes(void *context)
 {
 	(void)context;
-	return uart_losses();
+	return input_losses();
 }
 
 static void set_baud(void *context, uint32_t baud)
@@ -77,7 +78,7 @@ int main(void)
 		char byte;
 		unsigned bytes = 0;
 
-		while (bytes < BYTES_PER_ROUND && uart_read(&byte)) {
+		while (bytes < BYTES_PER_ROUND && input_read(&byte)) {
 			passo_console_receive(&console, byte);
 			bytes++;
 			if (byte == '\r' || byte == '\n')

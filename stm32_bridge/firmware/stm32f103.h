@@ -42,9 +42,23 @@ struct rcc {
 #define RCC_CSR_WWDGRSTF BIT(30)
 #define RCC_CSR_LPWRRSTF BIT(31)
 
-#define FLASH_ACR (*(volatile uint32_t *)0x40022000u)
+struct flash {
+	volatile uint32_t acr, keyr, optkeyr, sr, cr, ar;
+};
+#define FLASH ((struct flash *)0x40022000u)
 #define FLASH_ACR_2_WAITS 2u
 #define FLASH_ACR_PREFETCH BIT(4)
+#define FLASH_KEY1 0x45670123u
+#define FLASH_KEY2 0xCDEF89ABu
+#define FLASH_SR_BSY BIT(0)
+#define FLASH_SR_PGERR BIT(2)
+#define FLASH_SR_WRPRTERR BIT(4)
+#define FLASH_SR_EOP BIT(5)
+#define FLASH_CR_PG BIT(0)
+#define FLASH_CR_PER BIT(1)
+#define FLASH_CR_STRT BIT(6)
+#define FLASH_CR_LOCK BIT(7)
+#define FLASH_PAGE_BYTES 1024u
 
 /* --------------------------------------------------------------------------------------------------- pins */
 

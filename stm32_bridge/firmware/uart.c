@@ -1,42 +1,14 @@
-/* SPDX-License-Identifier: MIT
- * Each ring has one writer, which owns `head`, and one reader, which owns `tail`. Both are free-running, so
- * head - tail is the fill level.
- */
+/* SPDX-License-Identifier: MIT */
 #include "uart.h"
 
 #include "board.h"
+#include "ring.h"
 #include "stm32f103.h"
 
 #define TX_PIN 9u
 #define RX_PIN 10u
-#define RING 512u /* a power of two */
 
-struct ring {
-	volatile uint32_t head, tail;
-	volatile uint8_t bytes[RING];
-};
-
-static struct ring received, sending;
-static volatile uint32_t losses;
-static bool lost; /* a mark is due in the ring */
-
-static bool ring_put(struct ring *ring, uint8_t byte)
-{
-	if (ring->head - ring->tail == RING)
-		return false;
-	ring->bytes[ring->head % RING] = byte;
-	ring->head++;
-	return true;
-}
-
-static bool ring_get(struct ring *ring, uint8_t *byte)
-{
-	if (ring->head == ring->tail)
-		return false;
-	*byte = ring->bytes[ring->tail % RING];
-	ring->tail++;
-	return true;
-}
+static struct ring sending;
 
 static void set_divider(uint32_t baud)
 {
@@ -62,24 +34,6 @@ void uart_set_baud(uint32_t baud)
 	set_divider(baud);
 }
 
-static void note_loss(void)
-{
-	losses++;
-	lost = true;
-}
-
-/* Puts a byte into the ring, after a pending UART_LOST. */
-static void keep(uint8_t byte)
-{
-	if (lost) {
-		if (!ring_put(&received, (uint8_t)UART_LOST))
-			return;
-		lost = false;
-	}
-	if (!ring_put(&received, byte))
-		note_loss();
-}
-
 /* Reading SR and then DR clears the errors. On overrun, the byte in DR is valid and the next one was lost. */
 void usart1_handler(void)
 {
@@ -88,14 +42,12 @@ void usart1_handler(void)
 
 	if ((status & (USART_SR_RXNE | USART_SR_ORE)) != 0u) {
 		byte = (uint8_t)USART1->dr;
-		if ((status & (USART_SR_NE | USART_SR_FE)) != 0u) {
-			note_loss();
-			byte = (uint8_t)UART_LOST;
-		}
-		if ((status & USART_SR_RXNE) != 0u)
-			keep(byte);
+		if ((status & (USART_SR_NE | USART_SR_FE)) != 0u)
+			uart_lost();
+		else if ((status & USART_SR_RXNE) != 0u)
+			uart_received((char)byte);
 		if ((status & USART_SR_ORE) != 0u)
-			note_loss();
+			uart_lost();
 	}
 	if ((status & USART_SR_TXE) != 0u) {
 		if (ring_get(&sending, &byte))
@@ -103,16 +55,6 @@ void usart1_handler(void)
 		else
 			USART1->cr1 &= ~USART_CR1_TXEIE;
 	}
-}
-
-bool uart_read(char *byte)
-{
-	uint8_t value;
-
-	if (!ring_get(&received, &value))
-		return false;
-	*byte = (char)value;
-	return true;
 }
 
 /* CR1 is also changed by the interrupt handler, hence the critical section. */
@@ -129,9 +71,4 @@ void uart_write(const char *text)
 {
 	while (*text != '\0')
 		put((uint8_t)*text++);
-}
-
-uint32_t uart_losses(void)
-{
-	return losses;
 }

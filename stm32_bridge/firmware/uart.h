@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * USART1 (TX PA9, RX PA10, 8N1) with interrupts and a ring buffer each way.
+ * USART1 (TX PA9, RX PA10, 8N1) with interrupts, and a ring buffer for sending.
  */
 #ifndef UART_H
 #define UART_H
@@ -14,15 +14,12 @@ void uart_start(uint32_t baud);
 /* Changes the baud rate after all queued text has been sent. */
 void uart_set_baud(uint32_t baud);
 
-/* Gets the next received byte; false if there is none. UART_LOST stands for bytes that were lost or corrupt
- * (noise, framing error, overrun of the receiver or of the ring). */
-#define UART_LOST '\0'
-bool uart_read(char *byte);
-
 /* Queues text for sending; waits while the ring is full. */
 void uart_write(const char *text);
 
-/* Number of losses since start; wraps. */
-uint32_t uart_losses(void);
+/* What the program does with a received byte, in the interrupt; and with one that was lost or corrupt (noise,
+ * framing error, overrun of the receiver). */
+void uart_received(char byte);
+void uart_lost(void);
 
 #endif

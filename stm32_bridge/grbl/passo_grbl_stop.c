@@ -39,10 +39,10 @@ void passo_grbl_receive(struct passo_grbl *grbl, char byte)
 
 bool passo_grbl_take(volatile bool *flag)
 {
-	const bool set = *flag;
-
+	if (!*flag) /* an interrupt may set it at any moment */
+		return false;
 	*flag = false;
-	return set;
+	return true;
 }
 
 static void drop_input(struct passo_grbl *grbl)

@@ -10,11 +10,12 @@ from passo.engine import EVENT, Engine
 from passo_stm32.bus import TICKS_PER_SECOND, Bus, MachineError, Peripheral
 from passo_stm32.crc import Crc
 from passo_stm32.dma import Dma
+from passo_stm32.flash import Flash
 from passo_stm32.gpio import ALTERNATE_PUSH_PULL, PORTS, Afio, Exti, Gpio
 from passo_stm32.iwdg import Debug, Iwdg
 from passo_stm32.nvic import HARD_FAULT, SUPERVISOR_CALL, Exceptions, Nvic, SystemControl
 from passo_stm32.processor import FLASH, FLASH_SIZE, Processor
-from passo_stm32.rcc import ENABLES, Clocks, Flash, Rcc
+from passo_stm32.rcc import ENABLES, Clocks, Rcc
 from passo_stm32.spi import RECEIVE_CHANNEL, Spi
 from passo_stm32.systick import SysTick
 from passo_stm32.usart import Usart
@@ -43,7 +44,7 @@ class Machine(Processor):
         irq: str = "PB0",
         seed: int = 1,
     ):
-        super().__init__(elf, self._on_read, self._on_write)
+        super().__init__(elf, self._on_read, self._on_write, self._on_program)
         self.crystal = crystal
         self.baud = baud  # of the terminal
         self.wires = Wires(core, seed)
@@ -263,6 +264,18 @@ class Machine(Processor):
             self._reschedule()
         except Exception as error:
             self._fail(error)
+
+    def _on_program(self, _: Any, address: int, size: int, value: int) -> bool:
+        try:
+            done = self.flash.program(address, size, value)
+            self._reschedule()
+            return done
+        except Exception as error:
+            return bool(self._fail(error))
+
+    def stall(self, ticks: int) -> None:
+        """The processor stands still, after the present instruction."""
+        self.cpu.now += ticks
 
     def _catch_up(self) -> None:
         """Process the due events of peripherals, so that they are up to date before an access."""

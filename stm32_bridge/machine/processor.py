@@ -17,30 +17,30 @@ REGISTERS, LINK_REGISTER = 17, 14  # of passo_cpu_registers()
 EXCEPTION_RETURN = 0xFFFFFFF0  # values of LR from here on
 Read = Callable[[Any, int, int], int]
 Write = Callable[[Any, int, int, int], None]
+Program = Callable[[Any, int, int, int], bool]
 
 
 class Processor:
     """A processor (sim/engine/passo_cpu.h) with an ELF file in its flash."""
 
-    def __init__(self, elf: Path, read: Read, write: Write):
+    def __init__(self, elf: Path, read: Read, write: Write, program: Program):
         self.elf = Elf.read(elf)
         self._measured: list[int] = []
         self._profile_measured = False
-        self._make_processor(read, write)
+        self._make_processor(read, write, program)
 
     @property
     def instructions(self) -> int:
         """Instructions executed since power-on."""
         return self.cpu.instructions
 
-    def _make_processor(self, read: Read, write: Write) -> None:
+    def _make_processor(self, read: Read, write: Write, program: Program) -> None:
         c = self._c = processor()
         self._read_callback = ffi().callback("uint32_t(void *, uint32_t, uint32_t)", read)
         self._write_callback = ffi().callback("void(void *, uint32_t, uint32_t, uint32_t)", write)
-        config = ffi().new(
-            "struct passo_cpu_config *",
-            (FLASH_SIZE, RAM_SIZE, self._read_callback, self._write_callback, ffi().NULL),
-        )
+        self._program_callback = ffi().callback("bool(void *, uint32_t, uint32_t, uint32_t)", program)
+        callbacks = self._read_callback, self._write_callback, self._program_callback
+        config = ffi().new("struct passo_cpu_config *", (FLASH_SIZE, RAM_SIZE, *callbacks, ffi().NULL))
         cpu = c.passo_cpu_create(config)
         if cpu == ffi().NULL:
             raise MachineError("unicorn has no Cortex-M3")

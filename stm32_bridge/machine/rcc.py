@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Reset and clock control, and the wait states of the flash."""
+"""Reset and clock control."""
 
 from dataclasses import dataclass
 
@@ -131,17 +131,3 @@ class Rcc(Peripheral):
         """RMVF clears the reset flags."""
         if value >> 24 & 1:
             self.value["CSR"] = 0
-
-
-class Flash(Peripheral):
-    """Wait states only; programming is not modelled."""
-
-    name = "FLASH"
-    base = 0x40022000
-    registers = (Register("ACR", 0x00, 0x1F, 0x30),)
-
-    def check(self, hclk: int) -> None:
-        """Check the wait states: one above 24 MHz, two above 48 MHz."""
-        hz = TICKS_PER_SECOND // hclk
-        if self.value["ACR"] & 7 < (hz > 24_000_000) + (hz > 48_000_000):
-            raise MachineError(f"flash has too few wait states for {hz} Hz")

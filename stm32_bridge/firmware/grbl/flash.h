@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: MIT
+ * The last two pages of the flash, for settings. The processor stands still while a page is erased (up to
+ * 40 ms) or a half-word is programmed (70 us): bytes from the host are lost meanwhile.
+ */
+#ifndef FLASH_H
+#define FLASH_H
+
+#include "passo_storage.h"
+
+extern const struct passo_storage_pages flash_pages;
+
+#endif

@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: MIT */
+#include "grbl_machine.h"
+
+#define PIN_CLOCKS ((CORE_HZ + 999999u) / 1000000u) /* 1 us */
+#define MILLION ((int64_t)PASSO_GCODE_MILLION)
+#define AXES_USED (AXES > 0 ? AXES : PASSO_GCODE_AXES_MAX)
+#define LINEAR_AXES 2u /* X and Y; Z and what follows are slow */
+
+static const uint16_t VALUES[PASSO_GRBL_SETTINGS] = {
+    [PASSO_GRBL_REPORT] = 3,
+    [PASSO_GRBL_HOMING] = HOMED != 0,
+    [PASSO_GRBL_HARD_LIMITS] = (LIMITS_LOW | LIMITS_HIGH) != 0,
+    [PASSO_GRBL_HOMES_LOW] = 0,
+    [PASSO_GRBL_HOME_FEED] = 120,
+    [PASSO_GRBL_HOME_SEEK] = 1200,
+    [PASSO_GRBL_DEBOUNCE] = 1,
+    [PASSO_GRBL_PULL_OFF] = 1,
+    [PASSO_GRBL_SPINDLE] = 1000,
+};
+
+static const uint16_t AXIS_VALUES[PASSO_GRBL_AXIS_SETTINGS][2] = {
+    [PASSO_GRBL_STEPS] = {80, 400},
+    [PASSO_GRBL_SPEED] = {12000, 720},
+    [PASSO_GRBL_ACCELERATION] = {1000, 100},
+    [PASSO_GRBL_TRAVEL] = {200, 200},
+};
+
+static void set_defaults(struct passo_grbl_settings *settings)
+{
+	for (unsigned i = 0; i < PASSO_GRBL_SETTINGS; i++)
+		settings->value[i] = VALUES[i] * MILLION;
+	settings->value[PASSO_GRBL_PULSE] = 2 * MILLION;
+	settings->value[PASSO_GRBL_DEVIATION] = MILLION / 100;
+	settings->value[PASSO_GRBL_ARC_TOLERANCE] = MILLION / 500;
+	for (unsigned i = 0; i < PASSO_GRBL_AXIS_SETTINGS * PASSO_GCODE_AXES_MAX; i++) {
+		const unsigned setting = i / PASSO_GCODE_AXES_MAX, axis = i % PASSO_GCODE_AXES_MAX;
+
+		settings->axis[setting][axis] = AXIS_VALUES[setting][axis >= LINEAR_AXES] * MILLION;
+	}
+}
+
+void grbl_machine(
+    struct passo_grbl_setup *setup, const struct passo *passo, const struct passo_storage_pages *pages)
+{
+	*setup = (struct passo_grbl_setup){
+	    .path = {.machine = *passo_machine(passo), .profile = PASSO_PROFILE_LINEAR},
+	    .pins = {.step_low_ns = PIN_CLOCKS, .dir_setup_ns = PIN_CLOCKS, .dir_hold_ns = PIN_CLOCKS},
+	    .limits_low = LIMITS_LOW,
+	    .limits_high = LIMITS_HIGH,
+	    .homes = HOMES,
+	    .homed = HOMED,
+	    .probe = PROBE,
+	    .pages = pages};
+	if (setup->path.machine.axes > AXES_USED)
+		setup->path.machine.axes = AXES_USED;
+	set_defaults(&setup->defaults);
+}

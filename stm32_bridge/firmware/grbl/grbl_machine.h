@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: MIT
+ * The machine at the core: what the settings cannot say, and the settings before the first `$n=`. Each value
+ * can be given to the makefile: MACHINE="-DCORE_HZ=48000000 -DPROBE=1".
+ */
+#ifndef GRBL_MACHINE_H
+#define GRBL_MACHINE_H
+
+#include "passo.h"
+#include "passo_grbl.h"
+
+/* Clock of the core. */
+#ifndef CORE_HZ
+#define CORE_HZ 100000000
+#endif
+
+/* Of the serial line to the host. */
+#ifndef BAUD
+#define BAUD 115200
+#endif
+
+/* Axes that G-code has, of those of the core: 1 .. PASSO_GCODE_AXES_MAX; 0: all. */
+#ifndef AXES
+#define AXES 0
+#endif
+
+/* Switches that are there, a bit per axis; and whether there is a probe. */
+#ifndef LIMITS_LOW
+#define LIMITS_LOW 0
+#endif
+#ifndef LIMITS_HIGH
+#define LIMITS_HIGH 0
+#endif
+#ifndef HOMES
+#define HOMES 0
+#endif
+#ifndef PROBE
+#define PROBE 0
+#endif
+
+/* Axes that `$H` homes, by their home or limit switch. */
+#ifndef HOMED
+#define HOMED HOMES
+#endif
+
+/* The setup of the core that is open. `pages` is where settings are kept. */
+void grbl_machine(
+    struct passo_grbl_setup *setup, const struct passo *passo, const struct passo_storage_pages *pages);
+
+#endif

@@ -1,0 +1,155 @@
+/* SPDX-License-Identifier: MIT
+ * The image that speaks grbl: the UART feeds the protocol, which feeds the core.
+ */
+#include "board.h"
+#include "flash.h"
+#include "grbl_machine.h"
+#include "spi.h"
+#include "uart.h"
+
+#define LOOK_AHEAD 48u       /* lines */
+#define SLEWS_PER_SECOND 20u /* of hold and stop, from full speed */
+#define DRAIN_VELOCITY 65536u
+#define SPI_FAST_HZ 72000000u /* of the core: four clocks to a clock of SPI */
+#define SEARCH_MILLISECONDS 100u
+
+static struct passo_path_item items[LOOK_AHEAD];
+static struct passo_path_planner path = {.items = items, .capacity = LOOK_AHEAD};
+static struct passo_path_feed feed;
+static struct passo_gcode gcode;
+static struct passo_player player;
+static struct passo_grbl_setup setup;
+static struct passo_grbl grbl;
+static struct passo_host host;
+static struct passo passo;
+
+static void write_text(void *context, const char *text)
+{
+	(void)context;
+	uart_write(text);
+}
+
+static const struct passo_grbl_sink sink = {.write = write_text};
+
+/* A sleep can take a millisecond, so it is used only for longer waits. */
+static void wait(void *context, uint32_t duration)
+{
+	(void)context;
+	if (duration > 2000u)
+		board_sleep();
+}
+
+static const struct passo_hardware hardware = {
+    .transfer = spi_transfer, .microseconds = board_microseconds, .wait = wait, .irq = board_core_calls};
+
+void uart_received(char byte)
+{
+	passo_grbl_receive(&grbl, byte);
+}
+
+/* The line is refused. */
+void uart_lost(void)
+{
+	passo_grbl_receive(&grbl, '\0');
+}
+
+static void say(const char *text)
+{
+	uart_write("[MSG:");
+	uart_write(text);
+	uart_write("]\r\n");
+}
+
+static void report(bool crystal, bool crc_unit)
+{
+	uart_write("\r\n[MSG:Reset by ");
+	uart_write(board_reset_cause());
+	uart_write("]\r\n");
+	if (!crystal)
+		say("No crystal: 64 MHz from the internal oscillator");
+	if (!crc_unit)
+		say("CRC unit faulty: CRCs in software");
+}
+
+static void pause(uint32_t milliseconds, bool fault)
+{
+	const uint32_t began = board_milliseconds();
+
+	while (board_milliseconds() - began < milliseconds) {
+		board_led(fault);
+		board_watchdog_feed();
+		board_sleep();
+	}
+}
+
+/* A motion that an earlier start of the board has left running is stopped. */
+static enum passo_error open_core(void)
+{
+	static const uint64_t SLEW = CORE_HZ / SLEWS_PER_SECOND;
+	enum passo_error error =
+	    passo_open(&passo, &host, &hardware, &(struct passo_options){.clock_hz = CORE_HZ});
+
+	if (error == PASSO_ERROR_ESTOP && passo_clear_estop(&passo) == PASSO_OK)
+		error = passo_clear(&passo);
+	if (error == PASSO_OK)
+		return passo_configure_motion(&passo, SLEW, SLEW, DRAIN_VELOCITY);
+	if (error == PASSO_ERROR_MOVING)
+		passo_stop(&passo);
+	return error;
+}
+
+/* Until there is a core at rest. Each new error is told. */
+static void connect(void)
+{
+	enum passo_error told = PASSO_OK;
+
+	for (;;) {
+		const enum passo_error error = open_core();
+
+		if (error == PASSO_OK)
+			return;
+		if (error != told)
+			say(passo_error_name(error));
+		told = error;
+		pause(SEARCH_MILLISECONDS, true);
+	}
+}
+
+static void start(void)
+{
+	connect();
+	grbl_machine(&setup, &passo, &flash_pages);
+	passo_gcode_open(&gcode, &(struct passo_gcode_settings){.axes = setup.path.machine.axes, .arc_tolerance = 1});
+	passo_path_feed_open(&feed, &passo, &path);
+	passo_player_open(&player, &gcode, &feed, NULL);
+	passo_grbl_open(&grbl, &player, &sink, &setup);
+}
+
+/* Changes when anything has been done that can lead to more. */
+static uint32_t progress(void)
+{
+	return grbl.tail + path.added + feed.lines + feed.ramps + host.counters.frames;
+}
+
+int main(void)
+{
+	const bool crystal = board_start();
+
+	board_watchdog_start();
+	uart_start(BAUD);
+	spi_start();
+	spi_set_fast(CORE_HZ >= SPI_FAST_HZ);
+	report(crystal, crc_start());
+	for (;;) {
+		start();
+		while (!host.lost) {
+			const uint32_t before = progress();
+
+			passo_grbl_poll(&grbl);
+			board_led(passo_fault(&passo) != PASSO_OK);
+			board_watchdog_feed();
+			if (progress() == before)
+				board_sleep();
+		}
+	}
+}

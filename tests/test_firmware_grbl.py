@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: MIT
+"""The image that speaks grbl, in the emulated STM32F103, with a core at its pins."""
+
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from passo.engine import model_engine, rtl_engine
+from passo.grbl import Grbl
+from passo.machine_file import read_machine
+from passo.run import parameters_for
+from passo.toolchain import paths
+from passo_stm32.board import Motion, make_firmware, motions
+from passo_stm32.flash import FIRST, PAGE
+from passo_stm32.grbl_board import GrblBoard, grbl_elf
+
+HZ = 36_000_000  # of the core
+CODE = 62 << 10
+SETTINGS = FIRST + CODE
+MACHINE = read_machine(paths.examples / "gcode" / "machine.toml")
+MACHINE = replace(MACHINE, settings=replace(MACHINE.settings, clock_hz=HZ))
+PART = """G21 G90
+G1 X2 Y0 F3000
+Y2
+G2 X0 Y0 R2
+M2""".splitlines()
+LONG = "G1 X40 F3000"
+
+
+@pytest.fixture(scope="module")
+def elf() -> Path:
+    """The image for the core of these tests."""
+    return grbl_elf(paths.build / "tests" / "firmware_grbl", f"CORE_HZ={HZ}", "AXES=3")
+
+
+@pytest.fixture
+def board(elf: Path) -> Iterator[GrblBoard]:
+    """A board with the C model, which is fast while nothing happens."""
+    with model_engine(parameters_for(3), HZ) as engine:
+        made = GrblBoard(engine, elf)
+        yield made
+        assert not made.faults and {cause for _, cause in made.resets} == {"power"}
+
+
+def test_it_fits_and_the_page_says_how_large_it_is() -> None:
+    """Code, data and stack, with the two pages of settings left free."""
+    said = make_firmware("GRBL=1")
+    page = (paths.docs / "firmware.md").read_text(encoding="utf-8")
+    for name, row, most in (
+        ("flash", "flash", CODE),
+        ("RAM", "RAM without stack", 13_000),
+        ("stack", "worst-case stack", 3_000),
+    ):
+        (size,) = re.findall(rf"^{name} +(\d+) of", said, re.M)
+        assert int(size) <= most
+        assert f"| {row} | {int(size):,} |" in page, f"docs/firmware.md: {row} is {int(size):,}"
+    assert f"of {CODE} bytes" in said
+
+
+def test_greeting_and_settings(board: GrblBoard) -> None:
+    """What a sender asks for first."""
+    assert board.output == "\r\n[MSG:Reset by power]\r\n\r\nGrbl 1.1h ['$' for help]\r\n"
+    assert board.line("$I") == "[VER:1.1h.passo:]\n[OPT:VNM,48,255]\nok"
+    settings = board.line("$$").splitlines()
+    assert settings[-1] == "ok"
+    assert {"$0=2.000", "$11=0.010", "$100=80.000", "$102=400.000", "$110=12000.000"} < set(settings)
+    assert "$103=400.000" not in settings
+    assert board.line("G5") == "error:20" and board.line("G1 X1") == "error:22"
+
+
+def test_settings_outlast_a_reset(board: GrblBoard) -> None:
+    """The newest copy counts; if it is damaged, the other one does."""
+    for value in ("81.000", "82.000"):
+        assert board.line(f"$100={value}") == "ok"
+    board.restart()
+    assert "$100=82.000" in board.line("$$").splitlines()
+    copies = [board.read_memory(SETTINGS + page * PAGE, PAGE) for page in (0, 1)]
+    numbers = [int.from_bytes(copy[4:8], "little") for copy in copies]
+    newest = SETTINGS + PAGE * int(np.argmax(numbers))
+    damaged = bytes([board.read_memory(newest + 100, 1)[0] ^ 1])
+    board.write_memory(newest + 100, damaged)
+    board.restart()
+    assert "$100=81.000" in board.line("$$").splitlines()
+    assert board.line("$100=83.000") == "ok"
+    board.restart()
+    assert "$100=83.000" in board.line("$$").splitlines()
+
+
+def test_worn_flash_is_told(board: GrblBoard) -> None:
+    """The setting is refused; the one before outlasts the reset."""
+    assert board.line("$100=81") == "ok"
+    board.flash.worn = frozenset({62, 63})
+    assert board.line("$100=82").startswith("error:")
+    board.restart()
+    assert "$100=81.000" in board.line("$$").splitlines()
+
+
+def is_after(report: dict[str, str], steps: int) -> bool:
+    """X is where so many steps from 0 lead to."""
+    return abs(float(report["MPos"].split(",")[0]) - steps / 80) < 0.001
+
+
+def steps_made(board: GrblBoard) -> int:
+    """Steps of X in the motion since the last call."""
+    (motion,) = motions(board.events(), axes=4)
+    return len(motion.steps(0)[0])
+
+
+def on_the_pc(lines: list[str]) -> list[Motion]:
+    """The motions of the PC's controller."""
+    with model_engine(parameters_for(3), HZ) as engine:
+        grbl = Grbl(engine, MACHINE, lambda said: None)
+        events = [engine.drain()]
+        drain = engine.drain
+
+        def keep() -> np.ndarray:
+            events.append(drain())
+            return events[-1]
+
+        engine.drain = keep
+        grbl.type("".join(line + "\n" for line in lines).encode())
+        grbl.wait(lambda: False, 0.1)
+        assert grbl.wait(lambda: grbl.is_idle)
+        grbl.wait(lambda: False, 0.01)
+        return motions(np.concatenate(events), axes=engine.parameters.axes)
+
+
+def test_pulses_are_those_of_the_pc(elf: Path) -> None:
+    """A square and an arc on the Verilated core: every edge."""
+    expected = on_the_pc(["$0=1", *PART])
+    with rtl_engine(parameters_for(3), HZ) as engine:
+        board = GrblBoard(engine, elf)
+        assert board.line("$0=1") == "ok"
+        board.events()
+        board.stream(PART, 1.0)
+        board.rest(3.0)
+        made = motions(board.events(), axes=engine.parameters.axes)
+    assert len(expected) == len(made) == 1 and len(made[0].step) > 1000
+    assert not made[0].same_as(expected[0])
+
+
+def test_hold_and_resume(board: GrblBoard) -> None:
+    """In mid path, and not a step is lost."""
+    board.line(LONG)
+    board.run(0.3)
+    moving = board.report()
+    assert moving["state"] == "Run" and 0 < float(moving["MPos"].split(",")[0]) < 40
+    assert re.fullmatch(r"\d+,\d+", moving["Bf"]) and moving["FS"] == "3000,0"
+    board.type("!")
+    board.run(0.1)
+    held = board.report()
+    assert held["state"] == "Hold:0"
+    board.run(0.1)
+    assert board.report()["MPos"] == held["MPos"]
+    board.type("~")
+    board.rest(2.0)
+    assert board.report()["MPos"] == "40.000,0.000,0.000"
+    assert steps_made(board) == 40 * 80
+
+
+def test_reset_in_mid_path(board: GrblBoard) -> None:
+    """Ctrl-X: an alarm, a soft stop, and the position is that of the steps."""
+    board.line(LONG)
+    board.run(0.3)
+    since = len(board.output)
+    board.type("\x18")
+    board.expect("Grbl 1.1h", 0.3, since)
+    assert board.output[since:].startswith("ALARM:3\r\n")
+    report = board.report()
+    assert report["state"] == "Alarm"
+    made = steps_made(board)
+    assert 0 < made < 40 * 80
+    assert is_after(report, made)
+    assert board.line("G0 X0") == "error:9"
+    assert board.line("$X").endswith("ok")
+    assert board.line("G0 X0") == "ok"
+    board.rest(1.0)
+    assert board.report()["MPos"] == "0.000,0.000,0.000"
+
+
+def test_reset_of_the_board_in_mid_path(board: GrblBoard) -> None:
+    """The core goes on; the board stops it and knows where it is."""
+    board.line(LONG)
+    board.run(0.3)
+    since = len(board.output)
+    board.restart()
+    assert "[MSG:MOVING]" in board.output[since:]
+    made = steps_made(board)
+    assert 0 < made < 40 * 80
+    assert is_after(board.report(), made)
