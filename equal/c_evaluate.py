@@ -77,7 +77,8 @@ class Evaluator(Expressions):
 
     def _do_decl(self, node: c_ast.Decl) -> None:
         if node.name is not None:
-            self.frame.scopes[-1][node.name] = self._declared(node, node.name, both(self.guard, self._alive()))
+            guard = both(self.guard, self._alive())
+            self.frame.scopes[-1][node.name] = self._declared(node, node.name, guard)
 
     def _do_decllist(self, node: c_ast.DeclList) -> None:
         for decl in node.decls:

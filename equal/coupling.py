@@ -55,7 +55,8 @@ class Coupling:
     invariants: dict[str, Link]  # hold before the clock, and are proved to hold after it
     assumptions: dict[str, dict[str, str]]  # ``that`` holds of the inputs, ``because`` of a neighbour
     bugs: tuple[Bug, ...]
-    at_once: tuple[str, ...]  # registers with an asynchronous reset; the clock then gives the inputs their next values
+    # registers with an asynchronous reset; the clock then gives the inputs their next values
+    at_once: tuple[str, ...]
     slow: bool  # takes too long for ``make test``
 
 

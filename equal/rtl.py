@@ -11,7 +11,6 @@ import z3
 from passo.failure import Failure
 from passo.toolchain import environment
 
-
 MEMORY = Path(__file__).resolve().parent / "memory" / "passo_memory.v"
 
 
@@ -20,8 +19,8 @@ class Rtl:
     """Names and widths of a module's ports and registers, and the values they have.
 
     ``before`` and ``after`` are the values in the clock, and in the clock after it; registers in submodules
-    have the name ``instance.register``. The address of a memory that keeps its word, ``instance.probe``, is an
-    input (memory/passo_memory.v). ``relation`` are the equations between them.
+    have the name ``instance.register``. The address of a memory that keeps its word, ``instance.probe``, is
+    an input (memory/passo_memory.v). ``relation`` are the equations between them.
     """
 
     inputs: dict[str, int]
@@ -72,7 +71,8 @@ def read_rtl(top: str, folder: Path, parameters: Mapping[str, int], at_once: tup
     wires = _listed(text, "wire")
     registers |= {name: wires[name] for name in at_once if name in wires}
     if sum(hidden) != sum(wires.get(name, 0) for name in at_once):
-        raise Failure(f"{top}: {sum(hidden)} bits of registers have an asynchronous reset, not those of at_once")
+        bits = f"{sum(hidden)} bits of registers"
+        raise Failure(f"{top}: {bits} have an asynchronous reset, not those of at_once")
     lines = [text]
     for moment in ("before", "after"):
         lines.append(f"(declare-fun |{moment}| () |{top}_s|)")

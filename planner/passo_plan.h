@@ -197,9 +197,9 @@ enum passo_plan_error passo_plan_straight(
     const struct passo_machine *machine, const struct passo_move_straight *move, struct passo_plan *plan);
 
 /* User-defined shape: a table that is loaded into one of the banks. Acceleration follows the table,
- * deceleration its mirror image in time, or with `forward` the table as well: the speed falls as it rose, which
- * an input shaper needs. `profile` of the move is ignored. Errors: those of the basic forms,
- * BAD_BANK, TABLE_START, TABLE_FALLS. */
+ * deceleration its mirror image in time, or with `forward` the table as well: the speed falls as it rose,
+ * which an input shaper needs. `profile` of the move is ignored. Errors: those of the basic forms, BAD_BANK,
+ * TABLE_START, TABLE_FALLS. */
 struct passo_user_shape {
 	enum passo_shape bank; /* PASSO_SHAPE_COSINE, SIGMOID or EASE */
 	const uint16_t *table; /* PASSO_TABLE_SIZE points, UQ0.16; point 256 is 65536 and not stored */

@@ -101,9 +101,8 @@ static uint64_t reachable_speed(const struct passo_draft *draft, uint64_t limit,
 	sum = passo_u128_add(
 	    sum, passo_multiply(stop, passo_smaller(clocks_ceil(down, stop), SLOPE_CLOCKS_MAX)));
 
-	uint64_t clocks =
-	    weighted(passo_smaller(clocks_floor(up, limit), SLOPE_CLOCKS_MAX), draft, false)
-	    + weighted(passo_smaller(clocks_floor(down, limit), SLOPE_CLOCKS_MAX), draft, true);
+	uint64_t clocks = weighted(passo_smaller(clocks_floor(up, limit), SLOPE_CLOCKS_MAX), draft, false)
+	                + weighted(passo_smaller(clocks_floor(down, limit), SLOPE_CLOCKS_MAX), draft, true);
 	uint64_t quotient = passo_divide(sum, clocks, NULL);
 	if (quotient >= limit)
 		return limit;
@@ -180,7 +179,7 @@ static uint64_t reachable_with_ease(const struct passo_draft *draft, uint64_t li
 		if (next > higher && step < step_before)
 			next -=
 			    passo_smaller(passo_mul_div(step, step, step_before - step), next - higher - 1);
-	} while (next > higher && step > (next - higher) >> 17 && --rounds > 0);
+	} while (next > higher && step > (next - higher) >> 14 && --rounds > 0);
 	return next;
 }
 

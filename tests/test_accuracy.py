@@ -282,7 +282,7 @@ def test_forms_keep_to_their_plans(name: str) -> None:
 def test_plans_are_as_short_as_those_of_a_peer(name: str) -> None:
     """Never shorter than the shortest possible; longer by some ticks, and by less than 0.02 %."""
     found = compare_with_peer(name, 400, SEED)
-    assert found["fewest_ticks"] >= 0 and found["most_ticks"] < 5
+    assert found["fewest_ticks"] >= 0 and found["most_ticks"] < 10
     assert found["long_moves"] > 350 and found["worst"] < 2e-4
 
 

@@ -292,7 +292,9 @@ def test_flash_stays_locked_without_its_keys(tmp_path: Path, keys: str) -> None:
     """Nothing takes effect; the store is a fault."""
     machine = flash_program(
         tmp_path,
-        keys + "FLASH(16) = 2; FLASH(20) = PAGE; FLASH(16) = 0x42; note(FLASH(16)); FLASH(16) = 1; HALF(PAGE) = 1;",
+        keys
+        + "FLASH(16) = 2; FLASH(20) = PAGE; FLASH(16) = 0x42; "
+        + "note(FLASH(16)); FLASH(16) = 1; HALF(PAGE) = 1;",
     )
     assert log(machine) == [LOCKED, 0xDEAD0003]
     assert machine.faults and machine.read_memory(PAGE, 2) == b"\xff\xff"

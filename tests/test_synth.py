@@ -9,11 +9,12 @@ from pathlib import Path
 
 import pytest
 from passo.toolchain import paths
-from passo_fpga import flow, pages, report, synth, tools
+from passo_fpga import flow, pages, parts_report, report, synth, tools
 from passo_fpga.boards import boards
 from passo_fpga.complaints import complaints, gowin_functions, held_pins, packer_complaints
 from passo_fpga.devices import DEVICES, GOWIN
-from passo_fpga.flow import CROWDED, Placed, _sites, _too_large, count
+from passo_fpga.flow import CROWDED, Design, Placed, _sites, _too_large, count
+from passo_fpga.parts import PORTS
 from passo_fpga.split import difference
 
 BOARDS = list(boards().values())
@@ -265,6 +266,30 @@ def test_report_page_and_readme(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     assert readme.read_text().count("| yes |") == 4 and page.read_text() == before
 
 
+def test_cost_of_a_part(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """From cores of one and four axes, with and without it; the page changes between the marks only."""
+
+    def cells(design: Design) -> dict[str, int]:
+        axes = design.parameters["AXES"]
+        part = 50 + 20 * axes if any(name.upper() in design.parameters for name in PORTS) else 0
+        return dict.fromkeys(parts_report.COLUMNS, 1000 + 300 * axes + part)
+
+    monkeypatch.setattr(parts_report, "cells", cells)
+    found = {
+        "sizes": [parts_report.row(DEVICES["hx8k"], part) for part in PORTS],
+        "clocks": [{"part": part, "size": 3456, "f_max": [100.0, 0.0, 120.0]} for part in PORTS],
+    }
+    assert found["sizes"][0]["once"]["LUT"] == 50 and found["sizes"][0]["per_axis"]["LUT"] == 20
+    page = tmp_path / "integration.md"
+    page.write_text(f"before\n{pages.BEGIN}\nold\n{pages.END}\nafter\n")
+    monkeypatch.setattr(parts_report, "PAGE", page)
+    parts_report.write(found)
+    text = page.read_text()
+    assert "old" not in text and text.startswith("before\n") and text.endswith("after\n")
+    assert "| `ENCODERS` | iCE40-HX8K ct256 | 50 + 20 |" in text
+    assert "| `OUTPUTS` | 3,456 LC | – | 100.0 |" in text
+
+
 def test_difference_of_two_designs() -> None:
     """More of a module, a new one, and one that both have."""
     small = [{"module": "link", "instances": 1, "LUT": 9}, {"module": "axis", "instances": 1, "LUT": 100}]
@@ -319,9 +344,10 @@ def test_report_tries_more_seeds_where_there_is_a_goal(
     assert re.search(r"synthesis 4 of 4: ", said) and re.search(r"place and route 17 of 17: ", said)
 
 
-def test_readme_has_the_marks() -> None:
-    """Else `make report` could not write into it."""
-    text = (paths.root / "README.md").read_text()
+@pytest.mark.parametrize("page", [pages.README, parts_report.PAGE], ids=lambda page: page.name)
+def test_pages_have_the_marks(page: Path) -> None:
+    """Else `make report` could not write into them."""
+    text = page.read_text()
     assert text.count(pages.BEGIN) == text.count(pages.END) == 1
 
 

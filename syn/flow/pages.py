@@ -13,7 +13,7 @@ from rich.console import Console
 PAGE = paths.docs / "report.md"
 TEMPLATE = Path(__file__).with_name("page.md")
 README = paths.root / "README.md"
-MARKS = "<!-- report: make report writes from here -->", "<!-- to here -->"
+BEGIN, END = "<!-- report: make report writes from here -->", "<!-- to here -->"
 WIDTH = 118  # of the tables without a terminal
 NONE = "–"
 
@@ -71,13 +71,12 @@ def show(report: dict[str, Any]) -> None:
 
 def write_block(page: Path, block: str) -> None:
     """Replace what a page has between the marks."""
-    begin, end = MARKS
     text = page.read_text(encoding="utf-8")
-    before, _, rest = text.partition(begin)
-    _, _, after = rest.partition(end)
-    if not rest or end not in rest:
-        raise ValueError(f"{page.name} lacks the marks '{begin}' and '{end}'")
-    page.write_text(f"{before}{begin}\n{block}\n{end}{after}", encoding="utf-8")
+    before, _, rest = text.partition(BEGIN)
+    _, _, after = rest.partition(END)
+    if not rest or END not in rest:
+        raise ValueError(f"{page.name} lacks the marks '{BEGIN}' and '{END}'")
+    page.write_text(f"{before}{BEGIN}\n{block}\n{END}{after}", encoding="utf-8")
 
 
 def markdown(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: MIT
 """`make report PARTS=1`: what each optional part of the core costs, once and per axis, and the clock with it.
 
-The size is that after synthesis: LUTs, flip-flops and block RAMs of cores with and without the part. The clock
-is that of the device of CLOCK_DEVICE, over several seeds.
+The size is that after synthesis: LUTs, flip-flops and block RAMs of cores with and without the part. The
+clock is that of the device of CLOCK_DEVICE, over several seeds.
 """
 
 import statistics
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -47,7 +46,7 @@ def measure(names: Sequence[str]) -> dict[str, Any]:
         for count, made in enumerate(pool.map(_synthesized, wanted), 1):
             tell(f"synthesis {count} of {len(wanted)}: {made.name}")
         clocks = _clocks(pool, tell) if CLOCK_DEVICE in names else []
-    sizes = [_row(device, part) for device in devices for part in PORTS]
+    sizes = [row(device, part) for device in devices for part in PORTS]
     return {"axes": [FEW, MANY], "seeds": list(SEEDS), "sizes": sizes, "clocks": clocks}
 
 
@@ -56,7 +55,7 @@ def _synthesized(made: Design) -> Design:
     return made
 
 
-def _row(device: Device, part: str) -> dict[str, Any]:
+def row(device: Device, part: str) -> dict[str, Any]:
     """Cost once and per axis, from cores with few and with many axes."""
     few, many = (_more(device, axes, part) for axes in (FEW, MANY))
     each = {column: (many[column] - few[column]) / (MANY - FEW) for column in COLUMNS}
@@ -73,7 +72,7 @@ def _clocks(pool: ThreadPoolExecutor, tell: Any) -> list[dict[str, Any]]:
     device = DEVICES[CLOCK_DEVICE]
     target, rows = device.target_mhz, []
     for part in PORTS:
-        made = replace(design(device, MANY, part))
+        made = design(device, MANY, part)
         run = partial(place, made, mhz=target, clock_ports={"clk": target, "spi_sclk": SPI_MHZ})
         reached = []
         for seed, placed in zip(SEEDS, pool.map(run, SEEDS), strict=True):
@@ -87,14 +86,22 @@ def report(names: Sequence[str], whole: bool) -> None:
     """Measure and print; write the page if all devices were measured."""
     found = measure(names)
     write_json(found, REPORT)
-    tables = [_sizes(found["sizes"]), _clock_table(found["clocks"])]
-    for title, header, rows in tables:
+    for title, header, rows in _tables(found):
         shown = table(title, *header)
-        for row in rows:
-            shown.add_row(*row)
+        for each in rows:
+            shown.add_row(*each)
         console.print(shown)
     if whole:
-        write_block(PAGE, "\n\n".join(markdown(header, rows) for _, header, rows in tables))
+        write(found)
+
+
+def write(found: dict[str, Any]) -> None:
+    """Write the tables into the page."""
+    write_block(PAGE, "\n\n".join(markdown(header, rows) for _, header, rows in _tables(found)))
+
+
+def _tables(found: dict[str, Any]) -> list[tuple[str, Sequence[str], list[list[str]]]]:
+    return [_sizes(found["sizes"]), _clock_table(found["clocks"])]
 
 
 def _sizes(rows: Sequence[dict[str, Any]]) -> tuple[str, Sequence[str], list[list[str]]]:
