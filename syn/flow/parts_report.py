@@ -110,7 +110,7 @@ def _sizes(rows: Sequence[dict[str, Any]]) -> tuple[str, Sequence[str], list[lis
         [
             f"`{row['part'].upper()}`",
             DEVICES[row["device"]].title,
-            *(f"{row['once'][column]:,.0f} + {row['per_axis'][column]:,.3g}" for column in COLUMNS),
+            *(f"{row['once'][column]:,.0f} + {row['per_axis'][column]:,.0f}" for column in COLUMNS),
         ]
         for row in sorted(rows, key=lambda row: list(PORTS).index(row["part"]))
     ]

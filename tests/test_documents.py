@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: MIT
+"""What the documents say that can be checked: worked frames, names of errors and calls, links."""
+
+import re
+from pathlib import Path
+
+import pytest
+from passo.build import Parameters
+from passo.engine import model_engine
+from passo.frame import crc
+from passo.link import GAP, error_name
+from passo.moves import PIN_CLOCKS_MAX
+from passo.native import planner
+from passo.toolchain import paths
+
+PAGES = sorted((*paths.docs.glob("*.md"), *paths.root.glob("*.md")))
+TROUBLE = paths.docs / "trouble.md"
+HEADERS = "".join(
+    path.read_text()
+    for folder in (paths.driver, paths.planner, paths.protocol, paths.gcode, paths.grbl)
+    for path in sorted(folder.glob("*.h"))
+)
+FRAMES = 9
+AFTER_THE_MOTION = 8  # the frame before which the motion ends
+MOTION_CLOCKS = 1_100_000
+
+
+def frames() -> list[tuple[list[int], list[int]]]:
+    """The worked frames of architecture.md: the words of MOSI and MISO."""
+    text = (paths.docs / "architecture.md").read_text()
+    (block,) = re.findall(r"^\*\*Worked frames\.\*\*.*?^```text\n(.*?)^```", text, re.M | re.S)
+    words = r"((?: +[0-9a-f]{8}|\n     )+)\n"
+    return [
+        ([int(word, 16) for word in mosi.split()], [int(word, 16) for word in miso.split()])
+        for mosi, miso in re.findall(rf"^    MOSI {words}    MISO {words}", block, re.M)
+    ]
+
+
+def test_worked_frames() -> None:
+    """A core that is just reset answers them word by word; each CRC is that of header and payload."""
+    made = frames()
+    assert len(made) == FRAMES
+    with model_engine(Parameters(axes=1), 100_000_000) as engine:
+        for number, (mosi, miso) in enumerate(made):
+            assert len(mosi) == len(miso)
+            reads = mosi[0] >> 28 == 1
+            covered = 1 if reads else 1 + (mosi[0] >> 12 & 0xFF)
+            assert mosi[covered] == crc(mosi[:covered]) and not any(mosi[covered + 1 :])
+            if number == AFTER_THE_MOTION:
+                engine.run(MOTION_CLOCKS)
+            assert list(engine.transfer(mosi, GAP)) == miso, number
+
+
+def test_every_error_of_the_driver_is_in_the_trouble_page() -> None:
+    """And no other."""
+    c = planner()
+    codes = {name for name in dir(c) if name.startswith(("PASSO_ERROR_", "PASSO_OK", "PASSO_PENDING"))}
+    names = {error_name(getattr(c, name)) for name in codes if getattr(c, name) < c.PASSO_ERROR_COUNT}
+    told = set(re.findall(r"`([A-Z][A-Z_]+)`", TROUBLE.read_text()))
+    words = {"STOPPED", "REFUSED", "LOST_STEPS", "LAST", "ARGUMENT"}
+    assert names - told == set()
+    assert told - names - words == set()
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_calls_exist(page: Path) -> None:
+    """Functions of the driver and the planner that a page names."""
+    named = set(re.findall(r"`(passo_[a-z_0-9]+)\(", page.read_text()))
+    assert {name for name in named if not re.search(rf"\b{name}\b", HEADERS)} == set()
+
+
+def test_settings_of_drives() -> None:
+    """The table of wiring.md: times that a core at 100 MHz can make; its settings are those of the driver."""
+    text = (paths.docs / "wiring.md").read_text()
+    rows = re.findall(r"^\| ([^|]+) \| (\d+) \| (\d+) \| (\d+) \| (\d+) \|", text, re.M)
+    assert len(rows) >= 7
+    for name, *times in rows:
+        assert all(0 < int(time) * 100_000_000 // 10**9 <= PIN_CLOCKS_MAX for time in times), name
+    settings = set(re.findall(r"`(\w+)`", text)) - {"PINS_TOO_SLOW", "dedge", "step_high"}
+    assert settings and all(re.search(rf"\b{name}\b", HEADERS) for name in settings), settings
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_lead_somewhere(page: Path) -> None:
+    """To a file, and to a heading of it."""
+    for target, anchor in re.findall(r"\]\((?!https?:)([^)#\s]*)(?:#([^)\s]+))?\)", page.read_text()):
+        file = (page.parent / target).resolve() if target else page
+        assert file.exists(), target
+        if anchor and file.suffix == ".md":
+            heads = re.findall(r"^#+ +(.+)$", file.read_text(), re.M)
+            made = {re.sub(r"[^\w\- ]", "", head.lower()).replace(" ", "-") for head in heads}
+            assert anchor in made, f"{target}#{anchor}"
