@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The image that speaks grbl, in the emulated STM32F103, with a core at its pins."""
 
+import math
 import re
 from collections.abc import Iterator
 from dataclasses import replace
@@ -191,3 +192,22 @@ def test_reset_of_the_board_in_mid_path(board: GrblBoard) -> None:
     made = steps_made(board)
     assert 0 < made < 40 * 80
     assert is_after(board.report(), made)
+
+
+def test_path_that_the_host_cannot_keep_up_with() -> None:
+    """Lines of 0.1 mm on a curve, of which its speed needs 10,000 per second: it slows down, and ends."""
+    elf = grbl_elf(paths.build / "tests" / "firmware_grbl_fast", f"CORE_HZ={HZ}", "AXES=3", "BAUD=1000000")
+    radius, count = 50, 300
+    angles = [0.1 / radius * i for i in range(1, count + 1)]
+    places = [(radius * math.sin(a), radius - radius * math.cos(a)) for a in angles]
+    with model_engine(parameters_for(3), HZ) as engine:
+        board = GrblBoard(engine, elf, baud=1_000_000)
+        for axis in "01":
+            assert board.line(f"$11{axis}=60000") == board.line(f"$12{axis}=200000") == "ok"
+        began, since = board.seconds, len(board.output)
+        board.stream(["F60000", *(f"G1 X{x:.3f} Y{y:.3f}" for x, y in places)], 1.0)
+        assert count / (board.seconds - began) > 2000  # lines per second
+        board.rest(0.5)
+        assert "ALARM" not in board.output[since:]
+        place = [float(mm) for mm in board.report()["MPos"].split(",")]
+    assert np.allclose(place, [*places[-1], 0], atol=0.5 / 80 + 0.001)
