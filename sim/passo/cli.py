@@ -107,7 +107,9 @@ def _parser() -> argparse.ArgumentParser:
         "--table", action="store_true", help="measure the firmware instead and write docs/firmware_report.md"
     )
     firmware.add_argument(
-        "--grbl", action="store_true", help="of --table: the image that speaks grbl, docs/firmware_gcode_report.md"
+        "--grbl",
+        action="store_true",
+        help="of --table: the image that speaks grbl; writes docs/firmware_gcode_report.md",
     )
     firmware.add_argument("--lines", type=int, metavar="N", help="of --grbl: length of its long file")
     rtl = commands.add_parser("rtl", help="name the Verilog sources of the core, for makefiles")
