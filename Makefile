@@ -105,9 +105,9 @@ firmware-demo: ## Run examples on the console of the firmware, with the Verilate
 	@tools/setup.sh firmware
 	@$(BIN)/passo firmware
 
-firmware-bench: ## Measure the firmware in instructions; writes docs/firmware_report.md.
+firmware-bench: ## Measure the firmware in instructions; GRBL=1 [LINES=n]: the image that speaks grbl. Writes a page in docs/.
 	@tools/setup.sh firmware
-	@$(BIN)/passo firmware --table
+	@$(BIN)/passo firmware --table $(if $(GRBL),--grbl $(if $(LINES),--lines $(LINES)))
 
 formal: ## Prove the promises of the RTL and catch all planted bugs; ONLY="axis dda" selects proofs.
 	@tools/setup.sh formal

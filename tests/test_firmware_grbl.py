@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The image that speaks grbl, in the emulated STM32F103, with a core at its pins."""
 
+import math
 import re
 from collections.abc import Iterator
 from dataclasses import replace
@@ -8,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from passo.cli import main
 from passo.engine import model_engine, rtl_engine
 from passo.grbl import Grbl
 from passo.machine_file import read_machine
@@ -15,9 +17,11 @@ from passo.run import parameters_for
 from passo.toolchain import paths
 from passo_stm32.board import Motion, make_firmware, motions
 from passo_stm32.flash import FIRST, PAGE
-from passo_stm32.grbl_board import GrblBoard, grbl_elf
+from passo_stm32.grbl_board import GREETING, GrblBoard, grbl_elf
+from passo_stm32.machine import Machine
 
 HZ = 36_000_000  # of the core
+FAST_BAUD = 1_000_000
 CODE = 62 << 10
 SETTINGS = FIRST + CODE
 MACHINE = read_machine(paths.examples / "gcode" / "machine.toml")
@@ -34,6 +38,13 @@ LONG = "G1 X40 F3000"
 def elf() -> Path:
     """The image for the core of these tests."""
     return grbl_elf(paths.build / "tests" / "firmware_grbl", f"CORE_HZ={HZ}", "AXES=3")
+
+
+@pytest.fixture(scope="module")
+def fast_elf() -> Path:
+    """For a fast serial line and a core with inputs: the machine has homes."""
+    definitions = f"CORE_HZ={HZ}", "AXES=3", f"BAUD={FAST_BAUD}", "HOMES=7"
+    return grbl_elf(paths.build / "tests" / "firmware_grbl_fast", *definitions)
 
 
 @pytest.fixture
@@ -191,3 +202,75 @@ def test_reset_of_the_board_in_mid_path(board: GrblBoard) -> None:
     made = steps_made(board)
     assert 0 < made < 40 * 80
     assert is_after(board.report(), made)
+
+
+def test_path_that_the_host_cannot_keep_up_with(fast_elf: Path) -> None:
+    """Lines of 0.1 mm on a curve, of which its speed needs 10,000 per second: it slows down, and ends."""
+    radius, count = 50, 300
+    angles = [0.1 / radius * i for i in range(1, count + 1)]
+    places = [(radius * math.sin(a), radius - radius * math.cos(a)) for a in angles]
+    with model_engine(replace(parameters_for(3), inputs=1), HZ) as engine:
+        board = GrblBoard(engine, fast_elf, baud=FAST_BAUD)
+        assert board.line("$X").endswith("ok")
+        for axis in "01":
+            assert board.line(f"$11{axis}=60000") == board.line(f"$12{axis}=200000") == "ok"
+        began, since = board.seconds, len(board.output)
+        board.stream(["F60000", *(f"G1 X{x:.3f} Y{y:.3f}" for x, y in places)], 1.0)
+        assert count / (board.seconds - began) > 2000  # lines per second
+        board.rest(0.5)
+        assert "ALARM" not in board.output[since:]
+        place = [float(mm) for mm in board.report()["MPos"].split(",")]
+    assert np.allclose(place, [*places[-1], 0], atol=0.5 / 80 + 0.001)
+
+
+def test_lost_bytes_refuse_their_line(board: GrblBoard) -> None:
+    """Bytes that come faster than the interrupt takes them: nothing moves."""
+    board.type("G0X", baud=115_200)
+    board.type("0" * 30, baud=150_000_000)
+    assert board.line("1").startswith("error:")
+    board.run(0.05)
+    assert not board.events()["running"].any()
+    assert board.line("G0X1") == "ok"
+
+
+def test_without_a_core(elf: Path) -> None:
+    """It is told once; no watchdog bites, and fast blinking shows it."""
+    machine = Machine(elf, None)
+    machine.run(1.5)
+    assert machine.output == "\r\n[MSG:Reset by power]\r\n[MSG:STUCK_LOW]\r\n"
+    assert machine.resets == [(0, "power")] and len(machine.led) > 15
+
+
+def test_link_is_lost_in_mid_path(board: GrblBoard) -> None:
+    """An alarm; when the core answers again it is stopped, and the position is that of its steps."""
+    board.line(LONG)
+    board.run(0.3)
+    since = len(board.output)
+    board.wires.stuck = 0
+    board.expect("ALARM:3", 0.2, since)
+    board.wires.stuck = None
+    board.run(0.3)
+    report = board.report()
+    assert report["state"] == "Alarm" and is_after(report, steps_made(board))
+    assert board.line("$X").endswith("ok") and board.line("G0X0") == "ok"
+    board.rest(2.0)
+
+
+def test_estop_at_the_start(fast_elf: Path) -> None:
+    """It is told, and the greeting follows when it is over. A machine with homes is locked."""
+    with model_engine(replace(parameters_for(3), inputs=1), HZ) as engine:
+        engine.set("estop_n", 0)
+        machine = Machine(fast_elf, engine, baud=FAST_BAUD)
+        machine.run(0.3)
+        assert machine.output.endswith("[MSG:ESTOP]\r\n")
+        engine.set("estop_n", 1)
+        machine.expect(GREETING + "[MSG:'$H'|'$X' to unlock]\r\n", 0.4)
+
+
+@pytest.mark.parametrize(
+    "options", [["--grbl"], ["--table", "--lines", "9"], ["--table", "--grbl", "--lines", "0"]]
+)
+def test_bad_options_of_the_bench(options: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    """One line, before anything is measured."""
+    assert main(["firmware", *options]) == 2
+    assert capsys.readouterr().err.count("\n") == 1

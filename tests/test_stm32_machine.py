@@ -272,7 +272,7 @@ def test_flash_is_erased_and_programmed(tmp_path: Path) -> None:
         HALF(PAGE) = 0x1204; note(FLASH(12)); note(HALF(PAGE)); FLASH(12) = 0x34;
         HALF(PAGE) = 0; note(FLASH(12)); note(HALF(PAGE)); FLASH(12) = 0x34;
         FLASH(16) = 2; FLASH(20) = PAGE + 6; FLASH(16) = 0x42; note(FLASH(12)); note(HALF(PAGE));
-        FLASH(16) = LOCK; note(FLASH(16));""".replace("LOCK", "0x80"),
+        FLASH(16) = 0x80; note(FLASH(16));""",
     )
     assert log(machine) == [END, PROGRAM_ERROR, 0x1234, END, 0, END, 0xFFFF, LOCKED]
     assert machine.seconds > 0.02
@@ -293,8 +293,8 @@ def test_flash_stays_locked_without_its_keys(tmp_path: Path, keys: str) -> None:
     machine = flash_program(
         tmp_path,
         keys
-        + "FLASH(16) = 2; FLASH(20) = PAGE; FLASH(16) = 0x42; "
-        + "note(FLASH(16)); FLASH(16) = 1; HALF(PAGE) = 1;",
+        + """FLASH(16) = 2; FLASH(20) = PAGE; FLASH(16) = 0x42; note(FLASH(16));
+        FLASH(16) = 1; HALF(PAGE) = 1;""",
     )
     assert log(machine) == [LOCKED, 0xDEAD0003]
     assert machine.faults and machine.read_memory(PAGE, 2) == b"\xff\xff"

@@ -106,6 +106,12 @@ def _parser() -> argparse.ArgumentParser:
     firmware.add_argument(
         "--table", action="store_true", help="measure the firmware instead and write docs/firmware_report.md"
     )
+    firmware.add_argument(
+        "--grbl",
+        action="store_true",
+        help="of --table: the image that speaks grbl; writes docs/firmware_gcode_report.md",
+    )
+    firmware.add_argument("--lines", type=int, metavar="N", help="of --grbl: length of its long file")
     rtl = commands.add_parser("rtl", help="name the Verilog sources of the core, for makefiles")
     rtl.set_defaults(command=_rtl)
     rtl.add_argument("--folder", action="store_true", help="only their folder, which is the include path")
@@ -224,7 +230,16 @@ def _firmware(options: argparse.Namespace) -> int:
     from passo.toolchain import need_repository
 
     need_repository("the firmware")
+    if (options.grbl and not options.table) or (options.lines is not None and not options.grbl):
+        raise BadInputError("--grbl needs --table, and --lines needs --grbl")
+    if options.lines is not None and options.lines < 1:
+        raise BadInputError(f"--lines must be at least 1, not {options.lines}")
     try:
+        if options.grbl:
+            from passo_stm32 import grbl_bench
+
+            grbl_bench.bench(options.lines or grbl_bench.LINES)
+            return OK
         if options.table:
             from passo_stm32.bench import bench
 

@@ -10,6 +10,8 @@
 
 #define START_MICROSECONDS 20000u
 #define MICROSECONDS_PER_SECOND 1000000u
+#define BATCH_MICROSECONDS 300u
+#define SHORT_MICROSECONDS 2000u /* several times what a line takes to be read and planned */
 
 static uint32_t tick_log2(const struct passo_path_feed *feed)
 {
@@ -30,6 +32,13 @@ static bool give_line(void *context, struct passo_line *line)
 	return given;
 }
 
+/* The ramps of this poll take long, and those that are there are better sent. */
+static bool is_late(const struct passo_path_feed *feed)
+{
+	return feed->passo->stream == PASSO_STREAM_RUNS && feed->ramps + feed->lines != feed->given
+	    && passo_driver_now(feed->passo) - feed->at > BATCH_MICROSECONDS;
+}
+
 static bool give_ramp(void *context, struct passo_ramp *ramp)
 {
 	struct passo_path_feed *feed = context;
@@ -37,7 +46,7 @@ static bool give_ramp(void *context, struct passo_ramp *ramp)
 	const uint64_t left = feed->left >> tick_log2(feed);
 	const uint32_t held = waits || left > UINT32_MAX ? UINT32_MAX : (uint32_t)left;
 
-	if (!passo_path_next_ramp(feed->path, held, ramp))
+	if (is_late(feed) || !passo_path_next_ramp(feed->path, held, ramp))
 		return false;
 	feed->ticks[feed->ramps++ % PASSO_PATH_FEED_RAMPS] = ramp->ticks;
 	feed->left += (uint64_t)ramp->ticks << tick_log2(feed);
@@ -133,6 +142,7 @@ enum passo_error passo_path_feed_poll(struct passo_path_feed *feed)
 	enum passo_error error = PASSO_OK;
 
 	pass_time(feed);
+	feed->given = feed->ramps + feed->lines;
 	if (!passo_is_moving(passo) && feed->path->sent != feed->path->added)
 		error = begin(feed);
 	else if (passo->stream == PASSO_STREAM_FILLS && is_time(feed) && passo->post == PASSO_POST_NONE)
@@ -140,7 +150,20 @@ enum passo_error passo_path_feed_poll(struct passo_path_feed *feed)
 	if (error == PASSO_OK)
 		error = passo_poll(passo);
 	correct(feed);
+	feed->gave = feed->ramps + feed->lines != feed->given || passo->post == PASSO_POST_ITEMS;
 	return error;
+}
+
+bool passo_path_feed_is_short(const struct passo_path_feed *feed, uint32_t microseconds)
+{
+	const struct passo *passo = feed->passo;
+
+	return passo->stream == PASSO_STREAM_RUNS && feed->left < passo_clocks(passo, microseconds);
+}
+
+bool passo_path_feed_is_urgent(const struct passo_path_feed *feed)
+{
+	return feed->gave && passo_path_feed_is_short(feed, SHORT_MICROSECONDS);
 }
 
 bool passo_path_feed_recover(struct passo_path_feed *feed, const int32_t *positions)

@@ -37,6 +37,8 @@ struct passo_path_feed {
 	uint32_t first, done;                  /* number of its first line; lines executed, at least */
 	uint32_t added, added_at;              /* lines known, and since when */
 	bool hurry;                            /* start with what is known */
+	uint32_t given;                        /* lines and ramps before this poll */
+	bool gave;                             /* lines or ramps, in the last poll */
 };
 
 void passo_path_feed_open(struct passo_path_feed *feed, struct passo *passo, struct passo_path_planner *path);
@@ -44,6 +46,14 @@ void passo_path_feed_open(struct passo_path_feed *feed, struct passo *passo, str
 /* passo_poll(), and starts motions. A motion starts when the look-ahead is full, when the path has been
  * ended, or when no line was added for 20 ms. Errors: those of passo_stream() and passo_poll(). */
 enum passo_error passo_path_feed_poll(struct passo_path_feed *feed);
+
+/* Whether the core runs out of ramps in less than this time, unless more are given: a lower bound of what it
+ * holds. */
+bool passo_path_feed_is_short(const struct passo_path_feed *feed, uint32_t microseconds);
+
+/* Whether the next poll is urgent: the core is short, and the last poll had something for it. The caller
+ * makes no new lines meanwhile, so that a flood of them cannot starve the core. */
+bool passo_path_feed_is_urgent(const struct passo_path_feed *feed);
 
 /* After a stop and passo_clear(): goes on with the rest of the path from the present positions, at once.
  * False: the line on which it stopped is not in memory any more. */

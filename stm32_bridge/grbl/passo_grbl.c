@@ -99,7 +99,8 @@ static void take_start(struct passo_grbl *grbl)
 /* One line at most, and only when the one before has been taken. */
 static void take_line(struct passo_grbl *grbl)
 {
-	const bool ready = passo_player_is_ready(grbl->player) && !grbl->homes && !grbl->door;
+	const bool ready = passo_player_is_ready(grbl->player) && !grbl->homes && !grbl->door
+	                && !passo_path_feed_is_urgent(grbl->player->feed);
 
 	if (ready && !grbl->locked && grbl->starts < PASSO_GRBL_STARTS) {
 		take_start(grbl);

@@ -3,8 +3,10 @@
  */
 #include "passo_player.h"
 
+#include "passo_driver.h"
 #include "passo_math.h"
 
+#define ACTIONS_MICROSECONDS 200u
 #define MICROSECONDS_PER_SECOND 1000000u
 
 void passo_player_open(struct passo_player *player, struct passo_gcode *gcode, struct passo_path_feed *feed,
@@ -212,19 +214,31 @@ static enum passo_error take_action(struct passo_player *player, enum passo_play
 	return PASSO_OK;
 }
 
-enum passo_error passo_player_poll(struct passo_player *player, enum passo_player_event *event)
+/* The chords of an arc are many: none while the core is short of ramps, and not all at once. */
+static enum passo_error take_actions(struct passo_player *player, enum passo_player_event *event)
 {
-	const bool probed = player->probes;
+	const struct passo *passo = player->feed->passo;
+	const uint32_t began = passo_driver_now(passo);
 	enum passo_error error = PASSO_OK;
 
 	*event = PASSO_PLAYER_NOTHING;
-	while (error == PASSO_OK && *event == PASSO_PLAYER_NOTHING && !player->probes && !player->paused) {
+	while (error == PASSO_OK && *event == PASSO_PLAYER_NOTHING && !player->probes && !player->paused
+	       && !passo_path_feed_is_urgent(player->feed)
+	       && passo_driver_now(passo) - began <= ACTIONS_MICROSECONDS) {
 		if (!player->waits && !passo_gcode_next(player->gcode, &player->action))
 			break;
 		error = take_action(player, event);
 		if (player->waits)
 			break;
 	}
+	return error;
+}
+
+enum passo_error passo_player_poll(struct passo_player *player, enum passo_player_event *event)
+{
+	const bool probed = player->probes;
+	enum passo_error error = take_actions(player, event);
+
 	if (error != PASSO_OK || *event != PASSO_PLAYER_NOTHING)
 		return error;
 	error = passo_path_feed_poll(player->feed);

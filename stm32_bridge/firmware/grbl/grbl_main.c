@@ -11,6 +11,7 @@
 #define SLEWS_PER_SECOND 20u /* of hold and stop, from full speed */
 #define DRAIN_VELOCITY 65536u
 #define SPI_FAST_HZ 72000000u /* of the core: four clocks to a clock of SPI */
+#define SLEEP_MICROSECONDS 4000u /* a sleep takes up to a quarter */
 #define SEARCH_MILLISECONDS 100u
 
 static struct passo_path_item items[LOOK_AHEAD];
@@ -148,7 +149,7 @@ int main(void)
 			passo_grbl_poll(&grbl);
 			board_led(passo_fault(&passo) != PASSO_OK);
 			board_watchdog_feed();
-			if (progress() == before)
+			if (progress() == before && !passo_path_feed_is_short(&feed, SLEEP_MICROSECONDS))
 				board_sleep();
 		}
 	}
