@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -75,10 +76,10 @@ class Expressions:
             self.cells[name] = self._declared(decl, name)
         return self.cells[name]
 
-    def make_unknown(self, name: str) -> None:
-        """Give an object with file scope unknown contents."""
+    def make_unknown(self, name: str, arrays: Collection[str] = ()) -> None:
+        """Give an object with file scope unknown contents; ``arrays`` are symbols as a whole."""
         kind = self.program.type_of(self.program.objects[name].type)
-        self.cells[name] = Cell(kind, symbols(kind, name))
+        self.cells[name] = Cell(kind, symbols(kind, name, arrays))
 
     def _declared(self, decl: c_ast.Decl, name: str, born: Condition = True) -> Cell:
         node = decl.type

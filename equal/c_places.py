@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 import z3
 
 from equal.c_types import (
+    INDEX_BITS,
     INT,
     UNSIGNED_LONG,
     Array,
@@ -71,6 +72,18 @@ def within(index: Value, length: int) -> Condition:
     return z3.ULT(to_vector(wide, 64), length)
 
 
+def _selects(key: Value, i: int) -> Condition:
+    """Whether an unknown index is i: often known to be false, for an index that was masked."""
+    equal = z3.simplify(key.bits == i)
+    return False if z3.is_false(equal) else equal
+
+
+def _index(key: int | Value) -> z3.BitVecRef:
+    """An index of an array that is a symbol; one out of range is a demand that fails."""
+    bits = key if isinstance(key, int) else convert(key, Integer(INDEX_BITS, False)).bits
+    return to_vector(bits, INDEX_BITS)
+
+
 def _read(bits: Any, kind: Type, path: tuple[str | int | Value, ...]) -> Any:
     if not path:
         return bits
@@ -79,12 +92,14 @@ def _read(bits: Any, kind: Type, path: tuple[str | int | Value, ...]) -> Any:
         assert isinstance(kind, Struct)
         return _read(bits[key], kind.fields[key], rest)
     assert isinstance(kind, Array)
+    if isinstance(bits, z3.ArrayRef):
+        return bits[_index(key)]
     if isinstance(key, int):  # one out of range is a demand that fails
         return _read(bits[min(max(key, 0), kind.length - 1)], kind.element, rest)
     inner = _target(kind.element, rest)
     found = _read(bits[-1], kind.element, rest)
     for i in range(kind.length - 2, -1, -1):
-        found = choose(key.bits == i, _read(bits[i], kind.element, rest), found, inner)
+        found = choose(_selects(key, i), _read(bits[i], kind.element, rest), found, inner)
     return found
 
 
@@ -110,8 +125,12 @@ def _write(bits: Any, kind: Type, path: tuple[str | int | Value, ...], when: Con
         bits[key] = _write(bits[key], kind.fields[key], rest, when, new)
         return bits
     assert isinstance(kind, Array)
+    if isinstance(bits, z3.ArrayRef):
+        assert isinstance(kind.element, Integer)
+        element = to_vector(convert(new, kind.element).bits, kind.element.width)
+        return choose(when, z3.Store(bits, _index(key), element), bits, kind)
     for i in range(kind.length) if isinstance(key, Value) else {key} & set(range(kind.length)):
-        here = both(when, key.bits == i) if isinstance(key, Value) else when
+        here = both(when, _selects(key, i)) if isinstance(key, Value) else when
         bits[i] = _write(bits[i], kind.element, rest, here, new)
     return bits
 

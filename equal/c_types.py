@@ -7,7 +7,7 @@ bool or a z3 condition. Structs are dicts, arrays are lists.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
@@ -65,6 +65,7 @@ UNSIGNED = Integer(32, False)
 LONG = Integer(64, True)
 UNSIGNED_LONG = Integer(64, False)
 BOOL = Bool()
+INDEX_BITS = 32  # of an array that is a symbol
 
 
 @dataclass(frozen=True)
@@ -175,6 +176,8 @@ def choose(condition: Condition, then: Any, other: Any, kind: Type) -> Any:
         return other
     if isinstance(kind, Struct):
         return {name: choose(condition, then[name], other[name], of) for name, of in kind.fields.items()}
+    if isinstance(then, z3.ArrayRef):
+        return z3.If(condition, then, other)
     if isinstance(kind, Array):
         return [choose(condition, a, b, kind.element) for a, b in zip(then, other, strict=True)]
     if isinstance(kind, Pointer):
@@ -208,11 +211,17 @@ def filled(kind: Type, name: str, leaf: Any) -> Any:
     return leaf(kind, name)
 
 
-def symbols(kind: Type, name: str) -> Any:
-    """Bits of a type, all unknown; each symbol has the name of its leaf."""
-    return filled(
-        kind, name, lambda of, leaf: z3.Bool(leaf) if isinstance(of, Bool) else z3.BitVec(leaf, of.width)
-    )
+def symbols(kind: Type, name: str, arrays: Collection[str] = ()) -> Any:
+    """Bits of a type, all unknown; each symbol has the name of its leaf. Some arrays of integers are one symbol."""
+    if isinstance(kind, Struct):
+        return {of: symbols(inner, f"{name}.{of}", arrays) for of, inner in kind.fields.items()}
+    if isinstance(kind, Array) and isinstance(kind.element, Integer) and name in arrays:
+        return z3.Array(name, z3.BitVecSort(INDEX_BITS), z3.BitVecSort(kind.element.width))
+    if isinstance(kind, Array):
+        return [symbols(kind.element, f"{name}[{i}]", arrays) for i in range(kind.length)]
+    if isinstance(kind, Pointer):
+        return []
+    return z3.Bool(name) if isinstance(kind, Bool) else z3.BitVec(name, kind.width)
 
 
 def leaves(kind: Type, bits: Any, name: str) -> Iterator[tuple[str, Type, Any]]:

@@ -47,6 +47,7 @@ class Coupling:
     state: tuple[str, ...]  # those of them that are the module's state
     clock: str
     reset: str | None
+    types: str  # that the declarations need
     prelude: str
     inputs: dict[str, Link]
     outputs: dict[str, Link]
@@ -57,6 +58,8 @@ class Coupling:
     bugs: tuple[Bug, ...]
     # registers with an asynchronous reset; the clock then gives the inputs their next values
     at_once: tuple[str, ...]
+    # long arrays of integers: unknown as a whole, which z3 decides faster
+    arrays: tuple[str, ...]
     slow: bool  # takes too long for ``make test``
 
 
@@ -86,6 +89,7 @@ def read_coupling(path: Path) -> Coupling:
             tuple(table.pop("state")),
             table.pop("clock"),
             table.pop("reset", None),
+            table.pop("types", ""),
             table.pop("prelude", ""),
             {name: _link(entry) for name, entry in table.pop("inputs", {}).items()},
             {name: _link(entry) for name, entry in table.pop("outputs", {}).items()},
@@ -95,6 +99,7 @@ def read_coupling(path: Path) -> Coupling:
             table.pop("assumptions", {}),
             tuple(Bug(**bug) for bug in table.pop("bug", ())),
             tuple(table.pop("at_once", ())),
+            tuple(table.pop("arrays", ())),
             table.pop("slow", False),
         )
     except KeyError as missing:

@@ -29,6 +29,7 @@ TIME_LIMIT = 600  # seconds for one query
 EXPRESSIONS = "equal_expressions"
 CLOCK = "equal_clock"
 RESET = "equal_reset"
+PART = re.compile(r"(.*)\[(\d+):(\d+)\]")
 
 
 @dataclass(frozen=True)
@@ -53,6 +54,7 @@ class Outcome:
 def harness(coupling: Coupling, expressions: list[str], root: Path) -> str:
     """The C sources of a module, with the coupling's objects and expressions, preprocessed."""
     lines = [f'#include "{root}/{source}"' for source in coupling.sources]
+    lines.append(coupling.types)
     lines += [f"{declaration};" for declaration in coupling.objects]
     lines.append(coupling.prelude)
     lines.append(f"static void {CLOCK}(void) {{ {coupling.clock} }}")
@@ -77,7 +79,7 @@ class Model:
         self.evaluator = Evaluator(program)
         self.objects = [re.findall(r"\w+", declaration)[-1] for declaration in coupling.objects]
         for name in self.objects:
-            self.evaluator.make_unknown(name)
+            self.evaluator.make_unknown(name, coupling.arrays)
 
     def values(self) -> dict[str, Value]:
         """The expressions of the coupling, with the state as it is now."""
@@ -128,12 +130,23 @@ def _same(term: z3.ExprRef, value: Value, signed: bool) -> Condition:
     return (z3.SignExt(more, term) if signed else z3.ZeroExt(more, term)) == number
 
 
+def _named(entry: str) -> tuple[str, int, int]:
+    """The register or port of an entry, and its bits if it is of a part only: ``name[high:low]``; else -1."""
+    part = PART.match(entry)
+    return (part[1], int(part[2]), int(part[3])) if part else (entry, -1, -1)
+
+
+def _term(entry: str, terms: dict[str, z3.ExprRef]) -> z3.ExprRef:
+    name, high, low = _named(entry)
+    return terms[name] if high < 0 else z3.Extract(high, low, terms[name])
+
+
 def _coupled(
     links: dict[str, Link], terms: dict[str, z3.ExprRef], values: dict[str, Value]
 ) -> dict[str, Condition]:
     found: dict[str, Condition] = {}
     for name, link in links.items():
-        equal = _same(terms[name], values[link.expression], link.signed)
+        equal = _same(_term(name, terms), values[link.expression], link.signed)
         found[name] = equal if link.when is None else z3.Implies(truth(values[link.when]), equal)
     return found
 
@@ -149,11 +162,16 @@ def _check_names(coupling: Coupling, rtl: Rtl) -> None:
         ("output", rtl.outputs, coupling.outputs),
         ("register", rtl.registers, coupling.registers),
     ):
-        for name in listed:
+        bits: dict[str, int] = {}
+        for entry in listed:
+            name, high, low = _named(entry)
             if name not in own:
                 raise Failure(f"{coupling.name}: {coupling.top} has no {what} {name}")
+            bits[name] = bits.get(name, 0) + (own[name] if high < 0 else high - low + 1)
         for name in own:
-            if name not in listed and name not in coupling.free and name not in ("clk", "rst"):
+            if bits.get(name, own[name]) != own[name]:
+                raise Failure(f"{coupling.name}: the parts of the {what} {name} are not all of it")
+            if name not in bits and name not in coupling.free and name not in ("clk", "rst"):
                 raise Failure(f"{coupling.name}: nothing is said of the {what} {name}")
 
 
@@ -164,6 +182,9 @@ def _search(assumed: list[Any], goals: list[Goal]) -> tuple[tuple[str, ...], str
     solver.add(*assumed)
     if solver.check() != z3.sat:
         raise Failure("the assumptions contradict each other: no state satisfies them")
+    solver = z3.Solver()  # a second question to the same one would be answered without preprocessing
+    solver.set("timeout", TIME_LIMIT * 1000)
+    solver.add(*assumed)
     solver.add(z3.Not(z3.And([goal.formula for goal in goals])))
     answer = solver.check()
     if answer == z3.unsat:
@@ -229,7 +250,7 @@ def prove(coupling: Coupling, root: Path) -> Outcome:
     begin = time.monotonic()
     rtl = read_rtl(coupling.top, root / "rtl", coupling.parameters, coupling.at_once)
     _check_names(coupling, rtl)
-    bits = sum(rtl.registers[name] for name in coupling.registers)
+    bits = sum(rtl.registers[name] for name in {_named(entry)[0] for entry in coupling.registers})
     count = 0
     for goals_of in (_clock_goals, _reset_goals):
         if goals_of is _reset_goals and coupling.reset is None:
