@@ -212,7 +212,7 @@ def filled(kind: Type, name: str, leaf: Any) -> Any:
 
 
 def symbols(kind: Type, name: str, arrays: Collection[str] = ()) -> Any:
-    """Bits of a type, all unknown; each symbol has the name of its leaf. Some arrays of integers are one symbol."""
+    """Bits of a type, all unknown; a symbol has the name of its leaf. Some arrays of integers are one."""
     if isinstance(kind, Struct):
         return {of: symbols(inner, f"{name}.{of}", arrays) for of, inner in kind.fields.items()}
     if isinstance(kind, Array) and isinstance(kind.element, Integer) and name in arrays:
