@@ -12,6 +12,7 @@ import pytest
 from passo.cli import main
 from passo.engine import model_engine, rtl_engine
 from passo.grbl import Grbl
+from passo.grbl_setup import machine_at
 from passo.machine_file import read_machine
 from passo.run import parameters_for
 from passo.toolchain import paths
@@ -290,3 +291,37 @@ def test_bad_options_of_the_bench(options: list[str], capsys: pytest.CaptureFixt
     """One line, before anything is measured."""
     assert main(["firmware", *options]) == 2
     assert capsys.readouterr().err.count("\n") == 1
+
+
+HOMES = """
+clock_hz = 36_000_000
+""" + "".join(
+    f"""
+[[axis]]
+name = "{name}"
+steps_per_mm = {steps}
+speed = 100
+acceleration = 1000
+travel = 4
+home = "low"
+switches = ["home"]
+"""
+    for name, steps in (("X", 80), ("Y", 80), ("Z", 400))
+)
+
+
+def test_home(fast_elf: Path, tmp_path: Path) -> None:
+    """With switches at the low ends: locked until then, and every axis is its pull-off away from its end."""
+    path = tmp_path / "machine.toml"
+    path.write_text(HOMES)
+    machine = read_machine(path)
+    with machine_at("model", machine) as engine:
+        board = GrblBoard(engine, fast_elf, baud=FAST_BAUD)
+        assert board.report()["state"] == "Alarm"
+        for setting in ("23=7", "24=600", "27=0.5", "130=4", "131=4", "132=4", "122=1000"):
+            assert board.line(f"${setting}") == "ok"
+        assert board.line("$H", 3.0) == "ok"
+        report = board.report()
+        assert report["state"] == "Idle"
+        place = [float(mm) for mm in report["MPos"].split(",")]
+        assert np.allclose(place, [-3.5] * 3, atol=0.02)
