@@ -12,6 +12,7 @@ import pytest
 from passo.cli import main
 from passo.engine import model_engine, rtl_engine
 from passo.grbl import Grbl
+from passo.grbl_setup import machine_at
 from passo.machine_file import read_machine
 from passo.run import parameters_for
 from passo.toolchain import paths
@@ -204,23 +205,39 @@ def test_reset_of_the_board_in_mid_path(board: GrblBoard) -> None:
     assert is_after(board.report(), made)
 
 
-def test_path_that_the_host_cannot_keep_up_with(fast_elf: Path) -> None:
-    """Lines of 0.1 mm on a curve, of which its speed needs 10,000 per second: it slows down, and ends."""
-    radius, count = 50, 300
+def curve(count: int) -> list[tuple[float, float]]:
+    """Ends of lines of 0.1 mm on a circle."""
+    radius = 50
     angles = [0.1 / radius * i for i in range(1, count + 1)]
-    places = [(radius * math.sin(a), radius - radius * math.cos(a)) for a in angles]
+    return [(radius * math.sin(a), radius - radius * math.cos(a)) for a in angles]
+
+
+def hurry_along(board: GrblBoard, count: int, after: str = "") -> float:
+    """A curve of which its speed needs 10,000 lines per second; returns those that were taken per second."""
+    for axis in "01":
+        assert board.line(f"$11{axis}=60000") == board.line(f"$12{axis}=200000") == "ok"
+    began, since, places = board.seconds, len(board.output), curve(count)
+    board.stream(["F60000", *(f"G1 X{x:.3f} Y{y:.3f}{after}" for x, y in places)], 1.5)
+    rate = count / (board.seconds - began)
+    board.rest(0.5)
+    assert "ALARM" not in board.output[since:]
+    place = [float(mm) for mm in board.report()["MPos"].split(",")]
+    assert np.allclose(place, [*places[-1], 0], atol=0.5 / 80 + 0.001)
+    return rate
+
+
+def test_path_that_the_host_cannot_keep_up_with(fast_elf: Path) -> None:
+    """It slows down, and ends."""
     with model_engine(replace(parameters_for(3), inputs=1), HZ) as engine:
         board = GrblBoard(engine, fast_elf, baud=FAST_BAUD)
         assert board.line("$X").endswith("ok")
-        for axis in "01":
-            assert board.line(f"$11{axis}=60000") == board.line(f"$12{axis}=200000") == "ok"
-        began, since = board.seconds, len(board.output)
-        board.stream(["F60000", *(f"G1 X{x:.3f} Y{y:.3f}" for x, y in places)], 1.0)
-        assert count / (board.seconds - began) > 2000  # lines per second
-        board.rest(0.5)
-        assert "ALARM" not in board.output[since:]
-        place = [float(mm) for mm in board.report()["MPos"].split(",")]
-    assert np.allclose(place, [*places[-1], 0], atol=0.5 / 80 + 0.001)
+        assert hurry_along(board, 300) > 2000
+
+
+def test_questions_do_not_starve_the_core(board: GrblBoard) -> None:
+    """More status reports are asked for than the serial line can take: some become one, and the path ends."""
+    assert hurry_along(board, 90, "?") > 200
+    assert board.output.count("<") < 80
 
 
 def test_lost_bytes_refuse_their_line(board: GrblBoard) -> None:
@@ -261,7 +278,7 @@ def test_estop_at_the_start(fast_elf: Path) -> None:
     with model_engine(replace(parameters_for(3), inputs=1), HZ) as engine:
         engine.set("estop_n", 0)
         machine = Machine(fast_elf, engine, baud=FAST_BAUD)
-        machine.run(0.3)
+        machine.run(0.1)
         assert machine.output.endswith("[MSG:ESTOP]\r\n")
         engine.set("estop_n", 1)
         machine.expect(GREETING + "[MSG:'$H'|'$X' to unlock]\r\n", 0.4)
@@ -274,3 +291,37 @@ def test_bad_options_of_the_bench(options: list[str], capsys: pytest.CaptureFixt
     """One line, before anything is measured."""
     assert main(["firmware", *options]) == 2
     assert capsys.readouterr().err.count("\n") == 1
+
+
+HOMES = """
+clock_hz = 36_000_000
+""" + "".join(
+    f"""
+[[axis]]
+name = "{name}"
+steps_per_mm = {steps}
+speed = 100
+acceleration = 1000
+travel = 4
+home = "low"
+switches = ["home"]
+"""
+    for name, steps in (("X", 80), ("Y", 80), ("Z", 400))
+)
+
+
+def test_home(fast_elf: Path, tmp_path: Path) -> None:
+    """With switches at the low ends: locked until then, and every axis is its pull-off away from its end."""
+    path = tmp_path / "machine.toml"
+    path.write_text(HOMES)
+    machine = read_machine(path)
+    with machine_at("model", machine) as engine:
+        board = GrblBoard(engine, fast_elf, baud=FAST_BAUD)
+        assert board.report()["state"] == "Alarm"
+        for setting in ("23=7", "24=600", "27=0.5", "130=4", "131=4", "132=4", "122=1000"):
+            assert board.line(f"${setting}") == "ok"
+        assert board.line("$H", 3.0) == "ok"
+        report = board.report()
+        assert report["state"] == "Idle"
+        place = [float(mm) for mm in report["MPos"].split(",")]
+        assert np.allclose(place, [-3.5] * 3, atol=0.02)

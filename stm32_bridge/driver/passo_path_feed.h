@@ -3,7 +3,7 @@
  *
  *     passo_path_feed_open(&feed, &passo, &path);
  *     for (;;) {
- *             if (there is a line and passo_path_room(&path) > 0)
+ *             if (there is a line and passo_path_room(&path) > 0 and not passo_path_feed_is_urgent(&feed))
  *                     passo_path_add(&path, &line);
  *             error = passo_path_feed_poll(&feed); // instead of passo_poll()
  *     }

@@ -15,10 +15,16 @@ struct ring {
 	volatile uint8_t bytes[RING];
 };
 
+/* Bytes that can be put into it. */
+static inline uint32_t ring_room(const struct ring *ring)
+{
+	return RING - (ring->head - ring->tail);
+}
+
 /* False: it is full. */
 static inline bool ring_put(struct ring *ring, uint8_t byte)
 {
-	if (ring->head - ring->tail == RING)
+	if (ring_room(ring) == 0u)
 		return false;
 	ring->bytes[ring->head % RING] = byte;
 	ring->head++;

@@ -72,3 +72,8 @@ void uart_write(const char *text)
 	while (*text != '\0')
 		put((uint8_t)*text++);
 }
+
+uint32_t uart_room(void)
+{
+	return ring_room(&sending);
+}

@@ -17,6 +17,9 @@ void uart_set_baud(uint32_t baud);
 /* Queues text for sending; waits while the ring is full. */
 void uart_write(const char *text);
 
+/* Bytes that can be queued without waiting. */
+uint32_t uart_room(void);
+
 /* What the program does with a received byte, in the interrupt; and with one that was lost or corrupt (noise,
  * framing error, overrun of the receiver). */
 void uart_received(char byte);

@@ -10,8 +10,9 @@
 #define LOOK_AHEAD 48u       /* lines */
 #define SLEWS_PER_SECOND 20u /* of hold and stop, from full speed */
 #define DRAIN_VELOCITY 65536u
-#define SPI_FAST_HZ 72000000u /* of the core: four clocks to a clock of SPI */
+#define SPI_FAST_HZ 72000000u    /* of the core: four clocks to a clock of SPI */
 #define SLEEP_MICROSECONDS 4000u /* a sleep takes up to a quarter */
+#define REPORT_BYTES 384u        /* a report of six axes, and some answers */
 #define SEARCH_MILLISECONDS 100u
 
 static struct passo_path_item items[LOOK_AHEAD];
@@ -43,9 +44,23 @@ static void wait(void *context, uint32_t duration)
 static const struct passo_hardware hardware = {
     .transfer = spi_transfer, .microseconds = board_microseconds, .wait = wait, .irq = board_core_calls};
 
+static volatile bool asked; /* for a status report */
+
 void uart_received(char byte)
 {
-	passo_grbl_receive(&grbl, byte);
+	if (byte == '?')
+		asked = true;
+	else
+		passo_grbl_receive(&grbl, byte);
+}
+
+/* Reports faster than the line can take them become one: waiting for it would starve the core. */
+static void pass_on_question(void)
+{
+	if (!asked || uart_room() < REPORT_BYTES)
+		return;
+	asked = false;
+	passo_grbl_receive(&grbl, '?');
 }
 
 /* The line is refused. */
@@ -120,7 +135,8 @@ static void start(void)
 {
 	connect();
 	grbl_machine(&setup, &passo, &flash_pages);
-	passo_gcode_open(&gcode, &(struct passo_gcode_settings){.axes = setup.path.machine.axes, .arc_tolerance = 1});
+	passo_gcode_open(
+	    &gcode, &(struct passo_gcode_settings){.axes = setup.path.machine.axes, .arc_tolerance = 1});
 	passo_path_feed_open(&feed, &passo, &path);
 	passo_player_open(&player, &gcode, &feed, NULL);
 	passo_grbl_open(&grbl, &player, &sink, &setup);
@@ -146,6 +162,7 @@ int main(void)
 		while (!host.lost) {
 			const uint32_t before = progress();
 
+			pass_on_question();
 			passo_grbl_poll(&grbl);
 			board_led(passo_fault(&passo) != PASSO_OK);
 			board_watchdog_feed();
