@@ -32,6 +32,7 @@ class Link:
     when: str | None = None
     signed: bool = False
     kept: bool = False  # by a reset
+    probe: str | None = None  # the address of a memory on which its next value depends
 
 
 @dataclass(frozen=True)
@@ -65,8 +66,8 @@ def _link(entry: str | dict[str, Any]) -> Link:
     return Link(entry) if isinstance(entry, str) else Link(entry["is"], *_rest(entry))
 
 
-def _rest(entry: dict[str, Any]) -> tuple[str | None, bool, bool]:
-    return entry.get("when"), entry.get("signed", False), entry.get("kept", False)
+def _rest(entry: dict[str, Any]) -> tuple[str | None, bool, bool, str | None]:
+    return entry.get("when"), entry.get("signed", False), entry.get("kept", False), entry.get("probe")
 
 
 def read_coupling(path: Path) -> Coupling:

@@ -72,6 +72,7 @@ class Model:
         links = [*coupling.inputs.values(), *coupling.outputs.values(), *coupling.registers.values()]
         self.expressions = [link.expression for link in links]
         self.expressions += [link.when for link in links if link.when]
+        self.expressions += [f"probe == ({link.probe})" for link in links if link.probe]
         self.expressions += [link.expression for link in coupling.invariants.values()]
         self.expressions += [assumption["that"] for assumption in coupling.assumptions.values()]
         program = Program(harness(coupling, self.expressions, root))
@@ -213,6 +214,10 @@ def _clock_goals(coupling: Coupling, rtl: Rtl, root: Path) -> tuple[list[Any], l
         assumed += _coupled(coupling.inputs, rtl.after, after).values()
     outputs = _coupled(coupling.outputs, rtl.before, before)
     registers = _coupled(coupling.registers, rtl.after, after)
+    for name, link in coupling.registers.items():
+        # said of it for any probe, so it is proved for the one that matters
+        if link.probe:
+            registers[name] = z3.Implies(truth(before[f"probe == ({link.probe})"]), registers[name])
     goals = [Goal(f"output {name}", formula) for name, formula in outputs.items()]
     goals += [Goal(f"register {name}", formula) for name, formula in registers.items()]
     for name, link in coupling.invariants.items():
