@@ -58,6 +58,7 @@ class Coupling:
     assumptions: dict[str, dict[str, str]]  # ``that`` holds of the inputs, ``because`` of a neighbour
     bugs: tuple[Bug, ...]
     at_once: tuple[str, ...]  # registers with an asynchronous reset; the clock then gives the inputs their next values
+    fixed: dict[str, int]  # leaves of the objects that a parameter fixes: member after member
     arrays: tuple[str, ...]  # long ones of integers: unknown as a whole, which z3 decides faster
     slow: bool  # takes too long for ``make test``
 
@@ -98,6 +99,7 @@ def read_coupling(path: Path) -> Coupling:
             table.pop("assumptions", {}),
             tuple(Bug(**bug) for bug in table.pop("bug", ())),
             tuple(table.pop("at_once", ())),
+            table.pop("fixed", {}),
             tuple(table.pop("arrays", ())),
             table.pop("slow", False),
         )

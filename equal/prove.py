@@ -81,6 +81,12 @@ class Model:
         self.objects = [re.findall(r"\w+", declaration)[-1] for declaration in coupling.objects]
         for name in self.objects:
             self.evaluator.make_unknown(name, coupling.arrays)
+        for leaf, value in coupling.fixed.items():
+            name, *members, last = leaf.split(".")
+            bits = self.evaluator.cells[name].bits
+            for member in members:
+                bits = bits[member]
+            bits[last] = value
 
     def values(self) -> dict[str, Value]:
         """The expressions of the coupling, with the state as it is now."""

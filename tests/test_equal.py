@@ -75,7 +75,7 @@ def test_symbolic_execution_agrees_with_the_compiler(coupling: Coupling) -> None
     defined = 0
     states = max(LEAVES // len(kinds), 3)
     for _ in range(states):
-        values = {name: drawn(rng, kind) for name, kind in kinds.items()}
+        values = {name: drawn(rng, kind) for name, kind in kinds.items()} | coupling.fixed
         library.load(words(*(value & MASK for value in values.values())))
         model.evaluator.demands.clear()
         model.set_all(values)
