@@ -26,6 +26,7 @@ from equal.c_types import (
     convert,
     copied,
     mapped,
+    row_of,
     to_vector,
 )
 
@@ -86,11 +87,6 @@ def _index(key: int | Value) -> z3.BitVecRef:
     return to_vector(bits, INDEX_BITS)
 
 
-def _row(table: Table, kind: Array, key: int | Value) -> Any:
-    index = _index(key)
-    return mapped(kind.element, lambda column: column[index], table.columns)
-
-
 def _stored(column: z3.ArrayRef, index: z3.BitVecRef, leaf: Any) -> z3.ArrayRef:
     if z3.is_select(leaf) and leaf.arg(0).eq(column) and leaf.arg(1).eq(index):
         return column  # not written
@@ -106,7 +102,7 @@ def _read(bits: Any, kind: Type, path: tuple[str | int | Value, ...]) -> Any:
         return _read(bits[key], kind.fields[key], rest)
     assert isinstance(kind, Array)
     if isinstance(bits, Table):
-        return _read(_row(bits, kind, key), kind.element, rest)
+        return _read(row_of(bits, kind, _index(key)), kind.element, rest)
     if isinstance(key, int):  # one out of range is a demand that fails
         return _read(bits[min(max(key, 0), kind.length - 1)], kind.element, rest)
     inner = _target(kind.element, rest)
@@ -139,8 +135,8 @@ def _write(bits: Any, kind: Type, path: tuple[str | int | Value, ...], when: Con
         return bits
     assert isinstance(kind, Array)
     if isinstance(bits, Table):
-        row = _write(_row(bits, kind, key), kind.element, rest, True, new)
         index = _index(key)
+        row = _write(row_of(bits, kind, index), kind.element, rest, True, new)
         changed = Table(mapped(kind.element, lambda of, leaf: _stored(of, index, leaf), bits.columns, row))
         return choose(when, changed, bits, kind)
     for i in range(kind.length) if isinstance(key, Value) else {key} & set(range(kind.length)):

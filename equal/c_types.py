@@ -246,13 +246,19 @@ def mapped(kind: Type, leaf: Any, *bits: Any) -> Any:
     return leaf(*bits)
 
 
+def row_of(table: Table, kind: Array, index: int | z3.BitVecRef) -> Any:
+    """The bits of an element of a table."""
+    return mapped(kind.element, lambda column: column[index], table.columns)
+
+
 def leaves(kind: Type, bits: Any, name: str) -> Iterator[tuple[str, Type, Any]]:
     """The leaves of a value: name, type, bits."""
     if isinstance(kind, Struct):
         for of, inner in kind.fields.items():
             yield from leaves(inner, bits[of], f"{name}.{of}")
     elif isinstance(kind, Array):
-        for i, element in enumerate(bits):
+        for i in range(kind.length):
+            element = row_of(bits, kind, i) if isinstance(bits, Table) else bits[i]
             yield from leaves(kind.element, element, f"{name}[{i}]")
     elif not isinstance(kind, Pointer):
         yield name, kind, bits
