@@ -17,6 +17,7 @@ from equal.c_types import (
     Integer,
     Pointer,
     Struct,
+    Table,
     Type,
     UnsupportedError,
     Value,
@@ -24,6 +25,8 @@ from equal.c_types import (
     choose,
     convert,
     copied,
+    mapped,
+    row_of,
     to_vector,
 )
 
@@ -79,9 +82,15 @@ def _selects(key: Value, i: int) -> Condition:
 
 
 def _index(key: int | Value) -> z3.BitVecRef:
-    """An index of an array that is a symbol; one out of range is a demand that fails."""
+    """An index of a table; one out of range is a demand that fails."""
     bits = key if isinstance(key, int) else convert(key, Integer(INDEX_BITS, False)).bits
     return to_vector(bits, INDEX_BITS)
+
+
+def _stored(column: z3.ArrayRef, index: z3.BitVecRef, leaf: Any) -> z3.ArrayRef:
+    if z3.is_select(leaf) and leaf.arg(0).eq(column) and leaf.arg(1).eq(index):
+        return column  # not written
+    return z3.Store(column, index, leaf)
 
 
 def _read(bits: Any, kind: Type, path: tuple[str | int | Value, ...]) -> Any:
@@ -92,8 +101,8 @@ def _read(bits: Any, kind: Type, path: tuple[str | int | Value, ...]) -> Any:
         assert isinstance(kind, Struct)
         return _read(bits[key], kind.fields[key], rest)
     assert isinstance(kind, Array)
-    if isinstance(bits, z3.ArrayRef):
-        return bits[_index(key)]
+    if isinstance(bits, Table):
+        return _read(row_of(bits, kind, _index(key)), kind.element, rest)
     if isinstance(key, int):  # one out of range is a demand that fails
         return _read(bits[min(max(key, 0), kind.length - 1)], kind.element, rest)
     inner = _target(kind.element, rest)
@@ -125,10 +134,11 @@ def _write(bits: Any, kind: Type, path: tuple[str | int | Value, ...], when: Con
         bits[key] = _write(bits[key], kind.fields[key], rest, when, new)
         return bits
     assert isinstance(kind, Array)
-    if isinstance(bits, z3.ArrayRef):
-        assert isinstance(kind.element, Integer)
-        element = to_vector(convert(new, kind.element).bits, kind.element.width)
-        return choose(when, z3.Store(bits, _index(key), element), bits, kind)
+    if isinstance(bits, Table):
+        index = _index(key)
+        row = _write(row_of(bits, kind, index), kind.element, rest, True, new)
+        changed = Table(mapped(kind.element, lambda of, leaf: _stored(of, index, leaf), bits.columns, row))
+        return choose(when, changed, bits, kind)
     for i in range(kind.length) if isinstance(key, Value) else {key} & set(range(kind.length)):
         here = both(when, _selects(key, i)) if isinstance(key, Value) else when
         bits[i] = _write(bits[i], kind.element, rest, here, new)

@@ -65,7 +65,14 @@ UNSIGNED = Integer(32, False)
 LONG = Integer(64, True)
 UNSIGNED_LONG = Integer(64, False)
 BOOL = Bool()
-INDEX_BITS = 32  # of an array that is a symbol
+INDEX_BITS = 32  # of a table
+
+
+@dataclass(frozen=True)
+class Table:
+    """The elements of a long array: an array of z3 in the place of each leaf of an element."""
+
+    columns: Any
 
 
 @dataclass(frozen=True)
@@ -176,8 +183,9 @@ def choose(condition: Condition, then: Any, other: Any, kind: Type) -> Any:
         return other
     if isinstance(kind, Struct):
         return {name: choose(condition, then[name], other[name], of) for name, of in kind.fields.items()}
-    if isinstance(then, z3.ArrayRef):
-        return z3.If(condition, then, other)
+    if isinstance(then, Table):
+        assert isinstance(kind, Array)
+        return Table(mapped(kind.element, lambda a, b: z3.If(condition, a, b), then.columns, other.columns))
     if isinstance(kind, Array):
         return [choose(condition, a, b, kind.element) for a, b in zip(then, other, strict=True)]
     if isinstance(kind, Pointer):
@@ -212,16 +220,35 @@ def filled(kind: Type, name: str, leaf: Any) -> Any:
 
 
 def symbols(kind: Type, name: str, arrays: Collection[str] = ()) -> Any:
-    """Bits of a type, all unknown; a symbol has the name of its leaf. Some arrays of integers are one."""
+    """Bits of a type, all unknown; each symbol has the name of its leaf. ``arrays`` become tables."""
     if isinstance(kind, Struct):
         return {of: symbols(inner, f"{name}.{of}", arrays) for of, inner in kind.fields.items()}
-    if isinstance(kind, Array) and isinstance(kind.element, Integer) and name in arrays:
-        return z3.Array(name, z3.BitVecSort(INDEX_BITS), z3.BitVecSort(kind.element.width))
+    if isinstance(kind, Array) and name in arrays:
+        return Table(filled(kind.element, f"{name}[]", _column))
     if isinstance(kind, Array):
         return [symbols(kind.element, f"{name}[{i}]", arrays) for i in range(kind.length)]
     if isinstance(kind, Pointer):
         return []
     return z3.Bool(name) if isinstance(kind, Bool) else z3.BitVec(name, kind.width)
+
+
+def _column(kind: Type, name: str) -> z3.ArrayRef:
+    element = z3.BoolSort() if isinstance(kind, Bool) else z3.BitVecSort(kind.width)
+    return z3.Array(name, z3.BitVecSort(INDEX_BITS), element)
+
+
+def mapped(kind: Type, leaf: Any, *bits: Any) -> Any:
+    """Bits of a type made from the leaves of others: leaf(one of each)."""
+    if isinstance(kind, Struct):
+        return {of: mapped(inner, leaf, *(b[of] for b in bits)) for of, inner in kind.fields.items()}
+    if isinstance(kind, Array):
+        return [mapped(kind.element, leaf, *(b[i] for b in bits)) for i in range(kind.length)]
+    return leaf(*bits)
+
+
+def row_of(table: Table, kind: Array, index: int | z3.BitVecRef) -> Any:
+    """The bits of an element of a table."""
+    return mapped(kind.element, lambda column: column[index], table.columns)
 
 
 def leaves(kind: Type, bits: Any, name: str) -> Iterator[tuple[str, Type, Any]]:
@@ -230,7 +257,8 @@ def leaves(kind: Type, bits: Any, name: str) -> Iterator[tuple[str, Type, Any]]:
         for of, inner in kind.fields.items():
             yield from leaves(inner, bits[of], f"{name}.{of}")
     elif isinstance(kind, Array):
-        for i, element in enumerate(bits):
+        for i in range(kind.length):
+            element = row_of(bits, kind, i) if isinstance(bits, Table) else bits[i]
             yield from leaves(kind.element, element, f"{name}[{i}]")
     elif not isinstance(kind, Pointer):
         yield name, kind, bits

@@ -32,6 +32,7 @@ class Link:
     when: str | None = None
     signed: bool = False
     kept: bool = False  # by a reset
+    probe: str | None = None  # the address of a memory on which its next value depends
 
 
 @dataclass(frozen=True)
@@ -58,6 +59,8 @@ class Coupling:
     bugs: tuple[Bug, ...]
     # registers with an asynchronous reset; the clock then gives the inputs their next values
     at_once: tuple[str, ...]
+    # leaves of the objects that a parameter fixes: member after member
+    fixed: dict[str, int]
     # long arrays of integers: unknown as a whole, which z3 decides faster
     arrays: tuple[str, ...]
     slow: bool  # takes too long for ``make test``
@@ -67,8 +70,8 @@ def _link(entry: str | dict[str, Any]) -> Link:
     return Link(entry) if isinstance(entry, str) else Link(entry["is"], *_rest(entry))
 
 
-def _rest(entry: dict[str, Any]) -> tuple[str | None, bool, bool]:
-    return entry.get("when"), entry.get("signed", False), entry.get("kept", False)
+def _rest(entry: dict[str, Any]) -> tuple[str | None, bool, bool, str | None]:
+    return entry.get("when"), entry.get("signed", False), entry.get("kept", False), entry.get("probe")
 
 
 def read_coupling(path: Path) -> Coupling:
@@ -99,6 +102,7 @@ def read_coupling(path: Path) -> Coupling:
             table.pop("assumptions", {}),
             tuple(Bug(**bug) for bug in table.pop("bug", ())),
             tuple(table.pop("at_once", ())),
+            table.pop("fixed", {}),
             tuple(table.pop("arrays", ())),
             table.pop("slow", False),
         )

@@ -72,6 +72,7 @@ class Model:
         links = [*coupling.inputs.values(), *coupling.outputs.values(), *coupling.registers.values()]
         self.expressions = [link.expression for link in links]
         self.expressions += [link.when for link in links if link.when]
+        self.expressions += [f"probe == ({link.probe})" for link in links if link.probe]
         self.expressions += [link.expression for link in coupling.invariants.values()]
         self.expressions += [assumption["that"] for assumption in coupling.assumptions.values()]
         program = Program(harness(coupling, self.expressions, root))
@@ -80,6 +81,12 @@ class Model:
         self.objects = [re.findall(r"\w+", declaration)[-1] for declaration in coupling.objects]
         for name in self.objects:
             self.evaluator.make_unknown(name, coupling.arrays)
+        for leaf, value in coupling.fixed.items():
+            name, *members, last = leaf.split(".")
+            bits = self.evaluator.cells[name].bits
+            for member in members:
+                bits = bits[member]
+            bits[last] = value
 
     def values(self) -> dict[str, Value]:
         """The expressions of the coupling, with the state as it is now."""
@@ -213,6 +220,10 @@ def _clock_goals(coupling: Coupling, rtl: Rtl, root: Path) -> tuple[list[Any], l
         assumed += _coupled(coupling.inputs, rtl.after, after).values()
     outputs = _coupled(coupling.outputs, rtl.before, before)
     registers = _coupled(coupling.registers, rtl.after, after)
+    for name, link in coupling.registers.items():
+        # said of it for any probe, so it is proved for the one that matters
+        if link.probe:
+            registers[name] = z3.Implies(truth(before[f"probe == ({link.probe})"]), registers[name])
     goals = [Goal(f"output {name}", formula) for name, formula in outputs.items()]
     goals += [Goal(f"register {name}", formula) for name, formula in registers.items()]
     for name, link in coupling.invariants.items():

@@ -182,6 +182,18 @@ static void write_register(struct passo_channel *channel, uint8_t address, uint3
 	}
 }
 
+/* They are written one clock after the strobe. */
+static void clock_registers(
+    struct passo_channel *channel, const struct passo_bus *bus, const struct passo_channel_wires *wires)
+{
+	struct passo_encoders *encoders = &channel->encoders;
+
+	if (encoders->writes)
+		write_register(channel, encoders->written, bus->data);
+	encoders->writes = wires->selected && bus->write;
+	encoders->written = wires->bus_address;
+}
+
 static void clock_axis(struct passo_channel *channel, const struct passo_channel_inputs *inputs, unsigned i)
 {
 	struct passo_encoder_axis *axis = &channel->encoders.axis[i];
@@ -243,10 +255,7 @@ void passo_encoders_clock(struct passo_channel *channel, const struct passo_chan
 	}
 	encoders->stop_soft = soft;
 	encoders->stop_hard = hard;
-	if (encoders->writes)
-		write_register(channel, encoders->written, inputs->bus->data);
-	encoders->writes = wires->selected && inputs->bus->write;
-	encoders->written = wires->bus_address;
+	clock_registers(channel, inputs->bus, wires);
 }
 
 bool passo_encoders_quiet(const struct passo_channel *channel, const struct passo_channel_inputs *inputs)

@@ -326,7 +326,7 @@ static enum passo_plan_error user_in_time(const struct passo_machine *machine, s
 {
 	uint16_t table[PASSO_TABLE_SIZE];
 	some_table(table);
-	const struct passo_user_shape shape = {(enum passo_shape)(1 + below(3)), table};
+	const struct passo_user_shape shape = {(enum passo_shape)(1 + below(3)), table, below(2) > 0};
 	struct passo_move_in_time move = {.total_clocks = sized(46)};
 	some_steps(move.steps);
 	move.ramp_clocks = up_to(move.total_clocks / 2);
@@ -338,7 +338,7 @@ static enum passo_plan_error user_by_speed(const struct passo_machine *machine, 
 	uint16_t table[PASSO_TABLE_SIZE];
 	some_table(table);
 	const struct passo_user_shape shape = {
-	    (enum passo_shape)(below(50) > 0 ? 1 + below(3) : any() & 7), table};
+	    (enum passo_shape)(below(50) > 0 ? 1 + below(3) : any() & 7), table, below(2) > 0};
 	struct passo_move_by_speed move = some_by_speed();
 	return passo_plan_user_by_speed(machine, &move, &shape, plan);
 }

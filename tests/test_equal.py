@@ -54,7 +54,7 @@ def compiled(coupling: Coupling, names: list[str]) -> ctypes.CDLL:
     text += (
         f"\n{visible} load(const uint64_t *v)\n{{\n{load}}}\n{visible} store(uint64_t *v)\n{{\n{store}}}\n"
     )
-    text += f"{visible} make_clock(void) {{ {CLOCK}(); }}\n"
+    text += f"{visible} coupling_clock(void) {{ {CLOCK}(); }}\n"
     source = run.BUILD / f"{coupling.name}.c"
     source.parent.mkdir(parents=True, exist_ok=True)
     source.write_text(text, encoding="utf-8")
@@ -75,14 +75,14 @@ def test_symbolic_execution_agrees_with_the_compiler(coupling: Coupling) -> None
     defined = 0
     states = max(LEAVES // len(kinds), 3)
     for _ in range(states):
-        values = {name: drawn(rng, kind) for name, kind in kinds.items()}
+        values = {name: drawn(rng, kind) for name, kind in kinds.items()} | coupling.fixed
         library.load(words(*(value & MASK for value in values.values())))
         model.evaluator.demands.clear()
         model.set_all(values)
         model.run(CLOCK)
         if any(condition is False for _, condition in model.evaluator.demands):
             continue
-        library.make_clock()
+        library.coupling_clock()
         made = words()
         library.store(made)
         evaluated = {name: int(bits) & MASK for name, (_, bits) in model.leaves().items()}
