@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The transition relation of a module of the RTL, as yosys writes it, for one clock."""
 
+import os
 import re
 import subprocess
 from collections.abc import Mapping
@@ -34,8 +35,10 @@ class Rtl:
 def _smt2(top: str, folder: Path, parameters: Mapping[str, int]) -> str:
     """The module as SMT-LIB text; folder has the sources."""
     chosen = " ".join(f"-chparam {name} {value}" for name, value in parameters.items())
+    # relative: yosys as WebAssembly has a /tmp of its own
+    memory = os.path.relpath(MEMORY, folder)
     script = (
-        f"read_verilog -formal {MEMORY}; read_verilog -I. {top}.v; hierarchy -libdir . -top {top} {chosen};"
+        f"read_verilog -formal {memory}; read_verilog -I. {top}.v; hierarchy -libdir . -top {top} {chosen};"
         f" rename -top {top}; proc; flatten; opt_clean; memory -nomap;"
         " async2sync; dffunmap; opt_clean; write_smt2 -wires -"
     )

@@ -1,24 +1,19 @@
 /* SPDX-License-Identifier: MIT
- * The console with the C model of the core, for WebAssembly: lines in, text and pin events out. Time passes
- * as in sim/passo/terminal.py.
+ * The C model of the core for WebAssembly: its pins are recorded, its host's text is kept for the page.
  */
+#include "passo_web.h"
+
 #include <stdlib.h>
 #include <string.h>
 
 #include "passo_engine.h"
-#include "passo_terminal.h"
 
 enum {
 	GAP = 64, /* clocks after a frame, and for each word */
 	GAP_PER_WORD = 4,
-	ROUND = 1000,  /* microseconds between two polls */
-	PATIENCE = 20, /* rounds that a motion may stand */
 	TEXT = 1 << 16,
 	EVENTS = 4096,
-	LINE = 4096,
 };
-
-#define EXPORT(name) __attribute__((export_name(name)))
 
 /* An event for the page. */
 struct row {
@@ -28,9 +23,8 @@ struct row {
 
 static struct {
 	struct passo_engine *engine;
-	struct passo_terminal *terminal;
 	uint32_t clock_hz;
-	char line[LINE], text[TEXT];
+	char text[TEXT];
 	size_t length;
 	struct row *rows;
 	size_t count, room;
@@ -58,7 +52,7 @@ static void collect(void)
 	} while (got == EVENTS);
 }
 
-static bool transfer(void *context, const uint32_t *mosi, uint32_t *miso, size_t count)
+bool web_transfer(void *context, const uint32_t *mosi, uint32_t *miso, size_t count)
 {
 	(void)context;
 	passo_engine_transfer(web.engine, mosi, miso, count, GAP + GAP_PER_WORD * count);
@@ -66,7 +60,7 @@ static bool transfer(void *context, const uint32_t *mosi, uint32_t *miso, size_t
 	return true;
 }
 
-static uint32_t advance(void *context, uint32_t microseconds)
+uint32_t web_advance(void *context, uint32_t microseconds)
 {
 	uint64_t clocks = ((uint64_t)microseconds * web.clock_hz + 999999) / 1000000;
 
@@ -78,13 +72,13 @@ static uint32_t advance(void *context, uint32_t microseconds)
 	return (uint32_t)(passo_engine_clock(web.engine) * 1000000 / web.clock_hz);
 }
 
-static bool irq(void *context)
+bool web_irq(void *context)
 {
 	(void)context;
 	return passo_engine_irq(web.engine) != 0;
 }
 
-static void write(void *context, const char *text)
+void web_write(void *context, const char *text)
 {
 	size_t length = strlen(text);
 
@@ -95,8 +89,7 @@ static void write(void *context, const char *text)
 	web.length += length;
 }
 
-/* Starts anew; 0 if memory is short. */
-EXPORT("open") int web_open(uint32_t axes, uint32_t clock_hz)
+bool web_start(uint32_t axes, uint32_t clock_hz)
 {
 	const struct passo_engine_config config = {.core = {.channels = 1,
 						       .axes = (uint8_t)axes,
@@ -105,54 +98,13 @@ EXPORT("open") int web_open(uint32_t axes, uint32_t clock_hz)
 						       .ramp_queue_log2 = 4},
 	    .clock_hz = clock_hz,
 	    .spi_half_period = 2};
-	const struct passo_terminal_caller caller = {
-	    .transfer = transfer, .advance = advance, .irq = irq, .write = write};
 
-	if (web.terminal)
-		passo_terminal_destroy(web.terminal);
 	if (web.engine)
 		passo_engine_destroy(web.engine);
-	web.terminal = NULL;
 	web.count = web.length = 0;
 	web.clock_hz = clock_hz;
 	web.engine = passo_engine_create(&config);
-	if (web.engine)
-		web.terminal = passo_terminal_create(&caller, clock_hz);
-	return web.terminal != NULL;
-}
-
-/* Polls until the motions have ended, or with `room` until a move has room. */
-static int pass(bool room)
-{
-	unsigned stands = 0;
-
-	for (;;) {
-		const enum passo_terminal_status status = passo_terminal_poll(web.terminal);
-
-		if (room ? !passo_terminal_owes(web.terminal) : status == PASSO_TERMINAL_IDLE)
-			return 1;
-		stands = status == PASSO_TERMINAL_WAITS ? stands + 1 : 0;
-		if (stands == PATIENCE)
-			return 0;
-		advance(NULL, ROUND);
-	}
-}
-
-/* Executes the line in the buffer; 0: the motion stands. */
-EXPORT("type") int web_type(uint32_t length)
-{
-	passo_terminal_type(web.terminal, web.line, length);
-	return pass(true);
-}
-
-EXPORT("wait") int web_wait(void)
-{
-	return pass(false);
-}
-
-EXPORT("line") char *web_line(void)
-{
-	return web.line;
+	return web.engine != NULL;
 }
 
 EXPORT("text") char *web_text(void)

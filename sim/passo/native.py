@@ -33,6 +33,7 @@ HEADERS = (
     paths.driver / "passo_outputs.h",
     paths.driver / "passo_encoder.h",
     paths.grbl / "passo_player.h",
+    paths.grbl / "passo_program.h",
     paths.grbl / "passo_storage.h",
     paths.grbl / "passo_grbl_settings.h",
     paths.grbl / "passo_grbl.h",

@@ -14,9 +14,8 @@ from passo.failure import BadInputError
 from passo.gcode import NANOMETRES, Gcode, GcodeError
 from passo.machine_file import MachineFile
 from passo.native import planner
-from passo.path import LOOK_AHEAD, PathFeed
-from passo.path import Path as LinePath
-from passo.player import Player
+from passo.path import LOOK_AHEAD
+from passo.program import Program
 
 LOOPS_PER_SECOND = 1000  # polls of the driver
 SLEWS_PER_SECOND = 20  # of hold and stop, from full speed
@@ -104,28 +103,22 @@ def play_part(
         driver.configure_axis(axis, machine.pins)
     slew = machine.clock_hz // SLEWS_PER_SECOND
     driver.call("configure_motion", slew, slew, 1 << 16)
-    feed = PathFeed(driver, LinePath(machine.settings, engine.parameters, look_ahead))
-    player = Player(Gcode(machine.gcode), feed)
+    program = Program(driver, machine.settings, machine.gcode, look_ahead)
     events = [engine.drain()]
     waiting = iter(part.lines)
     last, quiet = -1, engine.clock
-    while True:
-        line = b""
-        while player.is_ready and line is not None:
+    while not program.is_done:
+        while program.is_ready:
             if (line := next(waiting, None)) is not None:
-                player.gcode.execute(line)
-                if player.poll() == "PAUSED":
-                    player.go_on()
+                program.line(line)
             else:
-                feed.path.end()
-        if player.poll() == "PAUSED":
-            player.go_on()
-        if line is None and player.is_idle:
-            break
+                program.end()
+            program.poll()
+        program.poll()
         engine.run(machine.clock_hz // LOOPS_PER_SECOND)
         events.append(engine.drain())
-        if player.chords != last:
-            last, quiet = player.chords, engine.clock
+        if program.chords != last:
+            last, quiet = program.chords, engine.clock
             progress(last)
         if engine.clock - quiet > PATIENCE * machine.clock_hz:
             raise BadInputError(f"{part.path}: the machine stands still")

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""`make web`: a page to type moves; console, planner and C model run in it as WebAssembly."""
+"""`make web`: a page to type moves or G-code; what plays them runs in it as WebAssembly."""
 
 import base64
 import gzip
 import importlib.util
+import json
 import sys
 import zlib
 from pathlib import Path
@@ -11,11 +12,16 @@ from pathlib import Path
 from passo import __version__
 from passo.build import engine_sources
 from passo.compiler import BuildError, cached, call, headers, includes, sources
+from passo.gcode import AXIS_LETTERS
+from passo.machine_file import MachineFile, read_machine
+from passo.native import planner
 from passo.report_page import SCRIPTS, page
 from passo.toolchain import paths, short
 
-FOLDERS = (paths.model, paths.protocol, paths.planner, paths.driver, paths.console)
-OWN = ("engine_model.c", "passo_terminal.c", "passo_web.c")
+FOLDERS = (paths.model, paths.protocol, paths.planner, paths.gcode, paths.driver, paths.console)
+GRBL = ("passo_player.c", "passo_program.c")  # of the folder: the rest is for a sender
+OWN = ("engine_model.c", "passo_terminal.c", "passo_web.c", "passo_web_console.c", "passo_web_program.c")
+EXAMPLE = paths.root / "examples" / "gcode"
 # The warnings are those of GCC, which compiles the same sources elsewhere: Clang has others.
 FLAGS = ("--target=wasm32-wasi", "-mexec-model=reactor", "-std=c11", "-O2", "-s")
 
@@ -24,13 +30,41 @@ def module() -> Path:
     """The WebAssembly module."""
     if importlib.util.find_spec("ziglang") is None:
         raise BuildError("the Python package 'ziglang' is missing: run 'tools/setup.sh web'")
-    files = [*sources(*FOLDERS), *engine_sources(), *(paths.engine / name for name in OWN)]
-    flags = [*FLAGS, *includes(*FOLDERS, paths.engine)]
+    grbl, own = (paths.grbl / name for name in GRBL), (paths.engine / name for name in OWN)
+    files = [*sources(*FOLDERS), *grbl, *engine_sources(), *own]
+    folders = (*FOLDERS, paths.grbl, paths.engine)
+    flags = [*FLAGS, *includes(*folders)]
 
     def make(folder: Path) -> None:
         call([sys.executable, "-m", "ziglang", "cc", *flags, *files, "-o", folder / "passo.wasm"])
 
-    return cached("web", [*files, *headers(*FOLDERS, paths.engine)], flags, make) / "passo.wasm"
+    return cached("web", [*files, *headers(*folders)], flags, make) / "passo.wasm"
+
+
+def numbers(machine: MachineFile) -> list[float]:
+    """The members of `struct web_machine` (sim/engine/passo_web_program.c)."""
+    settings, pins = machine.settings, machine.pins
+    profile = getattr(planner(), f"PASSO_PROFILE_{settings.profile.upper()}")
+    common = (settings.clock_hz, len(settings.axes), settings.junction_deviation)
+    pin_clocks = (pins.step_high, pins.step_low, pins.dir_setup, pins.dir_hold)
+    limits = [
+        limit
+        for axis in settings.axes
+        for limit in (axis.steps_per_mm, axis.speed, axis.acceleration, axis.jump)
+    ]
+    return [float(number) for number in (*common, machine.gcode.arc_tolerance, profile, *pin_clocks, *limits)]
+
+
+def facts() -> str:
+    """The machine for G-code and a program for it, as JSON."""
+    machine = read_machine(EXAMPLE / "machine.toml")
+    axes = [
+        {"name": name, "per_step": float(1 / axis.steps_per_mm), "speed": float(axis.speed)}
+        for name, axis in zip(AXIS_LETTERS, machine.settings.axes, strict=False)
+    ]
+    program = (EXAMPLE / "part.nc").read_text(encoding="ascii")
+    made = {"numbers": numbers(machine), "clock_hz": machine.clock_hz, "axes": axes, "program": program}
+    return json.dumps(made, separators=(",", ":")).replace("</", "<\\/")
 
 
 def build(folder: Path) -> Path:
@@ -38,6 +72,7 @@ def build(folder: Path) -> Path:
     packed = base64.b64encode(zlib.compress(module().read_bytes(), 9)).decode()
     body = (
         f'<script type="text/plain" id="wasm">{packed}</script>\n'
+        f'<script type="application/json" id="machine">{facts()}</script>\n'
         f"<script>document.body.dataset.version = '{__version__}'; openWeb();</script>"
     )
     folder.mkdir(parents=True, exist_ok=True)

@@ -4,6 +4,15 @@
 
 const BINS = 61;
 const PATH_POINTS = 20000;
+const SPEED_SAMPLES = 4000, SPEED_WINDOW = 0.004;  // seconds
+// From slow to fast, of even lightness in between, also for the colour-blind.
+const SPEED_COLORS = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
+
+function speedColor(share) {
+    const place = Math.min(0.9999, Math.max(0, share)) * (SPEED_COLORS.length - 1), n = Math.floor(place);
+    const mixed = SPEED_COLORS[n].map((value, i) => Math.round(value + (SPEED_COLORS[n + 1][i] - value) * (place - n)));
+    return `rgb(${mixed.join(",")})`;
+}
 
 class Histogram {
     constructor(parent, view, errors) {
@@ -106,6 +115,33 @@ class ToolPath {
         return { every, points: clocks.map(clock => axes.map(axis => axis.position(clock) * axis.per_step)) };
     }
 
+    // Places at even times, [across, up] each, and the speed there: mean over a window, in units per second.
+    sampled() {
+        const { motion, limits: [min, max] } = this.view, axes = [this.across, this.up].map(list => motion.axes[list.value]);
+        const count = SPEED_SAMPLES, step = (max - min) / (count - 1);
+        const width = Math.max(1, Math.round(SPEED_WINDOW * motion.hz / step / 2));
+        const points = Array.from({ length: count }, (_, i) => axes.map(axis => axis.position(min + i * step) * axis.per_step));
+        const speeds = points.map((_, i) => {
+            const [from, to] = [Math.max(0, i - width), Math.min(count - 1, i + width)];
+            return Math.hypot(points[to][0] - points[from][0], points[to][1] - points[from][1]) * motion.hz / (step * (to - from));
+        });
+        return { points, speeds, fastest: Math.max(...speeds) };
+    }
+
+    // A scale of the colours, with its ends.
+    drawScale(ctx, fastest, unit, right) {
+        const width = 90, left = right - width;
+        for (let i = 0; i < width; i++) {
+            ctx.fillStyle = speedColor(i / width);
+            ctx.fillRect(left + i, 6, 1.5, 7);
+        }
+        ctx.fillStyle = styleOf("--faint");
+        ctx.textAlign = "right";
+        ctx.fillText("0", left - 5, 13);
+        ctx.textAlign = "left";
+        ctx.fillText(`${plain(fastest, 3)} ${unit}/s`, right + 5, 13);
+    }
+
     update() {
         const canvas = this.canvas, ratio = devicePixelRatio, width = canvas.clientWidth, height = 280;
         [canvas.width, canvas.height] = [width * ratio, height * ratio];
@@ -116,7 +152,7 @@ class ToolPath {
         const range = n => whole.reduce(([low, high], point) => [Math.min(low, point[n]), Math.max(high, point[n])], [Infinity, -Infinity]);
         const [[left, right], [low, high]] = [range(0), range(1)];
         // The same scale both ways, so that a circle is round.
-        const edge = { left: 64, right: 16, top: 12, bottom: 40 };
+        const edge = { left: 64, right: 16, top: 24, bottom: 40 };
         const scale = Math.min((width - edge.left - edge.right) / (right - left || 1), (height - edge.top - edge.bottom) / (high - low || 1));
         const middle = [(width + edge.left - edge.right) / 2, (height + edge.top - edge.bottom) / 2];
         const x = value => middle[0] + (value - (left + right) / 2) * scale, y = value => middle[1] - (value - (low + high) / 2) * scale;
@@ -137,10 +173,18 @@ class ToolPath {
             for (const point of points) ctx.lineTo(x(point[0]), y(point[1]));
             ctx.stroke();
         };
-        draw(whole, part ? styleOf("--event") : colorOf(0), 1.5);
-        if (part) draw(part.points, colorOf(0), 2.5);
+        const sameUnit = unit(this.across.value) === unit(this.up.value);
+        this.speeds = null;
+        if (part || !sameUnit) {
+            draw(whole, part ? styleOf("--event") : colorOf(0), 1.5);
+            if (part) draw(part.points, colorOf(0), 2.5);
+        } else {
+            const { points, speeds, fastest } = this.speeds = this.sampled();
+            for (let i = 0; i + 1 < points.length; i++) draw(points.slice(i, i + 2), speedColor(speeds[i] / fastest), 2);
+            this.drawScale(ctx, fastest, unit(this.across.value), width - 90);
+        }
         const every = part?.every ?? 1;
-        this.note.textContent = every > 1 ? `every ${grouped(every)}th step drawn` : part ? "what is in view is drawn strong" : "";
+        this.note.textContent = every > 1 ? `every ${grouped(every)}th step drawn` : part ? "what is in view is drawn strong" : sameUnit ? "coloured by the speed along it" : "";
         const [first, last] = [whole[0], whole[whole.length - 1]];
         for (const [point, color] of [[first, styleOf("--good")], [last, styleOf("--bad")]]) {
             ctx.fillStyle = color;

@@ -3,6 +3,8 @@
 "use strict";
 
 const AXES = 4, CLOCKS = [16e6, 72e6, 100e6], LINE_MAX = 4000, ROW_BYTES = 24;
+const LINES = Array.from({ length: AXES }, (_, n) => ({ name: `${n}`, per_step: 1 }));
+const GCODE = "G-code", CONSOLE = "moves";
 const EXAMPLES = {
     "three axes": "move steps=6400,3840,-2560 profile=cosine total_time=0.4 ramp_time=0.2",
     "by speed": "move steps=20000 profile=linear start_speed=400 speed=50000 acceleration=500000 stop_speed=400",
@@ -32,6 +34,26 @@ class Machine {
         return new TextDecoder().decode(new Uint8Array(this.c.memory.buffer, this.c.text(), length));
     }
 
+    events() {
+        const view = new DataView(this.c.memory.buffer, this.c.rows(), this.c.count() * ROW_BYTES), events = [];
+        for (let place = 0; place < view.byteLength; place += ROW_BYTES) {
+            const word = n => view.getUint32(place + 8 + 4 * n, true);
+            events.push({ clock: view.getFloat64(place, true), step: word(0), dir: word(1), running: word(2) });
+        }
+        return events;
+    }
+
+    // Plays G-code on a machine after reset; returns what is wrong with it, and the events at the pins.
+    play(text, numbers) {
+        const bytes = new TextEncoder().encode(text), place = this.c.program(bytes.length);
+        if (!place) throw new Error("out of memory");
+        new Uint8Array(this.c.memory.buffer).set(bytes, place);
+        new Float64Array(this.c.memory.buffer, this.c.machine(), numbers.length).set(numbers);
+        const bad = this.c.play(), said = this.said();
+        const wrong = bad ? `error: ${bad > 0 ? `line ${bad}: ` : ""}${said}` : "";
+        return { text: wrong, events: wrong ? [] : this.events() };
+    }
+
     // Executes lines on a core after reset; returns what the console said, and the events at the pins.
     run(lines, axes, hz) {
         if (!this.c.open(axes, hz)) throw new Error("out of memory");
@@ -47,18 +69,13 @@ class Machine {
         }
         if (!this.c.wait()) text += "the motion stands: it is held, or waits for sync\n";
         text += this.said();
-        const view = new DataView(this.c.memory.buffer, this.c.rows(), this.c.count() * ROW_BYTES), events = [];
-        for (let place = 0; place < view.byteLength; place += ROW_BYTES) {
-            const word = n => view.getUint32(place + 8 + 4 * n, true);
-            events.push({ clock: view.getFloat64(place, true), step: word(0), dir: word(1), running: word(2) });
-        }
-        return { text, events };
+        return { text, events: this.events() };
     }
 }
 
-// What the charts need, from the events at the pins.
-function motionOf(events, axes, hz) {
-    const starts = events.findIndex(event => event.running);
+// What the charts need, from the events at the pins. `names` are the axes with their units per step.
+function motionOf(events, names, hz, unit) {
+    const axes = names.length, starts = events.findIndex(event => event.running);
     if (starts < 0) return null;
     const start = events[starts].clock, edges = Array.from({ length: axes }, () => [[], [], []]);
     const times = [], before = { step: 0, dir: 0, running: 0 };
@@ -77,8 +94,8 @@ function motionOf(events, axes, hz) {
     const facts = {
         clock_hz: hz, clocks, events: times, alpha_reset: 5, file: "", version: document.body.dataset.version,
         parameters: { channels: 1, axes, tick_log2: 7, line_queue_log2: 8, ramp_queue_log2: 4 },
-        runs: [{ channel: 0, start: 0, clocks, unit: "steps", plans: [], pins: null }],
-        axes: used.map(n => ({ run: 0, axis: n, name: `${n}`, per_step: 1 })),
+        runs: [{ channel: 0, start: 0, clocks, unit, plans: [], pins: null }],
+        axes: used.map(n => ({ run: 0, axis: n, ...names[n] })),
         summary: {
             name: "Try Passo", ok: true, problems: [], engine: "model", matched_edges: null, moves: [],
             axes: own.map(([rises]) => ({ pulses: rises.length })),
@@ -87,33 +104,58 @@ function motionOf(events, axes, hz) {
     return new Motion(facts, [own, []]);
 }
 
+function machineText({ axes, clock_hz, numbers }) {
+    const limits = axes.map(({ name, speed, per_step }) => `${name} ${plain(1 / per_step)} steps/mm, ${plain(speed)} mm/s`).join("; ");
+    return `On examples/gcode/machine.toml: ${limits}; junction deviation ${plain(numbers[2])} mm; ${clock_hz / 1e6} MHz.`;
+}
+
 async function openWeb() {
     chooseTheme();
     const main = document.querySelector("main"), form = element(main, "section", "panel");
     main.prepend(form);
-    element(form, "p", "hint", "Type moves as on the console of the board. The C model of the core, the planner and the console run in this page; every edge below left its pins.");
+    const facts = JSON.parse(document.getElementById("machine").textContent);
+    element(form, "p", "hint", "Type moves as on the console of the board, or G-code. The C model of the core, the planner and the firmware run in this page; every edge below left its pins.");
     const lines = element(form, "textarea", "lines");
     lines.rows = 4;
     lines.spellcheck = false;
     lines.value = EXAMPLES["three axes"];
-    const bar = element(form, "p", "bar"), clock = element(bar, "select");
+    const bar = element(form, "p", "bar"), language = element(bar, "select", "language"), clock = element(bar, "select");
+    for (const name of [CONSOLE, GCODE]) element(language, "option", "", name);
     for (const hz of CLOCKS) element(clock, "option", "", `${hz / 1e6} MHz`).value = hz;
-    const go = element(bar, "button", "go", "run");
-    for (const [name, text] of Object.entries(EXAMPLES)) {
+    const go = element(bar, "button", "go", "run"), machineLine = element(form, "p", "hint", machineText(facts));
+    language.onchange = () => {
+        clock.hidden = language.value === GCODE;
+        machineLine.hidden = !clock.hidden;
+        lines.rows = clock.hidden ? 12 : 4;
+    };
+    language.onchange();
+    const example = (name, text, kind) => {
         element(bar, "button", "", name).onclick = () => {
             lines.value = text;
+            language.value = kind;
+            language.onchange();
             go.click();
         };
-    }
+    };
+    for (const [name, text] of Object.entries(EXAMPLES)) example(name, text, CONSOLE);
+    example("a part in G-code", facts.program, GCODE);
     const answer = element(form, "pre", "answer");
     try {
         const machine = await Machine.load(document.getElementById("wasm").textContent);
+        const runLines = () => {
+            const hz = Number(clock.value), own = lines.value.split("\n").map(line => line.trim()).filter(Boolean);
+            const { text, events } = machine.run(own, AXES, hz);
+            return { text, motion: motionOf(events, LINES, hz, "steps") };
+        };
+        const playGcode = () => {
+            const { text, events } = machine.play(lines.value, facts.numbers);
+            return { text, motion: motionOf(events, facts.axes, facts.clock_hz, "mm") };
+        };
         go.onclick = () => {
             try {
-                const hz = Number(clock.value);
-                const { text, events } = machine.run(lines.value.split("\n").map(line => line.trim()).filter(Boolean), AXES, hz);
+                const { text, motion } = language.value === GCODE ? playGcode() : runLines();
                 answer.textContent = text;
-                const motion = motionOf(events, AXES, hz), wrong = text.split("\n").filter(line => line.startsWith("error"));
+                const wrong = text.split("\n").filter(line => line.startsWith("error"));
                 if (motion) showMotion(motion);
                 const verdict = document.getElementById("verdict");
                 verdict.textContent = wrong.length ? wrong.join("; ") : motion ? "done" : "nothing moved";

@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: MIT
+ * The console of the board on the web page: lines in. Time passes as in sim/passo/terminal.py.
+ */
+#include "passo_terminal.h"
+#include "passo_web.h"
+
+enum {
+	ROUND = 1000,  /* microseconds between two polls */
+	PATIENCE = 20, /* rounds that a motion may stand */
+	LINE = 4096,
+};
+
+static struct passo_terminal *terminal;
+static char line[LINE];
+
+/* Starts anew; 0 if memory is short. */
+EXPORT("open") int web_open(uint32_t axes, uint32_t clock_hz)
+{
+	const struct passo_terminal_caller caller = {
+	    .transfer = web_transfer, .advance = web_advance, .irq = web_irq, .write = web_write};
+
+	if (terminal)
+		passo_terminal_destroy(terminal);
+	terminal = NULL;
+	if (web_start(axes, clock_hz))
+		terminal = passo_terminal_create(&caller, clock_hz);
+	return terminal != NULL;
+}
+
+/* Polls until the motions have ended, or with `room` until a move has room. */
+static int pass(bool room)
+{
+	unsigned stands = 0;
+
+	for (;;) {
+		const enum passo_terminal_status status = passo_terminal_poll(terminal);
+
+		if (room ? !passo_terminal_owes(terminal) : status == PASSO_TERMINAL_IDLE)
+			return 1;
+		stands = status == PASSO_TERMINAL_WAITS ? stands + 1 : 0;
+		if (stands == PATIENCE)
+			return 0;
+		web_advance(NULL, ROUND);
+	}
+}
+
+/* Executes the line in the buffer; 0: the motion stands. */
+EXPORT("type") int web_type(uint32_t length)
+{
+	passo_terminal_type(terminal, line, length);
+	return pass(true);
+}
+
+EXPORT("wait") int web_wait(void)
+{
+	return pass(false);
+}
+
+EXPORT("line") char *web_line(void)
+{
+	return line;
+}

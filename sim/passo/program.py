@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: MIT
+"""Python binding of the player of whole programs (stm32_bridge/grbl/passo_program.h)."""
+
+from passo.driver import Driver, DriverError
+from passo.gcode import GcodeError, GcodeSettings
+from passo.native import ffi, planner
+from passo.path import LOOK_AHEAD, PathSettings
+
+
+class Program:
+    """A `struct passo_program` on a channel, whose axes are configured. Methods raise DriverError."""
+
+    def __init__(
+        self, driver: Driver, path: PathSettings, gcode: GcodeSettings, look_ahead: int = LOOK_AHEAD
+    ):
+        self.driver = driver
+        self._c = planner()
+        self.c = ffi().new("struct passo_program *")
+        self._items = ffi().new("struct passo_path_item[]", look_ahead)
+        settings = ffi().new("struct passo_program_settings *")
+        settings.path = path.struct(driver.engine.parameters)[0]
+        settings.gcode = gcode.struct()[0]
+        self._check("open", self._c.passo_program_open(self.c, driver.c, settings, self._items, look_ahead))
+
+    @property
+    def is_ready(self) -> bool:
+        """Whether another line can be taken."""
+        return self._c.passo_program_is_ready(self.c)
+
+    @property
+    def is_done(self) -> bool:
+        """Whether the program has ended, and all its motions with it."""
+        return self._c.passo_program_is_done(self.c)
+
+    @property
+    def chords(self) -> int:
+        """Lines and chords taken so far."""
+        return self.c.player.chords
+
+    def line(self, line: bytes) -> None:
+        """Execute a line, when ready; raises GcodeError."""
+        if number := self._c.passo_program_line(self.c, line, len(line)):
+            raise GcodeError(number)
+
+    def end(self) -> None:
+        """No line follows."""
+        self._c.passo_program_end(self.c)
+
+    def poll(self) -> None:
+        """Take what there is room for, and poll the driver."""
+        self._check("poll", self._c.passo_program_poll(self.c))
+
+    def _check(self, call: str, error: int) -> None:
+        self.driver.hardware.check()
+        if error != self._c.PASSO_OK:
+            raise DriverError(f"program_{call}", error)

@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: MIT
+ * Plays a program of G-code from its lines, without a sender: from a file, or a memory card.
+ *
+ *     passo_program_open(&program, &passo, &settings, items, 48); // passo: open, its axes configured
+ *     while (!passo_program_is_done(&program)) {
+ *             if (passo_program_is_ready(&program)) {
+ *                     if (there is a line)
+ *                             answer = passo_program_line(&program, text, length);
+ *                     else
+ *                             passo_program_end(&program);
+ *             }
+ *             error = passo_program_poll(&program); // instead of passo_poll()
+ *     }
+ * M0 does not wait. There are no limits of travel. No call waits.
+ */
+#ifndef PASSO_PROGRAM_H
+#define PASSO_PROGRAM_H
+
+#include "passo_player.h"
+
+struct passo_program_settings {
+	struct passo_path_settings path;
+	struct passo_gcode_settings gcode;
+};
+
+/* All members but player.chords are private. */
+struct passo_program {
+	struct passo_path_planner path;
+	struct passo_path_feed feed;
+	struct passo_gcode gcode;
+	struct passo_path_axis axis[PASSO_AXES_MAX];
+	struct passo_player_machine machine;
+	struct passo_player player;
+	bool ends; /* no line follows */
+};
+
+/* `items` and `capacity`: the look-ahead, see passo_path_open(). The settings are copied. Errors:
+ * PASSO_ERROR_PLAN + those of passo_path_open(). */
+enum passo_error passo_program_open(struct passo_program *program, struct passo *passo,
+    const struct passo_program_settings *settings, struct passo_path_item *items, uint32_t capacity);
+
+/* Whether another line can be taken. */
+bool passo_program_is_ready(const struct passo_program *program);
+
+/* Executes a line, without its line feed, when ready; an error changes nothing. */
+enum passo_gcode_error passo_program_line(struct passo_program *program, const char *text, size_t length);
+
+/* No line follows: the path ends with the last one. */
+void passo_program_end(struct passo_program *program);
+
+/* Takes what there is room for, and polls the driver. Errors: those of passo_player_poll(). */
+enum passo_error passo_program_poll(struct passo_program *program);
+
+/* Whether the program has ended, and all its motions with it. */
+bool passo_program_is_done(const struct passo_program *program);
+
+#endif
