@@ -50,14 +50,13 @@ static void read_settings(void)
 	    .path = {.machine = {.clock_hz = (uint32_t)machine->clock_hz, .tick_log2 = 7, .axes = axes},
 		.junction_deviation = q32(machine->junction_deviation),
 		.profile = (enum passo_profile)machine->profile},
-	    .gcode = {
-		.axes = axes, .arc_tolerance = (uint32_t)(machine->arc_tolerance * NANOMETRES + 0.5)}};
+	    .gcode = {.axes = axes, .arc_tolerance = (uint32_t)(machine->arc_tolerance * NANOMETRES + 0.5)}};
 	for (unsigned i = 0; i < axes; i++)
-		web.settings.path.axis[i] = (struct passo_path_axis){
-		    .steps_per_mm = q32(machine->axis[i].steps_per_mm),
-		    .speed = q32(machine->axis[i].speed),
-		    .acceleration = q32(machine->axis[i].acceleration),
-		    .jump = q32(machine->axis[i].jump)};
+		web.settings.path.axis[i] =
+		    (struct passo_path_axis){.steps_per_mm = q32(machine->axis[i].steps_per_mm),
+			.speed = q32(machine->axis[i].speed),
+			.acceleration = q32(machine->axis[i].acceleration),
+			.jump = q32(machine->axis[i].jump)};
 }
 
 /* The line that begins at `*at`, without its line feed; moves on. */
@@ -136,8 +135,7 @@ static enum passo_error open_driver(void)
 	if (error == PASSO_OK)
 		error = passo_configure_motion(&web.passo, slew, slew, 1 << 16);
 	if (error == PASSO_OK)
-		error = passo_program_open(
-		    &web.program, &web.passo, &web.settings, web.items, LOOK_AHEAD);
+		error = passo_program_open(&web.program, &web.passo, &web.settings, web.items, LOOK_AHEAD);
 	return error;
 }
 

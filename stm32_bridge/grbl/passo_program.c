@@ -6,8 +6,7 @@
 enum passo_error passo_program_open(struct passo_program *program, struct passo *passo,
     const struct passo_program_settings *settings, struct passo_path_item *items, uint32_t capacity)
 {
-	const enum passo_plan_error error =
-	    passo_path_open(&program->path, &settings->path, items, capacity);
+	const enum passo_plan_error error = passo_path_open(&program->path, &settings->path, items, capacity);
 
 	if (error != PASSO_PLAN_OK)
 		return PASSO_ERROR_PLAN + (enum passo_error)error;
