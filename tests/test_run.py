@@ -136,6 +136,20 @@ def test_many_moves_are_streamed(tmp_path: Path) -> None:
     assert run.problems() == []
 
 
+def test_ramps_come_before_a_short_one_ends(tmp_path: Path) -> None:
+    """A long ramp, then short ones: half of what the queue holds lasts longer than what is left of it."""
+    ends = "start_speed = {}\nstop_speed = {}\nspeed = {}\nacceleration = {}\n"
+    moves = (
+        "steps = [-13, 14]\nprofile = 'sigmoid'\n" + ends.format(17.7958, 279.755, 523.41, 94783),
+        "steps = [5, 1]\nprofile = 'sigmoid'\n" + ends.format(0, 0, 44.8389, 841.359),
+        "steps = [8, 8]\nmethod = 'jerk'\njerk = 32695400\n" + ends.format(0, 0, 310.56, 69411.1),
+        "steps = [14, 14]\nmethod = 'axes'\nstart_speed = 338.189\nspeed = 395.315\nramp_time = 0.0337847\n",
+    )
+    text = "clock_hz = 64_000_000\n" + "".join(f"[[move]]\n{move}" for move in moves)
+    arguments = ["run", str(write(tmp_path, text)), "--engine", "model", "--out", str(tmp_path / "out")]
+    assert cli.main(arguments) == 0
+
+
 @pytest.mark.parametrize("together", [True, False])
 def test_four_motors(tmp_path: Path, together: bool) -> None:
     """Channels on their own, on both engines: started on one clock, as seen at the pins, or one by one."""

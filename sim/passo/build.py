@@ -3,6 +3,7 @@
 
 import importlib.util
 from dataclasses import asdict, dataclass
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
@@ -73,6 +74,7 @@ def engine_sources() -> list[Path]:
     return [paths.engine / name for name in ("engine.c", "passo_rig.c", "rig_parts.c")]
 
 
+@cache
 def model_library() -> Path:
     """The C model engine, for any parameters."""
     folders = (paths.model, paths.protocol)

@@ -44,7 +44,16 @@ CHANNEL_KEYS = tuple(map(str, range(CHANNELS_MAX)))
 
 def read_moves(path: Path) -> MoveFile:
     """Read and check a move file of channel 0 only; raises MoveFileError."""
-    channels = read_channels(path)
+    return _alone(read_channels(path))
+
+
+def parse_moves(text: str, path: Path) -> MoveFile:
+    """The same of a text, which is or could be in a file."""
+    return _alone(_parse(text, path))
+
+
+def _alone(channels: Channels) -> MoveFile:
+    path = channels.path
     if channels.several:
         raise MoveFileError(f"{path}: it moves channel {channels.files[-1].channel}; here is only channel 0")
     if channels.setup:
@@ -56,11 +65,16 @@ def read_channels(path: Path) -> Channels:
     """Read and check a move file; raises MoveFileError."""
     try:
         text = path.read_text(encoding="utf-8-sig")
-        data = tomllib.loads(text, parse_float=Written)
     except OSError as error:
         raise MoveFileError(f"{path}: {error.strerror}") from None
     except UnicodeDecodeError:
         raise MoveFileError(f"{path}: this is not a text file in UTF-8") from None
+    return _parse(text, path)
+
+
+def _parse(text: str, path: Path) -> Channels:
+    try:
+        data = tomllib.loads(text, parse_float=Written)
     except RecursionError:
         raise MoveFileError(f"{path}: nested too deeply") from None
     except ArithmeticError:

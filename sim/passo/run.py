@@ -161,12 +161,11 @@ class _Channel:
                 raise
             self.moves = False  # the state shows the cause
 
-    def patience(self) -> int:
-        """Clocks until the queues should be refilled: half of their contents."""
+    def hungry(self) -> int:
+        """Clocks from the start of the motion until half of the queue of ramps is free."""
         parameters = self.driver.engine.parameters
-        waiting = (1 << parameters.ramp_queue_log2) - self.driver.c.snapshot.ramp_room
-        ticks = sum(self.source.ticks[-waiting:]) if waiting else 0
-        return max(1, ticks // 2) << parameters.tick_log2
+        kept = 1 << parameters.ramp_queue_log2 - 1
+        return sum(self.source.ticks[:-kept]) << parameters.tick_log2
 
 
 def execute(
@@ -221,9 +220,10 @@ def execute_channels(
             left = start + channel.planned - engine.clock
             if channel.moves and left < -channels.clock_hz:
                 raise RunError(f"the motion did not end in time: {channel.driver.state.name}")
-            left = max(left, 16 * tick)
+            if channel.moves and channel.driver.is_streaming:
+                left = min(left, start + channel.hungry() - engine.clock)
             if channel.moves:
-                times.append(min(left, channel.patience()) if channel.driver.is_streaming else left)
+                times.append(max(left, 16 * tick))
         advance(min(times))
 
     for channel in used:
