@@ -31,7 +31,7 @@ setup: ## Install the prerequisites; every other target calls it automatically.
 	@tools/setup.sh
 
 test: lint ## Check the sources, then run all tests.
-	@tools/setup.sh yosys formal firmware browser web
+	@tools/setup.sh yosys formal firmware browser web vhdl hdl
 	@$(BIN)/pytest -n auto --maxprocesses 8 --dist worksteal
 
 demo: setup ## Run the demonstration (a minute).

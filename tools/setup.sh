@@ -3,8 +3,8 @@
 #
 #     tools/setup.sh [SET...]
 # A SET is an optional set of Python packages in requirements-SET.txt (yosys, fpga, ...), installed last; or `firmware`:
-# Debian's compiler for the STM32; or `browser`: Debian's headless Chromium. Safe to run again at any time: it installs
-# only what is missing.
+# Debian's compiler for the STM32; or `browser`: Debian's headless Chromium; or `vhdl`: Debian's GHDL. Safe to run again at
+# any time: it installs only what is missing.
 # PYTHON selects the interpreter for the environment (default: python3).
 
 set -euo pipefail
@@ -42,6 +42,8 @@ for name in "$@"; do
         headers+=" newlib/newlib.h:libnewlib-arm-none-eabi"
     elif [ "$name" = browser ]; then
         tools+=" chromium-headless-shell:chromium-headless-shell"
+    elif [ "$name" = vhdl ]; then
+        tools+=" ghdl:ghdl"
     else
         python_sets+=("$name")
     fi
