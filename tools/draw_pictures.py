@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Draw docs/images: the idea of the core, and the wiring of each board (`make pictures`).
 
-The wiring is that of syn/BOARD/board.toml and of the table in docs/firmware.md; the idea shows a move that the
-C model has made. Each picture keeps a digest of what it shows, which a test compares with what there is.
+The wiring is that of syn/BOARD/board.toml and of the table in docs/firmware.md; the idea shows a move that
+the C model has made. Each picture keeps a digest of what it shows, which a test compares with what there
+is.
 """
 
 import hashlib
