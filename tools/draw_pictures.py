@@ -155,7 +155,10 @@ def _draw_words(ax: Axes, idea: Idea) -> None:
         transform=ax.transAxes,
     )
     lines = -(-len(words) // 3)
-    text = "A frame with the ramps and one with\nthe line, each with a CRC: executed\nexactly once, or refused as a whole."
+    text = (
+        "A frame with the ramps and one with\n"
+        "the line, each with a CRC:\nexecuted once, or refused as a whole."
+    )
     ax.text(
         0,
         0.94 - 0.05 * lines,
