@@ -7,6 +7,7 @@ The symbolic execution of the model is compared with the compiled model, on rand
 import ctypes
 import gc
 import random
+import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -49,6 +50,13 @@ def test_model_and_rtl_are_equal(coupling: Coupling) -> None:
 def test_planted_bug_is_seen(coupling: Coupling, number: int) -> None:
     result = run.catch_bug(coupling.name, number)
     assert result.good, f"{coupling.bugs[number].name}: {result.says}"
+
+
+def test_the_page_lists_every_module() -> None:
+    page = run.PAGE.read_text(encoding="utf-8")
+    for coupling in COUPLINGS:
+        row = re.search(rf"^\| `{coupling.top}` \|.* (\d+) \|$", page, re.M)
+        assert row and int(row[1]) == len(coupling.bugs), f"{coupling.name}: run 'make equal'"
 
 
 def test_every_module_has_bugs_on_both_sides() -> None:

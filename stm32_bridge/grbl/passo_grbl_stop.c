@@ -108,6 +108,7 @@ bool passo_grbl_end_stop(struct passo_grbl *grbl)
 	grbl->homes = false;
 	if (!grbl->greets)
 		return true;
+	drop_input(grbl); /* what came before the greeting */
 	passo_gcode_reset(grbl->player->gcode);
 	grbl->checks = grbl->greets = grbl->door = false;
 	grbl->feed = grbl->rapid = grbl->spindle = PERCENT_FULL;

@@ -69,14 +69,14 @@ def show(report: dict[str, Any]) -> None:
         screen.print(shown)
 
 
-def write_block(page: Path, block: str) -> None:
-    """Replace what a page has between the marks."""
+def write_block(page: Path, block: str, begin: str = BEGIN) -> None:
+    """Replace what a page has between the marks; `begin` is the first one."""
     text = page.read_text(encoding="utf-8")
-    before, _, rest = text.partition(BEGIN)
+    before, _, rest = text.partition(begin)
     _, _, after = rest.partition(END)
     if not rest or END not in rest:
-        raise ValueError(f"{page.name} lacks the marks '{BEGIN}' and '{END}'")
-    page.write_text(f"{before}{BEGIN}\n{block}\n{END}{after}", encoding="utf-8")
+        raise ValueError(f"{page.name} lacks the marks '{begin}' and '{END}'")
+    page.write_text(f"{before}{begin}\n{block}\n{END}{after}", encoding="utf-8")
 
 
 def markdown(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
