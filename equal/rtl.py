@@ -11,7 +11,7 @@ import z3
 from passo.failure import Failure
 from passo.toolchain import environment
 
-MEMORY = Path(__file__).resolve().parent / "memory" / "passo_memory.v"
+MEMORIES = Path(__file__).resolve().parent / "memory"
 
 
 @dataclass(frozen=True)
@@ -20,7 +20,7 @@ class Rtl:
 
     ``before`` and ``after`` are the values in the clock, and in the clock after it; registers in submodules
     have the name ``instance.register``. The address of a memory that keeps its word, ``instance.probe``, is
-    an input (memory/passo_memory.v). ``relation`` are the equations between them.
+    an input (memory/). ``relation`` are the equations between them.
     """
 
     inputs: dict[str, int]
@@ -31,11 +31,11 @@ class Rtl:
     relation: list[z3.BoolRef] = field(repr=False)
 
 
-def _smt2(top: str, folder: Path, parameters: Mapping[str, int]) -> str:
+def _smt2(top: str, folder: Path, parameters: Mapping[str, int], memory: str) -> str:
     """The module as SMT-LIB text; folder has the sources."""
     chosen = " ".join(f"-chparam {name} {value}" for name, value in parameters.items())
     script = (
-        f"read_verilog -formal {MEMORY}; read_verilog -I. {top}.v; hierarchy -libdir . -top {top} {chosen};"
+        f"read_verilog -formal {MEMORIES / memory}; read_verilog -I. {top}.v; hierarchy -libdir . -top {top} {chosen};"
         f" rename -top {top}; proc; flatten; opt_clean; memory -nomap;"
         " async2sync; dffunmap; opt_clean; write_smt2 -wires -"
     )
@@ -51,7 +51,13 @@ def _listed(text: str, kind: str) -> dict[str, int]:
     return {name: int(width) for name, width in found}
 
 
-def read_rtl(top: str, folder: Path, parameters: Mapping[str, int], at_once: tuple[str, ...] = ()) -> Rtl:
+def read_rtl(
+    top: str,
+    folder: Path,
+    parameters: Mapping[str, int],
+    at_once: tuple[str, ...] = (),
+    memory: str = "passo_memory.v",
+) -> Rtl:
     """Read a module with its submodules.
 
     Args:
@@ -60,11 +66,12 @@ def read_rtl(top: str, folder: Path, parameters: Mapping[str, int], at_once: tup
         parameters: Of the module.
         at_once: The registers with an asynchronous reset. Their values are those that the inputs of the same
             moment give them, and so is what is said of them.
+        memory: What stands for rtl/passo_memory.v: a file of memory/.
 
     Raises:
         Failure: yosys finds an error, or other registers have an asynchronous reset.
     """
-    text = _smt2(top, folder, parameters)
+    text = _smt2(top, folder, parameters, memory)
     inputs, outputs, registers = (_listed(text, kind) for kind in ("input", "output", "register"))
     inputs |= {name: width for name, width in _listed(text, "wire").items() if name.endswith(".probe")}
     hidden = [registers.pop(name) for name in list(registers) if name.startswith("$auto$async2sync")]
