@@ -4,7 +4,8 @@
     .venv/bin/python -m equal.run [module ...]
 
 A module is a file couplings/MODULE.toml. Its planted bugs, one line of the RTL or of the model replaced in a
-copy, must each give a counterexample. All work is done in build/equal; build/equal.json has the figures.
+copy, must each give a counterexample. All work is done in build/equal; build/equal.json has the figures. If all
+modules are proved the table of docs/equality.md is written.
 """
 
 import argparse
@@ -21,6 +22,7 @@ from passo.console import console, table
 from passo.failure import Failure
 from passo.toolchain import paths
 
+from equal import page
 from equal.coupling import HERE, Coupling, couplings, read_coupling
 from equal.prove import prove
 from equal.share import share_of_registers
@@ -129,10 +131,14 @@ def main() -> None:
         f" ({100 * proved / all_bits:.0f} %); {seconds:.0f} s in all.",
         highlight=False,
     )
-    report = {"results": [asdict(result) for result in results], "proved_bits": proved, "bits": all_bits}
+    good = all(result.good for result in results)
+    found = [asdict(result) for result in results]
+    report = {"results": found, "proved_bits": proved, "bits": all_bits, "seconds": seconds}
     BUILD.mkdir(parents=True, exist_ok=True)
-    (paths.build / "equal.json").write_text(json.dumps(report | {"seconds": seconds}, indent=1) + "\n")
-    sys.exit(not all(result.good for result in results))
+    (paths.build / "equal.json").write_text(json.dumps(report, indent=1) + "\n")
+    if good and chosen == known:
+        page.write(chosen, report)
+    sys.exit(not good)
 
 
 if __name__ == "__main__":
