@@ -30,10 +30,11 @@ def write(chosen: Iterable[Coupling], report: Mapping[str, Any]) -> None:
 
 def _share(report: Mapping[str, Any]) -> str:
     proved, bits, seconds = report["proved_bits"], report["bits"], report["seconds"]
+    modules = len({result["module"] for result in report["results"]})
     return (
-        f"{len({result['module'] for result in report['results']})} modules, with {proved:,} of the {bits:,} bits"
-        f" ({100 * proved / bits:.0f} %) of the registers of a core of 4 axes with all parts (block RAMs are not"
-        f" counted).\nAll proofs and planted bugs took {seconds / 60:.0f} minutes on two cores."
+        f"{modules} modules, with {proved:,} of the {bits:,} bits ({100 * proved / bits:.0f} %)"
+        " of the registers of a core of 4 axes\nwith all parts (block RAMs are not counted)."
+        f" All proofs and planted bugs took {seconds / 60:.0f} minutes on two cores."
     )
 
 

@@ -56,7 +56,8 @@ def _smt2(top: str, folder: Path, parameters: Mapping[str, int], memory: str, cu
     cuts = "".join(f" cutpoint =*{module}*; setattr -set keep 1 =*{module}*/w:*;" for module in cut)
     chosen = " ".join(f"-chparam {name} {value}" for name, value in parameters.items())
     script = (
-        f"read_verilog -formal {MEMORIES / memory}; read_verilog -I. {top}.v; hierarchy -libdir . -top {top} {chosen};"
+        f"read_verilog -formal {MEMORIES / memory}; read_verilog -I. {top}.v;"
+        f" hierarchy -libdir . -top {top} {chosen};"
         f" rename -top {top}; proc;{cuts} flatten; opt_clean; memory -nomap;"
         " async2sync; dffunmap; opt_clean; write_smt2 -wires -"
     )
