@@ -181,10 +181,6 @@ class Expressions:
         return read(places)
 
     def _value_structref(self, node: c_ast.StructRef) -> Value:
-        if node.type == "." and isinstance(node.name, c_ast.FuncCall):
-            whole = self.value(node.name)
-            assert isinstance(whole.type, Struct)
-            return Value(whole.type.fields[node.field.name], whole.bits[node.field.name])
         return self._loaded(self.places(node))
 
     def _value_arrayref(self, node: c_ast.ArrayRef) -> Value:
@@ -296,7 +292,7 @@ class Expressions:
         if isinstance(node, c_ast.ID):
             cell = self.cell(node.name)
             return [(True, Place(cell, (), cell.type))]
-        if isinstance(node, c_ast.CompoundLiteral):
+        if isinstance(node, c_ast.CompoundLiteral | c_ast.FuncCall):
             made = self.value(node)
             return [(True, Place(Cell(made.type, made.bits), (), made.type))]
         if isinstance(node, c_ast.StructRef):

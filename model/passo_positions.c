@@ -32,8 +32,9 @@ void passo_positions_clock(struct passo_positions *positions, const uint32_t val
 	positions->clear_waits = positions->clear_waits || zero;
 	positions->snapshot_waits = positions->snapshot_waits || snapshot;
 	positions->latch_waits = positions->latch_waits || latch;
-	for (unsigned i = 0; i < PASSO_AXES_MAX && latch; i++)
-		positions->latched[i] = values[i];
+	if (latch)
+		for (unsigned i = 0; i < PASSO_AXES_MAX; i++)
+			positions->latched[i] = values[i];
 	if (zero)
 		for (unsigned i = 0; i < PASSO_AXES_MAX; i++)
 			positions->latched[i] = 0;

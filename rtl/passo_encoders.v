@@ -205,8 +205,8 @@ module passo_encoders #(
     .lost      (lost)
   );
 
-  // Counts are steps to it, at most 64 in a round. It latches when the positions of the axes do, so that its copies are
-  // always of the same clock as theirs.
+  // Counts are steps to it. It latches when the positions of the axes do, so that its copies are always of the same
+  // clock as theirs.
   passo_positions #(
     .AXES (AXES),
     .LATCH(LATCH)

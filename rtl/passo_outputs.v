@@ -106,6 +106,7 @@ module passo_outputs #(
       outputs      <= 8'd0;
       outputs_now  <= 8'd0;
       power_now    <= 16'd0;
+      proportional <= 1'b0;
       lit          <= 1'b0;
       overflow     <= 1'b0;
       raster_empty <= 1'b0;

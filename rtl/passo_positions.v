@@ -13,9 +13,10 @@
 //
 // `latch` captures all counters at once. The next round, or the one after it if positions are being zeroed, takes them
 // instead of the present ones and copies the positions as they were on the clock of `latch`, complete 130 clocks later
-// (194 with a zero); zeroed meanwhile, they are 0. The round after it covers at most 127 clocks, in which an axis makes
-// at most 64 steps: the direction of a wrap is still certain.
-// An axis makes at most 36 steps in a round, so the direction of a wrap is never in doubt.
+// (194 with a zero); zeroed meanwhile, they are 0. The round after it covers at most 127 clocks.
+//
+// Needs no more than n / 2 + 4 steps of an axis in n clocks: so no more than 67 from one update of a position to the
+// next. The upper three bits of a byte tell the direction of a wrap for up to 96.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -115,8 +116,8 @@ module passo_positions #(
     byte_is_first <= half[7:0] == 8'd0;
     byte_is_last  <= half[7:0] == 8'd255;
     if (phase == 2'd2 && !upper) begin
-      up   <= half[15:14] == 2'b11 && low_byte[7:6] == 2'b00;
-      down <= half[15:14] == 2'b00 && low_byte[7];
+      up   <= half[15] && !low_byte[7] && half[14:13] >= low_byte[6:5];
+      down <= !half[15] && low_byte[7] && half[14:13] <= low_byte[6:5];
     end
     if (phase == 2'd3) begin
       half_next <= upper ? sum : {low_byte, sum[7:0]};

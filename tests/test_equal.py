@@ -9,13 +9,14 @@ import gc
 import random
 import re
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
 from passo import compiler
 from passo.toolchain import paths
 
-from equal import run
+from equal import page, run
 from equal.c_types import BOOL, Integer
 from equal.coupling import Coupling, couplings
 from equal.prove import CLOCK, Model, harness
@@ -64,6 +65,22 @@ def test_every_module_has_bugs_on_both_sides() -> None:
         files = [bug.file for bug in coupling.bugs]
         for side in ("rtl/", "model/"):
             assert sum(file.startswith(side) for file in files) >= 2, f"{coupling.name}: {side}"
+
+
+def test_page_has_every_module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    text = page.PAGE.read_text(encoding="utf-8")
+    listed = re.findall(r"^\| (\w+) \| `\w+` \|", text, re.M)
+    assert listed == [coupling.name for coupling in COUPLINGS]
+    copy = tmp_path / "page.md"
+    copy.write_text(text, encoding="utf-8")
+    monkeypatch.setattr(page, "PAGE", copy)
+    proof = {"module": "dda", "what": "proof", "good": True, "goals": 7, "bits": 9, "seconds": 1.6}
+    bug = {"module": "dda", "what": "a bug", "good": True}
+    report = {"results": [proof, bug], "proved_bits": 9, "bits": 18, "seconds": 60}
+    page.write([coupling for coupling in COUPLINGS if coupling.name == "dda"], report)
+    written = copy.read_text(encoding="utf-8")
+    assert re.search(r"^\| dda \| `passo_dda` \| .* \| 7 \| 9 \| 2 \| 1 of \d+ \|$", written, re.M)
+    assert "9 of the 18 bits (50 %)" in written and "| axis |" not in written
 
 
 def compiled(coupling: Coupling, names: list[str]) -> ctypes.CDLL:

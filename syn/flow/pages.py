@@ -69,14 +69,18 @@ def show(report: dict[str, Any]) -> None:
         screen.print(shown)
 
 
-def write_block(page: Path, block: str, begin: str = BEGIN) -> None:
-    """Replace what a page has between the marks; `begin` is the first one."""
+def write_block(page: Path, block: str, begin: str = BEGIN, end: str = END) -> None:
+    """Replace what a page has between the marks.
+
+    Raises:
+        ValueError: The page lacks them.
+    """
     text = page.read_text(encoding="utf-8")
     before, _, rest = text.partition(begin)
-    _, _, after = rest.partition(END)
-    if not rest or END not in rest:
-        raise ValueError(f"{page.name} lacks the marks '{begin}' and '{END}'")
-    page.write_text(f"{before}{begin}\n{block}\n{END}{after}", encoding="utf-8")
+    _, _, after = rest.partition(end)
+    if not rest or end not in rest:
+        raise ValueError(f"{page.name} lacks the marks '{begin}' and '{end}'")
+    page.write_text(f"{before}{begin}\n{block}\n{end}{after}", encoding="utf-8")
 
 
 def markdown(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
