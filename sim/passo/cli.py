@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 
-from passo import __version__
+from passo import __version__, campaign_options
 from passo.failure import BadInputError, Failure
 
 ENGINES = ("both", "rtl", "model")
@@ -115,6 +115,7 @@ def _parser() -> argparse.ArgumentParser:
     rtl = commands.add_parser("rtl", help="name the Verilog sources of the core, for makefiles")
     rtl.set_defaults(command=_rtl)
     rtl.add_argument("--folder", action="store_true", help="only their folder, which is the include path")
+    campaign_options.add(commands).set_defaults(command=_campaign)
     demo = commands.add_parser("demo", help="run the moves in examples/; pictures in build/demo/")
     demo.set_defaults(command=_demo)
     bench = commands.add_parser("bench", help="measure the speed of the engines")
@@ -259,6 +260,12 @@ def _rtl(options: argparse.Namespace) -> int:
 
     print(*([paths.rtl] if options.folder else rtl_sources()), sep="\n")
     return OK
+
+
+def _campaign(options: argparse.Namespace) -> int:
+    from passo.campaign_command import campaign_of, run_campaign
+
+    return OK if run_campaign(*campaign_of(options)) else FAILED
 
 
 def _demo(options: argparse.Namespace) -> int:
