@@ -17,7 +17,7 @@ from unittest import mock
 
 import numpy as np
 import pytest
-from passo import campaign_play, cli
+from passo import campaign, campaign_play, cli
 from passo.campaign import Campaign, carry_out, local_cluster
 from passo.campaign_command import Where, run_campaign
 from passo.campaign_forms import FORMS
@@ -75,7 +75,7 @@ BACK_AND_FORTH = Case(
         "clock_hz": 16_000_000,
         "pins": {"step_high": "9clocks", "step_low": "7clocks", "dir_setup": "30clocks", "dir_hold": "20clocks"},
         "move": [
-            {"steps": [n, 50], "profile": "cosine", "total_time": 0.003, "ramp_time": 0.001} for n in (100, -80)
+            {"steps": [n], "profile": "cosine", "total_time": 0.003, "ramp_time": 0.001} for n in (90, -90)
         ],
     },
 )
@@ -85,14 +85,14 @@ def shift(run: Run, edge: int, number: int, clocks: int) -> None:
     """Move a rising (1) or falling (-1) edge of axis 0."""
     level = np.concatenate([[0], run.pins["step"] & 1]).astype(int)
     row = np.flatnonzero(np.diff(level) == edge)[number]
-    run.pins["clock"][row] += np.uint64(clocks)
+    run.pins["clock"][row] = int(run.pins["clock"][row]) + clocks
 
 
-def turn_to(run: Run, clocks: int, after: int) -> None:
-    """Change DIR of axis 0 at its second line so many clocks after the step `after`."""
-    rise = run.steps(0)[0][after] + run.start
-    late = run.pins["clock"] >= rise + clocks
-    run.pins["dir"] = run.pins["dir"] & 0xFE | late
+def turn(run: Run, clocks: int) -> None:
+    """Change DIR so many clocks after the last step forward has begun, or that many before the first one back."""
+    (row,) = np.flatnonzero(np.diff(run.pins["dir"] & 1)) + 1
+    begun = run.steps(0)[0] + run.start
+    run.pins["clock"][row] = begun[89] + clocks if clocks > 0 else begun[90] + clocks
 
 
 def drop(run: Run, number: int) -> None:
@@ -110,13 +110,13 @@ def later(run: Run, clocks: int) -> None:
 
 WRONG: dict[str, tuple[str, Callable[[Run], None]]] = {
     "count": ("count", lambda run: drop(run, 50)),
-    "position": ("position", lambda run: run.positions.__setitem__(1, 99)),
+    "position": ("position", lambda run: run.positions.__setitem__(0, 99)),
     "clocks": ("clocks", lambda run: setattr(run, "total_clocks", run.total_clocks + 1)),
     "high": ("high", lambda run: shift(run, -1, 50, 1)),
     "high, short": ("high", lambda run: shift(run, -1, 50, -1)),
-    "setup": ("setup", lambda run: turn_to(run, int(run.steps(0)[0][100] - run.steps(0)[0][99]) - 29, 99)),
-    "hold": ("hold", lambda run: turn_to(run, 9 + 7 + 19, 99)),
-    "direction": ("direction", lambda run: run.pins.__setitem__("dir", 1)),
+    "setup": ("setup", lambda run: turn(run, -29)),
+    "hold": ("hold", lambda run: turn(run, 9 + 7 + 19)),
+    "direction": ("direction", lambda run: run.pins.__setitem__("dir", run.pins["dir"] ^ 1)),
     "late": ("curve", lambda run: later(run, 200)),
     "early": ("curve", lambda run: later(run, -200)),
 }
@@ -131,7 +131,7 @@ def tampered(fault: Callable[[Run], None], *arguments: Any) -> list[Run]:
 
 def test_a_good_motion_is_accepted() -> None:
     outcome = play(BACK_AND_FORTH, "model")
-    assert outcome.fault is None and outcome.counts["steps"] == 280
+    assert outcome.fault is None and outcome.counts["steps"] == 180
 
 
 @pytest.mark.parametrize("name", WRONG)
@@ -303,15 +303,17 @@ def test_bad_input(
 ) -> None:
     """One line, and nothing is written."""
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(campaign, "PATIENCE", 1)
     assert cli.main(["campaign", "--seed", "1", "--json", "x/campaign.json", *arguments]) == 2
     said = capsys.readouterr()
     assert reason in said.err and said.err.count("\n") == 1 and not said.out
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_scheduler_without_workers(tmp_path: Path) -> None:
+def test_a_scheduler_without_workers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from distributed import LocalCluster
 
+    monkeypatch.setattr(campaign, "PATIENCE", 1)
     with LocalCluster(n_workers=0, dashboard_address=":0") as empty, pytest.raises(BadInputError) as error:
         run_campaign(Campaign(5, 1), Where(scheduler=empty.scheduler_address, json=tmp_path / "x.json"))
     assert "the cluster has no workers" in str(error.value)

@@ -180,7 +180,7 @@ def carry_out(campaign: Campaign, client: Any, tell: Callable[[Result], None] = 
 
     places: dict[str, tuple[int, int]] = {}
     left = IN_FLIGHT * workers
-    done = as_completed([submit(*one) for one in islice(waiting, left)])
+    done = as_completed([submit(*one) for one in islice(waiting, left)], loop=client.loop)
     for future in done:
         first, count = places.pop(future.key)
         try:
