@@ -109,7 +109,7 @@ class FormDraw:
 
 def _in_time(draw: FormDraw) -> Data:
     shape = draw.shape()
-    total = draw.flat + draw.ramp
+    total = draw.flat + draw.ramp * (2 if shape["profile"] == "user" else 1)  # a ramp may cover next to nothing
     ramp = min(draw.ramp, total // 2 - 2)
     if draw.bank.kind != "shaped" and draw.rng.random() < 0.2:
         ramp = 0

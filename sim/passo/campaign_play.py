@@ -12,7 +12,7 @@ from passo.campaign_refusals import acceptance_fault, refusal_fault
 from passo.engine import DifferenceError
 from passo.move_file import read_channels
 from passo.moves import Channels, MoveFileError
-from passo.plan import plan_channels
+from passo.plan import PlanError, plan_channels
 from passo.pulse_judge import Fault, faults
 from passo.run import Run, execute_channels, open_engine, parameters_of
 
@@ -52,7 +52,8 @@ def play_file(path: Path, engine: str) -> Outcome:
         parameters = parameters_of(channels)
         plans = plan_channels(channels, parameters)
     except MoveFileError as error:
-        return Outcome(str(error.__context__ or error), fault=refusal_fault(error, channels))
+        reason = error.__context__ if isinstance(error.__context__, PlanError) else f"FILE: {error}"
+        return Outcome(str(reason), fault=refusal_fault(error, channels))
     if fault := acceptance_fault(channels):
         return Outcome(fault=fault)
     clocks = max(sum(plan.clocks for plan in own) for own in plans)

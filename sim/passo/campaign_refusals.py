@@ -9,6 +9,7 @@ from passo.move_forms import ALPHA_MAX, ALPHA_MIN, SHAPED
 from passo.moves import Channels, Move, MoveFileError
 from passo.plan import PlanError
 from passo.pulse_judge import Fault
+from passo.shape import ONE
 
 TICK = 128
 ALMOST = Fraction(9, 10)  # rounding to ticks may take a move over a limit
@@ -46,6 +47,8 @@ def _fastest(move: Move, clock_hz: int) -> Fraction:
     tick = Fraction(TICK, clock_hz)
     if hasattr(move, "total_time"):
         ramp = getattr(move, "ramp_time", move.total_time / 2)
+        if table := getattr(move, "table", ()):
+            ramp *= 2 * (1 - Fraction(sum(table), len(table) * ONE))
         return _longest(move) / max(move.total_time - ramp - 2 * tick, tick / 2)
     if hasattr(move, "rpm"):
         return move.rpm * move.steps_per_turn / 60
