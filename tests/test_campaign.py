@@ -17,7 +17,7 @@ from unittest import mock
 
 import numpy as np
 import pytest
-from passo import campaign, campaign_play, cli
+from passo import campaign, campaign_play, cli, run_command
 from passo.campaign import Campaign, carry_out, local_cluster
 from passo.campaign_command import Where, run_campaign
 from passo.campaign_forms import FORMS
@@ -142,6 +142,18 @@ def test_the_judge_sees(name: str) -> None:
     assert found and found.kind == kind, found
 
 
+def test_passo_run_has_the_same_judge(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    """So a file of a campaign fails there, too."""
+    path, out = BACK_AND_FORTH.write(tmp_path), tmp_path / "out"
+    command = ["run", str(path), "--engine", "model", "--out", str(out)]
+    assert cli.main(command) == 0
+    with mock.patch.object(run_command, "execute_channels", partial(tampered, WRONG["high"][1])):
+        assert cli.main(command) == 1
+    text = "axis 0, step 50: STEP is high for 10 clocks"
+    assert text in capsys.readouterr().err
+    assert json.loads((out / "summary.json").read_text())["problems"] == [text]
+
+
 def test_the_judge_sees_a_short_low_time() -> None:
     data = {**BACK_AND_FORTH.data, "move": [{"steps": [400], "profile": "linear", "total_time": 0.0008, "ramp_time": 0.0001}]}
     case = replace(BACK_AND_FORTH, data=data)
@@ -205,14 +217,14 @@ def wrong_engine(case: Case, engine: str) -> Outcome:
 def test_a_failure_is_found_and_shrunk(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
     """The file that is left fails again, alone, and is small; an engine that is right accepts it."""
     out = tmp_path / "out"
-    where = Where(jobs=2, out=out, json=tmp_path / "campaign.json")
+    where = Where(jobs=3, out=out, json=tmp_path / "campaign.json")
     assert not run_campaign(Campaign(12, SEED, player=wrong_engine), where)
     said = capsys.readouterr().out
     summary = json.loads(where.json.read_text())
     numbers = [failure["number"] for failure in summary["failures"]]
     expected = [n for n in range(12) if wrong_engine(draw(SEED, n), "model").fault]
     assert numbers == expected and 0 < len(numbers) < 10
-    assert summary["moves"] == 12
+    assert (summary["moves"], summary["workers"]) == (12, 3)
     for number in numbers:
         path = out / f"campaign-{SEED}-{number}.toml"
         assert f"passo run {path} --engine model" in said
@@ -269,6 +281,15 @@ def test_a_case_that_ends_its_process_is_a_failure(client: Any) -> None:
     result = carry_out(Campaign(16, SEED, player=deadly), client)
     assert result.moves == 16
     assert {number: fault.kind for number, fault in result.faults.items()} == {3: "crash"}
+
+
+def test_help_is_fast() -> None:
+    """The command imports Dask and numpy only where it needs them."""
+    code = "import sys, passo.cli; print({'dask', 'distributed', 'numpy', 'rich'} & sys.modules.keys())"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert done.stdout == "set()\n"
+    done = subprocess.run([PROGRAM, "--help"], capture_output=True, text=True, timeout=60)
+    assert "campaign" in done.stdout
 
 
 def test_a_running_cluster(client: Any, tmp_path: Path) -> None:

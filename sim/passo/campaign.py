@@ -93,7 +93,9 @@ def local_cluster(jobs: int) -> Iterator[Any]:
     with (
         quiet(),
         dask.config.set({"distributed.scheduler.allowed-failures": DEATHS}),
-        LocalCluster(jobs, threads_per_worker=1, processes=True, memory_limit=0, dashboard_address=":0") as cluster,
+        LocalCluster(
+            n_workers=jobs, threads_per_worker=1, processes=True, memory_limit=0, dashboard_address=":0"
+        ) as cluster,
         Client(cluster) as client,
     ):
         client.wait_for_workers(jobs)
