@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`passo campaign`: repeatable random moves, a judge that sees faults, small files of what fails, and clusters."""
+"""`passo campaign`: repeatable random moves, a judge that sees faults, small files of failures, clusters."""
 
 import json
 import os
@@ -73,7 +73,12 @@ BACK_AND_FORTH = Case(
     0,
     {
         "clock_hz": 16_000_000,
-        "pins": {"step_high": "9clocks", "step_low": "7clocks", "dir_setup": "30clocks", "dir_hold": "20clocks"},
+        "pins": {
+            "step_high": "9clocks",
+            "step_low": "7clocks",
+            "dir_setup": "30clocks",
+            "dir_hold": "20clocks",
+        },
         "move": [
             {"steps": [n], "profile": "cosine", "total_time": 0.003, "ramp_time": 0.001} for n in (90, -90)
         ],
@@ -89,7 +94,7 @@ def shift(run: Run, edge: int, number: int, clocks: int) -> None:
 
 
 def turn(run: Run, clocks: int) -> None:
-    """Change DIR so many clocks after the last step forward has begun, or that many before the first one back."""
+    """Change DIR so many clocks after the last step forward, or that many before the first one back."""
     (row,) = np.flatnonzero(np.diff(run.pins["dir"] & 1)) + 1
     begun = run.steps(0)[0] + run.start
     run.pins["clock"][row] = begun[89] + clocks if clocks > 0 else begun[90] + clocks
@@ -155,8 +160,8 @@ def test_passo_run_has_the_same_judge(tmp_path: Path, capsys: pytest.CaptureFixt
 
 
 def test_the_judge_sees_a_short_low_time() -> None:
-    data = {**BACK_AND_FORTH.data, "move": [{"steps": [400], "profile": "linear", "total_time": 0.0008, "ramp_time": 0.0001}]}
-    case = replace(BACK_AND_FORTH, data=data)
+    move = {"steps": [400], "profile": "linear", "total_time": 0.0008, "ramp_time": 0.0001}
+    case = replace(BACK_AND_FORTH, data={**BACK_AND_FORTH.data, "move": [move]})
     assert play(case, "model").fault is None
 
     def lower(run: Run) -> None:
@@ -320,7 +325,11 @@ def test_a_running_cluster(client: Any, tmp_path: Path) -> None:
     ],
 )
 def test_bad_input(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, arguments: list, reason: str
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture,
+    arguments: list[str],
+    reason: str,
 ) -> None:
     """One line, and nothing is written."""
     monkeypatch.chdir(tmp_path)

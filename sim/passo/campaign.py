@@ -56,6 +56,7 @@ class Result:
     faults: dict[int, Fault] = field(default_factory=dict)
     played: set[int] = field(default_factory=set)  # first case of each batch
     seconds: float = 0
+    cpu_seconds: float = 0  # of all workers
 
     def add(self, batch: Batch) -> None:
         """Count a batch; once, however often it was played."""
@@ -65,6 +66,7 @@ class Result:
         self.counts += batch.counts
         self.refused += batch.refused
         self.faults |= batch.faults
+        self.cpu_seconds += batch.cpu_seconds
 
     @property
     def moves(self) -> int:
@@ -94,7 +96,12 @@ def local_cluster(jobs: int) -> Iterator[Any]:
         quiet(),
         dask.config.set({"distributed.scheduler.allowed-failures": DEATHS}),
         LocalCluster(
-            n_workers=jobs, threads_per_worker=1, processes=True, memory_limit=0, dashboard_address=":0"
+            n_workers=jobs,
+            threads_per_worker=1,
+            processes=True,
+            memory_limit=0,
+            dashboard_address=":0",
+            silence_logs=logging.CRITICAL,
         ) as cluster,
         Client(cluster) as client,
     ):
@@ -246,8 +253,10 @@ def summary_of(result: Result, shrunk: list[tuple[Case, Fault]]) -> dict[str, An
         "refused": dict(sorted(result.refused.items())),
         **{name: result.counts[name] for name in ("steps", "clocks", "edges")},
         "seconds": round(result.seconds, 3),
+        "cpu_seconds": round(result.cpu_seconds, 3),
         "moves_per_second": round(result.moves / seconds, 3),
         "moves_per_second_per_worker": round(result.moves / seconds / result.workers, 3),
+        "moves_per_cpu_second": round(result.moves / max(result.cpu_seconds, 1e-9), 3),
         "failures": [
             {"number": number, "kind": fault.kind, "text": fault.text}
             for number, fault in sorted(result.faults.items())

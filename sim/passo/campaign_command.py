@@ -55,9 +55,9 @@ def run_campaign(campaign: Campaign, where: Where) -> bool:
     summary = where.json or paths.results / NAME
     _check_folder(where.out, "--out")
     _check_folder(summary.parent, "--json")
-    if where.scheduler is None:
+    if local := where.scheduler is None:
         prepare(campaign.engine)  # once, and not in all processes at the same time
-    cluster = local_cluster(jobs_of(where.jobs)) if where.scheduler is None else running_cluster(where.scheduler)
+    cluster = local_cluster(jobs_of(where.jobs)) if local else running_cluster(where.scheduler)
     with cluster as client:
         check_workers(client, campaign.engine)
         result = carry_out(campaign, client, _Progress(campaign))
@@ -85,7 +85,7 @@ def _check(campaign: Campaign, where: Where) -> None:
     if where.jobs is not None and where.scheduler is not None:
         raise BadInputError("--jobs and --scheduler exclude each other: a cluster has its own workers")
     if not find_spec("distributed"):
-        raise BadInputError("passo campaign needs the Python package distributed: pip install 'passo[campaign]'")
+        raise BadInputError("a campaign needs the Python package distributed: pip install 'passo[campaign]'")
 
 
 def _check_folder(folder: Path, option: str) -> None:
@@ -131,6 +131,7 @@ def _show(result: Result) -> None:
         "seconds": f"{result.seconds:,.1f}",
         "moves/s": f"{rate:,.1f}",
         "moves/s per core": f"{rate / result.workers:,.1f}",
+        "moves per CPU second": f"{result.moves / max(result.cpu_seconds, 1e-9):,.1f}",
     }
     if campaign.engine == "rtl":
         rows["edges that agree"] = f"{result.counts['edges']:,}"

@@ -109,12 +109,14 @@ class FormDraw:
 
 def _in_time(draw: FormDraw) -> Data:
     shape = draw.shape()
-    total = draw.flat + draw.ramp * (2 if shape["profile"] == "user" else 1)  # a ramp may cover next to nothing
+    ramps = 2 if shape["profile"] == "user" else 1  # a user's ramps may cover next to nothing
+    total = draw.flat + draw.ramp * ramps
     ramp = min(draw.ramp, total // 2 - 2)
     if draw.bank.kind != "shaped" and draw.rng.random() < 0.2:
         ramp = 0
     in_clocks = {"total_time": f"{total}clocks", "ramp_time": f"{ramp}clocks"}
-    in_seconds = {"total_time": _short(total * 1.001 / draw.clock_hz), "ramp_time": _short(ramp / draw.clock_hz)}
+    seconds = (_short(total * 1.001 / draw.clock_hz), _short(ramp / draw.clock_hz))
+    in_seconds = dict(zip(("total_time", "ramp_time"), seconds, strict=True))
     return {"steps": draw.steps(), **shape, **draw.rng.choice((in_clocks, in_seconds))}
 
 
@@ -125,7 +127,8 @@ def _by_speed(draw: FormDraw) -> Data:
     else:
         ramps["acceleration"] = draw.acceleration()
         if draw.rng.random() < 0.5:
-            ramps["deceleration"] = min(_short(ramps["acceleration"] * log_uniform(draw.rng, 0.25, 4)), LARGEST)
+            other = ramps["acceleration"] * log_uniform(draw.rng, 0.25, 4)
+            ramps["deceleration"] = min(_short(other), LARGEST)
     return {"steps": draw.steps(), **draw.shape(), **draw.speeds(), **ramps}
 
 

@@ -2,6 +2,7 @@
 """Plays a case of a campaign and judges it from outside: what a worker does."""
 
 import tempfile
+import time
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -85,11 +86,12 @@ class Batch:
     counts: Counter[str] = field(default_factory=Counter)
     refused: Counter[str] = field(default_factory=Counter)
     faults: dict[int, Fault] = field(default_factory=dict)  # by number of the case
+    cpu_seconds: float = 0  # of the process that played them
 
 
 def play_batch(seed: int, first: int, count: int, engine: str, player: Player) -> Batch:
     """Draw and play the cases first .. first + count - 1."""
-    batch = Batch(first, count)
+    batch, began = Batch(first, count), time.process_time()
     for number in range(first, first + count):
         outcome = player(draw(seed, number), engine)
         batch.counts += outcome.counts
@@ -98,4 +100,5 @@ def play_batch(seed: int, first: int, count: int, engine: str, player: Player) -
             batch.faults[number] = outcome.fault
         elif outcome.refused:
             batch.refused[outcome.refused.partition(":")[0]] += 1
+    batch.cpu_seconds = time.process_time() - began
     return batch

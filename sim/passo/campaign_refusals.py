@@ -65,7 +65,7 @@ def _ramp_too_long(move: Move, clock_hz: int) -> bool:
     return move.ramp_time > Fraction(_longest(move)) / move.speed - 2 * tick
 
 
-# By name of the refusal: whether the move has this fault. The first ones are exact: such a move must be refused.
+# By name of the refusal: whether the move has this fault. A move with one of the exact ones must be refused.
 EXACT: dict[str, Callable[[Move, int], bool]] = {
     "NO_STEPS": lambda move, _: not any(move.steps),
     "NO_SPEED": lambda move, _: 0 in (getattr(move, "speed", None), getattr(move, "rpm", None)),

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What the recorded pins of a motion must keep to: pulse timings, directions and the curve of the plan.
 
-The promises are those of docs/architecture.md, seen from outside: nothing here knows how the core makes a step.
+The promises are those of docs/architecture.md, seen from outside: nothing here knows how the core steps.
 """
 
 from collections.abc import Iterator
@@ -75,7 +75,9 @@ def timing_faults(run: Run, axis: int) -> Iterator[Fault]:
         yield Fault("setup", f"axis {axis}, step {k}: DIR changed {int(setup[k])} clocks before")
     hold = turns - np.concatenate([[-FAR], falls])[np.searchsorted(rises, turns, "left")] - pins.step_low
     if (k := _first(hold < pins.dir_hold)) is not None:
-        yield Fault("hold", f"axis {axis}: DIR changed at clock {turns[k]}, {int(hold[k])} clocks after STEP was low")
+        yield Fault(
+            "hold", f"axis {axis}, clock {turns[k]}: DIR changed {int(hold[k])} clocks after the low time"
+        )
     wanted = _directions(run, axis)
     if (k := _first(wanted != run.steps(axis)[1])) is not None:
         yield Fault("direction", f"axis {axis}, step {k}: its direction is {-wanted[k]}")
@@ -87,7 +89,7 @@ def _directions(run: Run, axis: int) -> np.ndarray:
 
 
 def expected(plan: Plan) -> Curve:
-    """Clocks since the start, and the substeps due by then: the velocity is sampled in the middle of each tick.
+    """Clocks since the start, and the substeps due by then: the curve, sampled in the middle of each tick.
 
     Before and after the plan it goes on at its highest velocity, so that a step there is early or late.
     """
@@ -138,6 +140,6 @@ def curve_faults(run: Run, axis: int) -> Iterator[Fault]:
         for word, bad in (("early", lead < -EARLY - tolerance), ("late", ~in_time & ~waited[own])):
             if (k := _first(bad)) is not None:
                 where = f"axis {axis}, step {first + k}, clock {clocks[first + k]}"
-                yield Fault("curve", f"{where}: {word}, {abs(lead[k]):.3f} substeps from its place on the curve")
+                yield Fault("curve", f"{where}: {word}, {abs(lead[k]):.3f} substeps from its place")
         first += count
         begin += plan.clocks
