@@ -17,14 +17,15 @@ from unittest import mock
 
 import numpy as np
 import pytest
-from passo import campaign, campaign_play, cli, run_command
-from passo.campaign import Campaign, carry_out, local_cluster
+from passo import campaign, campaign_cluster, campaign_play, cli, run_command
+from passo.campaign import Campaign, carry_out
+from passo.campaign_cluster import local_cluster
 from passo.campaign_command import Where, run_campaign
 from passo.campaign_forms import FORMS
 from passo.campaign_moves import Case, draw, to_toml
 from passo.campaign_play import Batch, Outcome, play, play_batch, play_file
 from passo.campaign_shrink import shrink
-from passo.failure import BadInputError
+from passo.failure import BadInputError, Failure
 from passo.run import Run, execute_channels
 
 MOVES, SEED = 60, 5
@@ -275,6 +276,17 @@ def test_a_worker_that_dies_loses_nothing(client: Any, alone: Batch) -> None:
     assert (result.counts, result.refused) == (alone.counts, alone.refused)
 
 
+def test_a_campaign_without_workers_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It does not wait for ever for new ones."""
+    from distributed import Client, LocalCluster
+
+    monkeypatch.setattr(campaign, "POLL", 0.5)
+    monkeypatch.setattr(campaign, "LONELY", 1)
+    gone = pytest.raises(Failure, match="the cluster has had no workers for 1 s")
+    with LocalCluster(n_workers=0, dashboard_address=":0") as empty, Client(empty) as lonely, gone:
+        carry_out(Campaign(5, 1), lonely)
+
+
 def deadly(case: Case, engine: str) -> Outcome:
     """One case ends its process."""
     if case.number == 3:
@@ -333,7 +345,7 @@ def test_bad_input(
 ) -> None:
     """One line, and nothing is written."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(campaign, "PATIENCE", 1)
+    monkeypatch.setattr(campaign_cluster, "PATIENCE", 1)
     assert cli.main(["campaign", "--seed", "1", "--json", "x/campaign.json", *arguments]) == 2
     said = capsys.readouterr()
     assert reason in said.err and said.err.count("\n") == 1 and not said.out
@@ -343,7 +355,7 @@ def test_bad_input(
 def test_a_scheduler_without_workers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from distributed import LocalCluster
 
-    monkeypatch.setattr(campaign, "PATIENCE", 1)
+    monkeypatch.setattr(campaign_cluster, "PATIENCE", 1)
     with LocalCluster(n_workers=0, dashboard_address=":0") as empty, pytest.raises(BadInputError) as error:
         run_campaign(Campaign(5, 1), Where(scheduler=empty.scheduler_address, json=tmp_path / "x.json"))
     assert "the cluster has no workers" in str(error.value)

@@ -8,18 +8,8 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
-from passo.campaign import (
-    Campaign,
-    Result,
-    carry_out,
-    check_workers,
-    jobs_of,
-    local_cluster,
-    prepare,
-    running_cluster,
-    shrink_all,
-    summary_of,
-)
+from passo.campaign import Campaign, Result, carry_out, shrink_all, summary_of
+from passo.campaign_cluster import check_workers, jobs_of, local_cluster, prepare, running_cluster
 from passo.campaign_moves import Case
 from passo.campaign_play import ENGINES
 from passo.console import console, stages, table
