@@ -1,168 +1,362 @@
 # SPDX-License-Identifier: MIT
-"""Campaigns of random moves: every case once, repeatable, failures shrunk."""
+"""`passo campaign`: repeatable random moves, a judge that sees faults, small files of failures, clusters."""
 
 import json
 import os
 import signal
-from collections.abc import Iterator
-from contextlib import contextmanager
+import subprocess
+import sys
+import tomllib
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
 import numpy as np
 import pytest
-from distributed import Client, LocalCluster
-from passo import campaign, campaign_case
-from passo.campaign import Wanted, batches, cluster, run_campaign
-from passo.campaign_case import Verdict, cases_for, draw, moves_of, off_curve, pins_wrong, play, written
-from passo.cli import main
-from passo.engine import model_engine
-from passo.move_file import parse_moves, read_moves
-from passo.plan import plan_file
-from passo.run import Run, execute, parameters_for
-from passo.toolchain import paths
+from passo import campaign, campaign_cluster, campaign_play, cli, run_command
+from passo.campaign import Campaign, carry_out
+from passo.campaign_cluster import local_cluster
+from passo.campaign_command import Where, run_campaign
+from passo.campaign_forms import FORMS
+from passo.campaign_moves import Case, draw, to_toml
+from passo.campaign_play import Batch, Outcome, play, play_batch, play_file
+from passo.campaign_shrink import shrink
+from passo.failure import BadInputError, Failure
+from passo.run import Run, execute_channels
 
-from tests.helpers.random_plans import SEED
-
-FEW = 60
-
-
-def test_cases_have_the_moves_that_are_wanted() -> None:
-    for moves in (1, 2, 3, 9, 10, 11, 99, 1_000_000):
-        cases = cases_for(moves)
-        assert sum(map(moves_of, range(cases))) >= moves > sum(map(moves_of, range(cases - 1)))
+MOVES, SEED = 60, 5
+PROGRAM = str(Path(sys.executable).parent / "passo")
 
 
-def test_a_case_depends_on_its_number_only() -> None:
-    again = [draw(SEED, number) for number in range(FEW)]
-    assert [draw(SEED, number) for number in reversed(range(FEW))] == again[::-1]
-    assert len({written(case) for case in again}) == FEW
-    assert {move["method"] for case in again for move in case["move"]} == {
-        *("in_time", "by_speed", "below_speed", "at_speed", "axes", "sigmoid", "jerk")
-    }
+@pytest.fixture(scope="module")
+def client() -> Iterator[Any]:
+    with local_cluster(2) as made:
+        yield made
 
 
-def test_a_campaign(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    arguments = ["campaign", "--moves", "150", "--seed", str(SEED), "--jobs", "2", "--out", str(tmp_path)]
-    assert main(arguments) == 0
-    said = capsys.readouterr().out
-    figures = json.loads((paths.results / "campaign.json").read_text())
-    assert figures["moves"] == 150 and figures["cases"] == cases_for(150) and figures["failures"] == 0
-    assert figures["kinds"]["exact"] + figures["refused"] == figures["cases"]
-    assert figures["kinds"]["exact"] > figures["refused"]
-    assert f"{figures['steps']:,}" in said
-    assert list(tmp_path.iterdir()) == []
+@pytest.fixture(scope="module")
+def alone() -> Batch:
+    """The same cases in this process."""
+    return play_batch(SEED, 0, MOVES, "model", play)
 
 
-def test_the_rtl_agrees() -> None:
-    for number in range(6):
-        verdict = play(draw(SEED, number), "rtl")
-        assert verdict.good, verdict.says
+# ------------------------------------------------------------------------------------------------ cases ----
 
 
-def run_of(number: int) -> Run:
-    case = draw(SEED, number)
-    file = parse_moves(written(case), Path("case"))
-    parameters = parameters_for(file.axes)
-    with model_engine(parameters, file.clock_hz) as engine:
-        return execute(file, plan_file(file, parameters), engine)
+def test_a_case_is_a_function_of_seed_and_number() -> None:
+    assert draw(1, 77) == draw(1, 77)
+    assert draw(1, 77).data != draw(1, 78).data != draw(2, 78).data
 
 
-def exact_run() -> Run:
-    """A run with a turn, long enough to plant a fault in."""
-    for number in range(1000):
-        if play(draw(SEED, number), "model").kind == "exact":
-            run = run_of(number)
-            if len(run.steps(0)[0]) > 20 and len(set(run.steps(0)[1])) == 2:
-                return run
-    raise AssertionError("there is none")
+def test_cases_have_all_forms_and_profiles() -> None:
+    moves = [move for number in range(300) for move in draw(SEED, number).data["move"]]
+    told = {move.get("method", "in_time" if "total_time" in move else "by_speed") for move in moves}
+    assert told == set(FORMS)
+    profiles = {move["profile"] for move in moves if "profile" in move}
+    assert profiles == {"linear", "cosine", "sigmoid", "jerk", "user", "shaped"}
+    assert {move.get("channel", 0) for move in moves} == {0, 1}
 
 
-def test_the_judges_see_what_is_wrong() -> None:
-    run = exact_run()
-    assert pins_wrong(run) == off_curve(run) == run.problems() == []
-    pins = run.pins
-    # all pulses of axis 0 two steps late
-    period = round(np.diff(run.steps(0)[0]).mean())
-    run.pins = pins.copy()
-    run.pins["clock"] += np.uint64(4 * period)
-    assert off_curve(run)
-    # each pin timing wants a clock more than the shortest that was made
-    run.pins = pins
-    own = run.file.pins
-    for name in campaign_case.PIN_KEYS:
-        least = getattr(own, name)
-        object.__setattr__(own, name, 1 << 40)
-        assert any(name in problem for problem in pins_wrong(run)), name
-        object.__setattr__(own, name, least)
+def test_the_file_says_what_was_drawn() -> None:
+    for number in range(100):
+        case = draw(SEED, number)
+        assert tomllib.loads(to_toml(case.data)) == case.data
 
 
-@contextmanager
-def here(_: Wanted) -> Iterator[Any]:
-    """A cluster in this process, which the test can break."""
-    with (
-        LocalCluster(processes=False, n_workers=1, threads_per_worker=1, dashboard_address=None) as own,
-        Client(own, set_as_default=False) as client,
-    ):
-        yield client
+# ------------------------------------------------------------------------------------------------ judge ----
+
+BACK_AND_FORTH = Case(
+    0,
+    0,
+    {
+        "clock_hz": 16_000_000,
+        "pins": {
+            "step_high": "9clocks",
+            "step_low": "7clocks",
+            "dir_setup": "30clocks",
+            "dir_hold": "20clocks",
+        },
+        "move": [
+            {"steps": [n], "profile": "cosine", "total_time": 0.003, "ramp_time": 0.001} for n in (90, -90)
+        ],
+    },
+)
 
 
-def test_a_failure_is_shrunk(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """Cosine ramps of 12 steps and more are said to be wrong."""
-
-    def wrong(case: campaign_case.Table, _: str) -> Verdict:
-        for move in case["move"]:
-            if move.get("profile") == "cosine" and max(map(abs, move["steps"])) >= 12:
-                return Verdict("off its curve", "planted")
-        return Verdict("exact", "", len(case["move"]))
-
-    monkeypatch.setattr(campaign, "play", wrong)
-    monkeypatch.setattr(campaign, "cluster", here)
-    assert not run_campaign(Wanted(30, SEED, out=tmp_path))
-    made = sorted(tmp_path.iterdir())
-    assert made
-    said = capsys.readouterr().out
-    for path in made:
-        file = read_moves(path)
-        assert len(file.moves) == 1 and file.axes == 1 and file.moves[0].profile == "cosine"
-        assert 12 <= file.moves[0].steps[0] < 24
-        assert f"passo run {path} --engine model" in said.replace("\n", "")
-        assert path.read_text().startswith("# off its curve: planted\n")
+def shift(run: Run, edge: int, number: int, clocks: int) -> None:
+    """Move a rising (1) or falling (-1) edge of axis 0."""
+    level = np.concatenate([[0], run.pins["step"] & 1]).astype(int)
+    row = np.flatnonzero(np.diff(level) == edge)[number]
+    run.pins["clock"][row] = int(run.pins["clock"][row]) + clocks
 
 
-def test_a_worker_that_dies_loses_nothing() -> None:
-    with LocalCluster(
-        n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs="CRITICAL"
-    ) as own:
-        wanted = Wanted(600, SEED, scheduler=own.scheduler_address)
-        with cluster(wanted) as client:
-            done = []
-            for batch in batches(wanted, client):
-                if not done:
-                    os.kill(next(iter(client.run(os.getpid).values())), signal.SIGKILL)
-                done.append(batch)
-    numbers = sorted(number for batch in done for number in range(batch.first, batch.first + batch.cases))
-    assert numbers == list(range(cases_for(600)))
-    assert sum(batch.moves for batch in done) == 600
+def turn(run: Run, clocks: int) -> None:
+    """Change DIR so many clocks after the last step forward, or that many before the first one back."""
+    (row,) = np.flatnonzero(np.diff(run.pins["dir"] & 1)) + 1
+    begun = run.steps(0)[0] + run.start
+    run.pins["clock"][row] = begun[89] + clocks if clocks > 0 else begun[90] + clocks
+
+
+def drop(run: Run, number: int) -> None:
+    """Remove a pulse of axis 0."""
+    rise = run.steps(0)[0][number] + run.start
+    run.pins["step"][(run.pins["clock"] >= rise) & (run.pins["clock"] < rise + 9)] &= 0xFE
+
+
+def later(run: Run, clocks: int) -> None:
+    """All steps of axis 0 from the 50th to the 60th."""
+    for number in range(50, 60):
+        shift(run, 1, number, clocks)
+        shift(run, -1, number, clocks)
+
+
+WRONG: dict[str, tuple[str, Callable[[Run], None]]] = {
+    "count": ("count", lambda run: drop(run, 50)),
+    "position": ("position", lambda run: run.positions.__setitem__(0, 99)),
+    "clocks": ("clocks", lambda run: setattr(run, "total_clocks", run.total_clocks + 1)),
+    "high": ("high", lambda run: shift(run, -1, 50, 1)),
+    "high, short": ("high", lambda run: shift(run, -1, 50, -1)),
+    "setup": ("setup", lambda run: turn(run, -29)),
+    "hold": ("hold", lambda run: turn(run, 9 + 7 + 19)),
+    "direction": ("direction", lambda run: run.pins.__setitem__("dir", run.pins["dir"] ^ 1)),
+    "late": ("curve", lambda run: later(run, 200)),
+    "early": ("curve", lambda run: later(run, -200)),
+}
+
+
+def tampered(fault: Callable[[Run], None], *arguments: Any) -> list[Run]:
+    """What the engine did, falsified."""
+    runs = execute_channels(*arguments)
+    fault(runs[0])
+    return runs
+
+
+def test_a_good_motion_is_accepted() -> None:
+    outcome = play(BACK_AND_FORTH, "model")
+    assert outcome.fault is None and outcome.counts["steps"] == 180
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_the_judge_sees(name: str) -> None:
+    kind, fault = WRONG[name]
+    with mock.patch.object(campaign_play, "execute_channels", partial(tampered, fault)):
+        found = play(BACK_AND_FORTH, "model").fault
+    assert found and found.kind == kind, found
+
+
+def test_passo_run_has_the_same_judge(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    """So a file of a campaign fails there, too."""
+    path, out = BACK_AND_FORTH.write(tmp_path), tmp_path / "out"
+    command = ["run", str(path), "--engine", "model", "--out", str(out)]
+    assert cli.main(command) == 0
+    with mock.patch.object(run_command, "execute_channels", partial(tampered, WRONG["high"][1])):
+        assert cli.main(command) == 1
+    text = "axis 0, step 50: STEP is high for 10 clocks"
+    assert text in capsys.readouterr().err
+    assert json.loads((out / "summary.json").read_text())["problems"] == [text]
+
+
+def test_the_judge_sees_a_short_low_time() -> None:
+    move = {"steps": [400], "profile": "linear", "total_time": 0.0008, "ramp_time": 0.0001}
+    case = replace(BACK_AND_FORTH, data={**BACK_AND_FORTH.data, "move": [move]})
+    assert play(case, "model").fault is None
+
+    def lower(run: Run) -> None:
+        gaps = np.diff(run.steps(0)[0])
+        n = int(np.argmin(gaps))
+        shift(run, 1, n + 1, 9 + 6 - int(gaps[n]))
+        shift(run, -1, n + 1, 9 + 6 - int(gaps[n]))
+
+    with mock.patch.object(campaign_play, "execute_channels", partial(tampered, lower)):
+        assert play(case, "model").fault.kind == "low"
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("old", "new", "name"),
+    [("NO_STEPS", "steps = [0, 0]", "NO_STEPS"), ("RAMP", 'ramp_time = "9000clocks"', "RAMP_TOO_LONG")],
+)
+def test_a_refusal_has_a_reason(tmp_path: Path, old: str, new: str, name: str) -> None:
+    """And one without it is a fault, as is a move that should have been refused."""
+    lines = {"NO_STEPS": "steps = [10, 3]", "RAMP": 'ramp_time = "10clocks"'}
+    text = 'clock_hz = 16_000_000\n[[move]]\nprofile = "linear"\ntotal_time = "16000clocks"\n'
+    path = tmp_path / "moves.toml"
+    path.write_text(text + "\n".join(lines.values()).replace(lines[old], new))
+    outcome = play_file(path, "model")
+    assert outcome.refused.startswith(name) and outcome.fault is None
+    path.write_text(text + "\n".join(lines.values()))
+    assert play_file(path, "model") == Outcome(counts=Counter(steps=13, clocks=16000, parts=1))
+    error = campaign_play.MoveFileError(f"{path}: move 1")
+    error.__context__ = __import__("passo.plan").plan.PlanError(name, "of no reason")
+    with mock.patch.object(campaign_play, "plan_channels", side_effect=error):
+        assert play_file(path, "model").fault.kind == "refusal"
+
+
+# --------------------------------------------------------------------------------------------- clusters ----
+
+
+def test_a_campaign_is_repeatable(client: Any, alone: Batch) -> None:
+    """On two workers as in one process, every case counted once, in lots of two sizes."""
+    for first, moves in ((0, MOVES), (0, 7), (7, MOVES - 7)):
+        result = carry_out(Campaign(moves, SEED, first=first), client)
+        assert (result.moves, result.faults) == (moves, {})
+        if moves == MOVES:
+            assert (result.counts, result.refused) == (alone.counts, alone.refused)
+    assert alone.counts["steps"] > 1000 and alone.refused.total() < MOVES / 5
+
+
+def wrong_engine(case: Case, engine: str) -> Outcome:
+    """It loses a pulse wherever axis 0 makes more than 25 steps forward."""
+
+    def lose(run: Run) -> None:
+        if (run.steps(0)[1] > 0).sum() > 25:
+            clocks = run.steps(0)[0] + run.start
+            run.pins["step"][run.pins["clock"] == clocks[9]] &= 0xFE
+
+    with mock.patch.object(campaign_play, "execute_channels", partial(tampered, lose)):
+        return play(case, engine)
+
+
+def test_a_failure_is_found_and_shrunk(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    """The file that is left fails again, alone, and is small; an engine that is right accepts it."""
+    out = tmp_path / "out"
+    where = Where(jobs=3, out=out, json=tmp_path / "campaign.json")
+    assert not run_campaign(Campaign(12, SEED, player=wrong_engine), where)
+    said = capsys.readouterr().out
+    summary = json.loads(where.json.read_text())
+    numbers = [failure["number"] for failure in summary["failures"]]
+    expected = [n for n in range(12) if wrong_engine(draw(SEED, n), "model").fault]
+    assert numbers == expected and 0 < len(numbers) < 10
+    assert (summary["moves"], summary["workers"]) == (12, 3)
+    for number in numbers:
+        path = out / f"campaign-{SEED}-{number}.toml"
+        assert f"passo run {path} --engine model" in said
+        data = tomllib.loads(path.read_text())
+        (move,) = data["move"]
+        assert len(move.get("steps", move.get("distance", [0]))) == 1
+        assert 25 < max(map(abs, move.get("steps", [26]))) <= 51
+        assert play_file(path, "model").fault is None
+        shown = wrong_engine(Case(SEED, number, data, read_points(out, data)), "model").fault
+        assert shown and shown.kind in ("count", "position")
+
+
+def read_points(folder: Path, data: dict[str, Any]) -> tuple[int, ...]:
+    from passo.shape import read_table
+
+    names = [move["table"] for move in data["move"] if "table" in move]
+    return read_table(folder / names[0]) if names else ()
+
+
+def test_shrinking_keeps_the_kind_of_fault() -> None:
+    case = next(draw(SEED, n) for n in range(60) if len(draw(SEED, n).data["move"]) == 3)
+
+    def judge(other: Case) -> campaign_play.Fault | None:
+        moves = other.data["move"]
+        return campaign_play.Fault("a" if len(moves) > 1 else "b", "")
+
+    small, _ = shrink(case, campaign_play.Fault("a", ""), judge)
+    assert len(small.data["move"]) == 2
+
+
+def test_a_worker_that_dies_loses_nothing(client: Any, alone: Batch) -> None:
+    """Killed in the middle, with batches at work and results that were not fetched yet."""
+    killed: list[int] = []
+
+    def kill(result: Any) -> None:
+        if result.moves >= MOVES // 3 and not killed:
+            killed.append(next(iter(client.run(os.getpid).values())))
+            os.kill(killed[0], signal.SIGKILL)
+
+    result = carry_out(Campaign(MOVES, SEED), client, kill)
+    assert killed and killed[0] not in client.run(os.getpid).values()
+    assert (result.moves, result.faults) == (MOVES, {})
+    assert (result.counts, result.refused) == (alone.counts, alone.refused)
+
+
+def test_a_campaign_without_workers_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It does not wait for ever for new ones."""
+    from distributed import Client, LocalCluster
+
+    monkeypatch.setattr(campaign, "POLL", 0.5)
+    monkeypatch.setattr(campaign, "LONELY", 1)
+    gone = pytest.raises(Failure, match="the cluster has had no workers for 1 s")
+    with LocalCluster(n_workers=0, dashboard_address=":0") as empty, Client(empty) as lonely, gone:
+        carry_out(Campaign(5, 1), lonely)
+
+
+def deadly(case: Case, engine: str) -> Outcome:
+    """One case ends its process."""
+    if case.number == 3:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return play(case, engine)
+
+
+def test_a_case_that_ends_its_process_is_a_failure(client: Any) -> None:
+    result = carry_out(Campaign(16, SEED, player=deadly), client)
+    assert result.moves == 16
+    assert {number: fault.kind for number, fault in result.faults.items()} == {3: "crash"}
+
+
+def test_help_is_fast() -> None:
+    """The command imports Dask and numpy only where it needs them."""
+    code = "import sys, passo.cli; print({'dask', 'distributed', 'numpy', 'rich'} & sys.modules.keys())"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert done.stdout == "set()\n"
+    done = subprocess.run([PROGRAM, "--help"], capture_output=True, text=True, timeout=60)
+    assert "campaign" in done.stdout
+
+
+def test_a_running_cluster(client: Any, tmp_path: Path) -> None:
+    """By its address, with the whole command."""
+    summary = tmp_path / "deep" / "campaign.json"
+    address = client.scheduler.address
+    command = [PROGRAM, "campaign", "--moves", "9", "--seed", "5", "--json", summary, "--scheduler", address]
+    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=60, cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "9 of 9 moves, 0 failed" in done.stdout
+    made = json.loads(summary.read_text())
+    assert (made["moves"], made["failures"], made["workers"]) == (9, [], 2)
+    assert made["steps"] == play_batch(SEED, 0, 9, "model", play).counts["steps"]
+    assert list(tmp_path.iterdir()) == [tmp_path / "deep"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
     [
-        (["--moves", "0"], "--moves 0: at least 1"),
-        (["--jobs", "-1"], "--jobs -1: "),
-        (["--jobs", "1", "--scheduler", "tcp://127.0.0.1:1"], "--jobs and --scheduler exclude each other"),
-        (["--scheduler", "tcp://127.0.0.1:1"], "--scheduler tcp://127.0.0.1:1: there is no cluster"),
-        (["--scheduler", "nonsense://x"], "--scheduler nonsense://x: there is no cluster"),
-        (["--out", "/no/such/folder"], "--out /no/such/folder: there is no such folder"),
+        (["--moves", "0"], "--moves must be at least 1, not 0"),
+        (["--moves", "5", "--first", "-1"], "--first must be at least 0, not -1"),
+        (["--moves", "5", "--engine", "both"], "--engine must be one of model, rtl, not both"),
+        (["--moves", "5", "--jobs", "0"], "--jobs must be at least 1, not 0"),
+        (["--moves", "5", "--jobs", "1", "--scheduler", "tcp://127.0.0.1:9"], "exclude each other"),
+        (["--moves", "5", "--scheduler", "tcp://127.0.0.1:9"], "tcp://127.0.0.1:9: no scheduler answers"),
+        (["--moves", "5", "--scheduler", "nothing"], "--scheduler nothing: "),
+        (["--moves", "5", "--out", "/dev/null"], "--out /dev/null: "),
     ],
 )
 def test_bad_input(
-    arguments: list[str], said: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture,
+    arguments: list[str],
+    reason: str,
 ) -> None:
-    monkeypatch.setattr(campaign, "CONNECT_SECONDS", 1)
-    assert main(["campaign", *arguments]) == 2
-    error = capsys.readouterr().err
-    assert error.startswith(said) and error.count("\n") == 1
+    """One line, and nothing is written."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(campaign_cluster, "PATIENCE", 1)
+    assert cli.main(["campaign", "--seed", "1", "--json", "x/campaign.json", *arguments]) == 2
+    said = capsys.readouterr()
+    assert reason in said.err and said.err.count("\n") == 1 and not said.out
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_scheduler_without_workers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from distributed import LocalCluster
+
+    monkeypatch.setattr(campaign_cluster, "PATIENCE", 1)
+    with LocalCluster(n_workers=0, dashboard_address=":0") as empty, pytest.raises(BadInputError) as error:
+        run_campaign(Campaign(5, 1), Where(scheduler=empty.scheduler_address, json=tmp_path / "x.json"))
+    assert "the cluster has no workers" in str(error.value)
+    assert list(tmp_path.iterdir()) == []

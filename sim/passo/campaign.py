@@ -1,190 +1,177 @@
 # SPDX-License-Identifier: MIT
-"""`passo campaign`: many random moves on all processors, by Dask, each judged from outside."""
+"""`passo campaign`: random moves on all cores, or on a cluster, by Dask; docs/campaign.md."""
 
-import json
-import os
 import time
+import uuid
 from collections import Counter
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, field
-from pathlib import Path
+from itertools import islice
 from typing import Any
 
-from passo.campaign_case import Table, Verdict, cases_for, draw, play, written
+from passo.campaign_moves import Case, draw
+from passo.campaign_play import Batch, Player, play, play_batch
 from passo.campaign_shrink import shrink
-from passo.console import console, stages, table
-from passo.failure import BadInputError, Failure
-from passo.toolchain import paths
+from passo.failure import Failure
+from passo.pulse_judge import Fault
 
-BATCH = 40  # cases of a task
-TASKS_PER_WORKER = 3  # that wait for a worker, so that it never does
-CONNECT_SECONDS = 5
-WORKER_DEATHS_MAX = 10  # that a task outlives
-TELL_SECONDS = 10
-SHRUNK_MAX = 5  # failures that are shrunk and written
+BATCH = {"model": 40, "rtl": 10}  # cases: about a second
+IN_FLIGHT = 4  # batches per worker
+SHRUNK = 10  # failures for which a file is written
+POLL = 5  # seconds between two looks at the workers
+LONELY = 60  # seconds that a campaign waits for new workers
 
 
 @dataclass(frozen=True)
-class Wanted:
-    """A campaign. ``jobs`` 0: all processors; ``scheduler``: the address of a running cluster."""
+class Campaign:
+    """The cases `first` .. `first` + `moves` - 1 of a seed."""
 
     moves: int
     seed: int
     engine: str = "model"
-    jobs: int = 0
-    scheduler: str | None = None
-    out: Path = Path()
+    first: int = 0
+    player: Player = play
+
+    def batches(self, workers: int) -> Iterator[tuple[int, int]]:
+        """First case and number of cases of each batch; small ones if there are few cases for each worker."""
+        size = max(1, min(BATCH[self.engine], self.moves // (4 * workers)))
+        end = self.first + self.moves
+        return ((first, min(size, end - first)) for first in range(self.first, end, size))
 
 
 @dataclass
-class Batch:
-    """What came of some consecutive cases."""
+class Result:
+    """What was played so far."""
 
-    first: int
-    cases: int
-    kinds: Counter = field(default_factory=Counter)
-    moves: int = 0
-    steps: int = 0
-    seconds: float = 0  # of the worker
-    failures: dict[int, Verdict] = field(default_factory=dict)
+    campaign: Campaign
+    workers: int
+    counts: Counter[str] = field(default_factory=Counter)
+    refused: Counter[str] = field(default_factory=Counter)
+    faults: dict[int, Fault] = field(default_factory=dict)
+    played: set[int] = field(default_factory=set)  # first case of each batch
+    seconds: float = 0
+    cpu_seconds: float = 0  # of all workers
 
+    def add(self, batch: Batch) -> None:
+        """Count a batch; once, however often it was played."""
+        if batch.first in self.played:
+            return
+        self.played.add(batch.first)
+        self.counts += batch.counts
+        self.refused += batch.refused
+        self.faults |= batch.faults
+        self.cpu_seconds += batch.cpu_seconds
 
-def play_batch(seed: int, first: int, cases: int, engine: str) -> Batch:
-    """A task: plays cases."""
-    batch, began = Batch(first, cases), time.monotonic()
-    for number in range(first, first + cases):
-        verdict = play(draw(seed, number), engine)
-        batch.kinds[verdict.kind] += 1
-        batch.moves += verdict.moves
-        batch.steps += verdict.steps
-        if not verdict.good:
-            batch.failures[number] = verdict
-    batch.seconds = time.monotonic() - began
-    return batch
-
-
-@contextmanager
-def cluster(wanted: Wanted) -> Iterator[Any]:
-    """A client of the cluster that was named, or of one on this machine."""
-    try:
-        import dask
-        from distributed import Client, LocalCluster
-    except ImportError:
-        raise BadInputError("passo campaign needs Dask: pip install 'passo[campaign]'") from None
-    dask.config.set({"distributed.scheduler.allowed-failures": WORKER_DEATHS_MAX})
-    if wanted.scheduler:
-        try:
-            client = Client(wanted.scheduler, timeout=CONNECT_SECONDS, set_as_default=False)
-        except (OSError, ValueError) as error:
-            reason = str(error).splitlines()[0] if str(error) else type(error).__name__
-            raise BadInputError(f"--scheduler {wanted.scheduler}: there is no cluster: {reason}") from None
-        with client:
-            yield client
-        return
-    jobs = wanted.jobs or len(os.sched_getaffinity(0))
-    with (
-        LocalCluster(
-            n_workers=jobs, threads_per_worker=1, dashboard_address=None, silence_logs="CRITICAL"
-        ) as own,
-        Client(own, set_as_default=False) as client,
-    ):
-        yield client
+    @property
+    def moves(self) -> int:
+        """Cases played."""
+        return self.counts["moves"]
 
 
-def batches(wanted: Wanted, client: Any) -> Iterator[Batch]:
-    """Play all cases, as the workers finish them."""
-    from distributed import as_completed
+def carry_out(campaign: Campaign, client: Any, tell: Callable[[Result], None] = lambda _: None) -> Result:
+    """Play all cases on the workers of a client; `tell` is called after each batch."""
+    from concurrent.futures import CancelledError
 
-    tasks = (
-        (wanted.seed, first, min(BATCH, cases - first), wanted.engine)
-        for cases in [cases_for(wanted.moves)]
-        for first in range(0, cases, BATCH)
-    )
-
-    def submit() -> list[Any]:
-        arguments = next(tasks, None)
-        return [client.submit(play_batch, *arguments, pure=False)] if arguments else []
+    from distributed import KilledWorker
 
     workers = max(1, len(client.scheduler_info(n_workers=-1)["workers"]))
-    first = [future for _ in range(TASKS_PER_WORKER * workers) for future in submit()]
-    waiting = as_completed(first, loop=client.loop)
-    for future in waiting:
+    result, began = Result(campaign, workers), time.monotonic()
+    waiting = campaign.batches(workers)
+    name = uuid.uuid4().hex  # two campaigns on a cluster do not share results
+
+    def submit(first: int, count: int) -> Any:
+        key = f"passo-{name}-{first}-{count}"
+        wanted = (campaign.seed, first, count, campaign.engine, campaign.player)
+        future = client.submit(play_batch, *wanted, key=key)
+        places[key] = first, count
+        return future
+
+    places: dict[str, tuple[int, int]] = {}
+    running = {submit(*one) for one in islice(waiting, IN_FLIGHT * workers)}
+    while running:
+        for future in _finished(running, client, lambda: tell(result)):
+            running.discard(future)
+            first, count = places.pop(future.key)
+            try:
+                result.add(future.result())
+            except (CancelledError, OSError) as error:
+                raise Failure(f"the cluster is gone: {error}") from None
+            except KilledWorker:
+                # A case that ends its process is a failure; the others of its batch are not.
+                if count == 1:
+                    text = "the process that played it died, again and again"
+                    result.add(Batch(first, 1, Counter(moves=1), faults={first: Fault("crash", text)}))
+                else:
+                    running |= {submit(number, 1) for number in range(first, first + count)}
+            future.release()
+            running |= {submit(*following) for following in islice(waiting, 1)}
+            result.seconds = time.monotonic() - began
+            tell(result)
+    if result.moves != campaign.moves:
+        raise Failure(f"{result.moves} moves of {campaign.moves} are counted")
+    return result
+
+
+def _finished(running: set[Any], client: Any, idle: Callable[[], None]) -> set[Any]:
+    """Wait for some futures; raises Failure if there are no workers for long."""
+    from distributed import wait
+
+    since = time.monotonic()
+    while True:
         try:
-            yield future.result()
-        except Exception as error:
-            raise Failure(f"a worker failed: {type(error).__name__}: {error}") from None
-        for more in submit():
-            waiting.add(more)
+            return wait(running, timeout=POLL, return_when="FIRST_COMPLETED").done
+        except TimeoutError:
+            idle()
+        if client.status != "running":
+            raise Failure("the cluster is gone")
+        if client.nthreads():
+            since = time.monotonic()
+        elif time.monotonic() - since > LONELY:
+            raise Failure(f"the cluster has had no workers for {LONELY} s")
 
 
-def run_campaign(wanted: Wanted) -> bool:
-    """Run a campaign, write build/campaign.json and failing move files; return whether all was well."""
-    if wanted.engine == "rtl":
-        play(draw(wanted.seed, 0), "rtl")  # builds what the workers need
-    total, tell, began, told = Batch(0, 0), stages(), time.monotonic(), time.monotonic()
-    with cluster(wanted) as client:
-        workers = len(client.scheduler_info(n_workers=-1)["workers"])
-        for batch in batches(wanted, client):
-            _add(total, batch)
-            for number, verdict in batch.failures.items():
-                tell(f"case {number}: {verdict.kind}: {verdict.says}")
-            if time.monotonic() - told > TELL_SECONDS:
-                told = time.monotonic()
-                tell(_progress(total, wanted.moves, told - began))
-    seconds = time.monotonic() - began
-    for number in sorted(total.failures)[:SHRUNK_MAX]:
-        _write_failure(wanted, number, total.failures[number], tell)
-    _conclude(wanted, total, workers, seconds)
-    return not total.failures
+def shrink_case(campaign: Campaign, number: int, fault: Fault) -> tuple[Case, Fault]:
+    """The smallest case that fails like this one."""
+    case = draw(campaign.seed, number)
+    if fault.kind == "crash":
+        return case, fault
+    return shrink(case, fault, lambda other: campaign.player(other, campaign.engine).fault)
 
 
-def _add(total: Batch, batch: Batch) -> None:
-    for name in ("cases", "moves", "steps", "seconds"):
-        setattr(total, name, getattr(total, name) + getattr(batch, name))
-    total.kinds.update(batch.kinds)
-    total.failures.update(batch.failures)
+def shrink_all(result: Result, client: Any) -> list[tuple[Case, Fault]]:
+    """The first failures, shrunk."""
+    from distributed import KilledWorker
+
+    wanted = sorted(result.faults.items())[:SHRUNK]
+    futures = [client.submit(shrink_case, result.campaign, *one, pure=False) for one in wanted]
+    made = []
+    for future, (number, fault) in zip(futures, wanted, strict=True):
+        try:
+            made.append(future.result())
+        except KilledWorker:
+            made.append((draw(result.campaign.seed, number), fault))
+    return made
 
 
-def _progress(total: Batch, moves: int, seconds: float) -> str:
-    rate = total.moves / seconds
-    return f"{total.moves:,} of {moves:,} moves, {rate:,.0f} per second, {len(total.failures)} failures"
-
-
-def _write_failure(wanted: Wanted, number: int, verdict: Verdict, tell: Callable[[str], None]) -> None:
-    """The smallest case that fails in the same way, as a move file."""
-
-    def fails(case: Table) -> bool:
-        return play(case, wanted.engine).kind == verdict.kind
-
-    tell(f"case {number}: looking for the smallest move file that fails in this way ...")
-    case = shrink(draw(wanted.seed, number), fails)
-    path = wanted.out / f"campaign-{wanted.seed}-{number}.toml"
-    path.write_text(f"# {verdict.kind}: {play(case, wanted.engine).says}\n{written(case)}", encoding="utf-8")
-    engine = "model" if wanted.engine == "model" else "both"
-    tell(f"case {number}: passo run {path} --engine {engine}")
-
-
-def _conclude(wanted: Wanted, total: Batch, workers: int, seconds: float) -> None:
-    """Print the table, write the figures."""
-    figures = {
-        "engine": wanted.engine,
-        "seed": wanted.seed,
-        "workers": workers,
-        "cases": total.cases,
-        "moves": total.moves,
-        "steps": total.steps,
-        "refused": total.kinds["refused"],
-        "failures": len(total.failures),
-        "seconds": round(seconds, 1),
-        "moves_per_second": round(total.moves / seconds, 1),
-        "moves_per_second_and_worker": round(total.moves / max(total.seconds, 1e-9), 1),
+def summary_of(result: Result, shrunk: list[tuple[Case, Fault]]) -> dict[str, Any]:
+    """The contents of campaign.json."""
+    campaign, seconds = result.campaign, max(result.seconds, 1e-9)
+    return {
+        "seed": campaign.seed,
+        "first": campaign.first,
+        "engine": campaign.engine,
+        "workers": result.workers,
+        "moves": result.moves,
+        "refused": dict(sorted(result.refused.items())),
+        **{name: result.counts[name] for name in ("steps", "clocks", "edges")},
+        "seconds": round(result.seconds, 3),
+        "cpu_seconds": round(result.cpu_seconds, 3),
+        "moves_per_second": round(result.moves / seconds, 3),
+        "moves_per_second_per_worker": round(result.moves / seconds / result.workers, 3),
+        "moves_per_cpu_second": round(result.moves / max(result.cpu_seconds, 1e-9), 3),
+        "failures": [
+            {"number": number, "kind": fault.kind, "text": fault.text}
+            for number, fault in sorted(result.faults.items())
+        ],
+        "files": [f"{case.name}.toml" for case, _ in shrunk],
     }
-    made = table(f"Campaign on {'the C model' if wanted.engine == 'model' else 'RTL and C model'}", "", "")
-    for name, value in figures.items():
-        made.add_row(name.replace("_", " "), f"{value:,}" if isinstance(value, int | float) else value)
-    console.print(made)
-    kinds = {kind: count for kind, count in sorted(total.kinds.items())}
-    paths.results.mkdir(parents=True, exist_ok=True)
-    text = json.dumps(figures | {"kinds": kinds}, indent=1)
-    (paths.results / "campaign.json").write_text(text + "\n", encoding="utf-8")

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 
-from passo import __version__
+from passo import __version__, campaign_options
 from passo.failure import BadInputError, Failure
 
 ENGINES = ("both", "rtl", "model")
@@ -115,22 +115,9 @@ def _parser() -> argparse.ArgumentParser:
     rtl = commands.add_parser("rtl", help="name the Verilog sources of the core, for makefiles")
     rtl.set_defaults(command=_rtl)
     rtl.add_argument("--folder", action="store_true", help="only their folder, which is the include path")
+    campaign_options.add(commands).set_defaults(command=_campaign)
     demo = commands.add_parser("demo", help="run the moves in examples/; pictures in build/demo/")
     demo.set_defaults(command=_demo)
-    campaign = commands.add_parser(
-        "campaign", help="play many random moves on all processors and judge each (docs/campaign.md)"
-    )
-    campaign.set_defaults(command=_campaign)
-    campaign.add_argument("--moves", type=int, default=10_000, metavar="N", help="how many (default 10000)")
-    campaign.add_argument("--seed", type=int, default=1, metavar="S", help="other moves (default 1)")
-    campaign.add_argument(
-        "--engine", choices=("model", "rtl"), default="model", help="model (default), or RTL compared with it"
-    )
-    campaign.add_argument("--jobs", type=int, default=0, metavar="N", help="workers (default: processors)")
-    campaign.add_argument("--scheduler", metavar="ADDRESS", help="of a running Dask cluster, to use instead")
-    campaign.add_argument(
-        "--out", type=Path, default=Path(), metavar="DIR", help="for failing move files (default: here)"
-    )
     bench = commands.add_parser("bench", help="measure the speed of the engines")
     bench.set_defaults(command=_bench)
     return parser
@@ -267,27 +254,18 @@ def _firmware(options: argparse.Namespace) -> int:
         return FAILED
 
 
-def _campaign(options: argparse.Namespace) -> int:
-    from passo.campaign import Wanted, run_campaign
-
-    if options.moves < 1:
-        raise BadInputError(f"--moves {options.moves}: at least 1")
-    if options.jobs < 0:
-        raise BadInputError(f"--jobs {options.jobs}: 0 (all processors) or more")
-    if options.jobs and options.scheduler:
-        raise BadInputError("--jobs and --scheduler exclude each other: a cluster has its own workers")
-    if not options.out.is_dir():
-        raise BadInputError(f"--out {options.out}: there is no such folder")
-    wanted = Wanted(options.moves, options.seed, options.engine, options.jobs, options.scheduler, options.out)
-    return OK if run_campaign(wanted) else FAILED
-
-
 def _rtl(options: argparse.Namespace) -> int:
     from passo.build import rtl_sources
     from passo.toolchain import paths
 
     print(*([paths.rtl] if options.folder else rtl_sources()), sep="\n")
     return OK
+
+
+def _campaign(options: argparse.Namespace) -> int:
+    from passo.campaign_command import campaign_of, run_campaign
+
+    return OK if run_campaign(*campaign_of(options)) else FAILED
 
 
 def _demo(options: argparse.Namespace) -> int:

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Environment variables for random cases; the same seed gives the same cases."""
 
+import math
 import os
+import random
 
 SEED_VARIABLE = "PASSO_SEED"
 
@@ -19,3 +21,8 @@ def moves(default: int) -> int:
 def fuzz_seconds() -> float:
     """Duration of each fuzzer in seconds: PASSO_FUZZ_SECONDS, default 5."""
     return float(os.environ.get("PASSO_FUZZ_SECONDS", "5"))
+
+
+def log_uniform(rng: random.Random, low: float, high: float) -> float:
+    """A number from `low` to `high`, both above 0; each order of magnitude is as likely."""
+    return math.exp(rng.uniform(math.log(low), math.log(high)))

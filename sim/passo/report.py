@@ -10,6 +10,7 @@ import numpy as np
 from passo.curve import step_errors
 from passo.moves import Channels
 from passo.plan import Q48
+from passo.pulse_judge import faults
 from passo.run import Run
 
 
@@ -34,12 +35,12 @@ def write_pulses(runs: list[Run], path: Path) -> None:
 
 
 def problems(runs: list[Run]) -> list[str]:
-    """Deviations from the plans, one sentence each."""
+    """Deviations from the plans, their curves and the pin timings, one sentence each."""
     several = runs[-1].file.channel > 0
     return [
-        f"channel {run.file.channel}: {problem}" if several else problem
+        f"channel {run.file.channel}: {fault.text}" if several else fault.text
         for run in runs
-        for problem in run.problems()
+        for fault in faults(run)
     ]
 
 
@@ -77,11 +78,12 @@ def summarize_channels(channels: Channels, runs: list[Run], engine: str) -> dict
 
 def summarize(run: Run, engine: str) -> dict[str, Any]:
     """The contents of summary.json for one channel."""
+    found = [fault.text for fault in faults(run)]
     return {
         "name": run.file.name,
         "engine": engine,
-        "ok": not run.problems(),
-        "problems": run.problems(),
+        "ok": not found,
+        "problems": found,
         "clock_hz": run.file.clock_hz,
         "total_clocks": run.total_clocks,
         "total_seconds": run.total_clocks / run.file.clock_hz,

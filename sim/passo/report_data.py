@@ -13,6 +13,7 @@ from passo.move_forms import SHAPED, USER
 from passo.moves import Channels
 from passo.plan import ALPHA_ONE, ALPHA_RESET, Q48, Plan
 from passo.plot_panels import units_of
+from passo.pulse_judge import faults
 from passo.registers import Shape
 from passo.report import problems, summarize_channels, total_clocks
 from passo.run import Run, parameters_of
@@ -102,7 +103,7 @@ def _events(runs: list[Run], several: bool) -> list[dict[str, Any]]:
         for index, plan in enumerate(run.plans):
             add(begin, f"move {run.file.number(index)} begins")
             begin += plan.clocks
-        wrong = run.problems()
+        wrong = [fault.text for fault in faults(run)]
         add(run.total_clocks, "the motion ends")
         for problem in wrong:
             add(run.total_clocks, problem, "fault")

@@ -1,18 +1,14 @@
 # SPDX-License-Identifier: MIT
 """Random machines and moves for the planner."""
 
-import math
 import random
 
 from passo import random_cases
+from passo.random_cases import log_uniform
 
 from tests.helpers.plans import AXES, Machine
 
 SEED = random_cases.seed()
-
-
-def log_uniform(rng: random.Random, low: float, high: float) -> float:
-    return math.exp(rng.uniform(math.log(low), math.log(high)))
 
 
 def some_machine(rng: random.Random) -> Machine:

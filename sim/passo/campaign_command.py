@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: MIT
+"""The command `passo campaign`: what it checks first, shows meanwhile, and leaves behind."""
+
+import argparse
+import os
+import time
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+
+from passo.campaign import Campaign, Result, carry_out, shrink_all, summary_of
+from passo.campaign_cluster import check_workers, jobs_of, local_cluster, prepare, running_cluster
+from passo.campaign_moves import Case
+from passo.campaign_play import ENGINES
+from passo.console import console, stages, table
+from passo.failure import BadInputError
+from passo.pulse_judge import Fault
+from passo.report import write_json
+from passo.toolchain import paths
+
+EVERY = 10  # seconds between two lines of progress
+SHOWN = 10  # failures told at once
+NAME = "campaign.json"
+
+
+@dataclass(frozen=True)
+class Where:
+    """Where a campaign is carried out, and where its results go."""
+
+    jobs: int | None = None
+    scheduler: str | None = None
+    out: Path = Path()
+    json: Path | None = None
+
+
+def campaign_of(options: argparse.Namespace) -> tuple[Campaign, Where]:
+    """What the options say."""
+    campaign = Campaign(options.moves, options.seed, options.engine, options.first)
+    return campaign, Where(options.jobs, options.scheduler, options.out, options.json)
+
+
+def run_campaign(campaign: Campaign, where: Where) -> bool:
+    """Carry it out, show and write the results; return whether there was no failure. Raises BadInputError."""
+    _check(campaign, where)
+    summary = where.json or paths.results / NAME
+    _check_folder(where.out, "--out")
+    _check_folder(summary.parent, "--json")
+    if local := where.scheduler is None:
+        prepare(campaign.engine)  # once, and not in all processes at the same time
+    cluster = local_cluster(jobs_of(where.jobs)) if local else running_cluster(where.scheduler)
+    with cluster as client:
+        check_workers(client, campaign.engine)
+        result = carry_out(campaign, client, _Progress(campaign))
+        if result.faults:
+            print(f"shrinking {min(len(result.faults), SHOWN)} of {len(result.faults)} failures", flush=True)
+        shrunk = shrink_all(result, client)
+    summary.parent.mkdir(parents=True, exist_ok=True)
+    write_json(summary_of(result, shrunk), summary)
+    _show(result)
+    print(f"results: {summary}")
+    if shrunk:
+        _show_failures(campaign, shrunk, where.out)
+    return not result.faults
+
+
+def _check(campaign: Campaign, where: Where) -> None:
+    if campaign.moves < 1:
+        raise BadInputError(f"--moves must be at least 1, not {campaign.moves}")
+    if campaign.first < 0:
+        raise BadInputError(f"--first must be at least 0, not {campaign.first}")
+    if campaign.engine not in ENGINES:
+        raise BadInputError(f"--engine must be one of {', '.join(ENGINES)}, not {campaign.engine}")
+    if where.jobs is not None and where.jobs < 1:
+        raise BadInputError(f"--jobs must be at least 1, not {where.jobs}")
+    if where.jobs is not None and where.scheduler is not None:
+        raise BadInputError("--jobs and --scheduler exclude each other: a cluster has its own workers")
+    if not find_spec("distributed"):
+        raise BadInputError("a campaign needs the Python package distributed: pip install 'passo[campaign]'")
+
+
+def _check_folder(folder: Path, option: str) -> None:
+    """Raises BadInputError if a folder cannot be made or written to."""
+    there = next(path for path in (folder.absolute(), *folder.absolute().parents) if path.exists())
+    if not there.is_dir() or not os.access(there, os.W_OK):
+        raise BadInputError(f"{option} {folder}: {there} is not a folder that can be written to")
+
+
+class _Progress:
+    """Tells of new failures at once, and of all others now and then."""
+
+    def __init__(self, campaign: Campaign):
+        self.campaign, self.tell, self.told = campaign, stages(), set[int]()
+        self.last = time.monotonic()
+
+    def __call__(self, result: Result) -> None:
+        for number in sorted(result.faults.keys() - self.told):
+            self.told.add(number)
+            if len(self.told) <= SHOWN:
+                fault = result.faults[number]
+                self.tell(f"FAIL move {number}: {fault.kind}: {fault.text}")
+        now, done = time.monotonic(), result.moves == self.campaign.moves
+        if now - self.last > EVERY or done:
+            self.last = now
+            rate = result.moves / max(result.seconds, 1e-9)
+            left = "" if done else f", {(self.campaign.moves - result.moves) / rate:,.0f} s left"
+            counted = f"{result.moves:,} of {self.campaign.moves:,} moves, {len(result.faults)} failed"
+            self.tell(f"{counted}, {rate:.1f} moves/s{left}")
+
+
+def _show(result: Result) -> None:
+    """The table at the end."""
+    campaign, rate = result.campaign, result.moves / max(result.seconds, 1e-9)
+    made = table("campaign", "", "")
+    rows = {
+        "seed": str(campaign.seed),
+        "engine": campaign.engine,
+        "moves": f"{result.moves:,}",
+        "refused": f"{result.refused.total():,}",
+        "steps": f"{result.counts['steps']:,}",
+        "failures": f"{len(result.faults):,}",
+        "seconds": f"{result.seconds:,.1f}",
+        "moves/s": f"{rate:,.1f}",
+        "moves/s per core": f"{rate / result.workers:,.1f}",
+        "moves per CPU second": f"{result.moves / max(result.cpu_seconds, 1e-9):,.1f}",
+    }
+    if campaign.engine == "rtl":
+        rows["edges that agree"] = f"{result.counts['edges']:,}"
+    for row in rows.items():
+        made.add_row(*row)
+    console.print(made)
+
+
+def _show_failures(campaign: Campaign, shrunk: list[tuple[Case, Fault]], out: Path) -> None:
+    """Write their files and say how to repeat them."""
+    out.mkdir(parents=True, exist_ok=True)
+    for case, fault in shrunk:
+        path = case.write(out)
+        print(f"move {case.number}: {fault.kind}: {fault.text}")
+        print(f"  again: passo run {path} --engine {ENGINES[campaign.engine]}")

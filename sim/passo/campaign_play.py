@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: MIT
+"""Plays a case of a campaign and judges it from outside: what a worker does."""
+
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from passo.campaign_moves import Case, draw
+from passo.campaign_refusals import acceptance_fault, refusal_fault
+from passo.engine import DifferenceError
+from passo.move_file import read_channels
+from passo.moves import Channels, MoveFileError
+from passo.plan import PlanError, plan_channels
+from passo.pulse_judge import Fault, faults
+from passo.run import Run, execute_channels, open_engine, parameters_of
+
+ENGINES = {"model": "model", "rtl": "both"}  # of a campaign; as `passo run` calls them
+CLOCKS_MAX = 1 << 25  # longer than any move that is drawn
+
+
+@dataclass
+class Outcome:
+    """What became of a case."""
+
+    refused: str = ""  # the reason
+    counts: Counter[str] = field(default_factory=Counter)
+    fault: Fault | None = None
+
+
+# Plays the motion of a case on an engine; tests have wrong ones.
+Player = Callable[[Case, str], Outcome]
+
+
+def play(case: Case, engine: str) -> Outcome:
+    """Write the case to a file, read, plan and play it; an exception is a fault, too."""
+    with tempfile.TemporaryDirectory(prefix="passo_campaign_") as folder:
+        try:
+            return play_file(case.write(Path(folder)), engine)
+        except DifferenceError as error:
+            return Outcome(fault=Fault("difference", str(error)))
+        except Exception as error:
+            return Outcome(fault=Fault(type(error).__name__, str(error).partition("\n")[0]))
+
+
+def play_file(path: Path, engine: str) -> Outcome:
+    """The same for a file, but exceptions of the engine are raised."""
+    channels = None
+    try:
+        channels = read_channels(path)
+        parameters = parameters_of(channels)
+        plans = plan_channels(channels, parameters)
+    except MoveFileError as error:
+        reason = error.__context__ if isinstance(error.__context__, PlanError) else f"FILE: {error}"
+        return Outcome(str(reason), fault=refusal_fault(error, channels))
+    if fault := acceptance_fault(channels):
+        return Outcome(fault=fault)
+    clocks = max(sum(plan.clocks for plan in own) for own in plans)
+    if clocks > CLOCKS_MAX:
+        return Outcome(fault=Fault("length", f"the motion would take {clocks} clocks"))
+    with open_engine(ENGINES[engine], parameters, channels.clock_hz) as core:
+        runs = execute_channels(channels, plans, core)
+    found = [fault for run in runs for fault in faults(run)]
+    if channels.together and len({run.start for run in runs}) > 1:
+        found.append(Fault("together", f"the channels started at clocks {[run.start for run in runs]}"))
+    return Outcome(counts=_counts(channels, runs), fault=found[0] if found else None)
+
+
+def _counts(channels: Channels, runs: list[Run]) -> Counter[str]:
+    return Counter(
+        steps=sum(len(run.steps(axis)[0]) for run in runs for axis in range(run.file.axes)),
+        clocks=max(run.late + run.total_clocks for run in runs),
+        edges=runs[0].matched_edges or 0,
+        parts=sum(len(file.moves) for file in channels.files),
+    )
+
+
+@dataclass
+class Batch:
+    """Results of consecutive cases."""
+
+    first: int
+    count: int
+    counts: Counter[str] = field(default_factory=Counter)
+    refused: Counter[str] = field(default_factory=Counter)
+    faults: dict[int, Fault] = field(default_factory=dict)  # by number of the case
+    cpu_seconds: float = 0  # of the process that played them
+
+
+def play_batch(seed: int, first: int, count: int, engine: str, player: Player) -> Batch:
+    """Draw and play the cases first .. first + count - 1."""
+    batch, began = Batch(first, count), time.process_time()
+    for number in range(first, first + count):
+        outcome = player(draw(seed, number), engine)
+        batch.counts += outcome.counts
+        batch.counts["moves"] += 1
+        if outcome.fault:
+            batch.faults[number] = outcome.fault
+        elif outcome.refused:
+            batch.refused[outcome.refused.partition(":")[0]] += 1
+    batch.cpu_seconds = time.process_time() - began
+    return batch

@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: MIT
+"""What the recorded pins of a motion must keep to: pulse timings, directions and the curve of the plan.
+
+The promises are those of docs/architecture.md, seen from outside: nothing here knows how the core steps.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from passo.curve import shapes_of
+from passo.plan import Q48, Plan
+from passo.run import Run
+from passo.shape import POINTS
+
+EARLY = 0.25  # substeps: the rounding to clocks is centred at full speed
+LATE = 1.25  # of any axis; the steps of the leading one are at whole substeps:
+LATE_LEADING = 0.25
+LATENCY = 8  # clocks from the substep to the pin
+ROUNDING = 2.0**-17  # of a shape: half a unit of its table
+DISTANCE = 0.25  # substeps by which a plan may miss its line
+FAR = 1e9  # clocks
+
+Curve = tuple[np.ndarray, np.ndarray]
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A broken promise; `kind` is a word."""
+
+    kind: str
+    text: str
+
+
+# A word in a sentence of `Run.problems`, and the kind of such a fault.
+KINDS = {"stopped": "stop", "missing": "drain", "made": "count", "is at": "position", "took": "clocks"}
+
+
+def faults(run: Run) -> list[Fault]:
+    """All broken promises of a motion; those of the pulses only if their number is right."""
+    found = [
+        Fault(next((kind for word, kind in KINDS.items() if word in text), "problem"), text)
+        for text in run.problems()
+    ]
+    return found or [fault for axis in range(run.file.axes) for fault in _axis(run, axis)]
+
+
+def _axis(run: Run, axis: int) -> Iterator[Fault]:
+    yield from timing_faults(run, axis)
+    yield from curve_faults(run, axis)
+
+
+def _first(bad: np.ndarray) -> int | None:
+    return int(np.argmax(bad)) if bad.any() else None
+
+
+def timing_faults(run: Run, axis: int) -> Iterator[Fault]:
+    """STEP high and low, DIR set-up and hold, the direction of each pulse; the first fault of each."""
+    pins, clock = run.file.pins, run.pins["clock"].astype(np.int64) - run.start
+    step, dir_ = (np.concatenate([[0], run.pins[pin] >> axis & 1]).astype(np.int8) for pin in ("step", "dir"))
+    rises, falls = clock[np.diff(step) > 0], clock[np.diff(step) < 0]
+    turns = clock[np.diff(dir_) != 0]
+    if len(falls) != len(rises):
+        yield Fault("high", f"axis {axis}: the last pulse does not end")
+        return
+    if (k := _first(falls - rises != pins.step_high)) is not None:
+        yield Fault("high", f"axis {axis}, step {k}: STEP is high for {falls[k] - rises[k]} clocks")
+    low = rises[1:] - falls[:-1]
+    if (k := _first(low < pins.step_low)) is not None:
+        yield Fault("low", f"axis {axis}, step {k + 1}: STEP was low for {low[k]} clocks")
+    before = np.searchsorted(turns, rises, "right")
+    setup = rises - np.concatenate([[-FAR], turns])[before]
+    if (k := _first(setup < pins.dir_setup)) is not None:
+        yield Fault("setup", f"axis {axis}, step {k}: DIR changed {int(setup[k])} clocks before")
+    hold = turns - np.concatenate([[-FAR], falls])[np.searchsorted(rises, turns, "left")] - pins.step_low
+    if (k := _first(hold < pins.dir_hold)) is not None:
+        yield Fault(
+            "hold", f"axis {axis}, clock {turns[k]}: DIR changed {int(hold[k])} clocks after the low time"
+        )
+    wanted = _directions(run, axis)
+    if (k := _first(wanted != run.steps(axis)[1])) is not None:
+        yield Fault("direction", f"axis {axis}, step {k}: its direction is {-wanted[k]}")
+
+
+def _directions(run: Run, axis: int) -> np.ndarray:
+    steps = [plan.move.steps[axis] for plan in run.plans]
+    return np.repeat(np.sign(steps), np.abs(steps))
+
+
+def expected(plan: Plan) -> Curve:
+    """Clocks since the start, and the substeps due by then: the curve, sampled in the middle of each tick.
+
+    Before and after the plan it goes on at its highest velocity, so that a step there is early or late.
+    """
+    velocities, velocity = [np.empty(0)], 0.0
+    shapes = shapes_of(plan)
+    for ramp in plan.ramps:
+        end, u = ramp.velocity_end / Q48, (np.arange(ramp.ticks) + 0.5) / max(ramp.ticks, 1)
+        points = shapes[ramp.shape](np.arange(POINTS + 1) / POINTS)[0]
+        s = np.interp(1 - u if ramp.mirror else u, np.arange(POINTS + 1) / POINTS, points)
+        velocities.append(velocity + (end - velocity) * (1 - s if ramp.mirror else s))
+        velocity = end
+    tick, peak = 1 << plan.tick_log2, plan.c.velocity_peak / Q48
+    distance = np.concatenate([[0], np.cumsum(np.concatenate(velocities))]) * tick
+    clocks = np.arange(len(distance), dtype=float) * tick
+    return (
+        np.concatenate([[-FAR], clocks, [clocks[-1] + FAR]]),
+        np.concatenate([[-FAR * peak], distance, [distance[-1] + FAR * peak]]),
+    )
+
+
+def _tolerance(plan: Plan) -> float:
+    """Substeps by which rounding may move a step."""
+    change, velocity = 0.0, 0
+    for ramp in plan.ramps:
+        change += abs(ramp.velocity_end - velocity) / Q48 * (ramp.ticks << plan.tick_log2)
+        velocity = ramp.velocity_end
+    return DISTANCE + change * ROUNDING
+
+
+def curve_faults(run: Run, axis: int) -> Iterator[Fault]:
+    """The first step that is early, and the first that is late although the pins did not keep it waiting."""
+    clocks, directions = run.steps(axis)
+    pins = run.file.pins
+    turned = np.concatenate([[True], directions[1:] != directions[:-1]])
+    turn = pins.step_low + pins.dir_hold + pins.dir_setup
+    gaps = np.diff(clocks, prepend=-int(FAR))
+    waited = gaps <= pins.step_high + pins.step_low + turned * (pins.dir_hold + pins.dir_setup + LATENCY)
+    first = begin = 0
+    for plan in run.plans:
+        count = abs(plan.move.steps[axis])
+        own = slice(first, first + count)
+        times, due = clocks[own] - begin, (np.arange(count) + 0.5) * plan.line.substeps / max(count, 1)
+        path, tolerance = expected(plan), _tolerance(plan)
+        lead = np.interp(times, *path) - due
+        leading = count == max(map(abs, plan.move.steps)) and plan.c.oversampling > 1
+        latest = LATE_LEADING if leading else LATE
+        in_time = np.interp(times - LATENCY - turned[own] * turn, *path) - due <= latest + tolerance
+        for word, bad in (("early", lead < -EARLY - tolerance), ("late", ~in_time & ~waited[own])):
+            if (k := _first(bad)) is not None:
+                where = f"axis {axis}, step {first + k}, clock {clocks[first + k]}"
+                yield Fault("curve", f"{where}: {word}, {abs(lead[k]):.3f} substeps from its place")
+        first += count
+        begin += plan.clocks
