@@ -250,6 +250,35 @@ def read_points(folder: Path, data: dict[str, Any]) -> tuple[int, ...]:
     return read_table(folder / names[0]) if names else ()
 
 
+SHORT = """clock_hz = 1_000_000
+[[move]]
+method = "jerk"
+steps = [1]
+speed = {speed}
+acceleration = 391070
+jerk = 4e9
+"""
+
+
+@pytest.mark.parametrize(("speed", "excused"), [(240, True), (0.24, False)])
+def test_only_a_link_that_is_too_slow_excuses_an_underrun(tmp_path: Path, speed: float, excused: bool) -> None:
+    """Moves of 4 ms at 1 MHz end before the link brings the next ones; longer ones do not."""
+    file = tmp_path / "short.toml"
+    file.write_text(SHORT.format(speed=speed) + 3 * SHORT.format(speed=speed).partition("\n")[2])
+    outcome = campaign_play.play_file(file, "model")
+    if excused:
+        assert outcome.refused.startswith("LINK_TOO_SLOW: the core stopped: RAMP_UNDERRUN")
+        return
+    assert outcome == Outcome(counts=outcome.counts)
+    dry = Run.problems
+
+    def stopped(run: Run) -> list[str]:
+        return [*dry(run), "the core stopped: RAMP_UNDERRUN: The ramps ran out at speed."]
+
+    with mock.patch.object(Run, "problems", stopped):
+        assert campaign_play.play_file(file, "model").fault.kind == "stop"
+
+
 def test_shrinking_keeps_the_kind_of_fault() -> None:
     case = next(draw(SEED, n) for n in range(60) if len(draw(SEED, n).data["move"]) == 3)
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from passo.campaign_moves import Case, draw
-from passo.campaign_refusals import acceptance_fault, refusal_fault
+from passo.campaign_refusals import acceptance_fault, outruns_the_link, refusal_fault
 from passo.engine import DifferenceError
 from passo.move_file import read_channels
 from passo.moves import Channels, MoveFileError
@@ -63,6 +63,8 @@ def play_file(path: Path, engine: str) -> Outcome:
     with open_engine(ENGINES[engine], parameters, channels.clock_hz) as core:
         runs = execute_channels(channels, plans, core)
     found = [fault for run in runs for fault in faults(run)]
+    if found and "RAMP_UNDERRUN" in found[0].text and outruns_the_link(plans, parameters):
+        return Outcome(f"LINK_TOO_SLOW: {found[0].text}")
     if channels.together and len({run.start for run in runs}) > 1:
         found.append(Fault("together", f"the channels started at clocks {[run.start for run in runs]}"))
     return Outcome(counts=_counts(channels, runs), fault=found[0] if found else None)

@@ -5,13 +5,15 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
+from passo.build import Parameters
 from passo.move_forms import ALPHA_MAX, ALPHA_MIN, SHAPED
 from passo.moves import Channels, Move, MoveFileError
-from passo.plan import PlanError
+from passo.plan import Plan, PlanError
 from passo.pulse_judge import Fault
 from passo.shape import ONE
 
 TICK = 128
+ROUND_TRIP = 1 << 14  # clocks: some frames
 ALMOST = Fraction(9, 10)  # rounding to ticks may take a move over a limit
 # What the reader of move files says of values, and of the tables of several moves.
 RULES = (
@@ -110,6 +112,17 @@ def _is_right(name: str, move: Move, file: Any) -> bool:
         return reason is not None and reason(move, file.clock_hz)
     except (AttributeError, ZeroDivisionError):
         return False  # a form without this value
+
+
+def outruns_the_link(plans: list[list[Plan]], parameters: Parameters) -> bool:
+    """Whether somewhere half a queue of ramps is over before the driver sends the other half."""
+    rest = 1 << parameters.ramp_queue_log2 - 1
+    return any(
+        sum(ticks[first : first + rest]) << parameters.tick_log2 < ROUND_TRIP
+        for own in plans
+        for ticks in [[ramp.ticks for plan in own for ramp in plan.ramps]]
+        for first in range(1, len(ticks) - rest)
+    )
 
 
 def acceptance_fault(channels: Channels) -> Fault | None:

@@ -19,6 +19,7 @@ from passo.registers import Cause, State
 
 CHUNK = 1_000_000  # clocks between two reports of progress
 SLEWS_PER_SECOND = 20  # of hold and stop, from full speed
+SOON = 1 << 16  # clocks: some tens of frames
 AXES_OF_CORES = (4, 8)
 
 # The pins of one channel that change during a motion.
@@ -162,10 +163,15 @@ class _Channel:
             self.moves = False  # the state shows the cause
 
     def hungry(self) -> int:
-        """Clocks from the start of the motion until half of the queue of ramps is free."""
-        parameters = self.driver.engine.parameters
-        kept = 1 << parameters.ramp_queue_log2 - 1
-        return sum(self.source.ticks[:-kept]) << parameters.tick_log2
+        """Clocks from the start of the motion until it is time for more ramps.
+
+        Half of the queue is free by then; if what it holds is over soon, there is room for one.
+        """
+        parameters, ticks = self.driver.engine.parameters, self.source.ticks
+        places = 1 << parameters.ramp_queue_log2
+        room, half = sum(ticks[: 1 - places]), sum(ticks[: -places // 2])
+        soon = sum(ticks) - (SOON >> parameters.tick_log2)
+        return max(room, min(half, soon)) << parameters.tick_log2
 
 
 def execute(
