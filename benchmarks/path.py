@@ -25,9 +25,15 @@ SETTINGS = PathSettings((PathAxis(), PathAxis(), PathAxis(400, 12, 100)))
 ALONG = replace(SETTINGS, acceleration=1000)  # as published figures have it
 UNLIMITED_AIM, LOOK_AHEAD_AIM, CIRCLE_AIM = 1.01, 1.05, 1.37
 FIRMWARE_LINES = 1000  # of a path are planned on the microcontroller
+SOFT_LINES = 150  # with each profile
 WANDERINGS = 200
 PLAYED = 10  # of the random polylines are played
-PROFILES = ("cosine", "sigmoid")
+PROFILES = ("linear", "cosine", "sigmoid", "jerk")
+# of the comparison of profiles: small steps, so that their times show the jerk
+SOFT = replace(
+    SETTINGS,
+    axes=(PathAxis(1600, jerk=50_000), PathAxis(1600, jerk=50_000), PathAxis(1600, 12, 100, jerk=5000)),
+)
 
 CASES: dict[str, Callable[[], list[Line]]] = {
     "circle": path_cases.circle,
@@ -36,6 +42,16 @@ CASES: dict[str, Callable[[], list[Line]]] = {
     "spiral": path_cases.spiral,
     "text": path_cases.text,
     "trochoid": path_cases.trochoid,
+}
+
+
+SOFT_CASES: dict[str, Callable[[], list[Line]]] = {
+    "circle": path_cases.circle,
+    "square": path_cases.square,
+    "star": path_cases.star,
+    "spiral": lambda: path_cases.spiral(1500),
+    "text": lambda: path_cases.text("PASSO"),
+    "trochoid": lambda: path_cases.trochoid(4),
 }
 
 
@@ -101,15 +117,33 @@ def wanderings() -> Result:
     return worst
 
 
-def shapes() -> dict[str, dict[str, float]]:
-    """Times of the shaped profiles relative to the linear one, with unlimited look-ahead."""
-    found: dict[str, dict[str, float]] = {profile: {} for profile in PROFILES}
-    for name, case in CASES.items():
+@dataclass
+class Soft:
+    """A path with one of the profiles."""
+
+    name: str
+    profile: str
+    time: float  # as a ratio of linear ramps, with unlimited look-ahead
+    look_ahead: float  # the same with LOOK_AHEAD lines
+    peak_jerk: float  # mm/s^3 along the path, over 8 ms, from the pulses
+    instructions: int  # per line, on the STM32F103
+
+
+def shapes() -> list[Soft]:
+    """Time and jerk of all profiles."""
+    found = []
+    for name, case in SOFT_CASES.items():
         lines = case()
-        linear = plan(lines, SETTINGS, len(lines) + 4).seconds
+        linear = [plan(lines, SOFT, n).seconds for n in (len(lines) + 4, LOOK_AHEAD)]
         for profile in PROFILES:
-            planned = plan(lines, replace(SETTINGS, profile=profile), len(lines) + 4)
-            found[profile][name] = round(planned.seconds / linear, 4)
+            settings = replace(SOFT, profile=profile)
+            times = [plan(lines, settings, n).seconds for n in (len(lines) + 4, LOOK_AHEAD)]
+            verdict = judge(lines, settings, play(lines, settings))
+            assert not verdict.problems, (name, profile, verdict.problems)
+            cost = measure(lines[:SOFT_LINES], settings)
+            assert cost.same, f"{name}, {profile}: the microcontroller plans something else"
+            ratios = (times[0] / linear[0], times[1] / linear[1])
+            found.append(Soft(name, profile, *ratios, verdict.peak_jerk, cost.per_line))
     return found
 
 
@@ -124,13 +158,13 @@ def main() -> None:
         count(result, lines)
         results.append(result)
     results.append(wanderings())
-    console.print("Shaped ramps ...")
+    console.print("Profiles ...")
     shaped = shapes()
     circle = plan(path_cases.circle(), ALONG, LOOK_AHEAD).seconds
     show(results, shaped, circle)
     report: dict[str, Any] = {
         "paths": [asdict(result) for result in results],
-        "shaped": shaped,
+        "profiles": [asdict(soft) for soft in shaped],
         "circle_seconds": circle,
         "met": all(result.met for result in results) and circle <= CIRCLE_AIM,
     }
@@ -140,7 +174,7 @@ def main() -> None:
         raise SystemExit("an aim is missed")
 
 
-def show(results: Sequence[Result], shaped: dict[str, dict[str, float]], circle: float) -> None:
+def show(results: Sequence[Result], shaped: Sequence[Soft], circle: float) -> None:
     """Print the tables."""
     shown = table(
         f"Time as a ratio of the fastest motion possible (aims: {UNLIMITED_AIM}, {LOOK_AHEAD_AIM})",
@@ -155,9 +189,13 @@ def show(results: Sequence[Result], shaped: dict[str, dict[str, float]], circle:
         shown.add_row(r.name, f"{r.lines:,}", f"{r.seconds:.3f}", *ratios, f"{r.ramps:,}")
         shares = (f"{r.speed:.4f}", f"{r.acceleration:.4f}", f"{r.corner:.4f}")
         limits.add_row(r.name, *shares, f"{r.instructions:,}" if r.instructions else "")
-    gentle = table("Time with shaped ramps, as a ratio of linear ones", "path", *PROFILES)
-    for name in CASES:
-        gentle.add_row(name, *(f"{shaped[profile][name]:.4f}" for profile in PROFILES))
+    gentle = table(
+        "Profiles: time as a ratio of linear ramps; peak jerk along the path, from the pulses; limit 50,000",
+        *("path", "profile", "unlimited", f"{LOOK_AHEAD} lines", "mm/s^3", "instructions"),
+    )
+    for s in shaped:
+        ratios = (f"{s.time:.4f}", f"{s.look_ahead:.4f}")
+        gentle.add_row(s.name, s.profile, *ratios, f"{s.peak_jerk:,.0f}", f"{s.instructions:,}")
     for one in (shown, limits, gentle):
         console.print(one)
     console.print(f"The circle with 1000 mm/s^2 along the path: {circle:.4f} s (aim: {CIRCLE_AIM} s)")

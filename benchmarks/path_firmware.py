@@ -42,7 +42,8 @@ def path_elf() -> FilePath:
         *sources(paths.driver, paths.planner, paths.protocol),
     ]
     elf = folder / "passo.elf"
-    make_firmware(f"OUT={folder}", f"SOURCES={' '.join(map(str, files))}", str(elf))
+    left_out = "LEFT_OUT=-DPASSO_WITHOUT_GOTO"
+    make_firmware(f"OUT={folder}", left_out, f"SOURCES={' '.join(map(str, files))}", str(elf))
     return elf
 
 

@@ -25,6 +25,7 @@ class Limits:
     unit: np.ndarray  # line x axis
     top: np.ndarray  # square within the line
     acceleration: np.ndarray  # along the path
+    jerk: np.ndarray  # along the path; only profile jerk has a limit
     corner: np.ndarray  # square at the start
     start: float  # square at the beginning and the end of the path
     stop: float
@@ -39,13 +40,16 @@ def limits_of(lines: Sequence[Line], settings: PathSettings, arcs: bool = True) 
     feed = np.array([UNLIMITED if feed is None else feed for _, feed in lines])[length > 0]
     delta, length = delta[length > 0], length[length > 0]
     unit = delta / length[:, None]
-    speed, acceleration, jump = (
+    speed, acceleration, jump, jerk = (
         np.array([float(getattr(axis, name)) for axis in settings.axes])
-        for name in ("speed", "acceleration", "jump")
+        for name in ("speed", "acceleration", "jump", "jerk")
     )
+    if settings.profile != "jerk":
+        jerk[:] = UNLIMITED
     with np.errstate(divide="ignore"):
         top = np.minimum(feed, (speed / np.abs(unit)).min(axis=1)) ** 2
         along = (acceleration / np.abs(unit)).min(axis=1)
+        soft = (jerk / np.abs(unit)).min(axis=1)
         along = np.minimum(along, float(settings.acceleration) or UNLIMITED)
         ends = (np.where(unit == 0, UNLIMITED, jump) / np.maximum(np.abs(unit), 1e-12)).min(axis=1) ** 2
     corner = np.full(len(length), UNLIMITED)
@@ -62,6 +66,8 @@ def limits_of(lines: Sequence[Line], settings: PathSettings, arcs: bool = True) 
         arc[i] = mean < rounded
         moved = change > 1e-9
         corner[i] = (acceleration[moved] / change[moved]).min() * min(mean, rounded)
+        radius = min(mean, rounded) / (2 * cosine)
+        corner[i] = min(corner[i], (jerk[moved].min() * radius**2) ** (2 / 3))
         jumps = moved & (jump > 0)
         if jumps.any():
             corner[i] = min(corner[i], (jump[jumps] / change[jumps]).min() ** 2)
@@ -69,7 +75,7 @@ def limits_of(lines: Sequence[Line], settings: PathSettings, arcs: bool = True) 
     for i in range(1, len(length) - 1):
         if arcs and arc[i] and arc[i + 1]:
             top[i] = min(top[i], max(corner[i], corner[i + 1]))
-    return Limits(length, unit, top, along, corner, min(ends[0], top[0]), min(ends[-1], top[-1]))
+    return Limits(length, unit, top, along, soft, corner, min(ends[0], top[0]), min(ends[-1], top[-1]))
 
 
 def profile(limits: Limits) -> tuple[np.ndarray, np.ndarray]:

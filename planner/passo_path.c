@@ -103,6 +103,16 @@ bool passo_path_is_settled(const struct passo_path_planner *path, uint32_t index
 	return index < path->final;
 }
 
+/* Highest square at the start of an item from which the path can come to rest. */
+static uint64_t reach_of(const struct passo_path_planner *path, uint32_t index)
+{
+	const struct passo_path_item *item = passo_path_item(path, index);
+	const uint64_t most = passo_path_end_square(path, index)
+	                    + passo_path_gain(passo_path_down_slope(item), (uint64_t)item->substeps << 32);
+
+	return passo_path_smaller(item->corner, most);
+}
+
 /* Goes back from the newest line as long as anything changes. */
 void passo_path_look_back(struct passo_path_planner *path)
 {
@@ -110,10 +120,8 @@ void passo_path_look_back(struct passo_path_planner *path)
 
 	for (uint32_t index = path->added; index-- > path->planned && index >= path->final;) {
 		struct passo_path_item *item = passo_path_item(path, index);
-		const uint64_t most =
-		    passo_path_end_square(path, index)
-		    + passo_path_gain(passo_path_down_slope(item), (uint64_t)item->substeps << 32);
-		const uint64_t reach = passo_path_smaller(item->corner, most);
+		const uint64_t reach =
+		    passo_path_is_soft(path) ? passo_path_soft_reach(path, index) : reach_of(path, index);
 
 		if ((reach == item->corner || item->rest) && final < index)
 			final = index;

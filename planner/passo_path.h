@@ -37,6 +37,7 @@ struct passo_path_axis {
 	uint64_t steps_per_mm;
 	uint64_t speed;        /* mm/s */
 	uint64_t acceleration; /* mm/s^2 */
+	uint64_t jerk;         /* mm/s^3, for profile jerk */
 	uint64_t jump; /* mm/s that the axis may start, stop and change at once; 0: it starts and stops at
 	                  rest, and corners are limited by the other rules alone */
 };
@@ -46,7 +47,7 @@ struct passo_path_settings {
 	struct passo_path_axis axis[PASSO_AXES_MAX];
 	uint64_t acceleration;       /* UQ32.32 mm/s^2 along the path; 0: only those of the axes */
 	uint64_t junction_deviation; /* UQ32.32 mm; 0: rest at every corner */
-	enum passo_profile profile;  /* linear, cosine or sigmoid */
+	enum passo_profile profile;  /* linear, cosine, sigmoid or jerk */
 	uint32_t reserve_clocks;     /* the core is never left with less, unless the path ends; 0: 20 ms */
 };
 
@@ -55,6 +56,14 @@ struct passo_path_move {
 	int64_t target[PASSO_AXES_MAX]; /* Q31.32 mm, absolute; steps are rounded from it */
 	uint64_t feed;                  /* UQ32.32 mm/s along the path, or PASSO_PATH_RAPID */
 	uint32_t output;                /* of the line; see passo_output_word() of the driver */
+};
+
+/* Profile jerk: how the path comes down from the start of a line to that of a later one, private. */
+struct passo_path_descent {
+	uint64_t slope, jerk; /* lowest of the lines between */
+	uint64_t length;      /* UQ32.32 substeps */
+	uint64_t lowest;      /* UQ0.48 substeps per clock: what the corners from here on allow */
+	uint32_t anchor;      /* number of the later line */
 };
 
 /* A line of the path, private. Squares are those of velocities, UQ0.64 (substeps per clock)^2. */
@@ -76,11 +85,17 @@ struct passo_path_item {
 	bool last;          /* the motion ends with the line */
 	bool arc;           /* the corner at its start is limited as part of an arc */
 	bool rapid;         /* its feed is PASSO_PATH_RAPID */
+#ifndef PASSO_WITHOUT_JERK_PATHS
+	uint64_t jerk; /* profile jerk: change of the velocity by the square of the time that it takes at
+	                  least, UQ0.80 substeps per clock^3 */
+	struct passo_path_descent descent;
+#endif
 };
 
 /* The limits of an axis in substeps and clocks. */
 struct passo_path_scale {
 	uint64_t acceleration; /* UQ0.64 substeps per clock^2 */
+	uint64_t jerk;         /* UQ0.80 substeps per clock^3 */
 	uint32_t speed;        /* UQ0.32 substeps per clock */
 	uint32_t jump;         /* the same */
 };
@@ -118,11 +133,12 @@ struct passo_path_planner {
 	uint32_t reserve;    /* ticks */
 	uint32_t gentleness; /* UQ0.16: what a shape leaves of the acceleration */
 	enum passo_shape shape;
+	bool soft; /* profile jerk */
 };
 
 /* Starts a path at position 0 of all axes. `items` has room for `capacity` lines, at least
  * PASSO_PATH_ITEMS_MIN: the look-ahead. Errors: BAD_CLOCK, BAD_AXES, BAD_PROFILE, NO_SCALE, NO_AXIS_SPEED,
- * NO_AXIS_ACCELERATION, TOO_FAST, PATH_FULL (capacity too small). */
+ * NO_AXIS_ACCELERATION, NO_JERK, TOO_FAST, PATH_FULL (capacity too small). */
 enum passo_plan_error passo_path_open(struct passo_path_planner *path,
     const struct passo_path_settings *settings, struct passo_path_item *items, uint32_t capacity);
 

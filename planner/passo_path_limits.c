@@ -96,7 +96,7 @@ static uint64_t limit_line(
 		? passo_path_larger(1, passo_mul_div(feed, path->substeps_per_mm, path->machine.clock_hz))
 		: SPEED_MAX;
 	uint64_t speed = SPEED_MAX;
-	uint64_t slope = 2 * path->acceleration, weakest = slope, jump = SPEED_MAX;
+	uint64_t slope = 2 * path->acceleration, weakest = slope, jump = SPEED_MAX, jerk = UINT64_MAX;
 
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
 		const struct passo_path_scale *own = &path->axis[axis];
@@ -108,13 +108,18 @@ static uint64_t limit_line(
 		slope = passo_path_smaller(slope, passo_mul_div(2 * own->acceleration, ONE, share));
 		weakest = passo_path_smaller(weakest, 2 * own->acceleration);
 		jump = passo_path_smaller(jump, ((uint64_t)own->jump << PASSO_PATH_UNIT_BITS) / share);
+		jerk = passo_path_smaller(jerk, passo_mul_div(own->jerk, ONE, share));
 	}
 	item->feed = square_of(wanted);
 	item->rapid = feed == PASSO_PATH_RAPID;
 	item->limit = square_of(speed);
-	if (path->shape != PASSO_SHAPE_LINEAR)
+	if (passo_path_is_soft(path))
+		slope = passo_mul_div(slope, path->gentleness, UINT32_C(1) << 16);
+	else if (path->shape != PASSO_SHAPE_LINEAR)
 		slope = shaped_slope(path, slope, weakest);
 	item->slope = passo_path_larger(slope, 1);
+	if (passo_path_is_soft(path))
+		passo_path_soften(item, jerk);
 	return passo_path_smaller(square_of(jump), passo_path_smaller(item->feed, item->limit));
 }
 
@@ -127,6 +132,29 @@ static uint64_t half_arc(const struct passo_path_planner *path, uint64_t turn)
 	const uint64_t sine = passo_isqrt64(one - passo_path_smaller(turn / 4, one));
 
 	return passo_mul_div(path->deviation, 2 * sine * (ONE + sine) / cosine, ONE);
+}
+
+/* Highest velocity (UQ0.32) on an arc that makes this turn over this length (UQ.30 substeps), by the jerk of
+ * the weakest axis: its cube is the jerk times the square of the radius. */
+static uint64_t soft_corner(
+    const struct passo_path_planner *path, const uint32_t *change, uint64_t turn, uint64_t over)
+{
+	const uint64_t radius = passo_path_smaller(
+	    passo_mul_div(over, 256, passo_path_larger(passo_isqrt64(turn), 1)), UINT32_MAX); /* UQ.8 */
+	uint64_t jerk = PASSO_PATH_SQUARE_MAX, velocity = 0;
+
+	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
+		if (change[axis] > 0)
+			jerk = passo_path_smaller(jerk, path->axis[axis].jerk);
+	}
+	const struct passo_u128 cube = passo_multiply(jerk, radius * radius);
+	for (uint64_t bit = SPEED_MAX / 2; bit > 0; bit /= 2) {
+		const uint64_t tried = velocity | bit;
+
+		if (!passo_u128_less(cube, passo_multiply(tried * tried, tried)))
+			velocity = tried;
+	}
+	return velocity;
 }
 
 /* Square at the corner between the last line and this one. The change of direction of an axis takes place
@@ -160,6 +188,8 @@ static uint64_t limit_corner(
 			square = passo_path_smaller(
 			    square, square_of(((uint64_t)own->jump << PASSO_PATH_UNIT_BITS) / change[axis]));
 	}
+	if (passo_path_is_soft(path))
+		square = passo_path_smaller(square, square_of(soft_corner(path, change, turn, over)));
 	return square;
 }
 

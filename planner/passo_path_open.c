@@ -46,6 +46,15 @@ static uint32_t substeps_per_mm(const struct passo_path_settings *settings)
 	return least > fastest ? 0 : (uint32_t)passo_path_larger(least, wanted);
 }
 
+static bool has_profile(enum passo_profile profile)
+{
+#ifdef PASSO_WITHOUT_JERK_PATHS
+	if (profile == PASSO_PROFILE_JERK)
+		return false;
+#endif
+	return (unsigned)profile < PASSO_PROFILE_COUNT;
+}
+
 static enum passo_plan_error check(const struct passo_path_settings *settings)
 {
 	const struct passo_machine *machine = &settings->machine;
@@ -55,8 +64,7 @@ static enum passo_plan_error check(const struct passo_path_settings *settings)
 		return PASSO_PLAN_BAD_CLOCK;
 	if (machine->axes < 1 || machine->axes > PASSO_AXES_MAX)
 		return PASSO_PLAN_BAD_AXES;
-	if (settings->profile != PASSO_PROFILE_LINEAR && settings->profile != PASSO_PROFILE_COSINE
-	    && settings->profile != PASSO_PROFILE_SIGMOID)
+	if (!has_profile(settings->profile))
 		return PASSO_PLAN_BAD_PROFILE;
 	for (uint32_t axis = 0; axis < machine->axes; axis++) {
 		const struct passo_path_axis *own = &settings->axis[axis];
@@ -67,6 +75,8 @@ static enum passo_plan_error check(const struct passo_path_settings *settings)
 			return PASSO_PLAN_NO_AXIS_SPEED;
 		if (own->acceleration == 0)
 			return PASSO_PLAN_NO_AXIS_ACCELERATION;
+		if (own->jerk == 0 && settings->profile == PASSO_PROFILE_JERK)
+			return PASSO_PLAN_NO_JERK;
 		if (own->steps_per_mm > STEPS_PER_MM_MAX)
 			return PASSO_PLAN_TOO_FAST;
 	}
@@ -99,6 +109,17 @@ static uint64_t acceleration_of(const struct passo_path_planner *path, uint64_t 
 	return passo_path_larger(1, passo_path_smaller(scaled, PASSO_PATH_SQUARE_MAX >> 2));
 }
 
+/* UQ0.80 substeps per clock^3, at least 1. */
+static uint64_t jerk_of(const struct passo_path_planner *path, uint64_t jerk)
+{
+	const uint32_t hz = path->machine.clock_hz;
+	uint64_t scaled = passo_mul_div(jerk, path->substeps_per_mm, hz); /* UQ.32 per second^2 */
+
+	for (unsigned i = 0; i < 2; i++)
+		scaled = passo_mul_div(scaled, UINT32_C(1) << 24, hz);
+	return passo_path_larger(1, passo_path_smaller(scaled, PASSO_PATH_SQUARE_MAX));
+}
+
 static struct passo_path_scale scale_of(
     const struct passo_path_planner *path, const struct passo_path_axis *own)
 {
@@ -107,6 +128,7 @@ static struct passo_path_scale scale_of(
 
 	return (struct passo_path_scale){
 	    .acceleration = acceleration_of(path, own->acceleration),
+	    .jerk = jerk_of(path, own->jerk),
 	    .speed = (uint32_t)passo_path_larger(1, passo_mul_div(own->speed, path->substeps_per_mm, hz)),
 	    .jump = (uint32_t)passo_path_smaller(jump, UINT32_C(1) << 31),
 	};
@@ -116,6 +138,12 @@ enum passo_plan_error passo_path_open(struct passo_path_planner *path,
     const struct passo_path_settings *settings, struct passo_path_item *items, uint32_t capacity)
 {
 	static const int32_t ORIGIN[PASSO_AXES_MAX];
+	static const enum passo_shape SHAPES[] = {
+	    [PASSO_PROFILE_LINEAR] = PASSO_SHAPE_LINEAR,
+	    [PASSO_PROFILE_COSINE] = PASSO_SHAPE_COSINE,
+	    [PASSO_PROFILE_SIGMOID] = PASSO_SHAPE_SIGMOID,
+	    [PASSO_PROFILE_JERK] = PASSO_SHAPE_COSINE,
+	};
 	const enum passo_plan_error error = check(settings);
 
 	if (error != PASSO_PLAN_OK)
@@ -137,9 +165,8 @@ enum passo_plan_error passo_path_open(struct passo_path_planner *path,
 	    .rapid = PASSO_PATH_RAPID_FULL,
 	    .deviation = passo_mul_div(settings->junction_deviation, scale, UINT32_C(1) << 16),
 	    .reserve = (reserve >> machine->tick_log2) + 1,
-	    .shape = settings->profile == PASSO_PROFILE_COSINE  ? PASSO_SHAPE_COSINE
-	           : settings->profile == PASSO_PROFILE_SIGMOID ? PASSO_SHAPE_SIGMOID
-	                                                        : PASSO_SHAPE_LINEAR,
+	    .shape = SHAPES[settings->profile],
+	    .soft = settings->profile == PASSO_PROFILE_JERK, /* see passo_path_is_soft() */
 	};
 	path->gentleness = gentleness(path->shape);
 	path->acceleration = settings->acceleration > 0 ? acceleration_of(path, settings->acceleration)

@@ -19,6 +19,9 @@
 /* Longest ramp that is not shaped: a longer one is cut. */
 #define PASSO_PATH_TICKS_MAX (UINT32_C(1) << 15)
 
+/* Longest shaped ramp. */
+#define PASSO_PATH_SHAPED_TICKS_MAX (UINT32_C(1) << 20)
+
 /* The path comes to rest from a velocity that the acceleration makes in so many ticks. */
 #define PASSO_PATH_LANDING_TICKS 2u
 
@@ -55,6 +58,29 @@ static inline uint64_t passo_path_larger(uint64_t a, uint64_t b)
 	return a > b ? a : b;
 }
 
+/* Profile jerk, which an image without room leaves out: PASSO_WITHOUT_JERK_PATHS. */
+static inline bool passo_path_is_soft(const struct passo_path_planner *path)
+{
+#ifdef PASSO_WITHOUT_JERK_PATHS
+	(void)path;
+	return false;
+#else
+	return path->soft;
+#endif
+}
+
+/* The velocity (UQ0.48) of a square, and the square of a velocity. */
+static inline uint64_t passo_path_velocity_of(uint64_t square)
+{
+	return (uint64_t)passo_isqrt64(square) << PASSO_PATH_VELOCITY_SHIFT;
+}
+
+static inline uint64_t passo_path_square_of(uint64_t velocity)
+{
+	velocity >>= PASSO_PATH_VELOCITY_SHIFT;
+	return velocity * velocity;
+}
+
 /* Deceleration is planned a little below the limit, so that it can make up for ramps that end at ticks. */
 static inline uint64_t passo_path_down_slope(const struct passo_path_item *item)
 {
@@ -74,6 +100,12 @@ enum passo_plan_error passo_path_measure(
 
 /* Sets the limits of an item, `top` and, unless the path rests there, `corner`; those before it are known. */
 void passo_path_limit(struct passo_path_planner *path, uint32_t index);
+
+/* Ticks over a length (UQ32.32 substeps) at the mean of two velocities, whose sum is given, rounded down. */
+uint64_t passo_path_ticks_over(const struct passo_path_planner *path, uint64_t length, uint64_t speeds);
+
+/* The newest line is handed out when the next one is known, or when it is the last. */
+bool passo_path_is_held_back(const struct passo_path_planner *path, uint32_t index);
 
 /* The path rests at the end of this item, as far as is known. */
 bool passo_path_rests_after(const struct passo_path_planner *path, uint32_t index);
@@ -101,6 +133,14 @@ void passo_path_land(
 
 /* The first item at whose start a shaped ramp would exceed the limit of the corner; `added`: none. */
 uint32_t passo_path_too_fast(const struct passo_path_planner *path, const struct passo_path_aim *aim);
+
+/* Profile jerk: the limit of an item along its line, UQ0.80 substeps per clock^3. */
+void passo_path_soften(struct passo_path_item *item, uint64_t jerk);
+
+/* Profile jerk: `reach` of an item, those behind it being known, and its descent; and what the next ramp aims
+ * at. Unless it is needed, the aim is open where further lines can change it. */
+uint64_t passo_path_soft_reach(struct passo_path_planner *path, uint32_t index);
+struct passo_path_aim passo_path_soft_aim(const struct passo_path_planner *path, bool needed);
 
 /* Sets ticks and progress step. */
 void passo_path_set_ticks(struct passo_ramp *ramp, uint32_t ticks);

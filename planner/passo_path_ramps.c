@@ -13,38 +13,23 @@
 #define RAMPS_PER_RESERVE 4u
 /* Shorter ramps are linear whatever the shape. */
 #define SHAPED_TICKS_MIN 64u
-/* Longest shaped ramp. */
-#define SHAPED_TICKS_MAX (UINT32_C(1) << 20)
 
 /* Why ramps are made beyond what is settled. */
 enum need { NO_NEED, FULL, DRY };
 
-static uint64_t square_of(uint64_t velocity)
-{
-	velocity >>= PASSO_PATH_VELOCITY_SHIFT;
-	return velocity * velocity;
-}
-
-static uint64_t velocity_of(uint64_t square)
-{
-	return (uint64_t)passo_isqrt64(square) << PASSO_PATH_VELOCITY_SHIFT;
-}
-
-/* Ticks over a length, rounded down. */
-static uint64_t ticks_over(const struct passo_path_planner *path, uint64_t length, uint64_t speeds)
+uint64_t passo_path_ticks_over(const struct passo_path_planner *path, uint64_t length, uint64_t speeds)
 {
 	return passo_mul_div(length, UINT64_C(1) << (17u - path->machine.tick_log2), speeds);
 }
 
 static uint64_t ticks_to(const struct passo_path_planner *path, const struct passo_path_aim *aim)
 {
-	const uint64_t speeds = path->velocity + velocity_of(aim->square);
+	const uint64_t speeds = path->velocity + passo_path_velocity_of(aim->square);
 
-	return speeds > 0 ? ticks_over(path, aim->length, speeds) : UINT32_MAX;
+	return speeds > 0 ? passo_path_ticks_over(path, aim->length, speeds) : UINT32_MAX;
 }
 
-/* The newest line is handed out when the next one is known, or when it is the last. */
-static bool is_held_back(const struct passo_path_planner *path, uint32_t index)
+bool passo_path_is_held_back(const struct passo_path_planner *path, uint32_t index)
 {
 	return index + 1 == path->added && !passo_path_item(path, index)->last;
 }
@@ -53,7 +38,7 @@ static bool is_held_back(const struct passo_path_planner *path, uint32_t index)
 static bool is_due(const struct passo_path_planner *path, const struct passo_path_aim *aim, uint32_t index,
     const struct passo_path_part *part, enum need need)
 {
-	if (is_held_back(path, index))
+	if (passo_path_is_held_back(path, index))
 		return false;
 	if (need == DRY || part->kind != PASSO_PATH_DOWN || passo_path_is_settled(path, index))
 		return true;
@@ -77,7 +62,7 @@ static bool is_enough(const struct passo_path_planner *path, const struct passo_
 /* Follows the profile, at most to the start of item `before`. */
 static struct passo_path_aim find_aim(const struct passo_path_planner *path, enum need need, uint32_t before)
 {
-	struct passo_path_aim aim = {.square = square_of(path->velocity)};
+	struct passo_path_aim aim = {.square = passo_path_square_of(path->velocity)};
 	uint32_t index = path->planned;
 	uint64_t left = ((uint64_t)passo_path_item(path, index)->substeps << 32) - (uint64_t)path->offset;
 
@@ -119,6 +104,8 @@ static bool is_shaped(const struct passo_path_planner *path, const struct passo_
  * them. */
 static struct passo_path_aim choose_aim(const struct passo_path_planner *path, enum need need)
 {
+	if (passo_path_is_soft(path))
+		return passo_path_soft_aim(path, need != NO_NEED);
 	struct passo_path_aim aim = find_aim(path, need, path->added);
 	uint32_t before;
 
@@ -160,7 +147,7 @@ static void come_to_rest(struct passo_path_planner *path, bool *last)
 {
 	const struct passo_path_item *item = passo_path_item(path, path->planned);
 
-	if (is_held_back(path, path->planned))
+	if (passo_path_is_held_back(path, path->planned))
 		passo_path_end(path);
 	*last = item->last;
 	path->offset = item->last ? 0 : path->offset - ((int64_t)item->substeps << 32);
@@ -186,10 +173,11 @@ static void land(struct passo_path_planner *path, const struct passo_path_aim *a
 static void follow(
     struct passo_path_planner *path, const struct passo_path_aim *aim, uint32_t most, struct passo_ramp *ramp)
 {
-	const uint64_t begin = path->velocity, end = velocity_of(aim->square);
+	const uint64_t begin = path->velocity, end = passo_path_velocity_of(aim->square);
 	const uint64_t ticks = passo_path_larger(ticks_to(path, aim), 1);
 	const bool shaped = is_shaped(path, aim);
-	const uint32_t used = (uint32_t)passo_path_smaller(ticks, shaped ? SHAPED_TICKS_MAX : most);
+	const uint32_t used =
+	    (uint32_t)passo_path_smaller(ticks, shaped ? PASSO_PATH_SHAPED_TICKS_MAX : most);
 	const uint64_t limit = passo_path_change(path, aim->slope, used);
 	uint64_t change = begin < end ? end - begin : begin - end;
 
@@ -214,7 +202,7 @@ static bool start(struct passo_path_planner *path, struct passo_ramp *ramp)
 	}
 	path->started = true;
 	path->at_rest = false;
-	ramp->velocity_end = velocity_of(passo_path_smaller(item->reach, item->top));
+	ramp->velocity_end = passo_path_velocity_of(passo_path_smaller(item->reach, item->top));
 	path->velocity = ramp->velocity_end;
 	return ramp->velocity_end > 0;
 }
@@ -234,7 +222,7 @@ bool passo_path_next_ramp(struct passo_path_planner *path, uint32_t held, struct
 		return false;
 
 	if (path->at_rest) {
-		if (is_held_back(path, path->planned)) {
+		if (passo_path_is_held_back(path, path->planned)) {
 			if (held >= path->reserve)
 				return false;
 			passo_path_end(path);
@@ -244,23 +232,23 @@ bool passo_path_next_ramp(struct passo_path_planner *path, uint32_t held, struct
 	}
 	struct passo_path_aim aim = choose_aim(path, NO_NEED);
 	uint32_t most = PASSO_PATH_TICKS_MAX;
-	if (aim.open && ticks_to(path, &aim) < path->reserve / RAMPS_PER_RESERVE) {
+	if (aim.open && (aim.length == 0 || ticks_to(path, &aim) < path->reserve / RAMPS_PER_RESERVE)) {
 		const bool is_full = path->added - path->planned == path->capacity;
 
 		if (!is_full && held >= path->reserve)
 			return false;
-		if (!is_full && is_held_back(path, path->planned))
+		if (!is_full && passo_path_is_held_back(path, path->planned))
 			passo_path_end(path);
 		aim = choose_aim(path, is_full ? FULL : DRY);
 		if (!is_full)
 			most = path->reserve / RAMPS_PER_RESERVE + 1;
 	}
 	if (aim.rest) {
-		const uint64_t landing = passo_path_larger(
-		    velocity_of(aim.square), passo_path_change(path, aim.slope, PASSO_PATH_LANDING_TICKS));
-		const uint64_t ticks = ticks_over(path, aim.length, path->velocity + landing) + 1;
+		const uint64_t landing = passo_path_larger(passo_path_velocity_of(aim.square),
+		    passo_path_change(path, aim.slope, PASSO_PATH_LANDING_TICKS));
+		const uint64_t ticks = passo_path_ticks_over(path, aim.length, path->velocity + landing) + 1;
 
-		if (ticks <= (is_shaped(path, &aim) ? SHAPED_TICKS_MAX : most)) {
+		if (ticks <= (is_shaped(path, &aim) ? PASSO_PATH_SHAPED_TICKS_MAX : most)) {
 			land(path, &aim, (uint32_t)ticks, ramp);
 			return true;
 		}

@@ -53,7 +53,7 @@ static struct passo_path_settings any_settings(void)
 		(uint8_t)(below(8) ? 7 : below(20)), (uint8_t)(below(30) ? 1 + below(8) : below(12))},
 	    .acceleration = below(2) ? 0 : any(64),
 	    .junction_deviation = below(3) ? PASSO_UNIT_Q32 / 100 : any(64),
-	    .profile = PROFILES[below(40) ? below(3) : 3],
+	    .profile = PROFILES[below(4)],
 	    .reserve_clocks = below(2) ? 0 : (uint32_t)any(32),
 	};
 
@@ -64,6 +64,7 @@ static struct passo_path_settings any_settings(void)
 		    .steps_per_mm = wild ? any(64) : (1 + below(1000)) * PASSO_UNIT_Q32,
 		    .speed = wild ? any(64) : (1 + below(1000)) * PASSO_UNIT_Q32,
 		    .acceleration = wild ? any(64) : (1 + below(20000)) * PASSO_UNIT_Q32,
+		    .jerk = wild ? any(64) : (1 + below(1000000)) * PASSO_UNIT_Q32,
 		    .jump = below(3) ? 0
 		          : wild     ? any(64)
 		                     : below(20) * PASSO_UNIT_Q32,

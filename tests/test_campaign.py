@@ -261,7 +261,7 @@ jerk = 4e9
 
 
 @pytest.mark.parametrize(("speed", "excused"), [(240, True), (0.24, False)])
-def test_only_a_link_that_is_too_slow_excuses_an_underrun(tmp_path: Path, speed: float, excused: bool) -> None:
+def test_only_a_slow_link_excuses_an_underrun(tmp_path: Path, speed: float, excused: bool) -> None:
     """Moves of 4 ms at 1 MHz end before the link brings the next ones; longer ones do not."""
     file = tmp_path / "short.toml"
     file.write_text(SHORT.format(speed=speed) + 3 * SHORT.format(speed=speed).partition("\n")[2])

@@ -133,9 +133,10 @@ GOOD_AXIS = '[[axis]]\nname = "X"\nsteps_per_mm = 80\nspeed = 200\nacceleration 
         ("clock_hz = 64_000_000\n" + GOOD_AXIS.replace("speed = 200\n", ""), "axis 1: speed is missing"),
         ("clock_hz = 64_000_000\n" + GOOD_AXIS.replace("1000", "0"), "acceleration must be greater than 0"),
         ("clock_hz = 64_000_000\narc_tolerance = 0\n" + GOOD_AXIS, "arc_tolerance must be greater than 0"),
-        ('clock_hz = 64_000_000\nprofile = "jerk"\n' + GOOD_AXIS, "not jerk"),
+        ('clock_hz = 64_000_000\nprofile = "smooth"\n' + GOOD_AXIS, "profile must be one of"),
+        ('clock_hz = 64_000_000\nprofile = "jerk"\n' + GOOD_AXIS, 'axis 1: profile = "jerk" needs its jerk'),
         ("clock_hz = 64_000_000\n[pins]\nstep_high = 1\n" + GOOD_AXIS, "pins: step_high is"),
-        ("clock_hz = 64_000_000\n" + GOOD_AXIS + "jerk = 5", "axis 1: jerk must be 0"),
+        ("clock_hz = 64_000_000\n" + GOOD_AXIS + "jerk = -5", "axis 1: jerk"),
         ("clock_hz = ", "Invalid value"),
     ],
 )

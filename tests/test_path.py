@@ -26,6 +26,13 @@ from tests.helpers.plans import ONE, Ramp
 MACHINE = PathSettings((PathAxis(), PathAxis(), PathAxis(400, 12, 100)))
 JUMPING = replace(MACHINE, axes=(PathAxis(jump=3), PathAxis(jump=2), PathAxis(400, 12, 100, 1)))
 
+# small steps, so that their times show the jerk
+SOFT = replace(
+    MACHINE,
+    axes=(PathAxis(1600, jerk=50_000), PathAxis(1600, jerk=50_000), PathAxis(1600, 12, 100, jerk=5000)),
+    profile="jerk",
+)
+
 CASES: dict[str, Callable[[], list[Line]]] = {
     "circle": path_cases.circle,
     "star": lambda: path_cases.star(20, 5),
@@ -37,10 +44,10 @@ CASES: dict[str, Callable[[], list[Line]]] = {
 
 
 def settings_of(name: str) -> PathSettings:
-    return JUMPING if name == "jump" else replace(MACHINE, profile=name)
+    return {"jump": JUMPING, "jerk": SOFT}.get(name) or replace(MACHINE, profile=name)
 
 
-@pytest.mark.parametrize("profile", ["linear", "cosine", "sigmoid", "jump"])
+@pytest.mark.parametrize("profile", ["linear", "cosine", "sigmoid", "jump", "jerk"])
 @pytest.mark.parametrize("case", CASES)
 def test_the_pulses_keep_all_limits(case: str, profile: str) -> None:
     """Speed, acceleration, corners and jumps of each axis, measured from the steps; ends and order exact."""
@@ -52,12 +59,13 @@ def test_the_pulses_keep_all_limits(case: str, profile: str) -> None:
     assert max(verdict.acceleration, verdict.speed, verdict.corner) > 0.9  # no slower than it must be
 
 
+@pytest.mark.parametrize("settings", [MACHINE, SOFT], ids=["linear", "jerk"])
 @pytest.mark.parametrize("look_ahead", [4, 8, 1000])
-def test_any_look_ahead_keeps_all_limits(look_ahead: int) -> None:
+def test_any_look_ahead_keeps_all_limits(look_ahead: int, settings: PathSettings) -> None:
     """From the shortest to one that holds the whole path."""
     lines = path_cases.circle(chords=120)
-    played = play(lines, MACHINE, look_ahead)
-    assert judge(lines, MACHINE, played).problems == []
+    played = play(lines, settings, look_ahead)
+    assert judge(lines, settings, played).problems == []
 
 
 @pytest.mark.parametrize(
@@ -79,6 +87,22 @@ def test_the_judge_sees_a_feed_that_is_too_high() -> None:
     lines = path_cases.circle()
     played = play([(target, path_cases.FEED * 1.005) for target, _ in lines], MACHINE)
     assert any("speed" in problem for problem in judge(lines, MACHINE, played).problems)
+
+
+def test_the_judge_sees_jerk() -> None:
+    """By a fifth too much; linear ramps have far more."""
+    lines = path_cases.text("PA")
+    stronger = tuple(replace(axis, jerk=float(axis.jerk) * 1.2) for axis in SOFT.axes)
+    for change in ({"axes": stronger}, {"profile": "cosine"}, {"profile": "linear"}):
+        wrong = replace(SOFT, **change)
+        assert any("jerk" in problem for problem in judge(lines, SOFT, play(lines, wrong)).problems)
+
+
+def test_a_limit_of_jerk_takes_little_time() -> None:
+    """As a ratio of the fastest motion without it, which jumps from one acceleration to the next."""
+    for case, most in ((path_cases.circle, 1.05), (path_cases.square, 1.11), (path_cases.trochoid, 1.08)):
+        lines = case()
+        assert 1 < plan(lines, SOFT, 48).seconds / seconds(lines, replace(SOFT, profile="linear")) < most
 
 
 def test_the_judge_sees_jumps_and_steps() -> None:
@@ -107,12 +131,12 @@ def substeps_under(ramps: Sequence[Any], tick_log2: int) -> float:
     return (total << tick_log2) / ONE
 
 
-@pytest.mark.parametrize("profile", ["linear", "cosine", "sigmoid"])
+@pytest.mark.parametrize("profile", ["linear", "cosine", "sigmoid", "jerk"])
 def test_the_ramps_cover_exactly_the_substeps_of_the_lines(profile: str) -> None:
     """However many ramps there are, nothing is left at the end, and no ramp is steeper than it may be."""
     for number, lines in enumerate(path_cases.wanderings(12, random_cases.seed())):
         parameters = Parameters(tick_log2=random.Random(number).choice([7, 7, 8, 10]))
-        planned = plan(lines, replace(MACHINE, profile=profile), 48, parameters)
+        planned = plan(lines, settings_of(profile), 48, parameters)
         wanted = sum(line.substeps for line in planned.lines)
         assert abs(substeps_under(planned.ramps, parameters.tick_log2) - wanted) < 1 / 64
 
@@ -180,7 +204,7 @@ def test_cosine_ramps_pass_corners() -> None:
 def test_a_slow_host_means_a_stop_without_a_fault(number: int) -> None:
     """Lines come with pauses, between dwells and ends: all limits hold, and the path is exact."""
     rng = random.Random(random_cases.seed() * 1000 + number)
-    settings = replace(rng.choice([MACHINE, JUMPING]), profile=rng.choice(["linear", "linear", "cosine"]))
+    settings = rng.choice([MACHINE, JUMPING, replace(rng.choice([MACHINE, JUMPING]), profile="cosine"), SOFT])
     lines = path_cases.wander(rng, rng.randint(1, 40))
     player = Player(settings, rng.choice([4, 8, 48, 200]), rng.choice([16_000, 64_000, 200_000]))
     for target, feed in lines:
@@ -343,7 +367,8 @@ def test_a_position_off_the_path_is_not_taken_for_a_stop() -> None:
         ({"axes": (PathAxis(steps_per_mm=200_000, speed=200),)}, "TOO_FAST"),
         ({"axes": ()}, "BAD_AXES"),
         ({"clock_hz": 0}, "BAD_CLOCK"),
-        ({"profile": "jerk"}, "BAD_PROFILE"),
+        ({"profile": "count"}, "BAD_PROFILE"),
+        ({"profile": "jerk"}, "NO_JERK"),
     ],
 )
 def test_settings_are_checked(change: dict[str, Any], name: str) -> None:

@@ -21,7 +21,7 @@ struct web_machine {
 	double clock_hz, axes, junction_deviation, arc_tolerance, profile;
 	double step_high, step_low, dir_setup, dir_hold; /* clocks */
 	struct {
-		double steps_per_mm, speed, acceleration, jump;
+		double steps_per_mm, speed, acceleration, jump, jerk;
 	} axis[AXES];
 };
 
@@ -56,7 +56,8 @@ static void read_settings(void)
 		    (struct passo_path_axis){.steps_per_mm = q32(machine->axis[i].steps_per_mm),
 			.speed = q32(machine->axis[i].speed),
 			.acceleration = q32(machine->axis[i].acceleration),
-			.jump = q32(machine->axis[i].jump)};
+			.jump = q32(machine->axis[i].jump),
+			.jerk = q32(machine->axis[i].jerk)};
 }
 
 /* The line that begins at `*at`, without its line feed; moves on. */

@@ -18,6 +18,7 @@ ALMOST = Fraction(9, 10)  # rounding to ticks may take a move over a limit
 # What the reader of move files says of values, and of the tables of several moves.
 RULES = (
     "must be greater than 0",
+    "must be at most ",
     "has too many steps",
     "needs profile = ",
     "and tables cannot be loaded during a motion",

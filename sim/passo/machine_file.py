@@ -108,12 +108,13 @@ def _machine(path: Path, data: Table) -> MachineFile:
     if not 1 <= len(tables) <= len(AXIS_LETTERS):
         raise BadValueError(f"there are {len(tables)} axes, 1 to {len(AXIS_LETTERS)} are possible: [[axis]]")
     profile = read_profile(data, "profile", PROFILES) if "profile" in data else "linear"
-    if profile == "jerk":
-        raise BadValueError("profile: paths have linear, cosine or sigmoid ramps, not jerk")
     axes = tuple(
         within(f"axis {number}", lambda number=number, table=table: _axis(table, AXIS_LETTERS[number - 1]))
         for number, table in enumerate(tables, 1)
     )
+    for number, axis in enumerate(axes, 1):
+        if profile == "jerk" and not axis.jerk:
+            raise BadValueError(f'axis {number}: profile = "jerk" needs its jerk in mm/s^3')
     ends = tuple(
         within(f"axis {number}", lambda table=table: _ends(table)) for number, table in enumerate(tables, 1)
     )
@@ -196,11 +197,9 @@ def _axis(table: Table, letter: str) -> PathAxis:
     name = table.get("name", letter)
     if name != letter:
         raise BadValueError(f'name must be "{letter}", not {shown(name)}: axes are X, Y, Z, A, B, C in order')
-    if "jerk" in table and read_number(table, "jerk"):
-        raise BadValueError("jerk must be 0: ramps of paths are limited by their profile")
     limits = {}
     for key in ("steps_per_mm", "speed", "acceleration"):
         limits[key] = read_number(table, key)
         if not limits[key]:
             raise BadValueError(f"{key} must be greater than 0")
-    return PathAxis(**limits, jump=read_number(table, "jump") if "jump" in table else 0)
+    return PathAxis(**limits, **{key: read_number(table, key) for key in ("jerk", "jump") if key in table})

@@ -25,6 +25,7 @@ class PathAxis:
     speed: Fraction | float = 200
     acceleration: Fraction | float = 1000
     jump: Fraction | float = 0
+    jerk: Fraction | float = 0  # for profile jerk
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,7 @@ class PathSettings:
 
     def struct(self, parameters: Parameters) -> Any:
         """The `struct passo_path_settings`."""
-        names = ("steps_per_mm", "speed", "acceleration", "jump")
+        names = ("steps_per_mm", "speed", "acceleration", "jerk", "jump")
         return ffi().new(
             "struct passo_path_settings *",
             {

@@ -50,7 +50,7 @@ def numbers(machine: MachineFile) -> list[float]:
     limits = [
         limit
         for axis in settings.axes
-        for limit in (axis.steps_per_mm, axis.speed, axis.acceleration, axis.jump)
+        for limit in (axis.steps_per_mm, axis.speed, axis.acceleration, axis.jump, axis.jerk)
     ]
     return [float(number) for number in (*common, machine.gcode.arc_tolerance, profile, *pin_clocks, *limits)]
 

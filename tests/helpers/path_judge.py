@@ -5,7 +5,7 @@ Each axis makes the steps of each line in order, so every step has a known place
 give speeds and accelerations along the path, and with the directions of the lines those of each axis.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,10 +18,13 @@ from tests.helpers.path_player import Played
 
 WINDOW = 2e-3  # seconds over which speeds are measured
 CORNER_WINDOW = 5e-4
+JERK_WINDOW = 8e-3
+JERK_GAP = 5e-4  # seconds between two steps: with more, their places say too little
 PLACE = 5e-5  # mm: a step is placed to a few substeps
 LATE = 16  # clocks that a step may wait for its pins
 SPEED_BOUND = 1.001
 ACCELERATION_BOUND = 1.02
+JERK_BOUND = 1.03
 TICKS_BOUND = 4  # ticks of acceleration by which the speed at a corner may be off
 
 
@@ -34,6 +37,8 @@ class Verdict:
     corner: float
     jump: float
     problems: list[str]
+    jerk: float = 0.0
+    peak_jerk: float = 0.0  # mm/s^3 along the path
 
 
 def steps_at(target: Sequence[float], settings: PathSettings) -> list[int]:
@@ -158,16 +163,37 @@ def judge(lines: Sequence[Line], settings: PathSettings, played: Played, rests: 
             noise = 2 * PLACE / np.minimum(width[one], width[two]) / (middle[two] - middle[one])
             most = most_between(limits.acceleration, a[one], b[two])
             acceleration_ratio = float(((change - noise) / most).max())
+    peak_jerk, jerk_ratio = jerks(limits, samples, line_of)
     corner_ratio, jump_ratio = corners(settings, limits, samples, tick, rests)
     for name, ratio, bound in (
         ("speed", speed_ratio, SPEED_BOUND),
         ("acceleration", acceleration_ratio, ACCELERATION_BOUND),
         ("corner", corner_ratio, 1),
         ("jump", jump_ratio, 1),
+        ("jerk", jerk_ratio, JERK_BOUND),
     ):
         if ratio > bound:
             problems.append(f"the {name} is {ratio:.4f} of its limit")
-    return Verdict(speed_ratio, acceleration_ratio, corner_ratio, jump_ratio, problems)
+    return Verdict(speed_ratio, acceleration_ratio, corner_ratio, jump_ratio, problems, jerk_ratio, peak_jerk)
+
+
+def jerks(
+    limits: Limits, samples: Samples, line_of: Callable[[np.ndarray], np.ndarray]
+) -> tuple[float, float]:
+    """Highest mean jerk along the path over windows with dense steps: mm/s^3, and a ratio of its limit."""
+    times = np.arange(samples.time[0], samples.time[-1] - 3 * JERK_WINDOW, JERK_WINDOW / 16)
+    edges = times[:, None] + JERK_WINDOW * np.arange(4)
+    wide = np.concatenate(([0], np.cumsum(np.diff(samples.time) > JERK_GAP)))
+    first, last = (np.searchsorted(samples.time, edges[:, k]) for k in (0, 3))
+    dense = wide[np.minimum(last, len(wide) - 1)] == wide[np.maximum(first - 1, 0)]
+    edges = edges[dense]
+    if not len(edges):
+        return 0.0, 0.0
+    places = np.interp(edges, samples.time, samples.place)
+    mean = np.abs(places @ np.array([-1, 3, -3, 1])) / JERK_WINDOW**3
+    allowed = most_between(limits.jerk, line_of(places[:, 0]), line_of(places[:, 3]))
+    noise = 8 * PLACE / JERK_WINDOW**3
+    return float(mean.max()), float((np.maximum(mean - noise, 0) / allowed).max())
 
 
 def corners(

@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: MIT
+ * Profile `jerk`, forward: what the next ramp aims at. See passo_path_jerk.c.
+ */
+#include "passo_path_jerk.h"
+
+#ifndef PASSO_WITHOUT_JERK_PATHS
+
+/* Shorter ramps are not worth a change of the velocity. */
+#define TICKS_MIN 64u
+/* A higher velocity must be higher by one part in 2^12. */
+#define PRECISION 12u
+
+static void narrow(struct passo_path_law *law, uint64_t slope, uint64_t jerk)
+{
+	law->slope = passo_path_smaller(law->slope, slope);
+	law->jerk = passo_path_smaller(law->jerk, jerk);
+}
+
+/* What was found for the next ramp: up to `top`; or level for a length, then down to `end` within `length`.
+ */
+struct choice {
+	uint64_t top;
+	uint64_t level, length, end;
+	bool found, rest;
+	/* what further lines may change */
+	bool top_settled, settled;
+};
+
+/* The lines passed so far. */
+struct reach {
+	struct passo_path_law law;
+	uint64_t length;
+	uint64_t lowest; /* velocity that their limits and corners allow */
+	uint64_t rise;   /* length from which on more is allowed than before; 0: none */
+	uint64_t open;   /* `lowest` at the first end of a line that is not settled; 0: none */
+};
+
+static void consider(const struct passo_path_planner *path, const struct reach *reach, uint64_t end,
+    bool rest, struct choice *choice)
+{
+	const uint64_t from = path->velocity;
+	const uint64_t down = from > end ? passo_path_ramp_length(path, &reach->law, from, end) : 0;
+	const uint64_t level = down < reach->length ? reach->length - down : 0;
+	const uint64_t better = choice->top + (choice->top >> PRECISION) + 1;
+
+	if (better <= reach->lowest
+	    && passo_path_detour(path, &reach->law, from, better, end) <= reach->length)
+		choice->top = passo_path_highest(path, &reach->law, from, end, reach->length, reach->lowest);
+	if (choice->found && level <= choice->level)
+		return;
+	choice->found = true;
+	choice->level = level;
+	choice->length = reach->length;
+	choice->end = end;
+	choice->rest = rest;
+}
+
+static void pass(const struct passo_path_planner *path, uint32_t index, struct reach *reach)
+{
+	const struct passo_path_item *item = passo_path_item(path, index);
+	const uint64_t from = path->velocity,
+		       top = passo_path_larger(passo_path_velocity_of(item->top), from);
+
+	if (top > from && reach->lowest <= from && reach->rise == 0)
+		reach->rise = reach->length;
+	reach->lowest = passo_path_smaller(reach->lowest, top);
+	reach->length += (uint64_t)item->substeps << 32;
+	if (index == path->planned)
+		reach->length -= (uint64_t)path->offset;
+	narrow(&reach->law, item->slope, item->jerk);
+	if (!passo_path_is_settled(path, index) && reach->open == 0)
+		reach->open = reach->lowest;
+}
+
+/* Whether lines further on are of no use: nothing faster is possible, and what is level is long. */
+static bool is_enough(
+    const struct passo_path_planner *path, const struct reach *reach, const struct choice *choice)
+{
+	if (reach->lowest > choice->top)
+		return false;
+	return choice->top > path->velocity || (reach->rise > 0 && choice->level >= reach->rise)
+	    || passo_path_ticks_over(path, choice->level, 2 * path->velocity) >= PASSO_PATH_TICKS_MAX;
+}
+
+/* Looks at the starts of all lines that matter as the place to which a ramp down may lead. */
+static struct choice choose(const struct passo_path_planner *path, struct reach *reach)
+{
+	const uint64_t from = path->velocity;
+	struct choice choice = {.top = from};
+
+	*reach = (struct reach){.law = {UINT64_MAX, UINT64_MAX}, .lowest = UINT64_MAX};
+	for (uint32_t index = path->planned;; index++) {
+		if (passo_path_is_held_back(path, index)) {
+			reach->open = passo_path_larger(reach->open, reach->lowest);
+			break;
+		}
+		const bool rests = passo_path_rests_after(path, index);
+
+		pass(path, index, reach);
+		consider(path, reach, passo_path_velocity_after(path, index), rests, &choice);
+		if (rests)
+			break;
+		const struct passo_path_item *next = passo_path_item(path, index + 1);
+		const uint64_t corner = passo_path_velocity_of(next->corner);
+		if (corner + passo_path_change(path, next->slope, PASSO_PATH_LANDING_TICKS) < from)
+			break;
+		reach->lowest = passo_path_smaller(reach->lowest, passo_path_larger(corner, from));
+		if (is_enough(path, reach, &choice))
+			break;
+	}
+	if (reach->rise > 0)
+		choice.level = passo_path_smaller(choice.level, reach->rise);
+	choice.top_settled = reach->open <= choice.top;
+	choice.settled = reach->open == 0;
+	return choice;
+}
+
+static struct passo_path_aim aim_at(
+    const struct passo_path_planner *path, enum passo_path_kind kind, uint64_t length, uint64_t end)
+{
+	const uint64_t square = passo_path_square_of(end), from = passo_path_square_of(path->velocity);
+	const uint64_t change = square < from ? from - square : square - from;
+	const uint64_t slope = passo_mul_div_ceil(change, PASSO_UNIT_Q32, passo_path_larger(length, 1));
+
+	return (struct passo_path_aim){kind, length, square, .slope = slope + slope / 64 + 1};
+}
+
+struct passo_path_aim passo_path_soft_aim(const struct passo_path_planner *path, bool needed)
+{
+	const uint64_t from = path->velocity;
+	struct reach reach;
+	const struct choice choice = choose(path, &reach);
+	const uint64_t up = passo_path_ramp_length(path, &reach.law, from, choice.top);
+	struct passo_path_aim aim;
+
+	if (!choice.found || (!needed && !choice.top_settled))
+		return (struct passo_path_aim){
+		    PASSO_PATH_FLAT, .square = passo_path_square_of(from), .open = true};
+	if (choice.rest
+	    && passo_path_ticks_over(path, choice.length, from + choice.top + 1) < 2 * TICKS_MIN) {
+		aim = aim_at(path, PASSO_PATH_DOWN, choice.length, choice.end);
+		aim.slope = reach.law.slope;
+		aim.rest = true;
+		return aim;
+	}
+	if (choice.top > from
+	    && (from == 0 || passo_path_ticks_over(path, up, from + choice.top) >= TICKS_MIN))
+		return aim_at(path, PASSO_PATH_UP, up, choice.top);
+	if (passo_path_ticks_over(path, choice.level, 2 * from) >= TICKS_MIN || choice.end >= from
+	    || choice.level == reach.rise)
+		return aim_at(path, PASSO_PATH_FLAT, choice.level, from);
+	aim = aim_at(path, PASSO_PATH_DOWN, choice.length, choice.end);
+	aim.rest = choice.rest;
+	if (!needed && !choice.settled)
+		return (struct passo_path_aim){
+		    PASSO_PATH_FLAT, .square = passo_path_square_of(from), .open = true};
+	return aim;
+}
+
+#endif
