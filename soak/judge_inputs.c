@@ -102,12 +102,28 @@ static void press(struct judge *judge)
 	judge->counts->estops++;
 }
 
+/* Whether the input changes once more on this clock: its core sees only the last level. */
+static bool is_superseded(const struct judge *judge, const struct world_fact *fact)
+{
+	for (size_t i = judge->fact + 1u; i < judge->world->fact_count; i++) {
+		const struct world_fact *later = &judge->world->facts[i];
+
+		if (later->clock != fact->clock)
+			return false;
+		if (later->kind == FACT_PIN && later->words[0] == fact->words[0])
+			return true;
+	}
+	return false;
+}
+
 void judge_pin(struct judge *judge, const struct world_fact *fact)
 {
 	struct machine *machine = &judge->machine;
 	const unsigned input = fact->words[0];
 	const uint8_t levels = (uint8_t)fact->words[1], changed = levels ^ machine->pins[input];
 
+	if (is_superseded(judge, fact))
+		return;
 	machine->pins[input] = levels;
 	if (input == PASSO_INPUT_ESTOP_N) {
 		if (levels == 0u)

@@ -62,10 +62,11 @@ struct machine {
 	uint64_t released_at;
 	uint32_t watchdog;
 	uint64_t fed_from, fed_until;
-	bool silent;
+	bool starved, starved_moving; /* the watchdog may have bitten; the channel moved then */
+	bool silent;                  /* it has */
 	struct stop_event events[EVENTS_MAX];
 	unsigned event_count;
-	uint64_t stopped_at, ran_from;
+	uint64_t stopped_at, ran_from, rested_at;
 	bool full_rate, held;
 	uint64_t held_from;
 	struct trigger trigger;

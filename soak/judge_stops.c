@@ -58,6 +58,8 @@ void judge_machine_before(struct judge *judge, const struct passo_outputs *pins)
 {
 	if ((pins->running & ~judge->pins.running) != 0u)
 		begin_motion(judge);
+	if ((judge->pins.running & ~pins->running) != 0u)
+		judge->machine.rested_at = judge->now;
 }
 
 void judge_machine_after(struct judge *judge, const struct passo_outputs *pins)
@@ -119,7 +121,8 @@ static void see_slew(struct judge *judge, const struct stop_event *event)
 	const uint64_t stopped = machine->stopped_at;
 
 	if (event->hard || event->latest == NEVER || !machine->full_rate || machine->event_count != 1u
-	    || machine->ran_from == 0u || machine->ran_from > event->earliest || stopped <= event->latest)
+	    || machine->ran_from == 0u || machine->ran_from > event->earliest || stopped <= event->latest
+	    || machine->rested_at + SHOWN < stopped)
 		return;
 	judge->counts->slews++;
 	if (stopped + SHOWN < event->earliest + (ticks - 1u) * tick
@@ -182,7 +185,7 @@ void judge_feed(struct judge *judge, const struct world_fact *fact)
 {
 	judge->machine.fed_from = fact->clock;
 	judge->machine.fed_until = fact->clock + fact->words[0];
-	judge->machine.silent = false;
+	judge->machine.silent = judge->machine.starved = false;
 }
 
 /* Called in the order of the clocks, before anything is seen. */
@@ -190,11 +193,19 @@ void judge_silence(struct judge *judge)
 {
 	struct machine *machine = &judge->machine;
 	const uint64_t time = (uint64_t)machine->watchdog << 16;
-	const uint64_t latest = machine->fed_until + time + SHOWN;
+	const uint64_t earliest = machine->fed_from + time - SHOWN,
+		       latest = machine->fed_until + time + SHOWN;
 
-	if (machine->watchdog == 0u || machine->silent || judge->now <= latest)
+	if (machine->watchdog == 0u || machine->silent || judge->now <= earliest)
+		return;
+	if (!machine->starved)
+		machine->starved_moving = judge->pins.running != 0u;
+	machine->starved = true;
+	if (judge->now <= latest)
 		return;
 	machine->silent = true;
-	if (judge->pins.running != 0u)
-		judge_add_event(judge, PASSO_CAUSE_WATCHDOG, false, machine->fed_from + time - SHOWN, latest);
+	/* a fast stop may be over by now */
+	if (machine->starved_moving)
+		judge_add_event(
+		    judge, PASSO_CAUSE_WATCHDOG, false, earliest, judge->pins.running != 0u ? latest : NEVER);
 }

@@ -1,76 +1,36 @@
 # SPDX-License-Identifier: MIT
-"""A sender that others wrote, grbl-streamer, drives the console through a pseudo-terminal, in real time."""
+"""A sender that others wrote, grbl-streamer, drives the console through a pseudo-terminal, in real time.
 
-import logging
+And the firmware: the binary in the emulated STM32F103, as fast as that is.
+"""
+
+import contextlib
 import os
 import threading
 import time
-from collections import Counter
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import pytest
-from grbl_streamer import GrblStreamer
+from passo.engine import model_engine
 from passo.grbl import Grbl, pseudo_terminal, serve
-from passo.machine_file import read_machine
+from passo.machine_file import MachineFile, read_machine
 from passo.part import play_part, read_part
 from passo.run import open_engine, parameters_for
 from passo.toolchain import paths
+from passo_stm32.grbl_board import GrblBoard, grbl_elf
+
+from tests.helpers.sender import Sender
 
 MACHINE = read_machine(paths.examples / "gcode" / "machine.toml")
-PATIENCE = 30  # seconds
+BOARD = replace(MACHINE, settings=replace(MACHINE.settings, clock_hz=36_000_000))
 # More than the 128 bytes of the receive buffer and the 48 lines of the look-ahead: both senders have to wait.
 PART = [
     *("G21 G90 G17", "G0 X2 Y0"),
     *(f"G1 X{2 + i % 2 * 0.5:g} Y{i * 0.1:g} F3000" for i in range(80)),
     *("G2 Y5.9 J-1", "M2"),
 ]
-
-
-class Sender:
-    """The sender and what it has been told."""
-
-    def __init__(self, link: Path) -> None:
-        logging.getLogger("GrblStreamer").setLevel(logging.CRITICAL)
-        self.events: Counter[str] = Counter()
-        self.last: dict[str, tuple[Any, ...]] = {}
-        self.grbl = GrblStreamer(self._told)
-        self.grbl.cnect(str(link), 115200)
-
-    def _told(self, event: str, *data: Any) -> None:
-        self.events[event] += 1
-        self.last[event] = data
-
-    def wait(self, event: str) -> tuple[Any, ...]:
-        """Wait for an event; return what came with it."""
-        self.until(lambda: self.events[event])
-        return self.last[event]
-
-    def start(self, lines: list[str], incremental: bool = False) -> None:
-        """Run a job."""
-        self.events.clear()
-        self.grbl.job_new()
-        self.grbl.incremental_streaming = incremental
-        self.grbl.write("\n".join(lines))
-        self.grbl.job_run()
-
-    def finish(self) -> None:
-        """Wait for the end of the job and of its motion."""
-        self.wait("on_job_completed")
-        self.grbl.cmode = None  # of the last report, perhaps before the job
-        self.wait_for_state("Idle")
-
-    def until(self, condition: Callable[[], object]) -> None:
-        """Wait for a condition."""
-        end = time.monotonic() + PATIENCE
-        while not condition():
-            assert time.monotonic() < end, (self.grbl.cmode, self.events, self.last)
-            time.sleep(0.01)
-
-    def wait_for_state(self, state: str) -> None:
-        """Wait for a report with this state."""
-        self.until(lambda: self.grbl.cmode == state)
 
 
 @pytest.fixture
@@ -84,15 +44,7 @@ def connected(tmp_path: Path) -> Iterator[tuple[Sender, Grbl]]:
         thread.start()
         sender = Sender(link)
         try:
-            sender.grbl.softreset()
-            sender.wait("on_boot")
-            sender.grbl.poll_interval = 0.05
-            sender.grbl.poll_start()
-            first = ("on_settings_downloaded", "on_hash_stateupdate", "on_gcode_parser_stateupdate")
-            for event in first:
-                sender.wait(event)
-            # $# is an error in motion, for the sender too; it may have seen two greetings
-            time.sleep(0.3)
+            sender.boot()
             yield sender, grbl
         finally:
             sender.grbl.disconnect()
@@ -109,13 +61,71 @@ def test_a_job(connected: tuple[Sender, Grbl], tmp_path: Path, incremental: bool
     sender.finish()
     assert sender.events["on_error"] == sender.events["on_alarm"] == 0
     assert sender.events["on_line_sent"] == len(sender.grbl.buffer) <= sender.events["on_processed_command"]
-    path = tmp_path / "part.nc"
-    path.write_text("\n".join(PART) + "\n")
-    with open_engine("model", parameters_for(3), MACHINE.clock_hz) as engine:
-        played = play_part(read_part(path, MACHINE), MACHINE, engine)
-    scales = [axis.steps_per_mm for axis in MACHINE.settings.axes]
-    wanted = [count / float(scale) for count, scale in zip(played.end, scales, strict=True)]
-    assert list(sender.grbl.cmpos) == pytest.approx(wanted, abs=5e-4)
+    assert list(sender.grbl.cmpos) == pytest.approx(end_of(PART, MACHINE, tmp_path), abs=5e-4)
+
+
+def serve_board(elf: Path, terminal: int, until: Callable[[], bool]) -> None:
+    """Connect the serial line of a board to a terminal."""
+    os.set_blocking(terminal, False)
+    with model_engine(parameters_for(3), BOARD.clock_hz) as engine:
+        board, told = GrblBoard(engine, elf), 0
+        while not until():
+            with contextlib.suppress(BlockingIOError, OSError):
+                board.type(os.read(terminal, 4096).decode("latin-1"))
+            board.run(0.002)
+            os.write(terminal, board.output[told:].encode("latin-1"))
+            told = len(board.output)
+
+
+@pytest.fixture
+def firmware(tmp_path: Path) -> Iterator[Sender]:
+    """The sender, with the firmware behind its pseudo-terminal, booted."""
+    elf = grbl_elf(paths.build / "tests" / "firmware_grbl", f"CORE_HZ={BOARD.clock_hz}", "AXES=3")
+    link, over = tmp_path / "board", threading.Event()
+    with pseudo_terminal(link) as ours:
+        thread = threading.Thread(target=serve_board, args=(elf, ours, over.is_set))
+        thread.start()
+        sender = Sender(link, patience=120)
+        try:
+            sender.boot()
+            yield sender
+        finally:
+            sender.grbl.disconnect()
+            over.set()
+            thread.join()
+
+
+def end_of(part: list[str], machine: MachineFile, folder: Path) -> list[float]:
+    """Where `passo run` ends, in mm."""
+    path = folder / "part.nc"
+    path.write_text("\n".join(part) + "\n")
+    with open_engine("model", parameters_for(3), machine.clock_hz) as engine:
+        played = play_part(read_part(path, machine), machine, engine)
+    scales = [axis.steps_per_mm for axis in machine.settings.axes]
+    return [count / float(scale) for count, scale in zip(played.end, scales, strict=True)]
+
+
+@pytest.mark.parametrize("incremental", [True, False], ids=["a line per ok", "counting characters"])
+def test_a_job_of_the_firmware(firmware: Sender, tmp_path: Path, incremental: bool) -> None:
+    """As on the PC; then a hold, and a reset in motion, after which the position is kept."""
+    firmware.start(PART, incremental)
+    firmware.finish()
+    assert firmware.events["on_error"] == firmware.events["on_alarm"] == 0
+    assert list(firmware.grbl.cmpos) == pytest.approx(end_of(PART, BOARD, tmp_path), abs=5e-4)
+    firmware.start(["G0 X0 Y0", "G1 X20 F1200", "X0"])
+    firmware.until(lambda: firmware.grbl.cmpos[0] > 0)
+    firmware.grbl.hold()
+    firmware.wait_for_state("Hold:0")
+    firmware.grbl.resume()
+    firmware.wait_for_state("Run")
+    firmware.grbl.softreset()
+    firmware.wait("on_boot")
+    firmware.wait_for_state("Alarm")
+    there = firmware.grbl.cmpos
+    assert there[0] > 0
+    firmware.grbl.killalarm()
+    firmware.wait_for_state("Idle")
+    assert firmware.grbl.cmpos == there
 
 
 def test_hold_and_resume(connected: tuple[Sender, Grbl]) -> None:

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: MIT
+"""A sender that others wrote, grbl-streamer, at a pseudo-terminal."""
+
+import logging
+import time
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from grbl_streamer import GrblStreamer
+
+PATIENCE = 30  # seconds
+
+
+class Sender:
+    """The sender and what it has been told."""
+
+    def __init__(self, link: Path, patience: float = PATIENCE) -> None:
+        self.patience = patience
+        logging.getLogger("GrblStreamer").setLevel(logging.CRITICAL)
+        self.events: Counter[str] = Counter()
+        self.last: dict[str, tuple[Any, ...]] = {}
+        self.grbl = GrblStreamer(self._told)
+        self.grbl.cnect(str(link), 115200)
+
+    def _told(self, event: str, *data: Any) -> None:
+        self.events[event] += 1
+        self.last[event] = data
+
+    def wait(self, event: str) -> tuple[Any, ...]:
+        """Wait for an event; return what came with it."""
+        self.until(lambda: self.events[event])
+        return self.last[event]
+
+    def start(self, lines: list[str], incremental: bool = False) -> None:
+        """Run a job."""
+        self.events.clear()
+        self.grbl.job_new()
+        self.grbl.incremental_streaming = incremental
+        self.grbl.write("\n".join(lines))
+        self.grbl.job_run()
+
+    def boot(self) -> None:
+        """Reset the controller, read what senders read first, and ask for its state from then on."""
+        self.grbl.softreset()
+        self.wait("on_boot")
+        self.grbl.poll_interval = 0.05
+        self.grbl.poll_start()
+        first = ("on_settings_downloaded", "on_hash_stateupdate", "on_gcode_parser_stateupdate")
+        for event in first:
+            self.wait(event)
+        # $# is an error in motion, for the sender too; it may have seen two greetings
+        time.sleep(0.3)
+
+    def finish(self) -> None:
+        """Wait for the end of the job and of its motion."""
+        self.wait("on_job_completed")
+        self.grbl.cmode = None  # of the last report, perhaps before the job
+        self.wait_for_state("Idle")
+
+    def until(self, condition: Callable[[], object]) -> None:
+        """Wait for a condition."""
+        end = time.monotonic() + self.patience
+        while not condition():
+            assert time.monotonic() < end, (self.grbl.cmode, self.events, self.last)
+            time.sleep(0.01)
+
+    def wait_for_state(self, state: str) -> None:
+        """Wait for a report with this state."""
+        self.until(lambda: self.grbl.cmode == state)
