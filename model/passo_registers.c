@@ -117,6 +117,29 @@ static uint8_t run_check(const struct passo_core *core, uint32_t data)
 	return (data & ~PASSO_RUN_DEFINED) != 0u || beyond ? PASSO_VERDICT_BAD_VALUE : PASSO_VERDICT_OK;
 }
 
+uint8_t passo_tables_refusal(const struct passo_bus *bus)
+{
+	if (passo_bank_at(bus->address) == 0u || (!bus->check && !bus->read))
+		return PASSO_VERDICT_OK;
+	if (bus->read || bus->push)
+		return PASSO_VERDICT_BAD_OPERATION;
+	return bus->data >> 16 != 0u ? PASSO_VERDICT_BAD_VALUE : PASSO_VERDICT_OK;
+}
+
+void passo_tables_clock(struct passo_tables *tables, const struct passo_bus *bus)
+{
+	const unsigned bank = bus->check || bus->write ? passo_bank_at(bus->address) : 0u;
+
+	tables->wanted = !(bus->frame && !bus->commit) && (tables->wanted || (bus->check && bank != 0u));
+	if (bus->write && bank != 0u)
+		tables->points[bank - 1u][bus->address % PASSO_BANK_POINTS] = (uint16_t)bus->data;
+}
+
+void passo_tables_turn(struct passo_tables *tables, uint8_t channels)
+{
+	tables->slot = (uint8_t)((tables->slot + 1u) % (2u * channels));
+}
+
 struct passo_response passo_registers_respond(const struct passo_core *core)
 {
 	const struct passo_bus *bus = &core->link.bus;
@@ -127,12 +150,7 @@ struct passo_response passo_registers_respond(const struct passo_core *core)
 		return response;
 	if (passo_bank_at(bus->address) != 0u) {
 		response.claim = true;
-		if (bus->check)
-			response.refusal = bus->push             ? PASSO_VERDICT_BAD_OPERATION
-			                 : bus->data >> 16 != 0u ? PASSO_VERDICT_BAD_VALUE
-			                                         : PASSO_VERDICT_OK;
-		else
-			response.refusal = PASSO_VERDICT_BAD_OPERATION;
+		response.refusal = passo_tables_refusal(bus);
 	} else if (register_value(core, bus->address, &value)) {
 		response.claim = true;
 		if (bus->check)
@@ -160,9 +178,5 @@ void passo_registers_clock(struct passo_core *core)
 		registers->wait_sync = word.wait_sync;
 		registers->status_channel = word.status_channel;
 	}
-	const unsigned bank = bus->check || bus->write ? passo_bank_at(bus->address) : 0u;
-	core->tables.wanted =
-	    !(bus->frame && !bus->commit) && (core->tables.wanted || (bus->check && bank != 0u));
-	if (bus->write && bank != 0u)
-		core->tables.points[bank - 1u][bus->address % PASSO_BANK_POINTS] = (uint16_t)bus->data;
+	passo_tables_clock(&core->tables, bus);
 }

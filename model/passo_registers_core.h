@@ -16,6 +16,13 @@ struct passo_response passo_registers_respond(const struct passo_core *core);
 uint32_t passo_registers_value(const struct passo_core *core, uint16_t address);
 void passo_registers_clock(struct passo_core *core);
 
+/* Refusal of a check or read of the shape tables; OK if the address is in none. */
+uint8_t passo_tables_refusal(const struct passo_bus *bus);
+/* Writes of points, and whether the frame has any. */
+void passo_tables_clock(struct passo_tables *tables, const struct passo_bus *bus);
+/* The next turn at the tables; `channels` > 0. */
+void passo_tables_turn(struct passo_tables *tables, uint8_t channels);
+
 /* Levels at the inputs of a channel. */
 void passo_core_take_pins(const struct passo_core *core, unsigned channel, const struct passo_inputs *inputs,
     struct passo_channel_inputs *made);

@@ -76,6 +76,25 @@ def test_page_has_every_module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     assert "9 of the 18 bits (50 %)" in written and "| axis |" not in written
 
 
+def test_bank_of_the_tables_is_as_in_the_protocol() -> None:
+    """The coupling has a function of its own in the place of a loop that ends early."""
+    coupling = next(coupling for coupling in COUPLINGS if coupling.name == "tables")
+    own = re.search(r"^unsigned passo_bank_at\(.*?^}$", coupling.prelude, re.M | re.S)
+    assert own
+    lines = [
+        '#include "passo_shapes.c"',
+        own[0].replace("passo_bank_at", "bank_of_coupling"),
+        "int differences(void) { int n = 0; for (uint32_t at = 0; at < 1u << 16; at++)",
+        "n += passo_bank_at(at) != bank_of_coupling(at); return n; }",
+    ]
+    source = run.BUILD / "bank_at.c"
+    run.BUILD.mkdir(parents=True, exist_ok=True)
+    source.write_text("\n".join(lines))
+    flags = (*compiler.includes(paths.root / "protocol"), *compiler.SHARED)
+    made = compiler.compile_to(run.BUILD / "bank_at.so", *flags, source)
+    assert ctypes.CDLL(str(made)).differences() == 0
+
+
 def compiled(coupling: Coupling, names: list[str]) -> ctypes.CDLL:
     """The harness of a coupling as a library, with functions that load and store all leaves."""
     load = "".join(f"\t{name} = v[{i}];\n" for i, name in enumerate(names))
