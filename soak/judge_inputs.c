@@ -23,6 +23,17 @@ static bool is_active(const struct machine *machine, unsigned input, unsigned a)
 	return ((unsigned)(machine->pins[input] ^ machine->inverted[input]) >> a & 1u) != 0u;
 }
 
+/* Whether the input of a fact changes once more on the same clock: the core sees only the last level. */
+static bool is_superseded(const struct judge *judge, size_t fact)
+{
+	const struct world_fact *facts = judge->world->facts;
+
+	for (size_t i = fact + 1u; i < judge->world->fact_count && facts[i].clock == facts[fact].clock; i++)
+		if (facts[i].kind == FACT_PIN && facts[i].words[0] == facts[fact].words[0])
+			return true;
+	return false;
+}
+
 uint64_t judge_next_change(const struct judge *judge, unsigned input, unsigned a)
 {
 	const uint32_t now = (uint32_t)judge->machine.pins[input] >> a & 1u;
@@ -30,7 +41,8 @@ uint64_t judge_next_change(const struct judge *judge, unsigned input, unsigned a
 	for (size_t i = judge->fact + 1u; i < judge->world->fact_count; i++) {
 		const struct world_fact *fact = &judge->world->facts[i];
 
-		if (fact->kind == FACT_PIN && fact->words[0] == input && (fact->words[1] >> a & 1u) != now)
+		if (fact->kind == FACT_PIN && fact->words[0] == input && (fact->words[1] >> a & 1u) != now
+		    && !is_superseded(judge, i))
 			return fact->clock;
 	}
 	return NEVER;
@@ -102,27 +114,13 @@ static void press(struct judge *judge)
 	judge->counts->estops++;
 }
 
-/* Whether the input changes once more on this clock: its core sees only the last level. */
-static bool is_superseded(const struct judge *judge, const struct world_fact *fact)
-{
-	for (size_t i = judge->fact + 1u; i < judge->world->fact_count; i++) {
-		const struct world_fact *later = &judge->world->facts[i];
-
-		if (later->clock != fact->clock)
-			return false;
-		if (later->kind == FACT_PIN && later->words[0] == fact->words[0])
-			return true;
-	}
-	return false;
-}
-
 void judge_pin(struct judge *judge, const struct world_fact *fact)
 {
 	struct machine *machine = &judge->machine;
 	const unsigned input = fact->words[0];
 	const uint8_t levels = (uint8_t)fact->words[1], changed = levels ^ machine->pins[input];
 
-	if (is_superseded(judge, fact))
+	if (is_superseded(judge, judge->fact))
 		return;
 	machine->pins[input] = levels;
 	if (input == PASSO_INPUT_ESTOP_N) {

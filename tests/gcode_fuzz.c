@@ -147,7 +147,10 @@ static void fuzz(struct passo_path_item *items)
 
 	for (unsigned axis = 0; axis < PASSO_AXES_MAX; axis++)
 		settings.axis[axis] = (struct passo_path_axis){
-		    80 * PASSO_UNIT_Q32, 200 * PASSO_UNIT_Q32, 1000 * PASSO_UNIT_Q32, 0};
+		    .steps_per_mm = 80 * PASSO_UNIT_Q32,
+		    .speed = 200 * PASSO_UNIT_Q32,
+		    .acceleration = 1000 * PASSO_UNIT_Q32,
+		};
 	must(passo_path_open(&path, &settings, items, ITEMS) == PASSO_PLAN_OK, "open", "");
 	passo_gcode_open(&gcode, &(struct passo_gcode_settings){settings.machine.axes,
 				     1 + below(1u << below(20)), below(20000), below(2) != 0u});

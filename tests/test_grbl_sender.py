@@ -105,13 +105,13 @@ def end_of(part: list[str], machine: MachineFile, folder: Path) -> list[float]:
     return [count / float(scale) for count, scale in zip(played.end, scales, strict=True)]
 
 
-@pytest.mark.parametrize("incremental", [True, False], ids=["a line per ok", "counting characters"])
-def test_a_job_of_the_firmware(firmware: Sender, tmp_path: Path, incremental: bool) -> None:
-    """As on the PC; then a hold, and a reset in motion, after which the position is kept."""
-    firmware.start(PART, incremental)
-    firmware.finish()
-    assert firmware.events["on_error"] == firmware.events["on_alarm"] == 0
-    assert list(firmware.grbl.cmpos) == pytest.approx(end_of(PART, BOARD, tmp_path), abs=5e-4)
+def test_jobs_of_the_firmware(firmware: Sender, tmp_path: Path) -> None:
+    """As on the PC, by both protocols; then a hold, and a reset in motion, which keeps the position."""
+    for part, incremental in ((PART, False), ([*PART[:12], "M2"], True)):
+        firmware.start(part, incremental)
+        firmware.finish()
+        assert firmware.events["on_error"] == firmware.events["on_alarm"] == 0
+        assert list(firmware.grbl.cmpos) == pytest.approx(end_of(part, BOARD, tmp_path), abs=5e-4)
     firmware.start(["G0 X0 Y0", "G1 X20 F1200", "X0"])
     firmware.until(lambda: firmware.grbl.cmpos[0] > 0)
     firmware.grbl.hold()

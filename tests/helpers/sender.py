@@ -56,7 +56,6 @@ class Sender:
     def finish(self) -> None:
         """Wait for the end of the job and of its motion."""
         self.wait("on_job_completed")
-        self.grbl.cmode = None  # of the last report, perhaps before the job
         self.wait_for_state("Idle")
 
     def until(self, condition: Callable[[], object]) -> None:
@@ -67,5 +66,14 @@ class Sender:
             time.sleep(0.01)
 
     def wait_for_state(self, state: str) -> None:
-        """Wait for a report with this state."""
-        self.until(lambda: self.grbl.cmode == state)
+        """Wait for a report with this state, and for its position: the sender stores one after the other.
+
+        Twice, since a message of an alarm tells the state alone.
+        """
+        for _ in range(2):
+            self.last.pop("on_stateupdate", None)
+            self.until(lambda: self._reported() == state)
+
+    def _reported(self) -> str | None:
+        self.grbl.poll_start()  # to be told the next report even if it is the same
+        return self.last.get("on_stateupdate", (None,))[0]
