@@ -54,8 +54,9 @@ class Frame:
 class Expressions:
     """Evaluates expressions of a program; ``demands`` are what their definedness needs."""
 
-    def __init__(self, program: Program) -> None:
+    def __init__(self, program: Program, opaque: bool = False) -> None:
         self.program = program
+        self.opaque = opaque  # products and quotients of unknown numbers are unknown functions
         self.cells: dict[str, Cell] = {}
         self.demands: list[tuple[str, Condition]] = []
         self.fresh = 0
@@ -223,7 +224,7 @@ class Expressions:
         if isinstance(left.type, Pointer) and node.op in ("+", "-"):
             by = right if node.op == "+" else c_operators.unary("-", right, self._demand)
             return moved(left, by)
-        return c_operators.binary(node.op, left, right, self._demand)
+        return c_operators.binary(node.op, left, right, self._demand, self.opaque)
 
     def _under(self, condition: Condition, node: Any) -> Value | None:
         """The value of an operand that is evaluated under a condition only; None if it never is."""
@@ -255,7 +256,7 @@ class Expressions:
         places = self.places(node.lvalue)
         new = self.value(node.rvalue)
         if node.op in ASSIGNMENTS:
-            new = c_operators.binary(node.op[:-1], read(places), new, self._demand)
+            new = c_operators.binary(node.op[:-1], read(places), new, self._demand, self.opaque)
         self._assign(places, new)
         return read(places)
 

@@ -79,8 +79,19 @@ def _shift(operator: str, left: Value, right: Value, demand: Demand) -> Value:
     return Value(kind, a >> b if kind.signed else z3.LShR(a, b))
 
 
-def binary(operator: str, left: Value, right: Value, demand: Demand) -> Value:
-    """The value of ``left operator right``, except && and ||."""
+def _unknown(operator: str, a: z3.BitVecRef, b: z3.BitVecRef, kind: Integer) -> Value:
+    """Some function of two numbers, the same for each pair of them."""
+    if kind.signed:
+        raise UnsupportedError(f"{operator} of signed numbers as an unknown function")
+    function = z3.Function(f"{operator}{kind.width}", a.sort(), b.sort(), a.sort())
+    return Value(kind, function(a, b))
+
+
+def binary(operator: str, left: Value, right: Value, demand: Demand, opaque: bool = False) -> Value:
+    """The value of ``left operator right``, except && and ||.
+
+    ``opaque``: products and quotients of unknown numbers are unknown functions.
+    """
     if operator in ("<<", ">>"):
         return _shift(operator, left, right, demand)
     if operator in ("==", "!=") and is_condition(left.bits) and is_condition(right.bits):
@@ -103,7 +114,12 @@ def binary(operator: str, left: Value, right: Value, demand: Demand) -> Value:
         if kind.signed:
             demand("no overflow", wrapped(bits, kind) == bits)
         return Value(kind, wrapped(bits, kind))
+    known = isinstance(a, int) or isinstance(b, int)
     a, b = to_vector(a, kind.width), to_vector(b, kind.width)
+    if opaque and operator in ("*", "/", "%") and not known:
+        if operator != "*":
+            demand("no division by 0", b != 0)
+        return _unknown(operator, a, b, kind)
     if operator in COMPARISONS:
         own = _PLAIN[operator] if kind.signed else _UNSIGNED.get(operator, _PLAIN[operator])
         return Value(INT, own(a, b))

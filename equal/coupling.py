@@ -67,6 +67,7 @@ class Coupling:
     cut: tuple[str, ...]  # modules in it that are proved on their own: their ports are outputs and inputs
     apart: bool  # each goal is proved on its own, which z3 may decide faster than all at once
     slow: bool  # takes too long for ``make test``
+    opaque: bool  # products and quotients of unknown numbers are unknown functions
 
 
 def _link(entry: str | dict[str, Any]) -> Link:
@@ -111,6 +112,7 @@ def read_coupling(path: Path) -> Coupling:
             tuple(table.pop("cut", ())),
             table.pop("apart", False),
             table.pop("slow", False),
+            table.pop("opaque", False),
         )
     except KeyError as missing:
         raise Failure(f"{path.name}: {missing} is missing") from None

@@ -77,7 +77,7 @@ class Model:
         self.expressions += [assumption["that"] for assumption in coupling.assumptions.values()]
         program = Program(harness(coupling, self.expressions, root))
         self.nodes = program.functions[EXPRESSIONS].body.block_items or []
-        self.evaluator = Evaluator(program)
+        self.evaluator = Evaluator(program, coupling.opaque)
         self.objects = [re.findall(r"\w+", declaration)[-1] for declaration in coupling.objects]
         for name in self.objects:
             self.evaluator.make_unknown(name, coupling.arrays)

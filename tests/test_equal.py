@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import z3
 from passo import compiler
 from passo.toolchain import paths
 
@@ -93,6 +94,32 @@ def test_bank_of_the_tables_is_as_in_the_protocol() -> None:
     flags = (*compiler.includes(paths.root / "protocol"), *compiler.SHARED)
     made = compiler.compile_to(run.BUILD / "bank_at.so", *flags, source)
     assert ctypes.CDLL(str(made)).differences() == 0
+
+
+def proved(rule: Any) -> bool:
+    """Whether a rule holds for all integers."""
+    solver = z3.Solver()
+    solver.add(z3.Not(rule))
+    return solver.check() == z3.unsat
+
+
+def test_rules_of_long_multiplication_and_division() -> None:
+    """Which couplings with unknown products and quotients assume: for all integers."""
+    a, b, bit, place, least = z3.Ints("a b bit place least")
+    assert proved(z3.And(a * 0 == 0, a * (b + bit * place) == a * b + bit * a * place))
+    n, by, q, r, q2, r2 = z3.Ints("n by q r q2 r2")
+
+    def divided(n: Any, q: Any, r: Any) -> Any:
+        return z3.And(n == q * by + r, r >= 0, r < by)
+
+    assert proved(z3.Implies(z3.And(divided(n, q, r), divided(n, q2, r2)), z3.And(q == q2, r == r2)))
+    assert proved(z3.Implies(z3.And(n >= 0, n < by), divided(n, 0, n)))
+    assert proved(z3.Implies(divided(n, q, r), (q >= least) == (n >= least * by)))
+    fits = z3.If(2 * r + bit >= by, 1, 0)
+    next_one = divided(2 * n + bit, 2 * q + fits, 2 * r + bit - fits * by)
+    is_bit = z3.Or(bit == 0, bit == 1)
+    assert proved(z3.Implies(z3.And(is_bit, divided(n, q, r)), next_one))
+    assert not proved(z3.Implies(divided(n, q, r), next_one))
 
 
 def compiled(coupling: Coupling, names: list[str]) -> ctypes.CDLL:
