@@ -30,6 +30,8 @@ from equal.c_types import (
     to_vector,
 )
 
+STEPS = 500  # of a simplification, at most
+
 
 @dataclass
 class Cell:
@@ -77,7 +79,11 @@ def within(index: Value, length: int) -> Condition:
 
 def _selects(key: Value, i: int) -> Condition:
     """Whether an unknown index is i: often known to be false, for an index that was masked."""
-    equal = z3.simplify(key.bits == i)
+    equal = key.bits == i
+    try:
+        equal = z3.simplify(equal, max_steps=STEPS)
+    except z3.Z3Exception:
+        return equal  # it depends on too much
     return False if z3.is_false(equal) else equal
 
 

@@ -16,6 +16,7 @@ typedef long int64_t;
 #define UINT32_MAX 0xFFFFFFFFu
 #define UINT64_MAX 0xFFFFFFFFFFFFFFFFul
 #define UINT64_C(value) value##ul
+#define UINT32_C(n) n##u
 #define INT64_C(value) value##l
 
 #endif
