@@ -129,7 +129,7 @@ def compiled(coupling: Coupling, names: list[str]) -> ctypes.CDLL:
     text = harness(coupling, [], paths.root)
     visible = '__attribute__((visibility("default"))) void'
     text += (
-        f"\n{visible} load(const uint64_t *v)\n{{\n{load}}}\n{visible} store(uint64_t *v)\n{{\n{store}}}\n"
+        f"\n{visible} coupling_load(const uint64_t *v)\n{{\n{load}}}\n{visible} coupling_store(uint64_t *v)\n{{\n{store}}}\n"
     )
     text += f"{visible} coupling_clock(void) {{ {CLOCK}(); }}\n"
     source = run.BUILD / f"{coupling.name}.c"
@@ -155,7 +155,7 @@ def test_symbolic_execution_agrees_with_the_compiler(coupling: Coupling) -> None
         if tried >= states and defined >= DEFINED:
             break
         values = {name: drawn(rng, kind) for name, kind in kinds.items()} | coupling.fixed
-        library.load(words(*(value & MASK for value in values.values())))
+        library.coupling_load(words(*(value & MASK for value in values.values())))
         model.evaluator.demands.clear()
         model.set_all(values)
         model.run(CLOCK)
@@ -163,7 +163,7 @@ def test_symbolic_execution_agrees_with_the_compiler(coupling: Coupling) -> None
             continue
         library.coupling_clock()
         made = words()
-        library.store(made)
+        library.coupling_store(made)
         evaluated = {name: int(bits) & MASK for name, (_, bits) in model.leaves().items()}
         assert evaluated == dict(zip(kinds, made, strict=True))
         defined += 1
