@@ -68,6 +68,7 @@ class Coupling:
     apart: bool  # each goal is proved on its own, which z3 may decide faster than all at once
     slow: bool  # takes too long for ``make test``
     opaque: bool  # products and quotients of unknown numbers are unknown functions
+    clocks: tuple[str, ...]  # inputs that clock registers, too, which are all of at_once
 
 
 def _link(entry: str | dict[str, Any]) -> Link:
@@ -113,6 +114,7 @@ def read_coupling(path: Path) -> Coupling:
             table.pop("apart", False),
             table.pop("slow", False),
             table.pop("opaque", False),
+            tuple(table.pop("clocks", ())),
         )
     except KeyError as missing:
         raise Failure(f"{path.name}: {missing} is missing") from None

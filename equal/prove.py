@@ -266,9 +266,7 @@ def prove(coupling: Coupling, root: Path) -> Outcome:
         Failure: The coupling does not fit the RTL, its assumptions contradict each other, or no answer comes.
     """
     begin = time.monotonic()
-    rtl = read_rtl(
-        coupling.top, root / "rtl", coupling.parameters, coupling.at_once, coupling.memory, coupling.cut
-    )
+    rtl = read_rtl(coupling, root / "rtl")
     _check_names(coupling, rtl)
     bits = sum(rtl.registers[name] for name in {_named(entry)[0] for entry in coupling.registers})
     count = 0

