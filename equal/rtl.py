@@ -124,8 +124,8 @@ def read_rtl(coupling: Coupling, folder: Path) -> Rtl:
     """Read the module of a coupling with its submodules, from the sources in a folder.
 
     Modules that are cut out give inputs, and what they are given are outputs. The values of registers with an
-    asynchronous reset, or with another clock, are those that the inputs of the same moment give them, and so is what
-    is said of them.
+    asynchronous reset, or with another clock, are those that the inputs of the same moment give them, and so
+    is what is said of them.
 
     Raises:
         Failure: yosys finds an error, or other registers have an asynchronous reset.

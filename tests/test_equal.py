@@ -128,7 +128,8 @@ def compiled(coupling: Coupling, names: list[str]) -> ctypes.CDLL:
     store = "".join(f"\tv[{i}] = (uint64_t){name};\n" for i, name in enumerate(names))
     text = harness(coupling, [], paths.root)
     visible = '__attribute__((visibility("default"))) void'
-    text += f"\n{visible} coupling_load(const uint64_t *v)\n{{\n{load}}}\n{visible} coupling_store(uint64_t *v)\n{{\n{store}}}\n"
+    text += f"\n{visible} coupling_load(const uint64_t *v)\n{{\n{load}}}\n"
+    text += f"{visible} coupling_store(uint64_t *v)\n{{\n{store}}}\n"
     text += f"{visible} coupling_clock(void) {{ {CLOCK}(); }}\n"
     source = run.BUILD / f"{coupling.name}.c"
     source.parent.mkdir(parents=True, exist_ok=True)
