@@ -68,6 +68,8 @@ class Coupling:
     apart: bool  # each goal is proved on its own, which z3 may decide faster than all at once
     slow: bool  # takes too long for ``make test``
     opaque: bool  # products and quotients of unknown numbers are unknown functions
+    # goals that z3 decides faster value by value of an expression: the expression, and how many values
+    splits: dict[str, dict[str, Any]]
     clocks: tuple[str, ...]  # inputs that clock registers, too, which are all of at_once
 
 
@@ -114,6 +116,7 @@ def read_coupling(path: Path) -> Coupling:
             table.pop("apart", False),
             table.pop("slow", False),
             table.pop("opaque", False),
+            table.pop("splits", {}),
             tuple(table.pop("clocks", ())),
         )
     except KeyError as missing:

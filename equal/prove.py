@@ -10,7 +10,7 @@ the coupling holds after it, whatever was before, except for what a reset keeps.
 import re
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -34,10 +34,11 @@ PART = re.compile(r"(.*)\[(\d+):(\d+)\]")
 
 @dataclass(frozen=True)
 class Goal:
-    """Something to prove."""
+    """Something to prove; if there are cases, which are all, in one after the other."""
 
     name: str
     formula: Any
+    cases: tuple[Any, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -75,6 +76,7 @@ class Model:
         self.expressions += [f"probe == ({link.probe})" for link in links if link.probe]
         self.expressions += [link.expression for link in coupling.invariants.values()]
         self.expressions += [assumption["that"] for assumption in coupling.assumptions.values()]
+        self.expressions += [split["by"] for split in coupling.splits.values()]
         program = Program(harness(coupling, self.expressions, root))
         self.nodes = program.functions[EXPRESSIONS].body.block_items or []
         self.evaluator = Evaluator(program, coupling.opaque)
@@ -201,8 +203,11 @@ def _search(assumed: list[Any], goals: list[Goal], apart: bool) -> tuple[tuple[s
     solver.add(*assumed)
     if solver.check() != z3.sat:
         raise Failure("the assumptions contradict each other: no state satisfies them")
-    for asked in [[goal] for goal in goals] if apart else [goals]:
-        example = _example(assumed, asked)
+    together = [goal for goal in goals if not goal.cases]
+    questions = [([], [goal]) for goal in together] if apart else [([], together)]
+    questions += [([case], [goal]) for goal in goals for case in goal.cases]
+    for case, asked in questions:
+        example = _example([*assumed, *case], asked)
         if example is None:
             continue
         failed = tuple(goal.name for goal in asked if z3.is_false(example.eval(z3.And(goal.formula), True)))
@@ -236,7 +241,17 @@ def _clock_goals(coupling: Coupling, rtl: Rtl, root: Path) -> tuple[list[Any], l
     for name, link in coupling.invariants.items():
         goals.append(Goal(f"invariant {name}", truth(after[link.expression])))
     goals += [Goal(f"defined: {what}", condition) for what, condition in model.evaluator.demands]
-    return assumed, goals
+    return assumed, [_split(goal, coupling, before) for goal in goals]
+
+
+def _split(goal: Goal, coupling: Coupling, before: dict[str, Value]) -> Goal:
+    """The goal with its cases: each value, and the rest."""
+    split = coupling.splits.get(goal.name)
+    if split is None:
+        return goal
+    bits = before[split["by"]].bits
+    values = range(split["values"])
+    return replace(goal, cases=(*(bits == value for value in values), z3.UGE(bits, len(values))))
 
 
 def _reset_goals(coupling: Coupling, rtl: Rtl, root: Path) -> tuple[list[Any], list[Goal]]:
