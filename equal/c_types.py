@@ -7,6 +7,7 @@ bool or a z3 condition. Structs are dicts, arrays are lists.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
@@ -220,10 +221,13 @@ def filled(kind: Type, name: str, leaf: Any) -> Any:
 
 
 def symbols(kind: Type, name: str, arrays: Collection[str] = ()) -> Any:
-    """Bits of a type, all unknown; each symbol has the name of its leaf. ``arrays`` become tables."""
+    """Bits of a type, all unknown; each symbol has the name of its leaf.
+
+    ``arrays`` become tables: names without indices.
+    """
     if isinstance(kind, Struct):
         return {of: symbols(inner, f"{name}.{of}", arrays) for of, inner in kind.fields.items()}
-    if isinstance(kind, Array) and name in arrays:
+    if isinstance(kind, Array) and re.sub(r"\[\d+\]", "[]", name) in arrays:
         return Table(filled(kind.element, f"{name}[]", _column))
     if isinstance(kind, Array):
         return [symbols(kind.element, f"{name}[{i}]", arrays) for i in range(kind.length)]

@@ -61,7 +61,7 @@ class Coupling:
     at_once: tuple[str, ...]
     # leaves of the objects that a parameter fixes: member after member
     fixed: dict[str, int]
-    # long arrays of integers: unknown as a whole, which z3 decides faster
+    # long arrays of integers: unknown as a whole, which z3 decides faster; without indices: ``a[].b``
     arrays: tuple[str, ...]
     memory: str  # a file of memory/, for rtl/passo_memory.v
     cut: tuple[str, ...]  # modules in it that are proved on their own: their ports are outputs and inputs

@@ -14,18 +14,20 @@ static uint8_t at_most_255(uint16_t room)
 
 bool passo_registers_any_occupied(const struct passo_core *core)
 {
+	bool any = false;
+
 	for (unsigned i = 0; i < core->parameters.channels; i++)
-		if (passo_channel_occupied(&core->channel[i]))
-			return true;
-	return false;
+		any |= passo_channel_occupied(&core->channel[i]);
+	return any;
 }
 
 bool passo_registers_any_stopped(const struct passo_core *core)
 {
+	bool any = false;
+
 	for (unsigned i = 0; i < core->parameters.channels; i++)
-		if (passo_channel_stopped(&core->channel[i]))
-			return true;
-	return false;
+		any |= passo_channel_stopped(&core->channel[i]);
+	return any;
 }
 
 uint32_t passo_registers_status(const struct passo_core *core)

@@ -129,7 +129,8 @@ struct world {
 	uint64_t events_from;
 	uint64_t idle_since[PASSO_CHANNELS_MAX];
 	struct passo_inputs levels;                /* of the inputs at rest */
-	uint64_t noise;                            /* state of the random changes of all inputs; 0: none */
+	uint64_t noise;                            /* state of the random changes of inputs; 0: none */
+	uint32_t noisy;                            /* a bit for each input that changes */
 	struct world_shaft shafts[PASSO_AXES_MAX]; /* of channel 0 */
 	FILE *record;                              /* stimulus for soak/player.v; NULL: none */
 	struct passo_inputs recorded_inputs;

@@ -80,6 +80,8 @@ static void make_noise(struct world *world)
 
 	if ((x & 0x1Fu) != 0u || (input == PASSO_INPUT_ESTOP_N && (x >> 20 & 0xFFu) != 0u))
 		return;
+	if ((world->noisy >> input & 1u) == 0u)
+		return;
 	invert(world, input, input <= PASSO_INPUT_ESTOP_N ? 1u : (uint8_t)(x >> 32));
 	world->fact_count--;
 }

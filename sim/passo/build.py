@@ -58,9 +58,9 @@ class Parameters(CoreParameters):
         }
 
 
-def rtl_sources() -> list[Path]:
+def rtl_sources(folder: Path = paths.rtl) -> list[Path]:
     """The Verilog modules of the core."""
-    return sorted(paths.rtl.glob("*.v"))
+    return sorted(folder.glob("*.v"))
 
 
 def planner_library() -> Path:
@@ -109,9 +109,9 @@ def cpu_library() -> Path:
     )
 
 
-def rtl_library(parameters: Parameters, waves: bool = False) -> Path:
-    """The engine of the Verilated core, for given parameters."""
-    verilated = _verilated(parameters, waves)
+def rtl_library(parameters: Parameters, waves: bool = False, rtl: Path = paths.rtl) -> Path:
+    """The engine of the Verilated core, for given parameters; `rtl`: a folder with a changed copy of it."""
+    verilated = _verilated(parameters, waves, rtl)
     include = Path(environment()["VERILATOR_ROOT"]) / "include"
     c_parts, cpp_part = engine_sources(), paths.engine / "engine_rtl.cpp"
     defines = [f"-DPASSO_CORE_{name.upper()}={value}" for name, value in asdict(parameters).items()]
@@ -128,7 +128,7 @@ def rtl_library(parameters: Parameters, waves: bool = False) -> Path:
             call([CC, *ENGINE_FLAGS, "-c", part, "-o", made])
         call([CXX, "-shared", *flags, *runtime, cpp_part, *objects, *archives, "-o", folder / LIBRARY])
 
-    name = f"rtl_{parameters.name}{'_waves' if waves else ''}"
+    name = f"rtl_{parameters.name}{'_waves' if waves else ''}{_copy(rtl)}"
     inputs = [*c_parts, cpp_part, *headers(paths.engine), paths.model / "passo_pins.h"]
     return cached(name, inputs, [_verilator(), *ENGINE_FLAGS, *flags, *archives], make) / LIBRARY
 
@@ -142,11 +142,15 @@ def waves_possible() -> bool:
     return True
 
 
-def _verilated(parameters: Parameters, waves: bool) -> Path:
+def _copy(rtl: Path) -> str:
+    return "" if rtl == paths.rtl else f"_{rtl.name}"
+
+
+def _verilated(parameters: Parameters, waves: bool, rtl: Path) -> Path:
     """The folder with the compiled C++ that Verilator generates from the core."""
     if waves and not waves_possible():
         raise BuildError("waves need lz4.h and zlib.h: install the Debian packages liblz4-dev and zlib1g-dev")
-    modules = rtl_sources()
+    modules = rtl_sources(rtl)
     # More optimization takes longer than it saves, and the more so the more there is in one function.
     large = parameters.channels > 1 or parameters.encoders or parameters.outputs
     optimize = ("OPT_FAST=-O1" if waves or large else "OPT_FAST=-O2", "OPT_SLOW=-O0")
@@ -156,11 +160,11 @@ def _verilated(parameters: Parameters, waves: bool) -> Path:
     def make(folder: Path) -> None:
         if " " in f"{paths.rtl}{paths.build}":
             raise BuildError(f"Verilator's makefiles take no path with a space: {paths.rtl}, {paths.build}")
-        call(["verilator", *flags, f"-I{paths.rtl}", "--Mdir", folder, *modules])
+        call(["verilator", *flags, f"-I{rtl}", "--Mdir", folder, *modules])
         call(["make", "-C", folder, "-f", MAKEFILE, MODEL, *optimize])
 
-    name = f"verilated_{parameters.name}{'_waves' if waves else ''}"
-    return cached(name, [*modules, *sorted(paths.rtl.glob("*.vh"))], [_verilator(), *flags, *optimize], make)
+    name = f"verilated_{parameters.name}{'_waves' if waves else ''}{_copy(rtl)}"
+    return cached(name, [*modules, *sorted(rtl.glob("*.vh"))], [_verilator(), *flags, *optimize], make)
 
 
 def _runtime(waves: bool) -> Path:
