@@ -19,7 +19,7 @@ static bool link_side_quiet(const struct passo_core *core, const struct passo_in
 	const uint8_t synced = inputs->sync ? 7 : 0;
 
 	return PASSO_SAME_INPUTS(inputs, &core->inputs) && core->spi.select_sync == selected
-	    && core->spi.toggle_sync == toggled && core->sync_q == synced && passo_link_quiet(&core->link)
+	    && core->spi.toggle_sync == toggled && core->sync_q == synced
 	    && core->link.status == passo_registers_status(core) && !core->response.claim
 	    && core->response.refusal == 0u && core->response.read_data == 0u && !core->response.late
 	    && core->outputs.irq == passo_registers_any_stopped(core);
@@ -48,7 +48,7 @@ uint64_t passo_core_advance(struct passo_core *core, const struct passo_inputs *
 	const uint64_t clocks_to_slew = core->slew_tick ? 0u : tick - core->slew_count;
 	const unsigned channels = core->parameters.channels;
 	unsigned moving = channels; /* the first moving channel; `channels`: none */
-	uint64_t clocks = limit;
+	uint64_t clocks = passo_advance_least(limit, passo_link_quiet(&core->link));
 
 	if (clocks == 0u || inputs->rst || !link_side_quiet(core, inputs))
 		return 0;
@@ -97,6 +97,7 @@ uint64_t passo_core_advance(struct passo_core *core, const struct passo_inputs *
 			core->channel[i].timescale.after = (uint8_t)core->slew_count;
 	if (core->parameters.inputs != 0u)
 		passo_machine_skip(&core->machine, clocks);
+	passo_link_skip(&core->link, clocks);
 	core->tables.slot = (uint8_t)((core->tables.slot + clocks) % (2u * channels));
 	return clocks;
 }

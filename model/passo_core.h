@@ -9,6 +9,7 @@
 #define PASSO_CORE_H
 
 #include "passo_model.h"
+#include "passo_shift.h"
 
 struct passo_core {
 	struct passo_parameters parameters;
@@ -37,6 +38,14 @@ void passo_core_clock(struct passo_core *core, const struct passo_inputs *inputs
  * clocks skipped; after 0, continue with passo_core_clock(). The resulting state is identical to that many
  * calls of passo_core_clock(). */
 uint64_t passo_core_advance(struct passo_core *core, const struct passo_inputs *inputs, uint64_t limit);
+
+/* As passo_core_advance(), with bits going in and out: skips at most `limit` clocks in which no output pin
+ * but MISO changes. `inputs` have the levels of the previous clock and get those of the last one skipped. */
+uint64_t passo_core_shift(
+    struct passo_core *core, struct passo_inputs *inputs, struct passo_shift *shift, uint64_t limit);
+/* The same, or one clock if none can be skipped. */
+uint64_t passo_core_exchange(
+    struct passo_core *core, struct passo_inputs *inputs, struct passo_shift *shift, uint64_t limit);
 
 /* Levels of the enable pins while estop_n has this level: it acts without a clock. */
 uint64_t passo_core_enable(const struct passo_core *core, bool estop_n);

@@ -283,6 +283,9 @@ bool passo_encoders_quiet(const struct passo_channel *channel, const struct pass
 		soft = soft || (axis->following.exceeded && axis->stops_soft);
 		hard = hard || (axis->following.exceeded && axis->stops_hard);
 	}
+	/* either stops a motion in the next clock */
+	if ((soft || hard) && passo_channel_occupied(channel))
+		return false;
 	return encoders->stop_soft == soft && encoders->stop_hard == hard && !encoders->follower.lost
 	    && !encoders->follower.behind;
 }

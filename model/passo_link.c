@@ -35,11 +35,25 @@ void passo_link_reset(struct passo_link *link)
 	*link = (struct passo_link){.step = PASSO_LINK_IDLE, .count = COUNT_REST};
 }
 
-bool passo_link_quiet(const struct passo_link *link)
+uint64_t passo_link_quiet(const struct passo_link *link)
 {
 	const struct passo_bus *bus = &link->bus;
-	return link->count == COUNT_REST && !link->answer_due && !link->answer_came && !link->refused
-	    && !bus->frame && !bus->commit && !bus->check && !bus->write && !bus->read;
+
+	if (link->answer_due || link->answer_came || link->refused || bus->frame || bus->commit || bus->check
+	    || bus->write || bus->read)
+		return 0;
+	if (link->count == COUNT_REST)
+		return UINT64_MAX;
+	/* the RTL rotates a word */
+	if (link->count > COUNT_LOADED && link->count < COUNT_ROTATED)
+		return (uint64_t)COUNT_ROTATED - link->count;
+	return 0;
+}
+
+void passo_link_skip(struct passo_link *link, uint64_t clocks)
+{
+	if (link->count != COUNT_REST)
+		link->count = (uint8_t)(link->count + clocks);
 }
 
 static unsigned place(const struct passo_link *link, bool in_payload, unsigned otherwise)

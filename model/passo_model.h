@@ -113,7 +113,9 @@ struct passo_link_wires {
 void passo_link_reset(struct passo_link *link);
 void passo_link_clock(struct passo_link *link, const struct passo_link_wires *wires);
 /* Whether nothing changes in the link until the next half word or chip select edge. */
-bool passo_link_quiet(const struct passo_link *link);
+/* Clocks in which the link only counts, UINT64_MAX at rest; and skipping them. */
+uint64_t passo_link_quiet(const struct passo_link *link);
+void passo_link_skip(struct passo_link *link, uint64_t clocks);
 
 struct passo_registers {
 	uint8_t run;

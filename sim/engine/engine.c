@@ -79,19 +79,28 @@ void passo_engine_destroy(struct passo_engine *engine)
 	free(engine);
 }
 
-static uint64_t run_to_event(struct passo_engine *engine, uint64_t limit)
+/* The limit, or what the rig leaves of it. */
+static uint64_t limited(const struct passo_engine *engine, uint64_t limit)
 {
 	const uint64_t next = engine->rig ? passo_rig_next(engine->rig, engine->clock) : UINT64_MAX;
 
-	if (limit > next - engine->clock)
-		limit = next - engine->clock;
-	const uint64_t clocks = engine_core_run(engine->core, &engine->inputs, limit, &engine->outputs);
+	return limit > next - engine->clock ? next - engine->clock : limit;
+}
 
+/* What follows from clocks that have passed. */
+static uint64_t passed(struct passo_engine *engine, uint64_t clocks)
+{
 	engine->clock += clocks;
 	log_pins(engine);
 	if (engine->rig)
 		passo_rig_follow(engine->rig, engine->clock, &engine->outputs, &engine->inputs);
 	return clocks;
+}
+
+static uint64_t run_to_event(struct passo_engine *engine, uint64_t limit)
+{
+	return passed(
+	    engine, engine_core_run(engine->core, &engine->inputs, limited(engine, limit), &engine->outputs));
 }
 
 static void run_all(struct passo_engine *engine, uint64_t clocks)
@@ -200,25 +209,30 @@ uint32_t passo_engine_running(const struct passo_engine *engine)
 	return engine->outputs.running;
 }
 
-/* SPI mode 0: MOSI changes on the falling edge, both sides sample on the rising edge. */
+static void run_shift(struct passo_engine *engine, struct passo_shift *shift)
+{
+	const uint64_t skipped = engine_core_shift(
+	    engine->core, &engine->inputs, shift, limited(engine, UINT64_MAX), &engine->outputs);
+
+	if (skipped != 0u) {
+		passed(engine, skipped);
+		return;
+	}
+	passo_shift_pins(shift, &engine->inputs, engine->outputs.spi_miso);
+	shift->clock += run_to_event(engine, passo_shift_constant(shift));
+}
+
 void passo_engine_transfer(
     struct passo_engine *engine, const uint32_t *mosi, uint32_t *miso, size_t count, uint64_t gap)
 {
+	struct passo_shift shift = {
+	    .mosi = mosi, .miso = miso, .bits = 32u * count, .half_period = engine->spi_half_period};
+
 	engine->inputs.spi_cs_n = false;
 	run_all(engine, CS_SETUP);
-	for (size_t i = 0; i < count; i++) {
-		uint32_t received = 0;
-
-		for (unsigned bit = 32; bit-- > 0;) {
-			engine->inputs.spi_mosi = mosi[i] >> bit & 1u;
-			run_all(engine, engine->spi_half_period);
-			received = received << 1 | engine->outputs.spi_miso;
-			engine->inputs.spi_sclk = true;
-			run_all(engine, engine->spi_half_period);
-			engine->inputs.spi_sclk = false;
-		}
-		miso[i] = received;
-	}
+	while (!passo_shift_done(&shift))
+		run_shift(engine, &shift);
+	engine->inputs.spi_sclk = false;
 	run_all(engine, CS_HOLD);
 	engine->inputs.spi_cs_n = true;
 	run_all(engine, gap);

@@ -5,6 +5,7 @@
 #define PASSO_ENGINE_CORE_H
 
 #include "passo_engine.h"
+#include "passo_shift.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -22,6 +23,10 @@ void engine_core_close(struct engine_core *core);
  * changes. Returns the number of clocks; *outputs are the levels after the last one. */
 uint64_t engine_core_run(struct engine_core *core, const struct passo_inputs *inputs, uint64_t limit,
     struct passo_outputs *outputs);
+
+/* Skips up to `limit` clocks of an exchange, see passo_core_shift(); 0 if it cannot. */
+uint64_t engine_core_shift(struct engine_core *core, struct passo_inputs *inputs, struct passo_shift *shift,
+    uint64_t limit, struct passo_outputs *outputs);
 
 bool engine_core_open_waves(struct engine_core *core, const char *path, uint64_t begin, uint64_t end);
 void engine_core_close_waves(struct engine_core *core);

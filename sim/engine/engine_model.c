@@ -63,6 +63,15 @@ uint64_t engine_core_run(struct engine_core *core, const struct passo_inputs *in
 	return clocks;
 }
 
+uint64_t engine_core_shift(struct engine_core *core, struct passo_inputs *inputs, struct passo_shift *shift,
+    uint64_t limit, struct passo_outputs *outputs)
+{
+	const uint64_t clocks = core->every_clock ? 0 : passo_core_shift(&core->model, inputs, shift, limit);
+
+	read_outputs(&core->model, outputs);
+	return clocks;
+}
+
 bool engine_core_open_waves(struct engine_core *core, const char *path, uint64_t begin, uint64_t end)
 {
 	(void)core;

@@ -120,6 +120,17 @@ uint64_t engine_core_run(
 	return clocks;
 }
 
+uint64_t engine_core_shift(
+    engine_core *core, passo_inputs *inputs, passo_shift *shift, uint64_t limit, passo_outputs *outputs)
+{
+	(void)core;
+	(void)inputs;
+	(void)shift;
+	(void)limit;
+	(void)outputs;
+	return 0;
+}
+
 bool engine_core_open_waves(engine_core *core, const char *path, uint64_t begin, uint64_t end)
 {
 #ifdef PASSO_WAVES

@@ -21,6 +21,27 @@ static bool look(struct player *player, bool may_change)
 	return true;
 }
 
+bool player_exchange(
+    struct player *player, struct passo_inputs *inputs, struct passo_shift *shift, uint64_t clocks)
+{
+	const uint64_t end = shift->clock + clocks;
+	bool good = true;
+
+	while (shift->clock < end) {
+		const uint64_t before = shift->clock;
+		const uint64_t quiet = passo_core_shift(player->core, inputs, shift, end - before);
+
+		if (shift->clock != before + quiet)
+			return false;
+		if (quiet == 0u)
+			passo_core_exchange(player->core, inputs, shift, 0);
+		player->skipped += quiet;
+		player->clock += shift->clock - before;
+		good = look(player, quiet == 0u) && good;
+	}
+	return good && shift->clock == end;
+}
+
 bool player_play(struct player *player, struct player_segment *segments, size_t count)
 {
 	bool good = true;

@@ -28,5 +28,8 @@ struct player {
 /* Plays all segments and appends output changes to the events. False if an output changed in a clock skipped
  * by passo_core_advance(), or if the events are full. */
 bool player_play(struct player *player, struct player_segment *segments, size_t count);
+/* The same for that many clocks of an exchange, with passo_core_exchange(). */
+bool player_exchange(
+    struct player *player, struct passo_inputs *inputs, struct passo_shift *shift, uint64_t clocks);
 
 #endif

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Two C models with the same pin waveforms: one goes clock by clock, one with passo_core_advance()."""
+"""Two C models with the same pin waveforms: one goes clock by clock, one with passo_core_advance() and
+passo_core_shift()."""
 
 import random
 from collections.abc import Iterator, Sequence
@@ -17,7 +18,7 @@ from passo.toolchain import paths
 HERE = Path(__file__).parent
 HEADERS = [
     *(paths.protocol / f"passo_{name}.h" for name in ("registers", "words", "shapes", "command")),
-    *(paths.model / f"passo_{name}.h" for name in ("pins", "encoder", "outputs", "model", "core")),
+    *(paths.model / f"passo_{name}.h" for name in ("pins", "shift", "encoder", "outputs", "model", "core")),
     HERE / "core_player.h",
 ]
 FOLDERS = (paths.model, paths.protocol)
@@ -60,6 +61,10 @@ class Player:
         )
         return [segment.spi_miso for segment in c_segments]
 
+    def exchange(self, inputs: Any, shift: Any, clocks: int) -> None:
+        """Go on with an exchange, by jumps."""
+        assert self.c.player_exchange(self.player, inputs, shift, clocks), "an output changed in a jump"
+
     def events(self) -> bytes:
         """The pin events since the last call."""
         count, self.player.count = self.player.count, 0
@@ -81,6 +86,7 @@ class PlayerPair:
         self.jump = Player(parameters, advance=True)
         self.events = 0
         self.compared = 0
+        self.core_type = self.ffi.typeof("struct passo_core")
         self._inputs = {pin.name: pin.idle for pin in INPUTS}
 
     @property
@@ -96,14 +102,35 @@ class PlayerPair:
     def transfer(self, mosi: Sequence[int], gap: int = 16) -> list[int]:
         """One chip select, SPI mode 0."""
         selected = self._inputs | {"spi_cs_n": 0}
-        segments = [(4, selected)]
+        self._play([(4, selected)])
+        reply = self._exchange(mosi, selected)
+        self._play([(4, selected | {"spi_mosi": mosi[-1] & 1}), (gap, self._inputs)])
+        return reply
+
+    def _exchange(self, mosi: Sequence[int], selected: dict[str, int]) -> list[int]:
+        """Words clock by clock, and as bits that are jumped over; compared at random clocks."""
+        levels: list[Segment] = []  # one per clock
         for word in mosi:
             for bit in range(31, -1, -1):
                 low = selected | {"spi_mosi": word >> bit & 1}
-                segments += [(HALF_PERIOD, low), (HALF_PERIOD, low | {"spi_sclk": 1})]
-        segments += [(4, selected), (gap, self._inputs)]
-        miso = self._play(segments)[1:-2:2]
-        return [int("".join(map(str, miso[i : i + 32])), 2) for i in range(0, len(miso), 32)]
+                levels += [(1, low)] * HALF_PERIOD + [(1, low | {"spi_sclk": 1})] * HALF_PERIOD
+        sent, received = self.ffi.new("uint32_t[]", list(mosi)), self.ffi.new("uint32_t[]", len(mosi))
+        fields = {"mosi": sent, "miso": received, "bits": 32 * len(mosi), "half_period": HALF_PERIOD}
+        shift = self.ffi.new("struct passo_shift *", fields)
+        inputs = self.ffi.new("struct passo_inputs *", selected)
+        miso: list[int] = []
+        while len(miso) < len(levels):
+            begin = len(miso)
+            clocks = min(self.rng.choice([1, 3, 20, 100, 1000]), len(levels) - begin)
+            miso += self.each.play(levels[begin : begin + clocks])
+            self.jump.exchange(inputs, shift, clocks)
+            if self._differ():
+                fields = list(differing(self.core_type, self.each.core[0], self.jump.core[0]))
+                assert not fields, f"clocks {begin} to {shift.clock} of a frame: {'; '.join(fields[:12])}"
+        sampled = miso[HALF_PERIOD - 1 :: 2 * HALF_PERIOD]
+        words = [int("".join(map(str, sampled[i : i + 32])), 2) for i in range(0, len(sampled), 32)]
+        assert list(received) == words
+        return words
 
     def run(self, clocks: int) -> int:
         """Nothing at the pins for so long."""
@@ -139,11 +166,15 @@ class PlayerPair:
         clock = self.clock
         self._last_miso = self.each.play(segments)
         miso = self.jump.play(segments)
+        if self._differ() or miso != self._last_miso:
+            self._find_difference(before, clock, segments)
+
+    def _differ(self) -> bool:
+        """Compare the events since the last call, and the states."""
         events = self.each.events()
         self.events += len(events) // self.ffi.sizeof("struct passo_pin_event")
         self.compared += 1
-        if self.jump.events() != events or miso != self._last_miso or self.each.state() != self.jump.state():
-            self._find_difference(before, clock, segments)
+        return self.jump.events() != events or self.each.state() != self.jump.state()
 
     def _find_difference(self, before: bytes, clock: int, segments: list[Segment]) -> None:
         """Play once more, each jump by itself, up to the first after which the models are not the same."""
@@ -160,8 +191,7 @@ class PlayerPair:
                     self.c.passo_core_clock(self.each.core, inputs)
                 clock, left = clock + (jump or 1), left - (jump or 1)
                 if self.each.state() != self.jump.state():
-                    kind = self.ffi.typeof("struct passo_core")
-                    fields = list(differing(kind, self.each.core[0], self.jump.core[0]))
+                    fields = list(differing(self.core_type, self.each.core[0], self.jump.core[0]))
                     # what lies between members does not count
                     assert not fields, f"clock {clock}, after a jump of {jump}: {'; '.join(fields[:12])}"
 

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: MIT
+ * A host's side of an exchange over SPI, mode 0: MOSI changes on the falling edge, both sides sample on the
+ * rising edge. Words are sent and received with their highest bit first.
+ */
+#ifndef PASSO_SHIFT_H
+#define PASSO_SHIFT_H
+
+#include "passo_pins.h"
+
+struct passo_shift {
+	const uint32_t *mosi;
+	uint32_t *miso; /* each bit received is shifted in */
+	uint64_t bits;
+	uint32_t half_period; /* clocks of each level of SCLK, at least 1 */
+	uint64_t clock;       /* since the first bit */
+};
+
+/* Whether the clocks of the last bit have passed; its falling edge is still to come. */
+static inline bool passo_shift_done(const struct passo_shift *shift)
+{
+	return shift->clock == 2u * shift->half_period * shift->bits;
+}
+
+/* Clocks until SCLK changes. */
+static inline uint64_t passo_shift_constant(const struct passo_shift *shift)
+{
+	return shift->half_period - shift->clock % shift->half_period;
+}
+
+/* Sets SCLK and MOSI to their levels in the next clock. A rising edge samples MISO, whose level is `miso`. */
+static inline void passo_shift_pins(const struct passo_shift *shift, struct passo_inputs *inputs, bool miso)
+{
+	const uint64_t level = shift->clock / shift->half_period;
+	const uint64_t bit = level / 2u, word = bit / 32u;
+	const bool edge = shift->clock % shift->half_period == 0u;
+
+	inputs->spi_sclk = level % 2u != 0u;
+	if (!inputs->spi_sclk)
+		inputs->spi_mosi = (shift->mosi[word] >> (31u - bit % 32u) & 1u) != 0u;
+	else if (edge)
+		shift->miso[word] = shift->miso[word] << 1 | (miso ? 1u : 0u);
+}
+
+#endif
