@@ -52,18 +52,14 @@ static void rest(uint64_t clocks)
 static void transfer_bits(const uint32_t *mosi, uint32_t *miso, size_t bits)
 {
 	struct passo_inputs inputs = PASSO_INPUTS_IDLE;
+	struct passo_shift shift = {.mosi = mosi, .miso = miso, .bits = bits, .half_period = 2};
 
 	inputs.spi_cs_n = false;
 
 	run(&inputs, 4);
-	for (size_t i = 0; i < bits; i++) {
-		inputs.spi_mosi = (mosi[i / 32] >> (31u - i % 32) & 1u) != 0u;
-		run(&inputs, 2);
-		miso[i / 32] = miso[i / 32] << 1 | (passo_core_outputs(&core)->spi_miso ? 1u : 0u);
-		inputs.spi_sclk = true;
-		run(&inputs, 2);
-		inputs.spi_sclk = false;
-	}
+	while (!passo_shift_done(&shift))
+		passo_core_exchange(&core, &inputs, &shift, random_word() % 64u);
+	inputs.spi_sclk = false;
 	run(&inputs, 4);
 	rest(300);
 }

@@ -120,16 +120,17 @@ static void rest(uint64_t microseconds)
 static void exchange(const uint32_t *send, uint32_t *receive, size_t bits)
 {
 	struct passo_inputs inputs = {.spi_cs_n = bits == 0u};
+	struct passo_shift shift = {.mosi = send, .miso = receive, .bits = bits, .half_period = 2};
 
 	run(&inputs, 4);
-	for (size_t i = 0; i < bits; i++) {
-		inputs.spi_mosi = send[i / 32] >> (31u - i % 32) & 1u;
-		run(&inputs, 2);
-		receive[i / 32] = receive[i / 32] << 1 | passo_core_outputs(&world.core)->spi_miso;
-		inputs.spi_sclk = true;
-		run(&inputs, 2);
-		inputs.spi_sclk = false;
+	while (!passo_shift_done(&shift)) {
+		const uint64_t clock = shift.clock;
+
+		passo_core_exchange(&world.core, &inputs, &shift, UINT64_MAX);
+		world.clock += shift.clock - clock;
+		watch();
 	}
+	inputs.spi_sclk = false;
 	run(&inputs, 4);
 	rest(20);
 }

@@ -3,8 +3,10 @@
 
 from collections.abc import Iterable
 
+from cocotb.triggers import Event, ValueChange
 from passo import registers as r
-from passo.cocotb.clocks import read
+from passo.cocotb.clocks import PERIOD, read
+from passo.cocotb.host import wait
 
 from cocotb_tests.helpers.core_bench import Core, CoreChannel
 
@@ -52,8 +54,7 @@ class Shafts:
 
         async def run() -> None:
             for clocks, counts in moves:
-                for _ in range(clocks):
-                    await self.core.clocks.fall
+                await wait(clocks * PERIOD)
                 self.move(axis, counts)
 
         self.core.spawn(run)
@@ -61,24 +62,33 @@ class Shafts:
     def follow_steps(self, axis: int, counts_per_step: int, clocks: int, slip: int = 0) -> None:
         """From now on a shaft turns with its axis, a count every `clocks`; each `slip`th step is lost."""
 
-        async def run() -> None:
-            dut = self.core.dut
-            owed = steps = 0
-            level = read(dut.step) >> axis & 1
-            wait = 0
+        dut = self.core.dut
+        owed = 0
+        stepped = Event()
+
+        async def watch() -> None:
+            nonlocal owed
+            steps, level = 0, read(dut.step) >> axis & 1
             while True:
-                await self.core.clocks.fall
+                await ValueChange(dut.step)
                 was, level = level, read(dut.step) >> axis & 1
-                if level and not was:
-                    steps += 1
-                    if not slip or steps % slip:
-                        owed += -counts_per_step if read(dut.dir) >> axis & 1 else counts_per_step
-                wait -= 1
-                if owed and wait <= 0:
+                steps += level and not was
+                if level and not was and (not slip or steps % slip):
+                    owed += -counts_per_step if read(dut.dir) >> axis & 1 else counts_per_step
+                    stepped.set()
+
+        async def run() -> None:
+            nonlocal owed
+            while True:
+                stepped.clear()
+                await stepped.wait()
+                await self.core.clocks.fall
+                while owed:
                     self.move(axis, 1 if owed > 0 else -1)
                     owed += -1 if owed > 0 else 1
-                    wait = clocks
+                    await wait(clocks * PERIOD)
 
+        self.core.spawn(watch)
         self.core.spawn(run)
 
 
