@@ -25,6 +25,22 @@ def grbl_elf(folder: Path = FOLDER, *machine: str) -> Path:
     return elf
 
 
+class Answers:
+    """The number of lines that a board answered since this was made."""
+
+    def __init__(self, board: Machine):
+        self._board, self._seen, self._count = board, len(board.output), 0
+
+    @property
+    def count(self) -> int:
+        """Answers so far; looks at new output only, because it is asked at every step of a long stream."""
+        if self._seen != len(self._board.output):
+            for answer in ANSWER.finditer(self._board.output, self._seen):
+                self._seen = answer.end()
+                self._count += 1
+        return self._count
+
+
 class GrblBoard(Machine):
     """The machine from power-on to the greeting."""
 
@@ -32,15 +48,11 @@ class GrblBoard(Machine):
         super().__init__(elf, core, **options)
         self.expect(GREETING, START)
 
-    def answers(self, since: int = 0) -> list[str]:
-        """The answers after the first `since` characters of the output."""
-        return ANSWER.findall(self.output, since)
-
     def line(self, text: str, seconds: float = 1.0) -> str:
         """Type a line; return all that is said until its answer."""
-        since = len(self.output)
+        since, answers = len(self.output), Answers(self)
         self.type(text + "\n")
-        self.run_until(lambda: self.answers(since), seconds)
+        self.run_until(lambda: answers.count, seconds)
         return self.output[since:].replace("\r\n", "\n").strip()
 
     def report(self) -> dict[str, str]:
@@ -53,17 +65,17 @@ class GrblBoard(Machine):
 
     def stream(self, lines: Iterable[str], seconds: float) -> None:
         """Type lines by counting characters: never more unanswered than the board can hold."""
-        since, lengths, answered = len(self.output), [], 0
+        answers, lengths, answered = Answers(self), [], 0
         end = self.seconds + seconds
         for line in lines:
             data = line + "\n"
             while sum(lengths[answered:]) + len(data) > RECEIVED:
                 done = answered
-                self.run_until(lambda done=done: len(self.answers(since)) > done, end - self.seconds)
-                answered = len(self.answers(since))
+                self.run_until(lambda done=done: answers.count > done, end - self.seconds)
+                answered = answers.count
             lengths.append(len(data))
             self.type(data)
-        self.run_until(lambda: len(self.answers(since)) == len(lengths), end - self.seconds)
+        self.run_until(lambda: answers.count == len(lengths), end - self.seconds)
 
     def rest(self, seconds: float) -> None:
         """Run until nothing moves."""
