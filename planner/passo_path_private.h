@@ -43,6 +43,9 @@ struct passo_path_aim {
 	bool open; /* it ends there because what follows is not settled */
 };
 
+/* Why ramps are made beyond what is settled. */
+enum passo_path_need { PASSO_PATH_NO_NEED, PASSO_PATH_FULL, PASSO_PATH_DRY };
+
 static inline struct passo_path_item *passo_path_item(const struct passo_path_planner *path, uint32_t index)
 {
 	return &path->items[index % path->capacity];
@@ -141,6 +144,11 @@ void passo_path_soften(struct passo_path_item *item, uint64_t jerk);
  * at. Unless it is needed, the aim is open where further lines can change it. */
 uint64_t passo_path_soft_reach(struct passo_path_planner *path, uint32_t index);
 struct passo_path_aim passo_path_soft_aim(const struct passo_path_planner *path, bool needed);
+
+/* What the next ramp aims at, the ticks to there, and whether the ramp has the shape of the path. */
+struct passo_path_aim passo_path_choose_aim(const struct passo_path_planner *path, enum passo_path_need need);
+uint64_t passo_path_ticks_to(const struct passo_path_planner *path, const struct passo_path_aim *aim);
+bool passo_path_is_shaped(const struct passo_path_planner *path, const struct passo_path_aim *aim);
 
 /* Sets ticks and progress step. */
 void passo_path_set_ticks(struct passo_ramp *ramp, uint32_t ticks);

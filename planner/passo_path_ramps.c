@@ -7,114 +7,8 @@
  */
 #include "passo_path_private.h"
 
-/* Parts that are shorter share a ramp, unless the speed is lowest between them. */
-#define TICKS_MIN 32u
 /* While more lines may come, the reserve is divided into so many ramps. */
 #define RAMPS_PER_RESERVE 4u
-/* Shorter ramps are linear whatever the shape. */
-#define SHAPED_TICKS_MIN 64u
-
-/* Why ramps are made beyond what is settled. */
-enum need { NO_NEED, FULL, DRY };
-
-uint64_t passo_path_ticks_over(const struct passo_path_planner *path, uint64_t length, uint64_t speeds)
-{
-	return passo_mul_div(length, UINT64_C(1) << (17u - path->machine.tick_log2), speeds);
-}
-
-static uint64_t ticks_to(const struct passo_path_planner *path, const struct passo_path_aim *aim)
-{
-	const uint64_t speeds = path->velocity + passo_path_velocity_of(aim->square);
-
-	return speeds > 0 ? passo_path_ticks_over(path, aim->length, speeds) : UINT32_MAX;
-}
-
-bool passo_path_is_held_back(const struct passo_path_planner *path, uint32_t index)
-{
-	return index + 1 == path->added && !passo_path_item(path, index)->last;
-}
-
-/* Whether a part may be made already. */
-static bool is_due(const struct passo_path_planner *path, const struct passo_path_aim *aim, uint32_t index,
-    const struct passo_path_part *part, enum need need)
-{
-	if (passo_path_is_held_back(path, index))
-		return false;
-	if (need == DRY || part->kind != PASSO_PATH_DOWN || passo_path_is_settled(path, index))
-		return true;
-	return need == FULL && (index == path->planned || ticks_to(path, aim) < TICKS_MIN);
-}
-
-/* Whether the ramp has to end before this part. */
-static bool is_enough(const struct passo_path_planner *path, const struct passo_path_aim *aim, uint64_t slope,
-    const struct passo_path_part *part)
-{
-	if (aim->length == 0)
-		return false;
-	if (aim->kind == part->kind
-	    && (part->kind == PASSO_PATH_FLAT ? aim->square == part->square : aim->slope == slope))
-		return false;
-	const uint64_t ticks = ticks_to(path, aim);
-	return ticks >= TICKS_MIN
-	    || (ticks > 1 && aim->kind == PASSO_PATH_DOWN && part->kind != PASSO_PATH_DOWN);
-}
-
-/* Follows the profile, at most to the start of item `before`. */
-static struct passo_path_aim find_aim(const struct passo_path_planner *path, enum need need, uint32_t before)
-{
-	struct passo_path_aim aim = {.square = passo_path_square_of(path->velocity)};
-	uint32_t index = path->planned;
-	uint64_t left = ((uint64_t)passo_path_item(path, index)->substeps << 32) - (uint64_t)path->offset;
-
-	for (;; index++, left = (uint64_t)passo_path_item(path, index)->substeps << 32) {
-		const struct passo_path_item *item = passo_path_item(path, index);
-		struct passo_path_part parts[3];
-
-		if (index == before)
-			return aim;
-		const unsigned count = passo_path_parts(
-		    path, index, left, aim.square, need == FULL && index == path->planned, parts);
-
-		for (unsigned i = 0; i < count; i++) {
-			if (!is_due(path, &aim, index, &parts[i], need)) {
-				aim.open = true;
-				return aim;
-			}
-			if (is_enough(path, &aim, item->slope, &parts[i]))
-				return aim;
-			aim.kind = parts[i].kind;
-			aim.slope = item->slope;
-			aim.length += parts[i].length;
-			aim.square = parts[i].square;
-		}
-		if (passo_path_rests_after(path, index)) {
-			aim.rest = true;
-			return aim;
-		}
-	}
-}
-
-static bool is_shaped(const struct passo_path_planner *path, const struct passo_path_aim *aim)
-{
-	return path->shape != PASSO_SHAPE_LINEAR && aim->kind != PASSO_PATH_FLAT
-	    && ticks_to(path, aim) >= SHAPED_TICKS_MIN;
-}
-
-/* The shape of a ramp must keep the limits of all corners that it passes: otherwise it ends at the first of
- * them. */
-static struct passo_path_aim choose_aim(const struct passo_path_planner *path, enum need need)
-{
-	if (passo_path_is_soft(path))
-		return passo_path_soft_aim(path, need != NO_NEED);
-	struct passo_path_aim aim = find_aim(path, need, path->added);
-	uint32_t before;
-
-	while (is_shaped(path, &aim) && (before = passo_path_too_fast(path, &aim)) < path->added)
-		aim = find_aim(path, need, before);
-	return aim;
-}
-
-/* -------------------------------------------------------------------------------------------- ramps ---- */
 
 /* The ramps have moved on by a distance; in a path that goes on they pass the ends of lines. A ramp can be
  * beyond the end of the path only if the path lasts less than a tick: then it rests at once. */
@@ -161,7 +55,7 @@ static void come_to_rest(struct passo_path_planner *path, bool *last)
 static void land(struct passo_path_planner *path, const struct passo_path_aim *aim, uint32_t ticks,
     struct passo_ramp *ramp)
 {
-	ramp->shape = is_shaped(path, aim) ? path->shape : PASSO_SHAPE_LINEAR;
+	ramp->shape = passo_path_is_shaped(path, aim) ? path->shape : PASSO_SHAPE_LINEAR;
 	passo_path_set_ticks(ramp, ticks);
 	passo_path_land(path, path->velocity, aim->length, ramp);
 	make(path, ramp);
@@ -174,8 +68,8 @@ static void follow(
     struct passo_path_planner *path, const struct passo_path_aim *aim, uint32_t most, struct passo_ramp *ramp)
 {
 	const uint64_t begin = path->velocity, end = passo_path_velocity_of(aim->square);
-	const uint64_t ticks = passo_path_larger(ticks_to(path, aim), 1);
-	const bool shaped = is_shaped(path, aim);
+	const uint64_t ticks = passo_path_larger(passo_path_ticks_to(path, aim), 1);
+	const bool shaped = passo_path_is_shaped(path, aim);
 	const uint32_t used =
 	    (uint32_t)passo_path_smaller(ticks, shaped ? PASSO_PATH_SHAPED_TICKS_MAX : most);
 	const uint64_t limit = passo_path_change(path, aim->slope, used);
@@ -230,16 +124,17 @@ bool passo_path_next_ramp(struct passo_path_planner *path, uint32_t held, struct
 		if (start(path, ramp))
 			return true;
 	}
-	struct passo_path_aim aim = choose_aim(path, NO_NEED);
+	struct passo_path_aim aim = passo_path_choose_aim(path, PASSO_PATH_NO_NEED);
 	uint32_t most = PASSO_PATH_TICKS_MAX;
-	if (aim.open && (aim.length == 0 || ticks_to(path, &aim) < path->reserve / RAMPS_PER_RESERVE)) {
+	if (aim.open
+	    && (aim.length == 0 || passo_path_ticks_to(path, &aim) < path->reserve / RAMPS_PER_RESERVE)) {
 		const bool is_full = path->added - path->planned == path->capacity;
 
 		if (!is_full && held >= path->reserve)
 			return false;
 		if (!is_full && passo_path_is_held_back(path, path->planned))
 			passo_path_end(path);
-		aim = choose_aim(path, is_full ? FULL : DRY);
+		aim = passo_path_choose_aim(path, is_full ? PASSO_PATH_FULL : PASSO_PATH_DRY);
 		if (!is_full)
 			most = path->reserve / RAMPS_PER_RESERVE + 1;
 	}
@@ -248,7 +143,7 @@ bool passo_path_next_ramp(struct passo_path_planner *path, uint32_t held, struct
 		    passo_path_change(path, aim.slope, PASSO_PATH_LANDING_TICKS));
 		const uint64_t ticks = passo_path_ticks_over(path, aim.length, path->velocity + landing) + 1;
 
-		if (ticks <= (is_shaped(path, &aim) ? PASSO_PATH_SHAPED_TICKS_MAX : most)) {
+		if (ticks <= (passo_path_is_shaped(path, &aim) ? PASSO_PATH_SHAPED_TICKS_MAX : most)) {
 			land(path, &aim, (uint32_t)ticks, ramp);
 			return true;
 		}

@@ -106,6 +106,11 @@ int64_t passo_lacking_weight(uint64_t ticks, uint64_t divisor);
 uint64_t passo_ticks_nearest(const struct passo_machine *machine, uint64_t clocks);
 uint64_t passo_ticks_ceil(const struct passo_machine *machine, uint64_t clocks);
 
+static inline uint32_t passo_magnitude(int32_t steps)
+{
+	return steps < 0 ? 0u - (uint32_t)steps : (uint32_t)steps;
+}
+
 static inline uint64_t passo_smaller(uint64_t a, uint64_t b)
 {
 	return a < b ? a : b;

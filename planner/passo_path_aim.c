@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: MIT
+ * What the next ramp aims at: the end of one part of the profile, or of several that are too short for a ramp
+ * each.
+ */
+#include "passo_path_private.h"
+
+/* Parts that are shorter share a ramp, unless the speed is lowest between them. */
+#define TICKS_MIN 32u
+/* Shorter ramps are linear whatever the shape. */
+#define SHAPED_TICKS_MIN 64u
+
+uint64_t passo_path_ticks_over(const struct passo_path_planner *path, uint64_t length, uint64_t speeds)
+{
+	return passo_mul_div(length, UINT64_C(1) << (17u - path->machine.tick_log2), speeds);
+}
+
+uint64_t passo_path_ticks_to(const struct passo_path_planner *path, const struct passo_path_aim *aim)
+{
+	const uint64_t speeds = path->velocity + passo_path_velocity_of(aim->square);
+
+	return speeds > 0 ? passo_path_ticks_over(path, aim->length, speeds) : UINT32_MAX;
+}
+
+bool passo_path_is_held_back(const struct passo_path_planner *path, uint32_t index)
+{
+	return index + 1 == path->added && !passo_path_item(path, index)->last;
+}
+
+/* Whether a part may be made already. */
+static bool is_due(const struct passo_path_planner *path, const struct passo_path_aim *aim, uint32_t index,
+    const struct passo_path_part *part, enum passo_path_need need)
+{
+	if (passo_path_is_held_back(path, index))
+		return false;
+	if (need == PASSO_PATH_DRY || part->kind != PASSO_PATH_DOWN || passo_path_is_settled(path, index))
+		return true;
+	return need == PASSO_PATH_FULL
+	    && (index == path->planned || passo_path_ticks_to(path, aim) < TICKS_MIN);
+}
+
+/* Whether the ramp has to end before this part. */
+static bool is_enough(const struct passo_path_planner *path, const struct passo_path_aim *aim, uint64_t slope,
+    const struct passo_path_part *part)
+{
+	if (aim->length == 0)
+		return false;
+	if (aim->kind == part->kind
+	    && (part->kind == PASSO_PATH_FLAT ? aim->square == part->square : aim->slope == slope))
+		return false;
+	const uint64_t ticks = passo_path_ticks_to(path, aim);
+	return ticks >= TICKS_MIN
+	    || (ticks > 1 && aim->kind == PASSO_PATH_DOWN && part->kind != PASSO_PATH_DOWN);
+}
+
+/* Follows the profile, at most to the start of item `before`. */
+static struct passo_path_aim find_aim(
+    const struct passo_path_planner *path, enum passo_path_need need, uint32_t before)
+{
+	struct passo_path_aim aim = {.square = passo_path_square_of(path->velocity)};
+	uint32_t index = path->planned;
+	uint64_t left = ((uint64_t)passo_path_item(path, index)->substeps << 32) - (uint64_t)path->offset;
+
+	for (;; index++, left = (uint64_t)passo_path_item(path, index)->substeps << 32) {
+		const struct passo_path_item *item = passo_path_item(path, index);
+		struct passo_path_part parts[3];
+
+		if (index == before)
+			return aim;
+		const unsigned count = passo_path_parts(
+		    path, index, left, aim.square, need == PASSO_PATH_FULL && index == path->planned, parts);
+
+		for (unsigned i = 0; i < count; i++) {
+			if (!is_due(path, &aim, index, &parts[i], need)) {
+				aim.open = true;
+				return aim;
+			}
+			if (is_enough(path, &aim, item->slope, &parts[i]))
+				return aim;
+			aim.kind = parts[i].kind;
+			aim.slope = item->slope;
+			aim.length += parts[i].length;
+			aim.square = parts[i].square;
+		}
+		if (passo_path_rests_after(path, index)) {
+			aim.rest = true;
+			return aim;
+		}
+	}
+}
+
+bool passo_path_is_shaped(const struct passo_path_planner *path, const struct passo_path_aim *aim)
+{
+	return path->shape != PASSO_SHAPE_LINEAR && aim->kind != PASSO_PATH_FLAT
+	    && passo_path_ticks_to(path, aim) >= SHAPED_TICKS_MIN;
+}
+
+/* The shape of a ramp must keep the limits of all corners that it passes: otherwise it ends at the first of
+ * them. */
+struct passo_path_aim passo_path_choose_aim(const struct passo_path_planner *path, enum passo_path_need need)
+{
+	if (passo_path_is_soft(path))
+		return passo_path_soft_aim(path, need != PASSO_PATH_NO_NEED);
+	struct passo_path_aim aim = find_aim(path, need, path->added);
+	uint32_t before;
+
+	while (passo_path_is_shaped(path, &aim) && (before = passo_path_too_fast(path, &aim)) < path->added)
+		aim = find_aim(path, need, before);
+	return aim;
+}
