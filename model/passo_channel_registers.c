@@ -1,41 +1,12 @@
 /* SPDX-License-Identifier: MIT
  * Registers of one channel and its axes. See rtl/passo_channel_registers.v and rtl/passo_axis_registers.v.
  */
+#include "passo_answer.h"
 #include "passo_model.h"
 #include "passo_words.h"
 
 static const uint32_t VELOCITY_MAX = 0x80000000u; /* UQ0.32 */
 static const uint32_t DRAIN_VELOCITY_LOW = 0xFFu;
-
-/* Response of a register to a check and to a read. */
-struct answer {
-	bool known;
-	uint8_t check, read;
-	uint32_t value;
-	bool late; /* the value is passo_channel_registers_value(), sampled in the clock of the response */
-};
-
-static struct answer write_only(uint8_t check)
-{
-	return (struct answer){.known = true, .check = check, .read = PASSO_VERDICT_BAD_OPERATION};
-}
-
-static struct answer read_only(uint32_t value)
-{
-	return (struct answer){
-	    .known = true, .check = PASSO_VERDICT_READ_ONLY, .read = PASSO_VERDICT_OK, .value = value};
-}
-
-static struct answer read_late(void)
-{
-	return (struct answer){
-	    .known = true, .check = PASSO_VERDICT_READ_ONLY, .read = PASSO_VERDICT_OK, .late = true};
-}
-
-static uint8_t value_check(bool bad)
-{
-	return bad ? PASSO_VERDICT_BAD_VALUE : PASSO_VERDICT_OK;
-}
 
 /* The effective bits of a command. */
 static uint32_t command_of(uint32_t data)
@@ -98,133 +69,65 @@ uint32_t passo_channel_registers_value(const struct passo_channel *channel, uint
 	case PASSO_CHANNEL_VELOCITY:
 		return channel->path.velocity_high << 8 | channel->path.velocity_low >> 16;
 	default:
-		return passo_inputs_value(&channel->inputs, address) | passo_encoders_value(channel, address);
+		return passo_inputs_value(&channel->inputs, address)
+		     | passo_encoder_registers_value(channel, address);
 	}
 }
 
-static struct answer axis_answer(
+static struct passo_answer axis_answer(
     const struct passo_axis *axis, uint8_t address, uint32_t data, bool has_inputs)
 {
 	switch (address) {
 	case PASSO_AXIS_PINS:
-		return write_only(value_check((data & ~PASSO_AXIS_PINS_DEFINED) != 0u));
+		return passo_write_only(passo_value_check((data & ~PASSO_AXIS_PINS_DEFINED) != 0u));
 	case PASSO_AXIS_ENABLE:
-		return write_only(value_check((data & ~PASSO_AXIS_ENABLE_DEFINED) != 0u));
+		return passo_write_only(passo_value_check((data & ~PASSO_AXIS_ENABLE_DEFINED) != 0u));
 	case PASSO_AXIS_STEP_TIMING:
 	case PASSO_AXIS_DIR_TIMING:
-		return write_only(PASSO_VERDICT_OK);
+		return passo_write_only(PASSO_VERDICT_OK);
 	case PASSO_AXIS_LOST_STEPS:
-		return read_only(axis->lost);
+		return passo_read_only(axis->lost);
 	case PASSO_AXIS_INPUTS:
 		if (has_inputs)
-			return write_only(value_check((data & ~PASSO_AXIS_INPUTS_DEFINED) != 0u));
-		return (struct answer){0};
+			return passo_write_only(passo_value_check((data & ~PASSO_AXIS_INPUTS_DEFINED) != 0u));
+		return (struct passo_answer){0};
 	default:
-		return (struct answer){0};
+		return (struct passo_answer){0};
 	}
-}
-
-/* Registers of the inputs. */
-static struct answer input_answer(const struct passo_channel *channel, uint8_t address, uint32_t data)
-{
-	const unsigned position = (unsigned)address - PASSO_CHANNEL_TRIGGER_POSITION_BASE;
-
-	switch (address) {
-	case PASSO_CHANNEL_INPUT_LEVELS:
-	case PASSO_CHANNEL_INPUT_FLAGS:
-	case PASSO_CHANNEL_TRIGGER_STATE:
-	case PASSO_CHANNEL_TRIGGER_CLOCKS:
-		return read_late();
-	case PASSO_CHANNEL_INPUT_CLEAR:
-		return write_only(PASSO_VERDICT_OK);
-	case PASSO_CHANNEL_TRIGGER:
-		return write_only(passo_trigger_check(channel, data));
-	case PASSO_CHANNEL_PROBE:
-		return write_only(value_check((data & ~PASSO_CHANNEL_PROBE_DEFINED) != 0u));
-	default:
-		break;
-	}
-	return position < channel->axes ? read_only(channel->positions.latched_copies[position])
-	                                : (struct answer){0};
-}
-
-/* Registers of the encoders. */
-static struct answer encoder_answer(uint8_t address, uint32_t data)
-{
-	switch (address) {
-	case PASSO_ENCODER_SETUP:
-		return write_only(value_check((data & ~PASSO_ENCODER_SETUP_DEFINED) != 0u));
-	case PASSO_ENCODER_RATIO:
-		return write_only(value_check(data == 0u));
-	case PASSO_ENCODER_LIMIT:
-		return write_only(value_check(data == 0u || (data & ~PASSO_ENCODER_LIMIT_DEFINED) != 0u));
-	case PASSO_ENCODER_ERROR:
-	case PASSO_ENCODER_GREATEST:
-	case PASSO_ENCODER_INDEX:
-		return read_late();
-	default:
-		return (struct answer){0};
-	}
-}
-
-static struct answer encoders_answer(
-    const struct passo_channel *channel, const struct passo_channel_inputs *inputs, uint8_t address)
-{
-	const uint32_t data = inputs->bus->data;
-	const unsigned position = (unsigned)address - PASSO_CHANNEL_ENCODER_POSITION_BASE;
-	const unsigned in_axes = (unsigned)address - PASSO_CHANNEL_ENCODER_BASE;
-
-	switch (address) {
-	case PASSO_CHANNEL_FOLLOW:
-		return write_only(value_check((data & ~PASSO_CHANNEL_FOLLOW_DEFINED) != 0u));
-	case PASSO_CHANNEL_FOLLOW_LIMIT:
-		return write_only(value_check(data == 0u || data > VELOCITY_MAX));
-	case PASSO_CHANNEL_ENCODER_FILTER:
-		return write_only(value_check((data & ~PASSO_CHANNEL_ENCODER_FILTER_DEFINED) != 0u));
-	case PASSO_CHANNEL_FOLLOW_STATE:
-		return read_late();
-	default:
-		break;
-	}
-	if (position < channel->axes)
-		return read_only(channel->encoders.positions.copies[position]);
-	if (in_axes < channel->axes * PASSO_CHANNEL_ENCODER_STRIDE)
-		return encoder_answer((uint8_t)(in_axes % PASSO_CHANNEL_ENCODER_STRIDE), data);
-	return (struct answer){0};
 }
 
 /* Registers of the outputs. */
-static struct answer output_answer(const struct passo_channel *channel, const struct passo_bus *bus)
+static struct passo_answer output_answer(const struct passo_channel *channel, const struct passo_bus *bus)
 {
 	const uint8_t address = (uint8_t)bus->address;
 
 	if (address == PASSO_CHANNEL_RASTER)
-		return write_only(
+		return passo_write_only(
 		    bus->push ? passo_raster_refusal(&channel->outputs.raster, passo_channel_stopped(channel))
 		              : PASSO_VERDICT_BAD_OPERATION);
 	if (address == PASSO_CHANNEL_OUTPUT_STATE)
-		return read_late();
+		return passo_read_late();
 	if (passo_output_registers_known(address))
-		return write_only(passo_output_registers_check(address, bus->data, channel->axes));
-	return (struct answer){0};
+		return passo_write_only(passo_output_registers_check(address, bus->data, channel->axes));
+	return (struct passo_answer){0};
 }
 
 /* Registers of the parts that a core may have. */
-static struct answer part_answer(
+static struct passo_answer part_answer(
     const struct passo_channel *channel, const struct passo_channel_inputs *inputs, uint8_t address)
 {
-	struct answer answer = {0};
+	struct passo_answer answer = {0};
 
 	if (inputs->parameters->inputs != 0u)
-		answer = input_answer(channel, address, inputs->bus->data);
+		answer = passo_inputs_answer(channel, address, inputs->bus->data);
 	if (!answer.known && channel->encoders.present)
-		answer = encoders_answer(channel, inputs, address);
+		answer = passo_encoder_registers_answer(channel, address, inputs->bus->data);
 	if (!answer.known && channel->has_outputs)
 		answer = output_answer(channel, inputs->bus);
 	return answer;
 }
 
-static struct answer channel_answer(
+static struct passo_answer channel_answer(
     const struct passo_channel *channel, const struct passo_channel_inputs *inputs, uint8_t address)
 {
 	const struct passo_bus *bus = inputs->bus;
@@ -234,30 +137,32 @@ static struct answer channel_answer(
 
 	switch (address) {
 	case PASSO_CHANNEL_COMMAND:
-		return write_only(value_check((bus->data & ~PASSO_CHANNEL_COMMAND_DEFINED) != 0u));
+		return passo_write_only(
+		    passo_value_check((bus->data & ~PASSO_CHANNEL_COMMAND_DEFINED) != 0u));
 	case PASSO_CHANNEL_RATE_TARGET:
 	case PASSO_CHANNEL_RATE_SLEW:
 	case PASSO_CHANNEL_STOP_SLEW:
-		return write_only(value_check(bus->data > PASSO_RATE_ONE));
+		return passo_write_only(passo_value_check(bus->data > PASSO_RATE_ONE));
 	case PASSO_CHANNEL_DRAIN_VELOCITY:
-		return write_only(value_check(bus->data == 0u || bus->data > VELOCITY_MAX));
+		return passo_write_only(passo_value_check(bus->data == 0u || bus->data > VELOCITY_MAX));
 	case PASSO_CHANNEL_STATE:
 	case PASSO_CHANNEL_RATE:
 	case PASSO_CHANNEL_ROOM:
 	case PASSO_CHANNEL_VELOCITY:
-		return read_late();
+		return passo_read_late();
 	case PASSO_CHANNEL_LINE:
-		return write_only(bus->push ? passo_line_queue_refusal(
-						  &channel->line_queue, inputs->parameters, bus, stopped)
-		                            : PASSO_VERDICT_BAD_OPERATION);
+		return passo_write_only(bus->push ? passo_line_queue_refusal(&channel->line_queue,
+							inputs->parameters, bus, stopped)
+		                                  : PASSO_VERDICT_BAD_OPERATION);
 	case PASSO_CHANNEL_RAMP:
-		return write_only(bus->push ? passo_ramp_queue_refusal(&channel->ramp_queue, bus, stopped)
-		                            : PASSO_VERDICT_BAD_OPERATION);
+		return passo_write_only(bus->push
+					    ? passo_ramp_queue_refusal(&channel->ramp_queue, bus, stopped)
+					    : PASSO_VERDICT_BAD_OPERATION);
 	default:
 		break;
 	}
 	if (position < channel->axes)
-		return read_only(channel->positions.copies[position]);
+		return passo_read_only(channel->positions.copies[position]);
 	if (in_axes < channel->axes * PASSO_CHANNEL_AXIS_STRIDE)
 		return axis_answer(&channel->axis[in_axes / PASSO_CHANNEL_AXIS_STRIDE],
 		    (uint8_t)(in_axes % PASSO_CHANNEL_AXIS_STRIDE), bus->data,
@@ -272,7 +177,7 @@ struct passo_response passo_channel_respond(
 	const uint8_t address = (uint8_t)bus->address;
 	struct passo_response response = {0};
 
-	const struct answer answer = channel_answer(channel, inputs, address);
+	const struct passo_answer answer = channel_answer(channel, inputs, address);
 	response.claim = answer.known;
 	if (answer.known && bus->check)
 		response.refusal = bus->push && address != PASSO_CHANNEL_LINE && address != PASSO_CHANNEL_RAMP

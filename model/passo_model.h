@@ -547,8 +547,12 @@ void passo_encoders_wires(const struct passo_channel *channel, struct passo_chan
 bool passo_encoders_advance(const struct passo_channel *channel, const struct passo_channel_wires *wires);
 void passo_encoders_clock(struct passo_channel *channel, const struct passo_channel_inputs *inputs,
     const struct passo_channel_wires *wires);
+void passo_encoder_registers_reset(struct passo_encoders *encoders);
+/* The registers are written one clock after the strobe. */
+void passo_encoder_registers_clock(
+    struct passo_channel *channel, const struct passo_bus *bus, const struct passo_channel_wires *wires);
 /* Value of a read-only register of the encoders. */
-uint32_t passo_encoders_value(const struct passo_channel *channel, uint8_t address);
+uint32_t passo_encoder_registers_value(const struct passo_channel *channel, uint8_t address);
 /* Levels of the indexes as the setups have them, synchronised but not filtered, a bit per axis. */
 uint8_t passo_encoders_index(const struct passo_channel *channel);
 /* Whether the profile follows and nothing is owed to it: nothing moves. */
