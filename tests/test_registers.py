@@ -107,6 +107,7 @@ def test_check_names_stale_files(tmp_path: Path, stale: str):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
     for name in [SOURCE, GENERATOR, HELPER]:
         shutil.copy(ROOT / name, tmp_path / name)
+    shutil.copytree(paths.tools / "rdl", tmp_path / "tools" / "rdl")
     assert run(sys.executable, GENERATOR, cwd=tmp_path).returncode == 0
     assert run(sys.executable, GENERATOR, "--check", cwd=tmp_path).returncode == 0
 

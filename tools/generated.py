@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Shared by the generators: write the generated files, or compare them."""
+"""Shared by the generators: rows in columns; write the generated files, or compare them."""
 
 import argparse
 from collections.abc import Mapping
@@ -26,3 +26,9 @@ def keep(root: Path, made: Mapping[str, str], check: bool) -> int:
     for name in stale:
         print(f"{name} is stale: run 'make generate'" if check else f"wrote {name}")
     return int(check and bool(stale))
+
+
+def aligned(rows: list[tuple[str, ...]]) -> list[str]:
+    """Join the cells of each row so that they stand below each other."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return [" ".join(map(str.ljust, row, widths)).rstrip() for row in rows]

@@ -4,6 +4,8 @@
 from collections.abc import Iterable
 from textwrap import wrap
 
+from generated import aligned
+
 from moves.schema import CLOCK, GENERATED, Constant, Form, Key, Schema
 
 
@@ -19,11 +21,6 @@ def _guarded(name: str, about: str, lines: Iterable[str]) -> str:
     return "\n".join([*_head(about), f"#ifndef {name}", f"#define {name}", "", *lines, "", "#endif", ""])
 
 
-def _aligned(rows: list[tuple[str, ...]]) -> list[str]:
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return [" ".join(map(str.ljust, row, widths)).rstrip() for row in rows]
-
-
 def _literal(constant: Constant) -> str:
     return f"{constant.value}u" if constant.value < 1 << 32 else f"UINT64_C({constant.value})"
 
@@ -35,7 +32,7 @@ def limits(schema: Schema) -> str:
         rows = [(f"#define PASSO_{constant.name.upper()}", _literal(constant))]
         if constant.words:
             rows.append((f"#define PASSO_{constant.name.upper()}_WORDS", f'"{constant.shown}"'))
-        lines += ["", _comment(constant.text), *_aligned(rows)]
+        lines += ["", _comment(constant.text), *aligned(rows)]
     return _guarded("PASSO_LIMITS_H", "Limits of moves and of their parameters.", lines)
 
 
@@ -56,7 +53,7 @@ def _members(keys: Iterable[Key]) -> list[str]:
     for key in keys:
         array = "[PASSO_AXES_MAX]" if key.kind.list and not key.shared else ""
         rows.append((key.kind.c, f"{key.member}{array};", f"/* {_remark(key)} */"))
-    return [f"\t{row}" for row in _aligned(rows)]
+    return [f"\t{row}" for row in aligned(rows)]
 
 
 def _structs(form: Form) -> list[str]:
@@ -86,7 +83,7 @@ def moves(schema: Schema) -> str:
         "",
         "/* User-defined shape: the name that replaces a profile, and the bank of its table. */",
     ]
-    lines += _aligned(
+    lines += aligned(
         [
             ("#define PASSO_USER_PROFILE", f'"{schema.user_name}"'),
             ("#define PASSO_USER_BANK", f"PASSO_SHAPE_{schema.user_bank.upper()}"),
