@@ -38,7 +38,7 @@ demo: setup ## Run the demonstration (a minute).
 	@$(BIN)/passo demo
 
 pictures: setup ## Draw the pictures of the documents: the idea, and the wiring of each board.
-	@$(BIN)/python tools/draw_pictures.py
+	@$(BIN)/python -m tools.draw_pictures
 
 web: ## Build build/web/: a page to type moves and see their edges.
 	@tools/setup.sh web

@@ -15,6 +15,7 @@ import pytest
 from passo.toolchain import paths
 from passo_fpga import flow
 from passo_fpga.block_ram import move_registers
+from passo_fpga.design import Design
 from passo_fpga.devices import DEVICES
 from passo_fpga.tools import FOLDER, check
 
@@ -320,7 +321,7 @@ def test_only_an_ecp5_gets_its_registers_moved(monkeypatch: pytest.MonkeyPatch) 
     (folder / "small.v").write_text(CASES["with_enable"].verilog("small"))
     monkeypatch.setattr(flow, "FOLDER", folder)
     for device, moved in (("ecp5-25", 8), ("hx8k", None)):
-        design = flow.Design(device, DEVICES[device], top="small", extra_sources=(folder / "small.v",))
+        design = Design(device, DEVICES[device], top="small", extra_sources=(folder / "small.v",))
         assert flow.moved_registers(design) == moved
         netlist = json.loads((flow.synthesize(design) / flow.NETLIST).read_text())
         placed = flow.count(design.device, kinds(netlist, "small"))

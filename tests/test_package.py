@@ -13,8 +13,8 @@ import passo
 import pytest
 import yaml
 from passo.toolchain import environment, paths
+from passo_fpga.design import Design
 from passo_fpga.devices import DEVICES
-from passo_fpga.flow import Design
 
 sys.path.insert(0, str(paths.tools))
 import generate_package

@@ -8,6 +8,7 @@ from passo_fpga.boards import boards
 from PIL import Image
 
 from tools import draw_pictures
+from tools.pictures.wiring import AXIS_PINS, places
 
 PICTURES = {name: facts for name, facts, _ in draw_pictures.pictures()}
 
@@ -34,11 +35,11 @@ def test_the_wiring_has_every_pin() -> None:
             signal: pin.pin for signal, pin in board.pins.items()
         }.items()
         assert [[pin for _, pin, _ in axis] for axis in axes] == [
-            [pins[signal].pin for signal in draw_pictures.AXIS_PINS] for pins in board.axis_pins
+            [pins[signal].pin for signal in AXIS_PINS] for pins in board.axis_pins
         ]
 
 
 def test_comments_give_the_places_on_the_connectors() -> None:
-    assert draw_pictures.places("icebreaker")["enable4"] == "PMOD1A 4"
-    assert draw_pictures.places("hx8k")["dir0"] == "J2 6"
-    assert draw_pictures.places("colorlight")["spi_sclk"] == "J5 7"
+    assert places("icebreaker")["enable4"] == "PMOD1A 4"
+    assert places("hx8k")["dir0"] == "J2 6"
+    assert places("colorlight")["spi_sclk"] == "J5 7"

@@ -12,8 +12,9 @@ from passo.toolchain import paths
 from passo_fpga import flow, pages, parts_report, report, synth, tools
 from passo_fpga.boards import boards
 from passo_fpga.complaints import complaints, gowin_functions, held_pins, packer_complaints
+from passo_fpga.design import Design
 from passo_fpga.devices import DEVICES, GOWIN
-from passo_fpga.flow import CROWDED, Design, Placed, _sites, _too_large, count
+from passo_fpga.flow import CROWDED, Placed, _sites, _too_large, count
 from passo_fpga.parts import PORTS
 from passo_fpga.split import difference
 
@@ -310,7 +311,7 @@ def test_report_tries_more_seeds_where_there_is_a_goal(
     """8 instead of 3; one of what is too large; a line for each run; lowest and median of what they reach."""
     runs: dict[str, list[int]] = {}
 
-    def place(design: flow.Design, seed: int, *_: object) -> Placed:
+    def place(design: Design, seed: int, *_: object) -> Placed:
         runs.setdefault(design.name, []).append(seed)
         if design.name == "up5k-4x2":
             return Placed(False, True, 9000, 1, {}, Path())
@@ -387,5 +388,5 @@ def test_seed_that_never_ends_is_given_up(
     monkeypatch.setattr(flow, "FOLDER", tmp_path)
     pins = tmp_path / "pins"
     pins.touch()
-    placed = flow.place(flow.Design("endless", DEVICES[device]), 1, 120, {}, pins)
+    placed = flow.place(Design("endless", DEVICES[device]), 1, 120, {}, pins)
     assert not placed.fits and placed.too_large == too_large

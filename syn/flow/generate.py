@@ -7,8 +7,8 @@ from pathlib import Path
 
 from passo.toolchain import paths
 from passo_fpga.boards import FOLDER, TABLE, Board, Pin
+from passo_fpga.design import Design
 from passo_fpga.devices import ECP5, GOWIN, ICE40, Family
-from passo_fpga.flow import Design
 
 TOP = paths.syn / "passo_board.v"
 

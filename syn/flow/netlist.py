@@ -6,8 +6,9 @@ import json
 from collections.abc import Mapping
 from pathlib import Path
 
+from passo_fpga.design import Design
 from passo_fpga.devices import DEVICES
-from passo_fpga.flow import NETLIST, Design, kept, synthesize
+from passo_fpga.flow import NETLIST, kept, synthesize
 from passo_fpga.tools import check, prepare, relative, versions
 
 MODULE = "passo_netlist"

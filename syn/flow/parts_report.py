@@ -14,8 +14,9 @@ from typing import Any
 from passo.console import console, stages, table
 from passo.report import write_json
 from passo.toolchain import paths
+from passo_fpga.design import Design
 from passo_fpga.devices import DEVICES, SPI_MHZ, Device
-from passo_fpga.flow import Design, cells, place, synthesize
+from passo_fpga.flow import cells, place, synthesize
 from passo_fpga.pages import markdown, mhz, write_block
 from passo_fpga.parts import PORTS
 from passo_fpga.tools import prepare, workers

@@ -21,8 +21,9 @@ from passo.console import console, stages
 from passo.report import write_json
 from passo.toolchain import paths
 from passo_fpga import pages, parts_report
+from passo_fpga.design import Design
 from passo_fpga.devices import DEVICES, SPI_MHZ, Device
-from passo_fpga.flow import Design, Placed, cells, place, synthesize
+from passo_fpga.flow import Placed, cells, place, synthesize
 from passo_fpga.split import difference, split
 from passo_fpga.tools import ToolError, prepare, versions, workers
 

@@ -6,7 +6,8 @@ import re
 from collections import Counter
 from typing import Any
 
-from passo_fpga.flow import CELLS, Design, count, synthesize
+from passo_fpga.design import Design
+from passo_fpga.flow import CELLS, count, synthesize
 
 # Yosys names a module with parameters $paramod$HASH\name or $paramod\name\PARAMETER=...
 _PLAIN = re.compile(r"^\$paramod(?:\$[0-9a-f]+)?\\([^\\]+)(?:\\.*)?$")

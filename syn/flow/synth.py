@@ -12,8 +12,9 @@ from passo.toolchain import paths
 from passo_fpga import parts
 from passo_fpga.boards import OSCILLATOR, Board, board, boards
 from passo_fpga.complaints import gowin_functions, held_pins
+from passo_fpga.design import Design
 from passo_fpga.devices import GOWIN, SPI_MHZ
-from passo_fpga.flow import Design, Placed, cells, moved_registers, pack, place, synthesis_complaints
+from passo_fpga.flow import Placed, cells, moved_registers, pack, place, synthesis_complaints
 from passo_fpga.generate import generate
 from passo_fpga.pll import PllError
 from passo_fpga.table import BoardError

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""The pictures that tools/draw_pictures.py draws."""
