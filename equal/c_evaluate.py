@@ -13,7 +13,9 @@ from typing import Any
 from pycparser import c_ast
 
 from equal import c_operators
-from equal.c_expressions import Expressions, Frame
+from equal.c_aggregates import choose, copied
+from equal.c_expressions import Expressions
+from equal.c_objects import Frame
 from equal.c_places import Cell
 from equal.c_types import (
     Condition,
@@ -22,9 +24,7 @@ from equal.c_types import (
     Value,
     Void,
     both,
-    choose,
     convert,
-    copied,
     either,
     inverse,
     truth,

@@ -8,8 +8,8 @@ from typing import Any, TypeAlias
 
 import z3
 
+from equal.c_aggregates import INDEX_BITS, Table, choose, copied, mapped, row_of
 from equal.c_types import (
-    INDEX_BITS,
     INT,
     UNSIGNED_LONG,
     Array,
@@ -17,16 +17,11 @@ from equal.c_types import (
     Integer,
     Pointer,
     Struct,
-    Table,
     Type,
     UnsupportedError,
     Value,
     both,
-    choose,
     convert,
-    copied,
-    mapped,
-    row_of,
     to_vector,
 )
 

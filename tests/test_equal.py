@@ -20,7 +20,7 @@ from passo.toolchain import paths
 from equal import page, run
 from equal.c_types import BOOL, Integer
 from equal.coupling import Coupling, couplings
-from equal.prove import CLOCK, Model, harness
+from equal.model import CLOCK, Model, harness
 from tests.helpers.random_plans import SEED
 
 COUPLINGS = couplings()
