@@ -10,7 +10,7 @@ from rich.table import Table
 
 from benchmarks.cases import METHODS
 from benchmarks.resonance import DETUNED, FREQUENCY
-from benchmarks.sources import sigmoid_formula
+from benchmarks.sources import sigmoid
 
 TEMPLATE = Path(__file__).with_name("page.md")
 TITLES = {method.key: method.title for method in METHODS}
@@ -216,8 +216,8 @@ def page(report: dict[str, Any]) -> str:
         resonances=markdown(RESONANCE_COLUMNS, resonance_rows(report)),
         resonance_hz=FREQUENCY,
         named=markdown(NAMED_COLUMNS, named_rows(report)),
-        gap_5=relative(sigmoid_formula(5, 0, 1)),
-        gap_3=relative(sigmoid_formula(3, 0, 1)),
+        gap_5=relative(sigmoid.formula(5, 0, 1)),
+        gap_3=relative(sigmoid.formula(3, 0, 1)),
         worst_ticks=number(ticks),
         worst_microseconds=number(ticks * tick),
         moves=report["checked"]["moves"],

@@ -24,7 +24,7 @@ from benchmarks.measure import Result, check_with_model, measure
 from benchmarks.passo_side import CLOCK_HZ, PARAMETERS
 from benchmarks.peer import KINDS, compare_with_peer
 from benchmarks.resonance import measure_resonances, moves, residual
-from benchmarks.sources import Cosine, MultiAxis, Sigmoid, Trapezoid
+from benchmarks.sources import Cosine, MultiAxis, Sigmoid, Trapezoid, cosine, multi_axis, sigmoid, trapezoid
 from benchmarks.tables import number, page, relative
 from tests.helpers.closed_form import Ramp, substep_clocks
 
@@ -103,10 +103,10 @@ def test_turn_is_3200_updates_and_1600_pulses() -> None:
 
 def test_square_roots_are_truncated() -> None:
     """533, then sqrt(533^2 + 80000) = 603.4, then sqrt(603^2 + 80000) = 666.03; at 40000 it stands still."""
-    assert sources.trapezoid_speeds(Trapezoid(360, 60, 10))[:3] == [533, 603, 666]
+    assert trapezoid.update_speeds(Trapezoid(360, 60, 10))[:3] == [533, 603, 666]
     fast = Trapezoid(3600, 900, 740)  # 39466 to 48000 updates/s in 9330 updates
     assert fast.n_acc == 9330
-    assert sources.trapezoid_speeds(fast)[534:9330] == [40_000] * (9330 - 534)
+    assert trapezoid.update_speeds(fast)[534:9330] == [40_000] * (9330 - 534)
 
 
 def test_short_move_ends_at_speed() -> None:
@@ -132,7 +132,7 @@ def test_trapezoid_is_the_loop_of_updates() -> None:
                 v = math.isqrt(max(v * v - 80_000, 0))
             v = min(max(v, move.v_min), move.v_target)
             speeds.append(v)
-        assert sources.trapezoid_speeds(move) == speeds, move
+        assert trapezoid.update_speeds(move) == speeds, move
 
 
 # ---------------------------------------------------------------------------------------------- method B ----
@@ -140,13 +140,13 @@ def test_trapezoid_is_the_loop_of_updates() -> None:
 
 def test_sigmoid_indices() -> None:
     """alpha = 5: x = 16384 - 20480 is below 0 at first; at last d = 32767, x = 28671, 28671 / 32 = 895."""
-    ends = {alpha: [sources.sigmoid_index(alpha, n, 500) for n in (0, 500, 1000)] for alpha in (3, 4, 5)}
+    ends = {alpha: [sigmoid.index(alpha, n, 500) for n in (0, 500, 1000)] for alpha in (3, 4, 5)}
     assert ends == {3: [128, 512, 896], 4: [0, 512, 1023], 5: [0, 512, 895]}
 
 
 def test_sigmoid_table() -> None:
     """65535 / (1 + e^5) = 438.6 and 65535 / (1 + e^-3.7488) = 64027: 2.3 % short."""
-    table = sources.sigmoid_table()
+    table = sigmoid.logistic_table()
     assert len(table) == 1024
     assert (table[0], table[895], table[1023]) == (438, 64027, 65096)
 
@@ -154,7 +154,7 @@ def test_sigmoid_table() -> None:
 def test_sigmoid_formula_misses_its_ends() -> None:
     """1 / (1 + e^5) = 0.67 % at alpha = 5, 1 / (1 + e^3) = 4.74 % at alpha = 3, at both ends."""
     for alpha, gap in ((5, 0.006693), (3, 0.047426)):
-        ends = [sources.sigmoid_formula(alpha, i, 50) for i in (0, 50, 100)]
+        ends = [sigmoid.formula(alpha, i, 50) for i in (0, 50, 100)]
         assert ends == pytest.approx([gap, 0.5, 1 - gap], abs=1e-6)
 
 
@@ -173,8 +173,8 @@ def test_sigmoid_frequencies() -> None:
 def test_multi_axis_table() -> None:
     """1 to 50 pulses/ms in 100 ms: 1 + 0.49 i, truncated; 36000 / 50 fits, 36000 / 70 is 514.3."""
     move = MultiAxis((20_000, 12_000, 8_000), 1, 50, 100)
-    assert sources.multi_axis_pulses(move, 100)[[0, 1, 2, 3, 50, 99]].tolist() == [1, 1, 1, 2, 25, 49]
-    assert sources.multi_axis_period(move, np.array([1, 50, 70])).tolist() == [72_000, 1440, 1028]
+    assert multi_axis.pulses_each_ms(move, 100)[[0, 1, 2, 3, 50, 99]].tolist() == [1, 1, 1, 2, 25, 49]
+    assert multi_axis.period(move, np.array([1, 50, 70])).tolist() == [72_000, 1440, 1028]
     assert move.cruises  # (2 + 0.49 * 99) * 100 = 5051
 
 
@@ -190,7 +190,7 @@ def test_multi_axis_triangle() -> None:
 def test_followers_keep_5_to_3_to_2() -> None:
     """50, 30 and 20 kHz: of each 50 pulses of the main axis the others make 30 and 20."""
     for sub in (30, 20):
-        every = sources.follower(5000, 100 * sub)
+        every = multi_axis.follower(5000, 100 * sub)
         assert np.bincount(every // 50, minlength=100).tolist() == [sub] * 100
 
 
@@ -207,7 +207,7 @@ def test_follower_is_the_loop_of_pulses() -> None:
                 sy -= st
             else:
                 sy += sub
-        assert sources.follower(main, sub).tolist() == made[: sub if sub else 0]
+        assert multi_axis.follower(main, sub).tolist() == made[: sub if sub else 0]
 
 
 # ---------------------------------------------------------------------------------------------- method D ----
@@ -217,10 +217,10 @@ def test_slices_fall_short_until_repaired() -> None:
     """6400 in 0.4 s: 0.5 of a pulse is lost in each of 400 slices, which is about 200."""
     move = Cosine(6400, 400, 200)
     assert move.f_max == 32_000
-    assert sources.cosine_slices(move, move.f_max).sum() == 6200
-    assert sources.cosine_repaired(move).sum() == 6400
+    assert cosine.slices_at(move, move.f_max).sum() == 6200
+    assert cosine.repaired(move).sum() == 6400
     with_cruise = Cosine(6400, 400, 100)
-    slices = sources.cosine_slices(with_cruise, with_cruise.f_max)
+    slices = cosine.slices_at(with_cruise, with_cruise.f_max)
     assert slices[100:300].tolist() == [21] * 200  # 21333.3 Hz
     assert slices.sum() < 6400
 
