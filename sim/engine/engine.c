@@ -1,31 +1,10 @@
 /* SPDX-License-Identifier: MIT
- * Shared by both engines: the SPI master and the log of the output pins.
+ * Shared by both engines: time, what is at the pins, and the log of the output pins.
  */
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine_core.h"
-#include "passo_rig.h"
-
-/* Number of waiting events that ends a run; a transfer is not ended. */
-#define LOG_FULL 65536u
-/* Clocks from chip select to the first edge of SCLK and from the last edge to chip select. */
-#define CS_SETUP 4u
-#define CS_HOLD 4u
-
-struct passo_engine {
-	struct engine_core *core;
-	struct passo_inputs inputs;
-	struct passo_rig *rig; /* what is at the pins; null: nothing */
-	struct passo_outputs outputs;
-	struct passo_pin_event last;
-	uint64_t clock;
-	uint32_t spi_half_period;
-	uint64_t tick, clocks, ticks, clock_of_tick_0; /* time of an external master */
-	struct passo_pin_event *log;
-	size_t log_length;
-	size_t log_capacity;
-};
+#include "engine_private.h"
 
 /* Appends the pins to the log if they have changed. */
 static void log_pins(struct passo_engine *engine)
@@ -57,7 +36,7 @@ struct passo_engine *passo_engine_create(const struct passo_engine_config *confi
 	engine->inputs = (struct passo_inputs)PASSO_INPUTS_IDLE;
 	engine->spi_half_period = config->spi_half_period ? config->spi_half_period : 1;
 	engine->clocks = engine->ticks = 1;
-	engine->log_capacity = LOG_FULL;
+	engine->log_capacity = ENGINE_LOG_FULL;
 	engine->log = malloc(engine->log_capacity * sizeof *engine->log);
 	engine->core = engine_core_open(config, &engine->inputs, &engine->outputs);
 	if (!engine->core || !engine->log) {
@@ -79,16 +58,14 @@ void passo_engine_destroy(struct passo_engine *engine)
 	free(engine);
 }
 
-/* The limit, or what the rig leaves of it. */
-static uint64_t limited(const struct passo_engine *engine, uint64_t limit)
+uint64_t engine_limited(const struct passo_engine *engine, uint64_t limit)
 {
 	const uint64_t next = engine->rig ? passo_rig_next(engine->rig, engine->clock) : UINT64_MAX;
 
 	return limit > next - engine->clock ? next - engine->clock : limit;
 }
 
-/* What follows from clocks that have passed. */
-static uint64_t passed(struct passo_engine *engine, uint64_t clocks)
+uint64_t engine_passed(struct passo_engine *engine, uint64_t clocks)
 {
 	engine->clock += clocks;
 	log_pins(engine);
@@ -97,24 +74,24 @@ static uint64_t passed(struct passo_engine *engine, uint64_t clocks)
 	return clocks;
 }
 
-static uint64_t run_to_event(struct passo_engine *engine, uint64_t limit)
+uint64_t engine_run_to_event(struct passo_engine *engine, uint64_t limit)
 {
-	return passed(
-	    engine, engine_core_run(engine->core, &engine->inputs, limited(engine, limit), &engine->outputs));
+	return engine_passed(engine,
+	    engine_core_run(engine->core, &engine->inputs, engine_limited(engine, limit), &engine->outputs));
 }
 
-static void run_all(struct passo_engine *engine, uint64_t clocks)
+void engine_run_all(struct passo_engine *engine, uint64_t clocks)
 {
 	while (clocks)
-		clocks -= run_to_event(engine, clocks);
+		clocks -= engine_run_to_event(engine, clocks);
 }
 
 uint64_t passo_engine_run(struct passo_engine *engine, uint64_t clocks)
 {
 	uint64_t left = clocks;
 
-	while (left && engine->log_length < LOG_FULL && !(engine->rig && passo_rig_calls(engine->rig)))
-		left -= run_to_event(engine, left);
+	while (left && engine->log_length < ENGINE_LOG_FULL && !(engine->rig && passo_rig_calls(engine->rig)))
+		left -= engine_run_to_event(engine, left);
 	return clocks - left;
 }
 
@@ -125,80 +102,6 @@ struct passo_rig *passo_engine_attach(struct passo_engine *engine, const struct 
 	return engine->rig;
 }
 
-void passo_engine_pace(struct passo_engine *engine, uint64_t clocks, uint64_t ticks)
-{
-	uint64_t a = clocks, b = ticks;
-
-	/* divide by the greatest common divisor to keep products small */
-	while (b) {
-		uint64_t rest = a % b;
-
-		a = b;
-		b = rest;
-	}
-	engine->tick = 0;
-	engine->clock_of_tick_0 = engine->clock;
-	engine->clocks = clocks / a;
-	engine->ticks = ticks / a;
-}
-
-/* Clocks from now to the end of a tick. */
-static uint64_t clocks_to(const struct passo_engine *engine, uint64_t tick)
-{
-	return engine->clock_of_tick_0 + tick * engine->clocks / engine->ticks - engine->clock;
-}
-
-static void wait_ticks(struct passo_engine *engine, uint64_t ticks)
-{
-	engine->tick += ticks;
-	run_all(engine, clocks_to(engine, engine->tick));
-}
-
-uint64_t passo_engine_follow(struct passo_engine *engine, uint64_t tick)
-{
-	const uint32_t irq = engine->outputs.irq;
-	uint64_t left;
-
-	if (tick <= engine->tick)
-		return engine->tick;
-	left = clocks_to(engine, tick);
-	while (left && engine->log_length < LOG_FULL && engine->outputs.irq == irq)
-		left -= run_to_event(engine, left);
-	if (left) {
-		const uint64_t clocks = engine->clock - engine->clock_of_tick_0;
-
-		/* the first tick that ends at this clock or later */
-		tick = (clocks * engine->ticks + engine->clocks - 1) / engine->clocks;
-		if (tick < engine->tick)
-			tick = engine->tick;
-	}
-	engine->tick = tick;
-	return tick;
-}
-
-void passo_engine_select(struct passo_engine *engine, bool selected)
-{
-	engine->inputs.spi_cs_n = !selected;
-}
-
-void passo_engine_exchange(
-    struct passo_engine *engine, const uint8_t *mosi, uint8_t *miso, size_t count, uint32_t half_period)
-{
-	for (size_t i = 0; i < count; i++) {
-		unsigned received = 0;
-
-		for (unsigned bit = 8; bit-- > 0;) {
-			engine->inputs.spi_mosi = mosi[i] >> bit & 1u;
-			wait_ticks(engine, half_period);
-			received = received << 1 | engine->outputs.spi_miso;
-			engine->inputs.spi_sclk = true;
-			wait_ticks(engine, half_period);
-			engine->inputs.spi_sclk = false;
-		}
-		miso[i] = (uint8_t)received;
-	}
-}
-
 uint32_t passo_engine_irq(const struct passo_engine *engine)
 {
 	return engine->outputs.irq;
@@ -207,35 +110,6 @@ uint32_t passo_engine_irq(const struct passo_engine *engine)
 uint32_t passo_engine_running(const struct passo_engine *engine)
 {
 	return engine->outputs.running;
-}
-
-static void run_shift(struct passo_engine *engine, struct passo_shift *shift)
-{
-	const uint64_t skipped = engine_core_shift(
-	    engine->core, &engine->inputs, shift, limited(engine, UINT64_MAX), &engine->outputs);
-
-	if (skipped != 0u) {
-		passed(engine, skipped);
-		return;
-	}
-	passo_shift_pins(shift, &engine->inputs, engine->outputs.spi_miso);
-	shift->clock += run_to_event(engine, passo_shift_constant(shift));
-}
-
-void passo_engine_transfer(
-    struct passo_engine *engine, const uint32_t *mosi, uint32_t *miso, size_t count, uint64_t gap)
-{
-	struct passo_shift shift = {
-	    .mosi = mosi, .miso = miso, .bits = 32u * count, .half_period = engine->spi_half_period};
-
-	engine->inputs.spi_cs_n = false;
-	run_all(engine, CS_SETUP);
-	while (!passo_shift_done(&shift))
-		run_shift(engine, &shift);
-	engine->inputs.spi_sclk = false;
-	run_all(engine, CS_HOLD);
-	engine->inputs.spi_cs_n = true;
-	run_all(engine, gap);
 }
 
 void passo_engine_set(struct passo_engine *engine, enum passo_input input, uint64_t levels)

@@ -70,8 +70,8 @@ def planner_library() -> Path:
 
 
 def engine_sources() -> list[Path]:
-    """What both engines share: the SPI master, the log of the pins, the machine at the pins."""
-    return [paths.engine / name for name in ("engine.c", "passo_rig.c", "rig_parts.c")]
+    """What both engines share: time, the SPI masters, the log of the pins, the machine at the pins."""
+    return [paths.engine / name for name in ("engine.c", "engine_spi.c", "passo_rig.c", "rig_parts.c")]
 
 
 @cache
@@ -104,9 +104,8 @@ def cpu_library() -> Path:
     unicorn = Path(spec.origin).parent
     linked = unicorn / "lib" / "libunicorn.so.2"
     flags = [f"-isystem{unicorn / 'include'}", str(linked), f"-Wl,-rpath,{linked.parent}"]
-    return library(
-        f"cpu_unicorn{version('unicorn')}", [paths.engine], [paths.engine / "passo_cpu.c"], "-O3", *flags
-    )
+    files = [paths.engine / name for name in ("passo_cpu.c", "passo_cpu_hooks.c", "passo_cpu_registers.c")]
+    return library(f"cpu_unicorn{version('unicorn')}", [paths.engine], files, "-O3", *flags)
 
 
 def rtl_library(parameters: Parameters, waves: bool = False, rtl: Path = paths.rtl) -> Path:

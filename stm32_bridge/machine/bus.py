@@ -1,17 +1,18 @@
 # SPDX-License-Identifier: MIT
 """Peripherals and their registers. Access to anything that is not modelled is an error."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from passo_stm32.machine import Machine
+    from passo_stm32.chip import Chip
 
 TICKS_PER_SECOND = 576_000_000
 NEVER = 1 << 63  # ticks
 BLOCK_LOG2 = 8  # a peripheral owns whole blocks of 256 bytes
 WORD = 0xFFFFFFFF
+SYSTEM = 0xE0000000  # from here on: peripherals of the processor, which have bytes
 
 
 class MachineError(Exception):
@@ -37,7 +38,7 @@ class Peripheral:
     registers: Sequence[Register] = ()
     due = NEVER  # tick of the next call of `advance`
 
-    def __init__(self, machine: "Machine"):
+    def __init__(self, machine: "Chip"):
         self.machine = machine
         self._at = {register.offset: register for register in self.registers}
         self._readers = {r.offset: getattr(self, f"read_{r.name.lower()}", None) for r in self.registers}
@@ -93,8 +94,9 @@ class Peripheral:
 class Bus:
     """Address decoder."""
 
-    def __init__(self) -> None:
+    def __init__(self, has_clock: Callable[[str], bool]) -> None:
         self._blocks: dict[int, Peripheral] = {}
+        self._has_clock = has_clock  # a peripheral of this name
 
     def add(self, peripheral: Peripheral) -> None:
         """Map a peripheral."""
@@ -102,9 +104,27 @@ class Bus:
         for block in range(first, first + max(1, peripheral.size >> BLOCK_LOG2)):
             self._blocks[block] = peripheral
 
-    def find(self, address: int) -> Peripheral:
-        """The peripheral at an address; raises MachineError."""
+    def read(self, address: int, size: int) -> int:
+        """Load bytes of a word; raises MachineError."""
+        peripheral = self._find(address)
+        word = peripheral.read((address & ~3) - peripheral.base)
+        return word >> 8 * (address & 3) & ((1 << 8 * size) - 1)
+
+    def write(self, address: int, size: int, value: int) -> None:
+        """Store bytes of a word; raises MachineError."""
+        peripheral = self._find(address)
+        offset, shift = (address & ~3) - peripheral.base, 8 * (address & 3)
+        if size < 4 and address >= SYSTEM:
+            mask = ((1 << 8 * size) - 1) << shift
+            value = peripheral.read(offset) & ~mask | value << shift
+        elif shift:
+            raise MachineError(f"{peripheral.name}: write of {size} bytes to 0x{address:08X}")
+        peripheral.write(offset, value)
+
+    def _find(self, address: int) -> Peripheral:
         peripheral = self._blocks.get(address >> BLOCK_LOG2)
         if peripheral is None:
             raise MachineError(f"nothing is modelled at 0x{address:08X}")
+        if not self._has_clock(peripheral.name):
+            raise MachineError(f"{peripheral.name} (0x{address:08X}) has no clock")
         return peripheral

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from passo_stm32.bus import Peripheral, Register
 
 if TYPE_CHECKING:
-    from passo_stm32.machine import Machine
+    from passo_stm32.chip import Chip
 
 OUTPUT_PUSH_PULL, ALTERNATE_PUSH_PULL = 0, 2
 INPUT_ANALOG, INPUT_FLOATING, INPUT_PULLED = 0, 1, 2
@@ -25,7 +25,7 @@ class Gpio(Peripheral):
         Register("BRR", 0x14, 0xFFFF),
     )
 
-    def __init__(self, machine: "Machine", letter: str):
+    def __init__(self, machine: "Chip", letter: str):
         self.letter = letter
         self.name = f"GPIO{letter}"
         self.base = 0x40010800 + 0x400 * PORTS.index(letter)
