@@ -1,4 +1,6 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * The core under test, clock by clock.
+ */
 #include "world.h"
 
 #include <dlfcn.h>
@@ -6,13 +8,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "address.h"
+#include "world_private.h"
 
 /* Clocks from the last edge of SCLK to chip select. */
 #define HOLD 3u
 #define ROWS_FIRST 4096u
-/* Clocks at rest between two consecutive queued motions. */
-#define GAP_CLOCKS 4u
 
 struct world_rtl {
 	struct engine_core *(*open)(const struct passo_engine_config *config,
@@ -37,7 +37,7 @@ const struct world_rtl *world_load(const char *library)
 	return rtl.open && rtl.close && rtl.run ? &rtl : NULL;
 }
 
-static void *more(void *array, size_t *room, size_t size)
+void *world_more(void *array, size_t *room, size_t size)
 {
 	void *bigger;
 
@@ -63,7 +63,7 @@ void world_fail(struct world *world, uint64_t clock, const char *format, ...)
 void world_add_fact(struct world *world, const struct world_fact *fact)
 {
 	if (world->fact_count == world->fact_room)
-		world->facts = more(world->facts, &world->fact_room, sizeof *world->facts);
+		world->facts = world_more(world->facts, &world->fact_room, sizeof *world->facts);
 	world->facts[world->fact_count++] = *fact;
 }
 
@@ -72,142 +72,8 @@ static void add_row(struct world *world)
 	if (world->row_count && PASSO_SAME_OUTPUTS(&world->rows[world->row_count - 1u].pins, &world->outputs))
 		return;
 	if (world->row_count == world->row_room)
-		world->rows = more(world->rows, &world->row_room, sizeof *world->rows);
+		world->rows = world_more(world->rows, &world->row_room, sizeof *world->rows);
 	world->rows[world->row_count++] = (struct world_row){world->clock, world->outputs};
-}
-
-static void add_event(struct world *world, enum world_event_kind kind, unsigned channel)
-{
-	if (world->event_count == world->event_room)
-		world->events = more(world->events, &world->event_room, sizeof *world->events);
-	world->events[world->event_count++] = (struct world_event){world->clock, kind, (uint8_t)channel};
-}
-
-/* State of a channel before the clock. */
-struct before {
-	enum passo_state state;
-	bool stopping, at_rest;
-	uint32_t rate;
-	uint16_t line, ramp, tick;
-	uint8_t waits;
-};
-
-static uint8_t waits_of(const struct passo_channel *channel)
-{
-	uint8_t waits = 0;
-
-	for (unsigned i = 0; i < channel->axes; i++)
-		waits |= (uint8_t)((channel->axis[i].waits != 0u ? 1u : 0u) << i);
-	return waits;
-}
-
-static bool axes_rest(const struct passo_channel *channel)
-{
-	for (unsigned i = 0; i < channel->axes; i++)
-		if (channel->axis[i].state != PASSO_AXIS_READY || channel->axis[i].waits != 0u)
-			return false;
-	return true;
-}
-
-static struct before look(const struct passo_channel *channel)
-{
-	return (struct before){.state = channel->motion.state,
-	    .stopping = channel->motion.stopping,
-	    .at_rest = axes_rest(channel),
-	    .rate = channel->timescale.rate,
-	    .line = channel->line_queue.next_line,
-	    .ramp = channel->ramp_queue.read_ramp,
-	    .tick = (uint16_t)channel->ramp.tick_count,
-	    .waits = waits_of(channel)};
-}
-
-static void note_events(struct world *world, const struct before *before, const struct passo_outputs *pins)
-{
-	const unsigned axes = world->model.parameters.axes;
-
-	for (unsigned i = 0; i < world->model.parameters.channels; i++) {
-		const struct passo_channel *channel = &world->model.channel[i];
-		const struct before *was = &before[i];
-		const struct before now = look(channel);
-		const uint64_t mine = ((UINT64_C(1) << axes) - 1u) << (i * axes);
-
-		if (was->state != now.state)
-			add_event(world, EVENT_STATE, i);
-		if (was->state == PASSO_STATE_IDLE && now.state == PASSO_STATE_PREPARE
-		    && world->clock <= world->idle_since[i] + GAP_CLOCKS)
-			add_event(world, EVENT_GAP, i);
-		if (was->state != PASSO_STATE_IDLE && now.state == PASSO_STATE_IDLE)
-			world->idle_since[i] = world->clock;
-		if (was->stopping != now.stopping)
-			add_event(world, EVENT_STOPPING, i);
-		if (world->model.slew_tick && now.state >= PASSO_STATE_RUN && now.state <= PASSO_STATE_DRAIN)
-			add_event(world, EVENT_SLEW, i);
-		if (was->rate != now.rate)
-			add_event(world, EVENT_RATE, i);
-		if (was->line != now.line)
-			add_event(world, EVENT_LINE, i);
-		if (was->ramp != now.ramp)
-			add_event(world, EVENT_RAMP, i);
-		if (now.tick < was->tick && now.state == PASSO_STATE_RUN)
-			add_event(world, EVENT_TICK, i);
-		if ((pins->step ^ world->outputs.step) & mine)
-			add_event(world, EVENT_STEP, i);
-		if ((pins->dir ^ world->outputs.dir) & mine)
-			add_event(world, EVENT_DIR, i);
-		if (was->waits != now.waits)
-			add_event(world, EVENT_WAITS, i);
-		if (!was->at_rest && now.at_rest)
-			add_event(world, EVENT_QUIET, i);
-	}
-}
-
-static void record(
-    struct world *world, const struct passo_inputs *inputs, const struct passo_outputs *outputs)
-{
-	const bool same = PASSO_SAME_OUTPUTS(outputs, &world->recorded_outputs)
-	               && outputs->spi_miso == world->recorded_outputs.spi_miso
-	               && PASSO_SAME_INPUTS(inputs, &world->recorded_inputs);
-
-	if (same || world->recorded_clocks == 0u) {
-		world->recorded_clocks++;
-	} else {
-		world_end_record(world);
-		world->recorded_clocks = 1;
-	}
-	world->recorded_inputs = *inputs;
-	world->recorded_outputs = *outputs;
-}
-
-/* Writes the clocks recorded with equal inputs and outputs. */
-static void write_run(struct world *world)
-{
-	const struct passo_inputs *inputs = &world->recorded_inputs;
-	const struct passo_outputs *outputs = &world->recorded_outputs;
-
-	if (world->record) {
-		fprintf(world->record, "%llx", (unsigned long long)world->recorded_clocks);
-#define WRITE_INPUT(name, type, number) fprintf(world->record, " %llx", (unsigned long long)inputs->name);
-#define WRITE_OUTPUT(name, type, number) fprintf(world->record, " %llx", (unsigned long long)outputs->name);
-		PASSO_INPUTS(WRITE_INPUT)
-		PASSO_OUTPUTS(WRITE_OUTPUT)
-#undef WRITE_INPUT
-#undef WRITE_OUTPUT
-		fprintf(world->record, " %x\n", outputs->spi_miso ? 1u : 0u);
-	}
-	world->recorded_clocks = 0;
-}
-
-void world_end_record(struct world *world)
-{
-	if (world->recorded_clocks != 0u)
-		write_run(world);
-}
-
-void world_record_estop(struct world *world)
-{
-	world->recorded_inputs.estop_n = false;
-	world->recorded_outputs.enable = passo_core_enable(&world->model, false);
-	write_run(world);
 }
 
 static void compare(struct world *world, const struct passo_outputs *rtl, const struct passo_outputs *model)
@@ -233,7 +99,7 @@ static struct passo_outputs run_rtl(struct world *world)
 
 static void tick(struct world *world)
 {
-	struct before before[PASSO_CHANNELS_MAX];
+	struct world_before before[PASSO_CHANNELS_MAX];
 	const struct passo_outputs was = world->outputs;
 	const bool records = world->events_from != 0u && world->clock >= world->events_from;
 	const unsigned channels = world->model.parameters.channels;
@@ -245,7 +111,7 @@ static void tick(struct world *world)
 		rate[i] = world->model.channel[i].timescale.rate;
 		stopping[i] = world->model.channel[i].motion.stopping;
 		if (records)
-			before[i] = look(&world->model.channel[i]);
+			before[i] = world_look(&world->model.channel[i]);
 	}
 	passo_core_clock(&world->model, &world->inputs);
 	world->clock++;
@@ -267,9 +133,9 @@ static void tick(struct world *world)
 			    channel->timescale.rate);
 	}
 	if (records)
-		note_events(world, before, &was);
+		world_note_events(world, before, &was);
 	if (world->record)
-		record(world, &world->inputs, &world->outputs);
+		world_note_pins(world, &world->inputs, &world->outputs);
 }
 
 void world_run(struct world *world, uint64_t clocks)
@@ -339,52 +205,4 @@ void world_exchange(struct world *world, const uint32_t *mosi, uint32_t *miso, s
 	}
 	world_run(world, HOLD);
 	world->inputs.spi_cs_n = true;
-}
-
-static int64_t word_clocks(const struct world *world)
-{
-	return 64 * (int64_t)world->half_period;
-}
-
-int64_t world_executes(const struct world *world, unsigned length, unsigned index)
-{
-	return (int64_t)world->setup + ((int64_t)length + 2) * word_clocks(world) + world->latency->pins
-	     + 4 * (int64_t)index;
-}
-
-int64_t world_checks(const struct world *world, unsigned index)
-{
-	return (int64_t)world->setup + ((int64_t)index + 2) * word_clocks(world) + world->latency->check;
-}
-
-/* Writes one word to a new model; returns the latency from the end of the CRC word to the first pin
- * change. */
-static int64_t first_change(uint16_t address, uint32_t value)
-{
-	const struct passo_parameters parameters = {
-	    .channels = 1, .axes = 1, .tick_log2 = 7, .line_queue_log2 = 2, .ramp_queue_log2 = 2};
-	static struct world world;
-	uint32_t mosi[PASSO_FRAME_WORDS_MAX], miso[PASSO_FRAME_WORDS_MAX];
-
-	if (!world_open(&world, &parameters, NULL))
-		return -1;
-	world_run(&world, 100);
-	const uint64_t begin = world.clock;
-	const size_t count = passo_frame_write(mosi, 1, address, &value, 1);
-	world_exchange(&world, mosi, miso, count, 32u * count);
-	world_run(&world, 100);
-	if (world.row_count < 2u)
-		return -1;
-	return (int64_t)(world.rows[1].clock - begin) - (int64_t)world.setup - 3 * word_clocks(&world);
-}
-
-bool world_measure(struct world_latency *latency)
-{
-	latency->pins =
-	    first_change(axis_address(0, 0, PASSO_AXIS_PINS), 1u << PASSO_AXIS_PINS_STEP_INVERTED_LSB);
-	latency->enable = first_change(axis_address(0, 0, PASSO_AXIS_ENABLE), 1u << PASSO_AXIS_ENABLE_LSB);
-	latency->command =
-	    first_change(channel_address(0, PASSO_CHANNEL_COMMAND), 1u << PASSO_CHANNEL_COMMAND_ABORT_LSB);
-	latency->check = 40;
-	return latency->pins > 0 && latency->enable > 0 && latency->command > 0;
 }

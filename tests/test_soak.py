@@ -13,7 +13,7 @@ from passo.toolchain import paths
 from soak import defects, numbers, parts
 from soak.defects import Defect
 from soak.program import build
-from soak.run import JUDGED, MACHINE_JUDGED
+from soak.report import JUDGED, MACHINE_JUDGED
 
 SEED = random_cases.seed()
 JOBS = 1  # pytest uses the other cores
