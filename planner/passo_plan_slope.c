@@ -99,24 +99,24 @@ static uint64_t highest_with_ease(
  * steep, and that gives a peak that is closer: each iteration reduces the excess factor to its square root or
  * less. Convergence slows down as the excess shrinks, so extrapolation by the ratio of the last two steps
  * (Aitken) does not overshoot. */
-uint64_t passo_slope_reach(const struct passo_draft *draft, uint64_t limit, struct passo_slope up,
-    uint64_t start, struct passo_slope down, uint64_t stop)
+uint64_t passo_slope_reach(const struct passo_draft *draft, uint64_t limit, const struct passo_slope *up,
+    uint64_t start, const struct passo_slope *down, uint64_t stop)
 {
-	if (up.ease == 0 && down.ease == 0)
-		return reachable_speed(draft, limit, up, start, down, stop);
+	if (up->ease == 0 && down->ease == 0)
+		return reachable_speed(draft, limit, *up, start, *down, stop);
 
-	const bool both = up.ease > 0 && down.ease > 0;
-	const bool alike = both && start == stop && up.speed == down.speed;
+	const bool both = up->ease > 0 && down->ease > 0;
+	const bool alike = both && start == stop && up->speed == down->speed;
 	const uint64_t higher = start > stop ? start : stop;
-	const uint64_t end = both ? higher : up.ease > 0 ? start : stop;
-	const uint64_t jerk = up.ease > 0 ? up.jerk : down.jerk;
+	const uint64_t end = both ? higher : up->ease > 0 ? start : stop;
+	const uint64_t jerk = up->ease > 0 ? up->jerk : down->jerk;
 	uint64_t next = highest_with_ease(draft, limit, jerk, end, both);
 	uint64_t peak, step = 0;
 	int rounds = 12;
 	do {
 		peak = next;
-		struct passo_slope mean_up = mean_slope(up, start, peak);
-		struct passo_slope mean_down = alike ? mean_up : mean_slope(down, stop, peak);
+		struct passo_slope mean_up = mean_slope(*up, start, peak);
+		struct passo_slope mean_down = alike ? mean_up : mean_slope(*down, stop, peak);
 		next = reachable_speed(draft, peak, mean_up, start, mean_down, stop);
 		uint64_t step_before = step;
 		step = peak - next;

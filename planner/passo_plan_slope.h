@@ -34,7 +34,7 @@ static inline uint64_t passo_slope_clocks_ceil(struct passo_slope slope, uint64_
 uint64_t passo_slope_curve(struct passo_slope slope, uint64_t change, uint64_t clocks);
 
 /* The highest speed, up to a limit, that a move with these slopes and end speeds reaches. */
-uint64_t passo_slope_reach(const struct passo_draft *draft, uint64_t limit, struct passo_slope up,
-    uint64_t start, struct passo_slope down, uint64_t stop);
+uint64_t passo_slope_reach(const struct passo_draft *draft, uint64_t limit, const struct passo_slope *up,
+    uint64_t start, const struct passo_slope *down, uint64_t stop);
 
 #endif

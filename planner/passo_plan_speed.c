@@ -100,13 +100,13 @@ enum passo_plan_error passo_draft_by_speed(
 
 	/* A move too short for its start or stop speed omits that ramp and starts or stops at the peak. It
 	 * cannot be too short for both: the peak is above the lower of the two. */
-	uint64_t peak = passo_slope_reach(draft, speed, up, start, down, stop);
+	uint64_t peak = passo_slope_reach(draft, speed, &up, start, &down, stop);
 	if (peak < start) {
 		up = PASSO_VERTICAL;
-		peak = passo_slope_reach(draft, start, up, 0, down, stop);
+		peak = passo_slope_reach(draft, start, &up, 0, &down, stop);
 	} else if (peak < stop) {
 		down = PASSO_VERTICAL;
-		peak = passo_slope_reach(draft, stop, up, start, down, 0);
+		peak = passo_slope_reach(draft, stop, &up, start, &down, 0);
 	}
 	draft->accelerate = ramp_phase(draft, up, start, peak);
 	draft->decelerate = ramp_phase(draft, down, stop, peak);
