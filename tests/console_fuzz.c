@@ -6,8 +6,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "fuzz.h"
 #include "passo_engine.h"
 #include "passo_terminal.h"
 
@@ -65,29 +65,17 @@ struct bench {
 	size_t length;
 };
 
-static uint64_t state;
-
-static uint32_t draw(uint32_t below)
-{
-	state ^= state << 13;
-	state ^= state >> 7;
-	state ^= state << 17;
-	return (uint32_t)(state >> 32) % below;
-}
-
-#define PICK(list) ((list)[draw(sizeof(list) / sizeof(list)[0])])
-
 /* Switches of some axes, a drive's alarm, e-stop; mostly all is well. */
 static void poke(struct passo_engine *engine)
 {
 	static const enum passo_input PINS[] = {
 	    PASSO_INPUT_HOME, PASSO_INPUT_LIMIT_LOW, PASSO_INPUT_PROBE, PASSO_INPUT_ALARM};
 
-	if (draw(16) == 0)
-		passo_engine_set(engine, PICK(PINS), draw(2));
-	if (draw(20) == 0)
+	if (below(16) == 0)
+		passo_engine_set(engine, PICK(PINS), below(2));
+	if (below(20) == 0)
 		passo_engine_set(engine, PASSO_INPUT_ALARM, 0);
-	passo_engine_set(engine, PASSO_INPUT_ESTOP_N, draw(200) != 0);
+	passo_engine_set(engine, PASSO_INPUT_ESTOP_N, below(200) != 0);
 }
 
 static void drain(struct passo_engine *engine)
@@ -104,10 +92,10 @@ static bool transfer(void *context, const uint32_t *mosi, uint32_t *miso, size_t
 	struct bench *bench = context;
 
 	passo_engine_transfer(bench->engine, mosi, miso, count, 64 + 4 * count);
-	if (draw(200) == 0)
-		miso[draw((uint32_t)count)] ^= 1u << draw(32);
+	if (below(200) == 0)
+		miso[below((uint32_t)count)] ^= 1u << below(32);
 	drain(bench->engine);
-	return draw(2000) != 0;
+	return below(2000) != 0;
 }
 
 static bool irq(void *context)
@@ -146,26 +134,26 @@ static void keep(void *context, const char *text)
 static size_t make_line(char *line)
 {
 	size_t length = 0;
-	uint32_t kind = draw(10);
+	uint32_t kind = below(10);
 
 	if (kind < 3) {
 		length = (size_t)sprintf(line, "%s", PICK(LINES));
 	} else {
-		uint32_t words = draw(8);
+		uint32_t words = below(8);
 
-		length = (size_t)sprintf(line, "%s", kind < 9 ? WORDS[draw(COMMANDS)] : "");
+		length = (size_t)sprintf(line, "%s", kind < 9 ? WORDS[below(COMMANDS)] : "");
 		for (uint32_t i = 0; i < words; i++)
 			length += (size_t)sprintf(
-			    line + length, draw(8) ? " %s=%s" : " %s %s", PICK(WORDS), PICK(VALUES));
+			    line + length, below(8) ? " %s=%s" : " %s %s", PICK(WORDS), PICK(VALUES));
 	}
-	for (uint32_t i = draw(12) ? 0 : 1 + draw(3); i > 0 && length > 0; i--) {
-		char byte = (char)draw(256);
+	for (uint32_t i = below(12) ? 0 : 1 + below(3); i > 0 && length > 0; i--) {
+		char byte = (char)below(256);
 
 		if (byte != '\n' && byte != '\r')
-			line[draw((uint32_t)length)] = byte;
+			line[below((uint32_t)length)] = byte;
 	}
-	if (draw(60) == 0) {
-		memset(line + length, ' ' + (int)draw(90), 300);
+	if (below(60) == 0) {
+		memset(line + length, ' ' + (int)below(90), 300);
 		length += 300;
 	}
 	return length;
@@ -217,16 +205,15 @@ int main(int count, char **arguments)
 {
 	static struct bench bench;
 	static char line[8192];
-	time_t end = time(NULL) + (count > 2 ? atol(arguments[2]) : 5);
 
-	state = (uint64_t)(count > 1 ? atoll(arguments[1]) : 1) * UINT64_C(0x9E3779B97F4A7C15) + 1u;
-	while (time(NULL) < end) {
-		const struct passo_engine_config config = {.core = {.channels = draw(4) == 0 ? 2u : 1u,
-							       .axes = (uint8_t)(1u + draw(8)),
+	fuzz_begin(count, arguments);
+	while (fuzz_goes_on()) {
+		const struct passo_engine_config config = {.core = {.channels = below(4) == 0 ? 2u : 1u,
+							       .axes = (uint8_t)(1u + below(8)),
 							       .tick_log2 = 7,
 							       .line_queue_log2 = 4,
 							       .ramp_queue_log2 = 4,
-							       .inputs = (uint8_t)draw(2)},
+							       .inputs = (uint8_t)below(2)},
 		    .clock_hz = CLOCK_HZ,
 		    .spi_half_period = 2};
 		struct passo_terminal *terminal;
@@ -241,7 +228,7 @@ int main(int count, char **arguments)
 		for (unsigned i = 0, fill = FILLS; i < LINES_PER_CONSOLE; i++, fill++) {
 			size_t length;
 
-			if (fill >= FILLS && draw(40) == 0)
+			if (fill >= FILLS && below(40) == 0)
 				fill = 0;
 			length = fill < FILLS ? (size_t)sprintf(line, "%s", FILL[fill]) : make_line(line);
 
@@ -254,9 +241,9 @@ int main(int count, char **arguments)
 			passo_terminal_type(terminal, "\n", 1);
 			waits = check(&bench, terminal, 1u + waits, true, line);
 			bench.waited += waits;
-			for (uint32_t round = fill < FILLS ? 0 : draw(4); round > 0; round--) {
+			for (uint32_t round = fill < FILLS ? 0 : below(4); round > 0; round--) {
 				passo_terminal_poll(terminal);
-				advance(&bench, draw(4) ? draw(400) : draw(8000));
+				advance(&bench, below(4) ? below(400) : below(8000));
 			}
 			waits = check(&bench, terminal, waits, false, line);
 		}

@@ -7,24 +7,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "fuzz.h"
 #include "passo_gcode.h"
 #include "passo_gcode_line.h"
 
 #define ITEMS 16u
 #define TEXT 200u
 #define CHORDS_MAX 2000u /* of an arc that are looked at */
-
-static uint64_t state;
-
-static uint32_t below(uint32_t limit)
-{
-	state ^= state << 13;
-	state ^= state >> 7;
-	state ^= state << 17;
-	return (uint32_t)(state >> 32) % limit;
-}
 
 static void must(bool holds, const char *what, const char *text)
 {
@@ -161,14 +151,10 @@ static void fuzz(struct passo_path_item *items)
 int main(int count, char **words)
 {
 	static struct passo_path_item items[ITEMS];
-	const time_t end = time(NULL) + (count > 2 ? atoi(words[2]) : 1);
 	uint64_t rounds = 0;
 
-	state = (count > 1 ? strtoull(words[1], NULL, 10) : 1) * UINT64_C(0x9E3779B97F4A7C15) | 1u;
-	do {
+	for (fuzz_begin(count, words); rounds == 0 || fuzz_goes_on(); rounds++)
 		fuzz(items);
-		rounds++;
-	} while (time(NULL) < end);
 	printf("%llu programs\n", (unsigned long long)rounds);
 	return 0;
 }

@@ -12,8 +12,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "fuzz.h"
 #include "passo_engine.h"
 #include "passo_grbl.h"
 
@@ -51,18 +51,6 @@ static struct {
 	bool tells;        /* all that is said */
 	unsigned long good, bad, alarms, reports, resets, motions;
 } bench;
-
-static uint64_t state;
-
-static uint32_t below(uint32_t limit)
-{
-	state ^= state << 13;
-	state ^= state >> 7;
-	state ^= state << 17;
-	return (uint32_t)(state >> 32) % limit;
-}
-
-#define PICK(list) ((list)[below(sizeof(list) / sizeof(list)[0])])
 
 static void fail(const char *what)
 {
@@ -429,13 +417,12 @@ static void revive(void)
 
 int main(int count, char **arguments)
 {
-	const time_t end = time(NULL) + (count > 2 ? atol(arguments[2]) : 5);
 	char line[512];
 
 	bench.tells = count > 3;
-	state = (uint64_t)(count > 1 ? atoll(arguments[1]) : 1) * UINT64_C(0x9E3779B97F4A7C15) + 1u;
+	fuzz_begin(count, arguments);
 	memset(bench.pages, 0xFF, sizeof bench.pages);
-	while (time(NULL) < end) {
+	while (fuzz_goes_on()) {
 		if (below(3) == 0)
 			bench.pages[below(2)][below(PAGE_WORDS)] ^= 1u << below(32);
 		power_up();

@@ -6,27 +6,12 @@
  */
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
+#include "fuzz.h"
 #include "passo_path.h"
 
 #define CAPACITY_MAX 64u
 #define RAMPS_MAX 3000u
-
-static uint64_t state;
-
-static uint64_t random_bits(void)
-{
-	state ^= state << 13;
-	state ^= state >> 7;
-	state ^= state << 17;
-	return state;
-}
-
-static uint32_t below(uint32_t limit)
-{
-	return (uint32_t)(random_bits() >> 32) % limit;
-}
 
 /* Any number of bits up to `most`, all equally likely. */
 static uint64_t any(uint32_t most)
@@ -189,14 +174,10 @@ static void fuzz(struct passo_path_item *items)
 int main(int count, char **words)
 {
 	static struct passo_path_item items[CAPACITY_MAX];
-	const time_t end = time(NULL) + (count > 2 ? atoi(words[2]) : 1);
 	uint64_t rounds = 0;
 
-	state = (count > 1 ? strtoull(words[1], NULL, 10) : 1) * UINT64_C(0x9E3779B97F4A7C15) | 1u;
-	do {
+	for (fuzz_begin(count, words); rounds == 0 || fuzz_goes_on(); rounds++)
 		fuzz(items);
-		rounds++;
-	} while (time(NULL) < end);
 	printf("%llu paths\n", (unsigned long long)rounds);
 	return 0;
 }
