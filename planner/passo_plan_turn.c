@@ -95,8 +95,13 @@ static uint32_t add_change(struct passo_plan *plan, const struct passo_draft *dr
 	return PASSO_PLAN_OK;
 }
 
-static uint32_t check_rpm(const struct passo_turning *turning, uint64_t rpm)
+/* The same for a plan that leads to an rpm. */
+static uint32_t start_turning_at(struct passo_draft *draft, int32_t steps[PASSO_AXES_MAX],
+    const struct passo_machine *machine, const struct passo_turning *turning, uint64_t rpm)
 {
+	const uint32_t refused = start_turning(draft, steps, machine, turning);
+	if (refused != PASSO_PLAN_OK)
+		return refused;
 	if (speed_of(rpm, turning->steps_per_turn) == 0)
 		return PASSO_PLAN_NO_SPEED;
 	if (rpm < turning->minimum_rpm)
@@ -109,9 +114,7 @@ enum passo_plan_error passo_plan_turning_start(const struct passo_machine *machi
 {
 	struct passo_draft draft;
 	int32_t steps[PASSO_AXES_MAX] = {0};
-	uint32_t refused = start_turning(&draft, steps, machine, turning);
-	if (refused == PASSO_PLAN_OK)
-		refused = check_rpm(turning, rpm);
+	uint32_t refused = start_turning_at(&draft, steps, machine, turning, rpm);
 	if (refused != PASSO_PLAN_OK)
 		return refused;
 
@@ -138,9 +141,7 @@ enum passo_plan_error passo_plan_turning_speed(const struct passo_machine *machi
 {
 	struct passo_draft draft;
 	int32_t steps[PASSO_AXES_MAX] = {0};
-	uint32_t refused = start_turning(&draft, steps, machine, turning);
-	if (refused == PASSO_PLAN_OK)
-		refused = check_rpm(turning, rpm);
+	uint32_t refused = start_turning_at(&draft, steps, machine, turning, rpm);
 	if (refused != PASSO_PLAN_OK)
 		return refused;
 	if (velocity > velocity_of(&draft, turning, turning->top_rpm))
