@@ -4,7 +4,9 @@
 from typing import Any
 
 import pytest
+from passo.driver import Driver
 
+from tests.helpers.driver_wire import Wire, open_driver
 from tests.helpers.plans import planner
 
 
@@ -12,3 +14,15 @@ from tests.helpers.plans import planner
 def c() -> Any:
     """The planner, built such that undefined behaviour is fatal."""
     return planner()
+
+
+@pytest.fixture
+def wire() -> Wire:
+    """A link to the C model."""
+    return Wire()
+
+
+@pytest.fixture
+def driver(wire: Wire) -> Driver:
+    """A driver at it."""
+    return open_driver(wire)

@@ -38,6 +38,8 @@ BUILDS = [
 class Session:
     """A host that does anything to any channel at any time; refusals are ignored."""
 
+    PUSHES = 0.6  # share of motions in what it does
+
     def __init__(self, parameters: Parameters, rng: random.Random):
         self.rng = rng
         self.pair = PlayerPair(parameters, rng)
@@ -126,25 +128,29 @@ class Session:
                 self.try_to(channel.clear)
                 self.try_to(channel.set_rate, RATE_ONE)
 
+    def act(self, channel: Channel) -> None:
+        """A motion or a command."""
+        if self.rng.random() < self.PUSHES:
+            self.push(channel)
+        else:
+            self.command(channel)
+
+    def play(self, rounds: int) -> None:
+        """Whatever host and machine do, pins and state are the same with and without skipping."""
+        print(f"PASSO_SEED={SEED}")
+        self.link.write(r.ADDRESS_RUN, (1 << len(self.channels)) - 1)
+        for _ in range(rounds):
+            self.act(self.rng.choice(self.channels))
+            self.disturb()
+            self.go_on(self.rng.choice([200, 3000, 20000]))
+        assert self.pair.compared > 500
+        assert self.pair.events > 0
+
 
 @pytest.mark.parametrize("number", range(2 * len(BUILDS)))
 def test_advance_agrees_with_every_clock(number: int) -> None:
-    """Whatever a host does, pins and state are the same with and without skipping."""
-    print(f"PASSO_SEED={SEED}")
     rng = random.Random(f"{SEED}/{number}")
-    session = Session(BUILDS[number % len(BUILDS)], rng)
-    every = (1 << len(session.channels)) - 1
-    session.link.write(r.ADDRESS_RUN, every)
-    for _ in range(25):
-        channel = rng.choice(session.channels)
-        if rng.random() < 0.6:
-            session.push(channel)
-        else:
-            session.command(channel)
-        session.disturb()
-        session.go_on(rng.choice([200, 3000, 20000]))
-    assert session.pair.compared > 500
-    assert session.pair.events > 0
+    Session(BUILDS[number % len(BUILDS)], rng).play(25)
 
 
 def test_advance_jumps_far() -> None:

@@ -31,16 +31,6 @@ LONG = by_speed([40_000, 0, 0, 0])
 VERSION = r.VERSION_MAJOR_RESET << r.VERSION_MAJOR_LSB | r.VERSION_MINOR_RESET << r.VERSION_MINOR_LSB
 
 
-@pytest.fixture
-def wire() -> Wire:
-    return Wire()
-
-
-@pytest.fixture
-def driver(wire: Wire) -> Driver:
-    return open_driver(wire)
-
-
 def straight(**axes: object) -> object:
     limits = [{"steps_per_mm": 80 * Q32, "speed": 200 * Q32, "acceleration": 90_000 * Q32}] * 8
     return struct("move_straight", distance=[10 * Q32, -5 * Q32], limits=limits, feed=150 * Q32)

@@ -34,11 +34,6 @@ HISTORIES = 150
 
 
 @pytest.fixture
-def wire() -> Wire:
-    return Wire()
-
-
-@pytest.fixture
 def driver(wire: Wire) -> Driver:
     made = open_driver(wire)
     made.call("configure_motion", 50 * MS, 50 * MS, 0)

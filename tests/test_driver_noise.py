@@ -35,11 +35,6 @@ MOVES = 220
 WIRE_ERRORS = {"STUCK_LOW", "STUCK_HIGH", "NO_ACK", "DAMAGED", "SEQUENCE", "BAD_CRC"}
 
 
-@pytest.fixture
-def wire() -> Wire:
-    return Wire()
-
-
 def moved(before: list[int], steps: list[int]) -> list[int]:
     return [a + b for a, b in zip(before, steps, strict=True)]
 

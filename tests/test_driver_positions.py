@@ -7,21 +7,11 @@ from passo.native import ffi, planner
 from passo.plan import sigmoid_table
 from passo.registers import Operation
 
-from tests.helpers.driver_wire import CLOCK_HZ, Q32, Wire, by_speed, error_of, finish, open_driver, struct
+from tests.helpers.driver_wire import CLOCK_HZ, Q32, Wire, by_speed, error_of, finish, struct
 from tests.test_driver import LONG, MOVES, TURN, straight
 
 X, Y, Z = 1, 2, 4
 TOP = 2**31 - 1
-
-
-@pytest.fixture
-def wire() -> Wire:
-    return Wire()
-
-
-@pytest.fixture
-def driver(wire: Wire) -> Driver:
-    return open_driver(wire)
 
 
 def read(driver: Driver, call: str) -> list[int]:

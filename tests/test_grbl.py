@@ -13,39 +13,24 @@ from passo.machine_file import read_machine
 from passo.run import open_engine, parameters_for
 from passo.toolchain import paths
 
+from tests.helpers.grbl_console import GrblConsole
+
 MACHINE = read_machine(paths.examples / "gcode" / "machine.toml")
 RX = 128  # bytes that senders count with
 
 
-class Session:
-    """A console and what it has said."""
+class Session(GrblConsole):
+    """A console with three axes."""
 
     def __init__(self) -> None:
-        self.engine = open_engine("model", parameters_for(3), MACHINE.clock_hz)
-        self.said = ""
-        self.grbl = Grbl(self.engine, MACHINE, self.write)
-        assert self.take() == "\r\nGrbl 1.1h ['$' for help]\r\n"
-
-    def write(self, text: str) -> None:
-        self.said += text
-
-    def take(self) -> str:
-        said, self.said = self.said, ""
-        return said
-
-    def line(self, text: str) -> str:
-        """The answer to a line, without its end."""
-        self.grbl.line(text.encode("latin-1"))
-        return self.take().replace("\r\n", "\n").strip()
+        super().__init__(open_engine("model", parameters_for(3), MACHINE.clock_hz), MACHINE)
+        assert self.take_all() == "\r\nGrbl 1.1h ['$' for help]\r\n"
 
     def report(self) -> dict[str, str]:
         """A status report: state and fields."""
         (text,) = re.findall(r"<(.*)>", self.line("?"))
         state, *fields = text.split("|")
         return {"state": state, **dict(field.split(":", 1) for field in fields)}
-
-    def rest(self) -> None:
-        assert self.grbl.wait(lambda: self.grbl.is_idle)
 
 
 @pytest.fixture
@@ -115,7 +100,7 @@ def test_a_reset_in_mid_path(session: Session, held: bool) -> None:
         session.grbl.wait(lambda: False, 0.3)
     said = session.line("\x18")
     session.rest()
-    said += session.take()
+    said += session.take_all()
     assert "Grbl 1.1h" in said and "unlock" in said
     stopped = session.report()
     assert stopped["state"] == "Alarm" and 0 < float(stopped["MPos"].split(",")[0]) < 30
@@ -170,7 +155,7 @@ def test_pauses_and_the_end_of_the_program(session: Session) -> None:
     session.rest()
     said = session.line("M30")
     session.rest()
-    assert "ok\n[MSG:Pgm End]" in said + session.take()
+    assert "ok\n[MSG:Pgm End]" in said + session.take_all()
     assert session.report()["MPos"] == "2.000,0.000,0.000"
 
 
@@ -189,7 +174,7 @@ def test_counting_characters(session: Session) -> None:
         waiting.append(len(line))
     session.grbl.wait(lambda: session.grbl.answers == len(lines))
     session.rest()
-    assert session.take() == "ok\r\n" * len(lines)
+    assert session.take_all() == "ok\r\n" * len(lines)
     assert session.report()["MPos"] == "0.000,4.500,0.000"
 
 
@@ -199,7 +184,7 @@ def test_a_full_buffer_is_an_error_and_no_half_line(session: Session) -> None:
     session.grbl.wait(lambda: False, 0.1)
     session.grbl.type(b"\nG0 X2\n")
     session.grbl.wait(lambda: False, 1)
-    assert "error:11" in session.take()
+    assert "error:11" in session.take_all()
     assert session.report()["MPos"] == "2.000,0.000,0.000"
 
 

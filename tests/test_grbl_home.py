@@ -6,9 +6,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from passo.grbl import Grbl
 from passo.grbl_setup import machine_at
 from passo.machine_file import MachineFile, read_machine
+
+from tests.helpers.grbl_console import GrblConsole
 
 AXIS = """
 [[axis]]
@@ -32,24 +33,12 @@ def machine_of(
     return read_machine(path)
 
 
-class Session:
+class Session(GrblConsole):
     """A console with a machine."""
-
-    def __init__(self, engine: object, machine: MachineFile):
-        self.said = ""
-        self.grbl = Grbl(engine, machine, self.write)
-
-    def write(self, text: str) -> None:
-        self.said += text
-
-    def take(self) -> str:
-        said, self.said = self.said, ""
-        return said.replace("\r\n", "\n").strip()
 
     def line(self, text: str) -> str:
         self.take()
-        self.grbl.line(text.encode("latin-1"))
-        return self.take()
+        return super().line(text)
 
     def byte(self, code: int) -> None:
         self.grbl.type(bytes([code]))
@@ -58,9 +47,9 @@ class Session:
     def run(self, seconds: float) -> None:
         self.grbl.wait(lambda: False, seconds)
 
-    def rest(self) -> str:
+    def settle(self) -> str:
         self.take()
-        assert self.grbl.wait(lambda: self.grbl.is_idle)
+        super().rest()
         self.grbl.poll()
         return self.take()
 

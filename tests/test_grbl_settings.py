@@ -6,40 +6,29 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from passo.grbl import Grbl
 from passo.grbl_setup import PAGE, SettingsFile
 from passo.machine_file import read_machine
 from passo.native import ffi, planner
 from passo.run import open_engine, parameters_for
 from passo.toolchain import paths
 
+from tests.helpers.grbl_console import GrblConsole
+
 MACHINE = read_machine(paths.examples / "gcode" / "machine.toml")
 WORDS = 40
 ERASED = 0xFFFFFFFF
 
 
-class Session:
+class Session(GrblConsole):
     """A console with a file of settings; a new one is a new power-up."""
 
     def __init__(self, file: Path):
-        self.engine = open_engine("model", parameters_for(3), MACHINE.clock_hz)
-        self.said = ""
-        self.grbl = Grbl(self.engine, MACHINE, self.write, SettingsFile(file))
+        engine = open_engine("model", parameters_for(3), MACHINE.clock_hz)
+        super().__init__(engine, MACHINE, SettingsFile(file))
         self.greeting = self.take()
 
-    def write(self, text: str) -> None:
-        self.said += text
-
-    def take(self) -> str:
-        said, self.said = self.said, ""
-        return said.replace("\r\n", "\n").strip()
-
-    def line(self, text: str) -> str:
-        self.grbl.line(text.encode())
-        return self.take()
-
     def rest(self) -> None:
-        assert self.grbl.wait(lambda: self.grbl.is_idle)
+        super().rest()
         self.grbl.poll()
 
     def off(self) -> None:

@@ -12,9 +12,10 @@ import numpy as np
 import pytest
 from passo import registers as r
 from passo.build import Parameters
-from passo.engine import EVENT, Engine, PairEngine, model_engine, rtl_engine
+from passo.engine import EVENT, Engine, model_engine, rtl_engine
 from passo.host import Channel
 from passo.link import Link
+from passo.pair_engine import PairEngine
 from passo.random_cases import seed
 from passo.registers import Cause, State, TriggerAction, TriggerSource
 

@@ -9,8 +9,9 @@ from pathlib import Path
 
 import pytest
 from passo import cli, shape
+from passo.formula import formula
 from passo.native import ffi, planner
-from passo.shape import ShapeError, check, formula, read_table, sample, write_table
+from passo.shape import ShapeError, check, read_table, sample, write_table
 
 
 def test_formulas() -> None:

@@ -6,8 +6,9 @@ from collections.abc import Iterator
 import pytest
 from passo import registers as r
 from passo.build import Parameters
-from passo.engine import PairEngine, model_engine, rtl_engine
+from passo.engine import model_engine, rtl_engine
 from passo.link import Link, RefusedError
+from passo.pair_engine import PairEngine
 from passo.register_table import Register
 from passo.registers import Verdict
 

@@ -14,9 +14,10 @@ import pytest
 from passo import cli, frame, run_command
 from passo import registers as r
 from passo.build import Parameters
-from passo.engine import EVENT, DifferenceError, PairEngine, first_difference, model_engine, rtl_engine
+from passo.engine import EVENT, DifferenceError, model_engine, rtl_engine
 from passo.link import Link, LinkError, RefusedError
 from passo.move_file import read_channels, read_moves
+from passo.pair_engine import PairEngine, first_difference
 from passo.plan import plan_channels, plan_file
 from passo.registers import Verdict
 from passo.run import execute, execute_channels, open_engine, parameters_for, parameters_of
