@@ -142,10 +142,9 @@ def _run(options: argparse.Namespace) -> int:
 
 def _shape(options: argparse.Namespace) -> int:
     from passo import shape
+    from passo.formula import formula
 
-    points = (
-        shape.sample(shape.formula(options.formula)) if options.formula else shape.read_table(options.csv)
-    )
+    points = shape.sample(formula(options.formula)) if options.formula else shape.read_table(options.csv)
     facts = shape.check(points)
     try:
         if options.out:
@@ -160,68 +159,10 @@ def _shape(options: argparse.Namespace) -> int:
     return OK
 
 
-def _grbl(options: argparse.Namespace) -> int:
-    from passo.grbl import Grbl, pseudo_terminal, serve, talk
-    from passo.grbl_setup import SettingsFile, machine_at
-    from passo.machine_file import read_machine
-
-    def write(text: str) -> None:
-        print(text, end="", flush=True)
-
-    if not options.machine:
-        raise BadInputError("--grbl needs --machine MACHINE.toml (docs/gcode.md)")
-    machine = read_machine(options.machine)
-    settings = SettingsFile(options.settings) if options.settings else None
-    with machine_at(options.engine, machine) as engine:
-        if not options.pty:
-            talk(sys.stdin, Grbl(engine, machine, write, settings))
-            return OK
-        import os
-
-        with pseudo_terminal(options.pty) as terminal:
-            write(f"{options.pty}: 115200 baud or any other\n")
-            said = lambda text: os.write(terminal, text.encode())  # noqa: E731
-            serve(Grbl(engine, machine, said, settings), terminal)
-    return OK
-
-
 def _console(options: argparse.Namespace) -> int:
-    if options.grbl or options.pty or options.machine or options.settings:
-        return _grbl(options)
-    from passo.build import Parameters
-    from passo.machine import Machine, read_switch
-    from passo.move_forms import WHOLE_MAX
-    from passo.moves import AXES_MAX, CHANNELS_MAX
-    from passo.run import open_engine
-    from passo.terminal import Terminal, talk
+    from passo.console_command import run_console
 
-    def write(text: str) -> None:
-        print(text, end="", flush=text.endswith("\n"))
-
-    if not 1 <= options.axes <= AXES_MAX or not 1 <= options.clock <= WHOLE_MAX:
-        raise BadInputError(f"--axes must be 1 to {AXES_MAX}, --clock 1 to {WHOLE_MAX}")
-    if not 1 <= options.channels <= CHANNELS_MAX:
-        raise BadInputError(f"--channels must be 1 to {CHANNELS_MAX}")
-    try:
-        switches = [read_switch(text) for text in options.switch]
-    except ValueError as error:
-        raise BadInputError(f"--switch {error}") from None
-    if switches and not options.inputs:
-        raise BadInputError("--switch needs --inputs")
-    if any(switch.axis >= options.channels * options.axes for switch in switches):
-        raise BadInputError("--switch: the core has no such axis")
-    parameters = Parameters(channels=options.channels, axes=options.axes, inputs=int(options.inputs))
-    with (
-        open_engine(options.engine, parameters, options.clock) as engine,
-        Terminal(Machine(engine, switches) if switches else engine, write) as terminal,
-    ):
-        if sys.stdin.isatty() and sys.stdout.isatty():
-            from passo.prompt import GREETING, typed
-
-            write(GREETING.format(f"{options.engine}, {options.axes} axes, {options.clock} Hz"))
-            talk(typed(terminal), terminal)
-        else:
-            talk(sys.stdin, terminal, write if options.echo else None)
+    run_console(options)
     return OK
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The engines that execute the core: the C model, the Verilated RTL, and both in lockstep."""
+"""The engines that execute the core: the C model and the Verilated RTL; both in lockstep: pair_engine.py."""
 
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -16,7 +16,6 @@ from passo.pins import INPUTS, OUTPUTS
 # Pin levels after each clock on which an output pin changes; clock 1 is the first one after reset. A pin has
 # a bit per axis, channel * axes + axis, or per channel.
 EVENT = np.dtype([("clock", "u8"), *((pin.name, "u8") for pin in OUTPUTS)])
-SIGNALS = EVENT.names[1:]
 EVENTS_PER_DRAIN = 65536
 NUMBERS = {pin.name: number for number, pin in enumerate(INPUTS)}
 
@@ -40,7 +39,7 @@ class DifferenceError(Failure):
         return type(self), (self.clock, self.signal, self.index, self.expected, self.actual)
 
 
-class _Closed:
+class Closed:
     """Closes itself at the end of a with statement."""
 
     def __enter__(self) -> Self:
@@ -54,7 +53,7 @@ class _Closed:
         raise NotImplementedError
 
 
-class Engine(_Closed):
+class Engine(Closed):
     """A core that is accessed through its pins; see sim/engine/passo_engine.h."""
 
     def __init__(
@@ -168,106 +167,3 @@ def model_engine(parameters: Parameters, clock_hz: int = 100_000_000, every_cloc
 def rtl_engine(parameters: Parameters, clock_hz: int = 100_000_000, waves: bool = False) -> Engine:
     """The Verilated core."""
     return Engine(rtl_library(parameters, waves), parameters, clock_hz)
-
-
-class PairEngine(_Closed):
-    """RTL and model with the same input waveforms; all outputs are compared, see DifferenceError."""
-
-    def __init__(self, rtl: Engine, model: Engine):
-        self.rtl, self.model = rtl, model
-        self.parameters, self.clock_hz = rtl.parameters, rtl.clock_hz
-        self.matched_edges = 0  # edges of STEP, DIR and EN that agree
-        self._last = np.zeros(1, EVENT)
-        self._events: list[np.ndarray] = []
-
-    def close(self) -> None:
-        """Free both engines."""
-        self.rtl.close()
-        self.model.close()
-
-    @property
-    def clock(self) -> int:
-        """Clocks since reset."""
-        return self.rtl.clock
-
-    def transfer(self, mosi: Sequence[int], gap: int = 16) -> list[int]:
-        """Send the same words to both and compare the replies."""
-        clock = self.clock
-        actual, expected = self.rtl.transfer(mosi, gap), self.model.transfer(mosi, gap)
-        self._compare()
-        for i, (e, a) in enumerate(zip(expected, actual, strict=True)):
-            if e != a:
-                raise DifferenceError(clock, "miso", i, e, a)
-        return actual
-
-    def run(self, clocks: int) -> int:
-        """Run both and compare their pins."""
-        actual, expected = self.rtl.run(clocks), self.model.run(clocks)
-        self._compare()
-        assert actual == expected  # the same events fill both logs on the same clock
-        return actual
-
-    @property
-    def irq(self) -> int:
-        """Level of the irq pins; their changes are compared like those of all pins."""
-        return self.rtl.irq
-
-    def attach(self, config: Any) -> list[tuple[Any, Any]]:
-        """Connect equal machines to both."""
-        return self.rtl.attach(config) + self.model.attach(config)
-
-    def set(self, pin: str, levels: int) -> None:
-        """Set the levels of an input pin of both."""
-        self.rtl.set(pin, levels)
-        self.model.set(pin, levels)
-
-    def sync(self, level: bool) -> None:
-        """Set the sync input of both."""
-        self.set("sync", level)
-
-    def drain(self) -> np.ndarray:
-        """The pin events (EVENT) since the last call, which are the same in both."""
-        events, self._events = self._events, []
-        return np.concatenate([np.empty(0, EVENT), *events])
-
-    def open_waves(self, path: Path, begin: int, end: int) -> None:
-        """Record the waves of the RTL."""
-        self.rtl.open_waves(path, begin, end)
-
-    def close_waves(self) -> None:
-        """Close the waves file."""
-        self.rtl.close_waves()
-
-    def _compare(self) -> None:
-        actual, expected = self.rtl.drain(), self.model.drain()
-        if not np.array_equal(actual, expected):
-            raise first_difference(expected, actual, self._last[0])
-        if len(actual):
-            self.matched_edges += count_edges(np.concatenate([self._last, actual]))
-            self._last = actual[-1:]
-            self._events.append(actual)
-
-
-def count_edges(events: np.ndarray) -> int:
-    """Edges of STEP, DIR and EN from the first event on."""
-    changed = (events[s][1:] ^ events[s][:-1] for s in ("step", "dir", "enable"))
-    return sum(int(np.bitwise_count(bits).sum()) for bits in changed)
-
-
-def first_difference(expected: np.ndarray, actual: np.ndarray, before: np.void) -> DifferenceError:
-    """The first difference between two lists of events that follow the same event `before`."""
-    common = min(len(expected), len(actual))
-    at = int(np.argmax(expected[:common] != actual[:common])) if common else 0
-    if common and expected[at] == actual[at]:
-        at = common
-    last = before if at == 0 else expected[at - 1]
-    e = expected[at] if at < len(expected) else None
-    a = actual[at] if at < len(actual) else None
-    clock = min(int(event["clock"]) for event in (e, a) if event is not None)
-    # The engine whose event comes later still has its previous pin levels.
-    e = e if e is not None and e["clock"] == clock else last
-    a = a if a is not None and a["clock"] == clock else last
-    signal = next(s for s in SIGNALS if e[s] != a[s])
-    different = int(e[signal]) ^ int(a[signal])
-    bit = (different & -different).bit_length() - 1
-    return DifferenceError(clock, signal, bit, int(e[signal]) >> bit & 1, int(a[signal]) >> bit & 1)

@@ -7,10 +7,21 @@ from pathlib import Path
 
 from passo.failure import BadInputError
 from passo.gcode import AXIS_LETTERS, GcodeSettings
-from passo.move_file import CLOCK_HZ_MIN, read_pins
-from passo.move_keys import Table, check_known, read_number, read_positive, read_profile, within
+from passo.move_file import read_pins
 from passo.moves import PinTiming
 from passo.path import PathAxis, PathSettings
+from passo.table_values import (
+    Table,
+    check_known,
+    read_clock_hz,
+    read_flag,
+    read_number,
+    read_positive,
+    read_subtable,
+    read_tables,
+    read_word,
+    within,
+)
 from passo.values import BadValueError, Written, shown
 
 FILE_KEYS = (
@@ -96,18 +107,12 @@ def read_machine(path: Path) -> MachineFile:
 
 def _machine(path: Path, data: Table) -> MachineFile:
     check_known(data, FILE_KEYS)
-    clock_hz = read_positive(data, "clock_hz")
-    if clock_hz < CLOCK_HZ_MIN:
-        raise BadValueError(f"clock_hz = {clock_hz} is in Hz: write {clock_hz}_000_000 for {clock_hz} MHz")
-    pins = data.get("pins", {})
-    if not isinstance(pins, dict):
-        raise BadValueError("pins must be a table: [pins]")
-    tables = data.get("axis", [])
-    if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
-        raise BadValueError("axis must be an array of tables: [[axis]]")
+    clock_hz = read_clock_hz(data)
+    pins = read_subtable(data, "pins")
+    tables = read_tables(data, "axis")
     if not 1 <= len(tables) <= len(AXIS_LETTERS):
         raise BadValueError(f"there are {len(tables)} axes, 1 to {len(AXIS_LETTERS)} are possible: [[axis]]")
-    profile = read_profile(data, "profile", PROFILES) if "profile" in data else "linear"
+    profile = read_word(data, "profile", PROFILES) if "profile" in data else "linear"
     axes = tuple(
         within(f"axis {number}", lambda number=number, table=table: _axis(table, AXIS_LETTERS[number - 1]))
         for number, table in enumerate(tables, 1)
@@ -141,22 +146,12 @@ def _machine(path: Path, data: Table) -> MachineFile:
     )
 
 
-def _table(data: Table, key: str) -> Table:
-    table = data.get(key, {})
-    if not isinstance(table, dict):
-        raise BadValueError(f"{key} must be a table: [{key}]")
-    return table
-
-
 def _flag(table: Table, key: str, default: bool) -> bool:
-    value = table.get(key, default)
-    if not isinstance(value, bool):
-        raise BadValueError(f"{key} must be true or false, not {shown(value)}")
-    return value
+    return read_flag(table, key) if key in table else default
 
 
 def _switches(data: Table) -> Switches:
-    table, home, default = _table(data, "switches"), _table(data, "home"), Switches()
+    table, home, default = read_subtable(data, "switches"), read_subtable(data, "home"), Switches()
     within("switches", lambda: check_known(table, SWITCH_KEYS))
     within("home", lambda: check_known(home, HOME_KEYS))
     speeds = {key: _number(home, key, getattr(default, key)) for key in HOME_KEYS}

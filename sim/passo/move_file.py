@@ -9,15 +9,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from passo.move_forms import FORMS, TASKS, Form
-from passo.move_keys import (
-    Table,
-    check_known,
-    check_rules,
-    read_key,
-    read_positive,
-    read_time,
-    within,
-)
+from passo.move_keys import check_rules, read_key
 from passo.moves import (
     CHANNELS_MAX,
     MOVES,
@@ -31,10 +23,19 @@ from passo.moves import (
 )
 from passo.setup_file import OUTPUT, read_setup
 from passo.shape import ShapeError, read_table
+from passo.table_values import (
+    Table,
+    check_known,
+    read_clock_hz,
+    read_flag,
+    read_subtable,
+    read_tables,
+    read_time,
+    within,
+)
 from passo.values import BadValueError, Written, meant, shown
 
 PIN_SECONDS = Fraction(1, 1_000_000)  # default of every pin time
-CLOCK_HZ_MIN = 1000  # below that it is in another unit
 G_CODE = re.compile(r"^\s*(%|\(.*\)|;.*|N?\d*\s*[GMT]\d+(\s.*)?)$", re.MULTILINE)
 
 FILE_KEYS = ("clock_hz", "together", "pins", "move", "machine", "event")
@@ -93,19 +94,11 @@ def _parse(text: str, path: Path) -> Channels:
 
 def _file(path: Path, data: Table) -> Channels:
     check_known(data, FILE_KEYS)
-    clock_hz = read_positive(data, "clock_hz")
-    if clock_hz < CLOCK_HZ_MIN:
-        raise BadValueError(f"clock_hz = {clock_hz} is in Hz: write {clock_hz}_000_000 for {clock_hz} MHz")
-    together = data.get("together", False)
-    if not isinstance(together, bool):
-        raise BadValueError(f"together must be true or false, not {shown(together)}")
-    pins = data.get("pins", {})
-    if not isinstance(pins, dict):
-        raise BadValueError("pins must be a table: [pins]")
+    clock_hz = read_clock_hz(data)
+    together = "together" in data and read_flag(data, "together")
+    pins = read_subtable(data, "pins")
     timing = within("pins", lambda: read_pins(pins, clock_hz, CHANNEL_KEYS))
-    tables = data.get("move", [])
-    if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
-        raise BadValueError("move must be an array of tables: [[move]]")
+    tables = read_tables(data, "move")
     if not tables:
         raise BadValueError("there are no moves: [[move]] is missing")
     queues: dict[int, dict[int, Move]] = {}  # by channel, by number

@@ -1,9 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Readers of values in a move file: each takes a table and a key and returns the checked value.
-
-Numbers are read exactly as written, as fractions. Times are seconds, or a text with a unit as on the console.
-Errors raise BadValueError.
-"""
+"""Readers of the keys of a move file, by the kind of key; see table_values.py. Errors raise BadValueError."""
 
 from collections.abc import Callable
 from decimal import Decimal
@@ -12,92 +8,36 @@ from typing import Any
 
 from passo.form_table import Form, Place, Shaper
 from passo.move_forms import (
-    NUMBER_MAX,
     PROFILES,
     SHAPED,
     SIGNED_MAX,
     SUBSTEPS_MAX,
     USER,
-    WHOLE_MAX,
     Key,
     Points,
 )
 from passo.moves import AXES_MAX, CHANNELS_MAX
 from passo.shaper import DAMPING_MAX, SHAPERS
-from passo.values import NUMBER, BadValueError, check_number, meant, parse_time, shown
+from passo.table_values import (
+    Table,
+    check_known,
+    get_value,
+    read_flag,
+    read_integer,
+    read_number,
+    read_signed,
+    read_time,
+    read_word,
+    within,
+)
+from passo.values import NUMBER, BadValueError, check_number, shown
 
-Table = dict[str, Any]
 BYTE_MAX = 255
-
-
-def check_known(table: Table, keys: tuple[str, ...]) -> None:
-    """Raises BadValueError if a table has a key other than `keys`."""
-    for key in table:
-        if key not in keys:
-            hint = meant(key, keys) or f"; known are {', '.join(keys)}"
-            raise BadValueError(f"unknown key {shown(key)}{hint}")
-
-
-def within(place: str, check: Callable[[], Any]) -> Any:
-    """Return the result of `check`; adds the place to its BadValueError."""
-    try:
-        return check()
-    except BadValueError as error:
-        raise BadValueError(f"{place}: {error}") from None
-
-
-def _get(table: Table, key: str) -> Any:
-    if key not in table:
-        raise BadValueError(f"{key} is missing")
-    return table[key]
-
-
-def read_integer(table: Table, key: str, low: int, high: int) -> int:
-    """An integer, low .. high."""
-    value = _get(table, key)
-    if type(value) is not int:
-        whole = isinstance(value, Decimal) and value.is_finite() and low <= value <= high and value % 1 == 0
-        hint = f"; write {int(value):_}" if whole else ""
-        raise BadValueError(f"{key} must be a whole number, not {shown(value)}{hint}")
-    if not low <= value <= high:
-        raise BadValueError(f"{key} must be {low} to {high}")
-    return value
-
-
-def read_number(table: Table, key: str) -> Fraction:
-    """A number that is not negative."""
-    value = _number(table, key)
-    if value < 0:
-        raise BadValueError(f"{key} must not be negative")
-    return check_number(key, value, NUMBER_MAX)
-
-
-def read_signed(table: Table, key: str) -> Fraction:
-    """A number with a sign."""
-    return check_number(key, _number(table, key), SIGNED_MAX)
-
-
-def read_time(table: Table, key: str, clock_hz: int) -> Fraction:
-    """Seconds, or a text with a unit."""
-    value = _get(table, key)
-    if isinstance(value, str):
-        return parse_time(key, value, clock_hz)
-    _number(table, key, ' or a text such as "400ms"')
-    return read_number(table, key)
-
-
-def _number(table: Table, key: str, others: str = "") -> int | Decimal:
-    value = _get(table, key)
-    if type(value) is not int and not isinstance(value, Decimal):
-        raise BadValueError(f"{key} must be a number{others}, not {shown(value)}")
-    if isinstance(value, Decimal) and not value.is_finite():
-        raise BadValueError(f"{key} must be finite, not {value}")
-    return value
 
 
 def read_steps(table: Table, key: str) -> tuple[int, ...]:
     """Steps of each axis; the sign is the direction."""
-    steps = _get(table, key)
+    steps = get_value(table, key)
     if not isinstance(steps, list) or any(type(n) is not int for n in steps):
         raise BadValueError("steps must be a list of whole numbers, one per axis")
     if not 1 <= len(steps) <= AXES_MAX:
@@ -106,16 +46,6 @@ def read_steps(table: Table, key: str) -> tuple[int, ...]:
         if abs(n) > SUBSTEPS_MAX:
             raise BadValueError(f"axis {axis} has too many steps, at most {SUBSTEPS_MAX} are possible")
     return tuple(steps)
-
-
-def read_profile(table: Table, key: str, profiles: tuple[str, ...] = PROFILES) -> str:
-    """Name of a profile."""
-    profile = _get(table, key)
-    if profile not in profiles:
-        raise BadValueError(
-            f"profile must be one of {', '.join(profiles)}, not {shown(profile)}{meant(profile, profiles)}"
-        )
-    return profile
 
 
 def _shapes(table: Table) -> tuple[str, ...]:
@@ -130,7 +60,7 @@ def read_table_file(table: Table, key: str) -> str | Points:
         if key in table:
             raise BadValueError(f'{key} needs profile = "{USER}"')
         return ()
-    name = _get(table, key)
+    name = get_value(table, key)
     if not isinstance(name, str) or not name:
         raise BadValueError(f"{key} must be the name of a file, not {shown(name)}")
     return name
@@ -142,7 +72,7 @@ def read_shaper(table: Table, key: str) -> Shaper | None:
         if key in table:
             raise BadValueError(f'{key} needs profile = "{SHAPED}"')
         return None
-    facts = _get(table, key)
+    facts = get_value(table, key)
     if not isinstance(facts, dict):
         raise BadValueError(
             f'{key} must be a table such as {{ name = "zv", frequency = 40 }}, not {shown(facts)}'
@@ -167,15 +97,10 @@ def read_axes(table: Table, key: str) -> int:
     return read_integer(table, key, least, AXES_MAX) if key in table else least
 
 
-def read_positive(table: Table, key: str) -> int:
-    """An integer above 0."""
-    return read_integer(table, key, 1, WHOLE_MAX)
-
-
 def read_per_axis(table: Table, key: str) -> tuple[Fraction, ...]:
     """One number for all axes, or a list."""
     axes = len(read_distance(table, "distance"))
-    value = _get(table, key)
+    value = get_value(table, key)
     if not isinstance(value, list):
         return (read_number(table, key),) * axes
     if len(value) != axes:
@@ -185,33 +110,15 @@ def read_per_axis(table: Table, key: str) -> tuple[Fraction, ...]:
 
 def read_distance(table: Table, key: str) -> tuple[Fraction, ...]:
     """Millimetres of each axis."""
-    value = _get(table, key)
+    value = get_value(table, key)
     if not isinstance(value, list) or not 1 <= len(value) <= AXES_MAX:
         raise BadValueError(f"{key} must be a list of 1 to {AXES_MAX} numbers, one per axis")
     return tuple(read_signed({key: item}, key) for item in value)
 
 
-def read_word(table: Table, key: str, choices: tuple[str, ...]) -> str:
-    """One of some words."""
-    word = _get(table, key)
-    if word not in choices:
-        raise BadValueError(
-            f"{key} must be one of {', '.join(choices)}, not {shown(word)}{meant(word, choices)}"
-        )
-    return word
-
-
-def read_flag(table: Table, key: str) -> bool:
-    """true or false."""
-    flag = _get(table, key)
-    if not isinstance(flag, bool):
-        raise BadValueError(f"{key} must be true or false, not {shown(flag)}")
-    return flag
-
-
 def read_place(table: Table, key: str) -> Place:
     """A position in steps, or a text in millimetres."""
-    value = _get(table, key)
+    value = get_value(table, key)
     if not isinstance(value, str):
         return Place(Fraction(read_integer(table, key, -SIGNED_MAX, SIGNED_MAX)))
     number = value.removesuffix("mm")
@@ -222,7 +129,7 @@ def read_place(table: Table, key: str) -> Place:
 
 def read_places(table: Table, key: str) -> tuple[int, ...]:
     """Whole numbers, one for each axis."""
-    value = _get(table, key)
+    value = get_value(table, key)
     if not isinstance(value, list) or not 1 <= len(value) <= AXES_MAX:
         raise BadValueError(f"{key} must be a list of 1 to {AXES_MAX} whole numbers, one per axis")
     return tuple(read_integer({key: item}, key, -SIGNED_MAX, SIGNED_MAX) for item in value)
@@ -230,7 +137,7 @@ def read_places(table: Table, key: str) -> tuple[int, ...]:
 
 def read_values(table: Table, key: str) -> tuple[int, ...]:
     """Bytes, one at least."""
-    value = _get(table, key)
+    value = get_value(table, key)
     if not isinstance(value, list) or not value:
         raise BadValueError(f"{key} must be a list of whole numbers, 0 to {BYTE_MAX}")
     return tuple(read_integer({key: item}, key, 0, BYTE_MAX) for item in value)
@@ -238,7 +145,7 @@ def read_values(table: Table, key: str) -> tuple[int, ...]:
 
 def read_scales(table: Table, key: str) -> tuple[Fraction, ...]:
     """One number for all axes, or a list."""
-    value = _get(table, key)
+    value = get_value(table, key)
     items = value if isinstance(value, list) else [value] * AXES_MAX
     if not 1 <= len(items) <= AXES_MAX:
         raise BadValueError(f"{key} must be a number, or a list of 1 to {AXES_MAX} numbers, one per axis")
@@ -251,8 +158,8 @@ def read_scales(table: Table, key: str) -> tuple[Fraction, ...]:
 # By kind of key; times need the clock.
 READERS: dict[str, Callable[[Table, Key, int], Any]] = {
     "steps": lambda table, key, _: read_steps(table, key.name),
-    "profile": lambda table, key, _: read_profile(table, key.name),
-    "shape": lambda table, key, _: read_profile(table, key.name, _shapes(table)),
+    "profile": lambda table, key, _: read_word(table, key.name, PROFILES),
+    "shape": lambda table, key, _: read_word(table, key.name, _shapes(table)),
     "shaper": lambda table, key, _: read_shaper(table, key.name),
     "table": lambda table, key, _: read_table_file(table, key.name),
     "time": lambda table, key, clock_hz: read_time(table, key.name, clock_hz),

@@ -9,11 +9,12 @@ from pathlib import Path
 import numpy as np
 
 from passo.driver import Driver
-from passo.engine import Engine, PairEngine
+from passo.engine import Engine
 from passo.failure import BadInputError
 from passo.gcode import NANOMETRES, Gcode, GcodeError
 from passo.machine_file import MachineFile
 from passo.native import planner
+from passo.pair_engine import PairEngine
 from passo.path import LOOK_AHEAD
 from passo.program import Program
 

@@ -5,9 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from passo.engine import NUMBERS, Engine, PairEngine
+from passo.engine import NUMBERS, Engine
 from passo.move_forms import EventEstop, EventInput, EventSlip
 from passo.native import ffi, planner
+from passo.pair_engine import PairEngine
 from passo.setup import Event, Setup
 
 RATIO_ONE = 1 << 16

@@ -8,22 +8,19 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from passo.build import Parameters
-from passo.driver import Driver, DriverError, Source
-from passo.engine import Engine, PairEngine, model_engine, rtl_engine
+from passo.driver import Driver
+from passo.engine import Engine, model_engine, rtl_engine
 from passo.failure import Failure
 from passo.host import ChannelState
 from passo.move_forms import USER_BANK
 from passo.moves import Channels, MoveFile
+from passo.moving_channel import MovingChannel
+from passo.pair_engine import PairEngine
 from passo.plan import Plan, table_of
 from passo.registers import Cause, State
 
 CHUNK = 1_000_000  # clocks between two reports of progress
-SLEWS_PER_SECOND = 20  # of hold and stop, from full speed
-SOON = 1 << 16  # clocks: some tens of frames
 AXES_OF_CORES = (4, 8)
-
-# The pins of one channel that change during a motion.
-PINS = np.dtype([("clock", "u8"), ("step", "u1"), ("dir", "u1"), ("running", "?")])
 
 
 class RunError(Failure):
@@ -36,7 +33,7 @@ class Run:
 
     file: MoveFile
     plans: list[Plan]
-    pins: np.ndarray  # PINS, one row for each clock on which they change
+    pins: np.ndarray  # moving_channel.PINS, one row for each clock on which they change
     state: ChannelState
     positions: list[int]
     matched_edges: int | None  # edges that agree; None: only one engine
@@ -110,70 +107,6 @@ def open_engine(name: str, parameters: Parameters, clock_hz: int, waves: bool = 
     return rtl if name == "rtl" else PairEngine(rtl, model_engine(parameters, clock_hz))
 
 
-@dataclass
-class _Channel:
-    """A channel while it moves."""
-
-    file: MoveFile
-    plans: list[Plan]
-    driver: Driver
-    source: Source = field(init=False)
-    pins: list[np.ndarray] = field(default_factory=list)
-    moves: bool = True
-
-    def __post_init__(self) -> None:
-        ramps = [ramp for plan in self.plans for ramp in plan.ramps]
-        self.source = Source([plan.line for plan in self.plans], ramps)
-
-    @property
-    def planned(self) -> int:
-        """Length of its motion in clocks."""
-        return sum(plan.clocks for plan in self.plans)
-
-    def configure(self) -> None:
-        """Set pins and speeds of holds, stops and the drain."""
-        for axis in range(self.file.axes):
-            self.driver.configure_axis(axis, self.file.pins)
-        slowest = min(plan.c.velocity_peak for plan in self.plans)
-        slew = self.driver.clock_hz // SLEWS_PER_SECOND
-        self.driver.call("configure_motion", slew, slew, max(1, slowest >> 16 >> 4))
-
-    def collect(self, events: np.ndarray) -> None:
-        """Store its part of the pin events."""
-        pins = self.driver.engine.parameters.axes
-        compact = np.empty(len(events), PINS)
-        compact["clock"] = events["clock"]
-        for name in ("step", "dir"):
-            compact[name] = events[name] >> np.uint64(self.file.channel * pins) & np.uint64((1 << pins) - 1)
-        compact["running"] = events["running"] >> np.uint32(self.file.channel) & np.uint32(1)
-        self.pins.append(compact)
-
-    def poll(self) -> None:
-        """Poll the driver while it has something to do."""
-        if not self.moves:
-            return
-        try:
-            self.driver.poll()
-            while self.driver.idle_microseconds == 0 and self.driver.is_moving:
-                self.driver.poll()
-            self.moves = self.driver.is_moving
-        except DriverError:
-            if not self.driver.c.fault:
-                raise
-            self.moves = False  # the state shows the cause
-
-    def hungry(self) -> int:
-        """Clocks from the start of the motion until it is time for more ramps.
-
-        Half of the queue is free by then; if what it holds is over soon, there is room for one.
-        """
-        parameters, ticks = self.driver.engine.parameters, self.source.ticks
-        places = 1 << parameters.ramp_queue_log2
-        room, half = sum(ticks[: 1 - places]), sum(ticks[: -places // 2])
-        soon = sum(ticks) - (SOON >> parameters.tick_log2)
-        return max(room, min(half, soon)) << parameters.tick_log2
-
-
 def execute(
     file: MoveFile,
     plans: list[Plan],
@@ -196,12 +129,12 @@ def execute_channels(
     progress: Callable[[int], None] = lambda clocks: None,
 ) -> list[Run]:
     """Execute the motions of all channels, as `execute` does; a run for each of them."""
-    used: list[_Channel] = []
+    used: list[MovingChannel] = []
     for file, own in zip(channels.files, plans, strict=True):
         driver = Driver(
             engine, file.clock_hz, engine.parameters, file.channel, beside=used[0].driver if used else None
         )
-        used.append(_Channel(file, own, driver))
+        used.append(MovingChannel(file, own, driver))
 
     def collect() -> bool:
         """Store the pin events; return whether the core reports a stop."""

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 
 from passo.driver import DriverError, Source
-from passo.engine import EVENT, NUMBERS, Engine, PairEngine
+from passo.engine import EVENT, NUMBERS, Engine
 from passo.move_forms import EventArm, EventOverride
 from passo.moves import Channels, MoveFileError
 from passo.native import ffi
+from passo.pair_engine import PairEngine
 from passo.registers import Cause, State, TriggerAction, TriggerSource
 from passo.rig import Rig
 from passo.run import CHUNK, RunError

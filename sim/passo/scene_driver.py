@@ -11,11 +11,12 @@ from passo.driver import Driver, DriverError
 from passo.link import error_name, error_text
 from passo.move_forms import USER_BANK, MachineEncoder, MoveHome, MoveProbe, MoveThread
 from passo.moves import MoveFile, Task, q32
+from passo.moving_channel import SLEWS_PER_SECOND
 from passo.native import ffi, planner
 from passo.plan import table_of
 from passo.registers import TriggerSource
 from passo.rig import RATIO_ONE
-from passo.run import SLEWS_PER_SECOND, RunError
+from passo.run import RunError
 from passo.scene_plan import reference_of
 from passo.scene_run import Section, sampled_at
 from passo.setup import Setup

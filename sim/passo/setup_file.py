@@ -19,7 +19,6 @@ from passo.move_forms import (
     MoveProbe,
     MoveThread,
 )
-from passo.move_keys import Table, within
 from passo.registers import ENCODER_LIMIT_BITS, INPUT_FILTER_FILTER_BITS
 from passo.rig import RATIO_ONE, most
 from passo.setup import EVENT_TYPES, Event, Setup
@@ -32,6 +31,7 @@ from passo.setup_outputs import (
     read_spindle,
     settings_of,
 )
+from passo.table_values import Table, within
 from passo.values import BadValueError, meant, shown
 
 OUTPUT = "output"  # of a move

@@ -14,10 +14,11 @@ from passo.move_forms import (
     MachineSpindle,
     MoveThread,
 )
-from passo.move_keys import Table, check_known, check_rules, read_key, within
+from passo.move_keys import check_rules, read_key
 from passo.moves import AXES_MAX, Task
 from passo.registers import CHANNEL_COMPARE_PULSE_WIDTH_BITS, CHANNEL_OUTPUT_LAG_LAG_BITS
 from passo.setup import Setup
+from passo.table_values import Table, check_known, within
 from passo.values import BadValueError
 
 LAG_MAX = (1 << CHANNEL_OUTPUT_LAG_LAG_BITS) - 1

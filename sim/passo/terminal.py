@@ -14,9 +14,10 @@ from typing import Any, Self
 import numpy as np
 
 from passo.console import passing
-from passo.engine import EVENT, Engine, PairEngine
+from passo.engine import EVENT, Engine
 from passo.machine import Machine
 from passo.native import console, ffi
+from passo.pair_engine import PairEngine
 from passo.pins import INPUTS
 
 GAP, GAP_PER_WORD = 64, 4  # clocks after a frame

@@ -7,8 +7,9 @@ from fractions import Fraction
 from pathlib import Path
 
 from passo.build import Parameters
-from passo.engine import Engine, PairEngine
+from passo.engine import Engine
 from passo.moves import Channels
+from passo.pair_engine import PairEngine
 from passo.registers import CHANNEL_STATE_CAUSE_BITS, Cause, DescribedEnum, State, Verdict
 from passo.values import BadValueError, parse_time
 
