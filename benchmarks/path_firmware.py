@@ -7,11 +7,10 @@ from fractions import Fraction
 from pathlib import Path as FilePath
 
 from passo.build import Parameters
-from passo.compiler import sources
 from passo.native import ffi
 from passo.path import LOOK_AHEAD, PathSettings
 from passo.toolchain import paths
-from passo_stm32.board import make_firmware
+from passo_stm32.board import program_elf
 from passo_stm32.machine import Machine
 
 from benchmarks.path_plan import plan
@@ -34,17 +33,7 @@ class FirmwareCost:
 
 def path_elf() -> FilePath:
     """Build the program; return the path of its ELF file."""
-    folder = paths.build / "firmware_path"
-    folder.mkdir(parents=True, exist_ok=True)
-    files = [
-        SOURCE,
-        *(path for path in sources(paths.firmware) if path.name != "main.c"),
-        *sources(paths.driver, paths.planner, paths.protocol),
-    ]
-    elf = folder / "passo.elf"
-    left_out = "LEFT_OUT=-DPASSO_WITHOUT_GOTO"
-    make_firmware(f"OUT={folder}", left_out, f"SOURCES={' '.join(map(str, files))}", str(elf))
-    return elf
+    return program_elf("firmware_path", SOURCE, "LEFT_OUT=-DPASSO_WITHOUT_GOTO")
 
 
 def in_micrometres(lines: Sequence[Line]) -> list[Line]:

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from passo.build import Parameters
 from passo.driver import Driver, DriverError
-from passo.engine import model_engine
+from passo.engine import AroundEngine, model_engine
 from passo.registers import Cause, State
 
 from tests.helpers.driver_wire import CLOCK_HZ, Q32, Wire, by_speed, error_of, open_driver, struct
@@ -19,29 +19,18 @@ SPINDLE = 2
 RATIO_ONE = 1 << 16
 
 
-class Shafts:
+class Shafts(AroundEngine):
     """The C model with shafts at the encoders of its axes; moves(), while time passes, turns them."""
 
     GRAIN = 360  # clocks
 
     def __init__(self) -> None:
-        self.engine = model_engine(PARAMETERS, CLOCK_HZ)
-        self.parameters, self.clock_hz = PARAMETERS, CLOCK_HZ
+        super().__init__(model_engine(PARAMETERS, CLOCK_HZ))
         self.at = [0, 0, 0, 0]  # counts
         self.positions = [0, 0, 0, 0]  # steps that left the pins
         self.steps: list[tuple[int, int]] = []  # clock of each step of axis 0, and count of the spindle
         self.moves: Callable[[], None] = lambda: None
         self._step = 0
-
-    @property
-    def clock(self) -> int:
-        """Clocks since reset."""
-        return self.engine.clock
-
-    @property
-    def irq(self) -> int:
-        """Level of the irq pin."""
-        return self.engine.irq
 
     def transfer(self, mosi: list[int], gap: int = 64) -> list[int]:
         """One chip select, in which the shafts rest."""

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from passo.build import Parameters
 from passo.driver import Driver, DriverError, Source
-from passo.engine import EVENT, model_engine
+from passo.engine import EVENT, AroundEngine, model_engine
 from passo.native import ffi
 from passo.path import Path, PathAxis, PathFeed, PathSettings
 from passo.registers import TriggerSource
@@ -19,23 +19,12 @@ PARAMETERS = Parameters(inputs=1, encoders=1, outputs=1)
 FULL = 65535
 
 
-class Pins:
+class Pins(AroundEngine):
     """An engine that keeps what its pins do; after the last event they stay."""
 
     def __init__(self, parameters: Parameters = PARAMETERS) -> None:
-        self.engine = model_engine(parameters, CLOCK_HZ)
-        self.parameters, self.clock_hz = parameters, CLOCK_HZ
+        super().__init__(model_engine(parameters, CLOCK_HZ))
         self.kept = [np.zeros(1, EVENT)]
-
-    @property
-    def clock(self) -> int:
-        """Clocks since reset."""
-        return self.engine.clock
-
-    @property
-    def irq(self) -> int:
-        """Level of the irq pin."""
-        return self.engine.irq
 
     def transfer(self, mosi: Sequence[int], gap: int = 64) -> list[int]:
         """One chip select."""

@@ -159,6 +159,24 @@ class Engine(Closed):
         self._c.passo_engine_close_waves(self._engine)
 
 
+class AroundEngine:
+    """Something around an engine that a host takes for one."""
+
+    def __init__(self, engine: Any):
+        self.engine = engine
+        self.parameters, self.clock_hz = engine.parameters, engine.clock_hz
+
+    @property
+    def clock(self) -> int:
+        """Clocks since reset."""
+        return self.engine.clock
+
+    @property
+    def irq(self) -> int:
+        """Level of the irq pins."""
+        return self.engine.irq
+
+
 def model_engine(parameters: Parameters, clock_hz: int = 100_000_000, every_clock: bool = False) -> Engine:
     """The C model."""
     return Engine(model_library(), parameters, clock_hz, every_clock=every_clock)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from passo.engine import EVENT
+from passo.engine import EVENT, AroundEngine
 
 GRAINS_PER_S = 100_000  # how often the switches are looked at
 RESTING_GRAINS = 10  # as many at once while no pin changes
@@ -57,7 +57,7 @@ def read_switch(text: str) -> Switch:
     return Switch(pin, int(axis), int(below or above), above=below is None)
 
 
-class Machine:
+class Machine(AroundEngine):
     """An engine with a machine at it: whatever has the interface of passo.engine.Engine.
 
     The axes begin at `start`, steps of the machine, which the core does not know. A switch sees a position up
@@ -67,8 +67,8 @@ class Machine:
     def __init__(
         self, engine: Any, switches: Sequence[Switch] = (), start: Sequence[int] = (), seed: int = 1
     ):
-        self.engine, self.switches = engine, list(switches)
-        self.parameters, self.clock_hz = engine.parameters, engine.clock_hz
+        super().__init__(engine)
+        self.switches = list(switches)
         pins = self.parameters.channels * self.parameters.axes
         self.positions = np.zeros(pins, np.int64)
         self.positions[: len(start)] = start
@@ -81,16 +81,6 @@ class Machine:
         self._levels: dict[str, int] = {}
         self._events: list[np.ndarray] = []  # for drain()
         self._look()
-
-    @property
-    def clock(self) -> int:
-        """Clocks since reset."""
-        return self.engine.clock
-
-    @property
-    def irq(self) -> int:
-        """Level of the irq pin."""
-        return self.engine.irq
 
     def set(self, pin: str, levels: int) -> None:
         """Set the levels of an input pin that has no switch."""

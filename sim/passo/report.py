@@ -12,6 +12,7 @@ from passo.moves import Channels
 from passo.plan import Q48
 from passo.pulse_judge import faults
 from passo.run import Run
+from passo.scene_run import SceneRun
 
 
 def write_pulses(runs: list[Run], path: Path) -> None:
@@ -78,18 +79,9 @@ def summarize_channels(channels: Channels, runs: list[Run], engine: str) -> dict
 
 def summarize(run: Run, engine: str) -> dict[str, Any]:
     """The contents of summary.json for one channel."""
-    found = [fault.text for fault in faults(run)]
     return {
-        "name": run.file.name,
-        "engine": engine,
-        "ok": not found,
-        "problems": found,
-        "clock_hz": run.file.clock_hz,
-        "total_clocks": run.total_clocks,
-        "total_seconds": run.total_clocks / run.file.clock_hz,
-        "matched_edges": run.matched_edges,
+        **summary_head(run, engine, [fault.text for fault in faults(run)]),
         "drained": run.state.drained,
-        "clocks_per_second": round(run.clocks / run.seconds),
         "axes": [_axis(run, axis) for axis in range(run.file.axes)],
         "moves": [
             {
@@ -104,6 +96,21 @@ def summarize(run: Run, engine: str) -> dict[str, Any]:
             }
             for plan in run.plans
         ],
+    }
+
+
+def summary_head(run: Run | SceneRun, engine: str, found: list[str]) -> dict[str, Any]:
+    """What each summary begins with; `found` are the problems."""
+    return {
+        "name": run.file.name,
+        "engine": engine,
+        "ok": not found,
+        "problems": found,
+        "clock_hz": run.file.clock_hz,
+        "total_clocks": run.total_clocks,
+        "total_seconds": run.total_clocks / run.file.clock_hz,
+        "matched_edges": run.matched_edges,
+        "clocks_per_second": round(run.clocks / run.seconds),
     }
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from passo.curve import Curve
 from passo.move_forms import EventInput, EventOverride, EventSlip, MachineEncoder
+from passo.report import summary_head
 from passo.scene_figures import energies, thread_figures
 from passo.scene_run import Happened, SceneRun, Section, Stop
 
@@ -80,17 +81,8 @@ def write_scene_pulses(run: SceneRun, path: Path) -> None:
 
 def summarize_scene(run: SceneRun, engine: str) -> dict[str, Any]:
     """The contents of summary.json."""
-    found = run.problems()
     return {
-        "name": run.file.name,
-        "engine": engine,
-        "ok": not found,
-        "problems": found,
-        "clock_hz": run.file.clock_hz,
-        "total_clocks": run.total_clocks,
-        "total_seconds": run.total_clocks / run.file.clock_hz,
-        "matched_edges": run.matched_edges,
-        "clocks_per_second": round(run.clocks / run.seconds),
+        **summary_head(run, engine, run.problems()),
         "axes": [_axis(run, axis) for axis in range(run.file.axes)],
         "moves": [_section(run, section) for section in run.sections],
         "events": [_event(run, happened) for happened in run.events],

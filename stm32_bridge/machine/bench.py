@@ -5,12 +5,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from passo.build import Parameters
-from passo.compiler import sources
 from passo.console import console
 from passo.engine import model_engine
 from passo.link import error_name
 from passo.toolchain import paths
-from passo_stm32.board import Board, make_firmware
+from passo_stm32.board import Board, make_firmware, program_elf
 from passo_stm32.bus import TICKS_PER_SECOND
 from passo_stm32.machine import Machine
 
@@ -147,16 +146,7 @@ def load() -> tuple[float, dict[str, int], int]:
 
 def stream_elf() -> Path:
     """Build a program that streams with the driver; return the path of its ELF file."""
-    folder = paths.build / "firmware_stream"
-    folder.mkdir(parents=True, exist_ok=True)
-    files = [
-        STREAM_SOURCE,
-        *(path for path in sources(paths.firmware) if path.name != "main.c"),
-        *sources(paths.driver, paths.planner, paths.protocol),
-    ]
-    elf = folder / "passo.elf"
-    make_firmware(f"OUT={folder}", f"SOURCES={' '.join(map(str, files))}", str(elf))
-    return elf
+    return program_elf("firmware_stream", STREAM_SOURCE)
 
 
 def lines_per_second(sclk_hz: int) -> tuple[float, float]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from passo.compiler import BuildError
+from passo.compiler import BuildError, sources
 from passo.engine import Engine
 from passo.moves import AXES_MAX
 from passo.toolchain import environment, paths
@@ -40,6 +40,17 @@ def firmware_elf() -> Path:
     """Build the firmware if it is out of date; return the path of its ELF file."""
     make_firmware(f"OUT={ELF.parent}", str(ELF))
     return ELF
+
+
+def program_elf(name: str, source: Path, *options: str) -> Path:
+    """Build a program with driver and planner instead of the console; return the path of its ELF file."""
+    folder = paths.build / name
+    folder.mkdir(parents=True, exist_ok=True)
+    own = [path for path in sources(paths.firmware) if path.name != "main.c"]
+    files = [source, *own, *sources(paths.driver, paths.planner, paths.protocol)]
+    elf = folder / "passo.elf"
+    make_firmware(f"OUT={folder}", *options, f"SOURCES={' '.join(map(str, files))}", str(elf))
+    return elf
 
 
 @dataclass(frozen=True)
