@@ -13,12 +13,13 @@ module passo_admission_proof (
   input wire needs_motion,
   input wire tables_wanted,
   input wire occupied,
-  input wire quiet,
+  input wire at_rest,
   input wire takes_now,
   input wire stopped,        // the motion is stopped
   input wire pins_written
 );
 
+  wire quiet = at_rest & ~occupied;
   wire busy;
   wire hold;
   wire now_coming;
@@ -33,7 +34,7 @@ module passo_admission_proof (
     .needs_motion (needs_motion),
     .tables_wanted(tables_wanted),
     .occupied     (occupied),
-    .quiet        (quiet),
+    .at_rest      (at_rest),
     .takes_now    (takes_now),
     .busy         (busy),
     .hold         (hold),
@@ -57,7 +58,6 @@ module passo_admission_proof (
     if (!f_started) admission_reset : assume (rst);
     if (bus_commit) admission_checks_before : assume (!needs_idle && !needs_quiet && !needs_motion);
     if (pins_written) admission_pins_in_execution : assume (f_executed);
-    quiet_is_not_occupied : assume (!quiet || !occupied);
     if (!f_reset) begin
       if (f_hold && f_hold_q && !$past(occupied)) admission_none_begins : assume (!occupied);
       if ($past(quiet && !pins_written)) admission_quiet_lasts : assume (quiet || occupied);
@@ -95,7 +95,7 @@ module passo_admission_proof (
   (* keep *) wire f_motion_needed;
   always @(posedge clk)
     if (f_started)
-      assert (f_reset || (f_idle_needed == f_idle && f_quiet_needed == f_quiet && f_motion_needed == f_motion));
+      assert (f_reset || (f_idle_needed == (f_idle || f_quiet) && f_quiet_needed == f_quiet && f_motion_needed == f_motion));
 `endif
 
 endmodule

@@ -133,6 +133,7 @@ wire [2:0] f_states = {2'd0, idle} + {2'd0, preparing} + {2'd0, armed} + {2'd0, 
 always @(posedge clk)
   if (f_begun) begin
     assert (f_states == 3'd1);
+    assert (moving == (runs | settles | drains));
     assert (soft_cause == CAUSE_STOP || soft_cause == CAUSE_RAMP_UNDERRUN || soft_cause == CAUSE_FOLLOWING_ERROR || soft_cause == f_soft || !stopping);
     if (stopping) assert (soft_cause != CAUSE_NONE);
     if (stop_due && !stopped) assert (cause_due != CAUSE_NONE);

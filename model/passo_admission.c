@@ -11,7 +11,7 @@ void passo_admission_clock(
 		*admission = (struct passo_admission){0};
 		return;
 	}
-	admission->idle_needed |= needs->idle;
+	admission->idle_needed |= needs->idle || needs->quiet;
 	admission->quiet_needed |= needs->quiet;
 	admission->motion_needed |= needs->motion;
 }
@@ -19,7 +19,7 @@ void passo_admission_clock(
 void passo_admission_wires(const struct passo_admission *admission, const struct passo_bus *bus,
     bool tables_wanted, struct passo_channel_wires *wires)
 {
-	wires->hold = bus->commit && (admission->idle_needed || admission->quiet_needed || tables_wanted);
+	wires->hold = bus->commit && (admission->idle_needed || tables_wanted);
 	wires->now_coming = bus->commit && admission->motion_needed;
 }
 
@@ -28,6 +28,6 @@ bool passo_channel_busy(const struct passo_channel *channel)
 	const struct passo_admission *admission = &channel->admission;
 
 	return (admission->idle_needed && passo_channel_occupied(channel))
-	    || (admission->quiet_needed && !passo_channel_quiet(channel))
+	    || (admission->quiet_needed && !channel->at_rest)
 	    || (admission->motion_needed && channel->ramp.ends_next);
 }

@@ -21,7 +21,7 @@ module passo_admission (
   input  wire tables_wanted,  // the frame writes shape tables: no motion in any channel
   // state
   input  wire occupied,
-  input  wire quiet,
+  input  wire at_rest,        // quiet, unless `occupied`
   input  wire takes_now,
   output wire busy,
   output wire hold,
@@ -33,7 +33,7 @@ module passo_admission (
   reg motion_needed;
 
   always @(posedge clk) begin
-    idle_needed   <= idle_needed | needs_idle;
+    idle_needed   <= idle_needed | needs_idle | needs_quiet;
     quiet_needed  <= quiet_needed | needs_quiet;
     motion_needed <= motion_needed | needs_motion;
     if (rst || (bus_frame && !bus_commit)) begin
@@ -43,8 +43,8 @@ module passo_admission (
     end
   end
 
-  assign busy       = (idle_needed & occupied) | (quiet_needed & ~quiet) | (motion_needed & ~takes_now);
-  assign hold       = bus_commit & (idle_needed | quiet_needed | tables_wanted);
+  assign busy       = (idle_needed & occupied) | (quiet_needed & ~at_rest) | (motion_needed & ~takes_now);
+  assign hold       = bus_commit & (idle_needed | tables_wanted);
   assign now_coming = bus_commit & motion_needed;
 
 endmodule

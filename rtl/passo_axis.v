@@ -95,9 +95,11 @@ module passo_axis #(
   reg  [3:0] waits;  // occupied places
   reg        waits_up;  // waits[0] & ~waiting[0]
   reg        waits_down;  // waits[0] & waiting[0]
-  wire       ready = ~unsettled & (dir ? waits_down : waits_up);
-  wire       wrong = waiting[0] ^ dir;
-  wire       accepted = step_request & ~full;
+  (* keep *)
+  wire       ready;
+  assign ready = ~unsettled & (dir ? waits_down : waits_up);
+  wire wrong = waiting[0] ^ dir;
+  wire accepted = step_request & ~full;
 
   assign full          = waits[3];
   assign waits_next    = waits[0];
@@ -113,8 +115,10 @@ module passo_axis #(
 
   // a timing begins, or none runs
   wire restart = timing_written | settle;
-  wire begins = idle  ? ~hold | restart | ready | (needs_setup & dir_done) :
-                        restart | (setup ? dir_done : level_done);
+  (* keep *)
+  wire timing_over;
+  assign timing_over = setup | idle ? dir_done | (idle & ~hold) : level_done;
+  wire begins = restart | timing_over | (idle & ready);
 
   wire pulse = (step_pin ^ step_inverted) & ~both_edges;  // one is on the pin and will end
 
@@ -153,7 +157,7 @@ module passo_axis #(
     setup <= (setup & ~dir_done) | setup_begins;
     idle  <= free & ~step_begins & ~setup_begins & ~settle;
     hold  <= ((hold & ~dir_done) | low_over) & ~step_begins & ~setup_begins;
-    step  <= (step & ~(pins_written & ~both_edges_next)) ^ edge_begins;
+    step  <= step ^ edge_begins;
     dir   <= dir ^ (setup_begins & wrong);
 
     settle    <= pins_written;
@@ -193,6 +197,7 @@ module passo_axis #(
       dir        <= dir_pin ^ direction_inverted;
       step_made  <= 1'b0;
     end
+    if (pins_written && !both_edges_next && !rst) step <= 1'b0;
   end
 
   initial begin

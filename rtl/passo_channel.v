@@ -324,7 +324,7 @@ module passo_channel #(
     .needs_motion (ramp_needs_motion),
     .tables_wanted(tables_wanted),
     .occupied     (occupied),
-    .quiet        (quiet),
+    .at_rest      (at_rest),
     .takes_now    (~ends_next),
     .busy         (busy),
     .hold         (hold),

@@ -46,7 +46,7 @@ module passo_motion (
   output reg  [14:0] drained,
   // timescale
   output wire        occupied,          // a motion is prepared or running
-  output wire        moving,
+  output reg         moving,            // the profile runs, settles, or substeps are drained
   output reg         counting,          // the profile runs, or substeps are drained
   input  wire        rate_is_zero,
   // ramp and path
@@ -102,7 +102,6 @@ module passo_motion (
                  drains    ? STATE_DRAIN : STATE_IDLE;
 
   assign occupied = ~idle & ~stopped;
-  assign moving   = runs | settles | drains;
 
   wire runs_next = (begin_profile | runs) & ~ramp_ended;
   wire drains_next = (settled & ~finished) | (drains & ~line_ended);
@@ -141,19 +140,20 @@ module passo_motion (
     runs      <= runs_next;
     settles   <= ((begin_profile | runs) & ramp_ended) | (settles & ~settled) | (drains & line_ended);
     drains    <= drains_next;
+    moving    <= (moving | begin_profile) & ~finished;
     counting  <= runs_next | drains_next;
     if (stopped && command_clear) begin
       stopped <= 1'b0;
       cause   <= CAUSE_NONE;
     end
     if (stop_now) begin
-      {idle, preparing, armed, runs, settles, drains, counting} <= 7'd0;
+      {idle, preparing, armed, runs, settles, drains, moving, counting} <= 8'd0;
 
       stopped <= 1'b1;
       cause   <= cause_due;
     end
     if (rst) begin
-      {preparing, armed, runs, settles, drains, counting, stopped} <= 7'd0;
+      {preparing, armed, runs, settles, drains, moving, counting, stopped} <= 8'd0;
 
       idle  <= 1'b1;
       cause <= CAUSE_NONE;
