@@ -340,6 +340,7 @@ def test_help_is_fast() -> None:
 
 def test_a_running_cluster(client: Any, tmp_path: Path) -> None:
     """By its address, with the whole command."""
+    client.wait_for_workers(2, timeout=60)  # one that another test killed may still be starting
     summary = tmp_path / "deep" / "campaign.json"
     address = client.scheduler.address
     command = [PROGRAM, "campaign", "--moves", "9", "--seed", "5", "--json", summary, "--scheduler", address]
