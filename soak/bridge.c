@@ -90,8 +90,7 @@ void bridge_play(struct world *world, const struct world_rtl *rtl, uint64_t seed
 	    .microseconds = microseconds,
 	    .wait = wait,
 	    .context = &bridge.wire,
-	    .tries = death ? TRIES_DEATH : TRIES_NOISE,
-	    .paced = true};
+	    .tries = death ? TRIES_DEATH : TRIES_NOISE};
 	world_run(world, 8);
 	begin_sequences(&bridge);
 	bridge_must(&bridge, "open", passo_open(&bridge.passo, &bridge.host, &hardware, &options));

@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#define GAP_CLOCKS 3u /* from frame to frame: hardly more than the core needs */
+
 enum worse { WORSE_NONE, WORSE_LOST, WORSE_DOUBLED, WORSE_CUT };
 
 static bool flips(struct wire *wire)
@@ -67,6 +69,6 @@ bool wire_transfer(void *context, const uint32_t *send, uint32_t *receive, size_
 	}
 	world_run(world, 3);
 	world->inputs.spi_cs_n = true;
-	world_run(world, 64u + 4u * words);
+	world_run(world, GAP_CLOCKS);
 	return true;
 }

@@ -214,7 +214,7 @@ static void look_long(void)
 static enum passo_error open_passo(void)
 {
 	const struct passo_hardware hardware = {
-	    .transfer = transfer, .microseconds = microseconds, .wait = pause, .tries = TRIES, .paced = true};
+	    .transfer = transfer, .microseconds = microseconds, .wait = pause, .tries = TRIES};
 	const struct passo_options options = {.clock_hz = CLOCK_HZ};
 
 	return passo_open(&world.passo, &world.host, &hardware, &options);

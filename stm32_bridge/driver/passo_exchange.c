@@ -1,14 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * One chip select: gap, transfer, decoding of the reply, and the queue room in its status word.
+ * One chip select: transfer, decoding of the reply, and the queue room in its status word.
  */
 #include "passo_exchange.h"
 
 #include "passo_words.h"
-
-#define GAP_CLOCKS 64u         /* time that the core needs after a frame ... */
-#define GAP_CLOCKS_PER_WORD 4u /* ... plus this for each word */
-#define MICROSECONDS 1000000u
-#define SPINS_MAX 100000u /* a stopped clock must not hang the host */
 
 /* Mask of an address: the register within its channel. */
 #define PLACE (PASSO_ADDRESS_CHANNEL_STRIDE - 1u)
@@ -62,29 +57,6 @@ static enum passo_error fault_of(struct passo_host *host, enum passo_reply reply
 	return PASSO_ERROR_DAMAGED;
 }
 
-static void keep_gap(const struct passo_host *host)
-{
-	const struct passo_hardware *hardware = &host->hardware;
-
-	if (!hardware->microseconds || !host->clock_hz || hardware->paced)
-		return;
-	for (uint32_t spins = 0; spins < SPINS_MAX; spins++) {
-		if ((int32_t)(host->ready_at - hardware->microseconds(hardware->context)) <= 0)
-			return;
-	}
-}
-
-static void note_gap(struct passo_host *host)
-{
-	const struct passo_hardware *hardware = &host->hardware;
-
-	if (!hardware->microseconds || !host->clock_hz || hardware->paced)
-		return;
-	uint64_t clocks = GAP_CLOCKS + GAP_CLOCKS_PER_WORD * (uint64_t)host->words;
-	uint32_t gap = (uint32_t)((clocks * MICROSECONDS + host->clock_hz - 1u) / host->clock_hz);
-	host->ready_at = hardware->microseconds(hardware->context) + gap;
-}
-
 static bool is_read(const struct passo_host *host)
 {
 	return passo_unpack_header(host->send[0]).operation == PASSO_OPERATION_READ;
@@ -99,10 +71,8 @@ enum passo_error passo_host_exchange(struct passo_host *host, bool *known)
 	host->counters.frames++;
 	host->counters.retries += host->attempt != 0u;
 	host->attempt++;
-	keep_gap(host);
 	if (!hardware->transfer(hardware->context, host->send, host->receive, host->words))
 		return PASSO_ERROR_TRANSFER;
-	note_gap(host);
 
 	bool read = is_read(host);
 	enum passo_reply reply =

@@ -148,7 +148,7 @@ enum passo_error passo_host_open(struct passo_host *host, const struct passo_har
 	return PASSO_OK;
 }
 
-enum passo_error passo_host_guard(struct passo_host *host, uint8_t line_words, uint32_t clock_hz)
+enum passo_error passo_host_guard(struct passo_host *host, uint8_t line_words)
 {
 	const uint32_t mark = PASSO_IDENTIFICATION_RESET;
 	enum passo_error error;
@@ -168,7 +168,6 @@ enum passo_error passo_host_guard(struct passo_host *host, uint8_t line_words, u
 		return error;
 	host->counters.refused[PASSO_VERDICT_READ_ONLY] = 0;
 	host->line_words = line_words;
-	host->clock_hz = clock_hz;
 	host->guarded = true;
 	return PASSO_OK;
 }

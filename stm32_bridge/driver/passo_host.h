@@ -35,10 +35,9 @@ extern "C" {
 /* What the program provides. Only `transfer` is required; unused functions are null. */
 struct passo_hardware {
 	/* One chip select in SPI mode 0: exchanges `words` words (1 .. PASSO_FRAME_WORDS_MAX), most
-	 * significant bit first. Returns false on failure. */
+	 * significant bit first. Returns false on failure. The next one may follow at once. */
 	bool (*transfer)(void *context, const uint32_t *send, uint32_t *receive, size_t words);
-	/* Free-running microsecond counter that wraps at 2^32. Without it, the gap between frames is not kept
-	 * (a frame that comes too early is detected and resent), and waiting has no timeout. */
+	/* Free-running microsecond counter that wraps at 2^32. Without it waiting has no timeout. */
 	uint32_t (*microseconds)(void *context);
 	/* Called by passo_wait() when there is nothing to do for `microseconds`. It may return at once, sleep
 	 * for at most about that time, or do other work, but must not call the library. */
@@ -48,7 +47,6 @@ struct passo_hardware {
 	bool (*irq)(void *context);
 	void *context; /* first argument of all functions */
 	uint8_t tries; /* of each frame; 0: PASSO_TRIES */
-	bool paced;    /* `transfer` keeps the gap between frames: 64 core clocks plus 4 per word */
 };
 
 /* Event counters since the host was opened; they wrap. */
@@ -71,8 +69,6 @@ struct passo_host {
 	uint32_t status;       /* last valid status word */
 	uint32_t run;          /* last value written to the RUN register; 0: none */
 	bool run_due;          /* `run` is not acknowledged and has to be written; see passo_host_write() */
-	uint32_t clock_hz;     /* of the core, for the gap between frames; 0: unknown, no gap */
-	uint32_t ready_at;     /* microseconds: when the core will have executed the last frame */
 	uint8_t line_words;    /* words of a line, for counting lines; 0: unknown */
 	uint8_t channels;      /* of the core; 0: unknown */
 	uint8_t last_sequence; /* sequence number of the last write sent */
@@ -99,9 +95,9 @@ enum passo_error passo_host_open(struct passo_host *host, const struct passo_har
 
 /* Starts to detect core resets and writes of other hosts: from then on every call returns CORE_RESET until
  * the host is opened again. Marks the core with a write that is refused as READ_ONLY, which makes a refusal
- * counter nonzero. `line_words` (words of a line) and `clock_hz` are those of the core. About two frames.
- * Errors: ARGUMENT, NOT_OPEN, link errors. */
-enum passo_error passo_host_guard(struct passo_host *host, uint8_t line_words, uint32_t clock_hz);
+ * counter nonzero. `line_words` are the words of a line of the core. About two frames. Errors: ARGUMENT,
+ * NOT_OPEN, link errors. */
+enum passo_error passo_host_guard(struct passo_host *host, uint8_t line_words);
 
 /* Read or write 1 .. 60 consecutive registers, or write all words to one register (push). `address` is a word
  * address. Errors: ARGUMENT, NOT_OPEN, link errors, CORE_RESET, REFUSED + verdict. After a link error it is

@@ -16,6 +16,7 @@ from passo.registers import Operation
 CLOCK_HZ = 72_000_000
 PARAMETERS = Parameters()
 Q32 = 1 << 32
+GAP = 3  # clocks between two frames, hardly more than the core needs
 
 
 class Wire:
@@ -42,16 +43,16 @@ class Wire:
         """Clocks since the beginning, resets of the core included."""
         return self.before + self.engine.clock
 
-    def transfer(self, mosi: Sequence[int], gap: int = 64) -> list[int]:
-        """One chip select."""
+    def transfer(self, mosi: Sequence[int], _: int = 0) -> list[int]:
+        """One chip select. The next may follow at once."""
         self.frames += 1
         self.requests.append(list(mosi))
         self.before_frame(self.frames)
         sent = None if self.stuck is not None else self.there(list(mosi))
         if sent is None:
-            self.engine.run(128 * len(mosi) + gap)
+            self.engine.run(128 * len(mosi) + GAP)
             return [0xFFFFFFFF * (self.stuck or 0)] * len(mosi)
-        miso = self.engine.transfer(sent, gap)
+        miso = self.engine.transfer(sent, GAP)
         miso += [0xFFFFFFFF] * (len(mosi) - len(miso))
         return self.back(miso)
 
