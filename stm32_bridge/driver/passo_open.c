@@ -113,6 +113,10 @@ enum passo_error passo_open_channel(
 		return error;
 	if (!host)
 		return PASSO_ERROR_ARGUMENT_POINTER;
+	if (host->prepared != 0u)
+		return PASSO_ERROR_STREAMING;
+	if (host->guarded)
+		host->ahead = host->send; /* shared: a prepared frame would be in another channel's way */
 	memset(passo, 0, sizeof *passo);
 	passo->host = host;
 	passo->channel = options->channel;
