@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Measures the lines per second of the driver on an STM32F103, for `passo firmware --table`.
  *
- * Streams an endless path of short lines under one long ramp. The bench writes `stream_substeps` and
- * `stream_fast`, then `stream_go`, and reads the number of lines requested over time.
+ * Streams a path of short lines under one long ramp. The bench writes `stream_substeps`, `stream_fast` and
+ * `stream_lines` (0: without end), then `stream_go`, and reads the number of lines requested over time.
  */
 #include "board.h"
 #include "passo.h"
@@ -12,7 +12,7 @@
 #define HALF_VELOCITY (UINT64_C(1) << 47) /* a substep every two clocks */
 #define AXES 4u
 
-volatile uint32_t stream_go, stream_substeps, stream_fast, stream_asked, stream_error;
+volatile uint32_t stream_go, stream_substeps, stream_fast, stream_lines, stream_asked, stream_error;
 
 static struct passo_host host;
 static struct passo passo;
@@ -21,7 +21,7 @@ static bool next_line(void *context, struct passo_line *line)
 {
 	(void)context;
 	stream_asked++;
-	*line = (struct passo_line){.substeps = stream_substeps};
+	*line = (struct passo_line){.substeps = stream_substeps, .last = stream_asked == stream_lines};
 	for (unsigned axis = 0; axis < AXES; axis++)
 		line->steps[axis] = 1;
 	return true;
@@ -55,8 +55,13 @@ static enum passo_error configure(void)
 
 int main(void)
 {
-	static const struct passo_hardware hardware = {
-	    .transfer = spi_transfer, .microseconds = board_microseconds, .irq = board_core_calls};
+	static uint32_t spare[PASSO_FRAME_WORDS_MAX];
+	static const struct passo_hardware hardware = {.transfer = spi_transfer,
+	    .microseconds = board_microseconds,
+	    .irq = board_core_calls,
+	    .start = spi_begin,
+	    .finish = spi_finish,
+	    .spare = spare};
 	static const struct passo_source source = {.line = next_line, .ramp = next_ramp};
 	const struct passo_options options = {.clock_hz = CLOCK_HZ};
 

@@ -44,11 +44,13 @@ size_t passo_frame_read(uint32_t *frame, uint8_t sequence, uint16_t address, siz
 
 static bool is_stuck(const uint32_t *miso, size_t count)
 {
-	for (size_t i = 0; i < count; i++) {
+	if (miso[0] != 0 && miso[0] != UINT32_C(0xFFFFFFFF))
+		return false;
+	for (size_t i = 1; i < count; i++) {
 		if (miso[i] != miso[0])
 			return false;
 	}
-	return miso[0] == 0 || miso[0] == UINT32_C(0xFFFFFFFF);
+	return true;
 }
 
 bool passo_frame_is_status(uint32_t word)

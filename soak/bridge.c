@@ -86,12 +86,16 @@ void bridge_play(struct world *world, const struct world_rtl *rtl, uint64_t seed
 	bridge.print = print;
 	bridge.slow_turns = plot_chance(&random, 30);
 	bridge.wire = (struct wire){.world = world, .random = &random, .counts = counts};
-	const struct passo_hardware hardware = {.transfer = wire_transfer,
+	struct passo_hardware hardware = {.transfer = wire_transfer,
 	    .microseconds = microseconds,
 	    .wait = wait,
 	    .context = &bridge.wire,
-	    .tries = death ? TRIES_DEATH : TRIES_NOISE,
-	    .paced = true};
+	    .tries = death ? TRIES_DEATH : TRIES_NOISE};
+	if (plot_chance(&random, 50)) {
+		hardware.start = wire_start;
+		hardware.finish = wire_finish;
+		hardware.spare = bridge.wire.spare;
+	}
 	world_run(world, 8);
 	begin_sequences(&bridge);
 	bridge_must(&bridge, "open", passo_open(&bridge.passo, &bridge.host, &hardware, &options));

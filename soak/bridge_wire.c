@@ -3,6 +3,10 @@
 
 #include <string.h>
 
+#define GAP_CLOCKS 3u /* from frame to frame: hardly more than the core needs */
+
+#define FINISHES_MAX 4u
+
 enum worse { WORSE_NONE, WORSE_LOST, WORSE_DOUBLED, WORSE_CUT };
 
 static bool flips(struct wire *wire)
@@ -67,6 +71,33 @@ bool wire_transfer(void *context, const uint32_t *send, uint32_t *receive, size_
 	}
 	world_run(world, 3);
 	world->inputs.spi_cs_n = true;
-	world_run(world, 64u + 4u * words);
+	world_run(world, GAP_CLOCKS);
 	return true;
+}
+
+bool wire_start(void *context, const uint32_t *send, uint32_t *receive, size_t words)
+{
+	struct wire *wire = context;
+
+	if (wire->words != 0u)
+		world_fail(wire->world, wire->world->clock, "two exchanges at a time");
+	wire->send = send;
+	wire->receive = receive;
+	wire->words = words;
+	wire->left = 1u + plot_draw(wire->random, FINISHES_MAX);
+	return true;
+}
+
+enum passo_error wire_finish(void *context)
+{
+	struct wire *wire = context;
+	const size_t words = wire->words;
+
+	if (words == 0u)
+		return PASSO_OK;
+	if (--wire->left != 0u)
+		return PASSO_PENDING;
+	wire->words = 0;
+	wire_transfer(context, wire->send, wire->receive, words);
+	return PASSO_OK;
 }

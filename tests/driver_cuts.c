@@ -23,6 +23,7 @@
 #define LOOK_MICROSECONDS 250u
 #define DEAD_LOOKS 5u
 #define LINES 25u
+#define FLIGHT_CALLS 2u /* of `finish` until an exchange is over */
 #define WORTH_A_JUMP 5u /* clocks */
 #define COMPLAINTS_MAX 10u
 #define FRAMES_MAX 8u /* frames of a call that are cut */
@@ -61,6 +62,14 @@ struct world {
 	struct passo passo;
 	struct cut cut;
 	bool dead;
+	bool dma; /* exchanges in two halves */
+	struct {
+		const uint32_t *send;
+		uint32_t *receive;
+		size_t words;  /* 0: none is under way */
+		unsigned left; /* calls until it is over */
+	} flight;
+	uint32_t spare[PASSO_FRAME_WORDS_MAX];
 	unsigned frames;
 	unsigned words[1024]; /* of each frame of the call */
 	uint64_t clock, step;
@@ -164,6 +173,31 @@ static bool transfer(void *context, const uint32_t *send, uint32_t *receive, siz
 	return true;
 }
 
+static bool dma_start(void *context, const uint32_t *send, uint32_t *receive, size_t words)
+{
+	(void)context;
+	if (world.flight.words != 0u)
+		return false;
+	world.flight.send = send;
+	world.flight.receive = receive;
+	world.flight.words = words;
+	world.flight.left = FLIGHT_CALLS;
+	return true;
+}
+
+static enum passo_error dma_finish(void *context)
+{
+	const size_t words = world.flight.words;
+
+	if (words == 0u)
+		return PASSO_OK;
+	if (--world.flight.left != 0u)
+		return PASSO_PENDING;
+	world.flight.words = 0;
+	transfer(context, world.flight.send, world.flight.receive, words);
+	return PASSO_OK;
+}
+
 static uint32_t microseconds(void *context)
 {
 	(void)context;
@@ -213,8 +247,14 @@ static void look_long(void)
 
 static enum passo_error open_passo(void)
 {
-	const struct passo_hardware hardware = {
-	    .transfer = transfer, .microseconds = microseconds, .wait = pause, .tries = TRIES, .paced = true};
+	struct passo_hardware hardware = {
+	    .transfer = transfer, .microseconds = microseconds, .wait = pause, .tries = TRIES};
+
+	if (world.dma) {
+		hardware.start = dma_start;
+		hardware.finish = dma_finish;
+		hardware.spare = world.spare;
+	}
 	const struct passo_options options = {.clock_hz = CLOCK_HZ};
 
 	return passo_open(&world.passo, &world.host, &hardware, &options);
@@ -439,9 +479,10 @@ static void must(enum passo_error error, const char *what)
 	exit(1);
 }
 
-static void at_rest(void)
+static void at_rest_by(bool dma)
 {
 	start();
+	world.dma = dma;
 	must(open_passo(), "open");
 	must(configure(), "configure");
 	for (uint8_t axis = 0; axis < AXES; axis++)
@@ -450,6 +491,16 @@ static void at_rest(void)
 	    "configure motion");
 	must(move_steps(3, 5), "first move");
 	look(20);
+}
+
+static void at_rest(void)
+{
+	at_rest_by(false);
+}
+
+static void at_rest_dma(void)
+{
+	at_rest_by(true);
 }
 
 static void in_motion(void)
@@ -512,22 +563,47 @@ static void waits_for_sync(void)
 	rest(1000);
 }
 
-static void stream_fills(void)
+static void fill(void)
 {
-	at_rest();
 	must(stream(), "stream");
 	for (unsigned i = 0; i < 2u; i++)
 		must(passo_poll(passo), "poll");
 }
 
-static void stream_runs(void)
+static void stream_fills(void)
 {
 	at_rest();
+	fill();
+}
+
+/* A frame is on the wire, and the next one is prepared. */
+static void stream_fills_dma(void)
+{
+	at_rest_dma();
+	fill();
+	must(world.flight.words != 0u && world.host.prepared != 0u ? PASSO_OK : PASSO_ERROR_NOT_PREPARED,
+	    "a frame ahead");
+}
+
+static void go_on_streaming(void)
+{
 	must(stream(), "stream");
 	for (unsigned i = 0; i < 12u; i++) {
 		must(passo_poll(passo), "poll");
 		rest(100);
 	}
+}
+
+static void stream_runs(void)
+{
+	at_rest();
+	go_on_streaming();
+}
+
+static void stream_runs_dma(void)
+{
+	at_rest_dma();
+	go_on_streaming();
 }
 
 static const struct {
@@ -580,6 +656,17 @@ static const struct {
     {"wait_for_sync", in_motion, sync_on},
     {"wait_for_sync off", waits_for_sync, sync_off},
     {"read", in_motion, read_all},
+    {"move by DMA", at_rest_dma, move},
+    {"open while a stream fills by DMA", stream_fills_dma, open_passo},
+    {"stream by DMA fills", stream_fills_dma, poll_stream},
+    {"stream_start by DMA", stream_fills_dma, stream_start},
+    {"stream by DMA runs", stream_runs_dma, poll_stream},
+    {"hold while a stream runs by DMA", stream_runs_dma, hold},
+    {"hold while a stream fills by DMA", stream_fills_dma, hold},
+    {"stop while a stream fills by DMA", stream_fills_dma, stop},
+    {"stop while a stream runs by DMA", stream_runs_dma, stop},
+    {"abort while a stream fills by DMA", stream_fills_dma, hard_stop},
+    {"clear while a stream fills by DMA", stream_fills_dma, clear},
 };
 
 /* ----------------------------------------------------------------------------------------- the judges ----

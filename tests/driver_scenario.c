@@ -228,12 +228,8 @@ static bool scenario(struct wire *wire)
 {
 	static struct passo_host host;
 	static struct passo passo;
-	const struct passo_hardware hardware = {.transfer = transfer,
-	    .microseconds = microseconds,
-	    .wait = wait,
-	    .context = wire,
-	    .tries = 40,
-	    .paced = true};
+	const struct passo_hardware hardware = {
+	    .transfer = transfer, .microseconds = microseconds, .wait = wait, .context = wire, .tries = 40};
 
 	CHECK(open_and_configure(&passo, &host, &hardware));
 	for (unsigned round = 0; round < 2; round++) {

@@ -337,7 +337,7 @@ static void power_up(void)
 	    .clock_hz = CLOCK_HZ,
 	    .spi_half_period = 2};
 	static const struct passo_hardware hardware = {
-	    .transfer = transfer, .microseconds = microseconds, .wait = wait, .irq = irq, .paced = true};
+	    .transfer = transfer, .microseconds = microseconds, .wait = wait, .irq = irq};
 	static const struct passo_grbl_sink sink = {.write = write_text};
 
 	set_up();

@@ -18,6 +18,7 @@ from tests.helpers.driver_wire import (
     CLOCK_HZ,
     PARAMETERS,
     Q32,
+    Dma,
     Noise,
     Wire,
     by_speed,
@@ -33,6 +34,18 @@ from tests.helpers.driver_wire import (
 SEED = 1
 MOVES = 220
 WIRE_ERRORS = {"STUCK_LOW", "STUCK_HIGH", "NO_ACK", "DAMAGED", "SEQUENCE", "BAD_CRC"}
+
+
+# of tests that count polls: each of them is a whole frame
+WAITS = pytest.mark.parametrize("wire", ["waits"], indirect=True)
+
+
+@pytest.fixture(params=["waits", "dma"])
+def wire(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Wire:
+    """A wire to a host that waits for each frame, or that goes on while frames are on it."""
+    if request.param == "dma":
+        monkeypatch.setattr("passo.driver.Hardware", Dma)
+    return Wire()
 
 
 def moved(before: list[int], steps: list[int]) -> list[int]:
@@ -234,6 +247,7 @@ def test_another_host_writes(wire: Wire) -> None:
     assert error_of(driver, "hold") == "CORE_RESET"
 
 
+@WAITS
 @pytest.mark.parametrize("polls", [3, 20, 45, 60, 200])
 def test_the_host_is_reset(wire: Wire, polls: int) -> None:
     """A new host finds a path in preparation or running, stops it and continues from its position."""
@@ -281,6 +295,7 @@ def test_a_wrong_position_is_told(wire: Wire) -> None:
     assert driver.c.fault == 0
 
 
+@WAITS
 def test_tries_are_bounded(wire: Wire) -> None:
     """The tries of a frame are limited; polls report an error after as many misses or tries."""
     driver = open_driver(wire, tries=5)
@@ -335,6 +350,7 @@ def polls(driver: Driver, wire: Wire, count: int) -> None:
         wire.run(CLOCK_HZ // 5000)
 
 
+@WAITS
 @pytest.mark.parametrize("cut", ["both ways", "replies"])
 @pytest.mark.parametrize("level", [0, 1])
 @pytest.mark.parametrize("how", ["stop", "abort"])
@@ -435,6 +451,7 @@ def test_an_abort_takes_the_place_of_a_stop(wire: Wire) -> None:
     assert writes == [abort, (r.CHANNEL_RATE_TARGET, 0)] and driver.cause == Cause.ABORT
 
 
+@WAITS
 @pytest.mark.parametrize(("before", "how"), [("hold", "stop"), ("hold", "abort"), ("stop", "abort")])
 def test_the_most_urgent_goes_first(wire: Wire, before: str, how: str) -> None:
     """Even if another frame is being retried."""
@@ -462,6 +479,7 @@ def fail_pushes(driver: Driver, wire: Wire) -> None:
         poll(driver)
 
 
+@WAITS
 def test_a_stop_goes_before_a_frame_of_the_stream(wire: Wire) -> None:
     """A frame that is being retried is abandoned for it."""
     driver = open_driver(wire)

@@ -51,8 +51,7 @@ struct passo_terminal *passo_terminal_create(const struct passo_terminal_caller 
 		.microseconds = microseconds,
 		.wait = wait,
 		.irq = irq,
-		.context = terminal,
-		.paced = true},
+		.context = terminal},
 	    NULL, clock_hz, 0);
 	return terminal;
 }

@@ -113,11 +113,8 @@ static void wait(void *context, uint32_t duration)
 
 static enum passo_error open_driver(void)
 {
-	const struct passo_hardware hardware = {.transfer = web_transfer,
-	    .microseconds = microseconds,
-	    .wait = wait,
-	    .irq = web_irq,
-	    .paced = true};
+	const struct passo_hardware hardware = {
+	    .transfer = web_transfer, .microseconds = microseconds, .wait = wait, .irq = web_irq};
 	const struct web_machine *machine = &web.machine;
 	const uint32_t slew = (uint32_t)machine->clock_hz / SLEWS_PER_SECOND;
 	const struct passo_axis_config config = {.step_high_ns = (uint32_t)machine->step_high,

@@ -56,7 +56,7 @@ class Hardware:
         """With `clock_hz` it also has a microsecond clock, and waiting runs the engine."""
         self.engine, self.clock_hz = engine, clock_hz
         self._raised: BaseException | None = None
-        self.c = ffi().new("struct passo_hardware *", {"tries": tries, "paced": True})
+        self.c = ffi().new("struct passo_hardware *", {"tries": tries})
         # The callbacks live as long as this object.
         self._callbacks = [
             ffi().callback("bool(void *, const uint32_t *, uint32_t *, size_t)", self._transfer)

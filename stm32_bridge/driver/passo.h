@@ -190,6 +190,7 @@ struct passo {
 	enum passo_expectation expects;
 	enum passo_stream_phase stream;
 	enum passo_supply lines : 8, ramps : 8; /* of the stream */
+	uint8_t packed_lines, packed_ramps;     /* of the stream, in the frame that is prepared */
 	enum passo_gate gate;                   /* outside the filling phase of a stream */
 	enum passo_error fault;
 	enum passo_post post;
@@ -224,7 +225,8 @@ struct passo {
  * VERSION, PARAMETERS, WATCHDOG_TOO_LONG, MOVING, ESTOP, ALARM. */
 enum passo_error passo_open(struct passo *passo, struct passo_host *host,
     const struct passo_hardware *hardware, const struct passo_options *options);
-/* Takes over a further channel of a core that is open already. */
+/* Takes over a further channel of a core that is open already. Error: also STREAMING while the next frame of
+ * a stream is prepared (passo_host.h, `spare`); with several channels that is not done. */
 enum passo_error passo_open_channel(
     struct passo *passo, struct passo_host *host, const struct passo_options *options);
 

@@ -122,6 +122,8 @@ void passo_driver_ask_again(struct passo *passo);
  * allow. */
 enum passo_error passo_driver_take_lines(struct passo *passo, size_t *length);
 enum passo_error passo_driver_take_ramps(struct passo *passo, size_t *length);
+/* Whether a frame of this channel is posted, or prepared. */
+bool passo_driver_is_sending(const struct passo *passo);
 /* The stream's part of a poll: at most one frame. *sent: whether there was one. */
 enum passo_error passo_driver_feed(struct passo *passo, bool *sent);
 /* Handles the result of the stream's posted frame. */

@@ -44,8 +44,7 @@ static enum passo_error post(struct passo *passo, enum passo_post most)
 		    .abort = most == PASSO_POST_ABORT, .stop = most == PASSO_POST_STOP});
 		address = (uint16_t)(passo->base + PASSO_CHANNEL_COMMAND);
 	}
-	*passo_host_payload(passo->host) = word;
-	enum passo_error error = passo_host_post_write(passo->host, address, 1, &passo->posted);
+	enum passo_error error = passo_host_post_write(passo->host, address, word, &passo->posted);
 	if (error == PASSO_OK)
 		passo->post = most;
 	return error;

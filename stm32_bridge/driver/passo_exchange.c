@@ -1,14 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * One chip select: gap, transfer, decoding of the reply, and the queue room in its status word.
+ * One chip select: transfer, decoding of the reply, and the queue room in its status word.
  */
 #include "passo_exchange.h"
 
 #include "passo_words.h"
-
-#define GAP_CLOCKS 64u         /* time that the core needs after a frame ... */
-#define GAP_CLOCKS_PER_WORD 4u /* ... plus this for each word */
-#define MICROSECONDS 1000000u
-#define SPINS_MAX 100000u /* a stopped clock must not hang the host */
 
 /* Mask of an address: the register within its channel. */
 #define PLACE (PASSO_ADDRESS_CHANNEL_STRIDE - 1u)
@@ -48,7 +43,7 @@ static enum passo_error fault_of(struct passo_host *host, enum passo_reply reply
 		         : (enum passo_error)((unsigned)PASSO_ERROR_REFUSED + (unsigned)verdict);
 	case PASSO_REPLY_STUCK:
 		counters->stuck++;
-		return host->receive[0] ? PASSO_ERROR_STUCK_HIGH : PASSO_ERROR_STUCK_LOW;
+		return host->receive[host->words - 1u] ? PASSO_ERROR_STUCK_HIGH : PASSO_ERROR_STUCK_LOW;
 	case PASSO_REPLY_NO_ACK:
 		counters->no_ack++;
 		return PASSO_ERROR_NO_ACK;
@@ -62,57 +57,52 @@ static enum passo_error fault_of(struct passo_host *host, enum passo_reply reply
 	return PASSO_ERROR_DAMAGED;
 }
 
-static void keep_gap(const struct passo_host *host)
-{
-	const struct passo_hardware *hardware = &host->hardware;
-
-	if (!hardware->microseconds || !host->clock_hz || hardware->paced)
-		return;
-	for (uint32_t spins = 0; spins < SPINS_MAX; spins++) {
-		if ((int32_t)(host->ready_at - hardware->microseconds(hardware->context)) <= 0)
-			return;
-	}
-}
-
-static void note_gap(struct passo_host *host)
-{
-	const struct passo_hardware *hardware = &host->hardware;
-
-	if (!hardware->microseconds || !host->clock_hz || hardware->paced)
-		return;
-	uint64_t clocks = GAP_CLOCKS + GAP_CLOCKS_PER_WORD * (uint64_t)host->words;
-	uint32_t gap = (uint32_t)((clocks * MICROSECONDS + host->clock_hz - 1u) / host->clock_hz);
-	host->ready_at = hardware->microseconds(hardware->context) + gap;
-}
-
 static bool is_read(const struct passo_host *host)
 {
 	return passo_unpack_header(host->send[0]).operation == PASSO_OPERATION_READ;
 }
 
-enum passo_error passo_host_exchange(struct passo_host *host, bool *known)
+/* Begins a chip select: PENDING. That of a read, whose words the caller needs, is over on return. */
+static enum passo_error launch(struct passo_host *host)
 {
 	const struct passo_hardware *hardware = &host->hardware;
-	enum passo_verdict verdict = PASSO_VERDICT_OK;
+	const bool stays = hardware->start && !is_read(host);
 
-	*known = false;
 	host->counters.frames++;
 	host->counters.retries += host->attempt != 0u;
 	host->attempt++;
-	keep_gap(host);
-	if (!hardware->transfer(hardware->context, host->send, host->receive, host->words))
+	if (!(stays ? hardware->start : hardware->transfer)(
+		hardware->context, host->send, host->receive, host->words))
 		return PASSO_ERROR_TRANSFER;
-	note_gap(host);
+	host->on_wire = stays;
+	return stays ? PASSO_PENDING : PASSO_OK;
+}
 
-	bool read = is_read(host);
-	enum passo_reply reply =
-	    read ? passo_frame_read_reply(host->send, host->receive, host->words, &verdict)
-	         : passo_frame_write_reply(host->send, host->receive, host->words, &verdict);
-	enum passo_error error = fault_of(host, reply, verdict);
+static enum passo_error land(struct passo_host *host)
+{
+	enum passo_error error = host->hardware.finish(host->hardware.context);
+
+	host->on_wire = error == PASSO_PENDING;
+	return error;
+}
+
+enum passo_error passo_host_exchange(struct passo_host *host, bool *known)
+{
+	enum passo_verdict verdict = PASSO_VERDICT_OK;
+	enum passo_error error = host->on_wire ? land(host) : launch(host);
+
+	*known = false;
+	if (error != PASSO_OK)
+		return error;
+	const bool read = is_read(host);
+	const size_t count = read ? host->words : PASSO_REPLY_WORDS;
+	const uint32_t *words = host->receive + host->words - count;
+	enum passo_reply reply = read ? passo_frame_read_reply(host->send, words, count, &verdict)
+	                              : passo_frame_write_reply(host->send, words, count, &verdict);
+	error = fault_of(host, reply, verdict);
 	if (reply == PASSO_REPLY_OK || reply == PASSO_REPLY_REFUSED) {
 		host->counters.refused[verdict] += verdict != PASSO_VERDICT_OK;
-		*known = passo_host_status_of(
-		    host->receive, read ? PASSO_FRAME_DATA : host->words - 1u, &host->status);
+		*known = passo_host_status_of(words, read ? PASSO_FRAME_DATA : count - 1u, &host->status);
 	}
 	return error;
 }

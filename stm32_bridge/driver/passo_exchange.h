@@ -6,8 +6,9 @@
 
 #include "passo_host.h"
 
-/* Sends the current frame once. Results other than OK and refusals may be retried. *known is set if the reply
- * had a valid status word, which is then in host->status. */
+/* Sends the current frame once. While it is on the wire: PENDING, and the next call goes on. Results other
+ * than OK and refusals may be retried. *known is set if the reply had a valid status word, which is then in
+ * host->status. */
 enum passo_error passo_host_exchange(struct passo_host *host, bool *known);
 
 /* Updates the queue room from the status word, if `known`, and by what this frame has pushed, if

@@ -91,38 +91,42 @@ enum passo_error passo_host_read_once(
 
 uint32_t *passo_host_payload(struct passo_host *host)
 {
-	return host->send + 1;
+	return host->ahead + 1;
 }
 
-static enum passo_error post(struct passo_host *host, enum passo_operation operation, uint16_t address,
-    size_t length, enum passo_error *result)
+/* Takes the result of the frame that begins. */
+static enum passo_error post(struct passo_host *host, enum passo_error *result)
 {
 	if (!host || !result)
 		return PASSO_ERROR_ARGUMENT_POINTER;
-	if (length == 0u || length > PASSO_FRAME_PAYLOAD_MAX)
-		return PASSO_ERROR_ARGUMENT_LENGTH;
 	if (host->posted || passo_host_is_unsure(host))
 		return PASSO_ERROR_ARGUMENT_POSTED;
 	if (!host->opened)
 		return PASSO_ERROR_NOT_OPEN;
 	if (host->lost)
 		return PASSO_ERROR_CORE_RESET;
-	passo_host_begin_write(host, operation, address, host->send + 1, length);
 	*result = PASSO_PENDING;
 	host->posted = result;
 	return PASSO_OK;
 }
 
-enum passo_error passo_host_post_push(
-    struct passo_host *host, uint16_t address, size_t length, enum passo_error *result)
+enum passo_error passo_host_post_push(struct passo_host *host, enum passo_error *result)
 {
-	return post(host, PASSO_OPERATION_PUSH, address, length, result);
+	enum passo_error error = post(host, result);
+
+	if (error == PASSO_OK)
+		passo_host_begin_prepared(host);
+	return error;
 }
 
 enum passo_error passo_host_post_write(
-    struct passo_host *host, uint16_t address, size_t length, enum passo_error *result)
+    struct passo_host *host, uint16_t address, uint32_t word, enum passo_error *result)
 {
-	return post(host, PASSO_OPERATION_WRITE, address, length, result);
+	enum passo_error error = post(host, result);
+
+	if (error == PASSO_OK)
+		passo_host_begin_write(host, PASSO_OPERATION_WRITE, address, &word, 1);
+	return error;
 }
 
 enum passo_error passo_host_open(struct passo_host *host, const struct passo_hardware *hardware)
@@ -131,8 +135,12 @@ enum passo_error passo_host_open(struct passo_host *host, const struct passo_har
 
 	if (!host || !hardware || !hardware->transfer)
 		return PASSO_ERROR_ARGUMENT_POINTER;
+	while (hardware->finish && hardware->finish(hardware->context) == PASSO_PENDING)
+		; /* a frame of an earlier session */
 	memset(host, 0, sizeof *host);
 	host->hardware = *hardware;
+	host->send = host->frame;
+	host->ahead = hardware->spare ? hardware->spare : host->frame;
 	if (host->hardware.tries == 0u)
 		host->hardware.tries = PASSO_TRIES;
 	enum passo_error error = passo_host_read_with(
@@ -148,7 +156,7 @@ enum passo_error passo_host_open(struct passo_host *host, const struct passo_har
 	return PASSO_OK;
 }
 
-enum passo_error passo_host_guard(struct passo_host *host, uint8_t line_words, uint32_t clock_hz)
+enum passo_error passo_host_guard(struct passo_host *host, uint8_t line_words)
 {
 	const uint32_t mark = PASSO_IDENTIFICATION_RESET;
 	enum passo_error error;
@@ -168,7 +176,6 @@ enum passo_error passo_host_guard(struct passo_host *host, uint8_t line_words, u
 		return error;
 	host->counters.refused[PASSO_VERDICT_READ_ONLY] = 0;
 	host->line_words = line_words;
-	host->clock_hz = clock_hz;
 	host->guarded = true;
 	return PASSO_OK;
 }

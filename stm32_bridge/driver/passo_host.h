@@ -10,7 +10,7 @@
  * until a valid reply has shown which number the core accepted last.
  *
  *     passo_host_read, _write, _push     blocking: return when the outcome is known
- *     passo_host_post_..., _step         for a main loop: at most one chip select per step
+ *     passo_host_post_..., _step         for a main loop: a step begins at most one chip select
  *
  * Not reentrant: a host belongs to one thread or main loop. No heap, no floating point.
  */
@@ -31,14 +31,15 @@ extern "C" {
 
 /* Default number of tries of a frame, including the first. */
 #define PASSO_TRIES 8u
+/* Words at the end of the reply to a write that are looked at: the status, repeated, and the ack. */
+#define PASSO_REPLY_WORDS 5u
 
 /* What the program provides. Only `transfer` is required; unused functions are null. */
 struct passo_hardware {
 	/* One chip select in SPI mode 0: exchanges `words` words (1 .. PASSO_FRAME_WORDS_MAX), most
-	 * significant bit first. Returns false on failure. */
+	 * significant bit first. Returns false on failure. The next one may follow at once. */
 	bool (*transfer)(void *context, const uint32_t *send, uint32_t *receive, size_t words);
-	/* Free-running microsecond counter that wraps at 2^32. Without it, the gap between frames is not kept
-	 * (a frame that comes too early is detected and resent), and waiting has no timeout. */
+	/* Free-running microsecond counter that wraps at 2^32. Without it waiting has no timeout. */
 	uint32_t (*microseconds)(void *context);
 	/* Called by passo_wait() when there is nothing to do for `microseconds`. It may return at once, sleep
 	 * for at most about that time, or do other work, but must not call the library. */
@@ -46,9 +47,16 @@ struct passo_hardware {
 	/* Level of the core's irq pin, which is high while a channel is stopped. Lets passo_poll() see a stop
 	 * without delay. */
 	bool (*irq)(void *context);
+	/* `transfer` in two halves, by DMA, all three or none: the next frame of a stream is prepared in
+	 * `spare`, of PASSO_FRAME_WORDS_MAX words, while one is on the wire. `start` begins an exchange and
+	 * returns; until its end both arrays stay as they are. `finish` returns PENDING while it is under
+	 * way, then OK, or TRANSFER if it failed or takes too long; OK if there is none. Of what is received
+	 * only the last PASSO_REPLY_WORDS words matter. */
+	bool (*start)(void *context, const uint32_t *send, uint32_t *receive, size_t words);
+	enum passo_error (*finish)(void *context);
+	uint32_t *spare;
 	void *context; /* first argument of all functions */
 	uint8_t tries; /* of each frame; 0: PASSO_TRIES */
-	bool paced;    /* `transfer` keeps the gap between frames: 64 core clocks plus 4 per word */
 };
 
 /* Event counters since the host was opened; they wrap. */
@@ -71,8 +79,6 @@ struct passo_host {
 	uint32_t status;       /* last valid status word */
 	uint32_t run;          /* last value written to the RUN register; 0: none */
 	bool run_due;          /* `run` is not acknowledged and has to be written; see passo_host_write() */
-	uint32_t clock_hz;     /* of the core, for the gap between frames; 0: unknown, no gap */
-	uint32_t ready_at;     /* microseconds: when the core will have executed the last frame */
 	uint8_t line_words;    /* words of a line, for counting lines; 0: unknown */
 	uint8_t channels;      /* of the core; 0: unknown */
 	uint8_t last_sequence; /* sequence number of the last write sent */
@@ -81,16 +87,19 @@ struct passo_host {
 	uint8_t attempt;       /* tries of the current frame so far */
 	uint8_t proofs;        /* tries to verify that the core has not been reset */
 	bool opened;
-	bool guarded; /* resets of the core and writes of other hosts are detected */
-	bool lost;    /* one was detected: only passo_host_open() helps */
-	bool fresh;   /* the core had not been written to since its reset when the host was opened */
-	bool proving; /* the current frame was executed; verifying that the core has not been reset */
+	bool guarded;     /* resets of the core and writes of other hosts are detected */
+	bool lost;        /* one was detected: only passo_host_open() helps */
+	bool fresh;       /* the core had not been written to since its reset when the host was opened */
+	bool proving;     /* the current frame was executed; verifying that the core has not been reset */
+	bool on_wire;     /* the current frame is being exchanged */
+	uint8_t prepared; /* sequence number of the push in `ahead`; 0: there is none */
 	/* Free queue entries of the status channel, a lower bound; 255: 255 or more. */
 	uint8_t line_room, ramp_room;
 	enum passo_error *posted;    /* destination of the posted frame's result; null: none */
 	uint32_t table[PASSO_BANKS]; /* contents of the table banks; see passo_table.c */
 	size_t words;                /* length of the current frame */
-	uint32_t send[PASSO_FRAME_WORDS_MAX], receive[PASSO_FRAME_WORDS_MAX];
+	uint32_t *send, *ahead; /* the current frame, and where the next push is prepared; may be equal */
+	uint32_t frame[PASSO_FRAME_WORDS_MAX], receive[PASSO_FRAME_WORDS_MAX];
 };
 
 /* Connects to a core: reads the identification and the current sequence number, and writes nothing. *hardware
@@ -99,9 +108,9 @@ enum passo_error passo_host_open(struct passo_host *host, const struct passo_har
 
 /* Starts to detect core resets and writes of other hosts: from then on every call returns CORE_RESET until
  * the host is opened again. Marks the core with a write that is refused as READ_ONLY, which makes a refusal
- * counter nonzero. `line_words` (words of a line) and `clock_hz` are those of the core. About two frames.
- * Errors: ARGUMENT, NOT_OPEN, link errors. */
-enum passo_error passo_host_guard(struct passo_host *host, uint8_t line_words, uint32_t clock_hz);
+ * counter nonzero. `line_words` are the words of a line of the core. About two frames. Errors: ARGUMENT,
+ * NOT_OPEN, link errors. */
+enum passo_error passo_host_guard(struct passo_host *host, uint8_t line_words);
 
 /* Read or write 1 .. 60 consecutive registers, or write all words to one register (push). `address` is a word
  * address. Errors: ARGUMENT, NOT_OPEN, link errors, CORE_RESET, REFUSED + verdict. After a link error it is
@@ -118,18 +127,21 @@ enum passo_error passo_host_push(
 enum passo_error passo_host_read_once(
     struct passo_host *host, uint16_t address, uint32_t *words, size_t length);
 
-/* Posts a push or write of the `length` words in passo_host_payload(); passo_host_step() sends it. *result is
- * PENDING until the outcome is known. Other calls complete a posted frame first. Errors: ARGUMENT (also if a
- * frame is posted already, or while passo_host_is_unsure()), NOT_OPEN, CORE_RESET. */
-uint32_t *passo_host_payload(struct passo_host *host);
-enum passo_error passo_host_post_push(
-    struct passo_host *host, uint16_t address, size_t length, enum passo_error *result);
+/* Posts a write of a word, or the push that was prepared; passo_host_step() sends it. *result is PENDING
+ * until the outcome is known. Other calls complete a posted frame first. Errors: ARGUMENT (also if a frame is
+ * posted already, or while passo_host_is_unsure()), NOT_OPEN, CORE_RESET. */
 enum passo_error passo_host_post_write(
-    struct passo_host *host, uint16_t address, size_t length, enum passo_error *result);
-/* Sends the posted frame, at most one chip select. Returns PENDING while a frame is posted and OK otherwise;
- * the result of the frame is in *result. */
+    struct passo_host *host, uint16_t address, uint32_t word, enum passo_error *result);
+enum passo_error passo_host_post_push(struct passo_host *host, enum passo_error *result);
+/* Prepares a push of the `length` words in passo_host_payload(): also while a frame is posted if `ahead` is
+ * not `send`, otherwise to be posted before any other call. */
+uint32_t *passo_host_payload(struct passo_host *host);
+void passo_host_prepare_push(struct passo_host *host, uint16_t address, size_t length);
+/* Moves the posted frame on: begins at most one chip select. Returns PENDING while a frame is posted and OK
+ * otherwise; the result of the frame is in *result. */
 enum passo_error passo_host_step(struct passo_host *host);
-/* Abandons the posted frame as after its last try; its *result stays PENDING. */
+/* Abandons the posted frame as after its last try; its *result stays PENDING. If it is on the wire, waits for
+ * its end. */
 void passo_host_drop(struct passo_host *host);
 /* True if so many writes were given up that the next sequence number could be taken for a duplicate: a read
  * is required first. The blocking calls do it by themselves. */

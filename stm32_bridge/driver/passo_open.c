@@ -90,8 +90,8 @@ static enum passo_error make_contact(struct passo *passo, const struct passo_opt
 	if (error == PASSO_OK && !host->guarded && passo->has_inputs)
 		error = passo_driver_watchdog(passo, watchdog_of(passo, options), 0);
 	if (error == PASSO_OK && !host->guarded)
-		error = passo_host_guard(host,
-		    (uint8_t)(PASSO_LINE_WORDS(passo->machine.axes) + passo->has_outputs), options->clock_hz);
+		error = passo_host_guard(
+		    host, (uint8_t)(PASSO_LINE_WORDS(passo->machine.axes) + passo->has_outputs));
 	return error;
 }
 
@@ -113,6 +113,10 @@ enum passo_error passo_open_channel(
 		return error;
 	if (!host)
 		return PASSO_ERROR_ARGUMENT_POINTER;
+	if (host->prepared != 0u)
+		return PASSO_ERROR_STREAMING;
+	if (host->guarded)
+		host->ahead = host->send; /* shared: a prepared frame would be in another channel's way */
 	memset(passo, 0, sizeof *passo);
 	passo->host = host;
 	passo->channel = options->channel;

@@ -89,7 +89,7 @@ static void correct(struct passo_path_feed *feed)
 	const struct passo *passo = feed->passo;
 	const uint32_t queued = (uint32_t)(passo->ramp_places - passo->snapshot.ramp_room);
 
-	if (feed->seen == passo->looked_at || passo->post != PASSO_POST_NONE
+	if (feed->seen == passo->looked_at || passo_driver_is_sending(passo)
 	    || passo->stream == PASSO_STREAM_FILLS)
 		return;
 	feed->seen = passo->looked_at;
@@ -145,7 +145,7 @@ enum passo_error passo_path_feed_poll(struct passo_path_feed *feed)
 	feed->given = feed->ramps + feed->lines;
 	if (!passo_is_moving(passo) && feed->path->sent != feed->path->added)
 		error = begin(feed);
-	else if (passo->stream == PASSO_STREAM_FILLS && is_time(feed) && passo->post == PASSO_POST_NONE)
+	else if (passo->stream == PASSO_STREAM_FILLS && is_time(feed) && !passo_driver_is_sending(passo))
 		error = passo_stream_start(passo);
 	if (error == PASSO_OK)
 		error = passo_poll(passo);

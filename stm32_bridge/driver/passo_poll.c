@@ -122,7 +122,7 @@ static enum passo_error poll(struct passo *passo)
 	}
 	if (passo_driver_due(passo) != PASSO_OK || passo->post > PASSO_POST_START)
 		return insist(passo);
-	if (passo_host_is_unsure(passo->host))
+	if (passo->post == PASSO_POST_NONE && passo_host_is_unsure(passo->host))
 		return look(passo);
 	if (passo->stream != PASSO_STREAM_NONE) {
 		error = passo_driver_feed(passo, &sent);

@@ -11,7 +11,7 @@
 #define PLACES_FEW 64u
 
 /* The queues are filled: the stream can start. */
-static bool is_prepared(const struct passo *passo)
+static bool is_filled(const struct passo *passo)
 {
 	return passo->stream == PASSO_STREAM_FILLS
 	    && (passo->lines == PASSO_SUPPLY_DONE || passo->snapshot.line_room == 0u)
@@ -28,6 +28,8 @@ uint32_t passo_driver_interval(const struct passo *passo)
 void passo_driver_end_stream(struct passo *passo)
 {
 	passo->stream = PASSO_STREAM_NONE;
+	passo->packed_lines = passo->packed_ramps = 0;
+	passo->host->prepared = 0;
 	if (passo->post == PASSO_POST_ITEMS || passo->post == PASSO_POST_START)
 		passo_driver_drop(passo);
 }
@@ -68,43 +70,92 @@ enum passo_error passo_driver_settle_stream(struct passo *passo)
 	return PASSO_OK;
 }
 
-enum passo_error passo_driver_feed(struct passo *passo, bool *sent)
+static bool is_packed(const struct passo *passo)
+{
+	return passo->packed_lines != 0u || passo->packed_ramps != 0u;
+}
+
+bool passo_driver_is_sending(const struct passo *passo)
+{
+	return passo->post != PASSO_POST_NONE || is_packed(passo);
+}
+
+/* Prepares a frame of items, if there are any; ramps come first. */
+static enum passo_error pack(struct passo *passo)
 {
 	enum passo_error error = PASSO_OK;
 	uint16_t address = PASSO_CHANNEL_RAMP;
 	size_t length = 0;
 
-	*sent = false;
 	passo_driver_ask_again(passo);
-	if (passo->post == PASSO_POST_NONE) {
-		if (passo_driver_wants_ramps(passo))
-			error = passo_driver_take_ramps(passo, &length);
-		if (error == PASSO_OK && length == 0u && passo_driver_wants_lines(passo)) {
-			address = PASSO_CHANNEL_LINE;
-			error = passo_driver_take_lines(passo, &length);
-		}
-		if (error != PASSO_OK)
-			return fail(passo, error);
-		if (length == 0u && is_prepared(passo)) {
-			*passo_host_payload(passo->host) = passo_driver_run(passo, passo->gate);
-			passo->post = PASSO_POST_START;
-			error = passo_host_post_write(passo->host, PASSO_ADDRESS_RUN, 1, &passo->posted);
-		} else if (length == 0u) {
-			if (passo->stream == PASSO_STREAM_RUNS && passo->lines == PASSO_SUPPLY_DONE
-			    && passo->ramps == PASSO_SUPPLY_DONE)
-				passo->stream = PASSO_STREAM_NONE;
-			return PASSO_OK;
-		} else {
-			passo->post = PASSO_POST_ITEMS;
-			error = passo_host_post_push(
-			    passo->host, (uint16_t)(passo->base + address), length, &passo->posted);
-		}
-		if (error != PASSO_OK)
-			return fail(passo, error);
+	if (passo_driver_wants_ramps(passo))
+		error = passo_driver_take_ramps(passo, &length);
+	if (error == PASSO_OK && length == 0u && passo_driver_wants_lines(passo)) {
+		address = PASSO_CHANNEL_LINE;
+		error = passo_driver_take_lines(passo, &length);
 	}
-	*sent = true;
+	if (error == PASSO_OK && length != 0u)
+		passo_host_prepare_push(passo->host, (uint16_t)(passo->base + address), length);
+	return error;
+}
+
+static enum passo_error step(struct passo *passo)
+{
 	passo_host_step(passo->host);
 	return passo->posted == PASSO_PENDING ? PASSO_OK : passo_driver_settle_stream(passo);
+}
+
+static enum passo_error send_packed(struct passo *passo)
+{
+	struct passo_snapshot *snapshot = &passo->snapshot;
+
+	snapshot->line_room = (uint16_t)(snapshot->line_room - passo->packed_lines);
+	snapshot->ramp_room = (uint16_t)(snapshot->ramp_room - passo->packed_ramps);
+	passo->packed_lines = passo->packed_ramps = 0;
+	passo->post = PASSO_POST_ITEMS;
+	return passo_host_post_push(passo->host, &passo->posted);
+}
+
+static enum passo_error send_start(struct passo *passo)
+{
+	passo->post = PASSO_POST_START;
+	return passo_host_post_write(
+	    passo->host, PASSO_ADDRESS_RUN, passo_driver_run(passo, passo->gate), &passo->posted);
+}
+
+enum passo_error passo_driver_feed(struct passo *passo, bool *sent)
+{
+	const struct passo_host *host = passo->host;
+	const bool flew = host->on_wire;
+	enum passo_error error = PASSO_OK;
+
+	*sent = passo->post != PASSO_POST_NONE;
+	if (*sent) {
+		error = step(passo);
+		if (error != PASSO_OK || passo->stream == PASSO_STREAM_NONE || !flew)
+			return error;
+	}
+	if (!is_packed(passo)
+	    && (passo->post == PASSO_POST_NONE || (host->on_wire && host->ahead != host->send)))
+		error = pack(passo);
+	if (error != PASSO_OK)
+		return fail(passo, error);
+	if (passo->post != PASSO_POST_NONE)
+		return PASSO_OK;
+	if (is_packed(passo)) {
+		error = send_packed(passo);
+	} else if (is_filled(passo)) {
+		error = send_start(passo);
+	} else {
+		if (passo->stream == PASSO_STREAM_RUNS && passo->lines == PASSO_SUPPLY_DONE
+		    && passo->ramps == PASSO_SUPPLY_DONE)
+			passo->stream = PASSO_STREAM_NONE;
+		return PASSO_OK;
+	}
+	if (error != PASSO_OK)
+		return fail(passo, error);
+	*sent = true;
+	return step(passo);
 }
 
 enum passo_error passo_stream(struct passo *passo, const struct passo_source *source)
@@ -155,8 +206,8 @@ uint32_t passo_idle_time(const struct passo *passo)
 	if (passo_driver_check(passo) != PASSO_OK)
 		return 0;
 	if (passo->stream != PASSO_STREAM_NONE
-	    && (passo->post != PASSO_POST_NONE || passo_driver_wants_lines(passo)
-	        || passo_driver_wants_ramps(passo) || is_prepared(passo)))
+	    && (passo_driver_is_sending(passo) || passo_driver_wants_lines(passo)
+	        || passo_driver_wants_ramps(passo) || is_filled(passo)))
 		return 0;
 	if (passo_driver_due(passo) != PASSO_OK
 	    || (passo->expects != PASSO_EXPECT_NOTHING && passo->idle_looks != 0u))

@@ -86,7 +86,7 @@ enum passo_error passo_driver_take_lines(struct passo *passo, size_t *length)
 			passo->expects = PASSO_EXPECT_END;
 		count++;
 	}
-	passo->snapshot.line_room = (uint16_t)(passo->snapshot.line_room - count);
+	passo->packed_lines = (uint8_t)count;
 	return PASSO_OK;
 }
 
@@ -109,6 +109,6 @@ enum passo_error passo_driver_take_ramps(struct passo *passo, size_t *length)
 			passo->ramps = PASSO_SUPPLY_DONE;
 		count++;
 	}
-	passo->snapshot.ramp_room = (uint16_t)(passo->snapshot.ramp_room - count);
+	passo->packed_ramps = (uint8_t)count;
 	return PASSO_OK;
 }

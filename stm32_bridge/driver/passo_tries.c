@@ -113,7 +113,10 @@ void passo_host_give_up(struct passo_host *host)
 {
 	const struct passo_run before = passo_unpack_run(host->run);
 	struct passo_run run = passo_unpack_run(host->send[1]);
+	bool known;
 
+	while (host->on_wire)
+		passo_host_exchange(host, &known);
 	if (!is_run(host))
 		return;
 	run.run &= before.run;
@@ -125,10 +128,12 @@ void passo_host_give_up(struct passo_host *host)
 /* One try of a write; PENDING: another try, or a check for a core reset, has to follow. */
 static enum passo_error try_write(struct passo_host *host)
 {
-	const bool first = host->attempt == 0u;
 	bool known;
 	enum passo_error error = passo_host_exchange(host, &known);
+	const bool first = host->attempt == 1u;
 
+	if (error == PASSO_PENDING)
+		return error;
 	if (known && first && host->guarded
 	    && !continues(host, passo_unpack_status(host->status).sequence, host->sent_before))
 		return lose(host);
@@ -160,14 +165,39 @@ enum passo_error passo_host_step_write(struct passo_host *host)
 	return is_final(error) || host->proofs == host->hardware.tries ? error : PASSO_PENDING;
 }
 
-void passo_host_begin_write(struct passo_host *host, enum passo_operation operation, uint16_t address,
-    const uint32_t *words, size_t length)
+static void begin(struct passo_host *host)
 {
 	host->sent_before = host->last_sequence;
 	host->last_sequence = sequence_after(host->last_sequence);
+	host->attempt = host->proofs = 0;
+	host->proving = false;
+}
+
+void passo_host_begin_write(struct passo_host *host, enum passo_operation operation, uint16_t address,
+    const uint32_t *words, size_t length)
+{
+	begin(host);
 	host->words = operation == PASSO_OPERATION_PUSH
 	                ? passo_frame_push(host->send, host->last_sequence, address, words, length)
 	                : passo_frame_write(host->send, host->last_sequence, address, words, length);
-	host->attempt = host->proofs = 0;
-	host->proving = false;
+}
+
+void passo_host_prepare_push(struct passo_host *host, uint16_t address, size_t length)
+{
+	host->prepared = sequence_after(host->last_sequence);
+	passo_frame_push(host->ahead, host->prepared, address, host->ahead + 1, length);
+}
+
+void passo_host_begin_prepared(struct passo_host *host)
+{
+	uint32_t *frame = host->ahead;
+	const struct passo_header header = passo_unpack_header(frame[0]);
+
+	if (host->prepared != sequence_after(host->last_sequence)) /* other writes came before it */
+		passo_host_prepare_push(host, header.address, header.length);
+	begin(host);
+	host->prepared = 0;
+	host->words = header.length + PASSO_FRAME_OVERHEAD;
+	host->ahead = host->send;
+	host->send = frame;
 }

@@ -26,8 +26,7 @@ static bool transfer(void *context, const uint32_t *send, uint32_t *receive, siz
 	return status == HAL_OK;
 }
 
-/* Millisecond resolution is enough for timeouts; the overhead of the HAL itself keeps the gap between
- * frames. */
+/* Millisecond resolution is enough for timeouts. */
 static uint32_t microseconds(void *context)
 {
 	(void)context;
@@ -36,8 +35,7 @@ static uint32_t microseconds(void *context)
 
 enum passo_error open_passo(struct passo *passo, struct passo_host *host)
 {
-	const struct passo_hardware hardware = {
-	    .transfer = transfer, .microseconds = microseconds, .paced = true};
+	const struct passo_hardware hardware = {.transfer = transfer, .microseconds = microseconds};
 	const struct passo_options options = {.clock_hz = 72000000};
 
 	return passo_open(passo, host, &hardware, &options);

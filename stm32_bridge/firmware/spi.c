@@ -4,7 +4,8 @@
  */
 #include "spi.h"
 
-#include "passo_frame.h"
+#include "board.h"
+#include "passo_host.h"
 #include "stm32f103.h"
 
 #define NSS_PIN 4u
@@ -13,14 +14,18 @@
 #define MOSI_PIN 7u
 #define RX_CHANNEL 2u /* DMA1 channels of SPI1 */
 #define TX_CHANNEL 3u
-#define ROUNDS_MAX 50000u /* of at least 6 clocks: 4 ms; the longest transfer takes 0.25 ms */
+#define WORDS_AHEAD 8u      /* swapped before the transfer begins: 14 us at 18 MHz */
+#define MILLISECONDS_MAX 4u /* the longest transfer takes 0.25 ms */
 
 static uint32_t swapped[PASSO_FRAME_WORDS_MAX];
+static uint32_t *reply; /* last words received in the exchange under way; null: there is none */
+static uint32_t began;  /* milliseconds */
 static bool crc_unit_is_good;
 
-static uint32_t swap_halves(uint32_t word)
+static void swap_halves(uint32_t *to, const uint32_t *from, size_t words)
 {
-	return word << 16 | word >> 16;
+	for (; words != 0u; words--, from++)
+		*to++ = *from << 16 | *from >> 16;
 }
 
 void spi_set_fast(bool fast)
@@ -50,6 +55,7 @@ static void start_dma(const uint32_t *send, const uint32_t *receive, size_t word
 {
 	struct dma_channel *rx = &DMA1->channel[RX_CHANNEL - 1u], *tx = &DMA1->channel[TX_CHANNEL - 1u];
 
+	__asm volatile("" ::: "memory"); /* the DMA reads */
 	DMA1->ifcr = DMA_IFCR_CGIF(RX_CHANNEL) | DMA_IFCR_CGIF(TX_CHANNEL);
 	rx->cmar = (uint32_t)(uintptr_t)receive;
 	rx->cndtr = (uint32_t)words * 2u;
@@ -61,41 +67,53 @@ static void start_dma(const uint32_t *send, const uint32_t *receive, size_t word
 	        | DMA_CCR_PRIORITY_HIGH | DMA_CCR_EN;
 }
 
-static bool wait_for(const volatile uint32_t *reg, uint32_t mask, uint32_t value)
+/* The first words are swapped when they go out, the others long before their turn; if an interrupt takes
+ * longer than these, the core sees a wrong CRC. */
+bool spi_begin(void *context, const uint32_t *send, uint32_t *receive, size_t words)
 {
-	for (uint32_t rounds = 0; rounds < ROUNDS_MAX; rounds++) {
-		if ((*reg & mask) == value)
-			return true;
-	}
-	return false;
+	const size_t first = words < WORDS_AHEAD ? words : WORDS_AHEAD;
+
+	(void)context;
+	if (words < PASSO_REPLY_WORDS || words > PASSO_FRAME_WORDS_MAX)
+		return false;
+	swap_halves(swapped, send, first);
+	reply = receive + words - PASSO_REPLY_WORDS;
+	began = board_milliseconds();
+	GPIOA->bsrr = BIT(NSS_PIN + 16u);
+	start_dma(swapped, receive, words);
+	swap_halves(swapped + first, send + first, words - first);
+	return true;
 }
 
 /* The last halfword is received after the last one has been sent. */
-static bool wait_for_dma(void)
+enum passo_error spi_finish(void *context)
 {
-	return wait_for(&DMA1->isr, DMA_ISR_TCIF(RX_CHANNEL), DMA_ISR_TCIF(RX_CHANNEL))
-	    && wait_for(&SPI1->sr, SPI_SR_BSY, 0);
-}
-
-bool spi_transfer(void *context, const uint32_t *send, uint32_t *receive, size_t words)
-{
-	bool done;
+	const bool done = (DMA1->isr & DMA_ISR_TCIF(RX_CHANNEL)) != 0u && (SPI1->sr & SPI_SR_BSY) == 0u;
 
 	(void)context;
-	if (words > PASSO_FRAME_WORDS_MAX)
-		return false;
-	for (size_t i = 0; i < words; i++)
-		swapped[i] = swap_halves(send[i]);
-	GPIOA->bsrr = BIT(NSS_PIN + 16u);
-	start_dma(swapped, receive, words);
-	done = wait_for_dma();
+	if (!reply)
+		return PASSO_OK;
+	if (!done && board_milliseconds() - began < MILLISECONDS_MAX)
+		return PASSO_PENDING;
 	GPIOA->bsrr = BIT(NSS_PIN);
 	DMA1->channel[RX_CHANNEL - 1u].ccr = 0;
 	DMA1->channel[TX_CHANNEL - 1u].ccr = 0;
 	__asm volatile("" ::: "memory"); /* the DMA has written */
-	for (size_t i = 0; i < words; i++)
-		receive[i] = swap_halves(receive[i]);
-	return done;
+	swap_halves(reply, reply, PASSO_REPLY_WORDS);
+	reply = NULL;
+	return done ? PASSO_OK : PASSO_ERROR_TRANSFER;
+}
+
+bool spi_transfer(void *context, const uint32_t *send, uint32_t *receive, size_t words)
+{
+	enum passo_error error = PASSO_PENDING;
+
+	if (!spi_begin(context, send, receive, words))
+		return false;
+	while (error == PASSO_PENDING)
+		error = spi_finish(context);
+	swap_halves(receive, receive, words - PASSO_REPLY_WORDS);
+	return error == PASSO_OK;
 }
 
 /* ---------------------------------------------------------------------------------------------- CRC ---- */

@@ -8,15 +8,20 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "passo_error.h"
+
 /* Starts SPI1 in mode 0 at 18 MHz (16 MHz without the crystal). */
 void spi_start(void);
 
 /* Sets SCLK to a quarter of the CPU clock, or to an eighth. */
 void spi_set_fast(bool fast);
 
-/* One chip select: exchanges 1 .. 64 words, most significant bit first. Returns false if the DMA does not
- * finish within a bounded time. Implements passo_hardware.transfer; context is not used. */
+/* One chip select: exchanges 5 .. 64 words, most significant bit first. They implement `transfer`, `start`
+ * and `finish` of struct passo_hardware; context is not used. An exchange that takes longer than some
+ * milliseconds fails. */
 bool spi_transfer(void *context, const uint32_t *send, uint32_t *receive, size_t words);
+bool spi_begin(void *context, const uint32_t *send, uint32_t *receive, size_t words);
+enum passo_error spi_finish(void *context);
 
 /* Tests the CRC unit against software. Returns whether it works; if not, passo_crc() uses software. */
 bool crc_start(void);

@@ -10,12 +10,14 @@ from passo import frame
 from passo.build import Parameters
 from passo.driver import Driver, DriverError
 from passo.engine import Engine, model_engine
-from passo.native import ffi
+from passo.link import Hardware
+from passo.native import ffi, planner
 from passo.registers import Operation
 
 CLOCK_HZ = 72_000_000
 PARAMETERS = Parameters()
 Q32 = 1 << 32
+GAP = 3  # clocks between two frames, hardly more than the core needs
 
 
 class Wire:
@@ -42,16 +44,16 @@ class Wire:
         """Clocks since the beginning, resets of the core included."""
         return self.before + self.engine.clock
 
-    def transfer(self, mosi: Sequence[int], gap: int = 64) -> list[int]:
-        """One chip select."""
+    def transfer(self, mosi: Sequence[int], _: int = 0) -> list[int]:
+        """One chip select. The next may follow at once."""
         self.frames += 1
         self.requests.append(list(mosi))
         self.before_frame(self.frames)
         sent = None if self.stuck is not None else self.there(list(mosi))
         if sent is None:
-            self.engine.run(128 * len(mosi) + gap)
+            self.engine.run(128 * len(mosi) + GAP)
             return [0xFFFFFFFF * (self.stuck or 0)] * len(mosi)
-        miso = self.engine.transfer(sent, gap)
+        miso = self.engine.transfer(sent, GAP)
         miso += [0xFFFFFFFF] * (len(mosi) - len(miso))
         return self.back(miso)
 
@@ -91,6 +93,61 @@ class Wire:
         self.collect()
         axes = self.parameters.axes
         return self.pulses[:axes].tolist(), self.net[:axes].tolist()
+
+
+class Dma(Hardware):
+    """Exchanges in two halves: each is over after some calls of `finish`, and the frame must stay until then.
+
+    Of a reply only the words that matter arrive.
+    """
+
+    CALLS = 3
+    REPLY_WORDS, GARBAGE = 5, 0xA5A5A5A5
+
+    def __init__(self, engine: Any, tries: int = 0, clock_hz: int = 0):
+        super().__init__(engine, tries, clock_hz)
+        self._exchange: tuple[Any, Any, list[int]] | None = None
+        self._calls = 0  # of `finish` until the exchange is over
+        self._spare = ffi().new("uint32_t[]", frame.PAYLOAD_MAX + frame.OVERHEAD)
+        self._halves = (
+            ffi().callback("bool(void *, const uint32_t *, uint32_t *, size_t)", self._start),
+            ffi().callback("enum passo_error(void *)", self._finish),
+        )
+        self.c.start, self.c.finish = self._halves
+        self.c.spare = self._spare
+
+    @property
+    def on_wire(self) -> bool:
+        """An exchange is under way."""
+        return self._exchange is not None
+
+    def _transfer(self, context: Any, send: Any, receive: Any, words: int) -> bool:
+        return self._idle() and super()._transfer(context, send, receive, words)
+
+    def _start(self, _: Any, send: Any, receive: Any, words: int) -> bool:
+        if not self._idle():
+            return False
+        self._exchange, self._calls = (send, receive, ffi().unpack(send, words)), self.CALLS
+        return True
+
+    def _finish(self, context: Any) -> int:
+        if self._exchange is None:
+            return planner().PASSO_OK
+        self._calls -= 1
+        if self._calls:
+            return planner().PASSO_PENDING
+        (send, receive, sent), self._exchange = self._exchange, None
+        if ffi().unpack(send, len(sent)) != sent:
+            self._raised = AssertionError("a frame changes while it is on the wire")
+        good = super()._transfer(context, send, receive, len(sent))
+        for i in range(len(sent) - self.REPLY_WORDS):
+            receive[i] = self.GARBAGE
+        return planner().PASSO_OK if good else planner().PASSO_ERROR_TRANSFER
+
+    def _idle(self) -> bool:
+        if self._exchange is not None:
+            self._raised = AssertionError("two exchanges at a time")
+        return self._exchange is None
 
 
 class Noise:

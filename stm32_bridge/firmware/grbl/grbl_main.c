@@ -41,8 +41,15 @@ static void wait(void *context, uint32_t duration)
 		board_sleep();
 }
 
-static const struct passo_hardware hardware = {
-    .transfer = spi_transfer, .microseconds = board_microseconds, .wait = wait, .irq = board_core_calls};
+static uint32_t spare[PASSO_FRAME_WORDS_MAX];
+
+static const struct passo_hardware hardware = {.transfer = spi_transfer,
+    .microseconds = board_microseconds,
+    .wait = wait,
+    .irq = board_core_calls,
+    .start = spi_begin,
+    .finish = spi_finish,
+    .spare = spare};
 
 static volatile bool asked; /* for a status report */
 
