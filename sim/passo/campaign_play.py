@@ -95,7 +95,7 @@ class Batch:
 
 @cache
 def _keep_modules() -> None:
-    """Once: what is loaded by now stays, so the collector of garbage need not look through it again and again."""
+    """Once: the collector of garbage need not look again and again through what is loaded by now."""
     gc.freeze()
 
 
