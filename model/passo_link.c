@@ -36,6 +36,9 @@ uint64_t passo_link_quiet(const struct passo_link *link)
 	/* the RTL rotates a word */
 	if (link->count > COUNT_LOADED && link->count < COUNT_ROTATED)
 		return (uint64_t)COUNT_ROTATED - link->count;
+	/* a read waits for its strobe; `all_words` has followed the index */
+	if (link->step == PASSO_LINK_READ && link->count > COUNT_READ + 1 && link->count < COUNT_STROBE)
+		return (uint64_t)COUNT_STROBE - link->count;
 	return 0;
 }
 

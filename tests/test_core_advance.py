@@ -186,3 +186,19 @@ def test_endless_line_is_jumped_through() -> None:
     pair.run(10_000)
     assert channel.state().state == State.IDLE
     assert channel.positions()[0] > 300
+
+
+def test_reads_are_jumped_through() -> None:
+    """Reads of any length and place, granted or refused, on a link that is fast or waits between frames."""
+    pair = PlayerPair(BUILDS[1], random.Random(SEED))
+    link = Link(pair)
+    refused = 0
+    for _ in range(60):
+        address, length = pair.rng.choice([0x000, 0x100, 0x110, 0x200, 0x7FC, 0xFF0]), pair.rng.randint(1, 9)
+        try:
+            link.read(address + pair.rng.randrange(16), length)
+        except RefusedError:
+            refused += 1
+        pair.run(pair.rng.choice([1, 7, 100]))
+    assert 5 < refused < 55
+    assert pair.skipped > pair.clock * 0.7

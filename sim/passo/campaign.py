@@ -15,7 +15,7 @@ from passo.campaign_shrink import shrink
 from passo.failure import Failure
 from passo.pulse_judge import Fault
 
-BATCH = {"model": 40, "rtl": 10}  # cases: about a second
+BATCH = {"model": 100, "rtl": 10}  # cases: about a second
 IN_FLIGHT = 4  # batches per worker
 SHRUNK = 10  # failures for which a file is written
 POLL = 5  # seconds between two looks at the workers

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Plays a case of a campaign and judges it from outside: what a worker does."""
 
+import gc
 import tempfile
 import time
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 
 from passo.campaign_moves import Case, draw
@@ -91,9 +93,16 @@ class Batch:
     cpu_seconds: float = 0  # of the process that played them
 
 
+@cache
+def _keep_modules() -> None:
+    """Once: the collector of garbage need not look again and again through what is loaded by now."""
+    gc.freeze()
+
+
 def play_batch(seed: int, first: int, count: int, engine: str, player: Player) -> Batch:
     """Draw and play the cases first .. first + count - 1."""
     batch, began = Batch(first, count), time.process_time()
+    _keep_modules()
     for number in range(first, first + count):
         outcome = player(draw(seed, number), engine)
         batch.counts += outcome.counts

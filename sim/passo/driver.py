@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from passo.build import Parameters
-from passo.link import Hardware, LinkError, error_name, error_text
+from passo.link import MICROSECONDS, Hardware, LinkError, error_name, error_text
 from passo.moves import Move, PinTiming
 from passo.native import ffi, planner
 from passo.plan import struct_of
@@ -140,6 +140,11 @@ class Driver:
     def idle_microseconds(self) -> int:
         """Time until `poll` has something to do."""
         return self.lib.passo_idle_time(self.c)
+
+    @property
+    def idle_clocks(self) -> int:
+        """The same in clocks, rounded up."""
+        return -(-self.idle_microseconds * self.clock_hz // MICROSECONDS)
 
     @property
     def fault(self) -> str:

@@ -3,6 +3,7 @@
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from pathlib import Path
 from typing import get_args
 
@@ -46,7 +47,7 @@ class PinTiming:
 class MoveTurn(move_forms.MoveTurn):
     """Rotation of one axis by degrees and rpm."""
 
-    @property
+    @cached_property
     def steps(self) -> tuple[int, ...]:
         """Steps of each axis, rounded like the planner."""
         count = (q32(abs(self.angle)) * self.steps_per_turn + 180 * UNIT_Q32) // (360 * UNIT_Q32)
@@ -61,7 +62,7 @@ class MoveStraight(move_forms.MoveStraight):
         """Profile of the ramps."""
         return "jerk" if any(self.jerk) else "linear"
 
-    @property
+    @cached_property
     def steps(self) -> tuple[int, ...]:
         """Steps of each axis, rounded like the planner."""
         counts = (

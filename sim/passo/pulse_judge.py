@@ -22,7 +22,10 @@ ROUNDING = 2.0**-17  # of a shape: half a unit of its table
 DISTANCE = 0.25  # substeps by which a plan may miss its line
 FAR = 1e9  # clocks
 
+GRID = np.arange(POINTS + 1) / POINTS  # the points of a table
+
 Curve = tuple[np.ndarray, np.ndarray]
+Steps = tuple[np.ndarray, np.ndarray]  # clocks and directions, as Run.steps() has them
 
 
 @dataclass(frozen=True)
@@ -43,19 +46,22 @@ def faults(run: Run) -> list[Fault]:
         Fault(next((kind for word, kind in KINDS.items() if word in text), "problem"), text)
         for text in run.problems()
     ]
-    return found or [fault for axis in range(run.file.axes) for fault in _axis(run, axis)]
+    return found or list(_pulse_faults(run))
 
 
-def _axis(run: Run, axis: int) -> Iterator[Fault]:
-    yield from timing_faults(run, axis)
-    yield from curve_faults(run, axis)
+def _pulse_faults(run: Run) -> Iterator[Fault]:
+    places = [_Place.of(plan) for plan in run.plans]
+    for axis in range(run.file.axes):
+        steps = run.steps(axis)
+        yield from timing_faults(run, axis, steps)
+        yield from curve_faults(run, axis, steps, places)
 
 
 def _first(bad: np.ndarray) -> int | None:
     return int(np.argmax(bad)) if bad.any() else None
 
 
-def timing_faults(run: Run, axis: int) -> Iterator[Fault]:
+def timing_faults(run: Run, axis: int, steps: Steps) -> Iterator[Fault]:
     """STEP high and low, DIR set-up and hold, the direction of each pulse; the first fault of each."""
     pins, clock = run.file.pins, run.pins["clock"].astype(np.int64) - run.start
     step, dir_ = (np.concatenate([[0], run.pins[pin] >> axis & 1]).astype(np.int8) for pin in ("step", "dir"))
@@ -79,7 +85,7 @@ def timing_faults(run: Run, axis: int) -> Iterator[Fault]:
             "hold", f"axis {axis}, clock {turns[k]}: DIR changed {int(hold[k])} clocks after the low time"
         )
     wanted = _directions(run, axis)
-    if (k := _first(wanted != run.steps(axis)[1])) is not None:
+    if (k := _first(wanted != steps[1])) is not None:
         yield Fault("direction", f"axis {axis}, step {k}: its direction is {-wanted[k]}")
 
 
@@ -97,8 +103,8 @@ def expected(plan: Plan) -> Curve:
     shapes = shapes_of(plan)
     for ramp in plan.ramps:
         end, u = ramp.velocity_end / Q48, (np.arange(ramp.ticks) + 0.5) / max(ramp.ticks, 1)
-        points = shapes[ramp.shape](np.arange(POINTS + 1) / POINTS)[0]
-        s = np.interp(1 - u if ramp.mirror else u, np.arange(POINTS + 1) / POINTS, points)
+        points = shapes[ramp.shape](GRID)[0]
+        s = np.interp(1 - u if ramp.mirror else u, GRID, points)
         velocities.append(velocity + (end - velocity) * (1 - s if ramp.mirror else s))
         velocity = end
     tick, peak = 1 << plan.tick_log2, plan.c.velocity_peak / Q48
@@ -119,24 +125,39 @@ def _tolerance(plan: Plan) -> float:
     return DISTANCE + change * ROUNDING
 
 
-def curve_faults(run: Run, axis: int) -> Iterator[Fault]:
-    """The first step that is early, and the first that is late although the pins did not keep it waiting."""
-    clocks, directions = run.steps(axis)
+@dataclass(frozen=True)
+class _Place:
+    """Where the steps of a plan belong, for all axes."""
+
+    curve: Curve
+    tolerance: float
+
+    @classmethod
+    def of(cls, plan: Plan) -> "_Place":
+        return cls(expected(plan), _tolerance(plan))
+
+
+def curve_faults(run: Run, axis: int, steps: Steps, places: list[_Place]) -> Iterator[Fault]:
+    """The first step that is early, and the first that is late although the pins did not keep it waiting.
+
+    `places` are those of the plans.
+    """
+    clocks, directions = steps
     pins = run.file.pins
     turned = np.concatenate([[True], directions[1:] != directions[:-1]])
     turn = pins.step_low + pins.dir_hold + pins.dir_setup
     gaps = np.diff(clocks, prepend=-int(FAR))
     waited = gaps <= pins.step_high + pins.step_low + turned * (pins.dir_hold + pins.dir_setup + LATENCY)
     first = begin = 0
-    for plan in run.plans:
+    for plan, place in zip(run.plans, places, strict=True):
         count = abs(plan.move.steps[axis])
         own = slice(first, first + count)
         times, due = clocks[own] - begin, (np.arange(count) + 0.5) * plan.line.substeps / max(count, 1)
-        path, tolerance = expected(plan), _tolerance(plan)
-        lead = np.interp(times, *path) - due
+        tolerance = place.tolerance
+        lead = np.interp(times, *place.curve) - due
         leading = count == max(map(abs, plan.move.steps)) and plan.c.oversampling > 1
         latest = LATE_LEADING if leading else LATE
-        in_time = np.interp(times - LATENCY - turned[own] * turn, *path) - due <= latest + tolerance
+        in_time = np.interp(times - LATENCY - turned[own] * turn, *place.curve) - due <= latest + tolerance
         for word, bad in (("early", lead < -EARLY - tolerance), ("late", ~in_time & ~waited[own])):
             if (k := _first(bad)) is not None:
                 where = f"axis {axis}, step {first + k}, clock {clocks[first + k]}"

@@ -162,7 +162,7 @@ def execute_channels(
             if channel.moves and channel.driver.is_streaming:
                 left = min(left, start + channel.hungry() - engine.clock)
             if channel.moves:
-                times.append(max(left, 16 * tick))
+                times.append(max(left, channel.driver.idle_clocks, 16 * tick))
         advance(min(times))
 
     for channel in used:

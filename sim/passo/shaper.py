@@ -66,6 +66,10 @@ def shaped(shaper: Shaper, ramp_time: Fraction) -> Points:
         )
 
     def speed(u: float) -> float:
-        return sum(weight * min(max((u * ramp - delay) / straight, 0), 1) for delay, weight in delayed)
+        total, time = 0.0, u * ramp
+        for delay, weight in delayed:
+            if time > delay:  # the copy has begun
+                total += weight * min((time - delay) / straight, 1)
+        return total
 
     return sample(speed)
