@@ -7,10 +7,9 @@ from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 
-from passo import __version__, campaign_options
+from passo import __version__, campaign_options, console_options
 from passo.failure import BadInputError, Failure
 
-ENGINES = ("both", "rtl", "model")
 PART_SUFFIXES = (".nc", ".ngc", ".gcode")
 OK, FAILED, BAD_INPUT = 0, 1, 2
 
@@ -42,7 +41,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     run.add_argument(
         "--engine",
-        choices=ENGINES,
+        choices=console_options.ENGINES,
         help="engine to run; both: RTL and model, compared edge for edge (default; of G-code: model)",
     )
     run.add_argument("--out", type=Path, metavar="DIR", help="output folder (default build/run/NAME)")
@@ -63,37 +62,7 @@ def _parser() -> argparse.ArgumentParser:
     source.add_argument("--csv", type=Path, metavar="FILE", help="u,s: a curve; or k,point: a table")
     shape.add_argument("--out", type=Path, metavar="FILE", help="write the table: FILE.csv or FILE.toml")
     shape.add_argument("--plot", type=Path, metavar="FILE.png", help="draw it")
-    console = commands.add_parser(
-        "console", help="console of the STM32 board with a simulated core (docs/console.md)"
-    )
-    console.set_defaults(command=_console)
-    console.add_argument("--engine", choices=ENGINES, default="model", help="the core (default model)")
-    console.add_argument("--axes", type=int, default=4, metavar="N", help="axes of a channel (default 4)")
-    console.add_argument(
-        "--channels", type=int, default=1, metavar="N", help="channels of the core (default 1)"
-    )
-    console.add_argument(
-        "--clock", type=int, default=100_000_000, metavar="HZ", help="clock of the core (default 100000000)"
-    )
-    console.add_argument("--inputs", action="store_true", help="the core has inputs (docs/machine.md)")
-    console.add_argument(
-        "--switch",
-        action="append",
-        default=[],
-        metavar="PIN:AXIS:..POSITION",
-        help="simulate a machine with a switch: home:0:..-500 is active at -500 steps and below, "
-        "limit_high:1:9000.. from 9000 on, probe:2:..-300; repeatable, with --inputs",
-    )
-    console.add_argument("--grbl", action="store_true", help="speak the protocol of grbl (docs/gcode.md)")
-    console.add_argument("--machine", type=Path, metavar="MACHINE.toml", help="of --grbl: axes and limits")
-    console.add_argument("--pty", type=Path, metavar="LINK", help="of --grbl: pseudo-terminal, in real time")
-    console.add_argument(
-        "--settings",
-        type=Path,
-        metavar="FILE",
-        help="of --grbl: keeps $ settings and offsets; made if missing",
-    )
-    console.add_argument("--echo", action="store_true", help="show each line before its answer")
+    console_options.add(commands).set_defaults(command=_console)
     firmware = commands.add_parser(
         "firmware",
         help="type moves at the console of the STM32 firmware, emulated with a simulated core at its pins",
@@ -160,68 +129,10 @@ def _shape(options: argparse.Namespace) -> int:
     return OK
 
 
-def _grbl(options: argparse.Namespace) -> int:
-    from passo.grbl import Grbl, pseudo_terminal, serve, talk
-    from passo.grbl_setup import SettingsFile, machine_at
-    from passo.machine_file import read_machine
-
-    def write(text: str) -> None:
-        print(text, end="", flush=True)
-
-    if not options.machine:
-        raise BadInputError("--grbl needs --machine MACHINE.toml (docs/gcode.md)")
-    machine = read_machine(options.machine)
-    settings = SettingsFile(options.settings) if options.settings else None
-    with machine_at(options.engine, machine) as engine:
-        if not options.pty:
-            talk(sys.stdin, Grbl(engine, machine, write, settings))
-            return OK
-        import os
-
-        with pseudo_terminal(options.pty) as terminal:
-            write(f"{options.pty}: 115200 baud or any other\n")
-            said = lambda text: os.write(terminal, text.encode())  # noqa: E731
-            serve(Grbl(engine, machine, said, settings), terminal)
-    return OK
-
-
 def _console(options: argparse.Namespace) -> int:
-    if options.grbl or options.pty or options.machine or options.settings:
-        return _grbl(options)
-    from passo.build import Parameters
-    from passo.machine import Machine, read_switch
-    from passo.move_forms import WHOLE_MAX
-    from passo.moves import AXES_MAX, CHANNELS_MAX
-    from passo.run import open_engine
-    from passo.terminal import Terminal, talk
+    from passo.console_command import run_console
 
-    def write(text: str) -> None:
-        print(text, end="", flush=text.endswith("\n"))
-
-    if not 1 <= options.axes <= AXES_MAX or not 1 <= options.clock <= WHOLE_MAX:
-        raise BadInputError(f"--axes must be 1 to {AXES_MAX}, --clock 1 to {WHOLE_MAX}")
-    if not 1 <= options.channels <= CHANNELS_MAX:
-        raise BadInputError(f"--channels must be 1 to {CHANNELS_MAX}")
-    try:
-        switches = [read_switch(text) for text in options.switch]
-    except ValueError as error:
-        raise BadInputError(f"--switch {error}") from None
-    if switches and not options.inputs:
-        raise BadInputError("--switch needs --inputs")
-    if any(switch.axis >= options.channels * options.axes for switch in switches):
-        raise BadInputError("--switch: the core has no such axis")
-    parameters = Parameters(channels=options.channels, axes=options.axes, inputs=int(options.inputs))
-    with (
-        open_engine(options.engine, parameters, options.clock) as engine,
-        Terminal(Machine(engine, switches) if switches else engine, write) as terminal,
-    ):
-        if sys.stdin.isatty() and sys.stdout.isatty():
-            from passo.prompt import GREETING, typed
-
-            write(GREETING.format(f"{options.engine}, {options.axes} axes, {options.clock} Hz"))
-            talk(typed(terminal), terminal)
-        else:
-            talk(sys.stdin, terminal, write if options.echo else None)
+    run_console(options)
     return OK
 
 
