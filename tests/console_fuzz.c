@@ -18,16 +18,20 @@
 static const char *const WORDS[] = {"move", "turn", "rpm", "hold", "resume", "override", "stop", "abort",
     "clear", "status", "position", "angle", "enable", "disable", "zero", "sync", "start", "config", "table",
     "open", "version", "help", "input", "inputs", "home", "probe", "jog", "jog_speed", "jog_cancel",
-    "trigger", "wait_trigger", "bla", "steps", "profile", "total_time", "ramp_time", "start_speed", "speed",
-    "stop_speed", "acceleration", "deceleration", "jerk", "method", "axis", "axes", "steps_per_turn", "rpm",
-    "top_rpm", "minimum_rpm", "backwards", "distance", "feed", "steps_per_mm", "accelerate_time",
-    "decelerate_time", "alpha", "row", "points", "percent", "step_high", "step_low", "dir_setup", "dir_hold",
-    "both_edges", "steps_per_unit", "clock_hz", "hold_time", "stop_time", "flow", "need_enable", "baud",
-    "spi_slow", "on", "command", "channel", "channel", "limit_low", "limit_high", "home", "alarm",
-    "limit_soft", "alarm_disables", "clear", "source", "edge", "action", "timeout", "back_off", "pull_off",
-    "slow_speed", "position", "away", "optional", "input_filter", "watchdog", "watchdog_disable"};
+    "trigger", "wait_trigger", "goto", "output", "outputs", "compare", "encoder", "encoders", "adopt",
+    "thread", "bla", "steps", "profile", "total_time", "ramp_time", "start_speed", "speed", "stop_speed",
+    "acceleration", "deceleration", "jerk", "method", "axis", "axes", "steps_per_turn", "rpm", "top_rpm",
+    "minimum_rpm", "backwards", "distance", "feed", "steps_per_mm", "accelerate_time", "decelerate_time",
+    "alpha", "row", "points", "percent", "step_high", "step_low", "dir_setup", "dir_hold", "both_edges",
+    "steps_per_unit", "clock_hz", "hold_time", "stop_time", "flow", "need_enable", "baud", "spi_slow", "on",
+    "command", "channel", "channel", "limit_low", "limit_high", "home", "alarm", "limit_soft",
+    "alarm_disables", "clear", "source", "edge", "action", "timeout", "back_off", "pull_off", "slow_speed",
+    "position", "away", "optional", "input_filter", "watchdog", "watchdog_disable", "target", "late",
+    "levels", "pwm", "lag", "reference", "output.levels", "output.power", "output.speed", "output.raster",
+    "output.pitch", "output.x", "interval", "width", "filter", "counts_per_step", "limit", "stop", "inverted",
+    "index_gated", "encoder", "counts_per_turn", "turns", "wait_index", "endless"};
 
-#define COMMANDS 32u /* the first words; the last of them is none */
+#define COMMANDS 40u /* the first words; the last of them is none */
 
 static const char *const VALUES[] = {"0", "1", "-1", "5", "50", "100", "3.5", "0.01", "1e-3", "2us",
     "7clocks", "10ms", "wait", "refuse", "200,-100", "1,2,3,4", "1,2,3,4,5,6,7,8,9", "20_000", "1e9",
@@ -36,7 +40,7 @@ static const char *const VALUES[] = {"0", "1", "-1", "5", "50", "100", "3.5", "0
     "-2147483648", "2147483647", "1073741823", "-1073741824", "", ",", "1,,2", "x", "-", "1e",
     "0,100,200,300,400,500,600,700,800,900,1000,1100,1200,1300,1400,1500", "1600", "=", "#", "none",
     "active_high", "active_low", "home", "probe", "limit_low", "rising", "falling", "soft_stop",
-    "end_endless"};
+    "end_endless", "soft", "hard", "0.25"};
 
 #define LONG_MOVE "move steps=20 profile=linear total_time=0.05 ramp_time=10ms"
 
@@ -50,7 +54,15 @@ static const char *const LINES[] = {"move steps=20,-9 profile=cosine total_time=
     "move steps=20,-9 profile=cosine total_time=0.02 ramp_time=5ms channel=1", "clear channel=1",
     "sync 0 channel=1",
     "move method=straight distance=1,2,3 feed=50 steps_per_mm=9 speed=90 acceleration=900 jerk=9000",
-    "move method=turn steps_per_turn=200 angle=-45.5 rpm=120 acceleration=30000"};
+    "move method=turn steps_per_turn=200 angle=-45.5 rpm=120 acceleration=30000",
+    "move steps=40 profile=linear speed=2000 acceleration=30000 output.levels=5 output.power=50",
+    "move steps=40,5 profile=linear speed=2000 acceleration=30000 output.power=9 output.speed=3000",
+    "move steps=40 profile=linear speed=2000 acceleration=30000 output.raster=255,0,99,1,255 output.pitch=4",
+    "output pwm=1000 lag=20us reference=0.25", "output levels=3", "output reference=0.5",
+    "compare axis=0 position=5 interval=3 width=20us", "encoder axis=0 counts_per_step=2 limit=30 stop=hard",
+    "encoder axis=0 counts_per_step=4 limit=9 stop=soft", "encoder filter=9", "encoders", "adopt 0",
+    "thread encoder=0 counts_per_turn=40 steps=20 turns=2 top_rpm=600 wait_index=0",
+    "thread encoder=0 counts_per_turn=40 steps=-9 turns=1 top_rpm=600 endless=1"};
 
 /* Now and then these lines, without pauses, so that a move has to wait for room. */
 static const char *const FILL[] = {"abort", "clear", "resume", "sync 0", "config flow=wait need_enable=0",
@@ -65,7 +77,7 @@ struct bench {
 	size_t length;
 };
 
-/* Switches of some axes, a drive's alarm, e-stop; mostly all is well. */
+/* Switches of some axes, a drive's alarm, e-stop; mostly all is well. Encoders are turned. */
 static void poke(struct passo_engine *engine)
 {
 	static const enum passo_input PINS[] = {
@@ -75,6 +87,11 @@ static void poke(struct passo_engine *engine)
 		passo_engine_set(engine, PICK(PINS), below(2));
 	if (below(20) == 0)
 		passo_engine_set(engine, PASSO_INPUT_ALARM, 0);
+	for (uint32_t i = below(8); i > 0; i--) {
+		passo_engine_set(engine, below(2) ? PASSO_INPUT_ENCODER_A : PASSO_INPUT_ENCODER_B, below(4));
+		passo_engine_set(engine, PASSO_INPUT_ENCODER_INDEX, below(2));
+		passo_engine_run(engine, 8);
+	}
 	passo_engine_set(engine, PASSO_INPUT_ESTOP_N, below(200) != 0);
 }
 
@@ -213,7 +230,9 @@ int main(int count, char **arguments)
 							       .tick_log2 = 7,
 							       .line_queue_log2 = 4,
 							       .ramp_queue_log2 = 4,
-							       .inputs = (uint8_t)below(2)},
+							       .inputs = (uint8_t)below(2),
+							       .encoders = (uint8_t)below(2),
+							       .outputs = (uint8_t)below(2)},
 		    .clock_hz = CLOCK_HZ,
 		    .spi_half_period = 2};
 		struct passo_terminal *terminal;

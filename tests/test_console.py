@@ -26,6 +26,7 @@ from passo.moves import MoveFile, MoveFileError, q32
 from passo.native import console, ffi
 from passo.plan import plan_file
 from passo.run import execute, open_engine
+from passo.shafts import Shaft, Shafts
 from passo.terminal import Terminal, talk
 from passo.toolchain import paths
 
@@ -45,11 +46,19 @@ class Bench:
         channels: int = 1,
         inputs: int = 0,
         switches: Sequence[Switch] = (),
+        shafts: Sequence[Shaft] = (),
+        **parts: int,  # encoders, outputs
     ):
         self.said: list[str] = []
-        self.engine = model_engine(Parameters(channels=channels, axes=axes, inputs=inputs), clock_hz)
+        parameters = Parameters(channels=channels, axes=axes, inputs=inputs, **parts)
+        self.engine = model_engine(parameters, clock_hz)
         self.machine = Machine(self.engine, switches)  # only with inputs
-        self.terminal = Terminal(self.machine if inputs else self.engine, self.said.append, keep=True)
+        self.terminal = Terminal(
+            self.machine if inputs else self.engine,
+            self.said.append,
+            keep=True,
+            shafts=Shafts(self.engine, shafts) if shafts else None,
+        )
         self.greeting = self.take()
 
     def take(self) -> str:
@@ -864,17 +873,17 @@ def test_help_knows_every_command(bench: Bench) -> None:
     bench.terminal.line("help")
     names = re.findall(r"^  (\w+): ", bench.take(), re.M)
     assert len(names) > 20
-    for name in set(names) - {"run", "wait", "pin"}:
+    for name in set(names) - {"run", "wait", "pin", "slip"}:
         bench.terminal.line(f"help {name}")
         assert bench.take().startswith(f"  {name}")
     assert bench.ask("help nothing") == "error: unknown command 'nothing'"
 
 
 def test_help_shows_every_key_of_every_form(bench: Bench) -> None:
-    """Optional keys in brackets; keys of move files only are not listed."""
+    """Optional keys in brackets; keys of move files only are not listed. Last those of the outputs."""
     bench.terminal.line("help move")
     lines = bench.take().splitlines()
-    assert len(lines) == len(FORMS) + 1
+    assert len(lines) == len(FORMS) + 2
     for line, form in zip(lines, FORMS.values(), strict=False):
         assert line.startswith(
             f"  move [method={form.name}] " if form.told_by else f"  move method={form.name} "

@@ -11,7 +11,8 @@ from passo.toolchain import paths
 
 SEED = str(random_cases.seed())
 SECONDS = str(random_cases.fuzz_seconds())
-FOLDERS = (paths.model, paths.planner, paths.protocol, paths.console, paths.driver)
+# The driver before the model: both have a passo_outputs.h, the console means the first.
+FOLDERS = (paths.driver, paths.console, paths.planner, paths.protocol, paths.model)
 ENGINE = [*engine_sources(), paths.engine / "engine_model.c", paths.engine / "passo_terminal.c"]
 
 

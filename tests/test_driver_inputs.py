@@ -152,6 +152,24 @@ def test_stuck_at_power_up(pin: str) -> None:
     assert driver.fault == "OK" and driver.state == State.IDLE
 
 
+@pytest.mark.parametrize("high", [1, 2])
+def test_a_switch_that_flickers_on_every_clock(high: int) -> None:
+    """The filter lets no level pass: no stop, no flag, no edge for the trigger."""
+    machine = machine_of()
+    driver = driver_of(machine)
+    driver.call("arm_trigger", struct("trigger_config", source=TriggerSource.HOME))
+    driver.call("move_by_speed", by_speed([100, 0, 0, 0]))
+    for clock in range(20_000):
+        machine.engine.set("home", int(clock % (high + 1) < high))
+        machine.engine.set("limit_high", int(clock % (high + 1) < high))
+        machine.engine.run(1)
+    for pin in ("home", "limit_high"):
+        machine.engine.set(pin, 0)
+    driver.wait(1)
+    assert driver.positions()[0] == 100 and not report_of(driver).fired
+    assert not readings(driver).was_home and not readings(driver).was_limit_high
+
+
 def test_watchdog() -> None:
     """On after open; a silent host: a soft stop, with a name and an exact position; off if told so."""
     machine = machine_of()

@@ -202,6 +202,11 @@ bool passo_rig_calls(struct passo_rig *rig)
 	return calls;
 }
 
+void passo_rig_slip(struct passo_rig *rig, uint32_t wheel, int64_t counts)
+{
+	rig->wheel[wheel].slip += counts;
+}
+
 const struct passo_rig_moment *passo_rig_moment(const struct passo_rig *rig, uint32_t event)
 {
 	return &rig->moment[event];

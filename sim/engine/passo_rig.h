@@ -97,6 +97,8 @@ void passo_rig_follow(
 /* Whether an event CALL has come since this was asked last. */
 bool passo_rig_calls(struct passo_rig *rig);
 
+/* A wheel slips now by so many counts, as with an event. */
+void passo_rig_slip(struct passo_rig *rig, uint32_t wheel, int64_t counts);
 const struct passo_rig_moment *passo_rig_moment(const struct passo_rig *rig, uint32_t event);
 int64_t passo_rig_position(const struct passo_rig *rig, uint32_t axis);
 /* Moves up to `capacity` of the oldest changes of inputs to `changes`, of encoders only those of spindles;

@@ -7,10 +7,9 @@ from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 
-from passo import __version__, campaign_options
+from passo import __version__, campaign_options, console_options
 from passo.failure import BadInputError, Failure
 
-ENGINES = ("both", "rtl", "model")
 PART_SUFFIXES = (".nc", ".ngc", ".gcode")
 OK, FAILED, BAD_INPUT = 0, 1, 2
 
@@ -42,7 +41,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     run.add_argument(
         "--engine",
-        choices=ENGINES,
+        choices=console_options.ENGINES,
         help="engine to run; both: RTL and model, compared edge for edge (default; of G-code: model)",
     )
     run.add_argument("--out", type=Path, metavar="DIR", help="output folder (default build/run/NAME)")
@@ -63,37 +62,7 @@ def _parser() -> argparse.ArgumentParser:
     source.add_argument("--csv", type=Path, metavar="FILE", help="u,s: a curve; or k,point: a table")
     shape.add_argument("--out", type=Path, metavar="FILE", help="write the table: FILE.csv or FILE.toml")
     shape.add_argument("--plot", type=Path, metavar="FILE.png", help="draw it")
-    console = commands.add_parser(
-        "console", help="console of the STM32 board with a simulated core (docs/console.md)"
-    )
-    console.set_defaults(command=_console)
-    console.add_argument("--engine", choices=ENGINES, default="model", help="the core (default model)")
-    console.add_argument("--axes", type=int, default=4, metavar="N", help="axes of a channel (default 4)")
-    console.add_argument(
-        "--channels", type=int, default=1, metavar="N", help="channels of the core (default 1)"
-    )
-    console.add_argument(
-        "--clock", type=int, default=100_000_000, metavar="HZ", help="clock of the core (default 100000000)"
-    )
-    console.add_argument("--inputs", action="store_true", help="the core has inputs (docs/machine.md)")
-    console.add_argument(
-        "--switch",
-        action="append",
-        default=[],
-        metavar="PIN:AXIS:..POSITION",
-        help="simulate a machine with a switch: home:0:..-500 is active at -500 steps and below, "
-        "limit_high:1:9000.. from 9000 on, probe:2:..-300; repeatable, with --inputs",
-    )
-    console.add_argument("--grbl", action="store_true", help="speak the protocol of grbl (docs/gcode.md)")
-    console.add_argument("--machine", type=Path, metavar="MACHINE.toml", help="of --grbl: axes and limits")
-    console.add_argument("--pty", type=Path, metavar="LINK", help="of --grbl: pseudo-terminal, in real time")
-    console.add_argument(
-        "--settings",
-        type=Path,
-        metavar="FILE",
-        help="of --grbl: keeps $ settings and offsets; made if missing",
-    )
-    console.add_argument("--echo", action="store_true", help="show each line before its answer")
+    console_options.add(commands).set_defaults(command=_console)
     firmware = commands.add_parser(
         "firmware",
         help="type moves at the console of the STM32 firmware, emulated with a simulated core at its pins",

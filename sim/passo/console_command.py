@@ -1,30 +1,91 @@
 # SPDX-License-Identifier: MIT
-"""`passo console`: the console of the STM32 board, or the protocol of grbl, with a simulated core."""
+"""`passo console`: a core with the simulated machine that the options describe, and who talks to it."""
 
 import argparse
 import os
 import sys
+from collections.abc import Callable
+from typing import Any
 
-from passo import grbl, terminal
 from passo.build import Parameters
 from passo.failure import BadInputError
+from passo.grbl import Grbl, pseudo_terminal, serve
+from passo.grbl import talk as talk_grbl
 from passo.grbl_setup import SettingsFile, machine_at
 from passo.machine import Machine, Switch, read_switch
 from passo.machine_file import read_machine
 from passo.move_forms import WHOLE_MAX
 from passo.moves import AXES_MAX, CHANNELS_MAX
 from passo.run import open_engine
+from passo.shafts import SHAFTS_MAX, Shaft, Shafts, read_encoder, read_spindle
+from passo.terminal import Terminal, talk
 
 
 def run_console(options: argparse.Namespace) -> None:
-    """Talk until the end of the input; raises BadInputError."""
+    """Talk to standard input and output, or as grbl."""
     if options.grbl or options.pty or options.machine or options.settings:
-        _run_grbl(options)
-    else:
-        _run_lines(options)
+        _grbl(options)
+        return
+    parameters = _parameters(options)
+    switches, fitted = _switches(options), _shafts(options)
+
+    def write(text: str) -> None:
+        print(text, end="", flush=text.endswith("\n"))
+
+    with open_engine(options.engine, parameters, options.clock) as engine:
+        shafts = Shafts(engine, fitted) if fitted else None
+        with Terminal(Machine(engine, switches) if switches else engine, write, shafts=shafts) as terminal:
+            if sys.stdin.isatty() and sys.stdout.isatty():
+                from passo.prompt import GREETING, typed
+
+                write(GREETING.format(f"{options.engine}, {options.axes} axes, {options.clock} Hz"))
+                talk(typed(terminal), terminal)
+            else:
+                talk(sys.stdin, terminal, write if options.echo else None)
 
 
-def _run_grbl(options: argparse.Namespace) -> None:
+def _parameters(options: argparse.Namespace) -> Parameters:
+    if not 1 <= options.axes <= AXES_MAX or not 1 <= options.clock <= WHOLE_MAX:
+        raise BadInputError(f"--axes must be 1 to {AXES_MAX}, --clock 1 to {WHOLE_MAX}")
+    if not 1 <= options.channels <= CHANNELS_MAX:
+        raise BadInputError(f"--channels must be 1 to {CHANNELS_MAX}")
+    return Parameters(
+        channels=options.channels,
+        axes=options.axes,
+        inputs=int(options.inputs),
+        encoders=int(options.encoders),
+        outputs=int(options.outputs),
+    )
+
+
+def _switches(options: argparse.Namespace) -> list[Switch]:
+    return _read_parts(options, "switch", "inputs", read_switch)
+
+
+def _shafts(options: argparse.Namespace) -> list[Shaft]:
+    found = _read_parts(options, "encoder", "encoders", read_encoder)
+    found += _read_parts(options, "spindle", "encoders", lambda text: read_spindle(text, options.clock))
+    if len({shaft.axis for shaft in found}) < len(found):
+        raise BadInputError("--encoder and --spindle: an axis has one encoder")
+    if len(found) > SHAFTS_MAX:
+        raise BadInputError(f"--encoder and --spindle: at most {SHAFTS_MAX}")
+    return found
+
+
+def _read_parts(options: argparse.Namespace, name: str, needs: str, read: Callable[[str], Any]) -> list[Any]:
+    """The parts of an option that needs another one."""
+    try:
+        parts = [read(text) for text in getattr(options, name)]
+    except ValueError as error:
+        raise BadInputError(f"--{name} {error}") from None
+    if parts and not getattr(options, needs):
+        raise BadInputError(f"--{name} needs --{needs}")
+    if any(part.axis >= options.channels * options.axes for part in parts):
+        raise BadInputError(f"--{name}: the core has no such axis")
+    return parts
+
+
+def _grbl(options: argparse.Namespace) -> None:
     def write(text: str) -> None:
         print(text, end="", flush=True)
 
@@ -34,44 +95,9 @@ def _run_grbl(options: argparse.Namespace) -> None:
     settings = SettingsFile(options.settings) if options.settings else None
     with machine_at(options.engine, machine) as engine:
         if not options.pty:
-            grbl.talk(sys.stdin, grbl.Grbl(engine, machine, write, settings))
+            talk_grbl(sys.stdin, Grbl(engine, machine, write, settings))
             return
-        with grbl.pseudo_terminal(options.pty) as line:
+        with pseudo_terminal(options.pty) as terminal:
             write(f"{options.pty}: 115200 baud or any other\n")
-            said = lambda text: os.write(line, text.encode())  # noqa: E731
-            grbl.serve(grbl.Grbl(engine, machine, said, settings), line)
-
-
-def _switches(options: argparse.Namespace) -> list[Switch]:
-    try:
-        switches = [read_switch(text) for text in options.switch]
-    except ValueError as error:
-        raise BadInputError(f"--switch {error}") from None
-    if switches and not options.inputs:
-        raise BadInputError("--switch needs --inputs")
-    if any(switch.axis >= options.channels * options.axes for switch in switches):
-        raise BadInputError("--switch: the core has no such axis")
-    return switches
-
-
-def _run_lines(options: argparse.Namespace) -> None:
-    def write(text: str) -> None:
-        print(text, end="", flush=text.endswith("\n"))
-
-    if not 1 <= options.axes <= AXES_MAX or not 1 <= options.clock <= WHOLE_MAX:
-        raise BadInputError(f"--axes must be 1 to {AXES_MAX}, --clock 1 to {WHOLE_MAX}")
-    if not 1 <= options.channels <= CHANNELS_MAX:
-        raise BadInputError(f"--channels must be 1 to {CHANNELS_MAX}")
-    switches = _switches(options)
-    parameters = Parameters(channels=options.channels, axes=options.axes, inputs=int(options.inputs))
-    with (
-        open_engine(options.engine, parameters, options.clock) as engine,
-        terminal.Terminal(Machine(engine, switches) if switches else engine, write) as console,
-    ):
-        if sys.stdin.isatty() and sys.stdout.isatty():
-            from passo.prompt import GREETING, typed  # takes over the terminal
-
-            write(GREETING.format(f"{options.engine}, {options.axes} axes, {options.clock} Hz"))
-            terminal.talk(typed(console), console)
-        else:
-            terminal.talk(sys.stdin, console, write if options.echo else None)
+            said = lambda text: os.write(terminal, text.encode())  # noqa: E731
+            serve(Grbl(engine, machine, said, settings), terminal)

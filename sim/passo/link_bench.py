@@ -7,6 +7,7 @@ from typing import Any
 from passo.build import Parameters, model_library
 from passo.driver import Driver, DriverError, Source
 from passo.engine import Engine
+from passo.moves import PinTiming
 from passo.native import ffi
 
 CLOCK_HZ = 72_000_000
@@ -50,6 +51,8 @@ def _stream(sclk_hz: int, substeps: int, lines: int) -> tuple[bool, float]:
     config = {"clock_hz": CLOCK_HZ, "spi_half_period": CLOCK_HZ // sclk_hz // 2}
     with Engine(model_library(), PARAMETERS, **config) as engine:
         driver = Driver(engine)
+        for axis in range(PARAMETERS.axes):
+            driver.configure_axis(axis, PinTiming())
         path, ramps = _path(substeps, lines)
         given: list[int] = []  # clock at which each line was requested
 

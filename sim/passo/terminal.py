@@ -19,6 +19,7 @@ from passo.machine import Machine
 from passo.native import console, ffi
 from passo.pair_engine import PairEngine
 from passo.pins import INPUTS
+from passo.shafts import Shafts
 
 GAP, GAP_PER_WORD = 64, 4  # clocks after a frame
 PATIENCE = 20  # rounds that a motion may be held or wait for sync
@@ -27,14 +28,16 @@ MICROSECONDS = 1_000_000
 RUN_MAX = 3600  # seconds
 DECIMAL = re.compile(r"\d{1,6}(\.\d{0,9})?")
 
-PINS = [pin.name for pin in INPUTS if pin.name == "sync" or pin.parameter == "inputs"]
+PINS = [pin.name for pin in INPUTS if pin.name == "sync" or pin.parameter]
 LEVELS = re.compile(r"\d{1,6}")
+COUNTS = re.compile(r"-?\d{1,9}")
 
 STANDS = "the motion does not go on: it is held, or waits for the sync input"
 
 HELP = """  run: let seconds of simulated time pass (only in the simulation)
   wait: let time pass until nothing is queued or moves (only in the simulation)
   pin: set the levels of an input of the core, a bit per axis (only in the simulation)
+  slip: turn the encoder of an axis by counts against its axis (only in the simulation)
   quit, exit: end the simulation
 """
 
@@ -42,14 +45,18 @@ HELP = """  run: let seconds of simulated time pass (only in the simulation)
 class Terminal:
     """A console and its core.
 
-    `write` receives all output, in pieces; `keep`: store the pin events for pulses(). Setting `interrupted`
-    ends what lets time pass.
+    `write` receives all output, in pieces; `keep`: store the pin events for pulses(). `shafts`: the encoders
+    at the engine. Setting `interrupted` ends what lets time pass.
     """
 
     def __init__(
-        self, engine: Engine | PairEngine | Machine, write: Callable[[str], object], keep: bool = False
+        self,
+        engine: Engine | PairEngine | Machine,
+        write: Callable[[str], object],
+        keep: bool = False,
+        shafts: Shafts | None = None,
     ):
-        self.engine, self._write, self._keep = engine, write, keep
+        self.engine, self._write, self._keep, self._shafts = engine, write, keep, shafts
         self._events: list[np.ndarray] = []
         self._error: Exception | None = None
         self.interrupted = False
@@ -90,7 +97,7 @@ class Terminal:
         self._check()
 
     def line(self, text: str) -> None:
-        """Execute a line: a command of the simulation (run, wait, pin) or of the console."""
+        """Execute a line: a command of the simulation (run, wait, pin, slip) or of the console."""
         words = words_of(text)
         self.interrupted = False
         if words[:1] == ["wait"]:
@@ -99,6 +106,8 @@ class Terminal:
             self._answer(self._run(words[1:]))
         elif words[:1] == ["pin"]:
             self._answer(self._pin(words[1:]))
+        elif words[:1] == ["slip"]:
+            self._answer(self._slip(words[1:]))
         else:
             if words in (["help"], ["?"]):
                 self._write(HELP)
@@ -179,6 +188,13 @@ class Terminal:
         self.engine.set(words[0], int(words[1]))
         return None
 
+    def _slip(self, words: list[str]) -> str | None:
+        if len(words) != 2 or not LEVELS.fullmatch(words[0]) or not COUNTS.fullmatch(words[1]):
+            return "slip needs an axis and counts, such as slip 0 -40"
+        if self._shafts is None or not self._shafts.slip(int(words[0]), int(words[1])):
+            return f"axis {words[0]} has no --encoder"
+        return None
+
     def _poll(self) -> int:
         """One round of the console's main loop; return the enum passo_terminal_status."""
         status = console().passo_terminal_poll(self._console)
@@ -209,6 +225,8 @@ class Terminal:
 
     def _collect(self) -> None:
         """Drain the events of the engine."""
+        if self._shafts:
+            self._shafts.forget()
         events = self.engine.drain()
         if self._keep and len(events):
             self._events.append(events)

@@ -31,6 +31,20 @@ struct passo_values {
 	int32_t distance, position;
 	uint32_t back_off, pull_off;
 	uint64_t speed, slow_speed, top_speed;
+#ifndef PASSO_WITHOUT_PARTS
+	/* outputs */
+	bool output_given;              /* of a move */
+	uint32_t levels, pitch;         /* steps, then substeps */
+	uint64_t power, pwm, reference; /* UQ32.32 %, Hz, substeps per clock */
+	uint64_t lag, width;            /* clocks */
+	int32_t interval;
+	struct passo_raster_values raster;
+	/* encoders */
+	struct passo_console_encoder encoder;
+	uint32_t filter, counts_per_turn;
+	uint64_t turns; /* UQ32.32 */
+	bool wait_index, endless;
+#endif
 };
 
 /* Arguments of a command. */
@@ -62,6 +76,8 @@ bool passo_answer(const struct passo_call *call, enum passo_error error);
 bool passo_check_enabled(const struct passo_call *call, uint8_t axes, uint8_t *off);
 /* Notes once for each axis that it moves without its drive. */
 void passo_note_disabled(const struct passo_call *call, uint8_t off);
+/* Prints the axes of a mask after a text, or none. */
+void passo_say_axes(const struct passo_sink *sink, const char *text, uint8_t axes);
 /* Prints levels of inputs, why the channel is stopped, and which axes are homed. */
 void passo_say_inputs(const struct passo_call *call, const struct passo_readings *now);
 /* Prints what a trigger has latched. */
@@ -72,7 +88,8 @@ int64_t passo_thousandths(int64_t value);
 
 /* Moves and rotation: passo_move_commands.c. Control and readings: passo_motion_commands.c. Settings:
  * passo_settings_commands.c. `open`, and `clear`, which may have to apply them: passo_opening.c. Inputs:
- * passo_input_commands.c. Home, probe, jog: passo_task_commands.c. */
+ * passo_input_commands.c. Home, probe, jog: passo_task_commands.c. Outputs: passo_output_commands.c,
+ * those of a move: passo_move_outputs.c. Encoders and threads: passo_encoder_commands.c. */
 bool passo_run_move(const struct passo_call *call);
 bool passo_run_turn(const struct passo_call *call);
 bool passo_run_rpm(const struct passo_call *call);
@@ -103,8 +120,48 @@ bool passo_run_jog(const struct passo_call *call);
 bool passo_run_goto(const struct passo_call *call);
 bool passo_run_jog_speed(const struct passo_call *call);
 bool passo_run_jog_cancel(const struct passo_call *call);
+#ifndef PASSO_WITHOUT_PARTS
+bool passo_run_output(const struct passo_call *call);
+bool passo_run_outputs(const struct passo_call *call);
+bool passo_run_compare(const struct passo_call *call);
+bool passo_run_encoder(const struct passo_call *call);
+bool passo_run_encoders(const struct passo_call *call);
+bool passo_run_adopt(const struct passo_call *call);
+bool passo_run_thread(const struct passo_call *call);
+#endif
 bool passo_run_version(const struct passo_call *call);
 bool passo_run_help(const struct passo_call *call);
+#ifndef PASSO_WITHOUT_PARTS
+/* Takes the keys of outputs from the words of a move. */
+bool passo_output_read(const struct passo_call *call);
+/* Prints an error and returns false if the move takes fewer values than its raster has. */
+bool passo_output_fits(const struct passo_call *call, const struct passo_form_move *move);
+/* Queues a move with its outputs. */
+enum passo_error passo_output_queue(const struct passo_call *call, const struct passo_form_move *move);
+/* Prints these keys. */
+void passo_output_help(const struct passo_sink *sink);
+#else
+static inline bool passo_output_read(const struct passo_call *call)
+{
+	(void)call;
+	return true;
+}
+static inline bool passo_output_fits(const struct passo_call *call, const struct passo_form_move *move)
+{
+	(void)call;
+	(void)move;
+	return true;
+}
+static inline enum passo_error passo_output_queue(
+    const struct passo_call *call, const struct passo_form_move *move)
+{
+	return passo_forms_queue(&call->channel->passo, move);
+}
+static inline void passo_output_help(const struct passo_sink *sink)
+{
+	(void)sink;
+}
+#endif
 /* Prints the keys of `config`. */
 void passo_config_help(const struct passo_sink *sink);
 

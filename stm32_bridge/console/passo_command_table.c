@@ -99,6 +99,45 @@ static const struct passo_key GOTO_KEYS[] = {
     CHANNEL,
 };
 #endif
+#ifndef PASSO_WITHOUT_PARTS /* for the same */
+static const struct passo_key OUTPUT_KEYS[] = {
+    PASSO_WHOLE("levels", levels, 0, UINT8_MAX, ""),
+    PASSO_VALUE("pwm", pwm, NUMBER, ""),
+    PASSO_VALUE("lag", lag, TIME, ""),
+    PASSO_VALUE("reference", reference, NUMBER, ""),
+    CHANNEL,
+};
+static const struct passo_key COMPARE_KEYS[] = {
+    PASSO_VALUE("on", on, FLAG, "1"),
+    CHANNEL,
+    PASSO_VALUE("axis", axis, AXIS, ""),
+    PASSO_VALUE("position", position, INTEGER, ""),
+    PASSO_VALUE("interval", interval, INTEGER, ""),
+    PASSO_VALUE("width", width, TIME, ""),
+};
+static const struct passo_key ENCODER_KEYS[] = {
+    PASSO_VALUE("axis", axis, AXIS, ""),
+    CHANNEL,
+    PASSO_WHOLE("filter", filter, 0, UINT32_MAX, ""),
+    PASSO_VALUE("counts_per_step", encoder.counts_per_step, NUMBER, ""),
+    PASSO_VALUE("limit", encoder.limit, NUMBER, ""),
+    PASSO_VALUE("stop", encoder.stop, STOP, ""),
+    PASSO_VALUE("inverted", encoder.inverted, FLAG, ""),
+    PASSO_VALUE("index_inverted", encoder.index_inverted, FLAG, ""),
+    PASSO_VALUE("index_gated", encoder.index_gated, FLAG, ""),
+};
+static const struct passo_key ADOPT_KEYS[] = {PASSO_VALUE("axis", axis, AXIS, NULL), CHANNEL};
+static const struct passo_key THREAD_KEYS[] = {
+    PASSO_VALUE("encoder", axis, AXIS, NULL),
+    PASSO_WHOLE("counts_per_turn", counts_per_turn, 1, UINT32_MAX, NULL),
+    PASSO_VALUE("steps", steps, STEPS, NULL),
+    PASSO_VALUE("turns", turns, NUMBER, NULL),
+    PASSO_VALUE("top_rpm", top_rpm, NUMBER, NULL),
+    PASSO_VALUE("wait_index", wait_index, FLAG, "1"),
+    PASSO_VALUE("endless", endless, FLAG, "0"),
+    CHANNEL,
+};
+#endif
 static const struct passo_key SPEED_KEYS[] = {PASSO_VALUE("speed", speed, NUMBER, NULL), CHANNEL};
 
 /* Commands without keys in their row read their own keys, or have none. */
@@ -135,6 +174,20 @@ const struct passo_command passo_command_table[] = {
     {"trigger", passo_run_trigger, TAKES(TRIGGER_KEYS), 1, false,
 	"latch positions at an edge; or what it did"},
     {"wait_trigger", passo_run_wait_trigger, TAKES(WAIT_TRIGGER_KEYS), 1, false, "answered at the edge"},
+#ifndef PASSO_WITHOUT_PARTS
+    {"output", passo_run_output, TAKES(OUTPUT_KEYS), 0, false,
+	"set levels, and the power pin, or show the settings"},
+    {"outputs", passo_run_outputs, TAKES(CHANNEL_KEYS), 0, true, "state of the outputs"},
+    {"compare", passo_run_compare, TAKES(COMPARE_KEYS), 1, false,
+	"a pulse with the step onto each of some points; 0: none"},
+    {"encoder", passo_run_encoder, TAKES(ENCODER_KEYS), 0, false,
+	"configure the encoder of an axis, or show its settings"},
+    {"encoders", passo_run_encoders, TAKES(CHANNEL_KEYS), 0, true,
+	"what the encoders and the thread have done"},
+    {"adopt", passo_run_adopt, TAKES(ADOPT_KEYS), 1, false,
+	"take what the encoder of an axis measures for its position"},
+    {"thread", passo_run_thread, TAKES(THREAD_KEYS), 0, false, "a straight line whose clock is an encoder"},
+#endif
     {"config", passo_run_config, NULL, 0, 0, false, "show or change settings; help config lists them"},
     {"table", passo_run_table, TAKES(TABLE_KEYS), 2, false, "load 16 of 256 points of a shape, or check it"},
     {"open", passo_run_open, NULL, 0, 0, false, "connect to the core again"},

@@ -26,6 +26,7 @@ static void show_keys(const struct passo_sink *sink, const struct passo_command 
 {
 	if (command->run == passo_run_move) {
 		passo_forms_help(sink);
+		passo_output_help(sink);
 	} else if (command->run == passo_run_config) {
 		passo_config_help(sink);
 	} else {

@@ -36,6 +36,16 @@ enum passo_error passo_commands_set_inputs(
 /* Sets filter and watchdog of the core, if it has inputs. */
 enum passo_error passo_commands_set_core(struct passo_console *console);
 
+#ifndef PASSO_WITHOUT_PARTS
+/* Configures the outputs of a channel, and takes over their levels, if it has outputs. */
+enum passo_error passo_commands_set_outputs(struct passo_console_channel *channel);
+/* Configures the encoders that were given, if the channel has encoders. */
+enum passo_error passo_commands_set_encoders(struct passo_console_channel *channel);
+/* Default settings of outputs and encoders. */
+void passo_commands_reset_outputs(struct passo_console_channel *channel, uint32_t clock_hz);
+void passo_commands_reset_encoders(struct passo_console_channel *channel);
+#endif
+
 /* Number of channels of the core; 0 while it is not open. */
 uint8_t passo_commands_channels(const struct passo_console *console);
 

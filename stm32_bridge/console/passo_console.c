@@ -29,6 +29,10 @@ void passo_console_start(struct passo_console *console, const struct passo_sink 
 	console->filter_microseconds = FILTER_MICROSECONDS;
 	console->flow_waits = true;
 	passo_commands_reset_times(console);
+#ifndef PASSO_WITHOUT_PARTS
+	for (unsigned i = 0; i < PASSO_CHANNELS_MAX; i++)
+		passo_commands_reset_encoders(&console->channel[i]);
+#endif
 	passo_say(sink, "note: Passo console " PASSO_RELEASE "; help lists the commands\n");
 	passo_say_error_note(console, passo_commands_open(console));
 }

@@ -11,8 +11,10 @@
 #define PASSO_CONSOLE_H
 
 #include "passo.h"
+#include "passo_encoder.h"
 #include "passo_forms.h"
 #include "passo_home.h"
+#include "passo_outputs.h"
 
 /* Maximum length of a line, without its end. */
 #define PASSO_LINE_MAX 255u
@@ -39,6 +41,17 @@ struct passo_console_inputs {
 	bool limit_soft, alarm_soft, alarm_disables;
 };
 
+#ifndef PASSO_WITHOUT_PARTS
+/* Encoder of an axis. */
+struct passo_console_encoder {
+	uint64_t counts_per_step; /* UQ32.32 */
+	uint64_t limit;           /* of the following error, UQ32.32 steps; PASSO_NO_FOLLOWING_LIMIT */
+	uint8_t stop;             /* enum passo_following_stop, at the limit */
+	bool inverted, index_inverted, index_gated;
+};
+#define PASSO_NO_FOLLOWING_LIMIT UINT64_MAX
+#endif
+
 /* What a line waits for before it is answered. */
 enum passo_awaited {
 	PASSO_AWAITS_NOTHING,
@@ -61,6 +74,14 @@ struct passo_console_channel {
 	uint8_t inputs_given; /* bit i: those of axis i were configured */
 	uint8_t probe;        /* enum passo_level */
 	struct passo_home home;
+#ifndef PASSO_WITHOUT_PARTS
+	struct passo_outputs_config outputs;
+	uint8_t levels; /* of the digital outputs, unless a move has its own */
+	struct passo_console_encoder encoder[PASSO_AXES_MAX];
+	uint8_t encoders_given;  /* bit i: that of axis i was configured */
+	uint32_t encoder_filter; /* clocks */
+	struct passo_encoder_reading encoder_readings[PASSO_AXES_MAX]; /* the last ones */
+#endif
 };
 
 struct passo_console {

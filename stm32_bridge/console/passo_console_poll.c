@@ -176,8 +176,12 @@ void passo_console_poll(struct passo_console *console)
 static bool stands(const struct passo_console_channel *channel)
 {
 	const struct passo_snapshot *seen = passo_snapshot(&channel->passo);
+	bool armed = seen->state == PASSO_STATE_ARMED;
 
-	return seen->rate == 0u || seen->state == PASSO_STATE_ARMED;
+#ifndef PASSO_WITHOUT_PARTS
+	armed = armed && passo_waits_for_sync(&channel->passo); /* a thread goes on with its index */
+#endif
+	return seen->rate == 0u || armed;
 }
 
 bool passo_console_stands(const struct passo_console *console)

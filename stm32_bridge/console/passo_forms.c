@@ -173,6 +173,41 @@ enum passo_error passo_forms_queue(struct passo *passo, const struct passo_form_
 	return error;
 }
 
+#ifndef PASSO_WITHOUT_PARTS
+static enum passo_plan_error plan_user(
+    const struct passo *passo, const struct passo_form_move *move, struct passo_plan *plan)
+{
+	const struct passo_user_shape shape = {.bank = PASSO_USER_BANK, .table = move->table->points};
+
+	switch (move->form) {
+#define PLAN(name, NAME)                                                                                     \
+	case PASSO_FORM_##NAME:                                                                              \
+		return passo_plan_user_##name(passo_machine(passo), &move->values.name, &shape, plan);
+		PASSO_MOVES_BY_SHAPE(PLAN)
+#undef PLAN
+	default:
+		return PASSO_PLAN_BAD_PROFILE;
+	}
+}
+
+enum passo_plan_error passo_forms_plan(
+    const struct passo *passo, const struct passo_form_move *move, struct passo_plan *plan)
+{
+	if (move->table != NULL)
+		return plan_user(passo, move, plan);
+	switch (move->form) {
+#define PLAN(name, NAME)                                                                                     \
+	case PASSO_FORM_##NAME:                                                                              \
+		return passo_plan_##name(passo_machine(passo), &move->values.name, plan);
+		PASSO_MOVES(PLAN)
+#undef PLAN
+	case PASSO_FORM_COUNT:
+		break;
+	}
+	return PASSO_PLAN_BAD_PROFILE;
+}
+#endif
+
 void passo_forms_help(const struct passo_sink *sink)
 {
 	for (unsigned i = 0; i < PASSO_FORM_COUNT; i++) {

@@ -32,6 +32,12 @@ bool passo_forms_read(struct passo_reading *reading, struct passo_words *words,
 /* Bit i: the move names axis i. */
 uint8_t passo_forms_axes(const struct passo_form_move *move);
 
+#ifndef PASSO_WITHOUT_PARTS
+/* Plans it as passo_forms_queue() does, and queues nothing. */
+enum passo_plan_error passo_forms_plan(
+    const struct passo *passo, const struct passo_form_move *move, struct passo_plan *plan);
+#endif
+
 enum passo_error passo_forms_queue(struct passo *passo, const struct passo_form_move *move);
 
 /* Prints each form with its keys. */

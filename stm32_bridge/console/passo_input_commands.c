@@ -8,8 +8,7 @@
 /* The keys of `input` before those of an axis's inputs. */
 #define KEYS_OF_CHANNEL 3u
 
-/* Prints the axes of a mask after a text, or the text alone. */
-static void say_axes(const struct passo_sink *sink, const char *text, uint8_t axes)
+void passo_say_axes(const struct passo_sink *sink, const char *text, uint8_t axes)
 {
 	const char *before = text;
 
@@ -59,8 +58,8 @@ void passo_say_inputs(const struct passo_call *call, const struct passo_readings
 		{"home", now->home}, {"alarm", now->alarm}},
 	    now->probe);
 	passo_say(sink, " estop=%u", (uint32_t)now->estop);
-	say_axes(sink, " stopped_by=", now->axes);
-	say_axes(sink, " homed=", homed);
+	passo_say_axes(sink, " stopped_by=", now->axes);
+	passo_say_axes(sink, " homed=", homed);
 }
 
 bool passo_run_inputs(const struct passo_call *call)

@@ -38,10 +38,14 @@ enum passo_reader {
 	PASSO_READ_POINTS,       /* uint16_t[16] */
 	PASSO_READ_INTEGER,      /* int32_t, of as many steps as a move can have */
 	/* uint8_t: which of some words */
-	PASSO_READ_LEVEL,  /* enum passo_level */
-	PASSO_READ_SOURCE, /* enum passo_trigger_source */
-	PASSO_READ_EDGE,   /* 0 rising, 1 falling */
-	PASSO_READ_ACTION  /* enum passo_trigger_action */
+	PASSO_READ_LEVEL,   /* enum passo_level */
+	PASSO_READ_SOURCE,  /* enum passo_trigger_source */
+	PASSO_READ_EDGE,    /* 0 rising, 1 falling */
+	PASSO_READ_ACTION,  /* enum passo_trigger_action */
+#ifndef PASSO_WITHOUT_PARTS /* outputs and encoders: for the flash of a small controller */
+	PASSO_READ_STOP,    /* enum passo_following_stop */
+	PASSO_READ_RASTER,  /* struct passo_raster_values */
+#endif
 };
 
 /* Words of PASSO_READ_LEVEL: how an input is connected. */
@@ -58,6 +62,15 @@ struct passo_key {
 };
 
 #define PASSO_POINTS_PER_LINE 16u
+
+#ifndef PASSO_WITHOUT_PARTS
+/* Powers of a raster, 255 is full: what a line of text can hold. */
+#define PASSO_RASTER_MAX 128u
+struct passo_raster_values {
+	uint8_t count;
+	uint8_t values[PASSO_RASTER_MAX];
+};
+#endif
 
 /* A line split into words: key=value, or a value alone, whose key is then "". */
 struct passo_words {

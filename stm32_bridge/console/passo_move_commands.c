@@ -66,10 +66,10 @@ bool passo_run_move(const struct passo_call *call)
 	enum passo_error error;
 	uint8_t off;
 
-	if (!passo_forms_read(call->reading, call->words, &console->table, &move)
-	    || !passo_check_enabled(call, passo_forms_axes(&move), &off))
+	if (!passo_output_read(call) || !passo_forms_read(call->reading, call->words, &console->table, &move)
+	    || !passo_output_fits(call, &move) || !passo_check_enabled(call, passo_forms_axes(&move), &off))
 		return false;
-	error = passo_forms_queue(&call->channel->passo, &move);
+	error = passo_output_queue(call, &move);
 	if (can_wait(call, error)) {
 		const struct passo_snapshot *seen = passo_snapshot(&call->channel->passo);
 

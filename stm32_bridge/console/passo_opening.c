@@ -27,6 +27,10 @@ void passo_commands_reset_times(struct passo_console *console)
 	console->watchdog_microseconds =
 	    longest < WATCHDOG_MICROSECONDS ? (uint32_t)longest : WATCHDOG_MICROSECONDS;
 	console->disable_microseconds = 0;
+#ifndef PASSO_WITHOUT_PARTS
+	for (unsigned i = 0; i < PASSO_CHANNELS_MAX; i++)
+		passo_commands_reset_outputs(&console->channel[i], console->clock_hz);
+#endif
 }
 
 enum passo_error passo_commands_set_core(struct passo_console *console)
@@ -60,6 +64,19 @@ static enum passo_error set_inputs(struct passo_console_channel *channel)
 	return error;
 }
 
+/* Applies the settings of outputs and encoders to a channel. */
+static enum passo_error set_parts(struct passo_console_channel *channel)
+{
+#ifdef PASSO_WITHOUT_PARTS
+	(void)channel;
+	return PASSO_OK;
+#else
+	enum passo_error error = passo_commands_set_outputs(channel);
+
+	return error == PASSO_OK ? passo_commands_set_encoders(channel) : error;
+#endif
+}
+
 /* Applies the settings to a channel. */
 static enum passo_error set_up(const struct passo_console *console, struct passo_console_channel *channel)
 {
@@ -72,6 +89,8 @@ static enum passo_error set_up(const struct passo_console *console, struct passo
 		error = passo_configure_axis(passo, axis, &channel->axis[axis]);
 	if (error == PASSO_OK)
 		error = set_inputs(channel);
+	if (error == PASSO_OK)
+		error = set_parts(channel);
 	channel->unset = error != PASSO_OK;
 	return error;
 }

@@ -130,6 +130,26 @@ static bool read_points(
 	return true;
 }
 
+#ifndef PASSO_WITHOUT_PARTS
+static bool read_raster(const struct passo_reading *reading, const struct passo_key *key, const char *list,
+    struct passo_raster_values *raster)
+{
+	const uint32_t count = count_items(list);
+	uint32_t value;
+
+	if (count > PASSO_RASTER_MAX)
+		return passo_complain(reading->sink, "%s has %u values, 1 to %u are possible", key->name,
+		    count, (uint32_t)PASSO_RASTER_MAX);
+	raster->count = (uint8_t)count;
+	for (unsigned i = 0; list != NULL; i++) {
+		if (!passo_number_whole(reading, key, next_item(&list), 0, UINT8_MAX, &value))
+			return false;
+		raster->values[i] = (uint8_t)value;
+	}
+	return true;
+}
+#endif
+
 static bool read_profile(
     struct passo_reading *reading, const struct passo_key *key, const char *text, enum passo_profile *profile)
 {
@@ -219,6 +239,12 @@ bool passo_value_read(
 	case PASSO_READ_EDGE:
 	case PASSO_READ_ACTION:
 		return passo_value_choose(reading, key, text, place);
+#ifndef PASSO_WITHOUT_PARTS
+	case PASSO_READ_STOP:
+		return passo_value_choose(reading, key, text, place);
+	case PASSO_READ_RASTER:
+		return read_raster(reading, key, text, place);
+#endif
 	}
 	return false;
 }

@@ -6,7 +6,8 @@
 #include "passo_plan.h"
 #include "passo_value.h"
 
-/* The value of a key in the help; from PASSO_READ_LEVEL on, all its words in the order of its numbers. */
+/* The value of a key in the help; of those that are one of some
+ * words, all of them in the order of their numbers. */
 static const char *const PLACEHOLDERS[] = {
     [PASSO_READ_NOTHING] = "name",
     [PASSO_READ_WHOLE] = "n",
@@ -32,6 +33,10 @@ static const char *const PLACEHOLDERS[] = {
     [PASSO_READ_SOURCE] = "none|limit_low|limit_high|home|probe|index",
     [PASSO_READ_EDGE] = "rising|falling",
     [PASSO_READ_ACTION] = "latch|soft_stop|hard_stop|end_endless",
+#ifndef PASSO_WITHOUT_PARTS
+    [PASSO_READ_STOP] = "none|soft|hard",
+    [PASSO_READ_RASTER] = "n,..",
+#endif
 };
 
 /* The length of the first word of some. */
