@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from passo.engine import Engine, PairEngine
+from passo.engine import Engine
 from passo.native import ffi
+from passo.pair_engine import PairEngine
 from passo.registers import CHANNEL_ENCODER_FILTER_FILTER_RESET as FILTER
 from passo.rig import CHANGES_PER_DRAIN, RATIO_ONE, gap_of, most
 from passo.setup_outputs import COUNT_CLOCKS_MIN
