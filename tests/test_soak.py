@@ -2,17 +2,19 @@
 """A short form of `make soak`, which plays thousands of histories and plants all defects."""
 
 import shutil
+import subprocess
 from pathlib import Path
 
 import pytest
 from passo import random_cases
 from passo.build import rtl_library
+from passo.compiler import includes
 from passo.planted import plant
 from passo.toolchain import paths
 
 from soak import defects, numbers, parts
 from soak.defects import Defect
-from soak.program import build
+from soak.program import FLAGS, FOLDERS, build
 from soak.report import JUDGED, MACHINE_JUDGED
 
 SEED = random_cases.seed()
@@ -90,13 +92,18 @@ def test_a_defect_goes_red(name: str) -> None:
 
 @pytest.mark.parametrize("defect", DEFECTS.values(), ids=DEFECTS)
 def test_every_defect_can_be_put_back(defect: Defect, tmp_path: Path) -> None:
-    """The sources still contain the text that it replaces."""
+    """The sources still contain the text that it replaces, and what comes in its place compiles."""
+    edited = {tmp_path / file: paths.root / file for file, _, _ in defect.edits}
+    for copy, source in edited.items():
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(source, copy)
     for file, old, new in defect.edits:
-        copy = tmp_path / file
-        if not copy.exists():
-            copy.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy(paths.root / file, copy)
-        plant(copy, old, new)
+        plant(tmp_path / file, old, new)
+    for copy, source in edited.items():
+        folders = [copy.parent, source.parent, *FOLDERS.values()]
+        command = ["cc", *FLAGS, "-fsyntax-only", *includes(*folders), copy]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=60)
+        assert done.returncode == 0, done.stderr
 
 
 def test_a_core_that_differs_from_the_model_goes_red(program: Path, tmp_path: Path, monkeypatch) -> None:
