@@ -152,6 +152,24 @@ def test_stuck_at_power_up(pin: str) -> None:
     assert driver.fault == "OK" and driver.state == State.IDLE
 
 
+def test_a_limit_switch_stuck_at_power_up() -> None:
+    """It stops nothing at rest, makes no step towards it, and lets the axis go away."""
+    machine = machine_of()
+    machine.set("limit_high", 1)
+    driver = driver_of(machine)
+    assert driver.fault == "OK" and driver.state == State.IDLE
+    driver.call("move_by_speed", by_speed([50, 0, 0, 0]))
+    machine.run(CLOCK_HZ // 10)
+    with pytest.raises(DriverError, match="LIMIT"):
+        driver.poll()
+    assert machine.positions.tolist() == driver.positions()[:4] == [0, 0, 0, 0]
+    driver.call("clear")
+    driver.call("move_by_speed", by_speed([-50, 0, 0, 0]))
+    machine.run(CLOCK_HZ)
+    driver.poll()
+    assert machine.positions.tolist() == [-50, 0, 0, 0]
+
+
 @pytest.mark.parametrize("high", [1, 2])
 def test_a_switch_that_flickers_on_every_clock(high: int) -> None:
     """The filter lets no level pass: no stop, no flag, no edge for the trigger."""
