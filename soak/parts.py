@@ -2,13 +2,13 @@
 """Histories on the model, through the driver, on Verilator and on Icarus Verilog."""
 
 import re
-import shutil
 import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from passo.build import Parameters, rtl_library
 from passo.compiler import call, includes
@@ -132,9 +132,9 @@ def play_verilator(program: Path, seed: int, histories: int, jobs: int) -> Part:
     return _all(Part("verilator"), share * len(SETS), work, jobs)
 
 
-def _bench(parameters: Parameters) -> Path:
-    """Compile the player for these parameters with Icarus Verilog; return its path."""
-    made = BUILD / f"player_{parameters.name}.vvp"
+def _bench(parameters: Parameters, folder: Path) -> Path:
+    """Compile the player for these parameters with Icarus Verilog into a folder; return its path."""
+    made = folder / f"player_{parameters.name}.vvp"
     given = [f"-Psoak_player.{name}={value}" for name, value in parameters.verilog().items()]
     sources = [HERE / "player.v", *sorted(paths.rtl.glob("*.v"))]
     folders = includes(paths.rtl, HERE)
@@ -144,28 +144,28 @@ def _bench(parameters: Parameters) -> Path:
 
 def play_icarus(program: Path, seed: int, histories: int, jobs: int, machine: bool = False) -> Part:
     """Histories recorded on the judged model and replayed to the core on Icarus Verilog."""
-    benches = [_bench(parameters) for parameters in ((MACHINE,) if machine else SETS)]
     name = "machine on icarus" if machine else "icarus"
     kind = ["--machine"] if machine else []
-    folder = BUILD / "records" / name.replace(" ", "_")
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
+    BUILD.mkdir(parents=True, exist_ok=True)
+    with TemporaryDirectory(prefix="icarus.", dir=BUILD) as temporary:
+        folder = Path(temporary)  # of this call alone: others may play other sources at the same time
+        benches = [_bench(parameters, folder) for parameters in ((MACHINE,) if machine else SETS)]
 
-    def play(history: int) -> tuple[Counter[str], list[Failure]]:
-        record = folder / f"{history}.txt"
-        command = [program, str(seed), str(history), "1", "--record", folder, "--short", *kind]
-        counts, failures = play_program(command, name, seed)
-        bench = ["vvp", str(benches[history % len(benches)]), f"+record={record}"]
-        said = say(bench)[1].strip()
-        record.unlink()
-        if not re.fullmatch(r"same [1-9]\d*", said):
-            clock = re.match(r"clock (\d+)", said)
-            failures.append(Failure(name, seed, history, int(clock[1]) if clock else 0, said))
-        return counts, failures
+        def play(history: int) -> tuple[Counter[str], list[Failure]]:
+            record = folder / f"{history}.txt"
+            command = [program, str(seed), str(history), "1", "--record", folder, "--short", *kind]
+            counts, failures = play_program(command, name, seed)
+            bench = ["vvp", str(benches[history % len(benches)]), f"+record={record}"]
+            said = say(bench)[1].strip()
+            record.unlink()
+            if not re.fullmatch(r"same [1-9]\d*", said):
+                clock = re.match(r"clock (\d+)", said)
+                failures.append(Failure(name, seed, history, int(clock[1]) if clock else 0, said))
+            return counts, failures
 
-    return _all(
-        Part(name),
-        histories,
-        ((lambda history=history: play(history)) for history in range(histories)),
-        jobs,
-    )
+        return _all(
+            Part(name),
+            histories,
+            ((lambda history=history: play(history)) for history in range(histories)),
+            jobs,
+        )
