@@ -197,6 +197,7 @@ module passo_axis #(
       dir        <= dir_pin ^ direction_inverted;
       step_made  <= 1'b0;
     end
+    // no edge begins then: the axis is quiet
     if (pins_written && !both_edges_next && !rst) step <= 1'b0;
   end
 

@@ -27,6 +27,11 @@ def gap_of(encoder_filter: int) -> int:
     return encoder_filter + COUNT_GAP
 
 
+def interval_of(clock_hz: int, rpm: Any, counts_per_turn: int) -> int:
+    """Clocks from count to count of a spindle, in units of 1 / RATIO_ONE."""
+    return round(clock_hz * 60 * RATIO_ONE / (rpm * counts_per_turn))
+
+
 def config_of(setup: Setup, axes: int, pins: int, clock_hz: int) -> Any:
     """The `struct passo_rig_config`; the last wire is e-stop."""
     c = ffi().new("struct passo_rig_config *")
@@ -56,7 +61,7 @@ def config_of(setup: Setup, axes: int, pins: int, clock_hz: int) -> Any:
     if spindle := setup.spindle:
         c.wheel[len(setup.encoders)] = {
             "axis": setup.spindle_axis,
-            "interval": round(clock_hz * 60 * RATIO_ONE / (spindle.rpm * spindle.counts_per_turn)),
+            "interval": interval_of(clock_hz, spindle.rpm, spindle.counts_per_turn),
             "wander": spindle.wander * RATIO_ONE // 100,
             "per_turn": spindle.counts_per_turn,
         }

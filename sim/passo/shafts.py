@@ -10,7 +10,7 @@ from passo.engine import Engine
 from passo.native import ffi
 from passo.pair_engine import PairEngine
 from passo.registers import CHANNEL_ENCODER_FILTER_FILTER_RESET as FILTER
-from passo.rig import CHANGES_PER_DRAIN, RATIO_ONE, gap_of, most
+from passo.rig import CHANGES_PER_DRAIN, RATIO_ONE, gap_of, interval_of, most
 from passo.setup_outputs import COUNT_CLOCKS_MIN
 
 NUMBER = r"(\d{1,9}(?:\.\d{1,9})?)"
@@ -62,8 +62,7 @@ class Shafts:
         for number, shaft in enumerate(shafts):
             wheel = {"axis": shaft.axis, "gap": gap_of(FILTER), "per_turn": shaft.counts_per_turn}
             if shaft.rpm:
-                turn = engine.clock_hz * 60 * RATIO_ONE / shaft.rpm
-                wheel["interval"] = round(turn / shaft.counts_per_turn)
+                wheel["interval"] = interval_of(engine.clock_hz, shaft.rpm, shaft.counts_per_turn)
             else:
                 wheel["ratio"] = round(shaft.counts_per_step * RATIO_ONE)
             config.wheel[number] = wheel
