@@ -250,33 +250,46 @@ def read_points(folder: Path, data: dict[str, Any]) -> tuple[int, ...]:
     return read_table(folder / names[0]) if names else ()
 
 
-SHORT = """clock_hz = 1_000_000
-[[move]]
-method = "jerk"
-steps = [1]
-speed = {speed}
-acceleration = 391070
-jerk = 4e9
-"""
+def short_moves(path: Path, count: int, steps: int, **values: float) -> Path:
+    """A file with as many moves of a few steps at 1 MHz, a slow link."""
+    lines = [f"{name} = {value}" for name, value in values.items()]
+    move = ["[[move]]", 'method = "jerk"', f"steps = [{steps}]", *lines]
+    path.write_text("\n".join(["clock_hz = 1_000_000", *(move * count)]))
+    return path
 
 
-@pytest.mark.parametrize(("speed", "excused"), [(240, True), (0.24, False)])
-def test_only_a_slow_link_excuses_an_underrun(tmp_path: Path, speed: float, excused: bool) -> None:
-    """Moves of 4 ms at 1 MHz end before the link brings the next ones; longer ones do not."""
-    file = tmp_path / "short.toml"
-    file.write_text(SHORT.format(speed=speed) + 3 * SHORT.format(speed=speed).partition("\n")[2])
+# At speed the core stops; three moves that end at rest make it wait for the third.
+STOPS = {"count": 4, "steps": 1, "speed": 240, "acceleration": 391070, "jerk": 4e9}
+WAITS = {"count": 3, "steps": 2, "speed": 445, "acceleration": 207170, "jerk": 2.7185e9}
+WAITS |= {"start_speed": 300, "stop_speed": 0}
+
+
+@pytest.mark.parametrize(
+    ("moves", "excuse"), [(STOPS, "the core stopped: RAMP_UNDERRUN"), (WAITS, "the motion took")]
+)
+def test_a_slow_link_excuses_late_ramps(tmp_path: Path, moves: dict[str, float], excuse: str) -> None:
+    """The moves end before the link brings the next ones."""
+    outcome = campaign_play.play_file(short_moves(tmp_path / "short.toml", **moves), "model")
+    assert outcome.refused.startswith(f"LINK_TOO_SLOW: {excuse}")
+
+
+@pytest.mark.parametrize(
+    ("moves", "problem", "kind"),
+    [
+        (STOPS | {"speed": 0.24}, "the core stopped: RAMP_UNDERRUN: The ramps ran out at speed.", "stop"),
+        (STOPS | {"speed": 0.24}, "the motion took 2 clocks instead of 1", "clocks"),
+        # late ramps make a motion longer, never shorter
+        (STOPS | {"speed": 445, "count": 3}, "the motion took 1 clocks instead of 2", "clocks"),
+    ],
+)
+def test_a_slow_link_excuses_nothing_else(
+    tmp_path: Path, moves: dict[str, float], problem: str, kind: str
+) -> None:
+    file = short_moves(tmp_path / "short.toml", **moves)
     outcome = campaign_play.play_file(file, "model")
-    if excused:
-        assert outcome.refused.startswith("LINK_TOO_SLOW: the core stopped: RAMP_UNDERRUN")
-        return
     assert outcome == Outcome(counts=outcome.counts)
-    dry = Run.problems
-
-    def stopped(run: Run) -> list[str]:
-        return [*dry(run), "the core stopped: RAMP_UNDERRUN: The ramps ran out at speed."]
-
-    with mock.patch.object(Run, "problems", stopped):
-        assert campaign_play.play_file(file, "model").fault.kind == "stop"
+    with mock.patch.object(Run, "problems", lambda run: [problem]):
+        assert campaign_play.play_file(file, "model").fault.kind == kind
 
 
 def test_shrinking_keeps_the_kind_of_fault() -> None:

@@ -25,6 +25,12 @@ def load() -> tuple[FFI, Any]:
     return ffi, ffi.dlopen(str(library("encoder", [paths.model], SOURCES, "-O2")))
 
 
+def _inputs(name: str) -> list[str]:
+    """The fields of `struct passo_NAME_wires`."""
+    ffi, _ = load()
+    return [field for field, _ in ffi.typeof(f"struct passo_{name}_wires").fields]
+
+
 class Pair:
     """A module under test and its model, with the same inputs.
 
@@ -44,8 +50,9 @@ class Pair:
         self.model = ffi.new(f"struct passo_{name} *")
         self.before = ffi.new(f"struct passo_{name} *")
         self.wires = ffi.new(f"struct passo_{name}_wires *")
-        self._ffi = ffi
         self._clock = getattr(self.c, f"passo_{name}_clock")
+        self._inputs = dict.fromkeys(_inputs(name), 0)
+        self._pins = {name: getattr(dut, name) for name in (*self._inputs, *outputs)}
         self.compared = 0
 
     @classmethod
@@ -53,15 +60,14 @@ class Pair:
         cls, dut: HierarchyObject, name: str, outputs: Mapping[str, Callable[[Any, Any], int]]
     ) -> "Pair":
         """Reset, all inputs 0."""
-        ffi, _ = load()
-        fields = [field for field, _ in ffi.typeof(f"struct passo_{name}_wires").fields]
-        return cls(dut, await begin(dut, *fields), name, outputs)
+        return cls(dut, await begin(dut, *_inputs(name)), name, outputs)
 
     def set(self, **inputs: int) -> None:
         """Change inputs of both."""
         for name, value in inputs.items():
-            if int(getattr(self.wires, name)) != value:
-                getattr(self.dut, name).value = value
+            if self._inputs[name] != value:
+                self._inputs[name] = value
+                self._pins[name].value = value
                 setattr(self.wires, name, value)
 
     async def clock(self, **inputs: int) -> dict[str, int]:
@@ -75,7 +81,7 @@ class Pair:
     def compare(self) -> dict[str, int]:
         """The outputs, after a comparison."""
         expected = {name: int(of(self.model, self.wires)) for name, of in self.outputs.items()}
-        actual = {name: read(getattr(self.dut, name)) for name in self.outputs}
+        actual = {name: read(self._pins[name]) for name in self.outputs}
         assert actual == expected, f"clock {self.clocks.now}"
         self.compared += 1
         return actual

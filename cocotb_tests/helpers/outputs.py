@@ -50,6 +50,8 @@ class Outputs:
 
     def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
         self.dut, self.clocks = dut, clocks
+        self._pins = {name: getattr(dut, name) for name in INPUTS}
+        self._answers = [(name, getattr(dut, name)) for name in OUTPUTS]
         self.inputs = dict.fromkeys(INPUTS, 0)
         self._scaled = False  # step or reference are new
         self.seen = Seen()
@@ -78,20 +80,19 @@ class Outputs:
             if self.inputs[name] != value:
                 self.inputs[name] = value
                 self._scaled |= name in {"pwm_step", "power_reference"}
-                getattr(self.dut, name).value = value
+                self._pins[name].value = value
 
     async def clock(self, **strobes: int) -> None:
         """One rising edge, with these inputs for this clock only."""
         self.set(**strobes)
         self.set(write_power=int(self._scaled))
         self._scaled = False
-        for place, name in enumerate(INPUTS):
-            self._in[place] = self.inputs[name]
+        self._in[:] = [*self.inputs.values()]
         self._model.outputs_model_clock(self._state, self._in, self._out)
         await self.clocks.fall
-        for place, name in enumerate(OUTPUTS):
-            self.now[name] = read(getattr(self.dut, name))
-            assert self.now[name] == self._out[place], f"{name} after clock {len(self.seen)} of the test"
+        for (name, signal), wanted in zip(self._answers, self._out, strict=True):
+            self.now[name] = value = read(signal)
+            assert value == wanted, f"{name} after clock {len(self.seen)} of the test"
         self.seen.outputs.append(self.now["outputs"])
         self.seen.power.append(self.now["power"])
         self.seen.compare.append(self.now["compare"])

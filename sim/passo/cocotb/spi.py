@@ -54,24 +54,26 @@ class SpiMaster:
 
         With `cut_high` chip select rises while SCLK is still high in the last bit.
         """
-        dut = self.dut
+        sclk, mosi, miso, cs_n = self.dut.spi_sclk, self.dut.spi_mosi, self.dut.spi_miso, self.dut.spi_cs_n
         low, high = Timer(self.period - self.high, "step"), Timer(self.high, "step")
         received: list[int] = []
-        dut.spi_cs_n.value = 0
-        wait = Timer(self.lead, "step")
+        cs_n.value = 0
+        wait, level = Timer(self.lead, "step"), None
         for n in range(count):
-            dut.spi_mosi.value = words[n // 32] >> (31 - n % 32) & 1
+            bit = words[n // 32] >> (31 - n % 32) & 1
+            if bit != level:
+                mosi.value = level = bit
             await wait
             wait = low
-            received.append(read(dut.spi_miso))
-            dut.spi_sclk.value = 1
+            received.append(read(miso))
+            sclk.value = 1
             await high
             if not (cut_high and n == count - 1):
-                dut.spi_sclk.value = 0
+                sclk.value = 0
         await Timer(self.trail, "step")
-        dut.spi_cs_n.value = 1
+        cs_n.value = 1
         await high
-        dut.spi_sclk.value = 0
+        sclk.value = 0
         await Timer(self.gap, "step")
         return received
 
