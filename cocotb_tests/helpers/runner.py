@@ -211,6 +211,7 @@ class _Verilator(Verilator):
             pins = self.build_dir / "pins.vlt"
             pins.write_text(f'`verilator_config\npublic_flat_rw -module "{self.hdl_toplevel}" -var "*"\n')
             verilate.insert(verilate.index(str(self.sources[0])), str(pins))
+            make = [*make, "OPT_FAST=-O1"]  # more takes longer than it saves
         objects = [str(path) for path in self._runtime().glob("verilated*.o")]
         return [verilate, *([["cp", *objects, str(self.build_dir)]] if objects else []), make]
 
