@@ -15,6 +15,7 @@ from typing import Any
 import pytest
 import z3
 from passo import compiler
+from passo.planted import plant
 from passo.toolchain import paths
 
 from equal import page, run
@@ -52,6 +53,16 @@ def test_model_and_rtl_are_equal(coupling: Coupling) -> None:
 def test_planted_bug_is_seen(coupling: Coupling, number: int) -> None:
     result = run.catch_bug(coupling.name, number)
     assert result.good, f"{coupling.bugs[number].name}: {result.says}"
+
+
+@pytest.mark.parametrize("coupling", COUPLINGS, ids=lambda coupling: coupling.name)
+def test_every_bug_can_be_planted(coupling: Coupling, tmp_path: Path) -> None:
+    """Those of slow modules as well, which only `make equal` proves."""
+    for bug in coupling.bugs:
+        copy = tmp_path / Path(bug.file).name
+        copy.write_bytes((paths.root / bug.file).read_bytes())
+        plant(copy, bug.old, bug.new)
+        assert copy.read_bytes() != (paths.root / bug.file).read_bytes(), bug.name
 
 
 def test_every_module_has_bugs_on_both_sides() -> None:
