@@ -29,7 +29,7 @@ module passo_dda (
   // e + N >= M: the carry of the sum in clock A. A non-constant operand in its place (addend[30], then 0) keeps its
   // LUT and flip-flop in the carry chain.
   reg         reached;
-  wire [30:0] sum = {addend[30], e_minus_m} + addend;
+  wire [30:0] sum = {1'b0, e_minus_m} + addend;
 
   assign step_request = decide_step & reached;
 
