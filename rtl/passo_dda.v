@@ -26,8 +26,8 @@ module passo_dda (
 
   reg  [29:0] e_minus_m;
   reg  [30:0] addend;
-  // e + N >= M: the carry of the sum in clock A. A non-constant operand in its place (addend[30], then 0) keeps its
-  // LUT and flip-flop in the carry chain.
+  // e + N >= M: the carry of the sum in clock A, when addend[30] is 0. That bit, as an operand that is not constant,
+  // keeps the LUT and flip-flop of the carry in the chain; on both inputs it may leave the router without an end.
   reg         reached;
   wire [30:0] sum = {1'b0, e_minus_m} + addend;
 
