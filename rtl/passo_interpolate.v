@@ -43,11 +43,11 @@ module passo_interpolate (
   reg  [24:0] fraction;  // F, r
   reg  [24:0] addend;
   reg         both;
-  // the LSBs make r, in addend[0], the carry; an operand of 1 keeps the router from two inputs on one net
+  // the LSBs make r, in addend[0], the carry
   wire [24:0] sum_next;
   wire        unused_bit;
 
-  assign {sum_next, unused_bit} = {1'b0, sum[24:1], addend[0]} + {1'b0, addend[24:1], 1'b1};
+  assign {sum_next, unused_bit} = {1'b0, sum[24:1], 1'b1} + {1'b0, addend};
 
   assign result = {sum, low};
 

@@ -103,14 +103,16 @@ module passo_ramp_queue #(
   // Refusal, one clock ahead of the check
   reg full;
   reg bad_control;
+  reg bad_velocity_high;
   reg bad_velocity_low;
   reg bad_step_high;
-  wire bad_value = (index == INDEX_CONTROL && bad_control) || (index == INDEX_VELOCITY_LOW && bad_velocity_low)
-                   || (index == INDEX_STEP_HIGH && bad_step_high);
+  wire bad_value = (index == INDEX_CONTROL && (bad_control || bad_velocity_high))
+                   || (index == INDEX_VELOCITY_LOW && bad_velocity_low) || (index == INDEX_STEP_HIGH && bad_step_high);
 
   always @(posedge clk) begin
     full <= room == checked;
-    bad_control <= (bus_data & ~RAMP_CONTROL_DEFINED) != 32'd0 || bus_data[31:16] > VELOCITY_MAX_HIGH;
+    bad_control <= (bus_data & ~RAMP_CONTROL_DEFINED) != 32'd0;
+    bad_velocity_high <= bus_data[31:16] > VELOCITY_MAX_HIGH;
     bad_velocity_low <= velocity_is_max && (bus_msb != 5'd0 || bus_data[0]);
     bad_step_high <= bus_msb > 5'd15;
     refusal          <= !(select && bus_check) ? VERDICT_OK :
