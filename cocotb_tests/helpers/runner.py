@@ -30,9 +30,6 @@ SIMULATORS = ("verilator", "icarus")
 NETLIST_VARIABLE = "PASSO_NETLIST"
 COVERAGE_VARIABLE = "PASSO_COVERAGE"
 
-# Both simulators can write a value at the end of the time step by themselves.
-FASTER = {"COCOTB_TRUST_INERTIAL_WRITES": "1"}
-
 _BUILD = paths.build / "cocotb"
 _TOPS = paths.cocotb_tests / "tops"
 _PROBES = paths.cocotb_tests / "probes"
@@ -91,7 +88,7 @@ def run(
             results_xml=str(results),
             seed=seed(),
             waves=waves,
-            extra_env={SEED_VARIABLE: str(seed()), **FASTER, **(environment_variables or {})},
+            extra_env={SEED_VARIABLE: str(seed()), **(environment_variables or {})},
         )
     except SystemExit as error:
         print(f"the simulator ended with {error.code}")
