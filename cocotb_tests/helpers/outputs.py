@@ -50,8 +50,7 @@ class Outputs:
 
     def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
         self.dut, self.clocks = dut, clocks
-        self._pins = {name: getattr(dut, name) for name in INPUTS}
-        self._answers = [(name, getattr(dut, name)) for name in OUTPUTS]
+        self._pins = {name: getattr(dut, name) for name in (*INPUTS, *OUTPUTS)}
         self.inputs = dict.fromkeys(INPUTS, 0)
         self._scaled = False  # step or reference are new
         self.seen = Seen()
@@ -90,8 +89,8 @@ class Outputs:
         self._in[:] = [*self.inputs.values()]
         self._model.outputs_model_clock(self._state, self._in, self._out)
         await self.clocks.fall
-        for (name, signal), wanted in zip(self._answers, self._out, strict=True):
-            self.now[name] = value = read(signal)
+        for name, wanted in zip(OUTPUTS, self._out, strict=True):
+            self.now[name] = value = read(self._pins[name])
             assert value == wanted, f"{name} after clock {len(self.seen)} of the test"
         self.seen.outputs.append(self.now["outputs"])
         self.seen.power.append(self.now["power"])

