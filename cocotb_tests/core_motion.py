@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from passo import registers as r
-from passo.cocotb.clocks import read
 from passo.registers import Cause, State
 
 from cocotb_tests.helpers.core_bench import (
@@ -20,39 +19,9 @@ from cocotb_tests.helpers.core_bench import (
     core_test,
 )
 from cocotb_tests.helpers.core_expected import distance, due, totals
-from cocotb_tests.helpers.core_moves import SLOW
+from cocotb_tests.helpers.core_moves import SLOW, check_clocks, make
 
 FAST = (Ramp(V_MAX, 0), Ramp(V_MAX, 6), Ramp(0, 0, last=True))  # 6 ticks of a substep every second clock
-
-
-def make(core: Core, channel: CoreChannel, lines: Sequence[Line], ramps: Sequence[Ramp]) -> int:
-    """Make a motion at rate 1.0 and check everything except its steps; return the clock of its start."""
-    since = core.clock
-    before = channel.positions()
-    channel.rest()  # everything must be queued before it starts
-    channel.lines(*lines)
-    channel.ramps(*ramps)
-    channel.start()
-    core.wait_end()
-    ((begin, end),) = core.motions(channel.number, since)
-    assert end - begin == sum(ramp.ticks for ramp in ramps) * core.tick
-    core.run(200)
-    state = channel.state()
-    assert (state.state, state.cause, state.drained) == (State.IDLE, Cause.NONE, 0)
-    moved = [after - b for after, b in zip(channel.positions(), before, strict=True)]
-    assert moved == totals(lines)
-    assert channel.room() == (
-        1 << core.parameters.line_queue_log2,
-        1 << core.parameters.ramp_queue_log2,
-    )
-    return begin
-
-
-def check_clocks(core: Core, begin: int, expected: Sequence[Sequence[int]], factor: int = 1) -> None:
-    """Check that each step leaves its pin as many clocks after `running` rose as it is due."""
-    for axis, clocks in enumerate(expected):
-        actual = [clock - begin for clock in core.steps(axis, begin)]
-        assert actual == [factor * clock for clock in clocks], f"axis {axis}"
 
 
 def make_on_time(core: Core, channel: CoreChannel, lines: Sequence[Line], ramps: Sequence[Ramp]) -> None:
@@ -114,96 +83,6 @@ def lines_of_one_substep_turn_the_axes(core: Core) -> None:
     # 1/4 + n/7 reaches k
     clocks = [-(-(4 * k - 1) * 7 // 4) for k in range(1, 9)]
     assert [clock - begin for clock in core.steps(0, begin)] == clocks
-
-
-@core_test
-def every_axis_steps_every_second_clock(core: Core) -> None:
-    """N = M at velocity 1/2 with step_high = step_low = 1: none of thousands of steps is lost or late."""
-    channel = core.channel()
-    channel.pins(PinTiming())
-    checker = core.watch(PinTiming())
-    ramps = [Ramp(V_MAX, 0), Ramp(V_MAX, 20), Ramp(0, 0, last=True)]
-    count = 10 * core.tick
-    begin = make(core, channel, [Line(count, (count, -count, count)[: core.axes], last=True)], ramps)
-    check_clocks(core, begin, [[2 * k for k in range(1, count + 1)]] * core.axes)
-    assert checker.positions[: core.axes] == [count, -count, count][: core.axes]
-
-
-@core_test
-def reversals_keep_all_pin_timings(core: Core) -> None:
-    """Steps that have to wait for DIR are made later, in order, each with its own direction."""
-    channel = core.channel()
-    timings = [PinTiming(3, 4, 7, 5), PinTiming(1, 9, 2, 11), PinTiming(10, 1, 20, 1)][: core.axes]
-    channel.pins(*timings)
-    checker = core.watch(*timings)
-    ramps = [Ramp(ONE // 14, 4, Shape.COSINE), Ramp(ONE // 14, 12), Ramp(0, 4, Shape.COSINE, last=True)]
-    total = distance(ramps, core.tick)
-    count = 12
-    lines = [
-        Line(total // count, (total // count * (-1) ** i, -5 * (-1) ** (i // 2), 3 * (-1) ** i)[: core.axes])
-        for i in range(count - 1)
-    ]
-    lines.append(Line(total - (count - 1) * (total // count), (-2, 1, 0)[: core.axes], last=True))
-    make(core, channel, lines, ramps)
-    assert checker.positions == totals(lines)
-    for axis in range(core.axes):
-        ups = sum(max(0, line.steps[axis]) for line in lines)
-        assert sum(direction > 0 for _, direction in checker.steps(axis)) == ups
-    assert checker.turns(0) == count - 1
-
-
-@core_test
-def both_edges_and_polarities(core: Core) -> None:
-    """Every edge is a step, and every pin can be active low."""
-    channel = core.channel()
-    timings = [
-        PinTiming(2, 5, 3, 4, both_edges=True),
-        PinTiming(3, 2, 4, 3, step_inverted=True, direction_inverted=True),
-        PinTiming(4, 3, 2, 5, both_edges=True, step_inverted=True),
-    ]
-    ramps = [Ramp(ONE // 11, 3, Shape.COSINE), Ramp(ONE // 11, 7), Ramp(0, 2, last=True)]
-    total = distance(ramps, core.tick)
-    # of even numbers, so that STEP is inactive in the end
-    first, rest = total // 4 * 2, total - total // 4 * 2
-    lines = [
-        Line(first, (first, -(first // 4 * 2), first - 2)[: core.axes]),
-        Line(rest, (-12, 12, -(rest // 2 * 2))[: core.axes], last=True),
-    ]
-    for _ in range(core.axes):
-        timings = [*timings[1:], timings[0]]
-        core.finish_watch()
-        channel.pins(*timings[: core.axes])
-        checker = core.watch(*timings[: core.axes])
-        make(core, channel, lines, ramps)
-        assert checker.positions == totals(lines)
-
-
-@core_test
-def pins_follow_their_registers(core: Core) -> None:
-    """EN is what ENABLE says, and each pin of each axis has its own polarity."""
-    channel = core.channel()
-    channel.pins(PinTiming())
-    for axis in range(core.axes):
-        core.link.write(channel.axis_base(axis) + r.AXIS_ENABLE, 0)
-    for axis in range(core.axes):
-        address = channel.axis_base(axis)
-        table = (
-            (0, 1, 4),
-            (0, 0, 0),
-            (8, 0, 4),
-            (8, 1, 0),
-            (8, 0, 4),
-            (2, 0, 1),
-            (4, 0, 2),
-            (0xE, 0, 7),
-            (0, 0, 0),
-        )
-        for flags, enable, pins in table:
-            core.link.write(address, flags)
-            core.link.write(address + r.AXIS_ENABLE, enable)
-            core.run(4)
-            levels = [read(signal) for signal in (core.dut.step, core.dut.dir, core.dut.enable)]
-            assert levels == [(pins >> bit & 1) << axis for bit in range(3)]
 
 
 @core_test

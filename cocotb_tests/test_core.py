@@ -21,16 +21,14 @@ from cocotb_tests.helpers.runner import (
 
 MOST_CHANNELS = {"CHANNELS": 8, "AXES": 1, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 8, "RAMP_QUEUE_LOG2": 8}
 
-# Icarus Verilog is up to ten times slower: long tests run only on Verilator, Icarus gets fewer random moves,
-# and `make icarus` runs on it what `make test` leaves out. `make soak` plays a thousand more histories on it.
+# Icarus Verilog is up to ten times slower: long tests run only on Verilator, Icarus gets fewer random moves
+# and one of the modules below; `make icarus` runs all of them, `make soak` a thousand more histories.
 verilator_only = pytest.mark.parametrize("simulator", ["verilator"])
-LEFT_TO_MAKE_ICARUS = (
-    *("core_commands", "core_faults", "core_link", "core_refusals", "core_channels", "core_registers"),
-    *("core_inputs", "core_encoders", "core_outputs", "core_machine"),
-)
+ON_BOTH = "core_motion"
 
 MODULES = {
     "core_motion": ONE_CHANNEL,  # every step on its clock, from the first clock of a motion to the last
+    "core_pins": ONE_CHANNEL,  # timings, polarities, the fastest steps
     "core_commands": ONE_CHANNEL,  # jog, sync, hold, override, stop, abort
     "core_faults": ONE_CHANNEL,  # underruns and overruns
     "core_link": ONE_CHANNEL,  # duplicates, frames cut short, noise, reads, tables
@@ -46,7 +44,7 @@ MODULES = {
 
 @pytest.mark.parametrize("module", MODULES)
 def test_core(simulator: str, module: str) -> None:
-    if simulator == "icarus" and module in LEFT_TO_MAKE_ICARUS and not os.environ.get("PASSO_ICARUS"):
+    if simulator == "icarus" and module != ON_BOTH and not os.environ.get("PASSO_ICARUS"):
         pytest.skip("part of 'make icarus'")
     run(f"cocotb_tests.{module}", TOP, MODULES[module], simulator)
 

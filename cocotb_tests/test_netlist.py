@@ -43,21 +43,21 @@ def test_no_cell_has_a_signal_twice() -> None:
     assert [name for name, bits in signals.items() if len(bits) != len(set(bits))] == []
 
 
-ONE_CHANNEL_MODULES = ["core_commands", "core_faults", "core_link", "core_long", "core_registers"]
+ONE_CHANNEL_MODULES = ("pins", "commands", "faults", "link", "long", "registers")
 
 
 @every
 @pytest.mark.parametrize("module", ONE_CHANNEL_MODULES)
 def test_netlist_of_one_channel(module: str) -> None:
-    """Commands, faults, the link, the longest times, all bits of the registers."""
-    run(f"cocotb_tests.{module}", TOP, ONE_CHANNEL, SIMULATOR, netlist=True)
+    """Pins, commands, faults, the link, the longest times, all bits of the registers."""
+    run(f"cocotb_tests.core_{module}", TOP, ONE_CHANNEL, SIMULATOR, netlist=True)
 
 
 @every
-@pytest.mark.parametrize("module", ["core_refusals", "core_channels"])
+@pytest.mark.parametrize("module", ["refusals", "channels"])
 def test_netlist_of_two_channels(module: str) -> None:
     """Every reason to refuse a frame; two channels at once."""
-    run(f"cocotb_tests.{module}", TOP, TWO_CHANNELS, SIMULATOR, netlist=True)
+    run(f"cocotb_tests.core_{module}", TOP, TWO_CHANNELS, SIMULATOR, netlist=True)
 
 
 @every

@@ -17,11 +17,11 @@ name = "{name}"
 steps_per_mm = 80
 speed = 100
 acceleration = 1000
-travel = 40
+travel = 20
 home = "{home}"
 switches = {switches}
 """
-HEAD = "clock_hz = 16_000_000\nprobe = true\nspindle_maximum = 1000\n"
+HEAD = "clock_hz = 4_000_000\nprobe = true\nspindle_maximum = 1000\n[home]\nseek = 40\nspeed = 10\n"
 
 
 def machine_of(
@@ -72,9 +72,9 @@ def test_home(session: Session) -> None:
     session.run(0.1)
     assert session.report().startswith("Home|")
     assert session.grbl.wait(lambda: session.grbl.is_idle, 60) and "ok" in session.take()
-    assert session.report().startswith("Idle|MPos:-39.000,-1.000,-1.000|")
+    assert session.report().startswith("Idle|MPos:-19.000,-1.000,-1.000|")
     assert session.line("$20=1") == "ok" and session.line("$J=X1F100") == "error:15"
-    assert session.line("G0 X-39 Y-2") == "ok"
+    assert session.line("G0 X-19 Y-2") == "ok"
     assert session.line("G0 X0.5").splitlines() == ["ok", "ALARM:2"]
 
 
@@ -94,6 +94,6 @@ def test_a_home_without_its_switch(tmp_path: Path) -> None:
     with machine_at("model", machine) as engine:
         session = Session(engine, machine)
         session.line("$X")
-        assert session.line("$132=10") == "ok"
+        assert session.line("$132=4") == "ok"
         said = session.line("$H")
         assert "ALARM:9" in said and "error:9" in said

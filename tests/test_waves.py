@@ -23,9 +23,22 @@ ramp_time = 0.02
 """
 
 
-def run(folder: Path, *options: str) -> tuple[int, Path]:
+TWO_CHANNELS = (
+    MOVES.replace("[200, -120, 0]", "[200]\nchannel = 0")
+    + """
+[[move]]
+steps = [-30]
+channel = 1
+profile = "linear"
+total_time = 0.01
+ramp_time = 0.001
+"""
+)
+
+
+def run(folder: Path, *options: str, text: str = MOVES) -> tuple[int, Path]:
     moves, out = folder / "moves.toml", folder / "out"
-    moves.write_text(MOVES)
+    moves.write_text(text)
     return cli.main(["run", str(moves), "--out", str(out), *options]), out
 
 
@@ -34,8 +47,8 @@ def start_of(out: Path) -> int:
     return int(re.search(r"^\*-\d+ (\d+) ", (out / "waves.gtkw").read_text(), re.M)[1])
 
 
-def waves(folder: Path, *options: str) -> tuple[Path, Fst]:
-    status, out = run(folder, "--engine", "rtl", "--waves", *options)
+def waves(folder: Path, *options: str, text: str = MOVES) -> tuple[Path, Fst]:
+    status, out = run(folder, "--engine", "rtl", "--waves", *options, text=text)
     assert status == 0
     return out, read_fst(out / "waves.fst")
 
@@ -70,6 +83,16 @@ def test_a_window(tmp_path: Path) -> None:
     begin, end = (round(seconds * CLOCK_HZ) * 2 * HALF_PS for seconds in (0.010, 0.0125))
     assert (fst.begin, fst.end) == (start + begin, start + end - HALF_PS)
     assert (out / "waves.fst").stat().st_size < 300_000
+
+
+@needs_writer
+def test_several_channels(tmp_path: Path) -> None:
+    """The signals of each, and the names of their axes."""
+    out, fst = waves(tmp_path, text=TWO_CHANNELS)
+    view = (out / "waves.gtkw").read_text()
+    for channel in (0, 1):
+        assert f"g_channel[{channel}].u_channel.state" in view and f"-channel {channel}: axis 0" in view
+    assert set(re.findall(r"^(?:\(\d+\))?(TOP\..*)$", view, re.M)) <= fst.names
 
 
 @pytest.mark.parametrize(

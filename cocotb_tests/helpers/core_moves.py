@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""A standard motion, and checks after a stop."""
+"""Motions that are made with everything checked but their steps, a standard one, and checks after a stop."""
+
+from collections.abc import Sequence
 
 from passo.registers import Cause, State
 
@@ -7,6 +9,36 @@ from cocotb_tests.helpers.core_bench import ONE, Core, CoreChannel, Line, Ramp, 
 from cocotb_tests.helpers.core_expected import distance, totals
 
 SLOW = ONE // 32  # velocity
+
+
+def make(core: Core, channel: CoreChannel, lines: Sequence[Line], ramps: Sequence[Ramp]) -> int:
+    """Make a motion at rate 1.0 and check everything except its steps; return the clock of its start."""
+    since = core.clock
+    before = channel.positions()
+    channel.rest()  # everything must be queued before it starts
+    channel.lines(*lines)
+    channel.ramps(*ramps)
+    channel.start()
+    core.wait_end()
+    ((begin, end),) = core.motions(channel.number, since)
+    assert end - begin == sum(ramp.ticks for ramp in ramps) * core.tick
+    core.run(200)
+    state = channel.state()
+    assert (state.state, state.cause, state.drained) == (State.IDLE, Cause.NONE, 0)
+    moved = [after - b for after, b in zip(channel.positions(), before, strict=True)]
+    assert moved == totals(lines)
+    assert channel.room() == (
+        1 << core.parameters.line_queue_log2,
+        1 << core.parameters.ramp_queue_log2,
+    )
+    return begin
+
+
+def check_clocks(core: Core, begin: int, expected: Sequence[Sequence[int]], factor: int = 1) -> None:
+    """Check that each step leaves its pin as many clocks after `running` rose as it is due."""
+    for axis, clocks in enumerate(expected):
+        actual = [clock - begin for clock in core.steps(axis, begin)]
+        assert actual == [factor * clock for clock in clocks], f"axis {axis}"
 
 
 def a_motion(core: Core, ticks: int = 5) -> tuple[list[Line], list[Ramp]]:
