@@ -123,7 +123,7 @@ equal: ## Prove that the C model and the RTL are equal, module by module; ONLY="
 wiring: setup ## Invert each connection between the modules of a core: a random history must see it.
 	@$(BIN)/python -m equal.wiring
 
-soak: setup ## Play and judge random histories (two hours); SCALE=, SEED=, ONLY=model,driver,verilator,icarus,machine,defects; HISTORY=n [DRIVER=1 | KIND=machine] prints one.
+soak: setup ## Play and judge random histories (an hour on two cores); SCALE=, SEED=, ONLY=model,driver,verilator,icarus,machine,defects; HISTORY=n [DRIVER=1 | KIND=machine] prints one.
 	@$(BIN)/python -m soak.run $(if $(SEED),--seed $(SEED)) $(if $(SCALE),--scale $(SCALE)) $(if $(ONLY),--only $(ONLY)) \
 	    $(if $(HISTORY),--history $(HISTORY)) $(if $(DRIVER),--driver) $(if $(KIND),--kind $(KIND))
 
