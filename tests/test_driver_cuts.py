@@ -5,6 +5,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from passo.build import WHOLE
 from passo.compiler import STRICT, compile_to, includes, sources
 from passo.toolchain import paths
 
@@ -16,7 +17,7 @@ FOLDERS = (paths.model, paths.planner, paths.protocol, paths.driver)
 def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
     made = tmp_path_factory.mktemp("cuts") / "driver_cuts"
     files = [paths.tests / "driver_cuts.c", *sources(*FOLDERS)]
-    return compile_to(made, *STRICT, "-O3", *includes(*FOLDERS), *files)
+    return compile_to(made, *STRICT, *WHOLE, *includes(*FOLDERS), *files)
 
 
 @pytest.mark.parametrize("part", range(PARTS))
