@@ -27,7 +27,7 @@ TWO_CHANNELS = (
     MOVES.replace("[200, -120, 0]", "[200]\nchannel = 0")
     + """
 [[move]]
-steps = [-30]
+steps = [-30, 20]
 channel = 1
 profile = "linear"
 total_time = 0.01
@@ -45,6 +45,11 @@ def run(folder: Path, *options: str, text: str = MOVES) -> tuple[int, Path]:
 def start_of(out: Path) -> int:
     """Where the marker is, in ps."""
     return int(re.search(r"^\*-\d+ (\d+) ", (out / "waves.gtkw").read_text(), re.M)[1])
+
+
+def signals(view: str) -> list[str]:
+    """Those that a save file shows."""
+    return re.findall(r"^(?:\(\d+\))?(TOP\..*)$", view, re.M)
 
 
 def waves(folder: Path, *options: str, text: str = MOVES) -> tuple[Path, Fst]:
@@ -67,7 +72,7 @@ def test_by_default_the_start(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     assert f"waves, {(out / 'waves.fst').stat().st_size / 1e6:.1f} MB" in said
 
     view = (out / "waves.gtkw").read_text()
-    shown = re.findall(r"^(?:\(\d+\))?(TOP\..*)$", view, re.M)
+    shown = signals(view)
     assert len(shown) > 30 and set(shown) <= fst.names
     groups = [re.findall(rf"^@{flag}\n-(.*)$", view, re.M) for flag in ("800200", "1000200")]
     assert groups[0] == groups[1] and groups[0][-3:] == ["axis 0", "axis 1", "axis 2"]
@@ -92,7 +97,8 @@ def test_several_channels(tmp_path: Path) -> None:
     view = (out / "waves.gtkw").read_text()
     for channel in (0, 1):
         assert f"g_channel[{channel}].u_channel.state" in view and f"-channel {channel}: axis 0" in view
-    assert set(re.findall(r"^(?:\(\d+\))?(TOP\..*)$", view, re.M)) <= fst.names
+    assert "-channel 1: axis 1" in view
+    assert set(signals(view)) <= fst.names
 
 
 @pytest.mark.parametrize(
