@@ -101,6 +101,16 @@ def turn(run: Run, clocks: int) -> None:
     run.pins["clock"][row] = begun[89] + clocks if clocks > 0 else begun[90] + clocks
 
 
+def turn_and_back(run: Run, number: int) -> None:
+    """Invert DIR for 40 clocks, 40 clocks after a step."""
+    begun = run.steps(0)[0][number] + run.start + 40
+    row = int(np.searchsorted(run.pins["clock"], begun))
+    glitch = np.repeat(run.pins[row - 1 : row], 2)
+    glitch["clock"] = begun, begun + 40
+    glitch["dir"][0] ^= 1
+    run.pins = np.insert(run.pins, row, glitch)
+
+
 def drop(run: Run, number: int) -> None:
     """Remove a pulse of axis 0."""
     rise = run.steps(0)[0][number] + run.start
@@ -122,6 +132,8 @@ WRONG: dict[str, tuple[str, Callable[[Run], None]]] = {
     "high, short": ("high", lambda run: shift(run, -1, 50, -1)),
     "setup": ("setup", lambda run: turn(run, -29)),
     "hold": ("hold", lambda run: turn(run, 9 + 7 + 19)),
+    "turns": ("turns", lambda run: turn_and_back(run, 89)),
+    "turns at the end": ("turns", lambda run: turn_and_back(run, 179)),
     "direction": ("direction", lambda run: run.pins.__setitem__("dir", run.pins["dir"] ^ 1)),
     "late": ("curve", lambda run: later(run, 200)),
     "early": ("curve", lambda run: later(run, -200)),

@@ -177,6 +177,35 @@ def test_stop(driver: Driver, wire: Wire, how: str) -> None:
     assert driver.positions() == [0, 5, 0, 0] and driver.c.fault == 0
 
 
+WAYS = [(-2, 0, 1), (0, -3, 0), (-1, 0, 0), (0, 0, 1), (2, 0, 0), (0, -1, -1), (3, 0, 0), (-1, 2, 0)]
+TURNS = [3, 2, 1, 0]  # of the axes: of the signs, without zeros, from + on
+
+
+@pytest.mark.parametrize("how", ["moves", "stream"])
+def test_an_axis_that_stands_does_not_turn(driver: Driver, wire: Wire, how: str) -> None:
+    """DIR changes only where the next step goes the other way, whatever the line says of one that stands."""
+    if how == "moves":
+        for way in WAYS:
+            driver.call("move_by_speed", by_speed(way))
+    else:
+        _, ramps = path(10)
+        lines = [
+            struct(
+                "line",
+                substeps=25,
+                steps=[abs(n) for n in way],
+                directions=sum((n < 0 or (n == 0 and k % 2)) << axis for axis, n in enumerate(way)),
+                last=k == len(WAYS) - 1,
+            )[0]
+            for k, way in enumerate(WAYS)
+        ]
+        driver.stream(Source(lines, ramps))
+        driver.call("stream_start")
+    finish(driver)
+    assert driver.positions()[:3] == [sum(way[axis] for way in WAYS) for axis in range(3)]
+    assert wire.turns[:4].tolist() == TURNS
+
+
 def test_turning_without_end(driver: Driver, wire: Wire) -> None:
     """Start, change of speed, stop; no other move is accepted in between."""
     rpm = ffi().new("uint64_t *")

@@ -62,7 +62,7 @@ def _first(bad: np.ndarray) -> int | None:
 
 
 def timing_faults(run: Run, axis: int, steps: Steps) -> Iterator[Fault]:
-    """STEP high and low, DIR set-up and hold, the direction of each pulse; the first fault of each."""
+    """STEP high and low, DIR set-up, hold and turns, the direction of each pulse; the first fault of each."""
     pins, clock = run.file.pins, run.pins["clock"].astype(np.int64) - run.start
     step, dir_ = (np.concatenate([[0], run.pins[pin] >> axis & 1]).astype(np.int8) for pin in ("step", "dir"))
     rises, falls = clock[np.diff(step) > 0], clock[np.diff(step) < 0]
@@ -87,6 +87,10 @@ def timing_faults(run: Run, axis: int, steps: Steps) -> Iterator[Fault]:
     wanted = _directions(run, axis)
     if (k := _first(wanted != steps[1])) is not None:
         yield Fault("direction", f"axis {axis}, step {k}: its direction is {-wanted[k]}")
+    made = np.diff(before, prepend=0, append=len(turns))  # turns of DIR before each step, and after the last
+    needed = np.diff(wanted, prepend=1, append=wanted[-1:] if len(wanted) else 1) != 0
+    if (k := _first(made != needed)) is not None:
+        yield Fault("turns", f"axis {axis}: DIR turns {made[k]} times before step {k}, {needed[k]:d} needed")
 
 
 def _directions(run: Run, axis: int) -> np.ndarray:

@@ -88,6 +88,7 @@ struct passo_axis_memory {
 	uint32_t offset;          /* position of the program less that of the core; wraps */
 	uint8_t switches;         /* those that are configured, a bit per enum passo_trigger_source */
 	bool homed;
+	bool backwards; /* direction of the last line that moves it */
 };
 
 /* A target that may change on the way; see passo_goto.h. */

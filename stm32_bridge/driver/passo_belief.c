@@ -54,8 +54,11 @@ void passo_driver_break(struct passo *passo)
 void passo_driver_expect(struct passo *passo, const struct passo_line *line)
 {
 	for (unsigned i = 0; i < passo->machine.axes; i++) {
-		uint32_t steps = (line->directions >> i & 1u) != 0u ? 0u - line->steps[i] : line->steps[i];
+		const bool backwards = (line->directions >> i & 1u) != 0u;
+		const uint32_t steps = backwards ? 0u - line->steps[i] : line->steps[i];
 		passo->axis[i].expected = (int32_t)((uint32_t)passo->axis[i].expected + steps);
+		if (steps != 0u)
+			passo->axis[i].backwards = backwards;
 	}
 	if (passo->expects == PASSO_EXPECT_NOTHING)
 		passo->expects = PASSO_EXPECT_POSITIONS;

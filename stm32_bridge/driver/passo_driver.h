@@ -101,7 +101,8 @@ enum passo_error passo_driver_check_encoders(const struct passo *passo);
 enum passo_error passo_driver_recall_outputs(struct passo *passo);
 /* The word of an output that was checked. */
 uint32_t passo_driver_word_of(const struct passo_output *output);
-/* The words of a line, with its output if the core has outputs; returns their number. */
+/* The words of a line, with its output if the core has outputs; returns their number. DIR of an axis that
+ * stands in it does not turn: a turn and back would delay its next step. */
 size_t passo_driver_line_words(const struct passo *passo, uint32_t *words, const struct passo_line *line);
 /* The output word of a planned move. Errors: REFERENCE, ABOVE_REFERENCE. */
 enum passo_error passo_driver_output(

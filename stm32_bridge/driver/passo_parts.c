@@ -28,11 +28,19 @@ enum passo_error passo_driver_check_outputs(const struct passo *passo)
 
 size_t passo_driver_line_words(const struct passo *passo, uint32_t *words, const struct passo_line *line)
 {
-	size_t length = passo_line_words(words, line, passo->machine.axes);
+	struct passo_line sent = *line;
 
-	if (passo->has_outputs)
-		words[length++] = line->output;
-	return length;
+	for (unsigned i = 0; i < passo->machine.axes; i++) {
+		const unsigned bit = 1u << i;
+		if (line->steps[i] == 0u)
+			sent.directions = (uint8_t)(passo->axis[i].backwards ? sent.directions | bit
+			                                                     : sent.directions & ~bit);
+	}
+	const size_t length = passo_line_words(words, &sent, passo->machine.axes);
+	if (!passo->has_outputs)
+		return length;
+	words[length] = line->output;
+	return length + 1u;
 }
 
 uint32_t passo_driver_word_of(const struct passo_output *output)

@@ -36,7 +36,8 @@ class Wire:
         self.before_frame: Callable[[int], None] = lambda _: None
         self.pulses = np.zeros(8, np.int64)
         self.net = np.zeros(8, np.int64)
-        self._step = np.uint64(0)
+        self.turns = np.zeros(8, np.int64)  # of DIR
+        self._step = self._dir = np.uint64(0)
         self.enable = 0  # levels of the EN pins
 
     @property
@@ -71,21 +72,24 @@ class Wire:
         self.before += self.engine.clock
         self.engine.close()
         self.engine = model_engine(self.parameters, self.clock_hz)
-        self._step = np.uint64(0)
+        self._step = self._dir = np.uint64(0)
 
     def collect(self) -> None:
         """Count the pulses at the pins so far: all active edges are rising ones."""
         events = self.engine.drain()
         if not len(events):
             return
-        step = np.concatenate([[self._step], events["step"]])
-        rising = ~step[:-1] & step[1:]
+        step, dir_ = (
+            np.concatenate([[was], events[pin]]) for was, pin in ((self._step, "step"), (self._dir, "dir"))
+        )
+        rising, turning = ~step[:-1] & step[1:], dir_[:-1] ^ dir_[1:]
         for axis in range(8):
             at = rising >> np.uint64(axis) & np.uint64(1) != 0
             down = int((events["dir"][at] >> np.uint64(axis) & np.uint64(1)).sum())
             self.pulses[axis] += at.sum()
             self.net[axis] += at.sum() - 2 * down
-        self._step = step[-1]
+            self.turns[axis] += (turning >> np.uint64(axis) & np.uint64(1)).sum()
+        self._step, self._dir = step[-1], dir_[-1]
         self.enable = int(events["enable"][-1])
 
     def counted(self) -> tuple[list[int], list[int]]:
