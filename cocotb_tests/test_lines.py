@@ -22,7 +22,13 @@ LATENCY = 2  # substep to step_request
 @pytest.mark.parametrize("register", [0, 1])
 def test_lines(simulator: str, register: int) -> None:
     parameters = {"AXES": AXES, "DEPTH_LOG2": DEPTH_LOG2, "STEPS_REGISTER": register}
-    run(__name__, "passo_lines", parameters, simulator)
+    run(
+        __name__,
+        "passo_lines",
+        parameters,
+        simulator,
+        internals=["passo_line.substep_number", "passo_dda.e_minus_m"],
+    )
 
 
 @dataclass(frozen=True)

@@ -42,7 +42,12 @@ class Verdict(IntEnum):
 
 
 def test_link(simulator: str) -> None:
-    run(__name__, "passo_link_top", simulator=simulator)
+    run(
+        __name__,
+        "passo_link_top",
+        simulator=simulator,
+        internals=["passo_link.in_ack", "passo_spi.half_valid"],
+    )
 
 
 def header(operation: int, sequence: int, length: int, address: int) -> int:

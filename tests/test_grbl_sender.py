@@ -28,7 +28,7 @@ BOARD = replace(MACHINE, settings=replace(MACHINE.settings, clock_hz=36_000_000)
 # More than the 128 bytes of the receive buffer and the 48 lines of the look-ahead: both senders have to wait.
 PART = [
     *("G21 G90 G17", "G0 X2 Y0"),
-    *(f"G1 X{2 + i % 2 * 0.5:g} Y{i * 0.1:g} F3000" for i in range(80)),
+    *(f"G1 X{2 + i % 2 * 0.1:g} Y{i * 0.1:g} F3000" for i in range(80)),
     *("G2 Y5.9 J-1", "M2"),
 ]
 

@@ -9,12 +9,15 @@ parse, such as hdlConvertor or Verible, would miss an undeclared name or a missi
 """
 
 import argparse
+import os
 import re
 import shutil
 import subprocess
 import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 
 import surelog
@@ -100,10 +103,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     rtl = parser.parse_args(arguments).rtl.resolve()
     shutil.rmtree(SURELOG, ignore_errors=True)
     SURELOG.mkdir(parents=True)
-    return 0 if all([_read_all(name, rtl) for name in READERS]) else 1
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        good = list(pool.map(partial(_read_all, rtl), READERS))
+    return 0 if all(good) else 1
 
 
-def _read_all(name: str, rtl: Path) -> bool:
+def _read_all(rtl: Path, name: str) -> bool:
     """Read all parameter sets with one front end; stop at the first with messages."""
     read, sets = READERS[name]
     began = time.monotonic()

@@ -52,14 +52,16 @@ def run(
     simulator: str = "verilator",
     *,
     environment_variables: Mapping[str, str] | None = None,
+    internals: Sequence[str] = (),
     netlist: bool = False,
 ) -> None:
     """Run the cocotb tests of `module` in `toplevel`, built with `parameters`; AssertionError if one fails.
 
     `module` is the `__name__` of the Python module. `toplevel` is a module of `cocotb_tests/tops/`, or of
     `rtl/` with what `cocotb_tests/probes/` has for it included at its end; it is built again only when one of
-    the sources below it has changed. With `netlist` the core is what synthesis makes of it for an iCE40, with
-    exactly these parameters.
+    the sources below it has changed. Tests see its pins and the `internals`, each MODULE.SIGNAL: what can be
+    seen takes long to compile, all of a netlist an hour. With `netlist` the core is what synthesis makes of
+    it for an iCE40, with exactly these parameters.
     """
     os.environ.update(environment())
     parameters = dict(parameters or {})
@@ -73,7 +75,7 @@ def run(
     test_folder.mkdir(parents=True, exist_ok=True)
 
     with _lock(folder):
-        _build(simulator, toplevel, parameters, rtl, waves, coverage, folder)
+        _build(simulator, toplevel, parameters, rtl, waves, coverage, internals, folder)
 
     print(f"{SEED_VARIABLE}={seed()}")
     results = test_folder / "results.xml"
@@ -153,6 +155,7 @@ def _build(
     rtl: Path,
     waves: bool,
     coverage: bool,
+    internals: Sequence[str],
     folder: Path,
 ) -> None:
     sources = _sources(toplevel, rtl)
@@ -163,7 +166,7 @@ def _build(
     arguments = ["--coverage-line", "--coverage-toggle"] if coverage else []
     if netlist and simulator == "verilator":
         arguments += ["-Wno-fatal", "-Wno-lint"]  # the models of the cells are not ours to warn about
-    digest = hashlib.sha256(Path(__file__).read_bytes())
+    digest = hashlib.sha256(Path(__file__).read_bytes() + repr(internals).encode())
     for path in [*sources, *sorted(rtl.glob("*.vh")), *sorted(_PROBES.glob("*.vh"))]:
         digest.update(str(path).encode() + path.read_bytes())
     stamp = folder / "built"
@@ -171,7 +174,7 @@ def _build(
         return
 
     stamp.unlink(missing_ok=True)
-    runner = _Verilator() if simulator == "verilator" else get_runner(simulator)
+    runner = _Verilator(internals) if simulator == "verilator" else get_runner(simulator)
     runner.build(
         sources=sources,
         build_args=arguments,
@@ -196,6 +199,10 @@ class _Verilator(Verilator):
     cocotb's main program is not part of it: it allocates the model, so that it has to know how large that is.
     """
 
+    def __init__(self, internals: Sequence[str]) -> None:
+        super().__init__()
+        self._internals = internals
+
     def _runtime(self) -> Path:
         versions = [f"{package}{version(package)}" for package in ("verilator", "cocotb")]
         kinds = [kind for kind in ("waves", "coverage") if f"-{kind}" in self.build_dir.name]
@@ -204,13 +211,13 @@ class _Verilator(Verilator):
     def _build_command(self) -> list[list[str]]:
         """Put what is there between Verilator's makefile, which it has to be newer than, and make."""
         verilate, make = super()._build_command()
-        if self.hdl_toplevel in WHOLE_CORES and "coverage" not in self.build_dir.name:
-            # Only the pins are to be seen from outside: what is inside takes long to compile, that of a
-            # netlist an hour.
+        if "coverage" not in self.build_dir.name:
             verilate = [part for part in verilate if part != "--public-flat-rw"]
-            pins = self.build_dir / "pins.vlt"
-            pins.write_text(f'`verilator_config\npublic_flat_rw -module "{self.hdl_toplevel}" -var "*"\n')
-            verilate.insert(verilate.index(str(self.sources[0])), str(pins))
+            seen = [f"{self.hdl_toplevel}.*", *self._internals]
+            lines = ('public_flat_rw -module "{}" -var "{}"\n'.format(*signal.split(".")) for signal in seen)
+            public = self.build_dir / "public.vlt"
+            public.write_text("".join(["`verilator_config\n", *lines]))
+            verilate.insert(verilate.index(str(self.sources[0])), str(public))
             make = [*make, "OPT_FAST=-O1"]  # more takes longer than it saves
         objects = [str(path) for path in self._runtime().glob("verilated*.o")]
         return [verilate, *([["cp", *objects, str(self.build_dir)]] if objects else []), make]

@@ -71,15 +71,18 @@ class Motion:
         at = int(wrong[0]) if len(wrong) else common
         if at < max(len(self.step), len(other.step)):
             return f"edge {at} of {len(self.step)} and {len(other.step)} differs"
-        rising = self.rising()
-        if not np.array_equal(self.dir[rising], other.dir[rising]):
+        if ((self.dir ^ other.dir) & self.rising()).any():
             return "DIR differs at a step"
         return ""
 
     def rising(self) -> np.ndarray:
-        """The rows with a rising edge of a STEP pin."""
-        before = np.concatenate([[0], self.step[:-1, 1]]) if len(self.step) else np.empty(0, np.int64)
-        return np.flatnonzero(self.step[:, 1] & ~before)
+        """For each row, a bit for each STEP pin with a rising edge."""
+        levels = self.step[:, 1]
+        return levels & ~np.concatenate([[0], levels[:-1]]).astype(np.int64)
+
+    def pulses(self) -> int:
+        """Number of steps of all axes."""
+        return int(np.bitwise_count(self.rising()).sum())
 
     def steps(self, axis: int) -> tuple[np.ndarray, np.ndarray]:
         """Clocks and directions (1, -1) of the steps of an axis."""

@@ -45,7 +45,7 @@ def run_file(path: Path, engine: str) -> Shown:
     facts = {
         "ok": not any(move.difference for move in played),
         "lines": [move.line for move in played],
-        "steps": [len(move.made.rising()) for move in played],
+        "steps": [move.made.pulses() for move in played],
         "edges": sum(len(move.made.step) for move in played),
         "clocks": [move.made.clocks for move in played],
         "frames": board.wires.frames,
@@ -97,7 +97,7 @@ def overview(results: list[Shown]) -> Table:
         *("moves", "steps", "time", "edges", "frames", "awake", "took"),
     )
     for result in results:
-        steps = sum(len(move.made.steps(axis)[0]) for move in result.played for axis in range(8))
+        steps = sum(result.facts["steps"])
         facts = result.facts
         shown.add_row(
             result.name,
