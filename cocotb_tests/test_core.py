@@ -21,8 +21,9 @@ from cocotb_tests.helpers.runner import (
 
 MOST_CHANNELS = {"CHANNELS": 8, "AXES": 1, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 8, "RAMP_QUEUE_LOG2": 8}
 
-# Icarus Verilog is up to ten times slower: long tests run only on Verilator, Icarus gets fewer random moves
-# and one of the modules below; `make icarus` runs all of them, `make soak` a thousand more histories.
+# Icarus Verilog is up to ten times slower: long tests run only on Verilator, Icarus gets few random moves of
+# one channel, and one of the modules below; `make icarus` runs all, `make soak` a thousand more histories.
+EVERY = bool(os.environ.get("PASSO_ICARUS"))
 verilator_only = pytest.mark.parametrize("simulator", ["verilator"])
 ON_BOTH = "core_motion"
 
@@ -42,10 +43,15 @@ MODULES = {
 }
 
 
+def skip_icarus(simulator: str) -> None:
+    if simulator == "icarus" and not EVERY:
+        pytest.skip("part of 'make icarus'")
+
+
 @pytest.mark.parametrize("module", MODULES)
 def test_core(simulator: str, module: str) -> None:
-    if simulator == "icarus" and module != ON_BOTH and not os.environ.get("PASSO_ICARUS"):
-        pytest.skip("part of 'make icarus'")
+    if module != ON_BOTH:
+        skip_icarus(simulator)
     run(f"cocotb_tests.{module}", TOP, MODULES[module], simulator)
 
 
@@ -69,5 +75,6 @@ def test_random_moves(simulator: str) -> None:
 
 def test_random_moves_of_two_channels(simulator: str) -> None:
     """Some 50 random moves of two channels."""
+    skip_icarus(simulator)
     sessions = {"SESSIONS": "2" if simulator == "verilator" else "1"}
     run("cocotb_tests.core_random", TOP, TWO_CHANNELS, simulator, environment_variables=sessions)

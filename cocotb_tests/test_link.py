@@ -12,7 +12,7 @@ from cocotb.triggers import FallingEdge, RisingEdge, Timer
 from passo.cocotb.clocks import Clocks, Recorder, read
 from passo.cocotb.spi import SpiMaster
 
-from cocotb_tests.helpers.bench import begin, rng
+from cocotb_tests.helpers.bench import begin, patience, rng
 from cocotb_tests.helpers.crc import crc_of_words
 from cocotb_tests.helpers.runner import run
 
@@ -239,7 +239,7 @@ async def frames_pass_at_every_rate(dut: HierarchyObject, rate: tuple[int, int])
     random = rng(f"link, {rate}")
     period, half_period = rate
     bench = await Bench.begin(dut, half_period, period)
-    for _ in range(25 if half_period < 200_000 else 4):
+    for _ in range(max(min(patience(25, 10), 1_500_000 // half_period), patience(3, 1))):
         for operation in (WRITE, PUSH, READ):
             await bench.shift(random)
             length = random.choice((1, 1, 2, 3, 5))

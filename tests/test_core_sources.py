@@ -6,8 +6,10 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from passo.compiler import SANITIZED, STRICT, compile_to, includes, sources
+from passo.compiler import STRICT, compile_to, includes, sources
 from passo.toolchain import paths
+
+from tests.helpers import sanitized
 
 MODEL = (paths.model, paths.protocol)
 ALL = (*MODEL, paths.planner, paths.driver)
@@ -17,8 +19,7 @@ ALLOWED = {"memcpy", "memset", "memmove", "memcmp"}
 
 def test_a_scenario_runs_clean_under_sanitizers(tmp_path: Path) -> None:
     """Moves, holds, every kind of stop and garbage on the link: no fault, and the specified replies."""
-    files = [paths.tests / "core_scenario.c", *sources(*MODEL)]
-    program = compile_to(tmp_path / "scenario", *STRICT, *SANITIZED, *includes(*MODEL), *files)
+    program = sanitized.program(tmp_path / "scenario", paths.tests / "core_scenario.c", MODEL)
     done = subprocess.run([program], capture_output=True, text=True, timeout=300)
     assert (done.returncode, done.stderr, done.stdout) == (0, "", "ok\n")
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from passo.build import WHOLE
-from passo.compiler import STRICT, compile_to, includes, sources
+from passo.compiler import STRICT, headers, includes, kept, sources
 from passo.toolchain import paths
 
 PARTS = 8
@@ -14,10 +14,10 @@ FOLDERS = (paths.model, paths.planner, paths.protocol, paths.driver)
 
 
 @pytest.fixture(scope="module")
-def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    made = tmp_path_factory.mktemp("cuts") / "driver_cuts"
+def program() -> Path:
     files = [paths.tests / "driver_cuts.c", *sources(*FOLDERS)]
-    return compile_to(made, *STRICT, *WHOLE, *includes(*FOLDERS), *files)
+    flags = (*STRICT, *WHOLE, *includes(*FOLDERS))
+    return kept(paths.build / "tests" / "driver_cuts", [*files, *headers(*FOLDERS)], flags, *files)
 
 
 @pytest.mark.parametrize("part", range(PARTS))

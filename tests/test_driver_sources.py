@@ -7,10 +7,11 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from passo.build import engine_sources
-from passo.compiler import CORTEX_M3, SANITIZED, STRICT, call, compile_to, includes, sources
+from passo.compiler import CORTEX_M3, call, compile_to, includes, sources
 from passo.native import ffi, planner
 from passo.toolchain import paths
+
+from tests.helpers import sanitized
 
 DRIVER = (paths.driver, paths.planner, paths.protocol)
 EXAMPLES = paths.driver.parent / "examples"
@@ -20,11 +21,8 @@ RAM_MAX = 1536  # bytes for one channel of 4 axes
 
 def test_a_scenario_runs_clean_under_sanitizers(tmp_path: Path) -> None:
     """Moves, streams, stops, noise and resets, driver and model in one program: no fault, nothing lost."""
-    folders = (*DRIVER, paths.model)
-    files = [paths.tests / "driver_scenario.c", *sources(*folders)]
-    files += [*engine_sources(), paths.engine / "engine_model.c"]
-    flags = [*STRICT, *SANITIZED, *includes(*folders, paths.engine)]
-    program = compile_to(tmp_path / "scenario", *flags, *files)
+    folders = (*DRIVER, paths.model, paths.engine)
+    program = sanitized.program(tmp_path / "scenario", paths.tests / "driver_scenario.c", folders)
     done = subprocess.run([program], capture_output=True, text=True, timeout=300)
     assert (done.returncode, done.stderr, done.stdout) == (0, "", "ok\n")
 

@@ -5,8 +5,9 @@ import subprocess
 from pathlib import Path
 
 from passo import random_cases
-from passo.compiler import SANITIZED, STRICT, compile_to, includes, sources
 from passo.toolchain import paths
+
+from tests.helpers import sanitized
 
 SEED = str(random_cases.seed())
 SECONDS = str(random_cases.fuzz_seconds())
@@ -15,8 +16,7 @@ SECONDS = str(random_cases.fuzz_seconds())
 def test_no_line_breaks_the_interpreter(tmp_path: Path) -> None:
     """No undefined behaviour, nothing half done, nothing that the planner cannot take."""
     folders = (paths.gcode, paths.planner, paths.protocol)
-    files = [paths.tests / "gcode_fuzz.c", *sources(*folders)]
-    program = compile_to(tmp_path / "fuzz", *STRICT, *SANITIZED, *includes(*folders), *files)
+    program = sanitized.program(tmp_path / "fuzz", paths.tests / "gcode_fuzz.c", folders)
     done = subprocess.run([program, SEED, SECONDS], capture_output=True, text=True, timeout=600)
     print(f"seed {SEED}, {SECONDS} s: {done.stdout}")
     assert (done.returncode, done.stderr) == (0, "")

@@ -6,8 +6,9 @@ import subprocess
 from pathlib import Path
 
 from passo import random_cases
-from passo.compiler import SANITIZED, STRICT, compile_to, includes, sources
 from passo.toolchain import paths
+
+from tests.helpers import sanitized
 
 SEED = str(random_cases.seed())
 SECONDS = str(random_cases.fuzz_seconds())
@@ -15,9 +16,8 @@ SECONDS = str(random_cases.fuzz_seconds())
 
 def test_no_argument_breaks_the_planner(tmp_path: Path) -> None:
     """No undefined behaviour, no plan that the core would refuse, no error that modifies the plan."""
-    flags = (*STRICT, *SANITIZED, *includes(paths.planner, paths.protocol))
-    files = [paths.tests / "plan_fuzz.c", *sources(paths.planner, paths.protocol)]
-    program = compile_to(tmp_path / "fuzz", *flags, *files)
+    folders = (paths.planner, paths.protocol)
+    program = sanitized.program(tmp_path / "fuzz", paths.tests / "plan_fuzz.c", folders)
     done = subprocess.run([program, SEED, SECONDS], capture_output=True, text=True, timeout=600)
     print(f"seed {SEED}, {SECONDS} s\n{done.stdout}")
     assert (done.returncode, done.stderr) == (0, "")

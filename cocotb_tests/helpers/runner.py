@@ -218,7 +218,8 @@ class _Verilator(Verilator):
             public = self.build_dir / "public.vlt"
             public.write_text("".join(["`verilator_config\n", *lines]))
             verilate.insert(verilate.index(str(self.sources[0])), str(public))
-            make = [*make, "OPT_FAST=-O1"]  # more takes longer than it saves
+            # more takes longer than it saves
+            make = [*make, f"OPT_FAST={'-O0' if 'netlist' in self.build_dir.name else '-O1'}"]
         objects = [str(path) for path in self._runtime().glob("verilated*.o")]
         return [verilate, *([["cp", *objects, str(self.build_dir)]] if objects else []), make]
 

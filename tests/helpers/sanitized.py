@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: MIT
+"""C programs under the sanitizers of addresses and undefined behaviour; what they share is compiled once."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from passo.build import engine_sources
+from passo.compiler import CC, SANITIZED, STRICT, cached, call, compile_to, headers, includes, sources
+from passo.toolchain import paths
+
+# In this order: a source finds the headers beside it first, any other the driver's passo_outputs.h.
+FOLDERS = (
+    *(paths.grbl, paths.driver, paths.console, paths.gcode, paths.planner, paths.protocol),
+    *(paths.engine, paths.model),
+)
+FLAGS = (*STRICT, *SANITIZED, *includes(*FOLDERS))
+
+
+def program(made: Path, main: Path, folders: Iterable[Path], *more: Path) -> Path:
+    """Compile `main` with all sources of the folders (of the engine: that of the model), and more."""
+    return compile_to(made, *FLAGS, main, *more, *map(_object, folders))
+
+
+def _object(folder: Path) -> Path:
+    model = [*engine_sources(), paths.engine / "engine_model.c"]
+    files = model if folder == paths.engine else sources(folder)
+
+    def make(made: Path) -> None:
+        call([CC, *FLAGS, "-r", *files, "-o", made / "all.o"])
+
+    name = f"sanitized_{folder.name}"
+    return cached(name, [*files, *headers(*FOLDERS)], [*FLAGS, "-r"], make) / "all.o"
