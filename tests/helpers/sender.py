@@ -2,6 +2,7 @@
 """A sender that others wrote, grbl-streamer, at a pseudo-terminal."""
 
 import logging
+import threading
 import time
 from collections import Counter
 from collections.abc import Callable
@@ -22,7 +23,18 @@ class Sender:
         self.events: Counter[str] = Counter()
         self.last: dict[str, tuple[Any, ...]] = {}
         self.grbl = GrblStreamer(self._told)
+        self._one_thread_streams()
         self.grbl.cnect(str(link), 115200)
+
+    def _one_thread_streams(self) -> None:
+        """Lock what `job_run` and the thread of the reader both call: without, a line may be sent twice."""
+        stream, lock = self.grbl._stream, threading.Lock()
+
+        def locked() -> None:
+            with lock:
+                stream()
+
+        self.grbl._stream = locked
 
     def _told(self, event: str, *data: Any) -> None:
         self.events[event] += 1
