@@ -30,8 +30,9 @@ help:
 setup: ## Install the prerequisites; every other target calls it automatically.
 	@tools/setup.sh
 
-test: lint ## Check the sources, then run all tests.
+test: ## Check the sources, then run all tests.
 	@tools/setup.sh yosys formal firmware browser web vhdl hdl
+	@$(MAKE) lint
 	@$(BIN)/pytest -n $$(($$(nproc) < 8 ? $$(nproc) + 1 : 8)) --dist worksteal # one more: some tests wait
 
 demo: setup ## Run the demonstration (a minute).
@@ -90,8 +91,9 @@ report: ## Measure size and speed on all FPGAs (several hours); ONLY=hx8k,up5k o
 	@tools/setup.sh fpga
 	@$(BIN)/python -m passo_fpga.report $(if $(ONLY),--only $(ONLY)) $(if $(QUICK),--quick) $(if $(PARTS),--parts)
 
-icarus: setup ## Run all tests of the whole core on Icarus Verilog.
-	@PASSO_ICARUS=1 $(BIN)/pytest cocotb_tests/test_core.py -k icarus
+icarus: ## Run all tests of modules and of the whole core on Icarus Verilog.
+	@tools/setup.sh firmware
+	@PASSO_ICARUS=1 $(BIN)/pytest cocotb_tests -k icarus
 
 netlist: ## Run all tests of the whole core on the synthesized iCE40 netlist.
 	@tools/setup.sh yosys

@@ -43,7 +43,7 @@ class SimulatedPins:
         return read(self._dut.irq)
 
     def _time(self, tick: int) -> int:
-        return self._origin + tick * STEP_PER_SECOND // TICKS_PER_SECOND
+        return self._origin + tick * STEP_PER_SECOND // TICKS_PER_SECOND | 1  # odd: on no edge of the clock
 
     def _tick(self) -> int:
         return -(-(int(get_sim_time("step")) - self._origin) * TICKS_PER_SECOND // STEP_PER_SECOND)

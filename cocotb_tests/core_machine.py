@@ -205,7 +205,7 @@ def random_events_match_the_model(core: Core) -> None:
     shafts.turn(SPINDLE, wander(random))
     core.link.write(r.ADDRESS_RUN, 1)
     causes = set()
-    for _ in range(80):
+    for _ in range(50):
         write_settings(channel, random)
         with suppress(RefusedError):
             channel.link.push(channel.base + r.CHANNEL_RASTER, [random.getrandbits(32) for _ in range(5)])

@@ -312,7 +312,7 @@ def session(core: Core, number: int) -> None:
     random = rng(f"core_random/{number}")
     host = Session(core, random)
     made = 0
-    while made < patience(MOTIONS, 10):
+    while made < patience(MOTIONS, 6):
         axes = random.choice(host.axes)
         if random.random() < 0.03:
             host.wild(axes)

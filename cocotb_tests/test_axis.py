@@ -10,7 +10,7 @@ from cocotb.handle import HierarchyObject
 from passo.cocotb.clocks import Clocks, Recorder, read
 from passo.cocotb.pulses import PinTiming, PulseChecker
 
-from cocotb_tests.helpers.bench import begin, rng
+from cocotb_tests.helpers.bench import begin, patience, rng
 from cocotb_tests.helpers.runner import run
 
 LATENCY = 3  # step_request to STEP, direction to DIR
@@ -242,7 +242,7 @@ async def bursts_and_reversals_take_exactly_the_set_times(dut: HierarchyObject, 
 async def the_longest_times_are_kept(dut: HierarchyObject) -> None:
     """Each of the four times can be 65535."""
     axis = await Axis.begin(dut, PinTiming(65535, 1, 1, 1))
-    for name in ("high", "low", "setup", "hold"):
+    for name in ("high", "low", "setup", "hold")[: patience(4, 1)]:
         await axis.set_timing(replace(PinTiming(), **{name: 65535}))
         direction = -1 if len(axis.checker.steps()) % 4 == 0 else 1
         now = axis.clocks.now

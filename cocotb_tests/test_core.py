@@ -4,8 +4,6 @@
 They share helpers/core_bench.py; PASSO_SEED is the seed of the random tests.
 """
 
-import os
-
 import pytest
 
 from cocotb_tests.helpers.runner import CORE_TOP as TOP
@@ -17,13 +15,13 @@ from cocotb_tests.helpers.runner import (
     WITH_INPUTS,
     WITH_OUTPUTS,
     run,
+    skip_icarus,
 )
 
 MOST_CHANNELS = {"CHANNELS": 8, "AXES": 1, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 8, "RAMP_QUEUE_LOG2": 8}
 
 # Icarus Verilog is up to ten times slower: long tests run only on Verilator, Icarus gets few random moves of
 # one channel, and one of the modules below; `make icarus` runs all, `make soak` a thousand more histories.
-EVERY = bool(os.environ.get("PASSO_ICARUS"))
 verilator_only = pytest.mark.parametrize("simulator", ["verilator"])
 ON_BOTH = "core_motion"
 
@@ -41,11 +39,6 @@ MODULES = {
     "core_outputs": WITH_OUTPUTS,  # outputs bound to the path
     "core_machine": WITH_ALL,  # what they do to each other
 }
-
-
-def skip_icarus(simulator: str) -> None:
-    if simulator == "icarus" and not EVERY:
-        pytest.skip("part of 'make icarus'")
 
 
 @pytest.mark.parametrize("module", MODULES)

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""The STM32 firmware drives the simulated core through its SPI pins, on Icarus Verilog only."""
+"""The STM32 firmware drives the simulated core through its SPI pins."""
 
 from cocotb_tests.helpers.runner import CORE_TOP as TOP
-from cocotb_tests.helpers.runner import ONE_CHANNEL, run
+from cocotb_tests.helpers.runner import ONE_CHANNEL, run, skip_icarus
 
 
-def test_firmware() -> None:
+def test_firmware(simulator: str) -> None:
     """Moves typed at the console of the firmware, which runs on the machine, compared on every clock."""
-    run("cocotb_tests.core_firmware", TOP, ONE_CHANNEL, "icarus")
+    skip_icarus(simulator)
+    run("cocotb_tests.core_firmware", TOP, ONE_CHANNEL, simulator)

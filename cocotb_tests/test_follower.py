@@ -185,14 +185,14 @@ async def too_much_owed_is_lost_and_says_so(dut: HierarchyObject) -> None:
 async def a_wandering_spindle_keeps_its_phase(dut: HierarchyObject) -> None:
     """1,000 turns, the speed changing by +-30 %: every advance at its count, however the turn before was."""
     random = rng("follower, spindle")
-    gear = await Gear.begin(dut, limit=HALF // 4)
+    gear = await Gear.begin(dut, limit=HALF // 2)
     per_turn = 64
     times: list[int] = []  # of the counts
-    angle, speed = 0.0, 1 / 12  # counts
+    angle, speed = 0.0, 1 / 6  # counts
     for _ in range(patience(1000, 60) * per_turn):
         angle = 0.0
         while angle < 1:
-            speed = min(1.3 / 12, max(0.7 / 12, speed + random.uniform(-1, 1) * 0.002))
+            speed = min(1.3 / 6, max(0.7 / 6, speed + random.uniform(-1, 1) * 0.004))
             angle += speed
             if angle < 1:
                 await gear.clock()

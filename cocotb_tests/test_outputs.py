@@ -152,8 +152,8 @@ async def a_change_that_finds_no_room_is_lost_and_power_stays_off(dut: Hierarchy
 async def power_in_proportion_to_the_velocity(dut: HierarchyObject) -> None:
     """From 5 % to 100 % of the reference, by velocity and by rate: within 1 %; above, saturated."""
     outputs = await Outputs.begin(dut, pwm_step=PERIOD // 200)
-    clocks = patience(40000, 16000)
-    for power, top in ((FULL, HALF), (40000, HALF // 3)):
+    clocks = 16_000
+    for power, top in ((FULL, HALF), (40000, HALF // 3))[-patience(2, 1) :]:
         outputs.set(power_reference=top)
         for velocity, rate in SPEEDS:
             outputs.set(velocity=min(HALF, top * velocity // 100), rate=RATE_ONE * rate // 100)

@@ -30,7 +30,7 @@ from tests.helpers.driver_wire import (
 
 MS = CLOCK_HZ // 1000
 WATCHED = Parameters(inputs=1)
-HISTORIES = 150
+HISTORIES = 100
 
 
 @pytest.fixture

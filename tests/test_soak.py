@@ -72,7 +72,7 @@ def test_no_promise_is_broken_in_verilator(program: Path) -> None:
 
 def test_no_promise_is_broken_in_icarus(program: Path) -> None:
     """The same in another simulator."""
-    check(parts.play_icarus(program, SEED, 6, JOBS), 6)
+    check(parts.play_icarus(program, SEED, 4, JOBS), 4)
     check(parts.play_icarus(program, SEED, 1, JOBS, machine=True), 1)
 
 

@@ -2,7 +2,7 @@
 # Installs the prerequisites of all other make targets: Debian packages, .venv, Python packages.
 #
 #     tools/setup.sh [SET...]
-# A SET is an optional set of Python packages in requirements-SET.txt (yosys, fpga, ...), installed last; or `firmware`:
+# A SET is an optional set of Python packages in requirements-SET.txt (yosys, fpga, ...); or `firmware`:
 # Debian's compiler for the STM32; or `browser`: Debian's headless Chromium; or `vhdl`: Debian's GHDL. Safe to run again at
 # any time: it installs only what is missing.
 # PYTHON selects the interpreter for the environment (default: python3).
@@ -86,8 +86,11 @@ venv_is_current() {
     [ -f "$stamp" ] && [ "$(<"$stamp")" = "$key" ] && .venv/bin/python -c 'import pip' 2>/dev/null
 }
 
+# A file of requirements and those that it includes.
+with_included() { printf '%s\n' "$1" $(sed -n 's/^-r //p' "$1"); }
+
 # The same for a set, which may include another one with a line "-r FILE".
-set_key() { cat "requirements-$1.txt" $(sed -n 's/^-r //p' "requirements-$1.txt") - <<<"$key" | sha256sum; }
+set_key() { cat $(with_included "requirements-$1.txt") - <<<"$key" | sha256sum; }
 
 set_is_current() {
     [ -f "$stamp-$1" ] && [ "$(<"$stamp-$1")" = "$(set_key "$1")" ]
@@ -177,40 +180,52 @@ show_progress() {
     done
 }
 
-# Arguments of pip; the first one may be `-r FILE`.
+# The number of packages, unless it is unknown, and the arguments of pip.
 pip_install() {
-    local packages=
-    [ "$1" != -r ] || packages=$(cat "$2" $(sed -n 's/^-r //p' "$2") | grep -c '==')
+    local packages=$1
+    shift
+    # what is imported is compiled then: all of it takes as long as the rest
     PYTHONUNBUFFERED=1 .venv/bin/python -m pip install --no-input --disable-pip-version-check \
-        --progress-bar off "$@" | show_progress "$packages" ||
+        --no-compile --progress-bar off "$@" | show_progress "$packages" ||
         fail "pip could not install the Python packages; its message is above." \
             "Check the network and pip's own configuration (.venv/bin/pip config list), then run" \
             "'make setup' again. It goes on from where it stopped."
 }
 
-if ! venv_is_current; then
-    step "Installing the Python packages of requirements.txt (up to four minutes the first time)"
-    pip_install -r requirements.txt
+files=()
+venv_is_current || files+=(requirements.txt)
+for name in $sets; do
+    files+=("requirements-$name.txt")
+done
 
+if [ ${#files[@]} -gt 0 ]; then
+    step "Installing the Python packages of ${files[*]} (up to four minutes the first time)"
+    included=$(for file in "${files[@]}"; do with_included "$file"; done | sort -u)
+    pip_install "$(cat $included | grep -c '==')" $(printf -- '-r %s ' "${files[@]}")
+fi
+
+if ! venv_is_current; then
     step "Installing passo in editable mode"
-    pip_install --no-deps --no-build-isolation -e .
+    pip_install "" --no-deps --no-build-isolation -e .
 
     echo "$key" >"$stamp"
 fi
 
-# --- Optional sets -------------------------------------------------------------------------------
-
 # Programs that a set, or one that it includes, names in a line "# warm-up: PROGRAM": they are WebAssembly and are
 # compiled on their first run, which must not be interrupted.
-warm_ups() { sed -n 's/^# warm-up: //p' "requirements-$1.txt" $(sed -n 's/^-r //p' "requirements-$1.txt"); }
+warm_ups() {
+    local name
+    for name in $sets; do
+        sed -n 's/^# warm-up: //p' $(with_included "requirements-$name.txt")
+    done
+}
+
+for program in $(warm_ups | sort -u); do
+    step "Preparing $program (1 to 3 minutes the first time)"
+    ".venv/bin/$program" -V >/dev/null || fail "$program does not run; its message is above."
+done
 
 for name in $sets; do
-    step "Installing the Python packages of requirements-$name.txt"
-    pip_install -r "requirements-$name.txt"
-    for program in $(warm_ups "$name"); do
-        step "Preparing $program (1 to 3 minutes the first time)"
-        ".venv/bin/$program" -V >/dev/null || fail "$program does not run; its message is above."
-    done
     set_key "$name" >"$stamp-$name"
 done
 

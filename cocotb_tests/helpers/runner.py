@@ -6,6 +6,7 @@ Environment variables:
 - `PASSO_SEED`: seed of all random cases, default 1; the same seed gives the same run.
 - `PASSO_RTL`: another folder instead of `rtl/`, to test that a fault in the RTL is found.
 - `PASSO_WAVES`: if set, waveforms are written into the test's folder below `build/cocotb`.
+- `PASSO_ICARUS`: if set, Icarus Verilog runs all tests of the whole core, not just some (skip_icarus).
 - `PASSO_NETLIST`: if set, all tests of the whole core run on the netlist, not just some (test_netlist.py).
 - `PASSO_COVERAGE`: if set, Verilator writes coverage.dat into the test's folder below `build/cocotb`.
 """
@@ -20,6 +21,7 @@ from contextlib import contextmanager
 from importlib.metadata import version
 from pathlib import Path
 
+import pytest
 from cocotb_tools.check_results import get_results
 from cocotb_tools.runner import Verilator, get_runner
 from passo.random_cases import SEED_VARIABLE, seed
@@ -27,6 +29,7 @@ from passo.toolchain import environment, paths
 from passo_fpga.netlist import CELLS, netlist_folder
 
 SIMULATORS = ("verilator", "icarus")
+ICARUS_VARIABLE = "PASSO_ICARUS"
 NETLIST_VARIABLE = "PASSO_NETLIST"
 COVERAGE_VARIABLE = "PASSO_COVERAGE"
 
@@ -102,6 +105,12 @@ def run(
     )
 
 
+def skip_icarus(simulator: str) -> None:
+    """Skip the running test on Icarus Verilog, up to ten times slower, unless all tests run there."""
+    if simulator == "icarus" and not os.environ.get(ICARUS_VARIABLE):
+        pytest.skip("part of 'make icarus'")
+
+
 def _folder_name(
     toplevel: str, parameters: Mapping[str, int], simulator: str, variants: Sequence[str]
 ) -> str:
@@ -163,7 +172,9 @@ def _build(
     if probe.exists():
         sources[-1] = _probed(sources[-1], probe, folder)
     netlist = (rtl / CELLS).exists()
-    arguments = ["--coverage-line", "--coverage-toggle"] if coverage else []
+    arguments = ["--output-split", "0"] if simulator == "verilator" else []  # as in passo.build
+    if coverage:
+        arguments += ["--coverage-line", "--coverage-toggle"]
     if netlist and simulator == "verilator":
         arguments += ["-Wno-fatal", "-Wno-lint"]  # the models of the cells are not ours to warn about
     digest = hashlib.sha256(Path(__file__).read_bytes() + repr(internals).encode())
