@@ -32,6 +32,35 @@ LEAVES = 6_000  # that are made in all
 DEFINED = 3  # random states that the C must define, at least
 TRIES = 1_000
 MASK = (1 << 64) - 1
+VISIBLE = '__attribute__((visibility("default"))) void'
+# A table: an assignment for each leaf would take ten times as long to compile.
+LEAVES_OF_C = f"""
+#define LEAF(x) {{&x, sizeof(x), (__typeof__(x))-1 < (__typeof__(x))0}}
+static const struct leaf {{
+\tvoid *at;
+\tunsigned size;
+\t_Bool has_sign;
+}} leaves[] = {{
+%s}};
+enum {{ LEAVES = sizeof(leaves) / sizeof(leaves[0]) }};
+
+{VISIBLE} coupling_load(const uint64_t *v)
+{{
+\tfor (unsigned i = 0; i < LEAVES; i++)
+\t\t__builtin_memcpy(leaves[i].at, &v[i], leaves[i].size);
+}}
+
+{VISIBLE} coupling_store(uint64_t *v)
+{{
+\tfor (unsigned i = 0; i < LEAVES; i++) {{
+\t\tint64_t value = 0;
+\t\tconst unsigned unused = 64u - 8u * leaves[i].size;
+
+\t\t__builtin_memcpy(&value, leaves[i].at, leaves[i].size);
+\t\tv[i] = leaves[i].has_sign ? (uint64_t)((int64_t)((uint64_t)value << unused) >> unused) : (uint64_t)value;
+\t}}
+}}
+"""
 
 
 @pytest.fixture(autouse=True)
@@ -135,13 +164,9 @@ def test_rules_of_long_multiplication_and_division() -> None:
 
 def compiled(coupling: Coupling, names: list[str]) -> ctypes.CDLL:
     """The harness of a coupling as a library, with functions that load and store all leaves."""
-    load = "".join(f"\t{name} = v[{i}];\n" for i, name in enumerate(names))
-    store = "".join(f"\tv[{i}] = (uint64_t){name};\n" for i, name in enumerate(names))
-    text = harness(coupling, [], paths.root)
-    visible = '__attribute__((visibility("default"))) void'
-    text += f"\n{visible} coupling_load(const uint64_t *v)\n{{\n{load}}}\n"
-    text += f"{visible} coupling_store(uint64_t *v)\n{{\n{store}}}\n"
-    text += f"{visible} coupling_clock(void) {{ {CLOCK}(); }}\n"
+    leaves = "".join(f"\tLEAF({name}),\n" for name in names)
+    text = f"{harness(coupling, [], paths.root)}\n{LEAVES_OF_C % leaves}"
+    text += f"{VISIBLE} coupling_clock(void) {{ {CLOCK}(); }}\n"
     source = run.BUILD / f"{coupling.name}.c"
     source.parent.mkdir(parents=True, exist_ok=True)
     source.write_text(text, encoding="utf-8")
