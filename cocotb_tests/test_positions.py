@@ -9,7 +9,7 @@ from cocotb.handle import HierarchyObject
 from passo.cocotb.clocks import Clocks, read
 
 from cocotb_tests.helpers.bench import Bench, rng
-from cocotb_tests.helpers.runner import run
+from cocotb_tests.helpers.runner import run, skip_icarus
 
 ROUND = 64  # clocks
 STEPS = 36  # at most, of an axis in a round
@@ -19,6 +19,8 @@ READ = 12  # address to position
 
 @pytest.mark.parametrize("axes", [1, 5, 8])
 def test_positions(simulator: str, axes: int) -> None:
+    if axes < 8:
+        skip_icarus(simulator)
     run(__name__, "passo_positions", {"AXES": axes, "LATCH": 1}, simulator)
 
 

@@ -12,7 +12,7 @@ from passo.cocotb.clocks import Clocks, Recorder, read
 
 from cocotb_tests.helpers.bench import Bench, PushBus, rng
 from cocotb_tests.helpers.ramps import V_MAX, Ramp, velocities
-from cocotb_tests.helpers.runner import run
+from cocotb_tests.helpers.runner import run, skip_icarus
 from cocotb_tests.helpers.shapes import Shape
 
 TICK_LOG2 = 7
@@ -25,6 +25,8 @@ Enable = Callable[[], bool]
 
 @pytest.mark.parametrize("channels", [1, 8])
 def test_profile(simulator: str, channels: int) -> None:
+    if channels < 8:
+        skip_icarus(simulator)
     parameters = {"CHANNELS": channels, "DEPTH_LOG2": DEPTH_LOG2, "TICK_LOG2": TICK_LOG2}
     run(__name__, "passo_profile_top", parameters, simulator)
 

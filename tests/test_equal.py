@@ -26,8 +26,8 @@ from tests.helpers.random_plans import SEED
 
 COUPLINGS = couplings()
 QUICK = [coupling for coupling in COUPLINGS if not coupling.slow]
-# one of each, of the RTL and of the model in turn
-BUGS = [(coupling, i % 2 * 2) for i, coupling in enumerate(QUICK)]
+# of some, which PASSO_SEED chooses, of the RTL and of the model in turn
+BUGS = [(coupling, i % 2 * 2) for i, coupling in enumerate(random.Random(f"equal {SEED}").sample(QUICK, 10))]
 LEAVES = 6_000  # that are made in all
 DEFINED = 3  # random states that the C must define, at least
 TRIES = 1_000
