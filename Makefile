@@ -1,6 +1,8 @@
 SHELL       := bash
 .SHELLFLAGS := -euc
 MAKEFLAGS   += --no-print-directory
+# Hundreds of processes import the same modules: compile them once, whatever the user's environment says.
+unexport PYTHONDONTWRITEBYTECODE
 
 BIN         := .venv/bin
 VERILOG     := $(wildcard rtl/*.v)

@@ -184,9 +184,8 @@ show_progress() {
 pip_install() {
     local packages=$1
     shift
-    # what is imported is compiled then: all of it takes as long as the rest
     PYTHONUNBUFFERED=1 .venv/bin/python -m pip install --no-input --disable-pip-version-check \
-        --no-compile --progress-bar off "$@" | show_progress "$packages" ||
+        --progress-bar off "$@" | show_progress "$packages" ||
         fail "pip could not install the Python packages; its message is above." \
             "Check the network and pip's own configuration (.venv/bin/pip config list), then run" \
             "'make setup' again. It goes on from where it stopped."
