@@ -24,6 +24,7 @@ from pathlib import Path
 import pytest
 from cocotb_tools.check_results import get_results
 from cocotb_tools.runner import Verilator, get_runner
+from passo.build import ONE_FILE
 from passo.random_cases import SEED_VARIABLE, seed
 from passo.toolchain import environment, paths
 from passo_fpga.netlist import CELLS, netlist_folder
@@ -172,7 +173,7 @@ def _build(
     if probe.exists():
         sources[-1] = _probed(sources[-1], probe, folder)
     netlist = (rtl / CELLS).exists()
-    arguments = ["--output-split", "0"] if simulator == "verilator" else []  # as in passo.build
+    arguments = [*ONE_FILE] if simulator == "verilator" else []
     if coverage:
         arguments += ["--coverage-line", "--coverage-toggle"]
     if netlist and simulator == "verilator":

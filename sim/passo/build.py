@@ -29,12 +29,13 @@ WHOLE = ("-O3", "-flto", "-fno-semantic-interposition")
 CPP_FLAGS = ("-std=gnu++17", "-O2", "-Wall", "-fPIC", "-fno-gnu-unique", *includes(paths.engine, paths.model))
 
 # Every register of the core has a reset, so the value chosen for X does not matter. Hidden symbols need no
-# detour over the table of a shared library: 8 % more clocks per second. A large core takes half the time to
-# compile when it is one file, which has the headers once.
+# detour over the table of a shared library: 8 % more clocks per second.
 TOP = "passo_spi_top"
+# A large core takes half the time to compile when it is one file, which has the headers once.
+ONE_FILE = ("--output-split", "0")
 VERILATOR_FLAGS = (
     *("--cc", "-O3", "--x-assign", "fast", "--x-initial", "fast", "--no-timing", "--no-assert"),
-    *("--output-split", "0"),
+    *ONE_FILE,
     *("--prefix", f"V{TOP}", "-CFLAGS", "-fPIC -fno-gnu-unique -fvisibility=hidden"),
 )
 WAVES_FLAGS = ("--trace-fst", "--no-trace-params")  # without the constants of the registers, in every module
