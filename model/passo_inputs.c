@@ -142,16 +142,17 @@ static void write_register(
 	}
 }
 
-/* Whether a polarity or the filter changes with this clock: levels that were filtered otherwise say nothing. */
+/* Whether a polarity or the filter changes with this clock: levels that were filtered otherwise say nothing.
+ */
 static bool forgets(const struct passo_channel *channel, const struct passo_bus *bus, bool selected)
 {
 	const bool probe_inverted = (bus->data >> PASSO_CHANNEL_PROBE_INVERTED_LSB & 1u) != 0u;
 
 	return (bus->write && bus->address == PASSO_ADDRESS_INPUT_FILTER)
 	    || (bus->write && selected && (uint8_t)bus->address == PASSO_CHANNEL_PROBE
-		&& probe_inverted != channel->inputs.probe_inverted)
+	        && probe_inverted != channel->inputs.probe_inverted)
 	    || (channel->writes_axis
-		&& channel->written_register % PASSO_CHANNEL_AXIS_STRIDE == PASSO_AXIS_INPUTS);
+	        && channel->written_register % PASSO_CHANNEL_AXIS_STRIDE == PASSO_AXIS_INPUTS);
 }
 
 void passo_inputs_clock(struct passo_inputs_unit *unit, const struct passo_channel *channel,
@@ -166,8 +167,8 @@ void passo_inputs_clock(struct passo_inputs_unit *unit, const struct passo_chann
 	for (unsigned kind = 0; kind < PASSO_KINDS; kind++)
 		changed = changed || changes(&channel->inputs.input[kind]);
 	clock_settling(&unit->settling, changed, inputs->machine->tick, forget);
-	passo_trigger_clock(&unit->trigger, &channel->inputs, passo_encoders_index(channel),
-	    inputs->machine->filter, forget);
+	passo_trigger_clock(
+	    &unit->trigger, &channel->inputs, passo_encoders_index(channel), inputs->machine->filter, forget);
 	clock_limits(&unit->limits, channel, may_close);
 	for (unsigned kind = 0; kind < PASSO_KINDS; kind++)
 		clock_input(&unit->input[kind],
@@ -290,8 +291,8 @@ uint64_t passo_inputs_quiet(const struct passo_channel *channel, const struct pa
 	then.trigger.clocks = unit->trigger.clocks;
 	if (memcmp(&then, unit, sizeof *unit) != 0)
 		return 0;
-	const uint64_t trigger = passo_trigger_quiet(
-	    &unit->trigger, unit, passo_encoders_index(channel), inputs->machine->filter);
+	const uint64_t trigger =
+	    passo_trigger_quiet(&unit->trigger, unit, passo_encoders_index(channel), inputs->machine->filter);
 	const uint64_t tick = waits_for_tick ? clocks_to_tick(inputs->machine) : UINT64_MAX;
 	return trigger < tick ? trigger : tick;
 }

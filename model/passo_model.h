@@ -307,8 +307,8 @@ struct passo_input_filter {
 	uint8_t first, second, level, pending, was_active;
 };
 
-/* Whether the levels are known: an input has changed since the last tick; one clock after a change of polarity
- * or filter. */
+/* Whether the levels are known: an input has changed since the last tick; one clock after a change of
+ * polarity or filter. */
 struct passo_settling {
 	bool changed, forgot, unknown;
 };
@@ -540,8 +540,8 @@ uint8_t passo_trigger_check(const struct passo_channel *channel, uint32_t data);
 void passo_trigger_clock(struct passo_trigger *trigger, const struct passo_inputs_unit *unit, uint8_t index,
     uint16_t filter, bool forget);
 /* Clocks for which only its counters change, and skipping them. */
-uint64_t passo_trigger_quiet(
-    const struct passo_trigger *trigger, const struct passo_inputs_unit *unit, uint8_t index, uint16_t filter);
+uint64_t passo_trigger_quiet(const struct passo_trigger *trigger, const struct passo_inputs_unit *unit,
+    uint8_t index, uint16_t filter);
 void passo_trigger_skip(struct passo_trigger *trigger, uint64_t clocks);
 void passo_trigger_write(struct passo_trigger *trigger, uint32_t data);
 uint32_t passo_inputs_value(const struct passo_inputs_unit *unit, uint8_t address);
