@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "history_player.h"
+#include "mutants.h"
 
 static void open_world(
     struct world *world, const struct plot *plot, const struct world_rtl *rtl, FILE *record)
@@ -68,6 +69,8 @@ void history_play(struct world *world, const struct world_rtl *rtl, uint64_t see
 
 	struct plot_random random = plot.random;
 	player = (struct player){.world = world, .counts = counts, .print = print};
+	if (world->mutants && !mutants_fork(world, number))
+		return;
 	open_world(world, &plot, rtl, record);
 	player_actions(&player, &plot, SIZE_MAX);
 	if (world->pokes)
@@ -81,5 +84,7 @@ void history_play(struct world *world, const struct world_rtl *rtl, uint64_t see
 	counts->clocks += world->clock;
 	if (!world->failed_at && !world->pokes)
 		judge_history(world, &counts->judge);
+	if (world->mutants)
+		mutants_end(world);
 	world_close(world);
 }

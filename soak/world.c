@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mutants.h"
 #include "world_private.h"
 
 /* Clocks from the last edge of SCLK to chip select. */
@@ -58,6 +59,8 @@ void world_fail(struct world *world, uint64_t clock, const char *format, ...)
 	va_start(arguments, format);
 	vsnprintf(world->failure, sizeof world->failure, format, arguments);
 	va_end(arguments);
+	if (world->alone) /* a mutant is dead */
+		mutants_end(world);
 }
 
 void world_add_fact(struct world *world, const struct world_fact *fact)
@@ -113,20 +116,23 @@ static void tick(struct world *world)
 		if (records)
 			before[i] = world_look(&world->model.channel[i]);
 	}
-	passo_core_clock(&world->model, &world->inputs);
+	if (!world->alone || world->machine) /* shafts turn with its steps */
+		passo_core_clock(&world->model, &world->inputs);
 	world->clock++;
-	world->outputs = *passo_core_outputs(&world->model);
+	if (!world->alone)
+		world->outputs = *passo_core_outputs(&world->model);
 	if (world->core) {
 		const struct passo_outputs rtl = run_rtl(world);
 
-		compare(world, &rtl, &world->outputs);
+		if (!world->alone)
+			compare(world, &rtl, &world->outputs);
 		world->outputs = rtl;
 	}
 	add_row(world);
 	for (unsigned i = 0; i < channels; i++) {
 		const struct passo_channel *channel = &world->model.channel[i];
 
-		if (!world->blind && stopping[i] && channel->motion.stopping
+		if (!world->blind && !world->alone && stopping[i] && channel->motion.stopping
 		    && channel->timescale.rate > rate[i])
 			world_fail(world, world->clock,
 			    "channel %u: the rate rises from %u to %u after a stop was commanded", i, rate[i],
@@ -160,6 +166,8 @@ bool world_open(struct world *world, const struct passo_parameters *parameters, 
 	world->machine = kept.machine;
 	world->tries = kept.tries;
 	world->pokes = kept.pokes;
+	world->alone = kept.alone;
+	world->mutants = kept.mutants;
 	world->half_period = 2;
 	world->setup = 4;
 	world->inputs = (struct passo_inputs)PASSO_INPUTS_IDLE;
