@@ -47,7 +47,14 @@ PLAIN = Core(
     "plain",
     SETS[SET],
     (
-        *("passo_spi", "passo_header", "passo_link", "passo_link_bus", "passo_link_schedule", "passo_link_states"),
+        *(
+            "passo_spi",
+            "passo_header",
+            "passo_link",
+            "passo_link_bus",
+            "passo_link_schedule",
+            "passo_link_states",
+        ),
         *("passo_payload", "passo_crc", "passo_reply", "passo_verdict", "passo_registers", "passo_core"),
         *("passo_channel", "passo_channel_registers", "passo_admission", "passo_motion", "passo_timescale"),
         *("passo_profile", "passo_path", "passo_interpolate", "passo_ramp", "passo_ramp_numbers"),
@@ -126,9 +133,7 @@ def _read(core: Core) -> str:
         (core.folder / source.name).write_bytes(source.read_bytes())
     files = " ".join(source.name for source in rtl_sources())
     chosen = " ".join(f"-chparam {name} {value}" for name, value in core.parameters.verilog().items())
-    return (
-        f"read_verilog -I. {files}\nhierarchy -top {TOP} {chosen}\nproc\nmemory_collect\nopt_clean\n"
-    )
+    return f"read_verilog -I. {files}\nhierarchy -top {TOP} {chosen}\nproc\nmemory_collect\nopt_clean\n"
 
 
 def _file(module: str) -> str:
@@ -138,7 +143,9 @@ def _file(module: str) -> str:
 
 def drawn(core: Core, seed: int, each: int) -> tuple[list[Mutant], Path, str]:
     """Mutants of a core, the same as long as the RTL is; its Verilated netlist, and what identifies that."""
-    hashed = hash_of([*rtl_sources(), *sorted(paths.rtl.glob("*.vh")), Path(__file__)], core.name, f"{seed} {each}")
+    hashed = hash_of(
+        [*rtl_sources(), *sorted(paths.rtl.glob("*.vh")), Path(__file__)], core.name, f"{seed} {each}"
+    )
     kept, netlist = core.folder / "mutants.json", core.folder / f"mutants_{core.name}.v"
     stored = json.loads(kept.read_text()) if kept.exists() else {}
     if stored.get("hash") != hashed:
@@ -206,7 +213,9 @@ def write(core: Core, mutants: list[Mutant], netlist: Path) -> None:
 def _choosing(netlist: str) -> str:
     """The netlist whose top takes the number from the environment: a constant costs less than an input."""
     begin = netlist.index(f"module {TOP}(")
-    ports = re.compile(rf", {SELECT}\);(.*?)  input (\[\d+:0\]) {SELECT};\n  wire \[\d+:0\] {SELECT};\n", re.S)
+    ports = re.compile(
+        rf", {SELECT}\);(.*?)  input (\[\d+:0\]) {SELECT};\n  wire \[\d+:0\] {SELECT};\n", re.S
+    )
     constant = rf");\1  reg \2 {SELECT};\n  initial {SELECT} = " + CHOSEN.replace("\\", r"\\") + ";\n"
     changed, count = ports.subn(constant, netlist[begin:], count=1)
     if count != 1:

@@ -77,7 +77,7 @@ def judge(
     library: Path,
     seed: int,
     show: Callable[[str], None],
-    chunk: int = 60,
+    chunk: int = 30,
 ) -> None:
     """Let the mutants play until they are killed or all rounds are over."""
 
@@ -123,7 +123,9 @@ def again(
             by_case.setdefault(f"{kind} {history}", []).append(mutant)
     for case, killed in by_case.items():
         kind, _, history = case.partition(" ")
-        rounds = Round("" if kind == "plain" else kind, int(history) // (len(SETS) if core is PLAIN else 1), 1)
+        rounds = Round(
+            "" if kind == "plain" else kind, int(history) // (len(SETS) if core is PLAIN else 1), 1
+        )
         found = play(program, library, rounds, [0, *(mutant.number for mutant in killed)], seed)
         for mutant in killed:
             fate = fates.get(mutant.name)

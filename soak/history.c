@@ -35,12 +35,15 @@ void history_play(struct world *world, const struct world_rtl *rtl, uint64_t see
 	scout.machine = world->machine;
 	if (world->pokes)
 		plot_begin_pokes(&plot, seed, number);
+	else if (world->starts)
+		plot_begin_starts(&plot, seed, number);
 	else if (world->machine)
 		plot_begin_machine(&plot, seed, number, world->tries);
 	else
 		plot_begin(&plot, seed, number);
 	const unsigned most = world->machine ? 5u : 3u;
-	const unsigned disturbances = world->tries || world->pokes ? 0u : 1u + plot_draw(&plot.random, most);
+	const unsigned disturbances =
+	    world->tries || world->pokes || world->starts ? 0u : 1u + plot_draw(&plot.random, most);
 	for (unsigned i = 0; i < disturbances; i++) {
 		const enum plot_kind kind = i != 0u || !plot.waits        ? plot_kind(&plot)
 		                          : plot_chance(&plot.random, 70) ? PLOT_SYNC

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * soak SEED FIRST COUNT [--rtl LIBRARY] [--record FOLDER] [--set N] [--driver | --machine | --tries |
- * --pokes]
+ * --starts | --pokes]
  *     [--short] [--print] [--keep-on] [--mutants]
  * Plays histories FIRST, FIRST + 1, ... at register level, or with --driver through the driver. --set N: only
  * those of one parameter set; --short: without the last move. Stops at the first failure unless --keep-on is
@@ -21,7 +21,7 @@ struct options {
 	uint64_t seed, first, count;
 	const char *library, *folder;
 	unsigned set; /* PLOT_SETS: all */
-	bool print, keep_on, driver, brief, blind, machine, tries, pokes, mutants;
+	bool print, keep_on, driver, brief, blind, machine, tries, pokes, starts, mutants;
 };
 
 static bool parse(int argc, char **argv, struct options *options)
@@ -45,6 +45,8 @@ static bool parse(int argc, char **argv, struct options *options)
 			options->machine = options->tries = true;
 		else if (strcmp(argv[i], "--pokes") == 0)
 			options->machine = options->pokes = true;
+		else if (strcmp(argv[i], "--starts") == 0)
+			options->machine = options->starts = true;
 		else if (strcmp(argv[i], "--mutants") == 0)
 			options->mutants = true;
 		else if (strcmp(argv[i], "--short") == 0)
@@ -157,6 +159,7 @@ int main(int argc, char **argv)
 	world.machine = options.machine;
 	world.tries = options.tries;
 	world.pokes = options.pokes;
+	world.starts = options.starts;
 	for (uint64_t number = options.first; played < options.count; number++) {
 		char path[WORLD_TEXT];
 		FILE *record = NULL;

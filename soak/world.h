@@ -147,6 +147,7 @@ struct world {
 	bool blind;                    /* the rate is judged by the steps alone */
 	bool machine;                  /* a core with inputs, encoders and outputs */
 	bool tries;                    /* that drives into its limit switches */
+	bool starts;                   /* whose motions begin at active switches; the model may skip clocks */
 	bool pokes;                    /* anything is written and anything happens at its pins; not judged */
 	bool alone;                    /* the Verilated core is not compared with the model */
 	struct world_mutants *mutants; /* NULL: none */
