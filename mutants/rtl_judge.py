@@ -77,9 +77,10 @@ def judge(
     library: Path,
     seed: int,
     show: Callable[[str], None],
+    rounds: Sequence[Round],
     chunk: int = 30,
 ) -> None:
-    """Let the mutants play until they are killed or all rounds are over."""
+    """Let the mutants that live play some rounds."""
 
     def record(name: str, numbers: Sequence[Mutant], rounds: Round) -> None:
         killed = play(program, library, rounds, [0, *(mutant.number for mutant in numbers)], seed)
@@ -93,16 +94,16 @@ def judge(
 
     if fates.other:
         again(core, mutants, fates, program, library, seed, show)
-    for rounds in ROUNDS[core.name]:
+    for played in rounds:
         waiting = [
             mutant
             for mutant in mutants
-            if fates.get(mutant.name).lives and rounds.name not in (fates.get(mutant.name).tried or [])
+            if fates.get(mutant.name).lives and played.name not in (fates.get(mutant.name).tried or [])
         ]
         for begin in range(0, len(waiting), chunk):
-            record(rounds.name, waiting[begin : begin + chunk], rounds)
+            record(played.name, waiting[begin : begin + chunk], played)
             living = sum(fates.get(mutant.name).lives for mutant in mutants)
-            show(f"{core.name}: {rounds.name}: {living} of {len(mutants)} live")
+            show(f"{core.name}: {played.name}: {living} of {len(mutants)} live")
 
 
 def again(
