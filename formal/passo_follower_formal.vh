@@ -58,7 +58,8 @@ always @(posedge clk)
       made_when_owed : assert (advance);
     if (f_follows) behind_told : assert (behind == (f_owed_q >= 2 * f_one));
     if (f_follows)
-      lost_told : assert (lost == ($past(f_follows && lost) || f_owed_q >= 32'sd4194304 || f_owed_q < -32'sd4194304));
+      lost_told : assert (lost == ($past(f_follows && lost) || f_owed_q >= 32'sd4194304 || f_owed_q < -32'sd4194304
+                          || $past(slipped)));
     never_wraps : assert (f_owed < 32'sd4194304 + 32'sd512 && f_owed > -32'sd4194304 - 32'sd512);
   end
 

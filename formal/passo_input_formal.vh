@@ -19,6 +19,16 @@ wire f_changes = f_differs & pending[0] & tick;
 reg [5:0] f_run = 6'd0;
 always @(posedge clk) f_run <= f_differs && !f_changes && !rst ? f_run + 6'd1 : 6'd0;
 
+// --- For how many clocks up to the last one the input has not changed, none has, and since when the settings hold
+reg [5:0] f_still = 6'd0;
+reg [5:0] f_calm = 6'd0;
+reg [5:0] f_settings = 6'd0;
+always @(posedge clk) begin
+  f_still    <= rst || (f_still != 6'd0 && second[0] != $past(second[0])) ? 6'd1 : f_still + (f_still != 6'd63);
+  f_calm     <= rst || forget || pins != $past(pins) || inverted != $past(inverted) ? 6'd0 : f_calm + (f_calm != 6'd63);
+  f_settings <= rst || forget ? 6'd0 : f_settings + (f_settings != 6'd63);
+end
+
 always @(posedge clk)
   if (f_begun && $past(f_begun)) begin
     if (level[0] != $past(level[0])) longer_than_the_filter : assert ($past(f_run) >= {2'd0, f_length});
@@ -28,7 +38,16 @@ always @(posedge clk)
     if ($past(level[0])) active_is_remembered : assert (was_active[0]);
     if ($past(was_active[0]) && !$past(clear[0])) flag_stays : assert (was_active[0]);
     if (was_active[0]) flag_for_a_reason : assert ($past(level[0] || was_active[0]));
+    if ($past(forget)) change_of_settings_forgets : assert (unknown);
+    if (!$past(unknown || forget)) known_stays_known : assert (!unknown);
+    if ($past(unknown) && !unknown) begin
+      known_is_right : assert (level[0] == $past(second[0]));
+      known_by_a_period : assert ($past(f_still) >= {2'd0, f_length});
+      known_with_new_settings : assert (f_settings > 6'd2);
+    end
+    if (f_calm > {1'b0, f_length, 1'b0} + 6'd2) still_is_known : assert (!unknown);
   end
+  else if (f_started && $past(rst)) reset_forgets : assert (unknown);
 
 `ifdef INVARIANTS
 always @(posedge clk)
@@ -37,5 +56,14 @@ always @(posedge clk)
     if (!rst && pending[0])
       assert (f_run >= {2'd0, f_since} + 6'd1 && f_run <= {2'd0, f_since} + {2'd0, f_length});
     if (!rst && !pending[0]) assert (f_run <= {2'd0, f_since});
+    if (f_begun && $past(f_begun)) begin
+      if (f_calm > 6'd1) assert (first[0] == second[0]);
+      if (!changed && !changes) assert (f_still > {2'd0, f_since});
+      if (f_calm > {2'd0, f_since} + 6'd3) assert (!changed && !changes);
+      if (f_calm > {2'd0, f_since} + {2'd0, f_length} + 6'd3) assert (!unknown);
+      assert (forgot == (f_settings == 6'd0));
+      if (f_settings < 6'd2) assert (changed);
+      if (f_settings < 6'd3) assert (unknown);
+    end
   end
 `endif

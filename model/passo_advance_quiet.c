@@ -97,6 +97,7 @@ static uint64_t ramp_quiet(const struct passo_ramp_unit *ramp)
 static bool motion_settled(const struct passo_channel *channel, const struct passo_channel_inputs *inputs)
 {
 	const struct passo_motion *motion = &channel->motion;
+	const bool waits = passo_inputs_requests(channel, inputs).wait;
 
 	if (motion->stopping || motion->stop_due || motion->settling != 0u || motion->aborted != 0u
 	    || motion->rate_was_zero != (channel->timescale.rate == 0u))
@@ -104,11 +105,11 @@ static bool motion_settled(const struct passo_channel *channel, const struct pas
 	switch (motion->state) {
 	case PASSO_STATE_IDLE:
 		return !motion->running && !motion->startable
-		    && !(inputs->run && channel->line_queue.next_valid && channel->ramp_queue.valid);
+		    && !(inputs->run && !waits && channel->line_queue.next_valid && channel->ramp_queue.valid);
 	case PASSO_STATE_PREPARE:
 		return !motion->running && !channel->ramp.ready;
 	case PASSO_STATE_ARMED:
-		return !motion->running && inputs->wait_sync && !motion->begin_profile;
+		return !motion->running && (inputs->wait_sync || waits) && !motion->begin_profile;
 	case PASSO_STATE_STOPPED:
 		return !motion->running;
 	case PASSO_STATE_RUN:
@@ -157,10 +158,11 @@ uint64_t passo_advance_surroundings_quiet(
 	    || line->underrun || !ramps_settled(&channel->ramp_queue, inputs->parameters)
 	    || !lines_settled(channel, inputs->parameters) || !passo_encoders_quiet(channel, inputs))
 		return 0;
-	if (!passo_inputs_quiet(channel, inputs))
+	uint64_t clocks = passo_inputs_quiet(channel, inputs);
+	if (clocks == 0u)
 		return 0;
-	uint64_t clocks =
-	    passo_advance_least(ramp_quiet(&channel->ramp), timescale_quiet(channel, moving, clocks_to_slew));
+	clocks = passo_advance_least(clocks,
+	    passo_advance_least(ramp_quiet(&channel->ramp), timescale_quiet(channel, moving, clocks_to_slew)));
 	for (unsigned i = 0; i < channel->axes && clocks != 0u; i++) {
 		const uint32_t quiet =
 		    passo_axis_quiet(&channel->axis[i], (line->directions >> i & 1u) != 0u);

@@ -17,14 +17,21 @@ static uint32_t command_of(uint32_t data)
 	return (data & abort) != 0u ? abort : (data & stop) != 0u ? stop : data;
 }
 
-struct passo_needs passo_channel_needs(const struct passo_channel *channel, const struct passo_bus *bus)
+/* PINS of an axis, or INPUTS if the core has them. */
+static bool axis_needs_quiet(uint8_t place, bool has_inputs)
+{
+	return place == PASSO_AXIS_PINS || (has_inputs && place == PASSO_AXIS_INPUTS);
+}
+
+struct passo_needs passo_channel_needs(
+    const struct passo_channel *channel, const struct passo_bus *bus, bool has_inputs)
 {
 	const uint8_t address = (uint8_t)bus->address;
 	const unsigned in_axes = (unsigned)address - PASSO_CHANNEL_AXIS_BASE;
 	const uint32_t command = address == PASSO_CHANNEL_COMMAND ? command_of(bus->data) : 0u;
 	const bool outputs = channel->has_outputs && passo_output_registers_need_quiet(address);
 	const bool pins = in_axes < channel->axes * PASSO_CHANNEL_AXIS_STRIDE
-	               && in_axes % PASSO_CHANNEL_AXIS_STRIDE == PASSO_AXIS_PINS;
+	               && axis_needs_quiet((uint8_t)(in_axes % PASSO_CHANNEL_AXIS_STRIDE), has_inputs);
 
 	if (!bus->check || (bus->address >> 8) != channel->number + 1u)
 		return (struct passo_needs){0};

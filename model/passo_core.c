@@ -12,27 +12,30 @@ static bool in_range(unsigned value, unsigned low, unsigned high)
 	return value >= low && value <= high;
 }
 
-uint64_t passo_core_enable(const struct passo_core *core, bool estop_n)
+void passo_core_estop(const struct passo_core *core, bool estop_n, struct passo_outputs *outputs)
 {
 	const bool off = core->parameters.inputs != 0u && (core->machine.estop_pressed || !estop_n);
-	uint64_t enable = 0;
 
-	for (unsigned i = 0; i < core->parameters.channels; i++)
+	outputs->enable = 0;
+	outputs->power = 0;
+	for (unsigned i = 0; i < core->parameters.channels; i++) {
+		const struct passo_channel *channel = &core->channel[i];
 		for (unsigned a = 0; a < core->parameters.axes; a++) {
-			const struct passo_axis *axis = &core->channel[i].axis[a];
+			const struct passo_axis *axis = &channel->axis[a];
 			const bool level = off ? axis->settings.enable_inverted : axis->enable_pin;
-			enable |= (uint64_t)level << (i * core->parameters.axes + a);
+			outputs->enable |= (uint64_t)level << (i * core->parameters.axes + a);
 		}
-	return enable;
+		outputs->power |= (uint8_t)((channel->outputs.pwm.pin && !off ? 1u : 0u) << i);
+	}
 }
 
 static void gather_outputs(struct passo_core *core)
 {
 	struct passo_outputs *outputs = &core->outputs;
 
-	outputs->step = outputs->dir = outputs->enable = 0;
+	outputs->step = outputs->dir = 0;
 	outputs->outputs = 0;
-	outputs->power = outputs->compare = 0;
+	outputs->compare = 0;
 	outputs->running = 0;
 	for (unsigned i = 0; i < core->parameters.channels; i++) {
 		const struct passo_channel *channel = &core->channel[i];
@@ -42,11 +45,10 @@ static void gather_outputs(struct passo_core *core)
 			outputs->dir |= (uint64_t)channel->axis[a].dir_pin << bit;
 		}
 		outputs->outputs |= (uint64_t)channel->outputs.levels << 8u * i;
-		outputs->power |= (uint8_t)((channel->outputs.pwm.pin ? 1u : 0u) << i);
 		outputs->compare |= (uint8_t)((channel->outputs.compare.pin ? 1u : 0u) << i);
 		outputs->running |= (uint8_t)((channel->motion.running ? 1u : 0u) << i);
 	}
-	outputs->enable = passo_core_enable(core, true);
+	passo_core_estop(core, true, outputs);
 	outputs->spi_miso = core->spi.miso;
 }
 

@@ -47,8 +47,8 @@ uint64_t passo_core_shift(
 uint64_t passo_core_exchange(
     struct passo_core *core, struct passo_inputs *inputs, struct passo_shift *shift, uint64_t limit);
 
-/* Levels of the enable pins while estop_n has this level: it acts without a clock. */
-uint64_t passo_core_enable(const struct passo_core *core, bool estop_n);
+/* Puts the levels of EN and power that belong to this level of estop_n: it acts without a clock. */
+void passo_core_estop(const struct passo_core *core, bool estop_n, struct passo_outputs *outputs);
 
 const struct passo_outputs *passo_core_outputs(const struct passo_core *core);
 

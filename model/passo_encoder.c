@@ -44,7 +44,7 @@ void passo_encoder_restart(struct passo_encoder *encoder, const struct passo_enc
 	encoder->a_q = encoder->a.level;
 	encoder->b_q = encoder->b.level;
 	encoder->active_q = true;
-	encoder->count_made = encoder->count_down = encoder->index_event = false;
+	encoder->count_made = encoder->count_down = encoder->slipped = encoder->index_event = false;
 	encoder->illegal = 0;
 }
 
@@ -58,8 +58,9 @@ void passo_encoder_clock(struct passo_encoder *encoder, const struct passo_encod
 
 	encoder->count_made = changed_a != changed_b;
 	encoder->count_down = (a == encoder->b_q) != wires->inverted;
+	encoder->slipped = changed_a && changed_b;
 	encoder->index_event = now_active && !encoder->active_q;
-	if (changed_a && changed_b && encoder->illegal != 0xFFu)
+	if (encoder->slipped && encoder->illegal != 0xFFu)
 		encoder->illegal++;
 	if (wires->clear)
 		encoder->illegal = 0;
@@ -82,5 +83,5 @@ bool passo_encoder_quiet(const struct passo_encoder *encoder, const struct passo
 	    && filter_quiet(&encoder->index, wires->index) && encoder->a_q == wires->a
 	    && encoder->b_q == wires->b && encoder->active_q == active(encoder, wires)
 	    && encoder->count_down == ((wires->a == wires->b) != wires->inverted) && !encoder->count_made
-	    && !encoder->index_event && !wires->clear;
+	    && !encoder->slipped && !encoder->index_event && !wires->clear;
 }

@@ -16,7 +16,7 @@ struct passo_encoder_filter {
 struct passo_encoder {
 	struct passo_encoder_filter a, b, index;
 	bool a_q, b_q, active_q;
-	bool count_made, count_down, index_event;
+	bool count_made, count_down, slipped, index_event;
 	uint8_t illegal;
 };
 
@@ -74,7 +74,7 @@ struct passo_follower {
 
 struct passo_follower_wires {
 	bool following;
-	bool count_made, count_down;
+	bool count_made, count_down, slipped;
 	uint8_t scale;
 	uint32_t limit; /* UQ0.32 advances per enabled clock */
 	bool enable, stall;

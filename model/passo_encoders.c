@@ -55,6 +55,7 @@ static struct passo_follower_wires follower_wires(
 	    .following = wires->follows && (wires->begin_profile || wires->counting),
 	    .count_made = source->count_made,
 	    .count_down = source->count_down,
+	    .slipped = source->slipped,
 	    .scale = channel->encoders.scale,
 	    .limit = channel->encoders.follow_limit,
 	    .enable = channel->timescale.enable && wires->counting,

@@ -31,7 +31,7 @@ void passo_follower_clock(struct passo_follower *follower, const struct passo_fo
 		follower->change = wires->count_down ? -one_count : one_count;
 	follower->due = owed > 0;
 	follower->behind = owed >= 2 * one_count;
-	follower->lost = follower->lost || owed >= OWED_MAX || owed < -OWED_MAX;
+	follower->lost = follower->lost || owed >= OWED_MAX || owed < -OWED_MAX || wires->slipped;
 	if (wires->enable && (!follower->credit || advance)) {
 		const uint64_t sum = (uint64_t)follower->sum + wires->limit;
 		follower->sum = (uint32_t)sum;

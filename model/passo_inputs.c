@@ -50,6 +50,7 @@ struct passo_requests passo_inputs_requests(
 	                : limits->alarm_softly ? PASSO_CAUSE_ALARM
 	                : soft                 ? PASSO_CAUSE_TRIGGER
 	                                       : PASSO_CAUSE_WATCHDOG,
+	    .wait = inputs->parameters->inputs != 0u && (unit->settling.unknown || trigger->arming),
 	    .latch = trigger->latch,
 	    .end_endless = trigger->latch && action == PASSO_TRIGGER_ACTION_END_ENDLESS,
 	    .disable = all_off ? 0xFFu
@@ -68,6 +69,21 @@ static void clock_input(struct passo_input_filter *input, uint8_t pins, bool tic
 	input->pending = (uint8_t)(differs & (input->pending ^ ticks));
 	input->second = input->first;
 	input->first = pins;
+}
+
+/* Whether an input has changed since the last tick, or within this period for the first time. */
+static bool changes(const struct passo_input_filter *input)
+{
+	return (input->second ^ input->level) != input->pending;
+}
+
+static void clock_settling(struct passo_settling *settling, bool changes, bool tick, bool forget)
+{
+	const bool changed = settling->changed;
+
+	settling->changed = settling->forgot || ((changed || changes) && !tick) || forget;
+	settling->unknown = (settling->unknown && (!tick || changed || changes)) || forget;
+	settling->forgot = forget;
 }
 
 static void clock_limits(struct passo_limits *limits, const struct passo_channel *channel, bool may_close)
@@ -126,15 +142,32 @@ static void write_register(
 	}
 }
 
+/* Whether a polarity or the filter changes with this clock: levels that were filtered otherwise say nothing. */
+static bool forgets(const struct passo_channel *channel, const struct passo_bus *bus, bool selected)
+{
+	const bool probe_inverted = (bus->data >> PASSO_CHANNEL_PROBE_INVERTED_LSB & 1u) != 0u;
+
+	return (bus->write && bus->address == PASSO_ADDRESS_INPUT_FILTER)
+	    || (bus->write && selected && (uint8_t)bus->address == PASSO_CHANNEL_PROBE
+		&& probe_inverted != channel->inputs.probe_inverted)
+	    || (channel->writes_axis
+		&& channel->written_register % PASSO_CHANNEL_AXIS_STRIDE == PASSO_AXIS_INPUTS);
+}
+
 void passo_inputs_clock(struct passo_inputs_unit *unit, const struct passo_channel *channel,
     const struct passo_channel_inputs *inputs, const struct passo_channel_wires *wires)
 {
 	const bool may_close = passo_channel_quiet(channel) || (wires->occupied && !wires->moving);
+	const bool forget = forgets(channel, inputs->bus, wires->selected);
+	bool changed = false;
 
 	if (inputs->parameters->inputs == 0u)
 		return;
-	passo_trigger_clock(
-	    &unit->trigger, &channel->inputs, passo_encoders_index(channel), inputs->machine->filter);
+	for (unsigned kind = 0; kind < PASSO_KINDS; kind++)
+		changed = changed || changes(&channel->inputs.input[kind]);
+	clock_settling(&unit->settling, changed, inputs->machine->tick, forget);
+	passo_trigger_clock(&unit->trigger, &channel->inputs, passo_encoders_index(channel),
+	    inputs->machine->filter, forget);
 	clock_limits(&unit->limits, channel, may_close);
 	for (unsigned kind = 0; kind < PASSO_KINDS; kind++)
 		clock_input(&unit->input[kind],
@@ -143,9 +176,15 @@ void passo_inputs_clock(struct passo_inputs_unit *unit, const struct passo_chann
 		write_register(unit, channel, inputs->bus);
 }
 
+void passo_inputs_reset(struct passo_inputs_unit *unit)
+{
+	*unit = (struct passo_inputs_unit){.settling = {.changed = true, .forgot = true, .unknown = true}};
+}
+
 void passo_inputs_restart(struct passo_inputs_unit *unit, const struct passo_inputs_unit *before)
 {
-	*unit = (struct passo_inputs_unit){.probe_inverted = before->probe_inverted};
+	passo_inputs_reset(unit);
+	unit->probe_inverted = before->probe_inverted;
 	unit->trigger.source = before->trigger.source;
 	unit->trigger.axis = before->trigger.axis;
 	unit->trigger.action = before->trigger.action;
@@ -188,6 +227,9 @@ uint32_t passo_inputs_value(const struct passo_inputs_unit *unit, uint8_t addres
 		     | (uint32_t)input[1].was_active << 8 | input[0].was_active;
 	case PASSO_CHANNEL_TRIGGER_STATE:
 		return passo_pack_channel_trigger_state(&(struct passo_channel_trigger_state){
+		    .unknown = unit->settling.unknown,
+		    .source_active = unit->trigger.armed && unit->trigger.level,
+		    .arming = unit->trigger.arming,
 		    .armed = unit->trigger.armed,
 		    .fired = unit->trigger.fired,
 		    .probe = input[PASSO_KIND_PROBE].level != 0u,
@@ -201,39 +243,60 @@ uint32_t passo_inputs_value(const struct passo_inputs_unit *unit, uint8_t addres
 	}
 }
 
-bool passo_inputs_quiet(const struct passo_channel *channel, const struct passo_channel_inputs *inputs)
+/* Whether an input is still on its way to the level. */
+static bool is_on_its_way(const struct passo_input_filter *input, uint8_t pins)
+{
+	return input->first != pins || input->second != pins || changes(input);
+}
+
+/* Clocks until the next one that sees a tick. */
+static uint64_t clocks_to_tick(const struct passo_machine_unit *machine)
+{
+	return machine->tick ? 0u : (uint64_t)machine->filter - machine->count + 1u;
+}
+
+uint64_t passo_inputs_quiet(const struct passo_channel *channel, const struct passo_channel_inputs *inputs)
 {
 	const struct passo_inputs_unit *unit = &channel->inputs;
-	const struct passo_trigger *trigger = &unit->trigger;
 	struct passo_inputs_unit then = *unit;
 	const struct passo_channel_wires wires = {
 	    .occupied = passo_channel_occupied(channel), .moving = channel->motion.state == PASSO_STATE_RUN};
+	bool waits_for_tick = unit->settling.unknown || unit->settling.changed;
 
 	if (inputs->parameters->inputs == 0u)
-		return true;
+		return UINT64_MAX;
 	const struct passo_requests requests = passo_inputs_requests(channel, inputs);
 	if (requests.hard || requests.soft || requests.latch || (inputs->machine->estop_seen & 2u) != 0u)
-		return false;
+		return 0;
 	for (unsigned i = 0; i < channel->axes; i++)
 		if ((requests.disable >> i & 1u) != 0u && channel->axis[i].settings.enable)
-			return false;
-	passo_inputs_clock(&then, channel, inputs, &wires);
-	if (trigger->armed)
-		then.trigger.clocks--;
-	for (unsigned kind = 0; kind < PASSO_KINDS; kind++)
-		if (unit->input[kind].second != unit->input[kind].level || unit->input[kind].pending != 0u)
-			return false;
+			return 0;
+	for (unsigned kind = 0; kind < PASSO_KINDS; kind++) {
+		const struct passo_input_filter *input = &unit->input[kind];
+		const uint8_t pins = inputs->pins[kind] ^ inverted(channel, unit, kind);
+
+		if (is_on_its_way(input, pins))
+			return 0;
+		waits_for_tick = waits_for_tick || input->pending != 0u;
+	}
 	if (channel->positions.latch_waits || channel->line.no_repeat != channel->line.no_repeat_before)
-		return false;
+		return 0;
 	for (unsigned i = 0; i < channel->axes; i++)
 		if (channel->axis[i].closed.low != ((unit->limits.closed_low >> i & 1u) != 0u)
 		    || channel->axis[i].closed.high != ((unit->limits.closed_high >> i & 1u) != 0u))
-			return false;
-	return memcmp(&then, unit, sizeof *unit) == 0;
+			return 0;
+	passo_inputs_clock(&then, channel, inputs, &wires);
+	then.trigger.count = unit->trigger.count;
+	then.trigger.clocks = unit->trigger.clocks;
+	if (memcmp(&then, unit, sizeof *unit) != 0)
+		return 0;
+	const uint64_t trigger = passo_trigger_quiet(
+	    &unit->trigger, unit, passo_encoders_index(channel), inputs->machine->filter);
+	const uint64_t tick = waits_for_tick ? clocks_to_tick(inputs->machine) : UINT64_MAX;
+	return trigger < tick ? trigger : tick;
 }
 
 void passo_inputs_skip(struct passo_inputs_unit *unit, uint64_t clocks)
 {
-	if (unit->trigger.armed)
-		unit->trigger.clocks += (uint32_t)clocks;
+	passo_trigger_skip(&unit->trigger, clocks);
 }

@@ -68,11 +68,14 @@ void passo_machine_clock(struct passo_machine_unit *machine, const struct passo_
 {
 	const bool clears = bus->write && bus->address == PASSO_ADDRESS_ESTOP_CLEAR && (bus->data & 1u) != 0u;
 
-	machine->tick = machine->count <= 1u;
-	machine->count = machine->count <= 1u ? machine->filter : (uint16_t)(machine->count - 1u);
+	const bool ends = machine->count == machine->filter;
+	const bool writes_filter = bus->write && bus->address == PASSO_ADDRESS_INPUT_FILTER;
+
+	machine->tick = ends && !writes_filter;
+	machine->count = ends || writes_filter ? 0u : (uint16_t)(machine->count + 1u);
 	clock_estop(machine, inputs->estop_n, clears || inputs->rst);
 	clock_watchdog(machine, bus->write || bus->read, moving);
-	if (bus->write && bus->address == PASSO_ADDRESS_INPUT_FILTER && !inputs->rst)
+	if (writes_filter && !inputs->rst)
 		machine->filter = (uint16_t)bus->data;
 	if (bus->write && bus->address == PASSO_ADDRESS_WATCHDOG) {
 		const struct passo_watchdog word = passo_unpack_watchdog(bus->data);
@@ -140,17 +143,7 @@ uint64_t passo_machine_quiet(
 
 void passo_machine_skip(struct passo_machine_unit *machine, uint64_t clocks)
 {
-	const uint64_t period = machine->filter > 1u ? machine->filter : 1u;
-
 	machine->watchdog_unit = (uint32_t)((machine->watchdog_unit + clocks) % UNIT_CLOCKS);
-	/* after a tick of this count, the next one is every `period` clocks */
-	const uint64_t first = machine->count > 1u ? machine->count : 1u; /* clocks to the next tick */
-	if (clocks < first) {
-		machine->tick = false;
-		machine->count = (uint16_t)(machine->count - clocks);
-		return;
-	}
-	const uint64_t since = (clocks - first) % period;
-	machine->tick = since == 0u;
-	machine->count = (uint16_t)(machine->filter - since);
+	machine->count = (uint16_t)((machine->count + clocks) % (machine->filter + 1u));
+	machine->tick = machine->count == 0u;
 }

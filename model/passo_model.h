@@ -307,6 +307,12 @@ struct passo_input_filter {
 	uint8_t first, second, level, pending, was_active;
 };
 
+/* Whether the levels are known: an input has changed since the last tick; one clock after a change of polarity
+ * or filter. */
+struct passo_settling {
+	bool changed, forgot, unknown;
+};
+
 enum passo_input_kind {
 	PASSO_KIND_LIMIT_LOW,
 	PASSO_KIND_LIMIT_HIGH,
@@ -325,8 +331,8 @@ struct passo_limits {
 struct passo_trigger {
 	uint8_t source, axis, action;
 	bool falling;
-	uint8_t arming; /* bits 0 and 1: written one and two clocks ago */
-	bool picked, level, armed, fired, latch;
+	uint8_t stale; /* clocks until `picked` is that of the source */
+	bool picked, level, arming, armed, fired, latch;
 	uint16_t count;
 	uint32_t clocks;
 };
@@ -334,6 +340,7 @@ struct passo_trigger {
 /* Inputs of a channel; see rtl/passo_inputs.v. */
 struct passo_inputs_unit {
 	struct passo_input_filter input[PASSO_KINDS];
+	struct passo_settling settling;
 	struct passo_limits limits;
 	struct passo_trigger trigger;
 	bool probe_inverted;
@@ -354,6 +361,7 @@ struct passo_machine_unit {
 /* What a channel asks its motion, axes and line to do. */
 struct passo_requests {
 	bool hard, soft, latch, end_endless;
+	bool wait; /* no motion may begin: an input is unknown, or the trigger is being armed */
 	enum passo_cause hard_cause, soft_cause;
 	uint8_t disable; /* a bit per axis */
 };
@@ -523,16 +531,22 @@ struct passo_requests passo_inputs_requests(
     const struct passo_channel *channel, const struct passo_channel_inputs *inputs);
 void passo_inputs_clock(struct passo_inputs_unit *unit, const struct passo_channel *channel,
     const struct passo_channel_inputs *inputs, const struct passo_channel_wires *wires);
-/* Synchronous reset, which keeps the settings. */
+/* State after a reset; and the synchronous reset, which keeps the settings. */
+void passo_inputs_reset(struct passo_inputs_unit *unit);
 void passo_inputs_restart(struct passo_inputs_unit *unit, const struct passo_inputs_unit *before);
 /* Verdict on the value of TRIGGER. */
 uint8_t passo_trigger_check(const struct passo_channel *channel, uint32_t data);
-void passo_trigger_clock(
-    struct passo_trigger *trigger, const struct passo_inputs_unit *unit, uint8_t index, uint16_t filter);
+/* `forget`: polarity or filter change with this clock. */
+void passo_trigger_clock(struct passo_trigger *trigger, const struct passo_inputs_unit *unit, uint8_t index,
+    uint16_t filter, bool forget);
+/* Clocks for which only its counters change, and skipping them. */
+uint64_t passo_trigger_quiet(
+    const struct passo_trigger *trigger, const struct passo_inputs_unit *unit, uint8_t index, uint16_t filter);
+void passo_trigger_skip(struct passo_trigger *trigger, uint64_t clocks);
 void passo_trigger_write(struct passo_trigger *trigger, uint32_t data);
 uint32_t passo_inputs_value(const struct passo_inputs_unit *unit, uint8_t address);
-/* Whether nothing changes except the time of an armed trigger, and skipping that. */
-bool passo_inputs_quiet(const struct passo_channel *channel, const struct passo_channel_inputs *inputs);
+/* Clocks for which nothing changes except the counters of the trigger, and skipping them. */
+uint64_t passo_inputs_quiet(const struct passo_channel *channel, const struct passo_channel_inputs *inputs);
 void passo_inputs_skip(struct passo_inputs_unit *unit, uint64_t clocks);
 /* The pins of a channel among those of the core. */
 void passo_encoders_pins(
@@ -566,7 +580,8 @@ void passo_motion_clock(struct passo_motion *motion, const struct passo_channel 
     const struct passo_channel_wires *wires);
 
 /* State of the channel that the bus strobe requires. */
-struct passo_needs passo_channel_needs(const struct passo_channel *channel, const struct passo_bus *bus);
+struct passo_needs passo_channel_needs(
+    const struct passo_channel *channel, const struct passo_bus *bus, bool has_inputs);
 /* Response of a channel to the bus strobe. */
 struct passo_response passo_channel_respond(
     const struct passo_channel *channel, const struct passo_channel_inputs *inputs);

@@ -32,28 +32,36 @@ uint8_t passo_trigger_check(const struct passo_channel *channel, uint32_t data)
 	         : PASSO_VERDICT_OK;
 }
 
-void passo_trigger_clock(
-    struct passo_trigger *trigger, const struct passo_inputs_unit *unit, uint8_t index, uint16_t filter)
+/* An edge that may be one; while arming, a level that may be known. */
+static bool counts(const struct passo_trigger *trigger)
+{
+	const bool differs = trigger->picked != trigger->level;
+
+	return trigger->armed ? differs : trigger->arming && !differs;
+}
+
+void passo_trigger_clock(struct passo_trigger *trigger, const struct passo_inputs_unit *unit, uint8_t index,
+    uint16_t filter, bool forget)
 {
 	const bool picked = trigger->picked;
-	const bool armed = trigger->armed;
-	const bool arms = (trigger->arming & 2u) != 0u;
-	const bool differs = picked != trigger->level;
-	const bool changes = armed && differs && trigger->count == filter;
-	const bool fires = changes && trigger->level == trigger->falling;
+	const bool armed = trigger->armed, arming = trigger->arming;
+	const bool stale = trigger->stale != 0u;
+	const bool accepts = counts(trigger) && trigger->count == filter && !stale;
+	const bool fires = accepts && armed && trigger->level == trigger->falling;
 
+	trigger->count = !counts(trigger) || accepts || stale ? 0u : (uint16_t)(trigger->count + 1u);
 	trigger->picked = chosen(trigger, unit, index);
-	trigger->arming = (uint8_t)((uint32_t)trigger->arming << 1 & 3u);
-	if (armed)
+	trigger->stale = forget ? 3u : stale ? (uint8_t)(trigger->stale - 1u) : 0u;
+	if (accepts || !armed)
+		trigger->level = picked;
+	if (arming)
+		trigger->clocks = 0;
+	else if (armed)
 		trigger->clocks++;
 	trigger->latch = fires;
-	trigger->armed = (armed && !fires) || arms;
 	trigger->fired = trigger->fired || fires;
-	trigger->count = !differs || changes || !armed ? 0u : (uint16_t)(trigger->count + 1u);
-	if (changes || arms)
-		trigger->level = picked;
-	if (arms)
-		trigger->clocks = 0;
+	trigger->arming = forget ? arming || (armed && !fires) : arming && !accepts;
+	trigger->armed = !forget && ((armed && !fires) || (arming && accepts));
 }
 
 void passo_trigger_write(struct passo_trigger *trigger, uint32_t data)
@@ -64,6 +72,27 @@ void passo_trigger_write(struct passo_trigger *trigger, uint32_t data)
 	trigger->axis = word.axis;
 	trigger->action = (uint8_t)word.action;
 	trigger->falling = word.falling;
-	trigger->arming = word.arm ? 1u : 0u;
+	trigger->arming = word.arm;
+	trigger->stale = 3;
 	trigger->armed = trigger->fired = trigger->latch = false;
+}
+
+uint64_t passo_trigger_quiet(
+    const struct passo_trigger *trigger, const struct passo_inputs_unit *unit, uint8_t index, uint16_t filter)
+{
+	if (trigger->stale != 0u || trigger->latch || trigger->picked != chosen(trigger, unit, index)
+	    || (!trigger->armed && trigger->level != trigger->picked)
+	    || (trigger->arming && trigger->clocks != 0u))
+		return 0;
+	if (!counts(trigger))
+		return trigger->count == 0u ? UINT64_MAX : 0u;
+	return (uint64_t)filter - trigger->count; /* up to the clock before it accepts the level */
+}
+
+void passo_trigger_skip(struct passo_trigger *trigger, uint64_t clocks)
+{
+	if (counts(trigger))
+		trigger->count = (uint16_t)(trigger->count + clocks);
+	if (trigger->armed)
+		trigger->clocks += (uint32_t)clocks;
 }

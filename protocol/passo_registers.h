@@ -97,7 +97,7 @@
 #define PASSO_VERSION_PATCH_RESET 0x00u
 #define PASSO_VERSION_MINOR_LSB   8u
 #define PASSO_VERSION_MINOR_BITS  8u
-#define PASSO_VERSION_MINOR_RESET 0x02u
+#define PASSO_VERSION_MINOR_RESET 0x03u
 #define PASSO_VERSION_MAJOR_LSB   16u
 #define PASSO_VERSION_MAJOR_BITS  8u
 #define PASSO_VERSION_MAJOR_RESET 0x00u
@@ -165,8 +165,8 @@
 #define PASSO_REFUSALS_1_BAD_VALUE_BITS   8u
 #define PASSO_REFUSALS_1_BAD_VALUE_RESET  0x00u
 
-/* Core: Input filter. Only with INPUTS. Glitch filter of all inputs but e-stop. Kept over a reset of the
- * core. */
+/* Core: Input filter. Only with INPUTS. Glitch filter of all inputs but e-stop. May be written at any time;
+ * then they are unknown. Kept over a reset of the core. */
 #define PASSO_ADDRESS_INPUT_FILTER      0x010u
 #define PASSO_INPUT_FILTER_FILTER_LSB   0u
 #define PASSO_INPUT_FILTER_FILTER_BITS  16u
@@ -382,30 +382,39 @@
 
 /* Channel: Trigger state. Only with INPUTS. State of the trigger and the probe, and the axes that stopped
  * the channel. */
-#define PASSO_CHANNEL_TRIGGER_STATE                  0x14u
-#define PASSO_CHANNEL_TRIGGER_STATE_ARMED_LSB        0u
-#define PASSO_CHANNEL_TRIGGER_STATE_ARMED_BITS       1u
-#define PASSO_CHANNEL_TRIGGER_STATE_ARMED_RESET      0x0u
-#define PASSO_CHANNEL_TRIGGER_STATE_FIRED_LSB        1u
-#define PASSO_CHANNEL_TRIGGER_STATE_FIRED_BITS       1u
-#define PASSO_CHANNEL_TRIGGER_STATE_FIRED_RESET      0x0u
-#define PASSO_CHANNEL_TRIGGER_STATE_PROBE_LSB        2u
-#define PASSO_CHANNEL_TRIGGER_STATE_PROBE_BITS       1u
-#define PASSO_CHANNEL_TRIGGER_STATE_PROBE_RESET      0x0u
-#define PASSO_CHANNEL_TRIGGER_STATE_PROBE_FLAG_LSB   3u
-#define PASSO_CHANNEL_TRIGGER_STATE_PROBE_FLAG_BITS  1u
-#define PASSO_CHANNEL_TRIGGER_STATE_PROBE_FLAG_RESET 0x0u
-#define PASSO_CHANNEL_TRIGGER_STATE_AXES_LSB         8u
-#define PASSO_CHANNEL_TRIGGER_STATE_AXES_BITS        8u
-#define PASSO_CHANNEL_TRIGGER_STATE_AXES_RESET       0x00u
+#define PASSO_CHANNEL_TRIGGER_STATE                     0x14u
+#define PASSO_CHANNEL_TRIGGER_STATE_ARMED_LSB           0u
+#define PASSO_CHANNEL_TRIGGER_STATE_ARMED_BITS          1u
+#define PASSO_CHANNEL_TRIGGER_STATE_ARMED_RESET         0x0u
+#define PASSO_CHANNEL_TRIGGER_STATE_FIRED_LSB           1u
+#define PASSO_CHANNEL_TRIGGER_STATE_FIRED_BITS          1u
+#define PASSO_CHANNEL_TRIGGER_STATE_FIRED_RESET         0x0u
+#define PASSO_CHANNEL_TRIGGER_STATE_PROBE_LSB           2u
+#define PASSO_CHANNEL_TRIGGER_STATE_PROBE_BITS          1u
+#define PASSO_CHANNEL_TRIGGER_STATE_PROBE_RESET         0x0u
+#define PASSO_CHANNEL_TRIGGER_STATE_PROBE_FLAG_LSB      3u
+#define PASSO_CHANNEL_TRIGGER_STATE_PROBE_FLAG_BITS     1u
+#define PASSO_CHANNEL_TRIGGER_STATE_PROBE_FLAG_RESET    0x0u
+#define PASSO_CHANNEL_TRIGGER_STATE_ARMING_LSB          4u
+#define PASSO_CHANNEL_TRIGGER_STATE_ARMING_BITS         1u
+#define PASSO_CHANNEL_TRIGGER_STATE_ARMING_RESET        0x0u
+#define PASSO_CHANNEL_TRIGGER_STATE_SOURCE_ACTIVE_LSB   5u
+#define PASSO_CHANNEL_TRIGGER_STATE_SOURCE_ACTIVE_BITS  1u
+#define PASSO_CHANNEL_TRIGGER_STATE_SOURCE_ACTIVE_RESET 0x0u
+#define PASSO_CHANNEL_TRIGGER_STATE_UNKNOWN_LSB         6u
+#define PASSO_CHANNEL_TRIGGER_STATE_UNKNOWN_BITS        1u
+#define PASSO_CHANNEL_TRIGGER_STATE_AXES_LSB            8u
+#define PASSO_CHANNEL_TRIGGER_STATE_AXES_BITS           8u
+#define PASSO_CHANNEL_TRIGGER_STATE_AXES_RESET          0x00u
 
-/* Channel: Trigger clocks. Only with INPUTS. Clocks from arming to firing, or up to now; wraps. */
+/* Channel: Trigger clocks. Only with INPUTS. Clocks since the trigger was armed, until it fired; wraps. */
 #define PASSO_CHANNEL_TRIGGER_CLOCKS       0x15u
 #define PASSO_CHANNEL_TRIGGER_CLOCKS_LSB   0u
 #define PASSO_CHANNEL_TRIGGER_CLOCKS_BITS  32u
 #define PASSO_CHANNEL_TRIGGER_CLOCKS_RESET 0x00000000u
 
-/* Channel: Probe. Only with INPUTS. Polarity, kept over a reset of the core; and the flag of the probe. */
+/* Channel: Probe. Only with INPUTS. Polarity, kept over a reset of the core, after a change of which the
+ * inputs are unknown; and the flag of the probe. */
 #define PASSO_CHANNEL_PROBE                0x16u
 #define PASSO_CHANNEL_PROBE_INVERTED_LSB   0u
 #define PASSO_CHANNEL_PROBE_INVERTED_BITS  1u
@@ -644,8 +653,8 @@
 #define PASSO_AXIS_ENABLE_RESET   0x0u
 #define PASSO_AXIS_ENABLE_DEFINED 0x00000001u
 
-/* Axis: Inputs of the axis. Only with INPUTS. Polarities, and what limits and alarm do. Kept over a reset
- * of the core. */
+/* Axis: Inputs of the axis. Only with INPUTS. Polarities, and what limits and alarm do. Refused with BUSY
+ * unless the channel is quiet; then the inputs are unknown. Kept over a reset of the core. */
 #define PASSO_AXIS_INPUTS                           0x5u
 #define PASSO_AXIS_INPUTS_LIMIT_LOW_INVERTED_LSB    0u
 #define PASSO_AXIS_INPUTS_LIMIT_LOW_INVERTED_BITS   1u

@@ -523,16 +523,22 @@ static inline struct passo_channel_trigger passo_unpack_channel_trigger(uint32_t
 
 /* Trigger state. Only with INPUTS. State of the trigger and the probe, and the axes that stopped the channel. */
 struct passo_channel_trigger_state {
-	uint8_t axes;       /* Axes of the first limit or alarm since COMMAND.CLEAR. */
-	bool    probe_flag; /* The probe was active since its flag was cleared. */
-	bool    probe;      /* Filtered level of the probe, 1 = active. */
-	bool    fired;      /* It has fired since it was armed. */
-	bool    armed;      /* The trigger waits for its edge. */
+	uint8_t axes;          /* Axes of the first limit or alarm since COMMAND.CLEAR. */
+	bool    unknown;       /* Levels of the inputs are unknown: they have not stood still for a period of the filter since the reset, or since polarity or filter were written. No motion begins. */
+	bool    source_active; /* The trigger is armed, and its source is active. */
+	bool    arming;        /* The trigger is being armed: its source has not kept one level for longer than the filter yet. No motion begins. */
+	bool    probe_flag;    /* The probe was active since its flag was cleared. */
+	bool    probe;         /* Filtered level of the probe, 1 = active. */
+	bool    fired;         /* It has fired since it was armed. */
+	bool    armed;         /* The trigger waits for its edge. */
 };
 
 static inline uint32_t passo_pack_channel_trigger_state(const struct passo_channel_trigger_state *word)
 {
 	return ((uint32_t)word->axes & 0xFFu) << 8
+	     | ((uint32_t)word->unknown & 0x1u) << 6
+	     | ((uint32_t)word->source_active & 0x1u) << 5
+	     | ((uint32_t)word->arming & 0x1u) << 4
 	     | ((uint32_t)word->probe_flag & 0x1u) << 3
 	     | ((uint32_t)word->probe & 0x1u) << 2
 	     | ((uint32_t)word->fired & 0x1u) << 1
@@ -543,6 +549,9 @@ static inline struct passo_channel_trigger_state passo_unpack_channel_trigger_st
 {
 	return (struct passo_channel_trigger_state){
 	    .axes = (uint8_t)(word >> 8 & 0xFFu),
+	    .unknown = (word >> 6 & 0x1u) != 0u,
+	    .source_active = (word >> 5 & 0x1u) != 0u,
+	    .arming = (word >> 4 & 0x1u) != 0u,
 	    .probe_flag = (word >> 3 & 0x1u) != 0u,
 	    .probe = (word >> 2 & 0x1u) != 0u,
 	    .fired = (word >> 1 & 0x1u) != 0u,
@@ -550,7 +559,7 @@ static inline struct passo_channel_trigger_state passo_unpack_channel_trigger_st
 	};
 }
 
-/* Probe. Only with INPUTS. Polarity, kept over a reset of the core; and the flag of the probe. */
+/* Probe. Only with INPUTS. Polarity, kept over a reset of the core, after a change of which the inputs are unknown; and the flag of the probe. */
 struct passo_channel_probe {
 	bool clear;    /* 1: clear the flag. */
 	bool inverted; /* 1: probe is active low. */
@@ -644,7 +653,7 @@ static inline struct passo_channel_follow passo_unpack_channel_follow(uint32_t w
 
 /* Follow state. Only with ENCODERS. Of the motion that runs; behind and lost, of the last one, until the next is prepared. */
 struct passo_channel_follow_state {
-	bool     lost;   /* 2^22 or more were owed: the phase is lost. */
+	bool     lost;   /* The phase is lost: 2^22 or more were owed, or A and B of the encoder changed at once. */
 	bool     behind; /* Two counts or more were owed: the path was late. */
 	uint32_t owed;   /* Clocks of the profile that are owed to the encoder, signed. */
 };
@@ -731,7 +740,7 @@ static inline struct passo_axis_dir_timing passo_unpack_axis_dir_timing(uint32_t
 	};
 }
 
-/* Inputs of the axis. Only with INPUTS. Polarities, and what limits and alarm do. Kept over a reset of the core. */
+/* Inputs of the axis. Only with INPUTS. Polarities, and what limits and alarm do. Refused with BUSY unless the channel is quiet; then the inputs are unknown. Kept over a reset of the core. */
 struct passo_axis_inputs {
 	bool alarm_disables;      /* 1: the alarm also clears the drive enable of this axis. */
 	bool alarm_soft;          /* 1: the alarm makes a soft stop; 0: a hard one. */

@@ -30,7 +30,7 @@ module passo_axes #(
   output wire            claim,
   output wire [     3:0] refusal,
   output wire [    31:0] read_data,
-  output wire            needs_quiet,      // strobe: PINS of an axis is being checked
+  output wire            needs_quiet,      // strobe: PINS or INPUTS of an axis is being checked
   // lines
   input  wire [AXES-1:0] step_request,
   input  wire [AXES-1:0] directions,

@@ -36,7 +36,7 @@ module passo_axis_registers #(
   output reg  [  AXES-1:0] write_inputs,
   output reg               upper_is_minimal,   // half of bus_data is 0 or 1: a time of one clock
   output reg               lower_is_minimal,
-  output wire              needs_quiet,        // strobe: PINS of an axis is being checked
+  output wire              needs_quiet,        // strobe: PINS or INPUTS of an axis is being checked
   input  wire [AXES*4-1:0] lost
 );
 
@@ -79,7 +79,7 @@ module passo_axis_registers #(
     end
   end
 
-  assign needs_quiet = bus_check & is_pins;
+  assign needs_quiet = bus_check & (is_pins | is_inputs);
 
   reg     [3:0] selected_lost;
   integer       i;

@@ -60,6 +60,7 @@ module passo_channel #(
   /* verilator lint_off UNUSEDSIGNAL */
   input  wire                     filter_tick,
   input  wire [             15:0] filter,
+  input  wire                     write_filter,
   input  wire                     estop_pressed,     // asynchronous
   input  wire                     estop,
   input  wire                     watchdog_stop,
@@ -170,6 +171,7 @@ module passo_channel #(
   wire            input_soft;
   wire [     3:0] input_soft_cause;
   wire            end_endless;
+  wire            wait_known;
   wire            inputs_claim;
   wire [     3:0] inputs_refusal;
   wire [    31:0] inputs_read_data;
@@ -186,6 +188,7 @@ module passo_channel #(
   wire [31:0] encoders_read_data;
 
   // outputs
+  wire        power_wanted;
   wire        outputs_quiet;
   wire        outputs_need_quiet;
   wire        outputs_claim;
@@ -274,7 +277,7 @@ module passo_channel #(
     .run             (run),
     .wait_sync       (wait_sync),
     .sync_edge       (sync_edge),
-    .hold            (hold),
+    .hold            (hold | wait_known),
     .command_stop    (command_stop),
     .command_abort   (command_abort),
     .command_clear   (command_clear),
@@ -283,7 +286,7 @@ module passo_channel #(
     .input_hard_cause(input_hard_cause),
     .input_soft      (input_soft),
     .input_soft_cause(input_soft_cause),
-    .may_begin       (may_begin),
+    .may_begin       (may_begin & ~wait_known),
     .following_soft  (following_soft),
     .following_hard  (following_hard),
     .state           (state),
@@ -466,6 +469,7 @@ module passo_channel #(
   generate
     if (INPUTS != 0) begin : g_inputs
       assign enable = estop_pressed ? enable_off : enable_wanted;
+      assign power  = power_wanted & ~estop_pressed;
 
       passo_inputs #(
         .AXES(AXES)
@@ -486,6 +490,7 @@ module passo_channel #(
         .write_axis    (write_inputs),
         .tick          (filter_tick),
         .filter        (filter),
+        .write_filter  (write_filter),
         .watchdog_stop (watchdog_stop),
         .disable_drives(disable_drives | estop),
         .limit_low     (limit_low),
@@ -507,10 +512,12 @@ module passo_channel #(
         .hard_cause    (input_hard_cause),
         .soft_stop     (input_soft),
         .soft_cause    (input_soft_cause),
-        .end_endless   (end_endless)
+        .end_endless   (end_endless),
+        .wait_known    (wait_known)
       );
     end else begin : g_no_inputs
       assign enable           = enable_wanted;
+      assign power            = power_wanted;
       assign inputs_claim     = 1'b0;
       assign inputs_refusal   = 4'd0;
       assign inputs_read_data = 32'd0;
@@ -523,6 +530,7 @@ module passo_channel #(
       assign input_soft       = 1'b0;
       assign input_soft_cause = CAUSE_NONE;
       assign end_endless      = 1'b0;
+      assign wait_known       = 1'b0;
     end
   endgenerate
 
@@ -685,7 +693,7 @@ module passo_channel #(
         .step_made       (step_made),
         .step_direction  (step_direction),
         .outputs         (outputs),
-        .power           (power),
+        .power           (power_wanted),
         .compare         (compare)
       );
     end else begin : g_no_outputs
@@ -695,7 +703,7 @@ module passo_channel #(
       assign outputs_need_quiet = 1'b0;
       assign outputs_quiet      = 1'b1;
       assign outputs            = 8'd0;
-      assign power              = 1'b0;
+      assign power_wanted       = 1'b0;
       assign compare            = 1'b0;
     end
   endgenerate

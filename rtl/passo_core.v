@@ -138,6 +138,7 @@ module passo_core #(
   // inputs of the machine
   wire                filter_tick;
   wire [        15:0] filter;
+  wire                write_filter;
   wire                estop_pressed;
   wire                estop;
   wire                watchdog_stop;
@@ -290,6 +291,7 @@ module passo_core #(
         .moving        (moving != {CHANNELS{1'b0}}),
         .tick          (filter_tick),
         .filter        (filter),
+        .write_filter  (write_filter),
         .pressed       (estop_pressed),
         .estop         (estop),
         .watchdog_stop (watchdog_stop),
@@ -301,6 +303,7 @@ module passo_core #(
       assign machine_read_data = 32'd0;
       assign filter_tick       = 1'b0;
       assign filter            = 16'd0;
+      assign write_filter      = 1'b0;
       assign estop_pressed     = 1'b0;
       assign estop             = 1'b0;
       assign watchdog_stop     = 1'b0;
@@ -361,6 +364,7 @@ module passo_core #(
         .table_point_next(table_point_next),
         .filter_tick     (filter_tick),
         .filter          (filter),
+        .write_filter    (write_filter),
         .estop_pressed   (estop_pressed),
         .estop           (estop),
         .watchdog_stop   (watchdog_stop),

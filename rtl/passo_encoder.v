@@ -5,7 +5,7 @@
 //   B  ________/~~~~~~~~\________/~~~~~~~~\        every edge is a count
 //
 // Promise: after the filter, each change of one of A and B is one count, in its direction; a change of both at once is
-// no count, but counted in `illegal`, up to 255. `index_event` is high for one clock when the index becomes active or,
+// no count, but `slipped`, and counted in `illegal`, up to 255. `index_event` is high for one clock when the index becomes active or,
 // with `index_gated`, when index, A and B are all high for the first time: with an index as wide as a count or more
 // that is always at the same count, even if its edge comes beside one of A or B. A level of A or B, or an active
 // index, at the end of a reset is no event.
@@ -32,6 +32,7 @@ module passo_encoder (
   // strobes
   output reg        count_made,
   output reg        count_down,      // with count_made: -1
+  output reg        slipped,         // A and B changed at once
   output reg        index_event,
   output reg  [7:0] illegal
 );
@@ -84,6 +85,7 @@ module passo_encoder (
     b_q         <= level_b;
     active_q    <= active;
     count_made  <= changed_a ^ changed_b;
+    slipped     <= changed_a & changed_b;
     count_down  <= ~(level_a ^ b_q) ^ inverted;
     index_event <= active & ~active_q;
     if (changed_a && changed_b && illegal != 8'hFF) illegal <= illegal + 8'd1;
@@ -94,6 +96,7 @@ module passo_encoder (
       active_q    <= 1'b1;
       count_made  <= 1'b0;
       count_down  <= 1'b0;
+      slipped     <= 1'b0;
       index_event <= 1'b0;
       illegal     <= 8'd0;
     end

@@ -31,6 +31,7 @@ module passo_encoder_axis (
   input  wire        step_direction,
   output wire        count_made,
   output wire        count_down,
+  output wire        slipped,
   output wire        index_active,
   output wire        index_event,
   output wire        stop_soft,
@@ -103,6 +104,7 @@ module passo_encoder_axis (
     .clear         (zero | clear),
     .count_made    (count_made),
     .count_down    (count_down),
+    .slipped       (slipped),
     .index_active  (index_active),
     .index_event   (index_event),
     .illegal       (illegal)

@@ -76,6 +76,7 @@ module passo_encoders #(
   wire [        7:0] filter;
   wire [   AXES-1:0] count_made;
   wire [   AXES-1:0] count_down;
+  wire [   AXES-1:0] slipped;
   wire [   AXES-1:0] index_event;
   wire [   AXES-1:0] axis_stop_soft;
   wire [   AXES-1:0] axis_stop_hard;
@@ -92,6 +93,7 @@ module passo_encoders #(
   wire [AXES-1:0] followed;
   wire            source_made = (count_made & followed) != {AXES{1'b0}};
   wire            source_down = (count_down & followed) != {AXES{1'b0}};
+  wire            source_slipped = (slipped & followed) != {AXES{1'b0}};
   wire            source_index = (index_event & followed) != {AXES{1'b0}};
 
   assign may_begin = ~(follow & wait_index) | source_index;
@@ -147,6 +149,7 @@ module passo_encoders #(
         .step_direction(step_direction[axis]),
         .count_made    (count_made[axis]),
         .count_down    (count_down[axis]),
+        .slipped       (slipped[axis]),
         .index_active  (index_active[axis]),
         .index_event   (index_event[axis]),
         .stop_soft     (axis_stop_soft[axis]),
@@ -194,6 +197,7 @@ module passo_encoders #(
     .following (follows & (begin_profile | counting)),
     .count_made(source_made),
     .count_down(source_down),
+    .slipped   (source_slipped),
     .scale     (scale),
     .limit     (follow_limit),
     .enable    (enabled & counting),

@@ -8,8 +8,8 @@
 // before, none without `enable`, and none on two clocks in a row; so counts back are paid back before the profile goes
 // on, and it never gets ahead of the furthest count. In any time there are at most 1 + limit * (enabled clocks)
 // advances. When owed is positive and credit is there, an advance follows with the next enabled clock but one.
-// `behind`: two counts or more are owed, one clock late. `lost`: 2^22 or more are owed, either way; then nothing is
-// counted any more.
+// `behind`: two counts or more are owed, one clock late. `lost`: 2^22 or more are owed, either way, or the encoder has
+// slipped; then nothing is counted any more.
 // Latency: count_made to owed 2 clocks, to advance 3.
 `resetall
 `timescale 1ns / 1ps
@@ -21,6 +21,7 @@ module passo_follower (
   input  wire        following,   // else nothing is owed
   input  wire        count_made,
   input  wire        count_down,
+  input  wire        slipped,     // strobe: a count was not seen
   input  wire [ 2:0] scale,
   input  wire [31:0] limit,       // UQ0.32 advances per enabled clock, up to 1/2
   input  wire        enable,
@@ -62,7 +63,7 @@ module passo_follower (
     owed                  <= owed + operand + {23'd0, change_carry & ~advance};
     due                   <= ~owed[23] & (owed[22:0] != 23'd0);
     behind                <= ~owed[23] & ((owed[22:0] & above) != 23'd0);
-    lost                  <= lost | (owed[23] ^ owed[22]);
+    lost                  <= lost | (owed[23] ^ owed[22]) | slipped;
     if (enable && (!credit || advance)) {credit, sum} <= {1'b0, sum} + {1'b0, limit};
     if (rst || !following) begin
       change                <= 8'd0;

@@ -2,9 +2,12 @@
 // Inputs: synchroniser, polarity, glitch filter and a flag that remembers, for WIDTH pins.
 //
 // `tick` ends the periods of the filter, which all inputs share: `level` follows an input that has differed from it on
-// every clock from one tick to the next. Promise: with ticks every F clocks, a change of at most F clocks never reaches
-// `level`, one of 2 F clocks or more always does, at most 2 F + 2 clocks after the pin. `was_active` is set while
+// every clock from one tick to the next. Promise: with ticks every P clocks, a change of at most P clocks never reaches
+// `level`, one of 2 P clocks or more always does, at most 2 P + 2 clocks after the pin. `was_active` is set while
 // `level` is, and until it is cleared.
+//
+// `unknown` is 1 from a reset or `forget` until no input has changed for a whole period. Promise: when it falls, every
+// `level` is that of its input, which it has had for P clocks; inputs that stand still are known 2 P + 2 clocks later.
 // Latency: pin to `synced` 2 clocks.
 `resetall
 `timescale 1ns / 1ps
@@ -18,10 +21,12 @@ module passo_input #(
   input  wire [WIDTH-1:0] pins,
   input  wire [WIDTH-1:0] inverted,
   input  wire             tick,
+  input  wire             forget,     // strobe: polarity or filter change with the next clock
   input  wire [WIDTH-1:0] clear,
   output wire [WIDTH-1:0] synced,     // 1 = active, not filtered
   output reg  [WIDTH-1:0] level,      // filtered
-  output reg  [WIDTH-1:0] was_active
+  output reg  [WIDTH-1:0] was_active,
+  output reg              unknown
 );
 
   (* async_reg = "true" *)
@@ -31,6 +36,10 @@ module passo_input #(
   reg  [WIDTH-1:0] pending;  // has differed since the last tick
   wire [WIDTH-1:0] differs = second ^ level;
 
+  reg              changed;  // an input has changed since the last tick
+  reg              forgot;   // one clock ago: the synchroniser still has what was before
+  wire             changes = (differs ^ pending) != {WIDTH{1'b0}};
+
   assign synced = second;
 
   always @(posedge clk) begin
@@ -39,6 +48,14 @@ module passo_input #(
     level      <= level ^ (differs & pending & {WIDTH{tick}});
     pending    <= differs & (pending ^ {WIDTH{tick}});
     was_active <= (was_active & ~clear) | level;
+    changed    <= forgot | ((changed | changes) & ~tick);
+    forgot     <= 1'b0;
+    if (tick && !changed && !changes) unknown <= 1'b0;
+    if (rst || forget) begin
+      changed <= 1'b1;
+      forgot  <= 1'b1;
+      unknown <= 1'b1;
+    end
     if (rst) begin
       first      <= {WIDTH{1'b0}};
       second     <= {WIDTH{1'b0}};

@@ -3,6 +3,7 @@
 //
 // Promise: a strobe is answered one clock later, for one clock; the answer is 0 unless one of these registers is
 // addressed. `hard_stop` and `soft_stop` ask the motion to stop, each with its cause; `hard_stop` also drops the steps that wait.
+// `wait_known`: an input is unknown, or a trigger is being armed, so that no motion may begin.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -28,6 +29,7 @@ module passo_inputs #(
   // core
   input  wire            tick,            // of the filter
   input  wire [    15:0] filter,
+  input  wire            write_filter,    // strobe: it changes with the next clock
   input  wire            watchdog_stop,
   input  wire            disable_drives,
   // pins
@@ -52,7 +54,8 @@ module passo_inputs #(
   output wire [     3:0] hard_cause,
   output wire            soft_stop,
   output wire [     3:0] soft_cause,
-  output wire            end_endless
+  output wire            end_endless,
+  output wire            wait_known
 );
 
   `include "passo_registers.vh"
@@ -136,6 +139,10 @@ module passo_inputs #(
     probe_inverted = 1'b0;
   end
 
+  // Levels that were filtered otherwise say nothing about the ones to come.
+  wire forget = write_filter || write_axis != {AXES{1'b0}}
+                || (write_probe && bus_data[CHANNEL_PROBE_INVERTED_LSB] != probe_inverted);
+  wire             unknown;
   wire [WIDTH-1:0] synced;
   wire [WIDTH-1:0] level;
   wire [WIDTH-1:0] was_active;
@@ -153,10 +160,12 @@ module passo_inputs #(
     .pins({probe, alarm, home, limit_high, limit_low}),
     .inverted({probe_inverted, alarm_inverted, home_inverted, high_inverted, low_inverted}),
     .tick(tick),
+    .forget(forget),
     .clear({write_probe & bus_data[CHANNEL_PROBE_CLEAR_LSB], clear_alarm, clear_home, clear_high, clear_low}),
     .synced(synced),
     .level(level),
-    .was_active(was_active)
+    .was_active(was_active),
+    .unknown(unknown)
   );
 
   wire            limit_hard;
@@ -188,7 +197,9 @@ module passo_inputs #(
     .named       (named)
   );
 
+  wire        arming;
   wire        armed;
+  wire        source_level;
   wire        fired;
   wire [31:0] clocks;
   wire        trigger_hard;
@@ -202,9 +213,12 @@ module passo_inputs #(
     .write      (write_trigger),
     .bus_data   (bus_data[16:0]),
     .filter     (filter),
+    .forget     (forget),
     .sources    ({index, synced[0+:3*AXES]}),
     .probe      (synced[4*AXES]),
+    .arming     (arming),
     .armed      (armed),
+    .level      (source_level),
     .fired      (fired),
     .clocks     (clocks),
     .latch      (latch),
@@ -213,6 +227,7 @@ module passo_inputs #(
     .end_endless(end_endless)
   );
 
+  assign wait_known = unknown | arming;
   assign hard_stop = limit_hard | alarm_hard | trigger_hard;
   assign hard_cause = limit_hard ? CAUSE_LIMIT : alarm_hard ? CAUSE_ALARM : CAUSE_TRIGGER;
   assign soft_stop = limit_softly | alarm_softly | trigger_soft | (watchdog_stop & moving);
@@ -234,7 +249,16 @@ module passo_inputs #(
     {{(8 - AXES) {1'b0}}, was_active[0+:AXES]}
   };
   wire [31:0] state = {
-    16'd0, {{(8 - AXES) {1'b0}}, named}, 4'd0, was_active[4*AXES], level[4*AXES], fired, armed
+    16'd0,
+    {{(8 - AXES) {1'b0}}, named},
+    1'b0,
+    unknown,
+    source_level & armed,
+    arming,
+    was_active[4*AXES],
+    level[4*AXES],
+    fired,
+    armed
   };
 
   assign read_data = (reads[CHANNEL_INPUT_LEVELS[2:0]] ? levels : 32'd0)

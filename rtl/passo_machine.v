@@ -2,7 +2,7 @@
 // What the inputs of all channels share: the tick of the filter, e-stop, watchdog, and their registers.
 //
 // Promise: a strobe is answered one clock later, for one clock; the answer is 0 unless one of these registers is
-// addressed. `tick` comes every `filter` clocks; 0 counts as 1.
+// addressed. `tick` comes every `filter` + 1 clocks, the first time that long after a write of the filter.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -27,6 +27,7 @@ module passo_machine (
   input  wire        moving,         // a motion runs
   output reg         tick,
   output reg  [15:0] filter,
+  output wire        write_filter,   // strobe: `filter` changes with the next clock
   output wire        pressed,        // asynchronous: take all enables away
   output wire        estop,          // hard stop
   output wire        watchdog_stop,
@@ -41,10 +42,11 @@ module passo_machine (
   reg  [ 1:0] number;
   reg  [ 2:0] reads;
   wire        write = bus_write & known;
-  wire        write_filter = write && number == ADDRESS_INPUT_FILTER[1:0];
   wire        write_watchdog = write && number == ADDRESS_WATCHDOG[1:0];
   wire        write_clear = write && number == ADDRESS_ESTOP_CLEAR[1:0] && bus_data[0];
   wire [19:0] watchdog;
+
+  assign write_filter = write && number == ADDRESS_INPUT_FILTER[1:0];
 
   assign read_data = (reads[ADDRESS_INPUT_FILTER[1:0]] ? {16'd0, filter} : 32'd0)
                      | (reads[ADDRESS_WATCHDOG[1:0]] ? {12'd0, watchdog} : 32'd0)
@@ -71,16 +73,15 @@ module passo_machine (
   end
 
   // Filter: it describes the machine and is kept over a reset.
-  reg [15:0] count;
+  reg  [15:0] count;
+  wire        ends = count == filter;
 
   always @(posedge clk) begin
-    tick  <= count[15:1] == 15'd0;
-    count <= count[15:1] == 15'd0 ? filter : count - 16'd1;
+    tick  <= ends & ~write_filter;
+    count <= count + 16'd1;
+    if (ends || write_filter || rst) count <= 16'd0;
     if (write_filter && !rst) filter <= bus_data[15:0];
-    if (rst) begin
-      tick  <= 1'b0;
-      count <= 16'd0;
-    end
+    if (rst) tick <= 1'b0;
   end
 
   initial filter = INPUT_FILTER_FILTER_RESET;

@@ -96,7 +96,7 @@ localparam VERSION_PATCH_BITS  = 8;
 localparam VERSION_PATCH_RESET = 8'h00;
 localparam VERSION_MINOR_LSB   = 8;
 localparam VERSION_MINOR_BITS  = 8;
-localparam VERSION_MINOR_RESET = 8'h02;
+localparam VERSION_MINOR_RESET = 8'h03;
 localparam VERSION_MAJOR_LSB   = 16;
 localparam VERSION_MAJOR_BITS  = 8;
 localparam VERSION_MAJOR_RESET = 8'h00;
@@ -164,8 +164,8 @@ localparam REFUSALS_1_BAD_VALUE_LSB    = 24;
 localparam REFUSALS_1_BAD_VALUE_BITS   = 8;
 localparam REFUSALS_1_BAD_VALUE_RESET  = 8'h00;
 
-// Core: Input filter. Only with INPUTS. Glitch filter of all inputs but e-stop. Kept over a reset of the
-// core.
+// Core: Input filter. Only with INPUTS. Glitch filter of all inputs but e-stop. May be written at any time;
+// then they are unknown. Kept over a reset of the core.
 localparam ADDRESS_INPUT_FILTER      = 12'h010;
 localparam INPUT_FILTER_FILTER_LSB   = 0;
 localparam INPUT_FILTER_FILTER_BITS  = 16;
@@ -381,30 +381,39 @@ localparam CHANNEL_TRIGGER_DEFINED       = 32'h00013177;
 
 // Channel: Trigger state. Only with INPUTS. State of the trigger and the probe, and the axes that stopped
 // the channel.
-localparam CHANNEL_TRIGGER_STATE                  = 8'h14;
-localparam CHANNEL_TRIGGER_STATE_ARMED_LSB        = 0;
-localparam CHANNEL_TRIGGER_STATE_ARMED_BITS       = 1;
-localparam CHANNEL_TRIGGER_STATE_ARMED_RESET      = 1'h0;
-localparam CHANNEL_TRIGGER_STATE_FIRED_LSB        = 1;
-localparam CHANNEL_TRIGGER_STATE_FIRED_BITS       = 1;
-localparam CHANNEL_TRIGGER_STATE_FIRED_RESET      = 1'h0;
-localparam CHANNEL_TRIGGER_STATE_PROBE_LSB        = 2;
-localparam CHANNEL_TRIGGER_STATE_PROBE_BITS       = 1;
-localparam CHANNEL_TRIGGER_STATE_PROBE_RESET      = 1'h0;
-localparam CHANNEL_TRIGGER_STATE_PROBE_FLAG_LSB   = 3;
-localparam CHANNEL_TRIGGER_STATE_PROBE_FLAG_BITS  = 1;
-localparam CHANNEL_TRIGGER_STATE_PROBE_FLAG_RESET = 1'h0;
-localparam CHANNEL_TRIGGER_STATE_AXES_LSB         = 8;
-localparam CHANNEL_TRIGGER_STATE_AXES_BITS        = 8;
-localparam CHANNEL_TRIGGER_STATE_AXES_RESET       = 8'h00;
+localparam CHANNEL_TRIGGER_STATE                     = 8'h14;
+localparam CHANNEL_TRIGGER_STATE_ARMED_LSB           = 0;
+localparam CHANNEL_TRIGGER_STATE_ARMED_BITS          = 1;
+localparam CHANNEL_TRIGGER_STATE_ARMED_RESET         = 1'h0;
+localparam CHANNEL_TRIGGER_STATE_FIRED_LSB           = 1;
+localparam CHANNEL_TRIGGER_STATE_FIRED_BITS          = 1;
+localparam CHANNEL_TRIGGER_STATE_FIRED_RESET         = 1'h0;
+localparam CHANNEL_TRIGGER_STATE_PROBE_LSB           = 2;
+localparam CHANNEL_TRIGGER_STATE_PROBE_BITS          = 1;
+localparam CHANNEL_TRIGGER_STATE_PROBE_RESET         = 1'h0;
+localparam CHANNEL_TRIGGER_STATE_PROBE_FLAG_LSB      = 3;
+localparam CHANNEL_TRIGGER_STATE_PROBE_FLAG_BITS     = 1;
+localparam CHANNEL_TRIGGER_STATE_PROBE_FLAG_RESET    = 1'h0;
+localparam CHANNEL_TRIGGER_STATE_ARMING_LSB          = 4;
+localparam CHANNEL_TRIGGER_STATE_ARMING_BITS         = 1;
+localparam CHANNEL_TRIGGER_STATE_ARMING_RESET        = 1'h0;
+localparam CHANNEL_TRIGGER_STATE_SOURCE_ACTIVE_LSB   = 5;
+localparam CHANNEL_TRIGGER_STATE_SOURCE_ACTIVE_BITS  = 1;
+localparam CHANNEL_TRIGGER_STATE_SOURCE_ACTIVE_RESET = 1'h0;
+localparam CHANNEL_TRIGGER_STATE_UNKNOWN_LSB         = 6;
+localparam CHANNEL_TRIGGER_STATE_UNKNOWN_BITS        = 1;
+localparam CHANNEL_TRIGGER_STATE_AXES_LSB            = 8;
+localparam CHANNEL_TRIGGER_STATE_AXES_BITS           = 8;
+localparam CHANNEL_TRIGGER_STATE_AXES_RESET          = 8'h00;
 
-// Channel: Trigger clocks. Only with INPUTS. Clocks from arming to firing, or up to now; wraps.
+// Channel: Trigger clocks. Only with INPUTS. Clocks since the trigger was armed, until it fired; wraps.
 localparam CHANNEL_TRIGGER_CLOCKS       = 8'h15;
 localparam CHANNEL_TRIGGER_CLOCKS_LSB   = 0;
 localparam CHANNEL_TRIGGER_CLOCKS_BITS  = 32;
 localparam CHANNEL_TRIGGER_CLOCKS_RESET = 32'h00000000;
 
-// Channel: Probe. Only with INPUTS. Polarity, kept over a reset of the core; and the flag of the probe.
+// Channel: Probe. Only with INPUTS. Polarity, kept over a reset of the core, after a change of which the
+// inputs are unknown; and the flag of the probe.
 localparam CHANNEL_PROBE                = 8'h16;
 localparam CHANNEL_PROBE_INVERTED_LSB   = 0;
 localparam CHANNEL_PROBE_INVERTED_BITS  = 1;
@@ -643,8 +652,8 @@ localparam AXIS_ENABLE_BITS    = 1;
 localparam AXIS_ENABLE_RESET   = 1'h0;
 localparam AXIS_ENABLE_DEFINED = 32'h00000001;
 
-// Axis: Inputs of the axis. Only with INPUTS. Polarities, and what limits and alarm do. Kept over a reset
-// of the core.
+// Axis: Inputs of the axis. Only with INPUTS. Polarities, and what limits and alarm do. Refused with BUSY
+// unless the channel is quiet; then the inputs are unknown. Kept over a reset of the core.
 localparam AXIS_INPUTS                           = 3'h5;
 localparam AXIS_INPUTS_LIMIT_LOW_INVERTED_LSB    = 0;
 localparam AXIS_INPUTS_LIMIT_LOW_INVERTED_BITS   = 1;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Trigger of a channel: one input, one edge, once.
 //
-// Promise: from arming on, the first wanted edge of the chosen source fires it, if the new level lasts for more than
-// `filter` clocks, and only that; until it is armed it does nothing. `latch` is a strobe, `filter` + 2 clocks after the
-// first clock on which `sources` has the new level: positions and `clocks`, the time since arming, are those of that
+// A write makes it `arming`; it is `armed` once the source has kept one `level` for more than `filter` clocks, and again
+// after `forget`. Promise: from then on the first wanted edge fires it, if the new level lasts for more than `filter`
+// clocks, and only that; until it is armed it does nothing. `latch` is a strobe, `filter` + 2 clocks after the first
+// clock on which `sources` has the new level: positions and `clocks`, the time since it was armed, are those of that
 // clock. The action comes with it. A write ends what was armed before. Armed while the source is active, it waits for
 // the next edge that is wanted.
 `resetall
@@ -18,9 +19,12 @@ module passo_trigger #(
   input  wire              write,       // strobe with bus_data: the register TRIGGER
   input  wire [      16:0] bus_data,
   input  wire [      15:0] filter,      // clocks
+  input  wire              forget,      // strobe: polarity or filter change with the next clock
   input  wire [AXES*4-1:0] sources,     // limit_low, limit_high, home, index, each of all axes, not filtered
   input  wire              probe,
+  output reg               arming,
   output reg               armed,
+  output reg               level,       // of the source, once armed: what it was last for more than `filter` clocks
   output reg               fired,
   output reg  [      31:0] clocks,
   output reg               latch,       // strobe
@@ -35,9 +39,8 @@ module passo_trigger #(
   reg [ 2:0] axis;
   reg        falling;
   reg [ 1:0] action;
-  reg [ 1:0] arming;  // clocks until `picked` is that of the source
+  reg [ 1:0] stale;  // clocks until `picked` is that of the source
   reg        picked;
-  reg        level;  // what `picked` was last for more than `filter` clocks
   reg [15:0] count;
 
   // The source among those of all axes
@@ -54,8 +57,9 @@ module passo_trigger #(
                 source == TRIGGER_SOURCE_INDEX      ? of_axis[3][axis] : probe;
 
   wire differs = picked ^ level;
-  wire changes = armed & differs & (count == filter);
-  wire fires = changes & (level == falling);
+  wire counts = armed ? differs : arming & ~differs;  // an edge that may be one; a level that may be known
+  wire accepts = counts & (count == filter) & (stale == 2'd0);
+  wire fires = accepts & armed & (level == falling);
 
   assign hard_stop   = latch && action == TRIGGER_ACTION_HARD_STOP;
   assign soft_stop   = latch && action == TRIGGER_ACTION_SOFT_STOP;
@@ -63,26 +67,27 @@ module passo_trigger #(
 
   always @(posedge clk) begin
     picked <= chosen;
-    arming <= {arming[0] & ~write, write & bus_data[CHANNEL_TRIGGER_ARM_LSB]};
+    stale  <= write || forget ? 2'd3 : stale == 2'd0 ? 2'd0 : stale - 2'd1;
     latch  <= fires;
-    armed  <= (armed & ~fires) | arming[1];
+    arming <= forget ? arming | (armed & ~fires) : arming & ~accepts;
+    armed  <= ~forget & ((armed & ~fires) | (arming & accepts));
     fired  <= fired | fires;
-    count  <= count + 16'd1;
-    if (!differs || changes || !armed) count <= 16'd0;
-    if (changes || arming[1]) level <= picked;
-    if (armed) clocks <= clocks + 32'd1;
+    count  <= !counts || accepts || stale != 2'd0 ? 16'd0 : count + 16'd1;
+    if (accepts || !armed) level <= picked;
+    if (arming) clocks <= 32'd0;
+    else if (armed) clocks <= clocks + 32'd1;
     if (write) begin
       source  <= bus_data[CHANNEL_TRIGGER_SOURCE_LSB+:CHANNEL_TRIGGER_SOURCE_BITS];
       axis    <= bus_data[CHANNEL_TRIGGER_AXIS_LSB+:CHANNEL_TRIGGER_AXIS_BITS];
       falling <= bus_data[CHANNEL_TRIGGER_FALLING_LSB];
       action  <= bus_data[CHANNEL_TRIGGER_ACTION_LSB+:CHANNEL_TRIGGER_ACTION_BITS];
+      arming  <= bus_data[CHANNEL_TRIGGER_ARM_LSB];
       armed   <= 1'b0;
       fired   <= 1'b0;
       latch   <= 1'b0;
     end
-    if (arming[1]) clocks <= 32'd0;
     if (rst) begin
-      arming <= 2'b00;
+      arming <= 1'b0;
       armed  <= 1'b0;
       fired  <= 1'b0;
       latch  <= 1'b0;

@@ -48,6 +48,6 @@ void world_end_record(struct world *world)
 void world_record_estop(struct world *world)
 {
 	world->recorded_inputs.estop_n = false;
-	world->recorded_outputs.enable = passo_core_enable(&world->model, false);
+	passo_core_estop(&world->model, false, &world->recorded_outputs);
 	write_run(world);
 }

@@ -73,7 +73,7 @@ static bool compare_outputs(struct judge *judge, const struct judge_row *row)
 	struct passo_outputs now = *passo_core_outputs(&judge->core);
 	const struct passo_outputs *model = &now;
 
-	now.enable = passo_core_enable(&judge->core, row->inputs[PASSO_INPUT_ESTOP_N] != 0u);
+	passo_core_estop(&judge->core, row->inputs[PASSO_INPUT_ESTOP_N] != 0u, &now);
 
 #define COMPARE(name, type, number)                                                                          \
 	if (differs(judge, judge->clock, number, model->name, row->outputs[number]))                         \

@@ -235,7 +235,7 @@ class VersionWord(Word):
     # Major.
     major: int = 0
     # Minor.
-    minor: int = 2
+    minor: int = 3
     # Patch.
     patch: int = 0
 
@@ -508,8 +508,16 @@ class ChannelTriggerWord(Word):
 class ChannelTriggerStateWord(Word):
     """Trigger state."""
 
+    # Levels of the inputs are unknown: they have not stood still for a period of the filter since the reset,
+    # or since polarity or filter were written. No motion begins.
+    unknown: bool
     # Axes of the first limit or alarm since COMMAND.CLEAR.
     axes: int = 0
+    # The trigger is armed, and its source is active.
+    source_active: bool = False
+    # The trigger is being armed: its source has not kept one level for longer than the filter yet. No motion
+    # begins.
+    arming: bool = False
     # The probe was active since its flag was cleared.
     probe_flag: bool = False
     # Filtered level of the probe, 1 = active.
@@ -524,6 +532,9 @@ class ChannelTriggerStateWord(Word):
         "fired": (1, 1, bool),
         "probe": (2, 1, bool),
         "probe_flag": (3, 1, bool),
+        "arming": (4, 1, bool),
+        "source_active": (5, 1, bool),
+        "unknown": (6, 1, bool),
         "axes": (8, 8, int),
     }
 
@@ -605,7 +616,7 @@ class ChannelFollowWord(Word):
 class ChannelFollowStateWord(Word):
     """Follow state."""
 
-    # 2^22 or more were owed: the phase is lost.
+    # The phase is lost: 2^22 or more were owed, or A and B of the encoder changed at once.
     lost: bool = False
     # Two counts or more were owed: the path was late.
     behind: bool = False
@@ -848,7 +859,7 @@ VERSION_PATCH_BITS = 8
 VERSION_PATCH_RESET = 0x00
 VERSION_MINOR_LSB = 8
 VERSION_MINOR_BITS = 8
-VERSION_MINOR_RESET = 0x02
+VERSION_MINOR_RESET = 0x03
 VERSION_MAJOR_LSB = 16
 VERSION_MAJOR_BITS = 8
 VERSION_MAJOR_RESET = 0x00
@@ -916,8 +927,8 @@ REFUSALS_1_BAD_VALUE_LSB = 24
 REFUSALS_1_BAD_VALUE_BITS = 8
 REFUSALS_1_BAD_VALUE_RESET = 0x00
 
-# Core: Input filter. Only with INPUTS. Glitch filter of all inputs but e-stop. Kept over a reset of the
-# core.
+# Core: Input filter. Only with INPUTS. Glitch filter of all inputs but e-stop. May be written at any time;
+# then they are unknown. Kept over a reset of the core.
 ADDRESS_INPUT_FILTER = 0x010
 INPUT_FILTER_FILTER_LSB = 0
 INPUT_FILTER_FILTER_BITS = 16
@@ -1146,17 +1157,26 @@ CHANNEL_TRIGGER_STATE_PROBE_RESET = 0x0
 CHANNEL_TRIGGER_STATE_PROBE_FLAG_LSB = 3
 CHANNEL_TRIGGER_STATE_PROBE_FLAG_BITS = 1
 CHANNEL_TRIGGER_STATE_PROBE_FLAG_RESET = 0x0
+CHANNEL_TRIGGER_STATE_ARMING_LSB = 4
+CHANNEL_TRIGGER_STATE_ARMING_BITS = 1
+CHANNEL_TRIGGER_STATE_ARMING_RESET = 0x0
+CHANNEL_TRIGGER_STATE_SOURCE_ACTIVE_LSB = 5
+CHANNEL_TRIGGER_STATE_SOURCE_ACTIVE_BITS = 1
+CHANNEL_TRIGGER_STATE_SOURCE_ACTIVE_RESET = 0x0
+CHANNEL_TRIGGER_STATE_UNKNOWN_LSB = 6
+CHANNEL_TRIGGER_STATE_UNKNOWN_BITS = 1
 CHANNEL_TRIGGER_STATE_AXES_LSB = 8
 CHANNEL_TRIGGER_STATE_AXES_BITS = 8
 CHANNEL_TRIGGER_STATE_AXES_RESET = 0x00
 
-# Channel: Trigger clocks. Only with INPUTS. Clocks from arming to firing, or up to now; wraps.
+# Channel: Trigger clocks. Only with INPUTS. Clocks since the trigger was armed, until it fired; wraps.
 CHANNEL_TRIGGER_CLOCKS = 0x15
 CHANNEL_TRIGGER_CLOCKS_LSB = 0
 CHANNEL_TRIGGER_CLOCKS_BITS = 32
 CHANNEL_TRIGGER_CLOCKS_RESET = 0x00000000
 
-# Channel: Probe. Only with INPUTS. Polarity, kept over a reset of the core; and the flag of the probe.
+# Channel: Probe. Only with INPUTS. Polarity, kept over a reset of the core, after a change of which the
+# inputs are unknown; and the flag of the probe.
 CHANNEL_PROBE = 0x16
 CHANNEL_PROBE_INVERTED_LSB = 0
 CHANNEL_PROBE_INVERTED_BITS = 1
@@ -1395,8 +1415,8 @@ AXIS_ENABLE_BITS = 1
 AXIS_ENABLE_RESET = 0x0
 AXIS_ENABLE_DEFINED = 0x00000001
 
-# Axis: Inputs of the axis. Only with INPUTS. Polarities, and what limits and alarm do. Kept over a reset
-# of the core.
+# Axis: Inputs of the axis. Only with INPUTS. Polarities, and what limits and alarm do. Refused with BUSY
+# unless the channel is quiet; then the inputs are unknown. Kept over a reset of the core.
 AXIS_INPUTS = 0x5
 AXIS_INPUTS_LIMIT_LOW_INVERTED_LSB = 0
 AXIS_INPUTS_LIMIT_LOW_INVERTED_BITS = 1
@@ -1493,7 +1513,7 @@ TABLE = (
     )),
     Register("VERSION", "CORE", 0x001, 1, (
         Field("PATCH", 0, 8, "r", 0x00),
-        Field("MINOR", 8, 8, "r", 0x02),
+        Field("MINOR", 8, 8, "r", 0x03),
         Field("MAJOR", 16, 8, "r", 0x00),
     )),
     Register("PARAMETERS", "CORE", 0x002, 1, (
@@ -1611,6 +1631,9 @@ TABLE = (
         Field("FIRED", 1, 1, "r", 0x0),
         Field("PROBE", 2, 1, "r", 0x0),
         Field("PROBE_FLAG", 3, 1, "r", 0x0),
+        Field("ARMING", 4, 1, "r", 0x0),
+        Field("SOURCE_ACTIVE", 5, 1, "r", 0x0),
+        Field("UNKNOWN", 6, 1, "r", None),
         Field("AXES", 8, 8, "r", 0x00),
     ), "inputs"),
     Register("CHANNEL_TRIGGER_CLOCKS", "CHANNEL", 0x15, 1, (
