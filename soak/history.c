@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "history_player.h"
+#include "mutants.h"
 
 static void open_world(
     struct world *world, const struct plot *plot, const struct world_rtl *rtl, FILE *record)
@@ -34,12 +35,15 @@ void history_play(struct world *world, const struct world_rtl *rtl, uint64_t see
 	scout.machine = world->machine;
 	if (world->pokes)
 		plot_begin_pokes(&plot, seed, number);
+	else if (world->starts)
+		plot_begin_starts(&plot, seed, number);
 	else if (world->machine)
 		plot_begin_machine(&plot, seed, number, world->tries);
 	else
 		plot_begin(&plot, seed, number);
 	const unsigned most = world->machine ? 5u : 3u;
-	const unsigned disturbances = world->tries || world->pokes ? 0u : 1u + plot_draw(&plot.random, most);
+	const unsigned disturbances =
+	    world->tries || world->pokes || world->starts ? 0u : 1u + plot_draw(&plot.random, most);
 	for (unsigned i = 0; i < disturbances; i++) {
 		const enum plot_kind kind = i != 0u || !plot.waits        ? plot_kind(&plot)
 		                          : plot_chance(&plot.random, 70) ? PLOT_SYNC
@@ -68,6 +72,8 @@ void history_play(struct world *world, const struct world_rtl *rtl, uint64_t see
 
 	struct plot_random random = plot.random;
 	player = (struct player){.world = world, .counts = counts, .print = print};
+	if (world->mutants && !mutants_fork(world, number))
+		return;
 	open_world(world, &plot, rtl, record);
 	player_actions(&player, &plot, SIZE_MAX);
 	if (world->pokes)
@@ -81,5 +87,7 @@ void history_play(struct world *world, const struct world_rtl *rtl, uint64_t see
 	counts->clocks += world->clock;
 	if (!world->failed_at && !world->pokes)
 		judge_history(world, &counts->judge);
+	if (world->mutants)
+		mutants_end(world);
 	world_close(world);
 }

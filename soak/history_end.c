@@ -9,8 +9,8 @@
 #define STOP (1u << PASSO_CHANNEL_COMMAND_STOP_LSB)
 #define CLEAR (1u << PASSO_CHANNEL_COMMAND_CLEAR_LSB)
 #define ZERO (1u << PASSO_CHANNEL_COMMAND_ZERO_LSB)
-/* Polls after which a motion must have ended. */
-#define POLLS_MAX 400u
+/* Polls after which a motion must have ended; fewer for a mutant, as the core itself needs fewer. */
+#define POLLS_MAX (player->world->alone ? 120u : 400u)
 #define LAST_MOVE_STEPS 8u
 
 static bool send(struct player *player, enum passo_operation operation, uint16_t address,

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT
  * soak SEED FIRST COUNT [--rtl LIBRARY] [--record FOLDER] [--set N] [--driver | --machine | --tries |
- * --pokes]
- *     [--short] [--print] [--keep-on]
+ * --starts | --pokes]
+ *     [--short] [--print] [--keep-on] [--mutants]
  * Plays histories FIRST, FIRST + 1, ... at register level, or with --driver through the driver. --set N: only
  * those of one parameter set; --short: without the last move. Stops at the first failure unless --keep-on is
- * given. Prints lines "progress HISTORIES", "failed NUMBER CLOCK TEXT", "count NAME VALUE".
+ * given. --mutants: each with the mutants of the library whose numbers are on standard input, until it is
+ * killed; prints "killed MUTANT HISTORY CLOCK TEXT". Prints lines "progress HISTORIES", "failed NUMBER CLOCK
+ * TEXT", "count NAME VALUE".
  */
 #include <inttypes.h>
 #include <stddef.h>
@@ -13,12 +15,13 @@
 
 #include "bridge.h"
 #include "history.h"
+#include "mutants.h"
 
 struct options {
 	uint64_t seed, first, count;
 	const char *library, *folder;
 	unsigned set; /* PLOT_SETS: all */
-	bool print, keep_on, driver, brief, blind, machine, tries, pokes;
+	bool print, keep_on, driver, brief, blind, machine, tries, pokes, starts, mutants;
 };
 
 static bool parse(int argc, char **argv, struct options *options)
@@ -42,6 +45,10 @@ static bool parse(int argc, char **argv, struct options *options)
 			options->machine = options->tries = true;
 		else if (strcmp(argv[i], "--pokes") == 0)
 			options->machine = options->pokes = true;
+		else if (strcmp(argv[i], "--starts") == 0)
+			options->machine = options->starts = true;
+		else if (strcmp(argv[i], "--mutants") == 0)
+			options->mutants = true;
 		else if (strcmp(argv[i], "--short") == 0)
 			options->brief = true;
 		else if (strcmp(argv[i], "--driver") == 0)
@@ -131,6 +138,7 @@ int main(int argc, char **argv)
 	const struct world_rtl *rtl = NULL;
 	static struct history_counts counts;
 	static struct bridge_counts bridged;
+	static struct world_mutants mutants;
 	uint64_t played = 0, failures = 0;
 
 	if (!parse(argc, argv, &options)) {
@@ -143,11 +151,15 @@ int main(int argc, char **argv)
 	}
 	if (options.library && !(rtl = world_load(options.library)))
 		return 2;
+	if (options.mutants && !(options.library && mutants_read(&mutants)))
+		return 2;
+	world.mutants = options.mutants ? &mutants : NULL;
 	world.latency = &latency;
 	world.blind = options.blind;
 	world.machine = options.machine;
 	world.tries = options.tries;
 	world.pokes = options.pokes;
+	world.starts = options.starts;
 	for (uint64_t number = options.first; played < options.count; number++) {
 		char path[WORLD_TEXT];
 		FILE *record = NULL;

@@ -100,6 +100,8 @@ struct plot {
  * active limit switches again and again. */
 struct passo_parameters plot_machine_parameters(void);
 void plot_begin_machine(struct plot *plot, uint64_t seed, uint64_t number, bool tries);
+/* The same core: motions that begin while its switches are active, or become so. */
+void plot_begin_starts(struct plot *plot, uint64_t seed, uint64_t number);
 /* The same core, and nothing is set up. */
 void plot_begin_pokes(struct plot *plot, uint64_t seed, uint64_t number);
 /* Draws an event of a machine. */

@@ -24,8 +24,9 @@ FOLDERS = {
 }
 
 
-# Histories of a core with inputs, encoders and outputs: events, drives into switches, anything at all.
-KINDS = ("machine", "tries", "pokes")
+# Histories of a core with inputs, encoders and outputs: events, drives into switches, motions that begin at switches
+# with filters of any length, anything at all.
+KINDS = ("machine", "tries", "starts", "pokes")
 
 
 class SoakError(RuntimeError):

@@ -46,6 +46,7 @@ HISTORIES = {
     "icarus": 1_000,
     "machine": 4_000,
     "tries": 15_000,
+    "starts": 2_000,
     "pokes": 60,
     "machine on verilator": 170,
     "machine on icarus": 170,

@@ -8,11 +8,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mutants.h"
 #include "world_private.h"
 
 /* Clocks from the last edge of SCLK to chip select. */
 #define HOLD 3u
 #define ROWS_FIRST 4096u
+/* Fewer clocks are not worth the trouble of skipping them. */
+#define SKIPS 16u
 
 struct world_rtl {
 	struct engine_core *(*open)(const struct passo_engine_config *config,
@@ -58,6 +61,8 @@ void world_fail(struct world *world, uint64_t clock, const char *format, ...)
 	va_start(arguments, format);
 	vsnprintf(world->failure, sizeof world->failure, format, arguments);
 	va_end(arguments);
+	if (world->alone) /* a mutant is dead */
+		mutants_end(world);
 }
 
 void world_add_fact(struct world *world, const struct world_fact *fact)
@@ -113,20 +118,23 @@ static void tick(struct world *world)
 		if (records)
 			before[i] = world_look(&world->model.channel[i]);
 	}
-	passo_core_clock(&world->model, &world->inputs);
+	if (!world->alone || world->machine) /* shafts turn with its steps */
+		passo_core_clock(&world->model, &world->inputs);
 	world->clock++;
-	world->outputs = *passo_core_outputs(&world->model);
+	if (!world->alone)
+		world->outputs = *passo_core_outputs(&world->model);
 	if (world->core) {
 		const struct passo_outputs rtl = run_rtl(world);
 
-		compare(world, &rtl, &world->outputs);
+		if (!world->alone)
+			compare(world, &rtl, &world->outputs);
 		world->outputs = rtl;
 	}
 	add_row(world);
 	for (unsigned i = 0; i < channels; i++) {
 		const struct passo_channel *channel = &world->model.channel[i];
 
-		if (!world->blind && stopping[i] && channel->motion.stopping
+		if (!world->blind && !world->alone && stopping[i] && channel->motion.stopping
 		    && channel->timescale.rate > rate[i])
 			world_fail(world, world->clock,
 			    "channel %u: the rate rises from %u to %u after a stop was commanded", i, rate[i],
@@ -138,10 +146,31 @@ static void tick(struct world *world)
 		world_note_pins(world, &world->inputs, &world->outputs);
 }
 
+/* Clocks that the model skips, in which nothing happens at any pin: histories of long times are cheap. */
+static uint64_t skip(struct world *world, uint64_t clocks)
+{
+	if (!world->starts || world->core || world->record || world->events_from != 0u || clocks < SKIPS)
+		return 0;
+	if (world->pin_next < world->pin_count && world->pins[world->pin_next].clock < world->clock + clocks)
+		clocks = world->pins[world->pin_next].clock - world->clock;
+	const uint64_t skipped =
+	    clocks < SKIPS ? 0u : passo_core_advance(&world->model, &world->inputs, clocks - 2u);
+
+	world->clock += skipped;
+	return skipped;
+}
+
 void world_run(struct world *world, uint64_t clocks)
 {
-	while (clocks-- != 0u)
-		tick(world);
+	while (clocks != 0u) {
+		const uint64_t skipped = skip(world, clocks);
+
+		clocks -= skipped;
+		if (skipped == 0u) {
+			tick(world);
+			clocks--;
+		}
+	}
 }
 
 bool world_open(struct world *world, const struct passo_parameters *parameters, const struct world_rtl *rtl)
@@ -160,6 +189,9 @@ bool world_open(struct world *world, const struct passo_parameters *parameters, 
 	world->machine = kept.machine;
 	world->tries = kept.tries;
 	world->pokes = kept.pokes;
+	world->starts = kept.starts;
+	world->alone = kept.alone;
+	world->mutants = kept.mutants;
 	world->half_period = 2;
 	world->setup = 4;
 	world->inputs = (struct passo_inputs)PASSO_INPUTS_IDLE;

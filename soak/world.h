@@ -101,6 +101,12 @@ struct world_latency {
 
 struct world_rtl; /* functions of a shared library */
 
+/* Mutants of a Verilated core, each of which plays a history in a process of its own. */
+struct world_mutants {
+	uint32_t *numbers; /* of those that live; 0: the core itself */
+	size_t count;
+};
+
 struct world {
 	struct passo_core model;
 	const struct world_rtl *rtl;
@@ -138,11 +144,14 @@ struct world {
 	uint64_t recorded_clocks;
 
 	/* not changed by world_open() */
-	bool blind;         /* the rate is judged by the steps alone */
-	bool machine;       /* a core with inputs, encoders and outputs */
-	bool tries;         /* that drives into its limit switches */
-	bool pokes;         /* anything is written and anything happens at its pins; not judged */
-	uint64_t failed_at; /* clock of the first failure; 0: none */
+	bool blind;                    /* the rate is judged by the steps alone */
+	bool machine;                  /* a core with inputs, encoders and outputs */
+	bool tries;                    /* that drives into its limit switches */
+	bool starts;                   /* whose motions begin at active switches; the model may skip clocks */
+	bool pokes;                    /* anything is written and anything happens at its pins; not judged */
+	bool alone;                    /* the Verilated core is not compared with the model */
+	struct world_mutants *mutants; /* NULL: none */
+	uint64_t failed_at;            /* clock of the first failure; 0: none */
 	char failure[WORLD_TEXT];
 };
 

@@ -43,7 +43,9 @@ def test_no_promise_is_broken_in_the_model(program: Path) -> None:
     assert part.counts["hit"] > 0.8 * part.counts["aimed"] > 0
 
 
-@pytest.mark.parametrize(("kind", "histories"), [("machine", 100), ("tries", 20), ("pokes", 5)])
+@pytest.mark.parametrize(
+    ("kind", "histories"), [("machine", 100), ("tries", 20), ("starts", 15), ("pokes", 5)]
+)
 def test_no_promise_is_broken_with_a_machine(program: Path, kind: str, histories: int) -> None:
     """Events of all kinds, drives into active switches, random pokes."""
     part = parts.play_model(program, SEED, histories, JOBS, kind)
@@ -83,7 +85,10 @@ def test_power_keeps_its_energy_and_raster_its_substep() -> None:
     assert laser["ok"] and raster["ok"]
 
 
-@pytest.mark.parametrize("name", ["abort leaves steps", "a lost stop counts as sent", "power after a stop"])
+@pytest.mark.parametrize(
+    "name",
+    ["abort leaves steps", "a lost stop counts as sent", "power after a stop", "limit closes at rest only"],
+)
 def test_a_defect_goes_red(name: str) -> None:
     """One at register level, one of the driver, one of a machine; `make soak` plants all of them."""
     caught = defects.catch(DEFECTS[name], 1)

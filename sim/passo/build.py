@@ -115,7 +115,10 @@ def cpu_library() -> Path:
 
 
 def rtl_library(parameters: Parameters, waves: bool = False, rtl: Path = paths.rtl) -> Path:
-    """The engine of the Verilated core, for given parameters; `rtl`: a folder with a changed copy of it."""
+    """The engine of the Verilated core, for given parameters.
+
+    `rtl`: a folder with a changed copy of it, or the netlist of a core with mutants.
+    """
     verilated = _verilated(parameters, waves, rtl)
     include = Path(environment()["VERILATOR_ROOT"]) / "include"
     c_parts, cpp_part = engine_sources(), paths.engine / "engine_rtl.cpp"
@@ -148,24 +151,26 @@ def waves_possible() -> bool:
 
 
 def _copy(rtl: Path) -> str:
-    return "" if rtl == paths.rtl else f"_{rtl.name}"
+    return "" if rtl == paths.rtl else f"_{rtl.stem}"
 
 
 def _verilated(parameters: Parameters, waves: bool, rtl: Path) -> Path:
     """The folder with the compiled C++ that Verilator generates from the core."""
     if waves and not waves_possible():
         raise BuildError("waves need lz4.h and zlib.h: install the Debian packages liblz4-dev and zlib1g-dev")
-    modules = rtl_sources(rtl)
+    netlist = rtl.is_file()
+    modules = [rtl] if netlist else rtl_sources(rtl)
     # More optimization takes longer than it saves, and the more so the more there is in one function.
     large = parameters.channels > 1 or parameters.encoders or parameters.outputs
     optimize = ("OPT_FAST=-O1" if waves or large else "OPT_FAST=-O2", "OPT_SLOW=-O0")
-    chosen = (f"-G{name}={value}" for name, value in parameters.verilog().items())
+    chosen = ["-Wno-fatal", "-Wno-lint", "-Wno-style"] if netlist else []
+    chosen += [f"-G{name}={value}" for name, value in parameters.verilog().items() if not netlist]
     flags = [*_verilator_flags(waves), "--top-module", TOP, *chosen]
 
     def make(folder: Path) -> None:
         if " " in f"{paths.rtl}{paths.build}":
             raise BuildError(f"Verilator's makefiles take no path with a space: {paths.rtl}, {paths.build}")
-        call(["verilator", *flags, f"-I{rtl}", "--Mdir", folder, *modules])
+        call(["verilator", *flags, f"-I{modules[0].parent}", "--Mdir", folder, *modules])
         call(["make", "-C", folder, "-f", MAKEFILE, MODEL, *optimize])
 
     name = f"verilated_{parameters.name}{'_waves' if waves else ''}{_copy(rtl)}"

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: MIT
+"""Runs tests on the C sources with mutants: reads what to run from standard input, a JSON object in each line.
+
+    {"mutant": N, "tests": [...], "seconds": S}     -> {"mutant": N, "test": what failed, or ""}
+    {"record": FILE, "tests": [...]}                -> {"seconds": {test: S}, "reached": {test: [N, ...]}, "failed": [...]}
+
+Each run is in a process of its own, in which what is imported and compiled is there already.
+"""
+
+import contextlib
+import importlib
+import json
+import os
+import resource
+import signal
+import sys
+from pathlib import Path
+from typing import Any
+
+from passo import compiler
+from passo.toolchain import paths
+
+from mutants.fates import BUILD
+
+FOLDER = BUILD / "c"
+# What tests import: before the first mutant.
+AHEAD = ("numpy", "pytest", "passo.build", "passo.driver", "tests.helpers.driver_wire", "tests.helpers.plans")
+
+
+def _switch() -> None:
+    """Take the mutated folders for the sources; what is built from them is elsewhere."""
+    for name in ("driver", "planner", "gcode"):
+        setattr(paths, name, FOLDER / name)
+    paths.build = FOLDER / "build"
+    compiler.STRICT = ("-std=c11", "-w")
+
+
+def _seconds() -> float:
+    used = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return sum(one.ru_utime + one.ru_stime for one in used)
+
+
+class Recorder:
+    """A plugin of pytest: how long each test takes, which mutants it reaches, what fails."""
+
+    def __init__(self, reached: Path | None = None):
+        self.file = reached
+        self.seconds: dict[str, float] = {}
+        self.reached: dict[str, list[int]] = {}
+        self.failed: list[str] = []
+        self.began = 0.0
+
+    def pytest_runtest_logstart(self, nodeid: str) -> None:
+        """A test begins."""
+        self.began = _seconds()
+
+    def pytest_runtest_logreport(self, report: Any) -> None:
+        """A part of it has ended."""
+        if report.failed:
+            self.failed.append(report.nodeid)
+
+    def pytest_runtest_logfinish(self, nodeid: str) -> None:
+        """It has ended."""
+        self.seconds[nodeid] = round(_seconds() - self.began, 3)
+        if self.file:
+            places = self.file.read_bytes()
+            self.reached[nodeid] = [number for number, place in enumerate(places) if place]
+            with self.file.open("r+b") as file:
+                file.write(bytes(len(places)))
+
+
+def _run(recorder: Recorder, tests: list[str]) -> int:
+    import pytest
+
+    options = ["-x", "-q", "-p", "no:cacheprovider", "-p", "no:xdist", "--no-header", "--tb=no"]
+    if recorder.file:
+        options.remove("-x")
+    with (
+        Path(os.devnull).open("w") as null,
+        contextlib.redirect_stdout(null),
+        contextlib.redirect_stderr(null),
+    ):
+        return int(pytest.main([*options, *tests], plugins=[recorder]))
+
+
+def _answer(asked: dict[str, Any]) -> dict[str, Any]:
+    """In the process of one run."""
+    os.environ["PASSO_MUTANT"] = str(asked.get("mutant", 0))
+    if "record" in asked:
+        os.environ["PASSO_REACHED"] = asked["record"]
+        recorder = Recorder(Path(asked["record"]))
+        _run(recorder, asked["tests"])
+        return {"seconds": recorder.seconds, "reached": recorder.reached, "failed": recorder.failed}
+    recorder = Recorder()
+    status = _run(recorder, asked["tests"])
+    test = recorder.failed[0] if recorder.failed else "" if status == 0 else f"pytest ends with {status}"
+    return {"mutant": asked["mutant"], "test": test}
+
+
+def _forked(asked: dict[str, Any]) -> dict[str, Any]:
+    """Run it in a process of its own; one that does not end or that crashes has failed."""
+    read, write = os.pipe()
+    process = os.fork()
+    if process == 0:
+        os.close(read)
+        os.setsid()
+        if "seconds" in asked:
+            limit = int(asked["seconds"]) + 1
+            resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
+            resource.setrlimit(resource.RLIMIT_AS, (6 << 30, 6 << 30))
+            signal.alarm(20 * limit)
+        with os.fdopen(write, "w") as pipe:
+            pipe.write(json.dumps(_answer(asked)))
+        os._exit(0)
+    os.close(write)
+    with os.fdopen(read) as pipe:
+        said = pipe.read()
+    _, status = os.waitpid(process, 0)
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(process, signal.SIGKILL)
+    if said:
+        return dict(json.loads(said))
+    ended = signal.Signals(os.WTERMSIG(status)).name if os.WIFSIGNALED(status) else f"status {status}"
+    return {"mutant": asked.get("mutant"), "test": f"ends with {ended}"}
+
+
+def main() -> None:
+    """Answer each line."""
+    _switch()
+    for module in AHEAD:
+        importlib.import_module(module)
+    for line in sys.stdin:
+        print(json.dumps(_forked(json.loads(line))), flush=True)
+
+
+if __name__ == "__main__":
+    main()

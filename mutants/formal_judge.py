@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: MIT
+"""The promises as judges: a mutant of a module is put into the module as its proof sees it.
+
+What has been proved of the module must fail now. The proofs are those of formal/, with the same assumptions; the
+cells of both netlists are matched by their kind and their place in the source.
+"""
+
+import json
+import re
+import shutil
+from collections.abc import Callable, Sequence
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from formal import run as formal
+from passo.failure import Failure
+from passo.toolchain import paths
+
+from mutants.fates import BUILD, Fates, hash_of
+from mutants.netlist import Core, Mutant, yosys
+
+LIMIT = 150  # seconds; a proof that takes longer says nothing
+WORK = BUILD / "formal"
+
+
+def _script(proof: formal.Proof) -> list[str]:
+    """The commands of yosys for the proof itself."""
+    text = proof.sby.read_text(encoding="utf-8")
+    lines = re.findall(r"^\[script\]\n(.*?)(?=^\[)", text, re.M | re.S)[0].splitlines()
+    return [line.removeprefix("prove: ") for line in lines if line and not line.startswith("bug: ")]
+
+
+def _reads(proof: formal.Proof, module: str) -> bool:
+    """Whether the proof has the module, not only its ports."""
+    return any(
+        line.startswith("read") and " -lib " not in line and f"{module}.v" in line.split()
+        for line in _script(proof)
+    )
+
+
+@cache
+def proofs_of(module: str) -> tuple[formal.Proof, ...]:
+    """The proofs that say something of a module, the one of its own name first."""
+    found = [proof for proof in formal.proofs() if _reads(proof, module)]
+    return tuple(sorted(found, key=lambda proof: (proof.slow, f"passo_{proof.name}" != module)))
+
+
+def _kind(name: str) -> str:
+    return name.split("$")[1] if name.startswith("$") and name.count("$") > 1 else name
+
+
+Cells = dict[tuple[str, str], list[str]]
+
+
+def _cells(module: dict[str, Any]) -> Cells:
+    """The cells of a module by kind and place, in the order in which yosys has made them."""
+    found: Cells = {}
+
+    def order(name: str) -> int:
+        number = name.rpartition("$")[2]
+        return int(number) if number.isdigit() else 0
+
+    for name in sorted(module["cells"], key=order):
+        source = re.sub(r"\S*/", "", module["cells"][name]["attributes"].get("src", ""))
+        found.setdefault((_kind(name), source), []).append(name)
+    return found
+
+
+@cache
+def _proof_modules(proof: formal.Proof) -> dict[str, Cells]:
+    """The cells of the modules of a proof, when it has read them."""
+    folder = WORK / f"cells_{proof.name}"
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    for name in ("rtl", "formal"):
+        for file in (paths.root / name).glob("*.v*"):
+            shutil.copy(file, folder / file.name)
+    lines = _script(proof)
+    place = _place(lines)
+    yosys(folder, "\n".join([*lines[:place], *_proc(lines), "write_json cells.json"]) + "\n")
+    modules = json.loads((folder / "cells.json").read_text())["modules"]
+    return {name: _cells(module) for name, module in modules.items()}
+
+
+def _place(lines: Sequence[str]) -> int:
+    """Where the modules have been read: the first command that makes one netlist of them."""
+    return next(i for i, line in enumerate(lines) if line.split()[0] in ("hierarchy", "prep"))
+
+
+def _proc(lines: Sequence[str]) -> list[str]:
+    top = re.findall(r"-top (\w+)", "\n".join(lines))[0]
+    return [f"hierarchy -top {top}", "proc"]
+
+
+@cache
+def _core_modules(core: Path) -> dict[str, Cells]:
+    return {
+        name: _cells(module) for name, module in json.loads(core.read_text())["modules"].items()
+    }
+
+
+def _in_proof(core: Core, mutant: Mutant, proof: formal.Proof) -> list[str]:
+    """The commands that make the mutant in the proof; none if it has no such cell."""
+    found = re.search(r" -module (\S+) -cell (\S+)", mutant.command)
+    assert found
+    module, cell = found[1], found[2]
+    for key, names in _core_modules(core.folder / "core.json")[module].items():
+        if cell in names:
+            break
+    else:
+        return []
+    commands = []
+    for name, cells in _proof_modules(proof).items():
+        if re.sub(r"^\$paramod(?:\$[0-9a-f]+)?\\", "", name).split("\\")[0] != mutant.module:
+            continue
+        same = cells.get(key, [])
+        if len(same) == len(names):
+            made = mutant.command.replace(f"-module {module} ", f"-module {name} ")
+            made = made.replace(f"-cell {cell} ", f"-cell {same[names.index(cell)]} ")
+            commands.append(re.sub(r" -(?:src|wire|wirebit) \S+", "", made))
+    return commands
+
+
+def prove(core: Core, mutant: Mutant, proof: formal.Proof) -> str:
+    """What is no longer proved; empty: all of it is, or the proof has no such mutant."""
+    commands = _in_proof(core, mutant, proof)
+    if not commands:
+        return ""
+    folder = WORK / "proof"
+    shutil.rmtree(folder, ignore_errors=True)
+    for name in ("rtl", "formal"):
+        ignore = shutil.ignore_patterns("__pycache__", "*.py")
+        shutil.copytree(paths.root / name, folder / name, ignore=ignore)
+    sby = folder / "formal" / f"{proof.name}.sby"
+    text = sby.read_text(encoding="utf-8")
+    lines = _script(proof)
+    before = lines[_place(lines)]
+    made = "\n".join([*_proc(lines), *commands, before])
+    sby.write_text(re.sub(rf"^{re.escape(before)}$", lambda _: made, text, count=1, flags=re.M), encoding="utf-8")
+    limit, formal.TIME_LIMIT = formal.TIME_LIMIT, LIMIT
+    try:
+        verdict, log, _ = formal._sby(proof, "prove", folder)
+    finally:
+        formal.TIME_LIMIT = limit
+    if verdict in ("PASS", "TIMEOUT"):
+        return ""
+    if verdict == "ERROR" and "ERROR" in log and "Assert" not in log:
+        error = re.findall(r"ERROR.*", log)
+        return "" if error else "?"
+    broken = sorted(set(re.findall(r"Assert failed in [\w.]+: (\S+)", log)))
+    named = [name for name in broken if ":" not in name and not name.startswith("passo_")]
+    how = "a counterexample" if re.search(r"basecase.*(?:failed|FAIL)|engine_\d+\.basecase.*Status: failed", log) else "no induction"
+    return f"{how}: {', '.join(named[:3]) or 'what the induction relies on'}"
+
+
+def judge(
+    core: Core, mutants: Sequence[Mutant], fates: Fates, show: Callable[[str], None], slow: bool = False
+) -> None:
+    """Let the proofs judge the mutants that live."""
+    folder = paths.root / "formal"
+    judges = hash_of([*sorted(folder.glob("*.sby")), *sorted(folder.glob("*.v*"))])
+    for mutant in mutants:
+        fate = fates.get(mutant.name)
+        for proof in proofs_of(mutant.module):
+            name = f"proof {proof.name} {judges}"
+            if not fate.lives or name in (fate.tried or []) or (proof.slow and not slow):
+                continue
+            try:
+                broken = prove(core, mutant, proof)
+            except Failure as failure:
+                show(f"{mutant.name}: {failure}")
+                continue
+            fate.tried = [*(fate.tried or []), name]
+            if broken:
+                fate.killed, fate.says = f"proof {proof.name}", broken
+            show(f"{core.name}: {mutant.module}: proof {proof.name}: {broken or 'lives'}")
+            fates.save()
