@@ -9,8 +9,8 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from passo.console import console, table
+from passo.output import write_json
 from passo.path import LOOK_AHEAD, PathAxis, PathSettings
-from passo.report import write_json
 from passo.toolchain import paths
 
 from benchmarks import path_cases

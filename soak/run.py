@@ -17,7 +17,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from passo.build import rtl_library
-from passo.report import write_json
+from passo.output import write_json
 from passo.toolchain import paths
 
 from soak.defects import catch_all

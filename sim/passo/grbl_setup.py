@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """What the grbl console knows of its machine, and the file that keeps its settings."""
 
-import contextlib
 import os
 from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -13,6 +13,7 @@ from passo.engine import NUMBERS
 from passo.failure import BadInputError
 from passo.machine_file import MachineFile
 from passo.native import ffi, planner
+from passo.output import write_bytes
 from passo.run import open_engine, parameters_for
 
 MILLION = 1_000_000
@@ -103,7 +104,7 @@ def attach(engine: Any, machine: MachineFile) -> None:
     engine.attach(config)
 
 
-@contextlib.contextmanager
+@contextmanager
 def machine_at(name: str, machine: MachineFile) -> Iterator[Any]:
     """An engine with the machine at its pins."""
     with open_engine(name, core_for(machine), machine.clock_hz) as engine:
@@ -119,7 +120,7 @@ class SettingsFile:
         self.path = path
         try:
             if not path.exists():
-                path.write_bytes(b"\xff" * PAGE * PAGES)
+                write_bytes(path, b"\xff" * PAGE * PAGES)
             if path.stat().st_size != PAGE * PAGES:
                 raise BadInputError(f"{path}: this is no file of settings: it has not {PAGE * PAGES} bytes")
         except OSError as error:
@@ -140,10 +141,11 @@ class SettingsFile:
     def _read(self, _: Any, page: int, at: int, words: Any, count: int) -> bool:
         if WORD * (at + count) > PAGE:
             return False
-        with self.path.open("rb") as file:
+        with suppress(OSError), self.path.open("rb") as file:
             file.seek(page * PAGE + WORD * at)
             ffi().memmove(words, file.read(WORD * count), WORD * count)
-        return True
+            return True
+        return False
 
     def _erase(self, _: Any, page: int) -> bool:
         return self._put(page, 0, b"\xff" * PAGE)
@@ -154,9 +156,10 @@ class SettingsFile:
     def _put(self, page: int, at: int, data: bytes) -> bool:
         if WORD * at + len(data) > PAGE:
             return False
-        with self.path.open("r+b") as file:
+        with suppress(OSError), self.path.open("r+b") as file:
             file.seek(page * PAGE + WORD * at)
             file.write(data)
             file.flush()
             os.fsync(file.fileno())
-        return True
+            return True
+        return False

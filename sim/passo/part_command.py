@@ -9,8 +9,8 @@ from passo.console import progress
 from passo.failure import BadInputError
 from passo.gcode import NANOMETRES
 from passo.machine_file import MachineFile, read_machine
+from passo.output import empty_folder, write_json
 from passo.part import Part, Played, play_part, read_part
-from passo.report import write_json
 from passo.run import open_engine, parameters_for
 from passo.toolchain import paths
 
@@ -24,12 +24,7 @@ def run_part(path: Path, machine_path: Path | None, engine: str, out: Path | Non
     machine = read_machine(machine_path)
     part = read_part(path, machine)
     out = out or paths.results / "run" / path.stem
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        for result in (SUMMARY, PICTURE):
-            (out / result).unlink(missing_ok=True)
-    except OSError as error:
-        raise BadInputError(f"{out}: {error.strerror}") from None
+    empty_folder(out, (SUMMARY, PICTURE))
     parameters = parameters_for(len(machine.settings.axes))
     with (
         open_engine(engine, parameters, machine.clock_hz) as core,

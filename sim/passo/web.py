@@ -11,10 +11,13 @@ from pathlib import Path
 
 from passo import __version__
 from passo.build import engine_sources
-from passo.compiler import BuildError, cached, call, headers, includes, sources
+from passo.cache import cached
+from passo.compiler import call, headers, includes, sources
+from passo.failure import BuildError
 from passo.gcode import AXIS_LETTERS
 from passo.machine_file import MachineFile, read_machine
 from passo.native import planner
+from passo.output import make_folder, write_text
 from passo.report_page import SCRIPTS, page
 from passo.toolchain import paths, short
 
@@ -76,9 +79,9 @@ def build(folder: Path) -> Path:
         f'<script type="application/json" id="machine">{facts()}</script>\n'
         f"<script>document.body.dataset.version = '{__version__}'; openWeb();</script>"
     )
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     made = folder / "index.html"
-    made.write_text(page("Try Passo", body, (*SCRIPTS, "web.js")))
+    write_text(made, page("Try Passo", body, (*SCRIPTS, "web.js")))
     return made
 
 

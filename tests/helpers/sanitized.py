@@ -5,7 +5,8 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from passo.build import engine_sources
-from passo.compiler import CC, SANITIZED, STRICT, cached, call, compile_to, headers, includes, sources
+from passo.cache import cached
+from passo.compiler import CC, SANITIZED, STRICT, call, compile_to, headers, includes, sources
 from passo.toolchain import paths
 
 # In this order: a source finds the headers beside it first, any other the driver's passo_outputs.h.
