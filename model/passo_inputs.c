@@ -71,18 +71,12 @@ static void clock_input(struct passo_input_filter *input, uint8_t pins, bool tic
 	input->first = pins;
 }
 
-/* Whether an input has changed since the last tick, or within this period for the first time. */
-static bool changes(const struct passo_input_filter *input)
-{
-	return (input->second ^ input->level) != input->pending;
-}
-
 static void clock_settling(struct passo_settling *settling, bool changes, bool tick, bool forget)
 {
 	const bool changed = settling->changed;
 
-	settling->changed = settling->forgot || ((changed || changes) && !tick) || forget;
-	settling->unknown = (settling->unknown && (!tick || changed || changes)) || forget;
+	settling->changed = settling->forgot || changes || (changed && !tick) || forget;
+	settling->unknown = (settling->unknown && (!tick || changed)) || forget;
 	settling->forgot = forget;
 }
 
@@ -165,7 +159,7 @@ void passo_inputs_clock(struct passo_inputs_unit *unit, const struct passo_chann
 	if (inputs->parameters->inputs == 0u)
 		return;
 	for (unsigned kind = 0; kind < PASSO_KINDS; kind++)
-		changed = changed || changes(&channel->inputs.input[kind]);
+		changed = changed || channel->inputs.input[kind].first != channel->inputs.input[kind].second;
 	clock_settling(&unit->settling, changed, inputs->machine->tick, forget);
 	passo_trigger_clock(
 	    &unit->trigger, &channel->inputs, passo_encoders_index(channel), inputs->machine->filter, forget);
@@ -200,7 +194,6 @@ struct passo_answer passo_inputs_answer(const struct passo_channel *channel, uin
 	case PASSO_CHANNEL_INPUT_LEVELS:
 	case PASSO_CHANNEL_INPUT_FLAGS:
 	case PASSO_CHANNEL_TRIGGER_STATE:
-	case PASSO_CHANNEL_TRIGGER_CLOCKS:
 		return passo_read_late();
 	case PASSO_CHANNEL_INPUT_CLEAR:
 		return passo_write_only(PASSO_VERDICT_OK);
@@ -237,8 +230,6 @@ uint32_t passo_inputs_value(const struct passo_inputs_unit *unit, uint8_t addres
 		    .probe_flag = input[PASSO_KIND_PROBE].was_active != 0u,
 		    .axes = unit->limits.named,
 		});
-	case PASSO_CHANNEL_TRIGGER_CLOCKS:
-		return unit->trigger.clocks;
 	default:
 		return 0;
 	}
@@ -247,7 +238,8 @@ uint32_t passo_inputs_value(const struct passo_inputs_unit *unit, uint8_t addres
 /* Whether an input is still on its way to the level. */
 static bool is_on_its_way(const struct passo_input_filter *input, uint8_t pins)
 {
-	return input->first != pins || input->second != pins || changes(input);
+	return input->first != pins || input->second != pins
+	    || (input->second ^ input->level) != input->pending;
 }
 
 /* Clocks until the next one that sees a tick. */
@@ -288,7 +280,6 @@ uint64_t passo_inputs_quiet(const struct passo_channel *channel, const struct pa
 			return 0;
 	passo_inputs_clock(&then, channel, inputs, &wires);
 	then.trigger.count = unit->trigger.count;
-	then.trigger.clocks = unit->trigger.clocks;
 	if (memcmp(&then, unit, sizeof *unit) != 0)
 		return 0;
 	const uint64_t trigger =

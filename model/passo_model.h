@@ -334,7 +334,6 @@ struct passo_trigger {
 	uint8_t stale; /* clocks until `picked` is that of the source */
 	bool picked, level, arming, armed, fired, latch;
 	uint16_t count;
-	uint32_t clocks;
 };
 
 /* Inputs of a channel; see rtl/passo_inputs.v. */
@@ -355,7 +354,7 @@ struct passo_machine_unit {
 	uint16_t watchdog_stop_after, watchdog_disable_after;
 	uint16_t watchdog_count;
 	uint32_t watchdog_unit;
-	bool watchdog_fed, watchdog_stop, watchdog_disable;
+	bool watchdog_fed, watchdog_silent, watchdog_stop, watchdog_disable;
 };
 
 /* What a channel asks its motion, axes and line to do. */
@@ -522,6 +521,7 @@ void passo_machine_clock(struct passo_machine_unit *machine, const struct passo_
     const struct passo_inputs *inputs, bool moving);
 /* Whether there is such a register; the value that it reads as and the verdict on a write. */
 bool passo_machine_register(const struct passo_machine_unit *machine, uint16_t address, uint32_t *value);
+bool passo_machine_is_write_only(uint16_t address);
 uint8_t passo_machine_check(const struct passo_bus *bus);
 uint64_t passo_machine_quiet(
     const struct passo_machine_unit *machine, const struct passo_inputs *inputs, bool moving);
