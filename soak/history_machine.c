@@ -31,7 +31,7 @@ static void measure(struct player *player)
 	const unsigned axes = player_axes(player);
 
 	read(player, PASSO_CHANNEL_STATE, 3);
-	read(player, PASSO_CHANNEL_TRIGGER_STATE, 2);
+	read(player, PASSO_CHANNEL_TRIGGER_STATE, 1);
 	read(player, PASSO_CHANNEL_TRIGGER_POSITION_BASE, axes);
 	read(player, PASSO_CHANNEL_ENCODER_POSITION_BASE, axes);
 	read(player, PASSO_CHANNEL_INPUT_FLAGS, 1);

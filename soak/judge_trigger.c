@@ -13,8 +13,6 @@
 #define LATCH 3u
 #define READABLE 140u
 #define COUNTING 4u
-/* Clocks that the core counts from arming to firing, less those from the write. */
-#define ARMED 0
 /* Following error: limit, and counts that may be on the way. */
 #define LIMIT 40
 #define ON_THE_WAY 2
@@ -164,16 +162,14 @@ void judge_trigger_state(struct judge *judge, const struct world_fact *fact)
 {
 	const struct passo_channel_trigger_state state = passo_unpack_channel_trigger_state(fact->words[0]);
 	const struct trigger *trigger = &judge->machine.trigger;
-	const uint64_t early = judge->now - fact->words[2];
+	const uint64_t early = judge->now - fact->words[1];
 
 	if (!trigger->armed || trigger->unsure)
 		return;
 	if (state.fired ? !trigger->latched : trigger->latched && trigger->fires_at + SLACK < early)
 		FAIL(judge, "the trigger has %sfired", state.fired ? "" : "not ");
-	const int64_t clocks = (int64_t)(trigger->fires_at - trigger->armed_at);
-	if (state.fired && (int64_t)fact->words[1] - clocks != ARMED)
-		FAIL(judge, "the trigger fired %u clocks after arming instead of %lld", fact->words[1],
-		    (long long)clocks);
+	if (trigger->armed_at + SLACK < early && !state.fired && !state.armed)
+		FAIL(judge, "the trigger is not armed");
 	judge->counts->fired += state.fired ? 1u : 0u;
 }
 
