@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The promises as judges: a mutant of a module is put into the module as its proof sees it.
 
-What has been proved of the module must fail now. The proofs are those of formal/, with the same assumptions; the
-cells of both netlists are matched by their kind and their place in the source.
+What has been proved of the module must fail now. The proofs are those of formal/, with the same
+assumptions; the cells of both netlists are matched by their kind and their place in the source.
 """
 
 import json
@@ -13,15 +13,16 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from formal import run as formal
 from passo.failure import Failure
 from passo.toolchain import paths
 
+from formal import run as formal
 from mutants.fates import BUILD, Fates, hash_of
 from mutants.netlist import Core, Mutant, yosys
 
 LIMIT = 150  # seconds; a proof that takes longer says nothing
 WORK = BUILD / "formal"
+BASECASE = re.compile(r"engine_\d+\.basecase.*Status: failed", re.I)
 
 
 def _script(proof: formal.Proof) -> list[str]:
@@ -95,9 +96,7 @@ def _proc(lines: Sequence[str]) -> list[str]:
 
 @cache
 def _core_modules(core: Path) -> dict[str, Cells]:
-    return {
-        name: _cells(module) for name, module in json.loads(core.read_text())["modules"].items()
-    }
+    return {name: _cells(module) for name, module in json.loads(core.read_text())["modules"].items()}
 
 
 def _in_proof(core: Core, mutant: Mutant, proof: formal.Proof) -> list[str]:
@@ -105,11 +104,11 @@ def _in_proof(core: Core, mutant: Mutant, proof: formal.Proof) -> list[str]:
     found = re.search(r" -module (\S+) -cell (\S+)", mutant.command)
     assert found
     module, cell = found[1], found[2]
-    for key, names in _core_modules(core.folder / "core.json")[module].items():
-        if cell in names:
-            break
-    else:
+    cells_of = _core_modules(core.folder / "core.json")[module]
+    key = next((key for key, names in cells_of.items() if cell in names), None)
+    if key is None:
         return []
+    names = cells_of[key]
     commands = []
     for name, cells in _proof_modules(proof).items():
         if re.sub(r"^\$paramod(?:\$[0-9a-f]+)?\\", "", name).split("\\")[0] != mutant.module:
@@ -137,20 +136,17 @@ def prove(core: Core, mutant: Mutant, proof: formal.Proof) -> str:
     lines = _script(proof)
     before = lines[_place(lines)]
     made = "\n".join([*_proc(lines), *commands, before])
-    sby.write_text(re.sub(rf"^{re.escape(before)}$", lambda _: made, text, count=1, flags=re.M), encoding="utf-8")
-    limit, formal.TIME_LIMIT = formal.TIME_LIMIT, LIMIT
-    try:
-        verdict, log, _ = formal._sby(proof, "prove", folder)
-    finally:
-        formal.TIME_LIMIT = limit
+    sby.write_text(
+        re.sub(rf"^{re.escape(before)}$", lambda _: made, text, count=1, flags=re.M), encoding="utf-8"
+    )
+    verdict, log, _ = formal.run_sby(proof, "prove", folder, LIMIT)
     if verdict in ("PASS", "TIMEOUT"):
         return ""
-    if verdict == "ERROR" and "ERROR" in log and "Assert" not in log:
-        error = re.findall(r"ERROR.*", log)
-        return "" if error else "?"
+    if verdict == "ERROR":
+        raise Failure(f"proof {proof.name}: {re.findall(r'ERROR.*', log)[:2]}")
     broken = sorted(set(re.findall(r"Assert failed in [\w.]+: (\S+)", log)))
     named = [name for name in broken if ":" not in name and not name.startswith("passo_")]
-    how = "a counterexample" if re.search(r"basecase.*(?:failed|FAIL)|engine_\d+\.basecase.*Status: failed", log) else "no induction"
+    how = "a counterexample" if "basecase: Assert failed" in log or BASECASE.search(log) else "no induction"
     return f"{how}: {', '.join(named[:3]) or 'what the induction relies on'}"
 
 
