@@ -14,13 +14,13 @@ from passo.toolchain import environment, paths
 from mutants.c_source import FOLDER, CMutant
 from mutants.fates import Fates, hash_of
 
+# Those that do not take long.
 TESTS = (
-    *("test_driver", "test_driver_cuts", "test_driver_encoder", "test_driver_goto", "test_driver_home"),
+    *("test_math", "test_moves", "test_plan", "test_plan_forms", "test_plan_jerk", "test_plan_methods"),
+    *("test_plan_shape", "test_plan_sigmoid", "test_plan_straight", "test_plan_turn", "test_plan_user"),
+    *("test_path", "test_gcode", "test_gcode_arcs", "test_driver", "test_driver_encoder", "test_driver_home"),
     *("test_driver_inputs", "test_driver_outputs", "test_driver_positions", "test_driver_together"),
-    *("test_driver_units", "test_driver_noise", "test_driver_dma", "test_math", "test_moves", "test_path"),
-    *("test_plan", "test_plan_forms", "test_plan_jerk", "test_plan_methods", "test_plan_shape"),
-    *("test_plan_sigmoid", "test_plan_straight", "test_plan_turn", "test_plan_user"),
-    *("test_gcode", "test_gcode_arcs", "test_gcode_fuzz", "test_path_fuzz", "test_plan_fuzz"),
+    *("test_driver_units", "test_driver_goto"),
 )
 MOST_FAIL = 2  # tests of a file that do not run on copies
 LONGEST = 6.0  # seconds of the processor: a test that takes longer is no judge here
@@ -73,28 +73,35 @@ def record(worker: Worker, count: int, show: Callable[[str], None]) -> dict[str,
     Raises:
         Failure: A test fails without a mutant.
     """
-    files = [*tests(), *sorted((paths.tests / "helpers").glob("*.py")), worker.root / "mutants.json"]
-    kept = worker.root / f"reached-{hash_of(files)}.json"
-    if kept.exists():
-        return dict(json.loads(kept.read_text()))
-    places = worker.root / "reached"
     found: dict[str, dict[str, Any]] = {}
+    helpers = [*sorted((paths.tests / "helpers").glob("*.py")), worker.root / "mutants.json"]
     for file in tests():
-        places.write_bytes(bytes(count + 1))
-        done = worker.ask({"record": str(places), "tests": [str(file)]})
-        if "seconds" not in done:
-            raise Failure(f"{file.name}: {done['test']}")
-        others = set(done["failed"])  # that read the text of a source
-        if len(others) > MOST_FAIL:
-            raise Failure(f"without a mutant, these fail: {', '.join(sorted(others))}")
-        for test in sorted(others):
-            show(f"no judge: {test}")
-        for test, seconds in done["seconds"].items():
-            if test not in others:
-                found[test] = {"seconds": seconds, "reached": done["reached"][test]}
-        show(f"{file.name}: {len(done['seconds'])} tests, {sum(done['seconds'].values()):.0f} s")
-    kept.write_text(json.dumps(found))
+        kept = worker.root / f"reached-{file.stem}-{hash_of([file, *helpers])}.json"
+        if not kept.exists():
+            one = _record(worker, file, count, show)
+            kept.write_text(json.dumps(one))
+        found |= json.loads(kept.read_text())
     return found
+
+
+def _record(worker: Worker, file: Path, count: int, show: Callable[[str], None]) -> dict[str, dict[str, Any]]:
+    """The tests of one file."""
+    places = worker.root / "reached"
+    places.write_bytes(bytes(count + 1))
+    done = worker.ask({"record": str(places), "tests": [str(file)]})
+    if "seconds" not in done:
+        raise Failure(f"{file.name}: {done['test']}")
+    others = set(done["failed"])  # that read the text of a source
+    if len(others) > MOST_FAIL:
+        raise Failure(f"without a mutant, these fail: {', '.join(sorted(others))}")
+    for test in sorted(others):
+        show(f"no judge: {test}")
+    show(f"{file.name}: {len(done['seconds'])} tests, {sum(done['seconds'].values()):.0f} s")
+    return {
+        test: {"seconds": seconds, "reached": done["reached"][test]}
+        for test, seconds in done["seconds"].items()
+        if test not in others
+    }
 
 
 def _some(reaching: dict[str, float], limit: float) -> list[str]:

@@ -61,7 +61,7 @@ def drawn(
     """
     files = [file for file in sources(*FOLDERS.values()) if not only or file.name in only]
     hashed = hash_of(
-        [*files, *headers(*_headers()), *sorted(Path(__file__).parent.glob("c_*.py"))], f"{seed} {count}"
+        [*files, *headers(*_headers()), Path(__file__).with_name("c_mutate.py")], f"{seed} {count}"
     )
     kept = root / "mutants.json"
     stored = json.loads(kept.read_text()) if kept.exists() else {}

@@ -6,6 +6,7 @@ assumptions; the cells of both netlists are matched by their kind and their plac
 """
 
 import json
+import os
 import re
 import shutil
 from collections.abc import Callable, Sequence
@@ -71,7 +72,7 @@ def _cells(module: dict[str, Any]) -> Cells:
 @cache
 def _proof_modules(proof: formal.Proof) -> dict[str, Cells]:
     """The cells of the modules of a proof, when it has read them."""
-    folder = WORK / f"cells_{proof.name}"
+    folder = WORK / f"cells_{os.getpid()}_{proof.name}"
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     for name in ("rtl", "formal"):
@@ -126,7 +127,7 @@ def prove(core: Core, mutant: Mutant, proof: formal.Proof) -> str:
     commands = _in_proof(core, mutant, proof)
     if not commands:
         return ""
-    folder = WORK / "proof"
+    folder = WORK / f"proof_{os.getpid()}"
     shutil.rmtree(folder, ignore_errors=True)
     for name in ("rtl", "formal"):
         ignore = shutil.ignore_patterns("__pycache__", "*.py")

@@ -30,18 +30,24 @@ MODULES = (
     *("passo_core", "passo_channel", "passo_encoders", "passo_outputs", "passo_verdict", "passo_link_bus"),
     *("passo_tables", "passo_encoder_axis", "passo_positions"),
 )
-BITS = 10  # of each word that are tried
+BITS = 6  # of each word that are tried
 NAME = "registers"
 
 
 def check(table: Table, rng: random.Random) -> None:
-    """Read all registers; write some bits of each.
+    """Read all registers; write some bits of each, at one of its addresses.
 
     Raises:
         AssertionError: One does not do as the table says.
     """
     table.check_reading()
+    addresses: dict[str, list[int]] = {}
     for address, register in table.registers:
+        addresses.setdefault(register.name, []).append(address)
+    chosen = {rng.choice(of) for of in addresses.values()}
+    for address, register in table.registers:
+        if address not in chosen:
+            continue
         where = f"{register.name} at 0x{address:03X}"
         if "w" not in register.access:
             assert table.write(address, 0) == Verdict.READ_ONLY, where
