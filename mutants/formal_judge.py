@@ -9,6 +9,7 @@ import json
 import os
 import re
 import shutil
+import time
 from collections.abc import Callable, Sequence
 from functools import cache
 from pathlib import Path
@@ -157,19 +158,35 @@ def judge(
     """Let the proofs judge the mutants that live."""
     folder = paths.root / "formal"
     judges = hash_of([*sorted(folder.glob("*.sby")), *sorted(folder.glob("*.v*"))])
+    waiting: dict[formal.Proof, list[Mutant]] = {}
     for mutant in mutants:
-        fate = fates.get(mutant.name)
         for proof in proofs_of(mutant.module):
+            if slow or not proof.slow:
+                waiting.setdefault(proof, []).append(mutant)
+    seconds: dict[str, float] = {}
+    # one mutant with each proof, to know how long it takes; then the quick ones first
+    for first in (True, False):
+        for proof, group in sorted(waiting.items(), key=lambda item: seconds.get(item[0].name, 0.0)):
             name = f"proof {proof.name} {judges}"
-            if not fate.lives or name in (fate.tried or []) or (proof.slow and not slow):
-                continue
-            try:
-                broken = prove(core, mutant, proof)
-            except Failure as failure:
-                show(f"{mutant.name}: {failure}")
-                continue
-            fate.tried = [*(fate.tried or []), name]
-            if broken:
-                fate.killed, fate.says = f"proof {proof.name}", broken
-            show(f"{core.name}: {mutant.module}: proof {proof.name}: {broken or 'lives'}")
-            fates.save()
+            left = [mutant for mutant in group if name not in (fates.get(mutant.name).tried or [])]
+            for mutant in [mutant for mutant in left if fates.get(mutant.name).lives][: 1 if first else None]:
+                began = time.monotonic()
+                _try(core, mutant, proof, fates, name, show)
+                seconds[proof.name] = time.monotonic() - began
+
+
+def _try(
+    core: Core, mutant: Mutant, proof: formal.Proof, fates: Fates, name: str, show: Callable[[str], None]
+) -> None:
+    """One mutant in one proof."""
+    fate = fates.get(mutant.name)
+    fate.tried = [*(fate.tried or []), name]
+    try:
+        broken = prove(core, mutant, proof)
+    except Failure as failure:
+        show(f"{mutant.name}: {failure}")
+        return
+    if broken:
+        fate.killed, fate.says = f"proof {proof.name}", broken
+    show(f"{core.name}: {mutant.module}: proof {proof.name}: {broken or 'lives'}")
+    fates.save()

@@ -59,7 +59,8 @@ def test_the_judge_at_the_pins_kills_mutants_and_not_the_core(sample: tuple[list
 def test_a_judge_that_is_switched_off_scores_0(sample: tuple[list[Mutant], Path]) -> None:
     """No other fault of a core ends a history."""
     mutants, library = sample
-    assert killed(library, [mutant.number for mutant in mutants], "--off") == set()
+    some = [mutant.number for mutant in mutants][:: len(mutants) // 8]
+    assert killed(library, some, "--off") == set()
 
 
 def test_a_promise_kills_a_mutant() -> None:
