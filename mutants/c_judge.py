@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The tests as judges of driver, planner and G-code: each mutant is given those that reach it, the quick ones first."""
+"""The tests as judges of the C sources: each mutant gets those that reach it, the quick ones first."""
 
 import json
 import subprocess
@@ -14,14 +14,15 @@ from passo.toolchain import environment, paths
 from mutants.c_source import FOLDER, CMutant
 from mutants.fates import Fates, hash_of
 
+# Those that do not take long.
 TESTS = (
-    *("test_driver", "test_driver_cuts", "test_driver_encoder", "test_driver_goto", "test_driver_home"),
+    *("test_math", "test_moves", "test_plan", "test_plan_forms", "test_plan_jerk", "test_plan_methods"),
+    *("test_plan_shape", "test_plan_sigmoid", "test_plan_straight", "test_plan_turn", "test_plan_user"),
+    *("test_path", "test_gcode", "test_gcode_arcs", "test_driver", "test_driver_encoder", "test_driver_home"),
     *("test_driver_inputs", "test_driver_outputs", "test_driver_positions", "test_driver_together"),
-    *("test_driver_units", "test_driver_noise", "test_driver_dma", "test_math", "test_moves", "test_path"),
-    *("test_plan", "test_plan_forms", "test_plan_jerk", "test_plan_methods", "test_plan_shape"),
-    *("test_plan_sigmoid", "test_plan_straight", "test_plan_turn", "test_plan_user"),
-    *("test_gcode", "test_gcode_arcs", "test_gcode_fuzz", "test_path_fuzz", "test_plan_fuzz"),
+    *("test_driver_units", "test_driver_goto"),
 )
+MOST_FAIL = 2  # tests of a file that do not run on copies
 LONGEST = 6.0  # seconds of the processor: a test that takes longer is no judge here
 MOST = 15.0  # for all tests of a mutant
 
@@ -34,9 +35,10 @@ def tests() -> list[Path]:
 class Worker:
     """The process that runs the tests."""
 
-    def __init__(self) -> None:
+    def __init__(self, root: Path = FOLDER) -> None:
+        self.root = root
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "mutants.c_worker"],
+            [sys.executable, "-m", "mutants.c_worker", str(root)],
             cwd=paths.root,
             env=environment(),
             stdin=subprocess.PIPE,
@@ -66,29 +68,40 @@ class Worker:
 
 
 def record(worker: Worker, count: int, show: Callable[[str], None]) -> dict[str, dict[str, Any]]:
-    """Which mutants each test reaches, in how many seconds; kept as long as the tests and the mutants are the same.
+    """Which mutants each test reaches, in how many seconds; kept while tests and mutants are the same.
 
     Raises:
         Failure: A test fails without a mutant.
     """
-    files = [*tests(), *sorted((paths.tests / "helpers").glob("*.py")), FOLDER / "mutants.json"]
-    kept = FOLDER / f"reached-{hash_of(files)}.json"
-    if kept.exists():
-        return dict(json.loads(kept.read_text()))
-    places = FOLDER / "reached"
     found: dict[str, dict[str, Any]] = {}
+    helpers = [*sorted((paths.tests / "helpers").glob("*.py")), worker.root / "mutants.json"]
     for file in tests():
-        places.write_bytes(bytes(count + 1))
-        done = worker.ask({"record": str(places), "tests": [str(file)]})
-        if "seconds" not in done:
-            raise Failure(f"{file.name}: {done['test']}")
-        if done["failed"]:
-            raise Failure(f"without a mutant, these fail: {', '.join(done['failed'])}")
-        for test, seconds in done["seconds"].items():
-            found[test] = {"seconds": seconds, "reached": done["reached"][test]}
-        show(f"{file.name}: {len(done['seconds'])} tests, {sum(done['seconds'].values()):.0f} s")
-    kept.write_text(json.dumps(found))
+        kept = worker.root / f"reached-{file.stem}-{hash_of([file, *helpers])}.json"
+        if not kept.exists():
+            one = _record(worker, file, count, show)
+            kept.write_text(json.dumps(one))
+        found |= json.loads(kept.read_text())
     return found
+
+
+def _record(worker: Worker, file: Path, count: int, show: Callable[[str], None]) -> dict[str, dict[str, Any]]:
+    """The tests of one file."""
+    places = worker.root / "reached"
+    places.write_bytes(bytes(count + 1))
+    done = worker.ask({"record": str(places), "tests": [str(file)]})
+    if "seconds" not in done:
+        raise Failure(f"{file.name}: {done['test']}")
+    others = set(done["failed"])  # that read the text of a source
+    if len(others) > MOST_FAIL:
+        raise Failure(f"without a mutant, these fail: {', '.join(sorted(others))}")
+    for test in sorted(others):
+        show(f"no judge: {test}")
+    show(f"{file.name}: {len(done['seconds'])} tests, {sum(done['seconds'].values()):.0f} s")
+    return {
+        test: {"seconds": seconds, "reached": done["reached"][test]}
+        for test, seconds in done["seconds"].items()
+        if test not in others
+    }
 
 
 def _some(reaching: dict[str, float], limit: float) -> list[str]:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Mutants of C sources: all of a file in one copy of it, each behind `passo_at(NUMBER)`.
 
-A copy is the preprocessed source, from its syntax tree, so it needs no headers. What a program of such copies does
-is chosen by the environment: PASSO_MUTANT is the number of the mutant, none for the sources as they are;
-PASSO_REACHED is a file with a byte for each number, which is set when its place is reached.
+A copy is the preprocessed source, from its syntax tree, so it needs no headers. What a program of such
+copies does is chosen by the environment: PASSO_MUTANT is the number of the mutant, none for the sources as
+they are; PASSO_REACHED is a file with a byte for each number, which is set when its place is reached.
 """
 
 import copy
@@ -26,6 +26,7 @@ MACROS = {
     **{f"UINT{bits}_MAX": f"{2**bits - 1}" for bits in (8, 16)},
     "INT64_MAX": f"{2**63 - 1}L",
     "INT64_MIN": f"(-{2**63 - 1}L - 1)",
+    **{f"INT{bits}_C(value)": "value" for bits in (8, 16, 32)},
     "SIZE_MAX": f"{2**64 - 1}UL",
 }
 
@@ -111,6 +112,16 @@ def _text(node: c_ast.Node) -> str:
     return " ".join(c_generator.CGenerator().visit(node).split())
 
 
+def _as_it_is(visited: Any) -> Any:
+    return visited
+
+
+def _has_no_code(node: Any) -> bool:
+    """Types, and what the compiler alone sees."""
+    types = c_ast.Typename | c_ast.StaticAssert | c_ast.Typedef
+    return isinstance(node, types) or (isinstance(node, c_ast.UnaryOp) and node.op == "sizeof")
+
+
 @dataclass
 class Mutator:
     """Goes through the functions of a source, counts the changes, and makes the chosen ones."""
@@ -142,7 +153,7 @@ class Mutator:
         """A function that puts the mutant in front of the node, when that has been visited."""
         number = self._change(node, kind, make)
         if number is None:
-            return lambda visited: visited
+            return _as_it_is
         mutant = copy.deepcopy(make())
         return lambda visited: c_ast.TernaryOp(self._at(number), mutant, visited, node.coord)
 
@@ -150,7 +161,7 @@ class Mutator:
         """The node with the chosen changes below it, and of itself."""
         if node is None:
             return None
-        wrap: Callable[[Any], Any] = lambda visited: visited
+        wrap: Callable[[Any], Any] = _as_it_is
         if isinstance(node, c_ast.BinaryOp) and node.op in SWAPS:
             wrap = self._either(
                 node, "operator", lambda: c_ast.BinaryOp(SWAPS[node.op], node.left, node.right, node.coord)
@@ -176,9 +187,7 @@ class Mutator:
             if "static" not in node.storage and not isinstance(node.type, c_ast.Struct | c_ast.Enum):
                 node.init = self._visit(node.init)
             return node
-        elif isinstance(node, c_ast.Typename | c_ast.StaticAssert | c_ast.Typedef):
-            return node
-        elif isinstance(node, c_ast.UnaryOp) and node.op == "sizeof":
+        elif _has_no_code(node):
             return node
         self._children(node)
         return wrap(node)

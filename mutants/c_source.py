@@ -4,10 +4,11 @@
 import json
 import random
 import shutil
+from collections.abc import Collection
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from passo.compiler import CC, BuildError, call, headers, sources
+from passo.compiler import headers, sources
 from passo.toolchain import paths
 
 from mutants.c_mutate import CHOICE, Change, changes, mutated
@@ -44,16 +45,6 @@ def _headers() -> list[Path]:
     return [paths.protocol, *FOLDERS.values()]
 
 
-def _compiles(source: Path, place: int) -> bool:
-    made = FOLDER / "trial.c"
-    made.write_text(mutated(source, _headers(), {place: 1}), encoding="utf-8")
-    try:
-        call([CC, "-w", "-std=c11", "-fsyntax-only", made])
-    except BuildError:
-        return False
-    return True
-
-
 def _draw(source: Path, seed: int, count: int) -> list[tuple[int, Change]]:
     """Draw changes of a file."""
     found = list(enumerate(changes(source, _headers())))
@@ -61,27 +52,35 @@ def _draw(source: Path, seed: int, count: int) -> list[tuple[int, Change]]:
     return found[:count]
 
 
-def drawn(seed: int, count: int) -> tuple[list[CMutant], str]:
-    """About `count` mutants, from each file as its length is, in FOLDER; and what identifies them."""
-    files = sources(*FOLDERS.values())
+def drawn(
+    seed: int, count: int, root: Path = FOLDER, only: Collection[str] = ()
+) -> tuple[list[CMutant], str]:
+    """About `count` mutants, from each file as its length is, or from some; and what identifies them.
+
+    The folders with them are below `root`.
+    """
+    files = [file for file in sources(*FOLDERS.values()) if not only or file.name in only]
     hashed = hash_of(
-        [*files, *headers(*_headers()), *sorted(Path(__file__).parent.glob("c_*.py"))], f"{seed} {count}"
+        [*files, *headers(*_headers()), Path(__file__).with_name("c_mutate.py")], f"{seed} {count}"
     )
-    kept = FOLDER / "mutants.json"
+    kept = root / "mutants.json"
     stored = json.loads(kept.read_text()) if kept.exists() else {}
     if stored.get("hash") == hashed:
         return [CMutant(**mutant) for mutant in stored["mutants"]], hashed
-    shutil.rmtree(FOLDER, ignore_errors=True)
-    FOLDER.mkdir(parents=True)
+    shutil.rmtree(root, ignore_errors=True)
+    root.mkdir(parents=True)
     mutants: list[CMutant] = []
     lines = {file: len(file.read_text(encoding="utf-8").splitlines()) for file in files}
     for name, folder in FOLDERS.items():
-        made = FOLDER / name
+        made = root / name
         made.mkdir()
         for header in headers(folder):
             shutil.copy(header, made / header.name)
         (made / f"passo_{name}_mutants.c").write_text(CHOICE, encoding="utf-8")
         for file in sources(folder):
+            if file not in files:
+                shutil.copy(file, made / file.name)
+                continue
             share = max(2, round(count * lines[file] / sum(lines.values())))
             chosen: dict[int, int] = {}
             for place, change in _draw(file, seed, share):

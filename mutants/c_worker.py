@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Runs tests on the C sources with mutants: reads what to run from standard input, a JSON object in each line.
+"""Runs tests on C sources with mutants, below the folder that is given. Reads JSON objects, one in a line:
 
-    {"mutant": N, "tests": [...], "seconds": S}     -> {"mutant": N, "test": what failed, or ""}
-    {"record": FILE, "tests": [...]}                -> {"seconds": {test: S}, "reached": {test: [N, ...]}, "failed": [...]}
+    {"mutant": N, "tests": [...], "seconds": S}    gives {"mutant": N, "test": what failed, or ""}
+    {"record": FILE, "tests": [...]}               gives {"seconds": {test: S}, "reached": {test: [N, ...]},
+                                                          "failed": [...]}
 
 Each run is in a process of its own, in which what is imported and compiled is there already.
 """
@@ -20,18 +21,15 @@ from typing import Any
 from passo import compiler
 from passo.toolchain import paths
 
-from mutants.fates import BUILD
-
-FOLDER = BUILD / "c"
 # What tests import: before the first mutant.
 AHEAD = ("numpy", "pytest", "passo.build", "passo.driver", "tests.helpers.driver_wire", "tests.helpers.plans")
 
 
-def _switch() -> None:
+def _switch(root: Path) -> None:
     """Take the mutated folders for the sources; what is built from them is elsewhere."""
     for name in ("driver", "planner", "gcode"):
-        setattr(paths, name, FOLDER / name)
-    paths.build = FOLDER / "build"
+        setattr(paths, name, root / name)
+    paths.build = root / "build"
     compiler.STRICT = ("-std=c11", "-w")
 
 
@@ -126,7 +124,7 @@ def _forked(asked: dict[str, Any]) -> dict[str, Any]:
 
 def main() -> None:
     """Answer each line."""
-    _switch()
+    _switch(Path(sys.argv[1]))
     for module in AHEAD:
         importlib.import_module(module)
     for line in sys.stdin:

@@ -38,12 +38,12 @@ def hash_of(files: Iterable[Path], *more: str) -> str:
 class Fates:
     """The fates of mutants, by name; `judges` identifies the sources and the judges."""
 
-    def __init__(self, kind: str, judges: str):
+    def __init__(self, kind: str, judges: str, again: bool = True):
         self.path = BUILD / f"{kind}.json"
         self.judges = judges
         stored = json.loads(self.path.read_text()) if self.path.exists() else {"judges": judges, "fates": {}}
         # what other judges have not seen, these may see; what they have seen is to be seen again
-        self.other = stored["judges"] != judges
+        self.other = again and stored["judges"] != judges
         self.of = {name: Fate(**fate) for name, fate in stored["fates"].items()}
         if self.other:
             for fate in self.of.values():

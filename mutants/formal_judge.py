@@ -1,27 +1,30 @@
 # SPDX-License-Identifier: MIT
 """The promises as judges: a mutant of a module is put into the module as its proof sees it.
 
-What has been proved of the module must fail now. The proofs are those of formal/, with the same assumptions; the
-cells of both netlists are matched by their kind and their place in the source.
+What has been proved of the module must fail now. The proofs are those of formal/, with the same
+assumptions; the cells of both netlists are matched by their kind and their place in the source.
 """
 
 import json
+import os
 import re
 import shutil
+import time
 from collections.abc import Callable, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-from formal import run as formal
 from passo.failure import Failure
 from passo.toolchain import paths
 
+from formal import run as formal
 from mutants.fates import BUILD, Fates, hash_of
 from mutants.netlist import Core, Mutant, yosys
 
 LIMIT = 150  # seconds; a proof that takes longer says nothing
 WORK = BUILD / "formal"
+BASECASE = re.compile(r"engine_\d+\.basecase.*Status: failed", re.I)
 
 
 def _script(proof: formal.Proof) -> list[str]:
@@ -70,7 +73,7 @@ def _cells(module: dict[str, Any]) -> Cells:
 @cache
 def _proof_modules(proof: formal.Proof) -> dict[str, Cells]:
     """The cells of the modules of a proof, when it has read them."""
-    folder = WORK / f"cells_{proof.name}"
+    folder = WORK / f"cells_{os.getpid()}_{proof.name}"
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     for name in ("rtl", "formal"):
@@ -95,9 +98,7 @@ def _proc(lines: Sequence[str]) -> list[str]:
 
 @cache
 def _core_modules(core: Path) -> dict[str, Cells]:
-    return {
-        name: _cells(module) for name, module in json.loads(core.read_text())["modules"].items()
-    }
+    return {name: _cells(module) for name, module in json.loads(core.read_text())["modules"].items()}
 
 
 def _in_proof(core: Core, mutant: Mutant, proof: formal.Proof) -> list[str]:
@@ -105,11 +106,11 @@ def _in_proof(core: Core, mutant: Mutant, proof: formal.Proof) -> list[str]:
     found = re.search(r" -module (\S+) -cell (\S+)", mutant.command)
     assert found
     module, cell = found[1], found[2]
-    for key, names in _core_modules(core.folder / "core.json")[module].items():
-        if cell in names:
-            break
-    else:
+    cells_of = _core_modules(core.folder / "core.json")[module]
+    key = next((key for key, names in cells_of.items() if cell in names), None)
+    if key is None:
         return []
+    names = cells_of[key]
     commands = []
     for name, cells in _proof_modules(proof).items():
         if re.sub(r"^\$paramod(?:\$[0-9a-f]+)?\\", "", name).split("\\")[0] != mutant.module:
@@ -127,7 +128,7 @@ def prove(core: Core, mutant: Mutant, proof: formal.Proof) -> str:
     commands = _in_proof(core, mutant, proof)
     if not commands:
         return ""
-    folder = WORK / "proof"
+    folder = WORK / f"proof_{os.getpid()}"
     shutil.rmtree(folder, ignore_errors=True)
     for name in ("rtl", "formal"):
         ignore = shutil.ignore_patterns("__pycache__", "*.py")
@@ -137,20 +138,17 @@ def prove(core: Core, mutant: Mutant, proof: formal.Proof) -> str:
     lines = _script(proof)
     before = lines[_place(lines)]
     made = "\n".join([*_proc(lines), *commands, before])
-    sby.write_text(re.sub(rf"^{re.escape(before)}$", lambda _: made, text, count=1, flags=re.M), encoding="utf-8")
-    limit, formal.TIME_LIMIT = formal.TIME_LIMIT, LIMIT
-    try:
-        verdict, log, _ = formal._sby(proof, "prove", folder)
-    finally:
-        formal.TIME_LIMIT = limit
+    sby.write_text(
+        re.sub(rf"^{re.escape(before)}$", lambda _: made, text, count=1, flags=re.M), encoding="utf-8"
+    )
+    verdict, log, _ = formal.run_sby(proof, "prove", folder, LIMIT)
     if verdict in ("PASS", "TIMEOUT"):
         return ""
-    if verdict == "ERROR" and "ERROR" in log and "Assert" not in log:
-        error = re.findall(r"ERROR.*", log)
-        return "" if error else "?"
+    if verdict == "ERROR":
+        raise Failure(f"proof {proof.name}: {re.findall(r'ERROR.*', log)[:2]}")
     broken = sorted(set(re.findall(r"Assert failed in [\w.]+: (\S+)", log)))
     named = [name for name in broken if ":" not in name and not name.startswith("passo_")]
-    how = "a counterexample" if re.search(r"basecase.*(?:failed|FAIL)|engine_\d+\.basecase.*Status: failed", log) else "no induction"
+    how = "a counterexample" if "basecase: Assert failed" in log or BASECASE.search(log) else "no induction"
     return f"{how}: {', '.join(named[:3]) or 'what the induction relies on'}"
 
 
@@ -160,19 +158,35 @@ def judge(
     """Let the proofs judge the mutants that live."""
     folder = paths.root / "formal"
     judges = hash_of([*sorted(folder.glob("*.sby")), *sorted(folder.glob("*.v*"))])
+    waiting: dict[formal.Proof, list[Mutant]] = {}
     for mutant in mutants:
-        fate = fates.get(mutant.name)
         for proof in proofs_of(mutant.module):
+            if slow or not proof.slow:
+                waiting.setdefault(proof, []).append(mutant)
+    seconds: dict[str, float] = {}
+    # one mutant with each proof, to know how long it takes; then the quick ones first
+    for first in (True, False):
+        for proof, group in sorted(waiting.items(), key=lambda item: seconds.get(item[0].name, 0.0)):
             name = f"proof {proof.name} {judges}"
-            if not fate.lives or name in (fate.tried or []) or (proof.slow and not slow):
-                continue
-            try:
-                broken = prove(core, mutant, proof)
-            except Failure as failure:
-                show(f"{mutant.name}: {failure}")
-                continue
-            fate.tried = [*(fate.tried or []), name]
-            if broken:
-                fate.killed, fate.says = f"proof {proof.name}", broken
-            show(f"{core.name}: {mutant.module}: proof {proof.name}: {broken or 'lives'}")
-            fates.save()
+            left = [mutant for mutant in group if name not in (fates.get(mutant.name).tried or [])]
+            for mutant in [mutant for mutant in left if fates.get(mutant.name).lives][: 1 if first else None]:
+                began = time.monotonic()
+                _try(core, mutant, proof, fates, name, show)
+                seconds[proof.name] = time.monotonic() - began
+
+
+def _try(
+    core: Core, mutant: Mutant, proof: formal.Proof, fates: Fates, name: str, show: Callable[[str], None]
+) -> None:
+    """One mutant in one proof."""
+    fate = fates.get(mutant.name)
+    fate.tried = [*(fate.tried or []), name]
+    try:
+        broken = prove(core, mutant, proof)
+    except Failure as failure:
+        show(f"{mutant.name}: {failure}")
+        return
+    if broken:
+        fate.killed, fate.says = f"proof {proof.name}", broken
+    show(f"{core.name}: {mutant.module}: proof {proof.name}: {broken or 'lives'}")
+    fates.save()

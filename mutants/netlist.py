@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Mutants of the RTL: drawn by `yosys mutate`, evenly from each module, all of them in one netlist of a core.
+"""Mutants of the RTL: drawn by `yosys mutate`, evenly from each module, all in one netlist of a core.
 
-The netlist has an input `passo_mutant`, which selects one; 0 is the core as it is. A mutant is in a module, and so
-in all instances of it.
+The register `passo_mutant` selects one; 0 is the core as it is. A mutant is in a module, and so in all
+instances of it.
 """
 
 import json
@@ -148,9 +148,7 @@ def _file(module: str) -> str:
 
 def drawn(core: Core, seed: int, each: int) -> tuple[list[Mutant], Path, str]:
     """Mutants of a core, the same as long as the RTL is; its Verilated netlist, and what identifies that."""
-    hashed = hash_of(
-        [*rtl_sources(), *sorted(paths.rtl.glob("*.vh")), Path(__file__)], core.name, f"{seed} {each}"
-    )
+    hashed = hash_of([*rtl_sources(), *sorted(paths.rtl.glob("*.vh"))], core.name, f"{seed} {each}")
     kept, netlist = core.folder / "mutants.json", core.folder / f"mutants_{core.name}.v"
     stored = json.loads(kept.read_text()) if kept.exists() else {}
     if stored.get("hash") != hashed:

@@ -11,7 +11,7 @@
 #define ZERO (1u << PASSO_CHANNEL_COMMAND_ZERO_LSB)
 /* Polls after which a motion must have ended; fewer for a mutant, as the core itself needs fewer. */
 #define POLLS_MAX (player->world->alone ? 120u : 400u)
-#define LAST_MOVE_STEPS 8u
+#define LAST_MOVE_STEPS 24u
 
 static bool send(struct player *player, enum passo_operation operation, uint16_t address,
     const uint32_t *words, unsigned length)
@@ -155,12 +155,18 @@ static void last_move(struct player *player, struct plot_random *random, unsigne
 {
 	struct world *world = player->world;
 	uint32_t words[PASSO_FRAME_PAYLOAD_MAX];
-	struct passo_line line = {
-	    .last = true, .substeps = 2u * LAST_MOVE_STEPS, .directions = (uint8_t)channel};
+	struct last_move move = {
+	    .line = {.last = true, .substeps = 2u * LAST_MOVE_STEPS, .directions = (uint8_t)channel}};
+	struct passo_line line = move.line;
 	/* slow enough for the steps that queue during the DIR setup time */
 	const bool slow = plot_chance(random, 20);
-	const uint64_t velocity = PASSO_VELOCITY_MAX >> (slow ? 7 : 4);
-	const uint32_t ticks = slow ? 33 : 5;
+	const uint64_t most = PASSO_VELOCITY_MAX >> (slow ? 7 : 4);
+	const uint64_t any = world->clock * UINT64_C(0x9E3779B97F4A7C15);
+	const uint64_t velocity = most - (any >> 16) % (most / 2u);
+	const uint32_t rate =
+	    slow || (any & 1u) != 0u ? PASSO_RATE_ONE : PASSO_RATE_ONE / 2u + (any >> 4) % 32768u;
+	const uint64_t tick = UINT64_C(1) << world->model.parameters.tick_log2;
+	const uint32_t ticks = (uint32_t)(line.substeps * (PASSO_ONE_Q48 / velocity + 1u) / tick) + 2u;
 	const struct passo_ramp ramps[2] = {{.velocity_end = velocity},
 	    {.last = true, .velocity_end = velocity, .ticks = ticks, .progress_step = PASSO_ONE_Q48 / ticks}};
 	uint32_t state = 0;
@@ -186,9 +192,13 @@ static void last_move(struct player *player, struct plot_random *random, unsigne
 
 		send(player, PASSO_OPERATION_WRITE, axis_address(channel, a, PASSO_AXIS_STEP_TIMING), timings,
 		    2);
-		if (!write_one(player, axis_address(channel, a, PASSO_AXIS_PINS), plot_draw(random, 16) << 1))
+		const uint32_t pins = plot_draw(random, 16) << 1;
+		move.both_edges[a] = (pins >> PASSO_AXIS_PINS_BOTH_EDGES_LSB & 1u) != 0u;
+		if (!write_one(player, axis_address(channel, a, PASSO_AXIS_PINS), pins))
 			world_fail(world, world->clock, "channel %u: PINS were refused at rest", channel);
 	}
+	write_one(player, channel_address(channel, PASSO_CHANNEL_RATE_TARGET), rate);
+	move.from = world->clock;
 	write_one(player, PASSO_ADDRESS_RUN, 1u << channel);
 	for (unsigned i = 0; i < POLLS_MAX && !(state != 0u && is_quiet(state)); i++)
 		state = state_of(player, channel);
@@ -196,6 +206,12 @@ static void last_move(struct player *player, struct plot_random *random, unsigne
 		world_fail(world, world->clock, "channel %u: state %x after the last move", channel, state);
 	read_positions(player, channel);
 	for (unsigned a = 0; a < player_axes(player); a++) {
+		move.line = line;
+		move.velocity = velocity;
+		move.rate = rate;
+		if (!slow
+		    || a + 1u < player_axes(player)) /* the steps of that one wait for the set-up of DIR */
+			player_check_steps(player, channel, a, &move);
 		const int32_t steps = (int32_t)line.steps[a];
 		const int32_t wanted = (line.directions >> a & 1u) != 0u ? -steps : steps;
 

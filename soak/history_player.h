@@ -57,4 +57,15 @@ void player_end(struct player *player, struct plot_random *random, bool brief);
 void player_aim(
     const struct world *scout, struct plot_random *random, enum plot_kind kind, struct action *action);
 
+/* A move of constant speed, and the clock before it. */
+struct last_move {
+	struct passo_line line;
+	uint64_t velocity; /* UQ0.48 */
+	uint32_t rate;
+	bool both_edges[PASSO_AXES_MAX];
+	uint64_t from;
+};
+/* Each step of an axis is in its place. */
+void player_check_steps(struct player *player, unsigned channel, unsigned a, const struct last_move *move);
+
 #endif

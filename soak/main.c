@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * soak SEED FIRST COUNT [--rtl LIBRARY] [--record FOLDER] [--set N] [--driver | --machine | --tries |
  * --starts | --pokes]
- *     [--short] [--print] [--keep-on] [--mutants]
+ *     [--short] [--print] [--keep-on] [--mutants [--off]]
  * Plays histories FIRST, FIRST + 1, ... at register level, or with --driver through the driver. --set N: only
  * those of one parameter set; --short: without the last move. Stops at the first failure unless --keep-on is
  * given. --mutants: each with the mutants of the library whose numbers are on standard input, until it is
@@ -21,7 +21,7 @@ struct options {
 	uint64_t seed, first, count;
 	const char *library, *folder;
 	unsigned set; /* PLOT_SETS: all */
-	bool print, keep_on, driver, brief, blind, machine, tries, pokes, starts, mutants;
+	bool print, keep_on, driver, brief, blind, machine, tries, pokes, starts, mutants, off;
 };
 
 static bool parse(int argc, char **argv, struct options *options)
@@ -47,6 +47,8 @@ static bool parse(int argc, char **argv, struct options *options)
 			options->machine = options->pokes = true;
 		else if (strcmp(argv[i], "--starts") == 0)
 			options->machine = options->starts = true;
+		else if (strcmp(argv[i], "--off") == 0)
+			options->off = true;
 		else if (strcmp(argv[i], "--mutants") == 0)
 			options->mutants = true;
 		else if (strcmp(argv[i], "--short") == 0)
@@ -160,6 +162,7 @@ int main(int argc, char **argv)
 	world.tries = options.tries;
 	world.pokes = options.pokes;
 	world.starts = options.starts;
+	world.off = options.off;
 	for (uint64_t number = options.first; played < options.count; number++) {
 		char path[WORLD_TEXT];
 		FILE *record = NULL;

@@ -52,7 +52,8 @@ bool mutants_fork(struct world *world, uint64_t number)
 	size_t living = 0;
 
 	history = number;
-	for (size_t i = 0; i < mutants->count; i++) {
+	bool fair = true; /* the core itself plays it without fault */
+	for (size_t i = 0; i < mutants->count && fair; i++) {
 		int status = 0;
 
 		fflush(stdout);
@@ -63,6 +64,9 @@ bool mutants_fork(struct world *world, uint64_t number)
 		}
 		if (process < 0 || waitpid(process, &status, 0) < 0)
 			abort();
+		fair = mutants->numbers[i] != 0u || (WIFEXITED(status) && WEXITSTATUS(status) == 0);
+		if (!fair)
+			return false;
 		if (WIFEXITED(status) && WEXITSTATUS(status) == 0)
 			mutants->numbers[living++] = mutants->numbers[i];
 		else if (!WIFEXITED(status))

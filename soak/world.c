@@ -55,7 +55,7 @@ void world_fail(struct world *world, uint64_t clock, const char *format, ...)
 {
 	va_list arguments;
 
-	if (world->failed_at && world->failed_at <= clock)
+	if (world->off || (world->failed_at && world->failed_at <= clock))
 		return;
 	world->failed_at = clock ? clock : 1u;
 	va_start(arguments, format);
@@ -190,6 +190,7 @@ bool world_open(struct world *world, const struct passo_parameters *parameters, 
 	world->tries = kept.tries;
 	world->pokes = kept.pokes;
 	world->starts = kept.starts;
+	world->off = kept.off;
 	world->alone = kept.alone;
 	world->mutants = kept.mutants;
 	world->half_period = 2;

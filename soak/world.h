@@ -149,6 +149,7 @@ struct world {
 	bool tries;                    /* that drives into its limit switches */
 	bool starts;                   /* whose motions begin at active switches; the model may skip clocks */
 	bool pokes;                    /* anything is written and anything happens at its pins; not judged */
+	bool off;                      /* nothing fails: to show that without a judge no mutant is killed */
 	bool alone;                    /* the Verilated core is not compared with the model */
 	struct world_mutants *mutants; /* NULL: none */
 	uint64_t failed_at;            /* clock of the first failure; 0: none */

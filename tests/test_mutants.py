@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: MIT
+"""A sample of `make mutants`: that judges see mutants, and that a score can be 0."""
+
+import subprocess
+from pathlib import Path
+
+import pytest
+from passo import random_cases
+from passo.toolchain import environment
+
+from mutants import formal_judge
+from mutants.c_judge import Worker
+from mutants.c_source import drawn as drawn_c
+from mutants.netlist import PLAIN, Core, Mutant, drawn
+from soak.parts import SETS
+from soak.program import build
+
+SEED = random_cases.seed()
+# The smallest core, two mutants of each module; in any other folder than those of `make mutants`.
+SAMPLE = Core("sample", SETS[0], PLAIN.modules)
+EACH = 2
+FILE = "passo_gcode_angle.c"
+
+
+@pytest.fixture(scope="module")
+def sample() -> tuple[list[Mutant], Path]:
+    """Mutants, and the library with them."""
+    mutants, library, _ = drawn(SAMPLE, SEED, EACH)
+    return mutants, library
+
+
+def command(library: Path, *more: str) -> list[str]:
+    """The soak's program with mutants of the first parameter set."""
+    return [str(build()), "1", "0", "3", "--set", "0", "--rtl", str(library), "--mutants", *more]
+
+
+def killed(library: Path, numbers: list[int], *more: str) -> set[int]:
+    """Those that the judge at the pins kills."""
+    done = subprocess.run(
+        command(library, *more),
+        input=" ".join(map(str, numbers)),
+        env=environment(),
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return {int(line.split()[1]) for line in done.stdout.splitlines() if line.startswith("killed ")}
+
+
+def test_the_judge_at_the_pins_kills_mutants_and_not_the_core(sample: tuple[list[Mutant], Path]) -> None:
+    """More than a third of any sample within three histories; the core itself lives."""
+    mutants, library = sample
+    found = killed(library, [0, *(mutant.number for mutant in mutants)])
+    print(f"seed {SEED}: {len(found)} of {len(mutants)}")
+    assert 0 not in found
+    assert len(found) > len(mutants) / 3
+
+
+def test_a_judge_that_is_switched_off_scores_0(sample: tuple[list[Mutant], Path]) -> None:
+    """No other fault of a core ends a history."""
+    mutants, library = sample
+    some = [mutant.number for mutant in mutants][:: len(mutants) // 8]
+    assert killed(library, some, "--off") == set()
+
+
+def test_a_promise_kills_a_mutant() -> None:
+    """Of passo_admission, in each of whose cells a promise lies."""
+    mutants, _, _ = drawn(SAMPLE, SEED, EACH)
+    proof = formal_judge.proofs_of("passo_admission")[0]
+    found = [
+        formal_judge.prove(SAMPLE, mutant, proof) for mutant in mutants if mutant.module == "passo_admission"
+    ]
+    print(found)
+    assert len(found) == EACH
+    assert any(found)
+
+
+def test_the_tests_kill_mutants_in_c(tmp_path: Path) -> None:
+    """Those of the angles of an arc; the sources as they are live."""
+    mutants, _ = drawn_c(SEED, 400, tmp_path, [FILE])
+    worker = Worker(tmp_path)
+    try:
+        reached = tmp_path / "reached"
+        reached.write_bytes(bytes(len(mutants) + 1))
+        tests = ["tests/test_gcode_arcs.py"]
+        seen = worker.ask({"record": str(reached), "tests": tests})
+        assert seen["failed"] == []
+        numbers = {number for test in seen["reached"].values() for number in test}
+        assert numbers & {mutant.number for mutant in mutants}
+        some = [mutant.number for mutant in mutants if mutant.number in numbers][:4]
+        answers = [worker.ask({"mutant": n, "tests": tests, "seconds": 20})["test"] for n in [0, *some]]
+    finally:
+        worker.end()
+    print(answers)
+    assert answers[0] == ""
+    assert any(answers[1:])
