@@ -71,10 +71,11 @@ def limits_of(lines: Sequence[Line], settings: PathSettings, arcs: bool = True) 
         jumps = moved & (jump > 0)
         if jumps.any():
             corner[i] = min(corner[i], (jump[jumps] / change[jumps]).min() ** 2)
+    bend = corner.copy()
     corner[1:] = np.minimum(corner[1:], np.minimum(top[1:], top[:-1]))
     for i in range(1, len(length) - 1):
         if arcs and arc[i] and arc[i + 1]:
-            top[i] = min(top[i], max(corner[i], corner[i + 1]))
+            top[i] = min(top[i], max(bend[i], bend[i + 1]))
     return Limits(length, unit, top, along, soft, corner, min(ends[0], top[0]), min(ends[-1], top[-1]))
 
 

@@ -38,6 +38,15 @@ static bool is_due(const struct passo_path_planner *path, const struct passo_pat
 	    && (index == path->planned || passo_path_ticks_to(path, aim) < TICKS_MIN);
 }
 
+/* Whether a part deserves its own ramp: one that it shares with a short one has the mean of both. */
+static bool is_long(
+    const struct passo_path_planner *path, uint64_t square, const struct passo_path_part *part)
+{
+	const uint64_t speeds = passo_path_velocity_of(square) + passo_path_velocity_of(part->square);
+
+	return speeds > 0 && passo_path_ticks_over(path, part->length, speeds) >= TICKS_MIN;
+}
+
 /* Whether the ramp has to end before this part. */
 static bool is_enough(const struct passo_path_planner *path, const struct passo_path_aim *aim, uint64_t slope,
     const struct passo_path_part *part)
@@ -49,7 +58,8 @@ static bool is_enough(const struct passo_path_planner *path, const struct passo_
 		return false;
 	const uint64_t ticks = passo_path_ticks_to(path, aim);
 	return ticks >= TICKS_MIN
-	    || (ticks > 1 && aim->kind == PASSO_PATH_DOWN && part->kind != PASSO_PATH_DOWN);
+	    || (ticks > 1 && aim->kind == PASSO_PATH_DOWN && part->kind != PASSO_PATH_DOWN)
+	    || is_long(path, aim->square, part);
 }
 
 /* Follows the profile, at most to the start of item `before`. */
