@@ -46,6 +46,7 @@ enum passo_plan_error passo_path_add(struct passo_path_planner *path, const stru
 	if (error != PASSO_PLAN_OK || made.substeps == 0)
 		return error;
 	*item = made;
+	passo_path_pace_line(path, item);
 	passo_path_limit(path, path->added);
 	if (!item->rest)
 		item->rest = item->corner < slowest(path, item);
@@ -172,5 +173,6 @@ bool passo_path_next_motion(struct passo_path_planner *path)
 	if (!path->lines_end || !path->ramps_end)
 		return false;
 	path->lines_end = path->ramps_end = false;
+	passo_path_pace_begin(path);
 	return true;
 }

@@ -32,6 +32,9 @@
 /* Largest magnitude of a target, Q31.32 mm. */
 #define PASSO_PATH_TARGET_MAX (INT64_C(1) << 62)
 
+/* Ramps in a row that are limited together, at most. */
+#define PASSO_PATH_PACED 8u
+
 /* Limits of an axis, UQ32.32. For rotary axes read degrees for millimetres. */
 struct passo_path_axis {
 	uint64_t steps_per_mm;
@@ -49,6 +52,8 @@ struct passo_path_settings {
 	uint64_t junction_deviation; /* UQ32.32 mm; 0: rest at every corner */
 	enum passo_profile profile;  /* linear, cosine, sigmoid or jerk */
 	uint32_t reserve_clocks;     /* the core is never left with less, unless the path ends; 0: 20 ms */
+	uint32_t polls; /* of the feed in a second, at least: a path is not faster than they can send its
+	                   lines and ramps; 0: 500 */
 };
 
 /* A straight line from the end of the previous one. */
@@ -132,6 +137,12 @@ struct passo_path_planner {
 	uint32_t rapid;      /* the same, of rapids */
 	uint32_t reserve;    /* ticks */
 	uint32_t gentleness; /* UQ0.16: what a shape leaves of the acceleration */
+	/* the pace */
+	uint32_t polls;
+	uint32_t pace, paced;                  /* ticks of so many ramps, at least */
+	uint32_t recent[PASSO_PATH_PACED - 1]; /* ticks of the last ramps */
+	uint32_t line_clocks, line_burst;      /* of a line, at least; how many may be in advance */
+	uint32_t line_credit;                  /* clocks that the last ones have left */
 	enum passo_shape shape;
 	bool soft; /* profile jerk */
 };
@@ -150,6 +161,12 @@ void passo_path_restart(struct passo_path_planner *path, const int32_t *position
  * taken. Each of its axes makes the steps that it lacks. False: the positions are on none, and nothing has
  * changed. */
 bool passo_path_recover(struct passo_path_planner *path, const int32_t *positions, uint32_t done);
+
+/* How many ramps and lines are queued while a frame of them is made, and how many lines a frame takes, so
+ * that the path is not faster than it can be sent. passo_path_feed_open() sets it; before, it is that of a
+ * core as it comes. */
+void passo_path_pace(
+    struct passo_path_planner *path, uint32_t queued, uint32_t lines_queued, uint32_t lines_sent);
 
 /* Adds a line. A line shorter than half a substep becomes part of the next one. Errors: PATH_FULL (take ramps
  * and lines, then add it again), NO_FEED, TOO_FAR (target out of range), TOO_LONG (2^30 substeps or more). */

@@ -38,13 +38,18 @@ static bool is_due(const struct passo_path_planner *path, const struct passo_pat
 	    && (index == path->planned || passo_path_ticks_to(path, aim) < TICKS_MIN);
 }
 
-/* Whether a part deserves its own ramp: one that it shares with a short one has the mean of both. */
+/* Whether a part deserves its own ramp: one that it shares with a short one has the mean of both. What a ramp
+ * of whole ticks has left is no reason. */
 static bool is_long(
     const struct passo_path_planner *path, uint64_t square, const struct passo_path_part *part)
 {
-	const uint64_t speeds = passo_path_velocity_of(square) + passo_path_velocity_of(part->square);
+	const uint64_t velocity = passo_path_velocity_of(square);
+	const uint64_t speeds = velocity + passo_path_velocity_of(part->square);
+	const uint64_t change =
+	    passo_path_larger(velocity, path->velocity) - passo_path_smaller(velocity, path->velocity);
 
-	return speeds > 0 && passo_path_ticks_over(path, part->length, speeds) >= TICKS_MIN;
+	return speeds > 0 && change > velocity / 256
+	    && passo_path_ticks_over(path, part->length, speeds) >= TICKS_MIN;
 }
 
 /* Whether the ramp has to end before this part. */
@@ -100,7 +105,7 @@ static struct passo_path_aim find_aim(
 
 bool passo_path_is_shaped(const struct passo_path_planner *path, const struct passo_path_aim *aim)
 {
-	return path->shape != PASSO_SHAPE_LINEAR && aim->kind != PASSO_PATH_FLAT
+	return path->shape != PASSO_SHAPE_LINEAR && !aim->plain && aim->kind != PASSO_PATH_FLAT
 	    && passo_path_ticks_to(path, aim) >= SHAPED_TICKS_MIN;
 }
 
@@ -115,5 +120,5 @@ struct passo_path_aim passo_path_choose_aim(const struct passo_path_planner *pat
 
 	while (passo_path_is_shaped(path, &aim) && (before = passo_path_too_fast(path, &aim)) < path->added)
 		aim = find_aim(path, need, before);
-	return aim;
+	return passo_path_at_pace(path, &aim, need);
 }

@@ -16,6 +16,11 @@
 #define STEPS_PER_MM_MAX (UINT64_C(1) << (20 + 32))
 /* Of the reserve, unless it is given. */
 #define RESERVES_PER_SECOND 50u
+/* Of the feed, unless they are given. */
+#define POLLS_PER_SECOND 500u
+/* Of a core with 16 places for ramps, of which a frame takes half, and of 4 axes. */
+#define PACED_RAMPS 8u
+#define PACED_LINES 10u
 
 /* Highest speed of a line on any axes, UQ32.32 mm/s; saturates. */
 static uint64_t top_speed(const struct passo_path_settings *settings)
@@ -165,6 +170,7 @@ enum passo_plan_error passo_path_open(struct passo_path_planner *path,
 	    .rapid = PASSO_PATH_RAPID_FULL,
 	    .deviation = passo_mul_div(settings->junction_deviation, scale, UINT32_C(1) << 16),
 	    .reserve = (reserve >> machine->tick_log2) + 1,
+	    .polls = settings->polls > 0 ? settings->polls : POLLS_PER_SECOND,
 	    .shape = SHAPES[settings->profile],
 	    .soft = settings->profile == PASSO_PROFILE_JERK, /* see passo_path_is_soft() */
 	};
@@ -175,6 +181,7 @@ enum passo_plan_error passo_path_open(struct passo_path_planner *path,
 		path->axis[axis] = scale_of(path, &settings->axis[axis]);
 		path->steps_per_mm[axis] = settings->axis[axis].steps_per_mm;
 	}
+	passo_path_pace(path, PACED_RAMPS, UINT32_MAX, PACED_LINES);
 	passo_path_restart(path, ORIGIN);
 	return PASSO_PLAN_OK;
 }
@@ -199,4 +206,6 @@ void passo_path_restart(struct passo_path_planner *path, const int32_t *position
 	path->velocity = 0;
 	path->at_rest = true;
 	path->started = path->jump = path->last = path->lines_end = path->ramps_end = false;
+	path->line_credit = 0;
+	passo_path_pace_begin(path);
 }

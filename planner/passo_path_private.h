@@ -4,6 +4,8 @@
 #ifndef PASSO_PATH_PRIVATE_H
 #define PASSO_PATH_PRIVATE_H
 
+#include <stddef.h>
+
 #include "passo_math.h"
 #include "passo_path.h"
 
@@ -39,8 +41,9 @@ struct passo_path_aim {
 	enum passo_path_kind kind;
 	uint64_t length, square; /* of the path to there, UQ32.32 substeps; of the velocity there */
 	uint64_t slope;
-	bool rest; /* it comes to rest there */
-	bool open; /* it ends there because what follows is not settled */
+	bool rest;  /* it comes to rest there */
+	bool open;  /* it ends there because what follows is not settled */
+	bool plain; /* its ramp is linear */
 };
 
 /* Why ramps are made beyond what is settled. */
@@ -149,6 +152,18 @@ struct passo_path_aim passo_path_soft_aim(const struct passo_path_planner *path,
 struct passo_path_aim passo_path_choose_aim(const struct passo_path_planner *path, enum passo_path_need need);
 uint64_t passo_path_ticks_to(const struct passo_path_planner *path, const struct passo_path_aim *aim);
 bool passo_path_is_shaped(const struct passo_path_planner *path, const struct passo_path_aim *aim);
+
+/* The same, or a calmer one, if there would be more ramps than can be sent. */
+struct passo_path_aim passo_path_at_pace(
+    const struct passo_path_planner *path, const struct passo_path_aim *aim, enum passo_path_need need);
+
+/* Ticks that are lacking until the next `count` ramps may be over, if they last so many without. */
+uint32_t passo_path_pace_need(const struct passo_path_planner *path, uint64_t ticks, unsigned count);
+
+/* A motion begins; a ramp was made; a line is added. */
+void passo_path_pace_begin(struct passo_path_planner *path);
+void passo_path_pace_ramp(struct passo_path_planner *path, uint32_t ticks);
+void passo_path_pace_line(struct passo_path_planner *path, struct passo_path_item *item);
 
 /* Sets ticks and progress step. */
 void passo_path_set_ticks(struct passo_ramp *ramp, uint32_t ticks);

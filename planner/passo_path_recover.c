@@ -85,6 +85,7 @@ static void begin_at(struct passo_path_planner *path, uint32_t index)
 	path->at_rest = true;
 	path->started = path->jump = path->lines_end = path->ramps_end = false;
 	path->anew = true;
+	passo_path_pace_begin(path);
 	passo_path_look_back(path);
 	if (path->rest)
 		path->final = path->added;

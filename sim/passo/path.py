@@ -38,6 +38,7 @@ class PathSettings:
     junction_deviation: Fraction | float = 0.01
     profile: str = "linear"
     reserve_clocks: int = 0
+    polls: int = 0  # of the feed in a second, at least; 0: 500
 
     def struct(self, parameters: Parameters) -> Any:
         """The `struct passo_path_settings`."""
@@ -51,6 +52,7 @@ class PathSettings:
                 "junction_deviation": q32(self.junction_deviation),
                 "profile": getattr(planner(), f"PASSO_PROFILE_{self.profile.upper()}"),
                 "reserve_clocks": self.reserve_clocks,
+                "polls": self.polls,
             },
         )
 
