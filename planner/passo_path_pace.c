@@ -66,15 +66,14 @@ void passo_path_pace_line(struct passo_path_planner *path, struct passo_path_ite
 
 uint32_t passo_path_pace_need(const struct passo_path_planner *path, uint64_t ticks, unsigned count)
 {
-	uint64_t sum = ticks;
+	uint64_t sum = count <= path->paced ? ticks : 0;
 
 	for (unsigned i = 0; i + count < path->paced; i++)
 		sum += path->recent[i];
 	return sum < path->pace ? path->pace - (uint32_t)sum : 0;
 }
 
-/* Length, UQ32.32 substeps, in so many ticks at the mean of two velocities, whose sum is given. */
-static uint64_t length_in(const struct passo_path_planner *path, uint64_t speeds, uint64_t ticks)
+uint64_t passo_path_length_in(const struct passo_path_planner *path, uint64_t speeds, uint64_t ticks)
 {
 	return passo_mul_div(speeds, ticks << path->machine.tick_log2, UINT32_C(1) << 17);
 }
@@ -137,12 +136,9 @@ static struct passo_path_aim aim_at(
 /* A ramp of so many ticks, after which the path could go on for `next`. Length 0: there is none. */
 static struct passo_path_aim calm(const struct passo_path_planner *path, uint64_t ticks, uint64_t next)
 {
-	const uint64_t from = path->velocity;
-	const uint64_t most =
-	    from + passo_path_change(path, passo_path_item(path, path->planned)->slope, ticks);
-	const struct ahead ahead =
-	    look_ahead(path, length_in(path, from + most, ticks) + length_in(path, 2 * most, next));
-	const uint64_t change = passo_path_change(path, ahead.slope, ticks);
+	const uint64_t from = path->velocity, slope = passo_path_item(path, path->planned)->slope;
+	const uint64_t most = from + passo_path_change(path, slope, ticks);
+	struct ahead ahead = look_ahead(path, passo_path_length_in(path, 2 * from, ticks + next));
 	uint64_t to = passo_path_velocity_of(lowest(&ahead));
 
 	if (ahead.rest > 0 && from > 0) {
@@ -153,20 +149,27 @@ static struct passo_path_aim calm(const struct passo_path_planner *path, uint64_
 		aim.open = ahead.open;
 		return aim;
 	}
-	if (ahead.rest > 0) { /* up, and down again, and the ramp to 0 */
-		next = passo_path_larger(passo_path_pace_need(path, ticks, 3), ticks / 4);
-		to = passo_path_smaller(passo_path_velocity_of(ahead.square),
-		    passo_mul_div(ahead.rest, UINT64_C(1) << (17u - path->machine.tick_log2), ticks + next));
-		to = passo_path_smaller(to, passo_path_change(path, ahead.slope, next));
+	if (to < from) {
+		if (from - to > passo_path_change(path, ahead.slope, ticks) * 17 / 16)
+			return (struct passo_path_aim){.length = 0};
+	} else {
+		ahead = look_ahead(path, passo_path_length_in(path, from + most, ticks)
+		                             + passo_path_length_in(path, 2 * most, next));
+		to = passo_path_velocity_of(lowest(&ahead));
+		if (ahead.rest > 0 && from == 0) { /* up, and down again, and the ramp to 0 */
+			const uint64_t units = UINT64_C(1) << (17u - path->machine.tick_log2);
+
+			next = passo_path_larger(passo_path_pace_need(path, ticks, 3), ticks / 4);
+			to = passo_path_smaller(passo_path_velocity_of(ahead.square),
+			    passo_mul_div(ahead.rest, units, ticks + next));
+			to = passo_path_smaller(to, passo_path_change(path, ahead.slope, next));
+		}
+		to = passo_path_smaller(to, from + passo_path_change(path, ahead.slope, ticks));
+		to = passo_path_larger(to, from);
 	}
-	if (to > from)
-		to = passo_path_smaller(to, from + change);
-	else if (from - to > change + change / 16)
-		to = 0;
-	struct passo_path_aim aim = aim_at(path, to, length_in(path, from + to, ticks), ahead.slope);
+	struct passo_path_aim aim =
+	    aim_at(path, to, passo_path_length_in(path, from + to, ticks), ahead.slope);
 	aim.open = ahead.open;
-	if (to == 0)
-		aim.length = 0;
 	return aim;
 }
 
@@ -179,7 +182,7 @@ struct passo_path_aim passo_path_at_pace(
 
 	if (path->pace == 0 || aim->length == 0 || (ticks >= least && then == 0))
 		return *aim;
-	const uint64_t way = length_in(path, 2 * passo_path_velocity_of(aim->square), then);
+	const uint64_t way = passo_path_length_in(path, 2 * passo_path_velocity_of(aim->square), then);
 	if (ticks >= least) {
 		const struct ahead ahead = look_ahead(path, aim->length + way);
 

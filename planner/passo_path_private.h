@@ -110,6 +110,9 @@ void passo_path_limit(struct passo_path_planner *path, uint32_t index);
 /* Ticks over a length (UQ32.32 substeps) at the mean of two velocities, whose sum is given, rounded down. */
 uint64_t passo_path_ticks_over(const struct passo_path_planner *path, uint64_t length, uint64_t speeds);
 
+/* Length, UQ32.32 substeps, in so many ticks at the mean of two velocities, whose sum is given. */
+uint64_t passo_path_length_in(const struct passo_path_planner *path, uint64_t speeds, uint64_t ticks);
+
 /* The newest line is handed out when the next one is known, or when it is the last. */
 bool passo_path_is_held_back(const struct passo_path_planner *path, uint32_t index);
 
