@@ -108,10 +108,12 @@ bool passo_path_is_settled(const struct passo_path_planner *path, uint32_t index
 static uint64_t reach_of(const struct passo_path_planner *path, uint32_t index)
 {
 	const struct passo_path_item *item = passo_path_item(path, index);
-	const uint64_t most = passo_path_end_square(path, index)
-	                    + passo_path_gain(passo_path_down_slope(item), (uint64_t)item->substeps << 32);
+	const uint64_t end = passo_path_end_square(path, index), length = (uint64_t)item->substeps << 32;
+	const uint64_t most = end + passo_path_gain(passo_path_slope(item, false, end, length), length);
+	const uint64_t reach = passo_path_smaller(item->corner, most);
 
-	return passo_path_smaller(item->corner, most);
+	/* what was possible with fewer lines still is */
+	return path->anew ? reach : passo_path_larger(reach, passo_path_smaller(item->reach, item->corner));
 }
 
 /* Goes back from the newest line as long as anything changes. */

@@ -71,6 +71,17 @@ struct passo_path_descent {
 	uint32_t anchor;      /* number of the later line */
 };
 
+/* Axes whose acceleration is watched in a curve. */
+#define PASSO_PATH_CURVED 2u
+
+/* What limits the slope in a curve, private; see passo_path_curve.c. */
+struct passo_path_curve {
+	uint64_t slope[PASSO_PATH_CURVED]; /* of the square, where it is 0 */
+	int64_t bend[PASSO_PATH_CURVED];   /* Q15.48 per substep: what the square takes of it */
+	uint64_t rest;                     /* the limit of all other axes */
+	uint32_t count;
+};
+
 /* A line of the path, private. Squares are those of velocities, UQ0.64 (substeps per clock)^2. */
 struct passo_path_item {
 	uint64_t feed;   /* square of its feed */
@@ -81,6 +92,7 @@ struct passo_path_item {
 	uint64_t halt;   /* highest square at its end, if the path rests there */
 	uint64_t reach;  /* highest square at its start from which the path can come to rest */
 	uint64_t slope;  /* change of the square per substep at full acceleration */
+	struct passo_path_curve curve;
 	uint32_t substeps;
 	uint32_t dwell; /* ticks of rest before the line */
 	uint32_t output;
@@ -119,6 +131,7 @@ struct passo_path_planner {
 	int64_t target[PASSO_AXES_MAX];
 	int64_t steps[PASSO_AXES_MAX];
 	int32_t direction[PASSO_AXES_MAX]; /* unit vector, Q1.30 */
+	int64_t curvature[PASSO_AXES_MAX]; /* Q15.48 per substep: its mean, by the corner at its start */
 	uint64_t length;                   /* UQ32.16 substeps */
 	uint64_t deviation;                /* UQ32.16 substeps */
 	uint32_t substeps_per_mm;

@@ -52,14 +52,21 @@ static bool is_long(
 	    && passo_path_ticks_over(path, part->length, speeds) >= TICKS_MIN;
 }
 
+/* Whether two slopes can share a ramp. */
+static bool is_similar(uint64_t a, uint64_t b)
+{
+	return passo_path_larger(a, b) - passo_path_smaller(a, b) <= a / 64;
+}
+
 /* Whether the ramp has to end before this part. */
-static bool is_enough(const struct passo_path_planner *path, const struct passo_path_aim *aim, uint64_t slope,
+static bool is_enough(const struct passo_path_planner *path, const struct passo_path_aim *aim,
     const struct passo_path_part *part)
 {
 	if (aim->length == 0)
 		return false;
 	if (aim->kind == part->kind
-	    && (part->kind == PASSO_PATH_FLAT ? aim->square == part->square : aim->slope == slope))
+	    && (part->kind == PASSO_PATH_FLAT ? aim->square == part->square
+	                                      : is_similar(aim->slope, part->slope)))
 		return false;
 	const uint64_t ticks = passo_path_ticks_to(path, aim);
 	return ticks >= TICKS_MIN
@@ -76,7 +83,6 @@ static struct passo_path_aim find_aim(
 	uint64_t left = ((uint64_t)passo_path_item(path, index)->substeps << 32) - (uint64_t)path->offset;
 
 	for (;; index++, left = (uint64_t)passo_path_item(path, index)->substeps << 32) {
-		const struct passo_path_item *item = passo_path_item(path, index);
 		struct passo_path_part parts[3];
 
 		if (index == before)
@@ -89,10 +95,11 @@ static struct passo_path_aim find_aim(
 				aim.open = true;
 				return aim;
 			}
-			if (is_enough(path, &aim, item->slope, &parts[i]))
+			if (is_enough(path, &aim, &parts[i]))
 				return aim;
+			if (aim.kind != parts[i].kind || !is_similar(aim.slope, parts[i].slope))
+				aim.slope = parts[i].slope;
 			aim.kind = parts[i].kind;
-			aim.slope = item->slope;
 			aim.length += parts[i].length;
 			aim.square = parts[i].square;
 		}

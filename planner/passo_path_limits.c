@@ -157,11 +157,33 @@ static uint64_t soft_corner(
 	return velocity;
 }
 
+/* Mean curvature of a line, Q15.48 per substep, that makes half a turn (Q1.30) over its length (UQ32.16
+ * substeps). */
+static int64_t curvature_of(int64_t turn, uint64_t length)
+{
+	const int64_t size = (int64_t)passo_mul_div(magnitude(turn), UINT64_C(1) << 33, length);
+
+	return turn < 0 ? -size : size;
+}
+
+/* Half of a turn is made by the line before the corner, whose curvature is complete then, and half by the one
+ * behind it; where it is made over more than a line, only a part. */
+static void share_turn(struct passo_path_planner *path, const int32_t *unit, uint64_t length, uint64_t over)
+{
+	const uint64_t before = passo_path_larger(over, path->length),
+		       behind = passo_path_larger(over, length);
+
+	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
+		path->curvature[axis] += curvature_of((int64_t)unit[axis] - path->direction[axis], before);
+	passo_path_add_curve(path, path->curvature, path->direction, passo_path_item(path, path->added - 1));
+	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
+		path->curvature[axis] = curvature_of((int64_t)unit[axis] - path->direction[axis], behind);
+}
+
 /* Square at the corner between the last line and this one. The change of direction of an axis takes place
  * over a certain length: half the sum of the two lines, if they stand for an arc, or the arc that deviates by
  * the junction deviation. */
-static uint64_t limit_corner(
-    const struct passo_path_planner *path, const int32_t *unit, uint64_t length, bool *arc)
+static uint64_t limit_corner(struct passo_path_planner *path, const int32_t *unit, uint64_t length, bool *arc)
 {
 	uint32_t change[PASSO_AXES_MAX];
 	uint64_t turn = 0;
@@ -171,10 +193,13 @@ static uint64_t limit_corner(
 		turn += (uint64_t)change[axis] * change[axis];
 	}
 	*arc = turn < 4;
-	if (turn < 4)
+	if (turn < 4) {
+		share_turn(path, path->direction, length, length);
 		return PASSO_PATH_SQUARE_MAX;
+	}
 	const uint64_t rounded = half_arc(path, turn), mean = (path->length + length) / 2;
 	const uint64_t over = passo_path_smaller(rounded, mean) << (PASSO_PATH_UNIT_BITS - 16);
+	share_turn(path, unit, length, passo_path_smaller(rounded, mean));
 	uint64_t square = PASSO_PATH_SQUARE_MAX;
 
 	*arc = mean < rounded;
@@ -223,8 +248,13 @@ enum passo_plan_error passo_path_measure(
 		return PASSO_PLAN_TOO_LONG;
 
 	item->halt = limit_line(path, unit, move->feed, item);
-	if (!path->rest)
+	if (path->rest) {
+		for (uint32_t axis = 0; axis < path->machine.axes; axis++)
+			path->curvature[axis] = 0;
+	} else {
 		item->bend = limit_corner(path, unit, length, &item->arc);
+	}
+	passo_path_add_curve(path, path->curvature, unit, item);
 	item->substeps = (uint32_t)substeps;
 	path->carry = stretched ? 0 : (int32_t)(path->carry + (int64_t)length - (int64_t)(substeps << 16));
 	path->length = length;

@@ -95,17 +95,19 @@ static struct ahead look_ahead(const struct passo_path_planner *path, uint64_t l
 
 	for (uint32_t index = path->planned; !passo_path_is_held_back(path, index); index++) {
 		const struct passo_path_item *item = passo_path_item(path, index);
-		const uint64_t end = passo_path_end_square(path, index), slope = passo_path_down_slope(item);
+		const uint64_t end = passo_path_end_square(path, index);
 
 		passed += (uint64_t)item->substeps << 32;
 		if (index == path->planned)
 			passed -= (uint64_t)path->offset;
+		const uint64_t beyond = passed > length ? passed - length : 0;
+		const uint64_t slope = passo_path_slope(item, false, end, beyond);
+
 		ahead.open = ahead.open || !passo_path_is_settled(path, index);
 		ahead.slope = passo_path_smaller(ahead.slope, slope);
 		ahead.square = passo_path_smaller(ahead.square, item->top);
-		if (passed > length) {
-			ahead.square =
-			    passo_path_smaller(ahead.square, end + passo_path_gain(slope, passed - length));
+		if (beyond > 0) {
+			ahead.square = passo_path_smaller(ahead.square, end + passo_path_gain(slope, beyond));
 			break;
 		}
 		if (passo_path_rests_after(path, index)) {

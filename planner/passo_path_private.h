@@ -34,6 +34,7 @@ struct passo_path_part {
 	enum passo_path_kind kind;
 	uint64_t length; /* UQ32.32 substeps */
 	uint64_t square; /* at its end */
+	uint64_t slope;
 };
 
 /* What the next ramp aims at. */
@@ -87,11 +88,14 @@ static inline uint64_t passo_path_square_of(uint64_t velocity)
 	return velocity * velocity;
 }
 
-/* Deceleration is planned a little below the limit, so that it can make up for ramps that end at ticks. */
-static inline uint64_t passo_path_down_slope(const struct passo_path_item *item)
-{
-	return item->slope - item->slope / 256;
-}
+/* Change of the square per substep within an item that the axes allow, over a length (UQ32.32 substeps) from
+ * its lower end. Deceleration is planned a little below the limit, so that it can make up for ramps that end
+ * at ticks. */
+uint64_t passo_path_slope(const struct passo_path_item *item, bool up, uint64_t low, uint64_t length);
+
+/* Sets the curve of an item: its unit vector, and its mean curvature, Q15.48 per substep. */
+void passo_path_add_curve(const struct passo_path_planner *path, const int64_t *curvature,
+    const int32_t *unit, struct passo_path_item *item);
 
 /* Change of the square over a length (UQ32.32 substeps); saturates. */
 uint64_t passo_path_gain(uint64_t slope, uint64_t length);
