@@ -71,8 +71,10 @@ struct passo_path_descent {
 	uint32_t anchor;      /* number of the later line */
 };
 
-/* Axes whose acceleration is watched in a curve. */
-#define PASSO_PATH_CURVED 2u
+/* Axes whose acceleration is watched in a curve; an image for fewer axes saves RAM. */
+#ifndef PASSO_PATH_CURVED
+#define PASSO_PATH_CURVED PASSO_AXES_MAX
+#endif
 
 /* What limits the slope in a curve, private; see passo_path_curve.c. */
 struct passo_path_curve {

@@ -59,7 +59,7 @@ void passo_path_add_curve(const struct passo_path_planner *path, const int64_t *
 		const bool helps = (curvature[axis] < 0) == (unit[axis] < 0);
 
 		if (bend == 0 || curve->count == PASSO_PATH_CURVED) {
-			curve->rest = passo_path_smaller(curve->rest, less(slope, taken(bend, item->top)));
+			curve->rest = passo_path_smaller(curve->rest, slope);
 			continue;
 		}
 		curve->slope[curve->count] = slope;

@@ -157,27 +157,30 @@ static uint64_t soft_corner(
 	return velocity;
 }
 
-/* Mean curvature of a line, Q15.48 per substep, that makes half a turn (Q1.30) over its length (UQ32.16
- * substeps). */
-static int64_t curvature_of(int64_t turn, uint64_t length)
+/* Mean curvature of a line, Q15.48 per substep, that makes half of a turn (Q1.30). The turn takes place over
+ * a length (both UQ32.16 substeps) on either side of the corner: if that is much shorter than the line, it
+ * belongs to the corner alone. */
+static int64_t curvature_of(int64_t turn, uint64_t over, uint64_t length)
 {
-	const int64_t size = (int64_t)passo_mul_div(magnitude(turn), UINT64_C(1) << 33, length);
+	if (over < length / 2)
+		return 0;
+	const uint64_t size =
+	    passo_mul_div(magnitude(turn), UINT64_C(1) << 33, passo_path_larger(over, length));
 
-	return turn < 0 ? -size : size;
+	return turn < 0 ? -(int64_t)size : (int64_t)size;
 }
 
 /* Half of a turn is made by the line before the corner, whose curvature is complete then, and half by the one
- * behind it; where it is made over more than a line, only a part. */
+ * behind it. */
 static void share_turn(struct passo_path_planner *path, const int32_t *unit, uint64_t length, uint64_t over)
 {
-	const uint64_t before = passo_path_larger(over, path->length),
-		       behind = passo_path_larger(over, length);
-
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
-		path->curvature[axis] += curvature_of((int64_t)unit[axis] - path->direction[axis], before);
+		path->curvature[axis] +=
+		    curvature_of((int64_t)unit[axis] - path->direction[axis], over, path->length);
 	passo_path_add_curve(path, path->curvature, path->direction, passo_path_item(path, path->added - 1));
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
-		path->curvature[axis] = curvature_of((int64_t)unit[axis] - path->direction[axis], behind);
+		path->curvature[axis] =
+		    curvature_of((int64_t)unit[axis] - path->direction[axis], over, length);
 }
 
 /* Square at the corner between the last line and this one. The change of direction of an axis takes place
