@@ -50,6 +50,8 @@ struct passo_path_settings {
 	struct passo_path_axis axis[PASSO_AXES_MAX];
 	uint64_t acceleration;       /* UQ32.32 mm/s^2 along the path; 0: only those of the axes */
 	uint64_t junction_deviation; /* UQ32.32 mm; 0: rest at every corner */
+	uint64_t tolerance;          /* UQ32.32 mm, see passo_path_tolerance(); 0: a twentieth of the junction
+	                                deviation */
 	enum passo_profile profile;  /* linear, cosine, sigmoid or jerk */
 	uint32_t reserve_clocks;     /* the core is never left with less, unless the path ends; 0: 20 ms */
 	uint32_t polls; /* of the feed in a second, at least: a path is not faster than they can send its
@@ -119,6 +121,17 @@ struct passo_path_scale {
 	uint32_t jump;         /* the same */
 };
 
+/* Where a line begins, private: what the next one is measured from. */
+struct passo_path_place {
+	int64_t target[PASSO_AXES_MAX]; /* Q31.32 mm */
+	int64_t steps[PASSO_AXES_MAX];
+	int32_t direction[PASSO_AXES_MAX]; /* unit vector of the last line, Q1.30 */
+	int64_t curvature[PASSO_AXES_MAX]; /* Q15.48 per substep: its mean, by the corner at its start */
+	uint64_t length;                   /* of the last line, UQ32.16 substeps */
+	int32_t carry;        /* Q16: substeps that rounding has withheld from the lines so far */
+	uint32_t line_credit; /* clocks that the last lines have left, see passo_path_pace.c */
+};
+
 /* All members are private. Items are counted from 0 and never wrap within a motion. */
 struct passo_path_planner {
 	struct passo_machine machine;
@@ -129,15 +142,13 @@ struct passo_path_planner {
 	/* geometry of the last line */
 	uint64_t steps_per_mm[PASSO_AXES_MAX];
 	struct passo_path_scale axis[PASSO_AXES_MAX];
-	uint64_t acceleration; /* UQ0.64 substeps per clock^2, along the path */
-	int64_t target[PASSO_AXES_MAX];
-	int64_t steps[PASSO_AXES_MAX];
-	int32_t direction[PASSO_AXES_MAX]; /* unit vector, Q1.30 */
-	int64_t curvature[PASSO_AXES_MAX]; /* Q15.48 per substep: its mean, by the corner at its start */
-	uint64_t length;                   /* UQ32.16 substeps */
-	uint64_t deviation;                /* UQ32.16 substeps */
+	uint64_t acceleration;              /* UQ0.64 substeps per clock^2, along the path */
+	struct passo_path_place at, before; /* its end and its start */
+	uint64_t deviation, tolerance;      /* UQ32.16 substeps */
+	uint64_t off;  /* the same: by how much the last line is off those that it replaces */
+	uint64_t feed; /* of the last line, as it was given */
+	bool begins;   /* the path rested before the last line */
 	uint32_t substeps_per_mm;
-	int32_t carry;  /* Q16: substeps that rounding has withheld from the lines so far */
 	uint32_t dwell; /* ticks before the next line */
 	bool rest;      /* before the next line */
 	/* where the ramps end */
@@ -157,7 +168,6 @@ struct passo_path_planner {
 	uint32_t pace, paced;                  /* ticks of so many ramps, at least */
 	uint32_t recent[PASSO_PATH_PACED - 1]; /* ticks of the last ramps */
 	uint32_t line_clocks, line_burst;      /* of a line, at least; how many may be in advance */
-	uint32_t line_credit;                  /* clocks that the last ones have left */
 	enum passo_shape shape;
 	bool soft; /* profile jerk */
 };
@@ -182,6 +192,12 @@ bool passo_path_recover(struct passo_path_planner *path, const int32_t *position
  * core as it comes. */
 void passo_path_pace(
     struct passo_path_planner *path, uint32_t queued, uint32_t lines_queued, uint32_t lines_sent);
+
+/* By how much a line may be off the ends of short, nearly collinear lines that it replaces: those of one feed
+ * and output, which take less time than they can be sent in. The ends of the line itself are exact. It holds
+ * for lines added from now on. */
+#define PASSO_PATH_UNMERGED UINT64_MAX /* each line remains one */
+void passo_path_tolerance(struct passo_path_planner *path, uint64_t tolerance);
 
 /* Adds a line. A line shorter than half a substep becomes part of the next one. Errors: PATH_FULL (take ramps
  * and lines, then add it again), NO_FEED, TOO_FAR (target out of range), TOO_LONG (2^30 substeps or more). */

@@ -16,6 +16,8 @@
 #define STEPS_PER_MM_MAX (UINT64_C(1) << (20 + 32))
 /* Of the reserve, unless it is given. */
 #define RESERVES_PER_SECOND 50u
+/* Of the junction deviation is the tolerance, unless it is given. */
+#define TOLERANCE_PART 20u
 /* Of the feed, unless they are given. */
 #define POLLS_PER_SECOND 500u
 /* Of a core with 16 places for ramps, of which a frame takes half, and of 4 axes. */
@@ -174,6 +176,8 @@ enum passo_plan_error passo_path_open(struct passo_path_planner *path,
 	    .shape = SHAPES[settings->profile],
 	    .soft = settings->profile == PASSO_PROFILE_JERK, /* see passo_path_is_soft() */
 	};
+	passo_path_tolerance(path,
+	    settings->tolerance > 0 ? settings->tolerance : settings->junction_deviation / TOLERANCE_PART);
 	path->gentleness = gentleness(path->shape);
 	path->acceleration = settings->acceleration > 0 ? acceleration_of(path, settings->acceleration)
 	                                                : PASSO_PATH_SQUARE_MAX >> 2;
@@ -195,17 +199,17 @@ void passo_path_restart(struct passo_path_planner *path, const int32_t *position
 		    passo_divide((struct passo_u128){size, 0}, path->steps_per_mm[axis], NULL),
 		    PASSO_PATH_TARGET_MAX);
 
-		path->steps[axis] = steps;
-		path->target[axis] = steps < 0 ? -(int64_t)target : (int64_t)target;
+		path->at.steps[axis] = steps;
+		path->at.target[axis] = steps < 0 ? -(int64_t)target : (int64_t)target;
 	}
 	path->sent = path->planned = path->added = path->final = 0;
-	path->carry = 0;
+	path->at.carry = 0;
 	path->dwell = 0;
 	path->rest = true;
 	path->offset = 0;
 	path->velocity = 0;
 	path->at_rest = true;
 	path->started = path->jump = path->last = path->lines_end = path->ramps_end = false;
-	path->line_credit = 0;
+	path->at.line_credit = 0;
 	passo_path_pace_begin(path);
 }

@@ -52,15 +52,15 @@ void passo_path_pace_line(struct passo_path_planner *path, struct passo_path_ite
 	const uint64_t length = (uint64_t)item->substeps << 32;
 	const uint64_t clocks = length / passo_path_larger(passo_isqrt64(item->limit), 1);
 	const uint64_t most = path->line_burst * (uint64_t)path->line_clocks;
-	const uint64_t credit = path->line_credit + clocks;
+	const uint64_t credit = path->at.line_credit + clocks;
 
 	if (credit < path->line_clocks) {
-		const uint64_t velocity = length / (path->line_clocks - path->line_credit);
+		const uint64_t velocity = length / (path->line_clocks - path->at.line_credit);
 
 		item->limit = passo_path_larger(velocity * velocity, 1);
-		path->line_credit = 0;
+		path->at.line_credit = 0;
 	} else {
-		path->line_credit = (uint32_t)passo_path_smaller(credit - path->line_clocks, most);
+		path->at.line_credit = (uint32_t)passo_path_smaller(credit - path->line_clocks, most);
 	}
 }
 

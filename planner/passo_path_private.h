@@ -65,6 +65,12 @@ static inline uint64_t passo_path_larger(uint64_t a, uint64_t b)
 	return a > b ? a : b;
 }
 
+/* What a line takes at least, in clocks. */
+static inline uint64_t passo_path_clocks(const struct passo_path_item *item)
+{
+	return ((uint64_t)item->substeps << 32) / passo_path_larger(passo_isqrt64(item->top), 1);
+}
+
 /* Profile jerk, which an image without room leaves out: PASSO_WITHOUT_JERK_PATHS. */
 static inline bool passo_path_is_soft(const struct passo_path_planner *path)
 {
@@ -107,6 +113,11 @@ uint64_t passo_path_change(const struct passo_path_planner *path, uint64_t slope
  * too short to be a line. */
 enum passo_plan_error passo_path_measure(
     struct passo_path_planner *path, const struct passo_path_move *move, struct passo_path_item *item);
+
+/* By how much a line from where the path ends, to a target, is off the end of a shorter one from there, at
+ * most: UQ32.16 substeps; saturates if it is not longer. */
+uint64_t passo_path_off(
+    const struct passo_path_planner *path, const int64_t *target, const struct passo_path_place *end);
 
 /* Sets the limits of an item, `top` and, unless the path rests there, `corner`; those before it are known. */
 void passo_path_limit(struct passo_path_planner *path, uint32_t index);

@@ -98,7 +98,7 @@ bool passo_path_recover(struct passo_path_planner *path, const int32_t *position
 	int64_t made[PASSO_AXES_MAX];
 
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
-		made[axis] = positions[axis] - path->steps[axis];
+		made[axis] = positions[axis] - path->at.steps[axis];
 		for (uint32_t index = first; index < path->added; index++)
 			made[axis] += steps_of(passo_path_item(path, index), axis);
 	}

@@ -25,7 +25,7 @@ from tests.helpers.path_judge import judge, steps_at
 from tests.helpers.path_player import Player, play
 from tests.helpers.plans import ONE, Ramp
 
-MACHINE = PathSettings((PathAxis(), PathAxis(), PathAxis(400, 12, 100)))
+MACHINE = PathSettings((PathAxis(), PathAxis(), PathAxis(400, 12, 100)), tolerance=0)
 JUMPING = replace(MACHINE, axes=(PathAxis(jump=3), PathAxis(jump=2), PathAxis(400, 12, 100, 1)))
 
 # small steps, so that their times show the jerk
