@@ -23,6 +23,11 @@
 
 #include "passo_plan.h"
 
+/* An image without room has linear ramps only. */
+#ifdef PASSO_LINEAR_PATHS
+#define PASSO_WITHOUT_JERK_PATHS
+#endif
+
 /* Fewest lines that can be looked ahead. */
 #define PASSO_PATH_ITEMS_MIN 4u
 

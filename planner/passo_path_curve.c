@@ -46,7 +46,7 @@ void passo_path_add_curve(const struct passo_path_planner *path, const int64_t *
 	*curve = (struct passo_path_curve){.count = 0};
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
 		any |= magnitude(curvature[axis]);
-	if (any == 0 || path->shape != PASSO_SHAPE_LINEAR)
+	if (any == 0 || passo_path_shape(path) != PASSO_SHAPE_LINEAR)
 		return;
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
 		const uint64_t share = magnitude(unit[axis]);

@@ -20,6 +20,8 @@
 void passo_path_pace(
     struct passo_path_planner *path, uint32_t queued, uint32_t lines_queued, uint32_t lines_sent)
 {
+	if (path->polls == 0)
+		return; /* not open yet */
 	const uint64_t poll = (path->machine.clock_hz >> path->machine.tick_log2) / path->polls + 1;
 	const uint32_t together =
 	    (uint32_t)passo_path_larger(passo_path_smaller(queued, PASSO_PATH_PACED), 1);
