@@ -83,7 +83,7 @@ static struct passo_path_aim find_aim(
 	uint64_t left = ((uint64_t)passo_path_item(path, index)->substeps << 32) - (uint64_t)path->offset;
 
 	for (;; index++, left = (uint64_t)passo_path_item(path, index)->substeps << 32) {
-		struct passo_path_part parts[3];
+		struct passo_path_part parts[PASSO_PATH_PARTS];
 
 		if (index == before)
 			return aim;
@@ -123,9 +123,11 @@ struct passo_path_aim passo_path_choose_aim(const struct passo_path_planner *pat
 	if (passo_path_is_soft(path))
 		return passo_path_soft_aim(path, need != PASSO_PATH_NO_NEED);
 	struct passo_path_aim aim = find_aim(path, need, path->added);
+#ifndef PASSO_LINEAR_PATHS
 	uint32_t before;
 
 	while (passo_path_is_shaped(path, &aim) && (before = passo_path_too_fast(path, &aim)) < path->added)
 		aim = find_aim(path, need, before);
+#endif
 	return passo_path_at_pace(path, &aim, need);
 }

@@ -200,10 +200,21 @@ static void share_turn(struct passo_path_planner *path, const int32_t *unit, uin
 		    curvature_of((int64_t)unit[axis] - path->at.direction[axis], over, length);
 }
 
+/* What an axis has of its acceleration when a line has its slope, UQ0.16. */
+static uint16_t part_of(
+    const struct passo_path_planner *path, uint64_t slope, const int32_t *unit, uint32_t axis)
+{
+	const uint64_t part =
+	    passo_mul_div(slope, magnitude32(unit[axis]), 2 * path->axis[axis].acceleration);
+
+	return (uint16_t)passo_path_smaller(part >> (PASSO_PATH_UNIT_BITS - 16), UINT16_MAX);
+}
+
 /* Square at the corner between the last line and this one. The change of direction of an axis takes place
  * over a certain length: half the sum of the two lines, if they stand for an arc, or the arc that deviates by
  * the junction deviation. */
-static uint64_t limit_corner(struct passo_path_planner *path, const int32_t *unit, uint64_t length, bool *arc)
+static uint64_t limit_corner(
+    struct passo_path_planner *path, const int32_t *unit, uint64_t length, struct passo_path_item *item)
 {
 	uint32_t change[PASSO_AXES_MAX];
 	uint64_t turn = 0;
@@ -212,7 +223,7 @@ static uint64_t limit_corner(struct passo_path_planner *path, const int32_t *uni
 		change[axis] = (uint32_t)magnitude((int64_t)unit[axis] - path->at.direction[axis]);
 		turn += (uint64_t)change[axis] * change[axis];
 	}
-	*arc = turn < 4;
+	item->arc = turn < 4;
 	if (turn < 4) {
 		share_turn(path, path->at.direction, length, length);
 		return PASSO_PATH_SQUARE_MAX;
@@ -221,17 +232,30 @@ static uint64_t limit_corner(struct passo_path_planner *path, const int32_t *uni
 	const uint64_t over = passo_path_smaller(rounded, mean) << (PASSO_PATH_UNIT_BITS - 16);
 	share_turn(path, unit, length, passo_path_smaller(rounded, mean));
 	uint64_t square = PASSO_PATH_SQUARE_MAX;
+	uint32_t binds = 0;
 
-	*arc = mean < rounded;
+	item->arc = mean < rounded;
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
 		const struct passo_path_scale *own = &path->axis[axis];
 
 		if (change[axis] == 0)
 			continue;
-		square = passo_path_smaller(square, passo_mul_div(own->acceleration, over, change[axis]));
+		const uint64_t bend = passo_mul_div(own->acceleration, over, change[axis]);
+
+		if (bend < square) {
+			square = bend;
+			binds = axis;
+		}
 		if (own->jump > 0)
 			square = passo_path_smaller(
 			    square, square_of(((uint64_t)own->jump << PASSO_PATH_UNIT_BITS) / change[axis]));
+	}
+	if (rounded < (path->at.length < length ? path->at.length : length) / 2) {
+		const struct passo_path_item *before = passo_path_item(path, path->added - 1);
+
+		item->turn = (uint32_t)(rounded >> 16);
+		item->lost[0] = part_of(path, before->slope, path->at.direction, binds);
+		item->lost[1] = part_of(path, item->slope, unit, binds);
 	}
 	if (passo_path_is_soft(path))
 		square = passo_path_smaller(square, square_of(soft_corner(path, change, turn, over)));
@@ -272,7 +296,7 @@ enum passo_plan_error passo_path_measure(
 		for (uint32_t axis = 0; axis < path->machine.axes; axis++)
 			path->at.curvature[axis] = 0;
 	} else {
-		item->bend = limit_corner(path, unit, length, &item->arc);
+		item->bend = limit_corner(path, unit, length, item);
 	}
 	passo_path_add_curve(path, path->at.curvature, unit, item);
 	item->substeps = (uint32_t)substeps;

@@ -37,6 +37,9 @@ struct passo_path_part {
 	uint64_t slope;
 };
 
+/* Most parts of a line. */
+#define PASSO_PATH_PARTS 5u
+
 /* What the next ramp aims at. */
 struct passo_path_aim {
 	enum passo_path_kind kind;
@@ -149,11 +152,15 @@ bool passo_path_rests_after(const struct passo_path_planner *path, uint32_t inde
 uint64_t passo_path_end_square(const struct passo_path_planner *path, uint32_t index);
 bool passo_path_is_settled(const struct passo_path_planner *path, uint32_t index);
 
+/* Length behind the corner at the start of an item, or before it, over which the path keeps a square, so that
+ * the rounding of a lone corner has what it needs of the acceleration. */
+uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, bool behind, uint64_t square);
+
 /* Updates `reach` after a line has been added. */
 void passo_path_look_back(struct passo_path_planner *path);
 
 /* The parts of the profile from a point of an item to its end, of which `left` (UQ32.32 substeps) are left:
- * at most three. With `level` the path does not speed up for less than the line. */
+ * at most PASSO_PATH_PARTS. With `level` the path does not speed up for less than the line. */
 unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index, uint64_t left,
     uint64_t square, bool level, struct passo_path_part *parts);
 

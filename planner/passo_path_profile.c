@@ -33,7 +33,22 @@ static unsigned put(struct passo_path_part *parts, unsigned count, enum passo_pa
 	return count + 1;
 }
 
-unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index, uint64_t left,
+uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, bool behind, uint64_t square)
+{
+	const struct passo_path_item *item = passo_path_item(path, index);
+
+	if (index >= path->added || item->rest || item->turn == 0
+	    || passo_path_shape(path) != PASSO_SHAPE_LINEAR)
+		return 0;
+	/* the curvature over both sides takes half of the limit at most */
+	const uint32_t taken =
+	    (uint32_t)passo_mul_div(passo_path_smaller(square, item->bend), UINT32_C(1) << 15, item->bend);
+	const uint32_t lost = item->lost[behind], left = (UINT32_C(1) << 16) - taken;
+	return left < lost ? passo_mul_div((uint64_t)item->turn << 32, lost - left, lost) : 0;
+}
+
+/* Without the flat ends: at most three. */
+static unsigned middle_parts(const struct passo_path_planner *path, uint32_t index, uint64_t left,
     uint64_t square, bool level, struct passo_path_part *parts)
 {
 	const struct passo_path_item *item = passo_path_item(path, index);
@@ -65,4 +80,19 @@ unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index,
 	unsigned count = put(parts, 0, PASSO_PATH_UP, rising, peak, up);
 	count = put(parts, count, PASSO_PATH_FLAT, left - rising - falling, peak, up);
 	return put(parts, count, PASSO_PATH_DOWN, falling, end, steepest);
+}
+
+unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index, uint64_t left,
+    uint64_t square, bool level, struct passo_path_part *parts)
+{
+	const uint64_t passed = ((uint64_t)passo_path_item(path, index)->substeps << 32) - left;
+	const uint64_t end = passo_path_end_square(path, index), slope = passo_path_item(path, index)->slope;
+	const uint64_t behind = passo_path_smaller(passo_path_flat(path, index + 1, false, end), left);
+	uint64_t before = passo_path_flat(path, index, true, square);
+
+	before = passo_path_smaller(before > passed ? before - passed : 0, left - behind);
+	unsigned count = put(parts, 0, PASSO_PATH_FLAT, before, square, slope);
+	if (left > before + behind)
+		count += middle_parts(path, index, left - before - behind, square, level, parts + count);
+	return put(parts, count, PASSO_PATH_FLAT, behind, count > 0 ? parts[count - 1].square : end, slope);
 }

@@ -5,6 +5,8 @@
 #include "passo_path_private.h"
 #include "passo_shapes.h"
 
+#ifndef PASSO_LINEAR_PATHS
+
 /* Square of the velocity that a ramp has when a share of its shape (UQ0.16) is done. */
 static uint64_t square_at(uint64_t begin, uint64_t end, uint32_t share)
 {
@@ -46,3 +48,5 @@ uint32_t passo_path_too_fast(const struct passo_path_planner *path, const struct
 	}
 	return path->added;
 }
+
+#endif
