@@ -80,9 +80,9 @@ bench: setup ## Measure the speed of the models.
 accuracy: setup ## Measure the accuracy of the pulses, compared with published microcontroller methods.
 	@$(BIN)/python -m benchmarks.accuracy
 
-path: ## Measure the path planner: time, limits from the pulses, instructions on the STM32F103 (some minutes).
-	@tools/setup.sh firmware
-	@$(BIN)/python -m benchmarks.path
+path: ## Measure the path planner: time, limits from the pulses, instructions on the STM32F103, 10,000 adversarial paths (an hour); PATHS=n: fewer.
+	@tools/setup.sh firmware path
+	@$(BIN)/python -m benchmarks.path $(PATHS)
 
 synth: ## Make the bitstream of a board: BOARD=..., optional AXES=, CLOCK= (MHz), PARTS=inputs,encoders,outputs; without BOARD list the boards.
 	@$(if $(BOARD),tools/setup.sh fpga,tools/setup.sh)

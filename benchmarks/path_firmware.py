@@ -9,12 +9,12 @@ from pathlib import Path as FilePath
 from passo.build import Parameters
 from passo.native import ffi
 from passo.path import LOOK_AHEAD, PathSettings
+from passo.path_rounding import Line
 from passo.toolchain import paths
 from passo_stm32.board import program_elf
 from passo_stm32.machine import Machine
 
 from benchmarks.path_plan import plan
-from benchmarks.path_reference import Line
 
 SOURCE = paths.root / "benchmarks" / "stm32_path.c"
 BATCH = 32  # moves at a time

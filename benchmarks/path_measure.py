@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Measures a path: its time against the fastest motion, and its pins against the limits of the axes."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from passo.axis_judge import Marks, Share, shares
 from passo.driver import DriverError
-from passo.path import LOOK_AHEAD
+from passo.path import LOOK_AHEAD, PathSettings
+from passo.path_rounding import Line
+from passo.plan import PlanError
 
 from benchmarks.path_paths import Case
 from benchmarks.path_plan import plan
@@ -14,7 +15,10 @@ from benchmarks.path_reference import fastest
 from tests.helpers.path_player import Player
 
 UNLIMITED_AIM, LOOK_AHEAD_AIM = 1.02, 1.05
+SHAPED_AIM = 2.1  # a ramp over several lines has the slope of the weakest axis, doubled as often as possible
+KINDS = ("underrun", "fault", "slow", "slow48", "speed", "acceleration", "jerk")
 SHORTEST = 0.03  # s: in less, ticks count
+LONGEST = 4.0  # s: what takes longer is not played
 
 
 @dataclass
@@ -25,7 +29,7 @@ class Measured:
     optimum: float = 0.0
     unlimited: float = 0.0
     look_ahead: float = 0.0
-    shaped: float = 0.0  # all lines known, with a shape, whose slope is that of the weakest axis: no bound
+    shaped: float = 0.0  # all lines known, of another profile than linear: the reference is a bound
     shares: list[Share] = field(default_factory=list)
     fault: str = ""  # the core stopped, or the end is not exact
 
@@ -43,30 +47,39 @@ class Measured:
             found["slow"] = f"{self.unlimited:.4f} times the optimum, all lines known"
         if self.look_ahead > LOOK_AHEAD_AIM:
             found["slow48"] = f"{self.look_ahead:.4f} times the optimum, {LOOK_AHEAD} lines"
-        for share in self.shares:
+        if self.shaped > SHAPED_AIM:
+            found["slow"] = f"{self.shaped:.4f} times the optimum with a shape, all lines known"
+        for share in sorted(self.shares, key=lambda share: share.share):
             if share.share > share.bound:
-                found[share.name] = max(found.get(share.name, ""), str(share))
+                found[share.name] = str(share)
         return found
 
 
 def compare(case: Case) -> Measured:
-    """Against the fastest motion; of the profile jerk there is none, and a short path is all ticks."""
+    """Against the fastest motion; a short path is all ticks."""
     lines, settings = case.lines, case.settings
     motion = fastest(lines, settings)
     measured = Measured(len(lines), motion.seconds)
-    if measured.optimum < SHORTEST or settings.profile == "jerk":
+    if measured.optimum < SHORTEST:
         return measured
-    ratio = plan(lines, settings, len(lines) + 4).seconds / measured.optimum
-    if settings.profile != "linear":
-        measured.shaped = ratio
-        return measured
-    measured.unlimited = ratio
-    if motion.fits(LOOK_AHEAD):
-        measured.look_ahead = plan(lines, settings, LOOK_AHEAD).seconds / measured.optimum
+    try:
+        _ratios(measured, lines, settings, motion.fits(LOOK_AHEAD))
+    except PlanError as error:
+        measured.fault = str(error)
     return measured
 
 
-def play(case: Case, measured: Measured, longest: float = 20.0) -> None:
+def _ratios(measured: Measured, lines: list[Line], settings: PathSettings, fits: bool) -> None:
+    ratio = plan(lines, settings, len(lines) + 4).seconds / measured.optimum
+    if settings.profile == "linear":
+        measured.unlimited = ratio
+        if fits:
+            measured.look_ahead = plan(lines, settings, LOOK_AHEAD).seconds / measured.optimum
+    elif settings.profile != "jerk":  # whose ramps are longer for the jerk
+        measured.shaped = ratio
+
+
+def play(case: Case, measured: Measured) -> None:
     """Through driver and link on the C model, judged at the pins."""
     lines, settings = case.lines, case.settings
     player = Player(settings, case.look_ahead, settings.clock_hz // case.polls)
@@ -88,20 +101,6 @@ def play(case: Case, measured: Measured, longest: float = 20.0) -> None:
 def measure(case: Case) -> Measured:
     """Both."""
     measured = compare(case)
-    play(case, measured)
+    if measured.optimum <= LONGEST:
+        play(case, measured)
     return measured
-
-
-def worst(many: Sequence[Measured]) -> dict[str, float]:
-    """The greatest of each figure."""
-    return {
-        "unlimited": max((one.unlimited for one in many), default=0.0),
-        "shaped": max((one.shaped for one in many), default=0.0),
-        "look_ahead": max((one.look_ahead for one in many), default=0.0),
-        **{
-            name: max((one.share(name) for one in many), default=0.0)
-            for name in ("speed", "acceleration", "jerk")
-        },
-        "underruns": sum("underrun" in one.faults for one in many),
-        "faults": sum("fault" in one.faults for one in many),
-    }

@@ -16,7 +16,7 @@ from typing import Any
 from passo.path import PathAxis, PathSettings
 from passo.path_rounding import Line
 
-LINES_MAX = 4000
+LINES_MAX = 1500
 RAPID = 0.0  # a feed that is none
 
 

@@ -21,8 +21,6 @@ from passo.path_rounding import STRAIGHT, Line, Rounded, rounded
 from scipy.optimize import linprog
 from scipy.sparse import csr_array
 
-__all__ = ["Line", "Motion", "fastest", "seconds"]
-
 TINY = 1e-9  # mm
 METHOD = "highs-ds"
 CELL = 0.05  # mm: cells of a rounding are not longer, unless there would be too many
@@ -169,10 +167,11 @@ class _Stage:
 
         With `f` and `g`, what the acceleration along the path leaves of that of an axis before and behind the
         corner, its velocity changes by `2 sqrt(d) (sqrt(f) + sqrt(g))` at most while it stays within `d`.
-        The square is `4 d (f + g + 2 sqrt(f g))`; the root is at least the smaller one.
+        The square is `4 d (f + g + 2 sqrt(f g))`; the root is at least the smaller one. And it changes by
+        no more than `f + g` in the time that the path takes for `l`.
         """
         path, found = self.path, []
-        which = np.flatnonzero(path.alone)
+        which = np.flatnonzero(path.alone & (path.arc > TINY))
         node = np.searchsorted(self.place, path.corner[which] - TINY)
         size = np.linalg.norm(path.turn[which], axis=1)
         for axis, limit in enumerate(acceleration):
@@ -184,6 +183,9 @@ class _Stage:
             for one, other in ((3, 1), (1, 3)):
                 row = (-one * before, needed + one * before - other * behind, other * behind)
                 found.append((node, *row, np.full(len(node), 4 * limit)))
+            within = np.abs(turn) / path.arc[which]
+            row = (-before, within + before - behind, behind)
+            found.append((node, *row, np.full(len(node), 2 * limit)))
         return tuple(np.concatenate(column) for column in zip(*found, strict=True))
 
     def solve(self, acceleration: np.ndarray, steeper: float) -> np.ndarray:

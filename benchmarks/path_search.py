@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The search for the worst path: Hypothesis draws recipes, aims at the greatest figures, shrinks faults."""
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -9,9 +10,9 @@ from hypothesis import seed as seeded
 from hypothesis import strategies as st
 
 from benchmarks.path_measure import Measured, measure
-from benchmarks.path_paths import JERKS, MACHINES, RAPID, Case, Piece, seconds_at_feed
+from benchmarks.path_paths import JERKS, LINES_MAX, MACHINES, RAPID, Case, Piece, seconds_at_feed
 
-SECONDS = 2.0  # of a path at its feeds; longer ones are cut
+SECONDS = 1.5  # of a path at its feeds; longer ones are cut
 SIZES = (0.001, 0.0042, 0.02, 0.1, 0.3, 1.0, 5.0, 30.0, 200.0, 1000.0)  # mm, and all between
 FEEDS = (RAPID, 0.1, 3.0, 60.0, 300.0, 1000.0, 3000.0, 6000.0, 30_000.0)  # mm/min
 BENDS = (0.0, 0.01, 0.1, 0.5, 1.0, 3.4, 5.7, 10.0, 30.0, 45.0, 90.0, 150.0, 179.0)  # degrees
@@ -49,13 +50,35 @@ def pieces(draw: Any) -> Piece:
 
 
 @st.composite
+def arcs(draw: Any) -> Piece:
+    """Chords of an arc, as G-code or a CAM program has them."""
+    radius = draw(st.sampled_from((0.05, 0.5, 2.0, 5.0, 20.0, 200.0)) | st.floats(0.05, 100))
+    chord = min(draw(st.sampled_from((0.001, 0.0042, 0.02, 0.1, 0.35, 2.0))), radius)
+    sign = draw(st.sampled_from((1, -1)))
+    feed = draw(st.sampled_from((RAPID, 300.0, 3000.0, 6000.0, 30_000.0)))
+    bend = sign * round(2 * math.degrees(math.asin(chord / 2 / radius)), 6)
+    turn = draw(st.sampled_from((30, 90, 180, 360, 720)))
+    return Piece(max(1, min(LINES_MAX, int(turn / abs(bend)))), (chord,), (bend,), (feed,))
+
+
+@st.composite
+def fans(draw: Any) -> Piece:
+    """Nearly collinear lines whose feeds alternate."""
+    size = draw(st.sampled_from((0.05, 0.2, 1.0, 3.0, 20.0)))
+    bend = draw(st.sampled_from((0.0, 0.001, 0.1, 1.0, 3.4, 5.7)))
+    bends = draw(st.sampled_from(((bend,), (bend, -bend))))
+    feeds = tuple(draw(st.lists(st.sampled_from((RAPID, 300.0, 1000.0, 6000.0)), min_size=1, max_size=3)))
+    return Piece(draw(st.sampled_from((2, 3, 10, 60))), (size,), bends, feeds)
+
+
+@st.composite
 def cases(draw: Any) -> Case:
     """A path that takes no more than some seconds."""
     machine = draw(st.sampled_from(sorted(MACHINES)))
     profiles = ("linear", "linear", "cosine", "sigmoid", *(("jerk", "jerk") if machine in JERKS else ()))
     case = Case(
         machine,
-        tuple(draw(st.lists(pieces(), min_size=1, max_size=4))),
+        tuple(draw(st.lists(pieces() | arcs() | fans(), min_size=1, max_size=4))),
         draw(st.sampled_from(profiles)),
         draw(st.sampled_from(LOOK_AHEADS)),
         draw(st.sampled_from(POLLS)),

@@ -7,6 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from passo.axis_judge import Marks
+from passo.axis_judge import shares as axis_shares
 from passo.path import PathAxis, PathSettings
 from passo.path_rounding import Line, rounded
 
@@ -114,3 +116,55 @@ def test_shapes_are_steeper() -> None:
     """A cosine ramp from rest takes half of pi times as long."""
     cosine = seconds([((4, 0, 0), None)], replace(MACHINE, profile="cosine"))
     assert cosine == pytest.approx(2 * math.sqrt(4 / 1000 * math.pi / 2))
+
+
+def pulses(motion: Motion, settings: PathSettings) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Clocks and positions of the steps of each axis that moves so along the lines."""
+    places, squares = [np.array([0.0])], [motion.square[:1]]
+    for k, size in enumerate(np.diff(motion.place)):
+        share = (1 - np.cos(np.linspace(0, math.pi, 9 if motion.bent[k] else 200)[1:])) / 2
+        low, high, rise = motion.square[k], motion.square[k + 1], 2 * motion.along[k] * size
+        straight = np.minimum(np.minimum(low + rise * share, high + rise * (1 - share)), motion.top[k])
+        places.append(motion.place[k] + share * size)
+        squares.append(low + (high - low) * share if motion.bent[k] else straight)
+    place, speed = np.concatenate(places), np.sqrt(np.maximum(np.concatenate(squares), 0))
+    took = 2 * np.diff(place) / np.maximum(speed[1:] + speed[:-1], 1e-9)
+    begin = np.concatenate([[0.01], 0.01 + np.cumsum(took)])
+    times = np.arange(0, begin[-1], 1e-5)
+    k = np.clip(np.searchsorted(begin, times, "right") - 1, 0, len(took) - 1)
+    since = np.clip(times - begin[k], 0, None)
+    along = place[k] + speed[k] * since + (speed[k + 1] - speed[k]) / took[k] * since**2 / 2
+    found = []
+    ends, corners = np.concatenate([[0], motion.path.end]), motion.path.points[motion.path.kept]
+    for axis, one in enumerate(settings.axes):
+        exact = np.interp(along, ends, corners[:, axis]) * float(one.steps_per_mm)
+        near = np.floor(exact + 0.5).astype(int)
+        at = np.flatnonzero(np.diff(near))
+        count, sign = np.abs(np.diff(near))[at], np.sign(np.diff(near))[at]
+        at, sign = np.repeat(at, count), np.repeat(sign, count)
+        number = np.arange(len(at)) - np.repeat(np.cumsum(count) - count, count)
+        level = near[at] + sign * (number + 0.5)
+        share = (level - exact[at]) / (exact[at + 1] - exact[at])
+        clocks = np.round((times[at] + share * 1e-5) * settings.clock_hz).astype(np.int64)
+        found.append((clocks, np.round(level + sign / 2).astype(np.int64)))
+    return found
+
+
+@pytest.mark.parametrize("name", ["circle", "star", "text", "trochoid", "wander 4", "wander 6", "wander 7"])
+def test_the_fastest_motion_keeps_the_limits_at_the_pins(name: str) -> None:
+    """The judge of axes, which knows nothing of it, finds all of the limits used, and nothing beyond."""
+    machine = PathSettings((PathAxis(800), PathAxis(800), PathAxis(1600, 12, 100)))
+    word, _, number = name.partition(" ")
+    wander = list(path_cases.wanderings(8))
+    lines = {
+        "circle": lambda: path_cases.circle(5, 120),
+        "star": lambda: path_cases.star(10, 7),
+        "text": lambda: path_cases.text("A"),
+        "trochoid": lambda: path_cases.trochoid(1),
+        "wander": lambda: wander[int(number)][:50],
+    }[word]()
+    motion = fastest(lines, machine)
+    clocks, positions = zip(*pulses(motion, machine), strict=True)
+    marks = Marks.of(lines, machine, clocks, positions)
+    found = axis_shares(clocks, positions, machine, marks, ("acceleration",))
+    assert 0.9 < max(share.share for share in found) < 1.01
