@@ -45,9 +45,10 @@ struct passo_path_aim {
 	enum passo_path_kind kind;
 	uint64_t length, square; /* of the path to there, UQ32.32 substeps; of the velocity there */
 	uint64_t slope;
-	bool rest;  /* it comes to rest there */
-	bool open;  /* it ends there because what follows is not settled */
-	bool plain; /* its ramp is linear */
+	bool rest;      /* it comes to rest there */
+	bool open;      /* it ends there because what follows is not settled */
+	bool plain;     /* its ramp is linear */
+	uint64_t first; /* slope of the part that it began with; `slope` is the steepest */
 };
 
 /* Why ramps are made beyond what is settled. */
