@@ -33,7 +33,7 @@ setup: ## Install the prerequisites; every other target calls it automatically.
 	@tools/setup.sh
 
 test: ## Check the sources, then run all tests.
-	@tools/setup.sh yosys formal firmware browser web vhdl hdl
+	@tools/setup.sh yosys formal firmware browser web vhdl hdl path
 	@$(MAKE) lint
 	@$(BIN)/pytest -n $$(($$(nproc) < 8 ? $$(nproc) + 1 : 8)) --dist worksteal # one more: some tests wait
 
@@ -80,9 +80,9 @@ bench: setup ## Measure the speed of the models.
 accuracy: setup ## Measure the accuracy of the pulses, compared with published microcontroller methods.
 	@$(BIN)/python -m benchmarks.accuracy
 
-path: ## Measure the path planner: time, limits from the pulses, instructions on the STM32F103 (some minutes).
-	@tools/setup.sh firmware
-	@$(BIN)/python -m benchmarks.path
+path: ## Measure the path planner: time, limits from the pulses, instructions on the STM32F103, 10,000 adversarial paths (an hour); PATHS=n: fewer.
+	@tools/setup.sh firmware path
+	@$(BIN)/python -m benchmarks.path $(PATHS)
 
 synth: ## Make the bitstream of a board: BOARD=..., optional AXES=, CLOCK= (MHz), PARTS=inputs,encoders,outputs; without BOARD list the boards.
 	@$(if $(BOARD),tools/setup.sh fpga,tools/setup.sh)

@@ -3,11 +3,12 @@
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from passo import cli
+from passo import cli, part_command
 from passo.gcode import NANOMETRES
 from passo.machine_file import MachineFile, read_machine
 from passo.part import Played, play_part, read_part
@@ -48,6 +49,25 @@ def test_the_example(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert summary["ok"] and summary["end"]["steps"] == [0, 0, 0]
     assert (summary["lines"], summary["chords"], summary["motions"]) == (24, 530, 1)
     assert (tmp_path / "path.png").stat().st_size > 20_000
+    limits = summary["limits"]
+    assert 0.9 < limits["acceleration"]["share"] < 1.03 and 0.4 < limits["speed"]["share"] <= 1.0
+
+
+def test_a_part_beyond_the_limits_of_an_axis_fails(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Judged with half the acceleration that it was planned with."""
+    path = tmp_path / "part.nc"
+    path.write_text("G21 G90\nG3 X0 Y0 I0 J5 F6000\n")
+    weak = replace(read_machine(MACHINE).settings, axes=(PathAxis(80, 200, 500),) * 3)
+    judge = part_command.shares_of
+    change = lambda played: judge(replace(played, machine=replace(played.machine, settings=weak)))  # noqa: E731
+    monkeypatch.setattr(part_command, "shares_of", change)
+    arguments = ["run", str(path), "--machine", str(MACHINE), "--out", str(tmp_path)]
+    assert cli.main(arguments) == 1
+    assert "of its acceleration, at" in capsys.readouterr().err
+    summary = json.loads((tmp_path / "summary.json").read_text())
+    assert not summary["ok"] and 1.7 < summary["limits"]["acceleration"]["share"] < 2.1
 
 
 def test_a_circle_takes_as_long_as_the_reference(tmp_path: Path) -> None:
