@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 from passo import random_cases
-from passo.gcode import NANOMETRES, Gcode, GcodeError, GcodeSettings, stripped
+from passo.gcode import NANOMETRES, Gcode, GcodeError, GcodeSettings, lines, stripped
 from passo.native import ffi, planner
 from passo.path import NOT_MOVING
 
@@ -81,6 +81,35 @@ def test_lines_that_do_nothing(line: str) -> None:
     assert run(Gcode(), line) == []
 
 
+def test_control_characters_are_nothing() -> None:
+    """As in grbl: all up to the space but line ends. A byte order mark is nothing in front of a line."""
+    discarded = [chr(code) for code in range(0x21) if chr(code) not in "\n\r"]
+    assert len(discarded) == 31
+    gcode = Gcode()
+    for i, character in enumerate(discarded):
+        run(gcode, f"G{character}0{character}X{character}{i}{character}.5")
+        assert at(gcode)[0] == i + 0.5
+    for line in ("\ufeffG0 X70", " \ufeff\ufeff\x00G0X70", "\ufeff(comment) X70"):
+        run(gcode, "X0", line)
+        assert at(gcode)[0] == 70
+    assert run(gcode, "\ufeff") == run(gcode, "\x1a") == []
+
+
+def test_lines_end_with_lf_cr_or_both() -> None:
+    """In any mixture; a comment ends with its line."""
+    rng = random.Random(random_cases.seed())
+    for _ in range(300):
+        text = bytes(rng.choices(b"G0X1(;) \n\r\x0b\x00\x85", k=rng.randrange(20)))
+        assert lines(text) == text.splitlines(keepends=True)
+    gcode = Gcode()
+    for line in lines(b"G0 (open\rX1;comment\n\rY2\r\nZ3"):
+        gcode.execute(line)
+    assert at(gcode) == (1, 2, 3)
+    assert lines(b"") == []
+    with pytest.raises(ValueError, match="more than one line"):
+        Gcode().execute("G0 X1\rG0 X2")
+
+
 def test_long_comments_do_not_count() -> None:
     """127 characters are a line, 128 are too many; comments and spaces are none."""
     words = "G0X" + "0" * 124
@@ -93,9 +122,10 @@ def test_long_comments_do_not_count() -> None:
 
 # By number: lines that are refused, after G21 G90 G94 at X0 Y0 Z0 without a feed.
 ERRORS = {
-    1: ["10", "G1 $", "?", "G0 X1 =", "G0 X1 *57", "%G0", "G0 X1 %", "\x00", "\x80\xff", "G0X1\x07", "[#1]",
-        "G0 X1.2.3"],
-    2: ["G", "X", "G1 X", "G0 X--1", "G0 X.", "GX1", "G0 X1000000000", "G0 X+-1"],
+    1: ["10", "G1 $", "?", "G0 X1 =", "G0 X1 *57", "%G0", "G0 X1 %", "\x7f", "\x80\xff", "G0X1\x7f", "[#1]",
+        "G0 X1.2.3", "G0\N{NO-BREAK SPACE}X1", "G0\ufeffX1", "\ufffe"],
+    2: ["G", "X", "G1 X", "G0 X--1", "G0 X.", "GX1", "G0 X1000000000", "G0 X+-1",
+        "G0 X\N{MINUS SIGN}1"],
     4: ["G1 X1 F-1", "S-5", "T-1", "N-1 G0 X1", "G4 P-1"],
     20: ["G5", "G0 E1", "G0 A1", "H1", "D1", "O100", "Q1", "G41", "G81 X1", "G99", "M6", "M48", "M98",
          "G28.2", "G38.1 X1", "G92.3", "G0 X1e5", "G43 H1", "G10 L1 P1 X1", "G10 L2 P1 R1 X1", "G-1"],

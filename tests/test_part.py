@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from passo import cli
+from passo.failure import BadInputError
 from passo.gcode import NANOMETRES
 from passo.machine_file import MachineFile, read_machine
 from passo.part import Played, play_part, read_part
@@ -83,6 +84,42 @@ def test_the_look_ahead_changes_times_only(tmp_path: Path) -> None:
     for a, b in zip(short.positions, long.positions, strict=True):
         assert a.tolist() == b.tolist()
     assert long.seconds <= short.seconds
+
+
+SQUARE = ["(a square)", "G21 G90", "G1 X5 F6000", "Y5", "X0 Y0"]
+
+
+@pytest.mark.parametrize("around", [("", ""), ("\ufeff", ""), ("", "\x1a"), ("\x00\x07", "\x1a\x1a\n")])
+@pytest.mark.parametrize("end", ["\n", "\r", "\r\n", "\n\r"])
+def test_files_of_any_editor_are_the_same_part(tmp_path: Path, end: str, around: tuple[str, str]) -> None:
+    """Ends of lines, byte order mark, the end of a file of CP/M, padding."""
+    path, machine = tmp_path / "part.nc", read_machine(MACHINE)
+    path.write_bytes((around[0] + end.join(SQUARE) + end + around[1]).encode())
+    part = read_part(path, machine)
+    assert (part.chords, part.end[:2], part.unread) == (3, (0, 0), 0)
+    path.write_bytes((around[0] + end.join([*SQUARE, "X1 X2"]) + around[1]).encode())
+    number = 11 if end == "\n\r" else 6
+    with pytest.raises(BadInputError, match=f":{number}: error:25"):
+        read_part(path, machine)
+
+
+def test_a_part_that_is_lost_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A file without words, without a motion, with lines behind its end."""
+    path = tmp_path / "part.nc"
+    run = ["run", str(path), "--machine", str(MACHINE), "--out", str(tmp_path / "out")]
+    for text in ("", "\n\r\n", "(only G0 X1)\r;G1 X1\r", "%\n\x1a", "\ufeff"):
+        path.write_text(text, encoding="utf-8", newline="")
+        assert cli.main(run) == 2
+        assert "there is no G-code in it" in capsys.readouterr().err
+    for text in ("G21 G90\nM3 S100", "G0 X0\nG4 P0.1", "(G1 X5"):
+        path.write_text(text + "\nF100\n")
+        assert cli.main(run) == 0
+        told = capsys.readouterr()
+        assert "nothing moved" in told.err and "chords" not in told.out
+    path.write_text("G0 X1\nM30\n%\nG0 X5\n(end)\nM0\n")
+    assert cli.main(run) == 0
+    assert "2 lines behind the end of the program are not read" in capsys.readouterr().err
+    assert json.loads((tmp_path / "out" / "summary.json").read_text())["unread_lines"] == 2
 
 
 def test_rtl_and_model_agree(tmp_path: Path) -> None:

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "passo_program.h"
 
-#include "passo_gcode_line.h"
-
 enum passo_error passo_program_open(struct passo_program *program, struct passo *passo,
     const struct passo_program_settings *settings, struct passo_path_item *items, uint32_t capacity)
 {

@@ -16,6 +16,7 @@
 #ifndef PASSO_PROGRAM_H
 #define PASSO_PROGRAM_H
 
+#include "passo_gcode_line.h"
 #include "passo_player.h"
 
 struct passo_program_settings {
@@ -42,7 +43,8 @@ enum passo_error passo_program_open(struct passo_program *program, struct passo 
 /* Whether another line can be taken. */
 bool passo_program_is_ready(const struct passo_program *program);
 
-/* Executes a line, without its line feed, when ready; an error changes nothing. */
+/* Executes a line, with or without its end, when ready; an error changes nothing. A text has the lines of
+ * passo_gcode_line_count(). */
 enum passo_gcode_error passo_program_line(struct passo_program *program, const char *text, size_t length);
 
 /* No line follows: the path ends with the last one. */
