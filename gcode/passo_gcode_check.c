@@ -53,18 +53,13 @@ bool passo_gcode_in_range(int64_t nanometres)
 	return nanometres <= PASSO_GCODE_COORDINATE_MAX && nanometres >= -PASSO_GCODE_COORDINATE_MAX;
 }
 
-/* At most one command may use the axis words. Without one they are those of the motion in force. */
+/* Axis words without a command for them are those of the motion in force. */
 static enum passo_gcode_error find_user(struct passo_gcode_check *check)
 {
-	const passo_gcode_command command = check->block.command[PASSO_GCODE_COMMAND];
 	const passo_gcode_command motion = check->block.command[PASSO_GCODE_MOTION];
-	const bool moves = motion != PASSO_GCODE_NONE && motion != 800;
-	const bool sets = command == 100 || command == 280 || command == 300 || command == 920;
-	const bool lengthens = check->block.command[PASSO_GCODE_TOOL_LENGTH] != PASSO_GCODE_NONE;
 
-	if (moves + sets + lengthens > 1)
-		return PASSO_GCODE_TWO_COMMANDS;
-	check->moves = moves || (check->axis_words && !sets && !lengthens);
+	check->moves =
+	    (motion != PASSO_GCODE_NONE && motion != 800) || (check->axis_words && !check->block.takes_axes);
 	check->unused &= ~check->axis_words;
 	return PASSO_GCODE_OK;
 }

@@ -128,19 +128,23 @@ ERRORS = {
         "G0 X\N{MINUS SIGN}1"],
     4: ["G1 X1 F-1", "S-5", "T-1", "N-1 G0 X1", "G4 P-1"],
     20: ["G5", "G0 E1", "G0 A1", "H1", "D1", "O100", "Q1", "G41", "G81 X1", "G99", "M6", "M48", "M98",
-         "G28.2", "G38.1 X1", "G92.3", "G0 X1e5", "G43 H1", "G10 L1 P1 X1", "G10 L2 P1 R1 X1", "G-1"],
-    21: ["G0 G1 X1", "G17 G18", "G20 G21", "G90 G91", "G93 G94", "G54 G55", "M3 M4", "M7 M8", "M0 M2",
-         "G4 P1 G53 G0 X1", "G1 G38.2 X1 F1", "G80 G0 X1"],
+         "G28.2", "G38.1 X1", "G92.3", "G0 X1e5", "G43 H1", "G10 L1 P1 X1", "G10 L2 P1 R1 X1", "G-1",
+         "G90.1", "G91.2", "G61.1", "G64.1", "G43.2 Z1", "G38 X1 F1", "G28.3", "G30.2", "G38.25 X1 F1", "G5.1"],
+    21: ["G17 G18", "G20 G21", "G90 G91", "G93 G94", "G54 G55", "M3 M4", "M7 M8", "M0 M2",
+         "G4 P1 G53 G0 X1", "G80 G0 X1", "G0 G80 X1", "G4 G28", "G92.1 G28", "G28.1 G92 X1", "G61 G64"],
     22: ["G1 X1", "G1", "G2 X1 I1", "G38.2 X1", "G93 G1 X1", "G1 X1 F0"],
-    23: ["G1.5 X1", "G17.1", "G54.1", "M3.5", "G0.1 X1", "G4.1 P1", "M30.2", "G61.1"],
-    24: ["G0 X1 G92 Y1", "G28 G1 X1 F1", "G10 L2 P1 X1 G0 Y5", "G43.1 Z1 G0 X1", "G92 X0 G43.1 Z1"],
+    23: ["G1.5 X1", "G17.1", "G54.1", "M3.5", "G0.1 X1", "G4.1 P1", "M30.2", "M6.1", "M99.5", "G59.1",
+         "G59.3", "G49.1", "G10.1 L2 P1 X1", "G80.1", "G53.1 G0 X1"],
+    24: ["G0 G1 X1", "G1 G38.2 X1 F1", "G10 G92 X1", "G28 G30", "G43.1 G49 Z1", "G2 G49", "G49 G92 X1", "G1 G1",
+         "G0 X1 G92 Y1", "G28 G1 X1 F1", "G10 L2 P1 X1 G0 Y5", "G43.1 Z1 G0 X1", "G92 X0 G43.1 Z1"],
     25: ["G0 X1 X2", "F1 F2", "G1 X1 I0 I0 F1", "N1 N2", "S1 S1"],
     26: ["G10 L2 P1", "G92", "F10 G2", "F10 G38.2", "F10 G3 I5"],
     27: ["N10000000 G0 X1"],
     28: ["G4", "G10 L2 X1", "G10 P1 X1", "G4 X1"],
-    29: ["G59.1", "G59.3", "G10 L2 P7 X1"],
+    29: ["G10 L2 P7 X1", "G10 L20 P9 X1"],
     30: ["F10 G2 G53 X1 I1", "G53 G38.2 X1 F1", "G80 G53"],
-    31: ["G80 X1"],
+    31: ["G80 X1", "G80 G92 X1", "G80 G28 X1", "G80 G30 X1", "G80 G10 L2 P1 X1", "G80 G10 L20 P0 X1", "G80 G43.1 Z1",
+         "G80 G49 X1", "G80 G92.1 X1", "G80 G28.1 X1"],
     32: ["F10 G2 Z1 I1", "F10 G18 G2 Y1 I1"],
     33: ["F10 G2 X10 I4", "F10 G2 X0 Y0 R5", "F10 G38.2 X0", "G20 G0 X99999999", "F10 G3 X5 Y5 I1 J1"],
     34: ["F10 G2 X10 R4.9", "F10 G3 X1 R0", "F10 G2 X10 R-4.9999"],
@@ -160,6 +164,16 @@ def test_a_wrong_line_has_its_error_and_changes_nothing(number: int, line: str) 
         run(gcode, line)
     assert caught.value.number == number
     assert state(gcode) == before and not list(gcode.actions())
+
+
+@pytest.mark.parametrize("line", ["G92 X1", "G28 X1", "G10 L2 P1 X1", "G43.1 Z1", "X1", "G53"])
+def test_g80_in_force_allows_no_axis_words(line: str) -> None:
+    """As in grbl; what needs none is allowed."""
+    gcode = Gcode()
+    run(gcode, "G80")
+    with pytest.raises(GcodeError, match="error:30" if line == "G53" else "error:31"):
+        run(gcode, line)
+    assert [action.kind for action in run(gcode, "G92.1", "G49", "G28.1", "G28")] == [LINE]
 
 
 @pytest.mark.parametrize(
