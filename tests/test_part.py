@@ -3,16 +3,22 @@
 
 import json
 import math
+from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
 import pytest
 from passo import cli
+from passo.driver import Driver, DriverError
 from passo.failure import BadInputError
-from passo.gcode import NANOMETRES
+from passo.gcode import NANOMETRES, GcodeSettings
 from passo.machine_file import MachineFile, read_machine
+from passo.moves import PinTiming, q32
+from passo.native import planner
 from passo.part import Played, play_part, read_part
-from passo.path import PathAxis
+from passo.path import PathAxis, PathSettings
+from passo.program import Program
 from passo.run import open_engine, parameters_for
 from passo.toolchain import paths
 
@@ -184,6 +190,57 @@ def test_a_bad_machine_file_is_refused(
     path.write_text(text)
     assert cli.main(["run", str(PART), "--machine", str(path)]) == 2
     assert told in capsys.readouterr().err
+
+
+FAST_AXES = "".join(
+    f'[[axis]]\nname = "{name}"\nsteps_per_mm = 1600\nspeed = SPEED\nacceleration = 20000\n' for name in "XY"
+)
+
+
+@pytest.mark.parametrize(
+    ("pins", "told"),
+    [("", "312.5: step_high and step_low are 128 clocks"), ('[pins]\nstep_low = "1.5us"\n', "250: "),
+     ('[pins]\nstep_high = "10ns"\nstep_low = "90ns"\n', "5714.28: "),
+     ('[pins]\nstep_high = "1us"\ndir_setup = "9us"\n', "312.5: ")],
+)  # fmt: skip
+def test_a_speed_that_the_pins_do_not_allow_is_refused(
+    tmp_path: Path, pins: str, told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With the highest one, at which no step is lost: on long lines, at corners, in small pieces."""
+    machine, part = tmp_path / "machine.toml", tmp_path / "part.nc"
+    part.write_text(
+        "G0 X12 Y6\nX0\nG1 X-1 F1000000\nX1\nX0 Y0\n"
+        + "".join(f"X{i * 0.07:.3f} Y{i * 0.07 + i % 7 * 0.001:.4f}\n" for i in range(120))
+    )
+    text = f"clock_hz = 64_000_000\n{pins}{FAST_AXES}"
+    run = ["run", str(part), "--machine", str(machine), "--out", str(tmp_path / "out")]
+    machine.write_text(text.replace("SPEED", "6000"))
+    assert cli.main(run) == 2
+    refused = capsys.readouterr().err
+    assert f"axis 1: speed is 6000, the pins allow at most {told}" in refused and refused.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+    machine.write_text(text.replace("SPEED", told.split(":")[0]))
+    assert cli.main(run) == 0
+
+
+def test_a_program_in_c_is_refused_as_well() -> None:
+    """Its largest speed is that of the pins."""
+    axis = PathAxis(Fraction(7, 3), 200, 20000)
+    with open_engine("model", parameters_for(1), 64_000_000) as core:
+        driver = Driver(core, 64_000_000, core.parameters)
+        assert planner().passo_highest_speed(driver.c, 0, q32(axis.steps_per_mm)) == 0  # not configured
+        driver.configure_axis(0, PinTiming(100, 28, 1, 1))
+        highest = planner().passo_highest_speed(driver.c, 0, q32(axis.steps_per_mm))
+        exact = Fraction(64_000_000, 128) / Fraction(q32(axis.steps_per_mm), 1 << 32)
+        assert exact <= Fraction(highest, 1 << 32) < exact + Fraction(2, 1 << 32)
+        assert planner().passo_highest_speed(driver.c, 0, 1) == (1 << 64) - 1
+        for speed, refused in ((Fraction(highest, 1 << 32), False), (Fraction(highest + 1, 1 << 32), True)):
+            settings = PathSettings((replace(axis, speed=speed),), 64_000_000)
+            try:
+                Program(driver, settings, GcodeSettings(axes=1))
+                assert not refused
+            except DriverError as error:
+                assert refused and "PINS_TOO_SLOW" in str(error)
 
 
 def test_what_does_not_fit_together_is_refused(capsys: pytest.CaptureFixture[str]) -> None:

@@ -3,6 +3,8 @@
 
 import tomllib
 from dataclasses import dataclass
+from decimal import ROUND_FLOOR, Context, Decimal
+from fractions import Fraction
 from pathlib import Path
 
 from passo.failure import BadInputError
@@ -120,6 +122,9 @@ def _machine(path: Path, data: Table) -> MachineFile:
     for number, axis in enumerate(axes, 1):
         if profile == "jerk" and not axis.jerk:
             raise BadValueError(f'axis {number}: profile = "jerk" needs its jerk in mm/s^3')
+    timing = within("pins", lambda: read_pins(pins, clock_hz))
+    for number, axis in enumerate(axes, 1):
+        within(f"axis {number}", lambda axis=axis: _check_speed(axis, timing, clock_hz))
     ends = tuple(
         within(f"axis {number}", lambda table=table: _ends(table)) for number, table in enumerate(tables, 1)
     )
@@ -139,11 +144,23 @@ def _machine(path: Path, data: Table) -> MachineFile:
             profile=profile,
         ),
         GcodeSettings(len(axes), tolerance, spindle),
-        within("pins", lambda: read_pins(pins, clock_hz)),
+        timing,
         ends,
         switches,
         _flag(data, "laser", False),
     )
+
+
+def _check_speed(axis: PathAxis, pins: PinTiming, clock_hz: int) -> None:
+    """Whether the pins can make as many steps as the axis may ask for."""
+    clocks = pins.step_high + pins.step_low
+    highest = Fraction(clock_hz, clocks) / Fraction(axis.steps_per_mm)
+    if axis.speed > highest:
+        down = Context(prec=6, rounding=ROUND_FLOOR).divide(Decimal(highest.numerator), highest.denominator)
+        raise BadValueError(
+            f"speed is {float(axis.speed):g}, the pins allow at most {down.normalize():f}: "
+            f"step_high and step_low are {clocks} clocks"
+        )
 
 
 def _flag(table: Table, key: str, default: bool) -> bool:
