@@ -81,6 +81,7 @@ struct passo_gcode {
 	passo_gcode_position position; /* programmed end, machine coordinates */
 	passo_gcode_position shift;    /* G92 */
 	int64_t tool_length;           /* G43.1 */
+	int64_t tolerance;             /* G64: Q, else P, nm; 0: every point is passed */
 	int64_t feed;                  /* nm/min; 0: none yet */
 	int64_t spindle;               /* millionths of rpm */
 	uint32_t line;                 /* N of the last line that had one */

@@ -79,10 +79,10 @@ static const char AXIS_LETTERS[PASSO_GCODE_AXES_MAX + 1u] = "XYZABC";
 /* Those of values that every machine knows. */
 static const uint32_t VALUE_WORDS = PASSO_GCODE_WORD('F') | PASSO_GCODE_WORD('I') | PASSO_GCODE_WORD('J')
                                   | PASSO_GCODE_WORD('K') | PASSO_GCODE_WORD('L') | PASSO_GCODE_WORD('N')
-                                  | PASSO_GCODE_WORD('P') | PASSO_GCODE_WORD('R') | PASSO_GCODE_WORD('S')
-                                  | PASSO_GCODE_WORD('T');
+                                  | PASSO_GCODE_WORD('P') | PASSO_GCODE_WORD('Q') | PASSO_GCODE_WORD('R')
+                                  | PASSO_GCODE_WORD('S') | PASSO_GCODE_WORD('T');
 static const uint32_t POSITIVE_WORDS = PASSO_GCODE_WORD('F') | PASSO_GCODE_WORD('N') | PASSO_GCODE_WORD('P')
-                                     | PASSO_GCODE_WORD('S') | PASSO_GCODE_WORD('T');
+                                     | PASSO_GCODE_WORD('Q') | PASSO_GCODE_WORD('S') | PASSO_GCODE_WORD('T');
 
 char passo_gcode_axis_letter(unsigned axis)
 {
@@ -207,5 +207,8 @@ enum passo_gcode_error passo_gcode_parse(const char *text, unsigned axes, struct
 		else
 			error = add_value(block, known, letter, value);
 	}
+	if (error == PASSO_GCODE_OK && (block->words & PASSO_GCODE_WORD('Q'))
+	    && block->command[PASSO_GCODE_PATH] != 640)
+		return PASSO_GCODE_UNSUPPORTED; /* no other command has it */
 	return error;
 }

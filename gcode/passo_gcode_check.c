@@ -178,6 +178,22 @@ static enum passo_gcode_error check_return(struct passo_gcode_check *check, cons
 	return error;
 }
 
+/* How far the path may be from the points: G64 Q, or P alone. P of G4 and G10 is theirs. */
+static enum passo_gcode_error check_path(struct passo_gcode_check *check)
+{
+	const passo_gcode_command command = check->block.command[PASSO_GCODE_COMMAND];
+	const passo_gcode_command path = check->block.command[PASSO_GCODE_PATH];
+
+	check->tolerance = path == PASSO_GCODE_NONE ? check->gcode->tolerance : 0;
+	if (path != 640)
+		return PASSO_GCODE_OK;
+	if (command != 40 && command != 100 && passo_gcode_take(check, 'P'))
+		check->tolerance = passo_gcode_length_of(check, 'P');
+	if (passo_gcode_take(check, 'Q'))
+		check->tolerance = passo_gcode_length_of(check, 'Q');
+	return passo_gcode_in_range(check->tolerance) ? PASSO_GCODE_OK : PASSO_GCODE_TARGET;
+}
+
 static enum passo_gcode_error check_command(struct passo_gcode_check *check)
 {
 	switch (check->block.command[PASSO_GCODE_COMMAND]) {
@@ -205,7 +221,7 @@ static enum passo_gcode_error check_command(struct passo_gcode_check *check)
 enum passo_gcode_error passo_gcode_check_words(struct passo_gcode_check *check)
 {
 	static enum passo_gcode_error (*const CHECKS[])(struct passo_gcode_check *) = {
-	    find_user, check_line_number, check_feed, check_tool, check_command};
+	    find_user, check_line_number, check_feed, check_tool, check_path, check_command};
 	enum passo_gcode_error error = PASSO_GCODE_OK;
 
 	for (unsigned i = 0; i < sizeof CHECKS / sizeof *CHECKS && error == PASSO_GCODE_OK; i++)

@@ -126,11 +126,12 @@ ERRORS = {
         "G0 X1.2.3", "G0\N{NO-BREAK SPACE}X1", "G0\ufeffX1", "\ufffe"],
     2: ["G", "X", "G1 X", "G0 X--1", "G0 X.", "GX1", "G0 X1000000000", "G0 X+-1",
         "G0 X\N{MINUS SIGN}1"],
-    4: ["G1 X1 F-1", "S-5", "T-1", "N-1 G0 X1", "G4 P-1"],
+    4: ["G64 P-1", "G64 Q-0.1", "G1 X1 F-1", "S-5", "T-1", "N-1 G0 X1", "G4 P-1"],
     20: ["G5", "G0 E1", "G0 A1", "H1", "D1", "O100", "Q1", "G41", "G81 X1", "G99", "M6", "M48", "M98",
          "G28.2", "G38.1 X1", "G92.3", "G0 X1e5", "G43 H1", "G10 L1 P1 X1", "G10 L2 P1 R1 X1", "G-1",
          "G90.1", "G91.2", "G61.1", "G64.1", "G43.2 Z1", "G38 X1 F1", "G28.3", "G30.2",
-         "G38.25 X1 F1", "G5.1"],
+         "G38.25 X1 F1", "G5.1",
+         "G61 Q1", "G1 X1 Q1 F1", "G4 P1 Q1"],
     21: ["G17 G18", "G20 G21", "G90 G91", "G93 G94", "G54 G55", "M3 M4", "M7 M8", "M0 M2",
          "G4 P1 G53 G0 X1", "G80 G0 X1", "G0 G80 X1", "G4 G28", "G92.1 G28", "G28.1 G92 X1", "G61 G64"],
     22: ["G1 X1", "G1", "G2 X1 I1", "G38.2 X1", "G93 G1 X1", "G1 X1 F0"],
@@ -150,7 +151,8 @@ ERRORS = {
     33: ["F10 G2 X10 I4", "F10 G2 X0 Y0 R5", "F10 G38.2 X0", "G20 G0 X99999999", "F10 G3 X5 Y5 I1 J1"],
     34: ["F10 G2 X10 R4.9", "F10 G3 X1 R0", "F10 G2 X10 R-4.9999"],
     35: ["F10 G2 X10", "F10 G2 X10 K5", "F10 G18 G2 X10 J5", "F10 G19 G3 Y1 I5"],
-    36: ["G0 X1 I1", "G0 X1 P1", "P1", "L2", "R1", "G0 X1 L20", "F10 G2 X10 R5 I5", "G4 P1 L3", "M3 S1 K2"],
+    36: ["G61 P1", "G0 X1 I1", "G0 X1 P1", "P1", "L2", "R1", "G0 X1 L20",
+         "F10 G2 X10 R5 I5", "G4 P1 L3", "M3 S1 K2"],
     37: ["G43.1 X1", "G43.1 X1 Z1", "G43.1"],
     38: ["T256", "T999999"],
 }  # fmt: skip
@@ -295,6 +297,24 @@ def test_probes_and_line_numbers() -> None:
     position = ffi().new("int64_t[6]", [0, 0, -3 * NANOMETRES])
     planner().passo_gcode_set_position(gcode.c, position)
     assert at(gcode) == (0, 0, -3)
+
+
+def test_the_tolerance_of_the_path() -> None:
+    """Of G64: Q, else P, in the units of the line; G61 and a G64 without them end it, other lines do not."""
+    gcode = Gcode()
+    for line, tolerance in (
+        ("G64 P0.05", 50_000), ("G0 X1", 50_000), ("G64 P0.1 Q0.02", 20_000), ("G20 G64 P0.001", 25_400),
+        ("G64 Q0.5 P2", 12_700_000), ("G61", 0), ("G21 G64 P1 G1 X5 F100", 1_000_000), ("G64", 0),
+        ("G64 Q3", 3_000_000),
+        ("G64 G4 P0.1", 0), ("G64 G4 P0.1 Q2", 2_000_000), ("M2", 2_000_000), ("G64 P0 Q0", 0),
+    ):  # fmt: skip
+        run(gcode, line)
+        assert gcode.c.tolerance == tolerance, line
+    gcode.execute("G64 P1")
+    gcode.jog("X1 F5")
+    assert gcode.c.tolerance == 1_000_000
+    planner().passo_gcode_reset(gcode.c)
+    assert gcode.c.tolerance == 0
 
 
 def test_a_jog_leaves_the_modes() -> None:
