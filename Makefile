@@ -33,7 +33,7 @@ setup: ## Install the prerequisites; every other target calls it automatically.
 	@tools/setup.sh
 
 test: ## Check the sources, then run all tests.
-	@tools/setup.sh yosys formal firmware browser web vhdl hdl gcode
+	@tools/setup.sh yosys formal firmware browser web vhdl hdl path gcode
 	@$(MAKE) lint
 	@$(BIN)/pytest -n $$(($$(nproc) < 8 ? $$(nproc) + 1 : 8)) --dist worksteal # one more: some tests wait
 

@@ -25,11 +25,11 @@ static uint64_t length_of(uint64_t change, uint64_t slope)
 }
 
 static unsigned put(struct passo_path_part *parts, unsigned count, enum passo_path_kind kind, uint64_t length,
-    uint64_t square)
+    uint64_t square, uint64_t slope)
 {
 	if (length == 0)
 		return count;
-	parts[count] = (struct passo_path_part){kind, length, square};
+	parts[count] = (struct passo_path_part){kind, length, square, slope};
 	return count + 1;
 }
 
@@ -37,18 +37,19 @@ unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index,
     uint64_t square, bool level, struct passo_path_part *parts)
 {
 	const struct passo_path_item *item = passo_path_item(path, index);
-	const uint64_t up = item->slope, down = passo_path_down_slope(item);
 	const uint64_t end = passo_path_end_square(path, index);
+	const uint64_t up = passo_path_slope(item, true, square, left);
+	const uint64_t down = passo_path_slope(item, false, end, left);
 	const uint64_t highest = end + passo_path_gain(down, left);
 	uint64_t top = passo_path_larger(item->top, square);
 
 	if (square >= highest)
-		return put(parts, 0, PASSO_PATH_DOWN, left, end);
+		return put(parts, 0, PASSO_PATH_DOWN, left, end, down);
 	if (level && !passo_path_is_settled(path, index))
 		top = passo_path_smaller(top, passo_path_larger(end, square));
 	const uint64_t rise = square + passo_path_gain(up, left);
 	if (rise <= end && rise <= top)
-		return put(parts, 0, PASSO_PATH_UP, left, rise);
+		return put(parts, 0, PASSO_PATH_UP, left, rise, up);
 
 	uint64_t rising = passo_path_smaller(length_of(highest - square, up + down), left);
 	uint64_t peak = square + passo_path_gain(up, rising);
@@ -59,7 +60,7 @@ unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index,
 		falling = peak > end ? length_of(peak - end, down) : 0;
 		falling = passo_path_smaller(falling, left - rising);
 	}
-	unsigned count = put(parts, 0, PASSO_PATH_UP, rising, peak);
-	count = put(parts, count, PASSO_PATH_FLAT, left - rising - falling, peak);
-	return put(parts, count, PASSO_PATH_DOWN, falling, end);
+	unsigned count = put(parts, 0, PASSO_PATH_UP, rising, peak, up);
+	count = put(parts, count, PASSO_PATH_FLAT, left - rising - falling, peak, up);
+	return put(parts, count, PASSO_PATH_DOWN, falling, end, down);
 }

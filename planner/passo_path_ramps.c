@@ -101,9 +101,8 @@ static bool start(struct passo_path_planner *path, struct passo_ramp *ramp)
 	return ramp->velocity_end > 0;
 }
 
-bool passo_path_next_ramp(struct passo_path_planner *path, uint32_t held, struct passo_ramp *ramp)
+static bool next_ramp(struct passo_path_planner *path, uint32_t held, struct passo_ramp *ramp)
 {
-	*ramp = (struct passo_ramp){.shape = PASSO_SHAPE_LINEAR};
 	if (path->ramps_end)
 		return false;
 	if (path->jump) {
@@ -149,5 +148,14 @@ bool passo_path_next_ramp(struct passo_path_planner *path, uint32_t held, struct
 		}
 	}
 	follow(path, &aim, most, ramp);
+	return true;
+}
+
+bool passo_path_next_ramp(struct passo_path_planner *path, uint32_t held, struct passo_ramp *ramp)
+{
+	*ramp = (struct passo_ramp){.shape = PASSO_SHAPE_LINEAR};
+	if (!next_ramp(path, held, ramp))
+		return false;
+	passo_path_pace_ramp(path, ramp->ticks);
 	return true;
 }

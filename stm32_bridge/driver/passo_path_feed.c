@@ -23,6 +23,11 @@ static uint32_t larger(uint32_t a, uint32_t b)
 	return a > b ? a : b;
 }
 
+static uint32_t smaller(uint32_t a, uint32_t b)
+{
+	return a < b ? a : b;
+}
+
 static bool give_line(void *context, struct passo_line *line)
 {
 	struct passo_path_feed *feed = context;
@@ -105,8 +110,20 @@ static void correct(struct passo_path_feed *feed)
 		feed->left = least;
 }
 
+static void set_pace(const struct passo *passo, struct passo_path_planner *path)
+{
+	const uint32_t ramps = smaller(PASSO_FRAME_PAYLOAD_MAX / PASSO_RAMP_WORDS, passo->ramp_places / 2u);
+	const uint32_t words = passo->host->line_words;
+
+	if (words == 0u)
+		return;
+	const uint32_t lines = smaller(PASSO_FRAME_PAYLOAD_MAX / words, passo->line_places / 2u);
+	passo_path_pace(path, passo->ramp_places - ramps, passo->line_places - lines, lines);
+}
+
 void passo_path_feed_open(struct passo_path_feed *feed, struct passo *passo, struct passo_path_planner *path)
 {
+	set_pace(passo, path);
 	*feed = (struct passo_path_feed){
 	    .passo = passo, .path = path, .at = passo_driver_now(passo), .rate = PASSO_RATE_FULL};
 }

@@ -63,7 +63,7 @@ static void drop_line(struct passo_player *player)
 	passo_gcode_position position;
 
 	for (unsigned axis = 0; axis < player->gcode->settings.axes; axis++)
-		position[axis] = passo_player_nanometres(player, axis, (int32_t)path->steps[axis]);
+		position[axis] = passo_player_nanometres(player, axis, (int32_t)path->at.steps[axis]);
 	passo_gcode_set_position(player->gcode, position);
 	player->waits = false;
 }

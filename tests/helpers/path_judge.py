@@ -12,8 +12,9 @@ import numpy as np
 from passo.move_forms import UNIT_Q32
 from passo.moves import q32
 from passo.path import PathSettings
+from passo.path_rounding import Line
 
-from benchmarks.path_reference import Limits, Line, limits_of
+from tests.helpers.path_limits import Limits, limits_of
 from tests.helpers.path_player import Played
 
 WINDOW = 2e-3  # seconds over which speeds are measured
