@@ -28,7 +28,7 @@ class Passo:
         self.gcode.execute(line)
         self.label += 1
         c = planner()
-        tolerance = self.gcode.c.tolerance / NANOMETRES
+        tolerance = max(0, self.gcode.c.tolerance) / NANOMETRES
         arc = self.gcode.c.job.arc if self.gcode.c.job.turns else None
         for action in self.gcode.actions():
             if action.kind == c.PASSO_GCODE_DWELL:
@@ -54,7 +54,7 @@ class Passo:
             end or tuple(n / NANOMETRES for n in action.target[0:3]),
             feed,
             outputs=_outputs(action.output),
-            tolerance=self.gcode.c.tolerance / NANOMETRES,
+            tolerance=max(0, self.gcode.c.tolerance) / NANOMETRES,
         )
         if arc is None:
             return made

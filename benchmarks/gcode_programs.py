@@ -104,8 +104,9 @@ class Programs:
             rng.random() < 0.1 and self.passo.gcode.c.mode[FEED_MODE] == 940
         ):  # rs274: G93 of a circle may be 0
             place = start[:2]
-        if rng.random() < 0.05:
-            place[0] += rng.choice((0.001, 0.3, 2))
+        if rng.random() < 0.05:  # of tolerances in between there is a row in the table
+            apart = 1 + rng.choice((0.0001, 0.5, 2)) / true
+            place = [start[i] + offset[i] + (place[i] - start[i] - offset[i]) * apart for i in range(2)]
         words = [f"{letter}{at:.6f}" for letter, at in zip(letters, place, strict=False)]
         words += [f"{'IJK'['XYZ'.index(letter)]}{o:.4f}" for letter, o in zip(letters, offset, strict=False)]
         if rng.random() < 0.3:

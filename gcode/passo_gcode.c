@@ -56,7 +56,8 @@ void passo_gcode_reset(struct passo_gcode *gcode)
 	for (unsigned axis = 0; axis < PASSO_GCODE_AXES_MAX; axis++)
 		gcode->shift[axis] = 0;
 	gcode->flood = gcode->mist = false;
-	gcode->tool_length = gcode->tolerance = gcode->feed = gcode->spindle = 0;
+	gcode->tool_length = gcode->feed = gcode->spindle = 0;
+	gcode->tolerance = PASSO_GCODE_OWN_TOLERANCE;
 	gcode->line = 0;
 	gcode->tool = 0;
 	clear_job(gcode);

@@ -187,6 +187,7 @@ static enum passo_gcode_error check_path(struct passo_gcode_check *check)
 	check->tolerance = path == PASSO_GCODE_NONE ? check->gcode->tolerance : 0;
 	if (path != 640)
 		return PASSO_GCODE_OK;
+	check->tolerance = PASSO_GCODE_OWN_TOLERANCE;
 	if (command != 40 && command != 100 && passo_gcode_take(check, 'P'))
 		check->tolerance = passo_gcode_length_of(check, 'P');
 	if (passo_gcode_take(check, 'Q'))

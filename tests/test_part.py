@@ -128,6 +128,24 @@ def test_a_part_that_is_lost_is_said(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert json.loads((tmp_path / "out" / "summary.json").read_text())["unread_lines"] == 2
 
 
+def test_words_for_the_path_reach_the_planner(tmp_path: Path) -> None:
+    """Fine chords are merged within the tolerance of G64, or the machine's own; after G61 none is."""
+    angles = np.linspace(0, math.pi, 700)
+    arc = "".join(f"X{5 * math.cos(a) - 5:.6f} Y{5 * math.sin(a):.6f}\n" for a in angles)
+    off, seconds_of = {}, {}
+    for words in ("G61", "", "G64 P0.1", "G64 P0.1\nG64", "G64 P0.5\nG61"):
+        played = play(tmp_path, f"{words}\nG1 F9000\n{arc}")
+        assert played.problems() == []
+        steps = places(played, np.unique(np.concatenate(played.clocks[:2])))
+        off[words] = np.abs(np.hypot(steps[:, 0] + 5, steps[:, 1]) - 5).max()
+        seconds_of[words] = played.seconds
+    step = 1.5 / 80
+    assert off["G61"] == off["G64 P0.5\nG61"] < step and seconds_of["G61"] == seconds_of["G64 P0.5\nG61"]
+    assert off[""] == off["G64 P0.1\nG64"] < 0.0005 + step and seconds_of[""] == seconds_of["G64 P0.1\nG64"]
+    assert seconds_of[""] != seconds_of["G61"]
+    assert 0.03 < off["G64 P0.1"] < 0.1 + step
+
+
 def test_rtl_and_model_agree(tmp_path: Path) -> None:
     """A short part on both, edge for edge."""
     played = play(tmp_path, "G91 G0 X0.5 Y0.2\nG2 X0.2 I0.1 F2000\n", "both")
