@@ -241,6 +241,26 @@ def test_a_speed_that_the_pins_do_not_allow_is_refused(
     assert cli.main(run) == 0
 
 
+def test_a_reversal_that_the_pins_do_not_allow_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Steps wait while DIR turns, and the core has room for four: with what is allowed a saw loses none."""
+    machine, part = tmp_path / "machine.toml", tmp_path / "part.nc"
+    part.write_text("G1 F100000\n" + "".join(f"X{i % 2 * 3} Y{i * 3}\n" for i in range(8)))
+    axes = FAST_AXES.replace("SPEED", "300")
+    text = f'clock_hz = 64_000_000\n[pins]\ndir_setup = "US"\ndir_hold = "US"\n{axes}'
+    run = ["run", str(part), "--machine", str(machine), "--out", str(tmp_path / "out")]
+    machine.write_text(text.replace("US", "100us"))
+    assert cli.main(run) == 2
+    told = "axis 1: it may reverse at 40 mm/s (jump, junction_deviation), the pins allow at most 4.16811: "
+    assert told in capsys.readouterr().err
+    for deviation, jump, allowed in (("0.0053", "0", True), ("0.0054", "0", False), ("0", "29", True),
+                                     ("0", "30", False)):  # fmt: skip
+        limits = text.replace("US", "20us").replace("acceleration", f"jump = {jump}\nacceleration")
+        machine.write_text(f"junction_deviation = {deviation}\n{limits}")
+        assert cli.main(run) == (0 if allowed else 2)
+
+
 def test_a_program_in_c_is_refused_as_well() -> None:
     """Its largest speed is that of the pins."""
     axis = PathAxis(Fraction(7, 3), 200, 20000)
