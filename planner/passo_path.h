@@ -23,6 +23,11 @@
 
 #include "passo_plan.h"
 
+/* An image without room has linear ramps only. */
+#ifdef PASSO_LINEAR_PATHS
+#define PASSO_WITHOUT_JERK_PATHS
+#endif
+
 /* Fewest lines that can be looked ahead. */
 #define PASSO_PATH_ITEMS_MIN 4u
 
@@ -82,7 +87,6 @@ struct passo_path_descent {
 struct passo_path_curve {
 	uint64_t slope[PASSO_PATH_CURVED]; /* of the square, where it is 0 */
 	int64_t bend[PASSO_PATH_CURVED];   /* Q15.48 per substep: what the square takes of it */
-	uint64_t rest;                     /* the limit of all other axes */
 	uint32_t count;
 };
 

@@ -112,7 +112,7 @@ static struct passo_path_aim find_aim(
 
 bool passo_path_is_shaped(const struct passo_path_planner *path, const struct passo_path_aim *aim)
 {
-	return path->shape != PASSO_SHAPE_LINEAR && !aim->plain && aim->kind != PASSO_PATH_FLAT
+	return passo_path_shape(path) != PASSO_SHAPE_LINEAR && !aim->plain && aim->kind != PASSO_PATH_FLAT
 	    && passo_path_ticks_to(path, aim) >= SHAPED_TICKS_MIN;
 }
 

@@ -3,8 +3,9 @@
  *
  * The limit of an axis is that of its acceleration in all: the part along the path, half the slope of the
  * square times the unit vector, plus the curvature times the square, both with their signs. So at a square w
- * the slope upward is at most A - B w for each axis, with A = 2 a / |u| and B = 2 k / u, and downward A + B
- * w: an axis that the curve speeds up anyway leaves less for speeding up, and more for slowing down.
+ * an axis that the curve speeds up anyway leaves a slope upward of A - B w at most, with A = 2 a / |u| and B
+ * = 2 |k| / |u|, and one that the curve slows down the same downward. The acceleration along the path alone
+ * keeps all limits as well.
  *
  * Each corner turns over a length, half of it before and half behind it; a line has the mean curvature of the
  * two at its ends.
@@ -42,10 +43,10 @@ void passo_path_add_curve(const struct passo_path_planner *path, const int64_t *
 
 	uint64_t any = 0;
 
-	*curve = (struct passo_path_curve){.rest = 2 * path->acceleration};
+	*curve = (struct passo_path_curve){.count = 0};
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
 		any |= magnitude(curvature[axis]);
-	if (any == 0 || path->shape != PASSO_SHAPE_LINEAR)
+	if (any == 0 || passo_path_shape(path) != PASSO_SHAPE_LINEAR)
 		return;
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
 		const uint64_t share = magnitude(unit[axis]);
@@ -58,10 +59,8 @@ void passo_path_add_curve(const struct passo_path_planner *path, const int64_t *
 		    passo_mul_div(2 * magnitude(curvature[axis]), UINT32_C(1) << PASSO_PATH_UNIT_BITS, share);
 		const bool helps = (curvature[axis] < 0) == (unit[axis] < 0);
 
-		if (bend == 0 || curve->count == PASSO_PATH_CURVED) {
-			curve->rest = passo_path_smaller(curve->rest, slope);
+		if (bend == 0 || curve->count == PASSO_PATH_CURVED)
 			continue;
-		}
 		curve->slope[curve->count] = slope;
 		curve->bend[curve->count] = helps ? (int64_t)bend : -(int64_t)bend;
 		curve->count++;
@@ -83,16 +82,11 @@ uint64_t passo_path_slope(const struct passo_path_item *item, bool up, uint64_t 
 	const struct passo_path_curve *curve = &item->curve;
 	uint64_t slope = item->slope;
 
-	if (curve->count > 0) {
-		slope = curve->rest;
-		for (uint32_t i = 0; i < curve->count; i++) {
-			const uint64_t most = curve->slope[i], bend = magnitude(curve->bend[i]);
-
-			slope = passo_path_smaller(slope, (curve->bend[i] > 0) == up
-							      ? less_slope(most, bend, low, length)
-							      : most + taken(bend, low));
-		}
-		slope = passo_path_larger(slope, 1);
+	for (uint32_t i = 0; i < curve->count; i++) {
+		if ((curve->bend[i] > 0) == up)
+			slope = passo_path_smaller(
+			    slope, less_slope(curve->slope[i], magnitude(curve->bend[i]), low, length));
 	}
+	slope = passo_path_larger(slope, 1);
 	return up ? slope : slope - slope / 256;
 }

@@ -131,7 +131,7 @@ static uint64_t limit_line(
 	item->limit = square_of(speed);
 	if (passo_path_is_soft(path))
 		slope = passo_mul_div(slope, path->gentleness, UINT32_C(1) << 16);
-	else if (path->shape != PASSO_SHAPE_LINEAR)
+	else if (passo_path_shape(path) != PASSO_SHAPE_LINEAR)
 		slope = shaped_slope(path, slope, weakest);
 	item->slope = passo_path_larger(slope, 1);
 	if (passo_path_is_soft(path))

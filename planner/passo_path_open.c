@@ -55,6 +55,10 @@ static uint32_t substeps_per_mm(const struct passo_path_settings *settings)
 
 static bool has_profile(enum passo_profile profile)
 {
+#ifdef PASSO_LINEAR_PATHS
+	if (profile != PASSO_PROFILE_LINEAR)
+		return false;
+#endif
 #ifdef PASSO_WITHOUT_JERK_PATHS
 	if (profile == PASSO_PROFILE_JERK)
 		return false;
@@ -179,7 +183,7 @@ enum passo_plan_error passo_path_open(struct passo_path_planner *path,
 	passo_path_tolerance(path,
 	    settings->tolerance > 0 ? settings->tolerance : settings->junction_deviation / TOLERANCE_PART);
 	path->own_tolerance = path->tolerance;
-	path->gentleness = gentleness(path->shape);
+	path->gentleness = gentleness(passo_path_shape(path));
 	path->acceleration = settings->acceleration > 0 ? acceleration_of(path, settings->acceleration)
 	                                                : PASSO_PATH_SQUARE_MAX >> 2;
 	for (uint32_t axis = 0; axis < machine->axes; axis++) {

@@ -20,6 +20,8 @@
 void passo_path_pace(
     struct passo_path_planner *path, uint32_t queued, uint32_t lines_queued, uint32_t lines_sent)
 {
+	if (path->polls == 0)
+		return; /* not open yet */
 	const uint64_t poll = (path->machine.clock_hz >> path->machine.tick_log2) / path->polls + 1;
 	const uint32_t together =
 	    (uint32_t)passo_path_larger(passo_path_smaller(queued, PASSO_PATH_PACED), 1);
@@ -120,6 +122,28 @@ static struct ahead look_ahead(const struct passo_path_planner *path, uint64_t l
 	return ahead;
 }
 
+/* Whether a ramp down stays below all that it passes. */
+static bool is_below(const struct passo_path_planner *path, const struct passo_path_aim *aim)
+{
+	const uint64_t from = passo_path_square_of(path->velocity);
+	uint64_t passed = 0, passing = from;
+
+	for (uint32_t index = path->planned;; index++) {
+		const struct passo_path_item *item = passo_path_item(path, index);
+
+		if (passing > passo_path_larger(item->top, from) || passo_path_is_held_back(path, index))
+			return false;
+		passed += (uint64_t)item->substeps << 32;
+		if (index == path->planned)
+			passed -= (uint64_t)path->offset;
+		if (passed >= aim->length)
+			return true;
+		passing = from - passo_mul_div(from - aim->square, passed, aim->length);
+		if (passing > passo_path_end_square(path, index) || passo_path_rests_after(path, index))
+			return false;
+	}
+}
+
 static uint64_t lowest(const struct ahead *ahead)
 {
 	return ahead->rest > 0 ? passo_path_smaller(ahead->square, ahead->end) : ahead->square;
@@ -193,7 +217,7 @@ struct passo_path_aim passo_path_at_pace(
 	}
 	const uint64_t used = passo_path_larger(least, path->pace / path->paced) + 1;
 	struct passo_path_aim made = calm(path, used, passo_path_pace_need(path, used, 2));
-	if (made.length == 0)
+	if (made.length == 0 || (made.kind == PASSO_PATH_DOWN && !is_below(path, &made)))
 		return *aim;
 	if (made.open && need == PASSO_PATH_NO_NEED)
 		made.length = 0;

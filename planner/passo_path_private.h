@@ -82,6 +82,17 @@ static inline bool passo_path_is_soft(const struct passo_path_planner *path)
 #endif
 }
 
+/* The shape of its ramps. */
+static inline enum passo_shape passo_path_shape(const struct passo_path_planner *path)
+{
+#ifdef PASSO_LINEAR_PATHS
+	(void)path;
+	return PASSO_SHAPE_LINEAR;
+#else
+	return path->shape;
+#endif
+}
+
 /* The velocity (UQ0.48) of a square, and the square of a velocity. */
 static inline uint64_t passo_path_velocity_of(uint64_t square)
 {

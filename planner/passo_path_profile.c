@@ -40,11 +40,13 @@ unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index,
 	const uint64_t end = passo_path_end_square(path, index);
 	const uint64_t up = passo_path_slope(item, true, square, left);
 	const uint64_t down = passo_path_slope(item, false, end, left);
+	const uint64_t steepest = down + down / 255; /* ramps may make up for their rounding */
 	const uint64_t highest = end + passo_path_gain(down, left);
 	uint64_t top = passo_path_larger(item->top, square);
 
+	/* above it where a line at whose end the path could rest has become part of a curve */
 	if (square >= highest)
-		return put(parts, 0, PASSO_PATH_DOWN, left, end, down);
+		return put(parts, 0, PASSO_PATH_DOWN, left, end, square > highest ? item->slope : steepest);
 	if (level && !passo_path_is_settled(path, index))
 		top = passo_path_smaller(top, passo_path_larger(end, square));
 	const uint64_t rise = square + passo_path_gain(up, left);
@@ -62,5 +64,5 @@ unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index,
 	}
 	unsigned count = put(parts, 0, PASSO_PATH_UP, rising, peak, up);
 	count = put(parts, count, PASSO_PATH_FLAT, left - rising - falling, peak, up);
-	return put(parts, count, PASSO_PATH_DOWN, falling, end, down);
+	return put(parts, count, PASSO_PATH_DOWN, falling, end, steepest);
 }

@@ -34,8 +34,17 @@ LISTING = """
 """
 
 
-def functions(monkeypatch: pytest.MonkeyPatch, listing: str = LISTING) -> dict[int, Function]:
-    monkeypatch.setattr(stack_usage, "_run", lambda *command: listing)
+def functions(
+    monkeypatch: pytest.MonkeyPatch, listing: str = LISTING, caller: str = "??"
+) -> dict[int, Function]:
+    """With the name that the debug information has for each indirect call."""
+
+    def run(*command: str) -> str:
+        if not command[0].endswith("addr2line"):
+            return listing
+        return "".join(f"{site}\n{caller}\nfile.c:1\n" for site in command if site.startswith("0x"))
+
+    monkeypatch.setattr(stack_usage, "_run", run)
     return stack_usage.disassemble(paths.build, "")
 
 
@@ -54,6 +63,16 @@ def test_a_call_by_pointer_must_be_named(monkeypatch: pytest.MonkeyPatch) -> Non
     for calls in ({}, {"middle": ["nobody"]}, {"middle": ["hook"], "hook": ["leaf"]}):
         with pytest.raises(StackError):
             connect(functions(monkeypatch), calls)
+
+
+def test_a_call_by_pointer_belongs_to_the_function_that_was_inlined(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As link-time optimisation does it: the list has the name of the source."""
+    found = functions(monkeypatch, caller="within.part.0")
+    assert list(found[0x8000120].by_pointer.values()) == [["within", "middle"]]
+    connect(found, {"within": ["hook"]})
+    assert 0x8000160 in found[0x8000120].calls
+    with pytest.raises(StackError, match="within in middle makes an indirect call"):
+        connect(functions(monkeypatch, caller="within"), {"other": ["hook"]})
 
 
 def test_recursion_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -3,7 +3,8 @@
 """Worst-case stack, flash and RAM of a Thumb-2 program, computed from its ELF file.
 
 Every function is disassembled for its stack frame and its calls. Indirect calls are listed in a file
-("caller: target target ..."). An indirect call that is not listed, recursion, and an unknown change of the
+("caller: target target ..."), by the function of the source that makes them: where that was inlined, the
+debug information names it. An indirect call that is not listed, recursion, and an unknown change of the
 stack pointer are errors. All nesting interrupts are added to the deepest path, each with the 36 bytes that
 the processor stacks. The exit status is 1 if the program does not fit.
 """
@@ -33,7 +34,9 @@ class Function:
     name: str  # without the compiler's suffixes for parts and clones
     frame: int = 0
     calls: set[int] = field(default_factory=set)
-    by_pointer: bool = False
+    by_pointer: dict[str, list[str]] = field(
+        default_factory=dict
+    )  # indirect calls: the functions inlined there
 
 
 def disassemble(elf: Path, cross: str) -> dict[int, Function]:
@@ -48,13 +51,31 @@ def disassemble(elf: Path, cross: str) -> dict[int, Function]:
         elif current and "\t" in line:
             fields = line.split("\t")
             if len(fields) >= 2:
-                _instruction(
-                    current, start, fields[1].strip(), "\t".join(fields[2:]).split(";")[0].split("@")[0]
-                )
+                operands = "\t".join(fields[2:]).split(";")[0].split("@")[0]
+                _instruction(current, start, fields[0].strip(" :"), fields[1].strip(), operands)
+    _name_callers(functions, elf, cross)
     return functions
 
 
-def _instruction(function: Function, start: int, operation: str, operands: str) -> None:
+def _name_callers(functions: dict[int, Function], elf: Path, cross: str) -> None:
+    """Find the functions of the source that make the indirect calls, the innermost first."""
+    sites = [f"0x{site}" for function in functions.values() for site in function.by_pointer]
+    if not sites:
+        return
+    names: list[str] = []
+    inlined: dict[int, list[str]] = {}
+    for line in _run(f"{cross}addr2line", "-a", "-f", "-i", "-e", str(elf), *sites).splitlines():
+        if line.startswith("0x"):
+            names = inlined.setdefault(int(line, 16), [])
+        elif ":" not in line:
+            names.append(CLONE.sub("", line))
+    for function in functions.values():
+        for site, found in function.by_pointer.items():
+            found.extend(name for name in inlined[int(site, 16)] if name != "??")
+            found.append(function.name)
+
+
+def _instruction(function: Function, start: int, at: str, operation: str, operands: str) -> None:
     """Account for one instruction: stack frame and calls."""
     name = operation.removesuffix(".n").removesuffix(".w")
     operands = operands.strip()
@@ -75,7 +96,7 @@ def _instruction(function: Function, start: int, operation: str, operands: str) 
         if (match := TARGET.search(operands)) and int(match[1], 16) != start:
             function.calls.add(int(match[1], 16))
     elif name == "blx" or (name == "bx" and operands != "lr"):
-        function.by_pointer = True
+        function.by_pointer[at] = []
 
 
 def _registers(operands: str) -> int:
@@ -103,16 +124,18 @@ def connect(functions: dict[int, Function], pointers: dict[str, list[str]]) -> d
     by_name: dict[str, list[int]] = {}
     for address, function in functions.items():
         by_name.setdefault(function.name, []).append(address)
+    used: set[str] = set()
     for function in functions.values():
-        if not function.by_pointer:
-            continue
-        if function.name not in pointers:
-            raise StackError(f"{function.name} makes an indirect call and is not listed")
-        for target in pointers[function.name]:
-            if target not in by_name:
-                raise StackError(f"{function.name} is listed as calling {target}, which does not exist")
-            function.calls.update(by_name[target])
-    unused = set(pointers) - {function.name for function in functions.values() if function.by_pointer}
+        for names in function.by_pointer.values():
+            caller = next((name for name in names if name in pointers), None)
+            if caller is None:
+                raise StackError(f"{' in '.join(names)} makes an indirect call and is not listed")
+            used.add(caller)
+            for target in pointers[caller]:
+                if target not in by_name:
+                    raise StackError(f"{caller} is listed as calling {target}, which does not exist")
+                function.calls.update(by_name[target])
+    unused = set(pointers) - used
     if unused:
         raise StackError(f"listed but without indirect calls: {', '.join(sorted(unused))}")
     return by_name
