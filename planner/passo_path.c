@@ -115,9 +115,11 @@ enum passo_plan_error passo_path_add(struct passo_path_planner *path, const stru
 
 void passo_path_tolerance(struct passo_path_planner *path, uint64_t tolerance)
 {
-	path->tolerance = tolerance == PASSO_PATH_UNMERGED
-	                    ? 0
-	                    : passo_mul_div(tolerance, path->substeps_per_mm, UINT32_C(1) << 16);
+	path->tolerance = path->own_tolerance;
+	if (tolerance > 0)
+		path->tolerance = tolerance == PASSO_PATH_UNMERGED
+		                    ? 0
+		                    : passo_mul_div(tolerance, path->substeps_per_mm, UINT32_C(1) << 16);
 }
 
 void passo_path_dwell(struct passo_path_planner *path, uint64_t clocks)

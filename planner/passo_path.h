@@ -151,6 +151,7 @@ struct passo_path_planner {
 	uint64_t acceleration;              /* UQ0.64 substeps per clock^2, along the path */
 	struct passo_path_place at, before; /* its end and its start */
 	uint64_t deviation, tolerance;      /* UQ32.16 substeps */
+	uint64_t own_tolerance;             /* the same: that of the settings */
 	uint64_t off;  /* the same: by how much the last line is off those that it replaces */
 	uint64_t feed; /* of the last line, as it was given */
 	bool begins;   /* the path rested before the last line */
@@ -201,7 +202,7 @@ void passo_path_pace(
 
 /* By how much a line may be off the ends of short, nearly collinear lines that it replaces: those of one feed
  * and output, which take less time than they can be sent in. The ends of the line itself are exact. It holds
- * for lines added from now on. */
+ * for lines added from now on; 0: that of the settings. */
 #define PASSO_PATH_UNMERGED UINT64_MAX /* each line remains one */
 void passo_path_tolerance(struct passo_path_planner *path, uint64_t tolerance);
 

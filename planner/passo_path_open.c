@@ -182,6 +182,7 @@ enum passo_plan_error passo_path_open(struct passo_path_planner *path,
 	};
 	passo_path_tolerance(path,
 	    settings->tolerance > 0 ? settings->tolerance : settings->junction_deviation / TOLERANCE_PART);
+	path->own_tolerance = path->tolerance;
 	path->gentleness = gentleness(passo_path_shape(path));
 	path->acceleration = settings->acceleration > 0 ? acceleration_of(path, settings->acceleration)
 	                                                : PASSO_PATH_SQUARE_MAX >> 2;

@@ -43,7 +43,11 @@ def run_part(path: Path, machine_path: Path | None, engine: str, out: Path | Non
         plot_part(played, out / PICTURE)
     for problem in found:
         print(f"{path}: {problem}", file=sys.stderr)
-    if not found:
+    if part.unread:
+        print(f"{path}: {part.unread} lines behind the end of the program are not read", file=sys.stderr)
+    if not played.motions:
+        print(f"{path}: nothing moved", file=sys.stderr)
+    elif not found:
         print(f"{path.name}: {len(part.lines)} lines, {part.chords} chords in {played.seconds:.6g} s")
         print(f"greatest share of a limit: {', '.join(_limit(share) for share in greatest(judged).values())}")
     print(f"results: {', '.join(str(out / name) for name in (SUMMARY, PICTURE) if (out / name).exists())}")
@@ -66,6 +70,7 @@ def _summary(
         "clock_hz": machine.clock_hz,
         "path_seconds": played.seconds,
         "lines": len(part.lines),
+        "unread_lines": part.unread,
         "chords": part.chords,
         "motions": len(played.motions),
         "matched_edges": played.matched_edges,
