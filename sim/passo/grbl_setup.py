@@ -18,6 +18,7 @@ from passo.run import open_engine, parameters_for
 MILLION = 1_000_000
 SECONDS_PER_MINUTE = 60
 REPORT_ALL = 3  # $10: MPos and Bf
+ALWAYS_ON = 255  # $1
 PAGE = 1024  # bytes; a page of flash of the STM32F103
 PAGES = 2
 WORD = 4
@@ -31,6 +32,7 @@ def default_settings(machine: MachineFile) -> Any:
     ends, switches = machine.ends, machine.switches
     values = {
         "PULSE": machine.pins.step_high * MILLION / machine.clock_hz,
+        "IDLE_DELAY": ALWAYS_ON,
         "REPORT": REPORT_ALL,
         "LIMITS_INVERTED": switches.inverted,
         "DEVIATION": machine.settings.junction_deviation,

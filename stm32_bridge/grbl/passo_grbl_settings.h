@@ -12,6 +12,7 @@
 
 enum passo_grbl_setting {
 	PASSO_GRBL_PULSE,            /* $0: us */
+	PASSO_GRBL_IDLE_DELAY,       /* $1: ms until drives at rest are switched off; 255: never */
 	PASSO_GRBL_STEPS_INVERTED,   /* $2: a bit per axis */
 	PASSO_GRBL_DIRS_INVERTED,    /* $3 */
 	PASSO_GRBL_ENABLES_INVERTED, /* $4: all axes */
@@ -30,6 +31,7 @@ enum passo_grbl_setting {
 	PASSO_GRBL_DEBOUNCE,         /* $26: ms */
 	PASSO_GRBL_PULL_OFF,         /* $27: mm */
 	PASSO_GRBL_SPINDLE,          /* $30: rpm of full power */
+	PASSO_GRBL_SPINDLE_LEAST,    /* $31: rpm of what turns */
 	PASSO_GRBL_LASER,            /* $32 */
 	PASSO_GRBL_SETTINGS
 };

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The grbl console on the C model, and what it has said."""
 
+import re
 from typing import Any
 
 from passo.grbl import Grbl
@@ -30,6 +31,33 @@ class GrblConsole:
         """What it says to a line."""
         self.grbl.line(text.encode("latin-1"))
         return self.take()
+
+    def limit(self, patience: float) -> None:
+        """Simulated seconds that it waits at most."""
+        wait = self.grbl.wait
+        self.grbl.wait = lambda until, seconds=patience: wait(until, min(seconds, patience))
+
+    def send(self, data: bytes, seconds: float = 0) -> str:
+        """What it says to bytes of one batch, at once and in a time."""
+        self.take_all()
+        self.grbl.type(data)
+        self.grbl.poll()
+        self.run(seconds)
+        return self.take()
+
+    def run(self, seconds: float) -> None:
+        """Let time pass."""
+        self.grbl.wait(lambda: False, seconds)
+
+    def status(self) -> dict[str, str]:
+        """A status report: state and fields."""
+        (text,) = re.findall(r"<(.*)>", self.send(b"?"))
+        state, *fields = text.split("|")
+        return {"state": state, **dict(field.split(":", 1) for field in fields)}
+
+    def fields(self, name: str) -> list[float]:
+        """The numbers of a field of a status report."""
+        return [float(number) for number in self.status()[name].split(",")]
 
     def rest(self) -> None:
         """Wait until it is idle."""

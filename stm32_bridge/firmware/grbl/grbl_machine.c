@@ -7,6 +7,7 @@
 #define LINEAR_AXES 2u /* X and Y; Z and what follows are slow */
 
 static const uint16_t VALUES[PASSO_GRBL_SETTINGS] = {
+    [PASSO_GRBL_IDLE_DELAY] = 255,
     [PASSO_GRBL_REPORT] = 3,
     [PASSO_GRBL_HOMING] = HOMED != 0,
     [PASSO_GRBL_HARD_LIMITS] = (LIMITS_LOW | LIMITS_HIGH) != 0,

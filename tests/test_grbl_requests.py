@@ -1,0 +1,308 @@
+# SPDX-License-Identifier: MIT
+"""Real-time requests of the grbl console, in batches and in every state; the lines around them."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from passo.grbl_setup import machine_at
+from passo.machine_file import read_machine
+
+from tests.helpers.grbl_console import GrblConsole
+
+MACHINE = """
+clock_hz = 4_000_000
+probe = true
+spindle_maximum = 1000
+[home]
+seek = 40
+speed = 10
+""" + "".join(
+    f"""
+[[axis]]
+name = "{name}"
+steps_per_mm = 80
+speed = 200
+acceleration = 1000
+travel = 200
+home = "high"
+switches = ["home"]
+"""
+    for name in "XYZ"
+)
+PATIENCE = 10  # simulated seconds
+LONG = b"G1 X-50 F3000\n"
+
+
+@pytest.fixture
+def session(tmp_path: Path) -> Iterator[GrblConsole]:
+    """A machine with homes and a probe, unlocked."""
+    path = tmp_path / "machine.toml"
+    path.write_text(MACHINE)
+    machine = read_machine(path)
+    with machine_at("model", machine) as engine:
+        made = GrblConsole(engine, machine)
+        made.limit(PATIENCE)
+        assert made.line("$X").endswith("ok")
+        yield made
+
+
+def x_of(session: GrblConsole) -> float:
+    return session.fields("MPos")[0]
+
+
+def answers(said: str) -> list[str]:
+    return [line for line in said.splitlines() if line == "ok" or line.startswith("error:")]
+
+
+# ------------------------------------------------------------------------------------------ check mode
+
+
+@pytest.mark.parametrize("line", ["$J=G91X10F6000", "$H", "$N0=G0X10", "$SLP", "$RST=$", "$#", "$100=90", "$I"])
+def test_check_mode_takes_nothing_that_moves_or_changes(session: GrblConsole, line: str) -> None:
+    """Error 8, and nothing moves."""
+    session.line("$C")
+    assert session.line(line) == "error:8"
+    session.run(0.3)
+    assert session.status()["state"] == "Check" and x_of(session) == 0
+    assert session.line("$N0=G0X10") == "error:8"
+    session.line("$C")
+    session.rest()
+    assert "$N0=\n" in session.line("$N")
+
+
+def test_check_mode_checks_the_travel(session: GrblConsole) -> None:
+    """Alarm 2 for the line that leaves it, also in the middle of an arc; and check mode is over."""
+    session.line("$20=1")
+    for line in ("G0 X1", "G2 X-10 Y0 I-5 J0 F600", "G38.2 Z-300 F600"):
+        session.line("$C")
+        assert session.line("G0 X-1 Y-1") == "ok"
+        said = session.line(line)
+        assert said == "ALARM:2\nerror:9"
+        session.run(0.1)
+        assert session.status()["state"] == "Alarm" and x_of(session) == 0
+        session.line("$X")
+
+
+def test_check_mode_leaves_no_trace(session: GrblConsole) -> None:
+    """Offsets, modes and the position are those of before; dwells, pauses and probes take no time."""
+    before = session.line("$G"), session.line("$#")
+    session.line("$C")
+    for line in ("G10 L2 P1 X5", "G28.1", "G20 G91 M3 S5", "G4 P100", "M0", "G38.2 Z-1 F9", "G92 X3", "M30"):
+        assert session.line(line).endswith("ok")
+    assert "Disabled" in session.line("$C")
+    session.rest()
+    assert (session.line("$G"), session.line("$#")) == before
+
+
+def test_check_mode_is_for_a_machine_that_is_idle(session: GrblConsole) -> None:
+    """Not in Alarm, not in motion."""
+    session.send(LONG, 0.1)
+    assert session.line("$C") == "error:8"
+    session.send(b"\x18", 0.3)
+    assert session.status()["state"] == "Alarm" and session.line("$C") == "error:8"
+
+
+# -------------------------------------------------------------------------------- holds and their batches
+
+
+@pytest.mark.parametrize(("batch", "state"), [(b"!~", "Hold:0"), (b"~!", "Hold:0"), (b"\x84~", "Door:0")])
+def test_a_hold_in_the_batch_blocks_the_resume(session: GrblConsole, batch: bytes, state: str) -> None:
+    """In motion, and while held: `~!` is no resume either."""
+    session.send(LONG, 0.2)
+    for _ in range(2):
+        session.send(batch, 0.3)
+        there = session.status()
+        session.run(0.2)
+        assert session.status()["MPos"] == there["MPos"] and there["state"] == state
+    session.send(b"~")
+    session.rest()
+    assert x_of(session) == -50
+
+
+@pytest.mark.parametrize("code", [b"!", b"\x84"])
+def test_a_hold_at_rest_holds_the_lines(session: GrblConsole, code: bytes) -> None:
+    """They wait, and go on in their order."""
+    session.send(code)
+    assert session.status()["state"] == ("Hold:0" if code == b"!" else "Door:0")
+    assert session.send(b"G0 X-1\n$$\n$G\n", 0.3) == "" and x_of(session) == 0
+    assert session.send(b"~", 0.1).startswith("ok\nerror:8\n[GC:")
+    session.rest()
+    assert x_of(session) == -1
+
+
+def test_the_door_in_a_jog(session: GrblConsole) -> None:
+    """It is in motion until it rests; the jog is over then."""
+    session.send(b"$J=G91 X-50 F6000\n", 0.2)
+    session.send(b"\x84")
+    assert session.status()["state"] == "Door:2"
+    session.run(0.3)
+    assert session.status()["state"] == "Door:0"
+    there = x_of(session)
+    assert session.send(b"~", 0.3) == "" and x_of(session) == there < 0
+    assert session.status()["state"] == "Idle"
+
+
+# ------------------------------------------------------------------------------------- jogs and their end
+
+
+@pytest.mark.parametrize("code", [b"\x85", b"!"])
+def test_a_jog_just_after_the_end_of_another_waits_and_runs(session: GrblConsole, code: bytes) -> None:
+    """So does any other line."""
+    session.send(b"$J=G91 X-50 F6000\n", 0.2)
+    assert answers(session.send(code + b"$J=G90 X-60 F6000\n", 0.02)) == []
+    assert session.status()["state"] == "Jog"
+    session.rest()
+    assert session.take().splitlines()[-1] == "ok" and x_of(session) == -60
+    session.send(b"$J=G91 X50 F6000\n", 0.2)
+    session.send(code + b"G0 X-70\n", 0.02)
+    session.rest()
+    assert answers(session.take()) == ["ok"] and x_of(session) == -70
+
+
+@pytest.mark.parametrize("code", [b"\x85", b"!"])
+def test_every_jog_is_answered(session: GrblConsole, code: bytes) -> None:
+    """Those received before the end are not made; a line of which a half has come keeps its head."""
+    said = session.send(b"$J=G91 X-1 F6000\n" * 3 + b"$J=G91 ", 0.05)
+    for _ in range(67):
+        session.grbl.type(b"X-1 F6000\n$J=G91 ")
+        session.grbl.wait(lambda: session.grbl.room > 30, 60)
+    said += session.take()
+    session.run(0.05)
+    there = x_of(session)
+    said += session.take() + "\n"
+    session.grbl.type(code + b"X-1 F6000\n")
+    session.rest()
+    session.grbl.wait(lambda: session.grbl.room == 255, 60)
+    session.rest()
+    assert answers(said + session.take()) == ["ok"] * 71
+    assert -60 < there and there - 12 < x_of(session) < there
+
+
+def test_lines_after_the_end_of_a_jog_are_taken(session: GrblConsole) -> None:
+    """In a jog G-code is error 9, once it has been cancelled it is not."""
+    session.send(b"$J=G91 X-50 F6000\n", 0.1)
+    assert session.line("G0 X1") == "error:9"
+    session.send(b"\x85G0 ")
+    session.grbl.type(b"X-9\n")
+    session.rest()
+    session.grbl.poll()
+    session.rest()
+    assert x_of(session) == -9
+
+
+# ------------------------------------------------------------------------------------ lines that are lost
+
+
+def test_the_line_that_lost_bytes_is_refused(session: GrblConsole) -> None:
+    """And no other: neither those before it in the buffer, nor those after."""
+    head, tail = b"G1 Y7\n", b"G1 X-10"
+    session.send(b"G1 F6000\nM0\n", 0.1)
+    session.take_all()
+    room = session.grbl.room
+    session.grbl.type(head + b"\n" * (room - len(head) - len(tail)) + tail)
+    session.grbl.type(b"0~\n")
+    session.run(1)
+    assert answers(session.take()) == ["ok"] * (1 + room - len(head) - len(tail)) + ["error:11"]
+    assert session.fields("MPos")[:2] == [0, 7]
+    assert session.line("G0 X-2") == "ok"
+    session.rest()
+    assert x_of(session) == -2
+
+
+def test_every_line_that_is_lost_is_answered(session: GrblConsole) -> None:
+    """In its place, also if its end was lost; a line whose head was lost is refused as well."""
+    session.send(b"M0\n", 0.1)
+    session.take_all()
+    room = session.grbl.room
+    session.grbl.type(b"\n" * (room - 3) + b"G0 X-1\nG0 X-2\nG0 X-")
+    session.send(b"~", 1)
+    session.grbl.type(b"3\nG0 Y-1\n")
+    session.rest()
+    assert session.grbl.answers == 2 + 1 + room - 3 + 4
+    assert session.fields("MPos")[:2] == [0, -1]
+
+
+def test_a_byte_that_the_serial_line_lost_refuses_its_line(session: GrblConsole) -> None:
+    """Also in a comment, whose end it may have been."""
+    assert session.line("(a\0 G0 X1") == "error:11"
+    assert session.line("G0 X-1") == "ok"
+
+
+# --------------------------------------------------------------------------------------------- overrides
+
+
+def test_overrides_stay_in_their_range(session: GrblConsole) -> None:
+    """They clamp; any number of them between two polls counts."""
+    for first, least in ((0x90, 10), (0x99, 10)):
+        code = {name: bytes([first + i]) for i, name in enumerate(("full", "up", "down", "+", "-"))}
+        index = 0 if first == 0x90 else 2
+        for batch, percent in (
+            (code["up"] * 9 + code["+"] * 9, 199), (code["up"], 200), (code["+"], 200), (code["full"], 100),
+            (code["down"] * 8 + code["-"] * 5, 15), (code["down"], least), (code["-"] * 300, least),
+            (code["full"] + code["down"] + code["+"] * 4, 94),
+        ):  # fmt: skip
+            session.send(batch)
+            session.status()
+            assert int(session.fields("Ov")[index] if "Ov" in session.status() else percent) == percent
+            c = session.grbl.c
+            assert (c.feed, c.rapid, c.spindle)[index] == percent
+
+
+def seconds_of(session: GrblConsole, line: str) -> float:
+    """From a line to the rest behind it."""
+    began = session.engine.clock
+    session.line(line)
+    session.rest()
+    return (session.engine.clock - began) / 4e6
+
+
+def test_a_feed_override_leaves_rapids_and_dwells_alone(session: GrblConsole) -> None:
+    """Its own feeds take their time."""
+    full = [seconds_of(session, line) for line in ("G0 X-20", "G4 P0.3", "G1 X0 F2400")]
+    session.send(b"\x92" * 9)
+    slow = [seconds_of(session, line) for line in ("G0 X-20", "G4 P0.3", "G1 X0 F2400")]
+    assert slow[:2] == pytest.approx(full[:2], abs=0.01) and slow[2] == pytest.approx(20 / 4, rel=0.05)
+    session.send(b"\x90\x97")
+    quarter = [seconds_of(session, line) for line in ("G0 X-20", "G4 P0.3", "G1 X0 F2400")]
+    assert quarter[0] > 1.3 * full[0] and quarter[1:] == pytest.approx(full[1:], abs=0.01)
+
+
+def test_an_override_in_mid_motion_slows_down_the_rest_of_it(session: GrblConsole) -> None:
+    """And ends at the same step."""
+    session.send(b"G1 X-40 F6000\n", 0.15)
+    session.send(b"\x92" * 5, 0.25)
+    assert session.fields("FS")[0] == pytest.approx(3000, abs=5)
+    session.send(b"\x90\x91\x91", 0.1)
+    assert session.fields("FS")[0] > 3100
+    session.rest()
+    assert x_of(session) == -40
+
+
+# ------------------------------------------------------------------------------------------ resets, sleep
+
+
+def test_sleep_ends_with_a_reset(session: GrblConsole) -> None:
+    """Drives are off, lines wait, requests do nothing; afterwards it is locked."""
+    assert session.line("$SLP") == "[MSG:Sleeping]\nok"
+    assert session.send(b"G0 X-1\n~!\x84\x85", 0.2) == "" and session.status()["state"] == "Sleep"
+    assert "unlock" in session.send(b"\x18", 0.1)
+    assert session.status()["state"] == "Alarm" and session.line("$X").endswith("ok")
+    assert session.line("G0 X-2") == "ok"
+    session.rest()
+    assert x_of(session) == -2
+
+
+def test_overrides_behind_a_reset_are_kept(session: GrblConsole) -> None:
+    """Those before it are not."""
+    session.send(b"\x91\x91\x18\x92", 0.1)
+    assert session.grbl.c.feed == 90
+
+
+def test_an_alarm_owes_no_line_an_answer(session: GrblConsole) -> None:
+    """Lines that had been received have error 9, one each; `$X` among them unlocks."""
+    session.line("$20=1")
+    said = session.send(b"G1 X-1 F6000\nG0 X5\nG0 X-2\n$G\nG0 X-3\n$X\nG0 X-4\n", 1)
+    assert answers(said) == ["ok", "error:9", "error:9", "ok", "error:9", "error:9", "error:9"] or answers(
+        said
+    ) == ["ok", "error:9", "error:9", "ok", "error:9", "ok", "ok"]
