@@ -162,10 +162,9 @@ void passo_path_dwell(struct passo_path_planner *path, uint64_t clocks);
 /* No line follows for now: the motion ends with the last line. Lines added later belong to the next one. */
 void passo_path_end(struct passo_path_planner *path);
 
-/* Feed override, UQ16.16, 1 .. 1000 %: of the feeds of all lines that the ramps have not passed yet. The limits
- * of the axes and of the corners stay. An override of the core slows down rapids and dwells as well. */
-#define PASSO_PATH_OVERRIDE_MIN (PASSO_PATH_OVERRIDE_FULL / 100u)
-#define PASSO_PATH_OVERRIDE_FULL UINT32_C(0x10000)
+/* Feed override, UQ16.16, from 100 % on: of the feeds of all lines that the ramps have not passed yet. The
+ * limits of the axes and of the corners stay. Lower overrides are those of the core. */
+#define PASSO_PATH_OVERRIDE_MIN UINT32_C(0x10000)
 #define PASSO_PATH_OVERRIDE_MAX UINT32_C(0xA0000)
 void passo_path_override(struct passo_path_planner *path, uint32_t override);
 

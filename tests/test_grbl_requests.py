@@ -51,10 +51,6 @@ def x_of(session: GrblConsole) -> float:
     return session.fields("MPos")[0]
 
 
-def answers(said: str) -> list[str]:
-    return [line for line in said.splitlines() if line == "ok" or line.startswith("error:")]
-
-
 # ------------------------------------------------------------------------------------------ check mode
 
 
@@ -74,7 +70,7 @@ def test_check_mode_takes_nothing_that_moves_or_changes(session: GrblConsole, li
 def test_check_mode_checks_the_travel(session: GrblConsole) -> None:
     """Alarm 2 for the line that leaves it, also in the middle of an arc; and check mode is over."""
     session.line("$20=1")
-    for line in ("G0 X1", "G2 X-10 Y0 I-5 J0 F600", "G38.2 Z-300 F600"):
+    for line in ("G0 X1", "G2 X-1 I5 J0 F600", "G38.2 Z-300 F600"):
         session.line("$C")
         assert session.line("G0 X-1 Y-1") == "ok"
         said = session.line(line)
@@ -92,6 +88,7 @@ def test_check_mode_leaves_no_trace(session: GrblConsole) -> None:
         assert session.line(line).endswith("ok")
     assert "Disabled" in session.line("$C")
     session.rest()
+    session.take()
     assert (session.line("$G"), session.line("$#")) == before
 
 
@@ -150,32 +147,30 @@ def test_the_door_in_a_jog(session: GrblConsole) -> None:
 def test_a_jog_just_after_the_end_of_another_waits_and_runs(session: GrblConsole, code: bytes) -> None:
     """So does any other line."""
     session.send(b"$J=G91 X-50 F6000\n", 0.2)
-    assert answers(session.send(code + b"$J=G90 X-60 F6000\n", 0.02)) == []
-    assert session.status()["state"] == "Jog"
-    session.rest()
-    assert session.take().splitlines()[-1] == "ok" and x_of(session) == -60
+    answered = len(session.answers)
+    session.send(code + b"$J=G90 X-60 F6000\n", 0.02)
+    assert len(session.answers) == answered and session.status()["state"] == "Jog"
+    session.finish()
+    assert session.answers[answered:] == ["ok"] and x_of(session) == -60
     session.send(b"$J=G91 X50 F6000\n", 0.2)
     session.send(code + b"G0 X-70\n", 0.02)
-    session.rest()
-    assert answers(session.take()) == ["ok"] and x_of(session) == -70
+    session.finish()
+    assert session.answers[answered:] == ["ok"] * 3 and x_of(session) == -70
 
 
 @pytest.mark.parametrize("code", [b"\x85", b"!"])
 def test_every_jog_is_answered(session: GrblConsole, code: bytes) -> None:
     """Those received before the end are not made; a line of which a half has come keeps its head."""
-    said = session.send(b"$J=G91 X-1 F6000\n" * 3 + b"$J=G91 ", 0.05)
+    answered = len(session.answers)
+    session.send(b"$J=G91 X-1 F6000\n" * 3 + b"$J=G91 ", 0.05)
     for _ in range(67):
         session.grbl.type(b"X-1 F6000\n$J=G91 ")
-        session.grbl.wait(lambda: session.grbl.room > 30, 60)
-    said += session.take()
+        session.grbl.wait(lambda: session.grbl.room > 30)
     session.run(0.05)
     there = x_of(session)
-    said += session.take() + "\n"
-    session.grbl.type(code + b"X-1 F6000\n")
-    session.rest()
-    session.grbl.wait(lambda: session.grbl.room == 255, 60)
-    session.rest()
-    assert answers(said + session.take()) == ["ok"] * 71
+    session.send(code + b"X-1 F6000\n")
+    session.finish()
+    assert session.answers[answered:] == ["ok"] * 71
     assert -60 < there and there - 12 < x_of(session) < there
 
 
@@ -185,9 +180,7 @@ def test_lines_after_the_end_of_a_jog_are_taken(session: GrblConsole) -> None:
     assert session.line("G0 X1") == "error:9"
     session.send(b"\x85G0 ")
     session.grbl.type(b"X-9\n")
-    session.rest()
-    session.grbl.poll()
-    session.rest()
+    session.finish()
     assert x_of(session) == -9
 
 
@@ -198,12 +191,12 @@ def test_the_line_that_lost_bytes_is_refused(session: GrblConsole) -> None:
     """And no other: neither those before it in the buffer, nor those after."""
     head, tail = b"G1 Y7\n", b"G1 X-10"
     session.send(b"G1 F6000\nM0\n", 0.1)
-    session.take_all()
+    answered = len(session.answers)
     room = session.grbl.room
     session.grbl.type(head + b"\n" * (room - len(head) - len(tail)) + tail)
     session.grbl.type(b"0~\n")
-    session.run(1)
-    assert answers(session.take()) == ["ok"] * (1 + room - len(head) - len(tail)) + ["error:11"]
+    session.finish()
+    assert session.answers[answered:] == ["ok"] * (1 + room - len(head) - len(tail)) + ["error:11"]
     assert session.fields("MPos")[:2] == [0, 7]
     assert session.line("G0 X-2") == "ok"
     session.rest()
@@ -213,13 +206,13 @@ def test_the_line_that_lost_bytes_is_refused(session: GrblConsole) -> None:
 def test_every_line_that_is_lost_is_answered(session: GrblConsole) -> None:
     """In its place, also if its end was lost; a line whose head was lost is refused as well."""
     session.send(b"M0\n", 0.1)
-    session.take_all()
+    answered = len(session.answers)
     room = session.grbl.room
     session.grbl.type(b"\n" * (room - 3) + b"G0 X-1\nG0 X-2\nG0 X-")
     session.send(b"~", 1)
     session.grbl.type(b"3\nG0 Y-1\n")
-    session.rest()
-    assert session.grbl.answers == 2 + 1 + room - 3 + 4
+    session.finish()
+    assert session.answers[answered:] == ["ok"] * (room - 3) + ["error:11"] * 3 + ["ok"]
     assert session.fields("MPos")[:2] == [0, -1]
 
 
@@ -243,8 +236,6 @@ def test_overrides_stay_in_their_range(session: GrblConsole) -> None:
             (code["full"] + code["down"] + code["+"] * 4, 94),
         ):  # fmt: skip
             session.send(batch)
-            session.status()
-            assert int(session.fields("Ov")[index] if "Ov" in session.status() else percent) == percent
             c = session.grbl.c
             assert (c.feed, c.rapid, c.spindle)[index] == percent
 
@@ -262,7 +253,7 @@ def test_a_feed_override_leaves_rapids_and_dwells_alone(session: GrblConsole) ->
     full = [seconds_of(session, line) for line in ("G0 X-20", "G4 P0.3", "G1 X0 F2400")]
     session.send(b"\x92" * 9)
     slow = [seconds_of(session, line) for line in ("G0 X-20", "G4 P0.3", "G1 X0 F2400")]
-    assert slow[:2] == pytest.approx(full[:2], abs=0.01) and slow[2] == pytest.approx(20 / 4, rel=0.05)
+    assert slow[:2] == pytest.approx(full[:2], abs=0.01) and 5 < slow[2] < 5.5
     session.send(b"\x90\x97")
     quarter = [seconds_of(session, line) for line in ("G0 X-20", "G4 P0.3", "G1 X0 F2400")]
     assert quarter[0] > 1.3 * full[0] and quarter[1:] == pytest.approx(full[1:], abs=0.01)
@@ -270,13 +261,13 @@ def test_a_feed_override_leaves_rapids_and_dwells_alone(session: GrblConsole) ->
 
 def test_an_override_in_mid_motion_slows_down_the_rest_of_it(session: GrblConsole) -> None:
     """And ends at the same step."""
-    session.send(b"G1 X-40 F6000\n", 0.15)
+    session.send(b"G1 X-100 F6000\n", 0.3)
     session.send(b"\x92" * 5, 0.25)
     assert session.fields("FS")[0] == pytest.approx(3000, abs=5)
-    session.send(b"\x90\x91\x91", 0.1)
-    assert session.fields("FS")[0] > 3100
+    session.send(b"\x90", 0.2)
+    assert session.fields("FS")[0] == pytest.approx(6000, abs=5)
     session.rest()
-    assert x_of(session) == -40
+    assert x_of(session) == -100
 
 
 # ------------------------------------------------------------------------------------------ resets, sleep
@@ -299,10 +290,11 @@ def test_overrides_behind_a_reset_are_kept(session: GrblConsole) -> None:
     assert session.grbl.c.feed == 90
 
 
-def test_an_alarm_owes_no_line_an_answer(session: GrblConsole) -> None:
+def test_an_alarm_leaves_no_line_without_an_answer(session: GrblConsole) -> None:
     """Lines that had been received have error 9, one each; `$X` among them unlocks."""
     session.line("$20=1")
-    said = session.send(b"G1 X-1 F6000\nG0 X5\nG0 X-2\n$G\nG0 X-3\n$X\nG0 X-4\n", 1)
-    assert answers(said) == ["ok", "error:9", "error:9", "ok", "error:9", "error:9", "error:9"] or answers(
-        said
-    ) == ["ok", "error:9", "error:9", "ok", "error:9", "ok", "ok"]
+    answered = len(session.answers)
+    session.send(b"G1 X-1 F6000\nG0 X5\nG0 X-2\n$G\nG0 X-3\n$X\nG0 X-4\n")
+    session.finish()
+    assert session.answers[answered:] == ["ok", "error:9", "error:9", "ok", "error:9", "ok", "ok"]
+    assert x_of(session) == -4

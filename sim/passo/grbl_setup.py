@@ -58,11 +58,21 @@ def default_settings(machine: MachineFile) -> Any:
     return made
 
 
-def setup_of(machine: MachineFile, parameters: Parameters, pages: Any) -> Any:
+def defaults_of(machine: MachineFile) -> Any:
+    """The function of a `struct passo_grbl_setup` that sets them; it must live as long as that."""
+    made = default_settings(machine)
+
+    def set_defaults(settings: Any) -> None:
+        settings[0] = made[0]
+
+    return ffi().callback("void(struct passo_grbl_settings *)", set_defaults)
+
+
+def setup_of(machine: MachineFile, parameters: Parameters, defaults: Any, pages: Any) -> Any:
     """The `struct passo_grbl_setup`; `pages` is that of a file, or NULL."""
     made = ffi().new("struct passo_grbl_setup *")
     made.path = machine.settings.struct(parameters)[0]
-    made.defaults = default_settings(machine)[0]
+    made.defaults = defaults
     made.pins.step_low_ns, made.pins.dir_setup_ns = machine.pins.step_low, machine.pins.dir_setup
     made.pins.dir_hold_ns = machine.pins.dir_hold
     for axis, end in enumerate(machine.ends):

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * A line is taken from the ring only when the line before has been answered, and it is answered when it has
- * handed out all its actions: that is what paces the host, whether it waits for each answer or counts characters.
+ * handed out all its actions: that is what paces the host, whether it waits for each answer or counts
+ * characters.
  */
 #include "passo_grbl_private.h"
 
@@ -21,8 +22,13 @@ void passo_grbl_greet(struct passo_grbl *grbl)
 void passo_grbl_open(struct passo_grbl *grbl, struct passo_player *player, const struct passo_grbl_sink *sink,
     const struct passo_grbl_setup *setup)
 {
-	*grbl = (struct passo_grbl){
-	    .player = player, .sink = *sink, .setup = setup, .feed = 100, .rapid = 100, .spindle = 100};
+	*grbl = (struct passo_grbl){.player = player,
+	    .sink = *sink,
+	    .setup = setup,
+	    .feed = 100,
+	    .rapid = 100,
+	    .spindle = 100,
+	    .rate = 100};
 	player->answers = true;
 	passo_gcode_line_clear(&grbl->line);
 	const enum passo_gcode_error loaded = passo_grbl_load(grbl);
@@ -57,8 +63,8 @@ static enum passo_grbl_kind kind_of(const char *text)
 	static const struct {
 		char text[4];
 		uint8_t kind;
-	} EXACT[] = {{"$", PASSO_GRBL_KIND_MODES}, {"$G", PASSO_GRBL_KIND_MODES}, {"$$", PASSO_GRBL_KIND_SETTINGS},
-	    {"$X", PASSO_GRBL_KIND_UNLOCK}, {"$C", PASSO_GRBL_KIND_CHECK}};
+	} EXACT[] = {{"$", PASSO_GRBL_KIND_MODES}, {"$G", PASSO_GRBL_KIND_MODES},
+	    {"$$", PASSO_GRBL_KIND_SETTINGS}, {"$X", PASSO_GRBL_KIND_UNLOCK}, {"$C", PASSO_GRBL_KIND_CHECK}};
 
 	if (text[0] != '$')
 		return PASSO_GRBL_KIND_GCODE;
@@ -177,8 +183,8 @@ static void heed(struct passo_grbl *grbl, enum passo_player_event event, enum pa
 		break;
 	}
 	if (error != PASSO_OK)
-		passo_grbl_fail(grbl,
-		    error == PASSO_ERROR_LIMIT ? PASSO_GRBL_HARD_LIMIT : PASSO_GRBL_ABORTED, PASSO_GCODE_LOCKED);
+		passo_grbl_fail(grbl, error == PASSO_ERROR_LIMIT ? PASSO_GRBL_HARD_LIMIT : PASSO_GRBL_ABORTED,
+		    PASSO_GCODE_LOCKED);
 }
 
 void passo_grbl_poll(struct passo_grbl *grbl)
@@ -196,6 +202,7 @@ void passo_grbl_poll(struct passo_grbl *grbl)
 	if (grbl->stopping)
 		return;
 	passo_grbl_mind_drives(grbl);
+	passo_grbl_mind_rate(grbl);
 	grbl->player->held = grbl->held;
 	const enum passo_error error = passo_player_poll(grbl->player, &event);
 

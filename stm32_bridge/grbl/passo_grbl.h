@@ -43,7 +43,7 @@ enum passo_grbl_alarm {
 struct passo_grbl_setup {
 	struct passo_path_settings path; /* but for what the settings say */
 	struct passo_axis_config pins;   /* the same; in clocks, of all axes */
-	struct passo_grbl_settings defaults;
+	void (*defaults)(struct passo_grbl_settings *settings);
 	uint8_t limits_low, limits_high, homes; /* switches that are there */
 	uint8_t homed; /* axes that have a home; without a home switch by their limits */
 	bool probe;    /* it is there */
@@ -65,10 +65,10 @@ struct passo_grbl {
 	char received[PASSO_GRBL_RECEIVED];
 	volatile uint8_t head, tail; /* of the ring: next to be written, next to be read */
 	volatile bool asked[PASSO_GRBL_ASKS];
-	volatile uint8_t mark;        /* `head` at the last request that cancels a jog */
-	volatile bool full;           /* all is lost until what is there has been read */
-	volatile bool lost_part;      /* the end of what was lost is not that of a line */
-	volatile uint16_t lost_lines; /* ends of lines that were lost; wraps */
+	volatile uint8_t mark;                 /* `head` at the last request that cancels a jog */
+	volatile bool full;                    /* all is lost until what is there has been read */
+	volatile bool lost_part;               /* the end of what was lost is not that of a line */
+	volatile uint16_t lost_lines;          /* ends of lines that were lost; wraps */
 	volatile uint8_t feed, rapid, spindle; /* overrides in percent */
 	/* the line that comes in */
 	uint16_t found_lines; /* of lost_lines */
@@ -76,6 +76,7 @@ struct passo_grbl {
 	bool begun, dropped;  /* it has a byte; its first one is one of these */
 	/* the state */
 	uint8_t feed_now, rapid_now, spindle_now; /* overrides in force */
+	uint8_t rate;                             /* of the core, percent */
 	uint8_t reports;                          /* until the next one with offsets */
 	uint8_t starts;                           /* start lines that have been executed */
 	uint8_t accessories;                      /* those told last */

@@ -47,6 +47,8 @@ bool passo_grbl_end_stop(struct passo_grbl *grbl);
 bool passo_grbl_slows(const struct passo_grbl *grbl);
 /* The overrides of feed, rapids and spindle are in force. */
 void passo_grbl_override(struct passo_grbl *grbl);
+/* So is the rate of the core. */
+void passo_grbl_mind_rate(struct passo_grbl *grbl);
 /* Drives on or off; at rest. */
 enum passo_error passo_grbl_drive(struct passo_grbl *grbl, bool on);
 /* Drives that rest are switched off after the time of the settings. */

@@ -3,6 +3,8 @@
  */
 #include "passo_grbl_private.h"
 
+#define PERCENT_FULL 100u
+
 enum passo_grbl_state passo_grbl_state(const struct passo_grbl *grbl)
 {
 	if (grbl->homes)
@@ -118,16 +120,32 @@ bool passo_grbl_end_stop(struct passo_grbl *grbl)
 	return true;
 }
 
+/* Feeds above 100 % are planned anew; what is below is the rate of the core. */
 void passo_grbl_override(struct passo_grbl *grbl)
 {
-	struct passo_path_planner *path = grbl->player->feed->path;
+	const uint32_t above = grbl->feed > PERCENT_FULL ? grbl->feed : PERCENT_FULL;
 
 	grbl->feed_now = grbl->feed;
 	grbl->rapid_now = grbl->rapid;
 	grbl->spindle_now = grbl->spindle;
-	passo_path_override(path, PASSO_PATH_OVERRIDE_FULL * grbl->feed_now / 100u);
-	passo_path_rapid(path, PASSO_PATH_RAPID_FULL * grbl->rapid_now / 100u);
+	passo_path_override(grbl->player->feed->path, PASSO_PATH_OVERRIDE_MIN * above / PERCENT_FULL);
 	grbl->player->gcode->spindle_percent = grbl->spindle_now;
+}
+
+/* The rate is that of what moves, or is about to: of a feed, a rapid, or the full one of home and probe. */
+void passo_grbl_mind_rate(struct passo_grbl *grbl)
+{
+	const enum passo_player_motion motion = passo_player_motion(grbl->player);
+	uint8_t percent = PERCENT_FULL;
+
+	if (motion == PASSO_PLAYER_AT_REST)
+		return;
+	if (motion == PASSO_PLAYER_RAPID)
+		percent = grbl->rapid_now;
+	else if (motion == PASSO_PLAYER_FEED && grbl->feed_now < PERCENT_FULL)
+		percent = grbl->feed_now;
+	if (percent != grbl->rate && passo_override(grbl->player->feed->passo, percent) == PASSO_OK)
+		grbl->rate = percent;
 }
 
 static bool has_changed(const struct passo_grbl *grbl)

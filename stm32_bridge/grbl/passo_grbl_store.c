@@ -7,17 +7,18 @@
 
 static void set_defaults(struct passo_grbl *grbl)
 {
-	grbl->stored.settings = grbl->setup->defaults;
+	grbl->setup->defaults(&grbl->stored.settings);
 }
 
 /* Another number of axes, or a record of which the values make no sense here, gives the defaults. */
 static bool is_possible(struct passo_grbl *grbl)
 {
 	const unsigned axes = grbl->path.machine.axes;
-	struct passo_grbl_settings trial = grbl->setup->defaults;
+	struct passo_grbl_settings trial;
 	unsigned number;
 	bool whole;
 
+	grbl->setup->defaults(&trial);
 	trial.value[PASSO_GRBL_HOMING] = grbl->stored.settings.value[PASSO_GRBL_HOMING];
 	for (unsigned i = 0; (number = passo_grbl_setting_number(i, axes, &whole)) != PASSO_GRBL_NO_SETTING;
 	    i++) {
@@ -51,7 +52,8 @@ enum passo_gcode_error passo_grbl_load(struct passo_grbl *grbl)
 		passo_gcode_set_offsets(grbl->player->gcode, &grbl->stored.offsets);
 		return PASSO_GCODE_OK;
 	}
-	grbl->stored = (struct passo_grbl_stored){.settings = grbl->setup->defaults};
+	memset(&grbl->stored, 0, sizeof grbl->stored);
+	set_defaults(grbl);
 	passo_grbl_apply(grbl);
 	return state == PASSO_STORAGE_EMPTY ? PASSO_GCODE_OK : PASSO_GCODE_STORAGE;
 }

@@ -156,7 +156,7 @@ static void check_action(struct passo_player *player, enum passo_player_event *e
 	if (kind == PASSO_GCODE_END) {
 		*event = PASSO_PLAYER_ENDED;
 	} else if ((kind == PASSO_GCODE_LINE || kind == PASSO_GCODE_PROBE)
-		   && !passo_player_allows(player, player->action.target)) {
+	           && !passo_player_allows(player, player->action.target)) {
 		*event = PASSO_PLAYER_TRAVEL;
 		passo_player_drop(player);
 	}

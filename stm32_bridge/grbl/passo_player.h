@@ -9,9 +9,9 @@
  *     }
  * No call waits.
  *
- * A line is taken when its actions are done or on the path; a dwell, a probe, a pause and the end of the program
- * wait for the end of the motion before. Dwells between lines are ramps of the core, unless a sender is there that
- * is answered when they are over.
+ * A line is taken when its actions are done or on the path; a dwell, a probe, a pause and the end of the
+ * program wait for the end of the motion before. Dwells between lines are ramps of the core, unless a sender
+ * is there that is answered when they are over.
  */
 #ifndef PASSO_PLAYER_H
 #define PASSO_PLAYER_H
@@ -41,8 +41,13 @@ struct passo_player_machine {
 
 /* Lines of the path whose numbers are known, the last ones. */
 #ifndef PASSO_PLAYER_LINES
-#define PASSO_PLAYER_LINES 128u
+#define PASSO_PLAYER_LINES 512u
 #endif
+/* The same for rapids: more than the core and the look-ahead hold. */
+#define PASSO_PLAYER_WINDOW 512u
+
+/* What moves, or will move when the look-ahead begins. */
+enum passo_player_motion { PASSO_PLAYER_AT_REST, PASSO_PLAYER_FEED, PASSO_PLAYER_RAPID, PASSO_PLAYER_SEEK };
 
 /* What a line of G-code says of the lines of the path that it makes. */
 struct passo_player_line {
@@ -50,7 +55,8 @@ struct passo_player_line {
 	uint32_t output;
 };
 
-/* Members up to `held` may be set by the caller; those of the probe are to be read. All others are private. */
+/* Members up to `held` may be set by the caller; those of the probe are to be read. All others are private.
+ */
 struct passo_player {
 	bool answers; /* dwells wait for the motion, and end before the line is taken */
 	bool checks;  /* nothing of a line is done; targets outside of the travel are told */
@@ -66,9 +72,11 @@ struct passo_player {
 	uint64_t dwell;     /* microseconds that are left of it */
 	uint32_t dwells_at; /* the time of that */
 	uint32_t chords;    /* taken since passo_player_open() */
-	uint32_t number[PASSO_PLAYER_LINES]; /* of the lines of the path: N, and the upper half of the output */
-	uint16_t power[PASSO_PLAYER_LINES];  /* the lower half */
-	uint64_t probe_scale;                /* steps of the longest axis per mm, UQ32.32 */
+	uint32_t
+	    number[PASSO_PLAYER_LINES]; /* of the lines of the path: N, and the upper half of the output */
+	uint16_t power[PASSO_PLAYER_LINES]; /* the lower half */
+	uint8_t rapid[PASSO_PLAYER_WINDOW / 8u];
+	uint64_t probe_scale; /* steps of the longest axis per mm, UQ32.32 */
 	bool touched;
 	passo_gcode_position touch; /* machine coordinates */
 };
@@ -94,6 +102,7 @@ void passo_player_go_on(struct passo_player *player);
 
 /* Of what moves; false: nothing does, or it is too long ago. */
 bool passo_player_moving_line(const struct passo_player *player, struct passo_player_line *line);
+enum passo_player_motion passo_player_motion(const struct passo_player *player);
 /* mm/min along the way at present, UQ48.16. */
 uint64_t passo_player_speed(const struct passo_player *player);
 

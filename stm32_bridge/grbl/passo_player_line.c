@@ -26,6 +26,24 @@ void passo_player_note(struct passo_player *player, uint32_t index)
 
 	player->number[index % PASSO_PLAYER_LINES] = action->line | pack(action->output) << NUMBER_BITS;
 	player->power[index % PASSO_PLAYER_LINES] = (uint16_t)action->output;
+	const uint8_t bit = (uint8_t)(1u << index % 8u);
+	uint8_t *bits = &player->rapid[index / 8u % sizeof player->rapid];
+
+	*bits = (uint8_t)(action->feed == PASSO_PATH_RAPID ? *bits | bit : *bits & ~bit);
+}
+
+enum passo_player_motion passo_player_motion(const struct passo_player *player)
+{
+	const struct passo_path_feed *feed = player->feed;
+	const bool moves = passo_is_moving(feed->passo);
+	const uint32_t index = moves ? feed->done : feed->path->sent;
+
+	if (player->probes || feed->passo->task.kind == PASSO_TASK_HOME)
+		return PASSO_PLAYER_SEEK;
+	if (index == feed->path->added)
+		return PASSO_PLAYER_AT_REST;
+	return player->rapid[index / 8u % sizeof player->rapid] >> index % 8u & 1u ? PASSO_PLAYER_RAPID
+	                                                                           : PASSO_PLAYER_FEED;
 }
 
 bool passo_player_moving_line(const struct passo_player *player, struct passo_player_line *line)

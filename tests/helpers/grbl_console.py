@@ -7,16 +7,20 @@ from typing import Any
 from passo.grbl import Grbl
 
 
+ROOM = 255  # bytes
+
+
 class GrblConsole:
     """A console of an engine; arguments as those of Grbl, without where it writes."""
 
     def __init__(self, engine: Any, machine: Any, *settings: Any):
         self.engine = engine
-        self.said = ""
+        self.said = self.log = ""
         self.grbl = Grbl(engine, machine, self.write, *settings)
 
     def write(self, text: str) -> None:
         self.said += text
+        self.log += text
 
     def take_all(self) -> str:
         """What it has said since the last call."""
@@ -58,6 +62,15 @@ class GrblConsole:
     def fields(self, name: str) -> list[float]:
         """The numbers of a field of a status report."""
         return [float(number) for number in self.status()[name].split(",")]
+
+    @property
+    def answers(self) -> list[str]:
+        """All since the beginning."""
+        return re.findall(r"^(?:ok|error:\d+)(?=\r$)", self.log, re.M)
+
+    def finish(self) -> None:
+        """Wait until all lines are answered, and it is idle."""
+        assert self.grbl.wait(lambda: self.grbl.room == ROOM and not self.grbl.c.owes and self.grbl.is_idle)
 
     def rest(self) -> None:
         """Wait until it is idle."""

@@ -26,7 +26,7 @@ static const uint16_t AXIS_VALUES[PASSO_GRBL_AXIS_SETTINGS][2] = {
     [PASSO_GRBL_TRAVEL] = {200, 200},
 };
 
-static void set_defaults(struct passo_grbl_settings *settings)
+static void grbl_defaults(struct passo_grbl_settings *settings)
 {
 	for (unsigned i = 0; i < PASSO_GRBL_SETTINGS; i++)
 		settings->value[i] = VALUES[i] * MILLION;
@@ -51,8 +51,8 @@ void grbl_machine(
 	    .homes = HOMES,
 	    .homed = HOMED,
 	    .probe = PROBE,
+	    .defaults = grbl_defaults,
 	    .pages = pages};
 	if (setup->path.machine.axes > AXES_USED)
 		setup->path.machine.axes = AXES_USED;
-	set_defaults(&setup->defaults);
 }
