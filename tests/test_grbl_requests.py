@@ -54,7 +54,9 @@ def x_of(session: GrblConsole) -> float:
 # ------------------------------------------------------------------------------------------ check mode
 
 
-@pytest.mark.parametrize("line", ["$J=G91X10F6000", "$H", "$N0=G0X10", "$SLP", "$RST=$", "$#", "$100=90", "$I"])
+@pytest.mark.parametrize(
+    "line", ["$J=G91X10F6000", "$H", "$N0=G0X10", "$SLP", "$RST=$", "$#", "$100=90", "$I"]
+)
 def test_check_mode_takes_nothing_that_moves_or_changes(session: GrblConsole, line: str) -> None:
     """Error 8, and nothing moves."""
     session.line("$C")
@@ -171,7 +173,7 @@ def test_every_jog_is_answered(session: GrblConsole, code: bytes) -> None:
     session.send(code + b"X-1 F6000\n")
     session.finish()
     assert session.answers[answered:] == ["ok"] * 71
-    assert -60 < there and there - 12 < x_of(session) < there
+    assert there > -60 and there - 12 < x_of(session) < there
 
 
 def test_lines_after_the_end_of_a_jog_are_taken(session: GrblConsole) -> None:

@@ -70,6 +70,15 @@ int64_t *passo_grbl_setting(struct passo_grbl_settings *settings, unsigned numbe
 	return number >= AXES_AT ? &settings->axis[index][number % AXES_STEP] : &settings->value[index];
 }
 
+uint32_t passo_grbl_setting_most(unsigned number, unsigned axes, bool *positive)
+{
+	unsigned index = 0;
+	const struct kind *kind = find(number, axes, &index);
+
+	*positive = kind && kind->positive;
+	return kind ? kind->most : 0;
+}
+
 unsigned passo_grbl_setting_number(unsigned index, unsigned axes, bool *whole)
 {
 	if (index < PASSO_GRBL_SETTINGS) {

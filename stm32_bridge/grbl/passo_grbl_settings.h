@@ -67,6 +67,9 @@ int64_t *passo_grbl_setting(struct passo_grbl_settings *settings, unsigned numbe
 enum passo_gcode_error passo_grbl_set(
     struct passo_grbl_settings *settings, unsigned number, unsigned axes, int64_t value);
 
+/* Largest value of `$n`, and whether 0 is none. */
+uint32_t passo_grbl_setting_most(unsigned number, unsigned axes, bool *positive);
+
 /* The settings in the order of their numbers: the number of each, and whether it is whole; 0xFF: no more. */
 #define PASSO_GRBL_NO_SETTING 0xFFu
 unsigned passo_grbl_setting_number(unsigned index, unsigned axes, bool *whole);

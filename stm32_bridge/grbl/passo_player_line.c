@@ -36,7 +36,7 @@ enum passo_player_motion passo_player_motion(const struct passo_player *player)
 {
 	const struct passo_path_feed *feed = player->feed;
 	const bool moves = passo_is_moving(feed->passo);
-	const uint32_t index = moves ? feed->done : feed->path->sent;
+	const uint32_t index = moves ? feed->moving : feed->path->sent;
 
 	if (player->probes || feed->passo->task.kind == PASSO_TASK_HOME)
 		return PASSO_PLAYER_SEEK;
@@ -49,7 +49,7 @@ enum passo_player_motion passo_player_motion(const struct passo_player *player)
 bool passo_player_moving_line(const struct passo_player *player, struct passo_player_line *line)
 {
 	const struct passo_path_feed *feed = player->feed;
-	const uint32_t index = feed->done;
+	const uint32_t index = feed->moving;
 
 	if (player->probes) {
 		*line = (struct passo_player_line){player->action.line, player->action.output};

@@ -6,7 +6,6 @@ from typing import Any
 
 from passo.grbl import Grbl
 
-
 ROOM = 255  # bytes
 
 
