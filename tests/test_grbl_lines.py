@@ -2,28 +2,13 @@
 """What the grbl console answers when, and what it reports of what moves."""
 
 import re
-from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
-from passo.grbl_setup import machine_at
-from passo.machine_file import read_machine
 
 from tests.helpers.grbl_console import GrblConsole
-from tests.test_grbl_requests import MACHINE, PATIENCE
+from tests.helpers.grbl_machine import session
 
-
-@pytest.fixture
-def session(tmp_path: Path) -> Iterator[GrblConsole]:
-    """A machine with homes and a probe, unlocked."""
-    path = tmp_path / "machine.toml"
-    path.write_text(MACHINE)
-    machine = read_machine(path)
-    with machine_at("model", machine) as engine:
-        made = GrblConsole(engine, machine)
-        made.limit(PATIENCE)
-        assert made.line("$X").endswith("ok")
-        yield made
+__all__ = ["session"]
 
 
 def seconds_until_answered(session: GrblConsole, line: str) -> float:

@@ -9,8 +9,8 @@ from passo.toolchain import paths
 
 STATES = ("Home", "Sleep", "Alarm", "Door", "Hold", "Check", "Jog", "Run", "Idle")
 ACTS = {
-    "": "NOTHING", "reset": "RESETS", "alarm 6, reset": "FAILS", "hold": "HOLDS", "door": "OPENS", "cancel": "CANCELS",
-    "cancel, door": "CLOSES", "alarm 7": "STOPS", "resume": "GOES_ON",
+    "": "NOTHING", "reset": "RESETS", "alarm 6, reset": "FAILS", "hold": "HOLDS", "door": "OPENS",
+    "cancel": "CANCELS", "cancel, door": "CLOSES", "alarm 7": "STOPS", "resume": "GOES_ON",
 }  # fmt: skip
 RESULTS = {"taken": 0, "waits": 0xFF, "8": 8, "9": 9}
 
