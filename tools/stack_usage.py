@@ -3,9 +3,9 @@
 """Worst-case stack, flash and RAM of a Thumb-2 program, computed from its ELF file.
 
 Every function is disassembled for its stack frame and its calls. Indirect calls are listed in a file
-("caller: target target ..."), by the function of the source that makes them: where that was inlined, the
-debug information names it. An indirect call that is not listed, recursion, and an unknown change of the
-stack pointer are errors. All nesting interrupts are added to the deepest path, each with the 36 bytes that
+("caller: target target ..."); the caller is the function of the source, also where the linker has made it a
+part of another one. An indirect call that is not listed, recursion, and an unknown change of the stack
+pointer are errors. All nesting interrupts are added to the deepest path, each with the 36 bytes that
 the processor stacks. The exit status is 1 if the program does not fit.
 """
 
@@ -17,6 +17,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 EXCEPTION_BYTES = 36  # 8 words, and one for alignment
+INSTRUCTION = re.compile(r"^ *([0-9a-f]+):\t([^\t]+)\t?(.*)$")
 FUNCTION = re.compile(r"^([0-9a-f]+) <(.+)>:$")
 TARGET = re.compile(r"([0-9a-f]+) <([^>+]+)>")
 CLONE = re.compile(r"\.(isra|part|constprop|cold|lto_priv)\b.*")
@@ -34,9 +35,9 @@ class Function:
     name: str  # without the compiler's suffixes for parts and clones
     frame: int = 0
     calls: set[int] = field(default_factory=set)
-    by_pointer: dict[str, list[str]] = field(
+    pointers: dict[int, list[str]] = field(
         default_factory=dict
-    )  # indirect calls: the functions inlined there
+    )  # indirect calls by address: who may be listed
 
 
 def disassemble(elf: Path, cross: str) -> dict[int, Function]:
@@ -48,34 +49,13 @@ def disassemble(elf: Path, cross: str) -> dict[int, Function]:
         if match := FUNCTION.match(line):
             start = int(match[1], 16)
             current = functions.setdefault(start, Function(CLONE.sub("", match[2])))
-        elif current and "\t" in line:
-            fields = line.split("\t")
-            if len(fields) >= 2:
-                operands = "\t".join(fields[2:]).split(";")[0].split("@")[0]
-                _instruction(current, start, fields[0].strip(" :"), fields[1].strip(), operands)
-    _name_callers(functions, elf, cross)
+        elif current and (match := INSTRUCTION.match(line)):
+            operands = match[3].split(";")[0].split("@")[0]
+            _instruction(current, start, int(match[1], 16), match[2].strip(), operands)
     return functions
 
 
-def _name_callers(functions: dict[int, Function], elf: Path, cross: str) -> None:
-    """Find the functions of the source that make the indirect calls, the innermost first."""
-    sites = [f"0x{site}" for function in functions.values() for site in function.by_pointer]
-    if not sites:
-        return
-    names: list[str] = []
-    inlined: dict[int, list[str]] = {}
-    for line in _run(f"{cross}addr2line", "-a", "-f", "-i", "-e", str(elf), *sites).splitlines():
-        if line.startswith("0x"):
-            names = inlined.setdefault(int(line, 16), [])
-        elif ":" not in line:
-            names.append(CLONE.sub("", line))
-    for function in functions.values():
-        for site, found in function.by_pointer.items():
-            found.extend(name for name in inlined[int(site, 16)] if name != "??")
-            found.append(function.name)
-
-
-def _instruction(function: Function, start: int, at: str, operation: str, operands: str) -> None:
+def _instruction(function: Function, start: int, at: int, operation: str, operands: str) -> None:
     """Account for one instruction: stack frame and calls."""
     name = operation.removesuffix(".n").removesuffix(".w")
     operands = operands.strip()
@@ -96,7 +76,7 @@ def _instruction(function: Function, start: int, at: str, operation: str, operan
         if (match := TARGET.search(operands)) and int(match[1], 16) != start:
             function.calls.add(int(match[1], 16))
     elif name == "blx" or (name == "bx" and operands != "lr"):
-        function.by_pointer[at] = []
+        function.pointers[at] = [function.name]
 
 
 def _registers(operands: str) -> int:
@@ -106,6 +86,15 @@ def _registers(operands: str) -> int:
         low, _, high = item.strip().partition("-")
         count += int(high[1:]) - int(low[1:]) + 1 if high else 1
     return count
+
+
+def name_callers(functions: dict[int, Function], elf: Path, cross: str) -> None:
+    """Add to each indirect call the functions of the source that it is in, innermost first."""
+    sites = {site: names for function in functions.values() for site, names in function.pointers.items()}
+    said = _run(f"{cross}addr2line", "-a", "-i", "-f", "-e", str(elf), *(f"{site:#x}" for site in sites))
+    for part in re.split(r"^0x", said, flags=re.M)[1:]:
+        site, *inlined = part.splitlines()
+        sites[int(site, 16)][:0] = [CLONE.sub("", name) for name in inlined[::2]]
 
 
 def read_calls(path: Path) -> dict[str, list[str]]:
@@ -124,12 +113,12 @@ def connect(functions: dict[int, Function], pointers: dict[str, list[str]]) -> d
     by_name: dict[str, list[int]] = {}
     for address, function in functions.items():
         by_name.setdefault(function.name, []).append(address)
-    used: set[str] = set()
+    used = set()
     for function in functions.values():
-        for names in function.by_pointer.values():
-            caller = next((name for name in names if name in pointers), None)
+        for callers in function.pointers.values():
+            caller = next((name for name in callers if name in pointers), None)
             if caller is None:
-                raise StackError(f"{' in '.join(names)} makes an indirect call and is not listed")
+                raise StackError(f"{callers[0]} makes an indirect call and is not listed")
             used.add(caller)
             for target in pointers[caller]:
                 if target not in by_name:
@@ -186,6 +175,7 @@ def main() -> int:
     options = parser.parse_args()
     try:
         functions = disassemble(options.elf, options.cross)
+        name_callers(functions, options.elf, options.cross)
         by_name = connect(functions, read_calls(options.calls))
         stack, path = deepest(functions, by_name[options.start][0])
         for handler in options.interrupt:

@@ -12,7 +12,7 @@ from typing import Any
 from passo.driver import Driver
 from passo.failure import BadInputError, Failure
 from passo.gcode import Gcode
-from passo.grbl_setup import SettingsFile, setup_of
+from passo.grbl_setup import SettingsFile, defaults_of, setup_of
 from passo.machine_file import MachineFile
 from passo.native import ffi, planner
 from passo.part import LOOPS_PER_SECOND, SLEWS_PER_SECOND
@@ -49,7 +49,9 @@ class Grbl:
         self.answers = 0  # ok and error so far
         self.c = ffi().new("struct passo_grbl *")
         self._settings = settings
-        self._setup = setup_of(machine, engine.parameters, settings.c if settings else ffi().NULL)
+        self._defaults = defaults_of(machine)
+        pages = settings.c if settings else ffi().NULL
+        self._setup = setup_of(machine, engine.parameters, self._defaults, pages)
         self._c.passo_grbl_open(self.c, self.player.c, self._sink, self._setup)
         self._check()
 

@@ -98,7 +98,10 @@ static void correct(struct passo_path_feed *feed)
 	    || passo->stream == PASSO_STREAM_FILLS)
 		return;
 	feed->seen = passo->looked_at;
-	const uint32_t lines = (uint32_t)(passo->line_places - passo->snapshot.line_room) + 1u;
+	const uint32_t waiting = (uint32_t)(passo->line_places - passo->snapshot.line_room); /* and moving */
+	const uint32_t lines = waiting + 1u;
+	if (passo->snapshot.state == PASSO_STATE_RUN && waiting > 0u)
+		feed->moving = feed->first + feed->lines - waiting;
 	if (passo->snapshot.state == PASSO_STATE_RUN && feed->lines > lines)
 		feed->done = feed->first + feed->lines - lines;
 	const uint64_t least = queued > 1u ? clocks_of(feed, queued - 1u) : 0u;
@@ -134,7 +137,7 @@ static enum passo_error begin(struct passo_path_feed *feed)
 
 	passo_path_next_motion(feed->path);
 	feed->left = 0;
-	feed->first = feed->done = feed->path->sent;
+	feed->first = feed->done = feed->moving = feed->path->sent;
 	feed->ramps = feed->lines = 0;
 	feed->hurry = false;
 	return passo_stream(feed->passo, &source);
