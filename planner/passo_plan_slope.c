@@ -102,7 +102,7 @@ static uint64_t highest_with_ease(
 uint64_t passo_slope_reach(const struct passo_draft *draft, uint64_t limit, const struct passo_slope *up,
     uint64_t start, const struct passo_slope *down, uint64_t stop)
 {
-	if (up->ease == 0 && down->ease == 0)
+	if (!passo_slope_is_eased(up) && !passo_slope_is_eased(down))
 		return reachable_speed(draft, limit, *up, start, *down, stop);
 
 	const bool both = up->ease > 0 && down->ease > 0;

@@ -4,6 +4,7 @@
 #ifndef PASSO_PLAN_SLOPE_H
 #define PASSO_PLAN_SLOPE_H
 
+#include <stdbool.h>
 #include "passo_math.h"
 #include "passo_plan_draft.h"
 
@@ -15,6 +16,18 @@
 struct passo_slope {
 	uint64_t clocks, speed, ease, jerk;
 };
+
+/* Whether its acceleration has to build up: never in an image whose moves are linear, for the flash of a
+ * small controller. */
+static inline bool passo_slope_is_eased(const struct passo_slope *slope)
+{
+#ifdef PASSO_LINEAR_MOVES
+	(void)slope;
+	return false;
+#else
+	return slope->ease != 0u;
+#endif
+}
 
 /* Any change of speed at once. */
 static const struct passo_slope PASSO_VERTICAL = {0, 1, 0, 0};

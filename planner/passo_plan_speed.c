@@ -13,7 +13,7 @@ static struct passo_phase ramp_phase(
 {
 	uint64_t clocks = low < high ? passo_slope_clocks_ceil(slope, high - low) : 0;
 	uint64_t ticks = passo_ticks_ceil(draft->machine, clocks);
-	if (slope.ease == 0 || clocks == 0)
+	if (!passo_slope_is_eased(&slope) || clocks == 0)
 		return (struct passo_phase){passo_draft_halvable(draft, ticks), 0, 0};
 	uint64_t curve = passo_ticks_ceil(draft->machine, passo_slope_curve(slope, high - low, clocks));
 	uint64_t straight = ticks > curve ? ticks - curve : 0;
@@ -32,6 +32,10 @@ static enum passo_plan_error find_slope(struct passo_slope *slope, const struct 
 		*slope = (struct passo_slope){rise->ramp_clocks, speed - end_speed, 0, 0};
 	else
 		return PASSO_PLAN_NO_ACCELERATION;
+#ifdef PASSO_LINEAR_MOVES
+	if (rise->jerk > 0)
+		return PASSO_PLAN_BAD_PROFILE;
+#endif
 	if (rise->jerk > 0 && speed > end_speed) {
 		slope->ease = passo_mul_div_ceil(rise->acceleration, clock_hz, rise->jerk);
 		slope->jerk = rise->jerk;

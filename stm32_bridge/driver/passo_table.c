@@ -89,6 +89,9 @@ enum passo_error passo_driver_tables(
 		const unsigned bank = (unsigned)plan->ramps[i].shape;
 		if (bank == PASSO_SHAPE_LINEAR)
 			continue;
+#ifdef PASSO_LINEAR_MOVES /* for the flash of a small controller */
+		return PASSO_ERROR_TABLE;
+#endif
 		const uint16_t *user = shape && (unsigned)shape->bank == bank ? shape->table : NULL;
 		enum passo_error error = make_hold(passo, bank, plan->sigmoid_alpha, user);
 		if (error != PASSO_OK)
