@@ -83,7 +83,7 @@ def test_the_tests_kill_mutants_in_c(tmp_path: Path) -> None:
         reached = tmp_path / "reached"
         reached.write_bytes(bytes(len(mutants) + 1))
         tests = ["tests/test_gcode_arcs.py"]
-        seen = worker.ask({"record": str(reached), "tests": tests})
+        seen = worker.ask({"record": str(reached), "tests": tests, "longest": 60.0})
         assert seen["failed"] == []
         numbers = {number for test in seen["reached"].values() for number in test}
         assert numbers & {mutant.number for mutant in mutants}
