@@ -76,9 +76,10 @@ def _proof_modules(proof: formal.Proof) -> dict[str, Cells]:
     folder = WORK / f"cells_{os.getpid()}_{proof.name}"
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    for name in ("rtl", "formal"):
-        for file in (paths.root / name).glob("*.v*"):
-            shutil.copy(file, folder / file.name)
+    text = proof.sby.read_text(encoding="utf-8")
+    for line in re.findall(r"^\[files\]\n(.*)", text, re.M | re.S)[0].split("\n"):
+        if names := line.split():  # where it comes from, after the name that it has there
+            shutil.copy(paths.root / names[-1], folder / Path(names[0]).name)
     lines = _script(proof)
     place = _place(lines)
     yosys(folder, "\n".join([*lines[:place], *_proc(lines), "write_json cells.json"]) + "\n")
@@ -180,12 +181,12 @@ def _try(
 ) -> None:
     """One mutant in one proof."""
     fate = fates.get(mutant.name)
-    fate.tried = [*(fate.tried or []), name]
     try:
         broken = prove(core, mutant, proof)
     except Failure as failure:
         show(f"{mutant.name}: {failure}")
         return
+    fate.tried = [*(fate.tried or []), name]
     if broken:
         fate.killed, fate.says = f"proof {proof.name}", broken
     show(f"{core.name}: {mutant.module}: proof {proof.name}: {broken or 'lives'}")
