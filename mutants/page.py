@@ -147,10 +147,8 @@ def _rtl_table(all_scores: Sequence[Score]) -> str:
 def _c_table(all_scores: Sequence[Score]) -> str:
     lines = ["| file | mutants | killed | no fault | not played | live | score |", "|---|" + "---:|" * 6]
     for score in all_scores:
-        lines.append(
-            f"| `{score.module}` | {score.made} | {score.dead} | {score.equal} | {score.waiting} | {len(score.living)} "
-            f"| {score.share:.0%} |"
-        )
+        counts = f"{score.made} | {score.dead} | {score.equal} | {score.waiting} | {len(score.living)}"
+        lines.append(f"| `{score.module}` | {counts} | {score.share:.0%} |")
     return "\n".join(lines)
 
 
@@ -168,8 +166,8 @@ def _living(all_scores: Sequence[Score]) -> str:
 
 
 NOT_ENDED = """
-These are the figures of a run that has not ended: not all judges have seen all mutants, so that a mutant that lives
-here may be killed yet."""
+These are the figures of a run that has not ended: not all judges have seen all mutants, so that a mutant
+that lives here may be killed yet."""
 
 
 def write(rtl: Sequence[Score], c: Sequence[Score], seed: int, ended: bool = True) -> None:
