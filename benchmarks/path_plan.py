@@ -7,8 +7,7 @@ from typing import Any
 
 from passo.build import Parameters
 from passo.path import Path, PathSettings
-
-from benchmarks.path_reference import Line
+from passo.path_rounding import Line
 
 
 @dataclass(frozen=True)

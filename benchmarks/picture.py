@@ -11,6 +11,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
+from passo.output import complete
 from passo.plot import COLORS, STYLE
 
 from benchmarks import passo_side, sources
@@ -41,7 +42,8 @@ def plot_accuracy(path: Path) -> None:
             _distances(ax, case)
         for ax in axes[:, 0]:
             ax.set_ylabel("steps")
-        figure.savefig(path, dpi=92, pil_kwargs={"optimize": True})
+        with complete(path) as part:
+            figure.savefig(part, dpi=92, pil_kwargs={"optimize": True})
         plt.close(figure)
 
 

@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import Any, Protocol
 
+import cocotb
 import numpy as np
 from cocotb.handle import HierarchyObject
 from cocotb.triggers import RisingEdge
@@ -30,6 +31,7 @@ from tests.helpers.driver_wire import by_speed, configure
 PARAMETERS = Parameters(**{name.lower(): value for name, value in BUS_CORE.items()})
 CLOCK_HZ = 10_000_000  # of plans
 SELECT, WORD = 0, 4  # addresses
+READ_WAIT = 264  # clocks of a read, at most
 WAIT = 128  # clocks after a word or a change of SELECT
 ALL_LANES = 0xF
 MOVES = ((30, -17), (-5, 0), (1, 40), (-26, -23))
@@ -261,6 +263,28 @@ def an_access_waits_for_the_one_before(core: BusCore) -> None:
     assert clocks_of(lambda: core.write(WORD, 0)) > enough
     assert clocks_of(lambda: core.write(SELECT, 0)) > enough
     assert core.read(SELECT) == 0
+
+
+@bus_test
+def reads_pass_a_stream_of_writes(core: BusCore) -> None:
+    """On a bus that has both at once: a read waits for one write at most."""
+    if not isinstance(core.bus, AxiLite):
+        return
+    bus, writes, reads = core.bus, patience(verilator=160, icarus=20), patience(verilator=12, icarus=3)
+
+    async def both() -> list[int]:
+        ends = [cocotb.start_soon(bus.write(SELECT, 1 - i % 2)) for i in range(writes)]
+        waited = []
+        for _ in range(reads):
+            before = core.clock
+            assert await bus.read(WORD) is not None
+            waited.append(core.clock - before)
+        assert not ends[-1].done()
+        for end in ends:
+            assert await end is not None
+        return waited
+
+    assert max(core._thread.wait(both())) <= READ_WAIT
 
 
 @bus_test

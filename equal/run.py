@@ -9,7 +9,6 @@ run of all modules that is good writes the table of docs/equality.md.
 """
 
 import argparse
-import json
 import shutil
 import sys
 import time
@@ -20,6 +19,7 @@ from multiprocessing import get_context
 from passo import planted
 from passo.console import console, table
 from passo.failure import Failure
+from passo.output import make_folder, write_json
 from passo.toolchain import paths
 
 from equal import page
@@ -134,8 +134,8 @@ def main() -> None:
     good = all(result.good for result in results)
     found = [asdict(result) for result in results]
     report = {"results": found, "proved_bits": proved, "bits": all_bits, "seconds": seconds}
-    BUILD.mkdir(parents=True, exist_ok=True)
-    (paths.build / "equal.json").write_text(json.dumps(report, indent=1) + "\n")
+    make_folder(BUILD)
+    write_json(report, paths.build / "equal.json")
     if good and chosen == known:
         page.write(chosen, report)
     sys.exit(not good)

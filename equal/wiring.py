@@ -10,7 +10,6 @@ with any one inverted, one must. build/wiring.json says which one, and in which 
 """
 
 import argparse
-import json
 import re
 import shutil
 import subprocess
@@ -24,6 +23,7 @@ from pathlib import Path
 from passo.build import rtl_library
 from passo.console import console, table
 from passo.failure import Failure
+from passo.output import write_json
 from passo.toolchain import environment, paths
 
 from equal.rtl import PORT
@@ -189,7 +189,7 @@ def main() -> None:
         f"{found} of {len(seen)} inverted connections are seen; {time.monotonic() - began:.0f} s.",
         highlight=False,
     )
-    (paths.build / "wiring.json").write_text(json.dumps(seen, indent=1) + "\n")
+    write_json(seen, paths.build / "wiring.json")
     sys.exit(found != len(seen))
 
 

@@ -58,8 +58,8 @@ always @(posedge clk)
     if (!rst && !pending[0]) assert (f_run <= {2'd0, f_since});
     if (f_begun && $past(f_begun)) begin
       if (f_calm > 6'd1) assert (first[0] == second[0]);
-      if (!changed && !changes) assert (f_still > {2'd0, f_since});
-      if (f_calm > {2'd0, f_since} + 6'd3) assert (!changed && !changes);
+      if (!changed) assert (f_still > {2'd0, f_since} && pending[0] == f_differs);
+      if (f_calm > {2'd0, f_since} + 6'd3) assert (!changed);
       if (f_calm > {2'd0, f_since} + {2'd0, f_length} + 6'd3) assert (!unknown);
       assert (forgot == (f_settings == 6'd0));
       if (f_settings < 6'd2) assert (changed);

@@ -21,13 +21,11 @@ always @(posedge clk) begin
   f_same_q <= f_same[17] ? f_same_q : f_same;
 end
 
-// --- On how many clocks up to the last one the source has had the level that was not accepted yet; time since arming
+// --- On how many clocks up to the last one the source has had the level that was not accepted yet
 reg [16:0] f_run = 17'd0;
-reg [31:0] f_clocks;
 reg f_was_armed = 1'b0;  // by a write, and not used since
 always @(posedge clk) begin
   f_run       <= armed && (picked ^ level) && !accepts && !rst && !write && !forget ? f_run + 17'd1 : 17'd0;
-  f_clocks    <= !armed ? 32'd0 : f_clocks + 32'd1;
   f_was_armed <= !rst && (write ? bus_data[CHANNEL_TRIGGER_ARM_LSB] : f_was_armed && !latch);
 end
 
@@ -40,8 +38,6 @@ always @(posedge clk)
     if ($past(armed && picked != falling && level == falling && f_run == {1'b0, filter}) && !$past(write))
       always_fires : assert (latch);
     if (armed && (picked ^ level)) not_later : assert (f_run <= {1'b0, filter});
-    if (armed && $past(armed)) counts_from_arming : assert (clocks == f_clocks);
-    if (latch) keeps_its_clock : assert (clocks == $past(clocks) + 32'd1);
     if ($past(fired) && !$past(write)) stays_fired : assert (fired);
     if (hard_stop || soft_stop || end_endless) acts_with_the_latch : assert (latch);
     if ($past(f_begun, 2) && $past(!write) && source == TRIGGER_SOURCE_PROBE) source_is_seen : assert (picked == $past(probe));
@@ -59,7 +55,7 @@ always @(posedge clk)
 always @(posedge clk)
   if (f_begun && $past(f_begun)) begin
     if (armed || arming) assert (f_was_armed);
-    if (armed) assert (f_run == {1'b0, count} && clocks == f_clocks && !fired && !latch && stale == 2'd0);
+    if (armed) assert (f_run == {1'b0, count} && !fired && !latch && stale == 2'd0);
     if (latch) assert (f_was_armed);
     if (armed || arming) assert ({1'b0, stale} == (f_age < 3'd3 ? 3'd3 - f_age : 3'd0));
     if ((armed || arming) && stale == 2'd0) assert (count <= filter);

@@ -25,7 +25,7 @@ always @(posedge clk)
   if (f_begun && $past(f_begun) && f_small) begin
     if (stop && !$past(stop)) not_before_its_time : assert ($past(f_age) >= $past(f_stop_time) && $past(moving));
     if (stop) never_when_off : assert (stop_after != 10'd0 || fed);
-    if ($past(moving && !fed && f_age >= f_stop_time && stop_after != 10'd0))
+    if ($past(moving && !fed && f_age > f_stop_time && stop_after != 10'd0))
       stops_a_motion_in_time : assert (stop);
     if (disable_drives && !$past(disable_drives))
       disables_after_the_stop : assert ($past(stop) && $past(f_stopped) >= $past(f_disable_time));
@@ -34,17 +34,14 @@ always @(posedge clk)
   end
 
 `ifdef INVARIANTS
-wire [31:0] f_left = ({22'd0, count} << UNIT_LOG2) - {{(32 - UNIT_LOG2) {1'b0}}, unit};
+wire [UNIT_LOG2+9:0] f_time = stop ? f_stopped[UNIT_LOG2+9:0] : f_age[UNIT_LOG2+9:0];
 always @(posedge clk)
   if (f_begun && $past(f_begun)) begin
-    assert (unit_ends == &unit);
-    if (!fed && !stop && f_age <= f_stop_time)
-      assert (count != 10'd0 ? f_left == f_stop_time - f_age : f_age == f_stop_time);
-    if (!fed && !stop && f_age > f_stop_time) assert (count == 10'd0);
-    if (!fed && stop && f_stopped <= f_disable_time)
-      assert (count != 10'd0 ? f_left == f_disable_time - f_stopped : f_stopped == f_disable_time);
-    if (stop && !fed) assert (stop_after != 10'd0);
-    if (stop && !fed && f_stopped > f_disable_time) assert (count == 10'd0);
+    assert (stops == (stop_after != 10'd0) && disables == (disable_after != 10'd0));
+    if (!fed && f_small) assert ({count, unit} == f_time);
+    if (!fed && !stop && f_age > f_stop_time) assert (silent == stops);
+    if (!fed && silent) assert (stops && f_age > f_stop_time);
+    if (stop && !fed) assert (silent);
     if (disable_drives && !fed) assert (stop);
   end
 `endif

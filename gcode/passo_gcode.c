@@ -57,6 +57,7 @@ void passo_gcode_reset(struct passo_gcode *gcode)
 		gcode->shift[axis] = 0;
 	gcode->flood = gcode->mist = false;
 	gcode->tool_length = gcode->feed = gcode->spindle = 0;
+	gcode->tolerance = PASSO_GCODE_OWN_TOLERANCE;
 	gcode->line = 0;
 	gcode->tool = 0;
 	clear_job(gcode);
@@ -115,6 +116,7 @@ static void accept(struct passo_gcode *gcode, const struct passo_gcode_check *ch
 	if (block->words & PASSO_GCODE_WORD('S'))
 		gcode->spindle = block->value['S' - 'A'];
 	gcode->feed = check->feed;
+	gcode->tolerance = check->tolerance;
 	for (unsigned group = 0; group < PASSO_GCODE_MODES; group++)
 		gcode->mode[group] = check->mode[group];
 	accept_coolant(gcode, block->command[PASSO_GCODE_COOLANT]);

@@ -26,6 +26,7 @@ struct passo_gcode_settings {
 	uint32_t arc_tolerance;   /* nm, at least 1 */
 	uint32_t spindle_maximum; /* rpm at full power; 0: S has no effect */
 	bool laser;               /* M4: power in proportion to the speed, not reverse */
+	uint32_t spindle_minimum; /* rpm of a spindle that turns */
 };
 
 /* What outlasts a reset: kept by the caller, if at all. */
@@ -33,6 +34,9 @@ struct passo_gcode_offsets {
 	passo_gcode_position system[PASSO_GCODE_SYSTEMS];
 	passo_gcode_position home[2]; /* G28, G30 */
 };
+
+/* G64 without a word: that of the path, unless it is told. 0, of G61 and G64 P0: every point is passed. */
+#define PASSO_GCODE_OWN_TOLERANCE (INT64_C(-1))
 
 /* The output word of the lines: that of the core with OUTPUTS. */
 #define PASSO_GCODE_OUTPUT_SPINDLE (UINT32_C(1) << 16)
@@ -55,6 +59,7 @@ struct passo_gcode_action {
 	enum passo_gcode_kind kind;
 	passo_gcode_position target; /* machine coordinates */
 	uint64_t feed;               /* UQ32.32 mm/s, or PASSO_PATH_RAPID */
+	uint64_t tolerance;          /* of a line: for passo_path_tolerance() */
 	uint64_t microseconds;       /* of a dwell */
 	uint32_t output;
 	uint32_t line; /* N; 0: none */
@@ -81,6 +86,7 @@ struct passo_gcode {
 	passo_gcode_position position; /* programmed end, machine coordinates */
 	passo_gcode_position shift;    /* G92 */
 	int64_t tool_length;           /* G43.1 */
+	int64_t tolerance;             /* nm, of lines that are merged; or PASSO_GCODE_OWN_TOLERANCE */
 	int64_t feed;                  /* nm/min; 0: none yet */
 	int64_t spindle;               /* millionths of rpm */
 	uint32_t line;                 /* N of the last line that had one */
@@ -114,6 +120,9 @@ enum passo_gcode_error passo_gcode_jog(struct passo_gcode *gcode, const char *te
 /* The next action of the line; false: none is left. */
 bool passo_gcode_next(struct passo_gcode *gcode, struct passo_gcode_action *action);
 bool passo_gcode_is_busy(const struct passo_gcode *gcode);
+
+/* The output word of the lines from now on. */
+uint32_t passo_gcode_output(const struct passo_gcode *gcode);
 
 /* Machine less work coordinates of an axis: the sum of all offsets. */
 int64_t passo_gcode_offset(const struct passo_gcode *gcode, unsigned axis);

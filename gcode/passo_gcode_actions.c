@@ -14,7 +14,10 @@ uint32_t passo_gcode_output(const struct passo_gcode *gcode)
 	if (gcode->mode[PASSO_GCODE_SPINDLE] != 50) {
 		const uint64_t full = (uint64_t)maximum * PASSO_GCODE_MILLION;
 		const uint64_t wanted = passo_mul_div((uint64_t)gcode->spindle, gcode->spindle_percent, 100);
-		const uint64_t speed = wanted < full ? wanted : full;
+		const uint64_t least =
+		    wanted > 0 ? (uint64_t)gcode->settings.spindle_minimum * PASSO_GCODE_MILLION : 0;
+		const uint64_t turning = wanted > least ? wanted : least;
+		const uint64_t speed = turning < full ? turning : full;
 		const uint32_t reverse =
 		    gcode->settings.laser ? PASSO_GCODE_OUTPUT_PROPORTIONAL : PASSO_GCODE_OUTPUT_REVERSE;
 
@@ -73,12 +76,22 @@ static void next_of_motion(struct passo_gcode *gcode, struct passo_gcode_action 
 	job->motion = false;
 }
 
+/* UQ32.32 mm, as passo_path_tolerance() has it: 0 is the path's own. */
+static uint64_t tolerance_of(const struct passo_gcode *gcode)
+{
+	if (gcode->tolerance == 0)
+		return PASSO_PATH_UNMERGED;
+	return gcode->tolerance > 0 ? (uint64_t)passo_gcode_millimetres(gcode->tolerance) : 0;
+}
+
 bool passo_gcode_next(struct passo_gcode *gcode, struct passo_gcode_action *action)
 {
 	struct passo_gcode_job *job = &gcode->job;
 
-	*action = (struct passo_gcode_action){
-	    .line = gcode->line, .output = passo_gcode_output(gcode), .probe = PASSO_GCODE_NONE};
+	*action = (struct passo_gcode_action){.line = gcode->line,
+	    .output = passo_gcode_output(gcode),
+	    .tolerance = tolerance_of(gcode),
+	    .probe = PASSO_GCODE_NONE};
 	if (take(&job->output)) {
 		action->kind = PASSO_GCODE_OUTPUT;
 	} else if (take(&job->dwell)) {

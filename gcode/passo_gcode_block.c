@@ -8,64 +8,69 @@
 #define INTEGER_MAX INT64_C(999999999)
 #define TENTH (PASSO_GCODE_MILLION / 10)
 
+/* Properties of a command. */
+#define AXES 1u   /* the axis words are its own, if there are any */
+#define TENTHS 2u /* there are others of the same number and a fraction, though not all are known */
+
 struct code {
 	int16_t number; /* tenths */
 	uint8_t group;
+	uint8_t properties;
 };
 
 static const struct code G_CODES[] = {
-    {0, PASSO_GCODE_MOTION},
-    {10, PASSO_GCODE_MOTION},
-    {20, PASSO_GCODE_MOTION},
-    {30, PASSO_GCODE_MOTION},
-    {40, PASSO_GCODE_COMMAND},
-    {100, PASSO_GCODE_COMMAND},
-    {170, PASSO_GCODE_PLANE},
-    {180, PASSO_GCODE_PLANE},
-    {190, PASSO_GCODE_PLANE},
-    {200, PASSO_GCODE_UNITS},
-    {210, PASSO_GCODE_UNITS},
-    {280, PASSO_GCODE_COMMAND},
-    {281, PASSO_GCODE_COMMAND},
-    {300, PASSO_GCODE_COMMAND},
-    {301, PASSO_GCODE_COMMAND},
-    {382, PASSO_GCODE_MOTION},
-    {383, PASSO_GCODE_MOTION},
-    {384, PASSO_GCODE_MOTION},
-    {385, PASSO_GCODE_MOTION},
-    {400, PASSO_GCODE_CUTTER},
-    {431, PASSO_GCODE_TOOL_LENGTH},
-    {490, PASSO_GCODE_TOOL_LENGTH},
-    {530, PASSO_GCODE_COMMAND},
-    {540, PASSO_GCODE_SYSTEM},
-    {550, PASSO_GCODE_SYSTEM},
-    {560, PASSO_GCODE_SYSTEM},
-    {570, PASSO_GCODE_SYSTEM},
-    {580, PASSO_GCODE_SYSTEM},
-    {590, PASSO_GCODE_SYSTEM},
-    {610, PASSO_GCODE_PATH},
-    {640, PASSO_GCODE_PATH},
-    {800, PASSO_GCODE_MOTION},
-    {900, PASSO_GCODE_DISTANCE},
-    {910, PASSO_GCODE_DISTANCE},
-    {911, PASSO_GCODE_ARC_DISTANCE},
-    {920, PASSO_GCODE_COMMAND},
-    {921, PASSO_GCODE_COMMAND},
-    {930, PASSO_GCODE_FEED_MODE},
-    {940, PASSO_GCODE_FEED_MODE},
+    {0, PASSO_GCODE_MOTION, AXES},
+    {10, PASSO_GCODE_MOTION, AXES},
+    {20, PASSO_GCODE_MOTION, AXES},
+    {30, PASSO_GCODE_MOTION, AXES},
+    {40, PASSO_GCODE_COMMAND, 0},
+    {100, PASSO_GCODE_COMMAND, AXES},
+    {170, PASSO_GCODE_PLANE, 0},
+    {180, PASSO_GCODE_PLANE, 0},
+    {190, PASSO_GCODE_PLANE, 0},
+    {200, PASSO_GCODE_UNITS, 0},
+    {210, PASSO_GCODE_UNITS, 0},
+    {280, PASSO_GCODE_COMMAND, AXES | TENTHS},
+    {281, PASSO_GCODE_COMMAND, TENTHS},
+    {300, PASSO_GCODE_COMMAND, AXES | TENTHS},
+    {301, PASSO_GCODE_COMMAND, TENTHS},
+    {382, PASSO_GCODE_MOTION, AXES | TENTHS},
+    {383, PASSO_GCODE_MOTION, AXES | TENTHS},
+    {384, PASSO_GCODE_MOTION, AXES | TENTHS},
+    {385, PASSO_GCODE_MOTION, AXES | TENTHS},
+    {400, PASSO_GCODE_CUTTER, 0},
+    {431, PASSO_GCODE_TOOL_LENGTH, AXES | TENTHS},
+    {490, PASSO_GCODE_TOOL_LENGTH, AXES},
+    {530, PASSO_GCODE_COMMAND, 0},
+    {540, PASSO_GCODE_SYSTEM, 0},
+    {550, PASSO_GCODE_SYSTEM, 0},
+    {560, PASSO_GCODE_SYSTEM, 0},
+    {570, PASSO_GCODE_SYSTEM, 0},
+    {580, PASSO_GCODE_SYSTEM, 0},
+    {590, PASSO_GCODE_SYSTEM, 0},
+    {610, PASSO_GCODE_PATH, TENTHS},
+    {640, PASSO_GCODE_PATH, TENTHS},
+    {800, PASSO_GCODE_MOTION, 0},
+    {900, PASSO_GCODE_DISTANCE, TENTHS},
+    {910, PASSO_GCODE_DISTANCE, TENTHS},
+    {911, PASSO_GCODE_ARC_DISTANCE, TENTHS},
+    {920, PASSO_GCODE_COMMAND, AXES | TENTHS},
+    {921, PASSO_GCODE_COMMAND, TENTHS},
+    {930, PASSO_GCODE_FEED_MODE, 0},
+    {940, PASSO_GCODE_FEED_MODE, 0},
 };
 
 static const struct code M_CODES[] = {
-    {0, PASSO_GCODE_PROGRAM},
-    {10, PASSO_GCODE_PROGRAM},
-    {20, PASSO_GCODE_PROGRAM},
-    {30, PASSO_GCODE_SPINDLE},
-    {40, PASSO_GCODE_SPINDLE},
-    {50, PASSO_GCODE_SPINDLE},
-    {70, PASSO_GCODE_COOLANT},
-    {80, PASSO_GCODE_COOLANT},
-    {90, PASSO_GCODE_COOLANT},
-    {300, PASSO_GCODE_PROGRAM},
+    {0, PASSO_GCODE_PROGRAM, 0},
+    {10, PASSO_GCODE_PROGRAM, 0},
+    {20, PASSO_GCODE_PROGRAM, 0},
+    {30, PASSO_GCODE_SPINDLE, 0},
+    {40, PASSO_GCODE_SPINDLE, 0},
+    {50, PASSO_GCODE_SPINDLE, 0},
+    {70, PASSO_GCODE_COOLANT, 0},
+    {80, PASSO_GCODE_COOLANT, 0},
+    {90, PASSO_GCODE_COOLANT, 0},
+    {300, PASSO_GCODE_PROGRAM, 0},
 };
 
 #define COUNT(table) (sizeof(table) / sizeof *(table))
@@ -74,10 +79,10 @@ static const char AXIS_LETTERS[PASSO_GCODE_AXES_MAX + 1u] = "XYZABC";
 /* Those of values that every machine knows. */
 static const uint32_t VALUE_WORDS = PASSO_GCODE_WORD('F') | PASSO_GCODE_WORD('I') | PASSO_GCODE_WORD('J')
                                   | PASSO_GCODE_WORD('K') | PASSO_GCODE_WORD('L') | PASSO_GCODE_WORD('N')
-                                  | PASSO_GCODE_WORD('P') | PASSO_GCODE_WORD('R') | PASSO_GCODE_WORD('S')
-                                  | PASSO_GCODE_WORD('T');
+                                  | PASSO_GCODE_WORD('P') | PASSO_GCODE_WORD('Q') | PASSO_GCODE_WORD('R')
+                                  | PASSO_GCODE_WORD('S') | PASSO_GCODE_WORD('T');
 static const uint32_t POSITIVE_WORDS = PASSO_GCODE_WORD('F') | PASSO_GCODE_WORD('N') | PASSO_GCODE_WORD('P')
-                                     | PASSO_GCODE_WORD('S') | PASSO_GCODE_WORD('T');
+                                     | PASSO_GCODE_WORD('Q') | PASSO_GCODE_WORD('S') | PASSO_GCODE_WORD('T');
 
 char passo_gcode_axis_letter(unsigned axis)
 {
@@ -130,27 +135,32 @@ bool passo_gcode_number(const char **text, int64_t *millionths)
 	return true;
 }
 
-/* A command with a fraction that is not there is UNSUPPORTED if its number has others, else NOT_INTEGER. */
+static enum passo_gcode_error add_code(struct passo_gcode_block *block, const struct code *code)
+{
+	if (code->properties & AXES) {
+		if (block->takes_axes)
+			return PASSO_GCODE_TWO_COMMANDS;
+		block->takes_axes = true;
+	}
+	if (block->command[code->group] != PASSO_GCODE_NONE)
+		return PASSO_GCODE_MODAL_GROUP;
+	block->command[code->group] = code->number;
+	return PASSO_GCODE_OK;
+}
+
 static enum passo_gcode_error add_command(
     struct passo_gcode_block *block, const struct code *table, size_t count, int64_t value)
 {
 	const int64_t whole = value / PASSO_GCODE_MILLION;
-	enum passo_gcode_error error = PASSO_GCODE_UNSUPPORTED;
+	const bool every = table == M_CODES && value % PASSO_GCODE_MILLION != 0;
+	enum passo_gcode_error error = every ? PASSO_GCODE_NOT_INTEGER : PASSO_GCODE_UNSUPPORTED;
 
 	for (size_t i = 0; i < count; i++) {
-		const struct code *code = &table[i];
-
-		if (code->number * (int64_t)TENTH == value) {
-			if (block->command[code->group] != PASSO_GCODE_NONE)
-				return PASSO_GCODE_MODAL_GROUP;
-			block->command[code->group] = code->number;
-			return PASSO_GCODE_OK;
-		}
-		if (code->number / 10 == whole)
-			error = code->number % 10 ? PASSO_GCODE_UNSUPPORTED : PASSO_GCODE_NOT_INTEGER;
+		if (table[i].number * (int64_t)TENTH == value)
+			return add_code(block, &table[i]);
+		if (table[i].number / 10 == whole && !(table[i].properties & TENTHS))
+			error = PASSO_GCODE_NOT_INTEGER;
 	}
-	if (table == G_CODES && whole == 59)
-		return PASSO_GCODE_COORDINATES;
 	return error;
 }
 
@@ -197,5 +207,8 @@ enum passo_gcode_error passo_gcode_parse(const char *text, unsigned axes, struct
 		else
 			error = add_value(block, known, letter, value);
 	}
+	if (error == PASSO_GCODE_OK && (block->words & PASSO_GCODE_WORD('Q'))
+	    && block->command[PASSO_GCODE_PATH] != 640)
+		return PASSO_GCODE_UNSUPPORTED; /* no other command has it */
 	return error;
 }

@@ -44,6 +44,7 @@ typedef int16_t passo_gcode_command;
 
 struct passo_gcode_block {
 	passo_gcode_command command[PASSO_GCODE_GROUPS]; /* PASSO_GCODE_NONE: none */
+	bool takes_axes;                                 /* one of them moves, or sets what axis words say */
 	uint32_t words;                                  /* of the other letters, a bit for each */
 	int64_t value[26];                               /* of a letter, in millionths */
 };
@@ -57,7 +58,7 @@ uint32_t passo_gcode_axis_words(unsigned axes);
 bool passo_gcode_number(const char **text, int64_t *millionths);
 
 /* Reads the words of a line (passo_gcode_line.h) for a machine with `axes` axes. Errors: LETTER, NUMBER,
- * NEGATIVE, UNSUPPORTED, MODAL_GROUP, NOT_INTEGER, REPEATED, COORDINATES. */
+ * NEGATIVE, UNSUPPORTED, MODAL_GROUP, NOT_INTEGER, TWO_COMMANDS, REPEATED. */
 enum passo_gcode_error passo_gcode_parse(const char *text, unsigned axes, struct passo_gcode_block *block);
 
 #endif

@@ -53,18 +53,13 @@ bool passo_gcode_in_range(int64_t nanometres)
 	return nanometres <= PASSO_GCODE_COORDINATE_MAX && nanometres >= -PASSO_GCODE_COORDINATE_MAX;
 }
 
-/* At most one command may use the axis words. Without one they are those of the motion in force. */
+/* Axis words without a command for them are those of the motion in force. */
 static enum passo_gcode_error find_user(struct passo_gcode_check *check)
 {
-	const passo_gcode_command command = check->block.command[PASSO_GCODE_COMMAND];
 	const passo_gcode_command motion = check->block.command[PASSO_GCODE_MOTION];
-	const bool moves = motion != PASSO_GCODE_NONE && motion != 800;
-	const bool sets = command == 100 || command == 280 || command == 300 || command == 920;
-	const bool lengthens = check->block.command[PASSO_GCODE_TOOL_LENGTH] != PASSO_GCODE_NONE;
 
-	if (moves + sets + lengthens > 1)
-		return PASSO_GCODE_TWO_COMMANDS;
-	check->moves = moves || (check->axis_words && !sets && !lengthens);
+	check->moves =
+	    (motion != PASSO_GCODE_NONE && motion != 800) || (check->axis_words && !check->block.takes_axes);
 	check->unused &= ~check->axis_words;
 	return PASSO_GCODE_OK;
 }
@@ -183,6 +178,23 @@ static enum passo_gcode_error check_return(struct passo_gcode_check *check, cons
 	return error;
 }
 
+/* How far the path may be from the points: G64 Q, or P alone. P of G4 and G10 is theirs. */
+static enum passo_gcode_error check_path(struct passo_gcode_check *check)
+{
+	const passo_gcode_command command = check->block.command[PASSO_GCODE_COMMAND];
+	const passo_gcode_command path = check->block.command[PASSO_GCODE_PATH];
+
+	check->tolerance = path == PASSO_GCODE_NONE ? check->gcode->tolerance : 0;
+	if (path != 640)
+		return PASSO_GCODE_OK;
+	check->tolerance = PASSO_GCODE_OWN_TOLERANCE;
+	if (command != 40 && command != 100 && passo_gcode_take(check, 'P'))
+		check->tolerance = passo_gcode_length_of(check, 'P');
+	if (passo_gcode_take(check, 'Q'))
+		check->tolerance = passo_gcode_length_of(check, 'Q');
+	return passo_gcode_in_range(check->tolerance) ? PASSO_GCODE_OK : PASSO_GCODE_TARGET;
+}
+
 static enum passo_gcode_error check_command(struct passo_gcode_check *check)
 {
 	switch (check->block.command[PASSO_GCODE_COMMAND]) {
@@ -210,7 +222,7 @@ static enum passo_gcode_error check_command(struct passo_gcode_check *check)
 enum passo_gcode_error passo_gcode_check_words(struct passo_gcode_check *check)
 {
 	static enum passo_gcode_error (*const CHECKS[])(struct passo_gcode_check *) = {
-	    find_user, check_line_number, check_feed, check_tool, check_command};
+	    find_user, check_line_number, check_feed, check_tool, check_path, check_command};
 	enum passo_gcode_error error = PASSO_GCODE_OK;
 
 	for (unsigned i = 0; i < sizeof CHECKS / sizeof *CHECKS && error == PASSO_GCODE_OK; i++)

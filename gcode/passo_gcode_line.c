@@ -1,6 +1,29 @@
 /* SPDX-License-Identifier: MIT */
 #include "passo_gcode_line.h"
 
+bool passo_gcode_line_ends(char byte)
+{
+	return byte == '\n' || byte == '\r';
+}
+
+size_t passo_gcode_line_count(const char *text, size_t count)
+{
+	size_t i = 0;
+
+	while (i < count && !passo_gcode_line_ends(text[i]))
+		i++;
+	if (i == count)
+		return count;
+	return text[i] == '\r' && i + 1 < count && text[i + 1] == '\n' ? i + 2 : i + 1;
+}
+
+/* Editors put one in front of a file. */
+static bool is_byte_order_mark(const struct passo_gcode_line *line)
+{
+	return line->length == 3 && line->text[0] == '\xEF' && line->text[1] == '\xBB'
+	    && line->text[2] == '\xBF';
+}
+
 void passo_gcode_line_clear(struct passo_gcode_line *line)
 {
 	line->text[0] = '\0';
@@ -20,7 +43,7 @@ void passo_gcode_line_add(struct passo_gcode_line *line, char byte)
 		line->comment = byte;
 		return;
 	}
-	if (byte == ' ' || byte == '\t' || byte == '\r')
+	if ((unsigned char)byte <= ' ')
 		return;
 	if (line->length + 1u == PASSO_GCODE_LINE_SIZE) {
 		line->overflow = true;
@@ -28,13 +51,15 @@ void passo_gcode_line_add(struct passo_gcode_line *line, char byte)
 	}
 	if (byte >= 'a' && byte <= 'z')
 		byte = (char)(byte - 'a' + 'A');
-	line->text[line->length++] = byte == '\0' ? '?' : byte;
+	line->text[line->length++] = byte;
 	line->text[line->length] = '\0';
+	if (is_byte_order_mark(line))
+		passo_gcode_line_clear(line);
 }
 
 void passo_gcode_line_read(struct passo_gcode_line *line, const char *text, size_t count)
 {
 	passo_gcode_line_clear(line);
-	for (size_t i = 0; i < count && text[i] != '\n'; i++)
+	for (size_t i = 0; i < count && !passo_gcode_line_ends(text[i]); i++)
 		passo_gcode_line_add(line, text[i]);
 }

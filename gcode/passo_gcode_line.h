@@ -21,11 +21,18 @@ struct passo_gcode_line {
 /* Begins an empty line. */
 void passo_gcode_line_clear(struct passo_gcode_line *line);
 
-/* Adds a byte. Comments are (...) and ;... to the end of the line; a byte that no word can have stays, so
- * that the line is refused. */
+/* Whether a byte ends a line: LF or CR. Of CR LF each ends one, the second of which is empty. */
+bool passo_gcode_line_ends(char byte);
+
+/* Bytes of the first line of a text, with its end: LF, CR, CR LF, or that of the text. */
+size_t passo_gcode_line_count(const char *text, size_t count);
+
+/* Adds a byte that does not end the line. Comments are (...) and ;... to the end of the line. Spaces, control
+ * characters and a byte order mark in front are nothing; any other byte that no word can have stays, so that
+ * the line is refused. */
 void passo_gcode_line_add(struct passo_gcode_line *line, char byte);
 
-/* Reads a whole line of text; what follows a line feed is ignored. */
+/* Reads the first line of a text. */
 void passo_gcode_line_read(struct passo_gcode_line *line, const char *text, size_t count);
 
 #endif

@@ -150,10 +150,10 @@ enum passo_gcode_error passo_gcode_check_motion(struct passo_gcode_check *check)
 
 	if (check->block.command[PASSO_GCODE_COMMAND] == 530 && motion != 0 && motion != 10)
 		return PASSO_GCODE_G53;
+	if (motion == 800 && check->axis_words) /* those of G92, G28, G10, G43.1 as well */
+		return PASSO_GCODE_AXIS_WORDS;
 	if (!check->moves)
 		return PASSO_GCODE_OK;
-	if (motion == 800)
-		return PASSO_GCODE_AXIS_WORDS;
 	if (motion != 0 && check->feed == 0 && check->inverse == 0)
 		return PASSO_GCODE_NO_FEED;
 	error = passo_gcode_find_target(check, job->destination);

@@ -17,6 +17,7 @@ struct passo_gcode_check {
 	bool moves;               /* the axis words are those of a motion, given or in force */
 	int64_t feed;             /* nm/min, of G94; 0: none */
 	int64_t inverse;          /* millionths of 1/min, of G93 */
+	int64_t tolerance;        /* nm, of G64 */
 	unsigned system;          /* that is set by G10 */
 	passo_gcode_position set; /* by G10, G92; of G43.1 the tool length in place of Z */
 };
@@ -25,8 +26,6 @@ extern const passo_gcode_command PASSO_GCODE_POWER_UP[PASSO_GCODE_MODES];
 
 /* The axes of a position. */
 void passo_gcode_copy(const struct passo_gcode *gcode, const int64_t *from, int64_t *to);
-/* The output word of spindle and coolant. */
-uint32_t passo_gcode_output(const struct passo_gcode *gcode);
 
 /* Whether a word is there; it is used then. */
 bool passo_gcode_take(struct passo_gcode_check *check, char letter);

@@ -105,7 +105,8 @@ static bool motion_settled(const struct passo_channel *channel, const struct pas
 	switch (motion->state) {
 	case PASSO_STATE_IDLE:
 		return !motion->running && !motion->startable
-		    && !(inputs->run && !waits && channel->line_queue.next_valid && channel->ramp_queue.valid);
+		    && !(
+			inputs->run && !waits && channel->line_queue.next_valid && channel->ramp_queue.valid);
 	case PASSO_STATE_PREPARE:
 		return !motion->running && !channel->ramp.ready;
 	case PASSO_STATE_ARMED:
@@ -161,8 +162,8 @@ uint64_t passo_advance_surroundings_quiet(
 	uint64_t clocks = passo_inputs_quiet(channel, inputs);
 	if (clocks == 0u)
 		return 0;
-	clocks = passo_advance_least(clocks,
-	    passo_advance_least(ramp_quiet(&channel->ramp), timescale_quiet(channel, moving, clocks_to_slew)));
+	clocks = passo_advance_least(clocks, passo_advance_least(ramp_quiet(&channel->ramp),
+						 timescale_quiet(channel, moving, clocks_to_slew)));
 	for (unsigned i = 0; i < channel->axes && clocks != 0u; i++) {
 		const uint32_t quiet =
 		    passo_axis_quiet(&channel->axis[i], (line->directions >> i & 1u) != 0u);

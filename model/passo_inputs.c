@@ -71,18 +71,12 @@ static void clock_input(struct passo_input_filter *input, uint8_t pins, bool tic
 	input->first = pins;
 }
 
-/* Whether an input has changed since the last tick, or within this period for the first time. */
-static bool changes(const struct passo_input_filter *input)
-{
-	return (input->second ^ input->level) != input->pending;
-}
-
 static void clock_settling(struct passo_settling *settling, bool changes, bool tick, bool forget)
 {
 	const bool changed = settling->changed;
 
-	settling->changed = settling->forgot || ((changed || changes) && !tick) || forget;
-	settling->unknown = (settling->unknown && (!tick || changed || changes)) || forget;
+	settling->changed = settling->forgot || changes || (changed && !tick) || forget;
+	settling->unknown = (settling->unknown && (!tick || changed)) || forget;
 	settling->forgot = forget;
 }
 
@@ -142,16 +136,17 @@ static void write_register(
 	}
 }
 
-/* Whether a polarity or the filter changes with this clock: levels that were filtered otherwise say nothing. */
+/* Whether a polarity or the filter changes with this clock: levels that were filtered otherwise say nothing.
+ */
 static bool forgets(const struct passo_channel *channel, const struct passo_bus *bus, bool selected)
 {
 	const bool probe_inverted = (bus->data >> PASSO_CHANNEL_PROBE_INVERTED_LSB & 1u) != 0u;
 
 	return (bus->write && bus->address == PASSO_ADDRESS_INPUT_FILTER)
 	    || (bus->write && selected && (uint8_t)bus->address == PASSO_CHANNEL_PROBE
-		&& probe_inverted != channel->inputs.probe_inverted)
+	        && probe_inverted != channel->inputs.probe_inverted)
 	    || (channel->writes_axis
-		&& channel->written_register % PASSO_CHANNEL_AXIS_STRIDE == PASSO_AXIS_INPUTS);
+	        && channel->written_register % PASSO_CHANNEL_AXIS_STRIDE == PASSO_AXIS_INPUTS);
 }
 
 void passo_inputs_clock(struct passo_inputs_unit *unit, const struct passo_channel *channel,
@@ -164,10 +159,10 @@ void passo_inputs_clock(struct passo_inputs_unit *unit, const struct passo_chann
 	if (inputs->parameters->inputs == 0u)
 		return;
 	for (unsigned kind = 0; kind < PASSO_KINDS; kind++)
-		changed = changed || changes(&channel->inputs.input[kind]);
+		changed = changed || channel->inputs.input[kind].first != channel->inputs.input[kind].second;
 	clock_settling(&unit->settling, changed, inputs->machine->tick, forget);
-	passo_trigger_clock(&unit->trigger, &channel->inputs, passo_encoders_index(channel),
-	    inputs->machine->filter, forget);
+	passo_trigger_clock(
+	    &unit->trigger, &channel->inputs, passo_encoders_index(channel), inputs->machine->filter, forget);
 	clock_limits(&unit->limits, channel, may_close);
 	for (unsigned kind = 0; kind < PASSO_KINDS; kind++)
 		clock_input(&unit->input[kind],
@@ -199,7 +194,6 @@ struct passo_answer passo_inputs_answer(const struct passo_channel *channel, uin
 	case PASSO_CHANNEL_INPUT_LEVELS:
 	case PASSO_CHANNEL_INPUT_FLAGS:
 	case PASSO_CHANNEL_TRIGGER_STATE:
-	case PASSO_CHANNEL_TRIGGER_CLOCKS:
 		return passo_read_late();
 	case PASSO_CHANNEL_INPUT_CLEAR:
 		return passo_write_only(PASSO_VERDICT_OK);
@@ -236,8 +230,6 @@ uint32_t passo_inputs_value(const struct passo_inputs_unit *unit, uint8_t addres
 		    .probe_flag = input[PASSO_KIND_PROBE].was_active != 0u,
 		    .axes = unit->limits.named,
 		});
-	case PASSO_CHANNEL_TRIGGER_CLOCKS:
-		return unit->trigger.clocks;
 	default:
 		return 0;
 	}
@@ -246,7 +238,8 @@ uint32_t passo_inputs_value(const struct passo_inputs_unit *unit, uint8_t addres
 /* Whether an input is still on its way to the level. */
 static bool is_on_its_way(const struct passo_input_filter *input, uint8_t pins)
 {
-	return input->first != pins || input->second != pins || changes(input);
+	return input->first != pins || input->second != pins
+	    || (input->second ^ input->level) != input->pending;
 }
 
 /* Clocks until the next one that sees a tick. */
@@ -287,11 +280,10 @@ uint64_t passo_inputs_quiet(const struct passo_channel *channel, const struct pa
 			return 0;
 	passo_inputs_clock(&then, channel, inputs, &wires);
 	then.trigger.count = unit->trigger.count;
-	then.trigger.clocks = unit->trigger.clocks;
 	if (memcmp(&then, unit, sizeof *unit) != 0)
 		return 0;
-	const uint64_t trigger = passo_trigger_quiet(
-	    &unit->trigger, unit, passo_encoders_index(channel), inputs->machine->filter);
+	const uint64_t trigger =
+	    passo_trigger_quiet(&unit->trigger, unit, passo_encoders_index(channel), inputs->machine->filter);
 	const uint64_t tick = waits_for_tick ? clocks_to_tick(inputs->machine) : UINT64_MAX;
 	return trigger < tick ? trigger : tick;
 }

@@ -5,7 +5,8 @@
 #include "passo_model.h"
 #include "passo_words.h"
 
-static const uint32_t UNIT_CLOCKS = 0x10000;
+static const uint32_t UNIT_CLOCKS = 0x10000; /* of the watchdog, and how many of them it counts */
+static const uint32_t UNITS = 1024;
 
 void passo_machine_reset(struct passo_machine_unit *machine)
 {
@@ -34,32 +35,29 @@ static void clock_estop(struct passo_machine_unit *machine, bool estop_n, bool c
 	machine->estop_seen = (uint8_t)((machine->estop_seen << 1 | (pressed ? 1 : 0)) & 3);
 }
 
-static void begin_units(struct passo_machine_unit *machine, uint16_t units)
-{
-	machine->watchdog_count = units;
-	machine->watchdog_unit = 0;
-}
-
 static void clock_watchdog(struct passo_machine_unit *machine, bool feed, bool moving)
 {
 	const uint16_t stop_after = machine->watchdog_stop_after;
 	const uint16_t disable_after = machine->watchdog_disable_after;
 	const bool fed = machine->watchdog_fed, stop = machine->watchdog_stop;
-	const bool over = machine->watchdog_count == 0u;
+	const bool over = machine->watchdog_count == (stop ? disable_after : stop_after);
+	const bool bites = machine->watchdog_silent && moving && !stop;
 
 	machine->watchdog_fed = feed;
 	machine->watchdog_unit = (machine->watchdog_unit + 1u) % UNIT_CLOCKS;
-	if (machine->watchdog_unit == 0u && machine->watchdog_count != 0u)
-		machine->watchdog_count--;
-	if (over && !stop && stop_after != 0u && moving) {
-		machine->watchdog_stop = true;
-		begin_units(machine, disable_after);
-	}
+	if (machine->watchdog_unit == 0u)
+		machine->watchdog_count = (uint16_t)((machine->watchdog_count + 1u) % UNITS);
+	if (over && stop_after != 0u)
+		machine->watchdog_silent = true;
 	if (over && stop && disable_after != 0u)
 		machine->watchdog_disable = true;
-	if (fed) {
-		machine->watchdog_stop = machine->watchdog_disable = false;
-		begin_units(machine, stop_after);
+	if (bites)
+		machine->watchdog_stop = true;
+	if (fed)
+		machine->watchdog_silent = machine->watchdog_stop = machine->watchdog_disable = false;
+	if (fed || bites) {
+		machine->watchdog_count = 0;
+		machine->watchdog_unit = 0;
 	}
 }
 
@@ -67,7 +65,6 @@ void passo_machine_clock(struct passo_machine_unit *machine, const struct passo_
     const struct passo_inputs *inputs, bool moving)
 {
 	const bool clears = bus->write && bus->address == PASSO_ADDRESS_ESTOP_CLEAR && (bus->data & 1u) != 0u;
-
 	const bool ends = machine->count == machine->filter;
 	const bool writes_filter = bus->write && bus->address == PASSO_ADDRESS_INPUT_FILTER;
 
@@ -87,24 +84,23 @@ void passo_machine_clock(struct passo_machine_unit *machine, const struct passo_
 bool passo_machine_register(const struct passo_machine_unit *machine, uint16_t address, uint32_t *value)
 {
 	switch (address) {
-	case PASSO_ADDRESS_INPUT_FILTER:
-		*value = machine->filter;
-		return true;
-	case PASSO_ADDRESS_WATCHDOG:
-		*value = passo_pack_watchdog(&(struct passo_watchdog){
-		    .stop_after = machine->watchdog_stop_after,
-		    .disable_after = machine->watchdog_disable_after,
-		});
-		return true;
 	case PASSO_ADDRESS_ESTOP:
 		*value = (uint32_t)machine->estop_seen >> 1;
 		return true;
+	case PASSO_ADDRESS_INPUT_FILTER:
+	case PASSO_ADDRESS_WATCHDOG:
 	case PASSO_ADDRESS_ESTOP_CLEAR:
 		*value = 0;
 		return true;
 	default:
 		return false;
 	}
+}
+
+bool passo_machine_is_write_only(uint16_t address)
+{
+	return address == PASSO_ADDRESS_INPUT_FILTER || address == PASSO_ADDRESS_WATCHDOG
+	    || address == PASSO_ADDRESS_ESTOP_CLEAR;
 }
 
 uint8_t passo_machine_check(const struct passo_bus *bus)
@@ -124,26 +120,40 @@ uint8_t passo_machine_check(const struct passo_bus *bus)
 	}
 }
 
+/* Clocks until the watchdog acts. */
+static uint64_t watchdog_quiet(const struct passo_machine_unit *machine)
+{
+	const bool stop = machine->watchdog_stop;
+	const uint16_t wanted = stop ? machine->watchdog_disable_after : machine->watchdog_stop_after;
+	const bool done = stop ? machine->watchdog_disable : machine->watchdog_silent;
+	const uint64_t clocks = (uint64_t)machine->watchdog_count * UNIT_CLOCKS + machine->watchdog_unit;
+	const uint64_t end = (uint64_t)wanted * UNIT_CLOCKS;
+
+	if (wanted == 0u || done)
+		return UINT64_MAX;
+	return clocks < end ? end - clocks : 0u;
+}
+
 uint64_t passo_machine_quiet(
     const struct passo_machine_unit *machine, const struct passo_inputs *inputs, bool moving)
 {
 	const bool pressed = machine->estop_pressed;
 	const uint8_t seen = pressed ? 3u : 0u, released = inputs->estop_n ? 3u : 0u;
-	const bool over = machine->watchdog_count == 0u;
-	const bool stops = over && !machine->watchdog_stop && machine->watchdog_stop_after != 0u && moving;
-	const bool disables = over && machine->watchdog_stop && machine->watchdog_disable_after != 0u
-	                   && !machine->watchdog_disable;
+	const bool bites = machine->watchdog_silent && moving && !machine->watchdog_stop;
 
-	if (machine->watchdog_fed || stops || disables || machine->estop_seen != seen
+	if (machine->watchdog_fed || bites || machine->estop_seen != seen
 	    || machine->estop_released != released || (!inputs->estop_n && !pressed))
 		return 0;
-	/* up to the clock before the end of a unit that counts */
-	return over ? UINT64_MAX : (uint64_t)UNIT_CLOCKS - 1u - machine->watchdog_unit;
+	return watchdog_quiet(machine);
 }
 
 void passo_machine_skip(struct passo_machine_unit *machine, uint64_t clocks)
 {
-	machine->watchdog_unit = (uint32_t)((machine->watchdog_unit + clocks) % UNIT_CLOCKS);
+	const uint64_t silence =
+	    (uint64_t)machine->watchdog_count * UNIT_CLOCKS + machine->watchdog_unit + clocks;
+
+	machine->watchdog_count = (uint16_t)(silence / UNIT_CLOCKS % UNITS);
+	machine->watchdog_unit = (uint32_t)(silence % UNIT_CLOCKS);
 	machine->count = (uint16_t)((machine->count + clocks) % (machine->filter + 1u));
 	machine->tick = machine->count == 0u;
 }

@@ -307,8 +307,8 @@ struct passo_input_filter {
 	uint8_t first, second, level, pending, was_active;
 };
 
-/* Whether the levels are known: an input has changed since the last tick; one clock after a change of polarity
- * or filter. */
+/* Whether the levels are known: an input has changed since the last tick; one clock after a change of
+ * polarity or filter. */
 struct passo_settling {
 	bool changed, forgot, unknown;
 };
@@ -334,7 +334,6 @@ struct passo_trigger {
 	uint8_t stale; /* clocks until `picked` is that of the source */
 	bool picked, level, arming, armed, fired, latch;
 	uint16_t count;
-	uint32_t clocks;
 };
 
 /* Inputs of a channel; see rtl/passo_inputs.v. */
@@ -355,7 +354,7 @@ struct passo_machine_unit {
 	uint16_t watchdog_stop_after, watchdog_disable_after;
 	uint16_t watchdog_count;
 	uint32_t watchdog_unit;
-	bool watchdog_fed, watchdog_stop, watchdog_disable;
+	bool watchdog_fed, watchdog_silent, watchdog_stop, watchdog_disable;
 };
 
 /* What a channel asks its motion, axes and line to do. */
@@ -522,6 +521,7 @@ void passo_machine_clock(struct passo_machine_unit *machine, const struct passo_
     const struct passo_inputs *inputs, bool moving);
 /* Whether there is such a register; the value that it reads as and the verdict on a write. */
 bool passo_machine_register(const struct passo_machine_unit *machine, uint16_t address, uint32_t *value);
+bool passo_machine_is_write_only(uint16_t address);
 uint8_t passo_machine_check(const struct passo_bus *bus);
 uint64_t passo_machine_quiet(
     const struct passo_machine_unit *machine, const struct passo_inputs *inputs, bool moving);
@@ -540,8 +540,8 @@ uint8_t passo_trigger_check(const struct passo_channel *channel, uint32_t data);
 void passo_trigger_clock(struct passo_trigger *trigger, const struct passo_inputs_unit *unit, uint8_t index,
     uint16_t filter, bool forget);
 /* Clocks for which only its counters change, and skipping them. */
-uint64_t passo_trigger_quiet(
-    const struct passo_trigger *trigger, const struct passo_inputs_unit *unit, uint8_t index, uint16_t filter);
+uint64_t passo_trigger_quiet(const struct passo_trigger *trigger, const struct passo_inputs_unit *unit,
+    uint8_t index, uint16_t filter);
 void passo_trigger_skip(struct passo_trigger *trigger, uint64_t clocks);
 void passo_trigger_write(struct passo_trigger *trigger, uint32_t data);
 uint32_t passo_inputs_value(const struct passo_inputs_unit *unit, uint8_t address);

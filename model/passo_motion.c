@@ -53,9 +53,8 @@ void passo_motion_wires(const struct passo_channel *channel, const struct passo_
 	                && wires->ramp_valid && !wires->hold && !wires->requests.wait;
 	wires->prepare = state == PASSO_STATE_IDLE && motion->startable;
 	passo_encoders_wires(channel, wires);
-	wires->begins_next =
-	    state == PASSO_STATE_ARMED && (inputs->sync_edge || !inputs->wait_sync) && wires->may_begin
-	    && !wires->requests.wait;
+	wires->begins_next = state == PASSO_STATE_ARMED && (inputs->sync_edge || !inputs->wait_sync)
+	                  && wires->may_begin && !wires->requests.wait;
 	wires->begin_profile = motion->begin_profile;
 	wires->finished = motion->settled && (line_over || channel->line.endless);
 	wires->stop_now = motion->stop_due && !wires->stopped;

@@ -159,7 +159,7 @@ struct passo_response passo_registers_respond(const struct passo_core *core)
 			response.refusal = bus->push                         ? PASSO_VERDICT_BAD_OPERATION
 			                 : bus->address == PASSO_ADDRESS_RUN ? run_check(core, bus->data)
 			                                                     : passo_machine_check(bus);
-		else if (bus->address == PASSO_ADDRESS_ESTOP_CLEAR)
+		else if (passo_machine_is_write_only(bus->address))
 			response.refusal = PASSO_VERDICT_BAD_OPERATION;
 		response.late = bus->read && response.refusal == PASSO_VERDICT_OK;
 		response.address = bus->address;

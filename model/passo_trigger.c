@@ -54,10 +54,6 @@ void passo_trigger_clock(struct passo_trigger *trigger, const struct passo_input
 	trigger->stale = forget ? 3u : stale ? (uint8_t)(trigger->stale - 1u) : 0u;
 	if (accepts || !armed)
 		trigger->level = picked;
-	if (arming)
-		trigger->clocks = 0;
-	else if (armed)
-		trigger->clocks++;
 	trigger->latch = fires;
 	trigger->fired = trigger->fired || fires;
 	trigger->arming = forget ? arming || (armed && !fires) : arming && !accepts;
@@ -81,8 +77,7 @@ uint64_t passo_trigger_quiet(
     const struct passo_trigger *trigger, const struct passo_inputs_unit *unit, uint8_t index, uint16_t filter)
 {
 	if (trigger->stale != 0u || trigger->latch || trigger->picked != chosen(trigger, unit, index)
-	    || (!trigger->armed && trigger->level != trigger->picked)
-	    || (trigger->arming && trigger->clocks != 0u))
+	    || (!trigger->armed && trigger->level != trigger->picked))
 		return 0;
 	if (!counts(trigger))
 		return trigger->count == 0u ? UINT64_MAX : 0u;
@@ -93,6 +88,4 @@ void passo_trigger_skip(struct passo_trigger *trigger, uint64_t clocks)
 {
 	if (counts(trigger))
 		trigger->count = (uint16_t)(trigger->count + clocks);
-	if (trigger->armed)
-		trigger->clocks += (uint32_t)clocks;
 }

@@ -4,6 +4,9 @@
  */
 #include "passo_path_private.h"
 
+/* A line that takes longer than so many can be sent in is not merged. */
+#define LINES_MERGED 16u
+
 static struct passo_path_item *newest(const struct passo_path_planner *path)
 {
 	return passo_path_item(path, path->added - 1);
@@ -36,16 +39,21 @@ static uint64_t slowest(const struct passo_path_planner *path, const struct pass
 	return velocity * velocity + 1;
 }
 
-enum passo_plan_error passo_path_add(struct passo_path_planner *path, const struct passo_path_move *move)
+static enum passo_plan_error add(struct passo_path_planner *path, const struct passo_path_move *move)
 {
-	if (passo_path_room(path) == 0)
-		return PASSO_PLAN_PATH_FULL;
 	struct passo_path_item *item = passo_path_item(path, path->added);
 	struct passo_path_item made = {.output = move->output, .dwell = path->dwell, .rest = path->rest};
+	const struct passo_path_place before = path->at;
 	const enum passo_plan_error error = passo_path_measure(path, move, &made);
+
 	if (error != PASSO_PLAN_OK || made.substeps == 0)
 		return error;
 	*item = made;
+	path->before = before;
+	path->begins = path->rest;
+	path->feed = move->feed;
+	path->off = 0;
+	passo_path_pace_line(path, item);
 	passo_path_limit(path, path->added);
 	if (!item->rest)
 		item->rest = item->corner < slowest(path, item);
@@ -57,6 +65,61 @@ enum passo_plan_error passo_path_add(struct passo_path_planner *path, const stru
 	path->added++;
 	passo_path_look_back(path);
 	return PASSO_PLAN_OK;
+}
+
+/* Whether the newest line can still become another one, and is so short that this is of use. */
+static bool is_open(const struct passo_path_planner *path, const struct passo_path_move *move)
+{
+	const uint32_t index = path->added - 1;
+
+	if (path->rest || path->added == 0 || path->sent == path->added || path->planned == path->added
+	    || (path->planned == index && (!path->at_rest || path->started)))
+		return false;
+	const struct passo_path_item *item = newest(path);
+	return !item->last && item->output == move->output && path->feed == move->feed
+	    && passo_path_clocks(item) < (uint64_t)LINES_MERGED * path->line_clocks;
+}
+
+/* Replaces the newest line by one to a new target, if that is not farther off than the tolerance. */
+static bool merge(struct passo_path_planner *path, const struct passo_path_move *move)
+{
+	if (!is_open(path, move))
+		return false;
+	const struct passo_path_place at = path->at;
+	const uint32_t dwell = path->dwell;
+
+	path->at = path->before;
+	const uint64_t off = path->off + passo_path_off(path, move->target, &at);
+	if (off < path->tolerance) {
+		path->added--;
+		path->rest = path->begins;
+		path->dwell = passo_path_item(path, path->added)->dwell;
+		if (add(path, move) == PASSO_PLAN_OK) {
+			path->off = off;
+			return true;
+		}
+		path->added++;
+	}
+	path->at = at;
+	path->rest = false;
+	path->dwell = dwell;
+	return false;
+}
+
+enum passo_plan_error passo_path_add(struct passo_path_planner *path, const struct passo_path_move *move)
+{
+	if (merge(path, move))
+		return PASSO_PLAN_OK;
+	return passo_path_room(path) > 0 ? add(path, move) : PASSO_PLAN_PATH_FULL;
+}
+
+void passo_path_tolerance(struct passo_path_planner *path, uint64_t tolerance)
+{
+	path->tolerance = path->own_tolerance;
+	if (tolerance > 0)
+		path->tolerance = tolerance == PASSO_PATH_UNMERGED
+		                    ? 0
+		                    : passo_mul_div(tolerance, path->substeps_per_mm, UINT32_C(1) << 16);
 }
 
 void passo_path_dwell(struct passo_path_planner *path, uint64_t clocks)
@@ -107,10 +170,16 @@ bool passo_path_is_settled(const struct passo_path_planner *path, uint32_t index
 static uint64_t reach_of(const struct passo_path_planner *path, uint32_t index)
 {
 	const struct passo_path_item *item = passo_path_item(path, index);
-	const uint64_t most = passo_path_end_square(path, index)
-	                    + passo_path_gain(passo_path_down_slope(item), (uint64_t)item->substeps << 32);
+	const uint64_t end = passo_path_end_square(path, index), length = (uint64_t)item->substeps << 32;
+	const uint64_t flat = passo_path_smaller(
+	    passo_path_flat(path, index + 1, false, end) + passo_path_flat(path, index, true, item->corner),
+	    length);
+	const uint64_t most =
+	    end + passo_path_gain(passo_path_slope(item, false, end, length - flat), length - flat);
+	const uint64_t reach = passo_path_smaller(item->corner, most);
 
-	return passo_path_smaller(item->corner, most);
+	/* what was possible with fewer lines still is */
+	return path->anew ? reach : passo_path_larger(reach, passo_path_smaller(item->reach, item->corner));
 }
 
 /* Goes back from the newest line as long as anything changes. */
@@ -172,5 +241,6 @@ bool passo_path_next_motion(struct passo_path_planner *path)
 	if (!path->lines_end || !path->ramps_end)
 		return false;
 	path->lines_end = path->ramps_end = false;
+	passo_path_pace_begin(path);
 	return true;
 }

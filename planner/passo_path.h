@@ -23,6 +23,11 @@
 
 #include "passo_plan.h"
 
+/* An image without room has linear ramps only. */
+#ifdef PASSO_LINEAR_PATHS
+#define PASSO_WITHOUT_JERK_PATHS
+#endif
+
 /* Fewest lines that can be looked ahead. */
 #define PASSO_PATH_ITEMS_MIN 4u
 
@@ -31,6 +36,9 @@
 
 /* Largest magnitude of a target, Q31.32 mm. */
 #define PASSO_PATH_TARGET_MAX (INT64_C(1) << 62)
+
+/* Ramps in a row that are limited together, at most. */
+#define PASSO_PATH_PACED 8u
 
 /* Limits of an axis, UQ32.32. For rotary axes read degrees for millimetres. */
 struct passo_path_axis {
@@ -47,8 +55,12 @@ struct passo_path_settings {
 	struct passo_path_axis axis[PASSO_AXES_MAX];
 	uint64_t acceleration;       /* UQ32.32 mm/s^2 along the path; 0: only those of the axes */
 	uint64_t junction_deviation; /* UQ32.32 mm; 0: rest at every corner */
+	uint64_t tolerance;          /* UQ32.32 mm, see passo_path_tolerance(); 0: a twentieth of the junction
+	                                deviation */
 	enum passo_profile profile;  /* linear, cosine, sigmoid or jerk */
 	uint32_t reserve_clocks;     /* the core is never left with less, unless the path ends; 0: 20 ms */
+	uint32_t polls; /* of the feed in a second, at least: a path is not faster than they can send its
+	                   lines and ramps; 0: 500 */
 };
 
 /* A straight line from the end of the previous one. */
@@ -66,6 +78,18 @@ struct passo_path_descent {
 	uint32_t anchor;      /* number of the later line */
 };
 
+/* Axes whose acceleration is watched in a curve; an image for fewer axes saves RAM. */
+#ifndef PASSO_PATH_CURVED
+#define PASSO_PATH_CURVED PASSO_AXES_MAX
+#endif
+
+/* What limits the slope in a curve, private; see passo_path_curve.c. */
+struct passo_path_curve {
+	uint64_t slope[PASSO_PATH_CURVED]; /* of the square, where it is 0 */
+	int64_t bend[PASSO_PATH_CURVED];   /* Q15.48 per substep: what the square takes of it */
+	uint32_t count;
+};
+
 /* A line of the path, private. Squares are those of velocities, UQ0.64 (substeps per clock)^2. */
 struct passo_path_item {
 	uint64_t feed;   /* square of its feed */
@@ -76,8 +100,11 @@ struct passo_path_item {
 	uint64_t halt;   /* highest square at its end, if the path rests there */
 	uint64_t reach;  /* highest square at its start from which the path can come to rest */
 	uint64_t slope;  /* change of the square per substep at full acceleration */
+	struct passo_path_curve curve;
 	uint32_t substeps;
-	uint32_t dwell; /* ticks of rest before the line */
+	uint32_t turn;    /* substeps on either side over which a lone corner at its start may be rounded */
+	uint16_t lost[2]; /* UQ0.16: of the slope before and behind it, what the axis of the corner has */
+	uint32_t dwell;   /* ticks of rest before the line */
 	uint32_t output;
 	uint32_t steps[PASSO_AXES_MAX];
 	uint8_t directions; /* bit i set: axis i counts down */
@@ -100,6 +127,17 @@ struct passo_path_scale {
 	uint32_t jump;         /* the same */
 };
 
+/* Where a line begins, private: what the next one is measured from. */
+struct passo_path_place {
+	int64_t target[PASSO_AXES_MAX]; /* Q31.32 mm */
+	int64_t steps[PASSO_AXES_MAX];
+	int32_t direction[PASSO_AXES_MAX]; /* unit vector of the last line, Q1.30 */
+	int64_t curvature[PASSO_AXES_MAX]; /* Q15.48 per substep: its mean, by the corner at its start */
+	uint64_t length;                   /* of the last line, UQ32.16 substeps */
+	int32_t carry;        /* Q16: substeps that rounding has withheld from the lines so far */
+	uint32_t line_credit; /* clocks that the last lines have left, see passo_path_pace.c */
+};
+
 /* All members are private. Items are counted from 0 and never wrap within a motion. */
 struct passo_path_planner {
 	struct passo_machine machine;
@@ -110,14 +148,14 @@ struct passo_path_planner {
 	/* geometry of the last line */
 	uint64_t steps_per_mm[PASSO_AXES_MAX];
 	struct passo_path_scale axis[PASSO_AXES_MAX];
-	uint64_t acceleration; /* UQ0.64 substeps per clock^2, along the path */
-	int64_t target[PASSO_AXES_MAX];
-	int64_t steps[PASSO_AXES_MAX];
-	int32_t direction[PASSO_AXES_MAX]; /* unit vector, Q1.30 */
-	uint64_t length;                   /* UQ32.16 substeps */
-	uint64_t deviation;                /* UQ32.16 substeps */
+	uint64_t acceleration;              /* UQ0.64 substeps per clock^2, along the path */
+	struct passo_path_place at, before; /* its end and its start */
+	uint64_t deviation, tolerance;      /* UQ32.16 substeps */
+	uint64_t own_tolerance;             /* the same: that of the settings */
+	uint64_t off;  /* the same: by how much the last line is off those that it replaces */
+	uint64_t feed; /* of the last line, as it was given */
+	bool begins;   /* the path rested before the last line */
 	uint32_t substeps_per_mm;
-	int32_t carry;  /* Q16: substeps that rounding has withheld from the lines so far */
 	uint32_t dwell; /* ticks before the next line */
 	bool rest;      /* before the next line */
 	/* where the ramps end */
@@ -132,6 +170,11 @@ struct passo_path_planner {
 	uint32_t rapid;      /* the same, of rapids */
 	uint32_t reserve;    /* ticks */
 	uint32_t gentleness; /* UQ0.16: what a shape leaves of the acceleration */
+	/* the pace */
+	uint32_t polls;
+	uint32_t pace, paced;                  /* ticks of so many ramps, at least */
+	uint32_t recent[PASSO_PATH_PACED - 1]; /* ticks of the last ramps */
+	uint32_t line_clocks, line_burst;      /* of a line, at least; how many may be in advance */
 	enum passo_shape shape;
 	bool soft; /* profile jerk */
 };
@@ -150,6 +193,18 @@ void passo_path_restart(struct passo_path_planner *path, const int32_t *position
  * taken. Each of its axes makes the steps that it lacks. False: the positions are on none, and nothing has
  * changed. */
 bool passo_path_recover(struct passo_path_planner *path, const int32_t *positions, uint32_t done);
+
+/* How many ramps and lines are queued while a frame of them is made, and how many lines a frame takes, so
+ * that the path is not faster than it can be sent. passo_path_feed_open() sets it; before, it is that of a
+ * core as it comes. */
+void passo_path_pace(
+    struct passo_path_planner *path, uint32_t queued, uint32_t lines_queued, uint32_t lines_sent);
+
+/* By how much a line may be off the ends of short, nearly collinear lines that it replaces: those of one feed
+ * and output, which take less time than they can be sent in. The ends of the line itself are exact. It holds
+ * for lines added from now on; 0: that of the settings. */
+#define PASSO_PATH_UNMERGED UINT64_MAX /* each line remains one */
+void passo_path_tolerance(struct passo_path_planner *path, uint64_t tolerance);
 
 /* Adds a line. A line shorter than half a substep becomes part of the next one. Errors: PATH_FULL (take ramps
  * and lines, then add it again), NO_FEED, TOO_FAR (target out of range), TOO_LONG (2^30 substeps or more). */

@@ -38,18 +38,40 @@ static bool is_due(const struct passo_path_planner *path, const struct passo_pat
 	    && (index == path->planned || passo_path_ticks_to(path, aim) < TICKS_MIN);
 }
 
+/* Whether a part deserves its own ramp: one that it shares with a short one has the mean of both. What a ramp
+ * of whole ticks has left is no reason. */
+static bool is_long(
+    const struct passo_path_planner *path, uint64_t square, const struct passo_path_part *part)
+{
+	const uint64_t velocity = passo_path_velocity_of(square);
+	const uint64_t speeds = velocity + passo_path_velocity_of(part->square);
+	const uint64_t change =
+	    passo_path_larger(velocity, path->velocity) - passo_path_smaller(velocity, path->velocity);
+
+	return speeds > 0 && change > velocity / 256
+	    && passo_path_ticks_over(path, part->length, speeds) >= TICKS_MIN;
+}
+
+/* Whether two slopes can share a ramp. */
+static bool is_similar(uint64_t a, uint64_t b)
+{
+	return passo_path_larger(a, b) - passo_path_smaller(a, b) <= a / 64;
+}
+
 /* Whether the ramp has to end before this part. */
-static bool is_enough(const struct passo_path_planner *path, const struct passo_path_aim *aim, uint64_t slope,
+static bool is_enough(const struct passo_path_planner *path, const struct passo_path_aim *aim,
     const struct passo_path_part *part)
 {
 	if (aim->length == 0)
 		return false;
 	if (aim->kind == part->kind
-	    && (part->kind == PASSO_PATH_FLAT ? aim->square == part->square : aim->slope == slope))
+	    && (part->kind == PASSO_PATH_FLAT ? aim->square == part->square
+	                                      : is_similar(aim->first, part->slope)))
 		return false;
 	const uint64_t ticks = passo_path_ticks_to(path, aim);
 	return ticks >= TICKS_MIN
-	    || (ticks > 1 && aim->kind == PASSO_PATH_DOWN && part->kind != PASSO_PATH_DOWN);
+	    || (ticks > 1 && aim->kind == PASSO_PATH_DOWN && part->kind != PASSO_PATH_DOWN)
+	    || is_long(path, aim->square, part);
 }
 
 /* Follows the profile, at most to the start of item `before`. */
@@ -61,8 +83,7 @@ static struct passo_path_aim find_aim(
 	uint64_t left = ((uint64_t)passo_path_item(path, index)->substeps << 32) - (uint64_t)path->offset;
 
 	for (;; index++, left = (uint64_t)passo_path_item(path, index)->substeps << 32) {
-		const struct passo_path_item *item = passo_path_item(path, index);
-		struct passo_path_part parts[3];
+		struct passo_path_part parts[PASSO_PATH_PARTS];
 
 		if (index == before)
 			return aim;
@@ -74,10 +95,12 @@ static struct passo_path_aim find_aim(
 				aim.open = true;
 				return aim;
 			}
-			if (is_enough(path, &aim, item->slope, &parts[i]))
+			if (is_enough(path, &aim, &parts[i]))
 				return aim;
+			if (aim.kind != parts[i].kind || aim.length == 0)
+				aim.first = aim.slope = parts[i].slope;
+			aim.slope = passo_path_larger(aim.slope, parts[i].slope);
 			aim.kind = parts[i].kind;
-			aim.slope = item->slope;
 			aim.length += parts[i].length;
 			aim.square = parts[i].square;
 		}
@@ -90,7 +113,7 @@ static struct passo_path_aim find_aim(
 
 bool passo_path_is_shaped(const struct passo_path_planner *path, const struct passo_path_aim *aim)
 {
-	return path->shape != PASSO_SHAPE_LINEAR && aim->kind != PASSO_PATH_FLAT
+	return passo_path_shape(path) != PASSO_SHAPE_LINEAR && !aim->plain && aim->kind != PASSO_PATH_FLAT
 	    && passo_path_ticks_to(path, aim) >= SHAPED_TICKS_MIN;
 }
 
@@ -101,9 +124,11 @@ struct passo_path_aim passo_path_choose_aim(const struct passo_path_planner *pat
 	if (passo_path_is_soft(path))
 		return passo_path_soft_aim(path, need != PASSO_PATH_NO_NEED);
 	struct passo_path_aim aim = find_aim(path, need, path->added);
+#ifndef PASSO_LINEAR_PATHS
 	uint32_t before;
 
 	while (passo_path_is_shaped(path, &aim) && (before = passo_path_too_fast(path, &aim)) < path->added)
 		aim = find_aim(path, need, before);
-	return aim;
+#endif
+	return passo_path_at_pace(path, &aim, need);
 }

@@ -33,6 +33,7 @@ struct reach {
 	uint64_t lowest; /* velocity that their limits and corners allow */
 	uint64_t rise;   /* length from which on more is allowed than before; 0: none */
 	uint64_t open;   /* `lowest` at the first end of a line that is not settled; 0: none */
+	uint64_t pause;  /* ticks for which the path goes on at the top of a ramp up, at least */
 };
 
 static void consider(const struct passo_path_planner *path, const struct reach *reach, uint64_t end,
@@ -43,9 +44,11 @@ static void consider(const struct passo_path_planner *path, const struct reach *
 	const uint64_t level = down < reach->length ? reach->length - down : 0;
 	const uint64_t better = choice->top + (choice->top >> PRECISION) + 1;
 
-	if (better <= reach->lowest
-	    && passo_path_detour(path, &reach->law, from, better, end) <= reach->length)
-		choice->top = passo_path_highest(path, &reach->law, from, end, reach->length, reach->lowest);
+	const uint64_t paused = passo_path_length_in(path, 2 * reach->lowest, reach->pause);
+	const uint64_t length = reach->length - passo_path_smaller(paused, reach->length);
+
+	if (better <= reach->lowest && passo_path_detour(path, &reach->law, from, better, end) <= length)
+		choice->top = passo_path_highest(path, &reach->law, from, end, length, reach->lowest);
 	if (choice->found && level <= choice->level)
 		return;
 	choice->found = true;
@@ -83,12 +86,14 @@ static bool is_enough(
 }
 
 /* Looks at the starts of all lines that matter as the place to which a ramp down may lead. */
-static struct choice choose(const struct passo_path_planner *path, struct reach *reach)
+static struct choice choose(const struct passo_path_planner *path, uint32_t least, struct reach *reach)
 {
 	const uint64_t from = path->velocity;
 	struct choice choice = {.top = from};
 
-	*reach = (struct reach){.law = {UINT64_MAX, UINT64_MAX}, .lowest = UINT64_MAX};
+	*reach = (struct reach){.law = {UINT64_MAX, UINT64_MAX},
+	    .lowest = UINT64_MAX,
+	    .pause = passo_path_pace_need(path, least, 2)};
 	for (uint32_t index = path->planned;; index++) {
 		if (passo_path_is_held_back(path, index)) {
 			reach->open = passo_path_larger(reach->open, reach->lowest);
@@ -125,11 +130,22 @@ static struct passo_path_aim aim_at(
 	return (struct passo_path_aim){kind, length, square, .slope = slope + slope / 64 + 1};
 }
 
+/* Whether the path goes on at its speed before it goes down: both last long enough. */
+static bool is_worth(const struct passo_path_planner *path, const struct choice *choice, uint32_t least)
+{
+	const uint64_t from = path->velocity, down = choice->length - choice->level;
+	const uint64_t ticks = passo_path_ticks_over(path, choice->level, 2 * from);
+
+	return ticks >= least
+	    && passo_path_ticks_over(path, down, from + choice->end) >= passo_path_pace_need(path, ticks, 2);
+}
+
 struct passo_path_aim passo_path_soft_aim(const struct passo_path_planner *path, bool needed)
 {
 	const uint64_t from = path->velocity;
 	struct reach reach;
-	const struct choice choice = choose(path, &reach);
+	const uint32_t least = passo_path_pace_need(path, 0, 1) + TICKS_MIN;
+	const struct choice choice = choose(path, least, &reach);
 	const uint64_t up = passo_path_ramp_length(path, &reach.law, from, choice.top);
 	struct passo_path_aim aim;
 
@@ -143,11 +159,10 @@ struct passo_path_aim passo_path_soft_aim(const struct passo_path_planner *path,
 		aim.rest = true;
 		return aim;
 	}
-	if (choice.top > from
-	    && (from == 0 || passo_path_ticks_over(path, up, from + choice.top) >= TICKS_MIN))
+	if (choice.top > from && (from == 0 || passo_path_ticks_over(path, up, from + choice.top) >= least))
 		return aim_at(path, PASSO_PATH_UP, up, choice.top);
-	if (passo_path_ticks_over(path, choice.level, 2 * from) >= TICKS_MIN || choice.end >= from
-	    || choice.level == reach.rise)
+	if (is_worth(path, &choice, least) || choice.end >= from
+	    || (reach.rise > 0 && choice.level == reach.rise))
 		return aim_at(path, PASSO_PATH_FLAT, choice.level, from);
 	aim = aim_at(path, PASSO_PATH_DOWN, choice.length, choice.end);
 	aim.rest = choice.rest;

@@ -35,7 +35,7 @@ static bool find_direction(
 	uint64_t longest = 0, sum = 0;
 
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
-		longest = passo_path_larger(longest, magnitude(target[axis] - path->target[axis]));
+		longest = passo_path_larger(longest, magnitude(target[axis] - path->at.target[axis]));
 	if (longest == 0)
 		return false;
 	const uint32_t bits = passo_bits((struct passo_u128){0, longest});
@@ -44,14 +44,14 @@ static bool find_direction(
 	uint32_t size[PASSO_AXES_MAX];
 
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
-		size[axis] = (uint32_t)(magnitude(target[axis] - path->target[axis]) >> right << left);
+		size[axis] = (uint32_t)(magnitude(target[axis] - path->at.target[axis]) >> right << left);
 		sum += (uint64_t)size[axis] * size[axis];
 	}
 	const uint32_t root = passo_isqrt64(sum);
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
 		const int32_t share = (int32_t)(((uint64_t)size[axis] << PASSO_PATH_UNIT_BITS) / root);
 
-		unit[axis] = target[axis] < path->target[axis] ? -share : share;
+		unit[axis] = target[axis] < path->at.target[axis] ? -share : share;
 	}
 	/* Q31.32 mm times substeps per mm, less 16 bits */
 	const uint64_t product = (uint64_t)root * path->substeps_per_mm;
@@ -60,6 +60,22 @@ static bool find_direction(
 	else
 		*length = product >> (64 - (right - 16)) > 0 ? UINT64_MAX : product << (right - 16);
 	return true;
+}
+
+uint64_t passo_path_off(
+    const struct passo_path_planner *path, const int64_t *target, const struct passo_path_place *end)
+{
+	int32_t unit[PASSO_AXES_MAX];
+	uint64_t length = 0, turn = 0;
+
+	if (!find_direction(path, target, unit, &length) || length <= end->length)
+		return UINT64_MAX / 2;
+	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
+		const uint64_t change = magnitude((int64_t)unit[axis] - end->direction[axis]);
+
+		turn += change * change;
+	}
+	return passo_mul_div(end->length, (uint64_t)passo_isqrt64(turn) + 1, ONE);
 }
 
 /* Steps of each axis, by rounding the target; returns the most. */
@@ -73,7 +89,7 @@ static uint64_t find_steps(const struct passo_path_planner *path, const int64_t 
 		const int64_t rounded = (int64_t)(product.high + (product.low >> 63)); /* below 2^63 */
 
 		steps[axis] = target[axis] < 0 ? -rounded : rounded;
-		most = passo_path_larger(most, magnitude(steps[axis] - path->steps[axis]));
+		most = passo_path_larger(most, magnitude(steps[axis] - path->at.steps[axis]));
 	}
 	return most;
 }
@@ -115,7 +131,7 @@ static uint64_t limit_line(
 	item->limit = square_of(speed);
 	if (passo_path_is_soft(path))
 		slope = passo_mul_div(slope, path->gentleness, UINT32_C(1) << 16);
-	else if (path->shape != PASSO_SHAPE_LINEAR)
+	else if (passo_path_shape(path) != PASSO_SHAPE_LINEAR)
 		slope = shaped_slope(path, slope, weakest);
 	item->slope = passo_path_larger(slope, 1);
 	if (passo_path_is_soft(path))
@@ -157,36 +173,89 @@ static uint64_t soft_corner(
 	return velocity;
 }
 
+/* Mean curvature of a line, Q15.48 per substep, that makes half of a turn (Q1.30). The turn takes place over
+ * a length (both UQ32.16 substeps) on either side of the corner: if that is much shorter than the line, it
+ * belongs to the corner alone. */
+static int64_t curvature_of(int64_t turn, uint64_t over, uint64_t length)
+{
+	if (over < length / 2)
+		return 0;
+	const uint64_t size =
+	    passo_mul_div(magnitude(turn), UINT64_C(1) << 33, passo_path_larger(over, length));
+
+	return turn < 0 ? -(int64_t)size : (int64_t)size;
+}
+
+/* Half of a turn is made by the line before the corner, whose curvature is complete then, and half by the one
+ * behind it. */
+static void share_turn(struct passo_path_planner *path, const int32_t *unit, uint64_t length, uint64_t over)
+{
+	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
+		path->at.curvature[axis] +=
+		    curvature_of((int64_t)unit[axis] - path->at.direction[axis], over, path->at.length);
+	passo_path_add_curve(
+	    path, path->at.curvature, path->at.direction, passo_path_item(path, path->added - 1));
+	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
+		path->at.curvature[axis] =
+		    curvature_of((int64_t)unit[axis] - path->at.direction[axis], over, length);
+}
+
+/* What an axis has of its acceleration when a line has its slope, UQ0.16. */
+static uint16_t part_of(
+    const struct passo_path_planner *path, uint64_t slope, const int32_t *unit, uint32_t axis)
+{
+	const uint64_t part =
+	    passo_mul_div(slope, magnitude32(unit[axis]), 2 * path->axis[axis].acceleration);
+
+	return (uint16_t)passo_path_smaller(part >> (PASSO_PATH_UNIT_BITS - 16), UINT16_MAX);
+}
+
 /* Square at the corner between the last line and this one. The change of direction of an axis takes place
  * over a certain length: half the sum of the two lines, if they stand for an arc, or the arc that deviates by
  * the junction deviation. */
 static uint64_t limit_corner(
-    const struct passo_path_planner *path, const int32_t *unit, uint64_t length, bool *arc)
+    struct passo_path_planner *path, const int32_t *unit, uint64_t length, struct passo_path_item *item)
 {
 	uint32_t change[PASSO_AXES_MAX];
 	uint64_t turn = 0;
 
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
-		change[axis] = (uint32_t)magnitude((int64_t)unit[axis] - path->direction[axis]);
+		change[axis] = (uint32_t)magnitude((int64_t)unit[axis] - path->at.direction[axis]);
 		turn += (uint64_t)change[axis] * change[axis];
 	}
-	*arc = turn < 4;
-	if (turn < 4)
+	item->arc = turn < 4;
+	if (turn < 4) {
+		share_turn(path, path->at.direction, length, length);
 		return PASSO_PATH_SQUARE_MAX;
-	const uint64_t rounded = half_arc(path, turn), mean = (path->length + length) / 2;
+	}
+	const uint64_t rounded = half_arc(path, turn), mean = (path->at.length + length) / 2;
 	const uint64_t over = passo_path_smaller(rounded, mean) << (PASSO_PATH_UNIT_BITS - 16);
+	share_turn(path, unit, length, passo_path_smaller(rounded, mean));
 	uint64_t square = PASSO_PATH_SQUARE_MAX;
+	uint32_t binds = 0;
 
-	*arc = mean < rounded;
+	item->arc = mean < rounded;
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
 		const struct passo_path_scale *own = &path->axis[axis];
 
 		if (change[axis] == 0)
 			continue;
-		square = passo_path_smaller(square, passo_mul_div(own->acceleration, over, change[axis]));
+		const uint64_t bend = passo_mul_div(own->acceleration, over, change[axis]);
+
+		if (bend < square) {
+			square = bend;
+			binds = axis;
+		}
 		if (own->jump > 0)
 			square = passo_path_smaller(
 			    square, square_of(((uint64_t)own->jump << PASSO_PATH_UNIT_BITS) / change[axis]));
+	}
+	if (rounded < (path->at.length < length ? path->at.length : length) / 2) {
+		const struct passo_path_item *before = passo_path_item(path, path->added - 1);
+
+		item->turn = (uint32_t)(rounded >> 16);
+		item->lost[0] = part_of(path, before->slope, path->at.direction, binds);
+		item->lost[1] = part_of(path, item->slope, unit, binds);
 	}
 	if (passo_path_is_soft(path))
 		square = passo_path_smaller(square, square_of(soft_corner(path, change, turn, over)));
@@ -213,7 +282,7 @@ enum passo_plan_error passo_path_measure(
 	const uint64_t most = find_steps(path, move->target, steps);
 	if (length >> 16 > PASSO_SUBSTEPS_MAX)
 		return PASSO_PLAN_TOO_LONG;
-	const int64_t whole = path->carry + (int64_t)length + (1 << 15);
+	const int64_t whole = path->at.carry + (int64_t)length + (1 << 15);
 	uint64_t substeps = whole > 0 ? (uint64_t)whole >> 16 : 0;
 	if (substeps < 1 && most == 0)
 		return PASSO_PLAN_OK;
@@ -223,18 +292,24 @@ enum passo_plan_error passo_path_measure(
 		return PASSO_PLAN_TOO_LONG;
 
 	item->halt = limit_line(path, unit, move->feed, item);
-	if (!path->rest)
-		item->bend = limit_corner(path, unit, length, &item->arc);
+	if (path->rest) {
+		for (uint32_t axis = 0; axis < path->machine.axes; axis++)
+			path->at.curvature[axis] = 0;
+	} else {
+		item->bend = limit_corner(path, unit, length, item);
+	}
+	passo_path_add_curve(path, path->at.curvature, unit, item);
 	item->substeps = (uint32_t)substeps;
-	path->carry = stretched ? 0 : (int32_t)(path->carry + (int64_t)length - (int64_t)(substeps << 16));
-	path->length = length;
+	path->at.carry =
+	    stretched ? 0 : (int32_t)(path->at.carry + (int64_t)length - (int64_t)(substeps << 16));
+	path->at.length = length;
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
-		item->steps[axis] = (uint32_t)magnitude(steps[axis] - path->steps[axis]);
-		if (steps[axis] < path->steps[axis])
+		item->steps[axis] = (uint32_t)magnitude(steps[axis] - path->at.steps[axis]);
+		if (steps[axis] < path->at.steps[axis])
 			item->directions |= (uint8_t)(1u << axis);
-		path->steps[axis] = steps[axis];
-		path->target[axis] = move->target[axis];
-		path->direction[axis] = unit[axis];
+		path->at.steps[axis] = steps[axis];
+		path->at.target[axis] = move->target[axis];
+		path->at.direction[axis] = unit[axis];
 	}
 	return PASSO_PLAN_OK;
 }

@@ -16,6 +16,13 @@
 #define STEPS_PER_MM_MAX (UINT64_C(1) << (20 + 32))
 /* Of the reserve, unless it is given. */
 #define RESERVES_PER_SECOND 50u
+/* Of the junction deviation is the tolerance, unless it is given. */
+#define TOLERANCE_PART 20u
+/* Of the feed, unless they are given. */
+#define POLLS_PER_SECOND 500u
+/* Of a core with 16 places for ramps, of which a frame takes half, and of 4 axes. */
+#define PACED_RAMPS 8u
+#define PACED_LINES 10u
 
 /* Highest speed of a line on any axes, UQ32.32 mm/s; saturates. */
 static uint64_t top_speed(const struct passo_path_settings *settings)
@@ -48,6 +55,10 @@ static uint32_t substeps_per_mm(const struct passo_path_settings *settings)
 
 static bool has_profile(enum passo_profile profile)
 {
+#ifdef PASSO_LINEAR_PATHS
+	if (profile != PASSO_PROFILE_LINEAR)
+		return false;
+#endif
 #ifdef PASSO_WITHOUT_JERK_PATHS
 	if (profile == PASSO_PROFILE_JERK)
 		return false;
@@ -165,16 +176,21 @@ enum passo_plan_error passo_path_open(struct passo_path_planner *path,
 	    .rapid = PASSO_PATH_RAPID_FULL,
 	    .deviation = passo_mul_div(settings->junction_deviation, scale, UINT32_C(1) << 16),
 	    .reserve = (reserve >> machine->tick_log2) + 1,
+	    .polls = settings->polls > 0 ? settings->polls : POLLS_PER_SECOND,
 	    .shape = SHAPES[settings->profile],
 	    .soft = settings->profile == PASSO_PROFILE_JERK, /* see passo_path_is_soft() */
 	};
-	path->gentleness = gentleness(path->shape);
+	passo_path_tolerance(path,
+	    settings->tolerance > 0 ? settings->tolerance : settings->junction_deviation / TOLERANCE_PART);
+	path->own_tolerance = path->tolerance;
+	path->gentleness = gentleness(passo_path_shape(path));
 	path->acceleration = settings->acceleration > 0 ? acceleration_of(path, settings->acceleration)
 	                                                : PASSO_PATH_SQUARE_MAX >> 2;
 	for (uint32_t axis = 0; axis < machine->axes; axis++) {
 		path->axis[axis] = scale_of(path, &settings->axis[axis]);
 		path->steps_per_mm[axis] = settings->axis[axis].steps_per_mm;
 	}
+	passo_path_pace(path, PACED_RAMPS, UINT32_MAX, PACED_LINES);
 	passo_path_restart(path, ORIGIN);
 	return PASSO_PLAN_OK;
 }
@@ -188,15 +204,17 @@ void passo_path_restart(struct passo_path_planner *path, const int32_t *position
 		    passo_divide((struct passo_u128){size, 0}, path->steps_per_mm[axis], NULL),
 		    PASSO_PATH_TARGET_MAX);
 
-		path->steps[axis] = steps;
-		path->target[axis] = steps < 0 ? -(int64_t)target : (int64_t)target;
+		path->at.steps[axis] = steps;
+		path->at.target[axis] = steps < 0 ? -(int64_t)target : (int64_t)target;
 	}
 	path->sent = path->planned = path->added = path->final = 0;
-	path->carry = 0;
+	path->at.carry = 0;
 	path->dwell = 0;
 	path->rest = true;
 	path->offset = 0;
 	path->velocity = 0;
 	path->at_rest = true;
 	path->started = path->jump = path->last = path->lines_end = path->ramps_end = false;
+	path->at.line_credit = 0;
+	passo_path_pace_begin(path);
 }

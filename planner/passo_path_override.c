@@ -22,10 +22,10 @@ void passo_path_limit(struct passo_path_planner *path, uint32_t index)
 	struct passo_path_item *before = passo_path_item(path, index - 1);
 
 	item->corner = passo_path_smaller(item->corner, before->top);
-	/* an arc is limited along its lines, not only at its corners */
+	/* an arc is limited along its lines, not only at its corners; by their bends, not by the feeds that
+	 * meet there */
 	if (before->arc && item->arc)
-		before->top =
-		    passo_path_smaller(before->top, passo_path_larger(before->corner, item->corner));
+		before->top = passo_path_smaller(before->top, passo_path_larger(before->bend, item->bend));
 }
 
 /* Plans anew what the ramps have not passed. */

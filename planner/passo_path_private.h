@@ -4,6 +4,8 @@
 #ifndef PASSO_PATH_PRIVATE_H
 #define PASSO_PATH_PRIVATE_H
 
+#include <stddef.h>
+
 #include "passo_math.h"
 #include "passo_path.h"
 
@@ -32,15 +34,21 @@ struct passo_path_part {
 	enum passo_path_kind kind;
 	uint64_t length; /* UQ32.32 substeps */
 	uint64_t square; /* at its end */
+	uint64_t slope;
 };
+
+/* Most parts of a line. */
+#define PASSO_PATH_PARTS 5u
 
 /* What the next ramp aims at. */
 struct passo_path_aim {
 	enum passo_path_kind kind;
 	uint64_t length, square; /* of the path to there, UQ32.32 substeps; of the velocity there */
 	uint64_t slope;
-	bool rest; /* it comes to rest there */
-	bool open; /* it ends there because what follows is not settled */
+	bool rest;      /* it comes to rest there */
+	bool open;      /* it ends there because what follows is not settled */
+	bool plain;     /* its ramp is linear */
+	uint64_t first; /* slope of the part that it began with; `slope` is the steepest */
 };
 
 /* Why ramps are made beyond what is settled. */
@@ -61,6 +69,12 @@ static inline uint64_t passo_path_larger(uint64_t a, uint64_t b)
 	return a > b ? a : b;
 }
 
+/* What a line takes at least, in clocks. */
+static inline uint64_t passo_path_clocks(const struct passo_path_item *item)
+{
+	return ((uint64_t)item->substeps << 32) / passo_path_larger(passo_isqrt64(item->top), 1);
+}
+
 /* Profile jerk, which an image without room leaves out: PASSO_WITHOUT_JERK_PATHS. */
 static inline bool passo_path_is_soft(const struct passo_path_planner *path)
 {
@@ -69,6 +83,17 @@ static inline bool passo_path_is_soft(const struct passo_path_planner *path)
 	return false;
 #else
 	return path->soft;
+#endif
+}
+
+/* The shape of its ramps. */
+static inline enum passo_shape passo_path_shape(const struct passo_path_planner *path)
+{
+#ifdef PASSO_LINEAR_PATHS
+	(void)path;
+	return PASSO_SHAPE_LINEAR;
+#else
+	return path->shape;
 #endif
 }
 
@@ -84,11 +109,14 @@ static inline uint64_t passo_path_square_of(uint64_t velocity)
 	return velocity * velocity;
 }
 
-/* Deceleration is planned a little below the limit, so that it can make up for ramps that end at ticks. */
-static inline uint64_t passo_path_down_slope(const struct passo_path_item *item)
-{
-	return item->slope - item->slope / 256;
-}
+/* Change of the square per substep within an item that the axes allow, over a length (UQ32.32 substeps) from
+ * its lower end. Deceleration is planned a little below the limit, so that it can make up for ramps that end
+ * at ticks. */
+uint64_t passo_path_slope(const struct passo_path_item *item, bool up, uint64_t low, uint64_t length);
+
+/* Sets the curve of an item: its unit vector, and its mean curvature, Q15.48 per substep. */
+void passo_path_add_curve(const struct passo_path_planner *path, const int64_t *curvature,
+    const int32_t *unit, struct passo_path_item *item);
 
 /* Change of the square over a length (UQ32.32 substeps); saturates. */
 uint64_t passo_path_gain(uint64_t slope, uint64_t length);
@@ -101,11 +129,19 @@ uint64_t passo_path_change(const struct passo_path_planner *path, uint64_t slope
 enum passo_plan_error passo_path_measure(
     struct passo_path_planner *path, const struct passo_path_move *move, struct passo_path_item *item);
 
+/* By how much a line from where the path ends, to a target, is off the end of a shorter one from there, at
+ * most: UQ32.16 substeps; saturates if it is not longer. */
+uint64_t passo_path_off(
+    const struct passo_path_planner *path, const int64_t *target, const struct passo_path_place *end);
+
 /* Sets the limits of an item, `top` and, unless the path rests there, `corner`; those before it are known. */
 void passo_path_limit(struct passo_path_planner *path, uint32_t index);
 
 /* Ticks over a length (UQ32.32 substeps) at the mean of two velocities, whose sum is given, rounded down. */
 uint64_t passo_path_ticks_over(const struct passo_path_planner *path, uint64_t length, uint64_t speeds);
+
+/* Length, UQ32.32 substeps, in so many ticks at the mean of two velocities, whose sum is given. */
+uint64_t passo_path_length_in(const struct passo_path_planner *path, uint64_t speeds, uint64_t ticks);
 
 /* The newest line is handed out when the next one is known, or when it is the last. */
 bool passo_path_is_held_back(const struct passo_path_planner *path, uint32_t index);
@@ -117,11 +153,15 @@ bool passo_path_rests_after(const struct passo_path_planner *path, uint32_t inde
 uint64_t passo_path_end_square(const struct passo_path_planner *path, uint32_t index);
 bool passo_path_is_settled(const struct passo_path_planner *path, uint32_t index);
 
+/* Length behind the corner at the start of an item, or before it, over which the path keeps a square, so that
+ * the rounding of a lone corner has what it needs of the acceleration. */
+uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, bool behind, uint64_t square);
+
 /* Updates `reach` after a line has been added. */
 void passo_path_look_back(struct passo_path_planner *path);
 
 /* The parts of the profile from a point of an item to its end, of which `left` (UQ32.32 substeps) are left:
- * at most three. With `level` the path does not speed up for less than the line. */
+ * at most PASSO_PATH_PARTS. With `level` the path does not speed up for less than the line. */
 unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index, uint64_t left,
     uint64_t square, bool level, struct passo_path_part *parts);
 
@@ -149,6 +189,18 @@ struct passo_path_aim passo_path_soft_aim(const struct passo_path_planner *path,
 struct passo_path_aim passo_path_choose_aim(const struct passo_path_planner *path, enum passo_path_need need);
 uint64_t passo_path_ticks_to(const struct passo_path_planner *path, const struct passo_path_aim *aim);
 bool passo_path_is_shaped(const struct passo_path_planner *path, const struct passo_path_aim *aim);
+
+/* The same, or a calmer one, if there would be more ramps than can be sent. */
+struct passo_path_aim passo_path_at_pace(
+    const struct passo_path_planner *path, const struct passo_path_aim *aim, enum passo_path_need need);
+
+/* Ticks that are lacking until the next `count` ramps may be over, if they last so many without. */
+uint32_t passo_path_pace_need(const struct passo_path_planner *path, uint64_t ticks, unsigned count);
+
+/* A motion begins; a ramp was made; a line is added. */
+void passo_path_pace_begin(struct passo_path_planner *path);
+void passo_path_pace_ramp(struct passo_path_planner *path, uint32_t ticks);
+void passo_path_pace_line(struct passo_path_planner *path, struct passo_path_item *item);
 
 /* Sets ticks and progress step. */
 void passo_path_set_ticks(struct passo_ramp *ramp, uint32_t ticks);

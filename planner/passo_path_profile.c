@@ -25,30 +25,48 @@ static uint64_t length_of(uint64_t change, uint64_t slope)
 }
 
 static unsigned put(struct passo_path_part *parts, unsigned count, enum passo_path_kind kind, uint64_t length,
-    uint64_t square)
+    uint64_t square, uint64_t slope)
 {
 	if (length == 0)
 		return count;
-	parts[count] = (struct passo_path_part){kind, length, square};
+	parts[count] = (struct passo_path_part){kind, length, square, slope};
 	return count + 1;
 }
 
-unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index, uint64_t left,
+uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, bool behind, uint64_t square)
+{
+	const struct passo_path_item *item = passo_path_item(path, index);
+
+	if (index >= path->added || item->rest || item->turn == 0
+	    || passo_path_shape(path) != PASSO_SHAPE_LINEAR)
+		return 0;
+	/* the curvature over both sides takes half of the limit at most */
+	const uint32_t taken =
+	    (uint32_t)passo_mul_div(passo_path_smaller(square, item->bend), UINT32_C(1) << 15, item->bend);
+	const uint32_t lost = item->lost[behind], left = (UINT32_C(1) << 16) - taken;
+	return left < lost ? passo_mul_div((uint64_t)item->turn << 32, lost - left, lost) : 0;
+}
+
+/* Without the flat ends: at most three. */
+static unsigned middle_parts(const struct passo_path_planner *path, uint32_t index, uint64_t left,
     uint64_t square, bool level, struct passo_path_part *parts)
 {
 	const struct passo_path_item *item = passo_path_item(path, index);
-	const uint64_t up = item->slope, down = passo_path_down_slope(item);
 	const uint64_t end = passo_path_end_square(path, index);
+	const uint64_t up = passo_path_slope(item, true, square, left);
+	const uint64_t down = passo_path_slope(item, false, end, left);
+	const uint64_t steepest = down + down / 255; /* ramps may make up for their rounding */
 	const uint64_t highest = end + passo_path_gain(down, left);
 	uint64_t top = passo_path_larger(item->top, square);
 
+	/* above it where a line at whose end the path could rest has become part of a curve */
 	if (square >= highest)
-		return put(parts, 0, PASSO_PATH_DOWN, left, end);
+		return put(parts, 0, PASSO_PATH_DOWN, left, end, square > highest ? item->slope : steepest);
 	if (level && !passo_path_is_settled(path, index))
 		top = passo_path_smaller(top, passo_path_larger(end, square));
 	const uint64_t rise = square + passo_path_gain(up, left);
 	if (rise <= end && rise <= top)
-		return put(parts, 0, PASSO_PATH_UP, left, rise);
+		return put(parts, 0, PASSO_PATH_UP, left, rise, up);
 
 	uint64_t rising = passo_path_smaller(length_of(highest - square, up + down), left);
 	uint64_t peak = square + passo_path_gain(up, rising);
@@ -59,7 +77,22 @@ unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index,
 		falling = peak > end ? length_of(peak - end, down) : 0;
 		falling = passo_path_smaller(falling, left - rising);
 	}
-	unsigned count = put(parts, 0, PASSO_PATH_UP, rising, peak);
-	count = put(parts, count, PASSO_PATH_FLAT, left - rising - falling, peak);
-	return put(parts, count, PASSO_PATH_DOWN, falling, end);
+	unsigned count = put(parts, 0, PASSO_PATH_UP, rising, peak, up);
+	count = put(parts, count, PASSO_PATH_FLAT, left - rising - falling, peak, up);
+	return put(parts, count, PASSO_PATH_DOWN, falling, end, steepest);
+}
+
+unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index, uint64_t left,
+    uint64_t square, bool level, struct passo_path_part *parts)
+{
+	const uint64_t passed = ((uint64_t)passo_path_item(path, index)->substeps << 32) - left;
+	const uint64_t end = passo_path_end_square(path, index), slope = passo_path_item(path, index)->slope;
+	const uint64_t behind = passo_path_smaller(passo_path_flat(path, index + 1, false, end), left);
+	uint64_t before = passo_path_flat(path, index, true, square);
+
+	before = passo_path_smaller(before > passed ? before - passed : 0, left - behind);
+	unsigned count = put(parts, 0, PASSO_PATH_FLAT, before, square, slope);
+	if (left > before + behind)
+		count += middle_parts(path, index, left - before - behind, square, level, parts + count);
+	return put(parts, count, PASSO_PATH_FLAT, behind, count > 0 ? parts[count - 1].square : end, slope);
 }

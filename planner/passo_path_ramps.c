@@ -55,7 +55,7 @@ static void come_to_rest(struct passo_path_planner *path, bool *last)
 static void land(struct passo_path_planner *path, const struct passo_path_aim *aim, uint32_t ticks,
     struct passo_ramp *ramp)
 {
-	ramp->shape = passo_path_is_shaped(path, aim) ? path->shape : PASSO_SHAPE_LINEAR;
+	ramp->shape = passo_path_is_shaped(path, aim) ? passo_path_shape(path) : PASSO_SHAPE_LINEAR;
 	passo_path_set_ticks(ramp, ticks);
 	passo_path_land(path, path->velocity, aim->length, ramp);
 	make(path, ramp);
@@ -78,7 +78,7 @@ static void follow(
 	if (used < ticks)
 		change = passo_mul_div(change, used, ticks);
 	change = passo_path_smaller(change, limit);
-	ramp->shape = shaped ? path->shape : PASSO_SHAPE_LINEAR;
+	ramp->shape = shaped ? passo_path_shape(path) : PASSO_SHAPE_LINEAR;
 	passo_path_set_ticks(ramp, used);
 	ramp->velocity_end = begin < end ? begin + change : begin - change;
 	make(path, ramp);
@@ -101,9 +101,8 @@ static bool start(struct passo_path_planner *path, struct passo_ramp *ramp)
 	return ramp->velocity_end > 0;
 }
 
-bool passo_path_next_ramp(struct passo_path_planner *path, uint32_t held, struct passo_ramp *ramp)
+static bool next_ramp(struct passo_path_planner *path, uint32_t held, struct passo_ramp *ramp)
 {
-	*ramp = (struct passo_ramp){.shape = PASSO_SHAPE_LINEAR};
 	if (path->ramps_end)
 		return false;
 	if (path->jump) {
@@ -149,5 +148,14 @@ bool passo_path_next_ramp(struct passo_path_planner *path, uint32_t held, struct
 		}
 	}
 	follow(path, &aim, most, ramp);
+	return true;
+}
+
+bool passo_path_next_ramp(struct passo_path_planner *path, uint32_t held, struct passo_ramp *ramp)
+{
+	*ramp = (struct passo_ramp){.shape = PASSO_SHAPE_LINEAR};
+	if (!next_ramp(path, held, ramp))
+		return false;
+	passo_path_pace_ramp(path, ramp->ticks);
 	return true;
 }

@@ -85,6 +85,7 @@ static void begin_at(struct passo_path_planner *path, uint32_t index)
 	path->at_rest = true;
 	path->started = path->jump = path->lines_end = path->ramps_end = false;
 	path->anew = true;
+	passo_path_pace_begin(path);
 	passo_path_look_back(path);
 	if (path->rest)
 		path->final = path->added;
@@ -97,7 +98,7 @@ bool passo_path_recover(struct passo_path_planner *path, const int32_t *position
 	int64_t made[PASSO_AXES_MAX];
 
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
-		made[axis] = positions[axis] - path->steps[axis];
+		made[axis] = positions[axis] - path->at.steps[axis];
 		for (uint32_t index = first; index < path->added; index++)
 			made[axis] += steps_of(passo_path_item(path, index), axis);
 	}

@@ -5,6 +5,8 @@
 #include "passo_path_private.h"
 #include "passo_shapes.h"
 
+#ifndef PASSO_LINEAR_PATHS
+
 /* Square of the velocity that a ramp has when a share of its shape (UQ0.16) is done. */
 static uint64_t square_at(uint64_t begin, uint64_t end, uint32_t share)
 {
@@ -17,7 +19,7 @@ static uint64_t square_at(uint64_t begin, uint64_t end, uint32_t share)
 
 uint32_t passo_path_too_fast(const struct passo_path_planner *path, const struct passo_path_aim *aim)
 {
-	const uint16_t *points = passo_shapes[path->shape - 1];
+	const uint16_t *points = passo_shapes[passo_path_shape(path) - 1];
 	const uint64_t begin = path->velocity;
 	const uint64_t end = (uint64_t)passo_isqrt64(aim->square) << PASSO_PATH_VELOCITY_SHIFT;
 	const bool falls = end < begin;
@@ -46,3 +48,5 @@ uint32_t passo_path_too_fast(const struct passo_path_planner *path, const struct
 	}
 	return path->added;
 }
+
+#endif

@@ -407,15 +407,9 @@
 #define PASSO_CHANNEL_TRIGGER_STATE_AXES_BITS           8u
 #define PASSO_CHANNEL_TRIGGER_STATE_AXES_RESET          0x00u
 
-/* Channel: Trigger clocks. Only with INPUTS. Clocks since the trigger was armed, until it fired; wraps. */
-#define PASSO_CHANNEL_TRIGGER_CLOCKS       0x15u
-#define PASSO_CHANNEL_TRIGGER_CLOCKS_LSB   0u
-#define PASSO_CHANNEL_TRIGGER_CLOCKS_BITS  32u
-#define PASSO_CHANNEL_TRIGGER_CLOCKS_RESET 0x00000000u
-
 /* Channel: Probe. Only with INPUTS. Polarity, kept over a reset of the core, after a change of which the
  * inputs are unknown; and the flag of the probe. */
-#define PASSO_CHANNEL_PROBE                0x16u
+#define PASSO_CHANNEL_PROBE                0x15u
 #define PASSO_CHANNEL_PROBE_INVERTED_LSB   0u
 #define PASSO_CHANNEL_PROBE_INVERTED_BITS  1u
 #define PASSO_CHANNEL_PROBE_INVERTED_RESET 0x0u

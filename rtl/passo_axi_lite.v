@@ -2,7 +2,8 @@
 // Passo behind AXI4-Lite, for a CPU in the same FPGA.
 //
 // The two registers of passo_words; its errors return SLVERR. One access at a time: a write is accepted once its
-// address and data are valid, a read while no write is; each is answered before the next is accepted.
+// address and data are valid, a read while no write is, or after a write; each is answered before the next is
+// accepted. So a read waits for one write at most: 264 clocks, if the master takes answers at once.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -81,7 +82,8 @@ module passo_axi_lite #(
 
   wire done;
   wire error;
-  wire write = s_axil_awvalid & s_axil_wvalid;
+  reg  reads_next;  // the last access was a write
+  wire write = s_axil_awvalid & s_axil_wvalid & ~(reads_next & s_axil_arvalid);
   reg  write_q;  // `done` belongs to a write
   wire answering = s_axil_bvalid | s_axil_rvalid;
 
@@ -93,9 +95,11 @@ module passo_axi_lite #(
 
   always @(posedge clk) begin
     write_q       <= write;
+    if (done) reads_next <= write_q;
     s_axil_bvalid <= s_axil_bvalid ? ~s_axil_bready : s_axil_awready;
     s_axil_rvalid <= s_axil_rvalid ? ~s_axil_rready : s_axil_arready;
     if (rst) begin
+      reads_next    <= 1'b0;
       s_axil_bvalid <= 1'b0;
       s_axil_rvalid <= 1'b0;
     end

@@ -37,8 +37,7 @@ module passo_input #(
   wire [WIDTH-1:0] differs = second ^ level;
 
   reg              changed;  // an input has changed since the last tick
-  reg              forgot;   // one clock ago: the synchroniser still has what was before
-  wire             changes = (differs ^ pending) != {WIDTH{1'b0}};
+  reg              forgot;  // one clock ago: the synchroniser still has what was before
 
   assign synced = second;
 
@@ -48,9 +47,9 @@ module passo_input #(
     level      <= level ^ (differs & pending & {WIDTH{tick}});
     pending    <= differs & (pending ^ {WIDTH{tick}});
     was_active <= (was_active & ~clear) | level;
-    changed    <= forgot | ((changed | changes) & ~tick);
+    changed    <= forgot | (first != second) | (changed & ~tick);
     forgot     <= 1'b0;
-    if (tick && !changed && !changes) unknown <= 1'b0;
+    if (tick && !changed) unknown <= 1'b0;
     if (rst || forget) begin
       changed <= 1'b1;
       forgot  <= 1'b1;

@@ -71,7 +71,7 @@ module passo_inputs #(
   wire of_axis = bus_data[CHANNEL_TRIGGER_SOURCE_LSB+:CHANNEL_TRIGGER_SOURCE_BITS] != TRIGGER_SOURCE_NONE
                  && bus_data[CHANNEL_TRIGGER_SOURCE_LSB+:CHANNEL_TRIGGER_SOURCE_BITS] != TRIGGER_SOURCE_PROBE;
   wire [3:0] axis = {1'b0, bus_data[CHANNEL_TRIGGER_AXIS_LSB+:CHANNEL_TRIGGER_AXIS_BITS]};
-  wire bad_trigger = (bus_data & ~CHANNEL_TRIGGER_DEFINED) != 32'd0
+  wire bad_trigger = bus_msb > 5'd16 || (bus_data[15:0] & ~CHANNEL_TRIGGER_DEFINED[15:0]) != 16'd0
                      || bus_data[CHANNEL_TRIGGER_SOURCE_LSB+:CHANNEL_TRIGGER_SOURCE_BITS] > TRIGGER_SOURCE_INDEX
                      || (bus_data[CHANNEL_TRIGGER_ARM_LSB]
                          && bus_data[CHANNEL_TRIGGER_SOURCE_LSB+:CHANNEL_TRIGGER_SOURCE_BITS] == TRIGGER_SOURCE_NONE)
@@ -201,7 +201,6 @@ module passo_inputs #(
   wire        armed;
   wire        source_level;
   wire        fired;
-  wire [31:0] clocks;
   wire        trigger_hard;
   wire        trigger_soft;
 
@@ -220,7 +219,6 @@ module passo_inputs #(
     .armed      (armed),
     .level      (source_level),
     .fired      (fired),
-    .clocks     (clocks),
     .latch      (latch),
     .hard_stop  (trigger_hard),
     .soft_stop  (trigger_soft),
@@ -263,8 +261,7 @@ module passo_inputs #(
 
   assign read_data = (reads[CHANNEL_INPUT_LEVELS[2:0]] ? levels : 32'd0)
                      | (reads[CHANNEL_INPUT_FLAGS[2:0]] ? flags : 32'd0)
-                     | (reads[CHANNEL_TRIGGER_STATE[2:0]] ? state : 32'd0)
-                     | (reads[CHANNEL_TRIGGER_CLOCKS[2:0]] ? clocks : 32'd0);
+                     | (reads[CHANNEL_TRIGGER_STATE[2:0]] ? state : 32'd0);
 
 endmodule
 `resetall

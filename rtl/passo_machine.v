@@ -40,19 +40,15 @@ module passo_machine (
   reg         known;
   reg         bad_value;
   reg  [ 1:0] number;
-  reg  [ 2:0] reads;
+  reg         read_estop;
   wire        write = bus_write & known;
   wire        write_watchdog = write && number == ADDRESS_WATCHDOG[1:0];
   wire        write_clear = write && number == ADDRESS_ESTOP_CLEAR[1:0] && bus_data[0];
-  wire [19:0] watchdog;
 
   assign write_filter = write && number == ADDRESS_INPUT_FILTER[1:0];
 
-  assign read_data = (reads[ADDRESS_INPUT_FILTER[1:0]] ? {16'd0, filter} : 32'd0)
-                     | (reads[ADDRESS_WATCHDOG[1:0]] ? {12'd0, watchdog} : 32'd0)
-                     | (reads[ADDRESS_ESTOP[1:0]] ? {31'd0, estop} : 32'd0);
+  assign read_data = {31'd0, estop & read_estop};
 
-  integer i;
   always @(posedge clk) begin
     known <= bus_address[11:2] == ADDRESS_INPUT_FILTER[11:2];
     number <= bus_address[1:0];
@@ -60,12 +56,12 @@ module passo_machine (
                  number == ADDRESS_WATCHDOG[1:0]     ? bus_msb > 5'd19 : bus_msb != 5'd0;
     claim <= known & (bus_check | bus_read);
     refusal <= !known    ? VERDICT_OK :
-               bus_read  ? (number == ADDRESS_ESTOP_CLEAR[1:0] ? VERDICT_BAD_OPERATION : VERDICT_OK) :
+               bus_read  ? (number == ADDRESS_ESTOP[1:0] ? VERDICT_OK : VERDICT_BAD_OPERATION) :
                !bus_check ? VERDICT_OK :
                bus_push  ? VERDICT_BAD_OPERATION :
                number == ADDRESS_ESTOP[1:0] ? VERDICT_READ_ONLY :
                bad_value ? VERDICT_BAD_VALUE : VERDICT_OK;
-    for (i = 0; i < 3; i = i + 1) reads[i] <= bus_read && known && number == i[1:0];
+    read_estop <= bus_read && known && number == ADDRESS_ESTOP[1:0];
     if (rst) begin
       claim   <= 1'b0;
       refusal <= VERDICT_OK;
@@ -103,8 +99,7 @@ module passo_machine (
     .feed          (bus_write | bus_read),
     .moving        (moving),
     .stop          (watchdog_stop),
-    .disable_drives(disable_drives),
-    .settings      (watchdog)
+    .disable_drives(disable_drives)
   );
 
 endmodule

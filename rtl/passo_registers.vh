@@ -406,15 +406,9 @@ localparam CHANNEL_TRIGGER_STATE_AXES_LSB            = 8;
 localparam CHANNEL_TRIGGER_STATE_AXES_BITS           = 8;
 localparam CHANNEL_TRIGGER_STATE_AXES_RESET          = 8'h00;
 
-// Channel: Trigger clocks. Only with INPUTS. Clocks since the trigger was armed, until it fired; wraps.
-localparam CHANNEL_TRIGGER_CLOCKS       = 8'h15;
-localparam CHANNEL_TRIGGER_CLOCKS_LSB   = 0;
-localparam CHANNEL_TRIGGER_CLOCKS_BITS  = 32;
-localparam CHANNEL_TRIGGER_CLOCKS_RESET = 32'h00000000;
-
 // Channel: Probe. Only with INPUTS. Polarity, kept over a reset of the core, after a change of which the
 // inputs are unknown; and the flag of the probe.
-localparam CHANNEL_PROBE                = 8'h16;
+localparam CHANNEL_PROBE                = 8'h15;
 localparam CHANNEL_PROBE_INVERTED_LSB   = 0;
 localparam CHANNEL_PROBE_INVERTED_BITS  = 1;
 localparam CHANNEL_PROBE_INVERTED_RESET = 1'h0;

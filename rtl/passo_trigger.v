@@ -26,7 +26,6 @@ module passo_trigger #(
   output reg               armed,
   output reg               level,       // of the source, once armed: what it was last for more than `filter` clocks
   output reg               fired,
-  output reg  [      31:0] clocks,
   output reg               latch,       // strobe
   output wire              hard_stop,   // strobes, with latch: what it does
   output wire              soft_stop,
@@ -74,8 +73,6 @@ module passo_trigger #(
     fired  <= fired | fires;
     count  <= !counts || accepts || stale != 2'd0 ? 16'd0 : count + 16'd1;
     if (accepts || !armed) level <= picked;
-    if (arming) clocks <= 32'd0;
-    else if (armed) clocks <= clocks + 32'd1;
     if (write) begin
       source  <= bus_data[CHANNEL_TRIGGER_SOURCE_LSB+:CHANNEL_TRIGGER_SOURCE_BITS];
       axis    <= bus_data[CHANNEL_TRIGGER_AXIS_LSB+:CHANNEL_TRIGGER_AXIS_BITS];
@@ -91,7 +88,6 @@ module passo_trigger #(
       armed  <= 1'b0;
       fired  <= 1'b0;
       latch  <= 1'b0;
-      clocks <= 32'd0;
     end
   end
 

@@ -18,43 +18,41 @@ module passo_watchdog #(
   input  wire        feed,            // a frame is being executed
   input  wire        moving,          // a motion runs
   output reg         stop,
-  output reg         disable_drives,
-  output wire [19:0] settings
+  output reg         disable_drives
 );
 
   reg  [          9:0] stop_after;
   reg  [          9:0] disable_after;
-  reg  [          9:0] count;  // units left
+  reg                  stops;  // stop_after is not 0
+  reg                  disables;  // disable_after is not 0
+  reg  [          9:0] count;  // units since it was fed, or since `stop`
   reg  [UNIT_LOG2-1:0] unit;
-  reg                  unit_ends;
   reg                  fed;
-  wire                 over = count == 10'd0;
-
-  assign settings = {disable_after, stop_after};
+  reg                  silent;  // stop_after units are over
+  wire [          9:0] wanted = stop ? disable_after : stop_after;
+  wire                 over = count == wanted;
+  wire                 bites = silent & moving & ~stop;
 
   always @(posedge clk) begin
-    fed       <= feed;
-    unit      <= unit + 1'b1;
-    unit_ends <= unit == {{(UNIT_LOG2 - 1) {1'b1}}, 1'b0};
-    if (unit_ends && count != 10'd0) count <= count - 10'd1;
-    if (over && !stop && stop_after != 10'd0 && moving) begin
-      stop      <= 1'b1;
-      count     <= disable_after;
-      unit      <= {UNIT_LOG2{1'b0}};
-      unit_ends <= 1'b0;
+    fed <= feed;
+    {count, unit} <= {count, unit} + 1'b1;
+    if (over && stops) silent <= 1'b1;
+    if (bites) stop <= 1'b1;
+    if (over && stop && disables) disable_drives <= 1'b1;
+    if (write) begin
+      {disable_after, stop_after} <= bus_data;
+      {disables, stops}           <= {bus_data[19:10] != 10'd0, bus_data[9:0] != 10'd0};
     end
-    if (over && stop && disable_after != 10'd0) disable_drives <= 1'b1;
-    if (write) {disable_after, stop_after} <= bus_data;
+    if (fed || bites || rst) {count, unit} <= {(10 + UNIT_LOG2) {1'b0}};
     if (fed || rst) begin
-      count          <= stop_after;
-      unit           <= {UNIT_LOG2{1'b0}};
-      unit_ends      <= 1'b0;
+      silent         <= 1'b0;
       stop           <= 1'b0;
       disable_drives <= 1'b0;
     end
     if (rst) begin
       fed                         <= 1'b1;
       {disable_after, stop_after} <= 20'd0;
+      {disables, stops}           <= 2'b00;
     end
   end
 

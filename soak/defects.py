@@ -9,7 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
-from passo.compiler import BuildError
+from passo.failure import BuildError
 from passo.planted import plant
 
 from soak.parts import console

@@ -31,7 +31,7 @@ static void measure(struct player *player)
 	const unsigned axes = player_axes(player);
 
 	read(player, PASSO_CHANNEL_STATE, 3);
-	read(player, PASSO_CHANNEL_TRIGGER_STATE, 2);
+	read(player, PASSO_CHANNEL_TRIGGER_STATE, 1);
 	read(player, PASSO_CHANNEL_TRIGGER_POSITION_BASE, axes);
 	read(player, PASSO_CHANNEL_ENCODER_POSITION_BASE, axes);
 	read(player, PASSO_CHANNEL_INPUT_FLAGS, 1);
@@ -59,6 +59,7 @@ void player_end_machine(struct player *player)
 	for (unsigned a = 0; a < player_axes(player); a++)
 		frame(player, PASSO_OPERATION_WRITE,
 		    channel_address(0, PASSO_CHANNEL_ENCODER_BASE + a * PASSO_CHANNEL_ENCODER_STRIDE), 0, 1);
+	frame(player, PASSO_OPERATION_WRITE, PASSO_ADDRESS_INPUT_FILTER, 0, 1); /* soon known */
 	frame(player, PASSO_OPERATION_WRITE, PASSO_ADDRESS_WATCHDOG, 0, 1);
 	frame(player, PASSO_OPERATION_WRITE, channel_address(0, PASSO_CHANNEL_TRIGGER), 0, 1);
 	frame(player, PASSO_OPERATION_WRITE, PASSO_ADDRESS_ESTOP_CLEAR, 1, 1);

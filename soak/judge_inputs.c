@@ -77,7 +77,7 @@ static void see_level(struct judge *judge, unsigned input, unsigned a, uint64_t 
 {
 	struct machine *machine = &judge->machine;
 	struct level *level = &machine->levels[input][a];
-	const uint64_t filter = judge_later(machine->filter, 1), now = judge->now;
+	const uint64_t filter = (uint64_t)machine->filter + 1u, now = judge->now;
 	const uint64_t next = judge_next_change(judge, input, a);
 	const bool acts = next - now > filter - (slack < filter ? slack : 0u);
 	const bool always = next - now >= 2u * filter + slack;
@@ -135,8 +135,10 @@ void judge_pin(struct judge *judge, const struct world_fact *fact)
 			continue;
 		if (input == PASSO_INPUT_ENCODER_A || input == PASSO_INPUT_ENCODER_B)
 			judge_turn(judge, input, a);
-		else if (input != PASSO_INPUT_ENCODER_INDEX)
+		else if (input != PASSO_INPUT_ENCODER_INDEX) {
+			judge_changes(judge, input, a);
 			see_level(judge, input, a, 0);
+		}
 	}
 }
 
@@ -147,8 +149,10 @@ void judge_see_levels(struct judge *judge, unsigned input, unsigned a, bool inve
 	const bool was = (machine->inverted[input] & bit) != 0u;
 
 	machine->inverted[input] = (uint8_t)((machine->inverted[input] & ~bit) | (inverted ? bit : 0u));
-	if (was != inverted)
+	if (was != inverted) {
+		judge_forget(judge);
 		see_level(judge, input, a, SLACK);
+	}
 }
 
 /* Inputs that are still active stop the channel again; what comes close to CLEAR may come after it. */
@@ -186,6 +190,7 @@ void judge_reset_inputs(struct judge *judge, bool done)
 	struct machine *machine = &judge->machine;
 
 	machine->event_count = 0;
+	judge_forget(judge);
 	for (unsigned input = 0; input < KINDS; input++)
 		for (unsigned a = 0; a < judge_axes(judge); a++) {
 			machine->levels[input][a] = (struct level){NEVER, NEVER, NEVER, NEVER, false, false};

@@ -166,9 +166,10 @@ void judge_machine_write(struct judge *judge, uint32_t address, uint32_t value)
 
 	if (in_channel(address))
 		write_channel(judge, place_of(address), value);
-	else if (address == PASSO_ADDRESS_INPUT_FILTER)
+	else if (address == PASSO_ADDRESS_INPUT_FILTER) {
 		machine->filter = value;
-	else if (address == PASSO_ADDRESS_WATCHDOG)
+		judge_forget(judge);
+	} else if (address == PASSO_ADDRESS_WATCHDOG)
 		machine->watchdog = passo_unpack_watchdog(value).stop_after;
 	else if (address == PASSO_ADDRESS_ESTOP_CLEAR && machine->pins[PASSO_INPUT_ESTOP_N] != 0u) {
 		machine->unsettled = machine->pressed && judge->now < machine->released_at + MISSES;

@@ -44,9 +44,17 @@ struct shaft {
 	uint64_t exceeded_from;
 };
 
+/* Whether a level has lasted for a period of the filter, and since when it lasts. */
+struct calm {
+	bool known;
+	uint64_t from;
+};
+
 struct trigger {
 	bool armed, unsure, latched;
 	uint64_t armed_at, fires_at;
+	struct calm calm; /* its source, since it was written */
+	unsigned input, axis;
 	enum passo_trigger_action action;
 	int64_t position[PASSO_AXES_MAX];
 };
@@ -56,7 +64,10 @@ struct machine {
 	struct level levels[KINDS][PASSO_AXES_MAX];
 	uint8_t limit_soft, alarm_soft, alarm_disables, enable_unsure;
 	uint8_t closed_low, closed_high; /* limits that are active as the motion begins */
-	uint8_t line_low, line_high;     /* ways of the last line */
+	struct calm calm;                /* all inputs, since polarity or filter changed */
+	uint64_t forgot_at;
+	uint64_t changed_at[KINDS][PASSO_AXES_MAX];
+	uint8_t line_low, line_high; /* ways of the last line */
 	uint32_t filter, encoder_filter, stop_slew;
 	bool pressed, unsettled;
 	uint64_t released_at;

@@ -127,6 +127,11 @@ void judge_see_levels(struct judge *judge, unsigned input, unsigned a, bool inve
 bool judge_may(const struct level *level, uint64_t from, uint64_t until);
 bool judge_must(const struct level *level, uint64_t clock);
 uint64_t judge_next_change(const struct judge *judge, unsigned input, unsigned a);
+/* ... whether they are known: not after a reset, a change of polarity or filter, until they have stood still
+ * ... */
+void judge_forget(struct judge *judge);
+void judge_changes(struct judge *judge, unsigned input, unsigned a);
+void judge_begins(struct judge *judge);
 void judge_reset_inputs(struct judge *judge, bool done);
 void judge_flags(struct judge *judge, const struct world_fact *fact);
 /* ... its stops; before and after the pins of a row are judged ... */
@@ -142,6 +147,7 @@ void judge_feed(struct judge *judge, const struct world_fact *fact);
 void judge_silence(struct judge *judge);
 /* ... its trigger ... */
 void judge_arm(struct judge *judge, uint32_t value);
+void judge_rearm(struct judge *judge);
 void judge_latch(struct judge *judge);
 void judge_trigger_state(struct judge *judge, const struct world_fact *fact);
 void judge_latched(struct judge *judge, const struct world_fact *fact);

@@ -52,6 +52,7 @@ static void begin_motion(struct judge *judge)
 		if (judge_must(&machine->levels[PASSO_INPUT_LIMIT_HIGH][a], before))
 			machine->closed_high |= (uint8_t)(1u << a);
 	}
+	judge_begins(judge);
 }
 
 void judge_machine_before(struct judge *judge, const struct passo_outputs *pins)

@@ -3,71 +3,144 @@
  */
 #include "judge_state.h"
 
-/* Clocks around arming in which an edge may count or not; from a pin to the latch, besides the filter; from
- * the latch until it can be read; from a pin to its count, besides the filter. */
+/* Clocks around the write in which an edge may count or not; from the write, and from a pin, until the
+ * trigger sees the source; from a pin to the latch, besides the filter; from the latch until it can be read;
+ * from a pin to its count, besides the filter. */
 #define ARMING 12u
+#define SELECTING 1u
+#define ARRIVING 3u
+#define NEAR 6u
 #define LATCH 3u
 #define READABLE 140u
 #define COUNTING 4u
-/* Clocks that the core counts from arming to firing, less those from the write. */
-#define ARMED 0
 /* Following error: limit, and counts that may be on the way. */
 #define LIMIT 40
 #define ON_THE_WAY 2
 
-/* When the trigger that has just been armed will fire. */
-static uint64_t fires_at(struct judge *judge, struct passo_channel_trigger word, bool *unsure)
+/* The source of a trigger, its level so far, and since when it has it. */
+struct source {
+	unsigned input, axis;
+	uint32_t inverted, level;
+	uint64_t since;
+	bool changed; /* since the write */
+};
+
+static struct source source_of(const struct judge *judge, struct passo_channel_trigger word)
 {
 	static const unsigned inputs[] = {[PASSO_TRIGGER_SOURCE_LIMIT_LOW] = PASSO_INPUT_LIMIT_LOW,
 	    [PASSO_TRIGGER_SOURCE_LIMIT_HIGH] = PASSO_INPUT_LIMIT_HIGH,
 	    [PASSO_TRIGGER_SOURCE_HOME] = PASSO_INPUT_HOME,
 	    [PASSO_TRIGGER_SOURCE_PROBE] = PASSO_INPUT_PROBE};
 	const struct machine *machine = &judge->machine;
-	const unsigned input = inputs[word.source],
-		       a = word.source == PASSO_TRIGGER_SOURCE_PROBE ? 0 : word.axis;
-	const uint32_t inverted = (uint32_t)machine->inverted[input] >> a & 1u;
-	uint32_t level = ((uint32_t)machine->pins[input] >> a & 1u) ^ inverted, pin = level;
-	uint64_t since = judge->now;
+	struct source source = {
+	    .input = inputs[word.source], .axis = word.source == PASSO_TRIGGER_SOURCE_PROBE ? 0 : word.axis};
 
-	*unsure = false;
-	for (size_t i = 0; i < judge->world->fact_count; i++) {
-		const struct world_fact *fact = &judge->world->facts[i];
+	source.inverted = (uint32_t)machine->inverted[source.input] >> source.axis & 1u;
+	source.level = ((uint32_t)machine->pins[source.input] >> source.axis & 1u) ^ source.inverted;
+	source.since = judge->now + SELECTING;
+	return source;
+}
 
-		if (fact->kind != FACT_PIN || fact->words[0] != input)
-			continue;
-		const uint32_t now = (fact->words[1] >> a & 1u) ^ inverted;
-		if (i < judge->fact) {
-			*unsure = *unsure || fact->clock + ARMING > judge->now;
-			continue;
-		}
-		*unsure = *unsure || fact->clock < judge->now + ARMING;
-		if (now == pin)
-			continue;
-		if (pin != level && fact->clock - since > machine->filter) {
-			level = pin;
-			if (level != (word.falling ? 1u : 0u))
-				return since + machine->filter + LATCH;
-		}
-		pin = now;
-		since = fact->clock;
+/* The next change of the source from a fact on: its number, or that of all facts. */
+static size_t next_change(const struct judge *judge, const struct source *source, size_t from)
+{
+	const struct world *world = judge->world;
+	size_t i = from;
+
+	for (; i < world->fact_count; i++) {
+		const struct world_fact *fact = &world->facts[i];
+
+		if (fact->kind == FACT_PIN && fact->words[0] == source->input
+		    && ((fact->words[1] >> source->axis & 1u) ^ source->inverted) != source->level
+		    && (i + 1u == world->fact_count || world->facts[i + 1u].clock != fact->clock
+		        || world->facts[i + 1u].kind != FACT_PIN
+		        || world->facts[i + 1u].words[0] != source->input))
+			break;
 	}
-	return pin != level && pin != (word.falling ? 1u : 0u) ? since + machine->filter + LATCH : NEVER;
+	return i;
+}
+
+static uint64_t clock_of(const struct judge *judge, size_t fact)
+{
+	return fact < judge->world->fact_count ? judge->world->facts[fact].clock : NEVER - ARMING;
+}
+
+static bool is_near(uint64_t a, uint64_t b)
+{
+	return a < b + NEAR && b < a + NEAR;
+}
+
+/* When the trigger that has just been written will be armed, and fire. */
+static void foretell(struct judge *judge, struct passo_channel_trigger word, struct trigger *trigger)
+{
+	const uint64_t filter = judge->machine.filter;
+	struct source source = source_of(judge, word);
+	size_t next = next_change(judge, &source, judge->fact);
+	uint64_t until = clock_of(judge, next);
+
+	for (size_t i = 0; i < judge->fact; i++)
+		trigger->unsure = trigger->unsure
+		               || (judge->world->facts[i].kind == FACT_PIN
+		                   && judge->world->facts[i].words[0] == source.input
+		                   && judge->world->facts[i].clock + ARMING > judge->now);
+	for (;;) { /* until a level has lasted */
+		trigger->armed_at = source.since + filter + (source.changed ? 2u : 1u);
+		trigger->unsure = trigger->unsure || is_near(until + ARRIVING, trigger->armed_at);
+		if (until + ARRIVING > trigger->armed_at)
+			break;
+		if (until + ARRIVING > source.since || source.changed)
+			source.changed = true;
+		source.since = judge_later(until + ARRIVING, source.since);
+		source.level ^= 1u;
+		next = next_change(judge, &source, next);
+		until = clock_of(judge, next);
+	}
+	uint32_t level = source.level; /* the one that has been accepted */
+	for (;;) {
+		if (next >= judge->world->fact_count)
+			return;
+		const uint64_t since = until;
+		source.level ^= 1u;
+		next = next_change(judge, &source, next);
+		until = clock_of(judge, next);
+		if (source.level == level || until - since <= filter)
+			continue;
+		level = source.level;
+		if (level != (word.falling ? 1u : 0u)) {
+			trigger->fires_at = since + filter + LATCH;
+			return;
+		}
+	}
 }
 
 void judge_arm(struct judge *judge, uint32_t value)
 {
 	const struct passo_channel_trigger word = passo_unpack_channel_trigger(value);
 	struct trigger *trigger = &judge->machine.trigger;
+	const bool stops =
+	    word.action == PASSO_TRIGGER_ACTION_SOFT_STOP || word.action == PASSO_TRIGGER_ACTION_HARD_STOP;
 
 	*trigger = (struct trigger){
-	    .armed = word.arm, .action = word.action, .armed_at = judge->now, .fires_at = NEVER};
+	    .armed = word.arm, .action = word.action, .fires_at = NEVER, .calm = {.from = judge->now}};
 	if (!word.arm)
 		return;
-	trigger->fires_at = fires_at(judge, word, &trigger->unsure);
-	if (word.action != PASSO_TRIGGER_ACTION_SOFT_STOP && word.action != PASSO_TRIGGER_ACTION_HARD_STOP)
-		return;
-	if (trigger->unsure)
+	const struct source source = source_of(judge, word);
+	trigger->input = source.input;
+	trigger->axis = source.axis;
+	foretell(judge, word, trigger);
+	if (stops && trigger->unsure)
 		judge_add_event(judge, PASSO_CAUSE_TRIGGER, false, judge->now, NEVER);
+}
+
+/* It takes the level of its source anew. */
+void judge_rearm(struct judge *judge)
+{
+	struct trigger *trigger = &judge->machine.trigger;
+
+	if (!trigger->armed || trigger->latched || trigger->unsure)
+		return;
+	trigger->unsure = true;
+	judge_add_event(judge, PASSO_CAUSE_TRIGGER, false, judge->now, NEVER);
 }
 
 /* The latch has the steps up to its clock. */
@@ -89,16 +162,14 @@ void judge_trigger_state(struct judge *judge, const struct world_fact *fact)
 {
 	const struct passo_channel_trigger_state state = passo_unpack_channel_trigger_state(fact->words[0]);
 	const struct trigger *trigger = &judge->machine.trigger;
-	const uint64_t early = judge->now - fact->words[2];
+	const uint64_t early = judge->now - fact->words[1];
 
 	if (!trigger->armed || trigger->unsure)
 		return;
 	if (state.fired ? !trigger->latched : trigger->latched && trigger->fires_at + SLACK < early)
 		FAIL(judge, "the trigger has %sfired", state.fired ? "" : "not ");
-	const int64_t clocks = (int64_t)(trigger->fires_at - trigger->armed_at);
-	if (state.fired && (int64_t)fact->words[1] - clocks != ARMED)
-		FAIL(judge, "the trigger fired %u clocks after arming instead of %lld", fact->words[1],
-		    (long long)clocks);
+	if (trigger->armed_at + SLACK < early && !state.fired && !state.armed)
+		FAIL(judge, "the trigger is not armed");
 	judge->counts->fired += state.fired ? 1u : 0u;
 }
 

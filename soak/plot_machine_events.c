@@ -62,7 +62,7 @@ static struct action measure(struct plot *plot)
 {
 	static const struct {
 		uint16_t place, length;
-	} reads[] = {{PASSO_CHANNEL_TRIGGER_STATE, 2}, {PASSO_CHANNEL_TRIGGER_POSITION_BASE, AXES},
+	} reads[] = {{PASSO_CHANNEL_TRIGGER_STATE, 1}, {PASSO_CHANNEL_TRIGGER_POSITION_BASE, AXES},
 	    {PASSO_CHANNEL_ENCODER_POSITION_BASE, AXES}, {PASSO_CHANNEL_INPUT_FLAGS, 1}};
 	const unsigned i = plot_draw(&plot->random, 4);
 	struct action action = plot_frame(plot, PASSO_OPERATION_READ, channel_address(0, reads[i].place));

@@ -27,7 +27,7 @@ MACHINE_JUDGED = {
     "causes": "causes of stops",
     "slews": "slews of soft stops",
     "latches": "positions latched, to the clock",
-    "fired": "clocks until a trigger fired",
+    "fired": "triggers that fired",
     "tries": "steps tried towards an active switch",
     "levels": "levels longer than the filter",
     "glitches": "glitches that it must ignore",

@@ -36,7 +36,7 @@ enum world_fact_kind {
 	FACT_STATUS,    /* words[0]: status word when chip select fell */
 	FACT_PIN,       /* words[0]: number of an input of the machine, words[1]: its new levels */
 	FACT_FED,       /* a frame was executed */
-	FACT_TRIGGER,   /* words[0 .. 1]: TRIGGER_STATE, TRIGGER_CLOCKS */
+	FACT_TRIGGER,   /* words[0]: TRIGGER_STATE */
 	FACT_LATCH,     /* words[i]: latched position */
 	FACT_COUNTS,    /* words[i]: encoder position at some clock since FACT_READS */
 	FACT_FLAGS,     /* words[0]: INPUT_FLAGS */

@@ -294,10 +294,30 @@ static uint64_t q32(uint32_t value)
 	return (uint64_t)value << 32;
 }
 
+static void set_defaults(struct passo_grbl_settings *defaults)
+{
+	*defaults = (struct passo_grbl_settings){.value = {0}};
+	defaults->value[PASSO_GRBL_PULSE] = 2 * MILLION;
+	defaults->value[PASSO_GRBL_IDLE_DELAY] = 255 * MILLION;
+	defaults->value[PASSO_GRBL_REPORT] = 3 * MILLION;
+	defaults->value[PASSO_GRBL_DEVIATION] = MILLION / 100;
+	defaults->value[PASSO_GRBL_ARC_TOLERANCE] = MILLION / 500;
+	defaults->value[PASSO_GRBL_HOMING] = bench.setup.homed ? MILLION : 0;
+	defaults->value[PASSO_GRBL_HOME_FEED] = 60 * MILLION;
+	defaults->value[PASSO_GRBL_HOME_SEEK] = 300 * MILLION;
+	defaults->value[PASSO_GRBL_DEBOUNCE] = MILLION / 10;
+	defaults->value[PASSO_GRBL_PULL_OFF] = MILLION;
+	for (unsigned axis = 0; axis < AXES; axis++) {
+		defaults->axis[PASSO_GRBL_STEPS][axis] = STEPS_PER_MM * MILLION;
+		defaults->axis[PASSO_GRBL_SPEED][axis] = 2400 * MILLION;
+		defaults->axis[PASSO_GRBL_ACCELERATION][axis] = 2000 * MILLION;
+		defaults->axis[PASSO_GRBL_TRAVEL][axis] = 20 * MILLION;
+	}
+}
+
 static void set_up(void)
 {
 	struct passo_grbl_setup *setup = &bench.setup;
-	struct passo_grbl_settings *defaults = &setup->defaults;
 
 	*setup = (struct passo_grbl_setup){
 	    .path = {.machine = {.clock_hz = CLOCK_HZ, .tick_log2 = 7, .axes = AXES},
@@ -306,23 +326,11 @@ static void set_up(void)
 	    .homes = 7,
 	    .homed = (uint8_t)(below(3) ? 0 : 7),
 	    .probe = below(3) != 0,
+	    .defaults = set_defaults,
 	    .pages = below(3) ? &PAGES : NULL};
-	defaults->value[PASSO_GRBL_PULSE] = 2 * MILLION;
-	defaults->value[PASSO_GRBL_REPORT] = 3 * MILLION;
-	defaults->value[PASSO_GRBL_DEVIATION] = MILLION / 100;
-	defaults->value[PASSO_GRBL_ARC_TOLERANCE] = MILLION / 500;
-	defaults->value[PASSO_GRBL_HOMING] = setup->homed ? MILLION : 0;
-	defaults->value[PASSO_GRBL_HOME_FEED] = 60 * MILLION;
-	defaults->value[PASSO_GRBL_HOME_SEEK] = 300 * MILLION;
-	defaults->value[PASSO_GRBL_DEBOUNCE] = MILLION / 10;
-	defaults->value[PASSO_GRBL_PULL_OFF] = MILLION;
 	for (unsigned axis = 0; axis < AXES; axis++) {
 		setup->path.axis[axis] = (struct passo_path_axis){
 		    .steps_per_mm = q32(STEPS_PER_MM), .speed = q32(40), .acceleration = q32(2000)};
-		defaults->axis[PASSO_GRBL_STEPS][axis] = STEPS_PER_MM * MILLION;
-		defaults->axis[PASSO_GRBL_SPEED][axis] = 2400 * MILLION;
-		defaults->axis[PASSO_GRBL_ACCELERATION][axis] = 2000 * MILLION;
-		defaults->axis[PASSO_GRBL_TRAVEL][axis] = 20 * MILLION;
 	}
 }
 

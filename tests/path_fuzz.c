@@ -153,7 +153,7 @@ static void fuzz(struct passo_path_item *items)
 			int32_t positions[PASSO_AXES_MAX];
 
 			for (uint32_t axis = 0; axis < PASSO_AXES_MAX; axis++)
-				positions[axis] = (int32_t)path.steps[axis];
+				positions[axis] = (int32_t)path.at.steps[axis];
 			if (passo_path_recover(&path, positions, path.sent))
 				taken.velocity = 0;
 		}

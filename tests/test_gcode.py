@@ -7,12 +7,13 @@ from typing import Any
 
 import pytest
 from passo import random_cases
-from passo.gcode import NANOMETRES, Gcode, GcodeError, GcodeSettings, stripped
+from passo.gcode import NANOMETRES, Gcode, GcodeError, GcodeSettings, lines, stripped
 from passo.native import ffi, planner
 from passo.path import NOT_MOVING
 
 LINE, PROBE, DWELL, OUTPUT, PAUSE, END, OFFSETS = range(7)
 RAPID = (1 << 64) - 1
+OWN = -1  # PASSO_GCODE_OWN_TOLERANCE
 FLOOD, MIST, SPINDLE, REVERSE = 1 << 18, 1 << 19, 1 << 16, 1 << 17
 
 
@@ -81,6 +82,35 @@ def test_lines_that_do_nothing(line: str) -> None:
     assert run(Gcode(), line) == []
 
 
+def test_control_characters_are_nothing() -> None:
+    """As in grbl: all up to the space but line ends. A byte order mark is nothing in front of a line."""
+    discarded = [chr(code) for code in range(0x21) if chr(code) not in "\n\r"]
+    assert len(discarded) == 31
+    gcode = Gcode()
+    for i, character in enumerate(discarded):
+        run(gcode, f"G{character}0{character}X{character}{i}{character}.5")
+        assert at(gcode)[0] == i + 0.5
+    for line in ("\ufeffG0 X70", " \ufeff\ufeff\x00G0X70", "\ufeff(comment) X70"):
+        run(gcode, "X0", line)
+        assert at(gcode)[0] == 70
+    assert run(gcode, "\ufeff") == run(gcode, "\x1a") == []
+
+
+def test_lines_end_with_lf_cr_or_both() -> None:
+    """In any mixture; a comment ends with its line."""
+    rng = random.Random(random_cases.seed())
+    for _ in range(300):
+        text = bytes(rng.choices(b"G0X1(;) \n\r\x0b\x00\x85", k=rng.randrange(20)))
+        assert lines(text) == text.splitlines(keepends=True)
+    gcode = Gcode()
+    for line in lines(b"G0 (open\rX1;comment\n\rY2\r\nZ3"):
+        gcode.execute(line)
+    assert at(gcode) == (1, 2, 3)
+    assert lines(b"") == []
+    with pytest.raises(ValueError, match="more than one line"):
+        Gcode().execute("G0 X1\rG0 X2")
+
+
 def test_long_comments_do_not_count() -> None:
     """127 characters are a line, 128 are too many; comments and spaces are none."""
     words = "G0X" + "0" * 124
@@ -93,29 +123,37 @@ def test_long_comments_do_not_count() -> None:
 
 # By number: lines that are refused, after G21 G90 G94 at X0 Y0 Z0 without a feed.
 ERRORS = {
-    1: ["10", "G1 $", "?", "G0 X1 =", "G0 X1 *57", "%G0", "G0 X1 %", "\x00", "\x80\xff", "G0X1\x07", "[#1]",
-        "G0 X1.2.3"],
-    2: ["G", "X", "G1 X", "G0 X--1", "G0 X.", "GX1", "G0 X1000000000", "G0 X+-1"],
-    4: ["G1 X1 F-1", "S-5", "T-1", "N-1 G0 X1", "G4 P-1"],
+    1: ["10", "G1 $", "?", "G0 X1 =", "G0 X1 *57", "%G0", "G0 X1 %", "\x7f", "\x80\xff", "G0X1\x7f", "[#1]",
+        "G0 X1.2.3", "G0\N{NO-BREAK SPACE}X1", "G0\ufeffX1", "\ufffe"],
+    2: ["G", "X", "G1 X", "G0 X--1", "G0 X.", "GX1", "G0 X1000000000", "G0 X+-1",
+        "G0 X\N{MINUS SIGN}1"],
+    4: ["G64 P-1", "G64 Q-0.1", "G1 X1 F-1", "S-5", "T-1", "N-1 G0 X1", "G4 P-1"],
     20: ["G5", "G0 E1", "G0 A1", "H1", "D1", "O100", "Q1", "G41", "G81 X1", "G99", "M6", "M48", "M98",
-         "G28.2", "G38.1 X1", "G92.3", "G0 X1e5", "G43 H1", "G10 L1 P1 X1", "G10 L2 P1 R1 X1", "G-1"],
-    21: ["G0 G1 X1", "G17 G18", "G20 G21", "G90 G91", "G93 G94", "G54 G55", "M3 M4", "M7 M8", "M0 M2",
-         "G4 P1 G53 G0 X1", "G1 G38.2 X1 F1", "G80 G0 X1"],
+         "G28.2", "G38.1 X1", "G92.3", "G0 X1e5", "G43 H1", "G10 L1 P1 X1", "G10 L2 P1 R1 X1", "G-1",
+         "G90.1", "G91.2", "G61.1", "G64.1", "G43.2 Z1", "G38 X1 F1", "G28.3", "G30.2",
+         "G38.25 X1 F1", "G5.1",
+         "G61 Q1", "G1 X1 Q1 F1", "G4 P1 Q1"],
+    21: ["G17 G18", "G20 G21", "G90 G91", "G93 G94", "G54 G55", "M3 M4", "M7 M8", "M0 M2",
+         "G4 P1 G53 G0 X1", "G80 G0 X1", "G0 G80 X1", "G4 G28", "G92.1 G28", "G28.1 G92 X1", "G61 G64"],
     22: ["G1 X1", "G1", "G2 X1 I1", "G38.2 X1", "G93 G1 X1", "G1 X1 F0"],
-    23: ["G1.5 X1", "G17.1", "G54.1", "M3.5", "G0.1 X1", "G4.1 P1", "M30.2", "G61.1"],
-    24: ["G0 X1 G92 Y1", "G28 G1 X1 F1", "G10 L2 P1 X1 G0 Y5", "G43.1 Z1 G0 X1", "G92 X0 G43.1 Z1"],
+    23: ["G1.5 X1", "G17.1", "G54.1", "M3.5", "G0.1 X1", "G4.1 P1", "M30.2", "M6.1", "M99.5", "G59.1",
+         "G59.3", "G49.1", "G10.1 L2 P1 X1", "G80.1", "G53.1 G0 X1"],
+    24: ["G0 G1 X1", "G1 G38.2 X1 F1", "G10 G92 X1", "G28 G30", "G43.1 G49 Z1", "G2 G49", "G49 G92 X1",
+         "G1 G1", "G0 X1 G92 Y1", "G28 G1 X1 F1", "G10 L2 P1 X1 G0 Y5", "G43.1 Z1 G0 X1", "G92 X0 G43.1 Z1"],
     25: ["G0 X1 X2", "F1 F2", "G1 X1 I0 I0 F1", "N1 N2", "S1 S1"],
     26: ["G10 L2 P1", "G92", "F10 G2", "F10 G38.2", "F10 G3 I5"],
     27: ["N10000000 G0 X1"],
     28: ["G4", "G10 L2 X1", "G10 P1 X1", "G4 X1"],
-    29: ["G59.1", "G59.3", "G10 L2 P7 X1"],
+    29: ["G10 L2 P7 X1", "G10 L20 P9 X1"],
     30: ["F10 G2 G53 X1 I1", "G53 G38.2 X1 F1", "G80 G53"],
-    31: ["G80 X1"],
+    31: ["G80 X1", "G80 G92 X1", "G80 G28 X1", "G80 G30 X1", "G80 G10 L2 P1 X1", "G80 G10 L20 P0 X1",
+         "G80 G43.1 Z1", "G80 G49 X1", "G80 G92.1 X1", "G80 G28.1 X1"],
     32: ["F10 G2 Z1 I1", "F10 G18 G2 Y1 I1"],
     33: ["F10 G2 X10 I4", "F10 G2 X0 Y0 R5", "F10 G38.2 X0", "G20 G0 X99999999", "F10 G3 X5 Y5 I1 J1"],
     34: ["F10 G2 X10 R4.9", "F10 G3 X1 R0", "F10 G2 X10 R-4.9999"],
     35: ["F10 G2 X10", "F10 G2 X10 K5", "F10 G18 G2 X10 J5", "F10 G19 G3 Y1 I5"],
-    36: ["G0 X1 I1", "G0 X1 P1", "P1", "L2", "R1", "G0 X1 L20", "F10 G2 X10 R5 I5", "G4 P1 L3", "M3 S1 K2"],
+    36: ["G61 P1", "G0 X1 I1", "G0 X1 P1", "P1", "L2", "R1", "G0 X1 L20",
+         "F10 G2 X10 R5 I5", "G4 P1 L3", "M3 S1 K2"],
     37: ["G43.1 X1", "G43.1 X1 Z1", "G43.1"],
     38: ["T256", "T999999"],
 }  # fmt: skip
@@ -130,6 +168,16 @@ def test_a_wrong_line_has_its_error_and_changes_nothing(number: int, line: str) 
         run(gcode, line)
     assert caught.value.number == number
     assert state(gcode) == before and not list(gcode.actions())
+
+
+@pytest.mark.parametrize("line", ["G92 X1", "G28 X1", "G10 L2 P1 X1", "G43.1 Z1", "X1", "G53"])
+def test_g80_in_force_allows_no_axis_words(line: str) -> None:
+    """As in grbl; what needs none is allowed."""
+    gcode = Gcode()
+    run(gcode, "G80")
+    with pytest.raises(GcodeError, match="error:30" if line == "G53" else "error:31"):
+        run(gcode, line)
+    assert [action.kind for action in run(gcode, "G92.1", "G49", "G28.1", "G28")] == [LINE]
 
 
 @pytest.mark.parametrize(
@@ -250,6 +298,29 @@ def test_probes_and_line_numbers() -> None:
     position = ffi().new("int64_t[6]", [0, 0, -3 * NANOMETRES])
     planner().passo_gcode_set_position(gcode.c, position)
     assert at(gcode) == (0, 0, -3)
+
+
+def test_the_tolerance_of_the_path() -> None:
+    """Of G64: Q, else P, in the units of the line; G61: none; G64 alone and power-up: the path's own."""
+    gcode = Gcode()
+    assert gcode.c.tolerance == OWN and run(gcode, "G0 X1")[0].tolerance == 0
+    for line, tolerance in (
+        ("G64 P0.05", 50_000), ("G0 X1", 50_000), ("G64 P0.1 Q0.02", 20_000), ("G20 G64 P0.001", 25_400),
+        ("G64 Q0.5 P2", 12_700_000), ("G61", 0), ("G21 G64 P1 G1 X5 F100", 1_000_000), ("G64", OWN),
+        ("G64 Q3", 3_000_000),
+        ("G64 G4 P0.1", OWN), ("G64 G4 P0.1 Q2", 2_000_000), ("M2", 2_000_000), ("G64 P0 Q0", 0),
+    ):  # fmt: skip
+        run(gcode, line)
+        assert gcode.c.tolerance == tolerance, line
+    gcode.execute("G64 P1")
+    gcode.jog("X1 F5")
+    assert gcode.c.tolerance == 1_000_000
+    chords = run(gcode, "G2 X3 Y0 I1 F100")
+    assert len(chords) > 5 and {chord.tolerance for chord in chords} == {1 << 32}
+    assert run(gcode, "G64 P0.5 G0 X9")[0].tolerance == 1 << 31
+    assert run(gcode, "G61 G0 X0")[0].tolerance == (1 << 64) - 1  # PASSO_PATH_UNMERGED
+    planner().passo_gcode_reset(gcode.c)
+    assert gcode.c.tolerance == OWN
 
 
 def test_a_jog_leaves_the_modes() -> None:

@@ -75,7 +75,7 @@ def test_home(session: Session) -> None:
     assert session.report().startswith("Idle|MPos:-19.000,-1.000,-1.000|")
     assert session.line("$20=1") == "ok" and session.line("$J=X1F100") == "error:15"
     assert session.line("G0 X-19 Y-2") == "ok"
-    assert session.line("G0 X0.5").splitlines() == ["ok", "ALARM:2"]
+    assert session.line("G0 X0.5").splitlines() == ["ALARM:2", "error:9"]
 
 
 @pytest.mark.parametrize(("code", "alarm"), [(0x18, 6), (0x84, 7)])

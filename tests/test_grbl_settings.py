@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Settings of the grbl console: ranges, errors, what outlasts a loss of power at any write."""
 
+import random
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -121,7 +122,7 @@ class Flash:
 
     def __init__(self) -> None:
         self.pages = [[ERASED] * (WORDS + 3) for _ in range(2)]
-        self.left = 1 << 30
+        self.left, self.erased, self.torn = 1 << 30, 0, random.Random(1)
         self._calls = (
             ffi().callback("bool(void *, unsigned, size_t, uint32_t *, size_t)", self._read),
             ffi().callback("bool(void *, unsigned)", self._erase),
@@ -144,7 +145,12 @@ class Flash:
         return self.left >= 0
 
     def _erase(self, _: Any, page: int) -> bool:
-        return all([self._put(page, at, ERASED) for at in range(WORDS + 3)])
+        """If the power fails, some bits of what is left are set."""
+        self.erased += 1
+        for at, word in enumerate(self.pages[page]):
+            self.left -= 1
+            self.pages[page][at] = ERASED if self.left >= 0 else word | self.torn.getrandbits(32)
+        return self.left >= 0
 
     def _write(self, _: Any, page: int, at: int, words: Any, count: int) -> bool:
         return all([self._put(page, at + i, words[i]) for i in range(count)])
@@ -180,3 +186,36 @@ def test_power_that_fails_at_any_write() -> None:
             flash.left = 1 << 30
             assert flash.load() == (c.PASSO_STORAGE_LOADED, new if done else old)
             assert flash.save(third) and flash.load() == (c.PASSO_STORAGE_LOADED, third)
+
+
+def test_what_a_full_store_refuses_is_not_in_force(session: Session) -> None:
+    """Settings, start lines, and all that `$RST` would restore: error 7, and everything is as before."""
+    for line in ("$100=81", "$N0=G20", "G21", "G10 L2 P1 X1", "G91"):
+        assert session.line(line) == "ok"
+    session.rest()
+    session.take()
+    lines = "$$", "$N", "$#", "$G"
+    before = [session.line(line) for line in lines]
+    session.grbl._settings.c.write = ffi().cast("void *", WORN)
+    for line in ("$100=90", "$N0=G18", "$N1=G0X10", "$RST=$", "$RST=#", "$RST=*"):
+        assert session.line(line) == "error:7"
+        session.rest()
+        assert [session.line(line) for line in lines] == before
+    session.line("G0 X1")
+    session.rest()
+    assert session.grbl.player.feed.driver.positions()[0] == 81
+
+
+def test_the_flash_does_not_wear_by_what_it_has() -> None:
+    """The same record again erases nothing; another one is written, also where a damaged copy had it."""
+    flash, record = Flash(), [7 * i for i in range(WORDS)]
+    assert all(flash.save(record) for _ in range(5)) and flash.erased == 1
+    assert flash.save(record[::-1]) and flash.erased == 2
+    flash.pages[0][9] ^= 1
+    assert flash.save(record) and flash.erased == 2
+    assert flash.save(record[::-1]) and flash.erased == 3 and flash.load()[1] == record[::-1]
+
+
+@ffi().callback("bool(void *, unsigned, size_t, uint32_t *, size_t)")
+def WORN(*_: Any) -> bool:  # noqa: N802
+    return False

@@ -15,7 +15,7 @@ import numpy
 import pytest
 from cocotb_tools.check_results import get_results
 from passo.build import Parameters, judge_library, planner_library, rtl_library
-from passo.compiler import cached
+from passo.cache import cached
 from passo.run import parameters_for
 from passo.toolchain import paths
 
@@ -127,7 +127,7 @@ def test_moves_run_outside_of_the_repository(installed: Installed) -> None:
     assert "moves: 1024 steps in 320000 clocks" in done.stdout and "edges agree" in done.stdout
     results = installed.home / "build" / "run" / "moves"
     assert sorted(path.name for path in results.iterdir()) == ["pulses.csv", "report.html", "summary.json"]
-    assert sorted(path.name for path in library.glob("model-*/*")) == ["library.so"]
+    assert sorted(path.name for path in library.glob("model-*/*")) == ["library.so", "whole.json"]
     left = {".cache", ".config", "build", "moves.toml", "machine"}
     assert {path.name for path in installed.home.iterdir()} <= left
 

@@ -3,15 +3,22 @@
 
 import json
 import math
+from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
 import pytest
-from passo import cli
-from passo.gcode import NANOMETRES
+from passo import cli, part_command
+from passo.driver import Driver, DriverError
+from passo.failure import BadInputError
+from passo.gcode import NANOMETRES, GcodeSettings
 from passo.machine_file import MachineFile, read_machine
+from passo.moves import PinTiming, q32
+from passo.native import planner
 from passo.part import Played, play_part, read_part
-from passo.path import PathAxis
+from passo.path import PathAxis, PathSettings
+from passo.program import Program
 from passo.run import open_engine, parameters_for
 from passo.toolchain import paths
 
@@ -48,6 +55,25 @@ def test_the_example(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert summary["ok"] and summary["end"]["steps"] == [0, 0, 0]
     assert (summary["lines"], summary["chords"], summary["motions"]) == (24, 530, 1)
     assert (tmp_path / "path.png").stat().st_size > 20_000
+    limits = summary["limits"]
+    assert 0.9 < limits["acceleration"]["share"] < 1.03 and 0.4 < limits["speed"]["share"] <= 1.0
+
+
+def test_a_part_beyond_the_limits_of_an_axis_fails(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Judged with half the acceleration that it was planned with."""
+    path = tmp_path / "part.nc"
+    path.write_text("G21 G90\nG3 X0 Y0 I0 J5 F6000\n")
+    weak = replace(read_machine(MACHINE).settings, axes=(PathAxis(80, 200, 500),) * 3)
+    judge = part_command.shares_of
+    change = lambda played: judge(replace(played, machine=replace(played.machine, settings=weak)))  # noqa: E731
+    monkeypatch.setattr(part_command, "shares_of", change)
+    arguments = ["run", str(path), "--machine", str(MACHINE), "--out", str(tmp_path)]
+    assert cli.main(arguments) == 1
+    assert "of its acceleration, at" in capsys.readouterr().err
+    summary = json.loads((tmp_path / "summary.json").read_text())
+    assert not summary["ok"] and 1.7 < summary["limits"]["acceleration"]["share"] < 2.1
 
 
 def test_a_circle_takes_as_long_as_the_reference(tmp_path: Path) -> None:
@@ -83,6 +109,60 @@ def test_the_look_ahead_changes_times_only(tmp_path: Path) -> None:
     for a, b in zip(short.positions, long.positions, strict=True):
         assert a.tolist() == b.tolist()
     assert long.seconds <= short.seconds
+
+
+SQUARE = ["(a square)", "G21 G90", "G1 X5 F6000", "Y5", "X0 Y0"]
+
+
+@pytest.mark.parametrize("around", [("", ""), ("\ufeff", ""), ("", "\x1a"), ("\x00\x07", "\x1a\x1a\n")])
+@pytest.mark.parametrize("end", ["\n", "\r", "\r\n", "\n\r"])
+def test_files_of_any_editor_are_the_same_part(tmp_path: Path, end: str, around: tuple[str, str]) -> None:
+    """Ends of lines, byte order mark, the end of a file of CP/M, padding."""
+    path, machine = tmp_path / "part.nc", read_machine(MACHINE)
+    path.write_bytes((around[0] + end.join(SQUARE) + end + around[1]).encode())
+    part = read_part(path, machine)
+    assert (part.chords, part.end[:2], part.unread) == (3, (0, 0), 0)
+    path.write_bytes((around[0] + end.join([*SQUARE, "X1 X2"]) + around[1]).encode())
+    number = 11 if end == "\n\r" else 6
+    with pytest.raises(BadInputError, match=f":{number}: error:25"):
+        read_part(path, machine)
+
+
+def test_a_part_that_is_lost_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A file without words, without a motion, with lines behind its end."""
+    path = tmp_path / "part.nc"
+    run = ["run", str(path), "--machine", str(MACHINE), "--out", str(tmp_path / "out")]
+    for text in ("", "\n\r\n", "(only G0 X1)\r;G1 X1\r", "%\n\x1a", "\ufeff"):
+        path.write_text(text, encoding="utf-8", newline="")
+        assert cli.main(run) == 2
+        assert "there is no G-code in it" in capsys.readouterr().err
+    for text in ("G21 G90\nM3 S100", "G0 X0\nG4 P0.1", "(G1 X5"):
+        path.write_text(text + "\nF100\n")
+        assert cli.main(run) == 0
+        told = capsys.readouterr()
+        assert "nothing moved" in told.err and "chords" not in told.out
+    path.write_text("G0 X1\nM30\n%\nG0 X5\n(end)\nM0\n")
+    assert cli.main(run) == 0
+    assert "2 lines behind the end of the program are not read" in capsys.readouterr().err
+    assert json.loads((tmp_path / "out" / "summary.json").read_text())["unread_lines"] == 2
+
+
+def test_words_for_the_path_reach_the_planner(tmp_path: Path) -> None:
+    """Fine chords are merged within the tolerance of G64, or the machine's own; after G61 none is."""
+    angles = np.linspace(0, math.pi, 700)
+    arc = "".join(f"X{5 * math.cos(a) - 5:.6f} Y{5 * math.sin(a):.6f}\n" for a in angles)
+    off, seconds_of = {}, {}
+    for words in ("G61", "", "G64 P0.1", "G64 P0.1\nG64", "G64 P0.5\nG61"):
+        played = play(tmp_path, f"{words}\nG1 F9000\n{arc}")
+        assert played.problems() == []
+        steps = places(played, np.unique(np.concatenate(played.clocks[:2])))
+        off[words] = np.abs(np.hypot(steps[:, 0] + 5, steps[:, 1]) - 5).max()
+        seconds_of[words] = played.seconds
+    step = 1.5 / 80
+    assert off["G61"] == off["G64 P0.5\nG61"] < step and seconds_of["G61"] == seconds_of["G64 P0.5\nG61"]
+    assert off[""] == off["G64 P0.1\nG64"] < 0.0005 + step and seconds_of[""] == seconds_of["G64 P0.1\nG64"]
+    assert seconds_of[""] != seconds_of["G61"]
+    assert 0.03 < off["G64 P0.1"] < 0.1 + step
 
 
 def test_rtl_and_model_agree(tmp_path: Path) -> None:
@@ -147,6 +227,77 @@ def test_a_bad_machine_file_is_refused(
     path.write_text(text)
     assert cli.main(["run", str(PART), "--machine", str(path)]) == 2
     assert told in capsys.readouterr().err
+
+
+FAST_AXES = "".join(
+    f'[[axis]]\nname = "{name}"\nsteps_per_mm = 1600\nspeed = SPEED\nacceleration = 20000\n' for name in "XY"
+)
+
+
+@pytest.mark.parametrize(
+    ("pins", "told"),
+    [("", "312.5: step_high and step_low are 128 clocks"), ('[pins]\nstep_low = "1.5us"\n', "250: "),
+     ('[pins]\nstep_high = "10ns"\nstep_low = "90ns"\n', "5714.28: "),
+     ('[pins]\nstep_high = "1us"\ndir_setup = "9us"\n', "312.5: ")],
+)  # fmt: skip
+def test_a_speed_that_the_pins_do_not_allow_is_refused(
+    tmp_path: Path, pins: str, told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With the highest one, at which no step is lost: on long lines, at corners, in small pieces."""
+    machine, part = tmp_path / "machine.toml", tmp_path / "part.nc"
+    part.write_text(
+        "G0 X12 Y6\nX0\nG1 X-1 F1000000\nX1\nX0 Y0\n"
+        + "".join(f"X{i * 0.07:.3f} Y{i * 0.07 + i % 7 * 0.001:.4f}\n" for i in range(120))
+    )
+    text = f"clock_hz = 64_000_000\n{pins}{FAST_AXES}"
+    run = ["run", str(part), "--machine", str(machine), "--out", str(tmp_path / "out")]
+    machine.write_text(text.replace("SPEED", "6000"))
+    assert cli.main(run) == 2
+    refused = capsys.readouterr().err
+    assert f"axis 1: speed is 6000, the pins allow at most {told}" in refused and refused.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+    machine.write_text(text.replace("SPEED", told.split(":")[0]))
+    assert cli.main(run) == 0
+
+
+def test_a_reversal_that_the_pins_do_not_allow_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Steps wait while DIR turns, and the core has room for four: with what is allowed a saw loses none."""
+    machine, part = tmp_path / "machine.toml", tmp_path / "part.nc"
+    part.write_text("G1 F100000\n" + "".join(f"X{i % 2 * 3} Y{i * 3}\n" for i in range(8)))
+    axes = FAST_AXES.replace("SPEED", "300")
+    text = f'clock_hz = 64_000_000\n[pins]\ndir_setup = "US"\ndir_hold = "US"\n{axes}'
+    run = ["run", str(part), "--machine", str(machine), "--out", str(tmp_path / "out")]
+    machine.write_text(text.replace("US", "100us"))
+    assert cli.main(run) == 2
+    told = "axis 1: it may reverse at 40 mm/s (jump, junction_deviation), the pins allow at most 4.16811: "
+    assert told in capsys.readouterr().err
+    for deviation, jump, allowed in (("0.0053", "0", True), ("0.0054", "0", False), ("0", "29", True),
+                                     ("0", "30", False)):  # fmt: skip
+        limits = text.replace("US", "20us").replace("acceleration", f"jump = {jump}\nacceleration")
+        machine.write_text(f"junction_deviation = {deviation}\n{limits}")
+        assert cli.main(run) == (0 if allowed else 2)
+
+
+def test_a_program_in_c_is_refused_as_well() -> None:
+    """Its largest speed is that of the pins."""
+    axis = PathAxis(Fraction(7, 3), 200, 20000)
+    with open_engine("model", parameters_for(1), 64_000_000) as core:
+        driver = Driver(core, 64_000_000, core.parameters)
+        assert planner().passo_highest_speed(driver.c, 0, q32(axis.steps_per_mm)) == 0  # not configured
+        driver.configure_axis(0, PinTiming(100, 28, 1, 1))
+        highest = planner().passo_highest_speed(driver.c, 0, q32(axis.steps_per_mm))
+        exact = Fraction(64_000_000, 128) / Fraction(q32(axis.steps_per_mm), 1 << 32)
+        assert exact <= Fraction(highest, 1 << 32) < exact + Fraction(2, 1 << 32)
+        assert planner().passo_highest_speed(driver.c, 0, 1) == (1 << 64) - 1
+        for speed, refused in ((Fraction(highest, 1 << 32), False), (Fraction(highest + 1, 1 << 32), True)):
+            settings = PathSettings((replace(axis, speed=speed),), 64_000_000)
+            try:
+                Program(driver, settings, GcodeSettings(axes=1))
+                assert not refused
+            except DriverError as error:
+                assert refused and "PINS_TOO_SLOW" in str(error)
 
 
 def test_what_does_not_fit_together_is_refused(capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The path planner: its pulses, as made by the C model through the driver, against its limits."""
 
+import math
 import random
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -13,17 +14,18 @@ from passo import random_cases
 from passo.build import Parameters
 from passo.native import ffi, planner
 from passo.path import Path, PathAxis, PathSettings
+from passo.path_rounding import Line
 from passo.plan import PlanError
 
 from benchmarks import path_cases
 from benchmarks.path_plan import plan
-from benchmarks.path_reference import Line, seconds
+from benchmarks.path_reference import seconds
 from tests.helpers.core_steps import sum_of_velocities
 from tests.helpers.path_judge import judge, steps_at
 from tests.helpers.path_player import Player, play
 from tests.helpers.plans import ONE, Ramp
 
-MACHINE = PathSettings((PathAxis(), PathAxis(), PathAxis(400, 12, 100)))
+MACHINE = PathSettings((PathAxis(), PathAxis(), PathAxis(400, 12, 100)), tolerance=0)
 JUMPING = replace(MACHINE, axes=(PathAxis(jump=3), PathAxis(jump=2), PathAxis(400, 12, 100, 1)))
 
 # small steps, so that their times show the jerk
@@ -182,11 +184,41 @@ def test_it_is_as_fast_as_the_limits_allow(look_ahead: int) -> None:
     """Against the exact profile in floating point; the circle takes no more than 1.37 s."""
     for case in (path_cases.circle, path_cases.square, path_cases.star, path_cases.text):
         lines = case()
-        assert 0.9999 < plan(lines, MACHINE, look_ahead).seconds / seconds(lines, MACHINE) < 1.002
+        assert 0.99 < plan(lines, MACHINE, look_ahead).seconds / seconds(lines, MACHINE) < 1.002
     for lines in path_cases.wanderings(30, random_cases.seed()):
-        assert 0.9999 < plan(lines, MACHINE, look_ahead).seconds / seconds(lines, MACHINE) < 1.01
+        assert plan(lines, MACHINE, look_ahead).seconds / seconds(lines, MACHINE) < 1.02
     circle = plan(path_cases.circle(), replace(MACHINE, acceleration=1000), look_ahead)
     assert 1.356 < circle.seconds < 1.37
+
+
+PROFILES = ("linear", "cosine", "sigmoid", "jerk")
+
+
+@pytest.mark.parametrize("profile", PROFILES)
+@pytest.mark.parametrize("turn", [0.0, 0.5, 3.4, 5.7])
+def test_a_line_is_not_slowed_down_by_the_feeds_of_its_neighbours(profile: str, turn: float) -> None:
+    """A rapid between two slow cuts, and feeds that alternate, straight on or in a bend of some degrees."""
+    x, y = math.cos(math.radians(turn)), math.sin(math.radians(turn))
+    settings = replace(SOFT, profile=profile)
+    rapid = [((1, 0, 0), 5.0), ((1 + 98 * x, 98 * y, 0), None), ((2 + 98 * x, 98 * y, 0), 5.0)]
+    speed = 200 / max(x, y)
+    # 2 mm at 5 mm/s, and the rapid with its two ramps
+    fastest = 0.4 + 98 / speed + (speed - 5) ** 2 / speed / (1000 / max(x, y))
+    assert plan(rapid, settings, 48).seconds < 1.002 * fastest + 0.01 + 0.32 * (profile != "linear")
+    feeds = [((i * x, i * y, 0), 5.0 if i % 2 else 100.0) for i in range(1, 41)]
+    assert plan(feeds, settings, 48).seconds < 5.7
+
+
+@pytest.mark.parametrize("profile", PROFILES)
+@pytest.mark.parametrize("feed", [0.0017, 0.05, 0.5, 2.0])
+@pytest.mark.parametrize("size", [0.01, 0.3, 1.0])
+def test_a_low_feed_takes_the_time_of_its_length(feed: float, size: float, profile: str) -> None:
+    """Also where the acceleration makes the feed in a few ticks, or in less than one."""
+    settings = replace(SOFT, profile=profile)
+    square = [(target, feed) for target, _ in path_cases.square(size)]
+    lost = 8 * (0.002 * feed + feed / 1000 + (feed / 10_000) ** 0.5 * (profile == "jerk"))
+    assert 3.998 * size / feed < plan(square, settings, 48).seconds < 4.002 * size / feed + lost
+    assert plan([((0, 0, -size), feed)], settings, 48).seconds < 1.001 * size / feed + 10 * lost
 
 
 def test_cosine_ramps_pass_corners() -> None:

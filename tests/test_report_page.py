@@ -13,12 +13,14 @@ from passo.curve import speeds_and_positions, step_errors
 from passo.engine import model_engine
 from passo.move_file import read_channels
 from passo.plan import plan_channels
+from passo.report_data import page_data
 from passo.report_page import FOLDER, write_page, write_scene_page
 from passo.run import Run, execute_channels, parameters_of
 from passo.scene import Scene
+from passo.scene_figures import _energy
 from passo.scene_panels import lanes_of, trace_of
 from passo.scene_plan import scene_parameters
-from passo.scene_report import measured_curve
+from passo.scene_report import measured_curve, summarize_scene
 from passo.scene_run import SceneRun
 from passo.toolchain import paths
 
@@ -172,7 +174,8 @@ def test_a_machine(browser: Browser, tmp_path: Path, name: str) -> None:
     for axis in range(run.file.axes):
         clocks, directions = run.steps(axis)
         assert np.array_equal(numbers(browser, f"passo.motion.axes[{axis}].rises"), clocks)
-        assert np.array_equal(numbers(browser, f"passo.motion.axes[{axis}].counted"), np.cumsum(directions))
+        places = run.setup.start(axis) + np.cumsum(directions)
+        assert np.array_equal(numbers(browser, f"passo.motion.axes[{axis}].counted"), places)
     lanes = lanes_of(run)
     assert browser.value("passo.motion.machine.signals.map(one => one.name)") == [lane[0] for lane in lanes]
     for number, lane in enumerate(lanes):
@@ -184,7 +187,8 @@ def test_a_machine(browser: Browser, tmp_path: Path, name: str) -> None:
         assert found == (levels[:-1][::50] == 1).tolist()
     for number, encoder in enumerate(run.setup.encoders):
         curve, own = measured_curve(run, encoder), f"passo.motion.machine.encoders[{number}]"
-        assert np.array_equal(numbers(browser, f"{own}.measured"), curve.measured)
+        measured = run.setup.start(encoder.axis) + curve.measured
+        assert np.array_equal(numbers(browser, f"{own}.measured"), measured)
         assert np.array_equal(numbers(browser, f"{own}.error"), curve.made - curve.measured)
         assert np.array_equal(numbers(browser, f"{own}.clocks"), curve.clocks)
     text = browser.value("document.getElementById('events').textContent")
@@ -193,7 +197,115 @@ def test_a_machine(browser: Browser, tmp_path: Path, name: str) -> None:
     panels = browser.value("Array.from(document.querySelectorAll('section.panel'), panel => panel.id)")
     assert "signals" in panels and ("power" in panels) == run.setup.has_outputs
     assert ("following" in panels) == ("measured" in panels) == bool(run.setup.encoders)
-    assert browser.value("document.getElementById('verdict').className") == "good"
+    ends = all(map(run.sought, run.stops))
+    assert browser.value("document.getElementById('verdict').className") == ("good" if ends else "stopped")
+
+
+LIMIT = """
+clock_hz = 2_000_000
+[machine]
+start = [400, 0]
+[[machine.input]]
+role = "limit_high"
+at = 1500
+side = "above"
+[[machine.encoder]]
+counts_per_step = 4
+[[move]]
+steps = [3000, 0]
+profile = "cosine"
+total_time = 0.4
+ramp_time = 0.16
+[[move]]
+method = "home"
+steps = [0, 100]
+switch = "limit_high"
+speed = 10_000
+slow_speed = 1500
+acceleration = 200_000
+back_off = 60
+[[move]]
+steps = [-30, 0]
+profile = "cosine"
+total_time = 0.1
+ramp_time = 0.05
+"""
+WORDS = "document.getElementById('verdict').textContent"
+
+
+def test_a_stop_at_a_limit(browser: Browser, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Page, terminal and summary say what stopped it, what was made of what was asked, where it stands."""
+    moves = tmp_path / "moves.toml"
+    moves.write_text(LIMIT.replace("role", 'role = "limit_high"\naxis = 1\n[[machine.input]]\nrole', 1))
+    command = ["run", str(moves), "--engine", "model", "--report", "--out", str(tmp_path)]
+    assert main(command) == 0
+    told = capsys.readouterr().out
+    summary = json.loads((tmp_path / "summary.json").read_text())
+    shown(browser, tmp_path / "report.html")
+    assert browser.value("document.getElementById('verdict').className") == "stopped"
+    said = browser.value(WORDS)
+    assert said == summary["verdict"] and said in told
+    assert said.startswith(
+        "stopped by LIMIT in move 1; 1,100 of 3,000 steps of the moves made; moves 2, 3 not"
+    )
+    assert said.endswith("C model alone, not compared") and "every" not in said
+    assert (summary["outcome"], summary["stopped"]) == ("stopped", "LIMIT")
+    assert summary["moves_not_begun"] == [2, 3]
+    assert [(one["steps_asked"], one["steps_made"]) for one in summary["moves"]] == [(3000, 1100)]
+    assert summary["axes"][0]["machine_position"] == 1500
+    end = "passo.motion.facts.clocks"
+    assert browser.value(f"[0, {end}].map(clock => passo.motion.axes[0].position(clock))") == [400, 1500]
+    assert browser.value("passo.motion.axes[1].position(0)") == 0
+    assert browser.value("passo.motion.machine.encoders[0].measured.at(-1)") == 1500
+    title = browser.value("document.querySelector('#position h2').textContent")
+    assert title == "Position of the machine"
+    events = browser.value("document.getElementById('events').textContent")
+    assert "move 2, 3 does not begin" in events and "move 2 begins" not in events
+
+
+def test_a_good_run_says_what_was_judged(browser: Browser, tmp_path: Path) -> None:
+    """Not that engines were compared if there was one, nor a timing error if nothing moved."""
+    report(paths.examples / "cosine.toml", tmp_path / "page.html")
+    shown(browser, tmp_path / "page.html")
+    said = browser.value(WORDS)
+    assert said.startswith("all 6,400 steps made at the pins") and said.endswith("not compared")
+    assert "compared" not in browser.value("document.getElementById('settings').textContent")
+
+
+def test_a_motion_cut_short_says_nothing_of_its_rest(tmp_path: Path) -> None:
+    """Pins of the first half: moves that had not begun do not begin, and the motion does not end."""
+    file = read_channels(paths.examples / "there_and_back.toml")
+    parameters = parameters_of(file)
+    with model_engine(parameters, file.clock_hz) as engine:
+        (run,) = execute_channels(file, plan_channels(file, parameters), engine)
+    whole = [event["text"] for event in page_data(file, [run], "model")[0]["events"]]
+    assert whole[-1] == "the motion ends" and sum("begins" in text for text in whole) == len(run.plans)
+    clocks = run.pins["clock"] - run.start
+    run.pins = run.pins[clocks < run.plans[0].clocks // 2]
+    run.__post_init__()
+    cut = [event["text"] for event in page_data(file, [run], "model")[0]["events"] if not event["kind"]]
+    assert cut == ["move 1 begins", "the motion has not ended"]
+    run.pins = run.pins[:0]
+    run.__post_init__()
+    facts = page_data(file, [run], "model")[0]
+    assert not [event for event in facts["events"] if not event["kind"]]
+    assert facts["summary"]["outcome"] == "failed"
+
+
+def test_what_was_not_measured_is_not_zero() -> None:
+    """The energy of a single step, and of an encoder that no sample was taken of."""
+    file = read_channels(paths.examples / "laser.toml")
+    with model_engine(scene_parameters(file), file.clock_hz) as engine:
+        run = Scene(file, engine).run()
+    number = next(n for n, output in enumerate(run.setup.outputs, 1) if output and output.speed)
+    output = run.setup.outputs[number - 1]
+    assert output and _energy(run, output, np.array([100]))["whole_percent"] is None
+    file = read_channels(paths.examples / "closed_loop.toml")
+    with model_engine(scene_parameters(file), file.clock_hz) as engine:
+        run = Scene(file, engine).run()
+    run.samples = run.samples[:0]
+    (encoder,) = summarize_scene(run, "model")["encoders"]
+    assert encoder["samples"] == 0 and encoder["largest_error_steps"] is encoder["rms_error_steps"] is None
 
 
 def test_the_power_of_a_laser(browser: Browser, tmp_path: Path) -> None:

@@ -304,6 +304,17 @@ def test_examples(name: str) -> None:
     assert (causes or [None])[-1] == ends.get(name, "TRIGGER")
 
 
+def test_a_move_that_fails_after_a_home_is_a_problem() -> None:
+    """The stops that a home has sought do not excuse it."""
+    file = read_channels(paths.examples / "homing.toml")
+    with open_engine("model", scene_parameters(file), file.clock_hz) as core:
+        run = Scene(file, core).run()
+    assert run.stops and not run.problems()
+    run.sections[-1].outcome = "LATE"
+    assert run.problems() == ["move 3: LATE"]
+    assert summarize_scene(run, "model")["outcome"] == "failed"
+
+
 INPUT = "[[machine.input]]\n"
 ENCODER_4 = "[[machine.encoder]]\ncounts_per_step = 4\n"
 BAD = [

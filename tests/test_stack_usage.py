@@ -34,8 +34,17 @@ LISTING = """
 """
 
 
-def functions(monkeypatch: pytest.MonkeyPatch, listing: str = LISTING) -> dict[int, Function]:
-    monkeypatch.setattr(stack_usage, "_run", lambda *command: listing)
+def functions(
+    monkeypatch: pytest.MonkeyPatch, listing: str = LISTING, caller: str = "??"
+) -> dict[int, Function]:
+    """With the name that the debug information has for each indirect call."""
+
+    def run(*command: str) -> str:
+        if not command[0].endswith("addr2line"):
+            return listing
+        return "".join(f"{site}\n{caller}\nfile.c:1\n" for site in command if site.startswith("0x"))
+
+    monkeypatch.setattr(stack_usage, "_run", run)
     return stack_usage.disassemble(paths.build, "")
 
 
@@ -56,6 +65,16 @@ def test_a_call_by_pointer_must_be_named(monkeypatch: pytest.MonkeyPatch) -> Non
             connect(functions(monkeypatch), calls)
 
 
+def test_a_call_by_pointer_belongs_to_the_function_that_was_inlined(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As link-time optimisation does it: the list has the name of the source."""
+    found = functions(monkeypatch, caller="within.part.0")
+    assert list(found[0x8000120].by_pointer.values()) == [["within", "middle"]]
+    connect(found, {"within": ["hook"]})
+    assert 0x8000160 in found[0x8000120].calls
+    with pytest.raises(StackError, match="within in middle makes an indirect call"):
+        connect(functions(monkeypatch, caller="within"), {"other": ["hook"]})
+
+
 def test_recursion_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     """The depth would be unbounded."""
     found = functions(monkeypatch)
@@ -69,3 +88,17 @@ def test_what_is_not_understood_is_an_error(monkeypatch: pytest.MonkeyPatch, lin
     """A stack pointer that is changed by a register."""
     with pytest.raises(StackError):
         functions(monkeypatch, LISTING.replace("sub\tsp, #8", line))
+
+
+def test_a_function_that_became_part_of_another_keeps_its_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Link-time optimisation makes functions parts of others: the innermost one that is listed counts."""
+    found = functions(monkeypatch)
+    where = "0x08000128\ninner.lto_priv.0\nfile.c:1\nouter\nfile.c:2\nmiddle\nfile.c:3\n"
+    monkeypatch.setattr(stack_usage, "_run", lambda *command: where)
+    stack_usage.name_callers(found, paths.build, "")
+    for calls in ({"inner": ["hook"]}, {"outer": ["hook"]}, {"middle": ["hook"]}):
+        connect(found, calls)
+    with pytest.raises(StackError, match="listed but without indirect calls: outer"):
+        connect(found, {"inner": ["hook"], "outer": ["leaf"]})
+    with pytest.raises(StackError, match="inner makes an indirect call and is not listed"):
+        connect(found, {"start": ["hook"]})

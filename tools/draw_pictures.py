@@ -17,6 +17,7 @@ matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
 from matplotlib.figure import Figure
+from passo.output import complete
 from passo.toolchain import paths
 from passo_fpga.boards import boards
 
@@ -46,7 +47,8 @@ def main() -> None:
     IMAGES.mkdir(exist_ok=True)
     for name, facts, draw in pictures():
         figure = draw()
-        figure.savefig(IMAGES / name, dpi=110, facecolor="white", metadata={DIGEST: digest(facts)})
+        with complete(IMAGES / name) as part:
+            figure.savefig(part, dpi=110, facecolor="white", metadata={DIGEST: digest(facts)})
         plt.close(figure)
         print(f"drawn: docs/images/{name}")
 

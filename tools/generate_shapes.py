@@ -17,6 +17,8 @@ from decimal import ROUND_HALF_EVEN, Decimal, localcontext
 from itertools import pairwise
 from pathlib import Path
 
+from passo.output import write_text
+
 ROOT = Path(__file__).resolve().parents[1]
 
 POINTS = 256
@@ -218,7 +220,7 @@ def main() -> int:
             print(f"{path.relative_to(ROOT)} is out of date: run 'make generate'", file=sys.stderr)
             stale += 1
         else:
-            path.write_text(text)
+            write_text(path, text)
             print(f"wrote {path.relative_to(ROOT)}")
     return 1 if stale else 0
 

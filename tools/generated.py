@@ -5,6 +5,8 @@ import argparse
 from collections.abc import Mapping
 from pathlib import Path
 
+from passo.output import write_text
+
 
 def is_check(description: str) -> bool:
     """Parse the command line; True if the files are only to be compared (--check)."""
@@ -22,7 +24,7 @@ def keep(root: Path, made: Mapping[str, str], check: bool) -> int:
             continue
         stale.append(name)
         if not check:
-            path.write_text(text, encoding="utf-8")
+            write_text(path, text)
     for name in stale:
         print(f"{name} is stale: run 'make generate'" if check else f"wrote {name}")
     return int(check and bool(stale))

@@ -3,8 +3,8 @@
 #
 #     tools/setup.sh [SET...]
 # A SET is an optional set of Python packages in requirements-SET.txt (yosys, fpga, ...); or `firmware`:
-# Debian's compiler for the STM32; or `browser`: Debian's headless Chromium; or `vhdl`: Debian's GHDL. Safe to run again at
-# any time: it installs only what is missing.
+# Debian's compiler for the STM32; or `browser`: Debian's headless Chromium; or `vhdl`: Debian's GHDL; or `gcode`: rs274, the
+# interpreter of Debian's LinuxCNC. Safe to run again at any time: it installs only what is missing.
 # PYTHON selects the interpreter for the environment (default: python3).
 
 set -euo pipefail
@@ -36,6 +36,7 @@ tools="iverilog:iverilog c++:g++ make:make pod2usage:perl git:git"
 headers="lz4.h:liblz4-dev zlib.h:zlib1g-dev"
 
 python_sets=()
+rs274=""
 for name in "$@"; do
     if [ "$name" = firmware ]; then
         tools+=" arm-none-eabi-gcc:gcc-arm-none-eabi"
@@ -44,6 +45,8 @@ for name in "$@"; do
         tools+=" chromium-headless-shell:chromium-headless-shell"
     elif [ "$name" = vhdl ]; then
         tools+=" ghdl:ghdl"
+    elif [ "$name" = gcode ]; then
+        rs274=.venv/rs274
     else
         python_sets+=("$name")
     fi
@@ -105,9 +108,11 @@ missing_sets() {
     done
 }
 
+rs274_is_there() { [ -z "$rs274" ] || [ -x "$rs274/rs274" ]; }
+
 sets=$(missing_sets "${python_sets[@]}")
 missing=$(missing_tools)
-if [ -z "$missing" ] && [ -z "$sets" ] && venv_is_current; then
+if [ -z "$missing" ] && [ -z "$sets" ] && venv_is_current && rs274_is_there; then
     step "Setup is complete."
     exit 0
 fi
@@ -227,5 +232,11 @@ done
 for name in $sets; do
     set_key "$name" >"$stamp-$name"
 done
+
+if ! rs274_is_there; then
+    step "Unpacking rs274 from Debian's linuxcnc-uspace (22 MB)"
+    tools/unpack_rs274.sh "$rs274" || fail "rs274 cannot be had: Debian's linuxcnc-uspace, and what it needs, is missing." \
+        "Check that the Debian mirror can be reached, then run 'make setup' again."
+fi
 
 step "Setup is complete."

@@ -3,8 +3,9 @@
 """Worst-case stack, flash and RAM of a Thumb-2 program, computed from its ELF file.
 
 Every function is disassembled for its stack frame and its calls. Indirect calls are listed in a file
-("caller: target target ..."). An indirect call that is not listed, recursion, and an unknown change of the
-stack pointer are errors. All nesting interrupts are added to the deepest path, each with the 36 bytes that
+("caller: target target ..."); the caller is the function of the source, also where the linker has made it a
+part of another one. An indirect call that is not listed, recursion, and an unknown change of the stack
+pointer are errors. All nesting interrupts are added to the deepest path, each with the 36 bytes that
 the processor stacks. The exit status is 1 if the program does not fit.
 """
 
@@ -16,6 +17,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 EXCEPTION_BYTES = 36  # 8 words, and one for alignment
+INSTRUCTION = re.compile(r"^ *([0-9a-f]+):\t([^\t]+)\t?(.*)$")
 FUNCTION = re.compile(r"^([0-9a-f]+) <(.+)>:$")
 TARGET = re.compile(r"([0-9a-f]+) <([^>+]+)>")
 CLONE = re.compile(r"\.(isra|part|constprop|cold|lto_priv)\b.*")
@@ -33,7 +35,9 @@ class Function:
     name: str  # without the compiler's suffixes for parts and clones
     frame: int = 0
     calls: set[int] = field(default_factory=set)
-    by_pointer: bool = False
+    pointers: dict[int, list[str]] = field(
+        default_factory=dict
+    )  # indirect calls by address: who may be listed
 
 
 def disassemble(elf: Path, cross: str) -> dict[int, Function]:
@@ -45,16 +49,13 @@ def disassemble(elf: Path, cross: str) -> dict[int, Function]:
         if match := FUNCTION.match(line):
             start = int(match[1], 16)
             current = functions.setdefault(start, Function(CLONE.sub("", match[2])))
-        elif current and "\t" in line:
-            fields = line.split("\t")
-            if len(fields) >= 2:
-                _instruction(
-                    current, start, fields[1].strip(), "\t".join(fields[2:]).split(";")[0].split("@")[0]
-                )
+        elif current and (match := INSTRUCTION.match(line)):
+            operands = match[3].split(";")[0].split("@")[0]
+            _instruction(current, start, int(match[1], 16), match[2].strip(), operands)
     return functions
 
 
-def _instruction(function: Function, start: int, operation: str, operands: str) -> None:
+def _instruction(function: Function, start: int, at: int, operation: str, operands: str) -> None:
     """Account for one instruction: stack frame and calls."""
     name = operation.removesuffix(".n").removesuffix(".w")
     operands = operands.strip()
@@ -75,7 +76,7 @@ def _instruction(function: Function, start: int, operation: str, operands: str) 
         if (match := TARGET.search(operands)) and int(match[1], 16) != start:
             function.calls.add(int(match[1], 16))
     elif name == "blx" or (name == "bx" and operands != "lr"):
-        function.by_pointer = True
+        function.pointers[at] = [function.name]
 
 
 def _registers(operands: str) -> int:
@@ -85,6 +86,15 @@ def _registers(operands: str) -> int:
         low, _, high = item.strip().partition("-")
         count += int(high[1:]) - int(low[1:]) + 1 if high else 1
     return count
+
+
+def name_callers(functions: dict[int, Function], elf: Path, cross: str) -> None:
+    """Add to each indirect call the functions of the source that it is in, innermost first."""
+    sites = {site: names for function in functions.values() for site, names in function.pointers.items()}
+    said = _run(f"{cross}addr2line", "-a", "-i", "-f", "-e", str(elf), *(f"{site:#x}" for site in sites))
+    for part in re.split(r"^0x", said, flags=re.M)[1:]:
+        site, *inlined = part.splitlines()
+        sites[int(site, 16)][:0] = [CLONE.sub("", name) for name in inlined[::2]]
 
 
 def read_calls(path: Path) -> dict[str, list[str]]:
@@ -103,16 +113,18 @@ def connect(functions: dict[int, Function], pointers: dict[str, list[str]]) -> d
     by_name: dict[str, list[int]] = {}
     for address, function in functions.items():
         by_name.setdefault(function.name, []).append(address)
+    used = set()
     for function in functions.values():
-        if not function.by_pointer:
-            continue
-        if function.name not in pointers:
-            raise StackError(f"{function.name} makes an indirect call and is not listed")
-        for target in pointers[function.name]:
-            if target not in by_name:
-                raise StackError(f"{function.name} is listed as calling {target}, which does not exist")
-            function.calls.update(by_name[target])
-    unused = set(pointers) - {function.name for function in functions.values() if function.by_pointer}
+        for callers in function.pointers.values():
+            caller = next((name for name in callers if name in pointers), None)
+            if caller is None:
+                raise StackError(f"{callers[0]} makes an indirect call and is not listed")
+            used.add(caller)
+            for target in pointers[caller]:
+                if target not in by_name:
+                    raise StackError(f"{caller} is listed as calling {target}, which does not exist")
+                function.calls.update(by_name[target])
+    unused = set(pointers) - used
     if unused:
         raise StackError(f"listed but without indirect calls: {', '.join(sorted(unused))}")
     return by_name
@@ -163,6 +175,7 @@ def main() -> int:
     options = parser.parse_args()
     try:
         functions = disassemble(options.elf, options.cross)
+        name_callers(functions, options.elf, options.cross)
         by_name = connect(functions, read_calls(options.calls))
         stack, path = deepest(functions, by_name[options.start][0])
         for handler in options.interrupt:

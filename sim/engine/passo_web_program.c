@@ -60,14 +60,13 @@ static void read_settings(void)
 			.jerk = q32(machine->axis[i].jerk)};
 }
 
-/* The line that begins at `*at`, without its line feed; moves on. */
+/* The line that begins at `*at`; moves on. */
 static const char *next_line(size_t *at, size_t *length)
 {
 	const char *line = web.text + *at;
-	const char *end = memchr(line, '\n', web.length - *at);
 
-	*length = end ? (size_t)(end - line) : web.length - *at;
-	*at += *length + (end != NULL);
+	*length = passo_gcode_line_count(line, web.length - *at);
+	*at += *length;
 	return line;
 }
 

@@ -12,8 +12,8 @@ from passo.console import console, table
 from passo.engine import Engine, model_engine, rtl_engine
 from passo.link_bench import measure_all
 from passo.moves import MoveFile, MoveInTime, PinTiming
+from passo.output import make_folder, write_json
 from passo.plan import plan_file
-from passo.report import write_json
 from passo.run import execute
 from passo.toolchain import paths, short
 
@@ -93,6 +93,7 @@ def bench() -> dict[str, Any]:
         "advance_ratio": {axes: round(ratio, 1) for axes, ratio in ratios.items()},
         "lines_per_second": {str(rate.sclk_hz): round(rate.sustained) for rate in rates},
     }
+    make_folder(REPORT.parent)
     write_json(report, REPORT)
     console.print(shown)
     console.print(links)

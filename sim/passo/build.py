@@ -7,19 +7,9 @@ from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
-from passo.compiler import (
-    CC,
-    CXX,
-    LIBRARY,
-    STRICT,
-    BuildError,
-    cached,
-    call,
-    headers,
-    includes,
-    library,
-    sources,
-)
+from passo.cache import LIBRARY, cached, discard
+from passo.compiler import CC, CXX, STRICT, call, headers, includes, library, sources
+from passo.failure import BuildError
 from passo.pins import CoreParameters
 from passo.toolchain import environment, paths
 
@@ -125,7 +115,8 @@ def rtl_library(parameters: Parameters, waves: bool = False, rtl: Path = paths.r
     defines = [f"-DPASSO_CORE_{name.upper()}={value}" for name, value in asdict(parameters).items()]
     flags = [*CPP_FLAGS, *defines, f"-I{verilated}"]
     runtime = [f"-isystem{include}", f"-isystem{include / 'vltstd'}"]
-    archives = [str(verilated / MODEL), str(_runtime(waves) / RUNTIME), "-pthread"]
+    runtime_of = _runtime(waves)
+    archives = [str(verilated / MODEL), str(runtime_of / RUNTIME), "-pthread", "-Wl,--no-undefined"]
     if waves:
         flags.append("-DPASSO_WAVES")
         archives += ["-llz4", "-lz"]
@@ -134,7 +125,12 @@ def rtl_library(parameters: Parameters, waves: bool = False, rtl: Path = paths.r
         objects = [folder / f"{part.stem}.o" for part in c_parts]
         for part, made in zip(c_parts, objects, strict=True):
             call([CC, *ENGINE_FLAGS, "-c", part, "-o", made])
-        call([CXX, "-shared", *flags, *runtime, cpp_part, *objects, *archives, "-o", folder / LIBRARY])
+        try:
+            call([CXX, "-shared", *flags, *runtime, cpp_part, *objects, *archives, "-o", folder / LIBRARY])
+        except BuildError:
+            for part in (verilated, runtime_of):  # may be what does not fit
+                discard(part)
+            raise
 
     name = f"rtl_{parameters.name}{'_waves' if waves else ''}{_copy(rtl)}"
     inputs = [*c_parts, cpp_part, *headers(paths.engine), paths.model / "passo_pins.h"]

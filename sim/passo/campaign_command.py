@@ -14,8 +14,8 @@ from passo.campaign_moves import Case
 from passo.campaign_play import ENGINES
 from passo.console import console, stages, table
 from passo.failure import BadInputError
+from passo.output import make_folder, write_json
 from passo.pulse_judge import Fault
-from passo.report import write_json
 from passo.toolchain import paths
 
 EVERY = 10  # seconds between two lines of progress
@@ -54,7 +54,7 @@ def run_campaign(campaign: Campaign, where: Where) -> bool:
         if result.faults:
             print(f"shrinking {min(len(result.faults), SHOWN)} of {len(result.faults)} failures", flush=True)
         shrunk = shrink_all(result, client)
-    summary.parent.mkdir(parents=True, exist_ok=True)
+    make_folder(summary.parent)
     write_json(summary_of(result, shrunk), summary)
     _show(result)
     print(f"results: {summary}")
@@ -132,7 +132,7 @@ def _show(result: Result) -> None:
 
 def _show_failures(campaign: Campaign, shrunk: list[tuple[Case, Fault]], out: Path) -> None:
     """Write their files and say how to repeat them."""
-    out.mkdir(parents=True, exist_ok=True)
+    make_folder(out)
     for case, fault in shrunk:
         path = case.write(out)
         print(f"move {case.number}: {fault.kind}: {fault.text}")

@@ -12,6 +12,7 @@ from typing import Any
 
 from passo.campaign_forms import BANKS, Bank, Data, FormDraw
 from passo.move_forms import PROFILES, SUBSTEPS_MAX
+from passo.output import write_text
 from passo.shape import ONE, POINTS, write_table
 
 CLOCKS = (72_000_000, 100_000_000, 50_000_000, 12_000_000, 16_000_000, 99_999_989, 1_000_000)
@@ -40,7 +41,7 @@ class Case:
         if self.table:
             write_table(self.table, folder / f"{self.name}.csv")
         path = folder / f"{self.name}.toml"
-        path.write_text(to_toml(self.data))
+        write_text(path, to_toml(self.data))
         return path
 
 

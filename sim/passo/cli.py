@@ -9,13 +9,35 @@ from pathlib import Path
 
 from passo import __version__, campaign_options, console_options
 from passo.failure import BadInputError, Failure
+from passo.output import BROKEN_PIPE, FULL, drop_output
 
 PART_SUFFIXES = (".nc", ".ngc", ".gcode")
-OK, FAILED, BAD_INPUT = 0, 1, 2
+OK, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; return its exit status: 0 success, 1 mismatch or fault, 2 invalid input."""
+    """Run the command; return its exit status.
+
+    0 success, 1 mismatch or fault, 2 invalid input, 130 interrupted, 141 nobody reads its output any more.
+    """
+    try:
+        try:
+            return _command(arguments)
+        finally:
+            if sys.stdout:  # not if the shell has closed it
+                sys.stdout.flush()
+    except BrokenPipeError:
+        drop_output()
+        return BROKEN_PIPE
+    except OSError as error:  # all others have their own words
+        drop_output()
+        place = error.filename or ("standard output or a temporary file" if error.errno in FULL else "")
+        reason = error.strerror or str(error)
+        print(f"{place}: {reason}" if place else reason, file=sys.stderr)
+        return FAILED
+
+
+def _command(arguments: Sequence[str] | None) -> int:
     options = _parser().parse_args(arguments)
     try:
         return options.command(options)
@@ -26,7 +48,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(error, file=sys.stderr)
         return FAILED
     except KeyboardInterrupt:
-        return 130
+        return INTERRUPTED
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -115,13 +137,10 @@ def _shape(options: argparse.Namespace) -> int:
 
     points = shape.sample(formula(options.formula)) if options.formula else shape.read_table(options.csv)
     facts = shape.check(points)
-    try:
-        if options.out:
-            shape.write_table(points, options.out)
-        if options.plot:
-            shape.plot_table(points, options.plot)
-    except OSError as error:
-        raise BadInputError(f"{error.filename}: {error.strerror}") from None
+    if options.out:
+        shape.write_table(points, options.out)
+    if options.plot:
+        shape.plot_table(points, options.plot)
     steepest = max(b - a for a, b in pairwise((*points, shape.ONE))) * shape.POINTS / shape.ONE
     symmetric = "symmetric" if facts.symmetric else "not symmetric"
     print(f"mean {float(facts.mean):.6f}, {symmetric}, slope at most {steepest:.3f}")

@@ -1,19 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""Compilers and their flags; outputs are cached until a source, header or flag changes."""
+"""Compilers and their flags."""
 
-import fcntl
-import hashlib
 import re
-import shutil
 import subprocess
 import tempfile
-import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from passo.failure import Failure
-from passo.toolchain import BUILD_VARIABLE, environment, paths
+from passo.cache import LIBRARY, cached, hash_of
+from passo.failure import BuildError
+from passo.toolchain import environment
 
 CC = "cc"
 CXX = "c++"
@@ -30,12 +26,8 @@ SANITIZED = (
 )
 DEFINED = ("-O2", "-fsanitize=undefined", "-fno-sanitize-recover=all")
 
-LIBRARY = "library.so"
 MESSAGE_LINES = 30  # of compiler messages
-
-
-class BuildError(Failure):
-    """A compiler failed; the text is its message."""
+FULL = ("No space left on device", "Disk quota exceeded", "File too large")  # says a tool of its disk
 
 
 def sources(*folders: Path) -> list[Path]:
@@ -65,9 +57,16 @@ def call(command: Sequence[str | Path], text: str | None = None) -> str:
     except FileNotFoundError:
         raise BuildError(f"there is no '{words[0]}': on Debian, install g++, make and perl") from None
     if done.returncode:
-        said = (done.stderr or done.stdout).splitlines()
-        raise BuildError("\n".join([f"{words[0]} failed:", *said[:MESSAGE_LINES]]))
+        raise failed(words[0], done.stderr or done.stdout)
     return done.stdout
+
+
+def failed(tool: str, text: str) -> BuildError:
+    """What to raise: of what a tool has said the one line that tells of a full disk, or the first ones."""
+    said = text.splitlines()
+    if full := next((line for line in said if any(reason in line for reason in FULL)), None):
+        return BuildError(f"{tool} failed: {full.strip()}")
+    return BuildError("\n".join([f"{tool} failed:", *said[:MESSAGE_LINES]]))
 
 
 def compile_to(made: Path, *arguments: str | Path, compiler: Sequence[str] = (CC,)) -> Path:
@@ -91,7 +90,7 @@ def kept(
 
     `rest` are further arguments that only locate the inputs; they are not hashed.
     """
-    made = made.with_name(f"{made.stem}-{_hash(inputs, [*compiler, *flags])}{made.suffix}")
+    made = made.with_name(f"{made.stem}-{hash_of(inputs, [*compiler, *flags])}{made.suffix}")
     return made if made.exists() else compile_to(made, *flags, *rest, compiler=compiler)
 
 
@@ -105,54 +104,8 @@ def library(name: str, folders: Sequence[Path], files: Sequence[Path], *flags: s
     return cached(name, [*files, *headers(*folders)], flags, make) / LIBRARY
 
 
-def cached(name: str, inputs: Iterable[Path], flags: Sequence[str], make: Callable[[Path], None]) -> Path:
-    """The folder lib/NAME-HASH below `paths.build`, which `make` fills from these inputs if it is not there.
-
-    Older folders of the same name are deleted.
-    """
-    libraries = paths.build / "lib"
-    folder = libraries / f"{name}-{_hash(inputs, flags)}"
-    if folder.exists():
-        return folder
-    try:
-        libraries.mkdir(parents=True, exist_ok=True)
-        (libraries / f"{name}.lock").touch()
-    except OSError as error:
-        raise BuildError(f"{libraries}: {error.strerror}; {BUILD_VARIABLE} names another folder") from None
-    with _lock(libraries / f"{name}.lock"):
-        if not folder.exists():
-            print(f"Building {name} ...", flush=True)
-            began = time.monotonic()
-            with tempfile.TemporaryDirectory(prefix=f"{name}.", dir=libraries) as temporary:
-                work = Path(temporary) / "work"
-                work.mkdir()
-                make(work)
-                for stale in libraries.glob(f"{name}-*"):
-                    shutil.rmtree(stale)
-                work.rename(folder)
-            print(f"Built {name} in {time.monotonic() - began:.1f} s", flush=True)
-    return folder
-
-
 def declarations(files: Iterable[Path]) -> str:
     """Preprocessed headers for cffi, without #include, as it knows the standard types, and inlines."""
     text = "\n".join(path.read_text() for path in files)
     dropped = r"(?ms)^#include[^\n]*$|^static inline .*?^}$"
     return call([CC, "-E", "-P", "-x", "c", "-"], re.sub(dropped, "", text))
-
-
-def _hash(inputs: Iterable[Path], flags: Sequence[str]) -> str:
-    """Of what is compiled, wherever the sources and what was built before are."""
-    text = repr(list(flags)).replace(str(paths.build), "BUILD").replace(str(paths.root), "ROOT")
-    digest = hashlib.sha256(text.encode())
-    for path in inputs:
-        digest.update(f"\0{path.name}\0".encode() + path.read_bytes())
-    return digest.hexdigest()[:12]
-
-
-@contextmanager
-def _lock(path: Path) -> Iterator[None]:
-    """Hold a file lock, so that only one process builds the same folder."""
-    with path.open("w") as file:
-        fcntl.flock(file, fcntl.LOCK_EX)
-        yield

@@ -10,7 +10,17 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
-console = Console()
+from passo.output import BROKEN_PIPE, drop_output
+
+
+class _Console(Console):
+    def on_broken_pipe(self) -> None:
+        """End as all commands do whose output nobody reads."""
+        drop_output()
+        raise SystemExit(BROKEN_PIPE)
+
+
+console = _Console()
 
 
 @contextmanager

@@ -5,6 +5,7 @@ import argparse
 import os
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
 from passo.build import Parameters
@@ -99,5 +100,9 @@ def _grbl(options: argparse.Namespace) -> None:
             return
         with pseudo_terminal(options.pty) as terminal:
             write(f"{options.pty}: 115200 baud or any other\n")
-            said = lambda text: os.write(terminal, text.encode())  # noqa: E731
+
+            def said(text: str) -> None:
+                with suppress(BlockingIOError):  # nobody reads: lost, as on a wire
+                    os.write(terminal, text.encode())
+
             serve(Grbl(engine, machine, said, settings), terminal)

@@ -8,10 +8,11 @@ from typing import Any
 from passo.build import model_library, planner_library, rtl_library
 from passo.console import console, progress, table
 from passo.move_file import read_channels
+from passo.output import make_folder, write_json
 from passo.plan import plan_channels
 from passo.plot import plot_file, plot_overview
 from passo.plot_scene import plot_scene
-from passo.report import summarize_channels, write_json, write_pulses
+from passo.report import summarize_channels, write_pulses
 from passo.report_page import write_page, write_scene_page
 from passo.run import Run, execute_channels, open_engine, parameters_of
 from passo.scene import Scene
@@ -37,7 +38,7 @@ def run_example(name: str) -> tuple[list[Run], dict[str, Any]]:
         runs = execute_channels(file, plan_channels(file, parameters), engine)
     summary = summarize_channels(file, runs, "both")
     out = FOLDER / name
-    out.mkdir(parents=True, exist_ok=True)
+    make_folder(out)
     write_pulses(runs, out / "pulses.csv")
     write_json(summary, out / "summary.json")
     plot_file(runs, out)
@@ -52,7 +53,7 @@ def run_machine(name: str) -> dict[str, Any]:
         run = Scene(file, engine).run()
     summary = summarize_scene(run, "both")
     out = FOLDER / name
-    out.mkdir(parents=True, exist_ok=True)
+    make_folder(out)
     write_scene_pulses(run, out / "pulses.csv")
     write_json(summary, out / "summary.json")
     plot_scene(run, out / "motion.png")
@@ -69,6 +70,7 @@ def _error(summary: dict[str, Any]) -> str:
     """The largest distance from the ideal curve, of the steps or of what an encoder measured."""
     own = [axis["largest_error_steps"] for axis in summary["axes"] if "largest_error_steps" in axis]
     own += [encoder["largest_error_steps"] for encoder in summary.get("encoders", [])]
+    own = [error for error in own if error is not None]
     return f"{max(own):.4f} steps" if own else ", ".join(stop["cause"] for stop in summary["stops"][-1:])
 
 

@@ -8,3 +8,7 @@ class Failure(Exception):  # noqa: N818 - the errors have it as their base
 
 class BadInputError(ValueError):
     """The input is invalid: exit status 2."""
+
+
+class BuildError(Failure):
+    """What the command needs cannot be built; the text is the message of the compiler, or says why."""

@@ -35,13 +35,32 @@ class GcodeSettings:
         return ffi().new("struct passo_gcode_settings *", (self.axes, tolerance, self.spindle_maximum, False))
 
 
+def lines(text: bytes) -> list[bytes]:
+    """The lines of a text, with their ends."""
+    start, at, found = ffi().from_buffer(text), 0, []
+    while at < len(text):
+        count = planner().passo_gcode_line_count(start + at, len(text) - at)
+        found.append(text[at : at + count])
+        at += count
+    return found
+
+
 def stripped(line: bytes) -> Any:
     """The `struct passo_gcode_line` of a line of text; raises GcodeError."""
+    if planner().passo_gcode_line_count(line, len(line)) != len(line):
+        raise ValueError(f"more than one line: {line!r}")
     made = ffi().new("struct passo_gcode_line *")
     planner().passo_gcode_line_read(made, line, len(line))
     if made.overflow:
         raise GcodeError(planner().PASSO_GCODE_LINE_OVERFLOW)
     return made
+
+
+def has_words(line: bytes) -> bool:
+    """Whether a line says anything."""
+    made = ffi().new("struct passo_gcode_line *")
+    planner().passo_gcode_line_read(made, line, len(line))
+    return ffi().string(made.text).strip(b"%") != b""
 
 
 class Gcode:

@@ -12,7 +12,7 @@ from typing import Any
 from passo.driver import Driver
 from passo.failure import BadInputError, Failure
 from passo.gcode import Gcode
-from passo.grbl_setup import SettingsFile, setup_of
+from passo.grbl_setup import SettingsFile, defaults_of, setup_of
 from passo.machine_file import MachineFile
 from passo.native import ffi, planner
 from passo.part import LOOPS_PER_SECOND, SLEWS_PER_SECOND
@@ -42,14 +42,18 @@ class Grbl:
         feed = PathFeed(driver, Path(machine.settings, engine.parameters, LOOK_AHEAD))
         self.player = Player(Gcode(machine.gcode), feed)
         self._c = planner()
-        self._say = ffi().callback("void(void *, char *)", self._said)
+        self._error: Exception | None = None  # of `write`, which C calls
+        self._say = ffi().callback("void(void *, char *)", self._said, onerror=self._failed)
         self._sink = ffi().new("struct passo_grbl_sink *")
         self._sink.write = ffi().cast("void *", self._say)
         self.answers = 0  # ok and error so far
         self.c = ffi().new("struct passo_grbl *")
         self._settings = settings
-        self._setup = setup_of(machine, engine.parameters, settings.c if settings else ffi().NULL)
+        self._defaults = defaults_of(machine)
+        pages = settings.c if settings else ffi().NULL
+        self._setup = setup_of(machine, engine.parameters, self._defaults, pages)
         self._c.passo_grbl_open(self.c, self.player.c, self._sink, self._setup)
+        self._check()
 
     @property
     def is_idle(self) -> bool:
@@ -65,10 +69,12 @@ class Grbl:
         """Bytes from the host."""
         for byte in data:
             self._c.passo_grbl_receive(self.c, bytes([byte]))
+        self._check()
 
     def poll(self) -> None:
         """One round of the main loop, and the time that it takes."""
         self._c.passo_grbl_poll(self.c)
+        self._check()
         self.player.feed.driver.hardware.check()
         self.engine.run(self.machine.clock_hz // LOOPS_PER_SECOND)
         self.engine.drain()
@@ -95,6 +101,15 @@ class Grbl:
         said = ffi().string(text).decode("ascii", "replace")
         self.answers += said == "ok\r\n" or said == "error:"
         self._write(said)
+
+    def _failed(self, _: Any, error: Exception, __: Any) -> None:
+        self._error = self._error or error
+
+    def _check(self) -> None:
+        """Raise an exception that the callback has caught."""
+        if self._error:
+            error, self._error = self._error, None
+            raise error
 
 
 def talk(lines: Iterable[str], grbl: Grbl) -> None:

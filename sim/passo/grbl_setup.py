@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """What the grbl console knows of its machine, and the file that keeps its settings."""
 
-import contextlib
+import math
 import os
 from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -13,15 +14,35 @@ from passo.engine import NUMBERS
 from passo.failure import BadInputError
 from passo.machine_file import MachineFile
 from passo.native import ffi, planner
+from passo.output import write_bytes
 from passo.run import open_engine, parameters_for
 
 MILLION = 1_000_000
 SECONDS_PER_MINUTE = 60
 REPORT_ALL = 3  # $10: MPos and Bf
+INFINITE = math.inf
+FILTER_CLOCKS = 65535  # of the filter of the switches, at most
+ALWAYS_ON = 255  # $1
 PAGE = 1024  # bytes; a page of flash of the STM32F103
 PAGES = 2
 WORD = 4
 PROBED = 3  # the probe is at Z
+
+
+def _millionths(
+    machine: MachineFile, key: str, index: int, given: float, factor: int, most: float = INFINITE
+) -> int:
+    """A setting of a key of the file; refuses what `$n=` would refuse."""
+    axes, whole, positive = len(machine.ends), ffi().new("bool *"), ffi().new("bool *")
+    number = planner().passo_grbl_setting_number(index, axes, whole)
+    most = min(most, planner().passo_grbl_setting_most(number, axes, positive) / factor)
+    value = round(given * factor * MILLION)
+    if given > most or (positive[0] and value == 0):
+        least = "more than 0 and at most" if positive[0] else "0 to"
+        raise BadInputError(
+            f"{machine.path}: {key} must be {least} {most:g}, as ${number}, not {float(given):g}"
+        )
+    return value
 
 
 def default_settings(machine: MachineFile) -> Any:
@@ -30,37 +51,58 @@ def default_settings(machine: MachineFile) -> Any:
     made = ffi().new("struct passo_grbl_settings *")
     ends, switches = machine.ends, machine.switches
     values = {
-        "PULSE": machine.pins.step_high * MILLION / machine.clock_hz,
+        "IDLE_DELAY": ALWAYS_ON,
         "REPORT": REPORT_ALL,
         "LIMITS_INVERTED": switches.inverted,
-        "DEVIATION": machine.settings.junction_deviation,
-        "ARC_TOLERANCE": machine.gcode.arc_tolerance,
         "SOFT_LIMITS": switches.soft_limits,
         "HARD_LIMITS": switches.stop and any(set(end.switches) - {"home"} for end in ends),
         "HOMING": any(end.home for end in ends),
         "HOMES_LOW": sum(1 << axis for axis, end in enumerate(ends) if end.home == "low"),
-        "HOME_FEED": switches.speed * SECONDS_PER_MINUTE,
-        "HOME_SEEK": switches.seek * SECONDS_PER_MINUTE,
-        "DEBOUNCE": switches.debounce * 1000,
-        "PULL_OFF": switches.pull_off,
-        "SPINDLE": machine.gcode.spindle_maximum,
         "LASER": machine.laser,
     }
     for name, value in values.items():
         made.value[getattr(c, f"PASSO_GRBL_{name}")] = round(value * MILLION)
+    filter_most = FILTER_CLOCKS / machine.clock_hz
+    for name, key, given, factor, most in (
+        ("PULSE", "pins: step_high", machine.pins.step_high / machine.clock_hz, MILLION, INFINITE),
+        ("DEVIATION", "junction_deviation", machine.settings.junction_deviation, 1, INFINITE),
+        ("ARC_TOLERANCE", "arc_tolerance", machine.gcode.arc_tolerance, 1, INFINITE),
+        ("HOME_FEED", "home: speed", switches.speed, SECONDS_PER_MINUTE, INFINITE),
+        ("HOME_SEEK", "home: seek", switches.seek, SECONDS_PER_MINUTE, INFINITE),
+        ("DEBOUNCE", "switches: debounce", switches.debounce, 1000, filter_most),
+        ("PULL_OFF", "home: pull_off", switches.pull_off, 1, INFINITE),
+        ("SPINDLE", "spindle_maximum", machine.gcode.spindle_maximum, 1, INFINITE),
+    ):
+        index = getattr(c, f"PASSO_GRBL_{name}")
+        made.value[index] = _millionths(machine, key, index, given, factor, most)
     for axis, limits in enumerate(machine.settings.axes):
-        made.axis[c.PASSO_GRBL_STEPS][axis] = round(limits.steps_per_mm * MILLION)
-        made.axis[c.PASSO_GRBL_SPEED][axis] = round(limits.speed * SECONDS_PER_MINUTE * MILLION)
-        made.axis[c.PASSO_GRBL_ACCELERATION][axis] = round(limits.acceleration * MILLION)
-        made.axis[c.PASSO_GRBL_TRAVEL][axis] = round(ends[axis].travel * MILLION)
+        for name, key, given, factor in (
+            ("STEPS", "steps_per_mm", limits.steps_per_mm, 1),
+            ("SPEED", "speed", limits.speed, SECONDS_PER_MINUTE),
+            ("ACCELERATION", "acceleration", limits.acceleration, 1),
+            ("TRAVEL", "travel", ends[axis].travel, 1),
+        ):
+            setting = getattr(c, f"PASSO_GRBL_{name}")
+            index = c.PASSO_GRBL_SETTINGS + setting * len(ends) + axis
+            made.axis[setting][axis] = _millionths(machine, f"axis {axis + 1}: {key}", index, given, factor)
     return made
 
 
-def setup_of(machine: MachineFile, parameters: Parameters, pages: Any) -> Any:
+def defaults_of(machine: MachineFile) -> Any:
+    """The function of a `struct passo_grbl_setup` that sets them; it must live as long as that."""
+    made = default_settings(machine)
+
+    def set_defaults(settings: Any) -> None:
+        settings[0] = made[0]
+
+    return ffi().callback("void(struct passo_grbl_settings *)", set_defaults)
+
+
+def setup_of(machine: MachineFile, parameters: Parameters, defaults: Any, pages: Any) -> Any:
     """The `struct passo_grbl_setup`; `pages` is that of a file, or NULL."""
     made = ffi().new("struct passo_grbl_setup *")
     made.path = machine.settings.struct(parameters)[0]
-    made.defaults = default_settings(machine)[0]
+    made.defaults = defaults
     made.pins.step_low_ns, made.pins.dir_setup_ns = machine.pins.step_low, machine.pins.dir_setup
     made.pins.dir_hold_ns = machine.pins.dir_hold
     for axis, end in enumerate(machine.ends):
@@ -103,7 +145,7 @@ def attach(engine: Any, machine: MachineFile) -> None:
     engine.attach(config)
 
 
-@contextlib.contextmanager
+@contextmanager
 def machine_at(name: str, machine: MachineFile) -> Iterator[Any]:
     """An engine with the machine at its pins."""
     with open_engine(name, core_for(machine), machine.clock_hz) as engine:
@@ -119,7 +161,7 @@ class SettingsFile:
         self.path = path
         try:
             if not path.exists():
-                path.write_bytes(b"\xff" * PAGE * PAGES)
+                write_bytes(path, b"\xff" * PAGE * PAGES)
             if path.stat().st_size != PAGE * PAGES:
                 raise BadInputError(f"{path}: this is no file of settings: it has not {PAGE * PAGES} bytes")
         except OSError as error:
@@ -140,10 +182,11 @@ class SettingsFile:
     def _read(self, _: Any, page: int, at: int, words: Any, count: int) -> bool:
         if WORD * (at + count) > PAGE:
             return False
-        with self.path.open("rb") as file:
+        with suppress(OSError), self.path.open("rb") as file:
             file.seek(page * PAGE + WORD * at)
             ffi().memmove(words, file.read(WORD * count), WORD * count)
-        return True
+            return True
+        return False
 
     def _erase(self, _: Any, page: int) -> bool:
         return self._put(page, 0, b"\xff" * PAGE)
@@ -154,9 +197,10 @@ class SettingsFile:
     def _put(self, page: int, at: int, data: bytes) -> bool:
         if WORD * at + len(data) > PAGE:
             return False
-        with self.path.open("r+b") as file:
+        with suppress(OSError), self.path.open("r+b") as file:
             file.seek(page * PAGE + WORD * at)
             file.write(data)
             file.flush()
             os.fsync(file.fileno())
-        return True
+            return True
+        return False

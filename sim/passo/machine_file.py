@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Machine files: axes and limits of a machine, as TOML. An error is reported in one line."""
 
+import math
 import tomllib
 from dataclasses import dataclass
+from decimal import ROUND_FLOOR, Context, Decimal
+from fractions import Fraction
 from pathlib import Path
 
 from passo.failure import BadInputError
@@ -35,6 +38,7 @@ HOME_ENDS = ("low", "high")
 SWITCHES = ("home", "limit_low", "limit_high")
 PROFILES = ("linear", "cosine", "sigmoid", "jerk")
 TRAVEL = 200  # mm
+WAITING_STEPS = 2
 JUNCTION_DEVIATION, ARC_TOLERANCE = 0.01, 0.002  # mm
 
 
@@ -120,6 +124,11 @@ def _machine(path: Path, data: Table) -> MachineFile:
     for number, axis in enumerate(axes, 1):
         if profile == "jerk" and not axis.jerk:
             raise BadValueError(f'axis {number}: profile = "jerk" needs its jerk in mm/s^3')
+    timing = within("pins", lambda: read_pins(pins, clock_hz))
+    deviation = _number(data, "junction_deviation", JUNCTION_DEVIATION)
+    for number, axis in enumerate(axes, 1):
+        within(f"axis {number}", lambda axis=axis: _check_speed(axis, timing, clock_hz))
+        within(f"axis {number}", lambda axis=axis: _check_reversal(axis, deviation, timing, clock_hz))
     ends = tuple(
         within(f"axis {number}", lambda table=table: _ends(table)) for number, table in enumerate(tables, 1)
     )
@@ -135,15 +144,45 @@ def _machine(path: Path, data: Table) -> MachineFile:
         PathSettings(
             axes,
             clock_hz,
-            junction_deviation=_number(data, "junction_deviation", JUNCTION_DEVIATION),
+            junction_deviation=deviation,
             profile=profile,
         ),
         GcodeSettings(len(axes), tolerance, spindle),
-        within("pins", lambda: read_pins(pins, clock_hz)),
+        timing,
         ends,
         switches,
         _flag(data, "laser", False),
     )
+
+
+def _check_speed(axis: PathAxis, pins: PinTiming, clock_hz: int) -> None:
+    """Whether the pins can make as many steps as the axis may ask for."""
+    clocks = pins.step_high + pins.step_low
+    highest = Fraction(clock_hz, clocks) / Fraction(axis.steps_per_mm)
+    if axis.speed > highest:
+        raise BadValueError(
+            f"speed is {float(axis.speed):g}, the pins allow at most {_rounded_down(highest)}: "
+            f"step_high and step_low are {clocks} clocks"
+        )
+
+
+def _check_reversal(axis: PathAxis, deviation: float, pins: PinTiming, clock_hz: int) -> None:
+    """Whether the steps that come while DIR turns find room: the core has four places, two are for this."""
+    seconds = sum(vars(pins).values()) / clock_hz
+    scale, acceleration = float(axis.steps_per_mm), float(axis.acceleration)
+    fastest = min(float(axis.speed), max(float(axis.jump), math.sqrt(8 * acceleration * deviation)))
+    allowed = WAITING_STEPS / scale / seconds - acceleration * seconds / 2
+    if fastest > allowed:
+        raise BadValueError(
+            f"it may reverse at {fastest:.6g} mm/s (jump, junction_deviation), "
+            f"the pins allow at most {_rounded_down(Fraction(max(0.0, allowed)))}: "
+            f"a step and a change of DIR take {seconds:g} s"
+        )
+
+
+def _rounded_down(value: Fraction) -> str:
+    down = Context(prec=6, rounding=ROUND_FLOOR).divide(Decimal(value.numerator), Decimal(value.denominator))
+    return f"{down.normalize():f}"
 
 
 def _flag(table: Table, key: str, default: bool) -> bool:

@@ -36,6 +36,7 @@ HEADERS = (
     paths.grbl / "passo_program.h",
     paths.grbl / "passo_storage.h",
     paths.grbl / "passo_grbl_settings.h",
+    paths.grbl / "passo_grbl_state.h",
     paths.grbl / "passo_grbl.h",
     paths.model / "passo_pins.h",
     paths.engine / "passo_rig.h",

@@ -11,7 +11,7 @@ import numpy as np
 from passo.driver import Driver
 from passo.engine import Engine
 from passo.failure import BadInputError
-from passo.gcode import NANOMETRES, Gcode, GcodeError
+from passo.gcode import NANOMETRES, Gcode, GcodeError, has_words, lines
 from passo.machine_file import MachineFile
 from passo.native import planner
 from passo.pair_engine import PairEngine
@@ -31,6 +31,7 @@ class Part:
     lines: list[bytes]
     chords: int  # with those of the arcs
     end: tuple[int, ...]  # nm
+    unread: int  # lines that say something behind the end of the program
 
 
 @dataclass(frozen=True)
@@ -72,11 +73,13 @@ class Played:
 def read_part(path: Path, machine: MachineFile) -> Part:
     """Check all lines of a file; raises BadInputError with the number of the first bad line."""
     try:
-        lines = path.read_bytes().split(b"\n")
+        text = lines(path.read_bytes())
     except OSError as error:
         raise BadInputError(f"{path}: {error.strerror}") from None
+    if not any(map(has_words, text)):
+        raise BadInputError(f"{path}: there is no G-code in it")
     gcode, chords = Gcode(machine.gcode), 0
-    for number, line in enumerate(lines, 1):
+    for number, line in enumerate(text, 1):
         try:
             gcode.execute(line)
         except GcodeError as error:
@@ -85,9 +88,10 @@ def read_part(path: Path, machine: MachineFile) -> Part:
             if action.kind == planner().PASSO_GCODE_PROBE:
                 raise BadInputError(f"{path}:{number}: there is no probe here")
             if action.kind == planner().PASSO_GCODE_END:
-                return Part(path, lines[:number], chords, gcode.position)
+                unread = sum(map(has_words, text[number:]))
+                return Part(path, text[:number], chords, gcode.position, unread)
             chords += action.kind == planner().PASSO_GCODE_LINE
-    return Part(path, lines, chords, gcode.position)
+    return Part(path, text, chords, gcode.position, 0)
 
 
 def play_part(

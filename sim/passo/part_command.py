@@ -2,15 +2,18 @@
 """`passo run PART.nc --machine MACHINE.toml`: from G-code to a folder of results."""
 
 import sys
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from passo.axis_judge import Share, faults
 from passo.console import progress
 from passo.failure import BadInputError
-from passo.gcode import NANOMETRES
+from passo.gcode import AXIS_LETTERS, NANOMETRES
 from passo.machine_file import MachineFile, read_machine
+from passo.output import empty_folder, write_json
 from passo.part import Part, Played, play_part, read_part
-from passo.report import write_json
+from passo.part_judge import greatest, shares_of
 from passo.run import open_engine, parameters_for
 from passo.toolchain import paths
 
@@ -24,42 +27,50 @@ def run_part(path: Path, machine_path: Path | None, engine: str, out: Path | Non
     machine = read_machine(machine_path)
     part = read_part(path, machine)
     out = out or paths.results / "run" / path.stem
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        for result in (SUMMARY, PICTURE):
-            (out / result).unlink(missing_ok=True)
-    except OSError as error:
-        raise BadInputError(f"{out}: {error.strerror}") from None
+    empty_folder(out, (SUMMARY, PICTURE))
     parameters = parameters_for(len(machine.settings.axes))
     with (
         open_engine(engine, parameters, machine.clock_hz) as core,
         progress(path.name, part.chords) as report,
     ):
         played = play_part(part, machine, core, report)
-    found = played.problems()
-    write_json(_summary(part, machine, played, engine), out / SUMMARY)
+    judged = shares_of(played)
+    found = played.problems() + faults(judged)
+    write_json(_summary(part, machine, played, engine, judged, found), out / SUMMARY)
     if plot:
         from passo.part_plot import plot_part
 
         plot_part(played, out / PICTURE)
     for problem in found:
         print(f"{path}: {problem}", file=sys.stderr)
-    if not found:
+    if part.unread:
+        print(f"{path}: {part.unread} lines behind the end of the program are not read", file=sys.stderr)
+    if not played.motions:
+        print(f"{path}: nothing moved", file=sys.stderr)
+    elif not found:
         print(f"{path.name}: {len(part.lines)} lines, {part.chords} chords in {played.seconds:.6g} s")
+        print(f"greatest share of a limit: {', '.join(_limit(share) for share in greatest(judged).values())}")
     print(f"results: {', '.join(str(out / name) for name in (SUMMARY, PICTURE) if (out / name).exists())}")
     return not found
 
 
-def _summary(part: Part, machine: MachineFile, played: Played, engine: str) -> dict[str, Any]:
+def _limit(share: Share) -> str:
+    return f"{share.name} {share.share:.3f}" + (f" ({AXIS_LETTERS[share.axis]})" if share.share else "")
+
+
+def _summary(
+    part: Part, machine: MachineFile, played: Played, engine: str, judged: list[Share], found: list[str]
+) -> dict[str, Any]:
     axes = machine.settings.axes
     return {
         "name": part.path.stem,
         "engine": engine,
-        "ok": not played.problems(),
-        "problems": played.problems(),
+        "ok": not found,
+        "problems": found,
         "clock_hz": machine.clock_hz,
         "path_seconds": played.seconds,
         "lines": len(part.lines),
+        "unread_lines": part.unread,
         "chords": part.chords,
         "motions": len(played.motions),
         "matched_edges": played.matched_edges,
@@ -68,4 +79,5 @@ def _summary(part: Part, machine: MachineFile, played: Played, engine: str) -> d
             "steps": played.end,
         },
         "pulses": [len(clocks) for clocks in played.clocks],
+        "limits": {name: asdict(share) for name, share in greatest(judged).items()},
     }

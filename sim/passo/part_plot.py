@@ -9,7 +9,7 @@ from matplotlib.collections import LineCollection
 
 from passo.gcode import AXIS_LETTERS
 from passo.part import Played
-from passo.plot import COLORS, STYLE
+from passo.plot import COLORS, STYLE, save
 
 SAMPLES = 20_000
 WINDOW = 0.004  # seconds over which speeds are measured
@@ -70,8 +70,7 @@ def plot_part(played: Played, path: Path) -> None:
         panels["axes"].set(title="Speeds of the axes, relative to their limits", xlabel="s")
         panels["axes"].axhline(1, color="#8c959f", linestyle="--", linewidth=0.8)
         panels["axes"].legend(loc="upper right", ncols=6)
-        figure.savefig(path, dpi=110)
-        plt.close(figure)
+        save(figure, path, 110)
 
 
 def _draw_path(figure: plt.Figure, ax: plt.Axes, motion: Motion) -> None:

@@ -36,8 +36,10 @@ class PathSettings:
     clock_hz: int = 64_000_000
     acceleration: Fraction | float = 0  # along the path; 0: only those of the axes
     junction_deviation: Fraction | float = 0.01
+    tolerance: Fraction | float | None = None  # of merged lines; None: a twentieth of that; 0: none are
     profile: str = "linear"
     reserve_clocks: int = 0
+    polls: int = 0  # of the feed in a second, at least; 0: 500
 
     def struct(self, parameters: Parameters) -> Any:
         """The `struct passo_path_settings`."""
@@ -49,8 +51,10 @@ class PathSettings:
                 "axis": [{name: q32(getattr(axis, name)) for name in names} for axis in self.axes],
                 "acceleration": q32(self.acceleration),
                 "junction_deviation": q32(self.junction_deviation),
+                "tolerance": {None: 0, 0: (1 << 64) - 1}.get(self.tolerance, q32(self.tolerance or 0)),
                 "profile": getattr(planner(), f"PASSO_PROFILE_{self.profile.upper()}"),
                 "reserve_clocks": self.reserve_clocks,
+                "polls": self.polls,
             },
         )
 

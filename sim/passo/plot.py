@@ -11,6 +11,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.figure import Figure
 
+from passo.output import complete
 from passo.plot_panels import (
     COLORS,
     INK,
@@ -51,7 +52,8 @@ STYLE = {
 def save(figure: Figure, path: Path, dpi: int) -> None:
     """Write a picture as PNG and close it; savefig would draw it twice, first for the layout only."""
     figure.set_dpi(dpi)
-    figure.canvas.print_png(path)
+    with complete(path) as part:
+        figure.canvas.print_png(part)
     plt.close(figure)
 
 

@@ -1169,15 +1169,9 @@ CHANNEL_TRIGGER_STATE_AXES_LSB = 8
 CHANNEL_TRIGGER_STATE_AXES_BITS = 8
 CHANNEL_TRIGGER_STATE_AXES_RESET = 0x00
 
-# Channel: Trigger clocks. Only with INPUTS. Clocks since the trigger was armed, until it fired; wraps.
-CHANNEL_TRIGGER_CLOCKS = 0x15
-CHANNEL_TRIGGER_CLOCKS_LSB = 0
-CHANNEL_TRIGGER_CLOCKS_BITS = 32
-CHANNEL_TRIGGER_CLOCKS_RESET = 0x00000000
-
 # Channel: Probe. Only with INPUTS. Polarity, kept over a reset of the core, after a change of which the
 # inputs are unknown; and the flag of the probe.
-CHANNEL_PROBE = 0x16
+CHANNEL_PROBE = 0x15
 CHANNEL_PROBE_INVERTED_LSB = 0
 CHANNEL_PROBE_INVERTED_BITS = 1
 CHANNEL_PROBE_INVERTED_RESET = 0x0
@@ -1544,11 +1538,11 @@ TABLE = (
         Field("BAD_VALUE", 24, 8, "r", 0x00),
     )),
     Register("INPUT_FILTER", "CORE", 0x010, 1, (
-        Field("FILTER", 0, 16, "rw", 0x0000),
+        Field("FILTER", 0, 16, "w", 0x0000),
     ), "inputs"),
     Register("WATCHDOG", "CORE", 0x011, 1, (
-        Field("STOP_AFTER", 0, 10, "rw", 0x000),
-        Field("DISABLE_AFTER", 10, 10, "rw", 0x000),
+        Field("STOP_AFTER", 0, 10, "w", 0x000),
+        Field("DISABLE_AFTER", 10, 10, "w", 0x000),
     ), "inputs"),
     Register("ESTOP", "CORE", 0x012, 1, (
         Field("PRESSED", 0, 1, "r", 0x0),
@@ -1636,10 +1630,7 @@ TABLE = (
         Field("UNKNOWN", 6, 1, "r", None),
         Field("AXES", 8, 8, "r", 0x00),
     ), "inputs"),
-    Register("CHANNEL_TRIGGER_CLOCKS", "CHANNEL", 0x15, 1, (
-        Field("TRIGGER_CLOCKS", 0, 32, "r", 0x00000000),
-    ), "inputs"),
-    Register("CHANNEL_PROBE", "CHANNEL", 0x16, 1, (
+    Register("CHANNEL_PROBE", "CHANNEL", 0x15, 1, (
         Field("INVERTED", 0, 1, "w", 0x0),
         Field("CLEAR", 1, 1, "w", 0x0),
     ), "inputs"),

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Output files of a run: pulses.csv and summary.json."""
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -9,10 +8,12 @@ import numpy as np
 
 from passo.curve import step_errors
 from passo.moves import Channels
+from passo.output import complete
 from passo.plan import Q48
 from passo.pulse_judge import faults
 from passo.run import Run
 from passo.scene_run import SceneRun
+from passo.verdict import verdict_of
 
 
 def write_pulses(runs: list[Run], path: Path) -> None:
@@ -31,7 +32,7 @@ def write_pulses(runs: list[Run], path: Path) -> None:
     columns = ["clock", "channel", "axis", "direction"]
     if not runs[-1].file.channel:
         rows, columns = np.delete(rows, 1, axis=0), ["clock", "axis", "direction"]
-    with path.open("w") as file:
+    with complete(path) as part, part.open("w") as file:
         file.writelines(",".join(map(str, row)) + "\n" for row in [columns, *rows.T.tolist()])
 
 
@@ -62,6 +63,7 @@ def summarize_channels(channels: Channels, runs: list[Run], engine: str) -> dict
     parts = list(zip(places, runs, summaries, strict=True))
     return {
         **summaries[0],
+        **verdict_of(runs, engine, found).summary(),
         "ok": not found,
         "problems": found,
         "total_clocks": clocks,
@@ -79,8 +81,10 @@ def summarize_channels(channels: Channels, runs: list[Run], engine: str) -> dict
 
 def summarize(run: Run, engine: str) -> dict[str, Any]:
     """The contents of summary.json for one channel."""
+    found = [fault.text for fault in faults(run)]
     return {
-        **summary_head(run, engine, [fault.text for fault in faults(run)]),
+        **summary_head(run, engine, found),
+        **verdict_of([run], engine, found).summary(),
         "drained": run.state.drained,
         "axes": [_axis(run, axis) for axis in range(run.file.axes)],
         "moves": [
@@ -125,8 +129,3 @@ def _axis(run: Run, axis: int) -> dict[str, Any]:
         "pulses": len(clocks),
         "largest_error_steps": float(np.abs(errors).max(initial=0)),
     }
-
-
-def write_json(data: Any, path: Path) -> None:
-    """Write indented JSON."""
-    path.write_text(json.dumps(data, indent=2) + "\n")

@@ -99,12 +99,14 @@ def _events(runs: list[Run], several: bool) -> list[dict[str, Any]]:
         def add(clock: int, text: str, kind: str = "", channel: str = channel, late: int = run.late) -> None:
             found.append({"clock": clock + late, "text": channel + text, "kind": kind})
 
-        begin = 0
+        begin, last = 0, run.moved_clocks
         for index, plan in enumerate(run.plans):
-            add(begin, f"move {run.file.number(index)} begins")
+            if begin < last:
+                add(begin, f"move {run.file.number(index)} begins")
             begin += plan.clocks
         wrong = [fault.text for fault in faults(run)]
-        add(run.total_clocks, "the motion ends")
+        if last:
+            add(last, "the motion ends" if run.total_clocks else "the motion has not ended")
         for problem in wrong:
             add(run.total_clocks, problem, "fault")
     if several:

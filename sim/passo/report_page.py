@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from passo.moves import Channels
+from passo.output import write_text
 from passo.report_data import page_data
 from passo.run import Run
 from passo.scene_page import scene_data
@@ -47,7 +48,7 @@ def _write(name: str, data: tuple[dict[str, Any], str], path: Path) -> None:
         f'<script type="text/plain" id="edges">{edges}</script>\n'
         "<script>openReport();</script>"
     )
-    path.write_text(page(name, body))
+    write_text(path, page(name, body))
 
 
 def page(title: str, body: str, scripts: tuple[str, ...] = SCRIPTS) -> str:

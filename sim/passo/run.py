@@ -51,6 +51,13 @@ class Run:
         self.total_clocks = int(falls.sum()) - int(rises.sum()) if len(rises) == len(falls) else 0
 
     @property
+    def moved_clocks(self) -> int:
+        """Up to the end of the motion, or to the last edge of one that has not ended; 0: nothing moved."""
+        if self.total_clocks or not self.pins["running"].any():
+            return self.total_clocks
+        return int(self.pins["clock"][-1]) - self.start
+
+    @property
     def planned_clocks(self) -> int:
         """Length of the motion in the plan."""
         return sum(plan.clocks for plan in self.plans)

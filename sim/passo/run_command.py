@@ -2,6 +2,7 @@
 """`passo run`: from a move file to a folder of results."""
 
 import sys
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,14 +11,16 @@ from passo.engine import DifferenceError
 from passo.failure import BadInputError
 from passo.move_file import read_channels
 from passo.moves import Channels
+from passo.output import empty_folder, write_json
 from passo.plan import Plan, plan_channels
-from passo.report import problems, summarize_channels, total_clocks, write_json, write_pulses
+from passo.report import problems, summarize_channels, total_clocks, write_pulses
 from passo.run import Run, execute_channels, open_engine, parameters_of
 from passo.scene import Scene
 from passo.scene_plan import plan_sections, scene_parameters
 from passo.scene_report import summarize_scene, write_scene_pulses
 from passo.toolchain import paths
-from passo.waves import FILES, Window, read_window, record, write_view
+from passo.verdict import STOPPED, scene_verdict
+from passo.waves import FILES, Window, read_window, recorded, write_view
 
 PULSES, SUMMARY, PICTURE, PAGE = "pulses.csv", "summary.json", "motion.png", "report.html"
 
@@ -46,16 +49,14 @@ def run_file(moves: Path, engine: str, out: Path | None, wanted: Wanted) -> bool
     out = out or paths.results / "run" / file.name
     with open_engine(engine, parameters, file.clock_hz, window is not None) as core:
         _clear(out)
-        if window:
-            record(core, window, out)
+        waves = recorded(core, window, out) if window else nullcontext()
         try:
-            with progress(file.name, _longest(plans)) as report:
+            with waves, progress(file.name, _longest(plans)) as report:
                 runs = execute_channels(file, plans, core, report)
         except DifferenceError as error:
             write_json({"name": file.name, "ok": False, "difference": vars(error)}, out / SUMMARY)
             raise
         if window:
-            core.close_waves()
             write_view(out, parameters, file, runs[0].start - runs[0].late)
     write_pulses(runs, out / PULSES)
     write_json(summarize_channels(file, runs, engine), out / SUMMARY)
@@ -100,6 +101,9 @@ def _run_scene(file: Channels, engine: str, out: Path, wanted: Wanted) -> bool:
         if not run.sought(stop):
             at = ", ".join(map(str, stop.positions))
             print(f"stop {stop.cause.name} at {at}, clock {stop.clock - run.start}")
+    verdict = scene_verdict(run, engine)
+    if verdict.outcome == STOPPED:
+        print(f"{file.name}: {verdict.text}")
     print(f"results: {out / PULSES}, {out / SUMMARY}")
     for name in [PICTURE] * wanted.plot + [PAGE] * wanted.report:
         print(f"open: {out / name}")
@@ -130,13 +134,8 @@ def _check_window(window: Window, file: Channels, plans: list[list[Plan]]) -> No
 
 def _clear(out: Path) -> None:
     """Make the folder and delete the results of an earlier run."""
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        pictures = [path.name for path in out.glob("motion_channel_[0-7].png")]
-        for result in (PULSES, SUMMARY, PICTURE, PAGE, *pictures, *FILES):
-            (out / result).unlink(missing_ok=True)
-    except OSError as error:
-        raise BadInputError(f"{out}: {error.strerror}") from None
+    pictures = [path.name for path in out.glob("motion_channel_[0-7].png")]
+    empty_folder(out, (PULSES, SUMMARY, PICTURE, PAGE, *pictures, *FILES))
 
 
 def _conclude(file: Channels, runs: list[Run], out: Path, window: Window | None, wanted: Wanted) -> bool:

@@ -61,20 +61,19 @@ class Scene:
         """Run all of it; raises DriverError, RunError, DifferenceError."""
         self._configure()
         began, start = time.monotonic(), self.engine.clock
-        for number, section in enumerate(self.sections):
+        made: list[Section] = []
+        for section in self.sections:
+            made.append(section)
             self._section(section)
             if section.outcome != "OK":
-                self.sections = self.sections[: number + 1]
                 break
-        pins = self.file.pins
-        rest = 8 * (pins.step_high + pins.step_low + pins.dir_setup + pins.dir_hold)
-        self._advance(max(rest, self.clock_hz // 500))
+        self._advance(max(8 * sum(vars(self.file.pins).values()), self.clock_hz // 500))
         positions = self.driver.positions()
         self.samples.append(self.driver.sample(self.axes))
         return SceneRun(
             file=self.file,
             setup=self.setup,
-            sections=self.sections,
+            sections=made,
             pins=np.concatenate([np.empty(0, EVENT), *self.pins]),
             inputs=np.concatenate(self.inputs),
             samples=np.array(self.samples, SAMPLE),
@@ -91,6 +90,7 @@ class Scene:
             matched_edges=self.engine.matched_edges if isinstance(self.engine, PairEngine) else None,
             clocks=self.engine.clock - start,
             seconds=time.monotonic() - began,
+            unmade=[number for section in self.sections[len(made) :] for number in section.numbers],
         )
 
     # --------------------------------------------------------------------------------------- moves ----

@@ -46,13 +46,13 @@ def _energy(run: SceneRun, output: MachineOutput, steps: np.ndarray) -> dict[str
     fast = [bool(gaps[begin : begin + size].max() <= slowest) for begin in begins]
     on = time_on(run, steps)
     deviations = ((on[begins + size] - on[begins]) / (size * ideal) - 1)[fast] if len(begins) else np.empty(0)
-    whole = (on[-1] - on[0]) / ((len(steps) - 1) * ideal) - 1 if len(steps) > 1 else 0.0
+    whole = float(100 * ((on[-1] - on[0]) / ((len(steps) - 1) * ideal) - 1)) if len(steps) > 1 else None
     return {
         "steps_per_window": int(size),
         "windows": len(deviations),
         "least_percent": float(100 * deviations.min(initial=np.inf)) if len(deviations) else None,
         "most_percent": float(100 * deviations.max(initial=-np.inf)) if len(deviations) else None,
-        "whole_percent": float(100 * whole),
+        "whole_percent": whole,
     }
 
 

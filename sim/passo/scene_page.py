@@ -30,7 +30,14 @@ def scene_data(channels: Channels, run: SceneRun, engine: str) -> tuple[dict[str
         streams += packed_edges(*own)
         scale = 1 / float(run.setup.scales[axis]) if run.setup.scales else 1.0
         axes.append(
-            {"run": 0, "axis": axis, "name": f"{axis}", "per_step": scale, "edges": [len(one) for one in own]}
+            {
+                "run": 0,
+                "axis": axis,
+                "name": f"{axis}",
+                "per_step": scale,
+                "edges": [len(one) for one in own],
+                "start": run.setup.start(axis),
+            }
         )
     signals = []
     for lane in lanes_of(run):
@@ -92,7 +99,7 @@ def _encoder(run: SceneRun, number: int) -> dict[str, Any]:
     return {
         "axis": encoder.axis,
         "clocks": curve.clocks.tolist(),
-        "measured": curve.measured.tolist(),
+        "measured": (curve.measured + run.setup.start(encoder.axis)).tolist(),
         "error": (curve.made - curve.measured).tolist(),
         "limit": float(encoder.limit) if encoder.limit else None,
     }
@@ -108,7 +115,8 @@ def _events(run: SceneRun) -> list[dict[str, Any]]:
     for section in run.sections:
         moves = ", ".join(map(str, section.numbers))
         task = "" if section.kind == "moves" else f" ({section.kind})"
-        add(section.begin - run.start, f"move {moves} begins{task}")
+        begins = "begins" if run.moved(section) else f"does not begin: {section.outcome}"
+        add(section.begin - run.start, f"move {moves} {begins}{task}", "" if run.moved(section) else "stop")
     for happened in run.events:
         if happened.clock is not None:
             add(happened.clock - run.start, f"event {happened.number}: {said(happened)}")
@@ -118,7 +126,13 @@ def _events(run: SceneRun) -> list[dict[str, Any]]:
     for latch in run.latches:
         clock = run.events[latch.number - 1].clock or run.start
         add(clock - run.start, f"event {latch.number} latched {', '.join(map(str, latch.positions))}")
-    add(run.total_clocks, "the motion ends")
+    last = int(run.pins["clock"][-1]) - run.start if len(run.pins) else 0
+    add(
+        run.total_clocks if run.ended else last,
+        "the motion ends" if run.ended else "the motion has not ended",
+    )
+    if run.unmade:
+        add(run.total_clocks, f"move {', '.join(map(str, run.unmade))} does not begin", "stop")
     for problem in run.problems():
         add(run.total_clocks, problem, "fault")
     return sorted(found, key=lambda event: event["clock"])

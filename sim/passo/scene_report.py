@@ -9,9 +9,11 @@ import numpy as np
 
 from passo.curve import Curve
 from passo.move_forms import EventInput, EventOverride, EventSlip, MachineEncoder
+from passo.output import complete
 from passo.report import summary_head
 from passo.scene_figures import energies, thread_figures
 from passo.scene_run import Happened, SceneRun, Section, Stop
+from passo.verdict import scene_verdict
 
 
 @dataclass(frozen=True)
@@ -74,7 +76,7 @@ def write_scene_pulses(run: SceneRun, path: Path) -> None:
         axis=1,
     )
     rows = rows[:, np.lexsort((rows[1], rows[0]))]
-    with path.open("w") as file:
+    with complete(path) as part, part.open("w") as file:
         file.write("clock,axis,direction\n")
         file.writelines(",".join(map(str, row)) + "\n" for row in rows.T.tolist())
 
@@ -83,6 +85,8 @@ def summarize_scene(run: SceneRun, engine: str) -> dict[str, Any]:
     """The contents of summary.json."""
     return {
         **summary_head(run, engine, run.problems()),
+        **scene_verdict(run, engine).summary(),
+        "moves_not_begun": run.unmade,
         "axes": [_axis(run, axis) for axis in range(run.file.axes)],
         "moves": [_section(run, section) for section in run.sections],
         "events": [_event(run, happened) for happened in run.events],
@@ -104,13 +108,15 @@ def _axis(run: SceneRun, axis: int) -> dict[str, Any]:
 
 
 def _section(run: SceneRun, section: Section) -> dict[str, Any]:
-    made = {
+    made: dict[str, Any] = {
         "numbers": section.numbers,
         "kind": section.kind,
         "start_clock": section.begin - run.start,
         "end_clock": section.end - run.start,
         "result": section.outcome,
     }
+    if section.plans or section.kind == "thread":
+        made |= {"steps_asked": run.asked(section), "steps_made": run.made(section)}
     return made | (thread_figures(run, section) if section.kind == "thread" else {})
 
 
@@ -140,8 +146,8 @@ def _encoder(run: SceneRun, number: int) -> dict[str, Any]:
     return {
         "axis": encoder.axis,
         "samples": len(errors),
-        "largest_error_steps": float(np.abs(errors).max(initial=0)),
-        "rms_error_steps": float(np.sqrt((errors**2).mean())) if len(errors) else 0.0,
+        "largest_error_steps": float(np.abs(errors).max()) if len(errors) else None,
+        "rms_error_steps": float(np.sqrt((errors**2).mean())) if len(errors) else None,
         "greatest_following_error_steps": run.greatest[number],
     }
 

@@ -93,6 +93,7 @@ class SceneRun:
     matched_edges: int | None
     clocks: int
     seconds: float
+    unmade: list[int] = field(default_factory=list)  # numbers of the moves after a stop
     start: int = 0  # clock at which the first motion started
     total_clocks: int = 0  # from there to the end of the last one
 
@@ -120,9 +121,23 @@ class SceneRun:
         return self.pins["clock"][rising].astype(np.int64) - self.start, 1 - 2 * negative
 
     @property
-    def is_stopped(self) -> bool:
-        """The last stop ended the file."""
-        return bool(self.stops) and self.sections[-1].outcome != "OK"
+    def ended(self) -> bool:
+        """The last motion did."""
+        return bool(len(self.rises)) and len(self.rises) == len(self.falls)
+
+    def moved(self, section: Section) -> bool:
+        """It was not refused."""
+        return bool(((self.rises >= section.begin) & (self.rises <= section.end)).any())
+
+    def asked(self, section: Section) -> int:
+        """Steps of the moves of a section, of all axes."""
+        return sum(abs(steps) for move in section.moves for steps in move.steps)
+
+    def made(self, section: Section) -> int:
+        """Steps at the pins during a section, of all axes."""
+        first, last = section.begin - self.start, section.end - self.start
+        clocks = [self.steps(axis)[0] for axis in range(self.file.axes)]
+        return sum(int(((own >= first) & (own <= last)).sum()) for own in clocks)
 
     def sought(self, stop: Stop) -> bool:
         """Home or probe has made it."""
@@ -152,7 +167,7 @@ class SceneRun:
             number = section.numbers[0]
             if section.outcome == "OK":
                 found += self._short(section)
-            elif not self.stops or section.outcome in ("SWITCH_MISSED", "SWITCH_LEVEL"):
+            elif all(map(self.sought, self.stops)) or section.outcome in ("SWITCH_MISSED", "SWITCH_LEVEL"):
                 found.append(f"move {number}: {section.outcome}")
         for happened in self.events:
             if happened.clock is None:

@@ -15,6 +15,7 @@ from itertools import pairwise
 from pathlib import Path
 
 from passo.failure import BadInputError
+from passo.output import complete, write_text
 from passo.registers import ADDRESS_SIGMOID_COUNT
 
 POINTS = ADDRESS_SIGMOID_COUNT
@@ -162,11 +163,11 @@ def write_table(points: Sequence[int], path: Path) -> None:
         rows = (points[k : k + 8] for k in range(0, POINTS, 8))
         lines = "".join(f"    {', '.join(map(str, row))},\n" for row in rows)
         mean = check(points).mean
-        path.write_text(
-            f"mean = {mean.numerator * (1 << 24) // mean.denominator} # of 2^24\npoints = [\n{lines}]\n"
+        write_text(
+            path, f"mean = {mean.numerator * (1 << 24) // mean.denominator} # of 2^24\npoints = [\n{lines}]\n"
         )
     else:
-        path.write_text("k,point\n" + "".join(f"{k},{point}\n" for k, point in enumerate(points)))
+        write_text(path, "k,point\n" + "".join(f"{k},{point}\n" for k, point in enumerate(points)))
 
 
 def plot_table(points: Sequence[int], path: Path) -> None:
@@ -190,5 +191,6 @@ def plot_table(points: Sequence[int], path: Path) -> None:
     twin = axes.twinx()
     twin.stairs(slopes, places, color="#d55e00", linewidth=0.9)
     twin.set_ylim(0)
-    figure.savefig(path, dpi=110)
+    with complete(path) as part:
+        figure.savefig(part, dpi=110)
     plt.close(figure)

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Waves of a window of a motion, and how to look at them: a save file for GTKWave with groups and names."""
 
+import os
+import shutil
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -9,6 +12,7 @@ from pathlib import Path
 from passo.build import Parameters
 from passo.engine import Engine
 from passo.moves import Channels
+from passo.output import complete, write_text
 from passo.pair_engine import PairEngine
 from passo.registers import CHANNEL_STATE_CAUSE_BITS, Cause, DescribedEnum, State, Verdict
 from passo.values import BadValueError, parse_time
@@ -48,9 +52,20 @@ def read_window(text: str) -> Window:
     return window
 
 
-def record(engine: Engine | PairEngine, window: Window, folder: Path) -> None:
-    """Begin to record the next motion to waves.fst."""
-    engine.open_waves(folder / FILES[0], *window.clocks(engine.clock_hz))
+@contextmanager
+def recorded(engine: Engine | PairEngine, window: Window, folder: Path) -> Iterator[None]:
+    """Record a motion to waves.fst.
+
+    Its writer takes the process with it if a disk is full, so it writes to memory.
+    """
+    with open(os.memfd_create(FILES[0]), "rb") as memory:
+        engine.open_waves(Path(f"/proc/self/fd/{memory.fileno()}"), *window.clocks(engine.clock_hz))
+        try:
+            yield
+        finally:
+            engine.close_waves()
+        with complete(folder / FILES[0]) as part, part.open("wb") as file:
+            shutil.copyfileobj(memory, file)
 
 
 def write_view(folder: Path, parameters: Parameters, file: Channels, start: int) -> None:
@@ -58,13 +73,13 @@ def write_view(folder: Path, parameters: Parameters, file: Channels, start: int)
     clock_hz = file.clock_hz
     for name, values in NAMED.items():
         lines = (f"{value:x} {value.name}" for value in values)
-        (folder / f"waves_{name}.txt").write_text("\n".join([*lines, ""]))
+        write_text(folder / f"waves_{name}.txt", "\n".join([*lines, ""]))
     edge_ps = (2 * start - 1) * (10**12 // (2 * clock_hz))
     zoom = -(10**12 // clock_hz * 2000).bit_length()
     files = zip(("dumpfile", "savefile"), FILES, strict=False)
     head = [f'[{kind}] "{folder.resolve() / name}"' for kind, name in files]
     head += [f"[timestart] {max(0, edge_ps - MARGIN_PS)}", f"*{zoom} {edge_ps}" + " -1" * 26]
-    (folder / FILES[1]).write_text("\n".join([*head, *_traces(folder, parameters, file), ""]))
+    write_text(folder / FILES[1], "\n".join([*head, *_traces(folder, parameters, file), ""]))
 
 
 def _traces(folder: Path, parameters: Parameters, file: Channels) -> Iterator[str]:

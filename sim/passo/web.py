@@ -11,16 +11,20 @@ from pathlib import Path
 
 from passo import __version__
 from passo.build import engine_sources
-from passo.compiler import BuildError, cached, call, headers, includes, sources
+from passo.cache import cached
+from passo.compiler import call, headers, includes, sources
+from passo.failure import BuildError
 from passo.gcode import AXIS_LETTERS
 from passo.machine_file import MachineFile, read_machine
 from passo.native import planner
+from passo.output import make_folder, write_text
 from passo.report_page import SCRIPTS, page
 from passo.toolchain import paths, short
 
 # The driver before the model: both have a passo_outputs.h and a passo_encoder.h, the console means the first.
 FOLDERS = (paths.driver, paths.console, paths.protocol, paths.planner, paths.gcode, paths.model)
-GRBL = ("passo_player.c", "passo_program.c")  # of the folder: the rest is for a sender
+# Of the folder: the rest is for a sender.
+GRBL = ("passo_player.c", "passo_player_line.c", "passo_player_probe.c", "passo_program.c")
 OWN = ("engine_model.c", "passo_terminal.c", "passo_web.c", "passo_web_console.c", "passo_web_program.c")
 EXAMPLE = paths.root / "examples" / "gcode"
 # The warnings are those of GCC, which compiles the same sources elsewhere: Clang has others.
@@ -76,9 +80,9 @@ def build(folder: Path) -> Path:
         f'<script type="application/json" id="machine">{facts()}</script>\n'
         f"<script>document.body.dataset.version = '{__version__}'; openWeb();</script>"
     )
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     made = folder / "index.html"
-    made.write_text(page("Try Passo", body, (*SCRIPTS, "web.js")))
+    write_text(made, page("Try Passo", body, (*SCRIPTS, "web.js")))
     return made
 
 

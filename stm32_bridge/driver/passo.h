@@ -87,6 +87,7 @@ struct passo_axis_memory {
 	int32_t expected;         /* position of the core after all queued motions */
 	uint32_t offset;          /* position of the program less that of the core; wraps */
 	uint8_t switches;         /* those that are configured, a bit per enum passo_trigger_source */
+	bool limit_soft;          /* its limits stop softly */
 	bool homed;
 	bool backwards; /* direction of the last line that moves it */
 };
@@ -181,11 +182,17 @@ struct passo {
 	uint16_t base;                     /* address of the channel's registers */
 	uint16_t line_places, ramp_places; /* depths of the queues */
 	uint8_t channel;
-	uint8_t misses;     /* consecutive status reads that failed */
-	uint8_t idle_looks; /* consecutive status reads that found all motions ended */
-	bool held;          /* feed hold: the rate is 0 whatever the override */
-	bool rate_due;      /* the rate is not acknowledged; every poll resends it */
-	bool zero_due;      /* zero is not acknowledged: the positions read next count as 0 */
+	uint8_t misses;         /* consecutive status reads that failed */
+	uint8_t idle_looks;     /* consecutive status reads that found all motions ended */
+	uint8_t movers;         /* axes that the motions since the last rest move */
+	bool aborts;            /* an abort was commanded since */
+	bool hard_trigger;      /* the trigger that was armed last stops hard */
+	bool inherits;          /* what an earlier session has armed is there still */
+	bool unbegun;           /* the last status read found a motion that is queued and has not begun ... */
+	uint32_t unbegun_since; /* ... from these microseconds on */
+	bool held;              /* feed hold: the rate is 0 whatever the override */
+	bool rate_due;          /* the rate is not acknowledged; every poll resends it */
+	bool zero_due;          /* zero is not acknowledged: the positions read next count as 0 */
 	enum passo_due stop_due;
 	enum passo_belief belief;
 	enum passo_expectation expects;
@@ -202,8 +209,10 @@ struct passo {
 	uint32_t rate_target;                       /* UQ1.16: the override, kept during a hold */
 	uint32_t oversampling;                      /* of the last plan */
 	uint64_t velocity_peak;                     /* of the last plan */
+	uint64_t velocity_top;                      /* highest of the plans of this motion */
 	bool has_inputs, has_outputs, has_encoders; /* the core has */
 	bool follows;                               /* the clock of motions may be an encoder */
+	uint8_t spindle;                            /* its axis */
 	bool stop_time_known;                       /* that of a soft stop is configured */
 	uint32_t reference;         /* of proportional power, UQ0.32 substeps per clock; 0: unknown */
 	struct passo_output output; /* of the moves from now on */
@@ -212,15 +221,20 @@ struct passo {
 	struct passo_task task;
 	struct passo_turning turning;
 	struct passo_goto go; /* that is under way */
-	bool backwards;       /* direction of its motion */
-	bool aimed;           /* which ends at the target, or before it */
+	/* of a motion whose ramps may be changed */
+	bool backwards; /* its direction */
+	bool has_aim;   /* it has a target, `aim`, as the core counts */
+	bool aimed;     /* it ends there, or before it */
+	int32_t aim;
+	uint32_t late; /* microseconds until it has a change, at most */
 	struct passo_source source;
 };
 
 /* Connects to the core and takes over a channel: checks identification, version and parameters, flushes the
- * queues of a channel at rest, clears a stopped one, and reads the positions, which are kept. A channel in
- * motion (the host was reset) is left alone: the result is MOVING; state, positions, hold, stop and abort
- * work at once, moves after the motion has ended or stopped and passo_clear(). Each axis must be configured
+ * queues of a channel at rest, clears a stopped one, ends what an earlier session has armed, and reads the
+ * positions, which are kept; docs/driver.md has the table. A channel in motion (the host was reset) is left
+ * alone, with its trigger: the result is MOVING; state, positions, hold, stop and abort work at once, moves
+ * after the motion has ended or stopped and passo_clear(), which takes it over. Each axis must be configured
  * before it moves. A pending stop of an earlier session is forgotten. ESTOP and ALARM: these keep the channel
  * stopped; it is open, and passo_clear() goes on when they are over. About ten frames. Errors: NOT_PASSO,
  * VERSION, PARAMETERS, WATCHDOG_TOO_LONG, MOVING, ESTOP, ALARM. */
@@ -250,6 +264,9 @@ struct passo_axis_config {
  * can move. Only at rest; waits until the pin timing of the last steps has elapsed. Error: MOVING. */
 enum passo_error passo_configure_axis(
     struct passo *passo, uint8_t axis, const struct passo_axis_config *config);
+/* The highest speed that the pin timing of an axis allows, UQ32.32 units/s, rounded up: without a limit it is
+ * UINT64_MAX; not configured: 0. `steps_per_unit` is UQ32.32. */
+uint64_t passo_highest_speed(const struct passo *passo, uint8_t axis, uint64_t steps_per_unit);
 /* Sets the drive enable output. Enabling works at any time. Disabling works only at rest or when stopped, and
  * waits until the last step has left the pins; to disable at once, call passo_abort() first, which leaves at
  * most the pulse that has started. One frame, three to disable. Error: MOVING while a motion is running or
@@ -325,8 +342,9 @@ bool passo_has_inputs(const struct passo *passo);
 const struct passo_machine *passo_machine(const struct passo *passo);
 
 /* Continuous rotation: start it from rest, change the speed, decelerate to rest. See passo_plan.h. If
- * passo_turn_stop() is not acknowledged, a soft stop replaces it, as by passo_stop(). Errors: those of a
- * move, NOT_TURNING. */
+ * passo_turn_stop() is not acknowledged, a soft stop replaces it, as by passo_stop(). A change is planned for
+ * a core that receives it within 1 ms. Errors: those of a move, NOT_TURNING; LATE: a new speed was not sent,
+ * a stop became a soft one. */
 enum passo_error passo_turn_start(struct passo *passo, const struct passo_turning *turning, uint64_t rpm);
 enum passo_error passo_turn_speed(struct passo *passo, uint64_t rpm);
 enum passo_error passo_turn_stop(struct passo *passo);
@@ -345,10 +363,10 @@ bool passo_is_streaming(const struct passo *passo);
 /* Call it often: feeds the stream or reads the state, at most one frame; an idle driver reads the state every
  * millisecond. Errors are returned once, by the first call that detects them (CORE_RESET by every call), and
  * kept for passo_fault(): LINE_UNDERRUN, RAMP_UNDERRUN, STEP_OVERRUN, POSITION, SUPPLY, LIMIT, ALARM,
- * TRIGGER, WATCHDOG, ESTOP, FOLLOWING, link errors, those of passo_home() and passo_probe(), which it moves
- * on. A stream that fails on the host's side is stopped with a soft stop. Commands that were not acknowledged
- * have priority: until a stop or hold gets through, nothing else is sent, and NOT_STOPPED or NOT_HELD is
- * returned once every `tries` polls. */
+ * TRIGGER, WATCHDOG, ESTOP, FOLLOWING, INPUTS_UNKNOWN, link errors, those of passo_home() and passo_probe(),
+ * which it moves on. A stream that fails on the host's side is stopped with a soft stop. Commands that were
+ * not acknowledged have priority: until a stop or hold gets through, nothing else is sent, and NOT_STOPPED or
+ * NOT_HELD is returned once every `tries` polls. */
 enum passo_error passo_poll(struct passo *passo);
 /* Microseconds until passo_poll() has something to do. No frame. */
 uint32_t passo_idle_time(const struct passo *passo);

@@ -32,12 +32,15 @@ struct passo_home {
 	int32_t position;           /* of the edge */
 };
 
-/* Homes `count` axes, one after the other; homes[] must live until the end. Two frames. Errors: of the call
+/* Homes `count` axes, one after the other; homes[] must live until the end. Two frames, and until the switch
+ * is known: two periods of the filter. Errors: of the call
  * NO_SWITCH, NO_STOP_TIME, NO_DISTANCE, TOO_MANY_STEPS, NO_SPEED, NO_ACCELERATION, those of a move; of
- * passo_poll() also SWITCH_MISSED, SWITCH_LEVEL if the switch stays active. */
+ * passo_poll() also SWITCH_MISSED, SWITCH_LEVEL if the switch stays active, INPUTS_UNKNOWN if it does not
+ * stand still. */
 enum passo_error passo_home(struct passo *passo, const struct passo_home *homes, uint8_t count);
-/* Whether the position of an axis is that of its home: until the drive is switched off, e-stop, alarm or
- * watchdog stop the channel, or it is opened. No frame. */
+/* Whether the position of an axis is that of its home: until the drive is switched off, e-stop, alarm,
+ * watchdog or a following error stop the channel, the axis is stopped at speed by anything else, the core is
+ * reset, or it is opened; docs/machine.md has the table. No frame. */
 bool passo_is_homed(const struct passo *passo, uint8_t axis);
 
 /* Moves until the probe acts: toward a workpiece until it touches, or away until it is free. */
@@ -67,8 +70,9 @@ struct passo_jog {
 enum passo_error passo_jog(struct passo *passo, const struct passo_jog *jog);
 /* A new speed of an endless jog, by a ramp from the present one. Errors: NOT_TURNING; those of a move. */
 enum passo_error passo_jog_speed(struct passo *passo, uint64_t speed);
-/* Slows a jog down to rest at once, with its acceleration and on its path; no passo_clear() is needed. A jog
- * that has ended: OK. After a link error a soft stop replaces it, as in passo_turn_stop(). */
+/* Slows a jog or goto down to rest at once, with its acceleration and never past its end: one that is as near
+ * to its end goes on to it. No passo_clear() is needed. One that has ended: OK. After a link error a soft
+ * stop replaces it, as in passo_turn_stop(); also for a host that is too slow (LATE, docs/driver.md). */
 enum passo_error passo_jog_cancel(struct passo *passo);
 
 #ifdef __cplusplus

@@ -23,6 +23,11 @@ static uint32_t larger(uint32_t a, uint32_t b)
 	return a > b ? a : b;
 }
 
+static uint32_t smaller(uint32_t a, uint32_t b)
+{
+	return a < b ? a : b;
+}
+
 static bool give_line(void *context, struct passo_line *line)
 {
 	struct passo_path_feed *feed = context;
@@ -93,7 +98,10 @@ static void correct(struct passo_path_feed *feed)
 	    || passo->stream == PASSO_STREAM_FILLS)
 		return;
 	feed->seen = passo->looked_at;
-	const uint32_t lines = (uint32_t)(passo->line_places - passo->snapshot.line_room) + 1u;
+	const uint32_t waiting = (uint32_t)(passo->line_places - passo->snapshot.line_room); /* and moving */
+	const uint32_t lines = waiting + 1u;
+	if (passo->snapshot.state == PASSO_STATE_RUN && waiting > 0u)
+		feed->moving = feed->first + feed->lines - waiting;
 	if (passo->snapshot.state == PASSO_STATE_RUN && feed->lines > lines)
 		feed->done = feed->first + feed->lines - lines;
 	const uint64_t least = queued > 1u ? clocks_of(feed, queued - 1u) : 0u;
@@ -105,8 +113,20 @@ static void correct(struct passo_path_feed *feed)
 		feed->left = least;
 }
 
+static void set_pace(const struct passo *passo, struct passo_path_planner *path)
+{
+	const uint32_t ramps = smaller(PASSO_FRAME_PAYLOAD_MAX / PASSO_RAMP_WORDS, passo->ramp_places / 2u);
+	const uint32_t words = passo->host->line_words;
+
+	if (words == 0u)
+		return;
+	const uint32_t lines = smaller(PASSO_FRAME_PAYLOAD_MAX / words, passo->line_places / 2u);
+	passo_path_pace(path, passo->ramp_places - ramps, passo->line_places - lines, lines);
+}
+
 void passo_path_feed_open(struct passo_path_feed *feed, struct passo *passo, struct passo_path_planner *path)
 {
+	set_pace(passo, path);
 	*feed = (struct passo_path_feed){
 	    .passo = passo, .path = path, .at = passo_driver_now(passo), .rate = PASSO_RATE_FULL};
 }
@@ -117,7 +137,7 @@ static enum passo_error begin(struct passo_path_feed *feed)
 
 	passo_path_next_motion(feed->path);
 	feed->left = 0;
-	feed->first = feed->done = feed->path->sent;
+	feed->first = feed->done = feed->moving = feed->path->sent;
 	feed->ramps = feed->lines = 0;
 	feed->hurry = false;
 	return passo_stream(feed->passo, &source);

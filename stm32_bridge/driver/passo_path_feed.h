@@ -35,6 +35,7 @@ struct passo_path_feed {
 	uint32_t ticks[PASSO_PATH_FEED_RAMPS]; /* of the ramps given last */
 	uint32_t ramps, lines;                 /* given, of this motion */
 	uint32_t first, done;                  /* number of its first line; lines executed, at least */
+	uint32_t moving;                       /* number of the line that moves, as of the last look */
 	uint32_t added, added_at;              /* lines known, and since when */
 	bool hurry;                            /* start with what is known */
 	uint32_t given;                        /* lines and ramps before this poll */

@@ -2,6 +2,7 @@
  * Settings of a channel: pins, units, slews.
  */
 #include "passo_driver.h"
+#include "passo_math.h"
 
 #define NANOSECONDS UINT64_C(1000000000)
 
@@ -58,6 +59,16 @@ enum passo_error passo_configure_axis(
 	memory->steps_per_unit = config->steps_per_unit;
 	memory->shortest_clocks = (uint32_t)(config->both_edges ? (high > low ? high : low) : high + low);
 	return PASSO_OK;
+}
+
+uint64_t passo_highest_speed(const struct passo *passo, uint8_t axis, uint64_t steps_per_unit)
+{
+	const uint32_t clocks = passo->axis[axis].shortest_clocks;
+
+	if (clocks == 0)
+		return 0;
+	const uint64_t steps = passo_mul_div_ceil(passo->machine.clock_hz, UINT64_C(1) << 32, clocks);
+	return passo_mul_div_ceil(steps, UINT64_C(1) << 32, steps_per_unit);
 }
 
 bool passo_driver_pins_known(const struct passo *passo, const struct passo_line *line)

@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: MIT
- * A line is taken from the ring only when the line before has handed out all its actions: that is what paces
- * the host, whether it waits for each answer or counts characters.
+ * A line is taken from the ring only when the line before has been answered, and it is answered when it has
+ * handed out all its actions: that is what paces the host, whether it waits for each answer or counts
+ * characters.
  */
 #include "passo_grbl_private.h"
+
+#include <string.h>
 
 static const char GREETING[] = "\r\nGrbl 1.1h ['$' for help]\r\n";
 
@@ -19,8 +22,14 @@ void passo_grbl_greet(struct passo_grbl *grbl)
 void passo_grbl_open(struct passo_grbl *grbl, struct passo_player *player, const struct passo_grbl_sink *sink,
     const struct passo_grbl_setup *setup)
 {
-	*grbl = (struct passo_grbl){
-	    .player = player, .sink = *sink, .setup = setup, .feed = 100, .rapid = 100, .spindle = 100};
+	*grbl = (struct passo_grbl){.player = player,
+	    .sink = *sink,
+	    .setup = setup,
+	    .feed = 100,
+	    .rapid = 100,
+	    .spindle = 100,
+	    .rate = 100};
+	player->answers = true;
 	passo_gcode_line_clear(&grbl->line);
 	const enum passo_gcode_error loaded = passo_grbl_load(grbl);
 
@@ -34,7 +43,8 @@ void passo_grbl_open(struct passo_grbl *grbl, struct passo_player *player, const
 
 bool passo_grbl_is_idle(const struct passo_grbl *grbl)
 {
-	return passo_player_is_idle(grbl->player) && !grbl->stopping && !grbl->homes;
+	return passo_player_is_idle(grbl->player) && !grbl->stopping && !grbl->homes
+	    && !grbl->asked[PASSO_GRBL_ASK_RESET];
 }
 
 void passo_grbl_answer(struct passo_grbl *grbl, enum passo_gcode_error error)
@@ -48,40 +58,52 @@ void passo_grbl_answer(struct passo_grbl *grbl, enum passo_gcode_error error)
 	passo_grbl_say(grbl, "\r\n");
 }
 
-void passo_grbl_alarm(struct passo_grbl *grbl, enum passo_grbl_alarm alarm)
+static enum passo_grbl_kind kind_of(const char *text)
 {
-	grbl->locked = true;
-	passo_grbl_say(grbl, "ALARM:");
-	passo_grbl_say_number(grbl, (uint64_t)alarm);
-	passo_grbl_say(grbl, "\r\n");
+	static const struct {
+		char text[4];
+		uint8_t kind;
+	} EXACT[] = {{"$", PASSO_GRBL_KIND_MODES}, {"$G", PASSO_GRBL_KIND_MODES},
+	    {"$$", PASSO_GRBL_KIND_SETTINGS}, {"$X", PASSO_GRBL_KIND_UNLOCK}, {"$C", PASSO_GRBL_KIND_CHECK}};
+
+	if (text[0] != '$')
+		return PASSO_GRBL_KIND_GCODE;
+	if (text[1] == 'J')
+		return PASSO_GRBL_KIND_JOG;
+	for (unsigned i = 0; i < sizeof EXACT / sizeof *EXACT; i++) {
+		if (strcmp(text, EXACT[i].text) == 0)
+			return (enum passo_grbl_kind)EXACT[i].kind;
+	}
+	return PASSO_GRBL_KIND_OTHER;
 }
 
 static enum passo_gcode_error execute(struct passo_grbl *grbl)
 {
-	struct passo_gcode *gcode = grbl->player->gcode;
 	const char *text = grbl->line.text;
+	const enum passo_grbl_kind kind = kind_of(text);
+	const uint8_t rule = passo_grbl_line_rule(passo_grbl_state(grbl), kind);
 
-	if (grbl->line.overflow || passo_grbl_take(&grbl->lost))
+	if (grbl->line.overflow)
 		return PASSO_GCODE_LINE_OVERFLOW;
 	if (text[0] == '\0')
 		return PASSO_GCODE_OK;
-	if (text[0] == '$')
+	if (rule != PASSO_GRBL_TAKEN)
+		return (enum passo_gcode_error)rule;
+	if (kind == PASSO_GRBL_KIND_JOG && grbl->dropped)
+		return PASSO_GCODE_OK;
+	if (kind != PASSO_GRBL_KIND_GCODE)
 		return passo_grbl_system(grbl, text);
-	if (grbl->locked || grbl->jogs)
-		return PASSO_GCODE_LOCKED;
-	const enum passo_gcode_error error = passo_gcode_execute(gcode, text);
-	grbl->reports = error == PASSO_GCODE_OK ? 0 : grbl->reports;
-	if (grbl->checks && error == PASSO_GCODE_OK) { /* nothing of it is done */
-		passo_gcode_position position;
+	const enum passo_gcode_error error = passo_gcode_execute(grbl->player->gcode, text);
 
-		for (unsigned axis = 0; axis < gcode->settings.axes; axis++)
-			position[axis] = gcode->position[axis];
-		passo_gcode_set_position(gcode, position);
-	}
+	grbl->reports = error == PASSO_GCODE_OK ? 0 : grbl->reports;
 	return error;
 }
 
-/* The next line of `$N`. */
+static bool is_busy(const struct passo_grbl *grbl)
+{
+	return grbl->homes || !passo_player_has_taken(grbl->player);
+}
+
 static void take_start(struct passo_grbl *grbl)
 {
 	const char *text = grbl->stored.start[grbl->starts++];
@@ -96,54 +118,73 @@ static void take_start(struct passo_grbl *grbl)
 	passo_grbl_answer(grbl, error);
 }
 
-/* One line at most, and only when the one before has been taken. */
+static void end_line(struct passo_grbl *grbl)
+{
+	const enum passo_gcode_error error = execute(grbl);
+
+	grbl->owes = error == PASSO_GCODE_OK && is_busy(grbl);
+	if (!grbl->owes)
+		passo_grbl_answer(grbl, error);
+	passo_gcode_line_clear(&grbl->line);
+}
+
+/* One line at most, and only when the one before has been taken. In Alarm lines are refused at once. */
 static void take_line(struct passo_grbl *grbl)
 {
-	const bool ready = passo_player_is_ready(grbl->player) && !grbl->homes && !grbl->door
+	const enum passo_grbl_state state = passo_grbl_state(grbl);
+	const bool ready = !grbl->stopping && passo_player_is_ready(grbl->player)
 	                && !passo_path_feed_is_urgent(grbl->player->feed);
+	char byte;
 
-	if (ready && !grbl->locked && grbl->starts < PASSO_GRBL_STARTS) {
+	if ((state != PASSO_GRBL_STATE_ALARM && !ready) || grbl->greets || grbl->owes
+	    || passo_grbl_line_rule(state, PASSO_GRBL_KIND_GCODE) == PASSO_GRBL_WAITS)
+		return;
+	if (state != PASSO_GRBL_STATE_ALARM && grbl->starts < PASSO_GRBL_STARTS) {
 		take_start(grbl);
 		return;
 	}
-	while ((ready || (grbl->locked && !grbl->homes)) && grbl->tail != grbl->head) {
-		const char byte = grbl->received[grbl->tail];
-
-		grbl->tail = (uint8_t)(grbl->tail + 1u);
-		if (byte != '\n' && byte != '\r') {
-			passo_gcode_line_add(&grbl->line, byte);
-			continue;
+	while (passo_grbl_next(grbl, &byte)) {
+		if (byte == '\n' || byte == '\r') {
+			end_line(grbl);
+			return;
 		}
-		const enum passo_gcode_error error = execute(grbl);
-
-		if (!grbl->homes)
-			passo_grbl_answer(grbl, error);
-		passo_gcode_line_clear(&grbl->line);
-		return;
+		if (byte == '\0') /* the serial line has lost a byte */
+			grbl->line.overflow = true;
+		passo_gcode_line_add(&grbl->line, byte);
 	}
+	for (unsigned lost = passo_grbl_lost(grbl); lost > 0; lost--)
+		passo_grbl_answer(grbl, PASSO_GCODE_LINE_OVERFLOW);
 }
 
 static void heed(struct passo_grbl *grbl, enum passo_player_event event, enum passo_error error)
 {
-	if (event == PASSO_PLAYER_TRAVEL)
-		passo_grbl_alarm(grbl, PASSO_GRBL_SOFT_LIMIT);
-	else if (event == PASSO_PLAYER_UNEXPECTED)
-		passo_grbl_alarm(grbl, PASSO_GRBL_PROBE_LEVEL);
-	else if (event == PASSO_PLAYER_UNTOUCHED || event == PASSO_PLAYER_NO_PROBE)
-		passo_grbl_alarm(grbl, PASSO_GRBL_PROBE_MISSED);
-	else if (event == PASSO_PLAYER_OFFSETS)
-		grbl->keeps = true;
-	else if (event == PASSO_PLAYER_PROBED)
-		passo_grbl_report_probe(grbl);
-	else if (event == PASSO_PLAYER_ENDED)
-		passo_grbl_say(grbl, "[MSG:Pgm End]\r\n");
-	else if (error != PASSO_OK)
-		passo_grbl_alarm(
-		    grbl, error == PASSO_ERROR_LIMIT ? PASSO_GRBL_HARD_LIMIT : PASSO_GRBL_ABORTED);
-	else
+	switch (event) {
+	case PASSO_PLAYER_TRAVEL:
+		passo_grbl_fail(grbl, PASSO_GRBL_SOFT_LIMIT, PASSO_GCODE_LOCKED);
 		return;
-	if (grbl->locked)
-		passo_grbl_begin_stop(grbl, false);
+	case PASSO_PLAYER_UNEXPECTED:
+		passo_grbl_fail(grbl, PASSO_GRBL_PROBE_LEVEL, PASSO_GCODE_OK);
+		return;
+	case PASSO_PLAYER_UNTOUCHED:
+	case PASSO_PLAYER_NO_PROBE:
+		passo_grbl_fail(grbl, PASSO_GRBL_PROBE_MISSED, PASSO_GCODE_OK);
+		return;
+	case PASSO_PLAYER_OFFSETS:
+		grbl->keeps = true;
+		break;
+	case PASSO_PLAYER_PROBED:
+		passo_grbl_report_probe(grbl);
+		break;
+	case PASSO_PLAYER_ENDED:
+		passo_grbl_say(grbl, "[MSG:Pgm End]\r\n");
+		break;
+	case PASSO_PLAYER_NOTHING:
+	case PASSO_PLAYER_PAUSED:
+		break;
+	}
+	if (error != PASSO_OK)
+		passo_grbl_fail(grbl, error == PASSO_ERROR_LIMIT ? PASSO_GRBL_HARD_LIMIT : PASSO_GRBL_ABORTED,
+		    PASSO_GCODE_LOCKED);
 }
 
 void passo_grbl_poll(struct passo_grbl *grbl)
@@ -160,9 +201,16 @@ void passo_grbl_poll(struct passo_grbl *grbl)
 	take_line(grbl);
 	if (grbl->stopping)
 		return;
+	passo_grbl_mind_drives(grbl);
+	passo_grbl_mind_rate(grbl);
+	grbl->player->held = grbl->held;
 	const enum passo_error error = passo_player_poll(grbl->player, &event);
 
 	heed(grbl, event, error);
+	if (grbl->owes && !is_busy(grbl)) {
+		grbl->owes = false;
+		passo_grbl_answer(grbl, PASSO_GCODE_OK);
+	}
 	if (!passo_grbl_is_idle(grbl))
 		return;
 	grbl->jogs = false;

@@ -10,14 +10,12 @@
 
 #include "passo_gcode_line.h"
 #include "passo_grbl_settings.h"
+#include "passo_grbl_state.h"
 #include "passo_player.h"
 #include "passo_storage.h"
 
 /* Bytes from the host that wait, at most one less; senders that count characters need at least 128. */
 #define PASSO_GRBL_RECEIVED 256u
-
-/* Bytes of overrides that wait, at most. */
-#define PASSO_GRBL_CHANGES 16u
 
 /* Status reports from one with offsets to the next. */
 #define PASSO_GRBL_REPORTS 30u
@@ -45,7 +43,7 @@ enum passo_grbl_alarm {
 struct passo_grbl_setup {
 	struct passo_path_settings path; /* but for what the settings say */
 	struct passo_axis_config pins;   /* the same; in clocks, of all axes */
-	struct passo_grbl_settings defaults;
+	void (*defaults)(struct passo_grbl_settings *settings);
 	uint8_t limits_low, limits_high, homes; /* switches that are there */
 	uint8_t homed; /* axes that have a home; without a home switch by their limits */
 	bool probe;    /* it is there */
@@ -63,19 +61,32 @@ struct passo_grbl {
 	struct passo_player_machine limits;
 	struct passo_home home[PASSO_GCODE_AXES_MAX];
 	struct passo_gcode_line line;
+	/* written by passo_grbl_receive(), also in an interrupt */
 	char received[PASSO_GRBL_RECEIVED];
 	volatile uint8_t head, tail; /* of the ring: next to be written, next to be read */
-	volatile bool asks, pauses, opens, resumes, resets, cancels, lost;
-	volatile uint8_t change[PASSO_GRBL_CHANGES]; /* bytes of overrides */
-	volatile uint8_t changed;
-	uint8_t heeded;
-	uint8_t feed, rapid, spindle; /* overrides in percent */
-	uint8_t reports;              /* until the next one with offsets */
-	bool locked;                  /* since an alarm, or before the first home */
-	uint8_t starts;               /* start lines that have been executed */
-	bool held, jogs, checks, homes, door;
+	volatile bool asked[PASSO_GRBL_ASKS];
+	volatile uint8_t mark;                 /* `head` at the last request that cancels a jog */
+	volatile bool full;                    /* all is lost until what is there has been read */
+	volatile bool lost_part;               /* the end of what was lost is not that of a line */
+	volatile uint16_t lost_lines;          /* ends of lines that were lost; wraps */
+	volatile uint8_t feed, rapid, spindle; /* overrides in percent */
+	/* the line that comes in */
+	uint16_t found_lines; /* of lost_lines */
+	uint8_t late;         /* bytes received before a jog was cancelled */
+	bool begun, dropped;  /* it has a byte; its first one is one of these */
+	/* the state */
+	uint8_t feed_now, rapid_now, spindle_now; /* overrides in force */
+	uint8_t rate;                             /* of the core, percent */
+	uint8_t reports;                          /* until the next one with offsets */
+	uint8_t starts;                           /* start lines that have been executed */
+	uint8_t accessories;                      /* those told last */
+	bool locked;                              /* since an alarm, or before the first home */
+	bool held, jogs, checks, homes, door, sleeps;
+	bool owes;             /* the answer to the last line */
 	bool keeps;            /* the offsets have changed and are not stored yet */
 	bool stopping, greets; /* a soft stop is under way; the greeting follows it */
+	bool driven;           /* drives are on */
+	uint32_t moved_at;     /* the time when something moved last */
 };
 
 /* The player is open, its path and its interpreter with any settings: they get those stored. Writes the

@@ -2,6 +2,7 @@
  * Answers to `$G`, `$#`, `$$` and `$N`.
  */
 #include "passo_grbl_private.h"
+#include "passo_math.h"
 
 static void say_command(struct passo_grbl *grbl, const char *letter, passo_gcode_command command)
 {
@@ -29,7 +30,7 @@ void passo_grbl_report_modes(struct passo_grbl *grbl)
 	passo_grbl_say(grbl, " T");
 	passo_grbl_say_number(grbl, gcode->tool);
 	passo_grbl_say(grbl, " F");
-	passo_grbl_say_number(grbl, passo_grbl_in_units(grbl, (uint64_t)gcode->feed / PASSO_GCODE_MILLION));
+	passo_grbl_say_rate(grbl, passo_mul_div((uint64_t)gcode->feed, 1u << 16, PASSO_GCODE_MILLION));
 	passo_grbl_say(grbl, " S");
 	passo_grbl_say_number(grbl, (uint64_t)gcode->spindle / PASSO_GCODE_MILLION);
 	passo_grbl_say(grbl, "]\r\n");

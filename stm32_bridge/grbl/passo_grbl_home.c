@@ -65,7 +65,7 @@ enum passo_gcode_error passo_grbl_home(struct passo_grbl *grbl)
 		return PASSO_GCODE_NO_HOMING;
 	if (!passo_grbl_is_idle(grbl))
 		return PASSO_GCODE_NOT_IDLE;
-	if (passo_home(passo, grbl->home, count) != PASSO_OK)
+	if (passo_grbl_drive(grbl, true) != PASSO_OK || passo_home(passo, grbl->home, count) != PASSO_OK)
 		return PASSO_GCODE_NO_HOMING;
 	grbl->homes = true;
 	return PASSO_GCODE_OK;
@@ -81,8 +81,7 @@ static void fail(struct passo_grbl *grbl, enum passo_error error)
 		alarm = PASSO_GRBL_HOME_PULL_OFF;
 	else if (error == PASSO_ERROR_LIMIT)
 		alarm = PASSO_GRBL_HARD_LIMIT;
-	passo_grbl_alarm(grbl, alarm);
-	passo_grbl_begin_stop(grbl, false);
+	passo_grbl_fail(grbl, alarm, PASSO_GCODE_LOCKED);
 }
 
 void passo_grbl_poll_home(struct passo_grbl *grbl)
@@ -90,15 +89,13 @@ void passo_grbl_poll_home(struct passo_grbl *grbl)
 	struct passo *passo = grbl->player->feed->passo;
 	const enum passo_error error = passo_poll(passo);
 
-	if (grbl->stopping)
-		return;
 	if (error != PASSO_OK) {
 		fail(grbl, error);
 		return;
 	}
 	if (passo_is_moving(passo) || passo_player_restart(grbl->player) != PASSO_OK)
 		return;
-	grbl->homes = grbl->locked = false;
+	grbl->homes = grbl->locked = grbl->owes = false;
 	grbl->starts = 0;
 	passo_grbl_answer(grbl, PASSO_GCODE_OK);
 }

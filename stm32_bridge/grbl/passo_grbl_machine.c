@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The machine as the settings say.
  */
+#include "passo_driver.h"
 #include "passo_grbl_private.h"
 #include "passo_inputs.h"
 #include "passo_math.h"
@@ -10,6 +11,7 @@
 #define SECONDS_PER_MINUTE 60u
 #define MILLION ((uint64_t)PASSO_GCODE_MILLION)
 #define PWM_HZ 20000u
+#define ALWAYS 255 /* of the time until drives are switched off */
 
 /* UQ32.32 of millionths. */
 static uint64_t fixed(int64_t millionths, uint32_t divisor)
@@ -38,6 +40,33 @@ static enum passo_gcode_error of_plan(enum passo_plan_error error)
 	return error == PASSO_PLAN_TOO_FAST ? PASSO_GCODE_TOO_FAST : PASSO_GCODE_STATEMENT;
 }
 
+enum passo_error passo_grbl_drive(struct passo_grbl *grbl, bool on)
+{
+	struct passo *passo = grbl->player->feed->passo;
+	enum passo_error error = PASSO_OK;
+
+	for (uint8_t axis = 0; error == PASSO_OK && axis < grbl->path.machine.axes; axis++)
+		error = passo_enable(passo, axis, on);
+	grbl->driven = on || error != PASSO_OK;
+	grbl->moved_at = passo_driver_now(passo);
+	return error;
+}
+
+/* Drives that are off stay off until something moves, or is set. */
+void passo_grbl_mind_drives(struct passo_grbl *grbl)
+{
+	const uint32_t now = passo_driver_now(grbl->player->feed->passo);
+	const int64_t delay = grbl->stored.settings.value[PASSO_GRBL_IDLE_DELAY] / PASSO_GCODE_MILLION;
+
+	if (!passo_grbl_is_idle(grbl)) {
+		grbl->moved_at = now;
+		if (!grbl->driven)
+			passo_grbl_drive(grbl, true);
+	} else if (grbl->driven && delay != ALWAYS && now - grbl->moved_at >= (uint32_t)delay * 1000u) {
+		passo_grbl_drive(grbl, false);
+	}
+}
+
 static enum passo_error apply_pins(struct passo_grbl *grbl, uint32_t pulse)
 {
 	const struct passo_grbl_settings *settings = &grbl->stored.settings;
@@ -52,10 +81,8 @@ static enum passo_error apply_pins(struct passo_grbl *grbl, uint32_t pulse)
 		config.step_inverted = passo_grbl_has_axis(settings, PASSO_GRBL_STEPS_INVERTED, axis);
 		config.direction_inverted = passo_grbl_has_axis(settings, PASSO_GRBL_DIRS_INVERTED, axis);
 		error = passo_configure_axis(passo, axis, &config);
-		if (error == PASSO_OK)
-			error = passo_enable(passo, axis, true);
 	}
-	return error;
+	return error == PASSO_OK ? passo_grbl_drive(grbl, true) : error;
 }
 
 /* A limit that is also a home is there whether or not limits stop. */
@@ -136,6 +163,8 @@ enum passo_gcode_error passo_grbl_apply(struct passo_grbl *grbl)
 	passo_gcode_configure(grbl->player->gcode,
 	    &(struct passo_gcode_settings){
 		.arc_tolerance = (uint32_t)settings->value[PASSO_GRBL_ARC_TOLERANCE],
+		.spindle_minimum =
+		    (uint32_t)(settings->value[PASSO_GRBL_SPINDLE_LEAST] / PASSO_GCODE_MILLION),
 		.spindle_maximum = (uint32_t)(settings->value[PASSO_GRBL_SPINDLE] / PASSO_GCODE_MILLION),
 		.laser = passo_grbl_is_on(settings, PASSO_GRBL_LASER)});
 	enum passo_error error = apply_pins(grbl, (uint32_t)((pulse + 1) / 2));

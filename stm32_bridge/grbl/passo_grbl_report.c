@@ -9,6 +9,11 @@
 #define NANOMETRES_PER_INCH 25400000u
 #define REPORT_MACHINE 1u /* bits of $10 */
 #define REPORT_BUFFER 2u
+#define POWER_FULL 65535u
+#define ACCESSORIES_AT 16u
+#define ACCESSORIES                                                                                          \
+	(PASSO_GCODE_OUTPUT_SPINDLE | PASSO_GCODE_OUTPUT_REVERSE | PASSO_GCODE_OUTPUT_FLOOD                  \
+	    | PASSO_GCODE_OUTPUT_MIST)
 
 void passo_grbl_say(struct passo_grbl *grbl, const char *text)
 {
@@ -70,9 +75,12 @@ void passo_grbl_say_length(struct passo_grbl *grbl, int64_t nanometres)
 		passo_grbl_say_thousandths(grbl, nanometres);
 }
 
-uint64_t passo_grbl_in_units(const struct passo_grbl *grbl, uint64_t millimetres)
+void passo_grbl_say_rate(struct passo_grbl *grbl, uint64_t rate)
 {
-	return in_inches(grbl) ? passo_mul_div(millimetres, 10, 254) : millimetres;
+	if (in_inches(grbl)) /* tenths of an inch */
+		say_decimals(grbl, false, (passo_mul_div(rate, 200, UINT64_C(254) << 16) + 1) / 2, 1);
+	else
+		passo_grbl_say_number(grbl, (rate + 0x8000u) >> 16);
 }
 
 void passo_grbl_say_position(struct passo_grbl *grbl, const char *name, const int64_t *position)
@@ -84,35 +92,37 @@ void passo_grbl_say_position(struct passo_grbl *grbl, const char *name, const in
 	}
 }
 
-static const char *state_of(const struct passo_grbl *grbl)
+static void report_state(struct passo_grbl *grbl)
 {
-	const struct passo_path_feed *feed = grbl->player->feed;
+	const enum passo_grbl_state state = passo_grbl_state(grbl);
 
-	if (grbl->homes)
-		return "Home";
-	if (grbl->locked)
-		return "Alarm";
-	if (grbl->door)
-		return grbl->held && passo_snapshot(feed->passo)->rate > 0 ? "Door:2" : "Door:0";
-	if (grbl->held || grbl->player->paused)
-		return grbl->held && passo_snapshot(feed->passo)->rate > 0 ? "Hold:1" : "Hold:0";
-	if (grbl->checks)
-		return "Check";
-	if (passo_grbl_is_idle(grbl))
-		return "Idle";
-	return grbl->jogs ? "Jog" : "Run";
+	passo_grbl_say(grbl, passo_grbl_state_name(state));
+	if (state == PASSO_GRBL_STATE_DOOR)
+		passo_grbl_say(grbl, passo_grbl_slows(grbl) ? ":2" : ":0");
+	else if (state == PASSO_GRBL_STATE_HOLD)
+		passo_grbl_say(grbl, passo_grbl_slows(grbl) ? ":1" : ":0");
 }
 
-/* mm/min along the path at present */
-static uint64_t feed_of(const struct passo_path_feed *feed)
+/* That of what moves; at rest, the one commanded. */
+static struct passo_player_line line_of(const struct passo_grbl *grbl)
 {
-	const struct passo_snapshot *now = passo_snapshot(feed->passo);
-	const uint64_t velocity = (uint64_t)now->velocity * now->rate; /* UQ0.48 substeps per clock */
-	const uint64_t clocks = UINT64_C(60) * feed->path->machine.clock_hz;
-	const uint64_t substeps = passo_mul_div(velocity, clocks, UINT64_C(1) << 48);
-	const uint32_t scale = feed->path->substeps_per_mm;
+	struct passo_player_line line = {0, passo_gcode_output(grbl->player->gcode)};
 
-	return passo_is_moving(feed->passo) ? (substeps + scale / 2) / scale : 0;
+	passo_player_moving_line(grbl->player, &line);
+	return line;
+}
+
+static uint64_t spindle_of(const struct passo_grbl *grbl, uint32_t output)
+{
+	const struct passo_gcode *gcode = grbl->player->gcode;
+	const uint64_t maximum = gcode->settings.spindle_maximum;
+
+	if (!(output & PASSO_GCODE_OUTPUT_SPINDLE))
+		return 0;
+	if (maximum == 0) /* the power does not tell */
+		return passo_mul_div(
+		    (uint64_t)gcode->spindle, gcode->spindle_percent, 100u * (uint64_t)PASSO_GCODE_MILLION);
+	return (maximum * (output & POWER_FULL) + POWER_FULL / 2) / POWER_FULL;
 }
 
 /* Switches that are active, in the letters of grbl. */
@@ -140,14 +150,29 @@ static void report_inputs(struct passo_grbl *grbl)
 		passo_grbl_say(grbl, "R");
 }
 
-static void report_overrides(struct passo_grbl *grbl)
+/* Letters of what is on. */
+static void report_accessories(struct passo_grbl *grbl, uint32_t output)
+{
+	const bool reverse = output & (PASSO_GCODE_OUTPUT_REVERSE | PASSO_GCODE_OUTPUT_PROPORTIONAL);
+
+	if (!(output & ACCESSORIES))
+		return;
+	passo_grbl_say(grbl, "|A:");
+	if (output & PASSO_GCODE_OUTPUT_SPINDLE)
+		passo_grbl_say(grbl, reverse ? "C" : "S");
+	passo_grbl_say(grbl, output & PASSO_GCODE_OUTPUT_FLOOD ? "F" : "");
+	passo_grbl_say(grbl, output & PASSO_GCODE_OUTPUT_MIST ? "M" : "");
+}
+
+static void report_overrides(struct passo_grbl *grbl, uint32_t output)
 {
 	passo_grbl_say(grbl, "|Ov:");
-	passo_grbl_say_number(grbl, grbl->feed);
+	passo_grbl_say_number(grbl, grbl->feed_now);
 	passo_grbl_say(grbl, ",");
-	passo_grbl_say_number(grbl, grbl->rapid);
+	passo_grbl_say_number(grbl, grbl->rapid_now);
 	passo_grbl_say(grbl, ",");
-	passo_grbl_say_number(grbl, grbl->spindle);
+	passo_grbl_say_number(grbl, grbl->spindle_now);
+	report_accessories(grbl, output);
 }
 
 static void report_position(struct passo_grbl *grbl, bool machine)
@@ -169,10 +194,12 @@ void passo_grbl_report(struct passo_grbl *grbl)
 	const struct passo_player *player = grbl->player;
 	const unsigned shown =
 	    (unsigned)(grbl->stored.settings.value[PASSO_GRBL_REPORT] / PASSO_GCODE_MILLION);
+	const struct passo_player_line line = line_of(grbl);
+	const uint8_t accessories = (uint8_t)((line.output & ACCESSORIES) >> ACCESSORIES_AT);
 	passo_gcode_position offset = {0};
 
 	passo_grbl_say(grbl, "<");
-	passo_grbl_say(grbl, state_of(grbl));
+	report_state(grbl);
 	report_position(grbl, (shown & REPORT_MACHINE) != 0);
 	if (shown & REPORT_BUFFER) {
 		passo_grbl_say(grbl, "|Bf:");
@@ -180,22 +207,25 @@ void passo_grbl_report(struct passo_grbl *grbl)
 		passo_grbl_say(grbl, ",");
 		passo_grbl_say_number(grbl, (uint8_t)(grbl->tail - grbl->head - 1u));
 	}
-	if (player->gcode->line > 0) {
+	if (line.number > 0) {
 		passo_grbl_say(grbl, "|Ln:");
-		passo_grbl_say_number(grbl, player->gcode->line);
+		passo_grbl_say_number(grbl, line.number);
 	}
 	passo_grbl_say(grbl, "|FS:");
-	passo_grbl_say_number(grbl, passo_grbl_in_units(grbl, feed_of(player->feed)));
+	passo_grbl_say_rate(grbl, passo_player_speed(player));
 	passo_grbl_say(grbl, ",");
-	passo_grbl_say_number(grbl, (uint64_t)player->gcode->spindle / PASSO_GCODE_MILLION);
+	passo_grbl_say_number(grbl, spindle_of(grbl, line.output));
 	report_inputs(grbl);
+	if (grbl->reports > 0 && accessories != grbl->accessories)
+		grbl->reports = PASSO_GRBL_REPORTS;
 	if (grbl->reports == 0) {
 		for (unsigned axis = 0; axis < player->gcode->settings.axes; axis++)
 			offset[axis] = passo_gcode_offset(player->gcode, axis);
 		passo_grbl_say_position(grbl, "|WCO", offset);
 		grbl->reports = PASSO_GRBL_REPORTS;
 	} else if (grbl->reports-- == PASSO_GRBL_REPORTS) {
-		report_overrides(grbl);
+		grbl->accessories = accessories;
+		report_overrides(grbl, line.output);
 	}
 	passo_grbl_say(grbl, ">\r\n");
 }

@@ -17,12 +17,13 @@ struct kind {
 
 static const struct kind KINDS[PASSO_GRBL_SETTINGS] = {
     [PASSO_GRBL_PULSE] = {0, false, true, 1000},
+    [PASSO_GRBL_IDLE_DELAY] = {1, true, false, 255},
     [PASSO_GRBL_STEPS_INVERTED] = {2, true, false, 63},
     [PASSO_GRBL_DIRS_INVERTED] = {3, true, false, 63},
     [PASSO_GRBL_ENABLES_INVERTED] = {4, true, false, 1},
     [PASSO_GRBL_LIMITS_INVERTED] = {5, true, false, 1},
     [PASSO_GRBL_PROBE_INVERTED] = {6, true, false, 1},
-    [PASSO_GRBL_REPORT] = {10, true, false, 3},
+    [PASSO_GRBL_REPORT] = {10, true, false, 255},
     [PASSO_GRBL_DEVIATION] = {11, false, false, 1000},
     [PASSO_GRBL_ARC_TOLERANCE] = {12, false, true, 1000},
     [PASSO_GRBL_INCHES] = {13, true, false, 1},
@@ -35,6 +36,7 @@ static const struct kind KINDS[PASSO_GRBL_SETTINGS] = {
     [PASSO_GRBL_DEBOUNCE] = {26, false, false, 1000},
     [PASSO_GRBL_PULL_OFF] = {27, false, true, 1000},
     [PASSO_GRBL_SPINDLE] = {30, true, false, 1000000},
+    [PASSO_GRBL_SPINDLE_LEAST] = {31, true, false, 1000000},
     [PASSO_GRBL_LASER] = {32, true, false, 1},
 };
 
@@ -66,6 +68,15 @@ int64_t *passo_grbl_setting(struct passo_grbl_settings *settings, unsigned numbe
 	if (!find(number, axes, &index))
 		return NULL;
 	return number >= AXES_AT ? &settings->axis[index][number % AXES_STEP] : &settings->value[index];
+}
+
+uint32_t passo_grbl_setting_most(unsigned number, unsigned axes, bool *positive)
+{
+	unsigned index = 0;
+	const struct kind *kind = find(number, axes, &index);
+
+	*positive = kind && kind->positive;
+	return kind ? kind->most : 0;
 }
 
 unsigned passo_grbl_setting_number(unsigned index, unsigned axes, bool *whole)

@@ -12,6 +12,7 @@
 
 enum passo_grbl_setting {
 	PASSO_GRBL_PULSE,            /* $0: us */
+	PASSO_GRBL_IDLE_DELAY,       /* $1: ms until drives at rest are switched off; 255: never */
 	PASSO_GRBL_STEPS_INVERTED,   /* $2: a bit per axis */
 	PASSO_GRBL_DIRS_INVERTED,    /* $3 */
 	PASSO_GRBL_ENABLES_INVERTED, /* $4: all axes */
@@ -30,6 +31,7 @@ enum passo_grbl_setting {
 	PASSO_GRBL_DEBOUNCE,         /* $26: ms */
 	PASSO_GRBL_PULL_OFF,         /* $27: mm */
 	PASSO_GRBL_SPINDLE,          /* $30: rpm of full power */
+	PASSO_GRBL_SPINDLE_LEAST,    /* $31: rpm of what turns */
 	PASSO_GRBL_LASER,            /* $32 */
 	PASSO_GRBL_SETTINGS
 };
@@ -64,6 +66,9 @@ int64_t *passo_grbl_setting(struct passo_grbl_settings *settings, unsigned numbe
  * (not whole), PULSE_TOO_SHORT, SOFT_LIMITS_NEED_HOMING. */
 enum passo_gcode_error passo_grbl_set(
     struct passo_grbl_settings *settings, unsigned number, unsigned axes, int64_t value);
+
+/* Largest value of `$n`, and whether 0 is none. */
+uint32_t passo_grbl_setting_most(unsigned number, unsigned axes, bool *positive);
 
 /* The settings in the order of their numbers: the number of each, and whether it is whole; 0xFF: no more. */
 #define PASSO_GRBL_NO_SETTING 0xFFu

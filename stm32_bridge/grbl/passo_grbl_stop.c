@@ -1,55 +1,27 @@
 /* SPDX-License-Identifier: MIT
- * Real-time bytes: they pass the lines that wait.
+ * Real-time requests: they pass the lines that wait. What they do in each state: passo_grbl_state.c.
  */
 #include "passo_grbl_private.h"
 
-#define CONTROL_X 0x18
-#define PERCENT_MIN 10
-#define PERCENT_MAX 200
 #define PERCENT_FULL 100u
 
-void passo_grbl_receive(struct passo_grbl *grbl, char byte)
+enum passo_grbl_state passo_grbl_state(const struct passo_grbl *grbl)
 {
-	const uint8_t code = (uint8_t)byte;
-
-	if (byte == '?')
-		grbl->asks = true;
-	else if (byte == '!')
-		grbl->pauses = true;
-	else if (code == 0x84)
-		grbl->opens = true;
-	else if (byte == '~')
-		grbl->resumes = true;
-	else if (byte == CONTROL_X)
-		grbl->resets = true;
-	else if (code == 0x85)
-		grbl->cancels = true;
-	else if (code >= 0x90 && code <= 0x9D) {
-		grbl->change[grbl->changed % PASSO_GRBL_CHANGES] = code;
-		grbl->changed++;
-	} else if (code >= 0x80)
-		return; /* other real-time commands do nothing */
-	else if ((uint8_t)(grbl->head + 1u) == grbl->tail)
-		grbl->lost = true;
-	else {
-		grbl->received[grbl->head] = byte;
-		grbl->head = (uint8_t)(grbl->head + 1u);
-	}
-}
-
-bool passo_grbl_take(volatile bool *flag)
-{
-	if (!*flag) /* an interrupt may set it at any moment */
-		return false;
-	*flag = false;
-	return true;
-}
-
-static void drop_input(struct passo_grbl *grbl)
-{
-	grbl->tail = grbl->head;
-	grbl->lost = false;
-	passo_gcode_line_clear(&grbl->line);
+	if (grbl->homes)
+		return PASSO_GRBL_STATE_HOME;
+	if (grbl->sleeps)
+		return PASSO_GRBL_STATE_SLEEP;
+	if (grbl->locked)
+		return PASSO_GRBL_STATE_ALARM;
+	if (grbl->door)
+		return PASSO_GRBL_STATE_DOOR;
+	if (grbl->held || grbl->player->paused)
+		return PASSO_GRBL_STATE_HOLD;
+	if (grbl->checks)
+		return PASSO_GRBL_STATE_CHECK;
+	if (grbl->jogs)
+		return PASSO_GRBL_STATE_JOG;
+	return passo_grbl_is_idle(grbl) ? PASSO_GRBL_STATE_IDLE : PASSO_GRBL_STATE_RUN;
 }
 
 static bool moves(const struct passo_grbl *grbl)
@@ -57,23 +29,61 @@ static bool moves(const struct passo_grbl *grbl)
 	return passo_path_feed_is_moving(grbl->player->feed) || passo_is_moving(grbl->player->feed->passo);
 }
 
-void passo_grbl_begin_stop(struct passo_grbl *grbl, bool resets)
+bool passo_grbl_slows(const struct passo_grbl *grbl)
 {
-	drop_input(grbl);
+	const struct passo *passo = grbl->player->feed->passo;
+
+	return passo_is_moving(passo) && (grbl->stopping || passo_snapshot(passo)->rate > 0);
+}
+
+void passo_grbl_begin_stop(struct passo_grbl *grbl)
+{
 	if (moves(grbl))
 		passo_stop(grbl->player->feed->passo);
 	grbl->stopping = true;
-	grbl->greets = grbl->greets || resets;
 }
 
-/* Ctrl-X drops everything. */
-static void reset(struct passo_grbl *grbl)
+/* Check mode leaves no trace. */
+static void leave_check(struct passo_grbl *grbl)
 {
-	if (grbl->homes)
-		passo_grbl_alarm(grbl, PASSO_GRBL_HOME_RESET);
+	if (grbl->checks)
+		passo_gcode_set_offsets(grbl->player->gcode, &grbl->stored.offsets);
+	grbl->checks = grbl->player->checks = false;
+}
+
+static void lock(struct passo_grbl *grbl, enum passo_grbl_alarm alarm)
+{
+	grbl->locked = true;
+	grbl->homes = grbl->door = false;
+	passo_grbl_say(grbl, "ALARM:");
+	passo_grbl_say_number(grbl, (uint64_t)alarm);
+	passo_grbl_say(grbl, "\r\n");
+	leave_check(grbl);
+}
+
+void passo_grbl_fail(struct passo_grbl *grbl, enum passo_grbl_alarm alarm, enum passo_gcode_error error)
+{
+	const bool probed = alarm == PASSO_GRBL_PROBE_MISSED;
+
+	lock(grbl, alarm);
+	if (probed)
+		passo_grbl_report_probe(grbl);
+	if (grbl->owes)
+		passo_grbl_answer(grbl, error);
+	grbl->owes = false;
+	passo_grbl_begin_stop(grbl);
+}
+
+/* Ctrl-X drops everything, and owes no answer. */
+static void reset(struct passo_grbl *grbl, bool homed)
+{
+	if (homed)
+		lock(grbl, PASSO_GRBL_HOME_RESET);
 	else if (moves(grbl) && !grbl->stopping)
-		passo_grbl_alarm(grbl, PASSO_GRBL_ABORTED);
-	passo_grbl_begin_stop(grbl, true);
+		lock(grbl, PASSO_GRBL_ABORTED);
+	grbl->owes = false;
+	passo_grbl_begin_stop(grbl);
+	grbl->greets = true;
 }
 
 /* After e-stop, alarm and watchdog as well. Whether the channel can move again. */
@@ -84,13 +94,7 @@ static bool clear(struct passo_grbl *grbl)
 	if (passo->has_inputs && passo_fault(passo) == PASSO_ERROR_ESTOP
 	    && passo_clear_estop(passo) != PASSO_OK)
 		return false;
-	if (passo_clear(passo) != PASSO_OK)
-		return false;
-	for (uint8_t axis = 0; axis < grbl->player->gcode->settings.axes; axis++) {
-		if (passo_enable(passo, axis, true) != PASSO_OK)
-			return false;
-	}
-	return true;
+	return passo_clear(passo) == PASSO_OK && passo_grbl_drive(grbl, true) == PASSO_OK;
 }
 
 bool passo_grbl_end_stop(struct passo_grbl *grbl)
@@ -103,96 +107,141 @@ bool passo_grbl_end_stop(struct passo_grbl *grbl)
 	if (grbl->held)
 		passo_resume(passo);
 	grbl->stopping = grbl->jogs = grbl->held = false;
-	if (grbl->homes)
-		passo_grbl_answer(grbl, PASSO_GCODE_LOCKED);
-	grbl->homes = false;
+	if (grbl->owes) /* by a jog that was cancelled */
+		passo_grbl_answer(grbl, PASSO_GCODE_OK);
+	grbl->owes = false;
 	if (!grbl->greets)
 		return true;
-	drop_input(grbl); /* what came before the greeting */
+	leave_check(grbl);
+	passo_grbl_drop_input(grbl); /* what came before the greeting */
 	passo_gcode_reset(grbl->player->gcode);
-	grbl->checks = grbl->greets = grbl->door = false;
-	grbl->feed = grbl->rapid = grbl->spindle = PERCENT_FULL;
-	passo_grbl_override(grbl);
+	grbl->greets = grbl->door = grbl->sleeps = false;
 	passo_grbl_greet(grbl);
 	return true;
 }
 
-/* Feeds up to 100 % by the time scale of the core, above by planning anew. */
+/* Feeds above 100 % are planned anew; what is below is the rate of the core. */
 void passo_grbl_override(struct passo_grbl *grbl)
 {
-	struct passo_path_planner *path = grbl->player->feed->path;
 	const uint32_t above = grbl->feed > PERCENT_FULL ? grbl->feed : PERCENT_FULL;
 
-	passo_override(grbl->player->feed->passo, grbl->feed < PERCENT_FULL ? grbl->feed : PERCENT_FULL);
-	passo_path_override(path, PASSO_PATH_OVERRIDE_MIN * above / PERCENT_FULL);
-	passo_path_rapid(path, PASSO_PATH_RAPID_FULL * grbl->rapid / PERCENT_FULL);
-	grbl->player->gcode->spindle_percent = grbl->spindle;
+	grbl->feed_now = grbl->feed;
+	grbl->rapid_now = grbl->rapid;
+	grbl->spindle_now = grbl->spindle;
+	passo_path_override(grbl->player->feed->path, PASSO_PATH_OVERRIDE_MIN * above / PERCENT_FULL);
+	grbl->player->gcode->spindle_percent = grbl->spindle_now;
 }
 
-/* The byte after that of 100 %: +10, -10, +1, -1. */
-static void change_percent(uint8_t *percent, unsigned step)
+/* The rate is that of what moves, or is about to: of a feed, a rapid, or the full one of home and probe. */
+void passo_grbl_mind_rate(struct passo_grbl *grbl)
 {
-	static const int8_t CHANGES[] = {0, 10, -10, 1, -1};
-	const int wanted = step == 0 ? (int)PERCENT_FULL : *percent + CHANGES[step];
+	const enum passo_player_motion motion = passo_player_motion(grbl->player);
+	uint8_t percent = PERCENT_FULL;
 
-	if (wanted >= PERCENT_MIN && wanted <= PERCENT_MAX)
-		*percent = (uint8_t)wanted;
+	if (motion == PASSO_PLAYER_AT_REST)
+		return;
+	if (motion == PASSO_PLAYER_RAPID)
+		percent = grbl->rapid_now;
+	else if (motion == PASSO_PLAYER_FEED && grbl->feed_now < PERCENT_FULL)
+		percent = grbl->feed_now;
+	if (percent != grbl->rate && passo_override(grbl->player->feed->passo, percent) == PASSO_OK)
+		grbl->rate = percent;
 }
 
-static void change(struct passo_grbl *grbl, uint8_t code)
+static bool has_changed(const struct passo_grbl *grbl)
 {
-	static const uint8_t RAPIDS[] = {100, 50, 25};
-
-	if (code <= 0x94)
-		change_percent(&grbl->feed, code - 0x90u);
-	else if (code <= 0x97)
-		grbl->rapid = RAPIDS[code - 0x95];
-	else if (code >= 0x99)
-		change_percent(&grbl->spindle, code - 0x99u);
-	grbl->reports = grbl->reports > 0 ? PASSO_GRBL_REPORTS : 0;
-	passo_grbl_override(grbl);
+	return grbl->feed != grbl->feed_now || grbl->rapid != grbl->rapid_now
+	    || grbl->spindle != grbl->spindle_now;
 }
 
+/* A hold that is not acknowledged is sent again by the driver. */
 static void hold(struct passo_grbl *grbl)
 {
-	if (!passo_path_feed_is_moving(grbl->player->feed))
-		return;
-	if (grbl->jogs)
-		passo_grbl_begin_stop(grbl, false);
-	else
-		grbl->held = passo_hold(grbl->player->feed->passo) == PASSO_OK;
+	passo_hold(grbl->player->feed->passo);
+	grbl->held = true;
 }
 
-/* As hold, and lines wait as well. */
-static void open_door(struct passo_grbl *grbl)
+static void cancel(struct passo_grbl *grbl)
 {
-	if (grbl->homes) {
-		passo_grbl_alarm(grbl, PASSO_GRBL_HOME_DOOR);
-		passo_grbl_begin_stop(grbl, false);
+	if (!grbl->stopping)
+		passo_grbl_begin_stop(grbl);
+	passo_grbl_drop_jogs(grbl);
+}
+
+/* A resume that is not acknowledged is tried again. */
+static void go_on(struct passo_grbl *grbl)
+{
+	if (grbl->held && passo_resume(grbl->player->feed->passo) != PASSO_OK) {
+		grbl->asked[PASSO_GRBL_ASK_RESUME] = true;
 		return;
 	}
-	hold(grbl);
-	grbl->door = !grbl->locked;
+	grbl->held = grbl->door = false;
+	passo_player_go_on(grbl->player);
+}
+
+static void act(struct passo_grbl *grbl, enum passo_grbl_act act)
+{
+	switch (act) {
+	case PASSO_GRBL_ACT_NOTHING:
+		break;
+	case PASSO_GRBL_ACT_RESETS:
+	case PASSO_GRBL_ACT_FAILS:
+		reset(grbl, act == PASSO_GRBL_ACT_FAILS);
+		break;
+	case PASSO_GRBL_ACT_OPENS:
+		grbl->door = true;
+		hold(grbl);
+		break;
+	case PASSO_GRBL_ACT_HOLDS:
+		hold(grbl);
+		break;
+	case PASSO_GRBL_ACT_CLOSES:
+		grbl->door = true;
+		cancel(grbl);
+		break;
+	case PASSO_GRBL_ACT_CANCELS:
+		cancel(grbl);
+		break;
+	case PASSO_GRBL_ACT_STOPS:
+		passo_grbl_fail(grbl, PASSO_GRBL_HOME_DOOR, PASSO_GCODE_LOCKED);
+		break;
+	case PASSO_GRBL_ACT_GOES_ON:
+		go_on(grbl);
+		break;
+	case PASSO_GRBL_ACT_REPORTS:
+		passo_grbl_report(grbl);
+		break;
+	}
+}
+
+/* Clears a flag that an interrupt may set at any moment; returns what it was. */
+static bool take(volatile bool *flag)
+{
+	if (!*flag)
+		return false;
+	*flag = false;
+	return true;
 }
 
 void passo_grbl_obey(struct passo_grbl *grbl)
 {
-	if (passo_grbl_take(&grbl->resets))
-		reset(grbl);
-	if (passo_grbl_take(&grbl->cancels) && grbl->jogs && !grbl->stopping)
-		passo_grbl_begin_stop(grbl, false);
-	if (passo_grbl_take(&grbl->pauses) && !grbl->stopping)
-		hold(grbl);
-	if (passo_grbl_take(&grbl->opens) && !grbl->stopping)
-		open_door(grbl);
-	if (passo_grbl_take(&grbl->resumes)) {
-		grbl->door = false;
-		if (grbl->held && passo_resume(grbl->player->feed->passo) == PASSO_OK)
-			grbl->held = false;
-		passo_player_go_on(grbl->player);
+	bool asked[PASSO_GRBL_ASKS];
+
+	for (unsigned ask = 0; ask < PASSO_GRBL_ASKS; ask++)
+		asked[ask] = take(&grbl->asked[ask]);
+	if (asked[PASSO_GRBL_ASK_PAUSE] || asked[PASSO_GRBL_ASK_OPEN])
+		asked[PASSO_GRBL_ASK_RESUME] = false;
+	if (asked[PASSO_GRBL_ASK_CANCEL])
+		passo_grbl_drop_jogs(grbl);
+	for (enum passo_grbl_request ask = PASSO_GRBL_ASK_RESET; ask < PASSO_GRBL_ASK_REPORT; ask++) {
+		/* nothing passes a reset */
+		if (asked[ask] && (!grbl->greets || ask == PASSO_GRBL_ASK_RESET))
+			act(grbl, passo_grbl_request_rule(passo_grbl_state(grbl), ask));
 	}
-	for (; grbl->heeded != grbl->changed; grbl->heeded++)
-		change(grbl, grbl->change[grbl->heeded % PASSO_GRBL_CHANGES]);
-	if (passo_grbl_take(&grbl->asks))
+	if (has_changed(grbl)) {
+		passo_grbl_override(grbl);
+		grbl->reports = grbl->reports > 0 ? PASSO_GRBL_REPORTS : 0;
+	}
+	if (asked[PASSO_GRBL_ASK_REPORT])
 		passo_grbl_report(grbl);
 }

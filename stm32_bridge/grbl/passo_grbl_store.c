@@ -7,17 +7,18 @@
 
 static void set_defaults(struct passo_grbl *grbl)
 {
-	grbl->stored.settings = grbl->setup->defaults;
+	grbl->setup->defaults(&grbl->stored.settings);
 }
 
 /* Another number of axes, or a record of which the values make no sense here, gives the defaults. */
 static bool is_possible(struct passo_grbl *grbl)
 {
 	const unsigned axes = grbl->path.machine.axes;
-	struct passo_grbl_settings trial = grbl->setup->defaults;
+	struct passo_grbl_settings trial;
 	unsigned number;
 	bool whole;
 
+	grbl->setup->defaults(&trial);
 	trial.value[PASSO_GRBL_HOMING] = grbl->stored.settings.value[PASSO_GRBL_HOMING];
 	for (unsigned i = 0; (number = passo_grbl_setting_number(i, axes, &whole)) != PASSO_GRBL_NO_SETTING;
 	    i++) {
@@ -51,7 +52,8 @@ enum passo_gcode_error passo_grbl_load(struct passo_grbl *grbl)
 		passo_gcode_set_offsets(grbl->player->gcode, &grbl->stored.offsets);
 		return PASSO_GCODE_OK;
 	}
-	grbl->stored = (struct passo_grbl_stored){.settings = grbl->setup->defaults};
+	memset(&grbl->stored, 0, sizeof grbl->stored);
+	set_defaults(grbl);
 	passo_grbl_apply(grbl);
 	return state == PASSO_STORAGE_EMPTY ? PASSO_GCODE_OK : PASSO_GCODE_STORAGE;
 }
@@ -75,13 +77,23 @@ static enum passo_gcode_error change_start(struct passo_grbl *grbl, const char *
 		return PASSO_GCODE_LINE_LENGTH;
 	if (grbl->locked)
 		return PASSO_GCODE_LOCKED;
-	const enum passo_gcode_error error =
-	    text[2] == '\0' ? PASSO_GCODE_OK : passo_gcode_execute(grbl->player->gcode, text + 2);
+	struct passo_gcode *gcode = grbl->player->gcode;
+	const struct passo_gcode before = *gcode;
+	char start[PASSO_GRBL_START_SIZE];
+	enum passo_gcode_error error =
+	    text[2] == '\0' ? PASSO_GCODE_OK : passo_gcode_execute(gcode, text + 2);
+
 	if (error != PASSO_GCODE_OK)
 		return error;
-	memset(grbl->stored.start[number], 0, PASSO_GRBL_START_SIZE);
+	memcpy(start, grbl->stored.start[number], sizeof start);
+	memset(grbl->stored.start[number], 0, sizeof start);
 	memcpy(grbl->stored.start[number], text + 2, strlen(text + 2));
-	return passo_grbl_save(grbl);
+	error = passo_grbl_save(grbl);
+	if (error != PASSO_GCODE_OK) {
+		memcpy(grbl->stored.start[number], start, sizeof start);
+		*gcode = before;
+	}
+	return error;
 }
 
 static enum passo_gcode_error change_setting(struct passo_grbl *grbl, unsigned number, int64_t value)
@@ -93,9 +105,11 @@ static enum passo_gcode_error change_setting(struct passo_grbl *grbl, unsigned n
 	if (error == PASSO_GCODE_OK)
 		error = passo_grbl_apply(grbl);
 	if (error == PASSO_GCODE_OK)
-		return passo_grbl_save(grbl);
-	grbl->stored.settings = before;
-	passo_grbl_apply(grbl);
+		error = passo_grbl_save(grbl);
+	if (error != PASSO_GCODE_OK) {
+		grbl->stored.settings = before;
+		passo_grbl_apply(grbl);
+	}
 	return error;
 }
 
@@ -121,6 +135,8 @@ enum passo_gcode_error passo_grbl_restore(struct passo_grbl *grbl, const char *t
 
 	if ((what != '$' && what != '#' && what != '*') || text[1] != '\0')
 		return PASSO_GCODE_STATEMENT;
+	const struct passo_grbl_stored before = grbl->stored;
+
 	if (what != '#')
 		set_defaults(grbl);
 	if (what != '$')
@@ -128,7 +144,14 @@ enum passo_gcode_error passo_grbl_restore(struct passo_grbl *grbl, const char *t
 	if (what == '*')
 		memset(grbl->stored.start, 0, sizeof grbl->stored.start);
 	passo_grbl_apply(grbl);
+	const enum passo_gcode_error error = passo_grbl_save(grbl);
+	if (error != PASSO_GCODE_OK) {
+		grbl->stored = before;
+		passo_gcode_set_offsets(grbl->player->gcode, &before.offsets);
+		passo_grbl_apply(grbl);
+		return error;
+	}
 	passo_grbl_say(grbl, "[MSG:Restoring defaults]\r\n");
-	grbl->resets = true;
-	return passo_grbl_save(grbl);
+	passo_grbl_ask_reset(grbl);
+	return PASSO_GCODE_OK;
 }

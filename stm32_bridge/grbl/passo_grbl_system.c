@@ -17,11 +17,10 @@ static enum passo_gcode_error unlock(struct passo_grbl *grbl)
 
 static enum passo_gcode_error check(struct passo_grbl *grbl)
 {
-	if (!grbl->checks && !passo_grbl_is_idle(grbl))
-		return PASSO_GCODE_NOT_IDLE;
-	grbl->checks = !grbl->checks;
-	passo_grbl_say(grbl, grbl->checks ? "[MSG:Enabled]\r\n" : "[MSG:Disabled]\r\n");
-	grbl->resets = grbl->resets || !grbl->checks;
+	passo_grbl_say(grbl, grbl->checks ? "[MSG:Disabled]\r\n" : "[MSG:Enabled]\r\n");
+	if (grbl->checks)
+		passo_grbl_ask_reset(grbl);
+	grbl->checks = grbl->player->checks = true; /* until the reset */
 	return PASSO_GCODE_OK;
 }
 
@@ -30,12 +29,8 @@ static enum passo_gcode_error jog(struct passo_grbl *grbl, const char *text)
 	struct passo_gcode *gcode = grbl->player->gcode;
 	passo_gcode_position before = {0};
 
-	if (grbl->locked)
-		return PASSO_GCODE_LOCKED;
 	if (text[0] != '=')
 		return PASSO_GCODE_JOG;
-	if (!grbl->jogs && !passo_grbl_is_idle(grbl))
-		return PASSO_GCODE_NOT_IDLE;
 	for (unsigned axis = 0; axis < gcode->settings.axes; axis++)
 		before[axis] = gcode->position[axis];
 	const enum passo_gcode_error error = passo_gcode_jog(gcode, text + 1);
@@ -47,17 +42,32 @@ static enum passo_gcode_error jog(struct passo_grbl *grbl, const char *text)
 	return error;
 }
 
+/* Until a reset. Then the position is not sure any more. */
+static enum passo_gcode_error sleep(struct passo_grbl *grbl)
+{
+	if (passo_grbl_drive(grbl, false) != PASSO_OK)
+		return PASSO_GCODE_NOT_IDLE;
+	grbl->sleeps = grbl->locked = true;
+	passo_gcode_reset(grbl->player->gcode); /* spindle and coolant */
+	passo_grbl_say(grbl, "[MSG:Sleeping]\r\n");
+	return PASSO_GCODE_OK;
+}
+
 /* What needs rest. */
 static enum passo_gcode_error at_rest(struct passo_grbl *grbl, const char *text)
 {
 	if (!passo_grbl_is_idle(grbl))
 		return PASSO_GCODE_NOT_IDLE;
-	if (strcmp(text, "$") == 0)
-		passo_grbl_report_settings(grbl);
-	else if (strcmp(text, "#") == 0)
+	if (strcmp(text, "#") == 0)
 		passo_grbl_report_offsets(grbl);
+	else if (strcmp(text, "I") == 0)
+		passo_grbl_say(grbl, "[VER:1.1h.passo:]\r\n[OPT:VNM,48,255]\r\n");
 	else if (strcmp(text, "N") == 0)
 		passo_grbl_report_starts(grbl);
+	else if (strcmp(text, "H") == 0)
+		return passo_grbl_home(grbl);
+	else if (strcmp(text, "SLP") == 0)
+		return sleep(grbl);
 	else if (strncmp(text, "RST=", 4) == 0)
 		return passo_grbl_restore(grbl, text + 4);
 	else
@@ -73,15 +83,13 @@ enum passo_gcode_error passo_grbl_system(struct passo_grbl *grbl, const char *te
 		return unlock(grbl);
 	if (strcmp(text, "$C") == 0)
 		return check(grbl);
-	if (strcmp(text, "$H") == 0)
-		return passo_grbl_home(grbl);
 	if (strcmp(text, "$G") == 0)
 		passo_grbl_report_modes(grbl);
+	else if (strcmp(text, "$$") == 0)
+		passo_grbl_report_settings(grbl);
 	else if (strcmp(text, "$") == 0)
-		passo_grbl_say(
-		    grbl, "[HLP:$$ $# $G $I $N $x=val $Nx=line $J=line $C $X $H $RST= ~ ! ? ctrl-x]\r\n");
-	else if (strcmp(text, "$I") == 0)
-		passo_grbl_say(grbl, "[VER:1.1h.passo:]\r\n[OPT:VNM,48,255]\r\n");
+		passo_grbl_say(grbl,
+		    "[HLP:$$ $# $G $I $N $x=val $Nx=line $J=line $SLP $C $X $H $RST= ~ ! ? ctrl-x]\r\n");
 	else
 		return at_rest(grbl, text + 1);
 	return PASSO_GCODE_OK;

@@ -8,6 +8,10 @@
  *             error = passo_player_poll(&player, &event); // instead of passo_path_feed_poll()
  *     }
  * No call waits.
+ *
+ * A line is taken when its actions are done or on the path; a dwell, a probe, a pause and the end of the
+ * program wait for the end of the motion before. Dwells between lines are ramps of the core, unless a sender
+ * is there that is answered when they are over.
  */
 #ifndef PASSO_PLAYER_H
 #define PASSO_PLAYER_H
@@ -20,7 +24,7 @@ enum passo_player_event {
 	PASSO_PLAYER_NOTHING,
 	PASSO_PLAYER_OFFSETS, /* struct passo_gcode_offsets is to be stored */
 	PASSO_PLAYER_PAUSED,  /* M0: at rest until passo_player_go_on() */
-	PASSO_PLAYER_ENDED,   /* M2, M30: all lines have been taken */
+	PASSO_PLAYER_ENDED,   /* M2, M30: at rest */
 	PASSO_PLAYER_TRAVEL,  /* a target outside of the travel; it and what follows in its line is dropped */
 	PASSO_PLAYER_PROBED,  /* the probe has acted, or was optional: passo_player.touch, touched */
 	PASSO_PLAYER_NO_PROBE,  /* no probe is fitted */
@@ -35,8 +39,28 @@ struct passo_player_machine {
 	passo_gcode_position low, high;
 };
 
-/* All members but those of the probe are private. */
+/* Lines of the path whose numbers are known, the last ones. */
+#ifndef PASSO_PLAYER_LINES
+#define PASSO_PLAYER_LINES 512u
+#endif
+/* The same for rapids: more than the core and the look-ahead hold. */
+#define PASSO_PLAYER_WINDOW 512u
+
+/* What moves, or will move when the look-ahead begins. */
+enum passo_player_motion { PASSO_PLAYER_AT_REST, PASSO_PLAYER_FEED, PASSO_PLAYER_RAPID, PASSO_PLAYER_SEEK };
+
+/* What a line of G-code says of the lines of the path that it makes. */
+struct passo_player_line {
+	uint32_t number; /* N; 0: none */
+	uint32_t output;
+};
+
+/* Members up to `held` may be set by the caller; those of the probe are to be read. All others are private.
+ */
 struct passo_player {
+	bool answers; /* dwells wait for the motion, and end before the line is taken */
+	bool checks;  /* nothing of a line is done; targets outside of the travel are told */
+	bool held;    /* dwells wait */
 	struct passo_gcode *gcode;
 	struct passo_path_feed *feed;
 	const struct passo_player_machine *machine;
@@ -44,7 +68,15 @@ struct passo_player {
 	bool waits;  /* the action has not been taken yet */
 	bool probes; /* a probe is under way */
 	bool paused;
-	uint32_t chords; /* taken since passo_player_open() */
+	bool dwells;
+	uint64_t dwell;     /* microseconds that are left of it */
+	uint32_t dwells_at; /* the time of that */
+	uint32_t chords;    /* taken since passo_player_open() */
+	uint32_t
+	    number[PASSO_PLAYER_LINES]; /* of the lines of the path: N, and the upper half of the output */
+	uint16_t power[PASSO_PLAYER_LINES]; /* the lower half */
+	uint8_t rapid[PASSO_PLAYER_WINDOW / 8u];
+	uint64_t probe_scale; /* steps of the longest axis per mm, UQ32.32 */
 	bool touched;
 	passo_gcode_position touch; /* machine coordinates */
 };
@@ -52,6 +84,8 @@ struct passo_player {
 void passo_player_open(struct passo_player *player, struct passo_gcode *gcode, struct passo_path_feed *feed,
     const struct passo_player_machine *machine);
 
+/* Whether the last line has been taken. */
+bool passo_player_has_taken(const struct passo_player *player);
 /* Whether another line can be executed. */
 bool passo_player_is_ready(const struct passo_player *player);
 /* Whether nothing moves, and nothing is left to be done. */
@@ -65,6 +99,12 @@ enum passo_error passo_player_poll(struct passo_player *player, enum passo_playe
 bool passo_player_allows(const struct passo_player *player, const int64_t *target);
 
 void passo_player_go_on(struct passo_player *player);
+
+/* Of what moves; false: nothing does, or it is too long ago. */
+bool passo_player_moving_line(const struct passo_player *player, struct passo_player_line *line);
+enum passo_player_motion passo_player_motion(const struct passo_player *player);
+/* mm/min along the way at present, UQ48.16. */
+uint64_t passo_player_speed(const struct passo_player *player);
 
 /* After a stop and passo_clear(), or after homing: drops all that is left, and begins at the present position
  * of the core. One frame. Errors: those of passo_positions(). */

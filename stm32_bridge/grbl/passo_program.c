@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "passo_program.h"
 
-#include "passo_gcode_line.h"
-
 enum passo_error passo_program_open(struct passo_program *program, struct passo *passo,
     const struct passo_program_settings *settings, struct passo_path_item *items, uint32_t capacity)
 {
@@ -10,6 +8,12 @@ enum passo_error passo_program_open(struct passo_program *program, struct passo 
 
 	if (error != PASSO_PLAN_OK)
 		return PASSO_ERROR_PLAN + (enum passo_error)error;
+	for (uint8_t axis = 0; axis < settings->path.machine.axes; axis++) {
+		const struct passo_path_axis *own = &settings->path.axis[axis];
+
+		if (own->speed > passo_highest_speed(passo, axis, own->steps_per_mm))
+			return PASSO_ERROR_PINS_TOO_SLOW;
+	}
 	for (unsigned axis = 0; axis < PASSO_AXES_MAX; axis++)
 		program->axis[axis] = settings->path.axis[axis];
 	program->machine = (struct passo_player_machine){.axis = program->axis};

@@ -16,6 +16,7 @@
 #ifndef PASSO_PROGRAM_H
 #define PASSO_PROGRAM_H
 
+#include "passo_gcode_line.h"
 #include "passo_player.h"
 
 struct passo_program_settings {
@@ -35,14 +36,16 @@ struct passo_program {
 };
 
 /* `items` and `capacity`: the look-ahead, see passo_path_open(). The settings are copied. Errors:
- * PASSO_ERROR_PLAN + those of passo_path_open(). */
+ * PINS_TOO_SLOW: an axis may be faster than passo_highest_speed(); PASSO_ERROR_PLAN + those of
+ * passo_path_open(). */
 enum passo_error passo_program_open(struct passo_program *program, struct passo *passo,
     const struct passo_program_settings *settings, struct passo_path_item *items, uint32_t capacity);
 
 /* Whether another line can be taken. */
 bool passo_program_is_ready(const struct passo_program *program);
 
-/* Executes a line, without its line feed, when ready; an error changes nothing. */
+/* Executes a line, with or without its end, when ready; an error changes nothing. A text has the lines of
+ * passo_gcode_line_count(). */
 enum passo_gcode_error passo_program_line(struct passo_program *program, const char *text, size_t length);
 
 /* No line follows: the path ends with the last one. */

@@ -3,6 +3,8 @@
  */
 #include "passo_storage.h"
 
+#include <string.h>
+
 #include "passo_crc.h"
 
 #define TAG UINT32_C(0x50530000) /* and the words of the record */
@@ -68,6 +70,22 @@ enum passo_storage_state passo_storage_load(struct passo_storage *storage, uint3
 	         : PASSO_STORAGE_BAD;
 }
 
+/* Whether the copy in force has these words: it is not written again, so that the flash does not wear. */
+static bool is_kept(const struct passo_storage *storage, const uint32_t *record)
+{
+	const struct passo_storage_pages *pages = storage->pages;
+	uint32_t piece[PIECE], number = 0;
+
+	for (size_t at = 0; at < storage->words; at += PIECE) {
+		const size_t count = smaller(storage->words - at, PIECE);
+
+		if (!pages->read(pages->context, storage->page, HEAD + at, piece, count)
+		    || memcmp(piece, record + at, count * sizeof *piece) != 0)
+			return false;
+	}
+	return look_at(storage, storage->page, &number) == COPY_VALID;
+}
+
 bool passo_storage_save(struct passo_storage *storage, const uint32_t *record)
 {
 	const struct passo_storage_pages *pages = storage->pages;
@@ -76,6 +94,8 @@ bool passo_storage_save(struct passo_storage *storage, const uint32_t *record)
 	const uint32_t crc = passo_crc(passo_crc(PASSO_CRC_START, head, HEAD), record, storage->words);
 	uint32_t number = 0;
 
+	if (is_kept(storage, record))
+		return true;
 	if (!pages->erase(pages->context, page) || !pages->write(pages->context, page, 0, head, HEAD)
 	    || !pages->write(pages->context, page, HEAD, record, storage->words)
 	    || !pages->write(pages->context, page, HEAD + storage->words, &crc, 1)

@@ -8,6 +8,7 @@ from passo.build import Parameters
 from passo.console import console
 from passo.engine import model_engine
 from passo.link import error_name
+from passo.output import write_text
 from passo.toolchain import paths
 from passo_stm32.board import Board, make_firmware, program_elf
 from passo_stm32.bus import TICKS_PER_SECOND
@@ -198,7 +199,7 @@ def bench() -> None:
     console.print("Streams ...")
     rates = {hz: lines_per_second(hz) for hz in (9_000_000, 18_000_000)}
     text = report(costs, others, (share, where, stack), rates, memory_report())
-    REPORT.write_text(text)
+    write_text(REPORT, text)
     print(text)
     console.print(f"Report: {REPORT.relative_to(paths.root)}")
 

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from passo.compiler import BuildError, sources
+from passo.compiler import failed, sources
 from passo.engine import Engine
 from passo.moves import AXES_MAX
+from passo.output import make_folder
 from passo.toolchain import environment, paths
 from passo_stm32.machine import Machine
 from passo_stm32.wires import CorePins
@@ -25,14 +26,14 @@ LATENCY = 0.001  # seconds
 
 def make_firmware(*arguments: str) -> str:
     """Run the makefile of the firmware; return its output. Raises BuildError."""
-    paths.build.mkdir(parents=True, exist_ok=True)
+    make_folder(paths.build)
     quiet = {k: v for k, v in environment().items() if k not in ("MAKEFLAGS", "MAKELEVEL")}
     with open(paths.build / "firmware.lock", "w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         command = ["make", "-C", str(paths.firmware), *arguments]
         done = subprocess.run(command, env=quiet, capture_output=True, text=True)
     if done.returncode:
-        raise BuildError(done.stderr or done.stdout)
+        raise failed("make", done.stderr or done.stdout)
     return done.stdout
 
 
@@ -45,7 +46,7 @@ def firmware_elf() -> Path:
 def program_elf(name: str, source: Path, *options: str) -> Path:
     """Build a program with driver and planner instead of the console; return the path of its ELF file."""
     folder = paths.build / name
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     own = [path for path in sources(paths.firmware) if path.name != "main.c"]
     files = [source, *own, *sources(paths.driver, paths.planner, paths.protocol)]
     elf = folder / "passo.elf"

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 from passo.console import console, progress, stages, table
-from passo.report import write_json
+from passo.output import make_folder, write_json
 from passo.run import open_engine, parameters_for
-from passo.toolchain import paths
+from passo.toolchain import paths, short
 from passo_stm32.board import firmware_elf
 from passo_stm32.play import Played, planned_clocks, play
 from rich.table import Table
@@ -80,13 +80,13 @@ def demo(files: list[Path] | None = None, engine: str = "rtl") -> bool:
             if move.difference:
                 print(f"{path}: {move.line}: {move.difference}", file=sys.stderr)
     good = all(result.facts["ok"] for result in results)
-    FOLDER.mkdir(parents=True, exist_ok=True)
+    make_folder(FOLDER)
     write_json({"ok": good, "runs": {r.name: r.facts for r in results}}, FOLDER / "summary.json")
     draw({result.name: result.played for result in results[:PICTURED]}, FOLDER / "firmware.png")
     tell("picture drawn")
     console.print(overview(results))
     console.print("awake: the processor, of all the time from its reset on")
-    console.print(f"Picture and summary: {FOLDER.relative_to(paths.root)}/")
+    console.print(f"Picture and summary: {short(FOLDER)}/")
     return good
 
 
@@ -117,7 +117,7 @@ def draw(pictures: dict[str, list[Played]], path: Path) -> None:
 
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
-    from passo.plot import COLORS, STYLE
+    from passo.plot import COLORS, STYLE, save
 
     with plt.rc_context(STYLE):
         figure, rows = plt.subplots(
@@ -143,8 +143,7 @@ def draw(pictures: dict[str, list[Played]], path: Path) -> None:
             speed.set_ylabel("kHz")
             speed.margins(x=0.01)
             _first_pulses(pulses, played[0])
-        figure.savefig(path, dpi=100)
-        plt.close(figure)
+        save(figure, path, 100)
 
 
 def _first_pulses(ax: object, move: Played) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 from passo.build import Parameters
 from passo.console import console
 from passo.engine import model_engine
+from passo.output import write_text
 from passo.toolchain import paths
 from passo_stm32.board import make_firmware
 from passo_stm32.grbl_board import FOLDER, GrblBoard, grbl_elf
@@ -144,5 +145,5 @@ def bench(count: int = LINES, report: Path = REPORT) -> None:
         streamed=f"{rate.seconds:.3f}",
         memory=memory(),
     )
-    report.write_text(text, encoding="utf-8")
+    write_text(report, text)
     print(text)

@@ -12,6 +12,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
+from passo.output import write_bytes
 from passo.toolchain import paths
 from passo_fpga import block_ram
 from passo_fpga.complaints import complaints, packer_complaints
@@ -156,7 +157,7 @@ def pack(design: Design, placed: Placed, options: Sequence[str], path: Path) -> 
     check(family.pack, arguments, placed.folder, PACK_LOG)
     complained = packer_complaints((placed.folder / PACK_LOG).read_text())
     if not complained:
-        shutil.copy(placed.folder / made, path)
+        write_bytes(path, (placed.folder / made).read_bytes())
     return complained
 
 

@@ -5,6 +5,7 @@ import json
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
+from passo.output import write_text
 from passo.toolchain import paths
 from passo_fpga.boards import FOLDER, TABLE, Board, Pin
 from passo_fpga.design import Design
@@ -48,8 +49,8 @@ def generate(
     family = board.device.family
     folder.mkdir(parents=True, exist_ok=True)
     pll, pins = folder / "passo_board_pll.v", folder / f"pins.{family.pins_suffix}"
-    pins.write_text(pin_file(board, axes, parts))
-    pll.write_text(pll_file(board, mhz))
+    write_text(pins, pin_file(board, axes, parts))
+    write_text(pll, pll_file(board, mhz))
     design = Design(
         name=f"board-{board.name}",
         device=board.device,

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from passo.console import console, table
+from passo.output import write_text
 from passo.toolchain import paths
 from passo_fpga.devices import DEVICES
 from rich.console import Console
@@ -44,7 +45,7 @@ def write(report: dict[str, Any]) -> None:
             )
         ),
     }
-    PAGE.write_text(template.format(**parts), encoding="utf-8")
+    write_text(PAGE, template.format(**parts))
     write_goals(report)
 
 
@@ -80,7 +81,7 @@ def write_block(page: Path, block: str, begin: str = BEGIN, end: str = END) -> N
     _, _, after = rest.partition(end)
     if not rest or end not in rest:
         raise ValueError(f"{page.name} lacks the marks '{begin}' and '{end}'")
-    page.write_text(f"{before}{begin}\n{block}\n{end}{after}", encoding="utf-8")
+    write_text(page, f"{before}{begin}\n{block}\n{end}{after}")
 
 
 def markdown(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

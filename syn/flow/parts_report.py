@@ -12,7 +12,7 @@ from functools import partial
 from typing import Any
 
 from passo.console import console, stages, table
-from passo.report import write_json
+from passo.output import write_json
 from passo.toolchain import paths
 from passo_fpga.design import Design
 from passo_fpga.devices import DEVICES, SPI_MHZ, Device

@@ -18,7 +18,7 @@ from threading import Lock
 from typing import Any
 
 from passo.console import console, stages
-from passo.report import write_json
+from passo.output import write_json
 from passo.toolchain import paths
 from passo_fpga import pages, parts_report
 from passo_fpga.design import Design

@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: MIT
 """The grbl console on the C model, and what it has said."""
 
+import re
 from typing import Any
 
 from passo.grbl import Grbl
+
+ROOM = 255  # bytes
 
 
 class GrblConsole:
@@ -11,11 +14,12 @@ class GrblConsole:
 
     def __init__(self, engine: Any, machine: Any, *settings: Any):
         self.engine = engine
-        self.said = ""
+        self.said = self.log = ""
         self.grbl = Grbl(engine, machine, self.write, *settings)
 
     def write(self, text: str) -> None:
         self.said += text
+        self.log += text
 
     def take_all(self) -> str:
         """What it has said since the last call."""
@@ -30,6 +34,42 @@ class GrblConsole:
         """What it says to a line."""
         self.grbl.line(text.encode("latin-1"))
         return self.take()
+
+    def limit(self, patience: float) -> None:
+        """Simulated seconds that it waits at most."""
+        wait = self.grbl.wait
+        self.grbl.wait = lambda until, seconds=patience: wait(until, min(seconds, patience))
+
+    def send(self, data: bytes, seconds: float = 0) -> str:
+        """What it says to bytes of one batch, at once and in a time."""
+        self.take_all()
+        self.grbl.type(data)
+        self.grbl.poll()
+        self.run(seconds)
+        return self.take()
+
+    def run(self, seconds: float) -> None:
+        """Let time pass."""
+        self.grbl.wait(lambda: False, seconds)
+
+    def status(self) -> dict[str, str]:
+        """A status report: state and fields."""
+        (text,) = re.findall(r"<(.*)>", self.send(b"?"))
+        state, *fields = text.split("|")
+        return {"state": state, **dict(field.split(":", 1) for field in fields)}
+
+    def fields(self, name: str) -> list[float]:
+        """The numbers of a field of a status report."""
+        return [float(number) for number in self.status()[name].split(",")]
+
+    @property
+    def answers(self) -> list[str]:
+        """All since the beginning."""
+        return re.findall(r"^(?:ok|error:\d+)(?=\r$)", self.log, re.M)
+
+    def finish(self) -> None:
+        """Wait until all lines are answered, and it is idle."""
+        assert self.grbl.wait(lambda: self.grbl.room == ROOM and not self.grbl.c.owes and self.grbl.is_idle)
 
     def rest(self) -> None:
         """Wait until it is idle."""

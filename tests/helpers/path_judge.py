@@ -1,19 +1,22 @@
 # SPDX-License-Identifier: MIT
 """Judges a path by the steps that left the pins: nothing here knows the planner or the core.
 
-Each axis makes the steps of each line in order, so every step has a known place on the path. Places and times
-give speeds and accelerations along the path, and with the directions of the lines those of each axis.
+Each axis makes the steps of each line in order, so every step has a known place on the path. Places and
+times give speeds and accelerations along the path, and with the directions of the lines those of each
+axis. All parts of the acceleration of an axis together are those of the judge of axes.
 """
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from passo.axis_judge import Marks, faults, shares
 from passo.move_forms import UNIT_Q32
 from passo.moves import q32
 from passo.path import PathSettings
+from passo.path_rounding import Line
 
-from benchmarks.path_reference import Limits, Line, limits_of
+from tests.helpers.path_limits import Limits, limits_of
 from tests.helpers.path_player import Played
 
 WINDOW = 2e-3  # seconds over which speeds are measured
@@ -25,6 +28,7 @@ LATE = 16  # clocks that a step may wait for its pins
 SPEED_BOUND = 1.001
 ACCELERATION_BOUND = 1.02
 JERK_BOUND = 1.03
+AXIS_NAMES = ("speed", "acceleration")  # of the judge of axes
 TICKS_BOUND = 4  # ticks of acceleration by which the speed at a corner may be off
 
 
@@ -174,6 +178,8 @@ def judge(lines: Sequence[Line], settings: PathSettings, played: Played, rests: 
     ):
         if ratio > bound:
             problems.append(f"the {name} is {ratio:.4f} of its limit")
+    marks = Marks.of(lines, settings, played.clocks, played.steps)
+    problems += faults(shares(played.clocks, played.steps, settings, marks, AXIS_NAMES))
     return Verdict(speed_ratio, acceleration_ratio, corner_ratio, jump_ratio, problems, jerk_ratio, peak_jerk)
 
 

@@ -222,16 +222,16 @@ function visible(view, name, factor) {
 }
 
 function addMotionCharts(parent, view) {
-    const { hz, facts, planned } = view.motion, units = new Set(facts.runs.map(run => run.unit));
+    const { hz, facts, planned, machine } = view.motion, units = new Set(facts.runs.map(run => run.unit));
     const unit = units.size === 1 ? [...units][0] : "steps", same = units.size === 1;
     const per = axis => (same ? axis.per_step : 1);
     const shared = { height: 210, decimated: most => `up to ${grouped(most)} steps per pixel, drawn as their range`, exact: "every step drawn" };
     new TimeChart(parent, view, {
-        ...shared, id: "position", title: "Position", unit,
+        ...shared, id: "position", title: machine ? "Position of the machine" : "Position", unit,
         ideal: planned && ((axis, clock) => axis.ideal(clock)[1] * per(axis)),
         range: () => visible(view, "counted", per),
         draw: (ctx, scale, axis) => drawTrace(ctx, scale, axis.rises, axis.counted, axis.extremes.counted,
-            { before: 0, factor: per(axis), end: axis.end }),
+            { before: axis.start, factor: per(axis), end: axis.end }),
         read: (axis, clock) => `${plain(axis.position(clock) * per(axis), 9)}`,
     });
     const speed = per => axis => per(axis) * hz;

@@ -79,7 +79,8 @@ class Axis {
         Object.assign(this, facts, { motion: run, rises, falls, turns });
         const count = rises.length;
         this.counted = new Float64Array(count);  // position from each step on
-        for (let i = 0, turn = 0, position = 0; i < count; i++) {
+        this.start ??= 0;  // position of the machine before the first step
+        for (let i = 0, turn = 0, position = this.start; i < count; i++) {
             while (turn < turns.length && turns[turn] <= rises[i]) turn++;
             position += turn % 2 ? -1 : 1;
             this.counted[i] = position;
@@ -111,7 +112,7 @@ class Axis {
             while (plan + 1 < this.plans.length && i >= this.plans[plan + 1].first) plan++;
             return plan;
         };
-        for (let i = 0, own = planOf(0), way = this.counted[0]; i + 1 < count; i++) {
+        for (let i = 0, own = planOf(0), way = this.counted[0] - this.start; i + 1 < count; i++) {
             const next = planOf(i + 1), nextWay = this.counted[i + 1] - this.counted[i];
             if (way === nextWay && next - own <= 1) this.speeds[i] = way / Math.max(1, this.rises[i + 1] - this.rises[i]);
             [own, way] = [next, nextWay];
@@ -157,10 +158,10 @@ class Axis {
         return made ? this.speeds[made - 1] || 0 : 0;
     }
 
-    // Position counted at the pins.
+    // Position of the machine, counted at the pins.
     position(clock) {
         const made = lower(this.rises, clock + 1e-9);
-        return made ? this.counted[made - 1] : 0;
+        return made ? this.counted[made - 1] : this.start;
     }
 
     // Level of STEP or DIR, and the clocks of the edges before and after.

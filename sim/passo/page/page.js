@@ -26,8 +26,8 @@ function addSummary(motion) {
     const { facts, hz } = motion, { summary } = facts;
     document.getElementById("name").textContent = summary.name;
     const verdict = document.getElementById("verdict");
-    verdict.textContent = summary.ok ? (motion.machine ? "every step made and counted" : "exact: every step made, in the planned time") : summary.problems.join("; ");
-    verdict.className = summary.ok ? "good" : "bad";
+    verdict.textContent = summary.verdict;
+    verdict.className = { complete: "good", stopped: "stopped" }[summary.outcome] ?? "bad";
     const tiles = document.getElementById("tiles");
     tiles.textContent = "";
     const tile = (value, text) => {
@@ -39,7 +39,7 @@ function addSummary(motion) {
     tile(duration(facts.clocks, hz), `${grouped(facts.clocks)} clocks at ${plain(hz / 1e6)} MHz`);
     tile(`${motion.axes.length}`, facts.runs.length > 1 ? `axes on ${facts.runs.length} channels` : motion.axes.length > 1 ? "axes" : "axis");
     if (summary.matched_edges !== null) tile(grouped(summary.matched_edges), "edges equal in RTL and C model");
-    if (motion.planned) tile(plain(Math.max(0, ...summary.axes.map(axis => axis.largest_error_steps)), 2), "steps, largest timing error");
+    if (motion.planned && summary.axes.some(axis => axis.pulses)) tile(plain(Math.max(0, ...summary.axes.map(axis => axis.largest_error_steps)), 2), "steps, largest timing error");
 }
 
 function addToolbar(bar, view) {

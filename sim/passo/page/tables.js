@@ -46,7 +46,7 @@ function addPlans(parent, view) {
             show: () => view.set(from - 0.02 * clocks, from + 1.02 * clocks),
         })), { open: moves.length <= 40 }).id = "moves";
 
-    addTable(parent, "Axes", ["axis", "steps commanded", "steps made (sum)", "pulses", "position at the end", "largest error, steps", ...PIN_TIMES],
+    addTable(parent, "Axes", ["axis", "steps commanded", "steps made (sum)", "pulses", "position of the core", "largest error, steps", ...PIN_TIMES],
         summary.axes.map((own, n) => ({
             cells: [axes[n].name, own.commanded, own.emitted, own.pulses, own.position, plain(own.largest_error_steps, 3), ...pinTimes(axes[n].motion, hz)],
         }))).id = "axes";
@@ -56,8 +56,8 @@ function addPlans(parent, view) {
 function addScene(parent, view) {
     const { facts: { summary }, hz, axes } = view.motion;
     const figures = own => (own.phase_counts === undefined ? "" : `within ${plain(own.largest_distance_counts, 3)} counts of the pitch, phase ${own.phase_counts} counts`);
-    addTable(parent, `Moves (${summary.moves.length})`, ["moves", "kind", "starts at", "takes", "result", "thread"], summary.moves.map(own => ({
-        cells: [own.numbers.join(", "), own.kind, duration(own.start_clock, hz), duration(own.end_clock - own.start_clock, hz), own.result, figures(own)],
+    addTable(parent, `Moves (${summary.moves.length})`, ["moves", "kind", "starts at", "takes", "steps asked", "steps made", "result", "thread"], summary.moves.map(own => ({
+        cells: [own.numbers.join(", "), own.kind, duration(own.start_clock, hz), duration(own.end_clock - own.start_clock, hz), own.steps_asked ?? "–", own.steps_made ?? "–", own.result, figures(own)],
         show: () => view.set(1.02 * own.start_clock - 0.02 * own.end_clock, 1.02 * own.end_clock - 0.02 * own.start_clock),
     }))).id = "moves";
     addTable(parent, "Axes", ["axis", "steps made (sum)", "pulses", "position of the driver", "position of the machine", ...PIN_TIMES], summary.axes.map((own, n) => ({
@@ -70,7 +70,7 @@ function addScene(parent, view) {
     }
     if (summary.encoders.length) {
         addTable(parent, "Encoders", ["axis", "samples", "largest error, steps", "rms", "greatest following error"], summary.encoders.map(own => ({
-            cells: [own.axis, own.samples, ...[own.largest_error_steps, own.rms_error_steps, own.greatest_following_error_steps].map(value => plain(value, 3))],
+            cells: [own.axis, own.samples, ...[own.largest_error_steps, own.rms_error_steps, own.greatest_following_error_steps].map(value => plain(value ?? NaN, 3))],
         }))).id = "encoders";
     }
 }
@@ -86,7 +86,7 @@ function addTables(parent, view) {
     else addPlans(parent, view);
 
     const settings = [
-        ["move file", facts.file], ["engine", { both: "RTL and C model, compared edge for edge", rtl: "RTL", model: "C model" }[summary.engine] ?? summary.engine],
+        ["move file", facts.file], ["engine", summary.matched_edges !== null ? "RTL and C model, compared edge for edge" : { rtl: "RTL", model: "C model" }[summary.engine] ?? summary.engine],
         ["clock", `${grouped(hz)} Hz`], ["tick", `${grouped(1 << facts.parameters.tick_log2)} clocks`],
         ["core", `${facts.parameters.channels} × ${facts.parameters.axes} axes, queues of ${1 << facts.parameters.line_queue_log2} lines and ${1 << facts.parameters.ramp_queue_log2} ramps`],
         ["Passo", facts.version],

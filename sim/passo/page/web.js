@@ -91,13 +91,14 @@ function motionOf(events, names, hz, unit) {
     const used = edges.map((_, n) => n).filter(n => edges[n][0].length || n === 0);
     const own = used.map(n => edges[n].map(list => Float64Array.from(list)));
     const clocks = times[times.length - 1].clock;
+    const ended = !before.running;
     const facts = {
         clock_hz: hz, clocks, events: times, alpha_reset: 5, file: "", version: document.body.dataset.version,
         parameters: { channels: 1, axes, tick_log2: 7, line_queue_log2: 8, ramp_queue_log2: 4 },
         runs: [{ channel: 0, start: 0, clocks, unit, plans: [], pins: null }],
         axes: used.map(n => ({ run: 0, axis: n, ...names[n] })),
         summary: {
-            name: "Try Passo", ok: true, problems: [], engine: "model", matched_edges: null, moves: [],
+            name: "Try Passo", outcome: ended ? "complete" : "stopped", verdict: ended ? "done" : "the motion has not ended", engine: "model", matched_edges: null, moves: [],
             axes: own.map(([rises]) => ({ pulses: rises.length })),
         },
     };
@@ -157,9 +158,11 @@ async function openWeb() {
                 answer.textContent = text;
                 const wrong = text.split("\n").filter(line => line.startsWith("error"));
                 if (motion) showMotion(motion);
-                const verdict = document.getElementById("verdict");
-                verdict.textContent = wrong.length ? wrong.join("; ") : motion ? "done" : "nothing moved";
-                verdict.className = wrong.length ? "bad" : "good";
+                if (wrong.length || !motion) {
+                    const verdict = document.getElementById("verdict");
+                    verdict.textContent = wrong.join("; ") || "nothing moved";
+                    verdict.className = wrong.length ? "bad" : "stopped";
+                }
             } catch (error) {
                 showFailure(error);
             }

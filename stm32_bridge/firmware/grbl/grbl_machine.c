@@ -7,6 +7,7 @@
 #define LINEAR_AXES 2u /* X and Y; Z and what follows are slow */
 
 static const uint16_t VALUES[PASSO_GRBL_SETTINGS] = {
+    [PASSO_GRBL_IDLE_DELAY] = 255,
     [PASSO_GRBL_REPORT] = 3,
     [PASSO_GRBL_HOMING] = HOMED != 0,
     [PASSO_GRBL_HARD_LIMITS] = (LIMITS_LOW | LIMITS_HIGH) != 0,
@@ -25,7 +26,7 @@ static const uint16_t AXIS_VALUES[PASSO_GRBL_AXIS_SETTINGS][2] = {
     [PASSO_GRBL_TRAVEL] = {200, 200},
 };
 
-static void set_defaults(struct passo_grbl_settings *settings)
+static void grbl_defaults(struct passo_grbl_settings *settings)
 {
 	for (unsigned i = 0; i < PASSO_GRBL_SETTINGS; i++)
 		settings->value[i] = VALUES[i] * MILLION;
@@ -50,8 +51,8 @@ void grbl_machine(
 	    .homes = HOMES,
 	    .homed = HOMED,
 	    .probe = PROBE,
+	    .defaults = grbl_defaults,
 	    .pages = pages};
 	if (setup->path.machine.axes > AXES_USED)
 		setup->path.machine.axes = AXES_USED;
-	set_defaults(&setup->defaults);
 }

@@ -16,7 +16,7 @@
 #define SEARCH_MILLISECONDS 100u
 
 static struct passo_path_item items[LOOK_AHEAD];
-static struct passo_path_planner path = {.items = items, .capacity = LOOK_AHEAD};
+static struct passo_path_planner path;
 static struct passo_path_feed feed;
 static struct passo_gcode gcode;
 static struct passo_player player;
@@ -141,6 +141,8 @@ static void connect(void)
 static void start(void)
 {
 	connect();
+	path.items = items;
+	path.capacity = LOOK_AHEAD;
 	grbl_machine(&setup, &passo, &flash_pages);
 	passo_gcode_open(
 	    &gcode, &(struct passo_gcode_settings){.axes = setup.path.machine.axes, .arc_tolerance = 1});

@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: MIT
+"""What a program of G-code does, in mm and machine coordinates, whoever has read it."""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+
+PLANES = {"XY": (0, 1, 2), "XZ": (2, 0, 1), "YZ": (1, 2, 0)}
+NOWHERE = 0.01  # mm; random lines are longer
+
+
+@dataclass(frozen=True)
+class Outputs:
+    """Of spindle and coolant."""
+
+    turns: int = 0  # 1 clockwise, -1 the other way
+    rpm: float = 0
+    flood: bool = False
+    mist: bool = False
+
+    def differs(self, other: "Outputs") -> bool:
+        """Speeds are those of a spindle that turns."""
+        apart = self.turns != 0 and abs(self.rpm - other.rpm) > 0.02
+        return apart or (self.turns, self.flood, self.mist) != (other.turns, other.flood, other.mist)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A line, an arc, or a dwell, in mm and machine coordinates."""
+
+    label: int  # of its line, from 1 on
+    end: tuple[float, ...] = ()
+    feed: float = 0  # mm/min; 0: rapid
+    centre: tuple[float, float] | None = None  # of an arc, in its plane
+    plane: tuple[int, int, int] = PLANES["XY"]
+    clockwise: bool = False
+    dwell: float | None = None  # s
+    outputs: Outputs = field(default_factory=Outputs)
+    tolerance: float = 0  # mm, of G64
+    unit: float = 1  # mm: the coarsest one that a figure before was printed in
+
+
+@dataclass(frozen=True)
+class Played:
+    """What a program does, up to a line that is refused."""
+
+    motions: list[Motion]
+    refused: int = 0  # label; 0: none
+    why: str = ""
+
+
+def labelled(program: Sequence[str]) -> list[str]:
+    """With a number before each line, by which rs274 names what it does."""
+    return [line if line.startswith("N") else f"N{label} {line}" for label, line in enumerate(program, 1)]
+
+
+def moving(motions: Sequence[Motion]) -> Iterator[Motion]:
+    """Without lines that go nowhere: rs274 calls one for a G1 without axis words."""
+    at = (0.0, 0.0, 0.0)
+    for motion in motions:
+        if motion.dwell is not None or motion.centre is not None or math.dist(motion.end, at) > NOWHERE:
+            yield motion
+        at = motion.end or at
+
+
+def difference(a: Motion, b: Motion) -> str:
+    """What two motions do not share; empty: nothing."""
+    near = 4e-4 * max(a.unit, b.unit)
+    if (
+        a.label != b.label
+        or (a.dwell is None) != (b.dwell is None)
+        or (a.centre is None) != (b.centre is None)
+    ):
+        return "kind"
+    if a.outputs.differs(b.outputs):
+        return "outputs"
+    if abs(a.tolerance - b.tolerance) > near:
+        return "tolerance"
+    if a.dwell is not None and b.dwell is not None:
+        return "dwell" if abs(a.dwell - b.dwell) > 1e-4 else ""
+    if math.dist(a.end, b.end) > near:
+        return "target"
+    if (a.feed == 0) != (b.feed == 0) or abs(a.feed - b.feed) > near + 1e-4 * a.feed:
+        return "feed"
+    if a.centre is not None and b.centre is not None:
+        if (a.plane, a.clockwise) != (b.plane, b.clockwise):
+            return "way round"
+        if math.dist(a.centre, b.centre) > near:
+            return "centre"
+    return ""

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: MIT
+"""Programs of G-code on the interpreter of LinuxCNC, rs274 of Debian.
+
+It prints four decimals of the units in force, so its figures are exact to a few of the last one.
+"""
+
+import os
+import re
+import subprocess
+import tempfile
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from passo.failure import Failure
+from passo.toolchain import paths
+
+from benchmarks.gcode_motion import PLANES, Motion, Outputs, Played, labelled
+
+RS274 = paths.root / ".venv" / "rs274"  # by tools/setup.sh gcode
+CALL = re.compile(r" *\d+ N(\S+) +(\w+)\((.*)\)")
+INCH = 25.4
+SECONDS = 20
+TOOLS = 100
+LOWEST = 0.1 * INCH  # mm/min: it may raise lower feeds of G93
+TURNS = {"START_SPINDLE_CLOCKWISE": 1, "START_SPINDLE_COUNTERCLOCKWISE": -1, "STOP_SPINDLE_TURNING": 0}
+
+
+def play_rs274(program: Sequence[str]) -> Played:
+    """The calls that rs274 makes, and the line at which it stops."""
+    if not (RS274 / "rs274").exists():
+        raise Failure("rs274 is missing: tools/setup.sh gcode")
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "part.ngc").write_text("\n".join([*labelled(program), "M2", ""]))
+        (folder / "vars").touch()
+        (folder / "tools").write_text("".join(f"T{tool} P{tool}\n" for tool in range(1, TOOLS)))
+        command = [RS274 / "rs274", "-g", "-n", "2", "-v", "vars", "-t", "tools", "part.ngc", "calls"]
+        done = subprocess.run(
+            command,
+            cwd=folder,
+            env=os.environ | {"LD_LIBRARY_PATH": str(RS274)},
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            timeout=SECONDS,
+        )
+        calls = (folder / "calls").read_text().splitlines()
+    said = [line for line in done.stderr.splitlines() if line and line != "executing"]
+    if done.returncode == 0:
+        return Played(list(_motions(calls)))
+    if done.returncode != 1 or not said:
+        raise Failure(f"rs274: {done.returncode} {done.stderr}")
+    label = re.match(r"N *(\d+)", said[-1])
+    if not label:
+        raise Failure(f"rs274: {done.stderr}")
+    return Played(list(_motions(calls)), int(label[1]), said[0])
+
+
+def _motions(calls: Sequence[str]) -> Iterator[Motion]:
+    scale, unit, feed, outputs, plane, tolerance = 1.0, 1.0, 0.0, Outputs(), "XY", 0.0
+    offsets = {name: np.zeros(3) for name in ("SET_G5X_OFFSET", "SET_G92_OFFSET", "USE_TOOL_LENGTH_OFFSET")}
+    for line in calls:
+        if not (call := CALL.match(line)):
+            continue
+        label, name, text = int(call[1]) if call[1].isdigit() else 0, call[2], call[3]
+        numbers = [float(n) for n in re.findall(r"-?\d+\.?\d*", text)] if name != "COMMENT" else []
+        origin = np.sum(list(offsets.values()), axis=0)
+        made = Motion(label, outputs=outputs, tolerance=tolerance, unit=unit)
+        match name:
+            case "USE_LENGTH_UNITS":
+                scale = INCH if "INCHES" in text else 1.0
+                unit = max(unit, scale)
+            case "SET_FEED_RATE":
+                feed = numbers[0] * scale
+            case "SET_NAIVECAM_TOLERANCE":
+                tolerance = numbers[0] * scale
+            case "SET_MOTION_CONTROL_MODE":  # G61: without the call above
+                tolerance = 0.0
+            case "SELECT_PLANE":
+                plane = text[-2:]
+            case "SET_G5X_OFFSET":
+                offsets[name] = np.array(numbers[1:4]) * scale
+            case "SET_G92_OFFSET" | "USE_TOOL_LENGTH_OFFSET":
+                offsets[name] = np.array(numbers[:3]) * scale
+            case "STRAIGHT_TRAVERSE" | "STRAIGHT_FEED":
+                end = tuple((np.array(numbers[:3]) * scale + origin).tolist())
+                yield replace(made, end=end, feed=feed if name == "STRAIGHT_FEED" else 0)
+            case "ARC_FEED":
+                axes = PLANES[plane]
+                end_of = dict(zip(axes, (numbers[0], numbers[1], numbers[5]), strict=True))
+                end = tuple(end_of[axis] * scale + origin[axis] for axis in range(3))
+                centre = tuple(numbers[2 + i] * scale + origin[axes[i]] for i in range(2))
+                turns = {"plane": axes, "clockwise": numbers[4] < 0}
+                yield replace(made, end=end, feed=feed, centre=centre, **turns)
+            case "DWELL":
+                yield replace(made, dwell=numbers[0])
+            case "SET_SPINDLE_SPEED":
+                outputs = replace(outputs, rpm=numbers[1])
+            case "START_SPINDLE_CLOCKWISE" | "START_SPINDLE_COUNTERCLOCKWISE" | "STOP_SPINDLE_TURNING":
+                outputs = replace(outputs, turns=TURNS[name])
+            case "FLOOD_ON" | "FLOOD_OFF":
+                outputs = replace(outputs, flood=name == "FLOOD_ON")
+            case "MIST_ON" | "MIST_OFF":
+                outputs = replace(outputs, mist=name == "MIST_ON")

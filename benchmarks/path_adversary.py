@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: MIT
+"""Many adversarial paths on all cores: the worst figures, and the smallest case of each kind of fault.
+
+    python -m benchmarks.path_adversary [PATHS [SEED [--keep]]]
+
+With --keep the smallest cases go to benchmarks/path_worst.json; tests/test_path_search.py has all of it.
+"""
+
+import os
+import sys
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass, field
+from typing import Any
+
+from passo.console import console, progress, table
+from passo.toolchain import paths
+
+from benchmarks.path_measure import KINDS, Measured, compare, play
+from benchmarks.path_paths import Case, read_cases, write_cases
+from benchmarks.path_search import BeyondError, search
+
+PATHS, BATCH = 10_000, 50
+WORST = paths.root / "benchmarks" / "path_worst.json"
+FIGURES: dict[str, Callable[[Measured], float]] = {
+    "unlimited": lambda one: one.unlimited,
+    "look_ahead": lambda one: one.look_ahead,
+    "shaped": lambda one: one.shaped,
+    **{name: lambda one, name=name: one.share(name) for name in ("speed", "acceleration", "jerk")},
+}
+
+
+@dataclass
+class Found:
+    """Of some paths: the worst figures with their cases, and how many are beyond a bound."""
+
+    paths: int = 0
+    worst: dict[str, tuple[float, Case]] = field(default_factory=dict)
+    beyond: dict[str, int] = field(default_factory=dict)
+    batches: dict[str, int] = field(default_factory=dict)  # seed of the first batch with a fault of a kind
+
+    def see(self, case: Case, measured: Measured) -> None:
+        """Count a case."""
+        self.paths += 1
+        for name, figure in FIGURES.items():
+            if figure(measured) > self.worst.get(name, (0.0, case))[0]:
+                self.worst[name] = (figure(measured), case)
+        for kind in measured.faults:
+            self.beyond[kind] = self.beyond.get(kind, 0) + 1
+
+    def add(self, other: "Found", seed: int) -> None:
+        """Count those of a batch."""
+        self.paths += other.paths
+        for name, (value, case) in other.worst.items():
+            if value > self.worst.get(name, (0.0, case))[0]:
+                self.worst[name] = (value, case)
+        for kind, count in other.beyond.items():
+            self.beyond[kind] = self.beyond.get(kind, 0) + count
+            self.batches.setdefault(kind, seed)
+
+
+def batch(seed: int, count: int) -> Found:
+    """Draw and measure so many."""
+    found = Found()
+    search(count, seed, known=frozenset(KINDS), seen=found.see)
+    return found
+
+
+def only(kind: str) -> Callable[[Case], Measured]:
+    """Measures no more than a kind of fault needs."""
+
+    def check(case: Case) -> Measured:
+        if kind in ("slow", "slow48"):
+            return compare(case)
+        measured = Measured()
+        play(case, measured)
+        return measured
+
+    return check
+
+
+def smallest(kind: str, seed: int, count: int) -> BeyondError | None:
+    """Draw a batch again, and shrink its first case of this kind."""
+    return search(count, seed, only(kind), frozenset(KINDS) - {kind})
+
+
+def adversaries(count: int = PATHS, seed: int = 1) -> Found:
+    """Measure so many paths on all cores."""
+    found, jobs = Found(), {}
+    with progress("adversarial paths", count) as report, ProcessPoolExecutor(os.cpu_count()) as pool:
+        for number in range(-(-count // BATCH)):
+            own = seed * 1_000_003 + number
+            jobs[pool.submit(batch, own, min(BATCH, count - number * BATCH))] = own
+        for job in as_completed(jobs):
+            found.add(job.result(), jobs[job])
+            report(min(found.paths, count))
+    return found
+
+
+def show(found: Found) -> None:
+    """Print the figures."""
+    shown = table(f"{found.paths:,} adversarial paths", "figure", "worst", "of")
+    for name, (value, case) in found.worst.items():
+        shown.add_row(name, f"{value:.4f}", repr(case))
+    for kind in KINDS:
+        shown.add_row(f"beyond: {kind}", f"{found.beyond.get(kind, 0)}", "")
+    console.print(shown)
+
+
+def figures(found: Found) -> dict[str, Any]:
+    """For the report."""
+    worst = {name: value for name, (value, _) in found.worst.items()}
+    return {"paths": found.paths, "worst": worst, "beyond": found.beyond}
+
+
+def main(words: list[str]) -> None:
+    """Search, show and keep."""
+    numbers = [int(word) for word in words if word.isdigit()]
+    count, seed = (numbers + [PATHS, 1][len(numbers) :])[:2]
+    found = adversaries(count, seed)
+    show(found)
+    kept = read_cases(WORST)
+    for kind, own in found.batches.items():
+        if (error := smallest(kind, own, BATCH)) is not None:
+            console.print(str(error))
+            kept[f"{kind} {own}"] = error.case
+    if "--keep" in words:
+        write_cases(WORST, kept)
+    if found.beyond:
+        raise SystemExit("a path is beyond a bound")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

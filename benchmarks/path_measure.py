@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: MIT
+"""Measures a path: its time against the fastest motion, and its pins against the limits of the axes."""
+
+from dataclasses import dataclass, field
+
+from passo.axis_judge import Marks, Share, shares
+from passo.driver import DriverError
+from passo.path import LOOK_AHEAD, PathSettings
+from passo.path_rounding import Line
+from passo.plan import PlanError
+
+from benchmarks.path_paths import Case
+from benchmarks.path_plan import plan
+from benchmarks.path_reference import fastest
+from tests.helpers.path_player import Player
+
+UNLIMITED_AIM, LOOK_AHEAD_AIM = 1.02, 1.05
+SHAPED_AIM = 2.1  # a ramp over several lines has the slope of the weakest axis, doubled as often as possible
+KINDS = ("underrun", "fault", "slow", "slow48", "speed", "acceleration", "jerk")
+SHORTEST = 0.03  # s: in less, ticks count
+LONGEST = 4.0  # s: what takes longer is not played
+
+
+@dataclass
+class Measured:
+    """Of one case. Ratios are of the fastest motion; 0: not measured."""
+
+    lines: int = 0
+    optimum: float = 0.0
+    unlimited: float = 0.0
+    look_ahead: float = 0.0
+    shaped: float = 0.0  # all lines known, of another profile than linear: the reference is a bound
+    shares: list[Share] = field(default_factory=list)
+    fault: str = ""  # the core stopped, or the end is not exact
+
+    def share(self, name: str) -> float:
+        """The greatest of all axes."""
+        return max((share.share for share in self.shares if share.name == name), default=0.0)
+
+    @property
+    def faults(self) -> dict[str, str]:
+        """What is beyond its bound, by kind."""
+        found = {}
+        if self.fault:
+            found["underrun" if "UNDERRUN" in self.fault else "fault"] = self.fault
+        if self.unlimited > UNLIMITED_AIM:
+            found["slow"] = f"{self.unlimited:.4f} times the optimum, all lines known"
+        if self.look_ahead > LOOK_AHEAD_AIM:
+            found["slow48"] = f"{self.look_ahead:.4f} times the optimum, {LOOK_AHEAD} lines"
+        if self.shaped > SHAPED_AIM:
+            found["slow"] = f"{self.shaped:.4f} times the optimum with a shape, all lines known"
+        for share in sorted(self.shares, key=lambda share: share.share):
+            if share.share > share.bound:
+                found[share.name] = str(share)
+        return found
+
+
+def compare(case: Case) -> Measured:
+    """Against the fastest motion; a short path is all ticks."""
+    lines, settings = case.lines, case.settings
+    motion = fastest(lines, settings)
+    measured = Measured(len(lines), motion.seconds)
+    if measured.optimum < SHORTEST:
+        return measured
+    try:
+        _ratios(measured, lines, settings, motion.fits(LOOK_AHEAD))
+    except PlanError as error:
+        measured.fault = str(error)
+    return measured
+
+
+def _ratios(measured: Measured, lines: list[Line], settings: PathSettings, fits: bool) -> None:
+    ratio = plan(lines, settings, len(lines) + 4).seconds / measured.optimum
+    if settings.profile == "linear":
+        measured.unlimited = ratio
+        if fits:
+            measured.look_ahead = plan(lines, settings, LOOK_AHEAD).seconds / measured.optimum
+    elif settings.profile != "jerk":  # whose ramps are longer for the jerk
+        measured.shaped = ratio
+
+
+def play(case: Case, measured: Measured) -> None:
+    """Through driver and link on the C model, judged at the pins."""
+    lines, settings = case.lines, case.settings
+    player = Player(settings, case.look_ahead, settings.clock_hz // case.polls)
+    try:
+        for target, feed in lines:
+            player.add(target, feed)
+        played = player.finish()
+    except DriverError:
+        measured.fault = f"{player.driver.cause.name} at {player.engine.clock / settings.clock_hz:.3f} s"
+        return
+    finally:
+        player.engine.close()
+    if played.drained:
+        measured.fault = f"{played.drained} substeps were drained"
+    marks = Marks.of(lines, settings, played.clocks, played.steps)
+    measured.shares = shares(played.clocks, played.steps, settings, marks)
+
+
+def measure(case: Case) -> Measured:
+    """Both."""
+    measured = compare(case)
+    if measured.optimum <= LONGEST:
+        play(case, measured)
+    return measured

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: MIT
+"""The search for the worst path: Hypothesis draws recipes, aims at the greatest figures, shrinks faults."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from hypothesis import HealthCheck, Phase, given, settings, target
+from hypothesis import seed as seeded
+from hypothesis import strategies as st
+
+from benchmarks.path_measure import Measured, measure
+from benchmarks.path_paths import JERKS, LINES_MAX, MACHINES, RAPID, Case, Piece, seconds_at_feed
+
+SECONDS = 1.5  # of a path at its feeds; longer ones are cut
+SIZES = (0.001, 0.0042, 0.02, 0.1, 0.3, 1.0, 5.0, 30.0, 200.0, 1000.0)  # mm, and all between
+FEEDS = (RAPID, 0.1, 3.0, 60.0, 300.0, 1000.0, 3000.0, 6000.0, 30_000.0)  # mm/min
+BENDS = (0.0, 0.01, 0.1, 0.5, 1.0, 3.4, 5.7, 10.0, 30.0, 45.0, 90.0, 150.0, 179.0)  # degrees
+LOOK_AHEADS = (8, 16, 48, 100, 300, 1000)
+POLLS = (500, 1000, 2000, 8000)
+COUNTS = (1, 2, 3, 5, 10, 30, 100, 400)
+
+Check = Callable[[Case], Measured]
+
+
+class BeyondError(AssertionError):
+    """A case is beyond a bound."""
+
+    def __init__(self, kind: str, case: Case, text: str):
+        self.kind, self.case = kind, case
+        super().__init__(f"{kind}: {text}: {case}")
+
+
+@st.composite
+def pieces(draw: Any) -> Piece:
+    """Some lines."""
+    sizes = draw(st.lists(st.sampled_from(SIZES) | st.floats(0.001, 20), min_size=1, max_size=3))
+    bends = draw(st.lists(st.sampled_from(BENDS) | st.floats(0, 20), min_size=1, max_size=2))
+    sign = draw(st.sampled_from((1, -1, 0)))  # 0: to either side in turn
+    if sign:
+        bends = [sign * bend for bend in bends]
+    else:
+        bends = [*bends, *(-bend for bend in bends)]
+    feeds = draw(st.lists(st.sampled_from(FEEDS) | st.floats(0.1, 30_000), min_size=1, max_size=2))
+    slopes = draw(st.sampled_from(((0.0,), (0.0,), (0.0,), (0.1,), (0.001, -0.001), (5.0,), (1.0, -1.0))))
+    return Piece(
+        draw(st.sampled_from(COUNTS)), *(tuple(round(v, 4) for v in values) for values in (sizes, bends)),
+        tuple(round(v, 2) for v in feeds), slopes,
+    )  # fmt: skip
+
+
+@st.composite
+def arcs(draw: Any) -> Piece:
+    """Chords of an arc, as G-code or a CAM program has them."""
+    radius = draw(st.sampled_from((0.05, 0.5, 2.0, 5.0, 20.0, 200.0)) | st.floats(0.05, 100))
+    chord = min(draw(st.sampled_from((0.001, 0.0042, 0.02, 0.1, 0.35, 2.0))), radius)
+    sign = draw(st.sampled_from((1, -1)))
+    feed = draw(st.sampled_from((RAPID, 300.0, 3000.0, 6000.0, 30_000.0)))
+    bend = sign * round(2 * math.degrees(math.asin(chord / 2 / radius)), 6)
+    turn = draw(st.sampled_from((30, 90, 180, 360, 720)))
+    return Piece(max(1, min(LINES_MAX, int(turn / abs(bend)))), (chord,), (bend,), (feed,))
+
+
+@st.composite
+def fans(draw: Any) -> Piece:
+    """Nearly collinear lines whose feeds alternate."""
+    size = draw(st.sampled_from((0.05, 0.2, 1.0, 3.0, 20.0)))
+    bend = draw(st.sampled_from((0.0, 0.001, 0.1, 1.0, 3.4, 5.7)))
+    bends = draw(st.sampled_from(((bend,), (bend, -bend))))
+    feeds = tuple(draw(st.lists(st.sampled_from((RAPID, 300.0, 1000.0, 6000.0)), min_size=1, max_size=3)))
+    return Piece(draw(st.sampled_from((2, 3, 10, 60))), (size,), bends, feeds)
+
+
+@st.composite
+def cases(draw: Any) -> Case:
+    """A path that takes no more than some seconds."""
+    machine = draw(st.sampled_from(sorted(MACHINES)))
+    profiles = ("linear", "linear", "cosine", "sigmoid", *(("jerk", "jerk") if machine in JERKS else ()))
+    case = Case(
+        machine,
+        tuple(draw(st.lists(pieces() | arcs() | fans(), min_size=1, max_size=4))),
+        draw(st.sampled_from(profiles)),
+        draw(st.sampled_from(LOOK_AHEADS)),
+        draw(st.sampled_from(POLLS)),
+        draw(st.sampled_from((0.0, 45.0, 90.0, 20.0))),
+    )
+    return shortened(case)
+
+
+def shortened(case: Case) -> Case:
+    """The same with fewer lines, if it takes too long."""
+    kept: list[Piece] = []
+    left = SECONDS
+    for piece in case.pieces:
+        one = Case(case.machine, (piece,), case.profile)
+        took = seconds_at_feed(one.lines, one.settings)
+        count = piece.count if took <= left else int(piece.count * left / took)
+        if count == 0 and not kept:
+            return Case(case.machine, (Piece(1, (1.0,)),), case.profile, case.look_ahead, case.polls)
+        if count:
+            kept.append(Piece(count, piece.sizes, piece.bends, piece.feeds, piece.slopes))
+        left -= min(took, left)
+    return Case(case.machine, tuple(kept), case.profile, case.look_ahead, case.polls, case.heading)
+
+
+def search(
+    examples: int,
+    seed: int,
+    check: Check = measure,
+    known: frozenset[str] = frozenset(),
+    seen: Callable[[Case, Measured], None] = lambda case, measured: None,
+) -> BeyondError | None:
+    """Draw so many cases; the smallest that is beyond a bound of a kind that is not known yet, or None."""
+
+    @seeded(seed)
+    @settings(
+        max_examples=examples,
+        database=None,
+        deadline=None,
+        phases=(Phase.generate, Phase.target, Phase.shrink),
+        suppress_health_check=list(HealthCheck),
+        report_multiple_bugs=False,
+    )
+    @given(cases())
+    def drawn(case: Case) -> None:
+        measured = check(case)
+        seen(case, measured)
+        target(measured.unlimited, label="slow")
+        target(measured.share("acceleration"), label="acceleration")
+        for kind, text in measured.faults.items():
+            if kind not in known:
+                raise BeyondError(kind, case, text)
+
+    try:
+        drawn()
+    except BeyondError as error:
+        return error
+    return None

@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: MIT
+ * The acceleration that a curve leaves along the path.
+ *
+ * The limit of an axis is that of its acceleration in all: the part along the path, half the slope of the
+ * square times the unit vector, plus the curvature times the square, both with their signs. So at a square w
+ * an axis that the curve speeds up anyway leaves a slope upward of A - B w at most, with A = 2 a / |u| and B
+ * = 2 |k| / |u|, and one that the curve slows down the same downward. The acceleration along the path alone
+ * keeps all limits as well.
+ *
+ * Each corner turns over a length, half of it before and half behind it; a line has the mean curvature of the
+ * two at its ends.
+ */
+#include "passo_path_private.h"
+
+/* Components of the unit vector below this share are left out: their limit is that of the corner. */
+#define SHARE_MIN (UINT32_C(1) << (PASSO_PATH_UNIT_BITS - 8))
+#define BEND_BITS 48u
+
+static uint64_t magnitude(int64_t value)
+{
+	return value < 0 ? 0 - (uint64_t)value : (uint64_t)value;
+}
+
+/* B w */
+static uint64_t taken(uint64_t bend, uint64_t square)
+{
+	const struct passo_u128 product = passo_multiply(bend, square);
+
+	return product.high >> (BEND_BITS - 2) > 0
+	         ? PASSO_PATH_SQUARE_MAX
+	         : product.high << (64 - BEND_BITS) | product.low >> BEND_BITS;
+}
+
+static uint64_t less(uint64_t a, uint64_t b)
+{
+	return a > b ? a - b : 0;
+}
+
+void passo_path_add_curve(const struct passo_path_planner *path, const int64_t *curvature,
+    const int32_t *unit, struct passo_path_item *item)
+{
+	struct passo_path_curve *curve = &item->curve;
+
+	uint64_t any = 0;
+
+	*curve = (struct passo_path_curve){.count = 0};
+	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
+		any |= magnitude(curvature[axis]);
+	if (any == 0 || passo_path_shape(path) != PASSO_SHAPE_LINEAR)
+		return;
+	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
+		const uint64_t share = magnitude(unit[axis]);
+
+		if (share < SHARE_MIN)
+			continue;
+		const uint64_t slope = passo_mul_div(
+		    2 * path->axis[axis].acceleration, UINT32_C(1) << PASSO_PATH_UNIT_BITS, share);
+		const uint64_t bend =
+		    passo_mul_div(2 * magnitude(curvature[axis]), UINT32_C(1) << PASSO_PATH_UNIT_BITS, share);
+		const bool helps = (curvature[axis] < 0) == (unit[axis] < 0);
+
+		if (bend == 0 || curve->count == PASSO_PATH_CURVED)
+			continue;
+		curve->slope[curve->count] = slope;
+		curve->bend[curve->count] = helps ? (int64_t)bend : -(int64_t)bend;
+		curve->count++;
+	}
+}
+
+/* Where more speed leaves less: the slope with what is left at the upper end, (A - B w) / (1 + B l). */
+static uint64_t less_slope(uint64_t most, uint64_t bend, uint64_t low, uint64_t length)
+{
+	const struct passo_u128 product = passo_multiply(bend, length); /* UQ.80 */
+	const uint64_t grows =
+	    product.high >= UINT64_C(1) << 40 ? UINT64_C(1) << 63 : product.high << 22 | product.low >> 42;
+
+	return passo_mul_div(less(most, taken(bend, low)), UINT64_C(1) << 38, (UINT64_C(1) << 38) + grows);
+}
+
+uint64_t passo_path_slope(const struct passo_path_item *item, bool up, uint64_t low, uint64_t length)
+{
+	const struct passo_path_curve *curve = &item->curve;
+	uint64_t slope = item->slope;
+
+	for (uint32_t i = 0; i < curve->count; i++) {
+		if ((curve->bend[i] > 0) == up)
+			slope = passo_path_smaller(
+			    slope, less_slope(curve->slope[i], magnitude(curve->bend[i]), low, length));
+	}
+	slope = passo_path_larger(slope, 1);
+	return up ? slope : slope - slope / 256;
+}

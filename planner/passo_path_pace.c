@@ -1,0 +1,227 @@
+/* SPDX-License-Identifier: MIT
+ * The pace of a path: no more ramps and lines than a host with a lowest rate of polls can send.
+ *
+ * Of the ramps, any PASSO_PATH_PACED in a row last a certain time. While the last ones were long, the next
+ * one may be short, and the profile is followed exactly. Before it may not, a ramp ends only where the path
+ * could go on at its speed for as long as the next one must last. From there that ramp can always be made: it
+ * goes to the lowest speed of all that is before it until the end of the one after it. If the profile comes
+ * down to there only after the ramp, it does so in less time, so the ramp is not steeper.
+ *
+ * Of the lines, each takes as long as its share of a frame; those behind a long one may take less.
+ */
+#include "passo_path_private.h"
+
+/* Lines that may follow a long one at once, at most. */
+#define BURST 16u
+
+/* The room for a frame is seen by one poll and used by the next, and a frame of lines may be under way then:
+ * what is queued behind the room lasts for three polls. Of three frames two are for lines; one in four is
+ * spare. */
+void passo_path_pace(
+    struct passo_path_planner *path, uint32_t queued, uint32_t lines_queued, uint32_t lines_sent)
+{
+	if (path->polls == 0)
+		return; /* not open yet */
+	const uint64_t poll = (path->machine.clock_hz >> path->machine.tick_log2) / path->polls + 1;
+	const uint32_t together =
+	    (uint32_t)passo_path_larger(passo_path_smaller(queued, PASSO_PATH_PACED), 1);
+	const uint64_t ramps = 3 * together * poll / passo_path_larger(queued, 1) + 1;
+	const uint64_t line = passo_path_larger(
+	    2 * poll / passo_path_larger(lines_sent, 1), 3 * poll / passo_path_larger(lines_queued, 1));
+
+	path->paced = together;
+	path->pace = (uint32_t)passo_path_smaller(ramps, PASSO_PATH_TICKS_MAX);
+	path->line_clocks =
+	    (uint32_t)passo_path_smaller((line + 1) << path->machine.tick_log2, UINT32_MAX / (2 * BURST));
+	path->line_burst = lines_queued < BURST ? lines_queued / 2 : BURST;
+}
+
+void passo_path_pace_begin(struct passo_path_planner *path)
+{
+	for (unsigned i = 0; i < PASSO_PATH_PACED - 1; i++)
+		path->recent[i] = PASSO_PATH_TICKS_MAX;
+}
+
+void passo_path_pace_ramp(struct passo_path_planner *path, uint32_t ticks)
+{
+	for (unsigned i = PASSO_PATH_PACED - 2; i > 0; i--)
+		path->recent[i] = path->recent[i - 1];
+	path->recent[0] = (uint32_t)passo_path_smaller(ticks, PASSO_PATH_TICKS_MAX);
+}
+
+void passo_path_pace_line(struct passo_path_planner *path, struct passo_path_item *item)
+{
+	const uint64_t length = (uint64_t)item->substeps << 32;
+	const uint64_t clocks = length / passo_path_larger(passo_isqrt64(item->limit), 1);
+	const uint64_t most = path->line_burst * (uint64_t)path->line_clocks;
+	const uint64_t credit = path->at.line_credit + clocks;
+
+	if (credit < path->line_clocks) {
+		const uint64_t velocity = length / (path->line_clocks - path->at.line_credit);
+
+		item->limit = passo_path_larger(velocity * velocity, 1);
+		path->at.line_credit = 0;
+	} else {
+		path->at.line_credit = (uint32_t)passo_path_smaller(credit - path->line_clocks, most);
+	}
+}
+
+uint32_t passo_path_pace_need(const struct passo_path_planner *path, uint64_t ticks, unsigned count)
+{
+	uint64_t sum = count <= path->paced ? ticks : 0;
+
+	for (unsigned i = 0; i + count < path->paced; i++)
+		sum += path->recent[i];
+	return sum < path->pace ? path->pace - (uint32_t)sum : 0;
+}
+
+uint64_t passo_path_length_in(const struct passo_path_planner *path, uint64_t speeds, uint64_t ticks)
+{
+	return passo_mul_div(speeds, ticks << path->machine.tick_log2, UINT32_C(1) << 17);
+}
+
+/* What is before the end of the ramps. */
+struct ahead {
+	uint64_t square; /* the lowest that is allowed */
+	uint64_t slope;  /* the lowest of the lines */
+	uint64_t rest;   /* length to the end of the line at which the path rests; 0: it does not */
+	uint64_t end;    /* the square there */
+	bool open;       /* further lines may raise it */
+};
+
+/* Over a length; what is beyond the known lines does not count. */
+static struct ahead look_ahead(const struct passo_path_planner *path, uint64_t length)
+{
+	struct ahead ahead = {.square = PASSO_PATH_SQUARE_MAX, .slope = UINT64_MAX};
+	uint64_t passed = 0;
+
+	for (uint32_t index = path->planned; !passo_path_is_held_back(path, index); index++) {
+		const struct passo_path_item *item = passo_path_item(path, index);
+		const uint64_t end = passo_path_end_square(path, index);
+
+		passed += (uint64_t)item->substeps << 32;
+		if (index == path->planned)
+			passed -= (uint64_t)path->offset;
+		const uint64_t beyond = passed > length ? passed - length : 0;
+		const uint64_t slope = passo_path_slope(item, false, end, beyond);
+
+		ahead.open = ahead.open || !passo_path_is_settled(path, index);
+		ahead.slope = passo_path_smaller(ahead.slope, slope);
+		ahead.square = passo_path_smaller(ahead.square, item->top);
+		if (beyond > 0) {
+			ahead.square = passo_path_smaller(ahead.square, end + passo_path_gain(slope, beyond));
+			break;
+		}
+		if (passo_path_rests_after(path, index)) {
+			ahead.rest = passed;
+			ahead.end = end;
+			break;
+		}
+		ahead.square = passo_path_smaller(ahead.square, end);
+	}
+	return ahead;
+}
+
+/* Whether a ramp down stays below all that it passes. */
+static bool is_below(const struct passo_path_planner *path, const struct passo_path_aim *aim)
+{
+	const uint64_t from = passo_path_square_of(path->velocity);
+	uint64_t passed = 0, passing = from;
+
+	for (uint32_t index = path->planned;; index++) {
+		const struct passo_path_item *item = passo_path_item(path, index);
+
+		if (passing > passo_path_larger(item->top, from) || passo_path_is_held_back(path, index))
+			return false;
+		passed += (uint64_t)item->substeps << 32;
+		if (index == path->planned)
+			passed -= (uint64_t)path->offset;
+		if (passed >= aim->length)
+			return true;
+		passing = from - passo_mul_div(from - aim->square, passed, aim->length);
+		if (passing > passo_path_end_square(path, index) || passo_path_rests_after(path, index))
+			return false;
+	}
+}
+
+static uint64_t lowest(const struct ahead *ahead)
+{
+	return ahead->rest > 0 ? passo_path_smaller(ahead->square, ahead->end) : ahead->square;
+}
+
+static struct passo_path_aim aim_at(
+    const struct passo_path_planner *path, uint64_t velocity, uint64_t length, uint64_t slope)
+{
+	const enum passo_path_kind kind = velocity > path->velocity ? PASSO_PATH_UP
+	                                : velocity < path->velocity ? PASSO_PATH_DOWN
+	                                                            : PASSO_PATH_FLAT;
+
+	return (struct passo_path_aim){kind, length, passo_path_square_of(velocity), slope, .plain = true};
+}
+
+/* A ramp of so many ticks, after which the path could go on for `next`. Length 0: there is none. */
+static struct passo_path_aim calm(const struct passo_path_planner *path, uint64_t ticks, uint64_t next)
+{
+	const uint64_t from = path->velocity, slope = passo_path_item(path, path->planned)->slope;
+	const uint64_t most = from + passo_path_change(path, slope, ticks);
+	struct ahead ahead = look_ahead(path, passo_path_length_in(path, 2 * from, ticks + next));
+	uint64_t to = passo_path_velocity_of(lowest(&ahead));
+
+	if (ahead.rest > 0 && from > 0) {
+		struct passo_path_aim aim =
+		    aim_at(path, passo_path_velocity_of(ahead.end), ahead.rest, ahead.slope);
+
+		aim.rest = true;
+		aim.open = ahead.open;
+		return aim;
+	}
+	if (to < from) {
+		if (from - to > passo_path_change(path, ahead.slope, ticks) * 17 / 16)
+			return (struct passo_path_aim){.length = 0};
+	} else {
+		ahead = look_ahead(path, passo_path_length_in(path, from + most, ticks)
+		                             + passo_path_length_in(path, 2 * most, next));
+		to = passo_path_velocity_of(lowest(&ahead));
+		if (ahead.rest > 0 && from == 0) { /* up, and down again, and the ramp to 0 */
+			const uint64_t units = UINT64_C(1) << (17u - path->machine.tick_log2);
+
+			next = passo_path_larger(passo_path_pace_need(path, ticks, 3), ticks / 4);
+			to = passo_path_smaller(passo_path_velocity_of(ahead.square),
+			    passo_mul_div(ahead.rest, units, ticks + next));
+			to = passo_path_smaller(to, passo_path_change(path, ahead.slope, next));
+		}
+		to = passo_path_smaller(to, from + passo_path_change(path, ahead.slope, ticks));
+		to = passo_path_larger(to, from);
+	}
+	struct passo_path_aim aim =
+	    aim_at(path, to, passo_path_length_in(path, from + to, ticks), ahead.slope);
+	aim.open = ahead.open;
+	return aim;
+}
+
+struct passo_path_aim passo_path_at_pace(
+    const struct passo_path_planner *path, const struct passo_path_aim *aim, enum passo_path_need need)
+{
+	const uint64_t ticks = passo_path_ticks_to(path, aim);
+	const uint64_t least = passo_path_pace_need(path, 0, aim->rest ? 2 : 1);
+	const uint64_t then = aim->rest ? 0 : passo_path_pace_need(path, ticks, 2);
+
+	if (path->pace == 0 || aim->length == 0 || (ticks >= least && then == 0))
+		return *aim;
+	const uint64_t way = passo_path_length_in(path, 2 * passo_path_velocity_of(aim->square), then);
+	if (ticks >= least) {
+		const struct ahead ahead = look_ahead(path, aim->length + way);
+
+		if (lowest(&ahead) >= aim->square)
+			return *aim;
+	}
+	const uint64_t used = passo_path_larger(least, path->pace / path->paced) + 1;
+	struct passo_path_aim made = calm(path, used, passo_path_pace_need(path, used, 2));
+	if (made.length == 0 || (made.kind == PASSO_PATH_DOWN && !is_below(path, &made)))
+		return *aim;
+	if (made.open && need == PASSO_PATH_NO_NEED)
+		made.length = 0;
+	else
+		made.open = false;
+	return made;
+}

@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: MIT
+"""Judges speed, acceleration and jerk of each axis by its STEP times: nothing here knows the planner or the
+core.
+
+A motion `y` whose acceleration is at most `a` has `|y(t + w) - 2 y(t) + y(t - w)| <= a w^2` for every
+window `w`. The steps `x` follow such a motion to within `e`, so theirs is at most `a w^2 + 4 e`; of first
+differences and speed it is `v w + 2 e`, of third ones and jerk `j w^3 + 8 e`. The share of a limit is the
+greatest of what the steps need,
+
+    (|x(t + w) - 2 x(t) + x(t - w)| - 4 e) / (a w^2)
+
+over all times and windows. The windows grow by half an octave, `a` from where `e` of rounding hides half
+of the limit, `w = sqrt(8 e / a)`, and `j` likewise, to where it hides a hundredth even in a corner; `v`
+to where it hides a thousandth. Times are an eighth of the shortest window apart. `e` is
+
+* half a step, since steps are rounded; a place between two steps is between their places;
+* where the path has a corner within the window: by how much it may be rounded there, along the axis.
+
+An axis with a start-stop speed may also jump by that, once in a window.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from passo.path import PathAxis, PathSettings
+from passo.path_rounding import Line, rounded
+
+NAMES = ("speed", "acceleration", "jerk")
+BOUND = 1.03  # share of a limit that is a fault
+JERK_BOUND = 1.05
+STEP = 0.5  # of a step: rounding
+VISIBLE, HIDDEN = 0.5, 0.01  # share of a limit that rounding hides in the shortest window, and in the longest
+VISIBLE_SPEED, HIDDEN_SPEED = 0.008, 0.001
+SAMPLES = 8  # in the shortest window
+OCTAVE = 2  # windows
+MOST_SAMPLES = 1 << 23
+
+
+@dataclass(frozen=True)
+class Share:
+    """The greatest share of a limit: of which axis, in which window, and when."""
+
+    name: str
+    axis: int
+    share: float = 0.0
+    window: float = 0.0  # s
+    time: float = 0.0  # s since the start of the first motion, in the middle of the window
+
+    @property
+    def bound(self) -> float:
+        """Above which it is a fault."""
+        return JERK_BOUND if self.name == "jerk" else BOUND
+
+    def __str__(self) -> str:
+        return (
+            f"axis {self.axis}: {self.share:.3f} of its {self.name}, "
+            f"at {self.time:.6g} s over {self.window * 1000:.3g} ms"
+        )
+
+
+@dataclass(frozen=True)
+class Marks:
+    """Times (s, ascending) of the corners, and corner x axis: by how much they may be rounded (mm)."""
+
+    time: np.ndarray
+    off: np.ndarray
+
+    @classmethod
+    def none(cls, axes: int) -> "Marks":
+        """A path without corners."""
+        return cls(np.empty(0), np.empty((0, axes)))
+
+    @classmethod
+    def of(
+        cls,
+        lines: Sequence[Line],
+        settings: PathSettings,
+        clocks: Sequence[np.ndarray],
+        positions: Sequence[np.ndarray],
+    ) -> "Marks":
+        """The corners of a path of lines from the origin: each between its last step and the next one."""
+        path = rounded(lines, settings)
+        scale = np.array([float(axis.steps_per_mm) for axis in settings.axes])
+        steps = np.abs(np.diff(np.round(path.points * scale), axis=0))
+        begin, end = np.zeros(len(path.corner)), np.full(len(path.corner), np.inf)
+        for axis, clock in enumerate(clocks):
+            time = clock / settings.clock_hz
+            done = np.cumsum(steps[:, axis])[path.kept[1:-1] - 1].astype(int)
+            done = np.minimum(done, len(time))
+            begin = np.maximum(begin, np.concatenate([[0.0], time])[done])
+            end = np.minimum(end, np.append(time, np.inf)[done])
+        end = np.maximum(begin, np.where(np.isinf(end), begin, end))
+        order = np.argsort(np.concatenate([begin, end]))
+        return cls(np.concatenate([begin, end])[order], np.concatenate([path.off, path.off])[order])
+
+
+def shares(
+    clocks: Sequence[np.ndarray],
+    positions: Sequence[np.ndarray],
+    settings: PathSettings,
+    marks: Marks | None = None,
+    names: Sequence[str] = NAMES,
+) -> list[Share]:
+    """The greatest share of each limit of each axis, by the clocks of its steps and the positions after."""
+    known, found = marks or Marks.none(len(settings.axes)), []
+    end = max((float(own[-1]) for own in clocks if len(own)), default=0.0) / settings.clock_hz
+    for number, axis in enumerate(settings.axes):
+        place = Places.of(clocks[number] / settings.clock_hz, positions[number], float(axis.steps_per_mm))
+        off = Most.of(known.time, known.off[:, number])
+        for order, name in enumerate(NAMES, 1):
+            limit = float(getattr(axis, name))
+            if name in names and limit > 0 and (name != "jerk" or settings.profile == "jerk"):
+                found.append(_greatest(place, off, axis, number, order, end))
+    return found
+
+
+def faults(found: Sequence[Share]) -> list[str]:
+    """Shares above their bound, one sentence each."""
+    return [str(share) for share in found if share.share > share.bound]
+
+
+@dataclass(frozen=True)
+class Places:
+    """Times and places of an axis: between two steps of one direction it moves evenly, else it stands."""
+
+    time: np.ndarray
+    place: np.ndarray
+    rounding: float  # mm
+
+    @classmethod
+    def of(cls, time: np.ndarray, position: np.ndarray, steps_per_mm: float) -> "Places":
+        """A step is half-way between the positions before and after it."""
+        before = np.concatenate([[0], position[:-1]])
+        place = (position + before) / 2 / steps_per_mm
+        first, last = ([time[0] - 1e-9], [time[-1] + 1e-9]) if len(time) else ([0.0], [1e-9])
+        return cls(
+            np.concatenate([first, time, last]),
+            np.concatenate([[0.0], place, [position[-1] / steps_per_mm if len(position) else 0.0]]),
+            STEP / steps_per_mm,
+        )
+
+    def at(self, times: np.ndarray) -> np.ndarray:
+        """Places at these times."""
+        return np.interp(times, self.time, self.place)
+
+
+@dataclass(frozen=True)
+class Most:
+    """The greatest of values within an interval of time."""
+
+    time: np.ndarray
+    table: list[np.ndarray]
+
+    @classmethod
+    def of(cls, time: np.ndarray, values: np.ndarray) -> "Most":
+        """A table for each power of two."""
+        table = [values]
+        while len(table[-1]) > 1 << (len(table) - 1):
+            step = 1 << (len(table) - 1)
+            table.append(np.maximum(table[-1][:-step], table[-1][step:]))
+        return cls(time, table)
+
+    @property
+    def highest(self) -> float:
+        """Of all."""
+        return float(self.table[0].max(initial=0))
+
+    def between(self, begin: np.ndarray, end: np.ndarray) -> np.ndarray:
+        """The greatest of those from `begin` to `end`; 0: there are none."""
+        found = np.zeros(len(begin))
+        if self.highest == 0:
+            return found
+        first, last = np.searchsorted(self.time, begin), np.searchsorted(self.time, end, "right")
+        level = np.log2(np.maximum(last - first, 1)).astype(int)
+        for k in np.unique(level):
+            chosen = (level == k) & (last > first)
+            one, other = first[chosen], last[chosen] - (1 << int(k))
+            found[chosen] = np.maximum(self.table[k][one], self.table[k][other])
+        return found
+
+
+def windows(order: int, limit: float, rounding: float, off: float) -> tuple[float, float]:
+    """The shortest and the longest window of a limit, in seconds."""
+    noise = 2.0**order / limit
+    visible, hidden = (VISIBLE_SPEED, HIDDEN_SPEED) if order == 1 else (VISIBLE, HIDDEN)
+    first, last = noise * rounding / visible, noise * (rounding + off) / hidden
+    return first ** (1 / order), last ** (1 / order)
+
+
+def _greatest(place: Places, off: Most, axis: PathAxis, number: int, order: int, end: float) -> Share:
+    limit, jump = float(getattr(axis, NAMES[order - 1])), float(axis.jump) if order > 1 else 0.0
+    highest = off.highest if order > 1 else 0.0
+    first, last = windows(order, limit, place.rounding, highest)
+    count = int(np.ceil(np.log2(last / first) * OCTAVE)) + 1
+    sizes = np.round(SAMPLES * 2.0 ** (np.arange(count) / OCTAVE)).astype(int)
+    gap = max(first / SAMPLES, (end + 2 * order * last) / MOST_SAMPLES)
+    times = np.arange(-order * last, end + order * last + gap, gap)
+    places = place.at(times)
+    best = Share(NAMES[order - 1], number)
+    for size in sizes.tolist():
+        made, window = places, size * gap
+        for _ in range(order):
+            made = made[size:] - made[:-size]
+        if not len(made):
+            break
+        hidden: np.ndarray | float = place.rounding
+        if highest > 0:
+            hidden = hidden + off.between(times[: len(made)], times[order * size :])
+        needed = np.abs(made) - 2**order * hidden - jump * window
+        k = int(np.argmax(needed))
+        share = float(needed[k]) / (limit * window**order)
+        if share > best.share:
+            best = Share(best.name, number, share, window, float(times[k]) + order * window / 2)
+    return best

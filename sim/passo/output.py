@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: MIT
+"""Files that the command writes: each appears under its name when it is complete, or not at all."""
+
+import errno
+import json
+import os
+import signal
+import sys
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+from passo.failure import BadInputError, Failure
+
+BROKEN_PIPE = 128 + signal.SIGPIPE  # exit status, as of a program that the signal ends
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+
+
+def refusal(path: Path, error: OSError) -> Failure | BadInputError:
+    """What to raise if a file cannot be written: a full disk is a fault, other places are bad input."""
+    text = f"{path}: {error.strerror or error}"
+    return Failure(text) if error.errno in FULL else BadInputError(text)
+
+
+@contextmanager
+def complete(path: Path) -> Iterator[Path]:
+    """Yield a path beside `path`, of the same suffix, that takes its place when the block has ended.
+
+    A device or pipe is itself. Raises Failure or BadInputError in one sentence.
+    """
+    try:
+        if path.exists() and not path.is_file():
+            yield path
+            return
+        made = path.resolve()
+        part = made.with_name(f".{os.getpid()}.{made.name}")
+        try:
+            yield part
+            part.replace(made)
+        finally:
+            part.unlink(missing_ok=True)
+    except OSError as error:
+        raise refusal(path, error) from None
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder for results. Raises Failure or BadInputError."""
+    empty_folder(folder, ())
+
+
+def empty_folder(folder: Path, results: Iterable[str]) -> None:
+    """Make a folder for results, and delete those of an earlier run. Raises Failure or BadInputError."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name in results:
+            (folder / name).unlink(missing_ok=True)
+    except OSError as error:
+        raise refusal(folder, error) from None
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text in UTF-8."""
+    with complete(path) as part:
+        part.write_text(text, encoding="utf-8")
+
+
+def write_bytes(path: Path, data: bytes) -> None:
+    """Write bytes."""
+    with complete(path) as part:
+        part.write_bytes(data)
+
+
+def write_json(data: Any, path: Path) -> None:
+    """Write indented JSON."""
+    write_text(path, json.dumps(data, indent=2) + "\n")
+
+
+def drop_output() -> None:
+    """Drop what standard output has not taken: the interpreter would try again at its end."""
+    with suppress(OSError, ValueError, AttributeError):  # closed, or no file
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: MIT
+"""The pulses of a part against the limits of its machine."""
+
+from passo.axis_judge import NAMES, Marks, Share, shares
+from passo.gcode import NANOMETRES, Gcode
+from passo.machine_file import MachineFile
+from passo.native import planner
+from passo.part import Part, Played
+from passo.path_rounding import Line
+
+
+def path_of(part: Part, machine: MachineFile) -> list[Line]:
+    """The lines of a checked part, with the chords of its arcs; without their feeds."""
+    gcode, axes = Gcode(machine.gcode), len(machine.settings.axes)
+    found: list[Line] = []
+    for line in part.lines:
+        gcode.execute(line)
+        for action in gcode.actions():
+            if action.kind == planner().PASSO_GCODE_LINE:
+                found.append(([nm / NANOMETRES for nm in action.target[0:axes]], None))
+    return found
+
+
+def shares_of(played: Played) -> list[Share]:
+    """The greatest share of each limit of each axis."""
+    settings = played.machine.settings
+    lines = path_of(played.part, played.machine)
+    marks = Marks.of(lines, settings, played.clocks, played.positions) if lines else None
+    return shares(played.clocks, played.positions, settings, marks)
+
+
+def greatest(found: list[Share]) -> dict[str, Share]:
+    """Of all axes, by the name of the limit."""
+    return {
+        name: max(own, key=lambda share: share.share)
+        for name in NAMES
+        if (own := [share for share in found if share.name == name])
+    }

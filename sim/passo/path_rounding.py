@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: MIT
+"""The rounding that a path permits: geometry alone, before anything moves.
+
+Points within a twentieth of the junction deviation `d` of the line past them are no corners. Any other
+corner turns the direction by `c`, the difference of two unit vectors. The arc that touches both lines and
+passes the corner at `d` has the radius `R = d s / (1 - s)`, `s` the sine of half the angle between the
+lines; while it turns it advances by `l = R |c|`. So the speed `v` at the corner is at most `v^2 = a l /
+|c|` of every axis, `c` and `a` those of the axis: at constant speed the velocity changes evenly over `l`,
+and the path is off the corner by `|c| l / 8`, no more than `d`.
+
+Acceleration along the path comes on top. With it, the change of direction may take longer, as long as the
+path stays within `d` on either side of the lines: the direction turns over `p` before the corner and `q`
+behind it, so the curvature there is `c / (p + q)`. `p` and `q` are at most
+
+* half of the line: the corner of a finely divided curve is a piece of that curve, from the middle of one
+  line to the middle of the next;
+* `l`; and of one side `l / 2` and half of the other one, since a rounding on one side alone leaves the
+  line for good.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from passo.path import PathSettings
+
+Line = tuple[Sequence[float], float | None]  # target in mm, feed in mm/s or None
+
+STRAIGHT = 1e-7  # change of direction that is none
+SHARE = 1 / 20  # of the junction deviation, by which a point may be off and still be no corner
+NEARLY = 1 - 1e-9
+SHORTEST = 1e-7  # mm: a line that is shorter is none
+
+
+@dataclass(frozen=True)
+class Rounded:
+    """A path of lines, and the rounding of the corners between them."""
+
+    points: np.ndarray  # of all lines that have a length, from the start on
+    feed: np.ndarray  # of each of these lines; infinite for a rapid
+    kept: np.ndarray  # numbers of the points that are ends of what follows
+    unit: np.ndarray  # line x axis
+    length: np.ndarray  # of each line
+    end: np.ndarray  # of each line, along the path
+    turn: np.ndarray  # corner x axis: the change of direction
+    arc: np.ndarray  # of each corner: `l`
+    before: np.ndarray  # `p`
+    behind: np.ndarray  # `q`
+    deviation: float
+
+    @property
+    def corner(self) -> np.ndarray:
+        """The place of each corner along the path."""
+        return self.end[:-1]
+
+    @property
+    def over(self) -> np.ndarray:
+        """Of each corner: the length of its rounding; 0: the path has to rest there."""
+        return self.before + self.behind
+
+    @property
+    def alone(self) -> np.ndarray:
+        """Of each corner: no other one is near enough to matter."""
+        return (self.before >= self.arc * NEARLY) & (self.behind >= self.arc * NEARLY)
+
+    @property
+    def off(self) -> np.ndarray:
+        """corner x axis: by how much the path may be off the lines, on either side."""
+        size = np.linalg.norm(self.turn, axis=1)
+        least, most = np.minimum(self.before, self.behind), np.maximum(self.before, self.behind)
+        found = np.minimum(size * np.maximum((least + most) / 16, (most - least) / 4), self.deviation)
+        found = np.where(self.alone, self.deviation, found)
+        return np.abs(self.turn) * (found / np.maximum(size, STRAIGHT))[:, None]
+
+
+def points_of(
+    lines: Sequence[Line], axes: int, begin: Sequence[float] | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """The points of the lines that have a length, and the feeds of these."""
+    points = np.array([list(begin or [0.0] * axes), *(list(target) for target, _ in lines)], float)
+    feed = np.array([np.inf if feed is None else feed for _, feed in lines], float)
+    kept = [0]
+    for i in range(1, len(points)):
+        if np.abs(points[i] - points[kept[-1]]).max() > SHORTEST:
+            kept.append(i)
+    return points[kept], feed[np.array(kept[1:], int) - 1]
+
+
+def corners_of(points: np.ndarray, off: float) -> np.ndarray:
+    """The points that are corners, with both ends: those between are near the line past them."""
+    kept, first, last = [0], 0, len(points) - 1
+    while first < last:
+        end = first + 1
+        while end < last and _is_line(points[first : end + 2], off):
+            end += 1
+        kept.append(end)
+        first = end
+    return np.array(kept)
+
+
+def _is_line(points: np.ndarray, off: float) -> bool:
+    whole = points[-1] - points[0]
+    length = np.linalg.norm(whole)
+    if length <= off:
+        return False
+    along = (points - points[0]) @ whole / length
+    side = np.linalg.norm(points - points[0] - along[:, None] * whole / length, axis=1)
+    return bool((side <= off).all() and (np.diff(along) > 0).all())
+
+
+def arc_length(turn: np.ndarray, junction_deviation: float) -> np.ndarray:
+    """What the arcs within the deviation advance by while they turn."""
+    cosine = np.minimum(np.linalg.norm(turn, axis=1) / 2, 1)
+    sine = np.sqrt(1 - cosine**2)
+    return 2 * junction_deviation * sine * (1 + sine) / np.maximum(cosine, STRAIGHT)
+
+
+def rounded(lines: Sequence[Line], settings: PathSettings, begin: Sequence[float] | None = None) -> Rounded:
+    """The path and its roundings."""
+    permitted = float(settings.junction_deviation)
+    points, feed = points_of(lines, len(settings.axes), begin)
+    kept = corners_of(points, permitted * SHARE)
+    delta = np.diff(points[kept], axis=0)
+    length = np.linalg.norm(delta, axis=1)
+    unit = delta / length[:, None]
+    turn = np.diff(unit, axis=0)
+    arc = arc_length(turn, permitted)
+    before, behind = np.minimum(length[:-1] / 2, arc), np.minimum(length[1:] / 2, arc)
+    before, behind = np.minimum(before, (arc + behind) / 2), np.minimum(behind, (arc + before) / 2)
+    return Rounded(
+        *(points, feed, kept, unit, length, np.cumsum(length), turn, arc, before, behind, permitted)
+    )

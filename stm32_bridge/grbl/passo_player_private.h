@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: MIT
+ * Internal: shared by the sources of the player.
+ */
+#ifndef PASSO_PLAYER_PRIVATE_H
+#define PASSO_PLAYER_PRIVATE_H
+
+#include "passo_player.h"
+
+uint64_t passo_player_magnitude(int64_t value);
+/* Drops the rest of the line: the program goes on from where the path ends. */
+void passo_player_drop(struct passo_player *player);
+/* At rest. An event if there is no probe, or if it has its level already. */
+enum passo_error passo_player_begin_probe(struct passo_player *player, enum passo_player_event *event);
+/* The motion has ended. */
+enum passo_error passo_player_end_probe(struct passo_player *player, enum passo_player_event *event);
+/* Keeps what the line of G-code says of a line of the path. */
+void passo_player_note(struct passo_player *player, uint32_t index);
+
+#endif

@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: MIT
+"""Plays random histories of a sender of grbl, and judges them: on the C model, or on the firmware.
+
+python -m tests.helpers.grbl_play COUNT [--seed SEED] [--board]: a failure is printed, shrunk.
+"""
+
+import argparse
+import re
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+from passo.build import Parameters, model_library, planner_library
+from passo.compiler import STRICT, compile_to, includes
+from passo.engine import model_engine
+from passo.toolchain import paths
+from passo_stm32.grbl_board import GrblBoard, grbl_elf
+
+from tests.helpers.grbl_histories import History, made_of, played, shrink
+from tests.helpers.grbl_judge import STEPS_PER_MM, FindingError, judge
+from tests.helpers.sanitized import FOLDERS
+
+BATCH = 20  # histories of a process
+BOARD_HZ = 36_000_000
+BAUD = 1_000_000
+PATIENCE = 10  # seconds until all is answered
+
+Logs = list[list[str]]
+
+
+def program(folder: Path) -> Path:
+    """What plays histories on the C model."""
+    libraries = [
+        part
+        for library in (planner_library(), model_library())
+        for part in (library, f"-Wl,-rpath,{library.parent}")
+    ]
+    source = paths.tests / "grbl_play.c"
+    return compile_to(folder / "grbl_play", *STRICT, "-O1", *includes(*FOLDERS), source, *libraries)
+
+
+def play_on_model(made: Path, histories: list[History]) -> Logs:
+    """The log of each history."""
+    text = "\n".join(command for history in histories for command in played(history)) + "\n"
+    done = subprocess.run([made], input=text, capture_output=True, text=True, check=True)
+    return [log.splitlines() for log in done.stdout.split("end\n")[:-1]]
+
+
+def play_on_board(elf: Path, history: History) -> list[str]:
+    """The log of a history on the firmware; its machine has no inputs, and its flash does not wear."""
+    with model_engine(Parameters(axes=4), BOARD_HZ) as engine:
+        board = GrblBoard(engine, elf, baud=BAUD)
+        return _Board(board).play(history)
+
+
+class _Board:
+    def __init__(self, board: GrblBoard):
+        self.board, self.log, self.told, self.steps = board, [], len(board.output), [0, 0, 0]
+        self.levels = 0
+        for axis in "012":  # the machine of tests/grbl_play.c
+            for setting in (f"$10{axis}={STEPS_PER_MM}", f"$11{axis}=2400", f"$12{axis}=2000"):
+                assert board.line(setting) == "ok"
+        self._look()
+        self.log.clear()
+
+    @property
+    def ms(self) -> int:
+        return int(self.board.seconds * 1000)
+
+    def play(self, history: History) -> list[str]:
+        for command in played(history):
+            word, _, text = command.partition(" ")
+            if word == "send":
+                self._send(text)
+            elif word == "wait":
+                self._run(int(text))
+            elif word == "settle":
+                self._settle()
+        return self.log
+
+    def _send(self, text: str) -> None:
+        self.log.append(f"> {self.ms} {text}")
+        self.board.type(bytes.fromhex(text).decode("latin-1"))
+        self._run(1 + len(text) // 150)
+
+    def _run(self, ms: int) -> None:
+        for _ in range(ms):
+            self.board.run(0.001)
+            self._look()
+
+    def _settle(self) -> None:
+        """Until two reports say that it rests, and nothing is said any more."""
+        for _ in range(50 * PATIENCE):
+            since = len(self.board.output)
+            self._send("7e3f")
+            self._run(20)
+            if self.board.output[since:].count("\r\n") == 1 and re.match(
+                "<(Idle|Sleep|Alarm|Check)", self.board.output[since:]
+            ):
+                return
+
+    def _look(self) -> None:
+        for event in self.board.events():
+            rising = int(event["step"]) & ~self.levels
+            for axis in range(3):
+                if rising >> axis & 1:
+                    self.steps[axis] += -1 if int(event["dir"]) >> axis & 1 else 1
+            self.levels = int(event["step"])
+        steps = " ".join(map(str, self.steps))
+        last = next((line for line in reversed(self.log) if line.startswith("p ")), "p 0 0 0 0")
+        if last.split(" ", 2)[2] != steps:
+            self.log.append(f"p {self.ms} {steps}")
+        output = self.board.output
+        while (end := output.find("\r\n", self.told)) >= 0:
+            self.log.append(f"< {self.ms} {output[self.told : end]}")
+            self.told = end + 2
+
+
+def findings(play: Callable[[History], list[str]], history: History) -> str:
+    """What is found in a history, or nothing."""
+    try:
+        judge(play(history))
+    except FindingError as found:
+        return str(found)
+    return ""
+
+
+def examine(play: Callable[[History], list[str]], history: History) -> str:
+    """The report of a history that fails: shrunk, with its log."""
+    short = shrink(history, lambda tried: bool(findings(play, tried)))
+    return "\n".join([findings(play, short), *short, "--- its log:", *play(short)])
+
+
+def main() -> int:
+    """Play so many histories."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("count", type=int)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--board", action="store_true", help="on the firmware in the emulated STM32F103")
+    options = parser.parse_args()
+    folder = paths.build / "tests" / "grbl_histories"
+    seeds = range(options.seed, options.seed + options.count)
+    if options.board:
+        elf = grbl_elf(folder, f"CORE_HZ={BOARD_HZ}", "AXES=3", f"BAUD={BAUD}")
+        play, logs = (
+            (lambda history: play_on_board(elf, history)),
+            (play_on_board(elf, made_of(seed)) for seed in seeds),
+        )
+    else:
+        made = program(folder)
+        play = lambda history: play_on_model(made, [history])[0]  # noqa: E731
+        batches = (seeds[at : at + BATCH] for at in range(0, len(seeds), BATCH))
+        logs = (log for batch in batches for log in play_on_model(made, [made_of(seed) for seed in batch]))
+    failed = 0
+    for seed, log in zip(seeds, logs, strict=True):
+        try:
+            judge(log)
+        except FindingError:
+            failed += 1
+            print(f"history {seed}: {examine(play, made_of(seed))}", flush=True)
+    print(f"{options.count - failed} of {options.count} histories from {options.seed} on without a finding")
+    return int(failed > 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

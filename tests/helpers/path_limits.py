@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: MIT
+"""The limits along each line and at each corner by the rules of docs/path.md."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from passo.path import PathSettings
+from passo.path_rounding import Line
+
+UNLIMITED = 1e30
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Limits of each line and of the corner at its start, in mm and s; squares are of the path speed."""
+
+    length: np.ndarray
+    unit: np.ndarray  # line x axis
+    top: np.ndarray  # square within the line
+    acceleration: np.ndarray  # along the path
+    jerk: np.ndarray  # along the path; only profile jerk has a limit
+    corner: np.ndarray  # square at the start
+    start: float  # square at the beginning and the end of the path
+    stop: float
+
+
+def limits_of(lines: Sequence[Line], settings: PathSettings, arcs: bool = True) -> Limits:
+    """The limits of a path that begins at the origin; without `arcs` their lines are as fast as others."""
+    axes = len(settings.axes)
+    points = np.array([[0.0] * axes, *(list(target) for target, _ in lines)])
+    delta = np.diff(points, axis=0)
+    length = np.linalg.norm(delta, axis=1)
+    feed = np.array([UNLIMITED if feed is None else feed for _, feed in lines])[length > 0]
+    delta, length = delta[length > 0], length[length > 0]
+    unit = delta / length[:, None]
+    speed, acceleration, jump, jerk = (
+        np.array([float(getattr(axis, name)) for axis in settings.axes])
+        for name in ("speed", "acceleration", "jump", "jerk")
+    )
+    if settings.profile != "jerk":
+        jerk[:] = UNLIMITED
+    with np.errstate(divide="ignore"):
+        top = np.minimum(feed, (speed / np.abs(unit)).min(axis=1)) ** 2
+        along = (acceleration / np.abs(unit)).min(axis=1)
+        soft = (jerk / np.abs(unit)).min(axis=1)
+        along = np.minimum(along, float(settings.acceleration) or UNLIMITED)
+        ends = (np.where(unit == 0, UNLIMITED, jump) / np.maximum(np.abs(unit), 1e-12)).min(axis=1) ** 2
+    corner = np.full(len(length), UNLIMITED)
+    arc = np.zeros(len(length), bool)
+    for i in range(1, len(length)):
+        change = np.abs(unit[i] - unit[i - 1])
+        cosine = np.linalg.norm(change) / 2
+        mean = (length[i] + length[i - 1]) / 2
+        if cosine < 1e-9:
+            arc[i] = True
+            continue
+        sine = max(0.0, 1 - cosine**2) ** 0.5
+        rounded = float(settings.junction_deviation) * 2 * sine * (1 + sine) / cosine
+        arc[i] = mean < rounded
+        moved = change > 1e-9
+        corner[i] = (acceleration[moved] / change[moved]).min() * min(mean, rounded)
+        radius = min(mean, rounded) / (2 * cosine)
+        corner[i] = min(corner[i], (jerk[moved].min() * radius**2) ** (2 / 3))
+        jumps = moved & (jump > 0)
+        if jumps.any():
+            corner[i] = min(corner[i], (jump[jumps] / change[jumps]).min() ** 2)
+    corner[1:] = np.minimum(corner[1:], np.minimum(top[1:], top[:-1]))
+    for i in range(1, len(length) - 1):
+        if arcs and arc[i] and arc[i + 1]:
+            top[i] = min(top[i], max(corner[i], corner[i + 1]))
+    return Limits(length, unit, top, along, soft, corner, min(ends[0], top[0]), min(ends[-1], top[-1]))

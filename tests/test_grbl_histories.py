@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: MIT
+"""Random histories of a sender of grbl, judged from outside; `make grbl-histories` plays thousands."""
+
+from pathlib import Path
+
+import pytest
+from passo import random_cases
+from passo.toolchain import paths
+from passo_stm32.grbl_board import grbl_elf
+
+from tests.helpers.grbl_histories import made_of, shrink
+from tests.helpers.grbl_judge import FindingError, judge
+from tests.helpers.grbl_play import BAUD, BOARD_HZ, findings, play_on_board, play_on_model, program
+
+HISTORIES, ON_BOARD = 25, 2
+IDLE = "<Idle|MPos:0.000,0.000,0.000|FS:0,0>"
+
+
+def test_on_the_model(tmp_path: Path) -> None:
+    made, first = program(tmp_path), 1000 * random_cases.seed()
+    histories = [made_of(seed) for seed in range(first, first + HISTORIES)]
+    for seed, log in enumerate(play_on_model(made, histories), first):
+        try:
+            judge(log)
+        except FindingError as found:
+            pytest.fail(f"history {seed}: {found}")
+
+
+def test_on_the_firmware() -> None:
+    elf = grbl_elf(paths.build / "tests" / "grbl_histories", f"CORE_HZ={BOARD_HZ}", "AXES=3", f"BAUD={BAUD}")
+    first = 1000 * random_cases.seed()
+    for seed in range(first, first + ON_BOARD):
+        assert not findings(lambda history: play_on_board(elf, history), made_of(seed)), seed
+
+
+LINE, JOG, CHECK = b"X1 X2\n".hex(), b"$J=G91X1F9\n".hex(), b"$C\n".hex()
+
+
+@pytest.mark.parametrize(
+    ("log", "what"),
+    [
+        ([f"> 1 {LINE}"], "no answer"),
+        (["< 1 ok"], "answers no line"),
+        ([f"> 1 {LINE}", "< 2 ok"], "ok to 'X1 X2'"),
+        ([f"> 1 {LINE}", "< 2 oops"], "it says 'oops'"),
+        (["< 1 <Check|FS:0,0>", "p 9 1 0 0"], "it moves in Check"),
+        (["< 1 <Check|FS:0,0>", f"> 2 {JOG}", "< 3 ok"], "in Check"),
+        (["< 1 <Alarm|FS:0,0>", "< 9 <Alarm|FS:0,0>", "p 900 1 0 0"], "it moves in Alarm"),
+        (["< 1 <Hold:0|FS:0,0>", "p 9 1 0 0"], "it moves in Hold"),
+        ([f"< 1 {IDLE}", "> 2 217e", "< 300 <Run|FS:0,0>"], "a hold was lost"),
+        (["p 1 7 0 0", f"< 90 {IDLE}"], "the steps are (7, 0, 0)"),
+        (["< 1 <Idle|FS:5,0>"], "at rest"),
+        (["> 1 929292", "< 9 <Idle|FS:0,0|Ov:80,100,100>"], "overrides are 80,100,100"),
+        (["< 9 <Run|Ln:7|FS:0,0>"], "line 7 moves"),
+        (["< 1 $11=0.01", f"> 2 {b'$11=-1'.hex()}0a", "< 3 error:4", "< 4 $11=-1"], "$11 is -1"),
+    ],
+)
+def test_what_the_judge_finds(log: list[str], what: str) -> None:
+    """Each promise is broken once."""
+    with pytest.raises(FindingError) as found:
+        judge([*log, "> 1000 18"])
+    assert what in str(found.value)
+
+
+def test_histories_shrink() -> None:
+    """To what is needed for the failure."""
+    short = shrink(["begin", *"abcdefgh"], lambda tried: "c" in tried and "g" in tried)
+    assert short == ["begin", "c", "g"]

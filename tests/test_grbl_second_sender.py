@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: MIT
+"""Another sender, pygrbl-streamer, at the pseudo-terminal of a console with homes and a probe."""
+
+import os
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from passo.grbl import Grbl, pseudo_terminal, serve
+from passo.grbl_setup import machine_at
+from passo.machine_file import read_machine
+from pygrbl_streamer import GrblStreamer
+
+from tests.helpers.grbl_machine import MACHINE
+
+PATIENCE = 60  # seconds
+PART = ["G21 G90", *(f"G1 X-{2 + i % 2 * 0.1:g} Y-{i * 0.1:g} F6000" for i in range(60)), "G4 P0.1", "M30"]
+
+
+class Sender(GrblStreamer):
+    """Keeps what it is told; it asks for the state at the ends of jobs only."""
+
+    def __init__(self, port: str):
+        super().__init__(port)
+        self.told: list[str] = []
+
+    def receive_callback(self, data: str) -> None:
+        self.told.append(data.strip())
+
+    def progress_callback(self, percent: int, command: str) -> None:
+        """Nothing is printed."""
+
+    def log_callback(self, level: str, message: str) -> None:
+        """Nothing is printed."""
+
+
+@pytest.fixture
+def connected(tmp_path: Path) -> Iterator[tuple[Sender, Grbl]]:
+    """Connected, and unlocked."""
+    link, over, path = tmp_path / "grbl", threading.Event(), tmp_path / "machine.toml"
+    path.write_text(MACHINE)
+    machine = read_machine(path)
+    with machine_at("model", machine) as engine, pseudo_terminal(link) as ours:
+        grbl = Grbl(engine, machine, lambda text: os.write(ours, text.encode()))
+        thread = threading.Thread(target=serve, args=(grbl, ours, over.is_set))
+        thread.start()
+        sender = Sender(str(link))
+        try:
+            sender.connect(status_timeout=PATIENCE)
+            assert sender.command("$X", timeout=PATIENCE)
+            yield sender, grbl
+        finally:
+            sender.disconnect()
+            over.set()
+            thread.join()
+
+
+def until(condition: Callable[[], bool]) -> None:
+    end = time.monotonic() + PATIENCE
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.01)
+
+
+def test_a_job_with_a_pause(connected: tuple[Sender, Grbl]) -> None:
+    """By counting characters; every line is answered, and the end is exact."""
+    sender, grbl = connected
+    done: list[bool] = []
+    job = threading.Thread(target=lambda: done.append(sender.stream(PART, ack_timeout=PATIENCE)))
+    job.start()
+    until(lambda: grbl.player.chords > 10)
+    sender.pause()
+    until(lambda: bool(grbl.c.held) and not grbl.player.feed.driver.snapshot().rate)
+    there = grbl.engine.clock
+    until(lambda: grbl.engine.clock > there + 400_000)
+    sender.resume()
+    job.join(PATIENCE)
+    assert (
+        done == [True] and "[MSG:Pgm End]" in sender.told and not any("error" in line for line in sender.told)
+    )
+    until(lambda: grbl.is_idle)
+
+
+def test_probe_tool_length_jog_and_reset(connected: tuple[Sender, Grbl]) -> None:
+    """What a height map and a panel of buttons do."""
+    sender, grbl = connected
+    assert sender.command("G38.2 Z-60 F3000", timeout=PATIENCE)
+    until(lambda: sender.told[-1] == "ok")
+    assert sender.told[-2].startswith("[PRB:0.000,0.000,-50.0") and sender.told[-2].endswith(":1]")
+    assert sender.command("G43.1 Z-1.5", timeout=PATIENCE) and sender.command("$#", timeout=PATIENCE)
+    assert "[TLO:-1.500]" in sender.told
+    assert sender.command("$J=G91 X-100 F6000", timeout=PATIENCE)
+    until(lambda: grbl.player.feed.is_moving)
+    sender.realtime(b"\x85")
+    assert sender.command("G4 P0", timeout=PATIENCE) and grbl.is_idle
+    assert sender.reset() and sender.command("G0 X-1", timeout=PATIENCE)

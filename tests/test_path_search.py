@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: MIT
+"""The search for the worst path: what it kept, a short search, and that it finds a planner that is wrong."""
+
+from dataclasses import replace
+
+import pytest
+from passo import random_cases
+from passo.path import PathSettings
+
+from benchmarks import path_adversary, path_measure
+from benchmarks.path_measure import KINDS, Measured, measure
+from benchmarks.path_paths import case_of, read_cases
+from benchmarks.path_search import search
+
+KEPT = read_cases(path_adversary.WORST)
+
+
+@pytest.mark.parametrize("name", KEPT)
+def test_a_kept_case_is_within_all_bounds(name: str) -> None:
+    """Time, steps and underruns of paths that were wrong once."""
+    assert measure(KEPT[name]).faults == {}
+
+
+def test_a_short_search_finds_nothing() -> None:
+    """Other paths with each PASSO_SEED; make path has the long one."""
+    assert search(25, random_cases.seed()) is None
+
+
+def weaker(share: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The planner has more acceleration than the judge and the reference think."""
+
+    def stronger(settings: PathSettings) -> PathSettings:
+        axes = tuple(replace(axis, acceleration=float(axis.acceleration) * share) for axis in settings.axes)
+        return replace(settings, axes=axes)
+
+    plan, player = path_measure.plan, path_measure.Player
+    monkeypatch.setattr(path_measure, "plan", lambda lines, settings, n: plan(lines, stronger(settings), n))
+    monkeypatch.setattr(path_measure, "Player", lambda settings, n, loop: player(stronger(settings), n, loop))
+
+
+@pytest.mark.parametrize(("share", "kind"), [(1.1, "acceleration"), (0.9, "slow")])
+def test_the_search_finds_a_wrong_planner(share: float, kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A tenth too strong is seen at the pins, a tenth too weak in the time; one piece shows it."""
+    weaker(share, monkeypatch)
+    error = path_adversary.smallest(kind, 1, 40)
+    assert error is not None and error.kind == kind
+    assert len(error.case.pieces) == 1
+    assert measure(error.case).faults.keys() >= {kind}
+
+
+def test_a_stop_of_the_core_is_a_fault_of_its_own() -> None:
+    """An underrun has a kind; any other cause is a fault."""
+    assert list(Measured(fault="RAMP_UNDERRUN at 0.1 s").faults) == ["underrun"]
+    assert list(Measured(fault="LINE_UNDERRUN at 0.1 s").faults) == ["underrun"]
+    assert list(Measured(fault="3 substeps were drained").faults) == ["fault"]
+
+
+def test_cases_are_kept_as_they_are() -> None:
+    """A file holds what was found."""
+    for case in KEPT.values():
+        assert case_of(case.to_json()) == case
+    assert set(KINDS) >= {"underrun", "slow", "acceleration"}
