@@ -58,7 +58,7 @@ Cells = dict[tuple[str, str, str], list[str]]
 
 
 def _named(module: dict[str, Any]) -> dict[int, str]:
-    """The names of bits that do not depend on the numbers of yosys: of a wire, or of what a process gives it."""
+    """The names of bits without the numbers of yosys: of a wire, or of what a process gives it."""
     found: dict[int, str] = {}
     for name, net in sorted(module["netnames"].items()):
         given = re.fullmatch(r"\$0\\(.+)\[\d+:\d+\]", name)
