@@ -41,6 +41,11 @@ class Score:
         return self.dead / max(1, self.faults)
 
     @property
+    def shown(self) -> str:
+        """The share as text."""
+        return f"{self.share:.0%}" if self.faults else ""
+
+    @property
     def faults(self) -> int:
         """Those that have been played, and are not equal."""
         return self.made - self.equal - self.waiting
@@ -126,7 +131,7 @@ def show_table(rtl: Sequence[Score], c: Sequence[Score]) -> None:
             live = score.faults - score.dead
             made.add_row(
                 *(score.module, str(score.made), str(score.dead), str(score.equal)),
-                *(str(live), f"{score.share:.0%}"),
+                *(str(live), score.shown),
             )
         console.print(made)
 
@@ -139,7 +144,7 @@ def _rtl_table(all_scores: Sequence[Score]) -> str:
     lines.append("|---|" + "---:|" * 8)
     for score in all_scores:
         by = " | ".join(str(score.killed.get(judge, 0)) for judge in JUDGES)
-        ends = f"{score.equal} | {score.waiting} | {len(score.living)} | {score.share:.0%}"
+        ends = f"{score.equal} | {score.waiting} | {len(score.living)} | {score.shown}"
         lines.append(f"| `{score.module}` | {score.made} | {by} | {ends} |")
     return "\n".join(lines)
 
@@ -148,7 +153,7 @@ def _c_table(all_scores: Sequence[Score]) -> str:
     lines = ["| file | mutants | killed | no fault | not played | live | score |", "|---|" + "---:|" * 6]
     for score in all_scores:
         counts = f"{score.made} | {score.dead} | {score.equal} | {score.waiting} | {len(score.living)}"
-        lines.append(f"| `{score.module}` | {counts} | {score.share:.0%} |")
+        lines.append(f"| `{score.module}` | {counts} | {score.shown} |")
     return "\n".join(lines)
 
 
