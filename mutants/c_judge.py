@@ -88,10 +88,10 @@ def _record(worker: Worker, file: Path, count: int, show: Callable[[str], None])
     """The tests of one file."""
     places = worker.root / "reached"
     places.write_bytes(bytes(count + 1))
-    done = worker.ask({"record": str(places), "tests": [str(file)]})
+    done = worker.ask({"record": str(places), "tests": [str(file)], "longest": LONGEST})
     if "seconds" not in done:
         raise Failure(f"{file.name}: {done['test']}")
-    others = set(done["failed"])  # that read the text of a source
+    others = set(done["failed"]) - set(done["slow"])  # that read the text of a source
     if len(others) > MOST_FAIL:
         raise Failure(f"without a mutant, these fail: {', '.join(sorted(others))}")
     for test in sorted(others):
@@ -100,7 +100,7 @@ def _record(worker: Worker, file: Path, count: int, show: Callable[[str], None])
     return {
         test: {"seconds": seconds, "reached": done["reached"][test]}
         for test, seconds in done["seconds"].items()
-        if test not in others
+        if test not in others and test not in done["slow"]
     }
 
 

@@ -220,7 +220,9 @@ class Mutator:
         visited = self._visit(node)
         if number is None:
             return visited
-        return c_ast.If(c_ast.UnaryOp("!", self._at(number)), visited, None, node.coord)
+        # in braces: an `else` may follow
+        unless = c_ast.If(c_ast.UnaryOp("!", self._at(number)), visited, None, node.coord)
+        return c_ast.Compound([unless], node.coord)
 
 
 def changes(source: Path, folders: Collection[Path]) -> list[Change]:

@@ -2,8 +2,8 @@
 """Runs tests on C sources with mutants, below the folder that is given. Reads JSON objects, one in a line:
 
     {"mutant": N, "tests": [...], "seconds": S}    gives {"mutant": N, "test": what failed, or ""}
-    {"record": FILE, "tests": [...]}               gives {"seconds": {test: S}, "reached": {test: [N, ...]},
-                                                          "failed": [...]}
+    {"record": FILE, "tests": [...], "longest": S} gives {"seconds": {test: S}, "reached": {test: [N, ...]},
+                                                          "failed": [...], "slow": [...]}
 
 Each run is in a process of its own, in which what is imported and compiled is there already.
 """
@@ -41,16 +41,26 @@ def _seconds() -> float:
 class Recorder:
     """A plugin of pytest: how long each test takes, which mutants it reaches, what fails."""
 
-    def __init__(self, reached: Path | None = None):
+    def __init__(self, reached: Path | None = None, longest: float = 0.0):
         self.file = reached
         self.seconds: dict[str, float] = {}
         self.reached: dict[str, list[int]] = {}
         self.failed: list[str] = []
+        self.slow: list[str] = []  # ended as they took too long
         self.began = 0.0
+        self.longest = longest
 
     def pytest_runtest_logstart(self, nodeid: str) -> None:
         """A test begins."""
         self.began = _seconds()
+
+        def end(*_: Any) -> None:
+            self.slow.append(nodeid)
+            raise TimeoutError("it takes too long")
+
+        if self.longest:
+            signal.signal(signal.SIGPROF, end)
+            signal.setitimer(signal.ITIMER_PROF, self.longest)
 
     def pytest_runtest_logreport(self, report: Any) -> None:
         """A part of it has ended."""
@@ -59,6 +69,7 @@ class Recorder:
 
     def pytest_runtest_logfinish(self, nodeid: str) -> None:
         """It has ended."""
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
         self.seconds[nodeid] = round(_seconds() - self.began, 3)
         if self.file:
             places = self.file.read_bytes()
@@ -86,9 +97,14 @@ def _answer(asked: dict[str, Any]) -> dict[str, Any]:
     os.environ["PASSO_MUTANT"] = str(asked.get("mutant", 0))
     if "record" in asked:
         os.environ["PASSO_REACHED"] = asked["record"]
-        recorder = Recorder(Path(asked["record"]))
+        recorder = Recorder(Path(asked["record"]), asked["longest"])
         _run(recorder, asked["tests"])
-        return {"seconds": recorder.seconds, "reached": recorder.reached, "failed": recorder.failed}
+        return {
+            "seconds": recorder.seconds,
+            "reached": recorder.reached,
+            "failed": recorder.failed,
+            "slow": recorder.slow,
+        }
     recorder = Recorder()
     status = _run(recorder, asked["tests"])
     test = recorder.failed[0] if recorder.failed else "" if status == 0 else f"pytest ends with {status}"

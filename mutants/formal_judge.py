@@ -2,7 +2,8 @@
 """The promises as judges: a mutant of a module is put into the module as its proof sees it.
 
 What has been proved of the module must fail now. The proofs are those of formal/, with the same
-assumptions; the cells of both netlists are matched by their kind and their place in the source.
+assumptions; the cells of both netlists are matched by their kind, their place in the source, and the wires
+that they lead to. A mutant of which this is not certain has no proof.
 """
 
 import json
@@ -53,20 +54,63 @@ def _kind(name: str) -> str:
     return name.split("$")[1] if name.startswith("$") and name.count("$") > 1 else name
 
 
-Cells = dict[tuple[str, str], list[str]]
+Cells = dict[tuple[str, str, str], list[str]]
+
+
+def _named(module: dict[str, Any]) -> dict[int, str]:
+    """The names of bits without the numbers of yosys: of a wire, or of what a process gives it."""
+    found: dict[int, str] = {}
+    for name, net in sorted(module["netnames"].items()):
+        given = re.fullmatch(r"\$0\\(.+)\[\d+:\d+\]", name)
+        if given or not name.startswith("$"):
+            for place, bit in enumerate(net["bits"]):
+                shown = f"next {given[1]}" if given else name
+                if isinstance(bit, int):
+                    found.setdefault(bit, f"{shown} {place}")
+    return found
+
+
+def _targets(module: dict[str, Any]) -> dict[str, str]:
+    """Of each cell the first named wires that it leads to."""
+    named = _named(module)
+    readers: dict[int, list[str]] = {}
+    for name, cell in module["cells"].items():
+        for port, bits in cell["connections"].items():
+            if cell["port_directions"].get(port) == "input":
+                for bit in bits:
+                    if isinstance(bit, int):
+                        readers.setdefault(bit, []).append(name)
+
+    def outputs(name: str) -> list[int]:
+        cell = module["cells"][name]
+        return [
+            bit
+            for port, bits in cell["connections"].items()
+            if cell["port_directions"].get(port) == "output"
+            for bit in bits
+            if isinstance(bit, int)
+        ]
+
+    def follow(name: str) -> str:
+        found: set[str] = set()
+        seen, front = {name}, [name]
+        while front and not found:
+            bits = [bit for one in front for bit in outputs(one)]
+            found = {named[bit] for bit in bits if bit in named}
+            front = [reader for bit in bits for reader in readers.get(bit, ()) if reader not in seen]
+            seen.update(front)
+        return ", ".join(sorted(found)[:3])
+
+    return {name: follow(name) for name in module["cells"]}
 
 
 def _cells(module: dict[str, Any]) -> Cells:
-    """The cells of a module by kind and place, in the order in which yosys has made them."""
+    """The cells of a module by kind, place, and where they lead to."""
     found: Cells = {}
-
-    def order(name: str) -> int:
-        number = name.rpartition("$")[2]
-        return int(number) if number.isdigit() else 0
-
-    for name in sorted(module["cells"], key=order):
-        source = re.sub(r"\S*/", "", module["cells"][name]["attributes"].get("src", ""))
-        found.setdefault((_kind(name), source), []).append(name)
+    targets = _targets(module)
+    for name, cell in module["cells"].items():
+        source = re.sub(r"[^|\s]*/", "", cell["attributes"].get("src", ""))
+        found.setdefault((_kind(name), source, targets[name]), []).append(name)
     return found
 
 
@@ -76,9 +120,10 @@ def _proof_modules(proof: formal.Proof) -> dict[str, Cells]:
     folder = WORK / f"cells_{os.getpid()}_{proof.name}"
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    for name in ("rtl", "formal"):
-        for file in (paths.root / name).glob("*.v*"):
-            shutil.copy(file, folder / file.name)
+    text = proof.sby.read_text(encoding="utf-8")
+    for line in re.findall(r"^\[files\]\n(.*)", text, re.M | re.S)[0].split("\n"):
+        if names := line.split():  # where it comes from, after the name that it has there
+            shutil.copy(paths.root / names[-1], folder / Path(names[0]).name)
     lines = _script(proof)
     place = _place(lines)
     yosys(folder, "\n".join([*lines[:place], *_proc(lines), "write_json cells.json"]) + "\n")
@@ -116,9 +161,9 @@ def _in_proof(core: Core, mutant: Mutant, proof: formal.Proof) -> list[str]:
         if re.sub(r"^\$paramod(?:\$[0-9a-f]+)?\\", "", name).split("\\")[0] != mutant.module:
             continue
         same = cells.get(key, [])
-        if len(same) == len(names):
+        if len(same) == len(names) == 1:
             made = mutant.command.replace(f"-module {module} ", f"-module {name} ")
-            made = made.replace(f"-cell {cell} ", f"-cell {same[names.index(cell)]} ")
+            made = made.replace(f"-cell {cell} ", f"-cell {same[0]} ")
             commands.append(re.sub(r" -(?:src|wire|wirebit) \S+", "", made))
     return commands
 
@@ -180,12 +225,12 @@ def _try(
 ) -> None:
     """One mutant in one proof."""
     fate = fates.get(mutant.name)
-    fate.tried = [*(fate.tried or []), name]
     try:
         broken = prove(core, mutant, proof)
     except Failure as failure:
         show(f"{mutant.name}: {failure}")
         return
+    fate.tried = [*(fate.tried or []), name]
     if broken:
         fate.killed, fate.says = f"proof {proof.name}", broken
     show(f"{core.name}: {mutant.module}: proof {proof.name}: {broken or 'lives'}")

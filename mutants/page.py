@@ -27,6 +27,7 @@ class Score:
     made: int = 0
     killed: dict[str, int] = field(default_factory=dict)  # by judge
     equal: int = 0
+    waiting: int = 0  # not played yet
     living: list[tuple[str, str]] = field(default_factory=list)  # the mutant, and the reason
 
     @property
@@ -36,8 +37,18 @@ class Score:
 
     @property
     def share(self) -> float:
-        """Of those that are not equal."""
-        return self.dead / max(1, self.made - self.equal)
+        """Of the faults that have been played."""
+        return self.dead / max(1, self.faults)
+
+    @property
+    def shown(self) -> str:
+        """The share as text."""
+        return f"{self.share:.0%}" if self.faults else ""
+
+    @property
+    def faults(self) -> int:
+        """Those that have been played, and are not equal."""
+        return self.made - self.equal - self.waiting
 
 
 def _judge_of(killed: str, says: str) -> str:
@@ -78,6 +89,8 @@ def scores(mutants: Sequence[Mutant | CMutant], fates: Fates) -> list[Score]:
             score.killed[judge] = score.killed.get(judge, 0) + 1
         elif fate.equal or why[1]:
             score.equal += 1
+        elif not fate.tried:
+            score.waiting += 1
         else:
             score.living.append((_shown(mutant), why[0] or NO_REASON))
     return list(found.values())
@@ -90,6 +103,7 @@ def _merged(all_scores: Sequence[Score]) -> list[Score]:
         score = found.setdefault(one.module, Score(one.module))
         score.made += one.made
         score.equal += one.equal
+        score.waiting += one.waiting
         score.living += one.living
         for judge, count in one.killed.items():
             score.killed[judge] = score.killed.get(judge, 0) + count
@@ -103,6 +117,7 @@ def total(all_scores: Sequence[Score]) -> Score:
         sum(score.made for score in all_scores),
         {"all": sum(score.dead for score in all_scores)},
         sum(score.equal for score in all_scores),
+        sum(score.waiting for score in all_scores),
     )
 
 
@@ -113,10 +128,10 @@ def show_table(rtl: Sequence[Score], c: Sequence[Score]) -> None:
             continue
         made = table(title, "module", "mutants", "killed", "no faults", "live", "score")
         for score in [*all_scores, total(all_scores)]:
-            live = score.made - score.dead - score.equal
+            live = score.faults - score.dead
             made.add_row(
                 *(score.module, str(score.made), str(score.dead), str(score.equal)),
-                *(str(live), f"{score.share:.0%}"),
+                *(str(live), score.shown),
             )
         console.print(made)
 
@@ -125,24 +140,20 @@ JUDGES = ("pins", "registers", "counterexample", "no induction")
 
 
 def _rtl_table(all_scores: Sequence[Score]) -> str:
-    lines = [
-        "| module | mutants | pins | registers | counterexample | no induction | no fault | live | score |"
-    ]
+    lines = [f"| module | mutants | {' | '.join(JUDGES)} | no fault | not played | live | score |"]
     lines.append("|---|" + "---:|" * 8)
     for score in all_scores:
         by = " | ".join(str(score.killed.get(judge, 0)) for judge in JUDGES)
-        ends = f"{score.equal} | {len(score.living)} | {score.share:.0%}"
+        ends = f"{score.equal} | {score.waiting} | {len(score.living)} | {score.shown}"
         lines.append(f"| `{score.module}` | {score.made} | {by} | {ends} |")
     return "\n".join(lines)
 
 
 def _c_table(all_scores: Sequence[Score]) -> str:
-    lines = ["| file | mutants | killed | no fault | live | score |", "|---|" + "---:|" * 5]
+    lines = ["| file | mutants | killed | no fault | not played | live | score |", "|---|" + "---:|" * 6]
     for score in all_scores:
-        lines.append(
-            f"| `{score.module}` | {score.made} | {score.dead} | {score.equal} | {len(score.living)} "
-            f"| {score.share:.0%} |"
-        )
+        counts = f"{score.made} | {score.dead} | {score.equal} | {score.waiting} | {len(score.living)}"
+        lines.append(f"| `{score.module}` | {counts} | {score.shown} |")
     return "\n".join(lines)
 
 
@@ -159,8 +170,13 @@ def _living(all_scores: Sequence[Score]) -> str:
     return "\n".join(parts)
 
 
-def write(rtl: Sequence[Score], c: Sequence[Score], seed: int) -> None:
-    """Put the figures between the marks of the page."""
+NOT_ENDED = """
+These are the figures of a run that has not ended: not all judges have seen all mutants, so that a mutant
+that lives here may be killed yet."""
+
+
+def write(rtl: Sequence[Score], c: Sequence[Score], seed: int, ended: bool = True) -> None:
+    """Put the figures between the marks of the page; survivors are listed when all judges have played."""
     rtl, c = _merged(rtl), _merged(c)
     all_rtl, all_c = total(rtl), total(c)
     text = PAGE.read_text(encoding="utf-8")
@@ -169,8 +185,19 @@ def write(rtl: Sequence[Score], c: Sequence[Score], seed: int) -> None:
     tail = rest.split(end)[1]
 
     def of(score: Score) -> str:
-        faults = score.made - score.equal
-        return f"{score.dead:,} of {faults:,} ({score.share:.1%}; {score.equal} more are no faults)"
+        waits = f", {score.waiting} are not played yet" if score.waiting else ""
+        equal = f"{score.equal} more are no faults"
+        return f"{score.dead:,} of {score.faults:,} ({score.share:.1%}; {equal}{waits})"
+
+    survivors = f"""
+## Survivors
+
+### Of the RTL
+{_living(rtl)}
+
+### Of C
+{_living(c)}
+"""
 
     figures = f"""
 With seed {seed}, killed of the mutants of the RTL: {of(all_rtl)};
@@ -184,13 +211,6 @@ of those of the C sources: {of(all_c)}.
 
 {_c_table(c)}
 
-## Survivors
-
-### Of the RTL
-{_living(rtl)}
-
-### Of C
-{_living(c)}
-
 """
+    figures += survivors if ended else NOT_ENDED + "\n"
     PAGE.write_text(head + begin + figures + end + tail, encoding="utf-8")

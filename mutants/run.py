@@ -90,7 +90,7 @@ def main() -> None:
     show_table(rtl, c)
     _say(f"{time.monotonic() - began:.0f} s")
     if not only:
-        write(rtl, c, arguments.seed)
+        write(rtl, c, arguments.seed, ended=not arguments.page)
     for case in rtl_judge.unfair:
         _say(f"the judge finds fault with the core itself: {case}")
     sys.exit(bool(rtl_judge.unfair))

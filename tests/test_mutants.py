@@ -64,14 +64,11 @@ def test_a_judge_that_is_switched_off_scores_0(sample: tuple[list[Mutant], Path]
 
 
 def test_a_promise_kills_a_mutant() -> None:
-    """Of passo_admission, in each of whose cells a promise lies."""
+    """One of some, in modules whose proofs are quick."""
     mutants, _, _ = drawn(SAMPLE, SEED, EACH)
-    proof = formal_judge.proofs_of("passo_admission")[0]
-    found = [
-        formal_judge.prove(SAMPLE, mutant, proof) for mutant in mutants if mutant.module == "passo_admission"
-    ]
-    print(found)
-    assert len(found) == EACH
+    modules = ("passo_admission", "passo_motion", "passo_axis_settings")
+    some = [mutant for mutant in mutants if mutant.module in modules]
+    found = (formal_judge.prove(SAMPLE, mutant, formal_judge.proofs_of(mutant.module)[0]) for mutant in some)
     assert any(found)
 
 
@@ -83,7 +80,7 @@ def test_the_tests_kill_mutants_in_c(tmp_path: Path) -> None:
         reached = tmp_path / "reached"
         reached.write_bytes(bytes(len(mutants) + 1))
         tests = ["tests/test_gcode_arcs.py"]
-        seen = worker.ask({"record": str(reached), "tests": tests})
+        seen = worker.ask({"record": str(reached), "tests": tests, "longest": 60.0})
         assert seen["failed"] == []
         numbers = {number for test in seen["reached"].values() for number in test}
         assert numbers & {mutant.number for mutant in mutants}
