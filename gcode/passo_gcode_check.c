@@ -5,7 +5,8 @@
 
 #define TOOL_MAX 255
 #define LINE_NUMBER_MAX 9999999
-#define TOOL_AXIS 2u /* Z */
+#define TOOL_AXIS 2u                                          /* Z */
+#define NANOMETRE ((UINT64_C(1) << 32) / PASSO_GCODE_MILLION) /* UQ32.32 mm, rounded down */
 
 bool passo_gcode_take(struct passo_gcode_check *check, char letter)
 {
@@ -197,7 +198,7 @@ static enum passo_gcode_error check_path(struct passo_gcode_check *check)
 	if (letter == '\0')
 		return PASSO_GCODE_OK;
 	const int64_t length = passo_gcode_length_of(check, letter);
-	check->tolerance = length > 0 ? (uint64_t)passo_gcode_millimetres(length) : PASSO_PATH_UNMERGED;
+	check->tolerance = length > 0 ? (uint64_t)length * NANOMETRE : PASSO_PATH_UNMERGED;
 	return passo_gcode_in_range(length) ? PASSO_GCODE_OK : PASSO_GCODE_TARGET;
 }
 

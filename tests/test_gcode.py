@@ -318,10 +318,10 @@ def test_the_tolerance_of_the_path() -> None:
             continue
         run(gcode, line)
         wanted = tolerance if tolerance == UNMERGED else round(tolerance * 2**32)
-        assert abs(gcode.c.tolerance - wanted) <= 1, line
+        assert wanted * 0.9997 <= gcode.c.tolerance <= wanted, line
     run(gcode, "G64 P1")
     gcode.jog("X1 F5")
-    assert gcode.c.tolerance == 1 << 32
+    assert 0.9997 * (1 << 32) < gcode.c.tolerance <= 1 << 32
     planner().passo_gcode_reset(gcode.c)
     assert gcode.c.tolerance == OWN
 
