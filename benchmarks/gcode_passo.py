@@ -28,7 +28,7 @@ class Passo:
         self.gcode.execute(line)
         self.label += 1
         c = planner()
-        tolerance = max(0, self.gcode.c.tolerance) / NANOMETRES
+        tolerance = self.tolerance()
         arc = self.gcode.c.job.arc if self.gcode.c.job.turns else None
         for action in self.gcode.actions():
             if action.kind == c.PASSO_GCODE_DWELL:
@@ -46,6 +46,11 @@ class Passo:
         if arc is not None:
             self.motions.append(self._motion(action, arc))
 
+    def tolerance(self) -> float:
+        """Of merged lines, in mm; 0: none, or the path's own."""
+        unmerged = (1 << 64) - 1
+        return self.gcode.c.tolerance % unmerged / 2**32
+
     def _motion(self, action: Any, arc: Any) -> Motion:
         feed = 0 if action.feed == (1 << 64) - 1 else action.feed / 2**32 * 60
         end = tuple(n / NANOMETRES for n in self.gcode.position) if arc is not None else None
@@ -54,7 +59,7 @@ class Passo:
             end or tuple(n / NANOMETRES for n in action.target[0:3]),
             feed,
             outputs=_outputs(action.output),
-            tolerance=max(0, self.gcode.c.tolerance) / NANOMETRES,
+            tolerance=self.tolerance(),
         )
         if arc is None:
             return made

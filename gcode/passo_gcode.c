@@ -57,7 +57,7 @@ void passo_gcode_reset(struct passo_gcode *gcode)
 		gcode->shift[axis] = 0;
 	gcode->flood = gcode->mist = false;
 	gcode->tool_length = gcode->feed = gcode->spindle = 0;
-	gcode->tolerance = PASSO_GCODE_OWN_TOLERANCE;
+	gcode->tolerance = 0;
 	gcode->line = 0;
 	gcode->tool = 0;
 	clear_job(gcode);

@@ -35,9 +35,6 @@ struct passo_gcode_offsets {
 	passo_gcode_position home[2]; /* G28, G30 */
 };
 
-/* G64 without a word: that of the path, unless it is told. 0, of G61 and G64 P0: every point is passed. */
-#define PASSO_GCODE_OWN_TOLERANCE (INT64_C(-1))
-
 /* The output word of the lines: that of the core with OUTPUTS. */
 #define PASSO_GCODE_OUTPUT_SPINDLE (UINT32_C(1) << 16)
 #define PASSO_GCODE_OUTPUT_REVERSE (UINT32_C(1) << 17)
@@ -59,7 +56,6 @@ struct passo_gcode_action {
 	enum passo_gcode_kind kind;
 	passo_gcode_position target; /* machine coordinates */
 	uint64_t feed;               /* UQ32.32 mm/s, or PASSO_PATH_RAPID */
-	uint64_t tolerance;          /* of a line: for passo_path_tolerance() */
 	uint64_t microseconds;       /* of a dwell */
 	uint32_t output;
 	uint32_t line; /* N; 0: none */
@@ -86,7 +82,7 @@ struct passo_gcode {
 	passo_gcode_position position; /* programmed end, machine coordinates */
 	passo_gcode_position shift;    /* G92 */
 	int64_t tool_length;           /* G43.1 */
-	int64_t tolerance;             /* nm, of lines that are merged; or PASSO_GCODE_OWN_TOLERANCE */
+	uint64_t tolerance;            /* G61 G64: for passo_path_tolerance(), before a line is added */
 	int64_t feed;                  /* nm/min; 0: none yet */
 	int64_t spindle;               /* millionths of rpm */
 	uint32_t line;                 /* N of the last line that had one */

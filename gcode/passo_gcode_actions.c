@@ -76,22 +76,12 @@ static void next_of_motion(struct passo_gcode *gcode, struct passo_gcode_action 
 	job->motion = false;
 }
 
-/* UQ32.32 mm, as passo_path_tolerance() has it: 0 is the path's own. */
-static uint64_t tolerance_of(const struct passo_gcode *gcode)
-{
-	if (gcode->tolerance == 0)
-		return PASSO_PATH_UNMERGED;
-	return gcode->tolerance > 0 ? (uint64_t)passo_gcode_millimetres(gcode->tolerance) : 0;
-}
-
 bool passo_gcode_next(struct passo_gcode *gcode, struct passo_gcode_action *action)
 {
 	struct passo_gcode_job *job = &gcode->job;
 
-	*action = (struct passo_gcode_action){.line = gcode->line,
-	    .output = passo_gcode_output(gcode),
-	    .tolerance = tolerance_of(gcode),
-	    .probe = PASSO_GCODE_NONE};
+	*action = (struct passo_gcode_action){
+	    .line = gcode->line, .output = passo_gcode_output(gcode), .probe = PASSO_GCODE_NONE};
 	if (take(&job->output)) {
 		action->kind = PASSO_GCODE_OUTPUT;
 	} else if (take(&job->dwell)) {

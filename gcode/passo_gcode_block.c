@@ -6,7 +6,7 @@
 #include <stddef.h>
 
 #define INTEGER_MAX INT64_C(999999999)
-#define TENTH (PASSO_GCODE_MILLION / 10)
+#define TENTH (PASSO_GCODE_MILLION / 10u)
 
 /* Properties of a command. */
 #define AXES 1u   /* the axis words are its own, if there are any */
@@ -151,14 +151,18 @@ static enum passo_gcode_error add_code(struct passo_gcode_block *block, const st
 static enum passo_gcode_error add_command(
     struct passo_gcode_block *block, const struct code *table, size_t count, int64_t value)
 {
-	const int64_t whole = value / PASSO_GCODE_MILLION;
-	const bool every = table == M_CODES && value % PASSO_GCODE_MILLION != 0;
+	const uint32_t millionths = (uint32_t)value;
+	const bool every = table == M_CODES && millionths % PASSO_GCODE_MILLION != 0;
 	enum passo_gcode_error error = every ? PASSO_GCODE_NOT_INTEGER : PASSO_GCODE_UNSUPPORTED;
 
+	if (value >> 32 != 0) /* far above the largest one, or negative */
+		return PASSO_GCODE_UNSUPPORTED;
 	for (size_t i = 0; i < count; i++) {
-		if (table[i].number * (int64_t)TENTH == value)
+		const uint32_t tenths = (uint32_t)table[i].number;
+
+		if (tenths * TENTH == millionths)
 			return add_code(block, &table[i]);
-		if (table[i].number / 10 == whole && !(table[i].properties & TENTHS))
+		if (tenths / 10 == millionths / PASSO_GCODE_MILLION && !(table[i].properties & TENTHS))
 			error = PASSO_GCODE_NOT_INTEGER;
 	}
 	return error;

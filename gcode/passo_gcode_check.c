@@ -5,7 +5,8 @@
 
 #define TOOL_MAX 255
 #define LINE_NUMBER_MAX 9999999
-#define TOOL_AXIS 2u /* Z */
+#define TOOL_AXIS 2u                                          /* Z */
+#define NANOMETRE ((UINT64_C(1) << 32) / PASSO_GCODE_MILLION) /* UQ32.32 mm, rounded down */
 
 bool passo_gcode_take(struct passo_gcode_check *check, char letter)
 {
@@ -178,21 +179,27 @@ static enum passo_gcode_error check_return(struct passo_gcode_check *check, cons
 	return error;
 }
 
-/* How far the path may be from the points: G64 Q, or P alone. P of G4 and G10 is theirs. */
+/* G61: every point is passed. G64: the tolerance is Q, or P alone, unless P is that of G4 or G10; without
+ * them it is 0, the path's own. */
 static enum passo_gcode_error check_path(struct passo_gcode_check *check)
 {
 	const passo_gcode_command command = check->block.command[PASSO_GCODE_COMMAND];
 	const passo_gcode_command path = check->block.command[PASSO_GCODE_PATH];
+	char letter = '\0';
 
-	check->tolerance = path == PASSO_GCODE_NONE ? check->gcode->tolerance : 0;
-	if (path != 640)
+	check->tolerance = check->gcode->tolerance;
+	if (path == PASSO_GCODE_NONE)
 		return PASSO_GCODE_OK;
-	check->tolerance = PASSO_GCODE_OWN_TOLERANCE;
-	if (command != 40 && command != 100 && passo_gcode_take(check, 'P'))
-		check->tolerance = passo_gcode_length_of(check, 'P');
+	check->tolerance = path == 640 ? 0 : PASSO_PATH_UNMERGED;
+	if (path == 640 && command != 40 && command != 100 && passo_gcode_take(check, 'P'))
+		letter = 'P';
 	if (passo_gcode_take(check, 'Q'))
-		check->tolerance = passo_gcode_length_of(check, 'Q');
-	return passo_gcode_in_range(check->tolerance) ? PASSO_GCODE_OK : PASSO_GCODE_TARGET;
+		letter = 'Q';
+	if (letter == '\0')
+		return PASSO_GCODE_OK;
+	const int64_t length = passo_gcode_length_of(check, letter);
+	check->tolerance = length > 0 ? (uint64_t)length * NANOMETRE : PASSO_PATH_UNMERGED;
+	return passo_gcode_in_range(length) ? PASSO_GCODE_OK : PASSO_GCODE_TARGET;
 }
 
 static enum passo_gcode_error check_command(struct passo_gcode_check *check)

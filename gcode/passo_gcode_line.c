@@ -17,13 +17,6 @@ size_t passo_gcode_line_count(const char *text, size_t count)
 	return text[i] == '\r' && i + 1 < count && text[i + 1] == '\n' ? i + 2 : i + 1;
 }
 
-/* Editors put one in front of a file. */
-static bool is_byte_order_mark(const struct passo_gcode_line *line)
-{
-	return line->length == 3 && line->text[0] == '\xEF' && line->text[1] == '\xBB'
-	    && line->text[2] == '\xBF';
-}
-
 void passo_gcode_line_clear(struct passo_gcode_line *line)
 {
 	line->text[0] = '\0';
@@ -53,13 +46,13 @@ void passo_gcode_line_add(struct passo_gcode_line *line, char byte)
 		byte = (char)(byte - 'a' + 'A');
 	line->text[line->length++] = byte;
 	line->text[line->length] = '\0';
-	if (is_byte_order_mark(line))
-		passo_gcode_line_clear(line);
 }
 
 void passo_gcode_line_read(struct passo_gcode_line *line, const char *text, size_t count)
 {
+	const bool mark = count >= 3 && text[0] == '\xEF' && text[1] == '\xBB' && text[2] == '\xBF';
+
 	passo_gcode_line_clear(line);
-	for (size_t i = 0; i < count && !passo_gcode_line_ends(text[i]); i++)
+	for (size_t i = mark ? 3 : 0; i < count && !passo_gcode_line_ends(text[i]); i++)
 		passo_gcode_line_add(line, text[i]);
 }

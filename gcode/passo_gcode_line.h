@@ -27,12 +27,11 @@ bool passo_gcode_line_ends(char byte);
 /* Bytes of the first line of a text, with its end: LF, CR, CR LF, or that of the text. */
 size_t passo_gcode_line_count(const char *text, size_t count);
 
-/* Adds a byte that does not end the line. Comments are (...) and ;... to the end of the line. Spaces, control
- * characters and a byte order mark in front are nothing; any other byte that no word can have stays, so that
- * the line is refused. */
+/* Adds a byte that does not end the line. Comments are (...) and ;... to the end of the line. Spaces and
+ * control characters are nothing; any other byte that no word can have stays, so that the line is refused. */
 void passo_gcode_line_add(struct passo_gcode_line *line, char byte);
 
-/* Reads the first line of a text. */
+/* Reads the first line of a text, without the byte order mark that editors put in front of a file. */
 void passo_gcode_line_read(struct passo_gcode_line *line, const char *text, size_t count);
 
 #endif

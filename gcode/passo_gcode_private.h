@@ -17,7 +17,7 @@ struct passo_gcode_check {
 	bool moves;               /* the axis words are those of a motion, given or in force */
 	int64_t feed;             /* nm/min, of G94; 0: none */
 	int64_t inverse;          /* millionths of 1/min, of G93 */
-	int64_t tolerance;        /* nm, of G64 */
+	uint64_t tolerance;       /* UQ32.32 mm, of G61 and G64 */
 	unsigned system;          /* that is set by G10 */
 	passo_gcode_position set; /* by G10, G92; of G43.1 the tool length in place of Z */
 };
