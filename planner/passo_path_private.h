@@ -155,7 +155,16 @@ bool passo_path_is_settled(const struct passo_path_planner *path, uint32_t index
 
 /* Length behind the corner at the start of an item, or before it, over which the path keeps a square, so that
  * the rounding of a lone corner has what it needs of the acceleration. */
+#ifdef PASSO_WITHOUT_ROUNDING
+static inline uint64_t passo_path_flat(
+    const struct passo_path_planner *path, uint32_t index, bool behind, uint64_t square)
+{
+	(void)path, (void)index, (void)behind, (void)square;
+	return 0;
+}
+#else
 uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, bool behind, uint64_t square);
+#endif
 
 /* Updates `reach` after a line has been added. */
 void passo_path_look_back(struct passo_path_planner *path);
