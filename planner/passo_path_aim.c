@@ -66,7 +66,7 @@ static bool is_enough(const struct passo_path_planner *path, const struct passo_
 		return false;
 	if (aim->kind == part->kind
 	    && (part->kind == PASSO_PATH_FLAT ? aim->square == part->square
-	                                      : is_similar(aim->slope, part->slope)))
+	                                      : is_similar(aim->first, part->slope)))
 		return false;
 	const uint64_t ticks = passo_path_ticks_to(path, aim);
 	return ticks >= TICKS_MIN
@@ -97,8 +97,9 @@ static struct passo_path_aim find_aim(
 			}
 			if (is_enough(path, &aim, &parts[i]))
 				return aim;
-			if (aim.kind != parts[i].kind || !is_similar(aim.slope, parts[i].slope))
-				aim.slope = parts[i].slope;
+			if (aim.kind != parts[i].kind || aim.length == 0)
+				aim.first = aim.slope = parts[i].slope;
+			aim.slope = passo_path_larger(aim.slope, parts[i].slope);
 			aim.kind = parts[i].kind;
 			aim.length += parts[i].length;
 			aim.square = parts[i].square;

@@ -200,6 +200,7 @@ static void share_turn(struct passo_path_planner *path, const int32_t *unit, uin
 		    curvature_of((int64_t)unit[axis] - path->at.direction[axis], over, length);
 }
 
+#ifndef PASSO_WITHOUT_ROUNDING
 /* What an axis has of its acceleration when a line has its slope, UQ0.16. */
 static uint16_t part_of(
     const struct passo_path_planner *path, uint64_t slope, const int32_t *unit, uint32_t axis)
@@ -209,6 +210,7 @@ static uint16_t part_of(
 
 	return (uint16_t)passo_path_smaller(part >> (PASSO_PATH_UNIT_BITS - 16), UINT16_MAX);
 }
+#endif
 
 /* Square at the corner between the last line and this one. The change of direction of an axis takes place
  * over a certain length: half the sum of the two lines, if they stand for an arc, or the arc that deviates by
@@ -250,6 +252,7 @@ static uint64_t limit_corner(
 			square = passo_path_smaller(
 			    square, square_of(((uint64_t)own->jump << PASSO_PATH_UNIT_BITS) / change[axis]));
 	}
+#ifndef PASSO_WITHOUT_ROUNDING
 	if (rounded < (path->at.length < length ? path->at.length : length) / 2) {
 		const struct passo_path_item *before = passo_path_item(path, path->added - 1);
 
@@ -257,6 +260,9 @@ static uint64_t limit_corner(
 		item->lost[0] = part_of(path, before->slope, path->at.direction, binds);
 		item->lost[1] = part_of(path, item->slope, unit, binds);
 	}
+#else
+	(void)binds;
+#endif
 	if (passo_path_is_soft(path))
 		square = passo_path_smaller(square, square_of(soft_corner(path, change, turn, over)));
 	return square;

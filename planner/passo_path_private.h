@@ -45,9 +45,10 @@ struct passo_path_aim {
 	enum passo_path_kind kind;
 	uint64_t length, square; /* of the path to there, UQ32.32 substeps; of the velocity there */
 	uint64_t slope;
-	bool rest;  /* it comes to rest there */
-	bool open;  /* it ends there because what follows is not settled */
-	bool plain; /* its ramp is linear */
+	bool rest;      /* it comes to rest there */
+	bool open;      /* it ends there because what follows is not settled */
+	bool plain;     /* its ramp is linear */
+	uint64_t first; /* slope of the part that it began with; `slope` is the steepest */
 };
 
 /* Why ramps are made beyond what is settled. */
@@ -154,7 +155,16 @@ bool passo_path_is_settled(const struct passo_path_planner *path, uint32_t index
 
 /* Length behind the corner at the start of an item, or before it, over which the path keeps a square, so that
  * the rounding of a lone corner has what it needs of the acceleration. */
+#ifdef PASSO_WITHOUT_ROUNDING
+static inline uint64_t passo_path_flat(
+    const struct passo_path_planner *path, uint32_t index, bool behind, uint64_t square)
+{
+	(void)path, (void)index, (void)behind, (void)square;
+	return 0;
+}
+#else
 uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, bool behind, uint64_t square);
+#endif
 
 /* Updates `reach` after a line has been added. */
 void passo_path_look_back(struct passo_path_planner *path);

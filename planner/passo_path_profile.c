@@ -33,6 +33,7 @@ static unsigned put(struct passo_path_part *parts, unsigned count, enum passo_pa
 	return count + 1;
 }
 
+#ifndef PASSO_WITHOUT_ROUNDING
 uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, bool behind, uint64_t square)
 {
 	const struct passo_path_item *item = passo_path_item(path, index);
@@ -46,6 +47,7 @@ uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, 
 	const uint32_t lost = item->lost[behind], left = (UINT32_C(1) << 16) - taken;
 	return left < lost ? passo_mul_div((uint64_t)item->turn << 32, lost - left, lost) : 0;
 }
+#endif
 
 /* Without the flat ends: at most three. */
 static unsigned middle_parts(const struct passo_path_planner *path, uint32_t index, uint64_t left,

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from passo import random_cases
+from passo.axis_judge import Marks, faults, shares
 from passo.build import Parameters
 from passo.native import ffi, planner
 from passo.path import Path, PathAxis, PathSettings
@@ -221,6 +222,17 @@ def test_a_low_feed_takes_the_time_of_its_length(feed: float, size: float, profi
     assert plan([((0, 0, -size), feed)], settings, 48).seconds < 1.001 * size / feed + 10 * lost
 
 
+def test_curves_leave_an_axis_within_its_acceleration() -> None:
+    """Along the path and across it together, where both are at their most."""
+    fine = replace(MACHINE, axes=(PathAxis(1600), PathAxis(1600), PathAxis(400, 12, 100)))
+    for radius, chords, feed in ((5, 128, 100.0), (20, 360, None), (20, 360, 100.0)):
+        lines = [(target, feed) for target, _ in path_cases.circle(radius, chords)]
+        played = play(lines, fine)
+        marks = Marks.of(lines, fine, played.clocks, played.steps)
+        found = shares(played.clocks, played.steps, fine, marks, ("acceleration",))
+        assert faults(found) == []
+
+
 def test_cosine_ramps_pass_corners() -> None:
     """A shaped ramp spans many lines, and is not split without need."""
     planned = plan(path_cases.circle(), replace(MACHINE, profile="cosine"), 360)
@@ -250,6 +262,75 @@ def test_a_slow_host_means_a_stop_without_a_fault(number: int) -> None:
     verdict = judge(lines, settings, player.finish(), rests=True)
     player.engine.close()
     assert verdict.problems == []
+
+
+def small_circle(radius: float, chord: float, count: int, feed: float) -> list[Line]:
+    """An arc in chords of micrometres, as a file has them."""
+    angles = (chord / radius * i for i in range(1, count + 1))
+    points = ((radius - radius * math.cos(a), radius * math.sin(a), 0.0) for a in angles)
+    return [(tuple(round(mm, 6) for mm in point), feed) for point in points]
+
+
+FAST = replace(MACHINE, axes=(PathAxis(80, 500, 20_000), PathAxis(80, 500, 20_000), PathAxis(400, 12, 100)))
+
+DENSE: dict[str, Callable[[], list[Line]]] = {
+    "circle of 2 mm": lambda: small_circle(2, 0.0041888, 300, 50),
+    "circle of 20 mm": lambda: small_circle(20, 0.02, 600, 100),
+    "zigzag": lambda: [((0.002 * (i % 2), 0, 0), 50.0) for i in range(1, 200)],
+    "comb": lambda: [((0.002 * i, 0.01 * (i % 2), 0), 50.0) for i in range(1, 200)],
+    "feeds": lambda: [((0.01 * i, 0, 0), 50.0 if i % 2 else 1.0) for i in range(1, 60)],
+    "spiral": lambda: path_cases.spiral(200, 0.01),
+}
+
+
+@pytest.mark.parametrize("polls", [500, 1000, 8000])
+@pytest.mark.parametrize("case", DENSE)
+def test_no_pattern_of_lines_leaves_the_core_dry(case: str, polls: int) -> None:
+    """Whatever look-ahead, profile and queues of the core: the path is slower, and does not stop."""
+    rng = random.Random(f"{case} {polls}")
+    profiles = [MACHINE, FAST, replace(FAST, tolerance=None), replace(FAST, profile="cosine"), SOFT]
+    for settings in (MACHINE, rng.choice(profiles), rng.choice(profiles)):
+        lines, log2 = DENSE[case](), rng.choice([(8, 4), (8, 4), (4, 6), (2, 4)])
+        queues = {"line_queue_log2": log2[0], "ramp_queue_log2": log2[1]}
+        player = Player(settings, rng.choice([4, 48, 300]), settings.clock_hz // polls, **queues)
+        for target, feed in lines:
+            player.add(target, feed)
+        played = player.finish()
+        player.engine.close()
+        assert played.positions == steps_at(lines[-1][0], settings) and played.drained == 0
+
+
+def test_short_lines_are_merged_within_the_tolerance() -> None:
+    """As far as they are nearly straight; the end, and the time of the whole, are kept."""
+    circle = small_circle(20, 0.02, 6283, 100)
+    merged = plan(circle, replace(MACHINE, tolerance=None), 48)
+    assert len(merged.lines) < len(circle) / 8
+    assert merged.seconds < 1.01 * plan(path_cases.circle(), MACHINE, 48).seconds
+    for tolerance, most in ((0.0005, 700), (0.002, 400), (0, 6283)):
+        planned = plan(circle, replace(MACHINE, tolerance=tolerance), 48)
+        assert len(planned.lines) <= most and (tolerance > 0) == (len(planned.lines) < 6283)
+        position = np.zeros(3, int)
+        for line in planned.lines:
+            signs = np.array([-1 if line.directions >> axis & 1 else 1 for axis in range(3)])
+            position += signs * np.array(list(line.steps)[:3])
+            mm = np.array(position[:2]) / 80
+            assert abs(math.hypot(mm[0] - 20, mm[1]) - 20) < tolerance + 0.01
+        assert position.tolist() == steps_at(circle[-1][0], MACHINE)
+
+
+def test_what_is_not_alike_is_not_merged() -> None:
+    """Another feed, another output, a dwell, a corner, a way back."""
+    step = 0.01
+    for change in ("feed", "output", "dwell", "corner", "back", "nothing"):
+        path = Path(replace(MACHINE, tolerance=None), Parameters(), 48)
+        for i in range(1, 11):
+            half = change if i > 5 else ""
+            y = step * (i - 5) if half == "corner" else 0
+            x = step * (10 - i) if half == "back" else step * i
+            if half == "dwell" and i == 6:
+                path.dwell()
+            path.add((x, y, 0), 90.0 if half == "feed" else 100.0, int(half == "output"))
+        assert path.c.added == (1 if change == "nothing" else 2), change
 
 
 def test_silence_is_a_stop_at_the_end_of_the_known_path() -> None:
