@@ -86,7 +86,7 @@ def smallest(kind: str, seed: int, count: int) -> BeyondError | None:
 
 def adversaries(count: int = PATHS, seed: int = 1) -> Found:
     """Measure so many paths on all cores."""
-    found, jobs = Found(), {}
+    found, jobs, told = Found(), {}, 0
     with progress("adversarial paths", count) as report, ProcessPoolExecutor(os.cpu_count()) as pool:
         for number in range(-(-count // BATCH)):
             own = seed * 1_000_003 + number
@@ -94,6 +94,11 @@ def adversaries(count: int = PATHS, seed: int = 1) -> Found:
         for job in as_completed(jobs):
             found.add(job.result(), jobs[job])
             report(min(found.paths, count))
+            if found.paths * 20 // count > told and not console.is_terminal:
+                told = found.paths * 20 // count
+                console.print(
+                    f"{found.paths:,} of {count:,} adversarial paths, beyond a bound: {found.beyond}"
+                )
     return found
 
 
