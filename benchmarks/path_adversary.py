@@ -13,7 +13,7 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass, field
 from typing import Any
 
-from passo.console import console, progress, table
+from passo.console import console, progress
 from passo.toolchain import paths
 
 from benchmarks.path_measure import KINDS, Measured, compare, play
@@ -104,12 +104,11 @@ def adversaries(count: int = PATHS, seed: int = 1) -> Found:
 
 def show(found: Found) -> None:
     """Print the figures."""
-    shown = table(f"{found.paths:,} adversarial paths", "figure", "worst", "of")
+    console.print(f"{found.paths:,} adversarial paths; the worst:")
     for name, (value, case) in found.worst.items():
-        shown.add_row(name, f"{value:.4f}", repr(case))
-    for kind in KINDS:
-        shown.add_row(f"beyond: {kind}", f"{found.beyond.get(kind, 0)}", "")
-    console.print(shown)
+        console.print(f"{name:14}{value:8.4f}  {case}", soft_wrap=True)
+    counts = ", ".join(f"{kind} {found.beyond.get(kind, 0)}" for kind in KINDS)
+    console.print(f"beyond a bound: {counts}", soft_wrap=True)
 
 
 def figures(found: Found) -> dict[str, Any]:
