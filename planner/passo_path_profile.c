@@ -41,11 +41,11 @@ uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, 
 	if (index >= path->added || item->rest || item->turn == 0
 	    || passo_path_shape(path) != PASSO_SHAPE_LINEAR)
 		return 0;
-	/* the curvature over both sides takes half of the limit at most */
+	/* the curvature over both sides takes half of the limit at most, of which steps show half */
 	const uint32_t taken =
 	    (uint32_t)passo_mul_div(passo_path_smaller(square, item->bend), UINT32_C(1) << 15, item->bend);
 	const uint32_t lost = item->lost[behind], left = (UINT32_C(1) << 16) - taken;
-	return left < lost ? passo_mul_div((uint64_t)item->turn << 32, lost - left, lost) : 0;
+	return left < lost ? passo_mul_div((uint64_t)item->turn << 31, lost - left, lost) : 0;
 }
 #endif
 
