@@ -13,7 +13,7 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass, field
 from typing import Any
 
-from passo.console import console, progress, table
+from passo.console import console, progress
 from passo.toolchain import paths
 
 from benchmarks.path_measure import KINDS, Measured, compare, play
@@ -86,7 +86,7 @@ def smallest(kind: str, seed: int, count: int) -> BeyondError | None:
 
 def adversaries(count: int = PATHS, seed: int = 1) -> Found:
     """Measure so many paths on all cores."""
-    found, jobs = Found(), {}
+    found, jobs, told = Found(), {}, 0
     with progress("adversarial paths", count) as report, ProcessPoolExecutor(os.cpu_count()) as pool:
         for number in range(-(-count // BATCH)):
             own = seed * 1_000_003 + number
@@ -94,17 +94,21 @@ def adversaries(count: int = PATHS, seed: int = 1) -> Found:
         for job in as_completed(jobs):
             found.add(job.result(), jobs[job])
             report(min(found.paths, count))
+            if found.paths * 20 // count > told and not console.is_terminal:
+                told = found.paths * 20 // count
+                console.print(
+                    f"{found.paths:,} of {count:,} adversarial paths, beyond a bound: {found.beyond}"
+                )
     return found
 
 
 def show(found: Found) -> None:
     """Print the figures."""
-    shown = table(f"{found.paths:,} adversarial paths", "figure", "worst", "of")
+    console.print(f"{found.paths:,} adversarial paths; the worst:")
     for name, (value, case) in found.worst.items():
-        shown.add_row(name, f"{value:.4f}", repr(case))
-    for kind in KINDS:
-        shown.add_row(f"beyond: {kind}", f"{found.beyond.get(kind, 0)}", "")
-    console.print(shown)
+        console.print(f"{name:14}{value:8.4f}  {case}", soft_wrap=True)
+    counts = ", ".join(f"{kind} {found.beyond.get(kind, 0)}" for kind in KINDS)
+    console.print(f"beyond a bound: {counts}", soft_wrap=True)
 
 
 def figures(found: Found) -> dict[str, Any]:
