@@ -202,6 +202,7 @@ struct passo {
 	uint32_t rate_target;                       /* UQ1.16: the override, kept during a hold */
 	uint32_t oversampling;                      /* of the last plan */
 	uint64_t velocity_peak;                     /* of the last plan */
+	uint64_t velocity_top;                      /* highest of the plans of this motion */
 	bool has_inputs, has_outputs, has_encoders; /* the core has */
 	bool follows;                               /* the clock of motions may be an encoder */
 	bool stop_time_known;                       /* that of a soft stop is configured */
@@ -212,8 +213,11 @@ struct passo {
 	struct passo_task task;
 	struct passo_turning turning;
 	struct passo_goto go; /* that is under way */
-	bool backwards;       /* direction of its motion */
-	bool aimed;           /* which ends at the target, or before it */
+	/* of a motion whose ramps may be changed */
+	bool backwards; /* its direction */
+	bool has_aim;   /* it has a target, `aim`, as the core counts */
+	bool aimed;     /* it ends there, or before it */
+	int32_t aim;
 	struct passo_source source;
 };
 

@@ -174,10 +174,41 @@ enum passo_error passo_driver_seek(
 /* The first motion of a home, and those after a motion has ended: PENDING, OK at the end, or an error. */
 enum passo_error passo_driver_home_first(struct passo *passo);
 enum passo_error passo_driver_home_next(struct passo *passo, const struct passo_trigger_report *report);
-/* Change of a continuous rotation: the present velocity; and the ramps that were planned from there. `stop`:
- * to rest; after a link error a soft stop replaces it. */
-enum passo_error passo_driver_turning_velocity(struct passo *passo, bool stop, uint64_t *velocity);
-enum passo_error passo_driver_turning_ramps(struct passo *passo, bool stop, const struct passo_plan *plan);
+/* A change of the ramps of a motion that runs: the attempts, until one is in time.
+ *
+ *     while (error == LATE && passo_driver_steers(passo, &steering)) {
+ *             passo_driver_sight() ... plan ... passo_driver_steer()
+ *     }
+ * `stop`: to rest; a host that is slow then takes more time, and after a link error a soft stop replaces it.
+ */
+struct passo_steering {
+	bool stop;
+	bool overdue;   /* the core has ramps that were planned for an earlier moment */
+	unsigned tries; /* so far */
+	uint32_t since; /* microseconds: the first read */
+	uint32_t late;  /* microseconds from there until the core has the change, at most */
+};
+/* What is certain until then. */
+struct passo_sight {
+	uint64_t low, high; /* bounds of the velocity, UQ0.48 */
+	uint64_t way;       /* of a motion with an aim: steps that are left, UQ48.16; 0: none */
+};
+/* late_clocks 0: 1 ms. */
+struct passo_steering passo_driver_steering(const struct passo *passo, bool stop, uint64_t late_clocks);
+bool passo_driver_steers(struct passo *passo, struct passo_steering *steering);
+enum passo_error passo_driver_sight(
+    struct passo *passo, struct passo_steering *steering, uint64_t acceleration, struct passo_sight *sight);
+/* Sends the ramps: LATE if the time is over, before or after. NOT_TURNING: the end is already in progress. */
+enum passo_error passo_driver_steer(
+    struct passo *passo, struct passo_steering *steering, const struct passo_plan *plan);
+/* The result of the attempts: after a stop that was never in time a soft one follows. */
+enum passo_error passo_driver_steered(
+    struct passo *passo, const struct passo_steering *steering, enum passo_error error);
+/* UQ32.32 steps/s of a velocity, rounded up. */
+uint64_t passo_driver_speed_of(const struct passo *passo, uint64_t velocity);
+/* A motion whose ramps may be changed has been queued; `aim` is null for one without a target. */
+void passo_driver_turns(struct passo *passo, const struct passo_turning *turning, bool backwards,
+    const struct passo_plan *plan, const int32_t *aim);
 /* After a stop with this fault no axis is certain to be where it was. */
 void passo_driver_forget_home(struct passo *passo, enum passo_error fault);
 

@@ -11,21 +11,6 @@
 #include "passo_driver.h"
 #include "passo_math.h"
 
-#define LATE_MICROSECONDS 1000u
-#define MICROSECONDS_PER_SECOND 1000000u
-#define TRIES 3u
-/* Steps that the ramps are ahead of the position: four wait for the pins, and parts of one. */
-#define STEPS_AHEAD 5
-/* Ticks until a ramp that was received changes the speed. */
-#define TICKS_AHEAD 4u
-#define WAY_BITS 16u
-
-/* What a change is based on. */
-struct sight {
-	uint64_t low, high; /* bounds of the speed, UQ32.32 steps/s */
-	uint64_t way;       /* to the target, UQ48.16 steps; 0: none */
-};
-
 static enum passo_error of_plan(enum passo_plan_error error)
 {
 	return error == PASSO_PLAN_OK ? PASSO_OK
@@ -41,27 +26,10 @@ static struct passo_course course_of(const struct passo_goto *go, bool backwards
 	    .acceleration = go->acceleration};
 }
 
-static uint64_t larger(uint64_t a, uint64_t b)
+/* The target as the core counts. */
+static int32_t aim_of(const struct passo *passo, const struct passo_goto *go)
 {
-	return a > b ? a : b;
-}
-
-/* Steps from a position to the target. */
-static int32_t distance(const struct passo *passo, const struct passo_goto *go, const int32_t *positions)
-{
-	const int32_t now = passo_driver_offset(passo, go->axis, positions[go->axis]);
-
-	return (int32_t)((uint32_t)go->target - (uint32_t)now);
-}
-
-static uint32_t late_microseconds(const struct passo *passo, const struct passo_goto *go)
-{
-	const uint64_t late =
-	    passo_mul_div(go->late_clocks, MICROSECONDS_PER_SECOND, passo->machine.clock_hz);
-
-	if (go->late_clocks == 0u)
-		return LATE_MICROSECONDS;
-	return late < INT32_MAX ? (uint32_t)late : INT32_MAX;
+	return (int32_t)((uint32_t)go->target - passo->axis[go->axis].offset);
 }
 
 /* The next motion, from rest. */
@@ -74,7 +42,8 @@ static enum passo_error go_on(struct passo *passo)
 
 	if (error != PASSO_OK)
 		return error;
-	const int32_t far = distance(passo, go, positions);
+	const int32_t aim = aim_of(passo, go);
+	const int32_t far = (int32_t)((uint32_t)aim - (uint32_t)positions[go->axis]);
 	if (far == 0)
 		return PASSO_OK;
 	const struct passo_course course = course_of(go, far < 0);
@@ -88,108 +57,68 @@ static enum passo_error go_on(struct passo *passo)
 	error = passo_move_plan(passo, &plan, NULL);
 	if (error != PASSO_OK)
 		return error;
-	passo->velocity_peak = peak;
-	passo->expects = PASSO_EXPECT_TURNING;
-	passo->turning = (struct passo_turning){.axis = go->axis, .acceleration = go->acceleration};
-	passo->backwards = course.backwards;
-	passo->aimed = true;
+	plan.velocity_peak = peak;
+	const struct passo_turning turning = {.axis = go->axis, .acceleration = go->acceleration};
+	passo_driver_turns(passo, &turning, course.backwards, &plan, &aim);
 	return PASSO_PENDING;
-}
-
-/* Reads where the axis is, and bounds its speed and its way for as long as a change may take. */
-static enum passo_error look(struct passo *passo, const struct passo_goto *to, struct sight *sight)
-{
-	const struct passo_machine *machine = &passo->machine;
-	const uint64_t units = PASSO_ONE_Q48 / PASSO_UNIT_Q32;
-	const uint64_t time =
-	    passo_mul_div_ceil(late_microseconds(passo, to), machine->clock_hz, MICROSECONDS_PER_SECOND)
-	    + ((uint64_t)TICKS_AHEAD << machine->tick_log2);
-	int32_t positions[PASSO_AXES_MAX];
-	uint64_t velocity;
-	enum passo_error error = passo_driver_turning_velocity(passo, false, &velocity);
-
-	if (error == PASSO_OK)
-		error = passo_driver_positions(passo, positions, false);
-	if (error != PASSO_OK)
-		return error;
-	const uint64_t steepest = larger(to->acceleration, passo->go.acceleration);
-	const uint64_t change = passo_mul_div_ceil(steepest, time, machine->clock_hz);
-	const uint64_t speed = passo_mul_div(velocity, machine->clock_hz, units * passo->oversampling);
-	const uint64_t peak = passo_mul_div_ceil(
-	    larger(velocity + units, passo->velocity_peak), machine->clock_hz, units * passo->oversampling);
-	sight->low = speed > change ? speed - change : 0u;
-	sight->high = speed + change < peak && speed + change > speed ? speed + change : peak;
-	const uint64_t passed =
-	    (passo_mul_div_ceil(sight->high, time, machine->clock_hz) >> (32u - WAY_BITS)) + 1u;
-	const int32_t far = distance(passo, to, positions);
-	const int64_t ahead = (passo->backwards ? -(int64_t)far : far) - STEPS_AHEAD;
-	sight->way =
-	    ahead > 0 && (uint64_t)ahead << WAY_BITS > passed ? ((uint64_t)ahead << WAY_BITS) - passed : 0u;
-	return PASSO_OK;
 }
 
 /* Plans the change; no ramps: the motion ends as it should already. *aimed: it then ends at or before the
  * target. */
-static enum passo_error plan_change(
-    struct passo *passo, const struct passo_goto *to, struct passo_plan *plan, bool *aimed)
+static enum passo_error plan_change(const struct passo *passo, const struct passo_goto *to,
+    const struct passo_sight *sight, struct passo_plan *plan, bool *aimed)
 {
+	const struct passo_machine *machine = &passo->machine;
 	const struct passo_course course = course_of(to, passo->backwards);
+	const uint64_t units = PASSO_ONE_Q48 / PASSO_UNIT_Q32;
+	const uint64_t low = passo_mul_div(sight->low, machine->clock_hz, units * passo->oversampling);
+	const uint64_t high = passo_driver_speed_of(passo, sight->high);
 	enum passo_plan_error refused = PASSO_PLAN_TOO_NEAR;
-	struct sight sight;
-	enum passo_error error = look(passo, to, &sight);
 
-	if (error != PASSO_OK)
-		return error;
 	plan->ramp_count = 0;
-	if (sight.way != 0u)
-		refused = passo_plan_course_change(
-		    &passo->machine, &course, sight.low, sight.high, sight.way, plan);
+	if (sight->way != 0u)
+		refused = passo_plan_course_change(machine, &course, low, high, sight->way, plan);
 	*aimed = refused == PASSO_PLAN_OK;
 	if (refused == PASSO_PLAN_TOO_NEAR && passo->aimed && to->target == passo->go.target)
 		return PASSO_OK;
 	if (refused == PASSO_PLAN_TOO_NEAR)
-		refused = passo_plan_course_change(&passo->machine, &course, sight.low, sight.high, 0, plan);
+		refused = passo_plan_course_change(machine, &course, low, high, 0, plan);
 	return of_plan(refused);
 }
 
 /* Replaces the ramps in the core. */
 static enum passo_error steer(struct passo *passo, const struct passo_goto *to)
 {
-	const uint32_t late = late_microseconds(passo, to);
+	struct passo_steering steering = passo_driver_steering(passo, false, to->late_clocks);
+	const uint64_t steepest =
+	    to->acceleration > passo->go.acceleration ? to->acceleration : passo->go.acceleration;
+	const int32_t before = passo->aim;
 	enum passo_error error = PASSO_ERROR_LATE;
-	bool overdue = false;
 
-	for (unsigned tries = 0; tries < TRIES; tries++) {
-		const uint32_t since = passo_driver_now(passo);
+	passo->aim = aim_of(passo, to);
+	while ((error == PASSO_ERROR_LATE || error == PASSO_ERROR_FULL)
+	       && passo_driver_steers(passo, &steering)) {
+		struct passo_sight sight;
 		struct passo_plan plan;
 		bool aimed = false;
 
-		error = plan_change(passo, to, &plan, &aimed);
-		if (error == PASSO_ERROR_NOT_TURNING || (error == PASSO_OK && plan.ramp_count == 0u))
-			return PASSO_OK;
-		if (error != PASSO_OK)
-			return error;
-		error = PASSO_ERROR_LATE;
-		if (passo_driver_now(passo) - since > late)
-			continue;
-		error = passo_driver_turning_ramps(passo, false, &plan);
-		if (error == PASSO_ERROR_NOT_TURNING)
-			return PASSO_OK; /* it ends; the next motion has the new target */
-		if (error == PASSO_ERROR_FULL)
-			continue;
-		if (error != PASSO_OK) {
-			if (passo_driver_is_wire(error))
-				passo_driver_halt(passo, PASSO_DUE_STOP);
-			return error;
-		}
-		overdue = passo_driver_now(passo) - since > late;
-		passo->aimed = !overdue && aimed;
-		if (!overdue)
-			return PASSO_OK;
-		error = PASSO_ERROR_LATE;
+		error = passo_driver_sight(passo, &steering, steepest, &sight);
+		if (error == PASSO_OK)
+			error = plan_change(passo, to, &sight, &plan, &aimed);
+		if (error != PASSO_OK || plan.ramp_count == 0u)
+			break;
+		error = passo_driver_steer(passo, &steering, &plan);
+		if (error == PASSO_OK || steering.overdue)
+			passo->aimed = aimed && !steering.overdue;
+		if (passo_driver_is_wire(error))
+			passo_driver_halt(passo, PASSO_DUE_STOP);
 	}
-	if (overdue)
+	if (error == PASSO_ERROR_NOT_TURNING)
+		return PASSO_OK; /* it ends; the next motion has the new target */
+	if (steering.overdue)
 		passo_driver_halt(passo, PASSO_DUE_STOP);
+	if (error != PASSO_OK)
+		passo->aim = before;
 	return error;
 }
 

@@ -5,9 +5,8 @@
 #include "passo_math.h"
 #include "passo_plan_draft.h"
 
-/* A ramp reaches the core within a millisecond of the look that it was planned by. */
-#define FRAMES_PER_S 1000u
-
+#define VELOCITY_BITS 48u
+#define WAY_BITS 16u
 /* With so many steps per turn, rpm are steps per second. */
 #define STEPS_PER_TURN 60u
 
@@ -27,9 +26,11 @@ static enum passo_error jog_by_distance(struct passo *passo, const struct passo_
 	plan.line.last = false;
 	plan.line.endless = true;
 	enum passo_error error = passo_move_plan(passo, &plan, NULL);
-	if (error == PASSO_OK)
-		passo->expects = PASSO_EXPECT_TURNING;
-	return error;
+	if (error != PASSO_OK)
+		return error;
+	const struct passo_turning turning = {.axis = jog->axis, .acceleration = jog->acceleration};
+	passo_driver_turns(passo, &turning, jog->steps < 0, &plan, &passo->axis[jog->axis].expected);
+	return PASSO_OK;
 }
 
 enum passo_error passo_jog(struct passo *passo, const struct passo_jog *jog)
@@ -47,10 +48,7 @@ enum passo_error passo_jog(struct passo *passo, const struct passo_jog *jog)
 	    .acceleration = jog->acceleration};
 	if (jog->steps == 0)
 		return passo_turn_start(passo, &turning, jog->speed);
-	error = jog_by_distance(passo, jog);
-	if (error == PASSO_OK)
-		passo->turning = (struct passo_turning){.axis = jog->axis, .acceleration = jog->acceleration};
-	return error;
+	return jog_by_distance(passo, jog);
 }
 
 enum passo_error passo_jog_speed(struct passo *passo, uint64_t speed)
@@ -62,34 +60,71 @@ enum passo_error passo_jog_speed(struct passo *passo, uint64_t speed)
 	return error != PASSO_OK ? error : passo_turn_speed(passo, speed);
 }
 
+/* One ramp to rest. False if a motion with an aim, that ends there by itself, is too near for it; if it does
+ * not, the ramp is shortened to end there. */
+static bool plan_rest(
+    const struct passo *passo, const struct passo_sight *sight, bool ends_there, struct passo_plan *plan)
+{
+	const struct passo_machine *machine = &passo->machine;
+	const uint64_t speed = passo_driver_speed_of(passo, sight->high);
+	const uint64_t clocks = passo_mul_div_ceil(speed, machine->clock_hz, passo->turning.acceleration);
+	uint64_t ticks = passo_smaller(passo_ticks_ceil(machine, clocks), UINT32_MAX);
+
+	if (passo->has_aim) {
+		/* in half ticks of velocity, as ticks * velocity is */
+		const struct passo_u128 way =
+		    passo_u128_shift_left(passo_multiply(sight->way, passo->oversampling),
+			VELOCITY_BITS - WAY_BITS + 1u - machine->tick_log2);
+		if (passo_u128_less(way, passo_multiply(ticks, sight->high))) {
+			ticks = passo_divide(way, sight->high, NULL);
+			if (ends_there || ticks == 0u)
+				return false;
+		}
+	}
+	*plan = (struct passo_plan){.ramp_count = 0};
+	passo_plan_add_ramp(plan, PASSO_SHAPE_LINEAR, false, 0, ticks);
+	plan->ramps[0].now = plan->ramps[0].last = true;
+	return true;
+}
+
+/* Sends the ramp to rest, unless the motion ends as soon by itself. */
+static enum passo_error come_to_rest(struct passo *passo, uint64_t late_clocks)
+{
+	struct passo_steering steering = passo_driver_steering(passo, true, late_clocks);
+	enum passo_error error = PASSO_ERROR_LATE;
+
+	while (error == PASSO_ERROR_LATE && passo_driver_steers(passo, &steering)) {
+		struct passo_sight sight;
+		struct passo_plan plan;
+
+		error = passo_driver_sight(passo, &steering, passo->turning.acceleration, &sight);
+		if (error != PASSO_OK)
+			return error;
+		if (plan_rest(passo, &sight, !steering.overdue, &plan))
+			error = passo_driver_steer(passo, &steering, &plan);
+		else if (steering.overdue) {
+			error = PASSO_ERROR_LATE;
+			break;
+		}
+	}
+	return passo_driver_steered(passo, &steering, error);
+}
+
 enum passo_error passo_jog_cancel(struct passo *passo)
 {
-	struct passo_plan plan = {.ramp_count = 0};
-	uint64_t velocity;
 	enum passo_error error = passo_driver_check(passo);
 
 	if (error != PASSO_OK)
 		return error;
-	if (passo->task.kind == PASSO_TASK_GOTO)
+	const bool is_goto = passo->task.kind == PASSO_TASK_GOTO;
+	if (is_goto)
 		passo->task.kind = PASSO_TASK_NONE;
 	if (passo->expects == PASSO_EXPECT_NOTHING || passo->expects == PASSO_EXPECT_TURN_END)
 		return PASSO_OK;
-	error = passo_driver_turning_velocity(passo, true, &velocity);
-	if (error != PASSO_OK)
-		return error;
-	const struct passo_machine *machine = &passo->machine;
-	const uint64_t units = PASSO_ONE_Q48 / PASSO_UNIT_Q32;
-	const uint64_t peak = velocity > passo->velocity_peak ? velocity : passo->velocity_peak;
-	const uint64_t most = passo_mul_div_ceil(peak, machine->clock_hz, units * passo->oversampling);
-	/* while it speeds up, what is added until the core has the ramp */
-	const uint64_t speed =
-	    passo_smaller(passo_mul_div_ceil(velocity, machine->clock_hz, units * passo->oversampling)
-	                      + passo->turning.acceleration / FRAMES_PER_S,
-		most);
-	const uint64_t clocks = passo_mul_div_ceil(speed, machine->clock_hz, passo->turning.acceleration);
-	const uint64_t ticks = passo_ticks_ceil(machine, clocks);
-	passo_plan_add_ramp(&plan, PASSO_SHAPE_LINEAR, false, 0, passo_smaller(ticks, UINT32_MAX));
-	plan.ramps[0].now = plan.ramps[0].last = true;
-	error = passo_driver_turning_ramps(passo, true, &plan);
-	return error == PASSO_ERROR_NOT_TURNING ? PASSO_OK : error; /* it ends already */
+	if (is_goto && !passo->aimed) { /* it comes to rest already, to return */
+		passo->expects = PASSO_EXPECT_TURN_END;
+		return PASSO_OK;
+	}
+	error = come_to_rest(passo, is_goto ? passo->go.late_clocks : 0u);
+	return error == PASSO_ERROR_NOT_TURNING && passo->expects == PASSO_EXPECT_TURNING ? PASSO_OK : error;
 }
