@@ -31,12 +31,15 @@ static bool is_scaled(enum ending ending)
 	    || ending == END_SILENCE;
 }
 
+static bool is_task(enum operation operation)
+{
+	return operation == OP_HOME || operation == OP_PROBE;
+}
+
 /* Home and probe have the trigger for themselves. */
 static bool is_possible(enum operation operation, enum ending ending)
 {
-	const bool is_trigger = ending == END_TRIGGER || ending == END_HARD_TRIGGER;
-
-	return !is_trigger || (operation != OP_HOME && operation != OP_PROBE);
+	return !is_task(operation) || (ending != END_TRIGGER && ending != END_HARD_TRIGGER);
 }
 
 static void set_up(struct bench *bench, const struct scene *scene)
@@ -254,10 +257,10 @@ static void judge_speeds(struct bench *bench, const struct scene *scene)
 	if (is_scaled(scene->ending))
 		limit += scene->speed * CLOCK_HZ
 		       / (double)(scene->ending == END_HOLD ? scene->hold_clocks : scene->stop_clocks);
-	if (scene->operation == OP_HOME || scene->operation == OP_PROBE)
+	if (is_task(scene->operation))
 		limit += scene->speed * CLOCK_HZ / (double)scene->stop_clocks;
 	const bool scaled =
-	    is_scaled(scene->ending) || scene->operation == OP_HOME || scene->operation == OP_PROBE;
+	    is_scaled(scene->ending) || is_task(scene->operation);
 	for (unsigned a = 0; a < 2u; a++) {
 		const struct pulses *pulses = &bench->axis[a];
 		const double slope = pulses_slope(pulses, CLOCK_HZ, limit, scene->speed, scaled);
@@ -330,25 +333,31 @@ static void clear(struct bench *bench, const struct scene *scene)
 		bench_blame(bench, "a fault after clear", (long)passo_fault(passo), 0);
 }
 
-/* A stop at speed may lose steps; any other keeps them. */
-static bool keeps_home(enum ending ending)
+/* A stop at speed may lose steps; any other keeps them. Of several axes a soft limit may stop some dead. */
+static bool keeps_home(const struct scene *scene)
 {
-	return !is_hard(ending) && ending != END_SILENCE;
+	const bool several = scene->target[1] != scene->start[1];
+
+	return !is_hard(scene->ending) && scene->ending != END_SILENCE
+	    && !(scene->ending == END_SOFT_LIMIT && several);
 }
 
 static void judge_state(
     struct bench *bench, const struct scene *scene, enum passo_error wanted, bool stopped, bool moved)
 {
 	struct passo *passo = &bench->passo;
+	struct passo_snapshot now;
 	const bool may_have_ended =
 	    scene->ending == END_LIMIT || scene->ending == END_SOFT_LIMIT || scene->ending == END_SILENCE;
 	/* an alarm, e-stop or trigger acts at rest as well */
 	const bool comes = wanted != PASSO_OK && !may_have_ended;
 	const enum passo_error error = comes ? await(bench, scene) : finish(bench, scene);
 
-	if (error != wanted && !(may_have_ended && error == PASSO_OK))
+	/* the switch that was looked for may have come first */
+	const bool is_sought = error == PASSO_ERROR_TRIGGER && is_task(scene->operation);
+	if (error != wanted && !is_sought && !(may_have_ended && error == PASSO_OK))
 		bench_blame(bench, passo_error_name(error), (long)error, (long)wanted);
-	if (error != PASSO_OK && passo_fault(passo) != error)
+	if (!is_sought && error != PASSO_OK && passo_fault(passo) != error)
 		bench_blame(
 		    bench, "the fault is not that of the poll", (long)passo_fault(passo), (long)error);
 	if (may_have_ended && error == PASSO_OK)
@@ -356,14 +365,15 @@ static void judge_state(
 	if (bench_finish(bench, MILLISECOND) != PASSO_OK)
 		bench_blame(bench, "a second error", 0, 0);
 	judge_rest(bench);
-	if (stopped && passo_snapshot(passo)->state != PASSO_STATE_STOPPED)
-		bench_blame(bench, "is not stopped", passo_snapshot(passo)->state, 0);
-	if (!stopped && passo_snapshot(passo)->state != PASSO_STATE_IDLE)
-		bench_blame(bench, "is not idle", passo_snapshot(passo)->state, 0);
-	if ((keeps_home(scene->ending) || !stopped) && scene->operation != OP_HOME
+	bench_must(bench, "state", passo_read_state(passo, &now));
+	if (stopped && now.state != PASSO_STATE_STOPPED)
+		bench_blame(bench, "is not stopped", now.state, 0);
+	if (!stopped && now.state != PASSO_STATE_IDLE)
+		bench_blame(bench, "is not idle", now.state, 0);
+	if ((keeps_home(scene) || !stopped) && scene->operation != OP_HOME
 	    && !passo_is_homed(passo, 0))
 		bench_blame(bench, "forgets its home", 0, 0);
-	if (!keeps_home(scene->ending) && stopped && moved && passo_is_homed(passo, 0))
+	if (!keeps_home(scene) && stopped && moved && passo_is_homed(passo, 0))
 		bench_blame(bench, "is homed after a stop at speed", 0, 0);
 	if (stopped)
 		clear(bench, scene);
@@ -376,8 +386,7 @@ static void judge_end(struct bench *bench, const struct scene *scene)
 	const bool undisturbed = scene->ending == END_HOLD || scene->ending == END_SECOND
 	                      || (scene->ending == END_CANCEL && !operation_is_jog(scene->operation));
 
-	if (!undisturbed || scene->operation == OP_ENDLESS || scene->operation == OP_HOME
-	    || scene->operation == OP_PROBE)
+	if (!undisturbed || scene->operation == OP_ENDLESS || is_task(scene->operation))
 		return;
 	const bool is_queue = scene->operation == OP_QUEUE;
 	for (unsigned a = 0; a < 2u; a++)

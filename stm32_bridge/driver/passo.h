@@ -87,6 +87,7 @@ struct passo_axis_memory {
 	int32_t expected;         /* position of the core after all queued motions */
 	uint32_t offset;          /* position of the program less that of the core; wraps */
 	uint8_t switches;         /* those that are configured, a bit per enum passo_trigger_source */
+	bool limit_soft;          /* its limits stop softly */
 	bool homed;
 	bool backwards; /* direction of the last line that moves it */
 };
@@ -181,11 +182,17 @@ struct passo {
 	uint16_t base;                     /* address of the channel's registers */
 	uint16_t line_places, ramp_places; /* depths of the queues */
 	uint8_t channel;
-	uint8_t misses;     /* consecutive status reads that failed */
-	uint8_t idle_looks; /* consecutive status reads that found all motions ended */
-	bool held;          /* feed hold: the rate is 0 whatever the override */
-	bool rate_due;      /* the rate is not acknowledged; every poll resends it */
-	bool zero_due;      /* zero is not acknowledged: the positions read next count as 0 */
+	uint8_t misses;         /* consecutive status reads that failed */
+	uint8_t idle_looks;     /* consecutive status reads that found all motions ended */
+	uint8_t movers;         /* axes that the motions since the last rest move */
+	bool aborts;            /* an abort was commanded since */
+	bool hard_trigger;      /* the trigger that was armed last stops hard */
+	bool inherits;          /* what an earlier session has armed is there still */
+	bool unbegun;           /* the last status read found a motion that is queued and has not begun ... */
+	uint32_t unbegun_since; /* ... from these microseconds on */
+	bool held;              /* feed hold: the rate is 0 whatever the override */
+	bool rate_due;          /* the rate is not acknowledged; every poll resends it */
+	bool zero_due;          /* zero is not acknowledged: the positions read next count as 0 */
 	enum passo_due stop_due;
 	enum passo_belief belief;
 	enum passo_expectation expects;
@@ -205,6 +212,7 @@ struct passo {
 	uint64_t velocity_top;                      /* highest of the plans of this motion */
 	bool has_inputs, has_outputs, has_encoders; /* the core has */
 	bool follows;                               /* the clock of motions may be an encoder */
+	uint8_t spindle;                            /* its axis */
 	bool stop_time_known;                       /* that of a soft stop is configured */
 	uint32_t reference;         /* of proportional power, UQ0.32 substeps per clock; 0: unknown */
 	struct passo_output output; /* of the moves from now on */
@@ -222,9 +230,10 @@ struct passo {
 };
 
 /* Connects to the core and takes over a channel: checks identification, version and parameters, flushes the
- * queues of a channel at rest, clears a stopped one, and reads the positions, which are kept. A channel in
- * motion (the host was reset) is left alone: the result is MOVING; state, positions, hold, stop and abort
- * work at once, moves after the motion has ended or stopped and passo_clear(). Each axis must be configured
+ * queues of a channel at rest, clears a stopped one, ends what an earlier session has armed, and reads the
+ * positions, which are kept; docs/driver.md has the table. A channel in motion (the host was reset) is left
+ * alone, with its trigger: the result is MOVING; state, positions, hold, stop and abort work at once, moves
+ * after the motion has ended or stopped and passo_clear(), which takes it over. Each axis must be configured
  * before it moves. A pending stop of an earlier session is forgotten. ESTOP and ALARM: these keep the channel
  * stopped; it is open, and passo_clear() goes on when they are over. About ten frames. Errors: NOT_PASSO,
  * VERSION, PARAMETERS, WATCHDOG_TOO_LONG, MOVING, ESTOP, ALARM. */
@@ -349,10 +358,10 @@ bool passo_is_streaming(const struct passo *passo);
 /* Call it often: feeds the stream or reads the state, at most one frame; an idle driver reads the state every
  * millisecond. Errors are returned once, by the first call that detects them (CORE_RESET by every call), and
  * kept for passo_fault(): LINE_UNDERRUN, RAMP_UNDERRUN, STEP_OVERRUN, POSITION, SUPPLY, LIMIT, ALARM,
- * TRIGGER, WATCHDOG, ESTOP, FOLLOWING, link errors, those of passo_home() and passo_probe(), which it moves
- * on. A stream that fails on the host's side is stopped with a soft stop. Commands that were not acknowledged
- * have priority: until a stop or hold gets through, nothing else is sent, and NOT_STOPPED or NOT_HELD is
- * returned once every `tries` polls. */
+ * TRIGGER, WATCHDOG, ESTOP, FOLLOWING, INPUTS_UNKNOWN, link errors, those of passo_home() and passo_probe(),
+ * which it moves on. A stream that fails on the host's side is stopped with a soft stop. Commands that were
+ * not acknowledged have priority: until a stop or hold gets through, nothing else is sent, and NOT_STOPPED or
+ * NOT_HELD is returned once every `tries` polls. */
 enum passo_error passo_poll(struct passo *passo);
 /* Microseconds until passo_poll() has something to do. No frame. */
 uint32_t passo_idle_time(const struct passo *passo);

@@ -3,6 +3,9 @@
  */
 #include "passo_driver.h"
 
+/* Of more than 1024 clocks each; the longest filter takes 2^17. */
+#define ARMING_LOOKS 1024u
+
 static enum passo_error write_trigger(struct passo *passo, struct passo_channel_trigger trigger)
 {
 	const uint32_t word = passo_pack_channel_trigger(&trigger);
@@ -33,6 +36,7 @@ enum passo_error passo_driver_arm(struct passo *passo, const struct passo_trigge
 		error = PASSO_ERROR_ARGUMENT;
 	if (error != PASSO_OK)
 		return error;
+	passo->hard_trigger = config->action == PASSO_TRIGGER_ACTION_HARD_STOP;
 	return write_trigger(passo, (struct passo_channel_trigger){.arm = true,
 					.action = config->action,
 					.falling = config->falling,
@@ -46,6 +50,43 @@ enum passo_error passo_driver_disarm(struct passo *passo)
 
 	if (error == PASSO_OK)
 		passo->task.armed = false;
+	return error;
+}
+
+static enum passo_error read_state(struct passo *passo, struct passo_channel_trigger_state *state)
+{
+	uint32_t word = 0;
+	enum passo_error error =
+	    passo_host_read(passo->host, (uint16_t)(passo->base + PASSO_CHANNEL_TRIGGER_STATE), &word, 1);
+
+	*state = passo_unpack_channel_trigger_state(word);
+	return error;
+}
+
+enum passo_error passo_driver_armed(struct passo *passo, bool *active)
+{
+	const uint32_t since = passo_driver_now(passo);
+	struct passo_channel_trigger_state state;
+	unsigned looks = 0;
+	enum passo_error error;
+
+	do {
+		error = read_state(passo, &state);
+		if (error != PASSO_OK)
+			return error;
+		if (++looks > ARMING_LOOKS && passo_driver_now(passo) - since >= PASSO_INPUTS_MICROSECONDS)
+			return PASSO_ERROR_INPUTS_UNKNOWN;
+	} while (state.arming);
+	*active = state.source_active;
+	return PASSO_OK;
+}
+
+enum passo_error passo_driver_is_blind(struct passo *passo, bool *blind)
+{
+	struct passo_channel_trigger_state state;
+	enum passo_error error = read_state(passo, &state);
+
+	*blind = state.unknown || state.arming;
 	return error;
 }
 
@@ -90,8 +131,8 @@ enum passo_error passo_read_trigger(struct passo *passo, struct passo_trigger_re
 	if (error != PASSO_OK)
 		return error;
 	const struct passo_channel_trigger_state state = passo_unpack_channel_trigger_state(words[0]);
-	*report =
-	    (struct passo_trigger_report){.armed = state.armed, .fired = state.fired, .clocks = words[1]};
+	*report = (struct passo_trigger_report){
+	    .arming = state.arming, .armed = state.armed, .fired = state.fired, .clocks = words[1]};
 	if (!state.fired)
 		return PASSO_OK;
 	error = passo_host_read(passo->host, (uint16_t)(passo->base + PASSO_CHANNEL_TRIGGER_POSITION_BASE),
@@ -116,7 +157,7 @@ enum passo_error passo_wait_for_trigger(
 			error = passo_read_trigger(passo, report);
 		if (error != PASSO_OK || report->fired)
 			return error;
-		if (!report->armed)
+		if (!report->armed && !report->arming)
 			return PASSO_ERROR_NO_SOURCE;
 		if (passo_driver_left(passo, &deadline) == 0u)
 			return PASSO_ERROR_TIMEOUT;

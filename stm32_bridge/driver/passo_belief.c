@@ -57,8 +57,10 @@ void passo_driver_expect(struct passo *passo, const struct passo_line *line)
 		const bool backwards = (line->directions >> i & 1u) != 0u;
 		const uint32_t steps = backwards ? 0u - line->steps[i] : line->steps[i];
 		passo->axis[i].expected = (int32_t)((uint32_t)passo->axis[i].expected + steps);
-		if (steps != 0u)
-			passo->axis[i].backwards = backwards;
+		if (steps == 0u)
+			continue;
+		passo->axis[i].backwards = backwards;
+		passo->movers = (uint8_t)(passo->movers | 1u << i);
 	}
 	if (passo->expects == PASSO_EXPECT_NOTHING)
 		passo->expects = PASSO_EXPECT_POSITIONS;
@@ -70,7 +72,8 @@ void passo_driver_ended(struct passo *passo, const int32_t *positions)
 	for (unsigned i = 0; i < passo->machine.axes; i++)
 		passo->axis[i].expected = positions[i];
 	passo->expects = PASSO_EXPECT_NOTHING;
-	passo->idle_looks = 0;
+	passo->idle_looks = passo->movers = 0;
+	passo->aborts = false;
 }
 
 enum passo_error passo_driver_take_over(struct passo *passo)
@@ -79,9 +82,13 @@ enum passo_error passo_driver_take_over(struct passo *passo)
 	int32_t positions[PASSO_AXES_MAX];
 	enum passo_error error = PASSO_OK;
 
-	if (passo->snapshot.state == PASSO_STATE_IDLE && !passo_driver_at_rest(passo))
+	/* raster values that wait do not show in the state */
+	const bool rests = passo_driver_at_rest(passo) && !(passo->inherits && passo->has_outputs);
+	if (passo->inherits)
+		error = passo_driver_disown(passo);
+	if (error == PASSO_OK && passo->snapshot.state == PASSO_STATE_IDLE && !rests)
 		error = passo_driver_command(passo, (struct passo_channel_command){.abort = true});
-	if (error == PASSO_OK && !passo_driver_at_rest(passo))
+	if (error == PASSO_OK && !rests)
 		error = passo_driver_command(passo, (struct passo_channel_command){.clear = true});
 	if (error == PASSO_OK)
 		error = passo_driver_write(passo, PASSO_CHANNEL_RATE_TARGET, &rate, 1);
@@ -92,6 +99,7 @@ enum passo_error passo_driver_take_over(struct passo *passo)
 	if (error != PASSO_OK)
 		return error;
 	passo_driver_ended(passo, positions);
+	passo->inherits = false;
 	passo->output.power = 0;
 	passo->output.raster = false;
 	const bool is_kept = passo->snapshot.state == PASSO_STATE_STOPPED; /* by e-stop or an alarm */

@@ -74,6 +74,8 @@ void passo_driver_break(struct passo *passo);
 void passo_driver_expect(struct passo *passo, const struct passo_line *line);
 /* All motions have ended, at these positions. */
 void passo_driver_ended(struct passo *passo, const int32_t *positions);
+/* Ends what an earlier session has armed; the channel is quiet. */
+enum passo_error passo_driver_disown(struct passo *passo);
 /* Flushes the queues of a channel that does not move, clears it, and reads the positions. The snapshot must
  * be current, and the gate closed if something is queued. */
 enum passo_error passo_driver_take_over(struct passo *passo);
@@ -156,9 +158,11 @@ enum passo_error passo_driver_watchdog(struct passo *passo, uint64_t stop_clocks
 /* Arms the trigger for a task, or ends it. */
 enum passo_error passo_driver_arm(struct passo *passo, const struct passo_trigger_config *config);
 enum passo_error passo_driver_disarm(struct passo *passo);
-/* Whether the source of a trigger is active. */
-enum passo_error passo_driver_level(
-    struct passo *passo, enum passo_trigger_source source, uint8_t axis, bool *active);
+/* Waits until the trigger is armed, at most for 2^20 clocks or 0.1 s: INPUTS_UNKNOWN. *active: whether its
+ * source was then. */
+enum passo_error passo_driver_armed(struct passo *passo, bool *active);
+/* Whether the channel does not know its inputs, or its trigger is being armed: no motion begins. */
+enum passo_error passo_driver_is_blind(struct passo *passo, bool *blind);
 /* NO_SOURCE, ARGUMENT, or NO_SWITCH unless the source is configured. */
 enum passo_error passo_driver_check_source(
     const struct passo *passo, enum passo_trigger_source source, uint8_t axis);
@@ -209,7 +213,11 @@ uint64_t passo_driver_speed_of(const struct passo *passo, uint64_t velocity);
 /* A motion whose ramps may be changed has been queued; `aim` is null for one without a target. */
 void passo_driver_turns(struct passo *passo, const struct passo_turning *turning, bool backwards,
     const struct passo_plan *plan, const int32_t *aim);
-/* After a stop with this fault no axis is certain to be where it was. */
-void passo_driver_forget_home(struct passo *passo, enum passo_error fault);
+/* The snapshot shows a stop: axes that may have lost steps in it are not homed any more. */
+void passo_driver_forget_home(struct passo *passo);
+/* The same before a clear, where the cause does not tell it: three frames if an axis is homed. */
+enum passo_error passo_driver_check_home(struct passo *passo);
+/* The same for all axes. */
+void passo_driver_forget_all(struct passo *passo);
 
 #endif

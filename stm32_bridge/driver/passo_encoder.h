@@ -87,8 +87,11 @@ enum passo_error passo_thread(struct passo *passo, const struct passo_thread *th
 struct passo_thread_state {
 	int32_t owed; /* counts times `scale` that the path has still to make up for, or below 0 has ahead */
 	bool behind;  /* it was late by two counts or more */
-	bool lost;    /* it was late by so much that it was stopped: FOLLOWING */
+	bool lost;    /* its phase was lost, and it was stopped: FOLLOWING. It was late by 2^22 clocks of the
+	                 profile, or A and B of the spindle changed at once */
+	uint8_t illegal; /* times that A and B did so since passo_clear(), up to 255 */
 };
+/* Two frames. */
 enum passo_error passo_read_thread(struct passo *passo, struct passo_thread_state *state);
 
 #ifdef __cplusplus

@@ -59,6 +59,8 @@ static const struct words errors[PASSO_ERROR_COUNT] = {
     [PASSO_ERROR_SWITCH_MISSED] = {"SWITCH_MISSED", "the switch or probe did not change within the distance"},
     [PASSO_ERROR_SWITCH_LEVEL] = {"SWITCH_LEVEL",
 	"the switch or probe has the level already that is looked for"},
+    [PASSO_ERROR_INPUTS_UNKNOWN] = {"INPUTS_UNKNOWN",
+	"an input does not keep a level for the time of the filter, and nothing moves before"},
     [PASSO_ERROR_NO_CLOCK] = {"NO_CLOCK", "the hardware has no microsecond clock"},
     [PASSO_ERROR_LATE] = {"LATE", "the host was too slow for a change on the way"},
     [PASSO_ERROR_NO_OUTPUTS] = {"NO_OUTPUTS", "the core was built without outputs"},

@@ -57,10 +57,11 @@ enum passo_error {
 	PASSO_ERROR_UNDER_WAY,         /* a home, probe or goto is under way: wait for its end, or stop it */
 	PASSO_ERROR_SWITCH_MISSED,     /* the switch or probe did not change within the distance; at rest */
 	PASSO_ERROR_SWITCH_LEVEL,      /* it has the level already that is looked for; at rest */
+	PASSO_ERROR_INPUTS_UNKNOWN,    /* inputs that a motion or trigger waits for do not stand still */
 
 	/* goto */
 	PASSO_ERROR_NO_CLOCK, /* the hardware has no microsecond clock */
-	PASSO_ERROR_LATE,     /* the host was too slow for a change on the way: it goes on as it was */
+	PASSO_ERROR_LATE, /* the host was too slow for a change on the way: it goes on as it was, or stops */
 
 	/* outputs */
 	PASSO_ERROR_NO_OUTPUTS,      /* the core was built without outputs */

@@ -44,11 +44,6 @@ enum passo_error passo_home(struct passo *passo, const struct passo_home *homes,
 	    passo, (struct passo_task){.kind = PASSO_TASK_HOME, .left = count, .home = homes}, NULL, NULL);
 }
 
-bool passo_is_homed(const struct passo *passo, uint8_t axis)
-{
-	return passo_driver_check_axis(passo, axis) == PASSO_OK && passo->axis[axis].homed;
-}
-
 /* Moves the axis of the present home, for a phase. With an edge: until it comes. */
 enum edge { NO_EDGE, RISING, FALLING };
 static enum passo_error go(

@@ -32,12 +32,15 @@ struct passo_home {
 	int32_t position;           /* of the edge */
 };
 
-/* Homes `count` axes, one after the other; homes[] must live until the end. Two frames. Errors: of the call
+/* Homes `count` axes, one after the other; homes[] must live until the end. Two frames, and until the switch
+ * is known: two periods of the filter. Errors: of the call
  * NO_SWITCH, NO_STOP_TIME, NO_DISTANCE, TOO_MANY_STEPS, NO_SPEED, NO_ACCELERATION, those of a move; of
- * passo_poll() also SWITCH_MISSED, SWITCH_LEVEL if the switch stays active. */
+ * passo_poll() also SWITCH_MISSED, SWITCH_LEVEL if the switch stays active, INPUTS_UNKNOWN if it does not
+ * stand still. */
 enum passo_error passo_home(struct passo *passo, const struct passo_home *homes, uint8_t count);
-/* Whether the position of an axis is that of its home: until the drive is switched off, e-stop, alarm or
- * watchdog stop the channel, or it is opened. No frame. */
+/* Whether the position of an axis is that of its home: until the drive is switched off, e-stop, alarm,
+ * watchdog or a following error stop the channel, the axis is stopped at speed by anything else, the core is
+ * reset, or it is opened; docs/machine.md has the table. No frame. */
 bool passo_is_homed(const struct passo *passo, uint8_t axis);
 
 /* Moves until the probe acts: toward a workpiece until it touches, or away until it is free. */

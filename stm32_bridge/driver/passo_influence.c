@@ -74,6 +74,7 @@ static enum passo_error halt(struct passo *passo, enum passo_due due)
 
 	if (error != PASSO_OK)
 		return error;
+	passo->aborts |= due == PASSO_DUE_ABORT;
 	passo_driver_halt(passo, due);
 	return passo_driver_insist_on(passo, PASSO_POST_STOP);
 }
@@ -107,7 +108,8 @@ enum passo_error passo_clear(struct passo *passo)
 	passo_driver_end_stream(passo);
 	if (!passo->task.inside)
 		passo->task.kind = PASSO_TASK_NONE;
-	if (passo->task.armed)
+	error = passo_driver_check_home(passo);
+	if (error == PASSO_OK && passo->task.armed)
 		error = passo_driver_disarm(passo);
 	if (error != PASSO_OK)
 		return error;

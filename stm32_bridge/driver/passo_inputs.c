@@ -19,15 +19,6 @@ bool passo_has_inputs(const struct passo *passo)
 	return passo->has_inputs;
 }
 
-void passo_driver_forget_home(struct passo *passo, enum passo_error fault)
-{
-	if (fault != PASSO_ERROR_ESTOP && fault != PASSO_ERROR_ALARM && fault != PASSO_ERROR_WATCHDOG
-	    && fault != PASSO_ERROR_FOLLOWING)
-		return;
-	for (unsigned i = 0; i < passo->machine.axes; i++)
-		passo->axis[i].homed = false;
-}
-
 enum passo_error passo_configure_inputs(
     struct passo *passo, uint8_t axis, const struct passo_input_config *config)
 {
@@ -51,12 +42,13 @@ enum passo_error passo_configure_inputs(
 	error = passo_driver_write(passo,
 	    (uint16_t)(PASSO_CHANNEL_AXIS_BASE + axis * PASSO_CHANNEL_AXIS_STRIDE + PASSO_AXIS_INPUTS), &word,
 	    1);
+	passo->axis[axis].limit_soft = config->limit_soft;
 	if (error == PASSO_OK)
 		passo->axis[axis].switches =
 		    (uint8_t)((unsigned)config->limit_low << PASSO_TRIGGER_SOURCE_LIMIT_LOW
 		              | (unsigned)config->limit_high << PASSO_TRIGGER_SOURCE_LIMIT_HIGH
 		              | (unsigned)config->home << PASSO_TRIGGER_SOURCE_HOME);
-	return error;
+	return passo_driver_moving(error);
 }
 
 static enum passo_error write_probe(struct passo *passo, bool clear)
@@ -78,7 +70,7 @@ enum passo_error passo_configure_probe(struct passo *passo, bool inverted)
 	passo->probe_inverted = inverted;
 	error = write_probe(passo, false);
 	passo->probe_fitted = error == PASSO_OK;
-	return error;
+	return passo_driver_moving(error);
 }
 
 enum passo_error passo_configure_filter(struct passo *passo, uint64_t clocks)
@@ -150,22 +142,8 @@ enum passo_error passo_read_inputs(struct passo *passo, struct passo_readings *r
 	    .probe = state.probe,
 	    .was_probe = state.probe_flag,
 	    .estop = estop != 0u,
-	    .axes = state.axes};
-	return PASSO_OK;
-}
-
-enum passo_error passo_driver_level(
-    struct passo *passo, enum passo_trigger_source source, uint8_t axis, bool *active)
-{
-	struct passo_readings now;
-	enum passo_error error = passo_read_inputs(passo, &now);
-
-	if (error != PASSO_OK)
-		return error;
-	const uint8_t levels = source == PASSO_TRIGGER_SOURCE_LIMIT_LOW  ? now.limit_low
-	                     : source == PASSO_TRIGGER_SOURCE_LIMIT_HIGH ? now.limit_high
-	                                                                 : now.home;
-	*active = source == PASSO_TRIGGER_SOURCE_PROBE ? now.probe : (levels >> axis & 1u) != 0u;
+	    .axes = state.axes,
+	    .unknown = state.unknown};
 	return PASSO_OK;
 }
 
@@ -184,6 +162,8 @@ enum passo_error passo_clear_estop(struct passo *passo)
 	uint32_t word = 1u << PASSO_ESTOP_CLEAR_CLEAR_LSB;
 	enum passo_error error = passo_driver_check_inputs(passo);
 
+	if (error == PASSO_OK)
+		passo_driver_forget_all(passo); /* whatever the cause of a stop says */
 	if (error == PASSO_OK)
 		error = passo_host_write(passo->host, PASSO_ADDRESS_ESTOP_CLEAR, &word, 1);
 	if (error == PASSO_OK)

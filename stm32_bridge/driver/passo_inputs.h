@@ -53,6 +53,7 @@ struct passo_readings {
 	bool probe, was_probe;
 	bool estop;   /* it is pressed, or was and is not cleared */
 	uint8_t axes; /* those of the first limit or alarm since passo_clear() */
+	bool unknown; /* the levels are not known yet, and no motion begins */
 };
 /* Three frames. */
 enum passo_error passo_read_inputs(struct passo *passo, struct passo_readings *readings);
@@ -71,12 +72,17 @@ struct passo_trigger_config {
 	bool falling; /* fires when the source becomes inactive, else active */
 };
 struct passo_trigger_report {
+	bool arming; /* it waits for its source to keep a level for longer than the filter */
 	bool armed, fired;
 	uint32_t clocks;                   /* from arming to firing, or to now; wraps */
 	int32_t positions[PASSO_AXES_MAX]; /* of all axes at the firing, as passo_positions() counts them */
 };
 
-/* Arms the trigger of the channel, once; it ends the one before. Armed while the source has the level
+/* How long a motion or trigger may wait for its inputs to stand still: INPUTS_UNKNOWN after it. */
+#define PASSO_INPUTS_MICROSECONDS 100000u
+
+/* Arms the trigger of the channel, once; it ends the one before. It is armed when its source has kept a level
+ * for longer than the filter; until then no motion begins. Armed while the source has the level
  * already, it waits for the next edge. Its stops are reported as TRIGGER by passo_poll(). Errors: NO_SOURCE,
  * NO_SWITCH, UNDER_WAY. */
 enum passo_error passo_arm_trigger(struct passo *passo, const struct passo_trigger_config *config);

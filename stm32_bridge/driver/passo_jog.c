@@ -125,6 +125,7 @@ enum passo_error passo_jog_cancel(struct passo *passo)
 		passo->expects = PASSO_EXPECT_TURN_END;
 		return PASSO_OK;
 	}
+	const bool was_turning = passo->expects == PASSO_EXPECT_TURNING;
 	error = come_to_rest(passo, is_goto ? passo->go.late_clocks : 0u);
-	return error == PASSO_ERROR_NOT_TURNING && passo->expects == PASSO_EXPECT_TURNING ? PASSO_OK : error;
+	return error == PASSO_ERROR_NOT_TURNING && was_turning ? PASSO_OK : error; /* it ends already */
 }

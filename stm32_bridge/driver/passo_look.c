@@ -44,6 +44,8 @@ enum passo_error passo_driver_look(struct passo *passo, bool once)
 	    .ramp_room = room.ramp_room,
 	    .velocity = words[3],
 	};
+	if (state.state == PASSO_STATE_STOPPED)
+		passo_driver_forget_home(passo);
 	return PASSO_OK;
 }
 

@@ -12,6 +12,29 @@ static bool fits(uint32_t actual, uint8_t expected)
 	return expected == 0u || actual == expected;
 }
 
+/* Ends what an earlier session has armed: trigger, compare points, the encoder as the clock, stops by
+ * encoders. Limits, alarms and the filter describe the machine and stay. */
+enum passo_error passo_driver_disown(struct passo *passo)
+{
+	const uint32_t none = 0;
+	enum passo_error error = PASSO_OK;
+
+	if (passo->has_inputs)
+		error = passo_driver_disarm(passo);
+	if (error == PASSO_OK && passo->has_outputs)
+		error = passo_driver_write(passo, PASSO_CHANNEL_COMPARE_PULSE, &none, 1);
+	if (error == PASSO_OK && passo->has_encoders)
+		error = passo_driver_write(passo, PASSO_CHANNEL_FOLLOW, &none, 1);
+	for (unsigned i = 0; error == PASSO_OK && passo->has_encoders && i < passo->machine.axes; i++)
+		error = passo_driver_write(passo,
+		    (uint16_t)(PASSO_CHANNEL_ENCODER_BASE + i * PASSO_CHANNEL_ENCODER_STRIDE
+		               + PASSO_ENCODER_SETUP),
+		    &none, 1);
+	if (error == PASSO_OK)
+		passo->follows = false;
+	return passo_driver_moving(error);
+}
+
 /* Reads the identity and parameters of the core and compares them with the options. */
 static enum passo_error identify(struct passo *passo, const struct passo_options *options, uint32_t *run)
 {
@@ -60,6 +83,18 @@ static bool is_kept_stopped(enum passo_error error)
 	return error == PASSO_ERROR_ESTOP || error == PASSO_ERROR_ALARM;
 }
 
+/* A motion of an earlier session that is queued, prepared or waits for an edge must not begin. A soft stop
+ * flushes it on the spot, or stops it if it has begun just now. */
+static enum passo_error keep_from_beginning(struct passo *passo)
+{
+	enum passo_error error = passo_driver_look_at_rest(passo);
+
+	if (error != PASSO_OK || passo->snapshot.state > PASSO_STATE_ARMED || passo_driver_at_rest(passo))
+		return error;
+	error = passo_driver_command(passo, (struct passo_channel_command){.stop = true});
+	return error != PASSO_OK ? error : passo_driver_look_at_rest(passo);
+}
+
 /* Identifies the core and takes over the channel, unless it is in motion. */
 static enum passo_error make_contact(struct passo *passo, const struct passo_options *options)
 {
@@ -74,12 +109,11 @@ static enum passo_error make_contact(struct passo *passo, const struct passo_opt
 		if (host->fresh && run == 0u)
 			passo_driver_tables_fresh(host);
 	}
+	passo->inherits = true;
 	error = passo_driver_recall_outputs(passo);
 	if (error == PASSO_OK)
-		error = passo_driver_look(passo, false);
+		error = keep_from_beginning(passo);
 	const bool is_quiet = passo->snapshot.quiet;
-	if (error == PASSO_OK && is_quiet && !passo_driver_at_rest(passo))
-		error = passo_driver_gate(passo, PASSO_GATE_CLOSED);
 	if (error == PASSO_OK && is_quiet)
 		error = passo_driver_take_over(passo);
 	if (error != PASSO_OK && is_kept_stopped(error))

@@ -35,7 +35,6 @@ static enum passo_error see_stop(struct passo *passo)
 	passo->expects = passo->snapshot.quiet ? PASSO_EXPECT_NOTHING : PASSO_EXPECT_END;
 	passo_driver_doubt(passo, PASSO_BELIEF_STOPPED);
 	passo->idle_looks = 0;
-	passo_driver_forget_home(passo, fault);
 	return is_news && fault != PASSO_OK && fault != passo->fault ? tell(passo, fault) : PASSO_OK;
 }
 
@@ -46,6 +45,30 @@ static bool has_ended(const struct passo *passo)
 		return passo->snapshot.state == PASSO_STATE_IDLE && passo->snapshot.quiet
 		    && passo->snapshot.line_room == passo->line_places;
 	return passo->stream == PASSO_STREAM_NONE && passo_driver_at_rest(passo);
+}
+
+/* A motion that does not begin waits for its inputs to be known. One that waits for too long is flushed: it
+ * would begin at any time. */
+static enum passo_error see_wait(struct passo *passo)
+{
+	const uint32_t now = passo_driver_now(passo);
+	const bool waits = passo->has_inputs && passo->snapshot.state == PASSO_STATE_IDLE
+	                && passo->expects != PASSO_EXPECT_NOTHING && passo->stream != PASSO_STREAM_FILLS
+	                && passo->gate != PASSO_GATE_CLOSED && passo->snapshot.quiet
+	                && passo->snapshot.line_room != passo->line_places;
+	bool blind = false;
+
+	if (!waits || !passo->unbegun)
+		passo->unbegun_since = now;
+	passo->unbegun = waits;
+	if (!waits || now - passo->unbegun_since < PASSO_INPUTS_MICROSECONDS)
+		return PASSO_OK;
+	enum passo_error error = passo_driver_is_blind(passo, &blind);
+	if (error != PASSO_OK || !blind)
+		return error != PASSO_OK ? miss(passo, error) : PASSO_OK;
+	passo->unbegun = false;
+	passo_driver_halt(passo, PASSO_DUE_STOP);
+	return tell(passo, PASSO_ERROR_INPUTS_UNKNOWN);
 }
 
 static enum passo_error look(struct passo *passo)
@@ -61,7 +84,7 @@ static enum passo_error look(struct passo *passo)
 		passo->idle_looks = 0;
 	else if (passo->idle_looks < IDLE_LOOKS)
 		passo->idle_looks++;
-	return PASSO_OK;
+	return see_wait(passo);
 }
 
 /* Resends due commands; a failure is reported after as many tries as other link errors. */

@@ -64,6 +64,31 @@ uint64_t passo_driver_speed_of(const struct passo *passo, uint64_t velocity)
 	return passo_mul_div_ceil(velocity, passo->machine.clock_hz, REGISTER_LSB * passo->oversampling);
 }
 
+/* A motion that waits for its inputs to be known takes no ramps: it is flushed, NOT_TURNING. */
+static enum passo_error withdraw(struct passo *passo)
+{
+	int32_t positions[PASSO_AXES_MAX];
+	enum passo_error error = passo_driver_gate(passo, PASSO_GATE_CLOSED);
+
+	if (error == PASSO_OK)
+		error = passo_driver_look(passo, false);
+	if (error != PASSO_OK)
+		return error;
+	if (passo->snapshot.state != PASSO_STATE_IDLE)
+		return passo_driver_gate(passo, passo->gate); /* it has just begun */
+	error = passo_driver_command(passo, (struct passo_channel_command){.abort = true});
+	if (error == PASSO_OK)
+		error = passo_driver_command(passo, (struct passo_channel_command){.clear = true});
+	if (error == PASSO_OK)
+		error = passo_driver_positions(passo, positions, false);
+	if (error == PASSO_OK)
+		error = passo_driver_gate(passo, passo->gate);
+	if (error != PASSO_OK)
+		return error;
+	passo_driver_ended(passo, positions);
+	return PASSO_ERROR_NOT_TURNING;
+}
+
 /* Reads the state of a motion that may be changed. */
 static enum passo_error look(struct passo *passo, bool stop)
 {
@@ -78,6 +103,9 @@ static enum passo_error look(struct passo *passo, bool stop)
 	if (passo->expects != PASSO_EXPECT_TURNING)
 		return PASSO_ERROR_NOT_TURNING;
 	error = passo_driver_look(passo, false);
+	if (error == PASSO_OK && passo->snapshot.state == PASSO_STATE_IDLE
+	    && passo->snapshot.line_room != passo->line_places)
+		error = stop || passo->has_aim ? withdraw(passo) : PASSO_ERROR_INPUTS_UNKNOWN;
 	if (stop && passo_driver_is_wire(error))
 		passo_driver_halt(passo, PASSO_DUE_STOP);
 	if (error == PASSO_OK && (passo->snapshot.state == PASSO_STATE_STOPPED || passo->snapshot.stopping))

@@ -27,7 +27,7 @@ enum passo_error passo_driver_seek(
 		passo->task.armed = true;
 		error = passo_driver_arm(passo, trigger);
 		if (error == PASSO_OK)
-			error = passo_driver_level(passo, trigger->source, trigger->axis, &active);
+			error = passo_driver_armed(passo, &active);
 		if (error == PASSO_OK && active != trigger->falling)
 			error = PASSO_ERROR_SWITCH_LEVEL;
 	}

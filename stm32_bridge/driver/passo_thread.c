@@ -105,6 +105,7 @@ enum passo_error passo_thread(struct passo *passo, const struct passo_thread *th
 	    .follow = true, .wait_index = thread->wait_index, .source = thread->encoder, .scale = scale};
 	const uint32_t words[] = {passo_pack_channel_follow(&follow), (uint32_t)limit};
 	passo->follows = true;
+	passo->spindle = thread->encoder;
 	error = passo_driver_moving(
 	    passo_driver_write(passo, PASSO_CHANNEL_FOLLOW, words, sizeof words / sizeof words[0]));
 	if (error == PASSO_OK)
@@ -116,7 +117,9 @@ enum passo_error passo_thread(struct passo *passo, const struct passo_thread *th
 
 enum passo_error passo_read_thread(struct passo *passo, struct passo_thread_state *state)
 {
-	uint32_t word;
+	const unsigned index =
+	    PASSO_CHANNEL_ENCODER_BASE + passo->spindle * PASSO_CHANNEL_ENCODER_STRIDE + PASSO_ENCODER_INDEX;
+	uint32_t word, edges;
 	enum passo_error error = passo_driver_check_encoders(passo);
 
 	if (error == PASSO_OK && !state)
@@ -124,10 +127,14 @@ enum passo_error passo_read_thread(struct passo *passo, struct passo_thread_stat
 	if (error == PASSO_OK)
 		error = passo_host_read(
 		    passo->host, (uint16_t)(passo->base + PASSO_CHANNEL_FOLLOW_STATE), &word, 1);
+	if (error == PASSO_OK)
+		error = passo_host_read(passo->host, (uint16_t)(passo->base + index), &edges, 1);
 	if (error != PASSO_OK)
 		return error;
 	const struct passo_channel_follow_state now = passo_unpack_channel_follow_state(word);
-	*state = (struct passo_thread_state){
-	    .owed = (int32_t)((now.owed ^ OWED_SIGN) - OWED_SIGN), .behind = now.behind, .lost = now.lost};
+	*state = (struct passo_thread_state){.owed = (int32_t)((now.owed ^ OWED_SIGN) - OWED_SIGN),
+	    .behind = now.behind,
+	    .lost = now.lost,
+	    .illegal = passo_unpack_encoder_index(edges).illegal};
 	return PASSO_OK;
 }

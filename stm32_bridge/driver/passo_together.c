@@ -3,8 +3,9 @@
  */
 #include "passo_driver.h"
 
-/* A status read takes more than 1024 clocks, the preparation of a motion a few hundred and a tick. */
-#define PREPARING_LOOKS_MAX 16u
+/* A status read takes more than 1024 clocks, the preparation of a motion a few hundred and a tick, and before
+ * it two periods of the filter, up to 2^17. */
+#define PREPARING_LOOKS_MAX 160u
 
 bool passo_waits_for_sync(const struct passo *passo)
 {

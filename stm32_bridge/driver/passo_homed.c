@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: MIT
+ * Which axes are where they were homed. A position is the number of pulses; a drive that is stopped at speed
+ * may not have followed them all. A soft stop slows down on the path, as the motion would.
+ */
+#include "passo_driver.h"
+
+bool passo_is_homed(const struct passo *passo, uint8_t axis)
+{
+	return passo_driver_check_axis(passo, axis) == PASSO_OK && passo->axis[axis].homed
+	    && !passo->host->lost;
+}
+
+static void forget(struct passo *passo, unsigned axes)
+{
+	for (unsigned i = 0; i < passo->machine.axes; i++)
+		passo->axis[i].homed = passo->axis[i].homed && (axes >> i & 1u) == 0u;
+}
+
+void passo_driver_forget_all(struct passo *passo)
+{
+	forget(passo, UINT8_MAX);
+}
+
+/* Whether the stop by a limit was on the path. A soft limit that is active when a motion begins refuses the
+ * first step towards it: dead for the other axes. */
+static bool is_soft_limit(const struct passo *passo)
+{
+	for (unsigned i = 0; i < passo->machine.axes; i++)
+		if ((passo->movers >> i & 1u) != 0u && !passo->axis[i].limit_soft)
+			return false;
+	return (passo->movers & (passo->movers - 1u)) == 0u;
+}
+
+void passo_driver_forget_home(struct passo *passo)
+{
+	bool is_soft = false;
+
+	switch (passo->snapshot.cause) {
+	case PASSO_CAUSE_STOP:
+	case PASSO_CAUSE_RAMP_UNDERRUN:
+		is_soft = true;
+		break;
+	case PASSO_CAUSE_TRIGGER:
+		is_soft = !passo->hard_trigger;
+		break;
+	case PASSO_CAUSE_LIMIT:
+		is_soft = is_soft_limit(passo);
+		break;
+	case PASSO_CAUSE_ALARM: /* the drive itself, or its power, or the way to it */
+	case PASSO_CAUSE_ESTOP:
+	case PASSO_CAUSE_WATCHDOG:
+	case PASSO_CAUSE_FOLLOWING_ERROR:
+		passo_driver_forget_all(passo);
+		break;
+	default:
+		break;
+	}
+	if (!is_soft || passo->aborts)
+		forget(passo, passo->movers);
+}
+
+/* The cause of a soft stop that was overtaken by a hard one is that of the soft one. */
+enum passo_error passo_driver_check_home(struct passo *passo)
+{
+	struct passo_readings now;
+	bool any = false;
+
+	for (unsigned i = 0; i < passo->machine.axes; i++)
+		any |= passo->axis[i].homed;
+	if (!any || !passo->has_inputs || passo->snapshot.state != PASSO_STATE_STOPPED
+	    || passo->snapshot.cause == PASSO_CAUSE_LIMIT)
+		return PASSO_OK;
+	enum passo_error error = passo_read_inputs(passo, &now);
+	if (error == PASSO_OK && (now.axes != 0u || now.estop))
+		passo_driver_forget_all(passo);
+	return error;
+}
