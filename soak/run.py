@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Random histories of the core, aimed at the clocks where something changes, checked by a judge.
 
-    .venv/bin/python -m soak.run [--seed N] [--only model,machine,verilator,icarus,driver,defects] [--scale X]
+    .venv/bin/python -m soak.run [--seed N] [--only PART,PART] [--scale X]
     .venv/bin/python -m soak.run --seed N --history N [--driver | --kind machine]
 
 The first form plays them on all processor cores, prints a table and writes build/soak.json; the second one
@@ -27,12 +27,13 @@ from soak.parts import (
     SETS,
     console,
     play_driver,
+    play_endings,
     play_icarus,
     play_machine_on_verilator,
     play_model,
     play_verilator,
 )
-from soak.program import KINDS, build, playing
+from soak.program import DRIVER_KINDS, KINDS, build, build_endings, playing
 from soak.report import report, show, show_machine
 
 REPORT = paths.build / "soak.json"
@@ -41,6 +42,8 @@ REPORT = paths.build / "soak.json"
 HISTORIES = {
     "model": 20_000,
     "driver": 3_000,
+    "endings": 6_000,
+    "sessions": 2_500,
     "verilator": 1_500,
     "driver on verilator": 150,
     "icarus": 1_000,
@@ -51,7 +54,7 @@ HISTORIES = {
     "machine on verilator": 170,
     "machine on icarus": 170,
 }
-PARTS = ("model", "driver", "verilator", "icarus", "machine", "defects")
+PARTS = ("model", "driver", *DRIVER_KINDS, "verilator", "icarus", "machine", "defects")
 
 
 def soak(seed: int, only: Sequence[str], scale: float, jobs: int) -> bool:
@@ -63,6 +66,9 @@ def soak(seed: int, only: Sequence[str], scale: float, jobs: int) -> bool:
         parts.append(play_model(program, seed, wanted["model"], jobs))
     if "driver" in only:
         parts.append(play_driver(program, seed, wanted["driver"], jobs))
+    for kind in DRIVER_KINDS:
+        if kind in only:
+            parts.append(play_endings(build_endings(), kind, seed, wanted[kind], jobs))
     if "verilator" in only:
         parts.append(play_verilator(program, seed, wanted["verilator"], jobs))
         library = rtl_library(SETS[DRIVER_SET])
@@ -99,7 +105,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--history", type=int, help="print a single history")
     parser.add_argument("--driver", action="store_true", help="play the history through the driver")
-    parser.add_argument("--kind", choices=KINDS, help="play the history of a machine")
+    parser.add_argument("--kind", choices=(*KINDS, *DRIVER_KINDS), help="play the history of a machine")
     parser.add_argument("--only", default=",".join(PARTS), help="parts to play (default: %(default)s)")
     parser.add_argument("--scale", type=float, default=1.0, help="multiply the number of histories")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
@@ -109,6 +115,9 @@ def main() -> None:
     only = arguments.only.split(",")
     if unknown := set(only) - set(PARTS):
         parser.error(f"no such part: {', '.join(sorted(unknown))}")
+    if arguments.history is not None and arguments.kind in DRIVER_KINDS:
+        command = [build_endings(), arguments.kind, str(arguments.seed), str(arguments.history), "1"]
+        sys.exit(subprocess.run(command).returncode)
     if arguments.history is not None:
         command = [build(), str(arguments.seed), str(arguments.history), "1", "--print"]
         command += ["--driver"] if arguments.driver else []

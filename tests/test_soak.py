@@ -8,14 +8,15 @@ from pathlib import Path
 import pytest
 from passo import random_cases
 from passo.build import rtl_library
-from passo.compiler import includes
+from passo.compiler import SANITIZED, call, includes, sources
 from passo.planted import plant
 from passo.toolchain import paths
 
 from soak import defects, numbers, parts
 from soak.defects import Defect
-from soak.program import FLAGS, FOLDERS, build
+from soak.program import FLAGS, FOLDERS, build, build_endings, play_program
 from soak.report import JUDGED, MACHINE_JUDGED
+from tests.helpers import sanitized
 
 SEED = random_cases.seed()
 JOBS = 1  # pytest uses the other cores
@@ -63,6 +64,37 @@ def test_no_promise_is_broken_through_the_driver(program: Path) -> None:
     check(part, 60)
     for kind in ("flips", "lost clocks", "doubled clocks", "cuts", "deaths", "retries", "lines", "stops"):
         assert part.counts[kind] > 0, kind
+
+
+@pytest.mark.parametrize(("kind", "histories"), [("endings", 60), ("sessions", 20)])
+def test_no_promise_is_broken_by_an_early_end(kind: str, histories: int, tmp_path: Path) -> None:
+    """Of any operation of the driver, at any moment; by the death of its host, too."""
+    check(
+        parts.play_endings(build_endings(program=tmp_path / "endings"), kind, SEED, histories, JOBS),
+        histories,
+    )
+
+
+@pytest.mark.parametrize("kind", [[], ["--machine"], ["--driver"]])
+def test_the_soak_itself_is_sound(kind: list[str], tmp_path: Path) -> None:
+    """Under the sanitizers of addresses and undefined behaviour."""
+    folders = (paths.driver, paths.planner, paths.protocol, paths.model)
+    made = tmp_path / "soak"
+    files = [*sources(FOLDERS["soak"]), *map(sanitized.object_of, folders)]
+    call(
+        [
+            "cc",
+            *FLAGS,
+            *SANITIZED,
+            *includes(*folders, FOLDERS["soak"], paths.engine),
+            *files,
+            "-ldl",
+            "-o",
+            made,
+        ]
+    )
+    counts, failures = play_program([made, str(SEED), "0", "6", *kind], "model", SEED)
+    assert counts["histories"] == 6 and not failures
 
 
 def test_no_promise_is_broken_in_verilator(program: Path) -> None:

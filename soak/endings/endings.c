@@ -259,8 +259,7 @@ static void judge_speeds(struct bench *bench, const struct scene *scene)
 		       / (double)(scene->ending == END_HOLD ? scene->hold_clocks : scene->stop_clocks);
 	if (is_task(scene->operation))
 		limit += scene->speed * CLOCK_HZ / (double)scene->stop_clocks;
-	const bool scaled =
-	    is_scaled(scene->ending) || is_task(scene->operation);
+	const bool scaled = is_scaled(scene->ending) || is_task(scene->operation);
 	for (unsigned a = 0; a < 2u; a++) {
 		const struct pulses *pulses = &bench->axis[a];
 		const double slope = pulses_slope(pulses, CLOCK_HZ, limit, scene->speed, scaled);
@@ -370,8 +369,7 @@ static void judge_state(
 		bench_blame(bench, "is not stopped", now.state, 0);
 	if (!stopped && now.state != PASSO_STATE_IDLE)
 		bench_blame(bench, "is not idle", now.state, 0);
-	if ((keeps_home(scene) || !stopped) && scene->operation != OP_HOME
-	    && !passo_is_homed(passo, 0))
+	if ((keeps_home(scene) || !stopped) && scene->operation != OP_HOME && !passo_is_homed(passo, 0))
 		bench_blame(bench, "forgets its home", 0, 0);
 	if (!keeps_home(scene) && stopped && moved && passo_is_homed(passo, 0))
 		bench_blame(bench, "is homed after a stop at speed", 0, 0);

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: MIT
- * endings SEED FIRST COUNT [OPERATION [ENDING]]
- * Plays histories FIRST, FIRST + 1, ... of one operation ended early, all kinds one after the other unless
- * named by number. Prints lines "failed NUMBER CLOCK TEXT" and "count NAME VALUE".
+ * endings endings | sessions SEED FIRST COUNT [OPERATION [ENDING]]
+ * Plays histories FIRST, FIRST + 1, ... of one operation ended early, of any kind unless it is named by
+ * number, or of a host that dies in an operation and another one. Prints lines "failed NUMBER CLOCK TEXT" and
+ * "count NAME VALUE".
  */
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
-#include "endings.h"
+#include "sessions.h"
 
 int main(int argc, char **argv)
 {
@@ -15,18 +17,22 @@ int main(int argc, char **argv)
 	struct scene scene;
 	unsigned long failures = 0;
 
-	if (argc < 4) {
-		fputs("endings SEED FIRST COUNT [OPERATION [ENDING]]\n", stderr);
+	if (argc < 5) {
+		fputs("endings endings | sessions SEED FIRST COUNT [OPERATION [ENDING]]\n", stderr);
 		return 2;
 	}
-	const unsigned long seed = strtoul(argv[1], NULL, 10), first = strtoul(argv[2], NULL, 10);
-	const unsigned long count = strtoul(argv[3], NULL, 10);
-	const enum operation operation = argc > 4 ? (enum operation)atoi(argv[4]) : OPERATIONS;
-	const enum ending ending = argc > 5 ? (enum ending)atoi(argv[5]) : ENDINGS;
+	const bool sessions = strcmp(argv[1], "sessions") == 0;
+	const unsigned long seed = strtoul(argv[2], NULL, 10), first = strtoul(argv[3], NULL, 10);
+	const unsigned long count = strtoul(argv[4], NULL, 10);
+	const enum operation operation = argc > 5 ? (enum operation)atoi(argv[5]) : OPERATIONS;
+	const enum ending ending = argc > 6 ? (enum ending)atoi(argv[6]) : ENDINGS;
 	for (unsigned long number = first; number < first + count; number++) {
-		if (!ending_play(&bench, (uint32_t)(seed * 1000003u + number), operation, ending, &scene)) {
+		const uint32_t mixed = (uint32_t)(seed * 1000003u + number);
+		if (!(sessions ? session_play(&bench, mixed, &scene)
+		               : ending_play(&bench, mixed, operation, ending, &scene))) {
 			printf("failed %lu 0 %s, %s: %s: %ld, %ld\n", number, operation_name(scene.operation),
-			    ending_name(scene.ending), bench.fault, bench.values[0], bench.values[1]);
+			    sessions ? "death" : ending_name(scene.ending), bench.fault, bench.values[0],
+			    bench.values[1]);
 			failures++;
 		}
 		played[scene.operation][scene.ending]++;
@@ -36,6 +42,6 @@ int main(int argc, char **argv)
 		for (unsigned e = 0; e < ENDINGS; e++)
 			if (played[o][e] != 0u)
 				printf("count %s:%s %lu\n", operation_name((enum operation)o),
-				    ending_name((enum ending)e), played[o][e]);
+				    sessions ? "death" : ending_name((enum ending)e), played[o][e]);
 	return failures != 0u;
 }

@@ -19,10 +19,11 @@ FLAGS = (*STRICT, *SANITIZED, *includes(*FOLDERS))
 
 def program(made: Path, main: Path, folders: Iterable[Path], *more: Path) -> Path:
     """Compile `main` with all sources of the folders (of the engine: that of the model), and more."""
-    return compile_to(made, *FLAGS, main, *more, *map(_object, folders))
+    return compile_to(made, *FLAGS, main, *more, *map(object_of, folders))
 
 
-def _object(folder: Path) -> Path:
+def object_of(folder: Path) -> Path:
+    """The sources of a folder, linked into one object."""
     model = [*engine_sources(), paths.engine / "engine_model.c"]
     files = model if folder == paths.engine else sources(folder)
 
