@@ -45,7 +45,9 @@ static const struct {
     [PASSO_PLAN_TABLE_FALLS] = {"TABLE_FALLS", "A shape must not decrease."},
     [PASSO_PLAN_PATH_FULL] = {"PATH_FULL", "The path has no room for another line at present."},
     [PASSO_PLAN_TOO_FAR] = {"TOO_FAR", "A target is 2^30 mm or more from the origin."},
+#ifndef PASSO_WITHOUT_GOTO
     [PASSO_PLAN_TOO_NEAR] = {"TOO_NEAR", "The axis cannot come to rest before the target."},
+#endif
 };
 
 static bool is_known(enum passo_plan_error error)

@@ -17,6 +17,7 @@ int main(int argc, char **argv)
 	struct scene scene;
 	unsigned long failures = 0;
 
+	setvbuf(stdout, NULL, _IOLBF, 0);
 	if (argc < 5) {
 		fputs("endings endings | sessions SEED FIRST COUNT [OPERATION [ENDING]]\n", stderr);
 		return 2;

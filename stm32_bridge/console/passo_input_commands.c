@@ -53,10 +53,13 @@ void passo_say_inputs(const struct passo_call *call, const struct passo_readings
 
 	for (uint8_t axis = 0; axis < call->reading->axes; axis++)
 		homed |= (uint8_t)((unsigned)passo_is_homed(&call->channel->passo, axis) << axis);
-	say_levels(sink, " inputs=",
-	    (const struct named_levels[4]){{"limit_low", now->limit_low}, {"limit_high", now->limit_high},
-		{"home", now->home}, {"alarm", now->alarm}},
-	    now->probe);
+	if (now->unknown)
+		passo_say(sink, " inputs=unknown");
+	else
+		say_levels(sink, " inputs=",
+		    (const struct named_levels[4]){{"limit_low", now->limit_low},
+			{"limit_high", now->limit_high}, {"home", now->home}, {"alarm", now->alarm}},
+		    now->probe);
 	passo_say(sink, " estop=%u", (uint32_t)now->estop);
 	passo_say_axes(sink, " stopped_by=", now->axes);
 	passo_say_axes(sink, " homed=", homed);

@@ -226,6 +226,7 @@ struct passo {
 	bool has_aim;   /* it has a target, `aim`, as the core counts */
 	bool aimed;     /* it ends there, or before it */
 	int32_t aim;
+	uint32_t late; /* microseconds until it has a change, at most */
 	struct passo_source source;
 };
 

@@ -197,8 +197,6 @@ struct passo_sight {
 	uint64_t low, high; /* bounds of the velocity, UQ0.48 */
 	uint64_t way;       /* of a motion with an aim: steps that are left, UQ48.16; 0: none */
 };
-/* late_clocks 0: 1 ms. */
-struct passo_steering passo_driver_steering(const struct passo *passo, bool stop, uint64_t late_clocks);
 bool passo_driver_steers(struct passo *passo, struct passo_steering *steering);
 enum passo_error passo_driver_sight(
     struct passo *passo, struct passo_steering *steering, uint64_t acceleration, struct passo_sight *sight);

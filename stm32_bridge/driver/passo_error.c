@@ -60,9 +60,12 @@ static const struct words errors[PASSO_ERROR_COUNT] = {
     [PASSO_ERROR_SWITCH_LEVEL] = {"SWITCH_LEVEL",
 	"the switch or probe has the level already that is looked for"},
     [PASSO_ERROR_INPUTS_UNKNOWN] = {"INPUTS_UNKNOWN",
-	"an input does not keep a level for the time of the filter, and nothing moves before"},
+	"an input does not stand still, and nothing moves before"},
+#ifndef PASSO_WITHOUT_GOTO
     [PASSO_ERROR_NO_CLOCK] = {"NO_CLOCK", "the hardware has no microsecond clock"},
+#endif
     [PASSO_ERROR_LATE] = {"LATE", "the host was too slow for a change on the way"},
+#ifndef PASSO_WITHOUT_PARTS /* of calls that are left out */
     [PASSO_ERROR_NO_OUTPUTS] = {"NO_OUTPUTS", "the core was built without outputs"},
     [PASSO_ERROR_POWER] = {"POWER", "the power is above 65535, or not 0 beside a raster"},
     [PASSO_ERROR_REFERENCE] = {"REFERENCE", "the reference of the power is 0 or above 1/2"},
@@ -80,6 +83,7 @@ static const struct words errors[PASSO_ERROR_COUNT] = {
     [PASSO_ERROR_NO_COUNTS] = {"NO_COUNTS", "a thread needs counts of its encoder"},
     [PASSO_ERROR_STEEP] = {"STEEP", "a thread has at most 64 steps per count"},
     [PASSO_ERROR_FOLLOW_SPEED] = {"FOLLOW_SPEED", "the top speed of the encoder is 0, or too high"},
+#endif
     [PASSO_ERROR_LINE_UNDERRUN] = {"LINE_UNDERRUN", "stopped: a line ended and none was queued"},
     [PASSO_ERROR_RAMP_UNDERRUN] = {"RAMP_UNDERRUN", "stopped: ran out of ramps at speed"},
     [PASSO_ERROR_STEP_OVERRUN] = {"STEP_OVERRUN", "stopped: steps came faster than the pin timing allows"},

@@ -11,6 +11,10 @@
 #include "passo_driver.h"
 #include "passo_math.h"
 
+#define LATE_MICROSECONDS 1000u
+#define LATE_MAX (UINT32_C(1) << 30)
+#define MICROSECONDS_PER_SECOND 1000000u
+
 static enum passo_error of_plan(enum passo_plan_error error)
 {
 	return error == PASSO_PLAN_OK ? PASSO_OK
@@ -24,6 +28,17 @@ static struct passo_course course_of(const struct passo_goto *go, bool backwards
 	    .top_speed = go->top_speed,
 	    .speed = go->speed,
 	    .acceleration = go->acceleration};
+}
+
+/* Microseconds that a change may take. */
+static uint32_t late_of(const struct passo *passo, const struct passo_goto *go)
+{
+	const uint64_t late =
+	    passo_mul_div_ceil(go->late_clocks, MICROSECONDS_PER_SECOND, passo->machine.clock_hz);
+
+	if (go->late_clocks == 0u)
+		return LATE_MICROSECONDS;
+	return late < LATE_MAX ? (uint32_t)late : LATE_MAX;
 }
 
 /* The target as the core counts. */
@@ -60,6 +75,7 @@ static enum passo_error go_on(struct passo *passo)
 	plan.velocity_peak = peak;
 	const struct passo_turning turning = {.axis = go->axis, .acceleration = go->acceleration};
 	passo_driver_turns(passo, &turning, course.backwards, &plan, &aim);
+	passo->late = late_of(passo, go);
 	return PASSO_PENDING;
 }
 
@@ -89,7 +105,7 @@ static enum passo_error plan_change(const struct passo *passo, const struct pass
 /* Replaces the ramps in the core. */
 static enum passo_error steer(struct passo *passo, const struct passo_goto *to)
 {
-	struct passo_steering steering = passo_driver_steering(passo, false, to->late_clocks);
+	struct passo_steering steering = {.late = late_of(passo, to)};
 	const uint64_t steepest =
 	    to->acceleration > passo->go.acceleration ? to->acceleration : passo->go.acceleration;
 	const int32_t before = passo->aim;
@@ -136,6 +152,7 @@ static enum passo_error change(struct passo *passo, const struct passo_goto *to)
 		return error;
 	passo->go = *to;
 	passo->turning.acceleration = to->acceleration;
+	passo->late = late_of(passo, to);
 	return PASSO_OK;
 }
 

@@ -71,7 +71,11 @@ enum passo_error passo_driver_check_home(struct passo *passo)
 	    || passo->snapshot.cause == PASSO_CAUSE_LIMIT)
 		return PASSO_OK;
 	enum passo_error error = passo_read_inputs(passo, &now);
-	if (error == PASSO_OK && (now.axes != 0u || now.estop))
+	if (error != PASSO_OK)
+		return error;
+	if (now.estop || (now.axes & now.was_alarm) != 0u)
 		passo_driver_forget_all(passo);
-	return error;
+	else if (now.axes != 0u && !is_soft_limit(passo))
+		forget(passo, passo->movers);
+	return PASSO_OK;
 }

@@ -88,9 +88,9 @@ static bool plan_rest(
 }
 
 /* Sends the ramp to rest, unless the motion ends as soon by itself. */
-static enum passo_error come_to_rest(struct passo *passo, uint64_t late_clocks)
+static enum passo_error come_to_rest(struct passo *passo)
 {
-	struct passo_steering steering = passo_driver_steering(passo, true, late_clocks);
+	struct passo_steering steering = {.stop = true, .late = passo->late};
 	enum passo_error error = PASSO_ERROR_LATE;
 
 	while (error == PASSO_ERROR_LATE && passo_driver_steers(passo, &steering)) {
@@ -99,7 +99,7 @@ static enum passo_error come_to_rest(struct passo *passo, uint64_t late_clocks)
 
 		error = passo_driver_sight(passo, &steering, passo->turning.acceleration, &sight);
 		if (error != PASSO_OK)
-			return error;
+			break;
 		if (plan_rest(passo, &sight, !steering.overdue, &plan))
 			error = passo_driver_steer(passo, &steering, &plan);
 		else if (steering.overdue) {
@@ -126,6 +126,6 @@ enum passo_error passo_jog_cancel(struct passo *passo)
 		return PASSO_OK;
 	}
 	const bool was_turning = passo->expects == PASSO_EXPECT_TURNING;
-	error = come_to_rest(passo, is_goto ? passo->go.late_clocks : 0u);
+	error = come_to_rest(passo);
 	return error == PASSO_ERROR_NOT_TURNING && was_turning ? PASSO_OK : error; /* it ends already */
 }

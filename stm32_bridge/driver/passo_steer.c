@@ -26,15 +26,6 @@ static uint64_t larger(uint64_t a, uint64_t b)
 	return a > b ? a : b;
 }
 
-struct passo_steering passo_driver_steering(const struct passo *passo, bool stop, uint64_t late_clocks)
-{
-	const uint64_t late =
-	    passo_mul_div_ceil(late_clocks, MICROSECONDS_PER_SECOND, passo->machine.clock_hz);
-
-	return (struct passo_steering){.stop = stop,
-	    .late = late_clocks == 0u ? LATE_MICROSECONDS : (uint32_t)passo_smaller(late, LATE_MAX)};
-}
-
 void passo_driver_turns(struct passo *passo, const struct passo_turning *turning, bool backwards,
     const struct passo_plan *plan, const int32_t *aim)
 {
@@ -44,6 +35,7 @@ void passo_driver_turns(struct passo *passo, const struct passo_turning *turning
 	passo->velocity_peak = passo->velocity_top = plan->velocity_peak;
 	passo->has_aim = passo->aimed = aim != NULL;
 	passo->aim = aim ? *aim : 0;
+	passo->late = LATE_MICROSECONDS;
 }
 
 bool passo_driver_steers(struct passo *passo, struct passo_steering *steering)
@@ -67,26 +59,18 @@ uint64_t passo_driver_speed_of(const struct passo *passo, uint64_t velocity)
 /* A motion that waits for its inputs to be known takes no ramps: it is flushed, NOT_TURNING. */
 static enum passo_error withdraw(struct passo *passo)
 {
-	int32_t positions[PASSO_AXES_MAX];
+	const struct passo_output output = passo->output;
 	enum passo_error error = passo_driver_gate(passo, PASSO_GATE_CLOSED);
 
 	if (error == PASSO_OK)
 		error = passo_driver_look(passo, false);
-	if (error != PASSO_OK)
-		return error;
-	if (passo->snapshot.state != PASSO_STATE_IDLE)
-		return passo_driver_gate(passo, passo->gate); /* it has just begun */
-	error = passo_driver_command(passo, (struct passo_channel_command){.abort = true});
-	if (error == PASSO_OK)
-		error = passo_driver_command(passo, (struct passo_channel_command){.clear = true});
-	if (error == PASSO_OK)
-		error = passo_driver_positions(passo, positions, false);
+	const bool waits = passo->snapshot.state == PASSO_STATE_IDLE;
+	if (error == PASSO_OK && waits)
+		error = passo_driver_take_over(passo);
+	passo->output = output;
 	if (error == PASSO_OK)
 		error = passo_driver_gate(passo, passo->gate);
-	if (error != PASSO_OK)
-		return error;
-	passo_driver_ended(passo, positions);
-	return PASSO_ERROR_NOT_TURNING;
+	return error == PASSO_OK && waits ? PASSO_ERROR_NOT_TURNING : error;
 }
 
 /* Reads the state of a motion that may be changed. */
@@ -106,8 +90,6 @@ static enum passo_error look(struct passo *passo, bool stop)
 	if (error == PASSO_OK && passo->snapshot.state == PASSO_STATE_IDLE
 	    && passo->snapshot.line_room != passo->line_places)
 		error = stop || passo->has_aim ? withdraw(passo) : PASSO_ERROR_INPUTS_UNKNOWN;
-	if (stop && passo_driver_is_wire(error))
-		passo_driver_halt(passo, PASSO_DUE_STOP);
 	if (error == PASSO_OK && (passo->snapshot.state == PASSO_STATE_STOPPED || passo->snapshot.stopping))
 		error = PASSO_ERROR_STOPPED;
 	return error;
@@ -167,14 +149,11 @@ enum passo_error passo_driver_sight(
 	bound(passo, acceleration, clocks, sight);
 	if (!passo->has_aim)
 		return PASSO_OK;
-	error = measure(passo, clocks, sight);
-	if (steering->stop && passo_driver_is_wire(error))
-		passo_driver_halt(passo, PASSO_DUE_STOP);
-	return error;
+	return measure(passo, clocks, sight);
 }
 
 /* Pushes the ramps; what a refusal means. */
-static enum passo_error push(struct passo *passo, bool stop, const struct passo_plan *plan)
+static enum passo_error push(struct passo *passo, const struct passo_plan *plan)
 {
 	if (passo->snapshot.ramp_room < plan->ramp_count)
 		return PASSO_ERROR_FULL;
@@ -182,9 +161,6 @@ static enum passo_error push(struct passo *passo, bool stop, const struct passo_
 	if (error == PASSO_ERROR_STOPPED && passo_driver_look(passo, false) == PASSO_OK
 	    && passo->snapshot.state != PASSO_STATE_STOPPED)
 		error = PASSO_ERROR_NOT_TURNING; /* its end is already in progress */
-	/* a stop by ramp that is not acknowledged becomes a soft stop */
-	if (stop && passo_driver_is_wire(error))
-		passo_driver_halt(passo, PASSO_DUE_STOP);
 	return error;
 }
 
@@ -193,7 +169,7 @@ enum passo_error passo_driver_steer(
 {
 	if (passo_driver_now(passo) - steering->since > steering->late)
 		return PASSO_ERROR_LATE;
-	enum passo_error error = push(passo, steering->stop, plan);
+	enum passo_error error = push(passo, plan);
 	if (error != PASSO_OK)
 		return error;
 	passo->velocity_peak = steering->stop ? 0u : plan->velocity_peak;
@@ -207,10 +183,10 @@ enum passo_error passo_driver_steered(
 {
 	if (error == PASSO_OK && steering->stop)
 		passo->expects = PASSO_EXPECT_TURN_END;
-	if (error != PASSO_ERROR_LATE)
-		return error;
 	if (!steering->stop)
-		return steering->overdue ? PASSO_OK : error;
-	passo_driver_halt(passo, PASSO_DUE_STOP);
+		return error == PASSO_ERROR_LATE && steering->overdue ? PASSO_OK : error;
+	/* a stop by ramp that is late, or not acknowledged, becomes a soft stop */
+	if (error == PASSO_ERROR_LATE || passo_driver_is_wire(error))
+		passo_driver_halt(passo, PASSO_DUE_STOP);
 	return error;
 }

@@ -41,7 +41,7 @@ static enum passo_plan_error plan_speed(
 /* Queues a ramp to another speed, or to rest. */
 static enum passo_error turn_on(struct passo *passo, bool stop, uint64_t rpm)
 {
-	struct passo_steering steering = passo_driver_steering(passo, stop, 0);
+	struct passo_steering steering = {.stop = stop, .late = passo->late};
 	enum passo_error error = PASSO_ERROR_LATE;
 
 	while (error == PASSO_ERROR_LATE && passo_driver_steers(passo, &steering)) {
@@ -53,7 +53,7 @@ static enum passo_error turn_on(struct passo *passo, bool stop, uint64_t rpm)
 		if (error == PASSO_OK && passo->has_aim)
 			error = PASSO_ERROR_NOT_TURNING;
 		if (error != PASSO_OK)
-			return error;
+			break;
 		if (stop)
 			refused =
 			    passo_plan_turning_stop(&passo->machine, &passo->turning, sight.high, &plan);

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: MIT */
+#include <string.h>
+
 #include "board.h"
 
 #include "stm32f103.h"
@@ -213,4 +215,14 @@ bool board_core_calls(void *context)
 void board_sleep(void)
 {
 	wait_for_interrupt();
+}
+
+/* That of newlib compares words at a time, in 440 bytes. */
+int strcmp(const char *a, const char *b)
+{
+	while (*a != '\0' && *a == *b) {
+		a++;
+		b++;
+	}
+	return (unsigned char)*a - (unsigned char)*b;
 }
