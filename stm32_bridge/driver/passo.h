@@ -339,8 +339,9 @@ bool passo_has_inputs(const struct passo *passo);
 const struct passo_machine *passo_machine(const struct passo *passo);
 
 /* Continuous rotation: start it from rest, change the speed, decelerate to rest. See passo_plan.h. If
- * passo_turn_stop() is not acknowledged, a soft stop replaces it, as by passo_stop(). Errors: those of a
- * move, NOT_TURNING. */
+ * passo_turn_stop() is not acknowledged, a soft stop replaces it, as by passo_stop(). A change is planned for
+ * a core that receives it within 1 ms. Errors: those of a move, NOT_TURNING; LATE: a new speed was not sent,
+ * a stop became a soft one. */
 enum passo_error passo_turn_start(struct passo *passo, const struct passo_turning *turning, uint64_t rpm);
 enum passo_error passo_turn_speed(struct passo *passo, uint64_t rpm);
 enum passo_error passo_turn_stop(struct passo *passo);

@@ -70,8 +70,9 @@ struct passo_jog {
 enum passo_error passo_jog(struct passo *passo, const struct passo_jog *jog);
 /* A new speed of an endless jog, by a ramp from the present one. Errors: NOT_TURNING; those of a move. */
 enum passo_error passo_jog_speed(struct passo *passo, uint64_t speed);
-/* Slows a jog down to rest at once, with its acceleration and on its path; no passo_clear() is needed. A jog
- * that has ended: OK. After a link error a soft stop replaces it, as in passo_turn_stop(). */
+/* Slows a jog or goto down to rest at once, with its acceleration and never past its end: one that is as near
+ * to its end goes on to it. No passo_clear() is needed. One that has ended: OK. After a link error a soft
+ * stop replaces it, as in passo_turn_stop(); also for a host that is too slow (LATE, docs/driver.md). */
 enum passo_error passo_jog_cancel(struct passo *passo);
 
 #ifdef __cplusplus
