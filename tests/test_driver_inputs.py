@@ -78,7 +78,7 @@ def test_trigger_latches_and_is_waited_for() -> None:
     report = struct("trigger_report")
     driver.call("wait_for_trigger", 0, report)
     assert report.positions[0] == pytest.approx(switch.edges[0][0], abs=1)
-    assert report.fired and not report.armed and report.clocks > 0
+    assert report.fired and not report.armed
     driver.wait(1)
     assert driver.positions()[0] == 2000 and driver.state == State.IDLE
     driver.call("disarm_trigger")

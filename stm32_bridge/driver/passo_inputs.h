@@ -74,7 +74,6 @@ struct passo_trigger_config {
 struct passo_trigger_report {
 	bool arming; /* it waits for its source to keep a level for longer than the filter */
 	bool armed, fired;
-	uint32_t clocks;                   /* from arming to firing, or to now; wraps */
 	int32_t positions[PASSO_AXES_MAX]; /* of all axes at the firing, as passo_positions() counts them */
 };
 
