@@ -44,6 +44,10 @@ void operation_draw(struct bench *bench, struct scene *scene)
 	scene->speed = floor(bench_between(bench, 3000, 60000));
 	scene->acceleration = floor(scene->speed * bench_between(bench, 40, 400));
 	scene->bend = bends[profile];
+	if (scene->operation == OP_GOTO && bench_draw(bench, 2) != 0u) {
+		scene->speed *= 4;
+		scene->acceleration *= 4;
+	}
 	const double ramp = scene->speed / scene->acceleration;
 	const double far = scene->speed * ramp * bench_between(bench, 0.1, 4);
 	const int32_t steps = (int32_t)fmin(6000, fmax(3, far)) * (bench_draw(bench, 2) != 0u ? 1 : -1);
