@@ -157,7 +157,7 @@ static void go_further(struct bench *bench, struct scene *scene)
 {
 	struct passo_goto to = {
 	    .speed = (uint64_t)scene->speed << 32, .acceleration = (uint64_t)scene->acceleration << 32};
-	const int32_t more = (int32_t)bench_between(bench, 1, 300);
+	const int32_t more = (int32_t)bench_between(bench, 1, 2000);
 	const int32_t way = scene->target[0] > scene->start[0] ? more : -more;
 
 	to.target = scene->target[0] + way;
@@ -466,6 +466,11 @@ bool ending_play(
 {
 	memset(scene, 0, sizeof *scene);
 	bench_create(bench, seed);
+	/* the ramps on the way are worth more than one in thirteen */
+	if (operation == OPERATIONS && ending == ENDINGS && bench_draw(bench, 3) == 0u) {
+		operation = (enum operation)((unsigned)OP_JOG + bench_draw(bench, 3));
+		ending = operation == OP_GOTO && bench_draw(bench, 2) != 0u ? END_SECOND : END_CANCEL;
+	}
 	do {
 		scene->operation =
 		    operation < OPERATIONS ? operation : (enum operation)bench_draw(bench, OPERATIONS);
