@@ -152,9 +152,31 @@ static void hold(struct bench *bench, struct scene *scene)
 	}
 }
 
+/* Its target goes away a bit: never beyond the new one. */
+static void go_further(struct bench *bench, struct scene *scene)
+{
+	struct passo_goto to = {
+	    .speed = (uint64_t)scene->speed << 32, .acceleration = (uint64_t)scene->acceleration << 32};
+	const int32_t more = (int32_t)bench_between(bench, 1, 2000);
+	const int32_t way = scene->target[0] > scene->start[0] ? more : -more;
+
+	to.target = scene->target[0] + way;
+	const enum passo_error error = passo_goto(&bench->passo, &to);
+	if (error == PASSO_ERROR_LATE)
+		return;
+	bench_must(bench, "goto", error);
+	scene->target[0] += way;
+	scene->low[0] += way < 0 ? way : 0;
+	scene->high[0] += way > 0 ? way : 0;
+}
+
 /* Another motion: refused, or made behind this one. */
 static void second(struct bench *bench, struct scene *scene)
 {
+	if (scene->operation == OP_GOTO && bench->late == 0u) {
+		go_further(bench, scene);
+		return;
+	}
 	struct passo *passo = &bench->passo;
 	const struct passo_jog jog = {.steps = SECOND_STEPS,
 	    .speed = (uint64_t)scene->speed << 32,
@@ -420,10 +442,11 @@ static void play(struct bench *bench, struct scene *scene)
 	bench_must(bench, operation_name(scene->operation), operation_begin(bench, scene));
 	pass(bench, scene, some_moment(bench, scene));
 	bench->late = lateness[bench_draw(bench, 8)];
+	bench->in_time = bench->late == 0u && bench_draw(bench, 2) != 0u ? MILLISECOND : 0u;
 	const size_t before = bench->axis[0].count;
 	const bool moving = passo_is_moving(&bench->passo);
 	const enum passo_error wanted = end(bench, scene, &stopped);
-	bench->late = 0;
+	bench->late = bench->in_time = 0;
 	if (bench->fault)
 		return;
 	judge_state(bench, scene, wanted, stopped, moving && before != 0u);
@@ -443,6 +466,11 @@ bool ending_play(
 {
 	memset(scene, 0, sizeof *scene);
 	bench_create(bench, seed);
+	/* the ramps on the way are worth more than one in thirteen */
+	if (operation == OPERATIONS && ending == ENDINGS && bench_draw(bench, 3) == 0u) {
+		operation = (enum operation)((unsigned)OP_JOG + bench_draw(bench, 3));
+		ending = operation == OP_GOTO && bench_draw(bench, 2) != 0u ? END_SECOND : END_CANCEL;
+	}
 	do {
 		scene->operation =
 		    operation < OPERATIONS ? operation : (enum operation)bench_draw(bench, OPERATIONS);

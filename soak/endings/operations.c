@@ -9,6 +9,7 @@
 #include "passo_path_feed.h"
 
 #define ITEMS 8u
+#define FAST 4
 #define STREAM_LINES 12u
 #define THREAD_COUNTS 4000u
 #define Q32(number) ((uint64_t)((number) * 4294967296.0))
@@ -44,6 +45,10 @@ void operation_draw(struct bench *bench, struct scene *scene)
 	scene->speed = floor(bench_between(bench, 3000, 60000));
 	scene->acceleration = floor(scene->speed * bench_between(bench, 40, 400));
 	scene->bend = bends[profile];
+	if (scene->operation == OP_GOTO && bench_draw(bench, 2) != 0u) {
+		scene->speed *= FAST; /* so that a tick is many steps */
+		scene->acceleration *= FAST;
+	}
 	const double ramp = scene->speed / scene->acceleration;
 	const double far = scene->speed * ramp * bench_between(bench, 0.1, 4);
 	const int32_t steps = (int32_t)fmin(6000, fmax(3, far)) * (bench_draw(bench, 2) != 0u ? 1 : -1);

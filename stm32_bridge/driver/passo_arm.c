@@ -120,17 +120,16 @@ enum passo_error passo_disarm_trigger(struct passo *passo)
 
 enum passo_error passo_read_trigger(struct passo *passo, struct passo_trigger_report *report)
 {
-	uint32_t words[PASSO_AXES_MAX]; /* TRIGGER_STATE; then the positions */
+	uint32_t words[PASSO_AXES_MAX];
+	struct passo_channel_trigger_state state;
 	enum passo_error error = passo_driver_check_inputs(passo);
 
 	if (error == PASSO_OK && !report)
 		error = PASSO_ERROR_ARGUMENT;
 	if (error == PASSO_OK)
-		error = passo_host_read(
-		    passo->host, (uint16_t)(passo->base + PASSO_CHANNEL_TRIGGER_STATE), words, 1);
+		error = read_state(passo, &state);
 	if (error != PASSO_OK)
 		return error;
-	const struct passo_channel_trigger_state state = passo_unpack_channel_trigger_state(words[0]);
 	*report =
 	    (struct passo_trigger_report){.arming = state.arming, .armed = state.armed, .fired = state.fired};
 	if (!state.fired)

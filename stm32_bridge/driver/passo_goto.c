@@ -95,7 +95,10 @@ static enum passo_error plan_change(const struct passo *passo, const struct pass
 	if (sight->way != 0u)
 		refused = passo_plan_course_change(machine, &course, low, high, sight->way, plan);
 	*aimed = refused == PASSO_PLAN_OK;
-	if (refused == PASSO_PLAN_TOO_NEAR && passo->aimed && to->target == passo->go.target)
+	const uint32_t further = (uint32_t)to->target - (uint32_t)passo->go.target;
+	/* what the core has ends there or before it */
+	if (refused == PASSO_PLAN_TOO_NEAR && passo->aimed
+	    && (int32_t)(passo->backwards ? 0u - further : further) >= 0)
 		return PASSO_OK;
 	if (refused == PASSO_PLAN_TOO_NEAR)
 		refused = passo_plan_course_change(machine, &course, low, high, 0, plan);

@@ -38,12 +38,13 @@ static enum passo_error see_stop(struct passo *passo)
 	return is_news && fault != PASSO_OK && fault != passo->fault ? tell(passo, fault) : PASSO_OK;
 }
 
-/* Nothing moves or is queued. Ramps left over from an interrupted command do not move without a line. */
+/* Nothing moves or is queued; what an earlier session has queued waits at the closed gate. Ramps left over
+ * from an interrupted command do not move without a line. */
 static bool has_ended(const struct passo *passo)
 {
 	if (passo_driver_is_broken(passo))
 		return passo->snapshot.state == PASSO_STATE_IDLE && passo->snapshot.quiet
-		    && passo->snapshot.line_room == passo->line_places;
+		    && (passo->inherits || passo->snapshot.line_room == passo->line_places);
 	return passo->stream == PASSO_STREAM_NONE && passo_driver_at_rest(passo);
 }
 

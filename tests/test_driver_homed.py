@@ -1,0 +1,255 @@
+# SPDX-License-Identifier: MIT
+"""What stays homed after each cause of a stop, docs/machine.md; and inputs that are not known yet."""
+
+import pytest
+from passo.build import Parameters
+from passo.driver import Driver, Source
+from passo.native import ffi
+from passo.registers import Cause, State, TriggerAction, TriggerSource
+
+from tests.helpers.driver_wire import CLOCK_HZ, Q32, Wire, by_speed, error_of, open_driver, path, struct
+
+MS = CLOCK_HZ // 1000
+PARAMETERS = Parameters(axes=3, inputs=1, encoders=1)
+LONGEST = 65_535  # filter, clocks
+
+
+@pytest.fixture
+def driver() -> Driver:
+    """All axes are homed, of a machine with a probe and soft stops of 2 ms."""
+    made = open_driver(Wire(PARAMETERS))
+    made.call("configure_motion", 2 * MS, 2 * MS, 0)
+    made.call("configure_probe", False)
+    for axis in range(3):
+        made.call("configure_inputs", axis, struct("input_config", limit_low=True, home=True))
+    made.engine.run(MS)
+    home(made)
+    return made
+
+
+def home(driver: Driver) -> None:
+    for axis in range(3):
+        driver.c.axis[axis].homed = True
+
+
+def homed(driver: Driver) -> list[bool]:
+    return [driver.lib.passo_is_homed(driver.c, axis) for axis in range(3)]
+
+
+def end(driver: Driver) -> str:
+    """Poll until all is over; the first error."""
+    for _ in range(2000):
+        if not driver.is_moving:
+            return "OK"
+        if (name := error_of(driver, "poll")) != "OK":
+            return name
+        driver.engine.run(MS // 2)
+    raise AssertionError("it does not end")
+
+
+def begin(driver: Driver, steps: tuple[int, int, int] = (3000, -1000, 0)) -> None:
+    driver.call("move_by_speed", by_speed(list(steps), speed=50_000))
+    driver.engine.run(10 * MS)
+
+
+KEPT, MOVED, NONE = [True, True, True], [False, False, True], [False, False, False]
+
+
+def test_a_soft_stop_keeps_them(driver: Driver) -> None:
+    begin(driver)
+    driver.call("stop")
+    assert end(driver) == "OK" and homed(driver) == KEPT
+    driver.call("clear")
+    assert homed(driver) == KEPT
+
+
+def test_an_abort(driver: Driver) -> None:
+    """The axes that moved; at rest none."""
+    driver.call("abort")
+    assert end(driver) == "OK" and homed(driver) == KEPT
+    driver.call("clear")
+    begin(driver)
+    driver.call("abort")
+    end(driver)
+    driver.call("clear")
+    assert homed(driver) == MOVED
+
+
+def test_an_abort_after_a_stop(driver: Driver) -> None:
+    """The cause is that of the stop."""
+    begin(driver)
+    driver.call("stop")
+    driver.call("abort")
+    end(driver)
+    assert driver.snapshot().cause == Cause.STOP
+    assert homed(driver) == MOVED
+
+
+@pytest.mark.parametrize(("soft", "several"), [(False, True), (False, False), (True, True), (True, False)])
+def test_a_limit(driver: Driver, soft: bool, several: bool) -> None:
+    for axis in range(3):
+        driver.call("configure_inputs", axis, struct("input_config", limit_low=True, limit_soft=soft))
+    driver.engine.run(MS)
+    begin(driver, (3000, -2900, 0) if several else (0, -3000, 0))
+    driver.engine.engine.set("limit_low", 2)
+    assert end(driver) == "LIMIT"
+    assert homed(driver) == (MOVED if several else [True, soft, True])
+
+
+@pytest.mark.parametrize("overtaken", [False, True])
+@pytest.mark.parametrize(("pin", "name"), [("alarm", "ALARM"), ("estop_n", "ESTOP")])
+def test_an_alarm_and_an_estop(driver: Driver, pin: str, name: str, overtaken: bool) -> None:
+    """All axes; also where the cause is that of a soft stop before."""
+    begin(driver)
+    if overtaken:
+        driver.call("configure_motion", 2 * MS, 100 * MS, 0)
+        driver.call("stop")
+        driver.engine.run(MS)
+    driver.engine.engine.set(pin, 1 if pin == "alarm" else 0)
+    assert end(driver) == ("OK" if overtaken else name)
+    driver.engine.engine.set(pin, 0 if pin == "alarm" else 1)
+    driver.engine.run(MS)
+    if pin == "estop_n":
+        driver.call("clear_estop")
+    driver.call("clear")
+    assert homed(driver) == NONE
+
+
+def test_an_alarm_at_rest(driver: Driver) -> None:
+    driver.engine.engine.set("alarm", 1)
+    driver.engine.run(MS)
+    assert error_of(driver, "move_by_speed", by_speed([1, 0, 0])) == "STOPPED"
+    assert homed(driver) == NONE
+
+
+@pytest.mark.parametrize("action", [TriggerAction.SOFT_STOP, TriggerAction.HARD_STOP])
+def test_a_trigger(driver: Driver, action: TriggerAction) -> None:
+    driver.call("arm_trigger", struct("trigger_config", source=TriggerSource.PROBE, action=action))
+    begin(driver)
+    driver.engine.engine.set("probe", 1)
+    assert end(driver) == "TRIGGER"
+    assert homed(driver) == (KEPT if action == TriggerAction.SOFT_STOP else MOVED)
+
+
+@pytest.mark.parametrize("kind", ["lines", "ramps"])
+def test_a_queue_that_runs_dry(driver: Driver, kind: str) -> None:
+    """Without lines it stops dead, without ramps on its path."""
+    lines, ramps = path(40)
+    for line in lines:
+        line.steps[1] = 0
+        line.last = False
+    ramps[-1].last = False
+    lines[-1].last = kind == "ramps"
+    ramps[-1].last = kind == "lines"
+    driver.call("configure_motion", 2 * MS, 2 * MS, 0)
+    if kind == "lines":
+        ramps[-1].ticks *= 2
+    driver.stream(Source([*lines, *[None] * 1000], [*ramps, *[None] * 1000]))
+    for _ in range(20):
+        driver.poll()
+    driver.call("stream_start")
+    assert end(driver) == ("LINE_UNDERRUN" if kind == "lines" else "RAMP_UNDERRUN")
+    assert homed(driver) == ([False, True, True] if kind == "lines" else KEPT)
+
+
+def test_the_watchdog_a_disable_and_a_reset(driver: Driver) -> None:
+    """Drives that were or may be off."""
+    begin(driver, (0, 60_000, 0))
+    driver.engine.run(CLOCK_HZ)
+    assert end(driver) == "WATCHDOG" and homed(driver) == NONE
+    driver.call("clear")
+    home(driver)
+    driver.call("enable", 1, False)
+    assert homed(driver) == [True, False, True]
+    driver.engine.reset_core()
+    driver.engine.run(2 * MS)
+    assert error_of(driver, "poll") == "CORE_RESET" and homed(driver) == NONE
+
+
+# --------------------------------------------------------------------------------------------- unknown ----
+
+
+def blind(driver: Driver) -> None:
+    """The filter has just been written."""
+    driver.call("configure_filter", LONGEST)
+
+
+def readings(driver: Driver) -> bool:
+    now = struct("readings")
+    driver.call("read_inputs", now)
+    return now.unknown
+
+
+def test_a_motion_waits_for_its_inputs(driver: Driver) -> None:
+    """passo_wait() does not take it as ended."""
+    blind(driver)
+    driver.call("move_by_speed", by_speed([100, 0, 0]))
+    assert readings(driver)
+    for _ in range(4):
+        driver.poll()
+    assert driver.is_moving and driver.engine.counted()[1] == [0, 0, 0]
+    driver.wait(1)
+    assert driver.engine.counted()[1] == [100, 0, 0] and not readings(driver)
+
+
+def flicker(driver: Driver, milliseconds: int) -> str:
+    """A limit switch that never stands still."""
+    for n in range(4 * milliseconds):
+        driver.engine.engine.set("limit_high", n % 2)
+        driver.engine.run(MS // 4)
+        if (name := error_of(driver, "poll")) != "OK":
+            return name
+    return "OK"
+
+
+def test_inputs_that_never_stand_still(driver: Driver) -> None:
+    """An error of its own after the stated time; then nothing is left that could begin."""
+    blind(driver)
+    driver.call("move_by_speed", by_speed([100, 0, 0]))
+    assert flicker(driver, 90) == "OK" and driver.is_moving
+    assert flicker(driver, 20) == "INPUTS_UNKNOWN"
+    assert end(driver) == "OK" and driver.fault == "INPUTS_UNKNOWN"
+    driver.engine.engine.set("limit_high", 0)
+    driver.engine.run(20 * MS)
+    assert driver.engine.counted()[1] == [0, 0, 0]
+    driver.call("clear")
+    driver.call("move_by_speed", by_speed([100, 0, 0]))
+    assert end(driver) == "OK" and driver.engine.counted()[1] == [100, 0, 0]
+
+
+@pytest.mark.parametrize("steps", [0, 500])
+def test_a_jog_that_waits_is_cancelled(driver: Driver, steps: int) -> None:
+    """It never begins, and nothing is to be cleared."""
+    blind(driver)
+    driver.call("jog", struct("jog", speed=10_000 * Q32, acceleration=10**6 * Q32, steps=steps))
+    if not steps:
+        assert error_of(driver, "jog_speed", 5000 * Q32) == "INPUTS_UNKNOWN"
+    driver.call("jog_cancel")
+    assert end(driver) == "OK" and driver.state == State.IDLE
+    driver.engine.run(20 * MS)
+    assert driver.engine.counted()[1] == [0, 0, 0]
+    driver.call("move_by_speed", by_speed([7, 0, 0]))
+    assert end(driver) == "OK" and driver.engine.counted()[1] == [7, 0, 0]
+
+
+def test_a_goto_that_waits_is_changed(driver: Driver) -> None:
+    """It goes to the new target, and never beyond it."""
+    blind(driver)
+    wanted = {"speed": 10_000 * Q32, "acceleration": 10**6 * Q32}
+    driver.call("goto", struct("goto", target=500, **wanted))
+    driver.call("goto", struct("goto", target=100, **wanted))
+    assert end(driver) == "OK" and driver.engine.counted() == ([100, 0, 0], [100, 0, 0])
+
+
+@pytest.mark.parametrize("pressed", [False, True])
+def test_home_knows_its_switch_before_it_moves(driver: Driver, pressed: bool) -> None:
+    """A pressed switch is left, however long the filter; it was taken for a free one."""
+    driver.engine.engine.set("home", int(pressed))
+    blind(driver)
+    fields = {"source": TriggerSource.HOME, "distance": -3000, "back_off": 50, "speed": 20_000 * Q32}
+    homes = ffi().new(
+        "struct passo_home[]", [{**fields, "slow_speed": 2000 * Q32, "acceleration": 10**6 * Q32}]
+    )
+    driver.call("home", homes, 1)
+    driver.engine.run(5 * MS)
+    assert (driver.engine.counted()[1][0] > 0) == pressed
