@@ -94,7 +94,7 @@ module passo_axi_lite #(
   assign s_axil_rresp   = {error, 1'b0};
 
   always @(posedge clk) begin
-    write_q       <= write;
+    write_q <= write;
     if (done) reads_next <= write_q;
     s_axil_bvalid <= s_axil_bvalid ? ~s_axil_bready : s_axil_awready;
     s_axil_rvalid <= s_axil_rvalid ? ~s_axil_rready : s_axil_arready;

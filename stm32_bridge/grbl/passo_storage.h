@@ -6,8 +6,8 @@
  *             ... defaults
  *     passo_storage_save(&storage, record);
  *
- * A save writes the copy that is not in force, its CRC last, unless the one in force has the same words. Power that fails at any moment leaves the record
- * as it was, or as it was to be.
+ * A save writes the copy that is not in force, its CRC last, unless the one in force has the same words.
+ * Power that fails at any moment leaves the record as it was, or as it was to be.
  */
 #ifndef PASSO_STORAGE_H
 #define PASSO_STORAGE_H

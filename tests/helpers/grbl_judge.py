@@ -127,6 +127,8 @@ class Judge:
             raise FindingError(f"{ms} ms: ok to {line!r}")
         if plain.startswith(("$J", "$N0=G0")) and text == "ok" and self.state == "Check":
             raise FindingError(f"{ms} ms: ok to {line!r} in Check")
+        if plain.startswith("$J") and text == "ok" and self.state == "Idle":
+            self.state = "Jog"
         if plain == "$H" and text == "ok":
             self.homes = True
         if text == "ok" and (found := re.fullmatch(r"\$(N?\d+)=(.*)", plain)):
