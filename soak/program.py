@@ -25,8 +25,8 @@ FOLDERS = {
 }
 
 
-# Histories of a core with inputs, encoders and outputs: events, drives into switches, motions that begin at switches
-# with filters of any length, anything at all.
+# Histories of a core with inputs, encoders and outputs: events, drives into switches, motions that begin at
+# switches with filters of any length, anything at all.
 KINDS = ("machine", "tries", "starts", "pokes")
 # Of the driver, by a program of their own: operations that end early, hosts that die.
 DRIVER_KINDS = ("endings", "sessions")
