@@ -7,7 +7,7 @@ import pytest
 from passo.driver import Driver, DriverError
 from passo.machine import Switch
 from passo.native import ffi
-from passo.registers import ADDRESS_WATCHDOG, Cause, State, TriggerSource
+from passo.registers import Cause, State, TriggerSource
 
 from tests.helpers.driver_wire import CLOCK_HZ, Wire, by_speed, error_of, open_driver, struct
 from tests.test_driver_home import driver_of, jog, machine_of, report_of
@@ -209,7 +209,12 @@ def test_watchdog() -> None:
 
 def test_the_watchdog_is_on_by_default() -> None:
     """Half a second."""
-    driver = Driver(machine_of())
-    words = ffi().new("uint32_t[1]")
-    assert driver.lib.passo_host_read(driver.host, ADDRESS_WATCHDOG, words, 1) == 0
-    assert words[0] == -(-(CLOCK_HZ // 2) // UNIT)
+    machine = machine_of()
+    driver = driver_of(machine)
+    driver.call("jog", jog(axis=0))
+    machine.run(CLOCK_HZ // 2)
+    there = int(machine.positions[0])
+    machine.run(3 * UNIT)
+    stopped = int(machine.positions[0])
+    machine.run(10 * UNIT)
+    assert there < stopped == machine.positions[0]
