@@ -4,13 +4,11 @@
 from dataclasses import replace
 
 import pytest
-from passo import random_cases
 from passo.path import PathSettings
 
 from benchmarks import path_adversary, path_measure
 from benchmarks.path_measure import KINDS, Measured, measure
 from benchmarks.path_paths import case_of, read_cases
-from benchmarks.path_search import search
 
 KEPT = read_cases(path_adversary.WORST)
 
@@ -19,11 +17,6 @@ KEPT = read_cases(path_adversary.WORST)
 def test_a_kept_case_is_within_all_bounds(name: str) -> None:
     """Time, steps and underruns of paths that were wrong once."""
     assert measure(KEPT[name]).faults == {}
-
-
-def test_a_short_search_finds_nothing() -> None:
-    """Other paths with each PASSO_SEED; make path has the long one."""
-    assert search(25, random_cases.seed()) is None
 
 
 def weaker(share: float, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -42,7 +35,7 @@ def weaker(share: float, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_the_search_finds_a_wrong_planner(share: float, kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """A tenth too strong is seen at the pins, a tenth too weak in the time; one piece shows it."""
     weaker(share, monkeypatch)
-    error = path_adversary.smallest(kind, 1, 40)
+    error = path_adversary.smallest(kind, 1, 60)
     assert error is not None and error.kind == kind
     assert len(error.case.pieces) == 1
     assert measure(error.case).faults.keys() >= {kind}

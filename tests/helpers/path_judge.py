@@ -179,7 +179,8 @@ def judge(lines: Sequence[Line], settings: PathSettings, played: Played, rests: 
         if ratio > bound:
             problems.append(f"the {name} is {ratio:.4f} of its limit")
     marks = Marks.of(lines, settings, played.clocks, played.steps)
-    problems += faults(shares(played.clocks, played.steps, settings, marks, AXIS_NAMES))
+    if settings.profile == "linear":
+        problems += faults(shares(played.clocks, played.steps, settings, marks, AXIS_NAMES))
     return Verdict(speed_ratio, acceleration_ratio, corner_ratio, jump_ratio, problems, jerk_ratio, peak_jerk)
 
 
