@@ -73,7 +73,7 @@ static uint32_t part_of(
 	const uint64_t part =
 	    passo_mul_div(slope, passo_path_size32(unit[axis]), 2 * path->axis[axis].acceleration);
 
-	return (uint32_t)passo_path_smaller(part >> (PASSO_PATH_UNIT_BITS - 16), UINT32_C(1) << 16);
+	return (uint32_t)passo_path_smaller(part >> (PASSO_PATH_UNIT_BITS - 15), INT16_MAX);
 }
 
 /* Of the axis of which the lines beside a lone corner, at their slopes, and its rounding have the most. */
@@ -89,13 +89,13 @@ static void find_rounding(const struct passo_path_planner *path, const int32_t *
 			continue;
 		const uint64_t bend = passo_mul_div(path->axis[axis].acceleration, over, change);
 		const uint32_t needed = (uint32_t)passo_mul_div(
-		    passo_path_smaller(square, bend), UINT32_C(1) << 16, passo_path_larger(bend, 1));
+		    passo_path_smaller(square, bend), UINT32_C(1) << 15, passo_path_larger(bend, 1));
 		const uint32_t lost =
 		    part_of(path, slope, path->at.direction, axis) + part_of(path, item->slope, unit, axis);
 
-		if (lost + needed > item->lost + item->needed) {
-			item->lost = lost;
-			item->needed = needed;
+		if (lost + needed > (uint32_t)item->lost + item->needed) {
+			item->lost = (uint16_t)lost;
+			item->needed = (uint16_t)needed;
 		}
 	}
 }

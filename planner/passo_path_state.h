@@ -57,8 +57,8 @@ struct passo_path_item {
 	bool rapid;         /* its feed is PASSO_PATH_RAPID */
 #ifndef PASSO_WITHOUT_ROUNDING
 	uint32_t turn;   /* substeps on either side over which a lone corner at its start may be rounded */
-	uint32_t lost;   /* UQ1.16: what its axis has of its acceleration before and behind it, in all */
-	uint32_t needed; /* UQ0.16: what the rounding needs of that axis at the square `bend` */
+	uint16_t lost;   /* UQ1.15: what its axis has of its acceleration before and behind it, in all */
+	uint16_t needed; /* UQ1.15: what the rounding needs of that axis at the square `bend` */
 #endif
 #ifndef PASSO_WITHOUT_JERK_PATHS
 	uint64_t jerk; /* profile jerk: change of the velocity by the square of the time that it takes at
