@@ -92,10 +92,11 @@ def times(name: str, lines: Sequence[Line], settings: PathSettings = SETTINGS) -
 
 def watch(result: Result, lines: Sequence[Line]) -> None:
     """Play a path with a short look-ahead, and judge its pulses; raises AssertionError."""
-    played = play(lines, SETTINGS)
-    verdict = judge(lines, SETTINGS, played)
+    unmerged = replace(SETTINGS, tolerance=0)  # each line has a place on the path
+    verdict = judge(lines, unmerged, play(lines, unmerged))
     assert not verdict.problems, (result.name, verdict.problems)
     result.corner = max(result.corner, verdict.corner)
+    played = play(lines, SETTINGS)
     marks = Marks.of(lines, SETTINGS, played.clocks, played.steps)
     for share in shares(played.clocks, played.steps, SETTINGS, marks):
         setattr(result, share.name, max(getattr(result, share.name), share.share))
