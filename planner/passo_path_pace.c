@@ -16,15 +16,15 @@
 
 /* The room for a frame is seen by one poll and used by the next, and a frame of lines may be under way then:
  * what is queued behind the room lasts for three polls. Of three frames two are for lines; one in four is
- * spare. */
+ * spare. Of ramps that are limited together the known lines hold twice as many. */
 void passo_path_pace(
     struct passo_path_planner *path, uint32_t queued, uint32_t lines_queued, uint32_t lines_sent)
 {
 	if (path->polls == 0)
 		return; /* not open yet */
 	const uint64_t poll = (path->machine.clock_hz >> path->machine.tick_log2) / path->polls + 1;
-	const uint32_t together =
-	    (uint32_t)passo_path_larger(passo_path_smaller(queued, PASSO_PATH_PACED), 1);
+	const uint64_t known = passo_path_smaller(path->capacity / 2 - 1, PASSO_PATH_PACED);
+	const uint32_t together = (uint32_t)passo_path_larger(passo_path_smaller(queued, known), 1);
 	const uint64_t ramps = 3 * together * poll / passo_path_larger(queued, 1) + 1;
 	const uint64_t line = passo_path_larger(
 	    2 * poll / passo_path_larger(lines_sent, 1), 3 * poll / passo_path_larger(lines_queued, 1));
@@ -87,15 +87,22 @@ struct ahead {
 	uint64_t rest;   /* length to the end of the line at which the path rests; 0: it does not */
 	uint64_t end;    /* the square there */
 	bool open;       /* further lines may raise it */
+	bool unknown;    /* further lines are needed to know it */
 };
 
-/* Over a length; what is beyond the known lines does not count. */
-static struct ahead look_ahead(const struct passo_path_planner *path, uint64_t length)
+/* Over a length. Where it is needed the path rests at the end of the newest line; before, that line is not
+ * entered, and what is behind its start is not known. */
+static struct ahead look_ahead(
+    const struct passo_path_planner *path, uint64_t length, enum passo_path_need need)
 {
 	struct ahead ahead = {.square = PASSO_PATH_SQUARE_MAX, .slope = UINT64_MAX};
 	uint64_t passed = 0;
 
-	for (uint32_t index = path->planned; !passo_path_is_held_back(path, index); index++) {
+	for (uint32_t index = path->planned;; index++) {
+		if (need == PASSO_PATH_NO_NEED && passo_path_is_held_back(path, index)) {
+			ahead.open = ahead.unknown = true;
+			break;
+		}
 		const struct passo_path_item *item = passo_path_item(path, index);
 		const uint64_t end = passo_path_end_square(path, index);
 
@@ -131,7 +138,7 @@ static bool is_below(const struct passo_path_planner *path, const struct passo_p
 	for (uint32_t index = path->planned;; index++) {
 		const struct passo_path_item *item = passo_path_item(path, index);
 
-		if (passing > passo_path_larger(item->top, from) || passo_path_is_held_back(path, index))
+		if (passing > passo_path_larger(item->top, from))
 			return false;
 		passed += (uint64_t)item->substeps << 32;
 		if (index == path->planned)
@@ -160,11 +167,12 @@ static struct passo_path_aim aim_at(
 }
 
 /* A ramp of so many ticks, after which the path could go on for `next`. Length 0: there is none. */
-static struct passo_path_aim calm(const struct passo_path_planner *path, uint64_t ticks, uint64_t next)
+static struct passo_path_aim calm(
+    const struct passo_path_planner *path, uint64_t ticks, uint64_t next, enum passo_path_need need)
 {
 	const uint64_t from = path->velocity, slope = passo_path_item(path, path->planned)->slope;
 	const uint64_t most = from + passo_path_change(path, slope, ticks);
-	struct ahead ahead = look_ahead(path, passo_path_length_in(path, 2 * from, ticks + next));
+	struct ahead ahead = look_ahead(path, passo_path_length_in(path, 2 * from, ticks + next), need);
 	uint64_t to = passo_path_velocity_of(lowest(&ahead));
 
 	if (ahead.rest > 0 && from > 0) {
@@ -177,14 +185,20 @@ static struct passo_path_aim calm(const struct passo_path_planner *path, uint64_
 	}
 	if (to < from) {
 		if (from - to > passo_path_change(path, ahead.slope, ticks) * 17 / 16)
-			return (struct passo_path_aim){.length = 0};
+			return (struct passo_path_aim){.length = 0, .open = ahead.unknown};
 	} else {
-		ahead = look_ahead(path, passo_path_length_in(path, from + most, ticks)
-		                             + passo_path_length_in(path, 2 * most, next));
+		ahead = look_ahead(path,
+		    passo_path_length_in(path, from + most, ticks)
+		        + passo_path_length_in(path, 2 * most, next),
+		    need);
 		to = passo_path_velocity_of(lowest(&ahead));
-		if (ahead.rest > 0 && from == 0) { /* up, and down again, and the ramp to 0 */
-			const uint64_t units = UINT64_C(1) << (17u - path->machine.tick_log2);
+		const uint64_t units = UINT64_C(1) << (17u - path->machine.tick_log2);
+		if (ahead.rest > 0 && from > 0) { /* the next one is the last */
+			const uint64_t way = passo_path_length_in(path, from, ticks);
+			const uint64_t left = ahead.rest > way ? ahead.rest - way : 0;
 
+			to = passo_path_smaller(to, passo_mul_div(left, units, ticks + 2 * next));
+		} else if (ahead.rest > 0) { /* up, and down again, and the ramp to 0 */
 			next = passo_path_larger(passo_path_pace_need(path, ticks, 3), ticks / 4);
 			to = passo_path_smaller(passo_path_velocity_of(ahead.square),
 			    passo_mul_div(ahead.rest, units, ticks + next));
@@ -210,18 +224,19 @@ struct passo_path_aim passo_path_at_pace(
 		return *aim;
 	const uint64_t way = passo_path_length_in(path, 2 * passo_path_velocity_of(aim->square), then);
 	if (ticks >= least) {
-		const struct ahead ahead = look_ahead(path, aim->length + way);
+		const struct ahead ahead = look_ahead(path, aim->length + way, need);
 
-		if (lowest(&ahead) >= aim->square)
+		if (!ahead.unknown && lowest(&ahead) >= aim->square)
 			return *aim;
 	}
 	const uint64_t used = passo_path_larger(least, path->pace / path->paced) + 1;
-	struct passo_path_aim made = calm(path, used, passo_path_pace_need(path, used, 2));
+	struct passo_path_aim made = calm(path, used, passo_path_pace_need(path, used, 2), need);
+	if (made.open && need == PASSO_PATH_NO_NEED) {
+		made.length = 0;
+		return made;
+	}
 	if (made.length == 0 || (made.kind == PASSO_PATH_DOWN && !is_below(path, &made)))
 		return *aim;
-	if (made.open && need == PASSO_PATH_NO_NEED)
-		made.length = 0;
-	else
-		made.open = false;
+	made.open = false;
 	return made;
 }

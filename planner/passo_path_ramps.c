@@ -70,21 +70,27 @@ static void follow(
 	const uint64_t begin = path->velocity, end = passo_path_velocity_of(aim->square);
 	const uint64_t ticks = passo_path_larger(passo_path_ticks_to(path, aim), 1);
 	const bool shaped = passo_path_is_shaped(path, aim);
-	const uint32_t used =
-	    (uint32_t)passo_path_smaller(ticks, shaped ? PASSO_PATH_SHAPED_TICKS_MAX : most);
+	uint32_t used = (uint32_t)passo_path_smaller(ticks, shaped ? PASSO_PATH_SHAPED_TICKS_MAX : most);
 	const uint64_t limit = passo_path_change(path, aim->slope, used);
 	uint64_t change = begin < end ? end - begin : begin - end;
 
 	if (used < ticks)
 		change = passo_mul_div(change, used, ticks);
-	change = passo_path_smaller(change, limit);
+	if (change > limit) {
+		change = limit;
+		if (begin > end) /* faster than it was to be: in less time */
+			used = (uint32_t)passo_path_smaller(
+			    used, passo_path_larger(
+				      passo_path_ticks_over(path, aim->length, 2 * begin - change), 1));
+	}
 	ramp->shape = shaped ? passo_path_shape(path) : PASSO_SHAPE_LINEAR;
 	passo_path_set_ticks(ramp, used);
 	ramp->velocity_end = begin < end ? begin + change : begin - change;
 	make(path, ramp);
 }
 
-/* From rest: the dwell, then the jump to the start speed. False: neither is due. */
+/* From rest: the dwell, then the jump to the start speed, or again to rest where the last tick was beyond the
+ * line. False: neither is due. */
 static bool start(struct passo_path_planner *path, struct passo_ramp *ramp)
 {
 	struct passo_path_item *item = passo_path_item(path, path->planned);
@@ -92,6 +98,10 @@ static bool start(struct passo_path_planner *path, struct passo_ramp *ramp)
 	if (!path->started && item->dwell > 0) {
 		passo_path_set_ticks(ramp, item->dwell);
 		item->dwell = 0;
+		return true;
+	}
+	if (path->offset >= (int64_t)item->substeps << 32) {
+		come_to_rest(path, &ramp->last);
 		return true;
 	}
 	path->started = true;
@@ -138,8 +148,10 @@ static bool next_ramp(struct passo_path_planner *path, uint32_t held, struct pas
 			most = path->reserve / RAMPS_PER_RESERVE + 1;
 	}
 	if (aim.rest) {
-		const uint64_t landing = passo_path_larger(passo_path_velocity_of(aim.square),
-		    passo_path_change(path, aim.slope, PASSO_PATH_LANDING_TICKS));
+		const uint64_t landing =
+		    passo_path_smaller(passo_path_larger(passo_path_velocity_of(aim.square),
+					   passo_path_change(path, aim.slope, PASSO_PATH_LANDING_TICKS)),
+			PASSO_VELOCITY_MAX);
 		const uint64_t ticks = passo_path_ticks_over(path, aim.length, path->velocity + landing) + 1;
 
 		if (ticks <= (passo_path_is_shaped(path, &aim) ? PASSO_PATH_SHAPED_TICKS_MAX : most)) {

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 
 #include "fuzz.h"
-#include "passo_path.h"
+#include "passo_path_private.h"
 
 #define CAPACITY_MAX 64u
 #define RAMPS_MAX 3000u
@@ -75,12 +75,24 @@ static struct passo_path_move any_move(const int64_t *from, uint32_t most)
 	return move;
 }
 
+/* A chord of a finely divided curve on the first two axes, whose direction is (x, y). */
+static struct passo_path_move next_chord(const int64_t *from, int64_t *x, int64_t *y, int64_t turn)
+{
+	struct passo_path_move move = {
+	    .feed = below(2) ? PASSO_PATH_RAPID : (1 + below(300)) * PASSO_UNIT_Q32};
+
+	*x -= *y / 4096 * turn;
+	*y += *x / 4096 * turn;
+	for (uint32_t axis = 0; axis < PASSO_AXES_MAX; axis++)
+		move.target[axis] = from[axis] + (axis == 0 ? *x : axis == 1 ? *y : 0);
+	return move;
+}
+
 /* What has been handed out. */
 struct taken {
-	uint64_t substeps, velocity,
-	    distance; /* the last two UQ0.48; distance in ticks, only of linear ramps */
-	uint32_t ramps;
-	bool shaped;
+	uint64_t substeps, distance; /* of the motion; UQ32.32 */
+	uint64_t velocity, fastest;  /* UQ0.48 */
+	uint32_t ramps, lines;
 };
 
 static void take_lines(struct passo_path_planner *path, struct taken *taken)
@@ -93,6 +105,7 @@ static void take_lines(struct passo_path_planner *path, struct taken *taken)
 		for (uint32_t axis = 0; axis < path->machine.axes; axis++)
 			must(line.steps[axis] <= line.substeps, "more steps than substeps");
 		taken->substeps += line.substeps;
+		taken->lines++;
 	}
 }
 
@@ -105,10 +118,38 @@ static void take_ramps(struct passo_path_planner *path, struct taken *taken, uin
 		must(ramp.progress_step <= PASSO_PROGRESS_STEP_MAX, "progress step");
 		must((ramp.ticks == 0) == (ramp.progress_step == 0), "ticks");
 		must(!ramp.last || ramp.velocity_end == 0, "the last ramp does not end at rest");
+		taken->distance += passo_path_distance(path, taken->velocity, &ramp);
 		taken->velocity = ramp.velocity_end;
+		taken->fastest = taken->velocity > taken->fastest ? taken->velocity : taken->fastest;
 		taken->ramps++;
 		if (held < UINT32_MAX)
 			break;
+	}
+}
+
+/* The ramps of a motion cover its lines, but for what the path makes in a tick. */
+static bool next_motion(struct passo_path_planner *path, struct taken *taken)
+{
+	if (!passo_path_next_motion(path))
+		return false;
+	const uint64_t most = (UINT64_C(2) << 32) + (taken->fastest >> 16 << path->machine.tick_log2);
+	const uint64_t whole = taken->substeps << 32;
+
+	must(taken->distance <= whole + most && whole <= taken->distance + most, "ramps and lines differ");
+	*taken = (struct taken){.ramps = taken->ramps, .lines = taken->lines};
+	return true;
+}
+
+/* While there is no room, a line or a ramp can be taken. */
+static void make_room(struct passo_path_planner *path, struct taken *taken)
+{
+	while (taken->ramps < RAMPS_MAX && passo_path_room(path) == 0) {
+		const uint32_t done = taken->ramps + taken->lines;
+
+		take_lines(path, taken);
+		take_ramps(path, taken, UINT32_MAX);
+		must(next_motion(path, taken) || taken->ramps + taken->lines > done,
+		    "it has no room for good");
 	}
 }
 
@@ -120,22 +161,28 @@ static void fuzz(struct passo_path_item *items)
 	int64_t at[PASSO_AXES_MAX] = {0};
 	struct taken taken = {.ramps = 0};
 	const uint32_t most = 20 + below(24);
+	int64_t x = (int64_t)any(32), y = (int64_t)any(32), turn = (int64_t)below(600) - 300;
+	bool chords = below(2);
 
 	if (passo_path_open(&path, &settings, items, capacity) != PASSO_PLAN_OK)
 		return;
-	for (uint32_t count = below(300); count > 0 && taken.ramps < RAMPS_MAX; count--) {
-		const struct passo_path_move move = any_move(at, most);
+	for (uint32_t count = below(chords ? 2000 : 300); count > 0 && taken.ramps < RAMPS_MAX; count--) {
+		const struct passo_path_move move =
+		    chords ? next_chord(at, &x, &y, turn) : any_move(at, most);
 		const enum passo_plan_error error = passo_path_add(&path, &move);
 
 		if (error == PASSO_PLAN_OK) {
 			for (uint32_t axis = 0; axis < PASSO_AXES_MAX; axis++)
 				at[axis] = move.target[axis];
 		}
-		if (error == PASSO_PLAN_PATH_FULL || below(6) == 0) {
+		if (error == PASSO_PLAN_PATH_FULL)
+			make_room(&path, &taken);
+		if (below(chords ? 600 : 6) == 0) {
 			take_lines(&path, &taken);
 			take_ramps(&path, &taken, below(3) ? UINT32_MAX : below(100));
-			passo_path_next_motion(&path);
+			next_motion(&path, &taken);
 		}
+		chords ^= below(300) == 0;
 		if (below(20) == 0)
 			passo_path_dwell(&path, below(2) ? 0 : any(below(8) ? 20 : 64));
 		if (below(40) == 0)
@@ -147,7 +194,7 @@ static void fuzz(struct passo_path_item *items)
 
 			if (!passo_path_recover(&path, positions, below(path.added + 1)))
 				passo_path_restart(&path, positions);
-			taken.velocity = 0;
+			taken = (struct taken){.ramps = taken.ramps};
 		}
 		if (below(60) == 0 && path.added > path.sent) {
 			int32_t positions[PASSO_AXES_MAX];
@@ -155,18 +202,16 @@ static void fuzz(struct passo_path_item *items)
 			for (uint32_t axis = 0; axis < PASSO_AXES_MAX; axis++)
 				positions[axis] = (int32_t)path.at.steps[axis];
 			if (passo_path_recover(&path, positions, path.sent))
-				taken.velocity = 0;
+				taken = (struct taken){.ramps = taken.ramps};
 		}
 	}
 	passo_path_end(&path);
 	while (taken.ramps < RAMPS_MAX && !passo_path_is_empty(&path)) {
-		const uint32_t ramps = taken.ramps;
-		const uint64_t substeps = taken.substeps;
+		const uint32_t done = taken.ramps + taken.lines;
 
 		take_lines(&path, &taken);
 		take_ramps(&path, &taken, UINT32_MAX);
-		must(passo_path_next_motion(&path) || taken.ramps > ramps || taken.substeps > substeps,
-		    "it is stuck");
+		must(next_motion(&path, &taken) || taken.ramps + taken.lines > done, "it is stuck");
 	}
 	must(taken.ramps == RAMPS_MAX || taken.velocity == 0, "it does not end at rest");
 }

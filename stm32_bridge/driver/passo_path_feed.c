@@ -143,7 +143,7 @@ static enum passo_error begin(struct passo_path_feed *feed)
 	return passo_stream(feed->passo, &source);
 }
 
-/* Whether the stream starts with what it has. */
+/* Whether the stream starts with what it has: not with a jump alone, before what follows was asked for. */
 static bool is_time(struct passo_path_feed *feed)
 {
 	const uint32_t now = passo_driver_now(feed->passo);
@@ -152,8 +152,10 @@ static bool is_time(struct passo_path_feed *feed)
 		feed->added = feed->path->added;
 		feed->added_at = now;
 	}
+	const bool hurried = feed->hurry;
+
 	feed->hurry = passo_path_room(feed->path) == 0u || now - feed->added_at >= START_MICROSECONDS;
-	return feed->hurry && feed->ramps > 0u && feed->lines > 0u;
+	return feed->hurry && (hurried || feed->left > 0u) && feed->ramps > 0u && feed->lines > 0u;
 }
 
 enum passo_error passo_path_feed_poll(struct passo_path_feed *feed)
