@@ -282,7 +282,9 @@ static void judge_speeds(struct bench *bench, const struct scene *scene)
 	if (is_task(scene->operation))
 		limit += scene->speed * CLOCK_HZ / (double)scene->stop_clocks;
 	const bool scaled = is_scaled(scene->ending) || is_task(scene->operation);
-	for (unsigned a = 0; a < 2u; a++) {
+	/* axis 1 never has more steps than axis 0 on a line, whose shape it has, but for a substep */
+	const unsigned axes = scene->lines || scene->operation == OP_QUEUE ? 1u : 2u;
+	for (unsigned a = 0; a < axes; a++) {
 		const struct pulses *pulses = &bench->axis[a];
 		const double slope = pulses_slope(pulses, CLOCK_HZ, limit, scene->speed, scaled);
 		if (slope > 1)
