@@ -102,9 +102,10 @@ struct passo_path_item {
 	uint64_t slope;  /* change of the square per substep at full acceleration */
 	struct passo_path_curve curve;
 	uint32_t substeps;
-	uint32_t turn;    /* substeps on either side over which a lone corner at its start may be rounded */
-	uint16_t lost[2]; /* UQ0.16: of the slope before and behind it, what the axis of the corner has */
-	uint32_t dwell;   /* ticks of rest before the line */
+	uint32_t turn;   /* substeps on either side over which a lone corner at its start may be rounded */
+	uint32_t lost;   /* UQ1.16: what its axis has of its acceleration before and behind it, in all */
+	uint32_t needed; /* UQ0.16: what the rounding needs of that axis at the square `bend` */
+	uint32_t dwell;  /* ticks of rest before the line */
 	uint32_t output;
 	uint32_t steps[PASSO_AXES_MAX];
 	uint8_t directions; /* bit i set: axis i counts down */

@@ -202,13 +202,37 @@ static void share_turn(struct passo_path_planner *path, const int32_t *unit, uin
 
 #ifndef PASSO_WITHOUT_ROUNDING
 /* What an axis has of its acceleration when a line has its slope, UQ0.16. */
-static uint16_t part_of(
+static uint32_t part_of(
     const struct passo_path_planner *path, uint64_t slope, const int32_t *unit, uint32_t axis)
 {
 	const uint64_t part =
 	    passo_mul_div(slope, magnitude32(unit[axis]), 2 * path->axis[axis].acceleration);
 
-	return (uint16_t)passo_path_smaller(part >> (PASSO_PATH_UNIT_BITS - 16), UINT16_MAX);
+	return (uint32_t)passo_path_smaller(part >> (PASSO_PATH_UNIT_BITS - 16), UINT32_C(1) << 16);
+}
+
+/* Of the axis of which the lines beside a lone corner, at their slopes, and its rounding have the most. */
+static void find_rounding(const struct passo_path_planner *path, const int32_t *unit, uint64_t over,
+    uint64_t square, struct passo_path_item *item)
+{
+	const uint64_t slope = passo_path_item(path, path->added - 1)->slope;
+
+	item->turn = (uint32_t)(over >> PASSO_PATH_UNIT_BITS);
+	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
+		const uint64_t change = magnitude((int64_t)unit[axis] - path->at.direction[axis]);
+		if (change == 0)
+			continue;
+		const uint64_t bend = passo_mul_div(path->axis[axis].acceleration, over, change);
+		const uint32_t needed = (uint32_t)passo_mul_div(
+		    passo_path_smaller(square, bend), UINT32_C(1) << 16, passo_path_larger(bend, 1));
+		const uint32_t lost =
+		    part_of(path, slope, path->at.direction, axis) + part_of(path, item->slope, unit, axis);
+
+		if (lost + needed > item->lost + item->needed) {
+			item->lost = lost;
+			item->needed = needed;
+		}
+	}
 }
 #endif
 
@@ -234,7 +258,6 @@ static uint64_t limit_corner(
 	const uint64_t over = passo_path_smaller(rounded, mean) << (PASSO_PATH_UNIT_BITS - 16);
 	share_turn(path, unit, length, passo_path_smaller(rounded, mean));
 	uint64_t square = PASSO_PATH_SQUARE_MAX;
-	uint32_t binds = 0;
 
 	item->arc = mean < rounded;
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
@@ -242,26 +265,14 @@ static uint64_t limit_corner(
 
 		if (change[axis] == 0)
 			continue;
-		const uint64_t bend = passo_mul_div(own->acceleration, over, change[axis]);
-
-		if (bend < square) {
-			square = bend;
-			binds = axis;
-		}
+		square = passo_path_smaller(square, passo_mul_div(own->acceleration, over, change[axis]));
 		if (own->jump > 0)
 			square = passo_path_smaller(
 			    square, square_of(((uint64_t)own->jump << PASSO_PATH_UNIT_BITS) / change[axis]));
 	}
 #ifndef PASSO_WITHOUT_ROUNDING
-	if (rounded < (path->at.length < length ? path->at.length : length) / 2) {
-		const struct passo_path_item *before = passo_path_item(path, path->added - 1);
-
-		item->turn = (uint32_t)(rounded >> 16);
-		item->lost[0] = part_of(path, before->slope, path->at.direction, binds);
-		item->lost[1] = part_of(path, item->slope, unit, binds);
-	}
-#else
-	(void)binds;
+	if (rounded < passo_path_smaller(path->at.length, length) / 2)
+		find_rounding(path, unit, over, square, item);
 #endif
 	if (passo_path_is_soft(path))
 		square = passo_path_smaller(square, square_of(soft_corner(path, change, turn, over)));

@@ -153,17 +153,16 @@ bool passo_path_rests_after(const struct passo_path_planner *path, uint32_t inde
 uint64_t passo_path_end_square(const struct passo_path_planner *path, uint32_t index);
 bool passo_path_is_settled(const struct passo_path_planner *path, uint32_t index);
 
-/* Length behind the corner at the start of an item, or before it, over which the path keeps a square, so that
+/* Length on either side of the corner at the start of an item over which the path keeps a square, so that
  * the rounding of a lone corner has what it needs of the acceleration. */
 #ifdef PASSO_WITHOUT_ROUNDING
-static inline uint64_t passo_path_flat(
-    const struct passo_path_planner *path, uint32_t index, bool behind, uint64_t square)
+static inline uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, uint64_t square)
 {
-	(void)path, (void)index, (void)behind, (void)square;
+	(void)path, (void)index, (void)square;
 	return 0;
 }
 #else
-uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, bool behind, uint64_t square);
+uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, uint64_t square);
 #endif
 
 /* Updates `reach` after a line has been added. */

@@ -34,18 +34,18 @@ static unsigned put(struct passo_path_part *parts, unsigned count, enum passo_pa
 }
 
 #ifndef PASSO_WITHOUT_ROUNDING
-uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, bool behind, uint64_t square)
+uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, uint64_t square)
 {
 	const struct passo_path_item *item = passo_path_item(path, index);
 
 	if (index >= path->added || item->rest || item->turn == 0
 	    || passo_path_shape(path) != PASSO_SHAPE_LINEAR)
 		return 0;
-	/* the curvature over both sides takes half of the limit at most, of which steps show half */
-	const uint32_t taken =
-	    (uint32_t)passo_mul_div(passo_path_smaller(square, item->bend), UINT32_C(1) << 15, item->bend);
-	const uint32_t lost = item->lost[behind], left = (UINT32_C(1) << 16) - taken;
-	return left < lost ? passo_mul_div((uint64_t)item->turn << 31, lost - left, lost) : 0;
+	/* what both sides leave, signed, is at least what the corner needs: a right angle has it */
+	const uint64_t needed =
+	    passo_mul_div(passo_path_smaller(square, item->bend), item->needed, item->bend);
+	const uint64_t lost = item->lost, left = (UINT32_C(1) << 17) - needed;
+	return left < lost ? passo_mul_div((uint64_t)item->turn << 32, lost - left, lost) : 0;
 }
 #endif
 
@@ -89,8 +89,8 @@ unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index,
 {
 	const uint64_t passed = ((uint64_t)passo_path_item(path, index)->substeps << 32) - left;
 	const uint64_t end = passo_path_end_square(path, index), slope = passo_path_item(path, index)->slope;
-	const uint64_t behind = passo_path_smaller(passo_path_flat(path, index + 1, false, end), left);
-	uint64_t before = passo_path_flat(path, index, true, square);
+	const uint64_t behind = passo_path_smaller(passo_path_flat(path, index + 1, end), left);
+	uint64_t before = passo_path_flat(path, index, square);
 
 	before = passo_path_smaller(before > passed ? before - passed : 0, left - behind);
 	unsigned count = put(parts, 0, PASSO_PATH_FLAT, before, square, slope);

@@ -35,7 +35,7 @@ def weaker(share: float, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_the_search_finds_a_wrong_planner(share: float, kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """A tenth too strong is seen at the pins, a tenth too weak in the time; one piece shows it."""
     weaker(share, monkeypatch)
-    error = path_adversary.smallest(kind, 1, 60)
+    error = path_adversary.smallest(kind, 1, 100)
     assert error is not None and error.kind == kind
     assert len(error.case.pieces) == 1
     assert measure(error.case).faults.keys() >= {kind}
