@@ -33,7 +33,7 @@ class FirmwareCost:
 
 def path_elf() -> FilePath:
     """Build the program; return the path of its ELF file."""
-    return program_elf("firmware_path", SOURCE, "LEFT_OUT=-DPASSO_WITHOUT_GOTO -DPASSO_PATH_CURVED=3u")
+    return program_elf("firmware_path", SOURCE, "LEFT_OUT=-DPASSO_WITHOUT_GOTO -DPASSO_PATH_AXES_MAX=3u")
 
 
 def in_micrometres(lines: Sequence[Line]) -> list[Line]:

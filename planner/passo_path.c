@@ -58,8 +58,7 @@ static enum passo_plan_error add(struct passo_path_planner *path, const struct p
 	if (!item->rest)
 		item->rest = item->corner < slowest(path, item);
 	if (item->rest)
-		item->corner =
-		    item->dwell > 0 || is_first(path) ? passo_path_smaller(item->halt, item->top) : 0;
+		item->corner = item->dwell > 0 || is_first(path) ? passo_path_halt(item) : 0;
 	path->rest = false;
 	path->dwell = 0;
 	path->added++;
@@ -149,7 +148,7 @@ uint64_t passo_path_end_square(const struct passo_path_planner *path, uint32_t i
 {
 	const struct passo_path_item *item = passo_path_item(path, index);
 
-	const uint64_t halt = passo_path_smaller(item->halt, item->top);
+	const uint64_t halt = passo_path_halt(item);
 
 	if (item->last)
 		return halt;

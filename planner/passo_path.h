@@ -21,12 +21,8 @@
 #ifndef PASSO_PATH_H
 #define PASSO_PATH_H
 
+#include "passo_path_state.h"
 #include "passo_plan.h"
-
-/* An image without room has linear ramps only. */
-#ifdef PASSO_LINEAR_PATHS
-#define PASSO_WITHOUT_JERK_PATHS
-#endif
 
 /* Fewest lines that can be looked ahead. */
 #define PASSO_PATH_ITEMS_MIN 4u
@@ -36,9 +32,6 @@
 
 /* Largest magnitude of a target, Q31.32 mm. */
 #define PASSO_PATH_TARGET_MAX (INT64_C(1) << 62)
-
-/* Ramps in a row that are limited together, at most. */
-#define PASSO_PATH_PACED 8u
 
 /* Limits of an axis, UQ32.32. For rotary axes read degrees for millimetres. */
 struct passo_path_axis {
@@ -68,116 +61,6 @@ struct passo_path_move {
 	int64_t target[PASSO_AXES_MAX]; /* Q31.32 mm, absolute; steps are rounded from it */
 	uint64_t feed;                  /* UQ32.32 mm/s along the path, or PASSO_PATH_RAPID */
 	uint32_t output;                /* of the line; see passo_output_word() of the driver */
-};
-
-/* Profile jerk: how the path comes down from the start of a line to that of a later one, private. */
-struct passo_path_descent {
-	uint64_t slope, jerk; /* lowest of the lines between */
-	uint64_t length;      /* UQ32.32 substeps */
-	uint64_t lowest;      /* UQ0.48 substeps per clock: what the corners from here on allow */
-	uint32_t anchor;      /* number of the later line */
-};
-
-/* Axes whose acceleration is watched in a curve; an image for fewer axes saves RAM. */
-#ifndef PASSO_PATH_CURVED
-#define PASSO_PATH_CURVED PASSO_AXES_MAX
-#endif
-
-/* What limits the slope in a curve, private; see passo_path_curve.c. */
-struct passo_path_curve {
-	uint64_t slope[PASSO_PATH_CURVED]; /* of the square, where it is 0 */
-	int64_t bend[PASSO_PATH_CURVED];   /* Q15.48 per substep: what the square takes of it */
-	uint32_t count;
-};
-
-/* A line of the path, private. Squares are those of velocities, UQ0.64 (substeps per clock)^2. */
-struct passo_path_item {
-	uint64_t feed;   /* square of its feed */
-	uint64_t limit;  /* highest square within the line, by its axes */
-	uint64_t bend;   /* highest square at the corner at its start, by its geometry */
-	uint64_t top;    /* highest square within the line */
-	uint64_t corner; /* highest square at its start */
-	uint64_t halt;   /* highest square at its end, if the path rests there */
-	uint64_t reach;  /* highest square at its start from which the path can come to rest */
-	uint64_t slope;  /* change of the square per substep at full acceleration */
-	struct passo_path_curve curve;
-	uint32_t substeps;
-	uint32_t turn;   /* substeps on either side over which a lone corner at its start may be rounded */
-	uint32_t lost;   /* UQ1.16: what its axis has of its acceleration before and behind it, in all */
-	uint32_t needed; /* UQ0.16: what the rounding needs of that axis at the square `bend` */
-	uint32_t dwell;  /* ticks of rest before the line */
-	uint32_t output;
-	uint32_t steps[PASSO_AXES_MAX];
-	uint8_t directions; /* bit i set: axis i counts down */
-	bool rest;          /* the path rests before the line */
-	bool last;          /* the motion ends with the line */
-	bool arc;           /* the corner at its start is limited as part of an arc */
-	bool rapid;         /* its feed is PASSO_PATH_RAPID */
-#ifndef PASSO_WITHOUT_JERK_PATHS
-	uint64_t jerk; /* profile jerk: change of the velocity by the square of the time that it takes at
-	                  least, UQ0.80 substeps per clock^3 */
-	struct passo_path_descent descent;
-#endif
-};
-
-/* The limits of an axis in substeps and clocks. */
-struct passo_path_scale {
-	uint64_t acceleration; /* UQ0.64 substeps per clock^2 */
-	uint64_t jerk;         /* UQ0.80 substeps per clock^3 */
-	uint32_t speed;        /* UQ0.32 substeps per clock */
-	uint32_t jump;         /* the same */
-};
-
-/* Where a line begins, private: what the next one is measured from. */
-struct passo_path_place {
-	int64_t target[PASSO_AXES_MAX]; /* Q31.32 mm */
-	int64_t steps[PASSO_AXES_MAX];
-	int32_t direction[PASSO_AXES_MAX]; /* unit vector of the last line, Q1.30 */
-	int64_t curvature[PASSO_AXES_MAX]; /* Q15.48 per substep: its mean, by the corner at its start */
-	uint64_t length;                   /* of the last line, UQ32.16 substeps */
-	int32_t carry;        /* Q16: substeps that rounding has withheld from the lines so far */
-	uint32_t line_credit; /* clocks that the last lines have left, see passo_path_pace.c */
-};
-
-/* All members are private. Items are counted from 0 and never wrap within a motion. */
-struct passo_path_planner {
-	struct passo_machine machine;
-	struct passo_path_item *items;
-	uint32_t capacity;
-	uint32_t sent, planned, added; /* items handed out as lines; passed by the ramps; known */
-	uint32_t final;                /* what is before the start of this item cannot become faster */
-	/* geometry of the last line */
-	uint64_t steps_per_mm[PASSO_AXES_MAX];
-	struct passo_path_scale axis[PASSO_AXES_MAX];
-	uint64_t acceleration;              /* UQ0.64 substeps per clock^2, along the path */
-	struct passo_path_place at, before; /* its end and its start */
-	uint64_t deviation, tolerance;      /* UQ32.16 substeps */
-	uint64_t own_tolerance;             /* the same: that of the settings */
-	uint64_t off;  /* the same: by how much the last line is off those that it replaces */
-	uint64_t feed; /* of the last line, as it was given */
-	bool begins;   /* the path rested before the last line */
-	uint32_t substeps_per_mm;
-	uint32_t dwell; /* ticks before the next line */
-	bool rest;      /* before the next line */
-	/* where the ramps end */
-	int64_t offset;    /* Q31.32 substeps into item `planned` */
-	uint64_t velocity; /* UQ0.48 substeps per clock */
-	bool at_rest;
-	bool started;    /* the dwell before the item is over */
-	bool jump, last; /* a ramp to 0 in no time is due; it ends the motion */
-	bool lines_end, ramps_end;
-	bool anew;           /* the limits of all items have changed */
-	uint32_t override;   /* UQ16.16 */
-	uint32_t rapid;      /* the same, of rapids */
-	uint32_t reserve;    /* ticks */
-	uint32_t gentleness; /* UQ0.16: what a shape leaves of the acceleration */
-	/* the pace */
-	uint32_t polls;
-	uint32_t pace, paced;                  /* ticks of so many ramps, at least */
-	uint32_t recent[PASSO_PATH_PACED - 1]; /* ticks of the last ramps */
-	uint32_t line_clocks, line_burst;      /* of a line, at least; how many may be in advance */
-	enum passo_shape shape;
-	bool soft; /* profile jerk */
 };
 
 /* Starts a path at position 0 of all axes. `items` has room for `capacity` lines, at least

@@ -15,10 +15,19 @@
 /* Components of the unit vector below this share are left out: their limit is that of the corner. */
 #define SHARE_MIN (UINT32_C(1) << (PASSO_PATH_UNIT_BITS - 8))
 #define BEND_BITS 48u
+#define PACKED_BITS 26u
 
-static uint64_t magnitude(int64_t value)
+static uint32_t packed(uint64_t value)
 {
-	return value < 0 ? 0 - (uint64_t)value : (uint64_t)value;
+	const uint32_t bits = passo_bits((struct passo_u128){0, value});
+	const uint32_t right = bits > PACKED_BITS ? bits - PACKED_BITS : 0;
+
+	return (uint32_t)(value >> right << (32 - PACKED_BITS)) | right;
+}
+
+static uint64_t unpacked(uint32_t value)
+{
+	return (uint64_t)(value >> (32 - PACKED_BITS)) << (value % (1u << (32 - PACKED_BITS)));
 }
 
 /* B w */
@@ -43,27 +52,26 @@ void passo_path_add_curve(const struct passo_path_planner *path, const int64_t *
 
 	uint64_t any = 0;
 
-	*curve = (struct passo_path_curve){.count = 0};
+	*curve = (struct passo_path_curve){.helps = 0};
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
-		any |= magnitude(curvature[axis]);
+		any |= passo_path_size(curvature[axis]);
 	if (any == 0 || passo_path_shape(path) != PASSO_SHAPE_LINEAR)
 		return;
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
-		const uint64_t share = magnitude(unit[axis]);
+		const uint64_t share = passo_path_size(unit[axis]);
 
 		if (share < SHARE_MIN)
 			continue;
-		const uint64_t slope = passo_mul_div(
-		    2 * path->axis[axis].acceleration, UINT32_C(1) << PASSO_PATH_UNIT_BITS, share);
+		const uint64_t slope =
+		    passo_mul_div(2 * path->axis[axis].acceleration, PASSO_PATH_ONE, share);
 		const uint64_t bend =
-		    passo_mul_div(2 * magnitude(curvature[axis]), UINT32_C(1) << PASSO_PATH_UNIT_BITS, share);
+		    passo_mul_div(2 * passo_path_size(curvature[axis]), PASSO_PATH_ONE, share);
 		const bool helps = (curvature[axis] < 0) == (unit[axis] < 0);
 
-		if (bend == 0 || curve->count == PASSO_PATH_CURVED)
-			continue;
-		curve->slope[curve->count] = slope;
-		curve->bend[curve->count] = helps ? (int64_t)bend : -(int64_t)bend;
-		curve->count++;
+		curve->slope[axis] = packed(slope);
+		curve->bend[axis] = packed(bend);
+		if (helps)
+			curve->helps |= (uint8_t)(1u << axis);
 	}
 }
 
@@ -82,10 +90,10 @@ uint64_t passo_path_slope(const struct passo_path_item *item, bool up, uint64_t 
 	const struct passo_path_curve *curve = &item->curve;
 	uint64_t slope = item->slope;
 
-	for (uint32_t i = 0; i < curve->count; i++) {
-		if ((curve->bend[i] > 0) == up)
-			slope = passo_path_smaller(
-			    slope, less_slope(curve->slope[i], magnitude(curve->bend[i]), low, length));
+	for (uint32_t axis = 0; axis < PASSO_PATH_AXES_MAX; axis++) {
+		if (curve->bend[axis] > 0 && (curve->helps >> axis & 1u) == up)
+			slope = passo_path_smaller(slope, less_slope(unpacked(curve->slope[axis]),
+							      unpacked(curve->bend[axis]), low, length));
 	}
 	slope = passo_path_larger(slope, 1);
 	return up ? slope : slope - slope / 256;

@@ -73,7 +73,7 @@ static enum passo_plan_error check(const struct passo_path_settings *settings)
 	if (machine->clock_hz == 0 || machine->tick_log2 < PASSO_TICK_LOG2_MIN
 	    || machine->tick_log2 > PASSO_TICK_LOG2_MAX)
 		return PASSO_PLAN_BAD_CLOCK;
-	if (machine->axes < 1 || machine->axes > PASSO_AXES_MAX)
+	if (machine->axes < 1 || machine->axes > PASSO_PATH_AXES_MAX)
 		return PASSO_PLAN_BAD_AXES;
 	if (!has_profile(settings->profile))
 		return PASSO_PLAN_BAD_PROFILE;

@@ -10,10 +10,11 @@ void passo_path_limit(struct passo_path_planner *path, uint32_t index)
 {
 	struct passo_path_item *item = passo_path_item(path, index);
 	const uint32_t override = item->rapid ? path->rapid : path->override;
-	const uint64_t base = item->rapid ? item->limit : item->feed;
+	const uint64_t limit = (uint64_t)item->limit * item->limit;
+	const uint64_t base = item->rapid ? limit : (uint64_t)item->feed * item->feed;
 
-	item->top = passo_path_smaller(item->limit,
-	    passo_mul_div(base, (uint64_t) override * override, UINT64_C(1) << (2 * OVERRIDE_BITS)));
+	item->top = passo_path_smaller(
+	    limit, passo_mul_div(base, (uint64_t) override * override, UINT64_C(1) << (2 * OVERRIDE_BITS)));
 	if (item->rest)
 		return;
 	item->corner = passo_path_smaller(item->bend, item->top);

@@ -52,14 +52,14 @@ void passo_path_pace_ramp(struct passo_path_planner *path, uint32_t ticks)
 void passo_path_pace_line(struct passo_path_planner *path, struct passo_path_item *item)
 {
 	const uint64_t length = (uint64_t)item->substeps << 32;
-	const uint64_t clocks = length / passo_path_larger(passo_isqrt64(item->limit), 1);
+	const uint64_t clocks = length / passo_path_larger(item->limit, 1);
 	const uint64_t most = path->line_burst * (uint64_t)path->line_clocks;
 	const uint64_t credit = path->at.line_credit + clocks;
 
 	if (credit < path->line_clocks) {
 		const uint64_t velocity = length / (path->line_clocks - path->at.line_credit);
 
-		item->limit = passo_path_larger(velocity * velocity, 1);
+		item->limit = (uint32_t)passo_path_larger(velocity, 1);
 		path->at.line_credit = 0;
 	} else {
 		path->at.line_credit = (uint32_t)passo_path_smaller(credit - path->line_clocks, most);

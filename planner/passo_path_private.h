@@ -17,6 +17,10 @@
 
 /* 1.0 of a unit vector. */
 #define PASSO_PATH_UNIT_BITS 30u
+#define PASSO_PATH_ONE (UINT32_C(1) << PASSO_PATH_UNIT_BITS)
+
+/* Speeds up to half a substep per clock. */
+#define PASSO_PATH_SPEED_MAX (UINT64_C(1) << 31)
 
 /* Longest ramp that is not shaped: a longer one is cut. */
 #define PASSO_PATH_TICKS_MAX (UINT32_C(1) << 15)
@@ -67,6 +71,29 @@ static inline uint64_t passo_path_smaller(uint64_t a, uint64_t b)
 static inline uint64_t passo_path_larger(uint64_t a, uint64_t b)
 {
 	return a > b ? a : b;
+}
+
+/* Of a signed value. */
+static inline uint64_t passo_path_size(int64_t value)
+{
+	return value < 0 ? 0 - (uint64_t)value : (uint64_t)value;
+}
+
+static inline uint32_t passo_path_size32(int32_t value)
+{
+	return value < 0 ? 0u - (uint32_t)value : (uint32_t)value;
+}
+
+static inline uint64_t passo_path_speed_square(uint64_t speed)
+{
+	speed = passo_path_smaller(speed, PASSO_PATH_SPEED_MAX);
+	return speed * speed;
+}
+
+/* Highest square at the end of an item, if the path rests there. */
+static inline uint64_t passo_path_halt(const struct passo_path_item *item)
+{
+	return passo_path_smaller((uint64_t)item->halt * item->halt, item->top);
 }
 
 /* What a line takes at least, in clocks. */
@@ -128,6 +155,12 @@ uint64_t passo_path_change(const struct passo_path_planner *path, uint64_t slope
  * too short to be a line. */
 enum passo_plan_error passo_path_measure(
     struct passo_path_planner *path, const struct passo_path_move *move, struct passo_path_item *item);
+
+/* Square at the corner between the last line and this one. The change of direction of an axis takes place
+ * over a certain length: half the sum of the two lines, if they stand for an arc, or the arc that deviates by
+ * the junction deviation. */
+uint64_t passo_path_limit_corner(
+    struct passo_path_planner *path, const int32_t *unit, uint64_t length, struct passo_path_item *item);
 
 /* By how much a line from where the path ends, to a target, is off the end of a shorter one from there, at
  * most: UQ32.16 substeps; saturates if it is not longer. */

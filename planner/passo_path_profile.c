@@ -44,7 +44,7 @@ uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, 
 	/* what both sides leave, signed, is at least what the corner needs: a right angle has it */
 	const uint64_t needed =
 	    passo_mul_div(passo_path_smaller(square, item->bend), item->needed, item->bend);
-	const uint64_t lost = item->lost, left = (UINT32_C(1) << 17) - needed;
+	const uint64_t lost = item->lost, left = (UINT32_C(1) << 16) - needed;
 	return left < lost ? passo_mul_div((uint64_t)item->turn << 32, lost - left, lost) : 0;
 }
 #endif

@@ -78,7 +78,7 @@ static void begin_at(struct passo_path_planner *path, uint32_t index)
 	item->rest = true;
 	item->arc = false;
 	item->dwell = 0;
-	item->corner = item->halt;
+	item->corner = (uint64_t)item->halt * item->halt;
 	path->sent = path->planned = path->final = index;
 	path->offset = 0;
 	path->velocity = 0;
