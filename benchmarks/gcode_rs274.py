@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 from passo.failure import Failure
+from passo.output import write_text
 from passo.toolchain import paths
 
 from benchmarks.gcode_motion import PLANES, Motion, Outputs, Played, labelled
@@ -33,9 +34,9 @@ def play_rs274(program: Sequence[str]) -> Played:
         raise Failure("rs274 is missing: tools/setup.sh gcode")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        (folder / "part.ngc").write_text("\n".join([*labelled(program), "M2", ""]))
+        write_text(folder / "part.ngc", "\n".join([*labelled(program), "M2", ""]))
         (folder / "vars").touch()
-        (folder / "tools").write_text("".join(f"T{tool} P{tool}\n" for tool in range(1, TOOLS)))
+        write_text(folder / "tools", "".join(f"T{tool} P{tool}\n" for tool in range(1, TOOLS)))
         command = [RS274 / "rs274", "-g", "-n", "2", "-v", "vars", "-t", "tools", "part.ngc", "calls"]
         done = subprocess.run(
             command,

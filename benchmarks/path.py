@@ -173,6 +173,7 @@ def main(paths_wanted: int = path_adversary.PATHS) -> None:
     show(results, shaped, circle)
     adversarial = path_adversary.adversaries(paths_wanted)
     path_adversary.show(adversarial)
+    path_adversary.show_open()
     report: dict[str, Any] = {
         "paths": [asdict(result) for result in results],
         "profiles": [asdict(soft) for soft in shaped],

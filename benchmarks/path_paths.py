@@ -13,6 +13,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from passo.output import write_text
 from passo.path import PathAxis, PathSettings
 from passo.path_rounding import Line
 
@@ -100,7 +101,7 @@ def read_cases(path: Path) -> dict[str, Case]:
 def write_cases(path: Path, cases: dict[str, Case]) -> None:
     """A case in a line."""
     rows = ",\n".join(f"  {json.dumps(name)}: {json.dumps(case.to_json())}" for name, case in cases.items())
-    path.write_text("{\n" + rows + "\n}\n")
+    write_text(path, "{\n" + rows + "\n}\n")
 
 
 def seconds_at_feed(lines: Sequence[Line], settings: PathSettings) -> float:

@@ -9,8 +9,8 @@
 #define TENTH (PASSO_GCODE_MILLION / 10u)
 
 /* Properties of a command. */
-#define AXES 1u   /* the axis words are its own, if there are any */
-#define TENTHS 2u /* there are others of the same number and a fraction, though not all are known */
+#define AXIS_WORDS 1u /* the axis words are its own, if there are any */
+#define TENTHS 2u     /* there are others of the same number and a fraction, though not all are known */
 
 struct code {
 	int16_t number; /* tenths */
@@ -19,28 +19,28 @@ struct code {
 };
 
 static const struct code G_CODES[] = {
-    {0, PASSO_GCODE_MOTION, AXES},
-    {10, PASSO_GCODE_MOTION, AXES},
-    {20, PASSO_GCODE_MOTION, AXES},
-    {30, PASSO_GCODE_MOTION, AXES},
+    {0, PASSO_GCODE_MOTION, AXIS_WORDS},
+    {10, PASSO_GCODE_MOTION, AXIS_WORDS},
+    {20, PASSO_GCODE_MOTION, AXIS_WORDS},
+    {30, PASSO_GCODE_MOTION, AXIS_WORDS},
     {40, PASSO_GCODE_COMMAND, 0},
-    {100, PASSO_GCODE_COMMAND, AXES},
+    {100, PASSO_GCODE_COMMAND, AXIS_WORDS},
     {170, PASSO_GCODE_PLANE, 0},
     {180, PASSO_GCODE_PLANE, 0},
     {190, PASSO_GCODE_PLANE, 0},
     {200, PASSO_GCODE_UNITS, 0},
     {210, PASSO_GCODE_UNITS, 0},
-    {280, PASSO_GCODE_COMMAND, AXES | TENTHS},
+    {280, PASSO_GCODE_COMMAND, AXIS_WORDS | TENTHS},
     {281, PASSO_GCODE_COMMAND, TENTHS},
-    {300, PASSO_GCODE_COMMAND, AXES | TENTHS},
+    {300, PASSO_GCODE_COMMAND, AXIS_WORDS | TENTHS},
     {301, PASSO_GCODE_COMMAND, TENTHS},
-    {382, PASSO_GCODE_MOTION, AXES | TENTHS},
-    {383, PASSO_GCODE_MOTION, AXES | TENTHS},
-    {384, PASSO_GCODE_MOTION, AXES | TENTHS},
-    {385, PASSO_GCODE_MOTION, AXES | TENTHS},
+    {382, PASSO_GCODE_MOTION, AXIS_WORDS | TENTHS},
+    {383, PASSO_GCODE_MOTION, AXIS_WORDS | TENTHS},
+    {384, PASSO_GCODE_MOTION, AXIS_WORDS | TENTHS},
+    {385, PASSO_GCODE_MOTION, AXIS_WORDS | TENTHS},
     {400, PASSO_GCODE_CUTTER, 0},
-    {431, PASSO_GCODE_TOOL_LENGTH, AXES | TENTHS},
-    {490, PASSO_GCODE_TOOL_LENGTH, AXES},
+    {431, PASSO_GCODE_TOOL_LENGTH, AXIS_WORDS | TENTHS},
+    {490, PASSO_GCODE_TOOL_LENGTH, AXIS_WORDS},
     {530, PASSO_GCODE_COMMAND, 0},
     {540, PASSO_GCODE_SYSTEM, 0},
     {550, PASSO_GCODE_SYSTEM, 0},
@@ -54,7 +54,7 @@ static const struct code G_CODES[] = {
     {900, PASSO_GCODE_DISTANCE, TENTHS},
     {910, PASSO_GCODE_DISTANCE, TENTHS},
     {911, PASSO_GCODE_ARC_DISTANCE, TENTHS},
-    {920, PASSO_GCODE_COMMAND, AXES | TENTHS},
+    {920, PASSO_GCODE_COMMAND, AXIS_WORDS | TENTHS},
     {921, PASSO_GCODE_COMMAND, TENTHS},
     {930, PASSO_GCODE_FEED_MODE, 0},
     {940, PASSO_GCODE_FEED_MODE, 0},
@@ -137,7 +137,7 @@ bool passo_gcode_number(const char **text, int64_t *millionths)
 
 static enum passo_gcode_error add_code(struct passo_gcode_block *block, const struct code *code)
 {
-	if (code->properties & AXES) {
+	if (code->properties & AXIS_WORDS) {
 		if (block->takes_axes)
 			return PASSO_GCODE_TWO_COMMANDS;
 		block->takes_axes = true;

@@ -143,7 +143,7 @@ static void fuzz(struct passo_path_item *items)
 		};
 	must(passo_path_open(&path, &settings, items, ITEMS) == PASSO_PLAN_OK, "open", "");
 	passo_gcode_open(&gcode, &(struct passo_gcode_settings){settings.machine.axes,
-				     1 + below(1u << below(20)), below(20000), below(2) != 0u});
+				     1 + below(1u << below(20)), below(20000), below(2) != 0u, below(2000)});
 	for (unsigned count = below(200); count > 0; count--)
 		execute(&path, &gcode);
 }

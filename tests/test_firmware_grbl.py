@@ -26,7 +26,8 @@ FAST_BAUD = 1_000_000
 CODE = 62 << 10
 SETTINGS = FIRST + CODE
 MACHINE = read_machine(paths.examples / "gcode" / "machine.toml")
-MACHINE = replace(MACHINE, settings=replace(MACHINE.settings, clock_hz=HZ))
+POLLS = 2000  # of the feed in a second, at least: grbl_machine.c
+MACHINE = replace(MACHINE, settings=replace(MACHINE.settings, clock_hz=HZ, polls=POLLS))
 PART = """G21 G90
 G1 X2 Y0 F3000
 Y2

@@ -87,7 +87,7 @@ def test_probe_tool_length_jog_and_reset(connected: tuple[Sender, Grbl]) -> None
     """What a height map and a panel of buttons do."""
     sender, grbl = connected
     assert sender.command("G38.2 Z-60 F3000", timeout=PATIENCE)
-    until(lambda: sender.told[-1] == "ok")
+    until(lambda: sender.told[-1] == "ok" and sender.told[-2].startswith("[PRB"))
     assert sender.told[-2].startswith("[PRB:0.000,0.000,-50.0") and sender.told[-2].endswith(":1]")
     assert sender.command("G43.1 Z-1.5", timeout=PATIENCE) and sender.command("$#", timeout=PATIENCE)
     assert "[TLO:-1.500]" in sender.told

@@ -106,7 +106,8 @@ def test_the_tool_path_has_the_colour_of_its_speed(tmp_path: Path) -> None:
         browser.wait("passo.path.speeds")
         fastest, along = browser.value("[passo.path.speeds.fastest, passo.path.speeds.speeds]")
         assert fastest == pytest.approx(50, rel=0.03)
-        assert along[3 * len(along) // 4] == pytest.approx(25, rel=0.03)
+        second = along[len(along) // 2 : 7 * len(along) // 8]  # one is as exact as its window has steps
+        assert sum(second) / len(second) == pytest.approx(25, rel=0.01)
 
 
 @pytest.mark.parametrize(

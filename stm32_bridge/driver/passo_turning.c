@@ -27,15 +27,16 @@ static enum passo_plan_error plan_speed(
     const struct passo *passo, const struct passo_sight *sight, uint64_t rpm, struct passo_plan *plan)
 {
 	const struct passo_turning *turning = &passo->turning;
-	struct passo_plan other;
 	enum passo_plan_error error =
-	    passo_plan_turning_speed(&passo->machine, turning, sight->low, rpm, &other);
+	    passo_plan_turning_speed(&passo->machine, turning, sight->low, rpm, plan);
 
-	if (error == PASSO_PLAN_OK)
-		error = passo_plan_turning_speed(&passo->machine, turning, sight->high, rpm, plan);
-	if (error == PASSO_PLAN_OK && other.ramps[0].ticks > plan->ramps[0].ticks)
-		*plan = other;
-	return error;
+	if (error != PASSO_PLAN_OK)
+		return error;
+	const uint32_t ticks = plan->ramps[0].ticks;
+	error = passo_plan_turning_speed(&passo->machine, turning, sight->high, rpm, plan);
+	return error == PASSO_PLAN_OK && ticks > plan->ramps[0].ticks
+	         ? passo_plan_turning_speed(&passo->machine, turning, sight->low, rpm, plan)
+	         : error;
 }
 
 /* Queues a ramp to another speed, or to rest. */
