@@ -15,9 +15,12 @@ static uint64_t low_half(uint64_t a)
 	return a & UINT32_MAX;
 }
 
-/* 0 .. 31 for a > 0. */
+/* 0 .. 31 for a > 0; one instruction of many processors. */
 static uint32_t leading_zeros32(uint32_t a)
 {
+#if defined(__GNUC__)
+	return (uint32_t)__builtin_clz(a);
+#else
 	uint32_t zeros = 0;
 	for (uint32_t bits = 16; bits > 0; bits /= 2) {
 		if (a >> (32 - bits) == 0) {
@@ -26,6 +29,7 @@ static uint32_t leading_zeros32(uint32_t a)
 		}
 	}
 	return zeros;
+#endif
 }
 
 /* 0 .. 63 for a > 0. */

@@ -54,6 +54,7 @@ struct passo_path_settings {
 	uint32_t reserve_clocks;     /* the core is never left with less, unless the path ends; 0: 20 ms */
 	uint32_t polls; /* of the feed in a second, at least: a path is not faster than they can send its
 	                   lines and ramps; 0: 500 */
+	bool unrounded; /* no constant speed around lone corners, as in an image without room for that */
 };
 
 /* A straight line from the end of the previous one. */

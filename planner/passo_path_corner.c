@@ -134,7 +134,7 @@ uint64_t passo_path_limit_corner(
 					((uint64_t)own->jump << PASSO_PATH_UNIT_BITS) / change[axis]));
 	}
 #ifndef PASSO_WITHOUT_ROUNDING
-	if (rounded < passo_path_smaller(path->at.length, length) / 2)
+	if (!path->unrounded && rounded < passo_path_smaller(path->at.length, length) / 2)
 		find_rounding(path, unit, over, square, item);
 #endif
 	if (passo_path_is_soft(path))

@@ -82,7 +82,13 @@ static uint64_t less_slope(uint64_t most, uint64_t bend, uint64_t low, uint64_t 
 	const uint64_t grows =
 	    product.high >= UINT64_C(1) << 40 ? UINT64_C(1) << 63 : product.high << 22 | product.low >> 42;
 
-	return passo_mul_div(less(most, taken(bend, low)), UINT64_C(1) << 38, (UINT64_C(1) << 38) + grows);
+	/* by a divisor of 16 bits, rounded up: a division of 32 bits, and never too steep */
+	const uint64_t divisor = (UINT64_C(1) << 38) + grows;
+	const uint32_t right = passo_bits((struct passo_u128){0, divisor}) - 16;
+	const uint32_t reciprocal = UINT32_MAX / ((uint32_t)(divisor >> right) + 1);
+	const struct passo_u128 quotient = passo_multiply(less(most, taken(bend, low)), reciprocal);
+
+	return quotient.high << (64 - (right - 6)) | quotient.low >> (right - 6);
 }
 
 uint64_t passo_path_slope(const struct passo_path_item *item, bool up, uint64_t low, uint64_t length)

@@ -177,6 +177,7 @@ enum passo_plan_error passo_path_open(struct passo_path_planner *path,
 	    .deviation = passo_mul_div(settings->junction_deviation, scale, UINT32_C(1) << 16),
 	    .reserve = (reserve >> machine->tick_log2) + 1,
 	    .polls = settings->polls > 0 ? settings->polls : POLLS_PER_SECOND,
+	    .unrounded = settings->unrounded,
 	    .shape = SHAPES[settings->profile],
 	    .soft = settings->profile == PASSO_PROFILE_JERK, /* see passo_path_is_soft() */
 	};

@@ -120,6 +120,7 @@ struct passo_path_planner {
 	uint32_t gentleness; /* UQ0.16: what a shape leaves of the acceleration */
 	/* the pace */
 	uint32_t polls;
+	bool unrounded;
 	uint32_t pace, paced;                  /* ticks of so many ramps, at least */
 	uint32_t recent[PASSO_PATH_PACED - 1]; /* ticks of the last ramps */
 	uint32_t line_clocks, line_burst;      /* of a line, at least; how many may be in advance */

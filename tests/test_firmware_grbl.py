@@ -27,7 +27,7 @@ CODE = 62 << 10
 SETTINGS = FIRST + CODE
 MACHINE = read_machine(paths.examples / "gcode" / "machine.toml")
 POLLS = 2000  # of the feed in a second, at least: grbl_machine.c
-MACHINE = replace(MACHINE, settings=replace(MACHINE.settings, clock_hz=HZ, polls=POLLS))
+MACHINE = replace(MACHINE, settings=replace(MACHINE.settings, clock_hz=HZ, polls=POLLS, unrounded=True))
 PART = """G21 G90
 G1 X2 Y0 F3000
 Y2

@@ -40,6 +40,7 @@ class PathSettings:
     profile: str = "linear"
     reserve_clocks: int = 0
     polls: int = 0  # of the feed in a second, at least; 0: 500
+    unrounded: bool = False  # no constant speed around lone corners
 
     def struct(self, parameters: Parameters) -> Any:
         """The `struct passo_path_settings`."""
@@ -55,6 +56,7 @@ class PathSettings:
                 "profile": getattr(planner(), f"PASSO_PROFILE_{self.profile.upper()}"),
                 "reserve_clocks": self.reserve_clocks,
                 "polls": self.polls,
+                "unrounded": self.unrounded,
             },
         )
 
