@@ -21,10 +21,10 @@ module passo_input #(
   input  wire [WIDTH-1:0] pins,
   input  wire [WIDTH-1:0] inverted,
   input  wire             tick,
-  input  wire             forget,     // strobe: polarity or filter change with the next clock
+  input  wire             forget,      // strobe: polarity or filter change with the next clock
   input  wire [WIDTH-1:0] clear,
-  output wire [WIDTH-1:0] synced,     // 1 = active, not filtered
-  output reg  [WIDTH-1:0] level,      // filtered
+  output wire [WIDTH-1:0] synced,      // 1 = active, not filtered
+  output reg  [WIDTH-1:0] level,       // filtered
   output reg  [WIDTH-1:0] was_active,
   output reg              unknown
 );
@@ -36,8 +36,8 @@ module passo_input #(
   reg  [WIDTH-1:0] pending;  // has differed since the last tick
   wire [WIDTH-1:0] differs = second ^ level;
 
-  reg              changed;  // an input has changed since the last tick
-  reg              forgot;  // one clock ago: the synchroniser still has what was before
+  reg changed;  // an input has changed since the last tick
+  reg forgot;  // one clock ago: the synchroniser still has what was before
 
   assign synced = second;
 

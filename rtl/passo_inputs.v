@@ -142,7 +142,7 @@ module passo_inputs #(
   // Levels that were filtered otherwise say nothing about the ones to come.
   wire forget = write_filter || write_axis != {AXES{1'b0}}
                 || (write_probe && bus_data[CHANNEL_PROBE_INVERTED_LSB] != probe_inverted);
-  wire             unknown;
+  wire unknown;
   wire [WIDTH-1:0] synced;
   wire [WIDTH-1:0] level;
   wire [WIDTH-1:0] was_active;
@@ -197,12 +197,12 @@ module passo_inputs #(
     .named       (named)
   );
 
-  wire        arming;
-  wire        armed;
-  wire        source_level;
-  wire        fired;
-  wire        trigger_hard;
-  wire        trigger_soft;
+  wire arming;
+  wire armed;
+  wire source_level;
+  wire fired;
+  wire trigger_hard;
+  wire trigger_soft;
 
   passo_trigger #(
     .AXES(AXES)

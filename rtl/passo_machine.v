@@ -37,13 +37,13 @@ module passo_machine (
   `include "passo_registers.vh"
 
   // Decoded one clock ahead of the strobe: the address is stable by then.
-  reg         known;
-  reg         bad_value;
-  reg  [ 1:0] number;
-  reg         read_estop;
-  wire        write = bus_write & known;
-  wire        write_watchdog = write && number == ADDRESS_WATCHDOG[1:0];
-  wire        write_clear = write && number == ADDRESS_ESTOP_CLEAR[1:0] && bus_data[0];
+  reg        known;
+  reg        bad_value;
+  reg  [1:0] number;
+  reg        read_estop;
+  wire       write = bus_write & known;
+  wire       write_watchdog = write && number == ADDRESS_WATCHDOG[1:0];
+  wire       write_clear = write && number == ADDRESS_ESTOP_CLEAR[1:0] && bus_data[0];
 
   assign write_filter = write && number == ADDRESS_INPUT_FILTER[1:0];
 

@@ -14,22 +14,22 @@
 module passo_trigger #(
   parameter AXES = 4
 ) (
-  input  wire              clk,
-  input  wire              rst,
-  input  wire              write,       // strobe with bus_data: the register TRIGGER
-  input  wire [      16:0] bus_data,
-  input  wire [      15:0] filter,      // clocks
-  input  wire              forget,      // strobe: polarity or filter change with the next clock
-  input  wire [AXES*4-1:0] sources,     // limit_low, limit_high, home, index, each of all axes, not filtered
-  input  wire              probe,
-  output reg               arming,
-  output reg               armed,
-  output reg               level,       // of the source, once armed: what it was last for more than `filter` clocks
-  output reg               fired,
-  output reg               latch,       // strobe
-  output wire              hard_stop,   // strobes, with latch: what it does
-  output wire              soft_stop,
-  output wire              end_endless
+  input wire clk,
+  input wire rst,
+  input wire write,  // strobe with bus_data: the register TRIGGER
+  input wire [16:0] bus_data,
+  input wire [15:0] filter,  // clocks
+  input wire forget,  // strobe: polarity or filter change with the next clock
+  input wire [AXES*4-1:0] sources,  // limit_low, limit_high, home, index, each of all axes, not filtered
+  input wire probe,
+  output reg arming,
+  output reg armed,
+  output reg level,  // of the source, once armed: what it was last for more than `filter` clocks
+  output reg fired,
+  output reg latch,  // strobe
+  output wire hard_stop,  // strobes, with latch: what it does
+  output wire soft_stop,
+  output wire end_endless
 );
 
   `include "passo_registers.vh"

@@ -13,10 +13,10 @@ module passo_watchdog #(
 ) (
   input  wire        clk,
   input  wire        rst,
-  input  wire        write,           // strobe with bus_data: the register WATCHDOG
+  input  wire        write,          // strobe with bus_data: the register WATCHDOG
   input  wire [19:0] bus_data,
-  input  wire        feed,            // a frame is being executed
-  input  wire        moving,          // a motion runs
+  input  wire        feed,           // a frame is being executed
+  input  wire        moving,         // a motion runs
   output reg         stop,
   output reg         disable_drives
 );
@@ -34,7 +34,7 @@ module passo_watchdog #(
   wire                 bites = silent & moving & ~stop;
 
   always @(posedge clk) begin
-    fed <= feed;
+    fed           <= feed;
     {count, unit} <= {count, unit} + 1'b1;
     if (over && stops) silent <= 1'b1;
     if (bites) stop <= 1'b1;
