@@ -152,7 +152,7 @@ def test_pulses_are_those_of_the_pc(elf: Path) -> None:
         board.rest(3.0)
         made = motions(board.events(), axes=engine.parameters.axes)
     assert len(expected) == len(made) == 1 and len(made[0].step) > 1000
-    for axis in range(2):  # ramps are handed out at other polls
+    for axis in range(2):  # the board takes ramps at other moments
         (board_at, board_way), (pc_at, pc_way) = made[0].steps(axis), expected[0].steps(axis)
         assert np.array_equal(board_way, pc_way)
         assert np.abs(board_at - pc_at).max() < HZ * 50e-6
