@@ -26,15 +26,17 @@ import sys
 from pathlib import Path
 
 from generated import is_check, keep
-from rdl import c, docs, python, verilog
+from rdl import c, docs, python, rules, verilog
 from rdl.schema import SOURCE, read
 
 ROOT = Path(__file__).resolve().parent.parent
 
 OUTPUTS = {
     "rtl/passo_registers.vh": verilog.constants,
+    "rtl/passo_register_rules.vh": rules.verilog,
     "c_model/protocol/passo_registers.h": c.constants,
     "c_model/protocol/passo_words.h": c.words,
+    "c_model/core/passo_register_rules.h": rules.c,
     "sim/passo/registers.py": python.module,
     "docs/registers.md": docs.page,
 }

@@ -358,9 +358,9 @@ class WatchdogWord(Word):
 class ChannelCommandWord(Word):
     """Command."""
 
-    # Set the positions of the channel's axes to 0. Refused with BUSY unless the channel is quiet.
+    # Set the positions of the channel's axes to 0.
     zero: bool = False
-    # Clear cause and lost steps and leave STOPPED. Refused with BUSY while a motion runs.
+    # Clear cause and lost steps and leave STOPPED.
     clear: bool = False
     # Hard stop: STOPPED at once, waiting steps dropped, no new pulse begins.
     abort: bool = False
@@ -927,16 +927,14 @@ REFUSALS_1_BAD_VALUE_LSB = 24
 REFUSALS_1_BAD_VALUE_BITS = 8
 REFUSALS_1_BAD_VALUE_RESET = 0x00
 
-# Core: Input filter. Only with INPUTS. Glitch filter of all inputs but e-stop. May be written at any time;
-# then they are unknown. Kept over a reset of the core.
+# Core: Input filter. Glitch filter of all inputs but e-stop. After a write they are unknown.
 ADDRESS_INPUT_FILTER = 0x010
 INPUT_FILTER_FILTER_LSB = 0
 INPUT_FILTER_FILTER_BITS = 16
 INPUT_FILTER_FILTER_RESET = 0x0000
 INPUT_FILTER_DEFINED = 0x0000FFFF
 
-# Core: Watchdog. Only with INPUTS. Stops motions when no frame has been executed for some time. In units
-# of 2^16 clocks.
+# Core: Watchdog. Stops motions when no frame has been executed for some time. In units of 2^16 clocks.
 ADDRESS_WATCHDOG = 0x011
 WATCHDOG_STOP_AFTER_LSB = 0
 WATCHDOG_STOP_AFTER_BITS = 10
@@ -946,37 +944,34 @@ WATCHDOG_DISABLE_AFTER_BITS = 10
 WATCHDOG_DISABLE_AFTER_RESET = 0x000
 WATCHDOG_DEFINED = 0x000FFFFF
 
-# Core: E-stop. Only with INPUTS. State of the e-stop.
+# Core: E-stop. State of the e-stop.
 ADDRESS_ESTOP = 0x012
 ESTOP_PRESSED_LSB = 0
 ESTOP_PRESSED_BITS = 1
 ESTOP_PRESSED_RESET = 0x0
 
-# Core: Clear e-stop. Only with INPUTS. No effect while e-stop is pressed.
+# Core: Clear e-stop. No effect while e-stop is pressed.
 ADDRESS_ESTOP_CLEAR = 0x013
 ESTOP_CLEAR_CLEAR_LSB = 0
 ESTOP_CLEAR_CLEAR_BITS = 1
 ESTOP_CLEAR_CLEAR_RESET = 0x0
 ESTOP_CLEAR_DEFINED = 0x00000001
 
-# Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0. Refused with BUSY
-# while a motion runs.
+# Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0.
 ADDRESS_COSINE_BASE = 0xD00
 ADDRESS_COSINE_COUNT = 256
 COSINE_POINT_LSB = 0
 COSINE_POINT_BITS = 16
 COSINE_DEFINED = 0x0000FFFF
 
-# Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0. Refused with BUSY
-# while a motion runs.
+# Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0.
 ADDRESS_SIGMOID_BASE = 0xE00
 ADDRESS_SIGMOID_COUNT = 256
 SIGMOID_POINT_LSB = 0
 SIGMOID_POINT_BITS = 16
 SIGMOID_DEFINED = 0x0000FFFF
 
-# Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0. Refused with BUSY
-# while a motion runs.
+# Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0.
 ADDRESS_EASE_BASE = 0xF00
 ADDRESS_EASE_COUNT = 256
 EASE_POINT_LSB = 0
@@ -1005,8 +1000,7 @@ CHANNEL_COMMAND_ZERO_BITS = 1
 CHANNEL_COMMAND_ZERO_RESET = 0x0
 CHANNEL_COMMAND_DEFINED = 0x0000000F
 
-# Channel: Rate target. Time scale, UQ1.16: 0 = feed hold, 65536 = 1.0 = full speed. Refused with BAD_VALUE
-# above 1.0.
+# Channel: Rate target. Time scale, UQ1.16: 0 = feed hold, 65536 = 1.0 = full speed.
 CHANNEL_RATE_TARGET = 0x01
 CHANNEL_RATE_TARGET_LSB = 0
 CHANNEL_RATE_TARGET_BITS = 17
@@ -1074,7 +1068,7 @@ CHANNEL_VELOCITY_LSB = 0
 CHANNEL_VELOCITY_BITS = 32
 CHANNEL_VELOCITY_RESET = 0x00000000
 
-# Channel: Input levels. Only with INPUTS. Filtered levels, 1 = active, one bit per axis.
+# Channel: Input levels. Filtered levels, 1 = active, one bit per axis.
 CHANNEL_INPUT_LEVELS = 0x10
 CHANNEL_INPUT_LEVELS_LIMIT_LOW_LSB = 0
 CHANNEL_INPUT_LEVELS_LIMIT_LOW_BITS = 8
@@ -1089,8 +1083,7 @@ CHANNEL_INPUT_LEVELS_ALARM_LSB = 24
 CHANNEL_INPUT_LEVELS_ALARM_BITS = 8
 CHANNEL_INPUT_LEVELS_ALARM_RESET = 0x00
 
-# Channel: Input flags. Only with INPUTS. Inputs that were active since their flag was cleared, one bit per
-# axis.
+# Channel: Input flags. Inputs that were active since their flag was cleared, one bit per axis.
 CHANNEL_INPUT_FLAGS = 0x11
 CHANNEL_INPUT_FLAGS_LIMIT_LOW_LSB = 0
 CHANNEL_INPUT_FLAGS_LIMIT_LOW_BITS = 8
@@ -1105,8 +1098,8 @@ CHANNEL_INPUT_FLAGS_ALARM_LSB = 24
 CHANNEL_INPUT_FLAGS_ALARM_BITS = 8
 CHANNEL_INPUT_FLAGS_ALARM_RESET = 0x00
 
-# Channel: Clear input flags. Only with INPUTS. Each bit written as 1 clears a flag of INPUT_FLAGS; bits of
-# axes that are not there do nothing.
+# Channel: Clear input flags. Each bit written as 1 clears a flag of INPUT_FLAGS; bits of axes that are not
+# there do nothing.
 CHANNEL_INPUT_CLEAR = 0x12
 CHANNEL_INPUT_CLEAR_LIMIT_LOW_LSB = 0
 CHANNEL_INPUT_CLEAR_LIMIT_LOW_BITS = 8
@@ -1122,8 +1115,7 @@ CHANNEL_INPUT_CLEAR_ALARM_BITS = 8
 CHANNEL_INPUT_CLEAR_ALARM_RESET = 0x00
 CHANNEL_INPUT_CLEAR_DEFINED = 0xFFFFFFFF
 
-# Channel: Trigger. Only with INPUTS. Every write ends what was armed before. Refused with BAD_VALUE if
-# armed without a source, or for an axis that is not there.
+# Channel: Trigger. Every write ends what was armed before.
 CHANNEL_TRIGGER = 0x13
 CHANNEL_TRIGGER_SOURCE_LSB = 0
 CHANNEL_TRIGGER_SOURCE_BITS = 3
@@ -1142,8 +1134,7 @@ CHANNEL_TRIGGER_ARM_BITS = 1
 CHANNEL_TRIGGER_ARM_RESET = 0x0
 CHANNEL_TRIGGER_DEFINED = 0x00013177
 
-# Channel: Trigger state. Only with INPUTS. State of the trigger and the probe, and the axes that stopped
-# the channel.
+# Channel: Trigger state. State of the trigger and the probe, and the axes that stopped the channel.
 CHANNEL_TRIGGER_STATE = 0x14
 CHANNEL_TRIGGER_STATE_ARMED_LSB = 0
 CHANNEL_TRIGGER_STATE_ARMED_BITS = 1
@@ -1169,8 +1160,7 @@ CHANNEL_TRIGGER_STATE_AXES_LSB = 8
 CHANNEL_TRIGGER_STATE_AXES_BITS = 8
 CHANNEL_TRIGGER_STATE_AXES_RESET = 0x00
 
-# Channel: Probe. Only with INPUTS. Polarity, kept over a reset of the core, after a change of which the
-# inputs are unknown; and the flag of the probe.
+# Channel: Probe. Polarity, after a change of which the inputs are unknown; and the flag of the probe.
 CHANNEL_PROBE = 0x15
 CHANNEL_PROBE_INVERTED_LSB = 0
 CHANNEL_PROBE_INVERTED_BITS = 1
@@ -1180,69 +1170,64 @@ CHANNEL_PROBE_CLEAR_BITS = 1
 CHANNEL_PROBE_CLEAR_RESET = 0x0
 CHANNEL_PROBE_DEFINED = 0x00000003
 
-# Channel: Line queue. PUSH only: control, M, N_0 .. N_{AXES-1} for each line, and with OUTPUTS its output
-# word.
+# Channel: Line queue. Control, M, N_0 .. N_{AXES-1} for each line, and with OUTPUTS its output word.
 CHANNEL_LINE = 0x20
 CHANNEL_LINE_LSB = 0
 CHANNEL_LINE_BITS = 32
 CHANNEL_LINE_DEFINED = 0xFFFFFFFF
 
-# Channel: Ramp queue. PUSH only: 5 words for each ramp: v_end(47:32) (31:16) and LAST (0), NOW (1), mirror
-# (2), shape (5:4); v_end(31:0); T; du(47:32); du(31:0).
+# Channel: Ramp queue. 5 words for each ramp: v_end(47:32) (31:16) and LAST (0), NOW (1), mirror (2), shape
+# (5:4); v_end(31:0); T; du(47:32); du(31:0).
 CHANNEL_RAMP = 0x21
 CHANNEL_RAMP_LSB = 0
 CHANNEL_RAMP_BITS = 32
 CHANNEL_RAMP_DEFINED = 0xFFFFFFFF
 
-# Channel: Raster queue. Only with OUTPUTS. PUSH only: four values to a word, the lowest byte first. A
-# raster line begins with a whole word.
+# Channel: Raster queue. Four values to a word, the lowest byte first. A raster line begins with a whole
+# word.
 CHANNEL_RASTER = 0x22
 CHANNEL_RASTER_LSB = 0
 CHANNEL_RASTER_BITS = 32
 CHANNEL_RASTER_DEFINED = 0xFFFFFFFF
 
-# Channel: Output levels. Only with OUTPUTS. Sets the digital outputs at once, until a line changes them.
-# Refused with BUSY unless the channel is quiet.
+# Channel: Output levels. Sets the digital outputs at once, until a line changes them.
 CHANNEL_OUTPUT_LEVELS = 0x30
 CHANNEL_OUTPUT_LEVELS_LEVELS_LSB = 0
 CHANNEL_OUTPUT_LEVELS_LEVELS_BITS = 8
 CHANNEL_OUTPUT_LEVELS_LEVELS_RESET = 0x00
 CHANNEL_OUTPUT_LEVELS_DEFINED = 0x000000FF
 
-# Channel: Output lag. Only with OUTPUTS. Refused with BUSY unless the channel is quiet.
+# Channel: Output lag.
 CHANNEL_OUTPUT_LAG = 0x31
 CHANNEL_OUTPUT_LAG_LAG_LSB = 0
 CHANNEL_OUTPUT_LAG_LAG_BITS = 16
 CHANNEL_OUTPUT_LAG_LAG_RESET = 0x0000
 CHANNEL_OUTPUT_LAG_DEFINED = 0x0000FFFF
 
-# Channel: PWM step. Only with OUTPUTS. Frequency of the power pin. May be written at any time. Refused
-# with BAD_VALUE if 0 or above 1/2.
+# Channel: PWM step. Frequency of the power pin.
 CHANNEL_PWM_STEP = 0x32
 CHANNEL_PWM_STEP_LSB = 0
 CHANNEL_PWM_STEP_BITS = 24
 CHANNEL_PWM_STEP_RESET = 0x001000
 CHANNEL_PWM_STEP_DEFINED = 0x00FFFFFF
 
-# Channel: Power reference. Only with OUTPUTS. Velocity at which a power in proportion to the velocity is
-# the one of the line; above it, it stays that. May be written at any time. Refused with BAD_VALUE if 0 or
-# above 1/2.
+# Channel: Power reference. Velocity at which a power in proportion to the velocity is the one of the line;
+# above it, it stays that.
 CHANNEL_POWER_REFERENCE = 0x33
 CHANNEL_POWER_REFERENCE_LSB = 0
 CHANNEL_POWER_REFERENCE_BITS = 32
 CHANNEL_POWER_REFERENCE_RESET = 0x80000000
 CHANNEL_POWER_REFERENCE_DEFINED = 0xFFFFFFFF
 
-# Channel: Raster pitch. Only with OUTPUTS. Substeps from one value of a raster line to the next; counts
-# from the next value on. Refused with BAD_VALUE if 0 or above 2^30 - 1.
+# Channel: Raster pitch. Substeps from one value of a raster line to the next; counts from the next value
+# on.
 CHANNEL_RASTER_PITCH = 0x34
 CHANNEL_RASTER_PITCH_PITCH_LSB = 0
 CHANNEL_RASTER_PITCH_PITCH_BITS = 30
 CHANNEL_RASTER_PITCH_PITCH_RESET = 0x00000001
 CHANNEL_RASTER_PITCH_DEFINED = 0x3FFFFFFF
 
-# Channel: Compare pulse. Only with OUTPUTS. Refused with BUSY unless the channel is quiet, with BAD_VALUE
-# if there is no such axis. Ends a pulse in progress, as COMPARE_DISTANCE does.
+# Channel: Compare pulse. Ends a pulse in progress, as COMPARE_DISTANCE does.
 CHANNEL_COMPARE_PULSE = 0x35
 CHANNEL_COMPARE_PULSE_WIDTH_LSB = 0
 CHANNEL_COMPARE_PULSE_WIDTH_BITS = 16
@@ -1252,21 +1237,21 @@ CHANNEL_COMPARE_PULSE_AXIS_BITS = 3
 CHANNEL_COMPARE_PULSE_AXIS_RESET = 0x0
 CHANNEL_COMPARE_PULSE_DEFINED = 0x0007FFFF
 
-# Channel: Compare distance. Only with OUTPUTS. Refused with BUSY unless the channel is quiet.
+# Channel: Compare distance.
 CHANNEL_COMPARE_DISTANCE = 0x36
 CHANNEL_COMPARE_DISTANCE_DISTANCE_LSB = 0
 CHANNEL_COMPARE_DISTANCE_DISTANCE_BITS = 32
 CHANNEL_COMPARE_DISTANCE_DISTANCE_RESET = 0x00000000
 CHANNEL_COMPARE_DISTANCE_DEFINED = 0xFFFFFFFF
 
-# Channel: Compare interval. Only with OUTPUTS. Counts from the next pulse on. Refused with BAD_VALUE if 0.
+# Channel: Compare interval. Counts from the next pulse on.
 CHANNEL_COMPARE_INTERVAL = 0x37
 CHANNEL_COMPARE_INTERVAL_INTERVAL_LSB = 0
 CHANNEL_COMPARE_INTERVAL_INTERVAL_BITS = 32
 CHANNEL_COMPARE_INTERVAL_INTERVAL_RESET = 0x00000001
 CHANNEL_COMPARE_INTERVAL_DEFINED = 0xFFFFFFFF
 
-# Channel: Output state. Only with OUTPUTS. State of the outputs.
+# Channel: Output state. State of the outputs.
 CHANNEL_OUTPUT_STATE = 0x38
 CHANNEL_OUTPUT_STATE_LEVELS_LSB = 0
 CHANNEL_OUTPUT_STATE_LEVELS_BITS = 8
@@ -1288,23 +1273,22 @@ CHANNEL_POSITION_LSB = 0
 CHANNEL_POSITION_BITS = 32
 CHANNEL_POSITION_RESET = 0x00000000
 
-# Channel: Latched position. Only with INPUTS. Position of an axis in steps on the clock on which the
-# trigger fired, complete 130 clocks later. A ZERO less than 64 clocks after that clears it.
+# Channel: Latched position. Position of an axis in steps on the clock on which the trigger fired, complete
+# 130 clocks later. A ZERO less than 64 clocks after that clears it.
 CHANNEL_TRIGGER_POSITION_BASE = 0x48
 CHANNEL_TRIGGER_POSITION_COUNT = 8
 CHANNEL_TRIGGER_POSITION_POSITION_LSB = 0
 CHANNEL_TRIGGER_POSITION_POSITION_BITS = 32
 CHANNEL_TRIGGER_POSITION_POSITION_RESET = 0x00000000
 
-# Channel: Encoder position. Only with ENCODERS. Counts of the encoder of an axis, sampled on the clock of
-# its position; wraps.
+# Channel: Encoder position. Counts of the encoder of an axis, sampled on the clock of its position; wraps.
 CHANNEL_ENCODER_POSITION_BASE = 0x50
 CHANNEL_ENCODER_POSITION_COUNT = 8
 CHANNEL_ENCODER_POSITION_POSITION_LSB = 0
 CHANNEL_ENCODER_POSITION_POSITION_BITS = 32
 CHANNEL_ENCODER_POSITION_POSITION_RESET = 0x00000000
 
-# Channel: Follow. Only with ENCODERS. Refused with BUSY unless the channel is quiet.
+# Channel: Follow.
 CHANNEL_FOLLOW = 0x60
 CHANNEL_FOLLOW_FOLLOW_LSB = 0
 CHANNEL_FOLLOW_FOLLOW_BITS = 1
@@ -1320,24 +1304,22 @@ CHANNEL_FOLLOW_SCALE_BITS = 3
 CHANNEL_FOLLOW_SCALE_RESET = 0x0
 CHANNEL_FOLLOW_DEFINED = 0x000000FF
 
-# Channel: Follow limit. Only with ENCODERS. What is owed to the encoder is made at no more than this.
-# Refused with BAD_VALUE if 0 or above 1/2.
+# Channel: Follow limit. What is owed to the encoder is made at no more than this.
 CHANNEL_FOLLOW_LIMIT = 0x61
 CHANNEL_FOLLOW_LIMIT_LIMIT_LSB = 0
 CHANNEL_FOLLOW_LIMIT_LIMIT_BITS = 32
 CHANNEL_FOLLOW_LIMIT_LIMIT_RESET = 0x01000000
 CHANNEL_FOLLOW_LIMIT_DEFINED = 0xFFFFFFFF
 
-# Channel: Encoder filter. Only with ENCODERS. Glitch filter of all encoders of the channel. May be written
-# at any time.
+# Channel: Encoder filter. Glitch filter of all encoders of the channel.
 CHANNEL_ENCODER_FILTER = 0x62
 CHANNEL_ENCODER_FILTER_FILTER_LSB = 0
 CHANNEL_ENCODER_FILTER_FILTER_BITS = 8
 CHANNEL_ENCODER_FILTER_FILTER_RESET = 0x03
 CHANNEL_ENCODER_FILTER_DEFINED = 0x000000FF
 
-# Channel: Follow state. Only with ENCODERS. Of the motion that runs; behind and lost, of the last one,
-# until the next is prepared.
+# Channel: Follow state. Of the motion that runs; behind and lost, of the last one, until the next is
+# prepared.
 CHANNEL_FOLLOW_STATE = 0x63
 CHANNEL_FOLLOW_STATE_OWED_LSB = 0
 CHANNEL_FOLLOW_STATE_OWED_BITS = 24
@@ -1359,8 +1341,8 @@ CHANNEL_ENCODER_BASE = 0xC0
 CHANNEL_ENCODER_COUNT = 8
 CHANNEL_ENCODER_STRIDE = 0x08
 
-# Axis: Pins. Polarities and step mode. Refused with BUSY unless the channel is quiet. From the write on,
-# the next step waits for the low time, the DIR hold and the DIR setup. Kept through a reset of the core.
+# Axis: Pins. Polarities and step mode. From the write on, the next step waits for the low time, the DIR
+# hold and the DIR setup.
 AXIS_PINS = 0x0
 AXIS_PINS_STEP_INVERTED_LSB = 1
 AXIS_PINS_STEP_INVERTED_BITS = 1
@@ -1376,7 +1358,7 @@ AXIS_PINS_BOTH_EDGES_BITS = 1
 AXIS_PINS_BOTH_EDGES_RESET = 0x0
 AXIS_PINS_DEFINED = 0x0000001E
 
-# Axis: STEP timing. Clocks, 1 .. 65535; 0 counts as 1. Kept over a reset of the core.
+# Axis: STEP timing. Clocks, 1 .. 65535; 0 counts as 1.
 AXIS_STEP_TIMING = 0x1
 AXIS_STEP_TIMING_STEP_LOW_LSB = 0
 AXIS_STEP_TIMING_STEP_LOW_BITS = 16
@@ -1386,7 +1368,7 @@ AXIS_STEP_TIMING_STEP_HIGH_BITS = 16
 AXIS_STEP_TIMING_STEP_HIGH_RESET = 0x0001
 AXIS_STEP_TIMING_DEFINED = 0xFFFFFFFF
 
-# Axis: DIR timing. Clocks, 1 .. 65535; 0 counts as 1. Kept over a reset of the core.
+# Axis: DIR timing. Clocks, 1 .. 65535; 0 counts as 1.
 AXIS_DIR_TIMING = 0x2
 AXIS_DIR_TIMING_DIR_HOLD_LSB = 0
 AXIS_DIR_TIMING_DIR_HOLD_BITS = 16
@@ -1402,15 +1384,14 @@ AXIS_LOST_STEPS_LOST_LSB = 0
 AXIS_LOST_STEPS_LOST_BITS = 4
 AXIS_LOST_STEPS_LOST_RESET = 0x0
 
-# Axis: Drive enable. May be written at any time.
+# Axis: Drive enable.
 AXIS_ENABLE = 0x4
 AXIS_ENABLE_LSB = 0
 AXIS_ENABLE_BITS = 1
 AXIS_ENABLE_RESET = 0x0
 AXIS_ENABLE_DEFINED = 0x00000001
 
-# Axis: Inputs of the axis. Only with INPUTS. Polarities, and what limits and alarm do. Refused with BUSY
-# unless the channel is quiet; then the inputs are unknown. Kept over a reset of the core.
+# Axis: Inputs of the axis. Polarities, and what limits and alarm do. After a write the inputs are unknown.
 AXIS_INPUTS = 0x5
 AXIS_INPUTS_LIMIT_LOW_INVERTED_LSB = 0
 AXIS_INPUTS_LIMIT_LOW_INVERTED_BITS = 1
@@ -1435,7 +1416,7 @@ AXIS_INPUTS_ALARM_DISABLES_BITS = 1
 AXIS_INPUTS_ALARM_DISABLES_RESET = 0x0
 AXIS_INPUTS_DEFINED = 0x0000007F
 
-# Encoder: Encoder setup. Only with ENCODERS. May be written at any time.
+# Encoder: Encoder setup.
 ENCODER_SETUP = 0x0
 ENCODER_SETUP_INVERTED_LSB = 0
 ENCODER_SETUP_INVERTED_BITS = 1
@@ -1454,30 +1435,28 @@ ENCODER_SETUP_STOP_HARD_BITS = 1
 ENCODER_SETUP_STOP_HARD_RESET = 0x0
 ENCODER_SETUP_DEFINED = 0x0000001F
 
-# Encoder: Encoder ratio. Only with ENCODERS. Counts per step. Refused with BAD_VALUE if 0. A write sets
-# the following error to 0.
+# Encoder: Encoder ratio. Counts per step. A write sets the following error to 0.
 ENCODER_RATIO = 0x1
 ENCODER_RATIO_LSB = 0
 ENCODER_RATIO_BITS = 32
 ENCODER_RATIO_RESET = 0x00010000
 ENCODER_RATIO_DEFINED = 0xFFFFFFFF
 
-# Encoder: Following error limit. Only with ENCODERS. Refused with BAD_VALUE if 0.
+# Encoder: Following error limit.
 ENCODER_LIMIT = 0x2
 ENCODER_LIMIT_LSB = 0
 ENCODER_LIMIT_BITS = 16
 ENCODER_LIMIT_RESET = 0xFFFF
 ENCODER_LIMIT_DEFINED = 0x0000FFFF
 
-# Encoder: Following error. Only with ENCODERS. Position times ratio less encoder position, both as they
-# were set to 0 by COMMAND.ZERO or a write of the ratio.
+# Encoder: Following error. Position times ratio less encoder position, both as they were set to 0 by
+# COMMAND.ZERO or a write of the ratio.
 ENCODER_ERROR = 0x3
 ENCODER_ERROR_LSB = 0
 ENCODER_ERROR_BITS = 32
 ENCODER_ERROR_RESET = 0x00000000
 
-# Encoder: Greatest following error. Only with ENCODERS. Since COMMAND.ZERO, COMMAND.CLEAR or a write of
-# the ratio.
+# Encoder: Greatest following error. Since COMMAND.ZERO, COMMAND.CLEAR or a write of the ratio.
 ENCODER_GREATEST = 0x4
 ENCODER_GREATEST_GREATEST_LSB = 0
 ENCODER_GREATEST_GREATEST_BITS = 18
@@ -1486,8 +1465,8 @@ ENCODER_GREATEST_EXCEEDED_LSB = 31
 ENCODER_GREATEST_EXCEEDED_BITS = 1
 ENCODER_GREATEST_EXCEEDED_RESET = 0x0
 
-# Encoder: Encoder index. Only with ENCODERS. What the index has latched, and the transitions that were
-# none. All 0 after COMMAND.ZERO.
+# Encoder: Encoder index. What the index has latched, and the transitions that were none. All 0 after
+# COMMAND.ZERO.
 ENCODER_INDEX = 0x5
 ENCODER_INDEX_LATCH_LSB = 0
 ENCODER_INDEX_LATCH_BITS = 16
@@ -1539,17 +1518,17 @@ TABLE = (
     )),
     Register("INPUT_FILTER", "CORE", 0x010, 1, (
         Field("FILTER", 0, 16, "w", 0x0000),
-    ), "inputs"),
+    )),
     Register("WATCHDOG", "CORE", 0x011, 1, (
         Field("STOP_AFTER", 0, 10, "w", 0x000),
         Field("DISABLE_AFTER", 10, 10, "w", 0x000),
-    ), "inputs"),
+    )),
     Register("ESTOP", "CORE", 0x012, 1, (
         Field("PRESSED", 0, 1, "r", 0x0),
-    ), "inputs"),
+    )),
     Register("ESTOP_CLEAR", "CORE", 0x013, 1, (
         Field("CLEAR", 0, 1, "w", 0x0),
-    ), "inputs"),
+    )),
     Register("COSINE", "CORE", 0xD00, 256, (
         Field("POINT", 0, 16, "w", None),
     )),
@@ -1600,26 +1579,26 @@ TABLE = (
         Field("LIMIT_HIGH", 8, 8, "r", 0x00),
         Field("HOME", 16, 8, "r", 0x00),
         Field("ALARM", 24, 8, "r", 0x00),
-    ), "inputs"),
+    )),
     Register("CHANNEL_INPUT_FLAGS", "CHANNEL", 0x11, 1, (
         Field("LIMIT_LOW", 0, 8, "r", 0x00),
         Field("LIMIT_HIGH", 8, 8, "r", 0x00),
         Field("HOME", 16, 8, "r", 0x00),
         Field("ALARM", 24, 8, "r", 0x00),
-    ), "inputs"),
+    )),
     Register("CHANNEL_INPUT_CLEAR", "CHANNEL", 0x12, 1, (
         Field("LIMIT_LOW", 0, 8, "w", 0x00),
         Field("LIMIT_HIGH", 8, 8, "w", 0x00),
         Field("HOME", 16, 8, "w", 0x00),
         Field("ALARM", 24, 8, "w", 0x00),
-    ), "inputs"),
+    )),
     Register("CHANNEL_TRIGGER", "CHANNEL", 0x13, 1, (
         Field("SOURCE", 0, 3, "w", 0x0),
         Field("AXIS", 4, 3, "w", 0x0),
         Field("FALLING", 8, 1, "w", 0x0),
         Field("ACTION", 12, 2, "w", 0x0),
         Field("ARM", 16, 1, "w", 0x0),
-    ), "inputs"),
+    )),
     Register("CHANNEL_TRIGGER_STATE", "CHANNEL", 0x14, 1, (
         Field("ARMED", 0, 1, "r", 0x0),
         Field("FIRED", 1, 1, "r", 0x0),
@@ -1629,11 +1608,11 @@ TABLE = (
         Field("SOURCE_ACTIVE", 5, 1, "r", 0x0),
         Field("UNKNOWN", 6, 1, "r", None),
         Field("AXES", 8, 8, "r", 0x00),
-    ), "inputs"),
+    )),
     Register("CHANNEL_PROBE", "CHANNEL", 0x15, 1, (
         Field("INVERTED", 0, 1, "w", 0x0),
         Field("CLEAR", 1, 1, "w", 0x0),
-    ), "inputs"),
+    )),
     Register("CHANNEL_LINE", "CHANNEL", 0x20, 1, (
         Field("LINE", 0, 32, "w", None),
     )),
@@ -1642,64 +1621,64 @@ TABLE = (
     )),
     Register("CHANNEL_RASTER", "CHANNEL", 0x22, 1, (
         Field("RASTER", 0, 32, "w", None),
-    ), "outputs"),
+    )),
     Register("CHANNEL_OUTPUT_LEVELS", "CHANNEL", 0x30, 1, (
         Field("LEVELS", 0, 8, "w", 0x00),
-    ), "outputs"),
+    )),
     Register("CHANNEL_OUTPUT_LAG", "CHANNEL", 0x31, 1, (
         Field("LAG", 0, 16, "w", 0x0000),
-    ), "outputs"),
+    )),
     Register("CHANNEL_PWM_STEP", "CHANNEL", 0x32, 1, (
         Field("PWM_STEP", 0, 24, "w", 0x001000),
-    ), "outputs"),
+    )),
     Register("CHANNEL_POWER_REFERENCE", "CHANNEL", 0x33, 1, (
         Field("POWER_REFERENCE", 0, 32, "w", 0x80000000),
-    ), "outputs"),
+    )),
     Register("CHANNEL_RASTER_PITCH", "CHANNEL", 0x34, 1, (
         Field("PITCH", 0, 30, "w", 0x00000001),
-    ), "outputs"),
+    )),
     Register("CHANNEL_COMPARE_PULSE", "CHANNEL", 0x35, 1, (
         Field("WIDTH", 0, 16, "w", 0x0000),
         Field("AXIS", 16, 3, "w", 0x0),
-    ), "outputs"),
+    )),
     Register("CHANNEL_COMPARE_DISTANCE", "CHANNEL", 0x36, 1, (
         Field("DISTANCE", 0, 32, "w", 0x00000000),
-    ), "outputs"),
+    )),
     Register("CHANNEL_COMPARE_INTERVAL", "CHANNEL", 0x37, 1, (
         Field("INTERVAL", 0, 32, "w", 0x00000001),
-    ), "outputs"),
+    )),
     Register("CHANNEL_OUTPUT_STATE", "CHANNEL", 0x38, 1, (
         Field("LEVELS", 0, 8, "r", 0x00),
         Field("RASTER_EMPTY", 8, 1, "r", 0x0),
         Field("OVERFLOW", 9, 1, "r", 0x0),
         Field("RASTER_ROOM", 16, 16, "r", 0x0100),
-    ), "outputs"),
+    )),
     Register("CHANNEL_POSITION", "CHANNEL", 0x40, 8, (
         Field("POSITION", 0, 32, "r", 0x00000000),
     )),
     Register("CHANNEL_TRIGGER_POSITION", "CHANNEL", 0x48, 8, (
         Field("POSITION", 0, 32, "r", 0x00000000),
-    ), "inputs"),
+    )),
     Register("CHANNEL_ENCODER_POSITION", "CHANNEL", 0x50, 8, (
         Field("POSITION", 0, 32, "r", 0x00000000),
-    ), "encoders"),
+    )),
     Register("CHANNEL_FOLLOW", "CHANNEL", 0x60, 1, (
         Field("FOLLOW", 0, 1, "w", 0x0),
         Field("WAIT_INDEX", 1, 1, "w", 0x0),
         Field("SOURCE", 2, 3, "w", 0x0),
         Field("SCALE", 5, 3, "w", 0x0),
-    ), "encoders"),
+    )),
     Register("CHANNEL_FOLLOW_LIMIT", "CHANNEL", 0x61, 1, (
         Field("LIMIT", 0, 32, "w", 0x01000000),
-    ), "encoders"),
+    )),
     Register("CHANNEL_ENCODER_FILTER", "CHANNEL", 0x62, 1, (
         Field("FILTER", 0, 8, "w", 0x03),
-    ), "encoders"),
+    )),
     Register("CHANNEL_FOLLOW_STATE", "CHANNEL", 0x63, 1, (
         Field("OWED", 0, 24, "r", 0x000000),
         Field("BEHIND", 24, 1, "r", 0x0),
         Field("LOST", 25, 1, "r", 0x0),
-    ), "encoders"),
+    )),
     Register("AXIS_PINS", "AXIS", 0x0, 1, (
         Field("STEP_INVERTED", 1, 1, "w", 0x0),
         Field("DIRECTION_INVERTED", 2, 1, "w", 0x0),
@@ -1728,31 +1707,31 @@ TABLE = (
         Field("LIMIT_SOFT", 4, 1, "w", 0x0),
         Field("ALARM_SOFT", 5, 1, "w", 0x0),
         Field("ALARM_DISABLES", 6, 1, "w", 0x0),
-    ), "inputs"),
+    )),
     Register("ENCODER_SETUP", "ENCODER", 0x0, 1, (
         Field("INVERTED", 0, 1, "w", 0x0),
         Field("INDEX_INVERTED", 1, 1, "w", 0x0),
         Field("INDEX_GATED", 2, 1, "w", 0x0),
         Field("STOP_SOFT", 3, 1, "w", 0x0),
         Field("STOP_HARD", 4, 1, "w", 0x0),
-    ), "encoders"),
+    )),
     Register("ENCODER_RATIO", "ENCODER", 0x1, 1, (
         Field("RATIO", 0, 32, "w", 0x00010000),
-    ), "encoders"),
+    )),
     Register("ENCODER_LIMIT", "ENCODER", 0x2, 1, (
         Field("LIMIT", 0, 16, "w", 0xFFFF),
-    ), "encoders"),
+    )),
     Register("ENCODER_ERROR", "ENCODER", 0x3, 1, (
         Field("ERROR", 0, 32, "r", 0x00000000),
-    ), "encoders"),
+    )),
     Register("ENCODER_GREATEST", "ENCODER", 0x4, 1, (
         Field("GREATEST", 0, 18, "r", 0x00000),
         Field("EXCEEDED", 31, 1, "r", 0x0),
-    ), "encoders"),
+    )),
     Register("ENCODER_INDEX", "ENCODER", 0x5, 1, (
         Field("LATCH", 0, 16, "r", 0x0000),
         Field("INDEXES", 16, 8, "r", 0x00),
         Field("ILLEGAL", 24, 8, "r", 0x00),
-    ), "encoders"),
+    )),
 )
 # fmt: on

@@ -30,6 +30,8 @@ class Field(register_table.Field):
 
     text: str
     enum: str | None
+    needs: str  # what the channel must be to set it, as in the source; "" any
+    survives_reset: bool
 
 
 @dataclass(frozen=True)
@@ -42,6 +44,29 @@ class Register(register_table.Fields):
     title: str
     text: str
     fields: tuple[Field, ...]
+    # what the source says of it beside its fields
+    part: str = ""
+    pushed: bool = False
+    nonzero: bool = False
+    special: str = ""
+    needs: str = ""
+    survives_reset: bool = False
+    limit: int | None = None
+
+    @property
+    def maximum(self) -> int:
+        """The greatest value that may be written."""
+        return self.defined if self.limit is None else self.limit
+
+    @property
+    def highest_bit(self) -> int:
+        """Of the values that may be written."""
+        return self.maximum.bit_length() - 1
+
+    @property
+    def lowest_bit(self) -> int:
+        """The lowest of the bits that may be written."""
+        return (self.defined & -self.defined).bit_length() - 1
 
 
 @dataclass(frozen=True)
@@ -93,7 +118,15 @@ def read_field(node: FieldNode) -> Field:
         reset=node.get_property("reset"),
         text=node.get_property("desc"),
         enum=encode and encode.type_name.removesuffix("_e"),
+        needs=_named(node, "needs"),
+        survives_reset=bool(node.get_property("survives_reset", default=False)),
     )
+
+
+def _named(node: FieldNode | RegNode, name: str) -> str:
+    """The value of a property that is an enumeration; "" if it has none."""
+    value = node.get_property(name, default=None)
+    return value.name if value else ""
 
 
 def read_register(node: RegNode) -> Register:
@@ -102,8 +135,15 @@ def read_register(node: RegNode) -> Register:
         word=node.raw_address_offset // 4,
         count=node.array_dimensions[0] if node.is_array else None,
         title=node.get_property("name"),
-        text=node.get_property("desc"),
+        text=node.get_property("desc", default=""),
         fields=tuple(read_field(field) for field in node.fields()),
+        part=_named(node, "part"),
+        pushed=bool(node.get_property("pushed", default=False)),
+        nonzero=bool(node.get_property("nonzero", default=False)),
+        special=node.get_property("special", default=""),
+        needs=_named(node, "needs"),
+        survives_reset=bool(node.get_property("survives_reset", default=False)),
+        limit=node.get_property("maximum", default=None),
     )
 
 
