@@ -21,7 +21,7 @@ module passo_axes #(
   input  wire            bus_write,
   input  wire            bus_read,
   input  wire [AXES-1:0] select_axis,
-  input  wire [AXES-1:0] select_position,
+  input  wire            select_position,
   input  wire [     3:0] bus_address,      // within the block
   input  wire [    31:0] bus_data,
   output wire [    31:0] read_data,

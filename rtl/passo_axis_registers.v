@@ -2,8 +2,7 @@
 // Registers of the axes of a channel: write strobes, and what is read.
 //
 // Promise: `read_data` is the addressed register one clock after `bus_read`, for one clock, else 0; `answers_position`:
-// it is a position, which this module does not have. `select_axis` has the bit of the axis whose block is addressed,
-// `select_position` that of the axis whose position is, from one clock before the strobe.
+// it is a position, which this module does not have. `select_axis` has the bit of the axis whose block is addressed.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -18,7 +17,7 @@ module passo_axis_registers #(
   input  wire              bus_write,
   input  wire              bus_read,
   input  wire [  AXES-1:0] select_axis,
-  input  wire [  AXES-1:0] select_position,
+  input  wire              select_position,
   input  wire [       2:0] bus_address,        // within the block
   input  wire [      31:0] bus_data,
   output reg  [       3:0] read_data,
@@ -59,10 +58,10 @@ module passo_axis_registers #(
   end
 
   always @(posedge clk) begin
-    upper_is_minimal <= bus_data[31:16] < 16'd2;
-    lower_is_minimal <= bus_data[15:0] < 16'd2;
+    upper_is_minimal <= bus_data[31:17] == 15'd0;
+    lower_is_minimal <= bus_data[15:1] == 15'd0;
     read_data        <= bus_read && bus_address == AXIS_LOST_STEPS ? selected_lost : 4'd0;
-    answers_position <= bus_read && select_position != {AXES{1'b0}};
+    answers_position <= bus_read & select_position;
     if (rst) begin
       read_data        <= 4'd0;
       answers_position <= 1'b0;

@@ -91,7 +91,7 @@ module passo_channel #(
   wire            select_line_queue;
   wire            select_ramp_queue;
   wire [AXES-1:0] select_axis;
-  wire [AXES-1:0] select_position;
+  wire            select_position;
   wire [    16:0] rate_target;
   wire [    16:0] rate_slew;
   wire [    16:0] stop_slew;

@@ -29,7 +29,7 @@ module passo_channel_registers #(
   output reg                      select_line_queue,  // a push to it
   output reg                      select_ramp_queue,
   output reg  [         AXES-1:0] select_axis,
-  output reg  [         AXES-1:0] select_position,
+  output reg                      select_position,
   // settings
   output reg  [             16:0] rate_target,
   output reg  [             16:0] rate_slew,
@@ -60,32 +60,31 @@ module passo_channel_registers #(
 
   wire [7:0] overrun_padded = {{(8 - AXES) {1'b0}}, overrun};
 
+  wire [2:0] number = bus_address[2:0];
+
   // Decoded one clock ahead of the strobe: the address is stable by then.
   genvar axis;
   generate
     for (axis = 0; axis < AXES; axis = axis + 1) begin : g_axis
       localparam [2:0] NUMBER = axis;
-      always @(posedge clk) begin
-        select_axis[axis] <= select && bus_address[7:3] == {CHANNEL_AXIS_BASE[7:6], NUMBER};
-        select_position[axis] <= select && (bus_address == CHANNEL_POSITION_BASE + {5'd0, NUMBER}
-          || (INPUTS != 0 && bus_address == CHANNEL_TRIGGER_POSITION_BASE + {5'd0, NUMBER}));
-      end
+      always @(posedge clk) select_axis[axis] <= select && bus_address[7:3] == {CHANNEL_AXIS_BASE[7:6], NUMBER};
     end
   endgenerate
   always @(posedge clk) begin
     select_line_queue <= select && bus_push && bus_address == CHANNEL_LINE;
     select_ramp_queue <= select && bus_push && bus_address == CHANNEL_RAMP;
+    select_position   <= select && {1'b0, number} < AXES[3:0]
+                         && (bus_address[7:3] == CHANNEL_POSITION_BASE[7:3]
+                             || (INPUTS != 0 && bus_address[7:3] == CHANNEL_TRIGGER_POSITION_BASE[7:3]));
   end
 
-  // Blocks of write-only and of read-only registers, and the register's number within
-  reg       in_settings;
-  reg       in_state;
-  reg [2:0] number;
+  // Blocks of write-only and of read-only registers
+  reg in_settings;
+  reg in_state;
 
   always @(posedge clk) begin
     in_settings <= select && bus_address <= CHANNEL_DRAIN_VELOCITY;
     in_state    <= select && bus_address[7:2] == CHANNEL_STATE[7:2];
-    number      <= bus_address[2:0];
   end
 
   wire is_command = in_settings && number == CHANNEL_COMMAND[2:0];

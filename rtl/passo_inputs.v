@@ -59,8 +59,8 @@ module passo_inputs #(
   localparam WIDTH = 4 * AXES + 1;
 
   // Registers. Decoded one clock ahead of the strobe: the address is stable by then.
-  reg       known;
-  reg [2:0] number;
+  reg        known;
+  wire [2:0] number = bus_address[2:0];
 
   wire of_axis = bus_data[CHANNEL_TRIGGER_SOURCE_LSB+:CHANNEL_TRIGGER_SOURCE_BITS] != TRIGGER_SOURCE_NONE
                  && bus_data[CHANNEL_TRIGGER_SOURCE_LSB+:CHANNEL_TRIGGER_SOURCE_BITS] != TRIGGER_SOURCE_PROBE;
@@ -82,7 +82,6 @@ module passo_inputs #(
   integer i;
   always @(posedge clk) begin
     known     <= select && bus_address[7:3] == CHANNEL_INPUT_LEVELS[7:3] && bus_address[2:0] <= CHANNEL_PROBE[2:0];
-    number <= bus_address[2:0];
     for (i = 0; i < 8; i = i + 1) reads[i] <= bus_read && known && number == i[2:0];
   end
 

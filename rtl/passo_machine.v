@@ -32,7 +32,7 @@ module passo_machine (
 
   // Decoded one clock ahead of the strobe: the address is stable by then.
   reg        known;
-  reg  [1:0] number;
+  wire [1:0] number = bus_address[1:0];
   reg        read_estop;
   wire       write = bus_write & known;
   wire       write_watchdog = write && number == ADDRESS_WATCHDOG[1:0];
@@ -44,7 +44,6 @@ module passo_machine (
 
   always @(posedge clk) begin
     known <= bus_address[11:2] == ADDRESS_INPUT_FILTER[11:2];
-    number <= bus_address[1:0];
     read_estop <= bus_read && known && number == ADDRESS_ESTOP[1:0];
   end
 

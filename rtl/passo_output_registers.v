@@ -48,13 +48,12 @@ module passo_output_registers #(
   // Decoded one clock ahead of the strobe: the address is stable by then.
   reg       in_settings;
   reg       in_state;
-  reg [2:0] number;
+  wire [2:0] number = bus_address[2:0];
 
   always @(posedge clk) begin
     in_settings   <= select && bus_address[7:3] == CHANNEL_OUTPUT_LEVELS[7:3];
     in_state      <= select && bus_address == CHANNEL_OUTPUT_STATE;
     select_raster <= select && bus_push && bus_address == CHANNEL_RASTER;
-    number        <= bus_address[2:0];
   end
 
   wire is_levels = in_settings && number == CHANNEL_OUTPUT_LEVELS[2:0];

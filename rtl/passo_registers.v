@@ -78,10 +78,11 @@ module passo_registers #(
   wire run_beyond = ({1'b0, bus_data[7:0]} >> CHANNELS) != 9'd0 || ({1'b0, bus_data[15:8]} >> CHANNELS) != 9'd0
                     || {1'b0, bus_data[18:16]} >= CHANNELS[3:0];
 
+  wire [2:0] number = bus_address[2:0];
+
   // Decoded one clock ahead of the strobe: the address is stable by then.
   reg       known;
   reg       is_run;
-  reg [2:0] number;
   reg [3:0] reads;  // registers 0 .. 3
   reg       reads_status;
 
@@ -100,7 +101,6 @@ module passo_registers #(
   always @(posedge clk) begin
     known        <= bus_address[11:3] == 9'd0 && bus_address[2:0] <= ADDRESS_REFUSALS_1[2:0];
     is_run       <= bus_address == ADDRESS_RUN;
-    number       <= bus_address[2:0];
     reads_status <= ~bus_read;
     for (i = 0; i < 4; i = i + 1) reads[i] <= bus_read && known && number == i[2:0];
     if (bus_write && is_run) begin

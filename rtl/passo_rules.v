@@ -86,7 +86,7 @@ module passo_rules #(
     {of_axis, even, power, nonzero, quiet, pushable, writable, readable, msb} <= found;
     if (bus_address[11:8] != 4'd0 && bus_address[7]) of_axis <= 1'b1;
     if (in_tables) of_axis <= 1'b0;
-    bad <= bus_msb > msb || (power && bus_msb == msb && !bus_one_hot) || (nonzero && bus_msb == 5'd0 && !bus_lsb)
+    bad <= {bus_msb, power & ~bus_one_hot} > {msb, 1'b0} || (nonzero && bus_msb == 5'd0 && !bus_lsb)
            || (even && bus_lsb) || bad_value;
     claim <= known && (bus_check || bus_read);
     refusal <= !known                 ? VERDICT_OK :
