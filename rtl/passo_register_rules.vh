@@ -3,6 +3,8 @@
 // What each register takes, to be included in passo_rules: a rule is the flags RULE_..., and in its lower 5 bits
 // the highest bit that a word may have. A rule of 0: there is no such register.
 
+localparam [12:0] RULE_SHAPE = RULE_WRITE | 13'd15;
+
 function [12:0] core_rule(input [7:0] address);
   casez ({4'd0, address})
     ADDRESS_IDENTIFICATION: core_rule = RULE_READ;

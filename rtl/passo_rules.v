@@ -53,7 +53,7 @@ module passo_rules #(
   // Decoded ahead of the strobe: the address is stable by then.
   wire [12:0] found = bus_address[11:8] == 4'd0 ? core_rule(
       bus_address[7:0]
-  ) : bus_address[11:10] == ADDRESS_COSINE_BASE[11:10] ? RULE_WRITE | 13'd15 : !bus_address[7] ? channel_rule(
+  ) : bus_address[11:10] == ADDRESS_COSINE_BASE[11:10] ? RULE_SHAPE : !bus_address[7] ? channel_rule(
       bus_address[7:0]
   ) : bus_address[6] ? encoder_rule(
       bus_address[2:0]

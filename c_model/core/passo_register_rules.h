@@ -22,6 +22,11 @@ struct passo_rule {
 	uint32_t defined, maximum;
 };
 
+static inline struct passo_rule passo_shape_rule(void)
+{
+	return (struct passo_rule){.write = true, .defined = 0x0000FFFFu, .maximum = 0x0000FFFFu};
+}
+
 static inline struct passo_rule passo_core_rule(unsigned address)
 {
 	switch (address) {

@@ -6,6 +6,7 @@ the blocks are, and how many.
 """
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from generated import aligned
 
@@ -16,12 +17,19 @@ AXES = 8  # of an array with a word for each axis
 
 
 def _rows(block: Block) -> Iterator[tuple[str, Register]]:
-    """Name of the address, and register. A shape table is more than a row: the modules around know them."""
+    """Name of the address, and register. Shape tables are no row."""
     for register in block.registers:
         if register.count in (None, AXES):
             yield block.address_prefix + register.name, register
-        elif not (register.needs == "IDLE" and register.highest_bit == 15):
-            raise ValueError(f"{register.name}: an array that is neither one of axes nor a shape table")
+
+
+def _shape(core: Block) -> Register:
+    """A point of any shape table."""
+    first, *others = (register for register in core.registers if register.count not in (None, AXES))
+    for other in others:
+        if replace(other, name=first.name, word=first.word) != first:
+            raise ValueError(f"{other.name}: an array of the core with other rules than {first.name}")
+    return first
 
 
 def _check(block: Block, register: Register) -> None:
@@ -31,7 +39,7 @@ def _check(block: Block, register: Register) -> None:
         raise ValueError(f"{register.name}: a maximum is a power of 2")
     if holes and not register.special and register.defined + 2 != 1 << register.highest_bit + 1:
         raise ValueError(f"{register.name}: of its undefined bits only bit 0 may be below others")
-    if register.needs == "IDLE":
+    if register.needs == "IDLE" and register.count in (None, AXES):
         raise ValueError(f"{register.name}: only shape tables need no more than idle channels")
 
 
@@ -60,6 +68,8 @@ def verilog(source: Source) -> str:
         f"// {GENERATED}",
         "// What each register takes, to be included in passo_rules: a rule is the flags RULE_..., and in its lower 5 bits",
         "// the highest bit that a word may have. A rule of 0: there is no such register.",
+        "",
+        f"localparam [12:0] RULE_SHAPE = {_rule(replace(_shape(source.core), count=None))};",
     ]
     for block in source.core.walk():
         name, bits = f"{block.name.lower()}_rule", block.address_bits
@@ -117,6 +127,11 @@ def c(source: Source) -> str:
         "\tbool nonzero; /* what may be written */",
         "\tuint32_t defined, maximum;",
         "};",
+        "",
+        "static inline struct passo_rule passo_shape_rule(void)",
+        "{",
+        f"\treturn (struct passo_rule){{{', '.join(_members(replace(_shape(source.core), count=None)))}}};",
+        "}",
     ]
     for block in source.core.walk():
         lines += ["", f"static inline struct passo_rule passo_{block.name.lower()}_rule(unsigned address)", "{"]
