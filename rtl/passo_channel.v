@@ -20,69 +20,69 @@ module passo_channel #(
   parameter [AXES-1:0] DIR_RESET       = 0,
   parameter [AXES-1:0] ENABLE_RESET    = 0
 ) (
-  input  wire                     clk,
-  input  wire                     rst,
+  input wire clk,
+  input wire rst,
   // bus
-  input  wire                     bus_frame,
-  input  wire                     bus_commit,
-  input  wire                     bus_check,
-  input  wire                     bus_write,
-  input  wire                     bus_read,
-  input  wire                     bus_push,
-  input  wire                     select,
-  input  wire [              7:0] bus_address,
-  input  wire [             31:0] bus_data,
-  input  wire [              4:0] bus_msb,
-  input  wire                     needs_quiet,       // strobe: a register that needs a quiet channel is being checked
-  output wire                     bad_value,         // one of its registers objects to the word
-  output wire [              3:0] refusal,           // of its queues, of a push
-  output wire [             31:0] read_data,
-  output wire                     incomplete,
-  output wire                     busy,
-  input  wire                     tables_wanted,
+  input wire bus_frame,
+  input wire bus_commit,
+  input wire bus_check,
+  input wire bus_write,
+  input wire bus_read,
+  input wire bus_push,
+  input wire select,
+  input wire [7:0] bus_address,
+  input wire [31:0] bus_data,
+  input wire [4:0] bus_msb,
+  input wire needs_quiet,  // strobe: a register that needs a quiet channel is being checked
+  output wire bad_value,  // one of its registers objects to the word
+  output wire [3:0] refusal,  // of its queues, of a push
+  output wire [31:0] read_data,
+  output wire incomplete,
+  output wire busy,
+  input wire tables_wanted,
   // core
-  input  wire                     run,
-  input  wire                     wait_sync,
-  input  wire                     sync_edge,
-  input  wire                     slew_tick,
-  input  wire                     snapshot,
-  output wire                     stopped,
-  output wire                     occupied,
+  input wire run,
+  input wire wait_sync,
+  input wire sync_edge,
+  input wire slew_tick,
+  input wire snapshot,
+  output wire stopped,
+  output wire occupied,
   output wire [LINE_QUEUE_LOG2:0] line_room,
   output wire [RAMP_QUEUE_LOG2:0] ramp_room,
   // tables
-  output wire                     table_request,
-  output wire [              9:0] table_address,
-  input  wire                     table_served,
-  input  wire [             15:0] table_point,
-  input  wire [             15:0] table_point_next,
+  output wire table_request,
+  output wire [9:0] table_address,
+  input wire table_served,
+  input wire [15:0] table_point,
+  input wire [15:0] table_point_next,
   // inputs of the machine
   /* verilator lint_off UNUSEDSIGNAL */
-  input  wire                     filter_tick,
-  input  wire [             15:0] filter,
-  input  wire                     write_filter,
-  input  wire                     estop_pressed,     // asynchronous
-  input  wire                     estop,
-  input  wire                     watchdog_stop,
-  input  wire                     disable_drives,
-  input  wire [         AXES-1:0] limit_low,
-  input  wire [         AXES-1:0] limit_high,
-  input  wire [         AXES-1:0] home,
-  input  wire [         AXES-1:0] alarm,
-  input  wire                     probe,
-  input  wire [         AXES-1:0] encoder_a,
-  input  wire [         AXES-1:0] encoder_b,
-  input  wire [         AXES-1:0] encoder_index,
+  input wire filter_tick,
+  input wire [15:0] filter,
+  input wire write_filter,
+  input wire estop_pressed,  // asynchronous
+  input wire estop,
+  input wire watchdog_stop,
+  input wire disable_drives,
+  input wire [AXES-1:0] limit_low,
+  input wire [AXES-1:0] limit_high,
+  input wire [AXES-1:0] home,
+  input wire [AXES-1:0] alarm,
+  input wire probe,
+  input wire [AXES-1:0] encoder_a,
+  input wire [AXES-1:0] encoder_b,
+  input wire [AXES-1:0] encoder_index,
   /* verilator lint_on UNUSEDSIGNAL */
-  output wire                     moving,
+  output wire moving,
   // pins
-  output wire [         AXES-1:0] step,
-  output wire [         AXES-1:0] dir,
-  output wire [         AXES-1:0] enable,
-  output wire [              7:0] outputs,
-  output wire                     power,
-  output wire                     compare,
-  output wire                     running
+  output wire [AXES-1:0] step,
+  output wire [AXES-1:0] dir,
+  output wire [AXES-1:0] enable,
+  output wire [7:0] outputs,
+  output wire power,
+  output wire compare,
+  output wire running
 );
 
   `include "passo_registers.vh"
@@ -200,7 +200,7 @@ module passo_channel #(
 
   // Unselected targets drive 0.
   assign bad_value = inputs_bad_value | outputs_bad_value;
-  assign refusal   = line_refusal | ramp_refusal | raster_refusal;
+  assign refusal = line_refusal | ramp_refusal | raster_refusal;
   assign read_data = registers_read_data | axes_read_data | inputs_read_data | encoders_read_data | outputs_read_data;
 
   reg  [2:0] occupied_q;  // a line loaded in the clock of a stop changes DIR up to 4 clocks later
@@ -648,13 +648,13 @@ module passo_channel #(
         .compare         (compare)
       );
     end else begin : g_no_outputs
-      assign outputs_bad_value  = 1'b0;
-      assign raster_refusal     = 4'd0;
-      assign outputs_read_data  = 32'd0;
-      assign outputs_quiet      = 1'b1;
-      assign outputs            = 8'd0;
-      assign power_wanted       = 1'b0;
-      assign compare            = 1'b0;
+      assign outputs_bad_value = 1'b0;
+      assign raster_refusal    = 4'd0;
+      assign outputs_read_data = 32'd0;
+      assign outputs_quiet     = 1'b1;
+      assign outputs           = 8'd0;
+      assign power_wanted      = 1'b0;
+      assign compare           = 1'b0;
     end
   endgenerate
 

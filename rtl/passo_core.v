@@ -175,10 +175,10 @@ module passo_core #(
     slew_tick     <= slew_count == {TICK_LOG2{1'b1}};
     irq           <= stopped != {CHANNELS{1'b0}};
     if (rst) begin
-      sync_q       <= 3'b111;
-      slew_count   <= {TICK_LOG2{1'b0}};
-      slew_tick    <= 1'b0;
-      irq          <= 1'b0;
+      sync_q     <= 3'b111;
+      slew_count <= {TICK_LOG2{1'b0}};
+      slew_tick  <= 1'b0;
+      irq        <= 1'b0;
     end
   end
 
@@ -223,7 +223,7 @@ module passo_core #(
     .bus_read   (bus_read),
     .bus_push   (bus_push),
     .bus_address(bus_address),
-    .bus_lsb    (bus_data[0]),
+    .bus_odd    (bus_data[0]),
     .bus_msb    (bus_msb),
     .bus_one_hot(bus_one_hot),
     .bad_value  (registers_bad_value || channel_bad_value != {CHANNELS{1'b0}}),

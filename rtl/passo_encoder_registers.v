@@ -50,7 +50,8 @@ module passo_encoder_registers #(
   generate
     for (axis = 0; axis < AXES; axis = axis + 1) begin : g_axis
       localparam [2:0] NUMBER = axis;
-      always @(posedge clk) select_axis[axis] <= select && bus_address[7:3] == {CHANNEL_ENCODER_BASE[7:6], NUMBER};
+      always @(posedge clk)
+        select_axis[axis] <= select && bus_address[7:3] == {CHANNEL_ENCODER_BASE[7:6], NUMBER};
     end
   endgenerate
 

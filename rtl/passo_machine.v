@@ -43,7 +43,7 @@ module passo_machine (
   assign read_data = {31'd0, estop & read_estop};
 
   always @(posedge clk) begin
-    known <= bus_address[11:2] == ADDRESS_INPUT_FILTER[11:2];
+    known      <= bus_address[11:2] == ADDRESS_INPUT_FILTER[11:2];
     read_estop <= bus_read && known && number == ADDRESS_ESTOP[1:0];
   end
 

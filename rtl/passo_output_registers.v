@@ -46,8 +46,8 @@ module passo_output_registers #(
   `include "passo_registers.vh"
 
   // Decoded one clock ahead of the strobe: the address is stable by then.
-  reg       in_settings;
-  reg       in_state;
+  reg        in_settings;
+  reg        in_state;
   wire [2:0] number = bus_address[2:0];
 
   always @(posedge clk) begin

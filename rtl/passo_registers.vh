@@ -730,7 +730,7 @@ localparam VERDICT_UNKNOWN_ADDRESS = 4'd5; // No register at this address.
 localparam VERDICT_READ_ONLY       = 4'd6; // The register cannot be written.
 localparam VERDICT_QUEUE_FULL      = 4'd7; // Not enough room for the whole frame.
 localparam VERDICT_BUSY            = 4'd8; // The state of the channel does not allow it (see the register).
-localparam VERDICT_BAD_VALUE       = 4'd9; // M = 0 or M >= 2^30, N_i > M, a velocity above 1/2, drain velocity 0, reserved bits set.
+localparam VERDICT_BAD_VALUE       = 4'd9; // The register does not take the value, or an undefined bit is set (see the register).
 
 // State of a channel.
 localparam STATE_IDLE    = 3'd0; // No motion.

@@ -736,7 +736,7 @@ enum passo_verdict {
 	PASSO_VERDICT_READ_ONLY       = 6, /* The register cannot be written. */
 	PASSO_VERDICT_QUEUE_FULL      = 7, /* Not enough room for the whole frame. */
 	PASSO_VERDICT_BUSY            = 8, /* The state of the channel does not allow it (see the register). */
-	PASSO_VERDICT_BAD_VALUE       = 9  /* M = 0 or M >= 2^30, N_i > M, a velocity above 1/2, drain velocity 0, reserved bits set. */
+	PASSO_VERDICT_BAD_VALUE       = 9  /* The register does not take the value, or an undefined bit is set (see the register). */
 };
 #define PASSO_VERDICT_NAMES \
 	{[0] = "OK", [1] = "DUPLICATE", [2] = "BAD_CRC", [3] = "BAD_LENGTH", [4] = "BAD_OPERATION", \

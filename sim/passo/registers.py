@@ -29,7 +29,7 @@ class Verdict(DescribedEnum):
     READ_ONLY = 6, "The register cannot be written."
     QUEUE_FULL = 7, "Not enough room for the whole frame."
     BUSY = 8, "The state of the channel does not allow it (see the register)."
-    BAD_VALUE = 9, "M = 0 or M >= 2^30, N_i > M, a velocity above 1/2, drain velocity 0, reserved bits set."
+    BAD_VALUE = 9, "The register does not take the value, or an undefined bit is set (see the register)."
 
 
 class State(DescribedEnum):
@@ -1518,17 +1518,17 @@ TABLE = (
     )),
     Register("INPUT_FILTER", "CORE", 0x010, 1, (
         Field("FILTER", 0, 16, "w", 0x0000),
-    )),
+    ), "inputs"),
     Register("WATCHDOG", "CORE", 0x011, 1, (
         Field("STOP_AFTER", 0, 10, "w", 0x000),
         Field("DISABLE_AFTER", 10, 10, "w", 0x000),
-    )),
+    ), "inputs"),
     Register("ESTOP", "CORE", 0x012, 1, (
         Field("PRESSED", 0, 1, "r", 0x0),
-    )),
+    ), "inputs"),
     Register("ESTOP_CLEAR", "CORE", 0x013, 1, (
         Field("CLEAR", 0, 1, "w", 0x0),
-    )),
+    ), "inputs"),
     Register("COSINE", "CORE", 0xD00, 256, (
         Field("POINT", 0, 16, "w", None),
     )),
@@ -1579,26 +1579,26 @@ TABLE = (
         Field("LIMIT_HIGH", 8, 8, "r", 0x00),
         Field("HOME", 16, 8, "r", 0x00),
         Field("ALARM", 24, 8, "r", 0x00),
-    )),
+    ), "inputs"),
     Register("CHANNEL_INPUT_FLAGS", "CHANNEL", 0x11, 1, (
         Field("LIMIT_LOW", 0, 8, "r", 0x00),
         Field("LIMIT_HIGH", 8, 8, "r", 0x00),
         Field("HOME", 16, 8, "r", 0x00),
         Field("ALARM", 24, 8, "r", 0x00),
-    )),
+    ), "inputs"),
     Register("CHANNEL_INPUT_CLEAR", "CHANNEL", 0x12, 1, (
         Field("LIMIT_LOW", 0, 8, "w", 0x00),
         Field("LIMIT_HIGH", 8, 8, "w", 0x00),
         Field("HOME", 16, 8, "w", 0x00),
         Field("ALARM", 24, 8, "w", 0x00),
-    )),
+    ), "inputs"),
     Register("CHANNEL_TRIGGER", "CHANNEL", 0x13, 1, (
         Field("SOURCE", 0, 3, "w", 0x0),
         Field("AXIS", 4, 3, "w", 0x0),
         Field("FALLING", 8, 1, "w", 0x0),
         Field("ACTION", 12, 2, "w", 0x0),
         Field("ARM", 16, 1, "w", 0x0),
-    )),
+    ), "inputs"),
     Register("CHANNEL_TRIGGER_STATE", "CHANNEL", 0x14, 1, (
         Field("ARMED", 0, 1, "r", 0x0),
         Field("FIRED", 1, 1, "r", 0x0),
@@ -1608,11 +1608,11 @@ TABLE = (
         Field("SOURCE_ACTIVE", 5, 1, "r", 0x0),
         Field("UNKNOWN", 6, 1, "r", None),
         Field("AXES", 8, 8, "r", 0x00),
-    )),
+    ), "inputs"),
     Register("CHANNEL_PROBE", "CHANNEL", 0x15, 1, (
         Field("INVERTED", 0, 1, "w", 0x0),
         Field("CLEAR", 1, 1, "w", 0x0),
-    )),
+    ), "inputs"),
     Register("CHANNEL_LINE", "CHANNEL", 0x20, 1, (
         Field("LINE", 0, 32, "w", None),
     )),
@@ -1621,64 +1621,64 @@ TABLE = (
     )),
     Register("CHANNEL_RASTER", "CHANNEL", 0x22, 1, (
         Field("RASTER", 0, 32, "w", None),
-    )),
+    ), "outputs"),
     Register("CHANNEL_OUTPUT_LEVELS", "CHANNEL", 0x30, 1, (
         Field("LEVELS", 0, 8, "w", 0x00),
-    )),
+    ), "outputs"),
     Register("CHANNEL_OUTPUT_LAG", "CHANNEL", 0x31, 1, (
         Field("LAG", 0, 16, "w", 0x0000),
-    )),
+    ), "outputs"),
     Register("CHANNEL_PWM_STEP", "CHANNEL", 0x32, 1, (
         Field("PWM_STEP", 0, 24, "w", 0x001000),
-    )),
+    ), "outputs"),
     Register("CHANNEL_POWER_REFERENCE", "CHANNEL", 0x33, 1, (
         Field("POWER_REFERENCE", 0, 32, "w", 0x80000000),
-    )),
+    ), "outputs"),
     Register("CHANNEL_RASTER_PITCH", "CHANNEL", 0x34, 1, (
         Field("PITCH", 0, 30, "w", 0x00000001),
-    )),
+    ), "outputs"),
     Register("CHANNEL_COMPARE_PULSE", "CHANNEL", 0x35, 1, (
         Field("WIDTH", 0, 16, "w", 0x0000),
         Field("AXIS", 16, 3, "w", 0x0),
-    )),
+    ), "outputs"),
     Register("CHANNEL_COMPARE_DISTANCE", "CHANNEL", 0x36, 1, (
         Field("DISTANCE", 0, 32, "w", 0x00000000),
-    )),
+    ), "outputs"),
     Register("CHANNEL_COMPARE_INTERVAL", "CHANNEL", 0x37, 1, (
         Field("INTERVAL", 0, 32, "w", 0x00000001),
-    )),
+    ), "outputs"),
     Register("CHANNEL_OUTPUT_STATE", "CHANNEL", 0x38, 1, (
         Field("LEVELS", 0, 8, "r", 0x00),
         Field("RASTER_EMPTY", 8, 1, "r", 0x0),
         Field("OVERFLOW", 9, 1, "r", 0x0),
         Field("RASTER_ROOM", 16, 16, "r", 0x0100),
-    )),
+    ), "outputs"),
     Register("CHANNEL_POSITION", "CHANNEL", 0x40, 8, (
         Field("POSITION", 0, 32, "r", 0x00000000),
     )),
     Register("CHANNEL_TRIGGER_POSITION", "CHANNEL", 0x48, 8, (
         Field("POSITION", 0, 32, "r", 0x00000000),
-    )),
+    ), "inputs"),
     Register("CHANNEL_ENCODER_POSITION", "CHANNEL", 0x50, 8, (
         Field("POSITION", 0, 32, "r", 0x00000000),
-    )),
+    ), "encoders"),
     Register("CHANNEL_FOLLOW", "CHANNEL", 0x60, 1, (
         Field("FOLLOW", 0, 1, "w", 0x0),
         Field("WAIT_INDEX", 1, 1, "w", 0x0),
         Field("SOURCE", 2, 3, "w", 0x0),
         Field("SCALE", 5, 3, "w", 0x0),
-    )),
+    ), "encoders"),
     Register("CHANNEL_FOLLOW_LIMIT", "CHANNEL", 0x61, 1, (
         Field("LIMIT", 0, 32, "w", 0x01000000),
-    )),
+    ), "encoders"),
     Register("CHANNEL_ENCODER_FILTER", "CHANNEL", 0x62, 1, (
         Field("FILTER", 0, 8, "w", 0x03),
-    )),
+    ), "encoders"),
     Register("CHANNEL_FOLLOW_STATE", "CHANNEL", 0x63, 1, (
         Field("OWED", 0, 24, "r", 0x000000),
         Field("BEHIND", 24, 1, "r", 0x0),
         Field("LOST", 25, 1, "r", 0x0),
-    )),
+    ), "encoders"),
     Register("AXIS_PINS", "AXIS", 0x0, 1, (
         Field("STEP_INVERTED", 1, 1, "w", 0x0),
         Field("DIRECTION_INVERTED", 2, 1, "w", 0x0),
@@ -1707,31 +1707,31 @@ TABLE = (
         Field("LIMIT_SOFT", 4, 1, "w", 0x0),
         Field("ALARM_SOFT", 5, 1, "w", 0x0),
         Field("ALARM_DISABLES", 6, 1, "w", 0x0),
-    )),
+    ), "inputs"),
     Register("ENCODER_SETUP", "ENCODER", 0x0, 1, (
         Field("INVERTED", 0, 1, "w", 0x0),
         Field("INDEX_INVERTED", 1, 1, "w", 0x0),
         Field("INDEX_GATED", 2, 1, "w", 0x0),
         Field("STOP_SOFT", 3, 1, "w", 0x0),
         Field("STOP_HARD", 4, 1, "w", 0x0),
-    )),
+    ), "encoders"),
     Register("ENCODER_RATIO", "ENCODER", 0x1, 1, (
         Field("RATIO", 0, 32, "w", 0x00010000),
-    )),
+    ), "encoders"),
     Register("ENCODER_LIMIT", "ENCODER", 0x2, 1, (
         Field("LIMIT", 0, 16, "w", 0xFFFF),
-    )),
+    ), "encoders"),
     Register("ENCODER_ERROR", "ENCODER", 0x3, 1, (
         Field("ERROR", 0, 32, "r", 0x00000000),
-    )),
+    ), "encoders"),
     Register("ENCODER_GREATEST", "ENCODER", 0x4, 1, (
         Field("GREATEST", 0, 18, "r", 0x00000),
         Field("EXCEEDED", 31, 1, "r", 0x0),
-    )),
+    ), "encoders"),
     Register("ENCODER_INDEX", "ENCODER", 0x5, 1, (
         Field("LATCH", 0, 16, "r", 0x0000),
         Field("INDEXES", 16, 8, "r", 0x00),
         Field("ILLEGAL", 24, 8, "r", 0x00),
-    )),
+    ), "encoders"),
 )
 # fmt: on

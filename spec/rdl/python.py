@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The registers in Python: enumerations, classes of words, constants, the table of all registers."""
 
-import re
 from collections.abc import Sequence
 from textwrap import wrap
 
@@ -32,8 +31,7 @@ def _table(core: Block) -> list[str]:
                 reset = None if field.reset is None else f"0x{digits(field.reset, field.bits)}"
                 arguments = f'"{field.name}", {field.lsb}, {field.bits}, "{field.access}", {reset}'
                 lines.append(f"        Field({arguments}),")
-            part = re.match(r"Only with (INPUTS|ENCODERS|OUTPUTS)\.", register.text)
-            lines.append(f'    ), "{part[1].lower()}"),' if part else "    )),")
+            lines.append(f'    ), "{register.part.lower()}"),' if register.part else "    )),")
     return [*lines, ")", "# fmt: on"]
 
 
