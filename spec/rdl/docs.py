@@ -85,7 +85,12 @@ def page(source: Source) -> str:
                 where, link = word_range(block, one), f"[`{one.name}`](#{anchor})"
                 meaning = first_sentence(register.text) or f"{register.title}."
                 rows.append([where, link, access, register.part, meaning])
-            details += ["", f"### {heading}", "", said(f"*{register.title}.*", register.text, rules(register))]
+            details += [
+                "",
+                f"### {heading}",
+                "",
+                said(f"*{register.title}.*", register.text, rules(register)),
+            ]
             field_rows = [field_row(field, enums) for field in reversed(register.fields)]
             details += table(["bits", "field", "access", "reset", "meaning"], field_rows)
         where = "address" if block is core else "offset"

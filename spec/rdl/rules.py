@@ -134,7 +134,11 @@ def c(source: Source) -> str:
         "}",
     ]
     for block in source.core.walk():
-        lines += ["", f"static inline struct passo_rule passo_{block.name.lower()}_rule(unsigned address)", "{"]
+        lines += [
+            "",
+            f"static inline struct passo_rule passo_{block.name.lower()}_rule(unsigned address)",
+            "{",
+        ]
         lines.append("\tswitch (address) {")
         for address, register in _rows(block):
             if register.count:
