@@ -35,7 +35,8 @@ class Registers(Bench):
     """The module under test."""
 
     INPUTS = (
-        "bus_write", "bus_read", "bus_address", "bus_data", "last_sequence", "any_stopped", "any_occupied", "line_room", "ramp_room",
+        "bus_write", "bus_read", "bus_address", "bus_data", "last_sequence", "any_stopped", "any_occupied",
+        "line_room", "ramp_room",
     )  # fmt: skip
 
     def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
