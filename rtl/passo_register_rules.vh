@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Generated from spec/passo.rdl by spec/generate_registers.py.
-// What each register takes, to be included in passo_rules: a rule is the flags RULE_..., and in its lower 5 bits
-// the highest bit that a word may have. A rule of 0: there is no such register.
+// What each register takes, to be included in passo_rules. It is flags, and in its lower 5 bits
+// the highest bit that a word may have; without a flag there is no register.
 
 localparam [12:0] RULE_SHAPE = RULE_WRITE | 13'd15;
 

@@ -434,7 +434,7 @@ localparam CHANNEL_OUTPUT_LEVELS_LEVELS_BITS  = 8;
 localparam CHANNEL_OUTPUT_LEVELS_LEVELS_RESET = 8'h00;
 localparam CHANNEL_OUTPUT_LEVELS_DEFINED      = 32'h000000FF;
 
-// Channel: Output lag.
+// Channel: Output lag. Delay of the outputs of lines.
 localparam CHANNEL_OUTPUT_LAG           = 8'h31;
 localparam CHANNEL_OUTPUT_LAG_LAG_LSB   = 0;
 localparam CHANNEL_OUTPUT_LAG_LAG_BITS  = 16;
@@ -474,7 +474,7 @@ localparam CHANNEL_COMPARE_PULSE_AXIS_BITS   = 3;
 localparam CHANNEL_COMPARE_PULSE_AXIS_RESET  = 3'h0;
 localparam CHANNEL_COMPARE_PULSE_DEFINED     = 32'h0007FFFF;
 
-// Channel: Compare distance.
+// Channel: Compare distance. Where the first pulse comes.
 localparam CHANNEL_COMPARE_DISTANCE                = 8'h36;
 localparam CHANNEL_COMPARE_DISTANCE_DISTANCE_LSB   = 0;
 localparam CHANNEL_COMPARE_DISTANCE_DISTANCE_BITS  = 32;
@@ -525,7 +525,7 @@ localparam CHANNEL_ENCODER_POSITION_POSITION_LSB   = 0;
 localparam CHANNEL_ENCODER_POSITION_POSITION_BITS  = 32;
 localparam CHANNEL_ENCODER_POSITION_POSITION_RESET = 32'h00000000;
 
-// Channel: Follow.
+// Channel: Follow. Whether and how the profile follows an encoder.
 localparam CHANNEL_FOLLOW                  = 8'h60;
 localparam CHANNEL_FOLLOW_FOLLOW_LSB       = 0;
 localparam CHANNEL_FOLLOW_FOLLOW_BITS      = 1;
@@ -621,7 +621,7 @@ localparam AXIS_LOST_STEPS_LOST_LSB   = 0;
 localparam AXIS_LOST_STEPS_LOST_BITS  = 4;
 localparam AXIS_LOST_STEPS_LOST_RESET = 4'h0;
 
-// Axis: Drive enable.
+// Axis: Drive enable. Enables the drive of the axis.
 localparam AXIS_ENABLE         = 3'h4;
 localparam AXIS_ENABLE_LSB     = 0;
 localparam AXIS_ENABLE_BITS    = 1;
@@ -653,7 +653,7 @@ localparam AXIS_INPUTS_ALARM_DISABLES_BITS       = 1;
 localparam AXIS_INPUTS_ALARM_DISABLES_RESET      = 1'h0;
 localparam AXIS_INPUTS_DEFINED                   = 32'h0000007F;
 
-// Encoder: Encoder setup.
+// Encoder: Encoder setup. How the encoder counts, and what a following error does.
 localparam ENCODER_SETUP                      = 3'h0;
 localparam ENCODER_SETUP_INVERTED_LSB         = 0;
 localparam ENCODER_SETUP_INVERTED_BITS        = 1;
@@ -679,7 +679,7 @@ localparam ENCODER_RATIO_BITS    = 32;
 localparam ENCODER_RATIO_RESET   = 32'h00010000;
 localparam ENCODER_RATIO_DEFINED = 32'hFFFFFFFF;
 
-// Encoder: Following error limit.
+// Encoder: Following error limit. Error from which on the axis is too far from its encoder.
 localparam ENCODER_LIMIT         = 3'h2;
 localparam ENCODER_LIMIT_LSB     = 0;
 localparam ENCODER_LIMIT_BITS    = 16;

@@ -19,6 +19,8 @@ Each register of several fields, and each word, also has a struct passo_<name> w
 passo_unpack_<name>() in C, and a class with pack() and unpack() in Python. Python also has the TABLE of all
 registers.
 
+RTL and model also have the rule of each register (rdl/rules.py): which access it takes, and which values.
+
 A field that is alone in its register and has its name does not repeat it: CHANNEL_RATE_TARGET_LSB.
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Every register of spec/passo.rdl answers, in model and RTL, as its fields say; nothing else does.
 
-What is refused beside undefined bits is written here once more by hand: the rules of RTL and model come from one table.
+What is refused beside undefined bits is written here once more, by hand: RTL and model have one table.
 """
 
 from collections.abc import Iterator

@@ -415,7 +415,7 @@ struct passo_channel_inputs {
 	const struct passo_bus *bus;
 	bool run, wait_sync, sync_edge, slew_tick, snapshot;
 	bool tables_wanted;
-	bool needs_quiet; /* of the register that is checked */
+	bool needs_quiet;                            /* of the register that is checked */
 	const struct passo_machine_unit *machine;    /* before the edge */
 	uint8_t pins[PASSO_KINDS];                   /* levels, a bit per axis */
 	uint8_t encoder_a, encoder_b, encoder_index; /* pins, one bit per axis */

@@ -15,10 +15,10 @@ enum passo_part { PASSO_PART_NONE, PASSO_PART_INPUTS, PASSO_PART_ENCODERS, PASSO
 
 struct passo_rule {
 	bool read, write, push; /* none: there is no such register */
-	bool per_axis; /* a word for each axis */
-	bool needs_quiet; /* a quiet channel, for a write */
-	enum passo_part part; /* it is there only with it */
-	bool nonzero; /* what may be written */
+	bool per_axis;          /* a word for each axis */
+	bool needs_quiet;       /* the channel, for a write */
+	enum passo_part part;   /* it is there only with it */
+	bool nonzero;           /* what may be written */
 	uint32_t defined, maximum;
 };
 

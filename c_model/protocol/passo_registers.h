@@ -435,7 +435,7 @@
 #define PASSO_CHANNEL_OUTPUT_LEVELS_LEVELS_RESET 0x00u
 #define PASSO_CHANNEL_OUTPUT_LEVELS_DEFINED      0x000000FFu
 
-/* Channel: Output lag. */
+/* Channel: Output lag. Delay of the outputs of lines. */
 #define PASSO_CHANNEL_OUTPUT_LAG           0x31u
 #define PASSO_CHANNEL_OUTPUT_LAG_LAG_LSB   0u
 #define PASSO_CHANNEL_OUTPUT_LAG_LAG_BITS  16u
@@ -475,7 +475,7 @@
 #define PASSO_CHANNEL_COMPARE_PULSE_AXIS_RESET  0x0u
 #define PASSO_CHANNEL_COMPARE_PULSE_DEFINED     0x0007FFFFu
 
-/* Channel: Compare distance. */
+/* Channel: Compare distance. Where the first pulse comes. */
 #define PASSO_CHANNEL_COMPARE_DISTANCE                0x36u
 #define PASSO_CHANNEL_COMPARE_DISTANCE_DISTANCE_LSB   0u
 #define PASSO_CHANNEL_COMPARE_DISTANCE_DISTANCE_BITS  32u
@@ -526,7 +526,7 @@
 #define PASSO_CHANNEL_ENCODER_POSITION_POSITION_BITS  32u
 #define PASSO_CHANNEL_ENCODER_POSITION_POSITION_RESET 0x00000000u
 
-/* Channel: Follow. */
+/* Channel: Follow. Whether and how the profile follows an encoder. */
 #define PASSO_CHANNEL_FOLLOW                  0x60u
 #define PASSO_CHANNEL_FOLLOW_FOLLOW_LSB       0u
 #define PASSO_CHANNEL_FOLLOW_FOLLOW_BITS      1u
@@ -622,7 +622,7 @@
 #define PASSO_AXIS_LOST_STEPS_LOST_BITS  4u
 #define PASSO_AXIS_LOST_STEPS_LOST_RESET 0x0u
 
-/* Axis: Drive enable. */
+/* Axis: Drive enable. Enables the drive of the axis. */
 #define PASSO_AXIS_ENABLE         0x4u
 #define PASSO_AXIS_ENABLE_LSB     0u
 #define PASSO_AXIS_ENABLE_BITS    1u
@@ -654,7 +654,7 @@
 #define PASSO_AXIS_INPUTS_ALARM_DISABLES_RESET      0x0u
 #define PASSO_AXIS_INPUTS_DEFINED                   0x0000007Fu
 
-/* Encoder: Encoder setup. */
+/* Encoder: Encoder setup. How the encoder counts, and what a following error does. */
 #define PASSO_ENCODER_SETUP                      0x0u
 #define PASSO_ENCODER_SETUP_INVERTED_LSB         0u
 #define PASSO_ENCODER_SETUP_INVERTED_BITS        1u
@@ -680,7 +680,7 @@
 #define PASSO_ENCODER_RATIO_RESET   0x00010000u
 #define PASSO_ENCODER_RATIO_DEFINED 0xFFFFFFFFu
 
-/* Encoder: Following error limit. */
+/* Encoder: Following error limit. Error from which on the axis is too far from its encoder. */
 #define PASSO_ENCODER_LIMIT         0x2u
 #define PASSO_ENCODER_LIMIT_LSB     0u
 #define PASSO_ENCODER_LIMIT_BITS    16u

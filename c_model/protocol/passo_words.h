@@ -625,7 +625,7 @@ static inline struct passo_channel_output_state passo_unpack_channel_output_stat
 	};
 }
 
-/* Follow.  */
+/* Follow. Whether and how the profile follows an encoder. */
 struct passo_channel_follow {
 	uint8_t scale;      /* A count is 2^scale clocks of the profile. */
 	uint8_t source;     /* Axis of the encoder. One that is not there stands still. */
@@ -775,7 +775,7 @@ static inline struct passo_axis_inputs passo_unpack_axis_inputs(uint32_t word)
 	};
 }
 
-/* Encoder setup.  */
+/* Encoder setup. How the encoder counts, and what a following error does. */
 struct passo_encoder_setup {
 	bool stop_hard;      /* 1: it is a hard stop, whatever stop_soft says. Neither: it only shows. */
 	bool stop_soft;      /* 1: a following error at the limit is a soft stop. */

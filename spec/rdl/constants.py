@@ -71,7 +71,7 @@ def constant_groups(source: Source) -> list[tuple[str, list[Constant]]]:
     for block in core.walk():
         level = block.name.capitalize()
         for register in block.registers:
-            comment = f"{level}: {register.title}. {register.text}".rstrip()
+            comment = f"{level}: {register.title}. {register.text}"
             groups.append((comment, list(register_constants(block, register))))
         for inner in block.blocks:
             comment = f"{level}: where each {inner.name.lower()} has its registers."

@@ -83,8 +83,7 @@ def page(source: Source) -> str:
             anchor = heading.lower().replace(", ", "-")
             for one in registers:
                 where, link = word_range(block, one), f"[`{one.name}`](#{anchor})"
-                meaning = first_sentence(register.text) or f"{register.title}."
-                rows.append([where, link, access, register.part, meaning])
+                rows.append([where, link, access, register.part, first_sentence(register.text)])
             details += [
                 "",
                 f"### {heading}",

@@ -58,16 +58,6 @@ class Register(register_table.Fields):
         """The greatest value that may be written."""
         return self.defined if self.limit is None else self.limit
 
-    @property
-    def highest_bit(self) -> int:
-        """Of the values that may be written."""
-        return self.maximum.bit_length() - 1
-
-    @property
-    def lowest_bit(self) -> int:
-        """The lowest of the bits that may be written."""
-        return (self.defined & -self.defined).bit_length() - 1
-
 
 @dataclass(frozen=True)
 class Block:
@@ -135,7 +125,7 @@ def read_register(node: RegNode) -> Register:
         word=node.raw_address_offset // 4,
         count=node.array_dimensions[0] if node.is_array else None,
         title=node.get_property("name"),
-        text=node.get_property("desc", default=""),
+        text=node.get_property("desc"),
         fields=tuple(read_field(field) for field in node.fields()),
         part=_named(node, "part"),
         pushed=bool(node.get_property("pushed", default=False)),
