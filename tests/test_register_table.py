@@ -45,6 +45,25 @@ QUIET = {
 QUIET_COMMANDS = 1 << r.CHANNEL_COMMAND_CLEAR_LSB, 1 << r.CHANNEL_COMMAND_ZERO_LSB
 
 
+# Words of a block, first and last, that belong to a part.
+PLACES = {
+    "CORE": {(0x10, 0x1F): "inputs", (0x20, 0x2F): "encoders", (0x30, 0x3F): "outputs"},
+    "CHANNEL": {
+        **{(0x10, 0x1F): "inputs", (0x22, 0x22): "outputs", (0x30, 0x3F): "outputs"},
+        **{(0x48, 0x4F): "inputs", (0x50, 0x7F): "encoders"},
+    },
+    "AXIS": {(5, 5): "inputs"},
+    "ENCODER": {(0, 7): "encoders"},
+}
+
+
+def part_of(register: Register) -> str:
+    """The part to which a register belongs; "" if to none."""
+    return next(
+        (part for (first, last), part in PLACES[register.block].items() if first <= register.word <= last), ""
+    )
+
+
 def every_register(parameters: Parameters) -> Iterator[tuple[int, Register]]:
     """Address and register of all words of a core. An array in a channel has a word for each axis."""
     channels = [r.ADDRESS_CHANNEL_BASE + n * r.ADDRESS_CHANNEL_STRIDE for n in range(parameters.channels)]
@@ -53,7 +72,8 @@ def every_register(parameters: Parameters) -> Iterator[tuple[int, Register]]:
     encoders = [base - r.CHANNEL_AXIS_BASE + r.CHANNEL_ENCODER_BASE for base in axes]
     bases = {"CORE": [0], "CHANNEL": channels, "AXIS": axes, "ENCODER": encoders}
     for register in r.TABLE:
-        if register.part and not getattr(parameters, register.part):
+        part = part_of(register)
+        if part and not getattr(parameters, part):
             continue
         per_axis = register.block == "CHANNEL" and register.count > 1
         for base in bases[register.block]:
