@@ -58,8 +58,8 @@ module passo_axis_registers #(
   end
 
   always @(posedge clk) begin
-    upper_is_minimal <= bus_data[31:17] == 15'd0;
-    lower_is_minimal <= bus_data[15:1] == 15'd0;
+    upper_is_minimal <= (bus_data[31:16] & 16'hFFFE) == 16'd0;
+    lower_is_minimal <= (bus_data[15:0] & 16'hFFFE) == 16'd0;
     read_data        <= bus_read && bus_address == AXIS_LOST_STEPS ? selected_lost : 4'd0;
     answers_position <= bus_read & select_position;
     if (rst) begin
