@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Generated from spec/passo.rdl by spec/generate_registers.py.
 // What each register takes, to be included in passo_rules. It is flags, and in its lower 5 bits
-// the highest bit that a word may have; without a flag there is no register.
+// the highest bit that a word may have; without a flag there is no register. No `default`:
+// yosys would make a ROM of the table, with registers of its own for the address.
 
 localparam [12:0] RULE_SHAPE = RULE_WRITE | 13'd15;
 
@@ -17,7 +18,7 @@ function [12:0] core_rule(input [7:0] address);
     ADDRESS_WATCHDOG:       core_rule = WITH_INPUTS & (RULE_WRITE | 13'd19);
     ADDRESS_ESTOP:          core_rule = WITH_INPUTS & RULE_READ;
     ADDRESS_ESTOP_CLEAR:    core_rule = WITH_INPUTS & (RULE_WRITE | 13'd0);
-    default:                core_rule = 13'd0;
+    12'b????????????:       core_rule = 13'd0;
   endcase
 endfunction
 
@@ -57,7 +58,7 @@ function [12:0] channel_rule(input [7:0] address);
     CHANNEL_FOLLOW_LIMIT:                         channel_rule = WITH_ENCODERS & (RULE_WRITE | RULE_NONZERO | RULE_POWER | 13'd31);
     CHANNEL_ENCODER_FILTER:                       channel_rule = WITH_ENCODERS & (RULE_WRITE | 13'd7);
     CHANNEL_FOLLOW_STATE:                         channel_rule = WITH_ENCODERS & RULE_READ;
-    default:                                      channel_rule = 13'd0;
+    8'b????????:                                  channel_rule = 13'd0;
   endcase
 endfunction
 
@@ -69,7 +70,7 @@ function [12:0] axis_rule(input [2:0] address);
     AXIS_LOST_STEPS:  axis_rule = RULE_READ;
     AXIS_ENABLE:      axis_rule = RULE_WRITE | 13'd0;
     AXIS_INPUTS:      axis_rule = WITH_INPUTS & (RULE_WRITE | RULE_QUIET | 13'd6);
-    default:          axis_rule = 13'd0;
+    3'b???:           axis_rule = 13'd0;
   endcase
 endfunction
 
@@ -81,6 +82,6 @@ function [12:0] encoder_rule(input [2:0] address);
     ENCODER_ERROR:    encoder_rule = WITH_ENCODERS & RULE_READ;
     ENCODER_GREATEST: encoder_rule = WITH_ENCODERS & RULE_READ;
     ENCODER_INDEX:    encoder_rule = WITH_ENCODERS & RULE_READ;
-    default:          encoder_rule = 13'd0;
+    3'b???:           encoder_rule = 13'd0;
   endcase
 endfunction

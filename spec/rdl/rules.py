@@ -79,16 +79,18 @@ def verilog(source: Source) -> str:
         "// SPDX-License-Identifier: MIT",
         f"// {GENERATED}",
         "// What each register takes, to be included in passo_rules. It is flags, and in its lower 5 bits",
-        "// the highest bit that a word may have; without a flag there is no register.",
+        "// the highest bit that a word may have; without a flag there is no register. No `default`:",
+        "// yosys would make a ROM of the table, with registers of its own for the address.",
         "",
         f"localparam [12:0] RULE_SHAPE = {_rule(_shape(source.core))};",
     ]
     for block in source.core.walk():
         name, bits = f"{block.name.lower()}_rule", block.address_bits
         rows = [(_case(address, of, bits), f"{name} = {_rule(of)};") for address, of in _rows(block)]
+        width = bits if block is source.core else min(bits, 8)
         read = "{4'd0, address}" if block is source.core else "address"
         lines += ["", f"function [12:0] {name}(input [{min(bits, 8) - 1}:0] address);", f"  casez ({read})"]
-        lines += [f"    {row}" for row in aligned([*rows, ("default:", f"{name} = 13'd0;")])]
+        lines += [f"    {row}" for row in aligned([*rows, (f"{width}'b{'?' * width}:", f"{name} = 13'd0;")])]
         lines += ["  endcase", "endfunction"]
     return "\n".join([*lines, ""])
 

