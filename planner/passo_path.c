@@ -53,6 +53,7 @@ static enum passo_plan_error add(struct passo_path_planner *path, const struct p
 	path->begins = path->rest;
 	path->feed = move->feed;
 	path->off = 0;
+	path->settled = path->final;
 	passo_path_pace_line(path, item);
 	passo_path_limit(path, path->added);
 	if (!item->rest)
@@ -90,7 +91,10 @@ static bool merge(struct passo_path_planner *path, const struct passo_path_move 
 	path->at = path->before;
 	const uint64_t off = path->off + passo_path_off(path, move->target, &at);
 	if (off < path->tolerance) {
+		const uint32_t final = path->final;
+
 		path->added--;
+		path->final = path->settled; /* the longer line may be faster */
 		path->rest = path->begins;
 		path->dwell = passo_path_item(path, path->added)->dwell;
 		if (add(path, move) == PASSO_PLAN_OK) {
@@ -98,6 +102,7 @@ static bool merge(struct passo_path_planner *path, const struct passo_path_move 
 			return true;
 		}
 		path->added++;
+		path->final = final;
 	}
 	path->at = at;
 	path->rest = false;
@@ -171,7 +176,8 @@ static uint64_t reach_of(const struct passo_path_planner *path, uint32_t index)
 	const struct passo_path_item *item = passo_path_item(path, index);
 	const uint64_t end = passo_path_end_square(path, index), length = (uint64_t)item->substeps << 32;
 	const uint64_t flat = passo_path_smaller(
-	    passo_path_flat(path, index + 1, end) + passo_path_flat(path, index, item->corner), length);
+	    passo_path_flat(path, index + 1, index, end) + passo_path_flat(path, index, index, item->corner),
+	    length);
 	const uint64_t most =
 	    end + passo_path_gain(passo_path_slope(item, false, end, length - flat), length - flat);
 	const uint64_t reach = passo_path_smaller(item->corner, most);

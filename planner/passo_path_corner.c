@@ -38,31 +38,46 @@ static uint64_t soft_corner(
 	return velocity;
 }
 
-/* Mean curvature of a line, Q15.48 per substep, that makes half of a turn (Q1.30). The turn takes place over
- * a length (both UQ32.16 substeps) on either side of the corner: if that is much shorter than the line, it
- * belongs to the corner alone. */
-static int64_t curvature_of(int64_t turn, uint64_t over, uint64_t length)
-{
-	if (over < length / 2)
-		return 0;
-	const uint64_t size =
-	    passo_mul_div(passo_path_size(turn), UINT64_C(1) << 33, passo_path_larger(over, length));
+/* Where the direction changes at a corner: so long before it and behind it, UQ32.16 substeps; no farther than
+ * the middle of the lines, and not on one side alone. docs/path.md. */
+struct rounding {
+	uint64_t before, behind;
+};
 
-	return turn < 0 ? -(int64_t)size : (int64_t)size;
+static struct rounding rounding_of(uint64_t arc, uint64_t before, uint64_t behind)
+{
+	before = passo_path_smaller(before / 2, arc);
+	behind = passo_path_smaller(behind / 2, arc);
+	return (struct rounding){
+	    passo_path_smaller(before, (arc + behind) / 2), passo_path_smaller(behind, (arc + before) / 2)};
 }
 
-/* Half of a turn is made by the line before the corner, whose curvature is complete then, and half by the one
- * behind it. */
-static void share_turn(struct passo_path_planner *path, const int32_t *unit, uint64_t length, uint64_t over)
+/* Adds the curvature of a corner, Q15.48 per substep, to a line; where the rounding ends before the middle
+ * of the line, it belongs to the corner alone. */
+static void bend_line(const struct passo_path_planner *path, const int64_t *curvature, const int32_t *unit,
+    uint64_t rounding, uint64_t length, struct passo_path_item *item)
 {
-	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
-		path->at.curvature[axis] +=
-		    curvature_of((int64_t)unit[axis] - path->at.direction[axis], over, path->at.length);
-	passo_path_add_curve(
-	    path, path->at.curvature, path->at.direction, passo_path_item(path, path->added - 1));
-	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
-		path->at.curvature[axis] =
-		    curvature_of((int64_t)unit[axis] - path->at.direction[axis], over, length);
+	if (rounding >= length / 2)
+		passo_path_add_curve(path, curvature, unit, item);
+}
+
+static void bend_lines(struct passo_path_planner *path, const int32_t *unit, uint64_t length,
+    const struct rounding *rounding, struct passo_path_item *item)
+{
+	const uint64_t over = passo_path_larger(rounding->before + rounding->behind, 1);
+	int64_t curvature[PASSO_AXES_MAX];
+
+	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
+		const int64_t turn = (int64_t)unit[axis] - path->at.direction[axis];
+		const int64_t size =
+		    (int64_t)passo_mul_div(passo_path_size(turn), UINT64_C(1) << 34, over);
+
+		curvature[axis] = turn < 0 ? -size : size;
+	}
+	struct passo_path_item *last = passo_path_item(path, path->added - 1);
+	last->curve = path->at.curve;
+	bend_line(path, curvature, path->at.direction, rounding->before, path->at.length, last);
+	bend_line(path, curvature, unit, rounding->behind, length, item);
 }
 
 #ifndef PASSO_WITHOUT_ROUNDING
@@ -76,22 +91,27 @@ static uint32_t part_of(
 	return (uint32_t)passo_path_smaller(part >> (PASSO_PATH_UNIT_BITS - 15), INT16_MAX);
 }
 
-/* Of the axis of which the lines beside a lone corner, at their slopes, and its rounding have the most. */
-static void find_rounding(const struct passo_path_planner *path, const int32_t *unit, uint64_t over,
-    uint64_t square, struct passo_path_item *item)
+/* Of the axis of which the lines beside a lone corner, at their slopes, and its rounding have the most. Where
+ * one of them is short, the other one leaves all that is needed there. */
+static void find_rounding(const struct passo_path_planner *path, const int32_t *unit, uint64_t length,
+    const struct rounding *rounding, uint64_t over, uint64_t square, struct passo_path_item *item)
 {
 	const uint64_t slope = passo_path_item(path, path->added - 1)->slope;
+	const bool before = rounding->before < path->at.length / 2, behind = rounding->behind < length / 2;
+	const uint32_t sides = before && behind ? 1 : 2;
 
-	item->turn = (uint32_t)(over >> PASSO_PATH_UNIT_BITS);
+	if (!before && !behind)
+		return;
+	item->turn = (uint32_t)((before ? rounding->before : rounding->behind) >> 16);
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
 		const uint64_t change = passo_path_size((int64_t)unit[axis] - path->at.direction[axis]);
 		if (change == 0)
 			continue;
 		const uint64_t bend = passo_mul_div(path->axis[axis].acceleration, over, change);
 		const uint32_t needed = (uint32_t)passo_mul_div(
-		    passo_path_smaller(square, bend), UINT32_C(1) << 15, passo_path_larger(bend, 1));
-		const uint32_t lost =
-		    part_of(path, slope, path->at.direction, axis) + part_of(path, item->slope, unit, axis);
+		    passo_path_smaller(square, bend), sides * INT16_MAX, passo_path_larger(bend, 1));
+		const uint32_t lost = sides * ((before ? part_of(path, slope, path->at.direction, axis) : 0)
+		    + (behind ? part_of(path, item->slope, unit, axis) : 0));
 
 		if (lost + needed > (uint32_t)item->lost + item->needed) {
 			item->lost = (uint16_t)lost;
@@ -112,16 +132,16 @@ uint64_t passo_path_limit_corner(
 		turn += (uint64_t)change[axis] * change[axis];
 	}
 	item->arc = turn < 4;
-	if (turn < 4) {
-		share_turn(path, path->at.direction, length, length);
+	if (turn < 4)
 		return PASSO_PATH_SQUARE_MAX;
-	}
-	const uint64_t rounded = half_arc(path, turn), mean = (path->at.length + length) / 2;
-	const uint64_t over = passo_path_smaller(rounded, mean) << (PASSO_PATH_UNIT_BITS - 16);
-	share_turn(path, unit, length, passo_path_smaller(rounded, mean));
+	const uint64_t arc = half_arc(path, turn);
+	const struct rounding rounding = rounding_of(arc, path->at.length, length);
+	const uint64_t both = rounding.before + rounding.behind;
+	const uint64_t over = passo_path_smaller(arc, both) << (PASSO_PATH_UNIT_BITS - 16);
 	uint64_t square = PASSO_PATH_SQUARE_MAX;
 
-	item->arc = mean < rounded;
+	bend_lines(path, unit, length, &rounding, item);
+	item->arc = both < arc;
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
 		const struct passo_path_scale *own = &path->axis[axis];
 
@@ -134,8 +154,8 @@ uint64_t passo_path_limit_corner(
 					((uint64_t)own->jump << PASSO_PATH_UNIT_BITS) / change[axis]));
 	}
 #ifndef PASSO_WITHOUT_ROUNDING
-	if (!path->unrounded && rounded < passo_path_smaller(path->at.length, length) / 2)
-		find_rounding(path, unit, over, square, item);
+	if (!path->unrounded)
+		find_rounding(path, unit, length, &rounding, over, square, item);
 #endif
 	if (passo_path_is_soft(path))
 		square = passo_path_smaller(

@@ -7,8 +7,8 @@
  * = 2 |k| / |u|, and one that the curve slows down the same downward. The acceleration along the path alone
  * keeps all limits as well.
  *
- * Each corner turns over a length, half of it before and half behind it; a line has the mean curvature of the
- * two at its ends.
+ * Each corner turns over a length before and behind it. Of the curvatures of the two at its ends a line has
+ * the greater one, upward and downward if they turn to different sides.
  */
 #include "passo_path_private.h"
 
@@ -50,12 +50,7 @@ void passo_path_add_curve(const struct passo_path_planner *path, const int64_t *
 {
 	struct passo_path_curve *curve = &item->curve;
 
-	uint64_t any = 0;
-
-	*curve = (struct passo_path_curve){.helps = 0};
-	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
-		any |= passo_path_size(curvature[axis]);
-	if (any == 0 || passo_path_shape(path) != PASSO_SHAPE_LINEAR)
+	if (passo_path_shape(path) != PASSO_SHAPE_LINEAR)
 		return;
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
 		const uint64_t share = passo_path_size(unit[axis]);
@@ -69,9 +64,9 @@ void passo_path_add_curve(const struct passo_path_planner *path, const int64_t *
 		const bool helps = (curvature[axis] < 0) == (unit[axis] < 0);
 
 		curve->slope[axis] = packed(slope);
-		curve->bend[axis] = packed(bend);
-		if (helps)
-			curve->helps |= (uint8_t)(1u << axis);
+		if (bend > unpacked(curve->bend[axis]))
+			curve->bend[axis] = packed(bend);
+		*(helps ? &curve->helps : &curve->hinders) |= (uint8_t)(1u << axis);
 	}
 }
 
@@ -94,10 +89,11 @@ static uint64_t less_slope(uint64_t most, uint64_t bend, uint64_t low, uint64_t 
 uint64_t passo_path_slope(const struct passo_path_item *item, bool up, uint64_t low, uint64_t length)
 {
 	const struct passo_path_curve *curve = &item->curve;
+	const uint32_t limited = up ? curve->helps : curve->hinders;
 	uint64_t slope = item->slope;
 
 	for (uint32_t axis = 0; axis < PASSO_PATH_AXES_MAX; axis++) {
-		if (curve->bend[axis] > 0 && (curve->helps >> axis & 1u) == up)
+		if (curve->bend[axis] > 0 && (limited >> axis & 1u) > 0)
 			slope = passo_path_smaller(slope, less_slope(unpacked(curve->slope[axis]),
 							      unpacked(curve->bend[axis]), low, length));
 	}

@@ -153,13 +153,9 @@ enum passo_plan_error passo_path_measure(
 		return PASSO_PLAN_TOO_LONG;
 
 	limit_line(path, unit, move->feed, item);
-	if (path->rest) {
-		for (uint32_t axis = 0; axis < path->machine.axes; axis++)
-			path->at.curvature[axis] = 0;
-	} else {
+	if (!path->rest)
 		item->bend = passo_path_limit_corner(path, unit, length, item);
-	}
-	passo_path_add_curve(path, path->at.curvature, unit, item);
+	path->at.curve = item->curve;
 	item->substeps = (uint32_t)substeps;
 	path->at.carry =
 	    stretched ? 0 : (int32_t)(path->at.carry + (int64_t)length - (int64_t)(substeps << 16));

@@ -141,7 +141,7 @@ static inline uint64_t passo_path_square_of(uint64_t velocity)
  * at ticks. */
 uint64_t passo_path_slope(const struct passo_path_item *item, bool up, uint64_t low, uint64_t length);
 
-/* Sets the curve of an item: its unit vector, and its mean curvature, Q15.48 per substep. */
+/* Adds a curvature, Q15.48 per substep, to the curve of an item with this unit vector. */
 void passo_path_add_curve(const struct passo_path_planner *path, const int64_t *curvature,
     const int32_t *unit, struct passo_path_item *item);
 
@@ -186,16 +186,18 @@ bool passo_path_rests_after(const struct passo_path_planner *path, uint32_t inde
 uint64_t passo_path_end_square(const struct passo_path_planner *path, uint32_t index);
 bool passo_path_is_settled(const struct passo_path_planner *path, uint32_t index);
 
-/* Length on either side of the corner at the start of an item over which the path keeps a square, so that
- * the rounding of a lone corner has what it needs of the acceleration. */
+/* Length on either side of the corner at the start of an item, of which `line` is one, over which the path
+ * keeps a square, so that the rounding of a lone corner has what it needs of the acceleration. */
 #ifdef PASSO_WITHOUT_ROUNDING
-static inline uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, uint64_t square)
+static inline uint64_t passo_path_flat(
+    const struct passo_path_planner *path, uint32_t index, uint32_t line, uint64_t square)
 {
-	(void)path, (void)index, (void)square;
+	(void)path, (void)index, (void)line, (void)square;
 	return 0;
 }
 #else
-uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, uint64_t square);
+uint64_t passo_path_flat(
+    const struct passo_path_planner *path, uint32_t index, uint32_t line, uint64_t square);
 #endif
 
 /* Updates `reach` after a line has been added. */

@@ -34,12 +34,15 @@ static unsigned put(struct passo_path_part *parts, unsigned count, enum passo_pa
 }
 
 #ifndef PASSO_WITHOUT_ROUNDING
-uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, uint64_t square)
+uint64_t passo_path_flat(
+    const struct passo_path_planner *path, uint32_t index, uint32_t line, uint64_t square)
 {
 	const struct passo_path_item *item = passo_path_item(path, index);
 
 	if (index >= path->added || item->rest || item->turn == 0
 	    || passo_path_shape(path) != PASSO_SHAPE_LINEAR)
+		return 0;
+	if (passo_path_item(path, line)->substeps / 2 < item->turn) /* the curve of a short line has it */
 		return 0;
 	/* what both sides leave, signed, is at least what the corner needs: a right angle has it */
 	const uint64_t needed =
@@ -89,8 +92,8 @@ unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index,
 {
 	const uint64_t passed = ((uint64_t)passo_path_item(path, index)->substeps << 32) - left;
 	const uint64_t end = passo_path_end_square(path, index), slope = passo_path_item(path, index)->slope;
-	const uint64_t behind = passo_path_smaller(passo_path_flat(path, index + 1, end), left);
-	uint64_t before = passo_path_flat(path, index, square);
+	const uint64_t behind = passo_path_smaller(passo_path_flat(path, index + 1, index, end), left);
+	uint64_t before = passo_path_flat(path, index, index, square);
 
 	before = passo_path_smaller(before > passed ? before - passed : 0, left - behind);
 	unsigned count = put(parts, 0, PASSO_PATH_FLAT, before, square, slope);

@@ -32,7 +32,7 @@ struct passo_path_descent {
 struct passo_path_curve {
 	uint32_t slope[PASSO_PATH_AXES_MAX]; /* of the square, where it is 0 */
 	uint32_t bend[PASSO_PATH_AXES_MAX]; /* UQ16.48 per substep: what the square takes of it; 0: nothing */
-	uint8_t helps;                      /* bit i set: on the way up */
+	uint8_t helps, hinders;             /* bit i set: on the way up; on the way down */
 };
 
 /* A line of the path, private. Squares are those of velocities, UQ0.64 (substeps per clock)^2. */
@@ -80,7 +80,7 @@ struct passo_path_place {
 	int64_t target[PASSO_PATH_AXES_MAX]; /* Q31.32 mm */
 	int64_t steps[PASSO_PATH_AXES_MAX];
 	int32_t direction[PASSO_PATH_AXES_MAX]; /* unit vector of the last line, Q1.30 */
-	int64_t curvature[PASSO_PATH_AXES_MAX]; /* Q15.48 per substep: its mean, by the corner at its start */
+	struct passo_path_curve curve;          /* of the last line, by the corner at its start */
 	uint64_t length;                        /* of the last line, UQ32.16 substeps */
 	int32_t carry;        /* Q16: substeps that rounding has withheld from the lines so far */
 	uint32_t line_credit; /* clocks that the last lines have left, see passo_path_pace.c */
@@ -103,6 +103,7 @@ struct passo_path_planner {
 	uint64_t off;  /* the same: by how much the last line is off those that it replaces */
 	uint64_t feed; /* of the last line, as it was given */
 	bool begins;   /* the path rested before the last line */
+	uint32_t settled; /* `final` before the last line */
 	uint32_t substeps_per_mm;
 	uint32_t dwell; /* ticks before the next line */
 	bool rest;      /* before the next line */
