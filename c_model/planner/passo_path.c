@@ -175,11 +175,11 @@ static uint64_t reach_of(const struct passo_path_planner *path, uint32_t index)
 {
 	const struct passo_path_item *item = passo_path_item(path, index);
 	const uint64_t end = passo_path_end_square(path, index), length = (uint64_t)item->substeps << 32;
-	const uint64_t flat = passo_path_smaller(
-	    passo_path_flat(path, index + 1, index, end) + passo_path_flat(path, index, index, item->corner),
-	    length);
-	const uint64_t most =
-	    end + passo_path_gain(passo_path_slope(item, false, end, length - flat), length - flat);
+	const uint64_t behind = passo_path_flat(path, index + 1, index, end);
+	const uint64_t flat =
+	    passo_path_smaller(behind + passo_path_flat(path, index, index, item->corner), length);
+	uint64_t slope;
+	const uint64_t most = passo_path_before(item, end, length - flat, behind, &slope);
 	const uint64_t reach = passo_path_smaller(item->corner, most);
 
 	/* what was possible with fewer lines still is */

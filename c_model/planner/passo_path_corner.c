@@ -52,19 +52,13 @@ static struct rounding rounding_of(uint64_t arc, uint64_t before, uint64_t behin
 	    passo_path_smaller(before, (arc + behind) / 2), passo_path_smaller(behind, (arc + before) / 2)};
 }
 
-/* Adds the curvature of a corner, Q15.48 per substep, to a line; where the rounding ends before the middle
- * of the line, it belongs to the corner alone. */
-static void bend_line(const struct passo_path_planner *path, const int64_t *curvature, const int32_t *unit,
-    uint64_t rounding, uint64_t length, struct passo_path_item *item)
-{
-	if (rounding >= length / 2)
-		passo_path_add_curve(path, curvature, unit, item);
-}
-
-static void bend_lines(struct passo_path_planner *path, const int32_t *unit, uint64_t length,
+/* The halves of the lines beside a corner; where the rounding ends before the middle of a line, it belongs to
+ * the corner alone. */
+static void bend_lines(const struct passo_path_planner *path, const int32_t *unit, uint64_t length,
     const struct rounding *rounding, struct passo_path_item *item)
 {
 	const uint64_t over = passo_path_larger(rounding->before + rounding->behind, 1);
+	struct passo_path_item *last = passo_path_item(path, path->added - 1);
 	int64_t curvature[PASSO_AXES_MAX];
 
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
@@ -74,10 +68,10 @@ static void bend_lines(struct passo_path_planner *path, const int32_t *unit, uin
 
 		curvature[axis] = turn < 0 ? -size : size;
 	}
-	struct passo_path_item *last = passo_path_item(path, path->added - 1);
-	last->curve = path->at.curve;
-	bend_line(path, curvature, path->at.direction, rounding->before, path->at.length, last);
-	bend_line(path, curvature, unit, rounding->behind, length, item);
+	if (rounding->before >= path->at.length / 2)
+		passo_path_bend(path, curvature, path->at.direction, 1, last);
+	if (rounding->behind >= length / 2)
+		passo_path_bend(path, curvature, unit, 0, item);
 }
 
 #ifndef PASSO_WITHOUT_ROUNDING
@@ -132,6 +126,7 @@ uint64_t passo_path_limit_corner(
 		turn += (uint64_t)change[axis] * change[axis];
 	}
 	item->arc = turn < 4;
+	passo_path_item(path, path->added - 1)->curve.halves &= 1u; /* the end of a merged line was another */
 	if (turn < 4)
 		return PASSO_PATH_SQUARE_MAX;
 	const uint64_t arc = half_arc(path, turn);

@@ -110,13 +110,14 @@ static struct ahead look_ahead(
 		if (index == path->planned)
 			passed -= (uint64_t)path->offset;
 		const uint64_t beyond = passed > length ? passed - length : 0;
-		const uint64_t slope = passo_path_slope(item, false, end, beyond);
+		uint64_t slope;
+		const uint64_t before = passo_path_before(item, end, beyond, 0, &slope);
 
 		ahead.open = ahead.open || !passo_path_is_settled(path, index);
 		ahead.slope = passo_path_smaller(ahead.slope, slope);
 		ahead.square = passo_path_smaller(ahead.square, item->top);
 		if (beyond > 0) {
-			ahead.square = passo_path_smaller(ahead.square, end + passo_path_gain(slope, beyond));
+			ahead.square = passo_path_smaller(ahead.square, before);
 			break;
 		}
 		if (passo_path_rests_after(path, index)) {
@@ -127,6 +128,27 @@ static struct ahead look_ahead(
 		ahead.square = passo_path_smaller(ahead.square, end);
 	}
 	return ahead;
+}
+
+/* The steepest that a ramp up over a length may be in all curves that it passes. */
+static uint64_t slope_up(const struct passo_path_planner *path, uint64_t length)
+{
+	const uint64_t from = passo_path_square_of(path->velocity);
+	uint64_t passed = 0, slope = UINT64_MAX;
+
+	for (uint32_t index = path->planned; passed < length; index++) {
+		const struct passo_path_item *item = passo_path_item(path, index);
+
+		passed += (uint64_t)item->substeps << 32;
+		if (index == path->planned)
+			passed -= (uint64_t)path->offset;
+		const uint64_t over = passo_path_smaller(passed, length);
+		for (unsigned half = 0; half < 2; half++)
+			slope = passo_path_smaller(slope, passo_path_slope(item, half, true, from, over));
+		if (passo_path_rests_after(path, index))
+			break;
+	}
+	return slope;
 }
 
 /* Whether a ramp down stays below all that it passes. */
@@ -204,6 +226,9 @@ static struct passo_path_aim calm(
 			    passo_mul_div(ahead.rest, units, ticks + next));
 			to = passo_path_smaller(to, passo_path_change(path, ahead.slope, next));
 		}
+		const uint64_t steepest = slope_up(path, passo_path_length_in(path, from + to, ticks));
+
+		ahead.slope = passo_path_smaller(ahead.slope, steepest);
 		to = passo_path_smaller(to, from + passo_path_change(path, ahead.slope, ticks));
 		to = passo_path_larger(to, from);
 	}

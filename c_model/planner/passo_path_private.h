@@ -42,7 +42,7 @@ struct passo_path_part {
 };
 
 /* Most parts of a line. */
-#define PASSO_PATH_PARTS 5u
+#define PASSO_PATH_PARTS 8u
 
 /* What the next ramp aims at. */
 struct passo_path_aim {
@@ -136,14 +136,20 @@ static inline uint64_t passo_path_square_of(uint64_t velocity)
 	return velocity * velocity;
 }
 
-/* Change of the square per substep within an item that the axes allow, over a length (UQ32.32 substeps) from
+/* Change of the square per substep within a half of an item that the axes allow, over a length (UQ32.32 substeps) from
  * its lower end. Deceleration is planned a little below the limit, so that it can make up for ramps that end
  * at ticks. */
-uint64_t passo_path_slope(const struct passo_path_item *item, bool up, uint64_t low, uint64_t length);
+uint64_t passo_path_slope(
+    const struct passo_path_item *item, unsigned half, bool up, uint64_t low, uint64_t length);
 
-/* Adds a curvature, Q15.48 per substep, to the curve of an item with this unit vector. */
-void passo_path_add_curve(const struct passo_path_planner *path, const int64_t *curvature,
-    const int32_t *unit, struct passo_path_item *item);
+/* The highest square, within an item, from which it falls to the one at its end over a length that ends so far
+ * before that; and the slope there, at least. */
+uint64_t passo_path_before(
+    const struct passo_path_item *item, uint64_t end, uint64_t length, uint64_t behind, uint64_t *slope);
+
+/* Sets the curvature, Q15.48 per substep, of a half of an item with this unit vector. */
+void passo_path_bend(const struct passo_path_planner *path, const int64_t *curvature, const int32_t *unit,
+    unsigned half, struct passo_path_item *item);
 
 /* Change of the square over a length (UQ32.32 substeps); saturates. */
 uint64_t passo_path_gain(uint64_t slope, uint64_t length);

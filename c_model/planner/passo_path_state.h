@@ -31,8 +31,10 @@ struct passo_path_descent {
 /* What limits the slope in a curve, private; see passo_path_curve.c. 26 bits and an exponent of 6. */
 struct passo_path_curve {
 	uint32_t slope[PASSO_PATH_AXES_MAX]; /* of the square, where it is 0 */
-	uint32_t bend[PASSO_PATH_AXES_MAX]; /* UQ16.48 per substep: what the square takes of it; 0: nothing */
-	uint8_t helps, hinders;             /* bit i set: on the way up; on the way down */
+	/* of both halves: */
+	uint32_t bend[2][PASSO_PATH_AXES_MAX]; /* UQ16.48 per substep: what the square takes of it */
+	uint8_t helps[2];                      /* bit i set: on the way up */
+	uint8_t halves;                        /* bit i set: this one is bent */
 };
 
 /* A line of the path, private. Squares are those of velocities, UQ0.64 (substeps per clock)^2. */
@@ -80,7 +82,6 @@ struct passo_path_place {
 	int64_t target[PASSO_PATH_AXES_MAX]; /* Q31.32 mm */
 	int64_t steps[PASSO_PATH_AXES_MAX];
 	int32_t direction[PASSO_PATH_AXES_MAX]; /* unit vector of the last line, Q1.30 */
-	struct passo_path_curve curve;          /* of the last line, by the corner at its start */
 	uint64_t length;                        /* of the last line, UQ32.16 substeps */
 	int32_t carry;        /* Q16: substeps that rounding has withheld from the lines so far */
 	uint32_t line_credit; /* clocks that the last lines have left, see passo_path_pace.c */
