@@ -68,6 +68,7 @@ static void bend_lines(const struct passo_path_planner *path, const int32_t *uni
 
 		curvature[axis] = turn < 0 ? -size : size;
 	}
+	last->curve = path->at.curve; /* not that of a line which this one replaces */
 	if (rounding->before >= path->at.length / 2)
 		passo_path_bend(path, curvature, path->at.direction, 1, last);
 	if (rounding->behind >= length / 2)
@@ -126,9 +127,10 @@ uint64_t passo_path_limit_corner(
 		turn += (uint64_t)change[axis] * change[axis];
 	}
 	item->arc = turn < 4;
-	passo_path_item(path, path->added - 1)->curve.halves &= 1u; /* the end of a merged line was another */
-	if (turn < 4)
+	if (turn < 4) {
+		bend_lines(path, unit, length, &(struct rounding){0, 0}, item);
 		return PASSO_PATH_SQUARE_MAX;
+	}
 	const uint64_t arc = half_arc(path, turn);
 	const struct rounding rounding = rounding_of(arc, path->at.length, length);
 	const uint64_t both = rounding.before + rounding.behind;

@@ -8,7 +8,7 @@
  * keeps all limits as well.
  *
  * Each corner turns over a length before and behind it, so each half of a line has the curvature of the corner
- * at its end.
+ * at its end. An image without room has one for both, the greater one.
  */
 #include "passo_path_private.h"
 
@@ -52,12 +52,11 @@ void passo_path_bend(const struct passo_path_planner *path, const int64_t *curva
 
 	if (passo_path_shape(path) != PASSO_SHAPE_LINEAR)
 		return;
-	curve->halves |= (uint8_t)(1u << half);
-	curve->helps[half] = 0;
+	curve->halved = !path->unrounded;
+	half = passo_path_halves(item) > 1 ? half : 0;
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
 		const uint64_t share = passo_path_size(unit[axis]);
 
-		curve->bend[half][axis] = 0;
 		if (share < SHARE_MIN)
 			continue;
 		const uint64_t slope =
@@ -67,9 +66,9 @@ void passo_path_bend(const struct passo_path_planner *path, const int64_t *curva
 		const bool helps = (curvature[axis] < 0) == (unit[axis] < 0);
 
 		curve->slope[axis] = packed(slope);
-		curve->bend[half][axis] = packed(bend);
-		if (helps)
-			curve->helps[half] |= (uint8_t)(1u << axis);
+		if (bend > unpacked(curve->bend[half][axis]))
+			curve->bend[half][axis] = packed(bend);
+		(helps ? curve->helps : curve->hinders)[half] |= (uint8_t)(1u << axis);
 	}
 }
 
@@ -93,12 +92,13 @@ uint64_t passo_path_slope(
     const struct passo_path_item *item, unsigned half, bool up, uint64_t low, uint64_t length)
 {
 	const struct passo_path_curve *curve = &item->curve;
+	const uint32_t limited = up ? curve->helps[half] : curve->hinders[half];
 	uint64_t slope = item->slope;
 
-	for (uint32_t axis = 0; axis < PASSO_PATH_AXES_MAX && (curve->halves >> half & 1u) > 0; axis++) {
+	for (uint32_t axis = 0; axis < PASSO_PATH_AXES_MAX; axis++) {
 		const uint32_t bend = curve->bend[half][axis];
 
-		if (bend > 0 && (curve->helps[half] >> axis & 1u) == up)
+		if (bend > 0 && (limited >> axis & 1u) > 0)
 			slope = passo_path_smaller(
 			    slope, less_slope(unpacked(curve->slope[axis]), unpacked(bend), low, length));
 	}
@@ -109,10 +109,10 @@ uint64_t passo_path_slope(
 uint64_t passo_path_before(
     const struct passo_path_item *item, uint64_t end, uint64_t length, uint64_t behind, uint64_t *slope)
 {
+	const unsigned halves = passo_path_halves(item);
 	const uint64_t half = (uint64_t)item->substeps << 31;
-	const uint64_t second =
-	    item->curve.halves > 0 ? passo_path_smaller(less(half, behind), length) : length;
-	const uint64_t slower = passo_path_slope(item, 1, false, end, second);
+	const uint64_t second = halves > 1 ? passo_path_smaller(less(half, behind), length) : length;
+	const uint64_t slower = passo_path_slope(item, halves - 1, false, end, second);
 	uint64_t square = end + passo_path_gain(slower, second);
 
 	*slope = slower;

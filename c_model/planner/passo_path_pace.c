@@ -143,7 +143,7 @@ static uint64_t slope_up(const struct passo_path_planner *path, uint64_t length)
 		if (index == path->planned)
 			passed -= (uint64_t)path->offset;
 		const uint64_t over = passo_path_smaller(passed, length);
-		for (unsigned half = 0; half < 2; half++)
+		for (unsigned half = 0; half < passo_path_halves(item); half++)
 			slope = passo_path_smaller(slope, passo_path_slope(item, half, true, from, over));
 		if (passo_path_rests_after(path, index))
 			break;

@@ -147,7 +147,13 @@ uint64_t passo_path_slope(
 uint64_t passo_path_before(
     const struct passo_path_item *item, uint64_t end, uint64_t length, uint64_t behind, uint64_t *slope);
 
-/* Sets the curvature, Q15.48 per substep, of a half of an item with this unit vector. */
+/* In how many parts the curve of an item is. */
+static inline unsigned passo_path_halves(const struct passo_path_item *item)
+{
+	return PASSO_PATH_HALVES > 1 && item->curve.halved ? 2 : 1;
+}
+
+/* Adds a curvature, Q15.48 per substep, to a half of an item with this unit vector. */
 void passo_path_bend(const struct passo_path_planner *path, const int64_t *curvature, const int32_t *unit,
     unsigned half, struct passo_path_item *item);
 

@@ -95,7 +95,7 @@ static unsigned middle_parts(const struct passo_path_planner *path, uint32_t ind
 
 	if (level && !passo_path_is_settled(path, index))
 		top = passo_path_smaller(top, passo_path_larger(end, square));
-	if (item->curve.halves > 0 && left > second) {
+	if (passo_path_halves(item) > 1 && left > second) {
 		const uint64_t middle = passo_path_before(item, end, second, behind, &slope);
 
 		count = half_parts(item, 0, left - second, square, top,
@@ -103,7 +103,10 @@ static unsigned middle_parts(const struct passo_path_planner *path, uint32_t ind
 		square = parts[count - 1].square;
 		left = second;
 	}
-	return left > 0 ? count + half_parts(item, 1, left, square, top, end, parts + count) : count;
+	if (left > 0)
+		count += half_parts(
+		    item, passo_path_halves(item) - 1, left, square, top, end, parts + count);
+	return count;
 }
 
 unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index, uint64_t left,

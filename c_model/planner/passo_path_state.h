@@ -12,6 +12,13 @@
 #define PASSO_WITHOUT_JERK_PATHS
 #endif
 
+/* The halves of a line, each with the curvature of the corner at its end. */
+#ifdef PASSO_WITHOUT_ROUNDING
+#define PASSO_PATH_HALVES 1u
+#else
+#define PASSO_PATH_HALVES 2u
+#endif
+
 /* Axes of a path, at most; an image for fewer saves RAM. */
 #ifndef PASSO_PATH_AXES_MAX
 #define PASSO_PATH_AXES_MAX PASSO_AXES_MAX
@@ -31,10 +38,11 @@ struct passo_path_descent {
 /* What limits the slope in a curve, private; see passo_path_curve.c. 26 bits and an exponent of 6. */
 struct passo_path_curve {
 	uint32_t slope[PASSO_PATH_AXES_MAX]; /* of the square, where it is 0 */
-	/* of both halves: */
-	uint32_t bend[2][PASSO_PATH_AXES_MAX]; /* UQ16.48 per substep: what the square takes of it */
-	uint8_t helps[2];                      /* bit i set: on the way up */
-	uint8_t halves;                        /* bit i set: this one is bent */
+	/* of each half, or of the whole line: */
+	uint32_t bend[PASSO_PATH_HALVES][PASSO_PATH_AXES_MAX]; /* UQ16.48 per substep: the square takes of it */
+	uint8_t helps[PASSO_PATH_HALVES];                      /* bit i set: on the way up */
+	uint8_t hinders[PASSO_PATH_HALVES];                    /* on the way down */
+	bool halved;                                           /* each half has its own */
 };
 
 /* A line of the path, private. Squares are those of velocities, UQ0.64 (substeps per clock)^2. */
@@ -82,6 +90,7 @@ struct passo_path_place {
 	int64_t target[PASSO_PATH_AXES_MAX]; /* Q31.32 mm */
 	int64_t steps[PASSO_PATH_AXES_MAX];
 	int32_t direction[PASSO_PATH_AXES_MAX]; /* unit vector of the last line, Q1.30 */
+	struct passo_path_curve curve;          /* of the last line, by the corner at its start */
 	uint64_t length;                        /* of the last line, UQ32.16 substeps */
 	int32_t carry;        /* Q16: substeps that rounding has withheld from the lines so far */
 	uint32_t line_credit; /* clocks that the last lines have left, see passo_path_pace.c */
