@@ -2,6 +2,8 @@
  * The corner between two lines: the highest speed there, and what its turn takes of the acceleration beside
  * it. docs/path.md has the rules.
  */
+#include <stddef.h>
+
 #include "passo_path_private.h"
 
 /* Of the arc with the deviation from a corner whose directions differ by `turn` (UQ2.60, squared): half its
@@ -15,47 +17,18 @@ static uint64_t half_arc(const struct passo_path_planner *path, uint64_t turn)
 	return passo_mul_div(path->deviation, 2 * sine * (PASSO_PATH_ONE + sine) / cosine, PASSO_PATH_ONE);
 }
 
-/* Highest velocity (UQ0.32) on an arc that makes this turn over this length (UQ.30 substeps), by the jerk of
- * the weakest axis: its cube is the jerk times the square of the radius. */
-static uint64_t soft_corner(
-    const struct passo_path_planner *path, const uint32_t *change, uint64_t turn, uint64_t over)
-{
-	const uint64_t radius = passo_path_smaller(
-	    passo_mul_div(over, 256, passo_path_larger(passo_isqrt64(turn), 1)), UINT32_MAX); /* UQ.8 */
-	uint64_t jerk = PASSO_PATH_SQUARE_MAX, velocity = 0;
-
-	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
-		if (change[axis] > 0)
-			jerk = passo_path_smaller(jerk, path->axis[axis].jerk);
-	}
-	const struct passo_u128 cube = passo_multiply(jerk, radius * radius);
-	for (uint64_t bit = PASSO_PATH_SPEED_MAX / 2; bit > 0; bit /= 2) {
-		const uint64_t tried = velocity | bit;
-
-		if (!passo_u128_less(cube, passo_multiply(tried * tried, tried)))
-			velocity = tried;
-	}
-	return velocity;
-}
-
-/* Where the direction changes at a corner: so long before it and behind it, UQ32.16 substeps; no farther than
- * the middle of the lines, and not on one side alone. docs/path.md. */
-struct rounding {
-	uint64_t before, behind;
-};
-
-static struct rounding rounding_of(uint64_t arc, uint64_t before, uint64_t behind)
+static struct passo_path_rounding rounding_of(uint64_t arc, uint64_t before, uint64_t behind)
 {
 	before = passo_path_smaller(before / 2, arc);
 	behind = passo_path_smaller(behind / 2, arc);
-	return (struct rounding){
+	return (struct passo_path_rounding){
 	    passo_path_smaller(before, (arc + behind) / 2), passo_path_smaller(behind, (arc + before) / 2)};
 }
 
 /* The halves of the lines beside a corner; where the rounding ends before the middle of a line, it belongs to
  * the corner alone. */
 static void bend_lines(const struct passo_path_planner *path, const int32_t *unit, uint64_t length,
-    const struct rounding *rounding, struct passo_path_item *item)
+    const struct passo_path_rounding *rounding, struct passo_path_item *item)
 {
 	const uint64_t over = passo_path_larger(rounding->before + rounding->behind, 1);
 	struct passo_path_item *last = passo_path_item(path, path->added - 1);
@@ -68,7 +41,6 @@ static void bend_lines(const struct passo_path_planner *path, const int32_t *uni
 
 		curvature[axis] = turn < 0 ? -size : size;
 	}
-	last->curve = path->at.curve; /* not that of a line which this one replaces */
 	if (rounding->before >= path->at.length / 2)
 		passo_path_bend(path, curvature, path->at.direction, 1, last);
 	if (rounding->behind >= length / 2)
@@ -89,7 +61,7 @@ static uint32_t part_of(
 /* Of the axis of which the lines beside a lone corner, at their slopes, and its rounding have the most. Where
  * one of them is short, the other one leaves all that is needed there. */
 static void find_rounding(const struct passo_path_planner *path, const int32_t *unit, uint64_t length,
-    const struct rounding *rounding, uint64_t over, uint64_t square, struct passo_path_item *item)
+    const struct passo_path_rounding *rounding, uint64_t over, uint64_t square, struct passo_path_item *item)
 {
 	const uint64_t slope = passo_path_item(path, path->added - 1)->slope;
 	const bool before = rounding->before < path->at.length / 2, behind = rounding->behind < length / 2;
@@ -116,46 +88,59 @@ static void find_rounding(const struct passo_path_planner *path, const int32_t *
 }
 #endif
 
-uint64_t passo_path_limit_corner(
-    struct passo_path_planner *path, const int32_t *unit, uint64_t length, struct passo_path_item *item)
+uint64_t passo_path_corner_square(
+    const struct passo_path_planner *path, const struct passo_path_corner *corner, const uint64_t *left)
 {
-	uint32_t change[PASSO_AXES_MAX];
-	uint64_t turn = 0;
-
-	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
-		change[axis] = (uint32_t)passo_path_size((int64_t)unit[axis] - path->at.direction[axis]);
-		turn += (uint64_t)change[axis] * change[axis];
-	}
-	item->arc = turn < 4;
-	if (turn < 4) {
-		bend_lines(path, unit, length, &(struct rounding){0, 0}, item);
-		return PASSO_PATH_SQUARE_MAX;
-	}
-	const uint64_t arc = half_arc(path, turn);
-	const struct rounding rounding = rounding_of(arc, path->at.length, length);
-	const uint64_t both = rounding.before + rounding.behind;
-	const uint64_t over = passo_path_smaller(arc, both) << (PASSO_PATH_UNIT_BITS - 16);
 	uint64_t square = PASSO_PATH_SQUARE_MAX;
 
-	bend_lines(path, unit, length, &rounding, item);
-	item->arc = both < arc;
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
 		const struct passo_path_scale *own = &path->axis[axis];
+		const uint32_t change = corner->change[axis];
 
-		if (change[axis] == 0)
+		if (change == 0)
 			continue;
-		square = passo_path_smaller(square, passo_mul_div(own->acceleration, over, change[axis]));
+		const uint64_t acceleration = left == NULL ? own->acceleration : left[axis];
+		square = passo_path_smaller(square, passo_mul_div(acceleration, corner->over, change));
 		if (own->jump > 0)
 			square = passo_path_smaller(
 			    square, passo_path_speed_square(
-					((uint64_t)own->jump << PASSO_PATH_UNIT_BITS) / change[axis]));
+					((uint64_t)own->jump << PASSO_PATH_UNIT_BITS) / change));
 	}
+	return square;
+}
+
+uint64_t passo_path_limit_corner(
+    struct passo_path_planner *path, const int32_t *unit, uint64_t length, struct passo_path_item *item)
+{
+	struct passo_path_corner corner = {.turn = 0};
+
+	passo_path_restore_start(passo_path_item(path, path->added - 1), &path->at);
+	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
+		const uint32_t change =
+		    (uint32_t)passo_path_size((int64_t)unit[axis] - path->at.direction[axis]);
+
+		corner.change[axis] = change;
+		corner.turn += (uint64_t)change * change;
+	}
+	item->arc = corner.turn < 4;
+	if (corner.turn < 4) {
+		bend_lines(path, unit, length, &corner.rounding, item);
+		return PASSO_PATH_SQUARE_MAX;
+	}
+	const uint64_t arc = half_arc(path, corner.turn);
+	corner.rounding = rounding_of(arc, path->at.length, length);
+	const uint64_t both = corner.rounding.before + corner.rounding.behind;
+	corner.over = passo_path_smaller(arc, both) << (PASSO_PATH_UNIT_BITS - 16);
+	corner.bends_before = corner.rounding.before >= path->at.length / 2;
+	corner.bends_behind = corner.rounding.behind >= length / 2;
+	bend_lines(path, unit, length, &corner.rounding, item);
+	item->arc = both < arc;
+	if (passo_path_shape(path) != PASSO_SHAPE_LINEAR)
+		return passo_path_shaped_corner(path, &corner, unit, item);
+	const uint64_t square = passo_path_corner_square(path, &corner, NULL);
 #ifndef PASSO_WITHOUT_ROUNDING
 	if (!path->unrounded)
-		find_rounding(path, unit, length, &rounding, over, square, item);
+		find_rounding(path, unit, length, &corner.rounding, corner.over, square, item);
 #endif
-	if (passo_path_is_soft(path))
-		square = passo_path_smaller(
-		    square, passo_path_speed_square(soft_corner(path, change, turn, over)));
 	return square;
 }

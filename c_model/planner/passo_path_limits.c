@@ -155,7 +155,7 @@ enum passo_plan_error passo_path_measure(
 	limit_line(path, unit, move->feed, item);
 	if (!path->rest)
 		item->bend = passo_path_limit_corner(path, unit, length, item);
-	path->at.curve = item->curve;
+	passo_path_keep_start(item, &path->at);
 	item->substeps = (uint32_t)substeps;
 	path->at.carry =
 	    stretched ? 0 : (int32_t)(path->at.carry + (int64_t)length - (int64_t)(substeps << 16));

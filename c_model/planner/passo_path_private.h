@@ -147,6 +147,31 @@ uint64_t passo_path_slope(
 uint64_t passo_path_before(
     const struct passo_path_item *item, uint64_t end, uint64_t length, uint64_t behind, uint64_t *slope);
 
+/* What a line has by the corner at its start; its end may become another one, with a longer line. */
+static inline void passo_path_keep_start(const struct passo_path_item *item, struct passo_path_place *at)
+{
+	at->curve = item->curve;
+#ifndef PASSO_LINEAR_PATHS
+	at->slope = item->slope;
+	at->eased = item->eased;
+#ifndef PASSO_WITHOUT_JERK_PATHS
+	at->jerk = item->jerk;
+#endif
+#endif
+}
+
+static inline void passo_path_restore_start(struct passo_path_item *item, const struct passo_path_place *at)
+{
+	item->curve = at->curve;
+#ifndef PASSO_LINEAR_PATHS
+	item->slope = at->slope;
+	item->eased = at->eased;
+#ifndef PASSO_WITHOUT_JERK_PATHS
+	item->jerk = at->jerk;
+#endif
+#endif
+}
+
 /* In how many parts the curve of an item is. */
 static inline unsigned passo_path_halves(const struct passo_path_item *item)
 {
@@ -167,6 +192,28 @@ uint64_t passo_path_change(const struct passo_path_planner *path, uint64_t slope
  * too short to be a line. */
 enum passo_plan_error passo_path_measure(
     struct passo_path_planner *path, const struct passo_path_move *move, struct passo_path_item *item);
+
+/* Where the direction changes at a corner: so long before it and behind it, UQ32.16 substeps; no farther than
+ * the middle of the lines, and not on one side alone. */
+struct passo_path_rounding {
+	uint64_t before, behind;
+};
+
+struct passo_path_corner {
+	uint32_t change[PASSO_AXES_MAX]; /* of the direction, Q1.30 */
+	uint64_t turn;                   /* the sum of their squares */
+	struct passo_path_rounding rounding;
+	uint64_t over;                   /* UQ.30 substeps, in which it turns at a constant speed */
+	bool bends_before, bends_behind; /* the lines are parts of a curve */
+};
+
+/* Highest square at a corner by what is left of the acceleration of each axis; null: all of it. */
+uint64_t passo_path_corner_square(
+    const struct passo_path_planner *path, const struct passo_path_corner *corner, const uint64_t *left);
+
+/* The same where ramps are shaped; the curved lines beside it leave what the corner needs. */
+uint64_t passo_path_shaped_corner(const struct passo_path_planner *path,
+    const struct passo_path_corner *corner, const int32_t *unit, struct passo_path_item *item);
 
 /* Square at the corner between the last line and this one. The change of direction of an axis takes place
  * over a certain length: half the sum of the two lines, if they stand for an arc, or the arc that deviates by

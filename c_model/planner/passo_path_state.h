@@ -70,6 +70,9 @@ struct passo_path_item {
 	uint16_t lost;   /* UQ1.15: what its axis has of its acceleration before and behind it, in all */
 	uint16_t needed; /* UQ1.15: what the rounding needs of that axis at the square `bend` */
 #endif
+#ifndef PASSO_LINEAR_PATHS
+	bool eased; /* in a curve: half of the slope is for the way along it */
+#endif
 #ifndef PASSO_WITHOUT_JERK_PATHS
 	uint64_t jerk; /* profile jerk: change of the velocity by the square of the time that it takes at
 	                  least, UQ0.80 substeps per clock^3 */
@@ -92,6 +95,10 @@ struct passo_path_place {
 	int32_t direction[PASSO_PATH_AXES_MAX]; /* unit vector of the last line, Q1.30 */
 	struct passo_path_curve curve;          /* of the last line, by the corner at its start */
 	uint64_t length;                        /* of the last line, UQ32.16 substeps */
+#ifndef PASSO_LINEAR_PATHS
+	uint64_t slope, jerk; /* of the last line, by the corner at its start */
+	bool eased;           /* the same */
+#endif
 	int32_t carry;        /* Q16: substeps that rounding has withheld from the lines so far */
 	uint32_t line_credit; /* clocks that the last lines have left, see passo_path_pace.c */
 };
