@@ -52,7 +52,7 @@ static enum passo_plan_error add(struct passo_path_planner *path, const struct p
 	path->before = before;
 	path->begins = path->rest;
 	path->feed = move->feed;
-	path->off = 0;
+	path->bulge = 0;
 	path->settled = path->final;
 	passo_path_pace_line(path, item);
 	passo_path_limit(path, path->added);
@@ -89,8 +89,8 @@ static bool merge(struct passo_path_planner *path, const struct passo_path_move 
 	const uint32_t dwell = path->dwell;
 
 	path->at = path->before;
-	const uint64_t off = path->off + passo_path_off(path, move->target, &at);
-	if (off < path->tolerance) {
+	uint64_t bulge = path->bulge;
+	if (passo_path_off(path, move->target, &at, &bulge) < path->tolerance) {
 		const uint32_t final = path->final;
 
 		path->added--;
@@ -98,7 +98,7 @@ static bool merge(struct passo_path_planner *path, const struct passo_path_move 
 		path->rest = path->begins;
 		path->dwell = passo_path_item(path, path->added)->dwell;
 		if (add(path, move) == PASSO_PLAN_OK) {
-			path->off = off;
+			path->bulge = bulge;
 			return true;
 		}
 		path->added++;

@@ -221,10 +221,10 @@ uint64_t passo_path_shaped_corner(const struct passo_path_planner *path,
 uint64_t passo_path_limit_corner(
     struct passo_path_planner *path, const int32_t *unit, uint64_t length, struct passo_path_item *item);
 
-/* By how much a line from where the path ends, to a target, is off the end of a shorter one from there, at
- * most: UQ32.16 substeps; saturates if it is not longer. */
-uint64_t passo_path_off(
-    const struct passo_path_planner *path, const int64_t *target, const struct passo_path_place *end);
+/* By how much a line from where the path ends, to a target, is off a shorter one from there and all that this
+ * one replaces, at most: UQ32.16 substeps; saturates if it is not longer. */
+uint64_t passo_path_off(const struct passo_path_planner *path, const int64_t *target,
+    const struct passo_path_place *end, uint64_t *bulge);
 
 /* Sets the limits of an item, `top` and, unless the path rests there, `corner`; those before it are known. */
 void passo_path_limit(struct passo_path_planner *path, uint32_t index);

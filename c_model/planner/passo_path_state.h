@@ -117,7 +117,8 @@ struct passo_path_planner {
 	struct passo_path_place at, before; /* its end and its start */
 	uint64_t deviation, tolerance;      /* UQ32.16 substeps */
 	uint64_t own_tolerance;             /* the same: that of the settings */
-	uint64_t off;  /* the same: by how much the last line is off those that it replaces */
+	uint64_t bulge; /* UQ.46 per substep: the last line is off those that it replaces by no more than
+	                   this times the distances to both of its ends */
 	uint64_t feed; /* of the last line, as it was given */
 	bool begins;   /* the path rested before the last line */
 	uint32_t settled; /* `final` before the last line */
