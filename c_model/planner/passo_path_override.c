@@ -32,6 +32,7 @@ void passo_path_limit(struct passo_path_planner *path, uint32_t index)
 /* Plans anew what the ramps have not passed. */
 static void plan_anew(struct passo_path_planner *path)
 {
+	path->open = false;
 	for (uint32_t index = path->planned; index < path->added; index++)
 		passo_path_limit(path, index);
 	path->final = path->planned;

@@ -83,7 +83,7 @@ static void begin_at(struct passo_path_planner *path, uint32_t index)
 	path->offset = 0;
 	path->velocity = 0;
 	path->at_rest = true;
-	path->started = path->jump = path->lines_end = path->ramps_end = false;
+	path->started = path->jump = path->lines_end = path->ramps_end = path->open = false;
 	path->anew = true;
 	passo_path_pace_begin(path);
 	passo_path_look_back(path);

@@ -121,7 +121,7 @@ struct passo_path_planner {
 	                   this times the distances to both of its ends */
 	uint64_t feed; /* of the last line, as it was given */
 	bool begins;   /* the path rested before the last line */
-	uint32_t settled; /* `final` before the last line */
+	bool open;     /* the last line may still become a longer one: no ramp relies on it */
 	uint32_t substeps_per_mm;
 	uint32_t dwell; /* ticks before the next line */
 	bool rest;      /* before the next line */
