@@ -73,6 +73,7 @@ generate: setup ## Regenerate the generated files: registers, pins, move forms, 
 	@$(BIN)/python spec/generate_moves.py
 	@$(BIN)/python spec/generate_shapes.py
 	@$(BIN)/python spec/generate_package.py
+	@$(BIN)/python -m verify.formal.page
 
 bench: setup ## Measure the speed of the models.
 	@$(BIN)/passo bench
