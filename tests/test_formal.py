@@ -24,7 +24,7 @@ SOURCES = sorted((*run.HERE.glob("*.vh"), *run.HERE.glob("*_proof.v")))
 def labels(proof: run.Proof) -> set[str]:
     """The labels of all assertions in the files that the proof reads."""
     found = set()
-    for name in re.findall(r"^formal/(\S+\.vh?)$", proof.sby.read_text(encoding="utf-8"), re.M):
+    for name in re.findall(r"^verify/formal/(\S+\.vh?)$", proof.sby.read_text(encoding="utf-8"), re.M):
         text = (run.HERE / name).read_text(encoding="utf-8")
         found |= set(re.findall(r"(\w+) :\s+assert\b", text))
     return found
@@ -57,7 +57,7 @@ def test_planted_bug_is_caught(proof, promise):
 )
 def test_every_bug_can_be_planted(proof, promise, tmp_path):
     file = tmp_path / promise.file
-    file.parent.mkdir()
+    file.parent.mkdir(parents=True)
     source = run.paths.root / promise.file
     file.write_bytes(source.read_bytes())
     run.plant(promise, tmp_path)
