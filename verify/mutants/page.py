@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from passo.console import console, table
+from passo.output import write_text
 from passo.toolchain import paths
 
 from verify.mutants.c_source import CMutant
@@ -213,4 +214,4 @@ of those of the C sources: {of(all_c)}.
 
 """
     figures += survivors if ended else NOT_ENDED + "\n"
-    PAGE.write_text(head + begin + figures + end + tail, encoding="utf-8")
+    write_text(PAGE, head + begin + figures + end + tail)
