@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The quick proofs hold, and some of them, which PASSO_SEED chooses, catch a planted bug.
 
-``make formal`` runs all proofs with all bugs; docs/formal.md describes them.
+``make verify ONLY=formal`` runs all proofs with all bugs; docs/formal.md describes them.
 """
 
 import re
@@ -10,6 +10,7 @@ from random import Random
 import pytest
 from passo.random_cases import seed
 
+from verify import page as verification
 from verify.formal import page, run
 
 PROOFS = run.proofs()
@@ -72,8 +73,9 @@ def test_every_assertion_belongs_to_a_promise():
         assert there == stated, source.name
 
 
-def test_the_page_is_generated():
+def test_the_pages_are_generated():
     assert (run.paths.docs / "formal.md").read_text(encoding="utf-8") == page.page()
+    assert verification.PAGE.read_text(encoding="utf-8") == verification.page()
 
 
 def test_every_assumption_has_a_name_in_the_table():

@@ -10,7 +10,7 @@ from passo_fpga.pages import END, write_block
 from verify.equal.coupling import Coupling
 
 PAGE = paths.docs / "equality.md"
-BEGIN = "<!-- equal: make equal writes from here -->"
+BEGIN = "<!-- equal: make verify writes from here -->"
 HEADER = ("module", "RTL", "what it is", "goals", "bits", "seconds", "bugs seen")
 TEXTS = 3  # columns of them; the others are numbers
 

@@ -19,7 +19,9 @@ WIDTH = 120
 def _section(proof: Proof) -> str:
     """The promises of a proof."""
     promises = "\n".join(
-        textwrap.fill(promise.says, WIDTH, initial_indent="* ", subsequent_indent="  ", break_on_hyphens=False)
+        textwrap.fill(
+            promise.says, WIDTH, initial_indent="* ", subsequent_indent="  ", break_on_hyphens=False
+        )
         for promise in proof.promises
     )
     parts = (f"## {proof.title} (`{proof.name}`)", proof.about.strip(), promises, proof.after.strip())

@@ -3,9 +3,9 @@
 
     .venv/bin/python -m verify.formal.run [--quick] [--list] [proof ...]
 
-``promises.toml`` lists the proofs: what sby needs of each, its promises, their assertions, and for each promise a
-planted bug (one line of rtl/, replaced in a copy) that it must catch. A bug is caught only if an assertion of
-the promise itself fails with a counterexample. All work is done in build/formal.
+``promises.toml`` lists the proofs: what sby needs of each, its promises, their assertions, and for each
+promise a planted bug (one line of rtl/, replaced in a copy) that it must catch. A bug is caught only if an
+assertion of the promise itself fails with a counterexample. All work is done in build/formal.
 """
 
 import argparse

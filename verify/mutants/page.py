@@ -181,7 +181,7 @@ def write(rtl: Sequence[Score], c: Sequence[Score], seed: int, ended: bool = Tru
     rtl, c = _merged(rtl), _merged(c)
     all_rtl, all_c = total(rtl), total(c)
     text = PAGE.read_text(encoding="utf-8")
-    begin, end = "<!-- figures: written by make mutants -->\n", "<!-- end of figures -->\n"
+    begin, end = "<!-- figures: written by make verify -->\n", "<!-- end of figures -->\n"
     head, rest = text.split(begin)
     tail = rest.split(end)[1]
 
