@@ -13,7 +13,7 @@ from passo.moves import PIN_CLOCKS_MAX
 from passo.native import planner
 from passo.toolchain import paths
 
-PAGES = sorted((*paths.docs.glob("*.md"), *paths.root.glob("*.md")))
+PAGES = sorted((*paths.docs.rglob("*.md"), *paths.root.glob("*.md")))
 TROUBLE = paths.docs / "trouble.md"
 HEADERS = "".join(
     path.read_text()

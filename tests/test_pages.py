@@ -13,7 +13,7 @@ from passo.cli import _parser
 from passo.toolchain import paths
 
 README, PLANNING = paths.root / "README.md", paths.docs / "planning.md"
-PAGES = [README, paths.root / "CONTRIBUTING.md", *sorted(paths.docs.glob("*.md"))]
+PAGES = [README, paths.root / "CONTRIBUTING.md", *sorted(paths.docs.rglob("*.md"))]
 
 
 def blocks(page: Path, language: str) -> list[str]:
