@@ -95,7 +95,9 @@ def _parser() -> argparse.ArgumentParser:
     )
     firmware.add_argument("--engine", choices=("rtl", "model"), default="rtl", help="the core (default rtl)")
     firmware.add_argument(
-        "--table", action="store_true", help="measure the firmware instead and write docs/reference/firmware_report.md"
+        "--table",
+        action="store_true",
+        help="measure the firmware and write docs/reference/firmware_report.md",
     )
     firmware.add_argument(
         "--grbl",
