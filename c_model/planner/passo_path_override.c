@@ -25,7 +25,7 @@ void passo_path_limit(struct passo_path_planner *path, uint32_t index)
 	item->corner = passo_path_smaller(item->corner, before->top);
 	/* an arc is limited along its lines, not only at its corners; by their bends, not by the feeds that
 	 * meet there */
-	if (before->arc && item->arc)
+	if ((before->arc & PASSO_PATH_ARC_BEHIND) > 0 && (item->arc & PASSO_PATH_ARC_BEFORE) > 0)
 		before->top = passo_path_smaller(before->top, passo_path_larger(before->bend, item->bend));
 }
 

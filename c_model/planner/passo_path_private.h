@@ -44,6 +44,9 @@ struct passo_path_part {
 /* Most parts of a line. */
 #define PASSO_PATH_PARTS 8u
 
+#define PASSO_PATH_ARC_BEFORE 1u
+#define PASSO_PATH_ARC_BEHIND 2u
+
 /* What the next ramp aims at. */
 struct passo_path_aim {
 	enum passo_path_kind kind;

@@ -76,7 +76,7 @@ static void begin_at(struct passo_path_planner *path, uint32_t index)
 	struct passo_path_item *item = passo_path_item(path, index);
 
 	item->rest = true;
-	item->arc = false;
+	item->arc = 0;
 	item->dwell = 0;
 	item->corner = (uint64_t)item->halt * item->halt;
 	path->sent = path->planned = path->final = index;

@@ -63,7 +63,8 @@ struct passo_path_item {
 	uint8_t directions; /* bit i set: axis i counts down */
 	bool rest;          /* the path rests before the line */
 	bool last;          /* the motion ends with the line */
-	bool arc;           /* the corner at its start is limited as part of an arc */
+	uint8_t arc;        /* the corner at its start is a part of an arc with half the line before (bit 0),
+	                       and with half of this one (bit 1) */
 	bool rapid;         /* its feed is PASSO_PATH_RAPID */
 #ifndef PASSO_WITHOUT_ROUNDING
 	uint32_t turn;   /* substeps on either side over which a lone corner at its start may be rounded */
