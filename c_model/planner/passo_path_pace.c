@@ -27,7 +27,7 @@ void passo_path_pace(
 	const uint32_t together = (uint32_t)passo_path_larger(passo_path_smaller(queued, known), 1);
 	const uint64_t ramps = 3 * together * poll / passo_path_larger(queued, 1) + 1;
 	const uint64_t line = passo_path_larger(
-	    2 * poll / passo_path_larger(lines_sent, 1), 3 * poll / passo_path_larger(lines_queued, 1));
+	    2 * poll / passo_path_larger(lines_sent, 1), 4 * poll / passo_path_larger(lines_queued, 1));
 
 	path->paced = together;
 	path->pace = (uint32_t)passo_path_smaller(ramps, PASSO_PATH_TICKS_MAX);

@@ -72,7 +72,7 @@ struct passo_path_item {
 	uint16_t needed; /* UQ1.15: what the rounding needs of that axis at the square `bend` */
 #endif
 #ifndef PASSO_LINEAR_PATHS
-	bool eased; /* in a curve: half of the slope is for the way along it */
+	uint8_t eased; /* in a curve: quarters of the slope that are for the way across */
 #endif
 #ifndef PASSO_WITHOUT_JERK_PATHS
 	uint64_t jerk; /* profile jerk: change of the velocity by the square of the time that it takes at
@@ -98,7 +98,7 @@ struct passo_path_place {
 	uint64_t length;                        /* of the last line, UQ32.16 substeps */
 #ifndef PASSO_LINEAR_PATHS
 	uint64_t slope, jerk; /* of the last line, by the corner at its start */
-	bool eased;           /* the same */
+	uint8_t eased;        /* the same */
 #endif
 	int32_t carry;        /* Q16: substeps that rounding has withheld from the lines so far */
 	uint32_t line_credit; /* clocks that the last lines have left, see passo_path_pace.c */
