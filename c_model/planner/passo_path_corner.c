@@ -36,8 +36,7 @@ static void bend_lines(const struct passo_path_planner *path, const int32_t *uni
 
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
 		const int64_t turn = (int64_t)unit[axis] - path->at.direction[axis];
-		const int64_t size =
-		    (int64_t)passo_mul_div(passo_path_size(turn), UINT64_C(1) << 34, over);
+		const int64_t size = (int64_t)passo_mul_div(passo_path_size(turn), UINT64_C(1) << 34, over);
 
 		curvature[axis] = turn < 0 ? -size : size;
 	}
@@ -77,8 +76,9 @@ static void find_rounding(const struct passo_path_planner *path, const int32_t *
 		const uint64_t bend = passo_mul_div(path->axis[axis].acceleration, over, change);
 		const uint32_t needed = (uint32_t)passo_mul_div(
 		    passo_path_smaller(square, bend), sides * INT16_MAX, passo_path_larger(bend, 1));
-		const uint32_t lost = sides * ((before ? part_of(path, slope, path->at.direction, axis) : 0)
-		    + (behind ? part_of(path, item->slope, unit, axis) : 0));
+		const uint32_t lost = sides
+		                    * ((before ? part_of(path, slope, path->at.direction, axis) : 0)
+		                        + (behind ? part_of(path, item->slope, unit, axis) : 0));
 
 		if (lost + needed > (uint32_t)item->lost + item->needed) {
 			item->lost = (uint16_t)lost;
@@ -102,9 +102,8 @@ uint64_t passo_path_corner_square(
 		const uint64_t acceleration = left == NULL ? own->acceleration : left[axis];
 		square = passo_path_smaller(square, passo_mul_div(acceleration, corner->over, change));
 		if (own->jump > 0)
-			square = passo_path_smaller(
-			    square, passo_path_speed_square(
-					((uint64_t)own->jump << PASSO_PATH_UNIT_BITS) / change));
+			square = passo_path_smaller(square,
+			    passo_path_speed_square(((uint64_t)own->jump << PASSO_PATH_UNIT_BITS) / change));
 	}
 	return square;
 }

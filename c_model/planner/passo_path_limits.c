@@ -44,9 +44,9 @@ static bool find_direction(
 	return true;
 }
 
-/* The path that a line replaces is below a parabola over it, `bulge` x (l - x). If that is so of the last line,
- * it is of the one to a new end, for a parabola that is also above the end of the last one: so it is above the
- * line from there to the new end. */
+/* The path that a line replaces is below a parabola over it, `bulge` x (l - x). If that is so of the last
+ * line, it is of the one to a new end, for a parabola that is also above the end of the last one: so it is
+ * above the line from there to the new end. */
 uint64_t passo_path_off(const struct passo_path_planner *path, const int64_t *target,
     const struct passo_path_place *end, uint64_t *bulge)
 {
@@ -61,8 +61,8 @@ uint64_t passo_path_off(const struct passo_path_planner *path, const int64_t *ta
 		turn += change * change;
 	}
 	turn = ((uint64_t)passo_isqrt64(turn) + 1) << 32;
-	*bulge = passo_path_larger(turn / (length - end->length),
-	    passo_mul_div(*bulge, end->length, length) + turn / length);
+	*bulge = passo_path_larger(
+	    turn / (length - end->length), passo_mul_div(*bulge, end->length, length) + turn / length);
 	return passo_mul_div(passo_mul_div(*bulge, length, PASSO_PATH_ONE), length, UINT64_C(1) << 34);
 }
 

@@ -139,14 +139,14 @@ static inline uint64_t passo_path_square_of(uint64_t velocity)
 	return velocity * velocity;
 }
 
-/* Change of the square per substep within a half of an item that the axes allow, over a length (UQ32.32 substeps) from
- * its lower end. Deceleration is planned a little below the limit, so that it can make up for ramps that end
- * at ticks. */
+/* Change of the square per substep within a half of an item that the axes allow, over a length (UQ32.32
+ * substeps) from its lower end. Deceleration is planned a little below the limit, so that it can make up for
+ * ramps that end at ticks. */
 uint64_t passo_path_slope(
     const struct passo_path_item *item, unsigned half, bool up, uint64_t low, uint64_t length);
 
-/* The highest square, within an item, from which it falls to the one at its end over a length that ends so far
- * before that. */
+/* The highest square, within an item, from which it falls to the one at its end over a length that ends so
+ * far before that. */
 uint64_t passo_path_before(
     const struct passo_path_item *item, uint64_t end, uint64_t length, uint64_t behind);
 
@@ -238,8 +238,8 @@ uint64_t passo_path_ticks_over(const struct passo_path_planner *path, uint64_t l
 /* Length, UQ32.32 substeps, in so many ticks at the mean of two velocities, whose sum is given. */
 uint64_t passo_path_length_in(const struct passo_path_planner *path, uint64_t speeds, uint64_t ticks);
 
-/* The newest line is entered when the next one is known, or when it is the last; the one before it when it cannot
- * become another one. */
+/* The newest line is entered when the next one is known, or when it is the last; the one before it when it
+ * cannot become another one. */
 bool passo_path_is_held_back(const struct passo_path_planner *path, uint32_t index);
 
 /* The path rests at the end of this item, as far as is known. */
