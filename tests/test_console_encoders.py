@@ -19,7 +19,7 @@ ENCODER = "encoder axis=0 counts_per_step=4 limit=20"
 PER_TURN = 400
 RPM = 600
 THREAD = f"thread encoder=2 counts_per_turn={PER_TURN} steps=1000,-333 turns=5 top_rpm=700"
-FOLLOWING = "note: FOLLOWING: stopped: an axis was too far from its encoder, or from its thread\n"
+FOLLOWING = "note: FOLLOWING: stopped: following error over its limit, or thread lost the spindle phase\n"
 
 
 @pytest.fixture
@@ -64,7 +64,7 @@ def test_a_core_without_encoders_says_so() -> None:
         ("encoder filter=256", "ENCODER_FILTER: "),
         ("encoder filter=4294967296", "filter must be 0 to 4294967295"),
         ("encoder filter=-1", "filter must be 0 to "),
-        ("encoder axis=0 filter=1", "axis and filter exclude each other"),
+        ("encoder axis=0 filter=1", "axis and filter are mutually exclusive"),
         ("encoder counts_per_step=1", "axis is missing"),
         ("encoder axis=4 counts_per_step=1", "axis must be 0 to 3"),
         ("encoder axis=0 counts_per_step=0", "RATIO: "),

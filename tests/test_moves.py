@@ -158,7 +158,7 @@ BAD = {
     "misspelt key of a move": (GOOD + "sped = 3\n", "unknown key 'sped'; did you mean speed?"),
     "misspelt profile": (GOOD.replace("cosine", "cosin"), "not 'cosin'; did you mean cosine?"),
     "misspelt method": (GOOD + 'method = "in_tim"\n', "not 'in_tim'; did you mean in_time?"),
-    "G-code": ("G21\nG0 X10 Y20\n", "this is G-code; moves are in TOML"),
+    "G-code": ("G21\nG0 X10 Y20\n", "this is G-code; move files are TOML"),
     "G-code with a comment": ("; a part\nN10 G0 X10 Y20\n", "this is G-code"),
     "G-code with percent": ("%\nG90\n", "this is G-code"),
     "unknown key": (CLOCK + "color = 1\n" + BY_TIME, "unknown key 'color'"),
@@ -168,7 +168,7 @@ BAD = {
     "pin too long": (CLOCK + "[pins]\ndir_hold = 0.005\n" + BY_TIME, "pins: dir_hold is 80000 clocks"),
     "pin zero": (
         CLOCK + "[pins]\nstep_low = 0\n" + BY_TIME,
-        "pins: step_low is 0 clocks, 1 to 65535 are possible",
+        "pins: step_low is 0 clocks; must be 1 to 65535",
     ),
     "pin zero with a unit": (CLOCK + '[pins]\ndir_hold = "0us"\n' + BY_TIME, "pins: dir_hold is 0 clocks"),
     "channel above": (GOOD + "channel = 8\n", "move 1: channel must be 0 to 7"),
@@ -200,7 +200,7 @@ BAD = {
     ),
     "pin in microseconds": (
         CLOCK + "[pins]\nstep_high = 2\n" + BY_TIME,
-        "pins: step_high is 32000000 clocks, at most 65535 are possible; a number is in seconds, "
+        "pins: step_high is 32000000 clocks; must be at most 65535; a number is in seconds, "
         'a text may have a unit: "2us"',
     ),
     "steps missing": (GOOD.replace("steps = [100, -50]", ""), "move 1: steps is missing"),
@@ -229,7 +229,7 @@ BAD = {
     "very many digits": (GOOD.replace("100", "9" * 5000), "bad.toml: "),
     "very long number": (GOOD.replace('"cosine"', "0x" + "f" * 9000), "not a very long number"),
     "deep": (CLOCK + "move = " + "[" * 9000 + "]" * 9000, "bad.toml: "),
-    "both forms": (GOOD + "speed = 3\n", "move 1: total_time and speed exclude each other"),
+    "both forms": (GOOD + "speed = 3\n", "move 1: total_time and speed are mutually exclusive"),
     "neither form": (GOOD.replace("total_time = 0.4", ""), "move 1: total_time or speed is missing"),
     "acceleration and ramp": (CLOCK + BY_SPEED + "ramp_time = 1\n", "acceleration and ramp_time exclude"),
     "zero acceleration": (CLOCK + BY_SPEED.replace("40000", "0"), "acceleration must be greater than 0"),

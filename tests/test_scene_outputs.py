@@ -186,7 +186,7 @@ BAD = [
     (MOVE + "output = { powr = 3 }\n", "output: unknown key 'powr'; did you mean power"),
     (MOVE + "output = { power = 101 }\n", "output: power must be at most 100"),
     (MOVE + "output = { levels = 256 }\n", "output: levels must be 0 to 255"),
-    (MOVE + "output = { power = 1, raster = [1] }\n", "output: power and raster exclude each other"),
+    (MOVE + "output = { power = 1, raster = [1] }\n", "output: power and raster are mutually exclusive"),
     (MOVE + "output = { raster = [256] }\n", "output: raster must be 0 to 255"),
     (MOVE + "output = { raster = [] }\n", "output: raster must be a list of whole numbers"),
     (MOVE + "output = { raster = [1], pitch = 0 }\n", "output: pitch must be 1 to"),
@@ -232,7 +232,7 @@ def test_bad_input(tmp_path: Path, text: str, message: str) -> None:
 
 BAD_PLANS = [
     ("{ power = 9, speed = 9000 }", "output: speed is less than the 9996.8 steps/s that the move reaches"),
-    (f"{{ raster = {[0] * 68}, pitch = 30 }}", "output: raster has 68 values, the move takes 67"),
+    (f"{{ raster = {[0] * 68}, pitch = 30 }}", "output: raster has 68 values; the move takes 67"),
     ("{ power = 90, speed = 1_000_000 }", ""),
 ]
 

@@ -32,7 +32,7 @@ enum passo_error {
 	PASSO_ERROR_CORE_RESET, /* the core was reset, or another host wrote to it: open it again */
 
 	/* the channel */
-	PASSO_ERROR_NOT_PREPARED, /* no motion of the channel is ready and waits for its start */
+	PASSO_ERROR_NOT_PREPARED, /* no motion is armed and waiting for start */
 	PASSO_ERROR_MOVING,       /* only possible at rest, but a motion is running or queued */
 	PASSO_ERROR_NOT_TURNING,  /* only possible during continuous rotation */
 	PASSO_ERROR_STREAMING,    /* a stream is being fed: wait for its end, or stop it */
@@ -54,14 +54,14 @@ enum passo_error {
 	PASSO_ERROR_NO_SWITCH,         /* no such switch or probe is configured */
 	PASSO_ERROR_NO_DISTANCE,       /* a home without a distance or without a back-off */
 	PASSO_ERROR_NO_STOP_TIME,      /* home and probe stop softly: passo_configure_motion() before them */
-	PASSO_ERROR_UNDER_WAY,         /* a home, probe or goto is under way: wait for its end, or stop it */
+	PASSO_ERROR_UNDER_WAY,         /* homing, probing or goto in progress: wait or stop it */
 	PASSO_ERROR_SWITCH_MISSED,     /* the switch or probe did not change within the distance; at rest */
 	PASSO_ERROR_SWITCH_LEVEL,      /* it has the level already that is looked for; at rest */
 	PASSO_ERROR_INPUTS_UNKNOWN,    /* inputs that a motion or trigger waits for do not stand still */
 
 	/* goto */
 	PASSO_ERROR_NO_CLOCK, /* the hardware has no microsecond clock */
-	PASSO_ERROR_LATE, /* the host was too slow for a change on the way: it goes on as it was, or stops */
+	PASSO_ERROR_LATE, /* the host was too late to retarget the motion: it continues unchanged, or stops */
 
 	/* outputs */
 	PASSO_ERROR_NO_OUTPUTS,      /* the core was built without outputs */
@@ -89,7 +89,7 @@ enum passo_error {
 	PASSO_ERROR_RAMP_UNDERRUN, /* soft stop: the ramp queue ran empty at speed */
 	PASSO_ERROR_STEP_OVERRUN,  /* stopped: steps came faster than the pin timing allows */
 	PASSO_ERROR_POSITION,      /* the motion ended at the wrong position */
-	PASSO_ERROR_LIMIT,         /* stopped: an axis stepped towards an active limit switch */
+	PASSO_ERROR_LIMIT,         /* stopped: an axis stepped toward an active limit switch */
 	PASSO_ERROR_ALARM,         /* stopped, and kept so: the alarm of an axis is or was active */
 	PASSO_ERROR_TRIGGER,       /* stopped by the trigger, as told */
 	PASSO_ERROR_WATCHDOG,      /* soft stop: the core heard nothing for too long */
@@ -118,7 +118,7 @@ enum passo_error {
 	PASSO_ERROR_ARGUMENT_SHAPE,          /* the bank does not exist, or the points are no shape */
 	PASSO_ERROR_ARGUMENT_PLAN,           /* not made by the planner */
 	PASSO_ERROR_ARGUMENT_LENGTH,         /* of a frame: not 1 .. PASSO_FRAME_PAYLOAD_MAX words */
-	PASSO_ERROR_ARGUMENT_POSTED,         /* a frame is posted, or a read has to come first */
+	PASSO_ERROR_ARGUMENT_POSTED,         /* a frame is already pending, or a read is required first */
 	PASSO_ERROR_ARGUMENT_END,            /* the codes above are from ARGUMENT up to here */
 	PASSO_ERROR_MAX = 0x4FF
 };

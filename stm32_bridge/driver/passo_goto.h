@@ -36,7 +36,7 @@ extern "C" {
  * has no effect.
  *
  * Errors: those of a move from rest; NO_CLOCK; TOO_FAST above a quarter of the clock, ABOVE_TOP, TOO_LONG
- * also for ramps of more than 2^22 ticks; UNDER_WAY for another axis, or while home or probe is under way;
+ * also for ramps of more than 2^22 ticks; UNDER_WAY for another axis, or while home or probe is in progress;
  * LATE: the change was not sent, and the motion goes on as it was, or it was sent too late and a soft stop
  * (STOPPED) follows; FULL on a core with 4 places for ramps. After a link error in the change a soft stop
  * replaces it, as in passo_turn_stop(). */

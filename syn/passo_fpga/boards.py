@@ -67,7 +67,7 @@ class Board:
         found = {}
         for key, port, pin in self._places(self._axes(axes), parts):
             if pin.pin in users:
-                raise TableError(self.name, key, f"pin {pin.pin} is that of {users[pin.pin]} already")
+                raise TableError(self.name, key, f"pin {pin.pin} is already used by {users[pin.pin]}")
             users[pin.pin] = key
             found[port] = pin
         return found
@@ -135,7 +135,7 @@ def boards() -> dict[str, Board]:
 def board(name: str) -> Board:
     """A board by name; raises TableError, or BoardError if there is no such board."""
     if name not in names():
-        raise BoardError(f"there is no board '{name}'; choose one of {', '.join(names())}")
+        raise BoardError(f"unknown board '{name}'; must be one of {', '.join(names())}")
     table = Table.read(name, FOLDER / name / TABLE)
     title = table.text("title")
     device = _device(table, title)
@@ -187,7 +187,7 @@ def _device(table: Table, title: str) -> Device:
     facts = table.table("device")
     like = DEVICES[facts.choice("like", tuple(DEVICES))]
     if like.family is GOWIN:
-        raise facts.error("like", "the flow knows one Gowin only")
+        raise facts.error("like", "the flow supports one Gowin device only")
     capacity = facts.number("capacity")
     part, synthesis = facts.texts("part"), facts.text("synthesis", like.synthesis)
     facts.end()

@@ -66,9 +66,11 @@ GOALS = (
 def main(arguments: Sequence[str] | None = None) -> int:
     """Return 0 if all runs ended, whether they fit or not; 2 for an unknown device."""
     parser = argparse.ArgumentParser(prog="make report", description="Measure size and speed of the core.")
-    parser.add_argument("--only", default="", help=f"devices, with commas between: {','.join(DEVICES)}")
-    parser.add_argument("--quick", action="store_true", help="only the rows of the goals")
-    parser.add_argument("--parts", action="store_true", help="the cost of each part of the core instead")
+    parser.add_argument("--only", default="", help=f"devices, comma-separated: {','.join(DEVICES)}")
+    parser.add_argument("--quick", action="store_true", help="only the devices that have goals")
+    parser.add_argument(
+        "--parts", action="store_true", help="measure the cost of each optional block instead"
+    )
     options = parser.parse_args(arguments)
     chosen = [name for name in options.only.split(",") if name] or list(DEVICES)
     if unknown := set(chosen) - set(DEVICES):
@@ -95,7 +97,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     else:
         part = REPORT.with_name("report-part.json")
         write_json(report, part)
-        console.print(f"a part of the report: {part.relative_to(paths.root)}; docs/report.md is as it was")
+        console.print(f"partial report: {part.relative_to(paths.root)}; docs/report.md is unchanged")
         if len(goals) == len(GOALS):
             pages.write_goals(report)
     pages.show(report)
