@@ -135,12 +135,12 @@ struct passo_output {
 };
 
 /* Assumed state of the channel. docs/driver.md shows the transitions. */
-enum passo_belief {
-	PASSO_BELIEF_NOT_OPEN,
-	PASSO_BELIEF_READY,         /* accepts moves */
-	PASSO_BELIEF_STOPPED,       /* stopped, or a stop was commanded: must be cleared */
-	PASSO_BELIEF_BROKEN,        /* the effect of a command is unknown: must be cleared */
-	PASSO_BELIEF_BROKEN_STOPPED /* both */
+enum passo_assumed {
+	PASSO_ASSUMED_NOT_OPEN,
+	PASSO_ASSUMED_READY,         /* accepts moves */
+	PASSO_ASSUMED_STOPPED,       /* stopped, or a stop was commanded: must be cleared */
+	PASSO_ASSUMED_BROKEN,        /* the effect of a command is unknown: must be cleared */
+	PASSO_ASSUMED_BROKEN_STOPPED /* both */
 };
 
 /* How the queued motions are expected to end. */
@@ -194,7 +194,7 @@ struct passo {
 	bool rate_due;          /* the rate is not acknowledged; every poll resends it */
 	bool zero_due;          /* zero is not acknowledged: the positions read next count as 0 */
 	enum passo_due stop_due;
-	enum passo_belief belief;
+	enum passo_assumed assumed;
 	enum passo_expectation expects;
 	enum passo_stream_phase stream;
 	enum passo_supply lines : 8, ramps : 8; /* of the stream */

@@ -91,7 +91,7 @@ struct passo_host {
 	bool lost;        /* one was detected: only passo_host_open() helps */
 	bool fresh;       /* the core had not been written to since its reset when the host was opened */
 	bool proving;     /* the current frame was executed; verifying that the core has not been reset */
-	bool on_wire;     /* the current frame is being exchanged */
+	bool in_flight;   /* the current frame is being exchanged */
 	uint8_t prepared; /* sequence number of the push in `ahead`; 0: there is none */
 	/* Free queue entries of the status channel, a lower bound; 255: 255 or more. */
 	uint8_t line_room, ramp_room;

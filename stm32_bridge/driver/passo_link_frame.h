@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * Internal: one frame on the SPI, for passo_tries.c.
+ * Internal: one frame on the SPI, for passo_link_retry.c.
  */
-#ifndef PASSO_EXCHANGE_H
-#define PASSO_EXCHANGE_H
+#ifndef PASSO_LINK_FRAME_H
+#define PASSO_LINK_FRAME_H
 
 #include "passo_host.h"
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Internal: retries of a frame, for passo_host.c.
  */
-#ifndef PASSO_TRIES_H
-#define PASSO_TRIES_H
+#ifndef PASSO_LINK_RETRY_H
+#define PASSO_LINK_RETRY_H
 
 #include "passo_host.h"
 
