@@ -107,7 +107,7 @@ netlist: ## Run all core tests on the synthesized iCE40 netlist.
 	@tools/setup.sh yosys
 	@PASSO_NETLIST=1 $(BIN)/pytest cocotb_tests/test_netlist.py
 
-coverage: setup ## Measure line and toggle coverage of the RTL; a gap is an error; writes docs/coverage.md.
+coverage: setup ## Measure line and toggle coverage of the RTL; a gap is an error; writes docs/reference/coverage.md.
 	@$(BIN)/python -m cocotb_tests.coverage
 
 firmware: ## Build the STM32F103C8 firmware and print flash, RAM and stack use; GRBL=1: the grbl image.

@@ -99,12 +99,14 @@ def _parser() -> argparse.ArgumentParser:
     )
     firmware.add_argument("--engine", choices=("rtl", "model"), default="rtl", help="the core (default rtl)")
     firmware.add_argument(
-        "--table", action="store_true", help="measure the firmware and write docs/firmware_report.md"
+        "--table",
+        action="store_true",
+        help="measure the firmware and write docs/reference/firmware_report.md",
     )
     firmware.add_argument(
         "--grbl",
         action="store_true",
-        help="with --table: measure the grbl image and write docs/firmware_gcode_report.md",
+        help="with --table: measure the grbl image and write docs/reference/firmware_gcode_report.md",
     )
     firmware.add_argument("--lines", type=int, metavar="N", help="with --grbl: length of the long file")
     rtl = commands.add_parser("rtl", help="list the Verilog sources of the core, for makefiles")
