@@ -986,7 +986,7 @@ def test_backspace_takes_a_character_back(bench: Bench) -> None:
 def test_a_byte_that_is_no_text_spoils_its_line(bench: Bench, byte: int) -> None:
     """The line is refused with the byte's number; the next one is good."""
     bench.terminal.type(b"zero" + bytes([byte]) + b"\nposition\n")
-    assert bench.take() == f"error: character {byte} is not text\nok position=0,0,0,0\n"
+    assert bench.take() == f"error: character {byte} is not printable\nok position=0,0,0,0\n"
 
 
 def test_a_lost_byte_spoils_its_line(bench: Bench) -> None:

@@ -54,7 +54,7 @@ static void finish_line(struct passo_console *console)
 {
 	console->line[console->length] = '\0';
 	if (console->bad == PASSO_CONSOLE_LOST + 1)
-		passo_complain(&console->sink, "receive overflow: bytes of this line were lost");
+		passo_complain(&console->sink, "bytes of this line were lost");
 	else if (console->bad != 0u)
 		passo_complain(&console->sink, "character %u is not printable", console->bad - 1u);
 	else if (console->too_long)

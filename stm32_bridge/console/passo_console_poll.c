@@ -81,7 +81,7 @@ static void note_error(struct passo_console *console, unsigned number, enum pass
 /* The link works again. */
 static void note_answer(struct passo_console *console)
 {
-	passo_say(&console->sink, "note: the core responds again\n");
+	passo_say(&console->sink, "note: the core answers\n");
 	for (unsigned i = 0; i < passo_commands_channels(console); i++) {
 		if (is_of_link(console->channel[i].noted))
 			console->channel[i].noted = PASSO_OK;
@@ -131,7 +131,7 @@ static void look_for_core(struct passo_console *console)
 		return;
 	console->tried_at = now;
 	if (passo_commands_open(console) == PASSO_OK)
-		passo_say(&console->sink, "note: the core responds again\n");
+		passo_say(&console->sink, "note: the core answers\n");
 }
 
 /* Bit i: channel i moves. */
