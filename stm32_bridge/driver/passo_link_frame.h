@@ -6,12 +6,12 @@
 
 #include "passo_host.h"
 
-/* Sends the current frame once. While it is on the wire: PENDING, and the next call goes on. Results other
- * than OK and refusals may be retried. *known is set if the reply had a valid status word, which is then in
+/* Sends the current frame once. While it is in flight: PENDING, and the next call continues. Results other
+ * than OK and rejections may be retried. *known is set if the reply had a valid status word, which is then in
  * host->status. */
 enum passo_error passo_host_exchange(struct passo_host *host, bool *known);
 
-/* Updates the queue room from the status word, if `known`, and by what this frame has pushed, if
+/* Updates the queue room from the status word, if `known`, and by the items pushed by this frame, if
  * `executed`. */
 void passo_host_count_room(struct passo_host *host, bool known, bool executed);
 
