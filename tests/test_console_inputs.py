@@ -117,7 +117,7 @@ def test_lines_during_a_home(bench: Bench) -> None:
 def test_a_home_that_fails_is_told_once(bench: Bench) -> None:
     """In its answer, not in a note as well; the next home is not blamed for it."""
     bench.terminal.line(f"{HOME} distance=-100")
-    assert bench.take() == ("error: SWITCH_MISSED: the switch or probe did not change within the distance\n")
+    assert bench.take() == ("error: SWITCH_MISSED: the switch or probe did not trigger within the distance\n")
     assert bench.ask(f"{HOME} distance=-3000") == "ok"
     assert bench.ask(f"{HOME.replace('axis=0', 'axis=1')} distance=-1").startswith("error: NO_SWITCH: ")
     assert bench.ask(f"{HOME} distance=0").startswith("error: NO_DISTANCE: ")

@@ -210,7 +210,7 @@ BAD = {
     "steps nested": (GOOD.replace("-50", "[50]"), "move 1: steps must be a list of whole numbers"),
     "steps empty": (GOOD.replace("[100, -50]", "[]"), "move 1: steps has 0 axes"),
     "nine axes": (GOOD.replace("-50", "1, 2, 3, 4, 5, 6, 7, 8"), "move 1: steps has 9 axes"),
-    "2^30 steps": (GOOD.replace("-50", f"{MOST + 1}"), f"axis 1 has too many steps, at most {MOST} are"),
+    "2^30 steps": (GOOD.replace("-50", f"{MOST + 1}"), f"axis 1 has too many steps; must be at most {MOST} are"),
     "-2^30 steps": (GOOD.replace("-50", f"-{MOST + 1}"), "move 1: axis 1 has too many steps"),
     "-2^31 steps": (GOOD.replace("-50", "-2147483648"), "move 1: axis 1 has too many steps"),
     "other length": (GOOD + BY_SPEED.replace("-50", "-50, 1"), "move 2: steps has 3 axes, but move 1 has 2"),
@@ -317,5 +317,5 @@ def test_channels(tmp_path: Path) -> None:
         plan_channels(read_channels(fast), Parameters())
     shapes = '[[move]]\nmethod = "sigmoid"\nsteps = [9]\nspeed = 100\naccelerate_time = 0.1\n'
     tables = write(tmp_path, CLOCK + shapes + shapes + "alpha = 3\nchannel = 1\n")
-    with pytest.raises(MoveFileError, match="move 2: it needs another table than move 1"):
+    with pytest.raises(MoveFileError, match="move 2: it needs a different table than move 1"):
         plan_channels(read_channels(tables), Parameters())

@@ -120,7 +120,7 @@ UNPLANNABLE = {
     "far": (move_of("turn").replace("-90.5", "2e9").replace("200", "20000"), "move 1: TOO_MANY_STEPS: "),
     "two tables": (
         move_of("sigmoid") + move_of("sigmoid").replace("3.25", "4"),
-        "move 2: it needs another table than move 1",
+        "move 2: it needs a different table than move 1",
     ),
 }
 
