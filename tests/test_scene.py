@@ -225,7 +225,7 @@ def test_estop_in_the_midst_of_home(tmp_path: Path) -> None:
 
 
 def test_probe(tmp_path: Path) -> None:
-    """In millimetres; the latch is the touch, to the steps made during the filter."""
+    """In millimeters; the latch is the touch, to the steps made during the filter."""
     text = machine(
         'filter = "50us"\nstop_time = "5ms"\nsteps_per_mm = 160', 'role = "probe"\naxis = 1\nat = "-5mm"'
     )

@@ -6,7 +6,7 @@
  */
 #include "passo_core.h"
 
-/* An edge of SCLK that does not end a half; the synchronisers of the SPI slave are settled. */
+/* An edge of SCLK that does not end a half; the synchronizers of the SPI slave are settled. */
 static void take_edge(struct passo_core *core, struct passo_inputs *inputs, const struct passo_shift *shift)
 {
 	passo_shift_pins(shift, inputs, core->spi.miso);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * The words of a line: what it says, before it is known whether that makes sense.
+ * The parsed words of a line, before the semantic checks.
  *
- * Numbers are exact in millionths: millimetres become nanometres, seconds microseconds.
+ * Numbers are exact in millionths: millimeters become nanometers, seconds microseconds.
  */
 #ifndef PASSO_GCODE_BLOCK_H
 #define PASSO_GCODE_BLOCK_H
@@ -44,8 +44,8 @@ typedef int16_t passo_gcode_command;
 
 struct passo_gcode_block {
 	passo_gcode_command command[PASSO_GCODE_GROUPS]; /* PASSO_GCODE_NONE: none */
-	bool takes_axes;                                 /* one of them moves, or sets what axis words say */
-	uint32_t words;                                  /* of the other letters, a bit for each */
+	bool takes_axes;                                 /* one of them uses the axis words */
+	uint32_t words;                                  /* other words, one bit per letter */
 	int64_t value[26];                               /* of a letter, in millionths */
 };
 
@@ -53,8 +53,8 @@ struct passo_gcode_block {
 char passo_gcode_axis_letter(unsigned axis);
 uint32_t passo_gcode_axis_words(unsigned axes);
 
-/* Reads a number: sign, digits and at most one point, below 10^9; rounded to millionths. Moves *text behind
- * it. False: there is none. */
+/* Reads a number: sign, digits and at most one point, below 10^9; rounded to millionths. Advances *text
+ * past it. False: no number. */
 bool passo_gcode_number(const char **text, int64_t *millionths);
 
 /* Reads the words of a line (passo_gcode_line.h) for a machine with `axes` axes. Errors: LETTER, NUMBER,

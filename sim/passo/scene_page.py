@@ -76,7 +76,7 @@ def scene_data(channels: Channels, run: SceneRun, engine: str) -> tuple[dict[str
 
 
 def _axis(lane: Lane) -> int | None:
-    """The axis whose colour a signal has."""
+    """The axis whose color a signal has."""
     return lane[2] if lane[1] == "enable" else None
 
 

@@ -22,7 +22,7 @@ void passo_driver_forget_all(struct passo *passo)
 }
 
 /* Whether the stop by a limit was on the path. A soft limit that is active when a motion begins refuses the
- * first step towards it: dead for the other axes. */
+ * first step toward it: dead for the other axes. */
 static bool is_soft_limit(const struct passo *passo)
 {
 	for (unsigned i = 0; i < passo->machine.axes; i++)
