@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * What home, probe and goto share: motions, one after the other, moved on by passo_poll(). Those of home and
- * probe may be ended by a trigger.
+ * Common to homing, probing and goto: motions one after the other, advanced by passo_poll(). Those of homing
+ * and probing can end at a trigger.
  */
 #include "passo_driver.h"
 
@@ -12,7 +12,7 @@ static enum passo_error settle(struct passo *passo, enum passo_error error)
 		return PASSO_OK;
 	passo->task.kind = PASSO_TASK_NONE;
 	if (passo->task.armed && !passo_driver_is_link_error(error) && error != PASSO_ERROR_CORE_RESET)
-		passo_driver_disarm(passo); /* otherwise passo_clear() does it */
+		passo_driver_disarm(passo); /* if it fails, passo_clear() does it */
 	return error;
 }
 
