@@ -39,6 +39,9 @@ enum passo_gcode_group {
 /* A command is its number in tenths: G38.2 is 382. */
 typedef int16_t passo_gcode_command;
 #define PASSO_GCODE_NONE ((passo_gcode_command) - 1)
+/* Commands by name: G28.1 is PASSO_GCODE_G(28, 1), M30 is PASSO_GCODE_M(30). */
+#define PASSO_GCODE_G(whole, tenths) ((whole) * 10 + (tenths))
+#define PASSO_GCODE_M(whole) ((whole) * 10)
 
 #define PASSO_GCODE_WORD(letter) (UINT32_C(1) << ((letter) - 'A'))
 
