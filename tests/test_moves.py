@@ -231,7 +231,10 @@ BAD = {
     "deep": (CLOCK + "move = " + "[" * 9000 + "]" * 9000, "bad.toml: "),
     "both forms": (GOOD + "speed = 3\n", "move 1: total_time and speed are mutually exclusive"),
     "neither form": (GOOD.replace("total_time = 0.4", ""), "move 1: total_time or speed is missing"),
-    "acceleration and ramp": (CLOCK + BY_SPEED + "ramp_time = 1\n", "acceleration and ramp_time are mutually exclusive"),
+    "acceleration and ramp": (
+        CLOCK + BY_SPEED + "ramp_time = 1\n",
+        "acceleration and ramp_time are mutually exclusive",
+    ),
     "zero acceleration": (CLOCK + BY_SPEED.replace("40000", "0"), "acceleration must be greater than 0"),
     "zero deceleration": (CLOCK + BY_SPEED + "deceleration = 0\n", "deceleration must be greater than 0"),
     "only deceleration": (

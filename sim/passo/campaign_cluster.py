@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The workers of a campaign: processes of this machine, or a Dask cluster that is running."""
+"""The workers of a campaign: local processes, or a running Dask cluster."""
 
 import asyncio
 import logging

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The command `passo campaign`: what it checks first, shows meanwhile, and leaves behind."""
+"""The command `passo campaign`: checks of the options, progress, and results."""
 
 import argparse
 import os

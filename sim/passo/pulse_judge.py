@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What the recorded pins of a motion must keep to: pulse timings, directions and the curve of the plan.
+"""Checks the recorded pins of a motion: pulse timing, directions and the curve of the plan.
 
-The promises are those of docs/architecture.md, seen from outside: nothing here knows how the core steps.
+The guarantees are those of docs/architecture.md, checked at the pins without knowledge of the core.
 """
 
 from collections.abc import Iterator

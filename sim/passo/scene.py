@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Run a move file with a machine: moves, home and probe one after the other, while events come."""
+"""Run a move file with a machine: moves, homing and probing in sequence, with events."""
 
 import time
 from collections.abc import Callable

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the report page shows of a move file with a machine: pins, power, encoders, events."""
+"""Report page data of a move file with a machine: pins, power, encoders, events."""
 
 import base64
 import zlib

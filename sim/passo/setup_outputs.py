@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a move file says about outputs bound to the path, and about the spindle of a thread."""
+"""Parses path-synchronized outputs and the spindle of a move file."""
 
 from fractions import Fraction
 from typing import Any
