@@ -4,8 +4,8 @@
 A full report writes build/report.json, docs/reference/report.md and the goals between two marks in README.md;
 QUICK=1 writes only the goals. A partial report (ONLY=, QUICK=1) is printed and written to
 build/report-part.json. Each run of a netlist with a seed is cached in build/fpga: an interrupted report
-resumes, and after a change only the affected runs are repeated. PARTS=1 measures the optional parts of the core
-instead.
+resumes, and after a change only the affected runs are repeated. PARTS=1 measures the optional parts of the
+core instead.
 """
 
 import argparse
