@@ -107,7 +107,7 @@ netlist: ## Run all tests of the whole core on the synthesized iCE40 netlist.
 	@tools/setup.sh yosys
 	@PASSO_NETLIST=1 $(BIN)/pytest cocotb_tests/test_netlist.py
 
-coverage: setup ## Measure line and toggle coverage of the RTL; a hole is an error; writes docs/coverage.md.
+coverage: setup ## Measure line and toggle coverage of the RTL; a hole is an error; writes docs/reference/coverage.md.
 	@$(BIN)/python -m cocotb_tests.coverage
 
 firmware: ## Build the firmware of the STM32F103C8; prints its flash, RAM and stack; GRBL=1: the image that speaks grbl.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The quick proofs hold, and some of them, which PASSO_SEED chooses, catch a planted bug.
 
-``make verify ONLY=formal`` runs all proofs with all bugs; docs/formal.md describes them.
+``make verify ONLY=formal`` runs all proofs with all bugs; docs/reference/promises.md lists them.
 """
 
 import re
@@ -32,8 +32,8 @@ def labels(proof: run.Proof) -> set[str]:
 
 
 def assumed() -> dict[str, str]:
-    """The guarantee of each assumption, from docs/formal.md."""
-    text = (run.paths.docs / "formal.md").read_text(encoding="utf-8")
+    """The guarantee of each assumption, from docs/reference/promises.md."""
+    text = (run.paths.reference / "promises.md").read_text(encoding="utf-8")
     text = text[text.index("## What is assumed") :]
     rows = re.findall(r"^\| (`.+?`) \| .+ \| (.+) \|$", text, re.M)
     return {name: by for names, by in rows for name in re.findall(r"`(\w+)`", names)}
@@ -74,7 +74,7 @@ def test_every_assertion_belongs_to_a_promise():
 
 
 def test_the_pages_are_generated():
-    assert (run.paths.docs / "formal.md").read_text(encoding="utf-8") == page.page()
+    assert (run.paths.reference / "promises.md").read_text(encoding="utf-8") == page.page()
     assert verification.PAGE.read_text(encoding="utf-8") == verification.page()
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Write docs/verification.md: what is promised of each module of rtl/, and what shows that it is kept.
+"""Write docs/reference/modules.md: what is promised of each module of rtl/, and what shows that it is kept.
 
 .venv/bin/python -m verify.page
 """
@@ -13,7 +13,7 @@ from passo.toolchain import paths
 from verify.equal.coupling import couplings
 from verify.formal.run import Proof, proofs
 
-PAGE = paths.docs / "verification.md"
+PAGE = paths.reference / "modules.md"
 TEMPLATE = paths.root / "verify" / "page.md"
 
 
@@ -27,7 +27,7 @@ def _reads(proof: Proof, module: str) -> bool:
 
 def _score(module: str) -> str:
     """From the page of mutants."""
-    text = (paths.docs / "mutants.md").read_text(encoding="utf-8")
+    text = (paths.reference / "mutants.md").read_text(encoding="utf-8")
     found = re.search(rf"^\| `{module}` \|.* (\d+%) \|$", text, re.M)
     return found[1] if found else ""
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Write docs/formal.md from the template page.md and from promises.toml.
+"""Write docs/reference/promises.md from the template page.md and from promises.toml.
 
 .venv/bin/python -m verify.formal.page
 """
@@ -11,7 +11,7 @@ from passo.toolchain import paths
 
 from verify.formal.run import HERE, Proof, proofs
 
-PAGE = paths.docs / "formal.md"
+PAGE = paths.reference / "promises.md"
 TEMPLATE = HERE / "page.md"
 WIDTH = 120
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The score of every module and file, and docs/mutants.md."""
+"""The score of every module and file, and docs/reference/mutants.md."""
 
 import re
 import tomllib
@@ -15,7 +15,7 @@ from verify.mutants.c_source import CMutant
 from verify.mutants.fates import Fates
 from verify.mutants.netlist import Mutant
 
-PAGE = paths.docs / "mutants.md"
+PAGE = paths.reference / "mutants.md"
 REASONS = Path(__file__).parent / "reasons.toml"
 NO_REASON = "no promise says it yet"
 
