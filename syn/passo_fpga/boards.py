@@ -58,7 +58,7 @@ class Board:
         found = {}
         for key, port, pin in self._places(self._axes(axes), parts):
             if pin.pin in users:
-                raise TableError(self.name, key, f"pin {pin.pin} is that of {users[pin.pin]} already")
+                raise TableError(self.name, key, f"pin {pin.pin} is already used by {users[pin.pin]}")
             users[pin.pin] = key
             found[port] = pin
         return found
@@ -126,7 +126,7 @@ def boards() -> dict[str, Board]:
 def board(name: str) -> Board:
     """A board by name; raises TableError, or BoardError if there is no such board."""
     if name not in names():
-        raise BoardError(f"there is no board '{name}'; choose one of {', '.join(names())}")
+        raise BoardError(f"unknown board '{name}'; must be one of {', '.join(names())}")
     table = Table.read(name, FOLDER / name / TABLE)
     title = table.text("title")
     device = _device(table, title)
@@ -178,7 +178,7 @@ def _device(table: Table, title: str) -> Device:
     facts = table.table("device")
     like = DEVICES[facts.choice("like", PLACEABLE)]
     if not like.family.variants:
-        raise facts.error("like", f"the flow knows one {like.family.name.capitalize()} only")
+        raise facts.error("like", f"the flow supports one {like.family.name.capitalize()} device only")
     capacity = facts.number("capacity")
     part, synthesis = facts.texts("part"), facts.text("synthesis", like.synthesis)
     facts.end()

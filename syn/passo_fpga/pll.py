@@ -34,5 +34,5 @@ def dividers(family: Family, oscillator_mhz: float, mhz: float) -> Pll:
     found = [p for p in family.pll(oscillator_mhz) if lowest <= p[1] <= highest]
     made, _, parameters = min(found, key=distance, default=(0.0, 0.0, {}))
     if abs(made - mhz) > mhz / 100:
-        raise PllError(f"the PLL cannot make {mhz:g} MHz of {oscillator_mhz:g} MHz")
+        raise PllError(f"the PLL cannot generate {mhz:g} MHz from {oscillator_mhz:g} MHz")
     return Pll(made, parameters)
