@@ -11,9 +11,11 @@ import pytest
 from passo.toolchain import paths
 from passo_fpga import flow, pages, parts_report, report, synth, tools
 from passo_fpga.boards import boards
-from passo_fpga.complaints import complaints, gowin_functions, held_pins, packer_complaints
+from passo_fpga.complaints import complaints, packer_complaints
 from passo_fpga.design import Design
 from passo_fpga.devices import DEVICES, GOWIN
+from passo_fpga.families.gowin import functions as gowin_functions
+from passo_fpga.families.gowin import held_pins
 from passo_fpga.flow import CROWDED, Placed, _sites, _too_large, count
 from passo_fpga.parts import PORTS
 from passo_fpga.split import difference

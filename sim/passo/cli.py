@@ -101,7 +101,7 @@ def _parser() -> argparse.ArgumentParser:
     firmware.add_argument(
         "--table",
         action="store_true",
-        help="measure the firmware and write docs/reference/firmware_report.md",
+        help="measure it and write docs/reference/firmware_report.md",
     )
     firmware.add_argument(
         "--grbl",

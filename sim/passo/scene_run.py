@@ -13,7 +13,7 @@ from passo.setup import Event, Setup
 
 # What the host has read in one frame, all of one clock.
 SAMPLE = np.dtype([("clock", "u8"), ("position", "i4", 8), ("encoder", "i4", 8)])
-ROUND_CLOCKS = 64  # the core reads its positions in rounds from the reset on; docs/architecture.md, SPI link
+ROUND_CLOCKS = 64  # the core reads its positions in rounds from the reset on; docs/link.md
 CS_CLOCKS = 4  # until chip select is seen
 
 

@@ -7,28 +7,19 @@ from dataclasses import dataclass
 from passo.toolchain import paths
 
 from passo_fpga import parts as core_parts
-from passo_fpga.devices import DEVICES, GOWIN, Device, Family
+from passo_fpga.devices import DEVICES, Device
+from passo_fpga.families.family import Family, Pin
 from passo_fpga.pll import Pll, PllError, dividers
 from passo_fpga.table import BoardError, Table, TableError
 
 FOLDER = paths.syn
+PLACEABLE = tuple(name for name, device in DEVICES.items() if device.family.place)
 TABLE = "board.toml"
 
 OSCILLATOR = "oscillator"
 NEEDED = ("spi_sclk", "spi_mosi", "spi_cs_n", "spi_miso", "sync")
 OPTIONAL = ("running", "irq", "led")  # outputs that a board may omit or invert
 OF_AXIS = ("step", "dir", "enable")
-
-
-@dataclass(frozen=True)
-class Pin:
-    """Pin of a port; `io_type` and `options` are copied to the pin file."""
-
-    pin: str
-    pull: str = ""  # up, down or none
-    inverted: bool = False
-    io_type: str = ""
-    options: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -183,11 +174,11 @@ def board(name: str) -> Board:
 def _device(table: Table, title: str) -> Device:
     """A device of devices.py, or a variant of one that the table describes."""
     if not table.is_table("device"):
-        return DEVICES[table.choice("device", tuple(DEVICES))]
+        return DEVICES[table.choice("device", PLACEABLE)]
     facts = table.table("device")
-    like = DEVICES[facts.choice("like", tuple(DEVICES))]
-    if like.family is GOWIN:
-        raise facts.error("like", "the flow supports one Gowin device only")
+    like = DEVICES[facts.choice("like", PLACEABLE)]
+    if not like.family.variants:
+        raise facts.error("like", f"the flow supports one {like.family.name.capitalize()} device only")
     capacity = facts.number("capacity")
     part, synthesis = facts.texts("part"), facts.text("synthesis", like.synthesis)
     facts.end()

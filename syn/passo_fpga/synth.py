@@ -12,9 +12,8 @@ from passo.toolchain import paths
 
 from passo_fpga import parts
 from passo_fpga.boards import OSCILLATOR, Board, board, boards
-from passo_fpga.complaints import gowin_functions, held_pins
 from passo_fpga.design import Design
-from passo_fpga.devices import GOWIN, SPI_MHZ
+from passo_fpga.devices import SPI_MHZ
 from passo_fpga.flow import Placed, cells, moved_registers, pack, place, synthesis_complaints
 from passo_fpga.generate import generate
 from passo_fpga.pll import PllError
@@ -77,9 +76,9 @@ def make(
     tell(f"{chosen.name}: synthesis")
     made = cells(design)
     problems = synthesis_complaints(design)
-    if family is GOWIN:
-        at = {port: pin.pin for port, pin in chosen.ports(axes, wanted).items()}
-        problems += held_pins(at, gowin_functions(), chosen.pack)
+    problems += family.held_pins(
+        {port: pin.pin for port, pin in chosen.ports(axes, wanted).items()}, chosen.pack
+    )
     tried = {} if problems else _try_seeds(chosen, design, pins, pll.mhz, tell)
     good = next((seed for seed, placed in tried.items() if not _problems(placed, pll.mhz)), None)
     if good is not None:
