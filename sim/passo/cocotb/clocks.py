@@ -2,8 +2,8 @@
 """The clock of a test and its count, and recorders of signals.
 
 Conventions. Clock `n` is the n-th rising edge after the clock was started; an output "of clock n" is the
-value of a register after that edge. Tests write inputs and read outputs on falling edges, so that neither races
-the rising edge: a value written after clock n acts like a register that changed with clock n.
+value of a register after that edge. Tests write inputs and read outputs on falling edges, so that neither
+races the rising edge: a value written after clock n acts like a register that changed with clock n.
 """
 
 from collections.abc import Callable
