@@ -60,7 +60,7 @@ def local_cluster(jobs: int) -> Iterator[Any]:
 
 @contextmanager
 def running_cluster(address: str) -> Iterator[Any]:
-    """A client of a cluster that is there; raises BadInputError."""
+    """A client of a running cluster; raises BadInputError."""
     from distributed import Client
 
     with quiet():

@@ -25,7 +25,7 @@ POLLS_PER_SECOND = 1000
 POLL_CLOCKS_MIN = 2000  # some times the length of a frame
 SETTLE_CLOCKS = 256
 COMMANDS = ("hold", "resume", "override", "stop", "abort", "arm")  # events that the host carries out
-SPINDLE = [NUMBERS[f"encoder_{line}"] for line in ("a", "b", "index")]  # turns for ever
+SPINDLE = [NUMBERS[f"encoder_{line}"] for line in ("a", "b", "index")]  # turns continuously
 GIVE_UP_SECONDS = 2  # without a step, a change of an input or an event
 
 

@@ -41,7 +41,7 @@ def plot_scene_speed(ax: Axes, run: SceneRun) -> None:
 
 
 def plot_scene_position(ax: Axes, run: SceneRun) -> None:
-    """Position counted at the pins and as measured, with the switches on the way."""
+    """Position counted at the pins and as measured, with the switches in the travel."""
     hz, scales = run.file.clock_hz, run.setup.scales
     in_mm = bool(scales)
     for axis in range(run.file.axes):

@@ -86,7 +86,7 @@ enum passo_error passo_driver_task(struct passo *passo, enum passo_error error)
 {
 	if (error == PASSO_ERROR_NOT_STOPPED || error == PASSO_ERROR_NOT_HELD)
 		return error;
-	/* the stops that are looked for: by the trigger, or by the very switch */
+	/* expected stops: by the trigger, or by the switch itself */
 	const bool is_sought =
 	    (error == PASSO_ERROR_TRIGGER || error == PASSO_ERROR_LIMIT) && passo->task.armed;
 	if (is_sought)

@@ -199,7 +199,7 @@ class Chip(Processor, ABC):
             return bool(self._fail(error))
 
     def stall(self, ticks: int) -> None:
-        """The processor stands still, after the present instruction."""
+        """The processor stalls, after the current instruction."""
         self.cpu.now += ticks
 
     def _catch_up(self) -> None:
