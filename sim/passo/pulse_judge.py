@@ -62,7 +62,7 @@ def _first(bad: np.ndarray) -> int | None:
 
 
 def timing_faults(run: Run, axis: int, steps: Steps) -> Iterator[Fault]:
-    """STEP high and low, DIR setup, hold and reversals, the direction of each pulse; the first fault of each."""
+    """STEP high and low, DIR setup, hold and reversals, the direction of each pulse; first faults."""
     pins, clock = run.file.pins, run.pins["clock"].astype(np.int64) - run.start
     step, dir_ = (np.concatenate([[0], run.pins[pin] >> axis & 1]).astype(np.int8) for pin in ("step", "dir"))
     rises, falls = clock[np.diff(step) > 0], clock[np.diff(step) < 0]
