@@ -2,8 +2,8 @@
 """Line and toggle coverage of the RTL by the cocotb tests: `make coverage`.
 
 Runs the tests on Verilator with its line and toggle coverage, merges the results, prints a table and writes
-docs/reference/coverage.md. A line is covered if each of its branches was taken in some instance of the module,
-a bit if it rose and fell in some instance.
+docs/reference/coverage.md. A line is covered if each of its branches was taken in some instance of the
+module, a bit if it rose and fell in some instance.
 
 Fails if a test fails, if a line or a bit is not covered and not listed in coverage_exclusions.toml, or if an
 entry of that list is wrong.
