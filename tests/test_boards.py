@@ -505,5 +505,7 @@ def test_bad_table_is_refused(
 def test_clock_of_a_table_that_no_pll_makes_is_refused(made_up: Path) -> None:
     """The table is at fault then, not who called."""
     made_up.write_text(MADE_UP.replace("mhz = 30", "mhz = 700"))
-    with pytest.raises(TableError, match=r"'made_up': clock\.mhz: the PLL cannot generate 700 MHz from 12 MHz"):
+    with pytest.raises(
+        TableError, match=r"'made_up': clock\.mhz: the PLL cannot generate 700 MHz from 12 MHz"
+    ):
         board("made_up").parameters()

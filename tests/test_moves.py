@@ -210,7 +210,10 @@ BAD = {
     "steps nested": (GOOD.replace("-50", "[50]"), "move 1: steps must be a list of whole numbers"),
     "steps empty": (GOOD.replace("[100, -50]", "[]"), "move 1: steps has 0 axes"),
     "nine axes": (GOOD.replace("-50", "1, 2, 3, 4, 5, 6, 7, 8"), "move 1: steps has 9 axes"),
-    "2^30 steps": (GOOD.replace("-50", f"{MOST + 1}"), f"axis 1 has too many steps; must be at most {MOST} are"),
+    "2^30 steps": (
+        GOOD.replace("-50", f"{MOST + 1}"),
+        f"axis 1 has too many steps; must be at most {MOST} are",
+    ),
     "-2^30 steps": (GOOD.replace("-50", f"-{MOST + 1}"), "move 1: axis 1 has too many steps"),
     "-2^31 steps": (GOOD.replace("-50", "-2147483648"), "move 1: axis 1 has too many steps"),
     "other length": (GOOD + BY_SPEED.replace("-50", "-50, 1"), "move 2: steps has 3 axes, but move 1 has 2"),
@@ -231,7 +234,10 @@ BAD = {
     "deep": (CLOCK + "move = " + "[" * 9000 + "]" * 9000, "bad.toml: "),
     "both forms": (GOOD + "speed = 3\n", "move 1: total_time and speed are mutually exclusive"),
     "neither form": (GOOD.replace("total_time = 0.4", ""), "move 1: total_time or speed is missing"),
-    "acceleration and ramp": (CLOCK + BY_SPEED + "ramp_time = 1\n", "acceleration and ramp_time are mutually exclusive"),
+    "acceleration and ramp": (
+        CLOCK + BY_SPEED + "ramp_time = 1\n",
+        "acceleration and ramp_time are mutually exclusive",
+    ),
     "zero acceleration": (CLOCK + BY_SPEED.replace("40000", "0"), "acceleration must be greater than 0"),
     "zero deceleration": (CLOCK + BY_SPEED + "deceleration = 0\n", "deceleration must be greater than 0"),
     "only deceleration": (
