@@ -172,8 +172,8 @@ def _living(all_scores: Sequence[Score]) -> str:
 
 
 NOT_ENDED = """
-This run has not finished: not every checker has tried every mutant, so a mutant that is alive here may still be
-killed."""
+This run has not finished: not every checker has tried every mutant, so a mutant that is alive here may still
+be killed."""
 
 
 def write(rtl: Sequence[Score], c: Sequence[Score], seed: int, ended: bool = True) -> None:
