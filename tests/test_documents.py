@@ -30,9 +30,9 @@ MOTION_CLOCKS = 1_100_000
 
 
 def frames() -> list[tuple[list[int], list[int]]]:
-    """The worked frames of architecture.md: the words of MOSI and MISO."""
-    text = (paths.docs / "architecture.md").read_text()
-    (block,) = re.findall(r"^\*\*Worked frames\.\*\*.*?^```text\n(.*?)^```", text, re.M | re.S)
+    """The worked frames of link.md: the words of MOSI and MISO."""
+    text = (paths.docs / "link.md").read_text()
+    (block,) = re.findall(r"^## Worked frames.*?^```text\n(.*?)^```", text, re.M | re.S)
     words = r"((?: +[0-9a-f]{8}|\n     )+)\n"
     return [
         ([int(word, 16) for word in mosi.split()], [int(word, 16) for word in miso.split()])

@@ -148,7 +148,8 @@ def _by_seed(report: dict[str, Any]) -> list[str]:
 
 def _sizes(report: dict[str, Any], name: str) -> tuple[Sequence[str], list[list[str]]]:
     unit = DEVICES[name].family.size_unit
-    header = ("channels x axes", f"{unit} placed", "LUT", "FF", "BRAM", "DSP", "lowest MHz", "median MHz")
+    placed = f"{unit} placed" if DEVICES[name].family.place else unit
+    header = ("channels x axes", placed, "LUT", "FF", "BRAM", "DSP", "lowest MHz", "median MHz")
     rows = []
     for row in sorted(
         (row for row in report["designs"] if row["device"] == name), key=lambda r: (r["channels"], r["axes"])

@@ -6,11 +6,11 @@
  * never sent. If the first reply was not valid, the frame itself may already have changed that number; then
  * the host reads a refusal counter that it has made nonzero before and that a reset clears.
  */
-#include "passo_tries.h"
+#include "passo_link_retry.h"
 
 #include <string.h>
 
-#include "passo_exchange.h"
+#include "passo_link_frame.h"
 #include "passo_words.h"
 
 /* Sequence number of reads. The ack of a refused read is repeated; with this number it stays distinguishable
@@ -115,7 +115,7 @@ void passo_host_give_up(struct passo_host *host)
 	struct passo_run run = passo_unpack_run(host->send[1]);
 	bool known;
 
-	while (host->on_wire)
+	while (host->in_flight)
 		passo_host_exchange(host, &known);
 	if (!is_run(host))
 		return;
