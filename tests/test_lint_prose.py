@@ -53,7 +53,7 @@ def test_make_lint_fails(tmp_path: Path) -> None:
     assert listed
     for page in listed:
         copy = tmp_path / page.relative_to(paths.root)
-        copy.parent.mkdir(exist_ok=True)
+        copy.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(page, copy)
     command = [sys.executable, tmp_path / "tools" / "lint_prose.py"]
     assert subprocess.run(command).returncode == 0
