@@ -105,11 +105,12 @@ def _rules(form: Form) -> str:
 
 
 def _in_c(key: Key) -> str:
-    """Its place in the struct, and what it is there."""
+    """The member of the struct if it has another name; its unit if the page does not state it once."""
     if not key.kind.c:
-        return ""
+        return "-"
     member = f"limits[].{key.member}" if key.shared else key.member + ("[]" if key.kind.list else "")
-    return ", ".join(filter(None, (f"`{member}`", key.kind.stands_for)))
+    unit = key.kind.stands_for if key.kind.factor not in ("clock_hz", "unit_q32") else ""
+    return ", ".join(filter(None, (f"`{member}`" if member != key.name else "", unit)))
 
 
 COLUMNS = ["key", "meaning", "unit", "range", "default", "in C"]

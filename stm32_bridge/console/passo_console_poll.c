@@ -21,8 +21,8 @@ static bool is_time_to_look(const struct passo_console *console, struct passo_co
 	bool runs = passo_snapshot(&channel->passo)->state == PASSO_STATE_RUN;
 	uint32_t now = hardware->microseconds ? hardware->microseconds(hardware->context) : 0u;
 
-	if (runs && !console->waits && !has_due_command(channel) && hardware->irq && !hardware->irq(hardware->context)
-	    && now - channel->looked_at < LOOK_MICROSECONDS)
+	if (runs && !console->waits && !has_due_command(channel) && hardware->irq
+	    && !hardware->irq(hardware->context) && now - channel->looked_at < LOOK_MICROSECONDS)
 		return false;
 	channel->looked_at = now;
 	return true;
