@@ -111,7 +111,7 @@ QUESTIONS = {
     "Why did it stop with RAMP_UNDERRUN": "RAMP_UNDERRUN",
     "The motor hums but does not turn": "hum|whistle|stall",
     "Why is a corner slow": "junction deviation",
-    "What happens when the host dies": "watchdog",
+    "What happens when the host fails": "watchdog",
     "How do I drive a laser": "power",
     "How do I cut a thread": "passo_thread|thread",
     "Does it fit on my FPGA": "HX8K",
