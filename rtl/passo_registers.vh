@@ -250,14 +250,14 @@ localparam CHANNEL_RATE_TARGET_BITS    = 17;
 localparam CHANNEL_RATE_TARGET_RESET   = 17'h10000;
 localparam CHANNEL_RATE_TARGET_DEFINED = 32'h0001FFFF;
 
-// Channel: Rate slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1.
+// Channel: Rate slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = immediately; 0 counts as 1.
 localparam CHANNEL_RATE_SLEW         = 8'h02;
 localparam CHANNEL_RATE_SLEW_LSB     = 0;
 localparam CHANNEL_RATE_SLEW_BITS    = 17;
 localparam CHANNEL_RATE_SLEW_RESET   = 17'h00400;
 localparam CHANNEL_RATE_SLEW_DEFINED = 32'h0001FFFF;
 
-// Channel: Stop slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1.
+// Channel: Stop slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = immediately; 0 counts as 1.
 localparam CHANNEL_STOP_SLEW         = 8'h03;
 localparam CHANNEL_STOP_SLEW_LSB     = 0;
 localparam CHANNEL_STOP_SLEW_BITS    = 17;
@@ -769,7 +769,7 @@ localparam CAUSE_ABORT           = 4'd2;  // COMMAND.ABORT.
 localparam CAUSE_LINE_UNDERRUN   = 4'd3;  // A line ended, was not LAST, and none followed.
 localparam CAUSE_RAMP_UNDERRUN   = 4'd4;  // The ramps ran out at speed.
 localparam CAUSE_STEP_OVERRUN    = 4'd5;  // Steps came faster than the pin timing of an axis allows.
-localparam CAUSE_LIMIT           = 4'd6;  // An axis stepped towards an active limit switch.
+localparam CAUSE_LIMIT           = 4'd6;  // An axis stepped toward an active limit switch.
 localparam CAUSE_ALARM           = 4'd7;  // The alarm input of an axis became active.
 localparam CAUSE_TRIGGER         = 4'd8;  // The trigger fired, and its action is a stop.
 localparam CAUSE_WATCHDOG        = 4'd9;  // No good frame came for too long while a motion ran.

@@ -251,14 +251,14 @@
 #define PASSO_CHANNEL_RATE_TARGET_RESET   0x10000u
 #define PASSO_CHANNEL_RATE_TARGET_DEFINED 0x0001FFFFu
 
-/* Channel: Rate slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1. */
+/* Channel: Rate slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = immediately; 0 counts as 1. */
 #define PASSO_CHANNEL_RATE_SLEW         0x02u
 #define PASSO_CHANNEL_RATE_SLEW_LSB     0u
 #define PASSO_CHANNEL_RATE_SLEW_BITS    17u
 #define PASSO_CHANNEL_RATE_SLEW_RESET   0x00400u
 #define PASSO_CHANNEL_RATE_SLEW_DEFINED 0x0001FFFFu
 
-/* Channel: Stop slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1. */
+/* Channel: Stop slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = immediately; 0 counts as 1. */
 #define PASSO_CHANNEL_STOP_SLEW         0x03u
 #define PASSO_CHANNEL_STOP_SLEW_LSB     0u
 #define PASSO_CHANNEL_STOP_SLEW_BITS    17u
@@ -786,7 +786,7 @@ enum passo_cause {
 	PASSO_CAUSE_LINE_UNDERRUN   = 3,  /* A line ended, was not LAST, and none followed. */
 	PASSO_CAUSE_RAMP_UNDERRUN   = 4,  /* The ramps ran out at speed. */
 	PASSO_CAUSE_STEP_OVERRUN    = 5,  /* Steps came faster than the pin timing of an axis allows. */
-	PASSO_CAUSE_LIMIT           = 6,  /* An axis stepped towards an active limit switch. */
+	PASSO_CAUSE_LIMIT           = 6,  /* An axis stepped toward an active limit switch. */
 	PASSO_CAUSE_ALARM           = 7,  /* The alarm input of an axis became active. */
 	PASSO_CAUSE_TRIGGER         = 8,  /* The trigger fired, and its action is a stop. */
 	PASSO_CAUSE_WATCHDOG        = 9,  /* No good frame came for too long while a motion ran. */
