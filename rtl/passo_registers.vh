@@ -250,14 +250,14 @@ localparam CHANNEL_RATE_TARGET_BITS    = 17;
 localparam CHANNEL_RATE_TARGET_RESET   = 17'h10000;
 localparam CHANNEL_RATE_TARGET_DEFINED = 32'h0001FFFF;
 
-// Channel: Rate slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = immediately; 0 counts as 1.
+// Channel: Rate slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1.
 localparam CHANNEL_RATE_SLEW         = 8'h02;
 localparam CHANNEL_RATE_SLEW_LSB     = 0;
 localparam CHANNEL_RATE_SLEW_BITS    = 17;
 localparam CHANNEL_RATE_SLEW_RESET   = 17'h00400;
 localparam CHANNEL_RATE_SLEW_DEFINED = 32'h0001FFFF;
 
-// Channel: Stop slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = immediately; 0 counts as 1.
+// Channel: Stop slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1.
 localparam CHANNEL_STOP_SLEW         = 8'h03;
 localparam CHANNEL_STOP_SLEW_LSB     = 0;
 localparam CHANNEL_STOP_SLEW_BITS    = 17;

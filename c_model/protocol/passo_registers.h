@@ -251,14 +251,14 @@
 #define PASSO_CHANNEL_RATE_TARGET_RESET   0x10000u
 #define PASSO_CHANNEL_RATE_TARGET_DEFINED 0x0001FFFFu
 
-/* Channel: Rate slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = immediately; 0 counts as 1. */
+/* Channel: Rate slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1. */
 #define PASSO_CHANNEL_RATE_SLEW         0x02u
 #define PASSO_CHANNEL_RATE_SLEW_LSB     0u
 #define PASSO_CHANNEL_RATE_SLEW_BITS    17u
 #define PASSO_CHANNEL_RATE_SLEW_RESET   0x00400u
 #define PASSO_CHANNEL_RATE_SLEW_DEFINED 0x0001FFFFu
 
-/* Channel: Stop slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = immediately; 0 counts as 1. */
+/* Channel: Stop slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1. */
 #define PASSO_CHANNEL_STOP_SLEW         0x03u
 #define PASSO_CHANNEL_STOP_SLEW_LSB     0u
 #define PASSO_CHANNEL_STOP_SLEW_BITS    17u

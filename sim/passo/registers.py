@@ -362,9 +362,9 @@ class ChannelCommandWord(Word):
     zero: bool = False
     # Clear cause and lost steps and leave STOPPED. Refused with BUSY while a motion runs.
     clear: bool = False
-    # Hard stop: STOPPED immediately, waiting steps dropped, no new pulse begins.
+    # Hard stop: STOPPED at once, waiting steps dropped, no new pulse begins.
     abort: bool = False
-    # Soft stop: rate to 0 by STOP_SLEW, then STOPPED. In IDLE, PREPARE and ARMED: STOPPED immediately.
+    # Soft stop: rate to 0 by STOP_SLEW, then STOPPED. In IDLE, PREPARE and ARMED: STOPPED at once.
     stop: bool = False
 
     PLACES: ClassVar = {
@@ -1013,14 +1013,14 @@ CHANNEL_RATE_TARGET_BITS = 17
 CHANNEL_RATE_TARGET_RESET = 0x10000
 CHANNEL_RATE_TARGET_DEFINED = 0x0001FFFF
 
-# Channel: Rate slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = immediately; 0 counts as 1.
+# Channel: Rate slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1.
 CHANNEL_RATE_SLEW = 0x02
 CHANNEL_RATE_SLEW_LSB = 0
 CHANNEL_RATE_SLEW_BITS = 17
 CHANNEL_RATE_SLEW_RESET = 0x00400
 CHANNEL_RATE_SLEW_DEFINED = 0x0001FFFF
 
-# Channel: Stop slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = immediately; 0 counts as 1.
+# Channel: Stop slew. Change of rate in 2^TICK_LOG2 clocks, UQ1.16; 65536 = at once; 0 counts as 1.
 CHANNEL_STOP_SLEW = 0x03
 CHANNEL_STOP_SLEW_LSB = 0
 CHANNEL_STOP_SLEW_BITS = 17
