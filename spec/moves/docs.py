@@ -22,7 +22,7 @@ MARKER = re.compile(r"(<!-- moves: ([\w ]+) -->)(.*?)(<!-- /moves -->)", re.DOTA
 
 
 def fill(schema: Schema, page: str, text: str) -> str:
-    """A page with everything between its markers made anew; raise SchemaError."""
+    """A page with everything between its markers regenerated; raise SchemaError."""
     try:
         return MARKER.sub(lambda found: found[1] + _between(schema, found[2]) + found[4], text)
     except KeyError as error:
