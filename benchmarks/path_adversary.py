@@ -27,6 +27,7 @@ FIGURES: dict[str, Callable[[Measured], float]] = {
     "unlimited": lambda one: one.unlimited,
     "look_ahead": lambda one: one.look_ahead,
     "shaped": lambda one: one.shaped,
+    "soft": lambda one: one.soft,
     **{name: lambda one, name=name: one.share(name) for name in ("speed", "acceleration", "jerk")},
 }
 
@@ -61,7 +62,7 @@ class Found:
 
 
 def batch(seed: int, count: int) -> Found:
-    """Draw and measure so many."""
+    """Draw and measure `count` paths."""
     found = Found()
     search(count, seed, known=frozenset(KINDS), seen=found.see)
     return found
@@ -142,7 +143,7 @@ def main(words: list[str]) -> None:
     if "--keep" in words:
         write_cases(WORST, kept)
     if found.beyond:
-        raise SystemExit("a path is beyond a bound")
+        raise SystemExit("a path exceeds a bound")
 
 
 if __name__ == "__main__":

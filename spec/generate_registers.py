@@ -40,7 +40,7 @@ OUTPUTS = {
     "c_model/protocol/passo_words.h": c.words,
     "c_model/core/passo_register_rules.h": rules.c,
     "sim/passo/registers.py": python.module,
-    "docs/registers.md": docs.page,
+    "docs/reference/registers.md": docs.page,
 }
 
 

@@ -245,9 +245,7 @@ def test_a_stop_at_a_limit(browser: Browser, tmp_path: Path, capsys: pytest.Capt
     assert browser.value("document.getElementById('verdict').className") == "stopped"
     said = browser.value(WORDS)
     assert said == summary["verdict"] and said in told
-    assert said.startswith(
-        "stopped by LIMIT in move 1; 1,100 of 3,000 steps of the moves made; moves 2, 3 not"
-    )
+    assert said.startswith("stopped by LIMIT in move 1; 1,100 of 3,000 steps made; moves 2, 3 not started")
     assert said.endswith("C model alone, not compared") and "every" not in said
     assert (summary["outcome"], summary["stopped"]) == ("stopped", "LIMIT")
     assert summary["moves_not_begun"] == [2, 3]
@@ -330,6 +328,6 @@ def test_faults_of_a_machine_are_shown(browser: Browser, tmp_path: Path) -> None
     command = ["run", str(tmp_path / "moves.toml"), "--engine", "model", "--report", "--out", out]
     assert main(command) == 1
     shown(browser, tmp_path / "out" / "report.html")
-    assert "it did not come" in browser.value("document.querySelector('#events tr.fault').textContent")
+    assert "it never occurred" in browser.value("document.querySelector('#events tr.fault').textContent")
     assert "ESTOP" in browser.value("document.querySelector('#events tr.stop').textContent")
     assert browser.value("document.getElementById('verdict').className") == "bad"

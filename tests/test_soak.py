@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A short form of `make soak`, which plays thousands of histories and plants all defects."""
+"""A short form of `make verify ONLY=soak`, which plays thousands of histories and plants all defects."""
 
 import shutil
 import subprocess
@@ -76,7 +76,7 @@ def test_no_promise_is_broken_by_an_early_end(kind: str, histories: int, tmp_pat
 
 
 def test_the_soak_itself_is_sound(tmp_path: Path) -> None:
-    """Under the sanitizers of addresses and undefined behaviour."""
+    """Under the sanitizers of addresses and undefined behavior."""
     folders = (paths.driver, paths.planner, paths.protocol, paths.core)
     made = tmp_path / "soak"
     flags = [
@@ -116,7 +116,7 @@ def test_power_keeps_its_energy_and_raster_its_substep() -> None:
     ["abort leaves steps", "a lost stop counts as sent", "power after a stop", "limit closes at rest only"],
 )
 def test_a_defect_goes_red(name: str) -> None:
-    """One at register level, one of the driver, one of a machine; `make soak` plants all of them."""
+    """One at register level, one of the driver, one of a machine; `make verify` plants all."""
     caught = defects.catch(DEFECTS[name], 1)
     assert caught.good, caught.says
 

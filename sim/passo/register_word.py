@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the generated registers are made of."""
+"""Base classes of the generated registers."""
 
 import dataclasses
 from enum import IntEnum

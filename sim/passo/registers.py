@@ -54,7 +54,7 @@ class Cause(DescribedEnum):
     LINE_UNDERRUN = 3, "A line ended, was not LAST, and none followed."
     RAMP_UNDERRUN = 4, "The ramps ran out at speed."
     STEP_OVERRUN = 5, "Steps came faster than the pin timing of an axis allows."
-    LIMIT = 6, "An axis stepped towards an active limit switch."
+    LIMIT = 6, "An axis stepped toward an active limit switch."
     ALARM = 7, "The alarm input of an axis became active."
     TRIGGER = 8, "The trigger fired, and its action is a stop."
     WATCHDOG = 9, "No good frame came for too long while a motion ran."
@@ -290,7 +290,7 @@ class ChannelTriggerWord(Word):
 class ChannelTriggerStateWord(Word):
     """Trigger state."""
 
-    unknown: bool = bits(6, 1, "r")  # Levels of the inputs are unknown: they have not stood still for a period of the filter since the reset, or since polarity or filter were written. No motion begins.
+    unknown: bool = bits(6, 1, "r")  # Levels of the inputs are unknown: they have not been stable for a period of the filter since the reset, or since polarity or filter were written. No motion begins.
     axes: int = bits(8, 8, "r", 0)  # Axes of the first limit or alarm since COMMAND.CLEAR.
     source_active: bool = bits(5, 1, "r", False)  # The trigger is armed, and its source is active.
     arming: bool = bits(4, 1, "r", False)  # The trigger is being armed: its source has not kept one level for longer than the filter yet. No motion begins.
@@ -331,7 +331,7 @@ class ChannelFollowWord(Word):
     """Follow."""
 
     scale: int = bits(5, 3, "w", 0)  # A count is 2^scale clocks of the profile.
-    source: int = bits(2, 3, "w", 0)  # Axis of the encoder. One that is not there stands still.
+    source: int = bits(2, 3, "w", 0)  # Axis of the encoder. A missing encoder never counts.
     wait_index: bool = bits(1, 1, "w", False)  # 1: an ARMED motion waits for the index of that encoder.
     follow: bool = bits(0, 1, "w", False)  # 1: the clocks of the profile are counts of an encoder.
 
@@ -340,7 +340,7 @@ class ChannelFollowWord(Word):
 class ChannelFollowStateWord(Word):
     """Follow state."""
 
-    lost: bool = bits(25, 1, "r", False)  # The phase is lost: 2^22 or more were owed, or A and B of the encoder changed at once.
+    lost: bool = bits(25, 1, "r", False)  # The phase is lost: 2^22 or more were outstanding, or A and B of the encoder changed simultaneously.
     behind: bool = bits(24, 1, "r", False)  # Two counts or more were owed: the path was late.
     owed: int = bits(0, 24, "r", 0)  # Clocks of the profile that are owed to the encoder, signed.
 
@@ -407,7 +407,7 @@ class EncoderGreatestWord(Word):
 class EncoderIndexWord(Word):
     """Encoder index."""
 
-    illegal: int = bits(24, 8, "r", 0)  # Changes of A and B at once, up to 255; 0 after COMMAND.CLEAR, too.
+    illegal: int = bits(24, 8, "r", 0)  # Simultaneous changes of A and B (illegal transitions), saturating at 255; also cleared by COMMAND.CLEAR.
     indexes: int = bits(16, 8, "r", 0)  # Number of indexes; wraps.
     latch: int = bits(0, 16, "r", 0)  # Encoder position at the last index, its lower 16 bits.
 

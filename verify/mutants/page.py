@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The score of every module and file, and docs/mutants.md."""
+"""The score of every module and file, and docs/reference/mutants.md."""
 
 import re
 import tomllib
@@ -8,15 +8,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from passo.console import console, table
+from passo.output import write_text
 from passo.toolchain import paths
 
 from verify.mutants.c_source import CMutant
 from verify.mutants.fates import Fates
 from verify.mutants.netlist import Mutant
 
-PAGE = paths.docs / "mutants.md"
+PAGE = paths.reference / "mutants.md"
 REASONS = Path(__file__).parent / "reasons.toml"
-NO_REASON = "no promise says it yet"
+NO_REASON = "no property covers it yet"
 
 
 @dataclass
@@ -171,8 +172,8 @@ def _living(all_scores: Sequence[Score]) -> str:
 
 
 NOT_ENDED = """
-These are the figures of a run that has not ended: not all judges have seen all mutants, so that a mutant
-that lives here may be killed yet."""
+This run has not finished: not every checker has tried every mutant, so a mutant that is alive here may still
+be killed."""
 
 
 def write(rtl: Sequence[Score], c: Sequence[Score], seed: int, ended: bool = True) -> None:
@@ -180,13 +181,13 @@ def write(rtl: Sequence[Score], c: Sequence[Score], seed: int, ended: bool = Tru
     rtl, c = _merged(rtl), _merged(c)
     all_rtl, all_c = total(rtl), total(c)
     text = PAGE.read_text(encoding="utf-8")
-    begin, end = "<!-- figures: written by make mutants -->\n", "<!-- end of figures -->\n"
+    begin, end = "<!-- figures: written by make verify -->\n", "<!-- end of figures -->\n"
     head, rest = text.split(begin)
     tail = rest.split(end)[1]
 
     def of(score: Score) -> str:
-        waits = f", {score.waiting} are not played yet" if score.waiting else ""
-        equal = f"{score.equal} more are no faults"
+        waits = f", {score.waiting} not played yet" if score.waiting else ""
+        equal = f"{score.equal} more are equivalent"
         return f"{score.dead:,} of {score.faults:,} ({score.share:.1%}; {equal}{waits})"
 
     survivors = f"""
@@ -200,8 +201,8 @@ def write(rtl: Sequence[Score], c: Sequence[Score], seed: int, ended: bool = Tru
 """
 
     figures = f"""
-With seed {seed}, killed of the mutants of the RTL: {of(all_rtl)};
-of those of the C sources: {of(all_c)}.
+Seed {seed}. Mutants killed in the RTL: {of(all_rtl)}; in the C sources:
+{of(all_c)}.
 
 ### RTL
 
@@ -213,4 +214,4 @@ of those of the C sources: {of(all_c)}.
 
 """
     figures += survivors if ended else NOT_ENDED + "\n"
-    PAGE.write_text(head + begin + figures + end + tail, encoding="utf-8")
+    write_text(PAGE, head + begin + figures + end + tail)
