@@ -69,8 +69,8 @@ module passo_rules #(
   wire        pushable = (rule & RULE_PUSH) != 13'd0;
   wire        writable = (rule & RULE_WRITE) != 13'd0;
   wire        readable = (rule & RULE_READ) != 13'd0;
-  wire        known = there && (axis_there || !each_axis) && (pushable || writable || readable);
 
+  reg known;
   reg bad;
 
   assign needs_quiet = bus_check & known & quiet;
@@ -79,6 +79,7 @@ module passo_rules #(
     there <= in_tables || bus_address[11:8] <= CHANNELS[3:0];
     axis_there <= {1'b0, axis} < AXES[3:0];
     rule <= in_tables ? RULE_SHAPE : in_core ? of_core : in_axes ? of_axis | RULE_AXIS : of_channel;
+    known <= there && (axis_there || !each_axis) && (pushable || writable || readable);
     bad <= {bus_msb, power & ~bus_one_hot} > {rule[4:0], 1'b0} || (nonzero && bus_msb == 5'd0 && !bus_odd)
            || (even && bus_odd) || bad_value;
     claim <= known && (bus_check || bus_read);
