@@ -81,6 +81,7 @@ def verilog(source: Source) -> str:
         "// What each register takes, to be included in passo_rules. It is flags, and in its lower 5 bits",
         "// the highest bit that a word may have; without a flag there is no register. No `default`:",
         "// yosys would make a ROM of the table, with registers of its own for the address.",
+        "/* verilator lint_off CASEOVERLAP */",
         "",
         f"localparam [12:0] RULE_SHAPE = {_rule(_shape(source.core))};",
     ]
@@ -92,7 +93,7 @@ def verilog(source: Source) -> str:
         lines += ["", f"function [12:0] {name}(input [{min(bits, 8) - 1}:0] address);", f"  casez ({read})"]
         lines += [f"    {row}" for row in aligned([*rows, (f"{width}'b{'?' * width}:", f"{name} = 13'd0;")])]
         lines += ["  endcase", "endfunction"]
-    return "\n".join([*lines, ""])
+    return "\n".join([*lines, "", "/* verilator lint_on CASEOVERLAP */", ""])
 
 
 def _members(register: Register) -> Iterator[str]:
