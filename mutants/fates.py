@@ -26,6 +26,10 @@ class Fate:
         """No judge has seen it, and it may be a fault."""
         return not self.killed and not self.equal
 
+    def waits(self, case: str) -> bool:
+        """It lives, and has not been tried in this case."""
+        return self.lives and case not in (self.tried or [])
+
 
 def hash_of(files: Iterable[Path], *more: str) -> str:
     """Of the contents of files, and texts."""

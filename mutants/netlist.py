@@ -98,6 +98,11 @@ class Mutant:
         """What it does to the bit: inv, const0, const1, cnot0, cnot1."""
         return self._word("mode")
 
+    def fits(self, ports: dict[str, int]) -> bool:
+        """Whether a cell with ports of these widths has its bits."""
+        width = ports.get(self._word("port"), 0)
+        return max(int(self._word("portbit") or 0), int(self._word("ctrlbit") or 0)) < width
+
     @property
     def place(self) -> str:
         """Cell, port and bit."""
@@ -202,12 +207,16 @@ def draw(core: Core, seed: int, each: int) -> list[Mutant]:
     return mutants
 
 
+def selected(command: str, number: int) -> str:
+    """The command of a mutant that is one only when SELECT is its number."""
+    return command.replace("mutate ", f"mutate -ctrl {SELECT} {WIDTH} {number} ", 1)
+
+
 def write(core: Core, mutants: list[Mutant], netlist: Path) -> None:
     """The netlist of the core with all the mutants."""
     read = _read(core)
     made = "".join(
-        mutant.command.replace("mutate ", f"mutate -ctrl {SELECT} {WIDTH} {mutant.number} ", 1) + "\n"
-        for mutant in mutants
+        f"{selected(mutant.command, mutant.number)}\n" for mutant in mutants
     )
     yosys(core.folder, f"{read}{made}opt_clean\nwrite_verilog -noattr netlist.v\n")
     netlist.write_text(_choosing((core.folder / "netlist.v").read_text(encoding="utf-8")), encoding="utf-8")
