@@ -4,7 +4,9 @@
  */
 #include "history_player.h"
 
-#define SETTLES 200u /* clocks in which any of these filters knows its level */
+#define SETTLES 60u /* clocks in which any of these filters knows its level */
+
+#define FOLLOWS 600u /* what is owed is made, at half the speed of the clock */
 
 static bool set(struct player *player, unsigned place, uint32_t word)
 {
@@ -50,10 +52,10 @@ static void check_counts(struct player *player, struct plot_random *random, unsi
 	const bool inverted = (setup >> PASSO_ENCODER_SETUP_INVERTED_LSB & 1u) != 0u;
 	const bool index_inverted = (setup >> PASSO_ENCODER_SETUP_INDEX_INVERTED_LSB & 1u) != 0u;
 	const bool gated = (setup >> PASSO_ENCODER_SETUP_INDEX_GATED_LSB & 1u) != 0u;
-	const int32_t most = 1 + (int32_t)plot_draw(random, 300);
+	const int32_t most = 1 + (int32_t)plot_draw(random, 120);
 	const int32_t counts = plot_chance(random, 50) ? most : -most;
 	const int32_t position = inverted ? -counts : counts;
-	const uint32_t limit = 1u + plot_draw(random, 300);
+	const uint32_t limit = 1u + plot_draw(random, 150);
 	const uint32_t words[2] = {1u + plot_draw(random, 0x40000u), limit};
 
 	player_send(
@@ -97,7 +99,7 @@ static void check_following(struct player *player, struct plot_random *random, u
 {
 	const bool hard = (setup >> PASSO_ENCODER_SETUP_STOP_HARD_LSB & 1u) != 0u;
 	const bool soft = (setup >> PASSO_ENCODER_SETUP_STOP_SOFT_LSB & 1u) != 0u;
-	const uint32_t steps = 10u + plot_draw(random, 30), limit = 2u + plot_draw(random, 40);
+	const uint32_t steps = 10u + plot_draw(random, 16), limit = 2u + plot_draw(random, 24);
 	const uint32_t words[2] = {PASSO_ENCODER_RATIO_RESET, limit};
 	struct passo_line line = {.last = true, .substeps = 2u * steps};
 	const uint64_t velocity = PASSO_VELOCITY_MAX >> 5;
@@ -132,7 +134,7 @@ static void check_thread(struct player *player, struct plot_random *random, unsi
 	const bool inverted = (setup >> PASSO_ENCODER_SETUP_INVERTED_LSB & 1u) != 0u;
 	const bool waits = plot_chance(random, 50);
 	const unsigned scale = plot_draw(random, 3);
-	const uint32_t ticks = 1u + plot_draw(random, 3);
+	const uint32_t ticks = 1u + plot_draw(random, 2);
 	const uint32_t tick = 1u << world->model.parameters.tick_log2;
 	const uint64_t velocity =
 	    (PASSO_VELOCITY_MAX >> 2) - (uint64_t)plot_draw(random, 0x10000u) * (PASSO_VELOCITY_MAX >> 20);
@@ -167,6 +169,8 @@ static void check_thread(struct player *player, struct plot_random *random, unsi
 		const uint32_t due = i != 0u || clocks >= tick * ticks
 		                       ? substeps
 		                       : (uint32_t)((PASSO_ONE_Q48 / 4u + velocity * clocks) / PASSO_ONE_Q48);
+
+		world_run(world, FOLLOWS);
 		const uint32_t *read = get(player, PASSO_CHANNEL_POSITION_BASE, player_axes(player));
 
 		expect(player, "position of a thread", read[0], due);
@@ -183,7 +187,7 @@ void player_check_encoder(struct player *player, struct plot_random *random)
 {
 	struct world *world = player->world;
 	const unsigned axis = plot_draw(random, player_axes(player));
-	const uint32_t filter = plot_draw(random, 40);
+	const uint32_t filter = plot_draw(random, 13);
 	const uint32_t setup = plot_draw(random, 1u + PASSO_ENCODER_SETUP_DEFINED);
 
 	for (unsigned a = 0; a < player_axes(player); a++)

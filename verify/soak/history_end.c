@@ -247,6 +247,8 @@ void player_end(struct player *player, struct plot_random *random, bool brief)
 	if (world->machine && !world->tries && !world->starts && !world->pokes && !world->failed_at) {
 		world_run(world, 300);
 		world->judged_until = world->clock;
+		world->half_period = 2;
+		player_prepare(player);
 		player_check_encoder(player, random);
 		player_check_outputs(player, random);
 	}

@@ -16,6 +16,17 @@ uint64_t player_runs(const struct player *player, unsigned channel, uint64_t fro
 	return 0;
 }
 
+void player_prepare(struct player *player)
+{
+	const uint32_t timings[2] = {0x40004u, 0x30003u}, run = 1, rate = PASSO_RATE_ONE;
+
+	for (unsigned a = 0; a < player_axes(player); a++)
+		player_send(
+		    player, PASSO_OPERATION_WRITE, axis_address(0, a, PASSO_AXIS_STEP_TIMING), timings, 2);
+	player_send(player, PASSO_OPERATION_WRITE, channel_address(0, PASSO_CHANNEL_RATE_TARGET), &rate, 1);
+	player_send(player, PASSO_OPERATION_WRITE, PASSO_ADDRESS_RUN, &run, 1);
+}
+
 uint64_t player_start(
     struct player *player, const struct passo_line *lines, size_t count, uint64_t velocity, uint32_t ticks)
 {
@@ -25,30 +36,24 @@ uint64_t player_start(
 					    .velocity_end = velocity,
 					    .ticks = ticks,
 					    .progress_step = (PASSO_ONE_Q48 - 1u) / ticks}};
-	const uint32_t timings[2] = {0x40004u, 0x30003u}, stay = 0, run = 1, rate = PASSO_RATE_ONE;
 	uint32_t words[PASSO_FRAME_PAYLOAD_MAX];
 	size_t length = passo_ramp_words(words, &ramps[0]);
-	bool taken = player_send(player, PASSO_OPERATION_WRITE, PASSO_ADDRESS_RUN, &stay, 1);
 
 	length += passo_ramp_words(words + length, &ramps[1]);
-	taken = player_send(player, PASSO_OPERATION_PUSH, channel_address(0, PASSO_CHANNEL_RAMP), words,
-		    (unsigned)length)
-	     && taken;
+	bool taken = player_send(
+	    player, PASSO_OPERATION_PUSH, channel_address(0, PASSO_CHANNEL_RAMP), words, (unsigned)length);
+
 	length = 0;
 	for (size_t i = 0; i < count; i++) {
 		passo_line_words(words + length, &lines[i], (uint8_t)player_axes(player));
 		length += world_line_words(&world->model.parameters);
 		words[length - 1u] = lines[i].output;
 	}
+	const uint64_t from = world->clock;
 	taken = player_send(player, PASSO_OPERATION_PUSH, channel_address(0, PASSO_CHANNEL_LINE), words,
 		    (unsigned)length)
 	     && taken;
-	for (unsigned a = 0; a < player_axes(player); a++)
-		player_send(
-		    player, PASSO_OPERATION_WRITE, axis_address(0, a, PASSO_AXIS_STEP_TIMING), timings, 2);
-	player_send(player, PASSO_OPERATION_WRITE, channel_address(0, PASSO_CHANNEL_RATE_TARGET), &rate, 1);
-	const uint64_t from = world->clock;
-	if (!player_send(player, PASSO_OPERATION_WRITE, PASSO_ADDRESS_RUN, &run, 1) || !taken)
+	if (!taken)
 		world_fail(world, world->clock, "a move of %zu lines was refused", count);
 	return from;
 }

@@ -71,8 +71,9 @@ void player_shaped_move(struct player *player, struct plot_random *random, unsig
 
 /* The first clock from another one on in which a channel is running, or is not; 0: none. */
 uint64_t player_runs(const struct player *player, unsigned channel, uint64_t from, bool running);
-/* At rest: lines of channel 0 at a constant speed for so many ticks, with STEP and DIR of a few clocks.
- * Returns a clock before it. */
+/* STEP and DIR of channel 0 of a few clocks, full rate, and RUN. */
+void player_prepare(struct player *player);
+/* After that, at rest: lines at a constant speed for so many ticks. Returns a clock before it. */
 uint64_t player_start(
     struct player *player, const struct passo_line *lines, size_t count, uint64_t velocity, uint32_t ticks);
 /* Until it is at rest again; returns the clock in which it is running first. */
