@@ -99,6 +99,11 @@ class Mutant:
         return self._word("mode")
 
     @property
+    def netlist_module(self) -> str:
+        """The module, as yosys calls it with its parameters."""
+        return self._word("module")
+
+    @property
     def of_clock(self) -> bool:
         """It changes the clock of a register."""
         return "CLK" in self._word("port")
@@ -141,11 +146,11 @@ def yosys(folder: Path, script: str, limit: float | None = None) -> None:
         raise Failure(f"yosys in {folder}: {done.stderr.strip()[-800:]}")
 
 
-def _read(core: Core) -> str:
-    """Commands that read the core; the sources are beside the script."""
+def read(core: Core, folder: Path) -> str:
+    """Commands that read the core; the sources are beside the script, in the folder."""
+    folder.mkdir(parents=True, exist_ok=True)
     for source in [*rtl_sources(), *sorted(paths.rtl.glob("*.vh"))]:
-        core.folder.mkdir(parents=True, exist_ok=True)
-        (core.folder / source.name).write_bytes(source.read_bytes())
+        (folder / source.name).write_bytes(source.read_bytes())
     files = " ".join(source.name for source in rtl_sources())
     chosen = " ".join(f"-chparam {name} {value}" for name, value in core.parameters.verilog().items())
     return f"read_verilog -I. {files}\nhierarchy -top {TOP} {chosen}\nproc\nmemory_collect\nopt_clean\n"
@@ -172,8 +177,8 @@ def drawn(core: Core, seed: int, each: int) -> tuple[list[Mutant], Path, str]:
 
 def draw(core: Core, seed: int, each: int) -> list[Mutant]:
     """Draw `each` mutants from each module."""
-    read = _read(core)
-    yosys(core.folder, f"{read}write_json core.json")
+    commands = read(core, core.folder)
+    yosys(core.folder, f"{commands}write_json core.json")
     modules: dict[str, list[str]] = {}
     kept: set[str] = set()  # modules of which the first values of some registers are given
     for name, module in json.loads((core.folder / "core.json").read_text())["modules"].items():
@@ -188,10 +193,10 @@ def draw(core: Core, seed: int, each: int) -> list[Mutant]:
         for i, name in enumerate(sorted(names)):
             share = (2 * MOST + i) // len(names) + 2
             lists.append((file, name, f"list{len(lists)}.txt", share))
-    commands = "".join(
+    draws = "".join(
         f"mutate -list {share} -seed {seed} -module {name} -o {text}\n" for _, name, text, share in lists
     )
-    yosys(core.folder, read + commands)
+    yosys(core.folder, commands + draws)
     texts_of: dict[str, list[str]] = {}
     longest = 0
     for file, _, text, _ in lists:
@@ -219,11 +224,10 @@ def selected(command: str, number: int) -> str:
 
 def write(core: Core, mutants: list[Mutant], netlist: Path) -> None:
     """The netlist of the core with all the mutants."""
-    read = _read(core)
     made = "".join(
         f"{selected(mutant.command, mutant.number)}\n" for mutant in mutants
     )
-    yosys(core.folder, f"{read}{made}opt_clean\nwrite_verilog -noattr netlist.v\n")
+    yosys(core.folder, f"{read(core, core.folder)}{made}opt_clean\nwrite_verilog -noattr netlist.v\n")
     netlist.write_text(_choosing((core.folder / "netlist.v").read_text(encoding="utf-8")), encoding="utf-8")
 
 

@@ -38,11 +38,10 @@ def run_core(core: Core, seed: int, each: int, only: Collection[str]) -> list[Sc
     pins = rtl_judge.Pins(core, chosen, fates, soak, library, seed, _say)
     first, second, third = rtl_judge.ROUNDS[core.name]
     pins.judge(first)
-    formal_judge.judge(core, chosen, fates, _say, formal_judge.LIMITS[0])
+    formal_judge.judge(core, chosen, fates, _say, formal_judge.LIMIT)
     pins.judge(second)
     registers_judge.judge(core, chosen, fates, library, seed, _say)
     pins.judge(third)
-    formal_judge.judge(core, chosen, fates, _say, formal_judge.LIMITS[1])
     equivalence.judge(core, chosen, fates, _say)
     return scores(chosen, fates)
 
