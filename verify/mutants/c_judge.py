@@ -37,10 +37,10 @@ def tests() -> list[Path]:
 class Worker:
     """The process that runs the tests."""
 
-    def __init__(self, root: Path = FOLDER) -> None:
+    def __init__(self, root: Path = FOLDER, ahead: Sequence[str] = ()) -> None:
         self.root = root
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "verify.mutants.c_worker", str(root)],
+            [sys.executable, "-m", "verify.mutants.c_worker", str(root), *ahead],
             cwd=paths.root,
             env=environment(),
             stdin=subprocess.PIPE,
@@ -141,7 +141,7 @@ def judge(
     limits: Sequence[float] = (1.5, MOST),
 ) -> None:
     """Let the tests judge all mutants: first those of a second, then of more."""
-    worker = Worker()
+    worker = Worker(ahead=[f"tests.{file.stem}" for file in tests()])
     try:
         reached = record(worker, len(mutants), show)
         of: dict[int, dict[str, float]] = {mutant.number: {} for mutant in mutants}

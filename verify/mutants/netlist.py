@@ -9,6 +9,7 @@ import json
 import re
 import subprocess
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
@@ -220,6 +221,17 @@ def draw(core: Core, seed: int, each: int) -> list[Mutant]:
 def selected(command: str, number: int) -> str:
     """The command of a mutant that is one only when SELECT is its number."""
     return command.replace("mutate ", f"mutate -ctrl {SELECT} {WIDTH} {number} ", 1)
+
+
+def first_of(mutants: Sequence[Mutant], each: int) -> list[Mutant]:
+    """The first mutants of each module."""
+    seen: Counter[str] = Counter()
+    chosen = []
+    for mutant in mutants:
+        seen[mutant.module] += 1
+        if seen[mutant.module] <= each:
+            chosen.append(mutant)
+    return chosen
 
 
 def write(core: Core, mutants: list[Mutant], netlist: Path) -> None:

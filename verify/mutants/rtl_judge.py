@@ -34,8 +34,8 @@ ROUNDS = {
     "plain": ((Round("", 0, 1),), (Round("", 1, 3),), (Round("", 4, 12),)),
     "machine": (
         (Round("machine", 0, 1),),
-        (Round("machine", 1, 5), Round("tries", 0, 1), Round("pokes", 0, 1)),
-        (Round("machine", 6, 24), Round("tries", 1, 3), Round("pokes", 1, 3)),
+        (Round("machine", 1, 3), Round("pokes", 0, 1)),
+        (Round("machine", 4, 20), Round("tries", 0, 3), Round("pokes", 1, 3)),
     ),
 }
 CHUNK = 30  # mutants of one process
