@@ -142,7 +142,7 @@ def main(words: list[str]) -> None:
     if "--keep" in words:
         write_cases(WORST, kept)
     if found.beyond:
-        raise SystemExit("a path is beyond a bound")
+        raise SystemExit("a path exceeds a bound")
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Axes: pins, settings and positions of all axes of a channel. Wiring only.
 //
-// Promise: step requests become legal pin waveforms, by the settings of each axis; positions count active edges.
-// `quiet`, one clock late: no step waits or is in progress at any axis.
+// Promise: step requests become legal pin waveforms according to the settings of each axis; positions count active edges.
+// `quiet`, one clock late: no step is queued or in progress on any axis.
 // Latency: step_request to STEP 3 clocks, to step_overrun 1 clock.
 `resetall
 `timescale 1ns / 1ps

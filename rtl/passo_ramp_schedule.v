@@ -23,7 +23,7 @@ module passo_ramp_schedule (
   input wire rst,
   input wire prepare,  // a motion begins: COPY
   input wire waits,  // no velocity is needed
-  // ramp being made
+  // current ramp
   input wire control_load,
   input wire control_last,  // LAST of its control word
   input wire linear,

@@ -292,7 +292,7 @@ static void command(void)
 	} else if (error == PASSO_ERROR_LATE && world.interrupts != 0u && !world.covered) {
 		seen.late++;
 		if (passo_fault(&world.passo) != PASSO_OK || !passo_is_moving(&world.passo)
-		    || world.passo.belief != PASSO_BELIEF_READY)
+		    || world.passo.assumed != PASSO_ASSUMED_READY)
 			begin_again();
 	} else {
 		blame(passo_error_name(error));

@@ -135,7 +135,7 @@ def test_a_part_that_is_lost_is_said(tmp_path: Path, capsys: pytest.CaptureFixtu
     for text in ("", "\n\r\n", "(only G0 X1)\r;G1 X1\r", "%\n\x1a", "\ufeff"):
         path.write_text(text, encoding="utf-8", newline="")
         assert cli.main(run) == 2
-        assert "there is no G-code in it" in capsys.readouterr().err
+        assert "the file has no G-code" in capsys.readouterr().err
     for text in ("G21 G90\nM3 S100", "G0 X0\nG4 P0.1", "(G1 X5"):
         path.write_text(text + "\nF100\n")
         assert cli.main(run) == 0

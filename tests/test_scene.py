@@ -140,7 +140,7 @@ def test_arm(tmp_path: Path) -> None:
 
 def test_an_event_that_does_not_come_is_a_problem(tmp_path: Path) -> None:
     run = play(tmp_path, MOVE + event('do = "hold"\nposition = 2001'))
-    assert run.problems() == ["event 1: it did not come"]
+    assert run.problems() == ["event 1: it never occurred"]
 
 
 def test_a_hold_without_end(tmp_path: Path) -> None:
@@ -345,13 +345,16 @@ BAD = [
     ),
     (
         ENCODER_4 + "limit = 0.1\n" + MOVE,
-        "limit is 0.4 counts, it must be 1 to",
+        "limit is 0.4 counts; must be 1 to",
     ),
     (ENCODER_4 + 'stop = "soft"\n' + MOVE, "stop needs limit"),
     (MOVE + event("time = 1"), "event 1: do is missing"),
     (MOVE + event('do = "holt"\ntime = 1'), "event 1: do must be one of .* not 'holt'; did you mean hold"),
     (MOVE + event('do = "hold"'), "event 1: time, position or trigger is missing"),
-    (MOVE + event('do = "hold"\ntime = 1\nposition = 2'), "event 1: time and position exclude each other"),
+    (
+        MOVE + event('do = "hold"\ntime = 1\nposition = 2'),
+        "event 1: time and position are mutually exclusive",
+    ),
     (MOVE + event('do = "hold"\ntime = -1'), "event 1: time must not be negative"),
     (MOVE + event('do = "hold"\ntime = 1\nfalling = true'), "event 1: falling needs trigger"),
     (MOVE + event('do = "hold"\nposition = 1\nat_axis = 2'), "event 1: at_axis must be 0 to 1"),

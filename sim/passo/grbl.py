@@ -95,7 +95,7 @@ class Grbl:
         answers = self.answers
         self.type(text.rstrip(b"\r\n") + b"\n")
         if not self.wait(lambda: self.answers > answers):
-            raise Failure(f"no answer to {text!r}: the machine is held")
+            raise Failure(f"timeout: no answer to {text!r}: the machine is in hold")
 
     def _said(self, _: Any, text: Any) -> None:
         said = ffi().string(text).decode("ascii", "replace")

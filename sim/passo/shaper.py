@@ -61,7 +61,7 @@ def shaped(shaper: Shaper, ramp_time: Fraction) -> Points:
     straight = ramp - delayed[-1][0]  # of each copy
     if straight <= 0:
         raise ShapeError(
-            f"{shaper.name} at {float(shaper.frequency):g} Hz takes {delayed[-1][0] * 1e3:.3f} ms, "
+            f"{shaper.name} at {float(shaper.frequency):g} Hz takes {delayed[-1][0] * 1e3:.3f} ms; "
             f"the ramp has {ramp * 1e3:.3f} ms"
         )
 

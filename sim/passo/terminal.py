@@ -60,7 +60,7 @@ class Terminal:
         self._events: list[np.ndarray] = []
         self._error: Exception | None = None
         self.interrupted = False
-        self._stands = False  # a move waits for room, but the motion does not go on
+        self._stands = False  # a move waits for queue space, but the motion does not go on
         types = (
             "bool(void *, uint32_t *, uint32_t *, size_t)",
             "uint32_t(void *, uint32_t)",

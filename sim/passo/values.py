@@ -54,7 +54,7 @@ def check_number(key: str, value: int | Decimal, largest: int) -> Fraction:
     if value < -largest:
         raise BadValueError(f"{key} must be at least -{largest}")
     if isinstance(value, Decimal) and value.as_tuple().exponent < -DECIMALS_MAX:
-        raise BadValueError(f"{key} has more than {DECIMALS_MAX} decimals")
+        raise BadValueError(f"{key} must have at most {DECIMALS_MAX} decimals")
     return Fraction(value)
 
 

@@ -15,7 +15,7 @@ enum passo_error passo_driver_check(const struct passo *passo);
 /* The same, and ARGUMENT for an axis that the channel does not have. */
 enum passo_error passo_driver_check_axis(const struct passo *passo, uint8_t axis);
 /* Whether an error is a link error. */
-bool passo_driver_is_wire(enum passo_error error);
+bool passo_driver_is_link_error(enum passo_error error);
 /* Present time in microseconds; 0 without a clock. */
 uint32_t passo_driver_now(const struct passo *passo);
 /* A limit on waiting, in microseconds. It counts what passes from look to look, so it may be longer than the
@@ -43,7 +43,7 @@ enum passo_error passo_driver_look(struct passo *passo, bool once);
  * an axis is configured. */
 enum passo_error passo_driver_look_at_rest(struct passo *passo);
 /* MOVING unless two reads in a row find the channel at rest, or stopped with all steps made. */
-enum passo_error passo_driver_still(struct passo *passo);
+enum passo_error passo_driver_require_rest(struct passo *passo);
 /* Reads the positions of the core, without the offsets. */
 enum passo_error passo_driver_positions(struct passo *passo, int32_t *positions, bool once);
 /* A position of the core as the program counts it. */
@@ -67,7 +67,7 @@ bool passo_driver_is_broken(const struct passo *passo);
 bool passo_driver_is_stopped(const struct passo *passo);
 bool passo_driver_is_turning(const struct passo *passo);
 /* Adds STOPPED or BROKEN to the assumed state. */
-void passo_driver_doubt(struct passo *passo, enum passo_belief worse);
+void passo_driver_assume_worse(struct passo *passo, enum passo_assumed worse);
 /* The effect of a command is unknown: it may have queued something. */
 void passo_driver_break(struct passo *passo);
 /* Adds a line to the expected end positions. */
@@ -143,11 +143,11 @@ void passo_driver_halt(struct passo *passo, enum passo_due due);
 enum passo_error passo_driver_due(const struct passo *passo);
 /* Sends the due command of highest priority: at most one chip select. PENDING until no command is due, or the
  * error of a frame after its last try. */
-enum passo_error passo_driver_insist(struct passo *passo);
+enum passo_error passo_driver_send_due(struct passo *passo);
 /* The same until no command of priority `least` or higher is due, or until an error ... */
-enum passo_error passo_driver_insist_on(struct passo *passo, enum passo_post least);
+enum passo_error passo_driver_send_due_until(struct passo *passo, enum passo_post least);
 /* ... which is then returned as NOT_STOPPED or NOT_HELD (or CORE_RESET). */
-enum passo_error passo_driver_restrain(struct passo *passo, enum passo_post least);
+enum passo_error passo_driver_require_sent(struct passo *passo, enum passo_post least);
 /* Abandons this channel's posted frame, if there is one. */
 void passo_driver_drop(struct passo *passo);
 

@@ -129,7 +129,7 @@ static enum passo_error steer(struct passo *passo, const struct passo_goto *to)
 		error = passo_driver_steer(passo, &steering, &plan);
 		if (error == PASSO_OK || steering.overdue)
 			passo->aimed = aimed && !steering.overdue;
-		if (passo_driver_is_wire(error))
+		if (passo_driver_is_link_error(error))
 			passo_driver_halt(passo, PASSO_DUE_STOP);
 	}
 	if (error == PASSO_ERROR_NOT_TURNING)

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-#include "passo_tries.h"
+#include "passo_link_retry.h"
 
 /* Checks the arguments and completes the posted frame, whose buffer the next frame uses. */
 static enum passo_error make_way(struct passo_host *host, const uint32_t *words, size_t length)

@@ -158,9 +158,9 @@ enum passo_error passo_open_channel(
 	    (uint16_t)(PASSO_ADDRESS_CHANNEL_BASE + options->channel * PASSO_ADDRESS_CHANNEL_STRIDE);
 	passo->rate_target = PASSO_RATE_FULL;
 	error = make_contact(passo, options);
-	if (error == PASSO_OK && passo->belief == PASSO_BELIEF_STOPPED)
+	if (error == PASSO_OK && passo->assumed == PASSO_ASSUMED_STOPPED)
 		return passo->fault;
-	passo->belief = error == PASSO_OK ? PASSO_BELIEF_READY : PASSO_BELIEF_NOT_OPEN;
+	passo->assumed = error == PASSO_OK ? PASSO_ASSUMED_READY : PASSO_ASSUMED_NOT_OPEN;
 	passo->fault = error;
 	if (error != PASSO_OK || passo->snapshot.quiet)
 		return error;
@@ -175,7 +175,7 @@ enum passo_error passo_open(struct passo *passo, struct passo_host *host,
 
 	if (error != PASSO_OK)
 		return error;
-	passo->belief = PASSO_BELIEF_NOT_OPEN;
+	passo->assumed = PASSO_ASSUMED_NOT_OPEN;
 	error = passo_host_open(host, hardware);
 	passo->fault = error;
 	return error != PASSO_OK ? error : passo_open_channel(passo, host, options);

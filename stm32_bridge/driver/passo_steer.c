@@ -79,7 +79,7 @@ static enum passo_error look(struct passo *passo, bool stop)
 	enum passo_error error = passo_driver_check(passo);
 
 	if (error == PASSO_OK)
-		error = passo_driver_restrain(passo, PASSO_POST_RUN);
+		error = passo_driver_require_sent(passo, PASSO_POST_RUN);
 	if (error != PASSO_OK)
 		return error;
 	if (passo_driver_is_broken(passo))
@@ -186,7 +186,7 @@ enum passo_error passo_driver_steered(
 	if (!steering->stop)
 		return error == PASSO_ERROR_LATE && steering->overdue ? PASSO_OK : error;
 	/* a stop by ramp that is late, or not acknowledged, becomes a soft stop */
-	if (error == PASSO_ERROR_LATE || passo_driver_is_wire(error))
+	if (error == PASSO_ERROR_LATE || passo_driver_is_link_error(error))
 		passo_driver_halt(passo, PASSO_DUE_STOP);
 	return error;
 }

@@ -11,7 +11,7 @@ static enum passo_error settle(struct passo *passo, enum passo_error error)
 	if (error == PASSO_PENDING)
 		return PASSO_OK;
 	passo->task.kind = PASSO_TASK_NONE;
-	if (passo->task.armed && !passo_driver_is_wire(error) && error != PASSO_ERROR_CORE_RESET)
+	if (passo->task.armed && !passo_driver_is_link_error(error) && error != PASSO_ERROR_CORE_RESET)
 		passo_driver_disarm(passo); /* otherwise passo_clear() does it */
 	return error;
 }

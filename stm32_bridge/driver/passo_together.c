@@ -23,7 +23,7 @@ static enum passo_error check_waits(struct passo *passo, const struct passo_host
 {
 	if (passo->host != host)
 		return PASSO_ERROR_ARGUMENT_CHANNEL;
-	enum passo_error error = passo_driver_restrain(passo, PASSO_POST_RUN);
+	enum passo_error error = passo_driver_require_sent(passo, PASSO_POST_RUN);
 	if (error != PASSO_OK)
 		return error;
 	if (passo_driver_is_broken(passo))

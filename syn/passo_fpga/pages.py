@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Output of the report: tables for the terminal, docs/report.md, and the goals in README.md."""
+"""Output of the report: tables for the terminal, docs/reference/report.md, and the goals in README.md."""
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -12,7 +12,7 @@ from rich.console import Console
 
 from passo_fpga.devices import DEVICES
 
-PAGE = paths.docs / "report.md"
+PAGE = paths.reference / "report.md"
 TEMPLATE = Path(__file__).with_name("page.md")
 README = paths.root / "README.md"
 BEGIN, END = "<!-- report: make report writes from here -->", "<!-- to here -->"
@@ -148,7 +148,8 @@ def _by_seed(report: dict[str, Any]) -> list[str]:
 
 def _sizes(report: dict[str, Any], name: str) -> tuple[Sequence[str], list[list[str]]]:
     unit = DEVICES[name].family.size_unit
-    header = ("channels x axes", f"{unit} placed", "LUT", "FF", "BRAM", "DSP", "lowest MHz", "median MHz")
+    placed = f"{unit} placed" if DEVICES[name].family.place else unit
+    header = ("channels x axes", placed, "LUT", "FF", "BRAM", "DSP", "lowest MHz", "median MHz")
     rows = []
     for row in sorted(
         (row for row in report["designs"] if row["device"] == name), key=lambda r: (r["channels"], r["axes"])

