@@ -83,7 +83,17 @@ def _run(recorder: Recorder, tests: list[str]) -> int:
     import pytest
 
     # the tests are imported already: without assertions that are rewritten
-    options = ["-x", "-q", "-p", "no:cacheprovider", "-p", "no:xdist", "--no-header", "--tb=no", "--assert=plain"]
+    options = [
+        "-x",
+        "-q",
+        "-p",
+        "no:cacheprovider",
+        "-p",
+        "no:xdist",
+        "--no-header",
+        "--tb=no",
+        "--assert=plain",
+    ]
     if recorder.file:
         options.remove("-x")
     with (

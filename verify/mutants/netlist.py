@@ -237,9 +237,7 @@ def first_of(mutants: Sequence[Mutant], each: int) -> list[Mutant]:
 
 def write(core: Core, mutants: list[Mutant], netlist: Path) -> None:
     """The netlist of the core with all the mutants."""
-    made = "".join(
-        f"{selected(mutant.command, mutant.number)}\n" for mutant in mutants
-    )
+    made = "".join(f"{selected(mutant.command, mutant.number)}\n" for mutant in mutants)
     yosys(core.folder, f"{read(core, core.folder)}{made}opt_clean\nwrite_verilog -noattr netlist.v\n")
     netlist.write_text(_choosing((core.folder / "netlist.v").read_text(encoding="utf-8")), encoding="utf-8")
 

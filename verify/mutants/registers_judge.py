@@ -98,7 +98,9 @@ def judge(
     core: Core, mutants: Sequence[Mutant], fates: Fates, library: Path, seed: int, show: Callable[[str], None]
 ) -> None:
     """Let the table judge the mutants that live."""
-    waiting = [mutant for mutant in mutants if mutant.module in MODULES and fates.get(mutant.name).waits(NAME)]
+    waiting = [
+        mutant for mutant in mutants if mutant.module in MODULES and fates.get(mutant.name).waits(NAME)
+    ]
     if waiting and (says := broken(core, library, 0, seed)):
         raise Failure(f"the table finds fault with the core itself: {says}")
     for mutant in waiting:

@@ -87,7 +87,9 @@ class Pins:
         for case, killed in by_case.items():
             kind, _, history = case.partition(" ")
             plain = kind == "plain"
-            found = self._play(killed, Round("" if plain else kind, int(history) // (len(SETS) if plain else 1), 1))
+            found = self._play(
+                killed, Round("" if plain else kind, int(history) // (len(SETS) if plain else 1), 1)
+            )
             for mutant in killed:
                 fate = self.fates.get(mutant.name)
                 if mutant.number in found:
