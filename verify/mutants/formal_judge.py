@@ -120,7 +120,8 @@ def _targets(module: dict[str, Any]) -> dict[str, str]:
         while front and not found:
             bits = [bit for one in front for bit in outputs(one)]
             found = {named[bit] for bit in bits if bit in named}
-            front = [reader for bit in bits for reader in readers.get(bit, ()) if reader not in seen]
+            next_ones = (reader for bit in bits for reader in readers.get(bit, ()) if reader not in seen)
+            front = list(dict.fromkeys(next_ones))
             seen.update(front)
         return ", ".join(sorted(found)[:3])
 
