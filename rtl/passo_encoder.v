@@ -32,7 +32,7 @@ module passo_encoder (
   // strobes
   output reg        count_made,
   output reg        count_down,      // with count_made: -1
-  output reg        slipped,         // A and B changed at once
+  output reg        slipped,         // A and B changed together
   output reg        index_event,
   output reg  [7:0] illegal
 );

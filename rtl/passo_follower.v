@@ -6,10 +6,10 @@
 //
 // Promise: while following, 2^scale * counts = advances + owed, one clock after the count. An advance needs a count
 // owed in the clock before, `enable`, and no advance on the clock before; so reverse counts are made up before the
-// profile continues, and it never gets ahead of the furthest count. In any time there are at most 1 + limit * (enabled clocks)
-// advances. When owed is positive and there is credit, an advance follows on the second enabled clock after that.
-// `behind`, one clock late: two counts or more are owed. `lost`: 2^22 or more are owed, either way, or the encoder
-// has slipped; counting then stops.
+// profile continues, and it never gets ahead of the furthest count. In any time there are at most 1 + limit * (enabled
+// clocks) advances. When owed is positive and there is credit, an advance follows on the second enabled clock after
+// that. `behind`, one clock late: two counts or more are owed. `lost`: 2^22 or more are owed, either way, or the
+// encoder has slipped; counting then stops.
 // Latency: count_made to owed 2 clocks, to advance 3.
 `resetall
 `timescale 1ns / 1ps

@@ -6,8 +6,8 @@
 // So error = position * ratio - count since `zero`, exactly, without a division. It is stored as s18.16.
 //
 // Promise: `exceeded` is high 4 clocks after a step or count has brought the error to `limit` or above, or below
-// -limit. `greatest` is the largest whole number of counts, either way, since `zero` or `clear`. An error of 2^16 counts
-// saturates: it then stays constant and `exceeded` until `zero`.
+// -limit. `greatest` is the largest whole number of counts, either way, since `zero` or `clear`. An error of 2^16
+// counts saturates: it then stays constant and `exceeded` until `zero`.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none

@@ -37,7 +37,7 @@ module passo_input #(
   wire [WIDTH-1:0] differs = second ^ level;
 
   reg changed;  // an input has changed since the last tick
-  reg forgot;  // one clock ago: the synchroniser still has what was before
+  reg forgot;  // one clock ago: the synchronizer still holds old levels
 
   assign synced = second;
 

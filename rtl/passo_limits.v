@@ -39,7 +39,7 @@ module passo_limits #(
   wire [AXES-1:0] to_low = waits & negative;
   wire [AXES-1:0] to_high = waits & ~negative;
   wire [AXES-1:0] hit = (to_low & limit_low) | (to_high & limit_high);
-  wire [AXES-1:0] open = limit_soft & ~{AXES{may_close}};  // a limit that becomes active does not refuse
+  wire [AXES-1:0] open = limit_soft & ~{AXES{may_close}};  // a limit that becomes active does not block
 
   always @(posedge clk) begin
     closed_low   <= limit_low & (closed_low | ~open);

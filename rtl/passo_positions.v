@@ -8,12 +8,12 @@
 //
 // Promise: `snapshot` makes one round also copy the positions, as they were in its slot 63: they are coherent. It is
 // the next round, or the one after it if the positions are being zeroed, which takes a round; the copies are complete
-// 194 clocks after `snapshot`, or 258 if `latch` came before it. `position` is the copy of axis `address` once `address`
-// has been stable for 13 clocks.
+// 194 clocks after `snapshot`, or 258 if `latch` came before it. `position` is the copy of axis `address` once
+// `address` has been stable for 13 clocks.
 //
-// `latch` captures all counters simultaneously. The next round, or the one after it if positions are being zeroed, takes them
-// instead of the present ones and copies the positions as they were on the clock of `latch`, complete 130 clocks later
-// (194 with a zero); zeroed meanwhile, they are 0. The round after it covers at most 127 clocks.
+// `latch` captures all counters simultaneously. The next round, or the one after it if positions are being zeroed,
+// takes them instead of the current ones and copies the positions as they were on the clock of `latch`, complete 130
+// clocks later (194 with a zero); zeroed meanwhile, they are 0. The round after it covers at most 127 clocks.
 //
 // Requires at most n / 2 + 4 steps of an axis in n clocks, so at most 67 between two updates of a position. The upper
 // three bits of a byte give the direction of a wrap for up to 96.

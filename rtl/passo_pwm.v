@@ -9,8 +9,9 @@
 // duty * step / cost, even if that is not a whole number of clocks or below one clock per period.
 //
 // Promise: with `go` low the pin is low from the next clock on. If power is not 0, the pin rises on the clock after
-// `go` rises, or two clocks after `restart`, which starts a period; otherwise only at the start of a period, once. With
-// power 0 the pin is low, with power 65535 and cost = step it is high on every clock. Step and cost may change at any time.
+// `go` rises, or two clocks after `restart`, which starts a period; otherwise only at the start of a period, once.
+// With power 0 the pin is low, with power 65535 and cost = step it is high on every clock. Step and cost may change at
+// any time.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -28,7 +29,7 @@ module passo_pwm (
 );
 
   reg [23:0] phase;  // of the period, one clock ahead
-  reg        fresh;  // nothing is left of before: a period begins, whatever credit and paid are
+  reg        fresh;  // restart: a period begins, regardless of credit and paid
   reg [16:0] paid;  // in this clock, if not fresh: power is that of the clock before
   reg [23:0] cost_now;
   reg [25:0] credit;  // less 1, signed: the pin is on while it is not negative

@@ -15,9 +15,9 @@
 // `prepare` computes the first velocity of a motion, from 0, and raises `ready`; `begin_profile` starts the first
 // tick. On begin_profile and on `tick` velocity_next takes effect; with `ended`, 0.
 // Promise: the end of the LAST ramp raises `ended` in the last enabled clock of its last tick (a profile without
-// ticks: with begin_profile). If the ramps run out at speed, `dry` reports the underrun one tick earlier; the velocity then
-// stays constant, and the next ramp is taken when it arrives. A NOW ramp that is `coming` prevents the profile from
-// ending until it is queued. `stall` holds back the enable at the end of a tick until the next velocity is ready:
+// ticks: with begin_profile). If the ramps run out at speed, `dry` reports the underrun one tick earlier; the velocity
+// then stays constant, and the next ramp is taken when it arrives. A NOW ramp that is `coming` prevents the profile
+// from ending until it is queued. `stall` holds back the enable at the end of a tick until the next velocity is ready:
 // delayed, never lost.
 //
 // Blocks: passo_ramp_schedule sequences the stages, passo_ramp_strobes their clocks; passo_ramp_numbers and

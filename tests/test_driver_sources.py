@@ -88,7 +88,7 @@ def test_it_is_small(tmp_path: Path) -> None:
 
 
 def test_the_desktop_example() -> None:
-    """Its own Makefile builds it without a warning; it arrives; the page has its declarations and calls."""
+    """Its own Makefile builds it without a warning; it arrives; docs/driver.md shows the middle of it."""
     folder = paths.root / "examples" / "desktop"
     program = paths.build / "desktop"
     made = subprocess.run(

@@ -210,10 +210,7 @@ BAD = {
     "steps nested": (GOOD.replace("-50", "[50]"), "move 1: steps must be a list of whole numbers"),
     "steps empty": (GOOD.replace("[100, -50]", "[]"), "move 1: steps has 0 axes"),
     "nine axes": (GOOD.replace("-50", "1, 2, 3, 4, 5, 6, 7, 8"), "move 1: steps has 9 axes"),
-    "2^30 steps": (
-        GOOD.replace("-50", f"{MOST + 1}"),
-        f"axis 1 has too many steps; must be at most {MOST} are",
-    ),
+    "2^30 steps": (GOOD.replace("-50", f"{MOST + 1}"), f"axis 1 has too many steps; must be at most {MOST}"),
     "-2^30 steps": (GOOD.replace("-50", f"-{MOST + 1}"), "move 1: axis 1 has too many steps"),
     "-2^31 steps": (GOOD.replace("-50", "-2147483648"), "move 1: axis 1 has too many steps"),
     "other length": (GOOD + BY_SPEED.replace("-50", "-50, 1"), "move 2: steps has 3 axes, but move 1 has 2"),

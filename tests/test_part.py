@@ -254,7 +254,7 @@ def test_a_speed_that_the_pins_do_not_allow_is_refused(
     machine.write_text(text.replace("SPEED", "6000"))
     assert cli.main(run) == 2
     refused = capsys.readouterr().err
-    assert f"axis 1: speed is 6000, the pins allow at most {told}" in refused and refused.count("\n") == 1
+    assert f"axis 1: speed is 6000; the pins allow at most {told}" in refused and refused.count("\n") == 1
     assert not (tmp_path / "out").exists()
     machine.write_text(text.replace("SPEED", told.split(":")[0]))
     assert cli.main(run) == 0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`passo campaign`: random moves on all cores, or on a cluster, by Dask; docs/campaign.md."""
+"""`passo campaign`: random moves on all CPU cores, or on a Dask cluster; docs/campaign.md."""
 
 import time
 import uuid

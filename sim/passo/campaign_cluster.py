@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The workers of a campaign: processes of this machine, or a Dask cluster that is running."""
+"""The workers of a campaign: local processes, or a running Dask cluster."""
 
 import asyncio
 import logging
@@ -60,7 +60,7 @@ def local_cluster(jobs: int) -> Iterator[Any]:
 
 @contextmanager
 def running_cluster(address: str) -> Iterator[Any]:
-    """A client of a cluster that is there; raises BadInputError."""
+    """A client of a running cluster; raises BadInputError."""
     from distributed import Client
 
     with quiet():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The command `passo campaign`: what it checks first, shows meanwhile, and leaves behind."""
+"""The command `passo campaign`: checks of the options, progress, and results."""
 
 import argparse
 import os
@@ -19,7 +19,7 @@ from passo.pulse_judge import Fault
 from passo.toolchain import paths
 
 EVERY = 10  # seconds between two lines of progress
-SHOWN = 10  # failures told at once
+SHOWN = 10  # failures reported immediately
 NAME = "campaign.json"
 
 
@@ -86,7 +86,7 @@ def _check_folder(folder: Path, option: str) -> None:
 
 
 class _Progress:
-    """Tells of new failures at once, and of all others now and then."""
+    """Reports new failures immediately, and progress from time to time."""
 
     def __init__(self, campaign: Campaign):
         self.campaign, self.tell, self.told = campaign, stages(), set[int]()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The options of `passo campaign`; imports nothing that takes time."""
+"""The options of `passo campaign`; imports nothing slow."""
 
 import argparse
 from pathlib import Path

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The command `passo`. Each subcommand imports what it needs: `passo --help` is fast."""
+"""The command `passo`. Subcommands import lazily, so that `passo --help` is fast."""
 
 import argparse
 import sys

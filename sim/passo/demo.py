@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The demonstration: all of examples/ on both engines, with pictures, tables and an overview."""
+"""The demonstration: all examples on both engines, with pictures, tables and an overview."""
 
 import sys
 from concurrent.futures import ProcessPoolExecutor, as_completed

@@ -125,7 +125,7 @@ def serve(grbl: Grbl, terminal: int, until: Callable[[], bool] = lambda: False) 
     os.set_blocking(terminal, False)
     while not until():
         with contextlib.suppress(BlockingIOError, OSError):
-            # Real-time bytes pass a full buffer, so reading goes on; a sender keeps count of the rest.
+            # Real-time bytes pass a full buffer, so reading continues; a sender counts the rest.
             grbl.type(os.read(terminal, READ))
         grbl.poll()
         ahead = (grbl.engine.clock - start) / grbl.machine.clock_hz - (time.monotonic() - began)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the grbl console knows of its machine, and the file that keeps its settings."""
+"""Machine description of the grbl console, and the file with its settings."""
 
 import math
 import os

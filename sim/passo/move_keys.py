@@ -109,7 +109,7 @@ def read_per_axis(table: Table, key: str) -> tuple[Fraction, ...]:
 
 
 def read_distance(table: Table, key: str) -> tuple[Fraction, ...]:
-    """Millimetres of each axis."""
+    """Millimeters of each axis."""
     value = get_value(table, key)
     if not isinstance(value, list) or not 1 <= len(value) <= AXES_MAX:
         raise BadValueError(f"{key} must be a list of 1 to {AXES_MAX} numbers, one per axis")
@@ -117,7 +117,7 @@ def read_distance(table: Table, key: str) -> tuple[Fraction, ...]:
 
 
 def read_place(table: Table, key: str) -> Place:
-    """A position in steps, or a text in millimetres."""
+    """A position in steps, or a text in millimeters."""
     value = get_value(table, key)
     if not isinstance(value, str):
         return Place(Fraction(read_integer(table, key, -SIGNED_MAX, SIGNED_MAX)))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Planted defects: edits to a copy of a source that a check must detect, as proof that it can fail."""
+"""Injected faults: edits to a copy of a source that a check must detect, to prove that it can fail."""
 
 import re
 from pathlib import Path

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Execute a planned motion on an engine as a host does: over SPI, keeping the queues filled."""
+"""Execute a planned motion on an engine like a host: over SPI, keeping the queues filled."""
 
 import time
 from collections.abc import Callable

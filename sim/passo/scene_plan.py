@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A move file with a machine as the host carries it out: its motions, and what the outputs do meanwhile."""
+"""Plan of a move file with a machine: its motions, and the outputs during them."""
 
 from typing import Any
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What has happened in a move file with a machine."""
+"""Results of a move file with a machine."""
 
 from dataclasses import dataclass, field
 from typing import Any

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a move file says besides moves: the machine at the core, and events."""
+"""Parses the machine and the events of a move file."""
 
 from collections.abc import Sequence
 from dataclasses import replace

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a move file says about outputs bound to the path, and about the spindle of a thread."""
+"""Parses path-synchronized outputs and the spindle of a move file."""
 
 from fractions import Fraction
 from typing import Any
@@ -23,7 +23,7 @@ from passo.values import BadValueError
 
 LAG_MAX = (1 << CHANNEL_OUTPUT_LAG_LAG_BITS) - 1
 WIDTH_MAX = (1 << CHANNEL_COMPARE_PULSE_WIDTH_BITS) - 1
-PWM_BITS = 24  # a period is at most so many clocks, as a power of two
+PWM_BITS = 24  # longest period in clocks, as a power of two
 COUNT_CLOCKS_MIN = 8  # from count to count of the spindle: its filter and some more
 
 

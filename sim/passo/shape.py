@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""User-defined shapes: tables of 256 points, created from a function or a file.
+"""User-defined shapes: tables of 256 points, from a formula or a file.
 
 A shape rises from 0 to 1 while the progress u goes from 0 to 1, and never decreases. Point k is
 shape(k / 256) in units of 2^-16; point 256 is always 1 and not stored.

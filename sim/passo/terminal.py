@@ -2,7 +2,7 @@
 """The console of the STM32 bridge with a simulated core: `passo console`.
 
 Simulated time advances only on request: a line takes as long as its frames on the link, a move until there
-is room for it, `run SECONDS` lets time pass, and `wait` lets it pass until all motions have ended. The same
+is room for it, `run SECONDS` advances time, and `wait` advances it until all motions have ended. The same
 input always gives the same output.
 """
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Values as users write them: the grammar of the console (stm32_bridge/console/passo_number.c)."""
+"""Parses values as users write them: the grammar of the console (stm32_bridge/console/passo_number.c)."""
 
 import re
 from decimal import Decimal, DecimalTuple

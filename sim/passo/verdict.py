@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a summary, a page and the terminal say of a run as a whole: what was judged, and not more."""
+"""The verdict on a run for summary, page and terminal: only what was checked."""
 
 from dataclasses import dataclass
 from typing import Any

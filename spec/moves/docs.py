@@ -22,7 +22,7 @@ MARKER = re.compile(r"(<!-- moves: ([\w ]+) -->)(.*?)(<!-- /moves -->)", re.DOTA
 
 
 def fill(schema: Schema, page: str, text: str) -> str:
-    """A page with everything between its markers made anew; raise SchemaError."""
+    """A page with everything between its markers regenerated; raise SchemaError."""
     try:
         return MARKER.sub(lambda found: found[1] + _between(schema, found[2]) + found[4], text)
     except KeyError as error:
@@ -105,11 +105,12 @@ def _rules(form: Form) -> str:
 
 
 def _in_c(key: Key) -> str:
-    """Its place in the struct, and what it is there."""
+    """The member of the struct if it has another name; its unit if the page does not state it once."""
     if not key.kind.c:
-        return ""
+        return "-"
     member = f"limits[].{key.member}" if key.shared else key.member + ("[]" if key.kind.list else "")
-    return ", ".join(filter(None, (f"`{member}`", key.kind.stands_for)))
+    unit = key.kind.stands_for if key.kind.factor not in ("clock_hz", "unit_q32") else ""
+    return ", ".join(filter(None, (f"`{member}`" if member != key.name else "", unit)))
 
 
 COLUMNS = ["key", "meaning", "unit", "range", "default", "in C"]

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Polls the channels of the core, reports errors in notes, and goes on with a waiting move.
+ * Polls the channels of the core, reports errors in notes, and retries a waiting move.
  */
 #include "passo_commands.h"
 
@@ -21,8 +21,8 @@ static bool is_time_to_look(const struct passo_console *console, struct passo_co
 	bool runs = passo_snapshot(&channel->passo)->state == PASSO_STATE_RUN;
 	uint32_t now = hardware->microseconds ? hardware->microseconds(hardware->context) : 0u;
 
-	if (runs && !console->waits && !has_due_command(channel) && hardware->irq && !hardware->irq(hardware->context)
-	    && now - channel->looked_at < LOOK_MICROSECONDS)
+	if (runs && !console->waits && !has_due_command(channel) && hardware->irq
+	    && !hardware->irq(hardware->context) && now - channel->looked_at < LOOK_MICROSECONDS)
 		return false;
 	channel->looked_at = now;
 	return true;
@@ -179,7 +179,7 @@ static bool stands(const struct passo_console_channel *channel)
 	bool armed = seen->state == PASSO_STATE_ARMED;
 
 #ifndef PASSO_WITHOUT_PARTS
-	armed = armed && passo_waits_for_sync(&channel->passo); /* a thread goes on with its index */
+	armed = armed && passo_waits_for_sync(&channel->passo); /* a thread starts with its index */
 #endif
 	return seen->rate == 0u || armed;
 }

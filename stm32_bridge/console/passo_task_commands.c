@@ -155,7 +155,7 @@ static enum passo_error problem_of(const struct passo_console_channel *channel)
 	return noted == PASSO_ERROR_NOT_STOPPED || noted == PASSO_ERROR_NOT_HELD ? PASSO_OK : noted;
 }
 
-/* How home or probe has ended; PENDING while it goes on. */
+/* Result of homing or probing; PENDING while in progress. */
 static enum passo_error end_of(const struct passo_console_channel *channel)
 {
 	int32_t positions[PASSO_AXES_MAX];

@@ -257,7 +257,7 @@ struct passo_axis_config {
 	bool in_clocks;                     /* the four times are in clocks, not nanoseconds */
 	bool step_inverted, direction_inverted, enable_inverted;
 	bool both_edges;         /* every edge of STEP is a step */
-	uint64_t steps_per_unit; /* UQ32.32 steps per millimetre, degree, ...; 0: no units */
+	uint64_t steps_per_unit; /* UQ32.32 steps per millimeter, degree, ...; 0: no units */
 };
 
 /* Sets the pins and units of an axis; the drive enable is not changed. An axis must be configured before it
@@ -303,7 +303,7 @@ enum passo_error passo_move_user_by_speed(
     struct passo *passo, const struct passo_move_by_speed *move, const struct passo_user_shape *shape);
 /* The same to absolute positions: `steps`, `distance` and `angle` are those of the end. Bit i of `axes` moves
  * axis i; the values of other axes are ignored. The distance is counted from passo_target(), the end of the
- * moves queued before, in the shorter direction around 2^32 steps. An end in millimetres or degrees is
+ * moves queued before, in the shorter direction around 2^32 steps. An end in millimeters or degrees is
  * rounded to the nearest step of the axis, so that errors do not accumulate. If no axis has any distance
  * left, nothing is queued: OK. One frame more. Errors: those of a move; ARGUMENT also if `axes` is 0 or has
  * an axis that the channel does not have; MOVING also while passo_target() is unknown. */

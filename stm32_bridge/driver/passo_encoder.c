@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Encoders: settings, readings, and the position that they measure.
+ * Encoders: settings, readings, and adopting the measured position.
  */
 #include "passo_driver.h"
 #include "passo_math.h"
@@ -145,6 +145,6 @@ enum passo_error passo_adopt_encoder(struct passo *passo, uint8_t axis)
 	if (error == PASSO_OK)
 		passo->axis[axis].offset -= steps_of(behind, ratio);
 	else
-		passo->axis[axis].ratio = 0; /* the error may be 0 already: not twice */
+		passo->axis[axis].ratio = 0; /* the error may already be 0: do not adopt twice */
 	return error;
 }

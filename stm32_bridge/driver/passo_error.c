@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Names and descriptions of the errors.
+ * Names and messages of the errors.
  */
 #include "passo_error.h"
 

@@ -163,7 +163,7 @@ enum passo_error passo_clear_estop(struct passo *passo)
 	enum passo_error error = passo_driver_check_inputs(passo);
 
 	if (error == PASSO_OK)
-		passo_driver_forget_all(passo); /* whatever the cause of a stop says */
+		passo_driver_forget_all(passo); /* regardless of the stop cause */
 	if (error == PASSO_OK)
 		error = passo_host_write(passo->host, PASSO_ADDRESS_ESTOP_CLEAR, &word, 1);
 	if (error == PASSO_OK)

@@ -8,7 +8,7 @@
 /* Mask of an address: the register within its channel. */
 #define PLACE (PASSO_ADDRESS_CHANNEL_STRIDE - 1u)
 
-/* Minimum number of equal words in a reply for a valid status: two could have the same bit error. */
+/* Minimum number of equal words in a reply for a valid status: two could share a bit error. */
 #define STATUS_WORDS 3u
 
 bool passo_host_status_of(const uint32_t *miso, size_t count, uint32_t *status)
@@ -62,7 +62,7 @@ static bool is_read(const struct passo_host *host)
 	return passo_unpack_header(host->send[0]).operation == PASSO_OPERATION_READ;
 }
 
-/* Begins a chip select: PENDING. That of a read, whose words the caller needs, is over on return. */
+/* Starts a chip select: PENDING. That of a read, whose words the caller needs, is complete on return. */
 static enum passo_error launch(struct passo_host *host)
 {
 	const struct passo_hardware *hardware = &host->hardware;

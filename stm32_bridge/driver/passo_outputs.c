@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Outputs: of the moves from now on, settings, raster values, compare points.
+ * Outputs: of the following moves, settings, raster values, compare points.
  */
 #include "passo_driver.h"
 #include "passo_math.h"

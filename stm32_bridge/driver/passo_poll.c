@@ -38,7 +38,7 @@ static enum passo_error see_stop(struct passo *passo)
 	return is_news && fault != PASSO_OK && fault != passo->fault ? tell(passo, fault) : PASSO_OK;
 }
 
-/* Nothing moves or is queued; what an earlier session has queued waits at the closed gate. Ramps left over
+/* Nothing moves or is queued; items queued by a previous connection wait at the closed gate. Ramps left over
  * from an interrupted command do not move without a line. */
 static bool has_ended(const struct passo *passo)
 {
@@ -48,8 +48,8 @@ static bool has_ended(const struct passo *passo)
 	return passo->stream == PASSO_STREAM_NONE && passo_driver_at_rest(passo);
 }
 
-/* A motion that does not begin waits for its inputs to be known. One that waits for too long is flushed: it
- * would begin at any time. */
+/* A motion that does not start is waiting for its inputs to be known. After the timeout it is flushed, since
+ * it could start at any time. */
 static enum passo_error see_wait(struct passo *passo)
 {
 	const uint32_t now = passo_driver_now(passo);
@@ -88,7 +88,7 @@ static enum passo_error look(struct passo *passo)
 	return see_wait(passo);
 }
 
-/* Resends due commands; a failure is reported after as many tries as other link errors. */
+/* Resends due commands; a failure is reported after as many attempts as other link errors. */
 static enum passo_error resend_due(struct passo *passo)
 {
 	enum passo_error error = passo_driver_send_due(passo);

@@ -7,7 +7,7 @@
 
 #define LOOK_MICROSECONDS 1000u
 #define LOOK_MICROSECONDS_STREAMING 50u
-/* A shorter queue can run empty in that time. */
+/* A shorter queue can underrun in that time. */
 #define PLACES_FEW 64u
 
 /* The queues are filled: the stream can start. */

@@ -12,13 +12,13 @@ bool passo_waits_for_sync(const struct passo *passo)
 	return passo && passo->gate == PASSO_GATE_SYNC;
 }
 
-/* Whether a queued motion of the channel is on its way to be ARMED. */
+/* Whether a queued motion of the channel is becoming ARMED. */
 static bool is_preparing(const struct passo *passo)
 {
 	return passo->snapshot.state < PASSO_STATE_ARMED && !passo_driver_at_rest(passo);
 }
 
-/* OK if a motion of the channel is ready and waits. */
+/* OK if a motion of the channel is armed and waiting. */
 static enum passo_error check_waits(struct passo *passo, const struct passo_host *host)
 {
 	if (passo->host != host)

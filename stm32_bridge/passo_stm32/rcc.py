@@ -112,7 +112,7 @@ class Rcc(Peripheral):
             raise MachineError("the system clock source is not ready")
         hz = {FROM_HSI: HSI_HZ, FROM_HSE: CRYSTAL_HZ, FROM_PLL: self._pll_hz()}[source]
         if TICKS_PER_SECOND % hz:
-            raise MachineError(f"a system clock of {hz} Hz is not modelled")
+            raise MachineError(f"a system clock of {hz} Hz is not modeled")
         self.value["CFGR"] = self.value["CFGR"] & ~0xC | source << 2
         ahb = self.value["CFGR"] >> 4 & 15
         shift = 0 if ahb < 8 else ahb - 7 + (ahb >= 12)

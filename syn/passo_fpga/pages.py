@@ -171,7 +171,7 @@ def _sizes(report: dict[str, Any], name: str) -> tuple[Sequence[str], list[list[
 
 def _device(report: dict[str, Any], name: str) -> str:
     sizes = markdown(*_sizes(report, name))
-    return f"### {DEVICES[name].title}\n\n{sizes}\n\nCost of one more: {_costs(report, name)}."
+    return f"### {DEVICES[name].title}\n\n{sizes}\n\nIncremental cost: {_costs(report, name)}."
 
 
 def _costs(report: dict[str, Any], name: str) -> str:
