@@ -87,8 +87,17 @@ void history_play(struct world *world, const struct world_rtl *rtl, uint64_t see
 	if (record && world->machine)
 		world_record_estop(world);
 	counts->clocks += world->clock;
+	/* what the pins show before is the cause of what the last moves show */
+	const uint64_t late = world->failed_at >= world->known_from ? world->failed_at : 0u;
+	char text[WORLD_TEXT];
+
+	memcpy(text, world->failure, sizeof text);
+	if (late != 0u && world->known_from != 0u)
+		world->failed_at = 0;
 	if (!world->failed_at && !world->pokes)
 		judge_history(world, &counts->judge);
+	if (!world->failed_at && late != 0u)
+		world_fail(world, late, "%s", text);
 	if (world->mutants)
 		mutants_end(world);
 	world_close(world);

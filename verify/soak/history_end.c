@@ -242,6 +242,7 @@ void player_end(struct player *player, struct plot_random *random, bool brief)
 		start_again(player, random, c, states[c]);
 	for (unsigned c = 0; c < player_channels(player) && !world->failed_at; c++)
 		last_move(player, random, c);
+	world->known_from = world->clock + 1u;
 	if (!world->machine && !world->failed_at)
 		player_shaped_move(player, random, plot_draw(random, player_channels(player)));
 	if (world->machine && !world->tries && !world->starts && !world->pokes && !world->failed_at) {
