@@ -52,7 +52,7 @@ static enum passo_plan_error add(struct passo_path_planner *path, const struct p
 	path->before = before;
 	path->begins = path->rest;
 	path->feed = move->feed;
-	path->off = 0;
+	path->bulge = 0;
 	passo_path_pace_line(path, item);
 	passo_path_limit(path, path->added);
 	if (!item->rest)
@@ -62,21 +62,24 @@ static enum passo_plan_error add(struct passo_path_planner *path, const struct p
 	path->rest = false;
 	path->dwell = 0;
 	path->added++;
-	passo_path_look_back(path);
+	path->open = true;
+	if (path->tolerance == 0 || passo_path_clocks(item) >= (uint64_t)LINES_MERGED * path->line_clocks)
+		passo_path_close(path); /* too long for that to be of use */
 	return PASSO_PLAN_OK;
 }
 
-/* Whether the newest line can still become another one, and is so short that this is of use. */
+void passo_path_close(struct passo_path_planner *path)
+{
+	if (path->open)
+		passo_path_look_back(path);
+	path->open = false;
+}
+
+/* Whether the newest line can still become another one. */
 static bool is_open(const struct passo_path_planner *path, const struct passo_path_move *move)
 {
-	const uint32_t index = path->added - 1;
-
-	if (path->rest || path->added == 0 || path->sent == path->added || path->planned == path->added
-	    || (path->planned == index && (!path->at_rest || path->started)))
-		return false;
-	const struct passo_path_item *item = newest(path);
-	return !item->last && item->output == move->output && path->feed == move->feed
-	    && passo_path_clocks(item) < (uint64_t)LINES_MERGED * path->line_clocks;
+	return path->open && !path->rest && (path->planned + 1 != path->added || !path->started)
+	    && newest(path)->output == move->output && path->feed == move->feed;
 }
 
 /* Replaces the newest line by one to a new target, if that is not farther off than the tolerance. */
@@ -88,13 +91,13 @@ static bool merge(struct passo_path_planner *path, const struct passo_path_move 
 	const uint32_t dwell = path->dwell;
 
 	path->at = path->before;
-	const uint64_t off = path->off + passo_path_off(path, move->target, &at);
-	if (off < path->tolerance) {
+	uint64_t bulge = path->bulge;
+	if (passo_path_off(path, move->target, &at, &bulge) < path->tolerance) {
 		path->added--;
 		path->rest = path->begins;
 		path->dwell = passo_path_item(path, path->added)->dwell;
 		if (add(path, move) == PASSO_PLAN_OK) {
-			path->off = off;
+			path->bulge = bulge;
 			return true;
 		}
 		path->added++;
@@ -109,7 +112,10 @@ enum passo_plan_error passo_path_add(struct passo_path_planner *path, const stru
 {
 	if (merge(path, move))
 		return PASSO_PLAN_OK;
-	return passo_path_room(path) > 0 ? add(path, move) : PASSO_PLAN_PATH_FULL;
+	if (passo_path_room(path) == 0)
+		return PASSO_PLAN_PATH_FULL;
+	passo_path_close(path);
+	return add(path, move);
 }
 
 void passo_path_tolerance(struct passo_path_planner *path, uint64_t tolerance)
@@ -123,6 +129,7 @@ void passo_path_tolerance(struct passo_path_planner *path, uint64_t tolerance)
 
 void passo_path_dwell(struct passo_path_planner *path, uint64_t clocks)
 {
+	passo_path_close(path);
 	const uint32_t round = (UINT32_C(1) << path->machine.tick_log2) - 1u;
 	const uint64_t ticks = path->dwell + ((clocks >> path->machine.tick_log2) + ((clocks & round) > 0));
 
@@ -170,10 +177,10 @@ static uint64_t reach_of(const struct passo_path_planner *path, uint32_t index)
 {
 	const struct passo_path_item *item = passo_path_item(path, index);
 	const uint64_t end = passo_path_end_square(path, index), length = (uint64_t)item->substeps << 32;
-	const uint64_t flat = passo_path_smaller(
-	    passo_path_flat(path, index + 1, end) + passo_path_flat(path, index, item->corner), length);
-	const uint64_t most =
-	    end + passo_path_gain(passo_path_slope(item, false, end, length - flat), length - flat);
+	const uint64_t behind = passo_path_flat(path, index + 1, index, end);
+	const uint64_t flat =
+	    passo_path_smaller(behind + passo_path_flat(path, index, index, item->corner), length);
+	const uint64_t most = passo_path_before(item, end, length - flat, behind);
 	const uint64_t reach = passo_path_smaller(item->corner, most);
 
 	/* what was possible with fewer lines still is */

@@ -7,8 +7,8 @@
  * = 2 |k| / |u|, and one that the curve slows down the same downward. The acceleration along the path alone
  * keeps all limits as well.
  *
- * Each corner turns over a length, half of it before and half behind it; a line has the mean curvature of the
- * two at its ends.
+ * Each corner turns over a length before and behind it, so each half of a line has the curvature of the
+ * corner at its end. An image without room has one for both, the greater one.
  */
 #include "passo_path_private.h"
 
@@ -45,18 +45,15 @@ static uint64_t less(uint64_t a, uint64_t b)
 	return a > b ? a - b : 0;
 }
 
-void passo_path_add_curve(const struct passo_path_planner *path, const int64_t *curvature,
-    const int32_t *unit, struct passo_path_item *item)
+void passo_path_bend(const struct passo_path_planner *path, const int64_t *curvature, const int32_t *unit,
+    unsigned half, struct passo_path_item *item)
 {
 	struct passo_path_curve *curve = &item->curve;
 
-	uint64_t any = 0;
-
-	*curve = (struct passo_path_curve){.helps = 0};
-	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
-		any |= passo_path_size(curvature[axis]);
-	if (any == 0 || passo_path_shape(path) != PASSO_SHAPE_LINEAR)
+	if (passo_path_shape(path) != PASSO_SHAPE_LINEAR)
 		return;
+	curve->halved = !path->unrounded;
+	half = passo_path_halves(item) > 1 ? half : 0;
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
 		const uint64_t share = passo_path_size(unit[axis]);
 
@@ -69,9 +66,9 @@ void passo_path_add_curve(const struct passo_path_planner *path, const int64_t *
 		const bool helps = (curvature[axis] < 0) == (unit[axis] < 0);
 
 		curve->slope[axis] = packed(slope);
-		curve->bend[axis] = packed(bend);
-		if (helps)
-			curve->helps |= (uint8_t)(1u << axis);
+		if (bend > unpacked(curve->bend[half][axis]))
+			curve->bend[half][axis] = packed(bend);
+		(helps ? curve->helps : curve->hinders)[half] |= (uint8_t)(1u << axis);
 	}
 }
 
@@ -91,16 +88,37 @@ static uint64_t less_slope(uint64_t most, uint64_t bend, uint64_t low, uint64_t 
 	return quotient.high << (64 - (right - 6)) | quotient.low >> (right - 6);
 }
 
-uint64_t passo_path_slope(const struct passo_path_item *item, bool up, uint64_t low, uint64_t length)
+uint64_t passo_path_slope(
+    const struct passo_path_item *item, unsigned half, bool up, uint64_t low, uint64_t length)
 {
 	const struct passo_path_curve *curve = &item->curve;
+	const uint32_t limited = up ? curve->helps[half] : curve->hinders[half];
 	uint64_t slope = item->slope;
 
 	for (uint32_t axis = 0; axis < PASSO_PATH_AXES_MAX; axis++) {
-		if (curve->bend[axis] > 0 && (curve->helps >> axis & 1u) == up)
-			slope = passo_path_smaller(slope, less_slope(unpacked(curve->slope[axis]),
-							      unpacked(curve->bend[axis]), low, length));
+		const uint32_t bend = curve->bend[half][axis];
+
+		if (bend > 0 && (limited >> axis & 1u) > 0)
+			slope = passo_path_smaller(
+			    slope, less_slope(unpacked(curve->slope[axis]), unpacked(bend), low, length));
 	}
 	slope = passo_path_larger(slope, 1);
 	return up ? slope : slope - slope / 256;
+}
+
+uint64_t passo_path_before(const struct passo_path_item *item, uint64_t end, uint64_t length, uint64_t behind)
+{
+	const unsigned halves = passo_path_halves(item);
+	const uint64_t half = (uint64_t)item->substeps << 31;
+	const uint64_t second = halves > 1 ? passo_path_smaller(less(half, behind), length) : length;
+	uint64_t square =
+	    end + passo_path_gain(passo_path_slope(item, halves - 1, false, end, second), second);
+
+	if (second < length) {
+		const uint64_t first = length - second;
+
+		square = passo_path_smaller(square, passo_path_larger(item->top, end));
+		square += passo_path_gain(passo_path_slope(item, 0, false, square, first), first);
+	}
+	return square;
 }

@@ -42,7 +42,10 @@ struct passo_path_part {
 };
 
 /* Most parts of a line. */
-#define PASSO_PATH_PARTS 5u
+#define PASSO_PATH_PARTS 8u
+
+#define PASSO_PATH_ARC_BEFORE 1u
+#define PASSO_PATH_ARC_BEHIND 2u
 
 /* What the next ramp aims at. */
 struct passo_path_aim {
@@ -136,14 +139,51 @@ static inline uint64_t passo_path_square_of(uint64_t velocity)
 	return velocity * velocity;
 }
 
-/* Change of the square per substep within an item that the axes allow, over a length (UQ32.32 substeps) from
- * its lower end. Deceleration is planned a little below the limit, so that it can make up for ramps that end
- * at ticks. */
-uint64_t passo_path_slope(const struct passo_path_item *item, bool up, uint64_t low, uint64_t length);
+/* Change of the square per substep within a half of an item that the axes allow, over a length (UQ32.32
+ * substeps) from its lower end. Deceleration is planned a little below the limit, so that it can make up for
+ * ramps that end at ticks. */
+uint64_t passo_path_slope(
+    const struct passo_path_item *item, unsigned half, bool up, uint64_t low, uint64_t length);
 
-/* Sets the curve of an item: its unit vector, and its mean curvature, Q15.48 per substep. */
-void passo_path_add_curve(const struct passo_path_planner *path, const int64_t *curvature,
-    const int32_t *unit, struct passo_path_item *item);
+/* The highest square, within an item, from which it falls to the one at its end over a length that ends so
+ * far before that. */
+uint64_t passo_path_before(
+    const struct passo_path_item *item, uint64_t end, uint64_t length, uint64_t behind);
+
+/* What a line has by the corner at its start; its end may become another one, with a longer line. */
+static inline void passo_path_keep_start(const struct passo_path_item *item, struct passo_path_place *at)
+{
+	at->curve = item->curve;
+#ifndef PASSO_LINEAR_PATHS
+	at->slope = item->slope;
+	at->eased = item->eased;
+#ifndef PASSO_WITHOUT_JERK_PATHS
+	at->jerk = item->jerk;
+#endif
+#endif
+}
+
+static inline void passo_path_restore_start(struct passo_path_item *item, const struct passo_path_place *at)
+{
+	item->curve = at->curve;
+#ifndef PASSO_LINEAR_PATHS
+	item->slope = at->slope;
+	item->eased = at->eased;
+#ifndef PASSO_WITHOUT_JERK_PATHS
+	item->jerk = at->jerk;
+#endif
+#endif
+}
+
+/* In how many parts the curve of an item is. */
+static inline unsigned passo_path_halves(const struct passo_path_item *item)
+{
+	return PASSO_PATH_HALVES > 1 && item->curve.halved ? 2 : 1;
+}
+
+/* Adds a curvature, Q15.48 per substep, to a half of an item with this unit vector. */
+void passo_path_bend(const struct passo_path_planner *path, const int64_t *curvature, const int32_t *unit,
+    unsigned half, struct passo_path_item *item);
 
 /* Change of the square over a length (UQ32.32 substeps); saturates. */
 uint64_t passo_path_gain(uint64_t slope, uint64_t length);
@@ -156,16 +196,38 @@ uint64_t passo_path_change(const struct passo_path_planner *path, uint64_t slope
 enum passo_plan_error passo_path_measure(
     struct passo_path_planner *path, const struct passo_path_move *move, struct passo_path_item *item);
 
+/* Where the direction changes at a corner: so long before it and behind it, UQ32.16 substeps; no farther than
+ * the middle of the lines, and not on one side alone. */
+struct passo_path_rounding {
+	uint64_t before, behind;
+};
+
+struct passo_path_corner {
+	uint32_t change[PASSO_AXES_MAX]; /* of the direction, Q1.30 */
+	uint64_t turn;                   /* the sum of their squares */
+	struct passo_path_rounding rounding;
+	uint64_t over;                   /* UQ.30 substeps, in which it turns at a constant speed */
+	bool bends_before, bends_behind; /* the lines are parts of a curve */
+};
+
+/* Highest square at a corner by what is left of the acceleration of each axis; null: all of it. */
+uint64_t passo_path_corner_square(
+    const struct passo_path_planner *path, const struct passo_path_corner *corner, const uint64_t *left);
+
+/* The same where ramps are shaped; the curved lines beside it leave what the corner needs. */
+uint64_t passo_path_shaped_corner(const struct passo_path_planner *path,
+    const struct passo_path_corner *corner, const int32_t *unit, struct passo_path_item *item);
+
 /* Square at the corner between the last line and this one. The change of direction of an axis takes place
  * over a certain length: half the sum of the two lines, if they stand for an arc, or the arc that deviates by
  * the junction deviation. */
 uint64_t passo_path_limit_corner(
     struct passo_path_planner *path, const int32_t *unit, uint64_t length, struct passo_path_item *item);
 
-/* By how much a line from where the path ends, to a target, is off the end of a shorter one from there, at
- * most: UQ32.16 substeps; saturates if it is not longer. */
-uint64_t passo_path_off(
-    const struct passo_path_planner *path, const int64_t *target, const struct passo_path_place *end);
+/* By how much a line from where the path ends, to a target, is off a shorter one from there and all that this
+ * one replaces, at most: UQ32.16 substeps; saturates if it is not longer. */
+uint64_t passo_path_off(const struct passo_path_planner *path, const int64_t *target,
+    const struct passo_path_place *end, uint64_t *bulge);
 
 /* Sets the limits of an item, `top` and, unless the path rests there, `corner`; those before it are known. */
 void passo_path_limit(struct passo_path_planner *path, uint32_t index);
@@ -176,7 +238,8 @@ uint64_t passo_path_ticks_over(const struct passo_path_planner *path, uint64_t l
 /* Length, UQ32.32 substeps, in so many ticks at the mean of two velocities, whose sum is given. */
 uint64_t passo_path_length_in(const struct passo_path_planner *path, uint64_t speeds, uint64_t ticks);
 
-/* The newest line is handed out when the next one is known, or when it is the last. */
+/* The newest line is entered when the next one is known, or when it is the last; the one before it when it
+ * cannot become another one. */
 bool passo_path_is_held_back(const struct passo_path_planner *path, uint32_t index);
 
 /* The path rests at the end of this item, as far as is known. */
@@ -186,20 +249,25 @@ bool passo_path_rests_after(const struct passo_path_planner *path, uint32_t inde
 uint64_t passo_path_end_square(const struct passo_path_planner *path, uint32_t index);
 bool passo_path_is_settled(const struct passo_path_planner *path, uint32_t index);
 
-/* Length on either side of the corner at the start of an item over which the path keeps a square, so that
- * the rounding of a lone corner has what it needs of the acceleration. */
+/* Length on either side of the corner at the start of an item, of which `line` is one, over which the path
+ * keeps a square, so that the rounding of a lone corner has what it needs of the acceleration. */
 #ifdef PASSO_WITHOUT_ROUNDING
-static inline uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, uint64_t square)
+static inline uint64_t passo_path_flat(
+    const struct passo_path_planner *path, uint32_t index, uint32_t line, uint64_t square)
 {
-	(void)path, (void)index, (void)square;
+	(void)path, (void)index, (void)line, (void)square;
 	return 0;
 }
 #else
-uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, uint64_t square);
+uint64_t passo_path_flat(
+    const struct passo_path_planner *path, uint32_t index, uint32_t line, uint64_t square);
 #endif
 
 /* Updates `reach` after a line has been added. */
 void passo_path_look_back(struct passo_path_planner *path);
+
+/* The newest line stays as it is. */
+void passo_path_close(struct passo_path_planner *path);
 
 /* The parts of the profile from a point of an item to its end, of which `left` (UQ32.32 substeps) are left:
  * at most PASSO_PATH_PARTS. With `level` the path does not speed up for less than the line. */
