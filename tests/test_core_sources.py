@@ -11,7 +11,7 @@ from passo.toolchain import paths
 
 from tests.helpers import sanitized
 
-MODEL = (paths.model, paths.protocol)
+MODEL = (paths.core, paths.protocol)
 ALL = (*MODEL, paths.planner, paths.driver)
 # Functions that a compiler may call implicitly on any target.
 ALLOWED = {"memcpy", "memset", "memmove", "memcmp"}

@@ -10,7 +10,7 @@ from passo.compiler import STRICT, headers, includes, kept, sources
 from passo.toolchain import paths
 
 PARTS = 8
-FOLDERS = (paths.model, paths.planner, paths.protocol, paths.driver)
+FOLDERS = (paths.core, paths.planner, paths.protocol, paths.driver)
 
 
 @pytest.fixture(scope="module")

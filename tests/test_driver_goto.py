@@ -370,7 +370,7 @@ def test_a_hardware_without_a_clock(wire: Wire, driver: Driver) -> None:
 
 def test_random_histories(tmp_path: Path) -> None:
     """Thousands of changes by hosts that are late, interrupted, silent or dead; see goto_histories.c."""
-    folders = (paths.driver, paths.planner, paths.protocol, paths.model, paths.engine)
+    folders = (paths.driver, paths.planner, paths.protocol, paths.core, paths.engine)
     libraries = [planner_library(), model_library()]
     linked = [str(library) for library in libraries]
     linked += [f"-Wl,-rpath,{library.parent}" for library in libraries]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What passo_open() finds and does: each row of the tables in docs/driver.md, "A new session".
 
-`soak/endings` lets the host die in any frame of any operation.
+`verify/soak/endings` lets the host die in any frame of any operation.
 """
 
 from typing import Any

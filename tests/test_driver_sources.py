@@ -21,7 +21,7 @@ RAM_MAX = 1536  # bytes for one channel of 4 axes
 
 def test_a_scenario_runs_clean_under_sanitizers(tmp_path: Path) -> None:
     """Moves, streams, stops, noise and resets, driver and model in one program: no fault, nothing lost."""
-    folders = (*DRIVER, paths.model, paths.engine)
+    folders = (*DRIVER, paths.core, paths.engine)
     program = sanitized.program(tmp_path / "scenario", paths.tests / "driver_scenario.c", folders)
     done = subprocess.run([program], capture_output=True, text=True, timeout=300)
     assert (done.returncode, done.stderr, done.stdout) == (0, "", "ok\n")

@@ -12,8 +12,8 @@ from passo import registers as r
 from passo.build import Parameters
 from passo.host import Channel
 
-from soak import numbers
 from tests.test_core_advance import Session
+from verify.soak import numbers
 
 SEED = random_cases.seed()
 BUILDS = [

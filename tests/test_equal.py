@@ -18,11 +18,11 @@ from passo import compiler
 from passo.planted import plant
 from passo.toolchain import paths
 
-from equal import page, run
-from equal.c_types import BOOL, Integer
-from equal.coupling import Coupling, couplings
-from equal.model import CLOCK, Model, harness
 from tests.helpers.random_plans import SEED
+from verify.equal import page, run
+from verify.equal.c_types import BOOL, Integer
+from verify.equal.coupling import Coupling, couplings
+from verify.equal.model import CLOCK, Model, harness
 
 COUPLINGS = couplings()
 QUICK = [coupling for coupling in COUPLINGS if not coupling.slow]
@@ -131,7 +131,7 @@ def test_bank_of_the_tables_is_as_in_the_protocol() -> None:
     source = run.BUILD / "bank_at.c"
     run.BUILD.mkdir(parents=True, exist_ok=True)
     source.write_text("\n".join(lines))
-    flags = (*compiler.includes(paths.root / "protocol"), *compiler.SHARED)
+    flags = (*compiler.includes(paths.protocol), *compiler.SHARED)
     made = compiler.compile_to(run.BUILD / "bank_at.so", *flags, source)
     assert ctypes.CDLL(str(made)).differences() == 0
 

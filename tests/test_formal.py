@@ -10,7 +10,7 @@ from random import Random
 import pytest
 from passo.random_cases import seed
 
-from formal import run
+from verify.formal import run
 
 PROOFS = run.proofs()
 QUICK = [proof for proof in PROOFS if not proof.slow]

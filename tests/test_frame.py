@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The frame codec against an independent CRC and the word layouts of registers/passo.rdl."""
+"""The frame codec against an independent CRC and the word layouts of spec/passo.rdl."""
 
 import random
 from itertools import product

@@ -298,13 +298,13 @@ DIRECT = {
     "sim/passo/build.py": "into a folder of the cache",
     "sim/passo/planted.py": "into a copy of the sources",
     "sim/passo/grbl_setup.py": "words of a flash that is simulated",
-    "stm32_bridge/machine/play.py": "into a temporary folder",
-    "stm32_bridge/machine/board.py": "a lock",
-    "equal/wiring.py": "into a copy of the sources",
-    "syn/flow/flow.py": "into a folder that is renamed",
-    "syn/flow/netlist.py": "into a folder that is renamed",
-    "syn/flow/block_ram.py": "into a folder that is renamed",
-    "syn/flow/tools.py": "a log",
+    "stm32_bridge/passo_stm32/play.py": "into a temporary folder",
+    "stm32_bridge/passo_stm32/board.py": "a lock",
+    "verify/equal/wiring.py": "into a copy of the sources",
+    "syn/passo_fpga/flow.py": "into a folder that is renamed",
+    "syn/passo_fpga/netlist.py": "into a folder that is renamed",
+    "syn/passo_fpga/block_ram.py": "into a folder that is renamed",
+    "syn/passo_fpga/tools.py": "a log",
 }
 WRITES = re.compile(
     r"""(?<!\bwrite)(\.write_(text|bytes)\(|savefig\((?!part)|print_png\((?!part)|json\.dump\(|shutil\.copy\()"""
@@ -316,13 +316,12 @@ def test_everything_else_writes_complete_files() -> None:
     """All that leaves results, reports and generated files."""
     folders = (
         "sim/passo",
-        "stm32_bridge/machine",
+        "stm32_bridge/passo_stm32",
         "benchmarks",
-        "equal",
-        "formal",
-        "soak",
-        "syn/flow",
+        "spec",
+        "syn/passo_fpga",
         "tools",
+        "verify",
     )
     found = set()
     for folder in folders:

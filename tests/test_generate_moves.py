@@ -17,10 +17,10 @@ from passo.native import ffi, planner
 from passo.plan import struct_of
 from passo.toolchain import environment, paths
 
-SOURCE = "schema/moves.toml"
-GENERATOR = "tools/generate_moves.py"
-HELPER = "tools/generated.py"
-LIMITS, STRUCTS = "protocol/passo_limits.h", "planner/passo_moves.h"
+SOURCE = "spec/moves.toml"
+GENERATOR = "spec/generate_moves.py"
+HELPER = "spec/generated.py"
+LIMITS, STRUCTS = "c_model/protocol/passo_limits.h", "c_model/planner/passo_moves.h"
 TABLES = "stm32_bridge/console/passo_form_tables.c"
 PYTHON = "sim/passo/move_forms.py"
 PLANNING, CONSOLE, SCENES = "docs/planning.md", "docs/console.md", "docs/scenes.md"
@@ -50,7 +50,7 @@ def tree(tmp_path: Path) -> Path:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
     for name in [SOURCE, GENERATOR, HELPER, *PAGES]:
         shutil.copy(paths.root / name, tmp_path / name)
-    shutil.copytree(paths.tools / "moves", tmp_path / "tools" / "moves")
+    shutil.copytree(paths.spec / "moves", tmp_path / "spec" / "moves")
     return tmp_path
 
 

@@ -11,7 +11,7 @@ from tests.helpers import sanitized
 
 SEED = str(random_cases.seed())
 SECONDS = str(random_cases.fuzz_seconds())
-FOLDERS = (paths.grbl, paths.driver, paths.gcode, paths.planner, paths.protocol, paths.engine, paths.model)
+FOLDERS = (paths.grbl, paths.driver, paths.gcode, paths.planner, paths.protocol, paths.engine, paths.core)
 
 
 def test_every_line_gets_one_answer(tmp_path: Path) -> None:

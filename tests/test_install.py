@@ -20,9 +20,9 @@ from passo.run import parameters_for
 from passo.toolchain import paths
 
 RELEASE = (paths.root / "VERSION").read_text().strip()
-SOURCES = ("rtl", "model", "planner", "protocol", "gcode", "sim/engine")
+SOURCES = ("rtl", *(f"c_model/{folder}" for folder in ("core", "planner", "gcode", "protocol")), "sim/engine")
 SOURCES = (*SOURCES, *(f"stm32_bridge/{folder}" for folder in ("driver", "console", "grbl")))
-PACKAGES = ("sim/passo", "syn/flow", "stm32_bridge/machine")
+PACKAGES = ("sim/passo", "syn/passo_fpga", "stm32_bridge/passo_stm32")
 MOVES = """
 clock_hz = 16_000_000
 [[move]]

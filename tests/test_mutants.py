@@ -8,12 +8,12 @@ import pytest
 from passo import random_cases
 from passo.toolchain import environment
 
-from mutants import formal_judge
-from mutants.c_judge import Worker
-from mutants.c_source import drawn as drawn_c
-from mutants.netlist import PLAIN, Core, Mutant, drawn
-from soak.parts import SETS
-from soak.program import build
+from verify.mutants import formal_judge
+from verify.mutants.c_judge import Worker
+from verify.mutants.c_source import drawn as drawn_c
+from verify.mutants.netlist import PLAIN, Core, Mutant, drawn
+from verify.soak.parts import SETS
+from verify.soak.program import build
 
 SEED = random_cases.seed()
 # The smallest core, two mutants of each module; in any other folder than those of `make mutants`.

@@ -17,13 +17,14 @@ from passo_fpga.design import Design
 from passo_fpga.devices import DEVICES
 
 sys.path.insert(0, str(paths.tools))
+sys.path.insert(0, str(paths.spec))
 import generate_package
 import lint_rtl
 
-GENERATOR = "tools/generate_package.py"
+GENERATOR = "spec/generate_package.py"
 BENCH = Path(generate_package.BENCH)
 CORE = "passo.core"
-MADE = ["rtl/passo.f", CORE, "protocol/passo_release.h"]
+MADE = ["rtl/passo.f", CORE, "c_model/protocol/passo_release.h"]
 RELEASE = (paths.root / "VERSION").read_text().strip()
 COPIED = ["rtl", CORE, BENCH]
 
@@ -48,8 +49,8 @@ def test_generated_files_are_fresh() -> None:
 @pytest.mark.parametrize("name", ["passo_one_more.v", "passo_one_more.vh"])
 def test_a_source_more_or_less_is_noticed(tmp_path: Path, name: str) -> None:
     """By the check of the generated files."""
-    for file in ["VERSION", GENERATOR, "tools/generated.py", *MADE]:
-        (tmp_path / file).parent.mkdir(exist_ok=True)
+    for file in ["VERSION", GENERATOR, "spec/generated.py", *MADE]:
+        (tmp_path / file).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(paths.root / file, tmp_path / file)
     shutil.copytree(paths.rtl, tmp_path / "rtl", dirs_exist_ok=True)
     check = (sys.executable, GENERATOR, "--check")

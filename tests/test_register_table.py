@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Every register of registers/passo.rdl answers, in model and RTL, as its fields say; nothing else does."""
+"""Every register of spec/passo.rdl answers, in model and RTL, as its fields say; nothing else does."""
 
 from collections.abc import Iterator
 from dataclasses import replace

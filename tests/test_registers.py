@@ -16,12 +16,12 @@ from systemrdl import RDLCompiler
 from systemrdl.node import RegNode
 
 ROOT = Path(__file__).resolve().parents[1]
-SOURCE = "registers/passo.rdl"
-GENERATOR = "tools/generate_registers.py"
-HELPER = "tools/generated.py"
+SOURCE = "spec/passo.rdl"
+GENERATOR = "spec/generate_registers.py"
+HELPER = "spec/generated.py"
 VERILOG = "rtl/passo_registers.vh"
-C = "protocol/passo_registers.h"
-OUTPUTS = [VERILOG, C, "protocol/passo_words.h", "sim/passo/registers.py", "docs/registers.md"]
+C = "c_model/protocol/passo_registers.h"
+OUTPUTS = [VERILOG, C, "c_model/protocol/passo_words.h", "sim/passo/registers.py", "docs/registers.md"]
 ENUMS = registers.DescribedEnum.__subclasses__()
 
 
@@ -107,7 +107,7 @@ def test_check_names_stale_files(tmp_path: Path):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
     for name in [SOURCE, GENERATOR, HELPER]:
         shutil.copy(ROOT / name, tmp_path / name)
-    shutil.copytree(paths.tools / "rdl", tmp_path / "tools" / "rdl")
+    shutil.copytree(paths.spec / "rdl", tmp_path / "spec" / "rdl")
     assert run(sys.executable, GENERATOR, cwd=tmp_path).returncode == 0
     fresh = {name: (tmp_path / name).read_text(encoding="utf-8") for name in OUTPUTS}
     for stale, text in fresh.items():

@@ -12,11 +12,11 @@ from passo.compiler import SANITIZED, call, includes, sources
 from passo.planted import plant
 from passo.toolchain import paths
 
-from soak import defects, numbers, parts
-from soak.defects import Defect
-from soak.program import FLAGS, FOLDERS, build, build_endings, play_program
-from soak.report import JUDGED, MACHINE_JUDGED
 from tests.helpers import sanitized
+from verify.soak import defects, numbers, parts
+from verify.soak.defects import Defect
+from verify.soak.program import FLAGS, FOLDERS, build, build_endings, play_program
+from verify.soak.report import JUDGED, MACHINE_JUDGED
 
 SEED = random_cases.seed()
 JOBS = 1  # pytest uses the other cores
@@ -77,14 +77,14 @@ def test_no_promise_is_broken_by_an_early_end(kind: str, histories: int, tmp_pat
 
 def test_the_soak_itself_is_sound(tmp_path: Path) -> None:
     """Under the sanitizers of addresses and undefined behaviour."""
-    folders = (paths.driver, paths.planner, paths.protocol, paths.model)
+    folders = (paths.driver, paths.planner, paths.protocol, paths.core)
     made = tmp_path / "soak"
     flags = [
         "-std=gnu11",
         *SANITIZED,
-        *includes(*folders, FOLDERS["soak"], paths.engine),
+        *includes(*folders, FOLDERS["verify/soak"], paths.engine),
     ]  # warnings: build()
-    files = [*sources(FOLDERS["soak"]), *map(sanitized.object_of, folders)]
+    files = [*sources(FOLDERS["verify/soak"]), *map(sanitized.object_of, folders)]
     call(["cc", *flags, *files, "-ldl", "-o", made])
     for kind in ([], ["--machine"], ["--driver"]):
         counts, failures = play_program([made, str(SEED), "0", "6", *kind], "model", SEED)

@@ -5,7 +5,7 @@ import pytest
 from passo.failure import Failure
 from passo.toolchain import paths
 
-from equal import wiring
+from verify.equal import wiring
 
 SOME = ("passo_core.u_link.bus_busy", "passo_profile.u_ramp.ramp_half", "passo_axes.u_axis.direction")
 

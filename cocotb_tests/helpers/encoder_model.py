@@ -13,16 +13,16 @@ from passo.toolchain import paths
 
 from cocotb_tests.helpers.bench import begin
 
-HEADER = paths.model / "passo_encoder.h"
-SOURCES = [paths.model / f"passo_{name}.c" for name in ("encoder", "following", "follower")]
+HEADER = paths.core / "passo_core_encoder.h"
+SOURCES = [paths.core / f"passo_{name}.c" for name in ("encoder", "following", "follower")]
 
 
 @cache
 def load() -> tuple[FFI, Any]:
-    """The C functions and structs of model/passo_encoder.h."""
+    """The C functions and structs of c_model/core/passo_core_encoder.h."""
     ffi = FFI()
     ffi.cdef(declarations([HEADER]).replace("_Bool", "bool"))
-    return ffi, ffi.dlopen(str(library("encoder", [paths.model], SOURCES, "-O2")))
+    return ffi, ffi.dlopen(str(library("encoder", [paths.core], SOURCES, "-O2")))
 
 
 def _inputs(name: str) -> list[str]:

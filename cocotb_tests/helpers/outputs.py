@@ -55,9 +55,9 @@ class Outputs:
         self._scaled = False  # step or reference are new
         self.seen = Seen()
         self.now: dict[str, int] = dict.fromkeys(OUTPUTS, 0)
-        folders = (paths.model, paths.protocol)
+        folders = (paths.core, paths.protocol)
         shim = paths.cocotb_tests / "helpers" / "outputs_model.c"
-        model = [paths.model / f"passo_{name}.c" for name in MODEL]
+        model = [paths.core / f"passo_{name}.c" for name in MODEL]
         self._model = ctypes.CDLL(str(library("outputs_model", folders, [*model, shim], "-O2")))
         self._model.outputs_model_size.restype = ctypes.c_uint64
         self._state = ctypes.create_string_buffer(self._model.outputs_model_size())

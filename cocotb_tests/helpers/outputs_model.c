@@ -2,7 +2,7 @@
  * The outputs of a channel in the C model, for a test of that module alone: inputs and outputs as numbers, in
  * the order of helpers/outputs.py.
  */
-#include "passo_outputs.h"
+#include "passo_core_outputs.h"
 #include "passo_registers.h"
 
 enum input {

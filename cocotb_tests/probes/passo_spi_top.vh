@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Recorder of the pins of the core. Generated from schema/pins.toml by tools/generate_pins.py.
+// Recorder of the pins of the core. Generated from spec/pins.toml by spec/generate_pins.py.
 //
 // Clock 1 is the first rising edge ever without rst. Whenever a pin is not as it was a clock before, a row
 // goes to pins.log: the clock; the inputs and MISO as they stand at its rising edge; the other outputs as the

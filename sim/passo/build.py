@@ -13,10 +13,10 @@ from passo.failure import BuildError
 from passo.pins import CoreParameters
 from passo.toolchain import environment, paths
 
-ENGINE_FLAGS = (*STRICT, "-O3", "-fPIC", *includes(paths.engine, paths.model))
+ENGINE_FLAGS = (*STRICT, "-O3", "-fPIC", *includes(paths.engine, paths.core))
 # A clock of the model goes through tens of small functions in as many files: inlined, it takes 3/4 as long.
 WHOLE = ("-O3", "-flto", "-fno-semantic-interposition")
-CPP_FLAGS = ("-std=gnu++17", "-O2", "-Wall", "-fPIC", "-fno-gnu-unique", *includes(paths.engine, paths.model))
+CPP_FLAGS = ("-std=gnu++17", "-O2", "-Wall", "-fPIC", "-fno-gnu-unique", *includes(paths.engine, paths.core))
 
 # Every register of the core has a reset, so the value chosen for X does not matter. Hidden symbols need no
 # detour over the table of a shared library: 8 % more clocks per second.
@@ -34,7 +34,7 @@ MAKEFILE, MODEL, RUNTIME = f"V{TOP}.mk", f"V{TOP}__ALL.a", "libverilated.a"
 
 @dataclass(frozen=True)
 class Parameters(CoreParameters):
-    """Build parameters of a core; ranges as in schema/pins.toml."""
+    """Build parameters of a core; ranges as in spec/pins.toml."""
 
     @property
     def name(self) -> str:
@@ -73,14 +73,14 @@ def engine_sources() -> list[Path]:
 @cache
 def model_library() -> Path:
     """The C model engine, for any parameters."""
-    folders = (paths.model, paths.protocol)
+    folders = (paths.core, paths.protocol)
     engine = [*engine_sources(), paths.engine / "engine_model.c"]
     return library("model", [*folders, paths.engine], [*sources(*folders), *engine], *WHOLE)
 
 
 def judge_library() -> Path:
     """The C model that compares itself with recorded pins."""
-    folders = (paths.model, paths.protocol)
+    folders = (paths.core, paths.protocol)
     files = [*sources(*folders), paths.engine / "passo_judge.c"]
     return library("judge", [*folders, paths.engine], files, "-O2")
 
@@ -133,7 +133,7 @@ def rtl_library(parameters: Parameters, waves: bool = False, rtl: Path = paths.r
             raise
 
     name = f"rtl_{parameters.name}{'_waves' if waves else ''}{_copy(rtl)}"
-    inputs = [*c_parts, cpp_part, *headers(paths.engine), paths.model / "passo_pins.h"]
+    inputs = [*c_parts, cpp_part, *headers(paths.engine), paths.core / "passo_pins.h"]
     return cached(name, inputs, [_verilator(), *ENGINE_FLAGS, *flags, *archives], make) / LIBRARY
 
 

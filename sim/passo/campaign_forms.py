@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Random moves in each form of schema/moves.toml, as tables of a move file."""
+"""Random moves in each form of spec/moves.toml, as tables of a move file."""
 
 import random
 from collections.abc import Callable

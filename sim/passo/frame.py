@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Python binding of the frame codec (protocol/passo_frame.h)."""
+"""Python binding of the frame codec (c_model/protocol/passo_frame.h)."""
 
 from collections.abc import Sequence
 from typing import Any

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Python binding of the G-code interpreter (gcode/passo_gcode.h)."""
+"""Python binding of the G-code interpreter (c_model/gcode/passo_gcode.h)."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Parameters of moves, one class for each form; units as in schema/moves.toml."""
+"""Parameters of moves, one class for each form; units as in spec/moves.toml."""
 
 from dataclasses import dataclass
 from fractions import Fraction

@@ -39,7 +39,7 @@ HEADERS = (
     paths.grbl / "passo_grbl_settings.h",
     paths.grbl / "passo_grbl_state.h",
     paths.grbl / "passo_grbl.h",
-    paths.model / "passo_pins.h",
+    paths.core / "passo_pins.h",
     paths.engine / "passo_rig.h",
     paths.engine / "passo_engine.h",
     paths.engine / "passo_terminal.h",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Python binding of the path planner (planner/passo_path.h)."""
+"""Python binding of the path planner (c_model/planner/passo_path.h)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Parameters and pins of the core. Generated from schema/pins.toml by tools/generate_pins.py."""
+"""Parameters and pins of the core. Generated from spec/pins.toml by spec/generate_pins.py."""
 
 from dataclasses import dataclass, field
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Python binding of the planner (planner/passo_plan.h)."""
+"""Python binding of the planner (c_model/planner/passo_plan.h)."""
 
 from dataclasses import dataclass
 from fractions import Fraction

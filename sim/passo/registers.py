@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# Generated from registers/passo.rdl by tools/generate_registers.py.
+# Generated from spec/passo.rdl by spec/generate_registers.py.
 """Registers of Passo: word addresses, fields, reset values, enumerations."""
 
 from dataclasses import dataclass

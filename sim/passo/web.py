@@ -21,8 +21,7 @@ from passo.output import make_folder, write_text
 from passo.report_page import SCRIPTS, page
 from passo.toolchain import paths, short
 
-# The driver before the model: both have a passo_outputs.h and a passo_encoder.h, the console means the first.
-FOLDERS = (paths.driver, paths.console, paths.protocol, paths.planner, paths.gcode, paths.model)
+FOLDERS = (paths.driver, paths.console, paths.protocol, paths.planner, paths.gcode, paths.core)
 # Of the folder: the rest is for a sender.
 GRBL = ("passo_player.c", "passo_player_line.c", "passo_player_probe.c", "passo_program.c")
 OWN = ("engine_model.c", "passo_terminal.c", "passo_web.c", "passo_web_console.c", "passo_web_program.c")

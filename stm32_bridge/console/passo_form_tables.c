@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Generated from schema/moves.toml by tools/generate_moves.py.
+ * Generated from spec/moves.toml by spec/generate_moves.py.
  *
  * Keys of the move forms.
  */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Feeds a path (planner/passo_path.h) to a channel of the core, line by line as it becomes known.
+ * Feeds a path (c_model/planner/passo_path.h) to a channel of the core, line by line as it becomes known.
  *
  *     passo_path_feed_open(&feed, &passo, &path);
  *     for (;;) {

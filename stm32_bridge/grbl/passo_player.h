@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Plays the actions of the G-code interpreter (gcode/passo_gcode.h) on a path that is fed to the core.
+ * Plays the actions of the G-code interpreter (c_model/gcode/passo_gcode.h) on a path that is fed to the
+ * core.
  *
  *     passo_player_open(&player, &gcode, &feed, &settings);
  *     for (;;) {

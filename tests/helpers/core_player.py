@@ -16,12 +16,13 @@ from passo.pins import INPUTS
 from passo.toolchain import paths
 
 HERE = Path(__file__).parent
+MODEL = ("pins", "shift", "core_encoder", "core_outputs", "model", "core")
 HEADERS = [
     *(paths.protocol / f"passo_{name}.h" for name in ("registers", "words", "shapes", "command")),
-    *(paths.model / f"passo_{name}.h" for name in ("pins", "shift", "encoder", "outputs", "model", "core")),
+    *(paths.core / f"passo_{name}.h" for name in MODEL),
     HERE / "core_player.h",
 ]
-FOLDERS = (paths.model, paths.protocol)
+FOLDERS = (paths.core, paths.protocol)
 EVENTS = 1 << 16
 Segment = tuple[int, dict[str, int]]  # clocks with these levels of the input pins
 HALF_PERIOD = 2  # clocks that SCLK stays at each level

@@ -21,7 +21,7 @@ EXACT_TICKS = 1 << 21  # longer ramps are not summed tick by tick
 
 
 def load_generator() -> Any:
-    spec = importlib.util.spec_from_file_location("generate_shapes", paths.tools / "generate_shapes.py")
+    spec = importlib.util.spec_from_file_location("generate_shapes", paths.spec / "generate_shapes.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module

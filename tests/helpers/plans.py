@@ -13,7 +13,7 @@ from passo.native import ffi, load
 from passo.registers import Shape
 from passo.toolchain import paths
 
-SCHEMA = tomllib.loads((paths.root / "schema" / "moves.toml").read_text())
+SCHEMA = tomllib.loads((paths.spec / "moves.toml").read_text())
 ONE = 1 << 48  # velocities and progress
 HALF = 1 << 47
 UNIT = 1 << 32  # speeds and accelerations

@@ -9,10 +9,9 @@ from passo.cache import cached
 from passo.compiler import CC, SANITIZED, STRICT, call, compile_to, headers, includes, sources
 from passo.toolchain import paths
 
-# In this order: a source finds the headers beside it first, any other the driver's passo_outputs.h.
 FOLDERS = (
     *(paths.grbl, paths.driver, paths.console, paths.gcode, paths.planner, paths.protocol),
-    *(paths.engine, paths.model),
+    *(paths.engine, paths.core),
 )
 FLAGS = (*STRICT, *SANITIZED, *includes(*FOLDERS))
 

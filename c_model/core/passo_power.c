@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: MIT
+ * Power in proportion to the velocity. See rtl/passo_power.v.
+ */
+#include "passo_core_outputs.h"
+
+enum { LAST = 69, SCALE = 96, SCALED = 122 };
+enum { RATE_BITS = 17 };
+
+static const uint32_t COST_MAX = 0xFFFFFFu;
+
+void passo_power_reset(struct passo_power *power)
+{
+	*power = (struct passo_power){.stale = true};
+}
+
+static uint32_t quotient(uint64_t scaled, uint64_t velocity, uint32_t rate)
+{
+	const uint64_t factor = velocity * rate >> RATE_BITS;
+
+	if (factor == 0u || scaled / factor > COST_MAX)
+		return COST_MAX;
+	return (uint32_t)(scaled / factor);
+}
+
+/* The results are known when they are begun, and used when the RTL has them. */
+void passo_power_clock(struct passo_power *power, const struct passo_outputs_wires *wires, bool moves)
+{
+	const struct passo_output_settings *settings = &wires->settings;
+	const bool begins = power->count == 0u;
+
+	if (begins) {
+		power->cost = power->next_cost;
+		if (power->stale) {
+			power->count = SCALE;
+		} else if (moves) {
+			power->next_cost = quotient(power->scaled, wires->velocity, wires->rate);
+			power->count = 1;
+		}
+	} else if (power->count == SCALED) {
+		power->scaled = (uint64_t)settings->pwm_step * settings->power_reference >> 1;
+		power->count = 0;
+	} else {
+		power->count = power->count == LAST ? 0u : (uint8_t)(power->count + 1u);
+	}
+	if (!moves) {
+		power->cost = 0;
+		power->next_cost = 0;
+		if (power->count < SCALE)
+			power->count = 0;
+	}
+	power->stale = wires->write_power || (power->stale && !begins);
+}

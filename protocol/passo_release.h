@@ -1,9 +1,0 @@
-/* SPDX-License-Identifier: MIT
- * Generated from rtl/ and VERSION by tools/generate_package.py.
- */
-#ifndef PASSO_RELEASE_H
-#define PASSO_RELEASE_H
-
-#define PASSO_RELEASE "0.2.0"
-
-#endif

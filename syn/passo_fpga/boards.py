@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: MIT
+"""The boards: each is a folder in syn/ with a table board.toml; see docs/fpga.md."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from passo.toolchain import paths
+
+from passo_fpga import parts as core_parts
+from passo_fpga.devices import DEVICES, GOWIN, Device, Family
+from passo_fpga.pll import Pll, PllError, dividers
+from passo_fpga.table import BoardError, Table, TableError
+
+FOLDER = paths.syn
+TABLE = "board.toml"
+
+OSCILLATOR = "oscillator"
+NEEDED = ("spi_sclk", "spi_mosi", "spi_cs_n", "spi_miso", "sync")
+OPTIONAL = ("running", "irq", "led")  # outputs that a board may omit or invert
+OF_AXIS = ("step", "dir", "enable")
+
+
+@dataclass(frozen=True)
+class Pin:
+    """Pin of a port; `io_type` and `options` are copied to the pin file."""
+
+    pin: str
+    pull: str = ""  # up, down or none
+    inverted: bool = False
+    io_type: str = ""
+    options: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Board:
+    """Contents of a board.toml; `reset` has the pin levels per axis that differ from passo_board.v."""
+
+    name: str
+    title: str
+    device: Device
+    load: str  # command that loads a bitstream
+    pack: tuple[str, ...]  # options of the packer
+    oscillator_mhz: float
+    clock_mhz: float
+    pll_kind: str
+    pins: Mapping[str, Pin]  # except those of the axes
+    axis_pins: tuple[Mapping[str, Pin], ...]
+    reset: Mapping[str, tuple[int, ...]]
+    parts: Mapping[str, core_parts.PartPins[Pin]]  # pins of each optional part of the core
+
+    @property
+    def axes(self) -> int:
+        """Number of axes that it has pins for."""
+        return len(self.axis_pins)
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """Ports without a pin."""
+        return tuple(port for port in OPTIONAL if port not in self.pins)
+
+    def ports(self, axes: int | None = None, parts: Sequence[str] = ()) -> dict[str, Pin]:
+        """The pin of each port bit of a core with these parts. A port of one bit has no index.
+
+        Raises BoardError for parts without pins, TableError for a pin that is used twice.
+        """
+        users: dict[str, str] = {}
+        found = {}
+        for key, port, pin in self._places(self._axes(axes), parts):
+            if pin.pin in users:
+                raise TableError(self.name, key, f"pin {pin.pin} is that of {users[pin.pin]} already")
+            users[pin.pin] = key
+            found[port] = pin
+        return found
+
+    def _places(self, axes: int, parts: Sequence[str]) -> Iterator[tuple[str, str, Pin]]:
+        """Key of the table, port bit and pin."""
+        for port, pin in self.pins.items():
+            yield "clock.pin" if port == OSCILLATOR else f"pins.{port}", port, pin
+        for axis, pins in enumerate(self.axis_pins[:axes]):
+            for port, pin in pins.items():
+                yield f"axes[{axis}].{port}", f"{port}[{axis}]" if axes > 1 else port, pin
+        core_parts.check(self.name, self.parts, parts, axes)
+        for part in parts:
+            for port, of_bits in self.parts[part].items():
+                count = core_parts.bits(part, port, axes)
+                for bit, pin in enumerate(of_bits[:count]):
+                    name = f"{port}[{bit}]"
+                    yield f"{part}.{name}", name if count > 1 else port, pin
+
+    def pll(self, mhz: float | None = None) -> Pll:
+        """PLL settings for the board's clock, or for `mhz`."""
+        if mhz is not None:
+            return dividers(self.device.family, self.oscillator_mhz, mhz)
+        try:
+            return dividers(self.device.family, self.oscillator_mhz, self.clock_mhz)
+        except PllError as error:
+            raise TableError(self.name, "clock.mhz", str(error)) from None
+
+    def parameters(
+        self, axes: int | None = None, mhz: float | None = None, parts: Sequence[str] = ()
+    ) -> dict[str, int]:
+        """Parameters of the top module."""
+        chosen = self._axes(axes)
+        inverted = [port for port in OPTIONAL if port in self.pins and self.pins[port].inverted]
+        return {
+            "AXES": chosen,
+            "CLOCK_HZ": round(self.pll(mhz).mhz * 1e6),
+            **self.device.core,
+            **{part.upper(): 1 for part in parts},
+            **{f"{port.upper()}_INVERTED": 1 for port in inverted},
+            **{
+                f"{port.upper()}_RESET": sum(level << axis for axis, level in enumerate(levels[:chosen]))
+                for port, levels in self.reset.items()
+            },
+        }
+
+    def _axes(self, axes: int | None) -> int:
+        chosen = self.axes if axes is None else axes
+        if not 1 <= chosen <= self.axes:
+            reason = f"{chosen} are wanted, and the table has pins for {self.axes}"
+            raise TableError(self.name, "axes", reason)
+        return chosen
+
+
+def names() -> list[str]:
+    """Names of all boards."""
+    return [path.parent.name for path in sorted(FOLDER.glob(f"*/{TABLE}"))]
+
+
+def boards() -> dict[str, Board]:
+    """All boards by name; raises TableError."""
+    return {name: board(name) for name in names()}
+
+
+def board(name: str) -> Board:
+    """A board by name; raises TableError, or BoardError if there is no such board."""
+    if name not in names():
+        raise BoardError(f"there is no board '{name}'; choose one of {', '.join(names())}")
+    table = Table.read(name, FOLDER / name / TABLE)
+    title = table.text("title")
+    device = _device(table, title)
+    family = device.family
+    load, pack = table.text("load"), table.texts("pack", ())
+
+    clock = table.table("clock")
+    pll_kind = clock.choice("pll", family.plls) if family.plls else ""
+    oscillator_mhz, clock_mhz = clock.number("oscillator_mhz"), clock.number("mhz")
+    oscillator = _pin(clock, "pin", family)
+    clock.end()
+
+    there = table.table("pins")
+    pins = {OSCILLATOR: oscillator}
+    pins |= {port: _pin(there, port, family) for port in NEEDED}
+    pins |= {port: _pin(there, port, family, invertible=True) for port in OPTIONAL if there.has(port)}
+    there.end()
+
+    axis_pins = []
+    for axis in table.tables("axes"):
+        axis_pins.append({port: _pin(axis, port, family) for port in OF_AXIS})
+        axis.end()
+
+    reset = {}
+    levels = table.table("reset", {})
+    for port in OF_AXIS:
+        if levels.has(port):
+            reset[port] = levels.levels(port, len(axis_pins))
+    levels.end()
+    parts = {
+        part: core_parts.read(table.table(part), part, len(axis_pins), lambda at, key: _pin(at, key, family))
+        for part in core_parts.PORTS
+        if table.has(part)
+    }
+    table.end()
+
+    of_axes = tuple(axis_pins)
+    made = Board(
+        *(name, title, device, load, pack, oscillator_mhz, clock_mhz, pll_kind, pins, of_axes, reset, parts)
+    )
+    made.ports()  # refuses a pin that is used twice
+    return made
+
+
+def _device(table: Table, title: str) -> Device:
+    """A device of devices.py, or a variant of one that the table describes."""
+    if not table.is_table("device"):
+        return DEVICES[table.choice("device", tuple(DEVICES))]
+    facts = table.table("device")
+    like = DEVICES[facts.choice("like", tuple(DEVICES))]
+    if like.family is GOWIN:
+        raise facts.error("like", "the flow knows one Gowin only")
+    capacity = facts.number("capacity")
+    part, synthesis = facts.texts("part"), facts.text("synthesis", like.synthesis)
+    facts.end()
+    return Device(
+        table.board, title, like.family, synthesis, part, int(capacity), like.target_mhz, core=like.core
+    )
+
+
+def _pin(table: Table, key: str, family: Family, invertible: bool = False) -> Pin:
+    """Read a pin: its name or number, or a table with further properties."""
+    if not table.is_table(key):
+        return Pin(table.pin(key), io_type=family.io_type)
+    facts = table.table(key)
+    found = Pin(
+        facts.pin("pin"),
+        facts.choice("pull", family.pulls, ""),
+        facts.flag("inverted") if invertible else False,
+        facts.text("io_type", family.io_type) if family.io_type else "",
+        facts.texts("options", ()) if family.io_type else (),
+    )
+    facts.end()
+    return found

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: MIT
+"""Generates the files of a board from its table: a Verilog file with the PLL, and a pin file."""
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+from passo.output import write_text
+from passo.toolchain import paths
+
+from passo_fpga.boards import FOLDER, TABLE, Board, Pin
+from passo_fpga.design import Design
+from passo_fpga.devices import ECP5, GOWIN, ICE40, Family
+
+TOP = paths.syn / "passo_board.v"
+
+PLL = """\
+// Generated from {table} by `make synth`: {made:g} MHz from {oscillator:g} MHz.
+`resetall
+`timescale 1ns / 1ps
+`default_nettype none
+
+module passo_board_pll (
+  input  wire oscillator,
+  output wire clk,
+  output wire locked
+);
+
+  passo_pll #(
+{parameters}
+  ) u_pll (
+    .oscillator(oscillator),
+    .clk(clk),
+    .locked(locked)
+  );
+
+endmodule
+`resetall
+"""
+
+
+def generate(
+    board: Board,
+    folder: Path,
+    axes: int | None = None,
+    mhz: float | None = None,
+    parts: Sequence[str] = (),
+) -> tuple[Design, Path]:
+    """Write both files into `folder`; return the design and the pin file."""
+    family = board.device.family
+    folder.mkdir(parents=True, exist_ok=True)
+    pll, pins = folder / "passo_board_pll.v", folder / f"pins.{family.pins_suffix}"
+    write_text(pins, pin_file(board, axes, parts))
+    write_text(pll, pll_file(board, mhz))
+    design = Design(
+        name=f"board-{board.name}",
+        device=board.device,
+        top=TOP.stem,
+        parameters=board.parameters(axes, mhz, parts),
+        left_out=board.left_out,
+        extra_sources=(TOP, paths.syn / "families" / f"{family.name}.v", pll),
+    )
+    return design, pins
+
+
+def pll_file(board: Board, mhz: float | None = None) -> str:
+    """Text of the PLL module with the dividers for this clock."""
+    pll = board.pll(mhz)
+    parameters = dict(pll.parameters)
+    if board.device.family is ICE40:
+        parameters["PAD"] = int(board.pll_kind == "pad")
+    return PLL.format(
+        table=_table(board),
+        made=pll.mhz,
+        oscillator=board.oscillator_mhz,
+        parameters=",\n".join(f"    .{name}({json.dumps(value)})" for name, value in parameters.items()),
+    )
+
+
+def pin_file(board: Board, axes: int | None = None, parts: Sequence[str] = ()) -> str:
+    """Text of the pin file in the format of the family."""
+    family = board.device.family
+    comment = "//" if family is GOWIN else "#"
+    lines = [f"{comment} Made of {_table(board)} by `make synth`.\n"]
+    lines += [_FORMATS[family](port, pin) for port, pin in board.ports(axes, parts).items()]
+    return "".join(lines)
+
+
+def _table(board: Board) -> str:
+    return f"{FOLDER.name}/{board.name}/{TABLE}"
+
+
+def _pcf(port: str, pin: Pin) -> str:
+    return f"set_io {f'-pull{pin.pull} yes ' if pin.pull else ''}{port} {pin.pin}\n"
+
+
+def _lpf(port: str, pin: Pin) -> str:
+    pull = [f"PULLMODE={pin.pull.upper()}"] if pin.pull else []
+    words = " ".join([f"IO_TYPE={pin.io_type}", *pull, *pin.options])
+    return f'LOCATE COMP "{port}" SITE "{pin.pin}";\nIOBUF PORT "{port}" {words};\n'
+
+
+def _cst(port: str, pin: Pin) -> str:
+    pull = [f"PULL_MODE={pin.pull.upper()}"] if pin.pull else []
+    words = " ".join([f"IO_TYPE={pin.io_type}", *pull, *pin.options])
+    return f'IO_LOC "{port}" {pin.pin};\nIO_PORT "{port}" {words};\n'
+
+
+_FORMATS: Mapping[Family, Callable[[str, Pin], str]] = {ICE40: _pcf, ECP5: _lpf, GOWIN: _cst}

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: MIT
+"""The optional parts of the core on a board: the pins of their ports, from the tables of a board.toml."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, TypeVar
+
+from passo.pins import INPUTS, OUTPUTS
+
+from passo_fpga.table import BoardError, Table
+
+PORTS = {  # width of each port, by part
+    part: {pin.name: pin.width for pin in (*INPUTS, *OUTPUTS) if pin.parameter == part}
+    for part in ("inputs", "encoders", "outputs")
+}
+OF_A_CHANNEL = {"CHANNELS": 1, "CHANNELS*8": 8, "1": 1}  # widths that do not depend on the axes
+
+P = TypeVar("P")  # a pin
+PartPins = Mapping[str, tuple[P, ...]]  # of each port of a part
+
+
+def bits(part: str, port: str, axes: int) -> int:
+    """Number of bits of a port of a core with one channel."""
+    return OF_A_CHANNEL.get(PORTS[part][port], axes)
+
+
+def chosen(text: str) -> tuple[str, ...]:
+    """The parts of a list with commas; raises BoardError."""
+    wanted = [part for part in text.split(",") if part]
+    if unknown := sorted(set(wanted) - set(PORTS)):
+        raise BoardError(f"there is no part '{unknown[0]}'; choose of {', '.join(PORTS)}")
+    return tuple(part for part in PORTS if part in wanted)
+
+
+def read(table: Table, part: str, axes: int, pin: Callable[[Table, str], P]) -> PartPins[P]:
+    """The pins of a part: a pin for each port, or a list with one for each bit, for up to `axes` axes."""
+    found = {}
+    for port in PORTS[part]:
+        most = bits(part, port, axes)
+        found[port] = (pin(table, port),) if most == 1 and not table.is_list(port) else table.pins(port, pin)
+        if len(found[port]) > most:
+            raise table.error(port, f"{len(found[port])} pins are too many; it has {most} bits")
+    table.end()
+    return found
+
+
+def check(board: str, there: Mapping[str, PartPins[Any]], parts: Sequence[str], axes: int) -> None:
+    """Raise BoardError for a part that a board has no pins for, or too few for this number of axes."""
+    for part in parts:
+        if part not in there:
+            known = f"there are those of {', '.join(there)}" if there else "it has none of any part"
+            raise BoardError(f"board '{board}': the table has no pins for part '{part}'; {known}")
+        for port, pins in there[part].items():
+            if len(pins) < bits(part, port, axes):
+                wanted = f"{bits(part, port, axes)} are wanted for {axes} axes"
+                raise BoardError(f"board '{board}': {part}.{port}: {wanted}, the table has {len(pins)}")

@@ -1,0 +1,230 @@
+# SPDX-License-Identifier: MIT
+"""`make report`: size and speed of the core on all devices.
+
+A full report writes build/report.json, docs/report.md and the goals between two marks in README.md; QUICK=1
+writes only the goals. A partial report (ONLY=, QUICK=1) is printed and written to build/report-part.json.
+Each run of a netlist with a seed is cached in build/fpga: an interrupted report resumes, and after a change
+only the affected runs are repeated. PARTS=1 measures the optional parts of the core instead.
+"""
+
+import argparse
+import statistics
+import sys
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict, dataclass, replace
+from itertools import product
+from threading import Lock
+from typing import Any
+
+from passo.console import console, stages
+from passo.output import write_json
+from passo.toolchain import paths
+
+from passo_fpga import pages, parts_report
+from passo_fpga.design import Design
+from passo_fpga.devices import DEVICES, SPI_MHZ, Device
+from passo_fpga.flow import Placed, cells, place, synthesize
+from passo_fpga.split import difference, split
+from passo_fpga.tools import ToolError, prepare, versions, workers
+
+REPORT = paths.build / "report.json"
+SEEDS = range(1, 4)
+GOAL_SEEDS = range(1, 9)  # of the designs that have a goal
+SIZES = ((1, 1), (1, 2), (1, 4), (1, 6), (1, 8), (2, 1), (2, 2), (4, 1), (4, 2))  # channels, axes
+SPLIT_DEVICES = ("hx8k", "ecp5-25")
+SPLIT_SIZE = (1, 4)
+CHANNEL_DEVICE = "hx8k"  # of the price of a further channel, module by module
+SPI = "passo_spi_top"
+BUS_TOPS = ("passo_wishbone", "passo_axi_lite")
+TOP_SIZE = (1, 4)
+
+Key = tuple[str, str, tuple[int, int]]  # device, top, (channels, axes)
+
+
+@dataclass(frozen=True)
+class Goal:
+    """Goal for a device: `size` in its unit, `bram` if limited, and the clocks in MHz over the seeds."""
+
+    device: str
+    channels: int
+    axes: int
+    median_mhz: int
+    minimum_mhz: int
+    size: int
+    bram: int | None = None
+
+
+GOALS = (
+    Goal("hx8k", 1, 4, 120, 110, 3750, 16),
+    Goal("up5k", 1, 6, 49, 47, 5280),
+    Goal("ecp5-25", 1, 6, 180, 170, 6000),
+    Goal("gw1nr-9c", 1, 6, 100, 90, 8640),
+)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Return 0 if all runs ended, whether they fit or not; 2 for an unknown device."""
+    parser = argparse.ArgumentParser(prog="make report", description="Measure size and speed of the core.")
+    parser.add_argument("--only", default="", help=f"devices, with commas between: {','.join(DEVICES)}")
+    parser.add_argument("--quick", action="store_true", help="only the rows of the goals")
+    parser.add_argument("--parts", action="store_true", help="the cost of each part of the core instead")
+    options = parser.parse_args(arguments)
+    chosen = [name for name in options.only.split(",") if name] or list(DEVICES)
+    if unknown := set(chosen) - set(DEVICES):
+        message = f"there is no device '{min(unknown)}'; choose of {', '.join(DEVICES)}"
+        print(f"make report: {message}", file=sys.stderr)
+        return 2
+    if options.parts:
+        return _parts(chosen)
+    goals = [(goal.device, SPI, (goal.channels, goal.axes)) for goal in GOALS if goal.device in chosen]
+    others = (
+        [] if options.quick else [*product(chosen, (SPI,), SIZES), *product(chosen, BUS_TOPS, (TOP_SIZE,))]
+    )
+    whole = not options.quick and set(chosen) == set(DEVICES)
+    try:
+        report = measure(
+            list(dict.fromkeys(goals if options.quick else goals + others)), splits=not options.quick
+        )
+    except ToolError as error:
+        print(error, file=sys.stderr)
+        return 1
+    if whole:
+        write_json(report, REPORT)
+        pages.write(report)
+    else:
+        part = REPORT.with_name("report-part.json")
+        write_json(report, part)
+        console.print(f"a part of the report: {part.relative_to(paths.root)}; docs/report.md is as it was")
+        if len(goals) == len(GOALS):
+            pages.write_goals(report)
+    pages.show(report)
+    return 0
+
+
+def _parts(chosen: Sequence[str]) -> int:
+    try:
+        parts_report.report(chosen, set(chosen) == set(DEVICES))
+    except ToolError as error:
+        print(error, file=sys.stderr)
+        return 1
+    return 0
+
+
+def core(device: Device, size: tuple[int, int], top: str = SPI) -> Design:
+    """The design of the core alone behind one of its host interfaces, with its ports as pins."""
+    channels, axes = size
+    parameters = {"CHANNELS": channels, "AXES": axes, **device.core}
+    suffix = "" if top == SPI else f"-{top.removeprefix('passo_')}"
+    return Design(f"{device.name}-{channels}x{axes}{suffix}", device, top, parameters)
+
+
+def measure(wanted: Sequence[Key], splits: bool) -> dict[str, Any]:
+    """Run what is not cached, in parallel, and collect the figures."""
+    tell = stages()
+    devices = list(dict.fromkeys(DEVICES[name] for name, _, _ in wanted))
+    prepare(dict.fromkeys(program for device in devices for program in device.family.programs), tell)
+    designs = {key: core(DEVICES[key[0]], key[2], key[1]) for key in wanted}
+    named = {device.name for device in devices} if splits else set()
+    hierarchical = {name: _hierarchical(name, SPLIT_SIZE) for name in SPLIT_DEVICES if name in named}
+    channels = [_hierarchical(CHANNEL_DEVICE, (number, 1)) for number in (1, 2) if CHANNEL_DEVICE in named]
+    with ThreadPoolExecutor(workers()) as pool:
+        count = _counter(len(designs) + len(hierarchical) + len(channels))
+
+        def make(design: Design) -> None:
+            synthesize(design)
+            tell(f"synthesis {count()}: {design.name}")
+
+        list(pool.map(make, [*designs.values(), *hierarchical.values(), *channels]))
+
+        count = _counter(sum(len(_seeds(key)) for key in designs))
+
+        def run(key: Key, seed: int) -> Placed:
+            placed = _place(designs[key], seed)
+            done = count(len(_seeds(key)) if placed.too_large else 1)
+            tell(f"place and route {done}: {designs[key].name}, seed {seed}: {_words(placed)}")
+            return placed
+
+        # the seeds of a design run in sequence, because a design that is too large is run only once
+        def runs(key: Key) -> list[Placed]:
+            seed, *seeds = _seeds(key)
+            first = run(key, seed)
+            return [first] if first.too_large else [first, *(run(key, seed) for seed in seeds)]
+
+        placed = dict(zip(designs, pool.map(runs, designs), strict=True))
+    return {
+        "seeds": list(SEEDS),
+        "goal_seeds": list(GOAL_SEEDS),
+        "tools": {device.name: versions(device.family.programs) for device in devices},
+        "goals": [asdict(goal) for goal in GOALS if DEVICES[goal.device] in devices],
+        "designs": [_row(designs[key], key, placed[key]) for key in designs if key[1] == SPI],
+        "tops": [_row(designs[key], key, placed[key]) for key in designs if key[2] == TOP_SIZE],
+        "split": {name: split(design) for name, design in hierarchical.items()},
+        "split_size": list(SPLIT_SIZE),
+        "channel_device": CHANNEL_DEVICE,
+        "channel": difference(*map(split, channels)) if channels else [],
+    }
+
+
+def _hierarchical(name: str, size: tuple[int, int]) -> Design:
+    design = core(DEVICES[name], size)
+    return replace(design, name=f"{design.name}-split", flatten=False)
+
+
+def _seeds(key: Key) -> Sequence[int]:
+    goals = [(goal.device, SPI, (goal.channels, goal.axes)) for goal in GOALS]
+    return GOAL_SEEDS if key in goals else SEEDS
+
+
+def _counter(total: int) -> Callable[..., str]:
+    """A function that adds to a count and returns it as text."""
+    done = 0
+    lock = Lock()
+
+    def count(more: int = 1) -> str:
+        nonlocal done
+        with lock:
+            done += more
+            return f"{done} of {total}"
+
+    return count
+
+
+def _place(design: Design, seed: int) -> Placed:
+    mhz = design.device.target_mhz
+    clocks = {"clk": mhz, "spi_sclk": SPI_MHZ} if design.top == SPI else {"clk": mhz}
+    return place(design, seed, mhz, clocks)
+
+
+def _words(placed: Placed) -> str:
+    if placed.fits:
+        return f"{placed.main_clock[0]:.1f} MHz"
+    return "does not fit" if placed.too_large else "no place or no route"
+
+
+def _row(design: Design, key: Key, placed: Sequence[Placed]) -> dict[str, Any]:
+    device, top, (channels, axes) = key
+    made = cells(design)
+    # a seed that nextpnr cannot place or route counts as 0 MHz
+    reached = [run.main_clock[0] if run.fits else 0.0 for run in placed]
+    median = statistics.median(reached)
+    return {
+        "device": device,
+        "top": top,
+        "channels": channels,
+        "axes": axes,
+        "fits": median > 0,
+        "size": placed[0].used,
+        "capacity": design.device.capacity,
+        "lut": made["LUT"],
+        "ff": made["FF"],
+        "bram": placed[0].bram,
+        "dsp": made["DSP"],
+        "f_max": [round(mhz, 2) for mhz in reached],
+        "f_max_minimum": round(min(reached), 1) if median else None,
+        "f_max_median": round(median, 1) if median else None,
+    }
+
+
+if __name__ == "__main__":
+    sys.exit(main())

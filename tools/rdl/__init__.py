@@ -1,2 +1,0 @@
-# SPDX-License-Identifier: MIT
-"""What tools/generate_registers.py makes of registers/passo.rdl."""

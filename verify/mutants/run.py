@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: MIT
+"""Make mutants of the RTL and of the C sources, and let the judges play that do not know the model.
+
+    .venv/bin/python -m verify.mutants.run [--seed N] [--only NAME,...] [--each N] [--count N]
+
+`--only` takes `rtl`, `c`, modules of rtl/ and files of the driver, the planner and G-code. A run goes on
+where the last one ended: the fates are kept in build/mutants, and all that was killed is killed once more
+when the sources or the judges are others. A run of everything writes docs/mutants.md.
+"""
+
+import argparse
+import sys
+import time
+from collections.abc import Collection, Sequence
+
+from passo.console import console
+
+from verify.mutants import c_judge, c_source, equivalence, formal_judge, registers_judge, rtl_judge
+from verify.mutants.fates import Fates, hash_of
+from verify.mutants.netlist import CORES, Core, drawn
+from verify.mutants.page import Score, scores, show_table, write
+from verify.soak.program import build as program
+
+EACH = 20  # of a module of the RTL, in each core that it is in
+COUNT = 640  # of the C sources
+
+
+def _say(text: str) -> None:
+    console.print(f"{time.strftime('%T')} {text}", highlight=False, markup=False, soft_wrap=True)
+
+
+def run_core(core: Core, seed: int, each: int, only: Collection[str]) -> list[Score]:
+    """All judges of the RTL: the quick ones first."""
+    mutants, library, hashed = drawn(core, seed, each)
+    soak = program()
+    fates = Fates(f"rtl_{core.name}", hash_of([soak], hashed, str(seed)))
+    chosen = [mutant for mutant in mutants if not only or mutant.module in only]
+    rounds = rtl_judge.ROUNDS[core.name]
+    rtl_judge.judge(core, chosen, fates, soak, library, seed, _say, rounds[:1])
+    registers_judge.judge(core, chosen, fates, library, seed, _say)
+    formal_judge.judge(core, chosen, fates, _say)
+    rtl_judge.judge(core, chosen, fates, soak, library, seed, _say, rounds[1:])
+    formal_judge.judge(core, chosen, fates, _say, slow=True)
+    equivalence.judge(core, chosen, fates, _say)
+    return scores(chosen, fates)
+
+
+def run_c(seed: int, count: int, only: Collection[str]) -> list[Score]:
+    """The tests as judges of the C sources."""
+    mutants, hashed = c_source.drawn(seed, count)
+    chosen = [mutant for mutant in mutants if not only or mutant.file in only]
+    fates = Fates("c", hash_of(c_judge.tests(), hashed))
+    c_judge.judge(chosen, fates, _say)
+    return scores(chosen, fates)
+
+
+def _chosen(only: Sequence[str], kind: str, ending: str) -> list[str] | None:
+    """The names of one kind; None: nothing of it, an empty list: everything."""
+    if not only or kind in only:
+        return []
+    names = [name for name in only if name.endswith(".c") == bool(ending) and name not in ("rtl", "c")]
+    return names or None
+
+
+def main() -> None:
+    """Run, print the table, and exit with 1 if the judges find fault with the sources themselves."""
+    parser = argparse.ArgumentParser(prog="python -m verify.mutants.run", description=__doc__.split("\n")[0])
+    parser.add_argument("--seed", type=int, default=1, help="of the mutants and of the histories")
+    parser.add_argument("--only", default="", help="rtl, c, modules, files")
+    parser.add_argument("--each", type=int, default=EACH, help="mutants of a module (default: %(default)s)")
+    parser.add_argument("--count", type=int, default=COUNT, help="mutants in C (default: %(default)s)")
+    parser.add_argument("--page", action="store_true", help="only write the page, from what is known")
+    arguments = parser.parse_args()
+    only = [name for name in arguments.only.split(",") if name]
+    began = time.monotonic()
+    rtl: list[Score] = []
+    c: list[Score] = []
+    if arguments.page:
+        for core in CORES:
+            mutants, _, _ = drawn(core, arguments.seed, arguments.each)
+            rtl += scores(mutants, Fates(f"rtl_{core.name}", "", again=False))
+        mutants_c, _ = c_source.drawn(arguments.seed, arguments.count)
+        c = scores(mutants_c, Fates("c", "", again=False))
+    else:
+        if (modules := _chosen(only, "rtl", "")) is not None:
+            for core in CORES:
+                rtl += run_core(core, arguments.seed, arguments.each, modules)
+        if (files := _chosen(only, "c", ".c")) is not None:
+            c = run_c(arguments.seed, arguments.count, files)
+    show_table(rtl, c)
+    _say(f"{time.monotonic() - began:.0f} s")
+    if not only:
+        write(rtl, c, arguments.seed, ended=not arguments.page)
+    for case in rtl_judge.unfair:
+        _say(f"the judge finds fault with the core itself: {case}")
+    sys.exit(bool(rtl_judge.unfair))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: MIT
+"""The program that plays histories: build it, run it, and parse its output."""
+
+import os
+import subprocess
+from collections import Counter
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+from passo.build import model_library, planner_library
+from passo.compiler import STRICT, compile_to, headers, includes, kept, sources
+from passo.toolchain import environment, paths
+
+HERE = Path(__file__).resolve().parent
+BUILD = paths.build / "soak"
+FLAGS = (*STRICT, "-std=gnu11", "-O2")
+FOLDERS = {
+    "c_model/core": paths.core,
+    "c_model/planner": paths.planner,
+    "c_model/protocol": paths.protocol,
+    "stm32_bridge/driver": paths.driver,
+    "verify/soak": HERE,
+}
+
+
+# Histories of a core with inputs, encoders and outputs: events, drives into switches, motions that begin at
+# switches with filters of any length, anything at all.
+KINDS = ("machine", "tries", "starts", "pokes")
+# Of the driver, by a program of their own: operations that end early, hosts that die.
+DRIVER_KINDS = ("endings", "sessions")
+
+
+class SoakError(RuntimeError):
+    """The program could not be run."""
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A failed history."""
+
+    part: str
+    seed: int
+    history: int
+    clock: int
+    text: str
+
+    @property
+    def again(self) -> str:
+        """The command that reproduces it."""
+        kind = self.part.split()[0]
+        kinds = (*KINDS, *DRIVER_KINDS)
+        more = " DRIVER=1" if kind == "driver" else f" KIND={kind}" if kind in kinds else ""
+        return f"make soak SEED={self.seed} HISTORY={self.history}{more}"
+
+
+def _object(file: Path, folders: Sequence[Path]) -> Path:
+    """Compile a source with the headers of folders; return the object file."""
+    made = BUILD / "objects" / f"{file.stem}.o"
+    return kept(made, [file, *headers(*folders)], FLAGS, *includes(*folders), "-c", file)
+
+
+def build(root: Path = paths.root, program: Path = BUILD / "soak") -> Path:
+    """Build the program from the sources under root; return its path."""
+    folders = [root / folder for folder in FOLDERS]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        objects = list(pool.map(lambda file: _object(file, [*folders, paths.engine]), sources(*folders)))
+    return compile_to(program, *objects, "-ldl")
+
+
+def build_endings(root: Path = paths.root, program: Path = BUILD / "endings") -> Path:
+    """Build the program of DRIVER_KINDS, with planner and driver of the sources under root."""
+    here = HERE / "endings"
+    folders = (root / "stm32_bridge/driver", root / "c_model/planner", paths.protocol)
+    flags = [*FLAGS, *includes(*folders, here, paths.core, paths.engine)]
+    libraries = [model_library()]
+    files = sources(here)
+    if root == paths.root:
+        libraries.append(planner_library())
+    else:
+        files += sources(*folders)
+    linked = [*map(str, libraries), *(f"-Wl,-rpath,{library.parent}" for library in libraries)]
+    return compile_to(program, *flags, *files, *linked, "-lm")
+
+
+playing: set[subprocess.Popen] = set()  # killed when this program ends
+
+
+def say(command: Sequence[str | Path]) -> tuple[int, str, str]:
+    """Run a program; return its exit status and output."""
+    process = subprocess.Popen(
+        [*map(str, command)], env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    playing.add(process)
+    said, complaints = process.communicate()
+    playing.discard(process)
+    return process.returncode, said, complaints
+
+
+def play_program(command: Sequence[str | Path], part: str, seed: int) -> tuple[Counter[str], list[Failure]]:
+    """Play histories; return the counts and the failures."""
+    status, said, complaints = say(command)
+    counts: Counter[str] = Counter()
+    failures = []
+    for line in said.splitlines():
+        word, _, rest = line.partition(" ")
+        if word == "count":
+            name, _, value = rest.rpartition(" ")
+            counts[name] += int(value)
+        elif word == "failed":
+            history, clock, text = rest.split(" ", 2)
+            failures.append(Failure(part, seed, int(history), int(clock), text))
+    if status not in (0, 1) or (status == 1) != bool(failures):
+        raise SoakError(f"{' '.join(map(str, command))}: exit status {status}\n{complaints}")
+    return counts, failures
