@@ -142,10 +142,27 @@ static inline uint32_t quotient_digit(uint64_t *rest, uint32_t next, uint64_t di
 	return digit;
 }
 
+/* 64 by 32 bits, of a quotient of any size. */
+static uint64_t divide_short(uint64_t a, uint32_t divisor, uint64_t *remainder)
+{
+	uint32_t upper = (uint32_t)high_half(a) / divisor;
+	uint32_t shift = leading_zeros32(divisor);
+	uint64_t left = ((high_half(a) - (uint64_t)upper * divisor) << 32 | low_half(a)) << shift;
+	uint32_t rest = (uint32_t)high_half(left);
+	uint32_t lower = quotient_half_digit(&rest, (uint32_t)left >> 16, divisor << shift) << 16;
+
+	lower += quotient_half_digit(&rest, (uint32_t)left & UINT16_MAX, divisor << shift);
+	if (remainder != NULL)
+		*remainder = rest >> shift;
+	return (uint64_t)upper << 32 | lower;
+}
+
 uint64_t passo_divide(struct passo_u128 a, uint64_t divisor, uint64_t *remainder)
 {
 	uint64_t quotient = UINT64_MAX;
 	uint64_t rest = 0;
+	if (a.high == 0 && high_half(divisor) == 0 && divisor > 0)
+		return divide_short(a.low, (uint32_t)divisor, remainder);
 	if (a.high < divisor) {
 		uint32_t shift = leading_zeros(divisor);
 		divisor <<= shift;
@@ -180,6 +197,13 @@ uint64_t passo_mul_div_ceil(uint64_t a, uint64_t b, uint64_t divisor)
 	uint64_t remainder;
 	uint64_t quotient = passo_divide(passo_multiply(a, b), divisor, &remainder);
 	return remainder > 0 && quotient < UINT64_MAX ? quotient + 1 : quotient;
+}
+
+uint64_t passo_mul_shift(uint64_t a, uint64_t b, uint32_t bits)
+{
+	const struct passo_u128 product = passo_multiply(a, b);
+
+	return product.high >> bits > 0 ? UINT64_MAX : product.high << 1 << (63 - bits) | product.low >> bits;
 }
 
 /* Of 2^30 or more: each step doubles the digits, and the last one is at most 1 too large. */

@@ -173,7 +173,10 @@ static uint64_t reach_of(const struct passo_path_planner *path, uint32_t index)
 	const uint64_t flat = passo_path_smaller(
 	    passo_path_flat(path, index + 1, end) + passo_path_flat(path, index, item->corner), length);
 	const uint64_t most =
-	    end + passo_path_gain(passo_path_slope(item, false, end, length - flat), length - flat);
+	    end
+	    + (flat == 0 ? passo_path_fall(item, end)
+	                 : passo_path_gain(passo_path_down(passo_path_slope(item, false, end, length - flat)),
+			       length - flat));
 	const uint64_t reach = passo_path_smaller(item->corner, most);
 
 	/* what was possible with fewer lines still is */

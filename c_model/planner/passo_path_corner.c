@@ -2,6 +2,8 @@
  * The corner between two lines: the highest speed there, and what its turn takes of the acceleration beside
  * it. docs/path.md has the rules.
  */
+#include <stddef.h>
+
 #include "passo_path_private.h"
 
 /* Of the arc with the deviation from a corner whose directions differ by `turn` (UQ2.60, squared): half its
@@ -12,7 +14,8 @@ static uint64_t half_arc(const struct passo_path_planner *path, uint64_t turn)
 	const uint64_t cosine = passo_isqrt64(turn / 4); /* of half the angle between the lines */
 	const uint64_t sine = passo_isqrt64(one - passo_path_smaller(turn / 4, one));
 
-	return passo_mul_div(path->deviation, 2 * sine * (PASSO_PATH_ONE + sine) / cosine, PASSO_PATH_ONE);
+	return passo_mul_shift(
+	    path->deviation, 2 * sine * (PASSO_PATH_ONE + sine) / cosine, PASSO_PATH_UNIT_BITS);
 }
 
 /* Highest velocity (UQ0.32) on an arc that makes this turn over this length (UQ.30 substeps), by the jerk of
@@ -38,15 +41,18 @@ static uint64_t soft_corner(
 	return velocity;
 }
 
-/* Mean curvature of a line, Q15.48 per substep, that makes half of a turn (Q1.30). The turn takes place over
- * a length (both UQ32.16 substeps) on either side of the corner: if that is much shorter than the line, it
- * belongs to the corner alone. */
-static int64_t curvature_of(int64_t turn, uint64_t over, uint64_t length)
+/* A turn takes place over a length (both UQ32.16 substeps) on either side of the corner: if that is much
+ * shorter than a line, it belongs to the corner alone, 0. */
+static uint64_t reciprocal(uint64_t over, uint64_t length)
 {
-	if (over < length / 2)
-		return 0;
-	const uint64_t size =
-	    passo_mul_div(passo_path_size(turn), UINT64_C(1) << 33, passo_path_larger(over, length));
+	return over < length / 2 ? 0 : passo_divide((struct passo_u128){1, 0}, passo_path_larger(over, length), NULL);
+}
+
+/* Mean curvature of a line, Q15.48 per substep, that makes half of a turn (Q1.30). */
+static int64_t curvature_of(int64_t turn, uint64_t reciprocal)
+{
+	const uint64_t size = passo_path_smaller(
+	    passo_mul_shift(passo_path_size(turn), reciprocal, 31), PASSO_PATH_SQUARE_MAX / 2);
 
 	return turn < 0 ? -(int64_t)size : (int64_t)size;
 }
@@ -55,14 +61,17 @@ static int64_t curvature_of(int64_t turn, uint64_t over, uint64_t length)
  * behind it. */
 static void share_turn(struct passo_path_planner *path, const int32_t *unit, uint64_t length, uint64_t over)
 {
+	const uint64_t before = reciprocal(over, path->at.length), behind = reciprocal(over, length);
+	struct passo_path_item *last = passo_path_item(path, path->added - 1);
+
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
 		path->at.curvature[axis] +=
-		    curvature_of((int64_t)unit[axis] - path->at.direction[axis], over, path->at.length);
-	passo_path_add_curve(
-	    path, path->at.curvature, path->at.direction, passo_path_item(path, path->added - 1));
+		    curvature_of((int64_t)unit[axis] - path->at.direction[axis], before);
+	passo_path_add_curve(path, path->at.curvature, path->at.direction, last);
+	passo_path_set_gain(last);
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
 		path->at.curvature[axis] =
-		    curvature_of((int64_t)unit[axis] - path->at.direction[axis], over, length);
+		    curvature_of((int64_t)unit[axis] - path->at.direction[axis], behind);
 }
 
 #ifndef PASSO_WITHOUT_ROUNDING

@@ -45,62 +45,107 @@ static uint64_t less(uint64_t a, uint64_t b)
 	return a > b ? a - b : 0;
 }
 
+void passo_path_add_slope(struct passo_path_item *item, uint32_t axis, uint32_t share, uint64_t slope)
+{
+	if (share >= SHARE_MIN)
+		item->curve.slope[axis] = packed(slope);
+}
+
 void passo_path_add_curve(const struct passo_path_planner *path, const int64_t *curvature,
     const int32_t *unit, struct passo_path_item *item)
 {
 	struct passo_path_curve *curve = &item->curve;
 
-	uint64_t any = 0;
-
-	*curve = (struct passo_path_curve){.helps = 0};
-	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
-		any |= passo_path_size(curvature[axis]);
-	if (any == 0 || passo_path_shape(path) != PASSO_SHAPE_LINEAR)
+	curve->up = curve->down = 0;
+	if (passo_path_shape(path) != PASSO_SHAPE_LINEAR)
 		return;
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
-		const uint64_t share = passo_path_size(unit[axis]);
+		const uint32_t share = passo_path_size32(unit[axis]);
 
-		if (share < SHARE_MIN)
+		if (curvature[axis] == 0 || share < SHARE_MIN)
 			continue;
-		const uint64_t slope =
-		    passo_mul_div(2 * path->axis[axis].acceleration, PASSO_PATH_ONE, share);
-		const uint64_t bend =
-		    passo_mul_div(2 * passo_path_size(curvature[axis]), PASSO_PATH_ONE, share);
-		const bool helps = (curvature[axis] < 0) == (unit[axis] < 0);
-
-		curve->slope[axis] = packed(slope);
-		curve->bend[axis] = packed(bend);
-		if (helps)
-			curve->helps |= (uint8_t)(1u << axis);
+		curve->bend[axis] =
+		    packed(passo_mul_div(2 * passo_path_size(curvature[axis]), PASSO_PATH_ONE, share));
+		if ((curvature[axis] < 0) == (unit[axis] < 0))
+			curve->up |= (uint8_t)(1u << axis);
+		else
+			curve->down |= (uint8_t)(1u << axis);
 	}
+}
+
+/* What a curve takes of a square over a length, by its bend. */
+struct taking {
+	uint64_t grows;      /* B l, UQ.38 */
+	uint32_t reciprocal; /* of 1 + B l, by a divisor of 16 bits, rounded up: never too steep */
+	uint32_t bits;       /* after the point of `reciprocal`, less 6 */
+};
+
+static struct taking taking_over(uint64_t bend, uint64_t length)
+{
+	const struct passo_u128 product = passo_multiply(bend, length); /* UQ.80 */
+	struct taking taking = {
+	    .grows = product.high >= UINT64_C(1) << 40 ? UINT64_C(1) << 63
+	                                               : product.high << 22 | product.low >> 42,
+	};
+	const uint64_t divisor = (UINT64_C(1) << 38) + taking.grows;
+
+	taking.bits = passo_bits((struct passo_u128){0, divisor}) - 16;
+	taking.reciprocal = UINT32_MAX / ((uint32_t)(divisor >> taking.bits) + 1);
+	return taking;
 }
 
 /* Where more speed leaves less: the slope with what is left at the upper end, (A - B w) / (1 + B l). */
 static uint64_t less_slope(uint64_t most, uint64_t bend, uint64_t low, uint64_t length)
 {
-	const struct passo_u128 product = passo_multiply(bend, length); /* UQ.80 */
-	const uint64_t grows =
-	    product.high >= UINT64_C(1) << 40 ? UINT64_C(1) << 63 : product.high << 22 | product.low >> 42;
+	const struct taking taking = taking_over(bend, length);
 
-	/* by a divisor of 16 bits, rounded up: a division of 32 bits, and never too steep */
-	const uint64_t divisor = (UINT64_C(1) << 38) + grows;
-	const uint32_t right = passo_bits((struct passo_u128){0, divisor}) - 16;
-	const uint32_t reciprocal = UINT32_MAX / ((uint32_t)(divisor >> right) + 1);
-	const struct passo_u128 quotient = passo_multiply(less(most, taken(bend, low)), reciprocal);
-
-	return quotient.high << (64 - (right - 6)) | quotient.low >> (right - 6);
+	return passo_mul_shift(less(most, taken(bend, low)), taking.reciprocal, taking.bits - 6);
 }
 
 uint64_t passo_path_slope(const struct passo_path_item *item, bool up, uint64_t low, uint64_t length)
 {
 	const struct passo_path_curve *curve = &item->curve;
+	uint32_t axes = up ? curve->up : curve->down;
 	uint64_t slope = item->slope;
 
-	for (uint32_t axis = 0; axis < PASSO_PATH_AXES_MAX; axis++) {
-		if (curve->bend[axis] > 0 && (curve->helps >> axis & 1u) == up)
+	for (uint32_t axis = 0; axes > 0; axis++, axes /= 2) {
+		if (axes % 2 > 0)
 			slope = passo_path_smaller(slope, less_slope(unpacked(curve->slope[axis]),
 							      unpacked(curve->bend[axis]), low, length));
 	}
-	slope = passo_path_larger(slope, 1);
-	return up ? slope : slope - slope / 256;
+	return passo_path_larger(slope, 1);
+}
+
+void passo_path_set_gain(struct passo_path_item *item)
+{
+	struct passo_path_curve *curve = &item->curve;
+	const uint64_t length = (uint64_t)item->substeps << 32;
+
+	item->gain = passo_path_gain(passo_path_down(item->slope), length);
+	for (uint32_t axis = 0, axes = curve->down; axes > 0; axis++, axes /= 2) {
+		if (axes % 2 == 0)
+			continue;
+		const struct taking taking = taking_over(unpacked(curve->bend[axis]), length);
+		const uint64_t slope =
+		    passo_mul_shift(unpacked(curve->slope[axis]), taking.reciprocal, taking.bits - 6);
+		const uint64_t loss = passo_mul_shift(taking.grows, taking.reciprocal, taking.bits);
+
+		curve->gain[axis] = packed(passo_path_gain(passo_path_down(slope), length));
+		curve->loss[axis] = (uint32_t)passo_path_smaller(passo_path_down(loss) + 1, UINT32_MAX);
+	}
+}
+
+uint64_t passo_path_fall(const struct passo_path_item *item, uint64_t end)
+{
+	const struct passo_path_curve *curve = &item->curve;
+	uint64_t fall = item->gain;
+
+	for (uint32_t axis = 0, axes = curve->down; axes > 0; axis++, axes /= 2) {
+		if (axes % 2 > 0)
+			fall = passo_path_smaller(fall,
+			    less(unpacked(curve->gain[axis]),
+				(end >> 32) * curve->loss[axis]
+				    + ((end & UINT32_MAX) * curve->loss[axis] >> 32)));
+	}
+	return fall;
 }

@@ -31,7 +31,8 @@ static bool find_direction(
 	}
 	const uint32_t root = passo_isqrt64(sum);
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
-		const int32_t share = (int32_t)(((uint64_t)size[axis] << PASSO_PATH_UNIT_BITS) / root);
+		const int32_t share =
+		    size[axis] > 0 ? (int32_t)(((uint64_t)size[axis] << PASSO_PATH_UNIT_BITS) / root) : 0;
 
 		unit[axis] = target[axis] < path->at.target[axis] ? -share : share;
 	}
@@ -57,7 +58,7 @@ uint64_t passo_path_off(
 
 		turn += change * change;
 	}
-	return passo_mul_div(end->length, (uint64_t)passo_isqrt64(turn) + 1, PASSO_PATH_ONE);
+	return passo_mul_shift(end->length, (uint64_t)passo_isqrt64(turn) + 1, PASSO_PATH_UNIT_BITS);
 }
 
 /* Steps of each axis, by rounding the target; returns the most. */
@@ -104,11 +105,15 @@ static void limit_line(
 		if (share == 0)
 			continue;
 		speed = passo_path_smaller(speed, ((uint64_t)own->speed << PASSO_PATH_UNIT_BITS) / share);
-		slope =
-		    passo_path_smaller(slope, passo_mul_div(2 * own->acceleration, PASSO_PATH_ONE, share));
+		const uint64_t most = passo_mul_div(2 * own->acceleration, PASSO_PATH_ONE, share);
+		passo_path_add_slope(item, axis, share, most);
+		slope = passo_path_smaller(slope, most);
 		weakest = passo_path_smaller(weakest, 2 * own->acceleration);
-		jump = passo_path_smaller(jump, ((uint64_t)own->jump << PASSO_PATH_UNIT_BITS) / share);
-		jerk = passo_path_smaller(jerk, passo_mul_div(own->jerk, PASSO_PATH_ONE, share));
+		jump = own->jump == 0 ? 0
+		                      : passo_path_smaller(
+					    jump, ((uint64_t)own->jump << PASSO_PATH_UNIT_BITS) / share);
+		if (passo_path_is_soft(path))
+			jerk = passo_path_smaller(jerk, passo_mul_div(own->jerk, PASSO_PATH_ONE, share));
 	}
 	item->feed = (uint32_t)passo_path_smaller(wanted, PASSO_PATH_SPEED_MAX);
 	item->rapid = feed == PASSO_PATH_RAPID;
@@ -159,8 +164,9 @@ enum passo_plan_error passo_path_measure(
 	} else {
 		item->bend = passo_path_limit_corner(path, unit, length, item);
 	}
-	passo_path_add_curve(path, path->at.curvature, unit, item);
 	item->substeps = (uint32_t)substeps;
+	passo_path_add_curve(path, path->at.curvature, unit, item);
+	passo_path_set_gain(item);
 	path->at.carry =
 	    stretched ? 0 : (int32_t)(path->at.carry + (int64_t)length - (int64_t)(substeps << 16));
 	path->at.length = length;

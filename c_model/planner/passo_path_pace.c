@@ -77,7 +77,7 @@ uint32_t passo_path_pace_need(const struct passo_path_planner *path, uint64_t ti
 
 uint64_t passo_path_length_in(const struct passo_path_planner *path, uint64_t speeds, uint64_t ticks)
 {
-	return passo_mul_div(speeds, ticks << path->machine.tick_log2, UINT32_C(1) << 17);
+	return passo_mul_shift(speeds, ticks << path->machine.tick_log2, 17);
 }
 
 /* What is before the end of the ramps. */
@@ -110,7 +110,7 @@ static struct ahead look_ahead(
 		if (index == path->planned)
 			passed -= (uint64_t)path->offset;
 		const uint64_t beyond = passed > length ? passed - length : 0;
-		const uint64_t slope = passo_path_slope(item, false, end, beyond);
+		const uint64_t slope = passo_path_down(passo_path_slope(item, false, end, beyond));
 
 		ahead.open = ahead.open || !passo_path_is_settled(path, index);
 		ahead.slope = passo_path_smaller(ahead.slope, slope);

@@ -137,13 +137,29 @@ static inline uint64_t passo_path_square_of(uint64_t velocity)
 }
 
 /* Change of the square per substep within an item that the axes allow, over a length (UQ32.32 substeps) from
- * its lower end. Deceleration is planned a little below the limit, so that it can make up for ramps that end
- * at ticks. */
+ * its lower end. */
 uint64_t passo_path_slope(const struct passo_path_item *item, bool up, uint64_t low, uint64_t length);
 
-/* Sets the curve of an item: its unit vector, and its mean curvature, Q15.48 per substep. */
+/* Deceleration is planned a little below the limit, so that it can make up for ramps that end at ticks. */
+static inline uint64_t passo_path_down(uint64_t slope)
+{
+	return slope - slope / 256;
+}
+
+/* Sets the slope of an axis of an item, beside its curve. */
+void passo_path_add_slope(
+    struct passo_path_item *item, uint32_t axis, uint32_t share, uint64_t slope);
+
+/* Sets the curve of an item that has its slopes: its unit vector, and its mean curvature, Q15.48 per
+ * substep. */
 void passo_path_add_curve(const struct passo_path_planner *path, const int64_t *curvature,
     const int32_t *unit, struct passo_path_item *item);
+
+/* What passo_path_fall() needs of the curve and the length of an item. */
+void passo_path_set_gain(struct passo_path_item *item);
+
+/* Change of the square down a whole item to a square at its end: the slope there, over the line. */
+uint64_t passo_path_fall(const struct passo_path_item *item, uint64_t end);
 
 /* Change of the square over a length (UQ32.32 substeps); saturates. */
 uint64_t passo_path_gain(uint64_t slope, uint64_t length);

@@ -6,16 +6,12 @@
 
 uint64_t passo_path_gain(uint64_t slope, uint64_t length)
 {
-	const struct passo_u128 product = passo_multiply(slope, length);
-
-	if (product.high >= PASSO_PATH_SQUARE_MAX >> 32)
-		return PASSO_PATH_SQUARE_MAX;
-	return product.high << 32 | product.low >> 32;
+	return passo_path_smaller(passo_mul_shift(slope, length, 32), PASSO_PATH_SQUARE_MAX);
 }
 
 uint64_t passo_path_change(const struct passo_path_planner *path, uint64_t slope, uint64_t ticks)
 {
-	return passo_mul_div(slope, ticks << path->machine.tick_log2, UINT32_C(1) << 17);
+	return passo_mul_shift(slope, ticks << path->machine.tick_log2, 17);
 }
 
 /* Length over which the square changes, UQ32.32 substeps. */
@@ -55,15 +51,15 @@ static unsigned middle_parts(const struct passo_path_planner *path, uint32_t ind
 {
 	const struct passo_path_item *item = passo_path_item(path, index);
 	const uint64_t end = passo_path_end_square(path, index);
-	const uint64_t up = passo_path_slope(item, true, square, left);
-	const uint64_t down = passo_path_slope(item, false, end, left);
-	const uint64_t steepest = down + down / 255; /* ramps may make up for their rounding */
+	const uint64_t steepest = passo_path_slope(item, false, end, left); /* makes up for rounding */
+	const uint64_t down = passo_path_down(steepest);
 	const uint64_t highest = end + passo_path_gain(down, left);
 	uint64_t top = passo_path_larger(item->top, square);
 
 	/* above it where a line at whose end the path could rest has become part of a curve */
 	if (square >= highest)
 		return put(parts, 0, PASSO_PATH_DOWN, left, end, square > highest ? item->slope : steepest);
+	const uint64_t up = passo_path_slope(item, true, square, left);
 	if (level && !passo_path_is_settled(path, index))
 		top = passo_path_smaller(top, passo_path_larger(end, square));
 	const uint64_t rise = square + passo_path_gain(up, left);
