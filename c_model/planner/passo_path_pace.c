@@ -29,6 +29,7 @@ void passo_path_pace(
 	const uint64_t line = passo_path_larger(
 	    2 * poll / passo_path_larger(lines_sent, 1), 3 * poll / passo_path_larger(lines_queued, 1));
 
+	path->waits = false;
 	path->paced = together;
 	path->pace = (uint32_t)passo_path_smaller(ramps, PASSO_PATH_TICKS_MAX);
 	path->line_clocks =

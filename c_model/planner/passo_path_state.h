@@ -118,6 +118,7 @@ struct passo_path_planner {
 	bool jump, last; /* a ramp to 0 in no time is due; it ends the motion */
 	bool lines_end, ramps_end;
 	bool anew;           /* the limits of all items have changed */
+	bool waits;          /* for a further line, to make the next ramp */
 	uint32_t override;   /* UQ16.16 */
 	uint32_t rapid;      /* the same, of rapids */
 	uint32_t reserve;    /* ticks */
