@@ -54,6 +54,7 @@ static enum passo_plan_error add(struct passo_path_planner *path, const struct p
 	path->before = before;
 	path->begins = path->rest;
 	path->feed = move->feed;
+	path->wanted = item->feed;
 	path->off = 0;
 	passo_path_pace_line(path, item);
 	passo_path_limit(path, path->added);
@@ -86,21 +87,21 @@ static bool merge(struct passo_path_planner *path, const struct passo_path_move 
 {
 	if (!is_open(path, move))
 		return false;
+	const uint64_t off = path->off + passo_path_off(path, move->target);
+	if (off >= path->tolerance)
+		return false;
 	const struct passo_path_place at = path->at;
 	const uint32_t dwell = path->dwell;
 
 	path->at = path->before;
-	const uint64_t off = path->off + passo_path_off(path, move->target, &at);
-	if (off < path->tolerance) {
-		path->added--;
-		path->rest = path->begins;
-		path->dwell = passo_path_item(path, path->added)->dwell;
-		if (add(path, move) == PASSO_PLAN_OK) {
-			path->off = off;
-			return true;
-		}
-		path->added++;
+	path->added--;
+	path->rest = path->begins;
+	path->dwell = passo_path_item(path, path->added)->dwell;
+	if (add(path, move) == PASSO_PLAN_OK) {
+		path->off = off;
+		return true;
 	}
+	path->added++;
 	path->at = at;
 	path->rest = false;
 	path->dwell = dwell;
@@ -189,9 +190,10 @@ void passo_path_look_back(struct passo_path_planner *path)
 {
 	uint32_t final = path->final;
 	const struct passo_path_item *next = NULL;
+	struct passo_path_item *item = passo_path_item(path, path->added);
 
 	for (uint32_t index = path->added; index-- > path->planned && index >= path->final;) {
-		struct passo_path_item *item = passo_path_item(path, index);
+		item = (item == path->items ? item + path->capacity : item) - 1;
 		const uint64_t reach = passo_path_is_soft(path) ? passo_path_soft_reach(path, index)
 		                                                : reach_of(path, index, item, next);
 

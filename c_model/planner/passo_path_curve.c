@@ -15,19 +15,13 @@
 /* Components of the unit vector below this share are left out: their limit is that of the corner. */
 #define SHARE_MIN (UINT32_C(1) << (PASSO_PATH_UNIT_BITS - 8))
 #define BEND_BITS 48u
-#define PACKED_BITS 26u
 
 static uint32_t packed(uint64_t value)
 {
 	const uint32_t bits = passo_bits((struct passo_u128){0, value});
-	const uint32_t right = bits > PACKED_BITS ? bits - PACKED_BITS : 0;
+	const uint32_t right = bits > PASSO_PATH_PACKED_BITS ? bits - PASSO_PATH_PACKED_BITS : 0;
 
-	return (uint32_t)(value >> right << (32 - PACKED_BITS)) | right;
-}
-
-static uint64_t unpacked(uint32_t value)
-{
-	return (uint64_t)(value >> (32 - PACKED_BITS)) << (value % (1u << (32 - PACKED_BITS)));
+	return (uint32_t)(value >> right << (32 - PASSO_PATH_PACKED_BITS)) | right;
 }
 
 /* B w */
@@ -38,11 +32,6 @@ static uint64_t taken(uint64_t bend, uint64_t square)
 	return product.high >> (BEND_BITS - 2) > 0
 	         ? PASSO_PATH_SQUARE_MAX
 	         : product.high << (64 - BEND_BITS) | product.low >> BEND_BITS;
-}
-
-static uint64_t less(uint64_t a, uint64_t b)
-{
-	return a > b ? a - b : 0;
 }
 
 void passo_path_add_slope(struct passo_path_item *item, uint32_t axis, uint32_t share, uint64_t slope)
@@ -64,8 +53,8 @@ void passo_path_add_curve(const struct passo_path_planner *path, const int64_t *
 
 		if (curvature[axis] == 0 || share < SHARE_MIN)
 			continue;
-		curve->bend[axis] =
-		    packed(passo_mul_div(2 * passo_path_size(curvature[axis]), PASSO_PATH_ONE, share));
+		curve->bend[axis] = packed(
+		    passo_path_along(2 * passo_path_size(curvature[axis]), passo_path_inverse(share)));
 		if ((curvature[axis] < 0) == (unit[axis] < 0))
 			curve->up |= (uint8_t)(1u << axis);
 		else
@@ -99,7 +88,7 @@ static uint64_t less_slope(uint64_t most, uint64_t bend, uint64_t low, uint64_t 
 {
 	const struct taking taking = taking_over(bend, length);
 
-	return passo_mul_shift(less(most, taken(bend, low)), taking.reciprocal, taking.bits - 6);
+	return passo_mul_shift(passo_path_less(most, taken(bend, low)), taking.reciprocal, taking.bits - 6);
 }
 
 uint64_t passo_path_slope(const struct passo_path_item *item, bool up, uint64_t low, uint64_t length)
@@ -110,8 +99,8 @@ uint64_t passo_path_slope(const struct passo_path_item *item, bool up, uint64_t 
 
 	for (uint32_t axis = 0; axes > 0; axis++, axes /= 2) {
 		if (axes % 2 > 0)
-			slope = passo_path_smaller(slope, less_slope(unpacked(curve->slope[axis]),
-							      unpacked(curve->bend[axis]), low, length));
+			slope = passo_path_smaller(slope, less_slope(passo_path_unpacked(curve->slope[axis]),
+							      passo_path_unpacked(curve->bend[axis]), low, length));
 	}
 	return passo_path_larger(slope, 1);
 }
@@ -125,27 +114,12 @@ void passo_path_set_gain(struct passo_path_item *item)
 	for (uint32_t axis = 0, axes = curve->down; axes > 0; axis++, axes /= 2) {
 		if (axes % 2 == 0)
 			continue;
-		const struct taking taking = taking_over(unpacked(curve->bend[axis]), length);
+		const struct taking taking = taking_over(passo_path_unpacked(curve->bend[axis]), length);
 		const uint64_t slope =
-		    passo_mul_shift(unpacked(curve->slope[axis]), taking.reciprocal, taking.bits - 6);
+		    passo_mul_shift(passo_path_unpacked(curve->slope[axis]), taking.reciprocal, taking.bits - 6);
 		const uint64_t loss = passo_mul_shift(taking.grows, taking.reciprocal, taking.bits);
 
 		curve->gain[axis] = packed(passo_path_gain(passo_path_down(slope), length));
 		curve->loss[axis] = (uint32_t)passo_path_smaller(passo_path_down(loss) + 1, UINT32_MAX);
 	}
-}
-
-uint64_t passo_path_fall(const struct passo_path_item *item, uint64_t end)
-{
-	const struct passo_path_curve *curve = &item->curve;
-	uint64_t fall = item->gain;
-
-	for (uint32_t axis = 0, axes = curve->down; axes > 0; axis++, axes /= 2) {
-		if (axes % 2 > 0)
-			fall = passo_path_smaller(fall,
-			    less(unpacked(curve->gain[axis]),
-				(end >> 32) * curve->loss[axis]
-				    + ((end & UINT32_MAX) * curve->loss[axis] >> 32)));
-	}
-	return fall;
 }

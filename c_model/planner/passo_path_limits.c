@@ -9,14 +9,15 @@
 /* Bits of the longest component before the length is computed: the sum of eight squares has 64. */
 #define COMPONENT_BITS 30u
 
-/* Unit vector and length (UQ32.16 substeps; saturates) of a line; false: it has no length. */
-static bool find_direction(
-    const struct passo_path_planner *path, const int64_t *target, int32_t *unit, uint64_t *length)
+/* Unit vector and length (UQ32.16 substeps; saturates) of a line between two targets; false: it has no length.
+ */
+static bool find_direction(const struct passo_path_planner *path, const int64_t *from, const int64_t *target,
+    int32_t *unit, uint64_t *length)
 {
 	uint64_t longest = 0, sum = 0;
 
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
-		longest = passo_path_larger(longest, passo_path_size(target[axis] - path->at.target[axis]));
+		longest = passo_path_larger(longest, passo_path_size(target[axis] - from[axis]));
 	if (longest == 0)
 		return false;
 	const uint32_t bits = passo_bits((struct passo_u128){0, longest});
@@ -25,8 +26,7 @@ static bool find_direction(
 	uint32_t size[PASSO_AXES_MAX];
 
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
-		size[axis] =
-		    (uint32_t)(passo_path_size(target[axis] - path->at.target[axis]) >> right << left);
+		size[axis] = (uint32_t)(passo_path_size(target[axis] - from[axis]) >> right << left);
 		sum += (uint64_t)size[axis] * size[axis];
 	}
 	const uint32_t root = passo_isqrt64(sum);
@@ -34,7 +34,7 @@ static bool find_direction(
 		const int32_t share =
 		    size[axis] > 0 ? (int32_t)(((uint64_t)size[axis] << PASSO_PATH_UNIT_BITS) / root) : 0;
 
-		unit[axis] = target[axis] < path->at.target[axis] ? -share : share;
+		unit[axis] = target[axis] < from[axis] ? -share : share;
 	}
 	/* Q31.32 mm times substeps per mm, less 16 bits */
 	const uint64_t product = (uint64_t)root * path->substeps_per_mm;
@@ -45,13 +45,13 @@ static bool find_direction(
 	return true;
 }
 
-uint64_t passo_path_off(
-    const struct passo_path_planner *path, const int64_t *target, const struct passo_path_place *end)
+uint64_t passo_path_off(const struct passo_path_planner *path, const int64_t *target)
 {
+	const struct passo_path_place *end = &path->at;
 	int32_t unit[PASSO_AXES_MAX];
 	uint64_t length = 0, turn = 0;
 
-	if (!find_direction(path, target, unit, &length) || length <= end->length)
+	if (!find_direction(path, path->before.target, target, unit, &length) || length <= end->length)
 		return UINT64_MAX / 2;
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
 		const uint64_t change = passo_path_size((int64_t)unit[axis] - end->direction[axis]);
@@ -90,10 +90,12 @@ static uint64_t shaped_slope(const struct passo_path_planner *path, uint64_t slo
 static void limit_line(
     const struct passo_path_planner *path, const int32_t *unit, uint64_t feed, struct passo_path_item *item)
 {
-	const uint64_t wanted =
-	    feed < PASSO_PATH_RAPID
-		? passo_path_larger(1, passo_mul_div(feed, path->substeps_per_mm, path->machine.clock_hz))
-		: PASSO_PATH_SPEED_MAX;
+	uint64_t wanted = PASSO_PATH_SPEED_MAX;
+
+	if (feed == path->feed && feed < PASSO_PATH_RAPID)
+		wanted = path->wanted;
+	else if (feed < PASSO_PATH_RAPID)
+		wanted = passo_path_larger(1, passo_path_velocity(path, feed));
 	uint64_t speed = PASSO_PATH_SPEED_MAX;
 	uint64_t slope = 2 * path->acceleration, weakest = slope, jump = PASSO_PATH_SPEED_MAX,
 		 jerk = UINT64_MAX;
@@ -104,16 +106,15 @@ static void limit_line(
 
 		if (share == 0)
 			continue;
-		speed = passo_path_smaller(speed, ((uint64_t)own->speed << PASSO_PATH_UNIT_BITS) / share);
-		const uint64_t most = passo_mul_div(2 * own->acceleration, PASSO_PATH_ONE, share);
+		const uint64_t inverse = passo_path_inverse(share);
+		const uint64_t most = passo_path_along(2 * own->acceleration, inverse);
 		passo_path_add_slope(item, axis, share, most);
 		slope = passo_path_smaller(slope, most);
 		weakest = passo_path_smaller(weakest, 2 * own->acceleration);
-		jump = own->jump == 0 ? 0
-		                      : passo_path_smaller(
-					    jump, ((uint64_t)own->jump << PASSO_PATH_UNIT_BITS) / share);
+		speed = passo_path_smaller(speed, passo_path_along(own->speed, inverse));
+		jump = own->jump > 0 ? passo_path_smaller(jump, passo_path_along(own->jump, inverse)) : 0;
 		if (passo_path_is_soft(path))
-			jerk = passo_path_smaller(jerk, passo_mul_div(own->jerk, PASSO_PATH_ONE, share));
+			jerk = passo_path_smaller(jerk, passo_path_along(own->jerk, inverse));
 	}
 	item->feed = (uint32_t)passo_path_smaller(wanted, PASSO_PATH_SPEED_MAX);
 	item->rapid = feed == PASSO_PATH_RAPID;
@@ -143,7 +144,7 @@ enum passo_plan_error passo_path_measure(
 		    || move->target[axis] <= -PASSO_PATH_TARGET_MAX)
 			return PASSO_PLAN_TOO_FAR;
 	}
-	if (!find_direction(path, move->target, unit, &length))
+	if (!find_direction(path, path->at.target, move->target, unit, &length))
 		return PASSO_PLAN_OK;
 	const uint64_t most = find_steps(path, move->target, steps);
 	if (length >> 16 > PASSO_SUBSTEPS_MAX)

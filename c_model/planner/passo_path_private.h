@@ -73,6 +73,21 @@ static inline uint64_t passo_path_larger(uint64_t a, uint64_t b)
 	return a > b ? a : b;
 }
 
+/* Not below 0. */
+static inline uint64_t passo_path_less(uint64_t a, uint64_t b)
+{
+	return a > b ? a - b : 0;
+}
+
+/* A number of 26 bits with an exponent of 6. */
+#define PASSO_PATH_PACKED_BITS 26u
+
+static inline uint64_t passo_path_unpacked(uint32_t value)
+{
+	return (uint64_t)(value >> (32 - PASSO_PATH_PACKED_BITS))
+	    << (value % (1u << (32 - PASSO_PATH_PACKED_BITS)));
+}
+
 /* Of a signed value. */
 static inline uint64_t passo_path_size(int64_t value)
 {
@@ -124,6 +139,17 @@ static inline enum passo_shape passo_path_shape(const struct passo_path_planner 
 #endif
 }
 
+/* Of a component of a unit vector, 2^62 divided by it; and a limit of its axis along the line. */
+static inline uint64_t passo_path_inverse(uint32_t share)
+{
+	return (UINT64_C(1) << 62) / share;
+}
+
+static inline uint64_t passo_path_along(uint64_t limit, uint64_t inverse)
+{
+	return passo_mul_shift(limit, inverse, 62 - PASSO_PATH_UNIT_BITS);
+}
+
 /* The velocity (UQ0.48) of a square, and the square of a velocity. */
 static inline uint64_t passo_path_velocity_of(uint64_t square)
 {
@@ -158,8 +184,23 @@ void passo_path_add_curve(const struct passo_path_planner *path, const int64_t *
 /* What passo_path_fall() needs of the curve and the length of an item. */
 void passo_path_set_gain(struct passo_path_item *item);
 
-/* Change of the square down a whole item to a square at its end: the slope there, over the line. */
-uint64_t passo_path_fall(const struct passo_path_item *item, uint64_t end);
+/* Change of the square down a whole item to a square at its end: the slope there, over the line. It is needed
+ * for each line on the way back. */
+static inline uint64_t passo_path_fall(const struct passo_path_item *item, uint64_t end)
+{
+	const struct passo_path_curve *curve = &item->curve;
+	uint64_t fall = item->gain;
+
+	for (uint32_t axis = 0, axes = curve->down; axes > 0; axis++, axes /= 2) {
+		const uint32_t loss = curve->loss[axis];
+
+		if (axes % 2 > 0)
+			fall = passo_path_smaller(
+			    fall, passo_path_less(passo_path_unpacked(curve->gain[axis]),
+				      (end >> 32) * loss + ((end & UINT32_MAX) * loss >> 32)));
+	}
+	return fall;
+}
 
 /* Change of the square over a length (UQ32.32 substeps); saturates. */
 uint64_t passo_path_gain(uint64_t slope, uint64_t length);
@@ -178,10 +219,9 @@ enum passo_plan_error passo_path_measure(
 uint64_t passo_path_limit_corner(
     struct passo_path_planner *path, const int32_t *unit, uint64_t length, struct passo_path_item *item);
 
-/* By how much a line from where the path ends, to a target, is off the end of a shorter one from there, at
- * most: UQ32.16 substeps; saturates if it is not longer. */
-uint64_t passo_path_off(
-    const struct passo_path_planner *path, const int64_t *target, const struct passo_path_place *end);
+/* By how much a line from the start of the last one, to a target, is off the end of that one, at most: UQ32.16
+ * substeps; saturates if it is not longer. */
+uint64_t passo_path_off(const struct passo_path_planner *path, const int64_t *target);
 
 /* Sets the limits of an item, `top` and, unless the path rests there, `corner`; those before it are known. */
 void passo_path_limit(struct passo_path_planner *path, uint32_t index);
