@@ -190,8 +190,7 @@ enum passo_gcode_error passo_gcode_parse(const char *text, unsigned axes, struct
 	const uint32_t known = VALUE_WORDS | passo_gcode_axis_words(axes);
 	enum passo_gcode_error error = PASSO_GCODE_OK;
 
-	block->words = 0;
-	block->takes_axes = false;
+	*block = (struct passo_gcode_block){.words = 0};
 	for (unsigned group = 0; group < PASSO_GCODE_GROUPS; group++)
 		block->command[group] = PASSO_GCODE_NONE;
 	if (*text == '/')

@@ -46,7 +46,7 @@ struct passo_gcode_block {
 	passo_gcode_command command[PASSO_GCODE_GROUPS]; /* PASSO_GCODE_NONE: none */
 	bool takes_axes;                                 /* one of them moves, or sets what axis words say */
 	uint32_t words;                                  /* of the other letters, a bit for each */
-	int64_t value[26];                               /* of a letter that is there, in millionths */
+	int64_t value[26];                               /* of a letter, in millionths */
 };
 
 /* Letter of an axis, and the words of the first `axes` of them. */
