@@ -68,7 +68,7 @@ static void share_turn(struct passo_path_planner *path, const int32_t *unit, uin
 		path->at.curvature[axis] +=
 		    curvature_of((int64_t)unit[axis] - path->at.direction[axis], before);
 	passo_path_add_curve(path, path->at.curvature, path->at.direction, last);
-	passo_path_set_gain(last);
+	passo_path_set_fall(last);
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
 		path->at.curvature[axis] =
 		    curvature_of((int64_t)unit[axis] - path->at.direction[axis], behind);

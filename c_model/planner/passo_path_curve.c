@@ -16,22 +16,47 @@
 #define SHARE_MIN (UINT32_C(1) << (PASSO_PATH_UNIT_BITS - 8))
 #define BEND_BITS 48u
 
+#define PACKED_BITS 26u
+#define EXPONENT_BITS (32u - PACKED_BITS)
+
 static uint32_t packed(uint64_t value)
 {
 	const uint32_t bits = passo_bits((struct passo_u128){0, value});
-	const uint32_t right = bits > PASSO_PATH_PACKED_BITS ? bits - PASSO_PATH_PACKED_BITS : 0;
+	const uint32_t right = bits > PACKED_BITS ? bits - PACKED_BITS : 0;
 
-	return (uint32_t)(value >> right << (32 - PASSO_PATH_PACKED_BITS)) | right;
+	return (uint32_t)(value >> right << EXPONENT_BITS) | right;
 }
 
-/* B w */
-static uint64_t taken(uint64_t bend, uint64_t square)
+static uint32_t exponent_of(uint32_t value)
 {
-	const struct passo_u128 product = passo_multiply(bend, square);
+	return value % (1u << EXPONENT_BITS);
+}
 
-	return product.high >> (BEND_BITS - 2) > 0
-	         ? PASSO_PATH_SQUARE_MAX
-	         : product.high << (64 - BEND_BITS) | product.low >> BEND_BITS;
+static uint64_t unpacked(uint32_t value)
+{
+	return (uint64_t)(value >> EXPONENT_BITS) << exponent_of(value);
+}
+
+/* a * b / 2^bits, of a product below 2^96 and bits below 64; saturates. */
+static uint64_t scaled(uint64_t a, uint32_t b, uint32_t bits)
+{
+	const uint64_t low = (a & UINT32_MAX) * b, high = (a >> 32) * b + (low >> 32);
+
+	if (bits >= 32)
+		return high >> (bits - 32);
+	return high >> 32 >> bits > 0 ? UINT64_MAX : high << (32 - bits) | (low & UINT32_MAX) >> bits;
+}
+
+/* A - B w, not below 0 */
+static uint64_t left_by(uint32_t most, uint32_t bend, uint64_t square)
+{
+	const uint32_t exponent = exponent_of(bend);
+	const uint64_t a = unpacked(most);
+	const uint64_t taken = exponent <= BEND_BITS
+	                         ? scaled(square, bend >> EXPONENT_BITS, BEND_BITS - exponent)
+	                         : passo_mul_shift(square, unpacked(bend), BEND_BITS);
+
+	return a > taken ? a - taken : 0;
 }
 
 void passo_path_add_slope(struct passo_path_item *item, uint32_t axis, uint32_t share, uint64_t slope)
@@ -62,64 +87,71 @@ void passo_path_add_curve(const struct passo_path_planner *path, const int64_t *
 	}
 }
 
-/* What a curve takes of a square over a length, by its bend. */
-struct taking {
-	uint64_t grows;      /* B l, UQ.38 */
-	uint32_t reciprocal; /* of 1 + B l, by a divisor of 16 bits, rounded up: never too steep */
-	uint32_t bits;       /* after the point of `reciprocal`, less 6 */
+/* Of 1 + B l the highest 16 bits, and the bits below them, less 22. */
+struct growth {
+	uint32_t divisor, shift;
 };
 
-static struct taking taking_over(uint64_t bend, uint64_t length)
+static struct growth growth_over(uint32_t bend, uint64_t length)
 {
-	const struct passo_u128 product = passo_multiply(bend, length); /* UQ.80 */
-	struct taking taking = {
-	    .grows = product.high >= UINT64_C(1) << 40 ? UINT64_C(1) << 63
-	                                               : product.high << 22 | product.low >> 42,
-	};
-	const uint64_t divisor = (UINT64_C(1) << 38) + taking.grows;
+	const struct passo_u128 product = passo_multiply(unpacked(bend), length); /* UQ.80 */
+	const uint64_t grows =
+	    product.high >= UINT64_C(1) << 40 ? UINT64_C(1) << 63 : product.high << 22 | product.low >> 42;
+	const uint64_t sum = (UINT64_C(1) << 38) + grows;
+	const uint32_t right = passo_bits((struct passo_u128){0, sum}) - 16;
 
-	taking.bits = passo_bits((struct passo_u128){0, divisor}) - 16;
-	taking.reciprocal = UINT32_MAX / ((uint32_t)(divisor >> taking.bits) + 1);
-	return taking;
+	return (struct growth){(uint32_t)(sum >> right), right - 6};
 }
 
-/* Where more speed leaves less: the slope with what is left at the upper end, (A - B w) / (1 + B l). */
-static uint64_t less_slope(uint64_t most, uint64_t bend, uint64_t low, uint64_t length)
+/* Where more speed leaves less: the slope with what is left at the upper end, (A - B w) / (1 + B l). The
+ * divisor is rounded up, so that it is never too steep. */
+static uint64_t less_slope(uint64_t left, uint32_t divisor, uint32_t shift)
 {
-	const struct taking taking = taking_over(bend, length);
-
-	return passo_mul_shift(passo_path_less(most, taken(bend, low)), taking.reciprocal, taking.bits - 6);
+	return scaled(left, UINT32_MAX / (divisor + 1), shift);
 }
 
 uint64_t passo_path_slope(const struct passo_path_item *item, bool up, uint64_t low, uint64_t length)
 {
 	const struct passo_path_curve *curve = &item->curve;
-	uint32_t axes = up ? curve->up : curve->down;
 	uint64_t slope = item->slope;
 
-	for (uint32_t axis = 0; axes > 0; axis++, axes /= 2) {
-		if (axes % 2 > 0)
-			slope = passo_path_smaller(slope, less_slope(passo_path_unpacked(curve->slope[axis]),
-							      passo_path_unpacked(curve->bend[axis]), low, length));
+	for (uint32_t axis = 0, axes = up ? curve->up : curve->down; axes > 0; axis++, axes /= 2) {
+		if (axes % 2 == 0)
+			continue;
+		const struct growth growth = growth_over(curve->bend[axis], length);
+		const uint64_t left = left_by(curve->slope[axis], curve->bend[axis], low);
+
+		slope = passo_path_smaller(slope, less_slope(left, growth.divisor, growth.shift));
 	}
 	return passo_path_larger(slope, 1);
 }
 
-void passo_path_set_gain(struct passo_path_item *item)
+void passo_path_set_fall(struct passo_path_item *item)
 {
 	struct passo_path_curve *curve = &item->curve;
-	const uint64_t length = (uint64_t)item->substeps << 32;
 
-	item->gain = passo_path_gain(passo_path_down(item->slope), length);
 	for (uint32_t axis = 0, axes = curve->down; axes > 0; axis++, axes /= 2) {
 		if (axes % 2 == 0)
 			continue;
-		const struct taking taking = taking_over(passo_path_unpacked(curve->bend[axis]), length);
-		const uint64_t slope =
-		    passo_mul_shift(passo_path_unpacked(curve->slope[axis]), taking.reciprocal, taking.bits - 6);
-		const uint64_t loss = passo_mul_shift(taking.grows, taking.reciprocal, taking.bits);
+		const struct growth growth = growth_over(curve->bend[axis], (uint64_t)item->substeps << 32);
 
-		curve->gain[axis] = packed(passo_path_gain(passo_path_down(slope), length));
-		curve->loss[axis] = (uint32_t)passo_path_smaller(passo_path_down(loss) + 1, UINT32_MAX);
+		curve->divisor[axis] = (uint16_t)growth.divisor;
+		curve->shift[axis] = (uint8_t)growth.shift;
 	}
+}
+
+uint64_t passo_path_fall(const struct passo_path_item *item, uint64_t end)
+{
+	const struct passo_path_curve *curve = &item->curve;
+	uint64_t slope = item->slope;
+
+	for (uint32_t axis = 0, axes = curve->down; axes > 0; axis++, axes /= 2) {
+		if (axes % 2 == 0)
+			continue;
+		const uint64_t left = left_by(curve->slope[axis], curve->bend[axis], end);
+
+		slope = passo_path_smaller(slope, less_slope(left, curve->divisor[axis], curve->shift[axis]));
+	}
+	return passo_path_smaller(
+	    scaled(passo_path_down(passo_path_larger(slope, 1)), item->substeps, 0), PASSO_PATH_SQUARE_MAX);
 }

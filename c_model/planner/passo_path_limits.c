@@ -167,7 +167,7 @@ enum passo_plan_error passo_path_measure(
 	}
 	item->substeps = (uint32_t)substeps;
 	passo_path_add_curve(path, path->at.curvature, unit, item);
-	passo_path_set_gain(item);
+	passo_path_set_fall(item);
 	path->at.carry =
 	    stretched ? 0 : (int32_t)(path->at.carry + (int64_t)length - (int64_t)(substeps << 16));
 	path->at.length = length;

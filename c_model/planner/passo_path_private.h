@@ -73,20 +73,6 @@ static inline uint64_t passo_path_larger(uint64_t a, uint64_t b)
 	return a > b ? a : b;
 }
 
-/* Not below 0. */
-static inline uint64_t passo_path_less(uint64_t a, uint64_t b)
-{
-	return a > b ? a - b : 0;
-}
-
-/* A number of 26 bits with an exponent of 6. */
-#define PASSO_PATH_PACKED_BITS 26u
-
-static inline uint64_t passo_path_unpacked(uint32_t value)
-{
-	return (uint64_t)(value >> (32 - PASSO_PATH_PACKED_BITS))
-	    << (value % (1u << (32 - PASSO_PATH_PACKED_BITS)));
-}
 
 /* Of a signed value. */
 static inline uint64_t passo_path_size(int64_t value)
@@ -182,25 +168,10 @@ void passo_path_add_curve(const struct passo_path_planner *path, const int64_t *
     const int32_t *unit, struct passo_path_item *item);
 
 /* What passo_path_fall() needs of the curve and the length of an item. */
-void passo_path_set_gain(struct passo_path_item *item);
+void passo_path_set_fall(struct passo_path_item *item);
 
-/* Change of the square down a whole item to a square at its end: the slope there, over the line. It is needed
- * for each line on the way back. */
-static inline uint64_t passo_path_fall(const struct passo_path_item *item, uint64_t end)
-{
-	const struct passo_path_curve *curve = &item->curve;
-	uint64_t fall = item->gain;
-
-	for (uint32_t axis = 0, axes = curve->down; axes > 0; axis++, axes /= 2) {
-		const uint32_t loss = curve->loss[axis];
-
-		if (axes % 2 > 0)
-			fall = passo_path_smaller(
-			    fall, passo_path_less(passo_path_unpacked(curve->gain[axis]),
-				      (end >> 32) * loss + ((end & UINT32_MAX) * loss >> 32)));
-	}
-	return fall;
-}
+/* Change of the square down a whole item to a square at its end: the slope there, over the line. */
+uint64_t passo_path_fall(const struct passo_path_item *item, uint64_t end);
 
 /* Change of the square over a length (UQ32.32 substeps); saturates. */
 uint64_t passo_path_gain(uint64_t slope, uint64_t length);

@@ -28,14 +28,13 @@ struct passo_path_descent {
 	uint32_t anchor;      /* number of the later line */
 };
 
-/* What limits the slope in a curve, private; see passo_path_curve.c. Numbers of 26 bits and an exponent of 6.
- */
+/* What limits the slope in a curve, private; see passo_path_curve.c. 26 bits and an exponent of 6. */
 struct passo_path_curve {
 	uint32_t slope[PASSO_PATH_AXES_MAX]; /* of the square, where it is 0 */
-	uint32_t bend[PASSO_PATH_AXES_MAX]; /* UQ16.48 per substep: what the square takes of it; 0: nothing */
-	uint32_t gain[PASSO_PATH_AXES_MAX]; /* change of the square on the way down the line to 0 */
-	uint32_t loss[PASSO_PATH_AXES_MAX]; /* UQ0.32: what a square at its end takes of that, no packed number */
-	uint8_t up, down;                   /* bit i set: axis i limits the way up, or down */
+	uint32_t bend[PASSO_PATH_AXES_MAX];  /* UQ16.48 per substep: what the square takes of it */
+	uint16_t divisor[PASSO_PATH_AXES_MAX]; /* of the way down the whole line: what the bend makes of it */
+	uint8_t shift[PASSO_PATH_AXES_MAX];
+	uint8_t up, down; /* bit i set: axis i limits the way up, or down */
 };
 
 /* A line of the path, private. Squares are those of velocities, UQ0.64 (substeps per clock)^2. */
@@ -47,7 +46,6 @@ struct passo_path_item {
 	uint64_t corner; /* highest square at its start */
 	uint64_t reach;  /* highest square at its start from which the path can come to rest */
 	uint64_t slope;  /* change of the square per substep at full acceleration */
-	uint64_t gain;   /* change of the square on the way down, without the curve */
 	uint32_t halt;   /* highest velocity at its end, if the path rests there */
 	uint32_t substeps;
 	uint32_t dwell; /* ticks of rest before the line */
