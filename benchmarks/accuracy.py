@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Accuracy of Passo compared with four published microcontroller methods: `make accuracy`.
 
-Prints a table and writes build/accuracy.json, docs/accuracy.md and docs/images/accuracy.png.
+Prints a table and writes build/accuracy.json, docs/reference/accuracy.md and docs/images/accuracy.png.
 """
 
 import argparse
@@ -38,7 +38,7 @@ from benchmarks.tables import (
 )
 
 REPORT = paths.build / "accuracy.json"
-PAGE = paths.docs / "accuracy.md"
+PAGE = paths.reference / "accuracy.md"
 PICTURE = paths.docs / "images" / "accuracy.png"
 
 CASES = 10_000  # random moves of each method

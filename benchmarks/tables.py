@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Tables for the terminal, and the page docs/accuracy.md."""
+"""Tables for the terminal, and the page docs/reference/accuracy.md."""
 
 from pathlib import Path
 from typing import Any
@@ -195,7 +195,7 @@ def resonance_table(report: dict[str, Any]) -> Table:
 
 
 def page(report: dict[str, Any]) -> str:
-    """docs/accuracy.md."""
+    """docs/reference/accuracy.md."""
     body = []
     for group, side, cells in rows(report, ("median", "worst")):
         if side == "source":

@@ -2,8 +2,8 @@
 """Line and toggle coverage of the RTL by the cocotb tests: `make coverage`.
 
 Runs the tests on Verilator with its line and toggle coverage, merges the results, prints a table and writes
-docs/coverage.md. A line is covered if each of its branches was taken in some instance of the module, a bit if
-it rose and fell in some instance.
+docs/reference/coverage.md. A line is covered if each of its branches was taken in some instance of the module,
+a bit if it rose and fell in some instance.
 
 Fails if a test fails, if a line or a bit is not covered and not listed in coverage_exclusions.toml, or if an
 entry of that list is wrong.
@@ -31,7 +31,7 @@ from cocotb_tests.coverage_points import (
 )
 from cocotb_tests.helpers.runner import COVERAGE_VARIABLE
 
-PAGE = paths.docs / "coverage.md"
+PAGE = paths.reference / "coverage.md"
 DATA = "coverage.dat"
 SELECTION = "verilator and not netlist"
 WIDTH = 118  # of the tables without a terminal
@@ -128,7 +128,7 @@ def show(modules: Modules, exclusions: Exclusions) -> None:
 
 
 def page(modules: Modules, exclusions: Exclusions) -> str:
-    """docs/coverage.md."""
+    """docs/reference/coverage.md."""
     rule = ["---", *["---:"] * (len(HEADER) - 1)]
     rows = [f"| {' | '.join(row)} |" for row in (HEADER, rule, *_rows(modules, exclusions))]
     lines = [f"* `{name}` {line}: `{text}`" for name, line, text in missed_lines(modules)]

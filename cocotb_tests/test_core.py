@@ -21,7 +21,8 @@ from cocotb_tests.helpers.runner import (
 MOST_CHANNELS = {"CHANNELS": 8, "AXES": 1, "TICK_LOG2": 7, "LINE_QUEUE_LOG2": 8, "RAMP_QUEUE_LOG2": 8}
 
 # Icarus Verilog is up to ten times slower: long tests run only on Verilator, Icarus gets few random moves of
-# one channel, and one of the modules below; `make icarus` runs all, `make soak` a thousand more histories.
+# one channel, and one of the modules below; `make icarus` runs all, `make verify` a thousand
+# more histories.
 verilator_only = pytest.mark.parametrize("simulator", ["verilator"])
 ON_BOTH = "core_motion"
 

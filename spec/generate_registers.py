@@ -36,7 +36,7 @@ OUTPUTS = {
     "c_model/protocol/passo_registers.h": c.constants,
     "c_model/protocol/passo_words.h": c.words,
     "sim/passo/registers.py": python.module,
-    "docs/registers.md": docs.page,
+    "docs/reference/registers.md": docs.page,
 }
 
 

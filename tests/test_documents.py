@@ -13,7 +13,7 @@ from passo.moves import PIN_CLOCKS_MAX
 from passo.native import planner
 from passo.toolchain import paths
 
-PAGES = sorted((*paths.docs.glob("*.md"), *paths.root.glob("*.md")))
+PAGES = sorted((*paths.docs.rglob("*.md"), *paths.root.glob("*.md")))
 TROUBLE = paths.docs / "trouble.md"
 HEADERS = "".join(
     path.read_text()
@@ -90,3 +90,38 @@ def test_links_lead_somewhere(page: Path) -> None:
             heads = re.findall(r"^#+ +(.+)$", file.read_text(), re.M)
             made = {re.sub(r"[^\w\- ]", "", head.lower()).replace(" ", "-") for head in heads}
             assert anchor in made, f"{target}#{anchor}"
+
+
+# What a newcomer asks, and words of the answer: within two clicks from the README, over docs/README.md.
+QUESTIONS = {
+    "What is a tick": "2\\^TICK_LOG2 clocks",
+    "How exact is a move": "exact on every axis",
+    "Where do I wire the e-stop": "estop_n",
+    "Which timings does my drive need": "DM542",
+    "How do I connect the STM32 to the FPGA": "PA[0-9]",
+    "How do I flash the firmware": "flash",
+    "Which sender can I use": "sender",
+    "Which G-code words are supported": "G38",
+    "How do I home an axis": "passo_home",
+    "How do I probe": "passo_probe",
+    "Why did it stop with RAMP_UNDERRUN": "RAMP_UNDERRUN",
+    "The motor hums but does not turn": "hum|whistle|stall",
+    "Why is a corner slow": "junction deviation",
+    "What happens when the host dies": "watchdog",
+    "How do I drive a laser": "power",
+    "How do I cut a thread": "passo_thread|thread",
+    "Does it fit on my FPGA": "HX8K",
+    "How do I add a board": "board.toml",
+    "How do I put the core into my own design": "passo_spi_top",
+    "How do I simulate my machine without hardware": "passo run",
+    "How do I know that it is correct": "make verify",
+}
+
+
+@pytest.mark.parametrize("question", QUESTIONS)
+def test_a_question_is_answered_within_two_clicks(question: str) -> None:
+    index = paths.docs / "README.md"
+    assert "(docs/README.md)" in (paths.root / "README.md").read_text()
+    (row,) = re.findall(rf"^\| {question}.*", index.read_text(), re.M)
+    pages = [(index.parent / target).read_text() for target in re.findall(r"\]\(([^)#]+)", row)]
+    assert any(re.search(QUESTIONS[question], text) for text in pages)

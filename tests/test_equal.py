@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The quick proofs that model and RTL are equal, and their planted bugs; ``make equal`` runs all of them.
+"""The quick proofs that model and RTL are equal, and their planted bugs; ``make verify`` runs all.
 
 The symbolic execution of the model is compared with the compiled model, on random states.
 """
@@ -86,7 +86,7 @@ def test_planted_bug_is_seen(coupling: Coupling, number: int) -> None:
 
 @pytest.mark.parametrize("coupling", COUPLINGS, ids=lambda coupling: coupling.name)
 def test_every_bug_can_be_planted(coupling: Coupling, tmp_path: Path) -> None:
-    """Those of slow modules as well, which only `make equal` proves."""
+    """Those of slow modules as well, which only `make verify ONLY=equal` proves."""
     for bug in coupling.bugs:
         copy = tmp_path / Path(bug.file).name
         copy.write_bytes((paths.root / bug.file).read_bytes())

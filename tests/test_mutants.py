@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A sample of `make mutants`: that judges see mutants, and that a score can be 0."""
+"""A sample of `make verify ONLY=mutants`: that judges see mutants, and that a score can be 0."""
 
 import subprocess
 from pathlib import Path
@@ -16,7 +16,7 @@ from verify.soak.parts import SETS
 from verify.soak.program import build
 
 SEED = random_cases.seed()
-# The smallest core, two mutants of each module; in any other folder than those of `make mutants`.
+# The smallest core, two mutants of each module; in any other folder than those of `make verify ONLY=mutants`.
 SAMPLE = Core("sample", SETS[0], PLAIN.modules)
 EACH = 2
 FILE = "passo_gcode_angle.c"

@@ -12,8 +12,8 @@ from passo.build import waves_possible
 from passo.cli import _parser
 from passo.toolchain import paths
 
-README, PLANNING = paths.root / "README.md", paths.docs / "planning.md"
-PAGES = [README, paths.root / "CONTRIBUTING.md", *sorted(paths.docs.glob("*.md"))]
+README, TUTORIAL, PLANNING = paths.root / "README.md", paths.docs / "tutorial.md", paths.docs / "planning.md"
+PAGES = [README, paths.root / "CONTRIBUTING.md", *sorted(paths.docs.rglob("*.md"))]
 
 
 def blocks(page: Path, language: str) -> list[str]:
@@ -33,14 +33,14 @@ def shell(folder: Path, command: str, stdin: str = "") -> str:
 
 
 @pytest.mark.skipif(not waves_possible(), reason="liblz4-dev and zlib1g-dev are not installed")
-def test_the_moves_of_the_quick_start(tmp_path: Path) -> None:
-    (moves,) = blocks(README, "toml")
+def test_the_moves_of_the_tutorial(tmp_path: Path) -> None:
+    (moves,) = blocks(TUTORIAL, "toml")
     (tmp_path / "moves.toml").write_text(moves)
-    (command,) = [block for block in blocks(README, "sh") if "passo run" in block]
+    (command,) = [block for block in blocks(TUTORIAL, "sh") if "passo run" in block]
     said = shell(tmp_path, command)
     assert "edges agree" in said and "gtkwave out/waves.gtkw" in said and "open: out/motion.png" in said
     for name in ("pulses.csv", "summary.json", "motion.png", "report.html", "waves.fst", "waves.gtkw"):
-        assert f"out/{name}" in README.read_text()
+        assert f"out/{name}" in TUTORIAL.read_text()
         assert (tmp_path / "out" / name).stat().st_size > 0
     assert (tmp_path / "out" / "waves.fst").stat().st_size < 2_000_000
 

@@ -21,7 +21,8 @@ GENERATOR = "spec/generate_registers.py"
 HELPER = "spec/generated.py"
 VERILOG = "rtl/passo_registers.vh"
 C = "c_model/protocol/passo_registers.h"
-OUTPUTS = [VERILOG, C, "c_model/protocol/passo_words.h", "sim/passo/registers.py", "docs/registers.md"]
+PAGE = "docs/reference/registers.md"
+OUTPUTS = [VERILOG, C, "c_model/protocol/passo_words.h", "sim/passo/registers.py", PAGE]
 ENUMS = registers.DescribedEnum.__subclasses__()
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A short form of `make soak`, which plays thousands of histories and plants all defects."""
+"""A short form of `make verify ONLY=soak`, which plays thousands of histories and plants all defects."""
 
 import shutil
 import subprocess
@@ -116,7 +116,7 @@ def test_power_keeps_its_energy_and_raster_its_substep() -> None:
     ["abort leaves steps", "a lost stop counts as sent", "power after a stop", "limit closes at rest only"],
 )
 def test_a_defect_goes_red(name: str) -> None:
-    """One at register level, one of the driver, one of a machine; `make soak` plants all of them."""
+    """One at register level, one of the driver, one of a machine; `make verify` plants all."""
     caught = defects.catch(DEFECTS[name], 1)
     assert caught.good, caught.says
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Inverted connections are seen; `make wiring` inverts all of them."""
+"""Inverted connections are seen; `make verify ONLY=wiring` inverts all of them."""
 
 import pytest
 from passo.failure import Failure

@@ -95,12 +95,14 @@ def _parser() -> argparse.ArgumentParser:
     )
     firmware.add_argument("--engine", choices=("rtl", "model"), default="rtl", help="the core (default rtl)")
     firmware.add_argument(
-        "--table", action="store_true", help="measure the firmware instead and write docs/firmware_report.md"
+        "--table",
+        action="store_true",
+        help="measure the firmware and write docs/reference/firmware_report.md",
     )
     firmware.add_argument(
         "--grbl",
         action="store_true",
-        help="of --table: the image that speaks grbl; writes docs/firmware_gcode_report.md",
+        help="of --table: the image that speaks grbl; writes docs/reference/firmware_gcode_report.md",
     )
     firmware.add_argument("--lines", type=int, metavar="N", help="of --grbl: length of its long file")
     rtl = commands.add_parser("rtl", help="name the Verilog sources of the core, for makefiles")

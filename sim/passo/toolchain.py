@@ -53,6 +53,7 @@ paths = SimpleNamespace(
     tools=_root / "tools",
     examples=_root / "examples",
     docs=_root / "docs",
+    reference=_root / "docs" / "reference",
     grbl=_root / "stm32_bridge" / "grbl",
     stm32_bridge=_root / "stm32_bridge",
 )

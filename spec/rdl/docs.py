@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The registers for people: docs/registers.md."""
+"""The registers for people: docs/reference/registers.md."""
 
 import re
 from itertools import groupby
@@ -83,6 +83,6 @@ def page(source: Source) -> str:
         "",
         "A register is a 32-bit word; addresses count words. Unused bits read as 0 and must be written as 0.",
         "A field without a reset value reports a build parameter or a current state, or is not stored.",
-        "[How Passo works](architecture.md) explains their use and the link that carries them.",
+        "[How Passo works](../architecture.md) explains their use and the link that carries them.",
     ]
     return "\n".join([*head, *overview, *details, ""])

@@ -15,7 +15,7 @@ from passo_stm32.board import Board, make_firmware, program_elf
 from passo_stm32.bus import TICKS_PER_SECOND
 from passo_stm32.machine import Machine
 
-REPORT = paths.docs / "firmware_report.md"
+REPORT = paths.reference / "firmware_report.md"
 PAGE = paths.root / "benchmarks" / "firmware_page.md"
 HZ = 72_000_000
 PARAMETERS = Parameters(axes=4)
@@ -190,7 +190,7 @@ def memory_report() -> str:
 
 
 def bench() -> None:
-    """Measure, write docs/firmware_report.md and show it."""
+    """Measure, write docs/reference/firmware_report.md and show it."""
     console.print("Planning ...")
     costs = plan_costs()
     console.print("Frames and lines ...")

@@ -16,7 +16,7 @@ from passo.toolchain import paths
 from passo_stm32.board import make_firmware
 from passo_stm32.grbl_board import FOLDER, GrblBoard, grbl_elf
 
-REPORT = paths.docs / "firmware_gcode_report.md"
+REPORT = paths.reference / "firmware_gcode_report.md"
 PAGE = paths.root / "benchmarks" / "firmware_gcode_page.md"
 HZ = 72_000_000  # of processor and core
 PARAMETERS = Parameters(axes=4)
@@ -120,7 +120,7 @@ def memory() -> str:
 
 
 def bench(count: int = LINES, report: Path = REPORT) -> None:
-    """Measure, write docs/firmware_gcode_report.md and show it."""
+    """Measure, write docs/reference/firmware_gcode_report.md and show it."""
     console.print("Calls ...")
     calls = costs()
     console.print("Lines per second ...")

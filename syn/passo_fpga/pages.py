@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Output of the report: tables for the terminal, docs/report.md, and the goals in README.md."""
+"""Output of the report: tables for the terminal, docs/reference/report.md, and the goals in README.md."""
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -12,7 +12,7 @@ from rich.console import Console
 
 from passo_fpga.devices import DEVICES
 
-PAGE = paths.docs / "report.md"
+PAGE = paths.reference / "report.md"
 TEMPLATE = Path(__file__).with_name("page.md")
 README = paths.root / "README.md"
 BEGIN, END = "<!-- report: make report writes from here -->", "<!-- to here -->"

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """`make report`: size and speed of the core on all devices.
 
-A full report writes build/report.json, docs/report.md and the goals between two marks in README.md; QUICK=1
-writes only the goals. A partial report (ONLY=, QUICK=1) is printed and written to build/report-part.json.
+A full report writes build/report.json, docs/reference/report.md and the goals between two marks in README.md;
+QUICK=1 writes only the goals. A partial report (ONLY=, QUICK=1) is printed and written to build/report-part.json.
 Each run of a netlist with a seed is cached in build/fpga: an interrupted report resumes, and after a change
 only the affected runs are repeated. PARTS=1 measures the optional parts of the core instead.
 """
@@ -95,7 +95,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     else:
         part = REPORT.with_name("report-part.json")
         write_json(report, part)
-        console.print(f"a part of the report: {part.relative_to(paths.root)}; docs/report.md is as it was")
+        console.print(
+            f"partial report: {part.relative_to(paths.root)}; {pages.PAGE.relative_to(paths.root)} is unchanged"
+        )
         if len(goals) == len(GOALS):
             pages.write_goals(report)
     pages.show(report)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The table of docs/equality.md: what is proved, how large it is, and how long it takes."""
+"""The table of docs/reference/equality.md: what is proved, how large it is, and how long it takes."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -9,8 +9,8 @@ from passo_fpga.pages import END, write_block
 
 from verify.equal.coupling import Coupling
 
-PAGE = paths.docs / "equality.md"
-BEGIN = "<!-- equal: make equal writes from here -->"
+PAGE = paths.reference / "equality.md"
+BEGIN = "<!-- equal: make verify writes from here -->"
 HEADER = ("module", "RTL", "what it is", "goals", "bits", "seconds", "bugs seen")
 TEXTS = 3  # columns of them; the others are numbers
 

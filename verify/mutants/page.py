@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The score of every module and file, and docs/mutants.md."""
+"""The score of every module and file, and docs/reference/mutants.md."""
 
 import re
 import tomllib
@@ -8,13 +8,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from passo.console import console, table
+from passo.output import write_text
 from passo.toolchain import paths
 
 from verify.mutants.c_source import CMutant
 from verify.mutants.fates import Fates
 from verify.mutants.netlist import Mutant
 
-PAGE = paths.docs / "mutants.md"
+PAGE = paths.reference / "mutants.md"
 REASONS = Path(__file__).parent / "reasons.toml"
 NO_REASON = "no promise says it yet"
 
@@ -180,7 +181,7 @@ def write(rtl: Sequence[Score], c: Sequence[Score], seed: int, ended: bool = Tru
     rtl, c = _merged(rtl), _merged(c)
     all_rtl, all_c = total(rtl), total(c)
     text = PAGE.read_text(encoding="utf-8")
-    begin, end = "<!-- figures: written by make mutants -->\n", "<!-- end of figures -->\n"
+    begin, end = "<!-- figures: written by make verify -->\n", "<!-- end of figures -->\n"
     head, rest = text.split(begin)
     tail = rest.split(end)[1]
 
@@ -213,4 +214,4 @@ of those of the C sources: {of(all_c)}.
 
 """
     figures += survivors if ended else NOT_ENDED + "\n"
-    PAGE.write_text(head + begin + figures + end + tail, encoding="utf-8")
+    write_text(PAGE, head + begin + figures + end + tail)

@@ -5,7 +5,7 @@
 
 `--only` takes `rtl`, `c`, modules of rtl/ and files of the driver, the planner and G-code. A run goes on
 where the last one ended: the fates are kept in build/mutants, and all that was killed is killed once more
-when the sources or the judges are others. A run of everything writes docs/mutants.md.
+when the sources or the judges are others. A run of everything writes docs/reference/mutants.md.
 """
 
 import argparse

@@ -51,8 +51,8 @@ class Failure:
         """The command that reproduces it."""
         kind = self.part.split()[0]
         kinds = (*KINDS, *DRIVER_KINDS)
-        more = " DRIVER=1" if kind == "driver" else f" KIND={kind}" if kind in kinds else ""
-        return f"make soak SEED={self.seed} HISTORY={self.history}{more}"
+        more = " --driver" if kind == "driver" else f" --kind {kind}" if kind in kinds else ""
+        return f"python -m verify.soak.run --seed {self.seed} --history {self.history}{more}"
 
 
 def _object(file: Path, folders: Sequence[Path]) -> Path:
