@@ -70,7 +70,8 @@ def compare(case: Case) -> Measured:
 
 
 def _ratios(measured: Measured, lines: list[Line], settings: PathSettings, fits: bool) -> None:
-    ratio = plan(lines, settings, len(lines) + 4).seconds / measured.optimum
+    known = max(len(lines) + 4, LOOK_AHEAD)  # with fewer places the pace allows fewer ramps
+    ratio = plan(lines, settings, known).seconds / measured.optimum
     if settings.profile == "linear":
         measured.unlimited = ratio
         if fits:

@@ -55,7 +55,8 @@ static enum passo_plan_error add(struct passo_path_planner *path, const struct p
 	path->begins = path->rest;
 	path->feed = move->feed;
 	path->wanted = item->feed;
-	path->off = 0;
+	path->bulge = 0;
+	path->settled = path->final;
 	passo_path_pace_line(path, item);
 	passo_path_limit(path, path->added);
 	if (!item->rest)
@@ -87,21 +88,23 @@ static bool merge(struct passo_path_planner *path, const struct passo_path_move 
 {
 	if (!is_open(path, move))
 		return false;
-	const uint64_t off = path->off + passo_path_off(path, move->target);
-	if (off >= path->tolerance)
+	uint64_t bulge = path->bulge;
+	if (passo_path_off(path, move->target, &bulge) >= path->tolerance)
 		return false;
 	const struct passo_path_place at = path->at;
-	const uint32_t dwell = path->dwell;
+	const uint32_t dwell = path->dwell, final = path->final;
 
 	path->at = path->before;
 	path->added--;
+	path->final = path->settled; /* the longer line may be faster */
 	path->rest = path->begins;
 	path->dwell = passo_path_item(path, path->added)->dwell;
 	if (add(path, move) == PASSO_PLAN_OK) {
-		path->off = off;
+		path->bulge = bulge;
 		return true;
 	}
 	path->added++;
+	path->final = final;
 	path->at = at;
 	path->rest = false;
 	path->dwell = dwell;
@@ -172,13 +175,13 @@ static uint64_t reach_of(const struct passo_path_planner *path, uint32_t index,
     const struct passo_path_item *item, const struct passo_path_item *next)
 {
 	const uint64_t end = end_square(item, next), length = (uint64_t)item->substeps << 32;
-	const uint64_t flat = passo_path_smaller(
-	    passo_path_flat(path, index + 1, end) + passo_path_flat(path, index, item->corner), length);
-	const uint64_t most =
-	    end
-	    + (flat == 0 ? passo_path_fall(item, end)
-	                 : passo_path_gain(passo_path_down(passo_path_slope(item, false, end, length - flat)),
-			       length - flat));
+	const uint64_t behind = passo_path_flat(path, index + 1, index, end);
+	const uint64_t flat =
+	    passo_path_smaller(behind + passo_path_flat(path, index, index, item->corner), length);
+	uint64_t slope;
+	const uint64_t most = flat == 0 && passo_path_halves(item) == 1
+	                        ? end + passo_path_fall(item, end)
+	                        : passo_path_before(item, end, length - flat, behind, &slope);
 	const uint64_t reach = passo_path_smaller(item->corner, most);
 
 	/* what was possible with fewer lines still is */

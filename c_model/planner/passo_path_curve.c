@@ -7,8 +7,8 @@
  * = 2 |k| / |u|, and one that the curve slows down the same downward. The acceleration along the path alone
  * keeps all limits as well.
  *
- * Each corner turns over a length, half of it before and half behind it; a line has the mean curvature of the
- * two at its ends.
+ * Each corner turns over a length before and behind it, so each half of a line has the curvature of the corner
+ * at its end. An image without room has one for both, the greater one.
  */
 #include "passo_path_private.h"
 
@@ -65,25 +65,27 @@ void passo_path_add_slope(struct passo_path_item *item, uint32_t axis, uint32_t 
 		item->curve.slope[axis] = packed(slope);
 }
 
-void passo_path_add_curve(const struct passo_path_planner *path, const int64_t *curvature,
-    const int32_t *unit, struct passo_path_item *item)
+void passo_path_bend(const struct passo_path_planner *path, const int64_t *curvature, const int32_t *unit,
+    unsigned half, struct passo_path_item *item)
 {
 	struct passo_path_curve *curve = &item->curve;
 
-	curve->up = curve->down = 0;
 	if (passo_path_shape(path) != PASSO_SHAPE_LINEAR)
 		return;
+	curve->halved = !path->unrounded;
+	half = passo_path_halves(item) > 1 ? half : 0;
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
 		const uint32_t share = passo_path_size32(unit[axis]);
 
 		if (curvature[axis] == 0 || share < SHARE_MIN)
 			continue;
-		curve->bend[axis] = packed(
-		    passo_path_along(2 * passo_path_size(curvature[axis]), passo_path_inverse(share)));
-		if ((curvature[axis] < 0) == (unit[axis] < 0))
-			curve->up |= (uint8_t)(1u << axis);
-		else
-			curve->down |= (uint8_t)(1u << axis);
+		const uint64_t bend =
+		    passo_path_along(2 * passo_path_size(curvature[axis]), passo_path_inverse(share));
+		const bool helps = (curvature[axis] < 0) == (unit[axis] < 0);
+
+		if (bend > unpacked(curve->bend[half][axis]))
+			curve->bend[half][axis] = packed(bend);
+		(helps ? curve->helps : curve->hinders)[half] |= (uint8_t)(1u << axis);
 	}
 }
 
@@ -110,16 +112,19 @@ static uint64_t less_slope(uint64_t left, uint32_t divisor, uint32_t shift)
 	return scaled(left, UINT32_MAX / (divisor + 1), shift);
 }
 
-uint64_t passo_path_slope(const struct passo_path_item *item, bool up, uint64_t low, uint64_t length)
+uint64_t passo_path_slope(
+    const struct passo_path_item *item, unsigned half, bool up, uint64_t low, uint64_t length)
 {
 	const struct passo_path_curve *curve = &item->curve;
 	uint64_t slope = item->slope;
 
-	for (uint32_t axis = 0, axes = up ? curve->up : curve->down; axes > 0; axis++, axes /= 2) {
+	for (uint32_t axis = 0, axes = (up ? curve->helps : curve->hinders)[half]; axes > 0;
+	     axis++, axes /= 2) {
 		if (axes % 2 == 0)
 			continue;
-		const struct growth growth = growth_over(curve->bend[axis], length);
-		const uint64_t left = left_by(curve->slope[axis], curve->bend[axis], low);
+		const uint32_t bend = curve->bend[half][axis];
+		const struct growth growth = growth_over(bend, length);
+		const uint64_t left = left_by(curve->slope[axis], bend, low);
 
 		slope = passo_path_smaller(slope, less_slope(left, growth.divisor, growth.shift));
 	}
@@ -130,10 +135,13 @@ void passo_path_set_fall(struct passo_path_item *item)
 {
 	struct passo_path_curve *curve = &item->curve;
 
-	for (uint32_t axis = 0, axes = curve->down; axes > 0; axis++, axes /= 2) {
+	if (passo_path_halves(item) > 1)
+		return;
+	for (uint32_t axis = 0, axes = curve->hinders[0]; axes > 0; axis++, axes /= 2) {
 		if (axes % 2 == 0)
 			continue;
-		const struct growth growth = growth_over(curve->bend[axis], (uint64_t)item->substeps << 32);
+		const struct growth growth =
+		    growth_over(curve->bend[0][axis], (uint64_t)item->substeps << 32);
 
 		curve->divisor[axis] = (uint16_t)growth.divisor;
 		curve->shift[axis] = (uint8_t)growth.shift;
@@ -145,13 +153,32 @@ uint64_t passo_path_fall(const struct passo_path_item *item, uint64_t end)
 	const struct passo_path_curve *curve = &item->curve;
 	uint64_t slope = item->slope;
 
-	for (uint32_t axis = 0, axes = curve->down; axes > 0; axis++, axes /= 2) {
+	for (uint32_t axis = 0, axes = curve->hinders[0]; axes > 0; axis++, axes /= 2) {
 		if (axes % 2 == 0)
 			continue;
-		const uint64_t left = left_by(curve->slope[axis], curve->bend[axis], end);
+		const uint64_t left = left_by(curve->slope[axis], curve->bend[0][axis], end);
 
 		slope = passo_path_smaller(slope, less_slope(left, curve->divisor[axis], curve->shift[axis]));
 	}
 	return passo_path_smaller(
 	    scaled(passo_path_down(passo_path_larger(slope, 1)), item->substeps, 0), PASSO_PATH_SQUARE_MAX);
+}
+
+uint64_t passo_path_before(
+    const struct passo_path_item *item, uint64_t end, uint64_t length, uint64_t behind, uint64_t *slope)
+{
+	const unsigned halves = passo_path_halves(item);
+	const uint64_t half = (uint64_t)item->substeps << 31;
+	const uint64_t second = halves > 1 ? passo_path_smaller(half > behind ? half - behind : 0, length) : length;
+	const uint64_t slower = passo_path_down(passo_path_slope(item, halves - 1, false, end, second));
+	uint64_t square = end + passo_path_gain(slower, second);
+
+	*slope = slower;
+	if (second < length) {
+		square = passo_path_smaller(square, passo_path_larger(item->top, end));
+		*slope = passo_path_down(passo_path_slope(item, 0, false, square, length - second));
+		square += passo_path_gain(*slope, length - second);
+		*slope = passo_path_smaller(*slope, slower);
+	}
+	return square;
 }

@@ -45,20 +45,26 @@ static bool find_direction(const struct passo_path_planner *path, const int64_t 
 	return true;
 }
 
-uint64_t passo_path_off(const struct passo_path_planner *path, const int64_t *target)
+/* The path that a line replaces is below a parabola over it, `bulge` x (l - x). If that is so of the last line,
+ * it is of the one to a new end, for a parabola that is also above the end of the last one: so it is above the
+ * line from there to the new end. */
+uint64_t passo_path_off(const struct passo_path_planner *path, const int64_t *target, uint64_t *bulge)
 {
 	const struct passo_path_place *end = &path->at;
 	int32_t unit[PASSO_AXES_MAX];
 	uint64_t length = 0, turn = 0;
 
 	if (!find_direction(path, path->before.target, target, unit, &length) || length <= end->length)
-		return UINT64_MAX / 2;
+		return UINT64_MAX;
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
 		const uint64_t change = passo_path_size((int64_t)unit[axis] - end->direction[axis]);
 
 		turn += change * change;
 	}
-	return passo_mul_shift(end->length, (uint64_t)passo_isqrt64(turn) + 1, PASSO_PATH_UNIT_BITS);
+	turn = ((uint64_t)passo_isqrt64(turn) + 1) << 32;
+	*bulge = passo_path_larger(turn / (length - end->length),
+	    passo_mul_div(*bulge, end->length, length) + turn / length);
+	return passo_mul_shift(passo_mul_shift(*bulge, length, PASSO_PATH_UNIT_BITS), length, 34);
 }
 
 /* Steps of each axis, by rounding the target; returns the most. */
@@ -159,14 +165,10 @@ enum passo_plan_error passo_path_measure(
 		return PASSO_PLAN_TOO_LONG;
 
 	limit_line(path, unit, move->feed, item);
-	if (path->rest) {
-		for (uint32_t axis = 0; axis < path->machine.axes; axis++)
-			path->at.curvature[axis] = 0;
-	} else {
+	if (!path->rest)
 		item->bend = passo_path_limit_corner(path, unit, length, item);
-	}
+	passo_path_keep_start(item, &path->at);
 	item->substeps = (uint32_t)substeps;
-	passo_path_add_curve(path, path->at.curvature, unit, item);
 	passo_path_set_fall(item);
 	path->at.carry =
 	    stretched ? 0 : (int32_t)(path->at.carry + (int64_t)length - (int64_t)(substeps << 16));

@@ -85,6 +85,7 @@ uint64_t passo_path_length_in(const struct passo_path_planner *path, uint64_t sp
 struct ahead {
 	uint64_t square; /* the lowest that is allowed */
 	uint64_t slope;  /* the lowest of the lines */
+	uint64_t up;     /* the steepest that a ramp up over them may be */
 	uint64_t rest;   /* length to the end of the line at which the path rests; 0: it does not */
 	uint64_t end;    /* the square there */
 	bool open;       /* further lines may raise it */
@@ -96,7 +97,7 @@ struct ahead {
 static struct ahead look_ahead(
     const struct passo_path_planner *path, uint64_t length, enum passo_path_need need)
 {
-	struct ahead ahead = {.square = PASSO_PATH_SQUARE_MAX, .slope = UINT64_MAX};
+	struct ahead ahead = {.square = PASSO_PATH_SQUARE_MAX, .slope = UINT64_MAX, .up = UINT64_MAX};
 	uint64_t passed = 0;
 
 	for (uint32_t index = path->planned;; index++) {
@@ -111,13 +112,17 @@ static struct ahead look_ahead(
 		if (index == path->planned)
 			passed -= (uint64_t)path->offset;
 		const uint64_t beyond = passed > length ? passed - length : 0;
-		const uint64_t slope = passo_path_down(passo_path_slope(item, false, end, beyond));
+		uint64_t slope;
+		const uint64_t before = passo_path_before(item, end, beyond, 0, &slope);
 
 		ahead.open = ahead.open || !passo_path_is_settled(path, index);
 		ahead.slope = passo_path_smaller(ahead.slope, slope);
+		for (unsigned half = 0; half < passo_path_halves(item); half++)
+			ahead.up = passo_path_smaller(ahead.up,
+			    passo_path_slope(item, half, true, passo_path_square_of(path->velocity), passed));
 		ahead.square = passo_path_smaller(ahead.square, item->top);
 		if (beyond > 0) {
-			ahead.square = passo_path_smaller(ahead.square, end + passo_path_gain(slope, beyond));
+			ahead.square = passo_path_smaller(ahead.square, before);
 			break;
 		}
 		if (passo_path_rests_after(path, index)) {
@@ -205,11 +210,11 @@ static struct passo_path_aim calm(
 			    passo_mul_div(ahead.rest, units, ticks + next));
 			to = passo_path_smaller(to, passo_path_change(path, ahead.slope, next));
 		}
-		to = passo_path_smaller(to, from + passo_path_change(path, ahead.slope, ticks));
+		to = passo_path_smaller(to, from + passo_path_change(path, ahead.up, ticks));
 		to = passo_path_larger(to, from);
 	}
-	struct passo_path_aim aim =
-	    aim_at(path, to, passo_path_length_in(path, from + to, ticks), ahead.slope);
+	struct passo_path_aim aim = aim_at(path, to, passo_path_length_in(path, from + to, ticks),
+	    to > from ? ahead.up : ahead.slope);
 	aim.open = ahead.open;
 	return aim;
 }

@@ -42,7 +42,7 @@ struct passo_path_part {
 };
 
 /* Most parts of a line. */
-#define PASSO_PATH_PARTS 5u
+#define PASSO_PATH_PARTS 8u
 
 /* What the next ramp aims at. */
 struct passo_path_aim {
@@ -72,7 +72,6 @@ static inline uint64_t passo_path_larger(uint64_t a, uint64_t b)
 {
 	return a > b ? a : b;
 }
-
 
 /* Of a signed value. */
 static inline uint64_t passo_path_size(int64_t value)
@@ -148,9 +147,10 @@ static inline uint64_t passo_path_square_of(uint64_t velocity)
 	return velocity * velocity;
 }
 
-/* Change of the square per substep within an item that the axes allow, over a length (UQ32.32 substeps) from
- * its lower end. */
-uint64_t passo_path_slope(const struct passo_path_item *item, bool up, uint64_t low, uint64_t length);
+/* Change of the square per substep within a half of an item that the axes allow, over a length (UQ32.32
+ * substeps) from its lower end. */
+uint64_t passo_path_slope(
+    const struct passo_path_item *item, unsigned half, bool up, uint64_t low, uint64_t length);
 
 /* Deceleration is planned a little below the limit, so that it can make up for ramps that end at ticks. */
 static inline uint64_t passo_path_down(uint64_t slope)
@@ -158,20 +158,55 @@ static inline uint64_t passo_path_down(uint64_t slope)
 	return slope - slope / 256;
 }
 
-/* Sets the slope of an axis of an item, beside its curve. */
-void passo_path_add_slope(
-    struct passo_path_item *item, uint32_t axis, uint32_t share, uint64_t slope);
+/* The highest square, within an item, from which it falls to the one at its end over a length that ends so far
+ * before that; and the slope there, at least. */
+uint64_t passo_path_before(
+    const struct passo_path_item *item, uint64_t end, uint64_t length, uint64_t behind, uint64_t *slope);
 
-/* Sets the curve of an item that has its slopes: its unit vector, and its mean curvature, Q15.48 per
- * substep. */
-void passo_path_add_curve(const struct passo_path_planner *path, const int64_t *curvature,
-    const int32_t *unit, struct passo_path_item *item);
+/* What a line has by the corner at its start; its end may become another one, with a longer line. */
+static inline void passo_path_keep_start(const struct passo_path_item *item, struct passo_path_place *at)
+{
+	at->curve = item->curve;
+#ifndef PASSO_LINEAR_PATHS
+	at->slope = item->slope;
+	at->eased = item->eased;
+#ifndef PASSO_WITHOUT_JERK_PATHS
+	at->jerk = item->jerk;
+#endif
+#endif
+}
+
+static inline void passo_path_restore_start(struct passo_path_item *item, const struct passo_path_place *at)
+{
+	item->curve = at->curve;
+#ifndef PASSO_LINEAR_PATHS
+	item->slope = at->slope;
+	item->eased = at->eased;
+#ifndef PASSO_WITHOUT_JERK_PATHS
+	item->jerk = at->jerk;
+#endif
+#endif
+}
+
+/* In how many parts the curve of an item is. */
+static inline unsigned passo_path_halves(const struct passo_path_item *item)
+{
+	return PASSO_PATH_HALVES > 1 && item->curve.halved ? 2 : 1;
+}
+
+/* Sets the slope of an axis of an item, beside its curve. */
+void passo_path_add_slope(struct passo_path_item *item, uint32_t axis, uint32_t share, uint64_t slope);
 
 /* What passo_path_fall() needs of the curve and the length of an item. */
 void passo_path_set_fall(struct passo_path_item *item);
 
-/* Change of the square down a whole item to a square at its end: the slope there, over the line. */
+/* Change of the square down a whole item that is not halved, to a square at its end: the slope there, over the
+ * line. */
 uint64_t passo_path_fall(const struct passo_path_item *item, uint64_t end);
+
+/* Adds a curvature, Q15.48 per substep, to a half of an item with this unit vector. */
+void passo_path_bend(const struct passo_path_planner *path, const int64_t *curvature, const int32_t *unit,
+    unsigned half, struct passo_path_item *item);
 
 /* Change of the square over a length (UQ32.32 substeps); saturates. */
 uint64_t passo_path_gain(uint64_t slope, uint64_t length);
@@ -184,15 +219,37 @@ uint64_t passo_path_change(const struct passo_path_planner *path, uint64_t slope
 enum passo_plan_error passo_path_measure(
     struct passo_path_planner *path, const struct passo_path_move *move, struct passo_path_item *item);
 
+/* Where the direction changes at a corner: so long before it and behind it, UQ32.16 substeps; no farther than
+ * the middle of the lines, and not on one side alone. */
+struct passo_path_rounding {
+	uint64_t before, behind;
+};
+
+struct passo_path_corner {
+	uint32_t change[PASSO_AXES_MAX]; /* of the direction, Q1.30 */
+	uint64_t turn;                   /* the sum of their squares */
+	struct passo_path_rounding rounding;
+	uint64_t over;                   /* UQ.30 substeps, in which it turns at a constant speed */
+	bool bends_before, bends_behind; /* the lines are parts of a curve */
+};
+
+/* Highest square at a corner by what is left of the acceleration of each axis; null: all of it. */
+uint64_t passo_path_corner_square(
+    const struct passo_path_planner *path, const struct passo_path_corner *corner, const uint64_t *left);
+
+/* The same where ramps are shaped; the curved lines beside it leave what the corner needs. */
+uint64_t passo_path_shaped_corner(const struct passo_path_planner *path,
+    const struct passo_path_corner *corner, const int32_t *unit, struct passo_path_item *item);
+
 /* Square at the corner between the last line and this one. The change of direction of an axis takes place
  * over a certain length: half the sum of the two lines, if they stand for an arc, or the arc that deviates by
  * the junction deviation. */
 uint64_t passo_path_limit_corner(
     struct passo_path_planner *path, const int32_t *unit, uint64_t length, struct passo_path_item *item);
 
-/* By how much a line from the start of the last one, to a target, is off the end of that one, at most: UQ32.16
- * substeps; saturates if it is not longer. */
-uint64_t passo_path_off(const struct passo_path_planner *path, const int64_t *target);
+/* By how much a line from the start of the last one, to a target, is off that one and all that it replaces, at
+ * most: UQ32.16 substeps; saturates if it is not longer. */
+uint64_t passo_path_off(const struct passo_path_planner *path, const int64_t *target, uint64_t *bulge);
 
 /* Sets the limits of an item, `top` and, unless the path rests there, `corner`; those before it are known. */
 void passo_path_limit(struct passo_path_planner *path, uint32_t index);
@@ -213,16 +270,18 @@ bool passo_path_rests_after(const struct passo_path_planner *path, uint32_t inde
 uint64_t passo_path_end_square(const struct passo_path_planner *path, uint32_t index);
 bool passo_path_is_settled(const struct passo_path_planner *path, uint32_t index);
 
-/* Length on either side of the corner at the start of an item over which the path keeps a square, so that
- * the rounding of a lone corner has what it needs of the acceleration. */
+/* Length on either side of the corner at the start of an item, of which `line` is one, over which the path
+ * keeps a square, so that the rounding of a lone corner has what it needs of the acceleration. */
 #ifdef PASSO_WITHOUT_ROUNDING
-static inline uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, uint64_t square)
+static inline uint64_t passo_path_flat(
+    const struct passo_path_planner *path, uint32_t index, uint32_t line, uint64_t square)
 {
-	(void)path, (void)index, (void)square;
+	(void)path, (void)index, (void)line, (void)square;
 	return 0;
 }
 #else
-uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, uint64_t square);
+uint64_t passo_path_flat(
+    const struct passo_path_planner *path, uint32_t index, uint32_t line, uint64_t square);
 #endif
 
 /* Updates `reach` after a line has been added. */

@@ -30,12 +30,15 @@ static unsigned put(struct passo_path_part *parts, unsigned count, enum passo_pa
 }
 
 #ifndef PASSO_WITHOUT_ROUNDING
-uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, uint64_t square)
+uint64_t passo_path_flat(
+    const struct passo_path_planner *path, uint32_t index, uint32_t line, uint64_t square)
 {
 	const struct passo_path_item *item = passo_path_item(path, index);
 
 	if (index >= path->added || item->rest || item->turn == 0
 	    || passo_path_shape(path) != PASSO_SHAPE_LINEAR)
+		return 0;
+	if (passo_path_item(path, line)->substeps / 2 < item->turn) /* the curve of a short line has it */
 		return 0;
 	/* what both sides leave, signed, is at least what the corner needs: a right angle has it */
 	const uint64_t needed =
@@ -45,23 +48,19 @@ uint64_t passo_path_flat(const struct passo_path_planner *path, uint32_t index, 
 }
 #endif
 
-/* Without the flat ends: at most three. */
-static unsigned middle_parts(const struct passo_path_planner *path, uint32_t index, uint64_t left,
-    uint64_t square, bool level, struct passo_path_part *parts)
+/* Of a half, or less: at most three. */
+static unsigned half_parts(const struct passo_path_item *item, unsigned half, uint64_t left, uint64_t square,
+    uint64_t top, uint64_t end, struct passo_path_part *parts)
 {
-	const struct passo_path_item *item = passo_path_item(path, index);
-	const uint64_t end = passo_path_end_square(path, index);
-	const uint64_t steepest = passo_path_slope(item, false, end, left); /* makes up for rounding */
+	const uint64_t steepest = passo_path_slope(item, half, false, end, left); /* makes up for rounding */
 	const uint64_t down = passo_path_down(steepest);
 	const uint64_t highest = end + passo_path_gain(down, left);
-	uint64_t top = passo_path_larger(item->top, square);
 
 	/* above it where a line at whose end the path could rest has become part of a curve */
 	if (square >= highest)
 		return put(parts, 0, PASSO_PATH_DOWN, left, end, square > highest ? item->slope : steepest);
-	const uint64_t up = passo_path_slope(item, true, square, left);
-	if (level && !passo_path_is_settled(path, index))
-		top = passo_path_smaller(top, passo_path_larger(end, square));
+	top = passo_path_larger(top, square);
+	const uint64_t up = passo_path_slope(item, half, true, square, left);
 	const uint64_t rise = square + passo_path_gain(up, left);
 	if (rise <= end && rise <= top)
 		return put(parts, 0, PASSO_PATH_UP, left, rise, up);
@@ -80,17 +79,43 @@ static unsigned middle_parts(const struct passo_path_planner *path, uint32_t ind
 	return put(parts, count, PASSO_PATH_DOWN, falling, end, steepest);
 }
 
+/* Without the flat ends, of which that behind is given. */
+static unsigned middle_parts(const struct passo_path_planner *path, uint32_t index, uint64_t left,
+    uint64_t behind, uint64_t square, bool level, struct passo_path_part *parts)
+{
+	const struct passo_path_item *item = passo_path_item(path, index);
+	const uint64_t end = passo_path_end_square(path, index), half = (uint64_t)item->substeps << 31;
+	const uint64_t second = half > behind ? half - behind : 0;
+	uint64_t top = item->top, slope;
+	unsigned count = 0;
+
+	if (level && !passo_path_is_settled(path, index))
+		top = passo_path_smaller(top, passo_path_larger(end, square));
+	if (passo_path_halves(item) > 1 && left > second) {
+		const uint64_t middle = passo_path_before(item, end, second, behind, &slope);
+
+		count = half_parts(item, 0, left - second, square, top,
+		    passo_path_smaller(middle, passo_path_larger(item->top, end)), parts);
+		square = parts[count - 1].square;
+		left = second;
+	}
+	if (left > 0)
+		count += half_parts(
+		    item, passo_path_halves(item) - 1, left, square, top, end, parts + count);
+	return count;
+}
+
 unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index, uint64_t left,
     uint64_t square, bool level, struct passo_path_part *parts)
 {
 	const uint64_t passed = ((uint64_t)passo_path_item(path, index)->substeps << 32) - left;
 	const uint64_t end = passo_path_end_square(path, index), slope = passo_path_item(path, index)->slope;
-	const uint64_t behind = passo_path_smaller(passo_path_flat(path, index + 1, end), left);
-	uint64_t before = passo_path_flat(path, index, square);
+	const uint64_t behind = passo_path_smaller(passo_path_flat(path, index + 1, index, end), left);
+	uint64_t before = passo_path_flat(path, index, index, square);
 
 	before = passo_path_smaller(before > passed ? before - passed : 0, left - behind);
 	unsigned count = put(parts, 0, PASSO_PATH_FLAT, before, square, slope);
 	if (left > before + behind)
-		count += middle_parts(path, index, left - before - behind, square, level, parts + count);
+		count += middle_parts(path, index, left - before - behind, behind, square, level, parts + count);
 	return put(parts, count, PASSO_PATH_FLAT, behind, count > 0 ? parts[count - 1].square : end, slope);
 }

@@ -12,6 +12,13 @@
 #define PASSO_WITHOUT_JERK_PATHS
 #endif
 
+/* The halves of a line, each with the curvature of the corner at its end. */
+#ifdef PASSO_WITHOUT_ROUNDING
+#define PASSO_PATH_HALVES 1u
+#else
+#define PASSO_PATH_HALVES 2u
+#endif
+
 /* Axes of a path, at most; an image for fewer saves RAM. */
 #ifndef PASSO_PATH_AXES_MAX
 #define PASSO_PATH_AXES_MAX PASSO_AXES_MAX
@@ -31,10 +38,13 @@ struct passo_path_descent {
 /* What limits the slope in a curve, private; see passo_path_curve.c. 26 bits and an exponent of 6. */
 struct passo_path_curve {
 	uint32_t slope[PASSO_PATH_AXES_MAX]; /* of the square, where it is 0 */
-	uint32_t bend[PASSO_PATH_AXES_MAX];  /* UQ16.48 per substep: what the square takes of it */
-	uint16_t divisor[PASSO_PATH_AXES_MAX]; /* of the way down the whole line: what the bend makes of it */
-	uint8_t shift[PASSO_PATH_AXES_MAX];
-	uint8_t up, down; /* bit i set: axis i limits the way up, or down */
+	/* of each half, or of the whole line: */
+	uint32_t bend[PASSO_PATH_HALVES][PASSO_PATH_AXES_MAX]; /* UQ16.48 per substep: the square takes of it */
+	uint8_t helps[PASSO_PATH_HALVES];                      /* bit i set: on the way up */
+	uint8_t hinders[PASSO_PATH_HALVES];                    /* on the way down */
+	bool halved;                                           /* each half has its own */
+	uint8_t shift[PASSO_PATH_AXES_MAX];                    /* of the way down all of a line that is not: */
+	uint16_t divisor[PASSO_PATH_AXES_MAX];                 /* what the bend makes of it */
 };
 
 /* A line of the path, private. Squares are those of velocities, UQ0.64 (substeps per clock)^2. */
@@ -62,6 +72,9 @@ struct passo_path_item {
 	uint16_t lost;   /* UQ1.15: what its axis has of its acceleration before and behind it, in all */
 	uint16_t needed; /* UQ1.15: what the rounding needs of that axis at the square `bend` */
 #endif
+#ifndef PASSO_LINEAR_PATHS
+	bool eased; /* in a curve: half of the slope is for the way along it */
+#endif
 #ifndef PASSO_WITHOUT_JERK_PATHS
 	uint64_t jerk; /* profile jerk: change of the velocity by the square of the time that it takes at
 	                  least, UQ0.80 substeps per clock^3 */
@@ -82,8 +95,12 @@ struct passo_path_place {
 	int64_t target[PASSO_PATH_AXES_MAX]; /* Q31.32 mm */
 	int64_t steps[PASSO_PATH_AXES_MAX];
 	int32_t direction[PASSO_PATH_AXES_MAX]; /* unit vector of the last line, Q1.30 */
-	int64_t curvature[PASSO_PATH_AXES_MAX]; /* Q15.48 per substep: its mean, by the corner at its start */
+	struct passo_path_curve curve;          /* of the last line, by the corner at its start */
 	uint64_t length;                        /* of the last line, UQ32.16 substeps */
+#ifndef PASSO_LINEAR_PATHS
+	uint64_t slope, jerk; /* of the last line, by the corner at its start */
+	bool eased;           /* the same */
+#endif
 	int32_t carry;        /* Q16: substeps that rounding has withheld from the lines so far */
 	uint32_t line_credit; /* clocks that the last lines have left, see passo_path_pace.c */
 };
@@ -102,10 +119,12 @@ struct passo_path_planner {
 	struct passo_path_place at, before; /* its end and its start */
 	uint64_t deviation, tolerance;      /* UQ32.16 substeps */
 	uint64_t own_tolerance;             /* the same: that of the settings */
-	uint64_t off;  /* the same: by how much the last line is off those that it replaces */
+	uint64_t bulge; /* UQ.46 per substep: the last line is off those that it replaces by no more than
+	                   this times the distances to both of its ends */
 	uint64_t feed;   /* of the last line, as it was given */
 	uint32_t wanted; /* the same, UQ0.32 */
 	bool begins;   /* the path rested before the last line */
+	uint32_t settled; /* `final` before the last line */
 	uint32_t substeps_per_mm;
 	uint32_t dwell; /* ticks before the next line */
 	bool rest;      /* before the next line */

@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: MIT
+ * Shaped ramps in curves. The limit of an axis is that of its acceleration in all, and a shaped ramp is
+ * steepest in its middle, wherever on the curve that is. So a curve that needs much has lines of half the
+ * slope, and is as fast as what these leave: 0.93 of its speed where an axis has all of it, or more. One that
+ * needs less, at the speed of its lines, is left alone.
+ */
+#include "passo_path_private.h"
+
+#ifndef PASSO_LINEAR_PATHS
+
+/* By this part a limit may be exceeded: lines that hardly bend are no curve. */
+#define EXCESS 64u
+/* The same of the jerk. */
+#define JERK_EXCESS 32u
+/* On an arc at a speed v, of a radius r, the ramp that is steepest at t takes 3 v t / r of the jerk: with half
+ * of it along the arc, 0.7 are left. UQ0.16. */
+#define ACROSS 15463u
+
+/* What the ramps of the curved lines beside a corner leave of the acceleration of an axis. */
+static uint64_t left_of(const struct passo_path_planner *path, const struct passo_path_corner *corner,
+    const int32_t *unit, uint32_t axis, const struct passo_path_item *item)
+{
+	const struct passo_path_item *last = passo_path_item(path, path->added - 1);
+	const uint64_t most = path->axis[axis].acceleration, excess = most + most / EXCESS;
+	uint64_t slope = 0; /* of the square of this axis, twice */
+
+	if (corner->bends_before)
+		slope = passo_mul_div(
+		    last->slope, passo_path_size32(path->at.direction[axis]), PASSO_PATH_ONE);
+	if (corner->bends_behind)
+		slope = passo_path_larger(
+		    slope, passo_mul_div(item->slope, passo_path_size32(unit[axis]), PASSO_PATH_ONE));
+	const uint64_t peak = passo_mul_div(slope, UINT32_C(1) << 15, path->gentleness);
+	return excess > peak ? passo_path_smaller(most, excess - peak) : 0;
+}
+
+static uint64_t square_by(const struct passo_path_planner *path, const struct passo_path_corner *corner,
+    const int32_t *unit, const struct passo_path_item *item)
+{
+	uint64_t left[PASSO_AXES_MAX];
+
+	for (uint32_t axis = 0; axis < path->machine.axes; axis++)
+		left[axis] = left_of(path, corner, unit, axis, item);
+	return passo_path_corner_square(path, corner, left);
+}
+
+static uint64_t wanted(const struct passo_path_item *item)
+{
+	return passo_path_speed_square(passo_path_smaller(item->feed, item->limit));
+}
+
+/* Radius of the arc at a corner, UQ.8 substeps. */
+static uint64_t radius_of(const struct passo_path_corner *corner)
+{
+	const uint64_t turn = passo_path_larger(passo_isqrt64(corner->turn), 1);
+
+	return passo_path_smaller(passo_mul_div(corner->over, 256, turn), UINT32_MAX);
+}
+
+/* Of the weakest axis that turns. */
+static uint64_t jerk_of(const struct passo_path_planner *path, const struct passo_path_corner *corner)
+{
+	uint64_t jerk = PASSO_PATH_SQUARE_MAX;
+
+	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
+		if (corner->change[axis] > 0)
+			jerk = passo_path_smaller(jerk, path->axis[axis].jerk);
+	}
+	return jerk;
+}
+
+/* Highest square on an arc by the jerk: the cube of the velocity is the jerk times the square of the radius. */
+static uint64_t soft_square(uint64_t radius, uint64_t jerk)
+{
+	const struct passo_u128 cube = passo_multiply(jerk, radius * radius);
+	uint64_t velocity = 0;
+
+	for (uint64_t bit = PASSO_PATH_SPEED_MAX / 2; bit > 0; bit /= 2) {
+		const uint64_t tried = velocity | bit;
+
+		if (!passo_u128_less(cube, passo_multiply(tried * tried, tried)))
+			velocity = tried;
+	}
+	return passo_path_speed_square(velocity);
+}
+
+static void ease(const struct passo_path_planner *path, struct passo_path_item *item, uint64_t most)
+{
+	if (!item->eased) {
+		item->eased = true;
+		item->slope /= 2;
+#ifndef PASSO_WITHOUT_JERK_PATHS
+		item->jerk = passo_path_larger(item->jerk / 2, 1);
+#endif
+	}
+	if (passo_path_is_soft(path))
+		item->slope = passo_path_smaller(item->slope, most);
+	item->slope = passo_path_larger(item->slope, 1);
+}
+
+uint64_t passo_path_shaped_corner(const struct passo_path_planner *path,
+    const struct passo_path_corner *corner, const int32_t *unit, struct passo_path_item *item)
+{
+	struct passo_path_item *last = passo_path_item(path, path->added - 1);
+	const bool soft = passo_path_is_soft(path), bends = corner->bends_before || corner->bends_behind;
+	const uint64_t radius = radius_of(corner), jerk = jerk_of(path, corner);
+	const uint64_t needed = passo_path_larger(
+	    corner->bends_before ? wanted(last) : 0, corner->bends_behind ? wanted(item) : 0);
+	uint64_t square = square_by(path, corner, unit, item), most = UINT64_MAX;
+
+	if (soft)
+		square = passo_path_smaller(square, soft_square(radius, bends ? jerk / JERK_EXCESS : jerk));
+	if (!bends || square >= needed)
+		return square;
+	if (soft) {
+		const uint64_t fastest = soft_square(radius, jerk / 2);
+		const uint64_t velocity = passo_isqrt64(passo_path_smaller(fastest, needed));
+		const uint64_t along = passo_mul_div(jerk, radius << 8, passo_path_larger(velocity, 1));
+
+		most = passo_mul_div(2 * passo_mul_div(along, ACROSS, UINT32_C(1) << 16), path->gentleness,
+		    UINT32_C(1) << 16);
+	}
+	if (corner->bends_before)
+		ease(path, last, most);
+	if (corner->bends_behind)
+		ease(path, item, most);
+	square = square_by(path, corner, unit, item);
+	return soft ? passo_path_smaller(square, soft_square(radius, jerk / 2)) : square;
+}
+
+#endif
