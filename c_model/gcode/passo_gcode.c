@@ -27,7 +27,11 @@ void passo_gcode_copy(const struct passo_gcode *gcode, const int64_t *from, int6
 
 static void clear_job(struct passo_gcode *gcode)
 {
-	gcode->job = (struct passo_gcode_job){.probe = PASSO_GCODE_NONE};
+	struct passo_gcode_job *job = &gcode->job;
+
+	job->output = job->dwell = job->offsets = job->via = job->motion = job->pause = job->end = false;
+	job->turns = false;
+	job->probe = PASSO_GCODE_NONE;
 }
 
 void passo_gcode_open(struct passo_gcode *gcode, const struct passo_gcode_settings *settings)

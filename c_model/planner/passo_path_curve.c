@@ -38,7 +38,7 @@ static uint64_t unpacked(uint32_t value)
 }
 
 /* a * b / 2^bits, of a product below 2^96 and bits below 64; saturates. */
-static uint64_t scaled(uint64_t a, uint32_t b, uint32_t bits)
+static inline uint64_t scaled(uint64_t a, uint32_t b, uint32_t bits)
 {
 	const uint64_t low = (a & UINT32_MAX) * b, high = (a >> 32) * b + (low >> 32);
 
