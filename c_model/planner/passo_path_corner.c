@@ -142,7 +142,7 @@ uint64_t passo_path_limit_corner(
 		return passo_path_shaped_corner(path, &corner, unit, item);
 	const uint64_t square = passo_path_corner_square(path, &corner, NULL);
 #ifndef PASSO_WITHOUT_ROUNDING
-	if (!path->unrounded)
+	if (passo_path_is_rounded(path))
 		find_rounding(path, unit, length, &corner.rounding, corner.over, square, item);
 #endif
 	return square;

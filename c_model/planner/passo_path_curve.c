@@ -27,34 +27,15 @@ static uint32_t packed(uint64_t value)
 	return (uint32_t)(value >> right << EXPONENT_BITS) | right;
 }
 
-static uint32_t exponent_of(uint32_t value)
-{
-	return value % (1u << EXPONENT_BITS);
-}
-
 static uint64_t unpacked(uint32_t value)
 {
-	return (uint64_t)(value >> EXPONENT_BITS) << exponent_of(value);
-}
-
-/* a * b / 2^bits, of a product below 2^96 and bits below 64; saturates. */
-static inline uint64_t scaled(uint64_t a, uint32_t b, uint32_t bits)
-{
-	const uint64_t low = (a & UINT32_MAX) * b, high = (a >> 32) * b + (low >> 32);
-
-	if (bits >= 32)
-		return high >> (bits - 32);
-	return high >> 32 >> bits > 0 ? UINT64_MAX : high << (32 - bits) | (low & UINT32_MAX) >> bits;
+	return (uint64_t)(value >> EXPONENT_BITS) << (value % (1u << EXPONENT_BITS));
 }
 
 /* A - B w, not below 0 */
 static uint64_t left_by(uint32_t most, uint32_t bend, uint64_t square)
 {
-	const uint32_t exponent = exponent_of(bend);
-	const uint64_t a = unpacked(most);
-	const uint64_t taken = exponent <= BEND_BITS
-	                         ? scaled(square, bend >> EXPONENT_BITS, BEND_BITS - exponent)
-	                         : passo_mul_shift(square, unpacked(bend), BEND_BITS);
+	const uint64_t a = unpacked(most), taken = passo_mul_shift(square, unpacked(bend), BEND_BITS);
 
 	return a > taken ? a - taken : 0;
 }
@@ -72,7 +53,7 @@ void passo_path_bend(const struct passo_path_planner *path, const int64_t *curva
 
 	if (passo_path_shape(path) != PASSO_SHAPE_LINEAR)
 		return;
-	curve->halved = !path->unrounded;
+	curve->halved = passo_path_is_rounded(path);
 	half = passo_path_halves(item) > 1 ? half : 0;
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
 		const uint32_t share = passo_path_size32(unit[axis]);
@@ -89,27 +70,21 @@ void passo_path_bend(const struct passo_path_planner *path, const int64_t *curva
 	}
 }
 
-/* Of 1 + B l the highest 16 bits, and the bits below them, less 22. */
+/* A curve over a length. */
 struct growth {
-	uint32_t divisor, shift;
+	uint64_t grows;      /* B l, UQ.38 */
+	uint32_t reciprocal; /* of 1 + B l: by a divisor of 16 bits, rounded up, so that it is never too steep */
+	uint32_t shift;
 };
 
 static struct growth growth_over(uint32_t bend, uint64_t length)
 {
-	const struct passo_u128 product = passo_multiply(unpacked(bend), length); /* UQ.80 */
 	const uint64_t grows =
-	    product.high >= UINT64_C(1) << 40 ? UINT64_C(1) << 63 : product.high << 22 | product.low >> 42;
-	const uint64_t sum = (UINT64_C(1) << 38) + grows;
-	const uint32_t right = passo_bits((struct passo_u128){0, sum}) - 16;
+	    passo_path_smaller(passo_mul_shift(unpacked(bend), length, 42), UINT64_C(1) << 63);
+	const uint64_t divisor = (UINT64_C(1) << 38) + grows;
+	const uint32_t right = passo_bits((struct passo_u128){0, divisor}) - 16;
 
-	return (struct growth){(uint32_t)(sum >> right), right - 6};
-}
-
-/* Where more speed leaves less: the slope with what is left at the upper end, (A - B w) / (1 + B l). The
- * divisor is rounded up, so that it is never too steep. */
-static uint64_t less_slope(uint64_t left, uint32_t divisor, uint32_t shift)
-{
-	return scaled(left, UINT32_MAX / (divisor + 1), shift);
+	return (struct growth){grows, UINT32_MAX / ((uint32_t)(divisor >> right) + 1), right - 6};
 }
 
 uint64_t passo_path_slope(
@@ -126,7 +101,8 @@ uint64_t passo_path_slope(
 		const struct growth growth = growth_over(bend, length);
 		const uint64_t left = left_by(curve->slope[axis], bend, low);
 
-		slope = passo_path_smaller(slope, less_slope(left, growth.divisor, growth.shift));
+		/* where more speed leaves less: with what is left at the upper end, (A - B w) / (1 + B l) */
+		slope = passo_path_smaller(slope, passo_mul_shift(left, growth.reciprocal, growth.shift));
 	}
 	return passo_path_larger(slope, 1);
 }
@@ -134,34 +110,36 @@ uint64_t passo_path_slope(
 void passo_path_set_fall(struct passo_path_item *item)
 {
 	struct passo_path_curve *curve = &item->curve;
+	const uint64_t length = (uint64_t)item->substeps << 32;
+	uint64_t fall = UINT64_MAX, loss = 0;
 
 	if (passo_path_halves(item) > 1)
 		return;
 	for (uint32_t axis = 0, axes = curve->hinders[0]; axes > 0; axis++, axes /= 2) {
 		if (axes % 2 == 0)
 			continue;
-		const struct growth growth =
-		    growth_over(curve->bend[0][axis], (uint64_t)item->substeps << 32);
+		const struct growth growth = growth_over(curve->bend[0][axis], length);
+		const uint64_t slope = passo_mul_shift(unpacked(curve->slope[axis]), growth.reciprocal, growth.shift);
 
-		curve->divisor[axis] = (uint16_t)growth.divisor;
-		curve->shift[axis] = (uint8_t)growth.shift;
+		fall = passo_path_smaller(fall, passo_path_gain(passo_path_down(slope), length));
+		loss = passo_path_larger(loss, passo_mul_shift(growth.grows, growth.reciprocal, growth.shift + 6));
 	}
+	curve->fall = packed(fall);
+	curve->loss = (uint32_t)passo_path_smaller(passo_path_down(loss) + 1, UINT32_MAX);
 }
 
 uint64_t passo_path_fall(const struct passo_path_item *item, uint64_t end)
 {
-	const struct passo_path_curve *curve = &item->curve;
-	uint64_t slope = item->slope;
+	const uint64_t slope = passo_path_down(item->slope);
+	const uint64_t high = passo_path_smaller((slope >> 32) * item->substeps, PASSO_PATH_SQUARE_MAX >> 32);
+	const uint64_t straight =
+	    passo_path_smaller((high << 32) + (slope & UINT32_MAX) * item->substeps, PASSO_PATH_SQUARE_MAX);
 
-	for (uint32_t axis = 0, axes = curve->hinders[0]; axes > 0; axis++, axes /= 2) {
-		if (axes % 2 == 0)
-			continue;
-		const uint64_t left = left_by(curve->slope[axis], curve->bend[0][axis], end);
-
-		slope = passo_path_smaller(slope, less_slope(left, curve->divisor[axis], curve->shift[axis]));
-	}
-	return passo_path_smaller(
-	    scaled(passo_path_down(passo_path_larger(slope, 1)), item->substeps, 0), PASSO_PATH_SQUARE_MAX);
+	if (item->curve.hinders[0] == 0)
+		return straight;
+	/* of several axes it takes the least and the greatest loss, so it is never too steep */
+	const uint64_t fall = unpacked(item->curve.fall), lost = ((end >> 32) + 1) * item->curve.loss;
+	return fall > lost ? passo_path_smaller(straight, fall - lost) : 0;
 }
 
 uint64_t passo_path_before(

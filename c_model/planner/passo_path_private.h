@@ -113,6 +113,13 @@ static inline bool passo_path_is_soft(const struct passo_path_planner *path)
 #endif
 }
 
+/* Whether lone corners are rounded at constant speed, and lines bend by halves: not with the setting
+ * `unrounded`, nor in an image without room, PASSO_WITHOUT_ROUNDING. Both plan the same. */
+static inline bool passo_path_is_rounded(const struct passo_path_planner *path)
+{
+	return PASSO_PATH_HALVES > 1 && !path->unrounded;
+}
+
 /* The shape of its ramps. */
 static inline enum passo_shape passo_path_shape(const struct passo_path_planner *path)
 {

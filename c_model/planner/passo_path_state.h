@@ -43,8 +43,8 @@ struct passo_path_curve {
 	uint8_t helps[PASSO_PATH_HALVES];                      /* bit i set: on the way up */
 	uint8_t hinders[PASSO_PATH_HALVES];                    /* on the way down */
 	bool halved;                                           /* each half has its own */
-	uint8_t shift[PASSO_PATH_AXES_MAX];                    /* of the way down all of a line that is not: */
-	uint16_t divisor[PASSO_PATH_AXES_MAX];                 /* what the bend makes of it */
+	uint32_t fall; /* of a line that is not: change of the square from its start down to 0, by its curve */
+	uint32_t loss; /* UQ0.32: what a square at its end takes of that; no packed number */
 };
 
 /* A line of the path, private. Squares are those of velocities, UQ0.64 (substeps per clock)^2. */
