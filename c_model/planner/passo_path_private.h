@@ -39,6 +39,7 @@ struct passo_path_part {
 	uint64_t length; /* UQ32.32 substeps */
 	uint64_t square; /* at its end */
 	uint64_t slope;
+	bool early; /* a way up that ends where the path has to come down for the end of the known lines */
 };
 
 /* Most parts of a line. */

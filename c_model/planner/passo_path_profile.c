@@ -25,7 +25,7 @@ static unsigned put(struct passo_path_part *parts, unsigned count, enum passo_pa
 {
 	if (length == 0)
 		return count;
-	parts[count] = (struct passo_path_part){kind, length, square, slope};
+	parts[count] = (struct passo_path_part){kind, length, square, slope, .early = false};
 	return count + 1;
 }
 
@@ -75,6 +75,8 @@ static unsigned half_parts(const struct passo_path_item *item, unsigned half, ui
 		falling = passo_path_smaller(falling, left - rising);
 	}
 	unsigned count = put(parts, 0, PASSO_PATH_UP, rising, peak, up);
+	if (count > 0)
+		parts[0].early = peak < top;
 	count = put(parts, count, PASSO_PATH_FLAT, left - rising - falling, peak, up);
 	return put(parts, count, PASSO_PATH_DOWN, falling, end, steepest);
 }
