@@ -39,6 +39,7 @@ class Motion:
     along: np.ndarray  # of each cell: highest acceleration along the path, without curvature
     top: np.ndarray  # of each cell: highest square
     bent: np.ndarray  # of each cell: it has a curvature
+    most: np.ndarray  # of each node: highest square
 
     @property
     def times(self) -> np.ndarray:
@@ -102,12 +103,18 @@ def _feeds(path: Rounded) -> tuple[np.ndarray, np.ndarray]:
 
 def fastest(lines: Sequence[Line], settings: PathSettings, begin: Sequence[float] | None = None) -> Motion:
     """The fastest motion from rest to rest."""
+    return fastest_at(lines, settings, STEEPER[settings.profile], begin)
+
+
+def fastest_at(
+    lines: Sequence[Line], settings: PathSettings, steeper: float, begin: Sequence[float] | None = None
+) -> Motion:
+    """The same with ramps that are so much steeper in the middle."""
     path = rounded(lines, settings, begin)
     speed, acceleration, jump = (
         np.array([float(getattr(axis, name)) for axis in settings.axes])
         for name in ("speed", "acceleration", "jump")
     )
-    steeper = STEEPER[settings.profile]
     marks, feeds = _feeds(path)
     place = _grid(path, marks)
     size, middle = np.diff(place), (place[1:] + place[:-1]) / 2
@@ -128,7 +135,7 @@ def fastest(lines: Sequence[Line], settings: PathSettings, begin: Sequence[float
     np.minimum.at(most, node, jumping.min(axis=1) ** 2)
     stage = _Stage(path, place, size, _corner_at(path, middle), along[line] / steeper, most)
     square = stage.solve(acceleration, steeper)
-    return Motion(path, place, square, stage.along, top, stage.corner >= 0)
+    return Motion(path, place, square, stage.along, top, stage.corner >= 0, most)
 
 
 @dataclass(frozen=True)

@@ -149,3 +149,49 @@ def test_the_parts_of_a_curve_add_up() -> None:
     cut = [(c[c < 0.1 * HZ], p[c < 0.1 * HZ]) for c, p in axes]
     found = shares([c for c, _ in cut], [p for _, p in cut], settings, names=("acceleration",))
     assert max(share.share for share in found) > 1.3
+
+
+def turned_round(acceleration: float, phase: float) -> tuple[np.ndarray, np.ndarray]:
+    """Up and slower to 1 mm/s, back at once at 20 mm/s, faster, to rest; a step every 125 um at that speed."""
+    part = 20 / acceleration
+    times = np.cumsum([0, 0.01, 21 / acceleration, 0.03 + phase, part, 1e-9, part, 0.03, 2 * part, 0.05])
+    train = integral(times, np.array([0, 0, 21, 21, 1, -20, -40, -40, 0, 0]))
+    return steps(train, float(times[-1]), 400)
+
+
+def waited(clocks: np.ndarray, positions: np.ndarray, turning: int) -> np.ndarray:
+    """When the steps leave pins that take so long to turn DIR; those behind follow a microsecond apart."""
+    left, way = clocks.copy(), np.diff(positions, prepend=0)
+    for k in range(1, len(left)):
+        left[k] = max(left[k], left[k - 1] + (turning if way[k] != way[k - 1] else HZ // 1_000_000))
+    return left
+
+
+def test_steps_that_wait_for_dir_are_no_acceleration() -> None:
+    """Late steps are known to be late; an axis that asks for too much is seen all the same."""
+    machine, turning = replace(ONE, axes=(replace(AXIS, jump=21),)), HZ // 1000
+
+    def greatest(factor: float, known: int) -> float:
+        found = 0.0
+        for phase in np.arange(0, 120e-6, 10e-6).tolist():  # one of them waits for nearly all of it
+            clocks, positions = turned_round(1000 * factor, phase)
+            left = waited(clocks, positions, turning)
+            (share,) = shares([left], [positions], machine, names=("acceleration",), turning=known)
+            found = max(found, share.share)
+        return found
+
+    assert greatest(1.0, 0) > 1.1
+    assert 0.95 < greatest(1.0, turning) < 1.01
+    assert greatest(1.06, turning) > 1.03
+
+
+def test_steps_that_did_not_wait_hide_nothing() -> None:
+    """A long time to turn DIR changes nothing where the steps of both directions are farther apart."""
+    times = np.cumsum([0, 0.01, 0.06, 0.1, 0.12, 0.1, 0.06, 0.05])
+    train = integral(times, np.array([0, 0, 60, 60, -60, -60, 0, 0])), float(times[-1])
+    clocks, positions = steps(*train, 400)
+    own = [
+        shares([clocks], [positions], ONE, names=("acceleration",), turning=turning)
+        for turning in (0, HZ // 10_000)
+    ]
+    assert own[0] == own[1]

@@ -278,7 +278,7 @@ def test_a_reversal_that_the_pins_do_not_allow_is_refused(
         limits = text.replace("US", "20us").replace("acceleration", f"jump = {jump}\nacceleration")
         machine.write_text(f"junction_deviation = {deviation}\n{limits}")
         ended = cli.main(run)
-        assert ended in ((0, 1) if allowed else (2,))  # 1: what a step waits for DIR is seen as acceleration
+        assert ended == (0 if allowed else 2)
         assert "OVERRUN" not in capsys.readouterr().err
 
 

@@ -56,7 +56,6 @@ static enum passo_plan_error add(struct passo_path_planner *path, const struct p
 	path->feed = move->feed;
 	path->wanted = item->feed;
 	path->bulge = 0;
-	path->settled = path->final;
 	passo_path_pace_line(path, item);
 	passo_path_limit(path, path->added);
 	if (!item->rest)
@@ -66,21 +65,25 @@ static enum passo_plan_error add(struct passo_path_planner *path, const struct p
 	path->rest = false;
 	path->dwell = 0;
 	path->added++;
-	passo_path_look_back(path);
+	path->open = true;
+	path->waits = false;
+	if (passo_path_clocks(item) >= (uint64_t)LINES_MERGED * path->line_clocks)
+		passo_path_close(path); /* too long for that to be of use */
 	return PASSO_PLAN_OK;
 }
 
-/* Whether the newest line can still become another one, and is so short that this is of use. */
+void passo_path_close(struct passo_path_planner *path)
+{
+	if (path->open)
+		passo_path_look_back(path);
+	path->open = false;
+}
+
+/* Whether the newest line can still become another one. */
 static bool is_open(const struct passo_path_planner *path, const struct passo_path_move *move)
 {
-	const uint32_t index = path->added - 1;
-
-	if (path->rest || path->added == 0 || path->sent == path->added || path->planned == path->added
-	    || (path->planned == index && (!path->at_rest || path->started)))
-		return false;
-	const struct passo_path_item *item = newest(path);
-	return !item->last && item->output == move->output && path->feed == move->feed
-	    && passo_path_clocks(item) < (uint64_t)LINES_MERGED * path->line_clocks;
+	return path->open && !path->rest && (path->planned + 1 != path->added || !path->started)
+	    && newest(path)->output == move->output && path->feed == move->feed;
 }
 
 /* Replaces the newest line by one to a new target, if that is not farther off than the tolerance. */
@@ -92,11 +95,10 @@ static bool merge(struct passo_path_planner *path, const struct passo_path_move 
 	if (passo_path_off(path, move->target, &bulge) >= path->tolerance)
 		return false;
 	const struct passo_path_place at = path->at;
-	const uint32_t dwell = path->dwell, final = path->final;
+	const uint32_t dwell = path->dwell;
 
 	path->at = path->before;
 	path->added--;
-	path->final = path->settled; /* the longer line may be faster */
 	path->rest = path->begins;
 	path->dwell = passo_path_item(path, path->added)->dwell;
 	if (add(path, move) == PASSO_PLAN_OK) {
@@ -104,7 +106,6 @@ static bool merge(struct passo_path_planner *path, const struct passo_path_move 
 		return true;
 	}
 	path->added++;
-	path->final = final;
 	path->at = at;
 	path->rest = false;
 	path->dwell = dwell;
@@ -115,7 +116,10 @@ enum passo_plan_error passo_path_add(struct passo_path_planner *path, const stru
 {
 	if (merge(path, move))
 		return PASSO_PLAN_OK;
-	return passo_path_room(path) > 0 ? add(path, move) : PASSO_PLAN_PATH_FULL;
+	if (passo_path_room(path) == 0)
+		return PASSO_PLAN_PATH_FULL;
+	passo_path_close(path);
+	return add(path, move);
 }
 
 void passo_path_tolerance(struct passo_path_planner *path, uint64_t tolerance)
@@ -129,6 +133,7 @@ void passo_path_tolerance(struct passo_path_planner *path, uint64_t tolerance)
 
 void passo_path_dwell(struct passo_path_planner *path, uint64_t clocks)
 {
+	passo_path_close(path);
 	const uint32_t round = (UINT32_C(1) << path->machine.tick_log2) - 1u;
 	const uint64_t ticks = path->dwell + ((clocks >> path->machine.tick_log2) + ((clocks & round) > 0));
 
@@ -178,10 +183,9 @@ static uint64_t reach_of(const struct passo_path_planner *path, uint32_t index,
 	const uint64_t behind = passo_path_flat(path, index + 1, index, end);
 	const uint64_t flat =
 	    passo_path_smaller(behind + passo_path_flat(path, index, index, item->corner), length);
-	uint64_t slope;
 	const uint64_t most = flat == 0 && passo_path_halves(item) == 1
 	                        ? end + passo_path_fall(item, end)
-	                        : passo_path_before(item, end, length - flat, behind, &slope);
+	                        : passo_path_before(item, end, length - flat, behind);
 	const uint64_t reach = passo_path_smaller(item->corner, most);
 
 	/* what was possible with fewer lines still is */

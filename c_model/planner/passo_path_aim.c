@@ -23,7 +23,7 @@ uint64_t passo_path_ticks_to(const struct passo_path_planner *path, const struct
 
 bool passo_path_is_held_back(const struct passo_path_planner *path, uint32_t index)
 {
-	return index + 1 == path->added && !passo_path_item(path, index)->last;
+	return index + 1 + path->open >= path->added && !passo_path_item(path, index)->last;
 }
 
 /* Whether a part may be made already. */

@@ -125,8 +125,8 @@ uint64_t passo_path_limit_corner(
 		corner.change[axis] = change;
 		corner.turn += (uint64_t)change * change;
 	}
-	item->arc = corner.turn < 4;
 	if (corner.turn < 4) {
+		item->arc = PASSO_PATH_ARC_BEFORE | PASSO_PATH_ARC_BEHIND;
 		bend_lines(path, unit, length, &corner.rounding, item);
 		return PASSO_PATH_SQUARE_MAX;
 	}
@@ -137,7 +137,9 @@ uint64_t passo_path_limit_corner(
 	corner.bends_before = corner.rounding.before >= path->at.length / 2;
 	corner.bends_behind = corner.rounding.behind >= length / 2;
 	bend_lines(path, unit, length, &corner.rounding, item);
-	item->arc = both < arc;
+	if (both < arc)
+		item->arc = (corner.bends_before ? PASSO_PATH_ARC_BEFORE : 0)
+		          | (corner.bends_behind ? PASSO_PATH_ARC_BEHIND : 0);
 	if (passo_path_shape(path) != PASSO_SHAPE_LINEAR)
 		return passo_path_shaped_corner(path, &corner, unit, item);
 	const uint64_t square = passo_path_corner_square(path, &corner, NULL);

@@ -143,20 +143,22 @@ uint64_t passo_path_fall(const struct passo_path_item *item, uint64_t end)
 }
 
 uint64_t passo_path_before(
-    const struct passo_path_item *item, uint64_t end, uint64_t length, uint64_t behind, uint64_t *slope)
+    const struct passo_path_item *item, uint64_t end, uint64_t length, uint64_t behind)
 {
 	const unsigned halves = passo_path_halves(item);
 	const uint64_t half = (uint64_t)item->substeps << 31;
-	const uint64_t second = halves > 1 ? passo_path_smaller(half > behind ? half - behind : 0, length) : length;
-	const uint64_t slower = passo_path_down(passo_path_slope(item, halves - 1, false, end, second));
-	uint64_t square = end + passo_path_gain(slower, second);
+	const uint64_t second =
+	    halves > 1 ? passo_path_smaller(half > behind ? half - behind : 0, length) : length;
+	uint64_t square = end
+	    + passo_path_gain(
+		passo_path_down(passo_path_slope(item, halves - 1, false, end, second)), second);
 
-	*slope = slower;
 	if (second < length) {
+		const uint64_t first = length - second;
+
 		square = passo_path_smaller(square, passo_path_larger(item->top, end));
-		*slope = passo_path_down(passo_path_slope(item, 0, false, square, length - second));
-		square += passo_path_gain(*slope, length - second);
-		*slope = passo_path_smaller(*slope, slower);
+		square += passo_path_gain(
+		    passo_path_down(passo_path_slope(item, 0, false, square, first)), first);
 	}
 	return square;
 }

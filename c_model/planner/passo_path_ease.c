@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Shaped ramps in curves. The limit of an axis is that of its acceleration in all, and a shaped ramp is
- * steepest in its middle, wherever on the curve that is. So a curve that needs much has lines of half the
- * slope, and is as fast as what these leave: 0.93 of its speed where an axis has all of it, or more. One that
- * needs less, at the speed of its lines, is left alone.
+ * steepest in its middle, wherever on the curve that is. So by what a curve needs across it at the speed of its
+ * lines, these have all of the slope, three quarters or half, and the curve is as fast as that leaves: 0.93 of
+ * its speed with half, or more. One slope for the whole curve, so that a ramp may pass all of it.
  */
 #include "passo_path_private.h"
 
@@ -15,6 +15,8 @@
 /* On an arc at a speed v, of a radius r, the ramp that is steepest at t takes 3 v t / r of the jerk: with half
  * of it along the arc, 0.7 are left. UQ0.16. */
 #define ACROSS 15463u
+/* An axis with less than this part of the direction and of its change is none of the curve. */
+#define SMALL 8u
 
 /* What the ramps of the curved lines beside a corner leave of the acceleration of an axis. */
 static uint64_t left_of(const struct passo_path_planner *path, const struct passo_path_corner *corner,
@@ -84,48 +86,67 @@ static uint64_t soft_square(uint64_t radius, uint64_t jerk)
 	return passo_path_speed_square(velocity);
 }
 
-static void ease(const struct passo_path_planner *path, struct passo_path_item *item, uint64_t most)
+/* Quarters of the slope that a line lacks. */
+static void ease(const struct passo_path_planner *path, struct passo_path_item *item, uint32_t quarters,
+    uint64_t most)
 {
-	if (!item->eased) {
-		item->eased = true;
-		item->slope /= 2;
+	if (quarters > item->eased) {
+		const uint32_t left = 4u - quarters, had = 4u - item->eased;
+
+		item->slope = passo_path_larger(passo_mul_div(item->slope, left, had), 1);
 #ifndef PASSO_WITHOUT_JERK_PATHS
-		item->jerk = passo_path_larger(item->jerk / 2, 1);
+		item->jerk = passo_path_larger(passo_mul_div(item->jerk, left, had), 1);
 #endif
+		item->eased = (uint8_t)quarters;
 	}
 	if (passo_path_is_soft(path))
-		item->slope = passo_path_smaller(item->slope, most);
-	item->slope = passo_path_larger(item->slope, 1);
+		item->slope = passo_path_larger(passo_path_smaller(item->slope, most), 1);
+}
+
+/* What the lines of a curve lack, by the acceleration across them at a square. */
+static uint32_t lacking(const struct passo_path_planner *path, const struct passo_path_corner *corner,
+    const int32_t *unit, uint64_t square)
+{
+	const uint64_t turn = passo_isqrt64(corner->turn);
+	const uint64_t across = passo_mul_div(square, turn, corner->over);
+	uint64_t weakest = PASSO_PATH_SQUARE_MAX;
+
+	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
+		if (passo_path_size32(unit[axis]) >= PASSO_PATH_ONE / SMALL || corner->change[axis] >= turn / SMALL)
+			weakest = passo_path_smaller(weakest, path->axis[axis].acceleration);
+	}
+	return across <= weakest / 64 * 11 ? 0 : across <= weakest / 64 * 43 ? 1 : 2;
 }
 
 uint64_t passo_path_shaped_corner(const struct passo_path_planner *path,
     const struct passo_path_corner *corner, const int32_t *unit, struct passo_path_item *item)
 {
+	static const uint32_t JERK_PARTS[] = {JERK_EXCESS, 4, 2};
 	struct passo_path_item *last = passo_path_item(path, path->added - 1);
 	const bool soft = passo_path_is_soft(path), bends = corner->bends_before || corner->bends_behind;
 	const uint64_t radius = radius_of(corner), jerk = jerk_of(path, corner);
 	const uint64_t needed = passo_path_larger(
 	    corner->bends_before ? wanted(last) : 0, corner->bends_behind ? wanted(item) : 0);
-	uint64_t square = square_by(path, corner, unit, item), most = UINT64_MAX;
+	uint32_t quarters = bends ? lacking(path, corner, unit, needed) : 0;
+	uint64_t most = UINT64_MAX, fastest = UINT64_MAX;
 
-	if (soft)
-		square = passo_path_smaller(square, soft_square(radius, bends ? jerk / JERK_EXCESS : jerk));
-	if (!bends || square >= needed)
-		return square;
-	if (soft) {
-		const uint64_t fastest = soft_square(radius, jerk / 2);
+	if (soft && bends) {
+		while (quarters < 2 && soft_square(radius, jerk / JERK_PARTS[quarters]) < needed)
+			quarters++;
+		fastest = soft_square(radius, jerk / JERK_PARTS[quarters]);
 		const uint64_t velocity = passo_isqrt64(passo_path_smaller(fastest, needed));
 		const uint64_t along = passo_mul_div(jerk, radius << 8, passo_path_larger(velocity, 1));
 
 		most = passo_mul_div(2 * passo_mul_div(along, ACROSS, UINT32_C(1) << 16), path->gentleness,
 		    UINT32_C(1) << 16);
+	} else if (soft) {
+		fastest = soft_square(radius, jerk);
 	}
 	if (corner->bends_before)
-		ease(path, last, most);
+		ease(path, last, quarters, most);
 	if (corner->bends_behind)
-		ease(path, item, most);
-	square = square_by(path, corner, unit, item);
-	return soft ? passo_path_smaller(square, soft_square(radius, jerk / 2)) : square;
+		ease(path, item, quarters, most);
+	return passo_path_smaller(square_by(path, corner, unit, item), fastest);
 }
 
 #endif

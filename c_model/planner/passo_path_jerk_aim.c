@@ -20,6 +20,7 @@ static void narrow(struct passo_path_law *law, uint64_t slope, uint64_t jerk)
  */
 struct choice {
 	uint64_t top;
+	struct passo_path_law law; /* of the ramps up to there and down again */
 	uint64_t level, length, end;
 	bool found, rest;
 	/* what further lines may change */
@@ -47,8 +48,10 @@ static void consider(const struct passo_path_planner *path, const struct reach *
 	const uint64_t paused = passo_path_length_in(path, 2 * reach->lowest, reach->pause);
 	const uint64_t length = reach->length - passo_path_smaller(paused, reach->length);
 
-	if (better <= reach->lowest && passo_path_detour(path, &reach->law, from, better, end) <= length)
+	if (better <= reach->lowest && passo_path_detour(path, &reach->law, from, better, end) <= length) {
 		choice->top = passo_path_highest(path, &reach->law, from, end, length, reach->lowest);
+		choice->law = reach->law;
+	}
 	if (choice->found && level <= choice->level)
 		return;
 	choice->found = true;
@@ -146,7 +149,7 @@ struct passo_path_aim passo_path_soft_aim(const struct passo_path_planner *path,
 	struct reach reach;
 	const uint32_t least = passo_path_pace_need(path, 0, 1) + TICKS_MIN;
 	const struct choice choice = choose(path, least, &reach);
-	const uint64_t up = passo_path_ramp_length(path, &reach.law, from, choice.top);
+	const uint64_t up = choice.top > from ? passo_path_ramp_length(path, &choice.law, from, choice.top) : 0;
 	struct passo_path_aim aim;
 
 	if (!choice.found || (!needed && !choice.top_settled))

@@ -215,7 +215,7 @@ void passo_path_restart(struct passo_path_planner *path, const int32_t *position
 	path->offset = 0;
 	path->velocity = 0;
 	path->at_rest = true;
-	path->started = path->jump = path->last = path->lines_end = path->ramps_end = false;
+	path->started = path->jump = path->last = path->lines_end = path->ramps_end = path->open = false;
 	path->at.line_credit = 0;
 	passo_path_pace_begin(path);
 }

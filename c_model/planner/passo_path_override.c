@@ -25,13 +25,14 @@ void passo_path_limit(struct passo_path_planner *path, uint32_t index)
 	item->corner = passo_path_smaller(item->corner, before->top);
 	/* an arc is limited along its lines, not only at its corners; by their bends, not by the feeds that
 	 * meet there */
-	if (before->arc && item->arc)
+	if ((before->arc & PASSO_PATH_ARC_BEHIND) > 0 && (item->arc & PASSO_PATH_ARC_BEFORE) > 0)
 		before->top = passo_path_smaller(before->top, passo_path_larger(before->bend, item->bend));
 }
 
 /* Plans anew what the ramps have not passed. */
 static void plan_anew(struct passo_path_planner *path)
 {
+	path->open = false;
 	for (uint32_t index = path->planned; index < path->added; index++)
 		passo_path_limit(path, index);
 	path->final = path->planned;

@@ -27,7 +27,7 @@ void passo_path_pace(
 	const uint32_t together = (uint32_t)passo_path_larger(passo_path_smaller(queued, known), 1);
 	const uint64_t ramps = 3 * together * poll / passo_path_larger(queued, 1) + 1;
 	const uint64_t line = passo_path_larger(
-	    2 * poll / passo_path_larger(lines_sent, 1), 3 * poll / passo_path_larger(lines_queued, 1));
+	    2 * poll / passo_path_larger(lines_sent, 1), 4 * poll / passo_path_larger(lines_queued, 1));
 
 	path->waits = false;
 	path->paced = together;
@@ -84,7 +84,7 @@ uint64_t passo_path_length_in(const struct passo_path_planner *path, uint64_t sp
 /* What is before the end of the ramps. */
 struct ahead {
 	uint64_t square; /* the lowest that is allowed */
-	uint64_t slope;  /* the lowest of the lines */
+	uint64_t slope;  /* the lowest of the lines, whatever their curves */
 	uint64_t up;     /* the steepest that a ramp up over them may be */
 	uint64_t rest;   /* length to the end of the line at which the path rests; 0: it does not */
 	uint64_t end;    /* the square there */
@@ -112,14 +112,14 @@ static struct ahead look_ahead(
 		if (index == path->planned)
 			passed -= (uint64_t)path->offset;
 		const uint64_t beyond = passed > length ? passed - length : 0;
-		uint64_t slope;
-		const uint64_t before = passo_path_before(item, end, beyond, 0, &slope);
+		const uint64_t before = passo_path_before(item, end, beyond, 0);
 
 		ahead.open = ahead.open || !passo_path_is_settled(path, index);
-		ahead.slope = passo_path_smaller(ahead.slope, slope);
+		ahead.slope = passo_path_smaller(ahead.slope, item->slope);
 		for (unsigned half = 0; half < passo_path_halves(item); half++)
-			ahead.up = passo_path_smaller(ahead.up,
-			    passo_path_slope(item, half, true, passo_path_square_of(path->velocity), passed));
+			ahead.up = passo_path_smaller(
+			    ahead.up, passo_path_slope(item, half, true, passo_path_square_of(path->velocity),
+					  passo_path_smaller(passed, length)));
 		ahead.square = passo_path_smaller(ahead.square, item->top);
 		if (beyond > 0) {
 			ahead.square = passo_path_smaller(ahead.square, before);

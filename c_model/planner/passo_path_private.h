@@ -45,6 +45,9 @@ struct passo_path_part {
 /* Most parts of a line. */
 #define PASSO_PATH_PARTS 8u
 
+#define PASSO_PATH_ARC_BEFORE 1u
+#define PASSO_PATH_ARC_BEHIND 2u
+
 /* What the next ramp aims at. */
 struct passo_path_aim {
 	enum passo_path_kind kind;
@@ -167,9 +170,9 @@ static inline uint64_t passo_path_down(uint64_t slope)
 }
 
 /* The highest square, within an item, from which it falls to the one at its end over a length that ends so far
- * before that; and the slope there, at least. */
+ * before that. */
 uint64_t passo_path_before(
-    const struct passo_path_item *item, uint64_t end, uint64_t length, uint64_t behind, uint64_t *slope);
+    const struct passo_path_item *item, uint64_t end, uint64_t length, uint64_t behind);
 
 /* What a line has by the corner at its start; its end may become another one, with a longer line. */
 static inline void passo_path_keep_start(const struct passo_path_item *item, struct passo_path_place *at)
@@ -268,7 +271,8 @@ uint64_t passo_path_ticks_over(const struct passo_path_planner *path, uint64_t l
 /* Length, UQ32.32 substeps, in so many ticks at the mean of two velocities, whose sum is given. */
 uint64_t passo_path_length_in(const struct passo_path_planner *path, uint64_t speeds, uint64_t ticks);
 
-/* The newest line is handed out when the next one is known, or when it is the last. */
+/* The newest line is entered when the next one is known, or when it is the last; the one before it when it cannot
+ * become another one. */
 bool passo_path_is_held_back(const struct passo_path_planner *path, uint32_t index);
 
 /* The path rests at the end of this item, as far as is known. */
@@ -294,6 +298,9 @@ uint64_t passo_path_flat(
 
 /* Updates `reach` after a line has been added. */
 void passo_path_look_back(struct passo_path_planner *path);
+
+/* The newest line stays as it is. */
+void passo_path_close(struct passo_path_planner *path);
 
 /* The parts of the profile from a point of an item to its end, of which `left` (UQ32.32 substeps) are left:
  * at most PASSO_PATH_PARTS. With `level` the path does not speed up for less than the line. */

@@ -88,13 +88,13 @@ static unsigned middle_parts(const struct passo_path_planner *path, uint32_t ind
 	const struct passo_path_item *item = passo_path_item(path, index);
 	const uint64_t end = passo_path_end_square(path, index), half = (uint64_t)item->substeps << 31;
 	const uint64_t second = half > behind ? half - behind : 0;
-	uint64_t top = item->top, slope;
+	uint64_t top = item->top;
 	unsigned count = 0;
 
 	if (level && !passo_path_is_settled(path, index))
 		top = passo_path_smaller(top, passo_path_larger(end, square));
 	if (passo_path_halves(item) > 1 && left > second) {
-		const uint64_t middle = passo_path_before(item, end, second, behind, &slope);
+		const uint64_t middle = passo_path_before(item, end, second, behind);
 
 		count = half_parts(item, 0, left - second, square, top,
 		    passo_path_smaller(middle, passo_path_larger(item->top, end)), parts);

@@ -41,7 +41,7 @@ static void come_to_rest(struct passo_path_planner *path, bool *last)
 {
 	const struct passo_path_item *item = passo_path_item(path, path->planned);
 
-	if (passo_path_is_held_back(path, path->planned))
+	if (path->planned + 1 == path->added && !item->last)
 		passo_path_end(path);
 	*last = item->last;
 	path->offset = item->last ? 0 : path->offset - ((int64_t)item->substeps << 32);
@@ -106,7 +106,8 @@ static bool start(struct passo_path_planner *path, struct passo_ramp *ramp)
 	}
 	path->started = true;
 	path->at_rest = false;
-	ramp->velocity_end = passo_path_velocity_of(passo_path_smaller(item->reach, item->top));
+	if (item->rest) /* not where the path has come to rest for want of lines that are known now */
+		ramp->velocity_end = passo_path_velocity_of(passo_path_smaller(item->reach, item->top));
 	path->velocity = ramp->velocity_end;
 	return ramp->velocity_end > 0;
 }
@@ -145,6 +146,8 @@ static bool next_ramp(struct passo_path_planner *path, uint32_t held, struct pas
 		return false;
 	if (aim.open
 	    && (aim.length == 0 || passo_path_ticks_to(path, &aim) < path->reserve / RAMPS_PER_RESERVE)) {
+		if (!is_full)
+			passo_path_close(path);
 		if (!is_full && passo_path_is_held_back(path, path->planned))
 			passo_path_end(path);
 		aim = passo_path_choose_aim(path, is_full ? PASSO_PATH_FULL : PASSO_PATH_DRY);

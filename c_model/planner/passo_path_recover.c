@@ -77,14 +77,14 @@ static void begin_at(struct passo_path_planner *path, uint32_t index)
 	struct passo_path_item *item = passo_path_item(path, index);
 
 	item->rest = true;
-	item->arc = false;
+	item->arc = 0;
 	item->dwell = 0;
 	item->corner = (uint64_t)item->halt * item->halt;
 	path->sent = path->planned = path->final = index;
 	path->offset = 0;
 	path->velocity = 0;
 	path->at_rest = true;
-	path->started = path->jump = path->lines_end = path->ramps_end = false;
+	path->started = path->jump = path->lines_end = path->ramps_end = path->open = false;
 	path->anew = true;
 	passo_path_pace_begin(path);
 	passo_path_look_back(path);

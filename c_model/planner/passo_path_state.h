@@ -65,7 +65,8 @@ struct passo_path_item {
 	uint8_t directions; /* bit i set: axis i counts down */
 	bool rest;          /* the path rests before the line */
 	bool last;          /* the motion ends with the line */
-	bool arc;           /* the corner at its start is limited as part of an arc */
+	uint8_t arc;        /* the corner at its start is a part of an arc with half the line before (bit 0),
+	                       and with half of this one (bit 1) */
 	bool rapid;         /* its feed is PASSO_PATH_RAPID */
 #ifndef PASSO_WITHOUT_ROUNDING
 	uint32_t turn;   /* substeps on either side over which a lone corner at its start may be rounded */
@@ -73,7 +74,7 @@ struct passo_path_item {
 	uint16_t needed; /* UQ1.15: what the rounding needs of that axis at the square `bend` */
 #endif
 #ifndef PASSO_LINEAR_PATHS
-	bool eased; /* in a curve: half of the slope is for the way along it */
+	uint8_t eased; /* in a curve: quarters of the slope that are for the way across */
 #endif
 #ifndef PASSO_WITHOUT_JERK_PATHS
 	uint64_t jerk; /* profile jerk: change of the velocity by the square of the time that it takes at
@@ -99,7 +100,7 @@ struct passo_path_place {
 	uint64_t length;                        /* of the last line, UQ32.16 substeps */
 #ifndef PASSO_LINEAR_PATHS
 	uint64_t slope, jerk; /* of the last line, by the corner at its start */
-	bool eased;           /* the same */
+	uint8_t eased;        /* the same */
 #endif
 	int32_t carry;        /* Q16: substeps that rounding has withheld from the lines so far */
 	uint32_t line_credit; /* clocks that the last lines have left, see passo_path_pace.c */
@@ -124,7 +125,7 @@ struct passo_path_planner {
 	uint64_t feed;   /* of the last line, as it was given */
 	uint32_t wanted; /* the same, UQ0.32 */
 	bool begins;   /* the path rested before the last line */
-	uint32_t settled; /* `final` before the last line */
+	bool open;     /* the last line may still become a longer one: no ramp relies on it */
 	uint32_t substeps_per_mm;
 	uint32_t dwell; /* ticks before the next line */
 	bool rest;      /* before the next line */

@@ -14,7 +14,11 @@ of the limit, `w = sqrt(8 e / a)`, and `j` likewise, to where it hides a hundred
 to where it hides a thousandth. Times are an eighth of the shortest window apart. `e` is
 
 * half a step, since steps are rounded; a place between two steps is between their places;
-* where the path has a corner within the window: by how much it may be rounded there, along the axis.
+* where the path has a corner within the window: by how much it may be rounded there, along the axis;
+
+Where a step of the other direction left as soon as the pins allow, it may have been asked for earlier by as
+long as they take to change DIR, with those behind it: at these times the axis may be where it is so much
+later.
 
 An axis with a start-stop speed may also jump by that, once in a window.
 """
@@ -36,6 +40,7 @@ VISIBLE_SPEED, HIDDEN_SPEED = 0.008, 0.001
 SAMPLES = 8  # in the shortest window
 OCTAVE = 2  # windows
 MOST_SAMPLES = 1 << 23
+NEARLY = 1.01  # of the time that a change of DIR takes: a step that left later than that did not wait
 
 
 @dataclass(frozen=True)
@@ -102,8 +107,12 @@ def shares(
     settings: PathSettings,
     marks: Marks | None = None,
     names: Sequence[str] = NAMES,
+    turning: int = 0,
 ) -> list[Share]:
-    """The greatest share of each limit of each axis, by the clocks of its steps and the positions after."""
+    """The greatest share of each limit of each axis, by the clocks of its steps and the positions after.
+
+    `turning`: clocks by which a step may leave late where DIR changes, those of all its intervals.
+    """
     known, found = marks or Marks.none(len(settings.axes)), []
     end = max((float(own[-1]) for own in clocks if len(own)), default=0.0) / settings.clock_hz
     for number, axis in enumerate(settings.axes):
@@ -112,7 +121,7 @@ def shares(
         for order, name in enumerate(NAMES, 1):
             limit = float(getattr(axis, name))
             if name in names and limit > 0 and (name != "jerk" or settings.profile == "jerk"):
-                found.append(_greatest(place, off, axis, number, order, end))
+                found.append(_greatest(place, off, turning / settings.clock_hz, axis, number, order, end))
     return found
 
 
@@ -144,6 +153,17 @@ class Places:
     def at(self, times: np.ndarray) -> np.ndarray:
         """Places at these times."""
         return np.interp(times, self.time, self.place)
+
+    def late(self, times: np.ndarray, turning: float) -> np.ndarray:
+        """How far the axis is late at these times, at most: what it moves while DIR changes."""
+        stands = np.flatnonzero(np.diff(self.place[1:-1]) == 0) + 2  # steps back, over the same place
+        first = self.time[stands]
+        first = first[first - self.time[stands - 1] <= turning * NEARLY]
+        if turning <= 0 or not len(first):
+            return np.zeros(len(times))
+        behind = np.searchsorted(first, times - turning)
+        near = first[np.minimum(behind, len(first) - 1)] <= times + turning
+        return np.where((behind < len(first)) & near, np.abs(self.at(times + turning) - self.at(times)), 0)
 
 
 @dataclass(frozen=True)
@@ -189,7 +209,9 @@ def windows(order: int, limit: float, rounding: float, off: float) -> tuple[floa
     return first ** (1 / order), last ** (1 / order)
 
 
-def _greatest(place: Places, off: Most, axis: PathAxis, number: int, order: int, end: float) -> Share:
+def _greatest(
+    place: Places, off: Most, turning: float, axis: PathAxis, number: int, order: int, end: float
+) -> Share:
     limit, jump = float(getattr(axis, NAMES[order - 1])), float(axis.jump) if order > 1 else 0.0
     highest = off.highest if order > 1 else 0.0
     first, last = windows(order, limit, place.rounding, highest)
@@ -197,18 +219,18 @@ def _greatest(place: Places, off: Most, axis: PathAxis, number: int, order: int,
     sizes = np.round(SAMPLES * 2.0 ** (np.arange(count) / OCTAVE)).astype(int)
     gap = max(first / SAMPLES, (end + 2 * order * last) / MOST_SAMPLES)
     times = np.arange(-order * last, end + order * last + gap, gap)
-    places = place.at(times)
+    places, late = place.at(times), place.late(times, turning)
     best = Share(NAMES[order - 1], number)
     for size in sizes.tolist():
-        made, window = places, size * gap
+        made, lateness, window = places, late, size * gap
         for _ in range(order):
-            made = made[size:] - made[:-size]
+            made, lateness = made[size:] - made[:-size], lateness[size:] + lateness[:-size]
         if not len(made):
             break
         hidden: np.ndarray | float = place.rounding
         if highest > 0:
             hidden = hidden + off.between(times[: len(made)], times[order * size :])
-        needed = np.abs(made) - 2**order * hidden - jump * window
+        needed = np.abs(made) - 2**order * hidden - lateness - jump * window
         k = int(np.argmax(needed))
         share = float(needed[k]) / (limit * window**order)
         if share > best.share:

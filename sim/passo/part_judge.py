@@ -26,7 +26,8 @@ def shares_of(played: Played) -> list[Share]:
     settings = played.machine.settings
     lines = path_of(played.part, played.machine)
     marks = Marks.of(lines, settings, played.clocks, played.positions) if lines else None
-    return shares(played.clocks, played.positions, settings, marks)
+    turning = sum(vars(played.machine.pins).values())
+    return shares(played.clocks, played.positions, settings, marks, turning=turning)
 
 
 def greatest(found: list[Share]) -> dict[str, Share]:
