@@ -27,6 +27,7 @@ FIGURES: dict[str, Callable[[Measured], float]] = {
     "unlimited": lambda one: one.unlimited,
     "look_ahead": lambda one: one.look_ahead,
     "shaped": lambda one: one.shaped,
+    "soft": lambda one: one.soft,
     **{name: lambda one, name=name: one.share(name) for name in ("speed", "acceleration", "jerk")},
 }
 

@@ -12,9 +12,11 @@ from passo.plan import PlanError
 from benchmarks.path_paths import Case
 from benchmarks.path_plan import plan
 from benchmarks.path_reference import fastest
+from benchmarks.path_reference_jerk import soft_seconds
 from tests.helpers.path_player import Player
 
 UNLIMITED_AIM, LOOK_AHEAD_AIM = 1.02, 1.05
+SOFT_AIM = 1.6  # cosine ramps, and half of the jerk in curves
 SHAPED_AIM = 2.1  # a ramp over several lines has the slope of the weakest axis, doubled as often as possible
 KINDS = ("underrun", "fault", "slow", "slow48", "speed", "acceleration", "jerk")
 SHORTEST = 0.03  # s: in less, ticks count
@@ -30,6 +32,7 @@ class Measured:
     unlimited: float = 0.0
     look_ahead: float = 0.0
     shaped: float = 0.0  # all lines known, of another profile than linear: the reference is a bound
+    soft: float = 0.0  # the same of profile jerk, against a fast motion with that
     shares: list[Share] = field(default_factory=list)
     fault: str = ""  # the core stopped, or the end is not exact
 
@@ -49,6 +52,8 @@ class Measured:
             found["slow48"] = f"{self.look_ahead:.4f} times the optimum, {LOOK_AHEAD} lines"
         if self.shaped > SHAPED_AIM:
             found["slow"] = f"{self.shaped:.4f} times the optimum with a shape, all lines known"
+        if self.soft > SOFT_AIM:
+            found["slow"] = f"{self.soft:.4f} times a fast motion with this jerk, all lines known"
         for share in sorted(self.shares, key=lambda share: share.share):
             if share.share > share.bound:
                 found[share.name] = str(share)
@@ -76,7 +81,9 @@ def _ratios(measured: Measured, lines: list[Line], settings: PathSettings, fits:
         measured.unlimited = ratio
         if fits:
             measured.look_ahead = plan(lines, settings, LOOK_AHEAD).seconds / measured.optimum
-    elif settings.profile != "jerk":  # whose ramps are longer for the jerk
+    elif settings.profile == "jerk":
+        measured.soft = ratio * measured.optimum / soft_seconds(lines, settings)
+    else:
         measured.shaped = ratio
 
 

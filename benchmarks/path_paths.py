@@ -58,7 +58,7 @@ class Case:
     @property
     def settings(self) -> PathSettings:
         """Of the planner."""
-        return replace(MACHINES[self.machine], profile=self.profile)
+        return replace(MACHINES[self.machine], profile=self.profile, polls=self.polls)
 
     @property
     def lines(self) -> list[Line]:

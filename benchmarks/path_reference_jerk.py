@@ -22,7 +22,7 @@ import numpy as np
 from passo.path import PathSettings
 from passo.path_rounding import Line
 from scipy.optimize import linprog
-from scipy.sparse import coo_array, csr_array, diags_array, vstack
+from scipy.sparse import csr_array, diags_array, eye_array, vstack
 
 from benchmarks.path_reference import METHOD, Motion, fastest_at
 
@@ -70,66 +70,66 @@ def _places(motion: Motion) -> np.ndarray:
     even = np.interp(np.linspace(0, time[-1], CELLS + 1), time, place)
     near = np.searchsorted(even, motion.place)
     apart = np.diff(even, prepend=-np.inf, append=np.inf)
-    gap = np.minimum(np.abs(motion.place - even[np.minimum(near, CELLS)]), np.abs(motion.place - even[near - 1]))
+    after, before = even[np.minimum(near, CELLS)], even[near - 1]
+    gap = np.minimum(np.abs(motion.place - after), np.abs(motion.place - before))
     kept = motion.place[(gap > apart[near] / 8) | (motion.most < motion.square.max() / 4)]
     found = np.unique(np.concatenate([kept, even]))
     return found[np.diff(found, append=np.inf) > 1e-9]
 
 
-def _grid(motion: Motion, settings: PathSettings) -> Grid:
+def _course(motion: Motion, middle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Of each cell: the direction, and the curvature of each axis."""
     path = motion.path
-    place = _places(motion)
-    middle = (place[1:] + place[:-1]) / 2
-    cell = np.clip(np.searchsorted(motion.place, middle) - 1, 0, len(motion.top) - 1)
-    corner = np.clip(np.searchsorted(path.corner + path.behind, middle), 0, max(len(path.corner) - 1, 0))
     line = np.minimum(np.searchsorted(path.end, middle), len(path.end) - 1)
     unit, bend = path.unit[line].copy(), np.zeros((len(middle), path.unit.shape[1]))
     if len(path.corner):
-        begin = path.corner[corner] - path.before[corner]
-        inside = (middle >= begin) & (middle <= begin + path.over[corner]) & (path.over[corner] > 0)
+        corner = np.clip(np.searchsorted(path.corner + path.behind, middle), 0, len(path.corner) - 1)
+        begin, over = path.corner[corner] - path.before[corner], path.over[corner]
+        inside = (middle >= begin) & (middle <= begin + over) & (over > 0)
         which = corner[inside]
         share = (middle[inside] - begin[inside]) / path.over[which]
         unit[inside] = path.unit[which] + share[:, None] * path.turn[which]
         bend[inside] = path.turn[which] / path.over[which][:, None]
-    most = np.minimum(np.append(motion.top[cell], np.inf), np.insert(motion.top[cell], 0, np.inf))
-    known = np.searchsorted(motion.place, place - 1e-12)
-    at_node = np.abs(motion.place[np.minimum(known, len(motion.most) - 1)] - place) < 1e-9
+    return unit, bend
+
+
+def _most(motion: Motion, settings: PathSettings, place: np.ndarray, unit: np.ndarray) -> np.ndarray:
+    """Highest square at each node; next to rest, what the jerk makes in one cell."""
+    gap, middle = np.diff(place), (place[1:] + place[:-1]) / 2
+    top = motion.top[np.clip(np.searchsorted(motion.place, middle) - 1, 0, len(motion.top) - 1)]
+    most = np.minimum(np.append(top, np.inf), np.insert(top, 0, np.inf))
+    known = np.minimum(np.searchsorted(motion.place, place - 1e-12), len(motion.most) - 1)
+    at_node = np.abs(motion.place[known] - place) < 1e-9
     most[at_node] = np.minimum(most[at_node], motion.most[known[at_node]])
-    cells, nodes, gap = len(middle), len(place), np.diff(place)
     jerk = np.array([float(own.jerk) for own in settings.axes])
     weakest = (jerk / np.maximum(np.abs(unit), 1e-12)).min(axis=1)
-    risen = (weakest / 2) ** 2 * (6 * gap / weakest) ** (4 / 3)  # from rest, without acceleration there
+    risen = (weakest / 2) ** 2 * (6 * gap / weakest) ** (4 / 3)
     rests = most <= 0
     most[1:][rests[:-1]] = np.minimum(most[1:], risen)[rests[:-1]]
     most[:-1][rests[1:]] = np.minimum(most[:-1], risen)[rests[1:]]
-    every = np.arange(cells)
-    rise = coo_array(
-        (np.concatenate([-1 / gap, 1 / gap]), (np.tile(every, 2), np.concatenate([every, every + 1]))),
-        (cells, nodes),
-    ).tocsr()
-    low = coo_array((np.ones(cells), (every, every)), (cells, nodes)).tocsr()
-    high = coo_array((np.ones(cells), (every, every + 1)), (cells, nodes)).tocsr()
+    return most
+
+
+def _grid(motion: Motion, settings: PathSettings) -> Grid:
+    place = _places(motion)
+    unit, bend = _course(motion, (place[1:] + place[:-1]) / 2)
+    gap, cells = np.diff(place), len(place) - 1
+    low, high = eye_array(cells, cells + 1).tocsr(), eye_array(cells, cells + 1, k=1).tocsr()
+    rise = diags_array(1 / gap) @ (high - low)
+    before, behind = eye_array(cells - 1, cells).tocsr(), eye_array(cells - 1, cells, k=1).tocsr()
+    mean, width = (before + behind) / 2, (gap[1:] + gap[:-1]) / 2
+    here = eye_array(cells - 1, cells + 1, k=1).tocsr()
     rows, bounds, jerks = [], [], []
-    second = coo_array(
-        (
-            np.concatenate([np.ones(cells - 1), -np.ones(cells - 1)]),
-            (np.tile(np.arange(cells - 1), 2), np.concatenate([every[1:], every[:-1]])),
-        ),
-        (cells - 1, cells),
-    ).tocsr()
-    mean = abs(second) / 2
-    width = (gap[1:] + gap[:-1]) / 2
-    here = coo_array((np.ones(cells - 1), (np.arange(cells - 1), np.arange(1, nodes - 1))), (cells - 1, nodes))
+    whole = (bend**2).sum(axis=1)
     for axis, own in enumerate(settings.axes):
         for end in (low, high):
             row = diags_array(unit[:, axis] / 2) @ rise + diags_array(bend[:, axis]) @ end
             rows += [row, -row]
             bounds += [np.full(cells, float(own.acceleration))] * 2
-        turn = np.linalg.norm(bend, axis=1)
-        jerk = diags_array(mean @ unit[:, axis] / 2 / width) @ (second @ rise)
+        jerk = diags_array(mean @ unit[:, axis] / 2 / width) @ ((behind - before) @ rise)
         jerk = jerk + diags_array(1.5 * (mean @ bend[:, axis])) @ (mean @ rise)
-        jerk = jerk - diags_array(mean @ (turn**2 * unit[:, axis])) @ here.tocsr()
-        jerks.append(jerk.tocsr())
+        jerks.append((jerk - diags_array(mean @ (whole * unit[:, axis])) @ here).tocsr())
+    most = _most(motion, settings, place, unit)
     return Grid(place, most, vstack(rows).tocsr(), np.concatenate(bounds), jerks)
 
 
@@ -138,9 +138,9 @@ def _faster(grid: Grid, settings: PathSettings, square: np.ndarray) -> np.ndarra
     at = np.maximum(square[1:-1], SLOWEST * grid.most[1:-1].max())
     slope = diags_array(0.5 * at**-1.5)
     rows, bounds = [grid.accelerations], [grid.bounds]
-    here = coo_array((np.ones(len(at)), (np.arange(len(at)), np.arange(1, len(at) + 1))), (len(at), len(square)))
+    here = eye_array(len(at), len(square), k=1).tocsr()
     for own, jerk in zip(settings.axes, grid.jerks, strict=True):
-        tangent = float(own.jerk) * (slope @ here.tocsr())
+        tangent = float(own.jerk) * (slope @ here)
         for sign in (1, -1):
             rows.append(sign * jerk + tangent)
             bounds.append(float(own.jerk) * 1.5 * at**-0.5)

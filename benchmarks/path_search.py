@@ -125,7 +125,7 @@ def search(
     def drawn(case: Case) -> None:
         measured = check(case)
         seen(case, measured)
-        target(measured.unlimited, label="slow")
+        target(max(measured.unlimited, measured.soft), label="slow")
         target(measured.share("acceleration"), label="acceleration")
         for kind, text in measured.faults.items():
             if kind not in known:

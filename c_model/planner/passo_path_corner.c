@@ -80,8 +80,9 @@ static void find_rounding(const struct passo_path_planner *path, const int32_t *
 		const uint64_t bend = passo_mul_div(path->axis[axis].acceleration, over, change);
 		const uint32_t needed = (uint32_t)passo_mul_div(
 		    passo_path_smaller(square, bend), sides * INT16_MAX, passo_path_larger(bend, 1));
-		const uint32_t lost = sides * ((before ? part_of(path, slope, path->at.direction, axis) : 0)
-		    + (behind ? part_of(path, item->slope, unit, axis) : 0));
+		const uint32_t lost = sides
+		                    * ((before ? part_of(path, slope, path->at.direction, axis) : 0)
+		                        + (behind ? part_of(path, item->slope, unit, axis) : 0));
 
 		if (lost + needed > (uint32_t)item->lost + item->needed) {
 			item->lost = (uint16_t)lost;
@@ -105,9 +106,8 @@ uint64_t passo_path_corner_square(
 		const uint64_t acceleration = left == NULL ? own->acceleration : left[axis];
 		square = passo_path_smaller(square, passo_mul_div(acceleration, corner->over, change));
 		if (own->jump > 0)
-			square = passo_path_smaller(
-			    square, passo_path_speed_square(
-					((uint64_t)own->jump << PASSO_PATH_UNIT_BITS) / change));
+			square = passo_path_smaller(square,
+			    passo_path_speed_square(((uint64_t)own->jump << PASSO_PATH_UNIT_BITS) / change));
 	}
 	return square;
 }

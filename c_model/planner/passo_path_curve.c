@@ -7,8 +7,8 @@
  * = 2 |k| / |u|, and one that the curve slows down the same downward. The acceleration along the path alone
  * keeps all limits as well.
  *
- * Each corner turns over a length before and behind it, so each half of a line has the curvature of the corner
- * at its end. An image without room has one for both, the greater one.
+ * Each corner turns over a length before and behind it, so each half of a line has the curvature of the
+ * corner at its end. An image without room has one for both, the greater one.
  */
 #include "passo_path_private.h"
 
@@ -142,8 +142,7 @@ uint64_t passo_path_fall(const struct passo_path_item *item, uint64_t end)
 	return fall > lost ? passo_path_smaller(straight, fall - lost) : 0;
 }
 
-uint64_t passo_path_before(
-    const struct passo_path_item *item, uint64_t end, uint64_t length, uint64_t behind)
+uint64_t passo_path_before(const struct passo_path_item *item, uint64_t end, uint64_t length, uint64_t behind)
 {
 	const unsigned halves = passo_path_halves(item);
 	const uint64_t half = (uint64_t)item->substeps << 31;

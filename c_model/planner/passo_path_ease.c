@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Shaped ramps in curves. The limit of an axis is that of its acceleration in all, and a shaped ramp is
- * steepest in its middle, wherever on the curve that is. So by what a curve needs across it at the speed of its
- * lines, these have all of the slope, three quarters or half, and the curve is as fast as that leaves: 0.93 of
- * its speed with half, or more. One slope for the whole curve, so that a ramp may pass all of it.
+ * steepest in its middle, wherever on the curve that is. So by what a curve needs across it at the speed of
+ * its lines, these have all of the slope, three quarters or half, and the curve is as fast as that leaves:
+ * 0.93 of its speed with half, or more. One slope for the whole curve, so that a ramp may pass all of it.
  */
 #include "passo_path_private.h"
 
@@ -12,8 +12,8 @@
 #define EXCESS 64u
 /* The same of the jerk. */
 #define JERK_EXCESS 32u
-/* On an arc at a speed v, of a radius r, the ramp that is steepest at t takes 3 v t / r of the jerk: with half
- * of it along the arc, 0.7 are left. UQ0.16. */
+/* On an arc at a speed v, of a radius r, the ramp that is steepest at t takes 3 v t / r of the jerk: with
+ * half of it along the arc, 0.7 are left. UQ0.16. */
 #define ACROSS 15463u
 /* An axis with less than this part of the direction and of its change is none of the curve. */
 #define SMALL 8u
@@ -27,8 +27,8 @@ static uint64_t left_of(const struct passo_path_planner *path, const struct pass
 	uint64_t slope = 0; /* of the square of this axis, twice */
 
 	if (corner->bends_before)
-		slope = passo_mul_div(
-		    last->slope, passo_path_size32(path->at.direction[axis]), PASSO_PATH_ONE);
+		slope =
+		    passo_mul_div(last->slope, passo_path_size32(path->at.direction[axis]), PASSO_PATH_ONE);
 	if (corner->bends_behind)
 		slope = passo_path_larger(
 		    slope, passo_mul_div(item->slope, passo_path_size32(unit[axis]), PASSO_PATH_ONE));
@@ -71,7 +71,8 @@ static uint64_t jerk_of(const struct passo_path_planner *path, const struct pass
 	return jerk;
 }
 
-/* Highest square on an arc by the jerk: the cube of the velocity is the jerk times the square of the radius. */
+/* Highest square on an arc by the jerk: the cube of the velocity is the jerk times the square of the radius.
+ */
 static uint64_t soft_square(uint64_t radius, uint64_t jerk)
 {
 	const struct passo_u128 cube = passo_multiply(jerk, radius * radius);
@@ -87,8 +88,8 @@ static uint64_t soft_square(uint64_t radius, uint64_t jerk)
 }
 
 /* Quarters of the slope that a line lacks. */
-static void ease(const struct passo_path_planner *path, struct passo_path_item *item, uint32_t quarters,
-    uint64_t most)
+static void ease(
+    const struct passo_path_planner *path, struct passo_path_item *item, uint32_t quarters, uint64_t most)
 {
 	if (quarters > item->eased) {
 		const uint32_t left = 4u - quarters, had = 4u - item->eased;
@@ -112,7 +113,8 @@ static uint32_t lacking(const struct passo_path_planner *path, const struct pass
 	uint64_t weakest = PASSO_PATH_SQUARE_MAX;
 
 	for (uint32_t axis = 0; axis < path->machine.axes; axis++) {
-		if (passo_path_size32(unit[axis]) >= PASSO_PATH_ONE / SMALL || corner->change[axis] >= turn / SMALL)
+		if (passo_path_size32(unit[axis]) >= PASSO_PATH_ONE / SMALL
+		    || corner->change[axis] >= turn / SMALL)
 			weakest = passo_path_smaller(weakest, path->axis[axis].acceleration);
 	}
 	return across <= weakest / 64 * 11 ? 0 : across <= weakest / 64 * 43 ? 1 : 2;
@@ -137,8 +139,8 @@ uint64_t passo_path_shaped_corner(const struct passo_path_planner *path,
 		const uint64_t velocity = passo_isqrt64(passo_path_smaller(fastest, needed));
 		const uint64_t along = passo_mul_div(jerk, radius << 8, passo_path_larger(velocity, 1));
 
-		most = passo_mul_div(2 * passo_mul_div(along, ACROSS, UINT32_C(1) << 16), path->gentleness,
-		    UINT32_C(1) << 16);
+		most = passo_mul_div(
+		    2 * passo_mul_div(along, ACROSS, UINT32_C(1) << 16), path->gentleness, UINT32_C(1) << 16);
 	} else if (soft) {
 		fastest = soft_square(radius, jerk);
 	}

@@ -149,7 +149,8 @@ struct passo_path_aim passo_path_soft_aim(const struct passo_path_planner *path,
 	struct reach reach;
 	const uint32_t least = passo_path_pace_need(path, 0, 1) + TICKS_MIN;
 	const struct choice choice = choose(path, least, &reach);
-	const uint64_t up = choice.top > from ? passo_path_ramp_length(path, &choice.law, from, choice.top) : 0;
+	const uint64_t up =
+	    choice.top > from ? passo_path_ramp_length(path, &choice.law, from, choice.top) : 0;
 	struct passo_path_aim aim;
 
 	if (!choice.found || (!needed && !choice.top_settled))

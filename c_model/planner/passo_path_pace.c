@@ -213,8 +213,8 @@ static struct passo_path_aim calm(
 		to = passo_path_smaller(to, from + passo_path_change(path, ahead.up, ticks));
 		to = passo_path_larger(to, from);
 	}
-	struct passo_path_aim aim = aim_at(path, to, passo_path_length_in(path, from + to, ticks),
-	    to > from ? ahead.up : ahead.slope);
+	struct passo_path_aim aim = aim_at(
+	    path, to, passo_path_length_in(path, from + to, ticks), to > from ? ahead.up : ahead.slope);
 	aim.open = ahead.open;
 	return aim;
 }

@@ -271,8 +271,8 @@ uint64_t passo_path_ticks_over(const struct passo_path_planner *path, uint64_t l
 /* Length, UQ32.32 substeps, in so many ticks at the mean of two velocities, whose sum is given. */
 uint64_t passo_path_length_in(const struct passo_path_planner *path, uint64_t speeds, uint64_t ticks);
 
-/* The newest line is entered when the next one is known, or when it is the last; the one before it when it cannot
- * become another one. */
+/* The newest line is entered when the next one is known, or when it is the last; the one before it when it
+ * cannot become another one. */
 bool passo_path_is_held_back(const struct passo_path_planner *path, uint32_t index);
 
 /* The path rests at the end of this item, as far as is known. */

@@ -102,8 +102,7 @@ static unsigned middle_parts(const struct passo_path_planner *path, uint32_t ind
 		left = second;
 	}
 	if (left > 0)
-		count += half_parts(
-		    item, passo_path_halves(item) - 1, left, square, top, end, parts + count);
+		count += half_parts(item, passo_path_halves(item) - 1, left, square, top, end, parts + count);
 	return count;
 }
 
@@ -118,6 +117,7 @@ unsigned passo_path_parts(const struct passo_path_planner *path, uint32_t index,
 	before = passo_path_smaller(before > passed ? before - passed : 0, left - behind);
 	unsigned count = put(parts, 0, PASSO_PATH_FLAT, before, square, slope);
 	if (left > before + behind)
-		count += middle_parts(path, index, left - before - behind, behind, square, level, parts + count);
+		count +=
+		    middle_parts(path, index, left - before - behind, behind, square, level, parts + count);
 	return put(parts, count, PASSO_PATH_FLAT, behind, count > 0 ? parts[count - 1].square : end, slope);
 }
