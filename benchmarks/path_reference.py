@@ -59,7 +59,7 @@ class Motion:
         return float(self.times.sum())
 
     def fits(self, look_ahead: int, spare: int = 4) -> bool:
-        """Whether the braking distance is always within so many lines."""
+        """Whether the braking distance is always within this number of lines."""
         line = np.searchsorted(self.path.end, self.place[:-1], "right")
         last = np.minimum(line + look_ahead - spare, len(self.path.end) - 1)
         weakest = np.minimum.accumulate(self.along[::-1])[::-1]

@@ -83,7 +83,7 @@ def positions_at(core: Core, clock: int) -> list[int]:
 
 @core_test
 def a_hard_limit_ends_steps_and_lets_the_axis_be_driven_off(core: Core) -> None:
-    """No step towards it begins; the axis is named; a motion towards it is refused, one away is made."""
+    """No step toward it begins; the axis is named; a motion toward it is refused, one away is made."""
     channel = jog(core)
     pressed = core.clock
     core.set("limit_high", 1)

@@ -2,8 +2,8 @@
 """Line and toggle coverage of the RTL by the cocotb tests: `make coverage`.
 
 Runs the tests on Verilator with its line and toggle coverage, merges the results, prints a table and writes
-docs/reference/coverage.md. A line is covered if each of its branches was taken in some instance of the module,
-a bit if it rose and fell in some instance.
+docs/reference/coverage.md. A line is covered if each of its branches was taken in some instance of the
+module, a bit if it rose and fell in some instance.
 
 Fails if a test fails, if a line or a bit is not covered and not listed in coverage_exclusions.toml, or if an
 entry of that list is wrong.
@@ -38,13 +38,13 @@ WIDTH = 118  # of the tables without a terminal
 
 HEAD = """# Coverage
 
-Written by `make coverage`: lines and bits of the RTL that the cocotb tests reach on Verilator. A line is
-reached if each of its branches was taken in some instance of its module, a bit if it rose and fell in one.
-Bits that cannot toggle are constant by construction. They are listed below with the reason, and checked: a
-listed bit that does not exist or does toggle is an error, as is any other unreached bit or line.
+Written by `make coverage`: lines and bits of the RTL that the cocotb tests cover on Verilator. A line is
+covered if each of its branches was taken in some instance of its module, a bit if it rose and fell in one.
+Bits that are constant by construction are listed below with the reason. The list is checked: a listed bit
+that does not exist or toggles is an error, and so is any other uncovered bit or line.
 
 """
-HEADER = ("file", "lines", "reached", "bits", "constant", "reached")
+HEADER = ("file", "lines", "covered", "bits", "constant", "covered")
 
 Modules = Mapping[str, Module]
 Exclusions = Sequence[Exclusion]
@@ -135,7 +135,7 @@ def page(modules: Modules, exclusions: Exclusions) -> str:
     bits = [f"* `{name}`: {_names(bits)}" for name, bits in missed_bits(modules, exclusions).items()]
     constant = [f"* `{e.file}`: {_names(e.bits)}. {e.reason}" for e in exclusions]
     sections = {
-        "Unreached lines": lines,
+        "Uncovered lines": lines,
         "Bits that never toggle": bits,
         "Constant bits": constant,
     }

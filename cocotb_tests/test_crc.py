@@ -54,7 +54,7 @@ async def rotate(dut: HierarchyObject, clocks: Clocks, random: Random) -> int:
 
 @cocotb.test()
 async def known_values_come_out(dut: HierarchyObject) -> None:
-    """Results of the CRC unit of an STM32, and the catalogue check value for the reference."""
+    """Results of the CRC unit of an STM32, and the catalog check value for the reference."""
     random = rng("crc, known")
     assert crc_of_bytes(b"123456789") == 0x0376E6E7
     clocks = await begin(dut, "restart", "shift", "rotate", "data")

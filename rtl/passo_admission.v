@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Admission: does the state of the channel allow the frame that is about to be executed?
 //
-// The checks of a frame's words collect what it needs; its commit decides once for the whole frame. Promise: from 30
+// The word checks collect the requirements of a frame; its commit decides once for the whole frame. Promise: from 30
 // clocks after `bus_commit` rises until it falls, `busy` does not rise, so the frame is executed in a state that
-// allows it: `hold` keeps a motion from beginning, `now_coming` keeps one from ending.
+// allows it: `hold` prevents a motion from starting, `now_coming` prevents one from ending.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none

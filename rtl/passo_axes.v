@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Axes: pins, settings and positions of all axes of a channel. Wiring only.
 //
-// Promise: step requests become legal pin waveforms, by the settings of each axis; positions count active edges.
-// `quiet`, one clock late: no step waits or is in progress at any axis.
+// Promise: step requests become legal pin waveforms according to the settings of each axis; positions count active
+// edges. `quiet`, one clock late: no step is queued or in progress on any axis.
 // Latency: step_request to STEP 3 clocks, to step_overrun 1 clock.
 `resetall
 `timescale 1ns / 1ps
@@ -35,13 +35,13 @@ module passo_axes #(
   input  wire [AXES-1:0] step_request,
   input  wire [AXES-1:0] directions,
   // motion
-  input  wire            drop,             // drop the waiting steps
+  input  wire            drop,             // drop the queued steps
   // inputs of the machine
-  input  wire [AXES-1:0] closed_low,       // refuse steps
+  input  wire [AXES-1:0] closed_low,       // block steps
   input  wire [AXES-1:0] closed_high,
   input  wire [AXES-1:0] disable_axis,     // clear the drive enable
   input  wire            latch,            // keep the positions of this clock
-  output wire [AXES-1:0] waits,            // the step that waits next
+  output wire [AXES-1:0] waits,            // the next queued step
   output wire [AXES-1:0] negative,
   output wire [AXES-1:0] write_inputs,     // strobes with bus_data
   output wire [AXES-1:0] enable_off,       // level of EN that disables

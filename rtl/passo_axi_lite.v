@@ -3,7 +3,7 @@
 //
 // The two registers of passo_words; its errors return SLVERR. One access at a time: a write is accepted once its
 // address and data are valid, a read while no write is, or after a write; each is answered before the next is
-// accepted. So a read waits for one write at most: 264 clocks, if the master takes answers at once.
+// accepted. A read therefore waits for at most one write: 264 clocks, if the master accepts responses immediately.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none

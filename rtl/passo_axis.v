@@ -7,16 +7,16 @@
 //
 // Promise: STEP is active for exactly step_high and inactive for at least step_low clocks; DIR never changes from
 // dir_setup clocks before an active edge to dir_hold clocks after the low time of the pulse. With high = low = 1 the
-// axis steps every two clocks. A step that must wait is queued with its direction, up to 4; one that finds the queue
-// `full` is lost and counted in `lost`, up to 15. While nothing waits, DIR follows `direction`, that of the line
-// whose steps are being made. With both_edges every edge of STEP is a step, and each level lasts at least step_high
-// or step_low. `drop` empties the queue; a pulse in progress is finished. No timing is 0. `timing_written` restarts
-// the running timing, as the settings change with it. `pins_written`, only while `quiet`: polarities and mode change
-// with it, the pins two clocks later; the next step waits for step_low, dir_hold and dir_setup, as it does after a
-// reset. A reset leaves STEP and DIR as they are and finishes a pulse in progress. `quiet`: no step waits or is in
-// progress, no timing runs.
+// axis steps every two clocks. Steps that arrive during the pin timing are queued with their direction, up to 4; a
+// step that finds the queue `full` is lost and counted in `lost`, saturating at 15. With an empty queue, DIR follows
+// `direction`, that of the current line. With both_edges every edge of STEP is a step, and each level lasts at least
+// step_high or step_low. `drop` empties the queue; a pulse in progress is finished. No timing is 0. `timing_written`
+// restarts the running timing, as the settings change with it. `pins_written`, only while `quiet`: polarities and mode
+// change with it, the pins two clocks later; the next step waits for step_low, dir_hold and dir_setup, as it does
+// after a reset. A reset leaves STEP and DIR as they are and finishes a pulse in progress. `quiet`: no step is queued
+// or in progress, no timing runs.
 // Latency: step_request to STEP 3 clocks, `direction` to DIR 3 clocks. `step_made`, with `step_direction`, is high in
-// the clock before the active edge leaves the pin. `closed_low` refuses negative steps and `closed_high` positive ones:
+// the clock before the active edge leaves the pin. `closed_low` blocks negative steps and `closed_high` positive ones:
 // they wait until they are dropped. Latency: `closed_low` to the last STEP edge in that direction 2 clocks.
 `resetall
 `timescale 1ns / 1ps

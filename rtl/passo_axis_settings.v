@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Settings of one axis as written, and which of its timings are one clock: the timer needs to know before it counts.
+// Settings of one axis as written, and which of its timings are one clock, which the timer needs before it counts.
 // A time of 0 counts as 1.
 //
-// They are configuration: a reset only clears the drive enable. Until the host writes others, the polarities give
-// each pin the level of its parameter.
+// They are configuration: a reset only clears the drive enable. Until the host writes the polarities,
+// each pin has the level of its parameter.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none

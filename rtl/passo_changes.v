@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Changes of the outputs on their way: a delay of `lag` clocks, as a queue in block RAM of changes with their time.
+// Pending output changes: delays them by `lag` clocks in a block RAM queue of time-stamped changes.
 //
-// Promise: a change comes out 3 + lag clocks after it went in (`hit`, with `data`, which is there a clock before), in
-// order, none lost or doubled, while `lag` does not change. One that finds 2^DEPTH_LOG2 others waiting is lost:
-// `overflow` is high for one clock. `flush` drops what waits. Changes are at least 2 clocks apart.
+// Promise: while `lag` is constant, a change comes out 3 + lag clocks after it went in (`hit`; `data` is valid one
+// clock earlier), in order, none lost or duplicated. A change that finds 2^DEPTH_LOG2 others queued is lost:
+// `overflow` is high for one clock. `flush` empties the queue. Changes are at least 2 clocks apart.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none

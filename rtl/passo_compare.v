@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Compare: a pulse whenever an axis arrives at a point, which then moves on by an interval.
+// Position-compare output: a pulse when an axis arrives at a point, which then advances by an interval.
 //
 // Promise: `pin` rises in the clock in which the active edge of the step onto the point leaves the pin, and stays high
-// for `width` clocks, or that long from the last arrival if there is another one meanwhile. Only arriving counts, from
-// either side; so after the first point the others come once each, in the direction of the interval, however often the
-// axis turns. Wraps of the position do no harm. With width 0 there are no pulses, but the points move on. A pulse is
-// not cut by anything but a reset, `write_distance` or `write_pulse`, with which axis and width change.
+// for `width` clocks after the last arrival. Only arrivals count, from either side: after the first point each of the
+// others gives one pulse, in the direction of the interval, however often the axis reverses. Position wraparound is
+// handled. With width 0 there are no pulses, but the points advance. Only a reset, `write_distance` or `write_pulse`,
+// which change axis and width, cut a pulse short.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none

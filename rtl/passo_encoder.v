@@ -4,11 +4,11 @@
 //   A  ____/~~~~~~~~\________/~~~~~~~~\____        A before B: up, unless `inverted`
 //   B  ________/~~~~~~~~\________/~~~~~~~~\        every edge is a count
 //
-// Promise: after the filter, each change of one of A and B is one count, in its direction; a change of both at once is
-// no count, but `slipped`, and counted in `illegal`, up to 255. `index_event` is high for one clock when the index becomes active or,
-// with `index_gated`, when index, A and B are all high for the first time: with an index as wide as a count or more
-// that is always at the same count, even if its edge comes beside one of A or B. A level of A or B, or an active
-// index, at the end of a reset is no event.
+// Promise: after the filter, each change of one of A and B is one count, in its direction; a simultaneous
+// change is an illegal transition: not a count, but `slipped`, and counted in `illegal`, saturating at 255.
+// `index_event` is high for one clock when the index becomes active or, with `index_gated`, when index, A and B are
+// all high for the first time: with an index at least as wide as a count this is always at the same count, even if
+// its edge coincides with one of A or B. The levels of A, B and index at the end of a reset are not an event.
 // Latency: pin to count_made and index_event 4 + filter clocks. A count in the clock of index_event is the one that
 // leads to the index.
 `resetall
@@ -32,7 +32,7 @@ module passo_encoder (
   // strobes
   output reg        count_made,
   output reg        count_down,      // with count_made: -1
-  output reg        slipped,         // A and B changed at once
+  output reg        slipped,         // A and B changed together
   output reg        index_event,
   output reg  [7:0] illegal
 );

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Encoder of one axis with what it is compared with: settings, following error, latch of the index, and their words.
+// Encoder of one axis: settings, following error, index latch, and their registers.
 //
 // Promise: `stop_soft` and `stop_hard` are high while the following error is at its limit, as the setup says. The latch
 // has the lower 16 bits of the count at the last index.
@@ -14,7 +14,7 @@ module passo_encoder_axis (
   input  wire        a,
   input  wire        b,
   input  wire        index,
-  // registers: strobes with bus_data; a strobe of a read is answered at once
+  // registers: strobes with bus_data; a read strobe is answered immediately
   input  wire        write_setup,
   input  wire        write_ratio,
   input  wire        write_limit,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Filter of one line of an encoder: synchroniser and glitch filter.
+// Filter of one encoder signal: synchronizer and glitch filter.
 //
-// Promise: `level` takes the level of the pin when the pin has had it for `length` + 1 clocks, 2 clocks late: a pulse of
-// at most `length` clocks never gets through, a longer one always does. A reset takes the level at once.
+// Promise: `level` takes the level of the pin when the pin has had it for `length` + 1 clocks, 2 clocks late: a pulse
+// of at most `length` clocks never passes, a longer one always does. A reset takes the level immediately.
 // Latency: pin to `level` 3 + length clocks, to `sampled` 2.
 `resetall
 `timescale 1ns / 1ps

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Encoders of a channel: one for each axis, their positions, and the follower that makes the counts of one of them
+// Encoders of a channel: one per axis, their positions, and the follower, which turns the counts of one of them into
 // the clock of the profile. Wiring, except for the selection of that encoder.
 //
-// Promise: following, the profile has 2^scale enabled clocks for each count since the motion began; `advance` is its
-// clock enable. With `wait_index` an ARMED motion begins with an index (`may_begin`), at the count that leads to it.
-// `waits`: the profile follows and nothing is owed to the encoder, so nothing moves; two clocks late. `index_active` is the
-// index as the setup of its encoder has it, synchronised but not filtered.
+// Promise: while following, the profile has 2^scale enabled clocks for each count since the motion began; `advance` is
+// its clock enable. With `wait_index` an ARMED motion starts with an index (`may_begin`), at the count that leads to
+// it. `waits`, two clocks late: the profile follows and owes the encoder nothing, so nothing moves. `index_active` is
+// the index with the polarity of the encoder's setup, synchronized but not filtered.
 // Latency: pin to `advance` 7 + filter clocks; the first enabled clock is that of the first count after the index.
 `resetall
 `timescale 1ns / 1ps

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // E-stop: a latch on an asynchronous input.
 //
-// Promise: `pressed` is 1 from the moment that `estop_n` falls, without a clock, and stays 1 until `clear` comes (or
-// rst) with `estop_n` high for at least two clocks. `stop` is `pressed`, synchronised: 2 clocks later. From
-// configuration on it is pressed, until the first reset: a latch starts as its asynchronous input sets it, since some
-// FPGAs have one value for both.
+// Promise: `pressed` becomes 1 asynchronously when `estop_n` falls and stays 1 until `clear` (or rst) while `estop_n`
+// has been high for at least two clocks. `stop` is `pressed`, synchronized: 2 clocks later. From configuration until
+// the first reset it is pressed: the latch powers up to the value that its asynchronous input sets, because some FPGAs
+// have one value for both.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none

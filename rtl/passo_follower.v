@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Follower: makes the counts of an encoder the clock of a profile.
+// Follower: turns encoder counts into the clock of a profile.
 //
 //   a count: owed += 2^scale, down: owed -= 2^scale;  `advance`: owed -= 1
 //   credit: every enabled clock without one:  sum += limit;  carry out = credit
 //
-// Promise: while following, 2^scale * counts = advances + owed, a clock after the count. There is no advance unless a count was owed in the clock
-// before, none without `enable`, and none on two clocks in a row; so counts back are paid back before the profile goes
-// on, and it never gets ahead of the furthest count. In any time there are at most 1 + limit * (enabled clocks)
-// advances. When owed is positive and credit is there, an advance follows with the next enabled clock but one.
-// `behind`: two counts or more are owed, one clock late. `lost`: 2^22 or more are owed, either way, or the encoder has
-// slipped; then nothing is counted any more.
+// Promise: while following, 2^scale * counts = advances + owed, one clock after the count. An advance needs a count
+// owed in the clock before, `enable`, and no advance on the clock before; so reverse counts are made up before the
+// profile continues, and it never gets ahead of the furthest count. In any time there are at most 1 + limit * (enabled
+// clocks) advances. When owed is positive and there is credit, an advance follows on the second enabled clock after
+// that. `behind`, one clock late: two counts or more are owed. `lost`: 2^22 or more are owed, either way, or the
+// encoder has slipped; counting then stops.
 // Latency: count_made to owed 2 clocks, to advance 3.
 `resetall
 `timescale 1ns / 1ps

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Following error: how far the encoder is behind the steps, in counts.
 //
-//   a step: error += ratio, a count: error -= 1.0;  in the other direction the other way round
+//   a step: error += ratio, a count: error -= 1.0;  with opposite signs in the other direction
 //
 // So error = position * ratio - count since `zero`, exactly, without a division. It is stored as s18.16.
 //
 // Promise: `exceeded` is high 4 clocks after a step or count has brought the error to `limit` or above, or below
-// -limit. `greatest` is the largest whole number of counts, either way, since `zero` or `clear`. An error of 2^16 counts
-// is off the scale: from then on it stays as it is, and exceeded, until `zero`.
+// -limit. `greatest` is the largest whole number of counts, either way, since `zero` or `clear`. An error of 2^16
+// counts saturates: it then stays constant and `exceeded` until `zero`.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Inputs: synchroniser, polarity, glitch filter and a flag that remembers, for WIDTH pins.
+// Inputs: synchronizer, polarity, glitch filter and sticky flag for WIDTH pins.
 //
 // `tick` ends the periods of the filter, which all inputs share: `level` follows an input that has differed from it on
 // every clock from one tick to the next. Promise: with ticks every P clocks, a change of at most P clocks never reaches
@@ -7,7 +7,7 @@
 // `level` is, and until it is cleared.
 //
 // `unknown` is 1 from a reset or `forget` until no input has changed for a whole period. Promise: when it falls, every
-// `level` is that of its input, which it has had for P clocks; inputs that stand still are known 2 P + 2 clocks later.
+// `level` is that of its input, which it has had for P clocks; stable inputs are known at most 2 P + 2 clocks later.
 // Latency: pin to `synced` 2 clocks.
 `resetall
 `timescale 1ns / 1ps
@@ -37,7 +37,7 @@ module passo_input #(
   wire [WIDTH-1:0] differs = second ^ level;
 
   reg changed;  // an input has changed since the last tick
-  reg forgot;  // one clock ago: the synchroniser still has what was before
+  reg forgot;  // one clock ago: the synchronizer still holds old levels
 
   assign synced = second;
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Interpolation between two numbers, bit-serial: a + floor((b - a) * f).
 //
-// The same unit works twice per tick: between two points of a table, at the fraction within the progress, then
-// between two velocities, at the fraction that results.
+// The unit is used twice per tick: between two points of a table, at the fractional part of the progress, then
+// between two velocities, at the resulting fraction.
 //
 //   f = F + r, F of 24 bits and r of the weight of its LSB, so that f rounds and reaches 1.0
 //   bit j of a and b, LSB first:  sum = (sum + addend) / 2,  and the bit shifted out is the next of the result
@@ -43,7 +43,7 @@ module passo_interpolate (
   reg  [24:0] fraction;  // F, r
   reg  [24:0] addend;
   reg         both;
-  // the LSBs make r, in addend[0], the carry
+  // the LSBs give r, in addend[0], the carry
   wire [24:0] sum_next;
   wire        unused_bit;
 
@@ -62,7 +62,7 @@ module passo_interpolate (
     both <= a & b;
 
     if (result_move) begin
-      // while nothing comes in, each half of the result rotates: 24 clocks bring it round
+      // without input, each half of the result rotates: a full turn takes 24 clocks
       sum <= clear ? 25'd0 : {sum_next[24] | both | (~moving & sum[1]), sum_next[23:1], moving ? sum_next[0] : low[0]};
       low <= clear ? 23'd0 : {sum[0], low[22:1]};
     end

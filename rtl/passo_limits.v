@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Limit switches and alarms of a channel: which steps are refused, and when to stop.
+// Limit switches and alarms of a channel: which steps are blocked, and when to stop.
 //
-// Each axis shows the step that waits next. `closed_low` and `closed_high` refuse steps in that direction: while a hard
-// limit is active, and while a soft one is that was active already when the channel was quiet or a motion was prepared.
-// Promise: a step towards an active limit stops the channel one clock after it is shown: hard if it is refused, else
-// soft. So the steps of a soft stop are made, and none into the switch after that; steps away always are. An active
-// alarm keeps the channel stopped. `named` has the axes of the first such event since `clear`.
+// Each axis shows its next queued step. `closed_low` and `closed_high` block steps in that direction: while a hard
+// limit is active, or a soft-stop limit that was already active when the channel was quiet or a motion was prepared.
+// Promise: a step toward an active limit stops the channel one clock after it is shown: hard if it is blocked, else
+// soft. So the steps of a soft stop pass, later ones into the switch do not; steps away always pass. An active alarm
+// keeps the channel stopped. `named` has the axes of the first such event since `clear`.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -39,7 +39,7 @@ module passo_limits #(
   wire [AXES-1:0] to_low = waits & negative;
   wire [AXES-1:0] to_high = waits & ~negative;
   wire [AXES-1:0] hit = (to_low & limit_low) | (to_high & limit_high);
-  wire [AXES-1:0] open = limit_soft & ~{AXES{may_close}};  // a limit that becomes active does not refuse
+  wire [AXES-1:0] open = limit_soft & ~{AXES{may_close}};  // a limit that becomes active does not block
 
   always @(posedge clk) begin
     closed_low   <= limit_low & (closed_low | ~open);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Line counter: counts the substeps of the current line, takes the next one, and drives the DDAs of all axes.
+// Line counter: counts the substeps of the current line, takes the next line, and drives the DDAs of all axes.
 //
 //   substep_number = substeps of this line so far;  the substep with the number M - 1 (`last_substep`) is its last
 //
@@ -85,7 +85,7 @@ module passo_line #(
     goes_on         <= active & ~endless & ~last;
     if (start || substep) substep_number <= start || on_last ? 30'd0 : substep_number + 30'd1;
 
-    // B still makes the last step of the old line
+    // B still outputs the last step of the old line
     if (load_start_q) directions <= current_directions;
 
     underrun <= substep & on_last & goes_on & ~next_valid;

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Line queue: lines as pushed, one block RAM column for each of their words, so that a whole line is read at once.
+// Line queue: lines as pushed, one block RAM column per word, so that a whole line is read in one clock.
 //
 // Promise: lines come out whole and in order. While `next_valid` is high there is a next line; `take` makes it the
 // current line: its length and flags are valid one clock later, its steps and directions two clocks later, until the
-// next one is taken. A place is free again when the line after it is taken, or on `release_line`. `room` excludes all
-// lines of a frame from one clock after its commit begins to write, and follows all else one clock late. `flush`
+// next one is taken. An entry is free again when the line after it is taken, or on `release_line`. `room` excludes all
+// lines of a frame from one clock after its commit begins to write, and is otherwise one clock late. `flush`
 // drops everything written; it stays high while the channel is stopped, for a push that was checked before.
 //
 // A push is checked word by word (`bus_check`; the word is stable from two clocks before): room for the line after
 // all lines of this frame before it, M not 0 and below 2^30, N_i <= M, no reserved bits. `refusal` answers one clock
-// later. With OUTPUTS the output word follows the steps: a raster line has no power of its own, no reserved bits.
-// One subtractor serves the checks and makes the stored M - 1, the number of the last substep. The flags are
+// later. With OUTPUTS the output word follows the steps: power 0 on a raster line, no reserved bits.
+// One subtractor serves the checks and computes the stored M - 1, the number of the last substep. The flags are
 // stored with it, each direction with its N_i.
 //
 // With STEPS_REGISTER the steps are registered behind their block RAMs, else the address is before them.

@@ -7,14 +7,14 @@
 //                MISO  status  status  status  data x length  crc
 //
 // Promise: a frame is executed whole or not at all, and only once. Each word is stored in the payload buffer and
-// loaded from it onto the bus, where it rotates through the CRC and is checked by its target (`bus_check`). If the
-// CRC matches, no target objects, no state forbids the frame (`bus_busy`) and its sequence number is new, the buffer
-// is replayed to the bus (`bus_write`), one word every 4 clocks. `bus_commit` is high from 35 clocks before the
-// verdict until one clock after the last word; meanwhile the targets hold `bus_busy`. A frame may begin meanwhile;
-// it is ignored if its header is complete before the replay ends, as happens if the master omits trailing words.
+// loaded from it onto the bus, where it rotates through the CRC and is checked by its target (`bus_check`). If the CRC
+// matches, no target refuses a word, no state forbids the frame (`bus_busy`) and its sequence number is new, the
+// buffer is replayed to the bus (`bus_write`), one word every 4 clocks. `bus_commit` is high from 35 clocks before the
+// verdict until one clock after the last word; meanwhile the targets hold `bus_busy`. A frame may begin meanwhile; it
+// is ignored if its header is complete before the replay ends, which happens if the master omits trailing words.
 //
 // Blocks: passo_link_states sequences the frame and times each word, passo_header decodes the header, passo_link_bus
-// makes the bus accesses, passo_verdict judges the frame.
+// generates the bus accesses, passo_verdict checks the frame.
 // Latency: payload word to bus_check 40 clocks, crc word to ack 77 clocks, to the first word of a read 91 clocks.
 // Address and data are stable on the bus from one clock before their strobe (of a check: two clocks), data to one
 // clock after it, the address of a read from 16 clocks before. A target answers one clock after a strobe with claim
@@ -37,7 +37,7 @@ module passo_link (
   output wire [7:0] last_sequence,  // of the last executed write or push
   // bus
   output wire bus_frame,  // strobe: a pass over the payload begins, to check or, in a commit, to write it
-  output wire bus_commit,  // the frame is being judged or executed
+  output wire bus_commit,  // the frame is being checked or executed
   output wire bus_check,  // strobes
   output wire bus_write,
   output wire bus_read,
@@ -49,7 +49,7 @@ module passo_link (
   input wire bus_claim,
   input wire [3:0] bus_refusal,
   input wire [31:0] bus_read_data,
-  input wire bus_counters,  // the address is that of refusal counters, which are kept here
+  input wire bus_counters,  // the address is that of reject counters, which are kept here
   input wire bus_incomplete,  // the payload so far is not whole lines or ramps
   input wire bus_busy  // the state of a target forbids the frame
 );

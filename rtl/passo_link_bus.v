@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Link bus: the words of the frame as bus accesses. Counts and addresses them, and makes the strobes.
+// Link bus: the words of the frame as bus accesses. Counts and addresses them, and generates the strobes.
 //
 // When a header or an ack has rotated (`act`), the header is on `data`: its fields are latched then.
 `resetall

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Link states: which part of a frame the link is at, one-hot, and the clock schedule of its word. Between frames, or
-// when the rest of the frame is ignored, no bit is set.
+// Link states: the current part of the frame, one-hot, and the clock schedule of its word. No bit is set between
+// frames, or while the rest of a frame is ignored.
 //
 //   write, push   header  payload  crc  ack  replay          refused   ack  count
 //   read          header           crc  read  sum            refused   as above, or read  ack  count
 //
-// A committed frame ignores chip select; a frame that begins meanwhile waits (`frame_waits`).
+// A committed frame ignores chip select; a frame that starts meanwhile waits (`frame_waits`).
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none

@@ -3,7 +3,7 @@
 //
 // Promise: `read_data` is the word that `read_address` selected one clock before the last `load`. Without
 // DATA_REGISTER it is the word that `read_address` selected one clock ago, and `load` is ignored. A word read in the
-// clock in which it is written is undefined; nothing here uses one, so synthesis need not add a bypass.
+// clock in which it is written is undefined; nothing here uses it, so synthesis need not add a bypass.
 //
 // Many block RAMs have such a register built in and are slow without it; elsewhere it takes logic cells.
 `resetall

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: MIT
-// Motion: when a channel starts, ends and stops, and why.
+// Motion: start, end and stop of a channel's motions, and the stop cause.
 //
 //   IDLE -> PREPARE -> ARMED -> RUN -> SETTLE -> (DRAIN -> SETTLE) -> IDLE;  anything -> STOPPED -> IDLE
 //
 // Promise: a motion is prepared when `run` is set and a line and a ramp are queued, but not while `hold`. From ARMED
-// it starts when it `may_begin`, at once or, while wait_sync is set, on a sync edge; so ARMED channels start together
-// when one write clears their wait_sync. It ends when its profile has ended and its line has ended (or is ENDLESS);
-// substeps the line still lacks are drained and counted. A stop is soft (the rate goes to 0 first) for COMMAND.STOP,
-// RAMP_UNDERRUN and soft requests of inputs and encoders, else the channel is STOPPED two clocks later. Encoders stop a
-// motion only. On the same clock e-stop has priority, then ABORT, STEP_OVERRUN, hard requests of inputs, those of
-// encoders, LINE_UNDERRUN, a soft stop (STOP, inputs, RAMP_UNDERRUN, encoders); a stop has priority over the end of the
-// motion. A soft stop that is overtaken by a hard one keeps its cause. `drop` is high from e-stop, ABORT or a hard
-// request until no step can be requested any more.
+// it starts when it `may_begin`, immediately or, while wait_sync is set, on a sync edge; so ARMED channels start
+// together when one write clears their wait_sync. It ends when its profile has ended and its line has ended (or is
+// ENDLESS); missing substeps of the line are drained and counted. A stop is soft (the rate goes to 0 first) for
+// COMMAND.STOP, RAMP_UNDERRUN and soft requests of inputs and encoders, else the channel is STOPPED two clocks later.
+// Encoders only stop a motion. On the same clock e-stop has priority, then ABORT, STEP_OVERRUN, hard requests of
+// inputs, those of encoders, LINE_UNDERRUN, a soft stop (STOP, inputs, RAMP_UNDERRUN, encoders); a stop has priority
+// over the end of the motion. A hard stop overrides a soft stop in progress; the first cause is kept. `drop` is high
+// from e-stop, ABORT or a hard request until no further step can be requested.
 //
 // `running` is the motion as seen at the STEP pins: it rises 7 clocks after RUN begins and falls one clock after
-// SETTLE, so that it is high for exactly the length of the profile, and until the last drained step has been made.
+// SETTLE, so that it is high for exactly the length of the profile, and until the last drained step is output.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -54,7 +54,7 @@ module passo_motion (
   input  wire        ramp_ready,
   input  wire        ramp_ended,
   input  wire        ramp_dry,
-  output wire        prepare,           // strobe: take the first line, make the first velocity
+  output wire        prepare,           // strobe: take the first line, compute the first velocity
   output reg         begin_profile,     // strobe
   output wire        drain,
   // line

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Outputs of a channel that are bound to the path: digital outputs, power, raster, compare.
+// Path-synchronized outputs of a channel: digital outputs, power, raster, position compare.
 //
 // The output word of a line: power (15:0), digital outputs (23:16), proportional (24), raster (25).
 //
 // Promise: the word of a line is at the pins 5 + lag clocks after the first substep of the line, that is, lag clocks
 // after its STEP pin, and so is each value of a raster after its substep. The digital outputs keep their levels until
 // another line or `write_levels` changes them. The power pin is low in every clock in which `running` is low, from 7
-// clocks after velocity or rate is 0 or the path waits, when the last step has left, and after `overflow` until `clear`:
-// a change was lost. What waits when the channel stops is dropped. `quiet`, one clock late: no change waits.
+// clocks after velocity or rate is 0 or the path waits, when the last step has left, and after `overflow` (a change
+// was lost) until `clear`. Pending changes are dropped when the channel stops. `quiet`, one clock late: none pending.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Payload: the words of a frame, as half-words so that they take one block RAM, and the word on the bus. Behind them
-// are two words of 4 counters each, of refused frames.
+// are two words of 4 reject counters each.
 //
 // Promise: `store` writes a half-word. `load`, two clocks after `load_low` = 0, then 1 selected the halves of a word,
 // puts this word into `data`, or 0 with `load_zero`. 32 clocks of `rotate` show it at data[31] bit by bit, leave it

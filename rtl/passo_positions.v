@@ -4,19 +4,19 @@
 //
 //   slot = 63      all counters are captured, on one clock (`captured`)
 //   8 slots each   lower half: the captured byte, and a carry or borrow if it has wrapped;
-//                  upper half: what is left of the carry or borrow
+//                  upper half: the remaining carry or borrow
 //
 // Promise: `snapshot` makes one round also copy the positions, as they were in its slot 63: they are coherent. It is
 // the next round, or the one after it if the positions are being zeroed, which takes a round; the copies are complete
-// 194 clocks after `snapshot`, or 258 if `latch` came before it. `position` is the copy of axis `address` once `address`
-// has been stable for 13 clocks.
+// 194 clocks after `snapshot`, or 258 if `latch` came before it. `position` is the copy of axis `address` once
+// `address` has been stable for 13 clocks.
 //
-// `latch` captures all counters at once. The next round, or the one after it if positions are being zeroed, takes them
-// instead of the present ones and copies the positions as they were on the clock of `latch`, complete 130 clocks later
-// (194 with a zero); zeroed meanwhile, they are 0. The round after it covers at most 127 clocks.
+// `latch` captures all counters simultaneously. The next round, or the one after it if positions are being zeroed,
+// takes them instead of the current ones and copies the positions as they were on the clock of `latch`, complete 130
+// clocks later (194 with a zero); zeroed meanwhile, they are 0. The round after it covers at most 127 clocks.
 //
-// Needs no more than n / 2 + 4 steps of an axis in n clocks: so no more than 67 from one update of a position to the
-// next. The upper three bits of a byte tell the direction of a wrap for up to 96.
+// Requires at most n / 2 + 4 steps of an axis in n clocks, so at most 67 between two updates of a position. The upper
+// three bits of a byte give the direction of a wrap for up to 96.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none

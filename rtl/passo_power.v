@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Power in proportion to the velocity: what a clock of the PWM costs.
+// Speed-proportional power: PWM cost per on-clock at the current velocity.
 //
 //   cost = pwm_step * power_reference / (velocity * rate)
 //
-// All of it is bit-serial: products take a clock per bit, the quotient two: one chooses whether to add or to subtract
-// the divisor, the other does so (without restoring). The product of the settings is kept; it is made again when they
-// have been written. Otherwise, over and over while something moves:
+// Everything is bit-serial: products take one clock per bit, the quotient two: one selects whether to add or subtract
+// the divisor, the other does it (non-restoring division). The product of the settings is computed once after they are
+// written. While something moves, this repeats:
 //
-//   clock    0          velocity and rate are sampled, the cost of the round before holds
+//   clock    0          velocity and rate are sampled, the previous cost holds
 //         1 .. 18       velocity * rate, which becomes the divisor
 //        18, 19         the product of the settings becomes the dividend
-//        20 .. 69       the quotient, from its highest bit on: that of a quotient that is too large
+//        20 .. 69       the quotient, MSB first; the MSB is set if it is too large
 //
 // Promise: `cost` follows velocity and rate within 141 clocks, and 28 more when the settings are written. It is the
 // quotient of pwm_step * power_reference / 2, rounded down, and velocity * rate / 2, rounded down; 2^24 - 1 if that is

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Profile: when the axes move. Ramps become a velocity, the velocity becomes substeps. Wiring only.
+// Profile: ramps become a velocity, the velocity becomes substeps. Wiring only.
 //
-// Promise: tick after tick of enabled clocks, substeps come at the velocity of the ramps, in the order of their
-// pushes.
+// Promise: tick after tick of enabled clocks, substeps are output at the velocity of the ramps, in push
+// order.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
-// PWM of one power pin, as an account: each period pays in the duty, each clock on costs the period of that clock, and
-// the pin is on while there is credit.
+// Power PWM with a credit accumulator: each period adds the duty, each on-clock subtracts its cost, and the pin is on
+// while there is credit.
 //
 //   every period of 2^24 / step clocks:  credit += duty * 2^24             duty = (power + power[15]) / 2^16
-//   every clock on:                      credit -= cost                    cost = `step`, or more if in proportion
+//   every on-clock:                      credit -= cost                    cost = `step`, or more if proportional
 //
-// What the last clock on costs too much is missing in the next pulse, so the share of clocks on is duty * step / cost
-// on the average, also where this is not a whole number of clocks or below one clock per period.
+// The excess of a pulse's last clock is carried into the next pulse, so the average share of on-clocks is
+// duty * step / cost, even if that is not a whole number of clocks or below one clock per period.
 //
-// Promise: with `go` low the pin is low from the next clock on. The pin rises on the clock after `go` rises, or two
-// clocks after `restart`, if power is not 0, which begins a period; else only where a period begins, and once in it. With power 0
-// the pin is low, with power 65535 and cost = step it is high on every clock. Step and cost may change at any time.
+// Promise: with `go` low the pin is low from the next clock on. If power is not 0, the pin rises on the clock after
+// `go` rises, or two clocks after `restart`, which starts a period; otherwise only at the start of a period, once.
+// With power 0 the pin is low, with power 65535 and cost = step it is high on every clock. Step and cost may change at
+// any time.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -28,7 +29,7 @@ module passo_pwm (
 );
 
   reg [23:0] phase;  // of the period, one clock ahead
-  reg        fresh;  // nothing is left of before: a period begins, whatever credit and paid are
+  reg        fresh;  // restart: a period begins, regardless of credit and paid
   reg [16:0] paid;  // in this clock, if not fresh: power is that of the clock before
   reg [23:0] cost_now;
   reg [25:0] credit;  // less 1, signed: the pin is on while it is not negative

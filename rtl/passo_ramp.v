@@ -4,10 +4,10 @@
 //
 //   s        = shape(u);  velocity = v_start + floor((v_end - v_start) * s);  u += du      first u = du / 2
 //   mirror:    u runs from 1 to 0, v_start and v_end are swapped
-//   after T ticks the next ramp begins, from exactly v_end; T = 0 sets the velocity at once
+//   after T ticks the next ramp begins, from exactly v_end; T = 0 sets the velocity immediately
 //
 //   velocity   |        ____________
-//              |      /              \            v_start, v_end: of the ramp being made
+//              |      /              \            v_start, v_end: of the current ramp
 //              |    /                  \          velocity_next: of the tick after this one
 //              |__/_____________________ \__
 //                 ramp   ramp (T ticks)  ramp
@@ -15,12 +15,13 @@
 // `prepare` computes the first velocity of a motion, from 0, and raises `ready`; `begin_profile` starts the first
 // tick. On begin_profile and on `tick` velocity_next takes effect; with `ended`, 0.
 // Promise: the end of the LAST ramp raises `ended` in the last enabled clock of its last tick (a profile without
-// ticks: with begin_profile). If the ramps run out at speed, `dry` says so a tick earlier; the velocity then stays,
-// and the next ramp is taken whenever it comes. A NOW ramp that is `coming` keeps the profile from ending until it is
-// queued. `stall` holds back the enable at the end of a tick until the next velocity is ready: late, never lost.
+// ticks: with begin_profile). If the ramps run out at speed, `dry` reports the underrun one tick earlier; the velocity
+// then stays constant, and the next ramp is taken when it arrives. A NOW ramp that is `coming` prevents the profile
+// from ending until it is queued. `stall` holds back the enable at the end of a tick until the next velocity is ready:
+// delayed, never lost.
 //
-// Blocks: passo_ramp_schedule decides what is done when, passo_ramp_strobes in which clock; passo_ramp_numbers and
-// passo_interpolate hold and shift the numbers; passo_ramp_tick hands out the velocities.
+// Blocks: passo_ramp_schedule sequences the stages, passo_ramp_strobes their clocks; passo_ramp_numbers and
+// passo_interpolate hold and shift the numbers; passo_ramp_tick outputs the velocities.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -99,7 +100,7 @@ module passo_ramp #(
   wire [32:0] progress;
   wire        velocity_bit;  // 48 of them, LSB first
 
-  // the ramp being made
+  // the current ramp
   reg        mirror;
   reg  [1:0] shape;
   wire       linear = shape == SHAPE_LINEAR;

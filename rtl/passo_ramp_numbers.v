@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Numbers of the ramp being made: start velocity, progress, ticks. What is constant (end velocity, progress step,
-// length) stays in the ramp queue and is read from there in half-words.
+// Numbers of the current ramp: start velocity, progress, ticks. The constants (end velocity, progress step, length)
+// stay in the ramp queue and are read from there in half-words.
 //
-//   v_start   shifts by a half-word to load v_end, by a bit to be read (48 clocks bring it round)
+//   v_start   shifts by a half-word to load v_end, by a bit to be read (a full turn takes 48 clocks)
 //   u         in units of 2^-49, so that du / 2 is a whole number: u += du / 2 in 3 half-words, lowest first
 //   ticks     counts up from -1 - T; `over` when 1 has been added T + 1 times
 //

@@ -4,7 +4,7 @@
 //   stage    clocks        what happens                            next stage
 //   CHOOSE   while `waits` nothing                                 NOW ramp pending: COPY; a ramp is loaded: LOOK_UP,
 //            then 1                                                LINEAR: SCALE; a ramp waits: FETCH; none: SCALE
-//   COPY     24            v_start = present velocity              CHOOSE
+//   COPY     24            v_start = current velocity              CHOOSE
 //   FETCH    8; T = 0: 7   ticks, control word, u = du / 2         CHOOSE; T = 0: TAKE
 //   LOOK_UP  until served  two points of the table                 SHAPE
 //   SHAPE    19            s = shape(u)                            SCALE
@@ -23,7 +23,7 @@ module passo_ramp_schedule (
   input wire rst,
   input wire prepare,  // a motion begins: COPY
   input wire waits,  // no velocity is needed
-  // ramp being made
+  // current ramp
   input wire control_load,
   input wire control_last,  // LAST of its control word
   input wire linear,

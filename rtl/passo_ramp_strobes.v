@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Ramp strobes: what shifts in which clock of which stage.
+// Ramp strobes: which register shifts in which clock of which stage.
 //
 // Strobes and half-word index are registered: they act one clock after their count. A half-word comes from the queue
 // three clocks after its index, so the strobe that uses it is three counts after the index. The last clock of each

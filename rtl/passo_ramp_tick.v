@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Ramp tick: where one velocity ends and the next begins.
+// Ramp tick: end of one velocity and start of the next.
 //
-//   advance        _|-|_|-|_ ... _|-|_|-|_____|-|_|-|_      2^TICK_LOG2 of them make a tick
+//   advance        _|-|_|-|_ ... _|-|_|-|_____|-|_|-|_      a tick has 2^TICK_LOG2
 //   tick_ends      ________________|---|_____|---|____      in the last clock of the tick, if a velocity is ready
-//   stall          _____________________|----|________      in the last clock, while none is: nothing is lost
+//   stall          _____________________|----|________      in the last clock, while none is ready
 //
 // A computed velocity is `ready` until it is taken: by begin_profile, then at the end of each tick. After
 // `profile_over` the next one taken is the end of the profile (`ends_next`, `ended`).

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Raster: a queue of 8-bit values, four to a word, and which substep takes the next one.
+// Raster: a queue of 8-bit values, four per word, and the substeps that take them.
 //
 // Promise: in a raster line the first substep takes a value and every `pitch` substeps after it the next, lowest byte
-// of a word first; a line begins with a whole word, and what its predecessor left of one is dropped. `take` is high in
-// the clock of such a substep, `value` is what it takes: 0 from an empty queue, and then `missed` is high one clock
-// later. `first` is high for the first substep of any line. A change of `pitch` counts from the next value on.
-// `room` excludes all words of a frame from one clock after its commit begins to write. `flush` drops everything
-// written. Substeps are at least 2 clocks apart.
+// of a word first; a line begins with a whole word; the rest of its predecessor's last word is dropped. `take` is high
+// in the clock of such a substep, `value` is what it takes: 0 from an empty queue, and then `missed` is high one clock
+// later. `first` is high for the first substep of any line. A change of `pitch` counts from the next value on. `room`
+// excludes all words of a frame from one clock after its commit begins to write. `flush` drops everything written.
+// Substeps are at least 2 clocks apart.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reply: the next word to send, loaded at once or built bit by bit.
+// Reply: the next word to send, loaded in parallel or built bit by bit.
 //
 // Promise: `take` loads `data`, in one clock. 32 clocks of `shift` with `bit_index` 0 .. 31 rotate the word and show
 // it at `top`, bit by bit; or, with `acknowledge`, `crc_next` or `counters`, replace it by the acknowledge, the CRC

@@ -15,7 +15,7 @@
 //   reply_word  may change from half_valid of a second half until the next word's last falling edge: 125 clocks.
 //   frame_start comes 2 to 3 clocks after chip select falls; reply_word must be stable at the first falling edge of
 //         SCLK, so chip select must fall at least 3 clocks before the first rising edge.
-//   chip select must be high for 2 clocks between two frames, or the second one is taken for part of the first.
+//   chip select must be high for 2 clocks between two frames, or the second one is taken as part of the first.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -36,7 +36,7 @@ module passo_spi (
   input  wire [31:0] reply_word
 );
 
-  // Chip select resets bits and words asynchronously and is also data: for the toggle and, through a synchroniser,
+  // Chip select resets bits and words asynchronously and is also data: for the toggle and, through a synchronizer,
   // for clk.
   /* verilator lint_off SYNCASYNCNET */
 
@@ -86,7 +86,7 @@ module passo_spi (
       half        <= first_word ? {shift[13:0], mosi_late, mosi} : {shift[14:0], mosi};
     end
 
-  // clk domain. Both synchronisers run during reset, so that it leaves no false edge behind: a frame begins only when
+  // clk domain. Both synchronizers run during reset, so that it leaves no false edge behind: a frame begins only when
   // chip select falls.
   (* async_reg = "true" *)
   reg [2:0] select_sync;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Time scale: the clock enable of the profile. Feed hold, resume, override and soft stop change only this, so the
-// pulse sequence is the same under any of them.
+// Time scale: the clock enable of the profile. Feed hold, resume, override and soft stop change only this, so none
+// of them changes the pulse sequence.
 //
 //   rate_sum += rate;  enable = carry out              rate = 1.0 -> every clock, rate = 0 -> none
-//   rate moves toward the goal by the slew every 2^TICK_LOG2 real clocks (`slew_tick`), and onto it when it is nearer
+//   rate moves toward the goal by the slew every 2^TICK_LOG2 real clocks (`slew_tick`), and onto it when it is closer
 //   goal = rate_target, or 0 when stopping
 //   outside a motion rate = rate_target, 2 clocks later
 //

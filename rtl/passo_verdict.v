@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Verdict on the frame being received. BAD_CRC has priority, then the header decode, then the first objection of a
-// target, then BAD_LENGTH of a push that is not whole, then BUSY.
+// Response code of the frame being received. BAD_CRC has priority, then the header decode, then the first check
+// failure of a target, then BAD_LENGTH of a push that is not whole, then BUSY.
 //
 // Promise: one clock after the strobe `header`, `verdict` is that of the header decode; one clock after the strobe
-// `conclude`, that of the whole frame. In between the first objection to a word counts: the answer to `bus_check`
-// comes one clock after the strobe and is judged in the next; that to the first word of a read is ready in
+// `conclude`, that of the whole frame. In between, the first check failure counts: the answer to `bus_check`
+// comes one clock after the strobe and is evaluated in the next; that to the first word of a read is ready in
 // `read_answered`. `verdict_ok`: the verdict is OK; `executes`: it would be OK if the frame ended now.
 `resetall
 `timescale 1ns / 1ps

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Watchdog: stops the motions when the host falls silent.
+// Watchdog: soft-stops motions when no frame arrives in time.
 //
-// Times are in units of 2^UNIT_LOG2 clocks from the last `feed`. Promise: with stop_after 0 it does nothing. `stop` rises when
-// stop_after units are over and a motion runs, not earlier; `disable_drives` disable_after units after that, but not
-// with disable_after 0. Both last until the next `feed`.
+// Times are in units of 2^UNIT_LOG2 clocks from the last `feed`. Promise: with stop_after 0 it is off. `stop` rises
+// when stop_after units are over and a motion runs, not earlier; `disable_drives` disable_after units after that,
+// unless disable_after is 0. Both last until the next `feed`.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Words: the host interface for a bus in the same FPGA. A master writes and reads the words of a frame, which proceed
-// as if they came over SPI at clk / 4.
+// Words: host interface for a bus in the same FPGA. A master writes and reads the words of a frame, which are
+// processed as if they came over SPI at clk / 4.
 //
-//   address 0  SELECT  bit 0: a frame is open, as by chip select; bit 1, read only: the next access need not wait
+//   address 0  SELECT  bit 0: a frame is open, like chip select; bit 1, read only: the next access need not wait
 //   address 1  WORD    write: the next word of the frame; read: the word exchanged for it
 //
 // Promise: `request` and its access are held until `done`, which is high for one clock; `error` and `read_data` are

@@ -12,7 +12,7 @@ from tests.helpers.plans import planner
 
 @pytest.fixture
 def c() -> Any:
-    """The planner, built such that undefined behaviour is fatal."""
+    """The planner, built such that undefined behavior is fatal."""
     return planner()
 
 

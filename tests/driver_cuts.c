@@ -725,11 +725,11 @@ static void judge(bool good, const char *what)
 
 static bool is_known(void)
 {
-	return passo->belief == PASSO_BELIEF_READY;
+	return passo->assumed == PASSO_ASSUMED_READY;
 }
 
 /* Checks that the state assumed by the driver matches the core. */
-static void judge_beliefs(void)
+static void judge_assumed(void)
 {
 	const struct passo_channel *channel = &world.core.channel[0];
 	const struct effect now = effect_now();
@@ -746,13 +746,13 @@ static void judge_beliefs(void)
 		                && memcmp(now.points[bank], after.points[bank], sizeof now.points[bank]) == 0,
 		    "tables");
 	}
-	if (passo->belief == PASSO_BELIEF_NOT_OPEN)
+	if (passo->assumed == PASSO_ASSUMED_NOT_OPEN)
 		return;
 	judge(passo_fault(passo) != PASSO_ERROR_NOT_STOPPED && passo_fault(passo) != PASSO_ERROR_NOT_HELD,
 	    "all is acknowledged");
 	judge((now.run | (uint32_t)now.wait_sync << 8) == (world.host.run & 0xFFFFu), "RUN");
 	judge(!is_known() || !now.stopped, "a stop is known");
-	judge(passo->belief != PASSO_BELIEF_STOPPED || now.stopped, "a stop was executed");
+	judge(passo->assumed != PASSO_ASSUMED_STOPPED || now.stopped, "a stop was executed");
 	if (passo_driver_is_broken(passo))
 		return; /* nothing is claimed */
 	judge(now.rate_target == passo_driver_rate(passo), "rate");
@@ -793,7 +793,7 @@ static void judge_effect(enum passo_error error, bool is_motion_free)
 			JUDGE(stopped);
 	}
 	/* restraining commands take effect late, others do not */
-	if (error != PASSO_OK && passo->belief != PASSO_BELIEF_NOT_OPEN) {
+	if (error != PASSO_OK && passo->assumed != PASSO_ASSUMED_NOT_OPEN) {
 		judge(
 		    now.rate_target
 		        == (before.rate_target < after.rate_target ? before.rate_target : after.rate_target),
@@ -813,7 +813,7 @@ static void judge_recovery(void)
 	int32_t net[AXES];
 	enum passo_error error = PASSO_OK;
 
-	if (passo->belief == PASSO_BELIEF_NOT_OPEN)
+	if (passo->assumed == PASSO_ASSUMED_NOT_OPEN)
 		error = open_passo();
 	judge(error == PASSO_OK || error == PASSO_ERROR_MOVING, "open again");
 	if (!is_known()) {
@@ -839,7 +839,7 @@ static void judge_recovery(void)
 	judge(world.pulses[0] == pulses[0] + 7u && world.pulses[1] == pulses[1] + 5u
 	          && world.net[0] == net[0] + 7 && world.net[1] == net[1] - 5,
 	    "the move is made");
-	judge_beliefs();
+	judge_assumed();
 }
 
 /* Plays a call and what follows it, for a long time. */
@@ -849,7 +849,7 @@ static enum passo_error play(enum passo_error (*call)(void), const struct cut *c
 	world.frames = 0;
 	world.dead = false;
 	enum passo_error error = call();
-	judge(passo->belief == PASSO_BELIEF_NOT_OPEN || !is_busy() || passo_is_moving(passo),
+	judge(passo->assumed == PASSO_ASSUMED_NOT_OPEN || !is_busy() || passo_is_moving(passo),
 	    "what moves is known");
 	const unsigned frames = world.frames;
 	if (world.dead && cut->death.patience == POLLS)
@@ -902,9 +902,9 @@ static void play_all(const char *name, void (*prepare)(void), enum passo_error (
 				bad = NULL;
 				world = begin;
 				enum passo_error error = play(call, &cut);
-				judge_beliefs();
+				judge_assumed();
 				if (error != wanted)
-					judge(passo_driver_is_wire(error), "an error of the wire");
+					judge(passo_driver_is_link_error(error), "a link error");
 				if (call == stop || call == hard_stop || call == turn_stop)
 					judge(!is_busy(), "it stops");
 				judge_effect(error == wanted ? PASSO_OK : error,

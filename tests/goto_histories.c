@@ -141,7 +141,7 @@ static int32_t way_to_rest(double speed, double acceleration)
 	return (int32_t)(high * high / acceleration / 2 + high * (world.late + 8 * TICK)) + 6;
 }
 
-/* The axis has been told to go somewhere, or to rest. What it needs to come to rest is allowed, towards where
+/* The axis has been told to go somewhere, or to rest. What it needs to come to rest is allowed, toward where
  * it goes; on both sides while that cannot be seen. */
 static void allow(int32_t target, double acceleration)
 {
@@ -292,7 +292,7 @@ static void command(void)
 	} else if (error == PASSO_ERROR_LATE && world.interrupts != 0u && !world.covered) {
 		seen.late++;
 		if (passo_fault(&world.passo) != PASSO_OK || !passo_is_moving(&world.passo)
-		    || world.passo.belief != PASSO_BELIEF_READY)
+		    || world.passo.assumed != PASSO_ASSUMED_READY)
 			begin_again();
 	} else {
 		blame(passo_error_name(error));
@@ -311,7 +311,7 @@ static void cancel(void)
 
 	allow(world.position, acceleration);
 	if (passo_jog_cancel(&world.passo) != PASSO_OK)
-		blame("cannot be cancelled");
+		blame("cannot be canceled");
 	full_rate();
 	for (unsigned polls = 0; polls < 5000u && passo_is_moving(&world.passo); polls++) {
 		passo_poll(&world.passo);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * All planning functions with arguments of all sizes: plan_fuzz SEED SECONDS.
  *
- * Built with sanitizers it finds undefined behaviour; by itself it finds plans that the core would refuse,
+ * Built with sanitizers it finds undefined behavior; by itself it finds plans that the core would refuse,
  * and errors that modify the plan. Prints how often each function succeeded and failed.
  */
 #include <inttypes.h>

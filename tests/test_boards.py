@@ -79,7 +79,7 @@ def test_every_port_of_a_part_has_a_pin_of_its_own(board: Board, parts: tuple[st
         try:
             there = board.ports(axes, parts)
         except BoardError as error:
-            assert axes > 1 and re.search("are wanted for|is that of", str(error))
+            assert axes > 1 and re.search("are needed for|is already used by", str(error))
             break
         assert sorted(there) == sorted(ports_of_top(board, axes, parts))
         assert board.parameters(axes, parts=parts).items() >= {part.upper(): 1 for part in parts}.items()
@@ -88,26 +88,28 @@ def test_every_port_of_a_part_has_a_pin_of_its_own(board: Board, parts: tuple[st
 def test_parts_are_chosen_by_name(made_up: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Unknown ones, those without pins, too few pins and too many are told."""
     assert synth.main(["--board", "made_up", "--parts", "inputs,lasers"]) == 2
-    assert "no part 'lasers'; choose of inputs, encoders, outputs" in capsys.readouterr().err
+    assert "unknown part 'lasers'; must be one of inputs, encoders, outputs" in capsys.readouterr().err
     assert synth.main(["--board", "made_up", "--parts", "inputs"]) == 2
     assert "'made_up': the table has no pins for part 'inputs'; it has none" in capsys.readouterr().err
     table = MADE_UP + "[encoders]\nencoder_a = [23, 25]\nencoder_b = [26]\nencoder_index = 27\n"
     made_up.write_text(table)
     assert synth.main(["--board", "made_up", "--parts", "encoders"]) == 2
-    told = "board 'made_up': encoders.encoder_index: 27 is not a list of pins"
+    told = "board 'made_up': encoders.encoder_index: must be a list of pins, not 27"
     assert told in capsys.readouterr().err
     made_up.write_text(table.replace("= 27", "= [27]"))
     assert synth.main(["--board", "made_up", "--parts", "inputs"]) == 2
-    assert "for part 'inputs'; there are those of encoders" in capsys.readouterr().err
+    assert "for part 'inputs'; it has pins for encoders" in capsys.readouterr().err
     assert synth.main(["--board", "made_up", "--parts", "encoders"]) == 2
-    assert "encoders.encoder_b: 2 are wanted for 2 axes, the table has 1" in capsys.readouterr().err
+    assert "encoders.encoder_b: 2 are needed for 2 axes, the table has 1" in capsys.readouterr().err
     assert board("made_up").ports(1, ["encoders"])["encoder_index"].pin == "27"
-    with pytest.raises(BoardError, match=r"encoders.encoder_index\[0\]: pin 43 is that of axes\[0\].step"):
+    with pytest.raises(
+        BoardError, match=r"encoders.encoder_index\[0\]: pin 43 is already used by axes\[0\].step"
+    ):
         made_up.write_text(table.replace("= 27", "= [43]"))
         board("made_up").ports(1, ["encoders"])
     made_up.write_text(table.replace("= 27", "= [27, 28, 32]"))
     assert synth.main([]) == 2
-    assert "encoders.encoder_index: 3 pins are too many; it has 2 bits" in capsys.readouterr().err
+    assert "encoders.encoder_index: 3 pins; must be at most 2" in capsys.readouterr().err
 
 
 @each_board
@@ -146,7 +148,7 @@ def test_pll_makes_the_clock(board: Board) -> None:
 
 def test_impossible_clock_is_refused() -> None:
     """No dividers within 1 %."""
-    with pytest.raises(PllError, match="cannot make 700 MHz"):
+    with pytest.raises(PllError, match="cannot generate 700 MHz"):
         dividers(ICE40, 12, 700)
 
 
@@ -287,9 +289,9 @@ def test_boards_are_listed_and_unknown_ones_refused(capsys: pytest.CaptureFixtur
     listed = capsys.readouterr().out
     assert all(board.name in listed and board.title in listed for board in BOARDS)
     assert synth.main(["--board", "nowhere"]) == 2
-    assert "no board 'nowhere'; choose one of" in capsys.readouterr().err
+    assert "unknown board 'nowhere'; must be one of" in capsys.readouterr().err
     assert synth.main(["--board", BOARDS[0].name, "--clock", "5000"]) == 2
-    assert "cannot make 5000 MHz" in capsys.readouterr().err
+    assert "cannot generate 5000 MHz" in capsys.readouterr().err
     for axes in (0, 7):
         assert synth.main(["--board", "icebreaker", "--axes", str(axes)]) == 2
         told = f"board 'icebreaker': axes: {axes} are wanted, and the table has pins for 6"
@@ -448,39 +450,43 @@ capacity = 7680
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [
-        ('title = "Made up"\n', "", "title: missing; it has to be a text"),
+        ('title = "Made up"\n', "", "title: missing; must be a text"),
         ('title = "Made up"', "title = ", "board.toml: Invalid value (at line 1, column 9)"),
-        ('"up5k"', '"up6k"', "device: 'up6k' is not one of hx8k, up5k, ecp5-25, gw1nr-9c"),
-        ('device = "up5k"', 'device = { like = "gw1nr-9c" }', "device.like: the flow knows one Gowin only"),
-        ('device = "up5k"', 'device = { like = "hx8k" }', "device.capacity: missing; it has to be a number"),
-        ('"iceprog"', "7", "load: 7 is not a text"),
-        ('["-s"]', '"-s"', "pack: '-s' is not a list of texts"),
-        ("pack =", "packer =", "packer: there is no such key here; there are axes, clock, device"),
-        ("mhz = 30", "mhz = 0", "clock.mhz: 0 is not a number above 0"),
-        ("mhz = 30", "mhz = true", "clock.mhz: True is not a number above 0"),
-        ('pll = "pad"', 'pll = "rim"', "clock.pll: 'rim' is not one of core, pad"),
-        ('pll = "pad"\n', "", "clock.pll: missing; it has to be one of core, pad"),
-        ('device = "up5k"', 'device = "ecp5-25"', "clock.pll: there is no such key here"),
-        ("pin = 35\n", "", "clock.pin: missing; it has to be the name or number of a pin"),
-        ("sync = 48\n", "", "pins.sync: missing; it has to be the name or number of a pin"),
-        ("sync = 48", "sync = 4", "pins.sync: pin 4 is that of pins.spi_cs_n already"),
-        ("sync = 48", 'sync = "35"', "pins.sync: pin 35 is that of clock.pin already"),
-        ("sync = 48", "sync = 36", "axes[1].dir: pin 36 is that of pins.sync already"),
-        ("sync = 48", 'sync = "4 8"', "pins.sync: '4 8' is not the name or number of a pin"),
-        ("sync = 48", "sync = 4.8", "pins.sync: 4.8 is not the name or number of a pin"),
-        ("sync = 48", "sync = 48\nsink = 49", "pins.sink: there is no such key here; there are irq, led"),
+        ('"up5k"', '"up6k"', "device: must be one of hx8k, up5k, ecp5-25, gw1nr-9c, not 'up6k'"),
+        (
+            'device = "up5k"',
+            'device = { like = "gw1nr-9c" }',
+            "device.like: the flow supports one Gowin device only",
+        ),
+        ('device = "up5k"', 'device = { like = "hx8k" }', "device.capacity: missing; must be a number"),
+        ('"iceprog"', "7", "load: must be a text, not 7"),
+        ('["-s"]', '"-s"', "pack: must be a list of texts, not '-s'"),
+        ("pack =", "packer =", "packer: unknown key; must be one of axes, clock, device"),
+        ("mhz = 30", "mhz = 0", "clock.mhz: must be a number above 0, not 0"),
+        ("mhz = 30", "mhz = true", "clock.mhz: must be a number above 0, not True"),
+        ('pll = "pad"', 'pll = "rim"', "clock.pll: must be one of core, pad, not 'rim'"),
+        ('pll = "pad"\n', "", "clock.pll: missing; must be one of core, pad"),
+        ('device = "up5k"', 'device = "ecp5-25"', "clock.pll: unknown key"),
+        ("pin = 35\n", "", "clock.pin: missing; must be the name or number of a pin"),
+        ("sync = 48\n", "", "pins.sync: missing; must be the name or number of a pin"),
+        ("sync = 48", "sync = 4", "pins.sync: pin 4 is already used by pins.spi_cs_n"),
+        ("sync = 48", 'sync = "35"', "pins.sync: pin 35 is already used by clock.pin"),
+        ("sync = 48", "sync = 36", "axes[1].dir: pin 36 is already used by pins.sync"),
+        ("sync = 48", 'sync = "4 8"', "pins.sync: must be the name or number of a pin, not '4 8'"),
+        ("sync = 48", "sync = 4.8", "pins.sync: must be the name or number of a pin, not 4.8"),
+        ("sync = 48", "sync = 48\nsink = 49", "pins.sink: unknown key; must be one of irq, led"),
         ("sync = 48", 'sync = { pull = "up" }', "pins.sync.pin: missing"),
-        ("sync = 48", 'sync = { pin = 48, pull = "down" }', "pins.sync.pull: 'down' is not one of up"),
-        ("sync = 48", "sync = { pin = 48, inverted = true }", "pins.sync.inverted: there is no such key"),
-        ("sync = 48", 'sync = { pin = 48, io_type = "LVDS" }', "pins.sync.io_type: there is no such key"),
-        ("inverted = true", "inverted = 1", "pins.running.inverted: 1 is not true or false"),
-        (", enable = 21 }", " }", "axes[0].enable: missing; it has to be the name or number of a pin"),
-        ("enable = 21 }", "enable = 21, home = 20 }", "axes[0].home: there is no such key here"),
-        (AXES, "axes = []\n", "axes: [] is not a list of"),
-        ("step = 1", "step = 2", "reset.step: 2 is not 0 or 1, or a list of 2 of these"),
-        ("[0, 1]", "[0, 1, 1]", "reset.enable: [0, 1, 1] is not 0 or 1, or a list of 2 of these"),
-        ("step = 1", "spi = 1", "reset.spi: there is no such key here; there are dir, enable, step"),
-        ("[pins]", "[pin]", "pins: missing; it has to be a table"),
+        ("sync = 48", 'sync = { pin = 48, pull = "down" }', "pins.sync.pull: must be one of up, not 'down'"),
+        ("sync = 48", "sync = { pin = 48, inverted = true }", "pins.sync.inverted: unknown key"),
+        ("sync = 48", 'sync = { pin = 48, io_type = "LVDS" }', "pins.sync.io_type: unknown key"),
+        ("inverted = true", "inverted = 1", "pins.running.inverted: must be true or false, not 1"),
+        (", enable = 21 }", " }", "axes[0].enable: missing; must be the name or number of a pin"),
+        ("enable = 21 }", "enable = 21, home = 20 }", "axes[0].home: unknown key"),
+        (AXES, "axes = []\n", "axes: must be a list of tables, not []"),
+        ("step = 1", "step = 2", "reset.step: must be 0 or 1, or a list of 2 of these, not 2"),
+        ("[0, 1]", "[0, 1, 1]", "reset.enable: must be 0 or 1, or a list of 2 of these, not [0, 1, 1]"),
+        ("step = 1", "spi = 1", "reset.spi: unknown key; must be one of dir, enable, step"),
+        ("[pins]", "[pin]", "pins: missing; must be a table"),
     ],
 )
 def test_bad_table_is_refused(
@@ -499,5 +505,7 @@ def test_bad_table_is_refused(
 def test_clock_of_a_table_that_no_pll_makes_is_refused(made_up: Path) -> None:
     """The table is at fault then, not who called."""
     made_up.write_text(MADE_UP.replace("mhz = 30", "mhz = 700"))
-    with pytest.raises(TableError, match=r"'made_up': clock\.mhz: the PLL cannot make 700 MHz of 12 MHz"):
+    with pytest.raises(
+        TableError, match=r"'made_up': clock\.mhz: the PLL cannot generate 700 MHz from 12 MHz"
+    ):
         board("made_up").parameters()

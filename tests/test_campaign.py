@@ -385,7 +385,7 @@ def test_a_running_cluster(client: Any, tmp_path: Path) -> None:
         (["--moves", "5", "--first", "-1"], "--first must be at least 0, not -1"),
         (["--moves", "5", "--engine", "both"], "--engine must be one of model, rtl, not both"),
         (["--moves", "5", "--jobs", "0"], "--jobs must be at least 1, not 0"),
-        (["--moves", "5", "--jobs", "1", "--scheduler", "tcp://127.0.0.1:9"], "exclude each other"),
+        (["--moves", "5", "--jobs", "1", "--scheduler", "tcp://127.0.0.1:9"], "are mutually exclusive"),
         (["--moves", "5", "--scheduler", "tcp://127.0.0.1:9"], "tcp://127.0.0.1:9: no scheduler answers"),
         (["--moves", "5", "--scheduler", "nothing"], "--scheduler nothing: "),
         (["--moves", "5", "--out", "/dev/null"], "--out /dev/null: "),

@@ -193,7 +193,7 @@ def test_moves_are_queued_behind_each_other(bench: Bench) -> None:
 
 SHORT = "move steps=2,-1 profile=linear total_time=0.001 ramp_time=0.0003"
 LONG = "move steps=100 profile=linear total_time=1 ramp_time=0.2"
-WAITING = "error: WAITING: a move waits for room: send {} after its answer\n"
+WAITING = "error: WAITING: a move waits for queue space: send {} after its answer\n"
 MANY = int(os.environ.get("PASSO_CONSOLE_LINES", "1000"))
 
 
@@ -753,7 +753,7 @@ def test_a_refused_setting_changes_nothing(bench: Bench) -> None:
         == "error: both_edges must be 0 to 1"
     )
     assert bench.ask("config hold_time=1ms stop_time=x") == "error: stop_time must be a number, not 'x'"
-    assert bench.ask("config hold_time=1ms baud=115200") == "error: this console has no board"
+    assert bench.ask("config hold_time=1ms baud=115200") == "error: not available without a board"
     assert (bench.ask("config axis=2"), bench.ask("config")) == before
 
 
@@ -824,8 +824,8 @@ def test_table_is_checked(bench: Bench) -> None:
     assert bench.ask("table") == "error: table is missing"
     user = "move steps=10 profile=user total_time=0.01 ramp_time=0.002"
     assert bench.ask(user) == "error: table is missing"
-    assert bench.ask("table 3") == "error: row and points belong together"
-    assert bench.ask(f"table points={ZEROS}") == "error: row and points belong together"
+    assert bench.ask("table 3") == "error: row and points need each other"
+    assert bench.ask(f"table points={ZEROS}") == "error: row and points need each other"
     for row in range(16):
         points = ",".join(str((row * 16 + k) * 256) for k in range(16))
         assert bench.ask(f"table {row} {points}") == "ok"
@@ -986,7 +986,7 @@ def test_backspace_takes_a_character_back(bench: Bench) -> None:
 def test_a_byte_that_is_no_text_spoils_its_line(bench: Bench, byte: int) -> None:
     """The line is refused with the byte's number; the next one is good."""
     bench.terminal.type(b"zero" + bytes([byte]) + b"\nposition\n")
-    assert bench.take() == f"error: character {byte} is not text\nok position=0,0,0,0\n"
+    assert bench.take() == f"error: character {byte} is not printable\nok position=0,0,0,0\n"
 
 
 def test_a_lost_byte_spoils_its_line(bench: Bench) -> None:
@@ -1009,11 +1009,11 @@ def test_lines_have_255_characters(bench: Bench) -> None:
         ("bla", "error: unknown command 'bla'; help lists the commands"),
         ("move=3", "error: unknown command 'move'; help lists the commands"),
         ("hold now", "error: 'now' is not key=value"),
-        ("open it=now", "error: no key 'it' here"),
-        ("hold it=now", "error: unknown key 'it'; known are channel"),
-        ("override 50 percent=60", "error: percent is given twice"),
-        ("move steps=1 steps=2", "error: steps is given twice"),
-        ("override =5", "error: no key before ="),
+        ("open it=now", "error: key 'it' not allowed here"),
+        ("hold it=now", "error: unknown key 'it'; must be one of channel"),
+        ("override 50 percent=60", "error: duplicate key percent"),
+        ("move steps=1 steps=2", "error: duplicate key steps"),
+        ("override =5", "error: missing key before ="),
         ("override 50.0", "error: percent must be a whole number, not '50.0'"),
         ("override percent=", "error: percent must be a whole number, not ''"),
         ("move " + "a " * 24, "error: more than 24 words"),
@@ -1024,14 +1024,14 @@ def test_lines_have_255_characters(bench: Bench) -> None:
         ("move method=straight distance=1,a,3", "error: distance must be a number, not 'a'"),
         ("config axis=0 step_high=1h", "error: step_high must be a number, not '1h'"),
         ("config hold_time=5clocks", "error: hold_time must be in s, ms, us or ns, not '5clocks'"),
-        ("config axis=0 step_high=0", "error: step_high is 0 clocks, 1 to 65535 are possible"),
-        ("config axis=0 step_low=0us", "error: step_low is 0 clocks, 1 to 65535 are possible"),
-        ("config axis=0 dir_setup=0clocks", "error: dir_setup is 0 clocks, 1 to 65535 are possible"),
-        ("config axis=0 dir_hold=65536clocks", "error: dir_hold is 65536 clocks, 1 to 65535 are possible"),
+        ("config axis=0 step_high=0", "error: step_high is 0 clocks; must be 1 to 65535"),
+        ("config axis=0 step_low=0us", "error: step_low is 0 clocks; must be 1 to 65535"),
+        ("config axis=0 dir_setup=0clocks", "error: dir_setup is 0 clocks; must be 1 to 65535"),
+        ("config axis=0 dir_hold=65536clocks", "error: dir_hold is 65536 clocks; must be 1 to 65535"),
         ("config flow=stop", "error: flow must be wait or refuse, not 'stop'"),
         (
             "config x=5",
-            "error: unknown key 'x'; known are clock_hz, hold_time, stop_time, flow, need_enable, baud, "
+            "error: unknown key 'x'; must be one of clock_hz, hold_time, stop_time, flow, need_enable, baud, "
             "spi_slow, input_filter, watchdog, watchdog_disable",
         ),
     ],

@@ -19,7 +19,7 @@ ENCODER = "encoder axis=0 counts_per_step=4 limit=20"
 PER_TURN = 400
 RPM = 600
 THREAD = f"thread encoder=2 counts_per_turn={PER_TURN} steps=1000,-333 turns=5 top_rpm=700"
-FOLLOWING = "note: FOLLOWING: stopped: an axis was too far from its encoder, or from its thread\n"
+FOLLOWING = "note: FOLLOWING: stopped: following error over its limit, or thread lost the spindle phase\n"
 
 
 @pytest.fixture
@@ -64,7 +64,7 @@ def test_a_core_without_encoders_says_so() -> None:
         ("encoder filter=256", "ENCODER_FILTER: "),
         ("encoder filter=4294967296", "filter must be 0 to 4294967295"),
         ("encoder filter=-1", "filter must be 0 to "),
-        ("encoder axis=0 filter=1", "axis and filter exclude each other"),
+        ("encoder axis=0 filter=1", "axis and filter are mutually exclusive"),
         ("encoder counts_per_step=1", "axis is missing"),
         ("encoder axis=4 counts_per_step=1", "axis must be 0 to 3"),
         ("encoder axis=0 counts_per_step=0", "RATIO: "),
@@ -74,8 +74,8 @@ def test_a_core_without_encoders_says_so() -> None:
         ("encoder axis=0 counts_per_step=65536", "counts_per_step must be below 65536"),
         ("encoder axis=0 counts_per_step=4 limit=0", "FOLLOWING_LIMIT: "),
         ("encoder axis=0 counts_per_step=4 limit=0.1", "FOLLOWING_LIMIT: "),
-        ("encoder axis=0 counts_per_step=4 limit=16384", "limit is more than 65535 counts"),
-        ("encoder axis=0 counts_per_step=4 limit=4294967295", "limit is more than 65535 counts"),
+        ("encoder axis=0 counts_per_step=4 limit=16384", "limit must be at most 65535 counts"),
+        ("encoder axis=0 counts_per_step=4 limit=4294967295", "limit must be at most 65535 counts"),
         ("encoder axis=0 counts_per_step=4 stop=hard", "stop needs limit"),
         (
             "encoder axis=0 counts_per_step=4 limit=5 stop=now",
@@ -88,7 +88,7 @@ def test_a_core_without_encoders_says_so() -> None:
         (THREAD.replace("1000", "1073741824"), "axis 0 has too many steps"),
         (THREAD.replace("turns=5", "turns=0"), "NO_COUNTS: "),
         (THREAD.replace("turns=5", "turns=0.01"), "STEEP: "),
-        (THREAD.replace("turns=5", "turns=4e9"), "turns are more than 4294967295 counts"),
+        (THREAD.replace("turns=5", "turns=4e9"), "turns must be at most 4294967295 counts"),
         (THREAD.replace("top_rpm=700", "top_rpm=0"), "FOLLOW_SPEED: "),
         (THREAD.replace("top_rpm=700", "top_rpm=4e9"), "FOLLOW_SPEED: "),
         (THREAD.replace("top_rpm=700", "top_rpm=2e5"), "PINS_TOO_SLOW: "),
@@ -318,7 +318,7 @@ def test_the_command_has_a_core_with_encoders() -> None:
         (["--encoders", "--spindle", "0:60"], "a spindle is AXIS:RPM:COUNTS_PER_TURN"),
         (["--encoders", "--spindle", "0:60:3"], "with 4 to 65535 counts"),
         (["--encoders", "--spindle", "0:0:400"], "a spindle is AXIS:RPM:COUNTS_PER_TURN"),
-        (["--encoders", "--spindle", "0:60000:65535"], "a count in 1.53 clocks, 8 are needed"),
+        (["--encoders", "--spindle", "0:60000:65535"], "one count every 1.53 clocks; must be at least 8"),
         (["--encoders", "--encoder", "0:4", "--spindle", "0:60:400"], "an axis has one encoder"),
     ],
 )

@@ -16,7 +16,7 @@ TERMINAL = paths.engine / "passo_terminal.c"
 
 
 def test_every_line_gets_one_answer(tmp_path: Path) -> None:
-    """Any input in any state of the core: one `ok` or `error:`, no undefined behaviour."""
+    """Any input in any state of the core: one `ok` or `error:`, no undefined behavior."""
     program = sanitized.program(tmp_path / "fuzz", paths.tests / "console_fuzz.c", FOLDERS, TERMINAL)
     done = subprocess.run([program, SEED, SECONDS], capture_output=True, text=True, timeout=600)
     print(f"seed {SEED}, {SECONDS} s\n{done.stdout}")

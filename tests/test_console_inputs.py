@@ -78,7 +78,7 @@ def test_only_the_inputs_that_are_given_change(bench: Bench) -> None:
         "error: limit_low must be one of none|active_high|active_low, not 'maybe'"
     )
     assert bench.ask("input home=active_low") == "error: axis is missing"
-    assert bench.ask("input axis=1 probe=active_low") == "error: axis and probe exclude each other"
+    assert bench.ask("input axis=1 probe=active_low") == "error: axis and probe are mutually exclusive"
     assert bench.ask("input probe=none") == "error: probe must be active_high or active_low"
 
 
@@ -102,7 +102,7 @@ def test_lines_during_a_home(bench: Bench) -> None:
     status = bench.take()
     assert "moving=1" in status and "waiting=1" in status
     bench.terminal.type(b"move steps=5 profile=linear total_time=1 ramp_time=0.1\n")
-    assert bench.take() == "error: WAITING: home is under way: send move after its answer\n"
+    assert bench.take() == "error: WAITING: home is in progress: send move after its answer\n"
     bench.terminal.type(b"stop\n")
     assert bench.take() == "ok\n"
     bench.terminal.wait()
@@ -117,7 +117,7 @@ def test_lines_during_a_home(bench: Bench) -> None:
 def test_a_home_that_fails_is_told_once(bench: Bench) -> None:
     """In its answer, not in a note as well; the next home is not blamed for it."""
     bench.terminal.line(f"{HOME} distance=-100")
-    assert bench.take() == ("error: SWITCH_MISSED: the switch or probe did not change within the distance\n")
+    assert bench.take() == ("error: SWITCH_MISSED: the switch or probe did not trigger within the distance\n")
     assert bench.ask(f"{HOME} distance=-3000") == "ok"
     assert bench.ask(f"{HOME.replace('axis=0', 'axis=1')} distance=-1").startswith("error: NO_SWITCH: ")
     assert bench.ask(f"{HOME} distance=0").startswith("error: NO_DISTANCE: ")
@@ -179,10 +179,10 @@ def test_jog_changes_its_speed_and_ends_when_told(bench: Bench) -> None:
     assert way == pytest.approx(-1000 * 0.1 - 3000 * 0.2, rel=0.2)
     assert bench.tell("status")["state"] == "IDLE"
     assert bench.ask("jog_cancel") == "ok"
-    assert bench.ask(f"{JOG} steps=0") == "error: steps is 0; without it a jog is endless"
-    assert bench.ask(f"{JOG} steps=5 backwards=1") == "error: steps and backwards exclude each other"
+    assert bench.ask(f"{JOG} steps=0") == "error: steps must not be 0; omit it for an endless jog"
+    assert bench.ask(f"{JOG} steps=5 backwards=1") == "error: steps and backwards are mutually exclusive"
     assert bench.ask(f"{JOG} steps=1.5") == "error: steps must be a whole number, not '1.5'"
-    assert bench.ask(f"{JOG} steps=1073741824") == "error: steps is beyond 1073741823"
+    assert bench.ask(f"{JOG} steps=1073741824") == "error: steps must be at most 1073741823 in magnitude"
 
 
 def test_wait_for_a_trigger(bench: Bench) -> None:
@@ -190,9 +190,7 @@ def test_wait_for_a_trigger(bench: Bench) -> None:
     assert bench.ask("wait_trigger").startswith("error: NO_SOURCE: ")
     assert bench.ask(TRIGGER) == "ok"
     assert bench.tell("trigger")["armed"] == "1"
-    assert bench.ask("wait_trigger 50ms") == (
-        "error: TIMEOUT: the trigger has not fired in time and stays armed"
-    )
+    assert bench.ask("wait_trigger 50ms") == ("error: TIMEOUT: the trigger has not fired and stays armed")
     assert bench.ask(f"{JOG} steps=-700") == "ok"
     assert bench.tell("wait_trigger")["position"] == "-500,0,0,0"
     assert bench.tell("status")["moving"] == "1"

@@ -79,7 +79,7 @@ def test_the_keys_of_a_move_are_those_of_move_files(bench: Bench) -> None:
 
     for rule in form.rules:
         if rule.kind == "excludes":
-            said = f"error: output.{rule.key} and output.{rule.other} exclude each other"
+            said = f"error: output.{rule.key} and output.{rule.other} are mutually exclusive"
             assert ask(rule.key, rule.other) == said
         elif rule.kind == "needs":
             assert ask(rule.key) == f"error: output.{rule.key} needs output.{rule.other}"
@@ -97,10 +97,10 @@ def test_the_keys_of_a_move_are_those_of_move_files(bench: Bench) -> None:
         ("output.power=-1", "output.power must not be negative"),
         ("output.raster=1,256", "output.raster must be 0 to 255"),
         ("output.raster=1,,2", "output.raster must be a whole number, not ''"),
-        ("output.raster=" + ",".join("1" * 50), "output.raster has 50 values, the move takes 40"),
+        ("output.raster=" + ",".join("1" * 50), "output.raster has 50 values; the move takes 40"),
         ("output.raster=1 output.pitch=0", "output.pitch must be 1 to 1073741823"),
-        ("output.power=5 output.power=6", "output.power is given twice"),
-        ("output.powr=5", "unknown key 'output.powr'; known are output.levels, output.power, "),
+        ("output.power=5 output.power=6", "duplicate key output.power"),
+        ("output.powr=5", "unknown key 'output.powr'; must be one of output.levels, output.power, "),
         ("power=5", "unknown key 'power'"),
         ("output.power=50 output.speed=3000", "ABOVE_REFERENCE: "),
     ],
@@ -117,7 +117,7 @@ def test_what_a_move_refuses(bench: Bench, keys: str, problem: str) -> None:
 def test_more_values_than_a_line_can_have(bench: Bench) -> None:
     """128 at most."""
     said = bench.ask(f"move steps=9 profile=linear speed=9 acceleration=9 output.raster={',' * 128}")
-    assert said == "error: output.raster has 129 values, 1 to 128 are possible"
+    assert said == "error: output.raster has 129 values; must be 1 to 128"
 
 
 @pytest.mark.parametrize(
@@ -139,7 +139,7 @@ def test_more_values_than_a_line_can_have(bench: Bench) -> None:
         ("compare", "position is missing"),
         ("compare position=5", "interval is missing"),
         ("compare position=5 interval=5", "width is missing"),
-        ("compare 0 position=5", "compare 0 ends all pulses: it has no points"),
+        ("compare 0 position=5", "compare 0 disarms; it takes no other keys"),
     ],
 )
 def test_what_the_settings_refuse(bench: Bench, line: str, problem: str) -> None:
@@ -275,7 +275,7 @@ def test_a_raster_of_a_straight_line_in_millimetres(bench: Bench) -> None:
     pins = Pins(bench)
     assert pins.at("power", [pins.rises("step", 1)[i] for i in (15, 45, 75)]) == [1, 0, 1]
     said = bench.ask(f"{line} output.raster=1,2,3,4 output.pitch=30")
-    assert said == "error: output.raster has 4 values, the move takes 3"
+    assert said == "error: output.raster has 4 values; the move takes 3"
 
 
 def test_compare_pulses_on_exact_steps(bench: Bench) -> None:

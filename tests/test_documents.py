@@ -2,6 +2,7 @@
 """What the documents say that can be checked: worked frames, names of errors and calls, links."""
 
 import re
+import sys
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,9 @@ from passo.link import GAP, error_name
 from passo.moves import PIN_CLOCKS_MAX
 from passo.native import planner
 from passo.toolchain import paths
+
+sys.path.insert(0, str(paths.tools))
+import count_words
 
 PAGES = sorted((*paths.docs.rglob("*.md"), *paths.root.glob("*.md")))
 TROUBLE = paths.docs / "trouble.md"
@@ -26,9 +30,9 @@ MOTION_CLOCKS = 1_100_000
 
 
 def frames() -> list[tuple[list[int], list[int]]]:
-    """The worked frames of architecture.md: the words of MOSI and MISO."""
-    text = (paths.docs / "architecture.md").read_text()
-    (block,) = re.findall(r"^\*\*Worked frames\.\*\*.*?^```text\n(.*?)^```", text, re.M | re.S)
+    """The worked frames of link.md: the words of MOSI and MISO."""
+    text = (paths.docs / "link.md").read_text()
+    (block,) = re.findall(r"^## Worked frames.*?^```text\n(.*?)^```", text, re.M | re.S)
     words = r"((?: +[0-9a-f]{8}|\n     )+)\n"
     return [
         ([int(word, 16) for word in mosi.split()], [int(word, 16) for word in miso.split()])
@@ -107,7 +111,7 @@ QUESTIONS = {
     "Why did it stop with RAMP_UNDERRUN": "RAMP_UNDERRUN",
     "The motor hums but does not turn": "hum|whistle|stall",
     "Why is a corner slow": "junction deviation",
-    "What happens when the host dies": "watchdog",
+    "What happens when the host fails": "watchdog",
     "How do I drive a laser": "power",
     "How do I cut a thread": "passo_thread|thread",
     "Does it fit on my FPGA": "HX8K",
@@ -125,3 +129,9 @@ def test_a_question_is_answered_within_two_clicks(question: str) -> None:
     (row,) = re.findall(rf"^\| {question}.*", index.read_text(), re.M)
     pages = [(index.parent / target).read_text() for target in re.findall(r"\]\(([^)#]+)", row)]
     assert any(re.search(QUESTIONS[question], text) for text in pages)
+
+
+def test_documents_are_short() -> None:
+    """Pages written by hand, counted by `make words`."""
+    assert count_words.words(paths.root / "README.md") <= count_words.README_MAX == 1_500
+    assert sum(count_words.hand_written().values()) <= count_words.DOCS_MAX == 42_000

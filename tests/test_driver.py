@@ -71,7 +71,7 @@ def test_moves(driver: Driver, wire: Wire, method: str) -> None:
 
 
 def test_turn_and_straight(driver: Driver, wire: Wire) -> None:
-    """Angles and millimetres, there and read back."""
+    """Angles and millimeters, there and read back."""
     turn = struct("move_turn", axis=1, steps_per_turn=TURN, angle=-90 * Q32, rpm=900 * Q32)
     turn.acceleration = 3_000_000 * Q32
     driver.call("move_turn", turn)

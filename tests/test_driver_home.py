@@ -400,7 +400,7 @@ def test_jog_endless(backwards: bool) -> None:
 
 @pytest.mark.parametrize("seed", range(12))
 def test_jog_by_distance(seed: int) -> None:
-    """Exactly so many steps; or fewer when it is cancelled, at rest, and the count is right."""
+    """Exactly so many steps; or fewer when it is canceled, at rest, and the count is right."""
     rng = random.Random(seed)
     driver = driver_of(machine := machine_of())
     for _ in range(6):

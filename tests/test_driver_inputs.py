@@ -153,7 +153,7 @@ def test_stuck_at_power_up(pin: str) -> None:
 
 
 def test_a_limit_switch_stuck_at_power_up() -> None:
-    """It stops nothing at rest, makes no step towards it, and lets the axis go away."""
+    """It stops nothing at rest, makes no step toward it, and lets the axis go away."""
     machine = machine_of()
     machine.set("limit_high", 1)
     driver = driver_of(machine)

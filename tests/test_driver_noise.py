@@ -98,7 +98,7 @@ def test_noise_on_a_stream(wire: Wire) -> None:
 
 def is_broken(driver: Driver) -> bool:
     """Whether the driver does not know the effect of a command."""
-    return driver.c.belief >= driver.lib.PASSO_BELIEF_BROKEN
+    return driver.c.assumed >= driver.lib.PASSO_ASSUMED_BROKEN
 
 
 def recover(driver: Driver, wire: Wire) -> list[int]:

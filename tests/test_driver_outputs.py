@@ -394,7 +394,7 @@ def test_a_stream_of_lines_with_outputs(queue: int) -> None:
 
 
 def test_a_path_with_laser_power() -> None:
-    """Each line of a path has its word; energy per millimetre is the same on all lines that have power."""
+    """Each line of a path has its word; energy per millimeter is the same on all lines that have power."""
     driver, pins = machine()
     settings = PathSettings((PathAxis(100, 200, 20_000),) * 3, clock_hz=CLOCK_HZ)
     planner = Path(settings, PARAMETERS, 48)
@@ -416,8 +416,8 @@ def test_a_path_with_laser_power() -> None:
     assert driver.positions()[:3] == [0, 0, 0]
     changes = [int(pins.events["clock"][np.argmax(pins.events["outputs"] == n + 1)]) for n in range(6)]
     ends = [*changes[1:], driver.engine.clock]
-    millimetres = [2, 1, 2, 1, 5**0.5, 5**0.5]
+    millimeters = [2, 1, 2, 1, 5**0.5, 5**0.5]
     for n, (begin, end) in enumerate(zip(changes, ends, strict=True)):
         high = pins.high("power", begin, end)
-        ideal = 60_000 / FULL * CLOCK_HZ / 100 * millimetres[n] * (n % 2)
+        ideal = 60_000 / FULL * CLOCK_HZ / 100 * millimeters[n] * (n % 2)
         assert high == pytest.approx(ideal, rel=0.01), n

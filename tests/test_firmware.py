@@ -130,7 +130,7 @@ REFUSED = [
     ("override 0", "1 to 100"),
     ("override 101", "1 to 100"),
     ("config axis=4 step_high=1us", "0 to 3"),
-    ("config axis=0 step_high=1", "1 to 65535 are possible"),
+    ("config axis=0 step_high=1", "must be 1 to 65535"),
     ("config clock_hz=3", "clock_hz must be"),
     ("table 16 1", "row must be"),
     ("turn axis=9 steps_per_turn=200 rpm=1 acceleration=1", "0 to 3"),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The image that speaks grbl, in the emulated STM32F103, with a core at its pins."""
+"""The grbl image in the emulated STM32F103, with a core at its pins."""
 
 import math
 import re

@@ -338,6 +338,6 @@ def test_a_jog_leaves_the_modes() -> None:
 
 def test_targets_for_the_planner() -> None:
     """Q31.32 mm, to the nearest."""
-    for nanometres in (0, 1, -1, 500_000, 123_456_789, -987_654_321_012, NOT_MOVING):
-        exact = Fraction(nanometres, NANOMETRES) * 2**32
-        assert abs(planner().passo_gcode_millimetres(nanometres) - exact) <= Fraction(1, 2)
+    for nanometers in (0, 1, -1, 500_000, 123_456_789, -987_654_321_012, NOT_MOVING):
+        exact = Fraction(nanometers, NANOMETRES) * 2**32
+        assert abs(planner().passo_gcode_millimetres(nanometers) - exact) <= Fraction(1, 2)

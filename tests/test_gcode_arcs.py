@@ -16,7 +16,7 @@ PI = 2 * np.arcsin(np.longdouble(1))
 
 
 def corners(gcode: Gcode, *lines: str) -> np.ndarray:
-    """The targets of the last line in nanometres, with the start."""
+    """The targets of the last line in nanometers, with the start."""
     for line in lines[:-1]:
         gcode.execute(line)
         list(gcode.actions())
@@ -105,7 +105,7 @@ def test_the_radius_form(clockwise: bool, major: bool) -> None:
         aside = math.sqrt(r**2 - chord @ chord / 4) * (-1 if clockwise != major else 1)
         centre = chord / 2 + aside * np.array([-chord[1], chord[0]]) / math.hypot(*chord)
         half = math.asin(min(1.0, math.hypot(*chord) / 2 / r))
-        # the centre is whole nanometres, within 1.5 nm
+        # the centre is whole nanometers, within 1.5 nm
         assert abs(np.hypot(*(points[:-1, :2] - centre).T) - r).max() < 4
         judge_turn = 2 * (math.pi - half if major else half)
         flat = points[:, :2] - centre

@@ -163,14 +163,44 @@ def unit(form: str, name: str) -> str:
     return ""
 
 
+def tables() -> dict[str, tuple[list[list[str]], str]]:
+    """By the forms of a marker (or `common`): the cells of its table, and what is below it."""
+    found = re.findall(
+        r"<!-- moves: (?:keys )?(common|(?<=keys )[\w ]+) -->\n\n(.*?)\n\n(.*?)<!-- /moves",
+        read(PLANNING),
+        re.S,
+    )
+    return {
+        forms: (
+            [[cell.strip(" `") for cell in row.split("|")[1:-1]] for row in table.splitlines()[2:]],
+            below,
+        )
+        for forms, table, below in found
+    }
+
+
 def test_units_are_those_that_the_names_say() -> None:
     """In the documentation."""
-    text = read(PLANNING)
-    for forms, table in re.findall(r"<!-- moves: keys ([\w ]+) -->\n\n(.*?)\n\n", text, re.S):
-        rows = [[cell.strip(" `") for cell in row.split("|")[1:-1]] for row in table.splitlines()[2:]]
+    for forms, (rows, _) in tables().items():
+        assert rows, forms
         for row in rows:
             form, name, _, shown = row[:4] if " " in forms else (forms, *row[:3])
             assert shown == unit(form, name), (form, name)
+
+
+def test_each_key_is_in_the_table_of_its_form_or_a_common_one() -> None:
+    made = tables()
+    common = {row[0] for row in made.pop("common")[0]}
+    told = {}
+    for forms, (rows, below) in made.items():
+        names = forms.split()
+        lines = re.findall(r"^\[Common keys\].*: (.*)\.$", below, re.M)
+        for form, line in zip(names, lines, strict=True):
+            own = [row[-6] for row in rows if len(names) == 1 or row[0] == form]
+            shared = re.findall(r"`(\w+)`", line)
+            assert set(shared) <= common
+            told[form] = sorted(own + shared)
+    assert told == {name: sorted(key.name for key in form.keys) for name, form in FORMS.items()}
 
 
 VALUES = {

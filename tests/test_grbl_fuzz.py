@@ -15,7 +15,7 @@ FOLDERS = (paths.grbl, paths.driver, paths.gcode, paths.planner, paths.protocol,
 
 
 def test_every_line_gets_one_answer(tmp_path: Path) -> None:
-    """Whatever comes at whatever time: one answer per line, a reset helps, no undefined behaviour."""
+    """Whatever comes at whatever time: one answer per line, a reset helps, no undefined behavior."""
     program = sanitized.program(tmp_path / "fuzz", paths.tests / "grbl_fuzz.c", FOLDERS)
     done = subprocess.run([program, SEED, SECONDS], capture_output=True, text=True, timeout=600)
     print(f"seed {SEED}, {SECONDS} s\n{done.stdout}")

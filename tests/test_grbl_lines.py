@@ -123,7 +123,7 @@ def test_spindle_and_coolant_of_what_moves(session: GrblConsole) -> None:
 
 
 def test_feeds_in_inches(session: GrblConsole) -> None:
-    """One decimal; millimetres are rounded."""
+    """One decimal; millimeters are rounded."""
     session.line("G20 F0.5")
     assert "F13 " in session.line("$G")
     session.line("$13=1")

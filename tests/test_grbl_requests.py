@@ -85,7 +85,7 @@ def test_every_jog_is_answered(session: GrblConsole, code: bytes) -> None:
 
 
 def test_lines_after_the_end_of_a_jog_are_taken(session: GrblConsole) -> None:
-    """In a jog G-code is error 9, once it has been cancelled it is not."""
+    """In a jog G-code is error 9, once it has been canceled it is not."""
     session.send(b"$J=G91 X-50 F6000\n", 0.1)
     assert session.line("G0 X1") == "error:9"
     session.send(b"\x85G0 ")

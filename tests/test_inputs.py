@@ -93,9 +93,9 @@ def happen(machine: Machine, name: str, steps: list[int]) -> Cause | None:
     axis = machine.rng.randrange(machine.axes)
     way = steps[axis]
     if name in ("limit", "other limit"):
-        towards = "limit_high" if way > 0 else "limit_low"
+        toward = "limit_high" if way > 0 else "limit_low"
         away = "limit_low" if way > 0 else "limit_high"
-        machine.set(towards if name == "limit" else away, 1 << axis)
+        machine.set(toward if name == "limit" else away, 1 << axis)
         return Cause.LIMIT if name == "limit" and way else None
     if name == "alarm":
         machine.set("alarm", 1 << axis)
@@ -145,7 +145,7 @@ def one_round(machine: Machine) -> None:
     else:
         assert (state.state, state.cause) == (State.STOPPED, causes[0])
         last = max(clock for axis in range(machine.axes) for clock, _ in machine.edges(axis)[-1:])
-        patience = gap * 9 if causes[0] == Cause.LIMIT else 0  # until the next step towards it
+        patience = gap * 9 if causes[0] == Cause.LIMIT else 0  # until the next step toward it
         assert last <= began + LEVEL + LAST_STEP + patience
     machine.check_position()
     machine.clear()

@@ -22,7 +22,7 @@ MAX128 = 2**128 - 1
 
 @pytest.fixture(scope="module")
 def math_c() -> tuple[FFI, Any]:
-    """The planner with passo_math.c, built such that undefined behaviour is fatal."""
+    """The planner with passo_math.c, built such that undefined behavior is fatal."""
     ffi = FFI()
     ffi.cdef(declarations([paths.planner / "passo_math.h"]))
     return ffi, ffi.dlopen(str(checked_library()))

@@ -149,8 +149,8 @@ BAD = {
     "syntax": (CLOCK + "[[move\n", "at line 2"),
     "twice": (CLOCK + GOOD, "Cannot overwrite"),
     "empty": ("", "clock_hz is missing"),
-    "no moves": (CLOCK, "there are no moves"),
-    "empty list": (CLOCK + "move = []\n", "there are no moves"),
+    "no moves": (CLOCK, "no moves"),
+    "empty list": (CLOCK + "move = []\n", "no moves"),
     "a table": (GOOD.replace("[[move]]", "[move]"), "move must be an array of tables"),
     "a number": (CLOCK + "move = 3\n", "move must be an array of tables"),
     "a list of numbers": (CLOCK + "move = [3]\n", "move must be an array of tables"),
@@ -158,7 +158,7 @@ BAD = {
     "misspelt key of a move": (GOOD + "sped = 3\n", "unknown key 'sped'; did you mean speed?"),
     "misspelt profile": (GOOD.replace("cosine", "cosin"), "not 'cosin'; did you mean cosine?"),
     "misspelt method": (GOOD + 'method = "in_tim"\n', "not 'in_tim'; did you mean in_time?"),
-    "G-code": ("G21\nG0 X10 Y20\n", "this is G-code; moves are in TOML"),
+    "G-code": ("G21\nG0 X10 Y20\n", "this is G-code; move files are TOML"),
     "G-code with a comment": ("; a part\nN10 G0 X10 Y20\n", "this is G-code"),
     "G-code with percent": ("%\nG90\n", "this is G-code"),
     "unknown key": (CLOCK + "color = 1\n" + BY_TIME, "unknown key 'color'"),
@@ -168,7 +168,7 @@ BAD = {
     "pin too long": (CLOCK + "[pins]\ndir_hold = 0.005\n" + BY_TIME, "pins: dir_hold is 80000 clocks"),
     "pin zero": (
         CLOCK + "[pins]\nstep_low = 0\n" + BY_TIME,
-        "pins: step_low is 0 clocks, 1 to 65535 are possible",
+        "pins: step_low is 0 clocks; must be 1 to 65535",
     ),
     "pin zero with a unit": (CLOCK + '[pins]\ndir_hold = "0us"\n' + BY_TIME, "pins: dir_hold is 0 clocks"),
     "channel above": (GOOD + "channel = 8\n", "move 1: channel must be 0 to 7"),
@@ -176,12 +176,12 @@ BAD = {
     "channel text": (GOOD + 'channel = "x"\n', "move 1: channel must be a whole number"),
     "together alone": (
         "together = true\n" + GOOD,
-        "together needs several channels: all moves are of channel 0",
+        "together needs several channels: all moves use channel 0",
     ),
     "together a number": ("together = 1\n" + GOOD, "together must be true or false, not 1"),
     "pins of no channel": (
         CLOCK + '[pins.1]\nstep_low = "1us"\n' + BY_TIME,
-        "pins.1: no move is of channel 1",
+        "pins.1: no move uses channel 1",
     ),
     "pins of channel 8": (CLOCK + '[pins.8]\nstep_low = "1us"\n' + BY_TIME, "pins: unknown key '8'"),
     "pins of a channel, a number": (CLOCK + "[pins]\n0 = 3\n" + BY_TIME, "pins.0: it must be a table"),
@@ -200,7 +200,7 @@ BAD = {
     ),
     "pin in microseconds": (
         CLOCK + "[pins]\nstep_high = 2\n" + BY_TIME,
-        "pins: step_high is 32000000 clocks, at most 65535 are possible; a number is in seconds, "
+        "pins: step_high is 32000000 clocks; must be at most 65535; a number is in seconds, "
         'a text may have a unit: "2us"',
     ),
     "steps missing": (GOOD.replace("steps = [100, -50]", ""), "move 1: steps is missing"),
@@ -210,7 +210,7 @@ BAD = {
     "steps nested": (GOOD.replace("-50", "[50]"), "move 1: steps must be a list of whole numbers"),
     "steps empty": (GOOD.replace("[100, -50]", "[]"), "move 1: steps has 0 axes"),
     "nine axes": (GOOD.replace("-50", "1, 2, 3, 4, 5, 6, 7, 8"), "move 1: steps has 9 axes"),
-    "2^30 steps": (GOOD.replace("-50", f"{MOST + 1}"), f"axis 1 has too many steps, at most {MOST} are"),
+    "2^30 steps": (GOOD.replace("-50", f"{MOST + 1}"), f"axis 1 has too many steps; must be at most {MOST}"),
     "-2^30 steps": (GOOD.replace("-50", f"-{MOST + 1}"), "move 1: axis 1 has too many steps"),
     "-2^31 steps": (GOOD.replace("-50", "-2147483648"), "move 1: axis 1 has too many steps"),
     "other length": (GOOD + BY_SPEED.replace("-50", "-50, 1"), "move 2: steps has 3 axes, but move 1 has 2"),
@@ -223,15 +223,18 @@ BAD = {
     "infinite time": (GOOD.replace("0.4", "inf"), "move 1: total_time must be finite"),
     "no number": (GOOD.replace("0.4", "nan"), "move 1: total_time must be finite"),
     "huge": (GOOD.replace("0.4", "1e999999999"), "move 1: total_time must be at most"),
-    "out of range": (GOOD.replace("0.4", "1e9999999999999999999999"), "out of all range"),
-    "tiny": (GOOD.replace("0.4", "1e-999999999"), "move 1: total_time has more than 30 decimals"),
+    "out of range": (GOOD.replace("0.4", "1e9999999999999999999999"), "out of range"),
+    "tiny": (GOOD.replace("0.4", "1e-999999999"), "move 1: total_time must have at most 30 decimals"),
     "a date": (GOOD.replace("0.4", "2024-01-01"), "move 1: total_time must be a number"),
     "very many digits": (GOOD.replace("100", "9" * 5000), "bad.toml: "),
     "very long number": (GOOD.replace('"cosine"', "0x" + "f" * 9000), "not a very long number"),
     "deep": (CLOCK + "move = " + "[" * 9000 + "]" * 9000, "bad.toml: "),
-    "both forms": (GOOD + "speed = 3\n", "move 1: total_time and speed exclude each other"),
+    "both forms": (GOOD + "speed = 3\n", "move 1: total_time and speed are mutually exclusive"),
     "neither form": (GOOD.replace("total_time = 0.4", ""), "move 1: total_time or speed is missing"),
-    "acceleration and ramp": (CLOCK + BY_SPEED + "ramp_time = 1\n", "acceleration and ramp_time exclude"),
+    "acceleration and ramp": (
+        CLOCK + BY_SPEED + "ramp_time = 1\n",
+        "acceleration and ramp_time are mutually exclusive",
+    ),
     "zero acceleration": (CLOCK + BY_SPEED.replace("40000", "0"), "acceleration must be greater than 0"),
     "zero deceleration": (CLOCK + BY_SPEED + "deceleration = 0\n", "deceleration must be greater than 0"),
     "only deceleration": (
@@ -310,12 +313,12 @@ def test_channels(tmp_path: Path) -> None:
     assert file.together and file.several and file.clock_hz == 16_000_000
     assert [(own.channel, own.axes, own.numbers) for own in file.files] == [(0, 2, (2,)), (2, 1, (1, 3))]
     assert [own.pins for own in file.files] == [PinTiming(32, 48, 16, 16), PinTiming(32, 64, 16, 16)]
-    with pytest.raises(MoveFileError, match="it moves channel 2; here is only channel 0"):
+    with pytest.raises(MoveFileError, match="it moves channel 2; only channel 0 is supported here"):
         read_moves(path)
     with pytest.raises(MoveFileError, match="move 3: TOO_FAST"):
         fast = write(tmp_path, CLOCK + of_2 + BY_TIME + of_2.replace("2000", "1e8"))
         plan_channels(read_channels(fast), Parameters())
     shapes = '[[move]]\nmethod = "sigmoid"\nsteps = [9]\nspeed = 100\naccelerate_time = 0.1\n'
     tables = write(tmp_path, CLOCK + shapes + shapes + "alpha = 3\nchannel = 1\n")
-    with pytest.raises(MoveFileError, match="move 2: it needs another table than move 1"):
+    with pytest.raises(MoveFileError, match="move 2: it needs a different table than move 1"):
         plan_channels(read_channels(tables), Parameters())

@@ -135,7 +135,7 @@ def test_a_part_that_is_lost_is_said(tmp_path: Path, capsys: pytest.CaptureFixtu
     for text in ("", "\n\r\n", "(only G0 X1)\r;G1 X1\r", "%\n\x1a", "\ufeff"):
         path.write_text(text, encoding="utf-8", newline="")
         assert cli.main(run) == 2
-        assert "there is no G-code in it" in capsys.readouterr().err
+        assert "the file has no G-code" in capsys.readouterr().err
     for text in ("G21 G90\nM3 S100", "G0 X0\nG4 P0.1", "(G1 X5"):
         path.write_text(text + "\nF100\n")
         assert cli.main(run) == 0
@@ -254,7 +254,7 @@ def test_a_speed_that_the_pins_do_not_allow_is_refused(
     machine.write_text(text.replace("SPEED", "6000"))
     assert cli.main(run) == 2
     refused = capsys.readouterr().err
-    assert f"axis 1: speed is 6000, the pins allow at most {told}" in refused and refused.count("\n") == 1
+    assert f"axis 1: speed is 6000; the pins allow at most {told}" in refused and refused.count("\n") == 1
     assert not (tmp_path / "out").exists()
     machine.write_text(text.replace("SPEED", told.split(":")[0]))
     assert cli.main(run) == 0

@@ -269,7 +269,7 @@ def test_a_slow_host_means_a_stop_without_a_fault(number: int) -> None:
 
 
 def small_circle(radius: float, chord: float, count: int, feed: float) -> list[Line]:
-    """An arc in chords of micrometres, as a file has them."""
+    """An arc in chords of micrometers, as a file has them."""
     angles = (chord / radius * i for i in range(1, count + 1))
     points = ((radius - radius * math.cos(a), radius * math.sin(a), 0.0) for a in angles)
     return [(tuple(round(mm, 6) for mm in point), feed) for point in points]

@@ -14,7 +14,7 @@ SECONDS = str(random_cases.fuzz_seconds())
 
 
 def test_no_path_breaks_the_planner(tmp_path: Path) -> None:
-    """No undefined behaviour, nothing that the core would refuse, no path that gets stuck."""
+    """No undefined behavior, nothing that the core would refuse, no path that gets stuck."""
     folders = (paths.planner, paths.protocol)
     program = sanitized.program(tmp_path / "fuzz", paths.tests / "path_fuzz.c", folders)
     done = subprocess.run([program, SEED, SECONDS], capture_output=True, text=True, timeout=600)

@@ -81,7 +81,10 @@ def test_forms_are_read_exactly(tmp_path: Path) -> None:
 BAD = {
     "method": ('[[move]]\nmethod = "fast"\n', "move 1: method must be one of in_time, by_speed, below_speed"),
     "method number": ("[[move]]\nmethod = 3\n", "method must be one of"),
-    "foreign key": (move_of("jerk", "ramp_time = 1\n"), "unknown key 'ramp_time'; known are method, steps"),
+    "foreign key": (
+        move_of("jerk", "ramp_time = 1\n"),
+        "unknown key 'ramp_time'; must be one of method, steps",
+    ),
     "missing": (move_of("jerk").replace("jerk = 5_000_000", ""), "move 1: jerk is missing"),
     "no time": (move_of("sigmoid").replace("accelerate_time = 0.01", ""), "accelerate_time is missing"),
     "axis": (move_of("turn").replace("axis = 1", "axis = 2"), "move 1: axes must be 3 to 8"),
@@ -117,7 +120,7 @@ UNPLANNABLE = {
     "far": (move_of("turn").replace("-90.5", "2e9").replace("200", "20000"), "move 1: TOO_MANY_STEPS: "),
     "two tables": (
         move_of("sigmoid") + move_of("sigmoid").replace("3.25", "4"),
-        "move 2: it needs another table than move 1",
+        "move 2: it needs a different table than move 1",
     ),
 }
 

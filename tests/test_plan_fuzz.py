@@ -15,7 +15,7 @@ SECONDS = str(random_cases.fuzz_seconds())
 
 
 def test_no_argument_breaks_the_planner(tmp_path: Path) -> None:
-    """No undefined behaviour, no plan that the core would refuse, no error that modifies the plan."""
+    """No undefined behavior, no plan that the core would refuse, no error that modifies the plan."""
     folders = (paths.planner, paths.protocol)
     program = sanitized.program(tmp_path / "fuzz", paths.tests / "plan_fuzz.c", folders)
     done = subprocess.run([program, SEED, SECONDS], capture_output=True, text=True, timeout=600)

@@ -92,7 +92,7 @@ def test_tables_are_scaled_and_checked() -> None:
     ],
 )
 def test_area_follows_the_curve(text: str, area: Callable[[float], float]) -> None:
-    """What a ramp has travelled at each point; points rounded each by itself are 21 to 149 off."""
+    """What a ramp has traveled at each point; points rounded each by itself are 21 to 149 off."""
     points, shape_at = sample(formula(text)), formula(text)
     total = 0
     for k, point in enumerate(points):

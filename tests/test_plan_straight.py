@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Straight lines in millimetres with limits of speed, acceleration and jerk on each axis."""
+"""Straight lines in millimeters with limits of speed, acceleration and jerk on each axis."""
 
 import math
 import random

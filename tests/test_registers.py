@@ -219,8 +219,8 @@ def test_verilog_and_python_agree(verilog: dict):
     assert python == {name: value for name, (_, value) in verilog.items()}
 
 
-def test_verdicts_of_the_architecture_page():
-    section = read("docs/architecture.md").split("| verdict | name | reason |")[1]
+def test_verdicts_of_the_link_page():
+    section = read("docs/link.md").split("| verdict | name | reason |")[1]
     table = re.findall(r"^\| (\d+) \| `(\w+)` \|", section, re.M)
     assert [(int(value), name) for value, name in table] == [(v.value, v.name) for v in registers.Verdict]
 

@@ -330,6 +330,6 @@ def test_faults_of_a_machine_are_shown(browser: Browser, tmp_path: Path) -> None
     command = ["run", str(tmp_path / "moves.toml"), "--engine", "model", "--report", "--out", out]
     assert main(command) == 1
     shown(browser, tmp_path / "out" / "report.html")
-    assert "it did not come" in browser.value("document.querySelector('#events tr.fault').textContent")
+    assert "it never occurred" in browser.value("document.querySelector('#events tr.fault').textContent")
     assert "ESTOP" in browser.value("document.querySelector('#events tr.stop').textContent")
     assert browser.value("document.getElementById('verdict').className") == "bad"

@@ -140,7 +140,7 @@ def test_arm(tmp_path: Path) -> None:
 
 def test_an_event_that_does_not_come_is_a_problem(tmp_path: Path) -> None:
     run = play(tmp_path, MOVE + event('do = "hold"\nposition = 2001'))
-    assert run.problems() == ["event 1: it did not come"]
+    assert run.problems() == ["event 1: it never occurred"]
 
 
 def test_a_hold_without_end(tmp_path: Path) -> None:
@@ -225,7 +225,7 @@ def test_estop_in_the_midst_of_home(tmp_path: Path) -> None:
 
 
 def test_probe(tmp_path: Path) -> None:
-    """In millimetres; the latch is the touch, to the steps made during the filter."""
+    """In millimeters; the latch is the touch, to the steps made during the filter."""
     text = machine(
         'filter = "50us"\nstop_time = "5ms"\nsteps_per_mm = 160', 'role = "probe"\naxis = 1\nat = "-5mm"'
     )
@@ -319,7 +319,7 @@ INPUT = "[[machine.input]]\n"
 ENCODER_4 = "[[machine.encoder]]\ncounts_per_step = 4\n"
 BAD = [
     ("[machine]\nfiltre = 1\n" + MOVE, "machine: unknown key 'filtre'; did you mean filter"),
-    ('[machine]\nfilter = "70ms"\n' + MOVE, "machine: filter is 70000 clocks, at most 65535"),
+    ('[machine]\nfilter = "70ms"\n' + MOVE, "machine: filter is 70000 clocks; must be at most 65535"),
     ("[machine]\nstart = [1]\n" + MOVE, "machine: start has 1 axes, but the moves have 2"),
     ("machine = 1\n" + MOVE, "machine: it must be a table"),
     (
@@ -345,13 +345,16 @@ BAD = [
     ),
     (
         ENCODER_4 + "limit = 0.1\n" + MOVE,
-        "limit is 0.4 counts, it must be 1 to",
+        "limit is 0.4 counts; must be 1 to",
     ),
     (ENCODER_4 + 'stop = "soft"\n' + MOVE, "stop needs limit"),
     (MOVE + event("time = 1"), "event 1: do is missing"),
     (MOVE + event('do = "holt"\ntime = 1'), "event 1: do must be one of .* not 'holt'; did you mean hold"),
     (MOVE + event('do = "hold"'), "event 1: time, position or trigger is missing"),
-    (MOVE + event('do = "hold"\ntime = 1\nposition = 2'), "event 1: time and position exclude each other"),
+    (
+        MOVE + event('do = "hold"\ntime = 1\nposition = 2'),
+        "event 1: time and position are mutually exclusive",
+    ),
     (MOVE + event('do = "hold"\ntime = -1'), "event 1: time must not be negative"),
     (MOVE + event('do = "hold"\ntime = 1\nfalling = true'), "event 1: falling needs trigger"),
     (MOVE + event('do = "hold"\nposition = 1\nat_axis = 2'), "event 1: at_axis must be 0 to 1"),
@@ -359,7 +362,7 @@ BAD = [
     (MOVE + event('do = "input"\ninput = "probe"\ntime = 1'), "event 1: probe is not connected"),
     (MOVE + event('do = "override"\ntime = 1\npercent = 0'), "event 1: percent must be 1 to 100"),
     (MOVE + event('do = "slip"\ntime = 1\ncounts = 1'), "event 1: axis 0 has no encoder"),
-    (MOVE + event('do = "hold"\ntime = 1') * (most("event") + 1), "there are 65 events, at most 64"),
+    (MOVE + event('do = "hold"\ntime = 1') * (most("event") + 1), "there are 65 events; must be at most 64"),
     ("event = 3\n" + MOVE, "event must be an array of tables"),
     (HOME, "move 1: home of axis 0 is not connected"),
     (INPUT + 'role = "home"\n' + HOME.replace("-900, 0", "5, 5"), "move 1: home of axis 1 is not connected"),

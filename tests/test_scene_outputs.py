@@ -186,7 +186,7 @@ BAD = [
     (MOVE + "output = { powr = 3 }\n", "output: unknown key 'powr'; did you mean power"),
     (MOVE + "output = { power = 101 }\n", "output: power must be at most 100"),
     (MOVE + "output = { levels = 256 }\n", "output: levels must be 0 to 255"),
-    (MOVE + "output = { power = 1, raster = [1] }\n", "output: power and raster exclude each other"),
+    (MOVE + "output = { power = 1, raster = [1] }\n", "output: power and raster are mutually exclusive"),
     (MOVE + "output = { raster = [256] }\n", "output: raster must be 0 to 255"),
     (MOVE + "output = { raster = [] }\n", "output: raster must be a list of whole numbers"),
     (MOVE + "output = { raster = [1], pitch = 0 }\n", "output: pitch must be 1 to"),
@@ -194,7 +194,7 @@ BAD = [
     (MOVE + "output = { speed = 3 }\n", "output: speed needs power"),
     (MOVE + "output = { power = 3, speed = 0 }\n", "output: speed must be greater than 0"),
     ("[machine]\npwm = 600_000\n" + MOVE, "machine: pwm must be 1 to 500000 Hz"),
-    ('[machine]\nlag = "70ms"\n' + MOVE, "machine: lag is 70000 clocks, 0 to 65535"),
+    ('[machine]\nlag = "70ms"\n' + MOVE, "machine: lag is 70000 clocks; must be 0 to 65535"),
     (MOVE + "channel = 1\noutput = { power = 1 }\n", "output, home, probe and thread are for files of"),
     ("[machine]\ncompare = 1\n" + MOVE, "machine: compare: it must be a table"),
     (
@@ -211,14 +211,14 @@ BAD = [
         "compare: axis must be 0 to 1",
     ),
     (THREAD, "move 1: a thread needs a spindle"),
-    (SPINDLE + THREAD + "output = { power = 1 }\n", "move 1: output: thread has no power"),
+    (SPINDLE + THREAD + "output = { power = 1 }\n", "move 1: output: thread cannot have its own power"),
     (SPINDLE + THREAD.replace("turns = 3", "turns = 0"), "move 1: turns must be greater than 0"),
     (SPINDLE + THREAD.replace("turns = 3", "turns = 1e-4"), "move 1: turns are 0 counts"),
     (SPINDLE + THREAD.replace("1300, -7", "0, 0"), "move 1: steps of thread must move an axis"),
     (SPINDLE + THREAD + "top_rpm = 1500\n", "move 1: top_rpm is less than the 1560 of the spindle"),
-    (SPINDLE.replace("1200", "12000") + THREAD, "spindle: rpm makes a count in 7.69 clocks at the fastest"),
+    (SPINDLE.replace("1200", "12000") + THREAD, "spindle: rpm: one count every 7.69 clocks; must be"),
     (SPINDLE.replace("30", "91") + THREAD, "spindle: wander must be 0 to 90"),
-    (SPINDLE + MOVE.replace("2000, -1000", "1, 1, 1, 1, 1, 1, 1, 1"), "the moves have at most 7"),
+    (SPINDLE + MOVE.replace("2000, -1000", "1, 1, 1, 1, 1, 1, 1, 1"), "moves must have at most 7 axes"),
 ]
 
 
@@ -231,8 +231,8 @@ def test_bad_input(tmp_path: Path, text: str, message: str) -> None:
 
 
 BAD_PLANS = [
-    ("{ power = 9, speed = 9000 }", "output: speed is less than the 9996.8 steps/s that the move reaches"),
-    (f"{{ raster = {[0] * 68}, pitch = 30 }}", "output: raster has 68 values, the move takes 67"),
+    ("{ power = 9, speed = 9000 }", "output: speed is below the 9996.8 steps/s that the move reaches"),
+    (f"{{ raster = {[0] * 68}, pitch = 30 }}", "output: raster has 68 values; the move takes 67"),
     ("{ power = 90, speed = 1_000_000 }", ""),
 ]
 

@@ -76,7 +76,7 @@ def test_no_promise_is_broken_by_an_early_end(kind: str, histories: int, tmp_pat
 
 
 def test_the_soak_itself_is_sound(tmp_path: Path) -> None:
-    """Under the sanitizers of addresses and undefined behaviour."""
+    """Under the sanitizers of addresses and undefined behavior."""
     folders = (paths.driver, paths.planner, paths.protocol, paths.core)
     made = tmp_path / "soak"
     flags = [

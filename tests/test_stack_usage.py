@@ -66,7 +66,7 @@ def test_a_call_by_pointer_must_be_named(monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 def test_a_call_by_pointer_belongs_to_the_function_that_was_inlined(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As link-time optimisation does it: the list has the name of the source."""
+    """As link-time optimization does it: the list has the name of the source."""
     found = functions(monkeypatch, caller="within.part.0")
     stack_usage.name_callers(found, paths.build, "")
     assert list(found[0x8000120].pointers.values()) == [["within", "middle"]]
@@ -92,7 +92,7 @@ def test_what_is_not_understood_is_an_error(monkeypatch: pytest.MonkeyPatch, lin
 
 
 def test_a_function_that_became_part_of_another_keeps_its_name(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Link-time optimisation makes functions parts of others: the innermost one that is listed counts."""
+    """Link-time optimization makes functions parts of others: the innermost one that is listed counts."""
     found = functions(monkeypatch)
     where = "0x08000128\ninner.lto_priv.0\nfile.c:1\nouter\nfile.c:2\nmiddle\nfile.c:3\n"
     monkeypatch.setattr(stack_usage, "_run", lambda *command: where)

@@ -210,7 +210,7 @@ def test_resets_and_their_causes() -> None:
 @pytest.mark.parametrize(
     ("code", "words_of_error"),
     [
-        ("REGISTER(0x40012C00) = 1;", "nothing is modelled at 0x40012C00"),
+        ("REGISTER(0x40012C00) = 1;", "nothing is modeled at 0x40012C00"),
         ("SPI(0) = 4;", "SPI1 (0x40013000) has no clock"),
         ("RCC_APB2ENR = 1u << 12; SPI(0x10) = 1;", "SPI1 + 0x10"),
         ("RCC_APB2ENR = 1u << 12; SPI(0) = 1u << 15;", "SPI1.CR1: bits 0x8000"),

@@ -11,9 +11,11 @@ import pytest
 from passo.toolchain import paths
 from passo_fpga import flow, pages, parts_report, report, synth, tools
 from passo_fpga.boards import boards
-from passo_fpga.complaints import complaints, gowin_functions, held_pins, packer_complaints
+from passo_fpga.complaints import complaints, packer_complaints
 from passo_fpga.design import Design
 from passo_fpga.devices import DEVICES, GOWIN
+from passo_fpga.families.gowin import functions as gowin_functions
+from passo_fpga.families.gowin import held_pins
 from passo_fpga.flow import CROWDED, Placed, _sites, _too_large, count
 from passo_fpga.parts import PORTS
 from passo_fpga.split import difference
@@ -146,7 +148,7 @@ def test_first_seed_that_will_do_is_taken(
     results = {1: with_clk(9), 2: with_clk(9), 3: replace(with_clk(90), complaints=("odd",)), 4: with_clk(70)}
     assert play_synth(monkeypatch, tmp_path, results)
     said = capsys.readouterr().out
-    assert re.search(r"70\.0 MHz for a clock of .*: seed 4, the first that will do \(4 tried\)", said)
+    assert re.search(r"70\.0 MHz for a clock of .*: seed 4, the first that meets timing \(4 tried\)", said)
     assert re.search(r"^\[ *\d+:\d\d\] icebreaker: synthesis$", said, re.M)
     for seed in results:
         assert re.search(rf"^\[ *\d+:\d\d\] icebreaker: place and route, seed {seed}$", said, re.M)
@@ -175,7 +177,7 @@ def test_no_bitstream_with_anything_wrong(
     assert not play_synth(monkeypatch, tmp_path, results, **messages)
     said = capsys.readouterr().out
     assert all(message in said for words in messages.values() for message in words)
-    assert ("NOT MADE" in said) == (not messages)
+    assert ("FAILED" in said) == (not messages)
 
 
 def test_what_nextpnr_says_is_understood() -> None:

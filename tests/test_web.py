@@ -116,7 +116,7 @@ def test_the_tool_path_has_the_colour_of_its_speed(tmp_path: Path) -> None:
         ("G1 X1", "error: line 1: the feed is not set"),
         ("G21\nF100\nG1 X1 X2", "error: line 3: "),
         ("G0 X1e9", "error: line 1: "),
-        ("G38.2 Z-1 F10", "error: line 1: there is no probe here"),
+        ("G38.2 Z-1 F10", "error: line 1: no probe is fitted"),
         ("", "nothing moved"),
         ("M30\nnonsense", "nothing moved"),
     ],

@@ -193,7 +193,7 @@ pip_install() {
         --progress-bar off "$@" | show_progress "$packages" ||
         fail "pip could not install the Python packages; its message is above." \
             "Check the network and pip's own configuration (.venv/bin/pip config list), then run" \
-            "'make setup' again. It goes on from where it stopped."
+            "'make setup' again. It continues where it stopped."
 }
 
 files=()

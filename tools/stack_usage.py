@@ -66,7 +66,7 @@ def _instruction(function: Function, start: int, at: int, operation: str, operan
     elif name in ("sub", "subw") and re.match(r"sp\b", operands):
         match = re.search(r"#(\d+)", operands)
         if not match:
-            raise StackError(f"{function.name} takes an unknown amount of stack: {operation} {operands}")
+            raise StackError(f"{function.name} uses an unknown amount of stack: {operation} {operands}")
         function.frame += int(match[1])
     elif name in ("add", "addw", "mov", "ldr") and re.match(r"sp, (?!.*#\d)", operands + " "):
         # A frame too large for an immediate operand, or a restored stack pointer.
@@ -118,7 +118,7 @@ def connect(functions: dict[int, Function], pointers: dict[str, list[str]]) -> d
         for callers in function.pointers.values():
             caller = next((name for name in callers if name in pointers), None)
             if caller is None:
-                raise StackError(f"{callers[0]} makes an indirect call and is not listed")
+                raise StackError(f"{callers[0]} makes an indirect call but is not listed")
             used.add(caller)
             for target in pointers[caller]:
                 if target not in by_name:
@@ -190,7 +190,7 @@ def main() -> int:
     print(f"RAM   {ram} of {options.ram} bytes, {left} left for the stack")
     print(f"stack {stack} of {left} bytes at worst, {left - stack} left")
     if flash > options.flash or stack > left:
-        print("stack_usage: this does not fit", file=sys.stderr)
+        print("stack_usage: does not fit", file=sys.stderr)
         return 1
     return 0
 

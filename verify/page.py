@@ -36,7 +36,7 @@ def page() -> str:
     """The text of the page."""
     coupled = {coupling.top for coupling in couplings()}
     found = proofs()
-    rows = ["| module | proofs | promises | equal | mutants |", "|---|---|---:|---|---:|"]
+    rows = ["| module | proofs | properties | equal | mutants |", "|---|---|---:|---|---:|"]
     for source in rtl_sources():
         module = source.stem
         mine = [proof for proof in found if _reads(proof, module)]

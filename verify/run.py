@@ -109,8 +109,10 @@ def main() -> None:
     known = parts()
     parser = argparse.ArgumentParser(prog="python -m verify.run", description=__doc__.split("\n")[0])
     parser.add_argument("name", nargs="*", help=f"{', '.join(known)}, or what they know")
-    parser.add_argument("--seed", type=int, default=1, help="of histories and mutants (default: %(default)s)")
-    parser.add_argument("--scale", type=float, default=1.0, help="multiply the number of histories")
+    parser.add_argument(
+        "--seed", type=int, default=1, help="seed of scenarios and mutants (default: %(default)s)"
+    )
+    parser.add_argument("--scale", type=float, default=1.0, help="multiply the number of scenarios")
     options = parser.parse_args()
     try:
         chosen = chosen_of(known, options.name)

@@ -132,7 +132,7 @@ static bool rest_settled(const struct passo_channel *channel)
 	return channel->occupied_before == (occupied ? 7u : 0u) && channel->at_rest == at_rest;
 }
 
-/* Outputs change with each substep and each period of the PWM: a motion that has them is not skipped. */
+/* Outputs change with each substep and each PWM period: a motion that uses them is not skipped. */
 static bool outputs_settled(const struct passo_channel *channel, const struct passo_bus *bus)
 {
 	const struct passo_channel_wires wires = {.stopped = passo_channel_stopped(channel)};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Changes of the outputs on their way: the delay by the lag. See rtl/passo_changes.v.
+ * Pending output changes: the output delay. See rtl/passo_changes.v.
  */
 #include "passo_core_outputs.h"
 

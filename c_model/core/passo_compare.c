@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Compare: pulses at positions of an axis. See rtl/passo_compare.v.
+ * Position-compare output. See rtl/passo_compare.v.
  */
 #include "passo_core_outputs.h"
 

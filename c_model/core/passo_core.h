@@ -2,7 +2,7 @@
  * The reference model of the core: bit-exact and cycle-exact with rtl/passo_core.v.
  *
  * passo_core_clock() is one rising edge of clk: the inputs are the pin levels at that edge, the outputs those
- * after it. No heap, no floating point; a core is a plain struct that may be copied. Pointers must not be
+ * after it. No heap, no floating point; a core is a plain struct and can be copied. Pointers must not be
  * null.
  */
 #ifndef PASSO_CORE_H
@@ -39,15 +39,16 @@ void passo_core_clock(struct passo_core *core, const struct passo_inputs *inputs
  * calls of passo_core_clock(). */
 uint64_t passo_core_advance(struct passo_core *core, const struct passo_inputs *inputs, uint64_t limit);
 
-/* As passo_core_advance(), with bits going in and out: skips at most `limit` clocks in which no output pin
- * but MISO changes. `inputs` have the levels of the previous clock and get those of the last one skipped. */
+/* Like passo_core_advance(), during an SPI transfer: skips at most `limit` clocks in which no output pin
+ * except MISO changes. `inputs` has the levels of the previous clock and is updated to the last skipped one.
+ */
 uint64_t passo_core_shift(
     struct passo_core *core, struct passo_inputs *inputs, struct passo_shift *shift, uint64_t limit);
 /* The same, or one clock if none can be skipped. */
 uint64_t passo_core_exchange(
     struct passo_core *core, struct passo_inputs *inputs, struct passo_shift *shift, uint64_t limit);
 
-/* Puts the levels of EN and power that belong to this level of estop_n: it acts without a clock. */
+/* Sets the EN and power outputs for this level of estop_n, which acts asynchronously. */
 void passo_core_estop(const struct passo_core *core, bool estop_n, struct passo_outputs *outputs);
 
 const struct passo_outputs *passo_core_outputs(const struct passo_core *core);

@@ -31,7 +31,7 @@ void passo_encoder_reset(struct passo_encoder *encoder);
 /* Synchronous reset in the clock just simulated; `before` is the state before that clock. */
 void passo_encoder_restart(struct passo_encoder *encoder, const struct passo_encoder *before);
 void passo_encoder_clock(struct passo_encoder *encoder, const struct passo_encoder_wires *wires);
-/* Whether nothing changes until a pin or a setting does. */
+/* Whether the state is constant until a pin or a setting changes. */
 bool passo_encoder_quiet(const struct passo_encoder *encoder, const struct passo_encoder_wires *wires);
 
 struct passo_following {
@@ -52,7 +52,7 @@ void passo_following_clock(struct passo_following *following, const struct passo
 bool passo_following_quiet(
     const struct passo_following *following, const struct passo_following_wires *wires);
 
-/* One axis: encoder, settings, what it is compared with. See rtl/passo_encoder_axis.v. */
+/* One axis: encoder, settings, following error. See rtl/passo_encoder_axis.v. */
 struct passo_encoder_axis {
 	bool inverted, index_inverted, index_gated, stops_soft, stops_hard;
 	uint32_t ratio;

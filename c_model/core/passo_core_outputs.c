@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Outputs of a channel that are bound to the path. See rtl/passo_outputs.v.
+ * Path-synchronized outputs of a channel. See rtl/passo_outputs.v.
  */
 #include "passo_core_outputs.h"
 
@@ -43,7 +43,7 @@ static void clock_pwm(struct passo_outputs_unit *outputs, const struct passo_out
 				       });
 }
 
-/* The word in force, and the levels at the pins. */
+/* The active word, and the levels at the pins. */
 static void clock_word(struct passo_outputs_unit *outputs, const struct passo_outputs_wires *wires)
 {
 	const struct passo_changes *changes = &outputs->changes;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The part of the model for outputs that are bound to the path. See rtl/passo_outputs.v.
+ * Model of the path-synchronized outputs. See rtl/passo_outputs.v.
  */
 #ifndef PASSO_CORE_OUTPUTS_H
 #define PASSO_CORE_OUTPUTS_H
@@ -72,7 +72,7 @@ struct passo_compare {
 	bool pin;
 };
 
-/* What a queue sees of the bus. */
+/* Bus signals of a queue. */
 struct passo_raster_bus {
 	bool push; /* the bus addresses this queue */
 	bool frame, commit, check, write;
@@ -132,7 +132,7 @@ void passo_compare_clock(struct passo_compare *compare, const struct passo_outpu
 
 void passo_outputs_reset(struct passo_outputs_unit *outputs);
 void passo_outputs_clock(struct passo_outputs_unit *outputs, const struct passo_outputs_wires *wires);
-/* Whether no change waits, one clock late. */
+/* Whether no change is pending, one clock late. */
 bool passo_outputs_quiet(const struct passo_outputs_unit *outputs);
 uint32_t passo_outputs_state(const struct passo_outputs_unit *outputs);
 /* Whether only counters change as long as the inputs stay as they are, and skipping such clocks. */

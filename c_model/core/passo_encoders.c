@@ -201,7 +201,7 @@ bool passo_encoders_quiet(const struct passo_channel *channel, const struct pass
 
 	if (!encoders->present)
 		return true;
-	/* a motion that follows, or is about to, is not skipped */
+	/* a motion that follows an encoder, or is about to, is not skipped */
 	if (encoders->writes || encoders->written != (uint8_t)inputs->bus->address
 	    || encoders->positions.snapshot_waits || encoders->positions.latch_waits
 	    || (encoders->follow && passo_channel_occupied(channel)))

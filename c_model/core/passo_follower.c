@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Follower: makes the counts of an encoder the clock of a profile. See rtl/passo_follower.v.
+ * Follower: turns encoder counts into the clock of a profile. See rtl/passo_follower.v.
  */
 #include "passo_core_encoder.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Link: words to frames to bus accesses, and the replies. See rtl/passo_link.v, rtl/passo_payload.v and
- * rtl/passo_reply.v. The 32 shifts of a word are done at once, in the last of their clocks. The refusal
+ * rtl/passo_reply.v. The 32 shifts of a word are done together, in the last of their clocks. The reject
  * counters are in passo_registers.c, the states of a frame in passo_link_states.c.
  */
 #include "passo_crc.h"
@@ -8,7 +8,7 @@
 #include "passo_model.h"
 #include "passo_words.h"
 
-/* Sequence and verdict, and their complement. */
+/* Sequence and response code, and their complement. */
 static uint32_t acknowledge(uint8_t sequence, uint8_t verdict)
 {
 	return passo_pack_ack(&(struct passo_ack){

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Power in proportion to the velocity. See rtl/passo_power.v.
+ * Speed-proportional power. See rtl/passo_power.v.
  */
 #include "passo_core_outputs.h"
 
@@ -22,7 +22,7 @@ static uint32_t quotient(uint64_t scaled, uint64_t velocity, uint32_t rate)
 	return (uint32_t)(scaled / factor);
 }
 
-/* The results are known when they are begun, and used when the RTL has them. */
+/* Results are computed at the start of an operation and take effect when the RTL has them. */
 void passo_power_clock(struct passo_power *power, const struct passo_outputs_wires *wires, bool moves)
 {
 	const struct passo_output_settings *settings = &wires->settings;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * PWM of one power pin, as an account. See rtl/passo_pwm.v.
+ * Power PWM with a credit accumulator. See rtl/passo_pwm.v.
  */
 #include "passo_core_outputs.h"
 

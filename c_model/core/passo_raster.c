@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Raster: the queue of values, and which substep takes one. See rtl/passo_raster.v.
+ * Raster: the queue of values, and the substeps that take them. See rtl/passo_raster.v.
  */
 #include "passo_core_outputs.h"
 #include "passo_registers.h"

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
- * Bits on their way over SPI: passo_core_shift() and passo_core_exchange().
+ * Skipping clocks during an SPI transfer: passo_core_shift() and passo_core_exchange().
  *
- * Between the ends of two halves of a word an edge of SCLK changes nothing but the SPI slave's own registers.
- * A jump therefore skips the rest of the core and takes the edges that lie in it one by one.
+ * Between the ends of two halves of a word an edge of SCLK only changes the SPI slave's own registers. A skip
+ * therefore jumps over the rest of the core and processes the edges within it one by one.
  */
 #include "passo_core.h"
 
-/* An edge of SCLK that does not end a half; the synchronisers of the SPI slave are settled. */
+/* An edge of SCLK that does not end a half; the synchronizers of the SPI slave are settled. */
 static void take_edge(struct passo_core *core, struct passo_inputs *inputs, const struct passo_shift *shift)
 {
 	passo_shift_pins(shift, inputs, core->spi.miso);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * A host's side of an exchange over SPI, mode 0: MOSI changes on the falling edge, both sides sample on the
- * rising edge. Words are sent and received with their highest bit first.
+ * Host side of an SPI exchange, mode 0: MOSI changes on the falling edge, both sides sample on the
+ * rising edge. Words are sent and received MSB first.
  */
 #ifndef PASSO_SHIFT_H
 #define PASSO_SHIFT_H

@@ -75,35 +75,35 @@ void passo_gcode_set_position(struct passo_gcode *gcode, const int64_t *position
 
 static void accept_coolant(struct passo_gcode *gcode, passo_gcode_command command)
 {
-	gcode->mist = command == 70 || (gcode->mist && command != 90);
-	gcode->flood = command == 80 || (gcode->flood && command != 90);
+	gcode->mist = command == PASSO_GCODE_M(7) || (gcode->mist && command != PASSO_GCODE_M(9));
+	gcode->flood = command == PASSO_GCODE_M(8) || (gcode->flood && command != PASSO_GCODE_M(9));
 }
 
 static void accept_command(struct passo_gcode *gcode, const struct passo_gcode_check *check)
 {
 	switch (check->block.command[PASSO_GCODE_COMMAND]) {
-	case 100:
+	case PASSO_GCODE_G(10, 0):
 		passo_gcode_copy(gcode, check->set, gcode->offsets.system[check->system]);
 		break;
-	case 281:
+	case PASSO_GCODE_G(28, 1):
 		passo_gcode_copy(gcode, gcode->position, gcode->offsets.home[0]);
 		break;
-	case 301:
+	case PASSO_GCODE_G(30, 1):
 		passo_gcode_copy(gcode, gcode->position, gcode->offsets.home[1]);
 		break;
-	case 920:
+	case PASSO_GCODE_G(92, 0):
 		passo_gcode_copy(gcode, check->set, gcode->shift);
 		break;
-	case 921:
+	case PASSO_GCODE_G(92, 1):
 		for (unsigned axis = 0; axis < PASSO_GCODE_AXES_MAX; axis++)
 			gcode->shift[axis] = 0;
 		break;
 	default:
 		break;
 	}
-	if (check->block.command[PASSO_GCODE_TOOL_LENGTH] == 490)
+	if (check->block.command[PASSO_GCODE_TOOL_LENGTH] == PASSO_GCODE_G(49, 0))
 		gcode->tool_length = 0;
-	else if (check->block.command[PASSO_GCODE_TOOL_LENGTH] == 431)
+	else if (check->block.command[PASSO_GCODE_TOOL_LENGTH] == PASSO_GCODE_G(43, 1))
 		gcode->tool_length = check->set[2];
 }
 
@@ -129,7 +129,7 @@ static void accept(struct passo_gcode *gcode, const struct passo_gcode_check *ch
 		passo_gcode_copy(gcode, gcode->job.destination, gcode->position);
 	gcode->job.output = passo_gcode_output(gcode) != output;
 	gcode->job.pause = program == 0;
-	gcode->job.end = program == 20 || program == 300;
+	gcode->job.end = program == PASSO_GCODE_M(2) || program == PASSO_GCODE_M(30);
 }
 
 static enum passo_gcode_error begin(
@@ -184,8 +184,8 @@ enum passo_gcode_error passo_gcode_jog(struct passo_gcode *gcode, const char *te
 
 	for (unsigned group = 0; group < PASSO_GCODE_GROUPS; group++) {
 		const passo_gcode_command given = check.block.command[group];
-		const bool allowed =
-		    group == PASSO_GCODE_UNITS || group == PASSO_GCODE_DISTANCE || given == 530;
+		const bool allowed = group == PASSO_GCODE_UNITS || group == PASSO_GCODE_DISTANCE
+		                  || given == PASSO_GCODE_G(53, 0);
 
 		if (error == PASSO_GCODE_OK && given != PASSO_GCODE_NONE && !allowed)
 			error = PASSO_GCODE_JOG;

@@ -5,10 +5,10 @@
  *     if (!passo_gcode_is_busy(&gcode))
  *             error = passo_gcode_execute(&gcode, "G1X10F600");
  *     while (passo_gcode_next(&gcode, &action))
- *             ... one chord, dwell, pause, in this order
+ *             ... one line, dwell or pause, in this order
  *
- * A line is checked completely before anything of it takes effect; a line with an error changes nothing.
- * Lengths are nanometres, Q63.0; the degrees of A, B, C count as millimetres. No heap, no floating point.
+ * A line is checked completely before it takes effect; a line with an error changes nothing.
+ * Lengths are nanometers, Q63.0; degrees of A, B, C are treated as millimeters. No heap, no floating point.
  */
 #ifndef PASSO_GCODE_H
 #define PASSO_GCODE_H
@@ -25,11 +25,11 @@ struct passo_gcode_settings {
 	uint8_t axes;             /* X, Y, Z, A, B, C: the first 1 .. PASSO_GCODE_AXES_MAX of them */
 	uint32_t arc_tolerance;   /* nm, at least 1 */
 	uint32_t spindle_maximum; /* rpm at full power; 0: S has no effect */
-	bool laser;               /* M4: power in proportion to the speed, not reverse */
-	uint32_t spindle_minimum; /* rpm of a spindle that turns */
+	bool laser;               /* M4: speed-proportional power, not reverse */
+	uint32_t spindle_minimum; /* rpm, minimum of a running spindle */
 };
 
-/* What outlasts a reset: kept by the caller, if at all. */
+/* Offsets that survive a reset: stored by the caller, if at all. */
 struct passo_gcode_offsets {
 	passo_gcode_position system[PASSO_GCODE_SYSTEMS];
 	passo_gcode_position home[2]; /* G28, G30 */
@@ -44,10 +44,10 @@ struct passo_gcode_offsets {
 
 enum passo_gcode_kind {
 	PASSO_GCODE_LINE,
-	PASSO_GCODE_PROBE, /* to the target, until the probe acts; `probe` is 382 .. 385 */
+	PASSO_GCODE_PROBE, /* to the target, until the probe triggers; `probe` is 382 .. 385 */
 	PASSO_GCODE_DWELL,
 	PASSO_GCODE_OUTPUT, /* spindle or coolant have changed */
-	PASSO_GCODE_PAUSE,  /* M0: wait for the operator at the end of the lines so far */
+	PASSO_GCODE_PAUSE,  /* M0: wait for the operator after the preceding lines */
 	PASSO_GCODE_END,    /* M2, M30: of the program */
 	PASSO_GCODE_OFFSETS /* struct passo_gcode_offsets has changed */
 };
@@ -62,7 +62,7 @@ struct passo_gcode_action {
 	passo_gcode_command probe;
 };
 
-/* What a line is about to do, and has not handed out yet. */
+/* Pending actions of a line. */
 struct passo_gcode_job {
 	bool output, dwell, offsets, via, motion, pause, end; /* in this order */
 	bool turns;                                           /* the motion is an arc */
@@ -73,7 +73,7 @@ struct passo_gcode_job {
 	struct passo_gcode_arc arc;
 };
 
-/* All members but spindle_percent are to be read only. */
+/* All members except spindle_percent are read-only for users. */
 struct passo_gcode {
 	struct passo_gcode_settings settings;
 	struct passo_gcode_offsets offsets;
@@ -87,43 +87,42 @@ struct passo_gcode {
 	int64_t spindle;               /* millionths of rpm */
 	uint32_t line;                 /* N of the last line that had one */
 	uint8_t tool;
-	uint8_t
-	    spindle_percent; /* override of S: the caller may set it; it holds for the actions from now on */
+	uint8_t spindle_percent; /* override of S: may be set by the caller, for the following actions */
 	struct passo_gcode_job job;
 };
 
-/* All modes as at power-up, at position 0, without offsets. */
+/* Power-up modes, position 0, no offsets. */
 void passo_gcode_open(struct passo_gcode *gcode, const struct passo_gcode_settings *settings);
 
-/* Other settings, while it is not busy. The number of axes stays. */
+/* Changes the settings; only while not busy. The number of axes stays. */
 void passo_gcode_configure(struct passo_gcode *gcode, const struct passo_gcode_settings *settings);
 
-/* Other stored offsets, while it is not busy. */
+/* Changes the stored offsets; only while not busy. */
 void passo_gcode_set_offsets(struct passo_gcode *gcode, const struct passo_gcode_offsets *offsets);
 
-/* The modes of power-up; offsets and position stay, G92 and G43.1 end. */
+/* Power-up modes; offsets and position stay, G92 and G43.1 are cleared. */
 void passo_gcode_reset(struct passo_gcode *gcode);
 
-/* After a stop, a home or a probe: the machine is here. Drops what is left of the line. */
+/* Sets the position after a stop, homing or probing. Drops the rest of the line. */
 void passo_gcode_set_position(struct passo_gcode *gcode, const int64_t *position);
 
-/* A line of passo_gcode_line.h. Only while it is not busy. An error changes nothing. */
+/* Executes a line of passo_gcode_line.h; only while not busy. An error changes nothing. */
 enum passo_gcode_error passo_gcode_execute(struct passo_gcode *gcode, const char *text);
 
-/* The same for the words after `$J=`: modes and feed stay as they are. Error: also JOG. */
+/* The same for the words after `$J=`: modes and feed are unchanged. Error: also JOG. */
 enum passo_gcode_error passo_gcode_jog(struct passo_gcode *gcode, const char *text);
 
-/* The next action of the line; false: none is left. */
+/* The next action of the line; false: none left. */
 bool passo_gcode_next(struct passo_gcode *gcode, struct passo_gcode_action *action);
 bool passo_gcode_is_busy(const struct passo_gcode *gcode);
 
-/* The output word of the lines from now on. */
+/* The output word of the following lines. */
 uint32_t passo_gcode_output(const struct passo_gcode *gcode);
 
-/* Machine less work coordinates of an axis: the sum of all offsets. */
+/* Machine minus work coordinate of an axis: the sum of all offsets. */
 int64_t passo_gcode_offset(const struct passo_gcode *gcode, unsigned axis);
 
-/* Q31.32 mm of nanometres, to the nearest. */
+/* Converts nanometers to Q31.32 mm, to nearest. */
 int64_t passo_gcode_millimetres(int64_t nanometres);
 
 #endif

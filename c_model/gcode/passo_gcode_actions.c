@@ -11,7 +11,7 @@ uint32_t passo_gcode_output(const struct passo_gcode *gcode)
 	const uint32_t maximum = gcode->settings.spindle_maximum;
 	uint32_t output = 0;
 
-	if (gcode->mode[PASSO_GCODE_SPINDLE] != 50) {
+	if (gcode->mode[PASSO_GCODE_SPINDLE] != PASSO_GCODE_M(5)) {
 		const uint64_t full = (uint64_t)maximum * PASSO_GCODE_MILLION;
 		const uint64_t wanted = passo_mul_div((uint64_t)gcode->spindle, gcode->spindle_percent, 100);
 		const uint64_t least =
@@ -23,7 +23,7 @@ uint32_t passo_gcode_output(const struct passo_gcode *gcode)
 
 		output = PASSO_GCODE_OUTPUT_SPINDLE;
 		output |= full > 0 ? (uint32_t)passo_mul_div(speed, POWER_FULL, full) : 0u;
-		output |= gcode->mode[PASSO_GCODE_SPINDLE] == 40 ? reverse : 0u;
+		output |= gcode->mode[PASSO_GCODE_SPINDLE] == PASSO_GCODE_M(4) ? reverse : 0u;
 	}
 	output |= gcode->flood ? PASSO_GCODE_OUTPUT_FLOOD : 0u;
 	return output | (gcode->mist ? PASSO_GCODE_OUTPUT_MIST : 0u);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Angles and rotations in integers. An angle is a fraction of a turn, UQ0.64, and wraps as it should.
+ * Angles and rotations in integers. An angle is a fraction of a turn, UQ0.64, with natural wraparound.
  */
 #ifndef PASSO_GCODE_ANGLE_H
 #define PASSO_GCODE_ANGLE_H

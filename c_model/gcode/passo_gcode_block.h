@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * The words of a line: what it says, before it is known whether that makes sense.
+ * The parsed words of a line, before the semantic checks.
  *
- * Numbers are exact in millionths: millimetres become nanometres, seconds microseconds.
+ * Numbers are exact in millionths: millimeters become nanometers, seconds microseconds.
  */
 #ifndef PASSO_GCODE_BLOCK_H
 #define PASSO_GCODE_BLOCK_H
@@ -39,13 +39,16 @@ enum passo_gcode_group {
 /* A command is its number in tenths: G38.2 is 382. */
 typedef int16_t passo_gcode_command;
 #define PASSO_GCODE_NONE ((passo_gcode_command) - 1)
+/* Commands by name: G28.1 is PASSO_GCODE_G(28, 1), M30 is PASSO_GCODE_M(30). */
+#define PASSO_GCODE_G(whole, tenths) ((whole) * 10 + (tenths))
+#define PASSO_GCODE_M(whole) ((whole) * 10)
 
 #define PASSO_GCODE_WORD(letter) (UINT32_C(1) << ((letter) - 'A'))
 
 struct passo_gcode_block {
 	passo_gcode_command command[PASSO_GCODE_GROUPS]; /* PASSO_GCODE_NONE: none */
-	bool takes_axes;                                 /* one of them moves, or sets what axis words say */
-	uint32_t words;                                  /* of the other letters, a bit for each */
+	bool takes_axes;                                 /* one of them uses the axis words */
+	uint32_t words;                                  /* other words, one bit per letter */
 	int64_t value[26];                               /* of a letter, in millionths */
 };
 
@@ -53,8 +56,8 @@ struct passo_gcode_block {
 char passo_gcode_axis_letter(unsigned axis);
 uint32_t passo_gcode_axis_words(unsigned axes);
 
-/* Reads a number: sign, digits and at most one point, below 10^9; rounded to millionths. Moves *text behind
- * it. False: there is none. */
+/* Reads a number: sign, digits and at most one point, below 10^9; rounded to millionths. Advances *text
+ * past it. False: no number. */
 bool passo_gcode_number(const char **text, int64_t *millionths);
 
 /* Reads the words of a line (passo_gcode_line.h) for a machine with `axes` axes. Errors: LETTER, NUMBER,

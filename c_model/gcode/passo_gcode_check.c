@@ -34,7 +34,7 @@ int64_t passo_gcode_length_of(const struct passo_gcode_check *check, char letter
 {
 	const int64_t value = value_of(check, letter);
 
-	return check->mode[PASSO_GCODE_UNITS] == 200 ? from_inches(value) : value;
+	return check->mode[PASSO_GCODE_UNITS] == PASSO_GCODE_G(20, 0) ? from_inches(value) : value;
 }
 
 bool passo_gcode_has_axis(const struct passo_gcode_check *check, unsigned axis)
@@ -59,8 +59,8 @@ static enum passo_gcode_error find_user(struct passo_gcode_check *check)
 {
 	const passo_gcode_command motion = check->block.command[PASSO_GCODE_MOTION];
 
-	check->moves =
-	    (motion != PASSO_GCODE_NONE && motion != 800) || (check->axis_words && !check->block.takes_axes);
+	check->moves = (motion != PASSO_GCODE_NONE && motion != PASSO_GCODE_G(80, 0))
+	            || (check->axis_words && !check->block.takes_axes);
 	check->unused &= ~check->axis_words;
 	return PASSO_GCODE_OK;
 }
@@ -78,8 +78,8 @@ static enum passo_gcode_error check_feed(struct passo_gcode_check *check)
 	const passo_gcode_command motion = check->mode[PASSO_GCODE_MOTION];
 	const bool given = passo_gcode_take(check, 'F');
 
-	if (check->mode[PASSO_GCODE_FEED_MODE] == 930) {
-		if (check->moves && motion != 0 && motion != 800 && !given)
+	if (check->mode[PASSO_GCODE_FEED_MODE] == PASSO_GCODE_G(93, 0)) {
+		if (check->moves && motion != PASSO_GCODE_G(0, 0) && motion != PASSO_GCODE_G(80, 0) && !given)
 			return PASSO_GCODE_NO_FEED;
 		check->inverse = given ? value_of(check, 'F') : 0;
 	} else {
@@ -93,7 +93,7 @@ static enum passo_gcode_error check_tool(struct passo_gcode_check *check)
 	passo_gcode_take(check, 'S');
 	if (passo_gcode_take(check, 'T') && whole_of(check, 'T') > TOOL_MAX)
 		return PASSO_GCODE_TOOL;
-	if (check->block.command[PASSO_GCODE_TOOL_LENGTH] != 431)
+	if (check->block.command[PASSO_GCODE_TOOL_LENGTH] != PASSO_GCODE_G(43, 1))
 		return PASSO_GCODE_OK;
 	if (check->axis_words != PASSO_GCODE_WORD('Z'))
 		return PASSO_GCODE_TOOL_AXIS;
@@ -190,8 +190,9 @@ static enum passo_gcode_error check_path(struct passo_gcode_check *check)
 	check->tolerance = check->gcode->tolerance;
 	if (path == PASSO_GCODE_NONE)
 		return PASSO_GCODE_OK;
-	check->tolerance = path == 640 ? 0 : PASSO_PATH_UNMERGED;
-	if (path == 640 && command != 40 && command != 100 && passo_gcode_take(check, 'P'))
+	check->tolerance = path == PASSO_GCODE_G(64, 0) ? 0 : PASSO_PATH_UNMERGED;
+	if (path == PASSO_GCODE_G(64, 0) && command != PASSO_GCODE_G(4, 0) && command != PASSO_GCODE_G(10, 0)
+	    && passo_gcode_take(check, 'P'))
 		letter = 'P';
 	if (passo_gcode_take(check, 'Q'))
 		letter = 'Q';
@@ -205,21 +206,21 @@ static enum passo_gcode_error check_path(struct passo_gcode_check *check)
 static enum passo_gcode_error check_command(struct passo_gcode_check *check)
 {
 	switch (check->block.command[PASSO_GCODE_COMMAND]) {
-	case 40:
+	case PASSO_GCODE_G(4, 0):
 		check->job->dwell = true;
 		check->job->microseconds = (uint64_t)value_of(check, 'P');
 		return passo_gcode_take(check, 'P') ? PASSO_GCODE_OK : PASSO_GCODE_NO_VALUE;
-	case 100:
+	case PASSO_GCODE_G(10, 0):
 		return check_g10(check);
-	case 280:
+	case PASSO_GCODE_G(28, 0):
 		return check_return(check, check->gcode->offsets.home[0]);
-	case 300:
+	case PASSO_GCODE_G(30, 0):
 		return check_return(check, check->gcode->offsets.home[1]);
-	case 281:
-	case 301:
+	case PASSO_GCODE_G(28, 1):
+	case PASSO_GCODE_G(30, 1):
 		check->job->offsets = true;
 		return PASSO_GCODE_OK;
-	case 920:
+	case PASSO_GCODE_G(92, 0):
 		return check_g92(check);
 	default:
 		return PASSO_GCODE_OK;

@@ -13,15 +13,15 @@ const char *passo_gcode_error_text(enum passo_gcode_error error)
 	case PASSO_GCODE_STATEMENT:
 		return "unknown $ command";
 	case PASSO_GCODE_NEGATIVE:
-		return "negative value where only a positive one makes sense";
+		return "negative value not allowed";
 	case PASSO_GCODE_NO_HOMING:
 		return "homing is not enabled";
 	case PASSO_GCODE_PULSE_TOO_SHORT:
-		return "step pulse shorter than the least one";
+		return "step pulse shorter than the minimum";
 	case PASSO_GCODE_STORAGE:
 		return "the settings could not be read or written";
 	case PASSO_GCODE_NOT_IDLE:
-		return "only while the machine is idle";
+		return "allowed only when idle";
 	case PASSO_GCODE_LOCKED:
 		return "no G-code during an alarm or a jog";
 	case PASSO_GCODE_SOFT_LIMITS_NEED_HOMING:
@@ -35,7 +35,7 @@ const char *passo_gcode_error_text(enum passo_gcode_error error)
 	case PASSO_GCODE_TRAVEL:
 		return "the jog would leave the travel of the machine";
 	case PASSO_GCODE_JOG:
-		return "a jog needs '=', a feed and nothing but G20 G21 G53 G90 G91 and axes";
+		return "a jog takes '=', a feed, axes, and only G20 G21 G53 G90 G91";
 	case PASSO_GCODE_UNSUPPORTED:
 		return "unsupported or invalid command or word";
 	case PASSO_GCODE_MODAL_GROUP:
@@ -43,7 +43,7 @@ const char *passo_gcode_error_text(enum passo_gcode_error error)
 	case PASSO_GCODE_NO_FEED:
 		return "the feed is not set";
 	case PASSO_GCODE_NOT_INTEGER:
-		return "the number of a G or M command must be whole";
+		return "the number of a G or M command must be an integer";
 	case PASSO_GCODE_TWO_COMMANDS:
 		return "two commands that use the axis words";
 	case PASSO_GCODE_REPEATED:
@@ -55,9 +55,9 @@ const char *passo_gcode_error_text(enum passo_gcode_error error)
 	case PASSO_GCODE_NO_VALUE:
 		return "the command needs a word that is missing";
 	case PASSO_GCODE_COORDINATES:
-		return "only the coordinate systems G54 to G59";
+		return "coordinate system must be G54 to G59";
 	case PASSO_GCODE_G53:
-		return "G53 only with G0 and G1";
+		return "G53 needs G0 or G1";
 	case PASSO_GCODE_AXIS_WORDS:
 		return "axis words without a command that uses them";
 	case PASSO_GCODE_NO_PLANE_WORDS:
@@ -65,13 +65,13 @@ const char *passo_gcode_error_text(enum passo_gcode_error error)
 	case PASSO_GCODE_TARGET:
 		return "invalid target";
 	case PASSO_GCODE_RADIUS:
-		return "no arc of this radius reaches the target";
+		return "radius too small to reach the target";
 	case PASSO_GCODE_NO_OFFSETS:
 		return "an arc needs an offset or radius in its plane";
 	case PASSO_GCODE_UNUSED:
-		return "a word that no command of the line uses";
+		return "unused word: no command of the line takes it";
 	case PASSO_GCODE_TOOL_AXIS:
-		return "G43.1 only with Z";
+		return "G43.1 takes only Z";
 	case PASSO_GCODE_TOOL:
 		return "tool number above 255";
 	}

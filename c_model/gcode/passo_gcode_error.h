@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The answers to a line, with the numbers that senders know from grbl 1.1.
+ * Error codes of a line, numbered as in grbl 1.1.
  */
 #ifndef PASSO_GCODE_ERROR_H
 #define PASSO_GCODE_ERROR_H
@@ -42,7 +42,7 @@ enum passo_gcode_error {
 	PASSO_GCODE_TOOL = 38
 };
 
-/* One sentence for any value; never null. */
+/* The message for any value; never null. */
 const char *passo_gcode_error_text(enum passo_gcode_error error);
 
 #endif

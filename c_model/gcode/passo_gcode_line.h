@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * A line as it comes in, byte by byte: without spaces and comments, in capitals.
+ * Assembles a line byte by byte: drops spaces and comments, converts to upper case.
  */
 #ifndef PASSO_GCODE_LINE_H
 #define PASSO_GCODE_LINE_H
@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Longest line, without spaces and comments, and its end. */
+/* Longest line, without spaces and comments, plus its terminator. */
 #define PASSO_GCODE_LINE_SIZE 128u
 
 struct passo_gcode_line {
@@ -18,20 +18,20 @@ struct passo_gcode_line {
 	bool overflow;
 };
 
-/* Begins an empty line. */
+/* Starts an empty line. */
 void passo_gcode_line_clear(struct passo_gcode_line *line);
 
-/* Whether a byte ends a line: LF or CR. Of CR LF each ends one, the second of which is empty. */
+/* Whether a byte ends a line: LF or CR. CR LF ends two lines, the second one empty. */
 bool passo_gcode_line_ends(char byte);
 
 /* Bytes of the first line of a text, with its end: LF, CR, CR LF, or that of the text. */
 size_t passo_gcode_line_count(const char *text, size_t count);
 
 /* Adds a byte that does not end the line. Comments are (...) and ;... to the end of the line. Spaces and
- * control characters are nothing; any other byte that no word can have stays, so that the line is refused. */
+ * control characters are dropped; any other byte is kept, so that an invalid line is rejected. */
 void passo_gcode_line_add(struct passo_gcode_line *line, char byte);
 
-/* Reads the first line of a text, without the byte order mark that editors put in front of a file. */
+/* Reads the first line of a text, skipping a byte order mark. */
 void passo_gcode_line_read(struct passo_gcode_line *line, const char *text, size_t count);
 
 #endif

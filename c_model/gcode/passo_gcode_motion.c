@@ -14,8 +14,8 @@ static uint64_t magnitude(int64_t value)
 enum passo_gcode_error passo_gcode_find_target(const struct passo_gcode_check *check, int64_t *target)
 {
 	const struct passo_gcode *gcode = check->gcode;
-	const bool machine = check->block.command[PASSO_GCODE_COMMAND] == 530;
-	const bool incremental = check->mode[PASSO_GCODE_DISTANCE] == 910;
+	const bool machine = check->block.command[PASSO_GCODE_COMMAND] == PASSO_GCODE_G(53, 0);
+	const bool incremental = check->mode[PASSO_GCODE_DISTANCE] == PASSO_GCODE_G(91, 0);
 
 	for (unsigned axis = 0; axis < gcode->settings.axes; axis++) {
 		target[axis] = gcode->position[axis];
@@ -37,9 +37,9 @@ enum passo_gcode_error passo_gcode_find_target(const struct passo_gcode_check *c
 static struct passo_gcode_plane plane_of(const struct passo_gcode_check *check)
 {
 	switch (check->mode[PASSO_GCODE_PLANE]) {
-	case 180:
+	case PASSO_GCODE_G(18, 0):
 		return (struct passo_gcode_plane){2, 0};
-	case 190:
+	case PASSO_GCODE_G(19, 0):
 		return (struct passo_gcode_plane){1, 2};
 	default:
 		return (struct passo_gcode_plane){0, 1};
@@ -87,7 +87,7 @@ static enum passo_gcode_error check_arc(struct passo_gcode_check *check)
 
 	*arc = (struct passo_gcode_arc){
 	    .plane = plane_of(check),
-	    .clockwise = check->mode[PASSO_GCODE_MOTION] == 20,
+	    .clockwise = check->mode[PASSO_GCODE_MOTION] == PASSO_GCODE_G(2, 0),
 	    .axes = check->gcode->settings.axes,
 	};
 	if (check->axis_words == 0)
@@ -136,7 +136,7 @@ static uint64_t feed_of(const struct passo_gcode_check *check)
 {
 	uint64_t per_minute = (uint64_t)check->feed;
 
-	if (check->mode[PASSO_GCODE_FEED_MODE] == 930)
+	if (check->mode[PASSO_GCODE_FEED_MODE] == PASSO_GCODE_G(93, 0))
 		per_minute = passo_mul_div(length_of(check), (uint64_t)check->inverse, PASSO_GCODE_MILLION);
 	const uint64_t feed = passo_mul_div(per_minute, UINT64_C(1) << 32, MICROSECONDS_PER_MINUTE);
 	return feed > 0 ? feed : 1;
@@ -148,9 +148,10 @@ enum passo_gcode_error passo_gcode_check_motion(struct passo_gcode_check *check)
 	struct passo_gcode_job *job = check->job;
 	enum passo_gcode_error error = PASSO_GCODE_OK;
 
-	if (check->block.command[PASSO_GCODE_COMMAND] == 530 && motion != 0 && motion != 10)
+	if (check->block.command[PASSO_GCODE_COMMAND] == PASSO_GCODE_G(53, 0) && motion != PASSO_GCODE_G(0, 0)
+	    && motion != PASSO_GCODE_G(1, 0))
 		return PASSO_GCODE_G53;
-	if (motion == 800 && check->axis_words) /* those of G92, G28, G10, G43.1 as well */
+	if (motion == PASSO_GCODE_G(80, 0) && check->axis_words) /* those of G92, G28, G10, G43.1 as well */
 		return PASSO_GCODE_AXIS_WORDS;
 	if (!check->moves)
 		return PASSO_GCODE_OK;
@@ -160,7 +161,7 @@ enum passo_gcode_error passo_gcode_check_motion(struct passo_gcode_check *check)
 	if (error != PASSO_GCODE_OK)
 		return error;
 	job->motion = check->axis_words != 0;
-	if (motion == 20 || motion == 30)
+	if (motion == PASSO_GCODE_G(2, 0) || motion == PASSO_GCODE_G(3, 0))
 		error = check_arc(check);
 	else if (motion > 380)
 		error = check_probe(check);

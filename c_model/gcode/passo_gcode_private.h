@@ -6,14 +6,14 @@
 
 #include "passo_gcode.h"
 
-/* A line while it is checked: its words, and what will hold once it is accepted. */
+/* A line being checked: its words, and the modes once it is accepted. */
 struct passo_gcode_check {
 	const struct passo_gcode *gcode; /* as it was before the line, but for its job */
 	struct passo_gcode_job *job;
 	struct passo_gcode_block block;
 	passo_gcode_command mode[PASSO_GCODE_MODES];
 	uint32_t axis_words;
-	uint32_t unused;          /* words that no command has taken yet */
+	uint32_t unused;          /* words not used by a command yet */
 	bool moves;               /* the axis words are those of a motion, given or in force */
 	int64_t feed;             /* nm/min, of G94; 0: none */
 	int64_t inverse;          /* millionths of 1/min, of G93 */
@@ -27,9 +27,9 @@ extern const passo_gcode_command PASSO_GCODE_POWER_UP[PASSO_GCODE_MODES];
 /* The axes of a position. */
 void passo_gcode_copy(const struct passo_gcode *gcode, const int64_t *from, int64_t *to);
 
-/* Whether a word is there; it is used then. */
+/* Whether a word is present; marks it as used. */
 bool passo_gcode_take(struct passo_gcode_check *check, char letter);
-/* Of a word, in nanometres by the units in force. */
+/* Value of a word in nanometers, with the active units. */
 int64_t passo_gcode_length_of(const struct passo_gcode_check *check, char letter);
 bool passo_gcode_has_axis(const struct passo_gcode_check *check, unsigned axis);
 int64_t passo_gcode_axis_value(const struct passo_gcode_check *check, unsigned axis);
@@ -37,11 +37,11 @@ bool passo_gcode_in_range(int64_t nanometres);
 /* Machine less work coordinates, with the coordinate system of the line. */
 int64_t passo_gcode_offset_of(const struct passo_gcode_check *check, unsigned axis);
 
-/* All but the motion. */
+/* Everything except the motion. */
 enum passo_gcode_error passo_gcode_check_words(struct passo_gcode_check *check);
 /* The motion: fills in the job. */
 enum passo_gcode_error passo_gcode_check_motion(struct passo_gcode_check *check);
-/* Where the axis words lead to. Error: TARGET. */
+/* The target of the axis words. Error: TARGET. */
 enum passo_gcode_error passo_gcode_find_target(const struct passo_gcode_check *check, int64_t *target);
 
 #endif

@@ -61,48 +61,48 @@ enum passo_profile {
 struct passo_move_in_time {
 	int32_t            steps[PASSO_AXES_MAX]; /* per axis; the sign is the direction */
 	enum passo_profile profile;               /* shape of the ramps; `shaped` with a shaper */
-	uint64_t           total_clocks;          /* clocks: from start to end */
-	uint64_t           ramp_clocks;           /* clocks: of each of the two ramps; 0 to half of the total time */
+	uint64_t           total_clocks;          /* clocks: duration of the move */
+	uint64_t           ramp_clocks;           /* clocks: duration of each ramp; 0 to half the total time */
 };
 
-/* A move by speeds of the longest axis. Start and stop speed are what the drive can start at and stop from;
- * a move too short for them uses less. Phases are rounded up to ticks, so no limit is ever exceeded. */
+/* A move by speeds of the dominant axis. The drive can start at the start speed and stop from the stop
+ * speed; a move too short for them uses less. Phases are rounded up to ticks, so no limit is ever exceeded. */
 struct passo_move_by_speed {
 	int32_t            steps[PASSO_AXES_MAX]; /* per axis; the sign is the direction */
 	enum passo_profile profile;               /* shape of the ramps */
 	uint64_t           start_speed;           /* UQ32.32 steps/s: the move starts at this speed, 0 .. speed */
-	uint64_t           speed;                 /* UQ32.32 steps/s: never exceeded; not reached when the move is too short */
+	uint64_t           speed;                 /* UQ32.32 steps/s: never exceeded; not reached if the move is too short */
 	uint64_t           stop_speed;            /* UQ32.32 steps/s: the move stops from this speed, 0 .. speed */
-	uint64_t           acceleration;          /* UQ32.32 steps/s^2: mean of the ramp; never exceeded */
-	uint64_t           deceleration;          /* UQ32.32 steps/s^2: mean of the ramp down; never exceeded; 0 in C: as acceleration */
-	uint64_t           ramp_clocks;           /* clocks: of each full ramp, instead of accelerations */
+	uint64_t           acceleration;          /* UQ32.32 steps/s^2: mean over the ramp; never exceeded */
+	uint64_t           deceleration;          /* UQ32.32 steps/s^2: mean over the ramp down; never exceeded; 0 in C: same as acceleration */
+	uint64_t           ramp_clocks;           /* clocks: duration of each full ramp, instead of accelerations */
 };
 
-/* In a given time, never above a speed. Its ramps are the longest, so the gentlest, that allow it: total -
- * n / speed each, at most half the total time (then the speed is not reached). */
+/* A move in a given time, never above a speed. Its ramps are the longest, so the gentlest, that allow it:
+ * total - n / speed each, at most half the total time (then the speed is not reached). */
 struct passo_move_below_speed {
 	int32_t            steps[PASSO_AXES_MAX]; /* per axis; the sign is the direction */
 	enum passo_profile profile;               /* shape of the ramps */
-	uint64_t           total_clocks;          /* clocks: from start to end */
+	uint64_t           total_clocks;          /* clocks: duration of the move */
 	uint64_t           speed;                 /* UQ32.32 steps/s: never exceeded */
 };
 
-/* With a given speed and ramp time. Takes n / speed + ramp, rounded up to ticks. The ramp time is at most n
- * / speed, half the total time. */
+/* A move with a given speed and ramp time. It takes n / speed + ramp, rounded up to ticks. The ramp time is
+ * at most n / speed, half the total time. */
 struct passo_move_at_speed {
 	int32_t            steps[PASSO_AXES_MAX]; /* per axis; the sign is the direction */
 	enum passo_profile profile;               /* shape of the ramps */
 	uint64_t           speed;                 /* UQ32.32 steps/s: between the ramps */
-	uint64_t           ramp_clocks;           /* clocks: of each of the two ramps; 0 to steps / speed */
+	uint64_t           ramp_clocks;           /* clocks: duration of each ramp; 0 to steps / speed */
 };
 
-/* Trapezoid on several axes, from and to the start speed. A move too short for it is a triangle of the same
- * acceleration. The axis with the most steps leads. */
+/* Trapezoid on several axes, from and to the start speed. A move too short for it is a triangle with the
+ * same acceleration. The axis with the most steps is the dominant one. */
 struct passo_move_axes {
 	int32_t  steps[PASSO_AXES_MAX]; /* per axis; the sign is the direction */
-	uint64_t start_speed;           /* UQ32.32 steps/s: the move starts at and stops from this speed */
-	uint64_t speed;                 /* UQ32.32 steps/s: never exceeded; not reached when the move is too short */
-	uint64_t ramp_clocks;           /* clocks: of each full ramp */
+	uint64_t start_speed;           /* UQ32.32 steps/s: speed at which the move starts and stops */
+	uint64_t speed;                 /* UQ32.32 steps/s: never exceeded; not reached if the move is too short */
+	uint64_t ramp_clocks;           /* clocks: duration of each full ramp */
 };
 
 /* Trapezoid on one axis by angle and rpm. The sign of the angle is the direction. Steps per turn are full
@@ -111,8 +111,8 @@ struct passo_move_turn {
 	uint8_t  axis;           /* axis to rotate */
 	uint32_t steps_per_turn; /* full steps times microsteps */
 	int64_t  angle;          /* Q31.32 degrees: to the nearest step */
-	uint64_t rpm;            /* UQ32.32 rpm: speed; not reached when the move is too short */
-	uint64_t minimum_rpm;    /* UQ32.32 rpm: the move starts at and stops from this speed */
+	uint64_t rpm;            /* UQ32.32 rpm: speed; not reached if the move is too short */
+	uint64_t minimum_rpm;    /* UQ32.32 rpm: speed at which the move starts and stops */
 	uint64_t acceleration;   /* UQ32.32 steps/s^2: never exceeded, accelerating or decelerating */
 };
 
@@ -121,10 +121,10 @@ struct passo_move_turn {
 struct passo_move_sigmoid {
 	int32_t  steps[PASSO_AXES_MAX]; /* per axis; the sign is the direction */
 	uint64_t start_speed;           /* UQ32.32 steps/s: the move starts at this speed, 0 .. speed */
-	uint64_t speed;                 /* UQ32.32 steps/s: never exceeded; not reached when the move is too short */
+	uint64_t speed;                 /* UQ32.32 steps/s: never exceeded; not reached if the move is too short */
 	uint64_t stop_speed;            /* UQ32.32 steps/s: the move stops from this speed, 0 .. speed */
-	uint64_t accelerate_clocks;     /* clocks: of a full ramp up */
-	uint64_t decelerate_clocks;     /* clocks: of a full ramp down */
+	uint64_t accelerate_clocks;     /* clocks: duration of a full ramp up */
+	uint64_t decelerate_clocks;     /* clocks: duration of a full ramp down */
 	uint32_t alpha;                 /* 1/4096: steepness: the logistic function over -alpha .. alpha */
 };
 
@@ -133,7 +133,7 @@ struct passo_move_sigmoid {
 struct passo_move_jerk {
 	int32_t  steps[PASSO_AXES_MAX]; /* per axis; the sign is the direction */
 	uint64_t start_speed;           /* UQ32.32 steps/s: the move starts at this speed, 0 .. speed */
-	uint64_t speed;                 /* UQ32.32 steps/s: never exceeded; not reached when the move is too short */
+	uint64_t speed;                 /* UQ32.32 steps/s: never exceeded; not reached if the move is too short */
 	uint64_t stop_speed;            /* UQ32.32 steps/s: the move stops from this speed, 0 .. speed */
 	uint64_t acceleration;          /* UQ32.32 steps/s^2: never exceeded, accelerating or decelerating */
 	uint64_t jerk;                  /* UQ32.32 steps/s^3: never exceeded */
@@ -146,7 +146,7 @@ struct passo_axis_limits {
 	uint64_t jerk;         /* UQ32.32 mm/s^3: limit of the axis; 0 in C: no limit */
 };
 
-/* Straight line through space, in millimetres or, for rotary axes, degrees. Each axis has its own limits;
+/* Straight line through space, in millimeters or, for rotary axes, degrees. Each axis has its own limits;
  * the tightest one sets the speed of the path. */
 struct passo_move_straight {
 	int64_t  distance[PASSO_AXES_MAX]; /* Q31.32 mm: per axis, to the nearest step */

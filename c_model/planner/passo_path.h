@@ -7,13 +7,12 @@
  *
  *     passo_path_open(&path, &settings, items, 48);
  *     passo_path_add(&path, &move);            // again with the same move after PATH_FULL
- *     passo_path_end(&path);                   // what has been added is all
- *     passo_path_next_line(&path, &line);      // for the queues of the core, whenever they have room
+ *     passo_path_end(&path);                   // no further lines for now
+ *     passo_path_next_line(&path, &line);      // for the core's queues, whenever they have free entries
  *     passo_path_next_ramp(&path, held, &ramp);
  *
- * At every moment the ramps that were handed out, and those that can still be handed out, bring the path to
- * rest within the known lines. A path that is not continued ends there as a motion, and the next one begins
- * there.
+ * At every moment the ramps handed out, and those still available, bring the path to rest within the known
+ * lines. A path that is not continued ends there as a motion, and the next motion starts there.
  *
  * No heap, no floating point; the same results on every machine. The work of a call is bounded by the number
  * of items. Pointers must not be null.
@@ -24,23 +23,23 @@
 #include "passo_path_state.h"
 #include "passo_plan.h"
 
-/* Fewest lines that can be looked ahead. */
+/* Minimum look-ahead, in lines. */
 #define PASSO_PATH_ITEMS_MIN 4u
 
-/* Feed of a line that is limited by its axes alone. */
+/* Feed of a line that is limited only by its axes. */
 #define PASSO_PATH_RAPID UINT64_MAX
 
 /* Largest magnitude of a target, Q31.32 mm. */
 #define PASSO_PATH_TARGET_MAX (INT64_C(1) << 62)
 
-/* Limits of an axis, UQ32.32. For rotary axes read degrees for millimetres. */
+/* Limits of an axis, UQ32.32. Rotary axes: degrees instead of millimeters. */
 struct passo_path_axis {
 	uint64_t steps_per_mm;
 	uint64_t speed;        /* mm/s */
 	uint64_t acceleration; /* mm/s^2 */
 	uint64_t jerk;         /* mm/s^3, for profile jerk */
-	uint64_t jump; /* mm/s that the axis may start, stop and change at once; 0: it starts and stops at
-	                  rest, and corners are limited by the other rules alone */
+	uint64_t jump; /* start-stop speed, mm/s, and largest instantaneous change; 0: the axis starts and
+	                  stops at rest, and corners are limited only by the other rules */
 };
 
 struct passo_path_settings {
@@ -51,10 +50,10 @@ struct passo_path_settings {
 	uint64_t tolerance;          /* UQ32.32 mm, see passo_path_tolerance(); 0: a twentieth of the junction
 	                                deviation */
 	enum passo_profile profile;  /* linear, cosine, sigmoid or jerk */
-	uint32_t reserve_clocks;     /* the core is never left with less, unless the path ends; 0: 20 ms */
-	uint32_t polls; /* of the feed in a second, at least: a path is not faster than they can send its
-	                   lines and ramps; 0: 500 */
-	bool unrounded; /* no constant speed around lone corners, as in an image without room for that */
+	uint32_t reserve_clocks;     /* minimum time buffered in the core until the path ends; 0: 20 ms */
+	uint32_t polls; /* minimum polls of the feed per second: the path is never faster than they can send
+	                   its lines and ramps; 0: 500 */
+	bool unrounded; /* no constant speed around single corners, as in an image without that code */
 };
 
 /* A straight line from the end of the previous one. */
@@ -64,75 +63,75 @@ struct passo_path_move {
 	uint32_t output;                /* of the line; see passo_output_word() of the driver */
 };
 
-/* Starts a path at position 0 of all axes. `items` has room for `capacity` lines, at least
+/* Starts a path at position 0 of all axes. `items` holds `capacity` lines, at least
  * PASSO_PATH_ITEMS_MIN: the look-ahead. Errors: BAD_CLOCK, BAD_AXES, BAD_PROFILE, NO_SCALE, NO_AXIS_SPEED,
  * NO_AXIS_ACCELERATION, NO_JERK, TOO_FAST, PATH_FULL (capacity too small). */
 enum passo_plan_error passo_path_open(struct passo_path_planner *path,
     const struct passo_path_settings *settings, struct passo_path_item *items, uint32_t capacity);
 
-/* Drops all that is known and begins a new path at these positions, in steps: after a stop, or homing. */
+/* Drops all known lines and starts a new path at these positions, in steps: after a stop, or homing. */
 void passo_path_restart(struct passo_path_planner *path, const int32_t *positions);
 
-/* After a stop: goes on with the rest of the path from these positions, in steps, which must be on one of the
- * lines that are still in memory, those added last; the first one from number `done` on (counted from 0) is
- * taken. Each of its axes makes the steps that it lacks. False: the positions are on none, and nothing has
- * changed. */
+/* After a stop: continues the rest of the path from these positions, in steps, which must be on one of the
+ * lines still in memory, those added last; the first match from number `done` on (counted from 0) is used.
+ * Each axis makes its missing steps. False: the positions are on none of them, and nothing has changed. */
 bool passo_path_recover(struct passo_path_planner *path, const int32_t *positions, uint32_t done);
 
-/* How many ramps and lines are queued while a frame of them is made, and how many lines a frame takes, so
- * that the path is not faster than it can be sent. passo_path_feed_open() sets it; before, it is that of a
- * core as it comes. */
+/* Ramps and lines in the core's queues while a frame is prepared, and lines per frame, so that the path is
+ * not faster than it can be sent. passo_path_feed_open() sets it; the default is that of a core with default
+ * parameters. */
 void passo_path_pace(
     struct passo_path_planner *path, uint32_t queued, uint32_t lines_queued, uint32_t lines_sent);
 
-/* By how much a line may be off the ends of short, nearly collinear lines that it replaces: those of one feed
- * and output, which take less time than they can be sent in. The ends of the line itself are exact. It holds
- * for lines added from now on; 0: that of the settings. */
-#define PASSO_PATH_UNMERGED UINT64_MAX /* each line remains one */
+/* Largest deviation of a line from the ends of the short, nearly collinear lines that it replaces: lines with
+ * the same feed and output that take less time than sending them. The ends of the line itself are exact.
+ * Applies to lines added from now on; 0: that of the settings. */
+#define PASSO_PATH_UNMERGED UINT64_MAX /* lines are never merged */
 void passo_path_tolerance(struct passo_path_planner *path, uint64_t tolerance);
 
-/* Adds a line. A line shorter than half a substep becomes part of the next one. Errors: PATH_FULL (take ramps
+/* Adds a line. A line shorter than half a substep is added to the next one. Errors: PATH_FULL (take ramps
  * and lines, then add it again), NO_FEED, TOO_FAR (target out of range), TOO_LONG (2^30 substeps or more). */
 enum passo_plan_error passo_path_add(struct passo_path_planner *path, const struct passo_path_move *move);
 
-/* The path comes to rest at the end of the last line and stays there for so many clocks, in whole ticks,
- * before the next line begins; 0: an exact stop. */
+/* The path comes to rest at the end of the last line and stays there for `clocks` clocks, in whole ticks,
+ * before the next line starts; 0: an exact stop. */
 void passo_path_dwell(struct passo_path_planner *path, uint64_t clocks);
 
 /* No line follows for now: the motion ends with the last line. Lines added later belong to the next one. */
 void passo_path_end(struct passo_path_planner *path);
 
-/* Feed override, UQ16.16, from 100 % on: of the feeds of all lines that the ramps have not passed yet. The
- * limits of the axes and of the corners stay. Lower overrides are those of the core. */
+/* Feed override, UQ16.16, 100 % or more, of all lines that no ramp has passed yet. The limits of axes and
+ * corners still apply. Lower overrides are those of the core. */
 #define PASSO_PATH_OVERRIDE_MIN UINT32_C(0x10000)
 #define PASSO_PATH_OVERRIDE_MAX UINT32_C(0xA0000)
 void passo_path_override(struct passo_path_planner *path, uint32_t override);
 
-/* The same for lines with PASSO_PATH_RAPID, which the other one leaves alone: UQ16.16, 1 .. 100 %, of the
- * speed that the axes allow. */
+/* Override of lines with PASSO_PATH_RAPID, which passo_path_override() does not change: UQ16.16, 1 .. 100 %,
+ * of the speed that the axes allow. */
 #define PASSO_PATH_RAPID_FULL UINT32_C(0x10000)
 void passo_path_rapid(struct passo_path_planner *path, uint32_t rapid);
 
-/* The next line and ramp of the motion; false: none at present. The last ones have `last`; after that
- * passo_path_next_motion() goes on, if more lines are known. `held` is a number of ticks that the core still
- * holds for sure, in ramps handed out before, or UINT32_MAX while it does not move yet: while it is above the
- * reserve, the planner waits for further lines rather than slow down for the end of those it knows. */
+/* The next line and ramp of the motion; false: none available. The last ones have `last`; then
+ * passo_path_next_motion() continues with the next motion, if more lines are known. `held` is a lower bound
+ * of the ticks that the core holds in ramps handed out before, or UINT32_MAX before the motion has started:
+ * while it is above the reserve, the planner waits for more lines instead of decelerating for the last known
+ * one. */
 bool passo_path_next_line(struct passo_path_planner *path, struct passo_line *line);
 bool passo_path_next_ramp(struct passo_path_planner *path, uint32_t held, struct passo_ramp *ramp);
 
-/* After the last line and ramp of a motion: goes on with the next one. False: they have not been handed out
+/* After the last line and ramp of a motion: continues with the next one. False: they have not been handed out
  * yet. */
 bool passo_path_next_motion(struct passo_path_planner *path);
 
-/* Whether lines are known that have not been handed out, or passed by the ramps. */
+/* True if every known line has been handed out and passed by the ramps: nothing is left of the path. */
 bool passo_path_is_empty(const struct passo_path_planner *path);
 
-/* What the settings of the outputs need (passo_outputs.h): a speed, UQ32.32 mm/s, in UQ0.32 substeps per
- * clock, rounded down, and a length, UQ32.32 mm, in substeps, to nearest; both saturate. */
+/* Conversions for the settings of the outputs (passo_outputs.h): a speed, UQ32.32 mm/s, in UQ0.32 substeps
+ * per clock, rounded down, and a length, UQ32.32 mm, in substeps, to nearest; both saturate. */
 uint32_t passo_path_velocity(const struct passo_path_planner *path, uint64_t speed);
 uint32_t passo_path_substeps(const struct passo_path_planner *path, uint64_t length);
 
-/* Lines that can be added at present. */
+/* Free entries: lines that can be added. */
 uint32_t passo_path_room(const struct passo_path_planner *path);
 
 #endif

@@ -6,12 +6,12 @@
 
 #include "passo_path_private.h"
 
-/* What limits a ramp: those of struct passo_path_item. */
+/* Limits of a ramp, as in struct passo_path_item. */
 struct passo_path_law {
 	uint64_t slope, jerk;
 };
 
-/* Length of the ramp between two velocities; UINT64_MAX: there is none. */
+/* Length of the ramp between two velocities; UINT64_MAX: no such ramp. */
 uint64_t passo_path_ramp_length(
     const struct passo_path_planner *path, const struct passo_path_law *law, uint64_t a, uint64_t b);
 
@@ -24,7 +24,7 @@ uint64_t passo_path_detour(const struct passo_path_planner *path, const struct p
 uint64_t passo_path_highest(const struct passo_path_planner *path, const struct passo_path_law *law,
     uint64_t from, uint64_t to, uint64_t length, uint64_t most);
 
-/* Velocity at the end of an item, at most. */
+/* Highest velocity at the end of an item. */
 uint64_t passo_path_velocity_after(const struct passo_path_planner *path, uint32_t index);
 
 #endif

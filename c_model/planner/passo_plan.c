@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The planner: from a move to one line and a few ramps.
  *
- * Every plan is made in three stages:
+ * A plan is computed in three stages:
  *
  *   1. phases        ticks of acceleration, cruise and deceleration
  *   2. oversampling  substeps per step: as many as the peak velocity allows
@@ -22,7 +22,7 @@
  * One error is not compensated. The core resolves progress to 24 bits, so the distance of a ramp can deviate
  * by up to 2^-24 (typically below 2^-30) of ticks * change of velocity. It cancels if both ramps have the
  * same ticks and speeds; otherwise it can show in ramps of more than about ten seconds. No step is lost: the
- * core makes missing substeps at the end, and never more than M.
+ * core drains missing substeps at the end, and never makes more than M.
  */
 #include "passo_plan.h"
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * The planner: converts a move into one line and a few ramps, in integer arithmetic.
  *
- * Every plan except those of continuous rotation starts and ends at rest and is exact in two ways: the line
- * has exactly the requested steps, and the area under the ramps equals the line's M substeps to a small
+ * Every plan except those of continuous rotation starts and ends at rest and is exact in two respects: the
+ * line has exactly the requested steps, and the area under the ramps equals the line's M substeps to a small
  * fraction of a substep (see passo_plan.c). The move therefore takes exactly the ticks of its ramps.
  *
  * All functions are reentrant, use no heap and no floating point, and accept any argument values; pointers
@@ -14,10 +14,10 @@
 #include "passo_moves.h"
 
 /* passo_moves.h has a struct with the parameters of each form of move. Speeds and accelerations are those of
- * the axis with the most steps; the other axes follow in proportion. */
+ * the dominant axis, the one with the most steps; the other axes move in proportion. */
 
-/* Most ramps in a plan: a jump to the start speed, three of a jerk-limited ramp, cruise, three more, a jump
- * to 0. */
+/* Largest number of ramps in a plan: a jump to the start speed, three of a jerk-limited ramp, cruise, three
+ * more, a jump to 0. */
 #define PASSO_PLAN_RAMPS_MAX 9u
 
 /* Alpha of the core's sigmoid table after reset, in units of 1 / PASSO_ALPHA_ONE. */
@@ -25,17 +25,17 @@
 
 enum passo_plan_error {
 	PASSO_PLAN_OK = 0,
-	PASSO_PLAN_BAD_CLOCK,      /* clock_hz is 0 or tick_log2 is out of range */
-	PASSO_PLAN_BAD_AXES,       /* not 1 .. PASSO_AXES_MAX axes */
-	PASSO_PLAN_BAD_PROFILE,    /* unknown profile */
-	PASSO_PLAN_NO_STEPS,       /* all axes have 0 steps */
-	PASSO_PLAN_TOO_MANY_STEPS, /* an axis has more than PASSO_SUBSTEPS_MAX steps, forwards or backwards */
-	PASSO_PLAN_NO_TIME,        /* total time is less than one tick */
-	PASSO_PLAN_RAMP_TOO_LONG,  /* the ramp time exceeds half the total time */
-	PASSO_PLAN_TOO_LONG,       /* a phase has 2^32 ticks or more, or the move is too long in clocks */
-	PASSO_PLAN_TOO_FAST,       /* the speed exceeds one step every two clocks */
-	PASSO_PLAN_NO_SPEED,       /* speed is 0 */
-	PASSO_PLAN_NO_ACCELERATION,   /* the speed changes, but acceleration and ramp time are both 0 */
+	PASSO_PLAN_BAD_CLOCK,       /* clock_hz is 0 or tick_log2 is out of range */
+	PASSO_PLAN_BAD_AXES,        /* not 1 .. PASSO_AXES_MAX axes */
+	PASSO_PLAN_BAD_PROFILE,     /* unknown profile */
+	PASSO_PLAN_NO_STEPS,        /* all axes have 0 steps */
+	PASSO_PLAN_TOO_MANY_STEPS,  /* an axis has more than PASSO_SUBSTEPS_MAX steps, in either direction */
+	PASSO_PLAN_NO_TIME,         /* total time is less than one tick */
+	PASSO_PLAN_RAMP_TOO_LONG,   /* the ramp time exceeds half the total time */
+	PASSO_PLAN_TOO_LONG,        /* a phase has 2^32 ticks or more, or the move is too long in clocks */
+	PASSO_PLAN_TOO_FAST,        /* the speed exceeds one step every two clocks */
+	PASSO_PLAN_NO_SPEED,        /* speed is 0 */
+	PASSO_PLAN_NO_ACCELERATION, /* the speed changes, but acceleration and ramp time are both 0 */
 	PASSO_PLAN_START_ABOVE_SPEED, /* start speed is above the speed */
 	PASSO_PLAN_STOP_ABOVE_SPEED,  /* stop speed is above the speed */
 	/* further methods */
@@ -44,20 +44,20 @@ enum passo_plan_error {
 	PASSO_PLAN_NO_STEPS_PER_TURN,    /* steps per revolution is 0 */
 	PASSO_PLAN_MINIMUM_ABOVE_SPEED,  /* the minimum rpm is above the rpm */
 	PASSO_PLAN_BELOW_MINIMUM,        /* continuous rotation: rpm is below minimum rpm */
-	PASSO_PLAN_ABOVE_TOP,            /* continuous rotation: rpm or present velocity is above top rpm */
+	PASSO_PLAN_ABOVE_TOP,            /* continuous rotation: rpm or current velocity is above top rpm */
 	PASSO_PLAN_BAD_ALPHA,            /* alpha is out of range */
 	PASSO_PLAN_NO_JERK,              /* jerk is 0 */
 	PASSO_PLAN_NO_FEED,              /* feed is 0 */
-	PASSO_PLAN_NO_SCALE,             /* a moving axis has 0 steps per millimetre */
+	PASSO_PLAN_NO_SCALE,             /* a moving axis has 0 steps per millimeter */
 	PASSO_PLAN_NO_AXIS_SPEED,        /* the speed limit of a moving axis is 0 */
 	PASSO_PLAN_NO_AXIS_ACCELERATION, /* the acceleration limit of a moving axis is 0 */
 	PASSO_PLAN_BAD_BANK,             /* not one of the three table banks */
 	PASSO_PLAN_TABLE_START,          /* point 0 of the table is not 0 */
 	PASSO_PLAN_TABLE_FALLS,          /* a point of the table is lower than the previous one */
 	/* paths of many lines: passo_path.h */
-	PASSO_PLAN_PATH_FULL, /* no room for another line at present */
+	PASSO_PLAN_PATH_FULL, /* no free entry for another line yet */
 	PASSO_PLAN_TOO_FAR,   /* a target is out of range */
-	/* targets that change on the way */
+	/* targets that change during the motion */
 	PASSO_PLAN_TOO_NEAR /* the axis cannot come to rest before the target */
 };
 
@@ -76,11 +76,11 @@ struct passo_plan {
 	uint64_t velocity_start; /* initial jump; velocity_peak if there is no acceleration */
 	uint64_t velocity_peak;
 	uint64_t velocity_stop; /* final jump; velocity_peak if there is no deceleration */
-	uint32_t oversampling;  /* K = M / max(N): substeps per step of the longest axis; 1 or even */
+	uint32_t oversampling;  /* K = M / max(N): substeps per step of the dominant axis; 1 or even */
 	uint32_t accelerate_ticks;
 	uint32_t cruise_ticks;
 	uint32_t decelerate_ticks;
-	uint32_t steps_to_stop; /* steps of the longest axis during deceleration, rounded to nearest */
+	uint32_t steps_to_stop; /* steps of the dominant axis during deceleration, rounded to nearest */
 	uint32_t sigmoid_alpha; /* alpha of the sigmoid table that the plan needs; 0: none */
 };
 
@@ -133,7 +133,7 @@ struct passo_turning {
 	uint64_t minimum_rpm;    /* UQ32.32: initial and final speed */
 	uint64_t acceleration;   /* UQ32.32 steps/s^2, for deceleration as well */
 };
-/* `rpm` is UQ32.32, minimum_rpm .. top_rpm. `velocity` (UQ0.48 substeps per clock) is the present velocity,
+/* `rpm` is UQ32.32, minimum_rpm .. top_rpm. `velocity` (UQ0.48 substeps per clock) is the current velocity,
  * from which the ramp starts: velocity_peak of the previous plan once it is reached, until then the VELOCITY
  * register times 2^16. Errors: BAD_CLOCK, BAD_AXES, BAD_AXIS, NO_STEPS_PER_TURN, NO_SPEED, TOO_FAST,
  * NO_ACCELERATION, TOO_LONG, BELOW_MINIMUM, ABOVE_TOP. */
@@ -144,8 +144,8 @@ enum passo_plan_error passo_plan_turning_speed(const struct passo_machine *machi
 enum passo_plan_error passo_plan_turning_stop(const struct passo_machine *machine,
     const struct passo_turning *turning, uint64_t velocity, struct passo_plan *plan);
 
-/* A course leads one axis to a target that may change on the way. Like continuous rotation it has an endless
- * line, but its ramps always end at rest before or at the target. */
+/* A course moves one axis to a target that can change during the motion. Like continuous rotation it has an
+ * endless line, but its ramps always end at rest at or before the target. */
 struct passo_course {
 	uint8_t axis;
 	bool backwards;        /* negative direction */
@@ -153,17 +153,17 @@ struct passo_course {
 	uint64_t speed;        /* UQ32.32 steps/s, at most top_speed */
 	uint64_t acceleration; /* UQ32.32 steps/s^2, for deceleration as well */
 };
-/* Ramps of at most so many ticks, so that their rounding is below a step. */
+/* Longest ramp in ticks, so that rounding stays below a step. */
 #define PASSO_COURSE_RAMP_TICKS_MAX (UINT32_C(1) << 22)
 
 /* From rest: exactly `steps` of them, at least 1. Errors: BAD_CLOCK, BAD_AXES, BAD_AXIS, NO_STEPS, NO_SPEED,
  * ABOVE_TOP, TOO_FAST above a quarter of the clock, NO_ACCELERATION, TOO_LONG. */
 enum passo_plan_error passo_plan_course(const struct passo_machine *machine,
     const struct passo_course *course, uint32_t steps, struct passo_plan *plan);
-/* While it moves: ramps only, the first of them with NOW. The present speed, UQ32.32 steps/s, is from `low`
- * to `high`. At most `way` (UQ48.16 steps) are made from the NOW on, at most the given acceleration is needed
- * wherever the speed is within its bounds, and the way is used up as far as these allow. Way 0: to rest at
- * once. Errors: the same, TOO_NEAR if the axis cannot come to rest within the way. */
+/* While it moves: ramps only, the first of them with NOW. The current speed, UQ32.32 steps/s, is between
+ * `low` and `high`. From the NOW on the axis moves by at most `way` (UQ48.16 steps), needs at most the given
+ * acceleration for any speed within the bounds, and uses the distance as far as these allow. `way` 0: to rest
+ * immediately. Errors: the same, TOO_NEAR if the axis cannot come to rest within the distance. */
 enum passo_plan_error passo_plan_course_change(const struct passo_machine *machine,
     const struct passo_course *course, uint64_t low, uint64_t high, uint64_t way, struct passo_plan *plan);
 
@@ -173,8 +173,8 @@ int64_t passo_steps_of_angle(int64_t angle, uint32_t steps_per_turn);
 int64_t passo_steps_of_length(int64_t length, uint64_t steps_per_mm);
 
 /* Conversion of readings: the angle of a position in degrees (Q31.32, saturating), and the speed of the
- * longest axis in rpm (UQ32.32) from a velocity (UQ0.48 substeps per clock) and the oversampling of its plan.
- * 0 if steps_per_turn is 0. */
+ * dominant axis in rpm (UQ32.32) from a velocity (UQ0.48 substeps per clock) and the oversampling of its
+ * plan. 0 if steps_per_turn is 0. */
 int64_t passo_angle_of(int32_t position, uint32_t steps_per_turn);
 uint64_t passo_rpm_of(uint64_t velocity, uint32_t oversampling, uint32_t clock_hz, uint32_t steps_per_turn);
 
@@ -191,7 +191,7 @@ enum passo_plan_error passo_sigmoid_table(uint32_t alpha, uint16_t table[PASSO_T
 enum passo_plan_error passo_plan_jerk(
     const struct passo_machine *machine, const struct passo_move_jerk *move, struct passo_plan *plan);
 
-/* A straight line in millimetres within the limits of each axis. Errors: those of all forms, NO_SPEED,
+/* A straight line in millimeters within the limits of each axis. Errors: those of all forms, NO_SPEED,
  * NO_FEED, NO_SCALE, NO_AXIS_SPEED, NO_AXIS_ACCELERATION, NO_JERK. */
 enum passo_plan_error passo_plan_straight(
     const struct passo_machine *machine, const struct passo_move_straight *move, struct passo_plan *plan);

@@ -36,7 +36,7 @@ int64_t passo_steps_of_length(int64_t length, uint64_t steps_per_mm)
 	return length < 0 ? -steps : steps;
 }
 
-/* Length of the path in millimetres, UQ32.32, rounded up to a few units; saturates. */
+/* Length of the path in millimeters, UQ32.32, rounded up to a few units; saturates. */
 static uint64_t length_of(const struct passo_machine *machine, const int64_t *distance)
 {
 	/* Two bits fewer, so that the sum of eight squares does not overflow. */

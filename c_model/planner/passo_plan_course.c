@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Courses: one axis to a target that may change on the way.
+ * Courses: one axis to a target that can change during the motion.
  *
  * Distances are in half ticks of velocity: a linear ramp from a to b of T ticks covers (a + b) T of them.
  */
@@ -14,7 +14,7 @@
 #define WAY_BITS 16u
 #define OVERSAMPLING_MIN 2u /* the last step then comes before what rounding adds to the distance */
 
-/* Bounds of the present speed, and of the velocity. */
+/* Bounds of the current speed, and of the velocity. */
 struct present {
 	uint64_t low, high, velocity;
 };
@@ -49,7 +49,7 @@ static enum passo_plan_error start(struct passo_draft *draft, int32_t steps[PASS
 	return course->acceleration > 0 ? PASSO_PLAN_OK : PASSO_PLAN_NO_ACCELERATION;
 }
 
-/* The highest speed from which the axis comes to rest within the way: with low <= v <= high at the beginning,
+/* The highest speed from which the axis stops within the distance: with low <= v <= high at the beginning,
  *
  *   way = (top - low) (top + high) / 2a + top^2 / 2a
  *   2 top^2 + (high - low) top - low high = 2 a way */
@@ -58,7 +58,7 @@ static uint64_t reachable(const struct passo_course *course, struct present pres
 	const struct passo_u128 area = passo_multiply(course->acceleration, way);
 	const uint64_t spread = present.high - present.low;
 
-	if (passo_bits(area) > 128u - 21u) /* room for the factors, and for the other terms */
+	if (passo_bits(area) > 128u - 21u) /* headroom for the factors and the other terms */
 		return UINT64_MAX;
 	struct passo_u128 sum = passo_u128_shift_left(area, 1u + UNIT_BITS - WAY_BITS);
 	sum = passo_u128_add(sum, passo_multiply(present.low, present.high));
@@ -145,7 +145,7 @@ static enum passo_plan_error to_rest(const struct passo_draft *draft, const stru
 	return PASSO_PLAN_OK;
 }
 
-/* Three ramps: to a speed, along, to rest. False: the way is too short. */
+/* Three ramps: to a speed, cruise, to rest. False: the distance is too short. */
 static bool along(const struct passo_draft *draft, const struct passo_course *course, struct present present,
     uint64_t way, struct passo_plan *plan)
 {
@@ -165,7 +165,7 @@ static bool along(const struct passo_draft *draft, const struct passo_course *co
 	if (passo_u128_less(distance, entry))
 		return false;
 	const struct passo_u128 rest = passo_u128_subtract(distance, entry);
-	/* rounding to ticks may take more than the way: then the peak that fits, which is between the bounds
+	/* rounding to ticks may exceed the distance: then the peak that fits, which is between the bounds
 	 * of the present speed and the top */
 	const uint64_t fits = passo_divide(rest, first + last, NULL);
 	const uint64_t peak = passo_smaller(passo_draft_velocity(draft, top), fits);

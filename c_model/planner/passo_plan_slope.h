@@ -29,7 +29,7 @@ static inline bool passo_slope_is_eased(const struct passo_slope *slope)
 #endif
 }
 
-/* Any change of speed at once. */
+/* An instantaneous change of speed. */
 static const struct passo_slope PASSO_VERTICAL = {0, 1, 0, 0};
 
 /* Clocks of a change of speed without a jerk limit, rounded down or up. */

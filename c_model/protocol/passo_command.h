@@ -40,7 +40,7 @@ struct passo_ramp {
 	bool mirror; /* 1 - shape(1 - u) instead of shape(u) */
 	enum passo_shape shape;
 	uint64_t velocity_end;  /* UQ0.48 substeps per clock, 0 .. 2^47 */
-	uint32_t ticks;         /* T; 0 sets the velocity at once */
+	uint32_t ticks;         /* T; 0 sets the velocity immediately */
 	uint64_t progress_step; /* du = round(2^48 / T), at most 2^48-1; for T > 2^24: floor */
 };
 

@@ -8,7 +8,7 @@
 
 #include <stdint.h>
 
-/* Longest line: its substeps, and so the steps of each axis, have 30 bits. */
+/* Longest line: its substeps, and therefore the steps of each axis, have 30 bits. */
 #define PASSO_SUBSTEPS_MAX       1073741823u
 #define PASSO_SUBSTEPS_MAX_WORDS "2^30 - 1"
 

@@ -786,7 +786,7 @@ enum passo_cause {
 	PASSO_CAUSE_LINE_UNDERRUN   = 3,  /* A line ended, was not LAST, and none followed. */
 	PASSO_CAUSE_RAMP_UNDERRUN   = 4,  /* The ramps ran out at speed. */
 	PASSO_CAUSE_STEP_OVERRUN    = 5,  /* Steps came faster than the pin timing of an axis allows. */
-	PASSO_CAUSE_LIMIT           = 6,  /* An axis stepped towards an active limit switch. */
+	PASSO_CAUSE_LIMIT           = 6,  /* An axis stepped toward an active limit switch. */
 	PASSO_CAUSE_ALARM           = 7,  /* The alarm input of an axis became active. */
 	PASSO_CAUSE_TRIGGER         = 8,  /* The trigger fired, and its action is a stop. */
 	PASSO_CAUSE_WATCHDOG        = 9,  /* No good frame came for too long while a motion ran. */

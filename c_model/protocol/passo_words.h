@@ -524,7 +524,7 @@ static inline struct passo_channel_trigger passo_unpack_channel_trigger(uint32_t
 /* Trigger state. Only with INPUTS. State of the trigger and the probe, and the axes that stopped the channel. */
 struct passo_channel_trigger_state {
 	uint8_t axes;          /* Axes of the first limit or alarm since COMMAND.CLEAR. */
-	bool    unknown;       /* Levels of the inputs are unknown: they have not stood still for a period of the filter since the reset, or since polarity or filter were written. No motion begins. */
+	bool    unknown;       /* Levels of the inputs are unknown: they have not been stable for a period of the filter since the reset, or since polarity or filter were written. No motion begins. */
 	bool    source_active; /* The trigger is armed, and its source is active. */
 	bool    arming;        /* The trigger is being armed: its source has not kept one level for longer than the filter yet. No motion begins. */
 	bool    probe_flag;    /* The probe was active since its flag was cleared. */
@@ -628,7 +628,7 @@ static inline struct passo_channel_output_state passo_unpack_channel_output_stat
 /* Follow. Only with ENCODERS. Refused with BUSY unless the channel is quiet. */
 struct passo_channel_follow {
 	uint8_t scale;      /* A count is 2^scale clocks of the profile. */
-	uint8_t source;     /* Axis of the encoder. One that is not there stands still. */
+	uint8_t source;     /* Axis of the encoder. A missing encoder never counts. */
 	bool    wait_index; /* 1: an ARMED motion waits for the index of that encoder. */
 	bool    follow;     /* 1: the clocks of the profile are counts of an encoder. */
 };
@@ -653,7 +653,7 @@ static inline struct passo_channel_follow passo_unpack_channel_follow(uint32_t w
 
 /* Follow state. Only with ENCODERS. Of the motion that runs; behind and lost, of the last one, until the next is prepared. */
 struct passo_channel_follow_state {
-	bool     lost;   /* The phase is lost: 2^22 or more were owed, or A and B of the encoder changed at once. */
+	bool     lost;   /* The phase is lost: 2^22 or more were outstanding, or A and B of the encoder changed simultaneously. */
 	bool     behind; /* Two counts or more were owed: the path was late. */
 	uint32_t owed;   /* Clocks of the profile that are owed to the encoder, signed. */
 };
@@ -826,7 +826,7 @@ static inline struct passo_encoder_greatest passo_unpack_encoder_greatest(uint32
 
 /* Encoder index. Only with ENCODERS. What the index has latched, and the transitions that were none. All 0 after COMMAND.ZERO. */
 struct passo_encoder_index {
-	uint8_t  illegal; /* Changes of A and B at once, up to 255; 0 after COMMAND.CLEAR, too. */
+	uint8_t  illegal; /* Simultaneous changes of A and B (illegal transitions), saturating at 255; also cleared by COMMAND.CLEAR. */
 	uint8_t  indexes; /* Number of indexes; wraps. */
 	uint16_t latch;   /* Encoder position at the last index, its lower 16 bits. */
 };

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Three axes in millimetres: home x, go to a place, hold and resume on the way. The C model of the core takes
- * the place of the FPGA, so it runs on a desktop; on a board, the first three functions and `core` differ.
+ * Three axes in millimeters: home x, go to a place, hold and resume during the move. The C model of the core
+ * takes the place of the FPGA, so it runs on a desktop; on a board, the first three functions and `core`
+ * differ.
  */
 #include <stdio.h>
 #include <stdlib.h>

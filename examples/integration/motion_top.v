@@ -15,7 +15,7 @@ module motion_top (
   output wire       spi_miso,
   output wire       irq,         // an axis was stopped
   // the machine
-  input  wire       estop_n,     // asynchronous; low: EN goes off without a clock
+  input  wire       estop_n,     // asynchronous; low: EN is deasserted asynchronously
   input  wire [2:0] limit_low,
   input  wire [2:0] limit_high,
   output wire [2:0] step,
@@ -23,7 +23,7 @@ module motion_top (
   output wire [2:0] enable
 );
 
-  // asserted at once, released on a clock
+  // asserted asynchronously, released on a clock
   (* async_reg = "true" *)
   reg [1:0] reset = 2'b11;
 

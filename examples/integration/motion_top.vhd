@@ -14,7 +14,7 @@ entity motion_top is
     spi_miso   : out std_logic;
     irq        : out std_logic; -- an axis was stopped
     -- the machine
-    estop_n    : in  std_logic; -- asynchronous; low: EN goes off without a clock
+    estop_n    : in  std_logic; -- asynchronous; low: EN is deasserted asynchronously
     limit_low  : in  std_logic_vector(2 downto 0);
     limit_high : in  std_logic_vector(2 downto 0);
     step       : out std_logic_vector(2 downto 0);
@@ -75,7 +75,7 @@ architecture rtl of motion_top is
 
 begin
 
-  -- asserted at once, released on a clock
+  -- asserted asynchronously, released on a clock
   process (clk, rst)
   begin
     if rst = '1' then

@@ -89,7 +89,7 @@ struct passo_rig;
 struct passo_rig *passo_rig_create(const struct passo_rig_config *config, struct passo_inputs *inputs);
 void passo_rig_destroy(struct passo_rig *rig);
 
-/* The next clock, after `clock`, after which the rig wants to act; UINT64_MAX: none. */
+/* The next clock, after `clock`, after which the rig must act; UINT64_MAX: none. */
 uint64_t passo_rig_next(const struct passo_rig *rig, uint64_t clock);
 /* The outputs after a clock: moves the axes and changes the inputs. */
 void passo_rig_follow(
@@ -97,7 +97,7 @@ void passo_rig_follow(
 /* Whether an event CALL has come since this was asked last. */
 bool passo_rig_calls(struct passo_rig *rig);
 
-/* A wheel slips now by so many counts, as with an event. */
+/* A wheel slips now by `counts`, like with an event. */
 void passo_rig_slip(struct passo_rig *rig, uint32_t wheel, int64_t counts);
 const struct passo_rig_moment *passo_rig_moment(const struct passo_rig *rig, uint32_t event);
 int64_t passo_rig_position(const struct passo_rig *rig, uint32_t axis);

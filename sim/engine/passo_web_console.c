@@ -13,7 +13,7 @@ enum {
 static struct passo_terminal *terminal;
 static char line[LINE];
 
-/* Starts anew; 0 if memory is short. */
+/* Restarts; 0 if memory is short. */
 EXPORT("open") int web_open(uint32_t axes, uint32_t clock_hz)
 {
 	const struct passo_terminal_caller caller = {

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Judges speed, acceleration and jerk of each axis by its STEP times: nothing here knows the planner or the
-core.
+"""Checks speed, acceleration and jerk of each axis from its STEP times, independently of planner and core.
 
 A motion `y` whose acceleration is at most `a` has `|y(t + w) - 2 y(t) + y(t - w)| <= a w^2` for every
 window `w`. The steps `x` follow such a motion to within `e`, so theirs is at most `a w^2 + 4 e`; of first

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Speed of the engines and the link; every figure is measured, and written to build/bench.json."""
+"""Speed of the engines and the link, measured and written to build/bench.json."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

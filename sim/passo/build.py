@@ -165,7 +165,9 @@ def _verilated(parameters: Parameters, waves: bool, rtl: Path) -> Path:
 
     def make(folder: Path) -> None:
         if " " in f"{paths.rtl}{paths.build}":
-            raise BuildError(f"Verilator's makefiles take no path with a space: {paths.rtl}, {paths.build}")
+            raise BuildError(
+                f"Verilator's makefiles do not support a path with a space: {paths.rtl}, {paths.build}"
+            )
         call(["verilator", *flags, f"-I{modules[0].parent}", "--Mdir", folder, *modules])
         call(["make", "-C", folder, "-f", MAKEFILE, MODEL, *optimize])
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Folders of what is built, kept until a source or flag changes, and trusted only as far as they are whole.
+"""Build folders, kept until a source or flag changes, and used only if complete.
 
-A folder appears under its name with all its files, the last of which lists the digests of the others. One
-that is not whole, or whose library does not load here, is built again.
+A folder appears under its name with all its files, the last of which lists the digests of the others. An
+incomplete one, or one whose library does not load, is rebuilt.
 """
 
 import ctypes

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`passo campaign`: random moves on all cores, or on a cluster, by Dask; docs/campaign.md."""
+"""`passo campaign`: random moves on all CPU cores, or on a Dask cluster; docs/campaign.md."""
 
 import time
 import uuid
@@ -95,7 +95,7 @@ def carry_out(campaign: Campaign, client: Any, tell: Callable[[Result], None] = 
             try:
                 result.add(future.result())
             except (CancelledError, OSError) as error:
-                raise Failure(f"the cluster is gone: {error}") from None
+                raise Failure(f"lost the connection to the cluster: {error}") from None
             except KilledWorker:
                 # A case that ends its process is a failure; the others of its batch are not.
                 if count == 1:
@@ -108,7 +108,7 @@ def carry_out(campaign: Campaign, client: Any, tell: Callable[[Result], None] = 
             result.seconds = time.monotonic() - began
             tell(result)
     if result.moves != campaign.moves:
-        raise Failure(f"{result.moves} moves of {campaign.moves} are counted")
+        raise Failure(f"only {result.moves} of {campaign.moves} moves were counted")
     return result
 
 
@@ -123,7 +123,7 @@ def _finished(running: set[Any], client: Any, idle: Callable[[], None]) -> set[A
         except TimeoutError:
             idle()
         if client.status != "running":
-            raise Failure("the cluster is gone")
+            raise Failure("lost the connection to the cluster")
         if client.nthreads():
             since = time.monotonic()
         elif time.monotonic() - since > LONELY:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The workers of a campaign: processes of this machine, or a Dask cluster that is running."""
+"""The workers of a campaign: local processes, or a running Dask cluster."""
 
 import asyncio
 import logging
@@ -60,7 +60,7 @@ def local_cluster(jobs: int) -> Iterator[Any]:
 
 @contextmanager
 def running_cluster(address: str) -> Iterator[Any]:
-    """A client of a cluster that is there; raises BadInputError."""
+    """A client of a running cluster; raises BadInputError."""
     from distributed import Client
 
     with quiet():
@@ -92,7 +92,7 @@ def _check_address(address: str) -> None:
         reason = str(error.__cause__ or error).partition("\n")[0]
         raise BadInputError(f"--scheduler {address}: {reason}") from None
     if kind != "Scheduler":
-        raise BadInputError(f"--scheduler {address}: this is a {kind.lower()}, not a scheduler")
+        raise BadInputError(f"--scheduler {address}: not a scheduler but a {kind.lower()}")
 
 
 @contextmanager
@@ -115,7 +115,7 @@ def check_workers(client: Any, engine: str) -> None:
         if isinstance(answer, Exception):
             raise BadInputError(f"worker {worker}: {type(answer).__name__}: {answer}")
         if answer != __version__:
-            raise BadInputError(f"worker {worker} has passo {answer}, here is {__version__}")
+            raise BadInputError(f"worker {worker} runs passo {answer}, this is passo {__version__}")
 
 
 def jobs_of(wanted: int | None) -> int:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The command `passo campaign`: what it checks first, shows meanwhile, and leaves behind."""
+"""The command `passo campaign`: checks of the options, progress, and results."""
 
 import argparse
 import os
@@ -19,7 +19,7 @@ from passo.pulse_judge import Fault
 from passo.toolchain import paths
 
 EVERY = 10  # seconds between two lines of progress
-SHOWN = 10  # failures told at once
+SHOWN = 10  # failures reported immediately
 NAME = "campaign.json"
 
 
@@ -73,7 +73,7 @@ def _check(campaign: Campaign, where: Where) -> None:
     if where.jobs is not None and where.jobs < 1:
         raise BadInputError(f"--jobs must be at least 1, not {where.jobs}")
     if where.jobs is not None and where.scheduler is not None:
-        raise BadInputError("--jobs and --scheduler exclude each other: a cluster has its own workers")
+        raise BadInputError("--jobs and --scheduler are mutually exclusive: a cluster has its own workers")
     if not find_spec("distributed"):
         raise BadInputError("a campaign needs the Python package distributed: pip install 'passo[campaign]'")
 
@@ -82,11 +82,11 @@ def _check_folder(folder: Path, option: str) -> None:
     """Raises BadInputError if a folder cannot be made or written to."""
     there = next(path for path in (folder.absolute(), *folder.absolute().parents) if path.exists())
     if not there.is_dir() or not os.access(there, os.W_OK):
-        raise BadInputError(f"{option} {folder}: {there} is not a folder that can be written to")
+        raise BadInputError(f"{option} {folder}: {there} is not a writable folder")
 
 
 class _Progress:
-    """Tells of new failures at once, and of all others now and then."""
+    """Reports new failures immediately, and progress from time to time."""
 
     def __init__(self, campaign: Campaign):
         self.campaign, self.tell, self.told = campaign, stages(), set[int]()

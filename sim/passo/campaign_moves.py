@@ -2,7 +2,7 @@
 """Random move files: a case is a function of the seed and its number alone.
 
 A case is one move, in any form and profile; one case in four has more moves after it, one in eight a second
-channel. All but some are such that the planner accepts them and the pins can follow.
+channel. Most are accepted by the planner and within the pin timing.
 """
 
 import random

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Plays a case of a campaign and judges it from outside: what a worker does."""
+"""The job of a worker: plays a case of a campaign and checks it at the pins."""
 
 import gc
 import tempfile

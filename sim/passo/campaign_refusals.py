@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Which refusals of a move are right: each has a reason that the move itself shows (docs/planning.md)."""
+"""Checks rejections of a move: each must have a reason visible in the move itself (docs/planning.md)."""
 
 from collections.abc import Callable
 from fractions import Fraction

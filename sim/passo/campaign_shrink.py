@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Makes a case that fails smaller, as long as it fails with a fault of the same kind."""
+"""Shrinks a failing case while it fails with the same kind of fault."""
 
 import re
 from collections.abc import Callable, Iterator

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The command `passo`. Each subcommand imports what it needs: `passo --help` is fast."""
+"""The command `passo`. Subcommands import lazily, so that `passo --help` is fast."""
 
 import argparse
 import sys
@@ -55,16 +55,16 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="passo", description="Simulate the Passo step-pulse generator.")
     parser.add_argument("--version", action="version", version=f"passo {__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    run = commands.add_parser("run", help="run the moves of a file, or G-code, and check every edge")
+    run = commands.add_parser("run", help="run a move file or G-code and check every edge")
     run.set_defaults(command=_run)
-    run.add_argument("moves", type=Path, metavar="MOVES.toml", help="the moves, or G-code: .nc .ngc .gcode")
+    run.add_argument("moves", type=Path, metavar="MOVES.toml", help="move file, or G-code: .nc .ngc .gcode")
     run.add_argument(
-        "--machine", type=Path, metavar="MACHINE.toml", help="of G-code: axes and limits (docs/gcode.md)"
+        "--machine", type=Path, metavar="MACHINE.toml", help="with G-code: axes and limits (docs/gcode.md)"
     )
     run.add_argument(
         "--engine",
         choices=console_options.ENGINES,
-        help="engine to run; both: RTL and model, compared edge for edge (default; of G-code: model)",
+        help="engine to run; both: RTL and model, compared edge for edge (default; G-code: model)",
     )
     run.add_argument("--out", type=Path, metavar="DIR", help="output folder (default build/run/NAME)")
     run.add_argument(
@@ -72,42 +72,46 @@ def _parser() -> argparse.ArgumentParser:
         nargs="?",
         const="2ms",
         metavar="WINDOW",
-        help="write waves.fst, signals inside the RTL: 2ms (default) is from the reset to 2 ms after the "
-        "start of the motion, 100ms..102ms a part of it",
+        help="write waves.fst, all signals of the RTL: 2ms (default) is from reset to 2 ms after the "
+        "start of motion, 100ms..102ms a window of it",
     )
-    run.add_argument("--plot", action="store_true", help="write motion.png, of G-code path.png")
-    run.add_argument("--report", action="store_true", help="write report.html, to zoom down to single clocks")
+    run.add_argument("--plot", action="store_true", help="write motion.png, for G-code path.png")
+    run.add_argument("--report", action="store_true", help="write report.html, zoomable to single clocks")
     shape = commands.add_parser("shape", help="create and check the table of a user-defined shape")
     shape.set_defaults(command=_shape)
     source = shape.add_mutually_exclusive_group(required=True)
-    source.add_argument("--formula", metavar="F", help="of u from 0 to 1, such as 'u^2 * (3 - 2 * u)'")
-    source.add_argument("--csv", type=Path, metavar="FILE", help="u,s: a curve; or k,point: a table")
+    source.add_argument("--formula", metavar="F", help="formula in u, 0 to 1: 'u^2 * (3 - 2 * u)'")
+    source.add_argument("--csv", type=Path, metavar="FILE", help="read a curve (u,s) or a table (k,point)")
     shape.add_argument("--out", type=Path, metavar="FILE", help="write the table: FILE.csv or FILE.toml")
     shape.add_argument("--plot", type=Path, metavar="FILE.png", help="draw it")
     console_options.add(commands).set_defaults(command=_console)
     firmware = commands.add_parser(
         "firmware",
-        help="type moves at the console of the STM32 firmware, emulated with a simulated core at its pins",
+        help="type moves at the console of the emulated STM32 firmware, with a simulated core at its pins",
     )
     firmware.set_defaults(command=_firmware)
     firmware.add_argument(
-        "moves", type=Path, nargs="*", metavar="MOVES.toml", help="default: some short files in examples/"
+        "moves",
+        type=Path,
+        nargs="*",
+        metavar="MOVES.toml",
+        help="move files (default: short ones in examples/)",
     )
     firmware.add_argument("--engine", choices=("rtl", "model"), default="rtl", help="the core (default rtl)")
     firmware.add_argument(
         "--table",
         action="store_true",
-        help="measure the firmware and write docs/reference/firmware_report.md",
+        help="measure it and write docs/reference/firmware_report.md",
     )
     firmware.add_argument(
         "--grbl",
         action="store_true",
-        help="of --table: the image that speaks grbl; writes docs/reference/firmware_gcode_report.md",
+        help="with --table: measure the grbl image and write docs/reference/firmware_gcode_report.md",
     )
-    firmware.add_argument("--lines", type=int, metavar="N", help="of --grbl: length of its long file")
-    rtl = commands.add_parser("rtl", help="name the Verilog sources of the core, for makefiles")
+    firmware.add_argument("--lines", type=int, metavar="N", help="with --grbl: length of the long file")
+    rtl = commands.add_parser("rtl", help="list the Verilog sources of the core, for makefiles")
     rtl.set_defaults(command=_rtl)
-    rtl.add_argument("--folder", action="store_true", help="only their folder, which is the include path")
+    rtl.add_argument("--folder", action="store_true", help="print only their folder, the include path")
     campaign_options.add(commands).set_defaults(command=_campaign)
     demo = commands.add_parser("demo", help="run the moves in examples/; pictures in build/demo/")
     demo.set_defaults(command=_demo)
@@ -121,7 +125,7 @@ def _run(options: argparse.Namespace) -> int:
         from passo.part_command import run_part
 
         if options.waves or options.report:
-            raise BadInputError("--waves and --report: only of moves")
+            raise BadInputError("--waves and --report are for moves, not for G-code")
         engine = options.engine or "model"
         done = run_part(options.moves, options.machine, engine, options.out, options.plot)
         return OK if done else FAILED

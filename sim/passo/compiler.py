@@ -18,7 +18,7 @@ CORTEX_M3 = ("arm-none-eabi-gcc", "-mcpu=cortex-m3", "-mthumb", "-Os", "-std=c11
 STRICT = ("-std=c11", "-Wall", "-Wextra", "-Wconversion", "-Werror")
 SHARED = ("-fPIC", "-shared", "-Wl,--no-undefined")
 # Every error is fatal. The address sanitizer must be linked into the program itself, so libraries for Python
-# use only the undefined behaviour sanitizer. Rare paths are not inlined: their large locals would be marked
+# use only the undefined behavior sanitizer. Rare paths are not inlined: their large locals would be marked
 # at every call of the common one, which doubles the time.
 SANITIZED = (
     *("-O1", "-g", "-fno-inline-functions-called-once"),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`passo console`: a core with the simulated machine that the options describe, and who talks to it."""
+"""`passo console`: a core with the simulated machine of the options, and its terminal."""
 
 import argparse
 import os

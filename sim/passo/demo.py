@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The demonstration: all of examples/ on both engines, with pictures, tables and an overview."""
+"""The demonstration: all examples on both engines, with pictures, tables and an overview."""
 
 import sys
 from concurrent.futures import ProcessPoolExecutor, as_completed
@@ -118,6 +118,6 @@ def demo() -> bool:
         )
     console.print(shown)
     folder = short(FOLDER)
-    print(f"{folder}/NAME/ has of each move report.html, to zoom in, motion.png, and its steps, pulses.csv")
+    print(f"{folder}/NAME/ has for each move a zoomable report.html, motion.png, and its steps in pulses.csv")
     print(f"open: {folder}/demo.png")
     return all(summary["ok"] for summary in summaries.values())

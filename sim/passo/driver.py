@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The driver (stm32_bridge/driver/passo.h) for Python: the same C code that runs on a microcontroller."""
+"""Python binding of the driver (stm32_bridge/driver/passo.h): the same C code as on a microcontroller."""
 
 from collections.abc import Iterable
 from typing import Any

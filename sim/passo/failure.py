@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the command reports in one line."""
+"""Errors that the command reports in one line."""
 
 
 class Failure(Exception):  # noqa: N818 - the errors have it as their base

@@ -18,7 +18,7 @@ class Shaper:
 
 @dataclass(frozen=True)
 class Place:
-    """A position as written, in steps or millimetres."""
+    """A position as written, in steps or millimeters."""
 
     value: Fraction
     in_mm: bool = False

@@ -26,11 +26,11 @@ def formula(text: str) -> Callable[[float], float]:
     Raises ShapeError, and so does the returned function where it has no finite value.
     """
     if len(text) > FORMULA_MAX:
-        raise ShapeError(f"a formula has at most {FORMULA_MAX} characters")
+        raise ShapeError(f"a formula must have at most {FORMULA_MAX} characters")
     try:
         tree = ast.parse(text.replace("^", "**").strip(), mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
-        raise ShapeError(f"this is not a formula: {text[:60]}") from None
+        raise ShapeError(f"not a formula: {text[:60]}") from None
     _check(tree)
 
     def evaluate(u: float) -> float:

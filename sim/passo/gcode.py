@@ -8,7 +8,7 @@ from typing import Any
 from passo.failure import Failure
 from passo.native import ffi, planner
 
-NANOMETRES = 1_000_000  # per millimetre
+NANOMETRES = 1_000_000  # per millimeter
 AXIS_LETTERS = "XYZABC"
 
 
@@ -89,7 +89,7 @@ class Gcode:
 
     @property
     def position(self) -> tuple[int, ...]:
-        """Programmed end in machine coordinates, in nanometres."""
+        """Programmed end in machine coordinates, in nanometers."""
         return tuple(self.c.position[0 : self.settings.axes])
 
     def _check(self, function: str, line: str | bytes) -> None:

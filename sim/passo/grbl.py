@@ -95,7 +95,7 @@ class Grbl:
         answers = self.answers
         self.type(text.rstrip(b"\r\n") + b"\n")
         if not self.wait(lambda: self.answers > answers):
-            raise Failure(f"no answer to {text!r}: the machine is held")
+            raise Failure(f"timeout: no answer to {text!r}: the machine is in hold")
 
     def _said(self, _: Any, text: Any) -> None:
         said = ffi().string(text).decode("ascii", "replace")
@@ -125,7 +125,7 @@ def serve(grbl: Grbl, terminal: int, until: Callable[[], bool] = lambda: False) 
     os.set_blocking(terminal, False)
     while not until():
         with contextlib.suppress(BlockingIOError, OSError):
-            # Real-time bytes pass a full buffer, so reading goes on; a sender keeps count of the rest.
+            # Real-time bytes pass a full buffer, so reading continues; a sender counts the rest.
             grbl.type(os.read(terminal, READ))
         grbl.poll()
         ahead = (grbl.engine.clock - start) / grbl.machine.clock_hz - (time.monotonic() - began)

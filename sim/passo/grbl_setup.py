@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the grbl console knows of its machine, and the file that keeps its settings."""
+"""Machine description of the grbl console, and the file with its settings."""
 
 import math
 import os
@@ -163,7 +163,7 @@ class SettingsFile:
             if not path.exists():
                 write_bytes(path, b"\xff" * PAGE * PAGES)
             if path.stat().st_size != PAGE * PAGES:
-                raise BadInputError(f"{path}: this is no file of settings: it has not {PAGE * PAGES} bytes")
+                raise BadInputError(f"{path}: not a settings file: it must have {PAGE * PAGES} bytes")
         except OSError as error:
             raise BadInputError(f"{path}: {error.strerror}") from None
         kinds = (

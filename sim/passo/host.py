@@ -54,7 +54,7 @@ class Channel:
             raise HostError(f"no Passo core: it identifies itself as 0x{identification:08X}")
         actual = parameters_of(word)
         if actual != parameters:
-            raise HostError(f"the core has {actual}, expected {parameters}")
+            raise HostError(f"the core has {actual}; expected {parameters}")
 
     def axis_base(self, axis: int) -> int:
         """Word address of the registers of an axis."""

@@ -11,14 +11,14 @@ import numpy as np
 
 from passo.engine import EVENT, AroundEngine
 
-GRAINS_PER_S = 100_000  # how often the switches are looked at
-RESTING_GRAINS = 10  # as many at once while no pin changes
+GRAINS_PER_S = 100_000  # how often the switches are checked
+RESTING_GRAINS = 10  # as many together while no pin changes
 SWITCH = re.compile(r"(limit_low|limit_high|home|alarm|probe):(\d+):(?:\.\.(-?\d+)|(-?\d+)\.\.)")
 
 
 @dataclass
 class Switch:
-    """A switch or probe on the way of an axis; `pin` is an input of the core, such as "home"."""
+    """A switch or probe in the travel of an axis; `pin` is an input of the core, such as "home"."""
 
     pin: str
     axis: int
@@ -27,7 +27,7 @@ class Switch:
     hysteresis: int = 0  # steps back from `at` before it is inactive again
     bounce: int = 0  # clocks of chatter after every change
     inverted: bool = False  # active low
-    stuck: bool | None = None  # active or inactive for ever
+    stuck: bool | None = None  # permanently active or inactive
     active: bool = False  # without chatter
     changed_at: int = -(1 << 60)  # clock of the last change
     edges: list[tuple[int, int]] = field(default_factory=list)  # position and clock of each change

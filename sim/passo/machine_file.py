@@ -115,7 +115,7 @@ def _machine(path: Path, data: Table) -> MachineFile:
     pins = read_subtable(data, "pins")
     tables = read_tables(data, "axis")
     if not 1 <= len(tables) <= len(AXIS_LETTERS):
-        raise BadValueError(f"there are {len(tables)} axes, 1 to {len(AXIS_LETTERS)} are possible: [[axis]]")
+        raise BadValueError(f"there are {len(tables)} axes; must be 1 to {len(AXIS_LETTERS)}: [[axis]]")
     profile = read_word(data, "profile", PROFILES) if "profile" in data else "linear"
     axes = tuple(
         within(f"axis {number}", lambda number=number, table=table: _axis(table, AXIS_LETTERS[number - 1]))
@@ -161,7 +161,7 @@ def _check_speed(axis: PathAxis, pins: PinTiming, clock_hz: int) -> None:
     highest = Fraction(clock_hz, clocks) / Fraction(axis.steps_per_mm)
     if axis.speed > highest:
         raise BadValueError(
-            f"speed is {float(axis.speed):g}, the pins allow at most {_rounded_down(highest)}: "
+            f"speed is {float(axis.speed):g}; the pins allow at most {_rounded_down(highest)}: "
             f"step_high and step_low are {clocks} clocks"
         )
 

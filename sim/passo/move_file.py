@@ -56,9 +56,11 @@ def parse_moves(text: str, path: Path) -> MoveFile:
 def _alone(channels: Channels) -> MoveFile:
     path = channels.path
     if channels.several:
-        raise MoveFileError(f"{path}: it moves channel {channels.files[-1].channel}; here is only channel 0")
+        raise MoveFileError(
+            f"{path}: it moves channel {channels.files[-1].channel}; only channel 0 is supported here"
+        )
     if channels.setup:
-        raise MoveFileError(f"{path}: it has a machine or events, home or probe; here are only moves")
+        raise MoveFileError(f"{path}: machine, events, home and probe are not supported here")
     return channels.files[0]
 
 
@@ -69,7 +71,7 @@ def read_channels(path: Path) -> Channels:
     except OSError as error:
         raise MoveFileError(f"{path}: {error.strerror}") from None
     except UnicodeDecodeError:
-        raise MoveFileError(f"{path}: this is not a text file in UTF-8") from None
+        raise MoveFileError(f"{path}: not a UTF-8 text file") from None
     return _parse(text, path)
 
 
@@ -79,11 +81,11 @@ def _parse(text: str, path: Path) -> Channels:
     except RecursionError:
         raise MoveFileError(f"{path}: nested too deeply") from None
     except ArithmeticError:
-        raise MoveFileError(f"{path}: a number is out of all range") from None
+        raise MoveFileError(f"{path}: a number is out of range") from None
     except ValueError as error:
         if G_CODE.match(text):
             raise MoveFileError(
-                f"{path}: this is G-code; moves are in TOML (docs/gcode.md, docs/planning.md)"
+                f"{path}: this is G-code; move files are TOML (docs/gcode.md, docs/planning.md)"
             ) from None
         raise MoveFileError(f"{path}: {str(error).splitlines()[0]}") from None
     try:
@@ -100,7 +102,7 @@ def _file(path: Path, data: Table) -> Channels:
     timing = within("pins", lambda: read_pins(pins, clock_hz, CHANNEL_KEYS))
     tables = read_tables(data, "move")
     if not tables:
-        raise BadValueError("there are no moves: [[move]] is missing")
+        raise BadValueError("no moves: [[move]] is missing")
     queues: dict[int, dict[int, Move]] = {}  # by channel, by number
     for number, table in enumerate(tables, 1):
         move = within(f"move {number}", lambda table=table: _move(table, path.parent, clock_hz))
@@ -113,11 +115,11 @@ def _file(path: Path, data: Table) -> Channels:
                 f"but move {first} has {len(queue[first].steps)}"
             )
     if together and len(queues) == 1:
-        raise BadValueError(f"together needs several channels: all moves are of channel {min(queues)}")
+        raise BadValueError(f"together needs several channels: all moves use channel {min(queues)}")
     own = {}
     for key, table in ((key, pins[key]) for key in CHANNEL_KEYS if key in pins):
         if int(key) not in queues:
-            raise BadValueError(f"pins.{key}: no move is of channel {key}")
+            raise BadValueError(f"pins.{key}: no move uses channel {key}")
         own[int(key)] = within(f"pins.{key}", lambda table=table: _own_pins(pins, table, clock_hz))
     moves = {number: move for queue in queues.values() for number, move in queue.items()}
     return Channels(
@@ -146,11 +148,11 @@ def read_pins(table: Table, clock_hz: int, others: tuple[str, ...] = ()) -> PinT
     for key in PIN_KEYS:
         seconds = read_time(table, key, clock_hz) if key in table else PIN_SECONDS
         if not seconds:
-            raise BadValueError(f"{key} is 0 clocks, 1 to {PIN_CLOCKS_MAX} are possible")
+            raise BadValueError(f"{key} is 0 clocks; must be 1 to {PIN_CLOCKS_MAX}")
         clocks[key] = math.ceil(seconds * clock_hz)
         if clocks[key] > PIN_CLOCKS_MAX:
             hint = '; a number is in seconds, a text may have a unit: "2us"' if seconds >= 1 else ""
-            raise BadValueError(f"{key} is {clocks[key]} clocks, at most {PIN_CLOCKS_MAX} are possible{hint}")
+            raise BadValueError(f"{key} is {clocks[key]} clocks; must be at most {PIN_CLOCKS_MAX}{hint}")
     return PinTiming(**clocks)
 
 
@@ -186,9 +188,7 @@ def _form(table: Table) -> Form:
     of_time = [key for key in table if key not in speed_keys]
     of_speed = [key for key in table if key not in time_keys]
     if of_time and of_speed:
-        raise BadValueError(
-            f"{of_time[0]} and {of_speed[0]} exclude each other: a move goes by time or by speed"
-        )
+        raise BadValueError(f"{of_time[0]} and {of_speed[0]} are mutually exclusive: set time or speed")
     if not of_time and by_speed.told_by not in table:
         raise BadValueError(f"{by_time.told_by} or {by_speed.told_by} is missing")
     return by_time if of_time else by_speed

@@ -9,7 +9,7 @@ from typing import ClassVar
 from passo.form_table import Form, Key, Place, Points, Rule, Shaper
 from passo.registers import Shape
 
-# Longest line: its substeps, and so the steps of each axis, have 30 bits.
+# Longest line: its substeps, and therefore the steps of each axis, have 30 bits.
 SUBSTEPS_MAX = 1073741823
 # Largest unsigned number, in its unit.
 NUMBER_MAX = 4294967295
@@ -458,7 +458,7 @@ class MoveInTime:
 
 @dataclass(frozen=True)
 class MoveBySpeed:
-    """A move by speeds of the longest axis."""
+    """A move by speeds of the dominant axis."""
 
     steps: tuple[int, ...]
     profile: str
@@ -476,7 +476,7 @@ class MoveBySpeed:
 
 @dataclass(frozen=True)
 class MoveBelowSpeed:
-    """In a given time, never above a speed."""
+    """A move in a given time, never above a speed."""
 
     steps: tuple[int, ...]
     profile: str
@@ -489,7 +489,7 @@ class MoveBelowSpeed:
 
 @dataclass(frozen=True)
 class MoveAtSpeed:
-    """With a given speed and ramp time."""
+    """A move with a given speed and ramp time."""
 
     steps: tuple[int, ...]
     profile: str
@@ -566,7 +566,7 @@ class MoveJerk:
 
 @dataclass(frozen=True)
 class MoveStraight:
-    """Straight line through space, in millimetres or, for rotary axes, degrees."""
+    """Straight line through space, in millimeters or, for rotary axes, degrees."""
 
     distance: tuple[Fraction, ...]
     feed: Fraction
@@ -581,7 +581,7 @@ class MoveStraight:
 
 @dataclass(frozen=True)
 class MoveHome:
-    """Each axis to its switch, off it, and slowly to it again; the edge becomes the position."""
+    """Homing cycle: each axis to its switch, off it, and slowly to it again; the edge sets the position."""
 
     steps: tuple[int, ...]
     switch: str
@@ -598,7 +598,7 @@ class MoveHome:
 
 @dataclass(frozen=True)
 class MoveProbe:
-    """Toward a workpiece until the probe touches it, or away until it is free."""
+    """Probing move: toward a workpiece until the probe triggers, or away until it releases."""
 
     steps: tuple[int, ...]
     speed: Fraction
@@ -612,7 +612,7 @@ class MoveProbe:
 
 @dataclass(frozen=True)
 class MoveThread:
-    """One pass of a thread: a straight line whose clock is the spindle."""
+    """One spindle-synchronized pass of a thread: a straight line clocked by the spindle."""
 
     steps: tuple[int, ...]
     turns: Fraction
@@ -625,7 +625,7 @@ class MoveThread:
 
 @dataclass(frozen=True)
 class EventInput:
-    """An input becomes active or inactive, whatever its switch says."""
+    """Forces an input active or inactive, overriding its switch."""
 
     time: Fraction | None
     position: Place | None
@@ -722,7 +722,7 @@ class EventAbort:
 
 @dataclass(frozen=True)
 class EventArm:
-    """Arm the trigger of the core, which latches the positions of all axes on one clock."""
+    """Arms the core's trigger, which latches the positions of all axes on one clock."""
 
     time: Fraction | None
     position: Place | None
@@ -739,7 +739,7 @@ class EventArm:
 
 @dataclass(frozen=True)
 class EventSlip:
-    """An axis slips: its encoder leaves the steps by so many counts."""
+    """An axis slips: its encoder moves by `counts` relative to the steps."""
 
     time: Fraction | None
     position: Place | None
@@ -769,7 +769,7 @@ class MachineSettings:
 
 @dataclass(frozen=True)
 class MachineInput:
-    """An input that is connected: a switch at a position, or what events make of it."""
+    """A connected input: a switch at a position, or driven by events."""
 
     role: str
     axis: int
@@ -788,7 +788,7 @@ class MachineInput:
 
 @dataclass(frozen=True)
 class MachineEncoder:
-    """An encoder at an axis, and how far its axis may be from it."""
+    """An encoder of an axis, and the following-error limit."""
 
     axis: int
     counts_per_step: Fraction
@@ -814,7 +814,7 @@ class MachineOutput:
 
 @dataclass(frozen=True)
 class MachineCompare:
-    """A pulse with the step onto each of some points."""
+    """Position-compare output: a pulse with the step onto each point."""
 
     axis: int
     position: Place
@@ -826,7 +826,7 @@ class MachineCompare:
 
 @dataclass(frozen=True)
 class MachineSpindle:
-    """A spindle with an encoder, at the inputs of the first axis that the moves do not have."""
+    """A spindle with an encoder, at the inputs of the first axis not used by the moves."""
 
     counts_per_turn: int
     rpm: Fraction

@@ -41,10 +41,10 @@ def read_steps(table: Table, key: str) -> tuple[int, ...]:
     if not isinstance(steps, list) or any(type(n) is not int for n in steps):
         raise BadValueError("steps must be a list of whole numbers, one per axis")
     if not 1 <= len(steps) <= AXES_MAX:
-        raise BadValueError(f"steps has {len(steps)} axes, 1 to {AXES_MAX} are possible")
+        raise BadValueError(f"steps has {len(steps)} axes; must be 1 to {AXES_MAX}")
     for axis, n in enumerate(steps):
         if abs(n) > SUBSTEPS_MAX:
-            raise BadValueError(f"axis {axis} has too many steps, at most {SUBSTEPS_MAX} are possible")
+            raise BadValueError(f"axis {axis} has too many steps; must be at most {SUBSTEPS_MAX}")
     return tuple(steps)
 
 
@@ -109,7 +109,7 @@ def read_per_axis(table: Table, key: str) -> tuple[Fraction, ...]:
 
 
 def read_distance(table: Table, key: str) -> tuple[Fraction, ...]:
-    """Millimetres of each axis."""
+    """Millimeters of each axis."""
     value = get_value(table, key)
     if not isinstance(value, list) or not 1 <= len(value) <= AXES_MAX:
         raise BadValueError(f"{key} must be a list of 1 to {AXES_MAX} numbers, one per axis")
@@ -117,7 +117,7 @@ def read_distance(table: Table, key: str) -> tuple[Fraction, ...]:
 
 
 def read_place(table: Table, key: str) -> Place:
-    """A position in steps, or a text in millimetres."""
+    """A position in steps, or a text in millimeters."""
     value = get_value(table, key)
     if not isinstance(value, str):
         return Place(Fraction(read_integer(table, key, -SIGNED_MAX, SIGNED_MAX)))
@@ -198,7 +198,7 @@ def check_rules(form: Form, table: Table) -> None:
         if rule.key not in table:
             continue
         if rule.kind == "excludes" and rule.other in table:
-            raise BadValueError(f"{rule.key} and {rule.other} exclude each other")
+            raise BadValueError(f"{rule.key} and {rule.other} are mutually exclusive")
         if rule.kind == "needs" and rule.other not in table:
             raise BadValueError(f"{rule.key} needs {rule.other}")
         if rule.kind == "above_zero" and table[rule.key] == 0:

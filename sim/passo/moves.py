@@ -55,7 +55,7 @@ class MoveTurn(move_forms.MoveTurn):
 
 
 class MoveStraight(move_forms.MoveStraight):
-    """Straight line in millimetres, with limits for each axis."""
+    """Straight line in millimeters, with limits for each axis."""
 
     @property
     def profile(self) -> str:

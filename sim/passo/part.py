@@ -77,7 +77,7 @@ def read_part(path: Path, machine: MachineFile) -> Part:
     except OSError as error:
         raise BadInputError(f"{path}: {error.strerror}") from None
     if not any(map(has_words, text)):
-        raise BadInputError(f"{path}: there is no G-code in it")
+        raise BadInputError(f"{path}: the file has no G-code")
     gcode, chords = Gcode(machine.gcode), 0
     for number, line in enumerate(text, 1):
         try:
@@ -86,7 +86,7 @@ def read_part(path: Path, machine: MachineFile) -> Part:
             raise BadInputError(f"{path}:{number}: {error}") from None
         for action in gcode.actions():
             if action.kind == planner().PASSO_GCODE_PROBE:
-                raise BadInputError(f"{path}:{number}: there is no probe here")
+                raise BadInputError(f"{path}:{number}: no probe is fitted")
             if action.kind == planner().PASSO_GCODE_END:
                 unread = sum(map(has_words, text[number:]))
                 return Part(path, text[:number], chords, gcode.position, unread)
@@ -126,7 +126,7 @@ def play_part(
             last, quiet = program.chords, engine.clock
             progress(last)
         if engine.clock - quiet > PATIENCE * machine.clock_hz:
-            raise BadInputError(f"{part.path}: the machine stands still")
+            raise BadInputError(f"{part.path}: timeout: no motion for an hour of simulated time")
     engine.run(8 * sum(vars(machine.pins).values()))
     events.append(engine.drain())
     snapshot, end = driver.snapshot(), driver.positions()[:axes]

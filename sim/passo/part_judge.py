@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The pulses of a part against the limits of its machine."""
+"""Checks the pulses of a part against the limits of its machine."""
 
 from passo.axis_judge import NAMES, Marks, Share, shares
 from passo.gcode import NANOMETRES, Gcode

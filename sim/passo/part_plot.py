@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Pictures of a part: the tool path, the speed along it, and how near it comes to the limits of the axes."""
+"""Plots of a part: the tool path, the speed along it, and the margin to the limits of the axes."""
 
 from pathlib import Path
 

@@ -19,7 +19,7 @@ LOOK_AHEAD = 48  # lines, as on an STM32F103
 
 @dataclass(frozen=True)
 class PathAxis:
-    """Limits of an axis in millimetres and seconds; see struct passo_path_axis."""
+    """Limits of an axis in millimeters and seconds; see struct passo_path_axis."""
 
     steps_per_mm: Fraction | float = 80
     speed: Fraction | float = 200

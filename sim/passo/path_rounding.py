@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The rounding that a path permits: geometry alone, before anything moves.
+"""The rounding that a path permits, from geometry alone.
 
 Points within a twentieth of the junction deviation `d` of the line past them are no corners. Any other
 corner turns the direction by `c`, the difference of two unit vectors. The arc that touches both lines and

@@ -170,7 +170,7 @@ def check_tables(plans: list[tuple[int, Plan]], path: Path) -> None:
     for number, plan in users[1:]:
         if plan.table != users[0][1].table:
             raise MoveFileError(
-                f"{path}: move {number}: it needs another table than move {users[0][0]}, "
+                f"{path}: move {number}: it needs a different table than move {users[0][0]}, "
                 "and tables cannot be loaded during a motion"
             )
 
@@ -184,5 +184,5 @@ def _check_pins(plan: Plan, file: MoveFile) -> None:
             speed, limit = steps_per_clock * file.clock_hz, file.clock_hz / shortest
             raise PlanError(
                 "PINS_TOO_SLOW",
-                f"axis {axis} reaches {float(speed):.0f} steps/s, its pin timing allows {limit:.0f}",
+                f"axis {axis} reaches {float(speed):.0f} steps/s; its pin timing allows {limit:.0f}",
             )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Planted defects: edits to a copy of a source that a check must detect, as proof that it can fail."""
+"""Injected faults: edits to a copy of a source that a check must detect, to prove that it can fail."""
 
 import re
 from pathlib import Path
@@ -15,5 +15,5 @@ def plant(file: Path, old: str, new: str) -> None:
     pattern = re.compile(r"\s+".join(re.escape(word) for word in old.split()))
     found = len(pattern.findall(text))
     if found != 1:
-        raise ValueError(f"{file.name} has {found} times, not once: {old!r}")
+        raise ValueError(f"{file.name}: expected once, found {found} times: {old!r}")
     file.write_text(pattern.sub(lambda _: new, text), encoding="utf-8")

@@ -48,7 +48,7 @@ def moves_of_steps(run: Run, axis: int) -> np.ndarray:
 def measured_speeds(run: Run, axis: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Clocks and speeds (steps per clock) between steps, NaN where the axis rested or turned.
 
-    And the clocks of the steps without a neighbour to measure from.
+    And the clocks of the steps without a neighbor to measure from.
     """
     clocks, directions = run.steps(axis)
     moves = moves_of_steps(run, axis)

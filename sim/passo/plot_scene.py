@@ -148,7 +148,7 @@ def _zooms(run: SceneRun) -> list[tuple[str, int, int]]:
     half = run.file.clock_hz // 1000
     if sought:
         edge = _edge_before(run, sought[0].clock)
-        found.append(("The first edge that was sought", edge - half // 2, edge + half))
+        found.append(("First edge", edge - half // 2, edge + half))
     if others:
         clock, title = others[-1].clock - run.start, f"The stop {others[-1].cause.name}"
         if others[-1].cause == Cause.FOLLOWING_ERROR:  # what it began with
@@ -158,7 +158,7 @@ def _zooms(run: SceneRun) -> list[tuple[str, int, int]]:
         found.append((title, clock - half, clock + half // 2))
     elif len(sought) > 1:
         edge = _edge_before(run, sought[-1].clock)
-        found.append(("The last one", edge - half // 2, edge + half))
+        found.append(("Last edge", edge - half // 2, edge + half))
     return found
 
 

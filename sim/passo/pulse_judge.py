@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What the recorded pins of a motion must keep to: pulse timings, directions and the curve of the plan.
+"""Checks the recorded pins of a motion: pulse timing, directions and the curve of the plan.
 
-The promises are those of docs/architecture.md, seen from outside: nothing here knows how the core steps.
+The guarantees are those of docs/architecture.md, checked at the pins without knowledge of the core.
 """
 
 from collections.abc import Iterator
@@ -62,7 +62,7 @@ def _first(bad: np.ndarray) -> int | None:
 
 
 def timing_faults(run: Run, axis: int, steps: Steps) -> Iterator[Fault]:
-    """STEP high and low, DIR set-up, hold and turns, the direction of each pulse; the first fault of each."""
+    """STEP high and low, DIR setup, hold and reversals, the direction of each pulse; first faults."""
     pins, clock = run.file.pins, run.pins["clock"].astype(np.int64) - run.start
     step, dir_ = (np.concatenate([[0], run.pins[pin] >> axis & 1]).astype(np.int8) for pin in ("step", "dir"))
     rises, falls = clock[np.diff(step) > 0], clock[np.diff(step) < 0]

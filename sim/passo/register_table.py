@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the table of all registers (passo.registers.TABLE) consists of."""
+"""Types of the table of all registers (passo.registers.TABLE)."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass

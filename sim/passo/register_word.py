@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the generated registers are made of."""
+"""Base classes of the generated registers."""
 
 from enum import IntEnum
 from typing import ClassVar, Self

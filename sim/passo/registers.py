@@ -53,7 +53,7 @@ class Cause(DescribedEnum):
     LINE_UNDERRUN = 3, "A line ended, was not LAST, and none followed."
     RAMP_UNDERRUN = 4, "The ramps ran out at speed."
     STEP_OVERRUN = 5, "Steps came faster than the pin timing of an axis allows."
-    LIMIT = 6, "An axis stepped towards an active limit switch."
+    LIMIT = 6, "An axis stepped toward an active limit switch."
     ALARM = 7, "The alarm input of an axis became active."
     TRIGGER = 8, "The trigger fired, and its action is a stop."
     WATCHDOG = 9, "No good frame came for too long while a motion ran."
@@ -508,7 +508,7 @@ class ChannelTriggerWord(Word):
 class ChannelTriggerStateWord(Word):
     """Trigger state."""
 
-    # Levels of the inputs are unknown: they have not stood still for a period of the filter since the reset,
+    # Levels of the inputs are unknown: they have not been stable for a period of the filter since the reset,
     # or since polarity or filter were written. No motion begins.
     unknown: bool
     # Axes of the first limit or alarm since COMMAND.CLEAR.
@@ -597,7 +597,7 @@ class ChannelFollowWord(Word):
 
     # A count is 2^scale clocks of the profile.
     scale: int = 0
-    # Axis of the encoder. One that is not there stands still.
+    # Axis of the encoder. A missing encoder never counts.
     source: int = 0
     # 1: an ARMED motion waits for the index of that encoder.
     wait_index: bool = False
@@ -616,7 +616,7 @@ class ChannelFollowWord(Word):
 class ChannelFollowStateWord(Word):
     """Follow state."""
 
-    # The phase is lost: 2^22 or more were owed, or A and B of the encoder changed at once.
+    # The phase is lost: 2^22 or more were outstanding, or A and B of the encoder changed simultaneously.
     lost: bool = False
     # Two counts or more were owed: the path was late.
     behind: bool = False
@@ -754,7 +754,7 @@ class EncoderGreatestWord(Word):
 class EncoderIndexWord(Word):
     """Encoder index."""
 
-    # Changes of A and B at once, up to 255; 0 after COMMAND.CLEAR, too.
+    # Simultaneous changes of A and B (illegal transitions), saturating at 255; also cleared by COMMAND.CLEAR.
     illegal: int = 0
     # Number of indexes; wraps.
     indexes: int = 0

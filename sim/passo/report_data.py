@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the report page shows of a run: facts as JSON, and every edge of STEP and DIR in a few bits."""
+"""Data of the report page: facts as JSON, and every edge of STEP and DIR in a few bits."""
 
 import base64
 import zlib

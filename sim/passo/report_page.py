@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The report page: a run as one HTML file that needs nothing else."""
+"""The report page: a run as one self-contained HTML file."""
 
 import html
 import json

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Execute a planned motion on an engine as a host does: over SPI, keeping the queues filled."""
+"""Execute a planned motion on an engine like a host: over SPI, keeping the queues filled."""
 
 import time
 from collections.abc import Callable
@@ -169,7 +169,7 @@ def execute_channels(
         for channel in used:
             left = start + channel.planned - engine.clock
             if channel.moves and left < -channels.clock_hz:
-                raise RunError(f"the motion did not end in time: {channel.driver.state.name}")
+                raise RunError(f"timeout: the motion did not end: {channel.driver.state.name}")
             if channel.moves and channel.driver.is_streaming:
                 left = min(left, start + channel.hungry() - engine.clock)
             if channel.moves:
@@ -191,7 +191,7 @@ def execute_channels(
     if channels.together:
         while any(channel.driver.snapshot().state != State.ARMED for channel in used):
             if engine.clock - start > channels.clock_hz:
-                raise RunError("the motions were not prepared in time")
+                raise RunError("timeout: the motions were not prepared")
             advance(tick)
         start = engine.clock
         engine.sync(True)

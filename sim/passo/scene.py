@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Run a move file with a machine: moves, home and probe one after the other, while events come."""
+"""Run a move file with a machine: moves, homing and probing in sequence, with events."""
 
 import time
 from collections.abc import Callable
@@ -25,7 +25,7 @@ POLLS_PER_SECOND = 1000
 POLL_CLOCKS_MIN = 2000  # some times the length of a frame
 SETTLE_CLOCKS = 256
 COMMANDS = ("hold", "resume", "override", "stop", "abort", "arm")  # events that the host carries out
-SPINDLE = [NUMBERS[f"encoder_{line}"] for line in ("a", "b", "index")]  # turns for ever
+SPINDLE = [NUMBERS[f"encoder_{line}"] for line in ("a", "b", "index")]  # turns continuously
 GIVE_UP_SECONDS = 2  # without a step, a change of an input or an event
 
 

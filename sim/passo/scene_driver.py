@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the host of a move file with a machine says to the core: settings, tasks, readings."""
+"""The host of a move file with a machine: settings, tasks, readings."""
 
 from collections.abc import Sequence
 from typing import Any

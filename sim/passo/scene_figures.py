@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How even a laser burns, and how exact a thread is, by the pins."""
+"""Evenness of laser power and accuracy of a thread, measured at the pins."""
 
 from typing import Any
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the report page shows of a move file with a machine: pins, power, encoders, events."""
+"""Report page data of a move file with a machine: pins, power, encoders, events."""
 
 import base64
 import zlib
@@ -76,7 +76,7 @@ def scene_data(channels: Channels, run: SceneRun, engine: str) -> tuple[dict[str
 
 
 def _axis(lane: Lane) -> int | None:
-    """The axis whose colour a signal has."""
+    """The axis whose color a signal has."""
     return lane[2] if lane[1] == "enable" else None
 
 

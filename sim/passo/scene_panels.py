@@ -12,7 +12,7 @@ from passo.scene_run import SceneRun
 
 STOP, SOUGHT, INPUT = "#c1121f", "#8c959f", "#57606a"
 REST_SECONDS = 0.02  # between two steps that belong to no speed
-OF_AXES = ("step", "dir", "enable")  # pins that have the colour of an axis
+OF_AXES = ("step", "dir", "enable")  # pins that have the color of an axis
 Lane = tuple[str, str, int, bool]  # name, pin, bit, whether it is an input
 
 
@@ -41,7 +41,7 @@ def plot_scene_speed(ax: Axes, run: SceneRun) -> None:
 
 
 def plot_scene_position(ax: Axes, run: SceneRun) -> None:
-    """Position counted at the pins and as measured, with the switches on the way."""
+    """Position counted at the pins and as measured, with the switches in the travel."""
     hz, scales = run.file.clock_hz, run.setup.scales
     in_mm = bool(scales)
     for axis in range(run.file.axes):

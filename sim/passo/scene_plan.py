@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A move file with a machine as the host carries it out: its motions, and what the outputs do meanwhile."""
+"""Plan of a move file with a machine: its motions, and the outputs during them."""
 
 from typing import Any
 
@@ -101,7 +101,7 @@ class _Outputs:
         wanted = -(-q32(output.speed) * plan.c.oversampling // self.file.clock_hz)
         if wanted < _peak(plan):
             reached = _peak(plan) * self.file.clock_hz / plan.c.oversampling / UNIT_Q32
-            raise self._error(f"speed is less than the {reached:.6g} steps/s that the move reaches")
+            raise self._error(f"speed is below the {reached:.6g} steps/s that the move reaches")
         scaled = power * self.reference // wanted
         if scaled > POWER_FULL:
             raise self._error(
@@ -115,11 +115,11 @@ class _Outputs:
         assert output.raster is not None
         pitch = output.pitch * plan.c.oversampling
         if section.pitch not in (0, pitch):
-            raise self._error("pitch differs from that of a raster before it, in substeps")
+            raise self._error("pitch differs from the previous raster, in substeps")
         section.pitch = pitch
         taken = -(-plan.line.substeps // pitch)
         if len(output.raster) > taken:
-            raise self._error(f"raster has {len(output.raster)} values, the move takes {taken}")
+            raise self._error(f"raster has {len(output.raster)} values; the move takes {taken}")
         section.raster.append(bytes(output.raster) + bytes(taken - len(output.raster)))
 
 

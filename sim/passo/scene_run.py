@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What has happened in a move file with a machine."""
+"""Results of a move file with a machine."""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -13,7 +13,7 @@ from passo.setup import Event, Setup
 
 # What the host has read in one frame, all of one clock.
 SAMPLE = np.dtype([("clock", "u8"), ("position", "i4", 8), ("encoder", "i4", 8)])
-ROUND_CLOCKS = 64  # the core reads its positions in rounds from the reset on; docs/architecture.md, SPI link
+ROUND_CLOCKS = 64  # the core reads its positions in rounds from the reset on; docs/link.md
 CS_CLOCKS = 4  # until chip select is seen
 
 
@@ -59,7 +59,7 @@ class Happened:
 
     number: int
     event: Event
-    clock: int | None  # None: it did not come
+    clock: int | None  # None: it never occurred
     positions: list[int]  # of the machine
     answered: int | None = None  # clock at which the frame of a command ended
 
@@ -160,9 +160,9 @@ class SceneRun:
             _, directions = self.steps(axis)
             net = int(directions.sum(dtype=np.int64))
             if self.core_positions[axis] != net:
-                found.append(f"axis {axis} counts {self.core_positions[axis]} steps, its pin made {net}")
+                found.append(f"axis {axis} is at {self.core_positions[axis]}, but its pin made {net} steps")
             if self.machine[axis] != net + self.setup.start(axis):
-                found.append(f"axis {axis} of the machine is at {self.machine[axis]}")
+                found.append(f"axis {axis} of the simulated machine is at {self.machine[axis]}")
         for section in self.sections:
             number = section.numbers[0]
             if section.outcome == "OK":
@@ -171,7 +171,7 @@ class SceneRun:
                 found.append(f"move {number}: {section.outcome}")
         for happened in self.events:
             if happened.clock is None:
-                found.append(f"event {happened.number}: it did not come")
+                found.append(f"event {happened.number}: it never occurred")
         return found
 
     def _short(self, section: Section) -> list[str]:

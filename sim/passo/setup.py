@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The machine at the core, and the events of a move file."""
+"""The simulated machine and the events of a move file."""
 
 from dataclasses import dataclass
 from fractions import Fraction

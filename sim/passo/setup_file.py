@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a move file says besides moves: the machine at the core, and events."""
+"""Parses the machine and the events of a move file."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -72,7 +72,7 @@ def read_setup(data: Table, moves: Sequence[Any], clock_hz: int) -> Setup | None
 
 def _check_count(name: str, count: int, largest: int) -> None:
     if count > largest:
-        raise BadValueError(f"there are {count} {name}, at most {largest} are possible")
+        raise BadValueError(f"there are {count} {name}; must be at most {largest}")
 
 
 def _tables(table: Table, key: str) -> list[Table]:
@@ -91,7 +91,7 @@ def _machine(table: object, axes: int, clock_hz: int) -> Setup:
         if isinstance(value, list) and len(value) != axes:
             raise BadValueError(f"{key} has {len(value)} axes, but the moves have {axes}")
     if (clocks := settings.filter * clock_hz) > FILTER_MAX:
-        raise BadValueError(f"filter is {round(clocks)} clocks, at most {FILTER_MAX} are possible")
+        raise BadValueError(f"filter is {round(clocks)} clocks; must be at most {FILTER_MAX}")
     scales = settings.steps_per_mm or ()
     inputs: list[MachineInput] = []
     for number, one in enumerate(_tables(table, "input"), 1):
@@ -103,14 +103,14 @@ def _machine(table: object, axes: int, clock_hz: int) -> Setup:
     for axis in range(axes):
         own = {one.soft for one in inputs if one.axis == axis and one.role in ("limit_low", "limit_high")}
         if len(own) > 1:
-            raise BadValueError(f"the limits of axis {axis} are both soft or both hard")
+            raise BadValueError(f"the limits of axis {axis} must be both soft or both hard")
     encoders: list[MachineEncoder] = []
     for number, one in enumerate(_tables(table, "encoder"), 1):
         made = within(f"encoder {number}", lambda one=one: _encoder(one, axes, clock_hz))
         if any(made.axis == other.axis for other in encoders):
             raise BadValueError(f"encoder {number}: axis {made.axis} has an encoder already")
         if any(made.filter != other.filter for other in encoders):
-            raise BadValueError(f"encoder {number}: all encoders have the same filter")
+            raise BadValueError(f"encoder {number}: all encoders must have the same filter")
         encoders.append(made)
     compare = within("compare", lambda: read_compare(table, axes, clock_hz))
     if compare:
@@ -142,7 +142,7 @@ def _input(table: Table, scales: tuple[Fraction, ...], axes: int, clock_hz: int)
     if one.disables and one.role != "alarm":
         raise BadValueError(f"disables is for alarms, not for {one.role}")
     if one.glitch and one.noise * one.glitch * 2 > 1:
-        raise BadValueError("noise has more glitches than time for them")
+        raise BadValueError("noise * glitch must be at most 0.5")
     return replace(one, at=_steps("at", one.at, one.axis, scales)) if one.at else one
 
 
@@ -153,7 +153,7 @@ def _encoder(table: Table, axes: int, clock_hz: int) -> MachineEncoder:
     if not 1 <= round(ratio * RATIO_ONE) < RATIO_ONE << 16:
         raise BadValueError("counts_per_step must be 1/65536 to 65535")
     if encoder.limit and not 1 <= round(encoder.limit * ratio) <= COUNTS_MAX:
-        raise BadValueError(f"limit is {float(encoder.limit * ratio):g} counts, it must be 1 to {COUNTS_MAX}")
+        raise BadValueError(f"limit is {float(encoder.limit * ratio):g} counts; must be 1 to {COUNTS_MAX}")
     if "stop" in table and not encoder.limit:
         raise BadValueError("stop needs limit")
     return encoder
@@ -187,7 +187,7 @@ def _check_when(table: Table, event: Event, setup: Setup, axes: int) -> None:
     if not given:
         raise BadValueError("time, position or trigger is missing")
     if len(given) > 1:
-        raise BadValueError(f"{given[0]} and {given[1]} exclude each other")
+        raise BadValueError(f"{given[0]} and {given[1]} are mutually exclusive")
     if "falling" in table and event.trigger is None:
         raise BadValueError("falling needs trigger")
     if "at_axis" in table and event.time is not None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a move file says about outputs bound to the path, and about the spindle of a thread."""
+"""Parses path-synchronized outputs and the spindle of a move file."""
 
 from fractions import Fraction
 from typing import Any
@@ -23,7 +23,7 @@ from passo.values import BadValueError
 
 LAG_MAX = (1 << CHANNEL_OUTPUT_LAG_LAG_BITS) - 1
 WIDTH_MAX = (1 << CHANNEL_COMPARE_PULSE_WIDTH_BITS) - 1
-PWM_BITS = 24  # a period is at most so many clocks, as a power of two
+PWM_BITS = 24  # longest period in clocks, as a power of two
 COUNT_CLOCKS_MIN = 8  # from count to count of the spindle: its filter and some more
 
 
@@ -54,7 +54,7 @@ def check_pwm(settings: MachineSettings, clock_hz: int) -> None:
 
 def _check_clocks(key: str, clocks: Fraction, least: int, most: int) -> None:
     if not least <= round(clocks) <= most:
-        raise BadValueError(f"{key} is {round(clocks)} clocks, {least} to {most} are possible")
+        raise BadValueError(f"{key} is {round(clocks)} clocks; must be {least} to {most}")
 
 
 def read_output(table: Table, move: Any, clock_hz: int) -> MachineOutput | None:
@@ -62,7 +62,7 @@ def read_output(table: Table, move: Any, clock_hz: int) -> MachineOutput | None:
     if "output" not in table:
         return None
     if isinstance(move, Task):
-        raise BadValueError(f"output: {move.form.name} has no power and no levels of its own")
+        raise BadValueError(f"output: {move.form.name} cannot have its own power or levels")
     return within("output", lambda: _output(table["output"], clock_hz))
 
 
@@ -101,11 +101,13 @@ def read_spindle(machine: Table, axes: int, clock_hz: int) -> MachineSpindle | N
         return None
     spindle = MachineSpindle(**read_form(MACHINES["spindle"], table, clock_hz))
     if axes == AXES_MAX:
-        raise BadValueError(f"its encoder is that of a further axis: the moves have at most {AXES_MAX - 1}")
+        raise BadValueError(
+            f"its encoder needs an axis of its own: moves must have at most {AXES_MAX - 1} axes"
+        )
     clocks = clock_hz / (fastest(spindle) / 60 * spindle.counts_per_turn)
     if clocks < COUNT_CLOCKS_MIN:
         raise BadValueError(
-            f"rpm makes a count in {float(clocks):.3g} clocks at the fastest, {COUNT_CLOCKS_MIN} are needed"
+            f"rpm: one count every {float(clocks):.3g} clocks; must be at least {COUNT_CLOCKS_MIN}"
         )
     return spindle
 
@@ -126,6 +128,6 @@ def check_thread(move: MoveThread, setup: Setup) -> None:
         raise BadValueError("a thread needs a spindle: [machine.spindle]")
     if not 1 <= counts_of(move, setup.spindle) <= WHOLE_MAX:
         counts = counts_of(move, setup.spindle)
-        raise BadValueError(f"turns are {counts} counts, 1 to {WHOLE_MAX} are possible")
+        raise BadValueError(f"turns are {counts} counts; must be 1 to {WHOLE_MAX}")
     if move.top_rpm is not None and move.top_rpm < fastest(setup.spindle):
         raise BadValueError(f"top_rpm is less than the {float(fastest(setup.spindle)):g} of the spindle")

@@ -49,7 +49,9 @@ def read_spindle(text: str, clock_hz: int) -> Shaft:
     shaft = Shaft(int(match[1]), rpm=Fraction(match[2]), counts_per_turn=int(match[3]))
     clocks = clock_hz * 60 / (shaft.rpm * shaft.counts_per_turn)
     if clocks < COUNT_CLOCKS_MIN:
-        raise ValueError(f"{text}: a count in {float(clocks):.3g} clocks, {COUNT_CLOCKS_MIN} are needed")
+        raise ValueError(
+            f"{text}: one count every {float(clocks):.3g} clocks; must be at least {COUNT_CLOCKS_MIN}"
+        )
     return shaft
 
 

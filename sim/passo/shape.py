@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""User-defined shapes: tables of 256 points, created from a function or a file.
+"""User-defined shapes: tables of 256 points, from a formula or a file.
 
 A shape rises from 0 to 1 while the progress u goes from 0 to 1, and never decreases. Point k is
 shape(k / 256) in units of 2^-16; point 256 is always 1 and not stored.
@@ -51,7 +51,7 @@ def sample(shape: Callable[[float], float]) -> Points:
     values = [shape(k / (POINTS * PARTS)) for k in range(POINTS * PARTS + 1)]
     first, last = values[0], values[-1]
     if not last > first:
-        raise ShapeError("a shape must rise: at u = 1 it is not above what it is at u = 0")
+        raise ShapeError("a shape must rise: s(1) must be above s(0)")
     fine = [(value - first) / (last - first) * ONE for value in values]
     exact = fine[::PARTS]
     check(tuple(_stored(round(point)) for point in exact[:-1]))
@@ -93,10 +93,10 @@ def _simpson(values: Sequence[float]) -> float:
 def check(points: Sequence[int]) -> Facts:
     """Check that a table is a shape; raises ShapeError."""
     if len(points) != POINTS:
-        raise ShapeError(f"a table has {POINTS} points, not {len(points)}")
+        raise ShapeError(f"a table must have {POINTS} points, not {len(points)}")
     for k, point in enumerate(points):
         if not 0 <= point < ONE:
-            raise ShapeError(f"point {k} is {point}, it must be 0 to {ONE - 1}")
+            raise ShapeError(f"point {k} is {point}; must be 0 to {ONE - 1}")
     if points[0]:
         raise ShapeError(f"a shape must start at 0, not at {points[0]}")
     whole = [*points, ONE]
@@ -118,7 +118,7 @@ def read_table(path: Path) -> Points:
     except OSError as error:
         raise ShapeError(f"{path}: {error.strerror}") from None
     except (UnicodeDecodeError, csv.Error):
-        raise ShapeError(f"{path}: this is not a CSV file") from None
+        raise ShapeError(f"{path}: not a CSV file") from None
     header, rows = tuple(rows[0]) if rows else (), rows[1:]
     if header not in (HEADER, CURVE_HEADER):
         raise ShapeError(f"{path}: the first line must be k,point or u,s")
@@ -127,7 +127,7 @@ def read_table(path: Path) -> Points:
     except ShapeError as error:
         raise ShapeError(f"{path}: {error}") from None
     except ValueError:
-        raise ShapeError(f"{path}: a line is not two numbers") from None
+        raise ShapeError(f"{path}: every line must have two numbers") from None
 
 
 def _points(rows: list[list[str]]) -> Points:
@@ -145,7 +145,7 @@ def _curve(rows: list[list[str]]) -> Callable[[float], float]:
     """Linear interpolation between the points of a curve."""
     us, values = (list(column) for column in zip(*((float(u), float(s)) for u, s in rows), strict=True))
     if len(us) < 2 or us[0] != 0 or us[-1] != 1 or any(b <= a for a, b in pairwise(us)):
-        raise ShapeError("u must go from 0 to 1, always rising")
+        raise ShapeError("u must rise strictly from 0 to 1")
     if not all(map(math.isfinite, values)):
         raise ShapeError("s must be finite")
 

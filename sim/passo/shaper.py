@@ -2,9 +2,9 @@
 """Input shapers: ramps that leave a resonance of the machine at rest.
 
 A shaper replaces a motion by the sum of copies of it, delayed by parts of the resonance's period and weighted
-such that what the copies excite cancels. Here the motion is a ramp of constant acceleration, and the sum a
-table for the core. Deceleration is shaped in the same order of time, not mirrored: a damped resonance tells
-the two apart.
+such that their responses cancel. Here the motion is a ramp of constant acceleration, and the sum a table for
+the core. Deceleration uses the same time order, not the mirrored shape, since a damped response is not
+symmetric in time.
 
     zv   two impulses, half a period apart: exact at its frequency (Singer and Seering, 1990)
     mzv  three, 3/8 of a period apart: less sensitive to the frequency
@@ -61,7 +61,7 @@ def shaped(shaper: Shaper, ramp_time: Fraction) -> Points:
     straight = ramp - delayed[-1][0]  # of each copy
     if straight <= 0:
         raise ShapeError(
-            f"{shaper.name} at {float(shaper.frequency):g} Hz takes {delayed[-1][0] * 1e3:.3f} ms, "
+            f"{shaper.name} at {float(shaper.frequency):g} Hz takes {delayed[-1][0] * 1e3:.3f} ms; "
             f"the ramp has {ramp * 1e3:.3f} ms"
         )
 

@@ -21,7 +21,7 @@ def check_known(table: Table, keys: tuple[str, ...]) -> None:
     """Raises BadValueError if a table has a key other than `keys`."""
     for key in table:
         if key not in keys:
-            hint = meant(key, keys) or f"; known are {', '.join(keys)}"
+            hint = meant(key, keys) or f"; must be one of {', '.join(keys)}"
             raise BadValueError(f"unknown key {shown(key)}{hint}")
 
 

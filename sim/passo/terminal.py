@@ -2,7 +2,7 @@
 """The console of the STM32 bridge with a simulated core: `passo console`.
 
 Simulated time advances only on request: a line takes as long as its frames on the link, a move until there
-is room for it, `run SECONDS` lets time pass, and `wait` lets it pass until all motions have ended. The same
+is room for it, `run SECONDS` advances time, and `wait` advances it until all motions have ended. The same
 input always gives the same output.
 """
 
@@ -60,7 +60,7 @@ class Terminal:
         self._events: list[np.ndarray] = []
         self._error: Exception | None = None
         self.interrupted = False
-        self._stands = False  # a move waits for room, but the motion does not go on
+        self._stands = False  # a move waits for queue space, but the motion does not go on
         types = (
             "bool(void *, uint32_t *, uint32_t *, size_t)",
             "uint32_t(void *, uint32_t)",

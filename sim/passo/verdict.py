@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a summary, a page and the terminal say of a run as a whole: what was judged, and not more."""
+"""The verdict on a run for summary, page and terminal: only what was checked."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -44,13 +44,13 @@ def scene_verdict(run: SceneRun, engine: str) -> Verdict:
     if stopped:
         said.append(f"stopped by {stopped} in {_moves(run.sections[-1].numbers)}")
     if moved:
-        said.append(f"{made:,} of {asked:,} steps of the moves made")
+        said.append(f"{made:,} of {asked:,} steps made")
     if tasks := [
         section.kind for section in run.sections if section not in moved and section.outcome == "OK"
     ]:
         said.append(f"done: {', '.join(dict.fromkeys(tasks))}")
     if run.unmade:
-        said.append(f"{_moves(run.unmade)} not begun")
+        said.append(f"{_moves(run.unmade)} not started")
     if problems := run.problems():
         return Verdict(FAILED, "; ".join([*problems, *said]), stopped)
     said += ["the core counts what its pins made", _engines(engine, run.matched_edges)]

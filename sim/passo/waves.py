@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Waves of a window of a motion, and how to look at them: a save file for GTKWave with groups and names."""
+"""Waveforms of a window of a motion, with a GTKWave save file (groups and names)."""
 
 import os
 import shutil

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`make web`: a page to type moves or G-code; what plays them runs in it as WebAssembly."""
+"""`make web`: a page to type moves or G-code; the simulation runs in it as WebAssembly."""
 
 import base64
 import gzip

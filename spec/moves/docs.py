@@ -4,7 +4,8 @@
 A marker is <!-- moves: WHAT -->...<!-- /moves -->, where WHAT is one of
 
     forms               the table of the forms
-    keys FORM ...       the table of the keys of a form, or of some forms
+    common              the table of the keys that mean the same in several forms
+    keys FORM ...       the table of the keys of a form, or of some, that are not common; the names of those
     task FORM ...       the same for what is only in move files: task, event, machine
     events              the table of the events and their own keys
     console             the table of the forms on the console
@@ -13,6 +14,7 @@ A marker is <!-- moves: WHAT -->...<!-- /moves -->, where WHAT is one of
 """
 
 import re
+from collections import Counter
 
 from moves.schema import Form, Key, Schema, SchemaError
 
@@ -20,7 +22,7 @@ MARKER = re.compile(r"(<!-- moves: ([\w ]+) -->)(.*?)(<!-- /moves -->)", re.DOTA
 
 
 def fill(schema: Schema, page: str, text: str) -> str:
-    """A page with everything between its markers made anew; raise SchemaError."""
+    """A page with everything between its markers regenerated; raise SchemaError."""
     try:
         return MARKER.sub(lambda found: found[1] + _between(schema, found[2]) + found[4], text)
     except KeyError as error:
@@ -32,11 +34,13 @@ def _between(schema: Schema, what: str) -> str:
     forms = {form.name: form for form in schema.forms}
     if kind == "forms":
         return _forms(schema)
+    if kind == "common":
+        return _table(COLUMNS, _common(schema))
     if kind == "keys":
-        return _keys(schema, [forms[name] for name in names])
+        return _own_keys(schema, [forms[name] for name in names])
     if kind in schema.others:
         others = {form.name: form for form in schema.others[kind]}
-        return _keys(schema, [others[name] for name in names], in_c=False)
+        return _keys(schema, [others[name] for name in names])
     if kind == "events":
         return _events(schema)
     if kind == "console":
@@ -58,6 +62,9 @@ def _forms(schema: Schema) -> str:
         method = f"none, or `{form.name}`" if form.told_by else f"`{form.name}`"
         rows.append([f"[{form.title}](#{anchor})", form.given, f"`passo_plan_{form.name}`", method])
     return _table(["method", "inputs", "function", "`method` in a move file"], rows)
+
+
+NUMBERS = (0, "number_max")
 
 
 def _range(schema: Schema, key: Key) -> str:
@@ -98,29 +105,49 @@ def _rules(form: Form) -> str:
 
 
 def _in_c(key: Key) -> str:
-    """Its place in the struct, and what it is there."""
+    """The member of the struct if it has another name; its unit if the page does not state it once."""
     if not key.kind.c:
-        return ""
+        return "-"
     member = f"limits[].{key.member}" if key.shared else key.member + ("[]" if key.kind.list else "")
-    return ", ".join(filter(None, (f"`{member}`", key.kind.stands_for)))
+    unit = key.kind.stands_for if key.kind.factor not in ("clock_hz", "unit_q32") else ""
+    return ", ".join(filter(None, (f"`{member}`" if member != key.name else "", unit)))
 
 
-def _keys(schema: Schema, forms: list[Form], in_c: bool = True) -> str:
-    """One row for each key; of several forms with the names of those that have it."""
+COLUMNS = ["key", "meaning", "unit", "range", "default", "in C"]
+
+
+def _row(schema: Schema, key: Key) -> list[str]:
+    """A key of the planner; the page states the range of a number once."""
+    shown = "" if key.range == NUMBERS else _range(schema, key)
+    return [f"`{key.name}`", key.text, key.unit, shown, _default(schema, key), _in_c(key)]
+
+
+def _common(schema: Schema) -> list[list[str]]:
+    """The rows that are the same in several forms, each once."""
+    rows = Counter(tuple(_row(schema, key)) for form in schema.forms for key in form.keys)
+    return [list(row) for row, forms in rows.items() if forms > 1]
+
+
+def _own_keys(schema: Schema, forms: list[Form]) -> str:
+    """The rows that only this form has, of several forms with its name; the common keys and the rules."""
+    common, several = _common(schema), len(forms) > 1
+    rows, names = [], []
+    for form in forms:
+        made = [_row(schema, key) for key in form.keys]
+        rows += [[f"`{form.name}`", *row] if several else row for row in made if row not in common]
+        shared = ", ".join(row[0] for row in made if row in common)
+        names.append(f"[Common keys](#common-keys){f' of `{form.name}`' if several else ''}: {shared}.\n\n")
+    return _table(["method", *COLUMNS] if several else COLUMNS, rows) + "".join([*names, *map(_rules, forms)])
+
+
+def _keys(schema: Schema, forms: list[Form]) -> str:
+    """What is only in move files: one row for each key; with several forms, the name of its form."""
     rows = []
     for form in forms:
         for key in form.keys:
-            row = [
-                f"`{key.name}`",
-                key.text,
-                key.unit,
-                _range(schema, key),
-                _default(schema, key),
-                _in_c(key),
-            ][: 6 if in_c else 5]
+            row = [f"`{key.name}`", key.text, key.unit, *_values(schema, key)]
             rows.append([f"`{form.name}`", *row] if len(forms) > 1 else row)
-    columns = ["key", "meaning", "unit", "range", "default", "in C"][: 6 if in_c else 5]
-    table = _table(["method", *columns] if len(forms) > 1 else columns, rows)
+    table = _table(["method", *COLUMNS[:5]] if len(forms) > 1 else COLUMNS[:5], rows)
     return table + "".join(map(_rules, forms))
 
 

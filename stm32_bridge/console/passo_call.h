@@ -72,23 +72,23 @@ struct passo_call {
 
 /* Prints "ok", or the error. Returns whether there was none. */
 bool passo_answer(const struct passo_call *call, enum passo_error error);
-/* Finds axes that are not enabled. If enabled drives are needed, prints an error and returns false. */
+/* Finds axes that are not enabled. If enabled drives are required, prints an error and returns false. */
 bool passo_check_enabled(const struct passo_call *call, uint8_t axes, uint8_t *off);
 /* Notes once for each axis that it moves without its drive. */
 void passo_note_disabled(const struct passo_call *call, uint8_t off);
 /* Prints the axes of a mask after a text, or none. */
 void passo_say_axes(const struct passo_sink *sink, const char *text, uint8_t axes);
-/* Prints levels of inputs, why the channel is stopped, and which axes are homed. */
+/* Prints input levels, the stop cause, and the homed axes. */
 void passo_say_inputs(const struct passo_call *call, const struct passo_readings *now);
-/* Prints what a trigger has latched. */
+/* Prints the positions latched by a trigger. */
 void passo_say_trigger(
     const struct passo_sink *sink, const struct passo *passo, const struct passo_trigger_report *report);
 /* Converts Q31.32 to thousandths, rounded to nearest. */
 int64_t passo_thousandths(int64_t value);
 
 /* Moves and rotation: passo_move_commands.c. Control and readings: passo_motion_commands.c. Settings:
- * passo_settings_commands.c. `open`, and `clear`, which may have to apply them: passo_opening.c. Inputs:
- * passo_input_commands.c. Home, probe, jog: passo_task_commands.c. Outputs: passo_output_commands.c,
+ * passo_settings_commands.c. `open`, and `clear`, which can apply deferred ones: passo_opening.c. Inputs:
+ * passo_input_commands.c. Homing, probing, jogging: passo_task_commands.c. Outputs: passo_output_commands.c,
  * those of a move: passo_move_outputs.c. Encoders and threads: passo_encoder_commands.c. */
 bool passo_run_move(const struct passo_call *call);
 bool passo_run_turn(const struct passo_call *call);
@@ -134,7 +134,7 @@ bool passo_run_help(const struct passo_call *call);
 #ifndef PASSO_WITHOUT_PARTS
 /* Takes the keys of outputs from the words of a move. */
 bool passo_output_read(const struct passo_call *call);
-/* Prints an error and returns false if the move takes fewer values than its raster has. */
+/* Prints an error and returns false if the raster has more values than the move takes. */
 bool passo_output_fits(const struct passo_call *call, const struct passo_form_move *move);
 /* Queues a move with its outputs. */
 enum passo_error passo_output_queue(const struct passo_call *call, const struct passo_form_move *move);

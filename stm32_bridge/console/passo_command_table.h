@@ -12,7 +12,7 @@ struct passo_command {
 	const struct passo_key *keys;
 	uint8_t count;
 	uint8_t bare; /* number of keys that can be given as values alone */
-	bool passes;  /* is also executed while a move waits for room */
+	bool passes;  /* is also executed while a move waits for queue space */
 	const char *text;
 };
 

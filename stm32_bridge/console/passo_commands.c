@@ -79,10 +79,10 @@ static bool find_channel(
 	if (!passo_number_whole(reading, &passo_channel_key, all, 0, PASSO_CHANNELS_MAX - 1u, channel))
 		return false;
 	if (channels == 1u && *channel != 0u)
-		return passo_complain(reading->sink, "the core has only channel 0, not %u", *channel);
+		return passo_complain(reading->sink, "channel must be 0, not %u", *channel);
 	if (channels != 0u && *channel >= channels)
-		return passo_complain(reading->sink, "the core has channels 0 to %u, not %u",
-		    (uint32_t)channels - 1u, *channel);
+		return passo_complain(
+		    reading->sink, "channel must be 0 to %u, not %u", (uint32_t)channels - 1u, *channel);
 	return true;
 }
 

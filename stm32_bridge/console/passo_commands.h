@@ -15,19 +15,19 @@ enum passo_error passo_commands_open(struct passo_console *console);
 /* Leaves the stopped state of a channel, and applies settings that could not be applied before. */
 enum passo_error passo_commands_clear(struct passo_console *console, struct passo_console_channel *channel);
 
-/* Remembers which drives an error has switched off. */
+/* Records which drives an error has disabled. */
 void passo_commands_see(
     struct passo_console *console, struct passo_console_channel *channel, enum passo_error error);
 
-/* Whether a channel moves. A core that was reset does not, whatever was queued. */
+/* Whether a channel moves. A reset core does not, regardless of the queues. */
 bool passo_commands_is_moving(const struct passo_console *console);
 
-/* Goes on with the waiting line, a move by executing it once more: it waits on, or is answered. */
+/* Retries the waiting line, for a move by executing it again: it keeps waiting, or is answered. */
 void passo_commands_try_again(struct passo_console *console);
 
-/* The same of a line other than a move. */
+/* The same for a line other than a move. */
 void passo_tasks_try_again(struct passo_console *console);
-/* What a waiting line waits for. */
+/* The reason why a line waits. */
 const char *passo_tasks_name(enum passo_awaited awaited);
 
 /* Configures the inputs of an axis. */
@@ -49,8 +49,8 @@ void passo_commands_reset_encoders(struct passo_console_channel *channel);
 /* Number of channels of the core; 0 while it is not open. */
 uint8_t passo_commands_channels(const struct passo_console *console);
 
-/* Default settings that depend on the clock: all pin times 1 us, the watchdog half a second, or what the core
- * can count. */
+/* Default settings that depend on the clock: all pin times 1 us, the watchdog half a second, or the longest
+ * time of the core. */
 void passo_commands_reset_times(struct passo_console *console);
 
 /* Prints a note about an error other than PASSO_OK, of the core. */

@@ -56,7 +56,7 @@ static void finish_line(struct passo_console *console)
 	if (console->bad == PASSO_CONSOLE_LOST + 1)
 		passo_complain(&console->sink, "bytes of this line were lost");
 	else if (console->bad != 0u)
-		passo_complain(&console->sink, "character %u is not text", console->bad - 1u);
+		passo_complain(&console->sink, "character %u is not printable", console->bad - 1u);
 	else if (console->too_long)
 		passo_complain(&console->sink, "the line is longer than %u characters", PASSO_LINE_MAX);
 	else

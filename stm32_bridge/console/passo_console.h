@@ -3,8 +3,8 @@
  *
  * Every input line is answered by one line that starts with `ok` or `error:`; before it, `help` prints lines
  * that start with two spaces. Lines that start with `note:` are unsolicited. A move that finds the queues
- * full is answered when it is queued or can no longer be; home and probe when they are over; wait_trigger
- * when the trigger has fired. Meanwhile only some commands are executed. Portable: the board, or a
+ * full is answered when it is queued or can no longer be; home and probe when they have ended; wait_trigger
+ * when the trigger has fired. Meanwhile only some commands are accepted. Portable: the board, or a
  * simulation, provides the hardware functions of the link and a text output.
  */
 #ifndef PASSO_CONSOLE_H
@@ -16,10 +16,10 @@
 #include "passo_home.h"
 #include "passo_outputs.h"
 
-/* Maximum length of a line, without its end. */
+/* Maximum length of a line, without its terminator. */
 #define PASSO_LINE_MAX 255u
 
-/* Stands for a byte that was lost or received with an error; its line is refused. */
+/* Stands for a byte that was lost or received with an error; its line is rejected. */
 #define PASSO_CONSOLE_LOST '\0'
 
 /* Clock of the core until `config clock_hz=` sets another. */
@@ -30,7 +30,7 @@ struct passo_console_board {
 	/* Called after the answer has been sent. */
 	void (*set_baud)(void *context, uint32_t baud);
 	void (*set_spi_fast)(void *context, bool fast);
-	/* Number of times that bytes of the serial line were lost. */
+	/* Number of receive overruns of the serial line. */
 	uint32_t (*lost_bytes)(void *context);
 	void *context;
 };
@@ -52,10 +52,10 @@ struct passo_console_encoder {
 #define PASSO_NO_FOLLOWING_LIMIT UINT64_MAX
 #endif
 
-/* What a line waits for before it is answered. */
+/* Reasons why a line waits before it is answered. */
 enum passo_awaited {
 	PASSO_AWAITS_NOTHING,
-	PASSO_AWAITS_ROOM, /* a move, for room in the queues */
+	PASSO_AWAITS_ROOM, /* a move, for free queue entries */
 	PASSO_AWAITS_HOME, /* its end */
 	PASSO_AWAITS_PROBE,
 	PASSO_AWAITS_TRIGGER
@@ -64,9 +64,9 @@ enum passo_awaited {
 /* A channel of the core. */
 struct passo_console_channel {
 	struct passo passo;
-	enum passo_error noted; /* present error, which was reported in a note */
+	enum passo_error noted; /* current error, reported in a note */
 	uint32_t looked_at;     /* microseconds: time of the last poll */
-	bool unset;             /* settings not applied yet: it was in motion when it was opened */
+	bool unset;             /* settings not applied yet: it was moving when opened */
 	uint8_t enabled;        /* bit i: axis i was enabled */
 	uint8_t announced;      /* bit i: a note said that axis i is not enabled */
 	struct passo_axis_config axis[PASSO_AXES_MAX]; /* times in clocks */
@@ -95,12 +95,12 @@ struct passo_console {
 	uint32_t filter_microseconds, watchdog_microseconds, disable_microseconds; /* of the inputs */
 	bool spi_slow;
 	bool opened;
-	enum passo_error absent; /* why it is not */
+	enum passo_error absent; /* why it is not open */
 	struct passo_loaded_table table;
-	bool need_enable; /* moves of axes that are not enabled are refused */
+	bool need_enable; /* moves of axes that are not enabled are rejected */
 	/* flow control */
-	bool flow_waits;                   /* moves wait for room in the queues; otherwise they are refused */
-	enum passo_awaited waits;          /* what the present line waits for */
+	bool flow_waits;          /* moves wait for free queue entries; otherwise they are rejected */
+	enum passo_awaited waits; /* what the current line waits for */
 	char waiting[PASSO_LINE_MAX + 1u]; /* the line */
 	uint8_t waiting_channel;
 	uint32_t waits_since, waits_most; /* microseconds, for the trigger */
@@ -111,7 +111,7 @@ struct passo_console {
 	char line[PASSO_LINE_MAX + 1u];
 	uint16_t length;
 	bool too_long, ended_by_return;
-	uint16_t bad; /* first byte that is not text, plus 1; 0: none */
+	uint16_t bad; /* first non-printable byte, plus 1; 0: none */
 };
 
 /* Initializes the console, prints a greeting and tries to open the core. `board` may be null; `clock_hz` and
@@ -123,19 +123,18 @@ void passo_console_start(struct passo_console *console, const struct passo_sink 
 /* Processes a byte of input. The end of a line executes and answers it. */
 void passo_console_receive(struct passo_console *console, char byte);
 
-/* Call it continuously, after each line too, or the watchdog of a core with inputs stops the motion; at most
- * one frame per call and channel, and one more while a line waits for the trigger. Reports an error in a
- * note, once while it persists. A core that did not answer at the start is tried again twice a second. */
+/* Call it continuously, also after each line, or the watchdog of a core with inputs stops the motion; at most
+ * one frame per call and channel, plus one while a line waits for the trigger. Reports an error in a
+ * note, once while it persists. A core that did not respond at the start is retried twice a second. */
 void passo_console_poll(struct passo_console *console);
 
 /* True if no motion is running or queued, or if there is no core. */
 bool passo_console_is_idle(const struct passo_console *console);
 
-/* True if what is to go on next, the channel of a waiting move or else every channel that moves, is held or
- * waits for its start. */
+/* True if the channel of a waiting move, or else every moving channel, is held or waits for its start. */
 bool passo_console_stands(const struct passo_console *console);
 
-/* True while a line waits and is not answered. */
+/* True while a line waits for its answer. */
 bool passo_console_owes(const struct passo_console *console);
 
 /* True if the core is open and has no fault. */

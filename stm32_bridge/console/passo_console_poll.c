@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Polls the channels of the core, reports errors in notes, and goes on with a waiting move.
+ * Polls the channels of the core, reports errors in notes, and retries a waiting move.
  */
 #include "passo_commands.h"
 
@@ -7,7 +7,7 @@
 #define LOOK_MICROSECONDS 5000u
 
 /* A stop or hold is being resent because it was not acknowledged. */
-static bool insists(const struct passo_console_channel *channel)
+static bool has_due_command(const struct passo_console_channel *channel)
 {
 	const enum passo_error fault = passo_fault(&channel->passo);
 
@@ -21,8 +21,8 @@ static bool is_time_to_look(const struct passo_console *console, struct passo_co
 	bool runs = passo_snapshot(&channel->passo)->state == PASSO_STATE_RUN;
 	uint32_t now = hardware->microseconds ? hardware->microseconds(hardware->context) : 0u;
 
-	if (runs && !console->waits && !insists(channel) && hardware->irq && !hardware->irq(hardware->context)
-	    && now - channel->looked_at < LOOK_MICROSECONDS)
+	if (runs && !console->waits && !has_due_command(channel) && hardware->irq
+	    && !hardware->irq(hardware->context) && now - channel->looked_at < LOOK_MICROSECONDS)
 		return false;
 	channel->looked_at = now;
 	return true;
@@ -66,7 +66,7 @@ static bool is_told(
 static bool is_answer(const struct passo_console *console, unsigned number)
 {
 	return (console->waits == PASSO_AWAITS_HOME || console->waits == PASSO_AWAITS_PROBE)
-	    && console->waiting_channel == number && !insists(&console->channel[number]);
+	    && console->waiting_channel == number && !has_due_command(&console->channel[number]);
 }
 
 static void note_error(struct passo_console *console, unsigned number, enum passo_error error)
@@ -111,7 +111,7 @@ static void look_at_channel(struct passo_console *console, unsigned number)
 		channel->noted = error;
 		passo_commands_see(console, channel, error);
 	} else if (now->frames != before.frames && bad_frames(now) == bad_frames(&before)
-	           && !insists(channel)) {
+	           && !has_due_command(channel)) {
 		if (is_of_wire(channel->noted))
 			note_answer(console);
 		channel->noted = PASSO_OK;
@@ -179,7 +179,7 @@ static bool stands(const struct passo_console_channel *channel)
 	bool armed = seen->state == PASSO_STATE_ARMED;
 
 #ifndef PASSO_WITHOUT_PARTS
-	armed = armed && passo_waits_for_sync(&channel->passo); /* a thread goes on with its index */
+	armed = armed && passo_waits_for_sync(&channel->passo); /* a thread starts with its index */
 #endif
 	return seen->rate == 0u || armed;
 }

@@ -89,7 +89,7 @@ static bool check_encoder(const struct passo_call *call)
 	if (passo_words_find(call->words, "stop") != NULL && encoder->limit == PASSO_NO_FOLLOWING_LIMIT)
 		return passo_complain(sink, "stop needs limit");
 	if (limit_of(encoder) > LIMIT_MAX)
-		return passo_complain(sink, "limit is more than %u counts", (uint32_t)LIMIT_MAX);
+		return passo_complain(sink, "limit must be at most %u counts", (uint32_t)LIMIT_MAX);
 	return true;
 }
 
@@ -130,7 +130,7 @@ bool passo_run_encoder(const struct passo_call *call)
 	const bool has_others = reading->given >> ENCODER_OF_AXIS != 0u;
 
 	if (has_axis && has_filter)
-		return passo_complain(reading->sink, "axis and filter exclude each other");
+		return passo_complain(reading->sink, "axis and filter are mutually exclusive");
 	if (has_others && !has_axis)
 		return passo_complain(reading->sink, "axis is missing");
 	if (has_filter)
@@ -238,7 +238,7 @@ bool passo_run_thread(const struct passo_call *call)
 	uint8_t axes = 0, off;
 
 	if (counts > UINT32_MAX)
-		return passo_complain(call->reading->sink, "turns are more than %u counts", UINT32_MAX);
+		return passo_complain(call->reading->sink, "turns must be at most %u counts", UINT32_MAX);
 	for (unsigned axis = 0; axis < PASSO_AXES_MAX; axis++) {
 		thread.steps[axis] = values->steps[axis];
 		axes |= (uint8_t)((thread.steps[axis] != 0 ? 1u : 0u) << axis);

@@ -42,8 +42,8 @@ static const struct passo_form_table *form_by_keys(
 			of_speed = key;
 	}
 	if (of_time != NULL && of_speed != NULL) {
-		passo_complain(reading->sink, "%s and %s exclude each other: a move goes by time or by speed",
-		    of_time, of_speed);
+		passo_complain(
+		    reading->sink, "%s and %s are mutually exclusive: set time or speed", of_time, of_speed);
 		return NULL;
 	}
 	if (of_time == NULL && passo_words_find(words, BY_SPEED->told_by) == NULL) {
@@ -72,7 +72,7 @@ static bool check_rules(const struct passo_reading *reading, const struct passo_
 			continue;
 		if (rule->kind == PASSO_RULE_EXCLUDES && other_given)
 			return passo_complain(
-			    reading->sink, "%s and %s exclude each other", key->name, other->name);
+			    reading->sink, "%s and %s are mutually exclusive", key->name, other->name);
 		if (rule->kind == PASSO_RULE_NEEDS && !other_given)
 			return passo_complain(reading->sink, "%s needs %s", key->name, other->name);
 		if (rule->kind == PASSO_RULE_ABOVE_ZERO && is_zero(values, key))

@@ -143,7 +143,7 @@ bool passo_run_input(const struct passo_call *call)
 	const uint32_t of_axis = reading->given >> KEYS_OF_CHANNEL;
 
 	if (has_axis && has_probe)
-		return passo_complain(reading->sink, "axis and probe exclude each other");
+		return passo_complain(reading->sink, "axis and probe are mutually exclusive");
 	if (of_axis != 0u && !has_axis)
 		return passo_complain(reading->sink, "axis is missing");
 	if (has_probe)

@@ -28,7 +28,7 @@ bool passo_words_split(const struct passo_sink *sink, char *text, struct passo_w
 				words->word[words->count].key = words->word[words->count].value;
 				words->word[words->count].value = text + 1;
 				if (*words->word[words->count].key == '\0')
-					return passo_complain(sink, "no key before =");
+					return passo_complain(sink, "missing key before =");
 			}
 		}
 		if (*text != '\0')
@@ -58,7 +58,7 @@ int passo_key_find(const struct passo_key *keys, unsigned count, const char *nam
 static bool complain_unknown(
     const struct passo_sink *sink, const struct passo_key *keys, unsigned count, const char *name)
 {
-	passo_say(sink, "error: unknown key %q; known are ", name);
+	passo_say(sink, "error: unknown key %q; must be one of ", name);
 	for (unsigned i = 0; i < count; i++)
 		passo_say(sink, "%s%s", i == 0u ? "" : ", ", keys[i].name);
 	passo_say(sink, "\n");
@@ -78,12 +78,12 @@ bool passo_keys_check(const struct passo_reading *reading, const struct passo_ke
 			name = keys[used++].name;
 		} else if (passo_key_find(keys, count, name) < 0) {
 			if (count == 0u)
-				return passo_complain(reading->sink, "no key %q here", name);
+				return passo_complain(reading->sink, "key %q not allowed here", name);
 			return complain_unknown(reading->sink, keys, count, name);
 		}
 		words->word[i].key = "";
 		if (passo_words_find(words, name) != NULL)
-			return passo_complain(reading->sink, "%s is given twice", name);
+			return passo_complain(reading->sink, "duplicate key %s", name);
 		words->word[i].key = name;
 	}
 	return true;

@@ -36,7 +36,7 @@ enum passo_reader {
 	PASSO_READ_PROFILE,      /* enum passo_profile */
 	PASSO_READ_SHAPE,        /* the same, or a user-defined shape */
 	PASSO_READ_POINTS,       /* uint16_t[16] */
-	PASSO_READ_INTEGER,      /* int32_t, of as many steps as a move can have */
+	PASSO_READ_INTEGER,      /* int32_t, within the step range of a move */
 	/* uint8_t: which of some words */
 	PASSO_READ_LEVEL,   /* enum passo_level */
 	PASSO_READ_SOURCE,  /* enum passo_trigger_source */
@@ -64,7 +64,7 @@ struct passo_key {
 #define PASSO_POINTS_PER_LINE 16u
 
 #ifndef PASSO_WITHOUT_PARTS
-/* Powers of a raster, 255 is full: what a line of text can hold. */
+/* Power values of a raster, 255 is full; limited by the length of a line. */
 #define PASSO_RASTER_MAX 128u
 struct passo_raster_values {
 	uint8_t count;

@@ -49,7 +49,8 @@ static bool check_rules(const struct passo_reading *reading, const struct passo_
 		   has_pitch = (given & GIVEN(MOVE_PITCH)) != 0u;
 
 	if (has_power && has_raster)
-		return passo_complain(reading->sink, PREFIX "power and " PREFIX "raster exclude each other");
+		return passo_complain(
+		    reading->sink, PREFIX "power and " PREFIX "raster are mutually exclusive");
 	if (has_speed && !has_power)
 		return passo_complain(reading->sink, PREFIX "speed needs " PREFIX "power");
 	if (has_pitch && !has_raster)
@@ -95,7 +96,7 @@ bool passo_output_fits(const struct passo_call *call, const struct passo_form_mo
 	const uint64_t pitch = (uint64_t)values->pitch * plan.oversampling;
 	const uint64_t most = (plan.line.substeps + pitch - 1u) / pitch;
 	if (raster->count > most)
-		return passo_complain(call->reading->sink, PREFIX "raster has %u values, the move takes %u",
+		return passo_complain(call->reading->sink, PREFIX "raster has %u values; the move takes %u",
 		    (uint32_t)raster->count, (uint32_t)most);
 	values->pitch = pitch > UINT32_MAX ? UINT32_MAX : (uint32_t)pitch;
 	return true;

@@ -22,8 +22,8 @@ static bool read_decimal(const struct passo_reading *reading, const struct passo
 		         ? passo_complain(reading->sink, "%s must be at least -%u", key->name, limit)
 		         : passo_complain(reading->sink, "%s must be at most %u", key->name, limit);
 	if (number->too_fine)
-		return passo_complain(
-		    reading->sink, "%s has more than %u decimals", key->name, (uint32_t)PASSO_DECIMALS_MAX);
+		return passo_complain(reading->sink, "%s must have at most %u decimals", key->name,
+		    (uint32_t)PASSO_DECIMALS_MAX);
 	return true;
 }
 
@@ -133,7 +133,7 @@ bool passo_number_pin_time(
 	if (!passo_number_time(reading, key, text, true, &clocks))
 		return false;
 	if (clocks == 0u || clocks > PASSO_PIN_CLOCKS_MAX)
-		return passo_complain(reading->sink, "%s is %u clocks, 1 to %u are possible", key->name,
+		return passo_complain(reading->sink, "%s is %u clocks; must be 1 to %u", key->name,
 		    clocks > UINT32_MAX ? UINT32_MAX : (uint32_t)clocks, PASSO_PIN_CLOCKS_MAX);
 	*value = (uint32_t)clocks;
 	return true;

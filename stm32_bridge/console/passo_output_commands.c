@@ -120,7 +120,7 @@ bool passo_run_compare(const struct passo_call *call)
 			return passo_complain(call->reading->sink, "%s is missing", COMPARE_NAMES[key]);
 	}
 	if (!values->on && (given & ~(GIVEN(COMPARE_ON) | GIVEN(COMPARE_CHANNEL))) != 0u)
-		return passo_complain(call->reading->sink, "compare 0 ends all pulses: it has no points");
+		return passo_complain(call->reading->sink, "compare 0 disarms; it takes no other keys");
 	return passo_answer(
 	    call, values->on ? passo_arm_compare(passo, &config) : passo_disarm_compare(passo));
 }

@@ -123,7 +123,7 @@ static bool config_board(const struct passo_call *call)
 	    || !passo_keys_read(call->reading, CONFIG_KEYS, PASSO_COUNT(CONFIG_KEYS), call->words, values))
 		return false;
 	if ((has_baud && board->set_baud == NULL) || (has_spi && board->set_spi_fast == NULL))
-		return passo_complain(&console->sink, "this console has no board");
+		return passo_complain(&console->sink, "not available without a board");
 	if (has_clock)
 		error = set_clock(console, values->clock_hz);
 	for (unsigned i = 0; i < passo_commands_channels(console) && error == PASSO_OK; i++) {
@@ -192,7 +192,7 @@ bool passo_run_table(const struct passo_call *call)
 	enum passo_plan_error error;
 
 	if (call->reading->given == 1u || call->reading->given == 2u)
-		return passo_complain(sink, "row and points belong together");
+		return passo_complain(sink, "row and points need each other");
 	if (call->reading->given != 0u) {
 		memcpy(table->points + row * PASSO_POINTS_PER_LINE, call->values->points,
 		    sizeof call->values->points);

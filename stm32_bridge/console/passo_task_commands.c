@@ -87,9 +87,9 @@ bool passo_run_jog(const struct passo_call *call)
 	uint8_t off;
 
 	if (by_distance && values->backwards)
-		return passo_complain(call->reading->sink, "steps and backwards exclude each other");
+		return passo_complain(call->reading->sink, "steps and backwards are mutually exclusive");
 	if (by_distance && jog.steps == 0)
-		return passo_complain(call->reading->sink, "steps is 0; without it a jog is endless");
+		return passo_complain(call->reading->sink, "steps must not be 0; omit it for an endless jog");
 	if (!passo_check_enabled(call, (uint8_t)(1u << jog.axis), &off))
 		return false;
 	error = passo_jog(&call->channel->passo, &jog);
@@ -155,7 +155,7 @@ static enum passo_error problem_of(const struct passo_console_channel *channel)
 	return noted == PASSO_ERROR_NOT_STOPPED || noted == PASSO_ERROR_NOT_HELD ? PASSO_OK : noted;
 }
 
-/* How home or probe has ended; PENDING while it goes on. */
+/* Result of homing or probing; PENDING while in progress. */
 static enum passo_error end_of(const struct passo_console_channel *channel)
 {
 	int32_t positions[PASSO_AXES_MAX];
@@ -198,7 +198,7 @@ void passo_tasks_try_again(struct passo_console *console)
 	if (error == PASSO_OK && awaited == PASSO_AWAITS_PROBE)
 		error = passo_read_trigger(&channel->passo, &report);
 	if (error == PASSO_ERROR_TIMEOUT) {
-		passo_complain(sink, "TIMEOUT: the trigger has not fired in time and stays armed");
+		passo_complain(sink, "TIMEOUT: the trigger has not fired and stays armed");
 	} else if (error != PASSO_OK) {
 		passo_complain_error(sink, error);
 	} else {
@@ -215,12 +215,12 @@ const char *passo_tasks_name(enum passo_awaited awaited)
 {
 	switch (awaited) {
 	case PASSO_AWAITS_HOME:
-		return "home is under way";
+		return "home is in progress";
 	case PASSO_AWAITS_PROBE:
-		return "probe is under way";
+		return "probe is in progress";
 	case PASSO_AWAITS_TRIGGER:
 		return "a line waits for the trigger";
 	default:
-		return "a move waits for room";
+		return "a move waits for queue space";
 	}
 }

@@ -51,15 +51,15 @@ static bool read_steps(
 			    reading->sink, "%s must be a list of whole numbers, one per axis", key->name);
 	}
 	if (axes > reading->axes)
-		return passo_complain(reading->sink, "%s has %u axes, 1 to %u are possible", key->name, axes,
+		return passo_complain(reading->sink, "%s has %u axes; must be 1 to %u", key->name, axes,
 		    (uint32_t)reading->axes);
 	for (uint32_t axis = 0; list != NULL; axis++) {
 		struct passo_item item = next_item(&list);
 
 		passo_decimal_read(&number, item.text, item.length, 0);
 		if (number.whole > PASSO_SUBSTEPS_MAX)
-			return passo_complain(reading->sink,
-			    "axis %u has too many steps, at most %u are possible", axis, PASSO_SUBSTEPS_MAX);
+			return passo_complain(reading->sink, "axis %u has too many steps; must be at most %u",
+			    axis, PASSO_SUBSTEPS_MAX);
 		steps[axis] = number.negative ? -(int32_t)number.whole : (int32_t)number.whole;
 	}
 	return true;
@@ -73,8 +73,8 @@ static bool read_integer(
 	if (!passo_decimal_read(&number, text, strlen(text), 0) || !number.is_whole)
 		return passo_complain(reading->sink, "%s must be a whole number, not %q", key->name, text);
 	if (number.whole > PASSO_SUBSTEPS_MAX)
-		return passo_complain(
-		    reading->sink, "%s is beyond %u", key->name, (uint32_t)PASSO_SUBSTEPS_MAX);
+		return passo_complain(reading->sink, "%s must be at most %u in magnitude", key->name,
+		    (uint32_t)PASSO_SUBSTEPS_MAX);
 	*value = number.negative ? -(int32_t)number.whole : (int32_t)number.whole;
 	return true;
 }
@@ -138,8 +138,8 @@ static bool read_raster(const struct passo_reading *reading, const struct passo_
 	uint32_t value;
 
 	if (count > PASSO_RASTER_MAX)
-		return passo_complain(reading->sink, "%s has %u values, 1 to %u are possible", key->name,
-		    count, (uint32_t)PASSO_RASTER_MAX);
+		return passo_complain(reading->sink, "%s has %u values; must be 1 to %u", key->name, count,
+		    (uint32_t)PASSO_RASTER_MAX);
 	raster->count = (uint8_t)count;
 	for (unsigned i = 0; list != NULL; i++) {
 		if (!passo_number_whole(reading, key, next_item(&list), 0, UINT8_MAX, &value))

@@ -12,7 +12,7 @@ enum passo_error passo_driver_check(const struct passo *passo)
 {
 	if (!passo)
 		return PASSO_ERROR_ARGUMENT_POINTER;
-	return passo->belief != PASSO_BELIEF_NOT_OPEN ? PASSO_OK : PASSO_ERROR_NOT_OPEN;
+	return passo->assumed != PASSO_ASSUMED_NOT_OPEN ? PASSO_OK : PASSO_ERROR_NOT_OPEN;
 }
 
 enum passo_error passo_driver_check_axis(const struct passo *passo, uint8_t axis)
@@ -22,7 +22,7 @@ enum passo_error passo_driver_check_axis(const struct passo *passo, uint8_t axis
 	return error == PASSO_OK && axis >= passo->machine.axes ? PASSO_ERROR_ARGUMENT_AXIS : error;
 }
 
-bool passo_driver_is_wire(enum passo_error error)
+bool passo_driver_is_link_error(enum passo_error error)
 {
 	return error >= PASSO_ERROR_TRANSFER && error <= PASSO_ERROR_BAD_CRC;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The trigger: arm it, see that it has fired, read what it has latched.
+ * The trigger: arming, waiting, reading the latched positions.
  */
 #include "passo_driver.h"
 
@@ -90,7 +90,7 @@ enum passo_error passo_driver_is_blind(struct passo *passo, bool *blind)
 	return error;
 }
 
-/* That of a home or probe is left alone. */
+/* The trigger of homing or probing is not changed. */
 static enum passo_error check_free(const struct passo *passo)
 {
 	enum passo_error error = passo_driver_check_inputs(passo);
@@ -107,7 +107,7 @@ enum passo_error passo_arm_trigger(struct passo *passo, const struct passo_trigg
 	if (error == PASSO_OK)
 		error = passo_driver_arm(passo, config);
 	if (error == PASSO_OK)
-		passo->task.armed = false; /* it is the program's now */
+		passo->task.armed = false; /* it now belongs to the program */
 	return error;
 }
 

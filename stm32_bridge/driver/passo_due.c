@@ -77,7 +77,7 @@ static enum passo_error settle(struct passo *passo)
 	return urgent(passo) == PASSO_POST_NONE ? PASSO_OK : PASSO_PENDING;
 }
 
-enum passo_error passo_driver_insist(struct passo *passo)
+enum passo_error passo_driver_send_due(struct passo *passo)
 {
 	struct passo_host *host = passo->host;
 	const enum passo_post most = urgent(passo);
@@ -105,18 +105,18 @@ enum passo_error passo_driver_insist(struct passo *passo)
 	return passo->posted == PASSO_PENDING ? PASSO_PENDING : settle(passo);
 }
 
-enum passo_error passo_driver_insist_on(struct passo *passo, enum passo_post least)
+enum passo_error passo_driver_send_due_until(struct passo *passo, enum passo_post least)
 {
 	enum passo_error error = PASSO_PENDING;
 
 	while (error == PASSO_PENDING && urgent(passo) >= least)
-		error = passo_driver_insist(passo);
+		error = passo_driver_send_due(passo);
 	return error == PASSO_PENDING ? PASSO_OK : error;
 }
 
-enum passo_error passo_driver_restrain(struct passo *passo, enum passo_post least)
+enum passo_error passo_driver_require_sent(struct passo *passo, enum passo_post least)
 {
-	passo_driver_insist_on(passo, least);
+	passo_driver_send_due_until(passo, least);
 	if (passo->host->lost)
 		return PASSO_ERROR_CORE_RESET;
 	return urgent(passo) >= least ? passo_driver_due(passo) : PASSO_OK;
@@ -128,7 +128,7 @@ void passo_driver_halt(struct passo *passo, enum passo_due due)
 	passo->task.kind = PASSO_TASK_NONE;
 	if (passo->expects == PASSO_EXPECT_POSITIONS)
 		passo->expects = PASSO_EXPECT_END;
-	passo_driver_doubt(passo, PASSO_BELIEF_STOPPED);
+	passo_driver_assume_worse(passo, PASSO_ASSUMED_STOPPED);
 	if (passo->stop_due < due)
 		passo->stop_due = due;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Encoders: settings, readings, and the position that they measure.
+ * Encoders: settings, readings, and adopting the measured position.
  */
 #include "passo_driver.h"
 #include "passo_math.h"
@@ -43,7 +43,7 @@ enum passo_error passo_configure_encoder(
 	if (error == PASSO_OK && config->limit == 0u)
 		error = PASSO_ERROR_FOLLOWING_LIMIT;
 	if (error == PASSO_OK)
-		error = passo_driver_still(passo);
+		error = passo_driver_require_rest(passo);
 	if (error != PASSO_OK)
 		return error;
 	const struct passo_encoder_setup setup = {.inverted = config->inverted,
@@ -131,7 +131,7 @@ enum passo_error passo_adopt_encoder(struct passo *passo, uint8_t axis)
 	if (error == PASSO_OK && passo->axis[axis].ratio == 0u)
 		error = PASSO_ERROR_RATIO;
 	if (error == PASSO_OK)
-		error = passo_driver_still(passo);
+		error = passo_driver_require_rest(passo);
 	if (error == PASSO_OK)
 		error = passo_host_read(
 		    passo->host, (uint16_t)(passo->base + address_of(axis, PASSO_ENCODER_ERROR)), &word, 1);
@@ -145,6 +145,6 @@ enum passo_error passo_adopt_encoder(struct passo *passo, uint8_t axis)
 	if (error == PASSO_OK)
 		passo->axis[axis].offset -= steps_of(behind, ratio);
 	else
-		passo->axis[axis].ratio = 0; /* the error may be 0 already: not twice */
+		passo->axis[axis].ratio = 0; /* the error may already be 0: do not adopt twice */
 	return error;
 }

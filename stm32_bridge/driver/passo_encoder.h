@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Encoders of a core that was built with them: counts, following error, threads.
  *
- * docs/machine.md tells what they do and the way back after FOLLOWING. Every call can also return
- * NO_ENCODERS, and what the calls of passo.h can.
+ * See docs/machine.md, also for recovery after FOLLOWING. Every call can also return NO_ENCODERS and the
+ * errors common to the calls of passo.h.
  */
 #ifndef PASSO_DRIVER_ENCODER_H
 #define PASSO_DRIVER_ENCODER_H
@@ -18,11 +18,11 @@ extern "C" {
 /* Counts per step as a ratio of constants, UQ16.16, rounded down: 4000 counts and 3200 steps per turn. */
 #define PASSO_COUNTS_PER_STEP(counts, steps) ((uint32_t)(((uint64_t)(counts) << 16) / (steps)))
 
-/* What a following error at its limit does. */
+/* Action at the following-error limit. */
 enum passo_following_stop {
 	PASSO_FOLLOWING_SHOW, /* only `exceeded` */
-	PASSO_FOLLOWING_SOFT, /* a stop on the path, in the time of passo_configure_motion() */
-	PASSO_FOLLOWING_HARD  /* a stop at once */
+	PASSO_FOLLOWING_SOFT, /* soft stop, in the time of passo_configure_motion() */
+	PASSO_FOLLOWING_HARD  /* hard stop */
 };
 
 struct passo_encoder_config {
@@ -34,7 +34,7 @@ struct passo_encoder_config {
 	enum passo_following_stop stop;
 };
 
-/* Sets the encoder of an axis; its following error is 0 then. At rest or stopped. Three frames. Errors:
+/* Configures the encoder of an axis and zeroes its following error. At rest or stopped. Three frames. Errors:
  * RATIO, FOLLOWING_LIMIT, MOVING. */
 enum passo_error passo_configure_encoder(
     struct passo *passo, uint8_t axis, const struct passo_encoder_config *config);
@@ -42,54 +42,55 @@ enum passo_error passo_configure_encoder(
  * Error: ENCODER_FILTER above 255. */
 enum passo_error passo_configure_encoder_filter(struct passo *passo, uint64_t clocks);
 
-/* Set it to 0 before the first reading of an axis. */
+/* Zero it before the first reading of an axis. */
 struct passo_encoder_reading {
 	int32_t counts;    /* since the core's reset or passo_zero(); wraps */
-	int64_t speed;     /* Q31.32 counts/s on the average since the last reading into this struct;
+	int64_t speed;     /* Q31.32 counts/s, average since the last reading into this struct;
 	                      PASSO_NO_UNITS if there was none, or without a clock */
-	int32_t error;     /* of following, Q23.8 counts: above 0 the encoder is behind */
-	uint32_t greatest; /* either way, counts, since passo_clear(), passo_zero(), a configuration */
+	int32_t error;     /* following error, Q23.8 counts: positive if the encoder lags */
+	uint32_t greatest; /* largest magnitude, counts, since passo_clear(), passo_zero() or configuration */
 	bool exceeded;     /* the error is at its limit */
 	uint16_t latch;    /* counts at the last index, their lower 16 bits */
 	uint8_t indexes;   /* number of indexes; wraps */
-	uint8_t illegal;   /* times that A and B changed at once, up to 255: noise, or too fast */
+	uint8_t illegal;   /* illegal transitions (A and B together), saturates at 255: noise, or too fast */
 	uint32_t at;       /* microseconds: time of the reading */
-	bool valid;        /* there was one */
+	bool valid;        /* there was a reading */
 };
 /* Two frames. */
 enum passo_error passo_read_encoder(struct passo *passo, uint8_t axis, struct passo_encoder_reading *reading);
 
-/* The way back from FOLLOWING: the position of the axis becomes what its encoder measures, to the nearest
- * step, and the following error 0. Nothing moves. At rest or stopped, before passo_clear(). Four frames.
+/* Recovery from FOLLOWING: sets the position of the axis from its encoder, to the nearest step, and the
+ * following error to 0. Nothing moves. At rest or stopped, before passo_clear(). Four frames.
  * Errors: RATIO if the encoder is not configured; OFF_SCALE if the error is 2^16 counts or more; MOVING. */
 enum passo_error passo_adopt_encoder(struct passo *passo, uint8_t axis);
 
 /* ----------------------------------------------------------------------------------------- thread ---- */
 
-/* A straight line whose clock is an encoder. */
+/* Spindle-synchronized pass: a straight line clocked by an encoder. */
 struct passo_thread {
 	uint8_t encoder;               /* its axis: that of the spindle */
-	bool wait_index;               /* begins at its index, so that every pass has the same phase */
-	bool endless;                  /* an electronic gear: goes on until passo_stop() */
-	int32_t steps[PASSO_AXES_MAX]; /* of each axis during so many counts: exact, at most 64 per count */
+	bool wait_index;               /* starts at the index, so that every pass has the same phase */
+	bool endless;                  /* electronic gearing: continues until passo_stop() */
+	int32_t steps[PASSO_AXES_MAX]; /* of each axis during `counts`: exact, at most 64 per count */
 	uint32_t counts;
-	uint64_t top_speed; /* UQ32.32 counts/s that the encoder never exceeds; what a hold or a turn back
-	                       has left behind is made up for at this speed */
+	uint64_t top_speed; /* UQ32.32 counts/s, upper limit of the encoder speed; also the speed for
+	                       catching up after a hold or reverse counts */
 };
 
-/* Queues it, from rest; passo_poll() sees its end, up to a tick (128 counts by default) after the last step.
- * The axes start with the spindle, without a ramp, and stand while it stands or turns back. Motions after it
- * have the core's clock again. Four frames and those of a move. Errors: NO_STEPS, TOO_MANY_STEPS and TOO_LONG
- * of the planner, NO_COUNTS, STEEP, FOLLOW_SPEED, PINS_TOO_SLOW at `top_speed`, those of a move at rest. */
+/* Queues it, from rest; passo_poll() detects its end, up to a tick (128 counts by default) after the last
+ * step. The axes start with the spindle, without a ramp, and wait while it is stopped or reversing. Later
+ * motions use the core's clock again. Four frames and those of a move. Errors: NO_STEPS, TOO_MANY_STEPS and
+ * TOO_LONG of the planner, NO_COUNTS, STEEP, FOLLOW_SPEED, PINS_TOO_SLOW at `top_speed`, those of a move at
+ * rest. */
 enum passo_error passo_thread(struct passo *passo, const struct passo_thread *thread);
 
-/* Of a thread that runs; `behind` and `lost` of the last one. */
+/* State of the running thread; `behind` and `lost` also of the last one. */
 struct passo_thread_state {
-	int32_t owed; /* counts times `scale` that the path has still to make up for, or below 0 has ahead */
-	bool behind;  /* it was late by two counts or more */
-	bool lost;    /* its phase was lost, and it was stopped: FOLLOWING. It was late by 2^22 clocks of the
-	                 profile, or A and B of the spindle changed at once */
-	uint8_t illegal; /* times that A and B did so since passo_clear(), up to 255 */
+	int32_t owed;    /* counts times 2^scale that the path lags; negative: the path is ahead */
+	bool behind;     /* it lagged by two counts or more */
+	bool lost;       /* loss of synchronization, stopped with FOLLOWING: it lagged by 2^22 clocks of the
+	                    profile, or the spindle encoder had an illegal transition */
+	uint8_t illegal; /* illegal transitions since passo_clear(), saturates at 255 */
 };
 /* Two frames. */
 enum passo_error passo_read_thread(struct passo *passo, struct passo_thread_state *state);

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
- * One axis to a target that may change on the way.
+ * One axis to a target that can change during the motion.
  *
  * Each motion is an endless line, whose ramps end it. From rest they end exactly at the target. A change
- * replaces them all in one frame, so there is no moment without an end. Where on the way the core receives
- * that frame is known only within bounds, so it plans to end short of the target; another motion, from rest,
- * makes what is left. A frame that is never sent, or refused, leaves the end as it was.
+ * replaces them all in one frame, so there is no moment without an end. The position at which the core
+ * receives that frame is known only within bounds, so the change ends short of the target; another motion,
+ * from rest, completes the distance. A frame that is never sent, or rejected, leaves the end unchanged.
  */
 #include "passo_goto.h"
 
@@ -30,7 +30,7 @@ static struct passo_course course_of(const struct passo_goto *go, bool backwards
 	    .acceleration = go->acceleration};
 }
 
-/* Microseconds that a change may take. */
+/* Time limit of a change, microseconds. */
 static uint32_t late_of(const struct passo *passo, const struct passo_goto *go)
 {
 	const uint64_t late =
@@ -41,7 +41,7 @@ static uint32_t late_of(const struct passo *passo, const struct passo_goto *go)
 	return late < LATE_MAX ? (uint32_t)late : LATE_MAX;
 }
 
-/* The target as the core counts. */
+/* The target in core positions. */
 static int32_t aim_of(const struct passo *passo, const struct passo_goto *go)
 {
 	return (int32_t)((uint32_t)go->target - passo->axis[go->axis].offset);
@@ -79,7 +79,7 @@ static enum passo_error go_on(struct passo *passo)
 	return PASSO_PENDING;
 }
 
-/* Plans the change; no ramps: the motion ends as it should already. *aimed: it then ends at or before the
+/* Plans the change; no ramps: the motion already ends as it should. *aimed: it then ends at or before the
  * target. */
 static enum passo_error plan_change(const struct passo *passo, const struct passo_goto *to,
     const struct passo_sight *sight, struct passo_plan *plan, bool *aimed)
@@ -129,11 +129,11 @@ static enum passo_error steer(struct passo *passo, const struct passo_goto *to)
 		error = passo_driver_steer(passo, &steering, &plan);
 		if (error == PASSO_OK || steering.overdue)
 			passo->aimed = aimed && !steering.overdue;
-		if (passo_driver_is_wire(error))
+		if (passo_driver_is_link_error(error))
 			passo_driver_halt(passo, PASSO_DUE_STOP);
 	}
 	if (error == PASSO_ERROR_NOT_TURNING)
-		return PASSO_OK; /* it ends; the next motion has the new target */
+		return PASSO_OK; /* it is ending; the next motion has the new target */
 	if (steering.overdue)
 		passo_driver_halt(passo, PASSO_DUE_STOP);
 	if (error != PASSO_OK)
@@ -141,7 +141,7 @@ static enum passo_error steer(struct passo *passo, const struct passo_goto *to)
 	return error;
 }
 
-/* A goto is under way. */
+/* A goto is in progress. */
 static enum passo_error change(struct passo *passo, const struct passo_goto *to)
 {
 	const struct passo_goto *go = &passo->go;
@@ -159,7 +159,7 @@ static enum passo_error change(struct passo *passo, const struct passo_goto *to)
 	return PASSO_OK;
 }
 
-/* Whether a step can be planned so: errors of the planner before anything moves. */
+/* Test plan of a single step: reports errors of the planner before anything moves. */
 static enum passo_error check_plan(const struct passo *passo, const struct passo_goto *wanted)
 {
 	const struct passo_course course = course_of(wanted, false);

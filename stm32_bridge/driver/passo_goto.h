@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * One axis to a target that may change while it moves, without a stop where the path allows it.
+ * Moves one axis to a target that can change during the motion, without a stop where possible.
  *
  *     struct passo_goto go = {.axis = 0, .target = 50000, .speed = PASSO_STEPS_PER_S(8000),
  *         .top_speed = PASSO_STEPS_PER_S(20000), .acceleration = PASSO_STEPS_PER_S2(40000)};
@@ -11,10 +11,10 @@
  *     passo_goto(&passo, &go); // at any time
  *     while (passo_is_moving(&passo))
  *             passo_poll(&passo);
- * At every moment the core holds ramps that bring the axis to rest at the target or before it: a host that
- * falls silent is no danger. passo_poll() makes the rest of the way. Hold, resume, override, stop and abort
- * are as for all motions; passo_jog_cancel() ends it on its path, with nothing to clear. Other motions are
- * refused with UNDER_WAY.
+ * At every moment the core holds ramps that bring the axis to rest at or before the target: a host timeout is
+ * safe. passo_poll() completes the remaining distance. Hold, resume, override, stop and abort work as in any
+ * motion; passo_jog_cancel() decelerates to rest without the need for passo_clear(). Other motions are
+ * rejected with UNDER_WAY.
  */
 #ifndef PASSO_GOTO_H
 #define PASSO_GOTO_H
@@ -25,20 +25,18 @@
 extern "C" {
 #endif
 
-/* Goes to go->target, exactly. While a goto is under way: changes its target, speed and acceleration at once,
- * by a ramp from the present speed. If the axis cannot come to rest before the new target, it comes to rest
- * behind it and returns.
+/* Moves to go->target, exactly. During a goto: changes target, speed and acceleration immediately, with a
+ * ramp from the current speed. If the axis cannot stop before the new target, it stops beyond it and returns.
  *
- * From rest five frames, for a change three. A change is planned for a core that receives it within
- * late_clocks (the time of three frames and of planning; add the resolution of a coarse clock), and is
- * planned again if the microsecond clock shows more. The axis then comes to rest short of the target by the
- * way of that time and 5 steps, and goes on from there. Where the target is that near already, a new speed
- * has no effect.
+ * Five frames from rest, three for a change. A change is planned to reach the core within late_clocks (the
+ * time of three frames and of planning; add the resolution of a coarse clock), and is planned again if the
+ * microsecond clock shows more. The axis then stops short of the target by the distance covered in that time
+ * plus 5 steps, and continues from there. If the target is already that near, a new speed has no effect.
  *
  * Errors: those of a move from rest; NO_CLOCK; TOO_FAST above a quarter of the clock, ABOVE_TOP, TOO_LONG
- * also for ramps of more than 2^22 ticks; UNDER_WAY for another axis, or while home or probe is under way;
- * LATE: the change was not sent, and the motion goes on as it was, or it was sent too late and a soft stop
- * (STOPPED) follows; FULL on a core with 4 places for ramps. After a link error in the change a soft stop
+ * also for ramps of more than 2^22 ticks; UNDER_WAY for another axis, or during homing or probing;
+ * LATE: the change was not sent and the motion continues unchanged, or it was sent too late and a soft stop
+ * (STOPPED) follows; FULL on a core with a ramp queue of 4. After a link error in the change a soft stop
  * replaces it, as in passo_turn_stop(). */
 enum passo_error passo_goto(struct passo *passo, const struct passo_goto *go);
 

@@ -44,7 +44,7 @@ enum passo_error passo_home(struct passo *passo, const struct passo_home *homes,
 	    passo, (struct passo_task){.kind = PASSO_TASK_HOME, .left = count, .home = homes}, NULL, NULL);
 }
 
-/* Moves the axis of the present home, for a phase. With an edge: until it comes. */
+/* Moves the axis being homed, for a phase. With an edge: until it occurs. */
 enum edge { NO_EDGE, RISING, FALLING };
 static enum passo_error go(
     struct passo *passo, enum passo_home_phase phase, enum edge edge, int32_t steps, uint64_t speed)
@@ -72,7 +72,7 @@ enum passo_error passo_driver_home_first(struct passo *passo)
 	return go(passo, PASSO_HOME_RELEASE, FALLING, -home->distance, home->speed);
 }
 
-/* Goes slowly from the back-off to the edge; it must come soon. */
+/* Moves slowly from the back-off to the edge, which must be near. */
 static enum passo_error approach_slowly(struct passo *passo)
 {
 	const struct passo_home *home = passo->task.home;
@@ -102,7 +102,7 @@ static enum passo_error end_axis(struct passo *passo)
 	return passo_driver_home_first(passo);
 }
 
-/* The edge has come `past` steps ago: it is at home->position. */
+/* The edge was `past` steps ago: it is at home->position. */
 static enum passo_error set_home(struct passo *passo, int32_t past)
 {
 	const struct passo_home *home = passo->task.home;

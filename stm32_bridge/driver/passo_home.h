@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
- * Home, probe and jog. passo_poll() moves home and probe on: it costs at most one frame until a motion of
- * theirs has ended, and then the frames of the calls that begin the next one, fifteen at most.
+ * Homing, probing and jogging. passo_poll() advances homing and probing: it costs at most one frame until one
+ * of their motions has ended, then the frames of the calls that start the next one, at most fifteen.
  *
  *     passo_home(&passo, homes, 2);
  *     while (passo_is_moving(&passo))
  *             if (passo_poll(&passo) != PASSO_OK)
- *                     ... passo_fault(&passo) says why it has ended
- * Meanwhile hold, resume and override work; stop and abort end it; other motions are refused with UNDER_WAY.
- * After a stop go on as after any other: passo_clear(), and nothing moves before the next command.
+ *                     ... passo_fault(&passo) says why it ended
+ * Meanwhile hold, resume and override work; stop and abort end it; other motions are rejected with UNDER_WAY.
+ * After a stop call passo_clear(), as after any other; nothing moves before the next command.
  */
 #ifndef PASSO_HOME_H
 #define PASSO_HOME_H
@@ -18,45 +18,44 @@
 extern "C" {
 #endif
 
-/* Approach until the switch acts, back off, approach slowly; the edge of the slow approach becomes
- * `position`. A switch that is active already is left first. The stops on the switch take the time of
+/* Homing cycle: approach until the switch triggers, back off, approach slowly; the edge of the slow approach
+ * becomes `position`. An already active switch is left first. The stops on the switch take the time of
  * passo_configure_motion(). */
 struct passo_home {
 	uint8_t axis;
 	enum passo_trigger_source source; /* HOME, LIMIT_LOW or LIMIT_HIGH */
-	int32_t distance;                 /* most steps to the switch; the sign is the direction */
+	int32_t distance;                 /* longest travel to the switch, steps; the sign is the direction */
 	uint32_t back_off;          /* steps from the edge before the slow approach: above its hysteresis */
-	uint32_t pull_off;          /* steps from the edge at the end; 0: stays where it stops */
+	uint32_t pull_off;          /* steps from the edge at the end; 0: the axis stays where it stops */
 	uint64_t speed, slow_speed; /* UQ32.32 steps/s */
 	uint64_t acceleration;      /* UQ32.32 steps/s^2 */
 	int32_t position;           /* of the edge */
 };
 
-/* Homes `count` axes, one after the other; homes[] must live until the end. Two frames, and until the switch
- * is known: two periods of the filter. Errors: of the call
- * NO_SWITCH, NO_STOP_TIME, NO_DISTANCE, TOO_MANY_STEPS, NO_SPEED, NO_ACCELERATION, those of a move; of
- * passo_poll() also SWITCH_MISSED, SWITCH_LEVEL if the switch stays active, INPUTS_UNKNOWN if it does not
- * stand still. */
+/* Homes `count` axes, one after the other; homes[] must stay valid until the end. Two frames, and two periods
+ * of the filter until the switch is known. Errors: of the call NO_SWITCH, NO_STOP_TIME, NO_DISTANCE,
+ * TOO_MANY_STEPS, NO_SPEED, NO_ACCELERATION, those of a move; of passo_poll() also SWITCH_MISSED,
+ * SWITCH_LEVEL if the switch stays active, INPUTS_UNKNOWN if it is not stable. */
 enum passo_error passo_home(struct passo *passo, const struct passo_home *homes, uint8_t count);
-/* Whether the position of an axis is that of its home: until the drive is switched off, e-stop, alarm,
- * watchdog or a following error stop the channel, the axis is stopped at speed by anything else, the core is
- * reset, or it is opened; docs/machine.md has the table. No frame. */
+/* Whether an axis is homed. It is not after its drive is disabled, after a stop by e-stop, alarm, watchdog or
+ * following error, after any other hard stop of the axis at speed, after a core reset, and after
+ * passo_open(); see the table in docs/machine.md. No frame. */
 bool passo_is_homed(const struct passo *passo, uint8_t axis);
 
-/* Moves until the probe acts: toward a workpiece until it touches, or away until it is free. */
+/* Probing move: toward a workpiece until the probe triggers, or away until it releases. */
 struct passo_probe {
-	int32_t steps[PASSO_AXES_MAX]; /* the end if it does not act */
-	uint64_t speed, acceleration;  /* UQ32.32 steps/s, steps/s^2, of the longest axis */
+	int32_t steps[PASSO_AXES_MAX]; /* the end of the move if it does not trigger */
+	uint64_t speed, acceleration;  /* UQ32.32 steps/s, steps/s^2, of the dominant axis */
 	bool away;                     /* until the probe becomes inactive */
-	bool optional;                 /* to reach the end is no error */
+	bool optional;                 /* reaching the end is not an error */
 };
 
-/* passo_read_trigger() has the positions at the touch afterwards; the axes have stopped behind it. Errors: of
- * the call NO_SWITCH, NO_STOP_TIME, SWITCH_LEVEL if the probe has that level already, those of a move; of
- * passo_poll() also SWITCH_MISSED unless it is optional. */
+/* Afterwards passo_read_trigger() returns the positions at the touch; the axes have stopped beyond it.
+ * Errors: of the call NO_SWITCH, NO_STOP_TIME, SWITCH_LEVEL if the probe already has that level, those of a
+ * move; of passo_poll() also SWITCH_MISSED unless it is optional. */
 enum passo_error passo_probe(struct passo *passo, const struct passo_probe *probe);
 
-/* One axis by hand, from rest. */
+/* Jog of one axis, from rest. */
 struct passo_jog {
 	uint8_t axis;
 	bool backwards;        /* of an endless jog */
@@ -68,11 +67,13 @@ struct passo_jog {
 
 /* Errors: those of a move; TOO_FAST above a quarter of the clock. */
 enum passo_error passo_jog(struct passo *passo, const struct passo_jog *jog);
-/* A new speed of an endless jog, by a ramp from the present one. Errors: NOT_TURNING; those of a move. */
+/* Changes the speed of an endless jog, with a ramp from the current one. Errors: NOT_TURNING; those of a
+ * move. */
 enum passo_error passo_jog_speed(struct passo *passo, uint64_t speed);
-/* Slows a jog or goto down to rest at once, with its acceleration and never past its end: one that is as near
- * to its end goes on to it. No passo_clear() is needed. One that has ended: OK. After a link error a soft
- * stop replaces it, as in passo_turn_stop(); also for a host that is too slow (LATE, docs/driver.md). */
+/* Decelerates a jog or goto to rest immediately, with its acceleration and never past its end: if the end is
+ * within the stopping distance, the motion continues to it. passo_clear() is not needed. OK if it has already
+ * ended. After a link error a soft stop replaces it, as in passo_turn_stop(); also if the host is too slow
+ * (LATE, docs/driver.md). */
 enum passo_error passo_jog_cancel(struct passo *passo);
 
 #ifdef __cplusplus

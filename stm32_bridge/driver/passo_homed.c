@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Which axes are where they were homed. A position is the number of pulses; a drive that is stopped at speed
- * may not have followed them all. A soft stop slows down on the path, as the motion would.
+ * Which axes are homed. A position is a number of pulses; a drive that is stopped at speed may not have
+ * followed them all. A soft stop decelerates on the path, as the motion would.
  */
 #include "passo_driver.h"
 
@@ -21,8 +21,8 @@ void passo_driver_forget_all(struct passo *passo)
 	forget(passo, UINT8_MAX);
 }
 
-/* Whether the stop by a limit was on the path. A soft limit that is active when a motion begins refuses the
- * first step towards it: dead for the other axes. */
+/* Whether the stop by a limit was on the path. A soft-stop limit that is active when a motion starts blocks
+ * the first step toward it: a hard stop for the other axes. */
 static bool is_soft_limit(const struct passo *passo)
 {
 	for (unsigned i = 0; i < passo->machine.axes; i++)
@@ -59,7 +59,7 @@ void passo_driver_forget_home(struct passo *passo)
 		forget(passo, passo->movers);
 }
 
-/* The cause of a soft stop that was overtaken by a hard one is that of the soft one. */
+/* A hard stop during a soft stop keeps the cause of the soft stop. */
 enum passo_error passo_driver_check_home(struct passo *passo)
 {
 	struct passo_readings now;

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-#include "passo_tries.h"
+#include "passo_link_retry.h"
 
 /* Checks the arguments and completes the posted frame, whose buffer the next frame uses. */
 static enum passo_error make_way(struct passo_host *host, const uint32_t *words, size_t length)
@@ -94,7 +94,7 @@ uint32_t *passo_host_payload(struct passo_host *host)
 	return host->ahead + 1;
 }
 
-/* Takes the result of the frame that begins. */
+/* Takes the result of the starting frame. */
 static enum passo_error post(struct passo_host *host, enum passo_error *result)
 {
 	if (!host || !result)
@@ -136,7 +136,7 @@ enum passo_error passo_host_open(struct passo_host *host, const struct passo_har
 	if (!host || !hardware || !hardware->transfer)
 		return PASSO_ERROR_ARGUMENT_POINTER;
 	while (hardware->finish && hardware->finish(hardware->context) == PASSO_PENDING)
-		; /* a frame of an earlier session */
+		; /* a frame of a previous connection */
 	memset(host, 0, sizeof *host);
 	host->hardware = *hardware;
 	host->send = host->frame;

@@ -27,7 +27,7 @@ enum passo_error passo_configure_inputs(
 	if (error == PASSO_OK && (!config || axis >= passo->machine.axes))
 		error = PASSO_ERROR_ARGUMENT;
 	if (error == PASSO_OK)
-		error = passo_driver_still(passo);
+		error = passo_driver_require_rest(passo);
 	if (error != PASSO_OK)
 		return error;
 	const struct passo_axis_inputs inputs = {.alarm_disables = config->alarm_disables,
@@ -64,7 +64,7 @@ enum passo_error passo_configure_probe(struct passo *passo, bool inverted)
 	enum passo_error error = passo_driver_check_inputs(passo);
 
 	if (error == PASSO_OK)
-		error = passo_driver_still(passo);
+		error = passo_driver_require_rest(passo);
 	if (error != PASSO_OK)
 		return error;
 	passo->probe_inverted = inverted;
@@ -163,7 +163,7 @@ enum passo_error passo_clear_estop(struct passo *passo)
 	enum passo_error error = passo_driver_check_inputs(passo);
 
 	if (error == PASSO_OK)
-		passo_driver_forget_all(passo); /* whatever the cause of a stop says */
+		passo_driver_forget_all(passo); /* regardless of the stop cause */
 	if (error == PASSO_OK)
 		error = passo_host_write(passo->host, PASSO_ADDRESS_ESTOP_CLEAR, &word, 1);
 	if (error == PASSO_OK)

@@ -2,8 +2,8 @@
  * Inputs of a core that was built with them: limits, home switches, alarms, probe, triggers, e-stop,
  * watchdog.
  *
- * docs/machine.md tells what they do and the way back after each stop. Every call can also return NO_INPUTS,
- * and what the calls of passo.h can.
+ * See docs/machine.md, also for recovery after each stop. Every call can also return NO_INPUTS and the errors
+ * common to the calls of passo.h.
  */
 #ifndef PASSO_INPUTS_H
 #define PASSO_INPUTS_H
@@ -16,51 +16,51 @@ extern "C" {
 
 /* ---------------------------------------------------------------------------------------- settings ---- */
 
-/* The inputs of an axis. An input that is not fitted must rest at its inactive level. */
+/* The inputs of an axis. Inputs that are not fitted must be tied to their inactive level. */
 struct passo_input_config {
-	/* the switches that are there: home and triggers refuse others with NO_SWITCH */
+	/* fitted switches: homing and triggers on others return NO_SWITCH */
 	bool limit_low, limit_high, home;
 	/* active low */
 	bool limit_low_inverted, limit_high_inverted, home_inverted, alarm_inverted;
-	bool limit_soft; /* limits stop on the path, in the time of passo_configure_motion(); else at once */
-	bool alarm_soft; /* the same for the alarm */
-	bool alarm_disables; /* the alarm also switches the drive of this axis off */
+	bool limit_soft;     /* limits soft-stop, in the time of passo_configure_motion(); else hard stop */
+	bool alarm_soft;     /* the same for the alarm */
+	bool alarm_disables; /* the alarm also disables the drive of this axis */
 };
 
-/* Sets the inputs of an axis, after passo_open(). One frame, two more to see that nothing moves. Error:
+/* Sets the inputs of an axis, after passo_open(). One frame, two more to check for rest. Error:
  * MOVING. */
 enum passo_error passo_configure_inputs(
     struct passo *passo, uint8_t axis, const struct passo_input_config *config);
 /* Sets the probe of the channel. The same frames and error. */
 enum passo_error passo_configure_probe(struct passo *passo, bool inverted);
-/* Sets the glitch filter of all inputs of the core but e-stop, in clocks, PASSO_US(20). Shorter changes do
- * nothing. Error: FILTER_TOO_LONG above 65535. */
+/* Sets the glitch filter of all inputs of the core except e-stop, in clocks, PASSO_US(20). Shorter changes
+ * are ignored. Error: FILTER_TOO_LONG above 65535. */
 enum passo_error passo_configure_filter(struct passo *passo, uint64_t clocks);
 /* Longest time of the watchdog. */
 #define PASSO_WATCHDOG_CLOCKS_MAX (UINT64_C(1023) << 16)
-/* Sets the watchdog of the core: a motion that runs while no frame comes for stop_clocks is stopped softly,
- * cause WATCHDOG; disable_clocks after that all drives are switched off, 0: never. 0 and 0: off. Both are
+/* Sets the watchdog of the core: a running motion is soft-stopped, cause WATCHDOG, if no frame arrives for
+ * stop_clocks; all drives are disabled disable_clocks later, 0: never. 0 and 0: off. Both are
  * rounded up to 65536 clocks. Errors: WATCHDOG_TOO_LONG above 1023 of these; ARGUMENT for a disable time
  * alone. */
 enum passo_error passo_configure_watchdog(struct passo *passo, uint64_t stop_clocks, uint64_t disable_clocks);
 
 /* ---------------------------------------------------------------------------------------- readings ---- */
 
-/* Levels, 1 = active, bit i is axis i, and inputs that were active since passo_clear_flags(). */
+/* Levels, 1 = active, bit i is axis i, and sticky flags (was_...) since passo_clear_flags(). */
 struct passo_readings {
 	uint8_t limit_low, limit_high, home, alarm;
 	uint8_t was_limit_low, was_limit_high, was_home, was_alarm;
 	bool probe, was_probe;
-	bool estop;   /* it is pressed, or was and is not cleared */
+	bool estop;   /* pressed, or not cleared since */
 	uint8_t axes; /* those of the first limit or alarm since passo_clear() */
-	bool unknown; /* the levels are not known yet, and no motion begins */
+	bool unknown; /* the levels are not known yet; no motion starts */
 };
 /* Three frames. */
 enum passo_error passo_read_inputs(struct passo *passo, struct passo_readings *readings);
 /* Two frames. */
 enum passo_error passo_clear_flags(struct passo *passo);
-/* Ends the e-stop of the core, once it is released; the channels stay stopped until passo_clear(), the drives
- * off until passo_enable(). Two frames. Error: ESTOP while it is pressed. */
+/* Clears the e-stop of the core after it is released; the channels stay stopped until passo_clear(), the
+ * drives off until passo_enable(). Two frames. Error: ESTOP while it is pressed. */
 enum passo_error passo_clear_estop(struct passo *passo);
 
 /* ---------------------------------------------------------------------------------------- triggers ---- */
@@ -69,20 +69,20 @@ struct passo_trigger_config {
 	enum passo_trigger_source source;
 	enum passo_trigger_action action;
 	uint8_t axis; /* of the source; not of a probe */
-	bool falling; /* fires when the source becomes inactive, else active */
+	bool falling; /* fires when the source becomes inactive instead of active */
 };
 struct passo_trigger_report {
-	bool arming; /* it waits for its source to keep a level for longer than the filter */
+	bool arming; /* waits until its source is stable for longer than the filter */
 	bool armed, fired;
-	int32_t positions[PASSO_AXES_MAX]; /* of all axes at the firing, as passo_positions() counts them */
+	int32_t positions[PASSO_AXES_MAX]; /* of all axes at the edge, as passo_positions() counts them */
 };
 
-/* How long a motion or trigger may wait for its inputs to stand still: INPUTS_UNKNOWN after it. */
+/* Longest wait of a motion or trigger for stable inputs; then INPUTS_UNKNOWN. */
 #define PASSO_INPUTS_MICROSECONDS 100000u
 
-/* Arms the trigger of the channel, once; it ends the one before. It is armed when its source has kept a level
- * for longer than the filter; until then no motion begins. Armed while the source has the level
- * already, it waits for the next edge. Its stops are reported as TRIGGER by passo_poll(). Errors: NO_SOURCE,
+/* Arms the trigger of the channel, one-shot; it replaces an earlier one. It is armed when its source has been
+ * stable for longer than the filter; until then no motion starts. If the source already has the level, it
+ * waits for the next edge. Its stops are reported as TRIGGER by passo_poll(). Errors: NO_SOURCE,
  * NO_SWITCH, UNDER_WAY. */
 enum passo_error passo_arm_trigger(struct passo *passo, const struct passo_trigger_config *config);
 /* Error: UNDER_WAY. */

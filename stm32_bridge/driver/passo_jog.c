@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Jogging: continuous rotation in steps per second, or a line of known length that can be left at any time.
+ * Jogging: continuous rotation in steps per second, or a line of known length that can be ended at any time.
  */
 #include "passo_driver.h"
 #include "passo_math.h"
@@ -7,11 +7,11 @@
 
 #define VELOCITY_BITS 48u
 #define WAY_BITS 16u
-/* With so many steps per turn, rpm are steps per second. */
+/* With this many steps per turn, rpm equals steps per second. */
 #define STEPS_PER_TURN 60u
 
-/* An endless line does not make substeps that rounding left over; with two substeps per step or more the last
- * step comes before these. So the jog is exact, and a ramp to 0 ends it where it is. */
+/* An endless line does not drain substeps left over by rounding; with two or more substeps per step the last
+ * step comes before these. So the jog is exact, and a ramp to 0 ends it in place. */
 static enum passo_error jog_by_distance(struct passo *passo, const struct passo_jog *jog)
 {
 	struct passo_move_by_speed move = {.speed = jog->speed, .acceleration = jog->acceleration};
@@ -60,8 +60,8 @@ enum passo_error passo_jog_speed(struct passo *passo, uint64_t speed)
 	return error != PASSO_OK ? error : passo_turn_speed(passo, speed);
 }
 
-/* One ramp to rest. False if a motion with an aim, that ends there by itself, is too near for it; if it does
- * not, the ramp is shortened to end there. */
+/* One ramp to rest. False if a motion with a target that ends there anyway is too near for it; otherwise the
+ * ramp is shortened to end at the target. */
 static bool plan_rest(
     const struct passo *passo, const struct passo_sight *sight, bool ends_there, struct passo_plan *plan)
 {
@@ -87,7 +87,7 @@ static bool plan_rest(
 	return true;
 }
 
-/* Sends the ramp to rest, unless the motion ends as soon by itself. */
+/* Sends the ramp to rest, unless the motion ends as early without it. */
 static enum passo_error come_to_rest(struct passo *passo)
 {
 	struct passo_steering steering = {.stop = true, .late = passo->late};
@@ -121,11 +121,11 @@ enum passo_error passo_jog_cancel(struct passo *passo)
 		passo->task.kind = PASSO_TASK_NONE;
 	if (passo->expects == PASSO_EXPECT_NOTHING || passo->expects == PASSO_EXPECT_TURN_END)
 		return PASSO_OK;
-	if (is_goto && !passo->aimed) { /* it comes to rest already, to return */
+	if (is_goto && !passo->aimed) { /* it is already coming to rest, to return */
 		passo->expects = PASSO_EXPECT_TURN_END;
 		return PASSO_OK;
 	}
 	const bool was_turning = passo->expects == PASSO_EXPECT_TURNING;
 	error = come_to_rest(passo);
-	return error == PASSO_ERROR_NOT_TURNING && was_turning ? PASSO_OK : error; /* it ends already */
+	return error == PASSO_ERROR_NOT_TURNING && was_turning ? PASSO_OK : error; /* it is already ending */
 }

@@ -61,7 +61,7 @@ enum passo_error passo_driver_look_at_rest(struct passo *passo)
 	return error;
 }
 
-enum passo_error passo_driver_still(struct passo *passo)
+enum passo_error passo_driver_require_rest(struct passo *passo)
 {
 	const struct passo_snapshot *snapshot = &passo->snapshot;
 

@@ -39,7 +39,7 @@ enum passo_error passo_motor_init(struct passo_motor *motor, struct passo *passo
  * sign is the direction. No frame. */
 enum passo_error passo_motor_set_target(struct passo_motor *motor, int64_t degrees, uint64_t rpm);
 enum passo_error passo_motor_set_angle(struct passo_motor *motor, int64_t degrees, uint64_t rpm);
-/* Rotates to the target, or by the angle, whichever was set last. At the target already: OK, no rotation. */
+/* Rotates to the target, or by the angle, whichever was set last. Already at the target: OK, no rotation. */
 enum passo_error passo_motor_start(struct passo_motor *motor);
 /* Starts continuous rotation. top_rpm limits the speeds that passo_motor_set_speed() can set later. */
 enum passo_error passo_motor_start_endless(
@@ -52,7 +52,7 @@ enum passo_error passo_motor_set_speed(struct passo_motor *motor, uint64_t rpm);
 enum passo_error passo_motor_stop(struct passo_motor *motor);
 /* Whether the motor rotates, as of the last passo_poll(). */
 bool passo_motor_is_turning(const struct passo_motor *motor);
-/* Angle from position 0 in degrees (Q31.32), and the present speed in rpm (UQ32.32). One frame each. */
+/* Angle from position 0 in degrees (Q31.32), and the current speed in rpm (UQ32.32). One frame each. */
 enum passo_error passo_motor_angle(struct passo_motor *motor, int64_t *degrees);
 enum passo_error passo_motor_speed(struct passo_motor *motor, uint64_t *rpm);
 

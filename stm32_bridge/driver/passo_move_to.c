@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Moves to absolute positions: the way that remains from the end of the motions queued before.
+ * Moves to absolute positions: the distance from the end of the motions queued before.
  */
 #include "passo_driver.h"
 
@@ -18,13 +18,13 @@ static enum passo_error find_start(struct passo *passo, const void *move, uint8_
 	return error != PASSO_OK ? error : passo_target(passo, start);
 }
 
-/* The way from a start to an end around 2^32 steps. */
+/* The shorter distance from a start to an end around 2^32 steps. */
 static int32_t way(int32_t start, int32_t end)
 {
 	return (int32_t)((uint32_t)end - (uint32_t)start);
 }
 
-/* Converts ends to ways. Returns false if none remains. */
+/* Converts end positions to distances. Returns false if all are 0. */
 static bool aim(int32_t *steps, uint8_t axes, const int32_t *start)
 {
 	bool remains = false;
@@ -87,7 +87,7 @@ enum passo_error passo_move_to_turn(struct passo *passo, const struct passo_move
 		return error;
 	const int32_t steps = way(start[move->axis], end);
 	struct passo_move_turn relative = *move;
-	relative.angle = passo_angle_of(steps, move->steps_per_turn); /* rounds back to as many steps */
+	relative.angle = passo_angle_of(steps, move->steps_per_turn); /* rounds back to the same steps */
 	return steps != 0 ? passo_move_turn(passo, &relative) : PASSO_OK;
 }
 
@@ -113,7 +113,7 @@ enum passo_error passo_move_to_straight(
 		error = round_end(passo_steps_of_length(move->distance[i], *scale), &end);
 		if (error != PASSO_OK)
 			return error;
-		/* rounds back to as many steps */
+		/* rounds back to the same steps */
 		relative.distance[i] = passo_driver_units(way(start[i], end), *scale);
 		if (relative.distance[i] == PASSO_NO_UNITS)
 			return PASSO_ERROR_UNITS;

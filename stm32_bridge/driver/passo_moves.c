@@ -5,7 +5,7 @@
 #include "passo_math.h"
 
 #define VELOCITY_BITS 48u
-/* What nobody means: less than 1/65536 per second, mm or degrees, and a move of less than 1/10000 s. */
+/* Implausible values: below 1/65536 per second, mm or degree, or a move below 1/10000 s. */
 #define RATE_ABSURD (PASSO_UNIT_Q32 >> 16)
 #define MOVES_PER_S_ABSURD 10000u
 
@@ -26,13 +26,13 @@ static bool pins_suffice(const struct passo *passo, const struct passo_plan *pla
 
 /* Converts the result of a push to an error of the driver. After a link error it is unknown whether the core
  * executed it. */
-static enum passo_error judge(struct passo *passo, enum passo_error error, bool half_done)
+static enum passo_error push_result(struct passo *passo, enum passo_error error, bool half_done)
 {
 	if ((unsigned)error == PASSO_ERROR_REFUSED + PASSO_VERDICT_BUSY)
-		return PASSO_ERROR_STOPPED; /* it has just stopped, which flushed the queues */
+		return PASSO_ERROR_STOPPED; /* it just stopped, which flushed the queues */
 	if ((unsigned)error == PASSO_ERROR_REFUSED + PASSO_VERDICT_QUEUE_FULL && !half_done)
 		return PASSO_ERROR_FULL;
-	if (error != PASSO_OK && (half_done || passo_driver_is_wire(error)))
+	if (error != PASSO_OK && (half_done || passo_driver_is_link_error(error)))
 		passo_driver_break(passo);
 	return error;
 }
@@ -45,7 +45,7 @@ enum passo_error passo_driver_push_ramps(struct passo *passo, const struct passo
 
 	for (uint32_t i = 0; i < plan->ramp_count; i++)
 		length += passo_ramp_words(words + length, &plan->ramps[i]);
-	return judge(passo, passo_host_push(passo->host, address, words, length), false);
+	return push_result(passo, passo_host_push(passo->host, address, words, length), false);
 }
 
 static enum passo_error push_line(struct passo *passo, const struct passo_line *line)
@@ -54,7 +54,7 @@ static enum passo_error push_line(struct passo *passo, const struct passo_line *
 	uint32_t words[PASSO_LINE_WORDS(PASSO_AXES_MAX) + 1u];
 	size_t length = passo_driver_line_words(passo, words, line);
 
-	return judge(passo, passo_host_push(passo->host, address, words, length), true);
+	return push_result(passo, passo_host_push(passo->host, address, words, length), true);
 }
 
 enum passo_error passo_driver_queue(
@@ -116,7 +116,7 @@ static bool is_short(int64_t length)
 	return length != 0 && length < (int64_t)RATE_ABSURD && length > -(int64_t)RATE_ABSURD;
 }
 
-/* Of each form: whether it says such a number, and its time in clocks, 0 if it has none. */
+/* For each form: whether it has such a number, and its time in clocks, 0 if none. */
 #define SLOW_in_time(move) false
 #define SLOW_by_speed(move)                                                                                  \
 	(is_slow((move)->speed) || is_slow((move)->acceleration) || is_slow((move)->deceleration))
@@ -171,7 +171,7 @@ static enum passo_error check(const struct passo *passo, const void *move)
 	return error == PASSO_OK && !move ? PASSO_ERROR_ARGUMENT_POINTER : error;
 }
 
-/* Steps for axes that the channel does not have are an error. */
+/* Steps on axes that the channel does not have are an error. */
 static enum passo_error check_steps(const struct passo *passo, const void *move, const int32_t *steps)
 {
 	enum passo_error error = check(passo, move);

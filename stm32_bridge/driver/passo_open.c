@@ -12,7 +12,7 @@ static bool fits(uint32_t actual, uint8_t expected)
 	return expected == 0u || actual == expected;
 }
 
-/* Ends what an earlier session has armed: trigger, compare points, the encoder as the clock, stops by
+/* Disarms whatever a previous connection armed: trigger, compare points, the encoder as the clock, stops by
  * encoders. Limits, alarms and the filter describe the machine and stay. */
 enum passo_error passo_driver_disown(struct passo *passo)
 {
@@ -77,14 +77,14 @@ static uint64_t watchdog_of(const struct passo *passo, const struct passo_option
 	return clocks < PASSO_WATCHDOG_CLOCKS_MAX ? clocks : PASSO_WATCHDOG_CLOCKS_MAX;
 }
 
-/* The channel is open, and stopped until this is over. */
+/* The channel is open, and stopped while this lasts. */
 static bool is_kept_stopped(enum passo_error error)
 {
 	return error == PASSO_ERROR_ESTOP || error == PASSO_ERROR_ALARM;
 }
 
-/* A motion of an earlier session that is queued, prepared or waits for an edge must not begin. A soft stop
- * flushes it on the spot, or stops it if it has begun just now. */
+/* A motion of a previous connection that is queued, prepared or waiting for an edge must not start. A soft
+ * stop flushes it immediately, or stops it if it has just started. */
 static enum passo_error keep_from_beginning(struct passo *passo)
 {
 	enum passo_error error = passo_driver_look_at_rest(passo);
@@ -150,7 +150,7 @@ enum passo_error passo_open_channel(
 	if (host->prepared != 0u)
 		return PASSO_ERROR_STREAMING;
 	if (host->guarded)
-		host->ahead = host->send; /* shared: a prepared frame would be in another channel's way */
+		host->ahead = host->send; /* shared: a prepared frame would block another channel */
 	memset(passo, 0, sizeof *passo);
 	passo->host = host;
 	passo->channel = options->channel;
@@ -158,13 +158,13 @@ enum passo_error passo_open_channel(
 	    (uint16_t)(PASSO_ADDRESS_CHANNEL_BASE + options->channel * PASSO_ADDRESS_CHANNEL_STRIDE);
 	passo->rate_target = PASSO_RATE_FULL;
 	error = make_contact(passo, options);
-	if (error == PASSO_OK && passo->belief == PASSO_BELIEF_STOPPED)
+	if (error == PASSO_OK && passo->assumed == PASSO_ASSUMED_STOPPED)
 		return passo->fault;
-	passo->belief = error == PASSO_OK ? PASSO_BELIEF_READY : PASSO_BELIEF_NOT_OPEN;
+	passo->assumed = error == PASSO_OK ? PASSO_ASSUMED_READY : PASSO_ASSUMED_NOT_OPEN;
 	passo->fault = error;
 	if (error != PASSO_OK || passo->snapshot.quiet)
 		return error;
-	passo_driver_break(passo); /* a motion of an earlier session */
+	passo_driver_break(passo); /* a motion of a previous connection */
 	return PASSO_ERROR_MOVING;
 }
 
@@ -175,7 +175,7 @@ enum passo_error passo_open(struct passo *passo, struct passo_host *host,
 
 	if (error != PASSO_OK)
 		return error;
-	passo->belief = PASSO_BELIEF_NOT_OPEN;
+	passo->assumed = PASSO_ASSUMED_NOT_OPEN;
 	error = passo_host_open(host, hardware);
 	passo->fault = error;
 	return error != PASSO_OK ? error : passo_open_channel(passo, host, options);

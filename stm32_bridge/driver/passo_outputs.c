@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Outputs: of the moves from now on, settings, raster values, compare points.
+ * Outputs: of the following moves, settings, raster values, compare points.
  */
 #include "passo_driver.h"
 #include "passo_math.h"
@@ -53,7 +53,7 @@ enum passo_error passo_output_word(
 static enum passo_error write_at_rest(
     struct passo *passo, uint16_t address, const uint32_t *words, size_t length)
 {
-	enum passo_error error = passo_driver_still(passo);
+	enum passo_error error = passo_driver_require_rest(passo);
 
 	if (error == PASSO_OK)
 		error = passo_driver_write(passo, address, words, length);
@@ -89,7 +89,7 @@ enum passo_error passo_configure_outputs(struct passo *passo, const struct passo
 		return PASSO_ERROR_LAG_TOO_LONG;
 	const uint32_t words[] = {config->lag, (uint32_t)step, reference};
 	error = write_at_rest(passo, PASSO_CHANNEL_OUTPUT_LAG, words, sizeof words / sizeof words[0]);
-	if (error == PASSO_OK || passo_driver_is_wire(error))
+	if (error == PASSO_OK || passo_driver_is_link_error(error))
 		passo->reference = error == PASSO_OK ? reference : 0u;
 	return error;
 }
@@ -162,7 +162,7 @@ enum passo_error passo_arm_compare(struct passo *passo, const struct passo_compa
 	if (error == PASSO_OK && (config->width == 0u || config->width > WIDTH_MAX))
 		error = PASSO_ERROR_PULSE;
 	if (error == PASSO_OK)
-		error = passo_driver_still(passo);
+		error = passo_driver_require_rest(passo);
 	if (error == PASSO_OK)
 		error = passo_positions(passo, now);
 	if (error != PASSO_OK)

@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: MIT
- * Outputs of a core that was built with them, bound to the path: digital outputs, power of a laser, raster,
- * compare pulses.
+ * Path-synchronized outputs: digital outputs, laser power, raster, position-compare pulses.
  *
  *     passo_configure_outputs(&passo, &(struct passo_outputs_config){.pwm_hz = 20000});
  *     passo_set_output(&passo, &(struct passo_output){.levels = 1, .power = 30000, .proportional = true,
  *         .speed = PASSO_STEPS_PER_S(20000)});
- *     passo_move_by_speed(&passo, &move); // with that output, and so the moves after it
- * docs/machine.md tells what they do. Every call can also return NO_OUTPUTS, and what the calls of passo.h
- * can.
+ *     passo_move_by_speed(&passo, &move); // with that output, like the moves after it
+ * See docs/machine.md. Every call can also return NO_OUTPUTS and the errors common to the calls of passo.h.
  */
 #ifndef PASSO_DRIVER_OUTPUTS_H
 #define PASSO_DRIVER_OUTPUTS_H
@@ -18,16 +16,16 @@
 extern "C" {
 #endif
 
-#define PASSO_POWER_FULL 65535u /* the power is on all the time */
+#define PASSO_POWER_FULL 65535u /* the power is always on */
 
 /* -------------------------------------------------------------------------------------- each move ---- */
 
-/* The outputs of the moves that are queued from now on. passo_open() takes over the levels of the core;
- * passo_open() and passo_clear() set the power to 0. Home, probe, jog and continuous rotation have these
- * levels and no power. No frame. Error: POWER. A move in proportion also returns REFERENCE before
- * passo_configure_outputs(), and ABOVE_REFERENCE if it is faster than `speed` or the reference. */
+/* Sets the outputs of the moves queued from now on. passo_open() takes over the levels of the core;
+ * passo_open() and passo_clear() set the power to 0. Homing, probing, jogging and continuous rotation have
+ * these levels and no power. No frame. Error: POWER. A move with proportional power also returns REFERENCE
+ * before passo_configure_outputs(), and ABOVE_REFERENCE if it is faster than `speed` or the reference. */
 enum passo_error passo_set_output(struct passo *passo, const struct passo_output *output);
-/* Levels of the digital outputs, at once, and of the moves from now on. Three frames. Error: MOVING. */
+/* Sets the digital outputs immediately, and for the moves from now on. Three frames. Error: MOVING. */
 enum passo_error passo_set_levels(struct passo *passo, uint8_t levels);
 /* The word of an output, for struct passo_line of a stream and struct passo_path_move of a path; `speed` is
  * not used. 0 is all outputs low and no power. No frame. Error: POWER. */
@@ -39,9 +37,9 @@ enum passo_error passo_output_word(
 struct passo_outputs_config {
 	uint32_t pwm_hz; /* frequency of the power pin */
 	uint32_t
-	    reference; /* velocity at which a power in proportion is the power of its line, UQ0.32
+	    reference; /* velocity at which a proportional power is the power of its line, UQ0.32
 	                  substeps per clock: passo_path_velocity() for a path; 0: 1/2, for single moves */
-	uint32_t lag;  /* clocks from the first step of a line to its outputs, 0 .. 65535 */
+	uint32_t lag;  /* output delay in clocks, 0 .. 65535 */
 };
 
 /* At rest. Three frames. Errors: PWM, REFERENCE, LAG_TOO_LONG, MOVING. */
@@ -49,21 +47,21 @@ enum passo_error passo_configure_outputs(struct passo *passo, const struct passo
 
 struct passo_outputs_state {
 	uint8_t levels;       /* of the digital outputs */
-	bool overflow;        /* more than 256 changes waited for the lag: no power until passo_clear() */
-	bool raster_empty;    /* a raster line found no value since passo_clear(): its power was 0 */
-	uint16_t raster_room; /* values that the raster queue can take */
+	bool overflow;        /* more than 256 changes were delayed: no power until passo_clear() */
+	bool raster_empty;    /* raster underrun since passo_clear(): the power was 0 */
+	uint16_t raster_room; /* free entries of the raster queue, in values */
 };
 enum passo_error passo_read_outputs(struct passo *passo, struct passo_outputs_state *state);
 
 /* ----------------------------------------------------------------------------------------- raster ---- */
 
-/* Substeps from one value of a raster line to the next, from the next value on: steps of the longest axis
- * times plan.oversampling, passo_path_substeps() of a path. Error: PITCH. */
+/* Sets the substeps from one value of a raster line to the next, from the next value on: steps of the
+ * dominant axis times plan.oversampling, or passo_path_substeps() of a path. Error: PITCH. */
 enum passo_error passo_set_pitch(struct passo *passo, uint32_t substeps);
-/* Queues values of raster lines: as many of the `count` as there is room for in one frame, *taken. Value 255
- * is full power. A line begins with the first value of a call, so give each line its own calls, each but its
- * last with a multiple of 4 values. A stop empties the queue. Two frames. Errors: STOPPED; after a link error
- * it is unknown whether they were taken: stop. */
+/* Queues values of raster lines: as many of the `count` as fit into the queue and one frame, *taken. Value
+ * 255 is full power. A line begins with the first value of a call, so give each line its own calls, each but
+ * its last with a multiple of 4 values. A stop empties the queue. Two frames. Errors: STOPPED; after a link
+ * error it is unknown whether they were taken: stop. */
 enum passo_error passo_push_raster(struct passo *passo, const uint8_t *values, size_t count, size_t *taken);
 
 /* ---------------------------------------------------------------------------------------- compare ---- */
@@ -75,7 +73,7 @@ struct passo_compare_config {
 	uint32_t width;   /* clocks of a pulse, 1 .. 65535 */
 };
 
-/* A pulse with the step onto each point. The points stay through stops and later moves until
+/* Outputs a pulse with the step onto each point. The points stay armed through stops and later moves until
  * passo_disarm_compare(). At rest. Four frames, three to disarm. Errors: INTERVAL, PULSE, MOVING. */
 enum passo_error passo_arm_compare(struct passo *passo, const struct passo_compare_config *config);
 enum passo_error passo_disarm_compare(struct passo *passo);

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
- * What every motion needs on a core with outputs or encoders: its output word, and the clock that it has.
+ * Output word and clock source of every motion, on a core with outputs or encoders.
  */
 #include "passo_driver.h"
 #include "passo_math.h"
 
-/* A power above full by less than this part of it is full. */
+/* Relative rounding tolerance within which a power above full is full. */
 #define POWER_MARGIN 128u
 
 enum passo_error passo_driver_recall_outputs(struct passo *passo)
@@ -51,7 +51,7 @@ uint32_t passo_driver_word_of(const struct passo_output *output)
 	    .power = (uint16_t)output->power});
 }
 
-/* Substeps per step differ between moves: the power of the word makes up for that. */
+/* Substeps per step differ between moves: the power in the word compensates. */
 static enum passo_error scale(
     const struct passo *passo, const struct passo_plan *plan, struct passo_output *output)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * The time that the core still has: each ramp adds to it, and it passes at the rate of the time scale. The
- * clocks of host and core differ, so each look at the queue corrects it: what is left is at least the ramps
- * behind the present one, and at most those with it.
+ * The time buffered in the core: each ramp adds to it, and it elapses at the rate of the time scale. The
+ * clocks of host and core differ, so each status read corrects it: at least the ramps after the current one
+ * are left, and at most those including it.
  */
 #include "passo_path_feed.h"
 
@@ -37,7 +37,7 @@ static bool give_line(void *context, struct passo_line *line)
 	return given;
 }
 
-/* The ramps of this poll take long, and those that are there are better sent. */
+/* The ramps of this poll take long to compute: send the available ones first. */
 static bool is_late(const struct passo_path_feed *feed)
 {
 	return feed->passo->stream == PASSO_STREAM_RUNS && feed->ramps + feed->lines != feed->given
@@ -58,13 +58,13 @@ static bool give_ramp(void *context, struct passo_ramp *ramp)
 	return true;
 }
 
-/* The rate that the core has, or goes to. */
+/* The rate of the core: current or target. */
 static uint32_t rate(const struct passo_path_feed *feed)
 {
 	return larger(passo_driver_rate(feed->passo), feed->passo->snapshot.rate);
 }
 
-/* Clocks of the last ramps given, `count` of them. */
+/* Clocks of the last `count` ramps sent. */
 static uint64_t clocks_of(const struct passo_path_feed *feed, uint32_t count)
 {
 	uint64_t ticks = 0;
@@ -88,7 +88,7 @@ static void pass_time(struct passo_path_feed *feed)
 		feed->left -= feed->left < clocks ? feed->left : clocks;
 }
 
-/* After a look at the state of the core. */
+/* After a status read. */
 static void correct(struct passo_path_feed *feed)
 {
 	const struct passo *passo = feed->passo;
@@ -98,7 +98,8 @@ static void correct(struct passo_path_feed *feed)
 	    || passo->stream == PASSO_STREAM_FILLS)
 		return;
 	feed->seen = passo->looked_at;
-	const uint32_t waiting = (uint32_t)(passo->line_places - passo->snapshot.line_room); /* and moving */
+	const uint32_t waiting =
+	    (uint32_t)(passo->line_places - passo->snapshot.line_room); /* including the current one */
 	const uint32_t lines = waiting + 1u;
 	if (passo->snapshot.state == PASSO_STATE_RUN && waiting > 0u)
 		feed->moving = feed->first + feed->lines - waiting;
@@ -143,7 +144,8 @@ static enum passo_error begin(struct passo_path_feed *feed)
 	return passo_stream(feed->passo, &source);
 }
 
-/* Whether the stream starts with what it has: not with a jump alone, before what follows was asked for. */
+/* Whether the stream starts with the items it has: not with a jump alone, before the next item was requested.
+ */
 static bool is_time(struct passo_path_feed *feed)
 {
 	const uint32_t now = passo_driver_now(feed->passo);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Feeds a path (c_model/planner/passo_path.h) to a channel of the core, line by line as it becomes known.
+ * Feeds a path (c_model/planner/passo_path.h) to a channel of the core, line by line.
  *
  *     passo_path_feed_open(&feed, &passo, &path);
  *     for (;;) {
@@ -7,10 +7,10 @@
  *                     passo_path_add(&path, &line);
  *             error = passo_path_feed_poll(&feed); // instead of passo_poll()
  *     }
- * The core moves while lines are known, and rests at the end of the last one while none are, whatever the
- * source of the lines does. Each rest ends a motion. Hold, resume and override are those of passo.h. After a
+ * The core moves while lines are available; if the source stalls, the path decelerates to rest at the end of
+ * the last line. Each rest ends a motion. Hold, resume and override are those of passo.h. After a
  * stop and passo_clear() call passo_path_restart() with the positions and passo_path_feed_open(), to drop the
- * rest of the path, or passo_path_feed_recover() to go on with it.
+ * rest of the path, or passo_path_feed_recover() to continue it.
  */
 #ifndef PASSO_PATH_FEED_H
 #define PASSO_PATH_FEED_H
@@ -28,36 +28,36 @@ extern "C" {
 struct passo_path_feed {
 	struct passo *passo;
 	struct passo_path_planner *path;
-	uint64_t left;                         /* clocks of ramps that the core holds: a lower bound */
+	uint64_t left;                         /* clocks of ramps that the core holds, lower bound */
 	uint32_t at;                           /* microseconds: time of `left` */
-	uint32_t seen;                         /* time of the last look that corrected it */
-	uint32_t rate;                         /* highest since then, UQ1.16 */
-	uint32_t ticks[PASSO_PATH_FEED_RAMPS]; /* of the ramps given last */
-	uint32_t ramps, lines;                 /* given, of this motion */
+	uint32_t seen;                         /* time of the last status read that corrected it */
+	uint32_t rate;                         /* highest rate since then, UQ1.16 */
+	uint32_t ticks[PASSO_PATH_FEED_RAMPS]; /* of the ramps sent last */
+	uint32_t ramps, lines;                 /* sent, of this motion */
 	uint32_t first, done;                  /* number of its first line; lines executed, at least */
-	uint32_t moving;                       /* number of the line that moves, as of the last look */
-	uint32_t added, added_at;              /* lines known, and since when */
-	bool hurry;                            /* start with what is known */
-	uint32_t given;                        /* lines and ramps before this poll */
-	bool gave;                             /* lines or ramps, in the last poll */
+	uint32_t moving;                       /* number of the current line, as of the last status read */
+	uint32_t added, added_at;              /* known lines, and when the last was added */
+	bool hurry;                            /* start with the known lines */
+	uint32_t given;                        /* lines and ramps sent before this poll */
+	bool gave;                             /* the last poll sent lines or ramps */
 };
 
 void passo_path_feed_open(struct passo_path_feed *feed, struct passo *passo, struct passo_path_planner *path);
 
-/* passo_poll(), and starts motions. A motion starts when the look-ahead is full, when the path has been
+/* Calls passo_poll() and starts motions. A motion starts when the look-ahead is full, when the path has been
  * ended, or when no line was added for 20 ms. Errors: those of passo_stream() and passo_poll(). */
 enum passo_error passo_path_feed_poll(struct passo_path_feed *feed);
 
-/* Whether the core runs out of ramps in less than this time, unless more are given: a lower bound of what it
+/* Whether the core may run out of ramps within this time unless more are sent, by the lower bound of what it
  * holds. */
 bool passo_path_feed_is_short(const struct passo_path_feed *feed, uint32_t microseconds);
 
-/* Whether the next poll is urgent: the core is short, and the last poll had something for it. The caller
- * makes no new lines meanwhile, so that a flood of them cannot starve the core. */
+/* Whether the next poll is urgent: the core is short of ramps, and the last poll sent some. The caller must
+ * then not add lines first, so that a burst of them cannot starve the core. */
 bool passo_path_feed_is_urgent(const struct passo_path_feed *feed);
 
-/* After a stop and passo_clear(): goes on with the rest of the path from the present positions, at once.
- * False: the line on which it stopped is not in memory any more. */
+/* After a stop and passo_clear(): continues the rest of the path from the current positions, immediately.
+ * False: the line on which it stopped is no longer in memory. */
 bool passo_path_feed_recover(struct passo_path_feed *feed, const int32_t *positions);
 
 /* True until all lines have been executed, as of the last poll. */

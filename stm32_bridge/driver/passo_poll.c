@@ -19,7 +19,7 @@ static enum passo_error miss(struct passo *passo, enum passo_error error)
 		passo_driver_end_stream(passo);
 		return tell(passo, error);
 	}
-	if (passo_driver_is_wire(error) && ++passo->misses < passo->host->hardware.tries)
+	if (passo_driver_is_link_error(error) && ++passo->misses < passo->host->hardware.tries)
 		return PASSO_OK;
 	passo->misses = 0;
 	return tell(passo, error);
@@ -33,12 +33,12 @@ static enum passo_error see_stop(struct passo *passo)
 	passo_driver_end_stream(passo);
 	/* the last steps may still be at the pins */
 	passo->expects = passo->snapshot.quiet ? PASSO_EXPECT_NOTHING : PASSO_EXPECT_END;
-	passo_driver_doubt(passo, PASSO_BELIEF_STOPPED);
+	passo_driver_assume_worse(passo, PASSO_ASSUMED_STOPPED);
 	passo->idle_looks = 0;
 	return is_news && fault != PASSO_OK && fault != passo->fault ? tell(passo, fault) : PASSO_OK;
 }
 
-/* Nothing moves or is queued; what an earlier session has queued waits at the closed gate. Ramps left over
+/* Nothing moves or is queued; items queued by a previous connection wait at the closed gate. Ramps left over
  * from an interrupted command do not move without a line. */
 static bool has_ended(const struct passo *passo)
 {
@@ -48,8 +48,8 @@ static bool has_ended(const struct passo *passo)
 	return passo->stream == PASSO_STREAM_NONE && passo_driver_at_rest(passo);
 }
 
-/* A motion that does not begin waits for its inputs to be known. One that waits for too long is flushed: it
- * would begin at any time. */
+/* A motion that does not start is waiting for its inputs to be known. After the timeout it is flushed, since
+ * it could start at any time. */
 static enum passo_error see_wait(struct passo *passo)
 {
 	const uint32_t now = passo_driver_now(passo);
@@ -88,10 +88,10 @@ static enum passo_error look(struct passo *passo)
 	return see_wait(passo);
 }
 
-/* Resends due commands; a failure is reported after as many tries as other link errors. */
-static enum passo_error insist(struct passo *passo)
+/* Resends due commands; a failure is reported after as many attempts as other link errors. */
+static enum passo_error resend_due(struct passo *passo)
 {
-	enum passo_error error = passo_driver_insist(passo);
+	enum passo_error error = passo_driver_send_due(passo);
 
 	if (error == PASSO_OK || error == PASSO_PENDING)
 		return PASSO_OK;
@@ -145,7 +145,7 @@ static enum passo_error poll(struct passo *passo)
 		return PASSO_OK;
 	}
 	if (passo_driver_due(passo) != PASSO_OK || passo->post > PASSO_POST_START)
-		return insist(passo);
+		return resend_due(passo);
 	if (passo->post == PASSO_POST_NONE && passo_host_is_unsure(passo->host))
 		return look(passo);
 	if (passo->stream != PASSO_STREAM_NONE) {
@@ -177,7 +177,7 @@ bool passo_driver_in_motion(const struct passo *passo)
 
 bool passo_is_moving(const struct passo *passo)
 {
-	return passo && passo->belief != PASSO_BELIEF_NOT_OPEN
+	return passo && passo->assumed != PASSO_ASSUMED_NOT_OPEN
 	    && (passo->task.kind != PASSO_TASK_NONE || passo_driver_in_motion(passo));
 }
 

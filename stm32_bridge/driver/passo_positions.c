@@ -129,7 +129,7 @@ enum passo_error passo_zero(struct passo *passo)
 	if (error != PASSO_OK)
 		return error;
 	error = passo_driver_command(passo, (struct passo_channel_command){.zero = true});
-	if (passo_driver_is_wire(error)) {
+	if (passo_driver_is_link_error(error)) {
 		passo->expects = PASSO_EXPECT_END; /* the next polls read the positions */
 		passo->zero_due = true;
 	}

@@ -52,7 +52,7 @@ enum passo_error passo_configure_axis(
 	    passo_pack_axis_dir_timing(&dir)};
 	error = passo_driver_write(
 	    passo, address_of(axis, PASSO_AXIS_PINS), words, sizeof words / sizeof words[0]);
-	if (passo_driver_is_wire(error))
+	if (passo_driver_is_link_error(error))
 		memory->shortest_clocks = 0;
 	if (error != PASSO_OK)
 		return passo_driver_moving(error);
@@ -88,7 +88,7 @@ enum passo_error passo_enable(struct passo *passo, uint8_t axis, bool on)
 		return error;
 	const uint32_t enable = (uint32_t)on << PASSO_AXIS_ENABLE_LSB;
 	if (!on)
-		error = passo_driver_still(passo);
+		error = passo_driver_require_rest(passo);
 	if (error != PASSO_OK)
 		return error;
 	if (!on)

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * Changes of the ramps of a motion that runs.
+ * Changing the ramps of a running motion.
  *
- * The core takes a change some time after the host has read where it is. In that time the speed goes on to
- * change and the way to be made: a change is planned for all that is possible within `late` of the first
- * read. The clock of the host tells whether that was kept.
+ * The core takes a change some time after the host has read its state. Meanwhile speed and position continue
+ * to change: a change is planned for everything that is possible within `late` of the first read. The clock
+ * of the host shows whether that was met.
  */
 #include "passo_driver.h"
 #include "passo_math.h"
@@ -14,7 +14,7 @@
 #define MICROSECONDS_PER_SECOND 1000000u
 #define TRIES 3u
 #define TRIES_TO_STOP 5u /* each of them takes its time from the one before */
-/* Steps that the ramps are ahead of the position: four wait for the pins, and parts of one. */
+/* Steps that the ramps are ahead of the position: four in the step queue, and a fraction. */
 #define STEPS_AHEAD 5
 /* Ticks until a ramp that was received changes the speed. */
 #define TICKS_AHEAD 4u
@@ -73,13 +73,13 @@ static enum passo_error withdraw(struct passo *passo)
 	return error == PASSO_OK && waits ? PASSO_ERROR_NOT_TURNING : error;
 }
 
-/* Reads the state of a motion that may be changed. */
+/* Reads the state of a motion whose ramps can be changed. */
 static enum passo_error look(struct passo *passo, bool stop)
 {
 	enum passo_error error = passo_driver_check(passo);
 
 	if (error == PASSO_OK)
-		error = passo_driver_restrain(passo, PASSO_POST_RUN);
+		error = passo_driver_require_sent(passo, PASSO_POST_RUN);
 	if (error != PASSO_OK)
 		return error;
 	if (passo_driver_is_broken(passo))
@@ -95,7 +95,7 @@ static enum passo_error look(struct passo *passo, bool stop)
 	return error;
 }
 
-/* Bounds of the velocity: it goes to that of the ramps, and from there to rest if they end at an aim. */
+/* Bounds of the velocity: it approaches that of the ramps, then goes to rest if they end at a target. */
 static void bound(
     const struct passo *passo, uint64_t acceleration, uint64_t clocks, struct passo_sight *sight)
 {
@@ -114,10 +114,10 @@ static void bound(
 		sight->low = larger(sight->low, passo_smaller(low, peak));
 	sight->high = passo_smaller(high + change, larger(high, peak));
 	if (read == 0u && passo->turning.minimum_rpm != 0u)
-		sight->high = peak; /* it begins with a jump */
+		sight->high = peak; /* it starts with a jump */
 }
 
-/* Steps that are left to the aim, at least. */
+/* Minimum remaining steps to the target. */
 static enum passo_error measure(struct passo *passo, uint64_t clocks, struct passo_sight *sight)
 {
 	int32_t positions[PASSO_AXES_MAX];
@@ -152,7 +152,7 @@ enum passo_error passo_driver_sight(
 	return measure(passo, clocks, sight);
 }
 
-/* Pushes the ramps; what a refusal means. */
+/* Pushes the ramps and converts a rejection. */
 static enum passo_error push(struct passo *passo, const struct passo_plan *plan)
 {
 	if (passo->snapshot.ramp_room < plan->ramp_count)
@@ -186,7 +186,7 @@ enum passo_error passo_driver_steered(
 	if (!steering->stop)
 		return error == PASSO_ERROR_LATE && steering->overdue ? PASSO_OK : error;
 	/* a stop by ramp that is late, or not acknowledged, becomes a soft stop */
-	if (error == PASSO_ERROR_LATE || passo_driver_is_wire(error))
+	if (error == PASSO_ERROR_LATE || passo_driver_is_link_error(error))
 		passo_driver_halt(passo, PASSO_DUE_STOP);
 	return error;
 }

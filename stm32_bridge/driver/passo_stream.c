@@ -7,7 +7,7 @@
 
 #define LOOK_MICROSECONDS 1000u
 #define LOOK_MICROSECONDS_STREAMING 50u
-/* A shorter queue can run empty in that time. */
+/* A shorter queue can underrun in that time. */
 #define PLACES_FEW 64u
 
 /* The queues are filled: the stream can start. */
@@ -37,7 +37,7 @@ void passo_driver_end_stream(struct passo *passo)
 static enum passo_error fail(struct passo *passo, enum passo_error error)
 {
 	passo_driver_halt(passo, PASSO_DUE_STOP);
-	passo_driver_doubt(passo, PASSO_BELIEF_BROKEN);
+	passo_driver_assume_worse(passo, PASSO_ASSUMED_BROKEN);
 	passo->fault = error;
 	return error;
 }
@@ -126,7 +126,7 @@ static enum passo_error send_start(struct passo *passo)
 enum passo_error passo_driver_feed(struct passo *passo, bool *sent)
 {
 	const struct passo_host *host = passo->host;
-	const bool flew = host->on_wire;
+	const bool flew = host->in_flight;
 	enum passo_error error = PASSO_OK;
 
 	*sent = passo->post != PASSO_POST_NONE;
@@ -136,7 +136,7 @@ enum passo_error passo_driver_feed(struct passo *passo, bool *sent)
 			return error;
 	}
 	if (!is_packed(passo)
-	    && (passo->post == PASSO_POST_NONE || (host->on_wire && host->ahead != host->send)))
+	    && (passo->post == PASSO_POST_NONE || (host->in_flight && host->ahead != host->send)))
 		error = pack(passo);
 	if (error != PASSO_OK)
 		return fail(passo, error);

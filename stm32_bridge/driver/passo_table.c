@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The shape tables of the core: what they hold, and loading them.
+ * The shape tables of the core: their contents, and loading them.
  *
  * The tables cannot be read back, so the host keeps track; after writes of another host their contents are
  * unknown.

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * What home, probe and goto share: motions, one after the other, moved on by passo_poll(). Those of home and
- * probe may be ended by a trigger.
+ * Common to homing, probing and goto: motions one after the other, advanced by passo_poll(). Those of homing
+ * and probing can end at a trigger.
  */
 #include "passo_driver.h"
 
@@ -11,8 +11,8 @@ static enum passo_error settle(struct passo *passo, enum passo_error error)
 	if (error == PASSO_PENDING)
 		return PASSO_OK;
 	passo->task.kind = PASSO_TASK_NONE;
-	if (passo->task.armed && !passo_driver_is_wire(error) && error != PASSO_ERROR_CORE_RESET)
-		passo_driver_disarm(passo); /* otherwise passo_clear() does it */
+	if (passo->task.armed && !passo_driver_is_link_error(error) && error != PASSO_ERROR_CORE_RESET)
+		passo_driver_disarm(passo); /* if it fails, passo_clear() does it */
 	return error;
 }
 
@@ -86,7 +86,7 @@ enum passo_error passo_driver_task(struct passo *passo, enum passo_error error)
 {
 	if (error == PASSO_ERROR_NOT_STOPPED || error == PASSO_ERROR_NOT_HELD)
 		return error;
-	/* the stops that are looked for: by the trigger, or by the very switch */
+	/* expected stops: by the trigger, or by the switch itself */
 	const bool is_sought =
 	    (error == PASSO_ERROR_TRIGGER || error == PASSO_ERROR_LIMIT) && passo->task.armed;
 	if (is_sought)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Threads: a count of the encoder is a clock of the profile, or with a scale 2^scale of them, and the
- * velocity is the path per count.
+ * Threads: an encoder count is a clock of the profile, or 2^scale clocks, and the velocity is the path per
+ * count.
  */
 #include "passo_driver.h"
 #include "passo_math.h"
@@ -20,7 +20,7 @@ static uint32_t magnitude(int32_t steps)
 	return steps < 0 ? 0u - (uint32_t)steps : (uint32_t)steps;
 }
 
-/* Fills in the steps of the line; returns those of the longest axis. */
+/* Fills in the steps of the line; returns those of the dominant axis. */
 static uint32_t take_steps(const struct passo_thread *thread, struct passo_line *line)
 {
 	uint32_t longest = 0;
@@ -43,7 +43,7 @@ static uint32_t oversampling_of(uint32_t longest, uint64_t clocks)
 	return oversampling > 1u ? oversampling & ~UINT32_C(1) : oversampling;
 }
 
-/* Line and ramps, and the smallest scale with which they are possible. */
+/* Line and ramps, with the smallest possible scale. */
 static enum passo_error plan_thread(
     const struct passo *passo, const struct passo_thread *thread, struct passo_plan *plan, uint8_t *scale)
 {

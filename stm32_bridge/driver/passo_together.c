@@ -12,18 +12,18 @@ bool passo_waits_for_sync(const struct passo *passo)
 	return passo && passo->gate == PASSO_GATE_SYNC;
 }
 
-/* Whether a queued motion of the channel is on its way to be ARMED. */
+/* Whether a queued motion of the channel is becoming ARMED. */
 static bool is_preparing(const struct passo *passo)
 {
 	return passo->snapshot.state < PASSO_STATE_ARMED && !passo_driver_at_rest(passo);
 }
 
-/* OK if a motion of the channel is ready and waits. */
+/* OK if a motion of the channel is armed and waiting. */
 static enum passo_error check_waits(struct passo *passo, const struct passo_host *host)
 {
 	if (passo->host != host)
 		return PASSO_ERROR_ARGUMENT_CHANNEL;
-	enum passo_error error = passo_driver_restrain(passo, PASSO_POST_RUN);
+	enum passo_error error = passo_driver_require_sent(passo, PASSO_POST_RUN);
 	if (error != PASSO_OK)
 		return error;
 	if (passo_driver_is_broken(passo))

@@ -22,7 +22,7 @@ enum passo_error passo_turn_start(struct passo *passo, const struct passo_turnin
 	return PASSO_OK;
 }
 
-/* The ramp from wherever the velocity is, so that none is too steep. */
+/* The ramp from any possible velocity, so that none is too steep. */
 static enum passo_plan_error plan_speed(
     const struct passo *passo, const struct passo_sight *sight, uint64_t rpm, struct passo_plan *plan)
 {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Units of all values of a move: PASSO_MM(1.5), PASSO_STEPS_PER_S(20000), PASSO_MS(400).
  *
- * The compiler computes them: no floating point is linked. They take constants; anything else does not link
- * (passo_unit_is_not_a_constant) with GCC or Clang. For values of run time, PASSO_THOUSANDTHS(micrometres)
+ * The compiler evaluates them: no floating point is linked. They take constants; with GCC or Clang anything
+ * else fails to link (passo_unit_is_not_a_constant). At run time use PASSO_THOUSANDTHS(micrometers), which
  * takes an integer; times are integers in clocks.
  */
 #ifndef PASSO_UNITS_H
@@ -30,7 +30,7 @@ uint64_t passo_unit_is_not_a_constant(void);
 /* Lengths and angles; the sign is the direction. */
 #define PASSO_MM(x) PASSO_UNIT_SIGNED(x)
 #define PASSO_DEGREES(x) PASSO_UNIT_SIGNED(x)
-/* Thousandths of a millimetre or a degree, an integer of up to 2^31: at run time as well. */
+/* Thousandths of a millimeter or a degree, an integer up to 2^31; also at run time. */
 #define PASSO_THOUSANDTHS(n) ((int64_t)(n) * INT64_C(4294967296) / 1000)
 
 /* Speeds, accelerations, jerks. */
@@ -48,8 +48,8 @@ uint64_t passo_unit_is_not_a_constant(void);
 #define PASSO_STEPS_PER_DEGREE(x) PASSO_UNIT_UNSIGNED(x)
 #define PASSO_ALPHA(x) PASSO_UNIT_CONSTANT(x, uint32_t, (x) * 4096.0 + 0.5)
 
-/* Times, as clocks of the core. The program defines PASSO_CLOCK_HZ, a constant, and gives it to passo_open()
- * as well. */
+/* Times, as clocks of the core. The program defines the constant PASSO_CLOCK_HZ and passes it to
+ * passo_open(), too. */
 #define PASSO_S(x) PASSO_UNIT_CONSTANT(x, uint64_t, (x) * (double)(PASSO_CLOCK_HZ) + 0.5)
 #define PASSO_MS(x) PASSO_UNIT_CONSTANT(x, uint64_t, (x) * ((double)(PASSO_CLOCK_HZ) / 1e3) + 0.5)
 #define PASSO_US(x) PASSO_UNIT_CONSTANT(x, uint64_t, (x) * ((double)(PASSO_CLOCK_HZ) / 1e6) + 0.5)

@@ -1,25 +1,25 @@
 /* SPDX-License-Identifier: MIT
- * The settings `$n=` of grbl, in its units, and what else outlasts a loss of power.
+ * The grbl settings `$n=`, in grbl's units, and the other persistent data.
  */
 #ifndef PASSO_GRBL_SETTINGS_H
 #define PASSO_GRBL_SETTINGS_H
 
 #include "passo_gcode.h"
 
-/* Longest start line, with its end. */
+/* Longest startup line, with its terminator. */
 #define PASSO_GRBL_START_SIZE 80u
 #define PASSO_GRBL_STARTS 2u
 
 enum passo_grbl_setting {
 	PASSO_GRBL_PULSE,            /* $0: us */
-	PASSO_GRBL_IDLE_DELAY,       /* $1: ms until drives at rest are switched off; 255: never */
+	PASSO_GRBL_IDLE_DELAY,       /* $1: ms until idle drives are disabled; 255: never */
 	PASSO_GRBL_STEPS_INVERTED,   /* $2: a bit per axis */
 	PASSO_GRBL_DIRS_INVERTED,    /* $3 */
 	PASSO_GRBL_ENABLES_INVERTED, /* $4: all axes */
 	PASSO_GRBL_LIMITS_INVERTED,  /* $5: limit and home switches of all axes */
 	PASSO_GRBL_PROBE_INVERTED,   /* $6 */
 	PASSO_GRBL_REPORT,           /* $10: a bit for MPos, WPos without; a bit for Bf */
-	PASSO_GRBL_DEVIATION,        /* $11: of junctions, mm */
+	PASSO_GRBL_DEVIATION,        /* $11: junction deviation, mm */
 	PASSO_GRBL_ARC_TOLERANCE,    /* $12: mm */
 	PASSO_GRBL_INCHES,           /* $13: reports in inches */
 	PASSO_GRBL_SOFT_LIMITS,      /* $20 */
@@ -31,7 +31,7 @@ enum passo_grbl_setting {
 	PASSO_GRBL_DEBOUNCE,         /* $26: ms */
 	PASSO_GRBL_PULL_OFF,         /* $27: mm */
 	PASSO_GRBL_SPINDLE,          /* $30: rpm of full power */
-	PASSO_GRBL_SPINDLE_LEAST,    /* $31: rpm of what turns */
+	PASSO_GRBL_SPINDLE_LEAST,    /* $31: rpm, minimum of a running spindle */
 	PASSO_GRBL_LASER,            /* $32 */
 	PASSO_GRBL_SETTINGS
 };
@@ -56,10 +56,10 @@ struct passo_grbl_stored {
 	char start[PASSO_GRBL_STARTS][PASSO_GRBL_START_SIZE];
 };
 
-/* Its words in the storage. */
+/* Its size in storage, in words. */
 #define PASSO_GRBL_STORED_WORDS (sizeof(struct passo_grbl_stored) / sizeof(uint32_t))
 
-/* Where the value of `$n` is; null: there is no such setting for this number of axes. */
+/* The value of `$n`; null: no such setting for this number of axes. */
 int64_t *passo_grbl_setting(struct passo_grbl_settings *settings, unsigned number, unsigned axes);
 
 /* Sets `$n` to a number in millionths. Errors: STATEMENT (no such setting, out of range), NEGATIVE, NUMBER
@@ -74,7 +74,7 @@ uint32_t passo_grbl_setting_most(unsigned number, unsigned axes, bool *positive)
 #define PASSO_GRBL_NO_SETTING 0xFFu
 unsigned passo_grbl_setting_number(unsigned index, unsigned axes, bool *whole);
 
-/* Whether an axis has its bit in a setting that is a mask. */
+/* Whether the bit of an axis is set in a mask setting. */
 bool passo_grbl_has_axis(
     const struct passo_grbl_settings *settings, enum passo_grbl_setting mask, unsigned axis);
 bool passo_grbl_is_on(const struct passo_grbl_settings *settings, enum passo_grbl_setting setting);

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT
- * The states of the controller: what a line and a real-time request do in each. The table of docs/gcode.md.
+ * The states of the controller, and the effect of lines and real-time requests in each: the table in
+ * docs/gcode.md.
  */
 #ifndef PASSO_GRBL_STATE_H
 #define PASSO_GRBL_STATE_H
 
 #include <stdint.h>
 
-/* The first one that applies: a machine that homes is in Home, whatever else holds. */
+/* In order of priority: during homing the state is always Home. */
 enum passo_grbl_state {
 	PASSO_GRBL_STATE_HOME,
 	PASSO_GRBL_STATE_SLEEP,
@@ -20,7 +21,7 @@ enum passo_grbl_state {
 	PASSO_GRBL_STATES
 };
 
-/* Lines, by what they need. */
+/* Kinds of lines, by what they require. */
 enum passo_grbl_kind {
 	PASSO_GRBL_KIND_GCODE,
 	PASSO_GRBL_KIND_JOG,      /* $J= */
@@ -28,17 +29,17 @@ enum passo_grbl_kind {
 	PASSO_GRBL_KIND_SETTINGS, /* $$ */
 	PASSO_GRBL_KIND_UNLOCK,   /* $X */
 	PASSO_GRBL_KIND_CHECK,    /* $C */
-	PASSO_GRBL_KIND_OTHER,    /* $H, $SLP, $#, $I, $N, $RST=, $n=, and what there is not */
+	PASSO_GRBL_KIND_OTHER,    /* $H, $SLP, $#, $I, $N, $RST=, $n=, and unknown ones */
 	PASSO_GRBL_KINDS
 };
 
-/* What a line gets: these, or the error 8 or 9. */
+/* Result of a line: one of these, or error 8 or 9. */
 #define PASSO_GRBL_TAKEN 0u
 #define PASSO_GRBL_WAITS 0xFFu
 
-/* Real-time requests, in the order in which those of a batch are served. */
+/* Real-time requests, in the order in which a batch is processed. */
 enum passo_grbl_request {
-	PASSO_GRBL_ASK_RESET,  /* Ctrl-X; those behind it in the batch are dropped */
+	PASSO_GRBL_ASK_RESET,  /* Ctrl-X; later ones of the batch are dropped */
 	PASSO_GRBL_ASK_CANCEL, /* 0x85 */
 	PASSO_GRBL_ASK_PAUSE,  /* ! */
 	PASSO_GRBL_ASK_OPEN,   /* 0x84 */
@@ -53,17 +54,17 @@ enum passo_grbl_act {
 	PASSO_GRBL_ACT_FAILS,   /* the same, with alarm 6 */
 	PASSO_GRBL_ACT_HOLDS,   /* on the path; lines wait */
 	PASSO_GRBL_ACT_OPENS,   /* the same, as Door */
-	PASSO_GRBL_ACT_CANCELS, /* the jog: to rest at once, and jogs that have been received are not made */
+	PASSO_GRBL_ACT_CANCELS, /* jog cancel: immediate deceleration; received jogs are dropped */
 	PASSO_GRBL_ACT_CLOSES,  /* cancels, then Door */
 	PASSO_GRBL_ACT_STOPS,   /* alarm 7 */
 	PASSO_GRBL_ACT_GOES_ON,
 	PASSO_GRBL_ACT_REPORTS
 };
 
-/* PASSO_GRBL_TAKEN, PASSO_GRBL_WAITS, or the error. */
+/* PASSO_GRBL_TAKEN, PASSO_GRBL_WAITS, or an error. */
 uint8_t passo_grbl_line_rule(enum passo_grbl_state state, enum passo_grbl_kind kind);
 enum passo_grbl_act passo_grbl_request_rule(enum passo_grbl_state state, enum passo_grbl_request request);
-/* As in a report. */
+/* The name used in status reports. */
 const char *passo_grbl_state_name(enum passo_grbl_state state);
 
 #endif

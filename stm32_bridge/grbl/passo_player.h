@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Plays the actions of the G-code interpreter (c_model/gcode/passo_gcode.h) on a path that is fed to the
+ * Executes the actions of the G-code interpreter (c_model/gcode/passo_gcode.h) on a path that is fed to the
  * core.
  *
  *     passo_player_open(&player, &gcode, &feed, &settings);
@@ -8,11 +8,11 @@
  *                     answer = passo_gcode_execute(&gcode, line);
  *             error = passo_player_poll(&player, &event); // instead of passo_path_feed_poll()
  *     }
- * No call waits.
+ * No call blocks.
  *
- * A line is taken when its actions are done or on the path; a dwell, a probe, a pause and the end of the
- * program wait for the end of the motion before. Dwells between lines are ramps of the core, unless a sender
- * is there that is answered when they are over.
+ * A line is accepted when its actions are done or on the path; a dwell, a probe, a pause and the end of the
+ * program wait for the preceding motion to end. Dwells between lines are ramps of the core, unless a sender
+ * must be answered when they are over.
  */
 #ifndef PASSO_PLAYER_H
 #define PASSO_PLAYER_H
@@ -23,61 +23,61 @@
 
 enum passo_player_event {
 	PASSO_PLAYER_NOTHING,
-	PASSO_PLAYER_OFFSETS, /* struct passo_gcode_offsets is to be stored */
-	PASSO_PLAYER_PAUSED,  /* M0: at rest until passo_player_go_on() */
-	PASSO_PLAYER_ENDED,   /* M2, M30: at rest */
-	PASSO_PLAYER_TRAVEL,  /* a target outside of the travel; it and what follows in its line is dropped */
-	PASSO_PLAYER_PROBED,  /* the probe has acted, or was optional: passo_player.touch, touched */
+	PASSO_PLAYER_OFFSETS,   /* struct passo_gcode_offsets must be stored */
+	PASSO_PLAYER_PAUSED,    /* M0: at rest until passo_player_go_on() */
+	PASSO_PLAYER_ENDED,     /* M2, M30: at rest */
+	PASSO_PLAYER_TRAVEL,    /* a target outside the travel; the rest of its line is dropped */
+	PASSO_PLAYER_PROBED,    /* the probe triggered, or was optional: passo_player.touch, touched */
 	PASSO_PLAYER_NO_PROBE,  /* no probe is fitted */
-	PASSO_PLAYER_UNTOUCHED, /* the probe has not acted */
-	PASSO_PLAYER_UNEXPECTED /* it had acted before */
+	PASSO_PLAYER_UNTOUCHED, /* the probe did not trigger */
+	PASSO_PLAYER_UNEXPECTED /* it had already triggered */
 };
 
-/* Of the machine; must live as long as the player. */
+/* Machine description; must outlive the player. */
 struct passo_player_machine {
-	const struct passo_path_axis *axis; /* as given to passo_path_open() */
+	const struct passo_path_axis *axis; /* as passed to passo_path_open() */
 	bool limited;                       /* targets must be within low .. high, machine coordinates */
 	passo_gcode_position low, high;
 };
 
-/* Lines of the path whose numbers are known, the last ones. */
+/* Number of recent lines of the path whose numbers are kept. */
 #ifndef PASSO_PLAYER_LINES
 #define PASSO_PLAYER_LINES 512u
 #endif
-/* The same for rapids: more than the core and the look-ahead hold. */
+/* The same for rapids: more than core and look-ahead can hold. */
 #define PASSO_PLAYER_WINDOW 512u
 
-/* What moves, or will move when the look-ahead begins. */
+/* The line that is moving, or will move when the look-ahead starts. */
 enum passo_player_motion { PASSO_PLAYER_AT_REST, PASSO_PLAYER_FEED, PASSO_PLAYER_RAPID, PASSO_PLAYER_SEEK };
 
-/* What a line of G-code says of the lines of the path that it makes. */
+/* Properties that a line of G-code passes on to its lines of the path. */
 struct passo_player_line {
 	uint32_t number; /* N; 0: none */
 	uint32_t output;
 };
 
-/* Members up to `held` may be set by the caller; those of the probe are to be read. All others are private.
+/* Members up to `held` may be set by the caller; those of the probe may be read. All others are private.
  */
 struct passo_player {
-	bool answers; /* dwells wait for the motion, and end before the line is taken */
-	bool checks;  /* nothing of a line is done; targets outside of the travel are told */
+	bool answers; /* dwells wait for the motion, and end before the line is accepted */
+	bool checks;  /* check mode: lines are not executed; targets outside the travel are reported */
 	bool held;    /* dwells wait */
 	struct passo_gcode *gcode;
 	struct passo_path_feed *feed;
 	const struct passo_player_machine *machine;
 	struct passo_gcode_action action;
-	bool waits;  /* the action has not been taken yet */
-	bool probes; /* a probe is under way */
+	bool waits;  /* the action has not been accepted yet */
+	bool probes; /* probing in progress */
 	bool paused;
 	bool dwells;
-	uint64_t dwell;     /* microseconds that are left of it */
-	uint32_t dwells_at; /* the time of that */
+	uint64_t dwell;     /* remaining microseconds */
+	uint32_t dwells_at; /* time of that value */
 	uint32_t chords;    /* taken since passo_player_open() */
 	uint32_t
 	    number[PASSO_PLAYER_LINES]; /* of the lines of the path: N, and the upper half of the output */
 	uint16_t power[PASSO_PLAYER_LINES]; /* the lower half */
 	uint8_t rapid[PASSO_PLAYER_WINDOW / 8u];
-	uint64_t probe_scale; /* steps of the longest axis per mm, UQ32.32 */
+	uint64_t probe_scale; /* steps of the dominant axis per mm, UQ32.32 */
 	bool touched;
 	passo_gcode_position touch; /* machine coordinates */
 };
@@ -85,15 +85,15 @@ struct passo_player {
 void passo_player_open(struct passo_player *player, struct passo_gcode *gcode, struct passo_path_feed *feed,
     const struct passo_player_machine *machine);
 
-/* Whether the last line has been taken. */
+/* Whether the last line has been accepted. */
 bool passo_player_has_taken(const struct passo_player *player);
 /* Whether another line can be executed. */
 bool passo_player_is_ready(const struct passo_player *player);
-/* Whether nothing moves, and nothing is left to be done. */
+/* Whether nothing moves and nothing is pending. */
 bool passo_player_is_idle(const struct passo_player *player);
 
-/* Takes what there is room for, and polls the driver. Errors: those of passo_path_feed_poll(), passo_probe(),
- * and PASSO_ERROR_PLAN + those of passo_path_add(); its line is dropped then. */
+/* Accepts as many actions as fit, and polls the driver. Errors: those of passo_path_feed_poll(),
+ * passo_probe(), and PASSO_ERROR_PLAN + those of passo_path_add(); the line is then dropped. */
 enum passo_error passo_player_poll(struct passo_player *player, enum passo_player_event *event);
 
 /* Whether a target is within the travel of all axes. */
@@ -101,17 +101,17 @@ bool passo_player_allows(const struct passo_player *player, const int64_t *targe
 
 void passo_player_go_on(struct passo_player *player);
 
-/* Of what moves; false: nothing does, or it is too long ago. */
+/* Of the line that is moving; false: none is, or its number is no longer kept. */
 bool passo_player_moving_line(const struct passo_player *player, struct passo_player_line *line);
 enum passo_player_motion passo_player_motion(const struct passo_player *player);
-/* mm/min along the way at present, UQ48.16. */
+/* Current speed along the path, mm/min, UQ48.16. */
 uint64_t passo_player_speed(const struct passo_player *player);
 
-/* After a stop and passo_clear(), or after homing: drops all that is left, and begins at the present position
- * of the core. One frame. Errors: those of passo_positions(). */
+/* After a stop and passo_clear(), or after homing: drops the rest and restarts at the current position of the
+ * core. One frame. Errors: those of passo_positions(). */
 enum passo_error passo_player_restart(struct passo_player *player);
 
-/* Nanometres of a number of steps, to the nearest. */
+/* Converts steps to nanometers, to nearest. */
 int64_t passo_player_nanometres(const struct passo_player *player, unsigned axis, int32_t steps);
 
 #endif

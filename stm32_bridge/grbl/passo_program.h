@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Plays a program of G-code from its lines, without a sender: from a file, or a memory card.
+ * Executes a G-code program line by line without a sender: from a file, or a memory card.
  *
  *     passo_program_open(&program, &passo, &settings, items, 48); // passo: open, its axes configured
  *     while (!passo_program_is_done(&program)) {
@@ -11,7 +11,7 @@
  *             }
  *             error = passo_program_poll(&program); // instead of passo_poll()
  *     }
- * M0 does not wait. There are no limits of travel. No call waits.
+ * M0 does not wait. There are no travel limits. No call blocks.
  */
 #ifndef PASSO_PROGRAM_H
 #define PASSO_PROGRAM_H
@@ -32,29 +32,29 @@ struct passo_program {
 	struct passo_path_axis axis[PASSO_AXES_MAX];
 	struct passo_player_machine machine;
 	struct passo_player player;
-	bool ends; /* no line follows */
+	bool ends; /* no more lines */
 };
 
 /* `items` and `capacity`: the look-ahead, see passo_path_open(). The settings are copied. Errors:
- * PINS_TOO_SLOW: an axis may be faster than passo_highest_speed(); PASSO_ERROR_PLAN + those of
+ * PINS_TOO_SLOW: the speed limit of an axis exceeds passo_highest_speed(); PASSO_ERROR_PLAN + those of
  * passo_path_open(). */
 enum passo_error passo_program_open(struct passo_program *program, struct passo *passo,
     const struct passo_program_settings *settings, struct passo_path_item *items, uint32_t capacity);
 
-/* Whether another line can be taken. */
+/* Whether another line can be executed. */
 bool passo_program_is_ready(const struct passo_program *program);
 
 /* Executes a line, with or without its end, when ready; an error changes nothing. A text has the lines of
  * passo_gcode_line_count(). */
 enum passo_gcode_error passo_program_line(struct passo_program *program, const char *text, size_t length);
 
-/* No line follows: the path ends with the last one. */
+/* No more lines: the path ends with the last one. */
 void passo_program_end(struct passo_program *program);
 
-/* Takes what there is room for, and polls the driver. Errors: those of passo_player_poll(). */
+/* Accepts as many actions as fit, and polls the driver. Errors: those of passo_player_poll(). */
 enum passo_error passo_program_poll(struct passo_program *program);
 
-/* Whether the program has ended, and all its motions with it. */
+/* Whether the program and all its motions have ended. */
 bool passo_program_is_done(const struct passo_program *program);
 
 #endif

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Peripherals and their registers. Access to anything that is not modelled is an error."""
+"""Peripherals and their registers. Access to anything that is not modeled is an error."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ SYSTEM = 0xE0000000  # from here on: peripherals of the processor, which have by
 
 
 class MachineError(Exception):
-    """The firmware does something that is not modelled, or that the microcontroller forbids."""
+    """The firmware does something that is not modeled, or that the microcontroller forbids."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class Peripheral:
         """Read the register at an offset."""
         register = self._at.get(offset)
         if register is None:
-            raise MachineError(f"read of an unmodelled register: {self.name} + 0x{offset:02X}")
+            raise MachineError(f"read of an unmodeled register: {self.name} + 0x{offset:02X}")
         reader = self._readers[offset]
         return reader() if reader else self.value[register.name]
 
@@ -69,11 +69,11 @@ class Peripheral:
         """Write the register at an offset."""
         register = self._at.get(offset)
         if register is None:
-            raise MachineError(f"write to an unmodelled register: {self.name} + 0x{offset:02X} = 0x{value:X}")
+            raise MachineError(f"write to an unmodeled register: {self.name} + 0x{offset:02X} = 0x{value:X}")
         fixed = ~register.writable & WORD
         if (value ^ self.value[register.name]) & fixed & value:
             bits = (value ^ self.value[register.name]) & fixed & value
-            raise MachineError(f"{self.name}.{register.name}: bits 0x{bits:X} are not modelled")
+            raise MachineError(f"{self.name}.{register.name}: bits 0x{bits:X} are not modeled")
         value = (value & register.writable) | (self.value[register.name] & fixed)
         writer = self._writers[offset]
         if writer:
@@ -124,7 +124,7 @@ class Bus:
     def _find(self, address: int) -> Peripheral:
         peripheral = self._blocks.get(address >> BLOCK_LOG2)
         if peripheral is None:
-            raise MachineError(f"nothing is modelled at 0x{address:08X}")
+            raise MachineError(f"nothing is modeled at 0x{address:08X}")
         if not self._has_clock(peripheral.name):
             raise MachineError(f"{peripheral.name} (0x{address:08X}) has no clock")
         return peripheral

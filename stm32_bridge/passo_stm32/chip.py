@@ -125,7 +125,7 @@ class Chip(Processor, ABC):
 
     def _enter(self, number: int, masks: int) -> None:
         if masks >> 8 & 3:
-            raise MachineError("CONTROL is not 0: process stack and unprivileged threads are not modelled")
+            raise MachineError("CONTROL is not 0: process stack and unprivileged threads are not modeled")
         self._asleep = False
         self.exceptions.enter(number)
         table = self.peripherals["SCB"].value["VTOR"]
@@ -146,7 +146,7 @@ class Chip(Processor, ABC):
             self._at_exception_return()
             self.exceptions.leave()
             if not c.passo_cpu_return(cpu):
-                raise MachineError(f"{self._place()}: a return that is not modelled, or from a broken stack")
+                raise MachineError(f"{self._place()}: a return that is not modeled, or from a broken stack")
         elif stop == c.PASSO_CPU_BREAKPOINT:
             self._at_breakpoint()
         elif stop == c.PASSO_CPU_SUPERVISOR_CALL:
@@ -199,7 +199,7 @@ class Chip(Processor, ABC):
             return bool(self._fail(error))
 
     def stall(self, ticks: int) -> None:
-        """The processor stands still, after the present instruction."""
+        """The processor stalls, after the current instruction."""
         self.cpu.now += ticks
 
     def _catch_up(self) -> None:

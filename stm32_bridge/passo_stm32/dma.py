@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""DMA1: each request of a peripheral moves one item between its data register and memory, at once."""
+"""DMA1: each request of a peripheral moves one item between its data register and memory, immediately."""
 
 from passo_stm32.bus import MachineError, Peripheral, Register
 

@@ -100,7 +100,7 @@ class Gpio(Peripheral):
 
 
 class Afio(Peripheral):
-    """Port selection of the EXTI lines; the only remapping modelled is that of the debug pins."""
+    """Port selection of the EXTI lines; the only remapping modeled is that of the debug pins."""
 
     name = "AFIO"
     base = 0x40010000

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Cost of the image that speaks grbl: instructions per line, lines per second, a long file of short lines."""
+"""Cost of the grbl image: instructions per line, lines per second, a long file of short lines."""
 
 import math
 from collections.abc import Iterator

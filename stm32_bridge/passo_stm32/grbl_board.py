@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The board with the image that speaks grbl, and a sender at its serial line."""
+"""The board with the grbl image, and a sender at its serial line."""
 
 import re
 from collections.abc import Iterable

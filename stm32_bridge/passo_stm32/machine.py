@@ -57,7 +57,9 @@ class Machine(Chip):
     def run_until(self, condition: Callable[[], object], seconds: float) -> None:
         """Let time pass until a condition is true; raises TimeoutError after `seconds`."""
         if not self._run(self.now + round(seconds * TICKS_PER_SECOND), condition) and not condition():
-            raise TimeoutError(f"nothing for {seconds} s; the terminal shows ...{self.output[-200:]!r}")
+            raise TimeoutError(
+                f"timeout: no output for {seconds} s; the terminal shows ...{self.output[-200:]!r}"
+            )
 
     def type(self, text: str, baud: int | None = None) -> None:
         """Send characters from the terminal at its baud rate."""

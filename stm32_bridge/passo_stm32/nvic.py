@@ -132,7 +132,7 @@ class Nvic(Peripheral):
             e.pending &= ~bits
             e.pending |= e.lines & bits  # request lines that are still high
         else:
-            raise MachineError(f"write to an unmodelled register: {self.name} + 0x{offset:03X}")
+            raise MachineError(f"write to an unmodeled register: {self.name} + 0x{offset:03X}")
 
 
 class SystemControl(Peripheral):

@@ -51,7 +51,7 @@ def channels_of(path: Path, clock_hz: int) -> Channels:
     with tempfile.TemporaryDirectory() as folder:
         channels = read_channels(with_clock(path, clock_hz, Path(folder)))
     if channels.setup:
-        raise MoveFileError(f"{path}: the machine of the file is not at the pins here; passo run has it")
+        raise MoveFileError(f"{path}: a [machine] is not simulated here: use passo run")
     return channels
 
 

@@ -109,10 +109,10 @@ class Rcc(Peripheral):
         source = self.value["CFGR"] & 3
         ready = {FROM_HSI: HSIRDY, FROM_HSE: HSERDY, FROM_PLL: PLLRDY}.get(source)
         if ready is None or not self.bit("CR", ready):
-            raise MachineError("the system clock is switched to a source that is not ready")
+            raise MachineError("the system clock source is not ready")
         hz = {FROM_HSI: HSI_HZ, FROM_HSE: CRYSTAL_HZ, FROM_PLL: self._pll_hz()}[source]
         if TICKS_PER_SECOND % hz:
-            raise MachineError(f"a system clock of {hz} Hz is not modelled")
+            raise MachineError(f"a system clock of {hz} Hz is not modeled")
         self.value["CFGR"] = self.value["CFGR"] & ~0xC | source << 2
         ahb = self.value["CFGR"] >> 4 & 15
         shift = 0 if ahb < 8 else ahb - 7 + (ahb >= 12)

@@ -33,7 +33,7 @@ class Spi(Peripheral):
         self._status_read = False
 
     def write_cr1(self, value: int) -> None:
-        """Check that the configuration is modelled."""
+        """Check that the configuration is modeled."""
         if value >> ENABLE & 1:
             if (
                 not value >> MASTER & 1
@@ -41,7 +41,7 @@ class Spi(Peripheral):
                 or not value >> SELECT_LEVEL & 1
             ):
                 raise MachineError(
-                    "SPI1 is modelled as a master with chip select by software (MSTR, SSM, SSI)"
+                    "SPI1 is modeled as a master with chip select by software (MSTR, SSM, SSI)"
                 )
         elif self.started is not None:
             raise MachineError("SPI1 is disabled while it is busy")

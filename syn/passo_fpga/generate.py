@@ -2,15 +2,14 @@
 """Generates the files of a board from its table: a Verilog file with the PLL, and a pin file."""
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from passo.output import write_text
 from passo.toolchain import paths
 
-from passo_fpga.boards import FOLDER, TABLE, Board, Pin
+from passo_fpga.boards import FOLDER, TABLE, Board
 from passo_fpga.design import Design
-from passo_fpga.devices import ECP5, GOWIN, ICE40, Family
 
 TOP = paths.syn / "passo_board.v"
 
@@ -66,9 +65,7 @@ def generate(
 def pll_file(board: Board, mhz: float | None = None) -> str:
     """Text of the PLL module with the dividers for this clock."""
     pll = board.pll(mhz)
-    parameters = dict(pll.parameters)
-    if board.device.family is ICE40:
-        parameters["PAD"] = int(board.pll_kind == "pad")
+    parameters = {**pll.parameters, **board.device.family.pll_kind(board.pll_kind)}
     return PLL.format(
         table=_table(board),
         made=pll.mhz,
@@ -80,30 +77,10 @@ def pll_file(board: Board, mhz: float | None = None) -> str:
 def pin_file(board: Board, axes: int | None = None, parts: Sequence[str] = ()) -> str:
     """Text of the pin file in the format of the family."""
     family = board.device.family
-    comment = "//" if family is GOWIN else "#"
-    lines = [f"{comment} Made of {_table(board)} by `make synth`.\n"]
-    lines += [_FORMATS[family](port, pin) for port, pin in board.ports(axes, parts).items()]
+    lines = [f"{family.comment} Made of {_table(board)} by `make synth`.\n"]
+    lines += [family.pin_line(port, pin) for port, pin in board.ports(axes, parts).items()]
     return "".join(lines)
 
 
 def _table(board: Board) -> str:
     return f"{FOLDER.name}/{board.name}/{TABLE}"
-
-
-def _pcf(port: str, pin: Pin) -> str:
-    return f"set_io {f'-pull{pin.pull} yes ' if pin.pull else ''}{port} {pin.pin}\n"
-
-
-def _lpf(port: str, pin: Pin) -> str:
-    pull = [f"PULLMODE={pin.pull.upper()}"] if pin.pull else []
-    words = " ".join([f"IO_TYPE={pin.io_type}", *pull, *pin.options])
-    return f'LOCATE COMP "{port}" SITE "{pin.pin}";\nIOBUF PORT "{port}" {words};\n'
-
-
-def _cst(port: str, pin: Pin) -> str:
-    pull = [f"PULL_MODE={pin.pull.upper()}"] if pin.pull else []
-    words = " ".join([f"IO_TYPE={pin.io_type}", *pull, *pin.options])
-    return f'IO_LOC "{port}" {pin.pin};\nIO_PORT "{port}" {words};\n'
-
-
-_FORMATS: Mapping[Family, Callable[[str, Pin], str]] = {ICE40: _pcf, ECP5: _lpf, GOWIN: _cst}

@@ -148,7 +148,8 @@ def _by_seed(report: dict[str, Any]) -> list[str]:
 
 def _sizes(report: dict[str, Any], name: str) -> tuple[Sequence[str], list[list[str]]]:
     unit = DEVICES[name].family.size_unit
-    header = ("channels x axes", f"{unit} placed", "LUT", "FF", "BRAM", "DSP", "lowest MHz", "median MHz")
+    placed = f"{unit} placed" if DEVICES[name].family.place else unit
+    header = ("channels x axes", placed, "LUT", "FF", "BRAM", "DSP", "lowest MHz", "median MHz")
     rows = []
     for row in sorted(
         (row for row in report["designs"] if row["device"] == name), key=lambda r: (r["channels"], r["axes"])
@@ -170,7 +171,7 @@ def _sizes(report: dict[str, Any], name: str) -> tuple[Sequence[str], list[list[
 
 def _device(report: dict[str, Any], name: str) -> str:
     sizes = markdown(*_sizes(report, name))
-    return f"### {DEVICES[name].title}\n\n{sizes}\n\nCost of one more: {_costs(report, name)}."
+    return f"### {DEVICES[name].title}\n\n{sizes}\n\nIncremental cost: {_costs(report, name)}."
 
 
 def _costs(report: dict[str, Any], name: str) -> str:

@@ -27,7 +27,7 @@ def chosen(text: str) -> tuple[str, ...]:
     """The parts of a list with commas; raises BoardError."""
     wanted = [part for part in text.split(",") if part]
     if unknown := sorted(set(wanted) - set(PORTS)):
-        raise BoardError(f"there is no part '{unknown[0]}'; choose of {', '.join(PORTS)}")
+        raise BoardError(f"unknown part '{unknown[0]}'; must be one of {', '.join(PORTS)}")
     return tuple(part for part in PORTS if part in wanted)
 
 
@@ -38,7 +38,7 @@ def read(table: Table, part: str, axes: int, pin: Callable[[Table, str], P]) -> 
         most = bits(part, port, axes)
         found[port] = (pin(table, port),) if most == 1 and not table.is_list(port) else table.pins(port, pin)
         if len(found[port]) > most:
-            raise table.error(port, f"{len(found[port])} pins are too many; it has {most} bits")
+            raise table.error(port, f"{len(found[port])} pins; must be at most {most}")
     table.end()
     return found
 
@@ -47,9 +47,9 @@ def check(board: str, there: Mapping[str, PartPins[Any]], parts: Sequence[str], 
     """Raise BoardError for a part that a board has no pins for, or too few for this number of axes."""
     for part in parts:
         if part not in there:
-            known = f"there are those of {', '.join(there)}" if there else "it has none of any part"
+            known = f"it has pins for {', '.join(there)}" if there else "it has none for any part"
             raise BoardError(f"board '{board}': the table has no pins for part '{part}'; {known}")
         for port, pins in there[part].items():
             if len(pins) < bits(part, port, axes):
-                wanted = f"{bits(part, port, axes)} are wanted for {axes} axes"
+                wanted = f"{bits(part, port, axes)} are needed for {axes} axes"
                 raise BoardError(f"board '{board}': {part}.{port}: {wanted}, the table has {len(pins)}")

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """`make report`: size and speed of the core on all devices.
 
-A full report writes build/report.json, docs/reference/report.md and the goals between two marks in README.md;
-QUICK=1 writes only the goals. A partial report (ONLY=, QUICK=1) is printed and written to build/report-part.json.
+A full report writes build/report.json, docs/reference/report.md and the goals between two marks in
+README.md; QUICK=1 writes only the goals. A partial report (ONLY=, QUICK=1) is printed and written to
+build/report-part.json.
 Each run of a netlist with a seed is cached in build/fpga: an interrupted report resumes, and after a change
 only the affected runs are repeated. PARTS=1 measures the optional parts of the core instead.
 """
@@ -95,9 +96,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     else:
         part = REPORT.with_name("report-part.json")
         write_json(report, part)
-        console.print(
-            f"partial report: {part.relative_to(paths.root)}; {pages.PAGE.relative_to(paths.root)} is unchanged"
-        )
+        unchanged = pages.PAGE.relative_to(paths.root)
+        console.print(f"partial report: {part.relative_to(paths.root)}; {unchanged} is unchanged")
         if len(goals) == len(GOALS):
             pages.write_goals(report)
     pages.show(report)
@@ -139,7 +139,8 @@ def measure(wanted: Sequence[Key], splits: bool) -> dict[str, Any]:
 
         list(pool.map(make, [*designs.values(), *hierarchical.values(), *channels]))
 
-        count = _counter(sum(len(_seeds(key)) for key in designs))
+        routed = [key for key, design in designs.items() if design.device.family.place]
+        count = _counter(sum(len(_seeds(key)) for key in routed))
 
         def run(key: Key, seed: int) -> Placed:
             placed = _place(designs[key], seed)
@@ -153,7 +154,7 @@ def measure(wanted: Sequence[Key], splits: bool) -> dict[str, Any]:
             first = run(key, seed)
             return [first] if first.too_large else [first, *(run(key, seed) for seed in seeds)]
 
-        placed = dict(zip(designs, pool.map(runs, designs), strict=True))
+        placed = {key: [] for key in designs} | dict(zip(routed, pool.map(runs, routed), strict=True))
     return {
         "seeds": list(SEEDS),
         "goal_seeds": list(GOAL_SEEDS),
@@ -209,18 +210,18 @@ def _row(design: Design, key: Key, placed: Sequence[Placed]) -> dict[str, Any]:
     made = cells(design)
     # a seed that nextpnr cannot place or route counts as 0 MHz
     reached = [run.main_clock[0] if run.fits else 0.0 for run in placed]
-    median = statistics.median(reached)
+    median = statistics.median(reached) if reached else None  # none: synthesis only
     return {
         "device": device,
         "top": top,
         "channels": channels,
         "axes": axes,
-        "fits": median > 0,
-        "size": placed[0].used,
+        "fits": median is None or median > 0,
+        "size": placed[0].used if placed else made["LUT"],
         "capacity": design.device.capacity,
         "lut": made["LUT"],
         "ff": made["FF"],
-        "bram": placed[0].bram,
+        "bram": placed[0].bram if placed else made["BRAM"],
         "dsp": made["DSP"],
         "f_max": [round(mhz, 2) for mhz in reached],
         "f_max_minimum": round(min(reached), 1) if median else None,

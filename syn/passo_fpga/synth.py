@@ -12,9 +12,8 @@ from passo.toolchain import paths
 
 from passo_fpga import parts
 from passo_fpga.boards import OSCILLATOR, Board, board, boards
-from passo_fpga.complaints import gowin_functions, held_pins
 from passo_fpga.design import Design
-from passo_fpga.devices import GOWIN, SPI_MHZ
+from passo_fpga.devices import SPI_MHZ
 from passo_fpga.flow import Placed, cells, moved_registers, pack, place, synthesis_complaints
 from passo_fpga.generate import generate
 from passo_fpga.pll import PllError
@@ -30,9 +29,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Return 0 if the bitstream was made and all clocks are met, 1 if not, 2 for an unknown board."""
     parser = argparse.ArgumentParser(prog="make synth", description="Make the bitstream of a board.")
     parser.add_argument("--board", default="", help="one of the folders in syn/")
-    parser.add_argument("--axes", type=int, help="another number of axes")
-    parser.add_argument("--clock", type=float, metavar="MHZ", help="another clock")
-    parser.add_argument("--parts", default="", help=f"parts of the core: {','.join(parts.PORTS)}")
+    parser.add_argument("--axes", type=int, help="number of axes (default: of the board)")
+    parser.add_argument(
+        "--clock", type=float, metavar="MHZ", help="clock of the core (default: of the board)"
+    )
+    parser.add_argument("--parts", default="", help=f"optional blocks: {','.join(parts.PORTS)}")
     options = parser.parse_args(arguments)
     try:
         if not options.board:
@@ -75,9 +76,9 @@ def make(
     tell(f"{chosen.name}: synthesis")
     made = cells(design)
     problems = synthesis_complaints(design)
-    if family is GOWIN:
-        at = {port: pin.pin for port, pin in chosen.ports(axes, wanted).items()}
-        problems += held_pins(at, gowin_functions(), chosen.pack)
+    problems += family.held_pins(
+        {port: pin.pin for port, pin in chosen.ports(axes, wanted).items()}, chosen.pack
+    )
     tried = {} if problems else _try_seeds(chosen, design, pins, pll.mhz, tell)
     good = next((seed for seed, placed in tried.items() if not _problems(placed, pll.mhz)), None)
     if good is not None:
@@ -94,13 +95,15 @@ def make(
     size = f"{used:,} of {capacity:,} {family.size_unit} ({used / capacity:.0%})"
     print(f"  size       {size}, {made['FF']:,} FF, {best.bram} BRAM, {made['DSP']} DSP")
     if moved := moved_registers(design):
-        print(f"  registers  {moved} more in the block RAMs")
+        print(f"  registers  {moved} more packed into block RAMs")
     if good is None:
-        seeds = f"of {len(tried)} seeds none will do" if len(tried) > 1 else "the seed will not do"
-        print(f"  NOT MADE   {seeds}; logs: {relative(best.folder.parent, paths.root)}")
+        seeds = (
+            f"none of {len(tried)} seeds meets timing" if len(tried) > 1 else "the seed does not meet timing"
+        )
+        print(f"  FAILED     {seeds}; logs: {relative(best.folder.parent, paths.root)}")
         return False
     reached = f"{best.main_clock[0]:.1f} MHz for a clock of {pll.mhz:g} MHz"
-    print(f"  f_max      {reached}: seed {good}, the first that will do ({len(tried)} tried)")
+    print(f"  f_max      {reached}: seed {good}, the first that meets timing ({len(tried)} tried)")
     if problems:
         return False
     print(f"  bitstream  {relative(bitstream, paths.root)} (load it with: {chosen.load})")

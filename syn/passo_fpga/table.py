@@ -130,17 +130,17 @@ class Table:
         for key in self._facts:
             if key not in self._known:
                 known = ", ".join(sorted(self._known))
-                raise self.error(key, f"there is no such key here; there are {known}")
+                raise self.error(key, f"unknown key; must be one of {known}")
 
     def _take(self, key: str, default: Any, what: str, fits: Any) -> Any:
         self._known.add(key)
         if key not in self._facts:
             if default is _NEEDED:
-                raise self.error(key, f"missing; it has to be {what}")
+                raise self.error(key, f"missing; must be {what}")
             return default
         value = self._facts[key]
         if not fits(value):
-            raise self.error(key, f"{value!r} is not {what}")
+            raise self.error(key, f"must be {what}, not {value!r}")
         return value
 
     def _path(self, key: str) -> str:

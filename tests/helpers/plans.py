@@ -109,7 +109,7 @@ GOOD_BY_SPEED = BySpeed((500, -3), JERK, q32(1000), q32(100), q32(50), q32(1e5),
 
 
 def checked_library() -> Path:
-    """Build the planner such that undefined behaviour is fatal."""
+    """Build the planner such that undefined behavior is fatal."""
     files = compiler.sources(paths.planner, paths.protocol)
     return compiler.library("checked_planner", (paths.planner, paths.protocol), files, *compiler.DEFINED)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""C programs under the sanitizers of addresses and undefined behaviour; what they share is compiled once."""
+"""C programs under the sanitizers of addresses and undefined behavior; what they share is compiled once."""
 
 from collections.abc import Iterable
 from pathlib import Path

@@ -1,4 +1,4 @@
 # SPDX-License-Identifier: MIT
-"""Colours of the pictures."""
+"""Colors of the pictures."""
 
 GREY, PALE = "#57606a", "#f6f8fa"

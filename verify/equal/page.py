@@ -11,7 +11,7 @@ from verify.equal.coupling import Coupling
 
 PAGE = paths.reference / "equality.md"
 BEGIN = "<!-- equal: make verify writes from here -->"
-HEADER = ("module", "RTL", "what it is", "goals", "bits", "seconds", "bugs seen")
+HEADER = ("module", "RTL", "what it is", "goals", "bits", "seconds", "faults detected")
 TEXTS = 3  # columns of them; the others are numbers
 
 
@@ -33,8 +33,8 @@ def _share(report: Mapping[str, Any]) -> str:
     modules = len({result["module"] for result in report["results"]})
     return (
         f"{modules} modules, with {proved:,} of the {bits:,} bits ({100 * proved / bits:.0f} %)"
-        " of the registers of a core of 4 axes\nwith all parts (block RAMs are not counted)."
-        f" All proofs and planted bugs took {seconds / 60:.0f} minutes on two cores."
+        " of the registers of a core with 4 axes\nand all optional blocks (block RAMs are not counted)."
+        f" All proofs and injected faults took {seconds / 60:.0f} minutes on two cores."
     )
 
 

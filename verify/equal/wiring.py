@@ -152,16 +152,18 @@ def check(seed: int, names: Collection[str] = ()) -> dict[str, str]:
     seen: dict[str, str] = {}
     with ThreadPoolExecutor(JOBS) as pool:
         if at := "".join(pool.map(lambda player: player.first_seen(0), players)):
-            raise Failure(f"without a cut, the RTL differs from the model: {at}")
+            raise Failure(f"RTL and model differ without an inversion: {at}")
         running = {pool.submit(_first_seen, wire.number, players): wire for wire in chosen}
         for count, done in enumerate(as_completed(running), 1):
             name = running[done].name
             seen[name] = done.result()
             if not seen[name]:
-                console.print(f"not seen: {name}", style="red", highlight=False)
+                console.print(f"not detected: {name}", style="red", highlight=False)
             if count % 20 == 0 or count == len(chosen):
                 none = sum(not at for at in seen.values())
-                console.print(f"{count} of {len(chosen)} connections cut, {none} not seen", highlight=False)
+                console.print(
+                    f"{count} of {len(chosen)} connections inverted, {none} not detected", highlight=False
+                )
     return {wire.name: seen[wire.name] for wire in chosen}
 
 
@@ -183,7 +185,7 @@ def _first_seen(wire: int, players: list[Player]) -> str:
 def main() -> None:
     """Cut all wires, print what was seen, and exit with 1 if a cut is not."""
     parser = argparse.ArgumentParser(prog="python -m verify.equal.wiring", description=__doc__.split("\n")[0])
-    parser.add_argument("--seed", type=int, default=1, help="of the histories (default: %(default)s)")
+    parser.add_argument("--seed", type=int, default=1, help="seed of the scenarios (default: %(default)s)")
     parser.add_argument("connection", nargs="*", help="module or module.instance.port (default: all)")
     arguments = parser.parse_args()
     began = time.monotonic()
@@ -195,7 +197,7 @@ def main() -> None:
     console.print(made)
     found = sum(bool(at) for at in seen.values())
     console.print(
-        f"{found} of {len(seen)} inverted connections are seen; {time.monotonic() - began:.0f} s.",
+        f"{found} of {len(seen)} inverted connections are detected; {time.monotonic() - began:.0f} s.",
         highlight=False,
     )
     write_json(seen, paths.build / "wiring.json")

@@ -155,7 +155,7 @@ def proofs() -> list[Proof]:
             Promise(**(promise | {"asserts": tuple(promise["asserts"])})) for promise in entry.pop("promise")
         )
         if len({promise.name for promise in promises}) != len(promises):
-            raise ValueError(f"{entry['name']}: two promises have the same name")
+            raise ValueError(f"{entry['name']}: two properties have the same name")
         if "shorter" in entry:
             entry["shorter"] = Promise("shorter", "", (), **entry["shorter"])
         entry["parameters"] = tuple(entry.get("parameters", {}).items())
@@ -267,8 +267,8 @@ def main() -> None:
     """Run the selected proofs, print a table, and exit with 1 unless all are good."""
     parser = argparse.ArgumentParser(prog="python -m verify.formal.run", description=__doc__.split("\n")[0])
     parser.add_argument("proof", nargs="*", help="proofs to run (default: all)")
-    parser.add_argument("--quick", action="store_true", help="only those that 'make test' runs")
-    parser.add_argument("--list", action="store_true", help="only print the promises")
+    parser.add_argument("--quick", action="store_true", help="only the proofs that 'make test' runs")
+    parser.add_argument("--list", action="store_true", help="only print the properties")
     parser.add_argument("--jobs", type=int, default=JOBS, help="parallel runs (default: %(default)s)")
     arguments = parser.parse_args()
 

@@ -17,7 +17,7 @@ from verify.mutants.netlist import Mutant
 
 PAGE = paths.reference / "mutants.md"
 REASONS = Path(__file__).parent / "reasons.toml"
-NO_REASON = "no promise says it yet"
+NO_REASON = "no property covers it yet"
 
 
 @dataclass
@@ -172,8 +172,8 @@ def _living(all_scores: Sequence[Score]) -> str:
 
 
 NOT_ENDED = """
-These are the figures of a run that has not ended: not all judges have seen all mutants, so that a mutant
-that lives here may be killed yet."""
+This run has not finished: not every checker has tried every mutant, so a mutant that is alive here may still
+be killed."""
 
 
 def write(rtl: Sequence[Score], c: Sequence[Score], seed: int, ended: bool = True) -> None:
@@ -186,8 +186,8 @@ def write(rtl: Sequence[Score], c: Sequence[Score], seed: int, ended: bool = Tru
     tail = rest.split(end)[1]
 
     def of(score: Score) -> str:
-        waits = f", {score.waiting} are not played yet" if score.waiting else ""
-        equal = f"{score.equal} more are no faults"
+        waits = f", {score.waiting} not played yet" if score.waiting else ""
+        equal = f"{score.equal} more are equivalent"
         return f"{score.dead:,} of {score.faults:,} ({score.share:.1%}; {equal}{waits})"
 
     survivors = f"""
@@ -201,8 +201,8 @@ def write(rtl: Sequence[Score], c: Sequence[Score], seed: int, ended: bool = Tru
 """
 
     figures = f"""
-With seed {seed}, killed of the mutants of the RTL: {of(all_rtl)};
-of those of the C sources: {of(all_c)}.
+Seed {seed}. Mutants killed in the RTL: {of(all_rtl)}; in the C sources:
+{of(all_c)}.
 
 ### RTL
 

@@ -28,7 +28,7 @@ MACHINE_JUDGED = {
     "slews": "slews of soft stops",
     "latches": "positions latched, to the clock",
     "fired": "triggers that fired",
-    "tries": "steps tried towards an active switch",
+    "tries": "steps tried toward an active switch",
     "levels": "levels longer than the filter",
     "glitches": "glitches that it must ignore",
     "estops": "e-stops",

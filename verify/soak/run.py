@@ -103,11 +103,11 @@ def main() -> None:
     """Parse the command line and run; exit status 1 if a history failed or a defect was not caught."""
     parser = argparse.ArgumentParser(prog="python -m verify.soak.run", description=__doc__.split("\n")[0])
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--history", type=int, help="print a single history")
-    parser.add_argument("--driver", action="store_true", help="play the history through the driver")
-    parser.add_argument("--kind", choices=(*KINDS, *DRIVER_KINDS), help="play the history of a machine")
+    parser.add_argument("--history", type=int, help="play and print a single scenario")
+    parser.add_argument("--driver", action="store_true", help="play the scenario through the driver")
+    parser.add_argument("--kind", choices=(*KINDS, *DRIVER_KINDS), help="play a scenario of this kind")
     parser.add_argument("--only", default=",".join(PARTS), help="parts to play (default: %(default)s)")
-    parser.add_argument("--scale", type=float, default=1.0, help="multiply the number of histories")
+    parser.add_argument("--scale", type=float, default=1.0, help="multiply the number of scenarios")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     arguments = parser.parse_args()
 

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""A kit for cocotb tests of designs with the core in them: docs/cocotb.md."""
+"""Helpers for cocotb tests of designs that contain the core: docs/cocotb.md."""

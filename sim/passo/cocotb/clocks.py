@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The clock of a test and its count, and recorders of signals.
 
-Conventions. Clock `n` is the n-th rising edge after the clock was started; an output "of clock n" is what a
-register shows after that edge. Tests write inputs and look at outputs on falling edges, so that neither races
-the rising edge: what is written after clock n counts like a register that changed with clock n.
+Conventions. Clock `n` is the n-th rising edge after the clock was started; an output "of clock n" is the
+value of a register after that edge. Tests write inputs and read outputs on falling edges, so that neither
+races the rising edge: a value written after clock n acts like a register that changed with clock n.
 """
 
 from collections.abc import Callable

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""A host at the SPI pins of a design, for tests in plain code.
+"""A host at the SPI pins of a design, for tests in synchronous code.
 
     @host_test
     def it_moves(host: Host) -> None:
         driver = Driver(host)
         ...
 
-Such a test is plain code in its own thread, because passo.link, passo.host and passo.driver are not
-coroutines. Simulated time passes in `run`, `transfer` and what is built on them.
+Such a test is synchronous code in its own thread, because passo.link, passo.host and passo.driver are not
+coroutines. Simulated time passes in `run`, `transfer` and the functions built on them.
 """
 
 import functools

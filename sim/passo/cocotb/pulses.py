@@ -156,7 +156,7 @@ class StepMonitor:
 
     `step` and `direction` have one bit per axis, and `timings` is theirs; of these only polarities and mode
     count here. A pin that is X or changes off the rising clock edges raises PulseError inside the simulation,
-    which fails the running test at once.
+    which fails the running test immediately.
     """
 
     AXIS: ClassVar[type[AxisSteps]] = AxisSteps

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""SPI master for the pins of the core; passo.frame makes the words of its frames and reads the replies.
+"""SPI master for the pins of the core; passo.frame encodes the frames and decodes the replies.
 
 spi = SpiMaster(dut, half_period=27_778)
 mosi = frame.read_frame(1, ADDRESS_PARAMETERS, 1)

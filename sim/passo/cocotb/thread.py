@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Plain code in a cocotb test: it runs in a thread and waits for coroutines."""
+"""Synchronous code in a cocotb test: it runs in a thread and waits for coroutines."""
 
 import queue
 import threading

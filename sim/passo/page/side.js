@@ -5,7 +5,7 @@
 const BINS = 61;
 const PATH_POINTS = 20000;
 const SPEED_SAMPLES = 4000, SPEED_WINDOW = 0.004;  // seconds
-// From slow to fast, of even lightness in between, also for the colour-blind.
+// From slow to fast, of even lightness in between, also for the color-blind.
 const SPEED_COLORS = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
 
 function speedColor(share) {
@@ -128,7 +128,7 @@ class ToolPath {
         return { points, speeds, fastest: Math.max(...speeds) };
     }
 
-    // A scale of the colours, with its ends.
+    // A scale of the colors, with its ends.
     drawScale(ctx, fastest, unit, right) {
         const width = 90, left = right - width;
         for (let i = 0; i < width; i++) {

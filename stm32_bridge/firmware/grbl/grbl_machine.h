@@ -23,7 +23,7 @@
 #define AXES 0
 #endif
 
-/* Switches that are there, a bit per axis; and whether there is a probe. */
+/* Fitted switches, a bit per axis; and whether there is a probe. */
 #ifndef LIMITS_LOW
 #define LIMITS_LOW 0
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The image that speaks grbl: the UART feeds the protocol, which feeds the core.
+ * The grbl image: the UART feeds the protocol, which feeds the core.
  */
 #include "board.h"
 #include "flash.h"

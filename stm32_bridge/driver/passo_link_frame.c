@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
  * One chip select: transfer, decoding of the reply, and the queue room in its status word.
  */
-#include "passo_exchange.h"
+#include "passo_link_frame.h"
 
 #include "passo_words.h"
 
 /* Mask of an address: the register within its channel. */
 #define PLACE (PASSO_ADDRESS_CHANNEL_STRIDE - 1u)
 
-/* Minimum number of equal words in a reply for a valid status: two could have the same bit error. */
+/* Minimum number of equal words in a reply for a valid status: two could share a bit error. */
 #define STATUS_WORDS 3u
 
 bool passo_host_status_of(const uint32_t *miso, size_t count, uint32_t *status)
@@ -62,7 +62,7 @@ static bool is_read(const struct passo_host *host)
 	return passo_unpack_header(host->send[0]).operation == PASSO_OPERATION_READ;
 }
 
-/* Begins a chip select: PENDING. That of a read, whose words the caller needs, is over on return. */
+/* Starts a chip select: PENDING. That of a read, whose words the caller needs, is complete on return. */
 static enum passo_error launch(struct passo_host *host)
 {
 	const struct passo_hardware *hardware = &host->hardware;
@@ -74,7 +74,7 @@ static enum passo_error launch(struct passo_host *host)
 	if (!(stays ? hardware->start : hardware->transfer)(
 		hardware->context, host->send, host->receive, host->words))
 		return PASSO_ERROR_TRANSFER;
-	host->on_wire = stays;
+	host->in_flight = stays;
 	return stays ? PASSO_PENDING : PASSO_OK;
 }
 
@@ -82,14 +82,14 @@ static enum passo_error land(struct passo_host *host)
 {
 	enum passo_error error = host->hardware.finish(host->hardware.context);
 
-	host->on_wire = error == PASSO_PENDING;
+	host->in_flight = error == PASSO_PENDING;
 	return error;
 }
 
 enum passo_error passo_host_exchange(struct passo_host *host, bool *known)
 {
 	enum passo_verdict verdict = PASSO_VERDICT_OK;
-	enum passo_error error = host->on_wire ? land(host) : launch(host);
+	enum passo_error error = host->in_flight ? land(host) : launch(host);
 
 	*known = false;
 	if (error != PASSO_OK)

@@ -5,12 +5,12 @@
 
 bool passo_driver_is_broken(const struct passo *passo)
 {
-	return passo->belief >= PASSO_BELIEF_BROKEN;
+	return passo->assumed >= PASSO_ASSUMED_BROKEN;
 }
 
 bool passo_driver_is_stopped(const struct passo *passo)
 {
-	return passo->belief == PASSO_BELIEF_STOPPED || passo->belief == PASSO_BELIEF_BROKEN_STOPPED;
+	return passo->assumed == PASSO_ASSUMED_STOPPED || passo->assumed == PASSO_ASSUMED_BROKEN_STOPPED;
 }
 
 bool passo_driver_is_turning(const struct passo *passo)
@@ -35,17 +35,17 @@ enum passo_error passo_driver_fault_of(enum passo_cause cause)
 	return (unsigned)cause <= PASSO_CAUSE_FOLLOWING_ERROR ? faults[cause] : PASSO_OK;
 }
 
-void passo_driver_doubt(struct passo *passo, enum passo_belief worse)
+void passo_driver_assume_worse(struct passo *passo, enum passo_assumed worse)
 {
-	if (passo->belief == PASSO_BELIEF_READY)
-		passo->belief = worse;
-	else if (passo->belief != worse)
-		passo->belief = PASSO_BELIEF_BROKEN_STOPPED;
+	if (passo->assumed == PASSO_ASSUMED_READY)
+		passo->assumed = worse;
+	else if (passo->assumed != worse)
+		passo->assumed = PASSO_ASSUMED_BROKEN_STOPPED;
 }
 
 void passo_driver_break(struct passo *passo)
 {
-	passo_driver_doubt(passo, PASSO_BELIEF_BROKEN);
+	passo_driver_assume_worse(passo, PASSO_ASSUMED_BROKEN);
 	if (!passo_driver_is_turning(passo))
 		passo->expects = PASSO_EXPECT_END;
 	passo->idle_looks = 0;
@@ -103,7 +103,7 @@ enum passo_error passo_driver_take_over(struct passo *passo)
 	passo->output.power = 0;
 	passo->output.raster = false;
 	const bool is_kept = passo->snapshot.state == PASSO_STATE_STOPPED; /* by e-stop or an alarm */
-	passo->belief = is_kept ? PASSO_BELIEF_STOPPED : PASSO_BELIEF_READY;
+	passo->assumed = is_kept ? PASSO_ASSUMED_STOPPED : PASSO_ASSUMED_READY;
 	passo->fault = is_kept ? passo_driver_fault_of(passo->snapshot.cause) : PASSO_OK;
 	if (is_kept)
 		return passo->fault;
@@ -112,7 +112,7 @@ enum passo_error passo_driver_take_over(struct passo *passo)
 
 enum passo_error passo_driver_ready(struct passo *passo, bool needs_rest)
 {
-	enum passo_error error = passo_driver_restrain(passo, PASSO_POST_RUN);
+	enum passo_error error = passo_driver_require_sent(passo, PASSO_POST_RUN);
 
 	if (error != PASSO_OK)
 		return error;

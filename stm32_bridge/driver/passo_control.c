@@ -15,7 +15,7 @@ static enum passo_error set_rate(struct passo *passo, bool held, uint32_t target
 {
 	const bool was_held = passo->held;
 	const uint32_t was_target = passo->rate_target, was = passo_driver_rate(passo);
-	enum passo_error error = passo_driver_restrain(passo, PASSO_POST_STOP);
+	enum passo_error error = passo_driver_require_sent(passo, PASSO_POST_STOP);
 
 	if (passo->post == PASSO_POST_RATE)
 		passo_driver_drop(passo);
@@ -25,7 +25,7 @@ static enum passo_error set_rate(struct passo *passo, bool held, uint32_t target
 	if (error == PASSO_OK || is_slower)
 		passo->rate_due = true;
 	if (error == PASSO_OK)
-		error = passo_driver_insist_on(passo, PASSO_POST_RATE);
+		error = passo_driver_send_due_until(passo, PASSO_POST_RATE);
 	if (error != PASSO_OK && !is_slower) {
 		passo->held = was_held;
 		passo->rate_target = was_target;
@@ -76,7 +76,7 @@ static enum passo_error halt(struct passo *passo, enum passo_due due)
 		return error;
 	passo->aborts |= due == PASSO_DUE_ABORT;
 	passo_driver_halt(passo, due);
-	return passo_driver_insist_on(passo, PASSO_POST_STOP);
+	return passo_driver_send_due_until(passo, PASSO_POST_STOP);
 }
 
 enum passo_error passo_stop(struct passo *passo)
@@ -95,14 +95,14 @@ enum passo_error passo_clear(struct passo *passo)
 
 	if (error != PASSO_OK)
 		return error;
-	error = passo_driver_restrain(passo, PASSO_POST_RUN);
+	error = passo_driver_require_sent(passo, PASSO_POST_RUN);
 	if (error == PASSO_OK)
 		error = passo_driver_look_at_rest(passo);
 	if (error != PASSO_OK)
 		return error;
 	/* between two motions none is running, but one is queued */
 	const bool goes_on = passo->snapshot.state == PASSO_STATE_IDLE && !passo_driver_at_rest(passo)
-	                  && passo->belief == PASSO_BELIEF_READY && passo->stream != PASSO_STREAM_FILLS;
+	                  && passo->assumed == PASSO_ASSUMED_READY && passo->stream != PASSO_STREAM_FILLS;
 	if (goes_on || !passo->snapshot.quiet)
 		return PASSO_ERROR_MOVING;
 	passo_driver_end_stream(passo);
@@ -113,7 +113,7 @@ enum passo_error passo_clear(struct passo *passo)
 		error = passo_driver_disarm(passo);
 	if (error != PASSO_OK)
 		return error;
-	passo_driver_doubt(passo, PASSO_BELIEF_BROKEN); /* until clear has succeeded */
+	passo_driver_assume_worse(passo, PASSO_ASSUMED_BROKEN); /* until clear has succeeded */
 	/* queued motions must not start in the meantime */
 	if (!passo_driver_at_rest(passo))
 		error = passo_driver_gate(passo, PASSO_GATE_CLOSED);
@@ -133,12 +133,12 @@ enum passo_error passo_wait_for_sync(struct passo *passo, bool on)
 	if (error != PASSO_OK)
 		return error;
 	const enum passo_gate gate = on ? PASSO_GATE_SYNC : PASSO_GATE_OPEN;
-	error = passo_driver_restrain(passo, PASSO_POST_STOP);
+	error = passo_driver_require_sent(passo, PASSO_POST_STOP);
 	if (passo->post == PASSO_POST_START)
 		passo_driver_drop(passo); /* it would open the gate as it was before */
 	if (error == PASSO_OK && passo->stream != PASSO_STREAM_FILLS)
 		error = passo_driver_gate(passo, gate);
-	if (error == PASSO_OK || (on && passo_driver_is_wire(error)))
+	if (error == PASSO_OK || (on && passo_driver_is_link_error(error)))
 		passo->gate = gate;
 	return error;
 }

@@ -2,18 +2,18 @@
  * Retries of a frame until its outcome is known. See passo_host.h.
  *
  * Detection of a core reset: status words carry the sequence number that the core accepted last. The reply to
- * the first try of a frame must show a number that this host has sent; after reset the core shows 0, which is
- * never sent. If the first reply was not valid, the frame itself may already have changed that number; then
- * the host reads a refusal counter that it has made nonzero before and that a reset clears.
+ * the first attempt of a frame must show a number that this host has sent; after reset the core shows 0,
+ * which is never sent. If the first reply was not valid, the frame itself may already have changed that
+ * number; then the host reads a reject counter that it made nonzero before and that a reset clears.
  */
-#include "passo_tries.h"
+#include "passo_link_retry.h"
 
 #include <string.h>
 
-#include "passo_exchange.h"
+#include "passo_link_frame.h"
 #include "passo_words.h"
 
-/* Sequence number of reads. The ack of a refused read is repeated; with this number it stays distinguishable
+/* Sequence number of reads. The ack of a rejected read is repeated; with this number it stays distinguishable
  * when a clock is lost or doubled: shifted by a bit in either direction, it is a different number. */
 #define READ_SEQUENCE 0x55u
 
@@ -47,7 +47,7 @@ static enum passo_error lose(struct passo_host *host)
 	return PASSO_ERROR_CORE_RESET;
 }
 
-/* One try of a read. */
+/* One attempt of a read. */
 static enum passo_error try_read(struct passo_host *host)
 {
 	bool known;
@@ -115,7 +115,7 @@ void passo_host_give_up(struct passo_host *host)
 	struct passo_run run = passo_unpack_run(host->send[1]);
 	bool known;
 
-	while (host->on_wire)
+	while (host->in_flight)
 		passo_host_exchange(host, &known);
 	if (!is_run(host))
 		return;
@@ -125,7 +125,7 @@ void passo_host_give_up(struct passo_host *host)
 	host->run_due = true;
 }
 
-/* One try of a write; PENDING: another try, or a check for a core reset, has to follow. */
+/* One attempt of a write; PENDING: another attempt, or a check for a core reset, must follow. */
 static enum passo_error try_write(struct passo_host *host)
 {
 	bool known;
