@@ -66,7 +66,8 @@ static enum passo_plan_error add(struct passo_path_planner *path, const struct p
 	path->dwell = 0;
 	path->added++;
 	path->open = true;
-	path->waits = false;
+	path->waits = path->waits && path->unsettled > 0
+	    && path->added - path->planned < path->capacity;
 	if (passo_path_clocks(item) >= (uint64_t)LINES_MERGED * path->line_clocks)
 		passo_path_close(path); /* too long for that to be of use */
 	return PASSO_PLAN_OK;
@@ -212,7 +213,8 @@ void passo_path_look_back(struct passo_path_planner *path)
 		next = item;
 	}
 	path->final = final;
-	path->anew = path->waits = false;
+	path->waits = path->waits && !path->anew && path->unsettled >= path->final;
+	path->anew = false;
 }
 
 bool passo_path_next_line(struct passo_path_planner *path, struct passo_line *line)

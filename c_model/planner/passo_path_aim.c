@@ -95,6 +95,7 @@ static struct passo_path_aim find_aim(
 		for (unsigned i = 0; i < count; i++) {
 			if (!is_due(path, &aim, index, &parts[i], need)) {
 				aim.open = true;
+				aim.index = passo_path_is_held_back(path, index) ? 0 : index;
 				return aim;
 			}
 			if (is_enough(path, &aim, &parts[i]))

@@ -54,7 +54,8 @@ struct passo_path_aim {
 	uint64_t length, square; /* of the path to there, UQ32.32 substeps; of the velocity there */
 	uint64_t slope;
 	bool rest;      /* it comes to rest there */
-	bool open;      /* it ends there because what follows is not settled */
+	bool open;      /* it ends there because what follows is not settled: */
+	uint32_t index; /* this item */
 	bool plain;     /* its ramp is linear */
 	uint64_t first; /* slope of the part that it began with; `slope` is the steepest */
 };

@@ -142,6 +142,7 @@ static bool next_ramp(struct passo_path_planner *path, uint32_t held, struct pas
 
 	/* the same ramps, whenever they are asked for: none that a further line would make longer */
 	path->waits = aim.open && !is_full && held >= path->reserve;
+	path->unsettled = aim.index;
 	if (path->waits)
 		return false;
 	if (aim.open

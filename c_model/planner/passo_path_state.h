@@ -138,6 +138,7 @@ struct passo_path_planner {
 	bool lines_end, ramps_end;
 	bool anew;           /* the limits of all items have changed */
 	bool waits;          /* for a further line, to make the next ramp */
+	uint32_t unsettled;  /* it waits until this item is settled */
 	uint32_t override;   /* UQ16.16 */
 	uint32_t rapid;      /* the same, of rapids */
 	uint32_t reserve;    /* ticks */
