@@ -169,7 +169,8 @@ uint64_t passo_divide(struct passo_u128 a, uint64_t divisor, uint64_t *remainder
 		rest = a.high << shift | a.low >> 1 >> (63 - shift);
 		a.low <<= shift;
 		uint32_t inverse = reciprocal(divisor);
-		quotient = (uint64_t)quotient_digit(&rest, (uint32_t)high_half(a.low), divisor, inverse) << 32;
+		quotient = (uint64_t)quotient_digit(&rest, (uint32_t)high_half(a.low), divisor, inverse)
+		        << 32;
 		quotient |= quotient_digit(&rest, (uint32_t)a.low, divisor, inverse);
 		rest >>= shift;
 	}

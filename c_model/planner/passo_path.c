@@ -66,8 +66,7 @@ static enum passo_plan_error add(struct passo_path_planner *path, const struct p
 	path->dwell = 0;
 	path->added++;
 	path->open = true;
-	path->waits = path->waits && path->unsettled > 0
-	    && path->added - path->planned < path->capacity;
+	path->waits = path->waits && path->unsettled > 0 && path->added - path->planned < path->capacity;
 	if (passo_path_clocks(item) >= (uint64_t)LINES_MERGED * path->line_clocks)
 		passo_path_close(path); /* too long for that to be of use */
 	return PASSO_PLAN_OK;
@@ -167,8 +166,8 @@ static uint64_t end_square(const struct passo_path_item *item, const struct pass
 
 uint64_t passo_path_end_square(const struct passo_path_planner *path, uint32_t index)
 {
-	return end_square(passo_path_item(path, index),
-	    index + 1 == path->added ? NULL : passo_path_item(path, index + 1));
+	return end_square(
+	    passo_path_item(path, index), index + 1 == path->added ? NULL : passo_path_item(path, index + 1));
 }
 
 bool passo_path_is_settled(const struct passo_path_planner *path, uint32_t index)

@@ -72,8 +72,9 @@ void passo_path_bend(const struct passo_path_planner *path, const int64_t *curva
 
 /* A curve over a length. */
 struct growth {
-	uint64_t grows;      /* B l, UQ.38 */
-	uint32_t reciprocal; /* of 1 + B l: by a divisor of 16 bits, rounded up, so that it is never too steep */
+	uint64_t grows; /* B l, UQ.38 */
+	uint32_t
+	    reciprocal; /* of 1 + B l: by a divisor of 16 bits, rounded up, so that it is never too steep */
 	uint32_t shift;
 };
 
@@ -94,7 +95,7 @@ uint64_t passo_path_slope(
 	uint64_t slope = item->slope;
 
 	for (uint32_t axis = 0, axes = (up ? curve->helps : curve->hinders)[half]; axes > 0;
-	     axis++, axes /= 2) {
+	    axis++, axes /= 2) {
 		if (axes % 2 == 0)
 			continue;
 		const uint32_t bend = curve->bend[half][axis];
@@ -119,10 +120,12 @@ void passo_path_set_fall(struct passo_path_item *item)
 		if (axes % 2 == 0)
 			continue;
 		const struct growth growth = growth_over(curve->bend[0][axis], length);
-		const uint64_t slope = passo_mul_shift(unpacked(curve->slope[axis]), growth.reciprocal, growth.shift);
+		const uint64_t slope =
+		    passo_mul_shift(unpacked(curve->slope[axis]), growth.reciprocal, growth.shift);
 
 		fall = passo_path_smaller(fall, passo_path_gain(passo_path_down(slope), length));
-		loss = passo_path_larger(loss, passo_mul_shift(growth.grows, growth.reciprocal, growth.shift + 6));
+		loss = passo_path_larger(
+		    loss, passo_mul_shift(growth.grows, growth.reciprocal, growth.shift + 6));
 	}
 	curve->fall = packed(fall);
 	curve->loss = (uint32_t)passo_path_smaller(passo_path_down(loss) + 1, UINT32_MAX);
@@ -149,15 +152,15 @@ uint64_t passo_path_before(const struct passo_path_item *item, uint64_t end, uin
 	const uint64_t second =
 	    halves > 1 ? passo_path_smaller(half > behind ? half - behind : 0, length) : length;
 	uint64_t square = end
-	    + passo_path_gain(
-		passo_path_down(passo_path_slope(item, halves - 1, false, end, second)), second);
+	                + passo_path_gain(
+			    passo_path_down(passo_path_slope(item, halves - 1, false, end, second)), second);
 
 	if (second < length) {
 		const uint64_t first = length - second;
 
 		square = passo_path_smaller(square, passo_path_larger(item->top, end));
-		square += passo_path_gain(
-		    passo_path_down(passo_path_slope(item, 0, false, square, first)), first);
+		square +=
+		    passo_path_gain(passo_path_down(passo_path_slope(item, 0, false, square, first)), first);
 	}
 	return square;
 }

@@ -9,7 +9,8 @@
 /* Bits of the longest component before the length is computed: the sum of eight squares has 64. */
 #define COMPONENT_BITS 30u
 
-/* Unit vector and length (UQ32.16 substeps; saturates) of a line between two targets; false: it has no length.
+/* Unit vector and length (UQ32.16 substeps; saturates) of a line between two targets; false: it has no
+ * length.
  */
 static bool find_direction(const struct passo_path_planner *path, const int64_t *from, const int64_t *target,
     int32_t *unit, uint64_t *length)
@@ -45,9 +46,9 @@ static bool find_direction(const struct passo_path_planner *path, const int64_t 
 	return true;
 }
 
-/* The path that a line replaces is below a parabola over it, `bulge` x (l - x). If that is so of the last line,
- * it is of the one to a new end, for a parabola that is also above the end of the last one: so it is above the
- * line from there to the new end. */
+/* The path that a line replaces is below a parabola over it, `bulge` x (l - x). If that is so of the last
+ * line, it is of the one to a new end, for a parabola that is also above the end of the last one: so it is
+ * above the line from there to the new end. */
 uint64_t passo_path_off(const struct passo_path_planner *path, const int64_t *target, uint64_t *bulge)
 {
 	const struct passo_path_place *end = &path->at;
@@ -62,8 +63,8 @@ uint64_t passo_path_off(const struct passo_path_planner *path, const int64_t *ta
 		turn += change * change;
 	}
 	turn = ((uint64_t)passo_isqrt64(turn) + 1) << 32;
-	*bulge = passo_path_larger(turn / (length - end->length),
-	    passo_mul_div(*bulge, end->length, length) + turn / length);
+	*bulge = passo_path_larger(
+	    turn / (length - end->length), passo_mul_div(*bulge, end->length, length) + turn / length);
 	return passo_mul_shift(passo_mul_shift(*bulge, length, PASSO_PATH_UNIT_BITS), length, 34);
 }
 

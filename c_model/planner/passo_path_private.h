@@ -170,8 +170,8 @@ static inline uint64_t passo_path_down(uint64_t slope)
 	return slope - slope / 256;
 }
 
-/* The highest square, within an item, from which it falls to the one at its end over a length that ends so far
- * before that. */
+/* The highest square, within an item, from which it falls to the one at its end over a length that ends so
+ * far before that. */
 uint64_t passo_path_before(
     const struct passo_path_item *item, uint64_t end, uint64_t length, uint64_t behind);
 
@@ -212,8 +212,8 @@ void passo_path_add_slope(struct passo_path_item *item, uint32_t axis, uint32_t 
 /* What passo_path_fall() needs of the curve and the length of an item. */
 void passo_path_set_fall(struct passo_path_item *item);
 
-/* Change of the square down a whole item that is not halved, to a square at its end: the slope there, over the
- * line. */
+/* Change of the square down a whole item that is not halved, to a square at its end: the slope there, over
+ * the line. */
 uint64_t passo_path_fall(const struct passo_path_item *item, uint64_t end);
 
 /* Adds a curvature, Q15.48 per substep, to a half of an item with this unit vector. */
@@ -259,8 +259,8 @@ uint64_t passo_path_shaped_corner(const struct passo_path_planner *path,
 uint64_t passo_path_limit_corner(
     struct passo_path_planner *path, const int32_t *unit, uint64_t length, struct passo_path_item *item);
 
-/* By how much a line from the start of the last one, to a target, is off that one and all that it replaces, at
- * most: UQ32.16 substeps; saturates if it is not longer. */
+/* By how much a line from the start of the last one, to a target, is off that one and all that it replaces,
+ * at most: UQ32.16 substeps; saturates if it is not longer. */
 uint64_t passo_path_off(const struct passo_path_planner *path, const int64_t *target, uint64_t *bulge);
 
 /* Sets the limits of an item, `top` and, unless the path rests there, `corner`; those before it are known. */

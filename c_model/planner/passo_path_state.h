@@ -39,11 +39,13 @@ struct passo_path_descent {
 struct passo_path_curve {
 	uint32_t slope[PASSO_PATH_AXES_MAX]; /* of the square, where it is 0 */
 	/* of each half, or of the whole line: */
-	uint32_t bend[PASSO_PATH_HALVES][PASSO_PATH_AXES_MAX]; /* UQ16.48 per substep: the square takes of it */
-	uint8_t helps[PASSO_PATH_HALVES];                      /* bit i set: on the way up */
-	uint8_t hinders[PASSO_PATH_HALVES];                    /* on the way down */
-	bool halved;                                           /* each half has its own */
-	uint32_t fall; /* of a line that is not: change of the square from its start down to 0, by its curve */
+	uint32_t bend[PASSO_PATH_HALVES]
+		     [PASSO_PATH_AXES_MAX]; /* UQ16.48 per substep: the square takes of it */
+	uint8_t helps[PASSO_PATH_HALVES];   /* bit i set: on the way up */
+	uint8_t hinders[PASSO_PATH_HALVES]; /* on the way down */
+	bool halved;                        /* each half has its own */
+	uint32_t
+	    fall; /* of a line that is not: change of the square from its start down to 0, by its curve */
 	uint32_t loss; /* UQ0.32: what a square at its end takes of that; no packed number */
 };
 
@@ -120,12 +122,12 @@ struct passo_path_planner {
 	struct passo_path_place at, before; /* its end and its start */
 	uint64_t deviation, tolerance;      /* UQ32.16 substeps */
 	uint64_t own_tolerance;             /* the same: that of the settings */
-	uint64_t bulge; /* UQ.46 per substep: the last line is off those that it replaces by no more than
-	                   this times the distances to both of its ends */
+	uint64_t bulge;  /* UQ.46 per substep: the last line is off those that it replaces by no more than
+	                    this times the distances to both of its ends */
 	uint64_t feed;   /* of the last line, as it was given */
 	uint32_t wanted; /* the same, UQ0.32 */
-	bool begins;   /* the path rested before the last line */
-	bool open;     /* the last line may still become a longer one: no ramp relies on it */
+	bool begins;     /* the path rested before the last line */
+	bool open;       /* the last line may still become a longer one: no ramp relies on it */
 	uint32_t substeps_per_mm;
 	uint32_t dwell; /* ticks before the next line */
 	bool rest;      /* before the next line */

@@ -46,11 +46,10 @@ static void grbl_defaults(struct passo_grbl_settings *settings)
 void grbl_machine(
     struct passo_grbl_setup *setup, const struct passo *passo, const struct passo_storage_pages *pages)
 {
-	*setup = (struct passo_grbl_setup){
-	    .path = {.machine = *passo_machine(passo),
-	        .profile = PASSO_PROFILE_LINEAR,
-	        .reserve_clocks = CORE_HZ / RESERVES,
-	        .polls = POLLS},
+	*setup = (struct passo_grbl_setup){.path = {.machine = *passo_machine(passo),
+					       .profile = PASSO_PROFILE_LINEAR,
+					       .reserve_clocks = CORE_HZ / RESERVES,
+					       .polls = POLLS},
 	    .pins = {.step_low_ns = PIN_CLOCKS, .dir_setup_ns = PIN_CLOCKS, .dir_hold_ns = PIN_CLOCKS},
 	    .limits_low = LIMITS_LOW,
 	    .limits_high = LIMITS_HIGH,
