@@ -127,8 +127,8 @@ def test_start_starts_together(bench: Bench) -> None:
 @pytest.mark.parametrize(
     ("channels", "word", "problem"),
     [
-        (1, "1", "the core has only channel 0, not 1"),
-        (3, "3", "the core has channels 0 to 2, not 3"),
+        (1, "1", "channel must be 0, not 1"),
+        (3, "3", "channel must be 0 to 2, not 3"),
         (3, "8", "channel must be 0 to 7"),
         (3, "x", "channel must be a whole number, not 'x'"),
     ],

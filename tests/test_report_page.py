@@ -245,9 +245,7 @@ def test_a_stop_at_a_limit(browser: Browser, tmp_path: Path, capsys: pytest.Capt
     assert browser.value("document.getElementById('verdict').className") == "stopped"
     said = browser.value(WORDS)
     assert said == summary["verdict"] and said in told
-    assert said.startswith(
-        "stopped by LIMIT in move 1; 1,100 of 3,000 steps of the moves made; moves 2, 3 not"
-    )
+    assert said.startswith("stopped by LIMIT in move 1; 1,100 of 3,000 steps made; moves 2, 3 not started")
     assert said.endswith("C model alone, not compared") and "every" not in said
     assert (summary["outcome"], summary["stopped"]) == ("stopped", "LIMIT")
     assert summary["moves_not_begun"] == [2, 3]
