@@ -67,7 +67,7 @@ static enum passo_plan_error add(struct passo_path_planner *path, const struct p
 	path->added++;
 	path->open = true;
 	path->waits = path->waits && path->unsettled > 0 && path->added - path->planned < path->capacity;
-	if (passo_path_clocks(item) >= (uint64_t)LINES_MERGED * path->line_clocks)
+	if (path->tolerance == 0 || passo_path_clocks(item) >= (uint64_t)LINES_MERGED * path->line_clocks)
 		passo_path_close(path); /* too long for that to be of use */
 	return PASSO_PLAN_OK;
 }
