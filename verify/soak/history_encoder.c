@@ -46,17 +46,17 @@ static void expect(struct player *player, const char *what, uint32_t seen, uint3
 }
 
 /* Counts, following error, index, and both lines at once. */
-static void check_counts(struct player *player, struct plot_random *random, unsigned axis, uint32_t setup)
+static void check_counts(struct player *player, struct scenario_random *random, unsigned axis, uint32_t setup)
 {
 	struct world *world = player->world;
 	const bool inverted = (setup >> PASSO_ENCODER_SETUP_INVERTED_LSB & 1u) != 0u;
 	const bool index_inverted = (setup >> PASSO_ENCODER_SETUP_INDEX_INVERTED_LSB & 1u) != 0u;
 	const bool gated = (setup >> PASSO_ENCODER_SETUP_INDEX_GATED_LSB & 1u) != 0u;
-	const int32_t most = 1 + (int32_t)plot_draw(random, 120);
-	const int32_t counts = plot_chance(random, 50) ? most : -most;
+	const int32_t most = 1 + (int32_t)scenario_draw(random, 120);
+	const int32_t counts = scenario_chance(random, 50) ? most : -most;
 	const int32_t position = inverted ? -counts : counts;
-	const uint32_t limit = 1u + plot_draw(random, 150);
-	const uint32_t words[2] = {1u + plot_draw(random, 0x40000u), limit};
+	const uint32_t limit = 1u + scenario_draw(random, 150);
+	const uint32_t words[2] = {1u + scenario_draw(random, 0x40000u), limit};
 
 	player_send(
 	    player, PASSO_OPERATION_WRITE, channel_address(0, encoder(axis, PASSO_ENCODER_RATIO)), words, 2);
@@ -95,11 +95,12 @@ static void check_counts(struct player *player, struct plot_random *random, unsi
 }
 
 /* A move of one axis, whose encoder stands: it stops as the setup says when the error is at its limit. */
-static void check_following(struct player *player, struct plot_random *random, unsigned axis, uint32_t setup)
+static void check_following(
+    struct player *player, struct scenario_random *random, unsigned axis, uint32_t setup)
 {
 	const bool hard = (setup >> PASSO_ENCODER_SETUP_STOP_HARD_LSB & 1u) != 0u;
 	const bool soft = (setup >> PASSO_ENCODER_SETUP_STOP_SOFT_LSB & 1u) != 0u;
-	const uint32_t steps = 10u + plot_draw(random, 16), limit = 2u + plot_draw(random, 24);
+	const uint32_t steps = 10u + scenario_draw(random, 16), limit = 2u + scenario_draw(random, 24);
 	const uint32_t words[2] = {PASSO_ENCODER_RATIO_RESET, limit};
 	struct passo_line line = {.last = true, .substeps = 2u * steps};
 	const uint64_t velocity = PASSO_VELOCITY_MAX >> 5;
@@ -128,20 +129,20 @@ static void check_following(struct player *player, struct plot_random *random, u
 }
 
 /* A thread: the path is where the counts are. */
-static void check_thread(struct player *player, struct plot_random *random, unsigned axis, uint32_t setup)
+static void check_thread(struct player *player, struct scenario_random *random, unsigned axis, uint32_t setup)
 {
 	struct world *world = player->world;
 	const bool inverted = (setup >> PASSO_ENCODER_SETUP_INVERTED_LSB & 1u) != 0u;
-	const bool waits = plot_chance(random, 50);
-	const unsigned scale = plot_draw(random, 3);
-	const uint32_t ticks = 1u + plot_draw(random, 2);
+	const bool waits = scenario_chance(random, 50);
+	const unsigned scale = scenario_draw(random, 3);
+	const uint32_t ticks = 1u + scenario_draw(random, 2);
 	const uint32_t tick = 1u << world->model.parameters.tick_log2;
-	const uint64_t velocity =
-	    (PASSO_VELOCITY_MAX >> 2) - (uint64_t)plot_draw(random, 0x10000u) * (PASSO_VELOCITY_MAX >> 20);
+	const uint64_t velocity = (PASSO_VELOCITY_MAX >> 2)
+	                        - (uint64_t)scenario_draw(random, 0x10000u) * (PASSO_VELOCITY_MAX >> 20);
 	const uint32_t substeps = (uint32_t)((PASSO_ONE_Q48 / 4u + velocity * tick * ticks) / PASSO_ONE_Q48);
 	const struct passo_line line = {
 	    .last = true, .substeps = substeps, .steps = {substeps, substeps / 2u}};
-	const uint32_t all = tick * ticks >> scale, some = plot_draw(random, all);
+	const uint32_t all = tick * ticks >> scale, some = scenario_draw(random, all);
 	const uint32_t follow[2] = {
 	    1u << PASSO_CHANNEL_FOLLOW_FOLLOW_LSB | (waits ? 1u : 0u) << PASSO_CHANNEL_FOLLOW_WAIT_INDEX_LSB
 	        | axis << PASSO_CHANNEL_FOLLOW_SOURCE_LSB | scale << PASSO_CHANNEL_FOLLOW_SCALE_LSB,
@@ -183,12 +184,12 @@ static void check_thread(struct player *player, struct plot_random *random, unsi
 	set(player, PASSO_CHANNEL_FOLLOW, 0);
 }
 
-void player_check_encoder(struct player *player, struct plot_random *random)
+void player_check_encoder(struct player *player, struct scenario_random *random)
 {
 	struct world *world = player->world;
-	const unsigned axis = plot_draw(random, player_axes(player));
-	const uint32_t filter = plot_draw(random, 13);
-	const uint32_t setup = plot_draw(random, 1u + PASSO_ENCODER_SETUP_DEFINED);
+	const unsigned axis = scenario_draw(random, player_axes(player));
+	const uint32_t filter = scenario_draw(random, 13);
+	const uint32_t setup = scenario_draw(random, 1u + PASSO_ENCODER_SETUP_DEFINED);
 
 	for (unsigned a = 0; a < player_axes(player); a++)
 		world->shafts[a] =

@@ -79,15 +79,15 @@ static void read_positions(struct player *player, unsigned channel)
 }
 
 /* Whatever is in progress, a stop or an abort ends it in time. */
-static uint32_t end_motion(struct player *player, struct plot_random *random, unsigned channel)
+static uint32_t end_motion(struct player *player, struct scenario_random *random, unsigned channel)
 {
 	struct world *world = player->world;
 	uint32_t state = player_state_of(player, channel);
 	const uint32_t slew = 8192;
 
-	for (unsigned i = plot_draw(random, 6); is_occupied(state) && i != 0u; i--)
+	for (unsigned i = scenario_draw(random, 6); is_occupied(state) && i != 0u; i--)
 		state = player_state_of(player, channel);
-	if (is_occupied(state) && plot_chance(random, 60)) {
+	if (is_occupied(state) && scenario_chance(random, 60)) {
 		write_one(player, channel_address(channel, PASSO_CHANNEL_STOP_SLEW), slew);
 		command(player, channel, STOP, "");
 		/* the ticks that the rate needs; a read takes longer than five */
@@ -97,8 +97,8 @@ static uint32_t end_motion(struct player *player, struct plot_random *random, un
 			world_fail(world, world->clock,
 			    "channel %u: a stop does not end the motion, state %x", channel, state);
 	}
-	if (is_occupied(state) || plot_chance(random, 20)) {
-		command(player, channel, ABORT | (plot_chance(random, 30) ? CLEAR : 0u), "");
+	if (is_occupied(state) || scenario_chance(random, 20)) {
+		command(player, channel, ABORT | (scenario_chance(random, 30) ? CLEAR : 0u), "");
 		state = player_state_of(player, channel);
 		if (motion_of(state) != PASSO_STATE_STOPPED)
 			world_fail(
@@ -107,7 +107,7 @@ static uint32_t end_motion(struct player *player, struct plot_random *random, un
 	return state;
 }
 
-static uint32_t come_to_rest(struct player *player, struct plot_random *random, unsigned channel)
+static uint32_t come_to_rest(struct player *player, struct scenario_random *random, unsigned channel)
 {
 	struct world *world = player->world;
 	uint32_t state = end_motion(player, random, channel);
@@ -124,13 +124,14 @@ static uint32_t come_to_rest(struct player *player, struct plot_random *random, 
 }
 
 /* Restores empty queues, IDLE, quiet, position 0 and full rate. */
-static void start_again(struct player *player, struct plot_random *random, unsigned channel, uint32_t state)
+static void start_again(
+    struct player *player, struct scenario_random *random, unsigned channel, uint32_t state)
 {
 	struct world *world = player->world;
 	const uint32_t rates[4] = {ZERO, PASSO_RATE_ONE, PASSO_RATE_ONE, PASSO_RATE_ONE};
 
-	if (motion_of(state) == PASSO_STATE_IDLE && plot_chance(random, 50)) {
-		command(player, channel, plot_chance(random, 50) ? STOP : ABORT, "");
+	if (motion_of(state) == PASSO_STATE_IDLE && scenario_chance(random, 50)) {
+		command(player, channel, scenario_chance(random, 50) ? STOP : ABORT, "");
 		state = player_state_of(player, channel);
 	}
 	if (motion_of(state) != PASSO_STATE_IDLE)
@@ -152,7 +153,7 @@ static void start_again(struct player *player, struct plot_random *random, unsig
 	read_positions(player, channel);
 }
 
-static void last_move(struct player *player, struct plot_random *random, unsigned channel)
+static void last_move(struct player *player, struct scenario_random *random, unsigned channel)
 {
 	struct world *world = player->world;
 	uint32_t words[PASSO_FRAME_PAYLOAD_MAX];
@@ -160,7 +161,7 @@ static void last_move(struct player *player, struct plot_random *random, unsigne
 	    .line = {.last = true, .substeps = 2u * LAST_MOVE_STEPS, .directions = (uint8_t)channel}};
 	struct passo_line line = move.line;
 	/* slow enough for the steps that queue during the DIR setup time */
-	const bool slow = plot_chance(random, 20);
+	const bool slow = scenario_chance(random, 20);
 	const uint64_t most = PASSO_VELOCITY_MAX >> (slow ? 7 : 4);
 	const uint64_t any = world->clock * UINT64_C(0x9E3779B97F4A7C15);
 	const uint64_t velocity = most - (any >> 16) % (most / 2u);
@@ -193,7 +194,7 @@ static void last_move(struct player *player, struct plot_random *random, unsigne
 
 		player_send(player, PASSO_OPERATION_WRITE, axis_address(channel, a, PASSO_AXIS_STEP_TIMING),
 		    timings, 2);
-		const uint32_t pins = plot_draw(random, 16) << 1;
+		const uint32_t pins = scenario_draw(random, 16) << 1;
 		move.both_edges[a] = (pins >> PASSO_AXIS_PINS_BOTH_EDGES_LSB & 1u) != 0u;
 		if (!write_one(player, axis_address(channel, a, PASSO_AXIS_PINS), pins))
 			world_fail(world, world->clock, "channel %u: PINS were refused at rest", channel);
@@ -223,12 +224,12 @@ static void last_move(struct player *player, struct plot_random *random, unsigne
 	}
 }
 
-void player_end(struct player *player, struct plot_random *random, bool brief)
+void player_end(struct player *player, struct scenario_random *random, bool brief)
 {
 	struct world *world = player->world;
 	uint32_t states[PASSO_CHANNELS_MAX] = {0};
 
-	if (plot_chance(random, 8)) { /* a reset leads to the same state */
+	if (scenario_chance(random, 8)) { /* a reset leads to the same state */
 		world_add_pin(world, (struct world_pin){world->clock + 3u, PASSO_INPUT_RST, true, 0, 0});
 		world_add_pin(world, (struct world_pin){world->clock + 5u, PASSO_INPUT_RST, false, 0, 0});
 		world_run(world, 20);
@@ -244,7 +245,7 @@ void player_end(struct player *player, struct plot_random *random, bool brief)
 		last_move(player, random, c);
 	world->known_from = world->clock + 1u;
 	if (!world->machine && !world->failed_at)
-		player_shaped_move(player, random, plot_draw(random, player_channels(player)));
+		player_shaped_move(player, random, scenario_draw(random, player_channels(player)));
 	if (world->machine && !world->tries && !world->starts && !world->pokes && !world->failed_at) {
 		world_run(world, 300);
 		world->judged_until = world->clock;

@@ -52,18 +52,18 @@ static uint64_t levels_since(const struct world *world, uint64_t from, uint32_t 
 	return 0;
 }
 
-void player_check_outputs(struct player *player, struct plot_random *random)
+void player_check_outputs(struct player *player, struct scenario_random *random)
 {
 	struct world *world = player->world;
 	const uint64_t velocity = PASSO_VELOCITY_MAX >> 4; /* 32 clocks for each substep */
-	const uint32_t lag = plot_chance(random, 50) ? plot_draw(random, 60) : 0u;
-	const uint32_t period_log2 = 4u + plot_draw(random, 2), period = 1u << period_log2;
-	const uint32_t reference = (uint32_t)(velocity >> 16) * (1u + plot_draw(random, 3));
-	const uint32_t pitch = 2u + plot_draw(random, 4);
+	const uint32_t lag = scenario_chance(random, 50) ? scenario_draw(random, 60) : 0u;
+	const uint32_t period_log2 = 4u + scenario_draw(random, 2), period = 1u << period_log2;
+	const uint32_t reference = (uint32_t)(velocity >> 16) * (1u + scenario_draw(random, 3));
+	const uint32_t pitch = 2u + scenario_draw(random, 4);
 	const uint32_t settings[5] = {
-	    plot_draw(random, 256), lag, 1u << (24u - period_log2), reference, pitch};
+	    scenario_draw(random, 256), lag, 1u << (24u - period_log2), reference, pitch};
 	const uint32_t counts[LINES] = {
-	    20u + plot_draw(random, 10), 20u + plot_draw(random, 10), pitch * VALUES};
+	    20u + scenario_draw(random, 10), 20u + scenario_draw(random, 10), pitch * VALUES};
 	struct passo_line lines[LINES];
 	uint8_t levels[LINES + 1u], values[VALUES];
 	uint32_t powers[LINES], words[VALUES / 4u] = {0};
@@ -71,13 +71,13 @@ void player_check_outputs(struct player *player, struct plot_random *random)
 
 	levels[LINES] = (uint8_t)settings[0];
 	for (unsigned i = 0; i < VALUES; i++) {
-		values[i] = (uint8_t)plot_draw(random, 256);
+		values[i] = (uint8_t)scenario_draw(random, 256);
 		words[i / 4u] |= (uint32_t)values[i] << (8u * (i % 4u));
 	}
 	for (unsigned i = 0; i < LINES; i++) {
 		levels[i] =
-		    (uint8_t)((i != 0u ? levels[i - 1u] : levels[LINES]) ^ (1u + plot_draw(random, 255)));
-		powers[i] = plot_chance(random, 20) ? 65535u : plot_draw(random, 65536);
+		    (uint8_t)((i != 0u ? levels[i - 1u] : levels[LINES]) ^ (1u + scenario_draw(random, 255)));
+		powers[i] = scenario_chance(random, 20) ? 65535u : scenario_draw(random, 65536);
 		lines[i] = (struct passo_line){.last = i + 1u == LINES,
 		    .substeps = counts[i],
 		    .steps = {counts[i] / 2u},

@@ -126,27 +126,28 @@ static void check(struct player *player, unsigned channel, unsigned axis, const 
 }
 
 static void draw(
-    struct player *player, struct plot_random *random, unsigned channel, struct shaped_move *move)
+    struct player *player, struct scenario_random *random, unsigned channel, struct shaped_move *move)
 {
 	uint32_t words[WRITTEN];
 	uint64_t most = PASSO_VELOCITY_MAX >> 3;
-	const unsigned bank = plot_draw(random, PASSO_BANKS);
-	const unsigned first = plot_draw(random, PASSO_BANK_POINTS - WRITTEN + 1u);
+	const unsigned bank = scenario_draw(random, PASSO_BANKS);
+	const unsigned first = scenario_draw(random, PASSO_BANK_POINTS - WRITTEN + 1u);
 
 	for (unsigned i = 0; i < WRITTEN; i++)
-		words[i] = plot_draw(random, 65536u);
+		words[i] = scenario_draw(random, 65536u);
 	if (!player_send(player, PASSO_OPERATION_WRITE, (uint16_t)(passo_shape_addresses[bank] + first),
 		words, WRITTEN))
 		world_fail(player->world, player->world->clock, "points were refused at rest");
 	known_points(player->world, move);
 	for (unsigned r = 0; r < RAMPS; r++) {
-		const uint32_t ticks = 3u + plot_draw(random, TICKS_MAX - 2u);
+		const uint32_t ticks = 3u + scenario_draw(random, TICKS_MAX - 2u);
 
 		move->ramps[r] = (struct passo_ramp){.last = r + 1u == RAMPS,
-		    .mirror = plot_chance(random, 50),
-		    .shape = plot_chance(random, 60) ? (enum passo_shape)(PASSO_SHAPE_COSINE + bank)
-		                                     : (enum passo_shape)plot_draw(random, PASSO_BANKS + 1u),
-		    .velocity_end = most - plot_draw(random, 0x10000u) * (most >> 17),
+		    .mirror = scenario_chance(random, 50),
+		    .shape = scenario_chance(random, 60)
+		               ? (enum passo_shape)(PASSO_SHAPE_COSINE + bank)
+		               : (enum passo_shape)scenario_draw(random, PASSO_BANKS + 1u),
+		    .velocity_end = most - scenario_draw(random, 0x10000u) * (most >> 17),
 		    .ticks = ticks,
 		    .progress_step = (PASSO_ONE_Q48 + ticks / 2u) / ticks};
 		most >>= 1;
@@ -154,7 +155,7 @@ static void draw(
 	move->line = (struct passo_line){.last = true, .directions = (uint8_t)(channel + 1u)};
 }
 
-void player_shaped_move(struct player *player, struct plot_random *random, unsigned channel)
+void player_shaped_move(struct player *player, struct scenario_random *random, unsigned channel)
 {
 	struct world *world = player->world;
 	static struct shaped_move move;
@@ -170,7 +171,7 @@ void player_shaped_move(struct player *player, struct plot_random *random, unsig
 	move.line.substeps = substeps;
 	for (unsigned a = 0; a < player_axes(player); a++) {
 		const uint32_t timings[2] = {0x40004u, 0x30003u};
-		const uint32_t pins = plot_draw(random, 16) << 1;
+		const uint32_t pins = scenario_draw(random, 16) << 1;
 
 		move.both_edges[a] = (pins >> PASSO_AXIS_PINS_BOTH_EDGES_LSB & 1u) != 0u;
 		move.line.steps[a] = substeps / 2u - a < STEPS_MOST ? substeps / 2u - a : STEPS_MOST - a;
