@@ -1,18 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""passo_axis_registers: selection of the axis, and responses on the bus."""
+"""passo_axis_registers: selection of the axis, writes and reads."""
 
 import cocotb
 from cocotb.handle import HierarchyObject
-from cocotb.triggers import Timer
 from passo.cocotb.clocks import Clocks, read
 
 from cocotb_tests.helpers.bench import begin, rng
 from cocotb_tests.helpers.runner import run
 
 AXES = 8
-BAD_OPERATION, READ_ONLY, BAD_VALUE = 4, 6, 9
 PINS, STEP_TIMING, DIR_TIMING, LOST_STEPS, ENABLE = range(5)
-DEFINED = {PINS: 0x1E, ENABLE: 1}  # bits
 WRITABLE = {
     PINS: "write_pins",
     STEP_TIMING: "write_step_timing",
@@ -20,8 +17,7 @@ WRITABLE = {
     ENABLE: "write_enable",
 }
 INPUTS = (
-    "bus_check", "bus_write", "bus_read", "bus_push", "select_axis", "select_position", "bus_address",
-    "bus_data", "bus_msb", "lost",
+    "bus_write", "bus_read", "select_axis", "select_position", "bus_address", "bus_data", "lost",
 )  # fmt: skip
 
 
@@ -29,16 +25,20 @@ def test_axis_registers(simulator: str) -> None:
     run(__name__, "passo_axis_registers", {"AXES": AXES}, simulator)
 
 
+def choose(dut: HierarchyObject, place: tuple[str, int, int]) -> None:
+    """Address a register: `place` is the block's input, its axis, the address in it."""
+    block, axis, address = place
+    dut.select_axis.value = 1 << axis if block == "select_axis" else 0
+    dut.select_position.value = block == "select_position"
+    dut.bus_address.value = address
+
+
 async def strobe(
     dut: HierarchyObject, clocks: Clocks, name: str, place: tuple[str, int, int], data: int = 0
 ) -> None:
-    """Access a register: `place` is the block's input, its axis, the address in it."""
-    block, axis, address = place
-    for other in ("select_axis", "select_position"):
-        getattr(dut, other).value = 1 << axis if other == block else 0
-    dut.bus_address.value = address
+    """Access a register."""
+    choose(dut, place)
     dut.bus_data.value = data
-    dut.bus_msb.value = max(0, data.bit_length() - 1)
     await clocks.wait(1)
     getattr(dut, name).value = 1
     await clocks.wait(1)
@@ -53,51 +53,8 @@ def places() -> list[tuple[str, int, int]]:
 
 
 @cocotb.test()
-async def every_check_has_its_answer(dut: HierarchyObject) -> None:
-    """Pushes, read-only registers, undefined bits of PINS; one clock later, for one clock."""
-    random = rng("axis registers, checks")
-    clocks = await begin(dut, *INPUTS)
-    for push in (0, 1):
-        dut.bus_push.value = push
-        for place in places():
-            block, _, address = place
-            data = random.choice((DEFINED[PINS], 0, 1 << random.randrange(32), random.getrandbits(32)))
-            await strobe(dut, clocks, "bus_check", place, data)
-            readable = block == "select_position" or (block == "select_axis" and address == LOST_STEPS)
-            writable = block == "select_axis" and address in WRITABLE
-            expected = 0
-            if readable or writable:
-                bad = data & ~DEFINED.get(address, data) != 0
-                expected = BAD_OPERATION if push else READ_ONLY if readable else BAD_VALUE if bad else 0
-            assert (read(dut.claim), read(dut.refusal)) == (readable or writable, expected), (place, data)
-            assert (read(dut.read_data), read(dut.answers_position)) == (0, 0)
-            await clocks.wait(1)
-            assert (read(dut.claim), read(dut.refusal)) == (0, 0)
-
-
-@cocotb.test()
-async def pins_need_a_quiet_channel(dut: HierarchyObject) -> None:
-    """Asserted with the strobe that checks the pins of any axis, and at no other time."""
-    clocks = await begin(dut, *INPUTS)
-    for place in places():
-        for name in ("bus_check", "bus_write", "bus_read"):
-            block, axis, address = place
-            for other in ("select_axis", "select_position"):
-                getattr(dut, other).value = 1 << axis if other == block else 0
-            dut.bus_address.value = address
-            await clocks.wait(1)
-            assert not read(dut.needs_quiet)
-            getattr(dut, name).value = 1
-            await Timer(1, "step")
-            meant = name == "bus_check" and block == "select_axis" and address == PINS
-            assert read(dut.needs_quiet) == meant, (place, name)
-            await clocks.wait(1)
-            getattr(dut, name).value = 0
-
-
-@cocotb.test()
 async def every_read_has_its_answer(dut: HierarchyObject) -> None:
-    """The lost steps of the addressed axis, all bits; whether the response is a position; refusals."""
+    """The lost steps of the addressed axis, all bits; whether the response is a position."""
     random = rng("axis registers, reads")
     clocks = await begin(dut, *INPUTS)
     for _ in range(4):
@@ -108,11 +65,8 @@ async def every_read_has_its_answer(dut: HierarchyObject) -> None:
             await strobe(dut, clocks, "bus_read", place)
             is_lost = block == "select_axis" and address == LOST_STEPS
             position = block == "select_position"
-            writable = block == "select_axis" and address in WRITABLE
             assert read(dut.read_data) == (lost >> 4 * axis & 0xF if is_lost else 0), place
             assert read(dut.answers_position) == position
-            expected = (is_lost or position or writable, BAD_OPERATION if writable else 0)
-            assert (read(dut.claim), read(dut.refusal)) == expected, place
             await clocks.wait(1)
             assert (read(dut.read_data), read(dut.answers_position)) == (0, 0)
 
@@ -125,9 +79,7 @@ async def every_write_reaches_its_axis(dut: HierarchyObject) -> None:
     for place in places() * 2:
         block, axis, address = place
         halves = [random.choice((0, 1, 2, 1 << random.randrange(16))) for _ in range(2)]
-        for other in ("select_axis", "select_position"):
-            getattr(dut, other).value = 1 << axis if other == block else 0
-        dut.bus_address.value = address
+        choose(dut, place)
         dut.bus_data.value = halves[0] << 16 | halves[1]
         for level in (0, 1):
             dut.bus_write.value = level

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""passo_channel_registers: address decoding, responses, writes and reads."""
-
-from random import Random
+"""passo_channel_registers: address decoding, what commands need, writes and reads."""
 
 import cocotb
 from cocotb.handle import HierarchyObject
@@ -14,12 +12,10 @@ from cocotb_tests.helpers.runner import run
 
 AXES = 8
 LINE_QUEUE_LOG2 = RAMP_QUEUE_LOG2 = 8
-BAD_OPERATION, READ_ONLY, BAD_VALUE = 4, 6, 9
 COMMAND, RATE_TARGET, RATE_SLEW, STOP_SLEW, DRAIN_VELOCITY = range(5)
 STATE, RATE, ROOM, VELOCITY = range(8, 12)
 LINE, RAMP, POSITIONS, AXIS = 0x20, 0x21, 0x40, 0x80
 STOP, ABORT, CLEAR, ZERO = (1 << bit for bit in range(4))
-LIMITS = {COMMAND: 15, RATE_TARGET: 1 << 16, RATE_SLEW: 1 << 16, STOP_SLEW: 1 << 16, DRAIN_VELOCITY: 1 << 31}
 SETTINGS = {
     RATE_TARGET: "rate_target",
     RATE_SLEW: "rate_slew",
@@ -42,50 +38,23 @@ class Registers(Bench):
     """The module under test."""
 
     INPUTS = (
-        "bus_check", "bus_write", "bus_read", "bus_push", "select", "bus_address", "bus_data", "bus_msb",
-        "bus_one_hot", *STATES,
+        "bus_check", "bus_write", "bus_read", "bus_push", "select", "bus_address", "bus_data", *STATES,
     )  # fmt: skip
 
     async def access(self, name: str, address: int, data: int = 0, push: bool = False) -> None:
-        """Put an access on the bus and raise a strobe for a clock; the answer is there on return."""
+        """Put an access on the bus and raise a strobe for a clock."""
         dut = self.dut
         dut.select.value = 1
         dut.bus_address.value = address
         dut.bus_data.value = data
-        dut.bus_msb.value = max(data.bit_length() - 1, 0)
-        dut.bus_one_hot.value = data.bit_count() <= 1
         dut.bus_push.value = push
         await self.clocks.wait(2)
         await self.strobe(name)
-
-    def answer(self) -> tuple[int, int]:
-        """Claim and refusal."""
-        return read(self.dut.claim), read(self.dut.refusal)
 
 
 def command_of(data: int) -> int:
     """The effective bits of a command."""
     return ABORT if data & ABORT else STOP if data & STOP else data
-
-
-def expected_answer(address: int, data: int, push: bool) -> tuple[int, int]:
-    """Expected response to a check."""
-    queue = address in (LINE, RAMP)
-    if not queue and address not in LIMITS and address not in (STATE, RATE, ROOM, VELOCITY):
-        return 0, 0
-    if push != queue:
-        return 1, BAD_OPERATION
-    if address >= STATE and not queue:
-        return 1, READ_ONLY
-    if data > LIMITS.get(address, data):
-        return 1, BAD_VALUE
-    return 1, BAD_VALUE if address == DRAIN_VELOCITY and data == 0 else 0
-
-
-def random_data(random: Random) -> int:
-    """Numbers of all magnitudes, and those at the limits."""
-    limit = random.choice(list(LIMITS.values()))
-    return random.choice((limit, limit + 1, limit - 1, random.getrandbits(random.randint(1, 32))))
 
 
 @cocotb.test()
@@ -101,35 +70,9 @@ async def every_address_means_its_block(dut: HierarchyObject) -> None:
                 await bench.clocks.wait(1)
                 axis, position = address - AXIS >> 3, address - POSITIONS
                 assert read(dut.select_axis) == (selected << axis if 0 <= axis < AXES else 0)
-                assert read(dut.select_position) == (selected << position if 0 <= position < AXES else 0)
+                assert read(dut.select_position) == (selected and 0 <= position < AXES)
                 assert read(dut.select_line_queue) == (selected and push and address == LINE)
                 assert read(dut.select_ramp_queue) == (selected and push and address == RAMP)
-
-
-@cocotb.test()
-async def every_check_has_its_answer(dut: HierarchyObject) -> None:
-    """Every address, written and pushed to, with values around the limits; one clock later, for one clock."""
-    random = rng("channel registers, checks")
-    bench = await Registers.begin(dut)
-    for _ in range(3):
-        for address in (*range(0x30), POSITIONS, AXIS, 0xFF):
-            for push in (False, True):
-                data = random.choice((random_data(random), 0, 1))
-                await bench.access("bus_check", address, data, push)
-                assert bench.answer() == expected_answer(address, data, push), (
-                    f"{address:#x} {data:#x} {push=}"
-                )
-                await bench.clocks.wait(1)
-                assert bench.answer() == (0, 0)
-    for command in range(17):
-        await bench.access("bus_check", COMMAND, command)
-        assert bench.answer() == expected_answer(COMMAND, command, False), command
-    dut.select.value = 0
-    dut.bus_address.value = RATE_TARGET
-    await bench.clocks.wait(2)
-    dut.bus_check.value = 1
-    await bench.clocks.wait(1)
-    assert bench.answer() == (0, 0)
 
 
 @cocotb.test()
@@ -177,7 +120,7 @@ async def what_is_written_stands(dut: HierarchyObject) -> None:
 
 @cocotb.test()
 async def states_are_read_as_they_are(dut: HierarchyObject) -> None:
-    """All bits of all states, for one clock; reads of other addresses are refused or not answered."""
+    """All bits of all states, for one clock; at other addresses there are none."""
     random = rng("channel registers, reads")
     bench = await Registers.begin(dut)
     for _ in range(100):
@@ -202,7 +145,5 @@ async def states_are_read_as_they_are(dut: HierarchyObject) -> None:
         address = random.choice((*words, *words, *range(0x30)))
         await bench.access("bus_read", address)
         assert read(dut.read_data) == words.get(address, 0)
-        known = expected_answer(address, 0, False)[0]
-        assert bench.answer() == (known, BAD_OPERATION if known and address not in words else 0)
         await bench.clocks.wait(1)
         assert read(dut.read_data) == 0

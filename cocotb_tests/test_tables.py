@@ -15,7 +15,6 @@ from cocotb_tests.helpers.runner import run
 from cocotb_tests.helpers.shapes import POINTS, Shape, loaded_table
 
 TABLES = [shape for shape in Shape if shape != Shape.LINEAR]
-BAD_OPERATION, BAD_VALUE = 4, 9
 
 # Only configuration of the FPGA initializes the tables, not reset: tests that need the initial contents come
 # first.
@@ -30,8 +29,8 @@ class Tables(Bench):
     """The module under test; the last channel is the one that asks."""
 
     INPUTS = (
-        "bus_frame", "bus_commit", "bus_check", "bus_write", "bus_read", "bus_push", "select", "bus_address",
-        "bus_data", "request", "address",
+        "bus_frame", "bus_commit", "bus_check", "bus_write", "select", "bus_address", "bus_data",
+        "request", "address",
     )  # fmt: skip
 
     def __init__(self, dut: HierarchyObject, clocks: Clocks) -> None:
@@ -100,41 +99,6 @@ async def rewritten_tables_are_as_written(dut: HierarchyObject) -> None:
 
 
 @cocotb.test()
-async def the_tables_bus_refuses_what_it_must(dut: HierarchyObject) -> None:
-    """Refusals come one clock after the strobe; a check changes nothing."""
-    bench = await Tables.begin(dut)
-    tables = {Shape.COSINE: [3 * k for k in range(POINTS)], Shape.EASE: [5 * k for k in range(POINTS)]}
-    for shape, points in tables.items():
-        await bench.write_table(shape, points)
-    cases = [
-        # strobe, push, data, expected
-        ("bus_check", 0, 0x1234, 0),
-        ("bus_check", 0, 0xFFFF, 0),
-        ("bus_check", 0, 0x10000, BAD_VALUE),
-        ("bus_check", 0, 0x80000000, BAD_VALUE),
-        ("bus_check", 1, 0x1234, BAD_OPERATION),
-        ("bus_read", 0, 0x1234, BAD_OPERATION),
-    ]
-    for strobe, push, data, expected in cases:
-        for address in (0x100, 0x1FF, 0x300):
-            for selected in (1, 0):
-                dut.select.value = selected
-                dut.bus_address.value = address
-                dut.bus_data.value = data & 0xFFFF
-                dut.bus_msb.value = max(0, data.bit_length() - 1)
-
-                dut.bus_push.value = push
-                getattr(dut, strobe).value = 1
-                await bench.clocks.wait(1)
-                getattr(dut, strobe).value = 0
-                assert read(dut.refusal) == (expected if selected else 0), (strobe, push, hex(data))
-                await bench.clocks.wait(1)
-                assert read(dut.refusal) == 0
-    for shape, points in tables.items():
-        await bench.check_table(shape, points, 17)
-
-
-@cocotb.test()
 async def a_frame_that_writes_tables_says_so(dut: HierarchyObject) -> None:
     """From the first check of a point until the next frame begins, also while it is executed."""
     bench = await Tables.begin(dut)
@@ -148,7 +112,6 @@ async def a_frame_that_writes_tables_says_so(dut: HierarchyObject) -> None:
         return read(dut.wanted)
 
     assert not await pulse(dut.bus_check, selected=0)
-    assert not await pulse(dut.bus_read)
     assert await pulse(dut.bus_check)
     dut.bus_commit.value = 1
     assert await pulse(dut.bus_frame)

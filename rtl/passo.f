@@ -54,6 +54,7 @@ rtl/passo_ramp_tick.v
 rtl/passo_raster.v
 rtl/passo_registers.v
 rtl/passo_reply.v
+rtl/passo_rules.v
 rtl/passo_spi.v
 rtl/passo_spi_top.v
 rtl/passo_tables.v

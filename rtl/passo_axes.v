@@ -18,19 +18,13 @@ module passo_axes #(
   input  wire            clk,
   input  wire            rst,
   // bus
-  input  wire            bus_check,
   input  wire            bus_write,
   input  wire            bus_read,
-  input  wire            bus_push,
   input  wire [AXES-1:0] select_axis,
-  input  wire [AXES-1:0] select_position,
+  input  wire            select_position,
   input  wire [     3:0] bus_address,      // within the block
   input  wire [    31:0] bus_data,
-  input  wire [     4:0] bus_msb,
-  output wire            claim,
-  output wire [     3:0] refusal,
   output wire [    31:0] read_data,
-  output wire            needs_quiet,      // strobe: PINS or INPUTS of an axis is being checked
   // lines
   input  wire [AXES-1:0] step_request,
   input  wire [AXES-1:0] directions,
@@ -178,17 +172,12 @@ module passo_axes #(
   ) u_registers (
     .clk              (clk),
     .rst              (rst),
-    .bus_check        (bus_check),
     .bus_write        (bus_write),
     .bus_read         (bus_read),
-    .bus_push         (bus_push),
     .select_axis      (select_axis),
     .select_position  (select_position),
     .bus_address      (bus_address[2:0]),
     .bus_data         (bus_data),
-    .bus_msb          (bus_msb),
-    .claim            (claim),
-    .refusal          (refusal),
     .read_data        (lost_read),
     .answers_position (answers_position),
     .write_pins       (write_pins),
@@ -196,7 +185,6 @@ module passo_axes #(
     .write_dir_timing (write_dir_timing),
     .write_enable     (write_enable),
     .write_inputs     (write_inputs),
-    .needs_quiet      (needs_quiet),
     .upper_is_minimal (upper_is_minimal),
     .lower_is_minimal (lower_is_minimal),
     .lost             (lost)

@@ -20,69 +20,69 @@ module passo_channel #(
   parameter [AXES-1:0] DIR_RESET       = 0,
   parameter [AXES-1:0] ENABLE_RESET    = 0
 ) (
-  input  wire                     clk,
-  input  wire                     rst,
+  input wire clk,
+  input wire rst,
   // bus
-  input  wire                     bus_frame,
-  input  wire                     bus_commit,
-  input  wire                     bus_check,
-  input  wire                     bus_write,
-  input  wire                     bus_read,
-  input  wire                     bus_push,
-  input  wire                     select,
-  input  wire [              7:0] bus_address,
-  input  wire [             31:0] bus_data,
-  input  wire [              4:0] bus_msb,
-  input  wire                     bus_one_hot,
-  output reg                      claim,
-  output reg  [              3:0] refusal,
-  output reg  [             31:0] read_data,
-  output wire                     incomplete,
-  output wire                     busy,
-  input  wire                     tables_wanted,
+  input wire bus_frame,
+  input wire bus_commit,
+  input wire bus_check,
+  input wire bus_write,
+  input wire bus_read,
+  input wire bus_push,
+  input wire select,
+  input wire [7:0] bus_address,
+  input wire [31:0] bus_data,
+  input wire [4:0] bus_msb,
+  input wire needs_quiet,  // strobe: a register that needs a quiet channel is being checked
+  output wire bad_value,  // one of its registers objects to the word
+  output wire [3:0] refusal,  // of its queues, of a push
+  output wire [31:0] read_data,
+  output wire incomplete,
+  output wire busy,
+  input wire tables_wanted,
   // core
-  input  wire                     run,
-  input  wire                     wait_sync,
-  input  wire                     sync_edge,
-  input  wire                     slew_tick,
-  input  wire                     snapshot,
-  output wire                     stopped,
-  output wire                     occupied,
+  input wire run,
+  input wire wait_sync,
+  input wire sync_edge,
+  input wire slew_tick,
+  input wire snapshot,
+  output wire stopped,
+  output wire occupied,
   output wire [LINE_QUEUE_LOG2:0] line_room,
   output wire [RAMP_QUEUE_LOG2:0] ramp_room,
   // tables
-  output wire                     table_request,
-  output wire [              9:0] table_address,
-  input  wire                     table_served,
-  input  wire [             15:0] table_point,
-  input  wire [             15:0] table_point_next,
+  output wire table_request,
+  output wire [9:0] table_address,
+  input wire table_served,
+  input wire [15:0] table_point,
+  input wire [15:0] table_point_next,
   // inputs of the machine
   /* verilator lint_off UNUSEDSIGNAL */
-  input  wire                     filter_tick,
-  input  wire [             15:0] filter,
-  input  wire                     write_filter,
-  input  wire                     estop_pressed,     // asynchronous
-  input  wire                     estop,
-  input  wire                     watchdog_stop,
-  input  wire                     disable_drives,
-  input  wire [         AXES-1:0] limit_low,
-  input  wire [         AXES-1:0] limit_high,
-  input  wire [         AXES-1:0] home,
-  input  wire [         AXES-1:0] alarm,
-  input  wire                     probe,
-  input  wire [         AXES-1:0] encoder_a,
-  input  wire [         AXES-1:0] encoder_b,
-  input  wire [         AXES-1:0] encoder_index,
+  input wire filter_tick,
+  input wire [15:0] filter,
+  input wire write_filter,
+  input wire estop_pressed,  // asynchronous
+  input wire estop,
+  input wire watchdog_stop,
+  input wire disable_drives,
+  input wire [AXES-1:0] limit_low,
+  input wire [AXES-1:0] limit_high,
+  input wire [AXES-1:0] home,
+  input wire [AXES-1:0] alarm,
+  input wire probe,
+  input wire [AXES-1:0] encoder_a,
+  input wire [AXES-1:0] encoder_b,
+  input wire [AXES-1:0] encoder_index,
   /* verilator lint_on UNUSEDSIGNAL */
-  output wire                     moving,
+  output wire moving,
   // pins
-  output wire [         AXES-1:0] step,
-  output wire [         AXES-1:0] dir,
-  output wire [         AXES-1:0] enable,
-  output wire [              7:0] outputs,
-  output wire                     power,
-  output wire                     compare,
-  output wire                     running
+  output wire [AXES-1:0] step,
+  output wire [AXES-1:0] dir,
+  output wire [AXES-1:0] enable,
+  output wire [7:0] outputs,
+  output wire power,
+  output wire compare,
+  output wire running
 );
 
   `include "passo_registers.vh"
@@ -91,7 +91,7 @@ module passo_channel #(
   wire            select_line_queue;
   wire            select_ramp_queue;
   wire [AXES-1:0] select_axis;
-  wire [AXES-1:0] select_position;
+  wire            select_position;
   wire [    16:0] rate_target;
   wire [    16:0] rate_slew;
   wire [    16:0] stop_slew;
@@ -102,7 +102,6 @@ module passo_channel #(
   wire            command_zero;
   wire            command_needs_idle;
   wire            command_needs_quiet;
-  wire            pins_need_quiet;
   wire            ramp_needs_motion;
   wire            hold;
 
@@ -172,49 +171,37 @@ module passo_channel #(
   wire [     3:0] input_soft_cause;
   wire            end_endless;
   wire            wait_known;
-  wire            inputs_claim;
-  wire [     3:0] inputs_refusal;
+  wire            inputs_bad_value;
   wire [    31:0] inputs_read_data;
 
   // encoders
-  wire        follow_needs_quiet;
   wire        may_begin;
   wire        following_soft;
   wire        following_hard;
   wire        follows;
   wire        follow_advance;
-  wire        encoders_claim;
-  wire [ 3:0] encoders_refusal;
   wire [31:0] encoders_read_data;
 
   // outputs
   wire        power_wanted;
   wire        outputs_quiet;
-  wire        outputs_need_quiet;
-  wire        outputs_claim;
-  wire [ 3:0] outputs_refusal;
+  wire        outputs_bad_value;
   wire [31:0] outputs_read_data;
 
-  wire        registers_claim;
-  wire [ 3:0] registers_refusal;
   wire [31:0] registers_read_data;
-  wire        axes_claim;
-  wire [ 3:0] axes_refusal;
   wire [31:0] axes_read_data;
   wire [ 3:0] line_refusal;
   wire [ 3:0] ramp_refusal;
+  wire [ 3:0] raster_refusal;
   wire        line_incomplete;
   wire        ramp_incomplete;
 
   assign incomplete = line_incomplete | ramp_incomplete;
 
   // Unselected targets drive 0.
-  always @* begin
-    claim = registers_claim | axes_claim | inputs_claim | encoders_claim | outputs_claim;
-    refusal   = registers_refusal | line_refusal | ramp_refusal | axes_refusal
-                | inputs_refusal | encoders_refusal | outputs_refusal;
-    read_data = registers_read_data | axes_read_data | inputs_read_data | encoders_read_data | outputs_read_data;
-  end
+  assign bad_value = inputs_bad_value | outputs_bad_value;
+  assign refusal = line_refusal | ramp_refusal | raster_refusal;
+  assign read_data = registers_read_data | axes_read_data | inputs_read_data | encoders_read_data | outputs_read_data;
 
   reg  [2:0] occupied_q;  // a line loaded in the clock of a stop changes DIR up to 4 clocks later
   reg        at_rest;  // no motion, no step in flight to the axes, no change of the outputs that waits
@@ -240,10 +227,6 @@ module passo_channel #(
     .select           (select),
     .bus_address      (bus_address),
     .bus_data         (bus_data),
-    .bus_msb          (bus_msb),
-    .bus_one_hot      (bus_one_hot),
-    .claim            (registers_claim),
-    .refusal          (registers_refusal),
     .read_data        (registers_read_data),
     .select_line_queue(select_line_queue),
     .select_ramp_queue(select_ramp_queue),
@@ -323,7 +306,7 @@ module passo_channel #(
     .bus_frame    (bus_frame),
     .bus_commit   (bus_commit),
     .needs_idle   (command_needs_idle),
-    .needs_quiet  (command_needs_quiet | pins_need_quiet | follow_needs_quiet | outputs_need_quiet),
+    .needs_quiet  (command_needs_quiet | (needs_quiet & select)),
     .needs_motion (ramp_needs_motion),
     .tables_wanted(tables_wanted),
     .occupied     (occupied),
@@ -429,19 +412,13 @@ module passo_channel #(
   ) u_axes (
     .clk            (clk),
     .rst            (rst),
-    .bus_check      (bus_check),
     .bus_write      (bus_write),
     .bus_read       (bus_read),
-    .bus_push       (bus_push),
     .select_axis    (select_axis),
     .select_position(select_position),
     .bus_address    (bus_address[3:0]),
     .bus_data       (bus_data),
-    .bus_msb        (bus_msb),
-    .claim          (axes_claim),
-    .refusal        (axes_refusal),
     .read_data      (axes_read_data),
-    .needs_quiet    (pins_need_quiet),
     .step_request   (step_request),
     .directions     (directions),
     .drop           (drop),
@@ -476,16 +453,12 @@ module passo_channel #(
       ) u_inputs (
         .clk           (clk),
         .rst           (rst),
-        .bus_check     (bus_check),
         .bus_write     (bus_write),
         .bus_read      (bus_read),
-        .bus_push      (bus_push),
         .select        (select),
         .bus_address   (bus_address),
         .bus_data      (bus_data),
-        .bus_msb       (bus_msb),
-        .claim         (inputs_claim),
-        .refusal       (inputs_refusal),
+        .bad_value     (inputs_bad_value),
         .read_data     (inputs_read_data),
         .write_axis    (write_inputs),
         .tick          (filter_tick),
@@ -518,8 +491,7 @@ module passo_channel #(
     end else begin : g_no_inputs
       assign enable           = enable_wanted;
       assign power            = power_wanted;
-      assign inputs_claim     = 1'b0;
-      assign inputs_refusal   = 4'd0;
+      assign inputs_bad_value = 1'b0;
       assign inputs_read_data = 32'd0;
       assign closed_low       = {AXES{1'b0}};
       assign closed_high      = {AXES{1'b0}};
@@ -542,19 +514,12 @@ module passo_channel #(
       ) u_encoders (
         .clk           (clk),
         .rst           (rst),
-        .bus_check     (bus_check),
         .bus_write     (bus_write),
         .bus_read      (bus_read),
-        .bus_push      (bus_push),
         .select        (select),
         .bus_address   (bus_address),
         .bus_data      (bus_data),
-        .bus_msb       (bus_msb),
-        .bus_one_hot   (bus_one_hot),
-        .claim         (encoders_claim),
-        .refusal       (encoders_refusal),
         .read_data     (encoders_read_data),
-        .needs_quiet   (follow_needs_quiet),
         .zero          (command_zero),
         .clear         (command_clear),
         .snapshot      (snapshot),
@@ -579,10 +544,7 @@ module passo_channel #(
         .index_active  (index)
       );
     end else begin : g_no_encoders
-      assign encoders_claim     = 1'b0;
-      assign encoders_refusal   = 4'd0;
       assign encoders_read_data = 32'd0;
-      assign follow_needs_quiet = 1'b0;
       assign may_begin          = 1'b1;
       assign following_soft     = 1'b0;
       assign following_hard     = 1'b0;
@@ -595,9 +557,6 @@ module passo_channel #(
 
   generate
     if (OUTPUTS != 0) begin : g_outputs
-      wire        settings_claim;
-      wire [ 3:0] settings_refusal;
-      wire [ 3:0] raster_refusal;
       wire        select_raster;
       wire [15:0] lag;
       wire [23:0] pwm_step;
@@ -614,28 +573,20 @@ module passo_channel #(
       wire        overflow;
       wire [ 8:0] raster_room;
 
-      assign outputs_claim   = settings_claim;
-      assign outputs_refusal = settings_refusal | raster_refusal;
-
       passo_output_registers #(
         .AXES(AXES)
       ) u_output_registers (
         .clk             (clk),
         .rst             (rst),
-        .bus_check       (bus_check),
         .bus_write       (bus_write),
         .bus_read        (bus_read),
         .bus_push        (bus_push),
         .select          (select),
         .bus_address     (bus_address),
         .bus_data        (bus_data),
-        .bus_msb         (bus_msb),
-        .bus_one_hot     (bus_one_hot),
-        .claim           (settings_claim),
-        .refusal         (settings_refusal),
+        .bad_value       (outputs_bad_value),
         .read_data       (outputs_read_data),
         .select_raster   (select_raster),
-        .needs_quiet     (outputs_need_quiet),
         .lag             (lag),
         .pwm_step        (pwm_step),
         .power_reference (power_reference),
@@ -697,14 +648,13 @@ module passo_channel #(
         .compare         (compare)
       );
     end else begin : g_no_outputs
-      assign outputs_claim      = 1'b0;
-      assign outputs_refusal    = 4'd0;
-      assign outputs_read_data  = 32'd0;
-      assign outputs_need_quiet = 1'b0;
-      assign outputs_quiet      = 1'b1;
-      assign outputs            = 8'd0;
-      assign power_wanted       = 1'b0;
-      assign compare            = 1'b0;
+      assign outputs_bad_value = 1'b0;
+      assign raster_refusal    = 4'd0;
+      assign outputs_read_data = 32'd0;
+      assign outputs_quiet     = 1'b1;
+      assign outputs           = 8'd0;
+      assign power_wanted      = 1'b0;
+      assign compare           = 1'b0;
     end
   endgenerate
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Registers of one channel: commands, time scale, drain velocity, state; and the address decode of its blocks.
 //
-// Promise: a strobe is answered one clock later, for one clock; the answer is 0 unless one of these registers is
-// addressed. A command strobe is high in the clock after its write. STOP or ABORT masks CLEAR and ZERO in the same
-// word, ABORT masks STOP: no state refuses either. `bus_msb` and `bus_one_hot` describe the magnitude of checked
-// data.
+// Promise: `read_data` is the addressed register one clock after `bus_read`, for one clock, else 0. A command strobe is
+// high in the clock after its write. STOP or ABORT masks CLEAR and ZERO in the same word, ABORT masks STOP: no state
+// refuses either.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -25,16 +24,12 @@ module passo_channel_registers #(
   input  wire                     select,
   input  wire [              7:0] bus_address,        // within the channel
   input  wire [             31:0] bus_data,
-  input  wire [              4:0] bus_msb,
-  input  wire                     bus_one_hot,
-  output reg                      claim,
-  output reg  [              3:0] refusal,
   output wire [             31:0] read_data,
   // blocks
   output reg                      select_line_queue,  // a push to it
   output reg                      select_ramp_queue,
   output reg  [         AXES-1:0] select_axis,
-  output reg  [         AXES-1:0] select_position,
+  output reg                      select_position,
   // settings
   output reg  [             16:0] rate_target,
   output reg  [             16:0] rate_slew,
@@ -63,39 +58,34 @@ module passo_channel_registers #(
 
   `include "passo_registers.vh"
 
-  wire       is_line = bus_address == CHANNEL_LINE;
-  wire       is_ramp = bus_address == CHANNEL_RAMP;
   wire [7:0] overrun_padded = {{(8 - AXES) {1'b0}}, overrun};
+
+  wire [2:0] number = bus_address[2:0];
 
   // Decoded one clock ahead of the strobe: the address is stable by then.
   genvar axis;
   generate
     for (axis = 0; axis < AXES; axis = axis + 1) begin : g_axis
       localparam [2:0] NUMBER = axis;
-      always @(posedge clk) begin
+      always @(posedge clk)
         select_axis[axis] <= select && bus_address[7:3] == {CHANNEL_AXIS_BASE[7:6], NUMBER};
-        select_position[axis] <= select && (bus_address == CHANNEL_POSITION_BASE + {5'd0, NUMBER}
-          || (INPUTS != 0 && bus_address == CHANNEL_TRIGGER_POSITION_BASE + {5'd0, NUMBER}));
-      end
     end
   endgenerate
   always @(posedge clk) begin
-    select_line_queue <= select & bus_push & is_line;
-    select_ramp_queue <= select & bus_push & is_ramp;
+    select_line_queue <= select && bus_push && bus_address == CHANNEL_LINE;
+    select_ramp_queue <= select && bus_push && bus_address == CHANNEL_RAMP;
+    select_position   <= select && {1'b0, number} < AXES[3:0]
+                         && (bus_address[7:3] == CHANNEL_POSITION_BASE[7:3]
+                             || (INPUTS != 0 && bus_address[7:3] == CHANNEL_TRIGGER_POSITION_BASE[7:3]));
   end
 
-  // Blocks of write-only and of read-only registers, and the register's number within
-  reg       in_settings;
-  reg       in_state;
-  reg       in_queues;
-  reg [2:0] number;
-  reg       known;
+  // Blocks of write-only and of read-only registers
+  reg in_settings;
+  reg in_state;
 
   always @(posedge clk) begin
     in_settings <= select && bus_address <= CHANNEL_DRAIN_VELOCITY;
     in_state    <= select && bus_address[7:2] == CHANNEL_STATE[7:2];
-    in_queues   <= select && (is_line || is_ramp);
-    number      <= bus_address[2:0];
   end
 
   wire is_command = in_settings && number == CHANNEL_COMMAND[2:0];
@@ -108,29 +98,6 @@ module passo_channel_registers #(
 
   assign needs_idle  = bus_check & is_command & clear;
   assign needs_quiet = bus_check & is_command & zero;
-
-  // Answer to a check. Limits: a rate at most 2^16, a drain velocity 1 .. 2^31.
-  reg  bad_value;
-  wire not_taken = bus_push != in_queues;
-
-  always @(posedge clk) begin
-    known <= in_settings || in_state || in_queues;
-    bad_value <= in_settings && (is_command        ? bus_msb > 5'd3 :
-                                 is_drain_velocity ? (bus_msb == 5'd31 && !bus_one_hot)
-                                                     || (bus_msb == 5'd0 && !bus_data[0]) :
-                                                     bus_msb > 5'd16 || (bus_msb[4] && !bus_one_hot));
-    claim <= known && (bus_check || bus_read);
-    refusal <= !known    ? VERDICT_OK :
-               bus_read  ? (in_state ? VERDICT_OK : VERDICT_BAD_OPERATION) :
-               !bus_check ? VERDICT_OK :
-               not_taken ? VERDICT_BAD_OPERATION :
-               in_state  ? VERDICT_READ_ONLY :
-               bad_value ? VERDICT_BAD_VALUE : VERDICT_OK;
-    if (rst) begin
-      claim   <= 1'b0;
-      refusal <= VERDICT_OK;
-    end
-  end
 
   // Reading
   reg     [3:0] reads;

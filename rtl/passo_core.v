@@ -105,18 +105,17 @@ module passo_core #(
   wire [ 4:0] bus_msb;
   wire        bus_one_hot;
   wire        bus_counters;
-  reg         bus_claim;
+  wire        bus_claim;
   reg  [ 3:0] bus_refusal;
   reg  [31:0] bus_read_data;
   reg  [31:0] read_data;
 
-  wire                   registers_claim;
-  wire [            3:0] registers_refusal;
+  wire [            3:0] rules_refusal;
+  wire                   needs_quiet;
+  wire                   registers_bad_value;
   wire [           31:0] registers_read_data;
-  wire [            3:0] tables_refusal;
-  reg                    tables_claim;
   wire                   tables_wanted;
-  wire [   CHANNELS-1:0] channel_claim;
+  wire [   CHANNELS-1:0] channel_bad_value;
   wire [ CHANNELS*4-1:0] channel_refusal;
   wire [CHANNELS*32-1:0] channel_read_data;
   wire [   CHANNELS-1:0] channel_incomplete;
@@ -146,15 +145,12 @@ module passo_core #(
   /* verilator lint_off UNUSEDSIGNAL */
   wire [CHANNELS-1:0] moving;
   /* verilator lint_on UNUSEDSIGNAL */
-  wire                machine_claim;
-  wire [         3:0] machine_refusal;
   wire [        31:0] machine_read_data;
 
   // Unselected targets drive 0.
   integer i;
   always @* begin
-    bus_claim   = registers_claim | tables_claim | machine_claim | (channel_claim != {CHANNELS{1'b0}});
-    bus_refusal = registers_refusal | tables_refusal | machine_refusal;
+    bus_refusal = rules_refusal;
     read_data   = registers_read_data | machine_read_data;
     for (i = 0; i < CHANNELS; i = i + 1) begin
       bus_refusal = bus_refusal | channel_refusal[i*4+:4];
@@ -174,17 +170,15 @@ module passo_core #(
   always @(posedge clk) begin
     bus_read_data <= read_data;
     select_tables <= bus_address[11:10] == ADDRESS_COSINE_BASE[11:10] && bus_address[9:8] != 2'd0;
-    tables_claim  <= select_tables & (bus_check | bus_read);
     sync_q        <= {sync_q[1:0], sync};
     slew_count    <= slew_count + 1'b1;
     slew_tick     <= slew_count == {TICK_LOG2{1'b1}};
     irq           <= stopped != {CHANNELS{1'b0}};
     if (rst) begin
-      tables_claim <= 1'b0;
-      sync_q       <= 3'b111;
-      slew_count   <= {TICK_LOG2{1'b0}};
-      slew_tick    <= 1'b0;
-      irq          <= 1'b0;
+      sync_q     <= 3'b111;
+      slew_count <= {TICK_LOG2{1'b0}};
+      slew_tick  <= 1'b0;
+      irq        <= 1'b0;
     end
   end
 
@@ -216,6 +210,28 @@ module passo_core #(
     .bus_busy      (channel_busy != {CHANNELS{1'b0}} || (tables_wanted && occupied != {CHANNELS{1'b0}}))
   );
 
+  passo_rules #(
+    .CHANNELS(CHANNELS),
+    .AXES    (AXES),
+    .INPUTS  (INPUTS),
+    .ENCODERS(ENCODERS),
+    .OUTPUTS (OUTPUTS)
+  ) u_rules (
+    .clk        (clk),
+    .rst        (rst),
+    .bus_check  (bus_check),
+    .bus_read   (bus_read),
+    .bus_push   (bus_push),
+    .bus_address(bus_address),
+    .bus_odd    (bus_data[0]),
+    .bus_msb    (bus_msb),
+    .bus_one_hot(bus_one_hot),
+    .bad_value  (registers_bad_value || channel_bad_value != {CHANNELS{1'b0}}),
+    .claim      (bus_claim),
+    .refusal    (rules_refusal),
+    .needs_quiet(needs_quiet)
+  );
+
   passo_registers #(
     .CHANNELS       (CHANNELS),
     .AXES           (AXES),
@@ -228,15 +244,11 @@ module passo_core #(
   ) u_registers (
     .clk          (clk),
     .rst          (rst),
-    .bus_check    (bus_check),
     .bus_write    (bus_write),
     .bus_read     (bus_read),
-    .bus_push     (bus_push),
     .bus_address  (bus_address),
     .bus_data     (bus_data[18:0]),
-    .bus_msb      (bus_msb),
-    .claim        (registers_claim),
-    .refusal      (registers_refusal),
+    .bad_value    (registers_bad_value),
     .read_data    (registers_read_data),
     .is_counters  (bus_counters),
     .last_sequence(last_sequence),
@@ -257,13 +269,9 @@ module passo_core #(
     .bus_commit (bus_commit),
     .bus_check  (bus_check),
     .bus_write  (bus_write),
-    .bus_read   (bus_read),
-    .bus_push   (bus_push),
     .select     (select_tables),
     .bus_address(bus_address[9:0]),
     .bus_data   (bus_data[15:0]),
-    .bus_msb    (bus_msb),
-    .refusal    (tables_refusal),
     .wanted     (tables_wanted),
     .request    (table_request),
     .address    (table_address),
@@ -277,15 +285,10 @@ module passo_core #(
       passo_machine u_machine (
         .clk           (clk),
         .rst           (rst),
-        .bus_check     (bus_check),
         .bus_write     (bus_write),
         .bus_read      (bus_read),
-        .bus_push      (bus_push),
         .bus_address   (bus_address),
         .bus_data      (bus_data[19:0]),
-        .bus_msb       (bus_msb),
-        .claim         (machine_claim),
-        .refusal       (machine_refusal),
         .read_data     (machine_read_data),
         .estop_n       (estop_n),
         .moving        (moving != {CHANNELS{1'b0}}),
@@ -298,8 +301,6 @@ module passo_core #(
         .disable_drives(disable_drives)
       );
     end else begin : g_no_machine
-      assign machine_claim     = 1'b0;
-      assign machine_refusal   = VERDICT_OK;
       assign machine_read_data = 32'd0;
       assign filter_tick       = 1'b0;
       assign filter            = 16'd0;
@@ -341,8 +342,8 @@ module passo_core #(
         .bus_address     (bus_address[7:0]),
         .bus_data        (bus_data),
         .bus_msb         (bus_msb),
-        .bus_one_hot     (bus_one_hot),
-        .claim           (channel_claim[channel]),
+        .needs_quiet     (needs_quiet),
+        .bad_value       (channel_bad_value[channel]),
         .refusal         (channel_refusal[channel*4+:4]),
         .read_data       (channel_read_data[channel*32+:32]),
         .incomplete      (channel_incomplete[channel]),

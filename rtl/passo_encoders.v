@@ -18,19 +18,12 @@ module passo_encoders #(
   input  wire            clk,
   input  wire            rst,
   // bus
-  input  wire            bus_check,
   input  wire            bus_write,
   input  wire            bus_read,
-  input  wire            bus_push,
   input  wire            select,
   input  wire [     7:0] bus_address,     // within the channel
   input  wire [    31:0] bus_data,
-  input  wire [     4:0] bus_msb,
-  input  wire            bus_one_hot,
-  output wire            claim,
-  output wire [     3:0] refusal,
   output wire [    31:0] read_data,
-  output wire            needs_quiet,     // strobe: FOLLOW is being checked
   // commands
   input  wire            zero,
   input  wire            clear,
@@ -163,18 +156,11 @@ module passo_encoders #(
   ) u_registers (
     .clk          (clk),
     .rst          (rst),
-    .bus_check    (bus_check),
     .bus_write    (bus_write),
     .bus_read     (bus_read),
-    .bus_push     (bus_push),
     .select       (select),
     .bus_address  (bus_address),
     .bus_data     (bus_data),
-    .bus_msb      (bus_msb),
-    .bus_one_hot  (bus_one_hot),
-    .claim        (claim),
-    .refusal      (refusal),
-    .needs_quiet  (needs_quiet),
     .write_setup  (write_setup),
     .write_ratio  (write_ratio),
     .write_limit  (write_limit),

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Inputs of a channel: levels and flags, limits and alarms, the trigger, and their registers.
 //
-// Promise: a strobe is answered one clock later, for one clock; the answer is 0 unless one of these registers is
-// addressed. `hard_stop` and `soft_stop` ask the motion to stop, each with its cause; `hard_stop` also drops the steps that wait.
+// Promise: `read_data` is the addressed register one clock after `bus_read`, for one clock, else 0. `bad_value`: a
+// checked word of TRIGGER has no source or no axis that is there. `hard_stop` and `soft_stop` ask the motion to stop, each with its cause; `hard_stop` also drops the steps that wait.
 // `wait_known`: an input is unknown, or a trigger is being armed, so that no motion may begin.
 `resetall
 `timescale 1ns / 1ps
@@ -14,16 +14,12 @@ module passo_inputs #(
   input  wire            clk,
   input  wire            rst,
   // bus
-  input  wire            bus_check,
   input  wire            bus_write,
   input  wire            bus_read,
-  input  wire            bus_push,
   input  wire            select,
   input  wire [     7:0] bus_address,     // within the channel
   input  wire [    31:0] bus_data,
-  input  wire [     4:0] bus_msb,
-  output reg             claim,
-  output reg  [     3:0] refusal,
+  output wire            bad_value,
   output wire [    31:0] read_data,
   input  wire [AXES-1:0] write_axis,      // strobes with bus_data: the register INPUTS of an axis
   // core
@@ -63,42 +59,30 @@ module passo_inputs #(
   localparam WIDTH = 4 * AXES + 1;
 
   // Registers. Decoded one clock ahead of the strobe: the address is stable by then.
-  reg       known;
-  reg       bad_value;
-  reg [2:0] number;
+  reg        known;
+  wire [2:0] number = bus_address[2:0];
 
-  wire writable = number == CHANNEL_INPUT_CLEAR[2:0] || number == CHANNEL_TRIGGER[2:0] || number == CHANNEL_PROBE[2:0];
   wire of_axis = bus_data[CHANNEL_TRIGGER_SOURCE_LSB+:CHANNEL_TRIGGER_SOURCE_BITS] != TRIGGER_SOURCE_NONE
                  && bus_data[CHANNEL_TRIGGER_SOURCE_LSB+:CHANNEL_TRIGGER_SOURCE_BITS] != TRIGGER_SOURCE_PROBE;
   wire [3:0] axis = {1'b0, bus_data[CHANNEL_TRIGGER_AXIS_LSB+:CHANNEL_TRIGGER_AXIS_BITS]};
-  wire bad_trigger = bus_msb > 5'd16 || (bus_data[15:0] & ~CHANNEL_TRIGGER_DEFINED[15:0]) != 16'd0
+  wire is_trigger = known && number == CHANNEL_TRIGGER[2:0];
+  wire bad_trigger = (bus_data[15:0] & ~CHANNEL_TRIGGER_DEFINED[15:0]) != 16'd0
                      || bus_data[CHANNEL_TRIGGER_SOURCE_LSB+:CHANNEL_TRIGGER_SOURCE_BITS] > TRIGGER_SOURCE_INDEX
                      || (bus_data[CHANNEL_TRIGGER_ARM_LSB]
                          && bus_data[CHANNEL_TRIGGER_SOURCE_LSB+:CHANNEL_TRIGGER_SOURCE_BITS] == TRIGGER_SOURCE_NONE)
                      || (of_axis && axis >= AXES[3:0]);
   wire write = bus_write & known;
-  wire write_trigger = write && number == CHANNEL_TRIGGER[2:0];
+  wire write_trigger = bus_write && is_trigger;
   wire write_probe = write && number == CHANNEL_PROBE[2:0];
   wire clear_flags = write && number == CHANNEL_INPUT_CLEAR[2:0];
   reg [7:0] reads;
 
+  assign bad_value = is_trigger && bad_trigger;
+
   integer i;
   always @(posedge clk) begin
     known     <= select && bus_address[7:3] == CHANNEL_INPUT_LEVELS[7:3] && bus_address[2:0] <= CHANNEL_PROBE[2:0];
-    number <= bus_address[2:0];
-    bad_value <= number == CHANNEL_TRIGGER[2:0] ? bad_trigger : number == CHANNEL_PROBE[2:0] && bus_msb > 5'd1;
-    claim <= known & (bus_check | bus_read);
-    refusal <= !known    ? VERDICT_OK :
-               bus_read  ? (writable ? VERDICT_BAD_OPERATION : VERDICT_OK) :
-               !bus_check ? VERDICT_OK :
-               bus_push  ? VERDICT_BAD_OPERATION :
-               !writable ? VERDICT_READ_ONLY :
-               bad_value ? VERDICT_BAD_VALUE : VERDICT_OK;
     for (i = 0; i < 8; i = i + 1) reads[i] <= bus_read && known && number == i[2:0];
-    if (rst) begin
-      claim   <= 1'b0;
-      refusal <= VERDICT_OK;
-    end
   end
 
   // Settings of the inputs: they describe the machine and are kept over a reset.

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the inputs of all channels share: the tick of the filter, e-stop, watchdog, and their registers.
 //
-// Promise: a strobe is answered one clock later, for one clock; the answer is 0 unless one of these registers is
-// addressed. `tick` comes every `filter` + 1 clocks, the first time that long after a write of the filter.
+// Promise: `read_data` is the addressed register one clock after `bus_read`, for one clock, else 0. `tick` comes every `filter` + 1 clocks, the first time that long after a write of the filter.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -11,15 +10,10 @@ module passo_machine (
   input  wire        clk,
   input  wire        rst,
   // bus
-  input  wire        bus_check,
   input  wire        bus_write,
   input  wire        bus_read,
-  input  wire        bus_push,
   input  wire [11:0] bus_address,
   input  wire [19:0] bus_data,
-  input  wire [ 4:0] bus_msb,
-  output reg         claim,
-  output reg  [ 3:0] refusal,
   output wire [31:0] read_data,
   // pin
   input  wire        estop_n,
@@ -38,8 +32,7 @@ module passo_machine (
 
   // Decoded one clock ahead of the strobe: the address is stable by then.
   reg        known;
-  reg        bad_value;
-  reg  [1:0] number;
+  wire [1:0] number = bus_address[1:0];
   reg        read_estop;
   wire       write = bus_write & known;
   wire       write_watchdog = write && number == ADDRESS_WATCHDOG[1:0];
@@ -50,22 +43,8 @@ module passo_machine (
   assign read_data = {31'd0, estop & read_estop};
 
   always @(posedge clk) begin
-    known <= bus_address[11:2] == ADDRESS_INPUT_FILTER[11:2];
-    number <= bus_address[1:0];
-    bad_value <= number == ADDRESS_INPUT_FILTER[1:0] ? bus_msb > 5'd15 :
-                 number == ADDRESS_WATCHDOG[1:0]     ? bus_msb > 5'd19 : bus_msb != 5'd0;
-    claim <= known & (bus_check | bus_read);
-    refusal <= !known    ? VERDICT_OK :
-               bus_read  ? (number == ADDRESS_ESTOP[1:0] ? VERDICT_OK : VERDICT_BAD_OPERATION) :
-               !bus_check ? VERDICT_OK :
-               bus_push  ? VERDICT_BAD_OPERATION :
-               number == ADDRESS_ESTOP[1:0] ? VERDICT_READ_ONLY :
-               bad_value ? VERDICT_BAD_VALUE : VERDICT_OK;
+    known      <= bus_address[11:2] == ADDRESS_INPUT_FILTER[11:2];
     read_estop <= bus_read && known && number == ADDRESS_ESTOP[1:0];
-    if (rst) begin
-      claim   <= 1'b0;
-      refusal <= VERDICT_OK;
-    end
   end
 
   // Filter: it describes the machine and is kept over a reset.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Registers of the outputs of a channel: decode, checks, settings, state; and the decode of the raster queue.
+// Registers of the outputs of a channel: settings, state; and the decode of the raster queue.
 //
-// Promise: a strobe is answered one clock later, for one clock; the answer is 0 unless one of these registers is
-// addressed. `write_levels`, `write_pulse` and `write_distance` are high in the clock after their write, with bus_data;
-// `write_power` in the first clock of a new pwm_step or power_reference.
-// `select_raster`: a push to the raster queue, which answers by itself whether it takes the word.
+// Promise: `read_data` is the addressed register one clock after `bus_read`, for one clock, else 0. `write_levels`,
+// `write_pulse` and `write_distance` are high in the clock after their write, with bus_data; `write_power` in the
+// first clock of a new pwm_step or power_reference. `bad_value`: a checked word of COMPARE_PULSE has an axis that is
+// not there. `select_raster`: a push to the raster queue.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -15,20 +15,15 @@ module passo_output_registers #(
   input  wire        clk,
   input  wire        rst,
   // bus
-  input  wire        bus_check,
   input  wire        bus_write,
   input  wire        bus_read,
   input  wire        bus_push,
   input  wire        select,
   input  wire [ 7:0] bus_address,       // within the channel
   input  wire [31:0] bus_data,
-  input  wire [ 4:0] bus_msb,
-  input  wire        bus_one_hot,
-  output reg         claim,
-  output reg  [ 3:0] refusal,
+  output wire        bad_value,
   output wire [31:0] read_data,
   output reg         select_raster,
-  output wire        needs_quiet,       // strobe: a register that needs a quiet channel is being checked
   // settings
   output reg  [15:0] lag,
   output reg  [23:0] pwm_step,
@@ -51,19 +46,14 @@ module passo_output_registers #(
   `include "passo_registers.vh"
 
   // Decoded one clock ahead of the strobe: the address is stable by then.
-  reg       in_settings;
-  reg       in_state;
-  reg       in_raster;
-  reg       known;
-  reg [2:0] number;
+  reg        in_settings;
+  reg        in_state;
+  wire [2:0] number = bus_address[2:0];
 
   always @(posedge clk) begin
     in_settings   <= select && bus_address[7:3] == CHANNEL_OUTPUT_LEVELS[7:3];
     in_state      <= select && bus_address == CHANNEL_OUTPUT_STATE;
-    in_raster     <= select && bus_address == CHANNEL_RASTER;
     select_raster <= select && bus_push && bus_address == CHANNEL_RASTER;
-    number        <= bus_address[2:0];
-    known         <= in_settings || in_state || in_raster;
   end
 
   wire is_levels = in_settings && number == CHANNEL_OUTPUT_LEVELS[2:0];
@@ -71,38 +61,12 @@ module passo_output_registers #(
   wire is_pulse = in_settings && number == CHANNEL_COMPARE_PULSE[2:0];
   wire is_distance = in_settings && number == CHANNEL_COMPARE_DISTANCE[2:0];
 
-  assign needs_quiet = bus_check & (is_levels | is_lag | is_pulse | is_distance);
+  assign bad_value = is_pulse && {1'b0, bus_data[18:16]} >= AXES[3:0];
 
-  // Answers
-  wire zero = bus_msb == 5'd0 && !bus_data[0];
-  reg  bad_value;
-  reg  reads;
+  // Reading
+  reg reads;
 
-  always @(posedge clk) begin
-    case (number)
-      CHANNEL_OUTPUT_LEVELS[2:0]: bad_value <= bus_msb > 5'd7;
-      CHANNEL_OUTPUT_LAG[2:0]: bad_value <= bus_msb > 5'd15;
-      CHANNEL_PWM_STEP[2:0]: bad_value <= zero || bus_msb > 5'd23 || (bus_msb == 5'd23 && !bus_one_hot);
-      CHANNEL_POWER_REFERENCE[2:0]: bad_value <= zero || (bus_msb == 5'd31 && !bus_one_hot);
-      CHANNEL_RASTER_PITCH[2:0]: bad_value <= zero || bus_msb > 5'd29;
-      CHANNEL_COMPARE_PULSE[2:0]: bad_value <= bus_msb > 5'd18 || {1'b0, bus_data[18:16]} >= AXES[3:0];
-      CHANNEL_COMPARE_INTERVAL[2:0]: bad_value <= zero;
-      default: bad_value <= 1'b0;
-    endcase
-    claim <= known && (bus_check || bus_read);
-    refusal <= !known                           ? VERDICT_OK :
-               bus_read                         ? (in_state ? VERDICT_OK : VERDICT_BAD_OPERATION) :
-               !bus_check                       ? VERDICT_OK :
-               bus_push != in_raster            ? VERDICT_BAD_OPERATION :
-               in_state                         ? VERDICT_READ_ONLY :
-               in_settings && bad_value         ? VERDICT_BAD_VALUE : VERDICT_OK;
-    reads <= bus_read && in_state;
-    if (rst) begin
-      claim   <= 1'b0;
-      refusal <= VERDICT_OK;
-      reads   <= 1'b0;
-    end
-  end
+  always @(posedge clk) reads <= ~rst & bus_read & in_state;
 
   assign read_data = reads ? {7'd0, raster_room, 6'd0, overflow, raster_empty, levels} : 32'd0;
 

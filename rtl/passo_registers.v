@@ -2,8 +2,9 @@
 // Registers of the core: identification, parameters, RUN; and the status word. The refusal counters have their
 // addresses here, but the link keeps them.
 //
-// Promise: a strobe is answered one clock later, for one clock; claim and refusal are 0 unless one of these registers
-// is addressed. `read_data` is the status word at all other times. RUN changes for all channels on the same clock.
+// Promise: `read_data` is the addressed register one clock after `bus_read`, for one clock, and 0 if it is none of
+// these; it is the status word at all other times. RUN changes for all channels on the same clock. `bad_value`: a
+// checked word of RUN has a channel that is not there.
 `resetall
 `timescale 1ns / 1ps
 `default_nettype none
@@ -21,15 +22,11 @@ module passo_registers #(
   input  wire                                    clk,
   input  wire                                    rst,
   // bus
-  input  wire                                    bus_check,
   input  wire                                    bus_write,
   input  wire                                    bus_read,
-  input  wire                                    bus_push,
   input  wire [                            11:0] bus_address,
   input  wire [                            18:0] bus_data,
-  input  wire [                             4:0] bus_msb,
-  output reg                                     claim,
-  output reg  [                             3:0] refusal,
+  output wire                                    bad_value,
   output wire [                            31:0] read_data,
   // link
   input  wire [                             7:0] last_sequence,
@@ -81,17 +78,18 @@ module passo_registers #(
   wire run_beyond = ({1'b0, bus_data[7:0]} >> CHANNELS) != 9'd0 || ({1'b0, bus_data[15:8]} >> CHANNELS) != 9'd0
                     || {1'b0, bus_data[18:16]} >= CHANNELS[3:0];
 
+  wire [2:0] number = bus_address[2:0];
+
   // Decoded one clock ahead of the strobe: the address is stable by then.
   reg       known;
   reg       is_run;
-  reg       bad_run;
-  reg [2:0] number;
   reg [3:0] reads;  // registers 0 .. 3
   reg       reads_status;
 
   integer i;
 
   assign is_counters = known && number[2];
+  assign bad_value   = is_run & run_beyond;
 
   assign read_data =
       (reads_status ? status : 32'd0)
@@ -103,23 +101,14 @@ module passo_registers #(
   always @(posedge clk) begin
     known        <= bus_address[11:3] == 9'd0 && bus_address[2:0] <= ADDRESS_REFUSALS_1[2:0];
     is_run       <= bus_address == ADDRESS_RUN;
-    number       <= bus_address[2:0];
-    bad_run      <= bus_msb > 5'd18 || run_beyond;
     reads_status <= ~bus_read;
     for (i = 0; i < 4; i = i + 1) reads[i] <= bus_read && known && number == i[2:0];
-    claim <= known && (bus_check || bus_read);
-    refusal <= !(known && bus_check)  ? VERDICT_OK :
-               bus_push               ? VERDICT_BAD_OPERATION :
-               !is_run                ? VERDICT_READ_ONLY :
-               bad_run                ? VERDICT_BAD_VALUE : VERDICT_OK;
     if (bus_write && is_run) begin
       run            <= bus_data[CHANNELS-1:0];
       wait_sync      <= bus_data[8+:CHANNELS];
       status_channel <= bus_data[18:16];
     end
     if (rst) begin
-      claim          <= 1'b0;
-      refusal        <= VERDICT_OK;
       run            <= RUN_RUN_RESET[CHANNELS-1:0];
       wait_sync      <= RUN_WAIT_SYNC_RESET[CHANNELS-1:0];
       status_channel <= RUN_STATUS_CHANNEL_RESET;

@@ -164,16 +164,14 @@ localparam REFUSALS_1_BAD_VALUE_LSB    = 24;
 localparam REFUSALS_1_BAD_VALUE_BITS   = 8;
 localparam REFUSALS_1_BAD_VALUE_RESET  = 8'h00;
 
-// Core: Input filter. Only with INPUTS. Glitch filter of all inputs but e-stop. May be written at any time;
-// then they are unknown. Kept over a reset of the core.
+// Core: Input filter. Glitch filter of all inputs but e-stop. After a write they are unknown.
 localparam ADDRESS_INPUT_FILTER      = 12'h010;
 localparam INPUT_FILTER_FILTER_LSB   = 0;
 localparam INPUT_FILTER_FILTER_BITS  = 16;
 localparam INPUT_FILTER_FILTER_RESET = 16'h0000;
 localparam INPUT_FILTER_DEFINED      = 32'h0000FFFF;
 
-// Core: Watchdog. Only with INPUTS. Stops motions when no frame has been executed for some time. In units
-// of 2^16 clocks.
+// Core: Watchdog. Stops motions when no frame has been executed for some time. In units of 2^16 clocks.
 localparam ADDRESS_WATCHDOG             = 12'h011;
 localparam WATCHDOG_STOP_AFTER_LSB      = 0;
 localparam WATCHDOG_STOP_AFTER_BITS     = 10;
@@ -183,37 +181,34 @@ localparam WATCHDOG_DISABLE_AFTER_BITS  = 10;
 localparam WATCHDOG_DISABLE_AFTER_RESET = 10'h000;
 localparam WATCHDOG_DEFINED             = 32'h000FFFFF;
 
-// Core: E-stop. Only with INPUTS. State of the e-stop.
+// Core: E-stop. State of the e-stop.
 localparam ADDRESS_ESTOP       = 12'h012;
 localparam ESTOP_PRESSED_LSB   = 0;
 localparam ESTOP_PRESSED_BITS  = 1;
 localparam ESTOP_PRESSED_RESET = 1'h0;
 
-// Core: Clear e-stop. Only with INPUTS. No effect while e-stop is pressed.
+// Core: Clear e-stop. No effect while e-stop is pressed.
 localparam ADDRESS_ESTOP_CLEAR     = 12'h013;
 localparam ESTOP_CLEAR_CLEAR_LSB   = 0;
 localparam ESTOP_CLEAR_CLEAR_BITS  = 1;
 localparam ESTOP_CLEAR_CLEAR_RESET = 1'h0;
 localparam ESTOP_CLEAR_DEFINED     = 32'h00000001;
 
-// Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0. Refused with BUSY
-// while a motion runs.
+// Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0.
 localparam ADDRESS_COSINE_BASE  = 12'hD00;
 localparam ADDRESS_COSINE_COUNT = 256;
 localparam COSINE_POINT_LSB     = 0;
 localparam COSINE_POINT_BITS    = 16;
 localparam COSINE_DEFINED       = 32'h0000FFFF;
 
-// Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0. Refused with BUSY
-// while a motion runs.
+// Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0.
 localparam ADDRESS_SIGMOID_BASE  = 12'hE00;
 localparam ADDRESS_SIGMOID_COUNT = 256;
 localparam SIGMOID_POINT_LSB     = 0;
 localparam SIGMOID_POINT_BITS    = 16;
 localparam SIGMOID_DEFINED       = 32'h0000FFFF;
 
-// Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0. Refused with BUSY
-// while a motion runs.
+// Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0.
 localparam ADDRESS_EASE_BASE  = 12'hF00;
 localparam ADDRESS_EASE_COUNT = 256;
 localparam EASE_POINT_LSB     = 0;
@@ -242,8 +237,7 @@ localparam CHANNEL_COMMAND_ZERO_BITS   = 1;
 localparam CHANNEL_COMMAND_ZERO_RESET  = 1'h0;
 localparam CHANNEL_COMMAND_DEFINED     = 32'h0000000F;
 
-// Channel: Rate target. Time scale, UQ1.16: 0 = feed hold, 65536 = 1.0 = full speed. Refused with BAD_VALUE
-// above 1.0.
+// Channel: Rate target. Time scale, UQ1.16: 0 = feed hold, 65536 = 1.0 = full speed.
 localparam CHANNEL_RATE_TARGET         = 8'h01;
 localparam CHANNEL_RATE_TARGET_LSB     = 0;
 localparam CHANNEL_RATE_TARGET_BITS    = 17;
@@ -311,7 +305,7 @@ localparam CHANNEL_VELOCITY_LSB   = 0;
 localparam CHANNEL_VELOCITY_BITS  = 32;
 localparam CHANNEL_VELOCITY_RESET = 32'h00000000;
 
-// Channel: Input levels. Only with INPUTS. Filtered levels, 1 = active, one bit per axis.
+// Channel: Input levels. Filtered levels, 1 = active, one bit per axis.
 localparam CHANNEL_INPUT_LEVELS                  = 8'h10;
 localparam CHANNEL_INPUT_LEVELS_LIMIT_LOW_LSB    = 0;
 localparam CHANNEL_INPUT_LEVELS_LIMIT_LOW_BITS   = 8;
@@ -326,8 +320,7 @@ localparam CHANNEL_INPUT_LEVELS_ALARM_LSB        = 24;
 localparam CHANNEL_INPUT_LEVELS_ALARM_BITS       = 8;
 localparam CHANNEL_INPUT_LEVELS_ALARM_RESET      = 8'h00;
 
-// Channel: Input flags. Only with INPUTS. Inputs that were active since their flag was cleared, one bit per
-// axis.
+// Channel: Input flags. Inputs that were active since their flag was cleared, one bit per axis.
 localparam CHANNEL_INPUT_FLAGS                  = 8'h11;
 localparam CHANNEL_INPUT_FLAGS_LIMIT_LOW_LSB    = 0;
 localparam CHANNEL_INPUT_FLAGS_LIMIT_LOW_BITS   = 8;
@@ -342,8 +335,8 @@ localparam CHANNEL_INPUT_FLAGS_ALARM_LSB        = 24;
 localparam CHANNEL_INPUT_FLAGS_ALARM_BITS       = 8;
 localparam CHANNEL_INPUT_FLAGS_ALARM_RESET      = 8'h00;
 
-// Channel: Clear input flags. Only with INPUTS. Each bit written as 1 clears a flag of INPUT_FLAGS; bits of
-// axes that are not there do nothing.
+// Channel: Clear input flags. Each bit written as 1 clears a flag of INPUT_FLAGS; bits of axes that are not
+// there do nothing.
 localparam CHANNEL_INPUT_CLEAR                  = 8'h12;
 localparam CHANNEL_INPUT_CLEAR_LIMIT_LOW_LSB    = 0;
 localparam CHANNEL_INPUT_CLEAR_LIMIT_LOW_BITS   = 8;
@@ -359,8 +352,7 @@ localparam CHANNEL_INPUT_CLEAR_ALARM_BITS       = 8;
 localparam CHANNEL_INPUT_CLEAR_ALARM_RESET      = 8'h00;
 localparam CHANNEL_INPUT_CLEAR_DEFINED          = 32'hFFFFFFFF;
 
-// Channel: Trigger. Only with INPUTS. Every write ends what was armed before. Refused with BAD_VALUE if
-// armed without a source, or for an axis that is not there.
+// Channel: Trigger. Every write ends what was armed before.
 localparam CHANNEL_TRIGGER               = 8'h13;
 localparam CHANNEL_TRIGGER_SOURCE_LSB    = 0;
 localparam CHANNEL_TRIGGER_SOURCE_BITS   = 3;
@@ -379,8 +371,7 @@ localparam CHANNEL_TRIGGER_ARM_BITS      = 1;
 localparam CHANNEL_TRIGGER_ARM_RESET     = 1'h0;
 localparam CHANNEL_TRIGGER_DEFINED       = 32'h00013177;
 
-// Channel: Trigger state. Only with INPUTS. State of the trigger and the probe, and the axes that stopped
-// the channel.
+// Channel: Trigger state. State of the trigger and the probe, and the axes that stopped the channel.
 localparam CHANNEL_TRIGGER_STATE                     = 8'h14;
 localparam CHANNEL_TRIGGER_STATE_ARMED_LSB           = 0;
 localparam CHANNEL_TRIGGER_STATE_ARMED_BITS          = 1;
@@ -406,8 +397,7 @@ localparam CHANNEL_TRIGGER_STATE_AXES_LSB            = 8;
 localparam CHANNEL_TRIGGER_STATE_AXES_BITS           = 8;
 localparam CHANNEL_TRIGGER_STATE_AXES_RESET          = 8'h00;
 
-// Channel: Probe. Only with INPUTS. Polarity, kept over a reset of the core, after a change of which the
-// inputs are unknown; and the flag of the probe.
+// Channel: Probe. Polarity, after a change of which the inputs are unknown; and the flag of the probe.
 localparam CHANNEL_PROBE                = 8'h15;
 localparam CHANNEL_PROBE_INVERTED_LSB   = 0;
 localparam CHANNEL_PROBE_INVERTED_BITS  = 1;
@@ -417,69 +407,64 @@ localparam CHANNEL_PROBE_CLEAR_BITS     = 1;
 localparam CHANNEL_PROBE_CLEAR_RESET    = 1'h0;
 localparam CHANNEL_PROBE_DEFINED        = 32'h00000003;
 
-// Channel: Line queue. PUSH only: control, M, N_0 .. N_{AXES-1} for each line, and with OUTPUTS its output
-// word.
+// Channel: Line queue. Control, M, N_0 .. N_{AXES-1} for each line, and with OUTPUTS its output word.
 localparam CHANNEL_LINE         = 8'h20;
 localparam CHANNEL_LINE_LSB     = 0;
 localparam CHANNEL_LINE_BITS    = 32;
 localparam CHANNEL_LINE_DEFINED = 32'hFFFFFFFF;
 
-// Channel: Ramp queue. PUSH only: 5 words for each ramp: v_end(47:32) (31:16) and LAST (0), NOW (1), mirror
-// (2), shape (5:4); v_end(31:0); T; du(47:32); du(31:0).
+// Channel: Ramp queue. 5 words for each ramp: v_end(47:32) (31:16) and LAST (0), NOW (1), mirror (2), shape
+// (5:4); v_end(31:0); T; du(47:32); du(31:0).
 localparam CHANNEL_RAMP         = 8'h21;
 localparam CHANNEL_RAMP_LSB     = 0;
 localparam CHANNEL_RAMP_BITS    = 32;
 localparam CHANNEL_RAMP_DEFINED = 32'hFFFFFFFF;
 
-// Channel: Raster queue. Only with OUTPUTS. PUSH only: four values to a word, the lowest byte first. A
-// raster line begins with a whole word.
+// Channel: Raster queue. Four values to a word, the lowest byte first. A raster line begins with a whole
+// word.
 localparam CHANNEL_RASTER         = 8'h22;
 localparam CHANNEL_RASTER_LSB     = 0;
 localparam CHANNEL_RASTER_BITS    = 32;
 localparam CHANNEL_RASTER_DEFINED = 32'hFFFFFFFF;
 
-// Channel: Output levels. Only with OUTPUTS. Sets the digital outputs at once, until a line changes them.
-// Refused with BUSY unless the channel is quiet.
+// Channel: Output levels. Sets the digital outputs at once, until a line changes them.
 localparam CHANNEL_OUTPUT_LEVELS              = 8'h30;
 localparam CHANNEL_OUTPUT_LEVELS_LEVELS_LSB   = 0;
 localparam CHANNEL_OUTPUT_LEVELS_LEVELS_BITS  = 8;
 localparam CHANNEL_OUTPUT_LEVELS_LEVELS_RESET = 8'h00;
 localparam CHANNEL_OUTPUT_LEVELS_DEFINED      = 32'h000000FF;
 
-// Channel: Output lag. Only with OUTPUTS. Refused with BUSY unless the channel is quiet.
+// Channel: Output lag. Delay of the outputs of lines.
 localparam CHANNEL_OUTPUT_LAG           = 8'h31;
 localparam CHANNEL_OUTPUT_LAG_LAG_LSB   = 0;
 localparam CHANNEL_OUTPUT_LAG_LAG_BITS  = 16;
 localparam CHANNEL_OUTPUT_LAG_LAG_RESET = 16'h0000;
 localparam CHANNEL_OUTPUT_LAG_DEFINED   = 32'h0000FFFF;
 
-// Channel: PWM step. Only with OUTPUTS. Frequency of the power pin. May be written at any time. Refused
-// with BAD_VALUE if 0 or above 1/2.
+// Channel: PWM step. Frequency of the power pin.
 localparam CHANNEL_PWM_STEP         = 8'h32;
 localparam CHANNEL_PWM_STEP_LSB     = 0;
 localparam CHANNEL_PWM_STEP_BITS    = 24;
 localparam CHANNEL_PWM_STEP_RESET   = 24'h001000;
 localparam CHANNEL_PWM_STEP_DEFINED = 32'h00FFFFFF;
 
-// Channel: Power reference. Only with OUTPUTS. Velocity at which a power in proportion to the velocity is
-// the one of the line; above it, it stays that. May be written at any time. Refused with BAD_VALUE if 0 or
-// above 1/2.
+// Channel: Power reference. Velocity at which a power in proportion to the velocity is the one of the line;
+// above it, it stays that.
 localparam CHANNEL_POWER_REFERENCE         = 8'h33;
 localparam CHANNEL_POWER_REFERENCE_LSB     = 0;
 localparam CHANNEL_POWER_REFERENCE_BITS    = 32;
 localparam CHANNEL_POWER_REFERENCE_RESET   = 32'h80000000;
 localparam CHANNEL_POWER_REFERENCE_DEFINED = 32'hFFFFFFFF;
 
-// Channel: Raster pitch. Only with OUTPUTS. Substeps from one value of a raster line to the next; counts
-// from the next value on. Refused with BAD_VALUE if 0 or above 2^30 - 1.
+// Channel: Raster pitch. Substeps from one value of a raster line to the next; counts from the next value
+// on.
 localparam CHANNEL_RASTER_PITCH             = 8'h34;
 localparam CHANNEL_RASTER_PITCH_PITCH_LSB   = 0;
 localparam CHANNEL_RASTER_PITCH_PITCH_BITS  = 30;
 localparam CHANNEL_RASTER_PITCH_PITCH_RESET = 30'h00000001;
 localparam CHANNEL_RASTER_PITCH_DEFINED     = 32'h3FFFFFFF;
 
-// Channel: Compare pulse. Only with OUTPUTS. Refused with BUSY unless the channel is quiet, with BAD_VALUE
-// if there is no such axis. Ends a pulse in progress, as COMPARE_DISTANCE does.
+// Channel: Compare pulse. Ends a pulse in progress, as COMPARE_DISTANCE does.
 localparam CHANNEL_COMPARE_PULSE             = 8'h35;
 localparam CHANNEL_COMPARE_PULSE_WIDTH_LSB   = 0;
 localparam CHANNEL_COMPARE_PULSE_WIDTH_BITS  = 16;
@@ -489,21 +474,21 @@ localparam CHANNEL_COMPARE_PULSE_AXIS_BITS   = 3;
 localparam CHANNEL_COMPARE_PULSE_AXIS_RESET  = 3'h0;
 localparam CHANNEL_COMPARE_PULSE_DEFINED     = 32'h0007FFFF;
 
-// Channel: Compare distance. Only with OUTPUTS. Refused with BUSY unless the channel is quiet.
+// Channel: Compare distance. Where the first pulse comes.
 localparam CHANNEL_COMPARE_DISTANCE                = 8'h36;
 localparam CHANNEL_COMPARE_DISTANCE_DISTANCE_LSB   = 0;
 localparam CHANNEL_COMPARE_DISTANCE_DISTANCE_BITS  = 32;
 localparam CHANNEL_COMPARE_DISTANCE_DISTANCE_RESET = 32'h00000000;
 localparam CHANNEL_COMPARE_DISTANCE_DEFINED        = 32'hFFFFFFFF;
 
-// Channel: Compare interval. Only with OUTPUTS. Counts from the next pulse on. Refused with BAD_VALUE if 0.
+// Channel: Compare interval. Counts from the next pulse on.
 localparam CHANNEL_COMPARE_INTERVAL                = 8'h37;
 localparam CHANNEL_COMPARE_INTERVAL_INTERVAL_LSB   = 0;
 localparam CHANNEL_COMPARE_INTERVAL_INTERVAL_BITS  = 32;
 localparam CHANNEL_COMPARE_INTERVAL_INTERVAL_RESET = 32'h00000001;
 localparam CHANNEL_COMPARE_INTERVAL_DEFINED        = 32'hFFFFFFFF;
 
-// Channel: Output state. Only with OUTPUTS. State of the outputs.
+// Channel: Output state. State of the outputs.
 localparam CHANNEL_OUTPUT_STATE                    = 8'h38;
 localparam CHANNEL_OUTPUT_STATE_LEVELS_LSB         = 0;
 localparam CHANNEL_OUTPUT_STATE_LEVELS_BITS        = 8;
@@ -525,23 +510,22 @@ localparam CHANNEL_POSITION_LSB   = 0;
 localparam CHANNEL_POSITION_BITS  = 32;
 localparam CHANNEL_POSITION_RESET = 32'h00000000;
 
-// Channel: Latched position. Only with INPUTS. Position of an axis in steps on the clock on which the
-// trigger fired, complete 130 clocks later. A ZERO less than 64 clocks after that clears it.
+// Channel: Latched position. Position of an axis in steps on the clock on which the trigger fired, complete
+// 130 clocks later. A ZERO less than 64 clocks after that clears it.
 localparam CHANNEL_TRIGGER_POSITION_BASE           = 8'h48;
 localparam CHANNEL_TRIGGER_POSITION_COUNT          = 8;
 localparam CHANNEL_TRIGGER_POSITION_POSITION_LSB   = 0;
 localparam CHANNEL_TRIGGER_POSITION_POSITION_BITS  = 32;
 localparam CHANNEL_TRIGGER_POSITION_POSITION_RESET = 32'h00000000;
 
-// Channel: Encoder position. Only with ENCODERS. Counts of the encoder of an axis, sampled on the clock of
-// its position; wraps.
+// Channel: Encoder position. Counts of the encoder of an axis, sampled on the clock of its position; wraps.
 localparam CHANNEL_ENCODER_POSITION_BASE           = 8'h50;
 localparam CHANNEL_ENCODER_POSITION_COUNT          = 8;
 localparam CHANNEL_ENCODER_POSITION_POSITION_LSB   = 0;
 localparam CHANNEL_ENCODER_POSITION_POSITION_BITS  = 32;
 localparam CHANNEL_ENCODER_POSITION_POSITION_RESET = 32'h00000000;
 
-// Channel: Follow. Only with ENCODERS. Refused with BUSY unless the channel is quiet.
+// Channel: Follow. Whether and how the profile follows an encoder.
 localparam CHANNEL_FOLLOW                  = 8'h60;
 localparam CHANNEL_FOLLOW_FOLLOW_LSB       = 0;
 localparam CHANNEL_FOLLOW_FOLLOW_BITS      = 1;
@@ -557,24 +541,22 @@ localparam CHANNEL_FOLLOW_SCALE_BITS       = 3;
 localparam CHANNEL_FOLLOW_SCALE_RESET      = 3'h0;
 localparam CHANNEL_FOLLOW_DEFINED          = 32'h000000FF;
 
-// Channel: Follow limit. Only with ENCODERS. What is owed to the encoder is made at no more than this.
-// Refused with BAD_VALUE if 0 or above 1/2.
+// Channel: Follow limit. What is owed to the encoder is made at no more than this.
 localparam CHANNEL_FOLLOW_LIMIT             = 8'h61;
 localparam CHANNEL_FOLLOW_LIMIT_LIMIT_LSB   = 0;
 localparam CHANNEL_FOLLOW_LIMIT_LIMIT_BITS  = 32;
 localparam CHANNEL_FOLLOW_LIMIT_LIMIT_RESET = 32'h01000000;
 localparam CHANNEL_FOLLOW_LIMIT_DEFINED     = 32'hFFFFFFFF;
 
-// Channel: Encoder filter. Only with ENCODERS. Glitch filter of all encoders of the channel. May be written
-// at any time.
+// Channel: Encoder filter. Glitch filter of all encoders of the channel.
 localparam CHANNEL_ENCODER_FILTER              = 8'h62;
 localparam CHANNEL_ENCODER_FILTER_FILTER_LSB   = 0;
 localparam CHANNEL_ENCODER_FILTER_FILTER_BITS  = 8;
 localparam CHANNEL_ENCODER_FILTER_FILTER_RESET = 8'h03;
 localparam CHANNEL_ENCODER_FILTER_DEFINED      = 32'h000000FF;
 
-// Channel: Follow state. Only with ENCODERS. Of the motion that runs; behind and lost, of the last one,
-// until the next is prepared.
+// Channel: Follow state. Of the motion that runs; behind and lost, of the last one, until the next is
+// prepared.
 localparam CHANNEL_FOLLOW_STATE              = 8'h63;
 localparam CHANNEL_FOLLOW_STATE_OWED_LSB     = 0;
 localparam CHANNEL_FOLLOW_STATE_OWED_BITS    = 24;
@@ -596,8 +578,8 @@ localparam CHANNEL_ENCODER_BASE   = 8'hC0;
 localparam CHANNEL_ENCODER_COUNT  = 8;
 localparam CHANNEL_ENCODER_STRIDE = 8'h08;
 
-// Axis: Pins. Polarities and step mode. Refused with BUSY unless the channel is quiet. From the write on,
-// the next step waits for the low time, the DIR hold and the DIR setup. Kept through a reset of the core.
+// Axis: Pins. Polarities and step mode. From the write on, the next step waits for the low time, the DIR
+// hold and the DIR setup.
 localparam AXIS_PINS                          = 3'h0;
 localparam AXIS_PINS_STEP_INVERTED_LSB        = 1;
 localparam AXIS_PINS_STEP_INVERTED_BITS       = 1;
@@ -613,7 +595,7 @@ localparam AXIS_PINS_BOTH_EDGES_BITS          = 1;
 localparam AXIS_PINS_BOTH_EDGES_RESET         = 1'h0;
 localparam AXIS_PINS_DEFINED                  = 32'h0000001E;
 
-// Axis: STEP timing. Clocks, 1 .. 65535; 0 counts as 1. Kept over a reset of the core.
+// Axis: STEP timing. Clocks, 1 .. 65535; 0 counts as 1.
 localparam AXIS_STEP_TIMING                 = 3'h1;
 localparam AXIS_STEP_TIMING_STEP_LOW_LSB    = 0;
 localparam AXIS_STEP_TIMING_STEP_LOW_BITS   = 16;
@@ -623,7 +605,7 @@ localparam AXIS_STEP_TIMING_STEP_HIGH_BITS  = 16;
 localparam AXIS_STEP_TIMING_STEP_HIGH_RESET = 16'h0001;
 localparam AXIS_STEP_TIMING_DEFINED         = 32'hFFFFFFFF;
 
-// Axis: DIR timing. Clocks, 1 .. 65535; 0 counts as 1. Kept over a reset of the core.
+// Axis: DIR timing. Clocks, 1 .. 65535; 0 counts as 1.
 localparam AXIS_DIR_TIMING                 = 3'h2;
 localparam AXIS_DIR_TIMING_DIR_HOLD_LSB    = 0;
 localparam AXIS_DIR_TIMING_DIR_HOLD_BITS   = 16;
@@ -639,15 +621,14 @@ localparam AXIS_LOST_STEPS_LOST_LSB   = 0;
 localparam AXIS_LOST_STEPS_LOST_BITS  = 4;
 localparam AXIS_LOST_STEPS_LOST_RESET = 4'h0;
 
-// Axis: Drive enable. May be written at any time.
+// Axis: Drive enable. Enables the drive of the axis.
 localparam AXIS_ENABLE         = 3'h4;
 localparam AXIS_ENABLE_LSB     = 0;
 localparam AXIS_ENABLE_BITS    = 1;
 localparam AXIS_ENABLE_RESET   = 1'h0;
 localparam AXIS_ENABLE_DEFINED = 32'h00000001;
 
-// Axis: Inputs of the axis. Only with INPUTS. Polarities, and what limits and alarm do. Refused with BUSY
-// unless the channel is quiet; then the inputs are unknown. Kept over a reset of the core.
+// Axis: Inputs of the axis. Polarities, and what limits and alarm do. After a write the inputs are unknown.
 localparam AXIS_INPUTS                           = 3'h5;
 localparam AXIS_INPUTS_LIMIT_LOW_INVERTED_LSB    = 0;
 localparam AXIS_INPUTS_LIMIT_LOW_INVERTED_BITS   = 1;
@@ -672,7 +653,7 @@ localparam AXIS_INPUTS_ALARM_DISABLES_BITS       = 1;
 localparam AXIS_INPUTS_ALARM_DISABLES_RESET      = 1'h0;
 localparam AXIS_INPUTS_DEFINED                   = 32'h0000007F;
 
-// Encoder: Encoder setup. Only with ENCODERS. May be written at any time.
+// Encoder: Encoder setup. How the encoder counts, and what a following error does.
 localparam ENCODER_SETUP                      = 3'h0;
 localparam ENCODER_SETUP_INVERTED_LSB         = 0;
 localparam ENCODER_SETUP_INVERTED_BITS        = 1;
@@ -691,30 +672,28 @@ localparam ENCODER_SETUP_STOP_HARD_BITS       = 1;
 localparam ENCODER_SETUP_STOP_HARD_RESET      = 1'h0;
 localparam ENCODER_SETUP_DEFINED              = 32'h0000001F;
 
-// Encoder: Encoder ratio. Only with ENCODERS. Counts per step. Refused with BAD_VALUE if 0. A write sets
-// the following error to 0.
+// Encoder: Encoder ratio. Counts per step. A write sets the following error to 0.
 localparam ENCODER_RATIO         = 3'h1;
 localparam ENCODER_RATIO_LSB     = 0;
 localparam ENCODER_RATIO_BITS    = 32;
 localparam ENCODER_RATIO_RESET   = 32'h00010000;
 localparam ENCODER_RATIO_DEFINED = 32'hFFFFFFFF;
 
-// Encoder: Following error limit. Only with ENCODERS. Refused with BAD_VALUE if 0.
+// Encoder: Following error limit. Error from which on the axis is too far from its encoder.
 localparam ENCODER_LIMIT         = 3'h2;
 localparam ENCODER_LIMIT_LSB     = 0;
 localparam ENCODER_LIMIT_BITS    = 16;
 localparam ENCODER_LIMIT_RESET   = 16'hFFFF;
 localparam ENCODER_LIMIT_DEFINED = 32'h0000FFFF;
 
-// Encoder: Following error. Only with ENCODERS. Position times ratio less encoder position, both as they
-// were set to 0 by COMMAND.ZERO or a write of the ratio.
+// Encoder: Following error. Position times ratio less encoder position, both as they were set to 0 by
+// COMMAND.ZERO or a write of the ratio.
 localparam ENCODER_ERROR       = 3'h3;
 localparam ENCODER_ERROR_LSB   = 0;
 localparam ENCODER_ERROR_BITS  = 32;
 localparam ENCODER_ERROR_RESET = 32'h00000000;
 
-// Encoder: Greatest following error. Only with ENCODERS. Since COMMAND.ZERO, COMMAND.CLEAR or a write of
-// the ratio.
+// Encoder: Greatest following error. Since COMMAND.ZERO, COMMAND.CLEAR or a write of the ratio.
 localparam ENCODER_GREATEST                = 3'h4;
 localparam ENCODER_GREATEST_GREATEST_LSB   = 0;
 localparam ENCODER_GREATEST_GREATEST_BITS  = 18;
@@ -723,8 +702,8 @@ localparam ENCODER_GREATEST_EXCEEDED_LSB   = 31;
 localparam ENCODER_GREATEST_EXCEEDED_BITS  = 1;
 localparam ENCODER_GREATEST_EXCEEDED_RESET = 1'h0;
 
-// Encoder: Encoder index. Only with ENCODERS. What the index has latched, and the transitions that were
-// none. All 0 after COMMAND.ZERO.
+// Encoder: Encoder index. What the index has latched, and the transitions that were none. All 0 after
+// COMMAND.ZERO.
 localparam ENCODER_INDEX               = 3'h5;
 localparam ENCODER_INDEX_LATCH_LSB     = 0;
 localparam ENCODER_INDEX_LATCH_BITS    = 16;
@@ -751,7 +730,7 @@ localparam VERDICT_UNKNOWN_ADDRESS = 4'd5; // No register at this address.
 localparam VERDICT_READ_ONLY       = 4'd6; // The register cannot be written.
 localparam VERDICT_QUEUE_FULL      = 4'd7; // Not enough room for the whole frame.
 localparam VERDICT_BUSY            = 4'd8; // The state of the channel does not allow it (see the register).
-localparam VERDICT_BAD_VALUE       = 4'd9; // M = 0 or M >= 2^30, N_i > M, a velocity above 1/2, drain velocity 0, reserved bits set.
+localparam VERDICT_BAD_VALUE       = 4'd9; // The register does not take the value, or an undefined bit is set (see the register).
 
 // State of a channel.
 localparam STATE_IDLE    = 3'd0; // No motion.

@@ -19,13 +19,9 @@ module passo_tables #(
   input  wire                   bus_commit,
   input  wire                   bus_check,
   input  wire                   bus_write,
-  input  wire                   bus_read,
-  input  wire                   bus_push,
   input  wire                   select,
   input  wire [            9:0] bus_address,  // within the tables: bank (9:8), 1 .. 3
   input  wire [           15:0] bus_data,
-  input  wire [            4:0] bus_msb,      // of checked data: index of the highest set bit
-  output reg  [            3:0] refusal,
   output reg                    wanted,       // the frame writes points: needs all channels at rest
   // channels
   input  wire [   CHANNELS-1:0] request,
@@ -43,13 +39,6 @@ module passo_tables #(
   (* no_rw_check *)
   reg [15:0] points[0:767];
   `include "passo_shapes.vh"
-
-  always @(posedge clk) begin
-    refusal <= VERDICT_OK;
-    if (select && bus_read) refusal <= VERDICT_BAD_OPERATION;
-    if (select && bus_check)
-      refusal <= bus_push ? VERDICT_BAD_OPERATION : bus_msb > 5'd15 ? VERDICT_BAD_VALUE : VERDICT_OK;
-  end
 
   always @(posedge clk) wanted <= ~rst & ~(bus_frame & ~bus_commit) & (wanted | (select & bus_check));
 

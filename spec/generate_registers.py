@@ -19,6 +19,8 @@ Each register of several fields, and each word, also has a struct passo_<name> w
 passo_unpack_<name>() in C, and a class with pack() and unpack() in Python. Python also has the TABLE of all
 registers.
 
+RTL and model also have the rule of each register (rdl/rules.py): which access it takes, and which values.
+
 A field that is alone in its register and has its name does not repeat it: CHANNEL_RATE_TARGET_LSB.
 """
 
@@ -26,15 +28,17 @@ import sys
 from pathlib import Path
 
 from generated import is_check, keep
-from rdl import c, docs, python, verilog
+from rdl import c, docs, python, rules, verilog
 from rdl.schema import SOURCE, read
 
 ROOT = Path(__file__).resolve().parent.parent
 
 OUTPUTS = {
     "rtl/passo_registers.vh": verilog.constants,
+    "rtl/passo_register_rules.vh": rules.verilog,
     "c_model/protocol/passo_registers.h": c.constants,
     "c_model/protocol/passo_words.h": c.words,
+    "c_model/core/passo_register_rules.h": rules.c,
     "sim/passo/registers.py": python.module,
     "docs/reference/registers.md": docs.page,
 }

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Every register of spec/passo.rdl answers, in model and RTL, as its fields say; nothing else does."""
+"""Every register of spec/passo.rdl answers, in model and RTL, as its fields say; nothing else does.
+
+What is refused beside undefined bits is written here once more, by hand: RTL and model have one table.
+"""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -11,7 +14,7 @@ from passo.engine import model_engine, rtl_engine
 from passo.link import Link, RefusedError
 from passo.pair_engine import PairEngine
 from passo.register_table import Register
-from passo.registers import Verdict
+from passo.registers import State, Verdict
 
 WORDS = 1 << r.HEADER_ADDRESS_BITS
 PARTS = {"inputs": 1, "encoders": 1, "outputs": 1}
@@ -24,6 +27,42 @@ CORES = [
     Parameters(channels=2, axes=3, **PARTS),
 ]
 
+# Greatest values where they are not all bits of the fields, and registers that do not take 0.
+GREATEST = {
+    **dict.fromkeys(("CHANNEL_RATE_TARGET", "CHANNEL_RATE_SLEW", "CHANNEL_STOP_SLEW"), 1 << 16),
+    "CHANNEL_PWM_STEP": 1 << 23,
+    **dict.fromkeys(("CHANNEL_DRAIN_VELOCITY", "CHANNEL_POWER_REFERENCE", "CHANNEL_FOLLOW_LIMIT"), 1 << 31),
+}
+NOT_0 = {
+    *("CHANNEL_DRAIN_VELOCITY", "CHANNEL_PWM_STEP", "CHANNEL_POWER_REFERENCE", "CHANNEL_RASTER_PITCH"),
+    *("CHANNEL_COMPARE_INTERVAL", "CHANNEL_FOLLOW_LIMIT", "ENCODER_RATIO", "ENCODER_LIMIT"),
+}
+# Registers that are not written while a motion runs, and bits of COMMAND; shape tables are not, either.
+QUIET = {
+    *("AXIS_PINS", "AXIS_INPUTS", "CHANNEL_FOLLOW", "CHANNEL_OUTPUT_LEVELS", "CHANNEL_OUTPUT_LAG"),
+    *("CHANNEL_COMPARE_PULSE", "CHANNEL_COMPARE_DISTANCE", "COSINE", "SIGMOID", "EASE"),
+}
+QUIET_COMMANDS = 1 << r.CHANNEL_COMMAND_CLEAR_LSB, 1 << r.CHANNEL_COMMAND_ZERO_LSB
+
+
+# Words of a block, first and last, that belong to a part.
+PLACES = {
+    "CORE": {(0x10, 0x1F): "inputs", (0x20, 0x2F): "encoders", (0x30, 0x3F): "outputs"},
+    "CHANNEL": {
+        **{(0x10, 0x1F): "inputs", (0x22, 0x22): "outputs", (0x30, 0x3F): "outputs"},
+        **{(0x48, 0x4F): "inputs", (0x50, 0x7F): "encoders"},
+    },
+    "AXIS": {(5, 5): "inputs"},
+    "ENCODER": {(0, 7): "encoders"},
+}
+
+
+def part_of(register: Register) -> str:
+    """The part to which a register belongs; "" if to none."""
+    return next(
+        (part for (first, last), part in PLACES[register.block].items() if first <= register.word <= last), ""
+    )
+
 
 def every_register(parameters: Parameters) -> Iterator[tuple[int, Register]]:
     """Address and register of all words of a core. An array in a channel has a word for each axis."""
@@ -33,7 +72,8 @@ def every_register(parameters: Parameters) -> Iterator[tuple[int, Register]]:
     encoders = [base - r.CHANNEL_AXIS_BASE + r.CHANNEL_ENCODER_BASE for base in axes]
     bases = {"CORE": [0], "CHANNEL": channels, "AXIS": axes, "ENCODER": encoders}
     for register in r.TABLE:
-        if register.part and not getattr(parameters, register.part):
+        part = part_of(register)
+        if part and not getattr(parameters, part):
             continue
         per_axis = register.block == "CHANNEL" and register.count > 1
         for base in bases[register.block]:
@@ -136,6 +176,49 @@ class Core:
                     assert self.read(address) == (Verdict.OK, shown), f"{where}, 0x{bit:X}"
                 assert self.write(address, register.reset) == Verdict.OK, where
 
+    def check_limits(self) -> None:
+        """The greatest value is taken, what is above is refused, and 0 where it would make no sense."""
+        for register, addresses in self._addresses().items():
+            address, where = max(addresses), register.name
+            if "w" not in register.access or register.name in ("RUN", "CHANNEL_TRIGGER", "CHANNEL_COMMAND"):
+                continue
+            greatest = GREATEST.get(register.name, self.taken(register))
+            if register.name == "CHANNEL_COMPARE_PULSE":
+                greatest = 0xFFFF | self.parameters.axes - 1 << r.CHANNEL_COMPARE_PULSE_AXIS_LSB
+            assert self.write(address, greatest) == Verdict.OK, where
+            if greatest < 0xFFFFFFFF:
+                assert self.write(address, greatest + 1) == Verdict.BAD_VALUE, where
+                assert self.write(address, greatest | 1 << 31 | 1) == Verdict.BAD_VALUE, where
+            expected = Verdict.BAD_VALUE if register.name in NOT_0 else Verdict.OK
+            assert self.write(address, 0) == expected, where
+            assert self.write(address, register.reset) == Verdict.OK, where
+
+    def check_busy(self) -> None:
+        """While the last channel has a motion, what needs a quiet one is refused, and nothing else."""
+        channel = self.parameters.channels - 1
+        base = r.ADDRESS_CHANNEL_BASE + channel * r.ADDRESS_CHANNEL_STRIDE
+        command = base + r.CHANNEL_COMMAND
+        endless = [2, 9, *[9] * self.parameters.axes, *[0] * self.parameters.outputs]
+        assert self.push(base + r.CHANNEL_LINE, *endless) == Verdict.OK
+        assert self.push(base + r.CHANNEL_RAMP, 0, 0, 0xFFFFFFFF, 0, 0) == Verdict.OK
+        assert self.write(r.ADDRESS_RUN, 1 << channel) == Verdict.OK
+        assert self.read(base + r.CHANNEL_STATE)[0] == Verdict.OK
+        assert self.read(base + r.CHANNEL_STATE)[1] & 7 == State.RUN
+        for register, addresses in self._addresses().items():
+            if "w" not in register.access or register.name == "RUN":
+                continue
+            for address in (min(addresses), max(addresses)):
+                of_other = r.ADDRESS_CHANNEL_BASE <= address < base
+                busy = register.name in QUIET and not of_other
+                expected = Verdict.BUSY if busy else Verdict.OK
+                assert self.write(address, register.reset) == expected, f"{register.name} at 0x{address:03X}"
+        for word in QUIET_COMMANDS:
+            assert self.write(command, word) == Verdict.BUSY
+        assert self.write(command, 1 << r.CHANNEL_COMMAND_ABORT_LSB | sum(QUIET_COMMANDS)) == Verdict.OK
+        assert self.write(r.ADDRESS_RUN, 0) == Verdict.OK
+        for word in QUIET_COMMANDS:
+            assert self.write(command, word) == Verdict.OK
+
     def check_pushing(self) -> None:
         """Only the queues take it, and nothing else."""
         for address, register in self.registers:
@@ -176,6 +259,8 @@ class Core:
 def check_all(core: Core) -> None:
     """In an order in which nothing of what was done before is in the way."""
     core.check_reading()
+    core.check_busy()
+    core.check_limits()
     core.check_writing()
     core.check_holes()
     core.check_pushing()

@@ -22,7 +22,8 @@ HELPER = "spec/generated.py"
 VERILOG = "rtl/passo_registers.vh"
 C = "c_model/protocol/passo_registers.h"
 PAGE = "docs/reference/registers.md"
-OUTPUTS = [VERILOG, C, "c_model/protocol/passo_words.h", "sim/passo/registers.py", PAGE]
+RULES = ["rtl/passo_register_rules.vh", "c_model/core/passo_register_rules.h"]
+OUTPUTS = [VERILOG, C, *RULES, "c_model/protocol/passo_words.h", "sim/passo/registers.py", PAGE]
 ENUMS = registers.DescribedEnum.__subclasses__()
 
 
@@ -124,6 +125,31 @@ def test_check_names_stale_files(tmp_path: Path):
     assert run(sys.executable, GENERATOR, cwd=tmp_path).returncode == 0
     assert {name: (tmp_path / name).read_text(encoding="utf-8") for name in OUTPUTS} == fresh
     assert run(sys.executable, GENERATOR, "--check", cwd=tmp_path).returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        (
+            "nonzero; maximum = 0x800000;",
+            "nonzero; maximum = 0x7FFFFF;",
+            "PWM_STEP: a maximum is a power of 2",
+        ),
+        ("} filter[7:0] = 3;", "} filter[7:2] = 3;", "ENCODER_FILTER: only bit 0"),
+        ("part = part_e::ENCODERS; needs = needs_e::QUIET;", "needs = needs_e::IDLE;", "FOLLOW: IDLE is"),
+        ("ease[256]    @", "ease[128]    @", "EASE: not as COSINE"),
+    ],
+)
+def test_what_the_rules_cannot_say_is_refused(tmp_path: Path, old: str, new: str, says: str):
+    for name in [GENERATOR, HELPER]:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / name, tmp_path / name)
+    shutil.copytree(paths.spec / "rdl", tmp_path / "spec" / "rdl")
+    source = read(SOURCE)
+    assert source.count(old) == 1
+    (tmp_path / SOURCE).write_text(source.replace(old, new), encoding="utf-8")
+    result = run(sys.executable, GENERATOR, cwd=tmp_path)
+    assert result.returncode == 1 and says in result.stdout
 
 
 @pytest.mark.parametrize("name", OUTPUTS)

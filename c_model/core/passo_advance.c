@@ -21,7 +21,7 @@ static bool link_side_quiet(const struct passo_core *core, const struct passo_in
 	return PASSO_SAME_INPUTS(inputs, &core->inputs) && core->spi.select_sync == selected
 	    && core->spi.toggle_sync == toggled && core->sync_q == synced
 	    && core->link.status == passo_registers_status(core) && !core->response.claim
-	    && core->response.refusal == 0u && core->response.read_data == 0u && !core->response.late
+	    && core->response.refusal == 0u && core->response.read_data == 0u && !core->response.reads
 	    && core->outputs.irq == passo_registers_any_stopped(core);
 }
 

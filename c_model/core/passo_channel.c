@@ -156,7 +156,7 @@ void passo_channel_clock(struct passo_channel *channel, const struct passo_chann
 	    channel->writes_axis
 	    && (written_register == PASSO_AXIS_STEP_TIMING || written_register == PASSO_AXIS_DIR_TIMING);
 	const bool write_pins = channel->writes_axis && written_register == PASSO_AXIS_PINS;
-	const struct passo_needs needs = passo_channel_needs(channel, bus, inputs->parameters->inputs != 0u);
+	const struct passo_needs needs = passo_channel_needs(channel, bus, inputs->needs_quiet);
 	const struct passo_channel_registers registers = channel->registers;
 	const bool stopping = channel->motion.stopping;
 	struct passo_inputs_unit inputs_unit = channel->inputs;

@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * Registers of one channel and its axes. See rtl/passo_channel_registers.v and rtl/passo_axis_registers.v.
  */
-#include "passo_answer.h"
 #include "passo_model.h"
 #include "passo_words.h"
 
-static const uint32_t VELOCITY_MAX = 0x80000000u; /* UQ0.32 */
 static const uint32_t DRAIN_VELOCITY_LOW = 0xFFu;
 
 /* The effective bits of a command. */
@@ -17,28 +15,17 @@ static uint32_t command_of(uint32_t data)
 	return (data & abort) != 0u ? abort : (data & stop) != 0u ? stop : data;
 }
 
-/* PINS of an axis, or INPUTS if the core has them. */
-static bool axis_needs_quiet(uint8_t place, bool has_inputs)
-{
-	return place == PASSO_AXIS_PINS || (has_inputs && place == PASSO_AXIS_INPUTS);
-}
-
 struct passo_needs passo_channel_needs(
-    const struct passo_channel *channel, const struct passo_bus *bus, bool has_inputs)
+    const struct passo_channel *channel, const struct passo_bus *bus, bool needs_quiet)
 {
 	const uint8_t address = (uint8_t)bus->address;
-	const unsigned in_axes = (unsigned)address - PASSO_CHANNEL_AXIS_BASE;
 	const uint32_t command = address == PASSO_CHANNEL_COMMAND ? command_of(bus->data) : 0u;
-	const bool outputs = channel->has_outputs && passo_output_registers_need_quiet(address);
-	const bool pins = in_axes < channel->axes * PASSO_CHANNEL_AXIS_STRIDE
-	               && axis_needs_quiet((uint8_t)(in_axes % PASSO_CHANNEL_AXIS_STRIDE), has_inputs);
 
 	if (!bus->check || (bus->address >> 8) != channel->number + 1u)
 		return (struct passo_needs){0};
 	return (struct passo_needs){
 	    .idle = (command >> PASSO_CHANNEL_COMMAND_CLEAR_LSB & 1u) != 0u,
-	    .quiet = pins || outputs || address == PASSO_CHANNEL_FOLLOW
-	          || (command >> PASSO_CHANNEL_COMMAND_ZERO_LSB & 1u) != 0u,
+	    .quiet = needs_quiet || (command >> PASSO_CHANNEL_COMMAND_ZERO_LSB & 1u) != 0u,
 	    .motion = bus->push && address == PASSO_CHANNEL_RAMP
 	           && passo_ramp_queue_checks_now(&channel->ramp_queue, bus->data),
 	};
@@ -81,123 +68,46 @@ uint32_t passo_channel_registers_value(const struct passo_channel *channel, uint
 	}
 }
 
-static struct passo_answer axis_answer(
-    const struct passo_axis *axis, uint8_t address, uint32_t data, bool has_inputs)
+uint32_t passo_channel_value_now(const struct passo_channel *channel, uint8_t address)
 {
-	switch (address) {
-	case PASSO_AXIS_PINS:
-		return passo_write_only(passo_value_check((data & ~PASSO_AXIS_PINS_DEFINED) != 0u));
-	case PASSO_AXIS_ENABLE:
-		return passo_write_only(passo_value_check((data & ~PASSO_AXIS_ENABLE_DEFINED) != 0u));
-	case PASSO_AXIS_STEP_TIMING:
-	case PASSO_AXIS_DIR_TIMING:
-		return passo_write_only(PASSO_VERDICT_OK);
-	case PASSO_AXIS_LOST_STEPS:
-		return passo_read_only(axis->lost);
-	case PASSO_AXIS_INPUTS:
-		if (has_inputs)
-			return passo_write_only(passo_value_check((data & ~PASSO_AXIS_INPUTS_DEFINED) != 0u));
-		return (struct passo_answer){0};
-	default:
-		return (struct passo_answer){0};
-	}
-}
-
-/* Registers of the outputs. */
-static struct passo_answer output_answer(const struct passo_channel *channel, const struct passo_bus *bus)
-{
-	const uint8_t address = (uint8_t)bus->address;
-
-	if (address == PASSO_CHANNEL_RASTER)
-		return passo_write_only(
-		    bus->push ? passo_raster_refusal(&channel->outputs.raster, passo_channel_stopped(channel))
-		              : PASSO_VERDICT_BAD_OPERATION);
-	if (address == PASSO_CHANNEL_OUTPUT_STATE)
-		return passo_read_late();
-	if (passo_output_registers_known(address))
-		return passo_write_only(passo_output_registers_check(address, bus->data, channel->axes));
-	return (struct passo_answer){0};
-}
-
-/* Registers of the parts that a core may have. */
-static struct passo_answer part_answer(
-    const struct passo_channel *channel, const struct passo_channel_inputs *inputs, uint8_t address)
-{
-	struct passo_answer answer = {0};
-
-	if (inputs->parameters->inputs != 0u)
-		answer = passo_inputs_answer(channel, address, inputs->bus->data);
-	if (!answer.known && channel->encoders.present)
-		answer = passo_encoder_registers_answer(channel, address, inputs->bus->data);
-	if (!answer.known && channel->has_outputs)
-		answer = output_answer(channel, inputs->bus);
-	return answer;
-}
-
-static struct passo_answer channel_answer(
-    const struct passo_channel *channel, const struct passo_channel_inputs *inputs, uint8_t address)
-{
-	const struct passo_bus *bus = inputs->bus;
-	const bool stopped = passo_channel_stopped(channel);
-	const unsigned position = (unsigned)address - PASSO_CHANNEL_POSITION_BASE;
+	const unsigned number = address % PASSO_AXES_MAX;
 	const unsigned in_axes = (unsigned)address - PASSO_CHANNEL_AXIS_BASE;
 
-	switch (address) {
-	case PASSO_CHANNEL_COMMAND:
-		return passo_write_only(
-		    passo_value_check((bus->data & ~PASSO_CHANNEL_COMMAND_DEFINED) != 0u));
-	case PASSO_CHANNEL_RATE_TARGET:
-	case PASSO_CHANNEL_RATE_SLEW:
-	case PASSO_CHANNEL_STOP_SLEW:
-		return passo_write_only(passo_value_check(bus->data > PASSO_RATE_ONE));
-	case PASSO_CHANNEL_DRAIN_VELOCITY:
-		return passo_write_only(passo_value_check(bus->data == 0u || bus->data > VELOCITY_MAX));
-	case PASSO_CHANNEL_STATE:
-	case PASSO_CHANNEL_RATE:
-	case PASSO_CHANNEL_ROOM:
-	case PASSO_CHANNEL_VELOCITY:
-		return passo_read_late();
-	case PASSO_CHANNEL_LINE:
-		return passo_write_only(bus->push ? passo_line_queue_refusal(&channel->line_queue,
-							inputs->parameters, bus, stopped)
-		                                  : PASSO_VERDICT_BAD_OPERATION);
-	case PASSO_CHANNEL_RAMP:
-		return passo_write_only(bus->push
-					    ? passo_ramp_queue_refusal(&channel->ramp_queue, bus, stopped)
-					    : PASSO_VERDICT_BAD_OPERATION);
+	switch (address - number) {
+	case PASSO_CHANNEL_POSITION_BASE:
+		return channel->positions.copies[number];
+	case PASSO_CHANNEL_TRIGGER_POSITION_BASE:
+		return channel->positions.latched_copies[number];
+	case PASSO_CHANNEL_ENCODER_POSITION_BASE:
+		return channel->encoders.positions.copies[number];
 	default:
 		break;
 	}
-	if (position < channel->axes)
-		return passo_read_only(channel->positions.copies[position]);
-	if (in_axes < channel->axes * PASSO_CHANNEL_AXIS_STRIDE)
-		return axis_answer(&channel->axis[in_axes / PASSO_CHANNEL_AXIS_STRIDE],
-		    (uint8_t)(in_axes % PASSO_CHANNEL_AXIS_STRIDE), bus->data,
-		    inputs->parameters->inputs != 0u);
-	return part_answer(channel, inputs, address);
+	return in_axes < channel->axes * PASSO_CHANNEL_AXIS_STRIDE
+	            && in_axes % PASSO_CHANNEL_AXIS_STRIDE == PASSO_AXIS_LOST_STEPS
+	         ? channel->axis[in_axes / PASSO_CHANNEL_AXIS_STRIDE].lost
+	         : 0u;
 }
 
-struct passo_response passo_channel_respond(
-    const struct passo_channel *channel, const struct passo_channel_inputs *inputs)
+bool passo_channel_objects(const struct passo_channel *channel, uint8_t address, uint32_t data)
 {
-	const struct passo_bus *bus = inputs->bus;
-	const uint8_t address = (uint8_t)bus->address;
-	struct passo_response response = {0};
+	return (address == PASSO_CHANNEL_TRIGGER && passo_trigger_objects(channel, data))
+	    || passo_output_registers_object(address, data, channel->axes);
+}
 
-	const struct passo_answer answer = channel_answer(channel, inputs, address);
-	response.claim = answer.known;
-	if (answer.known && bus->check)
-		response.refusal = bus->push && address != PASSO_CHANNEL_LINE && address != PASSO_CHANNEL_RAMP
-		                        && address != PASSO_CHANNEL_RASTER
-		                     ? PASSO_VERDICT_BAD_OPERATION
-		                     : answer.check;
-	if (answer.known && bus->read) {
-		response.refusal = answer.read;
-		response.read_data = answer.value;
-		response.late = answer.late;
-		response.address = bus->address;
+uint8_t passo_channel_push_refusal(const struct passo_channel *channel,
+    const struct passo_parameters *parameters, const struct passo_bus *bus)
+{
+	const bool stopped = passo_channel_stopped(channel);
+
+	switch ((uint8_t)bus->address) {
+	case PASSO_CHANNEL_LINE:
+		return passo_line_queue_refusal(&channel->line_queue, parameters, bus, stopped);
+	case PASSO_CHANNEL_RAMP:
+		return passo_ramp_queue_refusal(&channel->ramp_queue, bus, stopped);
+	default:
+		return passo_raster_refusal(&channel->outputs.raster, stopped);
 	}
-	return response;
 }
 
 void passo_channel_registers_reset(struct passo_channel_registers *registers)

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "passo_registers_core.h"
+#include "passo_rules.h"
 
 static bool in_range(unsigned value, unsigned low, unsigned high)
 {
@@ -74,28 +75,47 @@ bool passo_core_reset(struct passo_core *core, const struct passo_parameters *pa
 	return true;
 }
 
-/* Registers, tables or one channel respond; unselected targets drive 0. */
-static struct passo_response respond(const struct passo_core *core, const struct passo_channel_inputs *inputs)
+/* The channel at the address of the bus; NULL if it is none's. */
+static const struct passo_channel *addressed(const struct passo_core *core, uint16_t address)
+{
+	const unsigned block = (unsigned)address >> 8;
+
+	return in_range(block, 1, core->parameters.channels) ? &core->channel[block - 1u] : NULL;
+}
+
+/* Response to the bus strobe; `rule` is that of its address. */
+static struct passo_response respond(const struct passo_core *core, const struct passo_rule *rule)
 {
 	const struct passo_bus *bus = &core->link.bus;
-	const unsigned block = bus->address >> 8;
+	const struct passo_channel *channel = addressed(core, bus->address);
+	const uint8_t address = (uint8_t)bus->address;
+	struct passo_response response = {0};
 
-	if ((bus->check || bus->read) && in_range(block, 1, core->parameters.channels))
-		return passo_channel_respond(&core->channel[block - 1u], inputs);
-	return passo_registers_respond(core);
+	if ((!bus->check && !bus->read) || !passo_rule_exists(rule))
+		return response;
+	const bool objects = channel != NULL ? passo_channel_objects(channel, address, bus->data)
+	                                     : passo_registers_object(core, bus->address, bus->data);
+	response.claim = true;
+	response.refusal = passo_rule_refusal(rule, bus, objects);
+	if (bus->check && bus->push && rule->push)
+		response.refusal = passo_channel_push_refusal(channel, &core->parameters, bus);
+	response.reads = bus->read && rule->read;
+	response.address = bus->address;
+	if (response.reads && channel != NULL)
+		response.read_data = passo_channel_value_now(channel, address);
+	return response;
 }
 
 /* The response to the strobe of the previous clock. */
 static struct passo_response late_answer(const struct passo_core *core)
 {
 	struct passo_response response = core->response;
+	const struct passo_channel *channel = addressed(core, response.address);
 
-	if (response.late) {
-		const unsigned block = response.address >> 8;
-		response.read_data = block == 0u ? passo_registers_value(core, response.address)
-		                                 : passo_channel_registers_value(
-						       &core->channel[block - 1u], (uint8_t)response.address);
-	}
+	if (response.reads)
+		response.read_data |= channel != NULL
+		                        ? passo_channel_registers_value(channel, (uint8_t)response.address)
+		                        : passo_registers_value(core, response.address);
 	return response;
 }
 
@@ -152,6 +172,8 @@ static void clock_all(struct passo_core *core, const struct passo_inputs *inputs
 	    .busy = any_busy(core),
 	};
 	const struct passo_bus bus = core->link.bus;
+	const struct passo_rule rule =
+	    bus.check || bus.read ? passo_rule_at(parameters, bus.address) : (struct passo_rule){0};
 	struct passo_channel_inputs channel_inputs = {
 	    .parameters = parameters,
 	    .tables = &core->tables,
@@ -160,6 +182,7 @@ static void clock_all(struct passo_core *core, const struct passo_inputs *inputs
 	    .slew_tick = core->slew_tick,
 	    .snapshot = link_wires.spi.frame_start,
 	    .tables_wanted = core->tables.wanted,
+	    .needs_quiet = rule.needs_quiet,
 	    .machine = &core->machine,
 	};
 	const bool irq = passo_registers_any_stopped(core);
@@ -167,7 +190,7 @@ static void clock_all(struct passo_core *core, const struct passo_inputs *inputs
 	const struct passo_registers registers = core->registers;
 	const uint32_t reply_word = core->link.reply_word;
 
-	core->response = respond(core, &channel_inputs);
+	core->response = respond(core, &rule);
 	passo_registers_clock(core);
 	for (unsigned i = 0; i < parameters->channels; i++) {
 		channel_inputs.run = (registers.run >> i & 1u) != 0u;

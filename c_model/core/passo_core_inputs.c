@@ -3,7 +3,6 @@
  */
 #include <string.h>
 
-#include "passo_answer.h"
 #include "passo_model.h"
 #include "passo_words.h"
 
@@ -184,28 +183,6 @@ void passo_inputs_restart(struct passo_inputs_unit *unit, const struct passo_inp
 	unit->trigger.axis = before->trigger.axis;
 	unit->trigger.action = before->trigger.action;
 	unit->trigger.falling = before->trigger.falling;
-}
-
-struct passo_answer passo_inputs_answer(const struct passo_channel *channel, uint8_t address, uint32_t data)
-{
-	const unsigned position = (unsigned)address - PASSO_CHANNEL_TRIGGER_POSITION_BASE;
-
-	switch (address) {
-	case PASSO_CHANNEL_INPUT_LEVELS:
-	case PASSO_CHANNEL_INPUT_FLAGS:
-	case PASSO_CHANNEL_TRIGGER_STATE:
-		return passo_read_late();
-	case PASSO_CHANNEL_INPUT_CLEAR:
-		return passo_write_only(PASSO_VERDICT_OK);
-	case PASSO_CHANNEL_TRIGGER:
-		return passo_write_only(passo_trigger_check(channel, data));
-	case PASSO_CHANNEL_PROBE:
-		return passo_write_only(passo_value_check((data & ~PASSO_CHANNEL_PROBE_DEFINED) != 0u));
-	default:
-		break;
-	}
-	return position < channel->axes ? passo_read_only(channel->positions.latched_copies[position])
-	                                : (struct passo_answer){0};
 }
 
 uint32_t passo_inputs_value(const struct passo_inputs_unit *unit, uint8_t address)

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Registers of the encoders of a channel. See rtl/passo_encoder_registers.v.
  */
-#include "passo_answer.h"
 #include "passo_model.h"
 #include "passo_words.h"
-
-static const uint32_t FOLLOW_LIMIT_MAX = 0x80000000u; /* UQ0.32 */
 
 void passo_encoder_registers_reset(struct passo_encoders *encoders)
 {
@@ -15,52 +12,6 @@ void passo_encoder_registers_reset(struct passo_encoders *encoders)
 		encoders->axis[i].ratio = PASSO_ENCODER_RATIO_RESET;
 		encoders->axis[i].limit = PASSO_ENCODER_LIMIT_RESET;
 	}
-}
-
-/* Of an axis. */
-static struct passo_answer encoder_answer(uint8_t address, uint32_t data)
-{
-	switch (address) {
-	case PASSO_ENCODER_SETUP:
-		return passo_write_only(passo_value_check((data & ~PASSO_ENCODER_SETUP_DEFINED) != 0u));
-	case PASSO_ENCODER_RATIO:
-		return passo_write_only(passo_value_check(data == 0u));
-	case PASSO_ENCODER_LIMIT:
-		return passo_write_only(
-		    passo_value_check(data == 0u || (data & ~PASSO_ENCODER_LIMIT_DEFINED) != 0u));
-	case PASSO_ENCODER_ERROR:
-	case PASSO_ENCODER_GREATEST:
-	case PASSO_ENCODER_INDEX:
-		return passo_read_late();
-	default:
-		return (struct passo_answer){0};
-	}
-}
-
-struct passo_answer passo_encoder_registers_answer(
-    const struct passo_channel *channel, uint8_t address, uint32_t data)
-{
-	const unsigned position = (unsigned)address - PASSO_CHANNEL_ENCODER_POSITION_BASE;
-	const unsigned in_axes = (unsigned)address - PASSO_CHANNEL_ENCODER_BASE;
-
-	switch (address) {
-	case PASSO_CHANNEL_FOLLOW:
-		return passo_write_only(passo_value_check((data & ~PASSO_CHANNEL_FOLLOW_DEFINED) != 0u));
-	case PASSO_CHANNEL_FOLLOW_LIMIT:
-		return passo_write_only(passo_value_check(data == 0u || data > FOLLOW_LIMIT_MAX));
-	case PASSO_CHANNEL_ENCODER_FILTER:
-		return passo_write_only(
-		    passo_value_check((data & ~PASSO_CHANNEL_ENCODER_FILTER_DEFINED) != 0u));
-	case PASSO_CHANNEL_FOLLOW_STATE:
-		return passo_read_late();
-	default:
-		break;
-	}
-	if (position < channel->axes)
-		return passo_read_only(channel->encoders.positions.copies[position]);
-	if (in_axes < channel->axes * PASSO_CHANNEL_ENCODER_STRIDE)
-		return encoder_answer((uint8_t)(in_axes % PASSO_CHANNEL_ENCODER_STRIDE), data);
-	return (struct passo_answer){0};
 }
 
 static void write_axis(struct passo_encoder_axis *axis, unsigned address, uint32_t data)

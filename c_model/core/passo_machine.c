@@ -81,45 +81,6 @@ void passo_machine_clock(struct passo_machine_unit *machine, const struct passo_
 	}
 }
 
-bool passo_machine_register(const struct passo_machine_unit *machine, uint16_t address, uint32_t *value)
-{
-	switch (address) {
-	case PASSO_ADDRESS_ESTOP:
-		*value = (uint32_t)machine->estop_seen >> 1;
-		return true;
-	case PASSO_ADDRESS_INPUT_FILTER:
-	case PASSO_ADDRESS_WATCHDOG:
-	case PASSO_ADDRESS_ESTOP_CLEAR:
-		*value = 0;
-		return true;
-	default:
-		return false;
-	}
-}
-
-bool passo_machine_is_write_only(uint16_t address)
-{
-	return address == PASSO_ADDRESS_INPUT_FILTER || address == PASSO_ADDRESS_WATCHDOG
-	    || address == PASSO_ADDRESS_ESTOP_CLEAR;
-}
-
-uint8_t passo_machine_check(const struct passo_bus *bus)
-{
-	switch (bus->address) {
-	case PASSO_ADDRESS_INPUT_FILTER:
-		return (bus->data & ~PASSO_INPUT_FILTER_DEFINED) != 0u ? PASSO_VERDICT_BAD_VALUE
-		                                                       : PASSO_VERDICT_OK;
-	case PASSO_ADDRESS_WATCHDOG:
-		return (bus->data & ~PASSO_WATCHDOG_DEFINED) != 0u ? PASSO_VERDICT_BAD_VALUE
-		                                                   : PASSO_VERDICT_OK;
-	case PASSO_ADDRESS_ESTOP_CLEAR:
-		return (bus->data & ~PASSO_ESTOP_CLEAR_DEFINED) != 0u ? PASSO_VERDICT_BAD_VALUE
-		                                                      : PASSO_VERDICT_OK;
-	default:
-		return PASSO_VERDICT_READ_ONLY;
-	}
-}
-
 /* Clocks until the watchdog acts. */
 static uint64_t watchdog_quiet(const struct passo_machine_unit *machine)
 {

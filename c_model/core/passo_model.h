@@ -56,7 +56,7 @@ struct passo_response {
 	bool claim;
 	uint8_t refusal;
 	uint32_t read_data;
-	bool late;        /* the value is sampled in the clock of the response ... */
+	bool reads;       /* what is sampled in the clock of the response, too ... */
 	uint16_t address; /* ... from this register */
 };
 
@@ -415,6 +415,7 @@ struct passo_channel_inputs {
 	const struct passo_bus *bus;
 	bool run, wait_sync, sync_edge, slew_tick, snapshot;
 	bool tables_wanted;
+	bool needs_quiet;                            /* of the register that is checked */
 	const struct passo_machine_unit *machine;    /* before the edge */
 	uint8_t pins[PASSO_KINDS];                   /* levels, a bit per axis */
 	uint8_t encoder_a, encoder_b, encoder_index; /* pins, one bit per axis */
@@ -520,9 +521,6 @@ void passo_machine_restart(struct passo_machine_unit *machine, const struct pass
 void passo_machine_clock(struct passo_machine_unit *machine, const struct passo_bus *bus,
     const struct passo_inputs *inputs, bool moving);
 /* Whether there is such a register; the value that it reads as and the verdict on a write. */
-bool passo_machine_register(const struct passo_machine_unit *machine, uint16_t address, uint32_t *value);
-bool passo_machine_is_write_only(uint16_t address);
-uint8_t passo_machine_check(const struct passo_bus *bus);
 uint64_t passo_machine_quiet(
     const struct passo_machine_unit *machine, const struct passo_inputs *inputs, bool moving);
 void passo_machine_skip(struct passo_machine_unit *machine, uint64_t clocks);
@@ -534,8 +532,8 @@ void passo_inputs_clock(struct passo_inputs_unit *unit, const struct passo_chann
 /* State after a reset; and the synchronous reset, which keeps the settings. */
 void passo_inputs_reset(struct passo_inputs_unit *unit);
 void passo_inputs_restart(struct passo_inputs_unit *unit, const struct passo_inputs_unit *before);
-/* Verdict on the value of TRIGGER. */
-uint8_t passo_trigger_check(const struct passo_channel *channel, uint32_t data);
+/* Whether a word of TRIGGER has no source, or no axis, that is there. */
+bool passo_trigger_objects(const struct passo_channel *channel, uint32_t data);
 /* `forget`: polarity or filter change with this clock. */
 void passo_trigger_clock(struct passo_trigger *trigger, const struct passo_inputs_unit *unit, uint8_t index,
     uint16_t filter, bool forget);
@@ -581,11 +579,15 @@ void passo_motion_clock(struct passo_motion *motion, const struct passo_channel 
 
 /* State of the channel that the bus strobe requires. */
 struct passo_needs passo_channel_needs(
-    const struct passo_channel *channel, const struct passo_bus *bus, bool has_inputs);
-/* Response of a channel to the bus strobe. */
-struct passo_response passo_channel_respond(
-    const struct passo_channel *channel, const struct passo_channel_inputs *inputs);
-/* Value of a read-only register of the channel. */
+    const struct passo_channel *channel, const struct passo_bus *bus, bool needs_quiet);
+/* Whether a register of the channel objects to a word that its rule allows. */
+bool passo_channel_objects(const struct passo_channel *channel, uint8_t address, uint32_t data);
+/* Refusal of the word that is pushed to a queue of the channel. */
+uint8_t passo_channel_push_refusal(const struct passo_channel *channel,
+    const struct passo_parameters *parameters, const struct passo_bus *bus);
+/* Value of a register of the channel that is sampled in the clock of the strobe; 0 for others. */
+uint32_t passo_channel_value_now(const struct passo_channel *channel, uint8_t address);
+/* The same for those that are sampled in the clock of the response. */
 uint32_t passo_channel_registers_value(const struct passo_channel *channel, uint8_t address);
 void passo_channel_registers_reset(struct passo_channel_registers *registers);
 void passo_channel_registers_clock(

@@ -4,51 +4,10 @@
 #include "passo_core_outputs.h"
 #include "passo_registers.h"
 
-static const uint32_t PWM_STEP_MAX = 1u << 23; /* UQ0.24 */
-static const uint32_t VELOCITY_MAX = 1u << 31; /* UQ0.32 */
-
-bool passo_output_registers_known(uint8_t address)
+bool passo_output_registers_object(uint8_t address, uint32_t data, uint8_t axes)
 {
-	return address >= PASSO_CHANNEL_OUTPUT_LEVELS && address <= PASSO_CHANNEL_COMPARE_INTERVAL;
-}
-
-bool passo_output_registers_need_quiet(uint8_t address)
-{
-	return address == PASSO_CHANNEL_OUTPUT_LEVELS || address == PASSO_CHANNEL_OUTPUT_LAG
-	    || address == PASSO_CHANNEL_COMPARE_PULSE || address == PASSO_CHANNEL_COMPARE_DISTANCE;
-}
-
-uint8_t passo_output_registers_check(uint8_t address, uint32_t data, uint8_t axes)
-{
-	bool bad = false;
-
-	switch (address) {
-	case PASSO_CHANNEL_OUTPUT_LEVELS:
-		bad = (data & ~PASSO_CHANNEL_OUTPUT_LEVELS_DEFINED) != 0u;
-		break;
-	case PASSO_CHANNEL_OUTPUT_LAG:
-		bad = (data & ~PASSO_CHANNEL_OUTPUT_LAG_DEFINED) != 0u;
-		break;
-	case PASSO_CHANNEL_PWM_STEP:
-		bad = data == 0u || data > PWM_STEP_MAX;
-		break;
-	case PASSO_CHANNEL_POWER_REFERENCE:
-		bad = data == 0u || data > VELOCITY_MAX;
-		break;
-	case PASSO_CHANNEL_RASTER_PITCH:
-		bad = data == 0u || (data & ~PASSO_CHANNEL_RASTER_PITCH_DEFINED) != 0u;
-		break;
-	case PASSO_CHANNEL_COMPARE_PULSE:
-		bad = (data & ~PASSO_CHANNEL_COMPARE_PULSE_DEFINED) != 0u
-		   || data >> PASSO_CHANNEL_COMPARE_PULSE_AXIS_LSB >= axes;
-		break;
-	case PASSO_CHANNEL_COMPARE_INTERVAL:
-		bad = data == 0u;
-		break;
-	default:
-		break;
-	}
-	return bad ? PASSO_VERDICT_BAD_VALUE : PASSO_VERDICT_OK;
+	return address == PASSO_CHANNEL_COMPARE_PULSE
+	    && (data >> PASSO_CHANNEL_COMPARE_PULSE_AXIS_LSB & 7u) >= axes;
 }
 
 void passo_output_registers_reset(struct passo_output_registers *registers)

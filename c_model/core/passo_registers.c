@@ -65,67 +65,46 @@ static uint32_t four_counters(const uint8_t *counters)
 	     | counters[0];
 }
 
-static bool register_value(const struct passo_core *core, uint16_t address, uint32_t *value)
+uint32_t passo_registers_value(const struct passo_core *core, uint16_t address)
 {
 	const struct passo_registers *registers = &core->registers;
 
 	switch (address) {
 	case PASSO_ADDRESS_IDENTIFICATION:
-		*value = PASSO_IDENTIFICATION_RESET;
-		return true;
+		return PASSO_IDENTIFICATION_RESET;
 	case PASSO_ADDRESS_VERSION:
-		*value = passo_pack_version(&(struct passo_version){
+		return passo_pack_version(&(struct passo_version){
 		    .major = PASSO_VERSION_MAJOR_RESET,
 		    .minor = PASSO_VERSION_MINOR_RESET,
 		    .patch = PASSO_VERSION_PATCH_RESET,
 		});
-		return true;
 	case PASSO_ADDRESS_PARAMETERS:
-		*value = parameters_word(&core->parameters);
-		return true;
+		return parameters_word(&core->parameters);
 	case PASSO_ADDRESS_RUN:
-		*value = passo_pack_run(&(struct passo_run){
+		return passo_pack_run(&(struct passo_run){
 		    .status_channel = registers->status_channel,
 		    .wait_sync = registers->wait_sync,
 		    .run = registers->run,
 		});
-		return true;
 	case PASSO_ADDRESS_REFUSALS_0:
-		*value = four_counters(&registers->refusals[0]);
-		return true;
+		return four_counters(&registers->refusals[0]);
 	case PASSO_ADDRESS_REFUSALS_1:
-		*value = four_counters(&registers->refusals[4]);
-		return true;
+		return four_counters(&registers->refusals[4]);
+	case PASSO_ADDRESS_ESTOP:
+		return (uint32_t)core->machine.estop_seen >> 1;
 	default:
-		return core->parameters.inputs != 0u
-		    && passo_machine_register(&core->machine, address, value);
+		return 0;
 	}
 }
 
-uint32_t passo_registers_value(const struct passo_core *core, uint16_t address)
-{
-	uint32_t value = 0;
-
-	register_value(core, address, &value);
-	return value;
-}
-
-static uint8_t run_check(const struct passo_core *core, uint32_t data)
+bool passo_registers_object(const struct passo_core *core, uint16_t address, uint32_t data)
 {
 	const unsigned channels = core->parameters.channels;
 	const struct passo_run word = passo_unpack_run(data);
-	const bool beyond =
-	    word.run >> channels != 0 || word.wait_sync >> channels != 0 || word.status_channel >= channels;
-	return (data & ~PASSO_RUN_DEFINED) != 0u || beyond ? PASSO_VERDICT_BAD_VALUE : PASSO_VERDICT_OK;
-}
 
-uint8_t passo_tables_refusal(const struct passo_bus *bus)
-{
-	if (passo_bank_at(bus->address) == 0u || (!bus->check && !bus->read))
-		return PASSO_VERDICT_OK;
-	if (bus->read || bus->push)
-		return PASSO_VERDICT_BAD_OPERATION;
-	return bus->data >> 16 != 0u ? PASSO_VERDICT_BAD_VALUE : PASSO_VERDICT_OK;
+	return address == PASSO_ADDRESS_RUN
+	    && (word.run >> channels != 0 || word.wait_sync >> channels != 0
+	        || word.status_channel >= channels);
 }
 
 void passo_tables_clock(struct passo_tables *tables, const struct passo_bus *bus)
@@ -140,31 +119,6 @@ void passo_tables_clock(struct passo_tables *tables, const struct passo_bus *bus
 void passo_tables_turn(struct passo_tables *tables, uint8_t channels)
 {
 	tables->slot = (uint8_t)((tables->slot + 1u) % (2u * channels));
-}
-
-struct passo_response passo_registers_respond(const struct passo_core *core)
-{
-	const struct passo_bus *bus = &core->link.bus;
-	struct passo_response response = {0};
-	uint32_t value;
-
-	if (!bus->check && !bus->read)
-		return response;
-	if (passo_bank_at(bus->address) != 0u) {
-		response.claim = true;
-		response.refusal = passo_tables_refusal(bus);
-	} else if (register_value(core, bus->address, &value)) {
-		response.claim = true;
-		if (bus->check)
-			response.refusal = bus->push                         ? PASSO_VERDICT_BAD_OPERATION
-			                 : bus->address == PASSO_ADDRESS_RUN ? run_check(core, bus->data)
-			                                                     : passo_machine_check(bus);
-		else if (passo_machine_is_write_only(bus->address))
-			response.refusal = PASSO_VERDICT_BAD_OPERATION;
-		response.late = bus->read && response.refusal == PASSO_VERDICT_OK;
-		response.address = bus->address;
-	}
-	return response;
 }
 
 void passo_registers_clock(struct passo_core *core)

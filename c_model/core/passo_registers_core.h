@@ -10,14 +10,12 @@
 uint32_t passo_registers_status(const struct passo_core *core);
 bool passo_registers_any_stopped(const struct passo_core *core);
 bool passo_registers_any_occupied(const struct passo_core *core);
-/* Response to the bus strobe if it addresses a core register or a table, else 0. */
-struct passo_response passo_registers_respond(const struct passo_core *core);
-/* Value of a core register. */
+/* Whether a core register objects to a word that its rule allows. */
+bool passo_registers_object(const struct passo_core *core, uint16_t address, uint32_t data);
+/* Value of a core register; 0 for those that cannot be read. */
 uint32_t passo_registers_value(const struct passo_core *core, uint16_t address);
 void passo_registers_clock(struct passo_core *core);
 
-/* Refusal of a check or read of the shape tables; OK if the address is in none. */
-uint8_t passo_tables_refusal(const struct passo_bus *bus);
 /* Writes of points, and whether the frame has any. */
 void passo_tables_clock(struct passo_tables *tables, const struct passo_bus *bus);
 /* The next turn at the tables; `channels` > 0. */

@@ -19,17 +19,14 @@ static bool chosen(const struct passo_trigger *trigger, const struct passo_input
 	return (unit->input[kinds[source]].second >> bit & 1u) != 0u;
 }
 
-uint8_t passo_trigger_check(const struct passo_channel *channel, uint32_t data)
+bool passo_trigger_objects(const struct passo_channel *channel, uint32_t data)
 {
 	const uint32_t source = data >> PASSO_CHANNEL_TRIGGER_SOURCE_LSB & 7u;
 	const struct passo_channel_trigger word = passo_unpack_channel_trigger(data);
 	const bool of_axis = source != PASSO_TRIGGER_SOURCE_NONE && source != PASSO_TRIGGER_SOURCE_PROBE;
 
-	return (data & ~PASSO_CHANNEL_TRIGGER_DEFINED) != 0u || source > PASSO_TRIGGER_SOURCE_INDEX
-	            || (word.arm && source == PASSO_TRIGGER_SOURCE_NONE)
-	            || (of_axis && word.axis >= channel->axes)
-	         ? PASSO_VERDICT_BAD_VALUE
-	         : PASSO_VERDICT_OK;
+	return source > PASSO_TRIGGER_SOURCE_INDEX || (word.arm && source == PASSO_TRIGGER_SOURCE_NONE)
+	    || (of_axis && word.axis >= channel->axes);
 }
 
 /* An edge that may be one; while arming, a level that may be known. */

@@ -165,16 +165,14 @@
 #define PASSO_REFUSALS_1_BAD_VALUE_BITS   8u
 #define PASSO_REFUSALS_1_BAD_VALUE_RESET  0x00u
 
-/* Core: Input filter. Only with INPUTS. Glitch filter of all inputs but e-stop. May be written at any time;
- * then they are unknown. Kept over a reset of the core. */
+/* Core: Input filter. Glitch filter of all inputs but e-stop. After a write they are unknown. */
 #define PASSO_ADDRESS_INPUT_FILTER      0x010u
 #define PASSO_INPUT_FILTER_FILTER_LSB   0u
 #define PASSO_INPUT_FILTER_FILTER_BITS  16u
 #define PASSO_INPUT_FILTER_FILTER_RESET 0x0000u
 #define PASSO_INPUT_FILTER_DEFINED      0x0000FFFFu
 
-/* Core: Watchdog. Only with INPUTS. Stops motions when no frame has been executed for some time. In units
- * of 2^16 clocks. */
+/* Core: Watchdog. Stops motions when no frame has been executed for some time. In units of 2^16 clocks. */
 #define PASSO_ADDRESS_WATCHDOG             0x011u
 #define PASSO_WATCHDOG_STOP_AFTER_LSB      0u
 #define PASSO_WATCHDOG_STOP_AFTER_BITS     10u
@@ -184,37 +182,34 @@
 #define PASSO_WATCHDOG_DISABLE_AFTER_RESET 0x000u
 #define PASSO_WATCHDOG_DEFINED             0x000FFFFFu
 
-/* Core: E-stop. Only with INPUTS. State of the e-stop. */
+/* Core: E-stop. State of the e-stop. */
 #define PASSO_ADDRESS_ESTOP       0x012u
 #define PASSO_ESTOP_PRESSED_LSB   0u
 #define PASSO_ESTOP_PRESSED_BITS  1u
 #define PASSO_ESTOP_PRESSED_RESET 0x0u
 
-/* Core: Clear e-stop. Only with INPUTS. No effect while e-stop is pressed. */
+/* Core: Clear e-stop. No effect while e-stop is pressed. */
 #define PASSO_ADDRESS_ESTOP_CLEAR     0x013u
 #define PASSO_ESTOP_CLEAR_CLEAR_LSB   0u
 #define PASSO_ESTOP_CLEAR_CLEAR_BITS  1u
 #define PASSO_ESTOP_CLEAR_CLEAR_RESET 0x0u
 #define PASSO_ESTOP_CLEAR_DEFINED     0x00000001u
 
-/* Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0. Refused with BUSY
- * while a motion runs. */
+/* Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0. */
 #define PASSO_ADDRESS_COSINE_BASE  0xD00u
 #define PASSO_ADDRESS_COSINE_COUNT 256u
 #define PASSO_COSINE_POINT_LSB     0u
 #define PASSO_COSINE_POINT_BITS    16u
 #define PASSO_COSINE_DEFINED       0x0000FFFFu
 
-/* Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0. Refused with BUSY
- * while a motion runs. */
+/* Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0. */
 #define PASSO_ADDRESS_SIGMOID_BASE  0xE00u
 #define PASSO_ADDRESS_SIGMOID_COUNT 256u
 #define PASSO_SIGMOID_POINT_LSB     0u
 #define PASSO_SIGMOID_POINT_BITS    16u
 #define PASSO_SIGMOID_DEFINED       0x0000FFFFu
 
-/* Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0. Refused with BUSY
- * while a motion runs. */
+/* Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0. */
 #define PASSO_ADDRESS_EASE_BASE  0xF00u
 #define PASSO_ADDRESS_EASE_COUNT 256u
 #define PASSO_EASE_POINT_LSB     0u
@@ -243,8 +238,7 @@
 #define PASSO_CHANNEL_COMMAND_ZERO_RESET  0x0u
 #define PASSO_CHANNEL_COMMAND_DEFINED     0x0000000Fu
 
-/* Channel: Rate target. Time scale, UQ1.16: 0 = feed hold, 65536 = 1.0 = full speed. Refused with BAD_VALUE
- * above 1.0. */
+/* Channel: Rate target. Time scale, UQ1.16: 0 = feed hold, 65536 = 1.0 = full speed. */
 #define PASSO_CHANNEL_RATE_TARGET         0x01u
 #define PASSO_CHANNEL_RATE_TARGET_LSB     0u
 #define PASSO_CHANNEL_RATE_TARGET_BITS    17u
@@ -312,7 +306,7 @@
 #define PASSO_CHANNEL_VELOCITY_BITS  32u
 #define PASSO_CHANNEL_VELOCITY_RESET 0x00000000u
 
-/* Channel: Input levels. Only with INPUTS. Filtered levels, 1 = active, one bit per axis. */
+/* Channel: Input levels. Filtered levels, 1 = active, one bit per axis. */
 #define PASSO_CHANNEL_INPUT_LEVELS                  0x10u
 #define PASSO_CHANNEL_INPUT_LEVELS_LIMIT_LOW_LSB    0u
 #define PASSO_CHANNEL_INPUT_LEVELS_LIMIT_LOW_BITS   8u
@@ -327,8 +321,7 @@
 #define PASSO_CHANNEL_INPUT_LEVELS_ALARM_BITS       8u
 #define PASSO_CHANNEL_INPUT_LEVELS_ALARM_RESET      0x00u
 
-/* Channel: Input flags. Only with INPUTS. Inputs that were active since their flag was cleared, one bit per
- * axis. */
+/* Channel: Input flags. Inputs that were active since their flag was cleared, one bit per axis. */
 #define PASSO_CHANNEL_INPUT_FLAGS                  0x11u
 #define PASSO_CHANNEL_INPUT_FLAGS_LIMIT_LOW_LSB    0u
 #define PASSO_CHANNEL_INPUT_FLAGS_LIMIT_LOW_BITS   8u
@@ -343,8 +336,8 @@
 #define PASSO_CHANNEL_INPUT_FLAGS_ALARM_BITS       8u
 #define PASSO_CHANNEL_INPUT_FLAGS_ALARM_RESET      0x00u
 
-/* Channel: Clear input flags. Only with INPUTS. Each bit written as 1 clears a flag of INPUT_FLAGS; bits of
- * axes that are not there do nothing. */
+/* Channel: Clear input flags. Each bit written as 1 clears a flag of INPUT_FLAGS; bits of axes that are not
+ * there do nothing. */
 #define PASSO_CHANNEL_INPUT_CLEAR                  0x12u
 #define PASSO_CHANNEL_INPUT_CLEAR_LIMIT_LOW_LSB    0u
 #define PASSO_CHANNEL_INPUT_CLEAR_LIMIT_LOW_BITS   8u
@@ -360,8 +353,7 @@
 #define PASSO_CHANNEL_INPUT_CLEAR_ALARM_RESET      0x00u
 #define PASSO_CHANNEL_INPUT_CLEAR_DEFINED          0xFFFFFFFFu
 
-/* Channel: Trigger. Only with INPUTS. Every write ends what was armed before. Refused with BAD_VALUE if
- * armed without a source, or for an axis that is not there. */
+/* Channel: Trigger. Every write ends what was armed before. */
 #define PASSO_CHANNEL_TRIGGER               0x13u
 #define PASSO_CHANNEL_TRIGGER_SOURCE_LSB    0u
 #define PASSO_CHANNEL_TRIGGER_SOURCE_BITS   3u
@@ -380,8 +372,7 @@
 #define PASSO_CHANNEL_TRIGGER_ARM_RESET     0x0u
 #define PASSO_CHANNEL_TRIGGER_DEFINED       0x00013177u
 
-/* Channel: Trigger state. Only with INPUTS. State of the trigger and the probe, and the axes that stopped
- * the channel. */
+/* Channel: Trigger state. State of the trigger and the probe, and the axes that stopped the channel. */
 #define PASSO_CHANNEL_TRIGGER_STATE                     0x14u
 #define PASSO_CHANNEL_TRIGGER_STATE_ARMED_LSB           0u
 #define PASSO_CHANNEL_TRIGGER_STATE_ARMED_BITS          1u
@@ -407,8 +398,7 @@
 #define PASSO_CHANNEL_TRIGGER_STATE_AXES_BITS           8u
 #define PASSO_CHANNEL_TRIGGER_STATE_AXES_RESET          0x00u
 
-/* Channel: Probe. Only with INPUTS. Polarity, kept over a reset of the core, after a change of which the
- * inputs are unknown; and the flag of the probe. */
+/* Channel: Probe. Polarity, after a change of which the inputs are unknown; and the flag of the probe. */
 #define PASSO_CHANNEL_PROBE                0x15u
 #define PASSO_CHANNEL_PROBE_INVERTED_LSB   0u
 #define PASSO_CHANNEL_PROBE_INVERTED_BITS  1u
@@ -418,69 +408,64 @@
 #define PASSO_CHANNEL_PROBE_CLEAR_RESET    0x0u
 #define PASSO_CHANNEL_PROBE_DEFINED        0x00000003u
 
-/* Channel: Line queue. PUSH only: control, M, N_0 .. N_{AXES-1} for each line, and with OUTPUTS its output
- * word. */
+/* Channel: Line queue. Control, M, N_0 .. N_{AXES-1} for each line, and with OUTPUTS its output word. */
 #define PASSO_CHANNEL_LINE         0x20u
 #define PASSO_CHANNEL_LINE_LSB     0u
 #define PASSO_CHANNEL_LINE_BITS    32u
 #define PASSO_CHANNEL_LINE_DEFINED 0xFFFFFFFFu
 
-/* Channel: Ramp queue. PUSH only: 5 words for each ramp: v_end(47:32) (31:16) and LAST (0), NOW (1), mirror
- * (2), shape (5:4); v_end(31:0); T; du(47:32); du(31:0). */
+/* Channel: Ramp queue. 5 words for each ramp: v_end(47:32) (31:16) and LAST (0), NOW (1), mirror (2), shape
+ * (5:4); v_end(31:0); T; du(47:32); du(31:0). */
 #define PASSO_CHANNEL_RAMP         0x21u
 #define PASSO_CHANNEL_RAMP_LSB     0u
 #define PASSO_CHANNEL_RAMP_BITS    32u
 #define PASSO_CHANNEL_RAMP_DEFINED 0xFFFFFFFFu
 
-/* Channel: Raster queue. Only with OUTPUTS. PUSH only: four values to a word, the lowest byte first. A
- * raster line begins with a whole word. */
+/* Channel: Raster queue. Four values to a word, the lowest byte first. A raster line begins with a whole
+ * word. */
 #define PASSO_CHANNEL_RASTER         0x22u
 #define PASSO_CHANNEL_RASTER_LSB     0u
 #define PASSO_CHANNEL_RASTER_BITS    32u
 #define PASSO_CHANNEL_RASTER_DEFINED 0xFFFFFFFFu
 
-/* Channel: Output levels. Only with OUTPUTS. Sets the digital outputs at once, until a line changes them.
- * Refused with BUSY unless the channel is quiet. */
+/* Channel: Output levels. Sets the digital outputs at once, until a line changes them. */
 #define PASSO_CHANNEL_OUTPUT_LEVELS              0x30u
 #define PASSO_CHANNEL_OUTPUT_LEVELS_LEVELS_LSB   0u
 #define PASSO_CHANNEL_OUTPUT_LEVELS_LEVELS_BITS  8u
 #define PASSO_CHANNEL_OUTPUT_LEVELS_LEVELS_RESET 0x00u
 #define PASSO_CHANNEL_OUTPUT_LEVELS_DEFINED      0x000000FFu
 
-/* Channel: Output lag. Only with OUTPUTS. Refused with BUSY unless the channel is quiet. */
+/* Channel: Output lag. Delay of the outputs of lines. */
 #define PASSO_CHANNEL_OUTPUT_LAG           0x31u
 #define PASSO_CHANNEL_OUTPUT_LAG_LAG_LSB   0u
 #define PASSO_CHANNEL_OUTPUT_LAG_LAG_BITS  16u
 #define PASSO_CHANNEL_OUTPUT_LAG_LAG_RESET 0x0000u
 #define PASSO_CHANNEL_OUTPUT_LAG_DEFINED   0x0000FFFFu
 
-/* Channel: PWM step. Only with OUTPUTS. Frequency of the power pin. May be written at any time. Refused
- * with BAD_VALUE if 0 or above 1/2. */
+/* Channel: PWM step. Frequency of the power pin. */
 #define PASSO_CHANNEL_PWM_STEP         0x32u
 #define PASSO_CHANNEL_PWM_STEP_LSB     0u
 #define PASSO_CHANNEL_PWM_STEP_BITS    24u
 #define PASSO_CHANNEL_PWM_STEP_RESET   0x001000u
 #define PASSO_CHANNEL_PWM_STEP_DEFINED 0x00FFFFFFu
 
-/* Channel: Power reference. Only with OUTPUTS. Velocity at which a power in proportion to the velocity is
- * the one of the line; above it, it stays that. May be written at any time. Refused with BAD_VALUE if 0 or
- * above 1/2. */
+/* Channel: Power reference. Velocity at which a power in proportion to the velocity is the one of the line;
+ * above it, it stays that. */
 #define PASSO_CHANNEL_POWER_REFERENCE         0x33u
 #define PASSO_CHANNEL_POWER_REFERENCE_LSB     0u
 #define PASSO_CHANNEL_POWER_REFERENCE_BITS    32u
 #define PASSO_CHANNEL_POWER_REFERENCE_RESET   0x80000000u
 #define PASSO_CHANNEL_POWER_REFERENCE_DEFINED 0xFFFFFFFFu
 
-/* Channel: Raster pitch. Only with OUTPUTS. Substeps from one value of a raster line to the next; counts
- * from the next value on. Refused with BAD_VALUE if 0 or above 2^30 - 1. */
+/* Channel: Raster pitch. Substeps from one value of a raster line to the next; counts from the next value
+ * on. */
 #define PASSO_CHANNEL_RASTER_PITCH             0x34u
 #define PASSO_CHANNEL_RASTER_PITCH_PITCH_LSB   0u
 #define PASSO_CHANNEL_RASTER_PITCH_PITCH_BITS  30u
 #define PASSO_CHANNEL_RASTER_PITCH_PITCH_RESET 0x00000001u
 #define PASSO_CHANNEL_RASTER_PITCH_DEFINED     0x3FFFFFFFu
 
-/* Channel: Compare pulse. Only with OUTPUTS. Refused with BUSY unless the channel is quiet, with BAD_VALUE
- * if there is no such axis. Ends a pulse in progress, as COMPARE_DISTANCE does. */
+/* Channel: Compare pulse. Ends a pulse in progress, as COMPARE_DISTANCE does. */
 #define PASSO_CHANNEL_COMPARE_PULSE             0x35u
 #define PASSO_CHANNEL_COMPARE_PULSE_WIDTH_LSB   0u
 #define PASSO_CHANNEL_COMPARE_PULSE_WIDTH_BITS  16u
@@ -490,21 +475,21 @@
 #define PASSO_CHANNEL_COMPARE_PULSE_AXIS_RESET  0x0u
 #define PASSO_CHANNEL_COMPARE_PULSE_DEFINED     0x0007FFFFu
 
-/* Channel: Compare distance. Only with OUTPUTS. Refused with BUSY unless the channel is quiet. */
+/* Channel: Compare distance. Where the first pulse comes. */
 #define PASSO_CHANNEL_COMPARE_DISTANCE                0x36u
 #define PASSO_CHANNEL_COMPARE_DISTANCE_DISTANCE_LSB   0u
 #define PASSO_CHANNEL_COMPARE_DISTANCE_DISTANCE_BITS  32u
 #define PASSO_CHANNEL_COMPARE_DISTANCE_DISTANCE_RESET 0x00000000u
 #define PASSO_CHANNEL_COMPARE_DISTANCE_DEFINED        0xFFFFFFFFu
 
-/* Channel: Compare interval. Only with OUTPUTS. Counts from the next pulse on. Refused with BAD_VALUE if 0. */
+/* Channel: Compare interval. Counts from the next pulse on. */
 #define PASSO_CHANNEL_COMPARE_INTERVAL                0x37u
 #define PASSO_CHANNEL_COMPARE_INTERVAL_INTERVAL_LSB   0u
 #define PASSO_CHANNEL_COMPARE_INTERVAL_INTERVAL_BITS  32u
 #define PASSO_CHANNEL_COMPARE_INTERVAL_INTERVAL_RESET 0x00000001u
 #define PASSO_CHANNEL_COMPARE_INTERVAL_DEFINED        0xFFFFFFFFu
 
-/* Channel: Output state. Only with OUTPUTS. State of the outputs. */
+/* Channel: Output state. State of the outputs. */
 #define PASSO_CHANNEL_OUTPUT_STATE                    0x38u
 #define PASSO_CHANNEL_OUTPUT_STATE_LEVELS_LSB         0u
 #define PASSO_CHANNEL_OUTPUT_STATE_LEVELS_BITS        8u
@@ -526,23 +511,22 @@
 #define PASSO_CHANNEL_POSITION_BITS  32u
 #define PASSO_CHANNEL_POSITION_RESET 0x00000000u
 
-/* Channel: Latched position. Only with INPUTS. Position of an axis in steps on the clock on which the
- * trigger fired, complete 130 clocks later. A ZERO less than 64 clocks after that clears it. */
+/* Channel: Latched position. Position of an axis in steps on the clock on which the trigger fired, complete
+ * 130 clocks later. A ZERO less than 64 clocks after that clears it. */
 #define PASSO_CHANNEL_TRIGGER_POSITION_BASE           0x48u
 #define PASSO_CHANNEL_TRIGGER_POSITION_COUNT          8u
 #define PASSO_CHANNEL_TRIGGER_POSITION_POSITION_LSB   0u
 #define PASSO_CHANNEL_TRIGGER_POSITION_POSITION_BITS  32u
 #define PASSO_CHANNEL_TRIGGER_POSITION_POSITION_RESET 0x00000000u
 
-/* Channel: Encoder position. Only with ENCODERS. Counts of the encoder of an axis, sampled on the clock of
- * its position; wraps. */
+/* Channel: Encoder position. Counts of the encoder of an axis, sampled on the clock of its position; wraps. */
 #define PASSO_CHANNEL_ENCODER_POSITION_BASE           0x50u
 #define PASSO_CHANNEL_ENCODER_POSITION_COUNT          8u
 #define PASSO_CHANNEL_ENCODER_POSITION_POSITION_LSB   0u
 #define PASSO_CHANNEL_ENCODER_POSITION_POSITION_BITS  32u
 #define PASSO_CHANNEL_ENCODER_POSITION_POSITION_RESET 0x00000000u
 
-/* Channel: Follow. Only with ENCODERS. Refused with BUSY unless the channel is quiet. */
+/* Channel: Follow. Whether and how the profile follows an encoder. */
 #define PASSO_CHANNEL_FOLLOW                  0x60u
 #define PASSO_CHANNEL_FOLLOW_FOLLOW_LSB       0u
 #define PASSO_CHANNEL_FOLLOW_FOLLOW_BITS      1u
@@ -558,24 +542,22 @@
 #define PASSO_CHANNEL_FOLLOW_SCALE_RESET      0x0u
 #define PASSO_CHANNEL_FOLLOW_DEFINED          0x000000FFu
 
-/* Channel: Follow limit. Only with ENCODERS. What is owed to the encoder is made at no more than this.
- * Refused with BAD_VALUE if 0 or above 1/2. */
+/* Channel: Follow limit. What is owed to the encoder is made at no more than this. */
 #define PASSO_CHANNEL_FOLLOW_LIMIT             0x61u
 #define PASSO_CHANNEL_FOLLOW_LIMIT_LIMIT_LSB   0u
 #define PASSO_CHANNEL_FOLLOW_LIMIT_LIMIT_BITS  32u
 #define PASSO_CHANNEL_FOLLOW_LIMIT_LIMIT_RESET 0x01000000u
 #define PASSO_CHANNEL_FOLLOW_LIMIT_DEFINED     0xFFFFFFFFu
 
-/* Channel: Encoder filter. Only with ENCODERS. Glitch filter of all encoders of the channel. May be written
- * at any time. */
+/* Channel: Encoder filter. Glitch filter of all encoders of the channel. */
 #define PASSO_CHANNEL_ENCODER_FILTER              0x62u
 #define PASSO_CHANNEL_ENCODER_FILTER_FILTER_LSB   0u
 #define PASSO_CHANNEL_ENCODER_FILTER_FILTER_BITS  8u
 #define PASSO_CHANNEL_ENCODER_FILTER_FILTER_RESET 0x03u
 #define PASSO_CHANNEL_ENCODER_FILTER_DEFINED      0x000000FFu
 
-/* Channel: Follow state. Only with ENCODERS. Of the motion that runs; behind and lost, of the last one,
- * until the next is prepared. */
+/* Channel: Follow state. Of the motion that runs; behind and lost, of the last one, until the next is
+ * prepared. */
 #define PASSO_CHANNEL_FOLLOW_STATE              0x63u
 #define PASSO_CHANNEL_FOLLOW_STATE_OWED_LSB     0u
 #define PASSO_CHANNEL_FOLLOW_STATE_OWED_BITS    24u
@@ -597,8 +579,8 @@
 #define PASSO_CHANNEL_ENCODER_COUNT  8u
 #define PASSO_CHANNEL_ENCODER_STRIDE 0x08u
 
-/* Axis: Pins. Polarities and step mode. Refused with BUSY unless the channel is quiet. From the write on,
- * the next step waits for the low time, the DIR hold and the DIR setup. Kept through a reset of the core. */
+/* Axis: Pins. Polarities and step mode. From the write on, the next step waits for the low time, the DIR
+ * hold and the DIR setup. */
 #define PASSO_AXIS_PINS                          0x0u
 #define PASSO_AXIS_PINS_STEP_INVERTED_LSB        1u
 #define PASSO_AXIS_PINS_STEP_INVERTED_BITS       1u
@@ -614,7 +596,7 @@
 #define PASSO_AXIS_PINS_BOTH_EDGES_RESET         0x0u
 #define PASSO_AXIS_PINS_DEFINED                  0x0000001Eu
 
-/* Axis: STEP timing. Clocks, 1 .. 65535; 0 counts as 1. Kept over a reset of the core. */
+/* Axis: STEP timing. Clocks, 1 .. 65535; 0 counts as 1. */
 #define PASSO_AXIS_STEP_TIMING                 0x1u
 #define PASSO_AXIS_STEP_TIMING_STEP_LOW_LSB    0u
 #define PASSO_AXIS_STEP_TIMING_STEP_LOW_BITS   16u
@@ -624,7 +606,7 @@
 #define PASSO_AXIS_STEP_TIMING_STEP_HIGH_RESET 0x0001u
 #define PASSO_AXIS_STEP_TIMING_DEFINED         0xFFFFFFFFu
 
-/* Axis: DIR timing. Clocks, 1 .. 65535; 0 counts as 1. Kept over a reset of the core. */
+/* Axis: DIR timing. Clocks, 1 .. 65535; 0 counts as 1. */
 #define PASSO_AXIS_DIR_TIMING                 0x2u
 #define PASSO_AXIS_DIR_TIMING_DIR_HOLD_LSB    0u
 #define PASSO_AXIS_DIR_TIMING_DIR_HOLD_BITS   16u
@@ -640,15 +622,14 @@
 #define PASSO_AXIS_LOST_STEPS_LOST_BITS  4u
 #define PASSO_AXIS_LOST_STEPS_LOST_RESET 0x0u
 
-/* Axis: Drive enable. May be written at any time. */
+/* Axis: Drive enable. Enables the drive of the axis. */
 #define PASSO_AXIS_ENABLE         0x4u
 #define PASSO_AXIS_ENABLE_LSB     0u
 #define PASSO_AXIS_ENABLE_BITS    1u
 #define PASSO_AXIS_ENABLE_RESET   0x0u
 #define PASSO_AXIS_ENABLE_DEFINED 0x00000001u
 
-/* Axis: Inputs of the axis. Only with INPUTS. Polarities, and what limits and alarm do. Refused with BUSY
- * unless the channel is quiet; then the inputs are unknown. Kept over a reset of the core. */
+/* Axis: Inputs of the axis. Polarities, and what limits and alarm do. After a write the inputs are unknown. */
 #define PASSO_AXIS_INPUTS                           0x5u
 #define PASSO_AXIS_INPUTS_LIMIT_LOW_INVERTED_LSB    0u
 #define PASSO_AXIS_INPUTS_LIMIT_LOW_INVERTED_BITS   1u
@@ -673,7 +654,7 @@
 #define PASSO_AXIS_INPUTS_ALARM_DISABLES_RESET      0x0u
 #define PASSO_AXIS_INPUTS_DEFINED                   0x0000007Fu
 
-/* Encoder: Encoder setup. Only with ENCODERS. May be written at any time. */
+/* Encoder: Encoder setup. How the encoder counts, and what a following error does. */
 #define PASSO_ENCODER_SETUP                      0x0u
 #define PASSO_ENCODER_SETUP_INVERTED_LSB         0u
 #define PASSO_ENCODER_SETUP_INVERTED_BITS        1u
@@ -692,30 +673,28 @@
 #define PASSO_ENCODER_SETUP_STOP_HARD_RESET      0x0u
 #define PASSO_ENCODER_SETUP_DEFINED              0x0000001Fu
 
-/* Encoder: Encoder ratio. Only with ENCODERS. Counts per step. Refused with BAD_VALUE if 0. A write sets
- * the following error to 0. */
+/* Encoder: Encoder ratio. Counts per step. A write sets the following error to 0. */
 #define PASSO_ENCODER_RATIO         0x1u
 #define PASSO_ENCODER_RATIO_LSB     0u
 #define PASSO_ENCODER_RATIO_BITS    32u
 #define PASSO_ENCODER_RATIO_RESET   0x00010000u
 #define PASSO_ENCODER_RATIO_DEFINED 0xFFFFFFFFu
 
-/* Encoder: Following error limit. Only with ENCODERS. Refused with BAD_VALUE if 0. */
+/* Encoder: Following error limit. Error from which on the axis is too far from its encoder. */
 #define PASSO_ENCODER_LIMIT         0x2u
 #define PASSO_ENCODER_LIMIT_LSB     0u
 #define PASSO_ENCODER_LIMIT_BITS    16u
 #define PASSO_ENCODER_LIMIT_RESET   0xFFFFu
 #define PASSO_ENCODER_LIMIT_DEFINED 0x0000FFFFu
 
-/* Encoder: Following error. Only with ENCODERS. Position times ratio less encoder position, both as they
- * were set to 0 by COMMAND.ZERO or a write of the ratio. */
+/* Encoder: Following error. Position times ratio less encoder position, both as they were set to 0 by
+ * COMMAND.ZERO or a write of the ratio. */
 #define PASSO_ENCODER_ERROR       0x3u
 #define PASSO_ENCODER_ERROR_LSB   0u
 #define PASSO_ENCODER_ERROR_BITS  32u
 #define PASSO_ENCODER_ERROR_RESET 0x00000000u
 
-/* Encoder: Greatest following error. Only with ENCODERS. Since COMMAND.ZERO, COMMAND.CLEAR or a write of
- * the ratio. */
+/* Encoder: Greatest following error. Since COMMAND.ZERO, COMMAND.CLEAR or a write of the ratio. */
 #define PASSO_ENCODER_GREATEST                0x4u
 #define PASSO_ENCODER_GREATEST_GREATEST_LSB   0u
 #define PASSO_ENCODER_GREATEST_GREATEST_BITS  18u
@@ -724,8 +703,8 @@
 #define PASSO_ENCODER_GREATEST_EXCEEDED_BITS  1u
 #define PASSO_ENCODER_GREATEST_EXCEEDED_RESET 0x0u
 
-/* Encoder: Encoder index. Only with ENCODERS. What the index has latched, and the transitions that were
- * none. All 0 after COMMAND.ZERO. */
+/* Encoder: Encoder index. What the index has latched, and the transitions that were none. All 0 after
+ * COMMAND.ZERO. */
 #define PASSO_ENCODER_INDEX               0x5u
 #define PASSO_ENCODER_INDEX_LATCH_LSB     0u
 #define PASSO_ENCODER_INDEX_LATCH_BITS    16u
@@ -757,7 +736,7 @@ enum passo_verdict {
 	PASSO_VERDICT_READ_ONLY       = 6, /* The register cannot be written. */
 	PASSO_VERDICT_QUEUE_FULL      = 7, /* Not enough room for the whole frame. */
 	PASSO_VERDICT_BUSY            = 8, /* The state of the channel does not allow it (see the register). */
-	PASSO_VERDICT_BAD_VALUE       = 9  /* M = 0 or M >= 2^30, N_i > M, a velocity above 1/2, drain velocity 0, reserved bits set. */
+	PASSO_VERDICT_BAD_VALUE       = 9  /* The register does not take the value, or an undefined bit is set (see the register). */
 };
 #define PASSO_VERDICT_NAMES \
 	{[0] = "OK", [1] = "DUPLICATE", [2] = "BAD_CRC", [3] = "BAD_LENGTH", [4] = "BAD_OPERATION", \

@@ -316,7 +316,7 @@ static inline struct passo_refusals_1 passo_unpack_refusals_1(uint32_t word)
 	};
 }
 
-/* Watchdog. Only with INPUTS. Stops motions when no frame has been executed for some time. In units of 2^16 clocks. */
+/* Watchdog. Stops motions when no frame has been executed for some time. In units of 2^16 clocks. */
 struct passo_watchdog {
 	uint16_t disable_after; /* Time from that stop until all drive enables are cleared; 0 = never. */
 	uint16_t stop_after;    /* Silence after which a running motion is stopped softly; 0 = off. */
@@ -338,8 +338,8 @@ static inline struct passo_watchdog passo_unpack_watchdog(uint32_t word)
 
 /* Command. Each bit written as 1 takes effect once. STOP and ABORT override CLEAR and ZERO in the same word; ABORT has priority over STOP. */
 struct passo_channel_command {
-	bool zero;  /* Set the positions of the channel's axes to 0. Refused with BUSY unless the channel is quiet. */
-	bool clear; /* Clear cause and lost steps and leave STOPPED. Refused with BUSY while a motion runs. */
+	bool zero;  /* Set the positions of the channel's axes to 0. */
+	bool clear; /* Clear cause and lost steps and leave STOPPED. */
 	bool abort; /* Hard stop: STOPPED at once, waiting steps dropped, no new pulse begins. */
 	bool stop;  /* Soft stop: rate to 0 by STOP_SLEW, then STOPPED. In IDLE, PREPARE and ARMED: STOPPED at once. */
 };
@@ -414,7 +414,7 @@ static inline struct passo_channel_room passo_unpack_channel_room(uint32_t word)
 	};
 }
 
-/* Input levels. Only with INPUTS. Filtered levels, 1 = active, one bit per axis. */
+/* Input levels. Filtered levels, 1 = active, one bit per axis. */
 struct passo_channel_input_levels {
 	uint8_t alarm;      /* alarm. */
 	uint8_t home;       /* home. */
@@ -440,7 +440,7 @@ static inline struct passo_channel_input_levels passo_unpack_channel_input_level
 	};
 }
 
-/* Input flags. Only with INPUTS. Inputs that were active since their flag was cleared, one bit per axis. */
+/* Input flags. Inputs that were active since their flag was cleared, one bit per axis. */
 struct passo_channel_input_flags {
 	uint8_t alarm;      /* alarm. */
 	uint8_t home;       /* home. */
@@ -466,7 +466,7 @@ static inline struct passo_channel_input_flags passo_unpack_channel_input_flags(
 	};
 }
 
-/* Clear input flags. Only with INPUTS. Each bit written as 1 clears a flag of INPUT_FLAGS; bits of axes that are not there do nothing. */
+/* Clear input flags. Each bit written as 1 clears a flag of INPUT_FLAGS; bits of axes that are not there do nothing. */
 struct passo_channel_input_clear {
 	uint8_t alarm;      /* alarm. */
 	uint8_t home;       /* home. */
@@ -492,7 +492,7 @@ static inline struct passo_channel_input_clear passo_unpack_channel_input_clear(
 	};
 }
 
-/* Trigger. Only with INPUTS. Every write ends what was armed before. Refused with BAD_VALUE if armed without a source, or for an axis that is not there. */
+/* Trigger. Every write ends what was armed before. */
 struct passo_channel_trigger {
 	bool                      arm;     /* 1: armed, once. */
 	enum passo_trigger_action action;  /* What it does. */
@@ -521,7 +521,7 @@ static inline struct passo_channel_trigger passo_unpack_channel_trigger(uint32_t
 	};
 }
 
-/* Trigger state. Only with INPUTS. State of the trigger and the probe, and the axes that stopped the channel. */
+/* Trigger state. State of the trigger and the probe, and the axes that stopped the channel. */
 struct passo_channel_trigger_state {
 	uint8_t axes;          /* Axes of the first limit or alarm since COMMAND.CLEAR. */
 	bool    unknown;       /* Levels of the inputs are unknown: they have not been stable for a period of the filter since the reset, or since polarity or filter were written. No motion begins. */
@@ -559,7 +559,7 @@ static inline struct passo_channel_trigger_state passo_unpack_channel_trigger_st
 	};
 }
 
-/* Probe. Only with INPUTS. Polarity, kept over a reset of the core, after a change of which the inputs are unknown; and the flag of the probe. */
+/* Probe. Polarity, after a change of which the inputs are unknown; and the flag of the probe. */
 struct passo_channel_probe {
 	bool clear;    /* 1: clear the flag. */
 	bool inverted; /* 1: probe is active low. */
@@ -579,7 +579,7 @@ static inline struct passo_channel_probe passo_unpack_channel_probe(uint32_t wor
 	};
 }
 
-/* Compare pulse. Only with OUTPUTS. Refused with BUSY unless the channel is quiet, with BAD_VALUE if there is no such axis. Ends a pulse in progress, as COMPARE_DISTANCE does. */
+/* Compare pulse. Ends a pulse in progress, as COMPARE_DISTANCE does. */
 struct passo_channel_compare_pulse {
 	uint8_t  axis;  /* Axis whose position is compared. */
 	uint16_t width; /* Clocks; 0 = no pulses. */
@@ -599,7 +599,7 @@ static inline struct passo_channel_compare_pulse passo_unpack_channel_compare_pu
 	};
 }
 
-/* Output state. Only with OUTPUTS. State of the outputs. */
+/* Output state. State of the outputs. */
 struct passo_channel_output_state {
 	uint16_t raster_room;  /* Free words of the raster queue. A push counts from the moment its frame is accepted. */
 	bool     overflow;     /* More than 256 changes waited for the lag since COMMAND.CLEAR. One was lost, so there is no power until then. */
@@ -625,7 +625,7 @@ static inline struct passo_channel_output_state passo_unpack_channel_output_stat
 	};
 }
 
-/* Follow. Only with ENCODERS. Refused with BUSY unless the channel is quiet. */
+/* Follow. Whether and how the profile follows an encoder. */
 struct passo_channel_follow {
 	uint8_t scale;      /* A count is 2^scale clocks of the profile. */
 	uint8_t source;     /* Axis of the encoder. A missing encoder never counts. */
@@ -651,7 +651,7 @@ static inline struct passo_channel_follow passo_unpack_channel_follow(uint32_t w
 	};
 }
 
-/* Follow state. Only with ENCODERS. Of the motion that runs; behind and lost, of the last one, until the next is prepared. */
+/* Follow state. Of the motion that runs; behind and lost, of the last one, until the next is prepared. */
 struct passo_channel_follow_state {
 	bool     lost;   /* The phase is lost: 2^22 or more were outstanding, or A and B of the encoder changed simultaneously. */
 	bool     behind; /* Two counts or more were owed: the path was late. */
@@ -674,7 +674,7 @@ static inline struct passo_channel_follow_state passo_unpack_channel_follow_stat
 	};
 }
 
-/* Pins. Polarities and step mode. Refused with BUSY unless the channel is quiet. From the write on, the next step waits for the low time, the DIR hold and the DIR setup. Kept through a reset of the core. */
+/* Pins. Polarities and step mode. From the write on, the next step waits for the low time, the DIR hold and the DIR setup. */
 struct passo_axis_pins {
 	bool both_edges;         /* 1: every edge of STEP is a step. */
 	bool enable_inverted;    /* 1: EN is active low. After configuration: parameter ENABLE_RESET. */
@@ -700,7 +700,7 @@ static inline struct passo_axis_pins passo_unpack_axis_pins(uint32_t word)
 	};
 }
 
-/* STEP timing. Clocks, 1 .. 65535; 0 counts as 1. Kept over a reset of the core. */
+/* STEP timing. Clocks, 1 .. 65535; 0 counts as 1. */
 struct passo_axis_step_timing {
 	uint16_t step_high; /* Time that STEP is active. */
 	uint16_t step_low;  /* Minimum time that STEP is inactive. */
@@ -720,7 +720,7 @@ static inline struct passo_axis_step_timing passo_unpack_axis_step_timing(uint32
 	};
 }
 
-/* DIR timing. Clocks, 1 .. 65535; 0 counts as 1. Kept over a reset of the core. */
+/* DIR timing. Clocks, 1 .. 65535; 0 counts as 1. */
 struct passo_axis_dir_timing {
 	uint16_t dir_setup; /* DIR change to the next active edge of STEP. */
 	uint16_t dir_hold;  /* End of step_low to the next change of DIR. */
@@ -740,7 +740,7 @@ static inline struct passo_axis_dir_timing passo_unpack_axis_dir_timing(uint32_t
 	};
 }
 
-/* Inputs of the axis. Only with INPUTS. Polarities, and what limits and alarm do. Refused with BUSY unless the channel is quiet; then the inputs are unknown. Kept over a reset of the core. */
+/* Inputs of the axis. Polarities, and what limits and alarm do. After a write the inputs are unknown. */
 struct passo_axis_inputs {
 	bool alarm_disables;      /* 1: the alarm also clears the drive enable of this axis. */
 	bool alarm_soft;          /* 1: the alarm makes a soft stop; 0: a hard one. */
@@ -775,7 +775,7 @@ static inline struct passo_axis_inputs passo_unpack_axis_inputs(uint32_t word)
 	};
 }
 
-/* Encoder setup. Only with ENCODERS. May be written at any time. */
+/* Encoder setup. How the encoder counts, and what a following error does. */
 struct passo_encoder_setup {
 	bool stop_hard;      /* 1: it is a hard stop, whatever stop_soft says. Neither: it only shows. */
 	bool stop_soft;      /* 1: a following error at the limit is a soft stop. */
@@ -804,7 +804,7 @@ static inline struct passo_encoder_setup passo_unpack_encoder_setup(uint32_t wor
 	};
 }
 
-/* Greatest following error. Only with ENCODERS. Since COMMAND.ZERO, COMMAND.CLEAR or a write of the ratio. */
+/* Greatest following error. Since COMMAND.ZERO, COMMAND.CLEAR or a write of the ratio. */
 struct passo_encoder_greatest {
 	bool     exceeded; /* The error is at its limit now. */
 	uint32_t greatest; /* Counts, either way. */
@@ -824,7 +824,7 @@ static inline struct passo_encoder_greatest passo_unpack_encoder_greatest(uint32
 	};
 }
 
-/* Encoder index. Only with ENCODERS. What the index has latched, and the transitions that were none. All 0 after COMMAND.ZERO. */
+/* Encoder index. What the index has latched, and the transitions that were none. All 0 after COMMAND.ZERO. */
 struct passo_encoder_index {
 	uint8_t  illegal; /* Simultaneous changes of A and B (illegal transitions), saturating at 255; also cleared by COMMAND.CLEAR. */
 	uint8_t  indexes; /* Number of indexes; wraps. */

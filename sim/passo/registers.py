@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: MIT
 # Generated from spec/passo.rdl by spec/generate_registers.py.
+# fmt: off
+# ruff: noqa: E501, RUF009
 """Registers of Passo: word addresses, fields, reset values, enumerations."""
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 from passo.register_table import Field, Register
-from passo.register_word import DescribedEnum, Word
+from passo.register_word import DescribedEnum, Word, bits
 
 
 class Operation(DescribedEnum):
@@ -29,7 +30,7 @@ class Verdict(DescribedEnum):
     READ_ONLY = 6, "The register cannot be written."
     QUEUE_FULL = 7, "Not enough room for the whole frame."
     BUSY = 8, "The state of the channel does not allow it (see the register)."
-    BAD_VALUE = 9, "M = 0 or M >= 2^30, N_i > M, a velocity above 1/2, drain velocity 0, reserved bits set."
+    BAD_VALUE = 9, "The register does not take the value, or an undefined bit is set (see the register)."
 
 
 class State(DescribedEnum):
@@ -94,678 +95,321 @@ class Shape(DescribedEnum):
 class HeaderWord(Word):
     """Header."""
 
-    # Requested operation.
-    operation: Operation
-    # Must differ from that of the previous write or push.
-    sequence: int
-    # Words of payload or data, 1 .. 60.
-    length: int
-    # Address of the first register.
-    address: int
-
-    PLACES: ClassVar = {
-        "address": (0, 12, int),
-        "length": (12, 8, int),
-        "sequence": (20, 8, int),
-        "operation": (28, 4, Operation),
-    }
+    operation: Operation = bits(28, 4, "rw")  # Requested operation.
+    sequence: int = bits(20, 8, "rw")  # Must differ from that of the previous write or push.
+    length: int = bits(12, 8, "rw")  # Words of payload or data, 1 .. 60.
+    address: int = bits(0, 12, "rw")  # Address of the first register.
 
 
 @dataclass(frozen=True)
 class AckWord(Word):
     """Ack."""
 
-    # Sequence number of the request.
-    sequence: int
-    # Outcome of the frame.
-    verdict: Verdict
-    # The same, inverted.
-    not_sequence: int
-    # The same, inverted.
-    not_verdict: int
-
-    PLACES: ClassVar = {
-        "not_verdict": (0, 8, int),
-        "not_sequence": (8, 8, int),
-        "verdict": (16, 8, Verdict),
-        "sequence": (24, 8, int),
-    }
+    sequence: int = bits(24, 8, "rw")  # Sequence number of the request.
+    verdict: Verdict = bits(16, 8, "rw")  # Outcome of the frame.
+    not_sequence: int = bits(8, 8, "rw")  # The same, inverted.
+    not_verdict: int = bits(0, 8, "rw")  # The same, inverted.
 
 
 @dataclass(frozen=True)
 class StatusWord(Word):
     """Status."""
 
-    # At least one channel is STOPPED.
-    any_stopped: bool
-    # At least one channel has a motion prepared or running.
-    any_occupied: bool
-    # RUN.STATUS_CHANNEL: the channel whose room follows.
-    channel: int
-    # Sequence number of the last write or push executed.
-    sequence: int
-    # Free places for lines, 255 = 255 or more.
-    line_room: int
-    # Free places for ramps, 255 = 255 or more.
-    ramp_room: int
-    # Always 2.
-    marker: int = 2
-    # Always 0.
-    zero: bool = False
-
-    PLACES: ClassVar = {
-        "ramp_room": (0, 8, int),
-        "line_room": (8, 8, int),
-        "sequence": (16, 8, int),
-        "channel": (24, 3, int),
-        "zero": (27, 1, bool),
-        "any_occupied": (28, 1, bool),
-        "any_stopped": (29, 1, bool),
-        "marker": (30, 2, int),
-    }
+    any_stopped: bool = bits(29, 1, "rw")  # At least one channel is STOPPED.
+    any_occupied: bool = bits(28, 1, "rw")  # At least one channel has a motion prepared or running.
+    channel: int = bits(24, 3, "rw")  # RUN.STATUS_CHANNEL: the channel whose room follows.
+    sequence: int = bits(16, 8, "rw")  # Sequence number of the last write or push executed.
+    line_room: int = bits(8, 8, "rw")  # Free places for lines, 255 = 255 or more.
+    ramp_room: int = bits(0, 8, "rw")  # Free places for ramps, 255 = 255 or more.
+    marker: int = bits(30, 2, "rw", 2)  # Always 2.
+    zero: bool = bits(27, 1, "rw", False)  # Always 0.
 
 
 @dataclass(frozen=True)
 class LineControlWord(Word):
     """Line control."""
 
-    # Bit i: axis i counts down.
-    directions: int
-    # Repeat until the profile ends.
-    endless: bool
-    # The path ends with this line.
-    last: bool
-
-    PLACES: ClassVar = {
-        "last": (0, 1, bool),
-        "endless": (1, 1, bool),
-        "directions": (8, 8, int),
-    }
+    directions: int = bits(8, 8, "rw")  # Bit i: axis i counts down.
+    endless: bool = bits(1, 1, "rw")  # Repeat until the profile ends.
+    last: bool = bits(0, 1, "rw")  # The path ends with this line.
 
 
 @dataclass(frozen=True)
 class RampControlWord(Word):
     """Ramp control."""
 
-    # v_end, UQ0.48, bits 47:32.
-    velocity_high: int
-    # Shape of the ramp.
-    shape: Shape
-    # 1 - shape(1 - u) instead of shape(u).
-    mirror: bool
-    # Drop the queued ramps before it and start from the present velocity.
-    now: bool
-    # The profile ends with this ramp.
-    last: bool
-
-    PLACES: ClassVar = {
-        "last": (0, 1, bool),
-        "now": (1, 1, bool),
-        "mirror": (2, 1, bool),
-        "shape": (4, 2, Shape),
-        "velocity_high": (16, 16, int),
-    }
+    velocity_high: int = bits(16, 16, "rw")  # v_end, UQ0.48, bits 47:32.
+    shape: Shape = bits(4, 2, "rw")  # Shape of the ramp.
+    mirror: bool = bits(2, 1, "rw")  # 1 - shape(1 - u) instead of shape(u).
+    now: bool = bits(1, 1, "rw")  # Drop the queued ramps before it and start from the present velocity.
+    last: bool = bits(0, 1, "rw")  # The profile ends with this ramp.
 
 
 @dataclass(frozen=True)
 class LineOutputWord(Word):
     """Line output."""
 
-    # The power comes from the raster queue; the field is then 0.
-    raster: bool
-    # Power in proportion to the present velocity.
-    proportional: bool
-    # Levels of the digital outputs.
-    levels: int
-    # Power, UQ0.16, but 65535 is 1.0.
-    power: int
-
-    PLACES: ClassVar = {
-        "power": (0, 16, int),
-        "levels": (16, 8, int),
-        "proportional": (24, 1, bool),
-        "raster": (25, 1, bool),
-    }
+    raster: bool = bits(25, 1, "rw")  # The power comes from the raster queue; the field is then 0.
+    proportional: bool = bits(24, 1, "rw")  # Power in proportion to the present velocity.
+    levels: int = bits(16, 8, "rw")  # Levels of the digital outputs.
+    power: int = bits(0, 16, "rw")  # Power, UQ0.16, but 65535 is 1.0.
 
 
 @dataclass(frozen=True)
 class VersionWord(Word):
     """Version."""
 
-    # Major.
-    major: int = 0
-    # Minor.
-    minor: int = 3
-    # Patch.
-    patch: int = 0
-
-    PLACES: ClassVar = {
-        "patch": (0, 8, int),
-        "minor": (8, 8, int),
-        "major": (16, 8, int),
-    }
+    major: int = bits(16, 8, "r", 0)  # Major.
+    minor: int = bits(8, 8, "r", 3)  # Minor.
+    patch: int = bits(0, 8, "r", 0)  # Patch.
 
 
 @dataclass(frozen=True)
 class ParametersWord(Word):
     """Parameters."""
 
-    # OUTPUTS.
-    outputs: bool
-    # ENCODERS.
-    encoders: bool
-    # INPUTS.
-    inputs: bool
-    # RAMP_QUEUE_LOG2.
-    ramp_queue_log2: int
-    # LINE_QUEUE_LOG2.
-    line_queue_log2: int
-    # TICK_LOG2.
-    tick_log2: int
-    # AXES per channel.
-    axes: int
-    # CHANNELS.
-    channels: int
-
-    PLACES: ClassVar = {
-        "channels": (0, 4, int),
-        "axes": (4, 4, int),
-        "tick_log2": (8, 5, int),
-        "line_queue_log2": (16, 5, int),
-        "ramp_queue_log2": (24, 5, int),
-        "inputs": (29, 1, bool),
-        "encoders": (30, 1, bool),
-        "outputs": (31, 1, bool),
-    }
+    outputs: bool = bits(31, 1, "r")  # OUTPUTS.
+    encoders: bool = bits(30, 1, "r")  # ENCODERS.
+    inputs: bool = bits(29, 1, "r")  # INPUTS.
+    ramp_queue_log2: int = bits(24, 5, "r")  # RAMP_QUEUE_LOG2.
+    line_queue_log2: int = bits(16, 5, "r")  # LINE_QUEUE_LOG2.
+    tick_log2: int = bits(8, 5, "r")  # TICK_LOG2.
+    axes: int = bits(4, 4, "r")  # AXES per channel.
+    channels: int = bits(0, 4, "r")  # CHANNELS.
 
 
 @dataclass(frozen=True)
 class RunWord(Word):
     """Run."""
 
-    # Channel whose queue room the status word reports.
-    status_channel: int = 0
-    # A prepared motion stays ARMED until a rising edge of the sync input, or until this bit is cleared.
-    wait_sync: int = 0
-    # The channel may start motions. Clearing it lets a running motion finish.
-    run: int = 0
-
-    PLACES: ClassVar = {
-        "run": (0, 8, int),
-        "wait_sync": (8, 8, int),
-        "status_channel": (16, 3, int),
-    }
+    status_channel: int = bits(16, 3, "rw", 0)  # Channel whose queue room the status word reports.
+    wait_sync: int = bits(8, 8, "rw", 0)  # A prepared motion stays ARMED until a rising edge of the sync input, or until this bit is cleared.
+    run: int = bits(0, 8, "rw", 0)  # The channel may start motions. Clearing it lets a running motion finish.
 
 
 @dataclass(frozen=True)
 class Refusals0Word(Word):
     """Refusals 0."""
 
-    # UNKNOWN_ADDRESS.
-    unknown_address: int = 0
-    # BAD_OPERATION.
-    bad_operation: int = 0
-    # BAD_LENGTH.
-    bad_length: int = 0
-    # BAD_CRC.
-    bad_crc: int = 0
-
-    PLACES: ClassVar = {
-        "bad_crc": (0, 8, int),
-        "bad_length": (8, 8, int),
-        "bad_operation": (16, 8, int),
-        "unknown_address": (24, 8, int),
-    }
+    unknown_address: int = bits(24, 8, "r", 0)  # UNKNOWN_ADDRESS.
+    bad_operation: int = bits(16, 8, "r", 0)  # BAD_OPERATION.
+    bad_length: int = bits(8, 8, "r", 0)  # BAD_LENGTH.
+    bad_crc: int = bits(0, 8, "r", 0)  # BAD_CRC.
 
 
 @dataclass(frozen=True)
 class Refusals1Word(Word):
     """Refusals 1."""
 
-    # BAD_VALUE.
-    bad_value: int = 0
-    # BUSY.
-    busy: int = 0
-    # QUEUE_FULL.
-    queue_full: int = 0
-    # READ_ONLY.
-    read_only: int = 0
-
-    PLACES: ClassVar = {
-        "read_only": (0, 8, int),
-        "queue_full": (8, 8, int),
-        "busy": (16, 8, int),
-        "bad_value": (24, 8, int),
-    }
+    bad_value: int = bits(24, 8, "r", 0)  # BAD_VALUE.
+    busy: int = bits(16, 8, "r", 0)  # BUSY.
+    queue_full: int = bits(8, 8, "r", 0)  # QUEUE_FULL.
+    read_only: int = bits(0, 8, "r", 0)  # READ_ONLY.
 
 
 @dataclass(frozen=True)
 class WatchdogWord(Word):
     """Watchdog."""
 
-    # Time from that stop until all drive enables are cleared; 0 = never.
-    disable_after: int = 0
-    # Silence after which a running motion is stopped softly; 0 = off.
-    stop_after: int = 0
-
-    PLACES: ClassVar = {
-        "stop_after": (0, 10, int),
-        "disable_after": (10, 10, int),
-    }
+    disable_after: int = bits(10, 10, "w", 0)  # Time from that stop until all drive enables are cleared; 0 = never.
+    stop_after: int = bits(0, 10, "w", 0)  # Silence after which a running motion is stopped softly; 0 = off.
 
 
 @dataclass(frozen=True)
 class ChannelCommandWord(Word):
     """Command."""
 
-    # Set the positions of the channel's axes to 0. Refused with BUSY unless the channel is quiet.
-    zero: bool = False
-    # Clear cause and lost steps and leave STOPPED. Refused with BUSY while a motion runs.
-    clear: bool = False
-    # Hard stop: STOPPED at once, waiting steps dropped, no new pulse begins.
-    abort: bool = False
-    # Soft stop: rate to 0 by STOP_SLEW, then STOPPED. In IDLE, PREPARE and ARMED: STOPPED at once.
-    stop: bool = False
-
-    PLACES: ClassVar = {
-        "stop": (0, 1, bool),
-        "abort": (1, 1, bool),
-        "clear": (2, 1, bool),
-        "zero": (3, 1, bool),
-    }
+    zero: bool = bits(3, 1, "w", False)  # Set the positions of the channel's axes to 0.
+    clear: bool = bits(2, 1, "w", False)  # Clear cause and lost steps and leave STOPPED.
+    abort: bool = bits(1, 1, "w", False)  # Hard stop: STOPPED at once, waiting steps dropped, no new pulse begins.
+    stop: bool = bits(0, 1, "w", False)  # Soft stop: rate to 0 by STOP_SLEW, then STOPPED. In IDLE, PREPARE and ARMED: STOPPED at once.
 
 
 @dataclass(frozen=True)
 class ChannelStateWord(Word):
     """State."""
 
-    # Substeps drained since reset; wraps.
-    drained: int = 0
-    # A soft stop is in progress.
-    stopping: bool = False
-    # One bit per axis: it had a STEP_OVERRUN.
-    overrun: int = 0
-    # Cause of the stop.
-    cause: Cause = Cause.NONE
-    # Quiet: no motion is prepared or running, and the pins of every axis are idle.
-    quiet: bool = True
-    # State of the motion.
-    state: State = State.IDLE
-
-    PLACES: ClassVar = {
-        "state": (0, 3, State),
-        "quiet": (3, 1, bool),
-        "cause": (4, 4, Cause),
-        "overrun": (8, 8, int),
-        "stopping": (16, 1, bool),
-        "drained": (17, 15, int),
-    }
+    drained: int = bits(17, 15, "r", 0)  # Substeps drained since reset; wraps.
+    stopping: bool = bits(16, 1, "r", False)  # A soft stop is in progress.
+    overrun: int = bits(8, 8, "r", 0)  # One bit per axis: it had a STEP_OVERRUN.
+    cause: Cause = bits(4, 4, "r", Cause.NONE)  # Cause of the stop.
+    quiet: bool = bits(3, 1, "r", True)  # Quiet: no motion is prepared or running, and the pins of every axis are idle.
+    state: State = bits(0, 3, "r", State.IDLE)  # State of the motion.
 
 
 @dataclass(frozen=True)
 class ChannelRoomWord(Word):
     """Room."""
 
-    # Lines.
-    line_room: int
-    # Ramps.
-    ramp_room: int
-
-    PLACES: ClassVar = {
-        "ramp_room": (0, 16, int),
-        "line_room": (16, 16, int),
-    }
+    line_room: int = bits(16, 16, "r")  # Lines.
+    ramp_room: int = bits(0, 16, "r")  # Ramps.
 
 
 @dataclass(frozen=True)
 class ChannelInputLevelsWord(Word):
     """Input levels."""
 
-    # alarm.
-    alarm: int = 0
-    # home.
-    home: int = 0
-    # limit_high.
-    limit_high: int = 0
-    # limit_low.
-    limit_low: int = 0
-
-    PLACES: ClassVar = {
-        "limit_low": (0, 8, int),
-        "limit_high": (8, 8, int),
-        "home": (16, 8, int),
-        "alarm": (24, 8, int),
-    }
+    alarm: int = bits(24, 8, "r", 0)  # alarm.
+    home: int = bits(16, 8, "r", 0)  # home.
+    limit_high: int = bits(8, 8, "r", 0)  # limit_high.
+    limit_low: int = bits(0, 8, "r", 0)  # limit_low.
 
 
 @dataclass(frozen=True)
 class ChannelInputFlagsWord(Word):
     """Input flags."""
 
-    # alarm.
-    alarm: int = 0
-    # home.
-    home: int = 0
-    # limit_high.
-    limit_high: int = 0
-    # limit_low.
-    limit_low: int = 0
-
-    PLACES: ClassVar = {
-        "limit_low": (0, 8, int),
-        "limit_high": (8, 8, int),
-        "home": (16, 8, int),
-        "alarm": (24, 8, int),
-    }
+    alarm: int = bits(24, 8, "r", 0)  # alarm.
+    home: int = bits(16, 8, "r", 0)  # home.
+    limit_high: int = bits(8, 8, "r", 0)  # limit_high.
+    limit_low: int = bits(0, 8, "r", 0)  # limit_low.
 
 
 @dataclass(frozen=True)
 class ChannelInputClearWord(Word):
     """Clear input flags."""
 
-    # alarm.
-    alarm: int = 0
-    # home.
-    home: int = 0
-    # limit_high.
-    limit_high: int = 0
-    # limit_low.
-    limit_low: int = 0
-
-    PLACES: ClassVar = {
-        "limit_low": (0, 8, int),
-        "limit_high": (8, 8, int),
-        "home": (16, 8, int),
-        "alarm": (24, 8, int),
-    }
+    alarm: int = bits(24, 8, "w", 0)  # alarm.
+    home: int = bits(16, 8, "w", 0)  # home.
+    limit_high: int = bits(8, 8, "w", 0)  # limit_high.
+    limit_low: int = bits(0, 8, "w", 0)  # limit_low.
 
 
 @dataclass(frozen=True)
 class ChannelTriggerWord(Word):
     """Trigger."""
 
-    # 1: armed, once.
-    arm: bool = False
-    # What it does.
-    action: TriggerAction = TriggerAction.LATCH
-    # 1: fires when the source becomes inactive; 0: active.
-    falling: bool = False
-    # Axis of the source.
-    axis: int = 0
-    # What fires it.
-    source: TriggerSource = TriggerSource.NONE
-
-    PLACES: ClassVar = {
-        "source": (0, 3, TriggerSource),
-        "axis": (4, 3, int),
-        "falling": (8, 1, bool),
-        "action": (12, 2, TriggerAction),
-        "arm": (16, 1, bool),
-    }
+    arm: bool = bits(16, 1, "w", False)  # 1: armed, once.
+    action: TriggerAction = bits(12, 2, "w", TriggerAction.LATCH)  # What it does.
+    falling: bool = bits(8, 1, "w", False)  # 1: fires when the source becomes inactive; 0: active.
+    axis: int = bits(4, 3, "w", 0)  # Axis of the source.
+    source: TriggerSource = bits(0, 3, "w", TriggerSource.NONE)  # What fires it.
 
 
 @dataclass(frozen=True)
 class ChannelTriggerStateWord(Word):
     """Trigger state."""
 
-    # Levels of the inputs are unknown: they have not been stable for a period of the filter since the reset,
-    # or since polarity or filter were written. No motion begins.
-    unknown: bool
-    # Axes of the first limit or alarm since COMMAND.CLEAR.
-    axes: int = 0
-    # The trigger is armed, and its source is active.
-    source_active: bool = False
-    # The trigger is being armed: its source has not kept one level for longer than the filter yet. No motion
-    # begins.
-    arming: bool = False
-    # The probe was active since its flag was cleared.
-    probe_flag: bool = False
-    # Filtered level of the probe, 1 = active.
-    probe: bool = False
-    # It has fired since it was armed.
-    fired: bool = False
-    # The trigger waits for its edge.
-    armed: bool = False
-
-    PLACES: ClassVar = {
-        "armed": (0, 1, bool),
-        "fired": (1, 1, bool),
-        "probe": (2, 1, bool),
-        "probe_flag": (3, 1, bool),
-        "arming": (4, 1, bool),
-        "source_active": (5, 1, bool),
-        "unknown": (6, 1, bool),
-        "axes": (8, 8, int),
-    }
+    unknown: bool = bits(6, 1, "r")  # Levels of the inputs are unknown: they have not been stable for a period of the filter since the reset, or since polarity or filter were written. No motion begins.
+    axes: int = bits(8, 8, "r", 0)  # Axes of the first limit or alarm since COMMAND.CLEAR.
+    source_active: bool = bits(5, 1, "r", False)  # The trigger is armed, and its source is active.
+    arming: bool = bits(4, 1, "r", False)  # The trigger is being armed: its source has not kept one level for longer than the filter yet. No motion begins.
+    probe_flag: bool = bits(3, 1, "r", False)  # The probe was active since its flag was cleared.
+    probe: bool = bits(2, 1, "r", False)  # Filtered level of the probe, 1 = active.
+    fired: bool = bits(1, 1, "r", False)  # It has fired since it was armed.
+    armed: bool = bits(0, 1, "r", False)  # The trigger waits for its edge.
 
 
 @dataclass(frozen=True)
 class ChannelProbeWord(Word):
     """Probe."""
 
-    # 1: clear the flag.
-    clear: bool = False
-    # 1: probe is active low.
-    inverted: bool = False
-
-    PLACES: ClassVar = {
-        "inverted": (0, 1, bool),
-        "clear": (1, 1, bool),
-    }
+    clear: bool = bits(1, 1, "w", False)  # 1: clear the flag.
+    inverted: bool = bits(0, 1, "w", False)  # 1: probe is active low.
 
 
 @dataclass(frozen=True)
 class ChannelComparePulseWord(Word):
     """Compare pulse."""
 
-    # Axis whose position is compared.
-    axis: int = 0
-    # Clocks; 0 = no pulses.
-    width: int = 0
-
-    PLACES: ClassVar = {
-        "width": (0, 16, int),
-        "axis": (16, 3, int),
-    }
+    axis: int = bits(16, 3, "w", 0)  # Axis whose position is compared.
+    width: int = bits(0, 16, "w", 0)  # Clocks; 0 = no pulses.
 
 
 @dataclass(frozen=True)
 class ChannelOutputStateWord(Word):
     """Output state."""
 
-    # Free words of the raster queue. A push counts from the moment its frame is accepted.
-    raster_room: int = 256
-    # More than 256 changes waited for the lag since COMMAND.CLEAR. One was lost, so there is no power until
-    # then.
-    overflow: bool = False
-    # A raster line found no value since COMMAND.CLEAR: its power was 0.
-    raster_empty: bool = False
-    # Levels of the digital outputs.
-    levels: int = 0
-
-    PLACES: ClassVar = {
-        "levels": (0, 8, int),
-        "raster_empty": (8, 1, bool),
-        "overflow": (9, 1, bool),
-        "raster_room": (16, 16, int),
-    }
+    raster_room: int = bits(16, 16, "r", 256)  # Free words of the raster queue. A push counts from the moment its frame is accepted.
+    overflow: bool = bits(9, 1, "r", False)  # More than 256 changes waited for the lag since COMMAND.CLEAR. One was lost, so there is no power until then.
+    raster_empty: bool = bits(8, 1, "r", False)  # A raster line found no value since COMMAND.CLEAR: its power was 0.
+    levels: int = bits(0, 8, "r", 0)  # Levels of the digital outputs.
 
 
 @dataclass(frozen=True)
 class ChannelFollowWord(Word):
     """Follow."""
 
-    # A count is 2^scale clocks of the profile.
-    scale: int = 0
-    # Axis of the encoder. A missing encoder never counts.
-    source: int = 0
-    # 1: an ARMED motion waits for the index of that encoder.
-    wait_index: bool = False
-    # 1: the clocks of the profile are counts of an encoder.
-    follow: bool = False
-
-    PLACES: ClassVar = {
-        "follow": (0, 1, bool),
-        "wait_index": (1, 1, bool),
-        "source": (2, 3, int),
-        "scale": (5, 3, int),
-    }
+    scale: int = bits(5, 3, "w", 0)  # A count is 2^scale clocks of the profile.
+    source: int = bits(2, 3, "w", 0)  # Axis of the encoder. A missing encoder never counts.
+    wait_index: bool = bits(1, 1, "w", False)  # 1: an ARMED motion waits for the index of that encoder.
+    follow: bool = bits(0, 1, "w", False)  # 1: the clocks of the profile are counts of an encoder.
 
 
 @dataclass(frozen=True)
 class ChannelFollowStateWord(Word):
     """Follow state."""
 
-    # The phase is lost: 2^22 or more were outstanding, or A and B of the encoder changed simultaneously.
-    lost: bool = False
-    # Two counts or more were owed: the path was late.
-    behind: bool = False
-    # Clocks of the profile that are owed to the encoder, signed.
-    owed: int = 0
-
-    PLACES: ClassVar = {
-        "owed": (0, 24, int),
-        "behind": (24, 1, bool),
-        "lost": (25, 1, bool),
-    }
+    lost: bool = bits(25, 1, "r", False)  # The phase is lost: 2^22 or more were outstanding, or A and B of the encoder changed simultaneously.
+    behind: bool = bits(24, 1, "r", False)  # Two counts or more were owed: the path was late.
+    owed: int = bits(0, 24, "r", 0)  # Clocks of the profile that are owed to the encoder, signed.
 
 
 @dataclass(frozen=True)
 class AxisPinsWord(Word):
     """Pins."""
 
-    # 1: every edge of STEP is a step.
-    both_edges: bool = False
-    # 1: EN is active low. After configuration: parameter ENABLE_RESET.
-    enable_inverted: bool = False
-    # 1: DIR is high for the positive direction. After configuration: parameter DIR_RESET.
-    direction_inverted: bool = False
-    # 1: STEP is active low. After configuration: parameter STEP_RESET.
-    step_inverted: bool = False
-
-    PLACES: ClassVar = {
-        "step_inverted": (1, 1, bool),
-        "direction_inverted": (2, 1, bool),
-        "enable_inverted": (3, 1, bool),
-        "both_edges": (4, 1, bool),
-    }
+    both_edges: bool = bits(4, 1, "w", False)  # 1: every edge of STEP is a step.
+    enable_inverted: bool = bits(3, 1, "w", False)  # 1: EN is active low. After configuration: parameter ENABLE_RESET.
+    direction_inverted: bool = bits(2, 1, "w", False)  # 1: DIR is high for the positive direction. After configuration: parameter DIR_RESET.
+    step_inverted: bool = bits(1, 1, "w", False)  # 1: STEP is active low. After configuration: parameter STEP_RESET.
 
 
 @dataclass(frozen=True)
 class AxisStepTimingWord(Word):
     """STEP timing."""
 
-    # Time that STEP is active.
-    step_high: int = 1
-    # Minimum time that STEP is inactive.
-    step_low: int = 1
-
-    PLACES: ClassVar = {
-        "step_low": (0, 16, int),
-        "step_high": (16, 16, int),
-    }
+    step_high: int = bits(16, 16, "w", 1)  # Time that STEP is active.
+    step_low: int = bits(0, 16, "w", 1)  # Minimum time that STEP is inactive.
 
 
 @dataclass(frozen=True)
 class AxisDirTimingWord(Word):
     """DIR timing."""
 
-    # DIR change to the next active edge of STEP.
-    dir_setup: int = 1
-    # End of step_low to the next change of DIR.
-    dir_hold: int = 1
-
-    PLACES: ClassVar = {
-        "dir_hold": (0, 16, int),
-        "dir_setup": (16, 16, int),
-    }
+    dir_setup: int = bits(16, 16, "w", 1)  # DIR change to the next active edge of STEP.
+    dir_hold: int = bits(0, 16, "w", 1)  # End of step_low to the next change of DIR.
 
 
 @dataclass(frozen=True)
 class AxisInputsWord(Word):
     """Inputs of the axis."""
 
-    # 1: the alarm also clears the drive enable of this axis.
-    alarm_disables: bool = False
-    # 1: the alarm makes a soft stop; 0: a hard one.
-    alarm_soft: bool = False
-    # 1: limits make a soft stop; 0: a hard one.
-    limit_soft: bool = False
-    # 1: alarm is active low.
-    alarm_inverted: bool = False
-    # 1: home is active low.
-    home_inverted: bool = False
-    # 1: limit_high is active low.
-    limit_high_inverted: bool = False
-    # 1: limit_low is active low.
-    limit_low_inverted: bool = False
-
-    PLACES: ClassVar = {
-        "limit_low_inverted": (0, 1, bool),
-        "limit_high_inverted": (1, 1, bool),
-        "home_inverted": (2, 1, bool),
-        "alarm_inverted": (3, 1, bool),
-        "limit_soft": (4, 1, bool),
-        "alarm_soft": (5, 1, bool),
-        "alarm_disables": (6, 1, bool),
-    }
+    alarm_disables: bool = bits(6, 1, "w", False)  # 1: the alarm also clears the drive enable of this axis.
+    alarm_soft: bool = bits(5, 1, "w", False)  # 1: the alarm makes a soft stop; 0: a hard one.
+    limit_soft: bool = bits(4, 1, "w", False)  # 1: limits make a soft stop; 0: a hard one.
+    alarm_inverted: bool = bits(3, 1, "w", False)  # 1: alarm is active low.
+    home_inverted: bool = bits(2, 1, "w", False)  # 1: home is active low.
+    limit_high_inverted: bool = bits(1, 1, "w", False)  # 1: limit_high is active low.
+    limit_low_inverted: bool = bits(0, 1, "w", False)  # 1: limit_low is active low.
 
 
 @dataclass(frozen=True)
 class EncoderSetupWord(Word):
     """Encoder setup."""
 
-    # 1: it is a hard stop, whatever stop_soft says. Neither: it only shows.
-    stop_hard: bool = False
-    # 1: a following error at the limit is a soft stop.
-    stop_soft: bool = False
-    # 1: the index counts only while A and B are high.
-    index_gated: bool = False
-    # 1: the index is active low.
-    index_inverted: bool = False
-    # 1: up is B before A.
-    inverted: bool = False
-
-    PLACES: ClassVar = {
-        "inverted": (0, 1, bool),
-        "index_inverted": (1, 1, bool),
-        "index_gated": (2, 1, bool),
-        "stop_soft": (3, 1, bool),
-        "stop_hard": (4, 1, bool),
-    }
+    stop_hard: bool = bits(4, 1, "w", False)  # 1: it is a hard stop, whatever stop_soft says. Neither: it only shows.
+    stop_soft: bool = bits(3, 1, "w", False)  # 1: a following error at the limit is a soft stop.
+    index_gated: bool = bits(2, 1, "w", False)  # 1: the index counts only while A and B are high.
+    index_inverted: bool = bits(1, 1, "w", False)  # 1: the index is active low.
+    inverted: bool = bits(0, 1, "w", False)  # 1: up is B before A.
 
 
 @dataclass(frozen=True)
 class EncoderGreatestWord(Word):
     """Greatest following error."""
 
-    # The error is at its limit now.
-    exceeded: bool = False
-    # Counts, either way.
-    greatest: int = 0
-
-    PLACES: ClassVar = {
-        "greatest": (0, 18, int),
-        "exceeded": (31, 1, bool),
-    }
+    exceeded: bool = bits(31, 1, "r", False)  # The error is at its limit now.
+    greatest: int = bits(0, 18, "r", 0)  # Counts, either way.
 
 
 @dataclass(frozen=True)
 class EncoderIndexWord(Word):
     """Encoder index."""
 
-    # Simultaneous changes of A and B (illegal transitions), saturating at 255; also cleared by COMMAND.CLEAR.
-    illegal: int = 0
-    # Number of indexes; wraps.
-    indexes: int = 0
-    # Encoder position at the last index, its lower 16 bits.
-    latch: int = 0
-
-    PLACES: ClassVar = {
-        "latch": (0, 16, int),
-        "indexes": (16, 8, int),
-        "illegal": (24, 8, int),
-    }
+    illegal: int = bits(24, 8, "r", 0)  # Simultaneous changes of A and B (illegal transitions), saturating at 255; also cleared by COMMAND.CLEAR.
+    indexes: int = bits(16, 8, "r", 0)  # Number of indexes; wraps.
+    latch: int = bits(0, 16, "r", 0)  # Encoder position at the last index, its lower 16 bits.
 
 
 # Word: Header. First word of a request.
@@ -927,16 +571,14 @@ REFUSALS_1_BAD_VALUE_LSB = 24
 REFUSALS_1_BAD_VALUE_BITS = 8
 REFUSALS_1_BAD_VALUE_RESET = 0x00
 
-# Core: Input filter. Only with INPUTS. Glitch filter of all inputs but e-stop. May be written at any time;
-# then they are unknown. Kept over a reset of the core.
+# Core: Input filter. Glitch filter of all inputs but e-stop. After a write they are unknown.
 ADDRESS_INPUT_FILTER = 0x010
 INPUT_FILTER_FILTER_LSB = 0
 INPUT_FILTER_FILTER_BITS = 16
 INPUT_FILTER_FILTER_RESET = 0x0000
 INPUT_FILTER_DEFINED = 0x0000FFFF
 
-# Core: Watchdog. Only with INPUTS. Stops motions when no frame has been executed for some time. In units
-# of 2^16 clocks.
+# Core: Watchdog. Stops motions when no frame has been executed for some time. In units of 2^16 clocks.
 ADDRESS_WATCHDOG = 0x011
 WATCHDOG_STOP_AFTER_LSB = 0
 WATCHDOG_STOP_AFTER_BITS = 10
@@ -946,37 +588,34 @@ WATCHDOG_DISABLE_AFTER_BITS = 10
 WATCHDOG_DISABLE_AFTER_RESET = 0x000
 WATCHDOG_DEFINED = 0x000FFFFF
 
-# Core: E-stop. Only with INPUTS. State of the e-stop.
+# Core: E-stop. State of the e-stop.
 ADDRESS_ESTOP = 0x012
 ESTOP_PRESSED_LSB = 0
 ESTOP_PRESSED_BITS = 1
 ESTOP_PRESSED_RESET = 0x0
 
-# Core: Clear e-stop. Only with INPUTS. No effect while e-stop is pressed.
+# Core: Clear e-stop. No effect while e-stop is pressed.
 ADDRESS_ESTOP_CLEAR = 0x013
 ESTOP_CLEAR_CLEAR_LSB = 0
 ESTOP_CLEAR_CLEAR_BITS = 1
 ESTOP_CLEAR_CLEAR_RESET = 0x0
 ESTOP_CLEAR_DEFINED = 0x00000001
 
-# Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0. Refused with BUSY
-# while a motion runs.
+# Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0.
 ADDRESS_COSINE_BASE = 0xD00
 ADDRESS_COSINE_COUNT = 256
 COSINE_POINT_LSB = 0
 COSINE_POINT_BITS = 16
 COSINE_DEFINED = 0x0000FFFF
 
-# Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0. Refused with BUSY
-# while a motion runs.
+# Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0.
 ADDRESS_SIGMOID_BASE = 0xE00
 ADDRESS_SIGMOID_COUNT = 256
 SIGMOID_POINT_LSB = 0
 SIGMOID_POINT_BITS = 16
 SIGMOID_DEFINED = 0x0000FFFF
 
-# Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0. Refused with BUSY
-# while a motion runs.
+# Core: Shape table point. One point of a shape table, UQ0.16; point 256 is always 1.0.
 ADDRESS_EASE_BASE = 0xF00
 ADDRESS_EASE_COUNT = 256
 EASE_POINT_LSB = 0
@@ -1005,8 +644,7 @@ CHANNEL_COMMAND_ZERO_BITS = 1
 CHANNEL_COMMAND_ZERO_RESET = 0x0
 CHANNEL_COMMAND_DEFINED = 0x0000000F
 
-# Channel: Rate target. Time scale, UQ1.16: 0 = feed hold, 65536 = 1.0 = full speed. Refused with BAD_VALUE
-# above 1.0.
+# Channel: Rate target. Time scale, UQ1.16: 0 = feed hold, 65536 = 1.0 = full speed.
 CHANNEL_RATE_TARGET = 0x01
 CHANNEL_RATE_TARGET_LSB = 0
 CHANNEL_RATE_TARGET_BITS = 17
@@ -1074,7 +712,7 @@ CHANNEL_VELOCITY_LSB = 0
 CHANNEL_VELOCITY_BITS = 32
 CHANNEL_VELOCITY_RESET = 0x00000000
 
-# Channel: Input levels. Only with INPUTS. Filtered levels, 1 = active, one bit per axis.
+# Channel: Input levels. Filtered levels, 1 = active, one bit per axis.
 CHANNEL_INPUT_LEVELS = 0x10
 CHANNEL_INPUT_LEVELS_LIMIT_LOW_LSB = 0
 CHANNEL_INPUT_LEVELS_LIMIT_LOW_BITS = 8
@@ -1089,8 +727,7 @@ CHANNEL_INPUT_LEVELS_ALARM_LSB = 24
 CHANNEL_INPUT_LEVELS_ALARM_BITS = 8
 CHANNEL_INPUT_LEVELS_ALARM_RESET = 0x00
 
-# Channel: Input flags. Only with INPUTS. Inputs that were active since their flag was cleared, one bit per
-# axis.
+# Channel: Input flags. Inputs that were active since their flag was cleared, one bit per axis.
 CHANNEL_INPUT_FLAGS = 0x11
 CHANNEL_INPUT_FLAGS_LIMIT_LOW_LSB = 0
 CHANNEL_INPUT_FLAGS_LIMIT_LOW_BITS = 8
@@ -1105,8 +742,8 @@ CHANNEL_INPUT_FLAGS_ALARM_LSB = 24
 CHANNEL_INPUT_FLAGS_ALARM_BITS = 8
 CHANNEL_INPUT_FLAGS_ALARM_RESET = 0x00
 
-# Channel: Clear input flags. Only with INPUTS. Each bit written as 1 clears a flag of INPUT_FLAGS; bits of
-# axes that are not there do nothing.
+# Channel: Clear input flags. Each bit written as 1 clears a flag of INPUT_FLAGS; bits of axes that are not
+# there do nothing.
 CHANNEL_INPUT_CLEAR = 0x12
 CHANNEL_INPUT_CLEAR_LIMIT_LOW_LSB = 0
 CHANNEL_INPUT_CLEAR_LIMIT_LOW_BITS = 8
@@ -1122,8 +759,7 @@ CHANNEL_INPUT_CLEAR_ALARM_BITS = 8
 CHANNEL_INPUT_CLEAR_ALARM_RESET = 0x00
 CHANNEL_INPUT_CLEAR_DEFINED = 0xFFFFFFFF
 
-# Channel: Trigger. Only with INPUTS. Every write ends what was armed before. Refused with BAD_VALUE if
-# armed without a source, or for an axis that is not there.
+# Channel: Trigger. Every write ends what was armed before.
 CHANNEL_TRIGGER = 0x13
 CHANNEL_TRIGGER_SOURCE_LSB = 0
 CHANNEL_TRIGGER_SOURCE_BITS = 3
@@ -1142,8 +778,7 @@ CHANNEL_TRIGGER_ARM_BITS = 1
 CHANNEL_TRIGGER_ARM_RESET = 0x0
 CHANNEL_TRIGGER_DEFINED = 0x00013177
 
-# Channel: Trigger state. Only with INPUTS. State of the trigger and the probe, and the axes that stopped
-# the channel.
+# Channel: Trigger state. State of the trigger and the probe, and the axes that stopped the channel.
 CHANNEL_TRIGGER_STATE = 0x14
 CHANNEL_TRIGGER_STATE_ARMED_LSB = 0
 CHANNEL_TRIGGER_STATE_ARMED_BITS = 1
@@ -1169,8 +804,7 @@ CHANNEL_TRIGGER_STATE_AXES_LSB = 8
 CHANNEL_TRIGGER_STATE_AXES_BITS = 8
 CHANNEL_TRIGGER_STATE_AXES_RESET = 0x00
 
-# Channel: Probe. Only with INPUTS. Polarity, kept over a reset of the core, after a change of which the
-# inputs are unknown; and the flag of the probe.
+# Channel: Probe. Polarity, after a change of which the inputs are unknown; and the flag of the probe.
 CHANNEL_PROBE = 0x15
 CHANNEL_PROBE_INVERTED_LSB = 0
 CHANNEL_PROBE_INVERTED_BITS = 1
@@ -1180,69 +814,64 @@ CHANNEL_PROBE_CLEAR_BITS = 1
 CHANNEL_PROBE_CLEAR_RESET = 0x0
 CHANNEL_PROBE_DEFINED = 0x00000003
 
-# Channel: Line queue. PUSH only: control, M, N_0 .. N_{AXES-1} for each line, and with OUTPUTS its output
-# word.
+# Channel: Line queue. Control, M, N_0 .. N_{AXES-1} for each line, and with OUTPUTS its output word.
 CHANNEL_LINE = 0x20
 CHANNEL_LINE_LSB = 0
 CHANNEL_LINE_BITS = 32
 CHANNEL_LINE_DEFINED = 0xFFFFFFFF
 
-# Channel: Ramp queue. PUSH only: 5 words for each ramp: v_end(47:32) (31:16) and LAST (0), NOW (1), mirror
-# (2), shape (5:4); v_end(31:0); T; du(47:32); du(31:0).
+# Channel: Ramp queue. 5 words for each ramp: v_end(47:32) (31:16) and LAST (0), NOW (1), mirror (2), shape
+# (5:4); v_end(31:0); T; du(47:32); du(31:0).
 CHANNEL_RAMP = 0x21
 CHANNEL_RAMP_LSB = 0
 CHANNEL_RAMP_BITS = 32
 CHANNEL_RAMP_DEFINED = 0xFFFFFFFF
 
-# Channel: Raster queue. Only with OUTPUTS. PUSH only: four values to a word, the lowest byte first. A
-# raster line begins with a whole word.
+# Channel: Raster queue. Four values to a word, the lowest byte first. A raster line begins with a whole
+# word.
 CHANNEL_RASTER = 0x22
 CHANNEL_RASTER_LSB = 0
 CHANNEL_RASTER_BITS = 32
 CHANNEL_RASTER_DEFINED = 0xFFFFFFFF
 
-# Channel: Output levels. Only with OUTPUTS. Sets the digital outputs at once, until a line changes them.
-# Refused with BUSY unless the channel is quiet.
+# Channel: Output levels. Sets the digital outputs at once, until a line changes them.
 CHANNEL_OUTPUT_LEVELS = 0x30
 CHANNEL_OUTPUT_LEVELS_LEVELS_LSB = 0
 CHANNEL_OUTPUT_LEVELS_LEVELS_BITS = 8
 CHANNEL_OUTPUT_LEVELS_LEVELS_RESET = 0x00
 CHANNEL_OUTPUT_LEVELS_DEFINED = 0x000000FF
 
-# Channel: Output lag. Only with OUTPUTS. Refused with BUSY unless the channel is quiet.
+# Channel: Output lag. Delay of the outputs of lines.
 CHANNEL_OUTPUT_LAG = 0x31
 CHANNEL_OUTPUT_LAG_LAG_LSB = 0
 CHANNEL_OUTPUT_LAG_LAG_BITS = 16
 CHANNEL_OUTPUT_LAG_LAG_RESET = 0x0000
 CHANNEL_OUTPUT_LAG_DEFINED = 0x0000FFFF
 
-# Channel: PWM step. Only with OUTPUTS. Frequency of the power pin. May be written at any time. Refused
-# with BAD_VALUE if 0 or above 1/2.
+# Channel: PWM step. Frequency of the power pin.
 CHANNEL_PWM_STEP = 0x32
 CHANNEL_PWM_STEP_LSB = 0
 CHANNEL_PWM_STEP_BITS = 24
 CHANNEL_PWM_STEP_RESET = 0x001000
 CHANNEL_PWM_STEP_DEFINED = 0x00FFFFFF
 
-# Channel: Power reference. Only with OUTPUTS. Velocity at which a power in proportion to the velocity is
-# the one of the line; above it, it stays that. May be written at any time. Refused with BAD_VALUE if 0 or
-# above 1/2.
+# Channel: Power reference. Velocity at which a power in proportion to the velocity is the one of the line;
+# above it, it stays that.
 CHANNEL_POWER_REFERENCE = 0x33
 CHANNEL_POWER_REFERENCE_LSB = 0
 CHANNEL_POWER_REFERENCE_BITS = 32
 CHANNEL_POWER_REFERENCE_RESET = 0x80000000
 CHANNEL_POWER_REFERENCE_DEFINED = 0xFFFFFFFF
 
-# Channel: Raster pitch. Only with OUTPUTS. Substeps from one value of a raster line to the next; counts
-# from the next value on. Refused with BAD_VALUE if 0 or above 2^30 - 1.
+# Channel: Raster pitch. Substeps from one value of a raster line to the next; counts from the next value
+# on.
 CHANNEL_RASTER_PITCH = 0x34
 CHANNEL_RASTER_PITCH_PITCH_LSB = 0
 CHANNEL_RASTER_PITCH_PITCH_BITS = 30
 CHANNEL_RASTER_PITCH_PITCH_RESET = 0x00000001
 CHANNEL_RASTER_PITCH_DEFINED = 0x3FFFFFFF
 
-# Channel: Compare pulse. Only with OUTPUTS. Refused with BUSY unless the channel is quiet, with BAD_VALUE
-# if there is no such axis. Ends a pulse in progress, as COMPARE_DISTANCE does.
+# Channel: Compare pulse. Ends a pulse in progress, as COMPARE_DISTANCE does.
 CHANNEL_COMPARE_PULSE = 0x35
 CHANNEL_COMPARE_PULSE_WIDTH_LSB = 0
 CHANNEL_COMPARE_PULSE_WIDTH_BITS = 16
@@ -1252,21 +881,21 @@ CHANNEL_COMPARE_PULSE_AXIS_BITS = 3
 CHANNEL_COMPARE_PULSE_AXIS_RESET = 0x0
 CHANNEL_COMPARE_PULSE_DEFINED = 0x0007FFFF
 
-# Channel: Compare distance. Only with OUTPUTS. Refused with BUSY unless the channel is quiet.
+# Channel: Compare distance. Where the first pulse comes.
 CHANNEL_COMPARE_DISTANCE = 0x36
 CHANNEL_COMPARE_DISTANCE_DISTANCE_LSB = 0
 CHANNEL_COMPARE_DISTANCE_DISTANCE_BITS = 32
 CHANNEL_COMPARE_DISTANCE_DISTANCE_RESET = 0x00000000
 CHANNEL_COMPARE_DISTANCE_DEFINED = 0xFFFFFFFF
 
-# Channel: Compare interval. Only with OUTPUTS. Counts from the next pulse on. Refused with BAD_VALUE if 0.
+# Channel: Compare interval. Counts from the next pulse on.
 CHANNEL_COMPARE_INTERVAL = 0x37
 CHANNEL_COMPARE_INTERVAL_INTERVAL_LSB = 0
 CHANNEL_COMPARE_INTERVAL_INTERVAL_BITS = 32
 CHANNEL_COMPARE_INTERVAL_INTERVAL_RESET = 0x00000001
 CHANNEL_COMPARE_INTERVAL_DEFINED = 0xFFFFFFFF
 
-# Channel: Output state. Only with OUTPUTS. State of the outputs.
+# Channel: Output state. State of the outputs.
 CHANNEL_OUTPUT_STATE = 0x38
 CHANNEL_OUTPUT_STATE_LEVELS_LSB = 0
 CHANNEL_OUTPUT_STATE_LEVELS_BITS = 8
@@ -1288,23 +917,22 @@ CHANNEL_POSITION_LSB = 0
 CHANNEL_POSITION_BITS = 32
 CHANNEL_POSITION_RESET = 0x00000000
 
-# Channel: Latched position. Only with INPUTS. Position of an axis in steps on the clock on which the
-# trigger fired, complete 130 clocks later. A ZERO less than 64 clocks after that clears it.
+# Channel: Latched position. Position of an axis in steps on the clock on which the trigger fired, complete
+# 130 clocks later. A ZERO less than 64 clocks after that clears it.
 CHANNEL_TRIGGER_POSITION_BASE = 0x48
 CHANNEL_TRIGGER_POSITION_COUNT = 8
 CHANNEL_TRIGGER_POSITION_POSITION_LSB = 0
 CHANNEL_TRIGGER_POSITION_POSITION_BITS = 32
 CHANNEL_TRIGGER_POSITION_POSITION_RESET = 0x00000000
 
-# Channel: Encoder position. Only with ENCODERS. Counts of the encoder of an axis, sampled on the clock of
-# its position; wraps.
+# Channel: Encoder position. Counts of the encoder of an axis, sampled on the clock of its position; wraps.
 CHANNEL_ENCODER_POSITION_BASE = 0x50
 CHANNEL_ENCODER_POSITION_COUNT = 8
 CHANNEL_ENCODER_POSITION_POSITION_LSB = 0
 CHANNEL_ENCODER_POSITION_POSITION_BITS = 32
 CHANNEL_ENCODER_POSITION_POSITION_RESET = 0x00000000
 
-# Channel: Follow. Only with ENCODERS. Refused with BUSY unless the channel is quiet.
+# Channel: Follow. Whether and how the profile follows an encoder.
 CHANNEL_FOLLOW = 0x60
 CHANNEL_FOLLOW_FOLLOW_LSB = 0
 CHANNEL_FOLLOW_FOLLOW_BITS = 1
@@ -1320,24 +948,22 @@ CHANNEL_FOLLOW_SCALE_BITS = 3
 CHANNEL_FOLLOW_SCALE_RESET = 0x0
 CHANNEL_FOLLOW_DEFINED = 0x000000FF
 
-# Channel: Follow limit. Only with ENCODERS. What is owed to the encoder is made at no more than this.
-# Refused with BAD_VALUE if 0 or above 1/2.
+# Channel: Follow limit. What is owed to the encoder is made at no more than this.
 CHANNEL_FOLLOW_LIMIT = 0x61
 CHANNEL_FOLLOW_LIMIT_LIMIT_LSB = 0
 CHANNEL_FOLLOW_LIMIT_LIMIT_BITS = 32
 CHANNEL_FOLLOW_LIMIT_LIMIT_RESET = 0x01000000
 CHANNEL_FOLLOW_LIMIT_DEFINED = 0xFFFFFFFF
 
-# Channel: Encoder filter. Only with ENCODERS. Glitch filter of all encoders of the channel. May be written
-# at any time.
+# Channel: Encoder filter. Glitch filter of all encoders of the channel.
 CHANNEL_ENCODER_FILTER = 0x62
 CHANNEL_ENCODER_FILTER_FILTER_LSB = 0
 CHANNEL_ENCODER_FILTER_FILTER_BITS = 8
 CHANNEL_ENCODER_FILTER_FILTER_RESET = 0x03
 CHANNEL_ENCODER_FILTER_DEFINED = 0x000000FF
 
-# Channel: Follow state. Only with ENCODERS. Of the motion that runs; behind and lost, of the last one,
-# until the next is prepared.
+# Channel: Follow state. Of the motion that runs; behind and lost, of the last one, until the next is
+# prepared.
 CHANNEL_FOLLOW_STATE = 0x63
 CHANNEL_FOLLOW_STATE_OWED_LSB = 0
 CHANNEL_FOLLOW_STATE_OWED_BITS = 24
@@ -1359,8 +985,8 @@ CHANNEL_ENCODER_BASE = 0xC0
 CHANNEL_ENCODER_COUNT = 8
 CHANNEL_ENCODER_STRIDE = 0x08
 
-# Axis: Pins. Polarities and step mode. Refused with BUSY unless the channel is quiet. From the write on,
-# the next step waits for the low time, the DIR hold and the DIR setup. Kept through a reset of the core.
+# Axis: Pins. Polarities and step mode. From the write on, the next step waits for the low time, the DIR
+# hold and the DIR setup.
 AXIS_PINS = 0x0
 AXIS_PINS_STEP_INVERTED_LSB = 1
 AXIS_PINS_STEP_INVERTED_BITS = 1
@@ -1376,7 +1002,7 @@ AXIS_PINS_BOTH_EDGES_BITS = 1
 AXIS_PINS_BOTH_EDGES_RESET = 0x0
 AXIS_PINS_DEFINED = 0x0000001E
 
-# Axis: STEP timing. Clocks, 1 .. 65535; 0 counts as 1. Kept over a reset of the core.
+# Axis: STEP timing. Clocks, 1 .. 65535; 0 counts as 1.
 AXIS_STEP_TIMING = 0x1
 AXIS_STEP_TIMING_STEP_LOW_LSB = 0
 AXIS_STEP_TIMING_STEP_LOW_BITS = 16
@@ -1386,7 +1012,7 @@ AXIS_STEP_TIMING_STEP_HIGH_BITS = 16
 AXIS_STEP_TIMING_STEP_HIGH_RESET = 0x0001
 AXIS_STEP_TIMING_DEFINED = 0xFFFFFFFF
 
-# Axis: DIR timing. Clocks, 1 .. 65535; 0 counts as 1. Kept over a reset of the core.
+# Axis: DIR timing. Clocks, 1 .. 65535; 0 counts as 1.
 AXIS_DIR_TIMING = 0x2
 AXIS_DIR_TIMING_DIR_HOLD_LSB = 0
 AXIS_DIR_TIMING_DIR_HOLD_BITS = 16
@@ -1402,15 +1028,14 @@ AXIS_LOST_STEPS_LOST_LSB = 0
 AXIS_LOST_STEPS_LOST_BITS = 4
 AXIS_LOST_STEPS_LOST_RESET = 0x0
 
-# Axis: Drive enable. May be written at any time.
+# Axis: Drive enable. Enables the drive of the axis.
 AXIS_ENABLE = 0x4
 AXIS_ENABLE_LSB = 0
 AXIS_ENABLE_BITS = 1
 AXIS_ENABLE_RESET = 0x0
 AXIS_ENABLE_DEFINED = 0x00000001
 
-# Axis: Inputs of the axis. Only with INPUTS. Polarities, and what limits and alarm do. Refused with BUSY
-# unless the channel is quiet; then the inputs are unknown. Kept over a reset of the core.
+# Axis: Inputs of the axis. Polarities, and what limits and alarm do. After a write the inputs are unknown.
 AXIS_INPUTS = 0x5
 AXIS_INPUTS_LIMIT_LOW_INVERTED_LSB = 0
 AXIS_INPUTS_LIMIT_LOW_INVERTED_BITS = 1
@@ -1435,7 +1060,7 @@ AXIS_INPUTS_ALARM_DISABLES_BITS = 1
 AXIS_INPUTS_ALARM_DISABLES_RESET = 0x0
 AXIS_INPUTS_DEFINED = 0x0000007F
 
-# Encoder: Encoder setup. Only with ENCODERS. May be written at any time.
+# Encoder: Encoder setup. How the encoder counts, and what a following error does.
 ENCODER_SETUP = 0x0
 ENCODER_SETUP_INVERTED_LSB = 0
 ENCODER_SETUP_INVERTED_BITS = 1
@@ -1454,30 +1079,28 @@ ENCODER_SETUP_STOP_HARD_BITS = 1
 ENCODER_SETUP_STOP_HARD_RESET = 0x0
 ENCODER_SETUP_DEFINED = 0x0000001F
 
-# Encoder: Encoder ratio. Only with ENCODERS. Counts per step. Refused with BAD_VALUE if 0. A write sets
-# the following error to 0.
+# Encoder: Encoder ratio. Counts per step. A write sets the following error to 0.
 ENCODER_RATIO = 0x1
 ENCODER_RATIO_LSB = 0
 ENCODER_RATIO_BITS = 32
 ENCODER_RATIO_RESET = 0x00010000
 ENCODER_RATIO_DEFINED = 0xFFFFFFFF
 
-# Encoder: Following error limit. Only with ENCODERS. Refused with BAD_VALUE if 0.
+# Encoder: Following error limit. Error from which on the axis is too far from its encoder.
 ENCODER_LIMIT = 0x2
 ENCODER_LIMIT_LSB = 0
 ENCODER_LIMIT_BITS = 16
 ENCODER_LIMIT_RESET = 0xFFFF
 ENCODER_LIMIT_DEFINED = 0x0000FFFF
 
-# Encoder: Following error. Only with ENCODERS. Position times ratio less encoder position, both as they
-# were set to 0 by COMMAND.ZERO or a write of the ratio.
+# Encoder: Following error. Position times ratio less encoder position, both as they were set to 0 by
+# COMMAND.ZERO or a write of the ratio.
 ENCODER_ERROR = 0x3
 ENCODER_ERROR_LSB = 0
 ENCODER_ERROR_BITS = 32
 ENCODER_ERROR_RESET = 0x00000000
 
-# Encoder: Greatest following error. Only with ENCODERS. Since COMMAND.ZERO, COMMAND.CLEAR or a write of
-# the ratio.
+# Encoder: Greatest following error. Since COMMAND.ZERO, COMMAND.CLEAR or a write of the ratio.
 ENCODER_GREATEST = 0x4
 ENCODER_GREATEST_GREATEST_LSB = 0
 ENCODER_GREATEST_GREATEST_BITS = 18
@@ -1486,8 +1109,8 @@ ENCODER_GREATEST_EXCEEDED_LSB = 31
 ENCODER_GREATEST_EXCEEDED_BITS = 1
 ENCODER_GREATEST_EXCEEDED_RESET = 0x0
 
-# Encoder: Encoder index. Only with ENCODERS. What the index has latched, and the transitions that were
-# none. All 0 after COMMAND.ZERO.
+# Encoder: Encoder index. What the index has latched, and the transitions that were none. All 0 after
+# COMMAND.ZERO.
 ENCODER_INDEX = 0x5
 ENCODER_INDEX_LATCH_LSB = 0
 ENCODER_INDEX_LATCH_BITS = 16
@@ -1500,259 +1123,64 @@ ENCODER_INDEX_ILLEGAL_BITS = 8
 ENCODER_INDEX_ILLEGAL_RESET = 0x00
 
 # All registers, once each.
-# fmt: off
 TABLE = (
-    Register("IDENTIFICATION", "CORE", 0x000, 1, (
-        Field("IDENTIFICATION", 0, 32, "r", 0x5041534F),
-    )),
-    Register("VERSION", "CORE", 0x001, 1, (
-        Field("PATCH", 0, 8, "r", 0x00),
-        Field("MINOR", 8, 8, "r", 0x03),
-        Field("MAJOR", 16, 8, "r", 0x00),
-    )),
-    Register("PARAMETERS", "CORE", 0x002, 1, (
-        Field("CHANNELS", 0, 4, "r", None),
-        Field("AXES", 4, 4, "r", None),
-        Field("TICK_LOG2", 8, 5, "r", None),
-        Field("LINE_QUEUE_LOG2", 16, 5, "r", None),
-        Field("RAMP_QUEUE_LOG2", 24, 5, "r", None),
-        Field("INPUTS", 29, 1, "r", None),
-        Field("ENCODERS", 30, 1, "r", None),
-        Field("OUTPUTS", 31, 1, "r", None),
-    )),
-    Register("RUN", "CORE", 0x003, 1, (
-        Field("RUN", 0, 8, "rw", 0x00),
-        Field("WAIT_SYNC", 8, 8, "rw", 0x00),
-        Field("STATUS_CHANNEL", 16, 3, "rw", 0x0),
-    )),
-    Register("REFUSALS_0", "CORE", 0x004, 1, (
-        Field("BAD_CRC", 0, 8, "r", 0x00),
-        Field("BAD_LENGTH", 8, 8, "r", 0x00),
-        Field("BAD_OPERATION", 16, 8, "r", 0x00),
-        Field("UNKNOWN_ADDRESS", 24, 8, "r", 0x00),
-    )),
-    Register("REFUSALS_1", "CORE", 0x005, 1, (
-        Field("READ_ONLY", 0, 8, "r", 0x00),
-        Field("QUEUE_FULL", 8, 8, "r", 0x00),
-        Field("BUSY", 16, 8, "r", 0x00),
-        Field("BAD_VALUE", 24, 8, "r", 0x00),
-    )),
-    Register("INPUT_FILTER", "CORE", 0x010, 1, (
-        Field("FILTER", 0, 16, "w", 0x0000),
-    ), "inputs"),
-    Register("WATCHDOG", "CORE", 0x011, 1, (
-        Field("STOP_AFTER", 0, 10, "w", 0x000),
-        Field("DISABLE_AFTER", 10, 10, "w", 0x000),
-    ), "inputs"),
-    Register("ESTOP", "CORE", 0x012, 1, (
-        Field("PRESSED", 0, 1, "r", 0x0),
-    ), "inputs"),
-    Register("ESTOP_CLEAR", "CORE", 0x013, 1, (
-        Field("CLEAR", 0, 1, "w", 0x0),
-    ), "inputs"),
-    Register("COSINE", "CORE", 0xD00, 256, (
-        Field("POINT", 0, 16, "w", None),
-    )),
-    Register("SIGMOID", "CORE", 0xE00, 256, (
-        Field("POINT", 0, 16, "w", None),
-    )),
-    Register("EASE", "CORE", 0xF00, 256, (
-        Field("POINT", 0, 16, "w", None),
-    )),
-    Register("CHANNEL_COMMAND", "CHANNEL", 0x00, 1, (
-        Field("STOP", 0, 1, "w", 0x0),
-        Field("ABORT", 1, 1, "w", 0x0),
-        Field("CLEAR", 2, 1, "w", 0x0),
-        Field("ZERO", 3, 1, "w", 0x0),
-    )),
-    Register("CHANNEL_RATE_TARGET", "CHANNEL", 0x01, 1, (
-        Field("RATE_TARGET", 0, 17, "w", 0x10000),
-    )),
-    Register("CHANNEL_RATE_SLEW", "CHANNEL", 0x02, 1, (
-        Field("RATE_SLEW", 0, 17, "w", 0x00400),
-    )),
-    Register("CHANNEL_STOP_SLEW", "CHANNEL", 0x03, 1, (
-        Field("STOP_SLEW", 0, 17, "w", 0x00400),
-    )),
-    Register("CHANNEL_DRAIN_VELOCITY", "CHANNEL", 0x04, 1, (
-        Field("DRAIN_VELOCITY", 0, 32, "w", 0x01000000),
-    )),
-    Register("CHANNEL_STATE", "CHANNEL", 0x08, 1, (
-        Field("STATE", 0, 3, "r", 0x0),
-        Field("QUIET", 3, 1, "r", 0x1),
-        Field("CAUSE", 4, 4, "r", 0x0),
-        Field("OVERRUN", 8, 8, "r", 0x00),
-        Field("STOPPING", 16, 1, "r", 0x0),
-        Field("DRAINED", 17, 15, "r", 0x0000),
-    )),
-    Register("CHANNEL_RATE", "CHANNEL", 0x09, 1, (
-        Field("RATE", 0, 17, "r", 0x10000),
-    )),
-    Register("CHANNEL_ROOM", "CHANNEL", 0x0A, 1, (
-        Field("RAMP_ROOM", 0, 16, "r", None),
-        Field("LINE_ROOM", 16, 16, "r", None),
-    )),
-    Register("CHANNEL_VELOCITY", "CHANNEL", 0x0B, 1, (
-        Field("VELOCITY", 0, 32, "r", 0x00000000),
-    )),
-    Register("CHANNEL_INPUT_LEVELS", "CHANNEL", 0x10, 1, (
-        Field("LIMIT_LOW", 0, 8, "r", 0x00),
-        Field("LIMIT_HIGH", 8, 8, "r", 0x00),
-        Field("HOME", 16, 8, "r", 0x00),
-        Field("ALARM", 24, 8, "r", 0x00),
-    ), "inputs"),
-    Register("CHANNEL_INPUT_FLAGS", "CHANNEL", 0x11, 1, (
-        Field("LIMIT_LOW", 0, 8, "r", 0x00),
-        Field("LIMIT_HIGH", 8, 8, "r", 0x00),
-        Field("HOME", 16, 8, "r", 0x00),
-        Field("ALARM", 24, 8, "r", 0x00),
-    ), "inputs"),
-    Register("CHANNEL_INPUT_CLEAR", "CHANNEL", 0x12, 1, (
-        Field("LIMIT_LOW", 0, 8, "w", 0x00),
-        Field("LIMIT_HIGH", 8, 8, "w", 0x00),
-        Field("HOME", 16, 8, "w", 0x00),
-        Field("ALARM", 24, 8, "w", 0x00),
-    ), "inputs"),
-    Register("CHANNEL_TRIGGER", "CHANNEL", 0x13, 1, (
-        Field("SOURCE", 0, 3, "w", 0x0),
-        Field("AXIS", 4, 3, "w", 0x0),
-        Field("FALLING", 8, 1, "w", 0x0),
-        Field("ACTION", 12, 2, "w", 0x0),
-        Field("ARM", 16, 1, "w", 0x0),
-    ), "inputs"),
-    Register("CHANNEL_TRIGGER_STATE", "CHANNEL", 0x14, 1, (
-        Field("ARMED", 0, 1, "r", 0x0),
-        Field("FIRED", 1, 1, "r", 0x0),
-        Field("PROBE", 2, 1, "r", 0x0),
-        Field("PROBE_FLAG", 3, 1, "r", 0x0),
-        Field("ARMING", 4, 1, "r", 0x0),
-        Field("SOURCE_ACTIVE", 5, 1, "r", 0x0),
-        Field("UNKNOWN", 6, 1, "r", None),
-        Field("AXES", 8, 8, "r", 0x00),
-    ), "inputs"),
-    Register("CHANNEL_PROBE", "CHANNEL", 0x15, 1, (
-        Field("INVERTED", 0, 1, "w", 0x0),
-        Field("CLEAR", 1, 1, "w", 0x0),
-    ), "inputs"),
-    Register("CHANNEL_LINE", "CHANNEL", 0x20, 1, (
-        Field("LINE", 0, 32, "w", None),
-    )),
-    Register("CHANNEL_RAMP", "CHANNEL", 0x21, 1, (
-        Field("RAMP", 0, 32, "w", None),
-    )),
-    Register("CHANNEL_RASTER", "CHANNEL", 0x22, 1, (
-        Field("RASTER", 0, 32, "w", None),
-    ), "outputs"),
-    Register("CHANNEL_OUTPUT_LEVELS", "CHANNEL", 0x30, 1, (
-        Field("LEVELS", 0, 8, "w", 0x00),
-    ), "outputs"),
-    Register("CHANNEL_OUTPUT_LAG", "CHANNEL", 0x31, 1, (
-        Field("LAG", 0, 16, "w", 0x0000),
-    ), "outputs"),
-    Register("CHANNEL_PWM_STEP", "CHANNEL", 0x32, 1, (
-        Field("PWM_STEP", 0, 24, "w", 0x001000),
-    ), "outputs"),
-    Register("CHANNEL_POWER_REFERENCE", "CHANNEL", 0x33, 1, (
-        Field("POWER_REFERENCE", 0, 32, "w", 0x80000000),
-    ), "outputs"),
-    Register("CHANNEL_RASTER_PITCH", "CHANNEL", 0x34, 1, (
-        Field("PITCH", 0, 30, "w", 0x00000001),
-    ), "outputs"),
-    Register("CHANNEL_COMPARE_PULSE", "CHANNEL", 0x35, 1, (
-        Field("WIDTH", 0, 16, "w", 0x0000),
-        Field("AXIS", 16, 3, "w", 0x0),
-    ), "outputs"),
-    Register("CHANNEL_COMPARE_DISTANCE", "CHANNEL", 0x36, 1, (
-        Field("DISTANCE", 0, 32, "w", 0x00000000),
-    ), "outputs"),
-    Register("CHANNEL_COMPARE_INTERVAL", "CHANNEL", 0x37, 1, (
-        Field("INTERVAL", 0, 32, "w", 0x00000001),
-    ), "outputs"),
-    Register("CHANNEL_OUTPUT_STATE", "CHANNEL", 0x38, 1, (
-        Field("LEVELS", 0, 8, "r", 0x00),
-        Field("RASTER_EMPTY", 8, 1, "r", 0x0),
-        Field("OVERFLOW", 9, 1, "r", 0x0),
-        Field("RASTER_ROOM", 16, 16, "r", 0x0100),
-    ), "outputs"),
-    Register("CHANNEL_POSITION", "CHANNEL", 0x40, 8, (
-        Field("POSITION", 0, 32, "r", 0x00000000),
-    )),
-    Register("CHANNEL_TRIGGER_POSITION", "CHANNEL", 0x48, 8, (
-        Field("POSITION", 0, 32, "r", 0x00000000),
-    ), "inputs"),
-    Register("CHANNEL_ENCODER_POSITION", "CHANNEL", 0x50, 8, (
-        Field("POSITION", 0, 32, "r", 0x00000000),
-    ), "encoders"),
-    Register("CHANNEL_FOLLOW", "CHANNEL", 0x60, 1, (
-        Field("FOLLOW", 0, 1, "w", 0x0),
-        Field("WAIT_INDEX", 1, 1, "w", 0x0),
-        Field("SOURCE", 2, 3, "w", 0x0),
-        Field("SCALE", 5, 3, "w", 0x0),
-    ), "encoders"),
-    Register("CHANNEL_FOLLOW_LIMIT", "CHANNEL", 0x61, 1, (
-        Field("LIMIT", 0, 32, "w", 0x01000000),
-    ), "encoders"),
-    Register("CHANNEL_ENCODER_FILTER", "CHANNEL", 0x62, 1, (
-        Field("FILTER", 0, 8, "w", 0x03),
-    ), "encoders"),
-    Register("CHANNEL_FOLLOW_STATE", "CHANNEL", 0x63, 1, (
-        Field("OWED", 0, 24, "r", 0x000000),
-        Field("BEHIND", 24, 1, "r", 0x0),
-        Field("LOST", 25, 1, "r", 0x0),
-    ), "encoders"),
-    Register("AXIS_PINS", "AXIS", 0x0, 1, (
-        Field("STEP_INVERTED", 1, 1, "w", 0x0),
-        Field("DIRECTION_INVERTED", 2, 1, "w", 0x0),
-        Field("ENABLE_INVERTED", 3, 1, "w", 0x0),
-        Field("BOTH_EDGES", 4, 1, "w", 0x0),
-    )),
-    Register("AXIS_STEP_TIMING", "AXIS", 0x1, 1, (
-        Field("STEP_LOW", 0, 16, "w", 0x0001),
-        Field("STEP_HIGH", 16, 16, "w", 0x0001),
-    )),
-    Register("AXIS_DIR_TIMING", "AXIS", 0x2, 1, (
-        Field("DIR_HOLD", 0, 16, "w", 0x0001),
-        Field("DIR_SETUP", 16, 16, "w", 0x0001),
-    )),
-    Register("AXIS_LOST_STEPS", "AXIS", 0x3, 1, (
-        Field("LOST", 0, 4, "r", 0x0),
-    )),
-    Register("AXIS_ENABLE", "AXIS", 0x4, 1, (
-        Field("ENABLE", 0, 1, "w", 0x0),
-    )),
-    Register("AXIS_INPUTS", "AXIS", 0x5, 1, (
-        Field("LIMIT_LOW_INVERTED", 0, 1, "w", 0x0),
-        Field("LIMIT_HIGH_INVERTED", 1, 1, "w", 0x0),
-        Field("HOME_INVERTED", 2, 1, "w", 0x0),
-        Field("ALARM_INVERTED", 3, 1, "w", 0x0),
-        Field("LIMIT_SOFT", 4, 1, "w", 0x0),
-        Field("ALARM_SOFT", 5, 1, "w", 0x0),
-        Field("ALARM_DISABLES", 6, 1, "w", 0x0),
-    ), "inputs"),
-    Register("ENCODER_SETUP", "ENCODER", 0x0, 1, (
-        Field("INVERTED", 0, 1, "w", 0x0),
-        Field("INDEX_INVERTED", 1, 1, "w", 0x0),
-        Field("INDEX_GATED", 2, 1, "w", 0x0),
-        Field("STOP_SOFT", 3, 1, "w", 0x0),
-        Field("STOP_HARD", 4, 1, "w", 0x0),
-    ), "encoders"),
-    Register("ENCODER_RATIO", "ENCODER", 0x1, 1, (
-        Field("RATIO", 0, 32, "w", 0x00010000),
-    ), "encoders"),
-    Register("ENCODER_LIMIT", "ENCODER", 0x2, 1, (
-        Field("LIMIT", 0, 16, "w", 0xFFFF),
-    ), "encoders"),
-    Register("ENCODER_ERROR", "ENCODER", 0x3, 1, (
-        Field("ERROR", 0, 32, "r", 0x00000000),
-    ), "encoders"),
-    Register("ENCODER_GREATEST", "ENCODER", 0x4, 1, (
-        Field("GREATEST", 0, 18, "r", 0x00000),
-        Field("EXCEEDED", 31, 1, "r", 0x0),
-    ), "encoders"),
-    Register("ENCODER_INDEX", "ENCODER", 0x5, 1, (
-        Field("LATCH", 0, 16, "r", 0x0000),
-        Field("INDEXES", 16, 8, "r", 0x00),
-        Field("ILLEGAL", 24, 8, "r", 0x00),
-    ), "encoders"),
+    Register("IDENTIFICATION", "CORE", 0x000, 1, (Field("IDENTIFICATION", 0, 32, "r", 0x5041534F),)),
+    Register("VERSION", "CORE", 0x001, 1, VersionWord.places()),
+    Register("PARAMETERS", "CORE", 0x002, 1, ParametersWord.places()),
+    Register("RUN", "CORE", 0x003, 1, RunWord.places()),
+    Register("REFUSALS_0", "CORE", 0x004, 1, Refusals0Word.places()),
+    Register("REFUSALS_1", "CORE", 0x005, 1, Refusals1Word.places()),
+    Register("INPUT_FILTER", "CORE", 0x010, 1, (Field("FILTER", 0, 16, "w", 0x0000),), "inputs"),
+    Register("WATCHDOG", "CORE", 0x011, 1, WatchdogWord.places(), "inputs"),
+    Register("ESTOP", "CORE", 0x012, 1, (Field("PRESSED", 0, 1, "r", 0x0),), "inputs"),
+    Register("ESTOP_CLEAR", "CORE", 0x013, 1, (Field("CLEAR", 0, 1, "w", 0x0),), "inputs"),
+    Register("COSINE", "CORE", 0xD00, 256, (Field("POINT", 0, 16, "w", None),)),
+    Register("SIGMOID", "CORE", 0xE00, 256, (Field("POINT", 0, 16, "w", None),)),
+    Register("EASE", "CORE", 0xF00, 256, (Field("POINT", 0, 16, "w", None),)),
+    Register("CHANNEL_COMMAND", "CHANNEL", 0x00, 1, ChannelCommandWord.places()),
+    Register("CHANNEL_RATE_TARGET", "CHANNEL", 0x01, 1, (Field("RATE_TARGET", 0, 17, "w", 0x10000),)),
+    Register("CHANNEL_RATE_SLEW", "CHANNEL", 0x02, 1, (Field("RATE_SLEW", 0, 17, "w", 0x00400),)),
+    Register("CHANNEL_STOP_SLEW", "CHANNEL", 0x03, 1, (Field("STOP_SLEW", 0, 17, "w", 0x00400),)),
+    Register("CHANNEL_DRAIN_VELOCITY", "CHANNEL", 0x04, 1, (Field("DRAIN_VELOCITY", 0, 32, "w", 0x01000000),)),
+    Register("CHANNEL_STATE", "CHANNEL", 0x08, 1, ChannelStateWord.places()),
+    Register("CHANNEL_RATE", "CHANNEL", 0x09, 1, (Field("RATE", 0, 17, "r", 0x10000),)),
+    Register("CHANNEL_ROOM", "CHANNEL", 0x0A, 1, ChannelRoomWord.places()),
+    Register("CHANNEL_VELOCITY", "CHANNEL", 0x0B, 1, (Field("VELOCITY", 0, 32, "r", 0x00000000),)),
+    Register("CHANNEL_INPUT_LEVELS", "CHANNEL", 0x10, 1, ChannelInputLevelsWord.places(), "inputs"),
+    Register("CHANNEL_INPUT_FLAGS", "CHANNEL", 0x11, 1, ChannelInputFlagsWord.places(), "inputs"),
+    Register("CHANNEL_INPUT_CLEAR", "CHANNEL", 0x12, 1, ChannelInputClearWord.places(), "inputs"),
+    Register("CHANNEL_TRIGGER", "CHANNEL", 0x13, 1, ChannelTriggerWord.places(), "inputs"),
+    Register("CHANNEL_TRIGGER_STATE", "CHANNEL", 0x14, 1, ChannelTriggerStateWord.places(), "inputs"),
+    Register("CHANNEL_PROBE", "CHANNEL", 0x15, 1, ChannelProbeWord.places(), "inputs"),
+    Register("CHANNEL_LINE", "CHANNEL", 0x20, 1, (Field("LINE", 0, 32, "w", None),)),
+    Register("CHANNEL_RAMP", "CHANNEL", 0x21, 1, (Field("RAMP", 0, 32, "w", None),)),
+    Register("CHANNEL_RASTER", "CHANNEL", 0x22, 1, (Field("RASTER", 0, 32, "w", None),), "outputs"),
+    Register("CHANNEL_OUTPUT_LEVELS", "CHANNEL", 0x30, 1, (Field("LEVELS", 0, 8, "w", 0x00),), "outputs"),
+    Register("CHANNEL_OUTPUT_LAG", "CHANNEL", 0x31, 1, (Field("LAG", 0, 16, "w", 0x0000),), "outputs"),
+    Register("CHANNEL_PWM_STEP", "CHANNEL", 0x32, 1, (Field("PWM_STEP", 0, 24, "w", 0x001000),), "outputs"),
+    Register("CHANNEL_POWER_REFERENCE", "CHANNEL", 0x33, 1, (Field("POWER_REFERENCE", 0, 32, "w", 0x80000000),), "outputs"),
+    Register("CHANNEL_RASTER_PITCH", "CHANNEL", 0x34, 1, (Field("PITCH", 0, 30, "w", 0x00000001),), "outputs"),
+    Register("CHANNEL_COMPARE_PULSE", "CHANNEL", 0x35, 1, ChannelComparePulseWord.places(), "outputs"),
+    Register("CHANNEL_COMPARE_DISTANCE", "CHANNEL", 0x36, 1, (Field("DISTANCE", 0, 32, "w", 0x00000000),), "outputs"),
+    Register("CHANNEL_COMPARE_INTERVAL", "CHANNEL", 0x37, 1, (Field("INTERVAL", 0, 32, "w", 0x00000001),), "outputs"),
+    Register("CHANNEL_OUTPUT_STATE", "CHANNEL", 0x38, 1, ChannelOutputStateWord.places(), "outputs"),
+    Register("CHANNEL_POSITION", "CHANNEL", 0x40, 8, (Field("POSITION", 0, 32, "r", 0x00000000),)),
+    Register("CHANNEL_TRIGGER_POSITION", "CHANNEL", 0x48, 8, (Field("POSITION", 0, 32, "r", 0x00000000),), "inputs"),
+    Register("CHANNEL_ENCODER_POSITION", "CHANNEL", 0x50, 8, (Field("POSITION", 0, 32, "r", 0x00000000),), "encoders"),
+    Register("CHANNEL_FOLLOW", "CHANNEL", 0x60, 1, ChannelFollowWord.places(), "encoders"),
+    Register("CHANNEL_FOLLOW_LIMIT", "CHANNEL", 0x61, 1, (Field("LIMIT", 0, 32, "w", 0x01000000),), "encoders"),
+    Register("CHANNEL_ENCODER_FILTER", "CHANNEL", 0x62, 1, (Field("FILTER", 0, 8, "w", 0x03),), "encoders"),
+    Register("CHANNEL_FOLLOW_STATE", "CHANNEL", 0x63, 1, ChannelFollowStateWord.places(), "encoders"),
+    Register("AXIS_PINS", "AXIS", 0x0, 1, AxisPinsWord.places()),
+    Register("AXIS_STEP_TIMING", "AXIS", 0x1, 1, AxisStepTimingWord.places()),
+    Register("AXIS_DIR_TIMING", "AXIS", 0x2, 1, AxisDirTimingWord.places()),
+    Register("AXIS_LOST_STEPS", "AXIS", 0x3, 1, (Field("LOST", 0, 4, "r", 0x0),)),
+    Register("AXIS_ENABLE", "AXIS", 0x4, 1, (Field("ENABLE", 0, 1, "w", 0x0),)),
+    Register("AXIS_INPUTS", "AXIS", 0x5, 1, AxisInputsWord.places(), "inputs"),
+    Register("ENCODER_SETUP", "ENCODER", 0x0, 1, EncoderSetupWord.places(), "encoders"),
+    Register("ENCODER_RATIO", "ENCODER", 0x1, 1, (Field("RATIO", 0, 32, "w", 0x00010000),), "encoders"),
+    Register("ENCODER_LIMIT", "ENCODER", 0x2, 1, (Field("LIMIT", 0, 16, "w", 0xFFFF),), "encoders"),
+    Register("ENCODER_ERROR", "ENCODER", 0x3, 1, (Field("ERROR", 0, 32, "r", 0x00000000),), "encoders"),
+    Register("ENCODER_GREATEST", "ENCODER", 0x4, 1, EncoderGreatestWord.places(), "encoders"),
+    Register("ENCODER_INDEX", "ENCODER", 0x5, 1, EncoderIndexWord.places(), "encoders"),
 )
-# fmt: on

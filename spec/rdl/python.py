@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The registers in Python: enumerations, classes of words, constants, the table of all registers."""
 
-import re
 from collections.abc import Sequence
 from textwrap import wrap
 
@@ -11,30 +10,32 @@ from rdl.schema import GENERATED, Block, Enum, Field, Register, Source
 HEAD = f"""\
 # SPDX-License-Identifier: MIT
 # {GENERATED}
+# fmt: off
+# ruff: noqa: E501, RUF009
 \"\"\"Registers of Passo: word addresses, fields, reset values, enumerations.\"\"\"
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 from passo.register_table import Field, Register
-from passo.register_word import DescribedEnum, Word
+from passo.register_word import DescribedEnum, Word, bits
 """
 
 
 def _table(core: Block) -> list[str]:
     """All registers of all blocks."""
-    lines = ["", "# All registers, once each.", "# fmt: off", "TABLE = ("]
+    lines = ["", "# All registers, once each.", "TABLE = ("]
     for block in core.walk():
         for register in block.registers:
             name, word = block.field_prefix + register.name, digits(register.word, block.address_bits)
-            lines.append(f'    Register("{name}", "{block.name}", 0x{word}, {register.count or 1}, (')
-            for field in register.fields:
+            fields = f"{_class_name(name)}Word.places()"
+            if len(register.fields) == 1:
+                (field,) = register.fields
                 reset = None if field.reset is None else f"0x{digits(field.reset, field.bits)}"
-                arguments = f'"{field.name}", {field.lsb}, {field.bits}, "{field.access}", {reset}'
-                lines.append(f"        Field({arguments}),")
-            part = re.match(r"Only with (INPUTS|ENCODERS|OUTPUTS)\.", register.text)
-            lines.append(f'    ), "{part[1].lower()}"),' if part else "    )),")
-    return [*lines, ")", "# fmt: on"]
+                fields = f'(Field("{field.name}", {field.lsb}, {field.bits}, "{field.access}", {reset}),)'
+            part = f', "{register.part.lower()}"' if register.part else ""
+            count = register.count or 1
+            lines.append(f'    Register("{name}", "{block.name}", 0x{word}, {count}, {fields}{part}),')
+    return [*lines, ")"]
 
 
 def _type(field: Field) -> str:
@@ -48,8 +49,8 @@ def _default(field: Field, enums: Sequence[Enum]) -> str:
     for enum in enums:
         if enum.name == field.enum:
             (name,) = (name for name, value, _ in enum.members if value == field.reset)
-            return f" = {_type(field)}.{name}"
-    return f" = {bool(field.reset) if field.bits == 1 else field.reset}"
+            return f"{_type(field)}.{name}"
+    return f"{bool(field.reset) if field.bits == 1 else field.reset}"
 
 
 def _layout(name: str, register: Register, enums: Sequence[Enum]) -> list[str]:
@@ -57,12 +58,11 @@ def _layout(name: str, register: Register, enums: Sequence[Enum]) -> list[str]:
     fields = sorted(reversed(register.fields), key=lambda field: field.reset is not None)
     lines = ["", "@dataclass(frozen=True)", f"class {_class_name(name)}Word(Word):"]
     lines += [f'    """{register.title}."""', ""]
-    for field in fields:
-        lines += [f"    # {line}" for line in wrap(field.text, 104)]
-        lines.append(f"    {field.name.lower()}: {_type(field)}{_default(field, enums)}")
-    lines += ["", "    PLACES: ClassVar = {"]
-    lines += [f'        "{f.name.lower()}": ({f.lsb}, {f.bits}, {_type(f)}),' for f in register.fields]
-    return [*lines, "    }", ""]
+    for f in fields:
+        default = _default(f, enums)
+        place = f'{f.lsb}, {f.bits}, "{f.access}"{default and f", {default}"}'
+        lines.append(f"    {f.name.lower()}: {_type(f)} = bits({place})  # {f.text}")
+    return [*lines, ""]
 
 
 def _class_name(name: str) -> str:

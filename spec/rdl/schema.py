@@ -30,6 +30,8 @@ class Field(register_table.Field):
 
     text: str
     enum: str | None
+    needs: str  # what the channel must be to set it, as in the source; "" any
+    survives_reset: bool
 
 
 @dataclass(frozen=True)
@@ -42,6 +44,19 @@ class Register(register_table.Fields):
     title: str
     text: str
     fields: tuple[Field, ...]
+    # what the source says of it beside its fields
+    part: str = ""
+    pushed: bool = False
+    nonzero: bool = False
+    special: str = ""
+    needs: str = ""
+    survives_reset: bool = False
+    limit: int | None = None
+
+    @property
+    def maximum(self) -> int:
+        """The greatest value that may be written."""
+        return self.defined if self.limit is None else self.limit
 
 
 @dataclass(frozen=True)
@@ -93,7 +108,15 @@ def read_field(node: FieldNode) -> Field:
         reset=node.get_property("reset"),
         text=node.get_property("desc"),
         enum=encode and encode.type_name.removesuffix("_e"),
+        needs=_named(node, "needs"),
+        survives_reset=bool(node.get_property("survives_reset", default=False)),
     )
+
+
+def _named(node: FieldNode | RegNode, name: str) -> str:
+    """The value of a property that is an enumeration; "" if it has none."""
+    value = node.get_property(name, default=None)
+    return value.name if value else ""
 
 
 def read_register(node: RegNode) -> Register:
@@ -104,6 +127,13 @@ def read_register(node: RegNode) -> Register:
         title=node.get_property("name"),
         text=node.get_property("desc"),
         fields=tuple(read_field(field) for field in node.fields()),
+        part=_named(node, "part"),
+        pushed=bool(node.get_property("pushed", default=False)),
+        nonzero=bool(node.get_property("nonzero", default=False)),
+        special=node.get_property("special", default=""),
+        needs=_named(node, "needs"),
+        survives_reset=bool(node.get_property("survives_reset", default=False)),
+        limit=node.get_property("maximum", default=None),
     )
 
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the registers of a channel and of its axes promise of settings and commands, seen from their ports.
+// What the registers of a channel and of its axes, and their rules, promise of settings and commands, seen from their
+// ports.
 `resetall
 `default_nettype none
 
@@ -42,6 +43,16 @@ module passo_settings_proof (
   wire        write_inputs;
   wire        disable_axis;
 
+  passo_rules #(
+    .AXES(1)
+  ) u_rules (
+    .*,
+    .bus_address({select ? 4'd1 : 4'd2, bus_address}),
+    .bus_odd    (bus_data[0]),
+    .bad_value  (1'b0),
+    .needs_quiet(pins_need_quiet)
+  );
+
   passo_channel_registers #(
     .AXES(1)
   ) u_registers (
@@ -58,11 +69,8 @@ module passo_settings_proof (
     .*,
     .select_position (),
     .bus_address     (bus_address[2:0]),
-    .claim           (),
-    .refusal         (),
     .read_data       (),
-    .answers_position(),
-    .needs_quiet     (pins_need_quiet)
+    .answers_position()
   );
 
   passo_axis_settings u_settings (

@@ -22,6 +22,7 @@ from verify.mutants.netlist import Core, Mutant
 # What takes part in the answer to a frame.
 MODULES = (
     *(
+        "passo_rules",
         "passo_registers",
         "passo_channel_registers",
         "passo_axis_registers",
